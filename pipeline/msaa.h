@@ -1,0 +1,19 @@
+// Multisampling: N depth and colour samples per pixel, shading once per triangle and pixel. N to 16 at the standard
+// positions; above, super-resolution of 8x multisampling, as the paper made its own comparisons.
+#pragma once
+
+#include "pipeline/technique.h"
+#include "stages/sample_raster.h"
+
+namespace beampipe {
+
+inline constexpr int kMaxMsaaSamples = 1024;
+
+// `samples`: a power of two, 1..1024. Above 16, the pixel is a grid of samples / 8 cells, at least as wide as high.
+Sampling msaa_sampling(int samples);
+
+FrameResult render_msaa(const Trace& trace, const Frame& frame, int samples, const RunOptions& run);
+
+std::vector<Surface> msaa_framebuffer(int samples);
+
+}  // namespace beampipe

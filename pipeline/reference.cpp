@@ -1,0 +1,32 @@
+#include "pipeline/reference.h"
+
+#include "pipeline/tiles.h"
+#include "stages/reference_raster.h"
+#include "stages/shade.h"
+#include "stages/vertex_setup.h"
+
+namespace beampipe {
+namespace {
+
+constexpr int kTileSize = 4;  // px: 65,536 samples, 1 MiB
+
+}  // namespace
+
+FrameResult render_reference(const Trace& trace, const Frame& frame, const RunOptions& run) {
+  StageCounters setup;
+  const SetupTriangles triangles = vertex_setup(trace, frame, setup);
+  const std::vector<glm::vec3> colors = shade_triangles(triangles, frame.light_direction);
+  return render_tiles(frame, triangles, setup, kTileSize, run, [&](const Tile& tile, const TriangleList& list) {
+    StageCounters raster{"reference_raster"}, resolving{"resolve"};
+    ReferenceTile surface(tile);
+    reference_raster(triangles, list, tile, raster, surface);
+    return TileResult{resolve(surface, tile, colors, frame.background, resolving), {}, {raster, resolving}};
+  });
+}
+
+std::vector<Surface> reference_framebuffer() {
+  constexpr std::uint32_t kSamples = kReferenceGrid * kReferenceGrid;
+  return {{"depth", "D64F x 4096", 8 * kSamples}, {"owner", "R64UI x 4096", 8 * kSamples}};
+}
+
+}  // namespace beampipe

@@ -1,0 +1,12 @@
+// The truth: 64 x 64 samples per pixel in double precision, on the same snapped triangles as every technique.
+#pragma once
+
+#include "pipeline/technique.h"
+
+namespace beampipe {
+
+FrameResult render_reference(const Trace& trace, const Frame& frame, const RunOptions& run);
+
+std::vector<Surface> reference_framebuffer();
+
+}  // namespace beampipe

@@ -1,0 +1,69 @@
+// Techniques by spec string, and what rendering one frame with one of them yields.
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+#include <functional>
+#include <map>
+#include <stdexcept>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "stages/counters.h"
+#include "traces/trace.h"
+
+namespace beampipe {
+
+struct RunOptions {
+  int threads = 0;  // 0: all that the machine has. The result does not depend on it.
+};
+
+// Linear RGB plus A (the part of the pixel that geometry covers, 0..1); row 0 on top; 4 floats per pixel.
+struct Image {
+  std::uint32_t width = 0, height = 0;
+  std::vector<float> rgba;
+};
+
+// One surface of the framebuffer that is modelled: its bytes are what the named format takes, per pixel.
+struct Surface {
+  std::string name;    // "depth", "color", "mask", ...
+  std::string format;  // "D32F x 8", "RGB16F", ...
+  std::uint32_t bytes_per_pixel = 0;
+};
+
+struct FrameResult {
+  Image image;
+  std::map<std::string, std::vector<float>> pixel_counters;  // name -> width x height values ("fragments", ...)
+  std::vector<StageCounters> stages;                         // in pipeline order
+  std::uint64_t a_buffer_peak_bytes = 0;
+};
+
+struct Technique {
+  std::string spec;  // as the user wrote it
+  std::vector<Surface> framebuffer;
+  std::uint32_t samples = 0;  // N of msaa:N, else 0
+  std::function<FrameResult(const Trace&, std::size_t frame, const RunOptions&)> render;
+
+  std::uint32_t framebuffer_bytes_per_pixel() const {
+    std::uint32_t bytes = 0;
+    for (const Surface& surface : framebuffer) bytes += surface.bytes_per_pixel;
+    return bytes;
+  }
+};
+
+// One line: the spec, what is wrong, what was expected.
+struct SpecError : std::runtime_error {
+  using std::runtime_error::runtime_error;
+};
+
+// "beam", "beam:mask=exact", "alpha", "msaa:N" (N a power of two, 1..1024), "reference". Throws SpecError.
+Technique parse_technique(std::string_view spec);
+
+// Lines "SPEC  what it is", for --help.
+std::string technique_help();
+
+// The Highway target in use, for instance "AVX2".
+std::string simd_target();
+
+}  // namespace beampipe

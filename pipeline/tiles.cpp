@@ -1,0 +1,83 @@
+#include "pipeline/tiles.h"
+
+#include <tbb/parallel_for.h>
+#include <tbb/task_arena.h>
+
+#include <algorithm>
+
+#include "simd/sample_pattern.h"
+#include "stages/traverse.h"
+
+namespace beampipe {
+namespace {
+
+std::vector<Tile> make_tiles(const Frame& frame, std::int32_t size) {
+  std::vector<Tile> tiles;
+  const auto width = static_cast<std::int32_t>(frame.width), height = static_cast<std::int32_t>(frame.height);
+  for (std::int32_t y = 0; y < height; y += size)
+    for (std::int32_t x = 0; x < width; x += size)
+      tiles.push_back({x, y, std::min(x + size, width), std::min(y + size, height)});
+  return tiles;
+}
+
+// One list per tile: the triangles whose closed bounds touch it.
+std::vector<TriangleList> bin_triangles(const Frame& frame, const SetupTriangles& triangles, std::int32_t size,
+                                        std::size_t tiles) {
+  const Tile whole{0, 0, static_cast<std::int32_t>(frame.width), static_cast<std::int32_t>(frame.height)};
+  const auto columns = (whole.x1 + size - 1) / size;
+  std::vector<TriangleList> lists(tiles);
+  for (std::uint32_t i = 0; i < triangles.triangles.size(); ++i) {
+    const CellRange range = touched_range(triangles.triangles[i], whole, CellGrid{});
+    if (range.x0 >= range.x1 || range.y0 >= range.y1) continue;
+    for (std::int32_t y = range.y0 / size; y <= (range.y1 - 1) / size; ++y)
+      for (std::int32_t x = range.x0 / size; x <= (range.x1 - 1) / size; ++x)
+        lists[static_cast<std::size_t>(y * columns + x)].push_back(i);
+  }
+  return lists;
+}
+
+void copy_tile(const Tile& tile, const TileResult& from, FrameResult& to) {
+  const std::size_t frame_width = to.image.width;
+  for (std::int32_t y = tile.y0; y < tile.y1; ++y) {
+    for (std::int32_t x = tile.x0; x < tile.x1; ++x) {
+      const auto source = static_cast<std::size_t>((y - tile.y0) * tile.width() + x - tile.x0);
+      const std::size_t target = static_cast<std::size_t>(y) * frame_width + static_cast<std::size_t>(x);
+      for (int c = 0; c < 4; ++c)
+        to.image.rgba[4 * target + static_cast<std::size_t>(c)] = from.image[source][c];
+      for (const auto& [name, values] : from.pixel_counters) to.pixel_counters.at(name)[target] = values[source];
+    }
+  }
+}
+
+}  // namespace
+
+FrameResult render_tiles(const Frame& frame, const SetupTriangles& triangles, const StageCounters& vertex_setup,
+                         int tile_size, const RunOptions& options, const TileRenderer& renderer) {
+  const std::vector<Tile> tiles = make_tiles(frame, tile_size);
+  const std::vector<TriangleList> lists = bin_triangles(frame, triangles, tile_size, tiles.size());
+  std::vector<TileResult> results(tiles.size());
+  tbb::task_arena arena(options.threads > 0 ? options.threads : tbb::task_arena::automatic);
+  arena.execute([&] {
+    tbb::parallel_for(std::size_t{0}, tiles.size(), [&](std::size_t i) { results[i] = renderer(tiles[i], lists[i]); });
+  });
+
+  FrameResult frame_result;
+  const std::size_t pixels = std::size_t{frame.width} * frame.height;
+  frame_result.image = {frame.width, frame.height, std::vector<float>(4 * pixels)};
+  for (const auto& [name, values] : results.front().pixel_counters) frame_result.pixel_counters[name].resize(pixels);
+  frame_result.stages = {vertex_setup};
+  frame_result.stages.insert(frame_result.stages.end(), results.front().stages.size(), StageCounters{});
+  for (std::size_t i = 0; i < tiles.size(); ++i) {
+    copy_tile(tiles[i], results[i], frame_result);
+    for (std::size_t s = 0; s < results[i].stages.size(); ++s) {
+      frame_result.stages[s + 1].stage = results[i].stages[s].stage;
+      frame_result.stages[s + 1] += results[i].stages[s];
+    }
+  }
+  StageCounters& raster = frame_result.stages[1];
+  raster.items_in += triangles.triangles.size();
+  raster.bytes_read += triangles.triangles.size() * sizeof(SetupTriangle);
+  return frame_result;
+}
+
+}  // namespace beampipe

@@ -1,0 +1,34 @@
+// Depth test of a horizontal run of samples in double precision: the inner loop of the reference.
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+
+namespace beampipe {
+
+// Sample i of the run lies at x + step i (pixels from the depth plane's anchor); its depth is (z + dzdx x_i) + row.
+struct DepthSpan {
+  double z, dzdx, row;
+  double x, step;
+};
+
+// depth[i] and owner[i] are replaced where the span is nearer (LESS), i in [0, count). Returns how many were.
+std::uint64_t depth_span(const DepthSpan& span, std::size_t count, std::uint64_t owner_id, double* depth,
+                         std::uint64_t* owner);
+
+// Scalar twin, for the samples [first, count).
+inline std::uint64_t depth_span_scalar(const DepthSpan& span, std::size_t first, std::size_t count,
+                                       std::uint64_t owner_id, double* depth, std::uint64_t* owner) {
+  std::uint64_t passed = 0;
+  for (std::size_t i = first; i < count; ++i) {
+    const double x = span.x + span.step * static_cast<double>(i);
+    const double z = (span.z + span.dzdx * x) + span.row;
+    if (!(z < depth[i])) continue;
+    depth[i] = z;
+    owner[i] = owner_id;
+    ++passed;
+  }
+  return passed;
+}
+
+}  // namespace beampipe

@@ -1,0 +1,38 @@
+// Per-sample depth test of one triangle in the cells of a multisampled surface. LESS; the surface keeps, per sample, the
+// nearest depth and whose it is.
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+
+#include "simd/sample_pattern.h"
+
+namespace beampipe {
+
+// Depth at sample (x, y) of the cell, in 1/256 px: z + dzdx x + dzdy y.
+struct CellDepth {
+  std::uint32_t cell;      // which cell: its samples start at cell * pattern.count
+  std::uint32_t mask;      // samples to test
+  std::uint32_t triangle;  // what to store where the test passes
+  float z, dzdx, dzdy;
+};
+
+// Arrays of cells * pattern.count samples, readable and writable up to kSampleSlack further.
+inline constexpr std::size_t kSampleSlack = 64;
+struct SampleSurface {
+  float* depth;
+  std::uint32_t* triangle;
+};
+
+// In order: a later item sees what an earlier one stored. Returns how many samples passed. Lanes are across samples.
+std::uint64_t depth_test(const CellDepth* items, std::size_t count, const SamplePattern& pattern,
+                         const SampleSurface& surface);
+
+// Scalar twin of one sample: does it pass?
+template <class Float>
+bool depth_test_scalar(Float z, Float dzdx, Float dzdy, Float x, Float y, Float stored, Float& depth) {
+  depth = z + dzdx * x + dzdy * y;
+  return depth < stored;
+}
+
+}  // namespace beampipe

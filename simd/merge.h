@@ -1,0 +1,161 @@
+// Merging one fragment into the aggregate of its pixel: the rules of Crassin et al. 2018, section 2.2.
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+
+#include "simd/sample_pattern.h"
+#include "simd/scalar.h"
+
+namespace beampipe {
+
+// Depth over the pixel: z + dzdu (u - 1/2) + dzdv (v - 1/2), u and v in pixels, 0 near to 1 far.
+template <class Float>
+struct DepthPlane {
+  Float z, dzdu, dzdv;
+};
+
+// A fragment and an aggregate are the same thing (section 2.1): coverage, mask, depth slab, depth range, colour.
+// Empty aggregate: alpha 0, mask 0, z_min > z_max.
+template <class Float, class Mask>
+struct AggregateOf {
+  Float alpha;  // covered area of the pixel, 0..1
+  Mask mask;    // localization: where the coverage is, never how much
+  DepthPlane<Float> plane;
+  Float thickness;     // of the slab around the plane, in depth; 0 for one triangle
+  Float z_min, z_max;  // depth range within the pixel
+  Float color[3];      // linear RGB times alpha
+};
+using Aggregate = AggregateOf<float, std::uint32_t>;
+
+inline constexpr Aggregate kEmptyAggregate = {0.0f, 0u, {0.0f, 0.0f, 0.0f}, 0.0f, 2.0f, -1.0f, {0.0f, 0.0f, 0.0f}};
+
+// What arrives: an aggregate of one triangle, its colour multiplied by alpha. A tiny triangle covered no mask position
+// and was given the nearest one.
+template <class Float, class Mask>
+struct FragmentOf {
+  AggregateOf<Float, Mask> surface;
+  Mask tiny;  // 0 or ~0
+};
+using MergeFragment = FragmentOf<float, std::uint32_t>;
+
+// aggregates[i] = fragments[i] merged into aggregates[i]. Lanes are across pixels. Bit-identical to merge_scalar on
+// every target. Mask bit s stands at pattern position s; the pattern has 32.
+void merge(const MergeFragment* fragments, std::size_t count, const SamplePattern& pattern, Aggregate* aggregates);
+
+// ---- Scalar twin -----------------------------------------------------------------------------------------------------
+
+// How much of the fragment (i) and of the aggregate (a) shows in one region of mask positions.
+template <class Float>
+struct BlendFactors {
+  Float i, a;
+};
+
+template <class Float>
+Float depth_at(const DepthPlane<Float>& plane, Float u, Float v) {
+  return plane.z + plane.dzdu * u + plane.dzdv * v;  // u, v from the pixel's centre
+}
+
+template <class Float, class Mask>
+AggregateOf<Float, Mask> merge_scalar(const FragmentOf<Float, Mask>& fragment, const AggregateOf<Float, Mask>& old,
+                                      const SamplePattern& pattern) {
+  const Float zero(0.0f), one(1.0f), half(0.5f), bits(32.0f);
+  const AggregateOf<Float, Mask>& in = fragment.surface;
+  const auto clamp = [&](Float value, Float low, Float high) { return lesser(greater(value, low), high); };
+
+  // (1) Partition xy by the masks.
+  const Mask overlap = in.mask & old.mask;
+  const Float only_i = bit_count(in.mask & ~old.mask), only_a = bit_count(old.mask & ~in.mask);
+
+  // (2) Partition the overlap by depth: before, behind and within the aggregate's slab, position by position. Equal depth
+  // counts as behind: the earlier fragment wins.
+  const Float half_thickness = half * old.thickness;
+  const auto slab_front = [&](Float base) { return greater(base - half_thickness, old.z_min); };
+  const auto slab_back = [&](Float base, Float front) {
+    return greater(lesser(base + half_thickness, old.z_max), front);
+  };
+  Mask front_mask(0u), back_mask(0u);
+  Float fuzzy_u = zero, fuzzy_v = zero;
+  for (int s = 0; s < 32; ++s) {
+    const auto k = static_cast<std::size_t>(s);
+    const Float u(static_cast<float>(pattern.x[k]) / kSubpixelUnits - 0.5f);
+    const Float v(static_cast<float>(pattern.y[k]) / kSubpixelUnits - 0.5f);
+    const Float depth = clamp(depth_at(in.plane, u, v), in.z_min, in.z_max);
+    const Float base = depth_at(old.plane, u, v);
+    const Float front = slab_front(base), back = slab_back(base, front);
+    const bool is_front = depth < front, is_back = depth >= back;
+    const Mask here = overlap & Mask(1u << s);
+    front_mask = front_mask | select(is_front, here, Mask(0u));
+    back_mask = back_mask | select(is_back, here, Mask(0u));
+    const bool fuzzy = !is_front & !is_back & (here != Mask(0u));
+    fuzzy_u = fuzzy_u + select(fuzzy, u, zero);
+    fuzzy_v = fuzzy_v + select(fuzzy, v, zero);
+  }
+  const Float in_front = bit_count(front_mask), behind = bit_count(back_mask);
+  const Float within = bit_count(overlap & ~front_mask & ~back_mask);
+
+  // Delta: where the fragment lies in the slab, 0 at its front to 1 at its back, at the centre of the fuzzy positions.
+  const Float safe_within = greater(within, one);
+  const Float u = fuzzy_u / safe_within, v = fuzzy_v / safe_within;
+  const Float base = depth_at(old.plane, u, v);
+  const Float front = slab_front(base), back = slab_back(base, front);
+  const Float extent = back - front;
+  const Float depth = clamp(depth_at(in.plane, u, v), in.z_min, in.z_max);
+  const Float delta = clamp((depth - front) / select(extent > zero, extent, one), zero, one);
+
+  // (3) Blending factors per region. Local coverage: alpha over the part of the mask that is set.
+  const Float local_i = in.alpha * bits / greater(bit_count(in.mask), one);
+  const Float local_a = old.alpha * bits / greater(bit_count(old.mask), one);
+  const Float cover_i = lesser(local_i, one), cover_a = lesser(local_a, one);
+  const bool tiny = fragment.tiny != Mask(0u);
+  // Tiny triangles are taken as neighbours of what is there (anti-correlated), others as independent of it.
+  const Float a_beside_i = select(tiny, lesser(cover_a, one - cover_i), cover_a * (one - cover_i));
+  const Float i_beside_a = select(tiny, lesser(cover_i, one - cover_a), cover_i * (one - cover_a));
+  const BlendFactors<Float> over{cover_i, a_beside_i};
+  const BlendFactors<Float> under{i_beside_a, cover_a};
+  const BlendFactors<Float> fuzzy{select(tiny, cover_i, cover_i * (one - delta)),
+                                  select(tiny, a_beside_i, cover_a * delta)};
+
+  // (4) Combine: each region weighs as many bits as it has. The sum may pass 1 by the masks' error; then it is scaled.
+  const Float weight_i = (only_i * local_i + in_front * over.i + behind * under.i + within * fuzzy.i) / bits;
+  const Float weight_a = (only_a * local_a + in_front * over.a + behind * under.a + within * fuzzy.a) / bits;
+  const Float scale = one / greater(weight_i + weight_a, one);
+  const Float scale_i = weight_i * scale / greater(in.alpha, Float(1e-30f));
+  const Float scale_a = weight_a * scale / greater(old.alpha, Float(1e-30f));
+
+  AggregateOf<Float, Mask> merged;
+  merged.alpha = (weight_i + weight_a) * scale;
+  merged.mask = in.mask | old.mask;
+  for (int c = 0; c < 3; ++c) merged.color[c] = in.color[c] * scale_i + old.color[c] * scale_a;
+
+  // The new slab: the coverage-weighted plane, and thick enough for the fragment's farthest position.
+  const Float share_i = in.alpha / (in.alpha + old.alpha), share_a = one - share_i;
+  const bool first = old.mask == Mask(0u);
+  const auto blend = [&](Float p_i, Float p_a) { return select(first, p_i, p_i * share_i + p_a * share_a); };
+  merged.plane = {blend(in.plane.z, old.plane.z), blend(in.plane.dzdu, old.plane.dzdu),
+                  blend(in.plane.dzdv, old.plane.dzdv)};
+  Float farthest = zero;
+  for (int s = 0; s < 32; ++s) {
+    const auto k = static_cast<std::size_t>(s);
+    const Float at_u(static_cast<float>(pattern.x[k]) / kSubpixelUnits - 0.5f);
+    const Float at_v(static_cast<float>(pattern.y[k]) / kSubpixelUnits - 0.5f);
+    const Float at = clamp(depth_at(in.plane, at_u, at_v), in.z_min, in.z_max);
+    const Float distance = magnitude(at - depth_at(merged.plane, at_u, at_v));
+    farthest = select((in.mask & Mask(1u << s)) != Mask(0u), greater(farthest, distance), farthest);
+  }
+  merged.thickness = select(first, zero, greater(old.thickness, farthest + farthest));
+  merged.z_min = lesser(in.z_min, old.z_min);
+  merged.z_max = greater(in.z_max, old.z_max);
+  return merged;
+}
+
+// Plain OVER of a fragment behind what is there, with no mask: alpha and colour alone.
+template <class Float, class Mask>
+AggregateOf<Float, Mask> over_scalar(const FragmentOf<Float, Mask>& fragment, AggregateOf<Float, Mask> old) {
+  const Float rest = Float(1.0f) - old.alpha;
+  old.alpha = old.alpha + rest * fragment.surface.alpha;
+  for (int c = 0; c < 3; ++c) old.color[c] = old.color[c] + rest * fragment.surface.color[c];
+  return old;
+}
+
+}  // namespace beampipe

@@ -1,0 +1,35 @@
+// Which samples of a pixel (or cell) a triangle covers: exact integer edge tests.
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+
+#include "simd/sample_pattern.h"
+
+namespace beampipe {
+
+// The three edges of a triangle seen from a cell's upper left corner: sample (x, y), in 1/256 px, is covered when
+// a[k] x + b[k] y + c[k] >= 0 for k = 0, 1, 2. The top-left rule is already in c (one less for edges that do not own
+// their samples). |a|, |b| <= 2^24, |c| < 2^52.
+struct CellEdges {
+  std::int32_t a[3], b[3];
+  std::int64_t c[3];
+};
+
+// masks[i] has bit s set when cells[i] covers sample s. Lanes are across samples.
+void sample_masks(const CellEdges* cells, std::size_t count, const SamplePattern& pattern, std::uint32_t* masks);
+
+// Scalar twin; Int is std::int64_t or a counting number.
+template <class Int>
+std::uint32_t sample_mask_scalar(const Int a[3], const Int b[3], const Int c[3], const SamplePattern& pattern) {
+  std::uint32_t mask = 0;
+  for (int s = 0; s < pattern.count; ++s) {
+    const auto i = static_cast<std::size_t>(s);
+    bool inside = true;
+    for (int k = 0; k < 3; ++k) inside &= a[k] * Int(pattern.x[i]) + b[k] * Int(pattern.y[i]) + c[k] >= Int(0);
+    mask |= static_cast<std::uint32_t>(inside) << s;
+  }
+  return mask;
+}
+
+}  // namespace beampipe

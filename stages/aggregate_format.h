@@ -1,0 +1,14 @@
+// The bytes of an aggregate as it is stored, with colour: 42. Source: slide 23 of the paper's talk.
+//   coverage float32 4, mask 4, plane 3 x float32 + a fourth coefficient 16, thickness 4, z_min and z_max 8: 36;
+//   colour 3 x fp16: 6.
+#pragma once
+
+#include <cstdint>
+
+namespace beampipe {
+
+inline constexpr std::uint32_t kAggregateVisibilityBytes = 4 + 4 + 16 + 4 + 8;
+inline constexpr std::uint32_t kAggregateColorBytes = 3 * 2;
+inline constexpr std::uint32_t kAggregateBytes = kAggregateVisibilityBytes + kAggregateColorBytes;
+
+}  // namespace beampipe

@@ -1,0 +1,186 @@
+#include "stages/beam_fragment.h"
+
+#include <bit>
+#include <cmath>
+
+#include "simd/coverage.h"
+#include "simd/sample_test.h"
+#include "stages/aggregate_format.h"
+#include "stages/counting.h"
+#include "stages/raster_cost.h"
+
+namespace beampipe {
+namespace {
+
+constexpr float kUnit = 1.0f / kSubpixelUnits;  // px
+
+CoverageInput<float> coverage_input(const SetupTriangle& triangle, const Edge (&edges)[3], std::int32_t x,
+                                    std::int32_t y) {
+  const std::int32_t left = x * kSubpixelUnits, top = y * kSubpixelUnits;
+  CoverageInput<float> in;
+  for (int k = 0; k < 3; ++k) {
+    in.u[k] = static_cast<float>(triangle.x[k] - left) * kUnit;
+    in.v[k] = static_cast<float>(triangle.y[k] - top) * kUnit;
+    in.a[k] = static_cast<float>(edges[k].a) * kUnit;
+    in.b[k] = static_cast<float>(edges[k].b) * kUnit;
+    for (int corner = 0; corner < 4; ++corner) {
+      const std::int32_t right = (corner & 1) * kSubpixelUnits, down = (corner >> 1) * kSubpixelUnits;
+      in.corner[k][corner] = static_cast<float>(edges[k].at(left + right, top + down)) * (kUnit * kUnit);
+    }
+    in.vertex_z[k] = triangle.vertex_z[k];
+  }
+  in.z = static_cast<float>(triangle.depth.at(x + 0.5, y + 0.5));
+  in.dzdu = static_cast<float>(triangle.depth.dzdx);
+  in.dzdv = static_cast<float>(triangle.depth.dzdy);
+  return in;
+}
+
+CellEdges exact_edges(const Edge (&edges)[3], std::int32_t x, std::int32_t y) {
+  CellEdges cell;
+  for (int k = 0; k < 3; ++k) {
+    cell.a[k] = edges[k].a, cell.b[k] = edges[k].b;
+    cell.c[k] = edges[k].at(std::int64_t{x} * kSubpixelUnits, std::int64_t{y} * kSubpixelUnits) -
+                (edges[k].owns ? 0 : 1);
+  }
+  return cell;
+}
+
+// The part of a table edge that is the same at every pixel.
+struct EdgeDirection {
+  std::int32_t angle;
+  bool flip;
+  double per_unit;  // 1 / length of the normal, signed so that the distance is the unflipped edge's, in pixels
+};
+
+EdgeDirection edge_direction(const Edge& edge) {
+  EdgeDirection direction;
+  direction.angle = table_angle(edge.a, edge.b, direction.flip);
+  const double length = std::sqrt(double(edge.a) * edge.a + double(edge.b) * edge.b);
+  direction.per_unit = (direction.flip ? -1.0 : 1.0) / (length * kSubpixelUnits);
+  return direction;
+}
+
+TableTriangle table_edges(const Edge (&edges)[3], const EdgeDirection (&directions)[3], std::int32_t x,
+                          std::int32_t y) {
+  const std::int64_t center_x = std::int64_t{x} * kSubpixelUnits + kSubpixelUnits / 2;
+  const std::int64_t center_y = std::int64_t{y} * kSubpixelUnits + kSubpixelUnits / 2;
+  TableTriangle triangle;
+  for (int k = 0; k < 3; ++k) {
+    const auto distance = static_cast<double>(edges[k].at(center_x, center_y)) * directions[k].per_unit;
+    triangle.edges[k] = {directions[k].angle, directions[k].flip ? ~0u : 0u, static_cast<float>(distance)};
+  }
+  return triangle;
+}
+
+std::uint32_t nearest_position(const SamplePattern& pattern, float u, float v) {
+  std::uint32_t nearest = 0;
+  float least = 4.0f;  // more than the pixel's diagonal, squared
+  for (std::size_t s = 0; s < 32; ++s) {
+    const float du = static_cast<float>(pattern.x[s]) * kUnit - u, dv = static_cast<float>(pattern.y[s]) * kUnit - v;
+    const float distance = du * du + dv * dv;
+    if (distance < least) {
+      least = distance;
+      nearest = static_cast<std::uint32_t>(s);
+    }
+  }
+  return 1u << nearest;
+}
+
+OperationCounts coverage_cost() {
+  return count_operations([](OperationCounts& counts) {
+    CoverageInput<Counted<float>> in;
+    const Counted<float> one(1.0f, counts);
+    for (int k = 0; k < 3; ++k) {
+      in.u[k] = in.v[k] = in.a[k] = in.b[k] = in.vertex_z[k] = one;
+      for (Counted<float>& corner : in.corner[k]) corner = one;
+    }
+    in.z = in.dzdu = in.dzdv = one;
+    coverage_scalar(in);
+  });
+}
+
+// Per edge: distance scaled and clamped (a multiply-add, a multiply, two comparisons), converted, fetched, two selects for
+// beyond the table, and the AND.
+constexpr OperationCounts kTableMaskCost{6, 18, 3, 3, 0, 3};
+constexpr OperationCounts kNearestCost{64, 128, 0, 0, 0, 0};  // 32 squared distances and comparisons
+
+OperationCounts exact_mask_cost(const SamplePattern& pattern) {
+  return count_operations([&](OperationCounts& counts) {
+    using Int = Counted<std::int64_t>;
+    const Int zero(0, counts), edges[3] = {zero, zero, zero};
+    sample_mask_scalar(edges, edges, edges, pattern);
+  });
+}
+
+}  // namespace
+
+void beam_fragment(const SetupTriangles& triangles, const std::vector<PixelTriangle>& in, const Tile& tile,
+                   const BeamFragmentOptions& options, StageCounters& counters, std::vector<Fragment>& out) {
+  const bool use_table = options.mask == MaskSource::table;
+  std::vector<CoverageInput<float>> inputs(in.size());
+  std::vector<TableTriangle> lookups(use_table ? in.size() : 0);
+  std::vector<CellEdges> cells(use_table ? 0 : in.size());
+  Edge edges[3] = {};
+  EdgeDirection directions[3] = {};
+  for (std::size_t i = 0; i < in.size(); ++i) {
+    const SetupTriangle& triangle = triangles.triangles[in[i].triangle];
+    if (i == 0 || in[i].triangle != in[i - 1].triangle) {
+      for (int k = 0; k < 3; ++k) {
+        edges[k] = edge_of(triangle, k);
+        if (use_table) directions[k] = edge_direction(edges[k]);
+      }
+    }
+    inputs[i] = coverage_input(triangle, edges, in[i].x, in[i].y);
+    if (use_table) {
+      lookups[i] = table_edges(edges, directions, in[i].x, in[i].y);
+    } else {
+      cells[i] = exact_edges(edges, in[i].x, in[i].y);
+    }
+  }
+  std::vector<Coverage<float>> covered(in.size());
+  std::vector<std::uint32_t> masks(in.size());
+  coverage(inputs.data(), in.size(), covered.data());
+  if (use_table) {
+    table_masks(lookups.data(), in.size(), *options.table, masks.data());
+  } else {
+    sample_masks(cells.data(), in.size(), options.pattern, masks.data());
+  }
+
+  const std::size_t before = out.size();
+  std::uint64_t tiny = 0;
+  for (std::size_t i = 0; i < in.size(); ++i) {
+    const Coverage<float>& c = covered[i];
+    if (!in[i].full && c.alpha <= kZeroArea) continue;
+    Fragment fragment{};
+    fragment.triangle = in[i].triangle;
+    fragment.quad = in[i].quad;
+    fragment.pixel = static_cast<std::uint32_t>((in[i].y - tile.y0) * tile.width() + in[i].x - tile.x0);
+    fragment.centroid_u = in[i].full ? 0.5f : c.centroid_u;
+    fragment.centroid_v = in[i].full ? 0.5f : c.centroid_v;
+    Aggregate& surface = fragment.merge.surface;
+    surface.alpha = in[i].full ? 1.0f : c.alpha;
+    surface.mask = in[i].full ? ~0u : masks[i];
+    surface.plane = {inputs[i].z, inputs[i].dzdu, inputs[i].dzdv};
+    surface.z_min = c.z_min, surface.z_max = c.z_max;
+    fragment.centroid_z = depth_at(surface.plane, fragment.centroid_u - 0.5f, fragment.centroid_v - 0.5f);
+    fragment.centroid_z = lesser(greater(fragment.centroid_z, c.z_min), c.z_max);
+    if (surface.mask == 0) {
+      surface.mask = nearest_position(options.pattern, fragment.centroid_u, fragment.centroid_v);
+      fragment.merge.tiny = ~0u;
+      ++tiny;
+    }
+    out.push_back(fragment);
+  }
+
+  counters.items_in += in.size();
+  counters.items_out += out.size() - before;
+  counters.ops += coverage_cost() * in.size();
+  counters.ops += (use_table ? kTableMaskCost : exact_mask_cost(options.pattern)) * in.size();
+  counters.ops += kNearestCost * tiny;
+  counters.bytes_read += in.size() * kPixelTriangleBytes;
+  counters.bytes_written += (out.size() - before) * kAggregateBytes;
+  counters.lanes_used += out.size() - before;
+  counters.lanes_issued += in.size();
+}
+
+}  // namespace beampipe

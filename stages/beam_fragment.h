@@ -1,0 +1,38 @@
+// beam_fragment: (pixel, triangle) -> fragment. Analytic coverage of the clipped triangle, localization mask, depth plane,
+// depth range, centroid: everything about the triangle's visibility in the pixel.
+#pragma once
+
+#include <cstdint>
+#include <vector>
+
+#include "simd/mask_table.h"
+#include "simd/merge.h"
+#include "stages/conservative_raster.h"
+
+namespace beampipe {
+
+struct Fragment {
+  std::uint32_t triangle;        // index into SetupTriangles
+  std::uint32_t quad;            // as in PixelTriangle
+  std::uint32_t pixel;           // within the tile, row by row
+  float centroid_u, centroid_v;  // of the clipped triangle, pixels from the pixel's upper left corner
+  float centroid_z;              // its depth there
+  MergeFragment merge;           // its colour is 0 until shaded
+};
+
+enum class MaskSource { table, exact };  // the 64 x 64 table (the paper), or the edge tests of sample_raster
+
+struct BeamFragmentOptions {
+  MaskSource mask = MaskSource::table;
+  SamplePattern pattern;           // the mask's 32 positions
+  const MaskTable* table = nullptr;  // for MaskSource::table
+};
+
+// Areas up to this are what rounding leaves of an area of 0, in pixels.
+inline constexpr float kZeroArea = 5e-7f;
+
+// Appends to `out` in the order of `in`; pixels whose coverage turns out 0 are dropped (items_in - items_out counts them).
+void beam_fragment(const SetupTriangles& triangles, const std::vector<PixelTriangle>& in, const Tile& tile,
+                   const BeamFragmentOptions& options, StageCounters& counters, std::vector<Fragment>& out);
+
+}  // namespace beampipe

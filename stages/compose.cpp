@@ -1,0 +1,83 @@
+#include "stages/compose.h"
+
+#include <algorithm>
+#include <numeric>
+
+#include "stages/aggregate_format.h"
+#include "stages/counting.h"
+
+namespace beampipe {
+namespace {
+
+using CountedAggregate = AggregateOf<Counted<float>, Counted<std::uint32_t>>;
+using CountedFragment = FragmentOf<Counted<float>, Counted<std::uint32_t>>;
+
+CountedFragment counted_fragment(OperationCounts& counts) {
+  const Counted<float> one(1.0f, counts);
+  const Counted<std::uint32_t> all(~0u, counts);
+  return {{one, all, {one, one, one}, one, one, one, {one, one, one}}, all};
+}
+
+OperationCounts merge_cost(const SamplePattern& pattern) {
+  return count_operations([&](OperationCounts& counts) {
+    const CountedFragment fragment = counted_fragment(counts);
+    merge_scalar(fragment, fragment.surface, pattern);
+  });
+}
+
+OperationCounts over_cost() {
+  return count_operations([](OperationCounts& counts) {
+    const CountedFragment fragment = counted_fragment(counts);
+    over_scalar(fragment, fragment.surface);
+  });
+}
+
+void count_merges(std::uint64_t merges, std::uint64_t pixels, const OperationCounts& cost, StageCounters& counters) {
+  counters.items_in += merges;
+  counters.items_out += pixels;
+  counters.ops += cost * merges;
+  counters.bytes_read += merges * kAggregateBytes;
+  counters.bytes_written += pixels * kAggregateBytes;
+  counters.lanes_used += merges;
+  counters.lanes_issued += merges;
+}
+
+}  // namespace
+
+std::vector<Aggregate> compose(const std::vector<Fragment>& fragments, const ABuffer& buffer,
+                               const SamplePattern& pattern, StageCounters& counters) {
+  const std::size_t pixels = buffer.first.size() - 1;
+  // Round r merges the r-th fragment of every pixel that has one: independent merges, one per lane. With the deepest
+  // pixels first, the pixels of a round are a prefix.
+  std::vector<std::uint32_t> order(pixels);
+  std::iota(order.begin(), order.end(), 0u);
+  std::stable_sort(order.begin(), order.end(),
+                   [&](std::uint32_t a, std::uint32_t b) { return buffer.depth_of(a) > buffer.depth_of(b); });
+  std::vector<Aggregate> in_order(pixels, kEmptyAggregate);
+  std::vector<MergeFragment> arriving(pixels);
+  std::size_t active = pixels;
+  for (std::uint32_t round = 0;; ++round) {
+    while (active > 0 && buffer.depth_of(order[active - 1]) <= round) --active;
+    if (active == 0) break;
+    for (std::size_t i = 0; i < active; ++i)
+      arriving[i] = fragments[buffer.fragments[buffer.first[order[i]] + round]].merge;
+    merge(arriving.data(), active, pattern, in_order.data());
+  }
+  std::vector<Aggregate> aggregates(pixels);
+  for (std::size_t i = 0; i < pixels; ++i) aggregates[order[i]] = in_order[i];
+  count_merges(buffer.fragments.size(), pixels, merge_cost(pattern), counters);
+  return aggregates;
+}
+
+std::vector<Aggregate> compose_over(const std::vector<Fragment>& fragments, const ABuffer& buffer,
+                                    StageCounters& counters) {
+  const std::size_t pixels = buffer.first.size() - 1;
+  std::vector<Aggregate> aggregates(pixels, kEmptyAggregate);
+  for (std::size_t pixel = 0; pixel < pixels; ++pixel)
+    for (std::uint32_t i = buffer.first[pixel]; i < buffer.first[pixel + 1]; ++i)
+      aggregates[pixel] = over_scalar(fragments[buffer.fragments[i]].merge, aggregates[pixel]);
+  count_merges(buffer.fragments.size(), pixels, over_cost(), counters);
+  return aggregates;
+}
+
+}  // namespace beampipe

@@ -1,0 +1,20 @@
+// compose: fragments from near to far -> one aggregate per pixel. The ROP of the beam pipeline.
+#pragma once
+
+#include <vector>
+
+#include "simd/merge.h"
+#include "stages/a_buffer.h"
+#include "stages/counters.h"
+
+namespace beampipe {
+
+// The paper's rules (simd/merge.h). One aggregate per pixel of the tile; kEmptyAggregate where nothing is.
+std::vector<Aggregate> compose(const std::vector<Fragment>& fragments, const ABuffer& buffer,
+                               const SamplePattern& pattern, StageCounters& counters);
+
+// Plain OVER: alpha and colour, as if every fragment were independent of every other.
+std::vector<Aggregate> compose_over(const std::vector<Fragment>& fragments, const ABuffer& buffer,
+                                    StageCounters& counters);
+
+}  // namespace beampipe

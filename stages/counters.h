@@ -1,0 +1,64 @@
+// What a stage did in one frame, in items, operations, bytes and lanes.
+#pragma once
+
+#include <cstdint>
+#include <string>
+
+namespace beampipe {
+
+// Scalar operations by kind, as the stage's scalar twin does them.
+struct OperationCounts {
+  std::uint64_t mul_add = 0;  // multiplications, with or without an addition behind them
+  std::uint64_t add = 0;      // additions, subtractions, comparisons, minima, maxima, selects
+  std::uint64_t bit = 0;      // and, or, not, shift, population count
+  std::uint64_t fetch = 0;    // table look-ups
+  std::uint64_t special = 0;  // divisions, square roots
+  std::uint64_t convert = 0;  // integer <-> float, float <-> half
+
+  std::uint64_t total() const { return mul_add + add + bit + fetch + special + convert; }
+
+  OperationCounts& operator+=(const OperationCounts& other) {
+    mul_add += other.mul_add;
+    add += other.add;
+    bit += other.bit;
+    fetch += other.fetch;
+    special += other.special;
+    convert += other.convert;
+    return *this;
+  }
+  friend OperationCounts operator*(OperationCounts counts, std::uint64_t times) {
+    counts.mul_add *= times;
+    counts.add *= times;
+    counts.bit *= times;
+    counts.fetch *= times;
+    counts.special *= times;
+    counts.convert *= times;
+    return counts;
+  }
+  bool operator==(const OperationCounts&) const = default;
+};
+
+struct StageCounters {
+  std::string stage;  // the design's stage name, for instance "conservative_raster"
+  std::uint64_t items_in = 0;
+  std::uint64_t items_out = 0;
+  OperationCounts ops{};
+  std::uint64_t bytes_read = 0;     // logical: what the algorithm touches
+  std::uint64_t bytes_written = 0;  // logical
+  std::uint64_t lanes_used = 0;     // lanes with work; for `shade` the fragments
+  std::uint64_t lanes_issued = 0;   // lanes that ran; for `shade` with the helpers of 2x2 quads
+
+  StageCounters& operator+=(const StageCounters& other) {
+    items_in += other.items_in;
+    items_out += other.items_out;
+    ops += other.ops;
+    bytes_read += other.bytes_read;
+    bytes_written += other.bytes_written;
+    lanes_used += other.lanes_used;
+    lanes_issued += other.lanes_issued;
+    return *this;
+  }
+  bool operator==(const StageCounters&) const = default;
+};
+
+}  // namespace beampipe

@@ -1,0 +1,31 @@
+// depth_test: sample fragments -> the multisampled surface of the tile. LESS; equal depth: the earlier triangle stays.
+#pragma once
+
+#include <cstdint>
+#include <vector>
+
+#include "stages/counters.h"
+#include "stages/sample_raster.h"
+
+namespace beampipe {
+
+inline constexpr std::uint32_t kNoTriangle = ~0u;  // the background
+inline constexpr float kFarDepth = 2.0f;           // beyond every depth: the cleared surface
+
+// Samples in order of pixel (row by row), cell within the pixel, sample within the cell. A sample's colour is kept as the
+// index of its triangle, which has one colour; the modelled surface is 32-bit depth and fp16 RGB.
+struct SampleTile {
+  std::vector<float> depth;
+  std::vector<std::uint32_t> triangle;
+  std::size_t samples_per_pixel = 0;
+
+  SampleTile(const Tile& tile, const Sampling& sampling);
+};
+
+inline constexpr std::uint32_t kSampleDepthBytes = 4;
+inline constexpr std::uint32_t kSampleColorBytes = 6;
+
+void depth_test(const SetupTriangles& triangles, const std::vector<SampleFragment>& fragments, const Tile& tile,
+                const Sampling& sampling, StageCounters& counters, SampleTile& surface);
+
+}  // namespace beampipe

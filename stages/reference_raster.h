@@ -1,0 +1,36 @@
+// reference_raster: setup triangles -> the nearest triangle at each sample of a regular 64 x 64 grid per pixel.
+//
+// The truth that every technique is judged against, on the same snapped triangles: spans per sample row by exact integer
+// division (a path of its own beside sample_raster's edge tests), depth in double precision, LESS.
+#pragma once
+
+#include <cstdint>
+#include <glm/glm.hpp>
+#include <vector>
+
+#include "stages/counters.h"
+#include "stages/setup_triangle.h"
+#include "stages/tile.h"
+
+namespace beampipe {
+
+inline constexpr std::int32_t kReferenceGrid = 64;  // samples per pixel in x and in y, at the cells' centres
+inline constexpr std::uint64_t kNoOwner = ~std::uint64_t{0};
+
+// Sample rows from top to bottom over the whole tile.
+struct ReferenceTile {
+  std::vector<double> depth;
+  std::vector<std::uint64_t> owner;  // index into SetupTriangles, or kNoOwner
+  std::size_t row_samples = 0;
+
+  explicit ReferenceTile(const Tile& tile);
+};
+
+void reference_raster(const SetupTriangles& triangles, const TriangleList& list, const Tile& tile,
+                      StageCounters& counters, ReferenceTile& surface);
+
+// Mean of each pixel's samples, summed in double.
+std::vector<glm::vec4> resolve(const ReferenceTile& surface, const Tile& tile, const std::vector<glm::vec3>& colors,
+                               const glm::vec3& background, StageCounters& counters);
+
+}  // namespace beampipe

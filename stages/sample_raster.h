@@ -1,0 +1,34 @@
+// sample_raster: setup triangles -> (cell, triangle, sample mask). Exact, with the top-left rule: a sample on an edge that
+// two triangles share belongs to one of them.
+#pragma once
+
+#include <cstdint>
+#include <vector>
+
+#include "simd/sample_pattern.h"
+#include "stages/counters.h"
+#include "stages/setup_triangle.h"
+#include "stages/tile.h"
+#include "stages/traverse.h"
+
+namespace beampipe {
+
+// A triangle's samples in one cell; at least one.
+struct SampleFragment {
+  std::uint32_t triangle;  // index into SetupTriangles
+  std::uint32_t quad;      // cells of one triangle in one 2x2 quad share it
+  std::int32_t x, y;       // cell, frame coordinates
+  std::uint32_t mask;      // bit s: sample s of the pattern
+};
+
+// How a pixel is sampled: a grid of cells, each with the pattern's positions (already scaled to the cell).
+struct Sampling {
+  CellGrid grid;
+  SamplePattern pattern;
+};
+
+// Appends to `out`, triangle by triangle in the list's order.
+void sample_raster(const SetupTriangles& triangles, const TriangleList& list, const Tile& tile,
+                   const Sampling& sampling, StageCounters& counters, std::vector<SampleFragment>& out);
+
+}  // namespace beampipe

@@ -1,0 +1,62 @@
+// What vertex_setup makes and every raster stage reads.
+//
+// Screen space: x to the right, y down, pixel (0,0) is the upper left one and covers [0,1] x [0,1]; positions are
+// integers in 1/256 px. Depth is 0 at the near plane, 1 at the far plane, linear in screen space.
+#pragma once
+
+#include <cstdint>
+#include <glm/glm.hpp>
+#include <vector>
+
+namespace beampipe {
+
+// Depth at (x, y): z + dzdx (x - anchor_x) + dzdy (y - anchor_y), in pixels; the same bits for the same three vertices in
+// any order.
+struct ScreenDepth {
+  double z = 0, dzdx = 0, dzdy = 0;   // slopes per pixel
+  double anchor_x = 0, anchor_y = 0;  // pixels
+
+  double at(double x, double y) const { return z + dzdx * (x - anchor_x) + dzdy * (y - anchor_y); }
+};
+
+struct SetupTriangle {
+  // Vertices in 1/256 px, |x|, |y| <= 2^23, ordered so that the inside is at E >= 0 for every edge (see Edge).
+  std::int32_t x[3], y[3];
+  float vertex_z[3];
+  ScreenDepth depth;
+};
+
+// Flat shading inputs of a triangle: the same at every pixel.
+struct FlatAttributes {
+  glm::vec3 kd;
+  glm::vec3 normal;  // world space, unit length, towards the viewer
+  bool lit;          // lambert; else unlit
+};
+
+struct SetupTriangles {
+  std::vector<SetupTriangle> triangles;    // in primitive order; a clipped triangle gives several in a row
+  std::vector<FlatAttributes> attributes;  // one per triangle
+};
+
+// Edge from vertex k to vertex k + 1: E(x, y) = a x + b y + c with x, y in 1/256 px, >= 0 inside. `owns` is the top-left
+// rule: a sample exactly on the edge belongs to the triangle if the edge is a left one (a > 0) or a horizontal top one
+// (a = 0, b > 0).
+struct Edge {
+  std::int32_t a, b;
+  std::int64_t c;
+  bool owns;
+
+  std::int64_t at(std::int64_t x, std::int64_t y) const { return a * x + b * y + c; }
+};
+
+inline Edge edge_of(const SetupTriangle& triangle, int k) {
+  const int next = (k + 1) % 3;
+  Edge edge;
+  edge.a = triangle.y[k] - triangle.y[next];
+  edge.b = triangle.x[next] - triangle.x[k];
+  edge.c = -(std::int64_t{edge.a} * triangle.x[k] + std::int64_t{edge.b} * triangle.y[k]);
+  edge.owns = edge.a > 0 || (edge.a == 0 && edge.b > 0);
+  return edge;
+}
+
+}  // namespace beampipe

@@ -1,0 +1,31 @@
+// shade: fragments -> fragments with colour.
+//
+// A triangle has one colour (flat shading), so the shader's result is computed once per triangle and charged once per
+// invocation: one per fragment, and helpers to fill its 2x2 quads (lanes_used and lanes_issued).
+#pragma once
+
+#include <glm/glm.hpp>
+#include <optional>
+#include <vector>
+
+#include "stages/beam_fragment.h"
+#include "stages/counters.h"
+#include "stages/sample_raster.h"
+#include "stages/setup_triangle.h"
+
+namespace beampipe {
+
+// What the shader returns per triangle: kd, times max(0, -normal . light) when lit. `light` is the way the light travels.
+std::vector<glm::vec3> shade_triangles(const SetupTriangles& triangles, const std::optional<glm::vec3>& light);
+
+// The colours as a framebuffer of fp16 RGB takes them.
+std::vector<glm::vec3> round_to_half(std::vector<glm::vec3> colors);
+
+// At the centroid: sets the fragments' colours (times alpha).
+void shade(const std::vector<glm::vec3>& colors, std::vector<Fragment>& fragments, StageCounters& counters);
+
+// At the pixel's centre or centroid, which is the same for flat colours: counts, for fragments that keep their triangle's
+// index in place of its colour.
+void shade(const std::vector<SampleFragment>& fragments, StageCounters& counters);
+
+}  // namespace beampipe
