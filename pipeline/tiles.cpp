@@ -1,5 +1,7 @@
 #include "pipeline/tiles.h"
 
+#include <tbb/global_control.h>
+#include <tbb/info.h>
 #include <tbb/parallel_for.h>
 #include <tbb/task_arena.h>
 
@@ -56,7 +58,9 @@ FrameResult render_tiles(const Frame& frame, const SetupTriangles& triangles, co
   const std::vector<Tile> tiles = make_tiles(frame, tile_size);
   const std::vector<TriangleList> lists = bin_triangles(frame, triangles, tile_size, tiles.size());
   std::vector<TileResult> results(tiles.size());
-  tbb::task_arena arena(options.threads > 0 ? options.threads : tbb::task_arena::automatic);
+  const int threads = options.threads > 0 ? options.threads : tbb::info::default_concurrency();
+  const tbb::global_control allow(tbb::global_control::max_allowed_parallelism, static_cast<std::size_t>(threads));
+  tbb::task_arena arena(threads);
   arena.execute([&] {
     tbb::parallel_for(std::size_t{0}, tiles.size(), [&](std::size_t i) { results[i] = renderer(tiles[i], lists[i]); });
   });

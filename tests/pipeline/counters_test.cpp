@@ -1,0 +1,70 @@
+// Counters of frames that can be counted by hand.
+#include <gtest/gtest.h>
+
+#include "pipeline/technique.h"
+#include "test_traces.h"
+
+namespace beampipe {
+namespace {
+
+const StageCounters& stage(const FrameResult& result, const std::string& name) {
+  for (const StageCounters& counters : result.stages)
+    if (counters.stage == name) return counters;
+  throw std::runtime_error("no stage " + name);
+}
+
+// The lower left half of the square [1, 5] x [1, 5], a little inside so that no border is only touched.
+Trace half_square() {
+  return pixel_trace(8, 8, {{{{1.25, 1.25, 0.5}, {4.75, 4.75, 0.5}, {1.25, 4.75, 0.5}}, glm::vec3(1)}});
+}
+
+TEST(Counters, BeamCountsEveryTouchedPixel) {
+  const FrameResult result = parse_technique("beam").render(half_square(), 0, {1});
+  // Rows 1 to 4 touch 1 + 1, 1 + 2, 1 + 3 and 4 pixels: the diagonal cuts through the pixels' corners, and a closed square
+  // is touched at its corner. Those with no area are dropped behind conservative_raster.
+  const std::uint64_t touched = 1 + 2 + 3 + 4 + 3, with_area = 1 + 2 + 3 + 4;
+  EXPECT_EQ(stage(result, "vertex_setup").items_in, 1u);
+  EXPECT_EQ(stage(result, "vertex_setup").items_out, 1u);
+  EXPECT_EQ(stage(result, "conservative_raster").items_in, 1u);
+  EXPECT_EQ(stage(result, "conservative_raster").items_out, touched);
+  EXPECT_EQ(stage(result, "beam_fragment").items_in, touched);
+  EXPECT_EQ(stage(result, "beam_fragment").items_out, with_area);
+  EXPECT_EQ(stage(result, "shade").items_in, with_area);
+  EXPECT_EQ(stage(result, "a_buffer").items_in, with_area);
+  EXPECT_EQ(stage(result, "compose").items_in, with_area);
+  EXPECT_EQ(stage(result, "resolve").items_out, 64u);
+  // Pixels 1..4 lie in the quads 0, 1, 2 of each axis; the lower left half of these 3 x 3 has 6, with 4 lanes each.
+  EXPECT_EQ(stage(result, "shade").lanes_issued, 4u * 6);
+  // A-buffer: a 42-byte fragment and a 4-byte link each, and a 4-byte head per pixel.
+  EXPECT_EQ(result.a_buffer_peak_bytes, with_area * 46 + 64 * 4);
+  EXPECT_EQ(stage(result, "compose").bytes_read, with_area * 42);
+}
+
+TEST(Counters, MsaaCountsSamples) {
+  const FrameResult one = parse_technique("msaa:1").render(half_square(), 0, {1});
+  // Pixel centres (x + 1/2, y + 1/2) with x <= y and 1 <= x, y <= 4; those on the diagonal (a top right edge) are not owned.
+  EXPECT_EQ(stage(one, "depth_test").items_in, 6u);
+  EXPECT_EQ(stage(one, "depth_test").items_out, 6u);
+  EXPECT_EQ(stage(one, "depth_test").bytes_written, 6u * 10);
+  EXPECT_EQ(one.a_buffer_peak_bytes, 0u);
+  const FrameResult eight = parse_technique("msaa:8").render(half_square(), 0, {1});
+  EXPECT_EQ(stage(eight, "resolve").items_in, 64u * 8);
+  EXPECT_GT(stage(eight, "depth_test").items_in, stage(one, "depth_test").items_in * 7);
+}
+
+TEST(Counters, EveryStageWorks) {
+  const Trace trace = random_trace(40, 30, 50, 2);
+  for (const char* spec : {"beam", "alpha", "msaa:4", "reference"}) {
+    for (const StageCounters& counters : parse_technique(spec).render(trace, 0, {2}).stages) {
+      EXPECT_FALSE(counters.stage.empty()) << spec;
+      EXPECT_GT(counters.items_in, 0u) << spec << ' ' << counters.stage;
+      EXPECT_GT(counters.items_out, 0u) << spec << ' ' << counters.stage;
+      EXPECT_GT(counters.ops.total(), 0u) << spec << ' ' << counters.stage;
+      EXPECT_GT(counters.bytes_read, 0u) << spec << ' ' << counters.stage;
+      EXPECT_LE(counters.lanes_used, counters.lanes_issued) << spec << ' ' << counters.stage;
+    }
+  }
+}
+
+}  // namespace
+}  // namespace beampipe

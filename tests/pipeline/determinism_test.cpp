@@ -1,0 +1,66 @@
+// The same picture and the same counters whatever the number of threads, the SIMD target and the order of work.
+#include <gtest/gtest.h>
+
+#include "hwy/targets.h"
+#include "pipeline/technique.h"
+#include "test_traces.h"
+
+namespace beampipe {
+namespace {
+
+const char* const kSpecs[] = {"beam", "beam:mask=exact", "alpha", "msaa:1", "msaa:8", "msaa:64", "reference"};
+
+void expect_same(const FrameResult& a, const FrameResult& b, const std::string& what) {
+  EXPECT_EQ(a.image.rgba, b.image.rgba) << what;
+  EXPECT_EQ(a.pixel_counters, b.pixel_counters) << what;
+  EXPECT_EQ(a.stages, b.stages) << what;
+  EXPECT_EQ(a.a_buffer_peak_bytes, b.a_buffer_peak_bytes) << what;
+}
+
+TEST(Determinism, AnyNumberOfThreads) {
+  const Trace trace = random_trace(150, 70, 500, 3);
+  for (const char* spec : kSpecs) {
+    const Technique technique = parse_technique(spec);
+    const FrameResult one = technique.render(trace, 0, {1});
+    for (const int threads : {2, 3, 8}) expect_same(one, technique.render(trace, 0, {threads}), spec);
+  }
+}
+
+TEST(Determinism, EverySimdTarget) {
+  const Trace trace = random_trace(70, 40, 300, 4);
+  for (const char* spec : kSpecs) {
+    const Technique technique = parse_technique(spec);
+    const FrameResult best = technique.render(trace, 0, {1});
+    for (const auto target : hwy::SupportedAndGeneratedTargets()) {
+      hwy::SetSupportedTargetsForTest(target);
+      hwy::GetChosenTarget().DeInit();
+      expect_same(best, technique.render(trace, 0, {1}), std::string(spec) + " " + hwy::TargetName(target));
+    }
+    hwy::SetSupportedTargetsForTest(0);
+    hwy::GetChosenTarget().DeInit();
+  }
+}
+
+TEST(Determinism, TheFrameIsTheSameWhereverTilesFallInIt) {
+  // The right and lower half of a frame, rendered alone: other tiles, same pixels.
+  const Trace whole = random_trace(96, 96, 300, 9);
+  Trace part = whole;
+  Frame& frame = part.frames[0];
+  frame.width = frame.height = 48;
+  glm::dmat4 half(1.0);  // the quadrant's clip space is [0, 1] x [-1, 0] of the whole's
+  half[0][0] = half[1][1] = 2.0;
+  half[3] = glm::dvec4(-1.0, 1.0, 0.0, 1.0);
+  frame.projection = half * frame.projection;
+  for (const char* spec : {"beam", "msaa:8"}) {
+    const Technique technique = parse_technique(spec);
+    const Image a = technique.render(whole, 0, {2}).image, b = technique.render(part, 0, {2}).image;
+    double worst = 0;
+    for (std::size_t y = 0; y < 48; ++y)
+      for (std::size_t x = 0; x < 4 * 48; ++x)
+        worst = std::max(worst, std::abs(double(a.rgba[4 * ((y + 48) * 96 + 48) + x]) - b.rgba[4 * y * 48 + x]));
+    EXPECT_LT(worst, 1e-3) << spec;
+  }
+}
+
+}  // namespace
+}  // namespace beampipe

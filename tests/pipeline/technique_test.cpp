@@ -1,0 +1,40 @@
+#include "pipeline/technique.h"
+
+#include <gtest/gtest.h>
+
+namespace beampipe {
+namespace {
+
+TEST(Technique, FramebufferBytesAreThePublishedOnes) {
+  // Slide 23 of the paper's talk: beam 42 with colour; 8x and 32x MSAA with 4-byte depth and fp16 RGB 80 and 320.
+  EXPECT_EQ(parse_technique("beam").framebuffer_bytes_per_pixel(), 42u);
+  EXPECT_EQ(parse_technique("msaa:8").framebuffer_bytes_per_pixel(), 80u);
+  EXPECT_EQ(parse_technique("msaa:32").framebuffer_bytes_per_pixel(), 320u);
+  EXPECT_EQ(parse_technique("alpha").framebuffer_bytes_per_pixel(), 10u);
+}
+
+TEST(Technique, EveryMsaaRateOfTheRangeIsKnown) {
+  for (std::uint32_t samples = 1; samples <= 1024; samples *= 2) {
+    const std::string spec = std::string("msaa:").append(std::to_string(samples));
+    EXPECT_EQ(parse_technique(spec).samples, samples);
+    EXPECT_EQ(parse_technique(spec).spec, spec);
+  }
+}
+
+TEST(Technique, WrongSpecsSayWhatWasExpected) {
+  for (const char* spec : {"", "bean", "msaa", "msaa:", "msaa:3", "msaa:0", "msaa:-8", "msaa:8x", "msaa:2048", "msaa:8,8",
+                           "beam:mask=fast", "beam:", "beam:mask=table,mask=table", "alpha:1", "reference:64", "beam "}) {
+    try {
+      parse_technique(spec);
+      ADD_FAILURE() << "'" << spec << "' was taken";
+    } catch (const SpecError& error) {
+      const std::string message = error.what();
+      EXPECT_NE(message.find(std::string("'").append(spec).append("'")), std::string::npos) << message;
+      EXPECT_NE(message.find("expected"), std::string::npos) << message;
+      EXPECT_EQ(message.find('\n'), std::string::npos) << message;
+    }
+  }
+}
+
+}  // namespace
+}  // namespace beampipe

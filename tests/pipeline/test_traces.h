@@ -1,0 +1,60 @@
+// Small traces for the pipeline tests, in pixel coordinates.
+#pragma once
+
+#include <glm/gtc/matrix_transform.hpp>
+#include <random>
+#include <vector>
+
+#include "traces/trace.h"
+
+namespace beampipe {
+
+// A triangle with corners in pixels (y down) and depths in 0..1, 0 the nearest.
+struct PixelSpaceTriangle {
+  glm::dvec3 corners[3];
+  glm::vec3 color;
+};
+
+// One orthographic frame whose triangles land exactly where they are written, to float precision.
+inline Trace pixel_trace(std::uint32_t width, std::uint32_t height, const std::vector<PixelSpaceTriangle>& triangles,
+                         const glm::vec3& background = glm::vec3(0.0f)) {
+  Trace trace;
+  Mesh mesh;
+  mesh.name = "triangles";
+  for (const PixelSpaceTriangle& triangle : triangles) {
+    const auto first = static_cast<std::uint32_t>(mesh.positions.size());
+    for (const glm::dvec3& corner : triangle.corners) mesh.positions.emplace_back(corner);
+    mesh.triangles.emplace_back(first, first + 1, first + 2);
+    mesh.colors.push_back(triangle.color);
+  }
+  Frame frame;
+  frame.width = width, frame.height = height, frame.background = background;
+  frame.projection = glm::dmat4(1.0);
+  frame.projection[0][0] = 2.0 / width;
+  frame.projection[1][1] = -2.0 / height;
+  frame.projection[2][2] = 2.0;
+  frame.projection[3] = glm::dvec4(-1.0, 1.0, -1.0, 1.0);
+  frame.draws.push_back(Draw{});
+  trace.meshes.push_back(mesh);
+  trace.frames.push_back(frame);
+  return trace;
+}
+
+// Random triangles of mixed sizes that interpenetrate, the same for the same seed everywhere.
+inline Trace random_trace(std::uint32_t width, std::uint32_t height, int count, std::uint32_t seed) {
+  std::mt19937 bits(seed);
+  const auto uniform = [&](double low, double high) { return low + (high - low) * (bits() / 4294967296.0); };
+  std::vector<PixelSpaceTriangle> triangles;
+  for (int i = 0; i < count; ++i) {
+    const glm::dvec3 center(uniform(0, width), uniform(0, height), uniform(0.2, 0.8));
+    const double size = i % 3 == 0 ? 0.4 * width : i % 3 == 1 ? 4.0 : 0.7;
+    PixelSpaceTriangle triangle;
+    for (glm::dvec3& corner : triangle.corners)
+      corner = center + glm::dvec3(uniform(-size, size), uniform(-size, size), uniform(-0.1, 0.1));
+    triangle.color = glm::vec3(uniform(0, 1), uniform(0, 1), uniform(0, 1));
+    triangles.push_back(triangle);
+  }
+  return pixel_trace(width, height, triangles, glm::vec3(0.25f, 0.5f, 0.75f));
+}
+
+}  // namespace beampipe
