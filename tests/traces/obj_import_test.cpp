@@ -1,0 +1,130 @@
+#include "tests/traces/test_folder.h"
+
+namespace beampipe {
+namespace {
+
+const std::string kSquare = "v 0 0 0\nv 1 0 0\nv 1 1 0\nv 0 1 0\n";
+
+class ObjImportTest : public FolderTest {
+ protected:
+  Mesh load(const std::string& text) const { return read_obj(write("mesh.obj", text), "scene.json: /meshes/m/obj"); }
+  std::string error(const std::string& text) const {
+    return error_of([&] { load(text); });
+  }
+};
+
+constexpr glm::vec3 kGrey(0.8f);
+
+double area(const Mesh& mesh) {
+  double sum = 0;
+  for (const glm::uvec3& t : mesh.triangles) {
+    const glm::dvec3 a = mesh.positions[t.x], b = mesh.positions[t.y], c = mesh.positions[t.z];
+    sum += 0.5 * glm::cross(b - a, c - a).z;
+  }
+  return sum;
+}
+
+TEST_F(ObjImportTest, TakesKdForEachFace) {
+  write("colors.mtl", "newmtl red\nKd 1 0 0\nnewmtl dim green\nKa 1 1 1\nKd 0 0.25 0\n");
+  const Mesh mesh = load("mtllib colors.mtl\n" + kSquare +
+                         "f 1 2 3\nusemtl red\nf 1 2 3\nusemtl dim green\nf 1 2 3 4\nusemtl nowhere\nf 1 2 3\n");
+  EXPECT_EQ(mesh.colors, (std::vector<glm::vec3>{kGrey, {1, 0, 0}, {0, 0.25f, 0}, {0, 0.25f, 0}, kGrey}));
+}
+
+TEST_F(ObjImportTest, BlanksAroundMaterialNamesDoNotCount) {
+  write("colors.mtl", "newmtl red \r\nKd 1 0 0\r\n");
+  EXPECT_EQ(load("mtllib colors.mtl\r\n" + kSquare + "usemtl  red \r\nf 1 2 3\r\n").colors[0], glm::vec3(1, 0, 0));
+}
+
+TEST_F(ObjImportTest, AMissingMaterialLibraryIsNoError) {
+  EXPECT_EQ(load("mtllib none.mtl\n" + kSquare + "usemtl red\nf 1 2 3\n").colors[0], kGrey);
+}
+
+TEST_F(ObjImportTest, MaterialLibrariesStayInTheFolder) {
+  write("colors.mtl", "newmtl red\nKd 1 0 0\n");
+  const std::string start = "scene.json: /meshes/m/obj: sub/mesh.obj: expected an mtllib in the OBJ's folder, found ";
+  const auto error_with = [&](const std::string& library) {
+    write("sub/mesh.obj", "mtllib " + library + "\n" + kSquare + "f 1 2 3\n");
+    return error_of([&] { read_obj(path("sub/mesh.obj"), "scene.json: /meshes/m/obj"); });
+  };
+  EXPECT_EQ(error_with("../colors.mtl"), start + "\"../colors.mtl\"");
+  EXPECT_EQ(error_with("/etc/colors.mtl"), start + "\"/etc/colors.mtl\"");
+  write("sub/own.mtl", "newmtl red\nKd 1 0 0\n");
+  const std::string absolute = std::filesystem::canonical(path("sub/own.mtl")).string();
+  EXPECT_EQ(error_with(absolute).substr(0, start.size()), start);
+  EXPECT_EQ(error_with("own.mtl"), "no error");
+  std::filesystem::create_symlink(path("colors.mtl"), path("sub/link.mtl"));
+  EXPECT_EQ(error_with("link.mtl"), start + "\"link.mtl\"");
+}
+
+TEST_F(ObjImportTest, TriangulatesConvexPolygonsAsFans) {
+  const Mesh mesh = load(kSquare + "f 1 2 3 4\n");
+  EXPECT_EQ(mesh.triangles, (std::vector<glm::uvec3>{{0, 1, 2}, {0, 2, 3}}));
+  EXPECT_EQ(mesh.positions.size(), 4u);
+}
+
+TEST_F(ObjImportTest, TriangulatesConcavePolygonsWithoutOverlap) {
+  // An arrow far from the origin, whose dent every fan would fill; in both windings.
+  const std::string arrow = "v 100 50 7\nv 104 50 7\nv 101 51 7\nv 100 54 7\n";
+  EXPECT_NEAR(area(load(arrow + "f 1 2 3 4\n")), 4, 1e-6);
+  EXPECT_NEAR(area(load(arrow + "f 2 3 4 1\n")), 4, 1e-6);
+  EXPECT_NEAR(area(load(arrow + "f 4 3 2 1\n")), -4, 1e-6);
+  for (const char* face : {"f 1 2 3 4\n", "f 2 3 4 1\n"}) {
+    const Mesh mesh = load(arrow + face);
+    ASSERT_EQ(mesh.triangles.size(), 2u);
+    for (const glm::uvec3& t : mesh.triangles) {  // both triangles have the polygon's winding
+      Mesh one = mesh;
+      one.triangles = {t};
+      EXPECT_GT(area(one), 0);
+    }
+  }
+}
+
+TEST_F(ObjImportTest, CountsNegativeIndicesFromTheLastVertexSoFar) {
+  const Mesh mesh = load(kSquare + "f -4 -3 -2\nv 5 5 5\nf -1 1/1 2//3\n");
+  EXPECT_EQ(mesh.triangles, (std::vector<glm::uvec3>{{0, 1, 2}, {4, 0, 1}}));
+}
+
+TEST_F(ObjImportTest, KeepsCoordinatesExactly) {
+  const Mesh mesh = load("v 0.1 -2.5e-3 +3\nv 1e10 .5 1.\nv 16777217 0.333333343 -0\nf 1 2 3\n");
+  EXPECT_EQ(mesh.positions[0], glm::vec3(0.1f, -2.5e-3f, 3.0f));
+  EXPECT_EQ(mesh.positions[1], glm::vec3(1e10f, 0.5f, 1.0f));
+  EXPECT_EQ(mesh.positions[2], glm::vec3(16777216.0f, 0.333333343f, 0.0f));
+}
+
+TEST_F(ObjImportTest, SaysWhatIsWrong) {
+  const std::string start = "scene.json: /meshes/m/obj: mesh.obj: ";
+  const std::string number = "expected three finite numbers after \"v\", found ";
+  EXPECT_EQ(error("v 0 0 0\nv nan 0 0\n"), start + "line 2: " + number + "\"v nan 0 0\"");
+  EXPECT_EQ(error("v 0 inf 0\n"), start + "line 1: " + number + "\"v 0 inf 0\"");
+  EXPECT_EQ(error("v 0 0 1e39\n"), start + "line 1: " + number + "\"v 0 0 1e39\"");
+  EXPECT_EQ(error("v 0 0\n"), start + "line 1: " + number + "\"v 0 0\"");
+  EXPECT_EQ(error("v 0 0 1,5\n"), start + "line 1: " + number + "\"v 0 0 1,5\"");
+  EXPECT_EQ(error(""), start + "expected at least one face, found none");
+  EXPECT_EQ(error(kSquare), start + "expected at least one face, found none");
+  EXPECT_EQ(error(kSquare + "f 1 2\n"), start + "face 1: expected three or more corners, found 2");
+  const std::string range =
+      "expected indices of the 4 vertices, from 1 up or from -1 down, found another one at corner ";
+  EXPECT_EQ(error(kSquare + "f 1 2 3\nf 1 2 5\n"), start + "face 2: " + range + "3");
+  EXPECT_EQ(error(kSquare + "f 0 1 2\n"), start + "face 1: " + range + "1");
+  EXPECT_EQ(error(kSquare + "f 1 -5 2\n"), start + "face 1: " + range + "2");
+  EXPECT_EQ(error(kSquare + "f 1 2 3 4 9\n"), start + "face 1: " + range + "5");
+  EXPECT_EQ(error(kSquare + "f a b c\n"), start + "face 1: " + range + "1");
+}
+
+TEST_F(ObjImportTest, SaysWhatIsWrongWithMaterials) {
+  const std::string start = "scene.json: /meshes/m/obj: mesh.obj: m.mtl: ";
+  write("m.mtl", "newmtl red\nKd 1 0\n");
+  EXPECT_EQ(error("mtllib m.mtl\n"), start + "line 2: expected three finite numbers after \"Kd\", found \"Kd 1 0\"");
+  write("m.mtl", "newmtl red\nKd 1 -1 0\n");
+  EXPECT_EQ(error("mtllib m.mtl\n"), start + "expected a Kd of 0 and up, found a negative one in material \"red\"");
+}
+
+TEST_F(ObjImportTest, NamesFilesThatCannotBeRead) {
+  EXPECT_EQ(error_of([&] { read_obj(path("none.obj"), ""); }), "none.obj: expected a readable file, found none");
+  std::filesystem::create_directory(path("folder"));
+  EXPECT_EQ(error_of([&] { read_obj(path("folder"), ""); }), "folder: expected an OBJ file, found a folder");
+}
+
+}  // namespace
+}  // namespace beampipe

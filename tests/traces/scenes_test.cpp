@@ -1,0 +1,173 @@
+#include "traces/scenes.h"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <map>
+#include <set>
+#include <stdexcept>
+
+#include "tests/traces/test_folder.h"
+
+namespace beampipe {
+namespace {
+
+std::size_t count(const Trace& trace) {
+  std::size_t sum = 0;
+  for (const Draw& draw : trace.frames[0].draws) sum += trace.meshes[draw.mesh].triangles.size();
+  return sum;
+}
+
+class ScenesTest : public FolderTest, public testing::WithParamInterface<SceneKind> {
+ protected:
+  Trace make(const SceneOptions& options) const { return make_scene(GetParam().name, options); }
+  std::string bytes(const SceneOptions& options) const {
+    write_trace(make(options), path("trace.json"));
+    return read("trace.json");
+  }
+};
+
+TEST_P(ScenesTest, DependsOnTheSeedOnly) {
+  const std::string first = bytes({.triangles = 2000, .seed = 5});
+  EXPECT_EQ(first, bytes({.triangles = 2000, .seed = 5}));
+  EXPECT_NE(first, bytes({.triangles = 2000, .seed = 6}));
+}
+
+TEST_P(ScenesTest, IsATraceThatReadsBack) {
+  const Trace trace = make({.triangles = 3000});
+  write_trace(trace, path("trace.json"));
+  const Trace back = read_trace(path("trace.json"));
+  EXPECT_EQ(count(back), count(trace));
+  EXPECT_EQ(back.frames[0].light_direction, trace.frames[0].light_direction);
+}
+
+TEST_P(ScenesTest, KeepsToItsTriangles) {
+  for (const std::uint32_t wanted : {1000u, 3000u, 30000u, 250000u}) {
+    const double made = static_cast<double>(count(make({.triangles = wanted})));
+    EXPECT_NEAR(made / wanted, 1, 0.25) << wanted;
+  }
+}
+
+TEST_P(ScenesTest, HasADefaultSize) {
+  const std::map<std::string_view, double> defaults = {{"hairball", 150e3}, {"classroom", 100e3}, {"boat", 60e3},
+                                                       {"pickets", 5e3},    {"terrain", 150e3},   {"sphere", 100e3},
+                                                       {"fence", 60e3},     {"soup", 20e3},       {"foliage", 80e3}};
+  const double wanted = defaults.at(GetParam().name);
+  EXPECT_NEAR(static_cast<double>(count(make({}))) / wanted, 1, 0.25);
+}
+
+TEST_P(ScenesTest, TheCameraDoesNotDependOnTheTriangles) {
+  const Frame few = make({.triangles = 1000}).frames[0], many = make({.triangles = 20000, .seed = 9}).frames[0];
+  EXPECT_EQ(few.view, many.view);
+  EXPECT_EQ(few.projection, many.projection);
+  EXPECT_EQ(few.light_direction, many.light_direction);
+}
+
+TEST_P(ScenesTest, HasSoundMeshes) {
+  const Trace trace = make({.triangles = 20000});
+  for (const Mesh& mesh : trace.meshes) {
+    ASSERT_EQ(mesh.colors.size(), mesh.triangles.size()) << mesh.name;
+    for (const glm::vec3& p : mesh.positions) {
+      ASSERT_TRUE(std::isfinite(p.x) && std::isfinite(p.y) && std::isfinite(p.z)) << mesh.name;
+    }
+    for (const glm::uvec3& t : mesh.triangles) {
+      ASSERT_LT(std::max({t.x, t.y, t.z}), mesh.positions.size()) << mesh.name;
+      ASSERT_TRUE(t.x != t.y && t.y != t.z && t.z != t.x) << mesh.name;
+    }
+    for (const glm::vec3& c : mesh.colors) {
+      for (int i = 0; i < 3; ++i) ASSERT_TRUE(c[i] >= 0 && c[i] <= 2) << mesh.name;
+    }
+  }
+}
+
+TEST_P(ScenesTest, IsInThePictureAndLit) {
+  const Trace trace = make({});
+  const Frame& frame = trace.frames[0];
+  EXPECT_EQ(frame.width, 320u);
+  EXPECT_EQ(frame.height, 180u);
+  ASSERT_TRUE(frame.light_direction);
+  EXPECT_NEAR(glm::length(*frame.light_direction), 1, 1e-6);
+  std::size_t inside = 0, lit = 0, all = 0;
+  double left = 1, right = -1, bottom = 1, top = -1;  // of what is inside
+  for (const Draw& draw : frame.draws) {
+    const Mesh& mesh = trace.meshes[draw.mesh];
+    for (const glm::uvec3& t : mesh.triangles) {
+      const glm::dvec3 a = mesh.positions[t.x], b = mesh.positions[t.y], c = mesh.positions[t.z];
+      const glm::dvec4 p = frame.projection * frame.view * glm::dvec4((a + b + c) / 3.0, 1);
+      ++all;
+      if (!(std::abs(p.x) <= p.w && std::abs(p.y) <= p.w && std::abs(p.z) <= p.w)) continue;
+      ++inside;
+      left = std::min(left, p.x / p.w);
+      right = std::max(right, p.x / p.w);
+      bottom = std::min(bottom, p.y / p.w);
+      top = std::max(top, p.y / p.w);
+      glm::dvec3 normal = glm::cross(b - a, c - a);
+      if (glm::dot(normal, frame.camera->eye - a) < 0) normal = -normal;
+      lit += glm::dot(normal, glm::dvec3(*frame.light_direction)) < 0;
+    }
+  }
+  EXPECT_GT(inside, all / 2);
+  EXPECT_GT(lit, inside / 2);
+  EXPECT_GT(right - left, 0.9);
+  EXPECT_GT(top - bottom, 0.9);
+}
+
+INSTANTIATE_TEST_SUITE_P(All, ScenesTest, testing::ValuesIn(scene_kinds()),
+                         [](const auto& scene) { return std::string(scene.param.name); });
+
+TEST(Scenes, AreTheNine) {
+  std::set<std::string_view> names;
+  for (const SceneKind& kind : scene_kinds()) names.insert(kind.name);
+  EXPECT_EQ(names, (std::set<std::string_view>{"hairball", "classroom", "boat", "pickets", "terrain", "sphere", "fence",
+                                               "soup", "foliage"}));
+}
+
+std::string refusal(std::string_view name, const SceneOptions& options) {
+  try {
+    make_scene(name, options);
+  } catch (const std::invalid_argument& error) {
+    return error.what();
+  }
+  return "no error";
+}
+
+TEST(Scenes, RefusesWhatItCannotMake) {
+  EXPECT_EQ(
+      refusal("ball", {}),
+      "expected one of the scenes hairball, classroom, boat, pickets, terrain, sphere, fence, soup, foliage, found "
+      "\"ball\"");
+  EXPECT_EQ(refusal("soup", {.triangles = 100000001}), "expected at most 100000000 triangles, found 100000001");
+  EXPECT_EQ(refusal("soup", {.width = 0}), "expected a width and height of 1..16384, found 0 x 180");
+  EXPECT_EQ(refusal("soup", {.height = 20000}), "expected a width and height of 1..16384, found 320 x 20000");
+}
+
+// Each edge of a closed surface is shared by two triangles, which run along it in opposite directions.
+TEST(Scenes, TheSpheresAreClosed) {
+  const Trace trace = make_scene("sphere", {.triangles = 8000});
+  for (const Mesh& mesh : trace.meshes) {
+    if (mesh.name == "backdrop") continue;
+    const auto key = [&](std::uint32_t i) {
+      const glm::vec3& p = mesh.positions[i];
+      return std::array<float, 3>{p.x, p.y, p.z};
+    };
+    std::map<std::pair<std::array<float, 3>, std::array<float, 3>>, int> edges;
+    for (const glm::uvec3& t : mesh.triangles) {
+      for (int k = 0; k < 3; ++k) ++edges[{key(t[k]), key(t[(k + 1) % 3])}];
+    }
+    for (const auto& [edge, times] : edges) {
+      ASSERT_EQ(times, 1);
+      ASSERT_TRUE(edges.contains({edge.second, edge.first})) << mesh.name;
+    }
+    // Outside is counter-clockwise: the enclosed volume is positive.
+    double volume = 0;
+    for (const glm::uvec3& t : mesh.triangles) {
+      volume += glm::dot(glm::dvec3(mesh.positions[t.x]),
+                         glm::cross(glm::dvec3(mesh.positions[t.y]), glm::dvec3(mesh.positions[t.z]))) /
+                6;
+    }
+    EXPECT_GT(volume, 0) << mesh.name;
+  }
+}
+
+}  // namespace
+}  // namespace beampipe

@@ -1,0 +1,60 @@
+// A folder of its own for each test, gone afterwards; and what every reader test needs.
+#pragma once
+
+#include <gtest/gtest.h>
+
+#include <cstdlib>
+#include <filesystem>
+#include <fstream>
+#include <sstream>
+#include <string>
+
+#include "traces/trace_io.h"
+
+namespace beampipe {
+
+class FolderTest : public testing::Test {
+ protected:
+  FolderTest() {
+    std::string name = (std::filesystem::temp_directory_path() / "beampipe-test-XXXXXX").string();
+    if (mkdtemp(name.data()) == nullptr) throw std::runtime_error("cannot make " + name);
+    folder_ = name;
+  }
+  ~FolderTest() override { std::filesystem::remove_all(folder_); }
+
+  std::filesystem::path path(const std::string& name) const { return folder_ / name; }
+
+  std::filesystem::path write(const std::string& name, const std::string& text) const {
+    std::filesystem::create_directories(path(name).parent_path());
+    std::ofstream(path(name), std::ios::binary) << text;
+    return path(name);
+  }
+
+  std::string read(const std::string& name) const {
+    std::ostringstream text;
+    text << std::ifstream(path(name), std::ios::binary).rdbuf();
+    return text.str();
+  }
+
+  // The TraceError's message, with the folder's own name cut out; "no error" if there is none.
+  template <typename Call>
+  std::string error_of(Call call) const {
+    try {
+      call();
+    } catch (const TraceError& error) {
+      return without_folder(error.what());
+    }
+    return "no error";
+  }
+
+  std::string without_folder(std::string message) const {
+    const std::string prefix = folder_.string() + "/";
+    for (std::size_t at; (at = message.find(prefix)) != std::string::npos;) message.erase(at, prefix.size());
+    return message;
+  }
+
+ private:
+  std::filesystem::path folder_;
+};
+
+}  // namespace beampipe

@@ -1,0 +1,263 @@
+#include <nlohmann/json.hpp>
+
+#include "tests/traces/test_folder.h"
+
+namespace beampipe {
+namespace {
+
+using Json = nlohmann::ordered_json;
+
+const char kValid[] = R"({ "beampipe_trace": 1,
+  "meshes": { "b": {"positions": [0,0,0, 1,0,0, 0,1,0, 0,0,1], "indices": [0,1,2, 3,2,1], "colors": [1,0,0, 0,0.5,0]},
+              "a": {"positions": [0,0,0], "indices": []} },
+  "frames": [ { "width": 320, "height": 180, "background": [0.1,0.2,0.3],
+                "camera": {"eye": [1,2,3], "target": [0,0,0], "up": [0,1,0], "fovy_deg": 36, "near": 1, "far": 200},
+                "light": {"direction": [0,0,-2]},
+                "draws": [ {"mesh": "b", "transform": [2,0,0,0, 0,2,0,0, 0,0,2,0, 5,6,7,1], "kd": [0.5,0.6,0.7],
+                            "cull": "front", "shading": "lambert"},
+                           {"mesh": "a"} ] },
+              { "width": 1, "height": 16384, "view": [1,0,0,0, 0,1,0,0, 0,0,1,0, 9,8,7,1],
+                "projection": [1,0,0,0, 0,1,0,0, 0,0,-1,-1, 0,0,-2,0], "draws": [] } ] })";
+
+class TraceReaderTest : public FolderTest {
+ protected:
+  Trace read_text(const std::string& text) const { return read_trace(write("scene.json", text)); }
+  std::string error_in(const std::string& text) const {
+    return error_of([&] { read_text(text); });
+  }
+  // The error in the valid trace when the value at `pointer` is replaced by `value`.
+  std::string error_with(const std::string& pointer, const std::string& value) const {
+    Json json = Json::parse(kValid);
+    json[Json::json_pointer(pointer)] = Json::parse(value);
+    return error_in(json.dump());
+  }
+  std::string error_without(const std::string& parent, const std::string& key) const {
+    Json json = Json::parse(kValid);
+    json.at(Json::json_pointer(parent)).erase(key);
+    return error_in(json.dump());
+  }
+};
+
+TEST_F(TraceReaderTest, ReadsEveryField) {
+  const Trace trace = read_text(kValid);
+  ASSERT_EQ(trace.meshes.size(), 2u);
+  const Mesh& mesh = trace.meshes[0];
+  EXPECT_EQ(mesh.name, "b");  // in the order of the file
+  EXPECT_EQ(mesh.positions, (std::vector<glm::vec3>{{0, 0, 0}, {1, 0, 0}, {0, 1, 0}, {0, 0, 1}}));
+  EXPECT_EQ(mesh.triangles, (std::vector<glm::uvec3>{{0, 1, 2}, {3, 2, 1}}));
+  EXPECT_EQ(mesh.colors, (std::vector<glm::vec3>{{1, 0, 0}, {0, 0.5f, 0}}));
+  EXPECT_EQ(trace.meshes[1].name, "a");
+  EXPECT_TRUE(trace.meshes[1].triangles.empty());
+
+  ASSERT_EQ(trace.frames.size(), 2u);
+  const Frame& frame = trace.frames[0];
+  EXPECT_EQ(frame.width, 320u);
+  EXPECT_EQ(frame.height, 180u);
+  EXPECT_EQ(frame.background, glm::vec3(0.1f, 0.2f, 0.3f));
+  ASSERT_TRUE(frame.camera);
+  EXPECT_EQ(frame.camera->eye, glm::dvec3(1, 2, 3));
+  EXPECT_EQ(frame.camera->target, glm::dvec3(0, 0, 0));
+  EXPECT_EQ(frame.camera->up, glm::dvec3(0, 1, 0));
+  EXPECT_EQ(frame.camera->fovy_deg, 36);
+  EXPECT_EQ(frame.camera->near, 1);
+  EXPECT_EQ(frame.camera->far, 200);
+  EXPECT_EQ(frame.light_direction, glm::vec3(0, 0, -1));
+  ASSERT_EQ(frame.draws.size(), 2u);
+  EXPECT_EQ(frame.draws[0].mesh, 0u);
+  EXPECT_EQ(frame.draws[0].transform[3], glm::dvec4(5, 6, 7, 1));
+  EXPECT_EQ(frame.draws[0].transform[1], glm::dvec4(0, 2, 0, 0));
+  EXPECT_EQ(frame.draws[0].kd, glm::vec3(0.5f, 0.6f, 0.7f));
+  EXPECT_EQ(frame.draws[0].cull, Cull::front);
+  EXPECT_EQ(frame.draws[0].shading, Shading::lambert);
+  EXPECT_EQ(frame.draws[1].mesh, 1u);
+  EXPECT_EQ(frame.draws[1].transform, glm::dmat4(1.0));
+  EXPECT_FALSE(frame.draws[1].kd);
+  EXPECT_EQ(frame.draws[1].cull, Cull::none);
+  EXPECT_EQ(frame.draws[1].shading, Shading::unlit);
+
+  const Frame& second = trace.frames[1];
+  EXPECT_FALSE(second.camera);
+  EXPECT_FALSE(second.light_direction);
+  EXPECT_EQ(second.background, glm::vec3(0.0f));
+  EXPECT_EQ(second.view[3], glm::dvec4(9, 8, 7, 1));
+  EXPECT_EQ(second.projection[2], glm::dvec4(0, 0, -1, -1));
+}
+
+TEST_F(TraceReaderTest, ColorsDefaultToGrey) {
+  Json json = Json::parse(kValid);
+  json["meshes"]["b"].erase("colors");
+  EXPECT_EQ(read_text(json.dump()).meshes[0].colors, std::vector<glm::vec3>(2, glm::vec3(0.8f)));
+}
+
+TEST_F(TraceReaderTest, CameraPutsTheTargetInTheMiddleAndUpUp) {
+  const Frame frame = read_text(kValid).frames[0];
+  const auto project = [&](const glm::dvec3& p) {
+    const glm::dvec4 clip = frame.projection * frame.view * glm::dvec4(p, 1);
+    return glm::dvec3(clip) / clip.w;
+  };
+  const glm::dvec3 eye(1, 2, 3), forward = -glm::normalize(eye);
+  EXPECT_NEAR(project({0, 0, 0}).x, 0, 1e-12);
+  EXPECT_NEAR(project({0, 0, 0}).y, 0, 1e-12);
+  EXPECT_GT(project({0, 0.1, 0}).y, 0);
+  EXPECT_NEAR(project(eye + 1.0 * forward).z, -1, 1e-9);
+  EXPECT_NEAR(project(eye + 200.0 * forward).z, 1, 1e-9);
+  // 18 degrees above the middle is the upper edge; the picture is 16:9.
+  const glm::dvec3 right = glm::normalize(glm::cross(forward, glm::dvec3(0, 1, 0))), up = glm::cross(right, forward);
+  const double tangent = std::tan(18 * 3.14159265358979 / 180);
+  EXPECT_NEAR(project(eye + forward + tangent * up).y, 1, 1e-9);
+  EXPECT_NEAR(project(eye + forward + tangent * 16 / 9 * right).x, 1, 1e-9);
+}
+
+struct Case {
+  const char *pointer, *value, *message;
+};
+
+TEST_F(TraceReaderTest, SaysWhereAndWhatIsWrong) {
+  const Case cases[] = {
+      {"/beampipe_trace", "2", "/beampipe_trace: expected version 1, found 2"},
+      {"/beampipe_trace", "\"1\"", "/beampipe_trace: expected a number, found \"1\""},
+      {"/meshes", "[]", "/meshes: expected an object, found an array of 0"},
+      {"/meshes/b", "7", "/meshes/b: expected an object, found 7"},
+      {"/meshes/b", "{}", "/meshes/b: expected the key \"obj\", or \"positions\" and \"indices\", found none"},
+      {"/meshes/b/positions", "[1,2]",
+       "/meshes/b/positions: expected an array of numbers, three for each item, found an array of 2"},
+      {"/meshes/b/positions/4", "\"x\"", "/meshes/b/positions/4: expected a number in a float's range, found \"x\""},
+      {"/meshes/b/positions/4", "1e39", "/meshes/b/positions/4: expected a number in a float's range, found 1e+39"},
+      {"/meshes/b/positions/4", "null", "/meshes/b/positions/4: expected a number in a float's range, found null"},
+      {"/meshes/b/indices/5", "4",
+       "/meshes/b/indices/5: expected an integer below the number of positions, 4, found 4"},
+      {"/meshes/b/indices/5", "-1",
+       "/meshes/b/indices/5: expected an integer below the number of positions, 4, found -1"},
+      {"/meshes/b/indices/5", "1.5",
+       "/meshes/b/indices/5: expected an integer below the number of positions, 4, found 1.5"},
+      {"/meshes/b/indices", "[0,1]",
+       "/meshes/b/indices: expected an array of numbers, three for each item, found an array of 2"},
+      {"/meshes/b/colors", "[1,1,1]",
+       "/meshes/b/colors: expected an array of 6 numbers, r, g, b for each triangle, found an array of 3"},
+      {"/meshes/b/colors/1", "-0.5", "/meshes/b/colors/1: expected a number, 0 and up, found -0.5"},
+      {"/frames", "{}", "/frames: expected an array, found an object"},
+      {"/frames", "[]", "/frames: expected at least one frame, found an array of 0"},
+      {"/frames/0", "[]", "/frames/0: expected an object, found an array of 0"},
+      {"/frames/0/width", "-3", "/frames/0/width: expected an integer 1..16384, found -3"},
+      {"/frames/0/width", "0", "/frames/0/width: expected an integer 1..16384, found 0"},
+      {"/frames/0/width", "320.5", "/frames/0/width: expected an integer 1..16384, found 320.5"},
+      {"/frames/0/width", "true", "/frames/0/width: expected an integer 1..16384, found true"},
+      {"/frames/1/height", "16385", "/frames/1/height: expected an integer 1..16384, found 16385"},
+      {"/frames/0/background", "[0,0]", "/frames/0/background: expected an array of 3 numbers, found an array of 2"},
+      {"/frames/0/background/2", "-1", "/frames/0/background/2: expected a number, 0 and up, found -1"},
+      {"/frames/0/camera/eye", "[1,2]", "/frames/0/camera/eye: expected an array of 3 numbers, found an array of 2"},
+      {"/frames/0/camera/eye/1", "\"2\"", "/frames/0/camera/eye/1: expected a number, found \"2\""},
+      {"/frames/0/camera/eye", "[0,0,0]",
+       "/frames/0/camera/target: expected a point other than the eye, found the same point"},
+      {"/frames/0/camera/up", "[-2,-4,-6]",
+       "/frames/0/camera/up: expected a vector not parallel to the view direction, found one that is zero or parallel"},
+      {"/frames/0/camera/up", "[0,0,0]",
+       "/frames/0/camera/up: expected a vector not parallel to the view direction, found one that is zero or parallel"},
+      {"/frames/0/camera/fovy_deg", "0", "/frames/0/camera/fovy_deg: expected a number above 0 and below 180, found 0"},
+      {"/frames/0/camera/fovy_deg", "180",
+       "/frames/0/camera/fovy_deg: expected a number above 0 and below 180, found 180"},
+      {"/frames/0/camera/near", "0", "/frames/0/camera/near: expected a number above 0, found 0"},
+      {"/frames/0/camera/near", "200", "/frames/0/camera/far: expected a number above near, 200, found 200"},
+      {"/frames/0/camera/far", "0.5", "/frames/0/camera/far: expected a number above near, 1, found 0.5"},
+      {"/frames/0/light/direction", "[0,0,0]",
+       "/frames/0/light/direction: expected a vector with a length, found none or an infinite one"},
+      {"/frames/0/light", "3", "/frames/0/light: expected an object, found 3"},
+      {"/frames/1/view", "[1,2,3]", "/frames/1/view: expected an array of 16 numbers, found an array of 3"},
+      {"/frames/1/projection/15", "\"\"", "/frames/1/projection/15: expected a number, found \"\""},
+      {"/frames/0/view", "[]", "/frames/0: expected either \"camera\", or \"view\" and \"projection\", found both"},
+      {"/frames/0/draws", "{}", "/frames/0/draws: expected an array, found an object"},
+      {"/frames/0/draws/1/mesh", "\"c\"",
+       "/frames/0/draws/1/mesh: expected the name of a mesh in /meshes, found \"c\""},
+      {"/frames/0/draws/1/mesh", "0", "/frames/0/draws/1/mesh: expected a string, found 0"},
+      {"/frames/0/draws/0/transform", "[1]",
+       "/frames/0/draws/0/transform: expected an array of 16 numbers, found an array of 1"},
+      {"/frames/0/draws/0/kd", "0.5", "/frames/0/draws/0/kd: expected an array of 3 numbers, found 0.5"},
+      {"/frames/0/draws/0/cull", "\"backs\"",
+       "/frames/0/draws/0/cull: expected one of \"none\", \"back\", \"front\", found \"backs\""},
+      {"/frames/0/draws/0/shading", "2", "/frames/0/draws/0/shading: expected one of \"unlit\", \"lambert\", found 2"},
+      {"/colour", "1",
+       "/colour: expected one of the keys \"beampipe_trace\", \"meshes\", \"frames\", found \"colour\""},
+      {"/frames/0/a~1b", "1",
+       "/frames/0/a~1b: expected one of the keys \"width\", \"height\", \"background\", \"camera\", \"view\", "
+       "\"projection\", \"light\", \"draws\", found \"a/b\""},
+  };
+  for (const Case& c : cases) {
+    EXPECT_EQ(error_with(c.pointer, c.value), std::string("scene.json: ") + c.message) << c.pointer << " = " << c.value;
+  }
+}
+
+TEST_F(TraceReaderTest, NamesMissingKeys) {
+  EXPECT_EQ(error_without("", "beampipe_trace"), "scene.json: /: expected the key \"beampipe_trace\", found none");
+  EXPECT_EQ(error_without("/frames/0", "width"), "scene.json: /frames/0: expected the key \"width\", found none");
+  EXPECT_EQ(error_without("/frames/0", "camera"),
+            "scene.json: /frames/0: expected either \"camera\", or \"view\" and \"projection\", found neither");
+  EXPECT_EQ(error_without("/frames/1", "view"), "scene.json: /frames/1: expected the key \"view\", found none");
+  EXPECT_EQ(error_without("/frames/0", "light"),
+            "scene.json: /frames/0/draws/0/shading: expected a \"light\" in the frame, found none");
+}
+
+TEST_F(TraceReaderTest, FindsDuplicateKeysWhereverTheyAre) {
+  std::string text = kValid;
+  text.replace(text.find("\"height\": 180"), 0, "\"width\": 320, ");
+  EXPECT_EQ(error_in(text), "scene.json: /frames/0/width: expected each key once, found \"width\" again");
+  text = kValid;
+  text.replace(text.find("\"a\": {"), 3, "\"b\"");
+  EXPECT_EQ(error_in(text), "scene.json: /meshes/b: expected each key once, found \"b\" again");
+  // The same key in sibling objects is no duplicate: the valid trace is full of them.
+  EXPECT_EQ(error_in(kValid), "no error");
+}
+
+TEST_F(TraceReaderTest, NamesThePlaceOfBrokenJson) {
+  EXPECT_EQ(error_in("{\"beampipe_trace\": 1,\n \"meshes\": }").substr(0, 67),
+            "scene.json: byte 34: expected valid JSON, found line 2, column 12: ");
+  EXPECT_NE(error_in("").find("scene.json: byte 1: expected valid JSON, found"), std::string::npos);
+  EXPECT_NE(error_in(std::string(kValid) + " x").find("expected valid JSON"), std::string::npos);
+  EXPECT_NE(error_in(std::string(kValid) + "{}").find("expected valid JSON"), std::string::npos);
+  EXPECT_NE(error_in("{\"meshes\": NaN}").find("expected valid JSON"), std::string::npos);
+  EXPECT_NE(error_in("{\"a\nb\": 1}").find("expected valid JSON"), std::string::npos);
+  EXPECT_NE(error_in("\"\xff\"").find("expected valid JSON"), std::string::npos);
+}
+
+TEST_F(TraceReaderTest, NamesThePlaceOfNumbersThatOverflow) {
+  std::string text = kValid;
+  text.replace(text.find("\"fovy_deg\": 36"), 14, "\"fovy_deg\": 1e999");
+  EXPECT_EQ(error_in(text),
+            "scene.json: /frames/0/camera/fovy_deg: expected a finite number, found number overflow parsing '1e999'");
+}
+
+TEST_F(TraceReaderTest, EveryErrorIsOneLine) {
+  for (const std::string& text : {std::string("{\"a\\nb\": 1}"), std::string("\n\n{\n\"x\"\n}\n"),
+                                  std::string("{\"beampipe_trace\": \"\\u0007\\n\"}")}) {
+    const std::string error = error_in(text);
+    EXPECT_NE(error, "no error");
+    for (char c : error) EXPECT_GE(c, ' ') << error;
+  }
+}
+
+TEST_F(TraceReaderTest, SurvivesDeepNesting) {
+  EXPECT_NE(error_in(std::string(200000, '[')).find("expected valid JSON"), std::string::npos);
+  EXPECT_EQ(error_in(std::string(200000, '[') + std::string(200000, ']')),
+            "scene.json: /: expected an object, found an array of 1");
+}
+
+TEST_F(TraceReaderTest, NamesFilesThatCannotBeRead) {
+  EXPECT_EQ(error_of([&] { read_trace(path("missing.json")); }), "missing.json: expected a readable file, found none");
+  const std::string long_name(5000, 'x');
+  EXPECT_EQ(error_of([&] { read_trace(path(long_name)); }), long_name + ": expected a readable file, found none");
+  std::filesystem::create_directory(path("folder"));
+  EXPECT_EQ(error_of([&] { read_trace(path("folder")); }), "folder: expected a readable file, found a folder");
+}
+
+TEST_F(TraceReaderTest, ReadsTheSamples) {
+  const std::filesystem::path samples = std::filesystem::path(__FILE__).parent_path() / "../../traces/samples";
+  EXPECT_EQ(read_trace(samples / "triangle.json").meshes[0].triangles.size(), 1u);
+  EXPECT_EQ(read_trace(samples / "two_quads.json").frames[0].draws.size(), 2u);
+  EXPECT_EQ(read_trace(samples / "pan.json").frames.size(), 3u);
+  const Mesh hut = read_trace(samples / "hut.json").meshes[0];
+  EXPECT_EQ(hut.triangles.size(), 14u);
+  EXPECT_EQ(hut.colors.front(), glm::vec3(0.8f, 0.7f, 0.5f));
+  EXPECT_EQ(hut.colors.back(), glm::vec3(0.6f, 0.1f, 0.05f));
+}
+
+}  // namespace
+}  // namespace beampipe

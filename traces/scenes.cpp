@@ -1,0 +1,49 @@
+#include "traces/scenes.h"
+
+#include <algorithm>
+#include <stdexcept>
+
+#include "traces/scenes/scene.h"
+
+namespace beampipe {
+namespace {
+
+constexpr std::uint32_t kMostTriangles = 100'000'000, kLargestSide = 16384;
+
+}  // namespace
+
+const std::vector<SceneKind>& scene_kinds() {
+  static const std::vector<SceneKind> kinds = {
+      {"hairball", "curled strands far below a pixel that grow from a ball in all directions", make_hairball},
+      {"classroom", "finely tessellated desks and chairs; window blinds with draw strings of three braided threads",
+       make_classroom},
+      {"boat", "rigging: stays, shrouds with ratlines, and ropes of three braided strands", make_boat},
+      {"pickets", "thin pickets lined up in depth, so that near ones nearly hide far ones", make_pickets},
+      {"terrain", "a heightfield with about one triangle for each pixel, and more towards the horizon", make_terrain},
+      {"sphere", "finely tessellated closed spheres before a backdrop that must not shine through", make_sphere},
+      {"fence", "chain-link fences of thin woven wires, one behind the other", make_fence},
+      {"soup", "random triangles of all sizes that cut through each other", make_soup},
+      {"foliage", "trees with leaves of two triangles each", make_foliage},
+  };
+  return kinds;
+}
+
+Trace make_scene(std::string_view name, const SceneOptions& options) {
+  if (options.triangles > kMostTriangles) {
+    throw std::invalid_argument("expected at most " + std::to_string(kMostTriangles) + " triangles, found " +
+                                std::to_string(options.triangles));
+  }
+  if (std::clamp(options.width, 1u, kLargestSide) != options.width ||
+      std::clamp(options.height, 1u, kLargestSide) != options.height) {
+    throw std::invalid_argument("expected a width and height of 1.." + std::to_string(kLargestSide) + ", found " +
+                                std::to_string(options.width) + " x " + std::to_string(options.height));
+  }
+  std::string known;
+  for (const SceneKind& kind : scene_kinds()) {
+    if (kind.name == name) return kind.make(options);
+    known += (known.empty() ? "" : ", ") + std::string(kind.name);
+  }
+  throw std::invalid_argument("expected one of the scenes " + known + ", found \"" + std::string(name) + "\"");
+}
+
+}  // namespace beampipe

@@ -1,0 +1,53 @@
+// Solid shapes from triangles. Outsides are counter-clockwise; vertices are shared within each shape.
+#pragma once
+
+#include <functional>
+#include <glm/glm.hpp>
+#include <string>
+#include <vector>
+
+#include "traces/trace.h"
+
+namespace beampipe {
+
+using Path = std::vector<glm::dvec3>;
+
+// `segments` + 1 points from `a` to `b`, hanging down by `sag` in the middle.
+Path line(const glm::dvec3& a, const glm::dvec3& b, int segments = 1, double sag = 0);
+
+class MeshBuilder {
+ public:
+  explicit MeshBuilder(std::string name) { mesh_.name = std::move(name); }
+
+  glm::vec3 color{0.8f};                               // of what comes next
+  std::function<glm::dvec3(const glm::dvec3&)> place;  // moves or bends what comes next; may be empty
+
+  void triangle(const glm::dvec3& a, const glm::dvec3& b, const glm::dvec3& c);
+  void quad(const glm::dvec3& a, const glm::dvec3& b, const glm::dvec3& c, const glm::dvec3& d);
+
+  // nu x nv quads of point(u, v), u and v from 0 to 1; `closed` joins u = 1 to u = 0. Triangles that are a mere line
+  // or point, as at a sphere's poles, are left out.
+  void surface(int nu, int nv, const std::function<glm::dvec3(double u, double v)>& point, bool closed = false);
+
+  // Every face has divisions x divisions quads, or one where it is the narrow side of a plate.
+  void box(const glm::dvec3& low, const glm::dvec3& high, int divisions = 1);
+  void sphere(const glm::dvec3& center, double radius, int sectors, int rings);  // 2 * sectors * (rings - 1) triangles
+
+  // A round bar along the path, its ends closed; the radius goes evenly from one end to the other.
+  void tube(const Path& path, double start_radius, double end_radius, int sides);
+  void tube(const Path& path, double radius, int sides) { tube(path, radius, radius, sides); }
+
+  // Three threads plaited around the path, crossing each other `turns` times three.
+  void braid(const Path& path, double thread_radius, double turns, int sides);
+
+  std::size_t triangle_count() const { return mesh_.triangles.size(); }
+  Mesh take() { return std::move(mesh_); }
+
+ private:
+  std::uint32_t vertex(const glm::dvec3& position);
+  void triangle(std::uint32_t a, std::uint32_t b, std::uint32_t c);
+
+  Mesh mesh_;
+};
+
+}  // namespace beampipe

@@ -1,0 +1,39 @@
+// What the procedural scenes share.
+#pragma once
+
+#include <functional>
+#include <vector>
+
+#include "traces/scenes.h"
+#include "traces/scenes/mesh_builder.h"
+#include "traces/scenes/random.h"
+
+namespace beampipe {
+
+// Makes a scene's meshes with about `budget` triangles; the same for the same budget and random numbers.
+using BuildMeshes = std::function<std::vector<Mesh>(double budget, Random& random)>;
+
+// Calls `build` with different budgets until it makes about as many triangles as `options` ask for.
+std::vector<Mesh> build_to_budget(const SceneOptions& options, std::uint32_t default_triangles,
+                                  const BuildMeshes& build);
+
+enum class Shoulder { left, right };
+
+// One frame under a blue sky: every mesh drawn once with lambert shading, the light over the viewer's shoulder.
+Trace one_frame(const SceneOptions& options, const Camera& camera, std::vector<Mesh> meshes,
+                Shoulder light_over = Shoulder::left);
+
+// The number of divisions, at least `least`, at which something with `per_square` * divisions^2 triangles has `budget`.
+int divisions(double budget, double per_square, int least);
+
+Trace make_hairball(const SceneOptions& options);
+Trace make_classroom(const SceneOptions& options);
+Trace make_boat(const SceneOptions& options);
+Trace make_pickets(const SceneOptions& options);
+Trace make_terrain(const SceneOptions& options);
+Trace make_sphere(const SceneOptions& options);
+Trace make_fence(const SceneOptions& options);
+Trace make_soup(const SceneOptions& options);
+Trace make_foliage(const SceneOptions& options);
+
+}  // namespace beampipe

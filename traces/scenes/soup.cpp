@@ -1,0 +1,34 @@
+#include <algorithm>
+#include <cmath>
+
+#include "traces/scenes/scene.h"
+
+namespace beampipe {
+namespace {
+
+using glm::dvec3;
+
+// Sizes from a third of the picture to a fraction of a pixel, every octave as often as the next but the largest rarer.
+std::vector<Mesh> build(double budget, Random& random) {
+  MeshBuilder soup("soup");
+  const int count = std::max(1, static_cast<int>(budget));
+  for (int i = 0; i < count; ++i) {
+    const double octave = 9 * (1 - std::sqrt(1 - random.uniform()));  // near 0, the smallest, most often
+    const double size = 0.004 * std::exp2(octave);
+    const dvec3 center(random.uniform(-3.6, 3.6), random.uniform(-2.1, 2.1), random.uniform(-3, 1));
+    dvec3 corners[3];
+    for (dvec3& corner : corners) corner = center + size * random.uniform(0.3, 1) * random.direction();
+    soup.color = glm::vec3(random.uniform(0.05, 0.95), random.uniform(0.05, 0.95), random.uniform(0.05, 0.95));
+    soup.triangle(corners[0], corners[1], corners[2]);
+  }
+  return {soup.take()};
+}
+
+}  // namespace
+
+Trace make_soup(const SceneOptions& options) {
+  const Camera camera{{0, 0, 6}, {0, 0, 0}, {0, 1, 0}, 36, 1, 20};
+  return one_frame(options, camera, build_to_budget(options, 20000, build));
+}
+
+}  // namespace beampipe
