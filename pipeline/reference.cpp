@@ -25,7 +25,7 @@ FrameResult render_reference(const Trace& trace, const Frame& frame, const RunOp
 }
 
 std::vector<Surface> reference_framebuffer() {
-  constexpr std::uint32_t kSamples = kReferenceGrid * kReferenceGrid;
+  constexpr std::uint32_t kSamples = kReferenceSamples;
   return {{"depth", "D64F x 4096", 8 * kSamples}, {"owner", "R64UI x 4096", 8 * kSamples}};
 }
 

@@ -1,4 +1,4 @@
-// The truth: 64 x 64 samples per pixel in double precision, on the same snapped triangles as every technique.
+// The truth: 4096 samples per pixel in double precision, on the same snapped triangles as every technique.
 #pragma once
 
 #include "pipeline/technique.h"

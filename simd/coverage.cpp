@@ -95,7 +95,7 @@ void coverage_kernel(const CoverageInput<float>* in, std::size_t count, Coverage
       const V at = hn::Add(hn::Add(z, hn::Mul(dzdu, hn::Sub(at_u, half))), hn::Mul(dzdv, hn::Sub(at_v, half)));
       return hn::Min(hn::Max(at, z_nearest), z_farthest);
     };
-    V z_min = plane(centroid_u, centroid_v), z_max = z_min;
+    V z_min = z_farthest, z_max = z_nearest;
     const auto include = [&](M valid, V at) {
       z_min = hn::IfThenElse(valid, hn::Min(z_min, at), z_min);
       z_max = hn::IfThenElse(valid, hn::Max(z_max, at), z_max);

@@ -99,7 +99,7 @@ Coverage<Float> coverage_scalar(const CoverageInput<Float>& in) {
     const Float z = in.z + in.dzdu * (u - half) + in.dzdv * (v - half);
     return lesser(greater(z, z_nearest), z_farthest);
   };
-  out.z_min = out.z_max = plane(out.centroid_u, out.centroid_v);
+  out.z_min = z_farthest, out.z_max = z_nearest;
   const auto include = [&](bool valid, Float z) {
     out.z_min = select(valid, lesser(out.z_min, z), out.z_min);
     out.z_max = select(valid, greater(out.z_max, z), out.z_max);

@@ -57,7 +57,7 @@ HWY_INLINE Surface merge_lanes(const Surface& in, U tiny_bits, const Surface& ol
   const V only_i = count_bits(hn::AndNot(old.mask, in.mask)), only_a = count_bits(hn::AndNot(in.mask, old.mask));
 
   const V half_thickness = hn::Mul(half, old.thickness);
-  const auto slab_front = [&](V base) { return hn::Max(hn::Sub(base, half_thickness), old.z_min); };
+  const auto slab_front = [&](V base) { return clamp(hn::Sub(base, half_thickness), old.z_min, old.z_max); };
   const auto slab_back = [&](V base, V front) {
     return hn::Max(hn::Min(hn::Add(base, half_thickness), old.z_max), front);
   };

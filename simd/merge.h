@@ -9,7 +9,7 @@
 
 namespace beampipe {
 
-// Depth over the pixel: z + dzdu (u - 1/2) + dzdv (v - 1/2), u and v in pixels, 0 near to 1 far.
+// Depth over the pixel: z + dzdu (u - 1/2) + dzdv (v - 1/2), u and v in pixels, from -1 near to 0 far.
 template <class Float>
 struct DepthPlane {
   Float z, dzdu, dzdv;
@@ -28,7 +28,7 @@ struct AggregateOf {
 };
 using Aggregate = AggregateOf<float, std::uint32_t>;
 
-inline constexpr Aggregate kEmptyAggregate = {0.0f, 0u, {0.0f, 0.0f, 0.0f}, 0.0f, 2.0f, -1.0f, {0.0f, 0.0f, 0.0f}};
+inline constexpr Aggregate kEmptyAggregate = {0.0f, 0u, {0.0f, 0.0f, 0.0f}, 0.0f, 1.0f, -2.0f, {0.0f, 0.0f, 0.0f}};
 
 // What arrives: an aggregate of one triangle, its colour multiplied by alpha. A tiny triangle covered no mask position
 // and was given the nearest one.
@@ -70,7 +70,7 @@ AggregateOf<Float, Mask> merge_scalar(const FragmentOf<Float, Mask>& fragment, c
   // (2) Partition the overlap by depth: before, behind and within the aggregate's slab, position by position. Equal depth
   // counts as behind: the earlier fragment wins.
   const Float half_thickness = half * old.thickness;
-  const auto slab_front = [&](Float base) { return greater(base - half_thickness, old.z_min); };
+  const auto slab_front = [&](Float base) { return clamp(base - half_thickness, old.z_min, old.z_max); };
   const auto slab_back = [&](Float base, Float front) {
     return greater(lesser(base + half_thickness, old.z_max), front);
   };

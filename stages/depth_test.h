@@ -10,7 +10,7 @@
 namespace beampipe {
 
 inline constexpr std::uint32_t kNoTriangle = ~0u;  // the background
-inline constexpr float kFarDepth = 2.0f;           // beyond every depth: the cleared surface
+inline constexpr float kFarDepth = 1.0f;           // beyond every depth: the cleared surface
 
 // Samples in order of pixel (row by row), cell within the pixel, sample within the cell. A sample's colour is kept as the
 // index of its triangle, which has one colour; the modelled surface is 32-bit depth and fp16 RGB.

@@ -1,7 +1,8 @@
 // What vertex_setup makes and every raster stage reads.
 //
 // Screen space: x to the right, y down, pixel (0,0) is the upper left one and covers [0,1] x [0,1]; positions are
-// integers in 1/256 px. Depth is 0 at the near plane, 1 at the far plane, linear in screen space.
+// integers in 1/256 px. Depth is -1 at the near plane and 0 at the far plane, linear in screen space: (z / w - 1) / 2. A
+// 32-bit float is finest around 0, so distant depths are told apart as well as with a reversed depth buffer.
 #pragma once
 
 #include <cstdint>
@@ -24,6 +25,7 @@ struct SetupTriangle {
   std::int32_t x[3], y[3];
   float vertex_z[3];
   ScreenDepth depth;
+  bool front;  // counter-clockwise on screen, as the trace's vertices were ordered
 };
 
 // Flat shading inputs of a triangle: the same at every pixel.

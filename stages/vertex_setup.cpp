@@ -21,7 +21,7 @@ ClipVertex<Real> transform_vertex(const std::array<Real, 16>& m, Real x, Real y,
   return {row(0), row(1), row(2), row(3)};
 }
 
-// Viewport transform. Depth goes from [-1, 1] to [0, 1].
+// Viewport transform. Depth goes from [-1, 1] to [-1, 0] (stages/setup_triangle.h).
 template <class Real>
 struct ScreenVertex {
   Real x, y, z;  // pixels, pixels, depth
@@ -32,7 +32,7 @@ ScreenVertex<Real> project(const ClipVertex<Real>& v, Real width, Real height) {
   const Real half(0.5), one(1.0);
   const Real inverse_w = one / v.w;
   return {(v.x * inverse_w + one) * half * width, (one - v.y * inverse_w) * half * height,
-          (v.z * inverse_w + one) * half};
+          (v.z * inverse_w - one) * half};
 }
 
 // Depth plane through three snapped vertices; `area2` is twice their signed area.
@@ -180,6 +180,7 @@ class Setup {
     });
     const Slopes<double> slopes = depth_slopes(p[0], p[1], p[2]);
     triangle.depth = {p[0].z, slopes.dzdx, slopes.dzdy, p[0].x, p[0].y};
+    triangle.front = front;
     out_.triangles.push_back(triangle);
     fronts_.push_back(front);
   }

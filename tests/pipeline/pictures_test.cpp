@@ -58,7 +58,7 @@ TEST(Pictures, AnEdgeThroughAPixelCoversItsExactArea) {
   // A quad over the left 5/16 of pixel (1, 1), over the background.
   const Trace trace = pixel_trace(4, 4, quad(0, 0, 1.3125, 4, 0.5, kRed), kBlue);
   const glm::vec3 expected = 0.3125f * kRed + 0.6875f * kBlue;
-  // beam is analytic (rounded to fp16); the reference has 64 columns of samples, 20 of them covered.
+  // beam is analytic (rounded to fp16); the reference is exact for vertical edges.
   for (const char* spec : {"beam", "beam:mask=exact", "reference"}) {
     const glm::vec3 found = pixel(render(spec, trace), 1, 1);
     for (int c = 0; c < 3; ++c) EXPECT_NEAR(found[c], expected[c], 2e-4) << spec;
@@ -94,7 +94,8 @@ TEST(Pictures, OfTwoEqualTrianglesTheEarlierIsSeen) {
 }
 
 // Every sample of every pixel against every triangle, by barycentric coordinates in double: no raster, no spans, no tiles.
-Image brute_force(const Trace& trace, int grid) {
+// The reference's positions (stages/reference_raster.h): 256 rows of 16, each shifted by its bit-reversed number.
+Image brute_force(const Trace& trace) {
   const Frame& frame = trace.frames[0];
   const Mesh& mesh = trace.meshes[0];
   Image image{frame.width, frame.height, std::vector<float>(4 * std::size_t{frame.width} * frame.height)};
@@ -110,8 +111,11 @@ Image brute_force(const Trace& trace, int grid) {
   for (std::uint32_t py = 0; py < frame.height; ++py) {
     for (std::uint32_t px = 0; px < frame.width; ++px, at += 4) {
       glm::dvec3 sum(0.0);
-      for (int s = 0; s < grid * grid; ++s) {
-        const double x = px + (s % grid + 0.5) / grid, y = py + (s / grid + 0.5) / grid;
+      for (int s = 0; s < 4096; ++s) {
+        const int row = s / 16;
+        double shift = 0.5 / 4096;
+        for (int bit = 0; bit < 8; ++bit) shift += (row >> bit & 1) / 16.0 / (2 << bit);
+        const double x = px + s % 16 / 16.0 + shift, y = py + (row + 0.5) / 256;
         double nearest = 1e9;
         glm::dvec3 color = frame.background;
         for (std::size_t t = 0; t < mesh.triangles.size(); ++t) {
@@ -126,7 +130,7 @@ Image brute_force(const Trace& trace, int grid) {
         }
         sum += color;
       }
-      for (int c = 0; c < 3; ++c) image.rgba[at + static_cast<std::size_t>(c)] = static_cast<float>(sum[c] / (grid * grid));
+      for (int c = 0; c < 3; ++c) image.rgba[at + static_cast<std::size_t>(c)] = static_cast<float>(sum[c] / 4096);
     }
   }
   return image;
@@ -134,7 +138,7 @@ Image brute_force(const Trace& trace, int grid) {
 
 TEST(Pictures, TheReferenceAgreesWithBruteForce) {
   const Trace trace = random_trace(6, 5, 60, 7);
-  const Image reference = render("reference", trace), brute = brute_force(trace, 64);
+  const Image reference = render("reference", trace), brute = brute_force(trace);
   // Only samples that lie exactly on an edge may differ: the brute force has no top-left rule.
   double largest = 0;
   for (std::size_t i = 0; i < brute.rgba.size(); ++i)
