@@ -6,6 +6,7 @@
 #include "stages/a_buffer.h"
 #include "stages/aggregate_format.h"
 #include "stages/compose.h"
+#include "stages/compose_window.h"
 #include "stages/conservative_raster.h"
 #include "stages/resolve.h"
 #include "stages/shade.h"
@@ -16,50 +17,81 @@ namespace {
 
 constexpr int kTileSize = 32;  // px
 
-std::vector<std::pair<std::string, std::vector<float>>> count_per_pixel(const Tile& tile, const ABuffer& buffer,
-                                                                        const std::vector<Fragment>& fragments) {
+using PixelCounters = std::vector<std::pair<std::string, std::vector<float>>>;
+
+PixelCounters count_per_pixel(const Tile& tile, const ABuffer& buffer, const std::vector<Fragment>& fragments) {
   std::vector<float> count(tile.pixels()), tiny(tile.pixels());
   for (std::size_t pixel = 0; pixel < tile.pixels(); ++pixel) count[pixel] = static_cast<float>(buffer.depth_of(pixel));
   for (const Fragment& fragment : fragments)
-    if (fragment.merge.tiny) ++tiny[fragment.pixel];
+    if (fragment.tiny) ++tiny[fragment.pixel];
   return {{"fragments", count}, {"merges", count}, {"tiny_triangles", std::move(tiny)}};
+}
+
+std::uint32_t stored_bytes(const BeamOptions& beam) {
+  return beam.rules == Rules::conserve ? conserving_aggregate_bytes(beam.positions) : kAggregateBytes;
 }
 
 }  // namespace
 
 FrameResult render_beam(const Trace& trace, const Frame& frame, const BeamOptions& beam, const RunOptions& run) {
+  const bool conserve = beam.rules == Rules::conserve;
   StageCounters setup;
   const SetupTriangles triangles = vertex_setup(trace, frame, setup);
   const std::vector<glm::vec3> colors = shade_triangles(triangles, frame.light_direction);
-  const SamplePattern pattern = hammersley_pattern();
-  const MaskTable table(pattern);
+  const PositionSet positions(conserve ? cell_patterns(beam.positions) : std::vector{hammersley_pattern()});
+  const MaskTable table(positions.patterns.front());
+  const BeamFragmentOptions options{beam.mask, positions.patterns, &table, !conserve};
+  const SortKey key = conserve ? SortKey::nearest : SortKey::centroid;
+  const std::uint32_t bytes = stored_bytes(beam);
 
-  FrameResult result = render_tiles(
-      frame, triangles, setup, kTileSize, run, [&](const Tile& tile, const TriangleList& list) {
+  FrameResult result =
+      render_tiles(frame, triangles, setup, kTileSize, run, [&](const Tile& tile, const TriangleList& list) {
         StageCounters raster{"conservative_raster"}, fragment{"beam_fragment"}, shading{"shade"}, buffering{"a_buffer"},
             composition{"compose"}, resolving{"resolve"};
         std::vector<PixelTriangle> pairs;
         std::vector<Fragment> fragments;
         conservative_raster(triangles, list, tile, raster, pairs);
-        beam_fragment(triangles, pairs, tile, {beam.mask, pattern, &table}, fragment, fragments);
+        beam_fragment(triangles, pairs, tile, options, fragment, fragments);
         shade(colors, fragments, shading);
-        const ABuffer buffer = a_buffer(fragments, tile.pixels(), buffering);
-        const std::vector<Aggregate> aggregates = beam.composition == Composition::merge
-                                                      ? compose(fragments, buffer, pattern, composition)
-                                                      : compose_over(fragments, buffer, composition);
-        return TileResult{resolve(aggregates, frame.background, resolving), count_per_pixel(tile, buffer, fragments),
+        const ABuffer buffer = a_buffer(fragments, tile.pixels(), key, bytes, buffering);
+        PixelCounters counts = count_per_pixel(tile, buffer, fragments);
+        std::vector<PixelColor> aggregates;
+        switch (beam.rules) {
+          case Rules::conserve: {
+            std::vector<float> windows;
+            aggregates = compose_window(fragments, buffer, positions, composition, windows);
+            counts.emplace_back("largest_window", std::move(windows));
+            break;
+          }
+          case Rules::paper:
+            aggregates = pixel_colors(compose(fragments, buffer, positions.patterns.front(), composition));
+            break;
+          case Rules::over:
+            aggregates = pixel_colors(compose_over(fragments, buffer, composition));
+            break;
+        }
+        return TileResult{resolve(aggregates, frame.background, bytes, resolving),
+                          std::move(counts),
                           {raster, fragment, shading, buffering, composition, resolving}};
       });
   const StageCounters& buffering = result.stages[4];
-  result.a_buffer_peak_bytes = a_buffer_bytes(buffering.items_in, std::uint64_t{frame.width} * frame.height);
+  result.a_buffer_peak_bytes = a_buffer_bytes(buffering.items_in, std::uint64_t{frame.width} * frame.height, bytes);
   return result;
 }
 
-std::vector<Surface> beam_framebuffer(Composition composition) {
-  const Surface color{"color", "RGB16F", kAggregateColorBytes};
-  if (composition == Composition::over) return {{"coverage", "R32F", 4}, color};
-  return {{"coverage", "R32F", 4}, {"mask", "R32UI", 4},       {"depth_plane", "RGBA32F", 16},
-          {"thickness", "R32F", 4}, {"depth_range", "RG32F", 8}, color};
+std::vector<Surface> beam_framebuffer(const BeamOptions& beam) {
+  const Surface color{"color", "RGB16F", kAggregateColorBytes}, coverage{"coverage", "R32F", 4};
+  const auto mask_bytes = static_cast<std::uint32_t>(beam.positions) / 8;
+  const Surface mask{"mask", "R32UI x " + std::to_string(mask_bytes / 4), mask_bytes};
+  switch (beam.rules) {
+    case Rules::conserve:
+      return {coverage, mask, color};
+    case Rules::over:
+      return {coverage, color};
+    case Rules::paper:
+      break;
+  }
+  return {coverage, mask, {"depth_plane", "RGBA32F", 16}, {"thickness", "R32F", 4}, {"depth_range", "RG32F", 8}, color};
 }
 
 }  // namespace beampipe

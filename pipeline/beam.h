@@ -1,5 +1,5 @@
-// The beam pipeline: conservative raster, fragments with analytic coverage and a localization mask, A-buffer, composition
-// into one aggregate per pixel (Crassin et al. 2018).
+// The beam pipeline (Crassin et al. 2018): conservative raster, fragments with analytic coverage and a localization
+// mask, A-buffer, composition into one aggregate per pixel.
 #pragma once
 
 #include "pipeline/technique.h"
@@ -7,18 +7,20 @@
 
 namespace beampipe {
 
-enum class Composition {
-  merge,  // the paper's rules, by region
-  over,   // alpha OVER alone: what the masks and slabs are worth
+enum class Rules {
+  conserve,  // stages/compose_window.h: area is conserved, depth is compared per mask position
+  paper,     // simd/merge.h: the published rules
+  over,      // alpha OVER alone: what masks and slabs are worth
 };
 
 struct BeamOptions {
-  Composition composition = Composition::merge;
-  MaskSource mask = MaskSource::table;
+  Rules rules = Rules::conserve;
+  int positions = 256;                  // of the mask: 32, 64, 128 or 256; 32 with the paper's rules
+  MaskSource mask = MaskSource::exact;  // table: 32 positions only
 };
 
 FrameResult render_beam(const Trace& trace, const Frame& frame, const BeamOptions& beam, const RunOptions& run);
 
-std::vector<Surface> beam_framebuffer(Composition composition);
+std::vector<Surface> beam_framebuffer(const BeamOptions& beam);
 
 }  // namespace beampipe

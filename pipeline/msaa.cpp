@@ -13,7 +13,7 @@
 namespace beampipe {
 namespace {
 
-constexpr int kTileSamples = 1 << 16;        // that a tile holds: 512 KiB of depth and owners
+constexpr int kTileSamples = 1 << 16;         // that a tile holds: 512 KiB of depth and owners
 constexpr std::size_t kBatchTriangles = 512;  // between raster and depth test, so that fragments stay in cache
 
 int tile_size(int samples) {
@@ -35,8 +35,8 @@ std::vector<float> fragments_per_pixel(const Tile& tile, std::vector<float> coun
 
 Sampling msaa_sampling(int samples) {
   if (samples <= 16) return {CellGrid{}, standard_pattern(samples)};
-  CellGrid grid;
-  for (int cells = samples / 8; cells > 1; cells /= 2) (grid.columns <= grid.rows ? grid.columns : grid.rows) *= 2;
+  const CellCounts cells = split_into_cells(samples / 8);
+  const CellGrid grid{cells.columns, cells.rows};
   return {grid, standard_pattern(8, grid.cell_width(), grid.cell_height())};
 }
 
@@ -47,24 +47,26 @@ FrameResult render_msaa(const Trace& trace, const Frame& frame, int samples, con
   const glm::vec3 background = round_to_half({frame.background}).front();
   const Sampling sampling = msaa_sampling(samples);
 
-  return render_tiles(frame, triangles, setup, tile_size(samples), run, [&](const Tile& tile, const TriangleList& list) {
-    StageCounters raster{"sample_raster"}, shading{"shade"}, testing{"depth_test"}, resolving{"resolve"};
-    SampleTile surface(tile, sampling);
-    std::vector<float> counts(tile.pixels());
-    std::vector<SampleFragment> fragments;
-    for (std::size_t first = 0; first < list.size(); first += kBatchTriangles) {
-      const auto begin = list.begin() + static_cast<std::ptrdiff_t>(first);
-      const TriangleList batch(begin, begin + static_cast<std::ptrdiff_t>(std::min(kBatchTriangles, list.size() - first)));
-      fragments.clear();
-      sample_raster(triangles, batch, tile, sampling, raster, fragments);
-      shade(fragments, shading);
-      depth_test(triangles, fragments, tile, sampling, testing, surface);
-      counts = fragments_per_pixel(tile, std::move(counts), fragments, sampling.grid);
-    }
-    return TileResult{resolve(surface, tile.pixels(), colors, background, resolving),
-                      {{"fragments", std::move(counts)}},
-                      {raster, shading, testing, resolving}};
-  });
+  return render_tiles(
+      frame, triangles, setup, tile_size(samples), run, [&](const Tile& tile, const TriangleList& list) {
+        StageCounters raster{"sample_raster"}, shading{"shade"}, testing{"depth_test"}, resolving{"resolve"};
+        SampleTile surface(tile, sampling);
+        std::vector<float> counts(tile.pixels());
+        std::vector<SampleFragment> fragments;
+        for (std::size_t first = 0; first < list.size(); first += kBatchTriangles) {
+          const auto begin = list.begin() + static_cast<std::ptrdiff_t>(first);
+          const TriangleList batch(begin,
+                                   begin + static_cast<std::ptrdiff_t>(std::min(kBatchTriangles, list.size() - first)));
+          fragments.clear();
+          sample_raster(triangles, batch, tile, sampling, raster, fragments);
+          shade(fragments, shading);
+          depth_test(triangles, fragments, tile, sampling, testing, surface);
+          counts = fragments_per_pixel(tile, std::move(counts), fragments, sampling.grid);
+        }
+        return TileResult{resolve(surface, tile.pixels(), colors, background, resolving),
+                          {{"fragments", std::move(counts)}},
+                          {raster, shading, testing, resolving}};
+      });
 }
 
 std::vector<Surface> msaa_framebuffer(int samples) {

@@ -1,5 +1,6 @@
 #include "pipeline/technique.h"
 
+#include <algorithm>
 #include <bit>
 #include <charconv>
 #include <optional>
@@ -35,16 +36,45 @@ Spec split_spec(std::string_view text) {
   return spec;
 }
 
-MaskSource mask_source(const Spec& spec) {
-  if (spec.items.empty()) return MaskSource::table;
-  if (spec.items == std::vector<std::string>{"mask=table"}) return MaskSource::table;
-  if (spec.items == std::vector<std::string>{"mask=exact"}) return MaskSource::exact;
-  fail(spec, spec.name + " or " + spec.name + ":mask=table|exact");
+// "beam[:key=value,...]": rules=conserve|paper; bits=N with conserve; mask=table|exact with the 32 bits of paper.
+BeamOptions beam_options(const Spec& spec) {
+  std::map<std::string, std::string> values;
+  for (const std::string& item : spec.items) {
+    const std::size_t equals = std::min(item.find('='), item.size());
+    const std::string key = item.substr(0, equals);
+    if (key != "rules" && key != "bits" && key != "mask") fail(spec, "options rules, bits or mask, as key=value");
+    if (!values.emplace(key, item.substr(std::min(equals + 1, item.size()))).second) fail(spec, key + " once");
+  }
+  const auto choose = [&]<class Value>(const std::string& key, Value& value,
+                                       const std::vector<std::pair<std::string, Value>>& choices) {
+    const auto given = values.find(key);
+    if (given == values.end()) return;
+    std::string names;
+    for (const auto& [name, choice] : choices) {
+      if (given->second == name) return void(value = choice);
+      names += (names.empty() ? "" : "|") + name;
+    }
+    fail(spec, key + "=" + names);
+  };
+  BeamOptions options;
+  choose("rules", options.rules,
+         std::vector<std::pair<std::string, Rules>>{{"conserve", Rules::conserve}, {"paper", Rules::paper}});
+  if (options.rules == Rules::paper) {
+    if (values.count("bits")) fail(spec, "no bits with rules=paper: its masks have 32");
+    options.positions = 32;
+    options.mask = MaskSource::table;
+    choose("mask", options.mask,
+           std::vector<std::pair<std::string, MaskSource>>{{"table", MaskSource::table}, {"exact", MaskSource::exact}});
+  } else {
+    if (values.count("mask")) fail(spec, "mask only with rules=paper: other masks are exact");
+    choose("bits", options.positions,
+           std::vector<std::pair<std::string, int>>{{"32", 32}, {"64", 64}, {"128", 128}, {"256", 256}});
+  }
+  return options;
 }
 
-Technique beam_technique(const Spec& spec, Composition composition) {
-  const BeamOptions options{composition, composition == Composition::merge ? mask_source(spec) : MaskSource::table};
-  return {spec.text, beam_framebuffer(composition), 0,
+Technique beam_technique(const Spec& spec, const BeamOptions& options) {
+  return {spec.text, beam_framebuffer(options), 0,
           [options](const Trace& trace, std::size_t frame, const RunOptions& run) {
             return render_beam(trace, trace.frames.at(frame), options, run);
           }};
@@ -69,21 +99,21 @@ Technique msaa_technique(const Spec& spec) {
 
 Technique parse_technique(std::string_view text) {
   const Spec spec = split_spec(text);
-  if (spec.name == "beam") return beam_technique(spec, Composition::merge);
+  if (spec.name == "beam") return beam_technique(spec, beam_options(spec));
   if (spec.name == "msaa") return msaa_technique(spec);
   if (spec.name != "alpha" && spec.name != "reference") fail(spec, "beam, alpha, msaa:N or reference");
   if (!spec.items.empty()) fail(spec, "'" + spec.name + "' alone: it has no options");
-  if (spec.name == "alpha") return beam_technique(spec, Composition::over);
-  return {spec.text, reference_framebuffer(), 0,
-          [](const Trace& trace, std::size_t frame, const RunOptions& run) {
+  if (spec.name == "alpha") return beam_technique(spec, {Rules::over, 32, MaskSource::table});
+  return {spec.text, reference_framebuffer(), 0, [](const Trace& trace, std::size_t frame, const RunOptions& run) {
             return render_reference(trace, trace.frames.at(frame), run);
           }};
 }
 
 std::string technique_help() {
-  return "  beam         analytic coverage, 32-bit localization mask, depth slab; sorted fragments, one aggregate per pixel\n"
-         "               beam:mask=table  masks from a 64 x 64 table, as in the paper (the default)\n"
-         "               beam:mask=exact  masks from exact edge tests\n"
+  return "  beam         sorted fragments with analytic coverage and a mask, one area-conserving aggregate per pixel\n"
+         "               beam:bits=N      N = 32, 64, 128 or 256 (the default) mask positions\n"
+         "               beam:rules=paper the published rules: 32-bit mask, depth slab\n"
+         "               beam:rules=paper,mask=exact  its masks from edge tests in place of the 64 x 64 table\n"
          "  alpha        the same fragments, plain OVER, no mask\n"
          "  msaa:N       multisampling, N = 1, 2, 4, ... 1024; above 16: super-resolution of 8x\n"
          "  reference    4096 samples per pixel, double precision: the truth that errors are measured against\n";

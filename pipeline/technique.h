@@ -57,7 +57,8 @@ struct SpecError : std::runtime_error {
   using std::runtime_error::runtime_error;
 };
 
-// "beam", "beam:mask=exact", "alpha", "msaa:N" (N a power of two, 1..1024), "reference". Throws SpecError.
+// "beam", "beam:bits=128", "beam:rules=paper", "alpha", "msaa:N" (N a power of two, 1..1024), "reference". Throws
+// SpecError.
 Technique parse_technique(std::string_view spec);
 
 // Lines "SPEC  what it is", for --help.

@@ -44,8 +44,7 @@ void copy_tile(const Tile& tile, const TileResult& from, FrameResult& to) {
     for (std::int32_t x = tile.x0; x < tile.x1; ++x) {
       const auto source = static_cast<std::size_t>((y - tile.y0) * tile.width() + x - tile.x0);
       const std::size_t target = static_cast<std::size_t>(y) * frame_width + static_cast<std::size_t>(x);
-      for (int c = 0; c < 4; ++c)
-        to.image.rgba[4 * target + static_cast<std::size_t>(c)] = from.image[source][c];
+      for (int c = 0; c < 4; ++c) to.image.rgba[4 * target + static_cast<std::size_t>(c)] = from.image[source][c];
       for (const auto& [name, values] : from.pixel_counters) to.pixel_counters.at(name)[target] = values[source];
     }
   }

@@ -1,5 +1,5 @@
-// Tile scheduling: triangles into tiles, tiles onto threads, tiles' results into the frame's. The result does not depend on
-// the number of threads or on the tile size.
+// Tile scheduling: triangles into tiles, tiles onto threads, tiles' results into the frame's. The result does not
+// depend on the number of threads or on the tile size.
 #pragma once
 
 #include <functional>

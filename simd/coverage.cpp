@@ -28,8 +28,7 @@ HWY_INLINE void add_edge(V v0, V v1, V a, V b, V c, V c_right, EdgeSums& sums) {
   const V high = hn::Min(hn::Max(hn::Max(v0, v1), zero), one);
   const M vertical = hn::Eq(b, zero), horizontal = hn::Eq(a, zero);
   const V safe_a = hn::IfThenElse(horizontal, one, a), safe_b = hn::IfThenElse(vertical, one, b);
-  const V at_left =
-      hn::IfThenElse(vertical, low, hn::Min(hn::Max(hn::Div(hn::Sub(zero, c), safe_b), low), high));
+  const V at_left = hn::IfThenElse(vertical, low, hn::Min(hn::Max(hn::Div(hn::Sub(zero, c), safe_b), low), high));
   const V at_right =
       hn::IfThenElse(vertical, high, hn::Min(hn::Max(hn::Div(hn::Sub(zero, c_right), safe_b), low), high));
   const V v_in = hn::Min(at_left, at_right), v_out = hn::Max(at_left, at_right);
@@ -49,8 +48,7 @@ HWY_INLINE void add_edge(V v0, V v1, V a, V b, V c, V c_right, EdgeSums& sums) {
   const V weighted = hn::Add(hn::Mul(v_in, hn::Add(sum_u, u_in)), hn::Mul(v_out, hn::Add(sum_u, u_out)));
   const V moment_v =
       hn::Add(hn::Mul(hn::Mul(sixth, weighted), inner), hn::Mul(hn::Mul(half, beyond), hn::Add(from, to)));
-  const V sign =
-      hn::IfThenElse(horizontal, zero, hn::IfThenElse(hn::Lt(a, zero), one, hn::Sub(zero, one)));
+  const V sign = hn::IfThenElse(horizontal, zero, hn::IfThenElse(hn::Lt(a, zero), one, hn::Sub(zero, one)));
   sums.area = hn::Add(sums.area, hn::Mul(sign, area));
   sums.moment_u = hn::Add(sums.moment_u, hn::Mul(sign, moment_u));
   sums.moment_v = hn::Add(sums.moment_v, hn::Mul(sign, moment_v));
@@ -107,8 +105,8 @@ void coverage_kernel(const CoverageInput<float>* in, std::size_t count, Coverage
     }
     const V corner_u[4] = {zero, one, zero, one}, corner_v[4] = {zero, zero, one, one};
     for (int i = 0; i < 4; ++i) {
-      const M covered = hn::And(hn::And(hn::Ge(corner[0][i], zero), hn::Ge(corner[1][i], zero)),
-                                hn::Ge(corner[2][i], zero));
+      const M covered =
+          hn::And(hn::And(hn::Ge(corner[0][i], zero), hn::Ge(corner[1][i], zero)), hn::Ge(corner[2][i], zero));
       include(covered, plane(corner_u[i], corner_v[i]));
     }
     for (int k = 0; k < 3; ++k) {

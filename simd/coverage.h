@@ -14,9 +14,9 @@ namespace beampipe {
 // the exact integers rounded to float, in the order (0,0), (1,0), (0,1), (1,1); reversing an edge negates them exactly.
 template <class Float>
 struct CoverageInput {
-  Float u[3], v[3];    // vertices, pixels
-  Float a[3], b[3];    // edge slopes
-  Float corner[3][4];  // edge values at the pixel's corners
+  Float u[3], v[3];     // vertices, pixels
+  Float a[3], b[3];     // edge slopes
+  Float corner[3][4];   // edge values at the pixel's corners
   Float z, dzdu, dzdv;  // depth plane: at the pixel's centre, and its change per pixel
   Float vertex_z[3];
 };
@@ -31,7 +31,8 @@ struct Coverage {
 // out[i] = coverage of in[i]; lanes are across i. Bit-identical to coverage_scalar on every target.
 void coverage(const CoverageInput<float>* in, std::size_t count, Coverage<float>* out);
 
-// ---- Scalar twin: one lane, also for counting numbers ----------------------------------------------------------------
+// ---- Scalar twin: one lane, also for counting numbers
+// ----------------------------------------------------------------
 
 template <class Float>
 struct EdgeIntegral {
@@ -73,8 +74,8 @@ Coverage<Float> coverage_scalar(const CoverageInput<Float>& in) {
   const Float zero(0.0f), one(1.0f), half(0.5f);
   Float area = zero, moment_u = zero, moment_v = zero;
   for (int k = 0; k < 3; ++k) {
-    const EdgeIntegral<Float> edge = edge_integral(in.v[k], in.v[(k + 1) % 3], in.a[k], in.b[k], in.corner[k][0],
-                                                   in.corner[k][1]);
+    const EdgeIntegral<Float> edge =
+        edge_integral(in.v[k], in.v[(k + 1) % 3], in.a[k], in.b[k], in.corner[k][0], in.corner[k][1]);
     area = area + edge.area;
     moment_u = moment_u + edge.moment_u;
     moment_v = moment_v + edge.moment_v;

@@ -1,5 +1,5 @@
-// Per-sample depth test of one triangle in the cells of a multisampled surface. LESS; the surface keeps, per sample, the
-// nearest depth and whose it is.
+// Per-sample depth test of one triangle in the cells of a multisampled surface. LESS; the surface keeps, per sample,
+// the nearest depth and whose it is.
 #pragma once
 
 #include <cstddef>

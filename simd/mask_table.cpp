@@ -35,8 +35,7 @@ void table_masks_kernel(const TableTriangle* triangles, std::size_t count, const
       const auto r = hn::Load(d, distance);
       const auto scaled = hn::Mul(hn::Add(hn::Mul(r, hn::Set(d, 1.0f / kHalfDiagonal)), hn::Set(d, 1.0f)),
                                   hn::Set(d, static_cast<float>(kTableDistances / 2)));
-      const auto clamped =
-          hn::Min(hn::Max(scaled, hn::Zero(d)), hn::Set(d, static_cast<float>(kTableDistances - 1)));
+      const auto clamped = hn::Min(hn::Max(scaled, hn::Zero(d)), hn::Set(d, static_cast<float>(kTableDistances - 1)));
       const auto column = hn::ConvertTo(di, clamped);
       const auto flipped = hn::Load(du, flip);
       const auto is_flipped = hn::RebindMask(di, hn::Ne(flipped, hn::Zero(du)));

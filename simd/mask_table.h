@@ -15,8 +15,8 @@ inline constexpr int kTableAngles = 64;     // over the full circle
 inline constexpr int kTableDistances = 64;  // over [-1/sqrt(2), 1/sqrt(2)] px, signed distance from the pixel's centre
 inline constexpr float kHalfDiagonal = 0.70710678f;  // px: beyond it an edge does not cut the pixel
 
-// Entry [theta][r]: the samples with n(theta) . (sample - centre) + r >= 0. Entry [theta + pi][-r] is the complement, so
-// the masks of an edge and of its reverse share no bit and miss none.
+// Entry [theta][r]: the samples with n(theta) . (sample - centre) + r >= 0. Entry [theta + pi][-r] is the complement,
+// so the masks of an edge and of its reverse share no bit and miss none.
 class MaskTable {
  public:
   explicit MaskTable(const SamplePattern& pattern);  // 32 samples
@@ -51,8 +51,9 @@ inline std::uint32_t table_mask_scalar(const TableTriangle& triangle, const Mask
     const float scaled = (edge.distance * (1.0f / kHalfDiagonal) + 1.0f) * (kTableDistances / 2);
     const float clamped = scaled < 0.0f ? 0.0f : (scaled > kTableDistances - 1 ? kTableDistances - 1 : scaled);
     const auto r = static_cast<std::int32_t>(clamped);
-    std::uint32_t word = edge.flip ? table.words()[(edge.angle + kTableAngles / 2) * kTableDistances + kTableDistances - 1 - r]
-                                   : table.words()[edge.angle * kTableDistances + r];
+    std::uint32_t word =
+        edge.flip ? table.words()[(edge.angle + kTableAngles / 2) * kTableDistances + kTableDistances - 1 - r]
+                  : table.words()[edge.angle * kTableDistances + r];
     if (edge.distance <= -kHalfDiagonal) word = edge.flip;
     if (edge.distance >= kHalfDiagonal) word = ~edge.flip;
     mask &= word;

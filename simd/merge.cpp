@@ -31,8 +31,8 @@ HWY_INLINE Surface load_surface(const float* columns, std::size_t lanes) {
   const D d;
   const DU du;
   const auto column = [&](std::size_t i) { return hn::Load(d, columns + i * lanes); };
-  return {column(0), hn::BitCast(du, column(1)), column(2), column(3), column(4), column(5), column(6), column(7),
-          {column(8), column(9), column(10)}};
+  return {column(0), hn::BitCast(du, column(1)),        column(2), column(3), column(4), column(5), column(6),
+          column(7), {column(8), column(9), column(10)}};
 }
 
 HWY_INLINE V count_bits(U mask) {
@@ -114,8 +114,7 @@ HWY_INLINE Surface merge_lanes(const Surface& in, U tiny_bits, const Surface& ol
   Surface merged;
   merged.alpha = hn::Mul(total, scale);
   merged.mask = hn::Or(in.mask, old.mask);
-  for (int c = 0; c < 3; ++c)
-    merged.color[c] = hn::Add(hn::Mul(in.color[c], scale_i), hn::Mul(old.color[c], scale_a));
+  for (int c = 0; c < 3; ++c) merged.color[c] = hn::Add(hn::Mul(in.color[c], scale_i), hn::Mul(old.color[c], scale_a));
 
   const V share_i = hn::Div(in.alpha, hn::Add(in.alpha, old.alpha)), share_a = hn::Sub(one, share_i);
   const M first = hn::RebindMask(d, hn::Eq(old.mask, none));
@@ -151,10 +150,12 @@ void merge_kernel(const MergeFragment* fragments, std::size_t count, const Sampl
     rows_to_columns(reinterpret_cast<const float*>(aggregates + first), n, kSurfaceColumns, lanes, out);
     const U tiny = hn::BitCast(du, hn::Load(d, in + kSurfaceColumns * lanes));
     const Surface merged = merge_lanes(load_surface(in, lanes), tiny, load_surface(out, lanes), pattern);
-    const V columns[kSurfaceColumns] = {merged.alpha,     hn::BitCast(d, merged.mask), merged.z,
-                                        merged.dzdu,      merged.dzdv,                 merged.thickness,
-                                        merged.z_min,     merged.z_max,                merged.color[0],
-                                        merged.color[1],  merged.color[2]};
+    const V columns[kSurfaceColumns] = {merged.alpha,    hn::BitCast(d, merged.mask),
+                                        merged.z,        merged.dzdu,
+                                        merged.dzdv,     merged.thickness,
+                                        merged.z_min,    merged.z_max,
+                                        merged.color[0], merged.color[1],
+                                        merged.color[2]};
     for (std::size_t i = 0; i < kSurfaceColumns; ++i) hn::Store(columns[i], d, out + i * lanes);
     columns_to_rows(out, n, kSurfaceColumns, lanes, reinterpret_cast<float*>(aggregates + first));
   }

@@ -43,7 +43,8 @@ using MergeFragment = FragmentOf<float, std::uint32_t>;
 // every target. Mask bit s stands at pattern position s; the pattern has 32.
 void merge(const MergeFragment* fragments, std::size_t count, const SamplePattern& pattern, Aggregate* aggregates);
 
-// ---- Scalar twin -----------------------------------------------------------------------------------------------------
+// ---- Scalar twin
+// -----------------------------------------------------------------------------------------------------
 
 // How much of the fragment (i) and of the aggregate (a) shows in one region of mask positions.
 template <class Float>
@@ -67,8 +68,8 @@ AggregateOf<Float, Mask> merge_scalar(const FragmentOf<Float, Mask>& fragment, c
   const Mask overlap = in.mask & old.mask;
   const Float only_i = bit_count(in.mask & ~old.mask), only_a = bit_count(old.mask & ~in.mask);
 
-  // (2) Partition the overlap by depth: before, behind and within the aggregate's slab, position by position. Equal depth
-  // counts as behind: the earlier fragment wins.
+  // (2) Partition the overlap by depth: before, behind and within the aggregate's slab, position by position. Equal
+  // depth counts as behind: the earlier fragment wins.
   const Float half_thickness = half * old.thickness;
   const auto slab_front = [&](Float base) { return clamp(base - half_thickness, old.z_min, old.z_max); };
   const auto slab_back = [&](Float base, Float front) {

@@ -3,6 +3,7 @@
 
 #include <array>
 #include <cstdint>
+#include <vector>
 
 namespace beampipe {
 
@@ -20,6 +21,16 @@ struct SamplePattern {
 // standardSampleLocations), for a cell of `cell_width` x `cell_height` units: 256 x 256 for a whole pixel.
 // Throws std::invalid_argument for any other count.
 SamplePattern standard_pattern(int count, int cell_width = kSubpixelUnits, int cell_height = kSubpixelUnits);
+
+// A pixel as a grid of cells (super-resolution): `cells` is a power of two; columns = rows, or twice as many.
+struct CellCounts {
+  int columns = 1, rows = 1;
+};
+CellCounts split_into_cells(int cells);
+
+// `count` positions (32, 64, 128 or 256), 32 to a pattern: the standard 8 in each cell of a grid, row by row. They are
+// the positions of msaa:count. Throws std::invalid_argument for any other count.
+std::vector<SamplePattern> cell_patterns(int count);
 
 // 32 jittered positions: the Hammersley set (i / 32 + 1 / 64, bit-reversed i / 32 + 1 / 64), which fall on 1/256 px
 // exactly (slide 7 of the paper's talk).

@@ -55,8 +55,7 @@ void sample_masks_kernel(const CellEdges* cells, std::size_t count, const Sample
     }
     if (small) {
       std::int32_t c[3];
-      for (int k = 0; k < 3; ++k)
-        c[k] = static_cast<std::int32_t>(HWY_MAX(-kDecided, HWY_MIN(edges.c[k], kDecided)));
+      for (int k = 0; k < 3; ++k) c[k] = static_cast<std::int32_t>(HWY_MAX(-kDecided, HWY_MIN(edges.c[k], kDecided)));
       masks[i] = cell_mask<std::int32_t>(edges.a, edges.b, c, pattern);
     } else {
       double a[3], b[3], c[3];

@@ -2,11 +2,10 @@
 
 #include <algorithm>
 
-#include "stages/aggregate_format.h"
-
 namespace beampipe {
 
-ABuffer a_buffer(const std::vector<Fragment>& fragments, std::size_t pixels, StageCounters& counters) {
+ABuffer a_buffer(const std::vector<Fragment>& fragments, std::size_t pixels, SortKey key, std::uint32_t record_bytes,
+                 StageCounters& counters) {
   ABuffer buffer;
   buffer.first.assign(pixels + 1, 0);
   for (const Fragment& fragment : fragments) ++buffer.first[fragment.pixel + 1];
@@ -21,20 +20,21 @@ ABuffer a_buffer(const std::vector<Fragment>& fragments, std::size_t pixels, Sta
     const auto end = buffer.fragments.begin() + buffer.first[pixel + 1];
     std::sort(begin, end, [&](std::uint32_t i, std::uint32_t j) {
       ++comparisons;
-      const float zi = fragments[i].centroid_z, zj = fragments[j].centroid_z;
+      const float zi = key == SortKey::centroid ? fragments[i].centroid_z : fragments[i].z_min;
+      const float zj = key == SortKey::centroid ? fragments[j].centroid_z : fragments[j].z_min;
       return zi < zj || (zi == zj && i < j);
     });
   }
   counters.items_in += fragments.size();
   counters.items_out += fragments.size();
   counters.ops.add += comparisons;
-  counters.bytes_read += fragments.size() * (kAggregateBytes + kLinkBytes) + pixels * kLinkBytes;
-  counters.bytes_written += fragments.size() * (kAggregateBytes + kLinkBytes) + pixels * kLinkBytes;
+  counters.bytes_read += a_buffer_bytes(fragments.size(), pixels, record_bytes);
+  counters.bytes_written += a_buffer_bytes(fragments.size(), pixels, record_bytes);
   return buffer;
 }
 
-std::uint64_t a_buffer_bytes(std::uint64_t fragments, std::uint64_t pixels) {
-  return fragments * (kAggregateBytes + kLinkBytes) + pixels * kLinkBytes;
+std::uint64_t a_buffer_bytes(std::uint64_t fragments, std::uint64_t pixels, std::uint32_t record_bytes) {
+  return fragments * (record_bytes + kLinkBytes) + pixels * kLinkBytes;
 }
 
 }  // namespace beampipe

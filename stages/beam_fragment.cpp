@@ -39,8 +39,8 @@ CellEdges exact_edges(const Edge (&edges)[3], std::int32_t x, std::int32_t y) {
   CellEdges cell;
   for (int k = 0; k < 3; ++k) {
     cell.a[k] = edges[k].a, cell.b[k] = edges[k].b;
-    cell.c[k] = edges[k].at(std::int64_t{x} * kSubpixelUnits, std::int64_t{y} * kSubpixelUnits) -
-                (edges[k].owns ? 0 : 1);
+    cell.c[k] =
+        edges[k].at(std::int64_t{x} * kSubpixelUnits, std::int64_t{y} * kSubpixelUnits) - (edges[k].owns ? 0 : 1);
   }
   return cell;
 }
@@ -72,18 +72,20 @@ TableTriangle table_edges(const Edge (&edges)[3], const EdgeDirection (&directio
   return triangle;
 }
 
-std::uint32_t nearest_position(const SamplePattern& pattern, float u, float v) {
-  std::uint32_t nearest = 0;
+std::size_t nearest_position(const std::vector<SamplePattern>& positions, float u, float v) {
+  std::size_t nearest = 0;
   float least = 4.0f;  // more than the pixel's diagonal, squared
-  for (std::size_t s = 0; s < 32; ++s) {
+  for (std::size_t i = 0; i < positions.size() * kMaxMaskSamples; ++i) {
+    const SamplePattern& pattern = positions[i / kMaxMaskSamples];
+    const std::size_t s = i % kMaxMaskSamples;
     const float du = static_cast<float>(pattern.x[s]) * kUnit - u, dv = static_cast<float>(pattern.y[s]) * kUnit - v;
     const float distance = du * du + dv * dv;
     if (distance < least) {
       least = distance;
-      nearest = static_cast<std::uint32_t>(s);
+      nearest = i;
     }
   }
-  return 1u << nearest;
+  return nearest;
 }
 
 OperationCounts coverage_cost() {
@@ -99,12 +101,12 @@ OperationCounts coverage_cost() {
   });
 }
 
-// Per edge: distance scaled and clamped (a multiply-add, a multiply, two comparisons), converted, fetched, two selects for
-// beyond the table, and the AND.
+// Per edge: distance scaled and clamped (a multiply-add, a multiply, two comparisons), converted, fetched, two selects
+// for beyond the table, and the AND.
 constexpr OperationCounts kTableMaskCost{6, 18, 3, 3, 0, 3};
-constexpr OperationCounts kNearestCost{64, 128, 0, 0, 0, 0};  // 32 squared distances and comparisons
+constexpr OperationCounts kNearestCost{2, 4, 0, 0, 0, 0};  // per position: a squared distance and its comparison
 
-OperationCounts exact_mask_cost(const SamplePattern& pattern) {
+OperationCounts exact_mask_cost(const SamplePattern& pattern) {  // per pattern
   return count_operations([&](OperationCounts& counts) {
     using Int = Counted<std::int64_t>;
     const Int zero(0, counts), edges[3] = {zero, zero, zero};
@@ -138,16 +140,20 @@ void beam_fragment(const SetupTriangles& triangles, const std::vector<PixelTrian
     }
   }
   std::vector<Coverage<float>> covered(in.size());
-  std::vector<std::uint32_t> masks(in.size());
+  std::vector<WideMask> masks(in.size());
+  std::vector<std::uint32_t> words(in.size());
   coverage(inputs.data(), in.size(), covered.data());
-  if (use_table) {
-    table_masks(lookups.data(), in.size(), *options.table, masks.data());
-  } else {
-    sample_masks(cells.data(), in.size(), options.pattern, masks.data());
+  for (std::size_t word = 0; word < options.positions.size(); ++word) {
+    if (use_table) {
+      table_masks(lookups.data(), in.size(), *options.table, words.data());
+    } else {
+      sample_masks(cells.data(), in.size(), options.positions[word], words.data());
+    }
+    for (std::size_t i = 0; i < in.size(); ++i) masks[i].words[word] = in[i].full ? ~0u : words[i];
   }
 
   const std::size_t before = out.size();
-  std::uint64_t tiny = 0;
+  std::uint64_t located = 0;
   for (std::size_t i = 0; i < in.size(); ++i) {
     const Coverage<float>& c = covered[i];
     if (!in[i].full && c.alpha <= kZeroArea) continue;
@@ -155,19 +161,19 @@ void beam_fragment(const SetupTriangles& triangles, const std::vector<PixelTrian
     fragment.triangle = in[i].triangle;
     fragment.quad = in[i].quad;
     fragment.pixel = static_cast<std::uint32_t>((in[i].y - tile.y0) * tile.width() + in[i].x - tile.x0);
+    fragment.front = triangles.triangles[in[i].triangle].front;
     fragment.centroid_u = in[i].full ? 0.5f : c.centroid_u;
     fragment.centroid_v = in[i].full ? 0.5f : c.centroid_v;
-    Aggregate& surface = fragment.merge.surface;
-    surface.alpha = in[i].full ? 1.0f : c.alpha;
-    surface.mask = in[i].full ? ~0u : masks[i];
-    surface.plane = {inputs[i].z, inputs[i].dzdu, inputs[i].dzdv};
-    surface.z_min = c.z_min, surface.z_max = c.z_max;
-    fragment.centroid_z = depth_at(surface.plane, fragment.centroid_u - 0.5f, fragment.centroid_v - 0.5f);
+    fragment.alpha = in[i].full ? 1.0f : c.alpha;
+    fragment.mask = masks[i];
+    fragment.plane = {inputs[i].z, inputs[i].dzdu, inputs[i].dzdv};
+    fragment.z_min = c.z_min, fragment.z_max = c.z_max;
+    fragment.centroid_z = depth_at(fragment.plane, fragment.centroid_u - 0.5f, fragment.centroid_v - 0.5f);
     fragment.centroid_z = lesser(greater(fragment.centroid_z, c.z_min), c.z_max);
-    if (surface.mask == 0) {
-      surface.mask = nearest_position(options.pattern, fragment.centroid_u, fragment.centroid_v);
-      fragment.merge.tiny = ~0u;
-      ++tiny;
+    fragment.tiny = fragment.mask.none();
+    if (fragment.tiny && options.locate_tiny) {
+      fragment.mask.set(nearest_position(options.positions, fragment.centroid_u, fragment.centroid_v));
+      ++located;
     }
     out.push_back(fragment);
   }
@@ -175,8 +181,9 @@ void beam_fragment(const SetupTriangles& triangles, const std::vector<PixelTrian
   counters.items_in += in.size();
   counters.items_out += out.size() - before;
   counters.ops += coverage_cost() * in.size();
-  counters.ops += (use_table ? kTableMaskCost : exact_mask_cost(options.pattern)) * in.size();
-  counters.ops += kNearestCost * tiny;
+  for (const SamplePattern& pattern : options.positions)
+    counters.ops += (use_table ? kTableMaskCost : exact_mask_cost(pattern)) * in.size();
+  counters.ops += kNearestCost * (located * options.positions.size() * kMaxMaskSamples);
   counters.bytes_read += in.size() * kPixelTriangleBytes;
   counters.bytes_written += (out.size() - before) * kAggregateBytes;
   counters.lanes_used += out.size() - before;

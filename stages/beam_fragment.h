@@ -1,37 +1,46 @@
-// beam_fragment: (pixel, triangle) -> fragment. Analytic coverage of the clipped triangle, localization mask, depth plane,
-// depth range, centroid: everything about the triangle's visibility in the pixel.
+// beam_fragment: (pixel, triangle) -> fragment. Analytic coverage of the clipped triangle, localization mask, depth
+// plane, depth range, centroid: everything about the triangle's visibility in the pixel.
 #pragma once
 
 #include <cstdint>
+#include <glm/glm.hpp>
 #include <vector>
 
 #include "simd/mask_table.h"
 #include "simd/merge.h"
 #include "stages/conservative_raster.h"
+#include "stages/wide_mask.h"
 
 namespace beampipe {
 
 struct Fragment {
-  std::uint32_t triangle;        // index into SetupTriangles
-  std::uint32_t quad;            // as in PixelTriangle
-  std::uint32_t pixel;           // within the tile, row by row
-  float centroid_u, centroid_v;  // of the clipped triangle, pixels from the pixel's upper left corner
-  float centroid_z;              // its depth there
-  MergeFragment merge;           // its colour is 0 until shaded
+  std::uint32_t triangle;                    // index into SetupTriangles
+  std::uint32_t quad;                        // as in PixelTriangle
+  std::uint32_t pixel;                       // within the tile, row by row
+  bool front;                                // as in SetupTriangle
+  bool tiny;                                 // covers no mask position
+  float centroid_u, centroid_v, centroid_z;  // of the clipped triangle: pixels from the upper left corner, depth
+  float alpha;                               // area of the clipped triangle, 0..1
+  WideMask mask;
+  DepthPlane<float> plane;
+  float z_min, z_max;
+  glm::vec3 color;  // times alpha; 0 until shaded
 };
 
 enum class MaskSource { table, exact };  // the 64 x 64 table (the paper), or the edge tests of sample_raster
 
 struct BeamFragmentOptions {
   MaskSource mask = MaskSource::table;
-  SamplePattern pattern;           // the mask's 32 positions
-  const MaskTable* table = nullptr;  // for MaskSource::table
+  std::vector<SamplePattern> positions;  // of the mask, 32 to a pattern; one pattern for MaskSource::table
+  const MaskTable* table = nullptr;      // for MaskSource::table
+  bool locate_tiny = false;              // give a tiny fragment the position nearest to its centroid (section 2.2.1)
 };
 
 // Areas up to this are what rounding leaves of an area of 0, in pixels.
 inline constexpr float kZeroArea = 5e-7f;
 
-// Appends to `out` in the order of `in`; pixels whose coverage turns out 0 are dropped (items_in - items_out counts them).
+// Appends to `out` in the order of `in`; pixels whose coverage turns out 0 are dropped (items_in - items_out counts
+// them).
 void beam_fragment(const SetupTriangles& triangles, const std::vector<PixelTriangle>& in, const Tile& tile,
                    const BeamFragmentOptions& options, StageCounters& counters, std::vector<Fragment>& out);
 

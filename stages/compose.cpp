@@ -9,7 +9,6 @@
 namespace beampipe {
 namespace {
 
-using CountedAggregate = AggregateOf<Counted<float>, Counted<std::uint32_t>>;
 using CountedFragment = FragmentOf<Counted<float>, Counted<std::uint32_t>>;
 
 CountedFragment counted_fragment(OperationCounts& counts) {
@@ -44,6 +43,18 @@ void count_merges(std::uint64_t merges, std::uint64_t pixels, const OperationCou
 
 }  // namespace
 
+MergeFragment merge_fragment(const Fragment& fragment) {
+  const glm::vec3& color = fragment.color;
+  return {{fragment.alpha,
+           fragment.mask.words[0],
+           fragment.plane,
+           0.0f,
+           fragment.z_min,
+           fragment.z_max,
+           {color.r, color.g, color.b}},
+          fragment.tiny ? ~0u : 0u};
+}
+
 std::vector<Aggregate> compose(const std::vector<Fragment>& fragments, const ABuffer& buffer,
                                const SamplePattern& pattern, StageCounters& counters) {
   const std::size_t pixels = buffer.first.size() - 1;
@@ -60,7 +71,7 @@ std::vector<Aggregate> compose(const std::vector<Fragment>& fragments, const ABu
     while (active > 0 && buffer.depth_of(order[active - 1]) <= round) --active;
     if (active == 0) break;
     for (std::size_t i = 0; i < active; ++i)
-      arriving[i] = fragments[buffer.fragments[buffer.first[order[i]] + round]].merge;
+      arriving[i] = merge_fragment(fragments[buffer.fragments[buffer.first[order[i]] + round]]);
     merge(arriving.data(), active, pattern, in_order.data());
   }
   std::vector<Aggregate> aggregates(pixels);
@@ -75,7 +86,7 @@ std::vector<Aggregate> compose_over(const std::vector<Fragment>& fragments, cons
   std::vector<Aggregate> aggregates(pixels, kEmptyAggregate);
   for (std::size_t pixel = 0; pixel < pixels; ++pixel)
     for (std::uint32_t i = buffer.first[pixel]; i < buffer.first[pixel + 1]; ++i)
-      aggregates[pixel] = over_scalar(fragments[buffer.fragments[i]].merge, aggregates[pixel]);
+      aggregates[pixel] = over_scalar(merge_fragment(fragments[buffer.fragments[i]]), aggregates[pixel]);
   count_merges(buffer.fragments.size(), pixels, over_cost(), counters);
   return aggregates;
 }

@@ -9,6 +9,9 @@
 
 namespace beampipe {
 
+// A fragment as the paper's rules see it: with 32 mask positions.
+MergeFragment merge_fragment(const Fragment& fragment);
+
 // The paper's rules (simd/merge.h). One aggregate per pixel of the tile; kEmptyAggregate where nothing is.
 std::vector<Aggregate> compose(const std::vector<Fragment>& fragments, const ABuffer& buffer,
                                const SamplePattern& pattern, StageCounters& counters);

@@ -1,4 +1,5 @@
-// conservative_raster: setup triangles -> (pixel, triangle), every pixel whose closed square the closed triangle touches.
+// conservative_raster: setup triangles -> (pixel, triangle), every pixel whose closed square the closed triangle
+// touches.
 #pragma once
 
 #include <cstdint>

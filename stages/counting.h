@@ -26,16 +26,16 @@ OperationCounts* tally_of(const Counted<Value>& x, const Counted<Value>& y) {
 }
 
 template <class Value>
-Counted<Value> counted(OperationCounts* tally, std::uint64_t OperationCounts::* kind, Value value) {
+Counted<Value> counted(OperationCounts* tally, std::uint64_t OperationCounts::*kind, Value value) {
   Counted<Value> result(value);
   result.tally = tally;
   if (tally) tally->*kind += 1;
   return result;
 }
 
-#define BEAMPIPE_COUNTED_BINARY(op, kind)                                         \
-  template <class Value>                                                          \
-  Counted<Value> operator op(const Counted<Value>& x, const Counted<Value>& y) {  \
+#define BEAMPIPE_COUNTED_BINARY(op, kind)                                              \
+  template <class Value>                                                               \
+  Counted<Value> operator op(const Counted<Value>& x, const Counted<Value>& y) {       \
     return counted(tally_of(x, y), &OperationCounts::kind, Value(x.value op y.value)); \
   }
 BEAMPIPE_COUNTED_BINARY(+, add)
@@ -51,11 +51,11 @@ Counted<Value> operator~(const Counted<Value>& x) {
   return counted(x.tally, &OperationCounts::bit, Value(~x.value));
 }
 
-#define BEAMPIPE_COUNTED_COMPARISON(op)                                   \
-  template <class Value>                                                  \
-  bool operator op(const Counted<Value>& x, const Counted<Value>& y) {    \
-    if (OperationCounts* tally = tally_of(x, y)) ++tally->add;            \
-    return x.value op y.value;                                            \
+#define BEAMPIPE_COUNTED_COMPARISON(op)                                \
+  template <class Value>                                               \
+  bool operator op(const Counted<Value>& x, const Counted<Value>& y) { \
+    if (OperationCounts* tally = tally_of(x, y)) ++tally->add;         \
+    return x.value op y.value;                                         \
   }
 BEAMPIPE_COUNTED_COMPARISON(<)
 BEAMPIPE_COUNTED_COMPARISON(<=)

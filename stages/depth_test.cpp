@@ -24,7 +24,8 @@ void depth_test(const SetupTriangles& triangles, const std::vector<SampleFragmen
     const std::int32_t pixel_x = fragment.x / grid.columns, pixel_y = fragment.y / grid.rows;
     const std::int32_t pixel = (pixel_y - tile.y0) * tile.width() + pixel_x - tile.x0;
     const std::int32_t cell_in_pixel = (fragment.y % grid.rows) * grid.columns + fragment.x % grid.columns;
-    const double left = static_cast<double>(fragment.x) / grid.columns, top = static_cast<double>(fragment.y) / grid.rows;
+    const double left = static_cast<double>(fragment.x) / grid.columns,
+                 top = static_cast<double>(fragment.y) / grid.rows;
     items.push_back({static_cast<std::uint32_t>(pixel * grid.cells_per_pixel() + cell_in_pixel), fragment.mask,
                      fragment.triangle, static_cast<float>(plane.at(left, top)),
                      static_cast<float>(plane.dzdx / kSubpixelUnits), static_cast<float>(plane.dzdy / kSubpixelUnits)});

@@ -12,8 +12,8 @@ namespace beampipe {
 inline constexpr std::uint32_t kNoTriangle = ~0u;  // the background
 inline constexpr float kFarDepth = 1.0f;           // beyond every depth: the cleared surface
 
-// Samples in order of pixel (row by row), cell within the pixel, sample within the cell. A sample's colour is kept as the
-// index of its triangle, which has one colour; the modelled surface is 32-bit depth and fp16 RGB.
+// Samples in order of pixel (row by row), cell within the pixel, sample within the cell. A sample's colour is kept as
+// the index of its triangle, which has one colour; the modelled surface is 32-bit depth and fp16 RGB.
 struct SampleTile {
   std::vector<float> depth;
   std::vector<std::uint32_t> triangle;

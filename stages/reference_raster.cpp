@@ -10,10 +10,10 @@ namespace beampipe {
 namespace {
 
 // Sample positions are integers in 1/8192 px: x = 512 i + 2 reverse(row) + 1, y = 32 row + 16.
-constexpr std::int64_t kReferenceUnits = 8192;                                  // per pixel
-constexpr std::int64_t kStep = kReferenceUnits / kReferenceColumns;              // between samples of a row
-constexpr std::int64_t kRowStep = kReferenceUnits / kReferenceRows;              // between rows
-constexpr std::int64_t kScale = kReferenceUnits / kSubpixelUnits;                // per 1/256 px
+constexpr std::int64_t kReferenceUnits = 8192;                       // per pixel
+constexpr std::int64_t kStep = kReferenceUnits / kReferenceColumns;  // between samples of a row
+constexpr std::int64_t kRowStep = kReferenceUnits / kReferenceRows;  // between rows
+constexpr std::int64_t kScale = kReferenceUnits / kSubpixelUnits;    // per 1/256 px
 
 std::int64_t row_offset(std::int64_t row) {  // of the first sample of a pixel
   std::int64_t reversed = 0;
@@ -45,7 +45,8 @@ void cut(Span& span, std::int64_t a, std::int64_t offset, std::int64_t rest) {
 
 }  // namespace
 
-ReferenceTile::ReferenceTile(const Tile& tile) : row_samples(static_cast<std::size_t>(tile.width() * kReferenceColumns)) {
+ReferenceTile::ReferenceTile(const Tile& tile)
+    : row_samples(static_cast<std::size_t>(tile.width() * kReferenceColumns)) {
   const std::size_t samples = row_samples * static_cast<std::size_t>(tile.height() * kReferenceRows);
   depth.assign(samples, std::numeric_limits<double>::infinity());
   owner.assign(samples, kNoOwner);
@@ -53,7 +54,8 @@ ReferenceTile::ReferenceTile(const Tile& tile) : row_samples(static_cast<std::si
 
 void reference_raster(const SetupTriangles& triangles, const TriangleList& list, const Tile& tile,
                       StageCounters& counters, ReferenceTile& surface) {
-  const std::int64_t left = std::int64_t{tile.x0} * kReferenceColumns, right = std::int64_t{tile.x1} * kReferenceColumns;
+  const std::int64_t left = std::int64_t{tile.x0} * kReferenceColumns,
+                     right = std::int64_t{tile.x1} * kReferenceColumns;
   const std::int64_t top = std::int64_t{tile.y0} * kReferenceRows, bottom = std::int64_t{tile.y1} * kReferenceRows;
   for (const std::uint32_t index : list) {
     const SetupTriangle& t = triangles.triangles[index];
@@ -67,8 +69,7 @@ void reference_raster(const SetupTriangles& triangles, const TriangleList& list,
       for (const Edge& edge : edges) cut(span, edge.a, offset, edge.b * y + edge.c * kScale - (edge.owns ? 0 : 1));
       if (span.first >= span.end) continue;
       const double unit = 1.0 / kReferenceUnits;
-      const DepthSpan depths{t.depth.z, t.depth.dzdx,
-                             t.depth.dzdy * (static_cast<double>(y) * unit - t.depth.anchor_y),
+      const DepthSpan depths{t.depth.z, t.depth.dzdx, t.depth.dzdy * (static_cast<double>(y) * unit - t.depth.anchor_y),
                              static_cast<double>(span.first * kStep + offset) * unit - t.depth.anchor_x,
                              static_cast<double>(kStep) * unit};
       const std::size_t at =

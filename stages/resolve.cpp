@@ -1,6 +1,5 @@
 #include "stages/resolve.h"
 
-#include "stages/aggregate_format.h"
 #include "stages/counting.h"
 #include "stages/shade.h"
 
@@ -11,12 +10,19 @@ inline constexpr std::uint64_t kImageBytes = 3 * 2;  // fp16 RGB
 
 }  // namespace
 
-std::vector<glm::vec4> resolve(const std::vector<Aggregate>& aggregates, const glm::vec3& background,
-                               StageCounters& counters) {
-  std::vector<glm::vec3> colors;
+std::vector<PixelColor> pixel_colors(const std::vector<Aggregate>& aggregates) {
+  std::vector<PixelColor> colors;
   colors.reserve(aggregates.size());
   for (const Aggregate& aggregate : aggregates)
-    colors.emplace_back(aggregate.color[0], aggregate.color[1], aggregate.color[2]);
+    colors.push_back({aggregate.alpha, {aggregate.color[0], aggregate.color[1], aggregate.color[2]}});
+  return colors;
+}
+
+std::vector<glm::vec4> resolve(const std::vector<PixelColor>& aggregates, const glm::vec3& background,
+                               std::uint32_t stored_bytes, StageCounters& counters) {
+  std::vector<glm::vec3> colors;
+  colors.reserve(aggregates.size());
+  for (const PixelColor& aggregate : aggregates) colors.push_back(aggregate.color);
   colors = round_to_half(std::move(colors));
   std::vector<glm::vec4> image;
   image.reserve(aggregates.size());
@@ -24,8 +30,9 @@ std::vector<glm::vec4> resolve(const std::vector<Aggregate>& aggregates, const g
     image.emplace_back(colors[i] + background * (1.0f - aggregates[i].alpha), aggregates[i].alpha);
   counters.items_in += aggregates.size();
   counters.items_out += aggregates.size();
-  counters.ops += OperationCounts{3, 1, 0, 0, 0, 3} * aggregates.size();  // colour + background x (1 - alpha), from fp16
-  counters.bytes_read += aggregates.size() * kAggregateBytes;
+  counters.ops +=
+      OperationCounts{3, 1, 0, 0, 0, 3} * aggregates.size();  // colour + background x (1 - alpha), from fp16
+  counters.bytes_read += aggregates.size() * stored_bytes;
   counters.bytes_written += aggregates.size() * kImageBytes;
   counters.lanes_used += aggregates.size();
   counters.lanes_issued += aggregates.size();

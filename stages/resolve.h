@@ -10,9 +10,17 @@
 
 namespace beampipe {
 
-// Aggregates as stored (colour rounded to fp16), each over the background. One RGBA per pixel of the tile.
-std::vector<glm::vec4> resolve(const std::vector<Aggregate>& aggregates, const glm::vec3& background,
-                               StageCounters& counters);
+// What resolve needs of an aggregate.
+struct PixelColor {
+  float alpha;
+  glm::vec3 color;  // times alpha
+};
+std::vector<PixelColor> pixel_colors(const std::vector<Aggregate>& aggregates);
+
+// Aggregates as stored (colour rounded to fp16, `stored_bytes` each), over the background. One RGBA per pixel of the
+// tile.
+std::vector<glm::vec4> resolve(const std::vector<PixelColor>& aggregates, const glm::vec3& background,
+                               std::uint32_t stored_bytes, StageCounters& counters);
 
 // The mean of each pixel's samples (a box filter of one pixel).
 std::vector<glm::vec4> resolve(const SampleTile& surface, std::size_t pixels, const std::vector<glm::vec3>& colors,

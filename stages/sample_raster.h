@@ -1,5 +1,5 @@
-// sample_raster: setup triangles -> (cell, triangle, sample mask). Exact, with the top-left rule: a sample on an edge that
-// two triangles share belongs to one of them.
+// sample_raster: setup triangles -> (cell, triangle, sample mask). Exact, with the top-left rule: a sample on an edge
+// that two triangles share belongs to one of them.
 #pragma once
 
 #include <cstdint>

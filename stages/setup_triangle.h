@@ -1,8 +1,8 @@
 // What vertex_setup makes and every raster stage reads.
 //
 // Screen space: x to the right, y down, pixel (0,0) is the upper left one and covers [0,1] x [0,1]; positions are
-// integers in 1/256 px. Depth is -1 at the near plane and 0 at the far plane, linear in screen space: (z / w - 1) / 2. A
-// 32-bit float is finest around 0, so distant depths are told apart as well as with a reversed depth buffer.
+// integers in 1/256 px. Depth is -1 at the near plane and 0 at the far plane, linear in screen space: (z / w - 1) / 2.
+// A 32-bit float is finest around 0, so distant depths are told apart as well as with a reversed depth buffer.
 #pragma once
 
 #include <cstdint>
@@ -11,8 +11,8 @@
 
 namespace beampipe {
 
-// Depth at (x, y): z + dzdx (x - anchor_x) + dzdy (y - anchor_y), in pixels; the same bits for the same three vertices in
-// any order.
+// Depth at (x, y): z + dzdx (x - anchor_x) + dzdy (y - anchor_y), in pixels; the same bits for the same three vertices
+// in any order.
 struct ScreenDepth {
   double z = 0, dzdx = 0, dzdy = 0;   // slopes per pixel
   double anchor_x = 0, anchor_y = 0;  // pixels
@@ -40,9 +40,9 @@ struct SetupTriangles {
   std::vector<FlatAttributes> attributes;  // one per triangle
 };
 
-// Edge from vertex k to vertex k + 1: E(x, y) = a x + b y + c with x, y in 1/256 px, >= 0 inside. `owns` is the top-left
-// rule: a sample exactly on the edge belongs to the triangle if the edge is a left one (a > 0) or a horizontal top one
-// (a = 0, b > 0).
+// Edge from vertex k to vertex k + 1: E(x, y) = a x + b y + c with x, y in 1/256 px, >= 0 inside. `owns` is the
+// top-left rule: a sample exactly on the edge belongs to the triangle if the edge is a left one (a > 0) or a horizontal
+// top one (a = 0, b > 0).
 struct Edge {
   std::int32_t a, b;
   std::int64_t c;

@@ -27,8 +27,7 @@ template <class Items>
 void count_invocations(const Items& fragments, std::uint64_t bytes_read, std::uint64_t bytes_written,
                        StageCounters& counters) {
   std::uint64_t quads = 0;
-  for (std::size_t i = 0; i < fragments.size(); ++i)
-    quads += i == 0 || fragments[i].quad != fragments[i - 1].quad;
+  for (std::size_t i = 0; i < fragments.size(); ++i) quads += i == 0 || fragments[i].quad != fragments[i - 1].quad;
   const std::uint64_t invocations = 4 * quads;
   counters.items_in += fragments.size();
   counters.items_out += fragments.size();
@@ -60,10 +59,7 @@ std::vector<glm::vec3> round_to_half(std::vector<glm::vec3> colors) {
 }
 
 void shade(const std::vector<glm::vec3>& colors, std::vector<Fragment>& fragments, StageCounters& counters) {
-  for (Fragment& fragment : fragments) {
-    Aggregate& surface = fragment.merge.surface;
-    for (int c = 0; c < 3; ++c) surface.color[c] = surface.alpha * colors[fragment.triangle][c];
-  }
+  for (Fragment& fragment : fragments) fragment.color = fragment.alpha * colors[fragment.triangle];
   count_invocations(fragments, sizeof(FlatAttributes), 6, counters);
 }
 

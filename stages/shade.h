@@ -15,7 +15,8 @@
 
 namespace beampipe {
 
-// What the shader returns per triangle: kd, times max(0, -normal . light) when lit. `light` is the way the light travels.
+// What the shader returns per triangle: kd, times max(0, -normal . light) when lit. `light` is the way the light
+// travels.
 std::vector<glm::vec3> shade_triangles(const SetupTriangles& triangles, const std::optional<glm::vec3>& light);
 
 // The colours as a framebuffer of fp16 RGB takes them.
@@ -24,8 +25,8 @@ std::vector<glm::vec3> round_to_half(std::vector<glm::vec3> colors);
 // At the centroid: sets the fragments' colours (times alpha).
 void shade(const std::vector<glm::vec3>& colors, std::vector<Fragment>& fragments, StageCounters& counters);
 
-// At the pixel's centre or centroid, which is the same for flat colours: counts, for fragments that keep their triangle's
-// index in place of its colour.
+// At the pixel's centre or centroid, which is the same for flat colours: counts, for fragments that keep their
+// triangle's index in place of its colour.
 void shade(const std::vector<SampleFragment>& fragments, StageCounters& counters);
 
 }  // namespace beampipe

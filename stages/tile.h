@@ -1,4 +1,5 @@
-// A tile: the part of the frame that is worked on at once, in pixels. Its corners are even, so that no 2x2 quad is split.
+// A tile: the part of the frame that is worked on at once, in pixels. Its corners are even, so that no 2x2 quad is
+// split.
 #pragma once
 
 #include <cstdint>

@@ -1,7 +1,8 @@
 // Which cells of a grid a triangle touches: the traversal that both raster stages share.
 //
-// A cell is a pixel, or a part of one (super-resolution). Triangles and cells are closed sets, tested exactly in integers:
-// the bounding box and, per edge, the cell's corner that lies deepest inside. No cell with common area is missed.
+// A cell is a pixel, or a part of one (super-resolution). Triangles and cells are closed sets, tested exactly in
+// integers: the bounding box and, per edge, the cell's corner that lies deepest inside. No cell with common area is
+// missed.
 #pragma once
 
 #include <algorithm>
@@ -18,7 +19,7 @@ namespace beampipe {
 struct CellGrid {
   std::int32_t columns = 1, rows = 1;
 
-  std::int32_t cell_width() const { return kSubpixelUnits / columns; }    // 1/256 px
+  std::int32_t cell_width() const { return kSubpixelUnits / columns; }  // 1/256 px
   std::int32_t cell_height() const { return kSubpixelUnits / rows; }
   std::int32_t cells_per_pixel() const { return columns * rows; }
   bool operator==(const CellGrid&) const = default;
@@ -58,8 +59,8 @@ struct TraversalCounts {
 
 enum class FullMeans { area, samples };  // covered to its closed border, or with every sample owned
 
-// Calls visit(x, y, quad, full) for every touched cell, 2x2 quad by quad; `quad` counts up over all calls that share the
-// counter. `full`: the triangle covers the whole cell.
+// Calls visit(x, y, quad, full) for every touched cell, 2x2 quad by quad; `quad` counts up over all calls that share
+// the counter. `full`: the triangle covers the whole cell.
 template <class Visit>
 void traverse(const SetupTriangle& triangle, const EdgeSet& set, const Tile& tile, const CellGrid& grid,
               FullMeans meaning, std::uint32_t& quad, TraversalCounts& counts, Visit&& visit) {

@@ -80,8 +80,8 @@ Polygon clip_to_plane(const Polygon& polygon, const std::array<double, 4>& plane
     const double in_distance = leaving ? from_distance : to_distance;
     const double out_distance = leaving ? to_distance : from_distance;
     const double t = in_distance / (in_distance - out_distance);
-    clipped.push_back({in.x + t * (out.x - in.x), in.y + t * (out.y - in.y), in.z + t * (out.z - in.z),
-                       in.w + t * (out.w - in.w)});
+    clipped.push_back(
+        {in.x + t * (out.x - in.x), in.y + t * (out.y - in.y), in.z + t * (out.z - in.z), in.w + t * (out.w - in.w)});
   }
   return clipped;
 }
@@ -100,8 +100,9 @@ std::int32_t snap(double pixels) { return static_cast<std::int32_t>(std::floor(p
 class Setup {
  public:
   Setup(const Frame& frame, SetupTriangles& out) : frame_(frame), planes_(clip_planes(frame)), out_(out) {
-    // Front faces are counter-clockwise on screen; a mirroring view turns that around in the world.
-    mirrored_ = glm::determinant(glm::dmat3(frame.view)) < 0;
+    // Front faces are counter-clockwise on screen; a mirroring view or projection turns that around in the world. Clip
+    // space is left-handed, so that what does not mirror has a negative determinant.
+    mirrored_ = glm::determinant(frame.projection * frame.view) > 0;
   }
 
   void add_draw(const Mesh& mesh, const Draw& draw) {
@@ -112,8 +113,7 @@ class Setup {
         elements[4 * column + row] = matrix[static_cast<int>(column)][static_cast<int>(row)];
     vertices_.clear();
     vertices_.reserve(mesh.positions.size());
-    for (const glm::vec3& p : mesh.positions)
-      vertices_.push_back(transform_vertex<double>(elements, p.x, p.y, p.z));
+    for (const glm::vec3& p : mesh.positions) vertices_.push_back(transform_vertex<double>(elements, p.x, p.y, p.z));
     for (std::size_t t = 0; t < mesh.triangles.size(); ++t) add_triangle(mesh, draw, t);
     transformed_ += mesh.positions.size();
   }
@@ -188,9 +188,7 @@ class Setup {
   FlatAttributes attributes(const Mesh& mesh, const Draw& draw, std::size_t t, bool front) const {
     FlatAttributes flat{draw.kd.value_or(mesh.colors[t]), glm::vec3(0), draw.shading == Shading::lambert};
     if (!flat.lit) return flat;
-    const auto world = [&](std::uint32_t i) {
-      return glm::dvec3(draw.transform * glm::dvec4(mesh.positions[i], 1.0));
-    };
+    const auto world = [&](std::uint32_t i) { return glm::dvec3(draw.transform * glm::dvec4(mesh.positions[i], 1.0)); };
     const glm::dvec3 p = world(mesh.triangles[t].x);
     const glm::dvec3 normal = glm::cross(world(mesh.triangles[t].y) - p, world(mesh.triangles[t].z) - p);
     const double length = glm::length(normal);

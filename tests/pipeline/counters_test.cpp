@@ -20,8 +20,8 @@ Trace half_square() {
 
 TEST(Counters, BeamCountsEveryTouchedPixel) {
   const FrameResult result = parse_technique("beam").render(half_square(), 0, {1});
-  // Rows 1 to 4 touch 1 + 1, 1 + 2, 1 + 3 and 4 pixels: the diagonal cuts through the pixels' corners, and a closed square
-  // is touched at its corner. Those with no area are dropped behind conservative_raster.
+  // Rows 1 to 4 touch 1 + 1, 1 + 2, 1 + 3 and 4 pixels: the diagonal cuts through the pixels' corners, and a closed
+  // square is touched at its corner. Those with no area are dropped behind conservative_raster.
   const std::uint64_t touched = 1 + 2 + 3 + 4 + 3, with_area = 1 + 2 + 3 + 4;
   EXPECT_EQ(stage(result, "vertex_setup").items_in, 1u);
   EXPECT_EQ(stage(result, "vertex_setup").items_out, 1u);
@@ -42,7 +42,8 @@ TEST(Counters, BeamCountsEveryTouchedPixel) {
 
 TEST(Counters, MsaaCountsSamples) {
   const FrameResult one = parse_technique("msaa:1").render(half_square(), 0, {1});
-  // Pixel centres (x + 1/2, y + 1/2) with x <= y and 1 <= x, y <= 4; those on the diagonal (a top right edge) are not owned.
+  // Pixel centres (x + 1/2, y + 1/2) with x <= y and 1 <= x, y <= 4; those on the diagonal (a top right edge) are not
+  // owned.
   EXPECT_EQ(stage(one, "depth_test").items_in, 6u);
   EXPECT_EQ(stage(one, "depth_test").items_out, 6u);
   EXPECT_EQ(stage(one, "depth_test").bytes_written, 6u * 10);

@@ -47,7 +47,7 @@ TEST(Pictures, AnEmptyFrameIsTheBackground) {
 
 TEST(Pictures, RowZeroIsOnTop) {
   const Trace trace = pixel_trace(4, 4, quad(0, 0, 4, 1, 0.5, kRed), kBlue);
-  for (const char* spec : {"beam:mask=exact", "msaa:4", "reference"}) {
+  for (const char* spec : {"beam:rules=paper,mask=exact", "msaa:4", "reference"}) {
     const Image image = render(spec, trace);
     EXPECT_EQ(pixel(image, 2, 0), kRed) << spec;
     EXPECT_EQ(pixel(image, 2, 1), kBlue) << spec;
@@ -59,7 +59,7 @@ TEST(Pictures, AnEdgeThroughAPixelCoversItsExactArea) {
   const Trace trace = pixel_trace(4, 4, quad(0, 0, 1.3125, 4, 0.5, kRed), kBlue);
   const glm::vec3 expected = 0.3125f * kRed + 0.6875f * kBlue;
   // beam is analytic (rounded to fp16); the reference is exact for vertical edges.
-  for (const char* spec : {"beam", "beam:mask=exact", "reference"}) {
+  for (const char* spec : {"beam", "beam:rules=paper,mask=exact", "reference"}) {
     const glm::vec3 found = pixel(render(spec, trace), 1, 1);
     for (int c = 0; c < 3; ++c) EXPECT_NEAR(found[c], expected[c], 2e-4) << spec;
   }
@@ -69,12 +69,13 @@ TEST(Pictures, AlphaAloneLeaksBetweenTheTrianglesOfAQuad) {
   // Two triangles of area 1/2 tile the pixel: OVER takes them for independent, 1 - (1/2)^2; masks know better.
   const Trace trace = pixel_trace(2, 2, quad(0, 0, 1, 1, 0.5, kRed), kBlue);
   EXPECT_NEAR(pixel(render("alpha", trace), 0, 0).r, 0.75f, 1e-3);
-  EXPECT_NEAR(pixel(render("beam:mask=exact", trace), 0, 0).r, 1.0f, 1e-3);
+  EXPECT_NEAR(pixel(render("beam:rules=paper,mask=exact", trace), 0, 0).r, 1.0f, 1e-3);
 }
 
 TEST(Pictures, FrontHidesBackInAnyOrder) {
   for (const bool back_first : {false, true}) {
-    std::vector<PixelSpaceTriangle> triangles = back_first ? quad(0, 0, 4, 4, 0.7, kGreen) : quad(0, 0, 4, 4, 0.3, kRed);
+    std::vector<PixelSpaceTriangle> triangles =
+        back_first ? quad(0, 0, 4, 4, 0.7, kGreen) : quad(0, 0, 4, 4, 0.3, kRed);
     append(triangles, back_first ? quad(0, 0, 4, 4, 0.3, kRed) : quad(0, 0, 4, 4, 0.7, kGreen));
     const Trace trace = pixel_trace(4, 4, triangles, kBlue);
     for (const char* spec : {"beam", "msaa:8", "reference"})
@@ -86,15 +87,16 @@ TEST(Pictures, OfTwoEqualTrianglesTheEarlierIsSeen) {
   // Steep, so that equality is not a given; the second starts elsewhere and turns the other way.
   const glm::dvec3 a(-1, -1, 0.1), b(13, -2, 0.6), c(-2, 12, 0.9);
   const Trace trace = pixel_trace(4, 4, {{{a, b, c}, kRed}, {{c, b, a}, kGreen}});
-  for (const char* spec : {"beam", "beam:mask=exact", "msaa:1", "msaa:8", "msaa:256", "reference"}) {
+  for (const char* spec : {"beam", "beam:rules=paper,mask=exact", "msaa:1", "msaa:8", "msaa:256", "reference"}) {
     const Image image = render(spec, trace);
     for (std::uint32_t y = 0; y < 4; ++y)
       for (std::uint32_t x = 0; x < 4; ++x) EXPECT_EQ(pixel(image, x, y), kRed) << spec << ' ' << x << ' ' << y;
   }
 }
 
-// Every sample of every pixel against every triangle, by barycentric coordinates in double: no raster, no spans, no tiles.
-// The reference's positions (stages/reference_raster.h): 256 rows of 16, each shifted by its bit-reversed number.
+// Every sample of every pixel against every triangle, by barycentric coordinates in double: no raster, no spans, no
+// tiles. The reference's positions (stages/reference_raster.h): 256 rows of 16, each shifted by its bit-reversed
+// number.
 Image brute_force(const Trace& trace) {
   const Frame& frame = trace.frames[0];
   const Mesh& mesh = trace.meshes[0];

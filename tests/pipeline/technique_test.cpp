@@ -22,8 +22,9 @@ TEST(Technique, EveryMsaaRateOfTheRangeIsKnown) {
 }
 
 TEST(Technique, WrongSpecsSayWhatWasExpected) {
-  for (const char* spec : {"", "bean", "msaa", "msaa:", "msaa:3", "msaa:0", "msaa:-8", "msaa:8x", "msaa:2048", "msaa:8,8",
-                           "beam:mask=fast", "beam:", "beam:mask=table,mask=table", "alpha:1", "reference:64", "beam "}) {
+  for (const char* spec :
+       {"", "bean", "msaa", "msaa:", "msaa:3", "msaa:0", "msaa:-8", "msaa:8x", "msaa:2048", "msaa:8,8",
+        "beam:mask=fast", "beam:", "beam:mask=table,mask=table", "alpha:1", "reference:64", "beam "}) {
     try {
       parse_technique(spec);
       ADD_FAILURE() << "'" << spec << "' was taken";

@@ -1,0 +1,41 @@
+// compose_window: fragments sorted by their nearest depth -> one area-conserving aggregate per pixel.
+//
+// The list is cut into windows: runs of fragments whose depth ranges overlap. Windows lie strictly behind each other.
+// Within a window depth is compared position by position (simd/depth_test.h), so interpenetrating fragments need no
+// order; then each visible fragment adds its area (simd/conserve.h) to the aggregate, which is all that is kept from
+// one window to the next: a mask, an area, a colour. The scratch of a window, a depth and an owner per position, exists
+// once per pixel that is being composed, not per pixel of the frame. What lies behind a full mask is not looked at.
+#pragma once
+
+#include <array>
+#include <cstdint>
+#include <vector>
+
+#include "stages/a_buffer.h"
+#include "stages/resolve.h"
+#include "stages/wide_mask.h"
+
+namespace beampipe {
+
+// Mask positions, and the three nearest of them to every place in the pixel.
+struct PositionSet {
+  static constexpr int kPlaces = 64;  // places per axis that are told apart
+  std::vector<SamplePattern> patterns;
+  std::vector<std::array<std::uint8_t, 3>> nearest;  // kPlaces x kPlaces, row by row
+
+  explicit PositionSet(std::vector<SamplePattern> patterns);
+  int count() const { return static_cast<int>(patterns.size()) * kMaxMaskSamples; }
+  const std::array<std::uint8_t, 3>& nearest_to(float u, float v) const;  // u, v in 0..1
+};
+
+// Bytes of the aggregate as stored: mask, area as float32, colour as 3 x fp16. 42 with 256 positions.
+constexpr std::uint32_t conserving_aggregate_bytes(int positions) {
+  return static_cast<std::uint32_t>(positions) / 8 + 4 + 6;
+}
+
+// One pixel colour and coverage per pixel of the tile. `window_sizes`: per pixel, the fragments of its largest window.
+std::vector<PixelColor> compose_window(const std::vector<Fragment>& fragments, const ABuffer& buffer,
+                                       const PositionSet& positions, StageCounters& counters,
+                                       std::vector<float>& window_sizes);
+
+}  // namespace beampipe

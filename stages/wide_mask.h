@@ -1,0 +1,40 @@
+// Localization masks of up to 256 bits, in words of 32: bit s of word w stands at position s of pattern w.
+#pragma once
+
+#include <array>
+#include <bit>
+#include <cstddef>
+#include <cstdint>
+
+namespace beampipe {
+
+inline constexpr std::size_t kMaxMaskWords = 8;
+
+struct WideMask {
+  std::array<std::uint32_t, kMaxMaskWords> words{};
+
+  int count() const {
+    int bits = 0;
+    for (const std::uint32_t word : words) bits += std::popcount(word);
+    return bits;
+  }
+  bool none() const { return *this == WideMask{}; }
+  bool test(std::size_t bit) const { return words[bit / 32] >> (bit % 32) & 1; }
+  void set(std::size_t bit) { words[bit / 32] |= 1u << (bit % 32); }
+  bool operator==(const WideMask&) const = default;
+};
+
+template <class Combine>
+WideMask combine(const WideMask& a, const WideMask& b, Combine&& word) {
+  WideMask result;
+  for (std::size_t i = 0; i < kMaxMaskWords; ++i) result.words[i] = word(a.words[i], b.words[i]);
+  return result;
+}
+inline WideMask operator|(const WideMask& a, const WideMask& b) {
+  return combine(a, b, [](std::uint32_t x, std::uint32_t y) { return x | y; });
+}
+inline WideMask without(const WideMask& a, const WideMask& b) {  // a & ~b
+  return combine(a, b, [](std::uint32_t x, std::uint32_t y) { return x & ~y; });
+}
+
+}  // namespace beampipe

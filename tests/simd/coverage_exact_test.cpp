@@ -1,0 +1,87 @@
+// The scalar twin of coverage against polygon clipping in double precision.
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <cmath>
+
+#include "tests/simd/coverage_cases.h"
+
+namespace beampipe {
+namespace {
+
+constexpr double kAlphaBound = 5e-7;  // simd/coverage.h
+
+TEST(CoverageExact, AlphaWithinTheStatedBound) {
+  Random random(3);
+  SCOPED_TRACE(random.name());
+  for (int i = 0; i < 400'000; ++i) {
+    const Triangle t = random_triangle(random);
+    const double error = std::abs(coverage_scalar(coverage_input(t)).alpha - exact_coverage(t).area);
+    ASSERT_LT(error, kAlphaBound) << "triangle " << i;
+  }
+}
+
+// The moments are as good as the area; the centroid is their quotient.
+TEST(CoverageExact, CentroidWithinTheAlphaBoundOverAlpha) {
+  Random random(4);
+  SCOPED_TRACE(random.name());
+  for (int i = 0; i < 200'000; ++i) {
+    const Triangle t = random_triangle(random);
+    const ExactCoverage exact = exact_coverage(t);
+    if (exact.area < 1e-5) continue;
+    const Coverage<float> found = coverage_scalar(coverage_input(t));
+    ASSERT_NEAR(found.centroid_u, exact.centroid_u, kAlphaBound / exact.area) << "triangle " << i;
+    ASSERT_NEAR(found.centroid_v, exact.centroid_v, kAlphaBound / exact.area) << "triangle " << i;
+  }
+}
+
+// Rounding of the plane is felt in proportion to its slopes: they are floats, and so are the crossings they multiply.
+TEST(CoverageExact, DepthRangeWithinHalfAMillionthOfTheSlopes) {
+  Random random(5);
+  SCOPED_TRACE(random.name());
+  for (int i = 0; i < 200'000; ++i) {
+    const Triangle t = random_triangle(random);
+    const ExactCoverage exact = exact_coverage(t);
+    if (exact.area < kAlphaBound) continue;
+    const Coverage<float> found = coverage_scalar(coverage_input(t));
+    const Slopes slopes = depth_slopes(t);
+    const double bound = 5e-7 * (1 + std::abs(slopes.dzdu) + std::abs(slopes.dzdv));
+    ASSERT_NEAR(found.z_min, exact.z_min, bound) << "triangle " << i;
+    ASSERT_NEAR(found.z_max, exact.z_max, bound) << "triangle " << i;
+  }
+}
+
+// Whatever rounding does, slivers included.
+TEST(CoverageExact, StaysWithinTheTriangleAndThePixel) {
+  Random random(6);
+  SCOPED_TRACE(random.name());
+  for (int i = 0; i < 200'000; ++i) {
+    const Triangle t = random_triangle(random);
+    const Coverage<float> found = coverage_scalar(coverage_input(t));
+    ASSERT_TRUE(found.alpha >= 0 && found.alpha <= 1);
+    if (found.alpha == 0) continue;
+    ASSERT_TRUE(found.centroid_u >= 0 && found.centroid_u <= 1 && found.centroid_v >= 0 && found.centroid_v <= 1);
+    ASSERT_LE(std::min({t.z[0], t.z[1], t.z[2]}), found.z_min);
+    ASSERT_LE(found.z_min, found.z_max);
+    ASSERT_LE(found.z_max, std::max({t.z[0], t.z[1], t.z[2]}));
+  }
+}
+
+TEST(CoverageExact, HalfPixel) {
+  // The lower left half of the pixel: x <= y.
+  const Coverage<float> found = coverage_scalar(coverage_input(oriented({{{0, 0}, {256, 256}, {0, 256}}})));
+  EXPECT_EQ(found.alpha, 0.5f);
+  EXPECT_NEAR(found.centroid_u, 1.0 / 3, 1e-7);
+  EXPECT_NEAR(found.centroid_v, 2.0 / 3, 1e-7);
+}
+
+TEST(CoverageExact, FullPixelOfAGiantTriangle) {
+  const Triangle giant{{{-kLimit, -kLimit}, {kLimit, -kLimit}, {-kLimit, kLimit}}, {-1.0f, -0.5f, -0.5f}};
+  const Coverage<float> found = coverage_scalar(coverage_input(oriented(giant), -1, -1));
+  EXPECT_EQ(found.alpha, 1.0f);
+  EXPECT_EQ(found.centroid_u, 0.5f);
+  EXPECT_EQ(found.centroid_v, 0.5f);
+}
+
+}  // namespace
+}  // namespace beampipe

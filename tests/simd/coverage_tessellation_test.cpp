@@ -1,0 +1,133 @@
+// What the two sides of shared edges add up to.
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <vector>
+
+#include "tests/simd/coverage_cases.h"
+
+namespace beampipe {
+namespace {
+
+// Shared edges cancel exactly; what is left is the rounding of each triangle's own sum, 2^-24 near 1.
+constexpr double kPerTriangle = 0x1p-24;
+
+struct Sum {
+  double alpha = 0;
+  int triangles = 0;  // that took part
+};
+
+Sum sum_of_alpha(const std::vector<Triangle>& triangles) {
+  Sum sum;
+  for (const Triangle& t : triangles) {
+    if (t.area2() == 0) continue;
+    const float alpha = coverage_scalar(coverage_input(oriented(t))).alpha;
+    sum.alpha += alpha;
+    sum.triangles += alpha > 0;
+  }
+  return sum;
+}
+
+void expect_closed(const std::vector<Triangle>& triangles) {
+  const Sum sum = sum_of_alpha(triangles);
+  ASSERT_NEAR(sum.alpha, 1.0, kPerTriangle * sum.triangles) << sum.triangles << " triangles";
+}
+
+TEST(CoverageTessellation, ReversedEdgeIntegratesToTheOppositeNumber) {
+  Random random(7);
+  SCOPED_TRACE(random.name());
+  for (int i = 0; i < 100'000; ++i) {
+    const CoverageInput<float> in = coverage_input(random_triangle(random));
+    const float *c = in.corner[0], a = in.a[0], b = in.b[0];
+    const EdgeIntegral<float> forth = edge_integral(in.v[0], in.v[1], a, b, c[0], c[1]);
+    const EdgeIntegral<float> back = edge_integral(in.v[1], in.v[0], -a, -b, -c[0], -c[1]);
+    ASSERT_EQ(forth.area, -back.area);
+    ASSERT_EQ(forth.moment_u, -back.moment_u);
+    ASSERT_EQ(forth.moment_v, -back.moment_v);
+  }
+}
+
+TEST(CoverageTessellation, FansCloseThePixel) {
+  Random random(8);
+  SCOPED_TRACE(random.name());
+  for (int round = 0; round < 400; ++round) {
+    const std::int64_t reach = round % 4 == 0 ? kLimit : 600, spokes = random.integer(3, 300);
+    const Corner hub{random.integer(-100, 356), random.integer(-100, 356)};
+    std::vector<Corner> rim = {{-reach, -reach}};  // around the border of a square, its corners included
+    const auto along = [&](std::int64_t n) { return -reach + 2 * reach * (n + 1) / (spokes + 1); };
+    for (std::int64_t n = 0; n < spokes; ++n) rim.push_back({along(n), -reach});
+    rim.push_back({reach, -reach});
+    for (std::int64_t n = 0; n < spokes; ++n) rim.push_back({reach, along(n)});
+    rim.push_back({reach, reach});
+    rim.push_back({-reach, reach});
+    std::vector<Triangle> fan;
+    for (std::size_t i = 0; i < rim.size(); ++i) fan.push_back({{hub, rim[i], rim[(i + 1) % rim.size()]}});
+    expect_closed(fan);
+  }
+}
+
+TEST(CoverageTessellation, StripsCloseThePixel) {
+  Random random(9);
+  SCOPED_TRACE(random.name());
+  for (int round = 0; round < 400; ++round) {
+    std::vector<Corner> points = {{-900, -900}, {-900, 1200}};  // alternately above and below the pixel, left to right
+    for (int n = 0; n < 100; ++n) {
+      const bool above = n % 2 == 0;
+      const Corner& last = points[points.size() - 2];
+      points.push_back({last.x + random.integer(0, 60), above ? -900 : 1200});
+    }
+    points.push_back({kLimit, -900});
+    points.push_back({kLimit, 1200});
+    std::vector<Triangle> strip;
+    for (std::size_t i = 2; i < points.size(); ++i) strip.push_back({{points[i - 2], points[i - 1], points[i]}});
+    expect_closed(strip);
+  }
+}
+
+TEST(CoverageTessellation, GridsCloseThePixel) {
+  Random random(10);
+  SCOPED_TRACE(random.name());
+  for (int round = 0; round < 200; ++round) {
+    const std::int64_t cell = random.integer(8, 200), low = -cell * 3;
+    const auto cells = static_cast<std::size_t>((256 - 2 * low) / cell + 1);
+    std::vector<Corner> at((cells + 1) * (cells + 1));
+    for (std::size_t i = 0; i < at.size(); ++i) {
+      const auto jitter = [&] { return random.integer(-cell / 3, cell / 3); };  // keeps every cell convex enough
+      at[i] = {low + cell * static_cast<std::int64_t>(i % (cells + 1)) + jitter(),
+               low + cell * static_cast<std::int64_t>(i / (cells + 1)) + jitter()};
+    }
+    std::vector<Triangle> grid;
+    for (std::size_t row = 0; row < cells; ++row)
+      for (std::size_t column = 0; column < cells; ++column) {
+        const std::size_t i = row * (cells + 1) + column, below = i + cells + 1;
+        const Triangle upper{{at[i], at[i + 1], at[below]}}, lower{{at[i + 1], at[below + 1], at[below]}};
+        if (upper.area2() <= 0 || lower.area2() <= 0) {  // the other diagonal
+          grid.push_back({{at[i], at[i + 1], at[below + 1]}});
+          grid.push_back({{at[i], at[below + 1], at[below]}});
+        } else {
+          grid.push_back(upper);
+          grid.push_back(lower);
+        }
+      }
+    expect_closed(grid);
+  }
+}
+
+// A triangle's coverage of all pixels is its area; each pixel sees it translated.
+TEST(CoverageTessellation, PixelsShareOutTheTriangle) {
+  Random random(11);
+  SCOPED_TRACE(random.name());
+  for (int round = 0; round < 500; ++round) {
+    Triangle t;
+    for (Corner& corner : t.p) corner = {random.integer(0, 12 * 256), random.integer(0, 12 * 256)};
+    if (t.area2() == 0) continue;
+    t = oriented(t);
+    double sum = 0;
+    for (std::int64_t y = 0; y < 12; ++y)
+      for (std::int64_t x = 0; x < 12; ++x) sum += coverage_scalar(coverage_input(t, x, y)).alpha;
+    ASSERT_NEAR(sum, static_cast<double>(t.area2()) / (2 * 65536), 144 * kPerTriangle);
+  }
+}
+
+}  // namespace
+}  // namespace beampipe

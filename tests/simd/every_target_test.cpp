@@ -1,0 +1,39 @@
+#include "tests/simd/every_target.h"
+
+#include <set>
+
+#undef HWY_TARGET_INCLUDE
+#define HWY_TARGET_INCLUDE "tests/simd/every_target_test.cpp"
+#include "hwy/foreach_target.h"
+// foreach_target comes first
+#include "hwy/highway.h"
+
+HWY_BEFORE_NAMESPACE();
+namespace beampipe {
+namespace HWY_NAMESPACE {
+
+std::int64_t own_target() { return HWY_TARGET; }
+
+}  // namespace HWY_NAMESPACE
+}  // namespace beampipe
+HWY_AFTER_NAMESPACE();
+
+#if HWY_ONCE
+namespace beampipe {
+namespace {
+
+HWY_EXPORT(own_target);
+
+// Were the helper to leave the dispatch alone, every comparison of kernels with their twins would test one target only.
+TEST(EveryTarget, DispatchesToEachSupportedTargetInTurnAndThenToTheBest) {
+  const std::int64_t best = HWY_DYNAMIC_DISPATCH(own_target)();
+  std::set<std::int64_t> seen;
+  on_every_target([&] { seen.insert(HWY_DYNAMIC_DISPATCH(own_target)()); });
+  const auto targets = hwy::SupportedAndGeneratedTargets();
+  EXPECT_EQ(seen, std::set<std::int64_t>(targets.begin(), targets.end()));
+  EXPECT_EQ(HWY_DYNAMIC_DISPATCH(own_target)(), best);
+}
+
+}  // namespace
+}  // namespace beampipe
+#endif

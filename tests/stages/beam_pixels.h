@@ -1,0 +1,46 @@
+// The beam pipeline's stages one after the other, as far as a test needs them.
+#pragma once
+
+#include <vector>
+
+#include "stages/a_buffer.h"
+#include "stages/aggregate_format.h"
+#include "stages/beam_fragment.h"
+#include "stages/compose.h"
+#include "stages/conservative_raster.h"
+#include "stages/shade.h"
+#include "tests/stages/screen_triangles.h"
+
+namespace beampipe {
+
+struct Fragments {
+  std::vector<Fragment> list;
+  StageCounters counters;
+};
+
+inline Fragments beam_fragments(const SetupTriangles& triangles, const Tile& tile, MaskSource mask) {
+  static const SamplePattern pattern = hammersley_pattern();
+  static const MaskTable table(pattern);
+  std::vector<PixelTriangle> pairs;
+  StageCounters raster;
+  conservative_raster(triangles, all_of(triangles), tile, raster, pairs);
+  Fragments fragments;
+  beam_fragment(triangles, pairs, tile, {mask, {pattern}, &table, true}, fragments.counters, fragments.list);
+  return fragments;
+}
+
+inline ABuffer sorted(const Fragments& fragments, std::size_t pixels) {
+  StageCounters counters;
+  return a_buffer(fragments.list, pixels, SortKey::centroid, kAggregateBytes, counters);
+}
+
+// The composed pixels of a tile; `colors` has one per triangle.
+inline std::vector<Aggregate> beam_pixels(const SetupTriangles& triangles, const std::vector<glm::vec3>& colors,
+                                          const Tile& tile, MaskSource mask) {
+  Fragments fragments = beam_fragments(triangles, tile, mask);
+  StageCounters counters;
+  shade(colors, fragments.list, counters);
+  return compose(fragments.list, sorted(fragments, tile.pixels()), hammersley_pattern(), counters);
+}
+
+}  // namespace beampipe
