@@ -1,0 +1,135 @@
+#include "tools/output.h"
+
+#include <unistd.h>
+
+#include <chrono>
+#include <csignal>
+#include <thread>
+
+#include "tests/tools/fixtures.h"
+
+namespace beampipe {
+namespace {
+
+using Names = std::vector<std::string>;
+
+TEST(OutputFolder, IsMadeWithTheFirstFile) {
+  TemporaryFolder folder;
+  InterruptGate gate;
+  OutputFolder output(folder / "a/b", gate);
+  EXPECT_EQ(folder.list(), Names{});
+  output.write("c/d.txt", "hello");
+  output.keep();
+  EXPECT_EQ(folder.list(), (Names{"a/", "a/b/", "a/b/c/", "a/b/c/d.txt"}));
+  EXPECT_EQ(read_text(folder / "a/b/c/d.txt"), "hello");
+}
+
+TEST(OutputFolder, ReplacesAFileAsAWhole) {
+  TemporaryFolder folder;
+  InterruptGate gate;
+  OutputFolder output(folder / "a", gate);
+  output.write("f", std::string(10000, 'x'));
+  output.write("f", "short");
+  EXPECT_EQ(read_text(folder / "a/f"), "short");
+  EXPECT_EQ(folder.list(), (Names{"a/", "a/f"}));
+}
+
+TEST(OutputFolder, WhatWasNotKeptGoesAwayButEarlierFilesStay) {
+  TemporaryFolder folder;
+  InterruptGate gate;
+  write_text(folder / "earlier", "1");
+  {
+    OutputFolder output(folder.string(), gate);
+    output.write("kept/a", "2");
+    output.keep();
+    output.write("kept/b", "3");
+    output.write("new/c", "4");
+    output.write("earlier", "5");
+  }
+  EXPECT_EQ(folder.list(), (Names{"earlier", "kept/", "kept/a"}));
+  EXPECT_EQ(read_text(folder / "earlier"), "5");
+}
+
+TEST(OutputFolder, AFailureLeavesNothingNew) {
+  TemporaryFolder folder;
+  InterruptGate gate;
+  std::filesystem::create_directory(folder / "taken");
+  {
+    OutputFolder output(folder.string(), gate);
+    EXPECT_THROW(output.write("taken", "bytes"), std::runtime_error);
+  }
+  EXPECT_EQ(folder.list(), Names{"taken/"});
+}
+
+TEST(OutputFolder, RemovesAFileThatMayNotBeThere) {
+  TemporaryFolder folder;
+  InterruptGate gate;
+  write_text(folder / "f", "1");
+  OutputFolder output(folder.string(), gate);
+  output.remove("f");
+  output.remove("g");
+  EXPECT_EQ(folder.list(), Names{});
+}
+
+TEST(RequireWritableFolder, LeavesNothingBehind) {
+  TemporaryFolder folder;
+  require_writable_folder(folder.string());
+  require_writable_folder(folder / "a/b/c");
+  require_writable_folder(folder / "a/");
+  EXPECT_EQ(folder.list(), Names{});
+}
+
+TEST(RequireWritableFolder, RefusesWhatIsInTheWay) {
+  TemporaryFolder folder;
+  write_text(folder / "file", "");
+  EXPECT_THROW(require_writable_folder(folder / "file"), std::runtime_error);
+  EXPECT_THROW(require_writable_folder(folder / "file/below"), std::runtime_error);
+  EXPECT_THROW(require_writable_folder(""), std::runtime_error);
+}
+
+TEST(RequireWritableFolder, RefusesAFolderInWhichNobodyCanCreateFiles) {
+  EXPECT_THROW(require_writable_folder("/proc"), std::runtime_error);
+  EXPECT_THROW(require_writable_folder("/proc/new/folder"), std::runtime_error);
+}
+
+void wait(int milliseconds) { std::this_thread::sleep_for(std::chrono::milliseconds(milliseconds)); }
+
+TEST(InterruptGateDeathTest, EndsTheProgramWith128PlusTheSignal) {
+  GTEST_FLAG_SET(death_test_style, "threadsafe");
+  for (const int signal : {SIGINT, SIGTERM}) {
+    EXPECT_EXIT(
+        {
+          InterruptGate gate;
+          kill(getpid(), signal);
+          wait(20000);
+        },
+        testing::ExitedWithCode(128 + signal), "");
+  }
+}
+
+TEST(InterruptGateDeathTest, WaitsWhileTheGateIsHeld) {
+  GTEST_FLAG_SET(death_test_style, "threadsafe");
+  EXPECT_EXIT(
+      {
+        InterruptGate gate;
+        auto held = gate.hold();
+        kill(getpid(), SIGINT);
+        wait(200);
+        std::fputs("still here", stderr);
+        held.unlock();
+        wait(20000);
+      },
+      testing::ExitedWithCode(130), "still here");
+}
+
+TEST(InterruptGate, GivesTheSignalsBack) {
+  sigset_t before, after;
+  pthread_sigmask(SIG_SETMASK, nullptr, &before);
+  { InterruptGate gate; }
+  pthread_sigmask(SIG_SETMASK, nullptr, &after);
+  EXPECT_EQ(sigismember(&before, SIGINT), sigismember(&after, SIGINT));
+  EXPECT_EQ(sigismember(&after, SIGINT), 0);
+}
+
+}  // namespace
+}  // namespace beampipe

@@ -1,0 +1,66 @@
+// Runs the built program as a user does.
+#pragma once
+
+#include <fcntl.h>
+#include <sys/wait.h>
+#include <unistd.h>
+
+#include <string>
+#include <vector>
+
+#include "tests/tools/fixtures.h"
+
+namespace beampipe {
+
+struct Outcome {
+  int exit_code = -1;  // -1: ended by a signal
+  std::string out, err;
+};
+
+// A started `beampipe ARGUMENTS`, its output going to files.
+class Program {
+ public:
+  // `terminal`: where standard error goes instead, when not negative.
+  explicit Program(const std::vector<std::string>& arguments, int terminal = -1) {
+    std::vector<std::string> words = {BEAMPIPE_PROGRAM};
+    words.insert(words.end(), arguments.begin(), arguments.end());
+    std::vector<char*> argv;
+    for (std::string& word : words) argv.push_back(word.data());
+    argv.push_back(nullptr);
+    const std::string out = (output_ / "out").string(), err = (output_ / "err").string();
+    pid_ = fork();
+    if (pid_ == 0) {
+      dup2(open("/dev/null", O_RDONLY), STDIN_FILENO);
+      dup2(open(out.c_str(), O_WRONLY | O_CREAT, 0666), STDOUT_FILENO);
+      dup2(terminal >= 0 ? terminal : open(err.c_str(), O_WRONLY | O_CREAT, 0666), STDERR_FILENO);
+      execv(argv[0], argv.data());
+      _exit(127);
+    }
+  }
+  ~Program() {
+    if (pid_ <= 0) return;
+    kill(pid_, SIGKILL);
+    waitpid(pid_, nullptr, 0);
+  }
+  Program(const Program&) = delete;
+  Program& operator=(const Program&) = delete;
+
+  void signal(int number) const { kill(pid_, number); }
+
+  Outcome wait() {
+    int status = 0;
+    waitpid(pid_, &status, 0);
+    pid_ = 0;
+    const bool has_err = std::filesystem::exists(output_ / "err");
+    return {WIFEXITED(status) ? WEXITSTATUS(status) : -1, read_text(output_ / "out"),
+            has_err ? read_text(output_ / "err") : ""};
+  }
+
+ private:
+  TemporaryFolder output_;
+  pid_t pid_ = 0;
+};
+
+inline Outcome run_program(const std::vector<std::string>& arguments) { return Program(arguments).wait(); }
+
+}  // namespace beampipe

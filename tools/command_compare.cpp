@@ -1,0 +1,188 @@
+// beampipe compare: what run does, and how wrong each picture is against the reference.
+
+#include <algorithm>
+#include <memory>
+
+#include "tools/commands.h"
+#include "tools/image_io.h"
+#include "tools/render.h"
+
+namespace beampipe {
+namespace {
+
+const std::vector<std::uint32_t> kDefaultLadder = {1, 2, 4, 8, 16, 32, 64, 128, 256};
+const std::vector<std::uint32_t> kLadderExtension = {512, 1024};
+
+constexpr const char* kFooter =
+    R"(Errors are of linear RGB against technique `reference`, whose pictures are written too: RMSE, mean (bias), 99th
+percentile and maximum of the absolute error. EMR, the equivalent MSAA rate, is the N at which msaa:N has the same
+RMSE on the same frames.
+
+Example:
+  beampipe compare fence.json -t beam alpha msaa:1,8,32 -o out
+
+Techniques:
+)";
+
+struct CompareArguments : RunArguments {
+  std::vector<std::uint32_t> ladder;  // empty: the default, extended as far as need be
+};
+
+Technique msaa(std::uint32_t samples) { return parse_technique("msaa:" + std::to_string(samples)); }
+
+// Says which technique and frame an error is about.
+template <typename Body>
+void naming(const std::string& spec, std::size_t frame, Body body) {
+  try {
+    body();
+  } catch (const std::exception& error) {
+    throw std::runtime_error(spec + ", frame " + std::to_string(frame) + ": " + error.what());
+  }
+}
+
+class Comparison {
+ public:
+  Comparison(const CompareArguments& arguments, OutputFolder& output)
+      : arguments_(arguments), output_(output), plan_(make_plan(arguments)) {
+    std::erase_if(plan_.techniques, [](const Technique& technique) { return technique.spec == "reference"; });
+    std::vector<std::uint32_t> rungs = arguments.ladder.empty() ? kDefaultLadder : arguments.ladder;
+    std::sort(rungs.begin(), rungs.end());
+    rungs.erase(std::unique(rungs.begin(), rungs.end()), rungs.end());
+    for (const std::uint32_t samples : rungs) ladder_.push_back({msaa(samples), new_errors()});
+    std::vector<Technique> written = plan_.techniques;
+    written.push_back(reference_);
+    require_writable_folders(output_, written);
+    for (const Technique& technique : plan_.techniques) {
+      results_.push_back(new_technique_report(technique));
+      errors_.push_back(new_errors());
+    }
+    reference_result_ = new_technique_report(reference_);
+  }
+
+  // Once.
+  Report run() {
+    for (const std::size_t frame : plan_.frames) compare_frame(frame);
+    for (std::size_t i = 0; i < results_.size(); ++i) results_[i].error = errors_[i].stats();
+    measure_ladder();
+    for (std::size_t i = 0; i < results_.size(); ++i) {
+      const std::uint32_t samples = plan_.techniques[i].samples;
+      results_[i].equivalent_msaa = samples > 0 ? EquivalentMsaa{static_cast<double>(samples), false, false}
+                                                : equivalent_msaa(results_[i].error->rmse, rungs_);
+    }
+    reference_result_.error = ErrorStats{};
+    reference_result_.equivalent_msaa = equivalent_msaa(0.0, rungs_);
+
+    Report report = new_report(arguments_, plan_);
+    report.msaa_ladder = rungs_;
+    report.results = results_;
+    report.results.push_back(reference_result_);
+    return report;
+  }
+
+ private:
+  struct Rung {
+    Technique technique;
+    ErrorAccumulator errors;
+  };
+
+  ErrorAccumulator new_errors() const {
+    std::uint64_t pixels = 0;
+    for (const std::size_t frame : plan_.frames) {
+      pixels += std::uint64_t{plan_.trace.frames[frame].width} * plan_.trace.frames[frame].height;
+    }
+    return ErrorAccumulator(pixels);
+  }
+
+  // The result of the technique with this spec, when it was among those asked for.
+  const TechniqueReport* asked_result(const std::string& spec) const {
+    const auto found = std::find_if(results_.begin(), results_.end(),
+                                    [&](const TechniqueReport& result) { return result.technique == spec; });
+    return found == results_.end() ? nullptr : &*found;
+  }
+
+  void compare_frame(std::size_t frame) {
+    WallTime reference_time;
+    const FrameResult truth = render_once(reference_, plan_, frame, progress_, &reference_time);
+    FrameReport& report =
+        reference_result_.frames.emplace_back(write_frame(output_, reference_.spec, frame, truth, nullptr));
+    report.wall_ms = reference_time;
+    report.error = ErrorStats{};
+
+    const std::vector<WallTime> times = render_frame(plan_, frame, progress_, [&](std::size_t i, FrameResult&& result) {
+      const std::string& spec = plan_.techniques[i].spec;
+      naming(spec, frame, [&] {
+        results_[i].frames.push_back(write_frame(output_, spec, frame, result, &truth.image));
+        errors_[i].add(result.image, truth.image);
+      });
+    });
+    for (std::size_t i = 0; i < times.size(); ++i) results_[i].frames.back().wall_ms = times[i];
+
+    for (Rung& rung : ladder_) measure_rung(rung, frame, truth.image);
+    output_.keep();
+  }
+
+  void measure_rung(Rung& rung, std::size_t frame, const Image& reference) {
+    if (asked_result(rung.technique.spec)) return;
+    const FrameResult result = render_once(rung.technique, plan_, frame, progress_);
+    naming(rung.technique.spec, frame, [&] { rung.errors.add(result.image, reference); });
+  }
+
+  double rmse_of(const Rung& rung) const {
+    const TechniqueReport* asked = asked_result(rung.technique.spec);
+    return asked ? asked->error->rmse : rung.errors.stats().rmse;
+  }
+
+  bool some_technique_beats_the_ladder() const {
+    for (std::size_t i = 0; i < results_.size(); ++i) {
+      if (plan_.techniques[i].samples == 0 && results_[i].error->rmse < best_rmse(rungs_)) return true;
+    }
+    return false;
+  }
+
+  void measure_ladder() {
+    for (const Rung& rung : ladder_) rungs_.push_back({rung.technique.samples, rmse_of(rung)});
+    if (!arguments_.ladder.empty()) return;
+    for (const std::uint32_t samples : kLadderExtension) {
+      if (!some_technique_beats_the_ladder()) return;
+      Rung rung{msaa(samples), new_errors()};
+      for (const FrameReport& frame : reference_result_.frames) {  // the EXR holds the reference to the last bit
+        measure_rung(rung, frame.index, read_exr(output_.path() / frame.image));
+      }
+      rungs_.push_back({samples, rmse_of(rung)});
+    }
+  }
+
+  const CompareArguments& arguments_;
+  OutputFolder& output_;
+  RunPlan plan_;
+  Technique reference_ = parse_technique("reference");
+  std::vector<Rung> ladder_;
+  std::vector<TechniqueReport> results_;  // beside plan_.techniques
+  std::vector<ErrorAccumulator> errors_;  // likewise
+  TechniqueReport reference_result_;
+  std::vector<LadderRung> rungs_;  // what the ladder came to
+  Progress progress_;
+};
+
+}  // namespace
+
+void add_compare_command(CLI::App& app, InterruptGate& gate) {
+  const auto arguments = std::make_shared<CompareArguments>();
+  CLI::App* command =
+      app.add_subcommand("compare", "Render a trace and the reference: pictures, errors, equivalent MSAA rates");
+  add_run_arguments(*command, *arguments);
+  command
+      ->add_option("--ladder", arguments->ladder,
+                   "MSAA rates to find equivalent rates between (default: 1,2,4,...,256; 512 and 1024 if need be)")
+      ->delimiter(',')
+      ->allow_extra_args(false)
+      ->type_name("N,N,...");
+  command->footer(kFooter + technique_help());
+  command->callback([arguments, &gate] {
+    OutputFolder output(arguments->output, gate);
+    const Report report = Comparison(*arguments, output).run();  // its progress line is gone by now
+    finish_report(output, report);
+  });
+}
+
+}  // namespace beampipe

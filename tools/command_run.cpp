@@ -1,0 +1,42 @@
+// beampipe run: pictures, counters and times of one or more techniques.
+
+#include <memory>
+
+#include "tools/commands.h"
+#include "tools/render.h"
+
+namespace beampipe {
+namespace {
+
+void run(const RunArguments& arguments, InterruptGate& gate) {
+  const RunPlan plan = make_plan(arguments);
+  OutputFolder output(arguments.output, gate);
+  require_writable_folders(output, plan.techniques);
+
+  Report report = new_report(arguments, plan);
+  for (const Technique& technique : plan.techniques) report.results.push_back(new_technique_report(technique));
+  {
+    Progress progress;
+    for (const std::size_t frame : plan.frames) {
+      const std::vector<WallTime> times = render_frame(plan, frame, progress, [&](std::size_t i, FrameResult&& result) {
+        report.results[i].frames.push_back(write_frame(output, plan.techniques[i].spec, frame, result, nullptr));
+      });
+      for (std::size_t i = 0; i < times.size(); ++i) report.results[i].frames.back().wall_ms = times[i];
+      output.keep();
+    }
+  }
+  finish_report(output, report);
+}
+
+}  // namespace
+
+void add_run_command(CLI::App& app, InterruptGate& gate) {
+  const auto arguments = std::make_shared<RunArguments>();
+  CLI::App* command = app.add_subcommand("run", "Render a trace: pictures, per-pixel counters, report.json");
+  add_run_arguments(*command, *arguments);
+  command->footer("Example:\n  beampipe run fence.json -t beam msaa:1,8 --repeat 5 -o out\n\nTechniques:\n" +
+                  technique_help());
+  command->callback([arguments, &gate] { run(*arguments, gate); });
+}
+
+}  // namespace beampipe

@@ -1,0 +1,90 @@
+#include "tools/render.h"
+
+#include <chrono>
+#include <cstdio>
+#include <iostream>
+
+#include "tools/image_io.h"
+
+namespace beampipe {
+namespace {
+
+// "frame 7 (3 of 5): ", or nothing when there is only one.
+std::string frame_text(const RunPlan& plan, std::size_t frame) {
+  if (plan.frames.size() == 1) return "";
+  return "frame " + std::to_string(frame) + " (" + std::to_string(frame - plan.frames.front() + 1) + " of " +
+         std::to_string(plan.frames.size()) + "): ";
+}
+
+// Renders, adding the wall time to `milliseconds`.
+FrameResult render_timed(const Technique& technique, const RunPlan& plan, std::size_t frame, Progress& progress,
+                         std::vector<double>& milliseconds) {
+  progress.show(frame_text(plan, frame) + technique.spec);
+  const auto start = std::chrono::steady_clock::now();
+  FrameResult result = technique.render(plan.trace, frame, plan.options);
+  milliseconds.push_back(std::chrono::duration<double, std::milli>(std::chrono::steady_clock::now() - start).count());
+  return result;
+}
+
+}  // namespace
+
+std::vector<WallTime> render_frame(const RunPlan& plan, std::size_t frame, Progress& progress,
+                                   const std::function<void(std::size_t, FrameResult&&)>& use) {
+  std::vector<std::vector<double>> milliseconds(plan.techniques.size());
+  for (int run = 0; run < plan.repeat; ++run) {
+    for (std::size_t i = 0; i < plan.techniques.size(); ++i) {
+      FrameResult result = render_timed(plan.techniques[i], plan, frame, progress, milliseconds[i]);
+      if (run == 0) use(i, std::move(result));
+    }
+  }
+  std::vector<WallTime> times;
+  for (std::vector<double>& runs : milliseconds) times.push_back(wall_time(std::move(runs)));
+  return times;
+}
+
+FrameResult render_once(const Technique& technique, const RunPlan& plan, std::size_t frame, Progress& progress,
+                        WallTime* time) {
+  std::vector<double> milliseconds;
+  FrameResult result = render_timed(technique, plan, frame, progress, milliseconds);
+  if (time) *time = wall_time(std::move(milliseconds));
+  return result;
+}
+
+FrameReport write_frame(OutputFolder& output, const std::string& spec, std::size_t frame, const FrameResult& result,
+                        const Image* reference) {
+  char number[32];
+  std::snprintf(number, sizeof number, "/frame_%04zu", frame);
+  const std::string stem = spec_folder(spec) + number;
+  FrameReport report;
+  report.index = frame;
+  report.image = stem + ".exr";
+  report.picture = stem + ".png";
+  report.a_buffer_peak_bytes = result.a_buffer_peak_bytes;
+  report.stages = result.stages;
+  Planes counters{result.image.width, result.image.height, result.pixel_counters};
+  if (reference) {
+    report.error = measure_error(result.image, *reference);
+    counters.channels["error"] = pixel_errors(result.image, *reference);
+  }
+  output.write(report.image, encode_exr(result.image));
+  output.remove("report.json");  // an earlier one would describe pictures that are no longer there
+  output.write(report.picture, encode_png(result.image));
+  if (!counters.channels.empty()) {
+    report.counters = stem + "_counters.exr";
+    output.write(report.counters, encode_exr(counters));
+  }
+  return report;
+}
+
+void finish_report(OutputFolder& output, const Report& report) {
+  output.write("report.json", json_text(to_json(report)));
+  output.keep();
+  std::cout << table_text(report, output.path().string()) << "report: " << (output.path() / "report.json").string()
+            << "\n";
+}
+
+Report new_report(const RunArguments& arguments, const RunPlan& plan) {
+  return {arguments.trace, program_version(), simd_target(), plan.options.threads, {}, {}};
+}
+
+}  // namespace beampipe

@@ -1,0 +1,37 @@
+// Rendering frames with several techniques, timing them, and writing what comes out.
+#pragma once
+
+#include <functional>
+#include <string>
+#include <vector>
+
+#include "tools/output.h"
+#include "tools/progress.h"
+#include "tools/report.h"
+#include "tools/run_plan.h"
+
+namespace beampipe {
+
+// Renders one frame with every technique of the plan, plan.repeat times, one technique after the other (A B A B ...) so
+// that a slow moment of the machine does not fall on one alone. The first result of each is handed to `use` at once and
+// then freed, so that memory holds one result at a time. Returns the times, one per technique.
+std::vector<WallTime> render_frame(const RunPlan& plan, std::size_t frame, Progress& progress,
+                                   const std::function<void(std::size_t technique, FrameResult&&)>& use);
+
+// Renders with one technique, once.
+FrameResult render_once(const Technique& technique, const RunPlan& plan, std::size_t frame, Progress& progress,
+                        WallTime* time = nullptr);
+
+// Writes a frame's image, its picture and, if there are any, its per-pixel counters into the technique's folder;
+// returns the report, still without times. With a reference, the image's error is in the report and in a counter named
+// `error`. Throws OutputError, and as measure_error does before anything is written.
+FrameReport write_frame(OutputFolder& output, const std::string& spec, std::size_t frame, const FrameResult& result,
+                        const Image* reference);
+
+// Writes report.json and prints the table.
+void finish_report(OutputFolder& output, const Report& report);
+
+// The parts of a report that are known before rendering.
+Report new_report(const RunArguments& arguments, const RunPlan& plan);
+
+}  // namespace beampipe

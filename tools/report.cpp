@@ -1,0 +1,182 @@
+#include "tools/report.h"
+
+#include <algorithm>
+#include <cstdarg>
+#include <cstdio>
+#include <stdexcept>
+
+namespace beampipe {
+namespace {
+
+using Json = nlohmann::ordered_json;
+
+Json to_json(const StageCounters& counters) {
+  const OperationCounts& ops = counters.ops;
+  return {{"stage", counters.stage},
+          {"items_in", counters.items_in},
+          {"items_out", counters.items_out},
+          {"ops",
+           {{"total", ops.total()},
+            {"mul_add", ops.mul_add},
+            {"add", ops.add},
+            {"bit", ops.bit},
+            {"fetch", ops.fetch},
+            {"special", ops.special},
+            {"convert", ops.convert}}},
+          {"bytes_read", counters.bytes_read},
+          {"bytes_written", counters.bytes_written}};
+}
+
+Json to_json(const FrameReport& frame) {
+  Json json = {{"index", frame.index}, {"image", frame.image}, {"picture", frame.picture}};
+  if (!frame.counters.empty()) json["counters"] = frame.counters;
+  if (frame.error) json["error"] = beampipe::to_json(*frame.error);
+  const WallTime& wall = frame.wall_ms;
+  json["wall_ms"] = {{"median", wall.median}, {"min", wall.min}, {"max", wall.max}, {"runs", wall.runs}};
+  json["a_buffer_peak_bytes"] = frame.a_buffer_peak_bytes;
+  json["stages"] = Json::array();
+  for (const StageCounters& stage : frame.stages) json["stages"].push_back(to_json(stage));
+  return json;
+}
+
+Json to_json(const TechniqueReport& result) {
+  Json json = {{"technique", result.technique}, {"framebuffer_bytes_per_pixel", result.framebuffer_bytes_per_pixel}};
+  json["framebuffer"] = Json::array();
+  for (const Surface& surface : result.framebuffer) {
+    json["framebuffer"].push_back(
+        {{"name", surface.name}, {"format", surface.format}, {"bytes_per_pixel", surface.bytes_per_pixel}});
+  }
+  std::uint64_t peak = 0;
+  for (const FrameReport& frame : result.frames) peak = std::max(peak, frame.a_buffer_peak_bytes);
+  json["a_buffer_peak_bytes"] = peak;
+  if (result.error) json["error"] = beampipe::to_json(*result.error);
+  if (result.equivalent_msaa) {
+    json["equivalent_msaa"] = result.equivalent_msaa->samples;
+    json["equivalent_msaa_is_lower_bound"] = result.equivalent_msaa->is_lower_bound;
+    if (result.equivalent_msaa->is_upper_bound) json["equivalent_msaa_is_upper_bound"] = true;
+  }
+  json["frames"] = Json::array();
+  for (const FrameReport& frame : result.frames) json["frames"].push_back(to_json(frame));
+  return json;
+}
+
+[[gnu::format(printf, 1, 2)]] std::string format(const char* pattern, ...) {
+  char text[64];
+  va_list arguments;
+  va_start(arguments, pattern);
+  std::vsnprintf(text, sizeof text, pattern, arguments);
+  va_end(arguments);
+  return text;
+}
+
+// Over the frames, the median of their medians.
+double median_ms(const TechniqueReport& result) {
+  std::vector<double> medians;
+  for (const FrameReport& frame : result.frames) medians.push_back(frame.wall_ms.median);
+  return wall_time(std::move(medians)).median;
+}
+
+std::string pictures(const TechniqueReport& result, const std::string& folder) {
+  std::string text = folder + "/" + result.frames.front().picture;
+  if (result.frames.size() > 1) text += " and " + std::to_string(result.frames.size() - 1) + " more";
+  return text;
+}
+
+// Of UTF-8 text, in characters.
+std::size_t width_of(const std::string& text) {
+  return static_cast<std::size_t>(std::count_if(text.begin(), text.end(), [](char c) { return (c & 0xC0) != 0x80; }));
+}
+
+}  // namespace
+
+WallTime wall_time(std::vector<double> milliseconds) {
+  if (milliseconds.empty()) throw std::invalid_argument("no run was timed");
+  std::sort(milliseconds.begin(), milliseconds.end());
+  const std::size_t runs = milliseconds.size();
+  const double median = (milliseconds[(runs - 1) / 2] + milliseconds[runs / 2]) / 2;
+  return {median, milliseconds.front(), milliseconds.back(), static_cast<int>(runs)};
+}
+
+std::string program_version() { return BEAMPIPE_VERSION; }
+
+TechniqueReport new_technique_report(const Technique& technique) {
+  return {technique.spec, technique.framebuffer, technique.framebuffer_bytes_per_pixel(), {}, {}, {}};
+}
+
+Json to_json(const ErrorStats& stats) {
+  return {{"rmse", stats.rmse}, {"bias", stats.bias}, {"p99", stats.p99}, {"max", stats.max}};
+}
+
+Json to_json(const Report& report) {
+  Json json = {{"beampipe_report", 1},
+               {"trace", report.trace},
+               {"version", report.version},
+               {"simd", report.simd},
+               {"threads", report.threads}};
+  if (!report.msaa_ladder.empty()) {
+    json["msaa_ladder"] = Json::array();
+    for (const LadderRung& rung : report.msaa_ladder) {
+      json["msaa_ladder"].push_back({{"samples", rung.samples}, {"rmse", rung.rmse}});
+    }
+  }
+  json["results"] = Json::array();
+  for (const TechniqueReport& result : report.results) json["results"].push_back(to_json(result));
+  return json;
+}
+
+std::string json_text(const Json& json) { return json.dump(2, ' ', false, Json::error_handler_t::replace) + "\n"; }
+
+std::string spec_folder(std::string_view spec) {
+  std::string folder(spec);
+  for (char& c : folder) {
+    const bool kept =
+        (c >= 'A' && c <= 'Z') || (c >= 'a' && c <= 'z') || (c >= '0' && c <= '9') || c == '.' || c == '=' || c == '-';
+    if (!kept) c = '_';
+  }
+  return folder;
+}
+
+std::string emr_text(const EquivalentMsaa& emr) {
+  const std::string samples = emr.samples < 100 ? format("%.3g", emr.samples) : format("%.0f", emr.samples);
+  return (emr.is_lower_bound ? "≥ " : emr.is_upper_bound ? "< " : "") + samples;
+}
+
+std::string table_text(const Report& report, const std::string& folder) {
+  const bool compared = !report.results.empty() && report.results.front().error.has_value();
+  std::vector<std::vector<std::string>> rows(1);
+  rows[0] = {"technique", "bytes/pixel"};
+  if (compared) rows[0].insert(rows[0].end(), {"RMSE", "bias", "p99", "max", "EMR"});
+  rows[0].insert(rows[0].end(), {"ms", "picture"});
+  for (const TechniqueReport& result : report.results) {
+    std::vector<std::string>& row = rows.emplace_back();
+    row = {result.technique, std::to_string(result.framebuffer_bytes_per_pixel)};
+    if (compared) {
+      const ErrorStats& error = result.error.value();
+      row.insert(row.end(), {format("%.6f", error.rmse), format("%+.6f", error.bias), format("%.5f", error.p99),
+                             format("%.5f", error.max), emr_text(result.equivalent_msaa.value())});
+    }
+    row.insert(row.end(), {format("%.1f", median_ms(result)), pictures(result, folder)});
+  }
+  return align_columns(rows, {0, rows[0].size() - 1});
+}
+
+std::string align_columns(const std::vector<std::vector<std::string>>& rows, const std::vector<std::size_t>& left) {
+  std::vector<std::size_t> widths;
+  for (const auto& row : rows) {
+    widths.resize(std::max(widths.size(), row.size()));
+    for (std::size_t i = 0; i < row.size(); ++i) widths[i] = std::max(widths[i], width_of(row[i]));
+  }
+  std::string text;
+  for (const auto& row : rows) {
+    std::string line;
+    for (std::size_t i = 0; i < row.size(); ++i) {
+      const std::string blanks(widths[i] - width_of(row[i]), ' ');
+      const bool at_left = std::find(left.begin(), left.end(), i) != left.end();
+      line += (i > 0 ? "  " : "") + (at_left ? row[i] + blanks : blanks + row[i]);
+    }
+    text += line.substr(0, line.find_last_not_of(' ') + 1) + "\n";
+  }
+  return text;
+}
+
+}  // namespace beampipe

@@ -1,0 +1,77 @@
+// What run and compare found: as report.json (its keys are a contract: add, never rename) and as a table for reading.
+#pragma once
+
+#include <cstdint>
+#include <nlohmann/json.hpp>
+#include <optional>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "pipeline/technique.h"
+#include "tools/metrics.h"
+
+namespace beampipe {
+
+// Of the runs of one technique on one frame, in milliseconds. With an even number of runs the median is the mean of the
+// two in the middle.
+struct WallTime {
+  double median = 0, min = 0, max = 0;
+  int runs = 0;
+};
+
+// Throws std::invalid_argument when there is none.
+WallTime wall_time(std::vector<double> milliseconds);
+
+struct FrameReport {
+  std::size_t index = 0;  // in the trace
+  std::string image;      // paths are relative to the report's folder
+  std::string picture;    // the image tonemapped, as PNG
+  std::string counters;   // empty: none were written
+  std::optional<ErrorStats> error;
+  WallTime wall_ms;
+  std::uint64_t a_buffer_peak_bytes = 0;
+  std::vector<StageCounters> stages;
+};
+
+struct TechniqueReport {
+  std::string technique;
+  std::vector<Surface> framebuffer;
+  std::uint32_t framebuffer_bytes_per_pixel = 0;
+  std::optional<ErrorStats> error;  // pooled over the frames
+  std::optional<EquivalentMsaa> equivalent_msaa;
+  std::vector<FrameReport> frames;
+};
+
+struct Report {
+  std::string trace, version, simd;
+  int threads = 0;
+  std::vector<TechniqueReport> results;
+  std::vector<LadderRung> msaa_ladder;  // empty: not measured
+};
+
+// For instance "0.1.0".
+std::string program_version();
+
+// The report of a technique of which no frame has been rendered yet.
+TechniqueReport new_technique_report(const Technique& technique);
+
+nlohmann::ordered_json to_json(const ErrorStats& stats);
+nlohmann::ordered_json to_json(const Report& report);
+
+// The text of a JSON file; bytes that are not UTF-8 are replaced.
+std::string json_text(const nlohmann::ordered_json& json);
+
+// The folder of a technique's images: the spec, every character outside [A-Za-z0-9.=-] turned into _.
+std::string spec_folder(std::string_view spec);
+
+// One row per technique under one row of titles; `folder` is where the pictures' paths start.
+std::string table_text(const Report& report, const std::string& folder);
+
+// Columns separated by two blanks; those named in `left` (by index) start at the left, the others end at the right.
+std::string align_columns(const std::vector<std::vector<std::string>>& rows, const std::vector<std::size_t>& left);
+
+// "36.2", "≥ 256" (lower bound), "< 1" (upper bound).
+std::string emr_text(const EquivalentMsaa& emr);
+
+}  // namespace beampipe

@@ -1,0 +1,92 @@
+#include "tools/run_plan.h"
+
+#include <algorithm>
+#include <charconv>
+#include <map>
+#include <numeric>
+#include <thread>
+
+#include "tools/commands.h"
+#include "tools/report.h"
+#include "traces/trace_io.h"
+
+namespace beampipe {
+
+void add_run_arguments(CLI::App& command, RunArguments& arguments) {
+  command.add_option("TRACE", arguments.trace, "the trace to render (JSON)")->required();
+  command.add_option("-t,--technique", arguments.specs, "one or more techniques; may be repeated (list below)")
+      ->required();
+  command.add_option("-o,--output", arguments.output, "folder for images and report.json; made if need be")->required();
+  command.add_option("--frames", arguments.frames, "only frames A-B of the trace, counted from 0 (default: all)");
+  command.add_option("--threads", arguments.threads, "threads to use (default: all that the machine has)")
+      ->check(CLI::Range(1, 1024));
+  command.add_option("--repeat", arguments.repeat, "times to render each frame, for steadier times (default: 1)")
+      ->check(CLI::Range(1, 1000000));
+  command.add_flag("--allow-outside", arguments.allow_outside, "let the trace name meshes outside its own folder");
+}
+
+RunPlan make_plan(const RunArguments& arguments) {
+  RunPlan plan;
+  plan.techniques = parse_techniques(arguments.specs);
+  plan.repeat = arguments.repeat;
+  plan.options.threads = arguments.threads > 0 ? arguments.threads : std::max(1u, std::thread::hardware_concurrency());
+  plan.trace = read_trace(arguments.trace, {.allow_outside = arguments.allow_outside});
+  plan.frames = parse_frame_range(arguments.frames, plan.trace.frames.size());
+  return plan;
+}
+
+void require_writable_folders(const OutputFolder& output, const std::vector<Technique>& techniques) {
+  require_writable_folder(output.path());
+  for (const Technique& technique : techniques) require_writable_folder(output.path() / spec_folder(technique.spec));
+}
+
+std::vector<std::size_t> parse_frame_range(const std::string& text, std::size_t frames) {
+  if (frames == 0) throw UsageError("the trace has no frames");
+  std::size_t first = 0, last = frames - 1;
+  if (!text.empty()) {
+    const char* const end = text.data() + text.size();
+    auto parsed = std::from_chars(text.data(), end, first);
+    last = first;
+    if (parsed.ec == std::errc() && parsed.ptr != end && *parsed.ptr == '-') {
+      parsed = std::from_chars(parsed.ptr + 1, end, last);
+    }
+    if (parsed.ec != std::errc() || parsed.ptr != end || first > last || last >= frames) {
+      throw UsageError("--frames " + text + ": expected A-B or A with frames from 0 to " + std::to_string(frames - 1));
+    }
+  }
+  std::vector<std::size_t> range(last - first + 1);
+  std::iota(range.begin(), range.end(), first);
+  return range;
+}
+
+std::vector<std::string> expand_specs(const std::vector<std::string>& specs) {
+  const std::string prefix = "msaa:";
+  std::vector<std::string> expanded;
+  for (const std::string& spec : specs) {
+    const bool is_list = spec.starts_with(prefix) && spec.find_first_not_of("0123456789,", prefix.size()) == spec.npos;
+    if (!is_list) {
+      expanded.push_back(spec);
+      continue;
+    }
+    for (std::size_t at = prefix.size(), comma; at <= spec.size(); at = comma + 1) {
+      comma = std::min(spec.find(',', at), spec.size());
+      expanded.push_back(prefix + spec.substr(at, comma - at));
+    }
+  }
+  return expanded;
+}
+
+std::vector<Technique> parse_techniques(const std::vector<std::string>& specs) {
+  std::vector<Technique> techniques;
+  std::map<std::string, std::string> spec_of_folder;
+  for (const std::string& spec : expand_specs(specs)) {
+    techniques.push_back(parse_technique(spec));
+    const auto [other, is_new] = spec_of_folder.emplace(spec_folder(spec), spec);
+    if (is_new) continue;
+    if (other->second == spec) throw UsageError("technique " + spec + " is given twice");
+    throw UsageError("techniques " + other->second + " and " + spec + " would both write to folder " + other->first);
+  }
+  return techniques;
+}
+
+}  // namespace beampipe
