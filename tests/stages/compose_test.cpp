@@ -17,16 +17,6 @@ Aggregate pixel(const SetupTriangles& triangles, MaskSource mask = MaskSource::e
   return beam_pixels(triangles, kRedGreen, kPixel, mask).at(0);
 }
 
-void add_left_of(SetupTriangles& triangles, std::int32_t x, float z) {
-  add_triangle(triangles, {x, -9'000, z}, {x, 9'000, z}, {-9'000, 0, z});
-}
-void add_right_of(SetupTriangles& triangles, std::int32_t x, float z) {
-  add_triangle(triangles, {x, -9'000, z}, {x, 9'000, z}, {9'000, 0, z});
-}
-void add_everywhere(SetupTriangles& triangles, float z) {
-  add_triangle(triangles, {-9'000, -9'000, z}, {20'000, -9'000, z}, {-9'000, 20'000, z});
-}
-
 TEST(Compose, EmptyPixel) {
   const Aggregate found = pixel({});
   EXPECT_EQ(found.alpha, 0.0f);

@@ -25,10 +25,6 @@ Tested render(const SetupTriangles& triangles, const Sampling& sampling, const T
   return tested;
 }
 
-void add_everywhere(SetupTriangles& triangles, float z) {
-  add_triangle(triangles, {-90'000, -90'000, z}, {200'000, -90'000, z}, {-90'000, 200'000, z});
-}
-
 const Sampling kMsaa8{CellGrid{}, standard_pattern(8)};
 
 TEST(DepthTestStage, NearerWinsInAnyOrder) {

@@ -38,6 +38,17 @@ inline void add_triangle(SetupTriangles& triangles, const ScreenPoint& p, Screen
   triangles.attributes.push_back({glm::vec3(1.0f), glm::vec3(0.0f), false});
 }
 
+// Upright edges through the pixels of rows -30 to 30, and all of the tiles that tests use.
+inline void add_left_of(SetupTriangles& triangles, std::int32_t x, float z) {
+  add_triangle(triangles, {x, -9'000, z}, {x, 9'000, z}, {-9'000, 0, z});
+}
+inline void add_right_of(SetupTriangles& triangles, std::int32_t x, float z) {
+  add_triangle(triangles, {x, -9'000, z}, {x, 9'000, z}, {9'000, 0, z});
+}
+inline void add_everywhere(SetupTriangles& triangles, float z) {
+  add_triangle(triangles, {-9'000, -9'000, z}, {20'000, -9'000, z}, {-9'000, 20'000, z});
+}
+
 inline TriangleList all_of(const SetupTriangles& triangles) {
   TriangleList list;
   for (std::uint32_t i = 0; i < triangles.triangles.size(); ++i) list.push_back(i);

@@ -1,0 +1,150 @@
+#include "stages/compose_window.h"
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+
+#include "simd/conserve.h"
+#include "stages/conservative_raster.h"
+#include "stages/shade.h"
+#include "tests/simd/random.h"
+#include "tests/stages/screen_triangles.h"
+
+namespace beampipe {
+namespace {
+
+const Tile kPixel{0, 0, 1, 1};
+
+std::vector<PixelColor> composed(const SetupTriangles& triangles, const std::vector<glm::vec3>& colors,
+                                 const Tile& tile, int bits, std::vector<float>* windows = nullptr) {
+  const PositionSet positions(cell_patterns(bits));
+  StageCounters counters;
+  std::vector<PixelTriangle> pairs;
+  std::vector<Fragment> fragments;
+  conservative_raster(triangles, all_of(triangles), tile, counters, pairs);
+  beam_fragment(triangles, pairs, tile, {MaskSource::exact, positions.patterns, nullptr, false}, counters, fragments);
+  shade(colors, fragments, counters);
+  const ABuffer buffer = a_buffer(fragments, tile.pixels(), SortKey::nearest, 42, counters);
+  std::vector<float> sizes;
+  std::vector<PixelColor> pixels = compose_window(fragments, buffer, positions, counters, sizes);
+  if (windows) *windows = sizes;
+  return pixels;
+}
+
+TEST(VisibleArea, TheBackgroundGetsWhatIsLeft) {
+  // 100 of 256 positions taken, with an area that no position count gives.
+  const Taken<float> taken{0.4f, 100};
+  EXPECT_NEAR(visible_area(1.0f, 256.0f, 156.0f, 256.0f, taken), 0.6f, 1e-6);
+}
+
+TEST(VisibleArea, AWholeFragmentHasItsOwnArea) {
+  EXPECT_NEAR(visible_area(0.3f, 70.0f, 70.0f, 256.0f, Taken<float>{0.4f, 100}), 0.3f, 1e-6);
+  EXPECT_NEAR(visible_area(0.7f, 170.0f, 170.0f, 256.0f, Taken<float>{0.4f, 86}), 0.6f, 1e-6);  // no more than is free
+}
+
+TEST(VisibleArea, StaysBetweenNothingAndWhatIsFree) {
+  Random random(71);
+  SCOPED_TRACE(random.name());
+  for (int i = 0; i < 100000; ++i) {
+    const float covered = static_cast<float>(random.integer(1, 256));
+    const float visible = static_cast<float>(random.integer(0, static_cast<int>(covered)));
+    const float taken = static_cast<float>(random.integer(0, 256 - static_cast<int>(visible)));
+    const auto area = static_cast<float>(random.real(0, 1)), before = static_cast<float>(random.real(0, 1));
+    const float found = visible_area(area, covered, visible, 256.0f, Taken<float>{before, taken});
+    ASSERT_GE(found, 0.0f);
+    ASSERT_LE(found, std::min(area, 1.0f - before));
+  }
+}
+
+TEST(ComposeWindow, AnEdgeOverASurfaceSplitsThePixelExactly) {
+  for (const int bits : {32, 64, 128, 256}) {
+    SetupTriangles triangles;
+    add_left_of(triangles, 77, -0.75f);  // 77/256 of the pixel
+    add_everywhere(triangles, -0.5f);
+    const PixelColor found = composed(triangles, {{1, 0, 0}, {0, 1, 0}}, kPixel, bits).at(0);
+    EXPECT_NEAR(found.alpha, 1.0, 1e-6);
+    EXPECT_NEAR(found.color.r, 77.0 / 256, 1e-6) << bits;
+    EXPECT_NEAR(found.color.g, 179.0 / 256, 1e-6) << bits;
+  }
+}
+
+TEST(ComposeWindow, ASurfaceOfManyTrianglesHidesWhatIsBehind) {
+  // A fan of 64 around the pixel's middle closes it; behind it another colour, which must not show at all.
+  SetupTriangles triangles;
+  std::vector<glm::vec3> colors;
+  std::vector<ScreenPoint> rim;
+  for (int i = 0; i < 16; ++i) rim.push_back({i * 16, 0, -0.75f});
+  for (int i = 0; i < 16; ++i) rim.push_back({256, i * 16, -0.75f});
+  for (int i = 0; i < 16; ++i) rim.push_back({256 - i * 16, 256, -0.75f});
+  for (int i = 0; i < 16; ++i) rim.push_back({0, 256 - i * 16, -0.75f});
+  for (std::size_t i = 0; i < rim.size(); ++i) {
+    add_triangle(triangles, {128, 120, -0.75f}, rim[i], rim[(i + 1) % rim.size()]);
+    colors.emplace_back(1, 0, 0);
+  }
+  add_everywhere(triangles, -0.5f);
+  colors.emplace_back(0, 1, 0);
+  const PixelColor found = composed(triangles, colors, kPixel, 256).at(0);
+  EXPECT_NEAR(found.color.r, 1.0, 2e-6);
+  EXPECT_NEAR(found.color.g, 0.0, 2e-6);
+}
+
+TEST(ComposeWindow, WeightsOfAClosedSceneSumToOne) {
+  // Every pixel is closed by one big triangle; with all colours white the weights are the picture.
+  Random random(72);
+  SCOPED_TRACE(random.name());
+  const Tile tile{0, 0, 16, 16};
+  SetupTriangles triangles = random_triangles(random, 600);
+  add_everywhere(triangles, -0.01f);
+  const std::vector<glm::vec3> white(triangles.triangles.size(), glm::vec3(1));
+  for (const int bits : {32, 256}) {
+    for (const PixelColor& pixel : composed(triangles, white, tile, bits)) {
+      ASSERT_NEAR(pixel.alpha, 1.0, 1e-5);
+      ASSERT_NEAR(pixel.color.g, 1.0, 1e-5);
+    }
+  }
+}
+
+TEST(ComposeWindow, EqualDepthKeepsTheEarlier) {
+  SetupTriangles triangles;
+  for (int i = 0; i < 3; ++i) add_everywhere(triangles, -0.5f);
+  EXPECT_EQ(composed(triangles, {{1, 0, 0}, {0, 1, 0}, {0, 0, 1}}, kPixel, 256).at(0).color, glm::vec3(1, 0, 0));
+}
+
+TEST(ComposeWindow, WindowsSeparateWhatDoesNotOverlapInDepth) {
+  SetupTriangles triangles;
+  add_left_of(triangles, 100, -0.75f);
+  add_left_of(triangles, 150, -0.5f);
+  add_everywhere(triangles, -0.25f);
+  std::vector<float> windows;
+  composed(triangles, std::vector<glm::vec3>(3, glm::vec3(1)), kPixel, 256, &windows);
+  EXPECT_EQ(windows, std::vector<float>{1});
+}
+
+TEST(ComposeWindow, NothingThereIsTransparent) {
+  const PixelColor found = composed(SetupTriangles{}, {}, kPixel, 256).at(0);
+  EXPECT_EQ(found.alpha, 0.0f);
+  EXPECT_EQ(found.color, glm::vec3(0));
+}
+
+TEST(PositionSet, TheNearestPositionsAreTheNearest) {
+  const PositionSet positions(cell_patterns(128));
+  Random random(73);
+  SCOPED_TRACE(random.name());
+  for (int i = 0; i < 2000; ++i) {
+    // The middle of a place, where the table is exact.
+    const int x = random.int32(0, 63), y = random.int32(0, 63);
+    const auto& found = positions.nearest_to((static_cast<float>(x) + 0.5f) / 64, (static_cast<float>(y) + 0.5f) / 64);
+    std::vector<int> distances;
+    for (const SamplePattern& pattern : positions.patterns)
+      for (std::size_t s = 0; s < 32; ++s) {
+        const int dx = pattern.x[s] - (4 * x + 2), dy = pattern.y[s] - (4 * y + 2);
+        distances.push_back(dx * dx + dy * dy);
+      }
+    std::vector<int> sorted = distances;
+    std::sort(sorted.begin(), sorted.end());
+    for (std::size_t k = 0; k < 3; ++k) ASSERT_EQ(distances[found[k]], sorted[k]);
+  }
+}
+
+}  // namespace
+}  // namespace beampipe
