@@ -31,8 +31,7 @@ struct Coverage {
 // out[i] = coverage of in[i]; lanes are across i. Bit-identical to coverage_scalar on every target.
 void coverage(const CoverageInput<float>* in, std::size_t count, Coverage<float>* out);
 
-// ---- Scalar twin: one lane, also for counting numbers
-// ----------------------------------------------------------------
+// ---- Scalar twin: one lane, also for counting numbers ----
 
 template <class Float>
 struct EdgeIntegral {

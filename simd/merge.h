@@ -43,8 +43,7 @@ using MergeFragment = FragmentOf<float, std::uint32_t>;
 // every target. Mask bit s stands at pattern position s; the pattern has 32.
 void merge(const MergeFragment* fragments, std::size_t count, const SamplePattern& pattern, Aggregate* aggregates);
 
-// ---- Scalar twin
-// -----------------------------------------------------------------------------------------------------
+// ---- Scalar twin ----
 
 // How much of the fragment (i) and of the aggregate (a) shows in one region of mask positions.
 template <class Float>

@@ -33,8 +33,7 @@ Raster rasterize(const SetupTriangles& triangles, const Tile& tile) {
   return raster;
 }
 
-// ---- Closed triangle meets closed square, by segment intersection: nothing in common with separating axes
-// ------------
+// Closed triangle meets closed square, by segment intersection: nothing in common with separating axes.
 
 struct At {
   std::int64_t x, y;
