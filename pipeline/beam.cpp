@@ -27,8 +27,20 @@ PixelCounters count_per_pixel(const Tile& tile, const ABuffer& buffer, const std
   return {{"fragments", count}, {"merges", count}, {"tiny_triangles", std::move(tiny)}};
 }
 
-std::uint32_t stored_bytes(const BeamOptions& beam) {
-  return beam.rules == Rules::conserve ? conserving_aggregate_bytes(beam.positions) : kAggregateBytes;
+struct RecordBytes {
+  std::uint32_t fragment, aggregate;
+};
+
+RecordBytes record_bytes(const BeamOptions& beam) {
+  switch (beam.rules) {
+    case Rules::conserve:
+      return {conserving_fragment_bytes(beam.positions), conserving_aggregate_bytes(beam.positions)};
+    case Rules::over:
+      return {kOverFragmentBytes, kOverBytes};
+    case Rules::paper:
+      break;
+  }
+  return {kAggregateBytes, kAggregateBytes};
 }
 
 }  // namespace
@@ -40,9 +52,9 @@ FrameResult render_beam(const Trace& trace, const Frame& frame, const BeamOption
   const std::vector<glm::vec3> colors = shade_triangles(triangles, frame.light_direction);
   const PositionSet positions(conserve ? cell_patterns(beam.positions) : std::vector{hammersley_pattern()});
   const MaskTable table(positions.patterns.front());
-  const BeamFragmentOptions options{beam.mask, positions.patterns, &table, !conserve};
+  const RecordBytes bytes = record_bytes(beam);
+  const BeamFragmentOptions options{beam.mask, positions.patterns, &table, bytes.fragment, !conserve};
   const SortKey key = conserve ? SortKey::nearest : SortKey::centroid;
-  const std::uint32_t bytes = stored_bytes(beam);
 
   FrameResult result =
       render_tiles(frame, triangles, setup, kTileSize, run, [&](const Tile& tile, const TriangleList& list) {
@@ -53,7 +65,7 @@ FrameResult render_beam(const Trace& trace, const Frame& frame, const BeamOption
         conservative_raster(triangles, list, tile, raster, pairs);
         beam_fragment(triangles, pairs, tile, options, fragment, fragments);
         shade(colors, fragments, shading);
-        const ABuffer buffer = a_buffer(fragments, tile.pixels(), key, bytes, buffering);
+        const ABuffer buffer = a_buffer(fragments, tile.pixels(), key, bytes.fragment, buffering);
         PixelCounters counts = count_per_pixel(tile, buffer, fragments);
         std::vector<PixelColor> aggregates;
         switch (beam.rules) {
@@ -70,12 +82,13 @@ FrameResult render_beam(const Trace& trace, const Frame& frame, const BeamOption
             aggregates = pixel_colors(compose_over(fragments, buffer, composition));
             break;
         }
-        return TileResult{resolve(aggregates, frame.background, bytes, resolving),
+        return TileResult{resolve(aggregates, frame.background, bytes.aggregate, resolving),
                           std::move(counts),
                           {raster, fragment, shading, buffering, composition, resolving}};
       });
   const StageCounters& buffering = result.stages[4];
-  result.a_buffer_peak_bytes = a_buffer_bytes(buffering.items_in, std::uint64_t{frame.width} * frame.height, bytes);
+  result.a_buffer_peak_bytes =
+      a_buffer_bytes(buffering.items_in, std::uint64_t{frame.width} * frame.height, bytes.fragment);
   return result;
 }
 

@@ -11,4 +11,8 @@ inline constexpr std::uint32_t kAggregateVisibilityBytes = 4 + 4 + 16 + 4 + 8;
 inline constexpr std::uint32_t kAggregateColorBytes = 3 * 2;
 inline constexpr std::uint32_t kAggregateBytes = kAggregateVisibilityBytes + kAggregateColorBytes;
 
+// Without masks and slabs: coverage and colour; a fragment has the depth that it is sorted by as well.
+inline constexpr std::uint32_t kOverBytes = 4 + kAggregateColorBytes;
+inline constexpr std::uint32_t kOverFragmentBytes = kOverBytes + 4;
+
 }  // namespace beampipe

@@ -5,7 +5,6 @@
 
 #include "simd/coverage.h"
 #include "simd/sample_test.h"
-#include "stages/aggregate_format.h"
 #include "stages/counting.h"
 #include "stages/raster_cost.h"
 
@@ -185,7 +184,7 @@ void beam_fragment(const SetupTriangles& triangles, const std::vector<PixelTrian
     counters.ops += (use_table ? kTableMaskCost : exact_mask_cost(pattern)) * in.size();
   counters.ops += kNearestCost * (located * options.positions.size() * kMaxMaskSamples);
   counters.bytes_read += in.size() * kPixelTriangleBytes;
-  counters.bytes_written += (out.size() - before) * kAggregateBytes;
+  counters.bytes_written += (out.size() - before) * options.fragment_bytes;
   counters.lanes_used += out.size() - before;
   counters.lanes_issued += in.size();
 }

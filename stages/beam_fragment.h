@@ -33,6 +33,7 @@ struct BeamFragmentOptions {
   MaskSource mask = MaskSource::table;
   std::vector<SamplePattern> positions;  // of the mask, 32 to a pattern; one pattern for MaskSource::table
   const MaskTable* table = nullptr;      // for MaskSource::table
+  std::uint32_t fragment_bytes = 0;      // of a fragment as it is passed on
   bool locate_tiny = false;              // give a tiny fragment the position nearest to its centroid (section 2.2.1)
 };
 

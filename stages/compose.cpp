@@ -31,12 +31,13 @@ OperationCounts over_cost() {
   });
 }
 
-void count_merges(std::uint64_t merges, std::uint64_t pixels, const OperationCounts& cost, StageCounters& counters) {
+void count_merges(std::uint64_t merges, std::uint64_t pixels, const OperationCounts& cost, std::uint32_t fragment_bytes,
+                  std::uint32_t aggregate_bytes, StageCounters& counters) {
   counters.items_in += merges;
   counters.items_out += pixels;
   counters.ops += cost * merges;
-  counters.bytes_read += merges * kAggregateBytes;
-  counters.bytes_written += pixels * kAggregateBytes;
+  counters.bytes_read += merges * fragment_bytes;
+  counters.bytes_written += pixels * aggregate_bytes;
   counters.lanes_used += merges;
   counters.lanes_issued += merges;
 }
@@ -76,7 +77,7 @@ std::vector<Aggregate> compose(const std::vector<Fragment>& fragments, const ABu
   }
   std::vector<Aggregate> aggregates(pixels);
   for (std::size_t i = 0; i < pixels; ++i) aggregates[order[i]] = in_order[i];
-  count_merges(buffer.fragments.size(), pixels, merge_cost(pattern), counters);
+  count_merges(buffer.fragments.size(), pixels, merge_cost(pattern), kAggregateBytes, kAggregateBytes, counters);
   return aggregates;
 }
 
@@ -87,7 +88,7 @@ std::vector<Aggregate> compose_over(const std::vector<Fragment>& fragments, cons
   for (std::size_t pixel = 0; pixel < pixels; ++pixel)
     for (std::uint32_t i = buffer.first[pixel]; i < buffer.first[pixel + 1]; ++i)
       aggregates[pixel] = over_scalar(merge_fragment(fragments[buffer.fragments[i]]), aggregates[pixel]);
-  count_merges(buffer.fragments.size(), pixels, over_cost(), counters);
+  count_merges(buffer.fragments.size(), pixels, over_cost(), kOverFragmentBytes, kOverBytes, counters);
   return aggregates;
 }
 

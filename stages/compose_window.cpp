@@ -215,13 +215,12 @@ std::vector<PixelColor> compose_window(const std::vector<Fragment>& fragments, c
     const float scale = full ? 1.0f / aggregate.taken.area : 1.0f;
     colors[pixel] = {full ? 1.0f : aggregate.taken.area, aggregate.color * scale};
   }
-  const std::uint32_t bytes = conserving_aggregate_bytes(positions.count());
   counters.items_in += buffer.fragments.size();
   counters.items_out += pixels;
   counters.ops += visible_area_cost() * composer.additions();
   counters.ops += depth_compare_cost() * composer.depth_tests();
-  counters.bytes_read += looked_at * bytes;
-  counters.bytes_written += pixels * bytes;
+  counters.bytes_read += looked_at * conserving_fragment_bytes(positions.count());
+  counters.bytes_written += pixels * conserving_aggregate_bytes(positions.count());
   counters.lanes_used += composer.depth_tests();
   counters.lanes_issued += looked_at * static_cast<std::size_t>(positions.count());
   return colors;

@@ -33,6 +33,12 @@ constexpr std::uint32_t conserving_aggregate_bytes(int positions) {
   return static_cast<std::uint32_t>(positions) / 8 + 4 + 6;
 }
 
+// Bytes of a fragment as it waits in the A-buffer: what the aggregate has, and the depth plane (3 x float32), the depth
+// range (2 x float32), and the centroid with the facing (2 x 16 bits), for which the aggregate has no use.
+constexpr std::uint32_t conserving_fragment_bytes(int positions) {
+  return conserving_aggregate_bytes(positions) + 12 + 8 + 4;
+}
+
 // One pixel colour and coverage per pixel of the tile. `window_sizes`: per pixel, the fragments of its largest window.
 std::vector<PixelColor> compose_window(const std::vector<Fragment>& fragments, const ABuffer& buffer,
                                        const PositionSet& positions, StageCounters& counters,

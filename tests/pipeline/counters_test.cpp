@@ -35,9 +35,15 @@ TEST(Counters, BeamCountsEveryTouchedPixel) {
   EXPECT_EQ(stage(result, "resolve").items_out, 64u);
   // Pixels 1..4 lie in the quads 0, 1, 2 of each axis; the lower left half of these 3 x 3 has 6, with 4 lanes each.
   EXPECT_EQ(stage(result, "shade").lanes_issued, 4u * 6);
-  // A-buffer: a 42-byte fragment and a 4-byte link each, and a 4-byte head per pixel.
-  EXPECT_EQ(result.a_buffer_peak_bytes, with_area * 46 + 64 * 4);
-  EXPECT_EQ(stage(result, "compose").bytes_read, with_area * 42);
+  // A-buffer: a fragment of 66 bytes (a 42-byte aggregate, plane, range, centroid) and a 4-byte link each, and a 4-byte
+  // head per pixel. Aggregates are written once.
+  EXPECT_EQ(result.a_buffer_peak_bytes, with_area * 70 + 64 * 4);
+  EXPECT_EQ(stage(result, "compose").bytes_read, with_area * 66);
+  EXPECT_EQ(stage(result, "compose").bytes_written, 64u * 42);
+  // The paper's fragment is its aggregate; without masks and slabs there is a coverage, a colour and a depth.
+  EXPECT_EQ(parse_technique("beam:rules=paper").render(half_square(), 0, {1}).a_buffer_peak_bytes,
+            with_area * 46 + 256);
+  EXPECT_EQ(parse_technique("alpha").render(half_square(), 0, {1}).a_buffer_peak_bytes, with_area * 18 + 256);
 }
 
 TEST(Counters, MsaaCountsSamples) {

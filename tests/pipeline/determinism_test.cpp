@@ -8,7 +8,8 @@
 namespace beampipe {
 namespace {
 
-const char* const kSpecs[] = {"beam", "beam:rules=paper,mask=exact", "alpha", "msaa:1", "msaa:8", "msaa:64", "reference"};
+const char* const kSpecs[] = {"beam",     "beam:rules=paper,mask=exact", "alpha", "msaa:1", "msaa:8", "msaa:64",
+                              "reference"};
 
 void expect_same(const FrameResult& a, const FrameResult& b, const std::string& what) {
   EXPECT_EQ(a.image.rgba, b.image.rgba) << what;

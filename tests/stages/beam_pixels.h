@@ -25,7 +25,8 @@ inline Fragments beam_fragments(const SetupTriangles& triangles, const Tile& til
   StageCounters raster;
   conservative_raster(triangles, all_of(triangles), tile, raster, pairs);
   Fragments fragments;
-  beam_fragment(triangles, pairs, tile, {mask, {pattern}, &table, true}, fragments.counters, fragments.list);
+  beam_fragment(triangles, pairs, tile, {mask, {pattern}, &table, kAggregateBytes, true}, fragments.counters,
+                fragments.list);
   return fragments;
 }
 
