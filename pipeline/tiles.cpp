@@ -38,16 +38,19 @@ std::vector<TriangleList> bin_triangles(const Frame& frame, const SetupTriangles
   return lists;
 }
 
+// Copies `values` per pixel of the tile, row by row, to where the tile lies in the frame.
+template <class Value>
+void copy_rows(const Tile& tile, const Value* from, std::size_t values, std::size_t frame_width, Value* to) {
+  const std::size_t row = static_cast<std::size_t>(tile.width()) * values;
+  for (std::int32_t y = tile.y0; y < tile.y1; ++y, from += row)
+    std::copy_n(from, row,
+                to + (static_cast<std::size_t>(y) * frame_width + static_cast<std::size_t>(tile.x0)) * values);
+}
+
 void copy_tile(const Tile& tile, const TileResult& from, FrameResult& to) {
-  const std::size_t frame_width = to.image.width;
-  for (std::int32_t y = tile.y0; y < tile.y1; ++y) {
-    for (std::int32_t x = tile.x0; x < tile.x1; ++x) {
-      const auto source = static_cast<std::size_t>((y - tile.y0) * tile.width() + x - tile.x0);
-      const std::size_t target = static_cast<std::size_t>(y) * frame_width + static_cast<std::size_t>(x);
-      for (int c = 0; c < 4; ++c) to.image.rgba[4 * target + static_cast<std::size_t>(c)] = from.image[source][c];
-      for (const auto& [name, values] : from.pixel_counters) to.pixel_counters.at(name)[target] = values[source];
-    }
-  }
+  copy_rows(tile, &from.image.front().x, 4, to.image.width, to.image.rgba.data());
+  for (const auto& [name, values] : from.pixel_counters)
+    copy_rows(tile, values.data(), 1, to.image.width, to.pixel_counters.at(name).data());
 }
 
 }  // namespace
