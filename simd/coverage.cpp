@@ -64,7 +64,7 @@ void coverage_kernel(const CoverageInput<float>* in, std::size_t count, Coverage
   HWY_ALIGN float results[kOutputs * hn::MaxLanes(d)];
   for (std::size_t first = 0; first < count; first += lanes) {
     const std::size_t n = HWY_MIN(lanes, count - first);
-    rows_to_columns(reinterpret_cast<const float*>(in + first), n, kInputs, lanes, columns);
+    rows_to_columns(in + first, n, lanes, columns);
     const auto column = [&](std::size_t i) { return hn::Load(d, columns + i * lanes); };
     // Columns in the order of CoverageInput's members.
     V u[3], v[3], a[3], b[3], corner[3][4], vertex_z[3];
@@ -126,7 +126,7 @@ void coverage_kernel(const CoverageInput<float>* in, std::size_t count, Coverage
     }
     const V outputs[kOutputs] = {alpha, centroid_u, centroid_v, z_min, z_max};
     for (std::size_t i = 0; i < kOutputs; ++i) hn::Store(outputs[i], d, results + i * lanes);
-    columns_to_rows(results, n, kOutputs, lanes, reinterpret_cast<float*>(out + first));
+    columns_to_rows(results, n, lanes, out + first);
   }
 }
 

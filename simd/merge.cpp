@@ -146,8 +146,8 @@ void merge_kernel(const MergeFragment* fragments, std::size_t count, const Sampl
   HWY_ALIGN float in[kFragmentColumns * hn::MaxLanes(d)], out[kSurfaceColumns * hn::MaxLanes(d)];
   for (std::size_t first = 0; first < count; first += lanes) {
     const std::size_t n = HWY_MIN(lanes, count - first);
-    rows_to_columns(reinterpret_cast<const float*>(fragments + first), n, kFragmentColumns, lanes, in);
-    rows_to_columns(reinterpret_cast<const float*>(aggregates + first), n, kSurfaceColumns, lanes, out);
+    rows_to_columns(fragments + first, n, lanes, in);
+    rows_to_columns(aggregates + first, n, lanes, out);
     const U tiny = hn::BitCast(du, hn::Load(d, in + kSurfaceColumns * lanes));
     const Surface merged = merge_lanes(load_surface(in, lanes), tiny, load_surface(out, lanes), pattern);
     const V columns[kSurfaceColumns] = {merged.alpha,    hn::BitCast(d, merged.mask),
@@ -157,7 +157,7 @@ void merge_kernel(const MergeFragment* fragments, std::size_t count, const Sampl
                                         merged.color[0], merged.color[1],
                                         merged.color[2]};
     for (std::size_t i = 0; i < kSurfaceColumns; ++i) hn::Store(columns[i], d, out + i * lanes);
-    columns_to_rows(out, n, kSurfaceColumns, lanes, reinterpret_cast<float*>(aggregates + first));
+    columns_to_rows(out, n, lanes, aggregates + first);
   }
 }
 

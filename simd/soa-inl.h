@@ -1,4 +1,5 @@
-// Rows of floats (structs in memory) to and from columns (one vector per member). Included once per SIMD target.
+// Rows of 32-bit members (structs in memory) to and from columns (one vector per member). Included once per SIMD
+// target.
 #if defined(BEAMPIPE_SIMD_SOA_INL_H_) == defined(HWY_TARGET_TOGGLE)
 #ifdef BEAMPIPE_SIMD_SOA_INL_H_
 #undef BEAMPIPE_SIMD_SOA_INL_H_
@@ -7,6 +8,7 @@
 #endif
 
 #include <cstddef>
+#include <cstring>
 
 #include "hwy/highway.h"
 
@@ -15,18 +17,26 @@ namespace beampipe {
 namespace HWY_NAMESPACE {
 
 // Column i starts at columns[i * lanes]; lanes past `rows` repeat the last row, so that no lane holds garbage.
-HWY_INLINE void rows_to_columns(const float* HWY_RESTRICT row_data, std::size_t rows, std::size_t width,
-                                std::size_t lanes, float* HWY_RESTRICT columns) {
+template <class Row>
+HWY_INLINE void rows_to_columns(const Row* HWY_RESTRICT row_data, std::size_t rows, std::size_t lanes,
+                                float* HWY_RESTRICT columns) {
+  constexpr std::size_t kWidth = sizeof(Row) / sizeof(float);
   for (std::size_t lane = 0; lane < lanes; ++lane) {
-    const float* row = row_data + (lane < rows ? lane : rows - 1) * width;
-    for (std::size_t i = 0; i < width; ++i) columns[i * lanes + lane] = row[i];
+    float row[kWidth];
+    std::memcpy(row, row_data + (lane < rows ? lane : rows - 1), sizeof row);
+    for (std::size_t i = 0; i < kWidth; ++i) columns[i * lanes + lane] = row[i];
   }
 }
 
-HWY_INLINE void columns_to_rows(const float* HWY_RESTRICT columns, std::size_t rows, std::size_t width,
-                                std::size_t lanes, float* HWY_RESTRICT row_data) {
-  for (std::size_t lane = 0; lane < rows; ++lane)
-    for (std::size_t i = 0; i < width; ++i) row_data[lane * width + i] = columns[i * lanes + lane];
+template <class Row>
+HWY_INLINE void columns_to_rows(const float* HWY_RESTRICT columns, std::size_t rows, std::size_t lanes,
+                                Row* HWY_RESTRICT row_data) {
+  constexpr std::size_t kWidth = sizeof(Row) / sizeof(float);
+  for (std::size_t lane = 0; lane < rows; ++lane) {
+    float row[kWidth];
+    for (std::size_t i = 0; i < kWidth; ++i) row[i] = columns[i * lanes + lane];
+    std::memcpy(row_data + lane, row, sizeof row);
+  }
 }
 
 }  // namespace HWY_NAMESPACE
