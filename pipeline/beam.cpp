@@ -1,5 +1,6 @@
 #include "pipeline/beam.h"
 
+#include <algorithm>
 #include <string>
 
 #include "pipeline/tiles.h"
@@ -24,7 +25,7 @@ PixelCounters count_per_pixel(const Tile& tile, const ABuffer& buffer, const std
   for (std::size_t pixel = 0; pixel < tile.pixels(); ++pixel) count[pixel] = static_cast<float>(buffer.depth_of(pixel));
   for (const Fragment& fragment : fragments)
     if (fragment.tiny) ++tiny[fragment.pixel];
-  return {{"fragments", count}, {"merges", count}, {"tiny_triangles", std::move(tiny)}};
+  return {{"fragments", std::move(count)}, {"tiny_triangles", std::move(tiny)}};
 }
 
 struct RecordBytes {
@@ -53,7 +54,9 @@ FrameResult render_beam(const Trace& trace, const Frame& frame, const BeamOption
   const PositionSet positions(conserve ? cell_patterns(beam.positions) : std::vector{hammersley_pattern()});
   const MaskTable table(positions.patterns.front());
   const RecordBytes bytes = record_bytes(beam);
-  const BeamFragmentOptions options{beam.mask, positions.patterns, &table, bytes.fragment, !conserve};
+  const BeamFragmentOptions options{beam.mask,
+                                    beam.mask == MaskSource::none ? std::vector<SamplePattern>{} : positions.patterns,
+                                    &table, bytes.fragment, beam.rules == Rules::paper};
   const SortKey key = conserve ? SortKey::nearest : SortKey::centroid;
 
   FrameResult result =
@@ -70,25 +73,29 @@ FrameResult render_beam(const Trace& trace, const Frame& frame, const BeamOption
         std::vector<PixelColor> aggregates;
         switch (beam.rules) {
           case Rules::conserve: {
-            std::vector<float> windows;
+            PixelWindows windows;
             aggregates = compose_window(fragments, buffer, positions, composition, windows);
-            counts.emplace_back("largest_window", std::move(windows));
+            counts.emplace_back("largest_window", std::move(windows.largest));
+            counts.emplace_back("merges", std::move(windows.merges));
             break;
           }
           case Rules::paper:
             aggregates = pixel_colors(compose(fragments, buffer, positions.patterns.front(), composition));
+            counts.emplace_back("merges", counts.front().second);
             break;
           case Rules::over:
             aggregates = pixel_colors(compose_over(fragments, buffer, composition));
+            counts.emplace_back("merges", counts.front().second);
             break;
         }
         return TileResult{resolve(aggregates, frame.background, bytes.aggregate, resolving),
                           std::move(counts),
                           {raster, fragment, shading, buffering, composition, resolving}};
       });
-  const StageCounters& buffering = result.stages[4];
+  const auto buffering = std::find_if(result.stages.begin(), result.stages.end(),
+                                      [](const StageCounters& stage) { return stage.stage == "a_buffer"; });
   result.a_buffer_peak_bytes =
-      a_buffer_bytes(buffering.items_in, std::uint64_t{frame.width} * frame.height, bytes.fragment);
+      a_buffer_bytes(buffering->items_in, std::uint64_t{frame.width} * frame.height, bytes.fragment);
   return result;
 }
 

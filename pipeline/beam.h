@@ -15,8 +15,8 @@ enum class Rules {
 
 struct BeamOptions {
   Rules rules = Rules::conserve;
-  int positions = 256;                  // of the mask: 32, 64, 128 or 256; 32 with the paper's rules
-  MaskSource mask = MaskSource::exact;  // table: 32 positions only
+  int positions = 256;                  // of the mask: 32, 64, 128 or 256; 32 with the paper's rules; 0 without masks
+  MaskSource mask = MaskSource::exact;  // table: 32 positions only; none: with `over`
 };
 
 FrameResult render_beam(const Trace& trace, const Frame& frame, const BeamOptions& beam, const RunOptions& run);

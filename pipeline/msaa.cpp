@@ -22,14 +22,27 @@ int tile_size(int samples) {
   return size;
 }
 
-std::vector<float> fragments_per_pixel(const Tile& tile, std::vector<float> counts,
-                                       const std::vector<SampleFragment>& fragments, const CellGrid& grid) {
-  for (const SampleFragment& fragment : fragments) {
-    const std::int32_t x = fragment.x / grid.columns - tile.x0, y = fragment.y / grid.rows - tile.y0;
-    ++counts[static_cast<std::size_t>(y * tile.width() + x)];
+// Fragments per pixel: what one triangle contributes to one pixel, in however many cells of it.
+class FragmentCounts {
+ public:
+  explicit FragmentCounts(const Tile& tile) : tile_(tile), counts_(tile.pixels()), last_(tile.pixels(), kNoTriangle) {}
+
+  // Fragments of one triangle come one after the other.
+  void add(const std::vector<SampleFragment>& fragments, const CellGrid& grid) {
+    for (const SampleFragment& fragment : fragments) {
+      const std::int32_t x = fragment.x / grid.columns - tile_.x0, y = fragment.y / grid.rows - tile_.y0;
+      const auto pixel = static_cast<std::size_t>(y * tile_.width() + x);
+      counts_[pixel] += last_[pixel] != fragment.triangle;
+      last_[pixel] = fragment.triangle;
+    }
   }
-  return counts;
-}
+  std::vector<float> take() { return std::move(counts_); }
+
+ private:
+  const Tile& tile_;
+  std::vector<float> counts_;
+  std::vector<std::uint32_t> last_;  // triangle counted last
+};
 
 }  // namespace
 
@@ -44,14 +57,13 @@ FrameResult render_msaa(const Trace& trace, const Frame& frame, int samples, con
   StageCounters setup;
   const SetupTriangles triangles = vertex_setup(trace, frame, setup);
   const std::vector<glm::vec3> colors = round_to_half(shade_triangles(triangles, frame.light_direction));
-  const glm::vec3 background = round_to_half({frame.background}).front();
   const Sampling sampling = msaa_sampling(samples);
 
   return render_tiles(
       frame, triangles, setup, tile_size(samples), run, [&](const Tile& tile, const TriangleList& list) {
         StageCounters raster{"sample_raster"}, shading{"shade"}, testing{"depth_test"}, resolving{"resolve"};
         SampleTile surface(tile, sampling);
-        std::vector<float> counts(tile.pixels());
+        FragmentCounts counts(tile);
         std::vector<SampleFragment> fragments;
         for (std::size_t first = 0; first < list.size(); first += kBatchTriangles) {
           const auto begin = list.begin() + static_cast<std::ptrdiff_t>(first);
@@ -61,10 +73,10 @@ FrameResult render_msaa(const Trace& trace, const Frame& frame, int samples, con
           sample_raster(triangles, batch, tile, sampling, raster, fragments);
           shade(fragments, shading);
           depth_test(triangles, fragments, tile, sampling, testing, surface);
-          counts = fragments_per_pixel(tile, std::move(counts), fragments, sampling.grid);
+          counts.add(fragments, sampling.grid);
         }
-        return TileResult{resolve(surface, tile.pixels(), colors, background, resolving),
-                          {{"fragments", std::move(counts)}},
+        return TileResult{resolve(surface, tile.pixels(), colors, frame.background, resolving),
+                          {{"fragments", counts.take()}},
                           {raster, shading, testing, resolving}};
       });
 }

@@ -85,7 +85,7 @@ Technique msaa_technique(const Spec& spec) {
   if (spec.items.size() == 1) {
     const std::string& item = spec.items.front();
     const auto [end, error] = std::from_chars(item.data(), item.data() + item.size(), samples);
-    if (error != std::errc{} || end != item.data() + item.size()) samples = 0;
+    if (error != std::errc{} || end != item.data() + item.size() || item.front() == '0') samples = 0;
   }
   if (samples < 1 || samples > kMaxMsaaSamples || !std::has_single_bit(static_cast<unsigned>(samples)))
     fail(spec, "msaa:N with N = 1, 2, 4, 8, 16, 32, 64, 128, 256, 512 or 1024");
@@ -103,7 +103,7 @@ Technique parse_technique(std::string_view text) {
   if (spec.name == "msaa") return msaa_technique(spec);
   if (spec.name != "alpha" && spec.name != "reference") fail(spec, "beam, alpha, msaa:N or reference");
   if (!spec.items.empty()) fail(spec, "'" + spec.name + "' alone: it has no options");
-  if (spec.name == "alpha") return beam_technique(spec, {Rules::over, 32, MaskSource::table});
+  if (spec.name == "alpha") return beam_technique(spec, {Rules::over, 0, MaskSource::none});
   return {spec.text, reference_framebuffer(), 0, [](const Trace& trace, std::size_t frame, const RunOptions& run) {
             return render_reference(trace, trace.frames.at(frame), run);
           }};

@@ -117,10 +117,10 @@ OperationCounts exact_mask_cost(const SamplePattern& pattern) {  // per pattern
 
 void beam_fragment(const SetupTriangles& triangles, const std::vector<PixelTriangle>& in, const Tile& tile,
                    const BeamFragmentOptions& options, StageCounters& counters, std::vector<Fragment>& out) {
-  const bool use_table = options.mask == MaskSource::table;
+  const bool use_table = options.mask == MaskSource::table, use_tests = options.mask == MaskSource::exact;
   std::vector<CoverageInput<float>> inputs(in.size());
   std::vector<TableTriangle> lookups(use_table ? in.size() : 0);
-  std::vector<CellEdges> cells(use_table ? 0 : in.size());
+  std::vector<CellEdges> cells(use_tests ? in.size() : 0);
   Edge edges[3] = {};
   EdgeDirection directions[3] = {};
   for (std::size_t i = 0; i < in.size(); ++i) {
@@ -134,7 +134,7 @@ void beam_fragment(const SetupTriangles& triangles, const std::vector<PixelTrian
     inputs[i] = coverage_input(triangle, edges, in[i].x, in[i].y);
     if (use_table) {
       lookups[i] = table_edges(edges, directions, in[i].x, in[i].y);
-    } else {
+    } else if (use_tests) {
       cells[i] = exact_edges(edges, in[i].x, in[i].y);
     }
   }
@@ -169,7 +169,7 @@ void beam_fragment(const SetupTriangles& triangles, const std::vector<PixelTrian
     fragment.z_min = c.z_min, fragment.z_max = c.z_max;
     fragment.centroid_z = depth_at(fragment.plane, fragment.centroid_u - 0.5f, fragment.centroid_v - 0.5f);
     fragment.centroid_z = lesser(greater(fragment.centroid_z, c.z_min), c.z_max);
-    fragment.tiny = fragment.mask.none();
+    fragment.tiny = options.mask != MaskSource::none && fragment.mask.none();
     if (fragment.tiny && options.locate_tiny) {
       fragment.mask.set(nearest_position(options.positions, fragment.centroid_u, fragment.centroid_v));
       ++located;

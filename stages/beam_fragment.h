@@ -27,11 +27,12 @@ struct Fragment {
   glm::vec3 color;  // times alpha; 0 until shaded
 };
 
-enum class MaskSource { table, exact };  // the 64 x 64 table (the paper), or the edge tests of sample_raster
+// The 64 x 64 table (the paper), the edge tests of sample_raster, or no masks at all.
+enum class MaskSource { table, exact, none };
 
 struct BeamFragmentOptions {
   MaskSource mask = MaskSource::table;
-  std::vector<SamplePattern> positions;  // of the mask, 32 to a pattern; one pattern for MaskSource::table
+  std::vector<SamplePattern> positions;  // of the mask, 32 to a pattern: one for `table`, any for `exact`
   const MaskTable* table = nullptr;      // for MaskSource::table
   std::uint32_t fragment_bytes = 0;      // of a fragment as it is passed on
   bool locate_tiny = false;              // give a tiny fragment the position nearest to its centroid (section 2.2.1)

@@ -129,8 +129,8 @@ class PixelComposer {
     if (single_ || owner_[position] == kNoTriangle) return true;
     const Fragment& owner = *seen_[owner_[position]].fragment;
     const float u = fragment.centroid_u - 0.5f, v = fragment.centroid_v - 0.5f;
-    const float depth = std::clamp(depth_at(owner.plane, u, v), owner.z_min, owner.z_max);
-    return fragment.centroid_z <= depth + kSurfaceReach * (magnitude(owner.plane.dzdu) + magnitude(owner.plane.dzdv));
+    return fragment.centroid_z <=
+           depth_at(owner.plane, u, v) + kSurfaceReach * (magnitude(owner.plane.dzdu) + magnitude(owner.plane.dzdv));
   }
 
   const PositionSet& positions_;
@@ -143,10 +143,25 @@ class PixelComposer {
   std::uint64_t depth_tests_ = 0, additions_ = 0;
 };
 
-OperationCounts visible_area_cost() {
-  return count_operations([](OperationCounts& counts) {
+// Adding one fragment: its masks word by word, its visible area, and its colour.
+OperationCounts addition_cost(std::size_t words) {
+  return count_operations([&](OperationCounts& counts) {
     const Counted<float> one(1.0f, counts);
-    visible_area(one, one, one, one, Taken<Counted<float>>{one, one});
+    const Counted<std::uint32_t> mask(~0u, counts);
+    Counted<std::uint32_t> taken_mask = mask;
+    Counted<float> covered = one, visible = one;
+    for (std::size_t i = 0; i < words; ++i) {
+      const Counted<std::uint32_t> owned = mask & ~taken_mask;
+      taken_mask = taken_mask | owned;
+      covered = covered + bit_count(mask);
+      visible = visible + bit_count(owned);
+    }
+    Taken<Counted<float>> taken{one, one};
+    const Counted<float> area = visible_area(one, covered, visible, one, taken);
+    taken = {taken.area + area, taken.positions + visible};
+    const Counted<float> share = area / one;
+    Counted<float> color[3] = {one, one, one};
+    for (Counted<float>& channel : color) channel = channel + share * one;
   });
 }
 
@@ -186,12 +201,11 @@ const std::array<std::uint8_t, 3>& PositionSet::nearest_to(float u, float v) con
 }
 
 std::vector<PixelColor> compose_window(const std::vector<Fragment>& fragments, const ABuffer& buffer,
-                                       const PositionSet& positions, StageCounters& counters,
-                                       std::vector<float>& window_sizes) {
+                                       const PositionSet& positions, StageCounters& counters, PixelWindows& windows) {
   const std::size_t pixels = buffer.first.size() - 1;
   PixelComposer composer(positions);
   std::vector<PixelColor> colors(pixels);
-  window_sizes.assign(pixels, 0.0f);
+  windows = {std::vector<float>(pixels), std::vector<float>(pixels)};
   std::vector<const Fragment*> window;
   std::uint64_t looked_at = 0;
   for (std::size_t pixel = 0; pixel < pixels; ++pixel) {
@@ -204,10 +218,11 @@ std::vector<PixelColor> compose_window(const std::vector<Fragment>& fragments, c
       do {
         window.push_back(&at(i));
         farthest = std::max(farthest, at(i).z_max);
-      } while (++i < end && at(i).z_min < farthest);
+      } while (++i < end && at(i).z_min <= farthest);
       std::sort(window.begin(), window.end());  // primitive order: of equal depths the earlier wins
       composer.add_window(window.data(), window.data() + window.size(), aggregate);
-      window_sizes[pixel] = std::max(window_sizes[pixel], static_cast<float>(window.size()));
+      windows.largest[pixel] = std::max(windows.largest[pixel], static_cast<float>(window.size()));
+      windows.merges[pixel] += static_cast<float>(window.size());
       looked_at += window.size();
     }
     // A full mask leaves nothing for the background: what rounding left of the area goes to what is there.
@@ -217,7 +232,7 @@ std::vector<PixelColor> compose_window(const std::vector<Fragment>& fragments, c
   }
   counters.items_in += buffer.fragments.size();
   counters.items_out += pixels;
-  counters.ops += visible_area_cost() * composer.additions();
+  counters.ops += addition_cost(positions.patterns.size()) * composer.additions();
   counters.ops += depth_compare_cost() * composer.depth_tests();
   counters.bytes_read += looked_at * conserving_fragment_bytes(positions.count());
   counters.bytes_written += pixels * conserving_aggregate_bytes(positions.count());

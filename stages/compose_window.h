@@ -39,9 +39,13 @@ constexpr std::uint32_t conserving_fragment_bytes(int positions) {
   return conserving_aggregate_bytes(positions) + 12 + 8 + 4;
 }
 
-// One pixel colour and coverage per pixel of the tile. `window_sizes`: per pixel, the fragments of its largest window.
+// Per pixel: the fragments of its largest window, and those that were looked at before its mask was full.
+struct PixelWindows {
+  std::vector<float> largest, merges;
+};
+
+// One pixel colour and coverage per pixel of the tile.
 std::vector<PixelColor> compose_window(const std::vector<Fragment>& fragments, const ABuffer& buffer,
-                                       const PositionSet& positions, StageCounters& counters,
-                                       std::vector<float>& window_sizes);
+                                       const PositionSet& positions, StageCounters& counters, PixelWindows& windows);
 
 }  // namespace beampipe

@@ -24,7 +24,9 @@ Json to_json(const StageCounters& counters) {
             {"special", ops.special},
             {"convert", ops.convert}}},
           {"bytes_read", counters.bytes_read},
-          {"bytes_written", counters.bytes_written}};
+          {"bytes_written", counters.bytes_written},
+          {"lanes_used", counters.lanes_used},
+          {"lanes_issued", counters.lanes_issued}};
 }
 
 Json to_json(const FrameReport& frame) {

@@ -3,6 +3,9 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
+#include <array>
+#include <cmath>
+#include <numbers>
 
 #include "simd/conserve.h"
 #include "stages/conservative_raster.h"
@@ -26,9 +29,9 @@ std::vector<PixelColor> composed(const SetupTriangles& triangles, const std::vec
                 fragments);
   shade(colors, fragments, counters);
   const ABuffer buffer = a_buffer(fragments, tile.pixels(), SortKey::nearest, 42, counters);
-  std::vector<float> sizes;
+  PixelWindows sizes;
   std::vector<PixelColor> pixels = compose_window(fragments, buffer, positions, counters, sizes);
-  if (windows) *windows = sizes;
+  if (windows) *windows = sizes.largest;
   return pixels;
 }
 
@@ -87,6 +90,38 @@ TEST(ComposeWindow, ASurfaceOfManyTrianglesHidesWhatIsBehind) {
   const PixelColor found = composed(triangles, colors, kPixel, 256).at(0);
   EXPECT_NEAR(found.color.r, 1.0, 2e-6);
   EXPECT_NEAR(found.color.g, 0.0, 2e-6);
+}
+
+// A disc of radius 2 pixels cut into triangles far smaller than the mask's cells, all in one plane, flat or tilted:
+// what is seen of it must be its area, in all pixels together.
+TEST(ComposeWindow, ADenseMeshKeepsItsSilhouette) {
+  constexpr int kRings = 60, kSectors = 240;
+  const Tile tile{0, 0, 8, 8};
+  for (const float tilt : {0.0f, 2e-4f}) {
+    SetupTriangles triangles;
+    const auto at = [&](int ring, int sector) {
+      const double radius = 512.0 * ring / kRings, angle = 2 * std::numbers::pi * sector / kSectors;
+      const auto x = static_cast<std::int32_t>(std::lround(1024 + radius * std::cos(angle)));
+      const auto y = static_cast<std::int32_t>(std::lround(1024 + radius * std::sin(angle)));
+      return ScreenPoint{x, y, -0.5f + tilt * static_cast<float>(x)};
+    };
+    double area = 0;  // in pixels
+    for (int ring = 0; ring < kRings; ++ring)
+      for (int sector = 0; sector < kSectors; ++sector) {
+        const ScreenPoint p = at(ring, sector), q = at(ring + 1, sector), r = at(ring + 1, sector + 1),
+                          s = at(ring, sector + 1);
+        for (const auto& [a, b, c] : {std::array{p, q, r}, std::array{p, r, s}}) {
+          if (twice_area(a, b, c) == 0) continue;
+          area += std::abs(static_cast<double>(twice_area(a, b, c))) / 131072.0;
+          add_triangle(triangles, a, b, c);
+        }
+      }
+    double seen = 0;
+    for (const PixelColor& pixel :
+         composed(triangles, std::vector<glm::vec3>(triangles.triangles.size(), glm::vec3(1)), tile, 256))
+      seen += pixel.color.r;
+    EXPECT_NEAR(seen, area, 0.005 * area) << tilt;
+  }
 }
 
 TEST(ComposeWindow, WeightsOfAClosedSceneSumToOne) {
