@@ -51,7 +51,8 @@ TEST_P(ScenesTest, KeepsToItsTriangles) {
 TEST_P(ScenesTest, HasADefaultSize) {
   const std::map<std::string_view, double> defaults = {{"hairball", 150e3}, {"classroom", 100e3}, {"boat", 60e3},
                                                        {"pickets", 5e3},    {"terrain", 150e3},   {"sphere", 100e3},
-                                                       {"fence", 60e3},     {"soup", 20e3},       {"foliage", 80e3}};
+                                                       {"fence", 60e3},     {"soup", 20e3},       {"foliage", 80e3},   {"bars", 4e3},
+                                                       {"density", 5760}};
   const double wanted = defaults.at(GetParam().name);
   EXPECT_NEAR(static_cast<double>(count(make({}))) / wanted, 1, 0.25);
 }
