@@ -26,7 +26,7 @@ Report sample_report() {
     frame.picture = "msaa_8/frame_000" + std::to_string(index) + ".png";
     frame.wall_ms = {2.0 * static_cast<double>(index), 1.0, 20.0, 3};
     frame.a_buffer_peak_bytes = 100 * (10 - index);
-    frame.stages = {{"vertex_setup", 3, 1, {1, 2, 3, 4, 5, 6}, 36, 80}};
+    frame.stages = {{"vertex_setup", 3, 1, {1, 2, 3, 4, 5, 6}, 36, 80, 3, 4}};
   }
   return report;
 }
@@ -58,8 +58,8 @@ TEST(ReportJson, HasTheKeysOfTheContract) {
   EXPECT_EQ(frame["wall_ms"], (Json{{"median", 10.0}, {"min", 1.0}, {"max", 20.0}, {"runs", 3}}));
   const Json ops = {{"total", 21}, {"mul_add", 1}, {"add", 2},    {"bit", 3},
                     {"fetch", 4},  {"special", 5}, {"convert", 6}};
-  const Json stage = {{"stage", "vertex_setup"}, {"items_in", 3},      {"items_out", 1}, {"ops", ops},
-                      {"bytes_read", 36},        {"bytes_written", 80}};
+  const Json stage = {{"stage", "vertex_setup"}, {"items_in", 3},       {"items_out", 1},  {"ops", ops},
+                      {"bytes_read", 36},        {"bytes_written", 80}, {"lanes_used", 3}, {"lanes_issued", 4}};
   EXPECT_EQ(frame["stages"].at(0), stage);
 }
 
