@@ -37,41 +37,42 @@ FrameResult render_acaa(const Trace& trace, const Frame& frame, const AcaaOption
   for (std::size_t i = 0; i < 2 * rounds.size(); ++i) geometry += setup;
   geometry.stage = setup.stage;
 
-  return render_tiles(frame, triangles, geometry, sample_tile_size(rounds.front().pattern.count), run,
-                      [&](const Tile& tile, const TriangleList& list) {
-                        StageCounters raster{"sample_raster"}, testing{"depth_test"}, stencil{"stencil_test"},
-                            shading{"shade"}, accumulation{"accumulate"}, resolving{"resolve"};
-                        Accumulator accumulator(tile, options.samples, options.color, options.double_counting);
-                        std::vector<float> counts(tile.pixels());
-                        std::vector<SampleFragment> fragments;
-                        for (const Sampling& sampling : rounds) {
-                          SampleTile depth(tile, sampling, 0);
-                          const auto raster_batch = [&](const TriangleList& batch) {
-                            fragments.clear();
-                            sample_raster(triangles, batch, tile, sampling, raster, fragments);
-                          };
-                          for_each_batch(list, [&](const TriangleList& batch) {
-                            raster_batch(batch);
-                            depth_test(triangles, fragments, tile, sampling, testing, depth);
-                          });
-                          accumulate_background(depth, frame.background, accumulation, accumulator);
-                          for_each_batch(list, [&](const TriangleList& batch) {
-                            raster_batch(batch);
-                            depth_test_equal(triangles, tile, sampling, testing, depth, fragments);
-                            if (options.double_counting == DoubleCounting::stencil)
-                              stencil_test(tile, stencil, accumulator, fragments);
-                            shade(fragments, shading);
-                            accumulate(fragments, colors, tile, accumulation, accumulator);
-                            count_fragments(fragments, tile, sampling.grid, counts);
-                          });
-                        }
-                        TileResult result{resolve(accumulator, resolving),
-                                          {{"visible_fragments", std::move(counts)}},
-                                          {raster, testing}};
-                        if (options.double_counting == DoubleCounting::stencil) result.stages.push_back(stencil);
-                        result.stages.insert(result.stages.end(), {shading, accumulation, resolving});
-                        return result;
-                      });
+  const TileRenderer render_tile = [&](const Tile& tile, const TriangleList& list) {
+    StageCounters raster{"sample_raster"}, testing{"depth_test"}, stencil{"stencil_test"}, shading{"shade"},
+        accumulation{"accumulate"}, resolving{"resolve"};
+    Accumulator accumulator(tile, options.samples, options.color, options.double_counting);
+    std::vector<float> counts(tile.pixels());
+    std::vector<SampleFragment> fragments;
+    for (const Sampling& sampling : rounds) {
+      SampleTile depth(tile, sampling, 0);
+      const auto raster_batch = [&](const TriangleList& batch) {
+        fragments.clear();
+        sample_raster(triangles, batch, tile, sampling, raster, fragments);
+      };
+      for_each_batch(list, [&](const TriangleList& batch) {
+        raster_batch(batch);
+        depth_test(triangles, fragments, tile, sampling, testing, depth);
+      });
+      if (options.double_counting == DoubleCounting::saturate)
+        accumulate_background(depth, frame.background, accumulation, accumulator);
+      accumulator.taken.assign(tile.pixels(), 0);
+      for_each_batch(list, [&](const TriangleList& batch) {
+        raster_batch(batch);
+        depth_test_equal(triangles, tile, sampling, testing, depth, fragments);
+        if (options.double_counting == DoubleCounting::stencil) stencil_test(tile, stencil, accumulator, fragments);
+        shade(fragments, shading);
+        accumulate(fragments, colors, tile, accumulation, accumulator);
+        count_fragments(fragments, tile, sampling.grid, counts);
+      });
+    }
+    TileResult result{resolve(accumulator, frame.background, resolving),
+                      {{"visible_fragments", std::move(counts)}},
+                      {raster, testing}};
+    if (options.double_counting == DoubleCounting::stencil) result.stages.push_back(stencil);
+    result.stages.insert(result.stages.end(), {shading, accumulation, resolving});
+    return result;
+  };
+  return render_tiles(frame, triangles, geometry, sample_tile_size(rounds.front().pattern.count), run, render_tile);
 }
 
 std::vector<Surface> acaa_framebuffer(const AcaaOptions& options) {

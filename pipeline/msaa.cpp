@@ -32,32 +32,32 @@ FrameResult render_msaa(const Trace& trace, const Frame& frame, const MsaaOption
   const Sampling sampling = msaa_sampling(options.samples);
   if (options.prepass) setup += setup;  // the triangles come twice
 
-  return render_tiles(
-      frame, triangles, setup, sample_tile_size(options.samples), run, [&](const Tile& tile, const TriangleList& list) {
-        StageCounters raster{"sample_raster"}, shading{"shade"}, testing{"depth_test"}, resolving{"resolve"};
-        SampleTile surface(tile, sampling, options.prepass ? 0 : color_bytes(options));
-        std::vector<float> counts(tile.pixels());
-        std::vector<SampleFragment> fragments;
-        for_each_batch(list, [&](const TriangleList& batch) {
-          fragments.clear();
-          sample_raster(triangles, batch, tile, sampling, raster, fragments);
-          if (!options.prepass) shade(fragments, shading);
-          depth_test(triangles, fragments, tile, sampling, testing, surface);
-          count_fragments(fragments, tile, sampling.grid, counts);
-        });
-        surface.color_bytes = color_bytes(options);
-        if (options.prepass) {  // shades and writes what is visible; which triangle that is, the surface knows already
-          for_each_batch(list, [&](const TriangleList& batch) {
-            fragments.clear();
-            sample_raster(triangles, batch, tile, sampling, raster, fragments);
-            depth_test_equal(triangles, tile, sampling, testing, surface, fragments);
-            shade(fragments, shading);
-          });
-        }
-        return TileResult{resolve(surface, tile.pixels(), colors, background, resolving),
-                          {{"fragments", std::move(counts)}},
-                          {raster, shading, testing, resolving}};
+  const TileRenderer render_tile = [&](const Tile& tile, const TriangleList& list) {
+    StageCounters raster{"sample_raster"}, shading{"shade"}, testing{"depth_test"}, resolving{"resolve"};
+    SampleTile surface(tile, sampling, options.prepass ? 0 : color_bytes(options));
+    std::vector<float> counts(tile.pixels());
+    std::vector<SampleFragment> fragments;
+    for_each_batch(list, [&](const TriangleList& batch) {
+      fragments.clear();
+      sample_raster(triangles, batch, tile, sampling, raster, fragments);
+      if (!options.prepass) shade(fragments, shading);
+      depth_test(triangles, fragments, tile, sampling, testing, surface);
+      count_fragments(fragments, tile, sampling.grid, counts);
+    });
+    surface.color_bytes = color_bytes(options);
+    if (options.prepass) {  // shades and writes what is visible; which triangle that is, the surface knows already
+      for_each_batch(list, [&](const TriangleList& batch) {
+        fragments.clear();
+        sample_raster(triangles, batch, tile, sampling, raster, fragments);
+        depth_test_equal(triangles, tile, sampling, testing, surface, fragments);
+        shade(fragments, shading);
       });
+    }
+    return TileResult{resolve(surface, tile.pixels(), colors, background, resolving),
+                      {{"fragments", std::move(counts)}},
+                      {raster, shading, testing, resolving}};
+  };
+  return render_tiles(frame, triangles, setup, sample_tile_size(options.samples), run, render_tile);
 }
 
 std::vector<Surface> msaa_framebuffer(const MsaaOptions& options) {

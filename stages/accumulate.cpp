@@ -76,7 +76,7 @@ Accumulator::Accumulator(const Tile& tile, int samples, AccumulatorFormat accumu
       double_counting(counting),
       sample_share(1.0f / static_cast<float>(samples)),
       color(tile.pixels(), glm::vec4(0.0f)),
-      covered(tile.pixels(), 1.0f),
+      background(tile.pixels(), 0.0f),
       taken(tile.pixels(), 0) {}
 
 void accumulate_background(const SampleTile& depth, const glm::vec3& background, StageCounters& counters,
@@ -87,10 +87,9 @@ void accumulate_background(const SampleTile& depth, const glm::vec3& background,
     std::uint32_t clear = 0;
     for (std::size_t s = 0; s < samples; ++s)
       clear |= std::uint32_t{depth.depth[pixel * samples + s] == kFarDepth} << s;
-    accumulator.taken[pixel] = 0;
     if (clear == 0) continue;
     add(accumulator, pixel, background, clear);
-    accumulator.covered[pixel] -= bit_count(clear) * accumulator.sample_share;
+    accumulator.background[pixel] += bit_count(clear) * accumulator.sample_share;
     ++fragments;
   }
   counters.bytes_read += accumulator.color.size() * samples * kSampleDepthBytes;
@@ -125,16 +124,22 @@ void accumulate(const std::vector<SampleFragment>& fragments, const std::vector<
   count(fragments.size(), accumulator, counters);
 }
 
-std::vector<glm::vec4> resolve(const Accumulator& accumulator, StageCounters& counters) {
-  std::vector<glm::vec4> image = accumulator.color;
-  for (std::size_t i = 0; i < image.size(); ++i) image[i].a = std::max(accumulator.covered[i], 0.0f);
-  counters.items_in += image.size();
-  counters.items_out += image.size();
-  counters.ops.convert += 3 * image.size();
-  counters.bytes_read += image.size() * accumulator_bytes(accumulator.format);
-  counters.bytes_written += image.size() * 6;  // fp16 RGB
-  counters.lanes_used += image.size();
-  counters.lanes_issued += image.size();
+std::vector<glm::vec4> resolve(const Accumulator& accumulator, const glm::vec3& background, StageCounters& counters) {
+  std::vector<glm::vec4> image;
+  image.reserve(accumulator.color.size());
+  for (std::size_t i = 0; i < accumulator.color.size(); ++i) {
+    const glm::vec4& sum = accumulator.color[i];
+    const float left = std::max(1.0f - sum.a, 0.0f);
+    image.emplace_back(glm::vec3(sum) + background * left, std::clamp(sum.a - accumulator.background[i], 0.0f, 1.0f));
+  }
+  const std::size_t pixels = image.size();
+  counters.items_in += pixels;
+  counters.items_out += pixels;
+  counters.ops += OperationCounts{3, 2, 0, 0, 0, 4} * pixels;  // colour + background x max(1 - alpha, 0)
+  counters.bytes_read += pixels * accumulator_bytes(accumulator.format);
+  counters.bytes_written += pixels * 6;  // fp16 RGB
+  counters.lanes_used += pixels;
+  counters.lanes_issued += pixels;
   return image;
 }
 

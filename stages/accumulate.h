@@ -26,16 +26,16 @@ std::uint32_t accumulator_bytes(AccumulatorFormat format);
 struct Accumulator {
   AccumulatorFormat format;
   DoubleCounting double_counting;
-  float sample_share;            // of the pixel: 1 / samples of all passes
-  std::vector<glm::vec4> color;  // one per pixel of the tile; alpha: the shares so far
-  std::vector<float> covered;    // the part of the pixel that geometry covers: the image's A, not a modelled surface
-  std::vector<std::uint32_t> taken;  // stencil: samples that were passed before, in this pass
+  float sample_share;                // of the pixel: 1 / samples of all passes
+  std::vector<glm::vec4> color;      // one per pixel of the tile; alpha: the shares so far
+  std::vector<float> background;     // the share of accumulate_background: only to know the image's A
+  std::vector<std::uint32_t> taken;  // stencil: samples that were passed before, since it was cleared
 
   Accumulator(const Tile& tile, int samples, AccumulatorFormat accumulator_format, DoubleCounting counting);
 };
 
-// Begins a pass: forgets the stencil, and adds the background for the samples that the depth-only pass left clear. The
-// background comes first so that alpha saturates at what geometry covers.
+// For DoubleCounting::saturate, before the fragments: adds the background for the samples that the depth-only pass left
+// clear, so that alpha saturates at what geometry covers. It costs reading all depths once more.
 void accumulate_background(const SampleTile& depth, const glm::vec3& background, StageCounters& counters,
                            Accumulator& accumulator);
 
@@ -47,7 +47,7 @@ void stencil_test(const Tile& tile, StageCounters& counters, Accumulator& accumu
 void accumulate(const std::vector<SampleFragment>& fragments, const std::vector<glm::vec3>& colors, const Tile& tile,
                 StageCounters& counters, Accumulator& accumulator);
 
-// The accumulators are the image.
-std::vector<glm::vec4> resolve(const Accumulator& accumulator, StageCounters& counters);
+// Over the background, by what alpha leaves of it.
+std::vector<glm::vec4> resolve(const Accumulator& accumulator, const glm::vec3& background, StageCounters& counters);
 
 }  // namespace beampipe
