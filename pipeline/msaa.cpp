@@ -1,8 +1,8 @@
 #include "pipeline/msaa.h"
 
-#include <algorithm>
 #include <string>
 
+#include "pipeline/sample_batches.h"
 #include "pipeline/tiles.h"
 #include "stages/depth_test.h"
 #include "stages/resolve.h"
@@ -13,36 +13,7 @@
 namespace beampipe {
 namespace {
 
-constexpr int kTileSamples = 1 << 16;         // that a tile holds: 512 KiB of depth and owners
-constexpr std::size_t kBatchTriangles = 512;  // between raster and depth test, so that fragments stay in cache
-
-int tile_size(int samples) {
-  int size = 64;
-  while (size > 2 && size * size * samples > kTileSamples) size /= 2;
-  return size;
-}
-
-// Fragments per pixel: what one triangle contributes to one pixel, in however many cells of it.
-class FragmentCounts {
- public:
-  explicit FragmentCounts(const Tile& tile) : tile_(tile), counts_(tile.pixels()), last_(tile.pixels(), kNoTriangle) {}
-
-  // Fragments of one triangle come one after the other.
-  void add(const std::vector<SampleFragment>& fragments, const CellGrid& grid) {
-    for (const SampleFragment& fragment : fragments) {
-      const std::int32_t x = fragment.x / grid.columns - tile_.x0, y = fragment.y / grid.rows - tile_.y0;
-      const auto pixel = static_cast<std::size_t>(y * tile_.width() + x);
-      counts_[pixel] += last_[pixel] != fragment.triangle;
-      last_[pixel] = fragment.triangle;
-    }
-  }
-  std::vector<float> take() { return std::move(counts_); }
-
- private:
-  const Tile& tile_;
-  std::vector<float> counts_;
-  std::vector<std::uint32_t> last_;  // triangle counted last
-};
+std::uint32_t color_bytes(const MsaaOptions& options) { return options.rgba ? 8 : kSampleColorBytes; }
 
 }  // namespace
 
@@ -53,38 +24,46 @@ Sampling msaa_sampling(int samples) {
   return {grid, standard_pattern(8, grid.cell_width(), grid.cell_height())};
 }
 
-FrameResult render_msaa(const Trace& trace, const Frame& frame, int samples, const RunOptions& run) {
+FrameResult render_msaa(const Trace& trace, const Frame& frame, const MsaaOptions& options, const RunOptions& run) {
   StageCounters setup;
   const SetupTriangles triangles = vertex_setup(trace, frame, setup);
   const std::vector<glm::vec3> colors = round_to_half(shade_triangles(triangles, frame.light_direction));
-  const Sampling sampling = msaa_sampling(samples);
+  const Sampling sampling = msaa_sampling(options.samples);
+  if (options.prepass) setup += setup;  // the triangles come twice
 
-  return render_tiles(
-      frame, triangles, setup, tile_size(samples), run, [&](const Tile& tile, const TriangleList& list) {
-        StageCounters raster{"sample_raster"}, shading{"shade"}, testing{"depth_test"}, resolving{"resolve"};
-        SampleTile surface(tile, sampling);
-        FragmentCounts counts(tile);
-        std::vector<SampleFragment> fragments;
-        for (std::size_t first = 0; first < list.size(); first += kBatchTriangles) {
-          const auto begin = list.begin() + static_cast<std::ptrdiff_t>(first);
-          const TriangleList batch(begin,
-                                   begin + static_cast<std::ptrdiff_t>(std::min(kBatchTriangles, list.size() - first)));
-          fragments.clear();
-          sample_raster(triangles, batch, tile, sampling, raster, fragments);
-          shade(fragments, shading);
-          depth_test(triangles, fragments, tile, sampling, testing, surface);
-          counts.add(fragments, sampling.grid);
-        }
-        return TileResult{resolve(surface, tile.pixels(), colors, frame.background, resolving),
-                          {{"fragments", counts.take()}},
-                          {raster, shading, testing, resolving}};
+  const TileRenderer render_tile = [&](const Tile& tile, const TriangleList& list) {
+    StageCounters raster{"sample_raster"}, shading{"shade"}, testing{"depth_test"}, resolving{"resolve"};
+    SampleTile surface(tile, sampling, options.prepass ? 0 : color_bytes(options));
+    std::vector<float> counts(tile.pixels());
+    std::vector<SampleFragment> fragments;
+    for_each_batch(list, [&](const TriangleList& batch) {
+      fragments.clear();
+      sample_raster(triangles, batch, tile, sampling, raster, fragments);
+      if (!options.prepass) shade(fragments, shading);
+      depth_test(triangles, fragments, tile, sampling, testing, surface);
+      count_fragments(fragments, tile, sampling.grid, counts);
+    });
+    surface.color_bytes = color_bytes(options);
+    if (options.prepass) {  // shades and writes what is visible; which triangle that is, the surface knows already
+      for_each_batch(list, [&](const TriangleList& batch) {
+        fragments.clear();
+        sample_raster(triangles, batch, tile, sampling, raster, fragments);
+        depth_test_equal(triangles, tile, sampling, testing, surface, fragments);
+        shade(fragments, shading);
       });
+    }
+    return TileResult{resolve(surface, tile.pixels(), colors, frame.background, resolving),
+                      {{"fragments", std::move(counts)}},
+                      {raster, shading, testing, resolving}};
+  };
+  return render_tiles(frame, triangles, setup, sample_tile_size(options.samples), run, render_tile);
 }
 
-std::vector<Surface> msaa_framebuffer(int samples) {
-  const auto n = static_cast<std::uint32_t>(samples);
-  const std::string times = " x " + std::to_string(samples);
-  return {{"depth", "D32F" + times, n * kSampleDepthBytes}, {"color", "RGB16F" + times, n * kSampleColorBytes}};
+std::vector<Surface> msaa_framebuffer(const MsaaOptions& options) {
+  const auto n = static_cast<std::uint32_t>(options.samples);
+  const std::string times = " x " + std::to_string(n);
+  return {{"depth", "D32F" + times, n * kSampleDepthBytes},
+          {"color", (options.rgba ? "RGBA16F" : "RGB16F") + times, n * color_bytes(options)}};
 }
 
 }  // namespace beampipe

@@ -12,8 +12,14 @@ inline constexpr int kMaxMsaaSamples = 1024;
 // `samples`: a power of two, 1..1024. Above 16, the pixel is a grid of samples / 8 cells, at least as wide as high.
 Sampling msaa_sampling(int samples);
 
-FrameResult render_msaa(const Trace& trace, const Frame& frame, int samples, const RunOptions& run);
+struct MsaaOptions {
+  int samples = 1;
+  bool rgba = false;     // fp16 RGBA samples in place of RGB: 12 bytes per sample with depth, as the ACAA talk counts
+  bool prepass = false;  // depth first, so that only what is visible is shaded. The image is the same.
+};
 
-std::vector<Surface> msaa_framebuffer(int samples);
+FrameResult render_msaa(const Trace& trace, const Frame& frame, const MsaaOptions& options, const RunOptions& run);
+
+std::vector<Surface> msaa_framebuffer(const MsaaOptions& options);
 
 }  // namespace beampipe

@@ -1,122 +1,160 @@
 #include "pipeline/technique.h"
 
-#include <algorithm>
-#include <bit>
-#include <charconv>
-#include <optional>
-
 #include "hwy/targets.h"
+#include "pipeline/acaa.h"
 #include "pipeline/beam.h"
+#include "pipeline/dvm.h"
 #include "pipeline/msaa.h"
 #include "pipeline/reference.h"
+#include "pipeline/spec.h"
+#include "pipeline/taa.h"
+#include "pipeline/visibility.h"
 
 namespace beampipe {
 namespace {
 
-// "name[:item[,item...]]", an item being "value" or "key=value".
-struct Spec {
-  std::string text, name;
-  std::vector<std::string> items;
-};
-
-[[noreturn]] void fail(const Spec& spec, const std::string& expected) {
-  throw SpecError("technique '" + spec.text + "': expected " + expected);
-}
-
-Spec split_spec(std::string_view text) {
-  Spec spec{std::string(text), std::string(text.substr(0, text.find(':'))), {}};
-  if (spec.name.size() == text.size()) return spec;
-  std::string_view rest = text.substr(spec.name.size() + 1);
-  for (bool more = true; more;) {
-    const std::size_t comma = rest.find(',');
-    more = comma != std::string_view::npos;
-    spec.items.emplace_back(rest.substr(0, comma));
-    if (more) rest.remove_prefix(comma + 1);
-  }
-  return spec;
-}
-
-// "beam[:key=value,...]": rules=conserve|paper; bits=N with conserve; mask=table|exact with the 32 bits of paper.
-BeamOptions beam_options(const Spec& spec) {
-  std::map<std::string, std::string> values;
-  for (const std::string& item : spec.items) {
-    const std::size_t equals = std::min(item.find('='), item.size());
-    const std::string key = item.substr(0, equals);
-    if (key != "rules" && key != "bits" && key != "mask") fail(spec, "options rules, bits or mask, as key=value");
-    if (!values.emplace(key, item.substr(std::min(equals + 1, item.size()))).second) fail(spec, key + " once");
-  }
-  const auto choose = [&]<class Value>(const std::string& key, Value& value,
-                                       const std::vector<std::pair<std::string, Value>>& choices) {
-    const auto given = values.find(key);
-    if (given == values.end()) return;
-    std::string names;
-    for (const auto& [name, choice] : choices) {
-      if (given->second == name) return void(value = choice);
-      names += (names.empty() ? "" : "|") + name;
-    }
-    fail(spec, key + "=" + names);
+// The render function of a technique that takes its frame and its options.
+template <class Render, class Options>
+auto bind_options(Render* render, const Options& options) {
+  return [=](const Trace& trace, std::size_t frame, const RunOptions& run) {
+    return render(trace, trace.frames.at(frame), options, run);
   };
+}
+
+Technique make_beam(Spec& spec) {
   BeamOptions options;
-  choose("rules", options.rules,
-         std::vector<std::pair<std::string, Rules>>{{"conserve", Rules::conserve}, {"paper", Rules::paper}});
+  options.rules = spec.choice<Rules>("rules", {{"conserve", Rules::conserve}, {"paper", Rules::paper}});
   if (options.rules == Rules::paper) {
-    if (values.count("bits")) fail(spec, "no bits with rules=paper: its masks have 32");
     options.positions = 32;
-    options.mask = MaskSource::table;
-    choose("mask", options.mask,
-           std::vector<std::pair<std::string, MaskSource>>{{"table", MaskSource::table}, {"exact", MaskSource::exact}});
+    options.mask = spec.choice<MaskSource>("mask", {{"table", MaskSource::table}, {"exact", MaskSource::exact}});
   } else {
-    if (values.count("mask")) fail(spec, "mask only with rules=paper: other masks are exact");
-    choose("bits", options.positions,
-           std::vector<std::pair<std::string, int>>{{"32", 32}, {"64", 64}, {"128", 128}, {"256", 256}});
+    options.positions = spec.choice<int>("bits", {{"256", 256}, {"128", 128}, {"64", 64}, {"32", 32}});
   }
-  return options;
+  return {spec.text(), beam_framebuffer(options), 0, bind_options(render_beam, options)};
 }
 
-Technique beam_technique(const Spec& spec, const BeamOptions& options) {
-  return {spec.text, beam_framebuffer(options), 0,
-          [options](const Trace& trace, std::size_t frame, const RunOptions& run) {
-            return render_beam(trace, trace.frames.at(frame), options, run);
-          }};
+Technique make_alpha(Spec& spec) {
+  const BeamOptions options{Rules::over, 0, MaskSource::none};
+  return {spec.text(), beam_framebuffer(options), 0, bind_options(render_beam, options)};
 }
 
-Technique msaa_technique(const Spec& spec) {
-  int samples = 0;
-  if (spec.items.size() == 1) {
-    const std::string& item = spec.items.front();
-    const auto [end, error] = std::from_chars(item.data(), item.data() + item.size(), samples);
-    if (error != std::errc{} || end != item.data() + item.size() || item.front() == '0') samples = 0;
-  }
-  if (samples < 1 || samples > kMaxMsaaSamples || !std::has_single_bit(static_cast<unsigned>(samples)))
-    fail(spec, "msaa:N with N = 1, 2, 4, 8, 16, 32, 64, 128, 256, 512 or 1024");
-  return {spec.text, msaa_framebuffer(samples), static_cast<std::uint32_t>(samples),
-          [samples](const Trace& trace, std::size_t frame, const RunOptions& run) {
-            return render_msaa(trace, trace.frames.at(frame), samples, run);
-          }};
+Technique make_msaa(Spec& spec) {
+  MsaaOptions options;
+  options.samples = spec.samples(kMaxMsaaSamples);
+  options.rgba = spec.choice<bool>("color", {{"rgb16f", false}, {"rgba16f", true}});
+  options.prepass = spec.flag("prepass");
+  return {spec.text(), msaa_framebuffer(options), static_cast<std::uint32_t>(options.samples),
+          bind_options(render_msaa, options)};
 }
 
-}  // namespace
+Technique make_acaa(Spec& spec) {
+  AcaaOptions options;
+  options.samples = spec.samples(kMaxAcaaSamples);
+  options.double_counting = spec.choice<DoubleCounting>(
+      "double",
+      {{"none", DoubleCounting::none}, {"stencil", DoubleCounting::stencil}, {"saturate", DoubleCounting::saturate}});
+  options.color = spec.choice<AccumulatorFormat>(
+      "color",
+      {{"fp16", AccumulatorFormat::fp16}, {"unorm8", AccumulatorFormat::unorm8}, {"fp32", AccumulatorFormat::fp32}});
+  return {spec.text(), acaa_framebuffer(options), 0, bind_options(render_acaa, options)};
+}
 
-Technique parse_technique(std::string_view text) {
-  const Spec spec = split_spec(text);
-  if (spec.name == "beam") return beam_technique(spec, beam_options(spec));
-  if (spec.name == "msaa") return msaa_technique(spec);
-  if (spec.name != "alpha" && spec.name != "reference") fail(spec, "beam, alpha, msaa:N or reference");
-  if (!spec.items.empty()) fail(spec, "'" + spec.name + "' alone: it has no options");
-  if (spec.name == "alpha") return beam_technique(spec, {Rules::over, 0, MaskSource::none});
-  return {spec.text, reference_framebuffer(), 0, [](const Trace& trace, std::size_t frame, const RunOptions& run) {
+Technique make_deferred(Spec& spec) {
+  return {spec.text(), deferred_framebuffer(), 0, bind_options(render_deferred, VisibilityOptions{})};
+}
+
+Technique make_visibility(Spec& spec) {
+  return {spec.text(), visibility_framebuffer(), 0, bind_options(render_visibility, VisibilityOptions{})};
+}
+
+Technique make_taa(Spec& spec) {
+  TaaOptions options;
+  options.samples = spec.samples(kMaxTaaSamples);
+  options.blend = static_cast<float>(spec.number("blend", options.blend, 0.001, 1));
+  return {spec.text(), taa_framebuffer(), 0, bind_options(render_taa, options)};
+}
+
+Technique make_dvm(Spec& spec) {
+  DvmOptions options;
+  options.blend = static_cast<float>(spec.number("blend", options.blend, 0.001, 1));
+  options.seed = static_cast<std::uint32_t>(spec.number("seed", options.seed, 0, 4294967295.0));
+  options.material = spec.choice<MaterialBy>("material", {{"color", MaterialBy::color}, {"draw", MaterialBy::draw}});
+  return {spec.text(), dvm_framebuffer(), 0, bind_options(render_dvm, options)};
+}
+
+Technique make_reference(Spec& spec) {
+  return {spec.text(), reference_framebuffer(), 0, [](const Trace& trace, std::size_t frame, const RunOptions& run) {
             return render_reference(trace, trace.frames.at(frame), run);
           }};
 }
 
+struct Kind {
+  std::string_view name;
+  const char* usage;  // behind "expected"
+  const char* help;   // lines
+  Technique (*make)(Spec&);
+};
+
+constexpr Kind kKinds[] = {
+    {"beam", "beam, beam:bits=256|128|64|32, beam:rules=paper or beam:rules=paper,mask=table|exact",
+     "  beam         sorted fragments with analytic coverage and a mask, one area-conserving aggregate per pixel\n"
+     "               beam:bits=N      N = 32, 64, 128 or 256 (the default) mask positions\n"
+     "               beam:rules=paper the published rules: 32-bit mask, depth slab\n"
+     "               beam:rules=paper,mask=exact  its masks from edge tests in place of the 64 x 64 table\n",
+     make_beam},
+    {"alpha", "'alpha' alone: it has no options", "  alpha        the same fragments, plain OVER, no mask\n",
+     make_alpha},
+    {"msaa",
+     "msaa:N with N = 1, 2, 4, 8, 16, 32, 64, 128, 256, 512 or 1024; then, if wanted, color=rgb16f|rgba16f and prepass",
+     "  msaa:N       multisampling, N = 1, 2, 4, ... 1024; above 16: super-resolution of 8x\n"
+     "               msaa:N,color=rgba16f  8 bytes of colour per sample in place of 6\n"
+     "               msaa:N,prepass        depth first, so that only visible fragments are shaded; the same picture\n",
+     make_msaa},
+    {"acaa",
+     "acaa:N with N = 1, 2, 4, 8, 16, 32, 64, 128 or 256; then, if wanted, double=none|stencil|saturate and "
+     "color=fp16|unorm8|fp32",
+     "  acaa:N       accumulative antialiasing: N depth samples, one colour accumulator; N = 1, 2, 4, ... 256\n"
+     "               acaa:N,double=none|stencil|saturate  what keeps equal depths from counting twice (none)\n"
+     "               acaa:N,color=fp16|unorm8|fp32        the accumulator's format (fp16)\n",
+     make_acaa},
+    {"deferred", "'deferred' alone: it has no options",
+     "  deferred     1x: depth, G-buffer in 2x2 quads, then lighting per pixel\n", make_deferred},
+    {"visibility", "'visibility' alone: it has no options",
+     "  visibility   1x: triangle ids and depth, then shading per pixel\n", make_visibility},
+    {"taa", "taa:N with N = 1, 2, 4, 8 or 16; then, if wanted, blend=T with T from 0.001 to 1",
+     "  taa:N        temporal antialiasing of 1x visibility, jittered over N positions\n"
+     "               taa:N,blend=T  weight of each new frame (0.1)\n",
+     make_taa},
+    {"dvm", "dvm or dvm:blend=T,seed=S,material=color|draw with T from 0.001 to 1 and S from 0 to 4294967295",
+     "  dvm          decoupled visibility: 8x triangle ids, 4 shaded samples per 2x2 quad, spread by their masks\n"
+     "               dvm:blend=T  weight of each new frame (0.1); dvm:seed=S  of the random choices (1)\n"
+     "               dvm:material=color|draw  what samples are shared by: draw and Kd (the default), or draw alone\n",
+     make_dvm},
+    {"reference", "'reference' alone: it has no options",
+     "  reference    4096 samples per pixel, double precision: the truth that errors are measured against\n",
+     make_reference},
+};
+
+}  // namespace
+
+Technique parse_technique(std::string_view text) {
+  std::string names;
+  for (const Kind& kind : kKinds) {
+    if (kind.name == spec_name(text)) {
+      Spec spec(text, kind.usage);
+      Technique technique = kind.make(spec);
+      spec.finish();
+      return technique;
+    }
+    names.append(names.empty() ? "one of " : ", ").append(kind.name);
+  }
+  Spec(text, names).fail();
+}
+
 std::string technique_help() {
-  return "  beam         sorted fragments with analytic coverage and a mask, one area-conserving aggregate per pixel\n"
-         "               beam:bits=N      N = 32, 64, 128 or 256 (the default) mask positions\n"
-         "               beam:rules=paper the published rules: 32-bit mask, depth slab\n"
-         "               beam:rules=paper,mask=exact  its masks from edge tests in place of the 64 x 64 table\n"
-         "  alpha        the same fragments, plain OVER, no mask\n"
-         "  msaa:N       multisampling, N = 1, 2, 4, ... 1024; above 16: super-resolution of 8x\n"
-         "  reference    4096 samples per pixel, double precision: the truth that errors are measured against\n";
+  std::string help;
+  for (const Kind& kind : kKinds) help += kind.help;
+  return help;
 }
 
 std::string simd_target() { return hwy::TargetName(hwy::SupportedTargets() & -hwy::SupportedTargets()); }

@@ -11,12 +11,16 @@
 #include <vector>
 
 #include "stages/counters.h"
+#include "stages/temporal.h"
 #include "traces/trace.h"
 
 namespace beampipe {
 
 struct RunOptions {
   int threads = 0;  // 0: all that the machine has. The result does not depend on it.
+  // What earlier frames left, for techniques that accumulate over time: read, and made ready for the next frame. One
+  // per technique; frames in order. Null: the frame is a first one.
+  History* history = nullptr;
 };
 
 // Linear RGB plus A (the part of the pixel that geometry covers, 0..1); row 0 on top; 4 floats per pixel.
@@ -57,8 +61,7 @@ struct SpecError : std::runtime_error {
   using std::runtime_error::runtime_error;
 };
 
-// "beam", "beam:bits=128", "beam:rules=paper", "alpha", "msaa:N" (N a power of two, 1..1024), "reference". Throws
-// SpecError.
+// "beam", "msaa:8", "acaa:8,double=stencil", ...: those that technique_help() lists. Throws SpecError.
 Technique parse_technique(std::string_view spec);
 
 // Lines "SPEC  what it is", for --help.

@@ -86,4 +86,24 @@ FrameResult render_tiles(const Frame& frame, const SetupTriangles& triangles, co
   return frame_result;
 }
 
+void copy_to_frame(const float* tile_values, const Tile& tile, const Frame& frame, std::vector<float>& frame_values) {
+  for (std::int32_t y = tile.y0; y < tile.y1; ++y) {
+    const std::size_t row = static_cast<std::size_t>(y) * frame.width + static_cast<std::size_t>(tile.x0);
+    std::copy_n(tile_values + (y - tile.y0) * tile.width(), tile.width(),
+                frame_values.begin() + static_cast<std::ptrdiff_t>(row));
+  }
+}
+
+std::vector<glm::vec4> pixels_of(const Image& image) {
+  std::vector<glm::vec4> pixels(image.rgba.size() / 4);
+  for (std::size_t i = 0; i < image.rgba.size(); ++i) pixels[i / 4][static_cast<int>(i % 4)] = image.rgba[i];
+  return pixels;
+}
+
+Image image_of(const Frame& frame, const std::vector<glm::vec4>& pixels) {
+  Image image{frame.width, frame.height, std::vector<float>(4 * pixels.size())};
+  for (std::size_t i = 0; i < image.rgba.size(); ++i) image.rgba[i] = pixels[i / 4][static_cast<int>(i % 4)];
+  return image;
+}
+
 }  // namespace beampipe

@@ -28,4 +28,10 @@ using TileRenderer = std::function<TileResult(const Tile&, const TriangleList&)>
 FrameResult render_tiles(const Frame& frame, const SetupTriangles& triangles, const StageCounters& vertex_setup,
                          int tile_size, const RunOptions& options, const TileRenderer& renderer);
 
+// For stages that work on whole frames. A tile's values, one per pixel, go to their places in `frame_values`; tiles may
+// do so at the same time.
+void copy_to_frame(const float* tile_values, const Tile& tile, const Frame& frame, std::vector<float>& frame_values);
+std::vector<glm::vec4> pixels_of(const Image& image);
+Image image_of(const Frame& frame, const std::vector<glm::vec4>& pixels);
+
 }  // namespace beampipe

@@ -11,25 +11,34 @@ namespace beampipe {
 namespace HWY_NAMESPACE {
 namespace hn = hwy::HWY_NAMESPACE;
 
+// The depth of samples s, s + 1, ... of an item.
+template <class D>
+HWY_INLINE hn::Vec<D> depths_at(D d, const CellDepth& item, const SamplePattern& pattern, std::size_t s) {
+  const hn::RebindToSigned<D> di;
+  const auto x = hn::ConvertTo(d, hn::Load(di, pattern.x.data() + s));
+  const auto y = hn::ConvertTo(d, hn::Load(di, pattern.y.data() + s));
+  return hn::Add(hn::Add(hn::Set(d, item.z), hn::Mul(hn::Set(d, item.dzdx), x)), hn::Mul(hn::Set(d, item.dzdy), y));
+}
+
+template <class D>
+HWY_INLINE hn::Mask<D> samples_at(D d, std::uint32_t mask, std::size_t s) {
+  const std::uint8_t bits[8] = {static_cast<std::uint8_t>(mask >> s), static_cast<std::uint8_t>(mask >> s >> 8)};
+  return hn::LoadMaskBits(d, bits);
+}
+
 std::uint64_t depth_test_kernel(const CellDepth* items, std::size_t count, const SamplePattern& pattern,
                                 const SampleSurface& surface) {
   const hn::CappedTag<float, kMaxMaskSamples> d;
-  const hn::RebindToSigned<decltype(d)> di;
   const hn::RebindToUnsigned<decltype(d)> du;
   const std::size_t lanes = hn::Lanes(d);
   const auto samples = static_cast<std::size_t>(pattern.count);
   std::uint64_t passed = 0;
   for (std::size_t i = 0; i < count; ++i) {
     const CellDepth& item = items[i];
-    const auto z = hn::Set(d, item.z), dzdx = hn::Set(d, item.dzdx), dzdy = hn::Set(d, item.dzdy);
     for (std::size_t s = 0; s < samples; s += lanes) {
-      const std::uint8_t bits[8] = {static_cast<std::uint8_t>(item.mask >> s),
-                                    static_cast<std::uint8_t>(item.mask >> s >> 8)};
-      const auto x = hn::ConvertTo(d, hn::Load(di, pattern.x.data() + s));
-      const auto y = hn::ConvertTo(d, hn::Load(di, pattern.y.data() + s));
-      const auto depth = hn::Add(hn::Add(z, hn::Mul(dzdx, x)), hn::Mul(dzdy, y));
+      const auto depth = depths_at(d, item, pattern, s);
       float* stored_depth = surface.depth + item.cell * samples + s;
-      const auto pass = hn::And(hn::Lt(depth, hn::LoadU(d, stored_depth)), hn::LoadMaskBits(d, bits));
+      const auto pass = hn::And(hn::Lt(depth, hn::LoadU(d, stored_depth)), samples_at(d, item.mask, s));
       hn::BlendedStore(depth, pass, d, stored_depth);
       hn::BlendedStore(hn::Set(du, item.triangle), hn::RebindMask(du, pass), du,
                        surface.triangle + item.cell * samples + s);
@@ -37,6 +46,23 @@ std::uint64_t depth_test_kernel(const CellDepth* items, std::size_t count, const
     }
   }
   return passed;
+}
+
+void depth_equal_kernel(const CellDepth* items, std::size_t count, const SamplePattern& pattern, const float* depth,
+                        std::uint32_t* masks) {
+  const hn::CappedTag<float, kMaxMaskSamples> d;
+  const auto samples = static_cast<std::size_t>(pattern.count);
+  for (std::size_t i = 0; i < count; ++i) {
+    const CellDepth& item = items[i];
+    std::uint32_t mask = 0;
+    for (std::size_t s = 0; s < samples; s += hn::Lanes(d)) {
+      const auto equal = hn::Eq(depths_at(d, item, pattern, s), hn::LoadU(d, depth + item.cell * samples + s));
+      std::uint8_t bytes[8] = {};
+      hn::StoreMaskBits(d, equal, bytes);
+      mask |= (bytes[0] | std::uint32_t{bytes[1]} << 8) << s;
+    }
+    masks[i] = mask & item.mask;
+  }
 }
 
 }  // namespace HWY_NAMESPACE
@@ -49,6 +75,11 @@ HWY_EXPORT(depth_test_kernel);
 std::uint64_t depth_test(const CellDepth* items, std::size_t count, const SamplePattern& pattern,
                          const SampleSurface& surface) {
   return HWY_DYNAMIC_DISPATCH(depth_test_kernel)(items, count, pattern, surface);
+}
+HWY_EXPORT(depth_equal_kernel);
+void depth_equal(const CellDepth* items, std::size_t count, const SamplePattern& pattern, const float* depth,
+                 std::uint32_t* masks) {
+  HWY_DYNAMIC_DISPATCH(depth_equal_kernel)(items, count, pattern, depth, masks);
 }
 }  // namespace beampipe
 #endif

@@ -28,11 +28,20 @@ struct SampleSurface {
 std::uint64_t depth_test(const CellDepth* items, std::size_t count, const SamplePattern& pattern,
                          const SampleSurface& surface);
 
-// Scalar twin of one sample: does it pass?
+// Behind a depth-only pass: masks[i] keeps those samples of items[i].mask that have the stored depth, to the last bit.
+// Reads `depth` as far as depth_test does. Lanes are across samples.
+void depth_equal(const CellDepth* items, std::size_t count, const SamplePattern& pattern, const float* depth,
+                 std::uint32_t* masks);
+
+// Scalar twins of one sample: does it pass?
 template <class Float>
 bool depth_test_scalar(Float z, Float dzdx, Float dzdy, Float x, Float y, Float stored, Float& depth) {
   depth = z + dzdx * x + dzdy * y;
   return depth < stored;
+}
+template <class Float>
+bool depth_equal_scalar(Float z, Float dzdx, Float dzdy, Float x, Float y, Float stored) {
+  return z + dzdx * x + dzdy * y == stored;
 }
 
 }  // namespace beampipe

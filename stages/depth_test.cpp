@@ -5,20 +5,13 @@
 #include "stages/raster_cost.h"
 
 namespace beampipe {
+namespace {
 
-SampleTile::SampleTile(const Tile& tile, const Sampling& sampling)
-    : samples_per_pixel(static_cast<std::size_t>(sampling.grid.cells_per_pixel() * sampling.pattern.count)) {
-  const std::size_t samples = tile.pixels() * samples_per_pixel + kSampleSlack;
-  depth.assign(samples, kFarDepth);
-  triangle.assign(samples, kNoTriangle);
-}
-
-void depth_test(const SetupTriangles& triangles, const std::vector<SampleFragment>& fragments, const Tile& tile,
-                const Sampling& sampling, StageCounters& counters, SampleTile& surface) {
-  const CellGrid& grid = sampling.grid;
+// What the kernels read, and how many samples they test.
+std::vector<CellDepth> cell_depths(const SetupTriangles& triangles, const std::vector<SampleFragment>& fragments,
+                                   const Tile& tile, const CellGrid& grid, std::uint64_t& tested) {
   std::vector<CellDepth> items;
   items.reserve(fragments.size());
-  std::uint64_t tested = 0;
   for (const SampleFragment& fragment : fragments) {
     const ScreenDepth& plane = triangles.triangles[fragment.triangle].depth;
     const std::int32_t pixel_x = fragment.x / grid.columns, pixel_y = fragment.y / grid.rows;
@@ -31,21 +24,59 @@ void depth_test(const SetupTriangles& triangles, const std::vector<SampleFragmen
                      static_cast<float>(plane.dzdx / kSubpixelUnits), static_cast<float>(plane.dzdy / kSubpixelUnits)});
     tested += static_cast<std::uint64_t>(std::popcount(fragment.mask));
   }
-  const std::uint64_t passed =
-      depth_test(items.data(), items.size(), sampling.pattern, {surface.depth.data(), surface.triangle.data()});
+  return items;
+}
 
-  const OperationCounts per_sample = count_operations([](OperationCounts& counts) {
+OperationCounts per_sample_cost() {  // of either test
+  return count_operations([](OperationCounts& counts) {
     const Counted<float> one(1.0f, counts);
     Counted<float> depth;
     depth_test_scalar(one, one, one, one, one, one, depth);
   });
+}
+
+void count(std::size_t fragments, std::uint64_t tested, std::uint64_t passed, std::uint32_t bytes_written,
+           const SamplePattern& pattern, StageCounters& counters) {
   counters.items_in += tested;
   counters.items_out += passed;
-  counters.ops += per_sample * tested;
-  counters.bytes_read += tested * kSampleDepthBytes + fragments.size() * kSampleFragmentBytes;
-  counters.bytes_written += passed * (kSampleDepthBytes + kSampleColorBytes);
+  counters.ops += per_sample_cost() * tested;
+  counters.bytes_read += tested * kSampleDepthBytes + fragments * kSampleFragmentBytes;
+  counters.bytes_written += passed * bytes_written;
   counters.lanes_used += tested;
-  counters.lanes_issued += fragments.size() * static_cast<std::size_t>(sampling.pattern.count);
+  counters.lanes_issued += fragments * static_cast<std::size_t>(pattern.count);
+}
+
+}  // namespace
+
+SampleTile::SampleTile(const Tile& tile, const Sampling& sampling, std::uint32_t color_bytes_per_sample)
+    : samples_per_pixel(static_cast<std::size_t>(sampling.grid.cells_per_pixel() * sampling.pattern.count)),
+      color_bytes(color_bytes_per_sample) {
+  const std::size_t samples = tile.pixels() * samples_per_pixel + kSampleSlack;
+  depth.assign(samples, kFarDepth);
+  triangle.assign(samples, kNoTriangle);
+}
+
+void depth_test(const SetupTriangles& triangles, const std::vector<SampleFragment>& fragments, const Tile& tile,
+                const Sampling& sampling, StageCounters& counters, SampleTile& surface) {
+  std::uint64_t tested = 0;
+  const std::vector<CellDepth> items = cell_depths(triangles, fragments, tile, sampling.grid, tested);
+  const std::uint64_t passed =
+      depth_test(items.data(), items.size(), sampling.pattern, {surface.depth.data(), surface.triangle.data()});
+  count(items.size(), tested, passed, kSampleDepthBytes + surface.color_bytes, sampling.pattern, counters);
+}
+
+void depth_test_equal(const SetupTriangles& triangles, const Tile& tile, const Sampling& sampling,
+                      StageCounters& counters, const SampleTile& surface, std::vector<SampleFragment>& fragments) {
+  std::uint64_t tested = 0, passed = 0;
+  const std::vector<CellDepth> items = cell_depths(triangles, fragments, tile, sampling.grid, tested);
+  std::vector<std::uint32_t> masks(items.size());
+  depth_equal(items.data(), items.size(), sampling.pattern, surface.depth.data(), masks.data());
+  for (std::size_t i = 0; i < masks.size(); ++i) {
+    fragments[i].mask = masks[i];
+    passed += static_cast<std::uint64_t>(std::popcount(masks[i]));
+  }
+  std::erase_if(fragments, [](const SampleFragment& fragment) { return fragment.mask == 0; });
+  count(items.size(), tested, passed, surface.color_bytes, sampling.pattern, counters);
 }
 
 }  // namespace beampipe

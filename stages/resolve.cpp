@@ -1,5 +1,7 @@
 #include "stages/resolve.h"
 
+#include <algorithm>
+
 #include "stages/counting.h"
 #include "stages/shade.h"
 
@@ -66,11 +68,29 @@ std::vector<glm::vec4> resolve(const SampleTile& surface, std::size_t pixels, co
   counters.items_out += pixels;
   counters.ops += OperationCounts{0, 3, 0, 0, 0, 3} * (pixels * samples);  // add each sample's colour, from fp16
   counters.ops += OperationCounts{3, 0, 0, 0, 0, 0} * pixels;              // times 1 / samples
-  counters.bytes_read += pixels * samples * kSampleColorBytes;
+  counters.bytes_read += pixels * samples * surface.color_bytes;
   counters.bytes_written += pixels * kImageBytes;
   counters.lanes_used += pixels * samples;
   counters.lanes_issued += pixels * samples;
   return image;
+}
+
+std::vector<float> resolve_depth(const SampleTile& surface, std::size_t pixels, StageCounters& counters) {
+  const std::size_t samples = surface.samples_per_pixel;
+  std::vector<float> nearest;
+  nearest.reserve(pixels);
+  for (std::size_t pixel = 0; pixel < pixels; ++pixel) {
+    const float* first = surface.depth.data() + pixel * samples;
+    nearest.push_back(*std::min_element(first, first + samples));
+  }
+  counters.items_in += pixels * samples;
+  counters.items_out += pixels;
+  counters.ops.add += pixels * (samples - 1);
+  counters.bytes_read += pixels * samples * kSampleDepthBytes;
+  counters.bytes_written += pixels * kSampleDepthBytes;
+  counters.lanes_used += pixels;
+  counters.lanes_issued += pixels;
+  return nearest;
 }
 
 }  // namespace beampipe

@@ -23,19 +23,24 @@ OperationCounts invocation_cost() {
   });
 }
 
+constexpr OperationCounts kMaterialCost{0, 0, 0, 0, 0, 6};  // Kd and normal to their formats
+
+void count_invocations(std::uint64_t items, std::uint64_t invocations, const OperationCounts& cost,
+                       std::uint64_t bytes_read, std::uint64_t bytes_written, StageCounters& counters) {
+  counters.items_in += items;
+  counters.items_out += items;
+  counters.ops += cost * invocations;
+  counters.bytes_read += items * bytes_read;
+  counters.bytes_written += items * bytes_written;
+  counters.lanes_used += items;
+  counters.lanes_issued += invocations;
+}
+
 template <class Items>
-void count_invocations(const Items& fragments, std::uint64_t bytes_read, std::uint64_t bytes_written,
-                       StageCounters& counters) {
+std::uint64_t quad_invocations(const Items& fragments) {
   std::uint64_t quads = 0;
   for (std::size_t i = 0; i < fragments.size(); ++i) quads += i == 0 || fragments[i].quad != fragments[i - 1].quad;
-  const std::uint64_t invocations = 4 * quads;
-  counters.items_in += fragments.size();
-  counters.items_out += fragments.size();
-  counters.ops += invocation_cost() * invocations;
-  counters.bytes_read += fragments.size() * bytes_read;
-  counters.bytes_written += fragments.size() * bytes_written;
-  counters.lanes_used += fragments.size();
-  counters.lanes_issued += invocations;
+  return 4 * quads;
 }
 
 }  // namespace
@@ -60,11 +65,27 @@ std::vector<glm::vec3> round_to_half(std::vector<glm::vec3> colors) {
 
 void shade(const std::vector<glm::vec3>& colors, std::vector<Fragment>& fragments, StageCounters& counters) {
   for (Fragment& fragment : fragments) fragment.color = fragment.alpha * colors[fragment.triangle];
-  count_invocations(fragments, sizeof(FlatAttributes), 6, counters);
+  count_invocations(fragments.size(), quad_invocations(fragments), invocation_cost(), sizeof(FlatAttributes), 6,
+                    counters);
 }
 
 void shade(const std::vector<SampleFragment>& fragments, StageCounters& counters) {
-  count_invocations(fragments, sizeof(FlatAttributes) + kSampleFragmentBytes, 6, counters);
+  count_invocations(fragments.size(), quad_invocations(fragments), invocation_cost(),
+                    sizeof(FlatAttributes) + kSampleFragmentBytes, 6, counters);
+}
+
+void write_gbuffer(const std::vector<SampleFragment>& fragments, StageCounters& counters) {
+  count_invocations(fragments.size(), quad_invocations(fragments), kMaterialCost,
+                    sizeof(FlatAttributes) + kSampleFragmentBytes, kGBufferBytes, counters);
+}
+
+void write_gbuffer(std::uint64_t samples, StageCounters& counters) {
+  count_invocations(samples, samples, kMaterialCost, sizeof(FlatAttributes) + kVisibilityBytes, kGBufferBytes,
+                    counters);
+}
+
+void light(std::uint64_t samples, StageCounters& counters) {
+  count_invocations(samples, samples, invocation_cost(), kGBufferBytes, 6, counters);
 }
 
 }  // namespace beampipe

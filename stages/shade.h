@@ -29,4 +29,12 @@ void shade(const std::vector<glm::vec3>& colors, std::vector<Fragment>& fragment
 // triangle's index in place of its colour.
 void shade(const std::vector<SampleFragment>& fragments, StageCounters& counters);
 
+// Shading in two steps: materials into a G-buffer, which is here what light needs, Kd and normal; then light.
+inline constexpr std::uint32_t kGBufferBytes = 8;     // RGBA8 and RGB10A2 per pixel
+inline constexpr std::uint32_t kVisibilityBytes = 4;  // a triangle's and a draw's number in 32 bits
+
+void write_gbuffer(const std::vector<SampleFragment>& fragments, StageCounters& counters);  // in 2x2 quads
+void write_gbuffer(std::uint64_t samples, StageCounters& counters);  // one by one, from visibility ids
+void light(std::uint64_t samples, StageCounters& counters);          // one by one
+
 }  // namespace beampipe

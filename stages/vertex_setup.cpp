@@ -116,6 +116,7 @@ class Setup {
     for (const glm::vec3& p : mesh.positions) vertices_.push_back(transform_vertex<double>(elements, p.x, p.y, p.z));
     for (std::size_t t = 0; t < mesh.triangles.size(); ++t) add_triangle(mesh, draw, t);
     transformed_ += mesh.positions.size();
+    ++draws_;
   }
 
   std::uint64_t transformed() const { return transformed_; }
@@ -146,6 +147,7 @@ class Setup {
     }
     for (std::size_t i = first; i < out_.triangles.size(); ++i)
       out_.attributes.push_back(attributes(mesh, draw, t, fronts_[i - first]));
+    out_.draws.resize(out_.triangles.size(), draws_);
     fronts_.clear();
   }
 
@@ -202,6 +204,7 @@ class Setup {
   bool mirrored_ = false;
   std::vector<ClipVertex<double>> vertices_;  // of the draw at hand
   std::vector<bool> fronts_;                  // of the triangle at hand, per piece
+  std::uint32_t draws_ = 0;                   // before the one at hand
   std::uint64_t transformed_ = 0, projected_ = 0, plane_tests_ = 0;
 };
 

@@ -108,13 +108,18 @@ class Comparison {
     report.wall_ms = reference_time;
     report.error = ErrorStats{};
 
-    const std::vector<WallTime> times = render_frame(plan_, frame, progress_, [&](std::size_t i, FrameResult&& result) {
-      const std::string& spec = plan_.techniques[i].spec;
-      naming(spec, frame, [&] {
-        results_[i].frames.push_back(write_frame(output_, spec, frame, result, &truth.image));
-        errors_[i].add(result.image, truth.image);
-      });
-    });
+    const std::vector<WallTime> times =
+        render_frame(plan_, frame, progress_, histories_, [&](std::size_t i, FrameResult&& result) {
+          const std::string& spec = plan_.techniques[i].spec;
+          naming(spec, frame, [&] {
+            results_[i].frames.push_back(write_frame(output_, spec, frame, result, &truth.image));
+            errors_[i].add(result.image, truth.image);
+            std::vector<float> errors = signed_errors(result.image, truth.image);
+            if (errors.size() == last_errors_[i].size())
+              results_[i].frames.back().flicker = flicker(last_errors_[i], errors);
+            last_errors_[i] = std::move(errors);
+          });
+        });
     for (std::size_t i = 0; i < times.size(); ++i) results_[i].frames.back().wall_ms = times[i];
 
     for (Rung& rung : ladder_) measure_rung(rung, frame, truth.image);
@@ -160,7 +165,9 @@ class Comparison {
   std::vector<TechniqueReport> results_;  // beside plan_.techniques
   std::vector<ErrorAccumulator> errors_;  // likewise
   TechniqueReport reference_result_;
-  std::vector<LadderRung> rungs_;  // what the ladder came to
+  std::vector<LadderRung> rungs_;                                                   // what the ladder came to
+  std::vector<History> histories_ = std::vector<History>(plan_.techniques.size());  // likewise
+  std::vector<std::vector<float>> last_errors_ = std::vector<std::vector<float>>(plan_.techniques.size());  // likewise
   Progress progress_;
 };
 

@@ -20,6 +20,8 @@ constexpr std::uint32_t kMaxSide = 16384;  // as in a trace
 struct MakeArguments {
   std::string scene, output;
   SceneOptions options;
+  std::uint32_t frames = 1;
+  double orbit = 0;
   bool list = false;
   // For models only.
   std::vector<double> eye, target, up, background;
@@ -96,7 +98,9 @@ void make(const MakeArguments& arguments, const CLI::App& command, InterruptGate
   }
   const std::filesystem::path file = arguments.output;
   require_writable_folder(file.has_parent_path() ? file.parent_path() : ".");
-  const Trace trace = is_model ? make_from_model(arguments, command) : make_from_scene(arguments, command);
+  if (command.count("--orbit") && arguments.frames < 2) throw UsageError("--orbit needs --frames N with N > 1");
+  Trace trace = is_model ? make_from_model(arguments, command) : make_from_scene(arguments, command);
+  if (arguments.frames > 1) orbit_camera(trace, arguments.frames, arguments.orbit);
   std::size_t triangles = 0;
   for (const Mesh& mesh : trace.meshes) triangles += mesh.triangles.size();
   {
@@ -122,6 +126,10 @@ void add_make_command(CLI::App& app, InterruptGate& gate) {
   command->add_option("--height", arguments->options.height, "pixels")
       ->check(CLI::Range(1u, kMaxSide))
       ->capture_default_str();
+
+  command->add_option("--frames", arguments->frames, "how many frames (default: 1)")->check(CLI::Range(1u, 100000u));
+  command->add_option("--orbit", arguments->orbit,
+                      "degrees that the camera goes around its target in all (default: 0)");
 
   CLI::App* scene = command->add_option_group("Procedural scenes");
   scene->add_option("--triangles", arguments->options.triangles, "about how many (default: the scene's own number)")

@@ -17,10 +17,12 @@ void run(const RunArguments& arguments, InterruptGate& gate) {
   for (const Technique& technique : plan.techniques) report.results.push_back(new_technique_report(technique));
   {
     Progress progress;
+    std::vector<History> histories(plan.techniques.size());
     for (const std::size_t frame : plan.frames) {
-      const std::vector<WallTime> times = render_frame(plan, frame, progress, [&](std::size_t i, FrameResult&& result) {
-        report.results[i].frames.push_back(write_frame(output, plan.techniques[i].spec, frame, result, nullptr));
-      });
+      const std::vector<WallTime> times =
+          render_frame(plan, frame, progress, histories, [&](std::size_t i, FrameResult&& result) {
+            report.results[i].frames.push_back(write_frame(output, plan.techniques[i].spec, frame, result, nullptr));
+          });
       for (std::size_t i = 0; i < times.size(); ++i) report.results[i].frames.back().wall_ms = times[i];
       output.keep();
     }

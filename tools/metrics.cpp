@@ -90,6 +90,26 @@ std::vector<float> pixel_errors(const Image& image, const Image& reference) {
   return errors;
 }
 
+std::vector<float> signed_errors(const Image& image, const Image& reference) {
+  require_same_size(image, reference);
+  std::vector<float> errors;
+  errors.reserve(image.rgba.size() / 4 * 3);
+  for (std::size_t i = 0; i < image.rgba.size(); ++i)
+    if (i % 4 != 3) errors.push_back(static_cast<float>(difference(image, reference, i)));
+  return errors;
+}
+
+double flicker(const std::vector<float>& errors_before, const std::vector<float>& errors) {
+  if (errors_before.size() != errors.size())
+    throw std::invalid_argument("two frames of different sizes do not flicker");
+  double squares = 0;
+  for (std::size_t i = 0; i < errors.size(); ++i) {
+    const double change = double{errors[i]} - errors_before[i];
+    squares += change * change;
+  }
+  return errors.empty() ? 0.0 : std::sqrt(squares / static_cast<double>(errors.size()));
+}
+
 EquivalentMsaa equivalent_msaa(double rmse, const std::vector<LadderRung>& ladder) {
   const auto not_rising = [](const LadderRung& a, const LadderRung& b) { return a.samples >= b.samples; };
   if (ladder.empty() || ladder.front().samples == 0 ||

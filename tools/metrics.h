@@ -43,6 +43,13 @@ ErrorStats measure_error(const Image& image, const Image& reference);
 // Per pixel, the root of the mean square of the three channels' errors. Throws std::invalid_argument when sizes differ.
 std::vector<float> pixel_errors(const Image& image, const Image& reference);
 
+// image - reference of R, G, B, three values per pixel. Throws std::invalid_argument when sizes differ.
+std::vector<float> signed_errors(const Image& image, const Image& reference);
+
+// By how much the errors of two frames in a row differ, pixel by pixel: the root of the mean square. What changes in
+// the reference too does not count. Throws std::invalid_argument when the numbers of values differ.
+double flicker(const std::vector<float>& errors_before, const std::vector<float>& errors);
+
 // A rung of the MSAA ladder: msaa:samples was measured to have this RMSE.
 struct LadderRung {
   std::uint32_t samples = 0;

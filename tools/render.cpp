@@ -18,10 +18,12 @@ std::string frame_text(const RunPlan& plan, std::size_t frame) {
 
 // Renders, adding the wall time to `milliseconds`.
 FrameResult render_timed(const Technique& technique, const RunPlan& plan, std::size_t frame, Progress& progress,
-                         std::vector<double>& milliseconds) {
+                         History* history, std::vector<double>& milliseconds) {
+  RunOptions options = plan.options;
+  options.history = history;
   progress.show(frame_text(plan, frame) + technique.spec);
   const auto start = std::chrono::steady_clock::now();
-  FrameResult result = technique.render(plan.trace, frame, plan.options);
+  FrameResult result = technique.render(plan.trace, frame, options);
   milliseconds.push_back(std::chrono::duration<double, std::milli>(std::chrono::steady_clock::now() - start).count());
   return result;
 }
@@ -29,12 +31,15 @@ FrameResult render_timed(const Technique& technique, const RunPlan& plan, std::s
 }  // namespace
 
 std::vector<WallTime> render_frame(const RunPlan& plan, std::size_t frame, Progress& progress,
+                                   std::vector<History>& histories,
                                    const std::function<void(std::size_t, FrameResult&&)>& use) {
   std::vector<std::vector<double>> milliseconds(plan.techniques.size());
   for (int run = 0; run < plan.repeat; ++run) {
     for (std::size_t i = 0; i < plan.techniques.size(); ++i) {
-      FrameResult result = render_timed(plan.techniques[i], plan, frame, progress, milliseconds[i]);
+      History history = histories[i];
+      FrameResult result = render_timed(plan.techniques[i], plan, frame, progress, &history, milliseconds[i]);
       if (run == 0) use(i, std::move(result));
+      if (run + 1 == plan.repeat) histories[i] = std::move(history);
     }
   }
   std::vector<WallTime> times;
@@ -45,7 +50,7 @@ std::vector<WallTime> render_frame(const RunPlan& plan, std::size_t frame, Progr
 FrameResult render_once(const Technique& technique, const RunPlan& plan, std::size_t frame, Progress& progress,
                         WallTime* time) {
   std::vector<double> milliseconds;
-  FrameResult result = render_timed(technique, plan, frame, progress, milliseconds);
+  FrameResult result = render_timed(technique, plan, frame, progress, nullptr, milliseconds);
   if (time) *time = wall_time(std::move(milliseconds));
   return result;
 }

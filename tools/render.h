@@ -14,8 +14,10 @@ namespace beampipe {
 
 // Renders one frame with every technique of the plan, plan.repeat times, one technique after the other (A B A B ...) so
 // that a slow moment of the machine does not fall on one alone. The first result of each is handed to `use` at once and
-// then freed, so that memory holds one result at a time. Returns the times, one per technique.
+// then freed, so that memory holds one result at a time. `histories`, one per technique, are what earlier frames left,
+// and then what this one leaves; every run starts from the same. Returns the times, one per technique.
 std::vector<WallTime> render_frame(const RunPlan& plan, std::size_t frame, Progress& progress,
+                                   std::vector<History>& histories,
                                    const std::function<void(std::size_t technique, FrameResult&&)>& use);
 
 // Renders with one technique, once.

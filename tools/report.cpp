@@ -33,6 +33,7 @@ Json to_json(const FrameReport& frame) {
   Json json = {{"index", frame.index}, {"image", frame.image}, {"picture", frame.picture}};
   if (!frame.counters.empty()) json["counters"] = frame.counters;
   if (frame.error) json["error"] = beampipe::to_json(*frame.error);
+  if (frame.flicker) json["flicker"] = *frame.flicker;
   const WallTime& wall = frame.wall_ms;
   json["wall_ms"] = {{"median", wall.median}, {"min", wall.min}, {"max", wall.max}, {"runs", wall.runs}};
   json["a_buffer_peak_bytes"] = frame.a_buffer_peak_bytes;

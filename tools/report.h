@@ -29,6 +29,7 @@ struct FrameReport {
   std::string picture;    // the image tonemapped, as PNG
   std::string counters;   // empty: none were written
   std::optional<ErrorStats> error;
+  std::optional<double> flicker;  // of the error, since the frame before
   WallTime wall_ms;
   std::uint64_t a_buffer_peak_bytes = 0;
   std::vector<StageCounters> stages;

@@ -1,4 +1,5 @@
 #include <glm/gtc/matrix_transform.hpp>
+#include <stdexcept>
 
 #include "traces/trace.h"
 
@@ -9,6 +10,20 @@ void set_camera(Frame& frame, const Camera& camera) {
   frame.camera = camera;
   frame.view = glm::lookAtRH(camera.eye, camera.target, camera.up);
   frame.projection = glm::perspectiveRH_NO(glm::radians(camera.fovy_deg), aspect, camera.near, camera.far);
+}
+
+void orbit_camera(Trace& trace, std::uint32_t frames, double degrees) {
+  if (trace.frames.empty() || !trace.frames[0].camera || frames == 0)
+    throw std::invalid_argument("expected a trace whose first frame names a camera, and at least one frame to make");
+  const Frame first = trace.frames[0];
+  trace.frames.assign(frames, first);
+  for (std::uint32_t i = 1; i < frames; ++i) {
+    const double angle = glm::radians(degrees) * i / (frames - 1);
+    Camera camera = *first.camera;
+    const glm::dmat4 turn = glm::rotate(glm::dmat4(1.0), angle, camera.up);
+    camera.eye = camera.target + glm::dvec3(turn * glm::dvec4(camera.eye - camera.target, 0.0));
+    set_camera(trace.frames[i], camera);
+  }
 }
 
 }  // namespace beampipe

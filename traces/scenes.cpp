@@ -24,6 +24,9 @@ const std::vector<SceneKind>& scene_kinds() {
       {"fence", "chain-link fences of thin woven wires, one behind the other", make_fence},
       {"soup", "random triangles of all sizes that cut through each other", make_soup},
       {"foliage", "trees with leaves of two triangles each", make_foliage},
+      {"bars", "rods from two pixels thick down to a quarter of one", make_bars},
+      {"density", "a wall that fills the picture once; width x height / triangles are its pixels per triangle",
+       make_density},
   };
   return kinds;
 }

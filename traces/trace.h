@@ -59,4 +59,8 @@ struct Trace {
 // frame.width and frame.height must be set before.
 void set_camera(Frame& frame, const Camera& camera);
 
+// Makes `frames` frames of the trace's first: its camera goes around its target, about `up`, by `degrees` in all, at
+// even steps; the light stays. Throws std::invalid_argument when there is no such frame or it names no camera.
+void orbit_camera(Trace& trace, std::uint32_t frames, double degrees);
+
 }  // namespace beampipe

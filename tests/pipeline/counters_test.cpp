@@ -59,9 +59,42 @@ TEST(Counters, MsaaCountsSamples) {
   EXPECT_GT(stage(eight, "depth_test").items_in, stage(one, "depth_test").items_in * 7);
 }
 
+TEST(Counters, ShadingRunsInWholeQuads) {
+  const auto shading = [](const char* spec) {
+    return stage(parse_technique(spec).render(half_square(), 0, {1}), "shade");
+  };
+  // Centres inside: (1, 2), (1, 3), (1, 4), (2, 3), (2, 4), (3, 4), in the quads (0, 1), (0, 2), (1, 1) and (1, 2).
+  for (const char* spec : {"msaa:1", "msaa:1,prepass", "deferred"}) {
+    EXPECT_EQ(shading(spec).lanes_used, 6u) << spec;
+    EXPECT_EQ(shading(spec).lanes_issued, 4u * 4) << spec;
+  }
+  EXPECT_EQ(shading("visibility").lanes_issued, 6u);
+  // At eight samples the diagonal's four pixels are covered in part, and two more quads of three by three are touched.
+  for (const char* spec : {"msaa:8", "msaa:8,prepass", "acaa:8"}) {
+    EXPECT_EQ(shading(spec).lanes_used, 10u) << spec;
+    EXPECT_EQ(shading(spec).lanes_issued, 6u * 4) << spec;
+  }
+}
+
+TEST(Counters, AcaaReadsDepthTwiceAndOneColor) {
+  const FrameResult msaa = parse_technique("msaa:8").render(half_square(), 0, {1});
+  const FrameResult acaa = parse_technique("acaa:8").render(half_square(), 0, {1});
+  const std::uint64_t samples = stage(msaa, "depth_test").items_in;
+  EXPECT_EQ(stage(acaa, "depth_test").items_in, 2 * samples);
+  EXPECT_EQ(stage(acaa, "depth_test").bytes_written, samples * 4);
+  EXPECT_EQ(stage(acaa, "accumulate").items_in, 10u);
+  EXPECT_EQ(stage(acaa, "accumulate").bytes_written, 10u * 8);
+  // Saturation first adds the background of each pixel that is not full; only (2, 3) is.
+  const FrameResult saturated = parse_technique("acaa:8,double=saturate").render(half_square(), 0, {1});
+  EXPECT_EQ(stage(saturated, "accumulate").items_in, 10u + 64 - 1);
+  EXPECT_EQ(stage(acaa, "resolve").bytes_read, 64u * 8);
+  EXPECT_EQ(stage(msaa, "resolve").bytes_read, 64u * 8 * 6);
+}
+
 TEST(Counters, EveryStageWorks) {
   const Trace trace = random_trace(40, 30, 50, 2);
-  for (const char* spec : {"beam", "alpha", "msaa:4", "reference"}) {
+  for (const char* spec : {"beam", "alpha", "msaa:4", "msaa:4,prepass", "acaa:4,double=stencil", "acaa:32", "deferred",
+                           "visibility", "taa:8", "dvm", "reference"}) {
     for (const StageCounters& counters : parse_technique(spec).render(trace, 0, {2}).stages) {
       EXPECT_FALSE(counters.stage.empty()) << spec;
       EXPECT_GT(counters.items_in, 0u) << spec << ' ' << counters.stage;

@@ -22,9 +22,39 @@ TEST(Technique, EveryMsaaRateOfTheRangeIsKnown) {
 }
 
 TEST(Technique, WrongSpecsSayWhatWasExpected) {
-  for (const char* spec :
-       {"", "bean", "msaa", "msaa:", "msaa:3", "msaa:0", "msaa:-8", "msaa:8x", "msaa:2048", "msaa:8,8",
-        "beam:mask=fast", "beam:", "beam:mask=table,mask=table", "alpha:1", "reference:64", "beam "}) {
+  for (const char* spec : {"",
+                           "bean",
+                           "msaa",
+                           "msaa:",
+                           "msaa:3",
+                           "msaa:0",
+                           "msaa:-8",
+                           "msaa:8x",
+                           "msaa:2048",
+                           "msaa:8,8",
+                           "beam:mask=fast",
+                           "beam:rules=paper,bits=64",
+                           "beam:bits=64,mask=exact",
+                           "beam:",
+                           "beam:mask=table,mask=table",
+                           "alpha:1",
+                           "reference:64",
+                           "beam ",
+                           "msaa:8,color=rgb8",
+                           "msaa:prepass",
+                           "msaa:8,prepass,prepass",
+                           "acaa",
+                           "acaa:512",
+                           "acaa:8,double=yes",
+                           "taa",
+                           "taa:32",
+                           "taa:8,blend=0",
+                           "taa:8,blend=1.5",
+                           "taa:8,blend=x",
+                           "dvm:8",
+                           "dvm:seed=-1",
+                           "visibility:8",
+                           "deferred:"}) {
     try {
       parse_technique(spec);
       ADD_FAILURE() << "'" << spec << "' was taken";

@@ -159,5 +159,16 @@ TEST(EquivalentMsaa, NeedsARisingLadder) {
   EXPECT_THROW(equivalent_msaa(0.1, {{0, 0.1}}), std::invalid_argument);
 }
 
+TEST(Flicker, IsTheChangeOfTheErrorAlone) {
+  const Image reference{1, 2, {0, 0, 0, 1, 0.5f, 0.5f, 0.5f, 1}}, brighter{1, 2, {1, 1, 1, 1, 1, 1, 1, 1}};
+  const Image image{1, 2, {0.25f, 0, 0, 1, 0.5f, 0.5f, 0.5f, 0}};
+  const Image next{1, 2, {1.25f, 1, 1, 1, 1, 1, 0.25f, 1}};
+  const std::vector<float> before = signed_errors(image, reference), after = signed_errors(next, brighter);
+  EXPECT_EQ(before, (std::vector<float>{0.25f, 0, 0, 0, 0, 0}));
+  EXPECT_DOUBLE_EQ(flicker(before, after), std::sqrt(0.75 * 0.75 / 6));
+  EXPECT_EQ(flicker(before, before), 0);
+  EXPECT_THROW(flicker(before, {}), std::invalid_argument);
+}
+
 }  // namespace
 }  // namespace beampipe

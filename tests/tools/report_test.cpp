@@ -58,9 +58,8 @@ TEST(ReportJson, HasTheKeysOfTheContract) {
   EXPECT_EQ(frame["wall_ms"], (Json{{"median", 10.0}, {"min", 1.0}, {"max", 20.0}, {"runs", 3}}));
   const Json ops = {{"total", 21}, {"mul_add", 1}, {"add", 2},    {"bit", 3},
                     {"fetch", 4},  {"special", 5}, {"convert", 6}};
-  const Json stage = {{"stage", "vertex_setup"}, {"items_in", 3},      {"items_out", 1}, {"ops", ops},
-                      {"bytes_read", 36},        {"bytes_written", 80},
-                      {"lanes_used", 3},         {"lanes_issued", 4}};
+  const Json stage = {{"stage", "vertex_setup"}, {"items_in", 3},       {"items_out", 1},  {"ops", ops},
+                      {"bytes_read", 36},        {"bytes_written", 80}, {"lanes_used", 3}, {"lanes_issued", 4}};
   EXPECT_EQ(frame["stages"].at(0), stage);
 }
 

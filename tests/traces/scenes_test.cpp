@@ -51,7 +51,8 @@ TEST_P(ScenesTest, KeepsToItsTriangles) {
 TEST_P(ScenesTest, HasADefaultSize) {
   const std::map<std::string_view, double> defaults = {{"hairball", 150e3}, {"classroom", 100e3}, {"boat", 60e3},
                                                        {"pickets", 5e3},    {"terrain", 150e3},   {"sphere", 100e3},
-                                                       {"fence", 60e3},     {"soup", 20e3},       {"foliage", 80e3}};
+                                                       {"fence", 60e3},     {"soup", 20e3},       {"foliage", 80e3},
+                                                       {"bars", 4e3},       {"density", 5760}};
   const double wanted = defaults.at(GetParam().name);
   EXPECT_NEAR(static_cast<double>(count(make({}))) / wanted, 1, 0.25);
 }
@@ -115,11 +116,45 @@ TEST_P(ScenesTest, IsInThePictureAndLit) {
 INSTANTIATE_TEST_SUITE_P(All, ScenesTest, testing::ValuesIn(scene_kinds()),
                          [](const auto& scene) { return std::string(scene.param.name); });
 
-TEST(Scenes, AreTheNine) {
+TEST(Scenes, AreTheKnownOnes) {
   std::set<std::string_view> names;
   for (const SceneKind& kind : scene_kinds()) names.insert(kind.name);
   EXPECT_EQ(names, (std::set<std::string_view>{"hairball", "classroom", "boat", "pickets", "terrain", "sphere", "fence",
-                                               "soup", "foliage"}));
+                                               "soup", "foliage", "bars", "density"}));
+}
+
+TEST(Scenes, DensityFillsThePictureWithItsPixelsPerTriangle) {
+  const Trace trace = make_scene("density", {.triangles = 640, .width = 160, .height = 40});
+  const Frame& frame = trace.frames[0];
+  double left = 0, right = 0, area = 0;
+  const Mesh& wall = trace.meshes[0];
+  const auto pixel = [&](std::uint32_t i) {
+    const glm::dvec4 p = frame.projection * frame.view * glm::dvec4(wall.positions[i], 1.0);
+    return glm::dvec2((p.x / p.w + 1) * 80, (p.y / p.w + 1) * 20);
+  };
+  for (const glm::uvec3& t : wall.triangles) {
+    const glm::dvec2 a = pixel(t.x), b = pixel(t.y), c = pixel(t.z);
+    area += 0.5 * ((b.x - a.x) * (c.y - a.y) - (c.x - a.x) * (b.y - a.y));
+    left = std::min({left, a.x, b.x, c.x}), right = std::max({right, a.x, b.x, c.x});
+  }
+  EXPECT_NEAR(area, 160 * 40, 1);
+  EXPECT_NEAR(left, 0, 1e-3);
+  EXPECT_NEAR(right, 160, 1e-3);
+}
+
+TEST(Scenes, AnOrbitKeepsTheDistanceAndTheFirstFrame) {
+  Trace trace = make_scene("bars", {});
+  const Frame first = trace.frames[0];
+  orbit_camera(trace, 5, 90);
+  ASSERT_EQ(trace.frames.size(), 5u);
+  EXPECT_EQ(trace.frames[0].view, first.view);
+  for (const Frame& frame : trace.frames)
+    EXPECT_NEAR(glm::length(frame.camera->eye - frame.camera->target), glm::length(first.camera->eye), 1e-12);
+  const glm::dvec3 eye = trace.frames[4].camera->eye;  // from +z, counter-clockwise about y
+  EXPECT_NEAR(eye.x, first.camera->eye.z, 1e-12);
+  EXPECT_NEAR(eye.z, 0, 1e-12);
+  Trace bare;
+  EXPECT_THROW(orbit_camera(bare, 5, 90), std::invalid_argument);
 }
 
 std::string refusal(std::string_view name, const SceneOptions& options) {
@@ -134,8 +169,8 @@ std::string refusal(std::string_view name, const SceneOptions& options) {
 TEST(Scenes, RefusesWhatItCannotMake) {
   EXPECT_EQ(
       refusal("ball", {}),
-      "expected one of the scenes hairball, classroom, boat, pickets, terrain, sphere, fence, soup, foliage, found "
-      "\"ball\"");
+      "expected one of the scenes hairball, classroom, boat, pickets, terrain, sphere, fence, soup, foliage, bars, "
+      "density, found \"ball\"");
   EXPECT_EQ(refusal("soup", {.triangles = 100000001}), "expected at most 100000000 triangles, found 100000001");
   EXPECT_EQ(refusal("soup", {.width = 0}), "expected a width and height of 1..16384, found 0 x 180");
   EXPECT_EQ(refusal("soup", {.height = 20000}), "expected a width and height of 1..16384, found 320 x 20000");

@@ -35,5 +35,7 @@ Trace make_sphere(const SceneOptions& options);
 Trace make_fence(const SceneOptions& options);
 Trace make_soup(const SceneOptions& options);
 Trace make_foliage(const SceneOptions& options);
+Trace make_bars(const SceneOptions& options);
+Trace make_density(const SceneOptions& options);
 
 }  // namespace beampipe

@@ -1,0 +1,90 @@
+#include "pipeline/acaa.h"
+
+#include <string>
+
+#include "pipeline/msaa.h"
+#include "pipeline/sample_batches.h"
+#include "pipeline/tiles.h"
+#include "stages/depth_test.h"
+#include "stages/shade.h"
+#include "stages/vertex_setup.h"
+
+namespace beampipe {
+
+std::vector<Sampling> acaa_rounds(int samples) {
+  const Sampling all = msaa_sampling(samples);
+  std::vector<Sampling> rounds;
+  SamplePattern pattern;
+  for (int cell = 0; cell < all.grid.cells_per_pixel(); ++cell) {
+    for (std::size_t s = 0; s < static_cast<std::size_t>(all.pattern.count); ++s) {
+      const auto i = static_cast<std::size_t>(pattern.count++);
+      pattern.x[i] = all.pattern.x[s] + cell % all.grid.columns * all.grid.cell_width();
+      pattern.y[i] = all.pattern.y[s] + cell / all.grid.columns * all.grid.cell_height();
+    }
+    if (pattern.count < 16 && cell + 1 < all.grid.cells_per_pixel()) continue;
+    rounds.push_back({CellGrid{}, pattern});
+    pattern = {};
+  }
+  return rounds;
+}
+
+FrameResult render_acaa(const Trace& trace, const Frame& frame, const AcaaOptions& options, const RunOptions& run) {
+  StageCounters setup;
+  const SetupTriangles triangles = vertex_setup(trace, frame, setup);
+  const std::vector<glm::vec3> colors = shade_triangles(triangles, frame.light_direction);
+  const std::vector<Sampling> rounds = acaa_rounds(options.samples);
+  StageCounters geometry;  // the triangles come twice per round
+  for (std::size_t i = 0; i < 2 * rounds.size(); ++i) geometry += setup;
+  geometry.stage = setup.stage;
+
+  const TileRenderer render_tile = [&](const Tile& tile, const TriangleList& list) {
+    StageCounters raster{"sample_raster"}, testing{"depth_test"}, stencil{"stencil_test"}, shading{"shade"},
+        accumulation{"accumulate"}, resolving{"resolve"};
+    Accumulator accumulator(tile, options.samples, options.color, options.double_counting);
+    std::vector<float> counts(tile.pixels());
+    std::vector<SampleFragment> fragments;
+    for (const Sampling& sampling : rounds) {
+      SampleTile depth(tile, sampling, 0);
+      const auto raster_batch = [&](const TriangleList& batch) {
+        fragments.clear();
+        sample_raster(triangles, batch, tile, sampling, raster, fragments);
+      };
+      for_each_batch(list, [&](const TriangleList& batch) {
+        raster_batch(batch);
+        depth_test(triangles, fragments, tile, sampling, testing, depth);
+      });
+      if (options.double_counting == DoubleCounting::saturate)
+        accumulate_background(depth, frame.background, accumulation, accumulator);
+      accumulator.taken.assign(tile.pixels(), 0);
+      for_each_batch(list, [&](const TriangleList& batch) {
+        raster_batch(batch);
+        depth_test_equal(triangles, tile, sampling, testing, depth, fragments);
+        if (options.double_counting == DoubleCounting::stencil) stencil_test(tile, stencil, accumulator, fragments);
+        shade(fragments, shading);
+        accumulate(fragments, colors, tile, accumulation, accumulator);
+        count_fragments(fragments, tile, sampling.grid, counts);
+      });
+    }
+    TileResult result{resolve(accumulator, frame.background, resolving),
+                      {{"visible_fragments", std::move(counts)}},
+                      {raster, testing}};
+    if (options.double_counting == DoubleCounting::stencil) result.stages.push_back(stencil);
+    result.stages.insert(result.stages.end(), {shading, accumulation, resolving});
+    return result;
+  };
+  return render_tiles(frame, triangles, geometry, sample_tile_size(rounds.front().pattern.count), run, render_tile);
+}
+
+std::vector<Surface> acaa_framebuffer(const AcaaOptions& options) {
+  const auto n = static_cast<std::uint32_t>(std::min(options.samples, 16));
+  const std::string times = " x " + std::to_string(n);
+  const char* const format = options.color == AccumulatorFormat::unorm8 ? "RGBA8"
+                             : options.color == AccumulatorFormat::fp16 ? "RGBA16F"
+                                                                        : "RGBA32F";
+  std::vector<Surface> surfaces = {{"depth", "D32F" + times, n * kSampleDepthBytes},
+                                   {"color", format, accumulator_bytes(options.color)}};
+  if (options.double_counting == DoubleCounting::stencil) surfaces.push_back({"stencil", "S8UI" + times, n});
+  return surfaces;
+}
+
+}  // namespace beampipe

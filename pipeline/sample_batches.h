@@ -1,0 +1,43 @@
+// What the techniques that test samples share: how large a tile is, and a few triangles at a time between the raster
+// and the depth test, so that fragments stay in cache.
+#pragma once
+
+#include <algorithm>
+#include <vector>
+
+#include "stages/sample_raster.h"
+#include "stages/tile.h"
+
+namespace beampipe {
+
+// Pixels on each side of a tile that holds at most 2^16 samples: 512 KiB of depth and owners.
+inline int sample_tile_size(int samples) {
+  int size = 64;
+  while (size > 2 && size * size * samples > 1 << 16) size /= 2;
+  return size;
+}
+
+// Calls body(batch) for the list's triangles in order, 512 at a time.
+template <class Body>
+void for_each_batch(const TriangleList& list, Body&& body) {
+  constexpr std::size_t kBatchTriangles = 512;
+  for (std::size_t first = 0; first < list.size(); first += kBatchTriangles) {
+    const auto begin = list.begin() + static_cast<std::ptrdiff_t>(first);
+    body(TriangleList(begin, begin + static_cast<std::ptrdiff_t>(std::min(kBatchTriangles, list.size() - first))));
+  }
+}
+
+// Adds one to a pixel's count for each triangle that has a fragment there, in however many cells of it. Fragments of one
+// triangle come one after the other.
+inline void count_fragments(const std::vector<SampleFragment>& fragments, const Tile& tile, const CellGrid& grid,
+                            std::vector<float>& counts) {
+  std::vector<std::uint32_t> last(counts.size(), ~0u);  // triangle that was counted last
+  for (const SampleFragment& fragment : fragments) {
+    const std::int32_t x = fragment.x / grid.columns - tile.x0, y = fragment.y / grid.rows - tile.y0;
+    const auto pixel = static_cast<std::size_t>(y * tile.width() + x);
+    counts[pixel] += last[pixel] != fragment.triangle;
+    last[pixel] = fragment.triangle;
+  }
+}
+
+}  // namespace beampipe

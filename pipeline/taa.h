@@ -1,0 +1,21 @@
+// Temporal antialiasing: one visibility sample per pixel and frame, jittered over the N standard positions, accumulated
+// by reprojection, a clamp to the 3x3 neighbourhood's colours, and a blend (Lottes, Karis, Salvi, as the DVM article
+// sums up).
+#pragma once
+
+#include "pipeline/technique.h"
+
+namespace beampipe {
+
+inline constexpr int kMaxTaaSamples = 16;
+
+struct TaaOptions {
+  int samples = 8;  // jitter positions: 1, 2, 4, 8 or 16
+  float blend = 0.1f;
+};
+
+FrameResult render_taa(const Trace& trace, const Frame& frame, const TaaOptions& options, const RunOptions& run);
+
+std::vector<Surface> taa_framebuffer();
+
+}  // namespace beampipe

@@ -1,0 +1,262 @@
+// beampipe's raster against Mesa's llvmpipe, sample for sample.
+//
+// Both snap vertices to 1/256 px. Where vertices lie on that grid both see the same triangle, and coverage must be the
+// same at every sample. Elsewhere two things may differ, and a sample only where an edge passes it within 1/256 px:
+// - llvmpipe clips to the frame's sides and snaps the new vertices, which bends edges; beampipe has a guard band
+// instead;
+// - llvmpipe computes in float, beampipe in double, so that a vertex very near the middle between two grid points can
+// be snapped
+//   to either.
+// Each triangle that differs must be explained by one of them.
+#include <gtest/gtest.h>
+
+#include <bit>
+#include <cmath>
+#include <functional>
+#include <iostream>
+#include <random>
+
+#include "stages/sample_raster.h"
+#include "stages/vertex_setup.h"
+#include "tests/llvmpipe/llvmpipe.h"
+
+namespace beampipe {
+namespace {
+
+constexpr int kSize = 64;    // pixels on each side
+constexpr int kUnits = 256;  // per pixel
+constexpr Tile kFrame{0, 0, kSize, kSize};
+
+using Triangle = std::array<glm::vec4, 3>;  // clip space
+
+// Clip space is x, y, -z - 2, -z of these (near plane at 1, no far one), exactly in float for few enough bits.
+SetupTriangles set_up(const Triangle& clip) {
+  Trace trace;
+  Mesh mesh;
+  Frame frame;
+  frame.width = frame.height = kSize;
+  frame.projection = glm::dmat4(0.0);
+  frame.projection[0][0] = frame.projection[1][1] = 1;
+  frame.projection[2][2] = frame.projection[2][3] = -1;
+  frame.projection[3][2] = -2;
+  for (const glm::vec4& p : clip) mesh.positions.emplace_back(p.x, p.y, -p.w);
+  mesh.triangles.emplace_back(0, 1, 2);
+  mesh.colors.emplace_back(1.0f);
+  trace.meshes.push_back(mesh);
+  frame.draws.emplace_back();
+  StageCounters counters;
+  return vertex_setup(trace, frame, counters);
+}
+
+glm::vec4 clip_point(float x, float y, float w) { return {x, y, w - 2, w}; }
+
+// From pixels (y down); on the screen plane w = 2, where clip depth is 0.
+glm::vec4 at_pixel(double x, double y) {
+  return clip_point(static_cast<float>(2 * (x / (kSize / 2) - 1)), static_cast<float>(2 * (1 - y / (kSize / 2))), 2);
+}
+glm::vec4 at_unit(std::int64_t x, std::int64_t y) {
+  return at_pixel(static_cast<double>(x) / kUnits, static_cast<double>(y) / kUnits);
+}
+
+std::vector<std::uint32_t> coverage(const SetupTriangles& triangles, int samples) {
+  TriangleList all;
+  for (std::uint32_t i = 0; i < triangles.triangles.size(); ++i) all.push_back(i);
+  std::vector<SampleFragment> fragments;
+  StageCounters counters;
+  sample_raster(triangles, all, kFrame, {CellGrid{}, standard_pattern(samples)}, counters, fragments);
+  std::vector<std::uint32_t> masks(kSize * kSize);
+  for (const SampleFragment& f : fragments) masks[static_cast<std::size_t>(f.y * kSize + f.x)] |= f.mask;
+  return masks;
+}
+
+// From a sample to the nearest edge line of the triangles, in 1/256 px.
+double distance_to_edge(const SetupTriangles& triangles, const SamplePattern& pattern, std::size_t pixel, int sample) {
+  const auto s = static_cast<std::size_t>(sample);
+  const auto x = static_cast<std::int64_t>(pixel % kSize) * kUnits + pattern.x[s];
+  const auto y = static_cast<std::int64_t>(pixel / kSize) * kUnits + pattern.y[s];
+  double nearest = INFINITY;
+  for (const SetupTriangle& triangle : triangles.triangles) {
+    for (int k = 0; k < 3; ++k) {
+      const Edge edge = edge_of(triangle, k);
+      nearest = std::min(nearest, std::abs(static_cast<double>(edge.at(x, y))) / std::hypot(edge.a, edge.b));
+    }
+  }
+  return nearest;
+}
+
+bool needs_clipping(const Triangle& clip) {
+  for (const glm::vec4& p : clip)
+    if (!(p.w > 0 && std::abs(p.x) <= p.w && std::abs(p.y) <= p.w && std::abs(p.z) <= p.w)) return true;
+  return false;
+}
+
+// Is a vertex within 1/100 of a step of where snapping changes its mind? Float positions are good to about 1/500.
+bool snaps_either_way(const Triangle& clip) {
+  const auto undecided = [](double ndc) {
+    const double units = (ndc + 1) * (kSize / 2) * kUnits;
+    return std::abs(units - std::floor(units) - 0.5) < 0.01;
+  };
+  for (const glm::vec4& p : clip)
+    if (undecided(double{p.x} / p.w) || undecided(-double{p.y} / p.w)) return true;
+  return false;
+}
+
+struct Tally {
+  std::uint64_t triangles = 0, samples = 0, covered = 0, differences = 0;
+  std::uint64_t clipped = 0, undecided = 0, unexplained = 0;  // triangles that differ, by reason
+  double farthest = 0;                                        // a differing sample from an edge, 1/256 px
+};
+
+class Coverage : public testing::Test {
+ protected:
+  void SetUp() override {
+    std::string missing;
+    mesa_ = Llvmpipe::start(kSize, missing);
+    if (!mesa_) GTEST_SKIP() << "not compared with llvmpipe: " << missing;
+  }
+
+  void compare(const Triangle& triangle, Tally& tally) {
+    const SetupTriangles ours = set_up(triangle);
+    bool differs = false;
+    for (const int samples : {1, 4}) {
+      const SamplePattern pattern = standard_pattern(samples);
+      const std::vector<std::uint32_t> expected = mesa_->coverage(triangle.data(), samples),
+                                       found = coverage(ours, samples);
+      for (std::size_t pixel = 0; pixel < found.size(); ++pixel) {
+        tally.covered += static_cast<std::uint64_t>(std::popcount(found[pixel]));
+        for (std::uint32_t bits = expected[pixel] ^ found[pixel]; bits != 0; bits &= bits - 1) {
+          differs = true;
+          ++tally.differences;
+          tally.farthest = std::max(tally.farthest, distance_to_edge(ours, pattern, pixel, std::countr_zero(bits)));
+        }
+      }
+      tally.samples += found.size() * static_cast<std::size_t>(samples);
+    }
+    if (differs)
+      ++(needs_clipping(triangle) ? tally.clipped : snaps_either_way(triangle) ? tally.undecided : tally.unexplained);
+    ++tally.triangles;
+  }
+
+  Tally compare_many(const char* what, int count, const std::function<Triangle()>& make) {
+    Tally tally;
+    for (int i = 0; i < count; ++i) compare(make(), tally);
+    std::cout << what << ": " << tally.triangles << " triangles, " << tally.samples << " samples, " << tally.covered
+              << " covered, " << tally.differences << " differences";
+    if (tally.differences > 0)
+      std::cout << " at most " << tally.farthest << "/256 px from an edge; triangles that differ: " << tally.clipped
+                << " clipped, " << tally.undecided << " snapped either way, " << tally.unexplained << " unexplained";
+    std::cout << "\n";
+    EXPECT_EQ(tally.unexplained, 0u);
+    EXPECT_LE(tally.farthest, 1);
+    return tally;
+  }
+
+  std::int64_t integer(std::int64_t low, std::int64_t high) {
+    return low + static_cast<std::int64_t>(bits_() % static_cast<std::uint64_t>(high - low + 1));
+  }
+  double uniform(double low, double high) { return low + (high - low) * static_cast<double>(bits_() >> 11) * 0x1p-53; }
+  glm::vec4 grid_point(std::int64_t low, std::int64_t high, std::int64_t step) {
+    return at_unit(integer(low / step, high / step) * step, integer(low / step, high / step) * step);
+  }
+
+  std::unique_ptr<Llvmpipe> mesa_;
+  std::mt19937_64 bits_{20150809};
+};
+
+TEST_F(Coverage, SamplePositionsAreTheStandardOnes) {
+  std::cout << mesa_->name() << "\n";
+  for (const int samples : {1, 4}) {
+    const SamplePattern pattern = standard_pattern(samples, 16, 16);
+    const std::vector<glm::ivec2> found = mesa_->positions(samples);
+    for (std::size_t s = 0; s < found.size(); ++s) EXPECT_EQ(found[s], glm::ivec2(pattern.x[s], pattern.y[s])) << s;
+  }
+}
+
+TEST_F(Coverage, TrianglesOnTheGrid) {
+  const Tally tally = compare_many("on the 1/256 px grid", 1500, [&] {
+    return Triangle{grid_point(0, kSize * kUnits, 1), grid_point(0, kSize * kUnits, 1),
+                    grid_point(0, kSize * kUnits, 1)};
+  });
+  EXPECT_EQ(tally.differences, 0u);
+}
+
+TEST_F(Coverage, SmallTriangles) {
+  const Tally tally = compare_many("of about a pixel", 1000, [&] {
+    const std::int64_t x = integer(0, kSize * kUnits), y = integer(0, kSize * kUnits);
+    const auto near = [&] { return at_unit(x + integer(-300, 300), y + integer(-300, 300)); };
+    return Triangle{near(), near(), near()};
+  });
+  EXPECT_EQ(tally.differences, 0u);
+}
+
+// Vertices and edges exactly on samples: 4x positions and centres are multiples of 32/256 px.
+TEST_F(Coverage, EdgesThroughSamples) {
+  const Tally tally = compare_many("edges through samples", 1500, [&] {
+    return Triangle{grid_point(0, kSize * kUnits, 32), grid_point(0, kSize * kUnits, 32),
+                    grid_point(0, kSize * kUnits, 32)};
+  });
+  EXPECT_EQ(tally.differences, 0u);
+}
+
+TEST_F(Coverage, Slivers) {
+  const Tally tally = compare_many("slivers", 1000, [&] {
+    const std::int64_t x = integer(0, kSize * kUnits), y = integer(0, kSize * kUnits);
+    const std::int64_t to_x = integer(0, kSize * kUnits), to_y = integer(0, kSize * kUnits);
+    return Triangle{at_unit(x, y), at_unit(to_x, to_y), at_unit(to_x + integer(-2, 2), to_y + integer(-2, 2))};
+  });
+  EXPECT_EQ(tally.differences, 0u);
+}
+
+// Triangles around a hub, at many angles; each must agree, so that their shared edges do.
+TEST_F(Coverage, SharedEdges) {
+  const auto hub_x = integer(28, 36) * kUnits + 128, hub_y = integer(28, 36) * kUnits + 96;
+  int i = 0;
+  const auto rim = [&](int k) {
+    const double angle = 2 * 3.141592653589793 * (k % 600) / 600;
+    return at_unit(hub_x + std::lround(7000 * std::cos(angle)), hub_y + std::lround(7000 * std::sin(angle)));
+  };
+  const Tally tally = compare_many("around a shared vertex", 600, [&] {
+    ++i;
+    return Triangle{at_unit(hub_x, hub_y), rim(i), rim(i + 1)};
+  });
+  EXPECT_EQ(tally.differences, 0u);
+}
+
+TEST_F(Coverage, PartlyOffScreen) {
+  compare_many("partly off screen", 1000, [&] {
+    const auto point = [&] { return grid_point(-kSize * kUnits, 2 * kSize * kUnits, 1); };
+    return Triangle{point(), point(), point()};
+  });
+}
+
+TEST_F(Coverage, AnyPositions) {
+  compare_many("any positions", 1000, [&] {
+    const auto point = [&] { return at_pixel(uniform(0, kSize), uniform(0, kSize)); };
+    return Triangle{point(), point(), point()};
+  });
+}
+
+TEST_F(Coverage, Perspective) {
+  compare_many("perspective", 1000, [&] {
+    const auto point = [&] {
+      const double w = uniform(1, 20);
+      return clip_point(static_cast<float>(w * uniform(-1, 1)), static_cast<float>(w * uniform(-1, 1)),
+                        static_cast<float>(w));
+    };
+    return Triangle{point(), point(), point()};
+  });
+}
+
+// One or two vertices behind the near plane or the eye.
+TEST_F(Coverage, BehindTheEye) {
+  compare_many("behind the eye", 1000, [&] {
+    const auto point = [&](double low, double high) {
+      return clip_point(static_cast<float>(uniform(-4, 4)), static_cast<float>(uniform(-4, 4)),
+                        static_cast<float>(uniform(low, high)));
+    };
+    return Triangle{point(1, 10), point(-10, 10), point(-10, 1)};
+  });
+}
+
+}  // namespace
+}  // namespace beampipe

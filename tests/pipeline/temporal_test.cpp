@@ -1,0 +1,190 @@
+// Techniques that accumulate over frames: TAA and decoupled visibility.
+#include <gtest/gtest.h>
+
+#include <cmath>
+
+#include "pipeline/technique.h"
+#include "test_traces.h"
+
+namespace beampipe {
+namespace {
+
+// The last of `frames` frames of a trace that stands still.
+Image render_frames(const std::string& spec, const Trace& trace, std::size_t frames, int threads = 1) {
+  const Technique technique = parse_technique(spec);
+  History history;
+  Image image;
+  for (std::size_t i = 0; i < frames; ++i) image = technique.render(trace, 0, {threads, &history}).image;
+  return image;
+}
+
+double red(const Image& image, std::uint32_t x, std::uint32_t y) {
+  return image.rgba[4 * (std::size_t{y} * image.width + x)];
+}
+
+double worst_difference(const Image& a, const Image& b) {
+  double worst = 0;
+  for (std::size_t i = 0; i < a.rgba.size(); ++i) worst = std::max(worst, std::abs(double{a.rgba[i]} - b.rgba[i]));
+  return worst;
+}
+
+std::vector<PixelSpaceTriangle> quad(double x0, double y0, double x1, double y1, double z, const glm::vec3& color) {
+  return {{{{x0, y0, z}, {x1, y0, z}, {x1, y1, z}}, color}, {{{x0, y0, z}, {x1, y1, z}, {x0, y1, z}}, color}};
+}
+
+// A white bar, `thick` pixels, over black; horizontal.
+Trace bar(double thick) { return pixel_trace(32, 16, quad(0, 8.1, 32, 8.1 + thick, 0.5, glm::vec3(1))); }
+
+double mean_red(const Image& image) {
+  double sum = 0;
+  for (std::size_t i = 0; i < image.rgba.size(); i += 4) sum += image.rgba[i];
+  return sum / static_cast<double>(image.rgba.size() / 4);
+}
+
+TEST(Taa, TheFirstFrameIsOneSample) {
+  const Trace trace = random_trace(40, 30, 100, 2);
+  EXPECT_LT(worst_difference(render_frames("taa:1", trace, 1), render_frames("msaa:1", trace, 1)), 0x1p-11);
+  EXPECT_LT(worst_difference(render_frames("visibility", trace, 1), render_frames("msaa:1", trace, 1)), 0x1p-11);
+  EXPECT_EQ(render_frames("visibility", trace, 1).rgba, render_frames("deferred", trace, 1).rgba);
+}
+
+TEST(Taa, AnEdgeAccumulatesToItsCoverage) {
+  // The edge at x = 8.5 between wide areas: neighbours on both sides keep the clamp open.
+  const Trace trace = pixel_trace(16, 8, quad(-4, -4, 8.5, 20, 0.5, glm::vec3(1)));
+  const double found = red(render_frames("taa:8", trace, 64), 8, 4);
+  EXPECT_NEAR(found, 0.5, 0.12);                                        // T = 0.1 over a cycle of 8 leaves ripples
+  EXPECT_NEAR(red(render_frames("taa:8", trace, 1), 8, 4), 0.0, 1e-6);  // the first position lies right of the edge
+}
+
+TEST(Taa, BlendIsExponential) {
+  // All frames but the first lie still; the first is white, the others 3/4 grey, and no clamp in between: the box of a
+  // checker of grey and white pixels holds both. 1 - (1 - T)^n of the way is gone after n frames.
+  std::vector<PixelSpaceTriangle> before, after;
+  for (int i = 0; i < 8; ++i) {
+    for (const auto& t : quad(i, 0, i + 1, 8, 0.5, glm::vec3(i % 2 ? 1.0f : 0.0f))) before.push_back(t);
+    for (const auto& t : quad(i, 0, i + 1, 8, 0.5, glm::vec3(i % 2 ? 0.0f : 1.0f))) after.push_back(t);
+  }
+  Trace trace = pixel_trace(8, 8, before);
+  const Trace other = pixel_trace(8, 8, after);
+  const Technique technique = parse_technique("taa:1,blend=0.25");
+  History history;
+  technique.render(trace, 0, {1, &history});
+  Image image;
+  for (int i = 0; i < 3; ++i) image = technique.render(other, 0, {1, &history}).image;
+  EXPECT_NEAR(red(image, 3, 4), std::pow(0.75, 3), 1e-3);
+  EXPECT_NEAR(red(image, 4, 4), 1 - std::pow(0.75, 3), 1e-3);
+}
+
+TEST(Taa, ReprojectionFollowsTheCamera) {
+  // The world moves by exactly one pixel per frame; every position then has the same history as if nothing moved.
+  const auto shifted = [](double pixels) {
+    std::vector<PixelSpaceTriangle> triangles;
+    for (int i = -8; i < 40; ++i)
+      for (const auto& t : quad(i, -4, i + 1, 20, 0.5, glm::vec3(static_cast<float>((i * 37 & 15)) / 16.0f)))
+        triangles.push_back(t);
+    Trace trace = pixel_trace(24, 8, triangles);
+    trace.frames[0].view[3][0] = pixels;
+    return trace;
+  };
+  const Technique technique = parse_technique("taa:1,blend=0.001");
+  History history;
+  const Image first = technique.render(shifted(0), 0, {1, &history}).image;
+  const Image second = technique.render(shifted(1), 0, {1, &history}).image;
+  const Image there = render_frames("taa:1", shifted(1), 1);
+  for (std::uint32_t x = 2; x < 22; ++x) {
+    EXPECT_NEAR(red(second, x, 4), red(first, x - 1, 4), 2e-3) << x;
+    EXPECT_NEAR(red(there, x, 4), red(first, x - 1, 4), 1e-6) << x;
+  }
+  EXPECT_EQ(history.frames, 2u);
+}
+
+TEST(Taa, AnotherSizeOfFrameStartsAfresh) {
+  const Technique technique = parse_technique("taa:8");
+  History history;
+  technique.render(random_trace(40, 30, 100, 2), 0, {1, &history});
+  const Trace smaller = random_trace(20, 30, 50, 3);
+  const Image image = technique.render(smaller, 0, {1, &history}).image;
+  EXPECT_EQ(image.rgba.size(), 4u * 20 * 30);
+  EXPECT_EQ(history.width, 20);
+}
+
+TEST(Dvm, ABarThinnerThanAPixelVanishesUnderTaaOnly) {
+  const Trace trace = bar(0.2);  // over one of the eight positions
+  const double truth = mean_red(render_frames("reference", trace, 1));
+  const double msaa = mean_red(render_frames("msaa:8", trace, 1));
+  ASSERT_NEAR(truth, 0.2 / 16, 1e-3);
+  EXPECT_NEAR(mean_red(render_frames("dvm", trace, 1)), msaa, 1e-6);
+  EXPECT_NEAR(mean_red(render_frames("dvm", trace, 60)), msaa, 1e-3);
+  // Each jitter cycle hits it once, and leaves T of a frame, which the next frame clamps away: T / 8 on average.
+  const Technique taa = parse_technique("taa:8");
+  History history;
+  double sum = 0;
+  for (int i = 0; i < 64; ++i) {
+    const double seen = mean_red(taa.render(trace, 0, {1, &history}).image);
+    if (i < 8) continue;
+    sum += seen / 56;
+    EXPECT_TRUE(seen < 1e-6 || std::abs(seen - 0.1 / 16) < 1e-4) << seen;
+  }
+  EXPECT_NEAR(sum, 0.1 / 16 / 8, 1e-4);
+}
+
+TEST(Dvm, TheFirstFrameIsMsaaWhereMaterialsAreFew) {
+  // Two flat draws' worth of colours: any sample of a material has its colour, so the masks are all that matters.
+  std::vector<PixelSpaceTriangle> triangles = quad(2.3, 3.1, 17.7, 20.9, 0.5, glm::vec3(0.25f, 0.5f, 0.75f));
+  triangles.push_back({{{5, 1, 0.3}, {29, 9, 0.4}, {11, 27, 0.2}}, glm::vec3(1.0f, 0.5f, 0.125f)});
+  for (const std::uint32_t size : {32u, 31u}) {  // odd: quads that stick out of the frame
+    const Trace trace = pixel_trace(size, size, triangles, glm::vec3(0.125f, 0.25f, 0.5f));
+    const Image truth = render_frames("msaa:8", trace, 1);
+    for (const char* spec : {"dvm", "dvm:seed=7"})
+      EXPECT_LT(worst_difference(render_frames(spec, trace, 1), truth), 0x1p-11) << spec << ' ' << size;
+    EXPECT_LT(worst_difference(render_frames("dvm", trace, 20), truth), 0x1p-8) << size;
+  }
+}
+
+TEST(Dvm, PastFourMaterialsTimeMakesUpForWhatIsMissing) {
+  // Eight columns of 1/4 px in one quad, each another material.
+  std::vector<PixelSpaceTriangle> triangles;
+  const auto value = [](int i) { return static_cast<float>(i * 5 % 8) / 8.0f; };
+  for (int i = 0; i < 8; ++i)
+    for (const auto& t : quad(i / 4.0, 0, (i + 1) / 4.0, 2, 0.5, glm::vec3(value(i)))) triangles.push_back(t);
+  const Trace trace = pixel_trace(2, 2, triangles);
+  const FrameResult first = parse_technique("dvm").render(trace, 0, {1});
+  double unknown = 0;
+  for (const float part : first.pixel_counters.at("unknown")) unknown += part / 4;
+  EXPECT_GT(unknown, 0.3);  // half of the materials, and so about half of the samples
+  EXPECT_LT(unknown, 0.7);
+  const Image truth = render_frames("msaa:8", trace, 1), late = render_frames("dvm:blend=0.02", trace, 400);
+  for (std::uint32_t x = 0; x < 2; ++x)
+    EXPECT_NEAR((red(late, x, 0) + red(late, x, 1)) / 2, red(truth, x, 0), 0.08) << x;
+}
+
+TEST(Dvm, ShadesOneSamplePerCoveredPixelAndNoHelpers) {
+  const Trace trace = pixel_trace(16, 16, quad(-1, -1, 20, 20, 0.5, glm::vec3(1)));
+  for (const char* spec : {"dvm", "visibility"}) {
+    for (const StageCounters& stage : parse_technique(spec).render(trace, 0, {1}).stages) {
+      if (stage.stage != "shade") continue;
+      EXPECT_EQ(stage.lanes_used, 16u * 16) << spec;
+      EXPECT_EQ(stage.lanes_issued, 16u * 16) << spec;
+    }
+  }
+}
+
+TEST(Dvm, MaterialByDrawSpreadsAcrossColors) {
+  // One draw, two colours side by side in a pixel: by draw they are one material and the pixel has one sample's colour.
+  std::vector<PixelSpaceTriangle> triangles = quad(0, 0, 0.5, 2, 0.5, glm::vec3(1));
+  for (const auto& t : quad(0.5, 0, 2, 2, 0.5, glm::vec3(0))) triangles.push_back(t);
+  const Trace trace = pixel_trace(2, 2, triangles);
+  EXPECT_NEAR(red(render_frames("dvm", trace, 1), 0, 0), 0.5, 1e-6);
+  const double by_draw = red(render_frames("dvm:material=draw", trace, 1), 0, 0);
+  EXPECT_TRUE(by_draw == 0 || by_draw == 1) << by_draw;
+}
+
+TEST(Temporal, FramesAreTheSameFromAnyNumberOfThreads) {
+  const Trace trace = random_trace(47, 31, 200, 7);
+  for (const char* spec : {"taa:8", "dvm"})
+    EXPECT_EQ(render_frames(spec, trace, 5).rgba, render_frames(spec, trace, 5, 3).rgba);
+  EXPECT_NE(render_frames("dvm", trace, 5).rgba, render_frames("dvm:seed=2", trace, 5).rgba);
+}
+
+}  // namespace
+}  // namespace beampipe

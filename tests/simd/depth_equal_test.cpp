@@ -1,0 +1,75 @@
+#include <gtest/gtest.h>
+
+#include <random>
+#include <vector>
+
+#include "hwy/targets.h"
+#include "simd/depth_test.h"
+#include "simd/match.h"
+
+namespace beampipe {
+namespace {
+
+template <class Check>
+void on_each_target(Check&& check) {
+  for (const auto target : hwy::SupportedAndGeneratedTargets()) {
+    SCOPED_TRACE(hwy::TargetName(target));
+    hwy::SetSupportedTargetsForTest(target);
+    hwy::GetChosenTarget().DeInit();
+    check();
+  }
+  hwy::SetSupportedTargetsForTest(0);
+  hwy::GetChosenTarget().DeInit();
+}
+
+TEST(DepthEqual, KernelEqualsTwin) {
+  std::mt19937 bits(11);
+  const auto uniform = [&] { return static_cast<float>(bits() / 4294967296.0 - 0.5); };
+  for (const int samples : {1, 2, 4, 8, 16, 32}) {
+    const SamplePattern pattern = samples == 32 ? hammersley_pattern() : standard_pattern(samples);
+    const auto n = static_cast<std::size_t>(samples);
+    std::vector<float> depth(100 * n + kSampleSlack);
+    std::vector<CellDepth> items;
+    std::vector<std::uint32_t> expected;
+    for (std::uint32_t cell = 0; cell < 100; ++cell) {
+      items.push_back({cell, static_cast<std::uint32_t>(bits()), 0, uniform(), uniform() / 256, uniform() / 256});
+      items.back().mask &= ~0u >> (32 - samples);
+      std::uint32_t mask = 0;
+      for (std::size_t s = 0; s < n; ++s) {
+        const CellDepth& item = items.back();
+        const auto x = static_cast<float>(pattern.x[s]), y = static_cast<float>(pattern.y[s]);
+        float& stored = depth[cell * n + s];
+        depth_test_scalar(item.z, item.dzdx, item.dzdy, x, y, 1e9f, stored);
+        if (bits() % 3 == 0) stored = std::nextafter(stored, -2.0f);  // one bit nearer
+        const bool equal = depth_equal_scalar(item.z, item.dzdx, item.dzdy, x, y, stored);
+        mask |= (equal ? item.mask >> s & 1 : 0u) << s;
+      }
+      expected.push_back(mask);
+    }
+    on_each_target([&] {
+      std::vector<std::uint32_t> masks(items.size(), 0xdeadbeef);
+      depth_equal(items.data(), items.size(), pattern, depth.data(), masks.data());
+      EXPECT_EQ(masks, expected) << samples;
+    });
+  }
+}
+
+TEST(MatchMasks, KernelEqualsTwin) {
+  std::mt19937 bits(12);
+  std::vector<std::uint32_t> ids(500 * kQuadSamples), expected;
+  std::vector<std::uint8_t> locations(4 * 500);
+  for (std::size_t i = 0; i < ids.size(); ++i) ids[i] = bits() % (1 + i / kQuadSamples % 7);
+  for (std::size_t i = 0; i < locations.size(); ++i) {
+    locations[i] = static_cast<std::uint8_t>(bits() % 32);
+    const std::uint32_t* quad = ids.data() + i / 4 * kQuadSamples;
+    expected.push_back(match_mask_scalar(quad, quad[locations[i]]));
+  }
+  on_each_target([&] {
+    std::vector<std::uint32_t> masks(4 * 500);
+    match_masks(ids.data(), locations.data(), 500, masks.data());
+    EXPECT_EQ(masks, expected);
+  });
+}
+
+}  // namespace
+}  // namespace beampipe
