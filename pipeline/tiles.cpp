@@ -87,11 +87,7 @@ FrameResult render_tiles(const Frame& frame, const SetupTriangles& triangles, co
 }
 
 void copy_to_frame(const float* tile_values, const Tile& tile, const Frame& frame, std::vector<float>& frame_values) {
-  for (std::int32_t y = tile.y0; y < tile.y1; ++y) {
-    const std::size_t row = static_cast<std::size_t>(y) * frame.width + static_cast<std::size_t>(tile.x0);
-    std::copy_n(tile_values + (y - tile.y0) * tile.width(), tile.width(),
-                frame_values.begin() + static_cast<std::ptrdiff_t>(row));
-  }
+  copy_rows(tile, tile_values, 1, frame.width, frame_values.data());
 }
 
 std::vector<glm::vec4> pixels_of(const Image& image) {

@@ -15,7 +15,7 @@ namespace {
 constexpr float kSurfaceReach = 1.0f / 64.0f;
 
 // What is kept from one window to the next.
-struct Aggregate256 {
+struct PixelAggregate {
   WideMask mask;
   Taken<float> taken{0.0f, 0.0f};
   glm::vec3 color{0.0f};  // times area
@@ -38,7 +38,7 @@ class PixelComposer {
   }
 
   // Adds fragments [begin, end), all of one pixel, in primitive order.
-  void add_window(const Fragment* const* begin, const Fragment* const* end, Aggregate256& aggregate) {
+  void add_window(const Fragment* const* begin, const Fragment* const* end, PixelAggregate& aggregate) {
     seen_.clear();
     for (const Fragment* const* fragment = begin; fragment != end; ++fragment)
       seen_.push_back({*fragment, 0, 0, {}, 0});
@@ -104,12 +104,11 @@ class PixelComposer {
   // or on the same surface. Around one position the two sides of a thin closed body both cover no position: the side
   // with the lesser area is taken for hidden by the other.
   void find_tiny(const WideMask& taken) {
+    if (std::none_of(seen_.begin(), seen_.end(), [](const Seen& seen) { return seen.covered == 0; })) return;
     front_.assign(static_cast<std::size_t>(positions_.count()), 0.0f);
     back_.assign(static_cast<std::size_t>(positions_.count()), 0.0f);
-    bool any = false;
     for (Seen& seen : seen_) {
       if (seen.covered > 0) continue;
-      any = true;
       const Fragment& fragment = *seen.fragment;
       const std::array<std::uint8_t, 3>& nearest = positions_.nearest_to(fragment.centroid_u, fragment.centroid_v);
       float votes = 0;
@@ -117,7 +116,6 @@ class PixelComposer {
       seen.area = fragment.alpha * votes / 3.0f;
       (fragment.front ? front_ : back_)[nearest[0]] += seen.area;
     }
-    if (!any) return;
     for (Seen& seen : seen_) {
       if (seen.covered > 0) continue;
       const std::size_t place = positions_.nearest_to(seen.fragment->centroid_u, seen.fragment->centroid_v)[0];
@@ -209,7 +207,7 @@ std::vector<PixelColor> compose_window(const std::vector<Fragment>& fragments, c
   std::vector<const Fragment*> window;
   std::uint64_t looked_at = 0;
   for (std::size_t pixel = 0; pixel < pixels; ++pixel) {
-    Aggregate256 aggregate;
+    PixelAggregate aggregate;
     const auto at = [&](std::uint32_t i) -> const Fragment& { return fragments[buffer.fragments[i]]; };
     const std::uint32_t end = buffer.first[pixel + 1];
     for (std::uint32_t i = buffer.first[pixel]; i < end && aggregate.mask.count() < positions.count();) {
