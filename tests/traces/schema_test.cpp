@@ -39,7 +39,7 @@ class SchemaTest : public FolderTest {
  protected:
   SchemaTest() {
     write("mesh.obj", "v 0 0 0\nv 1 0 0\nv 0 1 0\nf 1 2 3\n");
-    std::ifstream file(std::filesystem::path(__FILE__).parent_path() / "../../traces/trace.schema.json");
+    std::ifstream file(std::filesystem::path(BEAMPIPE_SOURCE_FOLDER) / "traces/trace.schema.json");
     schema_ = Json::parse(file);
   }
 

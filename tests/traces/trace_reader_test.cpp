@@ -249,7 +249,7 @@ TEST_F(TraceReaderTest, NamesFilesThatCannotBeRead) {
 }
 
 TEST_F(TraceReaderTest, ReadsTheSamples) {
-  const std::filesystem::path samples = std::filesystem::path(__FILE__).parent_path() / "../../traces/samples";
+  const std::filesystem::path samples = std::filesystem::path(BEAMPIPE_SOURCE_FOLDER) / "traces/samples";
   EXPECT_EQ(read_trace(samples / "triangle.json").meshes[0].triangles.size(), 1u);
   EXPECT_EQ(read_trace(samples / "two_quads.json").frames[0].draws.size(), 2u);
   EXPECT_EQ(read_trace(samples / "pan.json").frames.size(), 3u);
