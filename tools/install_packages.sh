@@ -6,6 +6,7 @@ packages=(
   g++ cmake ninja-build
   libglm-dev libopenexr-dev libimath-dev libhwy-dev libtbb-dev libpng-dev libtinyobjloader-dev
   libcli11-dev nlohmann-json3-dev
+  gnuplot-nox  # run by `beampipe plot`
   libgtest-dev
 )
 

@@ -1,0 +1,178 @@
+// Plots: means over reports, labels that keep clear of each other, and the files that gnuplot makes of them.
+
+#include "tools/report/plot.h"
+
+#include <png.h>
+
+#include <cmath>
+#include <random>
+
+#include "tests/tools/program.h"
+#include "tools/report/label_placement.h"
+
+namespace beampipe {
+namespace {
+
+// A report of msaa:1, msaa:8 and one technique, as `compare` writes it.
+std::string report_text(const std::string& spec, int bytes, double emr, double rmse, double ms,
+                        const std::string& more = "") {
+  const auto result = [](const std::string& name, int size, double n, double error, double time,
+                         const std::string& keys) {
+    return R"({"technique": ")" + name + R"(", "framebuffer_bytes_per_pixel": )" + std::to_string(size) +
+           R"(, "error": {"rmse": )" + std::to_string(error) + R"(}, "equivalent_msaa": )" + std::to_string(n) + keys +
+           R"(, "frames": [{"wall_ms": {"median": )" + std::to_string(time) + "}}]}";
+  };
+  return R"({"beampipe_report": 1, "trace": "some/where/rods.json",
+             "msaa_ladder": [{"samples": 1, "rmse": 0.1}, {"samples": 8, "rmse": 0.03}], "results": [)" +
+         result(spec, bytes, emr, rmse, ms, more) + "," + result("msaa:8", 80, 8, 0.03, 20, "") + "," +
+         result("msaa:1", 10, 1, 0.1, 10, "") + "," + result("reference", 65536, 8, 0, 1000, "") + "]}";
+}
+
+class PlotTest : public testing::Test {
+ protected:
+  std::filesystem::path make_report(const std::string& name, const std::string& text) {
+    std::filesystem::create_directory(folder_ / name);
+    write_text(folder_ / name / "report.json", text);
+    return folder_ / name;
+  }
+  std::string path(const std::string& name) const { return (folder_ / name).string(); }
+
+  TemporaryFolder folder_;
+};
+
+std::size_t count_of(const std::string& text, const std::string& part) {
+  std::size_t count = 0;
+  for (std::size_t at = text.find(part); at != text.npos; at = text.find(part, at + 1)) ++count;
+  return count;
+}
+
+TEST_F(PlotTest, FrontierHasThePointsOfTheLadderAndOfEveryTechniqueButTheReference) {
+  const ReportFile report = read_report(make_report("a", report_text("beam", 42, 100, 0.01, 50)));
+  EXPECT_EQ(report.scene, "rods");
+  const ScatterPlot plot = frontier_plot({report});
+  ASSERT_EQ(plot.series.size(), 2u);
+  EXPECT_EQ(plot.series[0].name, "msaa");
+  EXPECT_TRUE(plot.series[0].line);
+  ASSERT_EQ(plot.series[0].points.size(), 2u);
+  EXPECT_EQ(plot.series[0].points[1].x, 80);
+  EXPECT_EQ(plot.series[0].points[1].y, 8);
+  ASSERT_EQ(plot.series[1].points.size(), 1u);
+  EXPECT_EQ(plot.series[1].points[0].x, 42);
+  EXPECT_EQ(plot.series[1].points[0].y, 100);
+  EXPECT_EQ(plot.series[1].points[0].label, "beam");
+  EXPECT_EQ(plot.series[1].points[0].y_bound, PlotPoint::Bound::none);
+}
+
+TEST_F(PlotTest, SeveralReportsGiveGeometricMeansAndTheirBounds) {
+  const std::vector<ReportFile> reports = {
+      read_report(make_report("a", report_text("beam", 42, 4, 0.01, 50))),
+      read_report(
+          make_report("b", report_text("beam", 42, 64, 0.04, 200, R"(, "equivalent_msaa_is_lower_bound": true)")))};
+  const TechniqueSummary mean = mean_summaries(reports).front();
+  EXPECT_NEAR(mean.emr->samples, 16, 1e-9);
+  EXPECT_NEAR(*mean.rmse, 0.02, 1e-9);
+  EXPECT_NEAR(mean.wall_ms, 100, 1e-9);
+  EXPECT_NEAR(mean.bytes_per_pixel, 42, 1e-9);
+  EXPECT_EQ(frontier_plot(reports).series[1].points[0].y_bound, PlotPoint::Bound::lower);
+
+  const ReportFile other = read_report(make_report("c", report_text("alpha", 10, 4, 0.01, 50)));
+  const std::vector<TechniqueSummary> common = mean_summaries({reports[0], other});
+  ASSERT_EQ(common.size(), 2u) << "only what all reports have";
+  EXPECT_EQ(common[0].spec, "msaa:8");
+}
+
+TEST_F(PlotTest, WhatALogarithmicAxisLacksIsNoted) {
+  const ReportFile report = read_report(make_report("a", report_text("beam", 42, 100, 0, 50)));
+  const ScatterPlot plot = speed_plot({report});
+  EXPECT_EQ(plot.series.size(), 1u);
+  ASSERT_EQ(plot.notes.size(), 1u);
+  EXPECT_EQ(plot.notes[0].rfind("beam is not drawn: RMSE", 0), 0u) << plot.notes[0];
+}
+
+TEST(LabelPlacement, KeepsLabelsOffEachOtherOffPointsAndInside) {
+  const unsigned seed = std::random_device()();
+  SCOPED_TRACE("seed " + std::to_string(seed));
+  std::mt19937 random(seed);
+  std::uniform_real_distribution<double> x(60, 640), y(40, 380), width(20, 60);
+  LabelTask task{700, 420, 14, 5, {}, {}, {}};
+  for (int i = 0; i < 12; ++i) {
+    task.points.push_back({x(random), y(random)});
+    task.label_widths.push_back(i % 4 == 3 ? 0 : width(random));
+  }
+  const std::vector<PixelPoint> centers = place_labels(task);
+  ASSERT_EQ(centers.size(), task.points.size());
+  for (std::size_t i = 0; i < centers.size(); ++i) {
+    const double w = task.label_widths[i];
+    if (w == 0) continue;
+    EXPECT_TRUE(centers[i].x >= w / 2 && centers[i].x <= 700 - w / 2 && centers[i].y >= 7 && centers[i].y <= 413) << i;
+    for (std::size_t j = 0; j < centers.size(); ++j) {
+      const double dx = std::abs(centers[i].x - task.points[j].x), dy = std::abs(centers[i].y - task.points[j].y);
+      EXPECT_TRUE(dx > w / 2 + 4.999 || dy > 7 + 4.999) << "label " << i << " on point " << j;
+      if (j == i || task.label_widths[j] == 0) continue;
+      const bool apart = std::abs(centers[i].x - centers[j].x) > (w + task.label_widths[j]) / 2 - 1e-6 ||
+                         std::abs(centers[i].y - centers[j].y) > 14 - 1e-6;
+      EXPECT_TRUE(apart) << "labels " << i << " and " << j;
+    }
+  }
+}
+
+TEST_F(PlotTest, SvgHoldsAPointAndALabelForEveryTechnique) {
+  make_report("a", report_text("beam:it's", 42, 100, 0.01, 50));
+  for (const std::string kind : {"frontier", "speed"}) {
+    const Outcome outcome = run_program({"plot", path("a"), "--kind", kind, "-o", path("plot.svg")});
+    ASSERT_EQ(outcome.exit_code, 0) << outcome.err;
+    const std::string svg = read_text(folder_ / "plot.svg");
+    EXPECT_EQ(count_of(svg, "<use xlink:href='#gpPt6' transform="), 3u) << kind;
+    for (const std::string label : {">beam:it's<", ">msaa:1<", ">msaa:8<"}) {
+      EXPECT_EQ(count_of(svg, label), 1u) << kind << " " << label;
+    }
+    EXPECT_EQ(count_of(svg, ">reference<"), 0u);
+  }
+}
+
+TEST_F(PlotTest, PngDecodesAndIsNotBlank) {
+  make_report("a", report_text("beam", 42, 100, 0.01, 50));
+  ASSERT_EQ(run_program({"plot", path("a"), "-o", path("plot.png")}).exit_code, 0);
+  const std::string bytes = read_text(folder_ / "plot.png");
+  png_image png{};
+  png.version = PNG_IMAGE_VERSION;
+  ASSERT_TRUE(png_image_begin_read_from_memory(&png, bytes.data(), bytes.size())) << png.message;
+  png.format = PNG_FORMAT_RGB;
+  std::vector<std::uint8_t> rgb(PNG_IMAGE_SIZE(png));
+  ASSERT_TRUE(png_image_finish_read(&png, nullptr, rgb.data(), 0, nullptr)) << png.message;
+  EXPECT_EQ(png.width, 1520u);
+  EXPECT_EQ(rgb[0], 255) << "white in the corner";
+  EXPECT_GT(std::count_if(rgb.begin(), rgb.end(), [](std::uint8_t c) { return c < 128; }), 2000);
+}
+
+TEST_F(PlotTest, ErrorsAreOneLine) {
+  const auto expect_error = [&](const std::vector<std::string>& arguments, int exit_code, const std::string& part) {
+    const Outcome outcome = run_program(arguments);
+    EXPECT_EQ(outcome.exit_code, exit_code) << outcome.err;
+    EXPECT_EQ(outcome.err.rfind("beampipe: error: ", 0), 0u) << outcome.err;
+    EXPECT_EQ(count_of(outcome.err, "\n"), 1u) << outcome.err;
+    EXPECT_NE(outcome.err.find(part), std::string::npos) << outcome.err << "does not say: " << part;
+  };
+  make_report("good", report_text("beam", 42, 100, 0.01, 50));
+  make_report("broken", "{\"beampipe_report\": 1, ");
+  make_report("other", R"({"beampipe_trace": 1})");
+  make_report("run", R"({"beampipe_report": 1, "trace": "t.json", "results": [{"technique": "beam",
+      "framebuffer_bytes_per_pixel": 42, "frames": [{"wall_ms": {"median": 3}}]}]})");
+  std::filesystem::create_directory(folder_ / "empty");
+  expect_error({"plot", path("good"), "-o", path("plot.pdf")}, 2, "ends in .svg or .png");
+  expect_error({"plot", path("nowhere"), "-o", path("p.svg")}, 1, "no such folder");
+  expect_error({"plot", path("empty"), "-o", path("p.svg")}, 1, "empty/report.json: cannot be read");
+  expect_error({"plot", path("broken"), "-o", path("p.svg")}, 1, "not a report that beampipe wrote");
+  expect_error({"plot", path("other"), "-o", path("p.svg")}, 1, "beampipe_report");
+  expect_error({"plot", path("run"), "-o", path("p.svg")}, 1, "expected the report of `beampipe compare`");
+  expect_error({"plot", path("good"), "--kind", "pie", "-o", path("p.svg")}, 2, "pie");
+
+  const std::string search_path = getenv("PATH");
+  setenv("PATH", path("empty").c_str(), 1);
+  expect_error({"plot", path("good"), "-o", path("p.svg")}, 1, "cannot run the program gnuplot");
+  setenv("PATH", search_path.c_str(), 1);
+  EXPECT_FALSE(std::filesystem::exists(folder_ / "p.svg"));
+}
+
+}  // namespace
+}  // namespace beampipe

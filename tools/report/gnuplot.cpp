@@ -1,0 +1,210 @@
+#include "tools/report/gnuplot.h"
+
+#include <sys/wait.h>
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <cstdio>
+#include <filesystem>
+#include <fstream>
+#include <memory>
+#include <sstream>
+#include <stdexcept>
+
+#include "tools/report/label_placement.h"
+
+namespace beampipe {
+namespace {
+
+namespace fs = std::filesystem;
+
+constexpr int kWidth = 760, kHeight = 520;                                     // px
+constexpr double kLeft = 0.105, kRight = 0.975, kBottom = 0.12, kTop = 0.915;  // of the picture: where the axes are
+constexpr int kFontSize = 12, kLabelHeight = 14;                               // px
+constexpr double kCharacterWidth = 6.9;                                        // px, of most fonts at this size
+constexpr double kPointRadius = 5;                                             // px
+constexpr int kPngScale = 2;                                                   // PNG pixels per px
+
+// Tableau's ten colours, which most eyes can tell apart.
+constexpr std::array<const char*, 10> kColors = {"#4e79a7", "#f28e2b", "#e15759", "#76b7b2", "#59a14f",
+                                                 "#edc948", "#b07aa1", "#9c755f", "#ff9da7", "#79706e"};
+
+// In single quotes gnuplot takes everything as it is.
+std::string quoted(const std::string& text) {
+  std::string out = "'";
+  for (const char c : text) out += c == '\'' ? "''" : static_cast<unsigned char>(c) < 0x20 ? " " : std::string(1, c);
+  return out + "'";
+}
+
+// A logarithmic axis with some room beside the outermost values.
+struct LogRange {
+  double low = 1, high = 10;
+
+  double place(double value) const { return std::log(value / low) / std::log(high / low); }  // 0..1
+};
+
+LogRange range_of(const ScatterPlot& plot, double PlotPoint::*value) {
+  double low = HUGE_VAL, high = 0;
+  for (const PlotSeries& series : plot.series) {
+    for (const PlotPoint& point : series.points) {
+      low = std::min(low, point.*value);
+      high = std::max(high, point.*value);
+    }
+  }
+  if (low > high) return {};
+  const double room = std::max(1.15, std::pow(high / low, 0.06));
+  return {low / room, high * room};
+}
+
+// Powers of ten, and twice and five times them on short axes: "1, 2, 5, 10".
+std::string tics(const LogRange& range) {
+  const bool is_short = std::log10(range.high / range.low) < 2.5;
+  std::string text;
+  for (int power = static_cast<int>(std::floor(std::log10(range.low))); std::pow(10.0, power) <= range.high; ++power) {
+    for (const double times : {1.0, 2.0, 5.0}) {
+      const double value = times * std::pow(10.0, power);
+      if ((times > 1 && !is_short) || value < range.low || value > range.high) continue;
+      std::ostringstream number;
+      number << value;
+      text += (text.empty() ? "" : ", ") + number.str();
+    }
+  }
+  return text;
+}
+
+void write_labels(std::ostream& script, const ScatterPlot& plot, const LogRange& x, const LogRange& y) {
+  LabelTask task{kWidth * (kRight - kLeft), kHeight * (kTop - kBottom), kLabelHeight, kPointRadius, {}, {}, {}};
+  std::vector<std::string> labels;
+  const auto pixel_of = [&](const PlotPoint& point) {
+    return PixelPoint{x.place(point.x) * task.width, y.place(point.y) * task.height};
+  };
+  for (const PlotSeries& series : plot.series) {
+    for (std::size_t i = 1; series.line && i < series.points.size(); ++i) {
+      task.lines.push_back({pixel_of(series.points[i - 1]), pixel_of(series.points[i])});
+    }
+    for (const PlotPoint& point : series.points) {
+      task.points.push_back(pixel_of(point));
+      task.label_widths.push_back(kCharacterWidth * static_cast<double>(point.label.size()));
+      labels.push_back(point.label);
+    }
+  }
+  const std::vector<PixelPoint> centers = place_labels(task);
+  for (std::size_t i = 0; i < labels.size(); ++i) {
+    if (labels[i].empty()) continue;
+    const PixelPoint point = task.points[i], label = centers[i];
+    const double dx = std::max(0.0, std::abs(label.x - point.x) - task.label_widths[i] / 2);
+    const double dy = std::max(0.0, std::abs(label.y - point.y) - kLabelHeight / 2);
+    if (std::hypot(dx, dy) > 2 * kPointRadius) {
+      script << "set arrow from graph " << point.x / task.width << "," << point.y / task.height << " to graph "
+             << (label.x + std::copysign(std::abs(label.x - point.x) - dx, point.x - label.x)) / task.width << ","
+             << (label.y + std::copysign(std::abs(label.y - point.y) - dy, point.y - label.y)) / task.height
+             << " nohead back linecolor '#a0a0a0'\n";
+    }
+    script << "set label " << quoted(labels[i]) << " at graph " << label.x / task.width << "," << label.y / task.height
+           << " center\n";
+  }
+}
+
+void write_axes(std::ostream& script, const ScatterPlot& plot, const LogRange& x, const LogRange& y) {
+  script << "set lmargin at screen " << kLeft << "\nset rmargin at screen " << kRight << "\nset bmargin at screen "
+         << kBottom << "\nset tmargin at screen " << kTop << "\n"
+         << "set title " << quoted(plot.title) << "\nset xlabel " << quoted(plot.x_label) << "\nset ylabel "
+         << quoted(plot.y_label) << " offset 1,0\nset logscale xy\nset xrange [" << x.low << ":" << x.high
+         << "]\nset yrange [" << y.low << ":" << y.high << "]\nset xtics nomirror (" << tics(x)
+         << ")\nset ytics nomirror (" << tics(y) << ")\n"
+         << "set border 3 linecolor '#404040'\nset grid linetype 1 linecolor '#e4e4e4'\nset key off\n";
+}
+
+// One data block per series and kind of bound, so that each can have its marker.
+void write_series(std::ostream& script, const ScatterPlot& plot) {
+  constexpr int kMarkers[] = {7, 9, 11};  // disc, triangle up (at least), triangle down (at most)
+  std::ostringstream blocks, plots;
+  int block = 0;
+  const auto add = [&](const std::vector<PlotPoint>& points, const std::string& style) {
+    if (points.empty()) return;
+    blocks << "$block" << block << " << END\n";
+    for (const PlotPoint& point : points) blocks << point.x << " " << point.y << "\n";
+    blocks << "END\n";
+    plots << (block > 0 ? ", " : "plot ") << "$block" << block << " with " << style;
+    ++block;
+  };
+  for (std::size_t i = 0; i < plot.series.size(); ++i) {
+    const PlotSeries& series = plot.series[i];
+    const std::string color = " linecolor " + quoted(kColors[i % kColors.size()]);
+    if (series.line) add(series.points, "lines linewidth 2" + color);
+    for (const auto bound : {PlotPoint::Bound::none, PlotPoint::Bound::lower, PlotPoint::Bound::upper}) {
+      std::vector<PlotPoint> points = series.points;
+      std::erase_if(points, [&](const PlotPoint& point) { return point.y_bound != bound; });
+      add(points, "points pointtype " + std::to_string(kMarkers[static_cast<int>(bound)]) + color);
+    }
+  }
+  script << blocks.str() << plots.str() << "\n";
+}
+
+// A folder of its own that goes away with it.
+class ScratchFolder {
+ public:
+  ScratchFolder() {
+    std::string name = (fs::temp_directory_path() / "beampipe-plot-XXXXXX").string();
+    if (!mkdtemp(name.data())) throw std::runtime_error("cannot make a temporary folder " + name);
+    path_ = name;
+  }
+  ~ScratchFolder() {
+    std::error_code ignored;
+    fs::remove_all(path_, ignored);
+  }
+  ScratchFolder(const ScratchFolder&) = delete;
+  ScratchFolder& operator=(const ScratchFolder&) = delete;
+
+  fs::path operator/(const char* name) const { return path_ / name; }
+
+ private:
+  fs::path path_;
+};
+
+std::string read_all(std::istream&& stream) { return {std::istreambuf_iterator<char>(stream), {}}; }
+
+// What gnuplot prints on standard output.
+std::string run_gnuplot(const std::string& script) {
+  const ScratchFolder scratch;
+  std::ofstream(scratch / "script") << script;
+  const std::string command = "cd '" + (scratch / "").string() + "' && gnuplot script >picture 2>messages";
+  const int status = std::system(command.c_str());
+  if (WIFEXITED(status) && WEXITSTATUS(status) == 127) {
+    throw std::runtime_error("cannot run the program gnuplot, which draws the plots (Debian package gnuplot-nox)");
+  }
+  std::string picture = read_all(std::ifstream(scratch / "picture", std::ios::binary));
+  if (status != 0 || picture.empty()) {
+    throw std::runtime_error("gnuplot could not draw: " + read_all(std::ifstream(scratch / "messages")));
+  }
+  return picture;
+}
+
+std::string terminal(PlotFormat format) {
+  std::ostringstream text;
+  if (format == PlotFormat::svg) {
+    text << "set terminal svg noenhanced size " << kWidth << "," << kHeight << " font 'sans-serif," << kFontSize
+         << "' background '#ffffff'\n";
+  } else {
+    text << "set terminal pngcairo noenhanced size " << kPngScale * kWidth << "," << kPngScale * kHeight
+         << " font 'sans-serif," << kFontSize * 0.75 << "' fontscale " << kPngScale << " linewidth " << kPngScale
+         << " pointscale " << kPngScale << "\n";
+  }
+  return text.str();
+}
+
+}  // namespace
+
+std::string draw(const ScatterPlot& plot, PlotFormat format) {
+  const LogRange x = range_of(plot, &PlotPoint::x), y = range_of(plot, &PlotPoint::y);
+  std::ostringstream script;
+  script.precision(9);
+  script << terminal(format);
+  write_axes(script, plot, x, y);
+  write_labels(script, plot, x, y);
+  write_series(script, plot);
+  return run_gnuplot(script.str());
+}
+
+}  // namespace beampipe

@@ -1,0 +1,15 @@
+// Plots as picture files, drawn by the program gnuplot.
+#pragma once
+
+#include <string>
+
+#include "tools/report/plot.h"
+
+namespace beampipe {
+
+enum class PlotFormat { svg, png };
+
+// The bytes of an SVG or PNG file, on white. Throws std::runtime_error, one line, when gnuplot cannot be run or fails.
+std::string draw(const ScatterPlot& plot, PlotFormat format);
+
+}  // namespace beampipe

@@ -1,0 +1,101 @@
+#include "tools/report/plot.h"
+
+#include <algorithm>
+
+#include "pipeline/technique.h"
+
+namespace beampipe {
+namespace {
+
+constexpr const char* kMsaa = "msaa";
+
+// "beam" of "beam:bits=64": techniques of one family share a colour.
+std::string family_of(const std::string& spec) { return spec.substr(0, spec.find(':')); }
+
+PlotSeries& series_named(ScatterPlot& plot, const std::string& name) {
+  const auto is_it = [&](const PlotSeries& series) { return series.name == name; };
+  const auto found = std::find_if(plot.series.begin(), plot.series.end(), is_it);
+  if (found != plot.series.end()) return *found;
+  plot.series.push_back({name, {}, name == kMsaa});
+  return plot.series.back();
+}
+
+void add_point(ScatterPlot& plot, const std::string& spec, PlotPoint point) {
+  if (point.x > 0 && point.y > 0) {
+    series_named(plot, family_of(spec)).points.push_back(std::move(point));
+  } else {
+    plot.notes.push_back(spec + " is not drawn: " + (point.x > 0 ? plot.y_label : plot.x_label) +
+                         " is 0, which no logarithmic axis has");
+  }
+}
+
+PlotPoint::Bound bound_of(const EquivalentMsaa& emr) {
+  if (emr.is_lower_bound == emr.is_upper_bound) return PlotPoint::Bound::none;
+  return emr.is_lower_bound ? PlotPoint::Bound::lower : PlotPoint::Bound::upper;
+}
+
+std::string scenes_text(const std::vector<ReportFile>& reports) {
+  if (reports.size() == 1) return reports.front().scene;
+  return "geometric mean over " + std::to_string(reports.size()) + " scenes";
+}
+
+// The rungs of the longest ladder.
+std::vector<LadderRung> longest_ladder(const std::vector<ReportFile>& reports) {
+  const auto is_shorter = [](const ReportFile& a, const ReportFile& b) {
+    return a.msaa_ladder.size() < b.msaa_ladder.size();
+  };
+  return std::max_element(reports.begin(), reports.end(), is_shorter)->msaa_ladder;
+}
+
+[[noreturn]] void throw_not_compared(const std::vector<ReportFile>& reports) {
+  throw ReportError((reports.front().folder / "report.json").string() +
+                    ": it has no errors; expected the report of `beampipe compare`");
+}
+
+}  // namespace
+
+ScatterPlot frontier_plot(const std::vector<ReportFile>& reports) {
+  ScatterPlot plot{"frontier",
+                   "Memory and accuracy: " + scenes_text(reports),
+                   "framebuffer, bytes per pixel",
+                   "equivalent MSAA rate (EMR), samples",
+                   {{kMsaa, {}, true}},
+                   {}};
+  for (const LadderRung& rung : longest_ladder(reports)) {
+    const std::string spec = "msaa:" + std::to_string(rung.samples);
+    const double bytes = parse_technique(spec).framebuffer_bytes_per_pixel();
+    add_point(plot, spec, {bytes, static_cast<double>(rung.samples), spec});
+  }
+  bool compared = false;
+  for (const TechniqueSummary& summary : mean_summaries(reports)) {
+    if (!summary.emr) continue;
+    compared = true;
+    const bool is_on_the_line = family_of(summary.spec) == kMsaa;
+    if (is_on_the_line) continue;
+    add_point(plot, summary.spec,
+              {summary.bytes_per_pixel, summary.emr->samples, summary.spec, bound_of(*summary.emr)});
+  }
+  if (!compared) throw_not_compared(reports);
+  return plot;
+}
+
+ScatterPlot speed_plot(const std::vector<ReportFile>& reports) {
+  ScatterPlot plot{"speed",
+                   "Time and error: " + scenes_text(reports),
+                   "wall time of the simulator, ms per frame",
+                   "RMSE, linear light (lower is better)",
+                   {{kMsaa, {}, true}},
+                   {}};
+  bool compared = false;
+  for (const TechniqueSummary& summary : mean_summaries(reports)) {
+    if (!summary.rmse) continue;
+    compared = true;
+    add_point(plot, summary.spec, {summary.wall_ms, *summary.rmse, summary.spec});
+  }
+  if (!compared) throw_not_compared(reports);
+  std::vector<PlotPoint>& msaa = plot.series.front().points;
+  std::sort(msaa.begin(), msaa.end(), [](const PlotPoint& a, const PlotPoint& b) { return a.y > b.y; });
+  return plot;
+}
+
+}  // namespace beampipe

@@ -1,0 +1,38 @@
+// Plots as data: gnuplot draws them into files, JavaScript draws them on the report page.
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include "tools/report/report_file.h"
+
+namespace beampipe {
+
+struct PlotPoint {
+  double x = 0, y = 0;                                            // positive: both axes are logarithmic
+  std::string label;                                              // short, beside the point; empty: none
+  enum class Bound { none, lower, upper } y_bound = Bound::none;  // y is at least (at most) this
+};
+
+struct PlotSeries {
+  std::string name;
+  std::vector<PlotPoint> points;
+  bool line = false;  // a line through the points, in their order
+};
+
+// Points over two logarithmic axes.
+struct ScatterPlot {
+  std::string name;  // for files: "frontier"
+  std::string title, x_label, y_label;
+  std::vector<PlotSeries> series;
+  std::vector<std::string> notes;  // what could not be drawn, one line each
+};
+
+// Bytes of the framebuffer per pixel against EMR; MSAA is a line through the rungs of the ladder. Throws ReportError
+// when no technique has an EMR.
+ScatterPlot frontier_plot(const std::vector<ReportFile>& reports);
+
+// Milliseconds against RMSE. Throws ReportError when no technique has an error.
+ScatterPlot speed_plot(const std::vector<ReportFile>& reports);
+
+}  // namespace beampipe

@@ -1,0 +1,118 @@
+#include "tools/report/report_file.h"
+
+#include <algorithm>
+#include <cmath>
+#include <fstream>
+#include <iterator>
+#include <map>
+
+#include "tools/report.h"
+
+namespace beampipe {
+namespace {
+
+using Json = nlohmann::ordered_json;
+
+std::string read_bytes(const std::filesystem::path& file) {
+  std::ifstream stream(file, std::ios::binary);
+  std::string bytes{std::istreambuf_iterator<char>(stream), {}};
+  if (!stream) throw ReportError(file.string() + ": cannot be read; expected what `beampipe compare` writes");
+  return bytes;
+}
+
+TechniqueSummary read_summary(const Json& result) {
+  TechniqueSummary summary;
+  summary.spec = result.at("technique");
+  summary.bytes_per_pixel = result.at("framebuffer_bytes_per_pixel");
+  std::vector<double> medians;
+  for (const Json& frame : result.at("frames")) medians.push_back(frame.at("wall_ms").at("median"));
+  summary.wall_ms = wall_time(std::move(medians)).median;
+  if (result.contains("error")) summary.rmse = result["error"].at("rmse");
+  if (result.contains("equivalent_msaa")) {
+    summary.emr = {result["equivalent_msaa"], result.value("equivalent_msaa_is_lower_bound", false),
+                   result.value("equivalent_msaa_is_upper_bound", false)};
+  }
+  return summary;
+}
+
+// Of positive numbers; 0 when one of them is 0; to the last bit when they are all the same.
+double geometric_mean(const std::vector<double>& values) {
+  if (std::count(values.begin(), values.end(), values.front()) == std::ssize(values)) return values.front();
+  double sum = 0;
+  for (const double value : values) sum += std::log(value);
+  return std::exp(sum / static_cast<double>(values.size()));
+}
+
+TechniqueSummary mean_summary(const std::vector<TechniqueSummary>& of_one_technique) {
+  TechniqueSummary mean = of_one_technique.front();
+  std::vector<double> bytes, ms, rmse, emr;
+  for (const TechniqueSummary& summary : of_one_technique) {
+    bytes.push_back(summary.bytes_per_pixel);
+    ms.push_back(summary.wall_ms);
+    if (summary.rmse) rmse.push_back(*summary.rmse);
+    if (!summary.emr) continue;
+    emr.push_back(summary.emr->samples);
+    if (!mean.emr) continue;
+    mean.emr->is_lower_bound |= summary.emr->is_lower_bound;
+    mean.emr->is_upper_bound |= summary.emr->is_upper_bound;
+  }
+  mean.bytes_per_pixel = geometric_mean(bytes);
+  mean.wall_ms = geometric_mean(ms);
+  if (rmse.size() < of_one_technique.size()) {
+    mean.rmse.reset();
+  } else {
+    mean.rmse = geometric_mean(rmse);
+  }
+  if (emr.size() < of_one_technique.size()) {
+    mean.emr.reset();
+  } else {
+    mean.emr->samples = geometric_mean(emr);
+  }
+  return mean;
+}
+
+}  // namespace
+
+ReportFile read_report(const std::filesystem::path& folder) {
+  const std::filesystem::path file = folder / "report.json";
+  std::error_code ignored;
+  if (!std::filesystem::is_directory(folder, ignored)) {
+    throw ReportError(folder.string() + ": no such folder; expected one that `beampipe compare` or `run` wrote");
+  }
+  ReportFile report{folder, {}, {}, {}, {}};
+  const std::string bytes = read_bytes(file);
+  try {
+    report.json = Json::parse(bytes);
+    if (report.json.at("beampipe_report") != 1) throw std::runtime_error("its beampipe_report is not 1");
+    report.scene = std::filesystem::path(report.json.at("trace").get<std::string>()).stem().string();
+    for (const Json& result : report.json.at("results")) {
+      if (result.at("technique") != "reference") report.techniques.push_back(read_summary(result));
+    }
+    for (const Json& rung : report.json.value("msaa_ladder", Json::array())) {
+      report.msaa_ladder.push_back({rung.at("samples"), rung.at("rmse")});
+    }
+  } catch (const std::exception& error) {
+    throw ReportError(file.string() + ": not a report that beampipe wrote: " + error.what());
+  }
+  if (report.techniques.empty()) throw ReportError(file.string() + ": it has no technique but the reference");
+  return report;
+}
+
+std::vector<TechniqueSummary> mean_summaries(const std::vector<ReportFile>& reports) {
+  if (reports.empty()) throw std::invalid_argument("no report to take means of");
+  std::map<std::string, std::vector<TechniqueSummary>> by_spec;
+  for (const ReportFile& report : reports) {
+    for (const TechniqueSummary& summary : report.techniques) by_spec[summary.spec].push_back(summary);
+  }
+  std::vector<TechniqueSummary> means;
+  for (const TechniqueSummary& summary : reports.front().techniques) {
+    const std::vector<TechniqueSummary>& all = by_spec.at(summary.spec);
+    if (all.size() == reports.size()) means.push_back(mean_summary(all));
+  }
+  if (means.empty()) {
+    throw ReportError(reports.front().folder.string() + " and the other folders have no technique in common");
+  }
+  return means;
+}
+
+}  // namespace beampipe

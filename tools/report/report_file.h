@@ -1,0 +1,45 @@
+// report.json as `run` and `compare` left it, and what the plots take from it.
+#pragma once
+
+#include <filesystem>
+#include <nlohmann/json.hpp>
+#include <optional>
+#include <stdexcept>
+#include <string>
+#include <vector>
+
+#include "tools/metrics.h"
+
+namespace beampipe {
+
+// One line: "FILE: what is wrong with it".
+struct ReportError : std::runtime_error {
+  using std::runtime_error::runtime_error;
+};
+
+// What one technique cost and bought, over all frames of a report.
+struct TechniqueSummary {
+  std::string spec;
+  double bytes_per_pixel = 0;         // of the framebuffer
+  double wall_ms = 0;                 // per frame: the median of the frames' medians
+  std::optional<double> rmse;         // after `compare`
+  std::optional<EquivalentMsaa> emr;  // after `compare`
+};
+
+struct ReportFile {
+  std::filesystem::path folder;
+  std::string scene;                         // the trace's file name without folder and extension
+  nlohmann::ordered_json json;               // the whole file
+  std::vector<TechniqueSummary> techniques;  // without `reference`, which the others are judged by
+  std::vector<LadderRung> msaa_ladder;       // empty after `run`
+};
+
+// Reads FOLDER/report.json. Throws ReportError.
+ReportFile read_report(const std::filesystem::path& folder);
+
+// Geometric means of rmse, emr and times over several reports, of the techniques that are in all of them, in the order
+// of the first. A mean is a lower (upper) bound when one of its values is; it can be both: then it is neither. Throws
+// ReportError when they have no technique in common, and std::invalid_argument when there is no report.
+std::vector<TechniqueSummary> mean_summaries(const std::vector<ReportFile>& reports);
+
+}  // namespace beampipe
