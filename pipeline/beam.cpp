@@ -56,8 +56,7 @@ FrameResult render_beam(const Trace& trace, const Frame& frame, const BeamOption
   const RecordBytes bytes = record_bytes(beam);
   const BeamFragmentOptions options{beam.mask,
                                     beam.mask == MaskSource::none ? std::vector<SamplePattern>{} : positions.patterns,
-                                    &table, bytes.fragment, beam.rules == Rules::paper};
-  const SortKey key = conserve ? SortKey::nearest : SortKey::centroid;
+                                    &table, bytes.fragment, beam.tiny_positions};
 
   FrameResult result =
       render_tiles(frame, triangles, setup, kTileSize, run, [&](const Tile& tile, const TriangleList& list) {
@@ -68,7 +67,7 @@ FrameResult render_beam(const Trace& trace, const Frame& frame, const BeamOption
         conservative_raster(triangles, list, tile, raster, pairs);
         beam_fragment(triangles, pairs, tile, options, fragment, fragments);
         shade(colors, fragments, shading);
-        const ABuffer buffer = a_buffer(fragments, tile.pixels(), key, bytes.fragment, buffering);
+        const ABuffer buffer = a_buffer(fragments, tile.pixels(), beam.sort, bytes.fragment, buffering);
         PixelCounters counts = count_per_pixel(tile, buffer, fragments);
         std::vector<PixelColor> aggregates;
         switch (beam.rules) {
@@ -80,7 +79,7 @@ FrameResult render_beam(const Trace& trace, const Frame& frame, const BeamOption
             break;
           }
           case Rules::paper:
-            aggregates = pixel_colors(compose(fragments, buffer, positions.patterns.front(), composition));
+            aggregates = pixel_colors(compose(fragments, buffer, positions.patterns.front(), beam.merge, composition));
             counts.emplace_back("merges", counts.front().second);
             break;
           case Rules::over:

@@ -3,6 +3,7 @@
 #pragma once
 
 #include "pipeline/technique.h"
+#include "stages/a_buffer.h"
 #include "stages/beam_fragment.h"
 
 namespace beampipe {
@@ -17,6 +18,9 @@ struct BeamOptions {
   Rules rules = Rules::conserve;
   int positions = 256;                  // of the mask: 32, 64, 128 or 256; 32 with the paper's rules; 0 without masks
   MaskSource mask = MaskSource::exact;  // table: 32 positions only; none: with `over`
+  SortKey sort = SortKey::nearest;
+  int tiny_positions = 0;  // BeamFragmentOptions::tiny_positions
+  MergeRules merge{};      // with `paper`
 };
 
 FrameResult render_beam(const Trace& trace, const Frame& frame, const BeamOptions& beam, const RunOptions& run);

@@ -21,12 +21,33 @@ auto bind_options(Render* render, const Options& options) {
   };
 }
 
+// What the paper leaves open, by the names of simd/merge_rules.h.
+MergeRules merge_rules(Spec& spec) {
+  using R = MergeRules;
+  R rules;
+  rules.overlap = spec.choice<R::Overlap>("overlap", {{"tiny", R::Overlap::tiny},
+                                                      {"over", R::Overlap::over},
+                                                      {"add", R::Overlap::add},
+                                                      {"transition", R::Overlap::transition}});
+  rules.local = spec.choice<R::Local>("local", {{"clamp", R::Local::clamp}, {"keep", R::Local::keep}});
+  rules.fuzzy = spec.choice<R::Fuzzy>("fuzzy", {{"delta", R::Fuzzy::delta}, {"mix", R::Fuzzy::mix}});
+  rules.extents = spec.choice<R::Extents>("extents", {{"range", R::Extents::range}, {"slab", R::Extents::slab}});
+  rules.slab = spec.choice<R::Slab>("slab", {{"full", R::Slab::full}, {"visible", R::Slab::visible}});
+  rules.plane = spec.choice<R::Plane>("plane", {{"area", R::Plane::area}, {"visible", R::Plane::visible}});
+  rules.thickness = spec.choice<R::Thickness>(
+      "thickness", {{"larger", R::Thickness::larger}, {"containing", R::Thickness::containing}});
+  return rules;
+}
+
 Technique make_beam(Spec& spec) {
   BeamOptions options;
   options.rules = spec.choice<Rules>("rules", {{"conserve", Rules::conserve}, {"paper", Rules::paper}});
   if (options.rules == Rules::paper) {
     options.positions = 32;
     options.mask = spec.choice<MaskSource>("mask", {{"table", MaskSource::table}, {"exact", MaskSource::exact}});
+    options.sort = spec.choice<SortKey>("sort", {{"centroid", SortKey::centroid}, {"nearest", SortKey::nearest}});
+    options.tiny_positions = spec.choice<int>("tiny", {{"1", 1}, {"3", 3}});
+    options.merge = merge_rules(spec);
   } else {
     options.positions = spec.choice<int>("bits", {{"256", 256}, {"128", 128}, {"64", 64}, {"32", 32}});
   }
@@ -34,7 +55,11 @@ Technique make_beam(Spec& spec) {
 }
 
 Technique make_alpha(Spec& spec) {
-  const BeamOptions options{Rules::over, 0, MaskSource::none};
+  BeamOptions options;
+  options.rules = Rules::over;
+  options.positions = 0;
+  options.mask = MaskSource::none;
+  options.sort = SortKey::centroid;
   return {spec.text(), beam_framebuffer(options), 0, bind_options(render_beam, options)};
 }
 
@@ -96,11 +121,17 @@ struct Kind {
 };
 
 constexpr Kind kKinds[] = {
-    {"beam", "beam, beam:bits=256|128|64|32, beam:rules=paper or beam:rules=paper,mask=table|exact",
+    {"beam",
+     "beam, beam:bits=256|128|64|32, or beam:rules=paper and, if wanted, mask=table|exact, sort=centroid|nearest, "
+     "tiny=1|3, overlap=tiny|over|add|transition, local=clamp|keep, fuzzy=delta|mix, extents=range|slab, "
+     "slab=full|visible, plane=area|visible, thickness=larger|containing",
      "  beam         sorted fragments with analytic coverage and a mask, one area-conserving aggregate per pixel\n"
      "               beam:bits=N      N = 32, 64, 128 or 256 (the default) mask positions\n"
      "               beam:rules=paper the published rules: 32-bit mask, depth slab\n"
-     "               beam:rules=paper,mask=exact  its masks from edge tests in place of the 64 x 64 table\n",
+     "               beam:rules=paper,mask=exact  its masks from edge tests in place of the 64 x 64 table\n"
+     "               beam:rules=paper,sort=nearest,tiny=3,overlap=over|add|transition,local=keep,fuzzy=mix,\n"
+     "                 extents=slab,slab=visible,plane=visible,thickness=containing  other readings of its rules,\n"
+     "                 any of them (docs/accuracy.md)\n",
      make_beam},
     {"alpha", "'alpha' alone: it has no options", "  alpha        the same fragments, plain OVER, no mask\n",
      make_alpha},

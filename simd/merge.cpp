@@ -43,7 +43,8 @@ HWY_INLINE V count_bits(U mask) {
 HWY_INLINE V depth_at(V z, V dzdu, V dzdv, V u, V v) { return hn::Add(hn::Add(z, hn::Mul(dzdu, u)), hn::Mul(dzdv, v)); }
 
 // The same steps as merge_scalar, a vector at a time.
-HWY_INLINE Surface merge_lanes(const Surface& in, U tiny_bits, const Surface& old, const SamplePattern& pattern) {
+HWY_INLINE Surface merge_lanes(const Surface& in, U tiny_bits, const Surface& old, const SamplePattern& pattern,
+                               const MergeRules& rules) {
   const D d;
   const DU du;
   const V zero = hn::Zero(d), one = hn::Set(d, 1.0f), half = hn::Set(d, 0.5f), bits = hn::Set(d, 32.0f);
@@ -57,12 +58,18 @@ HWY_INLINE Surface merge_lanes(const Surface& in, U tiny_bits, const Surface& ol
   const V only_i = count_bits(hn::AndNot(old.mask, in.mask)), only_a = count_bits(hn::AndNot(in.mask, old.mask));
 
   const V half_thickness = hn::Mul(half, old.thickness);
-  const auto slab_front = [&](V base) { return clamp(hn::Sub(base, half_thickness), old.z_min, old.z_max); };
-  const auto slab_back = [&](V base, V front) {
-    return hn::Max(hn::Min(hn::Add(base, half_thickness), old.z_max), front);
+  const bool cut_by_range = rules.extents == MergeRules::Extents::range;
+  const auto slab_front = [&](V base) {
+    const V front = hn::Sub(base, half_thickness);
+    return cut_by_range ? clamp(front, old.z_min, old.z_max) : front;
   };
+  const auto slab_back = [&](V base, V front) {
+    const V back = hn::Add(base, half_thickness);
+    return cut_by_range ? hn::Max(hn::Min(back, old.z_max), front) : back;
+  };
+  const bool transition = rules.overlap == MergeRules::Overlap::transition;
   U front_mask = none, back_mask = none;
-  V fuzzy_u = zero, fuzzy_v = zero;
+  V fuzzy_u = zero, fuzzy_v = zero, apart = zero;
   for (std::size_t s = 0; s < 32; ++s) {
     const V u = position(pattern.x, s), v = position(pattern.y, s);
     const V depth = clamp(depth_at(in.z, in.dzdu, in.dzdv, u, v), in.z_min, in.z_max);
@@ -76,6 +83,10 @@ HWY_INLINE Surface merge_lanes(const Surface& in, U tiny_bits, const Surface& ol
     const M fuzzy = hn::AndNot(hn::Or(is_front, is_back), present);
     fuzzy_u = hn::Add(fuzzy_u, hn::IfThenElseZero(fuzzy, u));
     fuzzy_v = hn::Add(fuzzy_v, hn::IfThenElseZero(fuzzy, v));
+    if (transition) {
+      const V distance = hn::Abs(hn::Sub(depth, clamp(base, old.z_min, old.z_max)));
+      apart = hn::Add(apart, hn::IfThenElseZero(present, distance));
+    }
   }
   const V in_front = count_bits(front_mask), behind = count_bits(back_mask);
   const V within = count_bits(hn::AndNot(back_mask, hn::AndNot(front_mask, overlap)));
@@ -90,21 +101,49 @@ HWY_INLINE Surface merge_lanes(const Surface& in, U tiny_bits, const Surface& ol
 
   const V local_i = hn::Div(hn::Mul(in.alpha, bits), hn::Max(count_bits(in.mask), one));
   const V local_a = hn::Div(hn::Mul(old.alpha, bits), hn::Max(count_bits(old.mask), one));
-  const V cover_i = hn::Min(local_i, one), cover_a = hn::Min(local_a, one);
+  const bool keep = rules.local == MergeRules::Local::keep;
+  const V cover_i = keep ? local_i : hn::Min(local_i, one), cover_a = keep ? local_a : hn::Min(local_a, one);
+  const V open_i = hn::Max(hn::Sub(one, cover_i), zero), open_a = hn::Max(hn::Sub(one, cover_a), zero);
+  V fuzziness = zero;
+  if (transition) {
+    const V span = hn::Sub(hn::Max(in.z_max, old.z_max), hn::Min(in.z_min, old.z_min));
+    const V distance =
+        hn::Div(hn::Div(apart, hn::Max(count_bits(overlap), one)), hn::IfThenElse(hn::Gt(span, zero), span, one));
+    const V left_open = hn::Abs(hn::Sub(hn::Div(count_bits(old.mask), bits), old.alpha));
+    fuzziness = hn::Min(hn::Mul(left_open, distance), one);
+  }
   const M tiny = hn::RebindMask(d, hn::Ne(tiny_bits, none));
-  const V open_i = hn::Sub(one, cover_i), open_a = hn::Sub(one, cover_a);
-  const V a_beside_i = hn::IfThenElse(tiny, hn::Min(cover_a, open_i), hn::Mul(cover_a, open_i));
-  const V i_beside_a = hn::IfThenElse(tiny, hn::Min(cover_i, open_a), hn::Mul(cover_i, open_a));
-  const V fuzzy_i = hn::IfThenElse(tiny, cover_i, hn::Mul(cover_i, hn::Sub(one, delta)));
-  const V fuzzy_a = hn::IfThenElse(tiny, a_beside_i, hn::Mul(cover_a, delta));
+  const auto what_is_left = [&](V cover, V open) {
+    const V added = hn::Min(cover, open), independent = hn::Mul(cover, open);
+    switch (rules.overlap) {
+      case MergeRules::Overlap::over:
+        return independent;
+      case MergeRules::Overlap::add:
+        return added;
+      case MergeRules::Overlap::transition:
+        return hn::Add(added, hn::Mul(hn::Sub(independent, added), fuzziness));
+      case MergeRules::Overlap::tiny:
+        break;
+    }
+    return hn::IfThenElse(tiny, added, independent);
+  };
+  const V over_a = what_is_left(cover_a, open_i), under_i = what_is_left(cover_i, open_a);
+  V fuzzy_i = hn::Mul(cover_i, hn::Sub(one, delta)), fuzzy_a = hn::Mul(cover_a, delta);
+  if (rules.fuzzy == MergeRules::Fuzzy::mix) {
+    fuzzy_i = hn::Add(cover_i, hn::Mul(hn::Sub(under_i, cover_i), delta));
+    fuzzy_a = hn::Add(over_a, hn::Mul(hn::Sub(cover_a, over_a), delta));
+  } else if (rules.overlap != MergeRules::Overlap::over) {
+    fuzzy_i = hn::IfThenElse(tiny, cover_i, fuzzy_i);
+    fuzzy_a = hn::IfThenElse(tiny, over_a, fuzzy_a);
+  }
 
   const auto combine = [&](V only, V local, V over, V under, V fuzzy) {
     const V sum = hn::Add(hn::Add(hn::Add(hn::Mul(only, local), hn::Mul(in_front, over)), hn::Mul(behind, under)),
                           hn::Mul(within, fuzzy));
     return hn::Div(sum, bits);
   };
-  const V weight_i = combine(only_i, local_i, cover_i, i_beside_a, fuzzy_i);
-  const V weight_a = combine(only_a, local_a, a_beside_i, cover_a, fuzzy_a);
+  const V weight_i = combine(only_i, local_i, cover_i, under_i, fuzzy_i);
+  const V weight_a = combine(only_a, local_a, over_a, cover_a, fuzzy_a);
   const V total = hn::Add(weight_i, weight_a);
   const V scale = hn::Div(one, hn::Max(total, one));
   const V least = hn::Set(d, 1e-30f);
@@ -116,7 +155,9 @@ HWY_INLINE Surface merge_lanes(const Surface& in, U tiny_bits, const Surface& ol
   merged.mask = hn::Or(in.mask, old.mask);
   for (int c = 0; c < 3; ++c) merged.color[c] = hn::Add(hn::Mul(in.color[c], scale_i), hn::Mul(old.color[c], scale_a));
 
-  const V share_i = hn::Div(in.alpha, hn::Add(in.alpha, old.alpha)), share_a = hn::Sub(one, share_i);
+  const bool by_area = rules.plane == MergeRules::Plane::area;
+  const V part_i = by_area ? in.alpha : weight_i, part_a = by_area ? old.alpha : weight_a;
+  const V share_i = hn::Div(part_i, hn::Add(part_i, part_a)), share_a = hn::Sub(one, share_i);
   const M first = hn::RebindMask(d, hn::Eq(old.mask, none));
   const auto blend = [&](V p_i, V p_a) {
     return hn::IfThenElse(first, p_i, hn::Add(hn::Mul(p_i, share_i), hn::Mul(p_a, share_a)));
@@ -124,22 +165,42 @@ HWY_INLINE Surface merge_lanes(const Surface& in, U tiny_bits, const Surface& ol
   merged.z = blend(in.z, old.z);
   merged.dzdu = blend(in.dzdu, old.dzdu);
   merged.dzdv = blend(in.dzdv, old.dzdv);
-  V farthest = zero;
+  const bool visible_only = rules.slab == MergeRules::Slab::visible;
+  const bool containing = rules.thickness == MergeRules::Thickness::containing;
+  const U reached = visible_only ? hn::AndNot(back_mask, in.mask) : in.mask;
+  V farthest = zero, moved = zero;
   for (std::size_t s = 0; s < 32; ++s) {
     const V at_u = position(pattern.x, s), at_v = position(pattern.y, s);
+    const auto has_position = [&](U mask) {
+      return hn::RebindMask(d, hn::Ne(hn::And(mask, hn::Set(du, 1u << s)), none));
+    };
     const V at = clamp(depth_at(in.z, in.dzdu, in.dzdv, at_u, at_v), in.z_min, in.z_max);
-    const V distance = hn::Abs(hn::Sub(at, depth_at(merged.z, merged.dzdu, merged.dzdv, at_u, at_v)));
-    const M covered = hn::RebindMask(d, hn::Ne(hn::And(in.mask, hn::Set(du, 1u << s)), none));
-    farthest = hn::IfThenElse(covered, hn::Max(farthest, distance), farthest);
+    const V middle = depth_at(merged.z, merged.dzdu, merged.dzdv, at_u, at_v);
+    farthest = hn::IfThenElse(has_position(reached), hn::Max(farthest, hn::Abs(hn::Sub(at, middle))), farthest);
+    if (containing) {
+      const V shift = hn::Abs(hn::Sub(depth_at(old.z, old.dzdu, old.dzdv, at_u, at_v), middle));
+      moved = hn::IfThenElse(has_position(old.mask), hn::Max(moved, shift), moved);
+    }
   }
-  merged.thickness = hn::IfThenElse(first, zero, hn::Max(old.thickness, hn::Add(farthest, farthest)));
+  const V kept = containing ? hn::Add(old.thickness, hn::Add(moved, moved)) : old.thickness;
+  merged.thickness = hn::IfThenElse(first, zero, hn::Max(kept, hn::Add(farthest, farthest)));
   merged.z_min = hn::Min(in.z_min, old.z_min);
   merged.z_max = hn::Max(in.z_max, old.z_max);
+  if (visible_only) {
+    const M hidden = hn::RebindMask(d, hn::Eq(reached, none));
+    const auto unless_hidden = [&](V now, V before) { return hn::IfThenElse(hidden, before, now); };
+    merged.z = unless_hidden(merged.z, old.z);
+    merged.dzdu = unless_hidden(merged.dzdu, old.dzdu);
+    merged.dzdv = unless_hidden(merged.dzdv, old.dzdv);
+    merged.thickness = unless_hidden(merged.thickness, old.thickness);
+    merged.z_min = unless_hidden(merged.z_min, old.z_min);
+    merged.z_max = unless_hidden(merged.z_max, old.z_max);
+  }
   return merged;
 }
 
 void merge_kernel(const MergeFragment* fragments, std::size_t count, const SamplePattern& pattern,
-                  Aggregate* aggregates) {
+                  const MergeRules& rules, Aggregate* aggregates) {
   const D d;
   const DU du;
   const std::size_t lanes = hn::Lanes(d);
@@ -149,7 +210,7 @@ void merge_kernel(const MergeFragment* fragments, std::size_t count, const Sampl
     rows_to_columns(fragments + first, n, lanes, in);
     rows_to_columns(aggregates + first, n, lanes, out);
     const U tiny = hn::BitCast(du, hn::Load(d, in + kSurfaceColumns * lanes));
-    const Surface merged = merge_lanes(load_surface(in, lanes), tiny, load_surface(out, lanes), pattern);
+    const Surface merged = merge_lanes(load_surface(in, lanes), tiny, load_surface(out, lanes), pattern, rules);
     const V columns[kSurfaceColumns] = {merged.alpha,    hn::BitCast(d, merged.mask),
                                         merged.z,        merged.dzdu,
                                         merged.dzdv,     merged.thickness,
@@ -168,8 +229,9 @@ HWY_AFTER_NAMESPACE();
 #if HWY_ONCE
 namespace beampipe {
 HWY_EXPORT(merge_kernel);
-void merge(const MergeFragment* fragments, std::size_t count, const SamplePattern& pattern, Aggregate* aggregates) {
-  HWY_DYNAMIC_DISPATCH(merge_kernel)(fragments, count, pattern, aggregates);
+void merge(const MergeFragment* fragments, std::size_t count, const SamplePattern& pattern, const MergeRules& rules,
+           Aggregate* aggregates) {
+  HWY_DYNAMIC_DISPATCH(merge_kernel)(fragments, count, pattern, rules, aggregates);
 }
 }  // namespace beampipe
 #endif

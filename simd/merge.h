@@ -4,6 +4,7 @@
 #include <cstddef>
 #include <cstdint>
 
+#include "simd/merge_rules.h"
 #include "simd/sample_pattern.h"
 #include "simd/scalar.h"
 
@@ -31,7 +32,7 @@ using Aggregate = AggregateOf<float, std::uint32_t>;
 inline constexpr Aggregate kEmptyAggregate = {0.0f, 0u, {0.0f, 0.0f, 0.0f}, 0.0f, 1.0f, -2.0f, {0.0f, 0.0f, 0.0f}};
 
 // What arrives: an aggregate of one triangle, its colour multiplied by alpha. A tiny triangle covered no mask position
-// and was given the nearest one.
+// and was given the nearest ones.
 template <class Float, class Mask>
 struct FragmentOf {
   AggregateOf<Float, Mask> surface;
@@ -41,7 +42,8 @@ using MergeFragment = FragmentOf<float, std::uint32_t>;
 
 // aggregates[i] = fragments[i] merged into aggregates[i]. Lanes are across pixels. Bit-identical to merge_scalar on
 // every target. Mask bit s stands at pattern position s; the pattern has 32.
-void merge(const MergeFragment* fragments, std::size_t count, const SamplePattern& pattern, Aggregate* aggregates);
+void merge(const MergeFragment* fragments, std::size_t count, const SamplePattern& pattern, const MergeRules& rules,
+           Aggregate* aggregates);
 
 // ---- Scalar twin ----
 
@@ -58,7 +60,7 @@ Float depth_at(const DepthPlane<Float>& plane, Float u, Float v) {
 
 template <class Float, class Mask>
 AggregateOf<Float, Mask> merge_scalar(const FragmentOf<Float, Mask>& fragment, const AggregateOf<Float, Mask>& old,
-                                      const SamplePattern& pattern) {
+                                      const SamplePattern& pattern, const MergeRules& rules) {
   const Float zero(0.0f), one(1.0f), half(0.5f), bits(32.0f);
   const AggregateOf<Float, Mask>& in = fragment.surface;
   const auto clamp = [&](Float value, Float low, Float high) { return lesser(greater(value, low), high); };
@@ -70,12 +72,18 @@ AggregateOf<Float, Mask> merge_scalar(const FragmentOf<Float, Mask>& fragment, c
   // (2) Partition the overlap by depth: before, behind and within the aggregate's slab, position by position. Equal
   // depth counts as behind: the earlier fragment wins.
   const Float half_thickness = half * old.thickness;
-  const auto slab_front = [&](Float base) { return clamp(base - half_thickness, old.z_min, old.z_max); };
-  const auto slab_back = [&](Float base, Float front) {
-    return greater(lesser(base + half_thickness, old.z_max), front);
+  const bool cut_by_range = rules.extents == MergeRules::Extents::range;
+  const auto slab_front = [&](Float base) {
+    const Float front = base - half_thickness;
+    return cut_by_range ? clamp(front, old.z_min, old.z_max) : front;
   };
+  const auto slab_back = [&](Float base, Float front) {
+    const Float back = base + half_thickness;
+    return cut_by_range ? greater(lesser(back, old.z_max), front) : back;
+  };
+  const bool transition = rules.overlap == MergeRules::Overlap::transition;
   Mask front_mask(0u), back_mask(0u);
-  Float fuzzy_u = zero, fuzzy_v = zero;
+  Float fuzzy_u = zero, fuzzy_v = zero, apart = zero;
   for (int s = 0; s < 32; ++s) {
     const auto k = static_cast<std::size_t>(s);
     const Float u(static_cast<float>(pattern.x[k]) / kSubpixelUnits - 0.5f);
@@ -90,6 +98,10 @@ AggregateOf<Float, Mask> merge_scalar(const FragmentOf<Float, Mask>& fragment, c
     const bool fuzzy = !is_front & !is_back & (here != Mask(0u));
     fuzzy_u = fuzzy_u + select(fuzzy, u, zero);
     fuzzy_v = fuzzy_v + select(fuzzy, v, zero);
+    if (transition) {
+      const Float distance = magnitude(depth - clamp(base, old.z_min, old.z_max));
+      apart = apart + select(here != Mask(0u), distance, zero);
+    }
   }
   const Float in_front = bit_count(front_mask), behind = bit_count(back_mask);
   const Float within = bit_count(overlap & ~front_mask & ~back_mask);
@@ -106,15 +118,43 @@ AggregateOf<Float, Mask> merge_scalar(const FragmentOf<Float, Mask>& fragment, c
   // (3) Blending factors per region. Local coverage: alpha over the part of the mask that is set.
   const Float local_i = in.alpha * bits / greater(bit_count(in.mask), one);
   const Float local_a = old.alpha * bits / greater(bit_count(old.mask), one);
-  const Float cover_i = lesser(local_i, one), cover_a = lesser(local_a, one);
+  const bool keep = rules.local == MergeRules::Local::keep;
+  const Float cover_i = keep ? local_i : lesser(local_i, one), cover_a = keep ? local_a : lesser(local_a, one);
+  const Float open_i = greater(one - cover_i, zero), open_a = greater(one - cover_a, zero);
+  // Slide 12's fuzziness. The slide does not say what sadp(A, B) is; it is taken for the mean absolute difference of
+  // the two depths where they overlap, as a part of the depths that the two span together: 0 for neighbours in a mesh,
+  // which lie beside each other. The other factor is the part of A's mask that A leaves open: 0 for a closed surface.
+  Float fuzziness = zero;
+  if (transition) {
+    const Float span = greater(in.z_max, old.z_max) - lesser(in.z_min, old.z_min);
+    const Float distance = apart / greater(bit_count(overlap), one) / select(span > zero, span, one);
+    fuzziness = lesser(magnitude(bit_count(old.mask) / bits - old.alpha) * distance, one);
+  }
   const bool tiny = fragment.tiny != Mask(0u);
-  // Tiny triangles are taken as neighbours of what is there (anti-correlated), others as independent of it.
-  const Float a_beside_i = select(tiny, lesser(cover_a, one - cover_i), cover_a * (one - cover_i));
-  const Float i_beside_a = select(tiny, lesser(cover_i, one - cover_a), cover_i * (one - cover_a));
-  const BlendFactors<Float> over{cover_i, a_beside_i};
-  const BlendFactors<Float> under{i_beside_a, cover_a};
-  const BlendFactors<Float> fuzzy{select(tiny, cover_i, cover_i * (one - delta)),
-                                  select(tiny, a_beside_i, cover_a * delta)};
+  const auto what_is_left = [&](Float cover, Float open) {
+    const Float added = lesser(cover, open), independent = cover * open;
+    switch (rules.overlap) {
+      case MergeRules::Overlap::over:
+        return independent;
+      case MergeRules::Overlap::add:
+        return added;
+      case MergeRules::Overlap::transition:
+        return added + (independent - added) * fuzziness;
+      case MergeRules::Overlap::tiny:
+        break;
+    }
+    return select(tiny, added, independent);
+  };
+  const BlendFactors<Float> over{cover_i, what_is_left(cover_a, open_i)};
+  const BlendFactors<Float> under{what_is_left(cover_i, open_a), cover_a};
+  BlendFactors<Float> fuzzy;
+  if (rules.fuzzy == MergeRules::Fuzzy::mix) {
+    fuzzy = {over.i + (under.i - over.i) * delta, over.a + (under.a - over.a) * delta};
+  } else if (rules.overlap == MergeRules::Overlap::over) {
+    fuzzy = {cover_i * (one - delta), cover_a * delta};
+  } else {  // tiny triangles are anti-correlated "over the overlapping regions" (section 2.2.1), this one included
+    fuzzy = {select(tiny, over.i, cover_i * (one - delta)), select(tiny, over.a, cover_a * delta)};
+  }
 
   // (4) Combine: each region weighs as many bits as it has. The sum may pass 1 by the masks' error; then it is scaled.
   const Float weight_i = (only_i * local_i + in_front * over.i + behind * under.i + within * fuzzy.i) / bits;
@@ -129,23 +169,42 @@ AggregateOf<Float, Mask> merge_scalar(const FragmentOf<Float, Mask>& fragment, c
   for (int c = 0; c < 3; ++c) merged.color[c] = in.color[c] * scale_i + old.color[c] * scale_a;
 
   // The new slab: the coverage-weighted plane, and thick enough for the fragment's farthest position.
-  const Float share_i = in.alpha / (in.alpha + old.alpha), share_a = one - share_i;
+  const bool by_area = rules.plane == MergeRules::Plane::area;
+  const Float part_i = by_area ? in.alpha : weight_i, part_a = by_area ? old.alpha : weight_a;
+  const Float share_i = part_i / (part_i + part_a), share_a = one - share_i;
   const bool first = old.mask == Mask(0u);
   const auto blend = [&](Float p_i, Float p_a) { return select(first, p_i, p_i * share_i + p_a * share_a); };
   merged.plane = {blend(in.plane.z, old.plane.z), blend(in.plane.dzdu, old.plane.dzdu),
                   blend(in.plane.dzdv, old.plane.dzdv)};
-  Float farthest = zero;
+  const bool visible_only = rules.slab == MergeRules::Slab::visible;
+  const bool containing = rules.thickness == MergeRules::Thickness::containing;
+  const Mask reached = visible_only ? in.mask & ~back_mask : in.mask;
+  Float farthest = zero, moved = zero;
   for (int s = 0; s < 32; ++s) {
     const auto k = static_cast<std::size_t>(s);
     const Float at_u(static_cast<float>(pattern.x[k]) / kSubpixelUnits - 0.5f);
     const Float at_v(static_cast<float>(pattern.y[k]) / kSubpixelUnits - 0.5f);
     const Float at = clamp(depth_at(in.plane, at_u, at_v), in.z_min, in.z_max);
-    const Float distance = magnitude(at - depth_at(merged.plane, at_u, at_v));
-    farthest = select((in.mask & Mask(1u << s)) != Mask(0u), greater(farthest, distance), farthest);
+    const Float middle = depth_at(merged.plane, at_u, at_v);
+    farthest = select((reached & Mask(1u << s)) != Mask(0u), greater(farthest, magnitude(at - middle)), farthest);
+    if (containing) {
+      const Float shift = magnitude(depth_at(old.plane, at_u, at_v) - middle);
+      moved = select((old.mask & Mask(1u << s)) != Mask(0u), greater(moved, shift), moved);
+    }
   }
-  merged.thickness = select(first, zero, greater(old.thickness, farthest + farthest));
+  const Float kept = containing ? old.thickness + (moved + moved) : old.thickness;
+  merged.thickness = select(first, zero, greater(kept, farthest + farthest));
   merged.z_min = lesser(in.z_min, old.z_min);
   merged.z_max = greater(in.z_max, old.z_max);
+  if (visible_only) {
+    const bool hidden = reached == Mask(0u);
+    const auto unless_hidden = [&](Float now, Float before) { return select(hidden, before, now); };
+    merged.plane = {unless_hidden(merged.plane.z, old.plane.z), unless_hidden(merged.plane.dzdu, old.plane.dzdu),
+                    unless_hidden(merged.plane.dzdv, old.plane.dzdv)};
+    merged.thickness = unless_hidden(merged.thickness, old.thickness);
+    merged.z_min = unless_hidden(merged.z_min, old.z_min);
+    merged.z_max = unless_hidden(merged.z_max, old.z_max);
+  }
   return merged;
 }
 

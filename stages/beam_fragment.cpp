@@ -71,7 +71,8 @@ TableTriangle table_edges(const Edge (&edges)[3], const EdgeDirection (&directio
   return triangle;
 }
 
-std::size_t nearest_position(const std::vector<SamplePattern>& positions, float u, float v) {
+// Of those that are not `taken`.
+std::size_t nearest_position(const std::vector<SamplePattern>& positions, float u, float v, const WideMask& taken) {
   std::size_t nearest = 0;
   float least = 4.0f;  // more than the pixel's diagonal, squared
   for (std::size_t i = 0; i < positions.size() * kMaxMaskSamples; ++i) {
@@ -79,7 +80,7 @@ std::size_t nearest_position(const std::vector<SamplePattern>& positions, float 
     const std::size_t s = i % kMaxMaskSamples;
     const float du = static_cast<float>(pattern.x[s]) * kUnit - u, dv = static_cast<float>(pattern.y[s]) * kUnit - v;
     const float distance = du * du + dv * dv;
-    if (distance < least) {
+    if (distance < least && !taken.test(i)) {
       least = distance;
       nearest = i;
     }
@@ -170,9 +171,12 @@ void beam_fragment(const SetupTriangles& triangles, const std::vector<PixelTrian
     fragment.centroid_z = depth_at(fragment.plane, fragment.centroid_u - 0.5f, fragment.centroid_v - 0.5f);
     fragment.centroid_z = lesser(greater(fragment.centroid_z, c.z_min), c.z_max);
     fragment.tiny = options.mask != MaskSource::none && fragment.mask.none();
-    if (fragment.tiny && options.locate_tiny) {
-      fragment.mask.set(nearest_position(options.positions, fragment.centroid_u, fragment.centroid_v));
-      ++located;
+    if (fragment.tiny) {
+      const auto positions = static_cast<float>(options.positions.size() * kMaxMaskSamples);
+      for (int k = 0; k < options.tiny_positions && static_cast<float>(k) < fragment.alpha * positions; ++k) {
+        fragment.mask.set(nearest_position(options.positions, fragment.centroid_u, fragment.centroid_v, fragment.mask));
+        ++located;
+      }
     }
     out.push_back(fragment);
   }

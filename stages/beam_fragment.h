@@ -35,7 +35,9 @@ struct BeamFragmentOptions {
   std::vector<SamplePattern> positions;  // of the mask, 32 to a pattern: one for `table`, any for `exact`
   const MaskTable* table = nullptr;      // for MaskSource::table
   std::uint32_t fragment_bytes = 0;      // of a fragment as it is passed on
-  bool locate_tiny = false;              // give a tiny fragment the position nearest to its centroid (section 2.2.1)
+  // What a tiny fragment is given: as many positions as its area fills, the nearest to its centroid, but no more than
+  // this. The paper (section 2.2.1) gives it one, the slides (8) "up to 3".
+  int tiny_positions = 0;
 };
 
 // Areas up to this are what rounding leaves of an area of 0, in pixels.

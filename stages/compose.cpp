@@ -17,10 +17,10 @@ CountedFragment counted_fragment(OperationCounts& counts) {
   return {{one, all, {one, one, one}, one, one, one, {one, one, one}}, all};
 }
 
-OperationCounts merge_cost(const SamplePattern& pattern) {
+OperationCounts merge_cost(const SamplePattern& pattern, const MergeRules& rules) {
   return count_operations([&](OperationCounts& counts) {
     const CountedFragment fragment = counted_fragment(counts);
-    merge_scalar(fragment, fragment.surface, pattern);
+    merge_scalar(fragment, fragment.surface, pattern, rules);
   });
 }
 
@@ -57,7 +57,7 @@ MergeFragment merge_fragment(const Fragment& fragment) {
 }
 
 std::vector<Aggregate> compose(const std::vector<Fragment>& fragments, const ABuffer& buffer,
-                               const SamplePattern& pattern, StageCounters& counters) {
+                               const SamplePattern& pattern, const MergeRules& rules, StageCounters& counters) {
   const std::size_t pixels = buffer.first.size() - 1;
   // Round r merges the r-th fragment of every pixel that has one: independent merges, one per lane. With the deepest
   // pixels first, the pixels of a round are a prefix.
@@ -73,11 +73,11 @@ std::vector<Aggregate> compose(const std::vector<Fragment>& fragments, const ABu
     if (active == 0) break;
     for (std::size_t i = 0; i < active; ++i)
       arriving[i] = merge_fragment(fragments[buffer.fragments[buffer.first[order[i]] + round]]);
-    merge(arriving.data(), active, pattern, in_order.data());
+    merge(arriving.data(), active, pattern, rules, in_order.data());
   }
   std::vector<Aggregate> aggregates(pixels);
   for (std::size_t i = 0; i < pixels; ++i) aggregates[order[i]] = in_order[i];
-  count_merges(buffer.fragments.size(), pixels, merge_cost(pattern), kAggregateBytes, kAggregateBytes, counters);
+  count_merges(buffer.fragments.size(), pixels, merge_cost(pattern, rules), kAggregateBytes, kAggregateBytes, counters);
   return aggregates;
 }
 

@@ -14,7 +14,7 @@ MergeFragment merge_fragment(const Fragment& fragment);
 
 // The paper's rules (simd/merge.h). One aggregate per pixel of the tile; kEmptyAggregate where nothing is.
 std::vector<Aggregate> compose(const std::vector<Fragment>& fragments, const ABuffer& buffer,
-                               const SamplePattern& pattern, StageCounters& counters);
+                               const SamplePattern& pattern, const MergeRules& rules, StageCounters& counters);
 
 // Plain OVER: alpha and colour, as if every fragment were independent of every other.
 std::vector<Aggregate> compose_over(const std::vector<Fragment>& fragments, const ABuffer& buffer,

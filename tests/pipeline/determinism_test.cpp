@@ -8,21 +8,24 @@
 namespace beampipe {
 namespace {
 
-const char* const kSpecs[] = {"beam",
-                              "beam:rules=paper,mask=exact",
-                              "alpha",
-                              "msaa:1",
-                              "msaa:8",
-                              "msaa:64",
-                              "reference",
-                              "msaa:8,prepass",
-                              "acaa:8",
-                              "acaa:64,double=stencil,color=unorm8",
-                              "deferred",
-                              "visibility",
-                              "taa:8",
-                              "dvm",
-                              "dvm:material=draw"};
+const char* const kSpecs[] = {
+    "beam",
+    "beam:rules=paper,mask=exact",
+    "beam:rules=paper,sort=nearest,tiny=3,overlap=transition,local=keep,fuzzy=mix,extents=slab,"
+    "slab=visible,plane=visible,thickness=containing",
+    "alpha",
+    "msaa:1",
+    "msaa:8",
+    "msaa:64",
+    "reference",
+    "msaa:8,prepass",
+    "acaa:8",
+    "acaa:64,double=stencil,color=unorm8",
+    "deferred",
+    "visibility",
+    "taa:8",
+    "dvm",
+    "dvm:material=draw"};
 
 void expect_same(const FrameResult& a, const FrameResult& b, const std::string& what) {
   EXPECT_EQ(a.image.rgba, b.image.rgba) << what;

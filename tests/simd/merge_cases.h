@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <bit>
 #include <cstdint>
+#include <vector>
 
 #include "simd/merge.h"
 #include "tests/simd/random.h"
@@ -41,6 +42,24 @@ inline MergeFragment random_fragment(Random& random) {
   s.thickness = 0.0f;
   for (float& c : s.color) c = s.alpha * (random.one_in(4) ? 0.0f : random.real32(0, 3));
   return fragment;
+}
+
+// The published rules, each policy's other values alone, and all of the last ones together.
+inline std::vector<MergeRules> every_merge_rule() {
+  using R = MergeRules;
+  std::vector<MergeRules> rules(11);
+  rules[1].overlap = R::Overlap::over;
+  rules[2].overlap = R::Overlap::add;
+  rules[3].overlap = R::Overlap::transition;
+  rules[4].local = R::Local::keep;
+  rules[5].fuzzy = R::Fuzzy::mix;
+  rules[6].extents = R::Extents::slab;
+  rules[7].slab = R::Slab::visible;
+  rules[8].plane = R::Plane::visible;
+  rules[9].thickness = R::Thickness::containing;
+  rules[10] = {R::Overlap::transition, R::Local::keep,    R::Fuzzy::mix,           R::Extents::slab,
+               R::Slab::visible,       R::Plane::visible, R::Thickness::containing};
+  return rules;
 }
 
 }  // namespace beampipe

@@ -15,20 +15,23 @@ using Bits = std::array<std::uint32_t, sizeof(Aggregate) / sizeof(std::uint32_t)
 // Aggregates of up to eight fragments, so that slabs have thickness and alphas have saturated.
 TEST(MergeKernel, EqualsTwinOnChains) {
   const SamplePattern pattern = hammersley_pattern();
+  const std::vector<MergeRules> every_rule = every_merge_rule();
   on_every_target([&] {
     Random random(41);
     SCOPED_TRACE(random.name());
-    std::vector<Aggregate> aggregates(5'003, kEmptyAggregate);
-    std::vector<MergeFragment> fragments(aggregates.size());
-    for (int round = 0; round < 8; ++round) {
-      for (MergeFragment& fragment : fragments) fragment = random_fragment(random);
-      std::vector<Aggregate> expected;
-      for (std::size_t i = 0; i < fragments.size(); ++i)
-        expected.push_back(merge_scalar(fragments[i], aggregates[i], pattern));
-      merge(fragments.data(), fragments.size(), pattern, aggregates.data());
-      for (std::size_t i = 0; i < aggregates.size(); ++i)
-        ASSERT_EQ(std::bit_cast<Bits>(aggregates[i]), std::bit_cast<Bits>(expected[i]))
-            << "pixel " << i << ", round " << round;
+    for (std::size_t rule = 0; rule < every_rule.size(); ++rule) {
+      std::vector<Aggregate> aggregates(1'003, kEmptyAggregate);
+      std::vector<MergeFragment> fragments(aggregates.size());
+      for (int round = 0; round < 8; ++round) {
+        for (MergeFragment& fragment : fragments) fragment = random_fragment(random);
+        std::vector<Aggregate> expected;
+        for (std::size_t i = 0; i < fragments.size(); ++i)
+          expected.push_back(merge_scalar(fragments[i], aggregates[i], pattern, every_rule[rule]));
+        merge(fragments.data(), fragments.size(), pattern, every_rule[rule], aggregates.data());
+        for (std::size_t i = 0; i < aggregates.size(); ++i)
+          ASSERT_EQ(std::bit_cast<Bits>(aggregates[i]), std::bit_cast<Bits>(expected[i]))
+              << "rule " << rule << ", pixel " << i << ", round " << round;
+      }
     }
   });
 }
@@ -43,9 +46,9 @@ TEST(MergeKernel, EqualsTwinForEveryBatchSize) {
   on_every_target([&] {
     for (std::size_t count = 0; count <= fragments.size(); ++count) {
       std::vector<Aggregate> aggregates(fragments.size(), old);
-      merge(fragments.data(), count, pattern, aggregates.data());
+      merge(fragments.data(), count, pattern, {}, aggregates.data());
       for (std::size_t i = 0; i < aggregates.size(); ++i) {
-        const Aggregate expected = i < count ? merge_scalar(fragments[i], old, pattern) : old;
+        const Aggregate expected = i < count ? merge_scalar(fragments[i], old, pattern, {}) : old;
         ASSERT_EQ(std::bit_cast<Bits>(aggregates[i]), std::bit_cast<Bits>(expected)) << i << " of " << count;
       }
     }

@@ -107,6 +107,33 @@ TEST(BeamFragment, TinyMeansNoPositionAndOneBitNearest) {
   EXPECT_GT(tiny, 100);
 }
 
+// As many positions as the area fills, but no more than three: the nearest ones.
+TEST(BeamFragment, TinyTrianglesAreGivenUpToThreePositions) {
+  Random random(135);
+  SCOPED_TRACE(random.name());
+  const SamplePattern pattern = hammersley_pattern();
+  const Tile tile{0, 0, 12, 12};
+  std::array<int, 4> given{};
+  for (const Fragment& fragment : beam_fragments(random_triangles(random, 3'000), tile, MaskSource::exact, 3).list) {
+    if (!fragment.tiny) continue;
+    const std::uint32_t mask = fragment.mask.words[0];
+    ASSERT_EQ(std::popcount(mask), std::min(3, static_cast<int>(std::ceil(fragment.alpha * 32))));
+    ++given[static_cast<std::size_t>(std::popcount(mask))];
+    double farthest_given = 0, nearest_other = 2;
+    for (std::size_t s = 0; s < 32; ++s) {
+      const double distance =
+          std::hypot(pattern.x[s] / 256.0 - fragment.centroid_u, pattern.y[s] / 256.0 - fragment.centroid_v);
+      if (mask >> s & 1) {
+        farthest_given = std::max(farthest_given, distance);
+      } else {
+        nearest_other = std::min(nearest_other, distance);
+      }
+    }
+    ASSERT_LE(farthest_given, nearest_other + 1e-6);
+  }
+  for (const std::size_t count : {1u, 2u, 3u}) EXPECT_GT(given[count], 5) << count;
+}
+
 // Two triangles whose common edge runs through the pixel share out the mask.
 TEST(BeamFragment, MasksOfASharedEdgeAreComplements) {
   Random random(133);

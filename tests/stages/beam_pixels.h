@@ -18,14 +18,15 @@ struct Fragments {
   StageCounters counters;
 };
 
-inline Fragments beam_fragments(const SetupTriangles& triangles, const Tile& tile, MaskSource mask) {
+inline Fragments beam_fragments(const SetupTriangles& triangles, const Tile& tile, MaskSource mask,
+                                int tiny_positions = 1) {
   static const SamplePattern pattern = hammersley_pattern();
   static const MaskTable table(pattern);
   std::vector<PixelTriangle> pairs;
   StageCounters raster;
   conservative_raster(triangles, all_of(triangles), tile, raster, pairs);
   Fragments fragments;
-  beam_fragment(triangles, pairs, tile, {mask, {pattern}, &table, kAggregateBytes, true}, fragments.counters,
+  beam_fragment(triangles, pairs, tile, {mask, {pattern}, &table, kAggregateBytes, tiny_positions}, fragments.counters,
                 fragments.list);
   return fragments;
 }
@@ -37,11 +38,11 @@ inline ABuffer sorted(const Fragments& fragments, std::size_t pixels) {
 
 // The composed pixels of a tile; `colors` has one per triangle.
 inline std::vector<Aggregate> beam_pixels(const SetupTriangles& triangles, const std::vector<glm::vec3>& colors,
-                                          const Tile& tile, MaskSource mask) {
+                                          const Tile& tile, MaskSource mask, const MergeRules& rules = {}) {
   Fragments fragments = beam_fragments(triangles, tile, mask);
   StageCounters counters;
   shade(colors, fragments.list, counters);
-  return compose(fragments.list, sorted(fragments, tile.pixels()), hammersley_pattern(), counters);
+  return compose(fragments.list, sorted(fragments, tile.pixels()), hammersley_pattern(), rules, counters);
 }
 
 }  // namespace beampipe

@@ -25,8 +25,7 @@ std::vector<PixelColor> composed(const SetupTriangles& triangles, const std::vec
   std::vector<PixelTriangle> pairs;
   std::vector<Fragment> fragments;
   conservative_raster(triangles, all_of(triangles), tile, counters, pairs);
-  beam_fragment(triangles, pairs, tile, {MaskSource::exact, positions.patterns, nullptr, 66, false}, counters,
-                fragments);
+  beam_fragment(triangles, pairs, tile, {MaskSource::exact, positions.patterns, nullptr, 66, 0}, counters, fragments);
   shade(colors, fragments, counters);
   const ABuffer buffer = a_buffer(fragments, tile.pixels(), SortKey::nearest, 42, counters);
   PixelWindows sizes;

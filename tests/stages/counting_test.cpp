@@ -4,8 +4,8 @@
 #include <gtest/gtest.h>
 
 #include "simd/depth_test.h"
-#include "simd/merge.h"
 #include "simd/sample_test.h"
+#include "tests/simd/merge_cases.h"
 
 namespace beampipe {
 namespace {
@@ -74,6 +74,7 @@ TEST(Counting, SampleTest) {
 // A twin costs the same whatever it works on: its counts are charged per item without looking at the item.
 TEST(Counting, MergeCostsTheSameForEveryInput) {
   const SamplePattern pattern = hammersley_pattern();
+  MergeRules rules;
   const auto cost = [&](float alpha, std::uint32_t mask, float z, std::uint32_t old_mask, std::uint32_t tiny) {
     return count_operations([&](OperationCounts& tally) {
       const auto real = [&](float value) { return Real(value, tally); };
@@ -81,13 +82,17 @@ TEST(Counting, MergeCostsTheSameForEveryInput) {
         return AggregateOf<Real, Bits>{real(alpha), Bits(bits, tally), {real(depth), real(0.1f), real(0)}, real(0.2f),
                                        real(depth), real(depth),       {real(1), real(1), real(1)}};
       };
-      merge_scalar(FragmentOf<Real, Bits>{surface(mask, z), Bits(tiny, tally)}, surface(old_mask, -0.5f), pattern);
+      merge_scalar(FragmentOf<Real, Bits>{surface(mask, z), Bits(tiny, tally)}, surface(old_mask, -0.5f), pattern,
+                   rules);
     });
   };
-  const OperationCounts typical = cost(0.5f, 0xffffu, -0.5f, 0xff00u, 0u);
-  EXPECT_GT(typical.total(), 32u * 10);
-  EXPECT_EQ(cost(1.0f, ~0u, -0.9f, 0u, 0u), typical);
-  EXPECT_EQ(cost(1e-6f, 1u, -0.1f, ~0u, ~0u), typical);
+  for (const MergeRules& each : every_merge_rule()) {
+    rules = each;
+    const OperationCounts typical = cost(0.5f, 0xffffu, -0.5f, 0xff00u, 0u);
+    EXPECT_GT(typical.total(), 32u * 10);
+    EXPECT_EQ(cost(1.0f, ~0u, -0.9f, 0u, 0u), typical);
+    EXPECT_EQ(cost(1e-6f, 1u, -0.1f, ~0u, ~0u), typical);
+  }
 }
 
 }  // namespace

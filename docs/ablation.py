@@ -1,0 +1,62 @@
+#!/usr/bin/env python3
+"""What each open choice of the paper's rules is worth: the ablation tables of docs/accuracy.md.
+
+usage: docs/ablation.py PROGRAM [TRACE...]
+
+PROGRAM is for instance build/release/tools/beampipe. Measured are the nine procedural scenes, which it makes, and the
+traces that are named. Prints the equivalent MSAA rate of the published rules with one policy changed at a time.
+"""
+import json
+import math
+import pathlib
+import subprocess
+import sys
+import tempfile
+
+SCENES = ["hairball", "classroom", "boat", "pickets", "terrain", "sphere", "fence", "soup", "foliage"]
+POLICIES = ["", "mask=exact", "sort=nearest", "tiny=3", "overlap=over", "overlap=add", "overlap=transition",
+            "local=keep", "fuzzy=mix", "extents=slab", "slab=visible", "plane=visible", "thickness=containing",
+            "tiny=3,overlap=transition",
+            "mask=exact,local=keep,fuzzy=mix,slab=visible,plane=visible"]
+
+
+def rates(program, trace, folder):
+    """EMR by policy."""
+    specs = {",".join(filter(None, ["beam:rules=paper", policy])): policy for policy in POLICIES}
+    subprocess.run([program, "compare", trace, "-t", *specs, "-o", folder], check=True, stdout=subprocess.DEVNULL)
+    with open(f"{folder}/report.json", encoding="utf-8") as file:
+        report = json.load(file)
+    return {specs[r["technique"]]: r["equivalent_msaa"] for r in report["results"] if r["technique"] in specs}
+
+
+def mean(values):
+    return math.exp(sum(map(math.log, values)) / len(values))
+
+
+def print_table(names, found, means):
+    print("| policy | " + " | ".join(names) + " | " + " | ".join(title for title, _ in means) + " |")
+    print("|---" * (len(names) + len(means) + 1) + "|")
+    for policy in POLICIES:
+        rows = [found[name][policy] for name in names] + [mean([found[n][policy] for n in over]) for _, over in means]
+        print(f"| {f'`{policy}`' if policy else 'as published'} | " + " | ".join(f"{x:.3g}" for x in rows) + " |")
+    print()
+
+
+def main():
+    if len(sys.argv) < 2:
+        sys.exit(__doc__.strip())
+    program, traces, found = sys.argv[1], sys.argv[2:], {}
+    with tempfile.TemporaryDirectory() as folder:
+        for scene in SCENES:
+            trace = f"{folder}/{scene}.json"
+            subprocess.run([program, "make", scene, "-o", trace], check=True, stdout=subprocess.DEVNULL)
+            found[scene] = rates(program, trace, f"{folder}/out")
+        for trace in traces:
+            found[pathlib.Path(trace).stem] = rates(program, trace, f"{folder}/out")
+    models = [name for name in found if name not in SCENES]
+    print_table(SCENES, found, [("geometric mean", SCENES)])
+    if models:
+        print_table(models, found, [("geometric mean", models), (f"of all {len(found)}", list(found))])
+
+
+main()
