@@ -42,22 +42,15 @@ FrameResult render_acaa(const Trace& trace, const Frame& frame, const AcaaOption
         accumulation{"accumulate"}, resolving{"resolve"};
     Accumulator accumulator(tile, options.samples, options.color, options.double_counting);
     std::vector<float> counts(tile.pixels());
-    std::vector<SampleFragment> fragments;
     for (const Sampling& sampling : rounds) {
       SampleTile depth(tile, sampling, 0);
-      const auto raster_batch = [&](const TriangleList& batch) {
-        fragments.clear();
-        sample_raster(triangles, batch, tile, sampling, raster, fragments);
-      };
-      for_each_batch(list, [&](const TriangleList& batch) {
-        raster_batch(batch);
+      raster_in_batches(triangles, list, tile, sampling, raster, [&](std::vector<SampleFragment>& fragments) {
         depth_test(triangles, fragments, tile, sampling, testing, depth);
       });
       if (options.double_counting == DoubleCounting::saturate)
         accumulate_background(depth, frame.background, accumulation, accumulator);
       accumulator.taken.assign(tile.pixels(), 0);
-      for_each_batch(list, [&](const TriangleList& batch) {
-        raster_batch(batch);
+      raster_in_batches(triangles, list, tile, sampling, raster, [&](std::vector<SampleFragment>& fragments) {
         depth_test_equal(triangles, tile, sampling, testing, depth, fragments);
         if (options.double_counting == DoubleCounting::stencil) stencil_test(tile, stencil, accumulator, fragments);
         shade(fragments, shading);

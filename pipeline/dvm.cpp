@@ -7,7 +7,6 @@
 #include "pipeline/tiles.h"
 #include "stages/depth_test.h"
 #include "stages/dilate.h"
-#include "stages/resolve.h"
 #include "stages/sample_select.h"
 #include "stages/shade.h"
 #include "stages/vertex_setup.h"
@@ -16,7 +15,9 @@ namespace beampipe {
 namespace {
 
 // The clamp fades out below this motion, in pixels: the article's remedy for flicker at edges between lit facets.
-constexpr double kStillPixels = 0.05;
+constexpr float kStillPixels = 0.05f;
+
+constexpr int kTileSize = 64;  // px
 
 // A number for each triangle's material.
 std::vector<std::uint32_t> material_ids(const SetupTriangles& triangles, MaterialBy by) {
@@ -43,34 +44,38 @@ FrameResult render_dvm(const Trace& trace, const Frame& frame, const DvmOptions&
   const std::vector<std::uint32_t> materials = material_ids(triangles, options.material);
   const Sampling sampling{CellGrid{}, standard_pattern(8)};
   const SelectOptions select{history.frames % 8, options.seed + history.frames};
+  const Poses poses = poses_of(frame);
+  const std::vector<glm::dmat4> to_last = to_last_frame(poses, history.poses);
   CurrentFrame current(frame.width, frame.height);
-  current.view_projection = frame.projection * frame.view;
   QuadFrame quads(frame.width, frame.height);
 
   FrameResult result =
-      render_tiles(frame, triangles, setup, sample_tile_size(8), run, [&](const Tile& tile, const TriangleList& list) {
+      render_tiles(frame, triangles, setup, kTileSize, run, [&](const Tile& tile, const TriangleList& list) {
         StageCounters raster{"sample_raster"}, testing{"depth_test"}, selecting{"sample_select"}, shading{"shade"},
-            lighting{"light"}, resolving{"resolve_depth"};
+            lighting{"light"}, moving{"motion"};
         SampleTile surface(tile, sampling, kVisibilityBytes);
-        std::vector<SampleFragment> fragments;
-        for_each_batch(list, [&](const TriangleList& batch) {
-          fragments.clear();
-          sample_raster(triangles, batch, tile, sampling, raster, fragments);
+        raster_in_batches(triangles, list, tile, sampling, raster, [&](std::vector<SampleFragment>& fragments) {
           depth_test(triangles, fragments, tile, sampling, testing, surface);
         });
         const std::vector<SampleQuad> selected = sample_select(surface, tile, materials, select, selecting);
         write_gbuffer(shaded_samples(selected), shading);
         light(shaded_samples(selected), lighting);
         quads.insert(tile, selected);
-        copy_to_frame(resolve_depth(surface, tile.pixels(), resolving).data(), tile, frame, current.depth);
-        return TileResult{
-            std::vector<glm::vec4>(tile.pixels()), {}, {raster, testing, selecting, shading, lighting, resolving}};
+        copy_to_frame(motion(surface, tile, frame, triangles.draws, to_last, moving), tile, frame, current.motion);
+        return TileResult{{}, {}, {raster, testing, selecting, shading, lighting, moving}};
       });
 
   StageCounters spreading{"dilate"}, accumulation{"temporal"};
-  dilate(quads, colors, triangles.draws, frame.background, spreading, current);
+  std::vector<glm::vec4> image(current.color.size());
+  for_each_tile(frame, kTileSize, run, spreading, [&](const Tile& tile, StageCounters& counters) {
+    dilate(quads, colors, triangles.draws, frame.background, tile, counters, current);
+  });
+  for_each_tile(frame, kTileSize, run, accumulation, [&](const Tile& tile, StageCounters& counters) {
+    temporal(current, {options.blend, kStillPixels}, history, tile, counters, image);
+  });
+  history = {history.frames + 1, current.width, current.height, image, poses};
   result.pixel_counters["unknown"] = unknown_part(current);
-  result.image = image_of(frame, temporal(current, {options.blend, kStillPixels}, accumulation, history));
+  result.image = image_of(frame, image);
   result.stages.insert(result.stages.end(), {spreading, accumulation});
   return result;
 }
@@ -83,6 +88,7 @@ std::vector<Surface> dvm_framebuffer() {
           {"location", "R8UI", 1},
           {"gbuffer", "RGBA8 + RGB10A2", kGBufferBytes},
           {"color", "RGB16F", kSampleColorBytes},
+          {"motion", "RG16F", kMotionBytes},
           {"history", "RGBA16F x 2", 16}};
 }
 

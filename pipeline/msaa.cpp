@@ -35,19 +35,14 @@ FrameResult render_msaa(const Trace& trace, const Frame& frame, const MsaaOption
     StageCounters raster{"sample_raster"}, shading{"shade"}, testing{"depth_test"}, resolving{"resolve"};
     SampleTile surface(tile, sampling, options.prepass ? 0 : color_bytes(options));
     std::vector<float> counts(tile.pixels());
-    std::vector<SampleFragment> fragments;
-    for_each_batch(list, [&](const TriangleList& batch) {
-      fragments.clear();
-      sample_raster(triangles, batch, tile, sampling, raster, fragments);
+    raster_in_batches(triangles, list, tile, sampling, raster, [&](std::vector<SampleFragment>& fragments) {
       if (!options.prepass) shade(fragments, shading);
       depth_test(triangles, fragments, tile, sampling, testing, surface);
       count_fragments(fragments, tile, sampling.grid, counts);
     });
     surface.color_bytes = color_bytes(options);
     if (options.prepass) {  // shades and writes what is visible; which triangle that is, the surface knows already
-      for_each_batch(list, [&](const TriangleList& batch) {
-        fragments.clear();
-        sample_raster(triangles, batch, tile, sampling, raster, fragments);
+      raster_in_batches(triangles, list, tile, sampling, raster, [&](std::vector<SampleFragment>& fragments) {
         depth_test_equal(triangles, tile, sampling, testing, surface, fragments);
         shade(fragments, shading);
       });

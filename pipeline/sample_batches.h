@@ -17,18 +17,24 @@ inline int sample_tile_size(int samples) {
   return size;
 }
 
-// Calls body(batch) for the list's triangles in order, 512 at a time.
+// sample_raster over the list's triangles in order, 512 at a time; calls body(fragments) for each time's.
 template <class Body>
-void for_each_batch(const TriangleList& list, Body&& body) {
+void raster_in_batches(const SetupTriangles& triangles, const TriangleList& list, const Tile& tile,
+                       const Sampling& sampling, StageCounters& raster, Body&& body) {
   constexpr std::size_t kBatchTriangles = 512;
+  std::vector<SampleFragment> fragments;
   for (std::size_t first = 0; first < list.size(); first += kBatchTriangles) {
     const auto begin = list.begin() + static_cast<std::ptrdiff_t>(first);
-    body(TriangleList(begin, begin + static_cast<std::ptrdiff_t>(std::min(kBatchTriangles, list.size() - first))));
+    const TriangleList batch(begin,
+                             begin + static_cast<std::ptrdiff_t>(std::min(kBatchTriangles, list.size() - first)));
+    fragments.clear();
+    sample_raster(triangles, batch, tile, sampling, raster, fragments);
+    body(fragments);
   }
 }
 
-// Adds one to a pixel's count for each triangle that has a fragment there, in however many cells of it. Fragments of one
-// triangle come one after the other.
+// Adds one to a pixel's count for each triangle that has a fragment there, in however many cells of it. Fragments of
+// one triangle come one after the other.
 inline void count_fragments(const std::vector<SampleFragment>& fragments, const Tile& tile, const CellGrid& grid,
                             std::vector<float>& counts) {
   std::vector<std::uint32_t> last(counts.size(), ~0u);  // triangle that was counted last

@@ -2,9 +2,13 @@
 
 #include "pipeline/tiles.h"
 #include "pipeline/visibility.h"
+#include "stages/shade.h"
+#include "stages/vertex_setup.h"
 
 namespace beampipe {
 namespace {
+
+constexpr int kTileSize = 64;  // px
 
 // Sampling at another position of the pixel is what jittering the projection comes to.
 SamplePattern jittered(const TaaOptions& options, std::uint32_t frame) {
@@ -21,20 +25,40 @@ SamplePattern jittered(const TaaOptions& options, std::uint32_t frame) {
 FrameResult render_taa(const Trace& trace, const Frame& frame, const TaaOptions& options, const RunOptions& run) {
   History first;
   History& history = run.history ? *run.history : first;
+  StageCounters setup;
+  const SetupTriangles triangles = vertex_setup(trace, frame, setup);
+  const std::vector<glm::vec3> colors = shade_triangles(triangles, frame.light_direction);
+  const Sampling sampling{CellGrid{}, jittered(options, history.frames)};
+  const Poses poses = poses_of(frame);
+  const std::vector<glm::dmat4> to_last = to_last_frame(poses, history.poses);
   CurrentFrame current(frame.width, frame.height);
-  current.view_projection = frame.projection * frame.view;
-  FrameResult result = render_visibility(trace, frame, {jittered(options, history.frames), &current.depth}, run);
-  current.color = pixels_of(result.image);
+
+  FrameResult result =
+      render_tiles(frame, triangles, setup, kTileSize, run, [&](const Tile& tile, const TriangleList& list) {
+        StageCounters moving{"motion"};
+        SampleTile surface(tile, sampling, kVisibilityBytes);
+        TileResult one = visibility_tile(triangles, list, tile, sampling, colors, frame.background, surface);
+        copy_to_frame(one.image, tile, frame, current.color);
+        copy_to_frame(motion(surface, tile, frame, triangles.draws, to_last, moving), tile, frame, current.motion);
+        one.stages.push_back(moving);
+        return one;
+      });
 
   StageCounters accumulation{"temporal"};
-  neighborhood_box(current, accumulation);
-  result.image = image_of(frame, temporal(current, {options.blend}, accumulation, history));
+  std::vector<glm::vec4> image(current.color.size());
+  for_each_tile(frame, kTileSize, run, accumulation, [&](const Tile& tile, StageCounters& counters) {
+    neighborhood_box(tile, counters, current);
+    temporal(current, {options.blend}, history, tile, counters, image);
+  });
+  history = {history.frames + 1, current.width, current.height, image, poses};
+  result.image = image_of(frame, image);
   result.stages.push_back(accumulation);
   return result;
 }
 
 std::vector<Surface> taa_framebuffer() {
   std::vector<Surface> surfaces = visibility_framebuffer();
+  surfaces.push_back({"motion", "RG16F", kMotionBytes});
   surfaces.push_back({"history", "RGBA16F x 2", 16});  // the last one, and the one being written
   return surfaces;
 }

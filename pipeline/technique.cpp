@@ -13,11 +13,11 @@
 namespace beampipe {
 namespace {
 
-// The render function of a technique that takes its frame and its options.
-template <class Render, class Options>
-auto bind_options(Render* render, const Options& options) {
+// The render function of a technique that takes its frame and, if it has any, its options.
+template <class Render, class... Options>
+auto bind_options(Render* render, const Options&... options) {
   return [=](const Trace& trace, std::size_t frame, const RunOptions& run) {
-    return render(trace, trace.frames.at(frame), options, run);
+    return render(trace, trace.frames.at(frame), options..., run);
   };
 }
 
@@ -84,12 +84,10 @@ Technique make_acaa(Spec& spec) {
   return {spec.text(), acaa_framebuffer(options), 0, bind_options(render_acaa, options)};
 }
 
-Technique make_deferred(Spec& spec) {
-  return {spec.text(), deferred_framebuffer(), 0, bind_options(render_deferred, VisibilityOptions{})};
-}
+Technique make_deferred(Spec& spec) { return {spec.text(), deferred_framebuffer(), 0, bind_options(render_deferred)}; }
 
 Technique make_visibility(Spec& spec) {
-  return {spec.text(), visibility_framebuffer(), 0, bind_options(render_visibility, VisibilityOptions{})};
+  return {spec.text(), visibility_framebuffer(), 0, bind_options(render_visibility)};
 }
 
 Technique make_taa(Spec& spec) {
@@ -108,9 +106,7 @@ Technique make_dvm(Spec& spec) {
 }
 
 Technique make_reference(Spec& spec) {
-  return {spec.text(), reference_framebuffer(), 0, [](const Trace& trace, std::size_t frame, const RunOptions& run) {
-            return render_reference(trace, trace.frames.at(frame), run);
-          }};
+  return {spec.text(), reference_framebuffer(), 0, bind_options(render_reference)};
 }
 
 struct Kind {

@@ -38,19 +38,12 @@ std::vector<TriangleList> bin_triangles(const Frame& frame, const SetupTriangles
   return lists;
 }
 
-// Copies `values` per pixel of the tile, row by row, to where the tile lies in the frame.
-template <class Value>
-void copy_rows(const Tile& tile, const Value* from, std::size_t values, std::size_t frame_width, Value* to) {
-  const std::size_t row = static_cast<std::size_t>(tile.width()) * values;
-  for (std::int32_t y = tile.y0; y < tile.y1; ++y, from += row)
-    std::copy_n(from, row,
-                to + (static_cast<std::size_t>(y) * frame_width + static_cast<std::size_t>(tile.x0)) * values);
-}
-
-void copy_tile(const Tile& tile, const TileResult& from, FrameResult& to) {
-  copy_rows(tile, &from.image.front().x, 4, to.image.width, to.image.rgba.data());
-  for (const auto& [name, values] : from.pixel_counters)
-    copy_rows(tile, values.data(), 1, to.image.width, to.pixel_counters.at(name).data());
+// Calls work(0), work(1), ... work(count - 1), on as many threads as the options allow.
+void run_on_threads(std::size_t count, const RunOptions& options, const std::function<void(std::size_t)>& work) {
+  const int threads = options.threads > 0 ? options.threads : tbb::info::default_concurrency();
+  const tbb::global_control allow(tbb::global_control::max_allowed_parallelism, static_cast<std::size_t>(threads));
+  tbb::task_arena arena(threads);
+  arena.execute([&] { tbb::parallel_for(std::size_t{0}, count, work); });
 }
 
 }  // namespace
@@ -60,46 +53,41 @@ FrameResult render_tiles(const Frame& frame, const SetupTriangles& triangles, co
   const std::vector<Tile> tiles = make_tiles(frame, tile_size);
   const std::vector<TriangleList> lists = bin_triangles(frame, triangles, tile_size, tiles.size());
   std::vector<TileResult> results(tiles.size());
-  const int threads = options.threads > 0 ? options.threads : tbb::info::default_concurrency();
-  const tbb::global_control allow(tbb::global_control::max_allowed_parallelism, static_cast<std::size_t>(threads));
-  tbb::task_arena arena(threads);
-  arena.execute([&] {
-    tbb::parallel_for(std::size_t{0}, tiles.size(), [&](std::size_t i) { results[i] = renderer(tiles[i], lists[i]); });
-  });
+  run_on_threads(tiles.size(), options, [&](std::size_t i) { results[i] = renderer(tiles[i], lists[i]); });
 
   FrameResult frame_result;
   const std::size_t pixels = std::size_t{frame.width} * frame.height;
-  frame_result.image = {frame.width, frame.height, std::vector<float>(4 * pixels)};
+  std::vector<glm::vec4> image(pixels);
   for (const auto& [name, values] : results.front().pixel_counters) frame_result.pixel_counters[name].resize(pixels);
   frame_result.stages = {vertex_setup};
   frame_result.stages.insert(frame_result.stages.end(), results.front().stages.size(), StageCounters{});
   for (std::size_t i = 0; i < tiles.size(); ++i) {
-    copy_tile(tiles[i], results[i], frame_result);
+    if (!results[i].image.empty()) copy_to_frame(results[i].image, tiles[i], frame, image);
+    for (const auto& [name, values] : results[i].pixel_counters)
+      copy_to_frame(values, tiles[i], frame, frame_result.pixel_counters.at(name));
     for (std::size_t s = 0; s < results[i].stages.size(); ++s) {
       frame_result.stages[s + 1].stage = results[i].stages[s].stage;
       frame_result.stages[s + 1] += results[i].stages[s];
     }
   }
+  frame_result.image = image_of(frame, image);
   StageCounters& raster = frame_result.stages[1];
   raster.items_in += triangles.triangles.size();
   raster.bytes_read += triangles.triangles.size() * sizeof(SetupTriangle);
   return frame_result;
 }
 
-void copy_to_frame(const float* tile_values, const Tile& tile, const Frame& frame, std::vector<float>& frame_values) {
-  copy_rows(tile, tile_values, 1, frame.width, frame_values.data());
-}
-
-std::vector<glm::vec4> pixels_of(const Image& image) {
-  std::vector<glm::vec4> pixels(image.rgba.size() / 4);
-  for (std::size_t i = 0; i < image.rgba.size(); ++i) pixels[i / 4][static_cast<int>(i % 4)] = image.rgba[i];
-  return pixels;
+void for_each_tile(const Frame& frame, int tile_size, const RunOptions& options, StageCounters& counters,
+                   const std::function<void(const Tile&, StageCounters&)>& work) {
+  const std::vector<Tile> tiles = make_tiles(frame, tile_size);
+  std::vector<StageCounters> of_tiles(tiles.size());
+  run_on_threads(tiles.size(), options, [&](std::size_t i) { work(tiles[i], of_tiles[i]); });
+  for (const StageCounters& of_tile : of_tiles) counters += of_tile;
 }
 
 Image image_of(const Frame& frame, const std::vector<glm::vec4>& pixels) {
-  Image image{frame.width, frame.height, std::vector<float>(4 * pixels.size())};
-  for (std::size_t i = 0; i < image.rgba.size(); ++i) image.rgba[i] = pixels[i / 4][static_cast<int>(i % 4)];
-  return image;
+  const float* const first = &pixels.front().x;
+  return {frame.width, frame.height, std::vector<float>(first, first + 4 * pixels.size())};
 }
 
 }  // namespace beampipe

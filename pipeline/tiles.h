@@ -2,6 +2,7 @@
 // depend on the number of threads or on the tile size.
 #pragma once
 
+#include <algorithm>
 #include <functional>
 #include <glm/glm.hpp>
 #include <string>
@@ -16,7 +17,7 @@ namespace beampipe {
 
 // What a technique makes of one tile. Images and counters: one value per pixel of the tile, row by row.
 struct TileResult {
-  std::vector<glm::vec4> image;
+  std::vector<glm::vec4> image;  // may be empty, when a later stage makes the frame's
   std::vector<std::pair<std::string, std::vector<float>>> pixel_counters;
   std::vector<StageCounters> stages;  // in pipeline order, the same stages for every tile
 };
@@ -28,10 +29,21 @@ using TileRenderer = std::function<TileResult(const Tile&, const TriangleList&)>
 FrameResult render_tiles(const Frame& frame, const SetupTriangles& triangles, const StageCounters& vertex_setup,
                          int tile_size, const RunOptions& options, const TileRenderer& renderer);
 
-// For stages that work on whole frames. A tile's values, one per pixel, go to their places in `frame_values`; tiles may
-// do so at the same time.
-void copy_to_frame(const float* tile_values, const Tile& tile, const Frame& frame, std::vector<float>& frame_values);
-std::vector<glm::vec4> pixels_of(const Image& image);
+// For a stage behind those of the tiles that looks at whole frames and makes one tile's pixels at a time: calls
+// work(tile, counters) for each tile, and adds up the counters.
+void for_each_tile(const Frame& frame, int tile_size, const RunOptions& options, StageCounters& counters,
+                   const std::function<void(const Tile&, StageCounters&)>& work);
+
+// A tile's values, one per pixel, to their places in the frame's; tiles may do so at the same time.
+template <class Value>
+void copy_to_frame(const std::vector<Value>& tile_values, const Tile& tile, const Frame& frame,
+                   std::vector<Value>& frame_values) {
+  const Value* from = tile_values.data();
+  for (std::int32_t y = tile.y0; y < tile.y1; ++y, from += tile.width())
+    std::copy_n(from, tile.width(),
+                frame_values.data() + static_cast<std::size_t>(y) * frame.width + static_cast<std::size_t>(tile.x0));
+}
+
 Image image_of(const Frame& frame, const std::vector<glm::vec4>& pixels);
 
 }  // namespace beampipe

@@ -19,26 +19,20 @@ std::uint64_t covered_pixels(const SampleTile& surface, const Tile& tile) {
 
 }  // namespace
 
-FrameResult render_deferred(const Trace& trace, const Frame& frame, const VisibilityOptions& options,
-                            const RunOptions& run) {
+FrameResult render_deferred(const Trace& trace, const Frame& frame, const RunOptions& run) {
   StageCounters setup;
   const SetupTriangles triangles = vertex_setup(trace, frame, setup);
   const std::vector<glm::vec3> colors = shade_triangles(triangles, frame.light_direction);
-  const Sampling sampling{CellGrid{}, options.pattern};
+  const Sampling sampling{CellGrid{}, standard_pattern(1)};
   setup += setup;  // the triangles come twice
   return render_tiles(frame, triangles, setup, kTileSize, run, [&](const Tile& tile, const TriangleList& list) {
     StageCounters raster{"sample_raster"}, testing{"depth_test"}, shading{"shade"}, lighting{"light"},
         resolving{"resolve"};
     SampleTile surface(tile, sampling, 0);
-    std::vector<SampleFragment> fragments;
-    for_each_batch(list, [&](const TriangleList& batch) {
-      fragments.clear();
-      sample_raster(triangles, batch, tile, sampling, raster, fragments);
+    raster_in_batches(triangles, list, tile, sampling, raster, [&](std::vector<SampleFragment>& fragments) {
       depth_test(triangles, fragments, tile, sampling, testing, surface);
     });
-    for_each_batch(list, [&](const TriangleList& batch) {
-      fragments.clear();
-      sample_raster(triangles, batch, tile, sampling, raster, fragments);
+    raster_in_batches(triangles, list, tile, sampling, raster, [&](std::vector<SampleFragment>& fragments) {
       depth_test_equal(triangles, tile, sampling, testing, surface, fragments);
       write_gbuffer(fragments, shading);
     });
@@ -50,32 +44,33 @@ FrameResult render_deferred(const Trace& trace, const Frame& frame, const Visibi
   });
 }
 
-FrameResult render_visibility(const Trace& trace, const Frame& frame, const VisibilityOptions& options,
-                              const RunOptions& run) {
+FrameResult render_visibility(const Trace& trace, const Frame& frame, const RunOptions& run) {
   StageCounters setup;
   const SetupTriangles triangles = vertex_setup(trace, frame, setup);
   const std::vector<glm::vec3> colors = shade_triangles(triangles, frame.light_direction);
-  const Sampling sampling{CellGrid{}, options.pattern};
+  const Sampling sampling{CellGrid{}, standard_pattern(1)};
   return render_tiles(frame, triangles, setup, kTileSize, run, [&](const Tile& tile, const TriangleList& list) {
-    StageCounters raster{"sample_raster"}, testing{"depth_test"}, shading{"shade"}, lighting{"light"},
-        resolving{"resolve"};
     SampleTile surface(tile, sampling, kVisibilityBytes);
-    std::vector<float> counts(tile.pixels());
-    std::vector<SampleFragment> fragments;
-    for_each_batch(list, [&](const TriangleList& batch) {
-      fragments.clear();
-      sample_raster(triangles, batch, tile, sampling, raster, fragments);
-      depth_test(triangles, fragments, tile, sampling, testing, surface);
-      count_fragments(fragments, tile, sampling.grid, counts);
-    });
-    write_gbuffer(covered_pixels(surface, tile), shading);
-    light(covered_pixels(surface, tile), lighting);
-    if (options.depth) copy_to_frame(surface.depth.data(), tile, frame, *options.depth);
-    surface.color_bytes = kSampleColorBytes;
-    return TileResult{resolve(surface, tile.pixels(), colors, frame.background, resolving),
-                      {{"fragments", std::move(counts)}},
-                      {raster, testing, shading, lighting, resolving}};
+    return visibility_tile(triangles, list, tile, sampling, colors, frame.background, surface);
   });
+}
+
+TileResult visibility_tile(const SetupTriangles& triangles, const TriangleList& list, const Tile& tile,
+                           const Sampling& sampling, const std::vector<glm::vec3>& colors, const glm::vec3& background,
+                           SampleTile& surface) {
+  StageCounters raster{"sample_raster"}, testing{"depth_test"}, shading{"shade"}, lighting{"light"},
+      resolving{"resolve"};
+  std::vector<float> counts(tile.pixels());
+  raster_in_batches(triangles, list, tile, sampling, raster, [&](std::vector<SampleFragment>& fragments) {
+    depth_test(triangles, fragments, tile, sampling, testing, surface);
+    count_fragments(fragments, tile, sampling.grid, counts);
+  });
+  write_gbuffer(covered_pixels(surface, tile), shading);
+  light(covered_pixels(surface, tile), lighting);
+  surface.color_bytes = kSampleColorBytes;
+  return {resolve(surface, tile.pixels(), colors, background, resolving),
+          {{"fragments", std::move(counts)}},
+          {raster, testing, shading, lighting, resolving}};
 }
 
 std::vector<Surface> deferred_framebuffer() {

@@ -3,19 +3,18 @@
 #pragma once
 
 #include "pipeline/technique.h"
-#include "simd/sample_pattern.h"
+#include "pipeline/tiles.h"
+#include "stages/sample_raster.h"
 
 namespace beampipe {
 
-struct VisibilityOptions {
-  SamplePattern pattern = standard_pattern(1);
-  std::vector<float>* depth = nullptr;  // if not null: filled with the depth of every pixel of the frame
-};
+FrameResult render_deferred(const Trace& trace, const Frame& frame, const RunOptions& run);
+FrameResult render_visibility(const Trace& trace, const Frame& frame, const RunOptions& run);
 
-FrameResult render_deferred(const Trace& trace, const Frame& frame, const VisibilityOptions& options,
-                            const RunOptions& run);
-FrameResult render_visibility(const Trace& trace, const Frame& frame, const VisibilityOptions& options,
-                              const RunOptions& run);
+// What `visibility` does in a tile: its triangle ids and depths stay in `surface`. `sampling`: of one sample.
+TileResult visibility_tile(const SetupTriangles& triangles, const TriangleList& list, const Tile& tile,
+                           const Sampling& sampling, const std::vector<glm::vec3>& colors, const glm::vec3& background,
+                           SampleTile& surface);
 
 std::vector<Surface> deferred_framebuffer();
 std::vector<Surface> visibility_framebuffer();

@@ -11,10 +11,13 @@ namespace {
 
 constexpr std::uint64_t kColorBytes = 6;  // fp16 RGB
 
-// A shading sample, ready for its pixels.
 struct Shaded {
   std::uint32_t draw;
-  glm::vec4 color, low, high;
+  glm::vec4 color;
+};
+
+struct Box {
+  glm::vec4 low, high;
 };
 
 // The four weights of a pixel, and their sum: `base` has the pixel's bits.
@@ -41,38 +44,48 @@ OperationCounts pixel_cost() {
   });
 }
 
-// Shading samples where they are stored: two per quad in x and in y.
-std::vector<Shaded> shade_samples(const QuadFrame& quads, const std::vector<glm::vec3>& colors,
-                                  const std::vector<std::uint32_t>& draws, const glm::vec3& background) {
-  std::vector<Shaded> samples(4 * quads.quads.size());
-  for (std::size_t q = 0; q < quads.quads.size(); ++q) {
-    for (std::size_t p = 0; p < 4; ++p) {
-      const std::uint32_t triangle = quads.quads[q].triangle[p];
-      const std::size_t x = 2 * (q % static_cast<std::size_t>(quads.columns)) + p % 2;
-      const std::size_t y = 2 * (q / static_cast<std::size_t>(quads.columns)) + p / 2;
-      Shaded& sample = samples[y * 2 * static_cast<std::size_t>(quads.columns) + x];
-      sample.draw = triangle == kNoTriangle ? kNoTriangle : draws[triangle];
-      sample.color = triangle == kNoTriangle ? glm::vec4(background, 0.0f) : glm::vec4(colors[triangle], 1.0f);
-    }
-  }
-  return samples;
-}
+// The frame's shading samples, at the pixels where they are stored.
+class ShadedSamples {
+ public:
+  ShadedSamples(const QuadFrame& quads, const std::vector<glm::vec3>& colors, const std::vector<std::uint32_t>& draws,
+                const glm::vec3& background)
+      : quads_(quads), colors_(colors), draws_(draws), background_(background, 0.0f) {}
 
-// Neighbours inside the frame only: samples outside it were never shaded.
-void find_boxes(const CurrentFrame& frame, std::int32_t stride, std::vector<Shaded>& samples) {
-  for (std::int32_t y = 0; y < frame.height; ++y) {
-    for (std::int32_t x = 0; x < frame.width; ++x) {
-      Shaded& sample = samples[static_cast<std::size_t>(y * stride + x)];
-      sample.low = sample.high = sample.color;
-      for (std::int32_t ny = std::max(y - 1, 0); ny <= std::min(y + 1, frame.height - 1); ++ny) {
-        for (std::int32_t nx = std::max(x - 1, 0); nx <= std::min(x + 1, frame.width - 1); ++nx) {
-          const Shaded& other = samples[static_cast<std::size_t>(ny * stride + nx)];
-          if (other.draw != sample.draw) continue;
-          sample.low = glm::min(sample.low, other.color), sample.high = glm::max(sample.high, other.color);
-        }
+  Shaded at(std::int32_t x, std::int32_t y) const {
+    const SampleQuad& quad = quads_.quads[static_cast<std::size_t>(y / 2 * quads_.columns + x / 2)];
+    const std::uint32_t triangle = quad.triangle[y % 2 * 2 + x % 2];
+    if (triangle == kNoTriangle) return {kNoTriangle, background_};
+    return {draws_[triangle], glm::vec4(colors_[triangle], 1.0f)};
+  }
+
+  // Neighbours inside the frame only: samples outside it were never shaded.
+  Box box_around(std::int32_t x, std::int32_t y, const CurrentFrame& frame) const {
+    const Shaded sample = at(x, y);
+    Box box{sample.color, sample.color};
+    for (std::int32_t ny = std::max(y - 1, 0); ny <= std::min(y + 1, frame.height - 1); ++ny) {
+      for (std::int32_t nx = std::max(x - 1, 0); nx <= std::min(x + 1, frame.width - 1); ++nx) {
+        const Shaded other = at(nx, ny);
+        if (other.draw != sample.draw) continue;
+        box.low = glm::min(box.low, other.color), box.high = glm::max(box.high, other.color);
       }
     }
+    return box;
   }
+
+ private:
+  const QuadFrame& quads_;
+  const std::vector<glm::vec3>& colors_;
+  const std::vector<std::uint32_t>& draws_;
+  glm::vec4 background_;
+};
+
+glm::vec4 weighted_mean(const glm::vec4 colors[4], const float weights[4], float inverse) {
+  glm::vec4 result;
+  for (int c = 0; c < 4; ++c) {
+    const float values[4] = {colors[0][c], colors[1][c], colors[2][c], colors[3][c]};
+    result[c] = mean(values, weights, inverse);
+  }
+  return result;
 }
 
 }  // namespace
@@ -92,39 +105,37 @@ void QuadFrame::insert(const Tile& tile, const std::vector<SampleQuad>& of_tile)
 }
 
 void dilate(const QuadFrame& quads, const std::vector<glm::vec3>& colors, const std::vector<std::uint32_t>& draws,
-            const glm::vec3& background, StageCounters& counters, CurrentFrame& frame) {
-  const std::int32_t stride = 2 * quads.columns;
-  std::vector<Shaded> samples = shade_samples(quads, colors, draws, background);
-  find_boxes(frame, stride, samples);
+            const glm::vec3& background, const Tile& tile, StageCounters& counters, CurrentFrame& frame) {
+  const ShadedSamples samples(quads, colors, draws, background);
   std::uint64_t known = 0;
-  for (std::int32_t y = 0; y < frame.height; ++y) {
-    for (std::int32_t x = 0; x < frame.width; ++x) {
-      const SampleQuad& quad = quads.quads[static_cast<std::size_t>(y / 2 * quads.columns + x / 2)];
-      const auto i = static_cast<std::size_t>(y * frame.width + x);
-      float weights[4];
-      const float marked = weigh(quad.mask, 0xffu << 8 * (y % 2 * 2 + x % 2), weights);
-      frame.known[i] = marked / 8;
-      const Shaded* of_quad[4];
-      for (int p = 0; p < 4; ++p)
-        of_quad[p] = &samples[static_cast<std::size_t>(((y & ~1) + p / 2) * stride + (x & ~1) + p % 2)];
-      if (marked == 0) {
-        frame.color[i] = frame.low[i] = frame.high[i] = of_quad[y % 2 * 2 + x % 2]->color;
-        continue;
+  for (std::int32_t top = tile.y0; top < tile.y1; top += 2) {
+    for (std::int32_t left = tile.x0; left < tile.x1; left += 2) {
+      const SampleQuad& quad = quads.quads[static_cast<std::size_t>(top / 2 * quads.columns + left / 2)];
+      glm::vec4 color[4], low[4], high[4];
+      for (int p = 0; p < 4; ++p) {
+        color[p] = samples.at(left + p % 2, top + p / 2).color;
+        const Box box = samples.box_around(left + p % 2, top + p / 2, frame);
+        low[p] = box.low, high[p] = box.high;
       }
-      ++known;
-      const auto interpolate = [&](glm::vec4 Shaded::*member, glm::vec4& to) {
-        for (int c = 0; c < 4; ++c) {
-          const float values[4] = {(of_quad[0]->*member)[c], (of_quad[1]->*member)[c], (of_quad[2]->*member)[c],
-                                   (of_quad[3]->*member)[c]};
-          to[c] = mean(values, weights, 1.0f / marked);
+      for (int p = 0; p < 4; ++p) {
+        const std::int32_t x = left + p % 2, y = top + p / 2;
+        if (x >= tile.x1 || y >= tile.y1) continue;
+        const auto i = static_cast<std::size_t>(y * frame.width + x);
+        float weights[4];
+        const float marked = weigh(quad.mask, 0xffu << 8 * p, weights);
+        frame.known[i] = marked / 8;
+        if (marked == 0) {
+          frame.color[i] = frame.low[i] = frame.high[i] = color[p];
+          continue;
         }
-      };
-      interpolate(&Shaded::color, frame.color[i]);
-      interpolate(&Shaded::low, frame.low[i]);
-      interpolate(&Shaded::high, frame.high[i]);
+        ++known;
+        frame.color[i] = weighted_mean(color, weights, 1.0f / marked);
+        frame.low[i] = weighted_mean(low, weights, 1.0f / marked);
+        frame.high[i] = weighted_mean(high, weights, 1.0f / marked);
+      }
     }
   }
-  const std::size_t pixels = frame.color.size();
+  const std::size_t pixels = tile.pixels();
   counters.items_in += pixels;
   counters.items_out += pixels;
   counters.ops += pixel_cost() * pixels;

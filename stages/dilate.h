@@ -19,11 +19,11 @@ struct QuadFrame {
   void insert(const Tile& tile, const std::vector<SampleQuad>& of_tile);
 };
 
-// `colors` and `draws`: one per triangle. A shading sample's box is that of the 3x3 samples around it that are of the
-// same draw. Sets color, low, high and known of `frame`; a pixel none of whose visibility samples was given takes the
-// colour of its own shading sample, and is known by 0.
+// Sets color, low, high and known of the tile's pixels. `colors` and `draws`: one per triangle. A shading sample's box
+// is that of the 3x3 samples around it that are of the same draw. A pixel none of whose visibility samples was given
+// takes the colour of its own shading sample, and is known by 0.
 void dilate(const QuadFrame& quads, const std::vector<glm::vec3>& colors, const std::vector<std::uint32_t>& draws,
-            const glm::vec3& background, StageCounters& counters, CurrentFrame& frame);
+            const glm::vec3& background, const Tile& tile, StageCounters& counters, CurrentFrame& frame);
 
 // Per pixel, the part whose material has no shading sample in the quad.
 std::vector<float> unknown_part(const CurrentFrame& frame);

@@ -75,22 +75,4 @@ std::vector<glm::vec4> resolve(const SampleTile& surface, std::size_t pixels, co
   return image;
 }
 
-std::vector<float> resolve_depth(const SampleTile& surface, std::size_t pixels, StageCounters& counters) {
-  const std::size_t samples = surface.samples_per_pixel;
-  std::vector<float> nearest;
-  nearest.reserve(pixels);
-  for (std::size_t pixel = 0; pixel < pixels; ++pixel) {
-    const float* first = surface.depth.data() + pixel * samples;
-    nearest.push_back(*std::min_element(first, first + samples));
-  }
-  counters.items_in += pixels * samples;
-  counters.items_out += pixels;
-  counters.ops.add += pixels * (samples - 1);
-  counters.bytes_read += pixels * samples * kSampleDepthBytes;
-  counters.bytes_written += pixels * kSampleDepthBytes;
-  counters.lanes_used += pixels;
-  counters.lanes_issued += pixels;
-  return nearest;
-}
-
 }  // namespace beampipe

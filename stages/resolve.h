@@ -26,7 +26,4 @@ std::vector<glm::vec4> resolve(const std::vector<PixelColor>& aggregates, const 
 std::vector<glm::vec4> resolve(const SampleTile& surface, std::size_t pixels, const std::vector<glm::vec3>& colors,
                                const glm::vec3& background, StageCounters& counters);
 
-// The nearest depth of each pixel's samples.
-std::vector<float> resolve_depth(const SampleTile& surface, std::size_t pixels, StageCounters& counters);
-
 }  // namespace beampipe

@@ -75,27 +75,35 @@ TEST(Taa, BlendIsExponential) {
   EXPECT_NEAR(red(image, 4, 4), 1 - std::pow(0.75, 3), 1e-3);
 }
 
-TEST(Taa, ReprojectionFollowsTheCamera) {
-  // The world moves by exactly one pixel per frame; every position then has the same history as if nothing moved.
-  const auto shifted = [](double pixels) {
-    std::vector<PixelSpaceTriangle> triangles;
-    for (int i = -8; i < 40; ++i)
-      for (const auto& t : quad(i, -4, i + 1, 20, 0.5, glm::vec3(static_cast<float>((i * 37 & 15)) / 16.0f)))
-        triangles.push_back(t);
-    Trace trace = pixel_trace(24, 8, triangles);
-    trace.frames[0].view[3][0] = pixels;
-    return trace;
-  };
-  const Technique technique = parse_technique("taa:1,blend=0.001");
+// Columns of a pixel, each of another grey.
+Trace columns() {
+  std::vector<PixelSpaceTriangle> triangles;
+  for (int i = -8; i < 40; ++i)
+    for (const auto& t : quad(i, -4, i + 1, 20, 0.5, glm::vec3(static_cast<float>((i * 37 & 15)) / 16.0f)))
+      triangles.push_back(t);
+  return pixel_trace(24, 8, triangles);
+}
+
+// After one pixel to the right, every pixel's history must be its left neighbour's.
+void expect_shifted(const std::string& spec, const Trace& before, const Trace& after) {
+  const Technique technique = parse_technique(spec);
   History history;
-  const Image first = technique.render(shifted(0), 0, {1, &history}).image;
-  const Image second = technique.render(shifted(1), 0, {1, &history}).image;
-  const Image there = render_frames("taa:1", shifted(1), 1);
-  for (std::uint32_t x = 2; x < 22; ++x) {
-    EXPECT_NEAR(red(second, x, 4), red(first, x - 1, 4), 2e-3) << x;
-    EXPECT_NEAR(red(there, x, 4), red(first, x - 1, 4), 1e-6) << x;
-  }
+  const Image first = technique.render(before, 0, {1, &history}).image;
+  const Image second = technique.render(after, 0, {1, &history}).image;
+  for (std::uint32_t x = 2; x < 22; ++x) EXPECT_NEAR(red(second, x, 4), red(first, x - 1, 4), 2e-3) << spec << ' ' << x;
   EXPECT_EQ(history.frames, 2u);
+}
+
+TEST(Temporal, ReprojectionFollowsTheCamera) {
+  Trace after = columns();
+  after.frames[0].view[3][0] = 1;
+  for (const char* spec : {"taa:1,blend=0.001", "dvm:blend=0.001"}) expect_shifted(spec, columns(), after);
+}
+
+TEST(Temporal, ReprojectionFollowsADrawUnderAStillCamera) {
+  Trace after = columns();
+  after.frames[0].draws[0].transform[3][0] = 1;
+  for (const char* spec : {"taa:1,blend=0.001", "dvm:blend=0.001"}) expect_shifted(spec, columns(), after);
 }
 
 TEST(Taa, AnotherSizeOfFrameStartsAfresh) {
@@ -180,7 +188,7 @@ TEST(Dvm, MaterialByDrawSpreadsAcrossColors) {
 }
 
 TEST(Temporal, FramesAreTheSameFromAnyNumberOfThreads) {
-  const Trace trace = random_trace(47, 31, 200, 7);
+  const Trace trace = random_trace(147, 81, 200, 7);  // several tiles, and odd
   for (const char* spec : {"taa:8", "dvm"})
     EXPECT_EQ(render_frames(spec, trace, 5).rgba, render_frames(spec, trace, 5, 3).rgba);
   EXPECT_NE(render_frames("dvm", trace, 5).rgba, render_frames("dvm:seed=2", trace, 5).rgba);
