@@ -73,9 +73,9 @@ FrameResult render_dvm(const Trace& trace, const Frame& frame, const DvmOptions&
   for_each_tile(frame, kTileSize, run, accumulation, [&](const Tile& tile, StageCounters& counters) {
     temporal(current, {options.blend, kStillPixels}, history, tile, counters, image);
   });
-  history = {history.frames + 1, current.width, current.height, image, poses};
   result.pixel_counters["unknown"] = unknown_part(current);
   result.image = image_of(frame, image);
+  history = {history.frames + 1, current.width, current.height, std::move(image), poses};
   result.stages.insert(result.stages.end(), {spreading, accumulation});
   return result;
 }

@@ -50,8 +50,8 @@ FrameResult render_taa(const Trace& trace, const Frame& frame, const TaaOptions&
     neighborhood_box(tile, counters, current);
     temporal(current, {options.blend}, history, tile, counters, image);
   });
-  history = {history.frames + 1, current.width, current.height, image, poses};
   result.image = image_of(frame, image);
+  history = {history.frames + 1, current.width, current.height, std::move(image), poses};
   result.stages.push_back(accumulation);
   return result;
 }

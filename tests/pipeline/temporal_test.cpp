@@ -2,9 +2,11 @@
 #include <gtest/gtest.h>
 
 #include <cmath>
+#include <filesystem>
 
 #include "pipeline/technique.h"
 #include "test_traces.h"
+#include "traces/trace_io.h"
 
 namespace beampipe {
 namespace {
@@ -134,6 +136,33 @@ TEST(Dvm, ABarThinnerThanAPixelVanishesUnderTaaOnly) {
     EXPECT_TRUE(seen < 1e-6 || std::abs(seen - 0.1 / 16) < 1e-4) << seen;
   }
   EXPECT_NEAR(sum, 0.1 / 16 / 8, 1e-4);
+}
+
+// Bars of 1.5, 0.5 and 0.2 pixels, a little slanted, around rows 6, 18 and 30; the camera stands still.
+TEST(Dvm, KeepsTheBarsOfTheSampleThatTaaLoses) {
+  const Trace trace = read_trace(std::filesystem::path(BEAMPIPE_SOURCE_FOLDER) / "traces/samples/thin_bars.json");
+  // What each bar adds to the background's red, all told.
+  const auto light = [&](const Image& image, std::uint32_t bar) {
+    double sum = 0;
+    for (std::uint32_t y = 12 * bar; y < 12 * bar + 12; ++y)
+      for (std::uint32_t x = 0; x < image.width; ++x) sum += red(image, x, y) - trace.frames[0].background.r;
+    return sum;
+  };
+  const Image truth = render_frames("reference", trace, 1);
+  const auto share_kept = [&](const std::string& spec, std::uint32_t bar) {  // over the last jitter cycle
+    const Technique technique = parse_technique(spec);
+    History history;
+    double sum = 0;
+    for (std::size_t i = 0; i < trace.frames.size(); ++i) {
+      const Image image = technique.render(trace, i, {1, &history}).image;
+      if (i + 8 >= trace.frames.size()) sum += light(image, bar) / 8;
+    }
+    return sum / light(truth, bar);
+  };
+  for (std::uint32_t bar = 0; bar < 3; ++bar) EXPECT_NEAR(share_kept("dvm", bar), 1, 0.02) << bar;
+  EXPECT_GT(share_kept("taa:8", 0), 0.9);
+  EXPECT_LT(share_kept("taa:8", 1), 0.7);
+  EXPECT_LT(share_kept("taa:8", 2), 0.3);
 }
 
 TEST(Dvm, TheFirstFrameIsMsaaWhereMaterialsAreFew) {
