@@ -7,6 +7,7 @@
 #include "pipeline/msaa.h"
 #include "pipeline/reference.h"
 #include "pipeline/spec.h"
+#include "pipeline/stream.h"
 #include "pipeline/taa.h"
 #include "pipeline/visibility.h"
 
@@ -48,6 +49,12 @@ Technique make_beam(Spec& spec) {
     options.sort = spec.choice<SortKey>("sort", {{"centroid", SortKey::centroid}, {"nearest", SortKey::nearest}});
     options.tiny_positions = spec.choice<int>("tiny", {{"1", 1}, {"3", 3}});
     options.merge = merge_rules(spec);
+  } else if (spec.choice<bool>("order", {{"sort", false}, {"stream", true}})) {
+    StreamOptions stream;
+    stream.positions = spec.choice<int>("bits", {{"128", 128}, {"256", 256}, {"64", 64}, {"32", 32}});
+    stream.layers = spec.choice<int>("layers", {{"5", 5}, {"1", 1}});
+    stream.passes = static_cast<int>(spec.number("passes", 0, 1, 1000));
+    return {spec.text(), stream_framebuffer(stream), 0, bind_options(render_stream, stream)};
   } else {
     options.positions = spec.choice<int>("bits", {{"256", 256}, {"128", 128}, {"64", 64}, {"32", 32}});
   }

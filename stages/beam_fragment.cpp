@@ -28,9 +28,8 @@ CoverageInput<float> coverage_input(const SetupTriangle& triangle, const Edge (&
     }
     in.vertex_z[k] = triangle.vertex_z[k];
   }
-  in.z = static_cast<float>(triangle.depth.at(x + 0.5, y + 0.5));
-  in.dzdu = static_cast<float>(triangle.depth.dzdx);
-  in.dzdv = static_cast<float>(triangle.depth.dzdy);
+  const DepthPlane<float> plane = pixel_plane(triangle, x, y);
+  in.z = plane.z, in.dzdu = plane.dzdu, in.dzdv = plane.dzdv;
   return in;
 }
 

@@ -27,6 +27,12 @@ struct Fragment {
   glm::vec3 color;  // times alpha; 0 until shaded
 };
 
+// The triangle's depth over a pixel, frame coordinates.
+inline DepthPlane<float> pixel_plane(const SetupTriangle& triangle, std::int32_t x, std::int32_t y) {
+  return {static_cast<float>(triangle.depth.at(x + 0.5, y + 0.5)), static_cast<float>(triangle.depth.dzdx),
+          static_cast<float>(triangle.depth.dzdy)};
+}
+
 // The 64 x 64 table (the paper), the edge tests of sample_raster, or no masks at all.
 enum class MaskSource { table, exact, none };
 

@@ -25,6 +25,9 @@ std::vector<glm::vec3> round_to_half(std::vector<glm::vec3> colors);
 // At the centroid: sets the fragments' colours (times alpha).
 void shade(const std::vector<glm::vec3>& colors, std::vector<Fragment>& fragments, StageCounters& counters);
 
+// The same for fragments that are known to be visible: one by one, not in quads.
+void shade_visible(const std::vector<glm::vec3>& colors, std::vector<Fragment>& fragments, StageCounters& counters);
+
 // At the pixel's centre or centroid, which is the same for flat colours: counts, for fragments that keep their
 // triangle's index in place of its colour.
 void shade(const std::vector<SampleFragment>& fragments, StageCounters& counters);

@@ -33,6 +33,9 @@ WideMask combine(const WideMask& a, const WideMask& b, Combine&& word) {
 inline WideMask operator|(const WideMask& a, const WideMask& b) {
   return combine(a, b, [](std::uint32_t x, std::uint32_t y) { return x | y; });
 }
+inline WideMask operator&(const WideMask& a, const WideMask& b) {
+  return combine(a, b, [](std::uint32_t x, std::uint32_t y) { return x & y; });
+}
 inline WideMask without(const WideMask& a, const WideMask& b) {  // a & ~b
   return combine(a, b, [](std::uint32_t x, std::uint32_t y) { return x & ~y; });
 }

@@ -1,0 +1,93 @@
+#include "pipeline/stream.h"
+
+#include <algorithm>
+#include <stdexcept>
+#include <string>
+
+#include "pipeline/sample_batches.h"
+#include "pipeline/tiles.h"
+#include "stages/claim.h"
+#include "stages/conservative_raster.h"
+#include "stages/settle.h"
+#include "stages/shade.h"
+#include "stages/vertex_setup.h"
+
+namespace beampipe {
+namespace {
+
+constexpr int kTileSize = 32;  // px
+
+// The box of the pixels that need another pass, its corners even; empty when there are none.
+template <class Pixel>
+Tile unfinished_box(const std::vector<Pixel>& pixels, const Tile& tile) {
+  Tile box{tile.x1, tile.y1, tile.x0, tile.y0};
+  for (std::size_t i = 0; i < pixels.size(); ++i) {
+    if (!is_unfinished(pixels[i])) continue;
+    const auto x = tile.x0 + static_cast<std::int32_t>(i) % tile.width();
+    const auto y = tile.y0 + static_cast<std::int32_t>(i) / tile.width();
+    box = {std::min(box.x0, x & ~1), std::min(box.y0, y & ~1), std::max(box.x1, std::min((x | 1) + 1, tile.x1)),
+           std::max(box.y1, std::min((y | 1) + 1, tile.y1))};
+  }
+  return box;
+}
+
+template <std::size_t Words, std::size_t Layers>
+FrameResult render_shape(const Trace& trace, const Frame& frame, const StreamOptions& stream, const RunOptions& run) {
+  StageCounters setup;
+  const SetupTriangles triangles = vertex_setup(trace, frame, setup);
+  const std::vector<glm::vec3> colors = shade_triangles(triangles, frame.light_direction);
+  const PositionSet positions(cell_patterns(stream.positions));
+  const BeamFragmentOptions options{MaskSource::exact, positions.patterns, nullptr, streaming_fragment_bytes(Words), false};
+
+  return render_tiles(frame, triangles, setup, kTileSize, run, [&](const Tile& tile, const TriangleList& list) {
+    StageCounters raster{"conservative_raster"}, fragment{"beam_fragment"}, claiming{"claim"}, shading{"shade"},
+        settling{"settle"}, resolving{"resolve"};
+    std::vector<OwnerPixel<Words, Layers>> pixels(tile.pixels(), cleared_pixel<Words, Layers>());
+    std::vector<float> passes(tile.pixels()), counts(tile.pixels());
+    std::vector<PixelTriangle> pairs;
+    std::vector<Fragment> fragments;
+    Tile box = tile;
+    for (int pass = 1; box.x0 < box.x1; ++pass) {
+      for (std::size_t i = 0; i < pixels.size(); ++i) passes[i] += is_unfinished(pixels[i]);
+      for_each_batch(list, [&](const TriangleList& batch) {
+        pairs.clear(), fragments.clear();
+        conservative_raster(triangles, batch, box, raster, pairs);
+        keep_unfinished(pixels, tile, pairs);
+        beam_fragment(triangles, pairs, tile, options, fragment, fragments);
+        for (const Fragment& item : fragments) ++counts[item.pixel];
+        claim(triangles, fragments, tile, positions, claiming, pixels);
+      });
+      fragments.clear();
+      beam_fragment(triangles, owners(pixels, tile), tile, options, fragment, fragments);
+      shade_visible(colors, fragments, shading);
+      settle(fragments, pass == stream.passes, settling, pixels);
+      box = unfinished_box(pixels, tile);
+    }
+    return TileResult{resolve(settled_colors(pixels), frame.background, sizeof pixels[0], resolving),
+                      {{"fragments", std::move(counts)}, {"passes", std::move(passes)}},
+                      {raster, fragment, claiming, shading, settling, resolving}};
+  });
+}
+
+}  // namespace
+
+FrameResult render_stream(const Trace& trace, const Frame& frame, const StreamOptions& stream, const RunOptions& run) {
+#define BEAMPIPE_RENDER(words, shape_layers)                              \
+  if (stream.positions == 32 * words && stream.layers == shape_layers) \
+    return render_shape<words, shape_layers>(trace, frame, stream, run);
+  BEAMPIPE_OWNER_PIXELS(BEAMPIPE_RENDER)
+#undef BEAMPIPE_RENDER
+  throw std::invalid_argument("no pixel of this shape: " + std::to_string(stream.positions) + " positions, " +
+                              std::to_string(stream.layers) + " layers");
+}
+
+std::vector<Surface> stream_framebuffer(const StreamOptions& stream) {
+  const auto words = static_cast<std::uint32_t>(stream.positions / 32), layers = static_cast<std::uint32_t>(stream.layers);
+  const std::uint32_t state_bytes = 4 * words * (layers == 1 ? 2 : 3);
+  return {{"owner_map", "R32UI x " + std::to_string(state_bytes / 4), state_bytes},
+          {"owners", "R32UI x " + std::to_string(layers), 4 * layers},
+          {"dropped_depth", "R32F", 4},
+          {"color", "RGBA16F", 8}};
+}
+
+}  // namespace beampipe

@@ -1,0 +1,139 @@
+#include "stages/settle.h"
+
+#include <half.h>
+
+#include <algorithm>
+
+#include "simd/conserve.h"
+#include "stages/counting.h"
+
+namespace beampipe {
+namespace {
+
+float from_half(std::uint16_t bits) {
+  half value;
+  value.setBits(bits);
+  return value;
+}
+
+std::uint16_t to_half(float value) { return half(std::min(value, static_cast<float>(HALF_MAX))).bits(); }
+
+// An owner and what is seen of it.
+struct Owner {
+  const Fragment* fragment;
+  float covered, visible;  // mask positions
+};
+
+template <std::size_t Words, std::size_t Layers>
+void settle_pixel(const Fragment* begin, const Fragment* end, bool last_pass, OwnerPixel<Words, Layers>& pixel) {
+  using Pixel = OwnerPixel<Words, Layers>;
+  constexpr auto kPositions = static_cast<float>(32 * Words);
+  const bool speck = pixel.owner[0] & Pixel::kSpeck;
+  const WideMask deferred = pixel.positions_in(Pixel::kDeferred);
+  std::vector<Owner> seen;
+  WideMask settled = pixel.positions_in(Pixel::kSettled);
+  Taken<float> taken{from_half(pixel.color[3]), static_cast<float>(settled.count())};
+  glm::vec3 color(from_half(pixel.color[0]), from_half(pixel.color[1]), from_half(pixel.color[2]));
+  const Fragment* fragment = begin;
+  for (std::uint32_t k = 0; k < Layers; ++k) {
+    const WideMask owned = pixel.positions_in(Pixel::kFirstLayer + k);
+    settled = settled | owned;
+    if (owned.none() || fragment == end || fragment->triangle != pixel.triangle(k)) continue;
+    seen.push_back({fragment, static_cast<float>(fragment->mask.count()), static_cast<float>(owned.count())});
+    ++fragment;
+  }
+  // Whole ones first, as in sorted order.
+  std::stable_sort(seen.begin(), seen.end(),
+                   [](const Owner& a, const Owner& b) { return a.visible / a.covered > b.visible / b.covered; });
+  for (const Owner& owner : seen) {
+    const float area = speck ? owner.visible / kPositions
+                             : visible_area(owner.fragment->alpha, owner.covered, owner.visible, kPositions, taken);
+    taken.area += area;
+    taken.positions += owner.visible;
+    color += area / owner.fragment->alpha * owner.fragment->color;
+  }
+  float scale = 1;
+  if (deferred.none() || last_pass) {
+    // A pixel that is covered everywhere leaves nothing for the background. What no pass decided is like the rest.
+    const auto undecided = static_cast<float>(deferred.count());
+    const bool full = settled.count() + deferred.count() == 32 * static_cast<int>(Words);
+    if (taken.area > 0) scale = full ? 1 / taken.area : std::min(kPositions / (kPositions - undecided), 1 / taken.area);
+    settled = settled | deferred | pixel.positions_in(Pixel::kEmpty);
+  }
+  for (int c = 0; c < 3; ++c) pixel.color[c] = to_half(color[c] * scale);
+  pixel.color[3] = to_half(taken.area * scale);
+  pixel.put(settled, Pixel::kSettled);
+  pixel.put(without(deferred, settled), Pixel::kEmpty);
+  pixel.dropped = kNoDepth;
+}
+
+// Of one owner, with the pixel's colour in and out of fp16.
+OperationCounts owner_cost() {
+  OperationCounts cost = count_operations([](OperationCounts& counts) {
+    const Counted<float> one(1.0f, counts);
+    Taken<Counted<float>> taken{one, one};
+    const Counted<float> area = visible_area(one, one, one, one, taken);
+    taken = {taken.area + area, taken.positions + one};
+    const Counted<float> share = area / one;
+    for (int c = 0; c < 3; ++c) one + share * one;
+  });
+  return cost;
+}
+
+}  // namespace
+
+template <std::size_t Words, std::size_t Layers>
+std::vector<PixelTriangle> owners(const std::vector<OwnerPixel<Words, Layers>>& pixels, const Tile& tile) {
+  using Pixel = OwnerPixel<Words, Layers>;
+  std::vector<PixelTriangle> pairs;
+  for (std::size_t i = 0; i < pixels.size(); ++i) {
+    const auto x = tile.x0 + static_cast<std::int32_t>(i) % tile.width();
+    const auto y = tile.y0 + static_cast<std::int32_t>(i) / tile.width();
+    for (std::size_t k = 0; k < Layers; ++k)
+      if (!pixels[i].positions_in(Pixel::kFirstLayer + static_cast<std::uint32_t>(k)).none())
+        pairs.push_back({pixels[i].triangle(k), static_cast<std::uint32_t>(pairs.size()), x, y, false});
+  }
+  return pairs;
+}
+
+template <std::size_t Words, std::size_t Layers>
+void settle(const std::vector<Fragment>& fragments, bool last_pass, StageCounters& counters,
+            std::vector<OwnerPixel<Words, Layers>>& pixels) {
+  const Fragment* fragment = fragments.data();
+  const Fragment* const end = fragment + fragments.size();
+  std::uint64_t worked_on = 0, unfinished = 0;
+  for (std::size_t i = 0; i < pixels.size(); ++i) {
+    const Fragment* const begin = fragment;
+    while (fragment != end && fragment->pixel == i) ++fragment;
+    if (!is_unfinished(pixels[i])) continue;
+    settle_pixel(begin, fragment, last_pass, pixels[i]);
+    ++worked_on;
+    unfinished += is_unfinished(pixels[i]);
+  }
+  counters.items_in += fragments.size();
+  counters.items_out += unfinished;
+  counters.ops += owner_cost() * fragments.size();
+  counters.bytes_read += worked_on * sizeof(OwnerPixel<Words, Layers>);
+  counters.bytes_written += worked_on * sizeof(OwnerPixel<Words, Layers>);
+  counters.lanes_used += fragments.size();
+  counters.lanes_issued += fragments.size();
+}
+
+template <std::size_t Words, std::size_t Layers>
+std::vector<PixelColor> settled_colors(const std::vector<OwnerPixel<Words, Layers>>& pixels) {
+  std::vector<PixelColor> colors;
+  colors.reserve(pixels.size());
+  for (const OwnerPixel<Words, Layers>& pixel : pixels)
+    colors.push_back({from_half(pixel.color[3]),
+                      {from_half(pixel.color[0]), from_half(pixel.color[1]), from_half(pixel.color[2])}});
+  return colors;
+}
+
+#define BEAMPIPE_SETTLE(words, layers)                                                                          \
+  template std::vector<PixelTriangle> owners(const std::vector<OwnerPixel<words, layers>>&, const Tile&);       \
+  template void settle(const std::vector<Fragment>&, bool, StageCounters&, std::vector<OwnerPixel<words, layers>>&); \
+  template std::vector<PixelColor> settled_colors(const std::vector<OwnerPixel<words, layers>>&);
+BEAMPIPE_OWNER_PIXELS(BEAMPIPE_SETTLE)
+#undef BEAMPIPE_SETTLE
+
+}  // namespace beampipe
