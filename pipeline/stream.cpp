@@ -37,7 +37,8 @@ FrameResult render_shape(const Trace& trace, const Frame& frame, const StreamOpt
   const SetupTriangles triangles = vertex_setup(trace, frame, setup);
   const std::vector<glm::vec3> colors = shade_triangles(triangles, frame.light_direction);
   const PositionSet positions(cell_patterns(stream.positions));
-  const BeamFragmentOptions options{MaskSource::exact, positions.patterns, nullptr, streaming_fragment_bytes(Words), false};
+  const BeamFragmentOptions options{MaskSource::exact, positions.patterns, nullptr, streaming_fragment_bytes(Words),
+                                    false};
 
   return render_tiles(frame, triangles, setup, kTileSize, run, [&](const Tile& tile, const TriangleList& list) {
     StageCounters raster{"conservative_raster"}, fragment{"beam_fragment"}, claiming{"claim"}, shading{"shade"},
@@ -72,7 +73,7 @@ FrameResult render_shape(const Trace& trace, const Frame& frame, const StreamOpt
 }  // namespace
 
 FrameResult render_stream(const Trace& trace, const Frame& frame, const StreamOptions& stream, const RunOptions& run) {
-#define BEAMPIPE_RENDER(words, shape_layers)                              \
+#define BEAMPIPE_RENDER(words, shape_layers)                           \
   if (stream.positions == 32 * words && stream.layers == shape_layers) \
     return render_shape<words, shape_layers>(trace, frame, stream, run);
   BEAMPIPE_OWNER_PIXELS(BEAMPIPE_RENDER)
@@ -82,7 +83,8 @@ FrameResult render_stream(const Trace& trace, const Frame& frame, const StreamOp
 }
 
 std::vector<Surface> stream_framebuffer(const StreamOptions& stream) {
-  const auto words = static_cast<std::uint32_t>(stream.positions / 32), layers = static_cast<std::uint32_t>(stream.layers);
+  const auto words = static_cast<std::uint32_t>(stream.positions / 32),
+             layers = static_cast<std::uint32_t>(stream.layers);
   const std::uint32_t state_bytes = 4 * words * (layers == 1 ? 2 : 3);
   return {{"owner_map", "R32UI x " + std::to_string(state_bytes / 4), state_bytes},
           {"owners", "R32UI x " + std::to_string(layers), 4 * layers},

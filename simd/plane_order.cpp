@@ -52,8 +52,7 @@ float nearest_depth_kernel(const DepthPlane<float>& plane, const SamplePattern* 
       const std::uint8_t bits[8] = {static_cast<std::uint8_t>(masks[w] >> s),
                                     static_cast<std::uint8_t>(masks[w] >> s >> 8)};
       const V u = offsets(patterns[w].x.data() + s), v = offsets(patterns[w].y.data() + s);
-      nearest =
-          hn::IfThenElse(hn::LoadMaskBits(d, bits), hn::Min(nearest, depths(plane, u, v)), nearest);
+      nearest = hn::IfThenElse(hn::LoadMaskBits(d, bits), hn::Min(nearest, depths(plane, u, v)), nearest);
     }
   }
   return hn::GetLane(hn::MinOfLanes(d, nearest));

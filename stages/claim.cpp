@@ -159,8 +159,8 @@ void claim(const SetupTriangles& triangles, const std::vector<Fragment>& fragmen
   counters.lanes_issued += fragments.size();
 }
 
-#define BEAMPIPE_CLAIM(words, layers)                                                                    \
-  template void claim<words, layers>(const SetupTriangles&, const std::vector<Fragment>&, const Tile&,   \
+#define BEAMPIPE_CLAIM(words, layers)                                                                  \
+  template void claim<words, layers>(const SetupTriangles&, const std::vector<Fragment>&, const Tile&, \
                                      const PositionSet&, StageCounters&, std::vector<OwnerPixel<words, layers>>&);
 BEAMPIPE_OWNER_PIXELS(BEAMPIPE_CLAIM)
 #undef BEAMPIPE_CLAIM

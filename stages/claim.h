@@ -1,8 +1,8 @@
 // claim: fragments in primitive order -> owners of mask positions. The ROP of the beam in streaming order.
 //
-// A fragment claims the positions where it is nearer than their owners. A pixel has room for so many owners; when there is
-// one more, the farthest is dropped and its positions are deferred: another pass over the geometry decides about them,
-// so that what is settled is exact. A deferred position may still be claimed by what is nearer than all that was
+// A fragment claims the positions where it is nearer than their owners. A pixel has room for so many owners; when there
+// is one more, the farthest is dropped and its positions are deferred: another pass over the geometry decides about
+// them, so that what is settled is exact. A deferred position may still be claimed by what is nearer than all that was
 // dropped. At equal depth the earlier triangle keeps a position.
 #pragma once
 

@@ -18,8 +18,8 @@ namespace beampipe {
 template <std::size_t Words, std::size_t Layers>  // 32 positions a word
 struct OwnerPixel {
   // States of a position: kEmpty, owned by layer 0 .. Layers - 1, kDeferred, kSettled.
-  static constexpr std::uint32_t kEmpty = 0;           // nothing covers it yet
-  static constexpr std::uint32_t kFirstLayer = 1;      // this and the next ones: that layer owns it
+  static constexpr std::uint32_t kEmpty = 0;              // nothing covers it yet
+  static constexpr std::uint32_t kFirstLayer = 1;         // this and the next ones: that layer owns it
   static constexpr std::uint32_t kDeferred = Layers + 1;  // its owner was dropped: another pass decides
   static constexpr std::uint32_t kSettled = Layers + 2;   // its owner is in `color`
   static constexpr std::size_t kStateBits = std::bit_width(kSettled);

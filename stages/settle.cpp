@@ -75,7 +75,7 @@ OperationCounts owner_cost() {
     const Counted<float> area = visible_area(one, one, one, one, taken);
     taken = {taken.area + area, taken.positions + one};
     const Counted<float> share = area / one;
-    for (int c = 0; c < 3; ++c) one + share * one;
+    for (int c = 0; c < 3; ++c) one + share* one;
   });
   return cost;
 }
@@ -124,13 +124,13 @@ std::vector<PixelColor> settled_colors(const std::vector<OwnerPixel<Words, Layer
   std::vector<PixelColor> colors;
   colors.reserve(pixels.size());
   for (const OwnerPixel<Words, Layers>& pixel : pixels)
-    colors.push_back({from_half(pixel.color[3]),
-                      {from_half(pixel.color[0]), from_half(pixel.color[1]), from_half(pixel.color[2])}});
+    colors.push_back(
+        {from_half(pixel.color[3]), {from_half(pixel.color[0]), from_half(pixel.color[1]), from_half(pixel.color[2])}});
   return colors;
 }
 
-#define BEAMPIPE_SETTLE(words, layers)                                                                          \
-  template std::vector<PixelTriangle> owners(const std::vector<OwnerPixel<words, layers>>&, const Tile&);       \
+#define BEAMPIPE_SETTLE(words, layers)                                                                               \
+  template std::vector<PixelTriangle> owners(const std::vector<OwnerPixel<words, layers>>&, const Tile&);            \
   template void settle(const std::vector<Fragment>&, bool, StageCounters&, std::vector<OwnerPixel<words, layers>>&); \
   template std::vector<PixelColor> settled_colors(const std::vector<OwnerPixel<words, layers>>&);
 BEAMPIPE_OWNER_PIXELS(BEAMPIPE_SETTLE)

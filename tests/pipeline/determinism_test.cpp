@@ -26,6 +26,24 @@ const char* const kSpecs[] = {
     "taa:8",
     "dvm",
     "dvm:material=draw"};
+const char* const kSpecs[] = {"beam",
+                              "beam:rules=paper,mask=exact",
+                              "beam:order=stream",
+                              "beam:order=stream,bits=64,layers=1",
+                              "beam:order=stream,passes=1",
+                              "alpha",
+                              "msaa:1",
+                              "msaa:8",
+                              "msaa:64",
+                              "reference",
+                              "msaa:8,prepass",
+                              "acaa:8",
+                              "acaa:64,double=stencil,color=unorm8",
+                              "deferred",
+                              "visibility",
+                              "taa:8",
+                              "dvm",
+                              "dvm:material=draw"};
 
 void expect_same(const FrameResult& a, const FrameResult& b, const std::string& what) {
   EXPECT_EQ(a.image.rgba, b.image.rgba) << what;

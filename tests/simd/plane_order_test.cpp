@@ -1,0 +1,80 @@
+#include "simd/plane_order.h"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+
+#include "hwy/targets.h"
+#include "tests/simd/random.h"
+
+namespace beampipe {
+namespace {
+
+template <class Check>
+void on_each_target(Check&& check) {
+  for (const auto target : hwy::SupportedAndGeneratedTargets()) {
+    SCOPED_TRACE(hwy::TargetName(target));
+    hwy::SetSupportedTargetsForTest(target);
+    hwy::GetChosenTarget().DeInit();
+    check();
+  }
+  hwy::SetSupportedTargetsForTest(0);
+  hwy::GetChosenTarget().DeInit();
+}
+
+// Planes that are steep, level, equal, or one bit apart at the centre.
+std::vector<DepthPlane<float>> hard_planes(Random& random) {
+  std::vector<DepthPlane<float>> planes;
+  for (int i = 0; i < 60; ++i) {
+    const float slope = std::ldexp(1.0f, static_cast<int>(random.integer(-30, 6)));
+    planes.push_back({random.real32(-1, 0), random.real32(-1, 1) * slope, random.real32(-1, 1) * slope});
+    planes.push_back(planes.back());
+    if (random.one_in(2)) planes.back().z = std::nextafter(planes.back().z, -2.0f);
+    if (random.one_in(4)) planes.back().dzdu = planes.back().dzdv = 0;
+  }
+  return planes;
+}
+
+TEST(PlaneOrder, NearerEqualsTwin) {
+  Random random(61);
+  SCOPED_TRACE(random.name());
+  const std::vector<DepthPlane<float>> planes = hard_planes(random);
+  for (const int positions : {32, 128, 256}) {
+    const std::vector<SamplePattern> patterns = cell_patterns(positions);
+    on_each_target([&] {
+      for (std::size_t i = 1; i < planes.size(); ++i) {
+        std::uint32_t masks[8];
+        nearer_positions(planes[i], planes[i - 1], patterns.data(), patterns.size(), masks);
+        for (std::size_t w = 0; w < patterns.size(); ++w)
+          for (std::size_t s = 0; s < 32; ++s)
+            ASSERT_EQ(masks[w] >> s & 1,
+                      nearer_scalar(planes[i], planes[i - 1], position_u(patterns[w], s), position_v(patterns[w], s)))
+                << i << " position " << 32 * w + s;
+      }
+    });
+  }
+}
+
+TEST(PlaneOrder, NearestEqualsTwin) {
+  Random random(62);
+  SCOPED_TRACE(random.name());
+  const std::vector<SamplePattern> patterns = cell_patterns(128);
+  const std::vector<DepthPlane<float>> planes = hard_planes(random);
+  std::vector<std::array<std::uint32_t, 4>> masks(planes.size());
+  for (auto& mask : masks)
+    for (std::uint32_t& word : mask)
+      word = random.one_in(3) ? 0 : static_cast<std::uint32_t>(random.integer(0, 0xffffffff));
+  masks[0] = {};
+  on_each_target([&] {
+    for (std::size_t i = 0; i < planes.size(); ++i) {
+      float expected = kNoDepth;
+      for (std::size_t p = 0; p < 128; ++p)
+        expected = nearest_scalar(planes[i], position_u(patterns[p / 32], p % 32), position_v(patterns[p / 32], p % 32),
+                                  (masks[i][p / 32] >> (p % 32) & 1) != 0, expected);
+      ASSERT_EQ(nearest_depth(planes[i], patterns.data(), 4, masks[i].data()), expected) << i;
+    }
+  });
+}
+
+}  // namespace
+}  // namespace beampipe
