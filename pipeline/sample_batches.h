@@ -1,10 +1,9 @@
-// What the techniques that test samples share: how large a tile is, and a few triangles at a time between the raster
-// and the depth test, so that fragments stay in cache.
+// What the techniques that test samples share: how large a tile is, and the raster stage in batches.
 #pragma once
 
-#include <algorithm>
 #include <vector>
 
+#include "pipeline/batches.h"
 #include "stages/sample_raster.h"
 #include "stages/tile.h"
 
@@ -17,20 +16,16 @@ inline int sample_tile_size(int samples) {
   return size;
 }
 
-// sample_raster over the list's triangles in order, 512 at a time; calls body(fragments) for each time's.
+// sample_raster over the list's triangles in order; calls body(fragments) for each batch.
 template <class Body>
 void raster_in_batches(const SetupTriangles& triangles, const TriangleList& list, const Tile& tile,
                        const Sampling& sampling, StageCounters& raster, Body&& body) {
-  constexpr std::size_t kBatchTriangles = 512;
   std::vector<SampleFragment> fragments;
-  for (std::size_t first = 0; first < list.size(); first += kBatchTriangles) {
-    const auto begin = list.begin() + static_cast<std::ptrdiff_t>(first);
-    const TriangleList batch(begin,
-                             begin + static_cast<std::ptrdiff_t>(std::min(kBatchTriangles, list.size() - first)));
+  for_each_batch(list, [&](const TriangleList& batch) {
     fragments.clear();
     sample_raster(triangles, batch, tile, sampling, raster, fragments);
     body(fragments);
-  }
+  });
 }
 
 // Adds one to a pixel's count for each triangle that has a fragment there, in however many cells of it. Fragments of

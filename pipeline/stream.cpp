@@ -4,7 +4,7 @@
 #include <stdexcept>
 #include <string>
 
-#include "pipeline/sample_batches.h"
+#include "pipeline/batches.h"
 #include "pipeline/tiles.h"
 #include "stages/claim.h"
 #include "stages/conservative_raster.h"

@@ -125,11 +125,18 @@ struct Kind {
 
 constexpr Kind kKinds[] = {
     {"beam",
-     "beam, beam:bits=256|128|64|32, or beam:rules=paper and, if wanted, mask=table|exact, sort=centroid|nearest, "
+     "beam, beam:bits=256|128|64|32, beam:order=stream and, if wanted, bits=128|256|64|32, layers=5|1, passes=N, or "
+     "beam:rules=paper and, if wanted, mask=table|exact, sort=centroid|nearest, "
      "tiny=1|3, overlap=tiny|over|add|transition, local=clamp|keep, fuzzy=delta|mix, extents=range|slab, "
      "slab=full|visible, plane=area|visible, thickness=larger|containing",
      "  beam         sorted fragments with analytic coverage and a mask, one area-conserving aggregate per pixel\n"
      "               beam:bits=N      N = 32, 64, 128 or 256 (the default) mask positions\n"
+     "               beam:order=stream  fragments in primitive order, no A-buffer: a pixel's state is all there is; "
+     "pixels\n"
+     "                 with more visible surfaces than layers take further passes over the geometry\n"
+     "               beam:order=stream,bits=N,layers=5|1,passes=P  N = 128 positions and 5 layers: 80 bytes; N = 64 "
+     "and\n"
+     "                 1 layer: 32 bytes; at most P passes\n"
      "               beam:rules=paper the published rules: 32-bit mask, depth slab\n"
      "               beam:rules=paper,mask=exact  its masks from edge tests in place of the 64 x 64 table\n"
      "               beam:rules=paper,sort=nearest,tiny=3,overlap=over|add|transition,local=keep,fuzzy=mix,\n"

@@ -13,6 +13,9 @@ const char* const kSpecs[] = {
     "beam:rules=paper,mask=exact",
     "beam:rules=paper,sort=nearest,tiny=3,overlap=transition,local=keep,fuzzy=mix,extents=slab,"
     "slab=visible,plane=visible,thickness=containing",
+    "beam:order=stream",
+    "beam:order=stream,bits=64,layers=1",
+    "beam:order=stream,passes=1",
     "alpha",
     "msaa:1",
     "msaa:8",
@@ -26,24 +29,6 @@ const char* const kSpecs[] = {
     "taa:8",
     "dvm",
     "dvm:material=draw"};
-const char* const kSpecs[] = {"beam",
-                              "beam:rules=paper,mask=exact",
-                              "beam:order=stream",
-                              "beam:order=stream,bits=64,layers=1",
-                              "beam:order=stream,passes=1",
-                              "alpha",
-                              "msaa:1",
-                              "msaa:8",
-                              "msaa:64",
-                              "reference",
-                              "msaa:8,prepass",
-                              "acaa:8",
-                              "acaa:64,double=stencil,color=unorm8",
-                              "deferred",
-                              "visibility",
-                              "taa:8",
-                              "dvm",
-                              "dvm:material=draw"};
 
 void expect_same(const FrameResult& a, const FrameResult& b, const std::string& what) {
   EXPECT_EQ(a.image.rgba, b.image.rgba) << what;
