@@ -10,6 +10,7 @@
 #include "pipeline/stream.h"
 #include "pipeline/taa.h"
 #include "pipeline/visibility.h"
+#include "pipeline/z3.h"
 
 namespace beampipe {
 namespace {
@@ -68,6 +69,17 @@ Technique make_alpha(Spec& spec) {
   options.mask = MaskSource::none;
   options.sort = SortKey::centroid;
   return {spec.text(), beam_framebuffer(options), 0, bind_options(render_beam, options)};
+}
+
+Technique make_z3(Spec& spec) {
+  struct Shape {
+    int positions, layers;
+  };
+  Z3Options options;
+  const auto shape = spec.choice<Shape>("shape", {{"32x3", {32, 3}}, {"32x2", {32, 2}}, {"128x3", {128, 3}}});
+  options.positions = shape.positions, options.layers = shape.layers;
+  options.merge = spec.choice<LayerMerge>("merge", {{"depth", LayerMerge::depth}, {"color", LayerMerge::color}});
+  return {spec.text(), z3_framebuffer(options), 0, bind_options(render_z3, options)};
 }
 
 Technique make_msaa(Spec& spec) {
@@ -143,6 +155,11 @@ constexpr Kind kKinds[] = {
      "                 extents=slab,slab=visible,plane=visible,thickness=containing  other readings of its rules,\n"
      "                 any of them (docs/accuracy.md)\n",
      make_beam},
+    {"z3", "z3 or z3:shape=32x3|32x2|128x3,merge=depth|color, either or both",
+     "  z3           fragments in primitive order into layers, those too many merged: Z3 (Jouppi and Chang 1999)\n"
+     "               z3:shape=PxL  P mask positions and L layers: 32x3 (the default), 32x2 or 128x3\n"
+     "               z3:merge=depth|color  what is merged: the closest in depth (as published), or in colour\n",
+     make_z3},
     {"alpha", "'alpha' alone: it has no options", "  alpha        the same fragments, plain OVER, no mask\n",
      make_alpha},
     {"msaa",

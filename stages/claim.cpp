@@ -91,9 +91,7 @@ class PixelClaim {
   bool shows(const Fragment& fragment, const Pixel& pixel) const {
     const auto& nearest = positions_.nearest_to(fragment.centroid_u, fragment.centroid_v);
     return std::any_of(nearest.begin(), nearest.end(), [&](std::uint8_t position) {
-      std::uint32_t state = 0;
-      for (std::size_t b = 0; b < Pixel::kStateBits; ++b)
-        state |= (pixel.state[b][position / 32] >> (position % 32) & 1) << b;
+      const std::uint32_t state = pixel.states.at(position);
       if (state == Pixel::kEmpty || state == Pixel::kDeferred) return true;
       if (state == Pixel::kSettled) return false;
       const DepthPlane<float> owner = owner_plane(state - Pixel::kFirstLayer, fragment, pixel);
@@ -124,7 +122,7 @@ OperationCounts nearest_cost() {  // per position
 // What every fragment does to the states: three masks in and out, by words of 32 positions.
 template <std::size_t Words, std::size_t Layers>
 OperationCounts state_cost() {
-  constexpr std::size_t kStateBits = OwnerPixel<Words, Layers>::kStateBits;
+  constexpr std::size_t kStateBits = std::bit_width(OwnerPixel<Words, Layers>::kSettled);
   return count_operations([](OperationCounts& counts) {
     const Counted<std::uint32_t> ones(~0u, counts);
     for (std::size_t w = 0; w < Words; ++w) {

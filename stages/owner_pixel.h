@@ -5,13 +5,12 @@
 // its depth plane, area and colour follow, as in a visibility buffer (Burns and Hunt 2013).
 #pragma once
 
-#include <array>
 #include <bit>
 #include <cstddef>
 #include <cstdint>
 
 #include "simd/plane_order.h"
-#include "stages/wide_mask.h"
+#include "stages/position_states.h"
 
 namespace beampipe {
 
@@ -22,30 +21,15 @@ struct OwnerPixel {
   static constexpr std::uint32_t kFirstLayer = 1;         // this and the next ones: that layer owns it
   static constexpr std::uint32_t kDeferred = Layers + 1;  // its owner was dropped: another pass decides
   static constexpr std::uint32_t kSettled = Layers + 2;   // its owner is in `color`
-  static constexpr std::size_t kStateBits = std::bit_width(kSettled);
-  static constexpr std::uint32_t kSpeck = 1u << 31;  // in owner[0]
+  static constexpr std::uint32_t kSpeck = 1u << 31;       // in owner[0]
 
-  std::uint32_t state[kStateBits][Words];
+  PositionStates<Words, std::bit_width(kSettled)> states;
   std::uint32_t owner[Layers];  // below 2^31; kSpeck: something that covers no position may be seen in this pass
   float dropped;                // at no deferred position was there anything nearer; kNoDepth when none is
   std::uint16_t color[4];       // fp16 RGB of what is settled, times its area, and the area
 
-  WideMask positions_in(std::uint32_t which) const {
-    WideMask mask;
-    for (std::size_t w = 0; w < Words; ++w) {
-      std::uint32_t word = ~0u;
-      for (std::size_t b = 0; b < kStateBits; ++b) word &= which >> b & 1 ? state[b][w] : ~state[b][w];
-      mask.words[w] = word;
-    }
-    return mask;
-  }
-
-  void put(const WideMask& positions, std::uint32_t into) {
-    for (std::size_t b = 0; b < kStateBits; ++b)
-      for (std::size_t w = 0; w < Words; ++w)
-        state[b][w] = into >> b & 1 ? state[b][w] | positions.words[w] : state[b][w] & ~positions.words[w];
-  }
-
+  WideMask positions_in(std::uint32_t state) const { return states.positions_in(state); }
+  void put(const WideMask& positions, std::uint32_t into) { states.put(positions, into); }
   std::uint32_t triangle(std::size_t layer) const { return owner[layer] & ~kSpeck; }
   void set_triangle(std::size_t layer, std::uint32_t index) { owner[layer] = (owner[layer] & kSpeck) | index; }
 };

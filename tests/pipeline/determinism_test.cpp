@@ -16,6 +16,8 @@ const char* const kSpecs[] = {
     "beam:order=stream",
     "beam:order=stream,bits=64,layers=1",
     "beam:order=stream,passes=1",
+    "z3",
+    "z3:shape=128x3,merge=color",
     "alpha",
     "msaa:1",
     "msaa:8",

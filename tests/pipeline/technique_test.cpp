@@ -13,6 +13,15 @@ TEST(Technique, FramebufferBytesAreThePublishedOnes) {
   EXPECT_EQ(parse_technique("alpha").framebuffer_bytes_per_pixel(), 10u);
 }
 
+TEST(Technique, StreamingStatesFitTheirBudgets) {
+  EXPECT_EQ(parse_technique("beam:order=stream").framebuffer_bytes_per_pixel(), 80u);  // an 8x MSAA buffer
+  EXPECT_EQ(parse_technique("beam:order=stream,bits=64,layers=1").framebuffer_bytes_per_pixel(), 32u);
+  EXPECT_EQ(parse_technique("beam:order=stream,bits=256,layers=1").framebuffer_bytes_per_pixel(), 80u);
+  EXPECT_EQ(parse_technique("z3").framebuffer_bytes_per_pixel(), 50u);
+  EXPECT_EQ(parse_technique("z3:shape=32x2").framebuffer_bytes_per_pixel(), 36u);
+  EXPECT_EQ(parse_technique("z3:shape=128x3").framebuffer_bytes_per_pixel(), 74u);
+}
+
 TEST(Technique, EveryMsaaRateOfTheRangeIsKnown) {
   for (std::uint32_t samples = 1; samples <= 1024; samples *= 2) {
     const std::string spec = std::string("msaa:").append(std::to_string(samples));
@@ -35,6 +44,11 @@ TEST(Technique, WrongSpecsSayWhatWasExpected) {
                            "beam:mask=fast",
                            "beam:rules=paper,bits=64",
                            "beam:bits=64,mask=exact",
+                           "beam:order=primitive",
+                           "beam:order=stream,layers=2",
+                           "beam:order=stream,passes=0",
+                           "beam:rules=paper,order=stream",
+                           "z3:layers=3",
                            "beam:fuzzy=mix",
                            "beam:rules=paper,tiny=2",
                            "beam:rules=paper,overlap=none",

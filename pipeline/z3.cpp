@@ -1,0 +1,67 @@
+#include "pipeline/z3.h"
+
+#include <stdexcept>
+#include <string>
+
+#include "pipeline/batches.h"
+#include "pipeline/tiles.h"
+#include "stages/conservative_raster.h"
+#include "stages/shade.h"
+#include "stages/vertex_setup.h"
+
+namespace beampipe {
+namespace {
+
+constexpr int kTileSize = 32;  // px
+
+template <std::size_t Words, std::size_t Layers>
+FrameResult render_shape(const Trace& trace, const Frame& frame, const Z3Options& z3, const RunOptions& run) {
+  StageCounters setup;
+  const SetupTriangles triangles = vertex_setup(trace, frame, setup);
+  const std::vector<glm::vec3> colors = shade_triangles(triangles, frame.light_direction);
+  const PositionSet positions(cell_patterns(z3.positions));
+  const BeamFragmentOptions options{MaskSource::exact, positions.patterns, nullptr, 4 + 4 * Words + 12, false};
+
+  return render_tiles(frame, triangles, setup, kTileSize, run, [&](const Tile& tile, const TriangleList& list) {
+    StageCounters raster{"conservative_raster"}, fragment{"beam_fragment"}, shading{"shade"}, composition{"compose"},
+        resolving{"resolve"};
+    std::vector<Z3Pixel<Words, Layers>> pixels(tile.pixels());
+    std::vector<float> counts(tile.pixels());
+    std::vector<PixelTriangle> pairs;
+    std::vector<Fragment> fragments;
+    for_each_batch(list, [&](const TriangleList& batch) {
+      pairs.clear(), fragments.clear();
+      conservative_raster(triangles, batch, tile, raster, pairs);
+      beam_fragment(triangles, pairs, tile, options, fragment, fragments);
+      shade(colors, fragments, shading);
+      for (const Fragment& item : fragments) ++counts[item.pixel];
+      compose_z3(fragments, positions, z3.merge, composition, pixels);
+    });
+    return TileResult{resolve(z3_colors(pixels), frame.background, sizeof pixels[0], resolving),
+                      {{"fragments", std::move(counts)}},
+                      {raster, fragment, shading, composition, resolving}};
+  });
+}
+
+}  // namespace
+
+FrameResult render_z3(const Trace& trace, const Frame& frame, const Z3Options& z3, const RunOptions& run) {
+#define BEAMPIPE_RENDER(words, shape_layers)                   \
+  if (z3.positions == 32 * words && z3.layers == shape_layers) \
+    return render_shape<words, shape_layers>(trace, frame, z3, run);
+  BEAMPIPE_Z3_PIXELS(BEAMPIPE_RENDER)
+#undef BEAMPIPE_RENDER
+  throw std::invalid_argument("no pixel of this shape: " + std::to_string(z3.positions) + " positions, " +
+                              std::to_string(z3.layers) + " layers");
+}
+
+std::vector<Surface> z3_framebuffer(const Z3Options& z3) {
+  const auto words = static_cast<std::uint32_t>(z3.positions / 32), layers = static_cast<std::uint32_t>(z3.layers);
+  const std::string times = " x " + std::to_string(layers);
+  return {{"owner_map", "R32UI x " + std::to_string(2 * words), 8 * words},
+          {"depth", "R32F" + times, 4 * layers},
+          {"slopes", "RG16BF" + times, 4 * layers},
+          {"color", "RGB16F" + times, 6 * layers}};
+}
+
+}  // namespace beampipe

@@ -1,0 +1,163 @@
+#include "stages/compose_z3.h"
+
+#include <half.h>
+
+#include <algorithm>
+#include <array>
+#include <bit>
+#include <limits>
+
+#include "simd/plane_order.h"
+#include "stages/counting.h"
+
+namespace beampipe {
+namespace {
+
+std::uint16_t upper_half(float value) { return static_cast<std::uint16_t>(std::bit_cast<std::uint32_t>(value) >> 16); }
+float from_upper_half(std::uint16_t bits) { return std::bit_cast<float>(std::uint32_t{bits} << 16); }
+
+float from_half(std::uint16_t bits) {
+  half value;
+  value.setBits(bits);
+  return value;
+}
+std::uint16_t to_half(float value) { return half(std::min(value, static_cast<float>(HALF_MAX))).bits(); }
+
+// A layer as it is worked on.
+struct Layer {
+  DepthPlane<float> plane;
+  glm::vec3 color;
+  WideMask positions;
+
+  float count() const { return static_cast<float>(positions.count()); }
+};
+
+Z3Layer packed(const Layer& layer) {
+  return {layer.plane.z,
+          {upper_half(layer.plane.dzdu), upper_half(layer.plane.dzdv)},
+          {to_half(layer.color.r), to_half(layer.color.g), to_half(layer.color.b)}};
+}
+
+Layer unpacked(const Z3Layer& layer, const WideMask& positions) {
+  return {{layer.z, from_upper_half(layer.slopes[0]), from_upper_half(layer.slopes[1])},
+          {from_half(layer.color[0]), from_half(layer.color[1]), from_half(layer.color[2])},
+          positions};
+}
+
+float merge_loss(const Layer& a, const Layer& b, LayerMerge merge) {
+  if (merge == LayerMerge::depth) return std::abs(a.plane.z - b.plane.z);
+  const glm::vec3 difference = a.color - b.color;
+  return glm::dot(difference, difference) * a.count() * b.count() / (a.count() + b.count());
+}
+
+Layer merged(const Layer& a, const Layer& b) {
+  const float share = a.count() / (a.count() + b.count()), rest = 1 - share;
+  return {{share * a.plane.z + rest * b.plane.z, share * a.plane.dzdu + rest * b.plane.dzdu,
+           share * a.plane.dzdv + rest * b.plane.dzdv},
+          share * a.color + rest * b.color,
+          a.positions | b.positions};
+}
+
+template <std::size_t Words, std::size_t Layers>
+class PixelLayers {
+ public:
+  PixelLayers(const PositionSet& positions, LayerMerge merge) : patterns_(positions.patterns), merge_(merge) {}
+
+  // Returns whether the fragment took any position.
+  bool add(const Fragment& fragment, Z3Pixel<Words, Layers>& pixel) {
+    std::array<Layer, Layers + 1> layers;
+    std::size_t used = 0;
+    Layer arriving = unpacked(packed({fragment.plane, fragment.color / fragment.alpha, {}}), fragment.mask);
+    for (std::uint32_t k = 0; k < Layers; ++k) {
+      Layer layer = unpacked(pixel.layers[k], pixel.owners.positions_in(k + 1));
+      const WideMask contested = layer.positions & fragment.mask;
+      if (!contested.none()) {
+        WideMask nearer;
+        nearer_positions(arriving.plane, layer.plane, patterns_.data(), Words, nearer.words.data());
+        ++planes_compared;
+        arriving.positions = without(arriving.positions, without(contested, nearer));
+        layer.positions = without(layer.positions, contested & nearer);
+      }
+      if (!layer.positions.none()) layers[used++] = layer;
+    }
+    if (arriving.positions.none()) return false;
+    layers[used++] = arriving;
+    if (used > Layers) merge_two(layers), --used;
+    for (std::uint32_t k = 0; k < used; ++k) {
+      pixel.layers[k] = packed(layers[k]);
+      pixel.owners.put(layers[k].positions, k + 1);
+    }
+    return true;
+  }
+
+  std::uint64_t planes_compared = 0, merges = 0;
+
+ private:
+  void merge_two(std::array<Layer, Layers + 1>& layers) {
+    ++merges;
+    std::size_t first = 0, second = 1;
+    float least = std::numeric_limits<float>::infinity();
+    for (std::size_t i = 0; i < layers.size(); ++i)
+      for (std::size_t j = i + 1; j < layers.size(); ++j)
+        if (const float loss = merge_loss(layers[i], layers[j], merge_); loss < least) {
+          least = loss;
+          first = i, second = j;
+        }
+    layers[first] = merged(layers[first], layers[second]);
+    std::swap(layers[second], layers.back());
+  }
+
+  const std::vector<SamplePattern>& patterns_;
+  LayerMerge merge_;
+};
+
+OperationCounts nearer_cost() {  // per position
+  return count_operations([](OperationCounts& counts) {
+    const Counted<float> one(1.0f, counts);
+    const DepthPlane<Counted<float>> plane{one, one, one};
+    nearer_scalar(plane, plane, one, one);
+  });
+}
+
+}  // namespace
+
+template <std::size_t Words, std::size_t Layers>
+void compose_z3(const std::vector<Fragment>& fragments, const PositionSet& positions, LayerMerge merge,
+                StageCounters& counters, std::vector<Z3Pixel<Words, Layers>>& pixels) {
+  PixelLayers<Words, Layers> layers(positions, merge);
+  std::uint64_t taken = 0;
+  for (const Fragment& fragment : fragments) taken += layers.add(fragment, pixels[fragment.pixel]);
+  constexpr std::uint64_t kFragmentBytes = 4 + 4 * Words + 12 + 6;  // pixel, mask, depth plane, colour
+  counters.items_in += fragments.size();
+  counters.items_out += taken;
+  counters.ops += nearer_cost() * (32 * Words * layers.planes_compared);
+  counters.bytes_read += fragments.size() * (kFragmentBytes + sizeof(Z3Pixel<Words, Layers>));
+  counters.bytes_written += taken * sizeof(Z3Pixel<Words, Layers>);
+  counters.lanes_used += taken;
+  counters.lanes_issued += fragments.size();
+}
+
+template <std::size_t Words, std::size_t Layers>
+std::vector<PixelColor> z3_colors(const std::vector<Z3Pixel<Words, Layers>>& pixels) {
+  std::vector<PixelColor> colors;
+  for (const Z3Pixel<Words, Layers>& pixel : pixels) {
+    PixelColor sum{0, glm::vec3(0.0f)};
+    for (std::uint32_t k = 0; k < Layers; ++k) {
+      const Layer layer = unpacked(pixel.layers[k], pixel.owners.positions_in(k + 1));
+      const float share = layer.count() / (32 * Words);
+      sum.alpha += share;
+      sum.color += share * layer.color;
+    }
+    colors.push_back(sum);
+  }
+  return colors;
+}
+
+#define BEAMPIPE_Z3(words, layers)                                                                       \
+  template void compose_z3(const std::vector<Fragment>&, const PositionSet&, LayerMerge, StageCounters&, \
+                           std::vector<Z3Pixel<words, layers>>&);                                        \
+  template std::vector<PixelColor> z3_colors(const std::vector<Z3Pixel<words, layers>>&);
+BEAMPIPE_Z3_PIXELS(BEAMPIPE_Z3)
+#undef BEAMPIPE_Z3
+
+}  // namespace beampipe
