@@ -16,6 +16,7 @@ struct UsageError : std::runtime_error {
 
 void add_run_command(CLI::App& app, InterruptGate& gate);
 void add_compare_command(CLI::App& app, InterruptGate& gate);
+void add_report_command(CLI::App& app, InterruptGate& gate);
 void add_plot_command(CLI::App& app, InterruptGate& gate);
 void add_diff_command(CLI::App& app);
 void add_info_command(CLI::App& app);

@@ -132,10 +132,14 @@ std::string encode_png(const Image& image) {
   for (std::size_t i = 0; i < pixels; ++i) {
     for (std::size_t c = 0; c < 3; ++c) rgb[3 * i + c] = srgb_byte(image.rgba[4 * i + c]);
   }
+  return encode_png(image.width, image.height, rgb);
+}
+
+std::string encode_png(std::uint32_t width, std::uint32_t height, const std::vector<std::uint8_t>& rgb) {
   png_image png{};
   png.version = PNG_IMAGE_VERSION;
-  png.width = image.width;
-  png.height = image.height;
+  png.width = width;
+  png.height = height;
   png.format = PNG_FORMAT_RGB;
   png_alloc_size_t size = PNG_IMAGE_PNG_SIZE_MAX(png);
   std::string bytes(size, '\0');

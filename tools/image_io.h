@@ -35,6 +35,9 @@ std::string encode_exr(const Planes& planes);
 // The bytes of an 8-bit RGB PNG file for looking at: clamped to [0, 1], then the sRGB transfer curve; NaN is black.
 std::string encode_png(const Image& image);
 
+// The bytes of an 8-bit RGB PNG file: `rgb` has three bytes per pixel, row 0 on top, and is stored as it is.
+std::string encode_png(std::uint32_t width, std::uint32_t height, const std::vector<std::uint8_t>& rgb);
+
 // Reads an EXR with channels R, G, B (any type) and, where there is one, A; else A = 1. Throws ImageError when it is
 // broken, lacks a channel, is larger than 16384 on a side, or its data window is not the whole picture from (0, 0).
 Image read_exr(const std::filesystem::path& file);

@@ -6,7 +6,9 @@ packages=(
   g++ cmake ninja-build
   libglm-dev libopenexr-dev libimath-dev libhwy-dev libtbb-dev libpng-dev libtinyobjloader-dev
   libcli11-dev nlohmann-json3-dev
-  gnuplot-nox  # run by `beampipe plot`
+  gnuplot-nox                       # draws the plots, when the program runs
+  node-d3                           # draws the plots of the report page
+  chromium chromium-driver python3  # test the report page
   libgtest-dev
 )
 

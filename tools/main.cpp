@@ -18,6 +18,7 @@ constexpr const char* kExamples = R"(Examples:
   beampipe compare fence.json -t beam msaa:8 -o out
   beampipe make model.obj -o model.json        (your own model, with a camera that frames it)
   beampipe run model.json -t beam -o out
+  beampipe report out                          (a page of it all, to open in a browser)
   beampipe plot out -o frontier.svg
   beampipe diff out/beam/frame_0000.exr out/reference/frame_0000.exr
 `beampipe COMMAND --help` tells more. Exit codes: 0 done, 1 could not be done, 2 wrong usage, 130 interrupted.)";
@@ -41,6 +42,7 @@ int run(int argc, char** argv, beampipe::InterruptGate& gate) {
   app.footer(kExamples);
   beampipe::add_run_command(app, gate);
   beampipe::add_compare_command(app, gate);
+  beampipe::add_report_command(app, gate);
   beampipe::add_plot_command(app, gate);
   beampipe::add_diff_command(app);
   beampipe::add_info_command(app);

@@ -3,7 +3,6 @@
 #include <sys/wait.h>
 
 #include <algorithm>
-#include <array>
 #include <cmath>
 #include <cstdio>
 #include <filesystem>
@@ -26,15 +25,18 @@ constexpr double kCharacterWidth = 6.9;                                        /
 constexpr double kPointRadius = 5;                                             // px
 constexpr int kPngScale = 2;                                                   // PNG pixels per px
 
-// Tableau's ten colours, which most eyes can tell apart.
-constexpr std::array<const char*, 10> kColors = {"#4e79a7", "#f28e2b", "#e15759", "#76b7b2", "#59a14f",
-                                                 "#edc948", "#b07aa1", "#9c755f", "#ff9da7", "#79706e"};
-
 // In single quotes gnuplot takes everything as it is.
 std::string quoted(const std::string& text) {
   std::string out = "'";
   for (const char c : text) out += c == '\'' ? "''" : static_cast<unsigned char>(c) < 0x20 ? " " : std::string(1, c);
   return out + "'";
+}
+
+// A field of a data block; what would end it is left out.
+std::string quoted_word(const std::string& text) {
+  std::string out = "\"";
+  for (const char c : text) out += c == '"' || c == '\\' || static_cast<unsigned char>(c) < 0x20 ? ' ' : c;
+  return out + "\"";
 }
 
 // A logarithmic axis with some room beside the outermost values.
@@ -101,19 +103,30 @@ void write_labels(std::ostream& script, const ScatterPlot& plot, const LogRange&
              << (label.y + std::copysign(std::abs(label.y - point.y) - dy, point.y - label.y)) / task.height
              << " nohead back linecolor '#a0a0a0'\n";
     }
-    script << "set label " << quoted(labels[i]) << " at graph " << label.x / task.width << "," << label.y / task.height
-           << " center\n";
+    // Beside its point a label starts or ends there, however wide the font makes it.
+    const int side = label.x > point.x + 1 ? 1 : label.x < point.x - 1 ? -1 : 0;
+    script << "set label " << quoted(labels[i]) << " at graph "
+           << (label.x - side * task.label_widths[i] / 2) / task.width << "," << label.y / task.height << " "
+           << (side > 0   ? "left"
+               : side < 0 ? "right"
+                          : "center")
+           << "\n";
   }
 }
 
+// Where the axes are, and how everything around them looks. `right`: where they end, of the picture.
+void write_frame(std::ostream& script, const std::string& title, const std::string& y_label, double right) {
+  script << "set lmargin at screen " << kLeft << "\nset rmargin at screen " << right << "\nset bmargin at screen "
+         << kBottom << "\nset tmargin at screen " << kTop << "\nset title " << quoted(title) << "\nset ylabel "
+         << quoted(y_label) << " offset 1,0\nset border 3 linecolor '#404040'\n"
+         << "set grid linetype 1 linecolor '#e4e4e4'\n";
+}
+
 void write_axes(std::ostream& script, const ScatterPlot& plot, const LogRange& x, const LogRange& y) {
-  script << "set lmargin at screen " << kLeft << "\nset rmargin at screen " << kRight << "\nset bmargin at screen "
-         << kBottom << "\nset tmargin at screen " << kTop << "\n"
-         << "set title " << quoted(plot.title) << "\nset xlabel " << quoted(plot.x_label) << "\nset ylabel "
-         << quoted(plot.y_label) << " offset 1,0\nset logscale xy\nset xrange [" << x.low << ":" << x.high
+  write_frame(script, plot.title, plot.y_label, kRight);
+  script << "set xlabel " << quoted(plot.x_label) << "\nset logscale xy\nset xrange [" << x.low << ":" << x.high
          << "]\nset yrange [" << y.low << ":" << y.high << "]\nset xtics nomirror (" << tics(x)
-         << ")\nset ytics nomirror (" << tics(y) << ")\n"
-         << "set border 3 linecolor '#404040'\nset grid linetype 1 linecolor '#e4e4e4'\nset key off\n";
+         << ")\nset ytics nomirror (" << tics(y) << ")\nset key off\n";
 }
 
 // One data block per series and kind of bound, so that each can have its marker.
@@ -131,7 +144,7 @@ void write_series(std::ostream& script, const ScatterPlot& plot) {
   };
   for (std::size_t i = 0; i < plot.series.size(); ++i) {
     const PlotSeries& series = plot.series[i];
-    const std::string color = " linecolor " + quoted(kColors[i % kColors.size()]);
+    const std::string color = " linecolor " + quoted(kPlotColors[i % kPlotColors.size()]);
     if (series.line) add(series.points, "lines linewidth 2" + color);
     for (const auto bound : {PlotPoint::Bound::none, PlotPoint::Bound::lower, PlotPoint::Bound::upper}) {
       std::vector<PlotPoint> points = series.points;
@@ -204,6 +217,30 @@ std::string draw(const ScatterPlot& plot, PlotFormat format) {
   write_axes(script, plot, x, y);
   write_labels(script, plot, x, y);
   write_series(script, plot);
+  return run_gnuplot(script.str());
+}
+
+std::string draw(const BarPlot& plot, PlotFormat format) {
+  constexpr double kBarsRight = 0.76, kBarsBottom = 0.25;  // room for the key, and for names on end
+  std::ostringstream script;
+  script.precision(9);
+  script << terminal(format);
+  write_frame(script, plot.title, plot.y_label, kBarsRight);
+  script << "set bmargin at screen " << kBarsBottom << "\nset style data histograms\nset style histogram rowstacked\n"
+         << "set style fill solid border linecolor '#ffffff'\nset boxwidth 0.75\nset key at screen 0.99, " << kTop
+         << " right top Left reverse invert samplen 1 width -2\nset yrange [0:*]\nset ytics nomirror\n"
+         << "set xtics nomirror rotate by 40 right scale 0\nset grid noxtics ytics\n$bars << END\n";
+  for (std::size_t i = 0; i < plot.categories.size(); ++i) {
+    script << quoted_word(plot.categories[i]);
+    for (const BarPlot::Part& part : plot.parts) script << " " << part.values[i];
+    script << "\n";
+  }
+  script << "END\n";
+  for (std::size_t i = 0; i < plot.parts.size(); ++i) {
+    script << (i > 0 ? ", " : "plot ") << "$bars using " << i + 2 << ":xtic(1) title " << quoted(plot.parts[i].name)
+           << " linecolor " << quoted(kPlotColors[i % kPlotColors.size()]);
+  }
+  script << "\n";
   return run_gnuplot(script.str());
 }
 

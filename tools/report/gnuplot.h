@@ -11,5 +11,6 @@ enum class PlotFormat { svg, png };
 
 // The bytes of an SVG or PNG file, on white. Throws std::runtime_error, one line, when gnuplot cannot be run or fails.
 std::string draw(const ScatterPlot& plot, PlotFormat format);
+std::string draw(const BarPlot& plot, PlotFormat format);
 
 }  // namespace beampipe

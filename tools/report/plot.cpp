@@ -54,6 +54,10 @@ std::vector<LadderRung> longest_ladder(const std::vector<ReportFile>& reports) {
 
 }  // namespace
 
+const std::array<const char*, 20> kPlotColors = {
+    "#4e79a7", "#f28e2b", "#e15759", "#76b7b2", "#59a14f", "#edc948", "#b07aa1", "#9c755f", "#ff9da7", "#79706e",
+    "#a0cbe8", "#ffbe7d", "#ffb6b4", "#a8dcd9", "#8cd17d", "#f7e5a1", "#d4a6c8", "#d7b5a6", "#fcd9de", "#bab0ac"};
+
 ScatterPlot frontier_plot(const std::vector<ReportFile>& reports) {
   ScatterPlot plot{"frontier",
                    "Memory and accuracy: " + scenes_text(reports),

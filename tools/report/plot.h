@@ -1,6 +1,8 @@
 // Plots as data: gnuplot draws them into files, JavaScript draws them on the report page.
 #pragma once
 
+#include <array>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -28,11 +30,32 @@ struct ScatterPlot {
   std::vector<std::string> notes;  // what could not be drawn, one line each
 };
 
+// Bars of stacked parts, one bar per category.
+struct BarPlot {
+  struct Part {
+    std::string name;
+    std::vector<double> values;  // beside categories
+  };
+  std::string name, title, y_label;
+  std::vector<std::string> categories;
+  std::vector<Part> parts;
+};
+
+// Colours of series and parts, in order: Tableau's ten, which most eyes can tell apart, then their light twins.
+extern const std::array<const char*, 20> kPlotColors;
+
 // Bytes of the framebuffer per pixel against EMR; MSAA is a line through the rungs of the ladder. Throws ReportError
 // when no technique has an EMR.
 ScatterPlot frontier_plot(const std::vector<ReportFile>& reports);
 
 // Milliseconds against RMSE. Throws ReportError when no technique has an error.
 ScatterPlot speed_plot(const std::vector<ReportFile>& reports);
+
+// Megabytes per frame by stage, one bar per technique. `key`: "logical_bytes", "sector_bytes" or "dram_bytes"; nothing
+// when the report's stages do not have it.
+std::optional<BarPlot> bytes_plot(const ReportFile& report, const std::string& key);
+
+// Operations per logical byte against operations per frame, a point per stage of a technique.
+ScatterPlot roofline_plot(const ReportFile& report, const std::string& technique);
 
 }  // namespace beampipe

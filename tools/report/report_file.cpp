@@ -20,21 +20,6 @@ std::string read_bytes(const std::filesystem::path& file) {
   return bytes;
 }
 
-TechniqueSummary read_summary(const Json& result) {
-  TechniqueSummary summary;
-  summary.spec = result.at("technique");
-  summary.bytes_per_pixel = result.at("framebuffer_bytes_per_pixel");
-  std::vector<double> medians;
-  for (const Json& frame : result.at("frames")) medians.push_back(frame.at("wall_ms").at("median"));
-  summary.wall_ms = wall_time(std::move(medians)).median;
-  if (result.contains("error")) summary.rmse = result["error"].at("rmse");
-  if (result.contains("equivalent_msaa")) {
-    summary.emr = {result["equivalent_msaa"], result.value("equivalent_msaa_is_lower_bound", false),
-                   result.value("equivalent_msaa_is_upper_bound", false)};
-  }
-  return summary;
-}
-
 // Of positive numbers; 0 when one of them is 0; to the last bit when they are all the same.
 double geometric_mean(const std::vector<double>& values) {
   if (std::count(values.begin(), values.end(), values.front()) == std::ssize(values)) return values.front();
@@ -71,7 +56,65 @@ TechniqueSummary mean_summary(const std::vector<TechniqueSummary>& of_one_techni
   return mean;
 }
 
+// Adds the numbers of `other` to those at the same places in `sum`.
+void add_numbers(Json& sum, const Json& other) {
+  if (sum.is_null()) sum = Json::object();
+  for (const auto& [key, value] : other.items()) {
+    if (value.is_object()) {
+      add_numbers(sum[key], value);
+    } else if (value.is_number_unsigned()) {
+      sum[key] = sum.value(key, std::uint64_t{0}) + value.get<std::uint64_t>();
+    } else if (value.is_number()) {
+      sum[key] = sum.value(key, 0.0) + value.get<double>();
+    } else {
+      sum[key] = value;
+    }
+  }
+}
+
+void add_derived(Json& stage) {
+  const std::uint64_t bytes =
+      stage.at("bytes_read").get<std::uint64_t>() + stage.at("bytes_written").get<std::uint64_t>();
+  const double issued = stage.value("lanes_issued", 0.0);
+  stage["logical_bytes"] = bytes;
+  if (bytes > 0) stage["ops_per_byte"] = stage.at("ops").at("total").get<double>() / static_cast<double>(bytes);
+  if (issued > 0) stage["lane_use"] = stage.value("lanes_used", 0.0) / issued;
+}
+
 }  // namespace
+
+TechniqueSummary read_summary(const Json& result) {
+  TechniqueSummary summary;
+  summary.spec = result.at("technique");
+  summary.bytes_per_pixel = result.at("framebuffer_bytes_per_pixel");
+  std::vector<double> medians;
+  for (const Json& frame : result.at("frames")) medians.push_back(frame.at("wall_ms").at("median"));
+  summary.wall_ms = wall_time(std::move(medians)).median;
+  if (result.contains("error")) summary.rmse = result["error"].at("rmse");
+  if (result.contains("equivalent_msaa")) {
+    summary.emr = {result["equivalent_msaa"], result.value("equivalent_msaa_is_lower_bound", false),
+                   result.value("equivalent_msaa_is_upper_bound", false)};
+  }
+  return summary;
+}
+
+std::vector<Json> stage_records(const ReportFile& report) {
+  std::vector<Json> records;
+  for (const Json& result : report.json.at("results")) {
+    const Json& frames = result.at("frames");
+    std::vector<Json> stages(frames.front().at("stages").size());
+    for (const Json& frame : frames) {
+      for (std::size_t i = 0; i < stages.size(); ++i) add_numbers(stages[i], frame.at("stages").at(i));
+    }
+    for (Json& stage : stages) {
+      add_derived(stage);
+      stage["technique"] = result.at("technique");
+      stage["frames"] = frames.size();
+      records.push_back(std::move(stage));
+    }
+  }
+  return records;
+}
 
 ReportFile read_report(const std::filesystem::path& folder) {
   const std::filesystem::path file = folder / "report.json";

@@ -34,6 +34,14 @@ struct ReportFile {
   std::vector<LadderRung> msaa_ladder;       // empty after `run`
 };
 
+// Of one member of the report's "results". Throws nlohmann's exceptions when it is not one.
+TechniqueSummary read_summary(const nlohmann::ordered_json& result);
+
+// For each technique and stage, in order: what the frames' "stages" say, summed over the frames, and "technique",
+// "frames" (how many), "logical_bytes" (read and written), "ops_per_byte" (of these) and "lane_use" (the last two where
+// there is something to divide by).
+std::vector<nlohmann::ordered_json> stage_records(const ReportFile& report);
+
 // Reads FOLDER/report.json. Throws ReportError.
 ReportFile read_report(const std::filesystem::path& folder);
 

@@ -1,0 +1,281 @@
+#!/usr/bin/env python3
+"""The report page in a browser: headless Chromium, driven by chromedriver.
+
+usage: report_page_test.py BEAMPIPE CHROMIUM CHROMEDRIVER
+"""
+
+import csv
+import json
+import pathlib
+import re
+import subprocess
+import sys
+import tempfile
+import unittest
+import urllib.request
+
+BEAMPIPE, CHROMIUM, CHROMEDRIVER = sys.argv[1:4]
+TECHNIQUES = ["beam", "alpha", "msaa:1", "msaa:8"]
+KEYS = {"left": "\ue012", "right": "\ue014", "end": "\ue010", "home": "\ue011"}  # WebDriver's names of keys
+
+
+class Browser:
+    """One window, over the WebDriver protocol."""
+
+    def __init__(self):
+        self.driver = subprocess.Popen([CHROMEDRIVER, "--port=0"], stdout=subprocess.PIPE, text=True)
+        for line in self.driver.stdout:
+            if started := re.search(r"started successfully on port (\d+)", line):
+                self.url = f"http://127.0.0.1:{started[1]}"
+                break
+        arguments = ["--headless=new", "--no-sandbox", "--disable-gpu", "--disable-dev-shm-usage"]
+        options = {"goog:chromeOptions": {"binary": CHROMIUM, "args": arguments},
+                   "goog:loggingPrefs": {"browser": "ALL"}}
+        session = self.send("POST", "/session", {"capabilities": {"alwaysMatch": options}})
+        self.url += "/session/" + session["sessionId"]
+
+    def send(self, method, path, body=None):
+        data = None if body is None else json.dumps(body).encode()
+        request = urllib.request.Request(self.url + path, data, {"Content-Type": "application/json"}, method=method)
+        with urllib.request.build_opener(urllib.request.ProxyHandler({})).open(request, timeout=60) as answer:
+            return json.load(answer)["value"]
+
+    def close(self):
+        try:
+            self.send("DELETE", "")
+        finally:
+            self.driver.terminate()
+            self.driver.wait()
+            self.driver.stdout.close()
+
+    def open(self, file):
+        self.send("POST", "/url", {"url": file.as_uri()})
+        self.wait_until("return document.documentElement.dataset.ready === 'yes'")
+
+    def run(self, script, *arguments):
+        return self.send("POST", "/execute/sync", {"script": script, "args": arguments})
+
+    def wait_until(self, script):
+        done = self.send("POST", "/execute/async", {"args": [], "script": """
+            const done = arguments[arguments.length - 1], holds = () => { %s }, end = performance.now() + 20000;
+            (function look() { holds() || performance.now() > end ? done(holds()) : setTimeout(look, 20); })();""" % script})
+        if not done:
+            raise AssertionError("never came true: " + script)
+
+    def press(self, selector, keys):
+        [element] = self.send("POST", "/elements", {"using": "css selector", "value": selector})[0].values()
+        self.send("POST", f"/element/{element}/value", {"text": keys})
+
+    def click(self, selector):
+        self.run("document.querySelector(arguments[0]).click()", selector)
+
+    def resize(self, width, height):
+        self.send("POST", "/goog/cdp/execute", {"cmd": "Emulation.setDeviceMetricsOverride", "params": {
+            "width": width, "height": height, "deviceScaleFactor": 1, "mobile": width < 500}})
+
+    def color_scheme(self, scheme):
+        self.send("POST", "/goog/cdp/execute", {"cmd": "Emulation.setEmulatedMedia", "params": {
+            "features": [{"name": "prefers-color-scheme", "value": scheme}]}})
+
+    def console(self):
+        return [entry["message"] for entry in self.send("POST", "/se/log", {"type": "browser"})]
+
+
+def table_rows(browser, name):
+    """The rows of a table on the page: {column: (exact value as text, text that is read)}."""
+    rows = browser.run("""
+        return [...document.querySelectorAll(`#table-${arguments[0]} tbody tr`)].map((row) =>
+            [...row.children].map((cell) => [cell.dataset.key, cell.dataset.value, cell.textContent]))""", name)
+    return [{key: (value, text) for key, value, text in row} for row in rows]
+
+
+class ReportPage(unittest.TestCase):
+    @classmethod
+    def setUpClass(cls):
+        cls.scratch = tempfile.TemporaryDirectory()
+        cls.addClassCleanup(cls.scratch.cleanup)
+        cls.folder = pathlib.Path(cls.scratch.name) / "out"
+        trace = str(cls.folder.parent / "fence.json")
+        for arguments in [["make", "fence", "--width", "96", "--height", "54", "--frames", "2", "--orbit", "3", "-o", trace],
+                          ["compare", trace, "-o", str(cls.folder), "--ladder", "1,8", "-t", *TECHNIQUES],
+                          ["report", str(cls.folder)]]:
+            subprocess.run([BEAMPIPE, *arguments], check=True, stdout=subprocess.DEVNULL)
+        cls.report = json.loads((cls.folder / "report.json").read_text())
+        cls.browser = Browser()
+        cls.addClassCleanup(cls.browser.close)
+
+    def setUp(self):
+        self.browser.resize(1280, 900)
+        self.browser.color_scheme("light")
+        self.browser.open(self.folder / "report.html")
+
+    def tearDown(self):
+        self.assertEqual(self.browser.console(), [], "messages in the browser's console")
+
+    def pixel(self, x, y):
+        """The colour of a place on the canvas; x and y are parts of its width and height."""
+        return self.browser.run("""
+            const canvas = document.getElementById("compare"), copy = make("canvas", { width: 1, height: 1 });
+            copy.getContext("2d").drawImage(canvas, -arguments[0] * canvas.width, -arguments[1] * canvas.height);
+            return [...copy.getContext("2d").getImageData(0, 0, 1, 1).data].slice(0, 3)""", x, y)
+
+    def wait_for_frame(self):
+        self.browser.send("POST", "/execute/async", {"args": [], "script": """
+            const done = arguments[0]; requestAnimationFrame(() => requestAnimationFrame(() => done()))"""})
+
+    def test_needs_no_network(self):
+        page = (self.folder / "report.html").read_text()
+        self.assertEqual(re.findall(r"""(?:src|href)\s*=\s*["'](?!#|data:)[^"']*""", page[:page.index("<script>")]), [])
+        self.assertEqual(self.browser.run("return performance.getEntriesByType('resource')"
+                                          ".map((entry) => entry.name).filter((name) => !name.startsWith('data:'))"), [])
+
+    def test_technique_numbers_equal_the_report(self):
+        rows = {row["technique"][0]: row for row in table_rows(self.browser, "techniques")}
+        self.assertEqual(list(rows), TECHNIQUES + ["reference"])
+        for result in self.report["results"]:
+            row = rows[result["technique"]]
+            for key, expected in [("rmse", result["error"]["rmse"]), ("bias", result["error"]["bias"]),
+                                  ("p99", result["error"]["p99"]), ("max", result["error"]["max"]),
+                                  ("emr", result["equivalent_msaa"]),
+                                  ("bytes_per_pixel", result["framebuffer_bytes_per_pixel"]),
+                                  ("a_buffer_peak_bytes", result["a_buffer_peak_bytes"])]:
+                value, text = row[key]
+                self.assertEqual(float(value), expected, key)
+                shown = float(text.replace("\u202f", ""))
+                self.assertLessEqual(abs(shown - expected), 0.0005 * abs(expected), f"{key} is shown as {text}")
+            bound = "at least" if result["equivalent_msaa_is_lower_bound"] else "exact"
+            self.assertEqual(row["emr_bound"][0], bound)
+            times = [frame["wall_ms"]["median"] for frame in result["frames"]]
+            self.assertAlmostEqual(float(row["wall_ms"][0]), sum(times) / 2, 9)
+
+    def test_stage_numbers_equal_the_sums_of_the_report(self):
+        expected = {}
+        for result in self.report["results"]:
+            for frame in result["frames"]:
+                for stage in frame["stages"]:
+                    sums = expected.setdefault((result["technique"], stage["stage"]), {})
+                    for key, value in [("items_in", stage["items_in"]), ("items_out", stage["items_out"]),
+                                       ("ops", stage["ops"]["total"]), ("special", stage["ops"]["special"]),
+                                       ("bytes_read", stage["bytes_read"]), ("bytes_written", stage["bytes_written"])]:
+                        sums[key] = sums.get(key, 0) + value
+        rows = table_rows(self.browser, "stages")
+        self.assertEqual([(row["technique"][0], row["stage"][0]) for row in rows], list(expected))
+        for row, sums in zip(rows, expected.values()):
+            self.assertEqual({key: int(row[key][0]) for key in sums}, sums)
+
+    def test_csv_files_hold_the_same(self):
+        for name in ["techniques", "framebuffer", "stages", "frames"]:
+            with open(self.folder / "tables" / f"{name}.csv", newline="") as file:
+                lines = list(csv.DictReader(file))
+            rows = table_rows(self.browser, name)
+            self.assertEqual(len(lines), len(rows))
+            for line, row in zip(lines, rows):
+                self.assertEqual(list(line), list(row))
+                for key, text in line.items():
+                    value = row[key][0]
+                    self.assertTrue(text == value or float(text) == float(value), f"{name} {key}: {text} and {value}")
+
+    def test_plots_hold_every_technique(self):
+        for name in ["frontier", "speed"]:
+            tips = self.browser.run("""return [...document.querySelectorAll(`[data-plot=${arguments[0]}] .point`)]
+                                           .map((point) => point.dataset.tip.split("\\n")[0])""", name)
+            self.assertEqual(sorted(tips), sorted(TECHNIQUES))
+        self.assertEqual(self.browser.run("""return [...document.querySelectorAll("[data-plot=logical_bytes] .bar")]
+                                                 .map((bar) => bar.dataset.tip.split(":").slice(0, -1).length)""").__len__(),
+                         len(TECHNIQUES))
+        plots = {path.stem for path in (self.folder / "plots").iterdir()}
+        self.assertLessEqual({"frontier", "speed", "logical_bytes", "roofline_beam", "roofline_msaa_8"}, plots)
+        self.assertIn(">msaa:8<", (self.folder / "plots" / "frontier.svg").read_text())
+
+    def test_divider_moves_by_keyboard_and_pointer(self):
+        left, right = [self.pixel(x, 0.5) for x in (0.48, 0.52)]
+        self.browser.press("#divider", KEYS["end"])
+        self.wait_for_frame()
+        all_left = self.pixel(0.25, 0.5), self.pixel(0.75, 0.5)
+        self.browser.press("#divider", KEYS["home"])
+        self.wait_for_frame()
+        all_right = self.pixel(0.25, 0.5), self.pixel(0.75, 0.5)
+        self.assertNotEqual(all_left, all_right)
+        self.browser.press("#divider", KEYS["right"] * 3)
+        self.assertEqual(self.browser.run("return document.getElementById('divider').value"), "3")
+
+        box = self.browser.run("const b = document.getElementById('compare').getBoundingClientRect();"
+                               "return [b.left, b.top + window.scrollY, b.width, b.height]")
+        self.browser.run("window.scrollTo(0, arguments[0])", box[1] - 100)
+        x, y = round(box[0] + 0.003 * box[2]), round(100 + box[3] / 2)
+        move = lambda to: {"type": "pointerMove", "x": to, "y": y, "duration": 0}
+        self.browser.send("POST", "/actions", {"actions": [{"type": "pointer", "id": "mouse", "actions": [
+            move(x), {"type": "pointerDown", "button": 0}, move(x + 50), move(round(box[0] + 0.6 * box[2])),
+            {"type": "pointerUp", "button": 0}]}]})
+        self.assertAlmostEqual(float(self.browser.run("return document.getElementById('divider').value")), 600, delta=5)
+        self.assertEqual(self.browser.run("return view.k"), 1, "the divider moves, not the picture")
+
+    def test_all_pictures_zoom_together_down_to_single_pixels(self):
+        self.browser.press("#compare", "+" * 12)
+        self.wait_for_frame()
+        zooms = self.browser.run("return [...document.querySelectorAll('main canvas')].map((canvas) => canvas.__zoom.k)")
+        self.assertEqual(len(zooms), 1 + len(TECHNIQUES))
+        self.assertEqual(len(set(zooms)), 1, zooms)
+        size = self.browser.run("return document.getElementById('compare').clientWidth") * zooms[0] / 96
+        self.assertGreaterEqual(size, 32, "CSS pixels that one pixel takes")
+        self.browser.press("#compare", KEYS["left"] + KEYS["right"] * 2)
+        self.assertRegex(self.browser.run("return document.getElementById('readout').textContent"),
+                         r"^pixel \(49, 27\).*beam: picture sRGB \d+ \d+ \d+.*reference: picture sRGB")
+        self.browser.press("#compare", "0")
+        self.assertEqual(self.browser.run("return view.k"), 1)
+
+    def test_heatmap_values_are_those_of_the_counters(self):
+        kinds = self.browser.run("return [...document.getElementById('map-kind').options].map((option) => option.value)")
+        self.assertEqual(kinds[:3], ["fragments", "error", "merges"])
+        mean, high = self.browser.run("""
+            return loadLayer("msaa:8", "error", false).then((layer) => {
+              let squares = 0, high = 0;
+              for (let y = 0; y < layer.height; ++y) for (let x = 0; x < layer.width; ++x) {
+                const value = Number(layer.valueAt(x, y));
+                squares += value * value;
+                high = Math.max(high, value);
+              }
+              return [squares / (layer.width * layer.height), high];
+            })""")
+        frame = self.report["results"][TECHNIQUES.index("msaa:8")]["frames"][0]
+        self.assertAlmostEqual(mean ** 0.5, frame["error"]["rmse"], delta=1e-5 + 1e-3 * frame["error"]["rmse"])
+        self.assertLessEqual(high, frame["error"]["max"])
+
+    def test_tables_sort(self):
+        values = lambda: [float(row["rmse"][0]) for row in table_rows(self.browser, "techniques")]
+        title = "#table-techniques thead th:nth-child(%d) button" % (
+            1 + list(table_rows(self.browser, "techniques")[0]).index("rmse"))
+        self.browser.click(title)
+        self.assertEqual(values(), sorted(values()))
+        self.browser.click(title)
+        self.assertEqual(values(), sorted(values(), reverse=True))
+
+    def test_every_column_tells_unit_and_meaning(self):
+        tips = self.browser.run("return [...document.querySelectorAll('thead button')].map((button) => button.dataset.tip)")
+        self.assertGreater(len(tips), 20)
+        for tip in tips:
+            self.assertRegex(tip, r"^[A-Z].{10,}\.(\nUnit: .+)?$")
+        self.browser.run("document.querySelector('#table-techniques thead th:nth-child(2) button').focus()")
+        self.assertEqual(self.browser.run("const tip = document.getElementById('tip');"
+                                          "return [tip.hidden, tip.textContent]"), [False, tips[1]])
+
+    def test_fits_a_phone(self):
+        self.browser.resize(360, 740)
+        self.wait_for_frame()
+        self.assertLessEqual(self.browser.run("return document.documentElement.scrollWidth"), 360)
+        self.assertGreaterEqual(self.browser.run("return parseFloat(getComputedStyle(document.querySelector('svg text'))"
+                                                 ".fontSize) * document.querySelector('svg').clientWidth /"
+                                                 " document.querySelector('svg').viewBox.baseVal.width"), 10)
+
+    def test_light_and_dark(self):
+        paper = lambda: self.browser.run("return getComputedStyle(document.body).backgroundColor")
+        self.assertEqual(paper(), "rgb(255, 255, 255)")
+        self.browser.color_scheme("dark")
+        dark = paper()
+        self.assertLess(max(int(c) for c in re.findall(r"\d+", dark)), 60)
+        self.browser.click("#theme")
+        self.assertEqual(paper(), "rgb(255, 255, 255)", "light by choice")
+
+
+if __name__ == "__main__":
+    unittest.main(argv=sys.argv[:1])

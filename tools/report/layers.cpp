@@ -1,0 +1,124 @@
+#include "tools/report/layers.h"
+
+#include <algorithm>
+#include <cmath>
+#include <fstream>
+#include <iterator>
+#include <limits>
+#include <set>
+
+#include "tools/image_io.h"
+
+namespace beampipe {
+namespace {
+
+using Json = nlohmann::ordered_json;
+
+struct Kind {
+  const char *name, *unit, *definition;
+};
+
+constexpr Kind kKinds[] = {
+    {"fragments", "fragments", "Fragments that reached the pixel: triangles that touch it, before any is hidden."},
+    {"error", "linear light, 0..1", "Root of the mean square error over R, G and B against the reference."},
+    {"merges", "merges", "Fragments that went into the pixel's aggregate, until nothing behind them could show."},
+    {"tiny_triangles", "fragments", "Fragments of triangles that miss every mask position."},
+    {"largest_window", "fragments", "The most fragments whose depth ranges overlapped and were resolved together."},
+    {"unknown", "part of the pixel, 0..1", "The part of the pixel for which no shaded sample was found."},
+    {"bytes", "bytes", "Bytes read and written for the pixel."},
+};
+
+std::string base64(const std::string& bytes) {
+  constexpr char kDigits[] = "ABCDEFGHIJKLMNOPQRSTUVWXYZabcdefghijklmnopqrstuvwxyz0123456789+/";
+  std::string text;
+  for (std::size_t i = 0; i < bytes.size(); i += 3) {
+    std::uint32_t group = 0;
+    for (std::size_t j = 0; j < 3; ++j) group = group << 8 | (i + j < bytes.size() ? std::uint8_t(bytes[i + j]) : 0u);
+    for (std::size_t j = 0; j < 4; ++j) text += i + j <= bytes.size() ? kDigits[group >> (18 - 6 * j) & 63] : '=';
+  }
+  return text;
+}
+
+std::string png_url(const std::string& png) { return "data:image/png;base64," + base64(png); }
+
+Json map_of(const std::string& name, const Planes& planes, const std::vector<float>& values) {
+  constexpr double kLevels = 65535;
+  double low = 0, high = 0;
+  bool whole = true;
+  const auto value_of = [](float value) { return std::isfinite(value) ? static_cast<double>(value) : 0.0; };
+  for (const float value : values) {
+    low = std::min(low, value_of(value));
+    high = std::max(high, value_of(value));
+    whole = whole && value_of(value) == std::floor(value_of(value));
+  }
+  const double step = whole && high - low <= kLevels ? 1.0 : (high - low) / kLevels;
+  std::vector<std::uint8_t> rgb(3 * values.size());
+  for (std::size_t i = 0; i < values.size(); ++i) {
+    const auto q = step > 0 ? static_cast<std::uint32_t>(std::lround((value_of(values[i]) - low) / step)) : 0u;
+    rgb[3 * i] = static_cast<std::uint8_t>(q >> 8);
+    rgb[3 * i + 1] = static_cast<std::uint8_t>(q & 255);
+  }
+  return {{"name", name},
+          {"low", low},
+          {"step", step},
+          {"high", high},
+          {"png", png_url(encode_png(planes.width, planes.height, rgb))}};
+}
+
+// Known kinds first, in the order of kKinds, then the others by name.
+Json kinds_of(const std::set<std::string>& names) {
+  Json kinds = Json::array();
+  for (const Kind& kind : kKinds) {
+    if (names.contains(kind.name)) {
+      kinds.push_back({{"name", kind.name}, {"unit", kind.unit}, {"definition", kind.definition}});
+    }
+  }
+  for (const std::string& name : names) {
+    const bool known = std::any_of(std::begin(kKinds), std::end(kKinds), [&](const Kind& k) { return k.name == name; });
+    if (!known) kinds.push_back({{"name", name}, {"unit", ""}, {"definition", ""}});
+  }
+  return kinds;
+}
+
+// A file that report.json names: inside its folder, so that a report from elsewhere cannot show other files.
+std::filesystem::path file_of(const ReportFile& report, const std::string& name) {
+  const std::filesystem::path path = std::filesystem::path(name).lexically_normal();
+  if (path.empty() || path.is_absolute() || *path.begin() == "..") {
+    throw ReportError((report.folder / "report.json").string() + ": it names " + name +
+                      "; expected a file in its own folder");
+  }
+  return report.folder / path;
+}
+
+std::string read_file(const std::filesystem::path& file) {
+  std::ifstream stream(file, std::ios::binary);
+  std::string bytes{std::istreambuf_iterator<char>(stream), {}};
+  if (!stream) throw ImageError(file.string() + ": cannot be read, although report.json names it");
+  return bytes;
+}
+
+}  // namespace
+
+Json report_layers(const ReportFile& report, std::size_t position) {
+  Json layers = {{"frame", 0}, {"techniques", Json::array()}};
+  std::set<std::string> names;
+  for (const Json& result : report.json.at("results")) {
+    const Json& frame = result.at("frames").at(position);
+    layers["frame"] = frame.at("index");
+    Json technique = {{"technique", result.at("technique")},
+                      {"picture", png_url(read_file(file_of(report, frame.at("picture"))))},
+                      {"maps", Json::array()}};
+    if (frame.contains("counters")) {
+      const Planes planes = read_exr_planes(file_of(report, frame["counters"]));
+      for (const auto& [name, values] : planes.channels) {
+        technique["maps"].push_back(map_of(name, planes, values));
+        names.insert(name);
+      }
+    }
+    layers["techniques"].push_back(std::move(technique));
+  }
+  layers["kinds"] = kinds_of(names);
+  return layers;
+}
+
+}  // namespace beampipe

@@ -1,0 +1,45 @@
+"use strict";
+// Elements, numbers as text, and the tooltip.
+
+// An element with attributes and children; what is not an element becomes text.
+function make(tag, attributes = {}, ...children) {
+  const element = document.createElement(tag);
+  for (const [name, value] of Object.entries(attributes)) element.setAttribute(name, value);
+  element.append(...children);
+  return element;
+}
+
+const byId = (id) => document.getElementById(id);
+
+// For reading: whole numbers in groups of three, others to four digits, nothing as a dash.
+function numberText(value) {
+  if (value === null || value === undefined) return "–";
+  if (typeof value === "string") return value;
+  const rounded = Number.isInteger(value) ? value : Number(value.toPrecision(4));
+  return Number.isInteger(rounded) ? rounded.toLocaleString("en").replaceAll(",", "\u202f") : String(rounded);
+}
+
+function fillSelect(select, options, chosen) {
+  select.replaceChildren(...options.map((text) => make("option", { value: text }, text)));
+  if (options.includes(chosen)) select.value = chosen;
+}
+
+// Shows an element's data-tip while the pointer is over it or it has the focus.
+function startTips() {
+  const tip = byId("tip");
+  const show = (target) => {
+    tip.hidden = !target;
+    if (!target) return;
+    tip.textContent = target.dataset.tip;
+    const at = target.getBoundingClientRect(), own = tip.getBoundingClientRect();
+    const above = at.top - own.height - 6;
+    const left = Math.min(at.left + at.width / 2 - own.width / 2, document.documentElement.clientWidth - own.width - 4);
+    tip.style.left = `${Math.max(4, left) + window.scrollX}px`;
+    tip.style.top = `${(above > 4 ? above : at.bottom + 6) + window.scrollY}px`;
+  };
+  for (const event of ["pointerover", "focusin"]) {
+    document.addEventListener(event, ({ target }) => show(target.closest?.("[data-tip]")));
+  }
+  document.addEventListener("focusout", () => show(null));
+  document.addEventListener("keydown", ({ key }) => key === "Escape" && show(null));
+}

@@ -1,0 +1,145 @@
+// Plots, drawn by D3 as wide as there is room.
+
+const boundText = { none: "", lower: "≥ ", upper: "≤ " };
+
+// Places each label where it lies on no obstacle and no label yet; leaves out those for which there is no such place.
+// Obstacles are squares: { x, y, radius }.
+function placeLabels(labels, obstacles, width, height) {
+  const boxes = obstacles.map(({ x, y, radius: r }) => ({ x0: x - r, y0: y - r, x1: x + r, y1: y + r }));
+  const isFree = (box) => box.x0 >= 0 && box.x1 <= width && box.y0 >= 0 && box.y1 <= height &&
+    boxes.every((other) => box.x1 <= other.x0 || box.x0 >= other.x1 || box.y1 <= other.y0 || box.y0 >= other.y1);
+  for (const label of labels) {
+    const { width: w } = label.element.getBBox(), h = 13, gap = 7;
+    const places = [[1, 0], [-1, 0], [0, -1], [0, 1], [1, 1], [-1, -1], [1, -1], [-1, 1]].map(([sx, sy]) => {
+      const x = label.x + sx * (gap + w / 2), y = label.y + sy * (gap + h / 2);
+      return { x0: x - w / 2, y0: y - h / 2, x1: x + w / 2, y1: y + h / 2 };
+    });
+    const box = places.find(isFree);
+    if (!box) {
+      label.element.remove();
+      continue;
+    }
+    boxes.push(box);
+    label.element.setAttribute("x", (box.x0 + box.x1) / 2);
+    label.element.setAttribute("y", (box.y0 + box.y1) / 2);
+  }
+}
+
+// Small obstacles along a line from point to point.
+function lineObstacles(points) {
+  return d3.pairs(points).flatMap(([a, b]) => {
+    const steps = Math.ceil(Math.hypot(b.x - a.x, b.y - a.y) / 4);
+    return d3.range(1, steps).map((i) =>
+      ({ x: a.x + (b.x - a.x) * i / steps, y: a.y + (b.y - a.y) * i / steps, radius: 1 }));
+  });
+}
+
+// Powers of ten; on short axes twice and five times them too.
+function logTicks(scale) {
+  const [low, high] = scale.domain(), decades = Math.log10(high / low);
+  const values = d3.range(Math.floor(Math.log10(low)), Math.ceil(Math.log10(high)) + 1)
+    .flatMap((power) => (decades < 2.5 ? [1, 2, 5] : [1]).map((times) => Number(`${times}e${power}`)));
+  return values.filter((value) => value >= low && value <= high);
+}
+
+// A logarithmic scale with a little room at both ends.
+function logScale(values, range) {
+  const low = d3.min(values), high = d3.max(values);
+  const room = Math.max(1.2, (high / low) ** 0.06);
+  return d3.scaleLog().domain([low / room, high * room]).range(range);
+}
+
+function drawScatter(svg, plot, width) {
+  const margin = { left: 62, right: 14, top: 8, bottom: 44 }, height = Math.max(280, Math.min(440, width * 0.7));
+  const inner = { width: width - margin.left - margin.right, height: height - margin.top - margin.bottom };
+  const points = plot.series.flatMap((series, i) => series.points.map((point) => ({ ...point, color: data.colors[i] })));
+  const x = logScale(points.map((p) => p.x), [0, inner.width]), y = logScale(points.map((p) => p.y), [inner.height, 0]);
+  svg.attr("viewBox", `0 0 ${width} ${height}`);
+  const area = svg.append("g").attr("transform", `translate(${margin.left},${margin.top})`);
+  area.append("g").attr("class", "axis").attr("transform", `translate(0,${inner.height})`)
+    .call(d3.axisBottom(x).tickValues(logTicks(x)).tickFormat(numberText).tickSizeInner(-inner.height).tickPadding(8));
+  area.append("g").attr("class", "axis")
+    .call(d3.axisLeft(y).tickValues(logTicks(y)).tickFormat(numberText).tickSizeInner(-inner.width).tickPadding(8));
+  area.append("text").attr("x", inner.width / 2).attr("y", inner.height + 38).attr("text-anchor", "middle")
+    .text(plot.x_label);
+  area.append("text").attr("transform", `translate(-48,${inner.height / 2}) rotate(-90)`).attr("text-anchor", "middle")
+    .text(plot.y_label);
+  plot.series.forEach((series, i) => {
+    if (!series.line) return;
+    area.append("path").attr("fill", "none").attr("stroke", data.colors[i]).attr("stroke-width", 2)
+      .attr("d", d3.line().x((p) => x(p.x)).y((p) => y(p.y))(series.points));
+  });
+  const symbol = (p) => d3.symbol().size(75).type(p.bound === "none" ? d3.symbolCircle : d3.symbolTriangle)();
+  area.selectAll(".point").data(points).join("path").attr("class", "point").attr("tabindex", 0).attr("role", "img")
+    .attr("transform", (p) => `translate(${x(p.x)},${y(p.y)}) rotate(${p.bound === "upper" ? 180 : 0})`)
+    .attr("d", symbol).attr("fill", (p) => p.color)
+    .attr("data-tip", (p) =>
+      `${p.label}\n${plot.x_label}: ${numberText(p.x)}\n${plot.y_label}: ${boundText[p.bound]}${numberText(p.y)}`)
+    .attr("aria-label", function () { return this.dataset.tip; });
+  const labels = area.selectAll(".label").data(points).join("text").attr("class", "label").attr("text-anchor", "middle")
+    .attr("dominant-baseline", "central").attr("aria-hidden", true).text((p) => p.label);
+  const place = (p) => ({ x: x(p.x), y: y(p.y), radius: 5 });
+  const lines = plot.series.filter((series) => series.line).flatMap((series) => lineObstacles(series.points.map(place)));
+  placeLabels(labels.nodes().map((element, i) => ({ element, ...place(points[i]) })), [...points.map(place), ...lines],
+    inner.width, inner.height);
+}
+
+function drawBars(svg, plot, width) {
+  const step = 26, longest = d3.max(plot.categories, (name) => name.length);
+  const margin = { left: Math.min(width * 0.4, 7 * longest + 12), right: 12, top: 6, bottom: 44 };
+  const height = margin.top + step * plot.categories.length + margin.bottom;
+  const inner = { width: width - margin.left - margin.right, height: height - margin.top - margin.bottom };
+  const totals = plot.categories.map((_, i) => d3.sum(plot.parts, (part) => part.values[i]));
+  const x = d3.scaleLinear().domain([0, d3.max(totals)]).nice().range([0, inner.width]);
+  svg.attr("viewBox", `0 0 ${width} ${height}`);
+  const area = svg.append("g").attr("transform", `translate(${margin.left},${margin.top})`);
+  area.append("g").attr("class", "axis").attr("transform", `translate(0,${inner.height})`)
+    .call(d3.axisBottom(x).ticks(inner.width / 80).tickSizeInner(-inner.height).tickPadding(8));
+  area.append("text").attr("x", inner.width / 2).attr("y", inner.height + 38).attr("text-anchor", "middle")
+    .text(plot.y_label);
+  plot.categories.forEach((name, i) => {
+    const inUse = plot.parts.map((part, color) => ({ name: part.name, value: part.values[i], color: data.colors[color] }))
+      .filter((part) => part.value > 0);
+    const list = inUse.map((part) => `${part.name}: ${numberText(part.value)}`).join("\n");
+    const bar = area.append("g").attr("class", "bar").attr("tabindex", 0).attr("role", "img")
+      .attr("transform", `translate(0,${i * step})`)
+      .attr("data-tip", `${name}: ${numberText(totals[i])}, ${plot.y_label}\n${list}`)
+      .attr("aria-label", function () { return this.dataset.tip; });
+    bar.append("text").attr("x", -8).attr("y", step / 2).attr("text-anchor", "end").attr("dominant-baseline", "central")
+      .text(name);
+    let start = 0;
+    for (const part of inUse) {
+      bar.append("rect").attr("class", "part").attr("x", x(start)).attr("y", 3).attr("height", step - 6)
+        .attr("width", Math.max(0, x(part.value) - 0.5)).attr("fill", part.color)
+        .attr("data-tip", `${name}, ${part.name}: ${numberText(part.value)}, ${plot.y_label}`);
+      start += part.value;
+    }
+  });
+}
+
+function makeFigure(figure) {
+  const svg = d3.create("svg").attr("role", "group");
+  const key = make("div", { class: "key" }), note = make("p", { class: "note" });
+  const select = make("select", { "aria-label": `${figure.title}: which` },
+    ...figure.choices.map((choice, i) => make("option", { value: i }, choice.label)));
+  const caption = make("figcaption", {}, make("h3", {}, figure.title), make("p", {}, figure.caption));
+  if (figure.choices.length > 1) caption.append(select);
+  const element = make("figure", {}, caption, svg.node(), key, note);
+  const draw = () => {
+    const { plot } = figure.choices[Number(select.value)], width = element.clientWidth;
+    if (width === 0) return;
+    svg.selectAll("*").remove();
+    svg.attr("aria-label", plot.title).attr("data-plot", plot.name);
+    (plot.kind === "bars" ? drawBars : drawScatter)(svg, plot, width);
+    key.replaceChildren(...(plot.parts ?? plot.series).map((item, i) =>
+      make("span", { style: `--swatch: ${data.colors[i]}` }, item.name)));
+    note.textContent = (plot.notes ?? []).join(" ");
+  };
+  select.addEventListener("change", draw);
+  let drawnWidth = 0;
+  new ResizeObserver(() => {
+    if (element.clientWidth !== drawnWidth) draw();
+    drawnWidth = element.clientWidth;
+  }).observe(element);
+  return element;
+}

@@ -1,0 +1,190 @@
+#include "tools/report/tables.h"
+
+#include <algorithm>
+#include <cmath>
+#include <optional>
+
+#include "pipeline/technique.h"
+
+namespace beampipe {
+namespace {
+
+using Json = nlohmann::ordered_json;
+
+struct Source {
+  Column column;
+  std::string pointer;  // where the value is in a row's record
+};
+
+const std::vector<Source> kTechniqueColumns = {
+    {{"technique", "technique", "", "The spec that names the technique, as `beampipe run -t` takes it."}, "/technique"},
+    {{"bytes_per_pixel", "bytes/pixel", "bytes",
+      "What the technique's framebuffer takes per pixel, all surfaces together."},
+     "/framebuffer_bytes_per_pixel"},
+    {{"a_buffer_peak_bytes", "A-buffer", "bytes",
+      "The most that the A-buffer in front of the framebuffer held at any time of a frame; 0: there is none."},
+     "/a_buffer_peak_bytes"},
+    {{"rmse", "RMSE", "linear light, 0..1",
+      "Root of the mean square error over R, G and B of all pixels against the reference."},
+     "/error/rmse"},
+    {{"emr", "EMR", "samples per pixel",
+      "Equivalent MSAA rate: the N at which msaa:N has the same RMSE on the same frames."},
+     "/equivalent_msaa"},
+    {{"emr_bound", "EMR is", "",
+      "Whether the EMR is exact, or a bound: at least the best rung of the MSAA ladder, or at most the worst."},
+     "/emr_bound"},
+    {{"msaa_bytes_per_pixel", "as MSAA", "bytes",
+      "What MSAA of the same error takes per pixel: EMR times the bytes of msaa:1."},
+     "/msaa_bytes_per_pixel"},
+    {{"flicker", "flicker", "linear light, 0..1",
+      "RMS over pixels of how much the error changes from one frame to the next, pooled over the frames."},
+     "/flicker"},
+    {{"wall_ms", "wall time", "ms per frame",
+      "How long the simulator took on the machine that ran it, not hardware: the median over the frames."},
+     "/wall_ms"},
+    {{"bias", "bias", "linear light, 0..1", "Mean signed error over R, G and B of all pixels."}, "/error/bias"},
+    {{"p99", "p99", "linear light, 0..1", "The absolute error that 99 % of all values do not exceed."}, "/error/p99"},
+    {{"max", "max", "linear light, 0..1", "The largest absolute error."}, "/error/max"},
+};
+
+const std::vector<Source> kSurfaceColumns = {
+    {{"technique", "technique", "", "The spec that names the technique."}, "/technique"},
+    {{"surface", "surface", "", "One surface of the framebuffer."}, "/name"},
+    {{"format", "format", "", "What is stored per pixel; x N: N times."}, "/format"},
+    {{"bytes_per_pixel", "bytes/pixel", "bytes", "What this surface takes per pixel."}, "/bytes_per_pixel"},
+};
+
+const std::vector<Source> kStageColumns = {
+    {{"technique", "technique", "", "The spec that names the technique."}, "/technique"},
+    {{"stage", "stage", "", "A stage of the technique's pipeline; stages stand in pipeline order."}, "/stage"},
+    {{"items_in", "items in", "items", "What came into the stage: triangles, fragments, pixels."}, "/items_in"},
+    {{"items_out", "items out", "items", "What the stage handed on."}, "/items_out"},
+    {{"ops", "operations", "operations", "Scalar operations of all kinds together."}, "/ops/total"},
+    {{"mul_add", "mul-add", "operations", "Multiplications, with or without an addition behind them."}, "/ops/mul_add"},
+    {{"add", "add", "operations", "Additions, subtractions, comparisons, minima, maxima, selects."}, "/ops/add"},
+    {{"bit", "bit", "operations", "And, or, not, shift, population count."}, "/ops/bit"},
+    {{"fetch", "fetch", "operations", "Table look-ups."}, "/ops/fetch"},
+    {{"special", "special", "operations", "Divisions and square roots."}, "/ops/special"},
+    {{"convert", "convert", "operations", "Between integer and float, float and half."}, "/ops/convert"},
+    {{"bytes_read", "read", "bytes", "Logical bytes read: what the algorithm touches."}, "/bytes_read"},
+    {{"bytes_written", "written", "bytes", "Logical bytes written: what the algorithm touches."}, "/bytes_written"},
+    {{"logical_bytes", "logical", "bytes", "Logical bytes read and written."}, "/logical_bytes"},
+    {{"sector_bytes", "sector", "bytes", "Bytes read and written in whole sectors of 32 bytes."}, "/sector_bytes"},
+    {{"dram_bytes", "DRAM", "bytes", "Bytes that pass the modelled cache to or from memory."}, "/dram_bytes"},
+    {{"ops_per_byte", "op/byte", "operations per byte", "Operations by logical bytes read and written."},
+     "/ops_per_byte"},
+    {{"lane_use", "lane use", "part, 0..1", "Lanes with work by lanes issued."}, "/lane_use"},
+};
+
+const std::vector<Source> kFrameColumns = {
+    {{"technique", "technique", "", "The spec that names the technique."}, "/technique"},
+    {{"frame", "frame", "index", "The frame's index in the trace, from 0."}, "/index"},
+    {{"wall_ms", "wall time", "ms", "Median of the runs of this frame."}, "/wall_ms/median"},
+    {{"wall_ms_min", "fastest", "ms", "The fastest run of this frame."}, "/wall_ms/min"},
+    {{"wall_ms_max", "slowest", "ms", "The slowest run of this frame."}, "/wall_ms/max"},
+    {{"runs", "runs", "runs", "How often this frame was rendered."}, "/wall_ms/runs"},
+    {{"a_buffer_peak_bytes", "A-buffer", "bytes", "The most that the A-buffer held."}, "/a_buffer_peak_bytes"},
+    {{"rmse", "RMSE", "linear light, 0..1", "Root of the mean square error of this frame."}, "/error/rmse"},
+    {{"bias", "bias", "linear light, 0..1", "Mean signed error of this frame."}, "/error/bias"},
+    {{"flicker", "flicker", "linear light, 0..1", "RMS change of the error since the frame before."}, "/flicker"},
+};
+
+// One row per record, one column per source that any record has.
+Table make_table(const std::string& name, const std::string& title, const std::vector<Source>& sources,
+                 const std::vector<Json>& records) {
+  Table table{name, title, {}, std::vector<std::vector<Json>>(records.size())};
+  for (const Source& source : sources) {
+    const Json::json_pointer pointer(source.pointer);
+    const auto has_it = [&](const Json& record) { return record.contains(pointer); };
+    if (std::none_of(records.begin(), records.end(), has_it)) continue;
+    table.columns.push_back(source.column);
+    for (std::size_t i = 0; i < records.size(); ++i) {
+      table.rows[i].push_back(has_it(records[i]) ? records[i].at(pointer) : Json());
+    }
+  }
+  return table;
+}
+
+// Over the frames that have one, which are all of the same size.
+std::optional<double> pooled_flicker(const Json& result) {
+  double squares = 0;
+  int frames = 0;
+  for (const Json& frame : result.at("frames")) {
+    if (!frame.contains("flicker")) continue;
+    squares += std::pow(frame["flicker"].get<double>(), 2);
+    ++frames;
+  }
+  if (frames == 0) return std::nullopt;
+  return std::sqrt(squares / frames);
+}
+
+std::vector<Json> technique_records(const ReportFile& report) {
+  const double msaa_bytes = parse_technique("msaa:1").framebuffer_bytes_per_pixel();
+  std::vector<Json> records;
+  for (const Json& result : report.json.at("results")) {
+    Json record = result;
+    const TechniqueSummary summary = read_summary(result);
+    record["wall_ms"] = summary.wall_ms;
+    if (summary.emr) {
+      record["emr_bound"] = summary.emr->is_lower_bound   ? "at least"
+                            : summary.emr->is_upper_bound ? "at most"
+                                                          : "exact";
+      record["msaa_bytes_per_pixel"] = summary.emr->samples * msaa_bytes;
+    }
+    if (const auto pooled = pooled_flicker(result)) record["flicker"] = *pooled;
+    records.push_back(std::move(record));
+  }
+  return records;
+}
+
+// The members of each record's array `key`, each with the record's technique.
+std::vector<Json> members(const Json& results, const std::string& key) {
+  std::vector<Json> records;
+  for (const Json& result : results) {
+    for (Json member : result.at(key)) {
+      member["technique"] = result.at("technique");
+      records.push_back(std::move(member));
+    }
+  }
+  return records;
+}
+
+std::string csv_field(const Json& value) {
+  if (value.is_null()) return "";
+  if (!value.is_string()) return value.dump();
+  const std::string text = value;
+  if (text.find_first_of("\",\r\n") == text.npos) return text;
+  std::string quoted = "\"";
+  for (const char c : text) quoted += c == '"' ? "\"\"" : std::string(1, c);
+  return quoted.append("\"");
+}
+
+}  // namespace
+
+std::vector<Table> report_tables(const ReportFile& report) {
+  const Json& results = report.json.at("results");
+  std::vector<Table> tables;
+  tables.push_back(make_table("techniques", "Techniques", kTechniqueColumns, technique_records(report)));
+  tables.push_back(make_table("framebuffer", "Framebuffers", kSurfaceColumns, members(results, "framebuffer")));
+  tables.push_back(make_table("stages", "Stages, all frames together", kStageColumns, stage_records(report)));
+  const std::vector<Json> frames = members(results, "frames");
+  if (frames.size() > results.size()) tables.push_back(make_table("frames", "Frames", kFrameColumns, frames));
+  return tables;
+}
+
+std::string csv_text(const Table& table) {
+  std::string text;
+  const auto add_field = [&](std::size_t column, const std::string& field) {
+    if (column > 0) text += ',';
+    text += field;
+  };
+  for (std::size_t i = 0; i < table.columns.size(); ++i) add_field(i, csv_field(table.columns[i].key));
+  text += "\r\n";
+  for (const auto& row : table.rows) {
+    for (std::size_t i = 0; i < row.size(); ++i) add_field(i, csv_field(row[i]));
+    text += "\r\n";
+  }
+  return text;
+}
+
+}  // namespace beampipe
