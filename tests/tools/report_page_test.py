@@ -228,7 +228,7 @@ class ReportPage(unittest.TestCase):
         kinds = self.browser.run("return [...document.getElementById('map-kind').options].map((option) => option.value)")
         self.assertEqual(kinds[:3], ["fragments", "error", "merges"])
         mean, high = self.browser.run("""
-            return loadLayer("msaa:8", "error", false).then((layer) => {
+            return loadLayer("msaa:8", "error").then((layer) => {
               let squares = 0, high = 0;
               for (let y = 0; y < layer.height; ++y) for (let x = 0; x < layer.width; ++x) {
                 const value = Number(layer.valueAt(x, y));

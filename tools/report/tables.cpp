@@ -1,8 +1,6 @@
 #include "tools/report/tables.h"
 
 #include <algorithm>
-#include <cmath>
-#include <optional>
 
 #include "pipeline/technique.h"
 
@@ -37,7 +35,7 @@ const std::vector<Source> kTechniqueColumns = {
       "What MSAA of the same error takes per pixel: EMR times the bytes of msaa:1."},
      "/msaa_bytes_per_pixel"},
     {{"flicker", "flicker", "linear light, 0..1",
-      "RMS over pixels of how much the error changes from one frame to the next, pooled over the frames."},
+      "RMS over pixels of how much the error changes from one frame to the next, pooled over the frames but the first."},
      "/flicker"},
     {{"wall_ms", "wall time", "ms per frame",
       "How long the simulator took on the machine that ran it, not hardware: the median over the frames."},
@@ -105,19 +103,6 @@ Table make_table(const std::string& name, const std::string& title, const std::v
   return table;
 }
 
-// Over the frames that have one, which are all of the same size.
-std::optional<double> pooled_flicker(const Json& result) {
-  double squares = 0;
-  int frames = 0;
-  for (const Json& frame : result.at("frames")) {
-    if (!frame.contains("flicker")) continue;
-    squares += std::pow(frame["flicker"].get<double>(), 2);
-    ++frames;
-  }
-  if (frames == 0) return std::nullopt;
-  return std::sqrt(squares / frames);
-}
-
 std::vector<Json> technique_records(const ReportFile& report) {
   const double msaa_bytes = parse_technique("msaa:1").framebuffer_bytes_per_pixel();
   std::vector<Json> records;
@@ -131,7 +116,6 @@ std::vector<Json> technique_records(const ReportFile& report) {
                                                           : "exact";
       record["msaa_bytes_per_pixel"] = summary.emr->samples * msaa_bytes;
     }
-    if (const auto pooled = pooled_flicker(result)) record["flicker"] = *pooled;
     records.push_back(std::move(record));
   }
   return records;

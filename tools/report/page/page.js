@@ -15,10 +15,10 @@ function makeCards(table) {
   const rivals = table.rows.filter((row) => of(row, "technique") !== "reference" && of(row, "rmse") !== undefined);
   const best = (rows) => rows.slice().sort((a, b) => of(a, "rmse") - of(b, "rmse"))[0];
   const winner = best(rivals), frugal = best(rivals.filter((row) => of(row, "bytes_per_pixel") <= kBudget));
-  const inBudget = `Most accurate in at most ${kBudget} bytes per pixel, what 8× MSAA takes`;
+  const budget = `in at most ${kBudget} bytes per pixel, what 8× MSAA takes`;
   const cards = [];
-  for (const [title, row] of winner === frugal ? [[`Most accurate of all, and: ${inBudget.toLowerCase()}`, winner]]
-    : [["Most accurate", winner], [inBudget, frugal]]) {
+  for (const [title, row] of winner === frugal ? [[`Most accurate of all, and ${budget}`, winner]]
+    : [["Most accurate", winner], [`Most accurate ${budget}`, frugal]]) {
     if (!row) continue;
     const bound = { exact: "", "at least": "at least ", "at most": "at most " }[of(row, "emr_bound")];
     cards.push(makeCard(title, of(row, "technique"),

@@ -26,13 +26,15 @@ function decodeOnce(url) {
   return decoded.get(url);
 }
 
-// One scale for a kind of map in all techniques: colour(value), value(part) of the ramp from 0 to 1.
-function scaleOf(kind, logarithmic) {
+const isLogarithmic = () => byId("map-log").checked;
+
+// One scale for a kind of map in all techniques: ramp(part) is a colour, part(value) from 0 to 1, value(part).
+function scaleOf(kind) {
   const maps = data.layers.techniques.flatMap((technique) => technique.maps.filter((map) => map.name === kind));
   const low = d3.min(maps, (map) => map.low), high = d3.max(maps, (map) => map.high);
   const linear = { low, high, ramp: low < 0 ? (t) => d3.interpolateRdBu(1 - t) : d3.interpolateInferno };
   if (low < 0) linear.low = -(linear.high = Math.max(-low, high));  // 0 in the middle
-  const scale = logarithmic && low >= 0
+  const scale = isLogarithmic() && low >= 0
     ? d3.scaleSymlog().constant(maps.every((map) => map.step === 1) ? 1 : high / 1000)
     : d3.scaleLinear();
   scale.domain([linear.low, linear.high > linear.low ? linear.high : linear.low + 1]).range([0, 1]);
@@ -40,14 +42,14 @@ function scaleOf(kind, logarithmic) {
 }
 
 // { width, height, canvas, valueAt(x, y) as text } of a technique's picture or map.
-async function loadLayer(technique, name, logarithmic) {
+async function loadLayer(technique, name) {
   const map = mapNamed(technique, name);
   const { width, height, rgba } = await decodeOnce(map ? map.png : techniqueNamed(technique).picture);
   const pixels = new ImageData(new Uint8ClampedArray(rgba), width, height);
   const numberAt = (i) => map.low + map.step * (256 * rgba[4 * i] + rgba[4 * i + 1]);
   let sum = 0;
   if (map) {
-    const scale = scaleOf(name, logarithmic), colors = new Map();
+    const scale = scaleOf(name), colors = new Map();
     for (let i = 0; i < width * height; ++i) {
       const value = numberAt(i);
       sum += value;
@@ -66,9 +68,9 @@ async function loadLayer(technique, name, logarithmic) {
   return { width, height, canvas, valueAt, mean: sum / (width * height), high: map?.high };
 }
 
-function makeLegend(title, kind, logarithmic) {
+function makeLegend(title, kind) {
   const { unit, definition } = data.layers.kinds.find((known) => known.name === kind);
-  const scale = scaleOf(kind, logarithmic), stops = d3.range(0, 1.01, 0.05).map((t) => scale.ramp(t));
+  const scale = scaleOf(kind), stops = d3.range(0, 1.01, 0.05).map((t) => scale.ramp(t));
   const ticks = d3.range(0, 1.01, 0.25).map((t) => make("span", {}, numberText(Number(scale.value(t).toPrecision(3)))));
   return make("div", { class: "legend" },
     make("div", {}, make("b", {}, title), " ",
@@ -202,10 +204,10 @@ function startCompare() {
   const atDivider = (event) => Math.abs(event.offsetX - split() * canvas.clientWidth) < 12;
   const load = async () => {
     for (const side of sides) fillSelect(side.name, layerNames(side.technique.value), side.name.value);
-    const layers = await Promise.all(sides.map((side) => loadLayer(side.technique.value, side.name.value, false)));
+    const layers = await Promise.all(sides.map((side) => loadLayer(side.technique.value, side.name.value)));
     sides.forEach((side, i) => { side.layer = layers[i]; });
     byId("side-legends").replaceChildren(...sides.filter((side) => side.name.value !== kPicture)
-      .map((side) => makeLegend(`${side.title}: ${side.name.value} of ${side.technique.value}`, side.name.value, false)));
+      .map((side) => makeLegend(`${side.title}: ${side.name.value} of ${side.technique.value}`, side.name.value)));
     pane.onCursor();
     redrawAll();
   };
@@ -256,13 +258,14 @@ function startCompare() {
     side.technique.addEventListener("change", load);
     side.name.addEventListener("change", load);
   });
+  byId("map-log").addEventListener("change", load);
   return load();
 }
 
 // ---- Heatmaps of all techniques ----
 
 function startMaps() {
-  const kinds = data.layers.kinds.map((kind) => kind.name), select = byId("map-kind"), log = byId("map-log");
+  const kinds = data.layers.kinds.map((kind) => kind.name), select = byId("map-kind");
   if (kinds.length === 0) {
     byId("maps").hidden = true;
     return;
@@ -286,14 +289,14 @@ function startMaps() {
     view.panes = view.panes.filter((pane) => !panes.includes(pane));
     panes = data.layers.techniques.map((t) => t.technique).filter((name) => mapNamed(name, select.value)).map(makePane);
     byId("map-grid").replaceChildren(...panes.map((pane) => pane.element));
-    byId("map-legend").replaceChildren(makeLegend(select.value, select.value, log.checked));
+    byId("map-legend").replaceChildren(makeLegend(select.value, select.value));
     for (const pane of panes) {
-      pane.loaded = await loadLayer(pane.technique, select.value, log.checked);
+      pane.loaded = await loadLayer(pane.technique, select.value);
       pane.onCursor();
       drawPane(pane);
     }
   };
   select.addEventListener("change", load);
-  log.addEventListener("change", load);
+  byId("map-log").addEventListener("change", load);
   return load();
 }

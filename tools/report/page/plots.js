@@ -6,7 +6,7 @@ const boundText = { none: "", lower: "≥ ", upper: "≤ " };
 // Obstacles are squares: { x, y, radius }.
 function placeLabels(labels, obstacles, width, height) {
   const boxes = obstacles.map(({ x, y, radius: r }) => ({ x0: x - r, y0: y - r, x1: x + r, y1: y + r }));
-  const isFree = (box) => box.x0 >= 0 && box.x1 <= width && box.y0 >= 0 && box.y1 <= height &&
+  const isFree = (box) => box.x0 >= 2 && box.x1 <= width + 12 && box.y0 >= -6 && box.y1 <= height - 2 &&
     boxes.every((other) => box.x1 <= other.x0 || box.x0 >= other.x1 || box.y1 <= other.y0 || box.y0 >= other.y1);
   for (const label of labels) {
     const { width: w } = label.element.getBBox(), h = 13, gap = 7;
@@ -45,7 +45,7 @@ function logTicks(scale) {
 // A logarithmic scale with a little room at both ends.
 function logScale(values, range) {
   const low = d3.min(values), high = d3.max(values);
-  const room = Math.max(1.2, (high / low) ** 0.06);
+  const room = Math.max(1.2, (high / low) ** 0.07);
   return d3.scaleLog().domain([low / room, high * room]).range(range);
 }
 
