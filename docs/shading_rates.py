@@ -3,13 +3,13 @@
 
 usage: docs/shading_rates.py PROGRAM   (for instance build/release/tools/beampipe)
 """
-import json
-import subprocess
 import sys
 import tempfile
 
+import measure
+
 WIDTH, HEIGHT = 640, 360
-DENSITIES = [("low", 1000), ("medium", 10), ("high", 0.5)]  # pixels per triangle
+DENSITIES = [("low", 1000), ("medium", 10), ("high", 1), ("high", 0.5)]  # pixels per triangle
 # Spec, and the times in ms of the article's shading passes: Material (with light for forward), or Material + Lighting.
 PATHS = [
     ("msaa:1,prepass", "forward 1x", (1.600, 3.881, 8.987)),
@@ -22,42 +22,42 @@ PATHS = [
 ]
 
 
-def invocations(program, folder, pixels_per_triangle):
-    """Shader lanes issued per pixel, and the part of them that were not helpers, by spec."""
-    trace = f"{folder}/density.json"
+def count(program, folder, pixels_per_triangle):
+    """The material pass's lanes per pixel, by spec: issued, and with work."""
     triangles = round(WIDTH * HEIGHT / pixels_per_triangle)
-    subprocess.run([program, "make", "density", "--triangles", str(triangles), "--width", str(WIDTH),
-                    "--height", str(HEIGHT), "-o", trace], check=True, stdout=subprocess.DEVNULL)
-    specs = [spec for spec, _, _ in PATHS]
-    subprocess.run([program, "run", trace, "-t", *specs, "-o", folder], check=True, stdout=subprocess.DEVNULL)
-    with open(f"{folder}/report.json", encoding="utf-8") as file:
-        report = json.load(file)
-    found = {}
-    for result in report["results"]:
-        shade = next(s for s in result["frames"][0]["stages"] if s["stage"] == "shade")
-        found[result["technique"]] = (shade["lanes_issued"] / (WIDTH * HEIGHT), shade["lanes_used"] / shade["lanes_issued"])
-    return found
+    trace = measure.make(program, "density", f"{folder}/density.json", "--triangles", str(triangles), "--width",
+                         str(WIDTH), "--height", str(HEIGHT))
+    results = measure.results(program, "run", trace, [spec for spec, _, _ in PATHS], folder)
+    shading = {spec: measure.stages(result)["shade"] for spec, result in results.items()}
+    pixels = WIDTH * HEIGHT
+    return {spec: (stage["lanes_issued"] / pixels, stage["lanes_used"] / pixels) for spec, stage in shading.items()}
 
 
 def main():
     if len(sys.argv) != 2:
         sys.exit(__doc__.strip())
     with tempfile.TemporaryDirectory() as folder:
-        counted = [invocations(sys.argv[1], folder, pixels) for _, pixels in DENSITIES]
-    names = " | ".join(f"{name}, {pixels} px" for name, pixels in DENSITIES)
-    print(f"| invocations per pixel (lanes with work) | {names} | counted ratio | timed ratio |")
-    print("|---" * (len(DENSITIES) + 3) + "|")
+        counted = [count(sys.argv[1], folder, pixels) for _, pixels in DENSITIES]
+    densities = [f"{name}, {pixels} px" for name, pixels in DENSITIES]
+
+    measure.print_head("invocations per pixel = quads x 4 (of them helpers)", *densities)
+    for spec, name, _ in PATHS:
+        cells = [counts[spec] for counts in counted]
+        in_quads = spec not in ("visibility", "dvm")
+        measure.print_row(name, *[f"{issued:.2f} = {issued / 4:.2f} x 4 ({issued - used:.2f})" if in_quads else
+                                  f"{issued:.2f}, no quads" for issued, used in cells])
+    print()
+    measure.print_head("over the low density", *densities[1:], "timed: medium, high")
     for spec, name, times in PATHS:
-        cells = " | ".join(f"{counts[spec][0]:.2f} ({100 * counts[spec][1]:.0f} %)" for counts in counted)
-        ratios = " : ".join(f"{counts[spec][0] / counted[0][spec][0]:.2f}" for counts in counted)
-        timed = " : ".join(f"{time / times[0]:.2f}" for time in times)
-        print(f"| {name} | {cells} | {ratios} | {timed} |")
-    print("\n| over forward 1x at the same density |" + "".join(f" {name}, counted | timed |" for name, _ in DENSITIES))
-    print("|---" * (2 * len(DENSITIES) + 1) + "|")
+        low = counted[0][spec][0]
+        measure.print_row(name, *[f"{counts[spec][0] / low:.2f}" for counts in counted[1:]],
+                          ", ".join(f"{time / times[0]:.2f}" for time in times[1:]))
+    print()
+    measure.print_head("over forward 1x at the same density", *densities, "timed: low, medium, high")
+    forward, _, first = PATHS[0]
     for spec, name, times in PATHS[1:4]:
-        cells = "".join(f" {counts[spec][0] / counts[PATHS[0][0]][0]:.2f} | {time / first:.2f} |"
-                        for counts, time, first in zip(counted, times, PATHS[0][2]))
-        print(f"| {name} |{cells}")
+        measure.print_row(name, *[f"{counts[spec][0] / counts[forward][0]:.2f}" for counts in counted],
+                          ", ".join(f"{time / one:.2f}" for time, one in zip(times, first)))
 
 
 main()

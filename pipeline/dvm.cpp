@@ -45,7 +45,7 @@ FrameResult render_dvm(const Trace& trace, const Frame& frame, const DvmOptions&
   const Sampling sampling{CellGrid{}, standard_pattern(8)};
   const SelectOptions select{history.frames % 8, options.seed + history.frames};
   const Poses poses = poses_of(frame);
-  const std::vector<glm::dmat4> to_last = to_last_frame(poses, history.poses);
+  const std::vector<glm::dmat4> to_last = to_last_frame(poses, history.frames > 0 ? history.poses : poses);
   CurrentFrame current(frame.width, frame.height);
   QuadFrame quads(frame.width, frame.height);
 
@@ -75,7 +75,7 @@ FrameResult render_dvm(const Trace& trace, const Frame& frame, const DvmOptions&
   });
   result.pixel_counters["unknown"] = unknown_part(current);
   result.image = image_of(frame, image);
-  history = {history.frames + 1, current.width, current.height, std::move(image), poses};
+  history = {history.frames + 1, current.width, current.height, std::move(image), std::move(current.motion), poses};
   result.stages.insert(result.stages.end(), {spreading, accumulation});
   return result;
 }
@@ -88,7 +88,7 @@ std::vector<Surface> dvm_framebuffer() {
           {"location", "R8UI", 1},
           {"gbuffer", "RGBA8 + RGB10A2", kGBufferBytes},
           {"color", "RGB16F", kSampleColorBytes},
-          {"motion", "RG16F", kMotionBytes},
+          {"motion", "RG16F x 2", 2 * kMotionBytes},
           {"history", "RGBA16F x 2", 16}};
 }
 

@@ -30,7 +30,7 @@ FrameResult render_taa(const Trace& trace, const Frame& frame, const TaaOptions&
   const std::vector<glm::vec3> colors = shade_triangles(triangles, frame.light_direction);
   const Sampling sampling{CellGrid{}, jittered(options, history.frames)};
   const Poses poses = poses_of(frame);
-  const std::vector<glm::dmat4> to_last = to_last_frame(poses, history.poses);
+  const std::vector<glm::dmat4> to_last = to_last_frame(poses, history.frames > 0 ? history.poses : poses);
   CurrentFrame current(frame.width, frame.height);
 
   FrameResult result =
@@ -51,7 +51,7 @@ FrameResult render_taa(const Trace& trace, const Frame& frame, const TaaOptions&
     temporal(current, {options.blend}, history, tile, counters, image);
   });
   result.image = image_of(frame, image);
-  history = {history.frames + 1, current.width, current.height, std::move(image), poses};
+  history = {history.frames + 1, current.width, current.height, std::move(image), std::move(current.motion), poses};
   result.stages.push_back(accumulation);
   return result;
 }

@@ -23,12 +23,13 @@ Real blend_channel(const Real texels[4], const Real weights[4], Real low, Real h
   return kept + (color - kept) * blend;
 }
 
-OperationCounts pixel_cost() {
-  return count_operations([](OperationCounts& counts) {
+OperationCounts pixel_cost(bool fading) {
+  return count_operations([&](OperationCounts& counts) {
     const Counted<float> one(1.0f, counts), four[4] = {one, one, one, one};
     for (int c = 0; c < 4; ++c) blend_channel(four, four, one, one, one, one, one);
-    counts += OperationCounts{4, 4, 0, 0, 0, 2};              // the texels' weights from the position
-    counts += OperationCounts{3, 2, 0, 0, 1, 4 * 4 + 4 + 4};  // length of the motion; colours from and to fp16
+    counts += OperationCounts{4, 4, 0, 0, 0, 2};          // the texels' weights from the position
+    counts += OperationCounts{0, 0, 0, 0, 0, 6 * 4 + 2};  // six colours and the motion from and to fp16
+    if (fading) counts += OperationCounts{5 * 2 + 1, 5 * 2, 0, 0, 1, 4 * 2};  // the greatest of five motions
   });
 }
 
@@ -39,7 +40,7 @@ glm::vec4 round_half(glm::vec4 color) {
 
 // The history's four texels around a position, and their bilinear weights.
 struct Taps {
-  const glm::vec4* texels[4];
+  std::size_t texels[4];
   float weights[4];
 };
 
@@ -50,9 +51,18 @@ Taps taps_at(const History& history, float x, float y) {
   for (int i = 0; i < 4; ++i) {
     const auto column = std::clamp(static_cast<std::int32_t>(left) + i % 2, 0, history.width - 1);
     const auto row = std::clamp(static_cast<std::int32_t>(top) + i / 2, 0, history.height - 1);
-    taps.texels[i] = &history.color[static_cast<std::size_t>(row * history.width + column)];
+    taps.texels[i] = static_cast<std::size_t>(row * history.width + column);
   }
   return taps;
+}
+
+// How much of the clamp is in force.
+float clamp_part(const glm::vec2& motion, const History& history, const Taps& taps, float still_px) {
+  if (still_px == 0) return 1;
+  float square = glm::dot(motion, motion);
+  for (const std::size_t texel : taps.texels)
+    square = std::max(square, glm::dot(history.motion[texel], history.motion[texel]));
+  return std::min(std::sqrt(square) / still_px, 1.0f);
 }
 
 }  // namespace
@@ -98,13 +108,12 @@ void temporal(const CurrentFrame& frame, const TemporalOptions& options, const H
         continue;
       }
       const float known = frame.known[i];
-      float clamped = options.still_px > 0 ? std::min(glm::length(motion) / options.still_px, 1.0f) : 1.0f;
-      if (known == 0) clamped = 0;  // there is no box
       const Taps taps = taps_at(history, x, y);
+      const float clamped = known > 0 ? clamp_part(motion, history, taps, options.still_px) : 0;  // else no box
       glm::vec4 blended;
       for (int c = 0; c < 4; ++c) {
         float texels[4];
-        for (int t = 0; t < 4; ++t) texels[t] = (*taps.texels[t])[c];
+        for (int t = 0; t < 4; ++t) texels[t] = history.color[taps.texels[t]][c];
         blended[c] = blend_channel(texels, taps.weights, frame.low[i][c], frame.high[i][c], clamped, frame.color[i][c],
                                    options.blend * known);
       }
@@ -116,8 +125,10 @@ void temporal(const CurrentFrame& frame, const TemporalOptions& options, const H
   const std::size_t pixels = tile.pixels();
   counters.items_in += pixels;
   counters.items_out += pixels;
-  counters.ops += pixel_cost() * pixels;
-  counters.bytes_read += pixels * (kColorBytes + kMotionBytes) + reused * 4 * kColorBytes;
+  const bool fading = options.still_px > 0;
+  counters.ops += pixel_cost(fading) * pixels;
+  counters.bytes_read += pixels * (kColorBytes + kMotionBytes);
+  counters.bytes_read += reused * 4 * (kColorBytes + (fading ? kMotionBytes : 0));
   counters.bytes_written += pixels * kColorBytes;
   counters.lanes_used += reused;
   counters.lanes_issued += pixels;

@@ -17,6 +17,7 @@ struct History {
   std::uint32_t frames = 0;            // rendered so far
   std::int32_t width = 0, height = 0;  // pixels
   std::vector<glm::vec4> color;        // the last picture, rounded to fp16 RGBA
+  std::vector<glm::vec2> motion;       // of the last frame
   Poses poses;                         // of the last frame
 };
 
@@ -32,8 +33,10 @@ struct CurrentFrame {
 };
 
 struct TemporalOptions {
-  float blend = 0.1f;    // T: weight of the new frame
-  float still_px = 0.0;  // the clamp fades in from no motion to this much, in pixels; 0: it is always whole
+  float blend = 0.1f;  // T: weight of the new frame
+  // The clamp fades in from no motion to this much, in pixels, of what is there or was there in the last frame: where
+  // something has just gone away, its colour must go too. 0: the clamp is always whole.
+  float still_px = 0.0f;
 };
 
 // Sets the box of each of the tile's pixels to the least and greatest colour of its 3x3 neighbourhood.

@@ -165,6 +165,33 @@ TEST(Dvm, KeepsTheBarsOfTheSampleThatTaaLoses) {
   EXPECT_LT(share_kept("taa:8", 2), 0.3);
 }
 
+double rmse(const Image& a, const Image& b) {
+  double sum = 0;
+  for (std::size_t i = 0; i < a.rgba.size(); ++i)
+    if (i % 4 != 3) sum += std::pow(double{a.rgba[i]} - b.rgba[i], 2);
+  return std::sqrt(sum / static_cast<double>(a.rgba.size() / 4 * 3));
+}
+
+TEST(Temporal, NothingMovesInTheFirstFrame) {
+  for (const char* spec : {"taa:8", "dvm"}) {
+    History history;
+    parse_technique(spec).render(random_trace(40, 30, 50, 2), 0, {1, &history});
+    for (const glm::vec2& motion : history.motion) ASSERT_EQ(motion, glm::vec2(0)) << spec;
+    EXPECT_EQ(history.motion.size(), 40u * 30) << spec;
+  }
+}
+
+// A hut that passes before another one, under a camera that stands still.
+TEST(Dvm, WhatMovesUnderAStillCameraLeavesNoTrail) {
+  const Trace trace = read_trace(std::filesystem::path(BEAMPIPE_SOURCE_FOLDER) / "traces/samples/passing_huts.json");
+  const Technique technique = parse_technique("dvm"), truth = parse_technique("msaa:64");
+  History history;
+  for (std::size_t i = 0; i < trace.frames.size(); ++i) {
+    const Image found = technique.render(trace, i, {1, &history}).image;
+    EXPECT_LT(rmse(found, truth.render(trace, i, {1}).image), 0.02) << i;
+  }
+}
+
 TEST(Dvm, TheFirstFrameIsMsaaWhereMaterialsAreFew) {
   // Two flat draws' worth of colours: any sample of a material has its colour, so the masks are all that matters.
   std::vector<PixelSpaceTriangle> triangles = quad(2.3, 3.1, 17.7, 20.9, 0.5, glm::vec3(0.25f, 0.5f, 0.75f));

@@ -1,0 +1,45 @@
+#!/usr/bin/env python3
+"""TAA and DVM against MSAA over 60 frames: error and flicker, as docs/techniques.md shows them.
+
+usage: docs/over_time.py PROGRAM [MODEL.obj...]
+
+PROGRAM is for instance build/release/tools/beampipe. Measured are the scene `bars` under a camera that stands still, and
+the models that are named under one that goes around them by 3 degrees.
+"""
+import math
+import pathlib
+import sys
+import tempfile
+
+import measure
+
+TECHNIQUES = ["msaa:8", "taa:8", "dvm", "dvm:material=draw"]
+FRAMES, DEGREES = 60, 3
+
+
+def flicker(frames, first, last):
+    """Root mean square over frames, counted from 1."""
+    values = [frame["flicker"] ** 2 for frame in frames[first - 1:last]]
+    return math.sqrt(sum(values) / len(values))
+
+
+def main():
+    if len(sys.argv) < 2:
+        sys.exit(__doc__.strip())
+    program = sys.argv[1]
+    measure.print_head("trace, 320 x 180", "technique", "first frame", "after 8", f"after {FRAMES}", "flicker, frames 2-8",
+                       f"{FRAMES - 7}-{FRAMES}")
+    with tempfile.TemporaryDirectory() as folder:
+        trace = f"{folder}/trace.json"
+        for what in ["bars", *sys.argv[2:]]:
+            orbit = [] if what == "bars" else ["--orbit", str(DEGREES)]
+            measure.make(program, what, trace, "--frames", str(FRAMES), *orbit)
+            results = measure.results(program, "compare", trace, TECHNIQUES, folder, "--ladder", "8")
+            for spec in TECHNIQUES:
+                frames = results[spec]["frames"]
+                errors = [frames[i - 1]["error"]["rmse"] for i in (1, 8, FRAMES)]
+                measure.print_row(pathlib.Path(what).stem, f"`{spec}`", *[f"{error:.4f}" for error in errors],
+                                  f"{flicker(frames, 2, 8):.4f}", f"{flicker(frames, FRAMES - 7, FRAMES):.4f}")
+
+
+main()
