@@ -19,7 +19,8 @@ Json to_json(const ScatterPlot& plot) {
                         {"label", point.label},
                         {"bound", kBounds[static_cast<int>(point.y_bound)]}});
     }
-    json["series"].push_back({{"name", series.name}, {"line", series.line}, {"points", points}});
+    json["series"].push_back(
+        {{"name", series.name}, {"line", series.line}, {"marks", series.marks}, {"points", points}});
   }
   return json;
 }
@@ -47,7 +48,11 @@ std::vector<Figure> report_figures(const ReportFile& report) {
          "Up and to the left is better; above the line a technique needs less memory than MSAA of the same "
          "error. A triangle is a bound.",
          {{"frontier", frontier_plot({report})}}});
-    figures.push_back({"Time and error", "Down and to the left is better.", {{"wall time", speed_plot({report})}}});
+    Figure speed{"Time and error", "Down and to the left is better.", {{"wall time", speed_plot({report})}}};
+    for (const auto& [implementation, ms] : report.techniques.front().modelled_ms) {
+      speed.choices.emplace_back("modelled time: " + implementation, speed_plot({report}, implementation));
+    }
+    figures.push_back(std::move(speed));
   }
   Figure bytes{"Bytes per stage", "What each technique reads and writes in a frame, by stage.", {}};
   for (const auto& [label, key] :

@@ -146,6 +146,7 @@ void write_series(std::ostream& script, const ScatterPlot& plot) {
     const PlotSeries& series = plot.series[i];
     const std::string color = " linecolor " + quoted(kPlotColors[i % kPlotColors.size()]);
     if (series.line) add(series.points, "lines linewidth 2" + color);
+    if (!series.marks) continue;
     for (const auto bound : {PlotPoint::Bound::none, PlotPoint::Bound::lower, PlotPoint::Bound::upper}) {
       std::vector<PlotPoint> points = series.points;
       std::erase_if(points, [&](const PlotPoint& point) { return point.y_bound != bound; });

@@ -83,18 +83,21 @@ ScatterPlot frontier_plot(const std::vector<ReportFile>& reports) {
   return plot;
 }
 
-ScatterPlot speed_plot(const std::vector<ReportFile>& reports) {
-  ScatterPlot plot{"speed",
+ScatterPlot speed_plot(const std::vector<ReportFile>& reports, const std::string& implementation) {
+  const bool modelled = !implementation.empty();
+  ScatterPlot plot{modelled ? "speed_" + implementation : "speed",
                    "Time and error: " + scenes_text(reports),
-                   "wall time of the simulator, ms per frame",
+                   modelled ? "time of the modelled hardware (" + implementation + "), ms per frame"
+                            : "wall time of the simulator, ms per frame",
                    "RMSE, linear light (lower is better)",
                    {{kMsaa, {}, true}},
                    {}};
   bool compared = false;
   for (const TechniqueSummary& summary : mean_summaries(reports)) {
-    if (!summary.rmse) continue;
+    if (!summary.rmse || (modelled && !summary.modelled_ms.contains(implementation))) continue;
     compared = true;
-    add_point(plot, summary.spec, {summary.wall_ms, *summary.rmse, summary.spec});
+    const double ms = modelled ? summary.modelled_ms.at(implementation) : summary.wall_ms;
+    add_point(plot, summary.spec, {ms, *summary.rmse, summary.spec});
   }
   if (!compared) throw_not_compared(reports);
   std::vector<PlotPoint>& msaa = plot.series.front().points;

@@ -20,6 +20,7 @@ struct PlotSeries {
   std::string name;
   std::vector<PlotPoint> points;
   bool line = false;  // a line through the points, in their order
+  bool marks = true;  // a mark at each point
 };
 
 // Points over two logarithmic axes.
@@ -48,14 +49,17 @@ extern const std::array<const char*, 20> kPlotColors;
 // when no technique has an EMR.
 ScatterPlot frontier_plot(const std::vector<ReportFile>& reports);
 
-// Milliseconds against RMSE. Throws ReportError when no technique has an error.
-ScatterPlot speed_plot(const std::vector<ReportFile>& reports);
+// Milliseconds against RMSE. `implementation` names a way in which the modelled hardware runs the techniques, "" stands
+// for the wall time of the simulator. Throws ReportError when no technique has an error or such a time.
+ScatterPlot speed_plot(const std::vector<ReportFile>& reports, const std::string& implementation = "");
 
 // Megabytes per frame by stage, one bar per technique. `key`: "logical_bytes", "sector_bytes" or "dram_bytes"; nothing
 // when the report's stages do not have it.
 std::optional<BarPlot> bytes_plot(const ReportFile& report, const std::string& key);
 
-// Operations per logical byte against operations per frame, a point per stage of a technique.
+// A point per stage of a technique. With modelled hardware: operations per DRAM byte against operations per second,
+// under the roof of what the hardware issues and its DRAM moves; else operations per logical byte against operations
+// per frame.
 ScatterPlot roofline_plot(const ReportFile& report, const std::string& technique);
 
 }  // namespace beampipe

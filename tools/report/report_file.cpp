@@ -41,6 +41,11 @@ TechniqueSummary mean_summary(const std::vector<TechniqueSummary>& of_one_techni
     mean.emr->is_lower_bound |= summary.emr->is_lower_bound;
     mean.emr->is_upper_bound |= summary.emr->is_upper_bound;
   }
+  for (auto& [implementation, mean_ms] : mean.modelled_ms) {
+    std::vector<double> modelled;
+    for (const TechniqueSummary& summary : of_one_technique) modelled.push_back(summary.modelled_ms.at(implementation));
+    mean_ms = geometric_mean(modelled);
+  }
   mean.bytes_per_pixel = geometric_mean(bytes);
   mean.wall_ms = geometric_mean(ms);
   if (rmse.size() < of_one_technique.size()) {
@@ -90,6 +95,13 @@ TechniqueSummary read_summary(const Json& result) {
   std::vector<double> medians;
   for (const Json& frame : result.at("frames")) medians.push_back(frame.at("wall_ms").at("median"));
   summary.wall_ms = wall_time(std::move(medians)).median;
+  for (const Json& frame : result["frames"]) {
+    const Json times = frame.value("modelled_ms", Json::object());
+    for (const auto& [implementation, time] : times.items()) {
+      summary.modelled_ms[implementation] +=
+          time.at("overlap").get<double>() / static_cast<double>(result["frames"].size());
+    }
+  }
   if (result.contains("error")) summary.rmse = result["error"].at("rmse");
   if (result.contains("equivalent_msaa")) {
     summary.emr = {result["equivalent_msaa"], result.value("equivalent_msaa_is_lower_bound", false),

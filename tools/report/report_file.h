@@ -2,6 +2,7 @@
 #pragma once
 
 #include <filesystem>
+#include <map>
 #include <nlohmann/json.hpp>
 #include <optional>
 #include <stdexcept>
@@ -20,8 +21,10 @@ struct ReportError : std::runtime_error {
 // What one technique cost and bought, over all frames of a report.
 struct TechniqueSummary {
   std::string spec;
-  double bytes_per_pixel = 0;         // of the framebuffer
-  double wall_ms = 0;                 // per frame: the median of the frames' medians
+  double bytes_per_pixel = 0;  // of the framebuffer
+  double wall_ms = 0;          // per frame: the median of the frames' medians
+  // Per frame, by the way in which the modelled hardware runs the techniques: all stages at once. Empty: not modelled.
+  std::map<std::string, double> modelled_ms;
   std::optional<double> rmse;         // after `compare`
   std::optional<EquivalentMsaa> emr;  // after `compare`
 };

@@ -21,6 +21,37 @@ BarPlot::Part& part_named(BarPlot& plot, const std::string& name) {
   return plot.parts.back();
 }
 
+// What the modelled hardware can do at most.
+struct Roof {
+  std::string implementation;             // the first that is described
+  double operations = 0, dram_bytes = 0;  // per second, in billions
+};
+
+// Nothing when no hardware was modelled.
+std::optional<Roof> roof_of(const ReportFile& report) {
+  if (!report.json.contains("hardware") || report.techniques.front().modelled_ms.empty()) return std::nullopt;
+  const Json& hardware = report.json["hardware"];
+  const Json& rates = hardware.at("rates");
+  const double gigahertz = hardware.at("clock_mhz").get<double>() / 1000;
+  return Roof{hardware.at("implementations").begin().key(), gigahertz * rates.at("issue_per_clk").get<double>(),
+              gigahertz * rates.at("dram_bytes_per_clk").get<double>()};
+}
+
+// From the left of the leftmost stage, up to where DRAM no longer limits, and on to the right of the rightmost.
+PlotSeries roof_line(const Roof& roof, const ScatterPlot& plot) {
+  const double ridge = roof.operations / roof.dram_bytes;
+  double left = ridge, right = ridge;
+  for (const PlotSeries& series : plot.series) {
+    left = std::min(left, series.points.front().x);
+    right = std::max(right, series.points.front().x);
+  }
+  PlotSeries line{"roof: DRAM, then issue", {}, true, false};
+  for (const double x : {left / 2, ridge, right * 2}) {
+    line.points.push_back({x, std::min(roof.operations, x * roof.dram_bytes), ""});
+  }
+  return line;
+}
+
 }  // namespace
 
 std::optional<BarPlot> bytes_plot(const ReportFile& report, const std::string& key) {
@@ -38,23 +69,27 @@ std::optional<BarPlot> bytes_plot(const ReportFile& report, const std::string& k
 }
 
 ScatterPlot roofline_plot(const ReportFile& report, const std::string& technique) {
-  ScatterPlot plot{"roofline_" + spec_folder(technique),
-                   "Operations and bytes of each stage: " + technique + ", " + report.scene,
-                   "operations per logical byte",
-                   "operations, millions per frame",
-                   {},
-                   {}};
+  const std::optional<Roof> roof = roof_of(report);
+  ScatterPlot plot{
+      "roofline_" + spec_folder(technique),
+      "Operations and bytes of each stage: " + technique + ", " + report.scene,
+      roof ? "operations per DRAM byte" : "operations per logical byte",
+      roof ? "operations per second (" + roof->implementation + "), billions" : "operations, millions per frame",
+      {},
+      {}};
   for (const Json& stage : stage_records(report)) {
     if (stage.at("technique") != technique) continue;
     const std::string name = stage.at("stage");
-    const double per_byte = stage.value("ops_per_byte", 0.0);
-    const double ops = stage.at("ops").at("total").get<double>() / stage.at("frames").get<double>() / kMega;
-    if (per_byte > 0) {
-      plot.series.push_back({name, {{per_byte, ops, name}}});
+    const double ops = stage.at("ops").at("total"), bytes = stage.at(roof ? "dram_bytes" : "logical_bytes");
+    const double ms = roof ? stage.at("modelled_ms").at(roof->implementation).get<double>() : 1;
+    if (ops > 0 && bytes > 0 && ms > 0) {
+      const double height = roof ? ops / ms / 1e6 : ops / stage.at("frames").get<double>() / kMega;
+      plot.series.push_back({name, {{ops / bytes, height, name}}});
     } else {
-      plot.notes.push_back(name + " is not drawn: it has no operations or no bytes");
+      plot.notes.push_back(name + " is not drawn: it has no operations or no " + (roof ? "DRAM " : "") + "bytes.");
     }
   }
+  if (roof && !plot.series.empty()) plot.series.push_back(roof_line(*roof, plot));
   return plot;
 }
 

@@ -35,7 +35,8 @@ const std::vector<Source> kTechniqueColumns = {
       "What MSAA of the same error takes per pixel: EMR times the bytes of msaa:1."},
      "/msaa_bytes_per_pixel"},
     {{"flicker", "flicker", "linear light, 0..1",
-      "RMS over pixels of how much the error changes from one frame to the next, pooled over the frames but the first."},
+      "RMS over pixels of how much the error changes from one frame to the next, pooled over the frames but the "
+      "first."},
      "/flicker"},
     {{"wall_ms", "wall time", "ms per frame",
       "How long the simulator took on the machine that ran it, not hardware: the median over the frames."},
@@ -87,6 +88,19 @@ const std::vector<Source> kFrameColumns = {
     {{"flicker", "flicker", "linear light, 0..1", "RMS change of the error since the frame before."}, "/flicker"},
 };
 
+const std::vector<Source> kClaimColumns = {
+    {{"claim", "claim", "", "What the publications say a technique takes or does."}, "/name"},
+    {{"unit", "unit", "", "What the claim's numbers count."}, "/unit"},
+    {{"published_low", "published", "see unit", "The number that is published, or the lower end of the range."},
+     "/published_low"},
+    {{"published_high", "up to", "see unit", "The upper end of the range that is published."}, "/published_high"},
+    {{"ours", "ours", "see unit", "What this program finds; a dash where the report has not what it takes."}, "/ours"},
+    {{"difference", "difference", "see unit", "Ours, less the nearer end of what is published; 0 within it."},
+     "/difference"},
+    {{"source", "source", "", "Where the claim stands."}, "/source"},
+    {{"command", "command", "", "What finds our number."}, "/command"},
+};
+
 // One row per record, one column per source that any record has.
 Table make_table(const std::string& name, const std::string& title, const std::vector<Source>& sources,
                  const std::vector<Json>& records) {
@@ -103,6 +117,16 @@ Table make_table(const std::string& name, const std::string& title, const std::v
   return table;
 }
 
+// One more column for each way in which the modelled hardware runs the techniques.
+std::vector<Source> with_modelled_times(std::vector<Source> sources, const ReportFile& report, const std::string& unit,
+                                        const std::string& definition) {
+  for (const auto& [implementation, ms] : report.techniques.front().modelled_ms) {
+    sources.push_back({{"modelled_ms_" + implementation, "modelled: " + implementation, unit, definition},
+                       "/modelled_ms/" + implementation});
+  }
+  return sources;
+}
+
 std::vector<Json> technique_records(const ReportFile& report) {
   const double msaa_bytes = parse_technique("msaa:1").framebuffer_bytes_per_pixel();
   std::vector<Json> records;
@@ -110,6 +134,7 @@ std::vector<Json> technique_records(const ReportFile& report) {
     Json record = result;
     const TechniqueSummary summary = read_summary(result);
     record["wall_ms"] = summary.wall_ms;
+    record["modelled_ms"] = summary.modelled_ms;
     if (summary.emr) {
       record["emr_bound"] = summary.emr->is_lower_bound   ? "at least"
                             : summary.emr->is_upper_bound ? "at most"
@@ -148,11 +173,25 @@ std::string csv_field(const Json& value) {
 std::vector<Table> report_tables(const ReportFile& report) {
   const Json& results = report.json.at("results");
   std::vector<Table> tables;
-  tables.push_back(make_table("techniques", "Techniques", kTechniqueColumns, technique_records(report)));
+  tables.push_back(
+      make_table("techniques", "Techniques",
+                 with_modelled_times(
+                     kTechniqueColumns, report, "ms per frame",
+                     "What the modelled hardware takes when all stages run at once: the time of its busiest unit."),
+                 technique_records(report)));
   tables.push_back(make_table("framebuffer", "Framebuffers", kSurfaceColumns, members(results, "framebuffer")));
-  tables.push_back(make_table("stages", "Stages, all frames together", kStageColumns, stage_records(report)));
+  tables.push_back(
+      make_table("stages", "Stages, all frames together",
+                 with_modelled_times(kStageColumns, report, "ms",
+                                     "What the modelled hardware takes for this stage: the time of its busiest unit."),
+                 stage_records(report)));
   const std::vector<Json> frames = members(results, "frames");
   if (frames.size() > results.size()) tables.push_back(make_table("frames", "Frames", kFrameColumns, frames));
+  const auto& claims = report.json.find("claims");
+  if (claims != report.json.end() && !claims->empty()) {
+    tables.push_back(
+        make_table("claims", "Claims of the publications", kClaimColumns, {claims->begin(), claims->end()}));
+  }
   return tables;
 }
 

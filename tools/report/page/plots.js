@@ -52,7 +52,8 @@ function logScale(values, range) {
 function drawScatter(svg, plot, width) {
   const margin = { left: 62, right: 14, top: 8, bottom: 44 }, height = Math.max(280, Math.min(440, width * 0.7));
   const inner = { width: width - margin.left - margin.right, height: height - margin.top - margin.bottom };
-  const points = plot.series.flatMap((series, i) => series.points.map((point) => ({ ...point, color: data.colors[i] })));
+  const points = plot.series.flatMap((series, i) =>
+    series.points.map((point) => ({ ...point, color: data.colors[i], mark: series.marks })));
   const x = logScale(points.map((p) => p.x), [0, inner.width]), y = logScale(points.map((p) => p.y), [inner.height, 0]);
   svg.attr("viewBox", `0 0 ${width} ${height}`);
   const area = svg.append("g").attr("transform", `translate(${margin.left},${margin.top})`);
@@ -70,7 +71,7 @@ function drawScatter(svg, plot, width) {
       .attr("d", d3.line().x((p) => x(p.x)).y((p) => y(p.y))(series.points));
   });
   const symbol = (p) => d3.symbol().size(75).type(p.bound === "none" ? d3.symbolCircle : d3.symbolTriangle)();
-  area.selectAll(".point").data(points).join("path").attr("class", "point").attr("tabindex", 0).attr("role", "img")
+  area.selectAll(".point").data(points.filter((p) => p.mark)).join("path").attr("class", "point").attr("tabindex", 0).attr("role", "img")
     .attr("transform", (p) => `translate(${x(p.x)},${y(p.y)}) rotate(${p.bound === "upper" ? 180 : 0})`)
     .attr("d", symbol).attr("fill", (p) => p.color)
     .attr("data-tip", (p) =>
