@@ -2,14 +2,40 @@
 
 #include <string>
 
+#include "pipeline/memory/image_memory.h"
+#include "pipeline/memory/sample_memory.h"
 #include "pipeline/msaa.h"
 #include "pipeline/sample_batches.h"
 #include "pipeline/tiles.h"
+#include "simd/depth_test.h"
 #include "stages/depth_test.h"
 #include "stages/shade.h"
 #include "stages/vertex_setup.h"
 
 namespace beampipe {
+namespace {
+
+std::uint32_t pixel_of(const SampleFragment& fragment, const Tile& tile) {
+  return static_cast<std::uint32_t>((fragment.y - tile.y0) * tile.width() + fragment.x - tile.x0);
+}
+
+// Adding to the accumulator of a pixel reads and writes it.
+void blend(std::uint32_t triangle, std::uint32_t pixel, TileSurface& color, StageCounters& counters) {
+  color.read(triangle, pixel, counters);
+  color.write(triangle, pixel, counters);
+}
+
+// The background is blended in wherever a sample is clear.
+void blend_background(const SampleTile& depth, TileSurface& color, StageCounters& counters) {
+  const auto samples = static_cast<std::ptrdiff_t>(depth.samples_per_pixel);
+  const auto pixels = static_cast<std::uint32_t>((depth.depth.size() - kSampleSlack) / depth.samples_per_pixel);
+  for (std::uint32_t pixel = 0; pixel < pixels; ++pixel) {
+    const auto first = depth.depth.begin() + pixel * samples;
+    if (std::find(first, first + samples, kFarDepth) != first + samples) blend(kNoTriangle, pixel, color, counters);
+  }
+}
+
+}  // namespace
 
 std::vector<Sampling> acaa_rounds(int samples) {
   const Sampling all = msaa_sampling(samples);
@@ -42,22 +68,46 @@ FrameResult render_acaa(const Trace& trace, const Frame& frame, const AcaaOption
         accumulation{"accumulate"}, resolving{"resolve"};
     Accumulator accumulator(tile, options.samples, options.color, options.double_counting);
     std::vector<float> counts(tile.pixels());
+    std::vector<SampleAccess> accesses;
+    const ZOrder order(tile.width(), tile.height());
+    TileSurface color(run.memory, order, accumulator_bytes(options.color));
     for (const Sampling& sampling : rounds) {
       SampleTile depth(tile, sampling, 0);
+      SampleMemory memory(run.memory, tile, sampling, 0);
+      TileSurface taken(run.memory, order, static_cast<std::uint32_t>(sampling.pattern.count));
       raster_in_batches(triangles, list, tile, sampling, raster, [&](std::vector<SampleFragment>& fragments) {
-        depth_test(triangles, fragments, tile, sampling, testing, depth);
+        depth_test(triangles, fragments, tile, sampling, testing, depth, accesses);
+        memory.test_depth(accesses, testing);
       });
-      if (options.double_counting == DoubleCounting::saturate)
+      memory.flush(testing);
+      if (options.double_counting == DoubleCounting::saturate) {
         accumulate_background(depth, frame.background, accumulation, accumulator);
+        memory.read_depth(accumulation);
+        blend_background(depth, color, accumulation);
+      }
       accumulator.taken.assign(tile.pixels(), 0);
       raster_in_batches(triangles, list, tile, sampling, raster, [&](std::vector<SampleFragment>& fragments) {
-        depth_test_equal(triangles, tile, sampling, testing, depth, fragments);
-        if (options.double_counting == DoubleCounting::stencil) stencil_test(tile, stencil, accumulator, fragments);
-        shade(fragments, shading);
+        depth_test_equal(triangles, tile, sampling, testing, depth, fragments, accesses);
+        memory.test_equal(accesses, testing);
+        if (options.double_counting == DoubleCounting::stencil) {
+          for (const SampleFragment& fragment : fragments)
+            taken.access(fragment.triangle, pixel_of(fragment, tile), fragment.mask, 0, 1, stencil);
+          stencil_test(tile, stencil, accumulator, fragments);
+          for (const SampleFragment& fragment : fragments)
+            taken.access(fragment.triangle, pixel_of(fragment, tile), 0, fragment.mask, 1, stencil);
+        }
+        shade(fragments, shading, &triangles.attributes);
         accumulate(fragments, colors, tile, accumulation, accumulator);
+        for (const SampleFragment& fragment : fragments)
+          blend(fragment.triangle, pixel_of(fragment, tile), color, accumulation);
         count_fragments(fragments, tile, sampling.grid, counts);
       });
+      memory.flush(testing);
+      taken.flush(stencil);
+      color.flush(accumulation);
     }
+    color.read_all(resolving);
+    write_image(run.memory, tile, resolving);
     TileResult result{resolve(accumulator, frame.background, resolving),
                       {{"visible_fragments", std::move(counts)}},
                       {raster, testing}};
@@ -65,7 +115,7 @@ FrameResult render_acaa(const Trace& trace, const Frame& frame, const AcaaOption
     result.stages.insert(result.stages.end(), {shading, accumulation, resolving});
     return result;
   };
-  return render_tiles(frame, triangles, geometry, sample_tile_size(rounds.front().pattern.count), run, render_tile);
+  return render_tiles(frame, triangles, geometry, bin_size(rounds.front().pattern.count), run, render_tile);
 }
 
 std::vector<Surface> acaa_framebuffer(const AcaaOptions& options) {

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <string>
 
+#include "pipeline/memory/beam_memory.h"
 #include "pipeline/tiles.h"
 #include "stages/a_buffer.h"
 #include "stages/aggregate_format.h"
@@ -15,8 +16,6 @@
 
 namespace beampipe {
 namespace {
-
-constexpr int kTileSize = 32;  // px
 
 using PixelCounters = std::vector<std::pair<std::string, std::vector<float>>>;
 
@@ -54,19 +53,20 @@ FrameResult render_beam(const Trace& trace, const Frame& frame, const BeamOption
   const PositionSet positions(conserve ? cell_patterns(beam.positions) : std::vector{hammersley_pattern()});
   const MaskTable table(positions.patterns.front());
   const RecordBytes bytes = record_bytes(beam);
+  const std::vector<Surface> framebuffer = beam_framebuffer(beam);
   const BeamFragmentOptions options{beam.mask,
                                     beam.mask == MaskSource::none ? std::vector<SamplePattern>{} : positions.patterns,
                                     &table, bytes.fragment, beam.tiny_positions};
 
   FrameResult result =
-      render_tiles(frame, triangles, setup, kTileSize, run, [&](const Tile& tile, const TriangleList& list) {
+      render_tiles(frame, triangles, setup, kBinSize, run, [&](const Tile& tile, const TriangleList& list) {
         StageCounters raster{"conservative_raster"}, fragment{"beam_fragment"}, shading{"shade"}, buffering{"a_buffer"},
             composition{"compose"}, resolving{"resolve"};
         std::vector<PixelTriangle> pairs;
         std::vector<Fragment> fragments;
         conservative_raster(triangles, list, tile, raster, pairs);
         beam_fragment(triangles, pairs, tile, options, fragment, fragments);
-        shade(colors, fragments, shading);
+        shade(colors, fragments, shading, &triangles.attributes);
         const ABuffer buffer = a_buffer(fragments, tile.pixels(), beam.sort, bytes.fragment, buffering);
         PixelCounters counts = count_per_pixel(tile, buffer, fragments);
         std::vector<PixelColor> aggregates;
@@ -87,6 +87,10 @@ FrameResult render_beam(const Trace& trace, const Frame& frame, const BeamOption
             counts.emplace_back("merges", counts.front().second);
             break;
         }
+        std::vector<bool> full;
+        for (const PixelColor& aggregate : aggregates) full.push_back(aggregate.alpha == 1.0f);
+        count_sorted_composition(run.memory, tile, buffer, fragments, bytes.fragment, counts.back().second, full,
+                                 framebuffer, buffering, composition, resolving);
         return TileResult{resolve(aggregates, frame.background, bytes.aggregate, resolving),
                           std::move(counts),
                           {raster, fragment, shading, buffering, composition, resolving}};

@@ -3,6 +3,8 @@
 #include <array>
 #include <map>
 
+#include "pipeline/memory/image_memory.h"
+#include "pipeline/memory/sample_memory.h"
 #include "pipeline/sample_batches.h"
 #include "pipeline/tiles.h"
 #include "stages/depth_test.h"
@@ -16,8 +18,6 @@ namespace {
 
 // The clamp fades out below this motion, in pixels: the article's remedy for flicker at edges between lit facets.
 constexpr float kStillPixels = 0.05f;
-
-constexpr int kTileSize = 64;  // px
 
 // A number for each triangle's material.
 std::vector<std::uint32_t> material_ids(const SetupTriangles& triangles, MaterialBy by) {
@@ -50,16 +50,27 @@ FrameResult render_dvm(const Trace& trace, const Frame& frame, const DvmOptions&
   QuadFrame quads(frame.width, frame.height);
 
   FrameResult result =
-      render_tiles(frame, triangles, setup, kTileSize, run, [&](const Tile& tile, const TriangleList& list) {
+      render_tiles(frame, triangles, setup, kBinSize, run, [&](const Tile& tile, const TriangleList& list) {
         StageCounters raster{"sample_raster"}, testing{"depth_test"}, selecting{"sample_select"}, shading{"shade"},
             lighting{"light"}, moving{"motion"};
         SampleTile surface(tile, sampling, kVisibilityBytes);
+        SampleMemory memory(run.memory, tile, sampling, kVisibilityBytes);
+        std::vector<SampleAccess> accesses;
         raster_in_batches(triangles, list, tile, sampling, raster, [&](std::vector<SampleFragment>& fragments) {
-          depth_test(triangles, fragments, tile, sampling, testing, surface);
+          depth_test(triangles, fragments, tile, sampling, testing, surface, accesses);
+          memory.test_and_write(accesses, testing);
         });
+        memory.flush(testing);
         const std::vector<SampleQuad> selected = sample_select(surface, tile, materials, select, selecting);
-        write_gbuffer(shaded_samples(selected), shading);
-        light(shaded_samples(selected), lighting);
+        const std::uint64_t shaded = shaded_samples(selected);
+        write_gbuffer(shaded, shading);
+        light(shaded, lighting);
+        memory.read_color(selecting);
+        stream(run.memory, shaded * kShadingSampleBytes, selecting);
+        stream(run.memory, shaded * (kVisibilityBytes + kGBufferBytes), shading);
+        stream(run.memory, shaded * (kGBufferBytes + kSampleColorBytes), lighting);
+        memory.read_depth(moving);
+        stream(run.memory, tile.pixels() * (kVisibilityBytes + kMotionBytes), moving);
         quads.insert(tile, selected);
         copy_to_frame(motion(surface, tile, frame, triangles.draws, to_last, moving), tile, frame, current.motion);
         return TileResult{{}, {}, {raster, testing, selecting, shading, lighting, moving}};
@@ -67,11 +78,14 @@ FrameResult render_dvm(const Trace& trace, const Frame& frame, const DvmOptions&
 
   StageCounters spreading{"dilate"}, accumulation{"temporal"};
   std::vector<glm::vec4> image(current.color.size());
-  for_each_tile(frame, kTileSize, run, spreading, [&](const Tile& tile, StageCounters& counters) {
+  for_each_tile(frame, kBinSize, run, spreading, [&](const Tile& tile, StageCounters& counters) {
     dilate(quads, colors, triangles.draws, frame.background, tile, counters, current);
+    stream(run.memory, tile.pixels() * (kSampleColorBytes + kShadingSampleBytes), counters);
+    stream(run.memory, tile.pixels() * kSampleColorBytes, counters);
   });
-  for_each_tile(frame, kTileSize, run, accumulation, [&](const Tile& tile, StageCounters& counters) {
+  for_each_tile(frame, kBinSize, run, accumulation, [&](const Tile& tile, StageCounters& counters) {
     temporal(current, {options.blend, kStillPixels}, history, tile, counters, image);
+    move_temporal(run.memory, tile, history.frames > 0, counters);
   });
   result.pixel_counters["unknown"] = unknown_part(current);
   result.image = image_of(frame, image);

@@ -2,6 +2,8 @@
 
 #include <string>
 
+#include "pipeline/memory/image_memory.h"
+#include "pipeline/memory/sample_memory.h"
 #include "pipeline/sample_batches.h"
 #include "pipeline/tiles.h"
 #include "stages/depth_test.h"
@@ -35,23 +37,32 @@ FrameResult render_msaa(const Trace& trace, const Frame& frame, const MsaaOption
     StageCounters raster{"sample_raster"}, shading{"shade"}, testing{"depth_test"}, resolving{"resolve"};
     SampleTile surface(tile, sampling, options.prepass ? 0 : color_bytes(options));
     std::vector<float> counts(tile.pixels());
+    std::vector<SampleAccess> accesses;
+    const auto same_color = [&](std::uint32_t a, std::uint32_t b) { return colors[a] == colors[b]; };
+    SampleMemory memory(run.memory, tile, sampling, color_bytes(options), same_color);
     raster_in_batches(triangles, list, tile, sampling, raster, [&](std::vector<SampleFragment>& fragments) {
-      if (!options.prepass) shade(fragments, shading);
-      depth_test(triangles, fragments, tile, sampling, testing, surface);
+      if (!options.prepass) shade(fragments, shading, &triangles.attributes);
+      depth_test(triangles, fragments, tile, sampling, testing, surface, accesses);
+      options.prepass ? memory.test_depth(accesses, testing) : memory.test_and_write(accesses, testing);
       count_fragments(fragments, tile, sampling.grid, counts);
     });
+    memory.flush(testing);
     surface.color_bytes = color_bytes(options);
     if (options.prepass) {  // shades and writes what is visible; which triangle that is, the surface knows already
       raster_in_batches(triangles, list, tile, sampling, raster, [&](std::vector<SampleFragment>& fragments) {
-        depth_test_equal(triangles, tile, sampling, testing, surface, fragments);
-        shade(fragments, shading);
+        depth_test_equal(triangles, tile, sampling, testing, surface, fragments, accesses);
+        memory.test_equal(accesses, testing);
+        shade(fragments, shading, &triangles.attributes);
       });
+      memory.flush(testing);
     }
+    memory.read_color(resolving);
+    write_image(run.memory, tile, resolving);
     return TileResult{resolve(surface, tile.pixels(), colors, frame.background, resolving),
                       {{"fragments", std::move(counts)}},
                       {raster, shading, testing, resolving}};
   };
-  return render_tiles(frame, triangles, setup, sample_tile_size(options.samples), run, render_tile);
+  return render_tiles(frame, triangles, setup, bin_size(options.samples), run, render_tile);
 }
 
 std::vector<Surface> msaa_framebuffer(const MsaaOptions& options) {

@@ -1,4 +1,4 @@
-// What the techniques that test samples share: how large a tile is, and the raster stage in batches.
+// What the techniques that test samples share: the raster stage in batches.
 #pragma once
 
 #include <vector>
@@ -8,13 +8,6 @@
 #include "stages/tile.h"
 
 namespace beampipe {
-
-// Pixels on each side of a tile that holds at most 2^16 samples: 512 KiB of depth and owners.
-inline int sample_tile_size(int samples) {
-  int size = 64;
-  while (size > 2 && size * size * samples > 1 << 16) size /= 2;
-  return size;
-}
 
 // sample_raster over the list's triangles in order; calls body(fragments) for each batch.
 template <class Body>

@@ -5,6 +5,8 @@
 #include <string>
 
 #include "pipeline/batches.h"
+#include "pipeline/memory/beam_memory.h"
+#include "pipeline/memory/image_memory.h"
 #include "pipeline/tiles.h"
 #include "stages/claim.h"
 #include "stages/conservative_raster.h"
@@ -14,8 +16,6 @@
 
 namespace beampipe {
 namespace {
-
-constexpr int kTileSize = 32;  // px
 
 // The box of the pixels that need another pass, its corners even; empty when there are none.
 template <class Pixel>
@@ -40,13 +40,17 @@ FrameResult render_shape(const Trace& trace, const Frame& frame, const StreamOpt
   const BeamFragmentOptions options{MaskSource::exact, positions.patterns, nullptr, streaming_fragment_bytes(Words),
                                     false};
 
-  return render_tiles(frame, triangles, setup, kTileSize, run, [&](const Tile& tile, const TriangleList& list) {
+  return render_tiles(frame, triangles, setup, kBinSize, run, [&](const Tile& tile, const TriangleList& list) {
     StageCounters raster{"conservative_raster"}, fragment{"beam_fragment"}, claiming{"claim"}, shading{"shade"},
         settling{"settle"}, resolving{"resolve"};
     std::vector<OwnerPixel<Words, Layers>> pixels(tile.pixels(), cleared_pixel<Words, Layers>());
     std::vector<float> passes(tile.pixels()), counts(tile.pixels());
     std::vector<PixelTriangle> pairs;
     std::vector<Fragment> fragments;
+    const ZOrder order(tile.width(), tile.height());
+    const std::vector<Surface> framebuffer = stream_framebuffer(stream);
+    AggregateMemory state(run.memory, order, {framebuffer.begin(), framebuffer.end() - 1});
+    AggregateMemory color(run.memory, order, {framebuffer.back()});
     Tile box = tile;
     for (int pass = 1; box.x0 < box.x1; ++pass) {
       for (std::size_t i = 0; i < pixels.size(); ++i) passes[i] += is_unfinished(pixels[i]);
@@ -57,13 +61,23 @@ FrameResult render_shape(const Trace& trace, const Frame& frame, const StreamOpt
         beam_fragment(triangles, pairs, tile, options, fragment, fragments);
         for (const Fragment& item : fragments) ++counts[item.pixel];
         claim(triangles, fragments, tile, positions, claiming, pixels);
+        for (const Fragment& item : fragments) state.merge(item.triangle, item.pixel, claiming);
       });
+      state.flush({}, claiming);
       fragments.clear();
       beam_fragment(triangles, owners(pixels, tile), tile, options, fragment, fragments);
       shade_visible(colors, fragments, shading);
       settle(fragments, pass == stream.passes, settling, pixels);
+      for (const Fragment& item : fragments) {
+        state.merge(0, item.pixel, settling);
+        color.merge(0, item.pixel, settling);
+      }
+      state.flush({}, settling);
+      color.flush({}, settling);
       box = unfinished_box(pixels, tile);
     }
+    color.read_all(resolving);
+    write_image(run.memory, tile, resolving);
     return TileResult{resolve(settled_colors(pixels), frame.background, sizeof pixels[0], resolving),
                       {{"fragments", std::move(counts)}, {"passes", std::move(passes)}},
                       {raster, fragment, claiming, shading, settling, resolving}};

@@ -1,5 +1,6 @@
 #include "pipeline/taa.h"
 
+#include "pipeline/memory/image_memory.h"
 #include "pipeline/tiles.h"
 #include "pipeline/visibility.h"
 #include "stages/shade.h"
@@ -7,8 +8,6 @@
 
 namespace beampipe {
 namespace {
-
-constexpr int kTileSize = 64;  // px
 
 // Sampling at another position of the pixel is what jittering the projection comes to.
 SamplePattern jittered(const TaaOptions& options, std::uint32_t frame) {
@@ -34,21 +33,24 @@ FrameResult render_taa(const Trace& trace, const Frame& frame, const TaaOptions&
   CurrentFrame current(frame.width, frame.height);
 
   FrameResult result =
-      render_tiles(frame, triangles, setup, kTileSize, run, [&](const Tile& tile, const TriangleList& list) {
+      render_tiles(frame, triangles, setup, kBinSize, run, [&](const Tile& tile, const TriangleList& list) {
         StageCounters moving{"motion"};
         SampleTile surface(tile, sampling, kVisibilityBytes);
-        TileResult one = visibility_tile(triangles, list, tile, sampling, colors, frame.background, surface);
+        TileResult one = visibility_tile(triangles, list, tile, sampling, colors, frame.background, run.memory, surface);
         copy_to_frame(one.image, tile, frame, current.color);
         copy_to_frame(motion(surface, tile, frame, triangles.draws, to_last, moving), tile, frame, current.motion);
+        stream(run.memory, tile.pixels() * (kSampleDepthBytes + kVisibilityBytes), moving);
+        stream(run.memory, tile.pixels() * kMotionBytes, moving);
         one.stages.push_back(moving);
         return one;
       });
 
   StageCounters accumulation{"temporal"};
   std::vector<glm::vec4> image(current.color.size());
-  for_each_tile(frame, kTileSize, run, accumulation, [&](const Tile& tile, StageCounters& counters) {
+  for_each_tile(frame, kBinSize, run, accumulation, [&](const Tile& tile, StageCounters& counters) {
     neighborhood_box(tile, counters, current);
     temporal(current, {options.blend}, history, tile, counters, image);
+    move_temporal(run.memory, tile, history.frames > 0, counters);
   });
   result.image = image_of(frame, image);
   history = {history.frames + 1, current.width, current.height, std::move(image), std::move(current.motion), poses};

@@ -10,6 +10,7 @@
 #include <string_view>
 #include <vector>
 
+#include "pipeline/memory/parameters.h"
 #include "stages/counters.h"
 #include "stages/temporal.h"
 #include "traces/trace.h"
@@ -21,6 +22,7 @@ struct RunOptions {
   // What earlier frames left, for techniques that accumulate over time: read, and made ready for the next frame. One
   // per technique; frames in order. Null: the frame is a first one.
   History* history = nullptr;
+  MemoryParameters memory{};  // of the system that counts sectors and DRAM bytes
 };
 
 // Linear RGB plus A (the part of the pixel that geometry covers, 0..1); row 0 on top; 4 floats per pixel.

@@ -7,6 +7,7 @@
 
 #include <algorithm>
 
+#include "pipeline/memory/image_memory.h"
 #include "simd/sample_pattern.h"
 #include "stages/traverse.h"
 
@@ -60,6 +61,7 @@ FrameResult render_tiles(const Frame& frame, const SetupTriangles& triangles, co
   std::vector<glm::vec4> image(pixels);
   for (const auto& [name, values] : results.front().pixel_counters) frame_result.pixel_counters[name].resize(pixels);
   frame_result.stages = {vertex_setup};
+  stream(options.memory, vertex_setup.bytes_read, frame_result.stages.front());
   frame_result.stages.insert(frame_result.stages.end(), results.front().stages.size(), StageCounters{});
   for (std::size_t i = 0; i < tiles.size(); ++i) {
     if (!results[i].image.empty()) copy_to_frame(results[i].image, tiles[i], frame, image);

@@ -1,5 +1,9 @@
 #include "pipeline/visibility.h"
 
+#include <set>
+
+#include "pipeline/memory/image_memory.h"
+#include "pipeline/memory/sample_memory.h"
 #include "pipeline/sample_batches.h"
 #include "pipeline/tiles.h"
 #include "stages/depth_test.h"
@@ -10,11 +14,40 @@
 namespace beampipe {
 namespace {
 
-constexpr int kTileSize = 64;  // px
+// The pixels that show a triangle.
+std::vector<std::uint32_t> shown_pixels(const SampleTile& surface, const Tile& tile) {
+  std::vector<std::uint32_t> pixels;
+  for (std::uint32_t pixel = 0; pixel < tile.pixels(); ++pixel)
+    if (surface.triangle[pixel] != kNoTriangle) pixels.push_back(pixel);
+  return pixels;
+}
 
-std::uint64_t covered_pixels(const SampleTile& surface, const Tile& tile) {
-  const auto end = surface.triangle.begin() + static_cast<std::ptrdiff_t>(tile.pixels());
-  return tile.pixels() - static_cast<std::uint64_t>(std::count(surface.triangle.begin(), end, kNoTriangle));
+void write_pixels(const std::vector<std::uint32_t>& pixels, TileSurface& to, StageCounters& counters) {
+  for (const std::uint32_t pixel : pixels) to.write(0, pixel, counters);
+  to.flush(counters);
+}
+
+// By a pixel's triangle number its attributes are fetched from memory: a request each, and each triangle of the bin once
+// from DRAM.
+void fetch_attributes(const MemoryParameters& memory, const SampleTile& surface,
+                      const std::vector<std::uint32_t>& pixels, StageCounters& counters) {
+  if (!memory.modelled) return;
+  std::set<std::uint32_t> triangles;
+  for (const std::uint32_t pixel : pixels) triangles.insert(surface.triangle[pixel]);
+  const std::uint64_t sectors = (sizeof(FlatAttributes) + memory.sector_bytes - 1) / memory.sector_bytes;
+  counters.sector_bytes += pixels.size() * sectors * memory.sector_bytes;
+  counters.dram_bytes += triangles.size() * sectors * memory.sector_bytes;
+}
+
+// Light: from the G-buffer to colour. Resolve: from colour to the picture.
+void move_light_and_resolve(const MemoryParameters& memory, const Tile& tile, const ZOrder& order,
+                            const std::vector<std::uint32_t>& pixels, TileSurface& gbuffer, StageCounters& lighting,
+                            StageCounters& resolving) {
+  TileSurface color(memory, order, kSampleColorBytes);
+  gbuffer.read_all(lighting);
+  write_pixels(pixels, color, lighting);
+  color.read_all(resolving);
+  write_image(memory, tile, resolving);
 }
 
 }  // namespace
@@ -25,18 +58,31 @@ FrameResult render_deferred(const Trace& trace, const Frame& frame, const RunOpt
   const std::vector<glm::vec3> colors = shade_triangles(triangles, frame.light_direction);
   const Sampling sampling{CellGrid{}, standard_pattern(1)};
   setup += setup;  // the triangles come twice
-  return render_tiles(frame, triangles, setup, kTileSize, run, [&](const Tile& tile, const TriangleList& list) {
+  return render_tiles(frame, triangles, setup, kBinSize, run, [&](const Tile& tile, const TriangleList& list) {
     StageCounters raster{"sample_raster"}, testing{"depth_test"}, shading{"shade"}, lighting{"light"},
         resolving{"resolve"};
     SampleTile surface(tile, sampling, 0);
+    SampleMemory memory(run.memory, tile, sampling, 0);
+    const ZOrder order(tile.width(), tile.height());
+    TileSurface gbuffer(run.memory, order, kGBufferBytes);
+    std::vector<SampleAccess> accesses;
     raster_in_batches(triangles, list, tile, sampling, raster, [&](std::vector<SampleFragment>& fragments) {
-      depth_test(triangles, fragments, tile, sampling, testing, surface);
+      depth_test(triangles, fragments, tile, sampling, testing, surface, accesses);
+      memory.test_depth(accesses, testing);
     });
+    memory.flush(testing);
     raster_in_batches(triangles, list, tile, sampling, raster, [&](std::vector<SampleFragment>& fragments) {
-      depth_test_equal(triangles, tile, sampling, testing, surface, fragments);
+      depth_test_equal(triangles, tile, sampling, testing, surface, fragments, accesses);
+      memory.test_equal(accesses, testing);
       write_gbuffer(fragments, shading);
+      for (const SampleAccess& access : accesses)
+        gbuffer.access(access.triangle, access.cell, 0, access.passed, kGBufferBytes, shading);
     });
-    light(covered_pixels(surface, tile), lighting);
+    memory.flush(testing);
+    gbuffer.flush(shading);
+    const std::vector<std::uint32_t> shown = shown_pixels(surface, tile);
+    light(shown.size(), lighting);
+    move_light_and_resolve(run.memory, tile, order, shown, gbuffer, lighting, resolving);
     surface.color_bytes = kSampleColorBytes;
     return TileResult{resolve(surface, tile.pixels(), colors, frame.background, resolving),
                       {},
@@ -49,24 +95,35 @@ FrameResult render_visibility(const Trace& trace, const Frame& frame, const RunO
   const SetupTriangles triangles = vertex_setup(trace, frame, setup);
   const std::vector<glm::vec3> colors = shade_triangles(triangles, frame.light_direction);
   const Sampling sampling{CellGrid{}, standard_pattern(1)};
-  return render_tiles(frame, triangles, setup, kTileSize, run, [&](const Tile& tile, const TriangleList& list) {
+  return render_tiles(frame, triangles, setup, kBinSize, run, [&](const Tile& tile, const TriangleList& list) {
     SampleTile surface(tile, sampling, kVisibilityBytes);
-    return visibility_tile(triangles, list, tile, sampling, colors, frame.background, surface);
+    return visibility_tile(triangles, list, tile, sampling, colors, frame.background, run.memory, surface);
   });
 }
 
 TileResult visibility_tile(const SetupTriangles& triangles, const TriangleList& list, const Tile& tile,
                            const Sampling& sampling, const std::vector<glm::vec3>& colors, const glm::vec3& background,
-                           SampleTile& surface) {
+                           const MemoryParameters& parameters, SampleTile& surface) {
   StageCounters raster{"sample_raster"}, testing{"depth_test"}, shading{"shade"}, lighting{"light"},
       resolving{"resolve"};
   std::vector<float> counts(tile.pixels());
+  SampleMemory memory(parameters, tile, sampling, kVisibilityBytes);
+  std::vector<SampleAccess> accesses;
   raster_in_batches(triangles, list, tile, sampling, raster, [&](std::vector<SampleFragment>& fragments) {
-    depth_test(triangles, fragments, tile, sampling, testing, surface);
+    depth_test(triangles, fragments, tile, sampling, testing, surface, accesses);
+    memory.test_and_write(accesses, testing);
     count_fragments(fragments, tile, sampling.grid, counts);
   });
-  write_gbuffer(covered_pixels(surface, tile), shading);
-  light(covered_pixels(surface, tile), lighting);
+  memory.flush(testing);
+  const std::vector<std::uint32_t> shown = shown_pixels(surface, tile);
+  write_gbuffer(shown.size(), shading);
+  light(shown.size(), lighting);
+  const ZOrder order(tile.width(), tile.height());
+  TileSurface gbuffer(parameters, order, kGBufferBytes);
+  memory.read_color(shading);
+  fetch_attributes(parameters, surface, shown, shading);
+  write_pixels(shown, gbuffer, shading);
+  move_light_and_resolve(parameters, tile, order, shown, gbuffer, lighting, resolving);
   surface.color_bytes = kSampleColorBytes;
   return {resolve(surface, tile.pixels(), colors, background, resolving),
           {{"fragments", std::move(counts)}},

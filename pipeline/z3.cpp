@@ -4,6 +4,8 @@
 #include <string>
 
 #include "pipeline/batches.h"
+#include "pipeline/memory/beam_memory.h"
+#include "pipeline/memory/image_memory.h"
 #include "pipeline/tiles.h"
 #include "stages/conservative_raster.h"
 #include "stages/shade.h"
@@ -11,8 +13,6 @@
 
 namespace beampipe {
 namespace {
-
-constexpr int kTileSize = 32;  // px
 
 template <std::size_t Words, std::size_t Layers>
 FrameResult render_shape(const Trace& trace, const Frame& frame, const Z3Options& z3, const RunOptions& run) {
@@ -22,11 +22,13 @@ FrameResult render_shape(const Trace& trace, const Frame& frame, const Z3Options
   const PositionSet positions(cell_patterns(z3.positions));
   const BeamFragmentOptions options{MaskSource::exact, positions.patterns, nullptr, 4 + 4 * Words + 12, false};
 
-  return render_tiles(frame, triangles, setup, kTileSize, run, [&](const Tile& tile, const TriangleList& list) {
+  return render_tiles(frame, triangles, setup, kBinSize, run, [&](const Tile& tile, const TriangleList& list) {
     StageCounters raster{"conservative_raster"}, fragment{"beam_fragment"}, shading{"shade"}, composition{"compose"},
         resolving{"resolve"};
     std::vector<Z3Pixel<Words, Layers>> pixels(tile.pixels());
     std::vector<float> counts(tile.pixels());
+    const ZOrder order(tile.width(), tile.height());
+    AggregateMemory memory(run.memory, order, z3_framebuffer(z3));
     std::vector<PixelTriangle> pairs;
     std::vector<Fragment> fragments;
     for_each_batch(list, [&](const TriangleList& batch) {
@@ -36,7 +38,11 @@ FrameResult render_shape(const Trace& trace, const Frame& frame, const Z3Options
       shade(colors, fragments, shading);
       for (const Fragment& item : fragments) ++counts[item.pixel];
       compose_z3(fragments, positions, z3.merge, composition, pixels);
+      for (const Fragment& item : fragments) memory.merge(item.triangle, item.pixel, composition);
     });
+    memory.flush({}, composition);
+    memory.read_all(resolving);
+    write_image(run.memory, tile, resolving);
     return TileResult{resolve(z3_colors(pixels), frame.background, sizeof pixels[0], resolving),
                       {{"fragments", std::move(counts)}},
                       {raster, fragment, shading, composition, resolving}};

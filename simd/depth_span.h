@@ -16,14 +16,20 @@ struct DepthSpan {
 std::uint64_t depth_span(const DepthSpan& span, std::size_t count, std::uint64_t owner_id, double* depth,
                          std::uint64_t* owner);
 
-// Scalar twin, for the samples [first, count).
+// Scalar twins. Of one sample: is it nearer?
+template <class Real>
+bool depth_span_sample(Real z, Real dzdx, Real row, Real x, Real step, Real index, Real stored, Real& depth) {
+  depth = (z + dzdx * (x + step * index)) + row;
+  return depth < stored;
+}
+// For the samples [first, count).
 inline std::uint64_t depth_span_scalar(const DepthSpan& span, std::size_t first, std::size_t count,
                                        std::uint64_t owner_id, double* depth, std::uint64_t* owner) {
   std::uint64_t passed = 0;
   for (std::size_t i = first; i < count; ++i) {
-    const double x = span.x + span.step * static_cast<double>(i);
-    const double z = (span.z + span.dzdx * x) + span.row;
-    if (!(z < depth[i])) continue;
+    double z = 0;
+    const auto index = static_cast<double>(i);
+    if (!depth_span_sample(span.z, span.dzdx, span.row, span.x, span.step, index, depth[i], z)) continue;
     depth[i] = z;
     owner[i] = owner_id;
     ++passed;

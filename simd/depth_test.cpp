@@ -1,5 +1,7 @@
 #include "simd/depth_test.h"
 
+#include <bit>
+
 #undef HWY_TARGET_INCLUDE
 #define HWY_TARGET_INCLUDE "simd/depth_test.cpp"
 #include "hwy/foreach_target.h"
@@ -26,8 +28,15 @@ HWY_INLINE hn::Mask<D> samples_at(D d, std::uint32_t mask, std::size_t s) {
   return hn::LoadMaskBits(d, bits);
 }
 
+template <class D>
+HWY_INLINE std::uint32_t mask_bits(D d, hn::Mask<D> mask) {
+  std::uint8_t bytes[8] = {};
+  hn::StoreMaskBits(d, mask, bytes);
+  return bytes[0] | std::uint32_t{bytes[1]} << 8;
+}
+
 std::uint64_t depth_test_kernel(const CellDepth* items, std::size_t count, const SamplePattern& pattern,
-                                const SampleSurface& surface) {
+                                const SampleSurface& surface, std::uint32_t* passed_masks) {
   const hn::CappedTag<float, kMaxMaskSamples> d;
   const hn::RebindToUnsigned<decltype(d)> du;
   const std::size_t lanes = hn::Lanes(d);
@@ -35,6 +44,7 @@ std::uint64_t depth_test_kernel(const CellDepth* items, std::size_t count, const
   std::uint64_t passed = 0;
   for (std::size_t i = 0; i < count; ++i) {
     const CellDepth& item = items[i];
+    std::uint32_t mask = 0;
     for (std::size_t s = 0; s < samples; s += lanes) {
       const auto depth = depths_at(d, item, pattern, s);
       float* stored_depth = surface.depth + item.cell * samples + s;
@@ -42,8 +52,10 @@ std::uint64_t depth_test_kernel(const CellDepth* items, std::size_t count, const
       hn::BlendedStore(depth, pass, d, stored_depth);
       hn::BlendedStore(hn::Set(du, item.triangle), hn::RebindMask(du, pass), du,
                        surface.triangle + item.cell * samples + s);
-      passed += hn::CountTrue(d, pass);
+      mask |= mask_bits(d, pass) << s;
     }
+    passed += static_cast<std::uint64_t>(std::popcount(mask));
+    if (passed_masks) passed_masks[i] = mask;
   }
   return passed;
 }
@@ -57,9 +69,7 @@ void depth_equal_kernel(const CellDepth* items, std::size_t count, const SampleP
     std::uint32_t mask = 0;
     for (std::size_t s = 0; s < samples; s += hn::Lanes(d)) {
       const auto equal = hn::Eq(depths_at(d, item, pattern, s), hn::LoadU(d, depth + item.cell * samples + s));
-      std::uint8_t bytes[8] = {};
-      hn::StoreMaskBits(d, equal, bytes);
-      mask |= (bytes[0] | std::uint32_t{bytes[1]} << 8) << s;
+      mask |= mask_bits(d, equal) << s;
     }
     masks[i] = mask & item.mask;
   }
@@ -73,8 +83,8 @@ HWY_AFTER_NAMESPACE();
 namespace beampipe {
 HWY_EXPORT(depth_test_kernel);
 std::uint64_t depth_test(const CellDepth* items, std::size_t count, const SamplePattern& pattern,
-                         const SampleSurface& surface) {
-  return HWY_DYNAMIC_DISPATCH(depth_test_kernel)(items, count, pattern, surface);
+                         const SampleSurface& surface, std::uint32_t* passed) {
+  return HWY_DYNAMIC_DISPATCH(depth_test_kernel)(items, count, pattern, surface, passed);
 }
 HWY_EXPORT(depth_equal_kernel);
 void depth_equal(const CellDepth* items, std::size_t count, const SamplePattern& pattern, const float* depth,

@@ -24,9 +24,10 @@ struct SampleSurface {
   std::uint32_t* triangle;
 };
 
-// In order: a later item sees what an earlier one stored. Returns how many samples passed. Lanes are across samples.
+// In order: a later item sees what an earlier one stored. Returns how many samples passed; `passed`, if not null, gets
+// which: a mask per item. Lanes are across samples.
 std::uint64_t depth_test(const CellDepth* items, std::size_t count, const SamplePattern& pattern,
-                         const SampleSurface& surface);
+                         const SampleSurface& surface, std::uint32_t* passed = nullptr);
 
 // Behind a depth-only pass: masks[i] keeps those samples of items[i].mask that have the stored depth, to the last bit.
 // Reads `depth` as far as depth_test does. Lanes are across samples.

@@ -8,6 +8,7 @@
 #include <cstdint>
 
 #include "simd/sample_pattern.h"
+#include "simd/scalar.h"
 
 namespace beampipe {
 
@@ -28,15 +29,19 @@ class MaskTable {
 
 // An edge as the table sees it. Both directions of an edge give the same angle and distance, one of them flipped, so
 // that rounding cannot put them into entries that are not each other's complement.
-struct TableEdge {
-  std::int32_t angle;  // 0..31, of the unflipped edge
-  std::uint32_t flip;  // 0, or ~0 when the edge runs the other way: entry [angle + 32][63 - r]
-  float distance;      // of the unflipped edge from the pixel's centre, px; positive: the centre is inside
+template <class Int, class Mask, class Float>
+struct TableEdgeOf {
+  Int angle;       // 0..31, of the unflipped edge
+  Mask flip;       // 0, or ~0 when the edge runs the other way: entry [angle + 32][63 - r]
+  Float distance;  // of the unflipped edge from the pixel's centre, px; positive: the centre is inside
 };
+using TableEdge = TableEdgeOf<std::int32_t, std::uint32_t, float>;
 
-struct TableTriangle {
-  TableEdge edges[3];
+template <class Int, class Mask, class Float>
+struct TableTriangleOf {
+  TableEdgeOf<Int, Mask, Float> edges[3];
 };
+using TableTriangle = TableTriangleOf<std::int32_t, std::uint32_t, float>;
 
 // The table's angle for an edge with inward normal (a, b), not both 0.
 std::int32_t table_angle(double a, double b, bool& flip);
@@ -44,21 +49,25 @@ std::int32_t table_angle(double a, double b, bool& flip);
 // masks[i] = AND of the three edges' look-ups. Lanes are across triangles.
 void table_masks(const TableTriangle* triangles, std::size_t count, const MaskTable& table, std::uint32_t* masks);
 
-// Scalar twin; distances beyond the half diagonal give no or all samples.
-inline std::uint32_t table_mask_scalar(const TableTriangle& triangle, const MaskTable& table) {
-  std::uint32_t mask = ~0u;
-  for (const TableEdge& edge : triangle.edges) {
-    const float scaled = (edge.distance * (1.0f / kHalfDiagonal) + 1.0f) * (kTableDistances / 2);
-    const float clamped = scaled < 0.0f ? 0.0f : (scaled > kTableDistances - 1 ? kTableDistances - 1 : scaled);
-    const auto r = static_cast<std::int32_t>(clamped);
-    std::uint32_t word =
-        edge.flip ? table.words()[(edge.angle + kTableAngles / 2) * kTableDistances + kTableDistances - 1 - r]
-                  : table.words()[edge.angle * kTableDistances + r];
-    if (edge.distance <= -kHalfDiagonal) word = edge.flip;
-    if (edge.distance >= kHalfDiagonal) word = ~edge.flip;
-    mask &= word;
+// Scalar twin, also for counting numbers; distances beyond the half diagonal give no or all samples.
+template <class Int, class Mask, class Float>
+Mask table_mask_scalar(const TableTriangleOf<Int, Mask, Float>& triangle, const MaskTable& table) {
+  const Float zero(0.0f), one(1.0f), reach(kHalfDiagonal);
+  Mask mask(~0u);
+  for (const TableEdgeOf<Int, Mask, Float>& edge : triangle.edges) {
+    const Float scaled = (edge.distance * Float(1.0f / kHalfDiagonal) + one) * Float(kTableDistances / 2);
+    const Int column = to_integer(lesser(greater(scaled, zero), Float(kTableDistances - 1)));
+    const Int row = edge.angle * Int(kTableDistances);
+    const Int reverse = row + Int((kTableAngles / 2 + 1) * kTableDistances - 1) - column;
+    Mask word = fetch(table.words(), select(edge.flip != Mask(0u), reverse, row + column));
+    word = select(edge.distance <= zero - reach, edge.flip, word);
+    word = select(edge.distance >= reach, ~edge.flip, word);
+    mask = mask & word;
   }
   return mask;
+}
+inline std::uint32_t table_mask_scalar(const TableTriangle& triangle, const MaskTable& table) {
+  return table_mask_scalar<std::int32_t, std::uint32_t, float>(triangle, table);
 }
 
 }  // namespace beampipe

@@ -2,7 +2,20 @@
 
 #include <algorithm>
 
+#include "stages/counting.h"
+#include "stages/merge_sort.h"
+
 namespace beampipe {
+namespace {
+
+OperationCounts comparison_cost() {
+  return count_operations([](OperationCounts& counts) {
+    const Counted<float> depth(0.0f, counts);
+    comes_first(depth, depth);
+  });
+}
+
+}  // namespace
 
 ABuffer a_buffer(const std::vector<Fragment>& fragments, std::size_t pixels, SortKey key, std::uint32_t record_bytes,
                  StageCounters& counters) {
@@ -15,19 +28,15 @@ ABuffer a_buffer(const std::vector<Fragment>& fragments, std::size_t pixels, Sor
   for (std::uint32_t i = 0; i < fragments.size(); ++i) buffer.fragments[next[fragments[i].pixel]++] = i;
 
   std::uint64_t comparisons = 0;
+  std::vector<std::uint32_t> scratch;
   for (std::size_t pixel = 0; pixel < pixels; ++pixel) {
-    const auto begin = buffer.fragments.begin() + buffer.first[pixel];
-    const auto end = buffer.fragments.begin() + buffer.first[pixel + 1];
-    std::sort(begin, end, [&](std::uint32_t i, std::uint32_t j) {
-      ++comparisons;
-      const float zi = key == SortKey::centroid ? fragments[i].centroid_z : fragments[i].z_min;
-      const float zj = key == SortKey::centroid ? fragments[j].centroid_z : fragments[j].z_min;
-      return zi < zj || (zi == zj && i < j);
-    });
+    comparisons += merge_sort(
+        buffer.fragments.data() + buffer.first[pixel], buffer.depth_of(pixel), scratch,
+        [&](std::uint32_t i) { return key == SortKey::centroid ? fragments[i].centroid_z : fragments[i].z_min; });
   }
   counters.items_in += fragments.size();
   counters.items_out += fragments.size();
-  counters.ops.add += comparisons;
+  counters.ops += comparison_cost() * comparisons;
   counters.bytes_read += a_buffer_bytes(fragments.size(), pixels, record_bytes);
   counters.bytes_written += a_buffer_bytes(fragments.size(), pixels, record_bytes);
   return buffer;

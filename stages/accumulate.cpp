@@ -33,12 +33,35 @@ void add_weighted(const Real color[4], Real share, bool saturate, Real sum[4]) {
   for (int c = 0; c < 4; ++c) sum[c] = sum[c] + color[c] * share;
 }
 
+// From the accumulator's format and back, four channels.
+template <class Real>
+void convert_sum(Real sum[4]) {
+  for (int c = 0; c < 4; ++c) sum[c] = converted(sum[c]);
+}
+
+// Sums over the background, by what alpha leaves of it.
+template <class Real>
+void over_background(const Real sum[4], const Real background[3], Real pixel[3]) {
+  const Real left = greater(Real(1.0f) - sum[3], Real(0.0f));
+  for (int c = 0; c < 3; ++c) pixel[c] = sum[c] + background[c] * left;
+}
+
+OperationCounts resolve_cost() {
+  return count_operations([](OperationCounts& counts) {
+    const Counted<float> one(1.0f, counts);
+    Counted<float> sum[4] = {one, one, one, one}, pixel[3];
+    convert_sum(sum);
+    over_background(sum, sum, pixel);
+  });
+}
+
 OperationCounts fragment_cost(bool saturate) {
   return count_operations([&](OperationCounts& counts) {
     const Counted<float> one(1.0f, counts), color[4] = {one, one, one, one};
     Counted<float> sum[4] = {one, one, one, one};
+    convert_sum(sum);
     add_weighted(color, bit_count(Counted<std::uint32_t>(1, counts)) * one, saturate, sum);
-    counts.convert += 8;  // the accumulator from its format and back
+    convert_sum(sum);
   });
 }
 
@@ -129,13 +152,13 @@ std::vector<glm::vec4> resolve(const Accumulator& accumulator, const glm::vec3& 
   image.reserve(accumulator.color.size());
   for (std::size_t i = 0; i < accumulator.color.size(); ++i) {
     const glm::vec4& sum = accumulator.color[i];
-    const float left = std::max(1.0f - sum.a, 0.0f);
-    image.emplace_back(glm::vec3(sum) + background * left, std::clamp(sum.a - accumulator.background[i], 0.0f, 1.0f));
+    glm::vec4& pixel = image.emplace_back(0.0f, 0.0f, 0.0f, std::clamp(sum.a - accumulator.background[i], 0.0f, 1.0f));
+    over_background(&sum.x, &background.x, &pixel.x);
   }
   const std::size_t pixels = image.size();
   counters.items_in += pixels;
   counters.items_out += pixels;
-  counters.ops += OperationCounts{3, 2, 0, 0, 0, 4} * pixels;  // colour + background x max(1 - alpha, 0)
+  counters.ops += resolve_cost() * pixels;
   counters.bytes_read += pixels * accumulator_bytes(accumulator.format);
   counters.bytes_written += pixels * 6;  // fp16 RGB
   counters.lanes_used += pixels;

@@ -11,6 +11,10 @@ inline constexpr std::uint32_t kAggregateVisibilityBytes = 4 + 4 + 16 + 4 + 8;
 inline constexpr std::uint32_t kAggregateColorBytes = 3 * 2;
 inline constexpr std::uint32_t kAggregateBytes = kAggregateVisibilityBytes + kAggregateColorBytes;
 
+// The paper's text (section 3) has 32 bytes without colour, which is what a plane of three coefficients, all that a
+// depth over a pixel needs, leaves.
+inline constexpr std::uint32_t kCompactVisibilityBytes = kAggregateVisibilityBytes - 4;
+
 // Without masks and slabs: coverage and colour; a fragment has the depth that it is sorted by as well.
 inline constexpr std::uint32_t kOverBytes = 4 + kAggregateColorBytes;
 inline constexpr std::uint32_t kOverFragmentBytes = kOverBytes + 4;

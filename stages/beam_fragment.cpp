@@ -6,28 +6,24 @@
 #include "simd/coverage.h"
 #include "simd/sample_test.h"
 #include "stages/counting.h"
+#include "stages/fragment_geometry.h"
 #include "stages/raster_cost.h"
 
 namespace beampipe {
 namespace {
 
-constexpr float kUnit = 1.0f / kSubpixelUnits;  // px
-
 CoverageInput<float> coverage_input(const SetupTriangle& triangle, const Edge (&edges)[3], std::int32_t x,
                                     std::int32_t y) {
-  const std::int32_t left = x * kSubpixelUnits, top = y * kSubpixelUnits;
   CoverageInput<float> in;
+  std::int64_t vertex_x[3], vertex_y[3];
+  EdgeAt<std::int64_t> at[3];
   for (int k = 0; k < 3; ++k) {
-    in.u[k] = static_cast<float>(triangle.x[k] - left) * kUnit;
-    in.v[k] = static_cast<float>(triangle.y[k] - top) * kUnit;
-    in.a[k] = static_cast<float>(edges[k].a) * kUnit;
-    in.b[k] = static_cast<float>(edges[k].b) * kUnit;
-    for (int corner = 0; corner < 4; ++corner) {
-      const std::int32_t right = (corner & 1) * kSubpixelUnits, down = (corner >> 1) * kSubpixelUnits;
-      in.corner[k][corner] = static_cast<float>(edges[k].at(left + right, top + down)) * (kUnit * kUnit);
-    }
+    vertex_x[k] = triangle.x[k], vertex_y[k] = triangle.y[k];
+    at[k] = {edges[k].a, edges[k].b, edges[k].c};
     in.vertex_z[k] = triangle.vertex_z[k];
   }
+  set_geometry<std::int64_t, float>(vertex_x, vertex_y, at, std::int64_t{x} * kSubpixelUnits,
+                                    std::int64_t{y} * kSubpixelUnits, in);
   const DepthPlane<float> plane = pixel_plane(triangle, x, y);
   in.z = plane.z, in.dzdu = plane.dzdu, in.dzdv = plane.dzdv;
   return in;
@@ -37,8 +33,8 @@ CellEdges exact_edges(const Edge (&edges)[3], std::int32_t x, std::int32_t y) {
   CellEdges cell;
   for (int k = 0; k < 3; ++k) {
     cell.a[k] = edges[k].a, cell.b[k] = edges[k].b;
-    cell.c[k] =
-        edges[k].at(std::int64_t{x} * kSubpixelUnits, std::int64_t{y} * kSubpixelUnits) - (edges[k].owns ? 0 : 1);
+    cell.c[k] = owned_edge<std::int64_t>({edges[k].a, edges[k].b, edges[k].c}, std::int64_t{x} * kSubpixelUnits,
+                                         std::int64_t{y} * kSubpixelUnits, edges[k].owns ? 0 : 1);
   }
   return cell;
 }
@@ -64,52 +60,90 @@ TableTriangle table_edges(const Edge (&edges)[3], const EdgeDirection (&directio
   const std::int64_t center_y = std::int64_t{y} * kSubpixelUnits + kSubpixelUnits / 2;
   TableTriangle triangle;
   for (int k = 0; k < 3; ++k) {
-    const auto distance = static_cast<double>(edges[k].at(center_x, center_y)) * directions[k].per_unit;
-    triangle.edges[k] = {directions[k].angle, directions[k].flip ? ~0u : 0u, static_cast<float>(distance)};
+    const float distance = edge_distance<std::int64_t, double>({edges[k].a, edges[k].b, edges[k].c}, center_x, center_y,
+                                                               directions[k].per_unit);
+    triangle.edges[k] = {directions[k].angle, directions[k].flip ? ~0u : 0u, distance};
   }
   return triangle;
 }
 
 // Of those that are not `taken`.
+// One position on the way to the nearest: that of the least distance, if it is free.
+template <class Float, class Index>
+void keep_nearest(Float x, Float y, Float u, Float v, bool is_free, Index index, Float& least, Index& nearest) {
+  const Float du = x - u, dv = y - v;
+  const Float distance = du * du + dv * dv;
+  const bool nearer = (distance < least) & is_free;
+  least = select(nearer, distance, least);
+  nearest = select(nearer, index, nearest);
+}
+
 std::size_t nearest_position(const std::vector<SamplePattern>& positions, float u, float v, const WideMask& taken) {
-  std::size_t nearest = 0;
+  std::uint32_t nearest = 0;
   float least = 4.0f;  // more than the pixel's diagonal, squared
-  for (std::size_t i = 0; i < positions.size() * kMaxMaskSamples; ++i) {
+  for (std::uint32_t i = 0; i < positions.size() * kMaxMaskSamples; ++i) {
     const SamplePattern& pattern = positions[i / kMaxMaskSamples];
     const std::size_t s = i % kMaxMaskSamples;
-    const float du = static_cast<float>(pattern.x[s]) * kUnit - u, dv = static_cast<float>(pattern.y[s]) * kUnit - v;
-    const float distance = du * du + dv * dv;
-    if (distance < least && !taken.test(i)) {
-      least = distance;
-      nearest = i;
-    }
+    keep_nearest(static_cast<float>(pattern.x[s]) * kUnit, static_cast<float>(pattern.y[s]) * kUnit, u, v,
+                 !taken.test(i), i, least, nearest);
   }
   return nearest;
 }
 
+// ---- What the twins cost ----
+
+using CountedInt = Counted<std::int64_t>;
+using CountedFloat = Counted<float>;
+
+EdgeAt<CountedInt> counted_edge(OperationCounts& counts) {
+  const CountedInt one(1, counts);
+  return {one, one, one};
+}
+
+// Of a (pixel, triangle): geometry, depth at the centre, coverage.
 OperationCounts coverage_cost() {
   return count_operations([](OperationCounts& counts) {
-    CoverageInput<Counted<float>> in;
-    const Counted<float> one(1.0f, counts);
-    for (int k = 0; k < 3; ++k) {
-      in.u[k] = in.v[k] = in.a[k] = in.b[k] = in.vertex_z[k] = one;
-      for (Counted<float>& corner : in.corner[k]) corner = one;
-    }
-    in.z = in.dzdu = in.dzdv = one;
+    CoverageInput<CountedFloat> in;
+    const CountedFloat one(1.0f, counts);
+    const Counted<double> plane(1.0, counts);
+    const CountedInt zero(0, counts), vertices[3] = {zero, zero, zero};
+    const EdgeAt<CountedInt> edges[3] = {counted_edge(counts), counted_edge(counts), counted_edge(counts)};
+    set_geometry(vertices, vertices, edges, zero, zero, in);
+    in.z = to_float(plane_at(plane, plane, plane, plane, plane, plane, plane));
+    in.dzdu = in.dzdv = in.vertex_z[0] = in.vertex_z[1] = in.vertex_z[2] = one;
     coverage_scalar(in);
   });
 }
 
-// Per edge: distance scaled and clamped (a multiply-add, a multiply, two comparisons), converted, fetched, two selects
-// for beyond the table, and the AND.
-constexpr OperationCounts kTableMaskCost{6, 18, 3, 3, 0, 3};
-constexpr OperationCounts kNearestCost{2, 4, 0, 0, 0, 0};  // per position: a squared distance and its comparison
-
-OperationCounts exact_mask_cost(const SamplePattern& pattern) {  // per pattern
+OperationCounts table_mask_cost(const MaskTable& table) {
   return count_operations([&](OperationCounts& counts) {
-    using Int = Counted<std::int64_t>;
-    const Int zero(0, counts), edges[3] = {zero, zero, zero};
-    sample_mask_scalar(edges, edges, edges, pattern);
+    const CountedInt zero(0, counts);
+    TableTriangleOf<Counted<std::int32_t>, Counted<std::uint32_t>, CountedFloat> triangle;
+    for (auto& edge : triangle.edges) {
+      edge.angle = Counted<std::int32_t>(0, counts);
+      edge.flip = Counted<std::uint32_t>(0u, counts);
+      edge.distance = edge_distance(counted_edge(counts), zero, zero, Counted<double>(1.0, counts));
+    }
+    table_mask_scalar(triangle, table);
+  });
+}
+
+OperationCounts nearest_cost() {  // per position
+  return count_operations([](OperationCounts& counts) {
+    const CountedFloat x(0.0f), u(1.0f, counts);  // where positions are is known
+    CountedFloat least(4.0f, counts);
+    Counted<std::uint32_t> nearest(0u, counts);
+    keep_nearest(x, x, u, u, true, nearest, least, nearest);
+    counts.bit += 1;  // is it free?
+  });
+}
+
+OperationCounts exact_mask_cost(const std::vector<SamplePattern>& positions) {
+  return count_operations([&](OperationCounts& counts) {
+    const CountedInt zero(0, counts), slopes[3] = {zero, zero, zero};
+    CountedInt corner[3];
+    for (CountedInt& value : corner) value = owned_edge(counted_edge(counts), zero, zero, zero);
+    for (const SamplePattern& pattern : positions) sample_mask_scalar(slopes, slopes, corner, pattern);
   });
 }
 
@@ -183,9 +217,9 @@ void beam_fragment(const SetupTriangles& triangles, const std::vector<PixelTrian
   counters.items_in += in.size();
   counters.items_out += out.size() - before;
   counters.ops += coverage_cost() * in.size();
-  for (const SamplePattern& pattern : options.positions)
-    counters.ops += (use_table ? kTableMaskCost : exact_mask_cost(pattern)) * in.size();
-  counters.ops += kNearestCost * (located * options.positions.size() * kMaxMaskSamples);
+  if (use_table) counters.ops += table_mask_cost(*options.table) * in.size();
+  if (use_tests) counters.ops += exact_mask_cost(options.positions) * in.size();
+  counters.ops += nearest_cost() * (located * options.positions.size() * kMaxMaskSamples);
   counters.bytes_read += in.size() * kPixelTriangleBytes;
   counters.bytes_written += (out.size() - before) * options.fragment_bytes;
   counters.lanes_used += out.size() - before;

@@ -47,6 +47,10 @@ struct StageCounters {
   std::uint64_t bytes_written = 0;  // logical
   std::uint64_t lanes_used = 0;     // lanes with work; for `shade` the fragments
   std::uint64_t lanes_issued = 0;   // lanes that ran; for `shade` with the helpers of 2x2 quads
+  std::uint64_t sector_bytes = 0;   // asked of the memory system, read and written, in whole sectors
+  std::uint64_t dram_bytes = 0;     // moved to and from DRAM behind the modelled caches, read and written
+
+  std::uint64_t logical_bytes() const { return bytes_read + bytes_written; }
 
   StageCounters& operator+=(const StageCounters& other) {
     items_in += other.items_in;
@@ -56,6 +60,8 @@ struct StageCounters {
     bytes_written += other.bytes_written;
     lanes_used += other.lanes_used;
     lanes_issued += other.lanes_issued;
+    sector_bytes += other.sector_bytes;
+    dram_bytes += other.dram_bytes;
     return *this;
   }
   bool operator==(const StageCounters&) const = default;

@@ -2,6 +2,7 @@
 #pragma once
 
 #include <bit>
+#include <cmath>
 #include <cstdint>
 #include <type_traits>
 
@@ -80,6 +81,28 @@ Counted<Value> greater(const Counted<Value>& x, const Counted<Value>& y) {
 template <class Value>
 Counted<Value> magnitude(const Counted<Value>& x) {
   return counted(x.tally, &OperationCounts::bit, x.value < 0 ? -x.value : x.value);
+}
+template <class Value>
+Counted<Value> square_root(const Counted<Value>& x) {
+  return counted(x.tally, &OperationCounts::special, static_cast<Value>(std::sqrt(x.value)));
+}
+inline Counted<std::int32_t> to_integer(const Counted<float>& x) {
+  return counted(x.tally, &OperationCounts::convert, static_cast<std::int32_t>(x.value));
+}
+template <class Value>
+Counted<float> to_float(const Counted<Value>& x) {
+  return counted(x.tally, &OperationCounts::convert, static_cast<float>(x.value));
+}
+template <class Value>
+Counted<double> to_double(const Counted<Value>& x) {
+  return counted(x.tally, &OperationCounts::convert, static_cast<double>(x.value));
+}
+template <class Value>
+Counted<Value> converted(const Counted<Value>& x) {
+  return counted(x.tally, &OperationCounts::convert, x.value);
+}
+inline Counted<std::uint32_t> fetch(const std::uint32_t* table, const Counted<std::int32_t>& index) {
+  return counted(index.tally, &OperationCounts::fetch, table[index.value]);
 }
 // A population count and the conversion of its result.
 inline Counted<float> bit_count(const Counted<std::uint32_t>& mask) {

@@ -2,6 +2,7 @@
 
 #include "simd/depth_test.h"
 #include "stages/counting.h"
+#include "stages/fragment_geometry.h"
 #include "stages/raster_cost.h"
 
 namespace beampipe {
@@ -19,12 +20,22 @@ std::vector<CellDepth> cell_depths(const SetupTriangles& triangles, const std::v
     const std::int32_t cell_in_pixel = (fragment.y % grid.rows) * grid.columns + fragment.x % grid.columns;
     const double left = static_cast<double>(fragment.x) / grid.columns,
                  top = static_cast<double>(fragment.y) / grid.rows;
-    items.push_back({static_cast<std::uint32_t>(pixel * grid.cells_per_pixel() + cell_in_pixel), fragment.mask,
-                     fragment.triangle, static_cast<float>(plane.at(left, top)),
-                     static_cast<float>(plane.dzdx / kSubpixelUnits), static_cast<float>(plane.dzdy / kSubpixelUnits)});
+    CellDepth& item = items.emplace_back();
+    item.cell = static_cast<std::uint32_t>(pixel * grid.cells_per_pixel() + cell_in_pixel);
+    item.mask = fragment.mask;
+    item.triangle = fragment.triangle;
+    cell_plane(plane.z, plane.dzdx, plane.dzdy, plane.anchor_x, plane.anchor_y, left, top, item.z, item.dzdx,
+               item.dzdy);
     tested += static_cast<std::uint64_t>(std::popcount(fragment.mask));
   }
   return items;
+}
+
+void list_accesses(const std::vector<CellDepth>& items, const std::vector<std::uint32_t>& passed,
+                   std::vector<SampleAccess>& accesses) {
+  accesses.resize(items.size());
+  for (std::size_t i = 0; i < items.size(); ++i)
+    accesses[i] = {items[i].cell, items[i].triangle, items[i].mask, passed[i]};
 }
 
 OperationCounts per_sample_cost() {  // of either test
@@ -35,10 +46,19 @@ OperationCounts per_sample_cost() {  // of either test
   });
 }
 
+OperationCounts per_fragment_cost() {
+  return count_operations([](OperationCounts& counts) {
+    const Counted<double> one(1.0, counts);
+    Counted<float> depth, slope_x, slope_y;
+    cell_plane(one, one, one, one, one, one, one, depth, slope_x, slope_y);
+  });
+}
+
 void count(std::size_t fragments, std::uint64_t tested, std::uint64_t passed, std::uint32_t bytes_written,
            const SamplePattern& pattern, StageCounters& counters) {
   counters.items_in += tested;
   counters.items_out += passed;
+  counters.ops += per_fragment_cost() * fragments;
   counters.ops += per_sample_cost() * tested;
   counters.bytes_read += tested * kSampleDepthBytes + fragments * kSampleFragmentBytes;
   counters.bytes_written += passed * bytes_written;
@@ -57,20 +77,25 @@ SampleTile::SampleTile(const Tile& tile, const Sampling& sampling, std::uint32_t
 }
 
 void depth_test(const SetupTriangles& triangles, const std::vector<SampleFragment>& fragments, const Tile& tile,
-                const Sampling& sampling, StageCounters& counters, SampleTile& surface) {
+                const Sampling& sampling, StageCounters& counters, SampleTile& surface,
+                std::vector<SampleAccess>& accesses) {
   std::uint64_t tested = 0;
   const std::vector<CellDepth> items = cell_depths(triangles, fragments, tile, sampling.grid, tested);
-  const std::uint64_t passed =
-      depth_test(items.data(), items.size(), sampling.pattern, {surface.depth.data(), surface.triangle.data()});
+  std::vector<std::uint32_t> masks(items.size());
+  const std::uint64_t passed = depth_test(items.data(), items.size(), sampling.pattern,
+                                          {surface.depth.data(), surface.triangle.data()}, masks.data());
+  list_accesses(items, masks, accesses);
   count(items.size(), tested, passed, kSampleDepthBytes + surface.color_bytes, sampling.pattern, counters);
 }
 
 void depth_test_equal(const SetupTriangles& triangles, const Tile& tile, const Sampling& sampling,
-                      StageCounters& counters, const SampleTile& surface, std::vector<SampleFragment>& fragments) {
+                      StageCounters& counters, const SampleTile& surface, std::vector<SampleFragment>& fragments,
+                      std::vector<SampleAccess>& accesses) {
   std::uint64_t tested = 0, passed = 0;
   const std::vector<CellDepth> items = cell_depths(triangles, fragments, tile, sampling.grid, tested);
   std::vector<std::uint32_t> masks(items.size());
   depth_equal(items.data(), items.size(), sampling.pattern, surface.depth.data(), masks.data());
+  list_accesses(items, masks, accesses);
   for (std::size_t i = 0; i < masks.size(); ++i) {
     fragments[i].mask = masks[i];
     passed += static_cast<std::uint64_t>(std::popcount(masks[i]));

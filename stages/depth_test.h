@@ -27,12 +27,23 @@ struct SampleTile {
   SampleTile(const Tile& tile, const Sampling& sampling, std::uint32_t color_bytes_per_sample = kSampleColorBytes);
 };
 
+// What a fragment did to the samples of its cell, for the memory system. Bit s of a mask is sample s.
+struct SampleAccess {
+  std::uint32_t cell;      // of the tile: pixel (row by row) x cells per pixel + cell within the pixel
+  std::uint32_t triangle;  // index into SetupTriangles
+  std::uint32_t tested;    // samples whose depth was read
+  std::uint32_t passed;
+};
+
+// `accesses`, one per fragment, replaces what was in it.
 void depth_test(const SetupTriangles& triangles, const std::vector<SampleFragment>& fragments, const Tile& tile,
-                const Sampling& sampling, StageCounters& counters, SampleTile& surface);
+                const Sampling& sampling, StageCounters& counters, SampleTile& surface,
+                std::vector<SampleAccess>& accesses);
 
 // The pass behind a depth-only one: of each fragment the samples that have the stored depth, fragments without any
 // dropped. Charged with writing their colours. Where two triangles have the same depth, both keep the sample.
 void depth_test_equal(const SetupTriangles& triangles, const Tile& tile, const Sampling& sampling,
-                      StageCounters& counters, const SampleTile& surface, std::vector<SampleFragment>& fragments);
+                      StageCounters& counters, const SampleTile& surface, std::vector<SampleFragment>& fragments,
+                      std::vector<SampleAccess>& accesses);
 
 }  // namespace beampipe

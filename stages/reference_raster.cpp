@@ -5,6 +5,7 @@
 
 #include "simd/depth_span.h"
 #include "simd/sample_pattern.h"
+#include "stages/counting.h"
 
 namespace beampipe {
 namespace {
@@ -43,6 +44,14 @@ void cut(Span& span, std::int64_t a, std::int64_t offset, std::int64_t rest) {
   }
 }
 
+OperationCounts sample_cost() {
+  return count_operations([](OperationCounts& counts) {
+    const Counted<double> one(1.0, counts);
+    Counted<double> depth;
+    depth_span_sample(one, one, one, one, one, one, one, depth);
+  });
+}
+
 }  // namespace
 
 ReferenceTile::ReferenceTile(const Tile& tile)
@@ -57,6 +66,7 @@ void reference_raster(const SetupTriangles& triangles, const TriangleList& list,
   const std::int64_t left = std::int64_t{tile.x0} * kReferenceColumns,
                      right = std::int64_t{tile.x1} * kReferenceColumns;
   const std::int64_t top = std::int64_t{tile.y0} * kReferenceRows, bottom = std::int64_t{tile.y1} * kReferenceRows;
+  const OperationCounts per_sample = sample_cost();
   for (const std::uint32_t index : list) {
     const SetupTriangle& t = triangles.triangles[index];
     const auto [y_low, y_high] = std::minmax({t.y[0], t.y[1], t.y[2]});
@@ -78,7 +88,7 @@ void reference_raster(const SetupTriangles& triangles, const TriangleList& list,
       counters.items_out += depth_span(depths, count, index, surface.depth.data() + at, surface.owner.data() + at);
       counters.lanes_used += count;
       counters.lanes_issued += count;
-      counters.ops += OperationCounts{3, 4, 0, 0, 0, 0} * count;  // sample position, depth, comparison
+      counters.ops += per_sample * count;
       counters.bytes_read += count * sizeof(double);
     }
   }
@@ -109,7 +119,10 @@ std::vector<glm::vec4> resolve(const ReferenceTile& surface, const Tile& tile, c
   constexpr std::uint64_t kSamples = kReferenceSamples;
   counters.items_in += tile.pixels() * kSamples;
   counters.items_out += tile.pixels();
-  counters.ops += OperationCounts{0, 3, 0, 0, 0, 0} * (tile.pixels() * kSamples);
+  constexpr OperationCounts kSum{.add = 3};  // three channels
+  constexpr OperationCounts kMean{.mul_add = 3};
+  counters.ops += kSum * (tile.pixels() * kSamples);
+  counters.ops += kMean * tile.pixels();
   counters.bytes_read += tile.pixels() * kSamples * sizeof(std::uint64_t);
   counters.bytes_written += tile.pixels() * sizeof(glm::vec4);
   return image;

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 
+#include "simd/scalar.h"
 #include "stages/counting.h"
 #include "stages/shade.h"
 
@@ -9,6 +10,35 @@ namespace beampipe {
 namespace {
 
 inline constexpr std::uint64_t kImageBytes = 3 * 2;  // fp16 RGB
+
+// What is seen of the background beside an aggregate. `color` is stored as fp16.
+template <class Real>
+void over_background(const Real color[3], Real alpha, const Real background[3], Real pixel[3]) {
+  const Real rest = Real(1.0f) - alpha;
+  for (int c = 0; c < 3; ++c) pixel[c] = converted(color[c]) + background[c] * rest;
+}
+
+OperationCounts over_background_cost() {
+  return count_operations([](OperationCounts& counts) {
+    const Counted<float> one(1.0f, counts), color[3] = {one, one, one};
+    Counted<float> pixel[3];
+    over_background(color, one, color, pixel);
+  });
+}
+
+// One channel's mean of a pixel's samples, which are stored as fp16: the twin of the sum over runs in resolve().
+template <class Real>
+Real box_filter(const std::vector<Real>& samples) {
+  Real sum(0.0f);
+  for (const Real& sample : samples) sum = sum + converted(sample);
+  return sum * Real(1.0f / static_cast<float>(samples.size()));
+}
+
+OperationCounts box_filter_cost(std::size_t samples) {
+  return count_operations([&](OperationCounts& counts) {
+    for (int c = 0; c < 3; ++c) box_filter(std::vector<Counted<float>>(samples, Counted<float>(1.0f, counts)));
+  });
+}
 
 }  // namespace
 
@@ -28,12 +58,14 @@ std::vector<glm::vec4> resolve(const std::vector<PixelColor>& aggregates, const 
   colors = round_to_half(std::move(colors));
   std::vector<glm::vec4> image;
   image.reserve(aggregates.size());
-  for (std::size_t i = 0; i < aggregates.size(); ++i)
-    image.emplace_back(colors[i] + background * (1.0f - aggregates[i].alpha), aggregates[i].alpha);
+  for (std::size_t i = 0; i < aggregates.size(); ++i) {
+    const float alpha = aggregates[i].alpha;
+    glm::vec4& pixel = image.emplace_back(0.0f, 0.0f, 0.0f, alpha);
+    over_background(&colors[i].x, alpha, &background.x, &pixel.x);
+  }
   counters.items_in += aggregates.size();
   counters.items_out += aggregates.size();
-  counters.ops +=
-      OperationCounts{3, 1, 0, 0, 0, 3} * aggregates.size();  // colour + background x (1 - alpha), from fp16
+  counters.ops += over_background_cost() * aggregates.size();
   counters.bytes_read += aggregates.size() * stored_bytes;
   counters.bytes_written += aggregates.size() * kImageBytes;
   counters.lanes_used += aggregates.size();
@@ -66,8 +98,7 @@ std::vector<glm::vec4> resolve(const SampleTile& surface, std::size_t pixels, co
   }
   counters.items_in += pixels * samples;
   counters.items_out += pixels;
-  counters.ops += OperationCounts{0, 3, 0, 0, 0, 3} * (pixels * samples);  // add each sample's colour, from fp16
-  counters.ops += OperationCounts{3, 0, 0, 0, 0, 0} * pixels;              // times 1 / samples
+  counters.ops += box_filter_cost(samples) * pixels;
   counters.bytes_read += pixels * samples * surface.color_bytes;
   counters.bytes_written += pixels * kImageBytes;
   counters.lanes_used += pixels * samples;

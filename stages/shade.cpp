@@ -23,13 +23,25 @@ OperationCounts invocation_cost() {
   });
 }
 
-constexpr OperationCounts kMaterialCost{0, 0, 0, 0, 0, 6};  // Kd and normal to their formats
+// A component of Kd (0..1) or of the normal (-1..1) as an integer of the G-buffer: 255 or 1023 steps.
+template <class Real>
+auto quantize(Real value, Real scale, Real offset) {
+  return to_integer(value * scale + offset);
+}
 
-void count_invocations(std::uint64_t items, std::uint64_t invocations, const OperationCounts& cost,
+OperationCounts material_cost() {
+  return count_operations([](OperationCounts& counts) {
+    const Counted<float> value(1.0f, counts), constant(1.0f);
+    for (int component = 0; component < 6; ++component) quantize(value, constant, constant);
+  });
+}
+
+// `lit`: invocations that the cost is of.
+void count_invocations(std::uint64_t items, std::uint64_t invocations, std::uint64_t lit, const OperationCounts& cost,
                        std::uint64_t bytes_read, std::uint64_t bytes_written, StageCounters& counters) {
   counters.items_in += items;
   counters.items_out += items;
-  counters.ops += cost * invocations;
+  counters.ops += cost * lit;
   counters.bytes_read += items * bytes_read;
   counters.bytes_written += items * bytes_written;
   counters.lanes_used += items;
@@ -40,6 +52,17 @@ template <class Items>
 std::uint64_t quad_invocations(const Items& fragments) {
   std::uint64_t quads = 0;
   for (std::size_t i = 0; i < fragments.size(); ++i) quads += i == 0 || fragments[i].quad != fragments[i - 1].quad;
+  return 4 * quads;
+}
+
+template <class Items>
+std::uint64_t lit_invocations(const Items& fragments, const std::vector<FlatAttributes>* attributes) {
+  if (!attributes) return quad_invocations(fragments);
+  std::uint64_t quads = 0;
+  for (std::size_t i = 0; i < fragments.size(); ++i) {
+    const bool is_first = i == 0 || fragments[i].quad != fragments[i - 1].quad;
+    quads += is_first && (*attributes)[fragments[i].triangle].lit;
+  }
   return 4 * quads;
 }
 
@@ -63,34 +86,38 @@ std::vector<glm::vec3> round_to_half(std::vector<glm::vec3> colors) {
   return colors;
 }
 
-void shade(const std::vector<glm::vec3>& colors, std::vector<Fragment>& fragments, StageCounters& counters) {
+void shade(const std::vector<glm::vec3>& colors, std::vector<Fragment>& fragments, StageCounters& counters,
+           const std::vector<FlatAttributes>* attributes) {
   for (Fragment& fragment : fragments) fragment.color = fragment.alpha * colors[fragment.triangle];
-  count_invocations(fragments.size(), quad_invocations(fragments), invocation_cost(), sizeof(FlatAttributes), 6,
-                    counters);
+  count_invocations(fragments.size(), quad_invocations(fragments), lit_invocations(fragments, attributes),
+                    invocation_cost(), sizeof(FlatAttributes), 6, counters);
 }
 
 void shade_visible(const std::vector<glm::vec3>& colors, std::vector<Fragment>& fragments, StageCounters& counters) {
   for (Fragment& fragment : fragments) fragment.color = fragment.alpha * colors[fragment.triangle];
-  count_invocations(fragments.size(), fragments.size(), invocation_cost(), sizeof(FlatAttributes), 6, counters);
+  count_invocations(fragments.size(), fragments.size(), fragments.size(), invocation_cost(), sizeof(FlatAttributes), 6,
+                    counters);
 }
 
-void shade(const std::vector<SampleFragment>& fragments, StageCounters& counters) {
-  count_invocations(fragments.size(), quad_invocations(fragments), invocation_cost(),
-                    sizeof(FlatAttributes) + kSampleFragmentBytes, 6, counters);
+void shade(const std::vector<SampleFragment>& fragments, StageCounters& counters,
+           const std::vector<FlatAttributes>* attributes) {
+  count_invocations(fragments.size(), quad_invocations(fragments), lit_invocations(fragments, attributes),
+                    invocation_cost(), sizeof(FlatAttributes) + kSampleFragmentBytes, 6, counters);
 }
 
 void write_gbuffer(const std::vector<SampleFragment>& fragments, StageCounters& counters) {
-  count_invocations(fragments.size(), quad_invocations(fragments), kMaterialCost,
+  const std::uint64_t invocations = quad_invocations(fragments);
+  count_invocations(fragments.size(), invocations, invocations, material_cost(),
                     sizeof(FlatAttributes) + kSampleFragmentBytes, kGBufferBytes, counters);
 }
 
 void write_gbuffer(std::uint64_t samples, StageCounters& counters) {
-  count_invocations(samples, samples, kMaterialCost, sizeof(FlatAttributes) + kVisibilityBytes, kGBufferBytes,
-                    counters);
+  count_invocations(samples, samples, samples, material_cost(), sizeof(FlatAttributes) + kVisibilityBytes,
+                    kGBufferBytes, counters);
 }
 
 void light(std::uint64_t samples, StageCounters& counters) {
-  count_invocations(samples, samples, invocation_cost(), kGBufferBytes, 6, counters);
+  count_invocations(samples, samples, samples, invocation_cost(), kGBufferBytes, 6, counters);
 }
 
 }  // namespace beampipe

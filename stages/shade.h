@@ -22,15 +22,18 @@ std::vector<glm::vec3> shade_triangles(const SetupTriangles& triangles, const st
 // The colours as a framebuffer of fp16 RGB takes them.
 std::vector<glm::vec3> round_to_half(std::vector<glm::vec3> colors);
 
-// At the centroid: sets the fragments' colours (times alpha).
-void shade(const std::vector<glm::vec3>& colors, std::vector<Fragment>& fragments, StageCounters& counters);
+// At the centroid: sets the fragments' colours (times alpha). `attributes`: of the triangles, to know which are lit;
+// null: all are.
+void shade(const std::vector<glm::vec3>& colors, std::vector<Fragment>& fragments, StageCounters& counters,
+           const std::vector<FlatAttributes>* attributes = nullptr);
 
 // The same for fragments that are known to be visible: one by one, not in quads.
 void shade_visible(const std::vector<glm::vec3>& colors, std::vector<Fragment>& fragments, StageCounters& counters);
 
 // At the pixel's centre or centroid, which is the same for flat colours: counts, for fragments that keep their
 // triangle's index in place of its colour.
-void shade(const std::vector<SampleFragment>& fragments, StageCounters& counters);
+void shade(const std::vector<SampleFragment>& fragments, StageCounters& counters,
+           const std::vector<FlatAttributes>* attributes = nullptr);
 
 // Shading in two steps: materials into a G-buffer, which is here what light needs, Kd and normal; then light.
 inline constexpr std::uint32_t kGBufferBytes = 8;     // RGBA8 and RGB10A2 per pixel

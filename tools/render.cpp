@@ -66,6 +66,7 @@ FrameReport write_frame(OutputFolder& output, const std::string& spec, std::size
   report.picture = stem + ".png";
   report.a_buffer_peak_bytes = result.a_buffer_peak_bytes;
   report.stages = result.stages;
+  report.pixels = std::uint64_t{result.image.width} * result.image.height;
   Planes counters{result.image.width, result.image.height, result.pixel_counters};
   if (reference) {
     report.error = measure_error(result.image, *reference);
@@ -89,7 +90,14 @@ void finish_report(OutputFolder& output, const Report& report) {
 }
 
 Report new_report(const RunArguments& arguments, const RunPlan& plan) {
-  return {arguments.trace, program_version(), simd_target(), plan.options.threads, {}, {}};
+  return {arguments.trace,
+          program_version(),
+          simd_target(),
+          plan.options.threads,
+          plan.options.memory,
+          plan.hardware,
+          {},
+          {}};
 }
 
 }  // namespace beampipe

@@ -5,31 +5,35 @@
 #include <cstdio>
 #include <stdexcept>
 
+#include "stages/counter_registry.h"
+#include "tools/claims.h"
+
 namespace beampipe {
 namespace {
 
 using Json = nlohmann::ordered_json;
 
-Json to_json(const StageCounters& counters) {
-  const OperationCounts& ops = counters.ops;
-  return {{"stage", counters.stage},
-          {"items_in", counters.items_in},
-          {"items_out", counters.items_out},
-          {"ops",
-           {{"total", ops.total()},
-            {"mul_add", ops.mul_add},
-            {"add", ops.add},
-            {"bit", ops.bit},
-            {"fetch", ops.fetch},
-            {"special", ops.special},
-            {"convert", ops.convert}}},
-          {"bytes_read", counters.bytes_read},
-          {"bytes_written", counters.bytes_written},
-          {"lanes_used", counters.lanes_used},
-          {"lanes_issued", counters.lanes_issued}};
+Json to_json(const StageCounters& stage) {
+  Json json = {{"stage", stage.stage}};
+  const std::string group = "ops.";
+  for (const CounterInfo& counter : stage_counters()) {
+    const std::string name = counter.name;
+    const bool grouped = name.starts_with(group);
+    (grouped ? json["ops"][name.substr(group.size())] : json[name]) = counter.value(stage);
+  }
+  return json;
 }
 
-Json to_json(const FrameReport& frame) {
+// Everything that the frame needs in memory at once, at its peak.
+Json buffers_json(const TechniqueReport& result, const FrameReport& frame) {
+  Json json = Json::array();
+  for (const Surface& surface : result.framebuffer)
+    json.push_back({{"name", surface.name}, {"peak_bytes", surface.bytes_per_pixel * frame.pixels}});
+  if (frame.a_buffer_peak_bytes > 0) json.push_back({{"name", "a_buffer"}, {"peak_bytes", frame.a_buffer_peak_bytes}});
+  return json;
+}
+
+Json to_json(const FrameReport& frame, const TechniqueReport& result, const Hardware& hardware) {
   Json json = {{"index", frame.index}, {"image", frame.image}, {"picture", frame.picture}};
   if (!frame.counters.empty()) json["counters"] = frame.counters;
   if (frame.error) json["error"] = beampipe::to_json(*frame.error);
@@ -37,12 +41,25 @@ Json to_json(const FrameReport& frame) {
   const WallTime& wall = frame.wall_ms;
   json["wall_ms"] = {{"median", wall.median}, {"min", wall.min}, {"max", wall.max}, {"runs", wall.runs}};
   json["a_buffer_peak_bytes"] = frame.a_buffer_peak_bytes;
+  StageCounters all;
+  for (const StageCounters& stage : frame.stages) all += stage;
+  json["logical_bytes"] = all.logical_bytes();
+  json["sector_bytes"] = all.sector_bytes;
+  json["dram_bytes"] = all.dram_bytes;
+  json["buffers"] = buffers_json(result, frame);
   json["stages"] = Json::array();
   for (const StageCounters& stage : frame.stages) json["stages"].push_back(to_json(stage));
+  for (const Implementation& implementation : hardware.implementations) {
+    const ModelledTime time = modelled_time(hardware, implementation, frame.stages);
+    json["modelled_ms"][implementation.name] = {
+        {"overlap", time.overlap_ms}, {"sum", time.sum_ms}, {"busiest", time.busiest}};
+    for (std::size_t i = 0; i < time.stages.size(); ++i)
+      json["stages"][i]["modelled_ms"][implementation.name] = time.stages[i];
+  }
   return json;
 }
 
-Json to_json(const TechniqueReport& result) {
+Json to_json(const TechniqueReport& result, const Hardware& hardware) {
   Json json = {{"technique", result.technique}, {"framebuffer_bytes_per_pixel", result.framebuffer_bytes_per_pixel}};
   json["framebuffer"] = Json::array();
   for (const Surface& surface : result.framebuffer) {
@@ -59,8 +76,23 @@ Json to_json(const TechniqueReport& result) {
     if (result.equivalent_msaa->is_upper_bound) json["equivalent_msaa_is_upper_bound"] = true;
   }
   json["frames"] = Json::array();
-  for (const FrameReport& frame : result.frames) json["frames"].push_back(to_json(frame));
+  for (const FrameReport& frame : result.frames) json["frames"].push_back(to_json(frame, result, hardware));
   return json;
+}
+
+Json to_json(const CacheParameters& cache) {
+  return {{"bytes", cache.bytes}, {"ways", cache.ways}, {"line_bytes", cache.line_bytes}};
+}
+
+Json to_json(const MemoryParameters& memory) {
+  return {{"modelled", memory.modelled},
+          {"compression", memory.compression},
+          {"sector_bytes", memory.sector_bytes},
+          {"rop_cache", to_json(memory.rop)},
+          {"l2_cache", to_json(memory.l2)},
+          {"plane_bytes", memory.plane_bytes},
+          {"triangles_per_batch", memory.triangles_per_batch},
+          {"bin_pixels", kBinSize}};
 }
 
 [[gnu::format(printf, 1, 2)]] std::string format(const char* pattern, ...) {
@@ -111,11 +143,9 @@ Json to_json(const ErrorStats& stats) {
 }
 
 Json to_json(const Report& report) {
-  Json json = {{"beampipe_report", 1},
-               {"trace", report.trace},
-               {"version", report.version},
-               {"simd", report.simd},
-               {"threads", report.threads}};
+  Json json = {{"beampipe_report", 1}, {"trace", report.trace},     {"version", report.version},
+               {"simd", report.simd},  {"threads", report.threads}, {"memory_system", to_json(report.memory)}};
+  if (!report.hardware.implementations.empty()) json["hardware"] = report.hardware.json;
   if (!report.msaa_ladder.empty()) {
     json["msaa_ladder"] = Json::array();
     for (const LadderRung& rung : report.msaa_ladder) {
@@ -123,7 +153,10 @@ Json to_json(const Report& report) {
     }
   }
   json["results"] = Json::array();
-  for (const TechniqueReport& result : report.results) json["results"].push_back(to_json(result));
+  for (const TechniqueReport& result : report.results) json["results"].push_back(to_json(result, report.hardware));
+  json["claims"] = Json::array();
+  for (const auto& claims : {memory_claims(), measured_claims(report)})
+    for (const Claim& claim : claims) json["claims"].push_back(to_json(claim));
   return json;
 }
 

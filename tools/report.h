@@ -9,6 +9,7 @@
 #include <vector>
 
 #include "pipeline/technique.h"
+#include "tools/hardware.h"
 #include "tools/metrics.h"
 
 namespace beampipe {
@@ -33,6 +34,7 @@ struct FrameReport {
   WallTime wall_ms;
   std::uint64_t a_buffer_peak_bytes = 0;
   std::vector<StageCounters> stages;
+  std::uint64_t pixels = 0;
 };
 
 struct TechniqueReport {
@@ -47,6 +49,8 @@ struct TechniqueReport {
 struct Report {
   std::string trace, version, simd;
   int threads = 0;
+  MemoryParameters memory;
+  Hardware hardware;  // whose times are modelled; without implementations: none
   std::vector<TechniqueReport> results;
   std::vector<LadderRung> msaa_ladder;  // empty: not measured
 };

@@ -22,6 +22,11 @@ void add_run_arguments(CLI::App& command, RunArguments& arguments) {
       ->check(CLI::Range(1, 1024));
   command.add_option("--repeat", arguments.repeat, "times to render each frame, for steadier times (default: 1)")
       ->check(CLI::Range(1, 1000000));
+  command.add_option("--hardware", arguments.hardware,
+                     "description of the hardware whose times are modelled (default: one of Titan V class)");
+  command.add_flag("--no-memory-model", arguments.no_memory_model,
+                   "do not model caches: frames are faster, sector_bytes and dram_bytes are 0");
+  command.add_flag("--no-compression", arguments.no_compression, "model memory without block compression");
   command.add_flag("--allow-outside", arguments.allow_outside, "let the trace name meshes outside its own folder");
 }
 
@@ -30,6 +35,9 @@ RunPlan make_plan(const RunArguments& arguments) {
   plan.techniques = parse_techniques(arguments.specs);
   plan.repeat = arguments.repeat;
   plan.options.threads = arguments.threads > 0 ? arguments.threads : std::max(1u, std::thread::hardware_concurrency());
+  if (!arguments.hardware.empty()) plan.hardware = read_hardware(arguments.hardware);
+  plan.options.memory.modelled = !arguments.no_memory_model;
+  plan.options.memory.compression = !arguments.no_compression;
   plan.trace = read_trace(arguments.trace, {.allow_outside = arguments.allow_outside});
   plan.frames = parse_frame_range(arguments.frames, plan.trace.frames.size());
   return plan;

@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "pipeline/technique.h"
+#include "tools/hardware.h"
 #include "tools/output.h"
 #include "traces/trace.h"
 
@@ -13,10 +14,10 @@ namespace beampipe {
 
 // As the user wrote them.
 struct RunArguments {
-  std::string trace, output, frames;
+  std::string trace, output, frames, hardware;
   std::vector<std::string> specs;
   int threads = 0, repeat = 1;
-  bool allow_outside = false;
+  bool allow_outside = false, no_memory_model = false, no_compression = false;
 };
 
 void add_run_arguments(CLI::App& command, RunArguments& arguments);
@@ -26,6 +27,7 @@ struct RunPlan {
   std::vector<Technique> techniques;
   std::vector<std::size_t> frames;  // rising
   int repeat = 1;
+  Hardware hardware = titan_v();
   RunOptions options;  // with the number of threads resolved
 };
 

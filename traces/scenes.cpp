@@ -27,6 +27,8 @@ const std::vector<SceneKind>& scene_kinds() {
       {"bars", "rods from two pixels thick down to a quarter of one", make_bars},
       {"density", "a wall that fills the picture once; width x height / triangles are its pixels per triangle",
        make_density},
+      {"stack", "triangles that each cover the whole picture: as many fragments in every pixel as there are triangles",
+       make_stack},
   };
   return kinds;
 }

@@ -92,7 +92,9 @@ TEST(Counters, AcaaReadsDepthTwiceAndOneColor) {
 }
 
 TEST(Counters, EveryStageWorks) {
-  const Trace trace = random_trace(40, 30, 50, 2);
+  Trace trace = random_trace(40, 30, 50, 2);
+  trace.frames[0].draws[0].shading = Shading::lambert;  // unlit triangles need no operation
+  trace.frames[0].light_direction = glm::vec3(0, 0, 1);
   for (const char* spec : {"beam", "alpha", "msaa:4", "msaa:4,prepass", "acaa:4,double=stencil", "acaa:32", "deferred",
                            "visibility", "taa:8", "dvm", "reference"}) {
     for (const StageCounters& counters : parse_technique(spec).render(trace, 0, {2}).stages) {

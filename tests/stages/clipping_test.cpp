@@ -151,16 +151,19 @@ TEST(Clipping, DepthStaysBetweenNearAndFar) {
 }
 
 // One vertex before the near plane: two pieces; the polygon has 3 vertices at the near plane and 4 at the five others,
-// and each is an inner product of 4 products and 3 sums, and a comparison. Pieces cost like triangles of their own.
+// and each is an inner product of 4 products and 3 sums, and a comparison, as are those that found out that it must be
+// clipped. Each of two crossings is a quotient, 4 products and 9 sums. Pieces cost like triangles of their own (see
+// VertexSetup.CountsOperations).
 TEST(Clipping, CountsPiecesAndPlaneTests) {
   StageCounters counters;
   const SetupTriangles out = vertex_setup_of(clip_space_scene({{0, 0, -2}, {0.5f, 0, 0}, {0, 0.5f, 0}}), counters);
   EXPECT_EQ(out.triangles.size(), 2u);
   EXPECT_EQ(counters.items_in, 1u);
   EXPECT_EQ(counters.items_out, 2u);
-  const std::uint64_t tests = 3 + 5 * 4;
+  const std::uint64_t tests = 6 * 3 + 3 + 5 * 4;
   EXPECT_EQ(counters.ops,
-            (OperationCounts{36 + 2 * (24 + 8) + 4 * tests, 36 + 2 * (9 + 9) + 4 * tests, 0, 0, 2 * 4, 2 * 6}));
+            (OperationCounts{36 + 2 * (30 + 2 + 8 + 6) + 4 * tests + 2 * 4,
+                             36 + 21 + 2 * (15 + 6 + 9 + 12) + 4 * tests + 2 * 9, 0, 0, 2 * 4 + 2, 2 * 6}));
 }
 
 }  // namespace

@@ -21,7 +21,8 @@ Tested render(const SetupTriangles& triangles, const Sampling& sampling, const T
   StageCounters raster;
   sample_raster(triangles, all_of(triangles), tile, sampling, raster, fragments);
   Tested tested{SampleTile(tile, sampling), {}};
-  depth_test(triangles, fragments, tile, sampling, tested.counters, tested.surface);
+  std::vector<SampleAccess> accesses;
+  depth_test(triangles, fragments, tile, sampling, tested.counters, tested.surface, accesses);
   return tested;
 }
 
@@ -90,14 +91,16 @@ TEST(DepthTestStage, CrossingPlanesAreComparedAtTheSamples) {
   }
 }
 
-// Per sample tested: 2 products and 2 sums make the depth, and one comparison.
+// Per sample tested: 2 products and 2 sums make the depth, and one comparison. Per fragment the plane's value at the
+// cell's corner, 2 products and 4 sums, and its two slopes, a product each; all three are converted.
 TEST(DepthTestStage, CountsOperationsAndBytes) {
   SetupTriangles triangles;
   add_everywhere(triangles, -0.5f);
   add_everywhere(triangles, -0.25f);  // hidden
   const Tested found = render(triangles, kMsaa8);
-  const std::uint64_t samples = kTile.pixels() * 8;
-  EXPECT_EQ(found.counters.ops, (OperationCounts{2 * 2 * samples, 2 * 3 * samples, 0, 0, 0, 0}));
+  const std::uint64_t samples = kTile.pixels() * 8, fragments = 2 * kTile.pixels();
+  EXPECT_EQ(found.counters.ops, (OperationCounts{2 * 2 * samples + 4 * fragments, 2 * 3 * samples + 4 * fragments, 0, 0,
+                                                 0, 3 * fragments}));
   EXPECT_EQ(found.counters.bytes_read, 2 * samples * 4 + 2 * kTile.pixels() * 10);
   EXPECT_EQ(found.counters.bytes_written, samples * (4 + 6));
 }

@@ -161,18 +161,21 @@ TEST(VertexSetup, KdOfTheDrawReplacesTheMeshs) {
   EXPECT_EQ(scene.setup().attributes.at(0).kd, glm::vec3(3.0f));
 }
 
-// Three vertices outside the view cost their transformation: 4 rows of 3 products and 3 sums each.
-// A triangle inside adds, per vertex, 1 / w, 3 products and a sum for x, the same for y, 2 and 1 for z, 2 conversions
-// to fixed point; and for its depth plane 6 differences, the area (2 products, 1 difference), its reciprocal, and twice
-// 3 products and a difference.
+// Three vertices outside the view cost their transformation, 4 rows of 3 products and 3 sums each, and 7 operations
+// each to compare them with the view volume: -w, and 6 comparisons. A triangle inside adds 6 planes x 3 vertices, each
+// an inner product of 4 products and 3 sums and a comparison; per vertex, 1 / w, 3 products and a sum for x, the same
+// for y, 2 and 1 for z, and a product, a sum and a conversion to fixed point for x and y; its area, 2 products, 5
+// differences and a comparison; for its depth plane 6 differences, an area (2 products, 1 difference), its reciprocal,
+// and twice 3 products and a difference; and for each edge 2 products and 4 sums.
 TEST(VertexSetup, CountsOperations) {
   StageCounters outside, inside;
   vertex_setup_of(clip_space_scene({{2, 0, 0}, {3, 0, 0}, {2, 0.5f, 0}}), outside);
-  EXPECT_EQ(outside.ops, (OperationCounts{3 * 12, 3 * 12, 0, 0, 0, 0}));
+  EXPECT_EQ(outside.ops, (OperationCounts{3 * 12, 3 * 12 + 3 * 7, 0, 0, 0, 0}));
   EXPECT_EQ(outside.items_in, 1u);
   EXPECT_EQ(outside.items_out, 0u);
   vertex_setup_of(clip_space_scene({{0, 0, 0}, {0.5f, 0, 0}, {0, 0.5f, 0}}), inside);
-  EXPECT_EQ(inside.ops, (OperationCounts{3 * 12 + 3 * 8 + 8, 3 * 12 + 3 * 3 + 9, 0, 0, 3 + 1, 3 * 2}));
+  EXPECT_EQ(inside.ops, (OperationCounts{3 * 12 + 18 * 4 + 3 * (8 + 2) + 2 + 8 + 3 * 2,
+                                         3 * (12 + 7) + 18 * 4 + 3 * (3 + 2) + 6 + 9 + 3 * 4, 0, 0, 3 + 1, 3 * 2}));
   EXPECT_EQ(inside.items_out, 1u);
 }
 

@@ -14,7 +14,7 @@ std::vector<std::string> keys_of(const Json& json) {
 }
 
 Report sample_report() {
-  Report report{"a.json", "1.2.3", "AVX2", 2, {}, {}};
+  Report report{"a.json", "1.2.3", "AVX2", 2, {}, {}, {}, {}};
   TechniqueReport& result = report.results.emplace_back();
   result.technique = "msaa:8";
   result.framebuffer = {{"depth", "D32F x 8", 32}, {"color", "RGB16F x 8", 48}};
@@ -26,7 +26,8 @@ Report sample_report() {
     frame.picture = "msaa_8/frame_000" + std::to_string(index) + ".png";
     frame.wall_ms = {2.0 * static_cast<double>(index), 1.0, 20.0, 3};
     frame.a_buffer_peak_bytes = 100 * (10 - index);
-    frame.stages = {{"vertex_setup", 3, 1, {1, 2, 3, 4, 5, 6}, 36, 80, 3, 4}};
+    frame.pixels = 7;
+    frame.stages = {{"vertex_setup", 3, 1, {1, 2, 3, 4, 5, 6}, 36, 80, 3, 4, 128, 96}};
   }
   return report;
 }
@@ -58,9 +59,22 @@ TEST(ReportJson, HasTheKeysOfTheContract) {
   EXPECT_EQ(frame["wall_ms"], (Json{{"median", 10.0}, {"min", 1.0}, {"max", 20.0}, {"runs", 3}}));
   const Json ops = {{"total", 21}, {"mul_add", 1}, {"add", 2},    {"bit", 3},
                     {"fetch", 4},  {"special", 5}, {"convert", 6}};
-  const Json stage = {{"stage", "vertex_setup"}, {"items_in", 3},       {"items_out", 1},  {"ops", ops},
-                      {"bytes_read", 36},        {"bytes_written", 80}, {"lanes_used", 3}, {"lanes_issued", 4}};
+  const Json stage = {{"stage", "vertex_setup"}, {"items_in", 3},       {"items_out", 1},       {"ops", ops},
+                      {"bytes_read", 36},        {"bytes_written", 80}, {"logical_bytes", 116}, {"sector_bytes", 128},
+                      {"dram_bytes", 96},        {"lanes_used", 3},     {"lanes_issued", 4}};
   EXPECT_EQ(frame["stages"].at(0), stage);
+  EXPECT_EQ(frame["logical_bytes"], 116) << "of all stages";
+  EXPECT_EQ(frame["sector_bytes"], 128);
+  EXPECT_EQ(frame["dram_bytes"], 96);
+  EXPECT_EQ(frame["buffers"], (Json{{{"name", "depth"}, {"peak_bytes", 7 * 32}},
+                                    {{"name", "color"}, {"peak_bytes", 7 * 48}},
+                                    {{"name", "a_buffer"}, {"peak_bytes", 500}}}));
+  EXPECT_FALSE(frame.contains("modelled_ms")) << "there is no hardware";
+  const Json& memory = json["memory_system"];
+  EXPECT_EQ(memory["modelled"], true);
+  EXPECT_EQ(memory["compression"], true);
+  EXPECT_EQ(memory["sector_bytes"], 32);
+  EXPECT_EQ(memory["rop_cache"], (Json{{"bytes", 24 * 16384}, {"ways", 4}, {"line_bytes", 256}}));
 }
 
 TEST(ReportJson, SaysNothingOfErrorsThatWereNotMeasured) {
@@ -92,9 +106,9 @@ TEST(ReportJson, HasErrorsAndEquivalentRatesAfterCompare) {
 }
 
 TEST(ReportJson, KeysKeepTheirOrder) {
-  EXPECT_EQ(
-      keys_of(to_json(compared_report())),
-      (std::vector<std::string>{"beampipe_report", "trace", "version", "simd", "threads", "msaa_ladder", "results"}));
+  EXPECT_EQ(keys_of(to_json(compared_report())),
+            (std::vector<std::string>{"beampipe_report", "trace", "version", "simd", "threads", "memory_system",
+                                      "msaa_ladder", "results", "claims"}));
 }
 
 TEST(ReportJson, IsTextEvenWhenAFileNameIsNotUtf8) {

@@ -52,7 +52,7 @@ TEST_P(ScenesTest, HasADefaultSize) {
   const std::map<std::string_view, double> defaults = {{"hairball", 150e3}, {"classroom", 100e3}, {"boat", 60e3},
                                                        {"pickets", 5e3},    {"terrain", 150e3},   {"sphere", 100e3},
                                                        {"fence", 60e3},     {"soup", 20e3},       {"foliage", 80e3},
-                                                       {"bars", 4e3},       {"density", 5760}};
+                                                       {"bars", 4e3},       {"density", 5760},    {"stack", 64}};
   const double wanted = defaults.at(GetParam().name);
   EXPECT_NEAR(static_cast<double>(count(make({}))) / wanted, 1, 0.25);
 }
@@ -120,7 +120,7 @@ TEST(Scenes, AreTheKnownOnes) {
   std::set<std::string_view> names;
   for (const SceneKind& kind : scene_kinds()) names.insert(kind.name);
   EXPECT_EQ(names, (std::set<std::string_view>{"hairball", "classroom", "boat", "pickets", "terrain", "sphere", "fence",
-                                               "soup", "foliage", "bars", "density"}));
+                                               "soup", "foliage", "bars", "density", "stack"}));
 }
 
 TEST(Scenes, DensityFillsThePictureWithItsPixelsPerTriangle) {
@@ -170,7 +170,7 @@ TEST(Scenes, RefusesWhatItCannotMake) {
   EXPECT_EQ(
       refusal("ball", {}),
       "expected one of the scenes hairball, classroom, boat, pickets, terrain, sphere, fence, soup, foliage, bars, "
-      "density, found \"ball\"");
+      "density, stack, found \"ball\"");
   EXPECT_EQ(refusal("soup", {.triangles = 100000001}), "expected at most 100000000 triangles, found 100000001");
   EXPECT_EQ(refusal("soup", {.width = 0}), "expected a width and height of 1..16384, found 0 x 180");
   EXPECT_EQ(refusal("soup", {.height = 20000}), "expected a width and height of 1..16384, found 320 x 20000");

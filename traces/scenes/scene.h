@@ -37,5 +37,6 @@ Trace make_soup(const SceneOptions& options);
 Trace make_foliage(const SceneOptions& options);
 Trace make_bars(const SceneOptions& options);
 Trace make_density(const SceneOptions& options);
+Trace make_stack(const SceneOptions& options);
 
 }  // namespace beampipe

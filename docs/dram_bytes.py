@@ -1,0 +1,58 @@
+#!/usr/bin/env python3
+"""Modelled DRAM bytes per frame, as docs/accounting.md shows them.
+
+dram_bytes.py BEAMPIPE TRACE...   the first frame of each trace, with block compression and without
+dram_bytes.py BEAMPIPE --stack    a stack of 1 to 10,000 triangles over a 4 x 4 picture: peak bytes of the buffers
+"""
+import json
+import pathlib
+import subprocess
+import sys
+import tempfile
+
+TECHNIQUES = ["beam", "beam:order=stream", "msaa:8", "msaa:32", "acaa:8"]
+STACK = ["beam", "beam:order=stream", "beam:rules=paper", "msaa:8"]
+
+
+def run(program, trace, techniques, *options):
+    with tempfile.TemporaryDirectory() as folder:
+        command = [program, "run", trace, "--frames", "0", "-o", folder, "-t", *techniques, *options]
+        subprocess.run(command, check=True, stdout=subprocess.DEVNULL)
+        report = json.loads((pathlib.Path(folder) / "report.json").read_text())
+    return {result["technique"]: result["frames"][0] for result in report["results"]}
+
+
+def dram_table(program, traces):
+    print("| scene | " + " | ".join(f"`{t}`" for t in TECHNIQUES) + " | least | " +
+          " | ".join(f"`{t}`, raw" for t in TECHNIQUES) + " |")
+    print("|---" * (2 * len(TECHNIQUES) + 2) + "|")
+    for trace in traces:
+        cells = []
+        for options in ([], ["--no-compression"]):
+            frames = run(program, trace, TECHNIQUES, *options)
+            cells.append([frames[t]["dram_bytes"] / 1e6 for t in TECHNIQUES])
+        least = TECHNIQUES[cells[0].index(min(cells[0]))]
+        numbers = [" | ".join(f"{value:.1f}" for value in row) for row in cells]
+        print(f"| {pathlib.Path(trace).stem} | {numbers[0]} | `{least}` | {numbers[1]} |", flush=True)
+
+
+def stack_table(program):
+    print("| fragments per pixel | " + " | ".join(f"`{t}`" for t in STACK) + " |")
+    print("|---" * (len(STACK) + 1) + "|")
+    with tempfile.TemporaryDirectory() as folder:
+        trace = str(pathlib.Path(folder) / "stack.json")
+        for layers in (1, 10, 100, 1000, 10000):
+            subprocess.run([program, "make", "stack", "--triangles", str(layers), "--width", "4", "--height", "4",
+                            "-o", trace], check=True, stdout=subprocess.DEVNULL)
+            frames = run(program, trace, STACK)
+            peaks = [sum(buffer["peak_bytes"] for buffer in frames[t]["buffers"]) / 1024 for t in STACK]
+            print(f"| {layers} | " + " | ".join(f"{peak:.1f}" for peak in peaks) + " |", flush=True)
+
+
+if __name__ == "__main__":
+    if len(sys.argv) == 3 and sys.argv[2] == "--stack":
+        stack_table(sys.argv[1])
+    elif len(sys.argv) > 2:
+        dram_table(sys.argv[1], sys.argv[2:])
+    else:
+        sys.exit(__doc__)

@@ -1,0 +1,66 @@
+// What the beam pipeline moves for one bin: the A-buffer, which is kept in memory from one pass over the frame to the
+// next, and the aggregates.
+#pragma once
+
+#include <vector>
+
+#include "pipeline/memory/tile_surface.h"
+#include "pipeline/technique.h"
+#include "stages/a_buffer.h"
+#include "stages/resolve.h"
+
+namespace beampipe {
+
+class ABufferMemory {
+ public:
+  ABufferMemory(const MemoryParameters& parameters, const ZOrder& order, std::size_t fragments,
+                std::uint32_t record_bytes);
+
+  // The pass that fills it: each fragment exchanges its pixel's head link, and its record goes behind the one before.
+  void insert(const std::vector<Fragment>& fragments, StageCounters& counters);
+
+  // The pass that empties it, pixel by pixel: all records to be sorted, then again the first `merged` in order.
+  void sort(std::uint32_t pixel, const ABuffer& buffer, StageCounters& counters);
+  void compose(std::uint32_t pixel, const ABuffer& buffer, std::uint32_t merged, StageCounters& counters);
+  void finish(StageCounters& counters) { records_.flush(counters); }
+
+ private:
+  void access(std::uint32_t key, std::uint32_t record, bool write, StageCounters& counters);
+
+  std::uint32_t record_bytes_, line_bytes_;  // with the link
+  TileSurface heads_;
+  BlockCache records_;
+};
+
+// The aggregates of a bin, one surface per member.
+class AggregateMemory {
+ public:
+  AggregateMemory(const MemoryParameters& parameters, const ZOrder& order, const std::vector<Surface>& framebuffer);
+
+  // Merging a fragment in place, as a streaming composition does: the aggregate is read and written.
+  void merge(std::uint32_t triangle, std::uint32_t pixel, StageCounters& counters);
+
+  // Writing an aggregate that was composed on chip.
+  void write(std::uint32_t pixel, StageCounters& counters);
+
+  // What is stored at the end of a pass. A block of coverages or masks that are all those of a full pixel is stored as
+  // one of them; `full`, one per pixel, says which are.
+  void flush(const std::vector<bool>& full, StageCounters& counters);
+
+  void read_all(StageCounters& counters);
+
+ private:
+  const ZOrder& order_;
+  std::vector<bool> full_;  // by position in Z order
+  std::vector<TileSurface> surfaces_;
+};
+
+// All of it, for aggregates that are composed from a sorted A-buffer. `merged`: per pixel, the fragments that were
+// looked at; `full`: which pixels nothing shows through.
+void count_sorted_composition(const MemoryParameters& parameters, const Tile& tile, const ABuffer& buffer,
+                              const std::vector<Fragment>& fragments, std::uint32_t record_bytes,
+                              const std::vector<float>& merged, const std::vector<bool>& full,
+                              const std::vector<Surface>& framebuffer, StageCounters& buffering,
+                              StageCounters& composition, StageCounters& resolving);
+
+}  // namespace beampipe

@@ -1,0 +1,35 @@
+// What a pass over the frame writes or reads once, pixel by pixel: streams that no cache can help.
+#pragma once
+
+#include "pipeline/memory/parameters.h"
+#include "stages/counters.h"
+#include "stages/motion.h"
+#include "stages/tile.h"
+
+namespace beampipe {
+
+// `bytes` in a row, read or written: whole sectors, each moved once.
+inline void stream(const MemoryParameters& memory, std::uint64_t bytes, StageCounters& counters) {
+  if (!memory.modelled) return;
+  const std::uint64_t whole = (bytes + memory.sector_bytes - 1) / memory.sector_bytes * memory.sector_bytes;
+  counters.sector_bytes += whole;
+  counters.dram_bytes += whole;
+}
+
+inline constexpr std::uint64_t kImagePixelBytes = 6;  // fp16 RGB
+
+// The finished picture of a bin.
+inline void write_image(const MemoryParameters& memory, const Tile& tile, StageCounters& counters) {
+  stream(memory, tile.pixels() * kImagePixelBytes, counters);
+}
+
+// The pass of `temporal`: the frame's colour and motion, the history if there is one, and the history to come. What
+// neighbouring pixels share comes from cache.
+inline void move_temporal(const MemoryParameters& memory, const Tile& tile, bool has_history, StageCounters& counters) {
+  constexpr std::uint64_t kHistoryBytes = 8;  // fp16 RGBA
+  stream(memory, tile.pixels() * (kImagePixelBytes + kMotionBytes), counters);
+  if (has_history) stream(memory, tile.pixels() * kHistoryBytes, counters);
+  stream(memory, tile.pixels() * kHistoryBytes, counters);
+}
+
+}  // namespace beampipe

@@ -1,0 +1,100 @@
+#include "pipeline/memory/sample_memory.h"
+
+#include <bit>
+
+namespace beampipe {
+namespace {
+
+// Where the cells of pixels, numbered pixel by pixel, lie in the grid of cells, row by row.
+std::vector<std::uint32_t> cell_places(const Tile& tile, const CellGrid& grid) {
+  std::vector<std::uint32_t> places;
+  for (std::int32_t y = 0; y < tile.height(); ++y)
+    for (std::int32_t x = 0; x < tile.width(); ++x)
+      for (std::int32_t cell = 0; cell < grid.cells_per_pixel(); ++cell)
+        places.push_back(
+            static_cast<std::uint32_t>((y * grid.rows + cell / grid.columns) * tile.width() * grid.columns +
+                                       x * grid.columns + cell % grid.columns));
+  return places;
+}
+
+}  // namespace
+
+SampleMemory::SampleMemory(const MemoryParameters& parameters, const Tile& tile, const Sampling& sampling,
+                           std::uint32_t color_bytes, SameValue same_value)
+    : modelled_(parameters.modelled),
+      plane_bytes_(parameters.plane_bytes),
+      samples_(static_cast<std::size_t>(sampling.pattern.count)),
+      cell_place_(cell_places(tile, sampling.grid)),
+      order_(tile.width() * sampling.grid.columns, tile.height() * sampling.grid.rows),
+      same_value_(std::move(same_value)),
+      color_sample_bytes_(color_bytes),
+      depth_owner_(order_.positions * samples_, kNoTriangle),
+      color_owner_(color_bytes > 0 ? depth_owner_.size() : 0, kNoTriangle),
+      depth_(parameters, order_, static_cast<std::uint32_t>(samples_) * kSampleDepthBytes,
+             [this](std::size_t first, std::size_t elements) { return depth_bytes(first, elements); }) {
+  if (color_bytes > 0)
+    color_.emplace(parameters, order_, static_cast<std::uint32_t>(samples_) * color_bytes,
+                   [this](std::size_t first, std::size_t elements) { return this->color_bytes(first, elements); });
+}
+
+void SampleMemory::replay(const std::vector<SampleAccess>& accesses, bool write_depth, bool write_color,
+                          StageCounters& counters) {
+  if (!modelled_) return;
+  write_color = write_color && color_;
+  for (const SampleAccess& access : accesses) {
+    const std::uint32_t element = cell_place_[access.cell];
+    const std::size_t first = std::size_t{order_.of[element]} * samples_;
+    depth_.access(access.triangle, element, access.tested, write_depth ? access.passed : 0, kSampleDepthBytes,
+                  counters);
+    if (write_color) color_->access(access.triangle, element, 0, access.passed, color_sample_bytes_, counters);
+    for (std::uint32_t left = access.passed; left != 0; left &= left - 1) {
+      const std::size_t sample = first + static_cast<std::size_t>(std::countr_zero(left));
+      if (write_depth) depth_owner_[sample] = access.triangle;
+      if (write_color) color_owner_[sample] = access.triangle;
+    }
+  }
+}
+
+void SampleMemory::flush(StageCounters& counters) {
+  depth_.flush(counters);
+  if (color_) color_->flush(counters);
+}
+
+// Planes, and for each sample which one: a cleared sample's has a number too.
+std::uint32_t SampleMemory::depth_bytes(std::size_t first, std::size_t elements) const {
+  const std::size_t begin = first * samples_, end = std::min((first + elements) * samples_, depth_owner_.size());
+  const std::size_t samples = elements * samples_, raw = samples * kSampleDepthBytes;
+  std::vector<std::uint32_t> planes;
+  bool cleared = end - begin < samples;
+  for (std::size_t i = begin; i < end; ++i) {
+    const std::uint32_t owner = depth_owner_[i];
+    if (owner == kNoTriangle) {
+      cleared = true;
+    } else if (planes.empty() || planes.back() != owner) {
+      const auto found = std::find(planes.begin(), planes.end(), owner);
+      if (found == planes.end()) {
+        planes.push_back(owner);
+        if (planes.size() * plane_bytes_ >= raw) return static_cast<std::uint32_t>(raw);
+      } else {
+        std::swap(*found, planes.back());
+      }
+    }
+  }
+  const auto index_bits = static_cast<std::size_t>(std::bit_width(planes.size() + cleared - 1));
+  return static_cast<std::uint32_t>(planes.size() * plane_bytes_ + (samples * index_bits + 7) / 8);
+}
+
+// One value per element where all its samples agree, in every element of the block.
+std::uint32_t SampleMemory::color_bytes(std::size_t first, std::size_t elements) const {
+  const std::size_t begin = first * samples_, end = std::min((first + elements) * samples_, color_owner_.size());
+  const auto compressed = static_cast<std::uint32_t>(elements) * color_sample_bytes_;
+  const auto raw = compressed * static_cast<std::uint32_t>(samples_);
+  for (std::size_t i = begin; i < end; ++i) {
+    const std::uint32_t value = color_owner_[i], pixel = color_owner_[i - i % samples_];
+    const bool same = value == pixel || (value != kNoTriangle && pixel != kNoTriangle && same_value_(value, pixel));
+    if (!same) return raw;
+  }
+  return compressed;
+}
+
+}  // namespace beampipe

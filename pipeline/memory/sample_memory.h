@@ -1,0 +1,61 @@
+// The multisampled surfaces of one bin in memory: depth, and with it colour or visibility ids.
+#pragma once
+
+#include <functional>
+#include <optional>
+#include <vector>
+
+#include "pipeline/memory/tile_surface.h"
+#include "stages/depth_test.h"
+
+namespace beampipe {
+
+class SampleMemory {
+ public:
+  // Whether two triangles write the same value into the second surface.
+  using SameValue = std::function<bool(std::uint32_t triangle, std::uint32_t other)>;
+
+  // `color_bytes` of a sample of the second surface; 0: there is depth alone.
+  SampleMemory(const MemoryParameters& parameters, const Tile& tile, const Sampling& sampling,
+               std::uint32_t color_bytes, SameValue same_value = std::equal_to<std::uint32_t>());
+
+  // Tests read depth. Where they pass they write depth, or the second surface, or both.
+  void test_and_write(const std::vector<SampleAccess>& accesses, StageCounters& counters) {
+    replay(accesses, true, true, counters);
+  }
+  void test_depth(const std::vector<SampleAccess>& accesses, StageCounters& counters) {
+    replay(accesses, true, false, counters);
+  }
+  void test_equal(const std::vector<SampleAccess>& accesses, StageCounters& counters) {
+    replay(accesses, false, true, counters);
+  }
+
+  SampleMemory(const SampleMemory&) = delete;
+  SampleMemory& operator=(const SampleMemory&) = delete;
+
+  // The end of a pass over the frame.
+  void flush(StageCounters& counters);
+
+  // Passes that read all of a surface.
+  void read_depth(StageCounters& counters) { depth_.read_all(counters); }
+  void read_color(StageCounters& counters) { color_->read_all(counters); }
+
+ private:
+  void replay(const std::vector<SampleAccess>& accesses, bool write_depth, bool write_color, StageCounters& counters);
+  std::uint32_t depth_bytes(std::size_t first, std::size_t elements) const;
+  std::uint32_t color_bytes(std::size_t first, std::size_t elements) const;
+
+  bool modelled_;
+  std::uint32_t plane_bytes_;
+  std::size_t samples_;                    // per cell
+  std::vector<std::uint32_t> cell_place_;  // of a cell, row by row in the grid of cells
+  ZOrder order_;
+  SameValue same_value_;
+  std::uint32_t color_sample_bytes_;
+  // Whose the samples' values are, by position in Z order: depth's and colour's, which differ behind a depth pass.
+  std::vector<std::uint32_t> depth_owner_, color_owner_;
+  TileSurface depth_;
+  std::optional<TileSurface> color_;
+};
+
+}  // namespace beampipe

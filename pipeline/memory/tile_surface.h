@@ -1,0 +1,58 @@
+// One surface of a bin in memory: elements (pixels, or the cells of super-resolved pixels) of a fixed size in blocks
+// along a Z-order curve, behind a cache.
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+#include <vector>
+
+#include "pipeline/memory/block_cache.h"
+
+namespace beampipe {
+
+// Elements of a bin in Z order, whatever its width and height: element (x, y) of a row-by-row numbering is at position
+// of[y * width + x]; where width or height is no power of two, positions between are left out.
+struct ZOrder {
+  std::vector<std::uint32_t> of;
+  std::size_t positions = 0;  // one beyond the last
+
+  ZOrder(std::int32_t width, std::int32_t height);
+};
+
+class TileSurface {
+ public:
+  // Compressed bytes of the block whose first element is at position `first`.
+  using CompressedBytes = std::function<std::uint32_t(std::size_t first, std::size_t elements)>;
+
+  // Elements of `element_bytes` <= 256. A block has as many of them, a power of two, as fit into a cache line. Starts
+  // out cleared.
+  TileSurface(const MemoryParameters& parameters, const ZOrder& order, std::uint32_t element_bytes,
+              CompressedBytes compressed_bytes = nullptr);
+
+  // Reads and writes parts of an element, `part_bytes` each; bit p of a mask is part p. `key` as in BlockCache: the
+  // triangle, which also tells when a batch of triangles ends.
+  void access(std::uint32_t key, std::uint32_t element, std::uint32_t read, std::uint32_t write,
+              std::uint32_t part_bytes, StageCounters& counters);
+
+  // The same for a whole element.
+  void read(std::uint32_t key, std::uint32_t element, StageCounters& counters) {
+    access(key, element, 1, 0, element_bytes_, counters);
+  }
+  void write(std::uint32_t key, std::uint32_t element, StageCounters& counters) {
+    access(key, element, 0, 1, element_bytes_, counters);
+  }
+
+  // The end of a pass over the frame: everything goes back to memory.
+  void flush(StageCounters& counters) { cache_.flush(counters); }
+
+  // A pass that reads every element of the bin once.
+  void read_all(StageCounters& counters);
+
+ private:
+  const ZOrder& order_;
+  std::uint32_t element_bytes_, triangles_per_batch_, batch_ = 0;
+  std::size_t elements_per_block_;
+  BlockCache cache_;
+};
+
+}  // namespace beampipe

@@ -1,0 +1,79 @@
+// Two traces whose counters are worked out on paper (docs/accounting.md): every byte of every stage.
+#include <gtest/gtest.h>
+
+#include <filesystem>
+
+#include "pipeline/technique.h"
+#include "traces/trace_io.h"
+
+namespace beampipe {
+namespace {
+
+struct Bytes {
+  const char* stage;
+  std::uint64_t items_in, items_out, read, written, sectors, dram;
+};
+
+void expect_bytes(const char* sample, const char* spec, const std::vector<Bytes>& expected, bool compression = true) {
+  const Trace trace = read_trace(std::filesystem::path(BEAMPIPE_SOURCE_FOLDER) / "traces/samples" / sample);
+  RunOptions run{1};
+  run.memory.compression = compression;
+  const FrameResult result = parse_technique(spec).render(trace, 0, run);
+  ASSERT_EQ(result.stages.size(), expected.size());
+  for (std::size_t i = 0; i < expected.size(); ++i) {
+    const StageCounters& found = result.stages[i];
+    const Bytes& stage = expected[i];
+    EXPECT_EQ(found.stage, stage.stage);
+    EXPECT_EQ(found.items_in, stage.items_in) << stage.stage;
+    EXPECT_EQ(found.items_out, stage.items_out) << stage.stage;
+    EXPECT_EQ(found.bytes_read, stage.read) << stage.stage;
+    EXPECT_EQ(found.bytes_written, stage.written) << stage.stage;
+    EXPECT_EQ(found.sector_bytes, stage.sectors) << stage.stage;
+    EXPECT_EQ(found.dram_bytes, stage.dram) << stage.stage;
+  }
+}
+
+constexpr std::uint64_t kSetup = 116;  // bytes that a triangle's setup passes on: 88, and 28 of attributes
+
+TEST(HandWorked, TriangleMsaa) {
+  expect_bytes("paper_triangle.json", "msaa:1",
+               {{"vertex_setup", 1, 1, 48, kSetup, 64, 64},
+                {"sample_raster", 1, 6, 88, 6 * 10, 0, 0},
+                {"shade", 6, 6, 6 * 38, 6 * 6, 0, 0},
+                {"depth_test", 6, 6, 6 * 14, 6 * 10, 64 + 64 + 128, 32 + 384},
+                {"resolve", 64, 64, 384, 384, 768, 768}});
+}
+
+TEST(HandWorked, TriangleMsaaWithoutCompression) {
+  expect_bytes("paper_triangle.json", "msaa:1",
+               {{"vertex_setup", 1, 1, 48, kSetup, 64, 64},
+                {"sample_raster", 1, 6, 88, 6 * 10, 0, 0},
+                {"shade", 6, 6, 6 * 38, 6 * 6, 0, 0},
+                {"depth_test", 6, 6, 6 * 14, 6 * 10, 64 + 64 + 128, 256 + 384},
+                {"resolve", 64, 64, 384, 384, 768, 768}},
+               false);
+}
+
+TEST(HandWorked, TriangleBeam) {
+  constexpr std::uint64_t kPairs = 13, kFragments = 10, kRecord = 66, kBuffer = kFragments * 70 + 64 * 4;
+  expect_bytes("paper_triangle.json", "beam",
+               {{"vertex_setup", 1, 1, 48, kSetup, 64, 64},
+                {"conservative_raster", 1, kPairs, 88, kPairs * 8, 0, 0},
+                {"beam_fragment", kPairs, kFragments, kPairs * 8, kFragments * kRecord, 0, 0},
+                {"shade", kFragments, kFragments, kFragments * 28, kFragments * 6, 0, 0},
+                {"a_buffer", kFragments, kFragments, kBuffer, kBuffer, 256 + 256 + 704 + 992, 256 + 256 + 736 + 704},
+                {"compose", kFragments, 64, kFragments * kRecord, 64 * 42, 992 + 128 + 320 + 192, 256 + 1024 + 384},
+                {"resolve", 64, 64, 64 * 42, 384, 256 + 2048 + 384 + 384, 256 + 1024 + 384 + 384}});
+}
+
+TEST(HandWorked, QuadsMsaa) {
+  expect_bytes("paper_quads.json", "msaa:1",
+               {{"vertex_setup", 4, 4, 2 * 72, 4 * kSetup, 160, 160},
+                {"sample_raster", 4, 32, 4 * 88, 32 * 10, 0, 0},
+                {"shade", 32, 32, 32 * 38, 32 * 6, 0, 0},
+                {"depth_test", 32, 28, 32 * 14, 28 * 10, 576 + 384, 96 + 384},
+                {"resolve", 64, 64, 384, 384, 768, 768}});
+}
+
+}  // namespace
+}  // namespace beampipe

@@ -1,0 +1,113 @@
+#include "tools/hardware.h"
+
+#include <gtest/gtest.h>
+
+#include "tools/claims.h"
+
+namespace beampipe {
+namespace {
+
+StageCounters stage(const std::string& name) {
+  StageCounters counters{name};
+  counters.items_in = 6000, counters.items_out = 9600;
+  counters.ops = {5120, 5120, 0, 0, 1280, 0};
+  counters.sector_bytes = 1536 * 3, counters.dram_bytes = 4487;
+  return counters;
+}
+
+double clocks(const Hardware& hardware, double ms) { return ms * hardware.clock_mhz * 1e3; }
+
+// Work over rate, unit by unit: 6000 triangles at 6 per clock; 9600 pixels at 96; two clocks of float operations; three
+// of L2; ten of DRAM.
+TEST(Hardware, TimeIsWorkOverRate) {
+  const Hardware titan = titan_v();
+  const Implementation& shaders = titan.implementations.at(0);
+  const auto raster = unit_times(titan, shaders, stage("sample_raster"));
+  EXPECT_NEAR(clocks(titan, raster.at("triangles")), 1000, 1e-6);
+  EXPECT_NEAR(clocks(titan, raster.at("raster")), 100, 1e-6);
+  EXPECT_NEAR(clocks(titan, raster.at("l2")), 3, 1e-6);
+  EXPECT_NEAR(clocks(titan, raster.at("dram")), 10, 1e-6);
+  EXPECT_FALSE(raster.contains("shader"));
+  EXPECT_NEAR(clocks(titan, unit_times(titan, shaders, stage("compose")).at("shader")), 2, 1e-6);
+}
+
+TEST(Hardware, OverlapIsTheBusiestUnitAndSumEachStagesBusiest) {
+  const Hardware titan = titan_v();
+  const ModelledTime time =
+      modelled_time(titan, titan.implementations.at(0), {stage("sample_raster"), stage("compose"), stage("compose")});
+  EXPECT_NEAR(clocks(titan, time.sum_ms), 1000 + 10 + 10, 1e-6);
+  EXPECT_NEAR(clocks(titan, time.overlap_ms), 1000, 1e-6);
+  EXPECT_EQ(time.busiest, "triangles");
+  ASSERT_EQ(time.stages.size(), 3u);
+  EXPECT_NEAR(clocks(titan, time.stages[1]), 10, 1e-6);
+}
+
+TEST(Hardware, ShadersShareTheirUnitBetweenStages) {
+  const Hardware titan = titan_v();
+  StageCounters busy{"compose"};
+  busy.ops.bit = 5120 * 100;
+  const ModelledTime time = modelled_time(titan, titan.implementations.at(0), {busy, busy});
+  EXPECT_NEAR(clocks(titan, time.overlap_ms), 200, 1e-6);
+  EXPECT_EQ(time.busiest, "shader");
+}
+
+std::string refusal(const std::string& from, const std::string& to) {
+  std::string text = titan_v().json.dump();
+  const std::size_t at = text.find(from);
+  EXPECT_NE(at, text.npos) << from;
+  try {
+    parse_hardware(text.replace(at, from.size(), to), "h.json");
+  } catch (const std::runtime_error& error) {
+    return error.what();
+  }
+  return "";
+}
+
+TEST(Hardware, ErrorsNameTheKey) {
+  EXPECT_EQ(refusal("\"clock_mhz\":1455", "\"clock_mhz\":-1"),
+            "h.json: clock_mhz: expected a number above 0, found -1");
+  EXPECT_EQ(refusal("\"triangles_per_clk\":6,", ""), "h.json: rates.triangles_per_clk: expected this key, found none");
+  EXPECT_EQ(refusal("\"quads_per_clk\":24", "\"quads_per_clk\":24,\"x\":1"), "h.json: rates.x: there is no such key");
+  EXPECT_NE(refusal("[\"rop_samples\"]", "[\"rop\"]").find("implementations.shaders.units.depth_test: expected units"),
+            std::string::npos);
+  EXPECT_NE(refusal("{", "").find("h.json: expected JSON"), std::string::npos);
+}
+
+TEST(Claims, BytesPerPixelAreThePublishedOnes) {
+  for (const Claim& claim : memory_claims()) {
+    ASSERT_TRUE(claim.difference()) << claim.name;
+    EXPECT_NEAR(*claim.difference(), 0, claim.unit == "MiB" ? 0.5 : 0) << claim.name;
+  }
+}
+
+TEST(Claims, DifferenceIsFromTheNearerEnd) {
+  Claim claim{"", "", 24, 32, 40, "", ""};
+  EXPECT_EQ(claim.difference(), 8);
+  claim.ours = 20;
+  EXPECT_EQ(claim.difference(), -4);
+  claim.ours = 30;
+  EXPECT_EQ(claim.difference(), 0);
+  claim.ours.reset();
+  EXPECT_FALSE(claim.difference());
+  EXPECT_TRUE(to_json(claim)["ours"].is_null());
+}
+
+// 30 bytes more at 1x to MSAA, half of which ACAA saves.
+TEST(Claims, AcaaGivesBack) {
+  Report report;
+  const auto add = [&](const char* spec, std::uint64_t dram) {
+    TechniqueReport& result = report.results.emplace_back();
+    result.technique = spec;
+    StageCounters setup{"vertex_setup"}, testing{"depth_test"};
+    setup.dram_bytes = 1000, testing.dram_bytes = dram;
+    result.frames.emplace_back().stages = {setup, testing};
+  };
+  add("msaa:1,prepass", 10);
+  EXPECT_FALSE(measured_claims(report).at(0).ours);
+  add("msaa:8,color=rgba16f,prepass", 40);
+  add("acaa:8", 25);
+  EXPECT_EQ(measured_claims(report).at(0).ours, 0.5);
+}
+
+}  // namespace
+}  // namespace beampipe

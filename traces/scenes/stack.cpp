@@ -1,0 +1,44 @@
+#include <cmath>
+#include <numbers>
+
+#include "traces/scenes/scene.h"
+
+namespace beampipe {
+namespace {
+
+constexpr double kDistance = 10, kFovyDeg = 40, kDepth = 4;
+
+// Triangles one behind the other, in no order, each of which covers the whole picture: a pixel has as many fragments as
+// there are triangles.
+std::vector<Mesh> build(double budget, const SceneOptions& options, Random& random) {
+  const double half_height = std::tan(glm::radians(kFovyDeg / 2));  // at distance 1
+  const double half_width = half_height * options.width / options.height;
+  Mesh stack;
+  stack.name = "stack";
+  const int triangles = std::max(1, static_cast<int>(std::lround(budget)));
+  for (int i = 0; i < triangles; ++i) {
+    const double z = random.uniform(-kDepth / 2, kDepth / 2), distance = kDistance - z;
+    const double x = random.uniform(-0.9, 0.9) * half_width, y = random.uniform(-0.9, 0.9) * half_height;
+    // Around (x, y), its inscribed circle holds the picture.
+    const double circle = 2 * std::hypot(half_width, half_height), turn = random.uniform(0, 2 * std::numbers::pi);
+    const auto first = static_cast<std::uint32_t>(stack.positions.size());
+    for (int corner = 0; corner < 3; ++corner) {
+      const double angle = turn + corner * 2 * std::numbers::pi / 3;
+      stack.positions.emplace_back(distance * (x + 2 * circle * std::cos(angle)),
+                                   distance * (y + 2 * circle * std::sin(angle)), z);
+    }
+    stack.triangles.emplace_back(first, first + 1, first + 2);
+    stack.colors.emplace_back(random.uniform(0.2, 0.9), random.uniform(0.2, 0.9), random.uniform(0.2, 0.9));
+  }
+  return {std::move(stack)};
+}
+
+}  // namespace
+
+Trace make_stack(const SceneOptions& options) {
+  const Camera camera{{0, 0, kDistance}, {0, 0, 0}, {0, 1, 0}, kFovyDeg, 1, 40};
+  const auto build_stack = [&](double budget, Random& random) { return build(budget, options, random); };
+  return one_frame(options, camera, build_to_budget(options, 64, build_stack));
+}
+
+}  // namespace beampipe
