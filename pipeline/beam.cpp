@@ -34,13 +34,13 @@ struct RecordBytes {
 RecordBytes record_bytes(const BeamOptions& beam) {
   switch (beam.rules) {
     case Rules::conserve:
-      return {conserving_fragment_bytes(beam.positions), conserving_aggregate_bytes(beam.positions)};
+      return {conserving_fragment_bytes(beam.positions), conserving_aggregate_bytes(beam.positions, beam.storage)};
     case Rules::over:
       return {kOverFragmentBytes, kOverBytes};
     case Rules::paper:
       break;
   }
-  return {kAggregateBytes, kAggregateBytes};
+  return {paper_aggregate_bytes(beam.paper_storage), paper_aggregate_bytes(beam.paper_storage)};
 }
 
 }  // namespace
@@ -73,13 +73,14 @@ FrameResult render_beam(const Trace& trace, const Frame& frame, const BeamOption
         switch (beam.rules) {
           case Rules::conserve: {
             PixelWindows windows;
-            aggregates = compose_window(fragments, buffer, positions, composition, windows);
+            aggregates = compose_window(fragments, buffer, positions, beam.storage, composition, windows);
             counts.emplace_back("largest_window", std::move(windows.largest));
             counts.emplace_back("merges", std::move(windows.merges));
             break;
           }
           case Rules::paper:
-            aggregates = pixel_colors(compose(fragments, buffer, positions.patterns.front(), beam.merge, composition));
+            aggregates = pixel_colors(
+                compose(fragments, buffer, positions.patterns.front(), beam.merge, beam.paper_storage, composition));
             counts.emplace_back("merges", counts.front().second);
             break;
           case Rules::over:
@@ -103,18 +104,28 @@ FrameResult render_beam(const Trace& trace, const Frame& frame, const BeamOption
 }
 
 std::vector<Surface> beam_framebuffer(const BeamOptions& beam) {
-  const Surface color{"color", "RGB16F", kAggregateColorBytes}, coverage{"coverage", "R32F", 4};
+  const Surface color{"color", "RGB16F", kAggregateColorBytes}, float_color{"color", "RGB32F", 12};
+  const Surface coverage{"coverage", "R32F", 4};
   const auto mask_bytes = static_cast<std::uint32_t>(beam.positions) / 8;
   const Surface mask{"mask", "R32UI x " + std::to_string(mask_bytes / 4), mask_bytes};
+  const Surface plane{"depth_plane", "RGB32F", 12}, thickness{"thickness", "R32F", 4}, range{"depth_range", "RG32F", 8};
   switch (beam.rules) {
     case Rules::conserve:
-      return {coverage, mask, color};
+      return {coverage, mask, beam.storage == Storage::packed ? color : float_color};
     case Rules::over:
       return {coverage, color};
     case Rules::paper:
       break;
   }
-  return {coverage, mask, {"depth_plane", "RGBA32F", 16}, {"thickness", "R32F", 4}, {"depth_range", "RG32F", 8}, color};
+  switch (beam.paper_storage) {
+    case PaperStorage::slides:
+      return {coverage, mask, {"depth_plane", "RGBA32F", 16}, thickness, range, color};
+    case PaperStorage::text:
+      return {coverage, mask, {"depth_plane", "R32F + RG16", 8}, {"thickness", "R16", 2}, range, color};
+    case PaperStorage::float32:
+      break;
+  }
+  return {coverage, mask, plane, thickness, range, float_color};
 }
 
 }  // namespace beampipe

@@ -5,6 +5,8 @@
 #include "pipeline/technique.h"
 #include "stages/a_buffer.h"
 #include "stages/beam_fragment.h"
+#include "stages/paper_storage.h"
+#include "stages/stored_aggregate.h"
 
 namespace beampipe {
 
@@ -19,8 +21,10 @@ struct BeamOptions {
   int positions = 256;                  // of the mask: 32, 64, 128 or 256; 32 with the paper's rules; 0 without masks
   MaskSource mask = MaskSource::exact;  // table: 32 positions only; none: with `over`
   SortKey sort = SortKey::nearest;
-  int tiny_positions = 0;  // BeamFragmentOptions::tiny_positions
-  MergeRules merge{};      // with `paper`
+  int tiny_positions = 0;                             // BeamFragmentOptions::tiny_positions
+  MergeRules merge{};                                 // with `paper`
+  Storage storage = Storage::packed;                  // with `conserve`
+  PaperStorage paper_storage = PaperStorage::slides;  // with `paper`
 };
 
 FrameResult render_beam(const Trace& trace, const Frame& frame, const BeamOptions& beam, const RunOptions& run);

@@ -50,6 +50,9 @@ Technique make_beam(Spec& spec) {
     options.sort = spec.choice<SortKey>("sort", {{"centroid", SortKey::centroid}, {"nearest", SortKey::nearest}});
     options.tiny_positions = spec.choice<int>("tiny", {{"1", 1}, {"3", 3}});
     options.merge = merge_rules(spec);
+    options.paper_storage = spec.choice<PaperStorage>(
+        "storage",
+        {{"slides", PaperStorage::slides}, {"text", PaperStorage::text}, {"float32", PaperStorage::float32}});
   } else if (spec.choice<bool>("order", {{"sort", false}, {"stream", true}})) {
     StreamOptions stream;
     stream.positions = spec.choice<int>("bits", {{"128", 128}, {"256", 256}, {"64", 64}, {"32", 32}});
@@ -58,6 +61,7 @@ Technique make_beam(Spec& spec) {
     return {spec.text(), stream_framebuffer(stream), 0, bind_options(render_stream, stream)};
   } else {
     options.positions = spec.choice<int>("bits", {{"256", 256}, {"128", 128}, {"64", 64}, {"32", 32}});
+    options.storage = spec.choice<Storage>("storage", {{"packed", Storage::packed}, {"float32", Storage::float32}});
   }
   return {spec.text(), beam_framebuffer(options), 0, bind_options(render_beam, options)};
 }
@@ -137,10 +141,11 @@ struct Kind {
 
 constexpr Kind kKinds[] = {
     {"beam",
-     "beam, beam:bits=256|128|64|32, beam:order=stream and, if wanted, bits=128|256|64|32, layers=5|1, passes=N, or "
+     "beam, beam:bits=256|128|64|32,storage=packed|float32, either or both, beam:order=stream and, if wanted, "
+     "bits=128|256|64|32, layers=5|1, passes=N, or "
      "beam:rules=paper and, if wanted, mask=table|exact, sort=centroid|nearest, "
      "tiny=1|3, overlap=tiny|over|add|transition, local=clamp|keep, fuzzy=delta|mix, extents=range|slab, "
-     "slab=full|visible, plane=area|visible, thickness=larger|containing",
+     "slab=full|visible, plane=area|visible, thickness=larger|containing, storage=slides|text|float32",
      "  beam         sorted fragments with analytic coverage and a mask, one area-conserving aggregate per pixel\n"
      "               beam:bits=N      N = 32, 64, 128 or 256 (the default) mask positions\n"
      "               beam:order=stream  fragments in primitive order, no A-buffer: a pixel's state is all there is; "
@@ -149,7 +154,9 @@ constexpr Kind kKinds[] = {
      "               beam:order=stream,bits=N,layers=5|1,passes=P  N = 128 positions and 5 layers: 80 bytes; N = 64 "
      "and\n"
      "                 1 layer: 32 bytes; at most P passes\n"
+     "               beam:storage=packed|float32  the aggregate's colour: fp16 (the default) or float32\n"
      "               beam:rules=paper the published rules: 32-bit mask, depth slab\n"
+     "               beam:rules=paper,storage=slides|text|float32  42 bytes as in the talk, 32 as in the text, or 56\n"
      "               beam:rules=paper,mask=exact  its masks from edge tests in place of the 64 x 64 table\n"
      "               beam:rules=paper,sort=nearest,tiny=3,overlap=over|add|transition,local=keep,fuzzy=mix,\n"
      "                 extents=slab,slab=visible,plane=visible,thickness=containing  other readings of its rules,\n"

@@ -42,6 +42,12 @@ void count_merges(std::uint64_t merges, std::uint64_t pixels, const OperationCou
   counters.lanes_issued += merges;
 }
 
+// Coverage as float32, colour as fp16.
+Aggregate stored_over(Aggregate aggregate) {
+  for (float& channel : aggregate.color) channel = HalfBits(channel);
+  return aggregate;
+}
+
 }  // namespace
 
 MergeFragment merge_fragment(const Fragment& fragment) {
@@ -56,8 +62,11 @@ MergeFragment merge_fragment(const Fragment& fragment) {
           fragment.tiny ? ~0u : 0u};
 }
 
-std::vector<Aggregate> compose(const std::vector<Fragment>& fragments, const ABuffer& buffer,
-                               const SamplePattern& pattern, const MergeRules& rules, StageCounters& counters) {
+namespace {
+
+template <class Stored>
+std::vector<Aggregate> compose_stored(const std::vector<Fragment>& fragments, const ABuffer& buffer,
+                                      const SamplePattern& pattern, const MergeRules& rules) {
   const std::size_t pixels = buffer.first.size() - 1;
   // Round r merges the r-th fragment of every pixel that has one: independent merges, one per lane. With the deepest
   // pixels first, the pixels of a round are a prefix.
@@ -65,20 +74,41 @@ std::vector<Aggregate> compose(const std::vector<Fragment>& fragments, const ABu
   std::iota(order.begin(), order.end(), 0u);
   std::stable_sort(order.begin(), order.end(),
                    [&](std::uint32_t a, std::uint32_t b) { return buffer.depth_of(a) > buffer.depth_of(b); });
-  std::vector<Aggregate> in_order(pixels, kEmptyAggregate);
+  std::vector<Stored> stored(pixels, Stored(kEmptyAggregate));
+  std::vector<Aggregate> merging(pixels);
   std::vector<MergeFragment> arriving(pixels);
   std::size_t active = pixels;
   for (std::uint32_t round = 0;; ++round) {
     while (active > 0 && buffer.depth_of(order[active - 1]) <= round) --active;
     if (active == 0) break;
-    for (std::size_t i = 0; i < active; ++i)
+    for (std::size_t i = 0; i < active; ++i) {
       arriving[i] = merge_fragment(fragments[buffer.fragments[buffer.first[order[i]] + round]]);
-    merge(arriving.data(), active, pattern, rules, in_order.data());
+      merging[i] = stored[i];
+    }
+    merge(arriving.data(), active, pattern, rules, merging.data());
+    for (std::size_t i = 0; i < active; ++i) stored[i] = Stored(merging[i]);
   }
   std::vector<Aggregate> aggregates(pixels);
-  for (std::size_t i = 0; i < pixels; ++i) aggregates[order[i]] = in_order[i];
-  count_merges(buffer.fragments.size(), pixels, merge_cost(pattern, rules), kAggregateBytes, kAggregateBytes, counters);
+  for (std::size_t i = 0; i < pixels; ++i) aggregates[order[i]] = stored[i];
   return aggregates;
+}
+
+}  // namespace
+
+std::vector<Aggregate> compose(const std::vector<Fragment>& fragments, const ABuffer& buffer,
+                               const SamplePattern& pattern, const MergeRules& rules, PaperStorage storage,
+                               StageCounters& counters) {
+  count_merges(buffer.fragments.size(), buffer.first.size() - 1, merge_cost(pattern, rules),
+               paper_aggregate_bytes(storage), paper_aggregate_bytes(storage), counters);
+  switch (storage) {
+    case PaperStorage::slides:
+      return compose_stored<SlidesAggregate>(fragments, buffer, pattern, rules);
+    case PaperStorage::text:
+      return compose_stored<TextAggregate>(fragments, buffer, pattern, rules);
+    case PaperStorage::float32:
+      break;
+  }
+  return compose_stored<Aggregate>(fragments, buffer, pattern, rules);
 }
 
 std::vector<Aggregate> compose_over(const std::vector<Fragment>& fragments, const ABuffer& buffer,
@@ -87,7 +117,7 @@ std::vector<Aggregate> compose_over(const std::vector<Fragment>& fragments, cons
   std::vector<Aggregate> aggregates(pixels, kEmptyAggregate);
   for (std::size_t pixel = 0; pixel < pixels; ++pixel)
     for (std::uint32_t i = buffer.first[pixel]; i < buffer.first[pixel + 1]; ++i)
-      aggregates[pixel] = over_scalar(merge_fragment(fragments[buffer.fragments[i]]), aggregates[pixel]);
+      aggregates[pixel] = stored_over(over_scalar(merge_fragment(fragments[buffer.fragments[i]]), aggregates[pixel]));
   count_merges(buffer.fragments.size(), pixels, over_cost(), kOverFragmentBytes, kOverBytes, counters);
   return aggregates;
 }

@@ -6,6 +6,7 @@
 #include "simd/merge.h"
 #include "stages/a_buffer.h"
 #include "stages/counters.h"
+#include "stages/paper_storage.h"
 
 namespace beampipe {
 
@@ -14,7 +15,8 @@ MergeFragment merge_fragment(const Fragment& fragment);
 
 // The paper's rules (simd/merge.h). One aggregate per pixel of the tile; kEmptyAggregate where nothing is.
 std::vector<Aggregate> compose(const std::vector<Fragment>& fragments, const ABuffer& buffer,
-                               const SamplePattern& pattern, const MergeRules& rules, StageCounters& counters);
+                               const SamplePattern& pattern, const MergeRules& rules, PaperStorage storage,
+                               StageCounters& counters);
 
 // Plain OVER: alpha and colour, as if every fragment were independent of every other.
 std::vector<Aggregate> compose_over(const std::vector<Fragment>& fragments, const ABuffer& buffer,

@@ -14,12 +14,32 @@ namespace {
 // far behind, in pixels of that surface's slope: a quarter of the distance between positions of a 256-bit mask.
 constexpr float kSurfaceReach = 1.0f / 64.0f;
 
-// What is kept from one window to the next.
+// Specks whose nearest position is the same have at most so many times that position's share of the pixel together;
+// more is several surfaces on top of each other. The places nearest to one position are up to about twice its share.
+constexpr float kSpeckShares = 2.0f;
+
+// What is kept from one window to the next, as it is worked on.
 struct PixelAggregate {
   WideMask mask;
   Taken<float> taken{0.0f, 0.0f};
   glm::vec3 color{0.0f};  // times area
 };
+
+template <std::size_t Words, class Channel>
+PixelAggregate load(const StoredAggregate<Words, Channel>& stored) {
+  PixelAggregate aggregate;
+  std::copy_n(stored.mask, Words, aggregate.mask.words.begin());
+  aggregate.taken = {stored.area, static_cast<float>(aggregate.mask.count())};
+  aggregate.color = {stored.color[0], stored.color[1], stored.color[2]};
+  return aggregate;
+}
+
+template <std::size_t Words, class Channel>
+void store(const PixelAggregate& aggregate, StoredAggregate<Words, Channel>& stored) {
+  std::copy_n(aggregate.mask.words.begin(), Words, stored.mask);
+  stored.area = aggregate.taken.area;
+  for (int c = 0; c < 3; ++c) stored.color[c] = Channel(aggregate.color[c]);
+}
 
 // A fragment of the window and what is seen of it.
 struct Seen {
@@ -120,6 +140,8 @@ class PixelComposer {
       if (seen.covered > 0) continue;
       const std::size_t place = positions_.nearest_to(seen.fragment->centroid_u, seen.fragment->centroid_v)[0];
       if ((front_[place] >= back_[place]) != seen.fragment->front) seen.area = 0;
+      seen.area *= std::min(
+          1.0f, kSpeckShares / (static_cast<float>(positions_.count()) * std::max(front_[place], back_[place])));
     }
   }
 
@@ -198,8 +220,13 @@ const std::array<std::uint8_t, 3>& PositionSet::nearest_to(float u, float v) con
   return nearest[static_cast<std::size_t>(place(v) * kPlaces + place(u))];
 }
 
-std::vector<PixelColor> compose_window(const std::vector<Fragment>& fragments, const ABuffer& buffer,
+namespace {
+
+template <std::size_t Words, class Channel>
+std::vector<PixelColor> compose_stored(const std::vector<Fragment>& fragments, const ABuffer& buffer,
                                        const PositionSet& positions, StageCounters& counters, PixelWindows& windows) {
+  using Stored = StoredAggregate<Words, Channel>;
+  constexpr int kPositions = 32 * Words;
   const std::size_t pixels = buffer.first.size() - 1;
   PixelComposer composer(positions);
   std::vector<PixelColor> colors(pixels);
@@ -207,10 +234,11 @@ std::vector<PixelColor> compose_window(const std::vector<Fragment>& fragments, c
   std::vector<const Fragment*> window;
   std::uint64_t looked_at = 0;
   for (std::size_t pixel = 0; pixel < pixels; ++pixel) {
-    PixelAggregate aggregate;
+    Stored stored{};
+    int taken = 0;
     const auto at = [&](std::uint32_t i) -> const Fragment& { return fragments[buffer.fragments[i]]; };
     const std::uint32_t end = buffer.first[pixel + 1];
-    for (std::uint32_t i = buffer.first[pixel]; i < end && aggregate.mask.count() < positions.count();) {
+    for (std::uint32_t i = buffer.first[pixel]; i < end && taken < kPositions;) {
       window.clear();
       float farthest = at(i).z_max;
       do {
@@ -218,25 +246,53 @@ std::vector<PixelColor> compose_window(const std::vector<Fragment>& fragments, c
         farthest = std::max(farthest, at(i).z_max);
       } while (++i < end && at(i).z_min <= farthest);
       std::sort(window.begin(), window.end());  // primitive order: of equal depths the earlier wins
+      PixelAggregate aggregate = load(stored);
       composer.add_window(window.data(), window.data() + window.size(), aggregate);
+      taken = aggregate.mask.count();
+      if (taken == kPositions) {  // nothing is left for the background: what rounding left goes to what is there
+        aggregate.color *= 1.0f / aggregate.taken.area;
+        aggregate.taken.area = 1.0f;
+      }
+      store(aggregate, stored);
       windows.largest[pixel] = std::max(windows.largest[pixel], static_cast<float>(window.size()));
       windows.merges[pixel] += static_cast<float>(window.size());
       looked_at += window.size();
     }
-    // A full mask leaves nothing for the background: what rounding left of the area goes to what is there.
-    const bool full = aggregate.mask.count() == positions.count();
-    const float scale = full ? 1.0f / aggregate.taken.area : 1.0f;
-    colors[pixel] = {full ? 1.0f : aggregate.taken.area, aggregate.color * scale};
+    colors[pixel] = {stored.area, {stored.color[0], stored.color[1], stored.color[2]}};
   }
   counters.items_in += buffer.fragments.size();
   counters.items_out += pixels;
-  counters.ops += addition_cost(positions.patterns.size()) * composer.additions();
+  counters.ops += addition_cost(Words) * composer.additions();
   counters.ops += depth_compare_cost() * composer.depth_tests();
-  counters.bytes_read += looked_at * conserving_fragment_bytes(positions.count());
-  counters.bytes_written += pixels * conserving_aggregate_bytes(positions.count());
+  counters.bytes_read += looked_at * conserving_fragment_bytes(kPositions);
+  counters.bytes_written += pixels * sizeof(Stored);
   counters.lanes_used += composer.depth_tests();
-  counters.lanes_issued += looked_at * static_cast<std::size_t>(positions.count());
+  counters.lanes_issued += looked_at * std::uint64_t{kPositions};
   return colors;
+}
+
+template <class Channel>
+std::vector<PixelColor> compose_channels(const std::vector<Fragment>& fragments, const ABuffer& buffer,
+                                         const PositionSet& positions, StageCounters& counters, PixelWindows& windows) {
+  switch (positions.patterns.size()) {
+    case 1:
+      return compose_stored<1, Channel>(fragments, buffer, positions, counters, windows);
+    case 2:
+      return compose_stored<2, Channel>(fragments, buffer, positions, counters, windows);
+    case 4:
+      return compose_stored<4, Channel>(fragments, buffer, positions, counters, windows);
+    default:
+      return compose_stored<8, Channel>(fragments, buffer, positions, counters, windows);
+  }
+}
+
+}  // namespace
+
+std::vector<PixelColor> compose_window(const std::vector<Fragment>& fragments, const ABuffer& buffer,
+                                       const PositionSet& positions, Storage storage, StageCounters& counters,
+                                       PixelWindows& windows) {
+  return storage == Storage::packed ? compose_channels<HalfBits>(fragments, buffer, positions, counters, windows)
+                                    : compose_channels<float>(fragments, buffer, positions, counters, windows);
 }
 
 }  // namespace beampipe

@@ -13,7 +13,7 @@
 
 #include "stages/a_buffer.h"
 #include "stages/resolve.h"
-#include "stages/wide_mask.h"
+#include "stages/stored_aggregate.h"
 
 namespace beampipe {
 
@@ -28,15 +28,10 @@ struct PositionSet {
   const std::array<std::uint8_t, 3>& nearest_to(float u, float v) const;  // u, v in 0..1
 };
 
-// Bytes of the aggregate as stored: mask, area as float32, colour as 3 x fp16. 42 with 256 positions.
-constexpr std::uint32_t conserving_aggregate_bytes(int positions) {
-  return static_cast<std::uint32_t>(positions) / 8 + 4 + 6;
-}
-
 // Bytes of a fragment as it waits in the A-buffer: what the aggregate has, and the depth plane (3 x float32), the depth
 // range (2 x float32), and the centroid with the facing (2 x 16 bits), for which the aggregate has no use.
 constexpr std::uint32_t conserving_fragment_bytes(int positions) {
-  return conserving_aggregate_bytes(positions) + 12 + 8 + 4;
+  return conserving_aggregate_bytes(positions, Storage::packed) + 12 + 8 + 4;
 }
 
 // Per pixel: the fragments of its largest window, and those that were looked at before its mask was full.
@@ -46,6 +41,7 @@ struct PixelWindows {
 
 // One pixel colour and coverage per pixel of the tile.
 std::vector<PixelColor> compose_window(const std::vector<Fragment>& fragments, const ABuffer& buffer,
-                                       const PositionSet& positions, StageCounters& counters, PixelWindows& windows);
+                                       const PositionSet& positions, Storage storage, StageCounters& counters,
+                                       PixelWindows& windows);
 
 }  // namespace beampipe

@@ -1,7 +1,5 @@
 #include "stages/compose_z3.h"
 
-#include <half.h>
-
 #include <algorithm>
 #include <array>
 #include <bit>
@@ -12,16 +10,6 @@
 
 namespace beampipe {
 namespace {
-
-std::uint16_t upper_half(float value) { return static_cast<std::uint16_t>(std::bit_cast<std::uint32_t>(value) >> 16); }
-float from_upper_half(std::uint16_t bits) { return std::bit_cast<float>(std::uint32_t{bits} << 16); }
-
-float from_half(std::uint16_t bits) {
-  half value;
-  value.setBits(bits);
-  return value;
-}
-std::uint16_t to_half(float value) { return half(std::min(value, static_cast<float>(HALF_MAX))).bits(); }
 
 // A layer as it is worked on.
 struct Layer {
@@ -34,14 +22,12 @@ struct Layer {
 
 Z3Layer packed(const Layer& layer) {
   return {layer.plane.z,
-          {upper_half(layer.plane.dzdu), upper_half(layer.plane.dzdv)},
-          {to_half(layer.color.r), to_half(layer.color.g), to_half(layer.color.b)}};
+          {UpperHalf(layer.plane.dzdu), UpperHalf(layer.plane.dzdv)},
+          {HalfBits(layer.color.r), HalfBits(layer.color.g), HalfBits(layer.color.b)}};
 }
 
 Layer unpacked(const Z3Layer& layer, const WideMask& positions) {
-  return {{layer.z, from_upper_half(layer.slopes[0]), from_upper_half(layer.slopes[1])},
-          {from_half(layer.color[0]), from_half(layer.color[1]), from_half(layer.color[2])},
-          positions};
+  return {{layer.z, layer.slopes[0], layer.slopes[1]}, {layer.color[0], layer.color[1], layer.color[2]}, positions};
 }
 
 float merge_loss(const Layer& a, const Layer& b, LayerMerge merge) {

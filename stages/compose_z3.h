@@ -10,6 +10,7 @@
 
 #include "stages/beam_fragment.h"
 #include "stages/compose_window.h"
+#include "stages/half_bits.h"
 #include "stages/position_states.h"
 #include "stages/resolve.h"
 
@@ -22,9 +23,9 @@ enum class LayerMerge {
 
 #pragma pack(push, 2)
 struct Z3Layer {
-  float z;                  // at the pixel's centre
-  std::uint16_t slopes[2];  // per pixel along u and v: the upper half of a float32
-  std::uint16_t color[3];   // fp16 RGB
+  float z;              // at the pixel's centre
+  UpperHalf slopes[2];  // per pixel along u and v
+  HalfBits color[3];    // linear RGB
 };
 
 // The whole state of a pixel. Z3 has a mask per layer; masks of opaque layers are disjoint, so that an owner per

@@ -15,9 +15,9 @@ inline constexpr float kFarDepth = 1.0f;           // beyond every depth: the cl
 inline constexpr std::uint32_t kSampleDepthBytes = 4;
 inline constexpr std::uint32_t kSampleColorBytes = 6;
 
-// Samples in order of pixel (row by row), cell within the pixel, sample within the cell. A sample's colour is kept as the
-// index of its triangle, which has one colour; the modelled surface is 32-bit depth and `color_bytes` of colour (or of a
-// visibility id) per sample: 0 while only depth is written.
+// Samples in order of pixel (row by row), cell within the pixel, sample within the cell. A sample's colour is kept as
+// the index of its triangle, which has one colour; the modelled surface is 32-bit depth and `color_bytes` of colour (or
+// of a visibility id) per sample: 0 while only depth is written.
 struct SampleTile {
   std::vector<float> depth;
   std::vector<std::uint32_t> triangle;

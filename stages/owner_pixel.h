@@ -10,6 +10,7 @@
 #include <cstdint>
 
 #include "simd/plane_order.h"
+#include "stages/half_bits.h"
 #include "stages/position_states.h"
 
 namespace beampipe {
@@ -26,7 +27,7 @@ struct OwnerPixel {
   PositionStates<Words, std::bit_width(kSettled)> states;
   std::uint32_t owner[Layers];  // below 2^31; kSpeck: something that covers no position may be seen in this pass
   float dropped;                // at no deferred position was there anything nearer; kNoDepth when none is
-  std::uint16_t color[4];       // fp16 RGB of what is settled, times its area, and the area
+  HalfBits color[4];            // fp16 RGB of what is settled, times its area, and the area
 
   WideMask positions_in(std::uint32_t state) const { return states.positions_in(state); }
   void put(const WideMask& positions, std::uint32_t into) { states.put(positions, into); }

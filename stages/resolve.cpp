@@ -52,16 +52,12 @@ std::vector<PixelColor> pixel_colors(const std::vector<Aggregate>& aggregates) {
 
 std::vector<glm::vec4> resolve(const std::vector<PixelColor>& aggregates, const glm::vec3& background,
                                std::uint32_t stored_bytes, StageCounters& counters) {
-  std::vector<glm::vec3> colors;
-  colors.reserve(aggregates.size());
-  for (const PixelColor& aggregate : aggregates) colors.push_back(aggregate.color);
-  colors = round_to_half(std::move(colors));
   std::vector<glm::vec4> image;
   image.reserve(aggregates.size());
   for (std::size_t i = 0; i < aggregates.size(); ++i) {
     const float alpha = aggregates[i].alpha;
     glm::vec4& pixel = image.emplace_back(0.0f, 0.0f, 0.0f, alpha);
-    over_background(&colors[i].x, alpha, &background.x, &pixel.x);
+    over_background(&aggregates[i].color.x, alpha, &background.x, &pixel.x);
   }
   counters.items_in += aggregates.size();
   counters.items_out += aggregates.size();

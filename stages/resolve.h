@@ -17,7 +17,7 @@ struct PixelColor {
 };
 std::vector<PixelColor> pixel_colors(const std::vector<Aggregate>& aggregates);
 
-// Aggregates as stored (colour rounded to fp16, `stored_bytes` each), over the background. One RGBA per pixel of the
+// Aggregates as stored, `stored_bytes` each, over the background. One RGBA per pixel of the
 // tile.
 std::vector<glm::vec4> resolve(const std::vector<PixelColor>& aggregates, const glm::vec3& background,
                                std::uint32_t stored_bytes, StageCounters& counters);

@@ -1,7 +1,5 @@
 #include "stages/settle.h"
 
-#include <half.h>
-
 #include <algorithm>
 
 #include "simd/conserve.h"
@@ -9,14 +7,6 @@
 
 namespace beampipe {
 namespace {
-
-float from_half(std::uint16_t bits) {
-  half value;
-  value.setBits(bits);
-  return value;
-}
-
-std::uint16_t to_half(float value) { return half(std::min(value, static_cast<float>(HALF_MAX))).bits(); }
 
 // An owner and what is seen of it.
 struct Owner {
@@ -32,8 +22,8 @@ void settle_pixel(const Fragment* begin, const Fragment* end, bool last_pass, Ow
   const WideMask deferred = pixel.positions_in(Pixel::kDeferred);
   std::vector<Owner> seen;
   WideMask settled = pixel.positions_in(Pixel::kSettled);
-  Taken<float> taken{from_half(pixel.color[3]), static_cast<float>(settled.count())};
-  glm::vec3 color(from_half(pixel.color[0]), from_half(pixel.color[1]), from_half(pixel.color[2]));
+  Taken<float> taken{pixel.color[3], static_cast<float>(settled.count())};
+  glm::vec3 color(pixel.color[0], pixel.color[1], pixel.color[2]);
   const Fragment* fragment = begin;
   for (std::uint32_t k = 0; k < Layers; ++k) {
     const WideMask owned = pixel.positions_in(Pixel::kFirstLayer + k);
@@ -60,8 +50,8 @@ void settle_pixel(const Fragment* begin, const Fragment* end, bool last_pass, Ow
     if (taken.area > 0) scale = full ? 1 / taken.area : std::min(kPositions / (kPositions - undecided), 1 / taken.area);
     settled = settled | deferred | pixel.positions_in(Pixel::kEmpty);
   }
-  for (int c = 0; c < 3; ++c) pixel.color[c] = to_half(color[c] * scale);
-  pixel.color[3] = to_half(taken.area * scale);
+  for (int c = 0; c < 3; ++c) pixel.color[c] = HalfBits(color[c] * scale);
+  pixel.color[3] = HalfBits(taken.area * scale);
   pixel.put(settled, Pixel::kSettled);
   pixel.put(without(deferred, settled), Pixel::kEmpty);
   pixel.dropped = kNoDepth;
@@ -124,8 +114,7 @@ std::vector<PixelColor> settled_colors(const std::vector<OwnerPixel<Words, Layer
   std::vector<PixelColor> colors;
   colors.reserve(pixels.size());
   for (const OwnerPixel<Words, Layers>& pixel : pixels)
-    colors.push_back(
-        {from_half(pixel.color[3]), {from_half(pixel.color[0]), from_half(pixel.color[1]), from_half(pixel.color[2])}});
+    colors.push_back({float(pixel.color[3]), {pixel.color[0], pixel.color[1], pixel.color[2]}});
   return colors;
 }
 

@@ -10,7 +10,9 @@ namespace {
 
 const char* const kSpecs[] = {
     "beam",
+    "beam:storage=float32",
     "beam:rules=paper,mask=exact",
+    "beam:rules=paper,storage=text",
     "beam:rules=paper,sort=nearest,tiny=3,overlap=transition,local=keep,fuzzy=mix,extents=slab,"
     "slab=visible,plane=visible,thickness=containing",
     "beam:order=stream",

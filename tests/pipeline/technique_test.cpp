@@ -8,6 +8,8 @@ namespace {
 TEST(Technique, FramebufferBytesAreThePublishedOnes) {
   // Slide 23 of the paper's talk: beam 42 with colour; 8x and 32x MSAA with 4-byte depth and fp16 RGB 80 and 320.
   EXPECT_EQ(parse_technique("beam").framebuffer_bytes_per_pixel(), 42u);
+  EXPECT_EQ(parse_technique("beam:rules=paper").framebuffer_bytes_per_pixel(), 42u);
+  EXPECT_EQ(parse_technique("beam:rules=paper,storage=text").framebuffer_bytes_per_pixel(), 32u);
   EXPECT_EQ(parse_technique("msaa:8").framebuffer_bytes_per_pixel(), 80u);
   EXPECT_EQ(parse_technique("msaa:32").framebuffer_bytes_per_pixel(), 320u);
   EXPECT_EQ(parse_technique("alpha").framebuffer_bytes_per_pixel(), 10u);

@@ -169,7 +169,7 @@ TEST(Compose, PixelsDoNotMix) {
   shade(colors, fragments.list, counters);
   const ABuffer buffer = sorted(fragments, tile.pixels());
   const SamplePattern pattern = hammersley_pattern();
-  const std::vector<Aggregate> found = compose(fragments.list, buffer, pattern, {}, counters);
+  const std::vector<Aggregate> found = compose(fragments.list, buffer, pattern, {}, PaperStorage::float32, counters);
   for (std::size_t i = 0; i < tile.pixels(); ++i) {
     Aggregate alone = kEmptyAggregate;
     for (std::uint32_t k = buffer.first[i]; k < buffer.first[i + 1]; ++k)

@@ -19,7 +19,8 @@ namespace {
 const Tile kPixel{0, 0, 1, 1};
 
 std::vector<PixelColor> composed(const SetupTriangles& triangles, const std::vector<glm::vec3>& colors,
-                                 const Tile& tile, int bits, std::vector<float>* windows = nullptr) {
+                                 const Tile& tile, int bits, std::vector<float>* windows = nullptr,
+                                 Storage storage = Storage::float32) {
   const PositionSet positions(cell_patterns(bits));
   StageCounters counters;
   std::vector<PixelTriangle> pairs;
@@ -29,7 +30,7 @@ std::vector<PixelColor> composed(const SetupTriangles& triangles, const std::vec
   shade(colors, fragments, counters);
   const ABuffer buffer = a_buffer(fragments, tile.pixels(), SortKey::nearest, 42, counters);
   PixelWindows sizes;
-  std::vector<PixelColor> pixels = compose_window(fragments, buffer, positions, counters, sizes);
+  std::vector<PixelColor> pixels = compose_window(fragments, buffer, positions, storage, counters, sizes);
   if (windows) *windows = sizes.largest;
   return pixels;
 }
@@ -69,6 +70,16 @@ TEST(ComposeWindow, AnEdgeOverASurfaceSplitsThePixelExactly) {
     EXPECT_NEAR(found.color.r, 77.0 / 256, 1e-6) << bits;
     EXPECT_NEAR(found.color.g, 179.0 / 256, 1e-6) << bits;
   }
+}
+
+TEST(ComposeWindow, ColorIsStoredAsHalfBehindEveryWindow) {
+  SetupTriangles triangles;
+  add_left_of(triangles, 77, -0.75f);
+  add_everywhere(triangles, -0.5f);
+  const std::vector<glm::vec3> colors = {{0.7f, 0, 0}, {0.1f, 0, 0}};
+  const float first = HalfBits(77.0f / 256 * 0.7f);
+  EXPECT_EQ(composed(triangles, colors, kPixel, 256, nullptr, Storage::packed).at(0).color.r,
+            HalfBits(first + 179.0f / 256 * 0.1f));
 }
 
 TEST(ComposeWindow, ASurfaceOfManyTrianglesHidesWhatIsBehind) {

@@ -20,14 +20,6 @@ TEST(Resolve, AggregateOverTheBackground) {
 }
 
 // The aggregate's colour is stored in fp16: 1 + 2^-12 becomes 1.
-TEST(Resolve, AggregateColorIsHalf) {
-  Aggregate full = kEmptyAggregate;
-  full.alpha = 1.0f;
-  full.color[0] = 1.0f + 0x1p-12f;
-  StageCounters counters;
-  EXPECT_EQ(resolve(pixel_colors({full}), {1, 1, 1}, 42, counters).at(0).r, 1.0f);
-}
-
 TEST(Resolve, MeanOfTheSamples) {
   const Tile tile{0, 0, 2, 1};
   const Sampling sampling{CellGrid{}, standard_pattern(4)};

@@ -1,0 +1,34 @@
+// 16-bit floats as they stand in packed structs.
+#pragma once
+
+#include <half.h>
+
+#include <algorithm>
+#include <bit>
+#include <cstdint>
+
+namespace beampipe {
+
+struct HalfBits {  // fp16
+  std::uint16_t bits = 0;
+
+  HalfBits() = default;
+  explicit HalfBits(float value) : bits(half(std::min(value, static_cast<float>(HALF_MAX))).bits()) {}
+  operator float() const {
+    half value;
+    value.setBits(bits);
+    return value;
+  }
+};
+
+// The upper half of a float32, rounded: as wide a range, for depth slopes that go down to 1e-9 per pixel.
+struct UpperHalf {
+  std::uint16_t bits = 0;
+
+  UpperHalf() = default;
+  explicit UpperHalf(float value)
+      : bits(static_cast<std::uint16_t>((std::bit_cast<std::uint32_t>(value) + 0x8000u) >> 16)) {}
+  operator float() const { return std::bit_cast<float>(std::uint32_t{bits} << 16); }
+};
+
+}  // namespace beampipe
