@@ -21,24 +21,29 @@ POLICIES = ["", "mask=exact", "sort=nearest", "tiny=3", "overlap=over", "overlap
 
 
 def rates(program, trace, folder):
-    """EMR by policy."""
+    """Results by policy."""
     specs = {",".join(filter(None, ["beam:rules=paper", policy])): policy for policy in POLICIES}
     subprocess.run([program, "compare", trace, "-t", *specs, "-o", folder], check=True, stdout=subprocess.DEVNULL)
     with open(f"{folder}/report.json", encoding="utf-8") as file:
         report = json.load(file)
-    return {specs[r["technique"]]: r["equivalent_msaa"] for r in report["results"] if r["technique"] in specs}
+    return {specs[r["technique"]]: r for r in report["results"] if r["technique"] in specs}
 
 
-def mean(values):
-    return math.exp(sum(map(math.log, values)) / len(values))
+def text(result):
+    return ("< " if result.get("equivalent_msaa_is_upper_bound") else "") + f"{result['equivalent_msaa']:.3g}"
+
+
+def mean(results):
+    return f"{math.exp(sum(math.log(r['equivalent_msaa']) for r in results) / len(results)):.3g}"
 
 
 def print_table(names, found, means):
     print("| policy | " + " | ".join(names) + " | " + " | ".join(title for title, _ in means) + " |")
     print("|---" * (len(names) + len(means) + 1) + "|")
     for policy in POLICIES:
-        rows = [found[name][policy] for name in names] + [mean([found[n][policy] for n in over]) for _, over in means]
-        print(f"| {f'`{policy}`' if policy else 'as published'} | " + " | ".join(f"{x:.3g}" for x in rows) + " |")
+        cells = [text(found[name][policy]) for name in names]
+        cells += [mean([found[name][policy] for name in over]) for _, over in means]
+        print(f"| {f'`{policy}`' if policy else 'as published'} | " + " | ".join(cells) + " |")
     print()
 
 

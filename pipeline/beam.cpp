@@ -43,64 +43,117 @@ RecordBytes record_bytes(const BeamOptions& beam) {
   return {paper_aggregate_bytes(beam.paper_storage), paper_aggregate_bytes(beam.paper_storage)};
 }
 
+// What the stages of a frame have in common.
+struct BeamFrame {
+  const BeamOptions& beam;
+  StageCounters setup;
+  SetupTriangles triangles;
+  std::vector<glm::vec3> colors;
+  PositionSet positions;
+  MaskTable table;
+  RecordBytes bytes;
+  BeamFragmentOptions options;
+
+  BeamFrame(const Trace& trace, const Frame& frame, const BeamOptions& beam_options)
+      : beam(beam_options),
+        triangles(vertex_setup(trace, frame, setup)),
+        colors(shade_triangles(triangles, frame.light_direction)),
+        positions(beam.rules == Rules::conserve ? cell_patterns(beam.positions) : std::vector{hammersley_pattern()}),
+        table(positions.patterns.front()),
+        bytes(record_bytes(beam)),
+        options{beam.mask, beam.mask == MaskSource::none ? std::vector<SamplePattern>{} : positions.patterns, &table,
+                bytes.fragment, beam.tiny_positions} {}
+};
+
+std::vector<PixelColor> compose_tile(const BeamFrame& state, const std::vector<Fragment>& fragments,
+                                     const ABuffer& buffer, StageCounters& counters, PixelCounters& counts) {
+  if (state.beam.rules == Rules::conserve) {
+    PixelWindows windows;
+    std::vector<PixelColor> colors =
+        compose_window(fragments, buffer, state.positions, state.beam.storage, counters, windows);
+    counts.emplace_back("largest_window", std::move(windows.largest));
+    counts.emplace_back("merges", std::move(windows.merges));
+    return colors;
+  }
+  counts.emplace_back("merges", counts.front().second);
+  return pixel_colors(state.beam.rules == Rules::paper ? compose(fragments, buffer, state.positions.patterns.front(),
+                                                                 state.beam.merge, state.beam.paper_storage, counters)
+                                                       : compose_over(fragments, buffer, counters));
+}
+
 }  // namespace
 
 FrameResult render_beam(const Trace& trace, const Frame& frame, const BeamOptions& beam, const RunOptions& run) {
-  const bool conserve = beam.rules == Rules::conserve;
-  StageCounters setup;
-  const SetupTriangles triangles = vertex_setup(trace, frame, setup);
-  const std::vector<glm::vec3> colors = shade_triangles(triangles, frame.light_direction);
-  const PositionSet positions(conserve ? cell_patterns(beam.positions) : std::vector{hammersley_pattern()});
-  const MaskTable table(positions.patterns.front());
-  const RecordBytes bytes = record_bytes(beam);
+  const BeamFrame state(trace, frame, beam);
   const std::vector<Surface> framebuffer = beam_framebuffer(beam);
-  const BeamFragmentOptions options{beam.mask,
-                                    beam.mask == MaskSource::none ? std::vector<SamplePattern>{} : positions.patterns,
-                                    &table, bytes.fragment, beam.tiny_positions};
-
   FrameResult result =
-      render_tiles(frame, triangles, setup, kBinSize, run, [&](const Tile& tile, const TriangleList& list) {
+      render_tiles(frame, state.triangles, state.setup, kBinSize, run, [&](const Tile& tile, const TriangleList& list) {
         StageCounters raster{"conservative_raster"}, fragment{"beam_fragment"}, shading{"shade"}, buffering{"a_buffer"},
             composition{"compose"}, resolving{"resolve"};
         std::vector<PixelTriangle> pairs;
         std::vector<Fragment> fragments;
-        conservative_raster(triangles, list, tile, raster, pairs);
-        beam_fragment(triangles, pairs, tile, options, fragment, fragments);
-        shade(colors, fragments, shading, &triangles.attributes);
-        const ABuffer buffer = a_buffer(fragments, tile.pixels(), beam.sort, bytes.fragment, buffering);
+        conservative_raster(state.triangles, list, tile, raster, pairs);
+        beam_fragment(state.triangles, pairs, tile, state.options, fragment, fragments);
+        shade(state.colors, fragments, shading, &state.triangles.attributes);
+        const ABuffer buffer = a_buffer(fragments, tile.pixels(), beam.sort, state.bytes.fragment, buffering);
         PixelCounters counts = count_per_pixel(tile, buffer, fragments);
-        std::vector<PixelColor> aggregates;
-        switch (beam.rules) {
-          case Rules::conserve: {
-            PixelWindows windows;
-            aggregates = compose_window(fragments, buffer, positions, beam.storage, composition, windows);
-            counts.emplace_back("largest_window", std::move(windows.largest));
-            counts.emplace_back("merges", std::move(windows.merges));
-            break;
-          }
-          case Rules::paper:
-            aggregates = pixel_colors(
-                compose(fragments, buffer, positions.patterns.front(), beam.merge, beam.paper_storage, composition));
-            counts.emplace_back("merges", counts.front().second);
-            break;
-          case Rules::over:
-            aggregates = pixel_colors(compose_over(fragments, buffer, composition));
-            counts.emplace_back("merges", counts.front().second);
-            break;
-        }
+        const std::vector<PixelColor> aggregates = compose_tile(state, fragments, buffer, composition, counts);
         std::vector<bool> full;
         for (const PixelColor& aggregate : aggregates) full.push_back(aggregate.alpha == 1.0f);
-        count_sorted_composition(run.memory, tile, buffer, fragments, bytes.fragment, counts.back().second, full,
+        count_sorted_composition(run.memory, tile, buffer, fragments, state.bytes.fragment, counts.back().second, full,
                                  framebuffer, buffering, composition, resolving);
-        return TileResult{resolve(aggregates, frame.background, bytes.aggregate, resolving),
+        return TileResult{resolve(aggregates, frame.background, state.bytes.aggregate, resolving),
                           std::move(counts),
                           {raster, fragment, shading, buffering, composition, resolving}};
       });
   const auto buffering = std::find_if(result.stages.begin(), result.stages.end(),
                                       [](const StageCounters& stage) { return stage.stage == "a_buffer"; });
   result.a_buffer_peak_bytes =
-      a_buffer_bytes(buffering->items_in, std::uint64_t{frame.width} * frame.height, bytes.fragment);
+      a_buffer_bytes(buffering->items_in, std::uint64_t{frame.width} * frame.height, state.bytes.fragment);
   return result;
+}
+
+std::vector<PixelWeights> beam_weights(const Trace& trace, const Frame& frame, const BeamOptions& beam,
+                                       const RunOptions& run) {
+  BeamOptions exact = beam;  // weights as they are before colours are packed
+  exact.storage = Storage::float32;
+  exact.paper_storage = PaperStorage::float32;
+  const BeamFrame state(trace, frame, exact);
+  std::vector<PixelWeights> weights(std::size_t{frame.width} * frame.height);
+  render_tiles(frame, state.triangles, state.setup, kBinSize, run, [&](const Tile& tile, const TriangleList& list) {
+    StageCounters unused{"weights"};
+    std::vector<PixelTriangle> pairs;
+    std::vector<Fragment> fragments;
+    conservative_raster(state.triangles, list, tile, unused, pairs);
+    beam_fragment(state.triangles, pairs, tile, state.options, unused, fragments);
+    const ABuffer buffer = a_buffer(fragments, tile.pixels(), beam.sort, state.bytes.fragment, unused);
+    // Composition is linear in colour. A fragment that alone has a channel, as 1, leaves its weight there: three
+    // fragments of each pixel at a time.
+    std::vector<PixelWeights> found(tile.pixels());
+    std::uint32_t deepest = 0;
+    for (std::size_t pixel = 0; pixel < tile.pixels(); ++pixel) deepest = std::max(deepest, buffer.depth_of(pixel));
+    for (std::uint32_t first = 0; first < deepest; first += 3) {
+      for (std::size_t pixel = 0; pixel < tile.pixels(); ++pixel) {
+        for (std::uint32_t k = 0; k < buffer.depth_of(pixel); ++k) {
+          Fragment& fragment = fragments[buffer.fragments[buffer.first[pixel] + k]];
+          fragment.color = glm::vec3(0.0f);
+          if (k >= first && k < first + 3) fragment.color[static_cast<int>(k - first)] = fragment.alpha;
+        }
+      }
+      PixelCounters counts = count_per_pixel(tile, buffer, fragments);
+      const std::vector<PixelColor> composed = compose_tile(state, fragments, buffer, unused, counts);
+      for (std::size_t pixel = 0; pixel < tile.pixels(); ++pixel) {
+        for (std::uint32_t k = first; k < std::min(first + 3, buffer.depth_of(pixel)); ++k) {
+          const Fragment& fragment = fragments[buffer.fragments[buffer.first[pixel] + k]];
+          const float weight = composed[pixel].color[static_cast<int>(k - first)];
+          found[pixel].push_back({fragment.triangle, weight, beam.rules == Rules::conserve ? 0 : k, fragment.tiny});
+        }
+      }
+    }
+    copy_to_frame(found, tile, frame, weights);
+    return TileResult{{}, {}, {unused}};
+  });
+  return weights;
 }
 
 std::vector<Surface> beam_framebuffer(const BeamOptions& beam) {

@@ -29,6 +29,10 @@ struct BeamOptions {
 
 FrameResult render_beam(const Trace& trace, const Frame& frame, const BeamOptions& beam, const RunOptions& run);
 
+// Technique::weights. With Rules::conserve depth is compared position by position, so `order` decides nothing.
+std::vector<PixelWeights> beam_weights(const Trace& trace, const Frame& frame, const BeamOptions& beam,
+                                       const RunOptions& run);
+
 std::vector<Surface> beam_framebuffer(const BeamOptions& beam);
 
 }  // namespace beampipe

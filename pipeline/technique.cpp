@@ -63,7 +63,8 @@ Technique make_beam(Spec& spec) {
     options.positions = spec.choice<int>("bits", {{"256", 256}, {"128", 128}, {"64", 64}, {"32", 32}});
     options.storage = spec.choice<Storage>("storage", {{"packed", Storage::packed}, {"float32", Storage::float32}});
   }
-  return {spec.text(), beam_framebuffer(options), 0, bind_options(render_beam, options)};
+  return {spec.text(), beam_framebuffer(options), 0, bind_options(render_beam, options),
+          bind_options(beam_weights, options)};
 }
 
 Technique make_alpha(Spec& spec) {
@@ -72,7 +73,8 @@ Technique make_alpha(Spec& spec) {
   options.positions = 0;
   options.mask = MaskSource::none;
   options.sort = SortKey::centroid;
-  return {spec.text(), beam_framebuffer(options), 0, bind_options(render_beam, options)};
+  return {spec.text(), beam_framebuffer(options), 0, bind_options(render_beam, options),
+          bind_options(beam_weights, options)};
 }
 
 Technique make_z3(Spec& spec) {

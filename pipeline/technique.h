@@ -45,11 +45,23 @@ struct FrameResult {
   std::uint64_t a_buffer_peak_bytes = 0;
 };
 
+// What one triangle is worth in one pixel: the pixel is the sum of weight times the triangle's colour, and the
+// background has what the weights leave of 1.
+struct SurfaceWeight {
+  std::uint32_t triangle;  // as vertex_setup numbers them
+  float weight;
+  std::uint32_t order;  // when it was merged, where that decides about depth; else the same for all
+  bool tiny;            // covers no mask position of the technique
+};
+using PixelWeights = std::vector<SurfaceWeight>;
+
 struct Technique {
   std::string spec;  // as the user wrote it
   std::vector<Surface> framebuffer;
   std::uint32_t samples = 0;  // N of msaa:N, else 0
   std::function<FrameResult(const Trace&, std::size_t frame, const RunOptions&)> render;
+  // How `render` weighs what it sees, for each pixel of the frame, row by row. Null where that is not known.
+  std::function<std::vector<PixelWeights>(const Trace&, std::size_t frame, const RunOptions&)> weights = {};
 
   std::uint32_t framebuffer_bytes_per_pixel() const {
     std::uint32_t bytes = 0;

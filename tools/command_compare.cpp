@@ -1,9 +1,11 @@
 // beampipe compare: what run does, and how wrong each picture is against the reference.
 
 #include <algorithm>
+#include <cmath>
 #include <memory>
 
 #include "tools/commands.h"
+#include "tools/diagnosis.h"
 #include "tools/image_io.h"
 #include "tools/render.h"
 
@@ -26,6 +28,7 @@ Techniques:
 
 struct CompareArguments : RunArguments {
   std::vector<std::uint32_t> ladder;  // empty: the default, extended as far as need be
+  bool causes = false, orders = false;
 };
 
 Technique msaa(std::uint32_t samples) { return parse_technique("msaa:" + std::to_string(samples)); }
@@ -38,6 +41,17 @@ void naming(const std::string& spec, std::size_t frame, Body body) {
   } catch (const std::exception& error) {
     throw std::runtime_error(spec + ", frame " + std::to_string(frame) + ": " + error.what());
   }
+}
+
+// Over the frames that follow another.
+std::optional<double> pooled_flicker(const TechniqueReport& result) {
+  double squares = 0, frames = 0;
+  for (const FrameReport& frame : result.frames) {
+    if (!frame.flicker) continue;
+    squares += *frame.flicker * *frame.flicker;
+    ++frames;
+  }
+  return frames > 0 ? std::optional(std::sqrt(squares / frames)) : std::nullopt;
 }
 
 class Comparison {
@@ -57,6 +71,8 @@ class Comparison {
       errors_.push_back(new_errors());
     }
     reference_result_ = new_technique_report(reference_);
+    causes_.resize(plan_.techniques.size());
+    if (arguments.orders) orders_.emplace(std::move(written));
   }
 
   // Once.
@@ -69,6 +85,13 @@ class Comparison {
       results_[i].equivalent_msaa = samples > 0 ? EquivalentMsaa{static_cast<double>(samples), false, false}
                                                 : equivalent_msaa(results_[i].error->rmse, rungs_);
     }
+    for (std::size_t i = 0; i < results_.size(); ++i) {
+      results_[i].causes = causes_[i].shares();
+      results_[i].flicker = pooled_flicker(results_[i]);
+      if (orders_) orders_->report(i, results_[i]);
+    }
+    if (orders_) orders_->report(results_.size(), reference_result_);
+    reference_result_.flicker = pooled_flicker(reference_result_);
     reference_result_.error = ErrorStats{};
     reference_result_.equivalent_msaa = equivalent_msaa(0.0, rungs_);
 
@@ -112,6 +135,7 @@ class Comparison {
         render_frame(plan_, frame, progress_, histories_, [&](std::size_t i, FrameResult&& result) {
           const std::string& spec = plan_.techniques[i].spec;
           naming(spec, frame, [&] {
+            if (arguments_.causes) causes_[i].add(plan_.techniques[i], plan_, frame, truth.image, result);
             results_[i].frames.push_back(write_frame(output_, spec, frame, result, &truth.image));
             errors_[i].add(result.image, truth.image);
             std::vector<float> errors = signed_errors(result.image, truth.image);
@@ -123,6 +147,7 @@ class Comparison {
     for (std::size_t i = 0; i < times.size(); ++i) results_[i].frames.back().wall_ms = times[i];
 
     for (Rung& rung : ladder_) measure_rung(rung, frame, truth.image);
+    if (orders_) orders_->add(reference_, plan_, frame, progress_);
     output_.keep();
   }
 
@@ -168,6 +193,8 @@ class Comparison {
   std::vector<LadderRung> rungs_;                                                   // what the ladder came to
   std::vector<History> histories_ = std::vector<History>(plan_.techniques.size());  // likewise
   std::vector<std::vector<float>> last_errors_ = std::vector<std::vector<float>>(plan_.techniques.size());  // likewise
+  std::vector<CauseShares> causes_;                                                                         // likewise
+  std::optional<OrderComparison> orders_;  // where they were asked for
   Progress progress_;
 };
 
@@ -184,6 +211,10 @@ void add_compare_command(CLI::App& app, InterruptGate& gate) {
       ->delimiter(',')
       ->allow_extra_args(false)
       ->type_name("N,N,...");
+  command->add_flag("--causes", arguments->causes,
+                    "split each pixel's error by cause: layers of the counters, and a table (beam and alpha only)");
+  command->add_flag("--orders", arguments->orders,
+                    "also with the triangles shuffled, near to far and far to near: errors, and how far they differ");
   command->footer(kFooter + technique_help());
   command->callback([arguments, &gate] {
     OutputFolder output(arguments->output, gate);

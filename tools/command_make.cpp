@@ -22,6 +22,7 @@ struct MakeArguments {
   SceneOptions options;
   std::uint32_t frames = 1;
   double orbit = 0;
+  std::vector<double> pan;
   bool list = false;
   // For models only.
   std::vector<double> eye, target, up, background;
@@ -99,8 +100,13 @@ void make(const MakeArguments& arguments, const CLI::App& command, InterruptGate
   const std::filesystem::path file = arguments.output;
   require_writable_folder(file.has_parent_path() ? file.parent_path() : ".");
   if (command.count("--orbit") && arguments.frames < 2) throw UsageError("--orbit needs --frames N with N > 1");
+  if (command.count("--pan") && arguments.frames < 2) throw UsageError("--pan needs --frames N with N > 1");
   Trace trace = is_model ? make_from_model(arguments, command) : make_from_scene(arguments, command);
-  if (arguments.frames > 1) orbit_camera(trace, arguments.frames, arguments.orbit);
+  if (!arguments.pan.empty()) {
+    pan_picture(trace, arguments.frames, arguments.pan.at(0), arguments.pan.at(1));
+  } else if (arguments.frames > 1) {
+    orbit_camera(trace, arguments.frames, arguments.orbit);
+  }
   std::size_t triangles = 0;
   for (const Mesh& mesh : trace.meshes) triangles += mesh.triangles.size();
   {
@@ -128,8 +134,13 @@ void add_make_command(CLI::App& app, InterruptGate& gate) {
       ->capture_default_str();
 
   command->add_option("--frames", arguments->frames, "how many frames (default: 1)")->check(CLI::Range(1u, 100000u));
-  command->add_option("--orbit", arguments->orbit,
-                      "degrees that the camera goes around its target in all (default: 0)");
+  CLI::Option* orbit = command->add_option("--orbit", arguments->orbit,
+                                           "degrees that the camera goes around its target in all (default: 0)");
+  command->add_option("--pan", arguments->pan, "pixels that the picture moves from frame to frame, right and down")
+      ->delimiter(',')
+      ->expected(2)
+      ->type_name("X,Y")
+      ->excludes(orbit);
 
   CLI::App* scene = command->add_option_group("Procedural scenes");
   scene->add_option("--triangles", arguments->options.triangles, "about how many (default: the scene's own number)")

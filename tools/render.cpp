@@ -85,8 +85,8 @@ FrameReport write_frame(OutputFolder& output, const std::string& spec, std::size
 void finish_report(OutputFolder& output, const Report& report) {
   output.write("report.json", json_text(to_json(report)));
   output.keep();
-  std::cout << table_text(report, output.path().string()) << "report: " << (output.path() / "report.json").string()
-            << "\n";
+  std::cout << table_text(report, output.path().string()) << causes_text(report) << orders_text(report)
+            << "report: " << (output.path() / "report.json").string() << "\n";
 }
 
 Report new_report(const RunArguments& arguments, const RunPlan& plan) {

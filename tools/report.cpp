@@ -75,6 +75,12 @@ Json to_json(const TechniqueReport& result, const Hardware& hardware) {
     json["equivalent_msaa_is_lower_bound"] = result.equivalent_msaa->is_lower_bound;
     if (result.equivalent_msaa->is_upper_bound) json["equivalent_msaa_is_upper_bound"] = true;
   }
+  if (result.flicker) json["flicker"] = *result.flicker;
+  for (const auto& [cause, part] : result.causes) json["error_causes"][cause] = part;
+  if (!result.orders.empty()) {
+    for (const OrderReport& order : result.orders) json["orders"][order.order] = {{"rmse", order.rmse}};
+    json["orders"]["largest_difference"] = result.order_difference;
+  }
   json["frames"] = Json::array();
   for (const FrameReport& frame : result.frames) json["frames"].push_back(to_json(frame, result, hardware));
   return json;
@@ -135,7 +141,11 @@ WallTime wall_time(std::vector<double> milliseconds) {
 std::string program_version() { return BEAMPIPE_VERSION; }
 
 TechniqueReport new_technique_report(const Technique& technique) {
-  return {technique.spec, technique.framebuffer, technique.framebuffer_bytes_per_pixel(), {}, {}, {}};
+  TechniqueReport report;
+  report.technique = technique.spec;
+  report.framebuffer = technique.framebuffer;
+  report.framebuffer_bytes_per_pixel = technique.framebuffer_bytes_per_pixel();
+  return report;
 }
 
 Json to_json(const ErrorStats& stats) {
@@ -182,6 +192,8 @@ std::string table_text(const Report& report, const std::string& folder) {
   std::vector<std::vector<std::string>> rows(1);
   rows[0] = {"technique", "bytes/pixel"};
   if (compared) rows[0].insert(rows[0].end(), {"RMSE", "bias", "p99", "max", "EMR"});
+  const bool moves = compared && report.results.front().flicker.has_value();
+  if (moves) rows[0].push_back("flicker");
   rows[0].insert(rows[0].end(), {"ms", "picture"});
   for (const TechniqueReport& result : report.results) {
     std::vector<std::string>& row = rows.emplace_back();
@@ -191,9 +203,40 @@ std::string table_text(const Report& report, const std::string& folder) {
       row.insert(row.end(), {format("%.6f", error.rmse), format("%+.6f", error.bias), format("%.5f", error.p99),
                              format("%.5f", error.max), emr_text(result.equivalent_msaa.value())});
     }
+    if (moves) row.push_back(format("%.6f", result.flicker.value_or(0.0)));
     row.insert(row.end(), {format("%.1f", median_ms(result)), pictures(result, folder)});
   }
   return align_columns(rows, {0, rows[0].size() - 1});
+}
+
+std::string causes_text(const Report& report) {
+  std::vector<std::vector<std::string>> rows(1);
+  for (const TechniqueReport& result : report.results) {
+    if (result.causes.empty()) continue;
+    std::vector<std::string>& row = rows.emplace_back(std::vector{result.technique});
+    rows[0] = {"part of the mean square error"};
+    for (const auto& [cause, part] : result.causes) {
+      rows[0].push_back(cause);
+      row.push_back(format("%.1f %%", 100 * part));
+    }
+  }
+  return rows.size() > 1 ? std::string("\n").append(align_columns(rows, {0})) : std::string();
+}
+
+std::string orders_text(const Report& report) {
+  std::vector<std::vector<std::string>> rows(1);
+  for (const TechniqueReport& result : report.results) {
+    if (result.orders.empty()) continue;
+    std::vector<std::string>& row = rows.emplace_back(std::vector{result.technique});
+    rows[0] = {"RMSE by order of triangles"};
+    for (const OrderReport& order : result.orders) {
+      rows[0].push_back(order.order);
+      row.push_back(format("%.6f", order.rmse));
+    }
+    rows[0].push_back("largest difference");
+    row.push_back(format("%.6f", result.order_difference));
+  }
+  return rows.size() > 1 ? std::string("\n").append(align_columns(rows, {0})) : std::string();
 }
 
 std::string align_columns(const std::vector<std::vector<std::string>>& rows, const std::vector<std::size_t>& left) {

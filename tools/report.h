@@ -37,6 +37,12 @@ struct FrameReport {
   std::uint64_t pixels = 0;
 };
 
+// The same frames with their triangles in another order.
+struct OrderReport {
+  std::string order;  // "given", "shuffled", ...
+  double rmse = 0;    // against the reference of the same order
+};
+
 struct TechniqueReport {
   std::string technique;
   std::vector<Surface> framebuffer;
@@ -44,6 +50,10 @@ struct TechniqueReport {
   std::optional<ErrorStats> error;  // pooled over the frames
   std::optional<EquivalentMsaa> equivalent_msaa;
   std::vector<FrameReport> frames;
+  std::optional<double> flicker;                       // pooled over the frames but the first
+  std::vector<std::pair<std::string, double>> causes;  // part of the mean square error, by cause; empty: not asked for
+  std::vector<OrderReport> orders;                     // empty: not asked for
+  double order_difference = 0;  // RMS between the pictures of the two orders that differ the most
 };
 
 struct Report {
@@ -72,6 +82,10 @@ std::string spec_folder(std::string_view spec);
 
 // One row per technique under one row of titles; `folder` is where the pictures' paths start.
 std::string table_text(const Report& report, const std::string& folder);
+
+// What --causes and --orders found, each with an empty line before it; "" where they were not asked for.
+std::string causes_text(const Report& report);
+std::string orders_text(const Report& report);
 
 // Columns separated by two blanks; those named in `left` (by index) start at the left, the others end at the right.
 std::string align_columns(const std::vector<std::vector<std::string>>& rows, const std::vector<std::size_t>& left);

@@ -26,4 +26,17 @@ void orbit_camera(Trace& trace, std::uint32_t frames, double degrees) {
   }
 }
 
+void pan_picture(Trace& trace, std::uint32_t frames, double x, double y) {
+  if (trace.frames.empty() || frames == 0)
+    throw std::invalid_argument("expected a trace with a frame, and at least one frame to make");
+  const Frame first = trace.frames[0];
+  trace.frames.assign(frames, first);
+  for (std::uint32_t i = 0; i < frames; ++i) {
+    Frame& frame = trace.frames[i];
+    const glm::dvec3 shift(2 * x * i / frame.width, -2 * y * i / frame.height, 0.0);  // in normalised coordinates, y up
+    frame.projection = glm::translate(glm::dmat4(1.0), shift) * first.projection;
+    frame.camera.reset();
+  }
+}
+
 }  // namespace beampipe

@@ -63,4 +63,9 @@ void set_camera(Frame& frame, const Camera& camera);
 // even steps; the light stays. Throws std::invalid_argument when there is no such frame or it names no camera.
 void orbit_camera(Trace& trace, std::uint32_t frames, double degrees);
 
+// Makes `frames` frames of the trace's first: its picture moves by (x, y) pixels per frame, x to the right and y down,
+// as if the film were shifted, so that nothing but the sampling changes. The frames name no camera. Throws
+// std::invalid_argument when there is no frame.
+void pan_picture(Trace& trace, std::uint32_t frames, double x, double y);
+
 }  // namespace beampipe

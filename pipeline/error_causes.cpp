@@ -1,0 +1,192 @@
+#include "pipeline/error_causes.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include "pipeline/tiles.h"
+#include "stages/beam_fragment.h"
+#include "stages/conservative_raster.h"
+#include "stages/reference_raster.h"
+#include "stages/shade.h"
+#include "stages/vertex_setup.h"
+
+namespace beampipe {
+namespace {
+
+constexpr int kTileSize = 4;     // px, as in the reference
+constexpr int kPositions = 256;  // at which surfaces are compared
+
+enum Cause : std::size_t { leak, mask, order, interpenetration, tiny, mixed, rounding };
+
+// A triangle in one pixel, or the background.
+struct PixelSurface {
+  glm::dvec3 color;
+  double weight = 0, truth = 0;        // parts of the pixel
+  const Fragment* fragment = nullptr;  // at the comparison's positions; null for the background
+  std::uint32_t order = 0;
+  bool tiny = false;
+  std::uint32_t latest_hider = 0;  // the highest order of what is nearer somewhere
+};
+
+// Where two surfaces overlap.
+struct Nearer {
+  bool first = false, second = false;  // is nearer at some position
+};
+
+class Comparer {
+ public:
+  Nearer compare(const PixelSurface& i, const PixelSurface& j) const {
+    if (!i.fragment || !j.fragment) return {i.fragment != nullptr, j.fragment != nullptr};
+    Nearer nearer;
+    const bool earlier = i.fragment->triangle < j.fragment->triangle;
+    for (std::size_t word = 0; word < patterns_.size(); ++word) {
+      for (std::uint32_t bits = i.fragment->mask.words[word] & j.fragment->mask.words[word]; bits; bits &= bits - 1) {
+        const auto s = static_cast<std::size_t>(std::countr_zero(bits));
+        const float u = static_cast<float>(patterns_[word].x[s]) / kSubpixelUnits - 0.5f;
+        const float v = static_cast<float>(patterns_[word].y[s]) / kSubpixelUnits - 0.5f;
+        const float zi = depth_at(i.fragment->plane, u, v), zj = depth_at(j.fragment->plane, u, v);
+        (zi < zj || (zi == zj && earlier) ? nearer.first : nearer.second) = true;
+      }
+    }
+    return nearer;
+  }
+
+  const std::vector<SamplePattern>& patterns() const { return patterns_; }
+
+ private:
+  std::vector<SamplePattern> patterns_ = cell_patterns(kPositions);
+};
+
+Cause cause_of(const PixelSurface& loser, const PixelSurface& gainer, const Comparer& comparer) {
+  if (loser.tiny || gainer.tiny) return tiny;
+  const Nearer nearer = comparer.compare(loser, gainer);
+  if (nearer.first && nearer.second) return interpenetration;
+  if (nearer.first && gainer.order < loser.order) return order;
+  if (gainer.truth == 0) return leak;
+  if (gainer.latest_hider > std::max(loser.order, gainer.order)) return mixed;
+  return mask;
+}
+
+// The errors of one pixel, by cause but for rounding.
+std::array<glm::dvec3, kErrorCauses.size()> transfers(std::vector<PixelSurface>& surfaces, const Comparer& comparer) {
+  for (PixelSurface& hidden : surfaces)
+    for (const PixelSurface& hider : surfaces)
+      if (hider.order > std::max(hidden.order, hidden.latest_hider) && comparer.compare(hider, hidden).first)
+        hidden.latest_hider = hider.order;
+  double gained = 0;
+  for (const PixelSurface& surface : surfaces) gained += std::max(surface.weight - surface.truth, 0.0);
+  std::array<glm::dvec3, kErrorCauses.size()> errors{};
+  for (const PixelSurface& loser : surfaces) {
+    if (loser.weight >= loser.truth) continue;
+    for (const PixelSurface& gainer : surfaces) {
+      if (gainer.weight <= gainer.truth) continue;
+      const double area = (loser.truth - loser.weight) * (gainer.weight - gainer.truth) / gained;
+      errors[cause_of(loser, gainer, comparer)] += area * (gainer.color - loser.color);
+    }
+  }
+  return errors;
+}
+
+// Every triangle that the technique or the reference sees in a pixel, and the background, which comes last.
+class PixelSurfaces {
+ public:
+  PixelSurfaces(const std::vector<Fragment>& fragments, std::size_t pixels) : by_pixel_(pixels) {
+    for (const Fragment& fragment : fragments) by_pixel_[fragment.pixel].push_back(&fragment);
+  }
+
+  // `owners`: reference samples by triangle.
+  std::vector<PixelSurface> at(std::size_t pixel, const PixelWeights& weights,
+                               const std::map<std::uint64_t, std::uint32_t>& owners,
+                               const std::vector<glm::vec3>& colors, const glm::vec3& background) const {
+    std::map<std::uint32_t, PixelSurface> surfaces;
+    for (const Fragment* fragment : by_pixel_[pixel]) {
+      PixelSurface& surface = surfaces[fragment->triangle];
+      surface.fragment = fragment;
+      surface.tiny = fragment->tiny;  // of those that the technique dropped
+    }
+    double rest_of_weights = 1, rest_of_truth = 1;
+    for (const SurfaceWeight& weight : weights) {
+      PixelSurface& surface = surfaces[weight.triangle];
+      surface.weight = weight.weight;
+      surface.order = weight.order;
+      surface.tiny = weight.tiny;
+      rest_of_weights -= surface.weight;
+    }
+    for (const auto& [triangle, samples] : owners) {
+      if (triangle == kNoOwner) continue;
+      PixelSurface& surface = surfaces[static_cast<std::uint32_t>(triangle)];
+      surface.truth = static_cast<double>(samples) / kReferenceSamples;
+      if (!surface.fragment) surface.tiny = true;  // less area than a fragment needs
+      rest_of_truth -= surface.truth;
+    }
+    std::vector<PixelSurface> all;
+    for (auto& [triangle, surface] : surfaces) {
+      surface.color = colors[triangle];
+      all.push_back(surface);
+    }
+    all.push_back({background, rest_of_weights, rest_of_truth, nullptr, ~0u, false, 0});
+    return all;
+  }
+
+ private:
+  std::vector<std::vector<const Fragment*>> by_pixel_;
+};
+
+std::map<std::uint64_t, std::uint32_t> count_owners(const ReferenceTile& surface, std::size_t x, std::size_t y) {
+  std::map<std::uint64_t, std::uint32_t> owners;
+  for (std::size_t row = 0; row < kReferenceRows; ++row)
+    for (std::size_t s = 0; s < kReferenceColumns; ++s)
+      ++owners[surface.owner[(y * kReferenceRows + row) * surface.row_samples + x * kReferenceColumns + s]];
+  return owners;
+}
+
+glm::dvec3 rgb(const Image& image, std::size_t pixel) {
+  const float* rgba = image.rgba.data() + 4 * pixel;
+  return {rgba[0], rgba[1], rgba[2]};
+}
+
+}  // namespace
+
+std::map<std::string, std::vector<float>> error_causes(const Trace& trace, const Frame& frame,
+                                                       const std::vector<PixelWeights>& weights, const Image& image,
+                                                       const Image& reference, const RunOptions& run) {
+  StageCounters setup;
+  const SetupTriangles triangles = vertex_setup(trace, frame, setup);
+  const std::vector<glm::vec3> colors = shade_triangles(triangles, frame.light_direction);
+  const Comparer comparer;
+  const BeamFragmentOptions options{MaskSource::exact, comparer.patterns()};
+  FrameResult result =
+      render_tiles(frame, triangles, setup, kTileSize, run, [&](const Tile& tile, const TriangleList& list) {
+        StageCounters unused{"error_causes"};
+        ReferenceTile truth(tile);
+        reference_raster(triangles, list, tile, unused, truth);
+        std::vector<PixelTriangle> pairs;
+        std::vector<Fragment> fragments;
+        conservative_raster(triangles, list, tile, unused, pairs);
+        beam_fragment(triangles, pairs, tile, options, unused, fragments);
+        const PixelSurfaces surfaces(fragments, tile.pixels());
+        TileResult out{{}, {}, {unused}};
+        for (const char* cause : kErrorCauses)
+          out.pixel_counters.emplace_back(cause, std::vector<float>(tile.pixels()));
+        for (std::size_t i = 0; i < tile.pixels(); ++i) {
+          const auto columns = static_cast<std::size_t>(tile.width());
+          const std::size_t x = i % columns, y = i / columns;
+          const std::size_t pixel =
+              (static_cast<std::size_t>(tile.y0) + y) * frame.width + static_cast<std::size_t>(tile.x0) + x;
+          const glm::dvec3 error = rgb(image, pixel) - rgb(reference, pixel);
+          const double length = std::sqrt(glm::dot(error, error) / 3);
+          if (length == 0) continue;
+          std::vector<PixelSurface> seen =
+              surfaces.at(i, weights[pixel], count_owners(truth, x, y), colors, frame.background);
+          std::array<glm::dvec3, kErrorCauses.size()> errors = transfers(seen, comparer);
+          errors[rounding] = error;
+          for (std::size_t cause = 0; cause < rounding; ++cause) errors[rounding] -= errors[cause];
+          for (std::size_t cause = 0; cause < errors.size(); ++cause)
+            out.pixel_counters[cause].second[i] = static_cast<float>(glm::dot(errors[cause], error) / (3 * length));
+        }
+        return out;
+      });
+  return std::move(result.pixel_counters);
+}
+
+}  // namespace beampipe

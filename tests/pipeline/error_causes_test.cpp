@@ -1,0 +1,134 @@
+// Pixels whose error has one known cause, and that the parts are the whole.
+#include "pipeline/error_causes.h"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+
+#include "test_traces.h"
+
+namespace beampipe {
+namespace {
+
+using Layers = std::map<std::string, std::vector<float>>;
+
+struct Explained {
+  std::vector<double> error;  // per pixel, the root of the mean square over R, G, B
+  Layers layers;
+};
+
+Explained explain(const std::string& spec, const Trace& trace) {
+  const Technique technique = parse_technique(spec);
+  const RunOptions run{2};
+  const Image image = technique.render(trace, 0, run).image;
+  const Image reference = parse_technique("reference").render(trace, 0, run).image;
+  Explained found;
+  found.layers = error_causes(trace, trace.frames[0], technique.weights(trace, 0, run), image, reference, run);
+  for (std::size_t i = 0; i < image.rgba.size(); i += 4) {
+    double squares = 0;
+    for (std::size_t c = 0; c < 3; ++c) squares += std::pow(double(image.rgba[i + c]) - reference.rgba[i + c], 2);
+    found.error.push_back(std::sqrt(squares / 3));
+  }
+  return found;
+}
+
+// The part of a single pixel's error that a cause has.
+double part(const Explained& found, const std::string& cause) {
+  return double(found.layers.at(cause).at(0)) / found.error.at(0);
+}
+
+const glm::vec3 kRed(1, 0, 0), kGreen(0, 1, 0), kBlue(0, 0, 1);
+constexpr double kMostly = 0.98;  // the rest is fp16
+
+// A triangle that fills the pixel [0, 1] x [0, 1], at depth z + slope x.
+PixelSpaceTriangle filling(double z, double slope, const glm::vec3& color) {
+  return {{{-1, -1, z - slope}, {3, -1, z + 3 * slope}, {-1, 3, z - slope}}, color};
+}
+
+// Two triangles that fill [x0, x1] x [0, 1], at depth z + slope x.
+void add_column(std::vector<PixelSpaceTriangle>& triangles, double x0, double x1, double z, double slope,
+                const glm::vec3& color) {
+  const double z0 = z + slope * x0, z1 = z + slope * x1;
+  triangles.push_back({{{x0, 0, z0}, {x1, 0, z1}, {x1, 1, z1}}, color});
+  triangles.push_back({{{x0, 0, z0}, {x1, 1, z1}, {x0, 1, z0}}, color});
+}
+
+TEST(ErrorCauses, PartsAddUpToEachPixelsError) {
+  const Trace trace = random_trace(40, 24, 150, 7);
+  for (const char* spec : {"beam", "beam:bits=32", "beam:rules=paper", "beam:rules=paper,fuzzy=mix,tiny=3", "alpha"}) {
+    const Explained found = explain(spec, trace);
+    ASSERT_EQ(found.layers.size(), kErrorCauses.size());
+    double largest = 0;
+    for (std::size_t i = 0; i < found.error.size(); ++i) {
+      double sum = 0;
+      for (const auto& [cause, layer] : found.layers) sum += layer.at(i);
+      ASSERT_NEAR(sum, found.error[i], 1e-6) << spec << ", pixel " << i;
+      // What the weights leave over is no more than fp16 makes of colours up to 1: they make the picture.
+      ASSERT_LE(std::abs(found.layers.at("rounding").at(i)), 0.6e-3) << spec << ", pixel " << i;
+      largest = std::max(largest, found.error[i]);
+    }
+    EXPECT_GT(largest, 0.005) << spec;
+  }
+}
+
+TEST(ErrorCauses, TheBackgroundLeaksThroughTwoTrianglesThatOverTakesForIndependent) {
+  std::vector<PixelSpaceTriangle> triangles;
+  add_column(triangles, 0, 1, 0.5, 0, kRed);
+  const Explained found = explain("alpha", pixel_trace(1, 1, triangles, kBlue));
+  EXPECT_NEAR(found.error[0], 0.25 * std::sqrt(2.0 / 3), 1e-3);
+  EXPECT_GT(part(found, "leak"), kMostly);
+}
+
+TEST(ErrorCauses, CrossingTrianglesInterpenetrate) {
+  const Explained found = explain("alpha", pixel_trace(1, 1, {filling(0.5, 0, kRed), filling(0.45, 0.1, kBlue)}));
+  EXPECT_NEAR(found.error[0], 0.5 * std::sqrt(2.0 / 3), 1e-2);
+  EXPECT_GT(part(found, "interpenetration"), kMostly);
+}
+
+// The slanted triangle is the nearer one wherever the other is, but its centroid is the farther one.
+TEST(ErrorCauses, WhatIsNearerButSortedBehindIsOutOfOrder) {
+  const PixelSpaceTriangle patch{{{0, 0, 0.45}, {0.2, 0.5, 0.45}, {0, 1, 0.45}}, kBlue};
+  const Explained found = explain("alpha", pixel_trace(1, 1, {filling(0.4, 0.15, kRed), patch}));
+  EXPECT_NEAR(found.error[0], 0.1 * std::sqrt(2.0 / 3), 1e-3);
+  EXPECT_GT(part(found, "order"), kMostly);
+}
+
+// 97/256 of the pixel is 12 1/8 positions, of which the mask has 12.
+TEST(ErrorCauses, AnOutlineBetweenPositionsIsTheMasks) {
+  std::vector<PixelSpaceTriangle> triangles = {filling(0.8, 0, kBlue)};
+  triangles.push_back({{{97 / 256.0, -2, 0.2}, {97 / 256.0, 3, 0.2}, {-3, 0.5, 0.2}}, kRed});
+  const Explained found = explain("beam:rules=paper,mask=exact", pixel_trace(1, 1, triangles));
+  EXPECT_NEAR(found.error[0], 0.125 / 32 * std::sqrt(2.0 / 3), 0.3e-3);
+  EXPECT_GT(part(found, "mask"), 0.9);
+}
+
+// 64 triangles around a point: those that cover no position lose their area, to the background for the most part.
+TEST(ErrorCauses, FansOfTinyTrianglesLeak) {
+  std::vector<PixelSpaceTriangle> fan;
+  const auto rim = [](int i) {
+    return glm::dvec3(0.37 + 2 * std::cos(i * 0.09817477), 0.61 + 2 * std::sin(i * 0.09817477), 0.5);
+  };
+  for (int i = 0; i < 64; ++i) fan.push_back({{{0.37, 0.61, 0.5}, rim(i), rim(i + 1)}, kRed});
+  const Explained found = explain("beam:rules=paper,mask=exact", pixel_trace(1, 1, fan, kBlue));
+  EXPECT_GT(found.error[0], 0.02);
+  EXPECT_GT(part(found, "tiny"), 0.1);
+  EXPECT_GT(part(found, "tiny") + part(found, "leak"), kMostly);
+}
+
+// Red is beside green. Blue comes last and hides green's right end, but is taken from the mean of red and green.
+TEST(ErrorCauses, RedGivesWayWhereGreenIsHidden) {
+  std::vector<PixelSpaceTriangle> triangles;
+  add_column(triangles, 0, 0.5, 0.2, 0, kRed);
+  add_column(triangles, 0.5, 1, -0.1, 0.8, kGreen);
+  add_column(triangles, 0.9, 1, 0.6, 0, kBlue);
+  const Explained found = explain("beam:rules=paper,mask=exact", pixel_trace(1, 1, triangles));
+  EXPECT_GT(part(found, "mixed"), 0.05);
+}
+
+TEST(ErrorCauses, OnlyTechniquesThatTellTheirWeightsAreExplained) {
+  EXPECT_TRUE(parse_technique("beam:bits=64").weights);
+  EXPECT_FALSE(parse_technique("msaa:8").weights);
+}
+
+}  // namespace
+}  // namespace beampipe
