@@ -1,0 +1,71 @@
+#!/usr/bin/env python3
+"""What memory buys which accuracy: the frontier tables and the plot of docs/accuracy.md.
+
+usage: docs/frontier.py PROGRAM FOLDER [TRACE...]
+
+PROGRAM is for instance build/release/tools/beampipe. Measured are the nine procedural scenes, which it makes, and the
+traces that are named; what `compare` finds goes to FOLDER/<scene>. Prints EMR, RMSE and bias of each technique on each
+scene, and draws FOLDER/frontier.svg and .png, the geometric mean over all scenes.
+"""
+import math
+import pathlib
+import subprocess
+import sys
+
+from measure import PROCEDURAL, make, print_head, print_row, results, stages
+
+SPECS = ["alpha", "beam:rules=paper", "beam", "z3:shape=32x2", "z3", "z3:shape=128x3", "z3:shape=128x3,merge=color",
+         "beam:order=stream,bits=32,layers=1", "beam:order=stream,bits=64,layers=1",
+         "beam:order=stream,bits=128,layers=1", "beam:order=stream,passes=1", "beam:order=stream",
+         "beam:order=stream,bits=256,layers=1", "msaa:8", "msaa:32", "msaa:256"]
+
+
+def emr(result):
+    bound = "≥ " if result.get("equivalent_msaa_is_lower_bound") else (
+        "< " if result.get("equivalent_msaa_is_upper_bound") else "")
+    return f"{bound}{result['equivalent_msaa']:.3g}"
+
+
+def stage_items(result, name):
+    return stages(result)[name]["items_in"]
+
+
+def print_table(title, found, cell, summary=None):
+    print(f"{title}:\n")
+    print_head("technique", "bytes", *found, *(["geometric mean", "least"] if summary else []))
+    for spec in SPECS:
+        row = [scene[spec] for scene in found.values()]
+        ends = summary(row) if summary else []
+        print_row(f"`{spec}`", row[0]["framebuffer_bytes_per_pixel"], *map(cell, row), *ends)
+    print()
+
+
+def mean_and_least(row):
+    rates = [result["equivalent_msaa"] for result in row]
+    return [f"{math.exp(sum(map(math.log, rates)) / len(rates)):.3g}", f"{min(rates):.3g}"]
+
+
+def main():
+    if len(sys.argv) < 3:
+        sys.exit(__doc__.strip())
+    program, folder, found = sys.argv[1], sys.argv[2], {}
+    pathlib.Path(folder).mkdir(parents=True, exist_ok=True)
+    for scene in PROCEDURAL + sys.argv[3:]:
+        trace = make(program, scene, f"{folder}/{scene}.json") if scene in PROCEDURAL else scene
+        name = pathlib.Path(scene).stem
+        found[name] = results(program, "compare", trace, SPECS, f"{folder}/{name}")
+    print_table("EMR", found, emr, mean_and_least)
+    print_table("RMSE × 1000", found, lambda result: f"{1000 * result['error']['rmse']:.2f}")
+    print_table("Bias × 1000", found, lambda result: f"{1000 * result['error']['bias']:+.2f}")
+    print("Fragments merged in all passes, for each of sorted order:\n")
+    print_head("technique", *found)
+    for spec in SPECS:
+        if "order=stream" in spec:
+            print_row(f"`{spec}`", *(f"{stage_items(scene[spec], 'claim') / stage_items(scene['beam'], 'a_buffer'):.2f}"
+                                     for scene in found.values()))
+    for kind in ["svg", "png"]:
+        subprocess.run([program, "plot", *(f"{folder}/{name}" for name in found), "-o", f"{folder}/frontier.{kind}"],
+                       check=True)
+
+
+main()
