@@ -71,7 +71,9 @@ FrameResult render_acaa(const Trace& trace, const Frame& frame, const AcaaOption
     std::vector<SampleAccess> accesses;
     const ZOrder order(tile.width(), tile.height());
     TileSurface color(run.memory, order, accumulator_bytes(options.color));
+    accumulator.limit = 0;
     for (const Sampling& sampling : rounds) {
+      accumulator.limit += static_cast<float>(sampling.pattern.count) * accumulator.sample_share;
       SampleTile depth(tile, sampling, 0);
       SampleMemory memory(run.memory, tile, sampling, 0);
       TileSurface taken(run.memory, order, static_cast<std::uint32_t>(sampling.pattern.count));

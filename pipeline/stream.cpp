@@ -103,7 +103,7 @@ std::vector<Surface> stream_framebuffer(const StreamOptions& stream) {
   return {{"owner_map", "R32UI x " + std::to_string(state_bytes / 4), state_bytes},
           {"owners", "R32UI x " + std::to_string(layers), 4 * layers},
           {"dropped_depth", "R32F", 4},
-          {"color", "RGBA16F", 8}};
+          {"color", "RGB16F + R16", 8}};
 }
 
 }  // namespace beampipe

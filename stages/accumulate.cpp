@@ -28,8 +28,8 @@ float round_to(AccumulatorFormat format, float value) {
 
 // dst + color x share, where saturated no more share than is missing. `color` and `sum`: R, G, B, A.
 template <class Real>
-void add_weighted(const Real color[4], Real share, bool saturate, Real sum[4]) {
-  if (saturate) share = greater(lesser(share, Real(1.0f) - sum[3]), Real(0.0f));
+void add_weighted(const Real color[4], Real share, bool saturate, Real limit, Real sum[4]) {
+  if (saturate) share = greater(lesser(share, limit - sum[3]), Real(0.0f));
   for (int c = 0; c < 4; ++c) sum[c] = sum[c] + color[c] * share;
 }
 
@@ -60,7 +60,7 @@ OperationCounts fragment_cost(bool saturate) {
     const Counted<float> one(1.0f, counts), color[4] = {one, one, one, one};
     Counted<float> sum[4] = {one, one, one, one};
     convert_sum(sum);
-    add_weighted(color, bit_count(Counted<std::uint32_t>(1, counts)) * one, saturate, sum);
+    add_weighted(color, bit_count(Counted<std::uint32_t>(1, counts)) * one, saturate, one, sum);
     convert_sum(sum);
   });
 }
@@ -69,7 +69,7 @@ void add(Accumulator& accumulator, std::size_t pixel, const glm::vec3& rgb, std:
   const float color[4] = {rgb.r, rgb.g, rgb.b, 1.0f};
   glm::vec4& sum = accumulator.color[pixel];
   add_weighted(color, bit_count(mask) * accumulator.sample_share,
-               accumulator.double_counting == DoubleCounting::saturate, &sum.x);
+               accumulator.double_counting == DoubleCounting::saturate, accumulator.limit, &sum.x);
   for (int c = 0; c < 4; ++c) sum[c] = round_to(accumulator.format, sum[c]);
 }
 

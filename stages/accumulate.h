@@ -18,7 +18,7 @@ enum class AccumulatorFormat { unorm8, fp16, fp32 };  // four channels; every su
 enum class DoubleCounting {
   none,      // it is added as well
   stencil,   // a stencil value per sample lets only the first pass
-  saturate,  // alpha sums up the shares, and a fragment adds no more than is missing to 1 (saturated alpha blending)
+  saturate,  // alpha sums up the shares, and a fragment adds no more than is missing to `limit` (saturated alpha blending)
 };
 
 std::uint32_t accumulator_bytes(AccumulatorFormat format);
@@ -27,6 +27,7 @@ struct Accumulator {
   AccumulatorFormat format;
   DoubleCounting double_counting;
   float sample_share;                // of the pixel: 1 / samples of all passes
+  float limit = 1;                   // what alpha may sum up to so far: the share of the samples that were looked at
   std::vector<glm::vec4> color;      // one per pixel of the tile; alpha: the shares so far
   std::vector<float> background;     // the share of accumulate_background: only to know the image's A
   std::vector<std::uint32_t> taken;  // stencil: samples that were passed before, since it was cleared

@@ -25,9 +25,10 @@ struct OwnerPixel {
   static constexpr std::uint32_t kSpeck = 1u << 31;       // in owner[0]
 
   PositionStates<Words, std::bit_width(kSettled)> states;
-  std::uint32_t owner[Layers];  // below 2^31; kSpeck: something that covers no position may be seen in this pass
+  std::uint32_t owner[Layers];  // below 2^31; kSpeck: something that covers no position may be seen
   float dropped;                // at no deferred position was there anything nearer; kNoDepth when none is
-  HalfBits color[4];            // fp16 RGB of what is settled, times its area, and the area
+  HalfBits color[3];            // mean linear RGB of what is settled: a sum would lose a little in every pass
+  std::uint16_t area;           // of what is settled, in 1/65535 of the pixel
 
   WideMask positions_in(std::uint32_t state) const { return states.positions_in(state); }
   void put(const WideMask& positions, std::uint32_t into) { states.put(positions, into); }

@@ -8,6 +8,8 @@
 namespace beampipe {
 namespace {
 
+constexpr float kAreaUnits = 65535.0f;  // of a whole pixel
+
 // An owner and what is seen of it.
 struct Owner {
   const Fragment* fragment;
@@ -22,8 +24,8 @@ void settle_pixel(const Fragment* begin, const Fragment* end, bool last_pass, Ow
   const WideMask deferred = pixel.positions_in(Pixel::kDeferred);
   std::vector<Owner> seen;
   WideMask settled = pixel.positions_in(Pixel::kSettled);
-  Taken<float> taken{pixel.color[3], static_cast<float>(settled.count())};
-  glm::vec3 color(pixel.color[0], pixel.color[1], pixel.color[2]);
+  Taken<float> taken{pixel.area / kAreaUnits, static_cast<float>(settled.count())};
+  glm::vec3 color = taken.area * glm::vec3(pixel.color[0], pixel.color[1], pixel.color[2]);  // times area
   const Fragment* fragment = begin;
   for (std::uint32_t k = 0; k < Layers; ++k) {
     const WideMask owned = pixel.positions_in(Pixel::kFirstLayer + k);
@@ -50,8 +52,9 @@ void settle_pixel(const Fragment* begin, const Fragment* end, bool last_pass, Ow
     if (taken.area > 0) scale = full ? 1 / taken.area : std::min(kPositions / (kPositions - undecided), 1 / taken.area);
     settled = settled | deferred | pixel.positions_in(Pixel::kEmpty);
   }
-  for (int c = 0; c < 3; ++c) pixel.color[c] = HalfBits(color[c] * scale);
-  pixel.color[3] = HalfBits(taken.area * scale);
+  if (taken.area > 0)
+    for (int c = 0; c < 3; ++c) pixel.color[c] = HalfBits(color[c] / taken.area);
+  pixel.area = static_cast<std::uint16_t>(std::min(taken.area * scale, 1.0f) * kAreaUnits + 0.5f);
   pixel.put(settled, Pixel::kSettled);
   pixel.put(without(deferred, settled), Pixel::kEmpty);
   pixel.dropped = kNoDepth;
@@ -113,8 +116,10 @@ template <std::size_t Words, std::size_t Layers>
 std::vector<PixelColor> settled_colors(const std::vector<OwnerPixel<Words, Layers>>& pixels) {
   std::vector<PixelColor> colors;
   colors.reserve(pixels.size());
-  for (const OwnerPixel<Words, Layers>& pixel : pixels)
-    colors.push_back({float(pixel.color[3]), {pixel.color[0], pixel.color[1], pixel.color[2]}});
+  for (const OwnerPixel<Words, Layers>& pixel : pixels) {
+    const float area = pixel.area / kAreaUnits;
+    colors.push_back({area, area * glm::vec3(pixel.color[0], pixel.color[1], pixel.color[2])});
+  }
   return colors;
 }
 

@@ -1,4 +1,4 @@
-// The area-conserving aggregate as it is stored: loaded before each merge and stored behind it, in exactly these bytes.
+// The area-conserving aggregate as it is stored: loaded before each window of fragments and stored behind it, in exactly these bytes.
 #pragma once
 
 #include <cstddef>

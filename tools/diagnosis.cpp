@@ -46,7 +46,10 @@ std::vector<std::pair<std::string, double>> CauseShares::shares() const {
 void OrderComparison::add(const Technique& reference, const RunPlan& plan, std::size_t frame, Progress& progress) {
   std::vector<std::vector<Image>> pictures(techniques_.size());
   for (std::size_t k = 0; k < kOrders.size(); ++k) {
-    const RunPlan ordered{with_triangle_order(plan.trace, frame, kOrders[k].second), {}, {0}, 1, plan.options};
+    RunPlan ordered;
+    ordered.trace = with_triangle_order(plan.trace, frame, kOrders[k].second);
+    ordered.frames = {0};
+    ordered.options = plan.options;
     const Image truth = render_once(reference, ordered, 0, progress).image;
     for (std::size_t i = 0; i < techniques_.size(); ++i) {
       pictures[i].push_back(render_once(techniques_[i], ordered, 0, progress).image);

@@ -78,7 +78,8 @@ TEST(Acaa, CoincidentDepthsCountTwiceUnlessRemedied) {
   const Trace trace = pixel_trace(4, 4, {everywhere(0.5, {0.25f, 0, 0}), everywhere(0.5, {0, 0.5f, 0})});
   EXPECT_EQ(pixel(render("acaa:8", trace).image, 1, 1), glm::vec4(0.25f, 0.5f, 0, 1));
   // The first one's alone, as in MSAA.
-  for (const char* spec : {"acaa:8,double=stencil", "acaa:8,double=saturate", "acaa:32,double=stencil", "msaa:8"})
+  for (const char* spec : {"acaa:8,double=stencil", "acaa:8,double=saturate", "acaa:32,double=stencil",
+                           "acaa:32,double=saturate", "acaa:256,double=saturate", "msaa:8"})
     EXPECT_EQ(pixel(render(spec, trace).image, 1, 1), glm::vec4(0.25f, 0, 0, 1)) << spec;
 }
 
@@ -88,7 +89,8 @@ TEST(Acaa, SaturationStopsAtWhatGeometryCovers) {
   PixelSpaceTriangle again = left;
   again.color = glm::vec3(1, 0, 0);
   const Trace trace = pixel_trace(4, 4, {left, again}, glm::vec3(0, 0, 1));
-  for (const char* spec : {"acaa:4,double=saturate,color=fp32", "acaa:4,double=stencil,color=fp32"}) {
+  for (const char* spec : {"acaa:4,double=saturate,color=fp32", "acaa:64,double=saturate,color=fp32",
+                           "acaa:4,double=stencil,color=fp32"}) {
     const Image image = render(spec, trace).image;
     EXPECT_NEAR(pixel(image, 1, 1).g + pixel(image, 1, 1).b, 1, 1e-6) << spec;
     EXPECT_EQ(pixel(image, 1, 1).r, 0) << spec;

@@ -165,6 +165,15 @@ TEST(Claim, MoreVisibleSurfacesThanLayersTakeMorePasses) {
   }
 }
 
+TEST(Claim, ManyPassesKeepAConstantColour) {
+  SetupTriangles triangles;
+  for (int i = 0; i < 16; ++i) add_left_of(triangles, 16 * (i + 1), -0.9f + 0.05f * static_cast<float>(i));
+  const float tone = HalfBits(0.7f);
+  Stream<8, 1> stream{triangles, kPixel};
+  EXPECT_EQ(stream.run(std::vector<glm::vec3>(16, glm::vec3(0.7f))), 16);
+  EXPECT_EQ(settled_colors(stream.pixels).at(0).color, glm::vec3(tone));
+}
+
 TEST(Claim, TheLastPassGivesWhatIsUndecidedToTheRest) {
   SetupTriangles triangles;
   add_left_of(triangles, 128, -0.9f);
@@ -192,7 +201,7 @@ TEST(Claim, SpecksMakeAreasCountByPositions) {
   Stream<1, 5> beside{triangles, kPixel};
   ASSERT_EQ(beside.fragments.at(1).mask.count(), 0);
   beside.run({{1, 1, 1}, {1, 1, 1}});
-  EXPECT_EQ(settled_colors(beside.pixels).at(0).alpha, 1.0f / 32);
+  EXPECT_NEAR(settled_colors(beside.pixels).at(0).alpha, 1.0 / 32, 1e-5);
 }
 
 TEST(Claim, CountsWhatItReadsAndWrites) {
