@@ -1,12 +1,13 @@
 #!/usr/bin/env python3
 """Causes of error, order of triangles, and flicker: the tables of docs/accuracy.md.
 
-usage: docs/diagnosis.py causes PROGRAM [TRACE...]   also prints the errors by order
+usage: docs/diagnosis.py causes PROGRAM [TRACE...]
+       docs/diagnosis.py orders PROGRAM [SCENE or TRACE...]
        docs/diagnosis.py motion PROGRAM [SCENE...]
 
 PROGRAM is for instance build/release/tools/beampipe. `causes` measures the nine procedural scenes, which it makes, and
-the traces that are named; `motion` eight frames of the procedural scenes, or of those that are named, whose pictures
-move by 0.19 and 0.07 pixels per frame.
+the traces that are named; `orders` and `motion` the procedural scenes, or what is named; `motion` eight frames whose
+pictures move by 0.19 and 0.07 pixels per frame.
 """
 import json
 import pathlib
@@ -16,7 +17,8 @@ import tempfile
 
 SCENES = ["hairball", "classroom", "boat", "pickets", "terrain", "sphere", "fence", "soup", "foliage"]
 EXPLAINED = ["beam", "beam:rules=paper"]
-MOVED = ["beam", "beam:rules=paper", "msaa:8", "msaa:32", "msaa:256"]
+ORDERED = ["beam", "beam:rules=paper", "beam:order=stream", "z3", "msaa:8", "reference"]
+MOVED = ["beam", "beam:rules=paper", "beam:order=stream", "msaa:8", "msaa:32", "msaa:256"]
 
 
 def compare(program, trace, folder, *arguments):
@@ -44,23 +46,27 @@ def print_table(titles, rows):
 def causes(program, traces, folder):
     found = {}
     for trace in [*(make(program, scene, folder) for scene in SCENES), *traces]:
-        found[pathlib.Path(trace).stem] = compare(program, trace, f"{folder}/out", "-t", *EXPLAINED, "msaa:8", "--causes",
-                                                  "--orders")
+        found[pathlib.Path(trace).stem] = compare(program, trace, f"{folder}/out", "-t", *EXPLAINED, "msaa:8", "--causes")
     for spec in EXPLAINED:
         names = list(next(iter(found.values()))[spec]["error_causes"])
         print_table([f"`{spec}`", "RMSE × 1000", *names],
                     [[scene, f"{1000 * results[spec]['error']['rmse']:.2f}",
                       *(f"{100 * results[spec]['error_causes'][name]:.0f} %" for name in names)]
                      for scene, results in found.items()])
-    orders = ["given", "shuffled", "near_to_far", "far_to_near", "largest_difference"]
-    specs = [*EXPLAINED, "msaa:8", "reference"]
+
+
+def orders(program, what, folder):
+    """`what`: procedural scenes or traces."""
+    names = ["given", "shuffled", "near_to_far", "far_to_near", "largest_difference"]
     rows = []
-    for scene, results in found.items():
-        for spec in specs:
-            by_order = results[spec]["orders"]
-            values = [by_order[order] for order in orders]
-            rows.append([scene, f"`{spec}`", *(f"{1000 * (v['rmse'] if isinstance(v, dict) else v):.3f}" for v in values)])
-    print_table(["scene", "RMSE × 1000", *(order.replace("_", " ") for order in orders)], rows)
+    for scene in what or SCENES:
+        trace = make(program, scene, folder) if scene in SCENES else scene
+        results = compare(program, trace, f"{folder}/out", "-t", *ORDERED[:-1], "--orders")
+        for spec in ORDERED:
+            values = [results[spec]["orders"][name] for name in names]
+            rows.append([pathlib.Path(scene).stem, f"`{spec}`",
+                         *(f"{1000 * (v['rmse'] if isinstance(v, dict) else v):.3f}" for v in values)])
+    print_table(["scene", "RMSE × 1000", *(name.replace("_", " ") for name in names)], rows)
 
 
 def motion(program, scenes, folder):
@@ -73,10 +79,10 @@ def motion(program, scenes, folder):
 
 
 def main():
-    if len(sys.argv) < 3 or sys.argv[1] not in ("causes", "motion"):
+    if len(sys.argv) < 3 or sys.argv[1] not in ("causes", "orders", "motion"):
         sys.exit(__doc__.strip())
     with tempfile.TemporaryDirectory() as folder:
-        {"causes": causes, "motion": motion}[sys.argv[1]](sys.argv[2], sys.argv[3:], folder)
+        {"causes": causes, "orders": orders, "motion": motion}[sys.argv[1]](sys.argv[2], sys.argv[3:], folder)
 
 
 main()
