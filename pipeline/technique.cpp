@@ -1,6 +1,5 @@
 #include "pipeline/technique.h"
 
-#include "hwy/targets.h"
 #include "pipeline/acaa.h"
 #include "pipeline/beam.h"
 #include "pipeline/dvm.h"
@@ -223,7 +222,5 @@ std::string technique_help() {
   for (const Kind& kind : kKinds) help += kind.help;
   return help;
 }
-
-std::string simd_target() { return hwy::TargetName(hwy::SupportedTargets() & -hwy::SupportedTargets()); }
 
 }  // namespace beampipe

@@ -81,7 +81,4 @@ Technique parse_technique(std::string_view spec);
 // Lines "SPEC  what it is", for --help.
 std::string technique_help();
 
-// The Highway target in use, for instance "AVX2".
-std::string simd_target();
-
 }  // namespace beampipe

@@ -9,6 +9,7 @@
 #include "tools/framing.h"
 #include "tools/output.h"
 #include "tools/report.h"
+#include "traces/atomic_file.h"
 #include "traces/scenes.h"
 #include "traces/trace_io.h"
 
@@ -109,11 +110,12 @@ void make(const MakeArguments& arguments, const CLI::App& command, InterruptGate
   }
   std::size_t triangles = 0;
   for (const Mesh& mesh : trace.meshes) triangles += mesh.triangles.size();
+  if (file.has_parent_path()) std::filesystem::create_directories(file.parent_path());
   {
     const auto held = gate.hold();
-    if (file.has_parent_path()) std::filesystem::create_directories(file.parent_path());
-    write_trace(trace, file);
+    gate.set_unfinished(AtomicFile::temporary_of(file));
   }
+  write_trace(trace, file);
   std::cout << arguments.output << ": " << triangles << " triangles, " << arguments.options.width << " x "
             << arguments.options.height << " pixels\n";
 }

@@ -63,6 +63,21 @@ struct Size {
   std::uint32_t width, height;
 };
 
+// Uncompressed bytes that a byte of a file can stand for: 1032 in deflate (RFC 1951: a 258-byte match in 2 bits), less
+// in RLE, PIZ and B44; DWA keeps flat blocks of 64 pixels in one more such step.
+constexpr std::uint64_t kMostExpansion = 1100, kMostDwaExpansion = 64 * kMostExpansion;
+
+void require_plausible_size(const Imf::Header& header, Size size, std::uint64_t file_bytes) {
+  std::uint64_t pixel_bytes = 0;
+  for (auto channel = header.channels().begin(); channel != header.channels().end(); ++channel)
+    pixel_bytes += channel.channel().type == Imf::HALF ? 2 : 4;
+  const bool dwa = header.compression() == Imf::DWAA_COMPRESSION || header.compression() == Imf::DWAB_COMPRESSION;
+  const std::uint64_t most = file_bytes * (dwa ? kMostDwaExpansion : kMostExpansion);
+  if (pixel_bytes * size.width * size.height <= most) return;
+  throw std::runtime_error("it claims " + std::to_string(size.width) + " x " + std::to_string(size.height) +
+                           " pixels, more than its " + std::to_string(file_bytes) + " bytes can hold");
+}
+
 Size checked_size(const Imf::Header& header) {
   const Imath::Box2i& data = header.dataWindow();
   const Imath::Box2i& display = header.displayWindow();
@@ -87,8 +102,11 @@ auto read_file(const std::filesystem::path& file, Load load) {
     std::error_code ignored;
     if (!std::filesystem::exists(file, ignored)) throw std::runtime_error("no such file");
     if (!std::filesystem::is_regular_file(file, ignored)) throw std::runtime_error("not a file");
+    Imf::Header::setMaxImageSize(kMaxSide, kMaxSide);  // before the library takes memory for what a header claims
     Imf::InputFile input(file.c_str());
-    return load(input, checked_size(input.header()));
+    const Size size = checked_size(input.header());
+    require_plausible_size(input.header(), size, std::filesystem::file_size(file));
+    return load(input, size);
   } catch (const std::exception& error) {
     throw ImageError(file.string() + ": not a readable EXR image: " + error.what());
   }

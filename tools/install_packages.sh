@@ -9,6 +9,7 @@ packages=(
   gnuplot-nox                       # draws the plots, when the program runs
   node-d3                           # draws the plots of the report page
   chromium chromium-driver python3  # test the report page
+  libboost-dev                      # headers: exact arithmetic
   libgtest-dev
 )
 

@@ -24,7 +24,8 @@ void InterruptGate::wait_for_signal() {
   int signal = 0;
   sigwait(&signals_, &signal);
   if (closing_) return;
-  mutex_.lock();        // never unlocked: no file may be begun any more
+  mutex_.lock();  // never unlocked: no file may be begun any more
+  if (!unfinished_.empty()) ::unlink(unfinished_.c_str());
   _exit(128 + signal);  // without destructors: other threads are still rendering
 }
 

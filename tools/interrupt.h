@@ -1,15 +1,16 @@
-// Lets Ctrl-C end the program at once, but never in the middle of a file.
+// Lets Ctrl-C end the program at once, and leaves no half-written file.
 #pragma once
 
 #include <atomic>
 #include <csignal>
+#include <filesystem>
 #include <mutex>
 #include <thread>
 
 namespace beampipe {
 
 // While one lives, SIGINT and SIGTERM end the process with exit code 128 + signal (130 for Ctrl-C), at a moment when
-// nobody holds the gate. Whoever writes a file holds it until the file is whole.
+// nobody holds the gate. Whoever changes names of files and folders holds it meanwhile, never longer.
 // Construct it before any other thread is started: the two signals are blocked in this thread and in those it starts.
 class InterruptGate {
  public:
@@ -20,10 +21,15 @@ class InterruptGate {
 
   std::unique_lock<std::mutex> hold() { return std::unique_lock(mutex_); }
 
+  // The file that is being written: an interrupt removes it before it ends the program. Empty: none. Call it while
+  // holding the gate.
+  void set_unfinished(std::filesystem::path file) { unfinished_ = std::move(file); }
+
  private:
   void wait_for_signal();
 
   std::mutex mutex_;
+  std::filesystem::path unfinished_;
   std::atomic<bool> closing_ = false;
   sigset_t signals_, previous_mask_;
   std::thread waiter_;

@@ -45,15 +45,20 @@ OutputFolder::~OutputFolder() {
 }
 
 void OutputFolder::write(const fs::path& name, std::string_view bytes) {
-  const auto held = gate_.hold();
+  auto held = gate_.hold();
   const fs::path target = folder_ / name;
   for (const fs::path& folder : missing_folders(target.parent_path())) {
     if (fs::create_directory(folder)) new_.push_back(folder);
   }
   const bool is_new = !fs::exists(target);
   AtomicFile file(target);
+  gate_.set_unfinished(AtomicFile::temporary_of(target));
+  held.unlock();  // a large file may take longer than Ctrl-C may
   file.write(bytes);
+  file.flush();
+  held.lock();
   file.commit();
+  gate_.set_unfinished({});
   if (is_new) new_.push_back(target);
 }
 

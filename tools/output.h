@@ -25,7 +25,7 @@ class OutputFolder {
 
   const std::filesystem::path& path() const { return folder_; }
 
-  // Writes folder/name, held against interrupts. `name` may lie in a subfolder, which is made if need be.
+  // Writes folder/name. `name` may lie in a subfolder, which is made if need be.
   // Throws std::runtime_error, one line that names the file.
   void write(const std::filesystem::path& name, std::string_view bytes);
 

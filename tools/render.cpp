@@ -4,6 +4,7 @@
 #include <cstdio>
 #include <iostream>
 
+#include "simd/target.h"
 #include "tools/image_io.h"
 
 namespace beampipe {

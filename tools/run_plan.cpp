@@ -1,25 +1,63 @@
 #include "tools/run_plan.h"
 
+#include <unistd.h>
+
 #include <algorithm>
 #include <charconv>
+#include <filesystem>
 #include <map>
 #include <numeric>
 #include <thread>
 
+#include "simd/target.h"
 #include "tools/commands.h"
 #include "tools/report.h"
 #include "traces/trace_io.h"
 
 namespace beampipe {
 
+namespace {
+
+// A trace behind -t is taken for a technique.
+void require_trace(const RunArguments& arguments) {
+  if (!arguments.trace.empty()) return;
+  std::string hint;
+  if (std::error_code ignored; !arguments.specs.empty() && std::filesystem::exists(arguments.specs.back(), ignored))
+    hint = ": " + arguments.specs.back() + " was taken for a technique; write the trace before -t";
+  throw UsageError("TRACE is missing" + hint);
+}
+
+// What a frame takes at the very least, per pixel: its tiles' pictures, the whole one, and its copy for the caller.
+constexpr std::uint64_t kLeastPixelBytes = 3 * 4 * sizeof(float);
+
+// The system grants memory that it does not have, and ends the program when that is used.
+void require_memory(const RunPlan& plan) {
+  const auto memory =
+      static_cast<std::uint64_t>(sysconf(_SC_PHYS_PAGES)) * static_cast<std::uint64_t>(sysconf(_SC_PAGESIZE));
+  for (const std::size_t i : plan.frames) {
+    const Frame& frame = plan.trace.frames[i];
+    const std::uint64_t needed = std::uint64_t{frame.width} * frame.height * kLeastPixelBytes;
+    if (needed <= memory) continue;
+    throw std::runtime_error("frame " + std::to_string(i) + ": its " + std::to_string(frame.width) + " x " +
+                             std::to_string(frame.height) + " pixels need at least " + std::to_string(needed >> 20) +
+                             " MiB, and this machine has " + std::to_string(memory >> 20));
+  }
+}
+
+}  // namespace
+
 void add_run_arguments(CLI::App& command, RunArguments& arguments) {
-  command.add_option("TRACE", arguments.trace, "the trace to render (JSON)")->required();
+  command.add_option("TRACE", arguments.trace, "the trace to render (JSON)");
   command.add_option("-t,--technique", arguments.specs, "one or more techniques; may be repeated (list below)")
       ->required();
   command.add_option("-o,--output", arguments.output, "folder for images and report.json; made if need be")->required();
   command.add_option("--frames", arguments.frames, "only frames A-B of the trace, counted from 0 (default: all)");
   command.add_option("--threads", arguments.threads, "threads to use (default: all that the machine has)")
       ->check(CLI::Range(1, 1024));
+  command
+      .add_option("--simd", arguments.simd,
+                  "instruction set to use; the results are the same (default: the first here)")
+      ->transform(CLI::IsMember(simd_targets(), CLI::ignore_case));
   command.add_option("--repeat", arguments.repeat, "times to render each frame, for steadier times (default: 1)")
       ->check(CLI::Range(1, 1000000));
   command.add_option("--hardware", arguments.hardware,
@@ -31,6 +69,7 @@ void add_run_arguments(CLI::App& command, RunArguments& arguments) {
 }
 
 RunPlan make_plan(const RunArguments& arguments) {
+  require_trace(arguments);
   RunPlan plan;
   plan.techniques = parse_techniques(arguments.specs);
   plan.repeat = arguments.repeat;
@@ -38,8 +77,10 @@ RunPlan make_plan(const RunArguments& arguments) {
   if (!arguments.hardware.empty()) plan.hardware = read_hardware(arguments.hardware);
   plan.options.memory.modelled = !arguments.no_memory_model;
   plan.options.memory.compression = !arguments.no_compression;
+  if (!arguments.simd.empty()) use_simd_target(arguments.simd);
   plan.trace = read_trace(arguments.trace, {.allow_outside = arguments.allow_outside});
   plan.frames = parse_frame_range(arguments.frames, plan.trace.frames.size());
+  require_memory(plan);
   return plan;
 }
 

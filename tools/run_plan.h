@@ -16,6 +16,7 @@ namespace beampipe {
 struct RunArguments {
   std::string trace, output, frames, hardware;
   std::vector<std::string> specs;
+  std::string simd;  // empty: the best
   int threads = 0, repeat = 1;
   bool allow_outside = false, no_memory_model = false, no_compression = false;
 };
@@ -31,7 +32,8 @@ struct RunPlan {
   RunOptions options;  // with the number of threads resolved
 };
 
-// Throws UsageError, SpecError or TraceError.
+// Also chooses the instruction set. Throws UsageError, SpecError, TraceError, or std::runtime_error where the pictures
+// alone are larger than memory.
 RunPlan make_plan(const RunArguments& arguments);
 
 // Throws OutputError unless every technique's folder can be written.

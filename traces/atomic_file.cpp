@@ -1,6 +1,8 @@
 #include "traces/atomic_file.h"
 
 #include <fcntl.h>
+#include <sys/file.h>
+#include <sys/stat.h>
 #include <unistd.h>
 
 #include <cerrno>
@@ -11,25 +13,47 @@ namespace beampipe {
 
 namespace fs = std::filesystem;
 
-AtomicFile::AtomicFile(const fs::path& target) : target_(target) {
+fs::path AtomicFile::temporary_of(const fs::path& target) {
+  fs::path temporary = target;
+  temporary += ".tmp";
+  return temporary;
+}
+
+AtomicFile::AtomicFile(const fs::path& target) : target_(target), temporary_(temporary_of(target)) {
   std::error_code error;
   const fs::file_status status = fs::status(target, error);
   // Renaming would replace a device or a pipe by a file.
   if (fs::exists(status) && !fs::is_regular_file(status)) {
     throw std::runtime_error(target.string() + ": expected a regular file or none, found something else");
   }
-  for (int attempt = 0; descriptor_ < 0; ++attempt) {
-    temporary_ = target;
-    temporary_ += ".tmp-" + std::to_string(::getpid()) + "-" + std::to_string(attempt);
-    descriptor_ = ::open(temporary_.c_str(), O_WRONLY | O_CREAT | O_EXCL | O_CLOEXEC, 0666);
-    if (descriptor_ < 0 && (errno != EEXIST || attempt == 1000)) fail("create a file beside it");
+  while (!open()) ::close(descriptor_);
+}
+
+// False: another program renamed or removed the file between our opening and locking it.
+bool AtomicFile::open() {
+  // Not blocking: a pipe under this name is an error, not something to wait for.
+  descriptor_ = ::open(temporary_.c_str(), O_WRONLY | O_CREAT | O_CLOEXEC | O_NOFOLLOW | O_NONBLOCK, 0666);
+  if (descriptor_ < 0) fail("create a file beside it");
+  struct stat opened {
+  }, named{};
+  const bool is_file = ::fstat(descriptor_, &opened) == 0 && S_ISREG(opened.st_mode);
+  if (!is_file || ::flock(descriptor_, LOCK_EX | LOCK_NB) != 0) {
+    ::close(descriptor_);
+    descriptor_ = -1;
+    throw std::runtime_error(target_.string() + ": cannot write: " + temporary_.string() +
+                             (is_file ? " is being written by another program" : " is in the way"));
   }
+  if (::stat(temporary_.c_str(), &named) != 0 || named.st_ino != opened.st_ino || named.st_dev != opened.st_dev) {
+    return false;
+  }
+  if (::ftruncate(descriptor_, 0) != 0) fail("write");
+  return true;
 }
 
 AtomicFile::~AtomicFile() {
   if (descriptor_ < 0) return;
-  ::close(descriptor_);
   ::unlink(temporary_.c_str());
+  ::close(descriptor_);
 }
 
 void AtomicFile::write(std::string_view bytes) {
@@ -41,8 +65,12 @@ void AtomicFile::write(std::string_view bytes) {
   }
 }
 
-void AtomicFile::commit() {
+void AtomicFile::flush() {
   if (::fsync(descriptor_) != 0) fail("flush");
+}
+
+void AtomicFile::commit() {
+  flush();
   if (::rename(temporary_.c_str(), target_.c_str()) != 0) fail("rename the finished file");
   ::close(descriptor_);
   descriptor_ = -1;

@@ -2,6 +2,7 @@
 #pragma once
 
 #include <cstdint>
+#include <filesystem>
 #include <glm/glm.hpp>
 #include <initializer_list>
 #include <nlohmann/json.hpp>
@@ -22,6 +23,10 @@ std::string in_quotes(std::string_view text);
 
 // A key as a step of a JSON pointer: "/" and "~" escaped.
 std::string pointer_step(std::string_view key);
+
+// Throws TraceError unless `file` is a regular file, or a link to one, of at most 16 GiB: pipes and devices may have no
+// end.
+void require_input_file(const std::filesystem::path& file, const std::string& where);
 
 // Parses a whole file; broken JSON, duplicate keys and numbers out of range throw TraceError.
 Json parse_json(const std::string& file);

@@ -16,7 +16,8 @@ namespace {
 
 namespace fs = std::filesystem;
 
-constexpr glm::vec3 kGrey{0.8f};  // of faces without a material
+constexpr glm::vec3 kGrey{0.8f};              // of faces without a material
+constexpr std::uint32_t kMostCorners = 4096;  // of a face: finding its triangles takes their cube in the worst case
 constexpr std::string_view kBlanks = " \t\r";
 
 std::string_view trim(std::string_view text) {
@@ -67,7 +68,8 @@ class Materials : public tinyobj::MaterialReader {
     if (error || relative.empty() || *relative.begin() == ".." || fs::path(name).is_absolute()) {
       fail_trace(where_, "an mtllib in the OBJ's folder", in_quotes(name));
     }
-    if (!fs::is_regular_file(file, error)) return false;
+    if (!fs::exists(file, error)) return false;
+    require_input_file(file, where_ + ": " + name);
     std::stringstream text;
     text << std::ifstream(file, std::ios::binary).rdbuf();
     read(text, where_ + ": " + name);
@@ -141,8 +143,7 @@ Polygons load(std::istream& text, Materials& materials) {
 
 Mesh read_obj(const fs::path& file, const std::string& named_by) {
   const std::string where = (named_by.empty() ? "" : named_by + ": ") + file.string();
-  std::error_code no_matter;  // what cannot be asked cannot be opened either
-  if (fs::is_directory(file, no_matter)) fail_trace(where, "an OBJ file", "a folder");
+  require_input_file(file, where);
   std::ifstream stream(file, std::ios::binary);
   if (!stream) fail_trace(where, "a readable file", "none");
   std::stringstream text;
@@ -162,6 +163,8 @@ Mesh read_obj(const fs::path& file, const std::string& named_by) {
     const std::string face = where + ": face " + std::to_string(i + 1);
     const std::uint32_t size = polygons.sizes[i];
     if (size < 3) fail_trace(face, "three or more corners", std::to_string(size));
+    if (size > kMostCorners)
+      fail_trace(face, "at most " + std::to_string(kMostCorners) + " corners", std::to_string(size));
     corners.clear();
     for (std::uint32_t k = 0; k < size; ++k) {
       if (first[k] < 0 || first[k] >= vertices) {

@@ -11,6 +11,7 @@ namespace {
 namespace fs = std::filesystem;
 
 constexpr std::uint32_t kLargestSide = 16384;
+constexpr std::uint64_t kMostTriangles = 1'000'000'000;  // of a frame, by repeated draws: they are numbered in 32 bits
 constexpr glm::vec3 kGrey{0.8f};
 constexpr double kInfinity = std::numeric_limits<double>::infinity();
 
@@ -115,7 +116,7 @@ Draw read_draw(const JsonCursor& at, const MeshIndex& meshes, bool has_light) {
   return draw;
 }
 
-Frame read_frame(const JsonCursor& at, const MeshIndex& meshes) {
+Frame read_frame(const JsonCursor& at, const MeshIndex& index, const std::vector<Mesh>& meshes) {
   at.expect_keys({"width", "height", "background", "camera", "view", "projection", "light", "draws"});
   Frame frame;
   frame.width = at["width"].integer(1, kLargestSide);
@@ -123,8 +124,13 @@ Frame read_frame(const JsonCursor& at, const MeshIndex& meshes) {
   if (const auto background = at.find("background")) frame.background = background->color();
   read_view(at, frame);
   if (const auto light = at.find("light")) frame.light_direction = read_light(*light);
+  std::uint64_t triangles = 0;
   for (const JsonCursor& draw : at["draws"].elements()) {
-    frame.draws.push_back(read_draw(draw, meshes, frame.light_direction.has_value()));
+    frame.draws.push_back(read_draw(draw, index, frame.light_direction.has_value()));
+    triangles += meshes[frame.draws.back().mesh].triangles.size();
+    if (triangles > kMostTriangles) {
+      draw.fail("at most " + std::to_string(kMostTriangles) + " triangles in a frame", std::to_string(triangles));
+    }
   }
   return frame;
 }
@@ -147,7 +153,7 @@ Trace read_trace(const fs::path& file, const ReadOptions& options) {
   }
   const std::vector<JsonCursor> frames = root["frames"].elements();
   if (frames.empty()) root["frames"].fail("at least one frame");
-  for (const JsonCursor& at : frames) trace.frames.push_back(read_frame(at, index));
+  for (const JsonCursor& at : frames) trace.frames.push_back(read_frame(at, index, trace.meshes));
   return trace;
 }
 

@@ -1,9 +1,10 @@
 // The same picture and the same counters whatever the number of threads, the SIMD target and the order of work.
 #include <gtest/gtest.h>
 
-#include "hwy/targets.h"
 #include "pipeline/technique.h"
 #include "test_traces.h"
+#include "tests/simd/every_target.h"
+#include "tests/thorough.h"
 
 namespace beampipe {
 namespace {
@@ -41,27 +42,20 @@ void expect_same(const FrameResult& a, const FrameResult& b, const std::string& 
   EXPECT_EQ(a.a_buffer_peak_bytes, b.a_buffer_peak_bytes) << what;
 }
 
-TEST(Determinism, AnyNumberOfThreads) {
-  const Trace trace = random_trace(150, 70, 500, 3);
+// Every technique on every instruction set, with 1 to 16 threads in turn (all of them when thorough): each against one
+// thread and the best instruction set.
+TEST(Determinism, AnyInstructionSetAndNumberOfThreads) {
+  const Trace trace = random_trace(150, 70, 400, 3);
+  int threads = 0;
   for (const char* spec : kSpecs) {
     const Technique technique = parse_technique(spec);
-    const FrameResult one = technique.render(trace, 0, {1});
-    for (const int threads : {2, 3, 8}) expect_same(one, technique.render(trace, 0, {threads}), spec);
-  }
-}
-
-TEST(Determinism, EverySimdTarget) {
-  const Trace trace = random_trace(70, 40, 300, 4);
-  for (const char* spec : kSpecs) {
-    const Technique technique = parse_technique(spec);
-    const FrameResult best = technique.render(trace, 0, {1});
-    for (const auto target : hwy::SupportedAndGeneratedTargets()) {
-      hwy::SetSupportedTargetsForTest(target);
-      hwy::GetChosenTarget().DeInit();
-      expect_same(best, technique.render(trace, 0, {1}), std::string(spec) + " " + hwy::TargetName(target));
-    }
-    hwy::SetSupportedTargetsForTest(0);
-    hwy::GetChosenTarget().DeInit();
+    const FrameResult expected = technique.render(trace, 0, {1});
+    on_every_target([&] {
+      for (int i = 0; i < (thoroughness() > 1 ? 16 : 2); ++i) {
+        threads = threads % 16 + 1;
+        expect_same(expected, technique.render(trace, 0, {threads}), spec + (" threads: " + std::to_string(threads)));
+      }
+    });
   }
 }
 

@@ -3,9 +3,7 @@
 
 #include <gtest/gtest.h>
 
-#include <cstdint>
-
-#include "hwy/targets.h"
+#include "simd/target.h"
 
 namespace beampipe {
 
@@ -13,15 +11,11 @@ namespace beampipe {
 template <class Check>
 void on_every_target(Check&& check) {
   struct Restore {
-    ~Restore() {
-      hwy::SetSupportedTargetsForTest(0);
-      hwy::GetChosenTarget().DeInit();
-    }
+    ~Restore() { use_best_simd_target(); }
   } restore;
-  for (const std::int64_t target : hwy::SupportedAndGeneratedTargets()) {
-    SCOPED_TRACE(hwy::TargetName(target));
-    hwy::SetSupportedTargetsForTest(target);
-    hwy::GetChosenTarget().DeInit();
+  for (const std::string& target : simd_targets()) {
+    SCOPED_TRACE(target);
+    use_simd_target(target);
     check();
   }
 }

@@ -5,6 +5,7 @@
 #include <bit>
 
 #include "tests/simd/merge_cases.h"
+#include "tests/thorough.h"
 
 namespace beampipe {
 namespace {
@@ -40,7 +41,7 @@ TEST(MergeRules, InvariantsOnChains) {
   Random random(43);
   SCOPED_TRACE(random.name());
   for (const MergeRules& rules : every_merge_rule())
-    for (int chain = 0; chain < 1'000; ++chain) {
+    for (int chain = 0; chain < 1'000 * thoroughness(); ++chain) {
       Aggregate aggregate = kEmptyAggregate;
       for (int i = 0; i < 8; ++i) {
         const MergeFragment fragment = random_fragment(random);

@@ -132,6 +132,24 @@ TEST(Exr, WhatIsNoImageIsAnErrorOfOneLineThatNamesTheFile) {
   }
 }
 
+// A header may claim what it likes: memory is taken only for what the file can hold.
+TEST(Exr, AClaimThatTheFileCannotHoldIsAnError) {
+  TemporaryFolder folder;
+  const std::string bytes = encode_exr(speaking_image(9, 40));
+  const auto claim = [&](std::int32_t side) {
+    std::string claimed = bytes;
+    for (const std::string window : {"dataWindow", "displayWindow"}) {
+      const std::size_t at = claimed.find(window) + window.size() + 1 + sizeof "box2i" + 4 + 8;  // its maximum
+      for (std::size_t i = 0; i < 8; ++i) claimed[at + i] = static_cast<char>((side - 1) >> (8 * (i % 4)));
+    }
+    write_text(folder / "a.exr", claimed + std::string(1 << 16, '\1'));  // what may pass for its line offsets
+    return error_of_reading(folder / "a.exr");
+  };
+  EXPECT_NE(claim(16384).find("it claims 16384 x 16384 pixels"), std::string::npos) << claim(16384);
+  EXPECT_NE(claim(16385), "");
+  EXPECT_NE(claim(1'000'000), "");
+}
+
 TEST(Exr, EveryTruncatedFileIsAnError) {
   TemporaryFolder folder;
   const std::string bytes = encode_exr(speaking_image(9, 40));

@@ -10,6 +10,7 @@
 #include <nlohmann/json.hpp>
 #include <thread>
 
+#include "simd/target.h"
 #include "tools/image_io.h"
 #include "tools/metrics.h"
 
@@ -283,6 +284,18 @@ TEST_F(ProgramTest, MakeFramesAModel) {
   EXPECT_EQ(chosen["background"], Json({0.25, 0.5, 1.0}));
 }
 
+TEST_F(ProgramTest, EveryInstructionSetGivesTheSamePictures) {
+  const std::string help = succeed({"run", "--help"});
+  for (const std::string& target : simd_targets()) {
+    EXPECT_NE(help.find(target), std::string::npos);
+    succeed({"run", path("trace.json"), "-t", "beam", "-o", path(target), "--simd", target});
+    EXPECT_EQ(Json::parse(read_text(folder_ / target / "report.json"))["simd"], target);
+    for (const char* name : {"beam/frame_0000.exr", "beam/frame_0001_counters.exr"})
+      EXPECT_EQ(read_text(folder_ / target / name), read_text(folder_ / simd_targets()[0] / name)) << target;
+  }
+  succeed({"run", path("trace.json"), "-t", "beam", "-o", path("capitals"), "--simd", "SCALAR"});
+}
+
 TEST_F(ProgramTest, EveryMistakeIsOneLineAndLeavesNothing) {
   write_text(folder_ / "broken.json", "{\"beampipe_trace\": 1,");
   write_text(folder_ / "model.obj", "v 0 0 0\nv 4 0 0\nv 0 3 0\nf 1 2 3\n");
@@ -300,6 +313,10 @@ TEST_F(ProgramTest, EveryMistakeIsOneLineAndLeavesNothing) {
       {{"run", trace, "-t", "beam\nbeam", "-o", out}, 2, "beam beam"},
       {{"run", trace, "-t", "msaa:3", "-o", out}, 2, "msaa:3"},
       {{"run", trace, "-t", "beam", "beam", "-o", out}, 2, "twice"},
+      {{"run", "-t", "beam", trace, "-o", out}, 2, "was taken for a technique; write the trace before -t"},
+      {{"run", "-t", "beam", "-o", out}, 2, "TRACE is missing"},
+      {{"run", "/dev/zero", "-t", "beam", "-o", out}, 1, "expected a regular file"},
+      {{"run", trace, "-t", "beam", "-o", out, "--simd", "avx9"}, 2, "scalar"},
       {{"run", trace, "-t", "beam", "-o", out, "--frames", "1-2"}, 2, "--frames 1-2"},
       {{"run", trace, "-t", "beam", "-o", out, "--threads", "0"}, 2, "--threads"},
       {{"run", trace, "-t", "beam", "-o", out, "--repeat", "0"}, 2, "--repeat"},
@@ -406,6 +423,22 @@ TEST_F(ProgramTest, CtrlCKeepsFinishedImagesAndLeavesNothingElse) {
   EXPECT_EQ(folder_.list(), (Names{"out/", "out/msaa_1/", "out/msaa_1/frame_0000.exr", "out/msaa_1/frame_0000.png",
                                    "out/msaa_1/frame_0000_counters.exr", "trace.json"}));
   EXPECT_EQ(read_exr(folder_ / "out/msaa_1/frame_0000.exr").width, 20u);
+}
+
+// Neither a frame nor a file that would take much longer is waited for.
+TEST_F(ProgramTest, CtrlCEndsALongFrameAndALongFileAtOnce) {
+  Program file({"make", "hairball", "--triangles", "5000000", "-o", path("big.json")});
+  pause(1500);
+  file.signal(SIGINT);
+  EXPECT_EQ(file.wait().exit_code, 130);
+  EXPECT_EQ(folder_.list(), Names{"trace.json"});
+
+  succeed({"make", "soup", "--triangles", "2000", "--width", "4096", "--height", "4096", "-o", path("wide.json")});
+  Program frame({"run", path("wide.json"), "-t", "reference", "-o", path("out")});
+  pause(500);
+  frame.signal(SIGINT);
+  EXPECT_EQ(frame.wait().exit_code, 130);
+  EXPECT_EQ(folder_.list(), (Names{"trace.json", "wide.json"}));
 }
 
 TEST_F(ProgramTest, ATerminalShowsProgressAfterASecond) {

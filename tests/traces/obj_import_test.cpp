@@ -109,6 +109,9 @@ TEST_F(ObjImportTest, SaysWhatIsWrong) {
   EXPECT_EQ(error(kSquare + "f 0 1 2\n"), start + "face 1: " + range + "1");
   EXPECT_EQ(error(kSquare + "f 1 -5 2\n"), start + "face 1: " + range + "2");
   EXPECT_EQ(error(kSquare + "f 1 2 3 4 9\n"), start + "face 1: " + range + "5");
+  std::string corners;
+  for (int i = 0; i < 5000; ++i) corners.append(" ").append(std::to_string(i % 4 + 1));
+  EXPECT_EQ(error(kSquare + "f" + corners + "\n"), start + "face 1: expected at most 4096 corners, found 5000");
   EXPECT_EQ(error(kSquare + "f a b c\n"), start + "face 1: " + range + "1");
 }
 
@@ -123,7 +126,7 @@ TEST_F(ObjImportTest, SaysWhatIsWrongWithMaterials) {
 TEST_F(ObjImportTest, NamesFilesThatCannotBeRead) {
   EXPECT_EQ(error_of([&] { read_obj(path("none.obj"), ""); }), "none.obj: expected a readable file, found none");
   std::filesystem::create_directory(path("folder"));
-  EXPECT_EQ(error_of([&] { read_obj(path("folder"), ""); }), "folder: expected an OBJ file, found a folder");
+  EXPECT_EQ(error_of([&] { read_obj(path("folder"), ""); }), "folder: expected a readable file, found a folder");
 }
 
 }  // namespace

@@ -1,3 +1,5 @@
+#include <sys/stat.h>
+
 #include <nlohmann/json.hpp>
 
 #include "tests/traces/test_folder.h"
@@ -246,6 +248,32 @@ TEST_F(TraceReaderTest, NamesFilesThatCannotBeRead) {
   EXPECT_EQ(error_of([&] { read_trace(path(long_name)); }), long_name + ": expected a readable file, found none");
   std::filesystem::create_directory(path("folder"));
   EXPECT_EQ(error_of([&] { read_trace(path("folder")); }), "folder: expected a readable file, found a folder");
+}
+
+TEST_F(TraceReaderTest, RefusesPipesAndDevices) {
+  const std::string expected = ": expected a regular file, found a pipe or a device";
+  ASSERT_EQ(mkfifo(path("pipe").c_str(), 0666), 0);
+  EXPECT_EQ(error_of([&] { read_trace(path("pipe")); }), "pipe" + expected);
+  EXPECT_EQ(error_of([&] { read_trace("/dev/zero"); }), "/dev/zero" + expected);
+  EXPECT_EQ(error_of([&] { read_obj(path("pipe"), ""); }), "pipe" + expected);
+  write("mesh.obj", "mtllib pipe\nv 0 0 0\nv 1 0 0\nv 0 1 0\nf 1 2 3\n");
+  EXPECT_EQ(error_of([&] { read_obj(path("mesh.obj"), ""); }), "mesh.obj: pipe" + expected);
+}
+
+// What a small file can ask for is refused before memory is taken for it.
+TEST_F(TraceReaderTest, RefusesMoreThanAFrameMayHave) {
+  std::string indices, draws;
+  for (int i = 0; i < 10'000; ++i) indices += i ? ",0,0,0" : "0,0,0";
+  for (int i = 0; i < 100'001; ++i) draws += i ? ",{\"mesh\":\"m\"}" : "{\"mesh\":\"m\"}";
+  const std::string matrix = "[1,0,0,0,0,1,0,0,0,0,1,0,0,0,0,1]";
+  const auto frame = [&](const std::string& width, const std::string& of_draws) {
+    return "{\"beampipe_trace\": 1, \"meshes\": {\"m\": {\"positions\": [0,0,0], \"indices\": [" + indices +
+           "]}}, \"frames\": [{\"width\": " + width + ", \"height\": 1, \"view\": " + matrix +
+           ", \"projection\": " + matrix + ", \"draws\": [" + of_draws + "]}]}";
+  };
+  EXPECT_EQ(error_in(frame("1", draws)),
+            "scene.json: /frames/0/draws/100000: expected at most 1000000000 triangles in a frame, found 1000010000");
+  EXPECT_EQ(error_in(frame("1000000", "")), "scene.json: /frames/0/width: expected an integer 1..16384, found 1000000");
 }
 
 TEST_F(TraceReaderTest, ReadsTheSamples) {
