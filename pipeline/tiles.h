@@ -1,5 +1,6 @@
 // Tile scheduling: triangles into tiles, tiles onto threads, tiles' results into the frame's. The result does not
-// depend on the number of threads or on the tile size.
+// depend on the number of threads, the pictures not on the tile size either. (Passes of streaming order and the modelled
+// caches go tile by tile, so that their counters do.)
 #pragma once
 
 #include <algorithm>
