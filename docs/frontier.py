@@ -20,10 +20,14 @@ SPECS = ["alpha", "beam:rules=paper", "beam", "z3:shape=32x2", "z3", "z3:shape=1
          "beam:order=stream,bits=256,layers=1", "msaa:8", "msaa:32", "msaa:256"]
 
 
+def rate(value):
+    return f"{value:.0f}" if value >= 1000 else f"{value:.3g}"
+
+
 def emr(result):
     bound = "≥ " if result.get("equivalent_msaa_is_lower_bound") else (
         "< " if result.get("equivalent_msaa_is_upper_bound") else "")
-    return f"{bound}{result['equivalent_msaa']:.3g}"
+    return bound + rate(result["equivalent_msaa"])
 
 
 def stage_items(result, name):
@@ -42,7 +46,7 @@ def print_table(title, found, cell, summary=None):
 
 def mean_and_least(row):
     rates = [result["equivalent_msaa"] for result in row]
-    return [f"{math.exp(sum(map(math.log, rates)) / len(rates)):.3g}", f"{min(rates):.3g}"]
+    return [rate(math.exp(sum(map(math.log, rates)) / len(rates))), rate(min(rates))]
 
 
 def main():

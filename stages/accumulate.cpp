@@ -1,13 +1,12 @@
 #include "stages/accumulate.h"
 
-#include <half.h>
-
 #include <algorithm>
 #include <bit>
 #include <cmath>
 
 #include "simd/scalar.h"
 #include "stages/counting.h"
+#include "stages/half_bits.h"
 #include "stages/raster_cost.h"
 
 namespace beampipe {
@@ -20,7 +19,7 @@ float round_to(AccumulatorFormat format, float value) {
     case AccumulatorFormat::unorm8:
       return std::floor(std::clamp(value, 0.0f, 1.0f) * 255.0f + 0.5f) / 255.0f;
     case AccumulatorFormat::fp16:
-      return half(std::min(value, static_cast<float>(HALF_MAX)));
+      return HalfBits(value);
     default:
       return value;
   }

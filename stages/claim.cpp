@@ -3,7 +3,7 @@
 #include <algorithm>
 
 #include "simd/plane_order.h"
-#include "stages/counting.h"
+#include "stages/plane_cost.h"
 
 namespace beampipe {
 namespace {
@@ -103,14 +103,6 @@ class PixelClaim {
   const Tile& tile_;
   const PositionSet& positions_;
 };
-
-OperationCounts nearer_cost() {  // per position
-  return count_operations([](OperationCounts& counts) {
-    const Counted<float> one(1.0f, counts);
-    const DepthPlane<Counted<float>> plane{one, one, one};
-    nearer_scalar(plane, plane, one, one);
-  });
-}
 
 OperationCounts nearest_cost() {  // per position
   return count_operations([](OperationCounts& counts) {

@@ -6,7 +6,7 @@
 #include <limits>
 
 #include "simd/plane_order.h"
-#include "stages/counting.h"
+#include "stages/plane_cost.h"
 
 namespace beampipe {
 namespace {
@@ -96,14 +96,6 @@ class PixelLayers {
   const std::vector<SamplePattern>& patterns_;
   LayerMerge merge_;
 };
-
-OperationCounts nearer_cost() {  // per position
-  return count_operations([](OperationCounts& counts) {
-    const Counted<float> one(1.0f, counts);
-    const DepthPlane<Counted<float>> plane{one, one, one};
-    nearer_scalar(plane, plane, one, one);
-  });
-}
 
 }  // namespace
 

@@ -60,17 +60,16 @@ void settle_pixel(const Fragment* begin, const Fragment* end, bool last_pass, Ow
   pixel.dropped = kNoDepth;
 }
 
-// Of one owner, with the pixel's colour in and out of fp16.
+// Of one owner.
 OperationCounts owner_cost() {
-  OperationCounts cost = count_operations([](OperationCounts& counts) {
+  return count_operations([](OperationCounts& counts) {
     const Counted<float> one(1.0f, counts);
     Taken<Counted<float>> taken{one, one};
     const Counted<float> area = visible_area(one, one, one, one, taken);
     taken = {taken.area + area, taken.positions + one};
     const Counted<float> share = area / one;
-    for (int c = 0; c < 3; ++c) one + share* one;
+    for (int c = 0; c < 3; ++c) one + share * one;
   });
-  return cost;
 }
 
 }  // namespace

@@ -1,8 +1,7 @@
 #include "stages/shade.h"
 
-#include <half.h>
-
 #include "stages/counting.h"
+#include "stages/half_bits.h"
 #include "stages/raster_cost.h"
 
 namespace beampipe {
@@ -82,7 +81,7 @@ std::vector<glm::vec3> shade_triangles(const SetupTriangles& triangles, const st
 
 std::vector<glm::vec3> round_to_half(std::vector<glm::vec3> colors) {
   for (glm::vec3& color : colors)
-    for (int c = 0; c < 3; ++c) color[c] = half(std::min(color[c], static_cast<float>(HALF_MAX)));
+    for (int c = 0; c < 3; ++c) color[c] = HalfBits(color[c]);
   return colors;
 }
 

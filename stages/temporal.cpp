@@ -1,12 +1,11 @@
 #include "stages/temporal.h"
 
-#include <half.h>
-
 #include <algorithm>
 #include <cmath>
 
 #include "simd/scalar.h"
 #include "stages/counting.h"
+#include "stages/half_bits.h"
 
 namespace beampipe {
 namespace {
@@ -34,7 +33,7 @@ OperationCounts pixel_cost(bool fading) {
 }
 
 glm::vec4 round_half(glm::vec4 color) {
-  for (int c = 0; c < 4; ++c) color[c] = half(std::min(color[c], static_cast<float>(HALF_MAX)));
+  for (int c = 0; c < 4; ++c) color[c] = HalfBits(color[c]);
   return color;
 }
 

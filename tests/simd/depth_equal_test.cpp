@@ -3,24 +3,12 @@
 #include <random>
 #include <vector>
 
-#include "hwy/targets.h"
 #include "simd/depth_test.h"
 #include "simd/match.h"
+#include "tests/simd/every_target.h"
 
 namespace beampipe {
 namespace {
-
-template <class Check>
-void on_each_target(Check&& check) {
-  for (const auto target : hwy::SupportedAndGeneratedTargets()) {
-    SCOPED_TRACE(hwy::TargetName(target));
-    hwy::SetSupportedTargetsForTest(target);
-    hwy::GetChosenTarget().DeInit();
-    check();
-  }
-  hwy::SetSupportedTargetsForTest(0);
-  hwy::GetChosenTarget().DeInit();
-}
 
 TEST(DepthEqual, KernelEqualsTwin) {
   std::mt19937 bits(11);
@@ -46,7 +34,7 @@ TEST(DepthEqual, KernelEqualsTwin) {
       }
       expected.push_back(mask);
     }
-    on_each_target([&] {
+    on_every_target([&] {
       std::vector<std::uint32_t> masks(items.size(), 0xdeadbeef);
       depth_equal(items.data(), items.size(), pattern, depth.data(), masks.data());
       EXPECT_EQ(masks, expected) << samples;
@@ -64,7 +52,7 @@ TEST(MatchMasks, KernelEqualsTwin) {
     const std::uint32_t* quad = ids.data() + i / 4 * kQuadSamples;
     expected.push_back(match_mask_scalar(quad, quad[locations[i]]));
   }
-  on_each_target([&] {
+  on_every_target([&] {
     std::vector<std::uint32_t> masks(4 * 500);
     match_masks(ids.data(), locations.data(), 500, masks.data());
     EXPECT_EQ(masks, expected);

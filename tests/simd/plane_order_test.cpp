@@ -4,23 +4,11 @@
 
 #include <cmath>
 
-#include "hwy/targets.h"
+#include "tests/simd/every_target.h"
 #include "tests/simd/random.h"
 
 namespace beampipe {
 namespace {
-
-template <class Check>
-void on_each_target(Check&& check) {
-  for (const auto target : hwy::SupportedAndGeneratedTargets()) {
-    SCOPED_TRACE(hwy::TargetName(target));
-    hwy::SetSupportedTargetsForTest(target);
-    hwy::GetChosenTarget().DeInit();
-    check();
-  }
-  hwy::SetSupportedTargetsForTest(0);
-  hwy::GetChosenTarget().DeInit();
-}
 
 // Planes that are steep, level, equal, or one bit apart at the centre.
 std::vector<DepthPlane<float>> hard_planes(Random& random) {
@@ -41,7 +29,7 @@ TEST(PlaneOrder, NearerEqualsTwin) {
   const std::vector<DepthPlane<float>> planes = hard_planes(random);
   for (const int positions : {32, 128, 256}) {
     const std::vector<SamplePattern> patterns = cell_patterns(positions);
-    on_each_target([&] {
+    on_every_target([&] {
       for (std::size_t i = 1; i < planes.size(); ++i) {
         std::uint32_t masks[8];
         nearer_positions(planes[i], planes[i - 1], patterns.data(), patterns.size(), masks);
@@ -65,7 +53,7 @@ TEST(PlaneOrder, NearestEqualsTwin) {
     for (std::uint32_t& word : mask)
       word = random.one_in(3) ? 0 : static_cast<std::uint32_t>(random.integer(0, 0xffffffff));
   masks[0] = {};
-  on_each_target([&] {
+  on_every_target([&] {
     for (std::size_t i = 0; i < planes.size(); ++i) {
       float expected = kNoDepth;
       for (std::size_t p = 0; p < 128; ++p)
