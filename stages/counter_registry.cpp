@@ -117,7 +117,8 @@ std::string counters_page() {
       "| `logical_bytes`, `sector_bytes`, `dram_bytes` | bytes | sums over the stages |\n"
       "| `a_buffer_peak_bytes` | bytes | of the whole frame's A-buffer, which stands in memory until it is composed |\n"
       "| `buffers` | bytes | peak bytes of every buffer of the frame |\n"
-      "| `wall_ms` | milliseconds | of the simulator on this machine; the memory model's own time is in it |\n"
+      "| `wall_ms` | milliseconds | of the simulator on this machine; `with_memory_model` says whether the model's own "
+      "time is in it, and `modelling_run`, with `--repeat`, how long the rendering took that it was in |\n"
       "| `modelled_ms` | milliseconds | of the described hardware: `overlap`, the busiest unit; `sum`, stage after "
       "stage |\n";
   return page;

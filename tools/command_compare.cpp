@@ -153,8 +153,8 @@ class Comparison {
 
   void measure_rung(Rung& rung, std::size_t frame, const Image& reference) {
     if (asked_result(rung.technique.spec)) return;
-    const FrameResult result = render_once(rung.technique, plan_, frame, progress_);
-    naming(rung.technique.spec, frame, [&] { rung.errors.add(result.image, reference); });
+    const Image image = render_picture(rung.technique, plan_, frame, progress_);
+    naming(rung.technique.spec, frame, [&] { rung.errors.add(image, reference); });
   }
 
   double rmse_of(const Rung& rung) const {

@@ -50,9 +50,9 @@ void OrderComparison::add(const Technique& reference, const RunPlan& plan, std::
     ordered.trace = with_triangle_order(plan.trace, frame, kOrders[k].second);
     ordered.frames = {0};
     ordered.options = plan.options;
-    const Image truth = render_once(reference, ordered, 0, progress).image;
+    const Image truth = render_picture(reference, ordered, 0, progress);
     for (std::size_t i = 0; i < techniques_.size(); ++i) {
-      pictures[i].push_back(render_once(techniques_[i], ordered, 0, progress).image);
+      pictures[i].push_back(render_picture(techniques_[i], ordered, 0, progress));
       sums_[i].errors.resize(kOrders.size());
       sums_[i].errors[k] += sum_of_squares(pictures[i].back(), truth);
     }

@@ -17,15 +17,16 @@ std::string frame_text(const RunPlan& plan, std::size_t frame) {
          std::to_string(plan.frames.size()) + "): ";
 }
 
-// Renders, adding the wall time to `milliseconds`.
+// Renders; `milliseconds` becomes the wall time.
 FrameResult render_timed(const Technique& technique, const RunPlan& plan, std::size_t frame, Progress& progress,
-                         History* history, std::vector<double>& milliseconds) {
+                         bool model_memory, History* history, double& milliseconds) {
   RunOptions options = plan.options;
   options.history = history;
+  options.memory.modelled = model_memory;
   progress.show(frame_text(plan, frame) + technique.spec);
   const auto start = std::chrono::steady_clock::now();
   FrameResult result = technique.render(plan.trace, frame, options);
-  milliseconds.push_back(std::chrono::duration<double, std::milli>(std::chrono::steady_clock::now() - start).count());
+  milliseconds = std::chrono::duration<double, std::milli>(std::chrono::steady_clock::now() - start).count();
   return result;
 }
 
@@ -34,26 +35,42 @@ FrameResult render_timed(const Technique& technique, const RunPlan& plan, std::s
 std::vector<WallTime> render_frame(const RunPlan& plan, std::size_t frame, Progress& progress,
                                    std::vector<History>& histories,
                                    const std::function<void(std::size_t, FrameResult&&)>& use) {
-  std::vector<std::vector<double>> milliseconds(plan.techniques.size());
-  for (int run = 0; run < plan.repeat; ++run) {
+  const bool model = plan.options.memory.modelled, one_more = model && plan.repeat > 1;
+  const int runs = plan.repeat + one_more;
+  std::vector<std::vector<double>> milliseconds(plan.techniques.size(), std::vector<double>(runs));
+  for (int run = 0; run < runs; ++run) {
     for (std::size_t i = 0; i < plan.techniques.size(); ++i) {
       History history = histories[i];
-      FrameResult result = render_timed(plan.techniques[i], plan, frame, progress, &history, milliseconds[i]);
+      FrameResult result =
+          render_timed(plan.techniques[i], plan, frame, progress, model && run == 0, &history, milliseconds[i][run]);
       if (run == 0) use(i, std::move(result));
-      if (run + 1 == plan.repeat) histories[i] = std::move(history);
+      if (run + 1 == runs) histories[i] = std::move(history);
     }
   }
   std::vector<WallTime> times;
-  for (std::vector<double>& runs : milliseconds) times.push_back(wall_time(std::move(runs)));
+  for (const std::vector<double>& of_runs : milliseconds) {
+    WallTime& time = times.emplace_back(wall_time({of_runs.begin() + one_more, of_runs.end()}));
+    time.with_memory_model = model && !one_more;
+    if (one_more) time.modelling_run = of_runs.front();
+  }
   return times;
 }
 
 FrameResult render_once(const Technique& technique, const RunPlan& plan, std::size_t frame, Progress& progress,
                         WallTime* time) {
-  std::vector<double> milliseconds;
-  FrameResult result = render_timed(technique, plan, frame, progress, nullptr, milliseconds);
-  if (time) *time = wall_time(std::move(milliseconds));
+  const bool model = plan.options.memory.modelled;
+  double milliseconds = 0;
+  FrameResult result = render_timed(technique, plan, frame, progress, model, nullptr, milliseconds);
+  if (time) {
+    *time = wall_time({milliseconds});
+    time->with_memory_model = model;
+  }
   return result;
+}
+
+Image render_picture(const Technique& technique, const RunPlan& plan, std::size_t frame, Progress& progress) {
+  double milliseconds = 0;
+  return render_timed(technique, plan, frame, progress, false, nullptr, milliseconds).image;
 }
 
 FrameReport write_frame(OutputFolder& output, const std::string& spec, std::size_t frame, const FrameResult& result,

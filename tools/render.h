@@ -13,9 +13,11 @@
 namespace beampipe {
 
 // Renders one frame with every technique of the plan, plan.repeat times, one technique after the other (A B A B ...) so
-// that a slow moment of the machine does not fall on one alone. The first result of each is handed to `use` at once and
-// then freed, so that memory holds one result at a time. `histories`, one per technique, are what earlier frames left,
-// and then what this one leaves; every run starts from the same. Returns the times, one per technique.
+// that a slow moment of the machine does not fall on one alone. Where memory is modelled and there is more than one
+// run, one more comes first, for the counts, and those that are timed model nothing. The first result of each is handed
+// to `use` at once and then freed, so that memory holds one result at a time. `histories`, one per technique, are what
+// earlier frames left, and then what this one leaves; every run starts from the same. Returns the times, one per
+// technique.
 std::vector<WallTime> render_frame(const RunPlan& plan, std::size_t frame, Progress& progress,
                                    std::vector<History>& histories,
                                    const std::function<void(std::size_t technique, FrameResult&&)>& use);
@@ -23,6 +25,9 @@ std::vector<WallTime> render_frame(const RunPlan& plan, std::size_t frame, Progr
 // Renders with one technique, once.
 FrameResult render_once(const Technique& technique, const RunPlan& plan, std::size_t frame, Progress& progress,
                         WallTime* time = nullptr);
+
+// The same for the picture alone: memory is not modelled.
+Image render_picture(const Technique& technique, const RunPlan& plan, std::size_t frame, Progress& progress);
 
 // Writes a frame's image, its picture and, if there are any, its per-pixel counters into the technique's folder;
 // returns the report, still without times. With a reference, the image's error is in the report and in a counter named

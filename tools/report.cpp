@@ -39,7 +39,12 @@ Json to_json(const FrameReport& frame, const TechniqueReport& result, const Hard
   if (frame.error) json["error"] = beampipe::to_json(*frame.error);
   if (frame.flicker) json["flicker"] = *frame.flicker;
   const WallTime& wall = frame.wall_ms;
-  json["wall_ms"] = {{"median", wall.median}, {"min", wall.min}, {"max", wall.max}, {"runs", wall.runs}};
+  json["wall_ms"] = {{"median", wall.median},
+                     {"min", wall.min},
+                     {"max", wall.max},
+                     {"runs", wall.runs},
+                     {"with_memory_model", wall.with_memory_model}};
+  if (wall.modelling_run) json["wall_ms"]["modelling_run"] = *wall.modelling_run;
   json["a_buffer_peak_bytes"] = frame.a_buffer_peak_bytes;
   StageCounters all;
   for (const StageCounters& stage : frame.stages) all += stage;
@@ -135,7 +140,7 @@ WallTime wall_time(std::vector<double> milliseconds) {
   std::sort(milliseconds.begin(), milliseconds.end());
   const std::size_t runs = milliseconds.size();
   const double median = (milliseconds[(runs - 1) / 2] + milliseconds[runs / 2]) / 2;
-  return {median, milliseconds.front(), milliseconds.back(), static_cast<int>(runs)};
+  return {.median = median, .min = milliseconds.front(), .max = milliseconds.back(), .runs = static_cast<int>(runs)};
 }
 
 std::string program_version() { return BEAMPIPE_VERSION; }
@@ -194,7 +199,8 @@ std::string table_text(const Report& report, const std::string& folder) {
   if (compared) rows[0].insert(rows[0].end(), {"RMSE", "bias", "p99", "max", "EMR"});
   const bool moves = compared && report.results.front().flicker.has_value();
   if (moves) rows[0].push_back("flicker");
-  rows[0].insert(rows[0].end(), {"ms", "picture"});
+  const bool with_model = !report.results.empty() && report.results.front().frames.front().wall_ms.with_memory_model;
+  rows[0].insert(rows[0].end(), {with_model ? "ms with model" : "ms", "picture"});
   for (const TechniqueReport& result : report.results) {
     std::vector<std::string>& row = rows.emplace_back();
     row = {result.technique, std::to_string(result.framebuffer_bytes_per_pixel)};

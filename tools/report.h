@@ -19,6 +19,9 @@ namespace beampipe {
 struct WallTime {
   double median = 0, min = 0, max = 0;
   int runs = 0;
+  bool with_memory_model = false;  // the runs also modelled caches and DRAM
+  // What one rendering more took, which did, and which all counts are from. None: the runs themselves did, or nothing.
+  std::optional<double> modelling_run = {};
 };
 
 // Throws std::invalid_argument when there is none.

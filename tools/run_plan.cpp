@@ -58,7 +58,10 @@ void add_run_arguments(CLI::App& command, RunArguments& arguments) {
       .add_option("--simd", arguments.simd,
                   "instruction set to use; the results are the same (default: the first here)")
       ->transform(CLI::IsMember(simd_targets(), CLI::ignore_case));
-  command.add_option("--repeat", arguments.repeat, "times to render each frame, for steadier times (default: 1)")
+  command
+      .add_option("--repeat", arguments.repeat,
+                  "times to render each frame, for steadier times (default: 1; above it, times are "
+                  "without the memory model, which one more rendering is for)")
       ->check(CLI::Range(1, 1000000));
   command.add_option("--hardware", arguments.hardware,
                      "description of the hardware whose times are modelled (default: one of Titan V class)");

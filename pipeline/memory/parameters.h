@@ -23,7 +23,7 @@ struct MemoryParameters {
 
   // What is moved at once, in every cache and to and from DRAM. Source: L2 and DRAM granule of NVIDIA GPUs since
   // Kepler, as GPGPU-Sim models it (configs/tested-cfgs: sector caches, 4 sectors of 32 bytes to a 128-byte line).
-  std::uint32_t sector_bytes = 32;
+  static constexpr std::uint32_t sector_bytes = 32;
 
   // Depth, colour and every other framebuffer surface: one cache for each. Source: ATTILA (test/config/bGPU.ini):
   // 4 ways, 16 lines per way, 16 stamps of 4 pixels of 4 bytes to a line, which is 256 bytes: 16 KiB in each ROP unit,

@@ -8,6 +8,7 @@ namespace {
 // Where the cells of pixels, numbered pixel by pixel, lie in the grid of cells, row by row.
 std::vector<std::uint32_t> cell_places(const Tile& tile, const CellGrid& grid) {
   std::vector<std::uint32_t> places;
+  places.reserve(tile.pixels() * static_cast<std::size_t>(grid.cells_per_pixel()));
   for (std::int32_t y = 0; y < tile.height(); ++y)
     for (std::int32_t x = 0; x < tile.width(); ++x)
       for (std::int32_t cell = 0; cell < grid.cells_per_pixel(); ++cell)
@@ -28,8 +29,7 @@ SampleMemory::SampleMemory(const MemoryParameters& parameters, const Tile& tile,
       order_(tile.width() * sampling.grid.columns, tile.height() * sampling.grid.rows),
       same_value_(std::move(same_value)),
       color_sample_bytes_(color_bytes),
-      depth_owner_(order_.positions * samples_, kNoTriangle),
-      color_owner_(color_bytes > 0 ? depth_owner_.size() : 0, kNoTriangle),
+      owner_(parameters.modelled ? order_.positions * samples_ : 0, kNoTriangle),
       depth_(parameters, order_, static_cast<std::uint32_t>(samples_) * kSampleDepthBytes,
              [this](std::size_t first, std::size_t elements) { return depth_bytes(first, elements); }) {
   if (color_bytes > 0)
@@ -41,33 +41,36 @@ void SampleMemory::replay(const std::vector<SampleAccess>& accesses, bool write_
                           StageCounters& counters) {
   if (!modelled_) return;
   write_color = write_color && color_;
+  const auto all = static_cast<std::uint32_t>((std::uint64_t{1} << samples_) - 1);
   for (const SampleAccess& access : accesses) {
     const std::uint32_t element = cell_place_[access.cell];
     const std::size_t first = std::size_t{order_.of[element]} * samples_;
     depth_.access(access.triangle, element, access.tested, write_depth ? access.passed : 0, kSampleDepthBytes,
                   counters);
     if (write_color) color_->access(access.triangle, element, 0, access.passed, color_sample_bytes_, counters);
-    for (std::uint32_t left = access.passed; left != 0; left &= left - 1) {
-      const std::size_t sample = first + static_cast<std::size_t>(std::countr_zero(left));
-      if (write_depth) depth_owner_[sample] = access.triangle;
-      if (write_color) color_owner_[sample] = access.triangle;
+    if (access.passed == all) {
+      std::fill_n(owner_.begin() + static_cast<std::ptrdiff_t>(first), samples_, access.triangle);
+      continue;
     }
+    for (std::uint32_t left = access.passed; left != 0; left &= left - 1)
+      owner_[first + static_cast<std::size_t>(std::countr_zero(left))] = access.triangle;
   }
 }
 
 void SampleMemory::flush(StageCounters& counters) {
   depth_.flush(counters);
   if (color_) color_->flush(counters);
+  std::fill(owner_.begin(), owner_.end(), kNoTriangle);  // the next pass writes another surface, which is clear
 }
 
 // Planes, and for each sample which one: a cleared sample's has a number too.
 std::uint32_t SampleMemory::depth_bytes(std::size_t first, std::size_t elements) const {
-  const std::size_t begin = first * samples_, end = std::min((first + elements) * samples_, depth_owner_.size());
+  const std::size_t begin = first * samples_, end = std::min((first + elements) * samples_, owner_.size());
   const std::size_t samples = elements * samples_, raw = samples * kSampleDepthBytes;
   std::vector<std::uint32_t> planes;
   bool cleared = end - begin < samples;
   for (std::size_t i = begin; i < end; ++i) {
-    const std::uint32_t owner = depth_owner_[i];
+    const std::uint32_t owner = owner_[i];
     if (owner == kNoTriangle) {
       cleared = true;
     } else if (planes.empty() || planes.back() != owner) {
@@ -86,13 +89,15 @@ std::uint32_t SampleMemory::depth_bytes(std::size_t first, std::size_t elements)
 
 // One value per element where all its samples agree, in every element of the block.
 std::uint32_t SampleMemory::color_bytes(std::size_t first, std::size_t elements) const {
-  const std::size_t begin = first * samples_, end = std::min((first + elements) * samples_, color_owner_.size());
   const auto compressed = static_cast<std::uint32_t>(elements) * color_sample_bytes_;
-  const auto raw = compressed * static_cast<std::uint32_t>(samples_);
-  for (std::size_t i = begin; i < end; ++i) {
-    const std::uint32_t value = color_owner_[i], pixel = color_owner_[i - i % samples_];
-    const bool same = value == pixel || (value != kNoTriangle && pixel != kNoTriangle && same_value_(value, pixel));
-    if (!same) return raw;
+  for (std::size_t element = first; element < std::min(first + elements, order_.positions); ++element) {
+    const std::uint32_t* const owners = &owner_[element * samples_];
+    for (std::size_t sample = 1; sample < samples_; ++sample) {
+      if (owners[sample] == owners[sample - 1]) continue;
+      if (owners[sample] == kNoTriangle || owners[sample - 1] == kNoTriangle ||
+          !same_value_(owners[sample], owners[sample - 1]))
+        return compressed * static_cast<std::uint32_t>(samples_);
+    }
   }
   return compressed;
 }

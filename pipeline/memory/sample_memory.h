@@ -52,8 +52,7 @@ class SampleMemory {
   ZOrder order_;
   SameValue same_value_;
   std::uint32_t color_sample_bytes_;
-  // Whose the samples' values are, by position in Z order: depth's and colour's, which differ behind a depth pass.
-  std::vector<std::uint32_t> depth_owner_, color_owner_;
+  std::vector<std::uint32_t> owner_;  // of the samples that this pass has written, by position in Z order
   TileSurface depth_;
   std::optional<TileSurface> color_;
 };

@@ -12,13 +12,12 @@ std::uint32_t spread_bits(std::uint32_t x) {  // bit i to bit 2 i, of 16
   return (x | x << 1) & 0x55555555u;
 }
 
-std::size_t block_elements(const MemoryParameters& parameters, std::uint32_t element_bytes) {
-  return std::bit_floor(std::max(parameters.rop.line_bytes / element_bytes, 1u));
+int log2_block_elements(const MemoryParameters& parameters, std::uint32_t element_bytes) {
+  return std::bit_width(std::max(parameters.rop.line_bytes / element_bytes, 1u)) - 1;
 }
 
 std::size_t block_count(const MemoryParameters& parameters, const ZOrder& order, std::uint32_t element_bytes) {
-  const std::size_t elements = block_elements(parameters, element_bytes);
-  return (order.positions + elements - 1) / elements;
+  return ((order.positions - 1) >> log2_block_elements(parameters, element_bytes)) + 1;
 }
 
 }  // namespace
@@ -38,12 +37,12 @@ TileSurface::TileSurface(const MemoryParameters& parameters, const ZOrder& order
     : order_(order),
       element_bytes_(element_bytes),
       triangles_per_batch_(parameters.triangles_per_batch),
-      elements_per_block_(block_elements(parameters, element_bytes)),
+      log2_elements_per_block_(log2_block_elements(parameters, element_bytes)),
       cache_(parameters, parameters.rop, block_count(parameters, order, element_bytes),
-             static_cast<std::uint32_t>(elements_per_block_) * element_bytes, true,
+             element_bytes << log2_elements_per_block_, true,
              compressed_bytes
-                 ? BlockCache::CompressedBytes([compressed_bytes, n = elements_per_block_](std::size_t block) {
-                     return compressed_bytes(block * n, n);
+                 ? BlockCache::CompressedBytes([compressed_bytes, log2 = log2_elements_per_block_](std::size_t block) {
+                     return compressed_bytes(block << log2, std::size_t{1} << log2);
                    })
                  : nullptr) {}
 
@@ -53,8 +52,8 @@ void TileSurface::access(std::uint32_t key, std::uint32_t element, std::uint32_t
     cache_.flush(counters);
     batch_ = key / triangles_per_batch_;
   }
-  const std::size_t position = order_.of[element], block = position / elements_per_block_;
-  const auto start = static_cast<std::uint32_t>(position % elements_per_block_) * element_bytes_;
+  const std::uint32_t position = order_.of[element], block = position >> log2_elements_per_block_;
+  const std::uint32_t start = (position - (block << log2_elements_per_block_)) * element_bytes_;
   const auto each_run = [&](std::uint32_t parts, auto&& touch) {  // run by run of neighbouring parts
     while (parts != 0) {
       const auto first = static_cast<std::uint32_t>(std::countr_zero(parts));
@@ -68,9 +67,10 @@ void TileSurface::access(std::uint32_t key, std::uint32_t element, std::uint32_t
 }
 
 void TileSurface::read_all(StageCounters& counters) {
+  if (cache_.blocks() == 0) return;  // nothing is modelled
   flush(counters);
-  std::vector<bool> used(cache_.blocks());  // of a bin at the frame's border some hold no element
-  for (const std::uint32_t position : order_.of) used[position / elements_per_block_] = true;
+  std::vector<std::uint8_t> used(cache_.blocks());  // of a bin at the frame's border some hold no element
+  for (const std::uint32_t position : order_.of) used[position >> log2_elements_per_block_] = 1;
   for (std::size_t block = 0; block < used.size(); ++block)
     if (used[block]) cache_.stream_read(block, counters);
 }

@@ -51,7 +51,7 @@ class TileSurface {
  private:
   const ZOrder& order_;
   std::uint32_t element_bytes_, triangles_per_batch_, batch_ = 0;
-  std::size_t elements_per_block_;
+  int log2_elements_per_block_;
   BlockCache cache_;
 };
 

@@ -99,6 +99,9 @@ TEST_F(ProgramTest, RunWritesImagesCountersAndReport) {
       EXPECT_EQ(frame["wall_ms"]["runs"], 3);
       EXPECT_LE(frame["wall_ms"]["min"], frame["wall_ms"]["median"]);
       EXPECT_LE(frame["wall_ms"]["median"], frame["wall_ms"]["max"]);
+      EXPECT_EQ(frame["wall_ms"]["with_memory_model"], false);
+      EXPECT_GT(frame["wall_ms"]["modelling_run"], 0);
+      EXPECT_GT(frame["dram_bytes"], 0) << "one more run, for the counts";
       ASSERT_FALSE(frame["stages"].empty());
       EXPECT_EQ(frame["stages"][0]["stage"], "vertex_setup");
       const Json& ops = frame["stages"][0]["ops"];
@@ -112,6 +115,9 @@ TEST_F(ProgramTest, RunWritesImagesCountersAndReport) {
 
 TEST_F(ProgramTest, ImagesAreLinearWithRowZeroOnTop) {
   succeed({"run", path("trace.json"), "-t", "msaa:4", "beam", "--frames", "0", "-o", path("out")});
+  const Json wall = report()["results"][0]["frames"][0]["wall_ms"];
+  EXPECT_EQ(wall["with_memory_model"], true) << "the only run is the one that counts";
+  EXPECT_FALSE(wall.contains("modelling_run"));
   for (const std::string spec : {"msaa_4", "beam"}) {
     const Image image = read_exr(folder_ / "out" / spec / "frame_0000.exr");
     const std::vector<float>& values = image.rgba;

@@ -24,7 +24,7 @@ Report sample_report() {
     frame.index = index;
     frame.image = "msaa_8/frame_000" + std::to_string(index) + ".exr";
     frame.picture = "msaa_8/frame_000" + std::to_string(index) + ".png";
-    frame.wall_ms = {2.0 * static_cast<double>(index), 1.0, 20.0, 3};
+    frame.wall_ms = {2.0 * static_cast<double>(index), 1.0, 20.0, 3, false, 44.0};
     frame.a_buffer_peak_bytes = 100 * (10 - index);
     frame.pixels = 7;
     frame.stages = {{"vertex_setup", 3, 1, {1, 2, 3, 4, 5, 6}, 36, 80, 3, 4, 128, 96}};
@@ -56,7 +56,12 @@ TEST(ReportJson, HasTheKeysOfTheContract) {
   const Json& frame = result["frames"].at(1);
   EXPECT_EQ(frame["index"], 5);
   EXPECT_EQ(frame["image"], "msaa_8/frame_0005.exr");
-  EXPECT_EQ(frame["wall_ms"], (Json{{"median", 10.0}, {"min", 1.0}, {"max", 20.0}, {"runs", 3}}));
+  EXPECT_EQ(frame["wall_ms"], (Json{{"median", 10.0},
+                                    {"min", 1.0},
+                                    {"max", 20.0},
+                                    {"runs", 3},
+                                    {"with_memory_model", false},
+                                    {"modelling_run", 44.0}}));
   const Json ops = {{"total", 21}, {"mul_add", 1}, {"add", 2},    {"bit", 3},
                     {"fetch", 4},  {"special", 5}, {"convert", 6}};
   const Json stage = {{"stage", "vertex_setup"}, {"items_in", 3},       {"items_out", 1},       {"ops", ops},
