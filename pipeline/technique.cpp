@@ -118,7 +118,7 @@ Technique make_taa(Spec& spec) {
   TaaOptions options;
   options.samples = spec.samples(kMaxTaaSamples);
   options.blend = static_cast<float>(spec.number("blend", options.blend, 0.001, 1));
-  return {spec.text(), taa_framebuffer(), 0, bind_options(render_taa, options)};
+  return {spec.text(), taa_framebuffer(), 0, bind_options(render_taa, options), {}, true};
 }
 
 Technique make_dvm(Spec& spec) {
@@ -126,7 +126,7 @@ Technique make_dvm(Spec& spec) {
   options.blend = static_cast<float>(spec.number("blend", options.blend, 0.001, 1));
   options.seed = static_cast<std::uint32_t>(spec.number("seed", options.seed, 0, 4294967295.0));
   options.material = spec.choice<MaterialBy>("material", {{"color", MaterialBy::color}, {"draw", MaterialBy::draw}});
-  return {spec.text(), dvm_framebuffer(), 0, bind_options(render_dvm, options)};
+  return {spec.text(), dvm_framebuffer(), 0, bind_options(render_dvm, options), {}, true};
 }
 
 Technique make_reference(Spec& spec) {

@@ -62,6 +62,7 @@ struct Technique {
   std::function<FrameResult(const Trace&, std::size_t frame, const RunOptions&)> render;
   // How `render` weighs what it sees, for each pixel of the frame, row by row. Null where that is not known.
   std::function<std::vector<PixelWeights>(const Trace&, std::size_t frame, const RunOptions&)> weights = {};
+  bool keeps_history = false;  // a frame's picture depends on the frames before it (RunOptions::history)
 
   std::uint32_t framebuffer_bytes_per_pixel() const {
     std::uint32_t bytes = 0;

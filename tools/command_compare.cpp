@@ -8,6 +8,7 @@
 #include "tools/diagnosis.h"
 #include "tools/image_io.h"
 #include "tools/render.h"
+#include "tools/resume.h"
 
 namespace beampipe {
 namespace {
@@ -43,6 +44,10 @@ void naming(const std::string& spec, std::size_t frame, Body body) {
   }
 }
 
+nlohmann::ordered_json own_options(const CompareArguments& arguments) {
+  return {{"ladder", arguments.ladder}, {"causes", arguments.causes}, {"orders", arguments.orders}};
+}
+
 // Over the frames that follow another.
 std::optional<double> pooled_flicker(const TechniqueReport& result) {
   double squares = 0, frames = 0;
@@ -57,12 +62,16 @@ std::optional<double> pooled_flicker(const TechniqueReport& result) {
 class Comparison {
  public:
   Comparison(const CompareArguments& arguments, OutputFolder& output)
-      : arguments_(arguments), output_(output), plan_(make_plan(arguments)) {
+      : arguments_(arguments),
+        output_(output),
+        plan_(make_plan(arguments)),
+        maker_(made_by("compare", plan_, own_options(arguments))),
+        records_(output, maker_) {
     std::erase_if(plan_.techniques, [](const Technique& technique) { return technique.spec == "reference"; });
     std::vector<std::uint32_t> rungs = arguments.ladder.empty() ? kDefaultLadder : arguments.ladder;
     std::sort(rungs.begin(), rungs.end());
     rungs.erase(std::unique(rungs.begin(), rungs.end()), rungs.end());
-    for (const std::uint32_t samples : rungs) ladder_.push_back({msaa(samples), new_errors()});
+    for (const std::uint32_t samples : rungs) ladder_.push_back({msaa(samples)});
     std::vector<Technique> written = plan_.techniques;
     written.push_back(reference_);
     require_writable_folders(output_, written);
@@ -75,9 +84,17 @@ class Comparison {
     if (arguments.orders) orders_.emplace(std::move(written));
   }
 
-  // Once.
-  Report run() {
-    for (const std::size_t frame : plan_.frames) compare_frame(frame);
+  // Once. Nothing: an earlier comparison that was to be resumed is finished.
+  std::optional<Report> run() {
+    std::vector<FrameRecord> finished;
+    if (arguments_.resume) {
+      if (records_.is_finished()) return std::nullopt;
+      finished = records_.read(plan_.frames);
+      tell_resumption(plan_, finished.size());
+    }
+    for (const FrameRecord& record : finished) recall_frame(record);
+    if (finished.size() < plan_.frames.size()) histories_ = rebuild_histories(plan_, finished.size(), progress_);
+    for (std::size_t at = finished.size(); at < plan_.frames.size(); ++at) compare_frame(plan_.frames[at]);
     for (std::size_t i = 0; i < results_.size(); ++i) results_[i].error = errors_[i].stats();
     measure_ladder();
     for (std::size_t i = 0; i < results_.size(); ++i) {
@@ -95,7 +112,7 @@ class Comparison {
     reference_result_.error = ErrorStats{};
     reference_result_.equivalent_msaa = equivalent_msaa(0.0, rungs_);
 
-    Report report = new_report(arguments_, plan_);
+    Report report = new_report(arguments_, plan_, maker_);
     report.msaa_ladder = rungs_;
     report.results = results_;
     report.results.push_back(reference_result_);
@@ -103,9 +120,12 @@ class Comparison {
   }
 
  private:
+  // Pools its errors over the frames.
   struct Rung {
     Technique technique;
-    ErrorAccumulator errors;
+    double squares = 0, pixels = 0;
+
+    double rmse() const { return std::sqrt(squares / pixels); }
   };
 
   ErrorAccumulator new_errors() const {
@@ -148,18 +168,53 @@ class Comparison {
 
     for (Rung& rung : ladder_) measure_rung(rung, frame, truth.image);
     if (orders_) orders_->add(reference_, plan_, frame, progress_);
+    write_record();
     output_.keep();
+  }
+
+  // Of the last frame.
+  void write_record() {
+    FrameRecord record;
+    for (const TechniqueReport& result : results_) record.reports.push_back(result.frames.back());
+    record.reports.push_back(reference_result_.frames.back());
+    for (const Rung& rung : ladder_) record.sums["ladder"].push_back({rung.squares, rung.pixels});
+    for (const CauseShares& causes : causes_) record.sums["causes"].push_back(causes.sums());
+    if (orders_) record.sums["orders"] = orders_->sums();
+    records_.write(record);
+  }
+
+  // Takes over what an earlier comparison found. The EXRs hold the pictures to the last bit.
+  void recall_frame(const FrameRecord& record) {
+    reference_result_.frames.push_back(record.reports.back());
+    const Image truth = read_exr(output_.path() / record.reports.back().image);
+    for (std::size_t i = 0; i < results_.size(); ++i) {
+      results_[i].frames.push_back(record.reports[i]);
+      const Image image = read_exr(output_.path() / record.reports[i].image);
+      errors_[i].add(image, truth);
+      last_errors_[i] = signed_errors(image, truth);
+    }
+    for (std::size_t i = 0; i < ladder_.size(); ++i) {
+      record.sums.at("ladder").at(i).at(0).get_to(ladder_[i].squares);
+      record.sums.at("ladder").at(i).at(1).get_to(ladder_[i].pixels);
+    }
+    for (std::size_t i = 0; i < causes_.size(); ++i) causes_[i].set_sums(record.sums.at("causes").at(i));
+    if (orders_) orders_->set_sums(record.sums.at("orders"));
   }
 
   void measure_rung(Rung& rung, std::size_t frame, const Image& reference) {
     if (asked_result(rung.technique.spec)) return;
     const Image image = render_picture(rung.technique, plan_, frame, progress_);
-    naming(rung.technique.spec, frame, [&] { rung.errors.add(image, reference); });
+    naming(rung.technique.spec, frame, [&] {
+      const double rmse = measure_error(image, reference).rmse;
+      const double pixels = static_cast<double>(reference.width) * reference.height;
+      rung.squares += rmse * rmse * pixels;
+      rung.pixels += pixels;
+    });
   }
 
   double rmse_of(const Rung& rung) const {
     const TechniqueReport* asked = asked_result(rung.technique.spec);
-    return asked ? asked->error->rmse : rung.errors.stats().rmse;
+    return asked ? asked->error->rmse : rung.rmse();
   }
 
   bool some_technique_beats_the_ladder() const {
@@ -174,7 +229,7 @@ class Comparison {
     if (!arguments_.ladder.empty()) return;
     for (const std::uint32_t samples : kLadderExtension) {
       if (!some_technique_beats_the_ladder()) return;
-      Rung rung{msaa(samples), new_errors()};
+      Rung rung{msaa(samples)};
       for (const FrameReport& frame : reference_result_.frames) {  // the EXR holds the reference to the last bit
         measure_rung(rung, frame.index, read_exr(output_.path() / frame.image));
       }
@@ -185,6 +240,8 @@ class Comparison {
   const CompareArguments& arguments_;
   OutputFolder& output_;
   RunPlan plan_;
+  nlohmann::ordered_json maker_;
+  FrameRecords records_;
   Technique reference_ = parse_technique("reference");
   std::vector<Rung> ladder_;
   std::vector<TechniqueReport> results_;  // beside plan_.techniques
@@ -218,8 +275,8 @@ void add_compare_command(CLI::App& app, InterruptGate& gate) {
   command->footer(kFooter + technique_help());
   command->callback([arguments, &gate] {
     OutputFolder output(arguments->output, gate);
-    const Report report = Comparison(*arguments, output).run();  // its progress line is gone by now
-    finish_report(output, report);
+    const std::optional<Report> report = Comparison(*arguments, output).run();  // its progress line is gone by now
+    report ? finish_report(output, *report) : tell_finished(output);
   });
 }
 

@@ -4,6 +4,7 @@
 
 #include "tools/commands.h"
 #include "tools/render.h"
+#include "tools/resume.h"
 
 namespace beampipe {
 namespace {
@@ -12,18 +13,34 @@ void run(const RunArguments& arguments, InterruptGate& gate) {
   const RunPlan plan = make_plan(arguments);
   OutputFolder output(arguments.output, gate);
   require_writable_folders(output, plan.techniques);
+  const auto maker = made_by("run", plan, nlohmann::ordered_json::object());
+  FrameRecords records(output, maker);
+  std::vector<FrameRecord> finished;
+  if (arguments.resume) {
+    if (records.is_finished()) return tell_finished(output);
+    finished = records.read(plan.frames);
+    tell_resumption(plan, finished.size());
+  }
 
-  Report report = new_report(arguments, plan);
+  Report report = new_report(arguments, plan, maker);
   for (const Technique& technique : plan.techniques) report.results.push_back(new_technique_report(technique));
-  {
+  for (const FrameRecord& record : finished)
+    for (std::size_t i = 0; i < record.reports.size(); ++i) report.results[i].frames.push_back(record.reports[i]);
+  if (finished.size() < plan.frames.size()) {
     Progress progress;
-    std::vector<History> histories(plan.techniques.size());
-    for (const std::size_t frame : plan.frames) {
+    std::vector<History> histories = rebuild_histories(plan, finished.size(), progress);
+    for (std::size_t at = finished.size(); at < plan.frames.size(); ++at) {
+      const std::size_t frame = plan.frames[at];
+      FrameRecord record;
       const std::vector<WallTime> times =
           render_frame(plan, frame, progress, histories, [&](std::size_t i, FrameResult&& result) {
-            report.results[i].frames.push_back(write_frame(output, plan.techniques[i].spec, frame, result, nullptr));
+            record.reports.push_back(write_frame(output, plan.techniques[i].spec, frame, result, nullptr));
           });
-      for (std::size_t i = 0; i < times.size(); ++i) report.results[i].frames.back().wall_ms = times[i];
+      for (std::size_t i = 0; i < times.size(); ++i) {
+        record.reports[i].wall_ms = times[i];
+        report.results[i].frames.push_back(record.reports[i]);
+      }
+      records.write(record);
       output.keep();
     }
   }

@@ -43,6 +43,13 @@ std::vector<std::pair<std::string, double>> CauseShares::shares() const {
   return shares;
 }
 
+nlohmann::ordered_json CauseShares::sums() const { return {squares_, all_squares_}; }
+
+void CauseShares::set_sums(const nlohmann::ordered_json& sums) {
+  sums.at(0).get_to(squares_);
+  sums.at(1).get_to(all_squares_);
+}
+
 void OrderComparison::add(const Technique& reference, const RunPlan& plan, std::size_t frame, Progress& progress) {
   std::vector<std::vector<Image>> pictures(techniques_.size());
   for (std::size_t k = 0; k < kOrders.size(); ++k) {
@@ -66,6 +73,20 @@ void OrderComparison::add(const Technique& reference, const RunPlan& plan, std::
         sums_[i].differences[pair] += sum_of_squares(pictures[i][a], pictures[i][b]);
       }
     }
+  }
+}
+
+nlohmann::ordered_json OrderComparison::sums() const {
+  nlohmann::ordered_json json = {{"values", values_}, {"techniques", nlohmann::ordered_json::array()}};
+  for (const Sums& sums : sums_) json["techniques"].push_back({sums.errors, sums.differences});
+  return json;
+}
+
+void OrderComparison::set_sums(const nlohmann::ordered_json& sums) {
+  sums.at("values").get_to(values_);
+  for (std::size_t i = 0; i < sums_.size(); ++i) {
+    sums.at("techniques").at(i).at(0).get_to(sums_[i].errors);
+    sums.at("techniques").at(i).at(1).get_to(sums_[i].differences);
   }
 }
 

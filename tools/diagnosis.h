@@ -24,6 +24,10 @@ class CauseShares {
   // In the order of kErrorCauses; they add up to 1. Empty when nothing was added or there is no error.
   std::vector<std::pair<std::string, double>> shares() const;
 
+  // What was added so far, to go on from there.
+  nlohmann::ordered_json sums() const;
+  void set_sums(const nlohmann::ordered_json& sums);
+
  private:
   std::map<std::string, double> squares_;
   double all_squares_ = 0;
@@ -40,6 +44,10 @@ class OrderComparison {
 
   // Of technique i: fills `orders` and `order_difference`.
   void report(std::size_t i, TechniqueReport& report) const;
+
+  // What was added so far, to go on from there.
+  nlohmann::ordered_json sums() const;
+  void set_sums(const nlohmann::ordered_json& sums);
 
  private:
   struct Sums {

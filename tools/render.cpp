@@ -6,6 +6,7 @@
 
 #include "simd/target.h"
 #include "tools/image_io.h"
+#include "tools/resume.h"
 
 namespace beampipe {
 namespace {
@@ -56,6 +57,17 @@ std::vector<WallTime> render_frame(const RunPlan& plan, std::size_t frame, Progr
   return times;
 }
 
+std::vector<History> rebuild_histories(const RunPlan& plan, std::size_t frames, Progress& progress) {
+  std::vector<History> histories(plan.techniques.size());
+  double milliseconds = 0;  // nobody asks
+  for (std::size_t i = 0; i < plan.techniques.size(); ++i) {
+    if (!plan.techniques[i].keeps_history) continue;
+    for (std::size_t at = 0; at < frames; ++at)
+      render_timed(plan.techniques[i], plan, plan.frames[at], progress, false, &histories[i], milliseconds);
+  }
+  return histories;
+}
+
 FrameResult render_once(const Technique& technique, const RunPlan& plan, std::size_t frame, Progress& progress,
                         WallTime* time) {
   const bool model = plan.options.memory.modelled;
@@ -90,6 +102,7 @@ FrameReport write_frame(OutputFolder& output, const std::string& spec, std::size
     report.error = measure_error(result.image, *reference);
     counters.channels["error"] = pixel_errors(result.image, *reference);
   }
+  output.remove(frame_record_name(frame));  // an earlier one would say that the frame is whole
   output.write(report.image, encode_exr(result.image));
   output.remove("report.json");  // an earlier one would describe pictures that are no longer there
   output.write(report.picture, encode_png(result.image));
@@ -103,11 +116,12 @@ FrameReport write_frame(OutputFolder& output, const std::string& spec, std::size
 void finish_report(OutputFolder& output, const Report& report) {
   output.write("report.json", json_text(to_json(report)));
   output.keep();
+  FrameRecords(output, report.made_by).remove();
   std::cout << table_text(report, output.path().string()) << causes_text(report) << orders_text(report)
             << "report: " << (output.path() / "report.json").string() << "\n";
 }
 
-Report new_report(const RunArguments& arguments, const RunPlan& plan) {
+Report new_report(const RunArguments& arguments, const RunPlan& plan, const nlohmann::ordered_json& made_by) {
   return {arguments.trace,
           program_version(),
           simd_target(),
@@ -115,7 +129,8 @@ Report new_report(const RunArguments& arguments, const RunPlan& plan) {
           plan.options.memory,
           plan.hardware,
           {},
-          {}};
+          {},
+          made_by};
 }
 
 }  // namespace beampipe

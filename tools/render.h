@@ -22,6 +22,9 @@ std::vector<WallTime> render_frame(const RunPlan& plan, std::size_t frame, Progr
                                    std::vector<History>& histories,
                                    const std::function<void(std::size_t technique, FrameResult&&)>& use);
 
+// What the plan's first `frames` frames leave for the next: renders them again with the techniques that keep a history.
+std::vector<History> rebuild_histories(const RunPlan& plan, std::size_t frames, Progress& progress);
+
 // Renders with one technique, once.
 FrameResult render_once(const Technique& technique, const RunPlan& plan, std::size_t frame, Progress& progress,
                         WallTime* time = nullptr);
@@ -35,10 +38,10 @@ Image render_picture(const Technique& technique, const RunPlan& plan, std::size_
 FrameReport write_frame(OutputFolder& output, const std::string& spec, std::size_t frame, const FrameResult& result,
                         const Image* reference);
 
-// Writes report.json and prints the table.
+// Writes report.json, removes the records of single frames and prints the table.
 void finish_report(OutputFolder& output, const Report& report);
 
 // The parts of a report that are known before rendering.
-Report new_report(const RunArguments& arguments, const RunPlan& plan);
+Report new_report(const RunArguments& arguments, const RunPlan& plan, const nlohmann::ordered_json& made_by);
 
 }  // namespace beampipe

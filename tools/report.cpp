@@ -160,6 +160,7 @@ Json to_json(const ErrorStats& stats) {
 Json to_json(const Report& report) {
   Json json = {{"beampipe_report", 1}, {"trace", report.trace},     {"version", report.version},
                {"simd", report.simd},  {"threads", report.threads}, {"memory_system", to_json(report.memory)}};
+  if (!report.made_by.is_null()) json["made_by"] = report.made_by;
   if (!report.hardware.implementations.empty()) json["hardware"] = report.hardware.json;
   if (!report.msaa_ladder.empty()) {
     json["msaa_ladder"] = Json::array();

@@ -66,6 +66,7 @@ struct Report {
   Hardware hardware;  // whose times are modelled; without implementations: none
   std::vector<TechniqueReport> results;
   std::vector<LadderRung> msaa_ladder;  // empty: not measured
+  nlohmann::ordered_json made_by = {};  // what the results depend on (tools/resume.h)
 };
 
 // For instance "0.1.0".

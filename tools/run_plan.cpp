@@ -63,6 +63,8 @@ void add_run_arguments(CLI::App& command, RunArguments& arguments) {
                   "times to render each frame, for steadier times (default: 1; above it, times are "
                   "without the memory model, which one more rendering is for)")
       ->check(CLI::Range(1, 1000000));
+  command.add_flag("--resume", arguments.resume,
+                   "go on behind the last whole frame that the same command left in the folder when it was stopped");
   command.add_option("--hardware", arguments.hardware,
                      "description of the hardware whose times are modelled (default: one of Titan V class)");
   command.add_flag("--no-memory-model", arguments.no_memory_model,

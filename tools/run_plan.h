@@ -18,7 +18,7 @@ struct RunArguments {
   std::vector<std::string> specs;
   std::string simd;  // empty: the best
   int threads = 0, repeat = 1;
-  bool allow_outside = false, no_memory_model = false, no_compression = false;
+  bool allow_outside = false, no_memory_model = false, no_compression = false, resume = false;
 };
 
 void add_run_arguments(CLI::App& command, RunArguments& arguments);
