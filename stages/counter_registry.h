@@ -13,7 +13,7 @@ struct CounterInfo {
   const char* name;  // as in report.json; "ops.add" is `add` of `ops`
   const char* unit;
   const char* meaning;
-  std::uint64_t (*value)(const StageCounters&);
+  Count (*value)(const StageCounters&);
 };
 
 // Of a stage, in the order in which report.json has them.

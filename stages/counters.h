@@ -6,16 +6,29 @@
 
 namespace beampipe {
 
+#ifdef BEAMPIPE_COUNT_NOTHING
+// Drops what is added to it: a program without counters, to measure what they cost.
+struct Count {
+  constexpr Count(std::uint64_t = 0) {}
+  constexpr operator std::uint64_t() const { return 0; }
+  constexpr Count& operator+=(std::uint64_t) { return *this; }
+  constexpr Count& operator*=(std::uint64_t) { return *this; }
+  constexpr Count& operator++() { return *this; }
+};
+#else
+using Count = std::uint64_t;
+#endif
+
 // Scalar operations by kind, as the stage's scalar twin does them.
 struct OperationCounts {
-  std::uint64_t mul_add = 0;  // multiplications, with or without an addition behind them
-  std::uint64_t add = 0;      // additions, subtractions, comparisons, minima, maxima, selects
-  std::uint64_t bit = 0;      // and, or, not, shift, population count
-  std::uint64_t fetch = 0;    // table look-ups
-  std::uint64_t special = 0;  // divisions, square roots
-  std::uint64_t convert = 0;  // integer <-> float, float <-> half
+  Count mul_add = 0;  // multiplications, with or without an addition behind them
+  Count add = 0;      // additions, subtractions, comparisons, minima, maxima, selects
+  Count bit = 0;      // and, or, not, shift, population count
+  Count fetch = 0;    // table look-ups
+  Count special = 0;  // divisions, square roots
+  Count convert = 0;  // integer <-> float, float <-> half
 
-  std::uint64_t total() const { return mul_add + add + bit + fetch + special + convert; }
+  Count total() const { return mul_add + add + bit + fetch + special + convert; }
 
   OperationCounts& operator+=(const OperationCounts& other) {
     mul_add += other.mul_add;
@@ -40,17 +53,17 @@ struct OperationCounts {
 
 struct StageCounters {
   std::string stage;  // the design's stage name, for instance "conservative_raster"
-  std::uint64_t items_in = 0;
-  std::uint64_t items_out = 0;
+  Count items_in = 0;
+  Count items_out = 0;
   OperationCounts ops{};
-  std::uint64_t bytes_read = 0;     // logical: what the algorithm touches
-  std::uint64_t bytes_written = 0;  // logical
-  std::uint64_t lanes_used = 0;     // lanes with work; for `shade` the fragments
-  std::uint64_t lanes_issued = 0;   // lanes that ran; for `shade` with the helpers of 2x2 quads
-  std::uint64_t sector_bytes = 0;   // asked of the memory system, read and written, in whole sectors
-  std::uint64_t dram_bytes = 0;     // moved to and from DRAM behind the modelled caches, read and written
+  Count bytes_read = 0;     // logical: what the algorithm touches
+  Count bytes_written = 0;  // logical
+  Count lanes_used = 0;     // lanes with work; for `shade` the fragments
+  Count lanes_issued = 0;   // lanes that ran; for `shade` with the helpers of 2x2 quads
+  Count sector_bytes = 0;   // asked of the memory system, read and written, in whole sectors
+  Count dram_bytes = 0;     // moved to and from DRAM behind the modelled caches, read and written
 
-  std::uint64_t logical_bytes() const { return bytes_read + bytes_written; }
+  Count logical_bytes() const { return bytes_read + bytes_written; }
 
   StageCounters& operator+=(const StageCounters& other) {
     items_in += other.items_in;

@@ -27,7 +27,7 @@ OperationCounts* tally_of(const Counted<Value>& x, const Counted<Value>& y) {
 }
 
 template <class Value>
-Counted<Value> counted(OperationCounts* tally, std::uint64_t OperationCounts::*kind, Value value) {
+Counted<Value> counted(OperationCounts* tally, Count OperationCounts::*kind, Value value) {
   Counted<Value> result(value);
   result.tally = tally;
   if (tally) tally->*kind += 1;

@@ -10,7 +10,7 @@ packages=(
   node-d3                           # draws the plots of the report page
   chromium chromium-driver python3  # test the report page
   libboost-dev                      # headers: exact arithmetic
-  libgtest-dev
+  libgtest-dev libbenchmark-dev
 )
 
 missing=()

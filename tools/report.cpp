@@ -19,7 +19,7 @@ Json to_json(const StageCounters& stage) {
   for (const CounterInfo& counter : stage_counters()) {
     const std::string name = counter.name;
     const bool grouped = name.starts_with(group);
-    (grouped ? json["ops"][name.substr(group.size())] : json[name]) = counter.value(stage);
+    (grouped ? json["ops"][name.substr(group.size())] : json[name]) = std::uint64_t{counter.value(stage)};
   }
   return json;
 }
@@ -48,9 +48,8 @@ Json to_json(const FrameReport& frame, const TechniqueReport& result, const Hard
   json["a_buffer_peak_bytes"] = frame.a_buffer_peak_bytes;
   StageCounters all;
   for (const StageCounters& stage : frame.stages) all += stage;
-  json["logical_bytes"] = all.logical_bytes();
-  json["sector_bytes"] = all.sector_bytes;
-  json["dram_bytes"] = all.dram_bytes;
+  const Json sums = to_json(all);
+  for (const char* column : {"logical_bytes", "sector_bytes", "dram_bytes"}) json[column] = sums.at(column);
   json["buffers"] = buffers_json(result, frame);
   json["stages"] = Json::array();
   for (const StageCounters& stage : frame.stages) json["stages"].push_back(to_json(stage));

@@ -1,0 +1,32 @@
+// What counting costs: frames of one thread with the memory model and without. Built with BEAMPIPE_COUNT_NOTHING, the
+// same without any counters of stages.
+#include <benchmark/benchmark.h>
+
+#include <string>
+
+#include "pipeline/technique.h"
+#include "traces/scenes.h"
+
+namespace beampipe {
+namespace {
+
+void render(benchmark::State& state, const std::string& spec, bool model_memory) {
+  static const Trace trace = make_scene("classroom", {.width = 320, .height = 180});
+  const Technique technique = parse_technique(spec);
+  RunOptions options{.threads = 1};
+  options.memory.modelled = model_memory;
+  for (auto _ : state) benchmark::DoNotOptimize(technique.render(trace, 0, options));
+}
+
+const bool registered = [] {
+  for (const std::string spec : {"beam", "beam:order=stream", "beam:rules=paper", "msaa:8", "msaa:256", "acaa:8"}) {
+    for (const bool model : {false, true}) {
+      benchmark::RegisterBenchmark((spec + (model ? "/memory_model" : "")).c_str(), render, spec, model)
+          ->Unit(benchmark::kMillisecond);
+    }
+  }
+  return true;
+}();
+
+}  // namespace
+}  // namespace beampipe
