@@ -86,8 +86,8 @@ std::vector<PixelColor> compose_tile(const BeamFrame& state, const std::vector<F
 FrameResult render_beam(const Trace& trace, const Frame& frame, const BeamOptions& beam, const RunOptions& run) {
   const BeamFrame state(trace, frame, beam);
   const std::vector<Surface> framebuffer = beam_framebuffer(beam);
-  FrameResult result =
-      render_tiles(frame, state.triangles, state.setup, kBinSize, run, [&](const Tile& tile, const TriangleList& list) {
+  FrameResult result = render_tiles(
+      frame, state.triangles, state.setup, kBinSize, run, kPairBytes, [&](const Tile& tile, const TriangleList& list) {
         StageCounters raster{"conservative_raster"}, fragment{"beam_fragment"}, shading{"shade"}, buffering{"a_buffer"},
             composition{"compose"}, resolving{"resolve"};
         std::vector<PixelTriangle> pairs;
@@ -120,39 +120,40 @@ std::vector<PixelWeights> beam_weights(const Trace& trace, const Frame& frame, c
   exact.paper_storage = PaperStorage::float32;
   const BeamFrame state(trace, frame, exact);
   std::vector<PixelWeights> weights(std::size_t{frame.width} * frame.height);
-  render_tiles(frame, state.triangles, state.setup, kBinSize, run, [&](const Tile& tile, const TriangleList& list) {
-    StageCounters unused{"weights"};
-    std::vector<PixelTriangle> pairs;
-    std::vector<Fragment> fragments;
-    conservative_raster(state.triangles, list, tile, unused, pairs);
-    beam_fragment(state.triangles, pairs, tile, state.options, unused, fragments);
-    const ABuffer buffer = a_buffer(fragments, tile.pixels(), beam.sort, state.bytes.fragment, unused);
-    // Composition is linear in colour. A fragment that alone has a channel, as 1, leaves its weight there: three
-    // fragments of each pixel at a time.
-    std::vector<PixelWeights> found(tile.pixels());
-    std::uint32_t deepest = 0;
-    for (std::size_t pixel = 0; pixel < tile.pixels(); ++pixel) deepest = std::max(deepest, buffer.depth_of(pixel));
-    for (std::uint32_t first = 0; first < deepest; first += 3) {
-      for (std::size_t pixel = 0; pixel < tile.pixels(); ++pixel) {
-        for (std::uint32_t k = 0; k < buffer.depth_of(pixel); ++k) {
-          Fragment& fragment = fragments[buffer.fragments[buffer.first[pixel] + k]];
-          fragment.color = glm::vec3(0.0f);
-          if (k >= first && k < first + 3) fragment.color[static_cast<int>(k - first)] = fragment.alpha;
+  render_tiles(
+      frame, state.triangles, state.setup, kBinSize, run, kPairBytes, [&](const Tile& tile, const TriangleList& list) {
+        StageCounters unused{"weights"};
+        std::vector<PixelTriangle> pairs;
+        std::vector<Fragment> fragments;
+        conservative_raster(state.triangles, list, tile, unused, pairs);
+        beam_fragment(state.triangles, pairs, tile, state.options, unused, fragments);
+        const ABuffer buffer = a_buffer(fragments, tile.pixels(), beam.sort, state.bytes.fragment, unused);
+        // Composition is linear in colour. A fragment that alone has a channel, as 1, leaves its weight there: three
+        // fragments of each pixel at a time.
+        std::vector<PixelWeights> found(tile.pixels());
+        std::uint32_t deepest = 0;
+        for (std::size_t pixel = 0; pixel < tile.pixels(); ++pixel) deepest = std::max(deepest, buffer.depth_of(pixel));
+        for (std::uint32_t first = 0; first < deepest; first += 3) {
+          for (std::size_t pixel = 0; pixel < tile.pixels(); ++pixel) {
+            for (std::uint32_t k = 0; k < buffer.depth_of(pixel); ++k) {
+              Fragment& fragment = fragments[buffer.fragments[buffer.first[pixel] + k]];
+              fragment.color = glm::vec3(0.0f);
+              if (k >= first && k < first + 3) fragment.color[static_cast<int>(k - first)] = fragment.alpha;
+            }
+          }
+          PixelCounters counts = count_per_pixel(tile, buffer, fragments);
+          const std::vector<PixelColor> composed = compose_tile(state, fragments, buffer, unused, counts);
+          for (std::size_t pixel = 0; pixel < tile.pixels(); ++pixel) {
+            for (std::uint32_t k = first; k < std::min(first + 3, buffer.depth_of(pixel)); ++k) {
+              const Fragment& fragment = fragments[buffer.fragments[buffer.first[pixel] + k]];
+              const float weight = composed[pixel].color[static_cast<int>(k - first)];
+              found[pixel].push_back({fragment.triangle, weight, beam.rules == Rules::conserve ? 0 : k, fragment.tiny});
+            }
+          }
         }
-      }
-      PixelCounters counts = count_per_pixel(tile, buffer, fragments);
-      const std::vector<PixelColor> composed = compose_tile(state, fragments, buffer, unused, counts);
-      for (std::size_t pixel = 0; pixel < tile.pixels(); ++pixel) {
-        for (std::uint32_t k = first; k < std::min(first + 3, buffer.depth_of(pixel)); ++k) {
-          const Fragment& fragment = fragments[buffer.fragments[buffer.first[pixel] + k]];
-          const float weight = composed[pixel].color[static_cast<int>(k - first)];
-          found[pixel].push_back({fragment.triangle, weight, beam.rules == Rules::conserve ? 0 : k, fragment.tiny});
-        }
-      }
-    }
-    copy_to_frame(found, tile, frame, weights);
-    return TileResult{{}, {}, {unused}};
-  });
+        copy_to_frame(found, tile, frame, weights);
+        return TileResult{{}, {}, {unused}};
+      });
   return weights;
 }
 

@@ -155,8 +155,8 @@ std::map<std::string, std::vector<float>> error_causes(const Trace& trace, const
   const std::vector<glm::vec3> colors = shade_triangles(triangles, frame.light_direction);
   const Comparer comparer;
   const BeamFragmentOptions options{MaskSource::exact, comparer.patterns()};
-  FrameResult result =
-      render_tiles(frame, triangles, setup, kTileSize, run, [&](const Tile& tile, const TriangleList& list) {
+  FrameResult result = render_tiles(
+      frame, triangles, setup, kTileSize, run, kPairBytes, [&](const Tile& tile, const TriangleList& list) {
         StageCounters unused{"error_causes"};
         ReferenceTile truth(tile);
         reference_raster(triangles, list, tile, unused, truth);

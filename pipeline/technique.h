@@ -23,6 +23,9 @@ struct RunOptions {
   // per technique; frames in order. Null: the frame is a first one.
   History* history = nullptr;
   MemoryParameters memory{};  // of the system that counts sectors and DRAM bytes
+  // Bytes for what is kept per triangle and pixel, all threads together; 0: no limit. Beyond it, a frame is rendered in
+  // bands of tiles, with the same result; where a single tile needs more, rendering throws std::runtime_error.
+  std::uint64_t memory_limit = 0;
 };
 
 // Linear RGB plus A (the part of the pixel that geometry covers, 0..1); row 0 on top; 4 floats per pixel.

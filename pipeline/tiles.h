@@ -1,6 +1,6 @@
 // Tile scheduling: triangles into tiles, tiles onto threads, tiles' results into the frame's. The result does not
-// depend on the number of threads, the pictures not on the tile size either. (Passes of streaming order and the modelled
-// caches go tile by tile, so that their counters do.)
+// depend on the number of threads, the pictures not on the tile size either. (Passes of streaming order and the
+// modelled caches go tile by tile, so that their counters do.)
 #pragma once
 
 #include <algorithm>
@@ -26,9 +26,16 @@ struct TileResult {
 using TileRenderer = std::function<TileResult(const Tile&, const TriangleList&)>;
 
 // Renders the frame tile by tile. `tile_size` in pixels, even. The raster stage, the first of every tile's, is charged
-// with reading each setup triangle once.
+// with reading each setup triangle once. `pair_bytes`: what the renderer keeps, until the tile is done, for each pixel
+// that a triangle touches (RunOptions::memory_limit); 0 when it works on a few triangles at a time.
 FrameResult render_tiles(const Frame& frame, const SetupTriangles& triangles, const StageCounters& vertex_setup,
-                         int tile_size, const RunOptions& options, const TileRenderer& renderer);
+                         int tile_size, const RunOptions& options, std::size_t pair_bytes,
+                         const TileRenderer& renderer);
+
+inline FrameResult render_tiles(const Frame& frame, const SetupTriangles& triangles, const StageCounters& vertex_setup,
+                                int tile_size, const RunOptions& options, const TileRenderer& renderer) {
+  return render_tiles(frame, triangles, vertex_setup, tile_size, options, 0, renderer);
+}
 
 // For a stage behind those of the tiles that looks at whole frames and makes one tile's pixels at a time: calls
 // work(tile, counters) for each tile, and adds up the counters.

@@ -2,12 +2,15 @@
 // plane, depth range, centroid: everything about the triangle's visibility in the pixel.
 #pragma once
 
+#include <algorithm>
 #include <cstdint>
 #include <glm/glm.hpp>
 #include <vector>
 
+#include "simd/coverage.h"
 #include "simd/mask_table.h"
 #include "simd/merge.h"
+#include "simd/sample_test.h"
 #include "stages/conservative_raster.h"
 #include "stages/wide_mask.h"
 
@@ -45,6 +48,12 @@ struct BeamFragmentOptions {
   // this. The paper (section 2.2.1) gives it one, the slides (8) "up to 3".
   int tiny_positions = 0;
 };
+
+// What a (pixel, triangle) takes while beam_fragment works on it, with itself and its fragment: those two twice, as
+// vectors that grow move from one place to the next.
+inline constexpr std::size_t kPairBytes =
+    2 * (sizeof(PixelTriangle) + sizeof(Fragment)) + sizeof(CoverageInput<float>) + sizeof(Coverage<float>) +
+    std::max(sizeof(TableTriangle), sizeof(CellEdges)) + sizeof(WideMask) + sizeof(std::uint32_t);
 
 // Areas up to this are what rounding leaves of an area of 0, in pixels.
 inline constexpr float kZeroArea = 5e-7f;

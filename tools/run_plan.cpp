@@ -30,10 +30,13 @@ void require_trace(const RunArguments& arguments) {
 // What a frame takes at the very least, per pixel: its tiles' pictures, the whole one, and its copy for the caller.
 constexpr std::uint64_t kLeastPixelBytes = 3 * 4 * sizeof(float);
 
+std::uint64_t machine_memory() {
+  return static_cast<std::uint64_t>(sysconf(_SC_PHYS_PAGES)) * static_cast<std::uint64_t>(sysconf(_SC_PAGESIZE));
+}
+
 // The system grants memory that it does not have, and ends the program when that is used.
 void require_memory(const RunPlan& plan) {
-  const auto memory =
-      static_cast<std::uint64_t>(sysconf(_SC_PHYS_PAGES)) * static_cast<std::uint64_t>(sysconf(_SC_PAGESIZE));
+  const std::uint64_t memory = machine_memory();
   for (const std::size_t i : plan.frames) {
     const Frame& frame = plan.trace.frames[i];
     const std::uint64_t needed = std::uint64_t{frame.width} * frame.height * kLeastPixelBytes;
@@ -59,6 +62,12 @@ void add_run_arguments(CLI::App& command, RunArguments& arguments) {
                   "instruction set to use; the results are the same (default: the first here)")
       ->transform(CLI::IsMember(simd_targets(), CLI::ignore_case));
   command
+      .add_option("--memory-limit", arguments.memory_limit,
+                  "for what is kept per triangle and pixel, such as 512MB: a frame that needs more is rendered in "
+                  "bands, with the same results (default: half of the machine's memory)")
+      ->transform(CLI::AsSizeValue(false))
+      ->check(CLI::Range(std::uint64_t{1} << 20, std::uint64_t{1} << 50));
+  command
       .add_option("--repeat", arguments.repeat,
                   "times to render each frame, for steadier times (default: 1; above it, times are "
                   "without the memory model, which one more rendering is for)")
@@ -82,6 +91,7 @@ RunPlan make_plan(const RunArguments& arguments) {
   if (!arguments.hardware.empty()) plan.hardware = read_hardware(arguments.hardware);
   plan.options.memory.modelled = !arguments.no_memory_model;
   plan.options.memory.compression = !arguments.no_compression;
+  plan.options.memory_limit = arguments.memory_limit > 0 ? arguments.memory_limit : machine_memory() / 2;
   if (!arguments.simd.empty()) use_simd_target(arguments.simd);
   plan.trace = read_trace(arguments.trace, {.allow_outside = arguments.allow_outside});
   plan.frames = parse_frame_range(arguments.frames, plan.trace.frames.size());

@@ -16,7 +16,8 @@ namespace beampipe {
 struct RunArguments {
   std::string trace, output, frames, hardware;
   std::vector<std::string> specs;
-  std::string simd;  // empty: the best
+  std::string simd;                // empty: the best
+  std::uint64_t memory_limit = 0;  // bytes; 0: the default
   int threads = 0, repeat = 1;
   bool allow_outside = false, no_memory_model = false, no_compression = false, resume = false;
 };

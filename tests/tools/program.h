@@ -2,9 +2,11 @@
 #pragma once
 
 #include <fcntl.h>
+#include <sys/resource.h>
 #include <sys/wait.h>
 #include <unistd.h>
 
+#include <cstdint>
 #include <string>
 #include <vector>
 
@@ -15,6 +17,7 @@ namespace beampipe {
 struct Outcome {
   int exit_code = -1;  // -1: ended by a signal
   std::string out, err;
+  std::uint64_t peak_bytes = 0;  // of memory, resident
 };
 
 // A started `beampipe ARGUMENTS`, its output going to files.
@@ -49,11 +52,12 @@ class Program {
 
   Outcome wait() {
     int status = 0;
-    waitpid(pid_, &status, 0);
+    rusage usage{};
+    wait4(pid_, &status, 0, &usage);
     pid_ = 0;
     const bool has_err = std::filesystem::exists(output_ / "err");
     return {WIFEXITED(status) ? WEXITSTATUS(status) : -1, read_text(output_ / "out"),
-            has_err ? read_text(output_ / "err") : ""};
+            has_err ? read_text(output_ / "err") : "", static_cast<std::uint64_t>(usage.ru_maxrss) << 10};
   }
 
  private:

@@ -415,6 +415,30 @@ std::vector<std::string> long_run(const std::string& trace, const std::string& o
   return {"run", trace, "-t", "msaa:1", "-o", out, "--frames", "0", "--repeat", "1000000", "--threads", "1"};
 }
 
+// 200 layers over 12 tiles, with the least memory that one tile can do with.
+TEST_F(ProgramTest, MemoryLimitBoundsThePeakAndChangesNothing) {
+  succeed({"make", "stack", "--triangles", "200", "--width", "128", "--height", "96", "-o", path("deep.json")});
+  const auto run = [&](const std::string& limit, const std::string& out) {
+    return run_program({"run", path("deep.json"), "-t", "beam", "--no-memory-model", "--threads", "4", "--memory-limit",
+                        limit, "-o", path(out)});
+  };
+  const Outcome refused = run("1MB", "refused");
+  EXPECT_EQ(refused.exit_code, 1);
+  const std::string needs =
+      "error: the memory limit of 1 MiB is too low: the 200 triangles at pixels 0,0 to 31,31 need ";
+  ASSERT_NE(refused.err.find(needs), std::string::npos) << refused.err;
+  const std::uint64_t needed = std::stoull(refused.err.substr(refused.err.find(needs) + needs.size()));
+  const Outcome banded = run(std::to_string(needed) + "MB", "banded"), whole = run("16GB", "whole");
+  ASSERT_EQ(banded.exit_code, 0) << banded.err;
+#if !defined(__SANITIZE_ADDRESS__) && !defined(__SANITIZE_THREAD__)  // they take memory of their own
+  constexpr std::uint64_t kProgram = 40;                             // MiB, with the trace and the pictures
+  EXPECT_LT(banded.peak_bytes >> 20, needed + kProgram);
+  EXPECT_GT(whole.peak_bytes >> 20, needed + kProgram) << "or the test shows nothing";
+#endif
+  for (const char* file : {"frame_0000.exr", "frame_0000_counters.exr"})
+    EXPECT_EQ(read_text(folder_ / "banded/beam" / file), read_text(folder_ / "whole/beam" / file)) << file;
+}
+
 TEST_F(ProgramTest, CtrlCKeepsFinishedImagesAndLeavesNothingElse) {
   std::filesystem::create_directory(folder_ / "out");
   write_text(folder_ / "out/report.json", "of pictures that will be replaced");

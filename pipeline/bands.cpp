@@ -1,0 +1,122 @@
+#include "pipeline/bands.h"
+
+#include <algorithm>
+#include <stdexcept>
+#include <string>
+
+#include "stages/traverse.h"
+
+namespace beampipe {
+namespace {
+
+// Calls visit(tile) for each tile of the band that the triangle's closed bounds touch.
+template <class Visit>
+void for_touched_tiles(const SetupTriangle& triangle, const TileGrid& grid, const Band& band, Visit&& visit) {
+  const Tile frame{0, 0, grid.tiles.back().x1, grid.tiles.back().y1};
+  const CellRange range = touched_range(triangle, frame, CellGrid{});
+  if (range.x0 >= range.x1 || range.y0 >= range.y1) return;
+  const auto row_of = [&](std::size_t tile) { return static_cast<std::int32_t>(tile) / grid.columns; };
+  const std::int32_t last_row = std::min((range.y1 - 1) / grid.size, row_of(band.last - 1));
+  for (std::int32_t y = std::max(range.y0 / grid.size, row_of(band.first)); y <= last_row; ++y) {
+    for (std::int32_t x = range.x0 / grid.size; x <= (range.x1 - 1) / grid.size; ++x) {
+      const auto tile = static_cast<std::size_t>(y * grid.columns + x);
+      if (tile >= band.first && tile < band.last) visit(tile);
+    }
+  }
+}
+
+// What tiles take at once, in bytes.
+struct Need {
+  std::uint64_t lists = 0, pairs = 0, largest = 0;
+
+  void add(std::uint64_t list_bytes, std::uint64_t pair_bytes) {
+    lists += list_bytes;
+    pairs += pair_bytes;
+    largest = std::max(largest, pair_bytes);
+  }
+  std::uint64_t bytes(int threads) const {
+    return lists + std::min(pairs, largest * static_cast<std::uint64_t>(threads));
+  }
+};
+
+// Not less than what the frame needs as one band, and quickly found: by the triangles' bounds.
+std::uint64_t most_bytes(const SetupTriangles& triangles, const TileGrid& grid, std::size_t pair_bytes) {
+  const Tile frame{0, 0, grid.tiles.back().x1, grid.tiles.back().y1};
+  std::uint64_t bytes = 0;
+  for (const SetupTriangle& triangle : triangles.triangles) {
+    const CellRange range = touched_range(triangle, frame, CellGrid{});
+    if (range.x0 >= range.x1 || range.y0 >= range.y1) continue;
+    const auto length = [](std::int32_t from, std::int32_t to) { return static_cast<std::uint64_t>(to - from); };
+    const std::uint64_t tiles = (length(range.x0, range.x1) / static_cast<std::uint64_t>(grid.size) + 2) *
+                                (length(range.y0, range.y1) / static_cast<std::uint64_t>(grid.size) + 2);
+    bytes += length(range.x0, range.x1) * length(range.y0, range.y1) * pair_bytes + tiles * sizeof(std::uint32_t);
+  }
+  return bytes;
+}
+
+std::uint64_t count_pairs(const SetupTriangles& triangles, const TriangleList& list, const Tile& tile) {
+  TraversalCounts counts;
+  std::uint32_t quad = 0;
+  for (const std::uint32_t index : list) {
+    const SetupTriangle& triangle = triangles.triangles[index];
+    traverse(triangle, EdgeSet(triangle), tile, CellGrid{}, FullMeans::area, quad, counts,
+             [](std::int32_t, std::int32_t, std::uint32_t, bool) {});
+  }
+  return counts.cells_touched;
+}
+
+std::string mebibytes(std::uint64_t bytes) { return std::to_string((bytes + (1u << 20) - 1) >> 20) + " MiB"; }
+
+}  // namespace
+
+TileGrid::TileGrid(const Frame& frame, std::int32_t tile_size) : size(tile_size) {
+  const auto width = static_cast<std::int32_t>(frame.width), height = static_cast<std::int32_t>(frame.height);
+  columns = (width + size - 1) / size;
+  for (std::int32_t y = 0; y < height; y += size)
+    for (std::int32_t x = 0; x < width; x += size)
+      tiles.push_back({x, y, std::min(x + size, width), std::min(y + size, height)});
+}
+
+std::vector<Band> split_into_bands(const SetupTriangles& triangles, const TileGrid& grid, std::size_t pair_bytes,
+                                   int threads, std::uint64_t memory_limit) {
+  const Band whole{0, grid.tiles.size()};
+  if (memory_limit == 0 || most_bytes(triangles, grid, pair_bytes) <= memory_limit) return {whole};
+
+  std::vector<Band> bands = {{0, 0}};
+  Need need;
+  for (std::size_t row = 0; row < grid.tiles.size(); row += static_cast<std::size_t>(grid.columns)) {
+    const std::vector<TriangleList> lists =
+        bin_triangles(triangles, grid, {row, row + static_cast<std::size_t>(grid.columns)});
+    for (std::size_t i = 0; i < lists.size(); ++i) {
+      const Tile& tile = grid.tiles[row + i];
+      const std::uint64_t list = lists[i].size() * sizeof(std::uint32_t);
+      const std::uint64_t pairs = pair_bytes > 0 ? count_pairs(triangles, lists[i], tile) * pair_bytes : 0;
+      if (list + pairs > memory_limit) {
+        throw std::runtime_error("the memory limit of " + mebibytes(memory_limit) + " is too low: the " +
+                                 std::to_string(lists[i].size()) + " triangles at pixels " + std::to_string(tile.x0) +
+                                 "," + std::to_string(tile.y0) + " to " + std::to_string(tile.x1 - 1) + "," +
+                                 std::to_string(tile.y1 - 1) + " need " + mebibytes(list + pairs) + " at once");
+      }
+      Need with_tile = need;
+      with_tile.add(list, pairs);
+      if (with_tile.bytes(threads) > memory_limit) {
+        bands.push_back({row + i, row + i});
+        with_tile = {};
+        with_tile.add(list, pairs);
+      }
+      need = with_tile;
+      bands.back().last = row + i + 1;
+    }
+  }
+  return bands;
+}
+
+std::vector<TriangleList> bin_triangles(const SetupTriangles& triangles, const TileGrid& grid, const Band& band) {
+  std::vector<TriangleList> lists(band.last - band.first);
+  for (std::uint32_t i = 0; i < triangles.triangles.size(); ++i)
+    for_touched_tiles(triangles.triangles[i], grid, band,
+                      [&](std::size_t tile) { lists[tile - band.first].push_back(i); });
+  return lists;
+}
+
+}  // namespace beampipe

@@ -1,0 +1,117 @@
+#include "pipeline/bands.h"
+
+#include <gtest/gtest.h>
+
+#include "pipeline/technique.h"
+#include "stages/vertex_setup.h"
+#include "test_traces.h"
+
+namespace beampipe {
+namespace {
+
+// `layers` triangles that cover the whole frame, in no order of depth.
+Trace stack_trace(std::uint32_t width, std::uint32_t height, int layers) {
+  std::vector<PixelSpaceTriangle> triangles;
+  const double w = width, h = height;
+  for (int i = 0; i < layers; ++i) {
+    const double z = 0.1 + 0.8 * ((i * 7) % layers) / layers;
+    triangles.push_back({{{-w, -h, z}, {3 * w, -h, z}, {-w, 3 * h, z}}, glm::vec3(0.5f + 0.4f * (i % 2))});
+  }
+  return pixel_trace(width, height, triangles);
+}
+
+SetupTriangles setup_of(const Trace& trace) {
+  StageCounters unused;
+  return vertex_setup(trace, trace.frames[0], unused);
+}
+
+// 100 layers, tiles of 1024 pixels, 10 bytes for each: 1,024,000 bytes a tile, 400 bytes a list.
+TEST(Bands, HoldAsManyTilesAsFit) {
+  const Trace trace = stack_trace(96, 64, 100);
+  const SetupTriangles triangles = setup_of(trace);
+  const TileGrid grid(trace.frames[0], 32);
+  ASSERT_EQ(grid.tiles.size(), 6u);
+  const auto sizes = [&](int threads, std::uint64_t limit) {
+    std::vector<std::size_t> counts;
+    for (const Band& band : split_into_bands(triangles, grid, 10, threads, limit)) {
+      EXPECT_EQ(band.first, counts.empty() ? 0 : counts.back());
+      counts.push_back(band.last);
+    }
+    return counts;
+  };
+  using Ends = std::vector<std::size_t>;
+  constexpr std::uint64_t kTile = 1024000, kList = 400;
+  EXPECT_EQ(sizes(4, 0), (Ends{6})) << "no limit";
+  EXPECT_EQ(sizes(4, 6 * kTile + 6 * kList), (Ends{6}));
+  EXPECT_EQ(sizes(2, 2 * kTile + 6 * kList), (Ends{6})) << "as many tiles at once as threads";
+  EXPECT_EQ(sizes(2, 2 * kTile + 3 * kList), (Ends{3, 6})) << "but all lists";
+  EXPECT_EQ(sizes(8, 2 * kTile + 6 * kList), (Ends{2, 4, 6}));
+  EXPECT_EQ(sizes(8, 1 * kTile + 1 * kList), (Ends{1, 2, 3, 4, 5, 6}));
+  try {
+    sizes(1, kTile);
+    ADD_FAILURE() << "a tile that does not fit";
+  } catch (const std::runtime_error& error) {
+    EXPECT_STREQ(error.what(),
+                 "the memory limit of 1 MiB is too low: the 100 triangles at pixels 0,0 to 31,31 need 1 MiB at once");
+  }
+}
+
+TEST(Bands, ListsAreThoseOfTheWholeFrame) {
+  const Trace trace = random_trace(150, 70, 400, 3);
+  const SetupTriangles triangles = setup_of(trace);
+  const TileGrid grid(trace.frames[0], 32);
+  const std::vector<TriangleList> all = bin_triangles(triangles, grid, {0, grid.tiles.size()});
+  for (std::size_t first = 0; first < grid.tiles.size(); ++first) {
+    for (std::size_t last = first + 1; last <= grid.tiles.size(); ++last) {
+      const std::vector<TriangleList> expected(all.begin() + static_cast<std::ptrdiff_t>(first),
+                                               all.begin() + static_cast<std::ptrdiff_t>(last));
+      EXPECT_EQ(bin_triangles(triangles, grid, {first, last}), expected) << first << " to " << last;
+    }
+  }
+}
+
+void expect_same(const FrameResult& a, const FrameResult& b, const std::string& what) {
+  EXPECT_EQ(a.image.rgba, b.image.rgba) << what;
+  EXPECT_EQ(a.pixel_counters, b.pixel_counters) << what;
+  EXPECT_EQ(a.stages, b.stages) << what;
+  EXPECT_EQ(a.a_buffer_peak_bytes, b.a_buffer_peak_bytes) << what;
+}
+
+TEST(Bands, ResultsAreThoseOfTheWholeFrame) {
+  const Trace trace = random_trace(150, 70, 2000, 3);
+  for (const char* spec : {"beam", "beam:rules=paper", "alpha"}) {
+    const Technique technique = parse_technique(spec);
+    RunOptions options{2};
+    const FrameResult whole = technique.render(trace, 0, options);
+    // Up to what the fullest tile needs, as the errors say it: one band holds few tiles.
+    int errors = 0;
+    for (options.memory_limit = 1;;) {
+      try {
+        expect_same(whole, technique.render(trace, 0, options), spec);
+        break;
+      } catch (const std::runtime_error& error) {
+        const std::string text = error.what();
+        const std::uint64_t needed = std::stoull(text.substr(text.find(" need ") + 6)) << 20;
+        ASSERT_GT(needed, options.memory_limit);
+        options.memory_limit = needed;
+        ++errors;
+      }
+    }
+    EXPECT_GT(errors, 0);
+  }
+}
+
+// Techniques that work on a few triangles at a time keep lists of them.
+TEST(Bands, ListsAloneMakeBandsToo) {
+  const Trace trace = random_trace(150, 70, 2000, 3);
+  for (const char* spec : {"beam:order=stream", "z3", "msaa:8", "dvm", "reference"}) {
+    const Technique technique = parse_technique(spec);
+    RunOptions options{2};
+    const FrameResult whole = technique.render(trace, 0, options);
+    options.memory_limit = setup_of(trace).triangles.size() * sizeof(std::uint32_t);
+    expect_same(whole, technique.render(trace, 0, options), spec);
+  }
+}
+
+}  // namespace
+}  // namespace beampipe
