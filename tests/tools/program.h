@@ -55,12 +55,16 @@ class Program {
     rusage usage{};
     wait4(pid_, &status, 0, &usage);
     pid_ = 0;
-    const bool has_err = std::filesystem::exists(output_ / "err");
-    return {WIFEXITED(status) ? WEXITSTATUS(status) : -1, read_text(output_ / "out"),
-            has_err ? read_text(output_ / "err") : "", static_cast<std::uint64_t>(usage.ru_maxrss) << 10};
+    return {WIFEXITED(status) ? WEXITSTATUS(status) : -1, text_of("out"), text_of("err"),
+            static_cast<std::uint64_t>(usage.ru_maxrss) << 10};
   }
 
  private:
+  // Nothing where the process was killed before it opened the file, or writes to a terminal.
+  std::string text_of(const char* name) const {
+    return std::filesystem::exists(output_ / name) ? read_text(output_ / name) : "";
+  }
+
   TemporaryFolder output_;
   pid_t pid_ = 0;
 };
