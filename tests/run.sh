@@ -7,3 +7,4 @@ tools/install_packages.sh
 cmake --preset release -DBEAMPIPE_TESTS=ON -DBEAMPIPE_BENCH=ON
 cmake --build --preset release --parallel "$(nproc)"
 ctest --preset release --parallel "$(nproc)"
+tests/fuzz/run.sh 20

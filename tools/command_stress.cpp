@@ -18,6 +18,9 @@ namespace {
 struct StressArguments {
   std::vector<std::string> specs = {"beam",
                                     "beam:bits=32",
+                                    "beam:order=stream",
+                                    "beam:order=stream,bits=64,layers=1",
+                                    "z3",
                                     "beam:rules=paper",
                                     "alpha",
                                     "msaa:1,8,16,256",

@@ -11,6 +11,7 @@ packages=(
   chromium chromium-driver python3  # test the report page
   libboost-dev                      # headers: exact arithmetic
   libgtest-dev libbenchmark-dev
+  clang-14 libclang-rt-14-dev       # fuzz targets
 )
 
 missing=()

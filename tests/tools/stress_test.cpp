@@ -2,6 +2,10 @@
 
 #include <gtest/gtest.h>
 
+#include <cmath>
+#include <numbers>
+
+#include "simd/sample_pattern.h"
 #include "tests/pipeline/test_traces.h"
 #include "tools/stress/exact.h"
 #include "tools/stress/judge.h"
@@ -46,6 +50,41 @@ TEST(Exact, ClipsAtTheNearPlane) {
   expect_pixel(exact_areas(trace, trace.frames[0])[0], {0.5, 0.5, 0.5, 0.5});
 }
 
+// The part of the unit square where a x + b y >= c, by clipping.
+double part_beyond(double a, double b, double c) {
+  const glm::dvec2 square[] = {{0, 0}, {1, 0}, {1, 1}, {0, 1}};
+  std::vector<glm::dvec2> kept;
+  for (int i = 0; i < 4; ++i) {
+    const glm::dvec2 p = square[i], q = square[(i + 1) % 4];
+    const double at_p = a * p.x + b * p.y - c, at_q = a * q.x + b * q.y - c;
+    if (at_p >= 0) kept.push_back(p);
+    if ((at_p >= 0) != (at_q >= 0)) kept.push_back(p + at_p / (at_p - at_q) * (q - p));
+  }
+  double twice = 0;
+  for (std::size_t i = 0; i < kept.size(); ++i) {
+    const glm::dvec2 p = kept[i], q = kept[(i + 1) % kept.size()];
+    twice += p.x * q.y - q.x * p.y;
+  }
+  return twice / 2;
+}
+
+// An edge that cuts off as much as possible touches a position: in each direction, the last one.
+TEST(LargestCut, IsWhatTheMaskPositionsAllow) {
+  for (const int positions : {32, 64, 128, 256}) {
+    double largest = 0;
+    for (int k = 0; k < 3600; ++k) {
+      const double a = std::cos(k * std::numbers::pi / 1800), b = std::sin(k * std::numbers::pi / 1800);
+      double last = -2;
+      for (const SamplePattern& pattern : cell_patterns(positions))
+        for (std::size_t s = 0; s < static_cast<std::size_t>(pattern.count); ++s)
+          last = std::max(last, (a * pattern.x[s] + b * pattern.y[s]) / kSubpixelUnits);
+      largest = std::max(largest, part_beyond(a, b, last));
+    }
+    EXPECT_LE(largest, largest_cut(positions) * (1 + 1e-9)) << positions;
+    EXPECT_GE(largest, largest_cut(positions) * 0.99) << positions;
+  }
+}
+
 class HardCases : public testing::TestWithParam<const char*> {};
 
 TEST_P(HardCases, AreWithinTheirLimits) {
@@ -60,8 +99,9 @@ TEST_P(HardCases, AreWithinTheirLimits) {
 }
 
 INSTANTIATE_TEST_SUITE_P(Techniques, HardCases,
-                         testing::Values("beam", "beam:rules=paper", "alpha", "msaa:8", "acaa:8,double=stencil",
-                                         "acaa:8", "visibility", "reference"));
+                         testing::Values("beam", "beam:order=stream", "beam:order=stream,bits=64,layers=1", "z3",
+                                         "beam:rules=paper", "alpha", "msaa:8", "acaa:8,double=stencil", "acaa:8",
+                                         "visibility", "reference"));
 
 }  // namespace
 }  // namespace beampipe

@@ -64,6 +64,19 @@ constexpr const char* kDepth = "32-bit depth: surfaces less than its rounding ap
 constexpr const char* kStored = "a sum stored in fp16 stops growing where a share is less than half its last place";
 constexpr const char* kMask = "areas of what is partly hidden are estimated from mask positions";
 
+constexpr const char* kUnseen = "a triangle that covers no position is not seen";
+constexpr const char* kSlopes = "slopes of layers are stored in 8 bits: crossings move by a few positions";
+
+const std::string kStream = "beam:order=stream", kSmallStream = "beam:order=stream,bits=64,layers=1";
+
+// Of techniques that take a mask without a gap for full coverage, in pixels that one edge cuts.
+std::map<std::string, StatedLimit> full_masks() {
+  return {{"beam", {largest_cut(256), kFull}},
+          {"beam:bits=32", {largest_cut(32), kFull}},
+          {kStream, {largest_cut(128), kFull}},
+          {kSmallStream, {largest_cut(64), kFull}}};
+}
+
 HardCase slivers() {
   Screen screen(16, 16);
   // 65,000 px long and 1/256 px thick: length over thickness is 1.7 x 10^7.
@@ -72,7 +85,13 @@ HardCase slivers() {
     const auto at = [&](double x, double above) { return glm::dvec2(x, y + slope * (x - 8) + above); };
     screen.triangle(at(-32000, 0), at(32000, 0), at(32000, 1.0 / 256), 0.5, i % 2 ? kRed : kGreen);
   }
-  return {"slivers", "length over thickness 1.7 x 10^7", screen.trace(), {}, {}};
+  // In the middle each is half as thick, and at most hypot(1, 0.039) long in a pixel.
+  const double lost = 1.001 / 512;
+  return {"slivers",
+          "length over thickness 1.7 x 10^7",
+          screen.trace(),
+          {},
+          {{kStream, {lost, kUnseen}}, {kSmallStream, {lost, kUnseen}}}};
 }
 
 HardCase specks() {
@@ -86,17 +105,18 @@ HardCase specks() {
     const glm::dvec2 below = corner + glm::dvec2(0.25 / 256, 0.5);
     screen.triangle(below, below + glm::dvec2(0.2 / 256, 0), below + glm::dvec2(0, 0.2 / 256), 0.4, kGreen);
   }
-  return {"specks", "areas from 10^-6 px (snapped to none) and 7.6 x 10^-6 px up", screen.trace(), {}, {}};
+  // A speck of 1/8 x 1/8 px covers no position of 128, one of 1/8 x 1/4 none of 64; larger ones cover some.
+  return {"specks",
+          "areas from 10^-6 px (snapped to none) and 7.6 x 10^-6 px up",
+          screen.trace(),
+          {},
+          {{kStream, {0x1p-7, kUnseen}}, {kSmallStream, {0x1p-6, kUnseen}}}};
 }
 
 HardCase large() {
   Screen screen(512, 400);
   screen.triangle({0.3, 0.7}, {511.2, 3.4}, {17.9, 399.6}, 0.5, kRed);
-  return {"large",
-          "one triangle of 10^5 px",
-          screen.trace(),
-          {},
-          {{"beam", {0.015, kFull}}, {"beam:bits=32", {0.035, kFull}}}};
+  return {"large", "one triangle of 10^5 px", screen.trace(), {}, full_masks()};
 }
 
 HardCase corners() {
@@ -128,7 +148,10 @@ HardCase edge_on() {
           "depth slopes of 250 per pixel, cutting through others",
           screen.trace(),
           {},
-          {{"beam", {0.02, kMask}}, {"beam:rules=paper", {0.03, kPaper}}, {"alpha", {0.01, kOver}}}};
+          {{"beam", {0.02, kMask}},
+           {kSmallStream, {0.05, kMask}},
+           {"beam:rules=paper", {0.03, kPaper}},
+           {"alpha", {0.01, kOver}}}};
 }
 
 // `rim` points on a square around a hub.
@@ -249,11 +272,7 @@ HardCase wide_coordinates() {
   screen.triangle({base + 1, base + 2, 0.5}, {base + 14, base + 5, 0.5}, {base + 6, base + 15, 0.5}, kRed);
   Trace trace = screen.trace();
   trace.frames[0].draws[0].transform[3] = glm::dvec4(-base, -base, 0.0, 1.0);
-  return {"wide_coordinates",
-          "24-bit coordinates, moved back by the transform",
-          trace,
-          {},
-          {{"beam:bits=32", {0.02, kFull}}}};
+  return {"wide_coordinates", "24-bit coordinates, moved back by the transform", trace, {}, full_masks()};
 }
 
 HardCase depth_range() {
@@ -316,6 +335,7 @@ HardCase grazing() {
            {"beam:rules=paper", {0.5, kPaper}},
            {"msaa", {0.1, kDepth}},
            {"acaa", {0.1, kDepth}},
+           {"z3", {3.0 / 32, kSlopes}},
            {"alpha", {0.5, kOver}}}};
 }
 
@@ -327,11 +347,8 @@ HardCase not_finite() {
   screen.triangle({1, 1}, {7, 1}, {-inf, 7}, 0.1, kRed);
   screen.triangle({1, 1, nan}, {7, 1, 0.1}, {1, 7, 0.1}, kRed);
   screen.triangle({1e-40, 1e-45}, {7.5, 1e-42}, {1e-44, 6.25}, 0.5, kGreen);
-  return {"not_finite",
-          "vertices that are NaN or infinite (dropped), and denormal ones",
-          screen.trace(),
-          {},
-          {{"beam:bits=32", {0.02, kFull}}}};
+  return {
+      "not_finite", "vertices that are NaN or infinite (dropped), and denormal ones", screen.trace(), {}, full_masks()};
 }
 
 HardCase empty_frame() {
@@ -359,7 +376,7 @@ HardCase widest(std::uint32_t width, std::uint32_t height, const std::string& na
           "a viewport of " + std::to_string(width) + " x " + std::to_string(height),
           screen.trace(),
           {},
-          {{"beam", {0.015, kFull}}, {"beam:bits=32", {0.035, kFull}}}};
+          full_masks()};
 }
 
 HardCase deep_pixel(int layers) {
@@ -377,6 +394,17 @@ HardCase deep_pixel(int layers) {
 }
 
 }  // namespace
+
+double largest_cut(int positions) {
+  switch (positions) {
+    case 32:
+      return 0.0441;
+    case 64:
+      return 0x1p-5;
+    default:
+      return 0x1p-6;
+  }
+}
 
 std::vector<HardCase> hard_cases(bool with_heavy) {
   std::vector<HardCase> cases = {slivers(),

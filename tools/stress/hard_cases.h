@@ -28,6 +28,10 @@ struct HardCase {
   std::map<std::string, StatedLimit> limits;
 };
 
+// An upper bound of the part of a pixel, 0..1, that a straight edge can cut off without one of so many mask positions
+// (simd/sample_pattern.h: cell_patterns).
+double largest_cut(int positions);
+
 // In a fixed order. Heavy: also one that takes a gigabyte and a minute.
 std::vector<HardCase> hard_cases(bool with_heavy);
 

@@ -5,6 +5,7 @@
 #include <cstdlib>
 
 #include "pipeline/msaa.h"
+#include "simd/sample_pattern.h"
 #include "tools/stress/exact.h"
 
 namespace beampipe {
@@ -20,6 +21,14 @@ SamplePlaces places_of(const Sampling& sampling) {
   return places;
 }
 
+SamplePlaces places_of(const std::vector<SamplePattern>& patterns) {
+  SamplePlaces places;
+  for (const SamplePattern& pattern : patterns)
+    for (std::size_t s = 0; s < static_cast<std::size_t>(pattern.count); ++s)
+      places.emplace_back(pattern.x[s], pattern.y[s]);
+  return places;
+}
+
 std::string name_of(const std::string& spec) { return spec.substr(0, spec.find(':')); }
 
 // Where a technique samples in its first frame; nothing when it works with areas.
@@ -28,6 +37,7 @@ SamplePlaces places_of(const std::string& spec) {
   if (name == "msaa" || name == "acaa") return places_of(msaa_sampling(std::atoi(spec.c_str() + name.size() + 1)));
   if (name == "deferred" || name == "visibility") return places_of(msaa_sampling(1));
   if (name == "dvm") return places_of(msaa_sampling(8));
+  if (name == "z3") return places_of(cell_patterns(spec.find("128x3") == spec.npos ? 32 : 128));
   if (name == "taa") return {places_of(msaa_sampling(std::atoi(spec.c_str() + name.size() + 1))).front()};
   return {};
 }

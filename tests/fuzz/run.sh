@@ -1,0 +1,20 @@
+#!/usr/bin/env bash
+# Builds the fuzz targets with clang's libFuzzer and sanitizers, and runs each: tests/fuzz/run.sh [SECONDS each] [TARGET...]
+# What is found goes to build/fuzz/found/TARGET and is started from next time; a crash leaves its input in build/fuzz and
+# ends with an error.
+set -euo pipefail
+cd "$(dirname "${BASH_SOURCE[0]}")/../.."
+
+seconds=${1:-20}
+targets=("${@:2}")
+((${#targets[@]} > 0)) || targets=(trace obj exr spec)
+cmake --preset fuzz >/dev/null
+cmake --build --preset fuzz --parallel "$(nproc)" --target "${targets[@]/%/_fuzz}"
+for target in "${targets[@]}"; do
+  found=build/fuzz/found/$target
+  mkdir -p "$found"
+  echo "== $target: $seconds s"
+  build/fuzz/tests/fuzz/"${target}_fuzz" "$found" tests/fuzz/corpus/"$target" -dict=tests/fuzz/"$target".dict \
+    -max_total_time="$seconds" -max_len=65536 -rss_limit_mb=2048 -timeout=20 -artifact_prefix="build/fuzz/${target}-" \
+    -print_final_stats=1 -verbosity=0
+done
