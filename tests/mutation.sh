@@ -1,0 +1,50 @@
+#!/usr/bin/env bash
+# Breaks one constant after the other and tells which test notices: tests/mutation.sh [BUILD FOLDER]
+# Works on this tree, one file at a time, and puts each file back. Ends with an error if nothing notices a mutant.
+set -euo pipefail
+cd "$(dirname "${BASH_SOURCE[0]}")/.."
+
+build=${1:-build/release}
+mutants=(  # file | constant as it is | broken
+  'simd/coverage.cpp|1.0f / 6.0f|1.0f / 6.1f'
+  'simd/sample_test.cpp|kDecided = 1 << 30|kDecided = 1 << 20'
+  'simd/sample_test.cpp|kSmallSlope = 1 << 20|kSmallSlope = 1 << 25'
+  'simd/mask_table.cpp|kTableDistances / 2)|kTableDistances / 2 + 1)'
+  'simd/merge.cpp|bits = hn::Set(d, 32.0f)|bits = hn::Set(d, 31.0f)'
+  'simd/sample_pattern.cpp|{1, -3}, {-1, 3}|{1, -2}, {-1, 3}'
+  'simd/sample_pattern.cpp|pattern.x[static_cast<std::size_t>(i)] = i * 8 + 4|pattern.x[static_cast<std::size_t>(i)] = i * 8 + 3'
+  'simd/conserve.h|fraction * fraction * own_error|fraction * own_error'
+  'stages/compose_window.cpp|kSurfaceReach = 1.0f / 64.0f|kSurfaceReach = 1.0f'
+  'stages/compose_window.cpp|kSpeckShares = 4.0f|kSpeckShares = 1.0f'
+  'stages/compose_window.cpp|votes / 3.0f|votes / 2.0f'
+  'stages/beam_fragment.h|kZeroArea = 5e-7f|kZeroArea = 5e-5f'
+  'stages/reference_raster.cpp|2 * reversed + 1|2 * reversed'
+  'stages/vertex_setup.cpp|Real(double{kSubpixelUnits}) + Real(0.5)|Real(double{kSubpixelUnits}) + Real(0.25)'
+  'stages/vertex_setup.h|kGuardBand = 32768.0|kGuardBand = 65536.0'
+)
+
+unnoticed=0
+for mutant in "${mutants[@]}"; do
+  IFS='|' read -r file constant broken <<<"$mutant"
+  original=$(mktemp)
+  cp "$file" "$original"
+  trap 'cp "$original" "$file"' EXIT
+  CONSTANT=$constant BROKEN=$broken perl -0pi -e 's/\Q$ENV{CONSTANT}\E/$ENV{BROKEN}/' "$file"
+  if cmp -s "$file" "$original"; then
+    echo "$file has no \"$constant\" any more" >&2
+    exit 1
+  fi
+  cmake --build "$build" --target simd_tests stages_tests pipeline_tests >/dev/null
+  noticed=
+  for folder in simd stages pipeline; do
+    log=$("$build/tests/${folder}_tests" --gtest_fail_fast --gtest_brief=1 2>&1) && continue
+    noticed=$(sed -n 's/^\[  FAILED  \] \([^ ,]*\).*/\1/p' <<<"$log" | head -1)
+    break
+  done
+  cp "$original" "$file"
+  trap - EXIT
+  rm "$original"
+  echo "$file: $constant -> $broken: ${noticed:-NOBODY}"
+  [[ $noticed ]] || unnoticed=1
+done
+exit $unnoticed
