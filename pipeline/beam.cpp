@@ -1,185 +1,155 @@
 #include "pipeline/beam.h"
 
 #include <algorithm>
+#include <stdexcept>
 #include <string>
 
 #include "pipeline/memory/beam_memory.h"
+#include "pipeline/memory/image_memory.h"
 #include "pipeline/tiles.h"
 #include "stages/a_buffer.h"
-#include "stages/aggregate_format.h"
-#include "stages/compose.h"
 #include "stages/compose_window.h"
 #include "stages/conservative_raster.h"
 #include "stages/resolve.h"
 #include "stages/shade.h"
 #include "stages/vertex_setup.h"
+#include "stages/windows.h"
 
 namespace beampipe {
 namespace {
 
-using PixelCounters = std::vector<std::pair<std::string, std::vector<float>>>;
+// That a pair takes until its tile is done; its window may be all of them.
+constexpr std::size_t kBufferedBytes = kPairBytes + kSortBytes;
 
-PixelCounters count_per_pixel(const Tile& tile, const ABuffer& buffer, const std::vector<Fragment>& fragments) {
-  std::vector<float> count(tile.pixels()), tiny(tile.pixels());
-  for (std::size_t pixel = 0; pixel < tile.pixels(); ++pixel) count[pixel] = static_cast<float>(buffer.depth_of(pixel));
-  for (const Fragment& fragment : fragments)
-    if (fragment.tiny) ++tiny[fragment.pixel];
-  return {{"fragments", std::move(count)}, {"tiny_triangles", std::move(tiny)}};
-}
-
-struct RecordBytes {
-  std::uint32_t fragment, aggregate;
-};
-
-RecordBytes record_bytes(const BeamOptions& beam) {
-  switch (beam.rules) {
-    case Rules::conserve:
-      return {conserving_fragment_bytes(beam.positions), conserving_aggregate_bytes(beam.positions, beam.storage)};
-    case Rules::over:
-      return {kOverFragmentBytes, kOverBytes};
-    case Rules::paper:
-      break;
-  }
-  return {paper_aggregate_bytes(beam.paper_storage), paper_aggregate_bytes(beam.paper_storage)};
-}
-
-// What the stages of a frame have in common.
+// What the tiles of a frame have in common.
 struct BeamFrame {
-  const BeamOptions& beam;
   StageCounters setup;
   SetupTriangles triangles;
   std::vector<glm::vec3> colors;
   PositionSet positions;
-  MaskTable table;
-  RecordBytes bytes;
+  PositionGrid grid;
   BeamFragmentOptions options;
 
-  BeamFrame(const Trace& trace, const Frame& frame, const BeamOptions& beam_options)
-      : beam(beam_options),
-        triangles(vertex_setup(trace, frame, setup)),
+  BeamFrame(const Trace& trace, const Frame& frame, int count)
+      : triangles(vertex_setup(trace, frame, setup)),
         colors(shade_triangles(triangles, frame.light_direction)),
-        positions(beam.rules == Rules::conserve ? cell_patterns(beam.positions) : std::vector{hammersley_pattern()}),
-        table(positions.patterns.front()),
-        bytes(record_bytes(beam)),
-        options{beam.mask, beam.mask == MaskSource::none ? std::vector<SamplePattern>{} : positions.patterns, &table,
-                bytes.fragment, beam.tiny_positions} {}
+        positions(cell_patterns(count)),
+        grid(count) {
+    options.mask = MaskSource::grid;
+    options.grid = &grid;
+    options.fragment_bytes = conserving_fragment_bytes(count);
+    options.pair_bytes = kWaitingPairBytes + sizeof(SetupTriangle);
+    options.clipped_depth = false;
+  }
 };
 
-std::vector<PixelColor> compose_tile(const BeamFrame& state, const std::vector<Fragment>& fragments,
-                                     const ABuffer& buffer, StageCounters& counters, PixelCounters& counts) {
-  if (state.beam.rules == Rules::conserve) {
-    PixelWindows windows;
-    std::vector<PixelColor> colors =
-        compose_window(fragments, buffer, state.positions, state.beam.storage, counters, windows);
-    counts.emplace_back("largest_window", std::move(windows.largest));
-    counts.emplace_back("merges", std::move(windows.merges));
-    return colors;
-  }
-  counts.emplace_back("merges", counts.front().second);
-  return pixel_colors(state.beam.rules == Rules::paper ? compose(fragments, buffer, state.positions.patterns.front(),
-                                                                 state.beam.merge, state.beam.paper_storage, counters)
-                                                       : compose_over(fragments, buffer, counters));
+template <std::size_t Words, class Channel>
+FrameResult render_shape(const Trace& trace, const Frame& frame, const BeamOptions& beam, const RunOptions& run) {
+  BeamFrame state(trace, frame, beam.positions);
+  stream(run.memory, state.triangles.triangles.size() * sizeof(SetupTriangle), state.setup);  // kept to be read again
+  FrameResult result =
+      render_tiles(frame, state.triangles, state.setup, kBinSize, run, kBufferedBytes, [&](const Tile& tile, const TriangleList& list) {
+        StageCounters raster{"conservative_raster"}, buffering{"a_buffer"}, fragment{"beam_fragment"}, shading{"shade"},
+            composition{"compose"}, resolving{"resolve"};
+        std::vector<StoredAggregate<Words, Channel>> pixels(tile.pixels());
+        std::vector<PixelTriangle> pairs, window;
+        std::vector<Fragment> fragments;
+        std::vector<float> areas, tiny(tile.pixels());
+        ClosedDepth closed(tile);
+        conservative_raster(state.triangles, list, tile, raster, pairs, &closed);
+        const std::vector<SortRecord> records = sort_records(pairs, tile);
+        const ABuffer buffer = a_buffer(records, tile.pixels(), kWaitingPairBytes, buffering);
+        Windows windows(pairs, buffer);
+        while (windows.next([&](std::uint32_t pixel) { return !is_closed(pixels[pixel]); }, window)) {
+          fragments.clear();
+          beam_fragment(state.triangles, window, tile, state.options, fragment, fragments);
+          shade_visible(state.colors, fragments, shading);
+          compose_window(fragments, state.positions, composition, pixels, areas);
+          for (const Fragment& item : fragments) tiny[item.pixel] += item.tiny;
+        }
+        count_sorted_composition(run.memory, tile, buffer, records, kWaitingPairBytes, windows.taken,
+                                 covered_pixels(pixels), closed_pixels(pixels), beam_framebuffer(beam), buffering,
+                                 fragment, composition, resolving);
+        count_triangle_fetches(run.memory, tile, list, buffer, records, windows.taken, fragment);
+        return TileResult{resolve(composed_colors(pixels), frame.background, sizeof pixels[0], resolving),
+                          {{"fragments", depths_of(buffer)},
+                           {"tiny_triangles", std::move(tiny)},
+                           {"largest_window", std::move(windows.largest)},
+                           {"merges", std::move(windows.taken)}},
+                          {raster, buffering, fragment, shading, composition, resolving}};
+      });
+  const auto buffering = std::find_if(result.stages.begin(), result.stages.end(),
+                                      [](const StageCounters& stage) { return stage.stage == "a_buffer"; });
+  result.a_buffer_peak_bytes =
+      a_buffer_bytes(buffering->items_in, std::uint64_t{frame.width} * frame.height, kWaitingPairBytes);
+  return result;
+}
+
+template <std::size_t Words>
+std::vector<PixelWeights> weights_of(const Trace& trace, const Frame& frame, const BeamOptions& beam,
+                                     const RunOptions& run) {
+  const BeamFrame state(trace, frame, beam.positions);
+  std::vector<PixelWeights> weights(std::size_t{frame.width} * frame.height);
+  render_tiles(frame, state.triangles, state.setup, kBinSize, run, kBufferedBytes, [&](const Tile& tile, const TriangleList& list) {
+    StageCounters unused{"weights"};
+    std::vector<StoredAggregate<Words, float>> pixels(tile.pixels());  // as they are before colours are packed
+    std::vector<PixelTriangle> pairs, window;
+    std::vector<Fragment> fragments;
+    std::vector<float> areas;
+    std::vector<PixelWeights> found(tile.pixels());
+    ClosedDepth closed(tile);
+    conservative_raster(state.triangles, list, tile, unused, pairs, &closed);
+    const ABuffer buffer = a_buffer(sort_records(pairs, tile), tile.pixels(), kWaitingPairBytes, unused);
+    Windows windows(pairs, buffer);
+    while (windows.next([&](std::uint32_t pixel) { return !is_closed(pixels[pixel]); }, window)) {
+      fragments.clear();
+      beam_fragment(state.triangles, window, tile, state.options, unused, fragments);
+      compose_window(fragments, state.positions, unused, pixels, areas);
+      for (std::size_t i = 0; i < fragments.size(); ++i)
+        found[fragments[i].pixel].push_back({fragments[i].triangle, areas[i], 0, fragments[i].tiny});
+    }
+    for (std::size_t i = 0; i < tile.pixels(); ++i) {
+      if (!is_closed(pixels[i])) continue;
+      float sum = 0;  // a closed pixel's areas are scaled to 1
+      for (const SurfaceWeight& surface : found[i]) sum += surface.weight;
+      for (SurfaceWeight& surface : found[i]) surface.weight /= sum;
+    }
+    copy_to_frame(found, tile, frame, weights);
+    return TileResult{{}, {}, {unused}};
+  });
+  return weights;
 }
 
 }  // namespace
 
 FrameResult render_beam(const Trace& trace, const Frame& frame, const BeamOptions& beam, const RunOptions& run) {
-  const BeamFrame state(trace, frame, beam);
-  const std::vector<Surface> framebuffer = beam_framebuffer(beam);
-  FrameResult result = render_tiles(
-      frame, state.triangles, state.setup, kBinSize, run, kPairBytes, [&](const Tile& tile, const TriangleList& list) {
-        StageCounters raster{"conservative_raster"}, fragment{"beam_fragment"}, shading{"shade"}, buffering{"a_buffer"},
-            composition{"compose"}, resolving{"resolve"};
-        std::vector<PixelTriangle> pairs;
-        std::vector<Fragment> fragments;
-        conservative_raster(state.triangles, list, tile, raster, pairs);
-        beam_fragment(state.triangles, pairs, tile, state.options, fragment, fragments);
-        shade(state.colors, fragments, shading, &state.triangles.attributes);
-        const ABuffer buffer = a_buffer(fragments, tile.pixels(), beam.sort, state.bytes.fragment, buffering);
-        PixelCounters counts = count_per_pixel(tile, buffer, fragments);
-        const std::vector<PixelColor> aggregates = compose_tile(state, fragments, buffer, composition, counts);
-        std::vector<bool> full;
-        for (const PixelColor& aggregate : aggregates) full.push_back(aggregate.alpha == 1.0f);
-        count_sorted_composition(run.memory, tile, buffer, fragments, state.bytes.fragment, counts.back().second, full,
-                                 framebuffer, buffering, composition, resolving);
-        return TileResult{resolve(aggregates, frame.background, state.bytes.aggregate, resolving),
-                          std::move(counts),
-                          {raster, fragment, shading, buffering, composition, resolving}};
-      });
-  const auto buffering = std::find_if(result.stages.begin(), result.stages.end(),
-                                      [](const StageCounters& stage) { return stage.stage == "a_buffer"; });
-  result.a_buffer_peak_bytes =
-      a_buffer_bytes(buffering->items_in, std::uint64_t{frame.width} * frame.height, state.bytes.fragment);
-  return result;
+#define BEAMPIPE_RENDER(words, channel)                                                                       \
+  if (beam.positions == 32 * words && (beam.storage == Storage::packed) == std::is_same_v<channel, HalfBits>) \
+    return render_shape<words, channel>(trace, frame, beam, run);
+  BEAMPIPE_STORED_AGGREGATES(BEAMPIPE_RENDER)
+#undef BEAMPIPE_RENDER
+  throw std::invalid_argument("no aggregate of " + std::to_string(beam.positions) + " positions");
 }
 
 std::vector<PixelWeights> beam_weights(const Trace& trace, const Frame& frame, const BeamOptions& beam,
                                        const RunOptions& run) {
-  BeamOptions exact = beam;  // weights as they are before colours are packed
-  exact.storage = Storage::float32;
-  exact.paper_storage = PaperStorage::float32;
-  const BeamFrame state(trace, frame, exact);
-  std::vector<PixelWeights> weights(std::size_t{frame.width} * frame.height);
-  render_tiles(
-      frame, state.triangles, state.setup, kBinSize, run, kPairBytes, [&](const Tile& tile, const TriangleList& list) {
-        StageCounters unused{"weights"};
-        std::vector<PixelTriangle> pairs;
-        std::vector<Fragment> fragments;
-        conservative_raster(state.triangles, list, tile, unused, pairs);
-        beam_fragment(state.triangles, pairs, tile, state.options, unused, fragments);
-        const ABuffer buffer = a_buffer(fragments, tile.pixels(), beam.sort, state.bytes.fragment, unused);
-        // Composition is linear in colour. A fragment that alone has a channel, as 1, leaves its weight there: three
-        // fragments of each pixel at a time.
-        std::vector<PixelWeights> found(tile.pixels());
-        std::uint32_t deepest = 0;
-        for (std::size_t pixel = 0; pixel < tile.pixels(); ++pixel) deepest = std::max(deepest, buffer.depth_of(pixel));
-        for (std::uint32_t first = 0; first < deepest; first += 3) {
-          for (std::size_t pixel = 0; pixel < tile.pixels(); ++pixel) {
-            for (std::uint32_t k = 0; k < buffer.depth_of(pixel); ++k) {
-              Fragment& fragment = fragments[buffer.fragments[buffer.first[pixel] + k]];
-              fragment.color = glm::vec3(0.0f);
-              if (k >= first && k < first + 3) fragment.color[static_cast<int>(k - first)] = fragment.alpha;
-            }
-          }
-          PixelCounters counts = count_per_pixel(tile, buffer, fragments);
-          const std::vector<PixelColor> composed = compose_tile(state, fragments, buffer, unused, counts);
-          for (std::size_t pixel = 0; pixel < tile.pixels(); ++pixel) {
-            for (std::uint32_t k = first; k < std::min(first + 3, buffer.depth_of(pixel)); ++k) {
-              const Fragment& fragment = fragments[buffer.fragments[buffer.first[pixel] + k]];
-              const float weight = composed[pixel].color[static_cast<int>(k - first)];
-              found[pixel].push_back({fragment.triangle, weight, beam.rules == Rules::conserve ? 0 : k, fragment.tiny});
-            }
-          }
-        }
-        copy_to_frame(found, tile, frame, weights);
-        return TileResult{{}, {}, {unused}};
-      });
-  return weights;
+  switch (beam.positions) {
+    case 32:
+      return weights_of<1>(trace, frame, beam, run);
+    case 64:
+      return weights_of<2>(trace, frame, beam, run);
+    case 128:
+      return weights_of<4>(trace, frame, beam, run);
+    default:
+      return weights_of<8>(trace, frame, beam, run);
+  }
 }
 
 std::vector<Surface> beam_framebuffer(const BeamOptions& beam) {
-  const Surface color{"color", "RGB16F", kAggregateColorBytes}, float_color{"color", "RGB32F", 12};
-  const Surface coverage{"coverage", "R32F", 4};
   const auto mask_bytes = static_cast<std::uint32_t>(beam.positions) / 8;
-  const Surface mask{"mask", "R32UI x " + std::to_string(mask_bytes / 4), mask_bytes};
-  const Surface plane{"depth_plane", "RGB32F", 12}, thickness{"thickness", "R32F", 4}, range{"depth_range", "RG32F", 8};
-  switch (beam.rules) {
-    case Rules::conserve:
-      return {coverage, mask, beam.storage == Storage::packed ? color : float_color};
-    case Rules::over:
-      return {coverage, color};
-    case Rules::paper:
-      break;
-  }
-  switch (beam.paper_storage) {
-    case PaperStorage::slides:
-      return {coverage, mask, {"depth_plane", "RGBA32F", 16}, thickness, range, color};
-    case PaperStorage::text:
-      return {coverage, mask, {"depth_plane", "R32F + RG16", 8}, {"thickness", "R16", 2}, range, color};
-    case PaperStorage::float32:
-      break;
-  }
-  return {coverage, mask, plane, thickness, range, float_color};
+  return {{"coverage", "R32F", 4},
+          {"mask", "R32UI x " + std::to_string(mask_bytes / 4), mask_bytes},
+          beam.storage == Storage::packed ? Surface{"color", "RGB16F", 6} : Surface{"color", "RGB32F", 12}};
 }
 
 }  // namespace beampipe

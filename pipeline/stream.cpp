@@ -37,8 +37,12 @@ FrameResult render_shape(const Trace& trace, const Frame& frame, const StreamOpt
   const SetupTriangles triangles = vertex_setup(trace, frame, setup);
   const std::vector<glm::vec3> colors = shade_triangles(triangles, frame.light_direction);
   const PositionSet positions(cell_patterns(stream.positions));
-  const BeamFragmentOptions options{MaskSource::exact, positions.patterns, nullptr, streaming_fragment_bytes(Words),
-                                    false};
+  const PositionGrid grid(stream.positions);
+  BeamFragmentOptions options;
+  options.mask = MaskSource::grid;
+  options.grid = &grid;
+  options.fragment_bytes = streaming_fragment_bytes(Words);
+  options.clipped_depth = false;
 
   return render_tiles(frame, triangles, setup, kBinSize, run, [&](const Tile& tile, const TriangleList& list) {
     StageCounters raster{"conservative_raster"}, fragment{"beam_fragment"}, claiming{"claim"}, shading{"shade"},
@@ -51,12 +55,13 @@ FrameResult render_shape(const Trace& trace, const Frame& frame, const StreamOpt
     const std::vector<Surface> framebuffer = stream_framebuffer(stream);
     AggregateMemory state(run.memory, order, {framebuffer.begin(), framebuffer.end() - 1});
     AggregateMemory color(run.memory, order, {framebuffer.back()});
+    ClosedDepth closed(tile);
     Tile box = tile;
     for (int pass = 1; box.x0 < box.x1; ++pass) {
       for (std::size_t i = 0; i < pixels.size(); ++i) passes[i] += is_unfinished(pixels[i]);
       for_each_batch(list, [&](const TriangleList& batch) {
         pairs.clear(), fragments.clear();
-        conservative_raster(triangles, batch, box, raster, pairs);
+        conservative_raster(triangles, batch, box, raster, pairs, &closed);
         keep_unfinished(pixels, tile, pairs);
         beam_fragment(triangles, pairs, tile, options, fragment, fragments);
         for (const Fragment& item : fragments) ++counts[item.pixel];
@@ -65,7 +70,7 @@ FrameResult render_shape(const Trace& trace, const Frame& frame, const StreamOpt
       });
       state.flush({}, claiming);
       fragments.clear();
-      beam_fragment(triangles, owners(pixels, tile), tile, options, fragment, fragments);
+      beam_fragment(triangles, owners(triangles, pixels, tile), tile, options, fragment, fragments);
       shade_visible(colors, fragments, shading);
       settle(fragments, pass == stream.passes, settling, pixels);
       for (const Fragment& item : fragments) {

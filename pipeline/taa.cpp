@@ -36,7 +36,8 @@ FrameResult render_taa(const Trace& trace, const Frame& frame, const TaaOptions&
       render_tiles(frame, triangles, setup, kBinSize, run, [&](const Tile& tile, const TriangleList& list) {
         StageCounters moving{"motion"};
         SampleTile surface(tile, sampling, kVisibilityBytes);
-        TileResult one = visibility_tile(triangles, list, tile, sampling, colors, frame.background, run.memory, surface);
+        TileResult one =
+            visibility_tile(triangles, list, tile, sampling, colors, frame.background, run.memory, surface);
         copy_to_frame(one.image, tile, frame, current.color);
         copy_to_frame(motion(surface, tile, frame, triangles.draws, to_last, moving), tile, frame, current.motion);
         stream(run.memory, tile.pixels() * (kSampleDepthBytes + kVisibilityBytes), moving);

@@ -4,6 +4,7 @@
 #include "pipeline/beam.h"
 #include "pipeline/dvm.h"
 #include "pipeline/msaa.h"
+#include "pipeline/published.h"
 #include "pipeline/reference.h"
 #include "pipeline/spec.h"
 #include "pipeline/stream.h"
@@ -40,40 +41,42 @@ MergeRules merge_rules(Spec& spec) {
   return rules;
 }
 
+Technique make_published(Spec& spec) {
+  PublishedOptions options;
+  options.mask = spec.choice<MaskSource>("mask", {{"table", MaskSource::table}, {"exact", MaskSource::exact}});
+  options.sort = spec.choice<SortKey>("sort", {{"centroid", SortKey::centroid}, {"nearest", SortKey::nearest}});
+  options.tiny_positions = spec.choice<int>("tiny", {{"1", 1}, {"3", 3}});
+  options.merge = merge_rules(spec);
+  options.storage = spec.choice<PaperStorage>(
+      "storage", {{"slides", PaperStorage::slides}, {"text", PaperStorage::text}, {"float32", PaperStorage::float32}});
+  return {spec.text(), published_framebuffer(options), 0, bind_options(render_published, options),
+          bind_options(published_weights, options)};
+}
+
+Technique make_stream(Spec& spec) {
+  StreamOptions options;
+  options.positions = spec.choice<int>("bits", {{"128", 128}, {"256", 256}, {"64", 64}, {"32", 32}});
+  options.layers = spec.choice<int>("layers", {{"5", 5}, {"1", 1}});
+  options.passes = static_cast<int>(spec.number("passes", 0, 1, 1000));
+  return {spec.text(), stream_framebuffer(options), 0, bind_options(render_stream, options)};
+}
+
 Technique make_beam(Spec& spec) {
+  if (spec.choice<bool>("rules", {{"conserve", false}, {"paper", true}})) return make_published(spec);
+  if (spec.choice<bool>("order", {{"sort", false}, {"stream", true}})) return make_stream(spec);
   BeamOptions options;
-  options.rules = spec.choice<Rules>("rules", {{"conserve", Rules::conserve}, {"paper", Rules::paper}});
-  if (options.rules == Rules::paper) {
-    options.positions = 32;
-    options.mask = spec.choice<MaskSource>("mask", {{"table", MaskSource::table}, {"exact", MaskSource::exact}});
-    options.sort = spec.choice<SortKey>("sort", {{"centroid", SortKey::centroid}, {"nearest", SortKey::nearest}});
-    options.tiny_positions = spec.choice<int>("tiny", {{"1", 1}, {"3", 3}});
-    options.merge = merge_rules(spec);
-    options.paper_storage = spec.choice<PaperStorage>(
-        "storage",
-        {{"slides", PaperStorage::slides}, {"text", PaperStorage::text}, {"float32", PaperStorage::float32}});
-  } else if (spec.choice<bool>("order", {{"sort", false}, {"stream", true}})) {
-    StreamOptions stream;
-    stream.positions = spec.choice<int>("bits", {{"128", 128}, {"256", 256}, {"64", 64}, {"32", 32}});
-    stream.layers = spec.choice<int>("layers", {{"5", 5}, {"1", 1}});
-    stream.passes = static_cast<int>(spec.number("passes", 0, 1, 1000));
-    return {spec.text(), stream_framebuffer(stream), 0, bind_options(render_stream, stream)};
-  } else {
-    options.positions = spec.choice<int>("bits", {{"256", 256}, {"128", 128}, {"64", 64}, {"32", 32}});
-    options.storage = spec.choice<Storage>("storage", {{"packed", Storage::packed}, {"float32", Storage::float32}});
-  }
+  options.positions = spec.choice<int>("bits", {{"256", 256}, {"128", 128}, {"64", 64}, {"32", 32}});
+  options.storage = spec.choice<Storage>("storage", {{"packed", Storage::packed}, {"float32", Storage::float32}});
   return {spec.text(), beam_framebuffer(options), 0, bind_options(render_beam, options),
           bind_options(beam_weights, options)};
 }
 
 Technique make_alpha(Spec& spec) {
-  BeamOptions options;
+  PublishedOptions options;
   options.rules = Rules::over;
-  options.positions = 0;
   options.mask = MaskSource::none;
-  options.sort = SortKey::centroid;
-  return {spec.text(), beam_framebuffer(options), 0, bind_options(render_beam, options),
-          bind_options(beam_weights, options)};
+  return {spec.text(), published_framebuffer(options), 0, bind_options(render_published, options),
+          bind_options(published_weights, options)};
 }
 
 Technique make_z3(Spec& spec) {

@@ -27,8 +27,8 @@ void write_pixels(const std::vector<std::uint32_t>& pixels, TileSurface& to, Sta
   to.flush(counters);
 }
 
-// By a pixel's triangle number its attributes are fetched from memory: a request each, and each triangle of the bin once
-// from DRAM.
+// By a pixel's triangle number its attributes are fetched from memory: a request each, and each triangle of the bin
+// once from DRAM.
 void fetch_attributes(const MemoryParameters& memory, const SampleTile& surface,
                       const std::vector<std::uint32_t>& pixels, StageCounters& counters) {
   if (!memory.modelled) return;

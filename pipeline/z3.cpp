@@ -20,7 +20,12 @@ FrameResult render_shape(const Trace& trace, const Frame& frame, const Z3Options
   const SetupTriangles triangles = vertex_setup(trace, frame, setup);
   const std::vector<glm::vec3> colors = shade_triangles(triangles, frame.light_direction);
   const PositionSet positions(cell_patterns(z3.positions));
-  const BeamFragmentOptions options{MaskSource::exact, positions.patterns, nullptr, 4 + 4 * Words + 12, false};
+  const PositionGrid grid(z3.positions);
+  BeamFragmentOptions options;
+  options.mask = MaskSource::grid;
+  options.grid = &grid;
+  options.fragment_bytes = 4 + 4 * Words + 12;
+  options.clipped_depth = false;
 
   return render_tiles(frame, triangles, setup, kBinSize, run, [&](const Tile& tile, const TriangleList& list) {
     StageCounters raster{"conservative_raster"}, fragment{"beam_fragment"}, shading{"shade"}, composition{"compose"},

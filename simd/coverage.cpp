@@ -54,29 +54,58 @@ HWY_INLINE void add_edge(V v0, V v1, V a, V b, V c, V c_right, EdgeSums& sums) {
   sums.moment_v = hn::Add(sums.moment_v, hn::Mul(sign, moment_v));
 }
 
-void coverage_kernel(const CoverageInput<float>* in, std::size_t count, Coverage<float>* out) {
+// Edge values, exact in double precision, rounded to float; into columns of `lanes`.
+struct EdgeColumns {
+  float a[hn::MaxLanes(D())], b[hn::MaxLanes(D())], c[hn::MaxLanes(D())], c_right[hn::MaxLanes(D())];
+};
+
+HWY_INLINE void set_edge(const std::int32_t* x0, const std::int32_t* y0, const std::int32_t* x1, const std::int32_t* y1,
+                         std::size_t lanes, EdgeColumns& edge) {
+  const hn::ScalableTag<double> d;
+  const hn::Rebind<std::int32_t, decltype(d)> di;
+  const hn::Rebind<float, decltype(d)> df;
+  const auto unit = hn::Set(df, 1.0f / kSubpixelUnits);
+  const auto unit_area = hn::Set(df, 1.0f / kSubpixelUnits / kSubpixelUnits);
+  for (std::size_t i = 0; i < lanes; i += hn::Lanes(d)) {
+    const auto at = [&](const std::int32_t* column) { return hn::PromoteTo(d, hn::Load(di, column + i)); };
+    const auto px = at(x0), py = at(y0);
+    const auto a = hn::Sub(py, at(y1)), b = hn::Sub(at(x1), px);
+    const auto c = hn::Sub(hn::Zero(d), hn::Add(hn::Mul(a, px), hn::Mul(b, py)));
+    const auto c_right = hn::Add(c, hn::Mul(a, hn::Set(d, double{kSubpixelUnits})));
+    hn::Store(hn::Mul(hn::DemoteTo(df, a), unit), df, edge.a + i);
+    hn::Store(hn::Mul(hn::DemoteTo(df, b), unit), df, edge.b + i);
+    hn::Store(hn::Mul(hn::DemoteTo(df, c), unit_area), df, edge.c + i);
+    hn::Store(hn::Mul(hn::DemoteTo(df, c_right), unit_area), df, edge.c_right + i);
+  }
+}
+
+void coverage_kernel(const TriangleInPixel* in, std::size_t count, Coverage<float>* out) {
   const D d;
+  const hn::RebindToSigned<D> di;
   const std::size_t lanes = hn::Lanes(d);
-  const V zero = hn::Zero(d), one = hn::Set(d, 1.0f), half = hn::Set(d, 0.5f);
-  constexpr std::size_t kInputs = sizeof(CoverageInput<float>) / sizeof(float);
+  const V zero = hn::Zero(d), one = hn::Set(d, 1.0f), unit = hn::Set(d, 1.0f / kSubpixelUnits);
+  constexpr std::size_t kInputs = sizeof(TriangleInPixel) / sizeof(float);
   constexpr std::size_t kOutputs = sizeof(Coverage<float>) / sizeof(float);
-  HWY_ALIGN float columns[kInputs * hn::MaxLanes(d)];
+  HWY_ALIGN std::int32_t columns[kInputs * hn::MaxLanes(d)];  // x of the three vertices, then y
   HWY_ALIGN float results[kOutputs * hn::MaxLanes(d)];
+  HWY_ALIGN EdgeColumns edge;
   for (std::size_t first = 0; first < count; first += lanes) {
     const std::size_t n = HWY_MIN(lanes, count - first);
     rows_to_columns(in + first, n, lanes, columns);
-    const auto column = [&](std::size_t i) { return hn::Load(d, columns + i * lanes); };
-    // Columns in the order of CoverageInput's members.
-    V u[3], v[3], a[3], b[3], corner[3][4], vertex_z[3];
+    const auto column = [&](std::size_t i) { return columns + i * lanes; };
+    V u[3], v[3];
     for (std::size_t k = 0; k < 3; ++k) {
-      u[k] = column(k), v[k] = column(3 + k), a[k] = column(6 + k), b[k] = column(9 + k);
-      for (std::size_t i = 0; i < 4; ++i) corner[k][i] = column(12 + 4 * k + i);
-      vertex_z[k] = column(27 + k);
+      u[k] = hn::Mul(hn::ConvertTo(d, hn::Load(di, column(k))), unit);
+      v[k] = hn::Mul(hn::ConvertTo(d, hn::Load(di, column(3 + k))), unit);
     }
-    const V z = column(24), dzdu = column(25), dzdv = column(26);
 
     EdgeSums sums{zero, zero, zero};
-    for (int k = 0; k < 3; ++k) add_edge(v[k], v[(k + 1) % 3], a[k], b[k], corner[k][0], corner[k][1], sums);
+    for (std::size_t k = 0; k < 3; ++k) {
+      const std::size_t next = (k + 1) % 3;
+      set_edge(column(k), column(3 + k), column(next), column(3 + next), lanes, edge);
+      add_edge(v[k], v[next], hn::Load(d, edge.a), hn::Load(d, edge.b), hn::Load(d, edge.c), hn::Load(d, edge.c_right),
+               sums);
+    }
     const V alpha = hn::Min(hn::Max(sums.area, zero), one);
 
     const V safe_area = hn::IfThenElse(hn::Gt(sums.area, zero), sums.area, one);
@@ -85,46 +114,7 @@ void coverage_kernel(const CoverageInput<float>* in, std::size_t count, Coverage
       const V high = hn::Min(hn::Max(hn::Max(x[0], x[1]), x[2]), one);
       return hn::Min(hn::Max(hn::Div(moment, safe_area), low), high);
     };
-    const V centroid_u = inside(sums.moment_u, u), centroid_v = inside(sums.moment_v, v);
-
-    const V z_nearest = hn::Min(hn::Min(vertex_z[0], vertex_z[1]), vertex_z[2]);
-    const V z_farthest = hn::Max(hn::Max(vertex_z[0], vertex_z[1]), vertex_z[2]);
-    const auto plane = [&](V at_u, V at_v) {
-      const V at = hn::Add(hn::Add(z, hn::Mul(dzdu, hn::Sub(at_u, half))), hn::Mul(dzdv, hn::Sub(at_v, half)));
-      return hn::Min(hn::Max(at, z_nearest), z_farthest);
-    };
-    V z_min = z_farthest, z_max = z_nearest;
-    const auto include = [&](M valid, V at) {
-      z_min = hn::IfThenElse(valid, hn::Min(z_min, at), z_min);
-      z_max = hn::IfThenElse(valid, hn::Max(z_max, at), z_max);
-    };
-    for (int k = 0; k < 3; ++k) {
-      const M inside_u = hn::And(hn::Ge(u[k], zero), hn::Le(u[k], one));
-      const M inside_v = hn::And(hn::Ge(v[k], zero), hn::Le(v[k], one));
-      include(hn::And(inside_u, inside_v), vertex_z[k]);
-    }
-    const V corner_u[4] = {zero, one, zero, one}, corner_v[4] = {zero, zero, one, one};
-    for (int i = 0; i < 4; ++i) {
-      const M covered =
-          hn::And(hn::And(hn::Ge(corner[0][i], zero), hn::Ge(corner[1][i], zero)), hn::Ge(corner[2][i], zero));
-      include(covered, plane(corner_u[i], corner_v[i]));
-    }
-    for (int k = 0; k < 3; ++k) {
-      const int next = (k + 1) % 3;
-      const auto crossing = [&](int from, int to) {
-        const V difference = hn::Sub(corner[k][from], corner[k][to]);
-        return hn::Div(corner[k][from], hn::IfThenElse(hn::Eq(difference, zero), one, difference));
-      };
-      const auto differ = [&](V x, V y, V border) { return hn::Xor(hn::Lt(x, border), hn::Lt(y, border)); };
-      for (int side = 0; side < 2; ++side) {
-        const V border = side == 0 ? zero : one;
-        include(hn::And(differ(u[k], u[next], border), differ(corner[k][side], corner[k][side + 2], zero)),
-                plane(border, crossing(side, side + 2)));
-        include(hn::And(differ(v[k], v[next], border), differ(corner[k][2 * side], corner[k][2 * side + 1], zero)),
-                plane(crossing(2 * side, 2 * side + 1), border));
-      }
-    }
-    const V outputs[kOutputs] = {alpha, centroid_u, centroid_v, z_min, z_max};
+    const V outputs[kOutputs] = {alpha, inside(sums.moment_u, u), inside(sums.moment_v, v)};
     for (std::size_t i = 0; i < kOutputs; ++i) hn::Store(outputs[i], d, results + i * lanes);
     columns_to_rows(results, n, lanes, out + first);
   }
@@ -137,7 +127,7 @@ HWY_AFTER_NAMESPACE();
 #if HWY_ONCE
 namespace beampipe {
 HWY_EXPORT(coverage_kernel);
-void coverage(const CoverageInput<float>* in, std::size_t count, Coverage<float>* out) {
+void coverage(const TriangleInPixel* in, std::size_t count, Coverage<float>* out) {
   HWY_DYNAMIC_DISPATCH(coverage_kernel)(in, count, out);
 }
 }  // namespace beampipe

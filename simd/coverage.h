@@ -1,35 +1,24 @@
-// Analytic coverage of a pixel by a triangle: area, centroid and depth range of the triangle clipped to the pixel.
+// Analytic coverage of a pixel by a triangle: area and centroid of the triangle clipped to the pixel.
 //
-// Pixel-local coordinates: u to the right, v down, the pixel is [0,1] x [0,1]. Edge k runs from vertex k to vertex
-// (k + 1) % 3 and is E_k(u,v) = a_k u + b_k v + c_k, positive inside. Depth is z + dzdu (u - 1/2) + dzdv (v - 1/2).
+// Pixel-local coordinates: u to the right, v down, the pixel is [0,1] x [0,1]. Edge k is E_k(u,v) = a_k u + b_k v +
+// c_k, positive inside.
 #pragma once
 
 #include <cstddef>
 
+#include "simd/pixel_triangle.h"
 #include "simd/scalar.h"
 
 namespace beampipe {
-
-// One (pixel, triangle). Vertices and slopes are exact: integers in 1/256 px scaled by powers of two. Corner values are
-// the exact integers rounded to float, in the order (0,0), (1,0), (0,1), (1,1); reversing an edge negates them exactly.
-template <class Float>
-struct CoverageInput {
-  Float u[3], v[3];     // vertices, pixels
-  Float a[3], b[3];     // edge slopes
-  Float corner[3][4];   // edge values at the pixel's corners
-  Float z, dzdu, dzdv;  // depth plane: at the pixel's centre, and its change per pixel
-  Float vertex_z[3];
-};
 
 template <class Float>
 struct Coverage {
   Float alpha;                   // area, 0..1; absolute error below 5e-7
   Float centroid_u, centroid_v;  // of the clipped triangle, inside the pixel
-  Float z_min, z_max;            // over the clipped triangle
 };
 
 // out[i] = coverage of in[i]; lanes are across i. Bit-identical to coverage_scalar on every target.
-void coverage(const CoverageInput<float>* in, std::size_t count, Coverage<float>* out);
+void coverage(const TriangleInPixel* in, std::size_t count, Coverage<float>* out);
 
 // ---- Scalar twin: one lane, also for counting numbers ----
 
@@ -68,68 +57,35 @@ EdgeIntegral<Float> edge_integral(Float v0, Float v1, Float a, Float b, Float c,
   return {sign * area, sign * moment_u, sign * moment_v};
 }
 
-template <class Float>
-Coverage<Float> coverage_scalar(const CoverageInput<Float>& in) {
-  const Float zero(0.0f), one(1.0f), half(0.5f);
+// Edge values are exact integers before they are rounded to float, so that reversing an edge negates them exactly.
+template <class Int, class Float>
+Coverage<Float> coverage_scalar(const PixelTriangleOf<Int>& in) {
+  const Float zero(0.0f), one(1.0f), unit(1.0f / kSubpixelUnits), unit_area(1.0f / kSubpixelUnits / kSubpixelUnits);
+  Float u[3], v[3];
+  for (int k = 0; k < 3; ++k) u[k] = to_float(in.x[k]) * unit, v[k] = to_float(in.y[k]) * unit;
   Float area = zero, moment_u = zero, moment_v = zero;
   for (int k = 0; k < 3; ++k) {
-    const EdgeIntegral<Float> edge =
-        edge_integral(in.v[k], in.v[(k + 1) % 3], in.a[k], in.b[k], in.corner[k][0], in.corner[k][1]);
-    area = area + edge.area;
-    moment_u = moment_u + edge.moment_u;
-    moment_v = moment_v + edge.moment_v;
+    const EdgeInPixel<Int> edge = edge_in_pixel(in, k);
+    const Float c = to_float(edge.c) * unit_area;
+    const Float c_right = to_float(edge.c + edge.a * Int(kSubpixelUnits)) * unit_area;
+    const EdgeIntegral<Float> integral =
+        edge_integral(v[k], v[(k + 1) % 3], to_float(edge.a) * unit, to_float(edge.b) * unit, c, c_right);
+    area = area + integral.area;
+    moment_u = moment_u + integral.moment_u;
+    moment_v = moment_v + integral.moment_v;
   }
   Coverage<Float> out;
   out.alpha = lesser(greater(area, zero), one);
 
   // The centroid, kept inside the part of the pixel that the triangle's bounds reach: the moments of a speck are noise.
   const Float safe_area = select(area > zero, area, one);
-  const Float u_low = greater(lesser(lesser(in.u[0], in.u[1]), in.u[2]), zero);
-  const Float u_high = lesser(greater(greater(in.u[0], in.u[1]), in.u[2]), one);
-  const Float v_low = greater(lesser(lesser(in.v[0], in.v[1]), in.v[2]), zero);
-  const Float v_high = lesser(greater(greater(in.v[0], in.v[1]), in.v[2]), one);
-  out.centroid_u = lesser(greater(moment_u / safe_area, u_low), u_high);
-  out.centroid_v = lesser(greater(moment_v / safe_area, v_low), v_high);
-
-  // Depth range: over the vertices of the clipped polygon, which are the triangle's vertices inside the pixel, the
-  // pixel's corners inside the triangle, and the crossings of edges with the pixel's border.
-  const Float z_nearest = lesser(lesser(in.vertex_z[0], in.vertex_z[1]), in.vertex_z[2]);
-  const Float z_farthest = greater(greater(in.vertex_z[0], in.vertex_z[1]), in.vertex_z[2]);
-  const auto plane = [&](Float u, Float v) {
-    const Float z = in.z + in.dzdu * (u - half) + in.dzdv * (v - half);
-    return lesser(greater(z, z_nearest), z_farthest);
+  const auto inside = [&](Float moment, const Float* x) {
+    const Float low = greater(lesser(lesser(x[0], x[1]), x[2]), zero);
+    const Float high = lesser(greater(greater(x[0], x[1]), x[2]), one);
+    return lesser(greater(moment / safe_area, low), high);
   };
-  out.z_min = z_farthest, out.z_max = z_nearest;
-  const auto include = [&](bool valid, Float z) {
-    out.z_min = select(valid, lesser(out.z_min, z), out.z_min);
-    out.z_max = select(valid, greater(out.z_max, z), out.z_max);
-  };
-  for (int k = 0; k < 3; ++k) {
-    const bool inside_u = (in.u[k] >= zero) & (in.u[k] <= one), inside_v = (in.v[k] >= zero) & (in.v[k] <= one);
-    include(inside_u & inside_v, in.vertex_z[k]);
-  }
-  const Float corner_u[4] = {zero, one, zero, one}, corner_v[4] = {zero, zero, one, one};
-  for (int i = 0; i < 4; ++i) {
-    const bool inside = (in.corner[0][i] >= zero) & (in.corner[1][i] >= zero) & (in.corner[2][i] >= zero);
-    include(inside, plane(corner_u[i], corner_v[i]));
-  }
-  for (int k = 0; k < 3; ++k) {
-    const int next = (k + 1) % 3;
-    const Float* corner = in.corner[k];
-    const auto crossing = [&](int from, int to) {  // parameter 0..1 along the border between two corners
-      const Float difference = corner[from] - corner[to];
-      return corner[from] / select(difference == zero, one, difference);
-    };
-    for (int side = 0; side < 2; ++side) {  // u = 0 and u = 1, then v = 0 and v = 1
-      const Float border = side == 0 ? zero : one;
-      const bool straddles_u = (in.u[k] < border) != (in.u[next] < border);
-      const bool along_v = (corner[side] < zero) != (corner[side + 2] < zero);
-      include(straddles_u & along_v, plane(border, crossing(side, side + 2)));
-      const bool straddles_v = (in.v[k] < border) != (in.v[next] < border);
-      const bool along_u = (corner[2 * side] < zero) != (corner[2 * side + 1] < zero);
-      include(straddles_v & along_u, plane(crossing(2 * side, 2 * side + 1), border));
-    }
-  }
+  out.centroid_u = inside(moment_u, u);
+  out.centroid_v = inside(moment_v, v);
   return out;
 }
 

@@ -17,12 +17,12 @@ namespace beampipe {
 namespace HWY_NAMESPACE {
 
 // Column i starts at columns[i * lanes]; lanes past `rows` repeat the last row, so that no lane holds garbage.
-template <class Row>
+template <class Row, class Member>
 HWY_INLINE void rows_to_columns(const Row* HWY_RESTRICT row_data, std::size_t rows, std::size_t lanes,
-                                float* HWY_RESTRICT columns) {
-  constexpr std::size_t kWidth = sizeof(Row) / sizeof(float);
+                                Member* HWY_RESTRICT columns) {
+  constexpr std::size_t kWidth = sizeof(Row) / sizeof(Member);
   for (std::size_t lane = 0; lane < lanes; ++lane) {
-    float row[kWidth];
+    Member row[kWidth];
     std::memcpy(row, row_data + (lane < rows ? lane : rows - 1), sizeof row);
     for (std::size_t i = 0; i < kWidth; ++i) columns[i * lanes + lane] = row[i];
   }

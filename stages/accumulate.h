@@ -18,7 +18,8 @@ enum class AccumulatorFormat { unorm8, fp16, fp32 };  // four channels; every su
 enum class DoubleCounting {
   none,      // it is added as well
   stencil,   // a stencil value per sample lets only the first pass
-  saturate,  // alpha sums up the shares, and a fragment adds no more than is missing to `limit` (saturated alpha blending)
+  saturate,  // alpha sums up the shares, and a fragment adds no more than is missing to `limit` (saturated alpha
+             // blending)
 };
 
 std::uint32_t accumulator_bytes(AccumulatorFormat format);

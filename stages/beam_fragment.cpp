@@ -1,5 +1,7 @@
 #include "stages/beam_fragment.h"
 
+#include <algorithm>
+#include <array>
 #include <bit>
 #include <cmath>
 
@@ -12,19 +14,19 @@
 namespace beampipe {
 namespace {
 
-CoverageInput<float> coverage_input(const SetupTriangle& triangle, const Edge (&edges)[3], std::int32_t x,
-                                    std::int32_t y) {
-  CoverageInput<float> in;
-  std::int64_t vertex_x[3], vertex_y[3];
-  EdgeAt<std::int64_t> at[3];
+TriangleInPixel seen_from(const SetupTriangle& triangle, const PixelTriangle& pair) {
+  return in_pixel(triangle.x, triangle.y, pair.x * kSubpixelUnits, pair.y * kSubpixelUnits);
+}
+
+DepthRangeInput<float> depth_range_input(const SetupTriangle& triangle, const TriangleInPixel& narrow,
+                                         const DepthPlane<float>& plane) {
+  DepthRangeInput<float> in;
+  PixelTriangleOf<std::int64_t> wide;
   for (int k = 0; k < 3; ++k) {
-    vertex_x[k] = triangle.x[k], vertex_y[k] = triangle.y[k];
-    at[k] = {edges[k].a, edges[k].b, edges[k].c};
+    wide.x[k] = narrow.x[k], wide.y[k] = narrow.y[k];
     in.vertex_z[k] = triangle.vertex_z[k];
   }
-  set_geometry<std::int64_t, float>(vertex_x, vertex_y, at, std::int64_t{x} * kSubpixelUnits,
-                                    std::int64_t{y} * kSubpixelUnits, in);
-  const DepthPlane<float> plane = pixel_plane(triangle, x, y);
+  set_geometry(wide, in);
   in.z = plane.z, in.dzdu = plane.dzdu, in.dzdv = plane.dzdv;
   return in;
 }
@@ -67,7 +69,6 @@ TableTriangle table_edges(const Edge (&edges)[3], const EdgeDirection (&directio
   return triangle;
 }
 
-// Of those that are not `taken`.
 // One position on the way to the nearest: that of the least distance, if it is free.
 template <class Float, class Index>
 void keep_nearest(Float x, Float y, Float u, Float v, bool is_free, Index index, Float& least, Index& nearest) {
@@ -78,6 +79,7 @@ void keep_nearest(Float x, Float y, Float u, Float v, bool is_free, Index index,
   nearest = select(nearer, index, nearest);
 }
 
+// Of those that are not `taken`.
 std::size_t nearest_position(const std::vector<SamplePattern>& positions, float u, float v, const WideMask& taken) {
   std::uint32_t nearest = 0;
   float least = 4.0f;  // more than the pixel's diagonal, squared
@@ -100,23 +102,45 @@ EdgeAt<CountedInt> counted_edge(OperationCounts& counts) {
   return {one, one, one};
 }
 
+PixelTriangleOf<CountedInt> counted_triangle(OperationCounts& counts) {
+  const CountedInt zero(0, counts), vertices[3] = {zero, zero, zero};
+  return in_pixel(vertices, vertices, zero, zero);
+}
+
 // Of a (pixel, triangle): geometry, depth at the centre, coverage.
 OperationCounts coverage_cost() {
   return count_operations([](OperationCounts& counts) {
-    CoverageInput<CountedFloat> in;
-    const CountedFloat one(1.0f, counts);
     const Counted<double> plane(1.0, counts);
-    const CountedInt zero(0, counts), vertices[3] = {zero, zero, zero};
-    const EdgeAt<CountedInt> edges[3] = {counted_edge(counts), counted_edge(counts), counted_edge(counts)};
-    set_geometry(vertices, vertices, edges, zero, zero, in);
-    in.z = to_float(plane_at(plane, plane, plane, plane, plane, plane, plane));
-    in.dzdu = in.dzdv = in.vertex_z[0] = in.vertex_z[1] = in.vertex_z[2] = one;
-    coverage_scalar(in);
+    to_float(plane_at(plane, plane, plane, plane, plane, plane, plane));
+    coverage_scalar<CountedInt, CountedFloat>(counted_triangle(counts));
   });
 }
 
+OperationCounts clipped_depth_cost() {
+  return count_operations([](OperationCounts& counts) {
+    PixelTriangleOf<CountedInt> triangle;
+    DepthRangeInput<CountedFloat> in;
+    for (int k = 0; k < 3; ++k) triangle.x[k] = triangle.y[k] = CountedInt(0, counts);
+    set_geometry(triangle, in);
+    in.z = in.dzdu = in.dzdv = in.vertex_z[0] = in.vertex_z[1] = in.vertex_z[2] = CountedFloat(1.0f, counts);
+    depth_range_scalar(in);
+  });
+}
+
+OperationCounts grid_mask_cost(const PositionGrid& grid) {
+  const auto count_for = [](int positions) {
+    return count_operations([&](OperationCounts& counts) {
+      PixelTriangleOf<CountedInt> triangle;
+      for (int k = 0; k < 3; ++k) triangle.x[k] = triangle.y[k] = CountedInt(0, counts);
+      position_mask_scalar(triangle, PositionGrid(positions));
+    });
+  };
+  static const std::array costs{count_for(32), count_for(64), count_for(128), count_for(256)};
+  return costs[static_cast<std::size_t>(std::countr_zero(static_cast<unsigned>(grid.count() / 32)))];
+}
+
 OperationCounts table_mask_cost(const MaskTable& table) {
-  return count_operations([&](OperationCounts& counts) {
+  static const OperationCounts cost = count_operations([&](OperationCounts& counts) {
     const CountedInt zero(0, counts);
     TableTriangleOf<Counted<std::int32_t>, Counted<std::uint32_t>, CountedFloat> triangle;
     for (auto& edge : triangle.edges) {
@@ -126,6 +150,7 @@ OperationCounts table_mask_cost(const MaskTable& table) {
     }
     table_mask_scalar(triangle, table);
   });
+  return cost;
 }
 
 OperationCounts nearest_cost() {  // per position
@@ -139,88 +164,133 @@ OperationCounts nearest_cost() {  // per position
 }
 
 OperationCounts exact_mask_cost(const std::vector<SamplePattern>& positions) {
-  return count_operations([&](OperationCounts& counts) {
-    const CountedInt zero(0, counts), slopes[3] = {zero, zero, zero};
-    CountedInt corner[3];
-    for (CountedInt& value : corner) value = owned_edge(counted_edge(counts), zero, zero, zero);
-    for (const SamplePattern& pattern : positions) sample_mask_scalar(slopes, slopes, corner, pattern);
+  static const OperationCounts per_edges = count_operations([](OperationCounts& counts) {
+    const CountedInt zero(0, counts);
+    for (int k = 0; k < 3; ++k) owned_edge(counted_edge(counts), zero, zero, zero);
   });
+  static const OperationCounts per_position = count_operations([](OperationCounts& counts) {
+    const CountedInt zero(0, counts), edges[3] = {zero, zero, zero};
+    sample_mask_scalar(edges, edges, edges, standard_pattern(1));
+  });
+  OperationCounts cost = per_edges;
+  for (const SamplePattern& pattern : positions) cost += per_position * static_cast<std::uint64_t>(pattern.count);
+  return cost;
+}
+
+// What the kernels made of the pairs that are not full, in their order.
+struct Covered {
+  std::vector<Coverage<float>> coverage;
+  std::vector<WideMask> masks;
+  std::vector<DepthRange<float>> depth;  // when it is that of the clipped triangle
+};
+
+Covered cover(const SetupTriangles& triangles, const std::vector<PixelTriangle>& in,
+              const BeamFragmentOptions& options) {
+  std::vector<TriangleInPixel> partial;
+  std::vector<DepthRangeInput<float>> ranges;
+  std::vector<TableTriangle> lookups;
+  std::vector<CellEdges> cells;
+  Edge edges[3] = {};
+  EdgeDirection directions[3] = {};
+  const SetupTriangle* last = nullptr;
+  partial.reserve(in.size());
+  for (const PixelTriangle& pair : in) {
+    if (pair.full && !options.clipped_depth) continue;
+    const SetupTriangle& triangle = triangles.triangles[pair.triangle];
+    partial.push_back(seen_from(triangle, pair));
+    if (options.clipped_depth)
+      ranges.push_back(depth_range_input(triangle, partial.back(), pixel_plane(triangle, pair.x, pair.y)));
+    if (options.mask != MaskSource::table && options.mask != MaskSource::exact) continue;
+    for (int k = 0; k < 3 && last != &triangle; ++k) {
+      edges[k] = edge_of(triangle, k);
+      if (options.mask == MaskSource::table) directions[k] = edge_direction(edges[k]);
+    }
+    last = &triangle;
+    if (options.mask == MaskSource::table) {
+      lookups.push_back(table_edges(edges, directions, pair.x, pair.y));
+    } else {
+      cells.push_back(exact_edges(edges, pair.x, pair.y));
+    }
+  }
+  Covered covered{std::vector<Coverage<float>>(partial.size()), std::vector<WideMask>(partial.size()),
+                  std::vector<DepthRange<float>>(ranges.size())};
+  coverage(partial.data(), partial.size(), covered.coverage.data());
+  depth_range(ranges.data(), ranges.size(), covered.depth.data());
+  if (options.mask == MaskSource::grid)
+    position_masks(partial.data(), partial.size(), *options.grid, covered.masks.data());
+  std::vector<std::uint32_t> words(partial.size());
+  for (std::size_t word = 0; word < options.positions.size(); ++word) {
+    if (options.mask == MaskSource::table) table_masks(lookups.data(), lookups.size(), *options.table, words.data());
+    if (options.mask == MaskSource::exact)
+      sample_masks(cells.data(), cells.size(), options.positions[word], words.data());
+    for (std::size_t i = 0; i < words.size(); ++i) covered.masks[i].words[word] = words[i];
+  }
+  return covered;
+}
+
+std::size_t mask_words(const BeamFragmentOptions& options) {
+  return options.grid ? static_cast<std::size_t>(options.grid->count() / kMaxMaskSamples) : options.positions.size();
+}
+
+// Gives a fragment that covers no position the nearest ones. Returns how many.
+std::uint64_t locate(const BeamFragmentOptions& options, Fragment& fragment) {
+  const auto positions = static_cast<float>(options.positions.size() * kMaxMaskSamples);
+  int k = 0;
+  for (; k < options.tiny_positions && static_cast<float>(k) < fragment.alpha * positions; ++k)
+    fragment.mask.set(nearest_position(options.positions, fragment.centroid_u, fragment.centroid_v, fragment.mask));
+  return static_cast<std::uint64_t>(k);
 }
 
 }  // namespace
 
 void beam_fragment(const SetupTriangles& triangles, const std::vector<PixelTriangle>& in, const Tile& tile,
                    const BeamFragmentOptions& options, StageCounters& counters, std::vector<Fragment>& out) {
-  const bool use_table = options.mask == MaskSource::table, use_tests = options.mask == MaskSource::exact;
-  std::vector<CoverageInput<float>> inputs(in.size());
-  std::vector<TableTriangle> lookups(use_table ? in.size() : 0);
-  std::vector<CellEdges> cells(use_tests ? in.size() : 0);
-  Edge edges[3] = {};
-  EdgeDirection directions[3] = {};
-  for (std::size_t i = 0; i < in.size(); ++i) {
-    const SetupTriangle& triangle = triangles.triangles[in[i].triangle];
-    if (i == 0 || in[i].triangle != in[i - 1].triangle) {
-      for (int k = 0; k < 3; ++k) {
-        edges[k] = edge_of(triangle, k);
-        if (use_table) directions[k] = edge_direction(edges[k]);
-      }
-    }
-    inputs[i] = coverage_input(triangle, edges, in[i].x, in[i].y);
-    if (use_table) {
-      lookups[i] = table_edges(edges, directions, in[i].x, in[i].y);
-    } else if (use_tests) {
-      cells[i] = exact_edges(edges, in[i].x, in[i].y);
-    }
-  }
-  std::vector<Coverage<float>> covered(in.size());
-  std::vector<WideMask> masks(in.size());
-  std::vector<std::uint32_t> words(in.size());
-  coverage(inputs.data(), in.size(), covered.data());
-  for (std::size_t word = 0; word < options.positions.size(); ++word) {
-    if (use_table) {
-      table_masks(lookups.data(), in.size(), *options.table, words.data());
-    } else {
-      sample_masks(cells.data(), in.size(), options.positions[word], words.data());
-    }
-    for (std::size_t i = 0; i < in.size(); ++i) masks[i].words[word] = in[i].full ? ~0u : words[i];
-  }
-
+  const Covered covered = cover(triangles, in, options);
+  WideMask whole;
+  std::fill_n(whole.words.begin(), mask_words(options), ~0u);
   const std::size_t before = out.size();
   std::uint64_t located = 0;
-  for (std::size_t i = 0; i < in.size(); ++i) {
-    const Coverage<float>& c = covered[i];
-    if (!in[i].full && c.alpha <= kZeroArea) continue;
-    Fragment fragment{};
-    fragment.triangle = in[i].triangle;
-    fragment.quad = in[i].quad;
-    fragment.pixel = static_cast<std::uint32_t>((in[i].y - tile.y0) * tile.width() + in[i].x - tile.x0);
-    fragment.front = triangles.triangles[in[i].triangle].front;
-    fragment.centroid_u = in[i].full ? 0.5f : c.centroid_u;
-    fragment.centroid_v = in[i].full ? 0.5f : c.centroid_v;
-    fragment.alpha = in[i].full ? 1.0f : c.alpha;
-    fragment.mask = masks[i];
-    fragment.plane = {inputs[i].z, inputs[i].dzdu, inputs[i].dzdv};
-    fragment.z_min = c.z_min, fragment.z_max = c.z_max;
-    fragment.centroid_z = depth_at(fragment.plane, fragment.centroid_u - 0.5f, fragment.centroid_v - 0.5f);
-    fragment.centroid_z = lesser(greater(fragment.centroid_z, c.z_min), c.z_max);
-    fragment.tiny = options.mask != MaskSource::none && fragment.mask.none();
-    if (fragment.tiny) {
-      const auto positions = static_cast<float>(options.positions.size() * kMaxMaskSamples);
-      for (int k = 0; k < options.tiny_positions && static_cast<float>(k) < fragment.alpha * positions; ++k) {
-        fragment.mask.set(nearest_position(options.positions, fragment.centroid_u, fragment.centroid_v, fragment.mask));
-        ++located;
-      }
+  std::size_t next = 0;
+  out.reserve(before + in.size());
+  for (const PixelTriangle& pair : in) {
+    const std::size_t i = next;
+    next += !pair.full || options.clipped_depth;
+    if (!pair.full && covered.coverage[i].alpha <= kZeroArea) continue;
+    const SetupTriangle& triangle = triangles.triangles[pair.triangle];
+    Fragment& fragment = out.emplace_back();
+    fragment.triangle = pair.triangle;
+    fragment.quad = pair.quad;
+    fragment.pixel = static_cast<std::uint32_t>((pair.y - tile.y0) * tile.width() + pair.x - tile.x0);
+    fragment.front = triangle.front;
+    fragment.plane = pixel_plane(triangle, pair.x, pair.y);
+    if (pair.full) {
+      fragment.alpha = 1.0f, fragment.centroid_u = fragment.centroid_v = 0.5f;
+      fragment.mask = whole;
+    } else {
+      const Coverage<float>& c = covered.coverage[i];
+      fragment.alpha = c.alpha, fragment.centroid_u = c.centroid_u, fragment.centroid_v = c.centroid_v;
+      fragment.mask = covered.masks[i];
     }
-    out.push_back(fragment);
+    fragment.z_min = options.clipped_depth ? covered.depth[i].z_min : pair.nearest;
+    fragment.z_max = options.clipped_depth ? covered.depth[i].z_max : pair.farthest;
+    fragment.centroid_z = depth_at(fragment.plane, fragment.centroid_u - 0.5f, fragment.centroid_v - 0.5f);
+    fragment.centroid_z = lesser(greater(fragment.centroid_z, fragment.z_min), fragment.z_max);
+    fragment.tiny = options.mask != MaskSource::none && fragment.mask.none();
+    if (fragment.tiny) located += locate(options, fragment);
   }
 
+  static const OperationCounts area_cost = coverage_cost(), range_cost = clipped_depth_cost(),
+                               near_cost = nearest_cost();
   counters.items_in += in.size();
   counters.items_out += out.size() - before;
-  counters.ops += coverage_cost() * in.size();
-  if (use_table) counters.ops += table_mask_cost(*options.table) * in.size();
-  if (use_tests) counters.ops += exact_mask_cost(options.positions) * in.size();
-  counters.ops += nearest_cost() * (located * options.positions.size() * kMaxMaskSamples);
-  counters.bytes_read += in.size() * kPixelTriangleBytes;
+  OperationCounts cost = area_cost;
+  if (options.clipped_depth) cost += range_cost;
+  if (options.mask == MaskSource::table) cost += table_mask_cost(*options.table);
+  if (options.mask == MaskSource::exact) cost += exact_mask_cost(options.positions);
+  if (options.mask == MaskSource::grid) cost += grid_mask_cost(*options.grid);
+  counters.ops += cost * covered.coverage.size();
+  counters.ops += near_cost * (located * options.positions.size() * kMaxMaskSamples);
+  counters.bytes_read += in.size() * options.pair_bytes;
   counters.bytes_written += (out.size() - before) * options.fragment_bytes;
   counters.lanes_used += out.size() - before;
   counters.lanes_issued += in.size();

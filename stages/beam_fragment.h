@@ -8,11 +8,14 @@
 #include <vector>
 
 #include "simd/coverage.h"
+#include "simd/depth_range.h"
 #include "simd/mask_table.h"
 #include "simd/merge.h"
+#include "simd/position_mask.h"
 #include "simd/sample_test.h"
+#include "simd/wide_mask.h"
 #include "stages/conservative_raster.h"
-#include "stages/wide_mask.h"
+#include "stages/raster_cost.h"
 
 namespace beampipe {
 
@@ -36,24 +39,29 @@ inline DepthPlane<float> pixel_plane(const SetupTriangle& triangle, std::int32_t
           static_cast<float>(triangle.depth.dzdy)};
 }
 
-// The 64 x 64 table (the paper), the edge tests of sample_raster, or no masks at all.
-enum class MaskSource { table, exact, none };
+// The 64 x 64 table (the paper), edge tests at any positions, the same at the positions of a grid, or no masks at all.
+enum class MaskSource { table, exact, grid, none };
 
 struct BeamFragmentOptions {
   MaskSource mask = MaskSource::table;
-  std::vector<SamplePattern> positions;  // of the mask, 32 to a pattern: one for `table`, any for `exact`
-  const MaskTable* table = nullptr;      // for MaskSource::table
-  std::uint32_t fragment_bytes = 0;      // of a fragment as it is passed on
+  std::vector<SamplePattern> positions;            // of the mask, 32 to a pattern: one for `table`, any for `exact`
+  const MaskTable* table = nullptr;                // for MaskSource::table
+  const PositionGrid* grid = nullptr;              // for MaskSource::grid
+  std::uint32_t fragment_bytes = 0;                // of a fragment as it is passed on
   // What a tiny fragment is given: as many positions as its area fills, the nearest to its centroid, but no more than
   // this. The paper (section 2.2.1) gives it one, the slides (8) "up to 3".
   int tiny_positions = 0;
+  // The depth range of the clipped triangle (the paper); else that of the pair, which contains it.
+  bool clipped_depth = true;
+  std::uint32_t pair_bytes = kPixelTriangleBytes;  // that are read for a pair
 };
 
 // What a (pixel, triangle) takes while beam_fragment works on it, with itself and its fragment: those two twice, as
 // vectors that grow move from one place to the next.
 inline constexpr std::size_t kPairBytes =
-    2 * (sizeof(PixelTriangle) + sizeof(Fragment)) + sizeof(CoverageInput<float>) + sizeof(Coverage<float>) +
-    std::max(sizeof(TableTriangle), sizeof(CellEdges)) + sizeof(WideMask) + sizeof(std::uint32_t);
+    2 * (sizeof(PixelTriangle) + sizeof(Fragment)) + sizeof(TriangleInPixel) + sizeof(Coverage<float>) +
+    sizeof(DepthRangeInput<float>) + sizeof(DepthRange<float>) + std::max(sizeof(TableTriangle), sizeof(CellEdges)) +
+    sizeof(WideMask) + sizeof(std::uint32_t);
 
 // Areas up to this are what rounding leaves of an area of 0, in pixels.
 inline constexpr float kZeroArea = 5e-7f;

@@ -9,8 +9,8 @@
 #include <vector>
 
 #include "stages/beam_fragment.h"
-#include "stages/compose_window.h"
 #include "stages/owner_pixel.h"
+#include "stages/position_set.h"
 
 namespace beampipe {
 

@@ -82,7 +82,7 @@ std::vector<Aggregate> compose_stored(const std::vector<Fragment>& fragments, co
     while (active > 0 && buffer.depth_of(order[active - 1]) <= round) --active;
     if (active == 0) break;
     for (std::size_t i = 0; i < active; ++i) {
-      arriving[i] = merge_fragment(fragments[buffer.fragments[buffer.first[order[i]] + round]]);
+      arriving[i] = merge_fragment(fragments[buffer.records[buffer.first[order[i]] + round]]);
       merging[i] = stored[i];
     }
     merge(arriving.data(), active, pattern, rules, merging.data());
@@ -98,7 +98,7 @@ std::vector<Aggregate> compose_stored(const std::vector<Fragment>& fragments, co
 std::vector<Aggregate> compose(const std::vector<Fragment>& fragments, const ABuffer& buffer,
                                const SamplePattern& pattern, const MergeRules& rules, PaperStorage storage,
                                StageCounters& counters) {
-  count_merges(buffer.fragments.size(), buffer.first.size() - 1, merge_cost(pattern, rules),
+  count_merges(buffer.records.size(), buffer.first.size() - 1, merge_cost(pattern, rules),
                paper_aggregate_bytes(storage), paper_aggregate_bytes(storage), counters);
   switch (storage) {
     case PaperStorage::slides:
@@ -117,8 +117,8 @@ std::vector<Aggregate> compose_over(const std::vector<Fragment>& fragments, cons
   std::vector<Aggregate> aggregates(pixels, kEmptyAggregate);
   for (std::size_t pixel = 0; pixel < pixels; ++pixel)
     for (std::uint32_t i = buffer.first[pixel]; i < buffer.first[pixel + 1]; ++i)
-      aggregates[pixel] = stored_over(over_scalar(merge_fragment(fragments[buffer.fragments[i]]), aggregates[pixel]));
-  count_merges(buffer.fragments.size(), pixels, over_cost(), kOverFragmentBytes, kOverBytes, counters);
+      aggregates[pixel] = stored_over(over_scalar(merge_fragment(fragments[buffer.records[i]]), aggregates[pixel]));
+  count_merges(buffer.records.size(), pixels, over_cost(), kOverFragmentBytes, kOverBytes, counters);
   return aggregates;
 }
 

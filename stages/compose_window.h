@@ -1,47 +1,70 @@
-// compose_window: fragments sorted by their nearest depth -> one area-conserving aggregate per pixel.
+// compose_window: one window of fragments per pixel -> the pixels' area-conserving aggregates.
 //
-// The list is cut into windows: runs of fragments whose depth ranges overlap. Windows lie strictly behind each other.
-// Within a window depth is compared position by position (simd/depth_test.h), so interpenetrating fragments need no
-// order; then each visible fragment adds its area (simd/conserve.h) to the aggregate, which is all that is kept from
-// one window to the next: a mask, an area, a colour. The scratch of a window, a depth and an owner per position, exists
-// once per pixel that is being composed, not per pixel of the frame. What lies behind a full mask is not looked at.
+// Within a window (stages/windows.h) depth is compared position by position (simd/window_owners.h), so interpenetrating
+// fragments need no order; then each visible fragment adds its area (simd/conserve.h) to the aggregate, which is all
+// that is kept from one window to the next: a mask, an area, a colour. The scratch of a window exists once per pixel
+// that is being composed, not per pixel of the frame.
 #pragma once
 
-#include <array>
 #include <cstdint>
 #include <vector>
 
-#include "stages/a_buffer.h"
+#include "stages/beam_fragment.h"
+#include "stages/position_set.h"
 #include "stages/resolve.h"
 #include "stages/stored_aggregate.h"
 
 namespace beampipe {
 
-// Mask positions, and the three nearest of them to every place in the pixel.
-struct PositionSet {
-  static constexpr int kPlaces = 64;  // places per axis that are told apart
-  std::vector<SamplePattern> patterns;
-  std::vector<std::array<std::uint8_t, 3>> nearest;  // kPlaces x kPlaces, row by row
+// Bytes of a pair as it waits in the A-buffer: the triangle's number and its depth range in the pixel (2 x float32).
+inline constexpr std::uint32_t kWaitingPairBytes = 4 + 8;
 
-  explicit PositionSet(std::vector<SamplePattern> patterns);
-  int count() const { return static_cast<int>(patterns.size()) * kMaxMaskSamples; }
-  const std::array<std::uint8_t, 3>& nearest_to(float u, float v) const;  // u, v in 0..1
-};
-
-// Bytes of a fragment as it waits in the A-buffer: what the aggregate has, and the depth plane (3 x float32), the depth
-// range (2 x float32), and the centroid with the facing (2 x 16 bits), for which the aggregate has no use.
+// Bytes of a fragment on its way from beam_fragment: pixel, colour (3 x fp16), area, mask, depth plane (3 x float32),
+// and the centroid with the facing (2 x 16 bits).
 constexpr std::uint32_t conserving_fragment_bytes(int positions) {
-  return conserving_aggregate_bytes(positions, Storage::packed) + 12 + 8 + 4;
+  return 4 + conserving_aggregate_bytes(positions, Storage::packed) + 12 + 4;
 }
 
-// Per pixel: the fragments of its largest window, and those that were looked at before its mask was full.
-struct PixelWindows {
-  std::vector<float> largest, merges;
-};
+// Adds `fragments`, at most one window of each pixel, pixel by pixel and each in primitive order, to `pixels`, one per
+// pixel of the tile; empty (zeros) before the first. areas[i]: what fragments[i] added to its pixel's area.
+template <std::size_t Words, class Channel>
+void compose_window(const std::vector<Fragment>& fragments, const PositionSet& positions, StageCounters& counters,
+                    std::vector<StoredAggregate<Words, Channel>>& pixels, std::vector<float>& areas);
 
-// One pixel colour and coverage per pixel of the tile.
-std::vector<PixelColor> compose_window(const std::vector<Fragment>& fragments, const ABuffer& buffer,
-                                       const PositionSet& positions, Storage storage, StageCounters& counters,
-                                       PixelWindows& windows);
+// Nothing more can be seen in the pixel.
+template <std::size_t Words, class Channel>
+bool is_closed(const StoredAggregate<Words, Channel>& pixel) {
+  std::uint32_t all = ~0u;
+  for (const std::uint32_t word : pixel.mask) all &= word;
+  return all == ~0u;
+}
+
+template <std::size_t Words, class Channel>
+std::vector<PixelColor> composed_colors(const std::vector<StoredAggregate<Words, Channel>>& pixels) {
+  std::vector<PixelColor> colors;
+  colors.reserve(pixels.size());
+  for (const auto& pixel : pixels) colors.push_back({pixel.area, {pixel.color[0], pixel.color[1], pixel.color[2]}});
+  return colors;
+}
+
+// Per pixel: is it closed, is anything in it?
+template <std::size_t Words, class Channel>
+std::vector<bool> closed_pixels(const std::vector<StoredAggregate<Words, Channel>>& pixels) {
+  std::vector<bool> closed;
+  closed.reserve(pixels.size());
+  for (const auto& pixel : pixels) closed.push_back(is_closed(pixel));
+  return closed;
+}
+template <std::size_t Words, class Channel>
+std::vector<bool> covered_pixels(const std::vector<StoredAggregate<Words, Channel>>& pixels) {
+  std::vector<bool> covered;
+  covered.reserve(pixels.size());
+  for (const auto& pixel : pixels) covered.push_back(pixel.area > 0);
+  return covered;
+}
+
+// The shapes that there are: X(words, channel).
+#define BEAMPIPE_STORED_AGGREGATES(X) \
+  X(1, HalfBits) X(2, HalfBits) X(4, HalfBits) X(8, HalfBits) X(1, float) X(2, float) X(4, float) X(8, float)
 
 }  // namespace beampipe

@@ -9,8 +9,8 @@
 #include <vector>
 
 #include "stages/beam_fragment.h"
-#include "stages/compose_window.h"
 #include "stages/half_bits.h"
+#include "stages/position_set.h"
 #include "stages/position_states.h"
 #include "stages/resolve.h"
 

@@ -5,6 +5,7 @@
 #include <cstdint>
 #include <vector>
 
+#include "stages/closed_depth.h"
 #include "stages/counters.h"
 #include "stages/setup_triangle.h"
 #include "stages/tile.h"
@@ -16,10 +17,18 @@ struct PixelTriangle {
   std::uint32_t quad;      // pixels of one triangle in one 2x2 quad share it
   std::int32_t x, y;       // pixel, frame coordinates
   bool full;               // the triangle covers the whole pixel
+  // Between these the triangle lies within the pixel: its plane over the whole pixel, cut by the depths of its
+  // vertices.
+  float nearest, farthest;
 };
 
-// Appends to `out`, triangle by triangle in the list's order.
+// Appends to `out`, triangle by triangle in the list's order. With `closed`, what cannot be seen behind triangles that
+// cover whole pixels, of this list or of those before, is left out.
 void conservative_raster(const SetupTriangles& triangles, const TriangleList& list, const Tile& tile,
-                         StageCounters& counters, std::vector<PixelTriangle>& out);
+                         StageCounters& counters, std::vector<PixelTriangle>& out, ClosedDepth* closed = nullptr);
+
+// The pair of a triangle and a pixel that it touches.
+PixelTriangle pixel_triangle(const SetupTriangles& triangles, std::uint32_t index, std::uint32_t quad, std::int32_t x,
+                             std::int32_t y, bool full);
 
 }  // namespace beampipe

@@ -4,7 +4,8 @@
 
 #include <cstdint>
 
-#include "simd/coverage.h"
+#include "simd/depth_range.h"
+#include "simd/pixel_triangle.h"
 #include "simd/sample_pattern.h"
 #include "simd/scalar.h"
 
@@ -19,19 +20,25 @@ struct EdgeAt {
   Int at(Int x, Int y) const { return a * x + b * y + c; }
 };
 
-// All of a pixel's coverage input but depth. Its upper left corner is (left, top), in 1/256 px.
+// The triangle as pixel (left, top), in 1/256 px, sees it.
+template <class Int>
+PixelTriangleOf<Int> in_pixel(const Int x[3], const Int y[3], Int left, Int top) {
+  PixelTriangleOf<Int> triangle;
+  for (int k = 0; k < 3; ++k) triangle.x[k] = x[k] - left, triangle.y[k] = y[k] - top;
+  return triangle;
+}
+
+// All of a depth range's input but depth.
 template <class Int, class Float>
-void set_geometry(const Int x[3], const Int y[3], const EdgeAt<Int> edges[3], Int left, Int top,
-                  CoverageInput<Float>& in) {
+void set_geometry(const PixelTriangleOf<Int>& triangle, DepthRangeInput<Float>& in) {
   const Float unit(kUnit), unit_area(kUnit * kUnit);
-  const Int corners_x[2] = {left, left + Int(kSubpixelUnits)}, corners_y[2] = {top, top + Int(kSubpixelUnits)};
   for (int k = 0; k < 3; ++k) {
-    in.u[k] = to_float(x[k] - left) * unit;
-    in.v[k] = to_float(y[k] - top) * unit;
-    in.a[k] = to_float(edges[k].a) * unit;
-    in.b[k] = to_float(edges[k].b) * unit;
-    for (int corner = 0; corner < 4; ++corner)
-      in.corner[k][corner] = to_float(edges[k].at(corners_x[corner & 1], corners_y[corner >> 1])) * unit_area;
+    const EdgeInPixel<Int> edge = edge_in_pixel(triangle, k);
+    in.u[k] = to_float(triangle.x[k]) * unit;
+    in.v[k] = to_float(triangle.y[k]) * unit;
+    const Int right = edge.a * Int(kSubpixelUnits), down = edge.b * Int(kSubpixelUnits);
+    const Int corners[4] = {edge.c, edge.c + right, edge.c + down, edge.c + right + down};
+    for (int corner = 0; corner < 4; ++corner) in.corner[k][corner] = to_float(corners[corner]) * unit_area;
   }
 }
 

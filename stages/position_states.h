@@ -4,7 +4,7 @@
 #include <cstddef>
 #include <cstdint>
 
-#include "stages/wide_mask.h"
+#include "simd/wide_mask.h"
 
 namespace beampipe {
 

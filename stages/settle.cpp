@@ -68,14 +68,15 @@ OperationCounts owner_cost() {
     const Counted<float> area = visible_area(one, one, one, one, taken);
     taken = {taken.area + area, taken.positions + one};
     const Counted<float> share = area / one;
-    for (int c = 0; c < 3; ++c) one + share * one;
+    for (int c = 0; c < 3; ++c) one + share* one;
   });
 }
 
 }  // namespace
 
 template <std::size_t Words, std::size_t Layers>
-std::vector<PixelTriangle> owners(const std::vector<OwnerPixel<Words, Layers>>& pixels, const Tile& tile) {
+std::vector<PixelTriangle> owners(const SetupTriangles& triangles, const std::vector<OwnerPixel<Words, Layers>>& pixels,
+                                  const Tile& tile) {
   using Pixel = OwnerPixel<Words, Layers>;
   std::vector<PixelTriangle> pairs;
   for (std::size_t i = 0; i < pixels.size(); ++i) {
@@ -83,7 +84,8 @@ std::vector<PixelTriangle> owners(const std::vector<OwnerPixel<Words, Layers>>& 
     const auto y = tile.y0 + static_cast<std::int32_t>(i) / tile.width();
     for (std::size_t k = 0; k < Layers; ++k)
       if (!pixels[i].positions_in(Pixel::kFirstLayer + static_cast<std::uint32_t>(k)).none())
-        pairs.push_back({pixels[i].triangle(k), static_cast<std::uint32_t>(pairs.size()), x, y, false});
+        pairs.push_back(
+            pixel_triangle(triangles, pixels[i].triangle(k), static_cast<std::uint32_t>(pairs.size()), x, y, false));
   }
   return pairs;
 }
@@ -123,7 +125,8 @@ std::vector<PixelColor> settled_colors(const std::vector<OwnerPixel<Words, Layer
 }
 
 #define BEAMPIPE_SETTLE(words, layers)                                                                               \
-  template std::vector<PixelTriangle> owners(const std::vector<OwnerPixel<words, layers>>&, const Tile&);            \
+  template std::vector<PixelTriangle> owners(const SetupTriangles&, const std::vector<OwnerPixel<words, layers>>&,   \
+                                             const Tile&);                                                           \
   template void settle(const std::vector<Fragment>&, bool, StageCounters&, std::vector<OwnerPixel<words, layers>>&); \
   template std::vector<PixelColor> settled_colors(const std::vector<OwnerPixel<words, layers>>&);
 BEAMPIPE_OWNER_PIXELS(BEAMPIPE_SETTLE)

@@ -1,11 +1,12 @@
-// The area-conserving aggregate as it is stored: loaded before each window of fragments and stored behind it, in exactly these bytes.
+// The area-conserving aggregate as it is stored: loaded before each window of fragments and stored behind it, in
+// exactly these bytes.
 #pragma once
 
 #include <cstddef>
 #include <cstdint>
 
+#include "simd/wide_mask.h"
 #include "stages/half_bits.h"
-#include "stages/wide_mask.h"
 
 namespace beampipe {
 

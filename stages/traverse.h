@@ -7,8 +7,10 @@
 
 #include <algorithm>
 #include <array>
+#include <bit>
 #include <cstdint>
 
+#include "simd/cell_rows.h"
 #include "simd/sample_pattern.h"
 #include "stages/setup_triangle.h"
 #include "stages/tile.h"
@@ -67,32 +69,38 @@ void traverse(const SetupTriangle& triangle, const EdgeSet& set, const Tile& til
   const CellRange range = touched_range(triangle, tile, grid);
   if (range.x0 >= range.x1 || range.y0 >= range.y1) return;
   const std::int64_t w = grid.cell_width(), h = grid.cell_height();
-  std::int64_t deepest[3], shallowest[3];  // from the cell's upper left corner to its extreme corners
+  EdgeOverCells edges[3];
   for (std::size_t k = 0; k < 3; ++k) {
     const Edge& edge = set.edges[k];
     const std::int64_t right = edge.a * w, down = edge.b * h;
-    deepest[k] = std::max<std::int64_t>(right, 0) + std::max<std::int64_t>(down, 0);
-    shallowest[k] = std::min<std::int64_t>(right, 0) + std::min<std::int64_t>(down, 0);
-    if (meaning == FullMeans::samples && !edge.owns) shallowest[k] -= 1;
+    const std::int64_t not_owned = meaning == FullMeans::samples && !edge.owns ? 1 : 0;
+    edges[k].step = static_cast<double>(right);
+    edges[k].deepest = static_cast<double>(std::max<std::int64_t>(right, 0) + std::max<std::int64_t>(down, 0));
+    edges[k].shallowest =
+        static_cast<double>(std::min<std::int64_t>(right, 0) + std::min<std::int64_t>(down, 0) - not_owned);
   }
+  counts.cells_tested +=
+      static_cast<std::uint64_t>(range.x1 - range.x0) * static_cast<std::uint64_t>(range.y1 - range.y0);
   for (std::int32_t quad_y = range.y0 & ~1; quad_y < range.y1; quad_y += 2) {
-    for (std::int32_t quad_x = range.x0 & ~1; quad_x < range.x1; quad_x += 2) {
-      const std::uint64_t touched_before = counts.cells_touched;
+    for (std::int32_t left = range.x0 & ~1; left < range.x1; left += kCellsPerRow) {
+      const std::uint32_t inside = left < range.x0 ? ~1u : ~0u;  // the range may start within a quad
+      CellRow rows[2] = {};
       for (std::int32_t y = std::max(quad_y, range.y0); y < std::min(quad_y + 2, range.y1); ++y) {
-        for (std::int32_t x = std::max(quad_x, range.x0); x < std::min(quad_x + 2, range.x1); ++x) {
-          ++counts.cells_tested;
-          bool touched = true, full = true;
-          for (std::size_t k = 0; k < 3; ++k) {
-            const std::int64_t corner = set.edges[k].at(x * w, y * h);
-            touched &= corner + deepest[k] >= 0;
-            full &= corner + shallowest[k] >= 0;
-          }
-          if (!touched) continue;
-          ++counts.cells_touched;
-          visit(x, y, quad, full);
-        }
+        for (std::size_t k = 0; k < 3; ++k) edges[k].start = static_cast<double>(set.edges[k].at(left * w, y * h));
+        CellRow& row = rows[y & 1];
+        row = cell_row(edges, static_cast<std::size_t>(std::min(range.x1 - left, kCellsPerRow)));
+        row.touched &= inside;
+        counts.cells_touched += static_cast<std::uint64_t>(std::popcount(row.touched));
       }
-      if (counts.cells_touched != touched_before) ++quad;
+      const std::uint32_t columns = rows[0].touched | rows[1].touched;
+      constexpr std::uint32_t kEven = 0x55555555;
+      for (std::uint32_t quads = (columns | columns >> 1) & kEven; quads != 0; quads &= quads - 1) {
+        const int first = std::countr_zero(quads);
+        for (std::int32_t y = 0; y < 2; ++y)
+          for (int x = first; x < first + 2; ++x)
+            if (rows[y].touched >> x & 1) visit(left + x, quad_y + y, quad, (rows[y].full >> x & 1) != 0);
+        ++quad;
+      }
     }
   }
 }

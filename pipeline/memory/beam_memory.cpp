@@ -6,18 +6,30 @@
 
 namespace beampipe {
 
-ABufferMemory::ABufferMemory(const MemoryParameters& parameters, const ZOrder& order, std::size_t fragments,
-                             std::uint32_t record_bytes)
-    : record_bytes_(record_bytes + kLinkBytes),
+LinearMemory::LinearMemory(const MemoryParameters& parameters, std::size_t records, std::uint32_t record_bytes)
+    : record_bytes_(record_bytes),
       line_bytes_(parameters.l2.line_bytes),
-      heads_(parameters, order, kLinkBytes),
-      records_(parameters, parameters.l2, (fragments * record_bytes_ + line_bytes_ - 1) / line_bytes_, line_bytes_,
-               false, nullptr) {}
+      cache_(parameters, parameters.l2, (records * record_bytes_ + line_bytes_ - 1) / line_bytes_, line_bytes_, false,
+             nullptr) {}
 
-void ABufferMemory::insert(const std::vector<Fragment>& fragments, StageCounters& counters) {
-  for (std::uint32_t i = 0; i < fragments.size(); ++i) {
-    heads_.access(fragments[i].triangle, fragments[i].pixel, 1, 1, kLinkBytes, counters);
-    access(fragments[i].triangle, i, true, counters);
+void LinearMemory::access(std::uint32_t key, std::uint32_t record, bool write, StageCounters& counters) {
+  const std::size_t begin = std::size_t{record} * record_bytes_, end = begin + record_bytes_;
+  for (std::size_t at = begin; at < end;) {
+    const std::size_t block = at / line_bytes_, stop = std::min(end, (block + 1) * line_bytes_);
+    const auto first = static_cast<std::uint32_t>(at % line_bytes_), bytes = static_cast<std::uint32_t>(stop - at);
+    write ? cache_.write(key, block, first, bytes, counters) : cache_.read(key, block, first, bytes, counters);
+    at = stop;
+  }
+}
+
+ABufferMemory::ABufferMemory(const MemoryParameters& parameters, const ZOrder& order, std::size_t records,
+                             std::uint32_t record_bytes)
+    : heads_(parameters, order, kLinkBytes), records_(parameters, records, record_bytes + kLinkBytes) {}
+
+void ABufferMemory::insert(const std::vector<SortRecord>& records, StageCounters& counters) {
+  for (std::uint32_t i = 0; i < records.size(); ++i) {
+    heads_.access(records[i].triangle, records[i].pixel, 1, 1, kLinkBytes, counters);
+    records_.access(records[i].triangle, i, true, counters);
   }
   heads_.flush(counters);
   records_.flush(counters);
@@ -26,21 +38,12 @@ void ABufferMemory::insert(const std::vector<Fragment>& fragments, StageCounters
 
 void ABufferMemory::sort(std::uint32_t pixel, const ABuffer& buffer, StageCounters& counters) {
   for (std::uint32_t i = buffer.first[pixel]; i < buffer.first[pixel + 1]; ++i)
-    access(pixel, buffer.fragments[i], false, counters);
+    records_.access(pixel, buffer.records[i], false, counters);
 }
 
 void ABufferMemory::compose(std::uint32_t pixel, const ABuffer& buffer, std::uint32_t merged, StageCounters& counters) {
-  for (std::uint32_t i = 0; i < merged; ++i) access(pixel, buffer.fragments[buffer.first[pixel] + i], false, counters);
-}
-
-void ABufferMemory::access(std::uint32_t key, std::uint32_t record, bool write, StageCounters& counters) {
-  const std::size_t begin = std::size_t{record} * record_bytes_, end = begin + record_bytes_;
-  for (std::size_t at = begin; at < end;) {
-    const std::size_t block = at / line_bytes_, stop = std::min(end, (block + 1) * line_bytes_);
-    const auto first = static_cast<std::uint32_t>(at % line_bytes_), bytes = static_cast<std::uint32_t>(stop - at);
-    write ? records_.write(key, block, first, bytes, counters) : records_.read(key, block, first, bytes, counters);
-    at = stop;
-  }
+  for (std::uint32_t i = 0; i < merged; ++i)
+    records_.access(pixel, buffer.records[buffer.first[pixel] + i], false, counters);
 }
 
 AggregateMemory::AggregateMemory(const MemoryParameters& parameters, const ZOrder& order,
@@ -82,28 +85,55 @@ void AggregateMemory::read_all(StageCounters& counters) {
   for (TileSurface& surface : surfaces_) surface.read_all(counters);
 }
 
-void count_sorted_composition(const MemoryParameters& parameters, const Tile& tile, const ABuffer& buffer,
-                              const std::vector<Fragment>& fragments, std::uint32_t record_bytes,
-                              const std::vector<float>& merged, const std::vector<bool>& full,
-                              const std::vector<Surface>& framebuffer, StageCounters& buffering,
-                              StageCounters& composition, StageCounters& resolving) {
-  if (!parameters.modelled) return;
-  const ZOrder order(tile.width(), tile.height());
-  ABufferMemory a_buffer(parameters, order, fragments.size(), record_bytes);
-  AggregateMemory aggregates(parameters, order, framebuffer);
-  a_buffer.insert(fragments, buffering);
+namespace {
+
+// Calls visit(pixel) for the tile's pixels that have records, in Z order.
+template <class Visit>
+void for_each_list(const ZOrder& order, const Tile& tile, const ABuffer& buffer, Visit&& visit) {
   std::vector<std::uint32_t> pixel_at(order.positions, ~0u);
   for (std::uint32_t pixel = 0; pixel < tile.pixels(); ++pixel) pixel_at[order.of[pixel]] = pixel;
-  for (const std::uint32_t pixel : pixel_at) {
-    if (pixel == ~0u || buffer.depth_of(pixel) == 0) continue;
+  for (const std::uint32_t pixel : pixel_at)
+    if (pixel != ~0u && buffer.depth_of(pixel) > 0) visit(pixel);
+}
+
+}  // namespace
+
+void count_sorted_composition(const MemoryParameters& parameters, const Tile& tile, const ABuffer& buffer,
+                              const std::vector<SortRecord>& records, std::uint32_t record_bytes,
+                              const std::vector<float>& merged, const std::vector<bool>& written,
+                              const std::vector<bool>& full, const std::vector<Surface>& framebuffer,
+                              StageCounters& buffering, StageCounters& fetching, StageCounters& composition,
+                              StageCounters& resolving) {
+  if (!parameters.modelled) return;
+  const ZOrder order(tile.width(), tile.height());
+  ABufferMemory a_buffer(parameters, order, records.size(), record_bytes);
+  AggregateMemory aggregates(parameters, order, framebuffer);
+  a_buffer.insert(records, buffering);
+  for_each_list(order, tile, buffer, [&](std::uint32_t pixel) {
     a_buffer.sort(pixel, buffer, buffering);
-    a_buffer.compose(pixel, buffer, static_cast<std::uint32_t>(merged[pixel]), composition);
-    aggregates.write(pixel, composition);
-  }
-  a_buffer.finish(composition);
+    a_buffer.compose(pixel, buffer, static_cast<std::uint32_t>(merged[pixel]), fetching);
+    if (written[pixel]) aggregates.write(pixel, composition);
+  });
+  a_buffer.finish(fetching);
   aggregates.flush(full, composition);
   aggregates.read_all(resolving);
   write_image(parameters, tile, resolving);
+}
+
+void count_triangle_fetches(const MemoryParameters& parameters, const Tile& tile, const TriangleList& list,
+                            const ABuffer& buffer, const std::vector<SortRecord>& records,
+                            const std::vector<float>& merged, StageCounters& fetching) {
+  if (!parameters.modelled) return;
+  const ZOrder order(tile.width(), tile.height());
+  LinearMemory triangles(parameters, list.size(), sizeof(SetupTriangle));
+  for_each_list(order, tile, buffer, [&](std::uint32_t pixel) {
+    for (std::uint32_t i = 0; i < static_cast<std::uint32_t>(merged[pixel]); ++i) {
+      const std::uint32_t triangle = records[buffer.records[buffer.first[pixel] + i]].triangle;
+      const auto place = std::lower_bound(list.begin(), list.end(), triangle) - list.begin();
+      triangles.access(pixel, static_cast<std::uint32_t>(place), false, fetching);
+    }
+  });
+  triangles.flush(fetching);
 }
 
 }  // namespace beampipe

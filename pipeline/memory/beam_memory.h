@@ -11,13 +11,27 @@
 
 namespace beampipe {
 
+// Records that follow each other in memory, behind the L2 cache.
+class LinearMemory {
+ public:
+  LinearMemory(const MemoryParameters& parameters, std::size_t records, std::uint32_t record_bytes);
+
+  // Reads or writes a whole record.
+  void access(std::uint32_t key, std::uint32_t record, bool write, StageCounters& counters);
+  void flush(StageCounters& counters) { cache_.flush(counters); }
+
+ private:
+  std::uint32_t record_bytes_, line_bytes_;
+  BlockCache cache_;
+};
+
 class ABufferMemory {
  public:
-  ABufferMemory(const MemoryParameters& parameters, const ZOrder& order, std::size_t fragments,
+  ABufferMemory(const MemoryParameters& parameters, const ZOrder& order, std::size_t records,
                 std::uint32_t record_bytes);
 
-  // The pass that fills it: each fragment exchanges its pixel's head link, and its record goes behind the one before.
-  void insert(const std::vector<Fragment>& fragments, StageCounters& counters);
+  // The pass that fills it: each record exchanges its pixel's head link, and goes behind the one before.
+  void insert(const std::vector<SortRecord>& records, StageCounters& counters);
 
   // The pass that empties it, pixel by pixel: all records to be sorted, then again the first `merged` in order.
   void sort(std::uint32_t pixel, const ABuffer& buffer, StageCounters& counters);
@@ -25,11 +39,8 @@ class ABufferMemory {
   void finish(StageCounters& counters) { records_.flush(counters); }
 
  private:
-  void access(std::uint32_t key, std::uint32_t record, bool write, StageCounters& counters);
-
-  std::uint32_t record_bytes_, line_bytes_;  // with the link
   TileSurface heads_;
-  BlockCache records_;
+  LinearMemory records_;  // with their links
 };
 
 // The aggregates of a bin, one surface per member.
@@ -55,12 +66,20 @@ class AggregateMemory {
   std::vector<TileSurface> surfaces_;
 };
 
-// All of it, for aggregates that are composed from a sorted A-buffer. `merged`: per pixel, the fragments that were
-// looked at; `full`: which pixels nothing shows through.
+// All of it, for aggregates that are composed from a sorted A-buffer. Per pixel, `merged`: the records that were looked
+// at; `written`: was an aggregate stored? `full`: nothing shows through it. `fetching`: the stage that reads sorted
+// records.
 void count_sorted_composition(const MemoryParameters& parameters, const Tile& tile, const ABuffer& buffer,
-                              const std::vector<Fragment>& fragments, std::uint32_t record_bytes,
-                              const std::vector<float>& merged, const std::vector<bool>& full,
-                              const std::vector<Surface>& framebuffer, StageCounters& buffering,
-                              StageCounters& composition, StageCounters& resolving);
+                              const std::vector<SortRecord>& records, std::uint32_t record_bytes,
+                              const std::vector<float>& merged, const std::vector<bool>& written,
+                              const std::vector<bool>& full, const std::vector<Surface>& framebuffer,
+                              StageCounters& buffering, StageCounters& fetching, StageCounters& composition,
+                              StageCounters& resolving);
+
+// Setup triangles that are read again for the pairs of a sorted A-buffer: those of the bin's list, which follow each
+// other in memory. `merged` as above.
+void count_triangle_fetches(const MemoryParameters& parameters, const Tile& tile, const TriangleList& list,
+                            const ABuffer& buffer, const std::vector<SortRecord>& records,
+                            const std::vector<float>& merged, StageCounters& fetching);
 
 }  // namespace beampipe

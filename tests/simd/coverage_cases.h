@@ -9,6 +9,7 @@
 #include <vector>
 
 #include "simd/coverage.h"
+#include "simd/depth_range.h"
 #include "tests/simd/random.h"
 
 namespace beampipe {
@@ -46,21 +47,37 @@ inline Slopes depth_slopes(const Triangle& t) {
   return {t.z[0] + dzdu * (0.5 - double(t.p[0].x) / 256) + dzdv * (0.5 - double(t.p[0].y) / 256), dzdu, dzdv};
 }
 
-// The kernel's input for pixel (pixel_x, pixel_y) of the frame that the triangle's corners are given in.
-inline CoverageInput<float> coverage_input(const Triangle& t, std::int64_t pixel_x = 0, std::int64_t pixel_y = 0) {
-  CoverageInput<float> in;
-  Triangle local = t;
-  for (Corner& corner : local.p) corner.x -= 256 * pixel_x, corner.y -= 256 * pixel_y;
+// The triangle seen from pixel (pixel_x, pixel_y) of the frame that its corners are given in.
+inline PixelTriangleOf<std::int64_t> in_pixel(const Triangle& t, std::int64_t pixel_x = 0, std::int64_t pixel_y = 0) {
+  PixelTriangleOf<std::int64_t> seen;
+  for (int k = 0; k < 3; ++k) seen.x[k] = t.p[k].x - 256 * pixel_x, seen.y[k] = t.p[k].y - 256 * pixel_y;
+  return seen;
+}
+
+inline TriangleInPixel kernel_input(const Triangle& t) {
+  TriangleInPixel seen;
   for (int k = 0; k < 3; ++k) {
-    const Corner from = local.p[k], to = local.p[(k + 1) % 3];
+    seen.x[k] = static_cast<std::int32_t>(t.p[k].x);
+    seen.y[k] = static_cast<std::int32_t>(t.p[k].y);
+  }
+  return seen;
+}
+
+inline Coverage<float> twin_coverage(const Triangle& t, std::int64_t pixel_x = 0, std::int64_t pixel_y = 0) {
+  return coverage_scalar<std::int64_t, float>(in_pixel(t, pixel_x, pixel_y));
+}
+
+inline DepthRangeInput<float> depth_range_input(const Triangle& t) {
+  DepthRangeInput<float> in;
+  for (int k = 0; k < 3; ++k) {
+    const Corner from = t.p[k], to = t.p[(k + 1) % 3];
     const std::int64_t a = from.y - to.y, b = to.x - from.x;
     in.u[k] = static_cast<float>(from.x) / 256, in.v[k] = static_cast<float>(from.y) / 256;
-    in.a[k] = static_cast<float>(a) / 256, in.b[k] = static_cast<float>(b) / 256;
     for (int i = 0; i < 4; ++i)
       in.corner[k][i] = static_cast<float>(a * (256 * (i & 1) - from.x) + b * (256 * (i >> 1) - from.y)) / 65536;
-    in.vertex_z[k] = local.z[k];
+    in.vertex_z[k] = t.z[k];
   }
-  const Slopes slopes = depth_slopes(local);
+  const Slopes slopes = depth_slopes(t);
   in.z = static_cast<float>(slopes.z);
   in.dzdu = static_cast<float>(slopes.dzdu), in.dzdv = static_cast<float>(slopes.dzdv);
   return in;

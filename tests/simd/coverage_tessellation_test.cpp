@@ -21,7 +21,7 @@ Sum sum_of_alpha(const std::vector<Triangle>& triangles) {
   Sum sum;
   for (const Triangle& t : triangles) {
     if (t.area2() == 0) continue;
-    const float alpha = coverage_scalar(coverage_input(oriented(t))).alpha;
+    const float alpha = twin_coverage(oriented(t)).alpha;
     sum.alpha += alpha;
     sum.triangles += alpha > 0;
   }
@@ -37,10 +37,13 @@ TEST(CoverageTessellation, ReversedEdgeIntegratesToTheOppositeNumber) {
   Random random(7);
   SCOPED_TRACE(random.name());
   for (int i = 0; i < 100'000; ++i) {
-    const CoverageInput<float> in = coverage_input(random_triangle(random));
-    const float *c = in.corner[0], a = in.a[0], b = in.b[0];
-    const EdgeIntegral<float> forth = edge_integral(in.v[0], in.v[1], a, b, c[0], c[1]);
-    const EdgeIntegral<float> back = edge_integral(in.v[1], in.v[0], -a, -b, -c[0], -c[1]);
+    const PixelTriangleOf<std::int64_t> t = in_pixel(random_triangle(random));
+    const EdgeInPixel<std::int64_t> edge = edge_in_pixel(t, 0);
+    const auto a = static_cast<float>(edge.a), b = static_cast<float>(edge.b), c = static_cast<float>(edge.c),
+               c_right = static_cast<float>(edge.c + 256 * edge.a), v0 = static_cast<float>(t.y[0]) / 256,
+               v1 = static_cast<float>(t.y[1]) / 256;
+    const EdgeIntegral<float> forth = edge_integral(v0, v1, a / 256, b / 256, c / 65536, c_right / 65536);
+    const EdgeIntegral<float> back = edge_integral(v1, v0, -a / 256, -b / 256, -c / 65536, -c_right / 65536);
     ASSERT_EQ(forth.area, -back.area);
     ASSERT_EQ(forth.moment_u, -back.moment_u);
     ASSERT_EQ(forth.moment_v, -back.moment_v);
@@ -124,7 +127,7 @@ TEST(CoverageTessellation, PixelsShareOutTheTriangle) {
     t = oriented(t);
     double sum = 0;
     for (std::int64_t y = 0; y < 12; ++y)
-      for (std::int64_t x = 0; x < 12; ++x) sum += coverage_scalar(coverage_input(t, x, y)).alpha;
+      for (std::int64_t x = 0; x < 12; ++x) sum += twin_coverage(t, x, y).alpha;
     ASSERT_NEAR(sum, static_cast<double>(t.area2()) / (2 * 65536), 144 * kPerTriangle);
   }
 }

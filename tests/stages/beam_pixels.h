@@ -26,14 +26,14 @@ inline Fragments beam_fragments(const SetupTriangles& triangles, const Tile& til
   StageCounters raster;
   conservative_raster(triangles, all_of(triangles), tile, raster, pairs);
   Fragments fragments;
-  beam_fragment(triangles, pairs, tile, {mask, {pattern}, &table, kAggregateBytes, tiny_positions}, fragments.counters,
-                fragments.list);
+  beam_fragment(triangles, pairs, tile, {mask, {pattern}, &table, nullptr, kAggregateBytes, tiny_positions},
+                fragments.counters, fragments.list);
   return fragments;
 }
 
 inline ABuffer sorted(const Fragments& fragments, std::size_t pixels) {
   StageCounters counters;
-  return a_buffer(fragments.list, pixels, SortKey::centroid, kAggregateBytes, counters);
+  return a_buffer(sort_records(fragments.list, SortKey::centroid), pixels, kAggregateBytes, counters);
 }
 
 // The composed pixels of a tile; `colors` has one per triangle.

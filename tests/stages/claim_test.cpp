@@ -35,7 +35,8 @@ struct Stream {
 
   std::vector<Fragment> fragments_of(const std::vector<PixelTriangle>& pairs) {
     std::vector<Fragment> made;
-    beam_fragment(triangles, pairs, tile, {MaskSource::exact, positions.patterns, nullptr, 66, false}, counters, made);
+    beam_fragment(triangles, pairs, tile, {MaskSource::exact, positions.patterns, nullptr, nullptr, 66, 0}, counters,
+                  made);
     return made;
   }
   void claim_all() {
@@ -44,7 +45,7 @@ struct Stream {
     claim(triangles, wanted, tile, positions, counters, pixels);
   }
   void settle_all(const std::vector<glm::vec3>& colors, bool last = false) {
-    std::vector<Fragment> seen = fragments_of(owners(pixels, tile));
+    std::vector<Fragment> seen = fragments_of(owners(triangles, pixels, tile));
     shade_visible(colors, seen, counters);
     settle(seen, last, counters, pixels);
   }

@@ -9,7 +9,9 @@
 
 #include "simd/conserve.h"
 #include "stages/conservative_raster.h"
+#include "stages/position_set.h"
 #include "stages/shade.h"
+#include "stages/windows.h"
 #include "tests/simd/random.h"
 #include "tests/stages/screen_triangles.h"
 
@@ -18,21 +20,46 @@ namespace {
 
 const Tile kPixel{0, 0, 1, 1};
 
-std::vector<PixelColor> composed(const SetupTriangles& triangles, const std::vector<glm::vec3>& colors,
-                                 const Tile& tile, int bits, std::vector<float>* windows = nullptr,
-                                 Storage storage = Storage::float32) {
-  const PositionSet positions(cell_patterns(bits));
+template <std::size_t Words, class Channel>
+std::vector<PixelColor> composed_as(const SetupTriangles& triangles, const std::vector<glm::vec3>& colors,
+                                    const Tile& tile, std::vector<float>* largest) {
+  const PositionSet positions(cell_patterns(32 * Words));
+  const PositionGrid grid(32 * Words);
+  BeamFragmentOptions options;
+  options.mask = MaskSource::grid;
+  options.grid = &grid;
+  options.clipped_depth = false;
   StageCounters counters;
-  std::vector<PixelTriangle> pairs;
-  std::vector<Fragment> fragments;
-  conservative_raster(triangles, all_of(triangles), tile, counters, pairs);
-  beam_fragment(triangles, pairs, tile, {MaskSource::exact, positions.patterns, nullptr, 66, 0}, counters, fragments);
-  shade(colors, fragments, counters);
-  const ABuffer buffer = a_buffer(fragments, tile.pixels(), SortKey::nearest, 42, counters);
-  PixelWindows sizes;
-  std::vector<PixelColor> pixels = compose_window(fragments, buffer, positions, storage, counters, sizes);
-  if (windows) *windows = sizes.largest;
-  return pixels;
+  std::vector<PixelTriangle> pairs, window;
+  std::vector<StoredAggregate<Words, Channel>> pixels(tile.pixels());
+  ClosedDepth closed(tile);
+  conservative_raster(triangles, all_of(triangles), tile, counters, pairs, &closed);
+  const ABuffer buffer = a_buffer(sort_records(pairs, tile), tile.pixels(), kWaitingPairBytes, counters);
+  Windows windows(pairs, buffer);
+  while (windows.next([&](std::uint32_t pixel) { return !is_closed(pixels[pixel]); }, window)) {
+    std::vector<Fragment> fragments;
+    std::vector<float> areas;
+    beam_fragment(triangles, window, tile, options, counters, fragments);
+    shade_visible(colors, fragments, counters);
+    compose_window(fragments, positions, counters, pixels, areas);
+  }
+  if (largest) *largest = windows.largest;
+  return composed_colors(pixels);
+}
+
+template <class Channel = float>
+std::vector<PixelColor> composed(const SetupTriangles& triangles, const std::vector<glm::vec3>& colors,
+                                 const Tile& tile, int bits, std::vector<float>* largest = nullptr) {
+  switch (bits) {
+    case 32:
+      return composed_as<1, Channel>(triangles, colors, tile, largest);
+    case 64:
+      return composed_as<2, Channel>(triangles, colors, tile, largest);
+    case 128:
+      return composed_as<4, Channel>(triangles, colors, tile, largest);
+    default:
+      return composed_as<8, Channel>(triangles, colors, tile, largest);
+  }
 }
 
 TEST(VisibleArea, TheBackgroundGetsWhatIsLeft) {
@@ -78,8 +105,7 @@ TEST(ComposeWindow, ColorIsStoredAsHalfBehindEveryWindow) {
   add_everywhere(triangles, -0.5f);
   const std::vector<glm::vec3> colors = {{0.7f, 0, 0}, {0.1f, 0, 0}};
   const float first = HalfBits(77.0f / 256 * 0.7f);
-  EXPECT_EQ(composed(triangles, colors, kPixel, 256, nullptr, Storage::packed).at(0).color.r,
-            HalfBits(first + 179.0f / 256 * 0.1f));
+  EXPECT_EQ(composed<HalfBits>(triangles, colors, kPixel, 256).at(0).color.r, HalfBits(first + 179.0f / 256 * 0.1f));
 }
 
 TEST(ComposeWindow, ASurfaceOfManyTrianglesHidesWhatIsBehind) {
@@ -164,6 +190,28 @@ TEST(ComposeWindow, WindowsSeparateWhatDoesNotOverlapInDepth) {
   std::vector<float> windows;
   composed(triangles, std::vector<glm::vec3>(3, glm::vec3(1)), kPixel, 256, &windows);
   EXPECT_EQ(windows, std::vector<float>{1});
+}
+
+// Leaving out what full pixels hide changes nothing that is seen.
+TEST(ComposeWindow, ClosedPixelsHideNothingThatIsSeen) {
+  Random random(74);
+  SCOPED_TRACE(random.name());
+  const Tile tile{0, 0, 16, 16};
+  SetupTriangles front = random_triangles(random, 200);
+  add_everywhere(front, -0.6f);
+  SetupTriangles all = front;
+  const SetupTriangles behind = random_triangles(random, 200);
+  const auto first_behind = static_cast<std::uint32_t>(all.triangles.size());
+  for (const SetupTriangle& triangle : behind.triangles) {
+    SetupTriangle moved = triangle;  // into the depths behind the wall
+    for (float& z : moved.vertex_z) z = -0.5f;
+    moved.depth.z = -0.5, moved.depth.dzdx = moved.depth.dzdy = 0;
+    all.triangles.push_back(moved);
+  }
+  std::vector<glm::vec3> colors(all.triangles.size(), glm::vec3(0, 0, 1));
+  std::fill_n(colors.begin(), first_behind, glm::vec3(1, 0.5f, 0));
+  const std::vector<PixelColor> found = composed(all, colors, tile, 256), expected = composed(front, colors, tile, 256);
+  for (std::size_t i = 0; i < found.size(); ++i) ASSERT_EQ(found[i].color, expected[i].color);
 }
 
 TEST(ComposeWindow, NothingThereIsTransparent) {

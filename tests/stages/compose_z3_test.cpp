@@ -18,7 +18,7 @@ std::vector<Z3Pixel<Words, Layers>> composed(const SetupTriangles& triangles, co
   std::vector<PixelTriangle> pairs;
   std::vector<Fragment> fragments;
   conservative_raster(triangles, all_of(triangles), tile, counters, pairs);
-  beam_fragment(triangles, pairs, tile, {MaskSource::exact, positions.patterns, nullptr, 26, false}, counters,
+  beam_fragment(triangles, pairs, tile, {MaskSource::exact, positions.patterns, nullptr, nullptr, 26, 0}, counters,
                 fragments);
   shade(colors, fragments, counters);
   std::vector<Z3Pixel<Words, Layers>> pixels(tile.pixels());

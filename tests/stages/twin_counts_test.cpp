@@ -42,8 +42,9 @@ class TwinCounts : public testing::TestWithParam<SceneKind> {
 
   EdgeAt<Int> edge_at(const Edge& edge) { return {integer(edge.a), integer(edge.b), integer(edge.c)}; }
 
-  // What a (pixel, triangle) costs in beam_fragment; `table` or `positions`, whichever is not null.
-  void count_fragment(const PixelTriangle& pair, const MaskTable* table, const std::vector<SamplePattern>* positions) {
+  // What a (pixel, triangle) costs in beam_fragment; `table`, `positions` or `grid`, whichever is not null.
+  void count_fragment(const PixelTriangle& pair, const MaskTable* table, const std::vector<SamplePattern>* positions,
+                      const PositionGrid* grid = nullptr) {
     const SetupTriangle& triangle = triangles_.triangles[pair.triangle];
     Int x[3], y[3];
     EdgeAt<Int> edges[3];
@@ -51,16 +52,23 @@ class TwinCounts : public testing::TestWithParam<SceneKind> {
       x[k] = integer(triangle.x[k]), y[k] = integer(triangle.y[k]);
       edges[k] = edge_at(edge_of(triangle, k));
     }
-    CoverageInput<Float> in;
     const Int left = integer(std::int64_t{pair.x} * kSubpixelUnits),
               top = integer(std::int64_t{pair.y} * kSubpixelUnits);
-    set_geometry(x, y, edges, left, top, in);
+    const PixelTriangleOf<Int> seen = in_pixel(x, y, left, top);
     const ScreenDepth& depth = triangle.depth;
-    in.z = to_float(plane_at(real(depth.z), real(depth.dzdx), real(depth.dzdy), real(depth.anchor_x),
-                             real(depth.anchor_y), real(pair.x + 0.5), real(pair.y + 0.5)));
-    in.dzdu = real(static_cast<float>(depth.dzdx)), in.dzdv = real(static_cast<float>(depth.dzdy));
-    for (int k = 0; k < 3; ++k) in.vertex_z[k] = real(triangle.vertex_z[k]);
-    coverage_scalar(in);
+    const Float z = to_float(plane_at(real(depth.z), real(depth.dzdx), real(depth.dzdy), real(depth.anchor_x),
+                                      real(depth.anchor_y), real(pair.x + 0.5), real(pair.y + 0.5)));
+    coverage_scalar<Int, Float>(seen);
+    if (grid) {
+      position_mask_scalar(seen, *grid);
+    } else {
+      DepthRangeInput<Float> in;
+      set_geometry(seen, in);
+      in.z = z;
+      in.dzdu = real(static_cast<float>(depth.dzdx)), in.dzdv = real(static_cast<float>(depth.dzdy));
+      for (int k = 0; k < 3; ++k) in.vertex_z[k] = real(triangle.vertex_z[k]);
+      depth_range_scalar(in);
+    }
     if (table) {
       TableTriangleOf<Counted<std::int32_t>, Bits, Float> lookup;
       for (auto& edge : lookup.edges) {
@@ -100,6 +108,22 @@ TEST_P(TwinCounts, BeamFragmentWithExactMasks) {
   EXPECT_EQ(counters.ops, twin_);
 }
 
+TEST_P(TwinCounts, BeamFragmentOnAGrid) {  // where full pixels take the short way
+  const PositionGrid grid(256);
+  StageCounters raster, counters;
+  std::vector<PixelTriangle> pairs;
+  conservative_raster(triangles_, list_, tile_, raster, pairs);
+  std::vector<Fragment> fragments;
+  BeamFragmentOptions options;
+  options.mask = MaskSource::grid;
+  options.grid = &grid;
+  options.clipped_depth = false;
+  beam_fragment(triangles_, pairs, tile_, options, counters, fragments);
+  for (const PixelTriangle& pair : pairs)
+    if (!pair.full) count_fragment(pair, nullptr, nullptr, &grid);
+  EXPECT_EQ(counters.ops, twin_);
+}
+
 TEST_P(TwinCounts, BeamFragmentWithTheTable) {
   const SamplePattern pattern = hammersley_pattern();
   const MaskTable table(pattern);
@@ -126,7 +150,7 @@ TEST_P(TwinCounts, SortAndMerge) {
   options.positions = {pattern};
   beam_fragment(triangles_, pairs, tile_, options, ignored, fragments);
   shade(std::vector<glm::vec3>(list_.size(), glm::vec3(0.5f)), fragments, ignored);
-  const ABuffer buffer = a_buffer(fragments, tile_.pixels(), SortKey::centroid, 42, sorting);
+  const ABuffer buffer = a_buffer(sort_records(fragments, SortKey::centroid), tile_.pixels(), 42, sorting);
 
   std::vector<std::vector<std::uint32_t>> arrived(tile_.pixels());
   for (std::uint32_t i = 0; i < fragments.size(); ++i) arrived[fragments[i].pixel].push_back(i);
@@ -134,8 +158,7 @@ TEST_P(TwinCounts, SortAndMerge) {
   for (std::size_t pixel = 0; pixel < tile_.pixels(); ++pixel) {
     merge_sort(arrived[pixel].data(), arrived[pixel].size(), scratch,
                [&](std::uint32_t i) { return real(fragments[i].centroid_z); });
-    ASSERT_TRUE(
-        std::equal(arrived[pixel].begin(), arrived[pixel].end(), buffer.fragments.begin() + buffer.first[pixel]));
+    ASSERT_TRUE(std::equal(arrived[pixel].begin(), arrived[pixel].end(), buffer.records.begin() + buffer.first[pixel]));
   }
   EXPECT_EQ(sorting.ops, twin_);
 

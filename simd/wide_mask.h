@@ -18,7 +18,11 @@ struct WideMask {
     for (const std::uint32_t word : words) bits += std::popcount(word);
     return bits;
   }
-  bool none() const { return *this == WideMask{}; }
+  bool none() const {
+    std::uint32_t any = 0;
+    for (const std::uint32_t word : words) any |= word;
+    return any == 0;
+  }
   bool test(std::size_t bit) const { return words[bit / 32] >> (bit % 32) & 1; }
   void set(std::size_t bit) { words[bit / 32] |= 1u << (bit % 32); }
   bool operator==(const WideMask&) const = default;

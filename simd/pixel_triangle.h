@@ -1,0 +1,37 @@
+// A triangle as one pixel sees it: what the per-pixel kernels read.
+#pragma once
+
+#include <cstdint>
+
+#include "simd/sample_pattern.h"
+
+namespace beampipe {
+
+// Vertices in 1/256 px from the pixel's upper left corner, x to the right, y down, |x|, |y| <= 2^24; ordered so that
+// the inside is at E >= 0 for every edge. Edge k runs from vertex k to vertex (k + 1) % 3.
+template <class Int>
+struct PixelTriangleOf {
+  Int x[3], y[3];
+};
+using TriangleInPixel = PixelTriangleOf<std::int32_t>;
+
+// E(x, y) = a x + b y + c, exact: below 2^50.
+template <class Int>
+struct EdgeInPixel {
+  Int a, b, c;
+};
+template <class Int>
+EdgeInPixel<Int> edge_in_pixel(const PixelTriangleOf<Int>& triangle, int k) {
+  const int next = (k + 1) % 3;
+  const Int a = triangle.y[k] - triangle.y[next], b = triangle.x[next] - triangle.x[k];
+  return {a, b, Int(0) - (a * triangle.x[k] + b * triangle.y[k])};
+}
+
+// The top-left rule: does a triangle own the samples that lie exactly on such an edge? Left edges and horizontal top
+// ones do.
+template <class Int>
+bool owns_its_samples(Int a, Int b) {
+  return (a > Int(0)) | ((a == Int(0)) & (b > Int(0)));
+}
+
+}  // namespace beampipe

@@ -1,0 +1,113 @@
+#include "simd/position_mask.h"
+
+#undef HWY_TARGET_INCLUDE
+#define HWY_TARGET_INCLUDE "simd/position_mask.cpp"
+#include "hwy/foreach_target.h"
+// foreach_target comes first
+#include "hwy/highway.h"
+
+HWY_BEFORE_NAMESPACE();
+namespace beampipe {
+namespace HWY_NAMESPACE {
+namespace hn = hwy::HWY_NAMESPACE;
+
+// Both lane types hold every product and sum exactly: int32 below kSmallSlope with c clamped to where it still decides
+// the sign, double up to 2^53.
+constexpr std::int64_t kSmallSlope = 1 << 20;
+constexpr std::int64_t kDecided = 1 << 30;
+
+// At most as many lanes as the two cells have that are computed once.
+template <class Lane>
+HWY_INLINE WideMask mask_of(const EdgeInPixel<std::int64_t> (&edges)[3], const PositionGrid& grid) {
+  const hn::CappedTag<Lane, 16> d;
+  using V = hn::Vec<decltype(d)>;
+  const hn::Rebind<std::int32_t, decltype(d)> di;
+  const std::size_t lanes = hn::Lanes(d), parts = lanes > 8 ? 1 : 8 / lanes;  // vectors to a cell, or to two
+  const auto cells = static_cast<std::size_t>(grid.cells.columns * grid.cells.rows);
+  HWY_ALIGN Lane of_cell[3][32];
+  const auto load = [&](const std::int32_t* values) {
+    if constexpr (sizeof(Lane) == 4) {
+      return hn::Load(d, values);
+    } else {
+      return hn::PromoteTo(d, hn::Load(di, values));
+    }
+  };
+  const auto set = [&](std::int64_t value) { return hn::Set(d, static_cast<Lane>(value)); };
+  for (std::size_t k = 0; k < 3; ++k) {
+    const V a = set(edges[k].a), b = set(edges[k].b);
+    for (std::size_t cell = 0; cell < cells; cell += lanes)
+      hn::Store(hn::Add(hn::Mul(a, load(grid.cell_x.data() + cell)), hn::Mul(b, load(grid.cell_y.data() + cell))), d,
+                of_cell[k] + cell);
+  }
+  WideMask mask;
+  for (std::size_t part = 0; part < parts; ++part) {
+    const V x = load(grid.first_cells.x.data() + part * lanes), y = load(grid.first_cells.y.data() + part * lanes);
+    const auto base = [&](int k) {
+      return hn::Add(hn::Add(hn::Mul(set(edges[k].a), x), hn::Mul(set(edges[k].b), y)), set(edges[k].c));
+    };
+    const V base0 = base(0), base1 = base(1), base2 = base(2);
+    const std::size_t step = lanes > 8 ? 2 : 1;  // cells to a vector
+    for (std::size_t cell = 0; cell < cells; cell += step) {
+      const V edge0 = hn::Add(base0, hn::Set(d, of_cell[0][cell])),
+              edge1 = hn::Add(base1, hn::Set(d, of_cell[1][cell])),
+              edge2 = hn::Add(base2, hn::Set(d, of_cell[2][cell]));
+      const auto outside = hn::Lt(hn::Min(hn::Min(edge0, edge1), edge2), hn::Zero(d));
+      std::uint8_t bytes[8] = {};
+      hn::StoreMaskBits(d, hn::Not(outside), bytes);
+      const std::uint32_t bits = bytes[0] | std::uint32_t{bytes[1]} << 8;
+      const std::size_t at = cell * 8 + part * lanes;
+      mask.words[at / 32] |= bits << (at % 32);
+    }
+  }
+  return mask;
+}
+
+void position_masks_kernel(const TriangleInPixel* in, std::size_t count, const PositionGrid& grid, WideMask* masks) {
+  for (std::size_t i = 0; i < count; ++i) {
+    PixelTriangleOf<std::int64_t> triangle;
+    for (int k = 0; k < 3; ++k) triangle.x[k] = in[i].x[k], triangle.y[k] = in[i].y[k];
+    EdgeInPixel<std::int64_t> edges[3];
+    bool small = true;
+    for (int k = 0; k < 3; ++k) {
+      EdgeInPixel<std::int64_t>& edge = edges[k] = edge_in_pixel(triangle, k);
+      edge.c -= !owns_its_samples(edge.a, edge.b);
+      small &= -kSmallSlope < edge.a && edge.a < kSmallSlope && -kSmallSlope < edge.b && edge.b < kSmallSlope;
+    }
+    if (small) {
+      for (EdgeInPixel<std::int64_t>& edge : edges) edge.c = HWY_MAX(-kDecided, HWY_MIN(edge.c, kDecided));
+      masks[i] = mask_of<std::int32_t>(edges, grid);
+    } else {
+      masks[i] = mask_of<double>(edges, grid);
+    }
+  }
+}
+
+}  // namespace HWY_NAMESPACE
+}  // namespace beampipe
+HWY_AFTER_NAMESPACE();
+
+#if HWY_ONCE
+namespace beampipe {
+
+PositionGrid::PositionGrid(int count)
+    : cells(split_into_cells(count / 8)),
+      cell_width(kSubpixelUnits / cells.columns),
+      cell_height(kSubpixelUnits / cells.rows),
+      first_cells(standard_pattern(8, cell_width, cell_height)) {
+  for (std::size_t s = 0; s < 8; ++s) {
+    first_cells.x[8 + s] = first_cells.x[s] + cell_width;
+    first_cells.y[8 + s] = first_cells.y[s];
+  }
+  first_cells.count = 16;
+  for (int i = 0; i < cells.columns * cells.rows; ++i) {
+    cell_x[static_cast<std::size_t>(i)] = i % cells.columns * cell_width;
+    cell_y[static_cast<std::size_t>(i)] = i / cells.columns * cell_height;
+  }
+}
+
+HWY_EXPORT(position_masks_kernel);
+void position_masks(const TriangleInPixel* in, std::size_t count, const PositionGrid& grid, WideMask* masks) {
+  HWY_DYNAMIC_DISPATCH(position_masks_kernel)(in, count, grid, masks);
+}
+}  // namespace beampipe
+#endif

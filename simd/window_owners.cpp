@@ -1,0 +1,162 @@
+#include "simd/window_owners.h"
+
+#include <bit>
+#include <limits>
+#include <vector>
+
+#undef HWY_TARGET_INCLUDE
+#define HWY_TARGET_INCLUDE "simd/window_owners.cpp"
+#include "hwy/foreach_target.h"
+// foreach_target comes first
+#include "hwy/highway.h"
+
+HWY_BEFORE_NAMESPACE();
+namespace beampipe {
+namespace HWY_NAMESPACE {
+namespace hn = hwy::HWY_NAMESPACE;
+
+constexpr float kFar = std::numeric_limits<float>::infinity();
+constexpr std::uint32_t kNobody = ~0u;
+constexpr std::size_t kPositions = kMaxMaskWords * kMaxMaskSamples;
+
+HWY_INLINE std::uint32_t count_bits(const WideMask& mask) {
+  std::uint32_t bits = 0;
+  for (const std::uint32_t word : mask.words) bits += static_cast<std::uint32_t>(std::popcount(word));
+  return bits;
+}
+
+// The depth tests at contested positions.
+class Contest {
+ public:
+  Contest(const WideMask& contested, const SamplePattern* patterns, std::size_t words)
+      : contested_(contested), patterns_(patterns), words_(words) {
+    for (std::size_t w = 0; w < words; ++w) {
+      if (contested.words[w] == 0) continue;
+      for (std::size_t s = 0; s < kMaxMaskSamples; ++s) {
+        nearest_[w * kMaxMaskSamples + s] = kFar;
+        owner_[w * kMaxMaskSamples + s] = kNobody;
+      }
+    }
+  }
+
+  std::uint64_t add(std::uint32_t index, const WideMask& mask, const DepthPlane<float>& plane) {
+    const hn::CappedTag<float, 16> d;
+    const hn::RebindToUnsigned<decltype(d)> du;
+    const hn::RebindToSigned<decltype(d)> di;
+    const std::size_t lanes = hn::Lanes(d);
+    const auto corner = hn::Set(d, corner_depth(plane)), dzdx = hn::Set(d, plane.dzdu / kSubpixelUnits),
+               dzdy = hn::Set(d, plane.dzdv / kSubpixelUnits);
+    std::uint64_t tests = 0;
+    for (std::size_t w = 0; w < words_; ++w) {
+      const std::uint32_t bits = mask.words[w] & contested_.words[w];
+      if (bits == 0) continue;
+      tests += static_cast<std::uint64_t>(std::popcount(bits));
+      for (std::size_t s = 0; s < kMaxMaskSamples; s += lanes) {
+        const std::uint32_t part = bits >> s & ((1u << lanes) - 1);
+        if (part == 0) continue;
+        const std::uint8_t bytes[8] = {static_cast<std::uint8_t>(part), static_cast<std::uint8_t>(part >> 8)};
+        const auto x = hn::ConvertTo(d, hn::Load(di, patterns_[w].x.data() + s));
+        const auto y = hn::ConvertTo(d, hn::Load(di, patterns_[w].y.data() + s));
+        const auto depth = hn::Add(hn::Add(corner, hn::Mul(dzdx, x)), hn::Mul(dzdy, y));
+        float* const nearest = nearest_ + w * kMaxMaskSamples + s;
+        const auto nearer = hn::And(hn::LoadMaskBits(d, bytes), hn::Lt(depth, hn::Load(d, nearest)));
+        hn::BlendedStore(depth, nearer, d, nearest);
+        hn::BlendedStore(hn::Set(du, index), hn::RebindMask(du, nearer), du, owner_ + w * kMaxMaskSamples + s);
+      }
+    }
+    return tests;
+  }
+
+  // The contested positions that fragment `index`, which has this mask, has won.
+  void give(std::uint32_t index, WideMask& mask) const {
+    const hn::CappedTag<std::uint32_t, 16> d;
+    const std::size_t lanes = hn::Lanes(d);
+    for (std::size_t w = 0; w < words_; ++w) {
+      const std::uint32_t bits = mask.words[w] & contested_.words[w];
+      if (bits == 0) continue;
+      std::uint32_t won = 0;
+      for (std::size_t s = 0; s < kMaxMaskSamples; s += lanes) {
+        std::uint8_t bytes[8] = {};
+        hn::StoreMaskBits(d, hn::Eq(hn::Load(d, owner_ + w * kMaxMaskSamples + s), hn::Set(d, index)), bytes);
+        won |= (bytes[0] | std::uint32_t{bytes[1]} << 8) << s;
+      }
+      mask.words[w] &= ~contested_.words[w] | won;
+    }
+  }
+
+ private:
+  const WideMask& contested_;
+  const SamplePattern* patterns_;
+  std::size_t words_;
+  HWY_ALIGN float nearest_[kPositions];
+  HWY_ALIGN std::uint32_t owner_[kPositions];
+};
+
+WindowCounts window_owners_kernel(const MaskedPlane* in, std::size_t count, const WideMask& taken,
+                                  const SamplePattern* patterns, std::size_t words, Ownership* out) {
+  WideMask seen, contested;
+  for (std::size_t i = 0; i < count; ++i) {
+    for (std::size_t w = 0; w < kMaxMaskWords; ++w) {
+      const std::uint32_t open = in[i].mask.words[w] & ~taken.words[w];
+      contested.words[w] |= seen.words[w] & open;
+      seen.words[w] |= open;
+      out[i].owned.words[w] = open;
+    }
+    out[i].covered = count_bits(in[i].mask);
+  }
+  std::uint64_t tests = 0;
+  if (!contested.none()) {
+    Contest contest(contested, patterns, words);
+    for (std::uint32_t i = 0; i < count; ++i) tests += contest.add(i, out[i].owned, in[i].plane);
+    for (std::uint32_t i = 0; i < count; ++i) contest.give(i, out[i].owned);
+  }
+  for (std::size_t i = 0; i < count; ++i) out[i].visible = count_bits(out[i].owned);
+  return {count_bits(taken), tests};
+}
+
+}  // namespace HWY_NAMESPACE
+}  // namespace beampipe
+HWY_AFTER_NAMESPACE();
+
+#if HWY_ONCE
+namespace beampipe {
+HWY_EXPORT(window_owners_kernel);
+WindowCounts window_owners(const MaskedPlane* in, std::size_t count, const WideMask& taken,
+                           const SamplePattern* patterns, std::size_t words, Ownership* out) {
+  return HWY_DYNAMIC_DISPATCH(window_owners_kernel)(in, count, taken, patterns, words, out);
+}
+
+WindowCounts window_owners_scalar(const MaskedPlane* in, std::size_t count, const WideMask& taken,
+                                  const SamplePattern* patterns, std::size_t words, Ownership* out) {
+  for (std::size_t i = 0; i < count; ++i) out[i] = {{}, static_cast<std::uint32_t>(in[i].mask.count()), 0};
+  std::uint64_t tests = 0;
+  for (std::size_t bit = 0; bit < words * kMaxMaskSamples; ++bit) {
+    if (taken.test(bit)) continue;
+    std::vector<std::size_t> here;
+    for (std::size_t i = 0; i < count; ++i)
+      if (in[i].mask.test(bit)) here.push_back(i);
+    if (here.empty()) continue;
+    std::size_t owner = here.front();
+    if (here.size() > 1) {
+      const SamplePattern& pattern = patterns[bit / kMaxMaskSamples];
+      const auto x = static_cast<float>(pattern.x[bit % kMaxMaskSamples]);
+      const auto y = static_cast<float>(pattern.y[bit % kMaxMaskSamples]);
+      float nearest = std::numeric_limits<float>::infinity();
+      for (const std::size_t i : here) {
+        const DepthPlane<float>& plane = in[i].plane;
+        float depth = 0;
+        if (nearer_at(corner_depth(plane), plane.dzdu / kSubpixelUnits, plane.dzdv / kSubpixelUnits, x, y, nearest,
+                      depth)) {
+          nearest = depth;
+          owner = i;
+        }
+      }
+      tests += here.size();
+    }
+    out[owner].owned.set(bit);
+    ++out[owner].visible;
+  }
+  return {static_cast<std::uint32_t>(taken.count()), tests};
+}
+}  // namespace beampipe
+#endif

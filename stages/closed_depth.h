@@ -1,0 +1,51 @@
+// The depth behind which a pixel is closed: a triangle that covers the whole pixel hides all that lies behind its
+// farthest depth there. One float per pixel of the tile and one for the tile, as in a hierarchical depth buffer
+// (Greene, Kass and Miller 1993).
+#pragma once
+
+#include <algorithm>
+#include <vector>
+
+#include "stages/setup_triangle.h"
+#include "stages/tile.h"
+
+namespace beampipe {
+
+class ClosedDepth {
+ public:
+  explicit ClosedDepth(const Tile& tile) : tile_(tile), depth_(tile.pixels(), kBeyond) {}
+
+  // Pixels in frame coordinates, inside the tile.
+  bool hides(std::int32_t x, std::int32_t y, float nearest) const { return nearest > depth_[index(x, y)]; }
+  bool hides_everywhere(float nearest) const { return nearest > farthest_; }
+
+  // A triangle covers the whole pixel, nowhere in it farther than this.
+  void close(std::int32_t x, std::int32_t y, float farthest) {
+    const std::size_t pixel = index(x, y);
+    if (farthest >= depth_[pixel]) return;
+    changes_ += depth_[pixel] == farthest_;
+    depth_[pixel] = farthest;
+  }
+
+  // Brings hides_everywhere up to date, when as many pixels have changed as the tile has.
+  void refresh() {
+    if (changes_ < depth_.size()) return;
+    farthest_ = *std::max_element(depth_.begin(), depth_.end());
+    changes_ = static_cast<std::size_t>(
+        std::count_if(depth_.begin(), depth_.end(), [this](float depth) { return depth < farthest_; }));
+  }
+
+ private:
+  static constexpr float kBeyond = 1.0f;  // every depth
+
+  std::size_t index(std::int32_t x, std::int32_t y) const {
+    return static_cast<std::size_t>((y - tile_.y0) * tile_.width() + x - tile_.x0);
+  }
+
+  Tile tile_;
+  std::vector<float> depth_;
+  float farthest_ = kBeyond;
+  std::size_t changes_ = 0;  // pixels nearer than farthest_
+};
+
+}  // namespace beampipe

@@ -1,0 +1,83 @@
+#include "simd/window_owners.h"
+
+#include <gtest/gtest.h>
+
+#include <vector>
+
+#include "tests/simd/every_target.h"
+#include "tests/simd/random.h"
+
+namespace beampipe {
+namespace {
+
+WideMask random_mask(Random& random, std::size_t words) {
+  WideMask mask;
+  for (std::size_t w = 0; w < words; ++w) {
+    const auto bits = [&] { return static_cast<std::uint32_t>(random.integer(0, 0xffffffff)); };
+    mask.words[w] = random.one_in(3) ? 0 : random.one_in(3) ? ~0u : random.one_in(2) ? bits() : bits() & bits();
+  }
+  return mask;
+}
+
+// Planes of every steepness, many of them equal, so that ties decide.
+MaskedPlane random_fragment(Random& random, std::size_t words) {
+  MaskedPlane fragment{random_mask(random, words), {random.real32(-1, 0), 0, 0}};
+  if (random.one_in(3)) fragment.plane.z = -0.5f;
+  if (!random.one_in(3)) fragment.plane.dzdu = random.real32(-2, 2), fragment.plane.dzdv = random.real32(-2, 2);
+  return fragment;
+}
+
+TEST(WindowOwners, KernelEqualsTwin) {
+  Random random(65);
+  SCOPED_TRACE(random.name());
+  on_every_target([&] {
+    for (int i = 0; i < 1'500; ++i) {
+      const std::size_t words = std::size_t{1} << random.integer(0, 3);
+      const std::vector<SamplePattern> patterns = cell_patterns(static_cast<int>(32 * words));
+      std::vector<MaskedPlane> fragments;
+      for (std::int64_t n = random.integer(1, random.one_in(8) ? 60 : 5); n > 0; --n)
+        fragments.push_back(random_fragment(random, words));
+      const WideMask taken = random.one_in(2) ? WideMask{} : random_mask(random, words);
+      std::vector<Ownership> found(fragments.size()), expected(fragments.size());
+      const WindowCounts counts =
+          window_owners(fragments.data(), fragments.size(), taken, patterns.data(), words, found.data());
+      const WindowCounts twin =
+          window_owners_scalar(fragments.data(), fragments.size(), taken, patterns.data(), words, expected.data());
+      ASSERT_EQ(counts.taken, twin.taken);
+      ASSERT_EQ(counts.tests, twin.tests);
+      for (std::size_t k = 0; k < fragments.size(); ++k) {
+        ASSERT_EQ(found[k].owned, expected[k].owned) << "window " << i << ", fragment " << k;
+        ASSERT_EQ(found[k].covered, expected[k].covered);
+        ASSERT_EQ(found[k].visible, expected[k].visible);
+      }
+    }
+  });
+}
+
+// Every position that is covered and not taken has one owner, and nothing else has.
+TEST(WindowOwners, PartitionWhatIsOpen) {
+  Random random(66);
+  SCOPED_TRACE(random.name());
+  const std::vector<SamplePattern> patterns = cell_patterns(256);
+  for (int i = 0; i < 2'000; ++i) {
+    std::vector<MaskedPlane> fragments;
+    WideMask covered;
+    for (std::int64_t n = random.integer(1, 12); n > 0; --n) {
+      fragments.push_back(random_fragment(random, 8));
+      covered = covered | fragments.back().mask;
+    }
+    const WideMask taken = random_mask(random, 8);
+    std::vector<Ownership> owners(fragments.size());
+    window_owners(fragments.data(), fragments.size(), taken, patterns.data(), 8, owners.data());
+    WideMask all;
+    for (std::size_t k = 0; k < owners.size(); ++k) {
+      ASSERT_TRUE((all & owners[k].owned).none());
+      ASSERT_TRUE(without(owners[k].owned, fragments[k].mask).none());
+      all = all | owners[k].owned;
+    }
+    ASSERT_EQ(all, without(covered, taken));
+  }
+}
+
+}  // namespace
+}  // namespace beampipe
