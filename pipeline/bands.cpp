@@ -1,5 +1,7 @@
 #include "pipeline/bands.h"
 
+#include <tbb/parallel_for.h>
+
 #include <algorithm>
 #include <stdexcept>
 #include <string>
@@ -112,10 +114,23 @@ std::vector<Band> split_into_bands(const SetupTriangles& triangles, const TileGr
 }
 
 std::vector<TriangleList> bin_triangles(const SetupTriangles& triangles, const TileGrid& grid, const Band& band) {
-  std::vector<TriangleList> lists(band.last - band.first);
-  for (std::uint32_t i = 0; i < triangles.triangles.size(); ++i)
-    for_touched_tiles(triangles.triangles[i], grid, band,
-                      [&](std::size_t tile) { lists[tile - band.first].push_back(i); });
+  // Chunks of triangles are binned side by side, and what they found is put behind each other.
+  constexpr std::size_t kChunk = 8192;
+  const std::size_t count = triangles.triangles.size(), tiles = band.last - band.first;
+  std::vector<std::vector<TriangleList>> found(std::max<std::size_t>(1, (count + kChunk - 1) / kChunk),
+                                               std::vector<TriangleList>(tiles));
+  tbb::parallel_for(std::size_t{0}, found.size(), [&](std::size_t chunk) {
+    for (std::size_t i = chunk * kChunk; i < std::min(count, (chunk + 1) * kChunk); ++i)
+      for_touched_tiles(triangles.triangles[i], grid, band, [&](std::size_t tile) {
+        found[chunk][tile - band.first].push_back(static_cast<std::uint32_t>(i));
+      });
+  });
+  if (found.size() == 1) return std::move(found.front());
+  std::vector<TriangleList> lists(tiles);
+  tbb::parallel_for(std::size_t{0}, tiles, [&](std::size_t tile) {
+    for (const std::vector<TriangleList>& of_chunk : found)
+      lists[tile].insert(lists[tile].end(), of_chunk[tile].begin(), of_chunk[tile].end());
+  });
   return lists;
 }
 

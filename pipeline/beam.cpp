@@ -26,14 +26,14 @@ struct BeamFrame {
   StageCounters setup;
   SetupTriangles triangles;
   std::vector<glm::vec3> colors;
-  PositionSet positions;
+  const PositionSet& positions;
   PositionGrid grid;
   BeamFragmentOptions options;
 
   BeamFrame(const Trace& trace, const Frame& frame, int count)
       : triangles(vertex_setup(trace, frame, setup)),
         colors(shade_triangles(triangles, frame.light_direction)),
-        positions(cell_patterns(count)),
+        positions(cell_positions(count)),
         grid(count) {
     options.mask = MaskSource::grid;
     options.grid = &grid;
@@ -48,36 +48,37 @@ FrameResult render_shape(const Trace& trace, const Frame& frame, const BeamOptio
   BeamFrame state(trace, frame, beam.positions);
   stream(run.memory, state.triangles.triangles.size() * sizeof(SetupTriangle), state.setup);  // kept to be read again
   FrameResult result =
-      render_tiles(frame, state.triangles, state.setup, kBinSize, run, kBufferedBytes, [&](const Tile& tile, const TriangleList& list) {
-        StageCounters raster{"conservative_raster"}, buffering{"a_buffer"}, fragment{"beam_fragment"}, shading{"shade"},
-            composition{"compose"}, resolving{"resolve"};
-        std::vector<StoredAggregate<Words, Channel>> pixels(tile.pixels());
-        std::vector<PixelTriangle> pairs, window;
-        std::vector<Fragment> fragments;
-        std::vector<float> areas, tiny(tile.pixels());
-        ClosedDepth closed(tile);
-        conservative_raster(state.triangles, list, tile, raster, pairs, &closed);
-        const std::vector<SortRecord> records = sort_records(pairs, tile);
-        const ABuffer buffer = a_buffer(records, tile.pixels(), kWaitingPairBytes, buffering);
-        Windows windows(pairs, buffer);
-        while (windows.next([&](std::uint32_t pixel) { return !is_closed(pixels[pixel]); }, window)) {
-          fragments.clear();
-          beam_fragment(state.triangles, window, tile, state.options, fragment, fragments);
-          shade_visible(state.colors, fragments, shading);
-          compose_window(fragments, state.positions, composition, pixels, areas);
-          for (const Fragment& item : fragments) tiny[item.pixel] += item.tiny;
-        }
-        count_sorted_composition(run.memory, tile, buffer, records, kWaitingPairBytes, windows.taken,
-                                 covered_pixels(pixels), closed_pixels(pixels), beam_framebuffer(beam), buffering,
-                                 fragment, composition, resolving);
-        count_triangle_fetches(run.memory, tile, list, buffer, records, windows.taken, fragment);
-        return TileResult{resolve(composed_colors(pixels), frame.background, sizeof pixels[0], resolving),
-                          {{"fragments", depths_of(buffer)},
-                           {"tiny_triangles", std::move(tiny)},
-                           {"largest_window", std::move(windows.largest)},
-                           {"merges", std::move(windows.taken)}},
-                          {raster, buffering, fragment, shading, composition, resolving}};
-      });
+      render_tiles(frame, state.triangles, state.setup, kBinSize, run, kBufferedBytes,
+                   [&](const Tile& tile, const TriangleList& list) {
+                     StageCounters raster{"conservative_raster"}, buffering{"a_buffer"}, fragment{"beam_fragment"},
+                         shading{"shade"}, composition{"compose"}, resolving{"resolve"};
+                     std::vector<StoredAggregate<Words, Channel>> pixels(tile.pixels());
+                     std::vector<PixelTriangle> pairs, window;
+                     std::vector<Fragment> fragments;
+                     std::vector<float> areas, tiny(tile.pixels());
+                     ClosedDepth closed(tile);
+                     conservative_raster(state.triangles, list, tile, raster, pairs, &closed);
+                     const std::vector<SortRecord> records = sort_records(pairs, tile);
+                     const ABuffer buffer = a_buffer(records, tile.pixels(), kWaitingPairBytes, buffering);
+                     Windows windows(pairs, buffer);
+                     while (windows.next([&](std::uint32_t pixel) { return !is_closed(pixels[pixel]); }, window)) {
+                       fragments.clear();
+                       beam_fragment(state.triangles, window, tile, state.options, fragment, fragments);
+                       shade_visible(state.colors, fragments, shading);
+                       compose_window(fragments, state.positions, composition, pixels, areas);
+                       for (const Fragment& item : fragments) tiny[item.pixel] += item.tiny;
+                     }
+                     count_sorted_composition(run.memory, tile, buffer, records, kWaitingPairBytes, windows.taken,
+                                              covered_pixels(pixels), closed_pixels(pixels), beam_framebuffer(beam),
+                                              buffering, fragment, composition, resolving);
+                     count_triangle_fetches(run.memory, tile, list, buffer, records, windows.taken, fragment);
+                     return TileResult{resolve(composed_colors(pixels), frame.background, sizeof pixels[0], resolving),
+                                       {{"fragments", depths_of(buffer)},
+                                        {"tiny_triangles", std::move(tiny)},
+                                        {"largest_window", std::move(windows.largest)},
+                                        {"merges", std::move(windows.taken)}},
+                                       {raster, buffering, fragment, shading, composition, resolving}};
+                   });
   const auto buffering = std::find_if(result.stages.begin(), result.stages.end(),
                                       [](const StageCounters& stage) { return stage.stage == "a_buffer"; });
   result.a_buffer_peak_bytes =
@@ -90,33 +91,35 @@ std::vector<PixelWeights> weights_of(const Trace& trace, const Frame& frame, con
                                      const RunOptions& run) {
   const BeamFrame state(trace, frame, beam.positions);
   std::vector<PixelWeights> weights(std::size_t{frame.width} * frame.height);
-  render_tiles(frame, state.triangles, state.setup, kBinSize, run, kBufferedBytes, [&](const Tile& tile, const TriangleList& list) {
-    StageCounters unused{"weights"};
-    std::vector<StoredAggregate<Words, float>> pixels(tile.pixels());  // as they are before colours are packed
-    std::vector<PixelTriangle> pairs, window;
-    std::vector<Fragment> fragments;
-    std::vector<float> areas;
-    std::vector<PixelWeights> found(tile.pixels());
-    ClosedDepth closed(tile);
-    conservative_raster(state.triangles, list, tile, unused, pairs, &closed);
-    const ABuffer buffer = a_buffer(sort_records(pairs, tile), tile.pixels(), kWaitingPairBytes, unused);
-    Windows windows(pairs, buffer);
-    while (windows.next([&](std::uint32_t pixel) { return !is_closed(pixels[pixel]); }, window)) {
-      fragments.clear();
-      beam_fragment(state.triangles, window, tile, state.options, unused, fragments);
-      compose_window(fragments, state.positions, unused, pixels, areas);
-      for (std::size_t i = 0; i < fragments.size(); ++i)
-        found[fragments[i].pixel].push_back({fragments[i].triangle, areas[i], 0, fragments[i].tiny});
-    }
-    for (std::size_t i = 0; i < tile.pixels(); ++i) {
-      if (!is_closed(pixels[i])) continue;
-      float sum = 0;  // a closed pixel's areas are scaled to 1
-      for (const SurfaceWeight& surface : found[i]) sum += surface.weight;
-      for (SurfaceWeight& surface : found[i]) surface.weight /= sum;
-    }
-    copy_to_frame(found, tile, frame, weights);
-    return TileResult{{}, {}, {unused}};
-  });
+  render_tiles(
+      frame, state.triangles, state.setup, kBinSize, run, kBufferedBytes,
+      [&](const Tile& tile, const TriangleList& list) {
+        StageCounters unused{"weights"};
+        std::vector<StoredAggregate<Words, float>> pixels(tile.pixels());  // as they are before colours are packed
+        std::vector<PixelTriangle> pairs, window;
+        std::vector<Fragment> fragments;
+        std::vector<float> areas;
+        std::vector<PixelWeights> found(tile.pixels());
+        ClosedDepth closed(tile);
+        conservative_raster(state.triangles, list, tile, unused, pairs, &closed);
+        const ABuffer buffer = a_buffer(sort_records(pairs, tile), tile.pixels(), kWaitingPairBytes, unused);
+        Windows windows(pairs, buffer);
+        while (windows.next([&](std::uint32_t pixel) { return !is_closed(pixels[pixel]); }, window)) {
+          fragments.clear();
+          beam_fragment(state.triangles, window, tile, state.options, unused, fragments);
+          compose_window(fragments, state.positions, unused, pixels, areas);
+          for (std::size_t i = 0; i < fragments.size(); ++i)
+            found[fragments[i].pixel].push_back({fragments[i].triangle, areas[i], 0, fragments[i].tiny});
+        }
+        for (std::size_t i = 0; i < tile.pixels(); ++i) {
+          if (!is_closed(pixels[i])) continue;
+          float sum = 0;  // a closed pixel's areas are scaled to 1
+          for (const SurfaceWeight& surface : found[i]) sum += surface.weight;
+          for (SurfaceWeight& surface : found[i]) surface.weight /= sum;
+        }
+        copy_to_frame(found, tile, frame, weights);
+        return TileResult{{}, {}, {unused}};
+      });
   return weights;
 }
 

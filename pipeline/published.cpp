@@ -77,27 +77,28 @@ FrameResult render_published(const Trace& trace, const Frame& frame, const Publi
   const PublishedFrame state(trace, frame, beam);
   const std::vector<Surface> framebuffer = published_framebuffer(beam);
   FrameResult result =
-      render_tiles(frame, state.triangles, state.setup, kBinSize, run, kPairBytes + kSortBytes, [&](const Tile& tile, const TriangleList& list) {
-        StageCounters raster{"conservative_raster"}, fragment{"beam_fragment"}, shading{"shade"}, buffering{"a_buffer"},
-            composition{"compose"}, resolving{"resolve"};
-        std::vector<PixelTriangle> pairs;
-        std::vector<Fragment> fragments;
-        conservative_raster(state.triangles, list, tile, raster, pairs);
-        beam_fragment(state.triangles, pairs, tile, state.options, fragment, fragments);
-        shade(state.colors, fragments, shading, &state.triangles.attributes);
-        const std::vector<SortRecord> records = sort_records(fragments, beam.sort);
-        const ABuffer buffer = a_buffer(records, tile.pixels(), state.bytes.fragment, buffering);
-        PixelCounters counts = count_per_pixel(tile, buffer, fragments);
-        const std::vector<PixelColor> aggregates = compose_tile(state, fragments, buffer, composition);
-        std::vector<bool> full;
-        for (const PixelColor& aggregate : aggregates) full.push_back(aggregate.alpha == 1.0f);
-        count_sorted_composition(run.memory, tile, buffer, records, state.bytes.fragment, counts.back().second,
-                                 std::vector<bool>(tile.pixels(), true), full, framebuffer, buffering, composition,
-                                 composition, resolving);
-        return TileResult{resolve(aggregates, frame.background, state.bytes.aggregate, resolving),
-                          std::move(counts),
-                          {raster, fragment, shading, buffering, composition, resolving}};
-      });
+      render_tiles(frame, state.triangles, state.setup, kBinSize, run, kPairBytes + kSortBytes,
+                   [&](const Tile& tile, const TriangleList& list) {
+                     StageCounters raster{"conservative_raster"}, fragment{"beam_fragment"}, shading{"shade"},
+                         buffering{"a_buffer"}, composition{"compose"}, resolving{"resolve"};
+                     std::vector<PixelTriangle> pairs;
+                     std::vector<Fragment> fragments;
+                     conservative_raster(state.triangles, list, tile, raster, pairs);
+                     beam_fragment(state.triangles, pairs, tile, state.options, fragment, fragments);
+                     shade(state.colors, fragments, shading, &state.triangles.attributes);
+                     const std::vector<SortRecord> records = sort_records(fragments, beam.sort);
+                     const ABuffer buffer = a_buffer(records, tile.pixels(), state.bytes.fragment, buffering);
+                     PixelCounters counts = count_per_pixel(tile, buffer, fragments);
+                     const std::vector<PixelColor> aggregates = compose_tile(state, fragments, buffer, composition);
+                     std::vector<bool> full;
+                     for (const PixelColor& aggregate : aggregates) full.push_back(aggregate.alpha == 1.0f);
+                     count_sorted_composition(run.memory, tile, buffer, records, state.bytes.fragment,
+                                              counts.back().second, std::vector<bool>(tile.pixels(), true), full,
+                                              framebuffer, buffering, composition, composition, resolving);
+                     return TileResult{resolve(aggregates, frame.background, state.bytes.aggregate, resolving),
+                                       std::move(counts),
+                                       {raster, fragment, shading, buffering, composition, resolving}};
+                   });
   const auto buffering = std::find_if(result.stages.begin(), result.stages.end(),
                                       [](const StageCounters& stage) { return stage.stage == "a_buffer"; });
   result.a_buffer_peak_bytes =
@@ -111,38 +112,41 @@ std::vector<PixelWeights> published_weights(const Trace& trace, const Frame& fra
   exact.storage = PaperStorage::float32;
   const PublishedFrame state(trace, frame, exact);
   std::vector<PixelWeights> weights(std::size_t{frame.width} * frame.height);
-  render_tiles(frame, state.triangles, state.setup, kBinSize, run, kPairBytes + kSortBytes, [&](const Tile& tile, const TriangleList& list) {
-    StageCounters unused{"weights"};
-    std::vector<PixelTriangle> pairs;
-    std::vector<Fragment> fragments;
-    conservative_raster(state.triangles, list, tile, unused, pairs);
-    beam_fragment(state.triangles, pairs, tile, state.options, unused, fragments);
-    const ABuffer buffer = a_buffer(sort_records(fragments, beam.sort), tile.pixels(), state.bytes.fragment, unused);
-    // Composition is linear in colour. A fragment that alone has a channel, as 1, leaves its weight there: three
-    // fragments of each pixel at a time.
-    std::vector<PixelWeights> found(tile.pixels());
-    std::uint32_t deepest = 0;
-    for (std::size_t pixel = 0; pixel < tile.pixels(); ++pixel) deepest = std::max(deepest, buffer.depth_of(pixel));
-    for (std::uint32_t first = 0; first < deepest; first += 3) {
-      for (std::size_t pixel = 0; pixel < tile.pixels(); ++pixel) {
-        for (std::uint32_t k = 0; k < buffer.depth_of(pixel); ++k) {
-          Fragment& fragment = fragments[buffer.records[buffer.first[pixel] + k]];
-          fragment.color = glm::vec3(0.0f);
-          if (k >= first && k < first + 3) fragment.color[static_cast<int>(k - first)] = fragment.alpha;
-        }
-      }
-      const std::vector<PixelColor> composed = compose_tile(state, fragments, buffer, unused);
-      for (std::size_t pixel = 0; pixel < tile.pixels(); ++pixel) {
-        for (std::uint32_t k = first; k < std::min(first + 3, buffer.depth_of(pixel)); ++k) {
-          const Fragment& fragment = fragments[buffer.records[buffer.first[pixel] + k]];
-          const float weight = composed[pixel].color[static_cast<int>(k - first)];
-          found[pixel].push_back({fragment.triangle, weight, k, fragment.tiny});
-        }
-      }
-    }
-    copy_to_frame(found, tile, frame, weights);
-    return TileResult{{}, {}, {unused}};
-  });
+  render_tiles(frame, state.triangles, state.setup, kBinSize, run, kPairBytes + kSortBytes,
+               [&](const Tile& tile, const TriangleList& list) {
+                 StageCounters unused{"weights"};
+                 std::vector<PixelTriangle> pairs;
+                 std::vector<Fragment> fragments;
+                 conservative_raster(state.triangles, list, tile, unused, pairs);
+                 beam_fragment(state.triangles, pairs, tile, state.options, unused, fragments);
+                 const ABuffer buffer =
+                     a_buffer(sort_records(fragments, beam.sort), tile.pixels(), state.bytes.fragment, unused);
+                 // Composition is linear in colour. A fragment that alone has a channel, as 1, leaves its weight there:
+                 // three fragments of each pixel at a time.
+                 std::vector<PixelWeights> found(tile.pixels());
+                 std::uint32_t deepest = 0;
+                 for (std::size_t pixel = 0; pixel < tile.pixels(); ++pixel)
+                   deepest = std::max(deepest, buffer.depth_of(pixel));
+                 for (std::uint32_t first = 0; first < deepest; first += 3) {
+                   for (std::size_t pixel = 0; pixel < tile.pixels(); ++pixel) {
+                     for (std::uint32_t k = 0; k < buffer.depth_of(pixel); ++k) {
+                       Fragment& fragment = fragments[buffer.records[buffer.first[pixel] + k]];
+                       fragment.color = glm::vec3(0.0f);
+                       if (k >= first && k < first + 3) fragment.color[static_cast<int>(k - first)] = fragment.alpha;
+                     }
+                   }
+                   const std::vector<PixelColor> composed = compose_tile(state, fragments, buffer, unused);
+                   for (std::size_t pixel = 0; pixel < tile.pixels(); ++pixel) {
+                     for (std::uint32_t k = first; k < std::min(first + 3, buffer.depth_of(pixel)); ++k) {
+                       const Fragment& fragment = fragments[buffer.records[buffer.first[pixel] + k]];
+                       const float weight = composed[pixel].color[static_cast<int>(k - first)];
+                       found[pixel].push_back({fragment.triangle, weight, k, fragment.tiny});
+                     }
+                   }
+                 }
+                 copy_to_frame(found, tile, frame, weights);
+                 return TileResult{{}, {}, {unused}};
+               });
   return weights;
 }
 

@@ -27,7 +27,7 @@ inline void count_fragments(const std::vector<SampleFragment>& fragments, const 
                             std::vector<float>& counts) {
   std::vector<std::uint32_t> last(counts.size(), ~0u);  // triangle that was counted last
   for (const SampleFragment& fragment : fragments) {
-    const std::int32_t x = fragment.x / grid.columns - tile.x0, y = fragment.y / grid.rows - tile.y0;
+    const std::int32_t x = grid.pixel_x(fragment.x) - tile.x0, y = grid.pixel_y(fragment.y) - tile.y0;
     const auto pixel = static_cast<std::size_t>(y * tile.width() + x);
     counts[pixel] += last[pixel] != fragment.triangle;
     last[pixel] = fragment.triangle;

@@ -36,7 +36,7 @@ FrameResult render_shape(const Trace& trace, const Frame& frame, const StreamOpt
   StageCounters setup;
   const SetupTriangles triangles = vertex_setup(trace, frame, setup);
   const std::vector<glm::vec3> colors = shade_triangles(triangles, frame.light_direction);
-  const PositionSet positions(cell_patterns(stream.positions));
+  const PositionSet& positions = cell_positions(stream.positions);
   const PositionGrid grid(stream.positions);
   BeamFragmentOptions options;
   options.mask = MaskSource::grid;
@@ -62,23 +62,26 @@ FrameResult render_shape(const Trace& trace, const Frame& frame, const StreamOpt
       for_each_batch(list, [&](const TriangleList& batch) {
         pairs.clear(), fragments.clear();
         conservative_raster(triangles, batch, box, raster, pairs, &closed);
-        keep_unfinished(pixels, tile, pairs);
         beam_fragment(triangles, pairs, tile, options, fragment, fragments);
         for (const Fragment& item : fragments) ++counts[item.pixel];
         claim(triangles, fragments, tile, positions, claiming, pixels);
-        for (const Fragment& item : fragments) state.merge(item.triangle, item.pixel, claiming);
+        if (run.memory.modelled)
+          for (const Fragment& item : fragments) state.merge(item.triangle, item.pixel, claiming);
       });
       state.flush({}, claiming);
       fragments.clear();
       beam_fragment(triangles, owners(triangles, pixels, tile), tile, options, fragment, fragments);
       shade_visible(colors, fragments, shading);
       settle(fragments, pass == stream.passes, settling, pixels);
-      for (const Fragment& item : fragments) {
-        state.merge(0, item.pixel, settling);
-        color.merge(0, item.pixel, settling);
+      if (run.memory.modelled) {
+        for (const Fragment& item : fragments) {
+          state.merge(0, item.pixel, settling);
+          color.merge(0, item.pixel, settling);
+        }
       }
       state.flush({}, settling);
       color.flush({}, settling);
+      close_finished(pixels, tile, closed);
       box = unfinished_box(pixels, tile);
     }
     color.read_all(resolving);

@@ -9,6 +9,7 @@
 #include "pipeline/spec.h"
 #include "pipeline/stream.h"
 #include "pipeline/taa.h"
+#include "pipeline/threads.h"
 #include "pipeline/visibility.h"
 #include "pipeline/z3.h"
 
@@ -19,7 +20,7 @@ namespace {
 template <class Render, class... Options>
 auto bind_options(Render* render, const Options&... options) {
   return [=](const Trace& trace, std::size_t frame, const RunOptions& run) {
-    return render(trace, trace.frames.at(frame), options..., run);
+    return on_threads(run.threads, [&] { return render(trace, trace.frames.at(frame), options..., run); });
   };
 }
 

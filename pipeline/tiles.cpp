@@ -1,29 +1,28 @@
 #include "pipeline/tiles.h"
 
 #include <malloc.h>
-#include <tbb/global_control.h>
-#include <tbb/info.h>
 #include <tbb/parallel_for.h>
-#include <tbb/task_arena.h>
 
 #include <algorithm>
 
 #include "pipeline/bands.h"
 #include "pipeline/memory/image_memory.h"
+#include "pipeline/threads.h"
 
 namespace beampipe {
 namespace {
 
-int thread_count(const RunOptions& options) {
-  return options.threads > 0 ? options.threads : tbb::info::default_concurrency();
-}
-
-// Calls work(0), work(1), ... work(count - 1), on as many threads as the options allow.
-void run_on_threads(std::size_t count, const RunOptions& options, const std::function<void(std::size_t)>& work) {
-  const int threads = thread_count(options);
-  const tbb::global_control allow(tbb::global_control::max_allowed_parallelism, static_cast<std::size_t>(threads));
-  tbb::task_arena arena(threads);
-  arena.execute([&] { tbb::parallel_for(std::size_t{0}, count, work); });
+// What was rendered of a tile, to its place in the frame.
+void place(TileResult& tile_result, const Tile& tile, const Frame& frame, FrameResult& result) {
+  const auto* image = reinterpret_cast<const float*>(tile_result.image.data());
+  for (std::int32_t y = tile.y0; y < tile.y1 && !tile_result.image.empty(); ++y, image += 4 * tile.width())
+    std::copy_n(
+        image, 4 * tile.width(),
+        result.image.rgba.data() + 4 * (static_cast<std::size_t>(y) * frame.width + static_cast<std::size_t>(tile.x0)));
+  for (const auto& [name, values] : tile_result.pixel_counters)
+    copy_to_frame(values, tile, frame, result.pixel_counters.at(name));
+  tile_result.image = {};
+  tile_result.pixel_counters = {};
 }
 
 }  // namespace
@@ -32,43 +31,48 @@ FrameResult render_tiles(const Frame& frame, const SetupTriangles& triangles, co
                          int tile_size, const RunOptions& options, std::size_t pair_bytes,
                          const TileRenderer& renderer) {
   const TileGrid grid(frame, tile_size);
-  FrameResult frame_result;
   const std::size_t pixels = std::size_t{frame.width} * frame.height;
-  std::vector<glm::vec4> image(pixels);
-  frame_result.stages = {vertex_setup};
-  stream(options.memory, vertex_setup.bytes_read, frame_result.stages.front());
-  for (const Band& band : split_into_bands(triangles, grid, pair_bytes, thread_count(options), options.memory_limit)) {
-    if (band.first > 0) malloc_trim(0);  // what glibc keeps of the freed memory of a band adds to that of the next
+  FrameResult result;
+  result.image = {frame.width, frame.height, std::vector<float>(4 * pixels)};
+  result.stages = {vertex_setup};
+  stream(options.memory, vertex_setup.bytes_read, result.stages.front());
+  const auto render_band = [&](const Band& band) {
     const std::vector<TriangleList> lists = bin_triangles(triangles, grid, band);
     std::vector<TileResult> results(lists.size());
-    run_on_threads(results.size(), options,
-                   [&](std::size_t i) { results[i] = renderer(grid.tiles[band.first + i], lists[i]); });
-    for (std::size_t i = 0; i < results.size(); ++i) {
-      const Tile& tile = grid.tiles[band.first + i];
-      if (!results[i].image.empty()) copy_to_frame(results[i].image, tile, frame, image);
-      for (const auto& [name, values] : results[i].pixel_counters) {
-        frame_result.pixel_counters[name].resize(pixels);
-        copy_to_frame(values, tile, frame, frame_result.pixel_counters[name]);
-      }
-      frame_result.stages.resize(1 + results[i].stages.size());
-      for (std::size_t s = 0; s < results[i].stages.size(); ++s) {
-        frame_result.stages[s + 1].stage = results[i].stages[s].stage;
-        frame_result.stages[s + 1] += results[i].stages[s];
+    const auto render = [&](std::size_t i) { results[i] = renderer(grid.tiles[band.first + i], lists[i]); };
+    render(0);  // tells which counters there are
+    for (const auto& [name, values] : results.front().pixel_counters) result.pixel_counters[name].resize(pixels);
+    place(results.front(), grid.tiles[band.first], frame, result);
+    tbb::parallel_for(std::size_t{1}, lists.size(), [&](std::size_t i) {
+      render(i);
+      place(results[i], grid.tiles[band.first + i], frame, result);
+    });
+    result.stages.resize(1 + results.front().stages.size());
+    for (const TileResult& of_tile : results) {
+      for (std::size_t s = 0; s < of_tile.stages.size(); ++s) {
+        result.stages[s + 1].stage = of_tile.stages[s].stage;
+        result.stages[s + 1] += of_tile.stages[s];
       }
     }
+  };
+  for (const Band& band :
+       split_into_bands(triangles, grid, pair_bytes, thread_count(options.threads), options.memory_limit)) {
+    if (band.first > 0) malloc_trim(0);  // what glibc keeps of the freed memory of a band adds to that of the next
+    on_threads(options.threads, [&] { render_band(band); });
   }
-  frame_result.image = image_of(frame, image);
-  StageCounters& raster = frame_result.stages[1];
+  StageCounters& raster = result.stages[1];
   raster.items_in += triangles.triangles.size();
   raster.bytes_read += triangles.triangles.size() * sizeof(SetupTriangle);
-  return frame_result;
+  return result;
 }
 
 void for_each_tile(const Frame& frame, int tile_size, const RunOptions& options, StageCounters& counters,
                    const std::function<void(const Tile&, StageCounters&)>& work) {
   const std::vector<Tile> tiles = TileGrid(frame, tile_size).tiles;
   std::vector<StageCounters> of_tiles(tiles.size());
-  run_on_threads(tiles.size(), options, [&](std::size_t i) { work(tiles[i], of_tiles[i]); });
+  on_threads(options.threads, [&] {
+    tbb::parallel_for(std::size_t{0}, tiles.size(), [&](std::size_t i) { work(tiles[i], of_tiles[i]); });
+  });
   for (const StageCounters& of_tile : of_tiles) counters += of_tile;
 }
 

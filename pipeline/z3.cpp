@@ -19,7 +19,7 @@ FrameResult render_shape(const Trace& trace, const Frame& frame, const Z3Options
   StageCounters setup;
   const SetupTriangles triangles = vertex_setup(trace, frame, setup);
   const std::vector<glm::vec3> colors = shade_triangles(triangles, frame.light_direction);
-  const PositionSet positions(cell_patterns(z3.positions));
+  const PositionSet& positions = cell_positions(z3.positions);
   const PositionGrid grid(z3.positions);
   BeamFragmentOptions options;
   options.mask = MaskSource::grid;

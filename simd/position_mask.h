@@ -35,7 +35,7 @@ WideMask position_mask_scalar(const PixelTriangleOf<Int>& in, const PositionGrid
   Int at_position[3][8];
   for (int k = 0; k < 3; ++k) {
     edges[k] = edge_in_pixel(in, k);
-    if (!owns_its_samples(edges[k].a, edges[k].b)) edges[k].c = edges[k].c - Int(1);
+    edges[k].c = edges[k].c - Int(owns_its_samples(edges[k].a, edges[k].b) ? 0 : 1);
     for (std::size_t s = 0; s < 8; ++s)
       at_position[k][s] =
           edges[k].a * Int(grid.first_cells.x[s]) + edges[k].b * Int(grid.first_cells.y[s]) + edges[k].c;

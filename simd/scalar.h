@@ -12,6 +12,7 @@ inline float select(bool condition, float yes, float no) { return condition ? ye
 inline float lesser(float a, float b) { return a < b ? a : b; }
 inline float greater(float a, float b) { return a > b ? a : b; }
 inline float magnitude(float a) { return a < 0 ? -a : a; }
+inline double magnitude(double a) { return a < 0 ? -a : a; }
 inline std::uint32_t select(bool condition, std::uint32_t yes, std::uint32_t no) { return condition ? yes : no; }
 inline std::int32_t select(bool condition, std::int32_t yes, std::int32_t no) { return condition ? yes : no; }
 inline double lesser(double a, double b) { return a < b ? a : b; }

@@ -44,10 +44,10 @@ enum class MaskSource { table, exact, grid, none };
 
 struct BeamFragmentOptions {
   MaskSource mask = MaskSource::table;
-  std::vector<SamplePattern> positions;            // of the mask, 32 to a pattern: one for `table`, any for `exact`
-  const MaskTable* table = nullptr;                // for MaskSource::table
-  const PositionGrid* grid = nullptr;              // for MaskSource::grid
-  std::uint32_t fragment_bytes = 0;                // of a fragment as it is passed on
+  std::vector<SamplePattern> positions;  // of the mask, 32 to a pattern: one for `table`, any for `exact`
+  const MaskTable* table = nullptr;      // for MaskSource::table
+  const PositionGrid* grid = nullptr;    // for MaskSource::grid
+  std::uint32_t fragment_bytes = 0;      // of a fragment as it is passed on
   // What a tiny fragment is given: as many positions as its area fills, the nearest to its centroid, but no more than
   // this. The paper (section 2.2.1) gives it one, the slides (8) "up to 3".
   int tiny_positions = 0;

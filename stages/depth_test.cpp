@@ -11,17 +11,15 @@ namespace {
 // What the kernels read, and how many samples they test.
 std::vector<CellDepth> cell_depths(const SetupTriangles& triangles, const std::vector<SampleFragment>& fragments,
                                    const Tile& tile, const CellGrid& grid, std::uint64_t& tested) {
+  const double cell_width = 1.0 / grid.columns, cell_height = 1.0 / grid.rows;  // pixels; exact
   std::vector<CellDepth> items;
   items.reserve(fragments.size());
   for (const SampleFragment& fragment : fragments) {
     const ScreenDepth& plane = triangles.triangles[fragment.triangle].depth;
-    const std::int32_t pixel_x = fragment.x / grid.columns, pixel_y = fragment.y / grid.rows;
-    const std::int32_t pixel = (pixel_y - tile.y0) * tile.width() + pixel_x - tile.x0;
-    const std::int32_t cell_in_pixel = (fragment.y % grid.rows) * grid.columns + fragment.x % grid.columns;
-    const double left = static_cast<double>(fragment.x) / grid.columns,
-                 top = static_cast<double>(fragment.y) / grid.rows;
+    const std::int32_t pixel = (grid.pixel_y(fragment.y) - tile.y0) * tile.width() + grid.pixel_x(fragment.x) - tile.x0;
+    const double left = fragment.x * cell_width, top = fragment.y * cell_height;
     CellDepth& item = items.emplace_back();
-    item.cell = static_cast<std::uint32_t>(pixel * grid.cells_per_pixel() + cell_in_pixel);
+    item.cell = static_cast<std::uint32_t>(pixel * grid.cells_per_pixel() + grid.in_pixel(fragment.x, fragment.y));
     item.mask = fragment.mask;
     item.triangle = fragment.triangle;
     cell_plane(plane.z, plane.dzdx, plane.dzdy, plane.anchor_x, plane.anchor_y, left, top, item.z, item.dzdx,

@@ -1,6 +1,8 @@
 #include "stages/position_set.h"
 
 #include <algorithm>
+#include <stdexcept>
+#include <string>
 #include <utility>
 
 #include "simd/wide_mask.h"
@@ -30,6 +32,14 @@ PositionSet::PositionSet(std::vector<SamplePattern> words) : patterns(std::move(
 const std::array<std::uint8_t, 3>& PositionSet::nearest_to(float u, float v) const {
   const auto place = [](float x) { return std::clamp(static_cast<int>(x * kPlaces), 0, kPlaces - 1); };
   return nearest[static_cast<std::size_t>(place(v) * kPlaces + place(u))];
+}
+
+const PositionSet& cell_positions(int count) {
+  static const std::array sets{PositionSet(cell_patterns(32)), PositionSet(cell_patterns(64)),
+                               PositionSet(cell_patterns(128)), PositionSet(cell_patterns(256))};
+  for (const PositionSet& set : sets)
+    if (set.count() == count) return set;
+  throw std::invalid_argument("expected 32, 64, 128 or 256 positions, found " + std::to_string(count));
 }
 
 }  // namespace beampipe

@@ -19,4 +19,7 @@ struct PositionSet {
   const std::array<std::uint8_t, 3>& nearest_to(float u, float v) const;  // u, v in 0..1
 };
 
+// That of cell_patterns(count); made once.
+const PositionSet& cell_positions(int count);
+
 }  // namespace beampipe

@@ -18,6 +18,13 @@ struct PositionStates {
     return state;
   }
 
+  bool all_in(std::uint32_t state) const {
+    std::uint32_t all = ~0u;
+    for (std::size_t w = 0; w < Words; ++w)
+      for (std::size_t b = 0; b < Bits; ++b) all &= state >> b & 1 ? planes[b][w] : ~planes[b][w];
+    return all == ~0u;
+  }
+
   WideMask positions_in(std::uint32_t state) const {
     WideMask mask;
     for (std::size_t w = 0; w < Words; ++w) {

@@ -25,16 +25,18 @@ void settle(const std::vector<Fragment>& fragments, bool last_pass, StageCounter
 // Before the first pass and after every one: is there anything to decide in the pixel?
 template <std::size_t Words, std::size_t Layers>
 bool is_unfinished(const OwnerPixel<Words, Layers>& pixel) {
-  return pixel.positions_in(OwnerPixel<Words, Layers>::kSettled).count() < 32 * static_cast<int>(Words);
+  return !pixel.states.all_in(OwnerPixel<Words, Layers>::kSettled);
 }
 
-// Drops the pairs of pixels that are finished: a stencil test before anything is computed of a fragment.
+// Finished pixels are closed to all that comes, however near: a stencil test before anything is computed of a fragment.
 template <std::size_t Words, std::size_t Layers>
-void keep_unfinished(const std::vector<OwnerPixel<Words, Layers>>& pixels, const Tile& tile,
-                     std::vector<PixelTriangle>& pairs) {
-  std::erase_if(pairs, [&](const PixelTriangle& pair) {
-    return !is_unfinished(pixels[static_cast<std::size_t>((pair.y - tile.y0) * tile.width() + pair.x - tile.x0)]);
-  });
+void close_finished(const std::vector<OwnerPixel<Words, Layers>>& pixels, const Tile& tile, ClosedDepth& closed) {
+  constexpr float kInFront = -2.0f;  // of every depth
+  const OwnerPixel<Words, Layers>* pixel = pixels.data();
+  for (std::int32_t y = tile.y0; y < tile.y1; ++y)
+    for (std::int32_t x = tile.x0; x < tile.x1; ++x, ++pixel)
+      if (!is_unfinished(*pixel)) closed.close(x, y, kInFront);
+  closed.refresh();
 }
 
 template <std::size_t Words, std::size_t Layers>

@@ -24,6 +24,12 @@ struct CellGrid {
   std::int32_t cell_width() const { return kSubpixelUnits / columns; }  // 1/256 px
   std::int32_t cell_height() const { return kSubpixelUnits / rows; }
   std::int32_t cells_per_pixel() const { return columns * rows; }
+  // Of a cell: the pixel that it lies in, and its number there, row by row.
+  std::int32_t pixel_x(std::int32_t x) const { return x >> std::countr_zero(static_cast<std::uint32_t>(columns)); }
+  std::int32_t pixel_y(std::int32_t y) const { return y >> std::countr_zero(static_cast<std::uint32_t>(rows)); }
+  std::int32_t in_pixel(std::int32_t x, std::int32_t y) const {
+    return (y & (rows - 1)) * columns + (x & (columns - 1));
+  }
   bool operator==(const CellGrid&) const = default;
 };
 
@@ -39,7 +45,7 @@ struct EdgeSet {
 };
 
 inline std::int32_t floor_divide(std::int32_t value, std::int32_t by_power_of_two) {
-  return (value - (((value % by_power_of_two) + by_power_of_two) % by_power_of_two)) / by_power_of_two;
+  return value >> std::countr_zero(static_cast<std::uint32_t>(by_power_of_two));
 }
 
 // The cells that the triangle's closed bounding box touches, within the tile.

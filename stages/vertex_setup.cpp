@@ -1,5 +1,7 @@
 #include "stages/vertex_setup.h"
 
+#include <tbb/parallel_for.h>
+
 #include <algorithm>
 #include <array>
 #include <cmath>
@@ -151,123 +153,199 @@ std::array<double, 16> elements_of(const glm::dmat4& matrix) {  // column-major
   return elements;
 }
 
-class Setup {
+// A vertex of the draw at hand, and what its triangles share of it.
+struct SetupVertex {
+  ClipVertex<double> clip;
+  ScreenVertex<double> screen;  // x and y snapped; with w > 0 only
+  std::int32_t x, y;            // 1/256 px
+  bool finite, in_view;         // nothing to clip where all three vertices are in view
+};
+
+// How often each twin ran.
+struct Work {
+  std::uint64_t transformed = 0, outside_tests = 0, plane_tests = 0, crossings = 0, projected = 0, areas = 0;
+  std::uint64_t normals = 0;
+
+  Work& operator+=(const Work& other) {
+    transformed += other.transformed, outside_tests += other.outside_tests, plane_tests += other.plane_tests;
+    crossings += other.crossings, projected += other.projected, areas += other.areas, normals += other.normals;
+    return *this;
+  }
+};
+
+// What the draws of a frame have in common.
+struct View {
+  double width, height;
+  glm::dmat4 to_clip;  // from the world
+  ClipPlanes planes;
+  bool mirrored;
+
+  explicit View(const Frame& frame)
+      : width(frame.width),
+        height(frame.height),
+        to_clip(frame.projection * frame.view),
+        planes(clip_planes(frame)),
+        // Front faces are counter-clockwise on screen; a mirroring view or projection turns that around in the world.
+        // Clip space is left-handed, so that what does not mirror has a negative determinant.
+        mirrored(glm::determinant(to_clip) > 0) {}
+};
+
+template <class Real>
+bool in_view(const ClipVertex<Real>& v) {
+  return (v.w > Real(0.0)) & (magnitude(v.x) <= v.w) & (magnitude(v.y) <= v.w) & (magnitude(v.z) <= v.w);
+}
+
+void place_on_screen(const View& view, SetupVertex& vertex, Work& work) {
+  ++work.projected;
+  vertex.screen = project<double>(vertex.clip, view.width, view.height);
+  vertex.x = snap(vertex.screen.x), vertex.y = snap(vertex.screen.y);
+  vertex.screen.x = vertex.x / double(kSubpixelUnits), vertex.screen.y = vertex.y / double(kSubpixelUnits);
+}
+
+SetupVertex setup_vertex(const View& view, const std::array<double, 16>& to_clip, const glm::vec3& p, Work& work) {
+  SetupVertex vertex{};
+  ++work.transformed;
+  vertex.clip = transform_vertex<double>(to_clip, p.x, p.y, p.z);
+  vertex.finite = std::isfinite(vertex.clip.x + vertex.clip.y + vertex.clip.z + vertex.clip.w);
+  vertex.in_view = vertex.finite && in_view(vertex.clip);
+  if (vertex.in_view) place_on_screen(view, vertex, work);
+  return vertex;
+}
+
+// Triangles of one draw, one after the other, into `out`.
+class TriangleSetup {
  public:
-  Setup(const Frame& frame, SetupTriangles& out) : frame_(frame), planes_(clip_planes(frame)), out_(out) {
-    // Front faces are counter-clockwise on screen; a mirroring view or projection turns that around in the world. Clip
-    // space is left-handed, so that what does not mirror has a negative determinant.
-    mirrored_ = glm::determinant(frame.projection * frame.view) > 0;
+  TriangleSetup(const View& view, const Mesh& mesh, const Draw& draw, std::uint32_t draw_index,
+                const std::vector<SetupVertex>& vertices)
+      : view_(view),
+        mesh_(mesh),
+        draw_(draw),
+        to_world_(elements_of(draw.transform)),
+        draw_index_(draw_index),
+        vertices_(vertices) {}
+
+  void add(std::size_t t) {
+    const glm::uvec3& index = mesh_.triangles[t];
+    const std::array<const SetupVertex*, 3> v = {&vertices_[index.x], &vertices_[index.y], &vertices_[index.z]};
+    if (v[0]->in_view && v[1]->in_view && v[2]->in_view) {
+      add_on_screen(t, *v[0], *v[1], *v[2]);
+    } else if (v[0]->finite && v[1]->finite && v[2]->finite) {
+      ++work.outside_tests;
+      const std::array<ClipVertex<double>, 3> clip = {v[0]->clip, v[1]->clip, v[2]->clip};
+      if (!outside_view(clip)) add_clipped(t, clip);
+    }
   }
 
-  void add_draw(const Mesh& mesh, const Draw& draw) {
-    const std::array<double, 16> elements = elements_of(frame_.projection * frame_.view * draw.transform);
-    vertices_.clear();
-    vertices_.reserve(mesh.positions.size());
-    for (const glm::vec3& p : mesh.positions) vertices_.push_back(transform_vertex<double>(elements, p.x, p.y, p.z));
-    for (std::size_t t = 0; t < mesh.triangles.size(); ++t) add_triangle(mesh, draw, t);
-    work_.transformed += mesh.positions.size();
-    ++draws_;
-  }
-
-  // How often each twin ran.
-  struct Work {
-    std::uint64_t transformed = 0, outside_tests = 0, plane_tests = 0, crossings = 0, projected = 0, areas = 0;
-    std::uint64_t normals = 0;
-  };
-  const Work& work() const { return work_; }
+  SetupTriangles out;
+  Work work;
 
  private:
-  void add_triangle(const Mesh& mesh, const Draw& draw, std::size_t t) {
-    const glm::uvec3& index = mesh.triangles[t];
-    const std::array<ClipVertex<double>, 3> v = {vertices_[index.x], vertices_[index.y], vertices_[index.z]};
-    for (const ClipVertex<double>& p : v)
-      if (!std::isfinite(p.x + p.y + p.z + p.w)) return;
-    ++work_.outside_tests;
-    if (outside_view(v)) return;
-    const std::size_t first = out_.triangles.size();
+  void add_clipped(std::size_t t, const std::array<ClipVertex<double>, 3>& v) {
+    Polygon polygon(v.begin(), v.end());
     bool clipped = false;
-    for (const auto& plane : planes_)
+    for (const auto& plane : view_.planes)
       for (const ClipVertex<double>& p : v) clipped |= plane_distance(plane, p) < 0;
-    work_.plane_tests += planes_.size() * v.size();
-    if (!clipped) {
-      add_screen_triangle(v[0], v[1], v[2], draw.cull);
-    } else {
-      Polygon polygon(v.begin(), v.end());
-      for (const auto& plane : planes_) {
-        work_.plane_tests += polygon.size();
-        polygon = clip_to_plane(polygon, plane, work_.crossings);
-      }
-      for (std::size_t i = 2; i < polygon.size(); ++i)
-        add_screen_triangle(polygon[0], polygon[i - 1], polygon[i], draw.cull);
+    work.plane_tests += view_.planes.size() * v.size();
+    for (std::size_t i = 0; clipped && i < view_.planes.size(); ++i) {
+      work.plane_tests += polygon.size();
+      polygon = clip_to_plane(polygon, view_.planes[i], work.crossings);
     }
-    for (std::size_t i = first; i < out_.triangles.size(); ++i)
-      out_.attributes.push_back(attributes(mesh, draw, t, fronts_[i - first]));
-    out_.draws.resize(out_.triangles.size(), draws_);
-    fronts_.clear();
+    const auto on_screen = [&](const ClipVertex<double>& p) {
+      SetupVertex vertex{};
+      vertex.clip = p;
+      place_on_screen(view_, vertex, work);
+      return vertex;
+    };
+    for (std::size_t i = 2; i < polygon.size(); ++i)
+      if (polygon[0].w > 0 && polygon[i - 1].w > 0 && polygon[i].w > 0)
+        add_on_screen(t, on_screen(polygon[0]), on_screen(polygon[i - 1]), on_screen(polygon[i]));
   }
 
-  void add_screen_triangle(const ClipVertex<double>& a, const ClipVertex<double>& b, const ClipVertex<double>& c,
-                           Cull cull) {
-    SetupTriangle triangle;
-    std::array<ScreenVertex<double>, 3> p;
-    int k = 0;
-    for (const ClipVertex<double>* v : {&a, &b, &c}) {
-      if (!(v->w > 0)) return;
-      const auto i = static_cast<std::size_t>(k);
-      ++work_.projected;
-      p[i] = project<double>(*v, frame_.width, frame_.height);
-      triangle.x[k] = snap(p[i].x), triangle.y[k] = snap(p[i].y);
-      triangle.vertex_z[k] = static_cast<float>(p[i].z);
-      p[i].x = triangle.x[k] / double(kSubpixelUnits), p[i].y = triangle.y[k] / double(kSubpixelUnits);
-      ++k;
-    }
-    ++work_.areas;
-    const std::int64_t area2 = doubled_area<std::int64_t>({triangle.x[0], triangle.x[1], triangle.x[2]},
-                                                          {triangle.y[0], triangle.y[1], triangle.y[2]});
+  void add_on_screen(std::size_t t, const SetupVertex& a, const SetupVertex& b, const SetupVertex& c) {
+    ++work.areas;
+    const std::int64_t area2 = doubled_area<std::int64_t>({a.x, b.x, c.x}, {a.y, b.y, c.y});
     if (area2 == 0) return;
     const bool front = area2 < 0;  // counter-clockwise with y up
-    if (cull == (front ? Cull::front : Cull::back)) return;
-    if (front) {
-      std::swap(triangle.x[1], triangle.x[2]);
-      std::swap(triangle.y[1], triangle.y[2]);
-      std::swap(triangle.vertex_z[1], triangle.vertex_z[2]);
+    if (draw_.cull == (front ? Cull::front : Cull::back)) return;
+    SetupTriangle& triangle = out.triangles.emplace_back();
+    const std::array<const SetupVertex*, 3> turned = {&a, front ? &c : &b, front ? &b : &c};
+    for (std::size_t k = 0; k < 3; ++k) {
+      triangle.x[k] = turned[k]->x, triangle.y[k] = turned[k]->y;
+      triangle.vertex_z[k] = static_cast<float>(turned[k]->screen.z);
     }
     // Sorted, so that equal triangles have equal depth whatever vertex they start with and whichever way they turn.
+    std::array<ScreenVertex<double>, 3> p = {a.screen, b.screen, c.screen};
     std::sort(p.begin(), p.end(), [](const auto& l, const auto& r) {
       return std::array{l.x, l.y, l.z} < std::array{r.x, r.y, r.z};
     });
     const Slopes<double> slopes = depth_slopes(p[0], p[1], p[2]);
     triangle.depth = {p[0].z, slopes.dzdx, slopes.dzdy, p[0].x, p[0].y};
     triangle.front = front;
-    out_.triangles.push_back(triangle);
-    fronts_.push_back(front);
+    out.attributes.push_back(attributes(t, front));
+    out.draws.push_back(draw_index_);
   }
 
-  FlatAttributes attributes(const Mesh& mesh, const Draw& draw, std::size_t t, bool front) {
-    FlatAttributes flat{draw.kd.value_or(mesh.colors[t]), glm::vec3(0), draw.shading == Shading::lambert};
+  FlatAttributes attributes(std::size_t t, bool front) {
+    FlatAttributes flat{draw_.kd.value_or(mesh_.colors[t]), glm::vec3(0), draw_.shading == Shading::lambert};
     if (!flat.lit) return flat;
-    ++work_.normals;
+    ++work.normals;
     const auto world = [&](std::uint32_t i) {
-      const glm::vec3& p = mesh.positions[i];
-      return world_point<double>(elements_of(draw.transform), {p.x, p.y, p.z});
+      const glm::vec3& p = mesh_.positions[i];
+      return world_point<double>(to_world_, {p.x, p.y, p.z});
     };
-    const glm::uvec3& index = mesh.triangles[t];
+    const glm::uvec3& index = mesh_.triangles[t];
     double length = 0;
     const Vector<double> normal = face_normal(world(index.x), world(index.y), world(index.z), length);
-    const double scale = (front != mirrored_ ? 1.0 : -1.0) / length;
+    const double scale = (front != view_.mirrored ? 1.0 : -1.0) / length;
     if (length > 0) flat.normal = glm::vec3(glm::dvec3(normal.x, normal.y, normal.z) * scale);
     return flat;
   }
 
-  const Frame& frame_;
-  ClipPlanes planes_;
-  SetupTriangles& out_;
-  bool mirrored_ = false;
-  std::vector<ClipVertex<double>> vertices_;  // of the draw at hand
-  std::vector<bool> fronts_;                  // of the triangle at hand, per piece
-  std::uint32_t draws_ = 0;                   // before the one at hand
-  Work work_;
+  const View& view_;
+  const Mesh& mesh_;
+  const Draw& draw_;
+  std::array<double, 16> to_world_;
+  std::uint32_t draw_index_;
+  const std::vector<SetupVertex>& vertices_;
 };
+
+void append(const SetupTriangles& part, SetupTriangles& whole) {
+  whole.triangles.insert(whole.triangles.end(), part.triangles.begin(), part.triangles.end());
+  whole.attributes.insert(whole.attributes.end(), part.attributes.begin(), part.attributes.end());
+  whole.draws.insert(whole.draws.end(), part.draws.begin(), part.draws.end());
+}
+
+constexpr std::size_t kChunk = 4096;  // vertices or triangles that one thread takes at once
+
+// Calls work(first, end) for chunks of [0, count), side by side.
+template <class ChunkWork>
+void for_each_chunk(std::size_t count, ChunkWork&& work) {
+  tbb::parallel_for(std::size_t{0}, (count + kChunk - 1) / kChunk,
+                    [&](std::size_t chunk) { work(chunk * kChunk, std::min(count, (chunk + 1) * kChunk)); });
+}
+
+// The draw's triangles, chunk by chunk, behind those of `out`.
+Work add_draw(const View& view, const Mesh& mesh, const Draw& draw, std::uint32_t draw_index, SetupTriangles& out) {
+  const std::array<double, 16> to_clip = elements_of(view.to_clip * draw.transform);
+  std::vector<SetupVertex> vertices(mesh.positions.size());
+  std::vector<Work> transforms((vertices.size() + kChunk - 1) / kChunk);
+  for_each_chunk(vertices.size(), [&](std::size_t first, std::size_t end) {
+    for (std::size_t i = first; i < end; ++i)
+      vertices[i] = setup_vertex(view, to_clip, mesh.positions[i], transforms[first / kChunk]);
+  });
+  std::vector<TriangleSetup> chunks((mesh.triangles.size() + kChunk - 1) / kChunk,
+                                    TriangleSetup(view, mesh, draw, draw_index, vertices));
+  for_each_chunk(mesh.triangles.size(), [&](std::size_t first, std::size_t end) {
+    for (std::size_t t = first; t < end; ++t) chunks[first / kChunk].add(t);
+  });
+  Work work;
+  for (const Work& of_chunk : transforms) work += of_chunk;
+  for (const TriangleSetup& chunk : chunks) {
+    append(chunk.out, out);
+    work += chunk.work;
+  }
+  return work;
+}
 
 using CountedReal = Counted<double>;
 
@@ -276,7 +354,7 @@ OperationCounts transform_cost() {
     std::array<CountedReal, 16> matrix;
     matrix.fill(CountedReal(1.0, counts));
     const CountedReal x(1.0, counts);
-    transform_vertex(matrix, x, x, x);
+    static_cast<void>(in_view(transform_vertex(matrix, x, x, x)));
   });
 }
 
@@ -352,16 +430,17 @@ OperationCounts slopes_cost() {
 
 SetupTriangles vertex_setup(const Trace& trace, const Frame& frame, StageCounters& counters) {
   SetupTriangles out;
-  Setup setup(frame, out);
+  const View view(frame);
+  Work work;
   counters.stage = "vertex_setup";
-  for (const Draw& draw : frame.draws) {
+  for (std::uint32_t i = 0; i < frame.draws.size(); ++i) {
+    const Draw& draw = frame.draws[i];
     const Mesh& mesh = trace.meshes[draw.mesh];
-    setup.add_draw(mesh, draw);
+    work += add_draw(view, mesh, draw, i, out);
     counters.items_in += mesh.triangles.size();
     counters.bytes_read += mesh.triangles.size() * sizeof(glm::uvec3) + mesh.positions.size() * sizeof(glm::vec3);
   }
   counters.items_out = out.triangles.size();
-  const Setup::Work& work = setup.work();
   counters.ops += transform_cost() * work.transformed;
   counters.ops += outside_cost() * work.outside_tests;
   counters.ops += plane_test_cost() * work.plane_tests;

@@ -14,6 +14,7 @@ namespace beampipe {
 // Pixels beyond the viewport's origin, on every side, that a snapped vertex may lie at: 2^23 in 1/256 px.
 inline constexpr double kGuardBand = 32768.0;
 
+// Runs on the threads that oneTBB has where it is called; the result does not depend on them.
 SetupTriangles vertex_setup(const Trace& trace, const Frame& frame, StageCounters& counters);
 
 }  // namespace beampipe

@@ -2,6 +2,8 @@
 // real data: on every procedural scene.
 #include <gtest/gtest.h>
 
+#include "simd/coverage.h"
+#include "simd/depth_range.h"
 #include "simd/depth_test.h"
 #include "simd/mask_table.h"
 #include "simd/merge.h"
