@@ -419,8 +419,8 @@ std::vector<std::string> long_run(const std::string& trace, const std::string& o
 TEST_F(ProgramTest, MemoryLimitBoundsThePeakAndChangesNothing) {
   succeed({"make", "stack", "--triangles", "200", "--width", "128", "--height", "96", "-o", path("deep.json")});
   const auto run = [&](const std::string& limit, const std::string& out) {
-    return run_program({"run", path("deep.json"), "-t", "beam", "--no-memory-model", "--threads", "4", "--memory-limit",
-                        limit, "-o", path(out)});
+    return run_program({"run", path("deep.json"), "-t", "beam:rules=paper", "--no-memory-model", "--threads", "4",
+                        "--memory-limit", limit, "-o", path(out)});
   };
   const Outcome refused = run("1MB", "refused");
   EXPECT_EQ(refused.exit_code, 1);
@@ -436,7 +436,9 @@ TEST_F(ProgramTest, MemoryLimitBoundsThePeakAndChangesNothing) {
   EXPECT_GT(whole.peak_bytes >> 20, needed + kProgram) << "or the test shows nothing";
 #endif
   for (const char* file : {"frame_0000.exr", "frame_0000_counters.exr"})
-    EXPECT_EQ(read_text(folder_ / "banded/beam" / file), read_text(folder_ / "whole/beam" / file)) << file;
+    EXPECT_EQ(read_text(folder_ / "banded/beam_rules=paper" / file),
+              read_text(folder_ / "whole/beam_rules=paper" / file))
+        << file;
 }
 
 TEST_F(ProgramTest, CtrlCKeepsFinishedImagesAndLeavesNothingElse) {
