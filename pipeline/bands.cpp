@@ -1,6 +1,7 @@
 #include "pipeline/bands.h"
 
 #include <tbb/parallel_for.h>
+#include <tbb/task_arena.h>
 
 #include <algorithm>
 #include <stdexcept>
@@ -114,13 +115,13 @@ std::vector<Band> split_into_bands(const SetupTriangles& triangles, const TileGr
 }
 
 std::vector<TriangleList> bin_triangles(const SetupTriangles& triangles, const TileGrid& grid, const Band& band) {
-  // Chunks of triangles are binned side by side, and what they found is put behind each other.
-  constexpr std::size_t kChunk = 8192;
+  // A chunk of triangles per thread is binned side by side, and what they found is put behind each other.
   const std::size_t count = triangles.triangles.size(), tiles = band.last - band.first;
-  std::vector<std::vector<TriangleList>> found(std::max<std::size_t>(1, (count + kChunk - 1) / kChunk),
-                                               std::vector<TriangleList>(tiles));
+  const auto chunks = static_cast<std::size_t>(tbb::this_task_arena::max_concurrency());
+  const std::size_t chunk_size = count / chunks + 1;
+  std::vector<std::vector<TriangleList>> found(chunks, std::vector<TriangleList>(tiles));
   tbb::parallel_for(std::size_t{0}, found.size(), [&](std::size_t chunk) {
-    for (std::size_t i = chunk * kChunk; i < std::min(count, (chunk + 1) * kChunk); ++i)
+    for (std::size_t i = chunk * chunk_size; i < std::min(count, (chunk + 1) * chunk_size); ++i)
       for_touched_tiles(triangles.triangles[i], grid, band, [&](std::size_t tile) {
         found[chunk][tile - band.first].push_back(static_cast<std::uint32_t>(i));
       });

@@ -1,6 +1,8 @@
 #include "simd/window_owners.h"
 
+#include <algorithm>
 #include <bit>
+#include <cstring>
 #include <limits>
 #include <vector>
 
@@ -19,10 +21,19 @@ constexpr float kFar = std::numeric_limits<float>::infinity();
 constexpr std::uint32_t kNobody = ~0u;
 constexpr std::size_t kPositions = kMaxMaskWords * kMaxMaskSamples;
 
-HWY_INLINE std::uint32_t count_bits(const WideMask& mask) {
-  std::uint32_t bits = 0;
-  for (const std::uint32_t word : mask.words) bits += static_cast<std::uint32_t>(std::popcount(word));
-  return bits;
+// 64 positions at a time.
+struct Mask64 {
+  std::uint64_t words[kMaxMaskWords / 2];
+};
+HWY_INLINE Mask64 load(const WideMask& mask) {
+  Mask64 wide;
+  std::memcpy(&wide, mask.words.data(), sizeof wide);
+  return wide;
+}
+HWY_INLINE std::uint32_t count_bits(const Mask64& mask) {
+  int bits = 0;
+  for (const std::uint64_t word : mask.words) bits += std::popcount(word);
+  return static_cast<std::uint32_t>(bits);
 }
 
 // The depth tests at contested positions.
@@ -32,10 +43,8 @@ class Contest {
       : contested_(contested), patterns_(patterns), words_(words) {
     for (std::size_t w = 0; w < words; ++w) {
       if (contested.words[w] == 0) continue;
-      for (std::size_t s = 0; s < kMaxMaskSamples; ++s) {
-        nearest_[w * kMaxMaskSamples + s] = kFar;
-        owner_[w * kMaxMaskSamples + s] = kNobody;
-      }
+      std::fill_n(nearest_ + w * kMaxMaskSamples, kMaxMaskSamples, kFar);
+      std::fill_n(owner_ + w * kMaxMaskSamples, kMaxMaskSamples, kNobody);
     }
   }
 
@@ -94,24 +103,34 @@ class Contest {
 
 WindowCounts window_owners_kernel(const MaskedPlane* in, std::size_t count, const WideMask& taken,
                                   const SamplePattern* patterns, std::size_t words, Ownership* out) {
-  WideMask seen, contested;
+  const Mask64 closed = load(taken);
+  Mask64 seen{}, twice{};
+  std::uint64_t any_twice = 0;
   for (std::size_t i = 0; i < count; ++i) {
-    for (std::size_t w = 0; w < kMaxMaskWords; ++w) {
-      const std::uint32_t open = in[i].mask.words[w] & ~taken.words[w];
-      contested.words[w] |= seen.words[w] & open;
-      seen.words[w] |= open;
-      out[i].owned.words[w] = open;
+    const Mask64 mask = load(in[i].mask);
+    Mask64 open;
+    for (std::size_t w = 0; w < kMaxMaskWords / 2; ++w) {
+      open.words[w] = mask.words[w] & ~closed.words[w];
+      twice.words[w] |= seen.words[w] & open.words[w];
+      seen.words[w] |= open.words[w];
+      any_twice |= twice.words[w];
     }
-    out[i].covered = count_bits(in[i].mask);
+    std::memcpy(out[i].owned.words.data(), &open, sizeof open);
+    out[i].covered = count_bits(mask);
+    out[i].visible = count_bits(open);
   }
   std::uint64_t tests = 0;
-  if (!contested.none()) {
+  if (any_twice != 0) {
+    WideMask contested;
+    std::memcpy(contested.words.data(), &twice, sizeof twice);
     Contest contest(contested, patterns, words);
     for (std::uint32_t i = 0; i < count; ++i) tests += contest.add(i, out[i].owned, in[i].plane);
-    for (std::uint32_t i = 0; i < count; ++i) contest.give(i, out[i].owned);
+    for (std::uint32_t i = 0; i < count; ++i) {
+      contest.give(i, out[i].owned);
+      out[i].visible = count_bits(load(out[i].owned));
+    }
   }
-  for (std::size_t i = 0; i < count; ++i) out[i].visible = count_bits(out[i].owned);
-  return {count_bits(taken), tests};
+  return {count_bits(closed), tests};
 }
 
 }  // namespace HWY_NAMESPACE

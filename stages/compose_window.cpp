@@ -94,16 +94,19 @@ class PixelComposer {
   // partly hidden.
   const std::vector<std::uint32_t>& whole_first(std::size_t count) {
     order_.resize(count);
+    if (count == 1) {
+      order_[0] = 0;
+      return order_;
+    }
     whole_.resize(count);
     for (std::uint32_t i = 0; i < count; ++i) {
       const Ownership& seen = ownership_[i];
       order_[i] = i;
       whole_[i] = seen.covered > 0 ? static_cast<float>(seen.visible) / static_cast<float>(seen.covered) : 1.0f;
     }
-    if (count > 1)
-      std::sort(order_.begin(), order_.end(), [this](std::uint32_t a, std::uint32_t b) {
-        return whole_[a] > whole_[b] || (whole_[a] == whole_[b] && a < b);
-      });
+    std::sort(order_.begin(), order_.end(), [this](std::uint32_t a, std::uint32_t b) {
+      return whole_[a] > whole_[b] || (whole_[a] == whole_[b] && a < b);
+    });
     return order_;
   }
 

@@ -46,11 +46,11 @@ void conservative_raster(const SetupTriangles& triangles, const TriangleList& li
   if (closed)  // what was closed later than it was found
     std::erase_if(out, [&](const PixelTriangle& pair) { return closed->hides(pair.x, pair.y, pair.nearest); });
   static const OperationCounts test_cost = cell_test_cost();
-  counters.items_out += out.size() - before;
   counters.ops += test_cost * counts.cells_tested;
-  counters.bytes_written += (out.size() - before) * kPixelTriangleBytes;
   counters.lanes_used += counts.cells_touched;
   counters.lanes_issued += counts.cells_tested;
+  counters.items_out += out.size() - before;
+  counters.bytes_written += (out.size() - before) * kPixelTriangleBytes;
 }
 
 PixelTriangle pixel_triangle(const SetupTriangles& triangles, std::uint32_t index, std::uint32_t quad, std::int32_t x,

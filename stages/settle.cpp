@@ -1,6 +1,7 @@
 #include "stages/settle.h"
 
 #include <algorithm>
+#include <array>
 
 #include "simd/conserve.h"
 #include "stages/counting.h"
@@ -16,13 +17,16 @@ struct Owner {
   float covered, visible;  // mask positions
 };
 
+float whole(const Owner& owner) { return owner.visible / owner.covered; }
+
 template <std::size_t Words, std::size_t Layers>
 void settle_pixel(const Fragment* begin, const Fragment* end, bool last_pass, OwnerPixel<Words, Layers>& pixel) {
   using Pixel = OwnerPixel<Words, Layers>;
   constexpr auto kPositions = static_cast<float>(32 * Words);
   const bool speck = pixel.owner[0] & Pixel::kSpeck;
   const WideMask deferred = pixel.positions_in(Pixel::kDeferred);
-  std::vector<Owner> seen;
+  std::array<Owner, Layers> seen;
+  std::size_t count = 0;
   WideMask settled = pixel.positions_in(Pixel::kSettled);
   Taken<float> taken{pixel.area / kAreaUnits, static_cast<float>(settled.count())};
   glm::vec3 color = taken.area * glm::vec3(pixel.color[0], pixel.color[1], pixel.color[2]);  // times area
@@ -31,13 +35,15 @@ void settle_pixel(const Fragment* begin, const Fragment* end, bool last_pass, Ow
     const WideMask owned = pixel.positions_in(Pixel::kFirstLayer + k);
     settled = settled | owned;
     if (owned.none() || fragment == end || fragment->triangle != pixel.triangle(k)) continue;
-    seen.push_back({fragment, static_cast<float>(fragment->mask.count()), static_cast<float>(owned.count())});
+    // Whole ones first, as in sorted order.
+    const Owner owner{fragment, static_cast<float>(fragment->mask.count()), static_cast<float>(owned.count())};
+    std::size_t place = count++;
+    for (; place > 0 && whole(owner) > whole(seen[place - 1]); --place) seen[place] = seen[place - 1];
+    seen[place] = owner;
     ++fragment;
   }
-  // Whole ones first, as in sorted order.
-  std::stable_sort(seen.begin(), seen.end(),
-                   [](const Owner& a, const Owner& b) { return a.visible / a.covered > b.visible / b.covered; });
-  for (const Owner& owner : seen) {
+  for (std::size_t i = 0; i < count; ++i) {
+    const Owner& owner = seen[i];
     const float area = speck ? owner.visible / kPositions
                              : visible_area(owner.fragment->alpha, owner.covered, owner.visible, kPositions, taken);
     taken.area += area;

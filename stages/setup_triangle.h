@@ -39,6 +39,12 @@ struct SetupTriangles {
   std::vector<SetupTriangle> triangles;    // in primitive order; a clipped triangle gives several in a row
   std::vector<FlatAttributes> attributes;  // one per triangle
   std::vector<std::uint32_t> draws;        // one per triangle: index into Frame::draws
+
+  void reserve(std::size_t count) {
+    triangles.reserve(count);
+    attributes.reserve(count);
+    draws.reserve(count);
+  }
 };
 
 // Edge from vertex k to vertex k + 1: E(x, y) = a x + b y + c with x, y in 1/256 px, >= 0 inside. `owns` is the

@@ -336,8 +336,12 @@ Work add_draw(const View& view, const Mesh& mesh, const Draw& draw, std::uint32_
   std::vector<TriangleSetup> chunks((mesh.triangles.size() + kChunk - 1) / kChunk,
                                     TriangleSetup(view, mesh, draw, draw_index, vertices));
   for_each_chunk(mesh.triangles.size(), [&](std::size_t first, std::size_t end) {
+    chunks[first / kChunk].out.reserve(end - first);
     for (std::size_t t = first; t < end; ++t) chunks[first / kChunk].add(t);
   });
+  std::size_t count = out.triangles.size();
+  for (const TriangleSetup& chunk : chunks) count += chunk.out.triangles.size();
+  out.reserve(count);
   Work work;
   for (const Work& of_chunk : transforms) work += of_chunk;
   for (const TriangleSetup& chunk : chunks) {

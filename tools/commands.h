@@ -21,6 +21,7 @@ void add_plot_command(CLI::App& app, InterruptGate& gate);
 void add_stress_command(CLI::App& app);
 void add_diff_command(CLI::App& app);
 void add_info_command(CLI::App& app);
+void add_export_soup_command(CLI::App& app);
 void add_make_command(CLI::App& app, InterruptGate& gate);
 
 }  // namespace beampipe

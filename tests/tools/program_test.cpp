@@ -251,6 +251,28 @@ TEST_F(ProgramTest, InfoTellsWhatIsInTheTrace) {
   EXPECT_NE(succeed({"info", path("trace.json")}).find("20 x 12"), std::string::npos);
 }
 
+TEST_F(ProgramTest, ExportSoupWritesTheTrianglesThatAreSeen) {
+  succeed({"export-soup", path("trace.json"), "-o", path("frame.soup")});
+  const std::string bytes = read_text(folder_ / "frame.soup");
+  std::uint32_t head[4];
+  ASSERT_GE(bytes.size(), 32u);
+  std::memcpy(head, bytes.data() + 4, sizeof head);
+  EXPECT_EQ(bytes.substr(0, 4), "SOUP");
+  EXPECT_EQ(head[0], 1u);
+  EXPECT_EQ(head[1], 20u);
+  EXPECT_EQ(head[2], 12u);
+  EXPECT_EQ(head[3], 2u);
+  ASSERT_EQ(bytes.size(), 4 + 4 * 4 + 3 * 4 + 2 * 60u);
+  for (std::size_t vertex = 0; vertex < 3; ++vertex) {
+    float clip[4];
+    std::memcpy(clip, bytes.data() + 32 + 16 * vertex, sizeof clip);
+    EXPECT_TRUE(clip[2] >= -1 && clip[2] <= 1);
+    EXPECT_EQ(clip[3], 1.0f);
+  }
+  expect_one_error_line(run_program({"export-soup", path("trace.json"), "--frame", "9", "-o", path("x.soup")}), 2,
+                        "--frame");
+}
+
 TEST_F(ProgramTest, MakeListsAndMakesScenes) {
   EXPECT_NE(succeed({"make", "--list"}).find("fence"), std::string::npos);
   succeed({"make", "soup", "--triangles", "200", "--seed", "7", "--width", "32", "--height", "24", "-o",

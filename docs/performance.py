@@ -1,0 +1,165 @@
+#!/usr/bin/env python3
+"""Frame times as docs/performance.md shows them.
+
+usage: docs/performance.py ratios  PROGRAM [--runs N] [--threads N] TRACE...
+       docs/performance.py threads PROGRAM [--runs N] TRACE...
+       docs/performance.py stages  PROGRAM TRACE...
+       docs/performance.py growth  PROGRAM PLOT.svg
+
+PROGRAM is for instance build/release/tools/beampipe. Techniques take turns in one process, so that what else the
+machine does falls on all of them; a time is the median of the runs, with the memory model off. `growth` makes its own
+traces, and draws them with gnuplot.
+"""
+import argparse
+import json
+import os
+import statistics
+import subprocess
+import sys
+import tempfile
+
+import measure
+
+RATIOS = ["beam", "beam:order=stream", "msaa:4", "msaa:8", "msaa:32", "msaa:256"]
+
+
+def frame_times(program, trace, specs, runs, threads):
+    """(median, least, most) milliseconds of frame 0, by technique."""
+    with tempfile.TemporaryDirectory() as folder:
+        found = measure.results(program, "run", trace, specs, folder, "--repeat", str(runs), "--threads", str(threads),
+                                "--no-memory-model")
+        times = {spec: result["frames"][0]["wall_ms"] for spec, result in found.items()}
+        return {spec: (time["median"], time["min"], time["max"]) for spec, time in times.items()}
+
+
+def equivalent_rate(program, trace):
+    """EMR of beam on the same scene at 320 x 180."""
+    with open(trace, encoding="utf-8") as file:
+        small = json.load(file)
+    for frame in small["frames"]:
+        frame["width"], frame["height"] = 320, 180
+    path = os.path.join(os.path.dirname(os.path.abspath(trace)), f".{os.getpid()}.json")
+    try:
+        with open(path, "w", encoding="utf-8") as file:
+            json.dump(small, file)
+        with tempfile.TemporaryDirectory() as folder:
+            found = measure.results(program, "compare", path, ["beam"], folder, "--no-memory-model")
+            return found["beam"]["error"]["emr"]
+    finally:
+        os.remove(path)
+
+
+def print_ratios(arguments):
+    measure.print_head("scene", "`beam` ms", "spread", "`beam:order=stream`", "`msaa:4`", "`msaa:8`", "`msaa:32`",
+                       "`msaa:256`", "EMR")
+    for trace in arguments.traces:
+        times = frame_times(arguments.program, trace, RATIOS, arguments.runs, arguments.threads)
+        median, least, most = times["beam"]
+        others = [f"{times[spec][0] / median:.2f}" for spec in RATIOS[1:]]
+        rate = equivalent_rate(arguments.program, trace)
+        measure.print_row(name_of(trace), f"{median:.0f}", f"{least:.0f} to {most:.0f}", *others,
+                          rate if isinstance(rate, str) else f"{rate:.0f}")
+        sys.stdout.flush()
+
+
+def print_threads(arguments):
+    specs = ["beam", "msaa:8", "msaa:256"]
+    measure.print_head("scene", *(f"`{spec}`" for spec in specs))
+    for trace in arguments.traces:
+        rounds = {spec: [] for spec in specs}
+        for _ in range(arguments.runs):  # in turn
+            one, two = (frame_times(arguments.program, trace, specs, 3, threads) for threads in (1, 2))
+            for spec in specs:
+                rounds[spec].append(one[spec][1] / two[spec][1])
+        measure.print_row(name_of(trace), *(f"{statistics.median(rounds[spec]):.2f}" for spec in specs))
+        sys.stdout.flush()
+
+
+def print_stages(arguments):
+    """How much of the work was done, and how much was found not to matter."""
+    measure.print_head("scene", "pixels", "tested", "waiting pairs", "composed", "fragments with area", "depth tests")
+    for trace in arguments.traces:
+        with tempfile.TemporaryDirectory() as folder:
+            result = measure.results(arguments.program, "run", trace, ["beam"], folder, "--no-memory-model")["beam"]
+        stage = measure.stages(result)
+        measure.print_row(name_of(trace), stage["resolve"]["items_out"], stage["conservative_raster"]["lanes_issued"],
+                          stage["a_buffer"]["items_in"], stage["beam_fragment"]["items_in"],
+                          stage["beam_fragment"]["items_out"], stage["compose"]["lanes_used"])
+
+
+def name_of(trace):
+    return os.path.basename(trace).removesuffix(".json")
+
+
+# ---- Growth ----
+
+GROWTH = {
+    "triangles": [("sphere", ["--triangles", str(n), "--width", "1280", "--height", "720"], n)
+                  for n in (1000, 10_000, 100_000, 1_000_000, 5_000_000)],
+    "pixels": [("hairball", ["--triangles", "100000", "--width", str(16 * h // 9), "--height", str(h)], 16 * h * h // 9)
+               for h in (180, 360, 720, 1440, 2160)],
+    "fragments per pixel": [("stack", ["--triangles", str(n), "--width", "64", "--height", "36"], n)
+                            for n in (1, 10, 100, 1000, 10_000)],
+}
+GROWING = ["beam", "beam:order=stream", "msaa:8", "msaa:32"]
+
+
+def peak_memory(program, trace, spec, folder):
+    """MiB that the whole process took, the trace included."""
+    code = ("import resource, subprocess, sys; subprocess.run(sys.argv[1:], check=True, stdout=subprocess.DEVNULL); "
+            "print(resource.getrusage(resource.RUSAGE_CHILDREN).ru_maxrss // 1024)")
+    answer = subprocess.run([sys.executable, "-c", code, program, "run", trace, "-t", spec, "--threads", "1",
+                             "--no-memory-model", "-o", folder], check=True, stdout=subprocess.PIPE, text=True)
+    return int(answer.stdout)
+
+
+def print_growth(arguments):
+    data = {}
+    with tempfile.TemporaryDirectory() as folder:
+        for axis, rows in GROWTH.items():
+            print("\nms, and MiB of the process\n")
+            measure.print_head(axis, *(f"`{spec}`" for spec in GROWING))
+            data[axis] = []
+            for scene, options, value in rows:
+                trace = measure.make(arguments.program, scene, f"{folder}/{scene}.json", *options)
+                times = frame_times(arguments.program, trace, GROWING, 3, 1)
+                cells = [f"{times[spec][0]:.1f}, {peak_memory(arguments.program, trace, spec, folder)}"
+                         for spec in GROWING]
+                measure.print_row(value, *cells)
+                sys.stdout.flush()
+                data[axis].append((value, *(times[spec][0] for spec in GROWING)))
+    draw(data, arguments.plot)
+
+
+def draw(data, plot):
+    script = [f"set terminal svg size 1200,420 font 'sans,12'; set output '{plot}'",
+              "set multiplot layout 1,3; set logscale xy; set grid; set key left top; set ylabel 'ms'",
+              "set format x '10^{%L}'; set format y '10^{%L}'"]
+    for index, (axis, rows) in enumerate(data.items()):
+        block = f"$data{index}"
+        script += [f"{block} << EOD", *(" ".join(map(str, row)) for row in rows), "EOD", f"set xlabel '{axis}'"]
+        lines = [f"{block} using 1:{i + 2} with linespoints title '{spec}'" for i, spec in enumerate(GROWING)]
+        script.append("plot " + ", ".join(lines))
+    subprocess.run(["gnuplot"], input="\n".join(script) + "\n", text=True, check=True)
+
+
+def main():
+    parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
+    commands = parser.add_subparsers(required=True)
+    for name, action in (("ratios", print_ratios), ("threads", print_threads), ("stages", print_stages)):
+        command = commands.add_parser(name)
+        command.add_argument("program")
+        command.add_argument("traces", nargs="+")
+        command.add_argument("--runs", type=int, default=5)
+        command.add_argument("--threads", type=int, default=1)
+        command.set_defaults(action=action)
+    growth = commands.add_parser("growth")
+    growth.add_argument("program")
+    growth.add_argument("plot")
+    growth.set_defaults(action=print_growth)
+    arguments = parser.parse_args()
+    arguments.action(arguments)
+
+
+if __name__ == "__main__":
+    main()
