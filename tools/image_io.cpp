@@ -12,6 +12,7 @@
 #include <algorithm>
 #include <cmath>
 #include <cstring>
+#include <fstream>
 
 namespace beampipe {
 namespace {
@@ -63,6 +64,26 @@ struct Size {
   std::uint32_t width, height;
 };
 
+// The header is a list of attributes: name and type, each up to a zero, then the size, in 4 bytes from the lowest, and
+// as many bytes; an empty name ends it (OpenEXR, "File Layout"). The library takes memory for what a size claims.
+void require_plausible_attributes(const std::filesystem::path& file) {
+  constexpr std::streamoff kMagicAndVersion = 8;
+  const std::uint64_t file_bytes = std::filesystem::file_size(file);
+  std::ifstream stream(file, std::ios::binary);
+  stream.seekg(kMagicAndVersion);
+  std::string name, type;
+  while (std::getline(stream, name, '\0') && !name.empty() && std::getline(stream, type, '\0')) {
+    unsigned char bytes[4] = {};
+    stream.read(reinterpret_cast<char*>(bytes), sizeof bytes);
+    const std::uint64_t size = bytes[0] | bytes[1] << 8 | bytes[2] << 16 | std::uint64_t{bytes[3]} << 24;
+    if (size > file_bytes) {
+      throw std::runtime_error("its header claims an attribute of " + std::to_string(size) + " bytes, more than its " +
+                               std::to_string(file_bytes));
+    }
+    stream.seekg(static_cast<std::streamoff>(size), std::ios::cur);
+  }
+}
+
 // Uncompressed bytes that a byte of a file can stand for: 1032 in deflate (RFC 1951: a 258-byte match in 2 bits), less
 // in RLE, PIZ and B44; DWA keeps flat blocks of 64 pixels in one more such step.
 constexpr std::uint64_t kMostExpansion = 1100, kMostDwaExpansion = 64 * kMostExpansion;
@@ -103,6 +124,7 @@ auto read_file(const std::filesystem::path& file, Load load) {
     if (!std::filesystem::exists(file, ignored)) throw std::runtime_error("no such file");
     if (!std::filesystem::is_regular_file(file, ignored)) throw std::runtime_error("not a file");
     Imf::Header::setMaxImageSize(kMaxSide, kMaxSide);  // before the library takes memory for what a header claims
+    require_plausible_attributes(file);
     Imf::InputFile input(file.c_str());
     const Size size = checked_size(input.header());
     require_plausible_size(input.header(), size, std::filesystem::file_size(file));

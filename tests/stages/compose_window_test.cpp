@@ -71,6 +71,9 @@ TEST(VisibleArea, TheBackgroundGetsWhatIsLeft) {
 TEST(VisibleArea, AWholeFragmentHasItsOwnArea) {
   EXPECT_NEAR(visible_area(0.3f, 70.0f, 70.0f, 256.0f, Taken<float>{0.4f, 100}), 0.3f, 1e-6);
   EXPECT_NEAR(visible_area(0.7f, 170.0f, 170.0f, 256.0f, Taken<float>{0.4f, 86}), 0.6f, 1e-6);  // no more than is free
+}
+
+TEST(VisibleArea, APartOfAFragmentBringsPartOfTheErrorsAlong) {
   // Half of it is seen: 56 / 256, and a quarter of the 1/16 by which its area is more than its 112 positions.
   EXPECT_NEAR(visible_area(0.5f, 112.0f, 56.0f, 256.0f, Taken<float>{0.25f, 64}), 0.234375f, 1e-6);
   // What is in front took 0.05 more than its 64 positions: of the 192 that were left, 56 give up their share.

@@ -150,6 +150,15 @@ TEST(Exr, AClaimThatTheFileCannotHoldIsAnError) {
   EXPECT_NE(claim(1'000'000), "");
 }
 
+// The library takes memory for an attribute of a type that it does not know before it reads it.
+TEST(Exr, AnAttributeLargerThanTheFileIsAnError) {
+  TemporaryFolder folder;
+  const std::string start{'\x76', '\x2f', '\x31', '\x01', 2, 0, 0, 0}, size{'\x69', '\x6e', '\x76', '\x72'};
+  write_text(folder / "a.exr", start + "fragm" + '\0' + "unknown" + '\0' + size + "rest");
+  const std::string error = error_of_reading(folder / "a.exr");
+  EXPECT_NE(error.find("claims an attribute of 1920364137 bytes"), std::string::npos) << error;
+}
+
 TEST(Exr, EveryTruncatedFileIsAnError) {
   TemporaryFolder folder;
   const std::string bytes = encode_exr(speaking_image(9, 40));
