@@ -167,6 +167,21 @@ TEST(ComposeWindow, ADenseMeshKeepsItsSilhouette) {
   }
 }
 
+// A quarter of the distance between positions, 1/64 px, along the slope of the surface that owns them.
+TEST(ComposeWindow, ASpeckBelongsToASurfaceThatIsHardlyNearer) {
+  constexpr float kSlope = 0.01f;  // per pixel
+  for (const auto& [behind, shows] : {std::pair(kSlope / 128, true), {kSlope / 32, false}}) {
+    SetupTriangles triangles;
+    const auto at = [&](std::int32_t x, std::int32_t y, float z) {
+      return ScreenPoint{x, y, -0.5f + kSlope * static_cast<float>(x) / 256 + z};
+    };
+    add_triangle(triangles, at(100, 100, behind), at(104, 100, behind), at(100, 104, behind));
+    add_triangle(triangles, at(-1024, -1024, 0), at(3072, -1024, 0), at(-1024, 3072, 0));
+    const float red = composed(triangles, {{1, 0, 0}, {0, 0, 1}}, kPixel, 256)[0].color.r;
+    EXPECT_NEAR(red, shows ? 8.0 / 65536 : 0.0, 1e-7) << behind;
+  }
+}
+
 TEST(ComposeWindow, WeightsOfAClosedSceneSumToOne) {
   // Every pixel is closed by one big triangle; with all colours white the weights are the picture.
   Random random(72);
