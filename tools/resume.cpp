@@ -133,10 +133,12 @@ std::string frame_record_name(std::size_t frame) {
   return kFolder + std::string(name);
 }
 
-bool FrameRecords::is_finished() const {
+bool FrameRecords::is_finished() {
   const Json report = read_json(output_.path() / "report.json");
-  if (report.is_object() && maker_of(report) != maker_) refuse(maker_of(report));
-  return report.is_object();
+  if (!report.is_object()) return false;
+  if (maker_of(report) != maker_) refuse(maker_of(report));
+  remove();
+  return true;
 }
 
 std::vector<FrameRecord> FrameRecords::read(const std::vector<std::size_t>& frames) const {

@@ -28,8 +28,9 @@ class FrameRecords {
  public:
   FrameRecords(OutputFolder& output, nlohmann::ordered_json maker) : output_(output), maker_(std::move(maker)) {}
 
-  // Whether report.json is there and made by the same. Throws std::runtime_error, one line, when another made it.
-  bool is_finished() const;
+  // Whether report.json is there and made by the same; then removes the records that a kill may have left beside it.
+  // Throws std::runtime_error, one line, when another made it.
+  bool is_finished();
 
   // The records of `frames` up to the first that is missing, or one of whose pictures is. Throws std::runtime_error,
   // one line that says what has changed, when all that is there was made by another.

@@ -186,5 +186,15 @@ TEST_F(ResumeTest, WhatIsFinishedStaysAsItIs) {
   refused(resume("run", "out", {"msaa:2", "--repeat", "2"}));
 }
 
+// Killed when the report was written and records not yet removed.
+TEST_F(ResumeTest, RecordsBesideAReportAreRemoved) {
+  make_trace(2);
+  succeed(command("run", "out", {"msaa:2"}));
+  fs::create_directory(folder_ / "out/unfinished");
+  write_text(folder_ / "out/unfinished/frame_0001.json", "{}");
+  succeed(resume("run", "out", {"msaa:2"}));
+  EXPECT_FALSE(fs::exists(folder_ / "out/unfinished"));
+}
+
 }  // namespace
 }  // namespace beampipe
