@@ -63,13 +63,14 @@ struct FrameWork {
     work.records = sort_records(work.pairs, work.tile);
     work.buffer = a_buffer(work.records, work.tile.pixels(), kWaitingPairBytes, unused);
     Windows windows(work.pairs, work.buffer);
-    std::vector<PixelTriangle> window;
+    std::vector<PixelTriangle> window, whole;
     std::vector<float> areas;
-    while (windows.next([&](std::uint32_t pixel) { return !is_closed(work.pixels[pixel]); }, window)) {
+    while (windows.next([&](std::uint32_t pixel) { return !is_closed(work.pixels[pixel]); }, window, whole)) {
       std::vector<Fragment> fragments;
       beam_fragment(triangles, window, work.tile, options, unused, fragments);
       shade_visible(colors, fragments, unused);
       compose_window(fragments, cell_positions(kPositions), unused, work.pixels, areas);
+      compose_whole(whole, work.tile, colors, unused, work.pixels);
       work.windows.push_back(window);
       work.fragments.push_back(fragments);
     }

@@ -47,38 +47,40 @@ template <std::size_t Words, class Channel>
 FrameResult render_shape(const Trace& trace, const Frame& frame, const BeamOptions& beam, const RunOptions& run) {
   BeamFrame state(trace, frame, beam.positions);
   stream(run.memory, state.triangles.triangles.size() * sizeof(SetupTriangle), state.setup);  // kept to be read again
-  FrameResult result =
-      render_tiles(frame, state.triangles, state.setup, kBinSize, run, kBufferedBytes,
-                   [&](const Tile& tile, const TriangleList& list) {
-                     StageCounters raster{"conservative_raster"}, buffering{"a_buffer"}, fragment{"beam_fragment"},
-                         shading{"shade"}, composition{"compose"}, resolving{"resolve"};
-                     std::vector<StoredAggregate<Words, Channel>> pixels(tile.pixels());
-                     std::vector<PixelTriangle> pairs, window;
-                     std::vector<Fragment> fragments;
-                     std::vector<float> areas, tiny(tile.pixels());
-                     ClosedDepth closed(tile);
-                     conservative_raster(state.triangles, list, tile, raster, pairs, &closed);
-                     const std::vector<SortRecord> records = sort_records(pairs, tile);
-                     const ABuffer buffer = a_buffer(records, tile.pixels(), kWaitingPairBytes, buffering);
-                     Windows windows(pairs, buffer);
-                     while (windows.next([&](std::uint32_t pixel) { return !is_closed(pixels[pixel]); }, window)) {
-                       fragments.clear();
-                       beam_fragment(state.triangles, window, tile, state.options, fragment, fragments);
-                       shade_visible(state.colors, fragments, shading);
-                       compose_window(fragments, state.positions, composition, pixels, areas);
-                       for (const Fragment& item : fragments) tiny[item.pixel] += item.tiny;
-                     }
-                     count_sorted_composition(run.memory, tile, buffer, records, kWaitingPairBytes, windows.taken,
-                                              covered_pixels(pixels), closed_pixels(pixels), beam_framebuffer(beam),
-                                              buffering, fragment, composition, resolving);
-                     count_triangle_fetches(run.memory, tile, list, buffer, records, windows.taken, fragment);
-                     return TileResult{resolve(composed_colors(pixels), frame.background, sizeof pixels[0], resolving),
-                                       {{"fragments", depths_of(buffer)},
-                                        {"tiny_triangles", std::move(tiny)},
-                                        {"largest_window", std::move(windows.largest)},
-                                        {"merges", std::move(windows.taken)}},
-                                       {raster, buffering, fragment, shading, composition, resolving}};
-                   });
+  FrameResult result = render_tiles(
+      frame, state.triangles, state.setup, kBinSize, run, kBufferedBytes,
+      [&](const Tile& tile, const TriangleList& list) {
+        StageCounters raster{"conservative_raster"}, buffering{"a_buffer"}, fragment{"beam_fragment"}, shading{"shade"},
+            composition{"compose"}, resolving{"resolve"};
+        std::vector<StoredAggregate<Words, Channel>> pixels(tile.pixels());
+        std::vector<PixelTriangle> pairs, window, whole;
+        std::vector<Fragment> fragments;
+        std::vector<float> areas, tiny(tile.pixels());
+        ClosedDepth closed(tile);
+        conservative_raster(state.triangles, list, tile, raster, pairs, &closed);
+        const std::vector<SortRecord> records = sort_records(pairs, tile);
+        const ABuffer buffer = a_buffer(records, tile.pixels(), kWaitingPairBytes, buffering);
+        Windows windows(pairs, buffer);
+        while (windows.next([&](std::uint32_t pixel) { return !is_closed(pixels[pixel]); }, window, whole)) {
+          fragments.clear();
+          beam_fragment(state.triangles, window, tile, state.options, fragment, fragments);
+          shade_visible(state.colors, fragments, shading);
+          compose_window(fragments, state.positions, composition, pixels, areas);
+          shade_visible(whole.size(), shading);
+          compose_whole(whole, tile, state.colors, composition, pixels);
+          for (const Fragment& item : fragments) tiny[item.pixel] += item.tiny;
+        }
+        count_sorted_composition(run.memory, tile, buffer, records, kWaitingPairBytes, windows.taken,
+                                 covered_pixels(pixels), closed_pixels(pixels), beam_framebuffer(beam), buffering,
+                                 fragment, composition, resolving);
+        count_triangle_fetches(run.memory, tile, list, buffer, records, windows.taken, fragment);
+        return TileResult{resolve(composed_colors(pixels), frame.background, sizeof pixels[0], resolving),
+                          {{"fragments", depths_of(buffer)},
+                           {"tiny_triangles", std::move(tiny)},
+                           {"largest_window", std::move(windows.largest)},
+                           {"merges", std::move(windows.taken)}},
+                          {raster, buffering, fragment, shading, composition, resolving}};
+      });
   const auto buffering = std::find_if(result.stages.begin(), result.stages.end(),
                                       [](const StageCounters& stage) { return stage.stage == "a_buffer"; });
   result.a_buffer_peak_bytes =
@@ -96,7 +98,7 @@ std::vector<PixelWeights> weights_of(const Trace& trace, const Frame& frame, con
       [&](const Tile& tile, const TriangleList& list) {
         StageCounters unused{"weights"};
         std::vector<StoredAggregate<Words, float>> pixels(tile.pixels());  // as they are before colours are packed
-        std::vector<PixelTriangle> pairs, window;
+        std::vector<PixelTriangle> pairs, window, whole;
         std::vector<Fragment> fragments;
         std::vector<float> areas;
         std::vector<PixelWeights> found(tile.pixels());
@@ -104,10 +106,12 @@ std::vector<PixelWeights> weights_of(const Trace& trace, const Frame& frame, con
         conservative_raster(state.triangles, list, tile, unused, pairs, &closed);
         const ABuffer buffer = a_buffer(sort_records(pairs, tile), tile.pixels(), kWaitingPairBytes, unused);
         Windows windows(pairs, buffer);
-        while (windows.next([&](std::uint32_t pixel) { return !is_closed(pixels[pixel]); }, window)) {
+        while (windows.next([&](std::uint32_t pixel) { return !is_closed(pixels[pixel]); }, window, whole)) {
           fragments.clear();
           beam_fragment(state.triangles, window, tile, state.options, unused, fragments);
           compose_window(fragments, state.positions, unused, pixels, areas);
+          compose_whole(whole, tile, state.colors, unused, pixels);
+          for (const PixelTriangle& pair : whole) found[tile.index(pair.x, pair.y)] = {{pair.triangle, 1.0f, 0, false}};
           for (std::size_t i = 0; i < fragments.size(); ++i)
             found[fragments[i].pixel].push_back({fragments[i].triangle, areas[i], 0, fragments[i].tiny});
         }

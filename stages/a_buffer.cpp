@@ -30,8 +30,7 @@ std::vector<SortRecord> sort_records(const std::vector<PixelTriangle>& pairs, co
   std::vector<SortRecord> records;
   records.reserve(pairs.size());
   for (const PixelTriangle& pair : pairs)
-    records.push_back({static_cast<std::uint32_t>((pair.y - tile.y0) * tile.width() + pair.x - tile.x0), pair.triangle,
-                       pair.nearest});
+    records.push_back({static_cast<std::uint32_t>(tile.index(pair.x, pair.y)), pair.triangle, pair.nearest});
   return records;
 }
 

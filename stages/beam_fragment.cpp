@@ -260,7 +260,7 @@ void beam_fragment(const SetupTriangles& triangles, const std::vector<PixelTrian
     Fragment& fragment = out.emplace_back();
     fragment.triangle = pair.triangle;
     fragment.quad = pair.quad;
-    fragment.pixel = static_cast<std::uint32_t>((pair.y - tile.y0) * tile.width() + pair.x - tile.x0);
+    fragment.pixel = static_cast<std::uint32_t>(tile.index(pair.x, pair.y));
     fragment.front = triangle.front;
     fragment.plane = pixel_plane(triangle, pair.x, pair.y);
     if (pair.full) {

@@ -16,12 +16,12 @@ class ClosedDepth {
   explicit ClosedDepth(const Tile& tile) : tile_(tile), depth_(tile.pixels(), kBeyond) {}
 
   // Pixels in frame coordinates, inside the tile.
-  bool hides(std::int32_t x, std::int32_t y, float nearest) const { return nearest > depth_[index(x, y)]; }
+  bool hides(std::int32_t x, std::int32_t y, float nearest) const { return nearest > depth_[tile_.index(x, y)]; }
   bool hides_everywhere(float nearest) const { return nearest > farthest_; }
 
   // A triangle covers the whole pixel, nowhere in it farther than this.
   void close(std::int32_t x, std::int32_t y, float farthest) {
-    const std::size_t pixel = index(x, y);
+    const std::size_t pixel = tile_.index(x, y);
     if (farthest >= depth_[pixel]) return;
     changes_ += depth_[pixel] == farthest_;
     depth_[pixel] = farthest;
@@ -37,10 +37,6 @@ class ClosedDepth {
 
  private:
   static constexpr float kBeyond = 1.0f;  // every depth
-
-  std::size_t index(std::int32_t x, std::int32_t y) const {
-    return static_cast<std::size_t>((y - tile_.y0) * tile_.width() + x - tile_.x0);
-  }
 
   Tile tile_;
   std::vector<float> depth_;

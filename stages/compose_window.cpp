@@ -228,9 +228,26 @@ void compose_window(const std::vector<Fragment>& fragments, const PositionSet& p
   counters.lanes_issued += composer.additions() * 32 * Words;
 }
 
-#define BEAMPIPE_COMPOSE(words, channel)                                                         \
-  template void compose_window(const std::vector<Fragment>&, const PositionSet&, StageCounters&, \
-                               std::vector<StoredAggregate<words, channel>>&, std::vector<float>&);
+template <std::size_t Words, class Channel>
+void compose_whole(const std::vector<PixelTriangle>& whole, const Tile& tile, const std::vector<glm::vec3>& colors,
+                   StageCounters& counters, std::vector<StoredAggregate<Words, Channel>>& pixels) {
+  for (const PixelTriangle& pair : whole) {
+    auto& pixel = pixels[tile.index(pair.x, pair.y)];
+    std::fill_n(pixel.mask, Words, ~0u);
+    pixel.area = 1.0f;
+    for (int c = 0; c < 3; ++c) pixel.color[c] = Channel(colors[pair.triangle][c]);
+  }
+  counters.items_in += whole.size();
+  counters.items_out += whole.size();
+  counters.bytes_read += whole.size() * kWaitingPairBytes;
+  counters.bytes_written += whole.size() * sizeof(StoredAggregate<Words, Channel>);
+}
+
+#define BEAMPIPE_COMPOSE(words, channel)                                                                     \
+  template void compose_window(const std::vector<Fragment>&, const PositionSet&, StageCounters&,             \
+                               std::vector<StoredAggregate<words, channel>>&, std::vector<float>&);          \
+  template void compose_whole(const std::vector<PixelTriangle>&, const Tile&, const std::vector<glm::vec3>&, \
+                              StageCounters&, std::vector<StoredAggregate<words, channel>>&);
 BEAMPIPE_STORED_AGGREGATES(BEAMPIPE_COMPOSE)
 #undef BEAMPIPE_COMPOSE
 

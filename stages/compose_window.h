@@ -31,6 +31,11 @@ template <std::size_t Words, class Channel>
 void compose_window(const std::vector<Fragment>& fragments, const PositionSet& positions, StageCounters& counters,
                     std::vector<StoredAggregate<Words, Channel>>& pixels, std::vector<float>& areas);
 
+// The short way for empty pixels of which one triangle covers all: what compose_window would make of its fragment.
+template <std::size_t Words, class Channel>
+void compose_whole(const std::vector<PixelTriangle>& whole, const Tile& tile, const std::vector<glm::vec3>& colors,
+                   StageCounters& counters, std::vector<StoredAggregate<Words, Channel>>& pixels);
+
 // Nothing more can be seen in the pixel.
 template <std::size_t Words, class Channel>
 bool is_closed(const StoredAggregate<Words, Channel>& pixel) {

@@ -94,8 +94,11 @@ void shade(const std::vector<glm::vec3>& colors, std::vector<Fragment>& fragment
 
 void shade_visible(const std::vector<glm::vec3>& colors, std::vector<Fragment>& fragments, StageCounters& counters) {
   for (Fragment& fragment : fragments) fragment.color = fragment.alpha * colors[fragment.triangle];
-  count_invocations(fragments.size(), fragments.size(), fragments.size(), invocation_cost(), sizeof(FlatAttributes), 6,
-                    counters);
+  shade_visible(fragments.size(), counters);
+}
+
+void shade_visible(std::uint64_t fragments, StageCounters& counters) {
+  count_invocations(fragments, fragments, fragments, invocation_cost(), sizeof(FlatAttributes), 6, counters);
 }
 
 void shade(const std::vector<SampleFragment>& fragments, StageCounters& counters,

@@ -30,6 +30,9 @@ void shade(const std::vector<glm::vec3>& colors, std::vector<Fragment>& fragment
 // The same for fragments that are known to be visible: one by one, not in quads.
 void shade_visible(const std::vector<glm::vec3>& colors, std::vector<Fragment>& fragments, StageCounters& counters);
 
+// The counts alone, where the triangle's colour is taken as it is.
+void shade_visible(std::uint64_t fragments, StageCounters& counters);
+
 // At the pixel's centre or centroid, which is the same for flat colours: counts, for fragments that keep their
 // triangle's index in place of its colour.
 void shade(const std::vector<SampleFragment>& fragments, StageCounters& counters,

@@ -14,6 +14,10 @@ struct Tile {
 
   std::int32_t width() const { return x1 - x0; }
   std::int32_t height() const { return y1 - y0; }
+  // Of a pixel in frame coordinates, row by row.
+  std::size_t index(std::int32_t x, std::int32_t y) const {
+    return static_cast<std::size_t>(y - y0) * static_cast<std::size_t>(width()) + static_cast<std::size_t>(x - x0);
+  }
   std::size_t pixels() const { return static_cast<std::size_t>(width()) * static_cast<std::size_t>(height()); }
 };
 

@@ -14,7 +14,7 @@ Windows::Windows(const std::vector<PixelTriangle>& pairs, const ABuffer& buffer)
     if (buffer.depth_of(pixel) > 0) waiting_.push_back(pixel);
 }
 
-void Windows::take(std::uint32_t pixel, std::vector<PixelTriangle>& window) {
+void Windows::take(std::uint32_t pixel, std::vector<PixelTriangle>& window, std::vector<PixelTriangle>& whole) {
   const std::uint32_t end = buffer_.first[pixel + 1];
   std::uint32_t& next = next_[pixel];
   indices_.clear();
@@ -23,8 +23,13 @@ void Windows::take(std::uint32_t pixel, std::vector<PixelTriangle>& window) {
     indices_.push_back(buffer_.records[next]);
     farthest = std::max(farthest, pairs_[indices_.back()].farthest);
   } while (++next < end && pairs_[buffer_.records[next]].nearest <= farthest);
-  std::sort(indices_.begin(), indices_.end());
-  for (const std::uint32_t index : indices_) window.push_back(pairs_[index]);
+  if (indices_.size() > 1) {
+    std::sort(indices_.begin(), indices_.end());
+    for (const std::uint32_t index : indices_) window.push_back(pairs_[index]);
+  } else {
+    const PixelTriangle& alone = pairs_[indices_.front()];
+    (alone.full && taken[pixel] == 0 ? whole : window).push_back(alone);
+  }
   const auto size = static_cast<float>(indices_.size());
   largest[pixel] = std::max(largest[pixel], size);
   taken[pixel] += size;

@@ -17,21 +17,22 @@ class Windows {
   Windows(const std::vector<PixelTriangle>& pairs, const ABuffer& buffer);
 
   // Replaces `window` by the next windows of the pixels whose lists have not ended and for which is_open(pixel): pixel
-  // by pixel, each in primitive order. Returns whether there are any.
+  // by pixel, each in primitive order. A pixel's first window that is one pair, which covers the pixel as a whole, goes
+  // to `whole` instead: all that can be seen there is that triangle. Returns whether there are any.
   template <class IsOpen>
-  bool next(IsOpen&& is_open, std::vector<PixelTriangle>& window) {
-    window.clear();
+  bool next(IsOpen&& is_open, std::vector<PixelTriangle>& window, std::vector<PixelTriangle>& whole) {
+    window.clear(), whole.clear();
     std::erase_if(waiting_, [&](std::uint32_t pixel) { return !is_open(pixel); });
-    for (const std::uint32_t pixel : waiting_) take(pixel, window);
+    for (const std::uint32_t pixel : waiting_) take(pixel, window, whole);
     std::erase_if(waiting_, [&](std::uint32_t pixel) { return next_[pixel] == buffer_.first[pixel + 1]; });
-    return !window.empty();
+    return !window.empty() || !whole.empty();
   }
 
   // Per pixel: the pairs of its largest window so far, and of all its windows.
   std::vector<float> largest, taken;
 
  private:
-  void take(std::uint32_t pixel, std::vector<PixelTriangle>& window);
+  void take(std::uint32_t pixel, std::vector<PixelTriangle>& window, std::vector<PixelTriangle>& whole);
 
   const std::vector<PixelTriangle>& pairs_;
   const ABuffer& buffer_;

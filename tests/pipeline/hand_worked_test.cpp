@@ -55,15 +55,17 @@ TEST(HandWorked, TriangleMsaaWithoutCompression) {
 }
 
 TEST(HandWorked, TriangleBeam) {
-  constexpr std::uint64_t kPairs = 13, kFragments = 10, kFragment = 62, kBuffer = kPairs * 16 + 64 * 4;
+  constexpr std::uint64_t kPairs = 13, kFragments = 10, kWhole = 1, kPartial = kFragments - kWhole, kFragment = 62,
+                          kBuffer = kPairs * 16 + 64 * 4;
   expect_bytes("paper_triangle.json", "beam",
                {{"vertex_setup", 1, 1, 48, kSetup, 64 + 96, 64 + 96},
                 {"conservative_raster", 1, kPairs, 88, kPairs * 8, 0, 0},
                 {"a_buffer", kPairs, kPairs, kBuffer, kBuffer, 320 + 256 + 224 + 416, 256 + 256 + 256 + 224},
-                {"beam_fragment", kPairs, kFragments, kPairs * (12 + 88), kFragments * kFragment, 416 + 1248, 96},
+                {"beam_fragment", kPairs - kWhole, kPartial, (kPairs - kWhole) * (12 + 88), kPartial * kFragment,
+                 416 + 1248, 96},
                 {"shade", kFragments, kFragments, kFragments * 28, kFragments * 6, 0, 0},
-                {"compose", kFragments, kFragments, kFragments * (kFragment + 42), kFragments * 42, 128 + 320 + 192,
-                 256 + 1024 + 384},
+                {"compose", kFragments, kFragments, kPartial * (kFragment + 42) + kWhole * 12, kFragments * 42,
+                 128 + 320 + 192, 256 + 1024 + 384},
                 {"resolve", 64, 64, 64 * 42, 384, 256 + 2048 + 384 + 384, 256 + 1024 + 384 + 384}});
 }
 

@@ -30,18 +30,19 @@ std::vector<PixelColor> composed_as(const SetupTriangles& triangles, const std::
   options.grid = &grid;
   options.clipped_depth = false;
   StageCounters counters;
-  std::vector<PixelTriangle> pairs, window;
+  std::vector<PixelTriangle> pairs, window, whole;
   std::vector<StoredAggregate<Words, Channel>> pixels(tile.pixels());
   ClosedDepth closed(tile);
   conservative_raster(triangles, all_of(triangles), tile, counters, pairs, &closed);
   const ABuffer buffer = a_buffer(sort_records(pairs, tile), tile.pixels(), kWaitingPairBytes, counters);
   Windows windows(pairs, buffer);
-  while (windows.next([&](std::uint32_t pixel) { return !is_closed(pixels[pixel]); }, window)) {
+  while (windows.next([&](std::uint32_t pixel) { return !is_closed(pixels[pixel]); }, window, whole)) {
     std::vector<Fragment> fragments;
     std::vector<float> areas;
     beam_fragment(triangles, window, tile, options, counters, fragments);
     shade_visible(colors, fragments, counters);
     compose_window(fragments, positions, counters, pixels, areas);
+    compose_whole(whole, tile, colors, counters, pixels);
   }
   if (largest) *largest = windows.largest;
   return composed_colors(pixels);
