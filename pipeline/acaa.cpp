@@ -7,6 +7,7 @@
 #include "pipeline/msaa.h"
 #include "pipeline/sample_batches.h"
 #include "pipeline/tiles.h"
+#include "pipeline/timeline.h"
 #include "simd/depth_test.h"
 #include "stages/depth_test.h"
 #include "stages/shade.h"
@@ -56,7 +57,7 @@ std::vector<Sampling> acaa_rounds(int samples) {
 
 FrameResult render_acaa(const Trace& trace, const Frame& frame, const AcaaOptions& options, const RunOptions& run) {
   StageCounters setup;
-  const SetupTriangles triangles = vertex_setup(trace, frame, setup);
+  const SetupTriangles triangles = vertex_setup(trace, frame, StageTimer(run.timeline)(setup));
   const std::vector<glm::vec3> colors = shade_triangles(triangles, frame.light_direction);
   const std::vector<Sampling> rounds = acaa_rounds(options.samples);
   StageCounters geometry;  // the triangles come twice per round
@@ -64,10 +65,11 @@ FrameResult render_acaa(const Trace& trace, const Frame& frame, const AcaaOption
   geometry.stage = setup.stage;
 
   const TileRenderer render_tile = [&](const Tile& tile, const TriangleList& list) {
+    const StageTimer timed(run.timeline, tile);
     StageCounters raster{"sample_raster"}, testing{"depth_test"}, stencil{"stencil_test"}, shading{"shade"},
         accumulation{"accumulate"}, resolving{"resolve"};
     Accumulator accumulator(tile, options.samples, options.color, options.double_counting);
-    std::vector<float> counts(tile.pixels());
+    std::vector<float> counts(tile.pixels()), bytes(tile.pixels());
     std::vector<SampleAccess> accesses;
     const ZOrder order(tile.width(), tile.height());
     TileSurface color(run.memory, order, accumulator_bytes(options.color));
@@ -77,41 +79,44 @@ FrameResult render_acaa(const Trace& trace, const Frame& frame, const AcaaOption
       SampleTile depth(tile, sampling, 0);
       SampleMemory memory(run.memory, tile, sampling, 0);
       TileSurface taken(run.memory, order, static_cast<std::uint32_t>(sampling.pattern.count));
-      raster_in_batches(triangles, list, tile, sampling, raster, [&](std::vector<SampleFragment>& fragments) {
-        depth_test(triangles, fragments, tile, sampling, testing, depth, accesses);
+      raster_in_batches(triangles, list, tile, sampling, timed, raster, [&](std::vector<SampleFragment>& fragments) {
+        depth_test(triangles, fragments, tile, sampling, timed(testing), depth, accesses);
         memory.test_depth(accesses, testing);
       });
       memory.flush(testing);
       if (options.double_counting == DoubleCounting::saturate) {
-        accumulate_background(depth, frame.background, accumulation, accumulator);
+        accumulate_background(depth, frame.background, timed(accumulation), accumulator);
         memory.read_depth(accumulation);
         blend_background(depth, color, accumulation);
       }
       accumulator.taken.assign(tile.pixels(), 0);
-      raster_in_batches(triangles, list, tile, sampling, raster, [&](std::vector<SampleFragment>& fragments) {
-        depth_test_equal(triangles, tile, sampling, testing, depth, fragments, accesses);
+      raster_in_batches(triangles, list, tile, sampling, timed, raster, [&](std::vector<SampleFragment>& fragments) {
+        depth_test_equal(triangles, tile, sampling, timed(testing), depth, fragments, accesses);
         memory.test_equal(accesses, testing);
         if (options.double_counting == DoubleCounting::stencil) {
           for (const SampleFragment& fragment : fragments)
             taken.access(fragment.triangle, pixel_of(fragment, tile), fragment.mask, 0, 1, stencil);
-          stencil_test(tile, stencil, accumulator, fragments);
+          stencil_test(tile, timed(stencil), accumulator, fragments);
           for (const SampleFragment& fragment : fragments)
             taken.access(fragment.triangle, pixel_of(fragment, tile), 0, fragment.mask, 1, stencil);
         }
-        shade(fragments, shading, &triangles.attributes);
-        accumulate(fragments, colors, tile, accumulation, accumulator);
+        shade(fragments, timed(shading), &triangles.attributes);
+        accumulate(fragments, colors, tile, timed(accumulation), accumulator);
         for (const SampleFragment& fragment : fragments)
           blend(fragment.triangle, pixel_of(fragment, tile), color, accumulation);
         count_fragments(fragments, tile, sampling.grid, counts);
       });
       memory.flush(testing);
+      memory.add_bytes(bytes);
+      taken.add_bytes(bytes);
       taken.flush(stencil);
       color.flush(accumulation);
     }
+    color.add_bytes(bytes);
     color.read_all(resolving);
     write_image(run.memory, tile, resolving);
-    TileResult result{resolve(accumulator, frame.background, resolving),
-                      {{"visible_fragments", std::move(counts)}},
+    TileResult result{resolve(accumulator, frame.background, timed(resolving)),
+                      {{"visible_fragments", std::move(counts)}, {"bytes", std::move(bytes)}},
                       {raster, testing}};
     if (options.double_counting == DoubleCounting::stencil) result.stages.push_back(stencil);
     result.stages.insert(result.stages.end(), {shading, accumulation, resolving});

@@ -7,6 +7,7 @@
 #include "pipeline/memory/beam_memory.h"
 #include "pipeline/memory/image_memory.h"
 #include "pipeline/tiles.h"
+#include "pipeline/timeline.h"
 #include "stages/a_buffer.h"
 #include "stages/compose_window.h"
 #include "stages/conservative_raster.h"
@@ -30,8 +31,8 @@ struct BeamFrame {
   PositionGrid grid;
   BeamFragmentOptions options;
 
-  BeamFrame(const Trace& trace, const Frame& frame, int count)
-      : triangles(vertex_setup(trace, frame, setup)),
+  BeamFrame(const Trace& trace, const Frame& frame, int count, const RunOptions& run)
+      : triangles(vertex_setup(trace, frame, StageTimer(run.timeline)(setup))),
         colors(shade_triangles(triangles, frame.light_direction)),
         positions(cell_positions(count)),
         grid(count) {
@@ -45,11 +46,12 @@ struct BeamFrame {
 
 template <std::size_t Words, class Channel>
 FrameResult render_shape(const Trace& trace, const Frame& frame, const BeamOptions& beam, const RunOptions& run) {
-  BeamFrame state(trace, frame, beam.positions);
+  BeamFrame state(trace, frame, beam.positions, run);
   stream(run.memory, state.triangles.triangles.size() * sizeof(SetupTriangle), state.setup);  // kept to be read again
   FrameResult result = render_tiles(
       frame, state.triangles, state.setup, kBinSize, run, kBufferedBytes,
       [&](const Tile& tile, const TriangleList& list) {
+        const StageTimer timed(run.timeline, tile);
         StageCounters raster{"conservative_raster"}, buffering{"a_buffer"}, fragment{"beam_fragment"}, shading{"shade"},
             composition{"compose"}, resolving{"resolve"};
         std::vector<StoredAggregate<Words, Channel>> pixels(tile.pixels());
@@ -57,28 +59,29 @@ FrameResult render_shape(const Trace& trace, const Frame& frame, const BeamOptio
         std::vector<Fragment> fragments;
         std::vector<float> areas, tiny(tile.pixels());
         ClosedDepth closed(tile);
-        conservative_raster(state.triangles, list, tile, raster, pairs, &closed);
+        conservative_raster(state.triangles, list, tile, timed(raster), pairs, &closed);
         const std::vector<SortRecord> records = sort_records(pairs, tile);
-        const ABuffer buffer = a_buffer(records, tile.pixels(), kWaitingPairBytes, buffering);
+        const ABuffer buffer = a_buffer(records, tile.pixels(), kWaitingPairBytes, timed(buffering));
         Windows windows(pairs, buffer);
         while (windows.next([&](std::uint32_t pixel) { return !is_closed(pixels[pixel]); }, window, whole)) {
           fragments.clear();
-          beam_fragment(state.triangles, window, tile, state.options, fragment, fragments);
-          shade_visible(state.colors, fragments, shading);
-          compose_window(fragments, state.positions, composition, pixels, areas);
-          shade_visible(whole.size(), shading);
-          compose_whole(whole, tile, state.colors, composition, pixels);
+          beam_fragment(state.triangles, window, tile, state.options, timed(fragment), fragments);
+          shade_visible(state.colors, fragments, timed(shading));
+          compose_window(fragments, state.positions, timed(composition), pixels, areas);
+          shade_visible(whole.size(), timed(shading));
+          compose_whole(whole, tile, state.colors, timed(composition), pixels);
           for (const Fragment& item : fragments) tiny[item.pixel] += item.tiny;
         }
-        count_sorted_composition(run.memory, tile, buffer, records, kWaitingPairBytes, windows.taken,
-                                 covered_pixels(pixels), closed_pixels(pixels), beam_framebuffer(beam), buffering,
-                                 fragment, composition, resolving);
+        std::vector<float> bytes = count_sorted_composition(
+            run.memory, tile, buffer, records, kWaitingPairBytes, windows.taken, covered_pixels(pixels),
+            closed_pixels(pixels), beam_framebuffer(beam), buffering, fragment, composition, resolving);
         count_triangle_fetches(run.memory, tile, list, buffer, records, windows.taken, fragment);
-        return TileResult{resolve(composed_colors(pixels), frame.background, sizeof pixels[0], resolving),
+        return TileResult{resolve(composed_colors(pixels), frame.background, sizeof pixels[0], timed(resolving)),
                           {{"fragments", depths_of(buffer)},
                            {"tiny_triangles", std::move(tiny)},
                            {"largest_window", std::move(windows.largest)},
-                           {"merges", std::move(windows.taken)}},
+                           {"merges", std::move(windows.taken)},
+                           {"bytes", std::move(bytes)}},
                           {raster, buffering, fragment, shading, composition, resolving}};
       });
   const auto buffering = std::find_if(result.stages.begin(), result.stages.end(),
@@ -91,7 +94,7 @@ FrameResult render_shape(const Trace& trace, const Frame& frame, const BeamOptio
 template <std::size_t Words>
 std::vector<PixelWeights> weights_of(const Trace& trace, const Frame& frame, const BeamOptions& beam,
                                      const RunOptions& run) {
-  const BeamFrame state(trace, frame, beam.positions);
+  const BeamFrame state(trace, frame, beam.positions, run);
   std::vector<PixelWeights> weights(std::size_t{frame.width} * frame.height);
   render_tiles(
       frame, state.triangles, state.setup, kBinSize, run, kBufferedBytes,

@@ -7,6 +7,7 @@
 #include "pipeline/memory/sample_memory.h"
 #include "pipeline/sample_batches.h"
 #include "pipeline/tiles.h"
+#include "pipeline/timeline.h"
 #include "stages/depth_test.h"
 #include "stages/dilate.h"
 #include "stages/sample_select.h"
@@ -39,7 +40,7 @@ FrameResult render_dvm(const Trace& trace, const Frame& frame, const DvmOptions&
   History first;
   History& history = run.history ? *run.history : first;
   StageCounters setup;
-  const SetupTriangles triangles = vertex_setup(trace, frame, setup);
+  const SetupTriangles triangles = vertex_setup(trace, frame, StageTimer(run.timeline)(setup));
   const std::vector<glm::vec3> colors = shade_triangles(triangles, frame.light_direction);
   const std::vector<std::uint32_t> materials = material_ids(triangles, options.material);
   const Sampling sampling{CellGrid{}, standard_pattern(8)};
@@ -51,28 +52,32 @@ FrameResult render_dvm(const Trace& trace, const Frame& frame, const DvmOptions&
 
   FrameResult result =
       render_tiles(frame, triangles, setup, kBinSize, run, [&](const Tile& tile, const TriangleList& list) {
+        const StageTimer timed(run.timeline, tile);
         StageCounters raster{"sample_raster"}, testing{"depth_test"}, selecting{"sample_select"}, shading{"shade"},
             lighting{"light"}, moving{"motion"};
         SampleTile surface(tile, sampling, kVisibilityBytes);
         SampleMemory memory(run.memory, tile, sampling, kVisibilityBytes);
         std::vector<SampleAccess> accesses;
-        raster_in_batches(triangles, list, tile, sampling, raster, [&](std::vector<SampleFragment>& fragments) {
-          depth_test(triangles, fragments, tile, sampling, testing, surface, accesses);
+        raster_in_batches(triangles, list, tile, sampling, timed, raster, [&](std::vector<SampleFragment>& fragments) {
+          depth_test(triangles, fragments, tile, sampling, timed(testing), surface, accesses);
           memory.test_and_write(accesses, testing);
         });
         memory.flush(testing);
-        const std::vector<SampleQuad> selected = sample_select(surface, tile, materials, select, selecting);
+        const std::vector<SampleQuad> selected = sample_select(surface, tile, materials, select, timed(selecting));
         const std::uint64_t shaded = shaded_samples(selected);
-        write_gbuffer(shaded, shading);
-        light(shaded, lighting);
+        write_gbuffer(shaded, timed(shading));
+        light(shaded, timed(lighting));
         memory.read_color(selecting);
         stream(run.memory, shaded * kShadingSampleBytes, selecting);
         stream(run.memory, shaded * (kVisibilityBytes + kGBufferBytes), shading);
         stream(run.memory, shaded * (kGBufferBytes + kSampleColorBytes), lighting);
         memory.read_depth(moving);
-        stream(run.memory, tile.pixels() * (kVisibilityBytes + kMotionBytes), moving);
+        stream(run.memory, tile.pixels() * (kVisibilityBytes + kMotionBytes + kDrawBytes), moving);
         quads.insert(tile, selected);
-        copy_to_frame(motion(surface, tile, frame, triangles.draws, to_last, moving), tile, frame, current.motion);
+        const SurfaceMotion nearest = motion(surface, tile, frame, triangles.draws, to_last, timed(moving));
+        moving.bytes_written += tile.pixels() * kDrawBytes;
+        copy_to_frame(nearest.vectors, tile, frame, current.motion);
+        copy_to_frame(nearest.draws, tile, frame, current.draws);
         return TileResult{{}, {}, {raster, testing, selecting, shading, lighting, moving}};
       });
 
@@ -81,15 +86,16 @@ FrameResult render_dvm(const Trace& trace, const Frame& frame, const DvmOptions&
   for_each_tile(frame, kBinSize, run, spreading, [&](const Tile& tile, StageCounters& counters) {
     dilate(quads, colors, triangles.draws, frame.background, tile, counters, current);
     stream(run.memory, tile.pixels() * (kSampleColorBytes + kShadingSampleBytes), counters);
-    stream(run.memory, tile.pixels() * kSampleColorBytes, counters);
   });
   for_each_tile(frame, kBinSize, run, accumulation, [&](const Tile& tile, StageCounters& counters) {
     temporal(current, {options.blend, kStillPixels}, history, tile, counters, image);
     move_temporal(run.memory, tile, history.frames > 0, counters);
+    stream(run.memory, tile.pixels() * kDrawBytes * (history.frames > 0 ? 2 : 1), counters);
   });
   result.pixel_counters["unknown"] = unknown_part(current);
   result.image = image_of(frame, image);
-  history = {history.frames + 1, current.width, current.height, std::move(image), std::move(current.motion), poses};
+  history = {history.frames + 1,       current.width, current.height, std::move(image), std::move(current.motion),
+             std::move(current.draws), poses};
   result.stages.insert(result.stages.end(), {spreading, accumulation});
   return result;
 }
@@ -103,6 +109,7 @@ std::vector<Surface> dvm_framebuffer() {
           {"gbuffer", "RGBA8 + RGB10A2", kGBufferBytes},
           {"color", "RGB16F", kSampleColorBytes},
           {"motion", "RG16F x 2", 2 * kMotionBytes},
+          {"draw", "R16UI x 2", 2 * kDrawBytes},
           {"history", "RGBA16F x 2", 16}};
 }
 

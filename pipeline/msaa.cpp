@@ -6,6 +6,7 @@
 #include "pipeline/memory/sample_memory.h"
 #include "pipeline/sample_batches.h"
 #include "pipeline/tiles.h"
+#include "pipeline/timeline.h"
 #include "stages/depth_test.h"
 #include "stages/resolve.h"
 #include "stages/sample_raster.h"
@@ -28,38 +29,41 @@ Sampling msaa_sampling(int samples) {
 
 FrameResult render_msaa(const Trace& trace, const Frame& frame, const MsaaOptions& options, const RunOptions& run) {
   StageCounters setup;
-  const SetupTriangles triangles = vertex_setup(trace, frame, setup);
+  const SetupTriangles triangles = vertex_setup(trace, frame, StageTimer(run.timeline)(setup));
   const std::vector<glm::vec3> colors = round_to_half(shade_triangles(triangles, frame.light_direction));
   const Sampling sampling = msaa_sampling(options.samples);
   if (options.prepass) setup += setup;  // the triangles come twice
 
   const TileRenderer render_tile = [&](const Tile& tile, const TriangleList& list) {
+    const StageTimer timed(run.timeline, tile);
     StageCounters raster{"sample_raster"}, shading{"shade"}, testing{"depth_test"}, resolving{"resolve"};
     SampleTile surface(tile, sampling, options.prepass ? 0 : color_bytes(options));
     std::vector<float> counts(tile.pixels());
     std::vector<SampleAccess> accesses;
     const auto same_color = [&](std::uint32_t a, std::uint32_t b) { return colors[a] == colors[b]; };
     SampleMemory memory(run.memory, tile, sampling, color_bytes(options), same_color);
-    raster_in_batches(triangles, list, tile, sampling, raster, [&](std::vector<SampleFragment>& fragments) {
-      if (!options.prepass) shade(fragments, shading, &triangles.attributes);
-      depth_test(triangles, fragments, tile, sampling, testing, surface, accesses);
+    raster_in_batches(triangles, list, tile, sampling, timed, raster, [&](std::vector<SampleFragment>& fragments) {
+      if (!options.prepass) shade(fragments, timed(shading), &triangles.attributes);
+      depth_test(triangles, fragments, tile, sampling, timed(testing), surface, accesses);
       options.prepass ? memory.test_depth(accesses, testing) : memory.test_and_write(accesses, testing);
       count_fragments(fragments, tile, sampling.grid, counts);
     });
     memory.flush(testing);
     surface.color_bytes = color_bytes(options);
     if (options.prepass) {  // shades and writes what is visible; which triangle that is, the surface knows already
-      raster_in_batches(triangles, list, tile, sampling, raster, [&](std::vector<SampleFragment>& fragments) {
-        depth_test_equal(triangles, tile, sampling, testing, surface, fragments, accesses);
+      raster_in_batches(triangles, list, tile, sampling, timed, raster, [&](std::vector<SampleFragment>& fragments) {
+        depth_test_equal(triangles, tile, sampling, timed(testing), surface, fragments, accesses);
         memory.test_equal(accesses, testing);
-        shade(fragments, shading, &triangles.attributes);
+        shade(fragments, timed(shading), &triangles.attributes);
       });
       memory.flush(testing);
     }
+    std::vector<float> bytes(tile.pixels());
+    memory.add_bytes(bytes);
     memory.read_color(resolving);
     write_image(run.memory, tile, resolving);
-    return TileResult{resolve(surface, tile.pixels(), colors, frame.background, resolving),
-                      {{"fragments", std::move(counts)}},
+    return TileResult{resolve(surface, tile.pixels(), colors, frame.background, timed(resolving)),
+                      {{"fragments", std::move(counts)}, {"bytes", std::move(bytes)}},
                       {raster, shading, testing, resolving}};
   };
   return render_tiles(frame, triangles, setup, bin_size(options.samples), run, render_tile);

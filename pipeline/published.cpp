@@ -5,8 +5,8 @@
 
 #include "pipeline/memory/beam_memory.h"
 #include "pipeline/tiles.h"
+#include "pipeline/timeline.h"
 #include "stages/a_buffer.h"
-#include "stages/aggregate_format.h"
 #include "stages/compose.h"
 #include "stages/conservative_raster.h"
 #include "stages/resolve.h"
@@ -51,9 +51,9 @@ struct PublishedFrame {
   RecordBytes bytes;
   BeamFragmentOptions options;
 
-  PublishedFrame(const Trace& trace, const Frame& frame, const PublishedOptions& beam_options)
+  PublishedFrame(const Trace& trace, const Frame& frame, const PublishedOptions& beam_options, const RunOptions& run)
       : beam(beam_options),
-        triangles(vertex_setup(trace, frame, setup)),
+        triangles(vertex_setup(trace, frame, StageTimer(run.timeline)(setup))),
         colors(shade_triangles(triangles, frame.light_direction)),
         pattern(hammersley_pattern()),
         table(pattern),
@@ -74,31 +74,33 @@ std::vector<PixelColor> compose_tile(const PublishedFrame& state, const std::vec
 
 FrameResult render_published(const Trace& trace, const Frame& frame, const PublishedOptions& beam,
                              const RunOptions& run) {
-  const PublishedFrame state(trace, frame, beam);
+  const PublishedFrame state(trace, frame, beam, run);
   const std::vector<Surface> framebuffer = published_framebuffer(beam);
-  FrameResult result =
-      render_tiles(frame, state.triangles, state.setup, kBinSize, run, kPairBytes + kSortBytes,
-                   [&](const Tile& tile, const TriangleList& list) {
-                     StageCounters raster{"conservative_raster"}, fragment{"beam_fragment"}, shading{"shade"},
-                         buffering{"a_buffer"}, composition{"compose"}, resolving{"resolve"};
-                     std::vector<PixelTriangle> pairs;
-                     std::vector<Fragment> fragments;
-                     conservative_raster(state.triangles, list, tile, raster, pairs);
-                     beam_fragment(state.triangles, pairs, tile, state.options, fragment, fragments);
-                     shade(state.colors, fragments, shading, &state.triangles.attributes);
-                     const std::vector<SortRecord> records = sort_records(fragments, beam.sort);
-                     const ABuffer buffer = a_buffer(records, tile.pixels(), state.bytes.fragment, buffering);
-                     PixelCounters counts = count_per_pixel(tile, buffer, fragments);
-                     const std::vector<PixelColor> aggregates = compose_tile(state, fragments, buffer, composition);
-                     std::vector<bool> full;
-                     for (const PixelColor& aggregate : aggregates) full.push_back(aggregate.alpha == 1.0f);
-                     count_sorted_composition(run.memory, tile, buffer, records, state.bytes.fragment,
-                                              counts.back().second, std::vector<bool>(tile.pixels(), true), full,
-                                              framebuffer, buffering, composition, composition, resolving);
-                     return TileResult{resolve(aggregates, frame.background, state.bytes.aggregate, resolving),
-                                       std::move(counts),
-                                       {raster, fragment, shading, buffering, composition, resolving}};
-                   });
+  FrameResult result = render_tiles(
+      frame, state.triangles, state.setup, kBinSize, run, kPairBytes + kSortBytes,
+      [&](const Tile& tile, const TriangleList& list) {
+        const StageTimer timed(run.timeline, tile);
+        StageCounters raster{"conservative_raster"}, fragment{"beam_fragment"}, shading{"shade"}, buffering{"a_buffer"},
+            composition{"compose"}, resolving{"resolve"};
+        std::vector<PixelTriangle> pairs;
+        std::vector<Fragment> fragments;
+        conservative_raster(state.triangles, list, tile, timed(raster), pairs);
+        beam_fragment(state.triangles, pairs, tile, state.options, timed(fragment), fragments);
+        shade(state.colors, fragments, timed(shading), &state.triangles.attributes);
+        const std::vector<SortRecord> records = sort_records(fragments, beam.sort);
+        const ABuffer buffer = a_buffer(records, tile.pixels(), state.bytes.fragment, timed(buffering));
+        PixelCounters counts = count_per_pixel(tile, buffer, fragments);
+        const std::vector<PixelColor> aggregates = compose_tile(state, fragments, buffer, timed(composition));
+        std::vector<bool> full;
+        for (const PixelColor& aggregate : aggregates) full.push_back(aggregate.alpha == 1.0f);
+        std::vector<float> bytes = count_sorted_composition(
+            run.memory, tile, buffer, records, state.bytes.fragment, counts.back().second,
+            std::vector<bool>(tile.pixels(), true), full, framebuffer, buffering, composition, composition, resolving);
+        counts.emplace_back("bytes", std::move(bytes));
+        return TileResult{resolve(aggregates, frame.background, state.bytes.aggregate, timed(resolving)),
+                          std::move(counts),
+                          {raster, fragment, shading, buffering, composition, resolving}};
+      });
   const auto buffering = std::find_if(result.stages.begin(), result.stages.end(),
                                       [](const StageCounters& stage) { return stage.stage == "a_buffer"; });
   result.a_buffer_peak_bytes =
@@ -110,7 +112,7 @@ std::vector<PixelWeights> published_weights(const Trace& trace, const Frame& fra
                                             const RunOptions& run) {
   PublishedOptions exact = beam;  // weights as they are before colours are packed
   exact.storage = PaperStorage::float32;
-  const PublishedFrame state(trace, frame, exact);
+  const PublishedFrame state(trace, frame, exact, run);
   std::vector<PixelWeights> weights(std::size_t{frame.width} * frame.height);
   render_tiles(frame, state.triangles, state.setup, kBinSize, run, kPairBytes + kSortBytes,
                [&](const Tile& tile, const TriangleList& list) {

@@ -1,6 +1,7 @@
 #include "pipeline/reference.h"
 
 #include "pipeline/tiles.h"
+#include "pipeline/timeline.h"
 #include "stages/reference_raster.h"
 #include "stages/shade.h"
 #include "stages/vertex_setup.h"
@@ -14,13 +15,14 @@ constexpr int kTileSize = 4;  // px: 65,536 samples, 1 MiB
 
 FrameResult render_reference(const Trace& trace, const Frame& frame, const RunOptions& run) {
   StageCounters setup;
-  const SetupTriangles triangles = vertex_setup(trace, frame, setup);
+  const SetupTriangles triangles = vertex_setup(trace, frame, StageTimer(run.timeline)(setup));
   const std::vector<glm::vec3> colors = shade_triangles(triangles, frame.light_direction);
   return render_tiles(frame, triangles, setup, kTileSize, run, [&](const Tile& tile, const TriangleList& list) {
+    const StageTimer timed(run.timeline, tile);
     StageCounters raster{"reference_raster"}, resolving{"resolve"};
     ReferenceTile surface(tile);
-    reference_raster(triangles, list, tile, raster, surface);
-    return TileResult{resolve(surface, tile, colors, frame.background, resolving), {}, {raster, resolving}};
+    reference_raster(triangles, list, tile, timed(raster), surface);
+    return TileResult{resolve(surface, tile, colors, frame.background, timed(resolving)), {}, {raster, resolving}};
   });
 }
 

@@ -4,6 +4,7 @@
 #include <vector>
 
 #include "pipeline/batches.h"
+#include "pipeline/timeline.h"
 #include "stages/sample_raster.h"
 #include "stages/tile.h"
 
@@ -12,11 +13,11 @@ namespace beampipe {
 // sample_raster over the list's triangles in order; calls body(fragments) for each batch.
 template <class Body>
 void raster_in_batches(const SetupTriangles& triangles, const TriangleList& list, const Tile& tile,
-                       const Sampling& sampling, StageCounters& raster, Body&& body) {
+                       const Sampling& sampling, const StageTimer& timed, StageCounters& raster, Body&& body) {
   std::vector<SampleFragment> fragments;
   for_each_batch(list, [&](const TriangleList& batch) {
     fragments.clear();
-    sample_raster(triangles, batch, tile, sampling, raster, fragments);
+    sample_raster(triangles, batch, tile, sampling, timed(raster), fragments);
     body(fragments);
   });
 }

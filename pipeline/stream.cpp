@@ -8,6 +8,7 @@
 #include "pipeline/memory/beam_memory.h"
 #include "pipeline/memory/image_memory.h"
 #include "pipeline/tiles.h"
+#include "pipeline/timeline.h"
 #include "stages/claim.h"
 #include "stages/conservative_raster.h"
 #include "stages/settle.h"
@@ -31,10 +32,28 @@ Tile unfinished_box(const std::vector<Pixel>& pixels, const Tile& tile) {
   return box;
 }
 
+// Each pass draws the frame's geometry again, as many times as the pixel that takes the most passes needs.
+void charge_passes(const SetupTriangles& triangles, FrameResult& result) {
+  const std::vector<float>& passes = result.pixel_counters.at("passes");
+  const StageCounters once = result.stages[0];
+  StageCounters &vertices = result.stages[0], &raster = result.stages[1];
+  for (float pass = 1; pass < *std::max_element(passes.begin(), passes.end()); ++pass) {
+    vertices += once;
+    raster.items_in += triangles.triangles.size();
+    raster.bytes_read += triangles.triangles.size() * sizeof(SetupTriangle);
+  }
+}
+
+// Moves the state of each pixel that has owners, once; their fragments stand pixel by pixel.
+void move_settled(const std::vector<Fragment>& fragments, AggregateMemory& memory, StageCounters& counters) {
+  for (std::size_t i = 0; i < fragments.size(); ++i)
+    if (i == 0 || fragments[i].pixel != fragments[i - 1].pixel) memory.merge(0, fragments[i].pixel, counters);
+}
+
 template <std::size_t Words, std::size_t Layers>
 FrameResult render_shape(const Trace& trace, const Frame& frame, const StreamOptions& stream, const RunOptions& run) {
   StageCounters setup;
-  const SetupTriangles triangles = vertex_setup(trace, frame, setup);
+  const SetupTriangles triangles = vertex_setup(trace, frame, StageTimer(run.timeline)(setup));
   const std::vector<glm::vec3> colors = shade_triangles(triangles, frame.light_direction);
   const PositionSet& positions = cell_positions(stream.positions);
   const PositionGrid grid(stream.positions);
@@ -44,11 +63,12 @@ FrameResult render_shape(const Trace& trace, const Frame& frame, const StreamOpt
   options.fragment_bytes = streaming_fragment_bytes(Words);
   options.clipped_depth = false;
 
-  return render_tiles(frame, triangles, setup, kBinSize, run, [&](const Tile& tile, const TriangleList& list) {
+  const TileRenderer render_tile = [&](const Tile& tile, const TriangleList& list) {
+    const StageTimer timed(run.timeline, tile);
     StageCounters raster{"conservative_raster"}, fragment{"beam_fragment"}, claiming{"claim"}, shading{"shade"},
         settling{"settle"}, resolving{"resolve"};
     std::vector<OwnerPixel<Words, Layers>> pixels(tile.pixels(), cleared_pixel<Words, Layers>());
-    std::vector<float> passes(tile.pixels()), counts(tile.pixels());
+    std::vector<float> passes(tile.pixels()), counts(tile.pixels()), bytes(tile.pixels());
     std::vector<PixelTriangle> pairs;
     std::vector<Fragment> fragments;
     const ZOrder order(tile.width(), tile.height());
@@ -61,35 +81,38 @@ FrameResult render_shape(const Trace& trace, const Frame& frame, const StreamOpt
       for (std::size_t i = 0; i < pixels.size(); ++i) passes[i] += is_unfinished(pixels[i]);
       for_each_batch(list, [&](const TriangleList& batch) {
         pairs.clear(), fragments.clear();
-        conservative_raster(triangles, batch, box, raster, pairs, &closed);
-        beam_fragment(triangles, pairs, tile, options, fragment, fragments);
+        conservative_raster(triangles, batch, box, timed(raster), pairs, &closed);
+        beam_fragment(triangles, pairs, tile, options, timed(fragment), fragments);
         for (const Fragment& item : fragments) ++counts[item.pixel];
-        claim(triangles, fragments, tile, positions, claiming, pixels);
+        claim(triangles, fragments, tile, positions, timed(claiming), pixels);
         if (run.memory.modelled)
           for (const Fragment& item : fragments) state.merge(item.triangle, item.pixel, claiming);
       });
       state.flush({}, claiming);
       fragments.clear();
-      beam_fragment(triangles, owners(triangles, pixels, tile), tile, options, fragment, fragments);
-      shade_visible(colors, fragments, shading);
-      settle(fragments, pass == stream.passes, settling, pixels);
+      beam_fragment(triangles, owners(triangles, pixels, tile), tile, options, timed(fragment), fragments);
+      shade_visible(colors, fragments, timed(shading));
+      settle(fragments, pass == stream.passes, timed(settling), pixels);
       if (run.memory.modelled) {
-        for (const Fragment& item : fragments) {
-          state.merge(0, item.pixel, settling);
-          color.merge(0, item.pixel, settling);
-        }
+        move_settled(fragments, state, settling);
+        move_settled(fragments, color, settling);
       }
       state.flush({}, settling);
       color.flush({}, settling);
       close_finished(pixels, tile, closed);
       box = unfinished_box(pixels, tile);
     }
+    state.add_bytes(bytes);
+    color.add_bytes(bytes);
     color.read_all(resolving);
     write_image(run.memory, tile, resolving);
-    return TileResult{resolve(settled_colors(pixels), frame.background, sizeof pixels[0], resolving),
-                      {{"fragments", std::move(counts)}, {"passes", std::move(passes)}},
+    return TileResult{resolve(settled_colors(pixels), frame.background, sizeof pixels[0], timed(resolving)),
+                      {{"fragments", std::move(counts)}, {"passes", std::move(passes)}, {"bytes", std::move(bytes)}},
                       {raster, fragment, claiming, shading, settling, resolving}};
-  });
+  };
+  FrameResult result = render_tiles(frame, triangles, setup, kBinSize, run, render_tile);
+  charge_passes(triangles, result);
+  return result;
 }
 
 }  // namespace

@@ -2,6 +2,7 @@
 
 #include "pipeline/memory/image_memory.h"
 #include "pipeline/tiles.h"
+#include "pipeline/timeline.h"
 #include "pipeline/visibility.h"
 #include "stages/shade.h"
 #include "stages/vertex_setup.h"
@@ -25,7 +26,7 @@ FrameResult render_taa(const Trace& trace, const Frame& frame, const TaaOptions&
   History first;
   History& history = run.history ? *run.history : first;
   StageCounters setup;
-  const SetupTriangles triangles = vertex_setup(trace, frame, setup);
+  const SetupTriangles triangles = vertex_setup(trace, frame, StageTimer(run.timeline)(setup));
   const std::vector<glm::vec3> colors = shade_triangles(triangles, frame.light_direction);
   const Sampling sampling{CellGrid{}, jittered(options, history.frames)};
   const Poses poses = poses_of(frame);
@@ -34,12 +35,13 @@ FrameResult render_taa(const Trace& trace, const Frame& frame, const TaaOptions&
 
   FrameResult result =
       render_tiles(frame, triangles, setup, kBinSize, run, [&](const Tile& tile, const TriangleList& list) {
+        const StageTimer timed(run.timeline, tile);
         StageCounters moving{"motion"};
         SampleTile surface(tile, sampling, kVisibilityBytes);
-        TileResult one =
-            visibility_tile(triangles, list, tile, sampling, colors, frame.background, run.memory, surface);
+        TileResult one = visibility_tile(triangles, list, tile, sampling, colors, frame.background, run, surface);
         copy_to_frame(one.image, tile, frame, current.color);
-        copy_to_frame(motion(surface, tile, frame, triangles.draws, to_last, moving), tile, frame, current.motion);
+        copy_to_frame(motion(surface, tile, frame, triangles.draws, to_last, timed(moving)).vectors, tile, frame,
+                      current.motion);
         stream(run.memory, tile.pixels() * (kSampleDepthBytes + kVisibilityBytes), moving);
         stream(run.memory, tile.pixels() * kMotionBytes, moving);
         one.stages.push_back(moving);
@@ -50,11 +52,12 @@ FrameResult render_taa(const Trace& trace, const Frame& frame, const TaaOptions&
   std::vector<glm::vec4> image(current.color.size());
   for_each_tile(frame, kBinSize, run, accumulation, [&](const Tile& tile, StageCounters& counters) {
     neighborhood_box(tile, counters, current);
+    stream(run.memory, tile.pixels() * kImagePixelBytes, counters);
     temporal(current, {options.blend}, history, tile, counters, image);
     move_temporal(run.memory, tile, history.frames > 0, counters);
   });
   result.image = image_of(frame, image);
-  history = {history.frames + 1, current.width, current.height, std::move(image), std::move(current.motion), poses};
+  history = {history.frames + 1, current.width, current.height, std::move(image), std::move(current.motion), {}, poses};
   result.stages.push_back(accumulation);
   return result;
 }

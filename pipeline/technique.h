@@ -17,6 +17,8 @@
 
 namespace beampipe {
 
+class Timeline;
+
 struct RunOptions {
   int threads = 0;  // 0: all that the machine has. The result does not depend on it.
   // What earlier frames left, for techniques that accumulate over time: read, and made ready for the next frame. One
@@ -26,6 +28,7 @@ struct RunOptions {
   // Bytes for what is kept per triangle and pixel, all threads together; 0: no limit. Beyond it, a frame is rendered in
   // bands of tiles, with the same result; where a single tile needs more, rendering throws std::runtime_error.
   std::uint64_t memory_limit = 0;
+  Timeline* timeline = nullptr;  // where each stage call is recorded with its times; null: nowhere
 };
 
 // Linear RGB plus A (the part of the pixel that geometry covers, 0..1); row 0 on top; 4 floats per pixel.

@@ -8,6 +8,7 @@
 #include "pipeline/bands.h"
 #include "pipeline/memory/image_memory.h"
 #include "pipeline/threads.h"
+#include "pipeline/timeline.h"
 
 namespace beampipe {
 namespace {
@@ -61,17 +62,21 @@ FrameResult render_tiles(const Frame& frame, const SetupTriangles& triangles, co
     on_threads(options.threads, [&] { render_band(band); });
   }
   StageCounters& raster = result.stages[1];
-  raster.items_in += triangles.triangles.size();
-  raster.bytes_read += triangles.triangles.size() * sizeof(SetupTriangle);
+  raster.items_in += vertex_setup.items_out;
+  raster.bytes_read += vertex_setup.items_out * sizeof(SetupTriangle);
+  if (!options.memory.modelled) result.pixel_counters.erase("bytes");
   return result;
 }
 
 void for_each_tile(const Frame& frame, int tile_size, const RunOptions& options, StageCounters& counters,
                    const std::function<void(const Tile&, StageCounters&)>& work) {
   const std::vector<Tile> tiles = TileGrid(frame, tile_size).tiles;
-  std::vector<StageCounters> of_tiles(tiles.size());
+  std::vector<StageCounters> of_tiles(tiles.size(), StageCounters{counters.stage});
   on_threads(options.threads, [&] {
-    tbb::parallel_for(std::size_t{0}, tiles.size(), [&](std::size_t i) { work(tiles[i], of_tiles[i]); });
+    tbb::parallel_for(std::size_t{0}, tiles.size(), [&](std::size_t i) {
+      const StageTimer timed(options.timeline, tiles[i]);
+      work(tiles[i], timed(of_tiles[i]));
+    });
   });
   for (const StageCounters& of_tile : of_tiles) counters += of_tile;
 }

@@ -6,6 +6,7 @@
 #include "pipeline/memory/sample_memory.h"
 #include "pipeline/sample_batches.h"
 #include "pipeline/tiles.h"
+#include "pipeline/timeline.h"
 #include "stages/depth_test.h"
 #include "stages/resolve.h"
 #include "stages/shade.h"
@@ -54,11 +55,12 @@ void move_light_and_resolve(const MemoryParameters& memory, const Tile& tile, co
 
 FrameResult render_deferred(const Trace& trace, const Frame& frame, const RunOptions& run) {
   StageCounters setup;
-  const SetupTriangles triangles = vertex_setup(trace, frame, setup);
+  const SetupTriangles triangles = vertex_setup(trace, frame, StageTimer(run.timeline)(setup));
   const std::vector<glm::vec3> colors = shade_triangles(triangles, frame.light_direction);
   const Sampling sampling{CellGrid{}, standard_pattern(1)};
   setup += setup;  // the triangles come twice
   return render_tiles(frame, triangles, setup, kBinSize, run, [&](const Tile& tile, const TriangleList& list) {
+    const StageTimer timed(run.timeline, tile);
     StageCounters raster{"sample_raster"}, testing{"depth_test"}, shading{"shade"}, lighting{"light"},
         resolving{"resolve"};
     SampleTile surface(tile, sampling, 0);
@@ -66,25 +68,25 @@ FrameResult render_deferred(const Trace& trace, const Frame& frame, const RunOpt
     const ZOrder order(tile.width(), tile.height());
     TileSurface gbuffer(run.memory, order, kGBufferBytes);
     std::vector<SampleAccess> accesses;
-    raster_in_batches(triangles, list, tile, sampling, raster, [&](std::vector<SampleFragment>& fragments) {
-      depth_test(triangles, fragments, tile, sampling, testing, surface, accesses);
+    raster_in_batches(triangles, list, tile, sampling, timed, raster, [&](std::vector<SampleFragment>& fragments) {
+      depth_test(triangles, fragments, tile, sampling, timed(testing), surface, accesses);
       memory.test_depth(accesses, testing);
     });
     memory.flush(testing);
-    raster_in_batches(triangles, list, tile, sampling, raster, [&](std::vector<SampleFragment>& fragments) {
-      depth_test_equal(triangles, tile, sampling, testing, surface, fragments, accesses);
+    raster_in_batches(triangles, list, tile, sampling, timed, raster, [&](std::vector<SampleFragment>& fragments) {
+      depth_test_equal(triangles, tile, sampling, timed(testing), surface, fragments, accesses);
       memory.test_equal(accesses, testing);
-      write_gbuffer(fragments, shading);
+      write_gbuffer(fragments, timed(shading));
       for (const SampleAccess& access : accesses)
         gbuffer.access(access.triangle, access.cell, 0, access.passed, kGBufferBytes, shading);
     });
     memory.flush(testing);
     gbuffer.flush(shading);
     const std::vector<std::uint32_t> shown = shown_pixels(surface, tile);
-    light(shown.size(), lighting);
+    light(shown.size(), timed(lighting));
     move_light_and_resolve(run.memory, tile, order, shown, gbuffer, lighting, resolving);
     surface.color_bytes = kSampleColorBytes;
-    return TileResult{resolve(surface, tile.pixels(), colors, frame.background, resolving),
+    return TileResult{resolve(surface, tile.pixels(), colors, frame.background, timed(resolving)),
                       {},
                       {raster, testing, shading, lighting, resolving}};
   });
@@ -92,41 +94,43 @@ FrameResult render_deferred(const Trace& trace, const Frame& frame, const RunOpt
 
 FrameResult render_visibility(const Trace& trace, const Frame& frame, const RunOptions& run) {
   StageCounters setup;
-  const SetupTriangles triangles = vertex_setup(trace, frame, setup);
+  const SetupTriangles triangles = vertex_setup(trace, frame, StageTimer(run.timeline)(setup));
   const std::vector<glm::vec3> colors = shade_triangles(triangles, frame.light_direction);
   const Sampling sampling{CellGrid{}, standard_pattern(1)};
   return render_tiles(frame, triangles, setup, kBinSize, run, [&](const Tile& tile, const TriangleList& list) {
     SampleTile surface(tile, sampling, kVisibilityBytes);
-    return visibility_tile(triangles, list, tile, sampling, colors, frame.background, run.memory, surface);
+    return visibility_tile(triangles, list, tile, sampling, colors, frame.background, run, surface);
   });
 }
 
 TileResult visibility_tile(const SetupTriangles& triangles, const TriangleList& list, const Tile& tile,
                            const Sampling& sampling, const std::vector<glm::vec3>& colors, const glm::vec3& background,
-                           const MemoryParameters& parameters, SampleTile& surface) {
+                           const RunOptions& run, SampleTile& surface) {
+  const StageTimer timed(run.timeline, tile);
   StageCounters raster{"sample_raster"}, testing{"depth_test"}, shading{"shade"}, lighting{"light"},
       resolving{"resolve"};
-  std::vector<float> counts(tile.pixels());
-  SampleMemory memory(parameters, tile, sampling, kVisibilityBytes);
+  std::vector<float> counts(tile.pixels()), bytes(tile.pixels());
+  SampleMemory memory(run.memory, tile, sampling, kVisibilityBytes);
   std::vector<SampleAccess> accesses;
-  raster_in_batches(triangles, list, tile, sampling, raster, [&](std::vector<SampleFragment>& fragments) {
-    depth_test(triangles, fragments, tile, sampling, testing, surface, accesses);
+  raster_in_batches(triangles, list, tile, sampling, timed, raster, [&](std::vector<SampleFragment>& fragments) {
+    depth_test(triangles, fragments, tile, sampling, timed(testing), surface, accesses);
     memory.test_and_write(accesses, testing);
     count_fragments(fragments, tile, sampling.grid, counts);
   });
   memory.flush(testing);
   const std::vector<std::uint32_t> shown = shown_pixels(surface, tile);
-  write_gbuffer(shown.size(), shading);
-  light(shown.size(), lighting);
+  write_gbuffer(shown.size(), timed(shading));
+  light(shown.size(), timed(lighting));
   const ZOrder order(tile.width(), tile.height());
-  TileSurface gbuffer(parameters, order, kGBufferBytes);
+  memory.add_bytes(bytes);
+  TileSurface gbuffer(run.memory, order, kGBufferBytes);
   memory.read_color(shading);
-  fetch_attributes(parameters, surface, shown, shading);
+  fetch_attributes(run.memory, surface, shown, shading);
   write_pixels(shown, gbuffer, shading);
-  move_light_and_resolve(parameters, tile, order, shown, gbuffer, lighting, resolving);
+  move_light_and_resolve(run.memory, tile, order, shown, gbuffer, lighting, resolving);
   surface.color_bytes = kSampleColorBytes;
-  return {resolve(surface, tile.pixels(), colors, background, resolving),
-          {{"fragments", std::move(counts)}},
+  return {resolve(surface, tile.pixels(), colors, background, timed(resolving)),
+          {{"fragments", std::move(counts)}, {"bytes", std::move(bytes)}},
           {raster, testing, shading, lighting, resolving}};
 }
 

@@ -14,7 +14,7 @@ FrameResult render_visibility(const Trace& trace, const Frame& frame, const RunO
 // What `visibility` does in a tile: its triangle ids and depths stay in `surface`. `sampling`: of one sample.
 TileResult visibility_tile(const SetupTriangles& triangles, const TriangleList& list, const Tile& tile,
                            const Sampling& sampling, const std::vector<glm::vec3>& colors, const glm::vec3& background,
-                           const MemoryParameters& parameters, SampleTile& surface);
+                           const RunOptions& run, SampleTile& surface);
 
 std::vector<Surface> deferred_framebuffer();
 std::vector<Surface> visibility_framebuffer();

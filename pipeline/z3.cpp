@@ -7,6 +7,7 @@
 #include "pipeline/memory/beam_memory.h"
 #include "pipeline/memory/image_memory.h"
 #include "pipeline/tiles.h"
+#include "pipeline/timeline.h"
 #include "stages/conservative_raster.h"
 #include "stages/shade.h"
 #include "stages/vertex_setup.h"
@@ -17,7 +18,7 @@ namespace {
 template <std::size_t Words, std::size_t Layers>
 FrameResult render_shape(const Trace& trace, const Frame& frame, const Z3Options& z3, const RunOptions& run) {
   StageCounters setup;
-  const SetupTriangles triangles = vertex_setup(trace, frame, setup);
+  const SetupTriangles triangles = vertex_setup(trace, frame, StageTimer(run.timeline)(setup));
   const std::vector<glm::vec3> colors = shade_triangles(triangles, frame.light_direction);
   const PositionSet& positions = cell_positions(z3.positions);
   const PositionGrid grid(z3.positions);
@@ -28,28 +29,30 @@ FrameResult render_shape(const Trace& trace, const Frame& frame, const Z3Options
   options.clipped_depth = false;
 
   return render_tiles(frame, triangles, setup, kBinSize, run, [&](const Tile& tile, const TriangleList& list) {
+    const StageTimer timed(run.timeline, tile);
     StageCounters raster{"conservative_raster"}, fragment{"beam_fragment"}, shading{"shade"}, composition{"compose"},
         resolving{"resolve"};
     std::vector<Z3Pixel<Words, Layers>> pixels(tile.pixels());
-    std::vector<float> counts(tile.pixels());
+    std::vector<float> counts(tile.pixels()), bytes(tile.pixels());
     const ZOrder order(tile.width(), tile.height());
     AggregateMemory memory(run.memory, order, z3_framebuffer(z3));
     std::vector<PixelTriangle> pairs;
     std::vector<Fragment> fragments;
     for_each_batch(list, [&](const TriangleList& batch) {
       pairs.clear(), fragments.clear();
-      conservative_raster(triangles, batch, tile, raster, pairs);
-      beam_fragment(triangles, pairs, tile, options, fragment, fragments);
-      shade(colors, fragments, shading);
+      conservative_raster(triangles, batch, tile, timed(raster), pairs);
+      beam_fragment(triangles, pairs, tile, options, timed(fragment), fragments);
+      shade(colors, fragments, timed(shading));
       for (const Fragment& item : fragments) ++counts[item.pixel];
-      compose_z3(fragments, positions, z3.merge, composition, pixels);
+      compose_z3(fragments, positions, z3.merge, timed(composition), pixels);
       for (const Fragment& item : fragments) memory.merge(item.triangle, item.pixel, composition);
     });
     memory.flush({}, composition);
+    memory.add_bytes(bytes);
     memory.read_all(resolving);
     write_image(run.memory, tile, resolving);
-    return TileResult{resolve(z3_colors(pixels), frame.background, sizeof pixels[0], resolving),
-                      {{"fragments", std::move(counts)}},
+    return TileResult{resolve(z3_colors(pixels), frame.background, sizeof pixels[0], timed(resolving)),
+                      {{"fragments", std::move(counts)}, {"bytes", std::move(bytes)}},
                       {raster, fragment, shading, composition, resolving}};
   });
 }

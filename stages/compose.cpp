@@ -3,7 +3,6 @@
 #include <algorithm>
 #include <numeric>
 
-#include "stages/aggregate_format.h"
 #include "stages/counting.h"
 
 namespace beampipe {

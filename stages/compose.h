@@ -18,6 +18,10 @@ std::vector<Aggregate> compose(const std::vector<Fragment>& fragments, const ABu
                                const SamplePattern& pattern, const MergeRules& rules, PaperStorage storage,
                                StageCounters& counters);
 
+// OVER alone has no masks and slabs: coverage and colour; a fragment has the depth that it is sorted by as well.
+inline constexpr std::uint32_t kOverBytes = 4 + kAggregateColorBytes;
+inline constexpr std::uint32_t kOverFragmentBytes = kOverBytes + 4;
+
 // Plain OVER: alpha and colour, as if every fragment were independent of every other.
 std::vector<Aggregate> compose_over(const std::vector<Fragment>& fragments, const ABuffer& buffer,
                                     StageCounters& counters);

@@ -44,6 +44,43 @@ Layer merged(const Layer& a, const Layer& b) {
           a.positions | b.positions};
 }
 
+using Real = Counted<float>;
+
+// From the stored formats, or into them: two slopes and a colour.
+OperationCounts format_cost() { return {0, 0, 0, 0, 0, 5}; }
+
+// Of a word: each layer's positions and those that the fragment covers; what is lost by either, branch-free.
+template <std::size_t Layers, std::size_t Bits>
+OperationCounts contest_cost() {
+  OperationCounts counts;
+  for (std::uint32_t k = 0; k < Layers; ++k) counts += find_cost<Bits>(k + 1);
+  counts.bit += Layers * (1 + 4 + 2);  // contested; arriving without (contested without nearer); layer without both
+  return counts;
+}
+
+// Two layers into one: which two lose the least, and their mean.
+OperationCounts merge_cost(std::size_t layers, std::size_t words, LayerMerge merge) {
+  return count_operations([&](OperationCounts& counts) {
+    const Real one(1.0f, counts);
+    const std::size_t pairs = layers * (layers - 1) / 2;
+    for (std::size_t pair = 0; pair < pairs; ++pair) {
+      if (merge == LayerMerge::depth) {
+        magnitude(one - one);
+      } else {
+        const Real difference = one - one;
+        (difference * difference + difference * difference + (one - one) * (one - one)) * one* one / (one + one);
+      }
+      static_cast<void>(one < one);
+    }
+    const std::size_t counted = merge == LayerMerge::depth ? 2 : layers;
+    for (std::size_t w = 0; w < counted * words; ++w) bit_count(Counted<std::uint32_t>(0, counts));
+    counts.add += counted * (words - 1);
+    const Real share = one / (one + one), rest = one - share;
+    for (int value = 0; value < 3 + 3; ++value) share* one + rest* one;  // plane and colour
+    counts.bit += words;
+  });
+}
+
 template <std::size_t Words, std::size_t Layers>
 class PixelLayers {
  public:
@@ -108,7 +145,12 @@ void compose_z3(const std::vector<Fragment>& fragments, const PositionSet& posit
   constexpr std::uint64_t kFragmentBytes = 4 + 4 * Words + 12 + 6;  // pixel, mask, depth plane, colour
   counters.items_in += fragments.size();
   counters.items_out += taken;
+  constexpr std::size_t kBits = std::bit_width(Layers);
+  counters.ops += format_cost() * (fragments.size() * (Layers + 1) + taken * Layers);
+  counters.ops += contest_cost<Layers, kBits>() * (Words * fragments.size());
   counters.ops += nearer_cost() * (32 * Words * layers.planes_compared);
+  counters.ops += merge_cost(Layers + 1, Words, merge) * layers.merges;
+  for (std::uint32_t k = 0; k < Layers; ++k) counters.ops += put_cost<kBits>(k + 1) * (Words * taken);
   counters.bytes_read += fragments.size() * (kFragmentBytes + sizeof(Z3Pixel<Words, Layers>));
   counters.bytes_written += taken * sizeof(Z3Pixel<Words, Layers>);
   counters.lanes_used += taken;

@@ -10,7 +10,8 @@
 namespace beampipe {
 
 struct CounterInfo {
-  const char* name;  // as in report.json; "ops.add" is `add` of `ops`
+  const char* name;   // as in report.json; "ops.add" is `add` of `ops`
+  const char* title;  // of a table's column
   const char* unit;
   const char* meaning;
   Count (*value)(const StageCounters&);

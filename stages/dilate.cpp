@@ -9,7 +9,7 @@
 namespace beampipe {
 namespace {
 
-constexpr std::uint64_t kColorBytes = 6;  // fp16 RGB
+constexpr std::uint64_t kSampleBytes = 6 + 4;  // a shading sample's fp16 RGB and its visibility id
 
 struct Shaded {
   std::uint32_t draw;
@@ -39,8 +39,25 @@ OperationCounts pixel_cost() {
     Counted<float> weights[4];
     const Counted<float> inverse = one / weigh(masks, bits, weights);
     for (int channel = 0; channel < 3 * 4; ++channel) mean(values, weights, inverse);  // colour, low, high
-    counts.add += 2 * 8 * 4 + 8;  // the box: minima, maxima and comparisons of the draws with eight neighbours
-    counts.convert += 4 * 3;
+    for (int channel = 0; channel < 3; ++channel) converted(one);                      // its own sample, from fp16
+  });
+}
+
+// A neighbour's colour into the box where it is of the same draw.
+template <class Real>
+void grow_box(const Real color[4], bool same_draw, Real low[4], Real high[4]) {
+  for (int c = 0; c < 4; ++c) {
+    low[c] = lesser(low[c], select(same_draw, color[c], low[c]));
+    high[c] = greater(high[c], select(same_draw, color[c], high[c]));
+  }
+}
+
+OperationCounts neighbor_cost() {
+  return count_operations([](OperationCounts& counts) {
+    const Counted<float> one(1.0f, counts), id(0.0f, counts);
+    Counted<float> color[4] = {converted(one), converted(one), converted(one), one}, low[4] = {one, one, one, one},
+                   high[4] = {one, one, one, one};
+    grow_box(color, id == id, low, high);
   });
 }
 
@@ -59,14 +76,15 @@ class ShadedSamples {
   }
 
   // Neighbours inside the frame only: samples outside it were never shaded.
-  Box box_around(std::int32_t x, std::int32_t y, const CurrentFrame& frame) const {
+  Box box_around(std::int32_t x, std::int32_t y, const CurrentFrame& frame, std::uint64_t& neighbors) const {
     const Shaded sample = at(x, y);
     Box box{sample.color, sample.color};
     for (std::int32_t ny = std::max(y - 1, 0); ny <= std::min(y + 1, frame.height - 1); ++ny) {
       for (std::int32_t nx = std::max(x - 1, 0); nx <= std::min(x + 1, frame.width - 1); ++nx) {
+        if (nx == x && ny == y) continue;
         const Shaded other = at(nx, ny);
-        if (other.draw != sample.draw) continue;
-        box.low = glm::min(box.low, other.color), box.high = glm::max(box.high, other.color);
+        grow_box(&other.color.x, other.draw == sample.draw, &box.low.x, &box.high.x);
+        ++neighbors;
       }
     }
     return box;
@@ -107,14 +125,14 @@ void QuadFrame::insert(const Tile& tile, const std::vector<SampleQuad>& of_tile)
 void dilate(const QuadFrame& quads, const std::vector<glm::vec3>& colors, const std::vector<std::uint32_t>& draws,
             const glm::vec3& background, const Tile& tile, StageCounters& counters, CurrentFrame& frame) {
   const ShadedSamples samples(quads, colors, draws, background);
-  std::uint64_t known = 0;
+  std::uint64_t known = 0, neighbors = 0;
   for (std::int32_t top = tile.y0; top < tile.y1; top += 2) {
     for (std::int32_t left = tile.x0; left < tile.x1; left += 2) {
       const SampleQuad& quad = quads.quads[static_cast<std::size_t>(top / 2 * quads.columns + left / 2)];
       glm::vec4 color[4], low[4], high[4];
       for (int p = 0; p < 4; ++p) {
         color[p] = samples.at(left + p % 2, top + p / 2).color;
-        const Box box = samples.box_around(left + p % 2, top + p / 2, frame);
+        const Box box = samples.box_around(left + p % 2, top + p / 2, frame, neighbors);
         low[p] = box.low, high[p] = box.high;
       }
       for (int p = 0; p < 4; ++p) {
@@ -139,9 +157,10 @@ void dilate(const QuadFrame& quads, const std::vector<glm::vec3>& colors, const 
   counters.items_in += pixels;
   counters.items_out += pixels;
   counters.ops += pixel_cost() * pixels;
-  counters.bytes_read += pixels * (kColorBytes + 4 + 4);  // own colour, visibility id and mask; the quad's by exchange
-  counters.bytes_read += pixels * 8 * (kColorBytes + 4);  // the neighbours' colours and ids
-  counters.bytes_written += pixels * kColorBytes;
+  counters.ops += neighbor_cost() * neighbors;
+  counters.bytes_read += pixels * (kSampleBytes + 4);  // its own sample and mask; the quad's by exchange
+  counters.bytes_read += neighbors * kSampleBytes;
+  counters.bytes_written += pixels * (kCurrentColorBytes + kCurrentBoxBytes);
   counters.lanes_used += known;
   counters.lanes_issued += pixels;
 }

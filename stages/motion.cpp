@@ -24,14 +24,28 @@ void reproject(const Real m[16], Real x, Real y, Real z, Real width, Real height
   last_y = (one - row(1) * inverse) * half * height;
 }
 
+// From a pixel's centre, in pixels, to where that was, and in front of the eye or not.
+template <class Real>
+bool move(const Real m[16], Real center_x, Real center_y, Real depth, Real width, Real height, Real& dx, Real& dy) {
+  const Real zero(0.0), one(1.0), two(2.0);
+  Real x, y, w;
+  reproject(m, two * center_x / width - one, one - two * center_y / height, two * lesser(depth, zero) + one, width,
+            height, x, y, w);
+  dx = x - center_x, dy = y - center_y;
+  return w > zero;
+}
+
 OperationCounts pixel_cost(std::size_t samples) {
   return count_operations([&](OperationCounts& counts) {
-    const Counted<float> one(1.0f, counts);
-    Counted<float> m[16], x, y, w;
-    for (Counted<float>& element : m) element = one;
-    reproject(m, one, one, one, one, one, x, y, w);
-    counts += OperationCounts{0, 2, 0, 2, 0, 2};  // less the pixel's centre; draw and matrix; to fp16
-    counts.add += 2 * (samples - 1);              // the nearest sample
+    const Counted<double> one(1.0, counts);
+    Counted<double> m[16], dx, dy;
+    for (Counted<double>& element : m) element = one;
+    for (std::size_t s = 1; s < samples; ++s) select(one < one, one, one);  // the nearest
+    const std::uint32_t table[1] = {};
+    const Counted<std::int32_t> index(0, counts);
+    fetch(table, index), fetch(table, index);  // its draw; the draw's matrix
+    move(m, one, one, one, one, one, dx, dy);
+    converted(to_float(dx)), converted(to_float(dy));
   });
 }
 
@@ -39,11 +53,10 @@ glm::vec2 pixel_motion(const glm::dmat4& to_last, double center_x, double center
   double m[16];
   for (int i = 0; i < 16; ++i) m[i] = to_last[i / 4][i % 4];
   const double width = frame.width, height = frame.height;
-  double x = 0, y = 0, w = 0;
-  reproject<double>(m, 2 * center_x / width - 1, 1 - 2 * center_y / height, 2 * std::min(double{depth}, 0.0) + 1, width,
-                    height, x, y, w);
-  if (!(w > 0)) return glm::vec2(std::numeric_limits<float>::infinity());
-  return {half(static_cast<float>(x - center_x)), half(static_cast<float>(y - center_y))};
+  double dx = 0, dy = 0;
+  if (!move<double>(m, center_x, center_y, depth, width, height, dx, dy))
+    return glm::vec2(std::numeric_limits<float>::infinity());
+  return {half(static_cast<float>(dx)), half(static_cast<float>(dy))};
 }
 
 }  // namespace
@@ -68,19 +81,21 @@ std::vector<glm::dmat4> to_last_frame(const Poses& now, const Poses& before) {
   return matrices;
 }
 
-std::vector<glm::vec2> motion(const SampleTile& surface, const Tile& tile, const Frame& frame,
-                              const std::vector<std::uint32_t>& draws, const std::vector<glm::dmat4>& to_last,
-                              StageCounters& counters) {
+SurfaceMotion motion(const SampleTile& surface, const Tile& tile, const Frame& frame,
+                     const std::vector<std::uint32_t>& draws, const std::vector<glm::dmat4>& to_last,
+                     StageCounters& counters) {
   const std::size_t samples = surface.samples_per_pixel;
-  std::vector<glm::vec2> vectors;
-  vectors.reserve(tile.pixels());
+  SurfaceMotion found;
+  std::vector<glm::vec2>& vectors = found.vectors;
   for (std::int32_t y = tile.y0; y < tile.y1; ++y) {
     for (std::int32_t x = tile.x0; x < tile.x1; ++x) {
       const auto first = surface.depth.begin() + static_cast<std::ptrdiff_t>(vectors.size() * samples);
       const auto nearest = std::min_element(first, first + static_cast<std::ptrdiff_t>(samples));
       const std::uint32_t triangle = surface.triangle[static_cast<std::size_t>(nearest - surface.depth.begin())];
-      const glm::dmat4& matrix = triangle == kNoTriangle ? to_last.back() : to_last[draws[triangle]];
-      vectors.push_back(pixel_motion(matrix, x + 0.5, y + 0.5, *nearest, frame));
+      const std::uint32_t draw = triangle == kNoTriangle ? kNoDraw : draws[triangle];
+      found.draws.push_back(draw);
+      vectors.push_back(
+          pixel_motion(draw == kNoDraw ? to_last.back() : to_last[draw], x + 0.5, y + 0.5, *nearest, frame));
     }
   }
   const std::size_t pixels = vectors.size();
@@ -91,7 +106,7 @@ std::vector<glm::vec2> motion(const SampleTile& surface, const Tile& tile, const
   counters.bytes_written += pixels * kMotionBytes;
   counters.lanes_used += pixels;
   counters.lanes_issued += pixels;
-  return vectors;
+  return found;
 }
 
 }  // namespace beampipe

@@ -14,6 +14,7 @@
 namespace beampipe {
 
 inline constexpr std::uint32_t kMotionBytes = 4;  // two fp16 numbers per pixel
+inline constexpr std::uint32_t kDrawBytes = 2;    // a draw's number per pixel, where it is kept
 
 // What places a frame's draws on its screen.
 struct Poses {
@@ -31,10 +32,16 @@ Poses poses_of(const Frame& frame);
 // known again by its index and its mesh; one that was not there before is taken to have stood still.
 std::vector<glm::dmat4> to_last_frame(const Poses& now, const Poses& before);
 
-// One vector per pixel of the tile, row by row: in pixels, rounded to fp16, from a point to where it was. What was
-// behind the eye is infinitely far away. `draws`: one per triangle.
-std::vector<glm::vec2> motion(const SampleTile& surface, const Tile& tile, const Frame& frame,
-                              const std::vector<std::uint32_t>& draws, const std::vector<glm::dmat4>& to_last,
-                              StageCounters& counters);
+// Of the nearest surface of each pixel of a tile, row by row.
+struct SurfaceMotion {
+  std::vector<glm::vec2> vectors;    // pixels, rounded to fp16: from a point to where it was; behind the eye: infinity
+  std::vector<std::uint32_t> draws;  // whose it is; kNoDraw: the background
+};
+inline constexpr std::uint32_t kNoDraw = ~0u;
+
+// `draws`: one per triangle.
+SurfaceMotion motion(const SampleTile& surface, const Tile& tile, const Frame& frame,
+                     const std::vector<std::uint32_t>& draws, const std::vector<glm::dmat4>& to_last,
+                     StageCounters& counters);
 
 }  // namespace beampipe

@@ -1,4 +1,8 @@
 // The published aggregate as it is stored: loaded before each merge and stored behind it, in exactly these bytes.
+//
+// The talk (slide 23) has 36 bytes and 6 of colour. The paper's text (section 3) has 32 and gives no layout; there are
+// two readings. Without colour, 32 are the talk's 36 with a plane of three coefficients, all that a depth over a pixel
+// needs, in place of four. With colour, they are what is left when slopes and thickness take 16 bits each.
 #pragma once
 
 #include <cstdint>
@@ -10,7 +14,7 @@ namespace beampipe {
 
 enum class PaperStorage {
   slides,   // 42 bytes: slide 23 of the talk
-  text,     // 32 bytes: section 3 gives the size, not the layout; this one is ours
+  text,     // 32 bytes with colour: section 3's size, in a layout of ours
   float32,  // every number a float32: what packing costs
 };
 
@@ -35,6 +39,11 @@ struct SlidesAggregate {
   }
 };
 static_assert(sizeof(SlidesAggregate) == 42);
+
+inline constexpr std::uint32_t kAggregateColorBytes = sizeof(SlidesAggregate::color);
+
+// The text's size read as without colour.
+inline constexpr std::uint32_t kTextBytesWithoutColor = sizeof(SlidesAggregate) - kAggregateColorBytes - sizeof(float);
 
 struct TextAggregate {
   float alpha;

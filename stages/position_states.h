@@ -1,12 +1,29 @@
 // One small number per mask position, packed as bit planes: plane b has bit b of every position's state.
 #pragma once
 
+#include <array>
 #include <cstddef>
 #include <cstdint>
 
 #include "simd/wide_mask.h"
 
 namespace beampipe {
+
+// ---- Of a word, which may be a counting number ----
+
+// Of 32 positions those in `state`. `planes`: a word of each bit plane.
+template <class Word, std::size_t Bits>
+Word word_in_state(const std::array<Word, Bits>& planes, std::uint32_t state) {
+  Word word = state & 1 ? planes[0] : ~planes[0];
+  for (std::size_t b = 1; b < Bits; ++b) word = word & (state >> b & 1 ? planes[b] : ~planes[b]);
+  return word;
+}
+
+// A bit plane's word when `positions` are put into a state with this bit set, or not.
+template <class Word>
+Word word_put(Word plane, Word positions, bool set) {
+  return set ? plane | positions : plane & ~positions;
+}
 
 template <std::size_t Words, std::size_t Bits>  // 32 positions a word; states below 2^Bits
 struct PositionStates {
@@ -28,17 +45,16 @@ struct PositionStates {
   WideMask positions_in(std::uint32_t state) const {
     WideMask mask;
     for (std::size_t w = 0; w < Words; ++w) {
-      std::uint32_t word = ~0u;
-      for (std::size_t b = 0; b < Bits; ++b) word &= state >> b & 1 ? planes[b][w] : ~planes[b][w];
-      mask.words[w] = word;
+      std::array<std::uint32_t, Bits> of_word;
+      for (std::size_t b = 0; b < Bits; ++b) of_word[b] = planes[b][w];
+      mask.words[w] = word_in_state(of_word, state);
     }
     return mask;
   }
 
   void put(const WideMask& positions, std::uint32_t into) {
     for (std::size_t b = 0; b < Bits; ++b)
-      for (std::size_t w = 0; w < Words; ++w)
-        planes[b][w] = into >> b & 1 ? planes[b][w] | positions.words[w] : planes[b][w] & ~positions.words[w];
+      for (std::size_t w = 0; w < Words; ++w) planes[b][w] = word_put(planes[b][w], positions.words[w], into >> b & 1);
   }
 };
 

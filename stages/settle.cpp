@@ -4,7 +4,7 @@
 #include <array>
 
 #include "simd/conserve.h"
-#include "stages/counting.h"
+#include "stages/plane_cost.h"
 
 namespace beampipe {
 namespace {
@@ -19,8 +19,9 @@ struct Owner {
 
 float whole(const Owner& owner) { return owner.visible / owner.covered; }
 
+// Returns how many owners' areas it has added.
 template <std::size_t Words, std::size_t Layers>
-void settle_pixel(const Fragment* begin, const Fragment* end, bool last_pass, OwnerPixel<Words, Layers>& pixel) {
+std::size_t settle_pixel(const Fragment* begin, const Fragment* end, bool last_pass, OwnerPixel<Words, Layers>& pixel) {
   using Pixel = OwnerPixel<Words, Layers>;
   constexpr auto kPositions = static_cast<float>(32 * Words);
   const bool speck = pixel.owner[0] & Pixel::kSpeck;
@@ -64,18 +65,55 @@ void settle_pixel(const Fragment* begin, const Fragment* end, bool last_pass, Ow
   pixel.put(settled, Pixel::kSettled);
   pixel.put(without(deferred, settled), Pixel::kEmpty);
   pixel.dropped = kNoDepth;
+  return count;
 }
 
-// Of one owner.
-OperationCounts owner_cost() {
-  return count_operations([](OperationCounts& counts) {
-    const Counted<float> one(1.0f, counts);
-    Taken<Counted<float>> taken{one, one};
-    const Counted<float> area = visible_area(one, one, one, one, taken);
+using Real = Counted<float>;
+
+// Population counts of a mask's words, added up.
+void count_mask(OperationCounts& counts, std::size_t words) {
+  Real sum;
+  for (std::size_t w = 0; w < words; ++w) {
+    const Real bits = bit_count(Counted<std::uint32_t>(0, counts));
+    sum = w == 0 ? bits : sum + bits;
+  }
+}
+
+// Of one owner: how much of it is seen, its area, its colour.
+OperationCounts owner_cost(std::size_t words) {
+  return count_operations([&](OperationCounts& counts) {
+    const Real one(1.0f, counts);
+    count_mask(counts, words), count_mask(counts, words);
+    one / one;  // the share that is seen, by which owners are sorted
+    Taken<Real> taken{one, one};
+    const Real area = visible_area(one, one, one, one, taken);
     taken = {taken.area + area, taken.positions + one};
-    const Counted<float> share = area / one;
+    const Real share = area / one;
     for (int c = 0; c < 3; ++c) one + share* one;
   });
+}
+
+// Of one pixel besides: its state's masks, its colour and area from their formats and back.
+template <std::size_t Words, std::size_t Layers>
+OperationCounts pixel_cost() {
+  using Pixel = OwnerPixel<Words, Layers>;
+  constexpr std::size_t kBits = std::bit_width(Pixel::kSettled);
+  OperationCounts masks;
+  for (std::uint32_t state = Pixel::kFirstLayer; state <= Pixel::kSettled; ++state) masks += find_cost<kBits>(state);
+  masks += put_cost<kBits>(Pixel::kSettled);
+  masks += put_cost<kBits>(Pixel::kEmpty);
+  masks.bit += Layers + 2;  // owners' positions joined to the settled ones; without, of what is deferred still
+  const OperationCounts numbers = count_operations([](OperationCounts& counts) {
+    const Real one(1.0f, counts), units(kAreaUnits);
+    count_mask(counts, Words), count_mask(counts, Words);  // settled, deferred
+    Real area = to_float(Counted<std::int64_t>(0, counts)) / units, color[3] = {one, one, one};
+    for (Real& channel : color) channel = converted(channel) * area;
+    area = lesser(area * (one / one), one);  // scaled to what is covered
+    for (Real& channel : color) channel = converted(channel / area);
+    to_integer(area * units + one);
+  });
+  OperationCounts all = masks * Words;
+  return all += numbers;
 }
 
 }  // namespace
@@ -101,18 +139,22 @@ void settle(const std::vector<Fragment>& fragments, bool last_pass, StageCounter
             std::vector<OwnerPixel<Words, Layers>>& pixels) {
   const Fragment* fragment = fragments.data();
   const Fragment* const end = fragment + fragments.size();
-  std::uint64_t worked_on = 0, unfinished = 0;
+  std::uint64_t worked_on = 0, unfinished = 0, seen = 0, compared = 0;
   for (std::size_t i = 0; i < pixels.size(); ++i) {
     const Fragment* const begin = fragment;
     while (fragment != end && fragment->pixel == i) ++fragment;
     if (!is_unfinished(pixels[i])) continue;
-    settle_pixel(begin, fragment, last_pass, pixels[i]);
+    const std::size_t owners = settle_pixel(begin, fragment, last_pass, pixels[i]);
     ++worked_on;
+    seen += owners;
+    compared += owners * (owners - 1) / 2;  // to sort them
     unfinished += is_unfinished(pixels[i]);
   }
   counters.items_in += fragments.size();
   counters.items_out += unfinished;
-  counters.ops += owner_cost() * fragments.size();
+  counters.ops += pixel_cost<Words, Layers>() * worked_on;
+  counters.ops += owner_cost(Words) * seen;
+  counters.ops.add += compared;
   counters.bytes_read += worked_on * sizeof(OwnerPixel<Words, Layers>);
   counters.bytes_written += worked_on * sizeof(OwnerPixel<Words, Layers>);
   counters.lanes_used += fragments.size();

@@ -10,7 +10,7 @@
 namespace beampipe {
 namespace {
 
-constexpr std::uint64_t kColorBytes = 8;  // fp16 RGBA
+constexpr std::uint64_t kHistoryBytes = 8;  // fp16 RGBA
 
 // One channel: four texels weighted, clamped by as much as `clamped` says, blended with the new colour.
 template <class Real>
@@ -22,13 +22,63 @@ Real blend_channel(const Real texels[4], const Real weights[4], Real low, Real h
   return kept + (color - kept) * blend;
 }
 
-OperationCounts pixel_cost(bool fading) {
+// Bilinear weights of the four texels around (x, y), of which (left, top) is the first; all in texels.
+template <class Real>
+void texel_weights(Real x, Real y, Real left, Real top, Real weights[4]) {
+  const Real one(1.0f), half(0.5f);
+  const Real fx = x - half - left, fy = y - half - top, rest_x = one - fx, rest_y = one - fy;
+  weights[0] = rest_x * rest_y, weights[1] = fx * rest_y, weights[2] = rest_x * fy, weights[3] = fx * fy;
+}
+
+// How much of the clamp is in force: the greatest of five motions, over that from which it is whole.
+template <class Real>
+Real clamp_part(const Real x[5], const Real y[5], Real still_px) {
+  Real square = x[0] * x[0] + y[0] * y[0];
+  for (int i = 1; i < 5; ++i) square = greater(square, x[i] * x[i] + y[i] * y[i]);
+  const Real root(square_root(square));
+  return lesser(root / still_px, Real(1.0f));
+}
+
+using CountedReal = Counted<float>;
+
+// Of every pixel: where it was, and whether that is on the screen; the colour from fp16 and back.
+OperationCounts pixel_cost() {
   return count_operations([&](OperationCounts& counts) {
-    const Counted<float> one(1.0f, counts), four[4] = {one, one, one, one};
-    for (int c = 0; c < 4; ++c) blend_channel(four, four, one, one, one, one, one);
-    counts += OperationCounts{4, 4, 0, 0, 0, 2};          // the texels' weights from the position
-    counts += OperationCounts{0, 0, 0, 0, 0, 6 * 4 + 2};  // six colours and the motion from and to fp16
-    if (fading) counts += OperationCounts{5 * 2 + 1, 5 * 2, 0, 0, 1, 4 * 2};  // the greatest of five motions
+    const CountedReal one(1.0f, counts);
+    for (int axis = 0; axis < 2; ++axis) {
+      const CountedReal at = one + converted(one);
+      static_cast<void>(at >= one), static_cast<void>(at <= one);
+    }
+    for (int c = 0; c < 4; ++c) converted(converted(one));
+  });
+}
+
+// Of a pixel that has a history: its texels and its box, from fp16, and what is made of them.
+OperationCounts reuse_cost(bool fading) {
+  return count_operations([&](OperationCounts& counts) {
+    const CountedReal one(1.0f, counts), four[4] = {one, one, one, one}, five[5] = {one, one, one, one, one};
+    CountedReal weights[4];
+    to_integer(one), to_integer(one);  // the first texel
+    texel_weights(one, one, one, one, weights);
+    for (int value = 0; value < 4 * (4 + 2); ++value) converted(one);
+    for (int value = 0; fading && value < 4 * 2; ++value) converted(one);
+    if (fading) {
+      for (int tap = 1; tap < 4; ++tap) greater(one, one);  // the texel that weighs the most
+      select(one != one, one, clamp_part(five, five, one));
+    }
+    one* one;  // the blend by what is known
+    for (int c = 0; c < 4; ++c) blend_channel(four, weights, one, one, one, one, one);
+  });
+}
+
+// Of a neighbour: least and greatest, four channels from fp16.
+OperationCounts neighbor_cost() {
+  return count_operations([](OperationCounts& counts) {
+    const CountedReal one(1.0f, counts);
+    for (int c = 0; c < 4; ++c) {
+      const CountedReal color = converted(one);
+      lesser(one, color), greater(one, color);
+    }
   });
 }
 
@@ -45,8 +95,8 @@ struct Taps {
 
 Taps taps_at(const History& history, float x, float y) {
   const float left = std::floor(x - 0.5f), top = std::floor(y - 0.5f);
-  const float fx = x - 0.5f - left, fy = y - 0.5f - top;
-  Taps taps{{}, {(1 - fx) * (1 - fy), fx * (1 - fy), (1 - fx) * fy, fx * fy}};
+  Taps taps;
+  texel_weights(x, y, left, top, taps.weights);
   for (int i = 0; i < 4; ++i) {
     const auto column = std::clamp(static_cast<std::int32_t>(left) + i % 2, 0, history.width - 1);
     const auto row = std::clamp(static_cast<std::int32_t>(top) + i / 2, 0, history.height - 1);
@@ -55,13 +105,14 @@ Taps taps_at(const History& history, float x, float y) {
   return taps;
 }
 
-// How much of the clamp is in force.
-float clamp_part(const glm::vec2& motion, const History& history, const Taps& taps, float still_px) {
+float clamp_part(const glm::vec2& motion, std::uint32_t draw, const History& history, const Taps& taps,
+                 float still_px) {
   if (still_px == 0) return 1;
-  float square = glm::dot(motion, motion);
-  for (const std::size_t texel : taps.texels)
-    square = std::max(square, glm::dot(history.motion[texel], history.motion[texel]));
-  return std::min(std::sqrt(square) / still_px, 1.0f);
+  const auto nearest = std::max_element(taps.weights, taps.weights + 4) - taps.weights;
+  if (history.draws[taps.texels[nearest]] != draw) return 1;
+  float x[5] = {motion.x}, y[5] = {motion.y};
+  for (int i = 0; i < 4; ++i) x[i + 1] = history.motion[taps.texels[i]].x, y[i + 1] = history.motion[taps.texels[i]].y;
+  return clamp_part(x, y, still_px);
 }
 
 }  // namespace
@@ -69,11 +120,12 @@ float clamp_part(const glm::vec2& motion, const History& history, const Taps& ta
 CurrentFrame::CurrentFrame(std::uint32_t frame_width, std::uint32_t frame_height)
     : width(static_cast<std::int32_t>(frame_width)), height(static_cast<std::int32_t>(frame_height)) {
   const std::size_t pixels = std::size_t{frame_width} * frame_height;
-  color.resize(pixels), low.resize(pixels), high.resize(pixels), motion.resize(pixels);
+  color.resize(pixels), low.resize(pixels), high.resize(pixels), motion.resize(pixels), draws.resize(pixels);
   known.assign(pixels, 1.0f);
 }
 
 void neighborhood_box(const Tile& tile, StageCounters& counters, CurrentFrame& frame) {
+  std::uint64_t neighbors = 0;
   for (std::int32_t y = tile.y0; y < tile.y1; ++y) {
     for (std::int32_t x = tile.x0; x < tile.x1; ++x) {
       const auto at = static_cast<std::size_t>(y * frame.width + x);
@@ -81,14 +133,17 @@ void neighborhood_box(const Tile& tile, StageCounters& counters, CurrentFrame& f
       for (std::int32_t ny = std::max(y - 1, 0); ny <= std::min(y + 1, frame.height - 1); ++ny) {
         for (std::int32_t nx = std::max(x - 1, 0); nx <= std::min(x + 1, frame.width - 1); ++nx) {
           const glm::vec4& color = frame.color[static_cast<std::size_t>(ny * frame.width + nx)];
+          ++neighbors;
           low = glm::min(low, color), high = glm::max(high, color);
         }
       }
       frame.low[at] = low, frame.high[at] = high;
     }
   }
-  counters.ops.add += tile.pixels() * 2 * 8 * 4;  // minima and maxima with eight neighbours, four channels
-  counters.bytes_read += tile.pixels() * 8 * kColorBytes;
+  neighbors -= tile.pixels();  // which are none of their own
+  counters.ops += neighbor_cost() * neighbors;
+  counters.bytes_read += (neighbors + tile.pixels()) * kCurrentColorBytes;
+  counters.bytes_written += tile.pixels() * kCurrentBoxBytes;
 }
 
 void temporal(const CurrentFrame& frame, const TemporalOptions& options, const History& history, const Tile& tile,
@@ -108,7 +163,8 @@ void temporal(const CurrentFrame& frame, const TemporalOptions& options, const H
       }
       const float known = frame.known[i];
       const Taps taps = taps_at(history, x, y);
-      const float clamped = known > 0 ? clamp_part(motion, history, taps, options.still_px) : 0;  // else no box
+      const float clamped =
+          known > 0 ? clamp_part(motion, frame.draws[i], history, taps, options.still_px) : 0;  // else no box
       glm::vec4 blended;
       for (int c = 0; c < 4; ++c) {
         float texels[4];
@@ -125,10 +181,12 @@ void temporal(const CurrentFrame& frame, const TemporalOptions& options, const H
   counters.items_in += pixels;
   counters.items_out += pixels;
   const bool fading = options.still_px > 0;
-  counters.ops += pixel_cost(fading) * pixels;
-  counters.bytes_read += pixels * (kColorBytes + kMotionBytes);
-  counters.bytes_read += reused * 4 * (kColorBytes + (fading ? kMotionBytes : 0));
-  counters.bytes_written += pixels * kColorBytes;
+  counters.ops += pixel_cost() * pixels;
+  counters.ops += reuse_cost(fading) * reused;
+  counters.bytes_read += pixels * (kCurrentColorBytes + kCurrentBoxBytes + kMotionBytes);
+  counters.bytes_read += reused * 4 * (kHistoryBytes + (fading ? kMotionBytes : 0));
+  if (fading) counters.bytes_read += pixels * kDrawBytes + reused * kDrawBytes;
+  counters.bytes_written += pixels * kHistoryBytes;
   counters.lanes_used += reused;
   counters.lanes_issued += pixels;
 }

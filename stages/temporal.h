@@ -18,6 +18,7 @@ struct History {
   std::int32_t width = 0, height = 0;  // pixels
   std::vector<glm::vec4> color;        // the last picture, rounded to fp16 RGBA
   std::vector<glm::vec2> motion;       // of the last frame
+  std::vector<std::uint32_t> draws;    // that were nearest in the last frame
   Poses poses;                         // of the last frame
 };
 
@@ -28,14 +29,19 @@ struct CurrentFrame {
   std::vector<glm::vec4> low, high;  // the box that the history's colour is clamped to
   std::vector<float> known;          // the part of the pixel that `color` is made from, 0..1
   std::vector<glm::vec2> motion;     // pixels, to where it was
+  std::vector<std::uint32_t> draws;  // that are nearest
 
   CurrentFrame(std::uint32_t frame_width, std::uint32_t frame_height);
 };
 
+// A pixel on its way to `temporal`: the picture as fp16 RGBA; its box, twice as much, and the known part in a byte.
+inline constexpr std::uint64_t kCurrentColorBytes = 8, kCurrentBoxBytes = 2 * 8 + 1;
+
 struct TemporalOptions {
   float blend = 0.1f;  // T: weight of the new frame
   // The clamp fades in from no motion to this much, in pixels, of what is there or was there in the last frame: where
-  // something has just gone away, its colour must go too. 0: the clamp is always whole.
+  // something has just gone away, its colour must go too. Where another draw was nearest, the clamp is whole: what
+  // starts from rest, or jumps, did not move before. 0: the clamp is always whole.
   float still_px = 0.0f;
 };
 

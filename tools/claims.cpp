@@ -2,7 +2,7 @@
 
 #include <algorithm>
 
-#include "stages/aggregate_format.h"
+#include "stages/paper_storage.h"
 
 namespace beampipe {
 namespace {
@@ -106,7 +106,7 @@ std::optional<double> Claim::difference() const {
 std::vector<Claim> memory_claims() {
   return {bytes("beam, without colour", 36, 36, bytes_without_color("beam:rules=paper"), kSlides),
           bytes("beam, with fp16 RGB", 42, 42, bytes_of("beam:rules=paper"), kSlides),
-          bytes("beam, without colour, a plane of three coefficients", 32, 32, kCompactVisibilityBytes, kPaper),
+          bytes("beam, without colour, a plane of three coefficients", 32, 32, kTextBytesWithoutColor, kPaper),
           bytes("beam, area-conserving rules, 256 positions, with fp16 RGB", 42, 42, bytes_of("beam"), kSlides),
           bytes("MSAA 8x, without colour", 24, 32, bytes_without_color("msaa:8"), kSlides),
           bytes("MSAA 8x, with fp16 RGB", 72, 80, bytes_of("msaa:8"), kSlides),

@@ -4,6 +4,7 @@
 #include <cstdio>
 #include <iostream>
 
+#include "pipeline/timeline.h"
 #include "simd/target.h"
 #include "tools/image_io.h"
 #include "tools/resume.h"
@@ -27,7 +28,11 @@ FrameResult render_timed(const Technique& technique, const RunPlan& plan, std::s
   progress.show(frame_text(plan, frame) + technique.spec);
   const auto start = std::chrono::steady_clock::now();
   FrameResult result = technique.render(plan.trace, frame, options);
-  milliseconds = std::chrono::duration<double, std::milli>(std::chrono::steady_clock::now() - start).count();
+  const auto end = std::chrono::steady_clock::now();
+  milliseconds = std::chrono::duration<double, std::milli>(end - start).count();
+  if (options.timeline)
+    options.timeline->add(
+        {technique.spec + ", frame " + std::to_string(frame), std::this_thread::get_id(), {}, start, end});
   return result;
 }
 

@@ -24,7 +24,9 @@ void LinearMemory::access(std::uint32_t key, std::uint32_t record, bool write, S
 
 ABufferMemory::ABufferMemory(const MemoryParameters& parameters, const ZOrder& order, std::size_t records,
                              std::uint32_t record_bytes)
-    : heads_(parameters, order, kLinkBytes), records_(parameters, records, record_bytes + kLinkBytes) {}
+    : record_bytes_(record_bytes + kLinkBytes),
+      heads_(parameters, order, kLinkBytes),
+      records_(parameters, records, record_bytes_) {}
 
 void ABufferMemory::insert(const std::vector<SortRecord>& records, StageCounters& counters) {
   for (std::uint32_t i = 0; i < records.size(); ++i) {
@@ -85,6 +87,10 @@ void AggregateMemory::read_all(StageCounters& counters) {
   for (TileSurface& surface : surfaces_) surface.read_all(counters);
 }
 
+void AggregateMemory::add_bytes(std::vector<float>& pixels) const {
+  for (const TileSurface& surface : surfaces_) surface.add_bytes(pixels);
+}
+
 namespace {
 
 // Calls visit(pixel) for the tile's pixels that have records, in Z order.
@@ -98,13 +104,14 @@ void for_each_list(const ZOrder& order, const Tile& tile, const ABuffer& buffer,
 
 }  // namespace
 
-void count_sorted_composition(const MemoryParameters& parameters, const Tile& tile, const ABuffer& buffer,
-                              const std::vector<SortRecord>& records, std::uint32_t record_bytes,
-                              const std::vector<float>& merged, const std::vector<bool>& written,
-                              const std::vector<bool>& full, const std::vector<Surface>& framebuffer,
-                              StageCounters& buffering, StageCounters& fetching, StageCounters& composition,
-                              StageCounters& resolving) {
-  if (!parameters.modelled) return;
+std::vector<float> count_sorted_composition(const MemoryParameters& parameters, const Tile& tile, const ABuffer& buffer,
+                                            const std::vector<SortRecord>& records, std::uint32_t record_bytes,
+                                            const std::vector<float>& merged, const std::vector<bool>& written,
+                                            const std::vector<bool>& full, const std::vector<Surface>& framebuffer,
+                                            StageCounters& buffering, StageCounters& fetching,
+                                            StageCounters& composition, StageCounters& resolving) {
+  std::vector<float> bytes(tile.pixels());
+  if (!parameters.modelled) return bytes;
   const ZOrder order(tile.width(), tile.height());
   ABufferMemory a_buffer(parameters, order, records.size(), record_bytes);
   AggregateMemory aggregates(parameters, order, framebuffer);
@@ -112,12 +119,15 @@ void count_sorted_composition(const MemoryParameters& parameters, const Tile& ti
   for_each_list(order, tile, buffer, [&](std::uint32_t pixel) {
     a_buffer.sort(pixel, buffer, buffering);
     a_buffer.compose(pixel, buffer, static_cast<std::uint32_t>(merged[pixel]), fetching);
+    bytes[pixel] = a_buffer.bytes_of(buffer.depth_of(pixel), static_cast<std::uint32_t>(merged[pixel]));
     if (written[pixel]) aggregates.write(pixel, composition);
   });
   a_buffer.finish(fetching);
   aggregates.flush(full, composition);
   aggregates.read_all(resolving);
   write_image(parameters, tile, resolving);
+  aggregates.add_bytes(bytes);
+  return bytes;
 }
 
 void count_triangle_fetches(const MemoryParameters& parameters, const Tile& tile, const TriangleList& list,

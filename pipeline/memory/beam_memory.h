@@ -38,9 +38,15 @@ class ABufferMemory {
   void compose(std::uint32_t pixel, const ABuffer& buffer, std::uint32_t merged, StageCounters& counters);
   void finish(StageCounters& counters) { records_.flush(counters); }
 
+  // Logical bytes of a pixel with so many records, of which `merged` were looked at: heads, filling, sorting, reading.
+  float bytes_of(std::uint32_t records, std::uint32_t merged) const {
+    return static_cast<float>(records * (2 * kLinkBytes + 2 * record_bytes_) + merged * record_bytes_);
+  }
+
  private:
+  std::uint32_t record_bytes_;  // with the link
   TileSurface heads_;
-  LinearMemory records_;  // with their links
+  LinearMemory records_;
 };
 
 // The aggregates of a bin, one surface per member.
@@ -60,6 +66,9 @@ class AggregateMemory {
 
   void read_all(StageCounters& counters);
 
+  // Adds the logical bytes that merging and writing have moved, pixel by pixel.
+  void add_bytes(std::vector<float>& pixels) const;
+
  private:
   const ZOrder& order_;
   std::vector<bool> full_;  // by position in Z order
@@ -68,13 +77,13 @@ class AggregateMemory {
 
 // All of it, for aggregates that are composed from a sorted A-buffer. Per pixel, `merged`: the records that were looked
 // at; `written`: was an aggregate stored? `full`: nothing shows through it. `fetching`: the stage that reads sorted
-// records.
-void count_sorted_composition(const MemoryParameters& parameters, const Tile& tile, const ABuffer& buffer,
-                              const std::vector<SortRecord>& records, std::uint32_t record_bytes,
-                              const std::vector<float>& merged, const std::vector<bool>& written,
-                              const std::vector<bool>& full, const std::vector<Surface>& framebuffer,
-                              StageCounters& buffering, StageCounters& fetching, StageCounters& composition,
-                              StageCounters& resolving);
+// records. Returns the logical bytes of each pixel.
+std::vector<float> count_sorted_composition(const MemoryParameters& parameters, const Tile& tile, const ABuffer& buffer,
+                                            const std::vector<SortRecord>& records, std::uint32_t record_bytes,
+                                            const std::vector<float>& merged, const std::vector<bool>& written,
+                                            const std::vector<bool>& full, const std::vector<Surface>& framebuffer,
+                                            StageCounters& buffering, StageCounters& fetching,
+                                            StageCounters& composition, StageCounters& resolving);
 
 // Setup triangles that are read again for the pairs of a sorted A-buffer: those of the bin's list, which follow each
 // other in memory. `merged` as above.

@@ -23,11 +23,11 @@ inline void write_image(const MemoryParameters& memory, const Tile& tile, StageC
   stream(memory, tile.pixels() * kImagePixelBytes, counters);
 }
 
-// The pass of `temporal`: the frame's colour and motion, the history if there is one, and the history to come. What
-// neighbouring pixels share comes from cache.
+// The pass of `temporal`: the frame's motion, the history if there is one, and the history to come. What neighbouring
+// pixels share comes from cache.
 inline void move_temporal(const MemoryParameters& memory, const Tile& tile, bool has_history, StageCounters& counters) {
   constexpr std::uint64_t kHistoryBytes = 8;  // fp16 RGBA
-  stream(memory, tile.pixels() * (kImagePixelBytes + kMotionBytes), counters);
+  stream(memory, tile.pixels() * kMotionBytes, counters);
   if (has_history) stream(memory, tile.pixels() * kHistoryBytes, counters);
   stream(memory, tile.pixels() * kHistoryBytes, counters);
 }

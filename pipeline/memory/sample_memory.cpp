@@ -25,6 +25,7 @@ SampleMemory::SampleMemory(const MemoryParameters& parameters, const Tile& tile,
     : modelled_(parameters.modelled),
       plane_bytes_(parameters.plane_bytes),
       samples_(static_cast<std::size_t>(sampling.pattern.count)),
+      cells_(static_cast<std::size_t>(sampling.grid.cells_per_pixel())),
       cell_place_(parameters.modelled ? cell_places(tile, sampling.grid) : std::vector<std::uint32_t>{}),
       order_(parameters.modelled ? ZOrder(tile.width() * sampling.grid.columns, tile.height() * sampling.grid.rows)
                                  : ZOrder(1, 1)),
@@ -62,6 +63,15 @@ void SampleMemory::flush(StageCounters& counters) {
   depth_.flush(counters);
   if (color_) color_->flush(counters);
   std::fill(owner_.begin(), owner_.end(), kNoTriangle);  // the next pass writes another surface, which is clear
+}
+
+void SampleMemory::add_bytes(std::vector<float>& pixels) const {
+  if (!modelled_) return;
+  for (std::size_t cell = 0; cell < cell_place_.size(); ++cell) {
+    const std::uint32_t element = cell_place_[cell];
+    const std::uint32_t color = color_ ? color_->touched_bytes()[element] : 0;
+    pixels[cell / cells_] += static_cast<float>(depth_.touched_bytes()[element] + color);
+  }
 }
 
 // Planes, and for each sample which one: a cleared sample's has a number too.

@@ -40,6 +40,9 @@ class SampleMemory {
   void read_depth(StageCounters& counters) { depth_.read_all(counters); }
   void read_color(StageCounters& counters) { color_->read_all(counters); }
 
+  // Adds the logical bytes that tests and writes have moved, pixel by pixel.
+  void add_bytes(std::vector<float>& pixels) const;
+
  private:
   void replay(const std::vector<SampleAccess>& accesses, bool write_depth, bool write_color, StageCounters& counters);
   std::uint32_t depth_bytes(std::size_t first, std::size_t elements) const;
@@ -48,6 +51,7 @@ class SampleMemory {
   bool modelled_;
   std::uint32_t plane_bytes_;
   std::size_t samples_;                    // per cell
+  std::size_t cells_;                      // per pixel
   std::vector<std::uint32_t> cell_place_;  // of a cell, row by row in the grid of cells
   ZOrder order_;
   SameValue same_value_;

@@ -38,6 +38,7 @@ TileSurface::TileSurface(const MemoryParameters& parameters, const ZOrder& order
       element_bytes_(element_bytes),
       triangles_per_batch_(parameters.triangles_per_batch),
       log2_elements_per_block_(log2_block_elements(parameters, element_bytes)),
+      touched_bytes_(parameters.modelled ? order.of.size() : 0),
       cache_(parameters, parameters.rop, block_count(parameters, order, element_bytes),
              element_bytes << log2_elements_per_block_, true,
              compressed_bytes
@@ -48,10 +49,12 @@ TileSurface::TileSurface(const MemoryParameters& parameters, const ZOrder& order
 
 void TileSurface::access(std::uint32_t key, std::uint32_t element, std::uint32_t read, std::uint32_t write,
                          std::uint32_t part_bytes, StageCounters& counters) {
+  if (touched_bytes_.empty()) return;  // nothing is modelled
   if (triangles_per_batch_ > 0 && key / triangles_per_batch_ != batch_) {
     cache_.flush(counters);
     batch_ = key / triangles_per_batch_;
   }
+  touched_bytes_[element] += static_cast<std::uint32_t>(std::popcount(read) + std::popcount(write)) * part_bytes;
   const std::uint32_t position = order_.of[element], block = position >> log2_elements_per_block_;
   const std::uint32_t start = (position - (block << log2_elements_per_block_)) * element_bytes_;
   const auto each_run = [&](std::uint32_t parts, auto&& touch) {  // run by run of neighbouring parts
@@ -67,7 +70,7 @@ void TileSurface::access(std::uint32_t key, std::uint32_t element, std::uint32_t
 }
 
 void TileSurface::read_all(StageCounters& counters) {
-  if (cache_.blocks() == 0) return;  // nothing is modelled
+  if (touched_bytes_.empty()) return;
   flush(counters);
   std::vector<std::uint8_t> used(cache_.blocks());  // of a bin at the frame's border some hold no element
   for (const std::uint32_t position : order_.of) used[position >> log2_elements_per_block_] = 1;

@@ -48,10 +48,19 @@ class TileSurface {
   // A pass that reads every element of the bin once.
   void read_all(StageCounters& counters);
 
+  // Logical bytes that were read and written of each element, one by one; empty where memory is not modelled.
+  const std::vector<std::uint32_t>& touched_bytes() const { return touched_bytes_; }
+
+  // Adds them, where elements are pixels.
+  void add_bytes(std::vector<float>& pixels) const {
+    for (std::size_t i = 0; i < touched_bytes_.size(); ++i) pixels[i] += static_cast<float>(touched_bytes_[i]);
+  }
+
  private:
   const ZOrder& order_;
   std::uint32_t element_bytes_, triangles_per_batch_, batch_ = 0;
   int log2_elements_per_block_;
+  std::vector<std::uint32_t> touched_bytes_;
   BlockCache cache_;
 };
 

@@ -78,5 +78,20 @@ TEST(HandWorked, QuadsMsaa) {
                 {"resolve", 64, 64, 384, 384, 768, 768}});
 }
 
+// Pixel (2, 3) of the triangle, which is covered whole; and (0, 0), which nothing touches.
+TEST(HandWorked, BytesOfAPixel) {
+  const Trace trace = read_trace(std::filesystem::path(BEAMPIPE_SOURCE_FOLDER) / "traces/samples/paper_triangle.json");
+  const auto bytes = [&](const char* spec, std::size_t x, std::size_t y) {
+    return parse_technique(spec).render(trace, 0, {1}).pixel_counters.at("bytes").at(y * 8 + x);
+  };
+  EXPECT_EQ(bytes("msaa:1", 2, 3), 4 + 4 + 6) << "depth read and written, colour written";
+  EXPECT_EQ(bytes("acaa:1", 2, 3), 4 + 4 + 4 + 2 * 8) << "depth again; the accumulator read and written";
+  EXPECT_EQ(bytes("beam", 2, 3), 2 * 4 + 3 * 16 + 42) << "head; record written, sorted, composed; aggregate";
+  for (const char* spec : {"msaa:1", "acaa:1", "beam"}) EXPECT_EQ(bytes(spec, 0, 0), 0) << spec;
+  RunOptions run{1};
+  run.memory.modelled = false;
+  EXPECT_FALSE(parse_technique("beam").render(trace, 0, run).pixel_counters.contains("bytes"));
+}
+
 }  // namespace
 }  // namespace beampipe

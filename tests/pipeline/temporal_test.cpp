@@ -118,6 +118,21 @@ TEST(Taa, AnotherSizeOfFrameStartsAfresh) {
   EXPECT_EQ(history.width, 20);
 }
 
+// A draw that stood still and then jumps, or starts to move: where it was, nothing of it is left.
+TEST(Dvm, WhatLeavesItsRestLeavesNoTrail) {
+  for (const double step : {10.0, 2.0}) {
+    const Trace before = pixel_trace(24, 8, quad(4, -4, 8, 20, 0.5, glm::vec3(1)));
+    Trace after = before;
+    after.frames[0].draws[0].transform[3][0] = step;
+    const Technique technique = parse_technique("dvm");
+    History history;
+    for (int i = 0; i < 8; ++i) technique.render(before, 0, {1, &history});
+    const Image image = technique.render(after, 0, {1, &history}).image;
+    for (std::uint32_t x = 0; x < 24; ++x)
+      EXPECT_NEAR(red(image, x, 4), x >= 4 + step && x < 8 + step ? 1 : 0, 2e-3) << step << ' ' << x;
+  }
+}
+
 TEST(Dvm, ABarThinnerThanAPixelVanishesUnderTaaOnly) {
   const Trace trace = bar(0.2);  // over one of the eight positions
   const double truth = mean_red(render_frames("reference", trace, 1));

@@ -4,10 +4,10 @@
 #include <vector>
 
 #include "stages/a_buffer.h"
-#include "stages/aggregate_format.h"
 #include "stages/beam_fragment.h"
 #include "stages/compose.h"
 #include "stages/conservative_raster.h"
+#include "stages/paper_storage.h"
 #include "stages/shade.h"
 #include "tests/stages/screen_triangles.h"
 
@@ -26,14 +26,14 @@ inline Fragments beam_fragments(const SetupTriangles& triangles, const Tile& til
   StageCounters raster;
   conservative_raster(triangles, all_of(triangles), tile, raster, pairs);
   Fragments fragments;
-  beam_fragment(triangles, pairs, tile, {mask, {pattern}, &table, nullptr, kAggregateBytes, tiny_positions},
+  beam_fragment(triangles, pairs, tile, {mask, {pattern}, &table, nullptr, sizeof(SlidesAggregate), tiny_positions},
                 fragments.counters, fragments.list);
   return fragments;
 }
 
 inline ABuffer sorted(const Fragments& fragments, std::size_t pixels) {
   StageCounters counters;
-  return a_buffer(sort_records(fragments.list, SortKey::centroid), pixels, kAggregateBytes, counters);
+  return a_buffer(sort_records(fragments.list, SortKey::centroid), pixels, sizeof(SlidesAggregate), counters);
 }
 
 // The composed pixels of a tile; `colors` has one per triangle.

@@ -214,8 +214,30 @@ TEST(Claim, CountsWhatItReadsAndWrites) {
   stream.claim_all();
   EXPECT_EQ(stream.counters.items_in, 2u);
   EXPECT_EQ(stream.counters.items_out, 1u);
-  EXPECT_EQ(stream.counters.bytes_read, 2 * (40u + 80u) + 12u);  // two fragments, two states, one owner's plane
+  EXPECT_EQ(stream.counters.bytes_read, 2 * (40u + 80u) + 40u);  // two fragments, two states, one owner's plane
   EXPECT_EQ(stream.counters.bytes_written, 80u);
+}
+
+TEST(Settle, CountsItsArithmetic) {
+  SetupTriangles triangles;
+  add_everywhere(triangles, -0.5f);
+  Stream<4, 5> stream{triangles, kPixel};
+  stream.claim_all();
+  std::vector<Fragment> seen = stream.fragments_of(owners(triangles, stream.pixels, kPixel));
+  ASSERT_EQ(seen.size(), 1u);
+  StageCounters counters;
+  settle(seen, true, counters, stream.pixels);
+  // Four words: states 1 to 7 of three bits (two ands each, and nine bits to be inverted in all), two states put (three
+  // and six), owners' positions joined, and what is deferred taken away.
+  OperationCounts all{0, 0, 4 * (7 * 2 + 9 + 3 + 6 + 7), 0, 0, 0};
+  // Two population counts of four words; area and colour from their formats, by the area, scaled, divided, and back.
+  all += OperationCounts{3 + 1 + 1, 6 + 1 + 1, 8, 0, 1 + 1 + 3, 8 + 1 + 3 + 3 + 1};
+  // The owner: two more, the part that is seen, its area (simd/conserve.h), and what it adds to area, positions,
+  // colour.
+  all += OperationCounts{3 + 3, 6 + 12 + 2 + 3, 8, 0, 1 + 5 + 1, 8};
+  EXPECT_EQ(counters.ops, all);
+  EXPECT_EQ(counters.bytes_read, 80u);
+  EXPECT_EQ(counters.bytes_written, 80u);
 }
 
 }  // namespace

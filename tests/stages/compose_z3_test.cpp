@@ -12,9 +12,10 @@ namespace {
 
 template <std::size_t Words, std::size_t Layers>
 std::vector<Z3Pixel<Words, Layers>> composed(const SetupTriangles& triangles, const std::vector<glm::vec3>& colors,
-                                             const Tile& tile, LayerMerge merge = LayerMerge::depth) {
+                                             const Tile& tile, LayerMerge merge = LayerMerge::depth,
+                                             OperationCounts* counts = nullptr) {
   const PositionSet positions(cell_patterns(32 * Words));
-  StageCounters counters;
+  StageCounters counters, composition;
   std::vector<PixelTriangle> pairs;
   std::vector<Fragment> fragments;
   conservative_raster(triangles, all_of(triangles), tile, counters, pairs);
@@ -22,7 +23,8 @@ std::vector<Z3Pixel<Words, Layers>> composed(const SetupTriangles& triangles, co
                 fragments);
   shade(colors, fragments, counters);
   std::vector<Z3Pixel<Words, Layers>> pixels(tile.pixels());
-  compose_z3(fragments, positions, merge, counters, pixels);
+  compose_z3(fragments, positions, merge, composition, pixels);
+  if (counts) *counts = composition.ops;
   return pixels;
 }
 
@@ -78,6 +80,28 @@ TEST(ComposeZ3, WeightsNeverPassOne) {
       EXPECT_LE(pixel.alpha, 1.0f);
       EXPECT_NEAR(pixel.color.r, pixel.alpha, 2e-3);  // fp16
     }
+}
+
+TEST(ComposeZ3, CountsItsArithmetic) {
+  const std::vector<glm::vec3> white(3, glm::vec3(1.0f));
+  SetupTriangles triangles;
+  add_everywhere(triangles, -0.5f);
+  OperationCounts counts;
+  composed<1, 2>(triangles, white, kPixel, LayerMerge::depth, &counts);
+  // Five numbers to and from the formats of the fragment and of two layers, and into both. Of one word: two states of
+  // two bits found and put, and seven operations on the positions of each layer.
+  const OperationCounts one{0, 0, 2 * (2 + 3) + 2 * 7, 0, 0, 5 * 3 + 5 * 2};
+  EXPECT_EQ(counts, one);
+  add_left_of(triangles, 192, -0.6f);
+  add_left_of(triangles, 64, -0.9f);
+  composed<1, 2>(triangles, white, kPixel, LayerMerge::depth, &counts);
+  OperationCounts all = one * 3;
+  // Planes compared at 32 positions: the second with the first, the third with the second.
+  all += OperationCounts{4, 4 + 1, 0, 0, 0, 0} * (32 * 2);
+  // Three layers, three pairs: depths' difference, the least of them; two population counts, shares, six means, a
+  // union.
+  all += OperationCounts{12, 3 + 3 + 2 + 6, 3 + 2 + 1, 0, 1, 2};
+  EXPECT_EQ(counts, all);
 }
 
 }  // namespace

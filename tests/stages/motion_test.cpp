@@ -34,7 +34,7 @@ SampleTile full_surface(float depth, const Sampling& sampling = {CellGrid{}, sta
 
 std::vector<glm::vec2> vectors(const SampleTile& surface, const Frame& now, const Frame& before) {
   StageCounters counters;
-  return motion(surface, kTile, now, {0}, to_last_frame(poses_of(now), poses_of(before)), counters);
+  return motion(surface, kTile, now, {0}, to_last_frame(poses_of(now), poses_of(before)), counters).vectors;
 }
 
 const glm::dmat4 kIdentity(1.0);
@@ -107,6 +107,19 @@ TEST(Motion, DrawsAreKnownByIndexAndMesh) {
   now.draws[0].mesh = 0;
   EXPECT_EQ(vectors(full_surface(-0.5f), now, without)[0], glm::vec2(0));
   EXPECT_EQ(vectors(full_surface(-0.5f), now, before)[0], glm::vec2(-1, 0));
+}
+
+TEST(Motion, CountsItsArithmetic) {
+  const Frame frame = flat_frame(kIdentity);
+  StageCounters counters;
+  motion(full_surface(-0.5f, {CellGrid{}, standard_pattern(8)}), kTile, frame, {0},
+         to_last_frame(poses_of(frame), poses_of(frame)), counters);
+  // Seven comparisons and selections for the nearest of 8 samples; to the clip space of this frame: x, y (multiplied,
+  // divided, and one taken away), depth; three rows of a matrix; a division, two coordinates to pixels; the difference;
+  // in front of the eye? Then to float and fp16.
+  const OperationCounts pixel{0 + 3 + 9 + 2 * 3, 2 * 7 + 2 + 2 + 9 + 2 + 2 + 1, 0, 2, 2 + 1, 4};
+  EXPECT_EQ(counters.ops, pixel * (kSize * kSize));
+  EXPECT_EQ(counters.bytes_read, kSize * kSize * (8 * 4 + 4));
 }
 
 }  // namespace

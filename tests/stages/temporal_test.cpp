@@ -15,7 +15,7 @@ constexpr float kOld = 1.0f, kOther = 0.5f, kNew = 0.25f;
 // its boxes hold everything.
 struct Fixture {
   CurrentFrame frame{2, 1};
-  History history{1, 2, 1, {glm::vec4(kOld), glm::vec4(kOther)}, {glm::vec2(0), glm::vec2(0)}, {}};
+  History history{1, 2, 1, {glm::vec4(kOld), glm::vec4(kOther)}, {glm::vec2(0), glm::vec2(0)}, {0, 0}, {}};
 
   Fixture() {
     frame.color.assign(2, glm::vec4(kNew));
@@ -104,6 +104,42 @@ TEST(Temporal, ANeighborhoodsBoxEndsAtTheFrame) {
   EXPECT_EQ(frame.high[2].r, 5);
   EXPECT_EQ(frame.low[6].r, 3);
   EXPECT_EQ(frame.high[6].r, 7);
+}
+
+TEST(Temporal, WhereAnotherDrawWasTheClampIsWhole) {
+  Fixture fixture;
+  fixture.close_box();
+  EXPECT_NEAR(fixture.first_pixel({0.1f, 0.05f}), blended(kOld, 0.1f), kFp16) << "at rest nothing is clamped";
+  fixture.history.draws[1] = 7;
+  EXPECT_NEAR(fixture.first_pixel({0.1f, 0.05f}), blended(kOld, 0.1f), kFp16) << "beside it";
+  fixture.history.draws[0] = 7;
+  EXPECT_EQ(fixture.first_pixel({0.1f, 0.05f}), kNew);
+}
+
+TEST(Temporal, CountsWhatItLooksAt) {
+  Fixture fixture;
+  fixture.frame.motion[1] = glm::vec2(1000);  // off the screen: nothing to reuse
+  StageCounters counters;
+  std::vector<glm::vec4> image(2);
+  temporal(fixture.frame, {0.1f}, fixture.history, {0, 0, 2, 1}, counters, image);
+  // Both: two sums, four comparisons, the motion and four channels from fp16, four into it. The first: where its texels
+  // begin, four weights, 24 values from fp16, and for each channel 4 weights, the clamp, and two blends.
+  const OperationCounts both{0, 2 + 4, 0, 0, 0, 2 + 8}, first{4 + 1 + 4 * 6, 6 + 4 * (3 + 2 + 4), 0, 0, 0, 2 + 24};
+  OperationCounts all = both * 2;
+  all += first;
+  EXPECT_EQ(counters.ops, all);
+  EXPECT_EQ(counters.bytes_read, 2u * (8 + 17 + 4) + 4 * 8);
+  EXPECT_EQ(counters.bytes_written, 2u * 8);
+  counters = {};
+  temporal(fixture.frame, {0.1f, 0.05f}, fixture.history, {0, 0, 2, 1}, counters, image);
+  all += OperationCounts{5 * 2, 5 + 4 + 1 + 5, 0, 0, 2, 8};  // five motions' lengths; root, part; whose it was
+  EXPECT_EQ(counters.ops, all);
+  EXPECT_EQ(counters.bytes_read, 2u * (8 + 17 + 4 + 2) + 4 * (8 + 4) + 2);
+  counters = {};
+  neighborhood_box({0, 0, 2, 1}, counters, fixture.frame);
+  EXPECT_EQ(counters.ops, (OperationCounts{0, 2 * 8, 0, 0, 0, 2 * 4})) << "each has one neighbour";
+  EXPECT_EQ(counters.bytes_read, 2u * 2 * 8);
+  EXPECT_EQ(counters.bytes_written, 2u * 17);
 }
 
 }  // namespace

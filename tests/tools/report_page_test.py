@@ -226,7 +226,7 @@ class ReportPage(unittest.TestCase):
 
     def test_heatmap_values_are_those_of_the_counters(self):
         kinds = self.browser.run("return [...document.getElementById('map-kind').options].map((option) => option.value)")
-        self.assertEqual(kinds[:3], ["fragments", "error", "merges"])
+        self.assertEqual(kinds[:4], ["error", "fragments", "bytes", "merges"])
         mean, high = self.browser.run("""
             return loadLayer("msaa:8", "error").then((layer) => {
               let squares = 0, high = 0;

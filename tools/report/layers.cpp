@@ -7,26 +7,14 @@
 #include <limits>
 #include <set>
 
+#include "stages/counter_registry.h"
 #include "tools/image_io.h"
+#include "tools/report/tables.h"
 
 namespace beampipe {
 namespace {
 
 using Json = nlohmann::ordered_json;
-
-struct Kind {
-  const char *name, *unit, *definition;
-};
-
-constexpr Kind kKinds[] = {
-    {"fragments", "fragments", "Fragments that reached the pixel: triangles that touch it, before any is hidden."},
-    {"error", "linear light, 0..1", "Root of the mean square error over R, G and B against the reference."},
-    {"merges", "merges", "Fragments that went into the pixel's aggregate, until nothing behind them could show."},
-    {"tiny_triangles", "fragments", "Fragments of triangles that miss every mask position."},
-    {"largest_window", "fragments", "The most fragments whose depth ranges overlapped and were resolved together."},
-    {"unknown", "part of the pixel, 0..1", "The part of the pixel for which no shaded sample was found."},
-    {"bytes", "bytes", "Bytes read and written for the pixel."},
-};
 
 std::string base64(const std::string& bytes) {
   constexpr char kDigits[] = "ABCDEFGHIJKLMNOPQRSTUVWXYZabcdefghijklmnopqrstuvwxyz0123456789+/";
@@ -65,18 +53,19 @@ Json map_of(const std::string& name, const Planes& planes, const std::vector<flo
           {"png", png_url(encode_png(planes.width, planes.height, rgb))}};
 }
 
-// Known kinds first, in the order of kKinds, then the others by name.
+// The error first, then the registry's counters in its order.
 Json kinds_of(const std::set<std::string>& names) {
   Json kinds = Json::array();
-  for (const Kind& kind : kKinds) {
-    if (names.contains(kind.name)) {
-      kinds.push_back({{"name", kind.name}, {"unit", kind.unit}, {"definition", kind.definition}});
-    }
-  }
-  for (const std::string& name : names) {
-    const bool known = std::any_of(std::begin(kKinds), std::end(kKinds), [&](const Kind& k) { return k.name == name; });
-    if (!known) kinds.push_back({{"name", name}, {"unit", ""}, {"definition", ""}});
-  }
+  if (names.contains("error"))
+    kinds.push_back({{"name", "error"},
+                     {"unit", "linear light, 0..1"},
+                     {"definition", "Root of the mean square error over R, G and B against the reference."}});
+  for (const PixelCounterInfo& counter : pixel_counters())
+    if (names.contains(counter.name))
+      kinds.push_back({{"name", counter.name}, {"unit", counter.unit}, {"definition", sentence(counter.meaning)}});
+  for (const std::string& name : names)
+    if (std::none_of(kinds.begin(), kinds.end(), [&](const Json& kind) { return kind["name"] == name; }))
+      kinds.push_back({{"name", name}, {"unit", ""}, {"definition", ""}});
   return kinds;
 }
 

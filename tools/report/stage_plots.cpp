@@ -77,6 +77,7 @@ ScatterPlot roofline_plot(const ReportFile& report, const std::string& technique
       roof ? "operations per second (" + roof->implementation + "), billions" : "operations, millions per frame",
       {},
       {}};
+  std::string left_out;
   for (const Json& stage : stage_records(report)) {
     if (stage.at("technique") != technique) continue;
     const std::string name = stage.at("stage");
@@ -86,9 +87,12 @@ ScatterPlot roofline_plot(const ReportFile& report, const std::string& technique
       const double height = roof ? ops / ms / 1e6 : ops / stage.at("frames").get<double>() / kMega;
       plot.series.push_back({name, {{ops / bytes, height, name}}});
     } else {
-      plot.notes.push_back(name + " is not drawn: it has no operations or no " + (roof ? "DRAM " : "") + "bytes.");
+      left_out += (left_out.empty() ? "" : ", ") + name;
     }
   }
+  if (!left_out.empty())
+    plot.notes.push_back(std::string("Without operations or ") + (roof ? "DRAM " : "") +
+                         "bytes, and not drawn: " + left_out + ".");
   if (roof && !plot.series.empty()) plot.series.push_back(roof_line(*roof, plot));
   return plot;
 }

@@ -1,8 +1,10 @@
 #include "tools/report/tables.h"
 
 #include <algorithm>
+#include <cctype>
 
 #include "pipeline/technique.h"
+#include "stages/counter_registry.h"
 
 namespace beampipe {
 namespace {
@@ -54,27 +56,24 @@ const std::vector<Source> kSurfaceColumns = {
     {{"bytes_per_pixel", "bytes/pixel", "bytes", "What this surface takes per pixel."}, "/bytes_per_pixel"},
 };
 
-const std::vector<Source> kStageColumns = {
-    {{"technique", "technique", "", "The spec that names the technique."}, "/technique"},
-    {{"stage", "stage", "", "A stage of the technique's pipeline; stages stand in pipeline order."}, "/stage"},
-    {{"items_in", "items in", "items", "What came into the stage: triangles, fragments, pixels."}, "/items_in"},
-    {{"items_out", "items out", "items", "What the stage handed on."}, "/items_out"},
-    {{"ops", "operations", "operations", "Scalar operations of all kinds together."}, "/ops/total"},
-    {{"mul_add", "mul-add", "operations", "Multiplications, with or without an addition behind them."}, "/ops/mul_add"},
-    {{"add", "add", "operations", "Additions, subtractions, comparisons, minima, maxima, selects."}, "/ops/add"},
-    {{"bit", "bit", "operations", "And, or, not, shift, population count."}, "/ops/bit"},
-    {{"fetch", "fetch", "operations", "Table look-ups."}, "/ops/fetch"},
-    {{"special", "special", "operations", "Divisions and square roots."}, "/ops/special"},
-    {{"convert", "convert", "operations", "Between integer and float, float and half."}, "/ops/convert"},
-    {{"bytes_read", "read", "bytes", "Logical bytes read: what the algorithm touches."}, "/bytes_read"},
-    {{"bytes_written", "written", "bytes", "Logical bytes written: what the algorithm touches."}, "/bytes_written"},
-    {{"logical_bytes", "logical", "bytes", "Logical bytes read and written."}, "/logical_bytes"},
-    {{"sector_bytes", "sector", "bytes", "Bytes read and written in whole sectors of 32 bytes."}, "/sector_bytes"},
-    {{"dram_bytes", "DRAM", "bytes", "Bytes that pass the modelled cache to or from memory."}, "/dram_bytes"},
-    {{"ops_per_byte", "op/byte", "operations per byte", "Operations by logical bytes read and written."},
-     "/ops_per_byte"},
-    {{"lane_use", "lane use", "part, 0..1", "Lanes with work by lanes issued."}, "/lane_use"},
-};
+// What the registry of counters has, and two quotients.
+std::vector<Source> stage_columns() {
+  std::vector<Source> columns = {
+      {{"technique", "technique", "", "The spec that names the technique."}, "/technique"},
+      {{"stage", "stage", "", "A stage of the technique's pipeline; stages stand in pipeline order."}, "/stage"}};
+  for (const CounterInfo& counter : stage_counters()) {
+    std::string key = counter.name, pointer = "/" + key;
+    std::replace(pointer.begin(), pointer.end(), '.', '/');
+    if (const std::size_t dot = key.find('.'); dot != key.npos) key.erase(0, dot + 1);
+    columns.push_back(
+        {{key == "total" ? "ops" : key, counter.title, counter.unit, sentence(counter.meaning)}, pointer});
+  }
+  columns.push_back(
+      {{"ops_per_byte", "op/byte", "operations per byte", "Operations by logical bytes read and written."},
+       "/ops_per_byte"});
+  columns.push_back({{"lane_use", "lane use", "part, 0..1", "Lanes with work by lanes issued."}, "/lane_use"});
+  return columns;
+}
 
 const std::vector<Source> kFrameColumns = {
     {{"technique", "technique", "", "The spec that names the technique."}, "/technique"},
@@ -186,7 +185,7 @@ std::vector<Table> report_tables(const ReportFile& report) {
   tables.push_back(make_table("framebuffer", "Framebuffers", kSurfaceColumns, members(results, "framebuffer")));
   tables.push_back(
       make_table("stages", "Stages, all frames together",
-                 with_modelled_times(kStageColumns, report, "ms",
+                 with_modelled_times(stage_columns(), report, "ms",
                                      "What the modelled hardware takes for this stage: the time of its busiest unit."),
                  stage_records(report)));
   const std::vector<Json> frames = members(results, "frames");
@@ -197,6 +196,11 @@ std::vector<Table> report_tables(const ReportFile& report) {
         make_table("claims", "Claims of the publications", kClaimColumns, {claims->begin(), claims->end()}));
   }
   return tables;
+}
+
+std::string sentence(std::string definition) {
+  if (!definition.empty()) definition[0] = static_cast<char>(std::toupper(static_cast<unsigned char>(definition[0])));
+  return definition + ".";
 }
 
 std::string csv_text(const Table& table) {

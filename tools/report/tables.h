@@ -27,6 +27,9 @@ struct Table {
 // A column of which the report has no value is left out. Throws ReportError.
 std::vector<Table> report_tables(const ReportFile& report);
 
+// A definition as the registry of counters has it, as a sentence.
+std::string sentence(std::string definition);
+
 // RFC 4180, one line of keys in front; null is an empty field.
 std::string csv_text(const Table& table);
 

@@ -50,7 +50,7 @@ function logScale(values, range) {
 }
 
 function drawScatter(svg, plot, width) {
-  const margin = { left: 62, right: 14, top: 8, bottom: 44 }, height = Math.max(280, Math.min(440, width * 0.7));
+  const margin = { left: 74, right: 14, top: 8, bottom: 44 }, height = Math.max(280, Math.min(440, width * 0.7));
   const inner = { width: width - margin.left - margin.right, height: height - margin.top - margin.bottom };
   const points = plot.series.flatMap((series, i) =>
     series.points.map((point) => ({ ...point, color: data.colors[i], mark: series.marks })));
@@ -63,7 +63,7 @@ function drawScatter(svg, plot, width) {
     .call(d3.axisLeft(y).tickValues(logTicks(y)).tickFormat(numberText).tickSizeInner(-inner.width).tickPadding(8));
   area.append("text").attr("x", inner.width / 2).attr("y", inner.height + 38).attr("text-anchor", "middle")
     .text(plot.x_label);
-  area.append("text").attr("transform", `translate(-48,${inner.height / 2}) rotate(-90)`).attr("text-anchor", "middle")
+  area.append("text").attr("transform", `translate(-60,${inner.height / 2}) rotate(-90)`).attr("text-anchor", "middle")
     .text(plot.y_label);
   plot.series.forEach((series, i) => {
     if (!series.line) return;

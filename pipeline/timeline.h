@@ -1,0 +1,84 @@
+// When each stage ran, on which thread and in which tile: for looking at, not part of any result.
+#pragma once
+
+#include <chrono>
+#include <cstdint>
+#include <mutex>
+#include <optional>
+#include <string>
+#include <thread>
+#include <utility>
+#include <vector>
+
+#include "stages/counters.h"
+#include "stages/tile.h"
+
+namespace beampipe {
+
+class Timeline {
+ public:
+  using Clock = std::chrono::steady_clock;
+
+  struct Event {
+    std::string stage;
+    std::thread::id thread;
+    std::optional<std::pair<std::int32_t, std::int32_t>> tile;  // its first pixel; none: the stage works on the frame
+    Clock::time_point start, end;
+  };
+
+  // From any thread.
+  void add(Event event) {
+    const std::lock_guard lock(mutex_);
+    events_.push_back(std::move(event));
+  }
+
+  // Once no thread adds any more.
+  const std::vector<Event>& events() const { return events_; }
+
+ private:
+  std::mutex mutex_;
+  std::vector<Event> events_;
+};
+
+// Stands for a stage's counters in the call of the stage, and records how long that call took:
+//   const StageTimer timed(run.timeline, tile);
+//   conservative_raster(triangles, list, tile, timed(raster), pairs);
+class StageTimer {
+ public:
+  // Lives until the end of the call that it was made in.
+  class Span {
+   public:
+    Span(Timeline* timeline, const Tile* tile, StageCounters& counters)
+        : timeline_(timeline), tile_(tile), counters_(counters) {
+      if (timeline_) start_ = Timeline::Clock::now();
+    }
+    ~Span() {
+      if (!timeline_) return;
+      Timeline::Event event{counters_.stage, std::this_thread::get_id(), {}, start_, Timeline::Clock::now()};
+      if (tile_) event.tile = {tile_->x0, tile_->y0};
+      timeline_->add(std::move(event));
+    }
+    Span(const Span&) = delete;
+    Span& operator=(const Span&) = delete;
+
+    operator StageCounters&() const { return counters_; }
+
+   private:
+    Timeline* timeline_;
+    const Tile* tile_;
+    StageCounters& counters_;
+    Timeline::Clock::time_point start_;
+  };
+
+  // `timeline` null: records nothing. The tile must outlive the timer.
+  explicit StageTimer(Timeline* timeline) : timeline_(timeline) {}
+  StageTimer(Timeline* timeline, const Tile& tile) : timeline_(timeline), tile_(&tile) {}
+
+  Span operator()(StageCounters& counters) const { return {timeline_, tile_, counters}; }
+
+ private:
+  Timeline* timeline_;
+  const Tile* tile_ = nullptr;
+};
+
+}  // namespace beampipe

@@ -1,0 +1,67 @@
+// --trace-events: every stage of every technique is there, inside the frame that it belongs to.
+
+#include <nlohmann/json.hpp>
+#include <set>
+
+#include "tests/tools/program.h"
+
+namespace beampipe {
+namespace {
+
+using Json = nlohmann::json;
+
+constexpr const char* kTrace = R"({"beampipe_trace": 1,
+  "meshes": {"red": {"positions": [-1,-1,0, 1,1,0, -1,1,0], "indices": [0,1,2], "colors": [1,0.25,0]}},
+  "frames": [{"width": 70, "height": 40, "view": [1,0,0,0, 0,1,0,0, 0,0,1,0, 0,0,0,1],
+              "projection": [1,0,0,0, 0,1,0,0, 0,0,1,0, 0,0,0,1], "draws": [{"mesh": "red"}]}]})";
+
+TEST(TraceEvents, HoldEveryStageOfEveryTechnique) {
+  const std::vector<std::string> specs = {
+      "beam",   "beam:rules=paper", "beam:order=stream", "z3",    "alpha", "msaa:4",    "msaa:4,prepass",
+      "acaa:4", "deferred",         "visibility",        "taa:4", "dvm",   "reference", "acaa:4,double=stencil"};
+  const TemporaryFolder folder;
+  write_text(folder / "trace.json", kTrace);
+  std::vector<std::string> arguments = {"run",
+                                        (folder / "trace.json").string(),
+                                        "-o",
+                                        (folder / "out").string(),
+                                        "--threads",
+                                        "3",
+                                        "--trace-events",
+                                        (folder / "events.json").string(),
+                                        "-t"};
+  arguments.insert(arguments.end(), specs.begin(), specs.end());
+  const Outcome outcome = run_program(arguments);
+  ASSERT_EQ(outcome.exit_code, 0) << outcome.err;
+
+  const Json events = Json::parse(read_text(folder / "events.json")).at("traceEvents");
+  const Json report = Json::parse(read_text(folder / "out/report.json"));
+  for (const Json& result : report.at("results")) {
+    const std::string spec = result.at("technique");
+    const auto frame = std::find_if(events.begin(), events.end(),
+                                    [&](const Json& event) { return event.at("name") == spec + ", frame 0"; });
+    ASSERT_NE(frame, events.end()) << spec;
+    const double start = frame->at("ts"), end = start + frame->at("dur").get<double>();
+    std::set<std::string> recorded, expected;
+    for (const Json& event : events) {
+      if (event.at("ph") != "X" || event == *frame) continue;
+      const double from = event.at("ts"), to = from + event.at("dur").get<double>();
+      if (from >= start && to <= end) recorded.insert(event.at("name"));
+    }
+    for (const Json& stage : result.at("frames")[0].at("stages")) expected.insert(stage.at("stage"));
+    EXPECT_EQ(recorded, expected) << spec;
+  }
+}
+
+TEST(TraceEvents, AreNotWrittenUnlessAskedFor) {
+  const TemporaryFolder folder;
+  write_text(folder / "trace.json", kTrace);
+  const Outcome missing =
+      run_program({"run", (folder / "trace.json").string(), "-t", "beam", "-o", (folder / "out").string(),
+                   "--trace-events", (folder / "trace.json/e").string()});
+  EXPECT_EQ(missing.exit_code, 1);
+  EXPECT_EQ(folder.list(), std::vector<std::string>{"trace.json"}) << "checked before anything is rendered";
+}
+
+}  // namespace
+}  // namespace beampipe
