@@ -75,7 +75,7 @@ FrameResult render_shape(const Trace& trace, const Frame& frame, const BeamOptio
         std::vector<float> bytes = count_sorted_composition(
             run.memory, tile, buffer, records, kWaitingPairBytes, windows.taken, covered_pixels(pixels),
             closed_pixels(pixels), beam_framebuffer(beam), buffering, fragment, composition, resolving);
-        count_triangle_fetches(run.memory, tile, list, buffer, records, windows.taken, fragment);
+        count_triangle_fetches(run.memory, tile, list, buffer, records, windows.partial, fragment);
         return TileResult{resolve(composed_colors(pixels), frame.background, sizeof pixels[0], timed(resolving)),
                           {{"fragments", depths_of(buffer)},
                            {"tiny_triangles", std::move(tiny)},

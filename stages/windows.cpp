@@ -7,6 +7,7 @@ namespace beampipe {
 Windows::Windows(const std::vector<PixelTriangle>& pairs, const ABuffer& buffer)
     : largest(buffer.first.size() - 1),
       taken(buffer.first.size() - 1),
+      partial(buffer.first.size() - 1),
       pairs_(pairs),
       buffer_(buffer),
       next_(buffer.first.begin(), buffer.first.end() - 1) {
@@ -23,14 +24,15 @@ void Windows::take(std::uint32_t pixel, std::vector<PixelTriangle>& window, std:
     indices_.push_back(buffer_.records[next]);
     farthest = std::max(farthest, pairs_[indices_.back()].farthest);
   } while (++next < end && pairs_[buffer_.records[next]].nearest <= farthest);
-  if (indices_.size() > 1) {
+  const auto size = static_cast<float>(indices_.size());
+  const PixelTriangle& first = pairs_[indices_.front()];
+  if (size == 1 && first.full && taken[pixel] == 0) {
+    whole.push_back(first);
+  } else {
     std::sort(indices_.begin(), indices_.end());
     for (const std::uint32_t index : indices_) window.push_back(pairs_[index]);
-  } else {
-    const PixelTriangle& alone = pairs_[indices_.front()];
-    (alone.full && taken[pixel] == 0 ? whole : window).push_back(alone);
+    partial[pixel] += size;
   }
-  const auto size = static_cast<float>(indices_.size());
   largest[pixel] = std::max(largest[pixel], size);
   taken[pixel] += size;
 }

@@ -28,8 +28,8 @@ class Windows {
     return !window.empty() || !whole.empty();
   }
 
-  // Per pixel: the pairs of its largest window so far, and of all its windows.
-  std::vector<float> largest, taken;
+  // Per pixel: the pairs of its largest window so far, of all its windows, and of those that did not go to `whole`.
+  std::vector<float> largest, taken, partial;
 
  private:
   void take(std::uint32_t pixel, std::vector<PixelTriangle>& window, std::vector<PixelTriangle>& whole);

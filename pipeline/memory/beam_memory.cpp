@@ -132,12 +132,12 @@ std::vector<float> count_sorted_composition(const MemoryParameters& parameters, 
 
 void count_triangle_fetches(const MemoryParameters& parameters, const Tile& tile, const TriangleList& list,
                             const ABuffer& buffer, const std::vector<SortRecord>& records,
-                            const std::vector<float>& merged, StageCounters& fetching) {
+                            const std::vector<float>& partial, StageCounters& fetching) {
   if (!parameters.modelled) return;
   const ZOrder order(tile.width(), tile.height());
   LinearMemory triangles(parameters, list.size(), sizeof(SetupTriangle));
   for_each_list(order, tile, buffer, [&](std::uint32_t pixel) {
-    for (std::uint32_t i = 0; i < static_cast<std::uint32_t>(merged[pixel]); ++i) {
+    for (std::uint32_t i = 0; i < static_cast<std::uint32_t>(partial[pixel]); ++i) {
       const std::uint32_t triangle = records[buffer.records[buffer.first[pixel] + i]].triangle;
       const auto place = std::lower_bound(list.begin(), list.end(), triangle) - list.begin();
       triangles.access(pixel, static_cast<std::uint32_t>(place), false, fetching);

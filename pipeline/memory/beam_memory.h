@@ -86,9 +86,9 @@ std::vector<float> count_sorted_composition(const MemoryParameters& parameters, 
                                             StageCounters& composition, StageCounters& resolving);
 
 // Setup triangles that are read again for the pairs of a sorted A-buffer: those of the bin's list, which follow each
-// other in memory. `merged` as above.
+// other in memory. `partial`, per pixel: of how many of its first records fragments are made.
 void count_triangle_fetches(const MemoryParameters& parameters, const Tile& tile, const TriangleList& list,
                             const ABuffer& buffer, const std::vector<SortRecord>& records,
-                            const std::vector<float>& merged, StageCounters& fetching);
+                            const std::vector<float>& partial, StageCounters& fetching);
 
 }  // namespace beampipe

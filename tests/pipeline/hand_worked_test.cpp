@@ -62,7 +62,7 @@ TEST(HandWorked, TriangleBeam) {
                 {"conservative_raster", 1, kPairs, 88, kPairs * 8, 0, 0},
                 {"a_buffer", kPairs, kPairs, kBuffer, kBuffer, 320 + 256 + 224 + 416, 256 + 256 + 256 + 224},
                 {"beam_fragment", kPairs - kWhole, kPartial, (kPairs - kWhole) * (12 + 88), kPartial * kFragment,
-                 416 + 1248, 96},
+                 416 + 1152, 96},
                 {"shade", kFragments, kFragments, kFragments * 28, kFragments * 6, 0, 0},
                 {"compose", kFragments, kFragments, kPartial * (kFragment + 42) + kWhole * 12, kFragments * 42,
                  128 + 320 + 192, 256 + 1024 + 384},
