@@ -81,7 +81,7 @@ void owners_of_windows(benchmark::State& state) {
   std::vector<Ownership> owners(count);
   for (auto _ : state) {
     for (std::size_t first = 0; first < fragments.size(); first += count)
-      window_owners(fragments.data() + first, count, {}, patterns.data(), patterns.size(), owners.data());
+      window_owners(fragments.data() + first, count, {}, patterns.data(), owners.data());
     benchmark::DoNotOptimize(owners.data());
   }
   count_items(state, fragments.size());

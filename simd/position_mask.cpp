@@ -1,5 +1,7 @@
 #include "simd/position_mask.h"
 
+#include <cstring>
+
 #undef HWY_TARGET_INCLUDE
 #define HWY_TARGET_INCLUDE "simd/position_mask.cpp"
 #include "hwy/foreach_target.h"
@@ -39,7 +41,7 @@ HWY_INLINE WideMask mask_of(const EdgeInPixel<std::int64_t> (&edges)[3], const P
       hn::Store(hn::Add(hn::Mul(a, load(grid.cell_x.data() + cell)), hn::Mul(b, load(grid.cell_y.data() + cell))), d,
                 of_cell[k] + cell);
   }
-  WideMask mask;
+  std::uint8_t bytes[sizeof(WideMask) + 8] = {};
   for (std::size_t part = 0; part < parts; ++part) {
     const V x = load(grid.first_cells.x.data() + part * lanes), y = load(grid.first_cells.y.data() + part * lanes);
     const auto base = [&](int k) {
@@ -51,14 +53,18 @@ HWY_INLINE WideMask mask_of(const EdgeInPixel<std::int64_t> (&edges)[3], const P
       const V edge0 = hn::Add(base0, hn::Set(d, of_cell[0][cell])),
               edge1 = hn::Add(base1, hn::Set(d, of_cell[1][cell])),
               edge2 = hn::Add(base2, hn::Set(d, of_cell[2][cell]));
-      const auto outside = hn::Lt(hn::Min(hn::Min(edge0, edge1), edge2), hn::Zero(d));
-      std::uint8_t bytes[8] = {};
-      hn::StoreMaskBits(d, hn::Not(outside), bytes);
-      const std::uint32_t bits = bytes[0] | std::uint32_t{bytes[1]} << 8;
-      const std::size_t at = cell * 8 + part * lanes;
-      mask.words[at / 32] |= bits << (at % 32);
+      const auto inside = hn::Not(hn::Lt(hn::Min(hn::Min(edge0, edge1), edge2), hn::Zero(d)));
+      if (lanes >= 8) {
+        hn::StoreMaskBits(d, inside, bytes + cell);  // a cell is a byte
+      } else {
+        std::uint8_t bits[8] = {};
+        hn::StoreMaskBits(d, inside, bits);
+        bytes[cell] = static_cast<std::uint8_t>(bytes[cell] | bits[0] << (part * lanes));
+      }
     }
   }
+  WideMask mask;
+  std::memcpy(mask.words.data(), bytes, sizeof mask.words);
   return mask;
 }
 

@@ -36,73 +36,77 @@ HWY_INLINE std::uint32_t count_bits(const Mask64& mask) {
   return static_cast<std::uint32_t>(bits);
 }
 
-// The depth tests at contested positions.
+// The depth tests at contested positions, in the words that have any.
 class Contest {
  public:
-  Contest(const WideMask& contested, const SamplePattern* patterns, std::size_t words)
-      : contested_(contested), patterns_(patterns), words_(words) {
-    for (std::size_t w = 0; w < words; ++w) {
-      if (contested.words[w] == 0) continue;
+  Contest(const Mask64& contested, const SamplePattern* patterns) : patterns_(patterns) {
+    std::memcpy(contested_, contested.words, sizeof contested_);
+    for (std::size_t w = 0; w < kMaxMaskWords; ++w) {
+      if (contested_[w] == 0) continue;
+      words_[count_++] = w;
       std::fill_n(nearest_ + w * kMaxMaskSamples, kMaxMaskSamples, kFar);
       std::fill_n(owner_ + w * kMaxMaskSamples, kMaxMaskSamples, kNobody);
     }
   }
 
   std::uint64_t add(std::uint32_t index, const WideMask& mask, const DepthPlane<float>& plane) {
-    const hn::CappedTag<float, 16> d;
-    const hn::RebindToUnsigned<decltype(d)> du;
-    const hn::RebindToSigned<decltype(d)> di;
-    const std::size_t lanes = hn::Lanes(d);
+    const hn::RebindToUnsigned<D> du;
+    const hn::RebindToSigned<D> di;
+    const D d;
     const auto corner = hn::Set(d, corner_depth(plane)), dzdx = hn::Set(d, plane.dzdu / kSubpixelUnits),
                dzdy = hn::Set(d, plane.dzdv / kSubpixelUnits);
+    const auto self = hn::Set(du, index);
     std::uint64_t tests = 0;
-    for (std::size_t w = 0; w < words_; ++w) {
-      const std::uint32_t bits = mask.words[w] & contested_.words[w];
-      if (bits == 0) continue;
+    for (std::size_t i = 0; i < count_; ++i) {
+      const std::size_t w = words_[i];
+      const std::uint64_t bits = mask.words[w] & contested_[w];
       tests += static_cast<std::uint64_t>(std::popcount(bits));
-      for (std::size_t s = 0; s < kMaxMaskSamples; s += lanes) {
-        const std::uint32_t part = bits >> s & ((1u << lanes) - 1);
-        if (part == 0) continue;
-        const std::uint8_t bytes[8] = {static_cast<std::uint8_t>(part), static_cast<std::uint8_t>(part >> 8)};
+      for (std::size_t s = 0; s < kMaxMaskSamples; s += hn::Lanes(d)) {
+        const std::uint64_t part = bits >> s;
+        std::uint8_t bytes[8];
+        std::memcpy(bytes, &part, sizeof bytes);
         const auto x = hn::ConvertTo(d, hn::Load(di, patterns_[w].x.data() + s));
         const auto y = hn::ConvertTo(d, hn::Load(di, patterns_[w].y.data() + s));
         const auto depth = hn::Add(hn::Add(corner, hn::Mul(dzdx, x)), hn::Mul(dzdy, y));
         float* const nearest = nearest_ + w * kMaxMaskSamples + s;
         const auto nearer = hn::And(hn::LoadMaskBits(d, bytes), hn::Lt(depth, hn::Load(d, nearest)));
         hn::BlendedStore(depth, nearer, d, nearest);
-        hn::BlendedStore(hn::Set(du, index), hn::RebindMask(du, nearer), du, owner_ + w * kMaxMaskSamples + s);
+        hn::BlendedStore(self, hn::RebindMask(du, nearer), du, owner_ + w * kMaxMaskSamples + s);
       }
     }
     return tests;
   }
 
-  // The contested positions that fragment `index`, which has this mask, has won.
+  // Of the contested positions leaves fragment `index` those that it has won.
   void give(std::uint32_t index, WideMask& mask) const {
-    const hn::CappedTag<std::uint32_t, 16> d;
-    const std::size_t lanes = hn::Lanes(d);
-    for (std::size_t w = 0; w < words_; ++w) {
-      const std::uint32_t bits = mask.words[w] & contested_.words[w];
-      if (bits == 0) continue;
-      std::uint32_t won = 0;
-      for (std::size_t s = 0; s < kMaxMaskSamples; s += lanes) {
+    const hn::RebindToUnsigned<D> du;
+    const auto self = hn::Set(du, index);
+    for (std::size_t i = 0; i < count_; ++i) {
+      const std::size_t w = words_[i];
+      std::uint64_t won = 0;
+      for (std::size_t s = 0; s < kMaxMaskSamples; s += hn::Lanes(du)) {
         std::uint8_t bytes[8] = {};
-        hn::StoreMaskBits(d, hn::Eq(hn::Load(d, owner_ + w * kMaxMaskSamples + s), hn::Set(d, index)), bytes);
-        won |= (bytes[0] | std::uint32_t{bytes[1]} << 8) << s;
+        hn::StoreMaskBits(du, hn::Eq(hn::Load(du, owner_ + w * kMaxMaskSamples + s), self), bytes);
+        std::uint64_t part = 0;
+        std::memcpy(&part, bytes, sizeof part);
+        won |= part << s;
       }
-      mask.words[w] &= ~contested_.words[w] | won;
+      mask.words[w] &= ~contested_[w] | static_cast<std::uint32_t>(won);
     }
   }
 
  private:
-  const WideMask& contested_;
+  using D = hn::CappedTag<float, 16>;
+
   const SamplePattern* patterns_;
-  std::size_t words_;
+  std::uint32_t contested_[kMaxMaskWords];
+  std::size_t words_[kMaxMaskWords], count_ = 0;
   HWY_ALIGN float nearest_[kPositions];
   HWY_ALIGN std::uint32_t owner_[kPositions];
 };
 
 WindowCounts window_owners_kernel(const MaskedPlane* in, std::size_t count, const WideMask& taken,
-                                  const SamplePattern* patterns, std::size_t words, Ownership* out) {
+                                  const SamplePattern* patterns, Ownership* out) {
   const Mask64 closed = load(taken);
   Mask64 seen{}, twice{};
   std::uint64_t any_twice = 0;
@@ -121,9 +125,7 @@ WindowCounts window_owners_kernel(const MaskedPlane* in, std::size_t count, cons
   }
   std::uint64_t tests = 0;
   if (any_twice != 0) {
-    WideMask contested;
-    std::memcpy(contested.words.data(), &twice, sizeof twice);
-    Contest contest(contested, patterns, words);
+    Contest contest(twice, patterns);
     for (std::uint32_t i = 0; i < count; ++i) tests += contest.add(i, out[i].owned, in[i].plane);
     for (std::uint32_t i = 0; i < count; ++i) {
       contest.give(i, out[i].owned);
@@ -141,15 +143,15 @@ HWY_AFTER_NAMESPACE();
 namespace beampipe {
 HWY_EXPORT(window_owners_kernel);
 WindowCounts window_owners(const MaskedPlane* in, std::size_t count, const WideMask& taken,
-                           const SamplePattern* patterns, std::size_t words, Ownership* out) {
-  return HWY_DYNAMIC_DISPATCH(window_owners_kernel)(in, count, taken, patterns, words, out);
+                           const SamplePattern* patterns, Ownership* out) {
+  return HWY_DYNAMIC_DISPATCH(window_owners_kernel)(in, count, taken, patterns, out);
 }
 
 WindowCounts window_owners_scalar(const MaskedPlane* in, std::size_t count, const WideMask& taken,
-                                  const SamplePattern* patterns, std::size_t words, Ownership* out) {
+                                  const SamplePattern* patterns, Ownership* out) {
   for (std::size_t i = 0; i < count; ++i) out[i] = {{}, static_cast<std::uint32_t>(in[i].mask.count()), 0};
   std::uint64_t tests = 0;
-  for (std::size_t bit = 0; bit < words * kMaxMaskSamples; ++bit) {
+  for (std::size_t bit = 0; bit < kMaxMaskWords * kMaxMaskSamples; ++bit) {
     if (taken.test(bit)) continue;
     std::vector<std::size_t> here;
     for (std::size_t i = 0; i < count; ++i)

@@ -28,7 +28,7 @@ struct WindowCounts {
 // that one fragment alone covers need no depth. Bit s of word w stands at position s of patterns[w]. Lanes are across
 // positions.
 WindowCounts window_owners(const MaskedPlane* in, std::size_t count, const WideMask& taken,
-                           const SamplePattern* patterns, std::size_t words, Ownership* out);
+                           const SamplePattern* patterns, Ownership* out);
 
 // Scalar twin of one comparison: is the plane nearer at (x, y), in 1/256 px from the pixel's corner? `corner` is its
 // depth there, slopes are per 1/256 px.
@@ -44,6 +44,6 @@ Float corner_depth(const DepthPlane<Float>& plane) {
 
 // Scalar twin of the whole.
 WindowCounts window_owners_scalar(const MaskedPlane* in, std::size_t count, const WideMask& taken,
-                                  const SamplePattern* patterns, std::size_t words, Ownership* out);
+                                  const SamplePattern* patterns, Ownership* out);
 
 }  // namespace beampipe

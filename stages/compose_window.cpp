@@ -84,8 +84,8 @@ class PixelComposer {
     planes_.resize(count);
     ownership_.resize(count);
     for (std::size_t i = 0; i < count; ++i) planes_[i] = {fragments[i].mask, fragments[i].plane};
-    const WindowCounts counts = window_owners(planes_.data(), count, taken, positions_.patterns.data(),
-                                              positions_.patterns.size(), ownership_.data());
+    const WindowCounts counts =
+        window_owners(planes_.data(), count, taken, positions_.patterns.data(), ownership_.data());
     depth_tests_ += counts.tests;
     return static_cast<float>(counts.taken);
   }
@@ -115,13 +115,7 @@ class PixelComposer {
   // with the lesser area is taken for hidden by the other.
   void find_specks(const Fragment* fragments, std::size_t count, const WideMask& taken, float* areas) {
     const auto positions = static_cast<std::size_t>(positions_.count());
-    owner_.assign(positions, kNobody);
-    if (count > 1) {
-      for (std::uint32_t i = 0; i < count; ++i)
-        for (std::size_t w = 0; w < kMaxMaskWords; ++w)
-          for (std::uint32_t left = ownership_[i].owned.words[w]; left != 0; left &= left - 1)
-            owner_[w * kMaxMaskSamples + static_cast<std::size_t>(std::countr_zero(left))] = i;
-    }
+    list_owners(count);
     front_.resize(positions);
     back_.resize(positions);
     for (std::size_t i = 0; i < count; ++i) {
@@ -130,7 +124,7 @@ class PixelComposer {
       const std::array<std::uint8_t, 3>& nearest = positions_.nearest_to(fragment.centroid_u, fragment.centroid_v);
       float votes = 0;
       for (const std::uint8_t position : nearest)
-        votes += !taken.test(position) && is_nearer(fragment, fragments, owner_[position]);
+        votes += !taken.test(position) && is_nearer(fragment, fragments, owner_of(position, count));
       areas[i] = fragment.alpha * votes / 3.0f;
       (fragment.front ? front_ : back_)[nearest[0]] += areas[i];
     }
@@ -146,6 +140,25 @@ class PixelComposer {
       const std::size_t place = positions_.nearest_to(fragments[i].centroid_u, fragments[i].centroid_v)[0];
       front_[place] = back_[place] = 0;
     }
+  }
+
+  // Small windows are searched, large ones have a table.
+  static constexpr std::size_t kSearched = 32;
+
+  void list_owners(std::size_t count) {
+    if (count <= kSearched) return;
+    owner_.assign(static_cast<std::size_t>(positions_.count()), kNobody);
+    for (std::uint32_t i = 0; i < count; ++i)
+      for (std::size_t w = 0; w < kMaxMaskWords; ++w)
+        for (std::uint32_t left = ownership_[i].owned.words[w]; left != 0; left &= left - 1)
+          owner_[w * kMaxMaskSamples + static_cast<std::size_t>(std::countr_zero(left))] = i;
+  }
+
+  std::uint32_t owner_of(std::size_t position, std::size_t count) const {
+    if (count > kSearched) return owner_[position];
+    for (std::uint32_t i = 0; i < count; ++i)
+      if (ownership_[i].owned.test(position)) return i;
+    return kNobody;
   }
 
   static bool is_nearer(const Fragment& fragment, const Fragment* fragments, std::uint32_t owner) {

@@ -24,7 +24,10 @@ std::uint64_t merge_sort(Record* list, std::size_t count, std::vector<Record>& s
       std::size_t near = begin, far = middle, to = begin;
       while (near < middle && far < end) {
         ++comparisons;
-        scratch[to++] = comes_first(depth_of(list[far]), depth_of(list[near])) ? list[far++] : list[near++];
+        // Without a branch that nobody could predict.
+        const bool from_far = comes_first(depth_of(list[far]), depth_of(list[near]));
+        scratch[to++] = list[from_far ? far : near];
+        far += from_far, near += !from_far;
       }
       // What is left of the nearer run belongs at the end; what is left of the farther one is there already.
       std::copy_backward(list + near, list + middle, list + end);

@@ -40,9 +40,9 @@ TEST(WindowOwners, KernelEqualsTwin) {
       const WideMask taken = random.one_in(2) ? WideMask{} : random_mask(random, words);
       std::vector<Ownership> found(fragments.size()), expected(fragments.size());
       const WindowCounts counts =
-          window_owners(fragments.data(), fragments.size(), taken, patterns.data(), words, found.data());
+          window_owners(fragments.data(), fragments.size(), taken, patterns.data(), found.data());
       const WindowCounts twin =
-          window_owners_scalar(fragments.data(), fragments.size(), taken, patterns.data(), words, expected.data());
+          window_owners_scalar(fragments.data(), fragments.size(), taken, patterns.data(), expected.data());
       ASSERT_EQ(counts.taken, twin.taken);
       ASSERT_EQ(counts.tests, twin.tests);
       for (std::size_t k = 0; k < fragments.size(); ++k) {
@@ -68,7 +68,7 @@ TEST(WindowOwners, PartitionWhatIsOpen) {
     }
     const WideMask taken = random_mask(random, 8);
     std::vector<Ownership> owners(fragments.size());
-    window_owners(fragments.data(), fragments.size(), taken, patterns.data(), 8, owners.data());
+    window_owners(fragments.data(), fragments.size(), taken, patterns.data(), owners.data());
     WideMask all;
     for (std::size_t k = 0; k < owners.size(); ++k) {
       ASSERT_TRUE((all & owners[k].owned).none());
