@@ -44,7 +44,8 @@ def equivalent_rate(program, trace):
             json.dump(small, file)
         with tempfile.TemporaryDirectory() as folder:
             found = measure.results(program, "compare", path, ["beam"], folder, "--no-memory-model")
-            return found["beam"]["error"]["emr"]
+            rate = f"{found['beam']['equivalent_msaa']:.0f}"
+            return "≥ " + rate if found["beam"].get("equivalent_msaa_is_lower_bound") else rate
     finally:
         os.remove(path)
 
@@ -56,9 +57,8 @@ def print_ratios(arguments):
         times = frame_times(arguments.program, trace, RATIOS, arguments.runs, arguments.threads)
         median, least, most = times["beam"]
         others = [f"{times[spec][0] / median:.2f}" for spec in RATIOS[1:]]
-        rate = equivalent_rate(arguments.program, trace)
         measure.print_row(name_of(trace), f"{median:.0f}", f"{least:.0f} to {most:.0f}", *others,
-                          rate if isinstance(rate, str) else f"{rate:.0f}")
+                          equivalent_rate(arguments.program, trace))
         sys.stdout.flush()
 
 
@@ -95,7 +95,7 @@ def name_of(trace):
 
 GROWTH = {
     "triangles": [("sphere", ["--triangles", str(n), "--width", "1280", "--height", "720"], n)
-                  for n in (1000, 10_000, 100_000, 1_000_000, 5_000_000)],
+                  for n in (1000, 10_000, 100_000, 1_000_000)],
     "pixels": [("hairball", ["--triangles", "100000", "--width", str(16 * h // 9), "--height", str(h)], 16 * h * h // 9)
                for h in (180, 360, 720, 1440, 2160)],
     "fragments per pixel": [("stack", ["--triangles", str(n), "--width", "64", "--height", "36"], n)
