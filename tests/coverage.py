@@ -2,10 +2,11 @@
 """Lines and branches of stages/ and simd/ that the tests reach.
 
     cmake --preset coverage && cmake --build --preset coverage --target simd_tests stages_tests pipeline_tests
-    tests/coverage.py build/coverage
+    tests/coverage.py build/coverage [simd stages pipeline]
 
-runs those tests, and prints a table and the lines that nothing reaches. A line or branch of a kernel that is compiled for
-several instruction sets is reached when one of them reaches it; branches that exceptions take do not count.
+runs those tests (all three, or those that are named), and prints a table and the lines that nothing reaches. A line or
+branch of a kernel that is compiled for several instruction sets is reached when one of them reaches it; branches that
+exceptions take do not count.
 """
 import collections
 import json
@@ -16,12 +17,12 @@ import sys
 FOLDERS = ("simd", "stages")
 
 
-def main(build):
+def main(build, *tests):
     build = pathlib.Path(build).resolve()
     source = build.parent.parent
     for old in build.rglob("*.gcda"):
         old.unlink()
-    for folder in ("simd", "stages", "pipeline"):
+    for folder in tests or ("simd", "stages", "pipeline"):
         subprocess.run([build / "tests" / f"{folder}_tests", "--gtest_brief=1"], check=True)
 
     lines = collections.defaultdict(lambda: collections.Counter())

@@ -1,10 +1,12 @@
 #!/usr/bin/env bash
-# Breaks one constant after the other and tells which test notices: tests/mutation.sh [BUILD FOLDER]
-# Works on this tree, one file at a time, and puts each file back. Ends with an error if nothing notices a mutant.
+# Breaks one constant after the other and tells which test notices: tests/mutation.sh [BUILD FOLDER [FILE...]]
+# Works on this tree, one file at a time (all, or those that are named), and puts each file back. Ends with an error if
+# nothing notices a mutant.
 set -euo pipefail
 cd "$(dirname "${BASH_SOURCE[0]}")/.."
 
 build=${1:-build/release}
+only=" ${*:2} "
 mutants=(  # file | constant as it is | broken
   'simd/coverage.cpp|1.0f / 6.0f|1.0f / 6.1f'
   'simd/sample_test.cpp|kDecided = 1 << 30|kDecided = 1 << 20'
@@ -21,11 +23,17 @@ mutants=(  # file | constant as it is | broken
   'stages/reference_raster.cpp|2 * reversed + 1|2 * reversed'
   'stages/vertex_setup.cpp|Real(double{kSubpixelUnits}) + Real(0.5)|Real(double{kSubpixelUnits}) + Real(0.25)'
   'stages/vertex_setup.h|kGuardBand = 32768.0|kGuardBand = 65536.0'
+  'simd/window_owners.cpp|kFar = std::numeric_limits<float>::infinity()|kFar = -0.25f'
+  'simd/position_mask.cpp|kSmallSlope = 1 << 20|kSmallSlope = 1 << 25'
+  'simd/position_mask.cpp|kDecided = 1 << 30|kDecided = 1 << 20'
+  'simd/cell_rows.cpp|hn::Iota(d, 0.0)|hn::Iota(d, 1.0)'
+  'stages/windows.cpp|nearest <= farthest|nearest < farthest'
 )
 
 unnoticed=0
 for mutant in "${mutants[@]}"; do
   IFS='|' read -r file constant broken <<<"$mutant"
+  [[ $only == "  " || $only == *" $file "* ]] || continue
   original=$(mktemp)
   cp "$file" "$original"
   trap 'cp "$original" "$file"' EXIT
@@ -34,9 +42,9 @@ for mutant in "${mutants[@]}"; do
     echo "$file has no \"$constant\" any more" >&2
     exit 1
   fi
-  cmake --build "$build" --target simd_tests stages_tests pipeline_tests >/dev/null
   noticed=
   for folder in simd stages pipeline; do
+    cmake --build "$build" --target "${folder}_tests" >/dev/null
     log=$("$build/tests/${folder}_tests" --gtest_fail_fast --gtest_brief=1 2>&1) && continue
     noticed=$(sed -n 's/^\[  FAILED  \] \([^ ,]*\).*/\1/p' <<<"$log" | head -1)
     break
