@@ -68,7 +68,7 @@ void rows_of_cells(benchmark::State& state) {
 }
 BENCHMARK(rows_of_cells)->Arg(2)->Arg(8)->Arg(32);
 
-// Windows of so many fragments, which overlap in half of their positions.
+// Windows of so many fragments with random masks of half of the positions.
 void owners_of_windows(benchmark::State& state) {
   const auto count = static_cast<std::size_t>(state.range(0));
   std::mt19937 random(2);

@@ -151,7 +151,7 @@ constexpr Kind kKinds[] = {
      "beam:rules=paper and, if wanted, mask=table|exact, sort=centroid|nearest, "
      "tiny=1|3, overlap=tiny|over|add|transition, local=clamp|keep, fuzzy=delta|mix, extents=range|slab, "
      "slab=full|visible, plane=area|visible, thickness=larger|containing, storage=slides|text|float32",
-     "  beam         sorted fragments with analytic coverage and a mask, one area-conserving aggregate per pixel\n"
+     "  beam         sorted, visible fragments with analytic coverage and a mask, one area-conserving aggregate per pixel\n"
      "               beam:bits=N      N = 32, 64, 128 or 256 (the default) mask positions\n"
      "               beam:order=stream  fragments in primitive order, no A-buffer: a pixel's state is all there is; "
      "pixels\n"
