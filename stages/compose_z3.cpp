@@ -90,9 +90,10 @@ class PixelLayers {
   bool add(const Fragment& fragment, Z3Pixel<Words, Layers>& pixel) {
     std::array<Layer, Layers + 1> layers;
     std::size_t used = 0;
+    auto owners = pixel.owners;  // a pixel is packed: its words need not be where words should
     Layer arriving = unpacked(packed({fragment.plane, fragment.color / fragment.alpha, {}}), fragment.mask);
     for (std::uint32_t k = 0; k < Layers; ++k) {
-      Layer layer = unpacked(pixel.layers[k], pixel.owners.positions_in(k + 1));
+      Layer layer = unpacked(pixel.layers[k], owners.positions_in(k + 1));
       const WideMask contested = layer.positions & fragment.mask;
       if (!contested.none()) {
         WideMask nearer;
@@ -108,8 +109,9 @@ class PixelLayers {
     if (used > Layers) merge_two(layers), --used;
     for (std::uint32_t k = 0; k < used; ++k) {
       pixel.layers[k] = packed(layers[k]);
-      pixel.owners.put(layers[k].positions, k + 1);
+      owners.put(layers[k].positions, k + 1);
     }
+    pixel.owners = owners;
     return true;
   }
 
@@ -162,8 +164,9 @@ std::vector<PixelColor> z3_colors(const std::vector<Z3Pixel<Words, Layers>>& pix
   std::vector<PixelColor> colors;
   for (const Z3Pixel<Words, Layers>& pixel : pixels) {
     PixelColor sum{0, glm::vec3(0.0f)};
+    const auto owners = pixel.owners;
     for (std::uint32_t k = 0; k < Layers; ++k) {
-      const Layer layer = unpacked(pixel.layers[k], pixel.owners.positions_in(k + 1));
+      const Layer layer = unpacked(pixel.layers[k], owners.positions_in(k + 1));
       const float share = layer.count() / (32 * Words);
       sum.alpha += share;
       sum.color += share * layer.color;
