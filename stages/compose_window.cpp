@@ -1,6 +1,7 @@
 #include "stages/compose_window.h"
 
 #include <algorithm>
+#include <cstring>
 
 #include "simd/conserve.h"
 #include "simd/window_owners.h"
@@ -30,7 +31,7 @@ struct PixelAggregate {
 template <std::size_t Words, class Channel>
 PixelAggregate load(const StoredAggregate<Words, Channel>& stored) {
   PixelAggregate aggregate;
-  std::copy_n(stored.mask, Words, aggregate.mask.words.begin());
+  std::memcpy(aggregate.mask.words.data(), stored.mask, sizeof stored.mask);
   aggregate.taken.area = stored.area;
   aggregate.color = {stored.color[0], stored.color[1], stored.color[2]};
   return aggregate;
@@ -38,7 +39,7 @@ PixelAggregate load(const StoredAggregate<Words, Channel>& stored) {
 
 template <std::size_t Words, class Channel>
 void store(const PixelAggregate& aggregate, StoredAggregate<Words, Channel>& stored) {
-  std::copy_n(aggregate.mask.words.begin(), Words, stored.mask);
+  std::memcpy(stored.mask, aggregate.mask.words.data(), sizeof stored.mask);
   stored.area = aggregate.taken.area;
   for (int c = 0; c < 3; ++c) stored.color[c] = Channel(aggregate.color[c]);
 }
@@ -246,7 +247,7 @@ void compose_whole(const std::vector<PixelTriangle>& whole, const Tile& tile, co
                    StageCounters& counters, std::vector<StoredAggregate<Words, Channel>>& pixels) {
   for (const PixelTriangle& pair : whole) {
     auto& pixel = pixels[tile.index(pair.x, pair.y)];
-    std::fill_n(pixel.mask, Words, ~0u);
+    std::memset(pixel.mask, 0xff, sizeof pixel.mask);
     pixel.area = 1.0f;
     for (int c = 0; c < 3; ++c) pixel.color[c] = Channel(colors[pair.triangle][c]);
   }

@@ -7,6 +7,7 @@
 #pragma once
 
 #include <cstdint>
+#include <cstring>
 #include <vector>
 
 #include "stages/beam_fragment.h"
@@ -39,8 +40,9 @@ void compose_whole(const std::vector<PixelTriangle>& whole, const Tile& tile, co
 // Nothing more can be seen in the pixel.
 template <std::size_t Words, class Channel>
 bool is_closed(const StoredAggregate<Words, Channel>& pixel) {
-  std::uint32_t all = ~0u;
-  for (const std::uint32_t word : pixel.mask) all &= word;
+  std::uint32_t mask[Words], all = ~0u;  // a pixel is packed: its words need not be where words should
+  std::memcpy(mask, pixel.mask, sizeof mask);
+  for (const std::uint32_t word : mask) all &= word;
   return all == ~0u;
 }
 
