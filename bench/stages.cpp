@@ -3,6 +3,7 @@
 #include <benchmark/benchmark.h>
 
 #include "pipeline/bands.h"
+#include "pipeline/threads.h"
 #include "stages/compose_window.h"
 #include "stages/conservative_raster.h"
 #include "stages/resolve.h"
@@ -42,9 +43,7 @@ struct FrameWork {
     const Frame& frame = trace.frames[0];
     triangles = vertex_setup(trace, frame, unused);
     colors = shade_triangles(triangles, frame.light_direction);
-    options.mask = MaskSource::grid;
-    options.grid = &grid;
-    options.clipped_depth = false;
+    options = grid_options(grid, conserving_fragment_bytes(kPositions));
     const TileGrid tile_grid(frame, kTileSize);
     std::vector<TriangleList> lists = bin_triangles(triangles, tile_grid, {0, tile_grid.tiles.size()});
     for (std::size_t i = 0; i < lists.size(); ++i) {
@@ -82,6 +81,14 @@ const FrameWork& frame_of(const std::string& scene) {
   return scene == "hairball" ? hairball : terrain;
 }
 
+void report(benchmark::State& state, const StageCounters& counters) {
+  const auto items = static_cast<double>(std::max(counters.items_in, counters.items_out));
+  state.counters["items"] = items;
+  state.counters["ops_per_item"] = static_cast<double>(counters.ops.total()) / items;
+  state.counters["ns_per_item"] =
+      benchmark::Counter(items * 1e-9, benchmark::Counter::kIsIterationInvariantRate | benchmark::Counter::kInvert);
+}
+
 // Runs body(tile, counters) for all tiles, again and again.
 template <class Body>
 void run_stage(benchmark::State& state, const FrameWork& frame, Body&& body) {
@@ -90,11 +97,7 @@ void run_stage(benchmark::State& state, const FrameWork& frame, Body&& body) {
     counters = {};
     for (const TileWork& tile : frame.tiles) body(tile, counters);
   }
-  const auto items = static_cast<double>(std::max(counters.items_in, counters.items_out));
-  state.counters["items"] = items;
-  state.counters["ops_per_item"] = static_cast<double>(counters.ops.total()) / items;
-  state.counters["ns_per_item"] =
-      benchmark::Counter(items * 1e-9, benchmark::Counter::kIsIterationInvariantRate | benchmark::Counter::kInvert);
+  report(state, counters);
 }
 
 void raster(benchmark::State& state, const std::string& scene) {
@@ -141,15 +144,13 @@ void resolve_pixels(benchmark::State& state, const std::string& scene) {
 void setup(benchmark::State& state, const std::string& scene) {
   const FrameWork& frame = frame_of(scene);
   StageCounters counters;
-  for (auto _ : state) {
-    counters = {};
-    benchmark::DoNotOptimize(vertex_setup(frame.trace, frame.trace.frames[0], counters));
-  }
-  const auto items = static_cast<double>(counters.items_in);
-  state.counters["items"] = items;
-  state.counters["ops_per_item"] = static_cast<double>(counters.ops.total()) / items;
-  state.counters["ns_per_item"] =
-      benchmark::Counter(items * 1e-9, benchmark::Counter::kIsIterationInvariantRate | benchmark::Counter::kInvert);
+  on_threads(1, [&] {
+    for (auto _ : state) {
+      counters = {};
+      benchmark::DoNotOptimize(vertex_setup(frame.trace, frame.trace.frames[0], counters));
+    }
+  });
+  report(state, counters);
 }
 
 const bool registered = [] {

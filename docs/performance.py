@@ -150,8 +150,10 @@ def main():
         command = commands.add_parser(name)
         command.add_argument("program")
         command.add_argument("traces", nargs="+")
-        command.add_argument("--runs", type=int, default=5)
-        command.add_argument("--threads", type=int, default=1)
+        if name != "stages":
+            command.add_argument("--runs", type=int, default=5)
+        if name == "ratios":
+            command.add_argument("--threads", type=int, default=1)
         command.set_defaults(action=action)
     growth = commands.add_parser("growth")
     growth.add_argument("program")

@@ -17,7 +17,7 @@ namespace beampipe {
 namespace {
 
 std::uint32_t pixel_of(const SampleFragment& fragment, const Tile& tile) {
-  return static_cast<std::uint32_t>((fragment.y - tile.y0) * tile.width() + fragment.x - tile.x0);
+  return static_cast<std::uint32_t>(tile.index(fragment.x, fragment.y));
 }
 
 // Adding to the accumulator of a pixel reads and writes it.

@@ -35,12 +35,9 @@ struct BeamFrame {
       : triangles(vertex_setup(trace, frame, StageTimer(run.timeline)(setup))),
         colors(shade_triangles(triangles, frame.light_direction)),
         positions(cell_positions(count)),
-        grid(count) {
-    options.mask = MaskSource::grid;
-    options.grid = &grid;
-    options.fragment_bytes = conserving_fragment_bytes(count);
+        grid(count),
+        options(grid_options(grid, conserving_fragment_bytes(count))) {
     options.pair_bytes = kWaitingPairBytes + sizeof(SetupTriangle);
-    options.clipped_depth = false;
   }
 };
 

@@ -57,11 +57,7 @@ FrameResult render_shape(const Trace& trace, const Frame& frame, const StreamOpt
   const std::vector<glm::vec3> colors = shade_triangles(triangles, frame.light_direction);
   const PositionSet& positions = cell_positions(stream.positions);
   const PositionGrid grid(stream.positions);
-  BeamFragmentOptions options;
-  options.mask = MaskSource::grid;
-  options.grid = &grid;
-  options.fragment_bytes = streaming_fragment_bytes(Words);
-  options.clipped_depth = false;
+  const BeamFragmentOptions options = grid_options(grid, streaming_fragment_bytes(Words));
 
   const TileRenderer render_tile = [&](const Tile& tile, const TriangleList& list) {
     const StageTimer timed(run.timeline, tile);

@@ -22,11 +22,7 @@ FrameResult render_shape(const Trace& trace, const Frame& frame, const Z3Options
   const std::vector<glm::vec3> colors = shade_triangles(triangles, frame.light_direction);
   const PositionSet& positions = cell_positions(z3.positions);
   const PositionGrid grid(z3.positions);
-  BeamFragmentOptions options;
-  options.mask = MaskSource::grid;
-  options.grid = &grid;
-  options.fragment_bytes = 4 + 4 * Words + 12;
-  options.clipped_depth = false;
+  const BeamFragmentOptions options = grid_options(grid, 4 + 4 * Words + 12);
 
   return render_tiles(frame, triangles, setup, kBinSize, run, [&](const Tile& tile, const TriangleList& list) {
     const StageTimer timed(run.timeline, tile);

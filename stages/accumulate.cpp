@@ -83,9 +83,7 @@ void count(std::uint64_t fragments, const Accumulator& accumulator, StageCounter
   counters.lanes_issued += fragments;
 }
 
-std::size_t pixel_of(const SampleFragment& fragment, const Tile& tile) {
-  return static_cast<std::size_t>((fragment.y - tile.y0) * tile.width() + fragment.x - tile.x0);
-}
+std::size_t pixel_of(const SampleFragment& fragment, const Tile& tile) { return tile.index(fragment.x, fragment.y); }
 
 }  // namespace
 

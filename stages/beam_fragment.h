@@ -56,6 +56,16 @@ struct BeamFragmentOptions {
   std::uint32_t pair_bytes = kPixelTriangleBytes;  // that are read for a pair
 };
 
+// For masks on a grid, without the clipped triangle's depth range. `grid` must outlive it.
+inline BeamFragmentOptions grid_options(const PositionGrid& grid, std::uint32_t fragment_bytes) {
+  BeamFragmentOptions options;
+  options.mask = MaskSource::grid;
+  options.grid = &grid;
+  options.fragment_bytes = fragment_bytes;
+  options.clipped_depth = false;
+  return options;
+}
+
 // What a (pixel, triangle) takes while beam_fragment works on it, with itself and its fragment: those two twice, as
 // vectors that grow move from one place to the next.
 inline constexpr std::size_t kPairBytes =

@@ -16,7 +16,7 @@ std::vector<CellDepth> cell_depths(const SetupTriangles& triangles, const std::v
   items.reserve(fragments.size());
   for (const SampleFragment& fragment : fragments) {
     const ScreenDepth& plane = triangles.triangles[fragment.triangle].depth;
-    const std::int32_t pixel = (grid.pixel_y(fragment.y) - tile.y0) * tile.width() + grid.pixel_x(fragment.x) - tile.x0;
+    const auto pixel = static_cast<std::int32_t>(tile.index(grid.pixel_x(fragment.x), grid.pixel_y(fragment.y)));
     const double left = fragment.x * cell_width, top = fragment.y * cell_height;
     CellDepth& item = items.emplace_back();
     item.cell = static_cast<std::uint32_t>(pixel * grid.cells_per_pixel() + grid.in_pixel(fragment.x, fragment.y));

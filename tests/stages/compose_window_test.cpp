@@ -25,10 +25,7 @@ std::vector<PixelColor> composed_as(const SetupTriangles& triangles, const std::
                                     const Tile& tile, std::vector<float>* largest) {
   const PositionSet positions(cell_patterns(32 * Words));
   const PositionGrid grid(32 * Words);
-  BeamFragmentOptions options;
-  options.mask = MaskSource::grid;
-  options.grid = &grid;
-  options.clipped_depth = false;
+  const BeamFragmentOptions options = grid_options(grid, conserving_fragment_bytes(32 * Words));
   StageCounters counters;
   std::vector<PixelTriangle> pairs, window, whole;
   std::vector<StoredAggregate<Words, Channel>> pixels(tile.pixels());

@@ -119,10 +119,7 @@ TEST_P(TwinCounts, BeamFragmentOnAGrid) {  // where full pixels take the short w
   std::vector<PixelTriangle> pairs;
   conservative_raster(triangles_, list_, tile_, raster, pairs);
   std::vector<Fragment> fragments;
-  BeamFragmentOptions options;
-  options.mask = MaskSource::grid;
-  options.grid = &grid;
-  options.clipped_depth = false;
+  const BeamFragmentOptions options = grid_options(grid, 0);
   beam_fragment(triangles_, pairs, tile_, options, counters, fragments);
   for (const PixelTriangle& pair : pairs)
     if (!pair.full) count_fragment(pair, nullptr, nullptr, &grid);
