@@ -75,7 +75,7 @@ void owners_of_windows(benchmark::State& state) {
   std::vector<MaskedPlane> fragments(kItems / count * count);
   for (MaskedPlane& fragment : fragments) {
     for (std::uint32_t& word : fragment.mask.words) word = static_cast<std::uint32_t>(random());
-    fragment.plane = {-0.5f + 1e-10f * static_cast<float>(random()), 1e-3f, -1e-3f};
+    fragment.plane = corner_plane({-0.5f + 1e-10f * static_cast<float>(random()), 1e-3f, -1e-3f});
   }
   const std::vector<SamplePattern> patterns = cell_patterns(256);
   std::vector<Ownership> owners(count);

@@ -18,8 +18,6 @@ namespace HWY_NAMESPACE {
 namespace hn = hwy::HWY_NAMESPACE;
 
 constexpr float kFar = std::numeric_limits<float>::infinity();
-constexpr std::uint32_t kNobody = ~0u;
-constexpr std::size_t kPositions = kMaxMaskWords * kMaxMaskSamples;
 
 // 64 positions at a time.
 struct Mask64 {
@@ -36,74 +34,51 @@ HWY_INLINE std::uint32_t count_bits(const Mask64& mask) {
   return static_cast<std::uint32_t>(bits);
 }
 
-// The depth tests at contested positions, in the words that have any.
-class Contest {
- public:
-  Contest(const Mask64& contested, const SamplePattern* patterns) : patterns_(patterns) {
-    std::memcpy(contested_, contested.words, sizeof contested_);
-    for (std::size_t w = 0; w < kMaxMaskWords; ++w) {
-      if (contested_[w] == 0) continue;
-      words_[count_++] = w;
-      std::fill_n(nearest_ + w * kMaxMaskSamples, kMaxMaskSamples, kFar);
-      std::fill_n(owner_ + w * kMaxMaskSamples, kMaxMaskSamples, kNobody);
-    }
+using D = hn::CappedTag<float, 16>;
+
+// Of the contested positions of word `w` leaves each fragment those where it is nearest. The nearest depths stay in
+// registers while the fragments come one by one. Returns how many depths were computed.
+HWY_INLINE std::uint64_t contest(const MaskedPlane* in, std::size_t count, std::size_t w, std::uint32_t contested,
+                                 const SamplePattern& pattern, Ownership* out) {
+  const D d;
+  const hn::RebindToSigned<D> di;
+  constexpr std::size_t kLanes = hn::MaxLanes(d), kVectors = kMaxMaskSamples / kLanes;
+  hn::Vec<D> x[kVectors], y[kVectors], nearest[kVectors];
+  for (std::size_t v = 0; v < kVectors; ++v) {
+    x[v] = hn::ConvertTo(d, hn::Load(di, pattern.x.data() + v * kLanes));
+    y[v] = hn::ConvertTo(d, hn::Load(di, pattern.y.data() + v * kLanes));
+    nearest[v] = hn::Set(d, kFar);
   }
-
-  std::uint64_t add(std::uint32_t index, const WideMask& mask, const DepthPlane<float>& plane) {
-    const hn::RebindToUnsigned<D> du;
-    const hn::RebindToSigned<D> di;
-    const D d;
-    const auto corner = hn::Set(d, corner_depth(plane)), dzdx = hn::Set(d, plane.dzdu / kSubpixelUnits),
-               dzdy = hn::Set(d, plane.dzdv / kSubpixelUnits);
-    const auto self = hn::Set(du, index);
-    std::uint64_t tests = 0;
-    for (std::size_t i = 0; i < count_; ++i) {
-      const std::size_t w = words_[i];
-      const std::uint64_t bits = mask.words[w] & contested_[w];
-      tests += static_cast<std::uint64_t>(std::popcount(bits));
-      for (std::size_t s = 0; s < kMaxMaskSamples; s += hn::Lanes(d)) {
-        const std::uint64_t part = bits >> s;
-        std::uint8_t bytes[8];
-        std::memcpy(bytes, &part, sizeof bytes);
-        const auto x = hn::ConvertTo(d, hn::Load(di, patterns_[w].x.data() + s));
-        const auto y = hn::ConvertTo(d, hn::Load(di, patterns_[w].y.data() + s));
-        const auto depth = hn::Add(hn::Add(corner, hn::Mul(dzdx, x)), hn::Mul(dzdy, y));
-        float* const nearest = nearest_ + w * kMaxMaskSamples + s;
-        const auto nearer = hn::And(hn::LoadMaskBits(d, bytes), hn::Lt(depth, hn::Load(d, nearest)));
-        hn::BlendedStore(depth, nearer, d, nearest);
-        hn::BlendedStore(self, hn::RebindMask(du, nearer), du, owner_ + w * kMaxMaskSamples + s);
-      }
+  std::uint64_t tests = 0;
+  for (std::size_t i = 0; i < count; ++i) {
+    const std::uint32_t tested = out[i].owned.words[w] & contested;
+    tests += static_cast<std::uint64_t>(std::popcount(tested));
+    const CornerPlane& plane = in[i].plane;
+    const auto corner = hn::Set(d, plane.corner), dzdx = hn::Set(d, plane.dzdx), dzdy = hn::Set(d, plane.dzdy);
+    std::uint32_t won = 0;  // from those before it
+    for (std::size_t v = 0; v < kVectors; ++v) {
+      const std::uint64_t part = tested >> (v * kLanes);
+      std::uint8_t bytes[8];
+      std::memcpy(bytes, &part, sizeof bytes);
+      const auto depth = hn::Add(hn::Add(corner, hn::Mul(dzdx, x[v])), hn::Mul(dzdy, y[v]));
+      const auto nearer = hn::And(hn::LoadMaskBits(d, bytes), hn::Lt(depth, nearest[v]));
+      nearest[v] = hn::IfThenElse(nearer, depth, nearest[v]);
+      std::uint8_t bits[8] = {};
+      hn::StoreMaskBits(d, nearer, bits);
+      std::uint32_t low = 0;
+      std::memcpy(&low, bits, sizeof low);
+      won |= low << (v * kLanes);
     }
-    return tests;
+    out[i].owned.words[w] = (out[i].owned.words[w] & ~contested) | won;
   }
-
-  // Of the contested positions leaves fragment `index` those that it has won.
-  void give(std::uint32_t index, WideMask& mask) const {
-    const hn::RebindToUnsigned<D> du;
-    const auto self = hn::Set(du, index);
-    for (std::size_t i = 0; i < count_; ++i) {
-      const std::size_t w = words_[i];
-      std::uint64_t won = 0;
-      for (std::size_t s = 0; s < kMaxMaskSamples; s += hn::Lanes(du)) {
-        std::uint8_t bytes[8] = {};
-        hn::StoreMaskBits(du, hn::Eq(hn::Load(du, owner_ + w * kMaxMaskSamples + s), self), bytes);
-        std::uint64_t part = 0;
-        std::memcpy(&part, bytes, sizeof part);
-        won |= part << s;
-      }
-      mask.words[w] &= ~contested_[w] | static_cast<std::uint32_t>(won);
-    }
+  std::uint32_t later = 0;  // who was nearer last, is nearest
+  for (std::size_t i = count; i-- > 0;) {
+    const std::uint32_t won = out[i].owned.words[w] & contested;
+    out[i].owned.words[w] &= ~later;
+    later |= won;
   }
-
- private:
-  using D = hn::CappedTag<float, 16>;
-
-  const SamplePattern* patterns_;
-  std::uint32_t contested_[kMaxMaskWords];
-  std::size_t words_[kMaxMaskWords], count_ = 0;
-  HWY_ALIGN float nearest_[kPositions];
-  HWY_ALIGN std::uint32_t owner_[kPositions];
-};
+  return tests;
+}
 
 WindowCounts window_owners_kernel(const MaskedPlane* in, std::size_t count, const WideMask& taken,
                                   const SamplePattern* patterns, Ownership* out) {
@@ -125,12 +100,11 @@ WindowCounts window_owners_kernel(const MaskedPlane* in, std::size_t count, cons
   }
   std::uint64_t tests = 0;
   if (any_twice != 0) {
-    Contest contest(twice, patterns);
-    for (std::uint32_t i = 0; i < count; ++i) tests += contest.add(i, out[i].owned, in[i].plane);
-    for (std::uint32_t i = 0; i < count; ++i) {
-      contest.give(i, out[i].owned);
-      out[i].visible = count_bits(load(out[i].owned));
-    }
+    WideMask contested;
+    std::memcpy(contested.words.data(), &twice, sizeof twice);
+    for (std::size_t w = 0; w < kMaxMaskWords; ++w)
+      if (contested.words[w] != 0) tests += contest(in, count, w, contested.words[w], patterns[w], out);
+    for (std::size_t i = 0; i < count; ++i) out[i].visible = count_bits(load(out[i].owned));
   }
   return {count_bits(closed), tests};
 }
@@ -164,10 +138,9 @@ WindowCounts window_owners_scalar(const MaskedPlane* in, std::size_t count, cons
       const auto y = static_cast<float>(pattern.y[bit % kMaxMaskSamples]);
       float nearest = std::numeric_limits<float>::infinity();
       for (const std::size_t i : here) {
-        const DepthPlane<float>& plane = in[i].plane;
+        const CornerPlane& plane = in[i].plane;
         float depth = 0;
-        if (nearer_at(corner_depth(plane), plane.dzdu / kSubpixelUnits, plane.dzdv / kSubpixelUnits, x, y, nearest,
-                      depth)) {
+        if (nearer_at(plane.corner, plane.dzdx, plane.dzdy, x, y, nearest, depth)) {
           nearest = depth;
           owner = i;
         }

@@ -9,9 +9,17 @@
 
 namespace beampipe {
 
+// A depth plane as positions see it: the depth at the pixel's upper left corner, slopes per 1/256 px.
+struct CornerPlane {
+  float corner, dzdx, dzdy;
+};
+inline CornerPlane corner_plane(const DepthPlane<float>& plane) {
+  return {plane.z - 0.5f * plane.dzdu - 0.5f * plane.dzdv, plane.dzdu / kSubpixelUnits, plane.dzdv / kSubpixelUnits};
+}
+
 struct MaskedPlane {
-  WideMask mask;  // positions that the fragment covers
-  DepthPlane<float> plane;
+  WideMask mask;      // positions that the fragment covers
+  CornerPlane plane;  // finite depths
 };
 
 struct Ownership {
@@ -36,10 +44,6 @@ template <class Float>
 bool nearer_at(Float corner, Float dzdx, Float dzdy, Float x, Float y, Float nearest, Float& depth) {
   depth = corner + dzdx * x + dzdy * y;
   return depth < nearest;
-}
-template <class Float>
-Float corner_depth(const DepthPlane<Float>& plane) {
-  return plane.z - Float(0.5f) * plane.dzdu - Float(0.5f) * plane.dzdv;
 }
 
 // Scalar twin of the whole.

@@ -84,7 +84,7 @@ class PixelComposer {
   float find_owners(const Fragment* fragments, std::size_t count, const WideMask& taken) {
     planes_.resize(count);
     ownership_.resize(count);
-    for (std::size_t i = 0; i < count; ++i) planes_[i] = {fragments[i].mask, fragments[i].plane};
+    for (std::size_t i = 0; i < count; ++i) planes_[i] = {fragments[i].mask, corner_plane(fragments[i].plane)};
     const WindowCounts counts =
         window_owners(planes_.data(), count, taken, positions_.patterns.data(), ownership_.data());
     depth_tests_ += counts.tests;

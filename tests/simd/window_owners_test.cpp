@@ -21,10 +21,10 @@ WideMask random_mask(Random& random, std::size_t words) {
 
 // Planes of every steepness, many of them equal, so that ties decide.
 MaskedPlane random_fragment(Random& random, std::size_t words) {
-  MaskedPlane fragment{random_mask(random, words), {random.real32(-1, 0), 0, 0}};
-  if (random.one_in(3)) fragment.plane.z = -0.5f;
-  if (!random.one_in(3)) fragment.plane.dzdu = random.real32(-2, 2), fragment.plane.dzdv = random.real32(-2, 2);
-  return fragment;
+  DepthPlane<float> plane{random.real32(-1, 0), 0, 0};
+  if (random.one_in(3)) plane.z = -0.5f;
+  if (!random.one_in(3)) plane.dzdu = random.real32(-2, 2), plane.dzdv = random.real32(-2, 2);
+  return {random_mask(random, words), corner_plane(plane)};
 }
 
 TEST(WindowOwners, KernelEqualsTwin) {
