@@ -1,6 +1,6 @@
 #include "simd/position_mask.h"
 
-#include <cstring>
+#include <bit>
 
 #undef HWY_TARGET_INCLUDE
 #define HWY_TARGET_INCLUDE "simd/position_mask.cpp"
@@ -20,7 +20,7 @@ constexpr std::int64_t kDecided = 1 << 30;
 
 // At most as many lanes as the two cells have that are computed once.
 template <class Lane>
-HWY_INLINE WideMask mask_of(const EdgeInPixel<std::int64_t> (&edges)[3], const PositionGrid& grid) {
+HWY_INLINE void set_mask(const EdgeInPixel<std::int64_t> (&edges)[3], const PositionGrid& grid, WideMask& mask) {
   const hn::CappedTag<Lane, 16> d;
   using V = hn::Vec<decltype(d)>;
   const hn::Rebind<std::int32_t, decltype(d)> di;
@@ -41,7 +41,9 @@ HWY_INLINE WideMask mask_of(const EdgeInPixel<std::int64_t> (&edges)[3], const P
       hn::Store(hn::Add(hn::Mul(a, load(grid.cell_x.data() + cell)), hn::Mul(b, load(grid.cell_y.data() + cell))), d,
                 of_cell[k] + cell);
   }
-  std::uint8_t bytes[sizeof(WideMask) + 8] = {};
+  static_assert(std::endian::native == std::endian::little);
+  mask = {};
+  auto* const bytes = reinterpret_cast<std::uint8_t*>(mask.words.data());  // a cell is a byte
   for (std::size_t part = 0; part < parts; ++part) {
     const V x = load(grid.first_cells.x.data() + part * lanes), y = load(grid.first_cells.y.data() + part * lanes);
     const auto base = [&](int k) {
@@ -55,7 +57,7 @@ HWY_INLINE WideMask mask_of(const EdgeInPixel<std::int64_t> (&edges)[3], const P
               edge2 = hn::Add(base2, hn::Set(d, of_cell[2][cell]));
       const auto inside = hn::Not(hn::Lt(hn::Min(hn::Min(edge0, edge1), edge2), hn::Zero(d)));
       if (lanes >= 8) {
-        hn::StoreMaskBits(d, inside, bytes + cell);  // a cell is a byte
+        hn::StoreMaskBits(d, inside, bytes + cell);
       } else {
         std::uint8_t bits[8] = {};
         hn::StoreMaskBits(d, inside, bits);
@@ -63,9 +65,6 @@ HWY_INLINE WideMask mask_of(const EdgeInPixel<std::int64_t> (&edges)[3], const P
       }
     }
   }
-  WideMask mask;
-  std::memcpy(mask.words.data(), bytes, sizeof mask.words);
-  return mask;
 }
 
 void position_masks_kernel(const TriangleInPixel* in, std::size_t count, const PositionGrid& grid, WideMask* masks) {
@@ -81,9 +80,9 @@ void position_masks_kernel(const TriangleInPixel* in, std::size_t count, const P
     }
     if (small) {
       for (EdgeInPixel<std::int64_t>& edge : edges) edge.c = HWY_MAX(-kDecided, HWY_MIN(edge.c, kDecided));
-      masks[i] = mask_of<std::int32_t>(edges, grid);
+      set_mask<std::int32_t>(edges, grid, masks[i]);
     } else {
-      masks[i] = mask_of<double>(edges, grid);
+      set_mask<double>(edges, grid, masks[i]);
     }
   }
 }

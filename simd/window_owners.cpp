@@ -19,18 +19,23 @@ namespace hn = hwy::HWY_NAMESPACE;
 
 constexpr float kFar = std::numeric_limits<float>::infinity();
 
-// 64 positions at a time.
-struct Mask64 {
-  std::uint64_t words[kMaxMaskWords / 2];
-};
-HWY_INLINE Mask64 load(const WideMask& mask) {
-  Mask64 wide;
-  std::memcpy(&wide, mask.words.data(), sizeof wide);
-  return wide;
+// 256 positions in one vector or more.
+using DMask = hn::CappedTag<std::uint32_t, kMaxMaskWords>;
+constexpr std::size_t kMaskVectors = kMaxMaskWords / hn::MaxLanes(DMask());
+
+HWY_INLINE hn::Vec<DMask> load(const WideMask& mask, std::size_t vector) {
+  return hn::LoadU(DMask(), mask.words.data() + vector * hn::MaxLanes(DMask()));
 }
-HWY_INLINE std::uint32_t count_bits(const Mask64& mask) {
+HWY_INLINE void store(hn::Vec<DMask> part, std::size_t vector, WideMask& mask) {
+  hn::StoreU(part, DMask(), mask.words.data() + vector * hn::MaxLanes(DMask()));
+}
+HWY_INLINE std::uint32_t count_bits(const WideMask& mask) {
   int bits = 0;
-  for (const std::uint64_t word : mask.words) bits += std::popcount(word);
+  for (std::size_t w = 0; w < kMaxMaskWords; w += 2) {
+    std::uint64_t word;
+    std::memcpy(&word, mask.words.data() + w, sizeof word);
+    bits += std::popcount(word);
+  }
   return static_cast<std::uint32_t>(bits);
 }
 
@@ -70,11 +75,13 @@ HWY_INLINE std::uint64_t contest(const MaskedPlane* in, std::size_t count, std::
       won |= low << (v * kLanes);
     }
     out[i].owned.words[w] = (out[i].owned.words[w] & ~contested) | won;
+    out[i].visible -= static_cast<std::uint32_t>(std::popcount(tested & ~won));
   }
   std::uint32_t later = 0;  // who was nearer last, is nearest
   for (std::size_t i = count; i-- > 0;) {
     const std::uint32_t won = out[i].owned.words[w] & contested;
     out[i].owned.words[w] &= ~later;
+    out[i].visible -= static_cast<std::uint32_t>(std::popcount(won & later));
     later |= won;
   }
   return tests;
@@ -82,31 +89,28 @@ HWY_INLINE std::uint64_t contest(const MaskedPlane* in, std::size_t count, std::
 
 WindowCounts window_owners_kernel(const MaskedPlane* in, std::size_t count, const WideMask& taken,
                                   const SamplePattern* patterns, Ownership* out) {
-  const Mask64 closed = load(taken);
-  Mask64 seen{}, twice{};
-  std::uint64_t any_twice = 0;
+  using V = hn::Vec<DMask>;
+  V closed[kMaskVectors], seen[kMaskVectors], twice[kMaskVectors];
+  for (std::size_t v = 0; v < kMaskVectors; ++v) {
+    closed[v] = load(taken, v);
+    seen[v] = twice[v] = hn::Zero(DMask());
+  }
   for (std::size_t i = 0; i < count; ++i) {
-    const Mask64 mask = load(in[i].mask);
-    Mask64 open;
-    for (std::size_t w = 0; w < kMaxMaskWords / 2; ++w) {
-      open.words[w] = mask.words[w] & ~closed.words[w];
-      twice.words[w] |= seen.words[w] & open.words[w];
-      seen.words[w] |= open.words[w];
-      any_twice |= twice.words[w];
+    for (std::size_t v = 0; v < kMaskVectors; ++v) {
+      const V open = hn::AndNot(closed[v], load(in[i].mask, v));
+      twice[v] = hn::Or(twice[v], hn::And(seen[v], open));
+      seen[v] = hn::Or(seen[v], open);
+      store(open, v, out[i].owned);
     }
-    std::memcpy(out[i].owned.words.data(), &open, sizeof open);
-    out[i].covered = count_bits(mask);
-    out[i].visible = count_bits(open);
+    out[i].covered = count_bits(in[i].mask);
+    out[i].visible = count_bits(out[i].owned);
   }
+  WideMask contested;
+  for (std::size_t v = 0; v < kMaskVectors; ++v) store(twice[v], v, contested);
   std::uint64_t tests = 0;
-  if (any_twice != 0) {
-    WideMask contested;
-    std::memcpy(contested.words.data(), &twice, sizeof twice);
-    for (std::size_t w = 0; w < kMaxMaskWords; ++w)
-      if (contested.words[w] != 0) tests += contest(in, count, w, contested.words[w], patterns[w], out);
-    for (std::size_t i = 0; i < count; ++i) out[i].visible = count_bits(load(out[i].owned));
-  }
-  return {count_bits(closed), tests};
+  for (std::size_t w = 0; w < kMaxMaskWords; ++w)
+    if (contested.words[w] != 0) tests += contest(in, count, w, contested.words[w], patterns[w], out);
+  return {count_bits(taken), tests};
 }
 
 }  // namespace HWY_NAMESPACE
