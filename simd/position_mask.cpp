@@ -19,14 +19,13 @@ constexpr std::int64_t kSmallSlope = 1 << 20;
 constexpr std::int64_t kDecided = 1 << 30;
 
 // At most as many lanes as the two cells have that are computed once.
-template <class Lane>
+template <class Lane, std::size_t kColumns, std::size_t kRows>
 HWY_INLINE void set_mask(const EdgeInPixel<std::int64_t> (&edges)[3], const PositionGrid& grid, WideMask& mask) {
   const hn::CappedTag<Lane, 16> d;
   using V = hn::Vec<decltype(d)>;
   const hn::Rebind<std::int32_t, decltype(d)> di;
   const std::size_t lanes = hn::Lanes(d), parts = lanes > 8 ? 1 : 8 / lanes;  // vectors to a cell, or to two
-  const auto cells = static_cast<std::size_t>(grid.cells.columns * grid.cells.rows);
-  HWY_ALIGN Lane of_cell[3][32];
+  const std::size_t step = lanes > 8 ? 2 : 1;                                 // cells to a vector
   const auto load = [&](const std::int32_t* values) {
     if constexpr (sizeof(Lane) == 4) {
       return hn::Load(d, values);
@@ -35,12 +34,16 @@ HWY_INLINE void set_mask(const EdgeInPixel<std::int64_t> (&edges)[3], const Posi
     }
   };
   const auto set = [&](std::int64_t value) { return hn::Set(d, static_cast<Lane>(value)); };
-  for (std::size_t k = 0; k < 3; ++k) {
-    const V a = set(edges[k].a), b = set(edges[k].b);
-    for (std::size_t cell = 0; cell < cells; cell += lanes)
-      hn::Store(hn::Add(hn::Mul(a, load(grid.cell_x.data() + cell)), hn::Mul(b, load(grid.cell_y.data() + cell))), d,
-                of_cell[k] + cell);
-  }
+  // Negative if one of them is.
+  const auto least = [](V e0, V e1, V e2) {
+    if constexpr (sizeof(Lane) == 4) {
+      return hn::Or3(e0, e1, e2);
+    } else {
+      return hn::Min(hn::Min(e0, e1), e2);
+    }
+  };
+  const auto down = [&](int k) { return set(edges[k].b * grid.cell_height); };
+  const V down0 = down(0), down1 = down(1), down2 = down(2);
   static_assert(std::endian::native == std::endian::little);
   mask = {};
   auto* const bytes = reinterpret_cast<std::uint8_t*>(mask.words.data());  // a cell is a byte
@@ -50,24 +53,28 @@ HWY_INLINE void set_mask(const EdgeInPixel<std::int64_t> (&edges)[3], const Posi
       return hn::Add(hn::Add(hn::Mul(set(edges[k].a), x), hn::Mul(set(edges[k].b), y)), set(edges[k].c));
     };
     const V base0 = base(0), base1 = base(1), base2 = base(2);
-    const std::size_t step = lanes > 8 ? 2 : 1;  // cells to a vector
-    for (std::size_t cell = 0; cell < cells; cell += step) {
-      const V edge0 = hn::Add(base0, hn::Set(d, of_cell[0][cell])),
-              edge1 = hn::Add(base1, hn::Set(d, of_cell[1][cell])),
-              edge2 = hn::Add(base2, hn::Set(d, of_cell[2][cell]));
-      const auto inside = hn::Not(hn::Lt(hn::Min(hn::Min(edge0, edge1), edge2), hn::Zero(d)));
-      if (lanes >= 8) {
-        hn::StoreMaskBits(d, inside, bytes + cell);
-      } else {
-        std::uint8_t bits[8] = {};
-        hn::StoreMaskBits(d, inside, bits);
-        bytes[cell] = static_cast<std::uint8_t>(bytes[cell] | bits[0] << (part * lanes));
+    for (std::size_t column = 0; column < kColumns; column += step) {
+      const auto left = static_cast<std::int64_t>(column) * grid.cell_width;
+      V edge0 = hn::Add(base0, set(edges[0].a * left)), edge1 = hn::Add(base1, set(edges[1].a * left)),
+        edge2 = hn::Add(base2, set(edges[2].a * left));
+      for (std::size_t row = 0; row < kRows; ++row) {
+        const auto inside = hn::Not(hn::Lt(least(edge0, edge1, edge2), hn::Zero(d)));
+        std::uint8_t* const cell = bytes + row * kColumns + column;
+        if (lanes >= 8) {
+          hn::StoreMaskBits(d, inside, cell);
+        } else {
+          std::uint8_t bits[8] = {};
+          hn::StoreMaskBits(d, inside, bits);
+          *cell = static_cast<std::uint8_t>(*cell | bits[0] << (part * lanes));
+        }
+        edge0 = hn::Add(edge0, down0), edge1 = hn::Add(edge1, down1), edge2 = hn::Add(edge2, down2);
       }
     }
   }
 }
 
-void position_masks_kernel(const TriangleInPixel* in, std::size_t count, const PositionGrid& grid, WideMask* masks) {
+template <std::size_t kColumns, std::size_t kRows>
+void set_masks(const TriangleInPixel* in, std::size_t count, const PositionGrid& grid, WideMask* masks) {
   for (std::size_t i = 0; i < count; ++i) {
     PixelTriangleOf<std::int64_t> triangle;
     for (int k = 0; k < 3; ++k) triangle.x[k] = in[i].x[k], triangle.y[k] = in[i].y[k];
@@ -80,10 +87,23 @@ void position_masks_kernel(const TriangleInPixel* in, std::size_t count, const P
     }
     if (small) {
       for (EdgeInPixel<std::int64_t>& edge : edges) edge.c = HWY_MAX(-kDecided, HWY_MIN(edge.c, kDecided));
-      set_mask<std::int32_t>(edges, grid, masks[i]);
+      set_mask<std::int32_t, kColumns, kRows>(edges, grid, masks[i]);
     } else {
-      set_mask<double>(edges, grid, masks[i]);
+      set_mask<double, kColumns, kRows>(edges, grid, masks[i]);
     }
+  }
+}
+
+void position_masks_kernel(const TriangleInPixel* in, std::size_t count, const PositionGrid& grid, WideMask* masks) {
+  switch (grid.cells.columns * grid.cells.rows) {
+    case 4:
+      return set_masks<2, 2>(in, count, grid, masks);
+    case 8:
+      return set_masks<4, 2>(in, count, grid, masks);
+    case 16:
+      return set_masks<4, 4>(in, count, grid, masks);
+    default:
+      return set_masks<8, 4>(in, count, grid, masks);
   }
 }
 
