@@ -58,22 +58,22 @@ class PixelComposer {
       specks |= ownership_[i].covered == 0;
     }
     if (specks) find_specks(fragments, count, aggregate.mask, areas);
-    for (const std::uint32_t i : whole_first(count)) {
+    // Whole fragments first, specks among them: what they took beyond their positions is then known to those that are
+    // partly hidden.
+    partial_.clear();
+    for (std::uint32_t i = 0; i < count; ++i) {
       const Ownership& seen = ownership_[i];
-      const Fragment& fragment = fragments[i];
-      float area = std::min(areas[i], 1.0f - aggregate.taken.area);
-      if (seen.covered > 0) {
-        if (seen.visible == 0) continue;
-        area = visible_area(fragment.alpha, static_cast<float>(seen.covered), static_cast<float>(seen.visible),
-                            static_cast<float>(positions_.count()), aggregate.taken);
+      if (seen.visible == seen.covered) {
+        add(fragments[i], seen, aggregate, areas[i]);
+      } else if (seen.visible > 0) {
+        partial_.push_back({static_cast<float>(seen.visible) / static_cast<float>(seen.covered), i});
       }
-      areas[i] = area;
-      aggregate.taken.area += area;
-      aggregate.taken.positions += static_cast<float>(seen.visible);
-      aggregate.mask = aggregate.mask | seen.owned;
-      const float share = area / fragment.alpha;
-      aggregate.color += share * fragment.color;
     }
+    std::sort(partial_.begin(), partial_.end(), [](const Partial& a, const Partial& b) {
+      return a.visible > b.visible || (a.visible == b.visible && a.fragment < b.fragment);
+    });
+    for (const Partial& next : partial_)
+      add(fragments[next.fragment], ownership_[next.fragment], aggregate, areas[next.fragment]);
   }
 
   std::uint64_t depth_tests() const { return depth_tests_; }
@@ -91,24 +91,17 @@ class PixelComposer {
     return static_cast<float>(counts.taken);
   }
 
-  // Whole fragments first, specks among them: what they took beyond their positions is then known to those that are
-  // partly hidden.
-  const std::vector<std::uint32_t>& whole_first(std::size_t count) {
-    order_.resize(count);
-    if (count == 1) {
-      order_[0] = 0;
-      return order_;
-    }
-    whole_.resize(count);
-    for (std::uint32_t i = 0; i < count; ++i) {
-      const Ownership& seen = ownership_[i];
-      order_[i] = i;
-      whole_[i] = seen.covered > 0 ? static_cast<float>(seen.visible) / static_cast<float>(seen.covered) : 1.0f;
-    }
-    std::sort(order_.begin(), order_.end(), [this](std::uint32_t a, std::uint32_t b) {
-      return whole_[a] > whole_[b] || (whole_[a] == whole_[b] && a < b);
-    });
-    return order_;
+  // `area`: in, that of a speck; out, what is added.
+  void add(const Fragment& fragment, const Ownership& seen, PixelAggregate& aggregate, float& area) const {
+    area = seen.covered > 0
+               ? visible_area(fragment.alpha, static_cast<float>(seen.covered), static_cast<float>(seen.visible),
+                              static_cast<float>(positions_.count()), aggregate.taken)
+               : std::min(area, 1.0f - aggregate.taken.area);
+    aggregate.taken.area += area;
+    aggregate.taken.positions += static_cast<float>(seen.visible);
+    aggregate.mask = aggregate.mask | seen.owned;
+    const float share = area / fragment.alpha;
+    aggregate.color += share * fragment.color;
   }
 
   // Fragments that cover no position. Each asks the owners of the three nearest positions whether it lies before them,
@@ -173,8 +166,11 @@ class PixelComposer {
   const PositionSet& positions_;
   std::vector<MaskedPlane> planes_;  // of the window at hand, per fragment
   std::vector<Ownership> ownership_;
-  std::vector<std::uint32_t> order_;
-  std::vector<float> whole_;          // visible part of the positions
+  struct Partial {
+    float visible;  // part of its positions
+    std::uint32_t fragment;
+  };
+  std::vector<Partial> partial_;      // fragments that are partly hidden
   std::vector<std::uint32_t> owner_;  // per position: which fragment
   std::vector<float> front_, back_;   // area of specks that face either way, by nearest position; else zeros
   std::uint64_t depth_tests_ = 0, additions_ = 0;
