@@ -12,16 +12,44 @@
 namespace beampipe {
 namespace {
 
-// Calls visit(tile) for each tile of the band that the triangle's closed bounds touch.
+// Rounds down, also below 0; `by` > 0.
+std::int64_t floor_of(std::int64_t value, std::int64_t by) { return value / by - (value % by < 0); }
+
+// Keeps, of the columns [left, right] of a row of closed tiles between `top` and `bottom` (1/256 px), those where the
+// closed triangle does not lie wholly beyond one of its edges: tested as cells are, at the corner that lies deepest
+// inside (stages/traverse.h).
+void narrow(const EdgeSet& set, std::int64_t top, std::int64_t bottom, std::int64_t tile_size, std::int32_t& left,
+            std::int32_t& right) {
+  for (const Edge& edge : set.edges) {
+    const std::int64_t at_zero = edge.at(0, edge.b > 0 ? bottom : top);
+    if (edge.a > 0) {  // from where a tile's right side is inside
+      const std::int64_t outside = floor_of(-at_zero - 1, edge.a * tile_size);
+      left = static_cast<std::int32_t>(std::clamp<std::int64_t>(outside, left, right + 1));
+    } else if (edge.a < 0) {  // up to where a tile's left side is
+      const std::int64_t inside = floor_of(at_zero, -edge.a * tile_size);
+      right = static_cast<std::int32_t>(std::clamp<std::int64_t>(inside, left - 1, right));
+    } else if (at_zero < 0) {
+      right = left - 1;
+    }
+  }
+}
+
+// Calls visit(tile) for each tile of the band that the closed triangle touches.
 template <class Visit>
 void for_touched_tiles(const SetupTriangle& triangle, const TileGrid& grid, const Band& band, Visit&& visit) {
   const Tile frame{0, 0, grid.tiles.back().x1, grid.tiles.back().y1};
   const CellRange range = touched_range(triangle, frame, CellGrid{});
   if (range.x0 >= range.x1 || range.y0 >= range.y1) return;
   const auto row_of = [&](std::size_t tile) { return static_cast<std::int32_t>(tile) / grid.columns; };
+  const EdgeSet set(triangle);
   const std::int32_t last_row = std::min((range.y1 - 1) / grid.size, row_of(band.last - 1));
   for (std::int32_t y = std::max(range.y0 / grid.size, row_of(band.first)); y <= last_row; ++y) {
-    for (std::int32_t x = range.x0 / grid.size; x <= (range.x1 - 1) / grid.size; ++x) {
+    std::int32_t left = range.x0 / grid.size, right = (range.x1 - 1) / grid.size;
+    if (left < right) {
+      const std::int64_t size = std::int64_t{grid.size} * kSubpixelUnits;
+      narrow(set, y * size, (y + 1) * size, size, left, right);
+    }
+    for (std::int32_t x = left; x <= right; ++x) {
       const auto tile = static_cast<std::size_t>(y * grid.columns + x);
       if (tile >= band.first && tile < band.last) visit(tile);
     }
@@ -42,6 +70,18 @@ struct Need {
   }
 };
 
+// Of pixels that a triangle touches, at most: those of its box; or its area and those that its border touches, 2 for
+// each pixel of height and 2 of width of each side's (at most 4 meet in a corner), which twice the box's are.
+std::uint64_t most_pixels(const SetupTriangle& triangle, std::uint64_t width, std::uint64_t height) {
+  const auto side = [&](int k) {
+    return glm::dvec2(triangle.x[k] - triangle.x[0], triangle.y[k] - triangle.y[0]) / double{kSubpixelUnits};
+  };
+  const glm::dvec2 a = side(1), b = side(2);
+  const double area = 0.5 * std::abs(a.x * b.y - a.y * b.x);
+  const double by_border = area + 4 * static_cast<double>(width + height) + 16;
+  return static_cast<std::uint64_t>(std::min(by_border, static_cast<double>(width * height)));
+}
+
 // Not less than what the frame needs as one band, and quickly found: by the triangles' bounds.
 std::uint64_t most_bytes(const SetupTriangles& triangles, const TileGrid& grid, std::size_t pair_bytes) {
   const Tile frame{0, 0, grid.tiles.back().x1, grid.tiles.back().y1};
@@ -49,10 +89,10 @@ std::uint64_t most_bytes(const SetupTriangles& triangles, const TileGrid& grid, 
   for (const SetupTriangle& triangle : triangles.triangles) {
     const CellRange range = touched_range(triangle, frame, CellGrid{});
     if (range.x0 >= range.x1 || range.y0 >= range.y1) continue;
-    const auto length = [](std::int32_t from, std::int32_t to) { return static_cast<std::uint64_t>(to - from); };
-    const std::uint64_t tiles = (length(range.x0, range.x1) / static_cast<std::uint64_t>(grid.size) + 2) *
-                                (length(range.y0, range.y1) / static_cast<std::uint64_t>(grid.size) + 2);
-    bytes += length(range.x0, range.x1) * length(range.y0, range.y1) * pair_bytes + tiles * sizeof(std::uint32_t);
+    const auto width = static_cast<std::uint64_t>(range.x1 - range.x0),
+               height = static_cast<std::uint64_t>(range.y1 - range.y0), size = static_cast<std::uint64_t>(grid.size);
+    bytes += most_pixels(triangle, width, height) * pair_bytes +
+             (width / size + 2) * (height / size + 2) * sizeof(std::uint32_t);
   }
   return bytes;
 }

@@ -96,15 +96,18 @@ void traverse(const SetupTriangle& triangle, const EdgeSet& set, const Tile& til
         CellRow& row = rows[y & 1];
         row = cell_row(edges, static_cast<std::size_t>(std::min(range.x1 - left, kCellsPerRow)));
         row.touched &= inside;
-        counts.cells_touched += static_cast<std::uint64_t>(std::popcount(row.touched));
       }
       const std::uint32_t columns = rows[0].touched | rows[1].touched;
       constexpr std::uint32_t kEven = 0x55555555;
       for (std::uint32_t quads = (columns | columns >> 1) & kEven; quads != 0; quads &= quads - 1) {
         const int first = std::countr_zero(quads);
-        for (std::int32_t y = 0; y < 2; ++y)
-          for (int x = first; x < first + 2; ++x)
-            if (rows[y].touched >> x & 1) visit(left + x, quad_y + y, quad, (rows[y].full >> x & 1) != 0);
+        for (std::int32_t y = 0; y < 2; ++y) {
+          for (int x = first; x < first + 2; ++x) {
+            if ((rows[y].touched >> x & 1) == 0) continue;
+            ++counts.cells_touched;
+            visit(left + x, quad_y + y, quad, (rows[y].full >> x & 1) != 0);
+          }
+        }
         ++quad;
       }
     }

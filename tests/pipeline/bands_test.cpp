@@ -3,8 +3,10 @@
 #include <gtest/gtest.h>
 
 #include "pipeline/technique.h"
+#include "stages/conservative_raster.h"
 #include "stages/vertex_setup.h"
 #include "test_traces.h"
+#include "tests/simd/random.h"
 
 namespace beampipe {
 namespace {
@@ -67,6 +69,74 @@ TEST(Bands, ListsAreThoseOfTheWholeFrame) {
                                                all.begin() + static_cast<std::ptrdiff_t>(last));
       EXPECT_EQ(bin_triangles(triangles, grid, {first, last}), expected) << first << " to " << last;
     }
+  }
+}
+
+// Corners on pixel corners or anywhere, in the frame or far from it; long diagonals among them.
+SetupTriangle random_triangle(Random& random, std::int32_t width, std::int32_t height) {
+  const int reach = random.pick(std::array{1, 8, 40, 400});
+  const std::int32_t left = random.int32(-reach, width), top = random.int32(-reach, height);
+  SetupTriangle triangle{};
+  do {
+    const bool on_corners = random.one_in(2), thin = random.one_in(2);
+    for (int k = 0; k < 3; ++k) {
+      const std::int32_t x = random.int32(0, reach), y = thin ? x + random.int32(0, 1) : random.int32(0, reach);
+      triangle.x[k] = (left + x) * kSubpixelUnits + (on_corners ? 0 : random.int32(0, kSubpixelUnits));
+      triangle.y[k] = (top + y) * kSubpixelUnits + (on_corners ? 0 : random.int32(0, kSubpixelUnits));
+    }
+    const Edge edge = edge_of(triangle, 0);
+    if (edge.at(triangle.x[2], triangle.y[2]) < 0) {
+      std::swap(triangle.x[1], triangle.x[2]);
+      std::swap(triangle.y[1], triangle.y[2]);
+    }
+  } while (edge_of(triangle, 0).at(triangle.x[2], triangle.y[2]) == 0);
+  return triangle;
+}
+
+std::size_t count_pairs(const SetupTriangles& triangles, const Tile& tile) {
+  StageCounters unused;
+  std::vector<PixelTriangle> pairs;
+  conservative_raster(triangles, {0}, tile, unused, pairs);
+  return pairs.size();
+}
+
+// No tile that a triangle touches lacks it, and few lists hold one in vain: at the tips of slivers, and where the
+// borders of tiles and triangles meet.
+TEST(Bands, ListsHoldWhatTilesTouch) {
+  Random random(71);
+  SCOPED_TRACE(random.name());
+  Frame frame;
+  frame.width = 200, frame.height = 150;
+  const TileGrid grid(frame, 32);
+  std::size_t listed = 0, touched = 0;
+  for (int i = 0; i < 20'000; ++i) {
+    SetupTriangles one;
+    one.triangles.push_back(random_triangle(random, 200, 150));
+    const std::vector<TriangleList> lists = bin_triangles(one, grid, {0, grid.tiles.size()});
+    for (std::size_t tile = 0; tile < lists.size(); ++tile) {
+      const bool touches = count_pairs(one, grid.tiles[tile]) > 0;
+      ASSERT_TRUE(!touches || !lists[tile].empty()) << "triangle " << i << ", tile " << tile;
+      touched += touches;
+      listed += !lists[tile].empty();
+    }
+  }
+  EXPECT_LT(static_cast<double>(listed), 1.05 * static_cast<double>(touched));
+}
+
+// The quick look at the whole frame never takes a triangle for less than it is.
+TEST(Bands, NoTriangleSlipsThroughTheLimit) {
+  Random random(72);
+  SCOPED_TRACE(random.name());
+  Frame frame;
+  frame.width = frame.height = 64;
+  const TileGrid grid(frame, 64);
+  constexpr std::size_t kHuge = 1 << 20;  // bytes a pair
+  for (int i = 0; i < 20'000; ++i) {
+    SetupTriangles one;
+    one.triangles.push_back(random_triangle(random, 64, 64));
+    const std::size_t pairs = count_pairs(one, grid.tiles[0]);
+    if (pairs == 0) continue;
+    ASSERT_THROW(split_into_bands(one, grid, kHuge, 1, pairs * kHuge - 1), std::runtime_error) << "triangle " << i;
   }
 }
 
