@@ -10,14 +10,16 @@
 
 namespace beampipe {
 
-// sample_raster over the list's triangles in order; calls body(fragments) for each batch.
+// One pass of sample_raster over the list's triangles in order, with nothing behind the cells that it has closed so
+// far, as a hierarchical depth buffer does it; calls body(fragments) for each batch.
 template <class Body>
 void raster_in_batches(const SetupTriangles& triangles, const TriangleList& list, const Tile& tile,
                        const Sampling& sampling, const StageTimer& timed, StageCounters& raster, Body&& body) {
   std::vector<SampleFragment> fragments;
+  ClosedDepth closed(cells_of(tile, sampling.grid));
   for_each_batch(list, [&](const TriangleList& batch) {
     fragments.clear();
-    sample_raster(triangles, batch, tile, sampling, timed(raster), fragments);
+    sample_raster(triangles, batch, tile, sampling, timed(raster), fragments, &closed);
     body(fragments);
   });
 }

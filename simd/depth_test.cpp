@@ -35,13 +35,13 @@ HWY_INLINE std::uint32_t mask_bits(D d, hn::Mask<D> mask) {
   return bytes[0] | std::uint32_t{bytes[1]} << 8;
 }
 
-std::uint64_t depth_test_kernel(const CellDepth* items, std::size_t count, const SamplePattern& pattern,
-                                const SampleSurface& surface, std::uint32_t* passed_masks) {
+SampleCounts depth_test_kernel(const CellDepth* items, std::size_t count, const SamplePattern& pattern,
+                               const SampleSurface& surface, std::uint32_t* passed_masks) {
   const hn::CappedTag<float, kMaxMaskSamples> d;
   const hn::RebindToUnsigned<decltype(d)> du;
   const std::size_t lanes = hn::Lanes(d);
   const auto samples = static_cast<std::size_t>(pattern.count);
-  std::uint64_t passed = 0;
+  SampleCounts counts{0, 0};
   for (std::size_t i = 0; i < count; ++i) {
     const CellDepth& item = items[i];
     std::uint32_t mask = 0;
@@ -54,16 +54,18 @@ std::uint64_t depth_test_kernel(const CellDepth* items, std::size_t count, const
                        surface.triangle + item.cell * samples + s);
       mask |= mask_bits(d, pass) << s;
     }
-    passed += static_cast<std::uint64_t>(std::popcount(mask));
+    counts.tested += static_cast<std::uint64_t>(std::popcount(item.mask));
+    counts.passed += static_cast<std::uint64_t>(std::popcount(mask));
     if (passed_masks) passed_masks[i] = mask;
   }
-  return passed;
+  return counts;
 }
 
-void depth_equal_kernel(const CellDepth* items, std::size_t count, const SamplePattern& pattern, const float* depth,
-                        std::uint32_t* masks) {
+SampleCounts depth_equal_kernel(const CellDepth* items, std::size_t count, const SamplePattern& pattern,
+                                const float* depth, std::uint32_t* masks) {
   const hn::CappedTag<float, kMaxMaskSamples> d;
   const auto samples = static_cast<std::size_t>(pattern.count);
+  SampleCounts counts{0, 0};
   for (std::size_t i = 0; i < count; ++i) {
     const CellDepth& item = items[i];
     std::uint32_t mask = 0;
@@ -72,7 +74,10 @@ void depth_equal_kernel(const CellDepth* items, std::size_t count, const SampleP
       mask |= mask_bits(d, equal) << s;
     }
     masks[i] = mask & item.mask;
+    counts.tested += static_cast<std::uint64_t>(std::popcount(item.mask));
+    counts.passed += static_cast<std::uint64_t>(std::popcount(masks[i]));
   }
+  return counts;
 }
 
 }  // namespace HWY_NAMESPACE
@@ -82,14 +87,14 @@ HWY_AFTER_NAMESPACE();
 #if HWY_ONCE
 namespace beampipe {
 HWY_EXPORT(depth_test_kernel);
-std::uint64_t depth_test(const CellDepth* items, std::size_t count, const SamplePattern& pattern,
-                         const SampleSurface& surface, std::uint32_t* passed) {
+SampleCounts depth_test(const CellDepth* items, std::size_t count, const SamplePattern& pattern,
+                        const SampleSurface& surface, std::uint32_t* passed) {
   return HWY_DYNAMIC_DISPATCH(depth_test_kernel)(items, count, pattern, surface, passed);
 }
 HWY_EXPORT(depth_equal_kernel);
-void depth_equal(const CellDepth* items, std::size_t count, const SamplePattern& pattern, const float* depth,
-                 std::uint32_t* masks) {
-  HWY_DYNAMIC_DISPATCH(depth_equal_kernel)(items, count, pattern, depth, masks);
+SampleCounts depth_equal(const CellDepth* items, std::size_t count, const SamplePattern& pattern, const float* depth,
+                         std::uint32_t* masks) {
+  return HWY_DYNAMIC_DISPATCH(depth_equal_kernel)(items, count, pattern, depth, masks);
 }
 }  // namespace beampipe
 #endif

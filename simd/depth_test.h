@@ -24,15 +24,19 @@ struct SampleSurface {
   std::uint32_t* triangle;
 };
 
-// In order: a later item sees what an earlier one stored. Returns how many samples passed; `passed`, if not null, gets
-// which: a mask per item. Lanes are across samples.
-std::uint64_t depth_test(const CellDepth* items, std::size_t count, const SamplePattern& pattern,
-                         const SampleSurface& surface, std::uint32_t* passed = nullptr);
+struct SampleCounts {
+  std::uint64_t tested, passed;
+};
+
+// In order: a later item sees what an earlier one stored. `passed`, if not null, gets the samples that passed: a mask
+// per item. Lanes are across samples.
+SampleCounts depth_test(const CellDepth* items, std::size_t count, const SamplePattern& pattern,
+                        const SampleSurface& surface, std::uint32_t* passed = nullptr);
 
 // Behind a depth-only pass: masks[i] keeps those samples of items[i].mask that have the stored depth, to the last bit.
 // Reads `depth` as far as depth_test does. Lanes are across samples.
-void depth_equal(const CellDepth* items, std::size_t count, const SamplePattern& pattern, const float* depth,
-                 std::uint32_t* masks);
+SampleCounts depth_equal(const CellDepth* items, std::size_t count, const SamplePattern& pattern, const float* depth,
+                         std::uint32_t* masks);
 
 // Scalar twins of one sample: does it pass?
 template <class Float>

@@ -8,9 +8,9 @@
 namespace beampipe {
 namespace {
 
-// What the kernels read, and how many samples they test.
+// What the kernels read.
 std::vector<CellDepth> cell_depths(const SetupTriangles& triangles, const std::vector<SampleFragment>& fragments,
-                                   const Tile& tile, const CellGrid& grid, std::uint64_t& tested) {
+                                   const Tile& tile, const CellGrid& grid) {
   const double cell_width = 1.0 / grid.columns, cell_height = 1.0 / grid.rows;  // pixels; exact
   std::vector<CellDepth> items;
   items.reserve(fragments.size());
@@ -24,7 +24,6 @@ std::vector<CellDepth> cell_depths(const SetupTriangles& triangles, const std::v
     item.triangle = fragment.triangle;
     cell_plane(plane.z, plane.dzdx, plane.dzdy, plane.anchor_x, plane.anchor_y, left, top, item.z, item.dzdx,
                item.dzdy);
-    tested += static_cast<std::uint64_t>(std::popcount(fragment.mask));
   }
   return items;
 }
@@ -52,15 +51,15 @@ OperationCounts per_fragment_cost() {
   });
 }
 
-void count(std::size_t fragments, std::uint64_t tested, std::uint64_t passed, std::uint32_t bytes_written,
+void count(std::size_t fragments, const SampleCounts& samples, std::uint32_t bytes_written,
            const SamplePattern& pattern, StageCounters& counters) {
-  counters.items_in += tested;
-  counters.items_out += passed;
+  counters.items_in += samples.tested;
+  counters.items_out += samples.passed;
   counters.ops += per_fragment_cost() * fragments;
-  counters.ops += per_sample_cost() * tested;
-  counters.bytes_read += tested * kSampleDepthBytes + fragments * kSampleFragmentBytes;
-  counters.bytes_written += passed * bytes_written;
-  counters.lanes_used += tested;
+  counters.ops += per_sample_cost() * samples.tested;
+  counters.bytes_read += samples.tested * kSampleDepthBytes + fragments * kSampleFragmentBytes;
+  counters.bytes_written += samples.passed * bytes_written;
+  counters.lanes_used += samples.tested;
   counters.lanes_issued += fragments * static_cast<std::size_t>(pattern.count);
 }
 
@@ -77,29 +76,25 @@ SampleTile::SampleTile(const Tile& tile, const Sampling& sampling, std::uint32_t
 void depth_test(const SetupTriangles& triangles, const std::vector<SampleFragment>& fragments, const Tile& tile,
                 const Sampling& sampling, StageCounters& counters, SampleTile& surface,
                 std::vector<SampleAccess>& accesses) {
-  std::uint64_t tested = 0;
-  const std::vector<CellDepth> items = cell_depths(triangles, fragments, tile, sampling.grid, tested);
+  const std::vector<CellDepth> items = cell_depths(triangles, fragments, tile, sampling.grid);
   std::vector<std::uint32_t> masks(items.size());
-  const std::uint64_t passed = depth_test(items.data(), items.size(), sampling.pattern,
+  const SampleCounts samples = depth_test(items.data(), items.size(), sampling.pattern,
                                           {surface.depth.data(), surface.triangle.data()}, masks.data());
   list_accesses(items, masks, accesses);
-  count(items.size(), tested, passed, kSampleDepthBytes + surface.color_bytes, sampling.pattern, counters);
+  count(items.size(), samples, kSampleDepthBytes + surface.color_bytes, sampling.pattern, counters);
 }
 
 void depth_test_equal(const SetupTriangles& triangles, const Tile& tile, const Sampling& sampling,
                       StageCounters& counters, const SampleTile& surface, std::vector<SampleFragment>& fragments,
                       std::vector<SampleAccess>& accesses) {
-  std::uint64_t tested = 0, passed = 0;
-  const std::vector<CellDepth> items = cell_depths(triangles, fragments, tile, sampling.grid, tested);
+  const std::vector<CellDepth> items = cell_depths(triangles, fragments, tile, sampling.grid);
   std::vector<std::uint32_t> masks(items.size());
-  depth_equal(items.data(), items.size(), sampling.pattern, surface.depth.data(), masks.data());
+  const SampleCounts samples =
+      depth_equal(items.data(), items.size(), sampling.pattern, surface.depth.data(), masks.data());
   list_accesses(items, masks, accesses);
-  for (std::size_t i = 0; i < masks.size(); ++i) {
-    fragments[i].mask = masks[i];
-    passed += static_cast<std::uint64_t>(std::popcount(masks[i]));
-  }
+  for (std::size_t i = 0; i < masks.size(); ++i) fragments[i].mask = masks[i];
   std::erase_if(fragments, [](const SampleFragment& fragment) { return fragment.mask == 0; });
-  count(items.size(), tested, passed, surface.color_bytes, sampling.pattern, counters);
+  count(items.size(), samples, surface.color_bytes, sampling.pattern, counters);
 }
 
 }  // namespace beampipe

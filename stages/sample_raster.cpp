@@ -1,5 +1,8 @@
 #include "stages/sample_raster.h"
 
+#include <algorithm>
+#include <cmath>
+
 #include "simd/sample_test.h"
 #include "stages/raster_cost.h"
 
@@ -16,6 +19,20 @@ CellEdges cell_edges(const EdgeSet& set, std::int64_t x, std::int64_t y) {
   return cell;
 }
 
+// Between these the depths of all the triangle's samples lie as the depth test rounds them: it computes them in single
+// precision from a corner of the cell, a pixel's slopes away at most.
+struct SampleDepths {
+  float nearest, farthest;
+  explicit SampleDepths(const SetupTriangle& triangle) {
+    constexpr double kRounding = 0x1p-21;  // of what is added up: eight times a single rounding
+    const auto [low, high] = std::minmax({triangle.vertex_z[0], triangle.vertex_z[1], triangle.vertex_z[2]});
+    const double reach = std::abs(triangle.depth.dzdx) + std::abs(triangle.depth.dzdy);
+    const auto margin =
+        static_cast<float>(kRounding * (reach + std::max(std::abs(double{low}), std::abs(double{high}))));
+    nearest = low - margin, farthest = high + margin;
+  }
+};
+
 OperationCounts sample_test_cost(const SamplePattern& pattern) {
   return count_operations([&](OperationCounts& counts) {
     using Int = Counted<std::int64_t>;
@@ -27,7 +44,8 @@ OperationCounts sample_test_cost(const SamplePattern& pattern) {
 }  // namespace
 
 void sample_raster(const SetupTriangles& triangles, const TriangleList& list, const Tile& tile,
-                   const Sampling& sampling, StageCounters& counters, std::vector<SampleFragment>& out) {
+                   const Sampling& sampling, StageCounters& counters, std::vector<SampleFragment>& out,
+                   ClosedDepth* closed) {
   const SamplePattern& pattern = sampling.pattern;
   const std::uint32_t every_sample = ~0u >> (kMaxMaskSamples - pattern.count);
   const std::size_t before = out.size();
@@ -37,9 +55,13 @@ void sample_raster(const SetupTriangles& triangles, const TriangleList& list, co
   std::vector<std::size_t> destination;  // and where their masks go
   for (const std::uint32_t index : list) {
     const SetupTriangle& triangle = triangles.triangles[index];
+    const SampleDepths depths(triangle);
+    if (closed && closed->hides_everywhere(depths.nearest)) continue;
     const EdgeSet set(triangle);
     traverse(triangle, set, tile, sampling.grid, FullMeans::samples, quad, counts,
              [&](std::int32_t x, std::int32_t y, std::uint32_t q, bool full) {
+               if (closed && closed->hides(x, y, depths.nearest)) return;
+               if (closed && full) closed->close(x, y, depths.farthest);
                if (!full) {
                  partial.push_back(cell_edges(set, std::int64_t{x} * sampling.grid.cell_width(),
                                               std::int64_t{y} * sampling.grid.cell_height()));
@@ -47,6 +69,7 @@ void sample_raster(const SetupTriangles& triangles, const TriangleList& list, co
                }
                out.push_back({index, q, x, y, every_sample});
              });
+    if (closed) closed->refresh();
   }
   std::vector<std::uint32_t> masks(partial.size());
   sample_masks(partial.data(), partial.size(), pattern, masks.data());

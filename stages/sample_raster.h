@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "simd/sample_pattern.h"
+#include "stages/closed_depth.h"
 #include "stages/counters.h"
 #include "stages/setup_triangle.h"
 #include "stages/tile.h"
@@ -27,8 +28,16 @@ struct Sampling {
   SamplePattern pattern;
 };
 
-// Appends to `out`, triangle by triangle in the list's order.
+// The tile in cells: what has a value for each of them.
+inline Tile cells_of(const Tile& tile, const CellGrid& grid) {
+  return {tile.x0 * grid.columns, tile.y0 * grid.rows, tile.x1 * grid.columns, tile.y1 * grid.rows};
+}
+
+// Appends to `out`, triangle by triangle in the list's order. With `closed`, of cells_of(tile), a triangle is left out
+// of cells that earlier ones, of this list or of those before, cover as a whole and in front of all its vertices: no
+// sample would pass its depth test there.
 void sample_raster(const SetupTriangles& triangles, const TriangleList& list, const Tile& tile,
-                   const Sampling& sampling, StageCounters& counters, std::vector<SampleFragment>& out);
+                   const Sampling& sampling, StageCounters& counters, std::vector<SampleFragment>& out,
+                   ClosedDepth* closed = nullptr);
 
 }  // namespace beampipe

@@ -100,8 +100,11 @@ TEST(Acaa, SaturationStopsAtWhatGeometryCovers) {
 }
 
 TEST(Acaa, HiddenFragmentsAreNotShaded) {
-  const Trace trace =
-      pixel_trace(4, 4, {everywhere(0.7, glm::vec3(1)), everywhere(0.3, glm::vec3(1)), everywhere(0.5, glm::vec3(1))});
+  const auto layers = [](double first, double second, double third) {
+    return pixel_trace(
+        4, 4, {everywhere(first, glm::vec3(1)), everywhere(second, glm::vec3(1)), everywhere(third, glm::vec3(1))});
+  };
+  Trace trace = layers(0.7, 0.5, 0.3);  // far to near
   const auto shaded = [&](const char* spec) {
     for (const StageCounters& stage : render(spec, trace).stages)
       if (stage.stage == "shade") return stage.lanes_used;
@@ -111,6 +114,8 @@ TEST(Acaa, HiddenFragmentsAreNotShaded) {
   EXPECT_EQ(shaded("msaa:8,prepass"), 16u);
   EXPECT_EQ(shaded("acaa:8"), 16u);
   EXPECT_EQ(shaded("acaa:64"), 4 * 16u);  // in each of four rounds
+  trace = layers(0.3, 0.7, 0.5);
+  EXPECT_EQ(shaded("msaa:8"), 16u) << "behind closed cells";
 }
 
 TEST(Acaa, ADepthPassDoesNotChangeThePictureOfMsaa) {

@@ -2,6 +2,7 @@
 
 #include <gtest/gtest.h>
 
+#include <bit>
 #include <vector>
 
 #include "tests/simd/every_target.h"
@@ -53,13 +54,16 @@ TEST(DepthTest, KernelEqualsTwinForEveryPatternSize) {
       items.push_back({static_cast<std::uint32_t>(random.integer(0, kCells - 1)),
                        random.word() & (~0u >> (kMaxMaskSamples - count)), i, -random.real32(0, 4) / 4,
                        random.pick(kSlopes), random.pick(kSlopes)});
+    std::uint64_t tested = 0;
+    for (const CellDepth& item : items) tested += static_cast<std::uint64_t>(std::popcount(item.mask));
     Samples expected = cleared(kCells, pattern);
     const std::uint64_t expected_passes = twin(items, pattern, expected);
     on_every_target([&] {
       Samples found = cleared(kCells, pattern);
-      const std::uint64_t passes =
+      const SampleCounts counts =
           depth_test(items.data(), items.size(), pattern, {found.depth.data(), found.triangle.data()});
-      ASSERT_EQ(passes, expected_passes) << count << " samples";
+      ASSERT_EQ(counts.tested, tested) << count << " samples";
+      ASSERT_EQ(counts.passed, expected_passes) << count << " samples";
       ASSERT_TRUE(found == expected) << count << " samples";
     });
   }
@@ -74,7 +78,7 @@ TEST(DepthTest, NearerReplacesEqualDoesNot) {
                                         {0, 0b1111u, 4, -0.25f, 0, 0}};
   on_every_target([&] {
     Samples found = cleared(1, pattern);
-    EXPECT_EQ(depth_test(items.data(), items.size(), pattern, {found.depth.data(), found.triangle.data()}), 6u);
+    EXPECT_EQ(depth_test(items.data(), items.size(), pattern, {found.depth.data(), found.triangle.data()}).passed, 6u);
     const std::vector<std::uint32_t> owners(found.triangle.begin(), found.triangle.begin() + 4);
     EXPECT_EQ(owners, (std::vector<std::uint32_t>{3, 1, 3, 1}));
     EXPECT_EQ(found.depth[0], -0.75f);

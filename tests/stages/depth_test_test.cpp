@@ -2,6 +2,7 @@
 
 #include <gtest/gtest.h>
 
+#include <array>
 #include <vector>
 
 #include "tests/stages/screen_triangles.h"
@@ -24,6 +25,24 @@ Tested render(const SetupTriangles& triangles, const Sampling& sampling, const T
   std::vector<SampleAccess> accesses;
   depth_test(triangles, fragments, tile, sampling, tested.counters, tested.surface, accesses);
   return tested;
+}
+
+// Triangles at few depths or slanted, large ones and slivers, whose planes are steep.
+SetupTriangles random_layers(Random& random) {
+  SetupTriangles triangles;
+  const auto corner = [&](std::int32_t reach, float z, float slant) {
+    return ScreenPoint{4 * 256 + random.int32(-reach, reach), 6 * 256 + random.int32(-reach, reach),
+                       z + random.real32(-slant, slant)};
+  };
+  for (int i = 0; i < 60; ++i) {
+    const std::int32_t reach = random.pick(std::array{700, 3'000, 60'000});
+    const float z = -0.125f * static_cast<float>(random.integer(1, 7));
+    const float slant = random.pick(std::array{0.0f, 1e-6f, 1e-3f, 0.1f});
+    ScreenPoint a = corner(reach, z, slant), b = corner(reach, z, slant), c = corner(reach, z, slant);
+    if (random.one_in(4)) c = {(a.x + b.x) / 2 + random.int32(-2, 2), (a.y + b.y) / 2 + random.int32(-2, 2), c.z};
+    add_triangle(triangles, a, b, c);
+  }
+  return triangles;
 }
 
 const Sampling kMsaa8{CellGrid{}, standard_pattern(8)};
@@ -50,6 +69,33 @@ TEST(DepthTestStage, EqualDepthKeepsTheEarlier) {
     for (std::size_t i = 0; i < kTile.pixels() * found.surface.samples_per_pixel; ++i)
       ASSERT_EQ(found.surface.triangle[i], 0u);
   }
+}
+
+// What is left out behind closed cells would not have passed: the surface is the same to the last bit.
+TEST(DepthTestStage, ClosedCellsHideNothingThatPasses) {
+  Random random(81);
+  SCOPED_TRACE(random.name());
+  std::size_t hidden = 0;
+  for (int i = 0; i < 2'000; ++i) {
+    const SetupTriangles triangles = random_layers(random);
+    for (const Sampling& sampling : {kMsaa8, Sampling{CellGrid{4, 2}, standard_pattern(8, 64, 128)}}) {
+      SampleTile all(kTile, sampling), open(kTile, sampling);
+      StageCounters unused;
+      std::vector<SampleAccess> accesses;
+      std::vector<SampleFragment> fragments;
+      sample_raster(triangles, all_of(triangles), kTile, sampling, unused, fragments);
+      depth_test(triangles, fragments, kTile, sampling, unused, all, accesses);
+      hidden += fragments.size();
+      fragments.clear();
+      ClosedDepth closed(cells_of(kTile, sampling.grid));
+      sample_raster(triangles, all_of(triangles), kTile, sampling, unused, fragments, &closed);
+      depth_test(triangles, fragments, kTile, sampling, unused, open, accesses);
+      hidden -= fragments.size();
+      ASSERT_EQ(open.depth, all.depth) << "soup " << i;
+      ASSERT_EQ(open.triangle, all.triangle) << "soup " << i;
+    }
+  }
+  EXPECT_GT(hidden, 100'000u);
 }
 
 TEST(DepthTestStage, UncoveredSamplesKeepTheBackground) {
