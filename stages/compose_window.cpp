@@ -3,21 +3,10 @@
 #include <algorithm>
 #include <cstring>
 
-#include "simd/conserve.h"
-#include "simd/window_owners.h"
-#include "stages/counting.h"
+#include "stages/compose_cost.h"
 
 namespace beampipe {
 namespace {
-
-// A speck of a smooth surface counts as part of the surface that owns the position beside it when it lies at most this
-// far behind, in pixels of that surface's slope: a quarter of the distance between positions of a 256-bit mask.
-constexpr float kSurfaceReach = 1.0f / 64.0f;
-
-// Specks whose nearest position is the same have at most so many times that position's share of the pixel together;
-// more is several surfaces on top of each other. Twice is about the most that lies nearest to one position; four times
-// leaves dense meshes alone.
-constexpr float kSpeckShares = 4.0f;
 
 constexpr std::uint32_t kNobody = ~0u;
 
@@ -44,13 +33,24 @@ void store(const PixelAggregate& aggregate, StoredAggregate<Words, Channel>& sto
   for (int c = 0; c < 3; ++c) stored.color[c] = Channel(aggregate.color[c]);
 }
 
+// What was done, for the counters.
+struct ComposeWork {
+  std::uint64_t fragments = 0;                 // whose masks were looked at
+  std::uint64_t contestants = 0;               // of windows with contested positions
+  std::uint64_t depth_tests = 0;               // at those
+  std::uint64_t partial = 0, order_tests = 0;  // partly hidden fragments, which are sorted
+  std::uint64_t visible = 0;                   // fragments with positions that were added
+  std::uint64_t specks = 0, surface_tests = 0;
+  std::uint64_t closed = 0;  // pixels of which nothing is left
+};
+
 class PixelComposer {
  public:
   explicit PixelComposer(const PositionSet& positions) : positions_(positions) {}
 
   // Adds the window's fragments, all of one pixel, in primitive order. areas[i]: what fragment i adds.
   void add_window(const Fragment* fragments, std::size_t count, PixelAggregate& aggregate, float* areas) {
-    additions_ += count;
+    work_.fragments += count;
     aggregate.taken.positions = find_owners(fragments, count, aggregate.mask);
     bool specks = false;
     for (std::size_t i = 0; i < count; ++i) {
@@ -69,15 +69,24 @@ class PixelComposer {
         partial_.push_back({static_cast<float>(seen.visible) / static_cast<float>(seen.covered), i});
       }
     }
-    std::sort(partial_.begin(), partial_.end(), [](const Partial& a, const Partial& b) {
+    work_.partial += partial_.size();
+    std::sort(partial_.begin(), partial_.end(), [this](const Partial& a, const Partial& b) {
+      ++work_.order_tests;
       return a.visible > b.visible || (a.visible == b.visible && a.fragment < b.fragment);
     });
     for (const Partial& next : partial_)
       add(fragments[next.fragment], ownership_[next.fragment], aggregate, areas[next.fragment]);
   }
 
-  std::uint64_t depth_tests() const { return depth_tests_; }
-  std::uint64_t additions() const { return additions_; }
+  // Nothing is left for the background: what rounding left goes to what is there.
+  void close(PixelAggregate& aggregate) {
+    if (aggregate.taken.positions != static_cast<float>(positions_.count())) return;
+    aggregate.color *= 1.0f / aggregate.taken.area;
+    aggregate.taken.area = 1.0f;
+    ++work_.closed;
+  }
+
+  const ComposeWork& work() const { return work_; }
 
  private:
   // Returns how many positions are taken.
@@ -87,12 +96,14 @@ class PixelComposer {
     for (std::size_t i = 0; i < count; ++i) planes_[i] = {fragments[i].mask, corner_plane(fragments[i].plane)};
     const WindowCounts counts =
         window_owners(planes_.data(), count, taken, positions_.patterns.data(), ownership_.data());
-    depth_tests_ += counts.tests;
+    work_.depth_tests += counts.tests;
+    if (counts.tests > 0) work_.contestants += count;
     return static_cast<float>(counts.taken);
   }
 
   // `area`: in, that of a speck; out, what is added.
-  void add(const Fragment& fragment, const Ownership& seen, PixelAggregate& aggregate, float& area) const {
+  void add(const Fragment& fragment, const Ownership& seen, PixelAggregate& aggregate, float& area) {
+    work_.visible += seen.covered > 0;
     area = seen.covered > 0
                ? visible_area(fragment.alpha, static_cast<float>(seen.covered), static_cast<float>(seen.visible),
                               static_cast<float>(positions_.count()), aggregate.taken)
@@ -114,6 +125,7 @@ class PixelComposer {
     back_.resize(positions);
     for (std::size_t i = 0; i < count; ++i) {
       if (ownership_[i].covered > 0) continue;
+      ++work_.specks;
       const Fragment& fragment = fragments[i];
       const std::array<std::uint8_t, 3>& nearest = positions_.nearest_to(fragment.centroid_u, fragment.centroid_v);
       float votes = 0;
@@ -155,8 +167,9 @@ class PixelComposer {
     return kNobody;
   }
 
-  static bool is_nearer(const Fragment& fragment, const Fragment* fragments, std::uint32_t owner) {
+  bool is_nearer(const Fragment& fragment, const Fragment* fragments, std::uint32_t owner) {
     if (owner == kNobody) return true;
+    ++work_.surface_tests;
     const DepthPlane<float>& plane = fragments[owner].plane;
     const float u = fragment.centroid_u - 0.5f, v = fragment.centroid_v - 0.5f;
     return fragment.centroid_z <=
@@ -173,38 +186,8 @@ class PixelComposer {
   std::vector<Partial> partial_;      // fragments that are partly hidden
   std::vector<std::uint32_t> owner_;  // per position: which fragment
   std::vector<float> front_, back_;   // area of specks that face either way, by nearest position; else zeros
-  std::uint64_t depth_tests_ = 0, additions_ = 0;
+  ComposeWork work_;
 };
-
-// Adding one fragment: its masks word by word, its visible area, and its colour.
-OperationCounts addition_cost(std::size_t words) {
-  return count_operations([&](OperationCounts& counts) {
-    const Counted<float> one(1.0f, counts);
-    const Counted<std::uint32_t> mask(~0u, counts);
-    Counted<std::uint32_t> taken_mask = mask;
-    Counted<float> covered = one, visible = one;
-    for (std::size_t i = 0; i < words; ++i) {
-      const Counted<std::uint32_t> owned = mask & ~taken_mask;
-      taken_mask = taken_mask | owned;
-      covered = covered + bit_count(mask);
-      visible = visible + bit_count(owned);
-    }
-    Taken<Counted<float>> taken{one, one};
-    const Counted<float> area = visible_area(one, covered, visible, one, taken);
-    taken = {taken.area + area, taken.positions + visible};
-    const Counted<float> share = area / one;
-    Counted<float> color[3] = {one, one, one};
-    for (Counted<float>& channel : color) channel = channel + share * one;
-  });
-}
-
-OperationCounts depth_compare_cost() {
-  return count_operations([](OperationCounts& counts) {
-    const Counted<float> one(1.0f, counts);
-    Counted<float> depth;
-    nearer_at(one, one, one, one, one, one, depth);
-  });
-}
 
 }  // namespace
 
@@ -219,23 +202,31 @@ void compose_window(const std::vector<Fragment>& fragments, const PositionSet& p
     while (end < fragments.size() && fragments[end].pixel == pixel) ++end;
     PixelAggregate aggregate = load(pixels[pixel]);
     composer.add_window(fragments.data() + begin, end - begin, aggregate, areas.data() + begin);
-    if (aggregate.taken.positions == static_cast<float>(positions.count())) {
-      // Nothing is left for the background: what rounding left goes to what is there.
-      aggregate.color *= 1.0f / aggregate.taken.area;
-      aggregate.taken.area = 1.0f;
-    }
+    composer.close(aggregate);
     store(aggregate, pixels[pixel]);
   }
-  static const OperationCounts adding = addition_cost(Words), comparing = depth_compare_cost();
+  static const OperationCounts masks = mask_cost(Words), contest = contest_cost(Words), test = depth_compare_cost(),
+                               part = {.special = 1}, order_test = {.add = 1}, addition = addition_cost(),
+                               speck = speck_cost(), surface = surface_cost(), open_test = {.add = 1},
+                               closing = closing_cost();
+  const ComposeWork& work = composer.work();
   counters.items_in += fragments.size();
   counters.items_out += windows;
-  counters.ops += adding * composer.additions();
-  counters.ops += comparing * composer.depth_tests();
+  counters.ops += masks * work.fragments;
+  counters.ops += contest * work.contestants;
+  counters.ops += test * work.depth_tests;
+  counters.ops += part * work.partial;
+  counters.ops += order_test * work.order_tests;
+  counters.ops += addition * work.visible;
+  counters.ops += speck * work.specks;
+  counters.ops += surface * work.surface_tests;
+  counters.ops += open_test * windows;
+  counters.ops += closing * work.closed;
   counters.bytes_read +=
       fragments.size() * conserving_fragment_bytes(32 * Words) + windows * sizeof(StoredAggregate<Words, Channel>);
   counters.bytes_written += windows * sizeof(StoredAggregate<Words, Channel>);
-  counters.lanes_used += composer.depth_tests();
-  counters.lanes_issued += composer.additions() * 32 * Words;
+  counters.lanes_used += work.depth_tests;
+  counters.lanes_issued += work.fragments * 32 * Words;
 }
 
 template <std::size_t Words, class Channel>

@@ -45,8 +45,7 @@ void conservative_raster(const SetupTriangles& triangles, const TriangleList& li
   }
   if (closed)  // what was closed later than it was found
     std::erase_if(out, [&](const PixelTriangle& pair) { return closed->hides(pair.x, pair.y, pair.nearest); });
-  static const OperationCounts test_cost = cell_test_cost();
-  counters.ops += test_cost * counts.cells_tested;
+  counters.ops += traversal_cost(counts, FullMeans::area);
   counters.lanes_used += counts.cells_touched;
   counters.lanes_issued += counts.cells_tested;
   counters.items_out += out.size() - before;

@@ -1,6 +1,36 @@
 #include "stages/counter_registry.h"
 
+#include <initializer_list>
+
 namespace beampipe {
+namespace {
+
+// Where no other test does: the counter moves there, and nowhere that it is not listed.
+constexpr const char* kMoves = "CounterRegistry.EveryCounterMovesWhereItIsListed";
+
+constexpr const char* kPixelMoves = "CounterRegistry.EveryPixelCounterMovesSomewhere";
+
+std::string row(std::initializer_list<std::string> cells) {
+  std::string text = "|";
+  for (const std::string& cell : cells) text += " " + cell + " |";
+  return text + "\n";
+}
+
+std::string code(const std::string& name) { return "`" + name + "`"; }
+
+// What adds to a counter in that stage.
+std::string meaning(const StageInfo& stage, const CounterInfo& counter) {
+  const std::string name = counter.name;
+  if (name == "items_in") return stage.items_in;
+  if (name == "items_out") return stage.items_out;
+  const std::string lanes = stage.lanes;
+  const std::size_t out_of = lanes.find(" out of ");
+  if (out_of == lanes.npos) return name.starts_with("lanes_") ? lanes : counter.meaning;
+  if (name == "lanes_used") return lanes.substr(0, out_of);
+  return name == "lanes_issued" ? lanes.substr(out_of + 8) : counter.meaning;
+}
+
+}  // namespace
 
 const std::vector<CounterInfo>& stage_counters() {
   using S = StageCounters;
@@ -8,7 +38,7 @@ const std::vector<CounterInfo>& stage_counters() {
       {"items_in", "items in", "items", "what comes into the stage", [](const S& s) { return s.items_in; }},
       {"items_out", "items out", "items", "what goes out of it", [](const S& s) { return s.items_out; }},
       {"ops.total", "operations", "operations", "all kinds together", [](const S& s) { return s.ops.total(); }},
-      {"ops.mul_add", "mul-add", "operations", "multiplications, with or without an addition behind them",
+      {"ops.mul_add", "mul-add", "operations", "multiplications; an addition behind one is an `ops.add`",
        [](const S& s) { return s.ops.mul_add; }},
       {"ops.add", "add", "operations", "additions, subtractions, comparisons, minima, maxima, selections",
        [](const S& s) { return s.ops.add; }},
@@ -36,63 +66,115 @@ const std::vector<CounterInfo>& stage_counters() {
 
 const std::vector<StageInfo>& stage_list() {
   static const std::vector<StageInfo> stages = {
-      {"vertex_setup", "triangles of the draws, in each pass", "setup triangles, in each pass", "not counted",
-       "HandWorked.TriangleMsaa"},
+      {"vertex_setup", "triangles of the draws, in each pass", "setup triangles, in each pass", "", " ops.fetch ",
+       "HandWorked.TriangleMsaa", "SetupTwins.VertexSetup", "HandWorked.TriangleMsaa", "HandWorked.TriangleMsaa",
+       kMoves},
       {"conservative_raster", "setup triangles", "(pixel, triangle) pairs that touch and may be seen",
-       "touched out of tested pixels", "Counters.BeamCountsEveryTouchedPixel"},
+       "touched out of tested pixels", " ops.fetch ops.special ops.convert sector_bytes dram_bytes ",
+       "HandWorked.TriangleBeam", "RasterTwins.ConservativeRaster", "HandWorked.TriangleBeam",
+       "HandWorked.TriangleBeam", "RasterTwins.ConservativeRaster"},
       {"sample_raster", "setup triangles, in each pass", "(cell, triangle) pairs with a sample",
-       "covered samples out of those of partly covered cells", "HandWorked.TriangleMsaa"},
-      {"beam_fragment", "(pixel, triangle) pairs", "fragments: pairs with area", "fragments out of pairs",
-       "Counters.BeamCountsEveryTouchedPixel"},
+       "covered samples out of those of partly covered cells",
+       " ops.fetch ops.special ops.convert sector_bytes dram_bytes ", "HandWorked.QuadsMsaa",
+       "RasterTwins.SampleRaster", "HandWorked.QuadsMsaa", "HandWorked.QuadsMsaa", "RasterTwins.SampleRaster"},
+      {"beam_fragment", "(pixel, triangle) pairs", "fragments: pairs with area", "fragments out of pairs", "",
+       "HandWorked.TriangleBeam", "TwinCounts.BeamFragmentOnAGrid", "HandWorked.TriangleBeam",
+       "HandWorked.TriangleBeam", "TwinCounts.BeamFragmentOnAGrid"},
       {"shade", "fragments (or shading samples)", "the same, with colour or material",
        "fragments out of the pixels of their 2x2 quads; behind visibility one by one",
+       " ops.bit ops.fetch ops.special ", "Counters.ShadingRunsInWholeQuads",
+       "ShadingTwins.ShadeSampleFragmentsInQuads", "HandWorked.TriangleMsaa", kMoves,
        "Counters.ShadingRunsInWholeQuads"},
-      {"light", "pixels with a material", "the same, with colour", "all", "Counters.ShadingRunsInWholeQuads"},
-      {"a_buffer", "pairs (beam), fragments (published)", "the same, sorted per pixel", "not counted",
-       "HandWorked.TriangleBeam"},
+      {"light", "pixels with a material", "the same, with colour", "all", " ops.bit ops.fetch ops.special ops.convert ",
+       kMoves, "ShadingTwins.GBufferAndLight", kMoves, kMoves, "ShadingTwins.GBufferAndLight"},
+      {"a_buffer", "pairs (beam), fragments (published)", "the same, sorted per pixel", "",
+       " ops.mul_add ops.bit ops.fetch ops.special ops.convert ", "HandWorked.TriangleBeam", "TwinCounts.SortAndMerge",
+       "HandWorked.TriangleBeam", "HandWorked.TriangleBeam", kMoves},
       {"compose", "fragments", "aggregates: windows (beam), pixels (others)",
-       "compared positions out of those of all fragments looked at", "HandWorked.TriangleBeam"},
+       "compared positions out of those of all fragments looked at", "", "HandWorked.TriangleBeam",
+       "ComposeTwins.ComposeWindow", "HandWorked.TriangleBeam", "HandWorked.TriangleBeam",
+       "ComposeTwins.ComposeWindow"},
       {"claim", "fragments, in each pass", "fragments that took a position",
-       "fragments that took a position out of all", "TwinCounts.Claim"},
-      {"settle", "owners' fragments, in each pass", "pixels that need another pass", "owners, all",
+       "fragments that took a position out of all", " ops.special ", "Claim.CountsWhatItReadsAndWrites",
+       "TwinCounts.Claim", "Claim.CountsWhatItReadsAndWrites", kMoves, "TwinCounts.Claim"},
+      {"settle", "owners' fragments, in each pass", "pixels that need another pass", "owners, all", " ops.fetch ",
+       "Settle.CountsItsArithmetic", "Settle.CountsItsArithmetic", "Settle.CountsItsArithmetic", kMoves,
        "Settle.CountsItsArithmetic"},
       {"depth_test", "samples tested, in each pass", "samples that passed",
-       "samples tested out of those of their cells", "HandWorked.QuadsMsaa"},
-      {"stencil_test", "samples tested", "samples that passed", "all", "Counters.AcaaReadsDepthTwiceAndOneColor"},
-      {"accumulate", "fragments with visible samples", "the same, added", "all",
-       "Counters.AcaaReadsDepthTwiceAndOneColor"},
+       "samples tested out of those of their cells", " ops.bit ops.fetch ops.special ", "HandWorked.QuadsMsaa",
+       "TwinCounts.DepthTest", "HandWorked.QuadsMsaa", "HandWorked.QuadsMsaa", "TwinCounts.DepthTest"},
+      {"stencil_test", "samples tested", "samples that passed", "all",
+       " ops.mul_add ops.bit ops.fetch ops.special ops.convert ", "ShadingTwins.StencilTest",
+       "ShadingTwins.StencilTest", kMoves, kMoves, "ShadingTwins.StencilTest"},
+      {"accumulate", "fragments with visible samples", "the same, added", "all", " ops.fetch ops.special ",
+       "Counters.AcaaReadsDepthTwiceAndOneColor", "TwinCounts.Accumulate", "Counters.AcaaReadsDepthTwiceAndOneColor",
+       kMoves, "TwinCounts.Accumulate"},
       {"sample_select", "visibility samples", "shading samples",
-       "shading samples with a triangle, out of four per quad", "CounterRegistry.EveryCounterMovesSomewhere"},
-      {"motion", "samples", "motion vectors: pixels", "pixels that show a triangle out of all",
-       "Motion.CountsItsArithmetic"},
-      {"dilate", "pixels", "pixels with a colour", "pixels of which something is known out of all",
-       "Dilate.CountsWhatItLooksAt"},
-      {"temporal", "pixels", "pixels", "pixels with a history out of all", "Temporal.CountsWhatItLooksAt"},
-      {"resolve", "samples, or aggregates, or accumulators", "pixels of the picture", "all", "HandWorked.TriangleMsaa"},
+       "shading samples with a triangle, out of four per quad", " ops.fetch ops.convert ", kMoves,
+       "SelectTwins.SampleSelect", kMoves, kMoves, "SelectTwins.SampleSelect"},
+      {"motion", "samples", "motion vectors: pixels", "pixels that show a triangle out of all", " ops.bit ",
+       "Motion.CountsItsArithmetic", "Motion.CountsItsArithmetic", "Motion.CountsItsArithmetic", kMoves, kMoves},
+      {"dilate", "pixels", "pixels with a colour", "pixels of which something is known out of all", " ops.fetch ",
+       "Dilate.CountsWhatItLooksAt", "Dilate.CountsWhatItLooksAt", "Dilate.CountsWhatItLooksAt", kMoves, kMoves},
+      {"temporal", "pixels", "pixels", "pixels with a history out of all", " ops.bit ops.fetch ",
+       "Temporal.CountsWhatItLooksAt", "Temporal.CountsWhatItLooksAt", "Temporal.CountsWhatItLooksAt", kMoves, kMoves},
+      {"resolve", "samples, or aggregates, or accumulators", "pixels of the picture", "all",
+       " ops.bit ops.fetch ops.special ", "HandWorked.TriangleMsaa", "ShadingTwins.ResolveSamples",
+       "HandWorked.TriangleMsaa", "HandWorked.TriangleMsaa", "ShadingTwins.ResolveSamples"},
       {"reference_raster", "setup triangles", "samples that were nearer", "all",
-       "CounterRegistry.EveryCounterMovesSomewhere"},
+       " ops.bit ops.fetch ops.special ops.convert bytes_written sector_bytes dram_bytes ",
+       "ReferenceRaster.FansCoverEverySample", "ReferenceRaster.FansCoverEverySample", kMoves, kMoves,
+       "ReferenceRaster.FansCoverEverySample"},
   };
   return stages;
+}
+
+bool has_counter(const StageInfo& stage, const CounterInfo& counter) {
+  const std::string name = counter.name;
+  if (name.starts_with("lanes_")) return *stage.lanes != '\0';
+  return std::string(stage.silent).find(" " + name + " ") == std::string::npos;
+}
+
+const char* test_of(const StageInfo& stage, const CounterInfo& counter) {
+  const std::string name = counter.name;
+  if (name.starts_with("ops.")) return stage.ops_test;
+  if (name.starts_with("lanes_")) return stage.lanes_test;
+  if (name == "sector_bytes" || name == "dram_bytes") return stage.memory_test;
+  return name.find("bytes") == std::string::npos ? stage.items_test : stage.logical_test;
 }
 
 const std::vector<PixelCounterInfo>& pixel_counters() {
   static const std::vector<PixelCounterInfo> counters = {
       {"fragments", "fragments", "triangles with a fragment in the pixel", "beam, alpha, msaa, visibility",
-       "CounterRegistry.EveryPixelCounterMovesSomewhere"},
+       kPixelMoves},
       {"bytes", "bytes", "logical bytes of the framebuffer's surfaces and the A-buffer, where memory is modelled",
        "beam, alpha, z3, msaa, acaa, visibility", "HandWorked.BytesOfAPixel"},
-      {"merges", "fragments", "fragments that were looked at before the pixel was full", "beam, alpha",
-       "CounterRegistry.EveryPixelCounterMovesSomewhere"},
-      {"tiny_triangles", "fragments", "fragments that cover no mask position", "beam",
-       "CounterRegistry.EveryPixelCounterMovesSomewhere"},
-      {"largest_window", "fragments", "fragments of the largest window of overlapping depths", "beam",
-       "CounterRegistry.EveryPixelCounterMovesSomewhere"},
-      {"visible_fragments", "fragments", "triangles with a visible sample in the pixel", "acaa",
-       "CounterRegistry.EveryPixelCounterMovesSomewhere"},
-      {"passes", "passes", "passes over the triangles until the pixel was settled", "beam:order=stream",
-       "CounterRegistry.EveryPixelCounterMovesSomewhere"},
-      {"unknown", "part of the pixel", "what no shading sample was given to", "dvm",
-       "CounterRegistry.EveryPixelCounterMovesSomewhere"},
+      {"merges", "fragments", "fragments that were looked at before the pixel was full", "beam, alpha", kPixelMoves},
+      {"tiny_triangles", "fragments", "fragments that cover no mask position", "beam", kPixelMoves},
+      {"largest_window", "fragments", "fragments of the largest window of overlapping depths", "beam", kPixelMoves},
+      {"visible_fragments", "fragments", "triangles with a visible sample in the pixel", "acaa", kPixelMoves},
+      {"passes", "passes", "passes over the triangles until the pixel was settled", "beam:order=stream", kPixelMoves},
+      {"unknown", "part of the pixel", "what no shading sample was given to", "dvm", kPixelMoves},
+  };
+  return counters;
+}
+
+const std::vector<FrameCounterInfo>& frame_counters() {
+  static const std::vector<FrameCounterInfo> counters = {
+      {"logical_bytes, sector_bytes, dram_bytes", "bytes", "sums over the stages",
+       "ReportJson.HasTheKeysOfTheContract"},
+      {"a_buffer_peak_bytes", "bytes", "of the whole frame's A-buffer, which stands in memory until it is composed",
+       "Counters.BeamCountsEveryTouchedPixel"},
+      {"buffers", "bytes", "peak bytes of every buffer of the frame", "ReportJson.HasTheKeysOfTheContract"},
+      {"peak_bytes_per_pixel", "bytes per pixel",
+       "of a technique: its framebuffer and, in the frame where it is largest, its A-buffer",
+       "ReportJson.HasTheKeysOfTheContract"},
+      {"wall_ms", "milliseconds",
+       "of the simulator on this machine; with_memory_model says whether the model's own time is in it, and "
+       "modelling_run, with --repeat, how long the rendering took that it was in",
+       "ReportJson.HasTheKeysOfTheContract"},
+      {"modelled_ms", "milliseconds", "of the described hardware: overlap, the busiest unit; sum, stage after stage",
+       "Hardware.OverlapIsTheBusiestUnitAndSumEachStagesBusiest"},
   };
   return counters;
 }
@@ -100,31 +182,30 @@ const std::vector<PixelCounterInfo>& pixel_counters() {
 std::string counters_page() {
   std::string page =
       "# Counters\n\n"
-      "Made from `stages/counter_registry.cpp`, which the program writes `report.json` from; the test "
-      "`CounterRegistry` "
-      "fails when this\npage is not what the registry says, when a technique has a stage or a pixel counter that is "
-      "not "
-      "here, or when a counter never\nmoves. What the three columns of bytes mean: [accounting.md](accounting.md).\n\n"
-      "## Of a stage\n\n| counter | unit | what adds to it |\n|---|---|---|\n";
-  for (const CounterInfo& counter : stage_counters())
-    page += std::string("| `") + counter.name + "` | " + counter.unit + " | " + counter.meaning + " |\n";
-  page += "\n## Stages\n\n| stage | items in | items out | lanes used out of issued | test |\n|---|---|---|---|---|\n";
-  for (const StageInfo& stage : stage_list())
-    page += std::string("| `") + stage.name + "` | " + stage.items_in + " | " + stage.items_out + " | " + stage.lanes +
-            " | `" + stage.test + "` |\n";
-  page += "\n## Of a pixel\n\n| counter | unit | what it counts | techniques | test |\n|---|---|---|---|---|\n";
+      "Made from `stages/counter_registry.cpp`, which the program writes `report.json` from. The tests "
+      "`CounterRegistry.*` fail when\nthis page is not what the registry says, when a technique has a stage or a pixel "
+      "counter that is not here, when a counter never\nmoves in a stage that lists it or moves in one that does not, "
+      "and when there is no test of a name that stands here. What the three\ncolumns of bytes mean: "
+      "[accounting.md](accounting.md).\n\n"
+      "Operations are those of the stage's scalar twin on counting numbers. Where the test is "
+      "`CounterRegistry.EveryCounterMovesWhereItIsListed`,\nnothing but that is tested of the counter there.\n\n"
+      "## Of every stage\n\n";
+  page += row({"counter", "unit", "what adds to it"}) + "|---|---|---|\n";
+  for (const CounterInfo& counter : stage_counters()) page += row({code(counter.name), counter.unit, counter.meaning});
+  for (const StageInfo& stage : stage_list()) {
+    page += "\n## " + code(stage.name) + "\n\n" + row({"counter", "unit", "what adds to it", "test"}) +
+            "|---|---|---|---|\n";
+    for (const CounterInfo& counter : stage_counters())
+      if (has_counter(stage, counter))
+        page += row({code(counter.name), counter.unit, meaning(stage, counter), code(test_of(stage, counter))});
+  }
+  page += "\n## Of a pixel\n\n" + row({"counter", "unit", "what it counts", "techniques", "test"}) +
+          "|---|---|---|---|---|\n";
   for (const PixelCounterInfo& counter : pixel_counters())
-    page += std::string("| `") + counter.name + "` | " + counter.unit + " | " + counter.meaning + " | " +
-            counter.techniques + " | `" + counter.test + "` |\n";
-  page +=
-      "\n## Of a frame\n\n| counter | unit | what it is |\n|---|---|---|\n"
-      "| `logical_bytes`, `sector_bytes`, `dram_bytes` | bytes | sums over the stages |\n"
-      "| `a_buffer_peak_bytes` | bytes | of the whole frame's A-buffer, which stands in memory until it is composed |\n"
-      "| `buffers` | bytes | peak bytes of every buffer of the frame |\n"
-      "| `wall_ms` | milliseconds | of the simulator on this machine; `with_memory_model` says whether the model's own "
-      "time is in it, and `modelling_run`, with `--repeat`, how long the rendering took that it was in |\n"
-      "| `modelled_ms` | milliseconds | of the described hardware: `overlap`, the busiest unit; `sum`, stage after "
-      "stage |\n";
+    page += row({code(counter.name), counter.unit, counter.meaning, counter.techniques, code(counter.test)});
+  page += "\n## Of a frame\n\n" + row({"counter", "unit", "what it is", "test"}) + "|---|---|---|---|\n";
+  for (const FrameCounterInfo& counter : frame_counters())
+    page += row({code(counter.name), counter.unit, counter.meaning, code(counter.test)});
   return page;
 }
 

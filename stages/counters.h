@@ -21,7 +21,7 @@ using Count = std::uint64_t;
 
 // Scalar operations by kind, as the stage's scalar twin does them.
 struct OperationCounts {
-  Count mul_add = 0;  // multiplications, with or without an addition behind them
+  Count mul_add = 0;  // multiplications; an addition behind one is an add
   Count add = 0;      // additions, subtractions, comparisons, minima, maxima, selects
   Count bit = 0;      // and, or, not, shift, population count
   Count fetch = 0;    // table look-ups

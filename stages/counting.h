@@ -45,7 +45,14 @@ BEAMPIPE_COUNTED_BINARY(*, mul_add)
 BEAMPIPE_COUNTED_BINARY(/, special)
 BEAMPIPE_COUNTED_BINARY(&, bit)
 BEAMPIPE_COUNTED_BINARY(|, bit)
+BEAMPIPE_COUNTED_BINARY(^, bit)
+BEAMPIPE_COUNTED_BINARY(%, special)
 #undef BEAMPIPE_COUNTED_BINARY
+
+template <class Value>
+Counted<Value> operator>>(const Counted<Value>& x, int places) {
+  return counted(x.tally, &OperationCounts::bit, Value(x.value >> places));
+}
 
 template <class Value>
 Counted<Value> operator~(const Counted<Value>& x) {

@@ -1,7 +1,8 @@
-// What the raster stages charge: operations per tested cell, and the bytes of what they pass on.
+// What the raster stages charge: operations of the traversal, and the bytes of what they pass on.
 #pragma once
 
 #include "stages/counting.h"
+#include "stages/traverse.h"
 
 namespace beampipe {
 
@@ -11,20 +12,53 @@ inline constexpr std::uint32_t kPixelTriangleBytes = 8;
 // A sample fragment adds its 16-bit coverage mask.
 inline constexpr std::uint64_t kSampleFragmentBytes = kPixelTriangleBytes + 2;
 
-// Three edge values at the cell's corner by stepping, each compared at its deepest and its shallowest corner.
-inline OperationCounts cell_test_cost() {
+// The cells of a bounding box within the tile.
+inline OperationCounts box_cost() {
   return count_operations([](OperationCounts& counts) {
     using Int = Counted<std::int64_t>;
-    const Int zero(0);
-    bool touched = true, full = true;
-    for (int k = 0; k < 3; ++k) {
-      const Int corner(0, counts), step(0, counts), deepest(0, counts), shallowest(0, counts);
-      const Int value = corner + step;
-      touched &= value + deepest >= zero;
-      full &= value + shallowest >= zero;
+    const Int x(0, counts), one(1);
+    for (int axis = 0; axis < 2; ++axis) {
+      const Int low = lesser(lesser(x, x), x), high = greater(greater(x, x), x);
+      greater((low - one) >> 1, x), lesser((high >> 1) + one, x);
     }
-    static_cast<void>(touched && full);
   });
+}
+
+// Of a triangle, before its first cell: the cell's corner; per edge the value there, the steps to the right and down,
+// and what the deepest and the shallowest corner of a cell have on top.
+inline OperationCounts start_cost(FullMeans meaning) {
+  return count_operations([&](OperationCounts& counts) {
+    using Int = Counted<std::int64_t>;
+    const Int one(1, counts), zero(0);
+    const Int x = one * one, y = one * one;
+    for (int k = 0; k < 3; ++k) {
+      const Int right = one * one, down = one * one;
+      greater(right, zero) + greater(down, zero);
+      const Int shallowest = lesser(right, zero) + lesser(down, zero);
+      if (meaning == FullMeans::samples) shallowest - one;
+      one* x + one* y + one;
+    }
+  });
+}
+
+// To the next cell, to the right or in the row below, per edge.
+inline OperationCounts step_cost() { return {.add = 3}; }
+
+// Every edge at the cell's deepest and shallowest corner.
+inline OperationCounts cell_test_cost() {
+  return count_operations([](OperationCounts& counts) {
+    const Counted<double> value(0.0, counts);
+    bool touched = true, full = true;
+    for (int k = 0; k < 3; ++k) cell_against_edge(value, value, value, touched, full);
+  });
+}
+
+inline OperationCounts traversal_cost(const TraversalCounts& counts, FullMeans meaning) {
+  OperationCounts cost = box_cost() * counts.boxes;
+  cost += start_cost(meaning) * counts.traversals;
+  cost += step_cost() * (counts.cells_tested - counts.traversals);
+  cost += cell_test_cost() * counts.cells_tested;
+  return cost;
 }
 
 }  // namespace beampipe

@@ -37,7 +37,9 @@ OperationCounts sample_test_cost(const SamplePattern& pattern) {
   return count_operations([&](OperationCounts& counts) {
     using Int = Counted<std::int64_t>;
     const Int zero(0, counts), edges[3] = {zero, zero, zero};
-    sample_mask_scalar(edges, edges, edges, pattern);
+    Int corner[3];
+    for (Int& value : corner) value = zero - zero;  // the top-left rule
+    sample_mask_scalar(edges, edges, corner, pattern);
   });
 }
 
@@ -78,7 +80,7 @@ void sample_raster(const SetupTriangles& triangles, const TriangleList& list, co
   out.erase(std::remove_if(start, out.end(), [](const SampleFragment& f) { return f.mask == 0; }), out.end());
 
   counters.items_out += out.size() - before;
-  counters.ops += cell_test_cost() * counts.cells_tested;
+  counters.ops += traversal_cost(counts, FullMeans::samples);
   counters.ops += sample_test_cost(pattern) * partial.size();
   counters.bytes_written += (out.size() - before) * kSampleFragmentBytes;
   counters.lanes_issued += partial.size() * static_cast<std::size_t>(pattern.count);

@@ -61,6 +61,8 @@ inline CellRange touched_range(const SetupTriangle& t, const Tile& tile, const C
 
 // What the traversal did, for the counters.
 struct TraversalCounts {
+  std::uint64_t boxes = 0;       // bounding boxes that were looked for cells
+  std::uint64_t traversals = 0;  // and that had any
   std::uint64_t cells_tested = 0;
   std::uint64_t cells_touched = 0;
 };
@@ -73,7 +75,9 @@ template <class Visit>
 void traverse(const SetupTriangle& triangle, const EdgeSet& set, const Tile& tile, const CellGrid& grid,
               FullMeans meaning, std::uint32_t& quad, TraversalCounts& counts, Visit&& visit) {
   const CellRange range = touched_range(triangle, tile, grid);
+  ++counts.boxes;
   if (range.x0 >= range.x1 || range.y0 >= range.y1) return;
+  ++counts.traversals;
   const std::int64_t w = grid.cell_width(), h = grid.cell_height();
   EdgeOverCells edges[3];
   for (std::size_t k = 0; k < 3; ++k) {

@@ -163,12 +163,13 @@ struct SetupVertex {
 
 // How often each twin ran.
 struct Work {
-  std::uint64_t transformed = 0, outside_tests = 0, plane_tests = 0, crossings = 0, projected = 0, areas = 0;
+  std::uint64_t transformed = 0, outside_tests = 0, plane_tests = 0, crossings = 0, fans = 0, projected = 0, areas = 0;
   std::uint64_t normals = 0;
 
   Work& operator+=(const Work& other) {
     transformed += other.transformed, outside_tests += other.outside_tests, plane_tests += other.plane_tests;
-    crossings += other.crossings, projected += other.projected, areas += other.areas, normals += other.normals;
+    crossings += other.crossings, fans += other.fans, projected += other.projected, areas += other.areas;
+    normals += other.normals;
     return *this;
   }
 };
@@ -256,6 +257,7 @@ class TriangleSetup {
       place_on_screen(view_, vertex, work);
       return vertex;
     };
+    work.fans += polygon.size() < 3 ? 0 : polygon.size() - 2;
     for (std::size_t i = 2; i < polygon.size(); ++i)
       if (polygon[0].w > 0 && polygon[i - 1].w > 0 && polygon[i].w > 0)
         add_on_screen(t, on_screen(polygon[0]), on_screen(polygon[i - 1]), on_screen(polygon[i]));
@@ -275,9 +277,11 @@ class TriangleSetup {
     }
     // Sorted, so that equal triangles have equal depth whatever vertex they start with and whichever way they turn.
     std::array<ScreenVertex<double>, 3> p = {a.screen, b.screen, c.screen};
-    std::sort(p.begin(), p.end(), [](const auto& l, const auto& r) {
-      return std::array{l.x, l.y, l.z} < std::array{r.x, r.y, r.z};
-    });
+    const auto put_in_order = [&p](std::size_t i) {
+      const auto key = [](const ScreenVertex<double>& v) { return std::array{v.x, v.y, v.z}; };
+      if (key(p[i + 1]) < key(p[i])) std::swap(p[i], p[i + 1]);
+    };
+    put_in_order(0), put_in_order(1), put_in_order(0);
     const Slopes<double> slopes = depth_slopes(p[0], p[1], p[2]);
     triangle.depth = {p[0].z, slopes.dzdx, slopes.dzdy, p[0].x, p[0].y};
     triangle.front = front;
@@ -367,6 +371,7 @@ OperationCounts project_cost() {
     const CountedReal x(1.0, counts);
     const ScreenVertex<CountedReal> screen = project<CountedReal>({x, x, x, x}, x, x);
     converted(to_grid(screen.x)), converted(to_grid(screen.y));
+    for (int axis = 0; axis < 2; ++axis) converted(x) * CountedReal(1.0 / kSubpixelUnits);  // what was snapped
   });
 }
 
@@ -406,12 +411,16 @@ OperationCounts normal_cost() {
     const auto world = [&] { return world_point<CountedReal>(matrix, {x, x, x}); };
     CountedReal length;
     const Vector<CountedReal> normal = face_normal(world(), world(), world(), length);
+    static_cast<void>(length > CountedReal(0.0));
     const CountedReal scale = x / x;
     for (const CountedReal& component : {normal.x, normal.y, normal.z}) converted(component * scale);
   });
 }
 
-// Once per triangle and edge: a, b and c (stages/setup_triangle.h).
+// Is every corner of a clipped polygon's triangle before the eye?
+OperationCounts fan_cost() { return {.add = 3}; }
+
+// Once per triangle: of each edge a, b and c, of each corner the depth (stages/setup_triangle.h).
 OperationCounts edges_cost() {
   return count_operations([](OperationCounts& counts) {
     using Int = Counted<std::int64_t>;
@@ -419,6 +428,7 @@ OperationCounts edges_cost() {
     for (int k = 0; k < 3; ++k) {
       const Int a = x - x, b = x - x;
       static_cast<void>(zero - (a * x + b * x));
+      to_float(x);
     }
   });
 }
@@ -426,6 +436,7 @@ OperationCounts edges_cost() {
 OperationCounts slopes_cost() {
   return count_operations([](OperationCounts& counts) {
     const CountedReal zero(0.0, counts), one(1.0, counts);
+    counts.add += 3;  // comparisons that put the corners in order
     depth_slopes<CountedReal>({zero, zero, zero}, {one, zero, one}, {zero, one, one});
   });
 }
@@ -449,6 +460,7 @@ SetupTriangles vertex_setup(const Trace& trace, const Frame& frame, StageCounter
   counters.ops += outside_cost() * work.outside_tests;
   counters.ops += plane_test_cost() * work.plane_tests;
   counters.ops += crossing_cost() * work.crossings;
+  counters.ops += fan_cost() * work.fans;
   counters.ops += project_cost() * work.projected;
   counters.ops += area_cost() * work.areas;
   counters.ops += slopes_cost() * out.triangles.size();

@@ -64,7 +64,9 @@ Json to_json(const FrameReport& frame, const TechniqueReport& result, const Hard
 }
 
 Json to_json(const TechniqueReport& result, const Hardware& hardware) {
-  Json json = {{"technique", result.technique}, {"framebuffer_bytes_per_pixel", result.framebuffer_bytes_per_pixel}};
+  Json json = {{"technique", result.technique},
+               {"framebuffer_bytes_per_pixel", result.framebuffer_bytes_per_pixel},
+               {"peak_bytes_per_pixel", result.peak_bytes_per_pixel()}};
   json["framebuffer"] = Json::array();
   for (const Surface& surface : result.framebuffer) {
     json["framebuffer"].push_back(
@@ -144,6 +146,14 @@ WallTime wall_time(std::vector<double> milliseconds) {
 
 std::string program_version() { return BEAMPIPE_VERSION; }
 
+double TechniqueReport::peak_bytes_per_pixel() const {
+  double most = 0;
+  for (const FrameReport& frame : frames)
+    if (frame.pixels > 0)
+      most = std::max(most, static_cast<double>(frame.a_buffer_peak_bytes) / static_cast<double>(frame.pixels));
+  return framebuffer_bytes_per_pixel + most;
+}
+
 TechniqueReport new_technique_report(const Technique& technique) {
   TechniqueReport report;
   report.technique = technique.spec;
@@ -195,7 +205,7 @@ std::string emr_text(const EquivalentMsaa& emr) {
 std::string table_text(const Report& report, const std::string& folder) {
   const bool compared = !report.results.empty() && report.results.front().error.has_value();
   std::vector<std::vector<std::string>> rows(1);
-  rows[0] = {"technique", "bytes/pixel"};
+  rows[0] = {"technique", "bytes/pixel", "with A-buffer"};
   if (compared) rows[0].insert(rows[0].end(), {"RMSE", "bias", "p99", "max", "EMR"});
   const bool moves = compared && report.results.front().flicker.has_value();
   if (moves) rows[0].push_back("flicker");
@@ -203,7 +213,8 @@ std::string table_text(const Report& report, const std::string& folder) {
   rows[0].insert(rows[0].end(), {with_model ? "ms with model" : "ms", "picture"});
   for (const TechniqueReport& result : report.results) {
     std::vector<std::string>& row = rows.emplace_back();
-    row = {result.technique, std::to_string(result.framebuffer_bytes_per_pixel)};
+    row = {result.technique, std::to_string(result.framebuffer_bytes_per_pixel),
+           format("%.0f", result.peak_bytes_per_pixel())};
     if (compared) {
       const ErrorStats& error = result.error.value();
       row.insert(row.end(), {format("%.6f", error.rmse), format("%+.6f", error.bias), format("%.5f", error.p99),

@@ -57,6 +57,9 @@ struct TechniqueReport {
   std::vector<std::pair<std::string, double>> causes;  // part of the mean square error, by cause; empty: not asked for
   std::vector<OrderReport> orders;                     // empty: not asked for
   double order_difference = 0;  // RMS between the pictures of the two orders that differ the most
+
+  // Of the framebuffer and, in the frame where it is largest, the A-buffer.
+  double peak_bytes_per_pixel() const;
 };
 
 struct Report {

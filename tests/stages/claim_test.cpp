@@ -236,6 +236,8 @@ TEST(Settle, CountsItsArithmetic) {
   // colour.
   all += OperationCounts{3 + 3, 6 + 12 + 2 + 3, 8, 0, 1 + 5 + 1, 8};
   EXPECT_EQ(counters.ops, all);
+  EXPECT_EQ(counters.lanes_used, 1u);
+  EXPECT_EQ(counters.lanes_issued, 1u);
   EXPECT_EQ(counters.bytes_read, 80u);
   EXPECT_EQ(counters.bytes_written, 80u);
 }

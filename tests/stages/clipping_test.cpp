@@ -152,8 +152,8 @@ TEST(Clipping, DepthStaysBetweenNearAndFar) {
 
 // One vertex before the near plane: two pieces; the polygon has 3 vertices at the near plane and 4 at the five others,
 // and each is an inner product of 4 products and 3 sums, and a comparison, as are those that found out that it must be
-// clipped. Each of two crossings is a quotient, 4 products and 9 sums. Pieces cost like triangles of their own (see
-// VertexSetup.CountsOperations).
+// clipped. Each of two crossings is a quotient, 4 products and 9 sums. Of a piece 3 comparisons tell that it is before
+// the eye; the rest of it costs what a triangle does (see VertexSetup.CountsOperations).
 TEST(Clipping, CountsPiecesAndPlaneTests) {
   StageCounters counters;
   const SetupTriangles out = vertex_setup_of(clip_space_scene({{0, 0, -2}, {0.5f, 0, 0}, {0, 0.5f, 0}}), counters);
@@ -162,9 +162,9 @@ TEST(Clipping, CountsPiecesAndPlaneTests) {
   EXPECT_EQ(counters.items_out, 2u);
   const std::uint64_t tests = 6 * 3 + 3 + 5 * 4;
   const std::uint64_t projected = 2 + 2 * 3;  // vertices in view, and those of the pieces
-  EXPECT_EQ(counters.ops, (OperationCounts{36 + projected * 10 + 2 * (2 + 8 + 6) + 4 * tests + 2 * 4,
-                                           36 + 12 + 21 + projected * 5 + 2 * (6 + 9 + 12) + 4 * tests + 2 * 9, 9, 0,
-                                           projected + 2 + 2, projected * 2}));
+  EXPECT_EQ(counters.ops, (OperationCounts{36 + projected * 12 + 2 * (2 + 8 + 6) + 4 * tests + 2 * 4,
+                                           36 + 12 + 21 + projected * 5 + 2 * (3 + 6 + 3 + 9 + 12) + 4 * tests + 2 * 9,
+                                           9, 0, projected + 2 + 2, projected * 4 + 2 * 3}));
 }
 
 }  // namespace

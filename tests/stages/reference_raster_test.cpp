@@ -71,6 +71,10 @@ TEST(ReferenceRaster, FansCoverEverySample) {
   reference_raster(fan, all_of(fan), tile, counters, surface);
   EXPECT_EQ(std::count(surface.owner.begin(), surface.owner.end(), kNoOwner), 0);
   EXPECT_EQ(counters.lanes_used, tile.pixels() * 4096);  // each sample was in one span
+  EXPECT_EQ(counters.lanes_issued, counters.lanes_used);
+  EXPECT_EQ(counters.items_out, counters.lanes_used);
+  // Per sample 2 products and 3 sums make the depth, and one comparison; nothing is charged for finding the spans.
+  EXPECT_EQ(counters.ops, (OperationCounts{2, 4, 0, 0, 0, 0} * counters.lanes_used));
 }
 
 TEST(ReferenceRaster, ResolveIsTheMeanOfTheSamples) {

@@ -13,38 +13,19 @@
 #include "stages/beam_fragment.h"
 #include "stages/claim.h"
 #include "stages/compose.h"
-#include "stages/counting.h"
 #include "stages/depth_test.h"
 #include "stages/fragment_geometry.h"
 #include "stages/merge_sort.h"
 #include "stages/settle.h"
 #include "stages/shade.h"
 #include "stages/vertex_setup.h"
-#include "traces/scenes.h"
+#include "tests/stages/scene_twins.h"
 
 namespace beampipe {
 namespace {
 
-using Int = Counted<std::int64_t>;
-using Float = Counted<float>;
-using Real = Counted<double>;
-using Bits = Counted<std::uint32_t>;
-
-class TwinCounts : public testing::TestWithParam<SceneKind> {
+class TwinCounts : public SceneTwins {
  protected:
-  void SetUp() override {
-    const std::uint32_t triangles = GetParam().name == "stack" ? 8 : 1500;  // each covers the whole picture
-    const Trace trace = make_scene(GetParam().name, {.triangles = triangles, .width = 48, .height = 28});
-    StageCounters ignored;
-    triangles_ = vertex_setup(trace, trace.frames[0], ignored);
-    for (std::uint32_t i = 0; i < triangles_.triangles.size(); ++i) list_.push_back(i);
-    ASSERT_FALSE(list_.empty());
-  }
-
-  Int integer(std::int64_t value) { return Int(value, twin_); }
-  Float real(float value) { return Float(value, twin_); }
-  Real real(double value) { return Real(value, twin_); }
-
   EdgeAt<Int> edge_at(const Edge& edge) { return {integer(edge.a), integer(edge.b), integer(edge.c)}; }
 
   // What a (pixel, triangle) costs in beam_fragment; `table`, `positions` or `grid`, whichever is not null.
@@ -92,11 +73,6 @@ class TwinCounts : public testing::TestWithParam<SceneKind> {
       for (const SamplePattern& pattern : *positions) sample_mask_scalar(a, b, c, pattern);
     }
   }
-
-  const Tile tile_{0, 0, 48, 28};
-  SetupTriangles triangles_;
-  TriangleList list_;
-  OperationCounts twin_;  // what the twins have counted
 };
 
 TEST_P(TwinCounts, BeamFragmentWithExactMasks) {
@@ -124,6 +100,8 @@ TEST_P(TwinCounts, BeamFragmentOnAGrid) {  // where full pixels take the short w
   for (const PixelTriangle& pair : pairs)
     if (!pair.full) count_fragment(pair, nullptr, nullptr, &grid);
   EXPECT_EQ(counters.ops, twin_);
+  EXPECT_EQ(counters.lanes_used, fragments.size());
+  EXPECT_EQ(counters.lanes_issued, pairs.size());
 }
 
 TEST_P(TwinCounts, BeamFragmentWithTheTable) {
@@ -209,6 +187,8 @@ TEST_P(TwinCounts, DepthTest) {
   }
   EXPECT_EQ(counters.ops, twin_);
   EXPECT_EQ(surface.depth, stored.depth);
+  EXPECT_EQ(counters.lanes_used, counters.items_in);
+  EXPECT_EQ(counters.lanes_issued, fragments.size() * 8);
 }
 
 // Claiming as it is done word by word and position by position, on counting numbers.
@@ -374,6 +354,8 @@ TEST_P(TwinCounts, Claim) {
   claim(triangles_, fragments, tile_, positions, counters, pixels);
   ClaimTwin<kWords, kLayers> twin(triangles_, tile_, positions, twin_);
   for (const Fragment& fragment : fragments) twin.add(fragment, twins[fragment.pixel]);
+  EXPECT_EQ(counters.lanes_used, counters.items_out);
+  EXPECT_EQ(counters.lanes_issued, fragments.size());
   EXPECT_EQ(counters.ops, twin_);
   for (std::size_t i = 0; i < pixels.size(); ++i) {
     ASSERT_EQ(pixels[i].owner[0], twins[i].owner[0]) << i;
@@ -399,12 +381,13 @@ TEST_P(TwinCounts, Accumulate) {
       if (counting == DoubleCounting::saturate) share = greater(lesser(share, real(1.0f) - real(0.0f)), real(0.0f));
       for (int channel = 0; channel < 4; ++channel) converted(converted(real(0.0f)) + real(0.5f) * share);
     }
+    EXPECT_EQ(counters.lanes_used, fragments.size());
+    EXPECT_EQ(counters.lanes_issued, fragments.size());
     EXPECT_EQ(counters.ops, twin_);
   }
 }
 
-INSTANTIATE_TEST_SUITE_P(Scenes, TwinCounts, testing::ValuesIn(scene_kinds()),
-                         [](const auto& scene) { return std::string(scene.param.name); });
+BEAMPIPE_ON_EVERY_SCENE(TwinCounts);
 
 }  // namespace
 }  // namespace beampipe

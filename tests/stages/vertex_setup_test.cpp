@@ -164,9 +164,10 @@ TEST(VertexSetup, KdOfTheDrawReplacesTheMeshs) {
 // Three vertices outside the view cost their transformation, 4 rows of 3 products and 3 sums each, and 7 operations
 // each to compare them with the view volume: -w, and 6 comparisons. A triangle inside adds 6 planes x 3 vertices, each
 // an inner product of 4 products and 3 sums and a comparison; per vertex, 1 / w, 3 products and a sum for x, the same
-// for y, 2 and 1 for z, and a product, a sum and a conversion to fixed point for x and y; its area, 2 products, 5
-// differences and a comparison; for its depth plane 6 differences, an area (2 products, 1 difference), its reciprocal,
-// and twice 3 products and a difference; and for each edge 2 products and 4 sums.
+// for y, 2 and 1 for z, and for x and y a product, a sum and a conversion to fixed point, a conversion and a product
+// back; its area, 2 products, 5 differences and a comparison; for its depth plane 3 comparisons to have its corners in
+// one order, 6 differences, an area (2 products, 1 difference), its reciprocal, and twice 3 products and a difference;
+// for each edge 2 products and 4 sums; and for each corner its depth in 32 bits.
 TEST(VertexSetup, CountsOperations) {
   StageCounters outside, inside;
   vertex_setup_of(clip_space_scene({{2, 0, 0}, {3, 0, 0}, {2, 0.5f, 0}}), outside);
@@ -175,8 +176,9 @@ TEST(VertexSetup, CountsOperations) {
   EXPECT_EQ(outside.items_out, 0u);
   vertex_setup_of(clip_space_scene({{0, 0, 0}, {0.5f, 0, 0}, {0, 0.5f, 0}}), inside);
   // All in view: nothing to test against planes.
-  EXPECT_EQ(inside.ops, (OperationCounts{3 * 12 + 3 * (8 + 2) + 2 + 8 + 3 * 2,
-                                         3 * (12 + 4) + 3 * (3 + 2) + 6 + 9 + 3 * 4, 3 * 3, 0, 3 + 1, 3 * 2}));
+  EXPECT_EQ(inside.ops,
+            (OperationCounts{3 * 12 + 3 * (8 + 2 + 2) + 2 + 8 + 3 * 2, 3 * (12 + 4) + 3 * (3 + 2) + 6 + 3 + 9 + 3 * 4,
+                             3 * 3, 0, 3 + 1, 3 * 2 + 3 * 2 + 3}));
   EXPECT_EQ(inside.items_out, 1u);
 }
 

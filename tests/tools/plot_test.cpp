@@ -18,7 +18,7 @@ std::string report_text(const std::string& spec, int bytes, double emr, double r
                         const std::string& more = "") {
   const auto result = [](const std::string& name, int size, double n, double error, double time,
                          const std::string& keys) {
-    return R"({"technique": ")" + name + R"(", "framebuffer_bytes_per_pixel": )" + std::to_string(size) +
+    return R"({"technique": ")" + name + R"(", "peak_bytes_per_pixel": )" + std::to_string(size) +
            R"(, "error": {"rmse": )" + std::to_string(error) + R"(}, "equivalent_msaa": )" + std::to_string(n) + keys +
            R"(, "frames": [{"wall_ms": {"median": )" + std::to_string(time) + "}}]}";
   };
@@ -157,7 +157,7 @@ TEST_F(PlotTest, ErrorsAreOneLine) {
   make_report("broken", "{\"beampipe_report\": 1, ");
   make_report("other", R"({"beampipe_trace": 1})");
   make_report("run", R"({"beampipe_report": 1, "trace": "t.json", "results": [{"technique": "beam",
-      "framebuffer_bytes_per_pixel": 42, "frames": [{"wall_ms": {"median": 3}}]}]})");
+      "peak_bytes_per_pixel": 42, "frames": [{"wall_ms": {"median": 3}}]}]})");
   std::filesystem::create_directory(folder_ / "empty");
   expect_error({"plot", path("good"), "-o", path("plot.pdf")}, 2, "ends in .svg or .png");
   expect_error({"plot", path("nowhere"), "-o", path("p.svg")}, 1, "no such folder");

@@ -137,7 +137,8 @@ class ReportPage(unittest.TestCase):
             for key, expected in [("rmse", result["error"]["rmse"]), ("bias", result["error"]["bias"]),
                                   ("p99", result["error"]["p99"]), ("max", result["error"]["max"]),
                                   ("emr", result["equivalent_msaa"]),
-                                  ("bytes_per_pixel", result["framebuffer_bytes_per_pixel"]),
+                                  ("framebuffer_bytes_per_pixel", result["framebuffer_bytes_per_pixel"]),
+                                  ("peak_bytes_per_pixel", result["peak_bytes_per_pixel"]),
                                   ("a_buffer_peak_bytes", result["a_buffer_peak_bytes"])]:
                 value, text = row[key]
                 self.assertEqual(float(value), expected, key)
@@ -147,6 +148,27 @@ class ReportPage(unittest.TestCase):
             self.assertEqual(row["emr_bound"][0], bound)
             times = [frame["wall_ms"]["median"] for frame in result["frames"]]
             self.assertAlmostEqual(float(row["wall_ms"][0]), sum(times) / 2, 9)
+
+    def test_memory_of_headline_and_frontier_has_the_a_buffer_in_it(self):
+        results = {result["technique"]: result for result in self.report["results"] if result["technique"] != "reference"}
+        for result in results.values():
+            pixels = 96 * 54
+            most = max(frame["a_buffer_peak_bytes"] for frame in result["frames"])
+            surfaces = sum(surface["bytes_per_pixel"] for surface in result["framebuffer"])
+            self.assertAlmostEqual(result["peak_bytes_per_pixel"], surfaces + most / pixels, 9)
+        self.assertGreater(results["beam"]["a_buffer_peak_bytes"], 0)
+
+        cards = self.browser.run("return [...document.querySelectorAll('#summary .card')].map((card) => card.textContent)")
+        number = lambda value: self.browser.run("return numberText(arguments[0])", value)
+        best = lambda of: min(of, key=lambda result: result["error"]["rmse"])
+        frugal = best([result for result in results.values() if result["peak_bytes_per_pixel"] <= 80])
+        for card, result in [(cards[0], best(results.values())), (cards[-1], frugal)]:
+            self.assertIn(result["technique"], card)
+            self.assertIn(f"in {number(result['peak_bytes_per_pixel'])} bytes per pixel", card)
+
+        points = dict(self.browser.run("""return [...document.querySelectorAll("[data-plot=frontier] .point")]
+                                              .map((point) => [point.dataset.tip.split("\\n")[0], point.__data__.x])"""))
+        self.assertEqual(points, {spec: result["peak_bytes_per_pixel"] for spec, result in results.items()})
 
     def test_stage_numbers_equal_the_sums_of_the_report(self):
         expected = {}

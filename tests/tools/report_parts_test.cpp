@@ -18,7 +18,7 @@ constexpr const char* kReport = R"({"beampipe_report": 1, "trace": "dots.json", 
               "difference": 0, "source": "slide 30", "command": "beampipe report DIR"}],
   "msaa_ladder": [{"samples": 1, "rmse": 0.1}, {"samples": 8, "rmse": 0.03}],
   "results": [
-   {"technique": "beam", "framebuffer_bytes_per_pixel": 42, "a_buffer_peak_bytes": 7,
+   {"technique": "beam", "framebuffer_bytes_per_pixel": 42, "peak_bytes_per_pixel": 49, "a_buffer_peak_bytes": 7,
     "framebuffer": [{"name": "mask", "format": "R32UI x 8", "bytes_per_pixel": 42}],
     "error": {"rmse": 0.02, "bias": 0, "p99": 0.1, "max": 0.2},
     "equivalent_msaa": 8, "equivalent_msaa_is_lower_bound": true,
@@ -33,7 +33,8 @@ constexpr const char* kReport = R"({"beampipe_report": 1, "trace": "dots.json", 
       "stages": [{"stage": "compose", "ops": {"total": 1000000, "bit": 3}, "bytes_read": 200000,
                   "bytes_written": 50000, "dram_bytes": 1000000, "lanes_used": 1, "lanes_issued": 8,
                   "modelled_ms": {"shaders": 0.3}}]}]},
-   {"technique": "reference", "framebuffer_bytes_per_pixel": 65536, "a_buffer_peak_bytes": 0, "framebuffer": [],
+   {"technique": "reference", "framebuffer_bytes_per_pixel": 65536, "peak_bytes_per_pixel": 65536, "a_buffer_peak_bytes": 0,
+    "framebuffer": [],
     "frames": [{"index": 3, "picture": "reference/frame_0003.png", "wall_ms": {"median": 1}, "stages": []},
                {"index": 4, "picture": "reference/frame_0004.png", "wall_ms": {"median": 1}, "stages": []}]}]})";
 
@@ -81,6 +82,7 @@ TEST_F(ReportParts, TechniquesHaveTimesBoundsAndWhatMsaaWouldTake) {
   EXPECT_EQ(cell(techniques, 0, "wall_ms"), 6.0);
   EXPECT_EQ(cell(techniques, 0, "modelled_ms_shaders"), 3.0);
   EXPECT_EQ(cell(techniques, 0, "emr_bound"), "at least");
+  EXPECT_EQ(cell(techniques, 0, "peak_bytes_per_pixel"), 49);
   EXPECT_EQ(cell(techniques, 0, "msaa_bytes_per_pixel"), 80.0);
   EXPECT_TRUE(cell(techniques, 1, "rmse").is_null());
 }

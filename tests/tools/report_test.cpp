@@ -26,7 +26,7 @@ Report sample_report() {
     frame.picture = "msaa_8/frame_000" + std::to_string(index) + ".png";
     frame.wall_ms = {2.0 * static_cast<double>(index), 1.0, 20.0, 3, false, 44.0};
     frame.a_buffer_peak_bytes = 100 * (10 - index);
-    frame.pixels = 7;
+    frame.pixels = 50;
     frame.stages = {{"vertex_setup", 3, 1, {1, 2, 3, 4, 5, 6}, 36, 80, 3, 4, 128, 96}};
   }
   return report;
@@ -51,6 +51,7 @@ TEST(ReportJson, HasTheKeysOfTheContract) {
   const Json& result = json["results"].at(0);
   EXPECT_EQ(result["technique"], "msaa:8");
   EXPECT_EQ(result["framebuffer_bytes_per_pixel"], 80);
+  EXPECT_EQ(result["peak_bytes_per_pixel"], 80 + 600.0 / 50) << "the A-buffer of the frame where it is largest";
   EXPECT_EQ(result["framebuffer"].at(1), (Json{{"name", "color"}, {"format", "RGB16F x 8"}, {"bytes_per_pixel", 48}}));
   EXPECT_EQ(result["a_buffer_peak_bytes"], 600) << "the most of all frames";
   const Json& frame = result["frames"].at(1);
@@ -71,8 +72,8 @@ TEST(ReportJson, HasTheKeysOfTheContract) {
   EXPECT_EQ(frame["logical_bytes"], 116) << "of all stages";
   EXPECT_EQ(frame["sector_bytes"], 128);
   EXPECT_EQ(frame["dram_bytes"], 96);
-  EXPECT_EQ(frame["buffers"], (Json{{{"name", "depth"}, {"peak_bytes", 7 * 32}},
-                                    {{"name", "color"}, {"peak_bytes", 7 * 48}},
+  EXPECT_EQ(frame["buffers"], (Json{{{"name", "depth"}, {"peak_bytes", 50 * 32}},
+                                    {{"name", "color"}, {"peak_bytes", 50 * 48}},
                                     {{"name", "a_buffer"}, {"peak_bytes", 500}}}));
   EXPECT_FALSE(frame.contains("modelled_ms")) << "there is no hardware";
   const Json& memory = json["memory_system"];
@@ -141,8 +142,8 @@ TEST(SpecFolder, TurnsEverythingElseIntoUnderscores) {
 
 TEST(Table, HasOneRowPerTechnique) {
   EXPECT_EQ(table_text(sample_report(), "out"),
-            "technique  bytes/pixel   ms  picture\n"
-            "msaa:8              80  9.0  out/msaa_8/frame_0004.png and 1 more\n");
+            "technique  bytes/pixel  with A-buffer   ms  picture\n"
+            "msaa:8              80             92  9.0  out/msaa_8/frame_0004.png and 1 more\n");
 }
 
 TEST(Table, HasErrorsAfterCompare) {
@@ -152,9 +153,11 @@ TEST(Table, HasErrorsAfterCompare) {
   report.results[1].technique = "beam";
   report.results[1].equivalent_msaa = EquivalentMsaa{256, true, false};
   EXPECT_EQ(table_text(report, "out"),
-            "technique  bytes/pixel      RMSE       bias      p99      max    EMR   ms  picture\n"
-            "msaa:8              80  0.125000  -0.250000  0.50000  1.00000      8  8.0  out/msaa_8/frame_0004.png\n"
-            "beam                80  0.125000  -0.250000  0.50000  1.00000  ≥ 256  8.0  out/msaa_8/frame_0004.png\n");
+            "technique  bytes/pixel  with A-buffer      RMSE       bias      p99      max    EMR   ms  picture\n"
+            "msaa:8              80             92  0.125000  -0.250000  0.50000  1.00000      8  8.0  "
+            "out/msaa_8/frame_0004.png\n"
+            "beam                80             92  0.125000  -0.250000  0.50000  1.00000  ≥ 256  8.0  "
+            "out/msaa_8/frame_0004.png\n");
 }
 
 TEST(Table, MarksBoundsOfEquivalentRates) {

@@ -46,7 +46,7 @@ std::vector<Figure> report_figures(const ReportFile& report) {
     figures.push_back(
         {"Memory and accuracy",
          "Up and to the left is better; above the line a technique needs less memory than MSAA of the same "
-         "error. A triangle is a bound.",
+         "error. An A-buffer in front of the framebuffer counts with its peak. A triangle is a bound.",
          {{"frontier", frontier_plot({report})}}});
     Figure speed{"Time and error", "Down and to the left is better.", {{"wall time", speed_plot({report})}}};
     for (const auto& [implementation, ms] : report.techniques.front().modelled_ms) {

@@ -91,7 +91,7 @@ void add_derived(Json& stage) {
 TechniqueSummary read_summary(const Json& result) {
   TechniqueSummary summary;
   summary.spec = result.at("technique");
-  summary.bytes_per_pixel = result.at("framebuffer_bytes_per_pixel");
+  summary.bytes_per_pixel = result.at("peak_bytes_per_pixel");
   std::vector<double> medians;
   for (const Json& frame : result.at("frames")) medians.push_back(frame.at("wall_ms").at("median"));
   summary.wall_ms = wall_time(std::move(medians)).median;

@@ -21,7 +21,7 @@ struct ReportError : std::runtime_error {
 // What one technique cost and bought, over all frames of a report.
 struct TechniqueSummary {
   std::string spec;
-  double bytes_per_pixel = 0;  // of the framebuffer
+  double bytes_per_pixel = 0;  // of framebuffer and A-buffer, at their peak
   double wall_ms = 0;          // per frame: the median of the frames' medians
   // Per frame, by the way in which the modelled hardware runs the techniques: all stages at once. Empty: not modelled.
   std::map<std::string, double> modelled_ms;

@@ -18,9 +18,12 @@ struct Source {
 
 const std::vector<Source> kTechniqueColumns = {
     {{"technique", "technique", "", "The spec that names the technique, as `beampipe run -t` takes it."}, "/technique"},
-    {{"bytes_per_pixel", "bytes/pixel", "bytes",
+    {{"framebuffer_bytes_per_pixel", "framebuffer", "bytes per pixel",
       "What the technique's framebuffer takes per pixel, all surfaces together."},
      "/framebuffer_bytes_per_pixel"},
+    {{"peak_bytes_per_pixel", "with A-buffer", "bytes per pixel",
+      "What framebuffer and A-buffer take per pixel, in the frame where the A-buffer is largest."},
+     "/peak_bytes_per_pixel"},
     {{"a_buffer_peak_bytes", "A-buffer", "bytes",
       "The most that the A-buffer in front of the framebuffer held at any time of a frame; 0: there is none."},
      "/a_buffer_peak_bytes"},

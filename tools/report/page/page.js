@@ -14,7 +14,9 @@ function makeCards(table) {
   const of = (row, key) => cell(table, row, key);
   const rivals = table.rows.filter((row) => of(row, "technique") !== "reference" && of(row, "rmse") !== undefined);
   const best = (rows) => rows.slice().sort((a, b) => of(a, "rmse") - of(b, "rmse"))[0];
-  const winner = best(rivals), frugal = best(rivals.filter((row) => of(row, "bytes_per_pixel") <= kBudget));
+  const winner = best(rivals), frugal = best(rivals.filter((row) => of(row, "peak_bytes_per_pixel") <= kBudget));
+  const makeup = (row) => of(row, "a_buffer_peak_bytes") === 0 ? ""
+    : ` (${numberText(of(row, "framebuffer_bytes_per_pixel"))} of the framebuffer, the rest an A-buffer at its peak)`;
   const budget = `in at most ${kBudget} bytes per pixel, what 8× MSAA takes`;
   const cards = [];
   for (const [title, row] of winner === frugal ? [[`Most accurate of all, and ${budget}`, winner]]
@@ -23,7 +25,7 @@ function makeCards(table) {
     const bound = { exact: "", "at least": "at least ", "at most": "at most " }[of(row, "emr_bound")];
     cards.push(makeCard(title, of(row, "technique"),
       `RMSE ${numberText(of(row, "rmse"))}, as good as MSAA with ${bound}${numberText(Math.round(of(row, "emr")))} samples, ` +
-      `in ${numberText(of(row, "bytes_per_pixel"))} bytes per pixel where that takes ` +
+      `in ${numberText(of(row, "peak_bytes_per_pixel"))} bytes per pixel${makeup(row)} where that takes ` +
       `${bound}${numberText(Math.round(of(row, "msaa_bytes_per_pixel")))}.`));
   }
   return cards;

@@ -1,0 +1,47 @@
+// Scalar twins on counting numbers, with the data of every procedural scene.
+#pragma once
+
+#include <gtest/gtest.h>
+
+#include "stages/counting.h"
+#include "stages/setup_triangle.h"
+#include "stages/tile.h"
+#include "stages/vertex_setup.h"
+#include "traces/scenes.h"
+
+namespace beampipe {
+
+using Int = Counted<std::int64_t>;
+using Float = Counted<float>;
+using Real = Counted<double>;
+using Bits = Counted<std::uint32_t>;
+
+class SceneTwins : public testing::TestWithParam<SceneKind> {
+ protected:
+  void SetUp() override {
+    const std::uint32_t triangles = GetParam().name == "stack" ? 8 : 1500;  // each covers the whole picture
+    trace_ = make_scene(GetParam().name, {.triangles = triangles, .width = 48, .height = 28});
+    triangles_ = vertex_setup(trace_, trace_.frames[0], setup_);
+    for (std::uint32_t i = 0; i < triangles_.triangles.size(); ++i) list_.push_back(i);
+    ASSERT_FALSE(list_.empty());
+  }
+
+  Int integer(std::int64_t value) { return Int(value, twin_); }
+  Float real(float value) { return Float(value, twin_); }
+  Real real(double value) { return Real(value, twin_); }
+  Bits bits(std::uint32_t value) { return Bits(value, twin_); }
+
+  const Tile tile_{0, 0, 48, 28};
+  Trace trace_;
+  SetupTriangles triangles_;
+  TriangleList list_;
+  StageCounters setup_;   // what vertex_setup counted
+  OperationCounts twin_;  // what the twins have counted
+};
+
+// For a suite that is SceneTwins under its own name.
+#define BEAMPIPE_ON_EVERY_SCENE(suite)                                      \
+  INSTANTIATE_TEST_SUITE_P(Scenes, suite, testing::ValuesIn(scene_kinds()), \
+                           [](const auto& scene) { return std::string(scene.param.name); })
+
+}  // namespace beampipe
