@@ -169,6 +169,11 @@ const std::vector<FrameCounterInfo>& frame_counters() {
       {"peak_bytes_per_pixel", "bytes per pixel",
        "of a technique: its framebuffer and, in the frame where it is largest, its A-buffer",
        "ReportJson.HasTheKeysOfTheContract"},
+      {"saved", "pairs, pixels",
+       "work that was not done, found from the stages' counters: hidden_pairs, pairs that raster left out behind "
+       "triangles which cover their pixel; whole_pixels, which took the short way; pairs_behind_closed, pairs in the "
+       "A-buffer that nothing looked at",
+       "SavedWork.IsFoundFromTheStages"},
       {"wall_ms", "milliseconds",
        "of the simulator on this machine; with_memory_model says whether the model's own time is in it, and "
        "modelling_run, with --repeat, how long the rendering took that it was in",

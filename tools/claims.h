@@ -1,4 +1,4 @@
-// What the publications claim, beside what this program finds.
+// What the publications state in numbers, beside what this program finds.
 #pragma once
 
 #include <nlohmann/json.hpp>
@@ -12,20 +12,41 @@ namespace beampipe {
 
 struct Claim {
   std::string name, unit;
-  double published_low = 0, published_high = 0;  // the same when one number is claimed
+  double published_low = 0, published_high = 0;  // the same when one number is published; infinity: "or more"
   std::optional<double> ours;                    // empty: the report does not have what it takes
-  std::string source, command;
+  std::string source, command;                   // the command whose report has it
+  std::string beside;  // what ours is where it is not the same quantity, or why there is none; empty: it is the same
 
   // From the nearer end of what is published; 0 within it.
   std::optional<double> difference() const;
 };
 
-// Bytes per pixel by technique and format, which no rendering is needed for.
-std::vector<Claim> memory_claims();
+// All of them, whatever the report is of; numbers from first frames. Of a report without results only what needs no
+// rendering has `ours`. Where a claim is about a scene, ours is of a trace of that name.
+std::vector<Claim> all_claims(const Report& report);
 
-// Claims about traffic and time, from the techniques that the report has (first frames).
-std::vector<Claim> measured_claims(const Report& report);
+// Those that the report answers.
+std::vector<Claim> answered_claims(const Report& report);
 
 nlohmann::ordered_json to_json(const Claim& claim);
+
+// As a Markdown table.
+std::string claims_text(const std::vector<Claim>& claims);
+
+// ---- What the lists of claims are made with ----
+
+// Appends those of the article on decoupled visibility multisampling.
+void add_dvm_claims(const Report& report, std::vector<Claim>& claims);
+
+// "fence" of "some/where/fence.json".
+std::string scene_of(const Report& report);
+
+// Null: the report does not have the technique.
+const FrameReport* first_frame(const Report& report, const std::string& spec);
+
+// The prototype as the papers ran it, in shaders, stage after stage; of the stages named, or of all. Nothing where
+// times are not modelled.
+std::optional<double> modelled_ms(const Report& report, const FrameReport* frame,
+                                  const std::vector<std::string>& stages = {});
 
 }  // namespace beampipe

@@ -18,6 +18,7 @@ void add_run_command(CLI::App& app, InterruptGate& gate);
 void add_compare_command(CLI::App& app, InterruptGate& gate);
 void add_report_command(CLI::App& app, InterruptGate& gate);
 void add_plot_command(CLI::App& app, InterruptGate& gate);
+void add_claims_command(CLI::App& app);
 void add_stress_command(CLI::App& app);
 void add_diff_command(CLI::App& app);
 void add_info_command(CLI::App& app);

@@ -55,6 +55,7 @@ int run(int argc, char** argv, beampipe::InterruptGate& gate) {
   beampipe::add_compare_command(app, gate);
   beampipe::add_report_command(app, gate);
   beampipe::add_plot_command(app, gate);
+  beampipe::add_claims_command(app);
   beampipe::add_stress_command(app);
   beampipe::add_diff_command(app);
   beampipe::add_info_command(app);

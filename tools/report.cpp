@@ -7,6 +7,7 @@
 
 #include "stages/counter_registry.h"
 #include "tools/claims.h"
+#include "tools/saved_work.h"
 
 namespace beampipe {
 namespace {
@@ -51,6 +52,7 @@ Json to_json(const FrameReport& frame, const TechniqueReport& result, const Hard
   const Json sums = to_json(all);
   for (const char* column : {"logical_bytes", "sector_bytes", "dram_bytes"}) json[column] = sums.at(column);
   json["buffers"] = buffers_json(result, frame);
+  for (const SavedWork& saved : saved_work(frame.stages)) json["saved"][saved.name] = saved.amount;
   json["stages"] = Json::array();
   for (const StageCounters& stage : frame.stages) json["stages"].push_back(to_json(stage));
   for (const Implementation& implementation : hardware.implementations) {
@@ -180,8 +182,7 @@ Json to_json(const Report& report) {
   json["results"] = Json::array();
   for (const TechniqueReport& result : report.results) json["results"].push_back(to_json(result, report.hardware));
   json["claims"] = Json::array();
-  for (const auto& claims : {memory_claims(), measured_claims(report)})
-    for (const Claim& claim : claims) json["claims"].push_back(to_json(claim));
+  for (const Claim& claim : answered_claims(report)) json["claims"].push_back(to_json(claim));
   return json;
 }
 

@@ -185,8 +185,24 @@ class ReportPage(unittest.TestCase):
         for row, sums in zip(rows, expected.values()):
             self.assertEqual({key: int(row[key][0]) for key in sums}, sums)
 
+    def test_saved_work_is_that_of_the_stages(self):
+        rows = {row["technique"][0]: row for row in table_rows(self.browser, "saved")}
+        beam = next(result for result in self.report["results"] if result["technique"] == "beam")
+        stages = {}
+        for frame in beam["frames"]:
+            for stage in frame["stages"]:
+                of = stages.setdefault(stage["stage"], {"items_in": 0, "items_out": 0, "lanes_used": 0})
+                for key in of:
+                    of[key] += stage[key]
+        raster, fragment = stages["conservative_raster"], stages["beam_fragment"]
+        whole = stages["compose"]["items_in"] - fragment["items_out"]
+        expected = {"hidden_pairs": raster["lanes_used"] - raster["items_out"], "whole_pixels": whole,
+                    "pairs_behind_closed": stages["a_buffer"]["items_out"] - fragment["items_in"] - whole}
+        self.assertEqual({key: int(rows["beam"][key][0]) for key in expected}, expected)
+        self.assertGreater(min(expected.values()), 0)
+
     def test_csv_files_hold_the_same(self):
-        for name in ["techniques", "framebuffer", "stages", "frames"]:
+        for name in ["techniques", "framebuffer", "stages", "saved", "frames"]:
             with open(self.folder / "tables" / f"{name}.csv", newline="") as file:
                 lines = list(csv.DictReader(file))
             rows = table_rows(self.browser, name)

@@ -5,6 +5,7 @@
 
 #include "pipeline/technique.h"
 #include "stages/counter_registry.h"
+#include "tools/saved_work.h"
 
 namespace beampipe {
 namespace {
@@ -99,11 +100,15 @@ const std::vector<Source> kClaimColumns = {
     {{"unit", "unit", "", "What the claim's numbers count."}, "/unit"},
     {{"published_low", "published", "see unit", "The number that is published, or the lower end of the range."},
      "/published_low"},
-    {{"published_high", "up to", "see unit", "The upper end of the range that is published."}, "/published_high"},
-    {{"ours", "ours", "see unit", "What this program finds; a dash where the report has not what it takes."}, "/ours"},
+    {{"published_high", "up to", "see unit", "The upper end of the range that is published; a dash: or more."},
+     "/published_high"},
+    {{"ours", "ours", "see unit",
+      "What this program finds, of this report; `beampipe claims` lists the claims that it does not answer as well."},
+     "/ours"},
     {{"difference", "difference", "see unit", "Ours, less the nearer end of what is published; 0 within it."},
      "/difference"},
     {{"source", "source", "", "Where the claim stands."}, "/source"},
+    {{"beside", "what ours is", "", "Where ours is not the same quantity: what it is."}, "/beside"},
     {{"command", "command", "", "What finds our number."}, "/command"},
 };
 
@@ -164,6 +169,28 @@ std::vector<Json> members(const Json& results, const std::string& key) {
   return records;
 }
 
+// What each technique's shortcuts saved, over all frames.
+std::vector<Json> saved_records(const Json& results) {
+  std::vector<Json> records;
+  for (const Json& result : results) {
+    Json record = {{"technique", result.at("technique")}};
+    for (const Json& frame : result.at("frames")) {
+      const Json saved = frame.value("saved", Json::object());
+      for (const auto& [name, amount] : saved.items())
+        record[name] = record.value(name, std::uint64_t{0}) + amount.get<std::uint64_t>();
+    }
+    if (record.size() > 1) records.push_back(std::move(record));
+  }
+  return records;
+}
+
+std::vector<Source> saved_columns() {
+  std::vector<Source> columns = {{{"technique", "technique", "", "The spec that names the technique."}, "/technique"}};
+  for (const SavedWork& saved : saved_work({{"conservative_raster"}, {"a_buffer"}, {"beam_fragment"}, {"compose"}}))
+    columns.push_back({{saved.name, saved.title, saved.unit, sentence(saved.meaning)}, std::string("/") + saved.name});
+  return columns;
+}
+
 std::string csv_field(const Json& value) {
   if (value.is_null()) return "";
   if (!value.is_string()) return value.dump();
@@ -191,6 +218,8 @@ std::vector<Table> report_tables(const ReportFile& report) {
                  with_modelled_times(stage_columns(), report, "ms",
                                      "What the modelled hardware takes for this stage: the time of its busiest unit."),
                  stage_records(report)));
+  const std::vector<Json> saved = saved_records(results);
+  if (!saved.empty()) tables.push_back(make_table("saved", "Saved work, all frames together", saved_columns(), saved));
   const std::vector<Json> frames = members(results, "frames");
   if (frames.size() > results.size()) tables.push_back(make_table("frames", "Frames", kFrameColumns, frames));
   const auto& claims = report.json.find("claims");
