@@ -61,7 +61,7 @@ const std::array<const char*, 20> kPlotColors = {
 ScatterPlot frontier_plot(const std::vector<ReportFile>& reports) {
   ScatterPlot plot{"frontier",
                    "Memory and accuracy: " + scenes_text(reports),
-                   "framebuffer and A-buffer at their peak, bytes per pixel",
+                   "memory with the A-buffer, bytes per pixel",
                    "equivalent MSAA rate (EMR), samples",
                    {{kMsaa, {}, true}},
                    {}};
