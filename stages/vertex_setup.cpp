@@ -8,35 +8,11 @@
 
 #include "simd/sample_pattern.h"
 #include "simd/scalar.h"
+#include "simd/vertex_transform.h"
 #include "stages/counting.h"
 
 namespace beampipe {
 namespace {
-
-template <class Real>
-struct ClipVertex {
-  Real x, y, z, w;
-};
-
-template <class Real>
-ClipVertex<Real> transform_vertex(const std::array<Real, 16>& m, Real x, Real y, Real z) {
-  const auto row = [&](std::size_t r) { return m[r] * x + m[4 + r] * y + m[8 + r] * z + m[12 + r]; };
-  return {row(0), row(1), row(2), row(3)};
-}
-
-// Viewport transform. Depth goes from [-1, 1] to [-1, 0] (stages/setup_triangle.h).
-template <class Real>
-struct ScreenVertex {
-  Real x, y, z;  // pixels, pixels, depth
-};
-
-template <class Real>
-ScreenVertex<Real> project(const ClipVertex<Real>& v, Real width, Real height) {
-  const Real half(0.5), one(1.0);
-  const Real inverse_w = one / v.w;
-  return {(v.x * inverse_w + one) * half * width, (one - v.y * inverse_w) * half * height,
-          (v.z * inverse_w - one) * half};
-}
 
 // Depth plane through three snapped vertices; `area2` is twice their signed area.
 template <class Real>
@@ -111,14 +87,6 @@ bool outside_view(const std::array<ClipVertex<Real>, 3>& v) {
   return left | right | below | above | before | behind;
 }
 
-// Before it is rounded down to an integer: pixels in 1/256 px.
-template <class Real>
-Real to_grid(Real pixels) {
-  return pixels * Real(double{kSubpixelUnits}) + Real(0.5);
-}
-
-std::int32_t snap(double pixels) { return static_cast<std::int32_t>(std::floor(to_grid(pixels))); }
-
 // Twice the signed area; positive: clockwise with y down.
 template <class Int>
 Int doubled_area(const std::array<Int, 3>& x, const std::array<Int, 3>& y) {
@@ -153,14 +121,6 @@ std::array<double, 16> elements_of(const glm::dmat4& matrix) {  // column-major
   return elements;
 }
 
-// A vertex of the draw at hand, and what its triangles share of it.
-struct SetupVertex {
-  ClipVertex<double> clip;
-  ScreenVertex<double> screen;  // x and y snapped; with w > 0 only
-  std::int32_t x, y;            // 1/256 px
-  bool finite, in_view;         // nothing to clip where all three vertices are in view
-};
-
 // How often each twin ran.
 struct Work {
   std::uint64_t transformed = 0, outside_tests = 0, plane_tests = 0, crossings = 0, fans = 0, projected = 0, areas = 0;
@@ -191,43 +151,22 @@ struct View {
         mirrored(glm::determinant(to_clip) > 0) {}
 };
 
-template <class Real>
-bool in_view(const ClipVertex<Real>& v) {
-  return (v.w > Real(0.0)) & (magnitude(v.x) <= v.w) & (magnitude(v.y) <= v.w) & (magnitude(v.z) <= v.w);
-}
-
-void place_on_screen(const View& view, SetupVertex& vertex, Work& work) {
-  ++work.projected;
-  vertex.screen = project<double>(vertex.clip, view.width, view.height);
-  vertex.x = snap(vertex.screen.x), vertex.y = snap(vertex.screen.y);
-  vertex.screen.x = vertex.x / double(kSubpixelUnits), vertex.screen.y = vertex.y / double(kSubpixelUnits);
-}
-
-SetupVertex setup_vertex(const View& view, const std::array<double, 16>& to_clip, const glm::vec3& p, Work& work) {
-  SetupVertex vertex{};
-  ++work.transformed;
-  vertex.clip = transform_vertex<double>(to_clip, p.x, p.y, p.z);
-  vertex.finite = std::isfinite(vertex.clip.x + vertex.clip.y + vertex.clip.z + vertex.clip.w);
-  vertex.in_view = vertex.finite && in_view(vertex.clip);
-  if (vertex.in_view) place_on_screen(view, vertex, work);
-  return vertex;
-}
-
 // Triangles of one draw, one after the other, into `out`.
 class TriangleSetup {
  public:
   TriangleSetup(const View& view, const Mesh& mesh, const Draw& draw, std::uint32_t draw_index,
-                const std::vector<SetupVertex>& vertices)
+                const VertexTransform& transform, const std::vector<ProjectedVertex>& vertices)
       : view_(view),
         mesh_(mesh),
         draw_(draw),
         to_world_(elements_of(draw.transform)),
         draw_index_(draw_index),
+        transform_(transform),
         vertices_(vertices) {}
 
   void add(std::size_t t) {
     const glm::uvec3& index = mesh_.triangles[t];
-    const std::array<const SetupVertex*, 3> v = {&vertices_[index.x], &vertices_[index.y], &vertices_[index.z]};
+    const std::array<const ProjectedVertex*, 3> v = {&vertices_[index.x], &vertices_[index.y], &vertices_[index.z]};
     if (v[0]->in_view && v[1]->in_view && v[2]->in_view) {
       add_on_screen(t, *v[0], *v[1], *v[2]);
     } else if (v[0]->finite && v[1]->finite && v[2]->finite) {
@@ -252,9 +191,10 @@ class TriangleSetup {
       polygon = clip_to_plane(polygon, view_.planes[i], work.crossings);
     }
     const auto on_screen = [&](const ClipVertex<double>& p) {
-      SetupVertex vertex{};
+      ProjectedVertex vertex{};
       vertex.clip = p;
-      place_on_screen(view_, vertex, work);
+      place_on_screen(transform_, vertex);
+      ++work.projected;
       return vertex;
     };
     work.fans += polygon.size() < 3 ? 0 : polygon.size() - 2;
@@ -263,14 +203,14 @@ class TriangleSetup {
         add_on_screen(t, on_screen(polygon[0]), on_screen(polygon[i - 1]), on_screen(polygon[i]));
   }
 
-  void add_on_screen(std::size_t t, const SetupVertex& a, const SetupVertex& b, const SetupVertex& c) {
+  void add_on_screen(std::size_t t, const ProjectedVertex& a, const ProjectedVertex& b, const ProjectedVertex& c) {
     ++work.areas;
     const std::int64_t area2 = doubled_area<std::int64_t>({a.x, b.x, c.x}, {a.y, b.y, c.y});
     if (area2 == 0) return;
     const bool front = area2 < 0;  // counter-clockwise with y up
     if (draw_.cull == (front ? Cull::front : Cull::back)) return;
     SetupTriangle& triangle = out.triangles.emplace_back();
-    const std::array<const SetupVertex*, 3> turned = {&a, front ? &c : &b, front ? &b : &c};
+    const std::array<const ProjectedVertex*, 3> turned = {&a, front ? &c : &b, front ? &b : &c};
     for (std::size_t k = 0; k < 3; ++k) {
       triangle.x[k] = turned[k]->x, triangle.y[k] = turned[k]->y;
       triangle.vertex_z[k] = static_cast<float>(turned[k]->screen.z);
@@ -310,7 +250,8 @@ class TriangleSetup {
   const Draw& draw_;
   std::array<double, 16> to_world_;
   std::uint32_t draw_index_;
-  const std::vector<SetupVertex>& vertices_;
+  const VertexTransform& transform_;
+  const std::vector<ProjectedVertex>& vertices_;
 };
 
 void append(const SetupTriangles& part, SetupTriangles& whole) {
@@ -330,15 +271,15 @@ void for_each_chunk(std::size_t count, ChunkWork&& work) {
 
 // The draw's triangles, chunk by chunk, behind those of `out`.
 Work add_draw(const View& view, const Mesh& mesh, const Draw& draw, std::uint32_t draw_index, SetupTriangles& out) {
-  const std::array<double, 16> to_clip = elements_of(view.to_clip * draw.transform);
-  std::vector<SetupVertex> vertices(mesh.positions.size());
-  std::vector<Work> transforms((vertices.size() + kChunk - 1) / kChunk);
+  const VertexTransform transform{elements_of(view.to_clip * draw.transform), view.width, view.height};
+  std::vector<ProjectedVertex> vertices(mesh.positions.size());
+  std::vector<std::size_t> in_view((vertices.size() + kChunk - 1) / kChunk);
   for_each_chunk(vertices.size(), [&](std::size_t first, std::size_t end) {
-    for (std::size_t i = first; i < end; ++i)
-      vertices[i] = setup_vertex(view, to_clip, mesh.positions[i], transforms[first / kChunk]);
+    in_view[first / kChunk] =
+        transform_vertices(&mesh.positions[first].x, end - first, transform, vertices.data() + first);
   });
   std::vector<TriangleSetup> chunks((mesh.triangles.size() + kChunk - 1) / kChunk,
-                                    TriangleSetup(view, mesh, draw, draw_index, vertices));
+                                    TriangleSetup(view, mesh, draw, draw_index, transform, vertices));
   for_each_chunk(mesh.triangles.size(), [&](std::size_t first, std::size_t end) {
     chunks[first / kChunk].out.reserve(end - first);
     for (std::size_t t = first; t < end; ++t) chunks[first / kChunk].add(t);
@@ -347,7 +288,8 @@ Work add_draw(const View& view, const Mesh& mesh, const Draw& draw, std::uint32_
   for (const TriangleSetup& chunk : chunks) count += chunk.out.triangles.size();
   out.reserve(count);
   Work work;
-  for (const Work& of_chunk : transforms) work += of_chunk;
+  work.transformed = vertices.size();
+  for (const std::size_t of_chunk : in_view) work.projected += of_chunk;
   for (const TriangleSetup& chunk : chunks) {
     append(chunk.out, out);
     work += chunk.work;
