@@ -257,9 +257,10 @@ void beam_fragment(const SetupTriangles& triangles, const std::vector<PixelTrian
     next += !pair.full || options.clipped_depth;
     if (!pair.full && covered.coverage[i].alpha <= kZeroArea) continue;
     const SetupTriangle& triangle = triangles.triangles[pair.triangle];
-    Fragment& fragment = out.emplace_back();
+    Fragment fragment;
     fragment.triangle = pair.triangle;
     fragment.quad = pair.quad;
+    fragment.color = glm::vec3(0.0f);
     fragment.pixel = static_cast<std::uint32_t>(tile.index(pair.x, pair.y));
     fragment.front = triangle.front;
     fragment.plane = pixel_plane(triangle, pair.x, pair.y);
@@ -277,6 +278,7 @@ void beam_fragment(const SetupTriangles& triangles, const std::vector<PixelTrian
     fragment.centroid_z = lesser(greater(fragment.centroid_z, fragment.z_min), fragment.z_max);
     fragment.tiny = options.mask != MaskSource::none && fragment.mask.none();
     if (fragment.tiny) located += locate(options, fragment);
+    out.push_back(fragment);
   }
 
   static const OperationCounts area_cost = coverage_cost(), range_cost = clipped_depth_cost(),

@@ -209,7 +209,7 @@ class TriangleSetup {
     if (area2 == 0) return;
     const bool front = area2 < 0;  // counter-clockwise with y up
     if (draw_.cull == (front ? Cull::front : Cull::back)) return;
-    SetupTriangle& triangle = out.triangles.emplace_back();
+    SetupTriangle triangle;
     const std::array<const ProjectedVertex*, 3> turned = {&a, front ? &c : &b, front ? &b : &c};
     for (std::size_t k = 0; k < 3; ++k) {
       triangle.x[k] = turned[k]->x, triangle.y[k] = turned[k]->y;
@@ -225,6 +225,7 @@ class TriangleSetup {
     const Slopes<double> slopes = depth_slopes(p[0], p[1], p[2]);
     triangle.depth = {p[0].z, slopes.dzdx, slopes.dzdy, p[0].x, p[0].y};
     triangle.front = front;
+    out.triangles.push_back(triangle);
     out.attributes.push_back(attributes(t, front));
     out.draws.push_back(draw_index_);
   }
