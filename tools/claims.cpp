@@ -181,9 +181,9 @@ void add_acaa_claims(const Report& report, std::vector<Claim>& claims) {
   add("ACAA, part of MSAA's frame time that is saved", 0.2, 0.3, time_saved, kTime);
 }
 
-std::string number(double value) {
+std::string number(double value, int digits = 4) {
   char text[32];
-  std::snprintf(text, sizeof text, "%.4g", value);
+  std::snprintf(text, sizeof text, "%.*g", digits, value);
   return text;
 }
 
@@ -249,11 +249,11 @@ std::string claims_text(const std::vector<Claim>& claims) {
       "| claim | unit | published | ours | difference | what ours is | source | command "
       "|\n|---|---|---|---|---|---|---|---|\n";
   for (const Claim& claim : claims) {
-    std::string published = number(claim.published_low);
+    std::string published = number(claim.published_low, 6);
     if (!std::isfinite(claim.published_high))
       published += " or more";
     else if (claim.published_high != claim.published_low)
-      published += " to " + number(claim.published_high);
+      published += " to " + number(claim.published_high, 6);
     text += "| " + claim.name + " | " + claim.unit + " | " + published + " | " +
             (claim.ours ? number(*claim.ours) : "") + " | " + (claim.ours ? number(*claim.difference()) : "") + " | " +
             claim.beside + " | " + claim.source + " | `" + claim.command + "` |\n";
