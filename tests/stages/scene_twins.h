@@ -7,7 +7,7 @@
 #include "stages/setup_triangle.h"
 #include "stages/tile.h"
 #include "stages/vertex_setup.h"
-#include "traces/scenes.h"
+#include "tests/traces/scene_names.h"
 
 namespace beampipe {
 

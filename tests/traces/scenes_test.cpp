@@ -7,6 +7,7 @@
 #include <set>
 #include <stdexcept>
 
+#include "tests/traces/scene_names.h"
 #include "tests/traces/test_folder.h"
 
 namespace beampipe {
