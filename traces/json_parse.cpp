@@ -20,21 +20,23 @@ std::string reason_of(const std::exception& error) {
   return message;
 }
 
-// Follows the parser to know where it stands. As a handler of its own: given a callback, the library looks through an
-// array again for each object in it.
-class PlaceTracker : public nlohmann::json_sax<Json> {
+// Builds the value while it knows where the parser stands. As a handler of its own: given a callback, the library looks
+// through an array again for each object in it.
+class Builder : public nlohmann::json_sax<Json> {
  public:
-  explicit PlaceTracker(const std::string& file) : file_(file) {}
+  explicit Builder(const std::string& file) : file_(file) {}
 
-  bool null() override { return value(); }
-  bool boolean(bool) override { return value(); }
-  bool number_integer(number_integer_t) override { return value(); }
-  bool number_unsigned(number_unsigned_t) override { return value(); }
-  bool number_float(number_float_t, const string_t&) override { return value(); }
-  bool string(string_t&) override { return value(); }
-  bool binary(binary_t&) override { return value(); }
-  bool start_object(std::size_t) override { return enter(false); }
-  bool start_array(std::size_t) override { return enter(true); }
+  Json take() { return std::move(root_); }
+
+  bool null() override { return add(nullptr); }
+  bool boolean(bool value) override { return add(value); }
+  bool number_integer(number_integer_t value) override { return add(value); }
+  bool number_unsigned(number_unsigned_t value) override { return add(value); }
+  bool number_float(number_float_t value, const string_t&) override { return add(value); }
+  bool string(string_t& value) override { return add(std::move(value)); }
+  bool binary(binary_t& value) override { return add(std::move(value)); }
+  bool start_object(std::size_t) override { return enter(Json::object()); }
+  bool start_array(std::size_t) override { return enter(Json::array()); }
   bool end_object() override { return leave(); }
   bool end_array() override { return leave(); }
   bool key(string_t& key) override {
@@ -51,32 +53,43 @@ class PlaceTracker : public nlohmann::json_sax<Json> {
   std::string where() const {
     std::string pointer;
     for (const Level& level : levels_) {
-      pointer += '/' + (level.is_array ? std::to_string(level.index) : pointer_step(level.key));
+      // The element that is open is there already; behind the innermost array's last one stands what comes next.
+      const std::size_t index = level.value->size() - (&level == &levels_.back() ? 0 : 1);
+      pointer += '/' + (level.value->is_array() ? std::to_string(index) : pointer_step(level.key));
     }
     return file_ + ": " + (pointer.empty() ? "/" : pointer);
   }
 
-  bool value() {
-    if (!levels_.empty()) ++levels_.back().index;
+  // To its place: behind the others of an array or object, whose keys are known to differ.
+  Json& place(Json&& value) {
+    if (levels_.empty()) return root_ = std::move(value);
+    Json& parent = *levels_.back().value;
+    if (parent.is_array()) return parent.emplace_back(std::move(value));
+    auto& members = parent.get_ref<Json::object_t&>();
+    return static_cast<Json::object_t::Container&>(members).emplace_back(levels_.back().key, std::move(value)).second;
+  }
+  bool add(Json&& value) {
+    place(std::move(value));
     return true;
   }
-  bool enter(bool is_array) {
-    levels_.push_back({is_array, 0, "", {}});
+  bool enter(Json&& value) {
+    Json& placed = place(std::move(value));
+    levels_.push_back({&placed, "", {}});
     return true;
   }
   bool leave() {
     levels_.pop_back();
-    return value();
+    return true;
   }
 
   struct Level {
-    bool is_array;
-    std::size_t index;
+    Json* value;  // array or object; stays where it is while it is open
     std::string key;
     std::set<std::string> keys;
   };
 
   const std::string& file_;
+  Json root_;
   std::vector<Level> levels_;
 };
 
@@ -97,11 +110,9 @@ Json parse_json(const std::string& file) {
   require_input_file(file, file);
   std::ifstream stream(file, std::ios::binary);
   if (!stream) fail_trace(file, "a readable file", "none");
-  PlaceTracker place(file);
-  Json::sax_parse(stream, &place);
-  stream.clear();
-  stream.seekg(0);
-  return Json::parse(stream);
+  Builder builder(file);
+  Json::sax_parse(stream, &builder);
+  return builder.take();
 }
 
 }  // namespace beampipe
