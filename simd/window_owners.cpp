@@ -135,7 +135,7 @@ WindowCounts window_owners_scalar(const MaskedPlane* in, std::size_t count, cons
     for (std::size_t i = 0; i < count; ++i)
       if (in[i].mask.test(bit)) here.push_back(i);
     if (here.empty()) continue;
-    std::size_t owner = here.front();
+    std::size_t owner = here.size() == 1 ? here.front() : count;
     if (here.size() > 1) {
       const SamplePattern& pattern = patterns[bit / kMaxMaskSamples];
       const auto x = static_cast<float>(pattern.x[bit % kMaxMaskSamples]);
@@ -151,6 +151,7 @@ WindowCounts window_owners_scalar(const MaskedPlane* in, std::size_t count, cons
       }
       tests += here.size();
     }
+    if (owner == count) continue;
     out[owner].owned.set(bit);
     ++out[owner].visible;
   }

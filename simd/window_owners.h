@@ -34,7 +34,8 @@ struct WindowCounts {
 
 // out[i] = the positions where in[i] is nearest, `taken` ones apart. At equal depth the earlier fragment. Positions
 // that one fragment alone covers need no depth. Bit s of word w stands at position s of patterns[w]. Lanes are across
-// positions.
+// positions. Depths are finite: vertex_setup drops vertices that are not, and a triangle's least area, 2^-17 px, keeps
+// slopes below 2^34 per pixel. Where several planes meet and none has a finite depth, nobody owns the position.
 WindowCounts window_owners(const MaskedPlane* in, std::size_t count, const WideMask& taken,
                            const SamplePattern* patterns, Ownership* out);
 

@@ -2,6 +2,7 @@
 
 #include <gtest/gtest.h>
 
+#include <limits>
 #include <vector>
 
 #include "tests/simd/every_target.h"
@@ -27,16 +28,17 @@ MaskedPlane random_fragment(Random& random, std::size_t words) {
   return {random_mask(random, words), corner_plane(plane)};
 }
 
-TEST(WindowOwners, KernelEqualsTwin) {
-  Random random(65);
-  SCOPED_TRACE(random.name());
+void expect_twin(Random& random, int windows, const std::vector<float>& unusual_depths) {
   on_every_target([&] {
-    for (int i = 0; i < 1'500; ++i) {
+    for (int i = 0; i < windows; ++i) {
       const std::size_t words = std::size_t{1} << random.integer(0, 3);
       const std::vector<SamplePattern> patterns = cell_patterns(static_cast<int>(32 * words));
       std::vector<MaskedPlane> fragments;
       for (std::int64_t n = random.integer(1, random.one_in(8) ? 60 : 5); n > 0; --n)
         fragments.push_back(random_fragment(random, words));
+      for (MaskedPlane& fragment : fragments)
+        for (const float depth : unusual_depths)
+          if (random.one_in(2)) fragment.plane.z = depth;
       const WideMask taken = random.one_in(2) ? WideMask{} : random_mask(random, words);
       std::vector<Ownership> found(fragments.size()), expected(fragments.size());
       const WindowCounts counts =
@@ -52,6 +54,19 @@ TEST(WindowOwners, KernelEqualsTwin) {
       }
     }
   });
+}
+
+TEST(WindowOwners, KernelEqualsTwin) {
+  Random random(65);
+  SCOPED_TRACE(random.name());
+  expect_twin(random, 1'500, {});
+}
+
+TEST(WindowOwners, KernelEqualsTwinWhereDepthsAreNotFinite) {
+  Random random(67);
+  SCOPED_TRACE(random.name());
+  constexpr float kInfinity = std::numeric_limits<float>::infinity();
+  expect_twin(random, 500, {std::numeric_limits<float>::quiet_NaN(), kInfinity, -kInfinity});
 }
 
 // Every position that is covered and not taken has one owner, and nothing else has.
