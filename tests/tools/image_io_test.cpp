@@ -150,13 +150,27 @@ TEST(Exr, AClaimThatTheFileCannotHoldIsAnError) {
   EXPECT_NE(claim(1'000'000), "");
 }
 
-// The library takes memory for an attribute of a type that it does not know before it reads it.
-TEST(Exr, AnAttributeLargerThanTheFileIsAnError) {
+// The library takes memory for what an attribute claims before it reads it.
+TEST(Exr, AnAttributeThatClaimsMoreThanItHasIsAnError) {
   TemporaryFolder folder;
-  const std::string start{'\x76', '\x2f', '\x31', '\x01', 2, 0, 0, 0}, size{'\x69', '\x6e', '\x76', '\x72'};
-  write_text(folder / "a.exr", start + "fragm" + '\0' + "unknown" + '\0' + size + "rest");
-  const std::string error = error_of_reading(folder / "a.exr");
-  EXPECT_NE(error.find("claims an attribute of 1920364137 bytes"), std::string::npos) << error;
+  const auto number = [](std::uint32_t value) {
+    return std::string{char(value), char(value >> 8), char(value >> 16), char(value >> 24)};
+  };
+  const std::string start = number(20000630) + number(2), huge = number(1'900'000'000);
+  const struct {
+    std::string type, size, value;
+  } attributes[] = {{"unknown", huge, "rest"},
+                    {"string", huge, "rest"},
+                    {"floatvector", huge, "rest"},
+                    {"stringvector", number(8), huge + "rest"},
+                    {"preview", number(12), number(20'000) + number(20'000) + "rest"},
+                    {"box2i", number(1'000'000), "rest"}};
+  for (const auto& [type, size, value] : attributes) {
+    const std::string attribute = "fragm" + std::string(1, '\0') + type + '\0' + size + value;
+    write_text(folder / "a.exr", start + attribute + std::string(1000, '\0'));
+    const std::string error = error_of_reading(folder / "a.exr");
+    EXPECT_NE(error.find("'fragm'"), std::string::npos) << error;
+  }
 }
 
 TEST(Exr, EveryTruncatedFileIsAnError) {
