@@ -17,15 +17,21 @@ namespace {
 
 struct StressArguments {
   std::vector<std::string> specs = {"beam",
+                                    "beam:storage=float32",
                                     "beam:bits=32",
                                     "beam:order=stream",
                                     "beam:order=stream,bits=64,layers=1",
                                     "z3",
+                                    "z3:shape=128x3",
                                     "beam:rules=paper",
+                                    "beam:rules=paper,storage=text",
+                                    "beam:rules=paper,storage=float32",
                                     "alpha",
                                     "msaa:1,8,16,256",
                                     "acaa:8",
                                     "acaa:8,double=stencil",
+                                    "acaa:8,color=unorm8",
+                                    "acaa:8,color=fp32",
                                     "acaa:256",
                                     "deferred",
                                     "visibility",
@@ -95,7 +101,10 @@ void add_stress_command(CLI::App& app) {
   command->add_option("--case", arguments->cases, "only these cases (default: all)");
   command->add_option("--threads", arguments->threads, "threads to use (default: all that the machine has)")
       ->check(CLI::Range(1, 1024));
-  command->add_flag("--heavy", arguments->heavy, "also a pixel with a million fragments: a gigabyte and a minute");
+  command->add_flag("--heavy", arguments->heavy,
+                    "also a pixel with a million fragments, a gigabyte and a minute, and 16384 x 16384 pixels, for "
+                    "techniques that are "
+                    "named: 10 GB and minutes each");
   command->footer(
       "Each cell is the largest error over all pixels and R, G, B, A against rational arithmetic: of the areas, or, "
       "for\n"

@@ -292,38 +292,57 @@ glm::dvec4 pixel_samples(const std::vector<const ScreenTriangle*>& touching, std
   return blended(shares, background);
 }
 
+// The pixels that the triangles' bounds touch.
+void bound(const std::vector<ScreenTriangle>& triangles, const Frame& frame, ExactPicture& picture) {
+  const auto within = [](std::int64_t pixel, std::uint32_t side) {
+    return static_cast<int>(std::clamp<std::int64_t>(pixel, 0, side));
+  };
+  const glm::ivec2 end(frame.width, frame.height);
+  picture.low = end;
+  for (const ScreenTriangle& t : triangles) {
+    const auto [left, right] = std::minmax({t.x[0], t.x[1], t.x[2]});
+    const auto [top, bottom] = std::minmax({t.y[0], t.y[1], t.y[2]});
+    picture.low = glm::min(picture.low,
+                           glm::ivec2(within(left / kUnits - 1, frame.width), within(top / kUnits - 1, frame.height)));
+    picture.high = glm::max(
+        picture.high, glm::ivec2(within(right / kUnits + 1, frame.width), within(bottom / kUnits + 1, frame.height)));
+  }
+}
+
 template <class Pixel>
-std::vector<glm::dvec4> every_pixel(const Trace& trace, const Frame& frame, Pixel pixel) {
+ExactPicture every_pixel(const Trace& trace, const Frame& frame, Pixel pixel) {
   const std::vector<ScreenTriangle> triangles = screen_triangles(trace, frame);
-  std::vector<glm::dvec4> image;
+  ExactPicture picture;
+  picture.elsewhere = glm::dvec4(glm::dvec3(frame.background), 0.0);
+  bound(triangles, frame, picture);
   std::vector<const ScreenTriangle*> touching;
-  for (std::int64_t y = 0; y < frame.height; ++y) {
-    for (std::int64_t x = 0; x < frame.width; ++x) {
+  for (std::int64_t y = picture.low.y; y < picture.high.y; ++y) {
+    for (std::int64_t x = picture.low.x; x < picture.high.x; ++x) {
       touching.clear();
       for (const ScreenTriangle& t : triangles)
         if (side_of(t, x * kUnits, y * kUnits) != Side::outside) touching.push_back(&t);
       const bool one_covers = touching.size() == 1 && side_of(*touching[0], x * kUnits, y * kUnits) == Side::inside;
       if (touching.empty()) {
-        image.emplace_back(glm::dvec3(frame.background), 0.0);
+        picture.rgba.push_back(picture.elsewhere);
       } else if (one_covers) {
-        image.emplace_back(touching[0]->color, 1.0);
+        picture.rgba.emplace_back(touching[0]->color, 1.0);
       } else {
-        image.push_back(pixel(touching, x * kUnits, y * kUnits));
+        picture.rgba.push_back(pixel(touching, x * kUnits, y * kUnits));
       }
     }
   }
-  return image;
+  return picture;
 }
 
 }  // namespace
 
-std::vector<glm::dvec4> exact_areas(const Trace& trace, const Frame& frame) {
+ExactPicture exact_areas(const Trace& trace, const Frame& frame) {
   return every_pixel(trace, frame, [&](const auto& touching, std::int64_t left, std::int64_t top) {
     return pixel_areas(touching, left, top, frame.background);
   });
 }
 
-std::vector<glm::dvec4> exact_samples(const Trace& trace, const Frame& frame, const SamplePlaces& places) {
+ExactPicture exact_samples(const Trace& trace, const Frame& frame, const SamplePlaces& places) {
   return every_pixel(trace, frame, [&](const auto& touching, std::int64_t left, std::int64_t top) {
     return pixel_samples(touching, left, top, places, frame.background);
   });

@@ -53,14 +53,11 @@ class Screen {
   Frame frame_;
 };
 
-std::vector<glm::dvec4> everywhere(const Frame& frame, const glm::vec3& color, double alpha = 1.0) {
-  return std::vector<glm::dvec4>(std::size_t{frame.width} * frame.height, glm::dvec4(glm::dvec3(color), alpha));
-}
-
 constexpr const char* kOver = "OVER takes fragments for independent of each other";
 constexpr const char* kPaper = "masks of 32 positions; local coverage above 1 is lost";
 constexpr const char* kFull = "a mask without a gap counts as full coverage: corners beyond its positions are lost";
 constexpr const char* kDepth = "32-bit depth: surfaces less than its rounding apart change places";
+constexpr const char* kTwice = "without a stencil equal depths count twice";
 constexpr const char* kStored = "a sum stored in fp16 stops growing where a share is less than half its last place";
 constexpr const char* kMask = "areas of what is partly hidden are estimated from mask positions";
 
@@ -177,7 +174,7 @@ Trace fan(std::uint32_t side, const glm::dvec2& hub, double reach, int rim) {
 HardCase shared_edges() {
   HardCase result{"shared_edges", "edges at 4,096 angles, each shared by two triangles", {}, {}, {}};
   result.trace = fan(16, {8.3, 7.6}, 3000, 4096);
-  result.closed_form = everywhere(result.trace.frames[0], kRed);
+  result.everywhere = glm::dvec4(glm::dvec3(kRed), 1.0);
   result.limits = {{"alpha", {0.75, kOver}}, {"beam:rules=paper", {0.45, kPaper}}};
   return result;
 }
@@ -185,7 +182,7 @@ HardCase shared_edges() {
 HardCase fan_10000() {
   HardCase result{"fan", "10,000 triangles around one vertex", {}, {}, {}};
   result.trace = fan(4, {2.0, 2.0}, 30000, 10000);
-  result.closed_form = everywhere(result.trace.frames[0], kRed);
+  result.everywhere = glm::dvec4(glm::dvec3(kRed), 1.0);
   result.limits = {{"alpha", {0.75, kOver}}, {"beam:rules=paper", {0.45, kPaper}}};
   return result;
 }
@@ -195,7 +192,7 @@ HardCase tiled_pixel() {
   for (int y = 0; y < 64; ++y)
     for (int x = 0; x < 128; ++x) screen.rectangle({x / 128.0, y / 64.0}, {(x + 1) / 128.0, (y + 1) / 64.0}, 0.5, kRed);
   HardCase result{"tiled_pixel", "16,384 triangles tile one pixel: their areas add up to 1", {}, {}, {}};
-  result.closed_form = everywhere(screen.frame(), kRed);
+  result.everywhere = glm::dvec4(glm::dvec3(kRed), 1.0);
   result.trace = screen.trace();
   // Shares of 0.75 / 16,384 stop at 0.125, above which half of fp16's last place is 2^-14: 0.625 of the red are lost.
   result.limits = {{"alpha", {0.75, kOver}},
@@ -210,7 +207,7 @@ HardCase fp16_sums() {
   for (int y = 0; y < 16; ++y)
     for (int x = 0; x < 16; ++x) screen.rectangle({x / 16.0, y / 16.0}, {(x + 1) / 16.0, (y + 1) / 16.0}, 0.5, color);
   HardCase result{"fp16_sums", "512 shares of a colour that fp16 does not have", {}, {}, {}};
-  result.closed_form = everywhere(screen.frame(), color);
+  result.everywhere = glm::dvec4(glm::dvec3(color), 1.0);
   result.trace = screen.trace();
   result.limits = {{"alpha", {0.5, kOver}},
                    {"beam:rules=paper", {0.45, kPaper}},
@@ -275,16 +272,33 @@ HardCase wide_coordinates() {
   return {"wide_coordinates", "24-bit coordinates, moved back by the transform", trace, {}, full_masks()};
 }
 
+// near 0.001, far 10,000: a relative step of 10^-6 at 9,000.
+constexpr float kFarAway = -9000.0f, kBehindIt = -9000.01f;
+constexpr std::array<glm::vec3, 3> kNearerOne{
+    {{-6000, 3000, kFarAway}, {5000, 5000, kFarAway}, {1000, -8000, kFarAway}}},
+    kFartherOne{{{-5000, -5000, kBehindIt}, {6000, -4000, kBehindIt}, {0, 8000, kBehindIt}}};
+
 HardCase depth_range() {
-  // near 0.001, far 10,000: a relative step of 10^-6 at 9,000. Depth is finest far away (stages/setup_triangle.h).
-  const float z = -9000.0f, behind = -9000.01f;
+  // Depth is finest far away (stages/setup_triangle.h), as a reversed buffer's.
   return {"depth_range",
           "near to far 1 : 10^7, surfaces 10^-6 apart at the far end; the nearer one is drawn last",
-          perspective(0.001, 10000,
-                      {{{{-5000, -5000, behind}, {6000, -4000, behind}, {0, 8000, behind}}},
-                       {{{-6000, 3000, z}, {5000, 5000, z}, {1000, -8000, z}}}}),
+          perspective(0.001, 10000, {kFartherOne, kNearerOne}),
           {},
           {{"beam", {0.03, kMask}}, {"beam:rules=paper", {0.15, kPaper}}, {"alpha", {0.3, kOver}}}};
+}
+
+HardCase depth_range_turned() {
+  Trace trace = perspective(0.001, 10000, {kNearerOne, kFartherOne});
+  for (int column = 0; column < 4; ++column) trace.frames[0].projection[column][2] *= -1;
+  HardCase result{"depth_range_turned",
+                  "the same with clip space's z negated: depth is coarsest far away, and the farther one wins",
+                  std::move(trace),
+                  {},
+                  {{"alpha", {0.7, kOver}}, {"beam:rules=paper", {0.7, kPaper}}}};
+  for (const char* name : {"beam", "z3", "msaa", "acaa:8,double=stencil", "deferred", "visibility", "taa", "dvm"})
+    result.limits[name] = {0.7, kDepth};
+  result.limits["acaa"] = {2.0, kTwice};
+  return result;
 }
 
 HardCase coincident() {
@@ -295,7 +309,7 @@ HardCase coincident() {
           "three equal triangles: the first one stays",
           screen.trace(),
           {},
-          {{"acaa", {2.0, "without a stencil equal depths count twice"}},
+          {{"acaa", {2.0, kTwice}},
            {"acaa:8,double=stencil", {0x1p-11, "fp16"}},
            {"alpha", {0.6, kOver}},
            {"beam:rules=paper", {0.4, kPaper}},
@@ -355,7 +369,7 @@ HardCase empty_frame() {
   Screen screen(5, 3);
   HardCase result{"empty", "no triangle", {}, {}, {}};
   result.trace = screen.trace();
-  result.closed_form = everywhere(result.trace.frames[0], kBackground, 0);
+  result.everywhere = glm::dvec4(glm::dvec3(kBackground), 0.0);
   return result;
 }
 
@@ -388,7 +402,7 @@ HardCase deep_pixel(int layers) {
                   {},
                   {},
                   {}};
-  result.closed_form = everywhere(screen.frame(), kRed);
+  result.everywhere = glm::dvec4(glm::dvec3(kRed), 1.0);
   result.trace = screen.trace();
   return result;
 }
@@ -421,6 +435,7 @@ std::vector<HardCase> hard_cases(bool with_heavy) {
                                  guard_band(),
                                  wide_coordinates(),
                                  depth_range(),
+                                 depth_range_turned(),
                                  coincident(),
                                  coplanar(),
                                  grazing(),
@@ -430,7 +445,10 @@ std::vector<HardCase> hard_cases(bool with_heavy) {
                                  widest(16384, 2, "widest"),
                                  widest(2, 16384, "highest"),
                                  deep_pixel(5000)};
-  if (with_heavy) cases.push_back(deep_pixel(1'000'000));
+  if (with_heavy) {
+    cases.push_back(deep_pixel(1'000'000));
+    cases.push_back(widest(16384, 16384, "widest_and_highest"));
+  }
   return cases;
 }
 

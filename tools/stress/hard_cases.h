@@ -4,6 +4,7 @@
 #include <functional>
 #include <glm/glm.hpp>
 #include <map>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -21,10 +22,10 @@ struct HardCase {
   std::string name;
   std::string what;  // is hard about it
   Trace trace;       // one frame
-  // The exact picture where it follows from how the trace was made; empty: tools/stress/exact.h works it out.
-  std::vector<glm::dvec4> closed_form;
-  // By the name of a technique, what stands before ":" or the whole spec. Others must be right to the last bit of their
-  // formats.
+  // What every pixel is, where it follows from how the trace was made; else tools/stress/exact.h works the picture out.
+  std::optional<glm::dvec4> everywhere;
+  // By a spec, or what it starts with up to a ":" or ",": the longest counts. Others must be right to the last bit of
+  // their formats.
   std::map<std::string, StatedLimit> limits;
 };
 
@@ -32,7 +33,7 @@ struct HardCase {
 // (simd/sample_pattern.h: cell_patterns).
 double largest_cut(int positions);
 
-// In a fixed order. Heavy: also one that takes a gigabyte and a minute.
+// In a fixed order. Heavy: also those that take gigabytes and minutes.
 std::vector<HardCase> hard_cases(bool with_heavy);
 
 }  // namespace beampipe

@@ -6,7 +6,6 @@
 
 #include "pipeline/msaa.h"
 #include "simd/sample_pattern.h"
-#include "tools/stress/exact.h"
 
 namespace beampipe {
 namespace {
@@ -42,36 +41,56 @@ SamplePlaces places_of(const std::string& spec) {
   return {};
 }
 
+double format_limit(const std::string& spec) {
+  if (spec == "reference") return kReferenceError;
+  // One share per sample at most, and the background.
+  if (spec.find("color=unorm8") != spec.npos) return (std::atoi(spec.c_str() + spec.find(':') + 1) + 1) * kUnorm8Error;
+  return kFormatError;
+}
+
+// That of the spec, or else of it without its last options, one after the other.
+const StatedLimit* stated_limit(const HardCase& hard_case, std::string spec) {
+  while (true) {
+    const auto stated = hard_case.limits.find(spec);
+    if (stated != hard_case.limits.end()) return &stated->second;
+    const std::size_t end = spec.find_last_of(":,");
+    if (end == spec.npos) return nullptr;
+    spec.resize(end);
+  }
+}
+
 }  // namespace
 
-const std::vector<glm::dvec4>& Judge::areas() {
+const ExactPicture& Judge::areas() {
   if (!areas_) {
-    areas_ = case_.closed_form.empty() ? exact_areas(case_.trace, case_.trace.frames[0]) : case_.closed_form;
+    areas_ = case_.everywhere ? ExactPicture{{}, {}, {}, *case_.everywhere}
+                              : exact_areas(case_.trace, case_.trace.frames[0]);
   }
   return *areas_;
 }
 
 Verdict Judge::judge(const Technique& technique, const RunOptions& options) {
   const SamplePlaces places = places_of(technique.spec);
-  const bool sampled = !places.empty() && case_.closed_form.empty();
-  const std::vector<glm::dvec4> samples =
-      sampled ? exact_samples(case_.trace, case_.trace.frames[0], places) : std::vector<glm::dvec4>{};
-  const std::vector<glm::dvec4>& truth = sampled ? samples : areas();
-  const FrameResult result = technique.render(case_.trace, 0, options);
+  const bool sampled = !places.empty() && !case_.everywhere;
+  const ExactPicture samples = sampled ? exact_samples(case_.trace, case_.trace.frames[0], places) : ExactPicture{};
+  const ExactPicture& truth = sampled ? samples : areas();
+  const Image image = technique.render(case_.trace, 0, options).image;
 
   Verdict verdict;
-  for (std::size_t i = 0; i < result.image.rgba.size(); ++i) {
-    const double error = std::abs(static_cast<double>(result.image.rgba[i]) - truth[i / 4][static_cast<int>(i % 4)]);
-    if (!(error <= verdict.error)) verdict.error = error;  // and NaN stays
-    if (std::isnan(error)) break;
+  const float* found = image.rgba.data();
+  for (int y = 0; y < static_cast<int>(image.height); ++y) {
+    for (int x = 0; x < static_cast<int>(image.width); ++x, found += 4) {
+      for (int c = 0; c < 4; ++c) {
+        const double error = std::abs(static_cast<double>(found[c]) - truth.at(x, y)[c]);
+        if (std::isnan(verdict.error) || error <= verdict.error) continue;
+        verdict.error = error;  // NaN too
+      }
+    }
   }
-  const std::string name = name_of(technique.spec);
-  verdict.limit = name == "reference" ? kReferenceError : kFormatError;
-  auto stated = case_.limits.find(technique.spec);
-  if (stated == case_.limits.end()) stated = case_.limits.find(name);
-  if (stated != case_.limits.end()) {
-    verdict.limit = stated->second.error;
-    verdict.reason = stated->second.reason;
+  verdict.limit = format_limit(technique.spec);
+  if (const StatedLimit* stated = stated_limit(case_, technique.spec)) {
+    verdict.limit = stated->error;
+    verdict.reason = stated->reason;
   }
   return verdict;
 }

@@ -5,12 +5,14 @@
 #include <string>
 
 #include "pipeline/technique.h"
+#include "tools/stress/exact.h"
 #include "tools/stress/hard_cases.h"
 
 namespace beampipe {
 
 // Colours up to 1 in fp16: half a unit in the last place is 2^-12 for each of two roundings.
 inline constexpr double kFormatError = 0x1p-11;
+inline constexpr double kUnorm8Error = 0.5 / 255;  // of each sum in 8 bits
 
 // The reference's samples against the exact area: an edge may pass all 16 samples of a row on the wrong side by one
 // sample's distance, 1/16 of a row; rows are shifted against each other, so that errors of neighbours cancel.
@@ -31,10 +33,10 @@ class Judge {
   Verdict judge(const Technique& technique, const RunOptions& options);
 
  private:
-  const std::vector<glm::dvec4>& areas();
+  const ExactPicture& areas();
 
   const HardCase& case_;
-  std::optional<std::vector<glm::dvec4>> areas_;  // worked out when first asked for
+  std::optional<ExactPicture> areas_;  // worked out when first asked for
 };
 
 }  // namespace beampipe
