@@ -13,6 +13,7 @@
 #include <algorithm>
 #include <cmath>
 #include <cstring>
+#include <fstream>
 
 namespace beampipe {
 namespace {
@@ -69,6 +70,7 @@ struct Size {
 void require_sound_header(const std::filesystem::path& file) {
   std::string first_error;
   exr_context_initializer_t settings = EXR_DEFAULT_CONTEXT_INITIALIZER;
+  settings.flags = EXR_CONTEXT_FLAG_STRICT_HEADER;
   settings.user_data = &first_error;
   settings.error_handler_fn = [](exr_const_context_t context, exr_result_t, const char* message) {
     void* data = nullptr;
@@ -81,6 +83,28 @@ void require_sound_header(const std::filesystem::path& file) {
   if (result == EXR_ERR_SUCCESS) exr_finish(&context);
   if (first_error.empty() && result != EXR_ERR_SUCCESS) first_error = exr_get_default_error_message(result);
   if (!first_error.empty()) throw std::runtime_error(first_error);
+}
+
+// The core also takes a list of channels without the zero that ends it; the library reads on from there, and finds
+// attributes that nobody has held to their sizes. A header is a list of attributes: name and type, each up to a zero,
+// then the size, in 4 bytes from the lowest, and as many bytes; an empty name ends it (OpenEXR, "File Layout").
+void require_ended_channels(const std::filesystem::path& file) {
+  constexpr std::streamoff kMagicAndVersion = 8;
+  constexpr std::size_t kChannelFields = 16;  // behind a channel's name
+  std::ifstream stream(file, std::ios::binary);
+  stream.seekg(kMagicAndVersion);
+  std::string name, type;
+  while (std::getline(stream, name, '\0') && !name.empty() && std::getline(stream, type, '\0')) {
+    unsigned char bytes[4] = {};
+    stream.read(reinterpret_cast<char*>(bytes), sizeof bytes);
+    const std::uint32_t size = bytes[0] | bytes[1] << 8 | bytes[2] << 16 | std::uint32_t{bytes[3]} << 24;
+    std::string value(size, '\0');  // the core has seen so many bytes
+    stream.read(value.data(), size);
+    if (type != "chlist") continue;
+    std::size_t at = 0;
+    while (at < size && value[at] != '\0') at = std::min(value.find('\0', at), value.size()) + 1 + kChannelFields;
+    if (at + 1 != size) throw std::runtime_error("its list of channels does not end where its attribute does");
+  }
 }
 
 // Uncompressed bytes that a byte of a file can stand for: 1032 in deflate (RFC 1951: a 258-byte match in 2 bits), less
@@ -124,6 +148,7 @@ auto read_file(const std::filesystem::path& file, Load load) {
     if (!std::filesystem::is_regular_file(file, ignored)) throw std::runtime_error("not a file");
     Imf::Header::setMaxImageSize(kMaxSide, kMaxSide);  // before the library takes memory for what a header claims
     require_sound_header(file);
+    require_ended_channels(file);
     Imf::InputFile input(file.c_str());
     const Size size = checked_size(input.header());
     require_plausible_size(input.header(), size, std::filesystem::file_size(file));

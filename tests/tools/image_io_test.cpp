@@ -173,6 +173,22 @@ TEST(Exr, AnAttributeThatClaimsMoreThanItHasIsAnError) {
   }
 }
 
+// The library would read on behind it, the core would not: as the last attribute of a header that has all others.
+TEST(Exr, AListOfChannelsWithoutItsEndIsAnError) {
+  TemporaryFolder folder;
+  std::string bytes = encode_exr(speaking_image(4, 3));
+  constexpr std::size_t kFirst = 8, kSize = sizeof "channels" + sizeof "chlist", kFourChannels = 4 * (2 + 16) + 1;
+  ASSERT_EQ(bytes.find("channels"), kFirst);
+  std::string channels = bytes.substr(kFirst, kSize + 4 + kFourChannels);
+  ASSERT_EQ(channels[kSize]--, static_cast<char>(kFourChannels));
+  bytes.erase(kFirst, channels.size());
+  const std::string last = "screenWindowWidth";
+  bytes.insert(bytes.find(last) + last.size() + 1 + sizeof "float" + 4 + 4, channels);
+  write_text(folder / "a.exr", bytes);
+  const std::string error = error_of_reading(folder / "a.exr");
+  EXPECT_NE(error.find("list of channels does not end"), std::string::npos) << error;
+}
+
 TEST(Exr, EveryTruncatedFileIsAnError) {
   TemporaryFolder folder;
   const std::string bytes = encode_exr(speaking_image(9, 40));
