@@ -55,6 +55,7 @@ class Screen {
 
 constexpr const char* kOver = "OVER takes fragments for independent of each other";
 constexpr const char* kPaper = "masks of 32 positions; local coverage above 1 is lost";
+constexpr const char* kText = "masks of 32 positions; slopes and thickness in 16 bits";
 constexpr const char* kFull = "a mask without a gap counts as full coverage: corners beyond its positions are lost";
 constexpr const char* kDepth = "32-bit depth: surfaces less than its rounding apart change places";
 constexpr const char* kTwice = "without a stencil equal depths count twice";
@@ -313,6 +314,7 @@ HardCase coincident() {
            {"acaa:8,double=stencil", {0x1p-11, "fp16"}},
            {"alpha", {0.6, kOver}},
            {"beam:rules=paper", {0.4, kPaper}},
+           {"beam:rules=paper,storage=text", {0.45, kText}},
            {"beam", {0.25, kMask}}}};
 }
 
