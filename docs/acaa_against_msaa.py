@@ -4,7 +4,7 @@
 usage: docs/acaa_against_msaa.py PROGRAM [TRACE...]
 
 PROGRAM is for instance build/release/tools/beampipe. Measured are the nine procedural scenes, which it makes, and the
-traces that are named.
+traces that are named; then, on one of the scenes, accumulators of all formats at more samples.
 """
 import pathlib
 import sys
@@ -15,6 +15,7 @@ import measure
 PICTURES = ["acaa:8", "acaa:8,double=stencil", "acaa:8,double=saturate", "acaa:8,color=unorm8"]
 ONE, EIGHT, ACAA = "msaa:1,prepass", "msaa:8,prepass", "acaa:8"
 DEPTH_BYTES = 4  # per sample
+SCENE, SAMPLES, FORMATS = "terrain", [8, 64, 256], ["unorm8", "fp16", "fp32"]  # of `precision`
 
 
 def surface_bytes(result):
@@ -36,26 +37,40 @@ def given_back(results, count):
     return (eight - acaa) / (eight - one)
 
 
+def precision(program, folder, trace):
+    """The accumulator's formats: RMSE and bias between ACAA's pictures and MSAA's, at several numbers of samples."""
+    measure.print_head("`color=`", *[f"N = {samples}: RMSE, bias" for samples in SAMPLES])
+    specs = [f"acaa:{samples},color={color}" for samples in SAMPLES for color in FORMATS]
+    results = measure.results(program, "run", trace, [f"msaa:{samples}" for samples in SAMPLES] + specs, folder)
+    picture = {spec: f"{folder}/{result['frames'][0]['image']}" for spec, result in results.items()}
+    for color in FORMATS:
+        found = [measure.difference(program, picture[f"acaa:{samples},color={color}"], picture[f"msaa:{samples}"])
+                 for samples in SAMPLES]
+        measure.print_row(f"`{color}`", *[f"{difference['rmse']:.5f}, {difference['bias']:+.5f}" for difference in found])
+
+
 def main():
     if len(sys.argv) < 2:
         sys.exit(__doc__.strip())
     program, shares = sys.argv[1], []
     measure.print_head("scene", *[f"`{spec}`" for spec in PICTURES],
-                       *[f"MB moved: `{spec}`" for spec in (ONE, EIGHT, ACAA)], "given back", "of all counted bytes")
+                       *[f"MB per frame: `{spec}`" for spec in (ONE, EIGHT, ACAA)], "given back", "of all counted bytes")
     with tempfile.TemporaryDirectory() as folder:
         traces = [(path, pathlib.Path(path).stem) for path in sys.argv[2:]]
         traces += [(measure.make(program, scene, f"{folder}/{scene}.json"), scene) for scene in measure.PROCEDURAL]
         for trace, name in traces:
             results = measure.results(program, "run", trace, [ONE, EIGHT, *PICTURES], folder)
             truth = f"{folder}/{results[EIGHT]['frames'][0]['image']}"
-            differences = [measure.rmse(program, f"{folder}/{results[spec]['frames'][0]['image']}", truth)
+            differences = [measure.difference(program, f"{folder}/{results[spec]['frames'][0]['image']}", truth)["rmse"]
                            for spec in PICTURES]
             shares.append([given_back(results, surface_bytes), given_back(results, all_bytes)])
             measure.print_row(name, *[f"{difference:.5f}" for difference in differences],
                               *[f"{surface_bytes(results[spec]) / 1e6:.2f}" for spec in (ONE, EIGHT, ACAA)],
                               *[f"{100 * share:.0f} %" for share in shares[-1]])
-    means = [sum(column) / len(shares) for column in zip(*shares)]
-    measure.print_row(f"mean of {len(shares)}", *[""] * 7, *[f"{100 * mean:.0f} %" for mean in means])
+        means = [sum(column) / len(shares) for column in zip(*shares)]
+        measure.print_row(f"mean of {len(shares)}", *[""] * 7, *[f"{100 * mean:.0f} %" for mean in means])
+        print()
+        precision(program, folder, f"{folder}/{SCENE}.json")
 
 
 main()

@@ -24,10 +24,10 @@ def stages(result, frame=0):
     return {stage["stage"]: stage for stage in result["frames"][frame]["stages"]}
 
 
-def rmse(program, a, b):
-    """Between two pictures."""
+def difference(program, a, b):
+    """Of picture a from picture b: rmse, bias, and so on."""
     answer = subprocess.run([program, "diff", a, b, "--json"], check=True, stdout=subprocess.PIPE)
-    return json.loads(answer.stdout)["rmse"]
+    return json.loads(answer.stdout)
 
 
 def print_row(*cells):

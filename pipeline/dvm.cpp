@@ -46,6 +46,7 @@ FrameResult render_dvm(const Trace& trace, const Frame& frame, const DvmOptions&
   const Sampling sampling{CellGrid{}, standard_pattern(8)};
   const SelectOptions select{history.frames % 8, options.seed + history.frames};
   const Poses poses = poses_of(frame);
+  const std::vector<std::uint32_t> looks = looks_of(frame);
   const std::vector<glm::dmat4> to_last = to_last_frame(poses, history.frames > 0 ? history.poses : poses);
   CurrentFrame current(frame.width, frame.height);
   QuadFrame quads(frame.width, frame.height);
@@ -72,12 +73,14 @@ FrameResult render_dvm(const Trace& trace, const Frame& frame, const DvmOptions&
         stream(run.memory, shaded * (kVisibilityBytes + kGBufferBytes), shading);
         stream(run.memory, shaded * (kGBufferBytes + kSampleColorBytes), lighting);
         memory.read_depth(moving);
-        stream(run.memory, tile.pixels() * (kVisibilityBytes + kMotionBytes + kDrawBytes), moving);
+        memory.read_color(moving);
+        stream(run.memory, tile.pixels() * (kMotionBytes + kLookBytes + kSpeedBytes), moving);
         quads.insert(tile, selected);
-        const SurfaceMotion nearest = motion(surface, tile, frame, triangles.draws, to_last, timed(moving));
-        moving.bytes_written += tile.pixels() * kDrawBytes;
-        copy_to_frame(nearest.vectors, tile, frame, current.motion);
-        copy_to_frame(nearest.draws, tile, frame, current.draws);
+        copy_to_frame(motion(surface, tile, frame, triangles.draws, to_last, timed(moving)), tile, frame,
+                      current.motion);
+        const PixelContents found = contents(surface, tile, frame, triangles.draws, to_last, looks, timed(moving));
+        copy_to_frame(found.looks, tile, frame, current.looks);
+        copy_to_frame(found.speeds, tile, frame, current.speeds);
         return TileResult{{}, {}, {raster, testing, selecting, shading, lighting, moving}};
       });
 
@@ -90,12 +93,11 @@ FrameResult render_dvm(const Trace& trace, const Frame& frame, const DvmOptions&
   for_each_tile(frame, kBinSize, run, accumulation, [&](const Tile& tile, StageCounters& counters) {
     temporal(current, {options.blend, kStillPixels}, history, tile, counters, image);
     move_temporal(run.memory, tile, history.frames > 0, counters);
-    stream(run.memory, tile.pixels() * kDrawBytes * (history.frames > 0 ? 2 : 1), counters);
+    stream(run.memory, tile.pixels() * (kSpeedBytes + kLookBytes * (history.frames > 0 ? 2 : 1)), counters);
   });
   result.pixel_counters["unknown"] = unknown_part(current);
   result.image = image_of(frame, image);
-  history = {history.frames + 1,       current.width, current.height, std::move(image), std::move(current.motion),
-             std::move(current.draws), poses};
+  history = {history.frames + 1, current.width, current.height, std::move(image), std::move(current.looks), poses};
   result.stages.insert(result.stages.end(), {spreading, accumulation});
   return result;
 }
@@ -108,8 +110,9 @@ std::vector<Surface> dvm_framebuffer() {
           {"location", "R8UI", 1},
           {"gbuffer", "RGBA8 + RGB10A2", kGBufferBytes},
           {"color", "RGB16F", kSampleColorBytes},
-          {"motion", "RG16F x 2", 2 * kMotionBytes},
-          {"draw", "R16UI x 2", 2 * kDrawBytes},
+          {"motion", "RG16F", kMotionBytes},
+          {"speed", "R16F", kSpeedBytes},
+          {"look", "R32UI x 2", 2 * kLookBytes},
           {"history", "RGBA16F x 2", 16}};
 }
 

@@ -38,12 +38,17 @@ FrameResult render_msaa(const Trace& trace, const Frame& frame, const MsaaOption
     const StageTimer timed(run.timeline, tile);
     StageCounters raster{"sample_raster"}, shading{"shade"}, testing{"depth_test"}, resolving{"resolve"};
     SampleTile surface(tile, sampling, options.prepass ? 0 : color_bytes(options));
-    std::vector<float> counts(tile.pixels());
+    std::vector<float> counts(tile.pixels()), centroids(tile.pixels());
     std::vector<SampleAccess> accesses;
     const auto same_color = [&](std::uint32_t a, std::uint32_t b) { return colors[a] == colors[b]; };
     SampleMemory memory(run.memory, tile, sampling, color_bytes(options), same_color);
+    const auto shade_all = [&](const std::vector<SampleFragment>& fragments) {
+      shade(fragments, timed(shading), &triangles.attributes);
+      if (options.at == ShadeAt::centroid)
+        count_centroids(triangles, fragments, tile, sampling, timed(shading), centroids);
+    };
     raster_in_batches(triangles, list, tile, sampling, timed, raster, [&](std::vector<SampleFragment>& fragments) {
-      if (!options.prepass) shade(fragments, timed(shading), &triangles.attributes);
+      if (!options.prepass) shade_all(fragments);
       depth_test(triangles, fragments, tile, sampling, timed(testing), surface, accesses);
       options.prepass ? memory.test_depth(accesses, testing) : memory.test_and_write(accesses, testing);
       count_fragments(fragments, tile, sampling.grid, counts);
@@ -54,7 +59,7 @@ FrameResult render_msaa(const Trace& trace, const Frame& frame, const MsaaOption
       raster_in_batches(triangles, list, tile, sampling, timed, raster, [&](std::vector<SampleFragment>& fragments) {
         depth_test_equal(triangles, tile, sampling, timed(testing), surface, fragments, accesses);
         memory.test_equal(accesses, testing);
-        shade(fragments, timed(shading), &triangles.attributes);
+        shade_all(fragments);
       });
       memory.flush(testing);
     }
@@ -62,9 +67,11 @@ FrameResult render_msaa(const Trace& trace, const Frame& frame, const MsaaOption
     memory.add_bytes(bytes);
     memory.read_color(resolving);
     write_image(run.memory, tile, resolving);
-    return TileResult{resolve(surface, tile.pixels(), colors, frame.background, timed(resolving)),
+    TileResult result{resolve(surface, tile.pixels(), colors, frame.background, timed(resolving)),
                       {{"fragments", std::move(counts)}, {"bytes", std::move(bytes)}},
                       {raster, shading, testing, resolving}};
+    if (options.at == ShadeAt::centroid) result.pixel_counters.emplace_back("centroids", std::move(centroids));
+    return result;
   };
   return render_tiles(frame, triangles, setup, bin_size(options.samples), run, render_tile);
 }

@@ -4,6 +4,7 @@
 
 #include "pipeline/technique.h"
 #include "stages/sample_raster.h"
+#include "stages/shading_point.h"
 
 namespace beampipe {
 
@@ -14,7 +15,8 @@ Sampling msaa_sampling(int samples);
 
 struct MsaaOptions {
   int samples = 1;
-  bool rgba = false;     // fp16 RGBA samples in place of RGB: 12 bytes per sample with depth, as the ACAA talk counts
+  bool rgba = false;  // fp16 RGBA samples in place of RGB: 12 bytes per sample with depth, as the ACAA talk counts
+  ShadeAt at = ShadeAt::centre;
   bool prepass = false;  // depth first, so that only what is visible is shaded. The image is the same.
 };
 

@@ -40,7 +40,7 @@ FrameResult render_taa(const Trace& trace, const Frame& frame, const TaaOptions&
         SampleTile surface(tile, sampling, kVisibilityBytes);
         TileResult one = visibility_tile(triangles, list, tile, sampling, colors, frame.background, run, surface);
         copy_to_frame(one.image, tile, frame, current.color);
-        copy_to_frame(motion(surface, tile, frame, triangles.draws, to_last, timed(moving)).vectors, tile, frame,
+        copy_to_frame(motion(surface, tile, frame, triangles.draws, to_last, timed(moving)), tile, frame,
                       current.motion);
         stream(run.memory, tile.pixels() * (kSampleDepthBytes + kVisibilityBytes), moving);
         stream(run.memory, tile.pixels() * kMotionBytes, moving);
@@ -57,7 +57,7 @@ FrameResult render_taa(const Trace& trace, const Frame& frame, const TaaOptions&
     move_temporal(run.memory, tile, history.frames > 0, counters);
   });
   result.image = image_of(frame, image);
-  history = {history.frames + 1, current.width, current.height, std::move(image), std::move(current.motion), {}, poses};
+  history = {history.frames + 1, current.width, current.height, std::move(image), {}, poses};
   result.stages.push_back(accumulation);
   return result;
 }

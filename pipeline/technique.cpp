@@ -95,6 +95,7 @@ Technique make_msaa(Spec& spec) {
   MsaaOptions options;
   options.samples = spec.samples(kMaxMsaaSamples);
   options.rgba = spec.choice<bool>("color", {{"rgb16f", false}, {"rgba16f", true}});
+  options.at = spec.choice<ShadeAt>("at", {{"centre", ShadeAt::centre}, {"centroid", ShadeAt::centroid}});
   options.prepass = spec.flag("prepass");
   return {spec.text(), msaa_framebuffer(options), static_cast<std::uint32_t>(options.samples),
           bind_options(render_msaa, options)};
@@ -151,7 +152,8 @@ constexpr Kind kKinds[] = {
      "beam:rules=paper and, if wanted, mask=table|exact, sort=centroid|nearest, "
      "tiny=1|3, overlap=tiny|over|add|transition, local=clamp|keep, fuzzy=delta|mix, extents=range|slab, "
      "slab=full|visible, plane=area|visible, thickness=larger|containing, storage=slides|text|float32",
-     "  beam         sorted, visible fragments with analytic coverage and a mask, one area-conserving aggregate per pixel\n"
+     "  beam         sorted, visible fragments with analytic coverage and a mask, one area-conserving aggregate per "
+     "pixel\n"
      "               beam:bits=N      N = 32, 64, 128 or 256 (the default) mask positions\n"
      "               beam:order=stream  fragments in primitive order, no A-buffer: a pixel's state is all there is; "
      "pixels\n"
@@ -175,9 +177,13 @@ constexpr Kind kKinds[] = {
     {"alpha", "'alpha' alone: it has no options", "  alpha        the same fragments, plain OVER, no mask\n",
      make_alpha},
     {"msaa",
-     "msaa:N with N = 1, 2, 4, 8, 16, 32, 64, 128, 256, 512 or 1024; then, if wanted, color=rgb16f|rgba16f and prepass",
+     "msaa:N with N = 1, 2, 4, 8, 16, 32, 64, 128, 256, 512 or 1024; then, if wanted, color=rgb16f|rgba16f, "
+     "at=centre|centroid and prepass",
      "  msaa:N       multisampling, N = 1, 2, 4, ... 1024; above 16: super-resolution of 8x\n"
      "               msaa:N,color=rgba16f  8 bytes of colour per sample in place of 6\n"
+     "               msaa:N,at=centre|centroid  where the pixel's centre is not covered, shade there all the same "
+     "(the\n"
+     "                 default), or at the centroid of the covered samples\n"
      "               msaa:N,prepass        depth first, so that only visible fragments are shaded; the same picture\n",
      make_msaa},
     {"acaa",

@@ -149,6 +149,8 @@ const std::vector<PixelCounterInfo>& pixel_counters() {
        kPixelMoves},
       {"bytes", "bytes", "logical bytes of the framebuffer's surfaces and the A-buffer, where memory is modelled",
        "beam, alpha, z3, msaa, acaa, visibility", "HandWorked.BytesOfAPixel"},
+      {"centroids", "fragments", "fragments that are shaded at the centroid, their triangle not covering the centre",
+       "msaa:N,at=centroid", "Msaa.TheCentroidIsForFragmentsThatOneSampleMisses"},
       {"merges", "fragments", "fragments that were looked at before the pixel was full", "beam, alpha", kPixelMoves},
       {"tiny_triangles", "fragments", "fragments that cover no mask position", "beam", kPixelMoves},
       {"largest_window", "fragments", "fragments of the largest window of overlapping depths", "beam", kPixelMoves},

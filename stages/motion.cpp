@@ -3,10 +3,13 @@
 #include <half.h>
 
 #include <algorithm>
+#include <bit>
+#include <cmath>
 #include <limits>
 
 #include "simd/scalar.h"
 #include "stages/counting.h"
+#include "stages/mix_bits.h"
 #include "stages/shade.h"
 
 namespace beampipe {
@@ -35,6 +38,11 @@ bool move(const Real m[16], Real center_x, Real center_y, Real depth, Real width
   return w > zero;
 }
 
+template <class Real>
+Real square_length(Real x, Real y) {
+  return x * x + y * y;
+}
+
 OperationCounts pixel_cost(std::size_t samples) {
   return count_operations([&](OperationCounts& counts) {
     const Counted<double> one(1.0, counts);
@@ -47,6 +55,47 @@ OperationCounts pixel_cost(std::size_t samples) {
     move(m, one, one, one, one, one, dx, dy);
     converted(to_float(dx)), converted(to_float(dy));
   });
+}
+
+// Of a pixel: its samples' draws, each compared with those before it; the root of the greatest square, to fp16.
+OperationCounts contents_cost(std::size_t samples) {
+  return count_operations([&](OperationCounts& counts) {
+    const std::uint32_t table[1] = {};
+    const Counted<std::int32_t> index(0, counts);
+    for (std::size_t s = 0; s < samples; ++s) fetch(table, index);
+    for (std::size_t pair = 0; pair < samples * (samples - 1) / 2; ++pair) static_cast<void>(index == index);
+    converted(square_root(Counted<float>(1.0f, counts)));
+  });
+}
+
+// Of a draw in a pixel: its look and its matrix; where it was; the greater of two squares.
+OperationCounts draw_cost() {
+  return count_operations([](OperationCounts& counts) {
+    const std::uint32_t table[1] = {};
+    const Counted<std::int32_t> index(0, counts);
+    fetch(table, index), fetch(table, index);
+    ++counts.bit;  // the look, into those before it
+    const Counted<double> one(1.0, counts);
+    Counted<double> m[16], dx, dy;
+    for (Counted<double>& element : m) element = one;
+    move(m, one, one, one, one, one, dx, dy);
+    const Counted<float> x(converted(to_float(dx))), y(converted(to_float(dy)));
+    greater(x, square_length(x, y));
+  });
+}
+
+constexpr std::uint32_t kHashStart = 0x9e3779b9u;  // not 0, which mix_bits leaves as it is
+
+std::uint32_t hash(std::uint32_t state, const glm::vec3& color) {
+  for (int c = 0; c < 3; ++c) state = mix_bits(state ^ std::bit_cast<std::uint32_t>(color[c]));
+  return state;
+}
+
+// Whose sample i is: behind the draws, the background.
+std::size_t draw_at(const SampleTile& surface, std::size_t i, const std::vector<std::uint32_t>& draws,
+                    const Frame& frame) {
+  const std::uint32_t triangle = surface.triangle[i];
+  return triangle == kNoTriangle ? frame.draws.size() : draws[triangle];
 }
 
 glm::vec2 pixel_motion(const glm::dmat4& to_last, double center_x, double center_y, float depth, const Frame& frame) {
@@ -81,21 +130,18 @@ std::vector<glm::dmat4> to_last_frame(const Poses& now, const Poses& before) {
   return matrices;
 }
 
-SurfaceMotion motion(const SampleTile& surface, const Tile& tile, const Frame& frame,
-                     const std::vector<std::uint32_t>& draws, const std::vector<glm::dmat4>& to_last,
-                     StageCounters& counters) {
+std::vector<glm::vec2> motion(const SampleTile& surface, const Tile& tile, const Frame& frame,
+                              const std::vector<std::uint32_t>& draws, const std::vector<glm::dmat4>& to_last,
+                              StageCounters& counters) {
   const std::size_t samples = surface.samples_per_pixel;
-  SurfaceMotion found;
-  std::vector<glm::vec2>& vectors = found.vectors;
+  std::vector<glm::vec2> vectors;
+  vectors.reserve(tile.pixels());
   for (std::int32_t y = tile.y0; y < tile.y1; ++y) {
     for (std::int32_t x = tile.x0; x < tile.x1; ++x) {
       const auto first = surface.depth.begin() + static_cast<std::ptrdiff_t>(vectors.size() * samples);
       const auto nearest = std::min_element(first, first + static_cast<std::ptrdiff_t>(samples));
-      const std::uint32_t triangle = surface.triangle[static_cast<std::size_t>(nearest - surface.depth.begin())];
-      const std::uint32_t draw = triangle == kNoTriangle ? kNoDraw : draws[triangle];
-      found.draws.push_back(draw);
-      vectors.push_back(
-          pixel_motion(draw == kNoDraw ? to_last.back() : to_last[draw], x + 0.5, y + 0.5, *nearest, frame));
+      const auto at = static_cast<std::size_t>(nearest - surface.depth.begin());
+      vectors.push_back(pixel_motion(to_last[draw_at(surface, at, draws, frame)], x + 0.5, y + 0.5, *nearest, frame));
     }
   }
   const std::size_t pixels = vectors.size();
@@ -106,6 +152,51 @@ SurfaceMotion motion(const SampleTile& surface, const Tile& tile, const Frame& f
   counters.bytes_written += pixels * kMotionBytes;
   counters.lanes_used += pixels;
   counters.lanes_issued += pixels;
+  return vectors;
+}
+
+std::vector<std::uint32_t> looks_of(const Frame& frame) {
+  std::vector<std::uint32_t> looks;
+  for (const Draw& draw : frame.draws) {
+    std::uint32_t look = mix_bits(mix_bits(kHashStart + static_cast<std::uint32_t>(looks.size())) ^ draw.mesh);
+    if (draw.kd) look = hash(look, *draw.kd);
+    if (draw.shading == Shading::lambert) look = hash(look, frame.light_direction.value_or(glm::vec3(0.0f)));
+    looks.push_back(look);
+  }
+  looks.push_back(hash(mix_bits(~kHashStart), frame.background));
+  return looks;
+}
+
+PixelContents contents(const SampleTile& surface, const Tile& tile, const Frame& frame,
+                       const std::vector<std::uint32_t>& draws, const std::vector<glm::dmat4>& to_last,
+                       const std::vector<std::uint32_t>& looks, StageCounters& counters) {
+  const std::size_t samples = surface.samples_per_pixel;
+  PixelContents found;
+  std::uint64_t moved = 0;
+  std::vector<std::size_t> here;
+  for (std::int32_t y = tile.y0; y < tile.y1; ++y) {
+    for (std::int32_t x = tile.x0; x < tile.x1; ++x) {
+      here.clear();
+      std::uint32_t look = 0;
+      float fastest = 0;
+      for (std::size_t i = found.looks.size() * samples, end = i + samples; i < end; ++i) {
+        const std::size_t draw = draw_at(surface, i, draws, frame);
+        if (std::find(here.begin(), here.end(), draw) != here.end()) continue;
+        here.push_back(draw);
+        look ^= looks[draw];
+        const glm::vec2 moves = pixel_motion(to_last[draw], x + 0.5, y + 0.5, surface.depth[i], frame);
+        fastest = greater(fastest, square_length(moves.x, moves.y));
+      }
+      found.looks.push_back(look);
+      found.speeds.push_back(half(std::sqrt(fastest)));
+      moved += here.size();
+    }
+  }
+  const std::size_t pixels = found.looks.size();
+  counters.ops += contents_cost(samples) * pixels;
+  counters.ops += draw_cost() * moved;
+  counters.bytes_read += pixels * samples * kVisibilityBytes;  // the depths are at hand
+  counters.bytes_written += pixels * (kLookBytes + kSpeedBytes);
   return found;
 }
 

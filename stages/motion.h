@@ -1,4 +1,5 @@
-// motion: the nearest surface of each pixel -> how far away on the screen it was in the last frame.
+// motion: the nearest surface of each pixel -> how far away on the screen it was in the last frame; all that is in the
+// pixel -> whether it looks as it did, and how fast it moves.
 //
 // Both frames' cameras and both transforms of the surface's draw are followed; vertices that move within their mesh are
 // not. The background is taken for the far plane of a world that stands still.
@@ -14,7 +15,8 @@
 namespace beampipe {
 
 inline constexpr std::uint32_t kMotionBytes = 4;  // two fp16 numbers per pixel
-inline constexpr std::uint32_t kDrawBytes = 2;    // a draw's number per pixel, where it is kept
+inline constexpr std::uint32_t kLookBytes = 4;    // per pixel, where they are kept
+inline constexpr std::uint32_t kSpeedBytes = 2;   // an fp16 number per pixel, where it is kept
 
 // What places a frame's draws on its screen.
 struct Poses {
@@ -32,16 +34,24 @@ Poses poses_of(const Frame& frame);
 // known again by its index and its mesh; one that was not there before is taken to have stood still.
 std::vector<glm::dmat4> to_last_frame(const Poses& now, const Poses& before);
 
-// Of the nearest surface of each pixel of a tile, row by row.
-struct SurfaceMotion {
-  std::vector<glm::vec2> vectors;    // pixels, rounded to fp16: from a point to where it was; behind the eye: infinity
-  std::vector<std::uint32_t> draws;  // whose it is; kNoDraw: the background
-};
-inline constexpr std::uint32_t kNoDraw = ~0u;
+// Of the nearest surface of each pixel of a tile, row by row: pixels, rounded to fp16, from a point to where it was;
+// behind the eye: infinity. `draws`: one per triangle.
+std::vector<glm::vec2> motion(const SampleTile& surface, const Tile& tile, const Frame& frame,
+                              const std::vector<std::uint32_t>& draws, const std::vector<glm::dmat4>& to_last,
+                              StageCounters& counters);
 
-// `draws`: one per triangle.
-SurfaceMotion motion(const SampleTile& surface, const Tile& tile, const Frame& frame,
-                     const std::vector<std::uint32_t>& draws, const std::vector<glm::dmat4>& to_last,
-                     StageCounters& counters);
+// For each draw, and behind them for the background, a hash of all that its colours are made from: which draw and mesh
+// it is, its Kd, shading and light. Where it is and which way it is turned is not in it.
+std::vector<std::uint32_t> looks_of(const Frame& frame);
+
+// What the samples of each pixel of a tile show, row by row.
+struct PixelContents {
+  std::vector<std::uint32_t> looks;  // exclusive or of the looks of the draws, the background one of them
+  std::vector<float> speeds;         // of the fastest of the draws, each at its first sample: pixels, rounded to fp16
+};
+
+PixelContents contents(const SampleTile& surface, const Tile& tile, const Frame& frame,
+                       const std::vector<std::uint32_t>& draws, const std::vector<glm::dmat4>& to_last,
+                       const std::vector<std::uint32_t>& looks, StageCounters& counters);
 
 }  // namespace beampipe

@@ -30,13 +30,10 @@ void texel_weights(Real x, Real y, Real left, Real top, Real weights[4]) {
   weights[0] = rest_x * rest_y, weights[1] = fx * rest_y, weights[2] = rest_x * fy, weights[3] = fx * fy;
 }
 
-// How much of the clamp is in force: the greatest of five motions, over that from which it is whole.
+// How much of the clamp is in force: the speed over that from which it is whole.
 template <class Real>
-Real clamp_part(const Real x[5], const Real y[5], Real still_px) {
-  Real square = x[0] * x[0] + y[0] * y[0];
-  for (int i = 1; i < 5; ++i) square = greater(square, x[i] * x[i] + y[i] * y[i]);
-  const Real root(square_root(square));
-  return lesser(root / still_px, Real(1.0f));
+Real clamp_part(Real speed, Real still_px) {
+  return lesser(speed / still_px, Real(1.0f));
 }
 
 using CountedReal = Counted<float>;
@@ -56,15 +53,14 @@ OperationCounts pixel_cost() {
 // Of a pixel that has a history: its texels and its box, from fp16, and what is made of them.
 OperationCounts reuse_cost(bool fading) {
   return count_operations([&](OperationCounts& counts) {
-    const CountedReal one(1.0f, counts), four[4] = {one, one, one, one}, five[5] = {one, one, one, one, one};
+    const CountedReal one(1.0f, counts), four[4] = {one, one, one, one};
     CountedReal weights[4];
     to_integer(one), to_integer(one);  // the first texel
     texel_weights(one, one, one, one, weights);
     for (int value = 0; value < 4 * (4 + 2); ++value) converted(one);
-    for (int value = 0; fading && value < 4 * 2; ++value) converted(one);
     if (fading) {
       for (int tap = 1; tap < 4; ++tap) greater(one, one);  // the texel that weighs the most
-      select(one != one, one, clamp_part(five, five, one));
+      select(one != one, one, clamp_part(converted(one), one));
     }
     one* one;  // the blend by what is known
     for (int c = 0; c < 4; ++c) blend_channel(four, weights, one, one, one, one, one);
@@ -105,14 +101,12 @@ Taps taps_at(const History& history, float x, float y) {
   return taps;
 }
 
-float clamp_part(const glm::vec2& motion, std::uint32_t draw, const History& history, const Taps& taps,
+float clamp_part(const CurrentFrame& frame, std::size_t pixel, const History& history, const Taps& taps,
                  float still_px) {
   if (still_px == 0) return 1;
   const auto nearest = std::max_element(taps.weights, taps.weights + 4) - taps.weights;
-  if (history.draws[taps.texels[nearest]] != draw) return 1;
-  float x[5] = {motion.x}, y[5] = {motion.y};
-  for (int i = 0; i < 4; ++i) x[i + 1] = history.motion[taps.texels[i]].x, y[i + 1] = history.motion[taps.texels[i]].y;
-  return clamp_part(x, y, still_px);
+  if (history.looks[taps.texels[nearest]] != frame.looks[pixel]) return 1;
+  return frame.known[pixel] > 0 ? clamp_part(frame.speeds[pixel], still_px) : 0;  // else no box
 }
 
 }  // namespace
@@ -120,7 +114,8 @@ float clamp_part(const glm::vec2& motion, std::uint32_t draw, const History& his
 CurrentFrame::CurrentFrame(std::uint32_t frame_width, std::uint32_t frame_height)
     : width(static_cast<std::int32_t>(frame_width)), height(static_cast<std::int32_t>(frame_height)) {
   const std::size_t pixels = std::size_t{frame_width} * frame_height;
-  color.resize(pixels), low.resize(pixels), high.resize(pixels), motion.resize(pixels), draws.resize(pixels);
+  color.resize(pixels), low.resize(pixels), high.resize(pixels), motion.resize(pixels);
+  looks.resize(pixels), speeds.resize(pixels);
   known.assign(pixels, 1.0f);
 }
 
@@ -161,16 +156,14 @@ void temporal(const CurrentFrame& frame, const TemporalOptions& options, const H
         image[i] = round_half(frame.color[i]);
         continue;
       }
-      const float known = frame.known[i];
       const Taps taps = taps_at(history, x, y);
-      const float clamped =
-          known > 0 ? clamp_part(motion, frame.draws[i], history, taps, options.still_px) : 0;  // else no box
+      const float clamped = clamp_part(frame, i, history, taps, options.still_px);
       glm::vec4 blended;
       for (int c = 0; c < 4; ++c) {
         float texels[4];
         for (int t = 0; t < 4; ++t) texels[t] = history.color[taps.texels[t]][c];
         blended[c] = blend_channel(texels, taps.weights, frame.low[i][c], frame.high[i][c], clamped, frame.color[i][c],
-                                   options.blend * known);
+                                   options.blend * frame.known[i]);
       }
       image[i] = round_half(blended);
       ++reused;
@@ -184,8 +177,8 @@ void temporal(const CurrentFrame& frame, const TemporalOptions& options, const H
   counters.ops += pixel_cost() * pixels;
   counters.ops += reuse_cost(fading) * reused;
   counters.bytes_read += pixels * (kCurrentColorBytes + kCurrentBoxBytes + kMotionBytes);
-  counters.bytes_read += reused * 4 * (kHistoryBytes + (fading ? kMotionBytes : 0));
-  if (fading) counters.bytes_read += pixels * kDrawBytes + reused * kDrawBytes;
+  counters.bytes_read += reused * 4 * kHistoryBytes;
+  if (fading) counters.bytes_read += pixels * (kLookBytes + kSpeedBytes) + reused * kLookBytes;
   counters.bytes_written += pixels * kHistoryBytes;
   counters.lanes_used += reused;
   counters.lanes_issued += pixels;

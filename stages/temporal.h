@@ -17,8 +17,7 @@ struct History {
   std::uint32_t frames = 0;            // rendered so far
   std::int32_t width = 0, height = 0;  // pixels
   std::vector<glm::vec4> color;        // the last picture, rounded to fp16 RGBA
-  std::vector<glm::vec2> motion;       // of the last frame
-  std::vector<std::uint32_t> draws;    // that were nearest in the last frame
+  std::vector<std::uint32_t> looks;    // of the last frame's pixels
   Poses poses;                         // of the last frame
 };
 
@@ -29,7 +28,8 @@ struct CurrentFrame {
   std::vector<glm::vec4> low, high;  // the box that the history's colour is clamped to
   std::vector<float> known;          // the part of the pixel that `color` is made from, 0..1
   std::vector<glm::vec2> motion;     // pixels, to where it was
-  std::vector<std::uint32_t> draws;  // that are nearest
+  std::vector<std::uint32_t> looks;  // of all that is in the pixel (PixelContents)
+  std::vector<float> speeds;
 
   CurrentFrame(std::uint32_t frame_width, std::uint32_t frame_height);
 };
@@ -39,9 +39,9 @@ inline constexpr std::uint64_t kCurrentColorBytes = 8, kCurrentBoxBytes = 2 * 8 
 
 struct TemporalOptions {
   float blend = 0.1f;  // T: weight of the new frame
-  // The clamp fades in from no motion to this much, in pixels, of what is there or was there in the last frame: where
-  // something has just gone away, its colour must go too. Where another draw was nearest, the clamp is whole: what
-  // starts from rest, or jumps, did not move before. 0: the clamp is always whole.
+  // The clamp fades in from no motion to this much, in pixels, of the fastest that is in the pixel. Where anything
+  // came, went or looks otherwise than in the last frame, it is whole, and takes the history even of a pixel that is
+  // not known. 0: the clamp is always whole.
   float still_px = 0.0f;
 };
 
@@ -50,7 +50,7 @@ void neighborhood_box(const Tile& tile, StageCounters& counters, CurrentFrame& f
 
 // Sets the tile's pixels of `image`, which is the frame's and rounded to fp16. Where there is no history (first frame,
 // off screen, other size): the frame's own colour. A pixel known in part is blended in by that part; one that is not
-// known keeps its history.
+// known keeps its history, unless its look has changed.
 void temporal(const CurrentFrame& frame, const TemporalOptions& options, const History& history, const Tile& tile,
               StageCounters& counters, std::vector<glm::vec4>& image);
 

@@ -18,10 +18,21 @@
 namespace beampipe {
 namespace {
 
-constexpr const char* kSpecs[] = {
-    "beam",     "beam:rules=paper",      "beam:order=stream",      "z3",       "alpha",      "msaa:4", "msaa:4,prepass",
-    "msaa:32",  "acaa:4,double=stencil", "acaa:4,double=saturate", "deferred", "visibility", "taa:8",  "dvm",
-    "reference"};
+constexpr const char* kSpecs[] = {"beam",
+                                  "beam:rules=paper",
+                                  "beam:order=stream",
+                                  "z3",
+                                  "alpha",
+                                  "msaa:4,at=centroid",
+                                  "msaa:4,prepass",
+                                  "msaa:32",
+                                  "acaa:4,double=stencil",
+                                  "acaa:4,double=saturate",
+                                  "deferred",
+                                  "visibility",
+                                  "taa:8",
+                                  "dvm",
+                                  "reference"};
 
 // Two frames of small triangles all over the picture, some of them lit, some cut by the view's sides.
 Trace test_trace() {

@@ -61,6 +61,7 @@ TEST(Technique, WrongSpecsSayWhatWasExpected) {
                            "reference:64",
                            "beam ",
                            "msaa:8,color=rgb8",
+                           "msaa:8,at=corner",
                            "msaa:prepass",
                            "msaa:8,prepass,prepass",
                            "acaa",

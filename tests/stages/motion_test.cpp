@@ -34,7 +34,7 @@ SampleTile full_surface(float depth, const Sampling& sampling = {CellGrid{}, sta
 
 std::vector<glm::vec2> vectors(const SampleTile& surface, const Frame& now, const Frame& before) {
   StageCounters counters;
-  return motion(surface, kTile, now, {0}, to_last_frame(poses_of(now), poses_of(before)), counters).vectors;
+  return motion(surface, kTile, now, {0}, to_last_frame(poses_of(now), poses_of(before)), counters);
 }
 
 const glm::dmat4 kIdentity(1.0);
@@ -97,6 +97,53 @@ TEST(Motion, FollowsTheNearestSample) {
   EXPECT_EQ(found[1], glm::vec2(0, 0));
 }
 
+PixelContents contents_of(const SampleTile& surface, const Frame& now, const Frame& before) {
+  StageCounters counters;
+  const std::vector<std::uint32_t> draws = {0, 1};
+  return contents(surface, kTile, now, draws, to_last_frame(poses_of(now), poses_of(before)), looks_of(now), counters);
+}
+
+TEST(Motion, ContentsAreThoseOfAllSamples) {
+  Frame before = flat_frame(kIdentity), now = flat_frame(glm::translate(kIdentity, glm::dvec3(3, 4, 0)));
+  before.draws.emplace_back(), now.draws.emplace_back();
+  now.draws[0].mesh = before.draws[0].mesh = 1;
+  SampleTile surface = full_surface(-0.5f, {CellGrid{}, standard_pattern(8)});  // draw 0, which moves by 5
+  std::fill_n(surface.triangle.begin() + 8, 8, 1u);                             // pixel 1: draw 1, which stands
+  std::fill_n(surface.triangle.begin() + 16, 7, 1u);                            // pixel 2: both
+  std::fill_n(surface.triangle.begin() + 24, 2, 1u);                            // pixel 3: both, and the background
+  surface.triangle[31] = kNoTriangle, surface.depth[31] = kFarDepth;
+  const PixelContents found = contents_of(surface, now, before);
+  EXPECT_EQ(std::vector<float>(found.speeds.begin(), found.speeds.begin() + 4), (std::vector<float>{5, 0, 5, 5}));
+  const std::vector<std::uint32_t> looks = looks_of(now);
+  EXPECT_EQ(found.looks[0], looks[0]);
+  EXPECT_EQ(found.looks[1], looks[1]);
+  EXPECT_EQ(found.looks[2], looks[0] ^ looks[1]);
+  EXPECT_EQ(found.looks[3], looks[0] ^ looks[1] ^ looks[2]);
+}
+
+TEST(Motion, ALookIsOfAllThatColorsAreMadeFrom) {
+  Frame frame = flat_frame(kIdentity);
+  frame.draws.resize(2);
+  const std::vector<std::uint32_t> before = looks_of(frame);
+  const auto changed = [&](const auto& change) {
+    Frame after = frame;
+    change(after);
+    const std::vector<std::uint32_t> looks = looks_of(after);
+    std::vector<bool> result;
+    for (std::size_t i = 0; i < looks.size(); ++i) result.push_back(looks[i] != before[i]);
+    return result;
+  };
+  using Which = std::vector<bool>;
+  EXPECT_NE(before[0], before[1]) << "which draw it is";
+  EXPECT_EQ(changed([](Frame& f) { f.draws[0].mesh = 1; }), (Which{true, false, false}));
+  EXPECT_EQ(changed([](Frame& f) { f.draws[1].kd = glm::vec3(0, 0, 1); }), (Which{false, true, false}));
+  EXPECT_EQ(changed([](Frame& f) { f.background = glm::vec3(1, 0, 0); }), (Which{false, false, true}));
+  EXPECT_EQ(changed([](Frame& f) { f.draws[0].transform[3][0] = 1; }), (Which{false, false, false}));
+  EXPECT_EQ(changed([](Frame& f) { f.light_direction = glm::vec3(1, 0, 0); }), (Which{false, false, false})) << "unlit";
+  frame.draws[0].shading = Shading::lambert;
+  EXPECT_EQ(changed([](Frame&) {}), (Which{true, false, false}));
+}
+
 TEST(Motion, DrawsAreKnownByIndexAndMesh) {
   const Frame before = flat_frame(kIdentity);
   Frame now = flat_frame(glm::translate(kIdentity, glm::dvec3(1, 0, 0)));
@@ -120,6 +167,17 @@ TEST(Motion, CountsItsArithmetic) {
   const OperationCounts pixel{0 + 3 + 9 + 2 * 3, 2 * 7 + 2 + 2 + 9 + 2 + 2 + 1, 0, 2, 2 + 1, 4};
   EXPECT_EQ(counters.ops, pixel * (kSize * kSize));
   EXPECT_EQ(counters.bytes_read, kSize * kSize * (8 * 4 + 4));
+  counters = {};
+  contents(full_surface(-0.5f, {CellGrid{}, standard_pattern(8)}), kTile, frame, {0},
+           to_last_frame(poses_of(frame), poses_of(frame)), looks_of(frame), counters);
+  // Eight samples' draws, and whether one is new: 28 pairs; a root, to fp16. Of the one draw: its look, its matrix, the
+  // motion, its square, the greater.
+  const OperationCounts set{0, 28, 0, 8, 1, 1}, draw{18 + 2, 18 + 2, 1, 2, 2 + 1, 4};
+  OperationCounts all = set * (kSize * kSize);
+  all += draw * (kSize * kSize);
+  EXPECT_EQ(counters.ops, all);
+  EXPECT_EQ(counters.bytes_read, kSize * kSize * 8 * 4);
+  EXPECT_EQ(counters.bytes_written, kSize * kSize * (4 + 2));
 }
 
 }  // namespace
