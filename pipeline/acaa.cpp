@@ -2,59 +2,17 @@
 
 #include <string>
 
+#include "pipeline/memory/accumulator_memory.h"
 #include "pipeline/memory/image_memory.h"
 #include "pipeline/memory/sample_memory.h"
-#include "pipeline/msaa.h"
 #include "pipeline/sample_batches.h"
 #include "pipeline/tiles.h"
 #include "pipeline/timeline.h"
-#include "simd/depth_test.h"
 #include "stages/depth_test.h"
 #include "stages/shade.h"
 #include "stages/vertex_setup.h"
 
 namespace beampipe {
-namespace {
-
-std::uint32_t pixel_of(const SampleFragment& fragment, const Tile& tile) {
-  return static_cast<std::uint32_t>(tile.index(fragment.x, fragment.y));
-}
-
-// Adding to the accumulator of a pixel reads and writes it.
-void blend(std::uint32_t triangle, std::uint32_t pixel, TileSurface& color, StageCounters& counters) {
-  color.read(triangle, pixel, counters);
-  color.write(triangle, pixel, counters);
-}
-
-// The background is blended in wherever a sample is clear.
-void blend_background(const SampleTile& depth, TileSurface& color, StageCounters& counters) {
-  const auto samples = static_cast<std::ptrdiff_t>(depth.samples_per_pixel);
-  const auto pixels = static_cast<std::uint32_t>((depth.depth.size() - kSampleSlack) / depth.samples_per_pixel);
-  for (std::uint32_t pixel = 0; pixel < pixels; ++pixel) {
-    const auto first = depth.depth.begin() + pixel * samples;
-    if (std::find(first, first + samples, kFarDepth) != first + samples) blend(kNoTriangle, pixel, color, counters);
-  }
-}
-
-}  // namespace
-
-std::vector<Sampling> acaa_rounds(int samples) {
-  const Sampling all = msaa_sampling(samples);
-  std::vector<Sampling> rounds;
-  SamplePattern pattern;
-  for (int cell = 0; cell < all.grid.cells_per_pixel(); ++cell) {
-    for (std::size_t s = 0; s < static_cast<std::size_t>(all.pattern.count); ++s) {
-      const auto i = static_cast<std::size_t>(pattern.count++);
-      pattern.x[i] = all.pattern.x[s] + cell % all.grid.columns * all.grid.cell_width();
-      pattern.y[i] = all.pattern.y[s] + cell / all.grid.columns * all.grid.cell_height();
-    }
-    if (pattern.count < 16 && cell + 1 < all.grid.cells_per_pixel()) continue;
-    rounds.push_back({CellGrid{}, pattern});
-    pattern = {};
-  }
-  return rounds;
-}
-
 FrameResult render_acaa(const Trace& trace, const Frame& frame, const AcaaOptions& options, const RunOptions& run) {
   StageCounters setup;
   const SetupTriangles triangles = vertex_setup(trace, frame, StageTimer(run.timeline)(setup));
@@ -72,13 +30,13 @@ FrameResult render_acaa(const Trace& trace, const Frame& frame, const AcaaOption
     std::vector<float> counts(tile.pixels()), bytes(tile.pixels());
     std::vector<SampleAccess> accesses;
     const ZOrder order(tile.width(), tile.height());
-    TileSurface color(run.memory, order, accumulator_bytes(options.color));
+    AccumulatorMemory color(run.memory, order, accumulator_bytes(options.color));
     accumulator.limit = 0;
     for (const Sampling& sampling : rounds) {
       accumulator.limit += static_cast<float>(sampling.pattern.count) * accumulator.sample_share;
       SampleTile depth(tile, sampling, 0);
       SampleMemory memory(run.memory, tile, sampling, 0);
-      TileSurface taken(run.memory, order, static_cast<std::uint32_t>(sampling.pattern.count));
+      StencilMemory taken(run.memory, order, sampling);
       raster_in_batches(triangles, list, tile, sampling, timed, raster, [&](std::vector<SampleFragment>& fragments) {
         depth_test(triangles, fragments, tile, sampling, timed(testing), depth, accesses);
         memory.test_depth(accesses, testing);
@@ -87,23 +45,20 @@ FrameResult render_acaa(const Trace& trace, const Frame& frame, const AcaaOption
       if (options.double_counting == DoubleCounting::saturate) {
         accumulate_background(depth, frame.background, timed(accumulation), accumulator);
         memory.read_depth(accumulation);
-        blend_background(depth, color, accumulation);
+        color.blend_background(depth, accumulation);
       }
       accumulator.taken.assign(tile.pixels(), 0);
       raster_in_batches(triangles, list, tile, sampling, timed, raster, [&](std::vector<SampleFragment>& fragments) {
         depth_test_equal(triangles, tile, sampling, timed(testing), depth, fragments, accesses);
         memory.test_equal(accesses, testing);
         if (options.double_counting == DoubleCounting::stencil) {
-          for (const SampleFragment& fragment : fragments)
-            taken.access(fragment.triangle, pixel_of(fragment, tile), fragment.mask, 0, 1, stencil);
+          taken.test(fragments, tile, stencil);
           stencil_test(tile, timed(stencil), accumulator, fragments);
-          for (const SampleFragment& fragment : fragments)
-            taken.access(fragment.triangle, pixel_of(fragment, tile), 0, fragment.mask, 1, stencil);
+          taken.mark(fragments, tile, stencil);
         }
         shade(fragments, timed(shading), &triangles.attributes);
         accumulate(fragments, colors, tile, timed(accumulation), accumulator);
-        for (const SampleFragment& fragment : fragments)
-          blend(fragment.triangle, pixel_of(fragment, tile), color, accumulation);
+        color.blend(fragments, tile, accumulation);
         count_fragments(fragments, tile, sampling.grid, counts);
       });
       memory.flush(testing);

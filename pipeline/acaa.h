@@ -3,9 +3,9 @@
 // rounds, each with another part of the samples, on the same surfaces.
 #pragma once
 
+#include "pipeline/sampling.h"
 #include "pipeline/technique.h"
 #include "stages/accumulate.h"
-#include "stages/sample_raster.h"
 
 namespace beampipe {
 
@@ -16,9 +16,6 @@ struct AcaaOptions {
   DoubleCounting double_counting = DoubleCounting::none;
   AccumulatorFormat color = AccumulatorFormat::fp16;
 };
-
-// What each round samples: together the samples of msaa:N, at most 16 at a time.
-std::vector<Sampling> acaa_rounds(int samples);
 
 FrameResult render_acaa(const Trace& trace, const Frame& frame, const AcaaOptions& options, const RunOptions& run);
 

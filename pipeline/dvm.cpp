@@ -1,8 +1,5 @@
 #include "pipeline/dvm.h"
 
-#include <array>
-#include <map>
-
 #include "pipeline/memory/image_memory.h"
 #include "pipeline/memory/sample_memory.h"
 #include "pipeline/sample_batches.h"
@@ -10,6 +7,7 @@
 #include "pipeline/timeline.h"
 #include "stages/depth_test.h"
 #include "stages/dilate.h"
+#include "stages/materials.h"
 #include "stages/sample_select.h"
 #include "stages/shade.h"
 #include "stages/vertex_setup.h"
@@ -19,20 +17,6 @@ namespace {
 
 // The clamp fades out below this motion, in pixels: the article's remedy for flicker at edges between lit facets.
 constexpr float kStillPixels = 0.05f;
-
-// A number for each triangle's material.
-std::vector<std::uint32_t> material_ids(const SetupTriangles& triangles, MaterialBy by) {
-  if (by == MaterialBy::draw) return triangles.draws;
-  std::map<std::array<float, 4>, std::uint32_t> numbers;
-  std::vector<std::uint32_t> ids;
-  ids.reserve(triangles.draws.size());
-  for (std::size_t i = 0; i < triangles.draws.size(); ++i) {
-    const glm::vec3& kd = triangles.attributes[i].kd;
-    const std::array<float, 4> key = {static_cast<float>(triangles.draws[i]), kd.r, kd.g, kd.b};
-    ids.push_back(numbers.emplace(key, static_cast<std::uint32_t>(numbers.size())).first->second);
-  }
-  return ids;
-}
 
 }  // namespace
 

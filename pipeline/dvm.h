@@ -4,14 +4,9 @@
 #pragma once
 
 #include "pipeline/technique.h"
+#include "stages/materials.h"
 
 namespace beampipe {
-
-// What makes two triangles of the same material: shading samples are spread to it alone.
-enum class MaterialBy {
-  color,  // the draw and the Kd: an OBJ's material groups, which a renderer would draw one by one
-  draw,   // the draw alone, as if a texture made its colours
-};
 
 struct DvmOptions {
   float blend = 0.1f;

@@ -20,13 +20,6 @@ std::uint32_t color_bytes(const MsaaOptions& options) { return options.rgba ? 8 
 
 }  // namespace
 
-Sampling msaa_sampling(int samples) {
-  if (samples <= 16) return {CellGrid{}, standard_pattern(samples)};
-  const CellCounts cells = split_into_cells(samples / 8);
-  const CellGrid grid{cells.columns, cells.rows};
-  return {grid, standard_pattern(8, grid.cell_width(), grid.cell_height())};
-}
-
 FrameResult render_msaa(const Trace& trace, const Frame& frame, const MsaaOptions& options, const RunOptions& run) {
   StageCounters setup;
   const SetupTriangles triangles = vertex_setup(trace, frame, StageTimer(run.timeline)(setup));

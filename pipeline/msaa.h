@@ -2,16 +2,13 @@
 // positions; above, super-resolution of 8x multisampling, as the paper made its own comparisons.
 #pragma once
 
+#include "pipeline/sampling.h"
 #include "pipeline/technique.h"
-#include "stages/sample_raster.h"
 #include "stages/shading_point.h"
 
 namespace beampipe {
 
 inline constexpr int kMaxMsaaSamples = 1024;
-
-// `samples`: a power of two, 1..1024. Above 16, the pixel is a grid of samples / 8 cells, at least as wide as high.
-Sampling msaa_sampling(int samples);
 
 struct MsaaOptions {
   int samples = 1;

@@ -18,20 +18,6 @@
 namespace beampipe {
 namespace {
 
-// The box of the pixels that need another pass, its corners even; empty when there are none.
-template <class Pixel>
-Tile unfinished_box(const std::vector<Pixel>& pixels, const Tile& tile) {
-  Tile box{tile.x1, tile.y1, tile.x0, tile.y0};
-  for (std::size_t i = 0; i < pixels.size(); ++i) {
-    if (!is_unfinished(pixels[i])) continue;
-    const auto x = tile.x0 + static_cast<std::int32_t>(i) % tile.width();
-    const auto y = tile.y0 + static_cast<std::int32_t>(i) / tile.width();
-    box = {std::min(box.x0, x & ~1), std::min(box.y0, y & ~1), std::max(box.x1, std::min((x | 1) + 1, tile.x1)),
-           std::max(box.y1, std::min((y | 1) + 1, tile.y1))};
-  }
-  return box;
-}
-
 // Each pass draws the frame's geometry again, as many times as the pixel that takes the most passes needs.
 void charge_passes(const SetupTriangles& triangles, FrameResult& result) {
   const std::vector<float>& passes = result.pixel_counters.at("passes");

@@ -2,6 +2,7 @@
 
 #include "pipeline/acaa.h"
 #include "pipeline/beam.h"
+#include "pipeline/deferred.h"
 #include "pipeline/dvm.h"
 #include "pipeline/msaa.h"
 #include "pipeline/published.h"

@@ -1,5 +1,5 @@
-// One sample per pixel, shaded after visibility is known. `deferred`: depth pass, then materials in 2x2 quads into a
-// G-buffer, then light. `visibility`: triangle ids and depth, then materials and light per pixel, without quads.
+// One sample per pixel, shaded after visibility is known: triangle ids and depth, then materials and light per pixel,
+// without quads.
 #pragma once
 
 #include "pipeline/technique.h"
@@ -8,7 +8,6 @@
 
 namespace beampipe {
 
-FrameResult render_deferred(const Trace& trace, const Frame& frame, const RunOptions& run);
 FrameResult render_visibility(const Trace& trace, const Frame& frame, const RunOptions& run);
 
 // What `visibility` does in a tile: its triangle ids and depths stay in `surface`. `sampling`: of one sample.
@@ -16,7 +15,6 @@ TileResult visibility_tile(const SetupTriangles& triangles, const TriangleList& 
                            const Sampling& sampling, const std::vector<glm::vec3>& colors, const glm::vec3& background,
                            const RunOptions& run, SampleTile& surface);
 
-std::vector<Surface> deferred_framebuffer();
 std::vector<Surface> visibility_framebuffer();
 
 }  // namespace beampipe

@@ -2,6 +2,7 @@
 // settled, and those that were deferred are free for the next pass.
 #pragma once
 
+#include <algorithm>
 #include <vector>
 
 #include "stages/beam_fragment.h"
@@ -37,6 +38,20 @@ void close_finished(const std::vector<OwnerPixel<Words, Layers>>& pixels, const 
     for (std::int32_t x = tile.x0; x < tile.x1; ++x, ++pixel)
       if (!is_unfinished(*pixel)) closed.close(x, y, kInFront);
   closed.refresh();
+}
+
+// The box of the pixels that need another pass, its corners even; empty when there are none.
+template <std::size_t Words, std::size_t Layers>
+Tile unfinished_box(const std::vector<OwnerPixel<Words, Layers>>& pixels, const Tile& tile) {
+  Tile box{tile.x1, tile.y1, tile.x0, tile.y0};
+  for (std::size_t i = 0; i < pixels.size(); ++i) {
+    if (!is_unfinished(pixels[i])) continue;
+    const auto x = tile.x0 + static_cast<std::int32_t>(i) % tile.width();
+    const auto y = tile.y0 + static_cast<std::int32_t>(i) / tile.width();
+    box = {std::min(box.x0, x & ~1), std::min(box.y0, y & ~1), std::max(box.x1, std::min((x | 1) + 1, tile.x1)),
+           std::max(box.y1, std::min((y | 1) + 1, tile.y1))};
+  }
+  return box;
 }
 
 template <std::size_t Words, std::size_t Layers>

@@ -1,0 +1,60 @@
+#include "pipeline/deferred.h"
+
+#include "pipeline/memory/gbuffer_memory.h"
+#include "pipeline/memory/sample_memory.h"
+#include "pipeline/sample_batches.h"
+#include "pipeline/tiles.h"
+#include "pipeline/timeline.h"
+#include "stages/depth_test.h"
+#include "stages/resolve.h"
+#include "stages/shade.h"
+#include "stages/vertex_setup.h"
+
+namespace beampipe {
+
+FrameResult render_deferred(const Trace& trace, const Frame& frame, const RunOptions& run) {
+  StageCounters setup;
+  const SetupTriangles triangles = vertex_setup(trace, frame, StageTimer(run.timeline)(setup));
+  const std::vector<glm::vec3> colors = shade_triangles(triangles, frame.light_direction);
+  const Sampling sampling{CellGrid{}, standard_pattern(1)};
+  setup += setup;  // the triangles come twice
+  return render_tiles(frame, triangles, setup, kBinSize, run, [&](const Tile& tile, const TriangleList& list) {
+    const StageTimer timed(run.timeline, tile);
+    StageCounters raster{"sample_raster"}, testing{"depth_test"}, shading{"shade"}, lighting{"light"},
+        resolving{"resolve"};
+    SampleTile surface(tile, sampling, 0);
+    SampleMemory memory(run.memory, tile, sampling, 0);
+    const ZOrder order(tile.width(), tile.height());
+    TileSurface gbuffer(run.memory, order, kGBufferBytes);
+    std::vector<SampleAccess> accesses;
+    raster_in_batches(triangles, list, tile, sampling, timed, raster, [&](std::vector<SampleFragment>& fragments) {
+      depth_test(triangles, fragments, tile, sampling, timed(testing), surface, accesses);
+      memory.test_depth(accesses, testing);
+    });
+    memory.flush(testing);
+    raster_in_batches(triangles, list, tile, sampling, timed, raster, [&](std::vector<SampleFragment>& fragments) {
+      depth_test_equal(triangles, tile, sampling, timed(testing), surface, fragments, accesses);
+      memory.test_equal(accesses, testing);
+      write_gbuffer(fragments, timed(shading));
+      for (const SampleAccess& access : accesses)
+        gbuffer.access(access.triangle, access.cell, 0, access.passed, kGBufferBytes, shading);
+    });
+    memory.flush(testing);
+    gbuffer.flush(shading);
+    const std::vector<std::uint32_t> shown = shown_pixels(surface, tile);
+    light(shown.size(), timed(lighting));
+    move_light_and_resolve(run.memory, tile, order, shown, gbuffer, lighting, resolving);
+    surface.color_bytes = kSampleColorBytes;
+    return TileResult{resolve(surface, tile.pixels(), colors, frame.background, timed(resolving)),
+                      {},
+                      {raster, testing, shading, lighting, resolving}};
+  });
+}
+
+std::vector<Surface> deferred_framebuffer() {
+  return {{"depth", "D32F", kSampleDepthBytes},
+          {"gbuffer", "RGBA8 + RGB10A2", kGBufferBytes},
+          {"color", "RGB16F", kSampleColorBytes}};
+}
+
+}  // namespace beampipe

@@ -1,0 +1,42 @@
+#include "pipeline/memory/gbuffer_memory.h"
+
+#include <set>
+
+#include "pipeline/memory/image_memory.h"
+#include "stages/shade.h"
+
+namespace beampipe {
+
+std::vector<std::uint32_t> shown_pixels(const SampleTile& surface, const Tile& tile) {
+  std::vector<std::uint32_t> pixels;
+  for (std::uint32_t pixel = 0; pixel < tile.pixels(); ++pixel)
+    if (surface.triangle[pixel] != kNoTriangle) pixels.push_back(pixel);
+  return pixels;
+}
+
+void write_pixels(const std::vector<std::uint32_t>& pixels, TileSurface& to, StageCounters& counters) {
+  for (const std::uint32_t pixel : pixels) to.write(0, pixel, counters);
+  to.flush(counters);
+}
+
+void fetch_attributes(const MemoryParameters& memory, const SampleTile& surface,
+                      const std::vector<std::uint32_t>& pixels, StageCounters& counters) {
+  if (!memory.modelled) return;
+  std::set<std::uint32_t> triangles;
+  for (const std::uint32_t pixel : pixels) triangles.insert(surface.triangle[pixel]);
+  const std::uint64_t sectors = (sizeof(FlatAttributes) + memory.sector_bytes - 1) / memory.sector_bytes;
+  counters.sector_bytes += pixels.size() * sectors * memory.sector_bytes;
+  counters.dram_bytes += triangles.size() * sectors * memory.sector_bytes;
+}
+
+void move_light_and_resolve(const MemoryParameters& memory, const Tile& tile, const ZOrder& order,
+                            const std::vector<std::uint32_t>& pixels, TileSurface& gbuffer, StageCounters& lighting,
+                            StageCounters& resolving) {
+  TileSurface color(memory, order, kSampleColorBytes);
+  gbuffer.read_all(lighting);
+  write_pixels(pixels, color, lighting);
+  color.read_all(resolving);
+  write_image(memory, tile, resolving);
+}
+
+}  // namespace beampipe

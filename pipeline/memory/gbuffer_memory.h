@@ -1,0 +1,27 @@
+// What shading behind visibility moves for one bin, for the pixels that show a triangle.
+#pragma once
+
+#include <vector>
+
+#include "pipeline/memory/tile_surface.h"
+#include "stages/depth_test.h"
+
+namespace beampipe {
+
+// The pixels that show a triangle.
+std::vector<std::uint32_t> shown_pixels(const SampleTile& surface, const Tile& tile);
+
+// Writes each of the pixels once, and ends the pass.
+void write_pixels(const std::vector<std::uint32_t>& pixels, TileSurface& to, StageCounters& counters);
+
+// By a pixel's triangle number its attributes are fetched from memory: a request each, and each triangle of the bin
+// once from DRAM.
+void fetch_attributes(const MemoryParameters& memory, const SampleTile& surface,
+                      const std::vector<std::uint32_t>& pixels, StageCounters& counters);
+
+// Light: from the G-buffer to colour. Resolve: from colour to the picture.
+void move_light_and_resolve(const MemoryParameters& memory, const Tile& tile, const ZOrder& order,
+                            const std::vector<std::uint32_t>& pixels, TileSurface& gbuffer, StageCounters& lighting,
+                            StageCounters& resolving);
+
+}  // namespace beampipe
