@@ -13,6 +13,7 @@
 #include "stages/vertex_setup.h"
 
 namespace beampipe {
+
 FrameResult render_acaa(const Trace& trace, const Frame& frame, const AcaaOptions& options, const RunOptions& run) {
   StageCounters setup;
   const SetupTriangles triangles = vertex_setup(trace, frame, StageTimer(run.timeline)(setup));

@@ -12,6 +12,7 @@
 #include "stages/vertex_setup.h"
 
 namespace beampipe {
+
 FrameResult render_visibility(const Trace& trace, const Frame& frame, const RunOptions& run) {
   StageCounters setup;
   const SetupTriangles triangles = vertex_setup(trace, frame, StageTimer(run.timeline)(setup));
