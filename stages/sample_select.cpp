@@ -4,6 +4,7 @@
 #include <bit>
 
 #include "stages/counting.h"
+#include "stages/mix_bits.h"
 
 namespace beampipe {
 namespace {
@@ -17,23 +18,16 @@ struct SelectWork {
   std::uint64_t given = 0, given_once = 0;  // visibility samples; those that had one shading sample to go to
 };
 
-// Murmur3's finalizer.
-template <class Bits>
-Bits mix(Bits x) {
-  x = (x ^ x >> 16) * Bits(0x85ebca6bu);
-  x = (x ^ x >> 13) * Bits(0xc2b2ae35u);
-  return x ^ x >> 16;
-}
-
 // A 32-bit hash as hardware would have it; the same for the same seed and quad, whatever else is rendered.
 class QuadRandom {
  public:
   QuadRandom(std::uint32_t seed, std::int32_t x, std::int32_t y, SelectWork& work)
-      : work_(work), state_(mix(mix(mix(seed) ^ static_cast<std::uint32_t>(x)) ^ static_cast<std::uint32_t>(y))) {}
+      : work_(work),
+        state_(mix_bits(mix_bits(mix_bits(seed) ^ static_cast<std::uint32_t>(x)) ^ static_cast<std::uint32_t>(y))) {}
 
   // One of the bits that are set.
   int pick(std::uint32_t bits) {
-    state_ = mix(state_ + 0x9e3779b9u);
+    state_ = mix_bits(state_ + 0x9e3779b9u);
     const std::uint32_t skips = state_ % static_cast<std::uint32_t>(std::popcount(bits));
     ++work_.picks, work_.skips += skips;
     for (std::uint32_t skip = skips; skip > 0; --skip) bits &= bits - 1;
@@ -113,7 +107,7 @@ using CountedBits = Counted<std::uint32_t>;
 OperationCounts quad_cost() {
   return count_operations([](OperationCounts& counts) {
     const CountedBits x(1, counts);
-    mix(mix(mix(x) ^ x) ^ x);
+    mix_bits(mix_bits(mix_bits(x) ^ x) ^ x);
     for (int p = 0; p < 4; ++p) x& x;
     x & ~(x | x | x | x);
     counts += OperationCounts{.add = 4 * (4 * 2 + 1), .bit = 4 * (4 + 1)};
@@ -123,7 +117,7 @@ OperationCounts quad_cost() {
 OperationCounts pick_cost() {
   return count_operations([](OperationCounts& counts) {
     const CountedBits x(1, counts);
-    mix(x + x) % x;
+    mix_bits(x + x) % x;
     counts.bit += 2;  // how many bits there are, and the number of the one
   });
 }
