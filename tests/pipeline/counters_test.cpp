@@ -62,7 +62,8 @@ TEST(Counters, MsaaCountsSamples) {
   EXPECT_GT(stage(eight, "depth_test").items_in, stage(one, "depth_test").items_in * 7);
 }
 
-// msaa:1 has a fragment exactly where a triangle covers the centre. The picture is the same: colours are flat.
+// msaa:1 has a fragment exactly where a triangle covers the centre, and here one of the eight samples is covered as
+// well. The picture is the same: colours are flat.
 TEST(Msaa, TheCentroidIsForFragmentsThatOneSampleMisses) {
   const StageCounters one = stage(parse_technique("msaa:1").render(half_square(), 0, {1}), "shade");
   const FrameResult centre = parse_technique("msaa:8,at=centre").render(half_square(), 0, {1});
