@@ -60,11 +60,11 @@ struct FrameWork {
     ClosedDepth closed(work.tile);
     conservative_raster(triangles, work.list, work.tile, unused, work.pairs, &closed);
     work.records = sort_records(work.pairs, work.tile);
-    work.buffer = a_buffer(work.records, work.tile.pixels(), kWaitingPairBytes, unused);
-    Windows windows(work.pairs, work.buffer);
+    work.buffer = a_buffer(work.records, work.tile.pixels(), 0, kWaitingPairBytes, unused);
+    Windows windows(work.pairs, work.buffer, kWaitingPairBytes);
     std::vector<PixelTriangle> window, whole;
     std::vector<float> areas;
-    while (windows.next([&](std::uint32_t pixel) { return !is_closed(work.pixels[pixel]); }, window, whole)) {
+    while (windows.next([&](std::uint32_t pixel) { return !is_closed(work.pixels[pixel]); }, unused, window, whole)) {
       std::vector<Fragment> fragments;
       beam_fragment(triangles, window, work.tile, options, unused, fragments);
       shade_visible(colors, fragments, unused);
@@ -111,7 +111,7 @@ void raster(benchmark::State& state, const std::string& scene) {
 
 void sort(benchmark::State& state, const std::string& scene) {
   run_stage(state, frame_of(scene), [&](const TileWork& work, StageCounters& counters) {
-    a_buffer(sort_records(work.pairs, work.tile), work.tile.pixels(), kWaitingPairBytes, counters);
+    a_buffer(sort_records(work.pairs, work.tile), work.tile.pixels(), 0, kWaitingPairBytes, counters);
   });
 }
 

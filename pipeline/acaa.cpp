@@ -30,18 +30,20 @@ FrameResult render_acaa(const Trace& trace, const Frame& frame, const AcaaOption
     Accumulator accumulator(tile, options.samples, options.color, options.double_counting);
     std::vector<float> counts(tile.pixels()), bytes(tile.pixels());
     std::vector<SampleAccess> accesses;
+    BinBuffers held;
     const ZOrder order(tile.width(), tile.height());
-    AccumulatorMemory color(run.memory, order, accumulator_bytes(options.color));
+    AccumulatorMemory color(run.memory, order, 1, accumulator_bytes(options.color));
     accumulator.limit = 0;
     for (const Sampling& sampling : rounds) {
       accumulator.limit += static_cast<float>(sampling.pattern.count) * accumulator.sample_share;
       SampleTile depth(tile, sampling, 0);
       SampleMemory memory(run.memory, tile, sampling, 0);
       StencilMemory taken(run.memory, order, sampling);
-      raster_in_batches(triangles, list, tile, sampling, timed, raster, [&](std::vector<SampleFragment>& fragments) {
-        depth_test(triangles, fragments, tile, sampling, timed(testing), depth, accesses);
-        memory.test_depth(accesses, testing);
-      });
+      raster_in_batches(triangles, list, tile, sampling, timed, raster, held,
+                        [&](std::vector<SampleFragment>& fragments) {
+                          depth_test(triangles, fragments, tile, sampling, timed(testing), depth, accesses);
+                          memory.test_depth(accesses, testing);
+                        });
       memory.flush(testing);
       if (options.double_counting == DoubleCounting::saturate) {
         accumulate_background(depth, frame.background, timed(accumulation), accumulator);
@@ -49,19 +51,20 @@ FrameResult render_acaa(const Trace& trace, const Frame& frame, const AcaaOption
         color.blend_background(depth, accumulation);
       }
       accumulator.taken.assign(tile.pixels(), 0);
-      raster_in_batches(triangles, list, tile, sampling, timed, raster, [&](std::vector<SampleFragment>& fragments) {
-        depth_test_equal(triangles, tile, sampling, timed(testing), depth, fragments, accesses);
-        memory.test_equal(accesses, testing);
-        if (options.double_counting == DoubleCounting::stencil) {
-          taken.test(fragments, tile, stencil);
-          stencil_test(tile, timed(stencil), accumulator, fragments);
-          taken.mark(fragments, tile, stencil);
-        }
-        shade(fragments, timed(shading), &triangles.attributes);
-        accumulate(fragments, colors, tile, timed(accumulation), accumulator);
-        color.blend(fragments, tile, accumulation);
-        count_fragments(fragments, tile, sampling.grid, counts);
-      });
+      raster_in_batches(triangles, list, tile, sampling, timed, raster, held,
+                        [&](std::vector<SampleFragment>& fragments) {
+                          depth_test_equal(triangles, tile, sampling, timed(testing), depth, fragments, accesses);
+                          memory.test_equal(accesses, testing);
+                          if (options.double_counting == DoubleCounting::stencil) {
+                            taken.test(fragments, tile, stencil);
+                            stencil_test(tile, timed(stencil), accumulator, fragments);
+                            taken.mark(fragments, tile, stencil);
+                          }
+                          shade(fragments, timed(shading), &triangles.attributes);
+                          accumulate(fragments, colors, tile, timed(accumulation), accumulator);
+                          color.blend(fragments, tile, accumulation);
+                          count_fragments(fragments, tile, sampling.grid, counts);
+                        });
       memory.flush(testing);
       memory.add_bytes(bytes);
       taken.add_bytes(bytes);
@@ -73,7 +76,8 @@ FrameResult render_acaa(const Trace& trace, const Frame& frame, const AcaaOption
     write_image(run.memory, tile, resolving);
     TileResult result{resolve(accumulator, frame.background, timed(resolving)),
                       {{"visible_fragments", std::move(counts)}, {"bytes", std::move(bytes)}},
-                      {raster, testing}};
+                      {raster, testing},
+                      held};
     if (options.double_counting == DoubleCounting::stencil) result.stages.push_back(stencil);
     result.stages.insert(result.stages.end(), {shading, accumulation, resolving});
     return result;

@@ -36,9 +36,7 @@ struct BeamFrame {
         colors(shade_triangles(triangles, frame.light_direction)),
         positions(cell_positions(count)),
         grid(count),
-        options(grid_options(grid, conserving_fragment_bytes(count))) {
-    options.pair_bytes = kWaitingPairBytes + sizeof(SetupTriangle);
-  }
+        options(grid_options(grid, conserving_fragment_bytes(count))) {}
 };
 
 template <std::size_t Words, class Channel>
@@ -49,29 +47,36 @@ FrameResult render_shape(const Trace& trace, const Frame& frame, const BeamOptio
       frame, state.triangles, state.setup, kBinSize, run, kBufferedBytes,
       [&](const Tile& tile, const TriangleList& list) {
         const StageTimer timed(run.timeline, tile);
-        StageCounters raster{"conservative_raster"}, buffering{"a_buffer"}, fragment{"beam_fragment"}, shading{"shade"},
-            composition{"compose"}, resolving{"resolve"};
+        StageCounters raster{"conservative_raster"}, buffering{"a_buffer"}, windowing{"windows"},
+            fragment{"beam_fragment"}, shading{"shade"}, composition{"compose"}, resolving{"resolve"};
         std::vector<StoredAggregate<Words, Channel>> pixels(tile.pixels());
         std::vector<PixelTriangle> pairs, window, whole;
         std::vector<Fragment> fragments;
         std::vector<float> areas, tiny(tile.pixels());
         ClosedDepth closed(tile);
-        conservative_raster(state.triangles, list, tile, timed(raster), pairs, &closed);
+        BinBuffers held;
+        const std::size_t waited = conservative_raster(state.triangles, list, tile, timed(raster), pairs, &closed);
+        held.holds("waiting_pairs", waited * kPairWithDepthBytes);
+        held.holds("closed_depth", closed.bytes());
         const std::vector<SortRecord> records = sort_records(pairs, tile);
-        const ABuffer buffer = a_buffer(records, tile.pixels(), kWaitingPairBytes, timed(buffering));
-        Windows windows(pairs, buffer);
-        while (windows.next([&](std::uint32_t pixel) { return !is_closed(pixels[pixel]); }, window, whole)) {
+        const ABuffer buffer =
+            a_buffer(records, tile.pixels(), kPairWithDepthBytes, kWaitingPairBytes, timed(buffering));
+        Windows windows(pairs, buffer, kWaitingPairBytes);
+        while (windows.next([&](std::uint32_t pixel) { return !is_closed(pixels[pixel]); }, timed(windowing), window,
+                            whole)) {
           fragments.clear();
           beam_fragment(state.triangles, window, tile, state.options, timed(fragment), fragments);
-          shade_visible(state.colors, fragments, timed(shading));
+          held.holds("window_pairs", (window.size() + whole.size()) * kPairWithDepthBytes);
+          held.holds("window_fragments", fragments.size() * state.options.fragment_bytes);
+          shade_visible(state.colors, fragments, timed(shading), &state.triangles.attributes);
           compose_window(fragments, state.positions, timed(composition), pixels, areas);
-          shade_visible(whole.size(), timed(shading));
+          shade_visible(whole, timed(shading), &state.triangles.attributes);
           compose_whole(whole, tile, state.colors, timed(composition), pixels);
           for (const Fragment& item : fragments) tiny[item.pixel] += item.tiny;
         }
         std::vector<float> bytes = count_sorted_composition(
-            run.memory, tile, buffer, records, kWaitingPairBytes, windows.taken, covered_pixels(pixels),
-            closed_pixels(pixels), beam_framebuffer(beam), buffering, fragment, composition, resolving);
+            run.memory, tile, buffer, records, kWaitingPairBytes, windows.looked_at, covered_pixels(pixels),
+            closed_pixels(pixels), beam_framebuffer(beam), buffering, windowing, composition, resolving);
         count_triangle_fetches(run.memory, tile, list, buffer, records, windows.partial, fragment);
         return TileResult{resolve(composed_colors(pixels), frame.background, sizeof pixels[0], timed(resolving)),
                           {{"fragments", depths_of(buffer)},
@@ -79,7 +84,8 @@ FrameResult render_shape(const Trace& trace, const Frame& frame, const BeamOptio
                            {"largest_window", std::move(windows.largest)},
                            {"merges", std::move(windows.taken)},
                            {"bytes", std::move(bytes)}},
-                          {raster, buffering, fragment, shading, composition, resolving}};
+                          {raster, buffering, windowing, fragment, shading, composition, resolving},
+                          held};
       });
   const auto buffering = std::find_if(result.stages.begin(), result.stages.end(),
                                       [](const StageCounters& stage) { return stage.stage == "a_buffer"; });
@@ -104,9 +110,9 @@ std::vector<PixelWeights> weights_of(const Trace& trace, const Frame& frame, con
         std::vector<PixelWeights> found(tile.pixels());
         ClosedDepth closed(tile);
         conservative_raster(state.triangles, list, tile, unused, pairs, &closed);
-        const ABuffer buffer = a_buffer(sort_records(pairs, tile), tile.pixels(), kWaitingPairBytes, unused);
-        Windows windows(pairs, buffer);
-        while (windows.next([&](std::uint32_t pixel) { return !is_closed(pixels[pixel]); }, window, whole)) {
+        const ABuffer buffer = a_buffer(sort_records(pairs, tile), tile.pixels(), 0, kWaitingPairBytes, unused);
+        Windows windows(pairs, buffer, kWaitingPairBytes);
+        while (windows.next([&](std::uint32_t pixel) { return !is_closed(pixels[pixel]); }, unused, window, whole)) {
           fragments.clear();
           beam_fragment(state.triangles, window, tile, state.options, unused, fragments);
           compose_window(fragments, state.positions, unused, pixels, areas);

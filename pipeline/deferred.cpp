@@ -25,20 +25,23 @@ FrameResult render_deferred(const Trace& trace, const Frame& frame, const RunOpt
     SampleTile surface(tile, sampling, 0);
     SampleMemory memory(run.memory, tile, sampling, 0);
     const ZOrder order(tile.width(), tile.height());
-    TileSurface gbuffer(run.memory, order, kGBufferBytes);
+    TileSurface gbuffer(run.memory, order, 1, kGBufferBytes);
     std::vector<SampleAccess> accesses;
-    raster_in_batches(triangles, list, tile, sampling, timed, raster, [&](std::vector<SampleFragment>& fragments) {
-      depth_test(triangles, fragments, tile, sampling, timed(testing), surface, accesses);
-      memory.test_depth(accesses, testing);
-    });
+    BinBuffers held;
+    raster_in_batches(triangles, list, tile, sampling, timed, raster, held,
+                      [&](std::vector<SampleFragment>& fragments) {
+                        depth_test(triangles, fragments, tile, sampling, timed(testing), surface, accesses);
+                        memory.test_depth(accesses, testing);
+                      });
     memory.flush(testing);
-    raster_in_batches(triangles, list, tile, sampling, timed, raster, [&](std::vector<SampleFragment>& fragments) {
-      depth_test_equal(triangles, tile, sampling, timed(testing), surface, fragments, accesses);
-      memory.test_equal(accesses, testing);
-      write_gbuffer(fragments, timed(shading));
-      for (const SampleAccess& access : accesses)
-        gbuffer.access(access.triangle, access.cell, 0, access.passed, kGBufferBytes, shading);
-    });
+    raster_in_batches(triangles, list, tile, sampling, timed, raster, held,
+                      [&](std::vector<SampleFragment>& fragments) {
+                        depth_test_equal(triangles, tile, sampling, timed(testing), surface, fragments, accesses);
+                        memory.test_equal(accesses, testing);
+                        write_gbuffer(fragments, timed(shading));
+                        for (const SampleAccess& access : accesses)
+                          gbuffer.access(access.triangle, access.cell, 0, access.passed, shading);
+                      });
     memory.flush(testing);
     gbuffer.flush(shading);
     const std::vector<std::uint32_t> shown = shown_pixels(surface, tile);
@@ -47,7 +50,8 @@ FrameResult render_deferred(const Trace& trace, const Frame& frame, const RunOpt
     surface.color_bytes = kSampleColorBytes;
     return TileResult{resolve(surface, tile.pixels(), colors, frame.background, timed(resolving)),
                       {},
-                      {raster, testing, shading, lighting, resolving}};
+                      {raster, testing, shading, lighting, resolving},
+                      held};
   });
 }
 

@@ -43,10 +43,12 @@ FrameResult render_dvm(const Trace& trace, const Frame& frame, const DvmOptions&
         SampleTile surface(tile, sampling, kVisibilityBytes);
         SampleMemory memory(run.memory, tile, sampling, kVisibilityBytes);
         std::vector<SampleAccess> accesses;
-        raster_in_batches(triangles, list, tile, sampling, timed, raster, [&](std::vector<SampleFragment>& fragments) {
-          depth_test(triangles, fragments, tile, sampling, timed(testing), surface, accesses);
-          memory.test_and_write(accesses, testing);
-        });
+        BinBuffers held;
+        raster_in_batches(triangles, list, tile, sampling, timed, raster, held,
+                          [&](std::vector<SampleFragment>& fragments) {
+                            depth_test(triangles, fragments, tile, sampling, timed(testing), surface, accesses);
+                            memory.test_and_write(accesses, testing);
+                          });
         memory.flush(testing);
         const std::vector<SampleQuad> selected = sample_select(surface, tile, materials, select, timed(selecting));
         const std::uint64_t shaded = shaded_samples(selected);
@@ -65,7 +67,7 @@ FrameResult render_dvm(const Trace& trace, const Frame& frame, const DvmOptions&
         const PixelContents found = contents(surface, tile, frame, triangles.draws, to_last, looks, timed(moving));
         copy_to_frame(found.looks, tile, frame, current.looks);
         copy_to_frame(found.speeds, tile, frame, current.speeds);
-        return TileResult{{}, {}, {raster, testing, selecting, shading, lighting, moving}};
+        return TileResult{{}, {}, {raster, testing, selecting, shading, lighting, moving}, held};
       });
 
   StageCounters spreading{"dilate"}, accumulation{"temporal"};

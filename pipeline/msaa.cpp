@@ -33,6 +33,7 @@ FrameResult render_msaa(const Trace& trace, const Frame& frame, const MsaaOption
     SampleTile surface(tile, sampling, options.prepass ? 0 : color_bytes(options));
     std::vector<float> counts(tile.pixels()), centroids(tile.pixels());
     std::vector<SampleAccess> accesses;
+    BinBuffers held;
     const auto same_color = [&](std::uint32_t a, std::uint32_t b) { return colors[a] == colors[b]; };
     SampleMemory memory(run.memory, tile, sampling, color_bytes(options), same_color);
     const auto shade_all = [&](const std::vector<SampleFragment>& fragments) {
@@ -40,20 +41,22 @@ FrameResult render_msaa(const Trace& trace, const Frame& frame, const MsaaOption
       if (options.at == ShadeAt::centroid)
         count_centroids(triangles, fragments, tile, sampling, timed(shading), centroids);
     };
-    raster_in_batches(triangles, list, tile, sampling, timed, raster, [&](std::vector<SampleFragment>& fragments) {
-      if (!options.prepass) shade_all(fragments);
-      depth_test(triangles, fragments, tile, sampling, timed(testing), surface, accesses);
-      options.prepass ? memory.test_depth(accesses, testing) : memory.test_and_write(accesses, testing);
-      count_fragments(fragments, tile, sampling.grid, counts);
-    });
+    raster_in_batches(
+        triangles, list, tile, sampling, timed, raster, held, [&](std::vector<SampleFragment>& fragments) {
+          if (!options.prepass) shade_all(fragments);
+          depth_test(triangles, fragments, tile, sampling, timed(testing), surface, accesses);
+          options.prepass ? memory.test_depth(accesses, testing) : memory.test_and_write(accesses, testing);
+          count_fragments(fragments, tile, sampling.grid, counts);
+        });
     memory.flush(testing);
     surface.color_bytes = color_bytes(options);
     if (options.prepass) {  // shades and writes what is visible; which triangle that is, the surface knows already
-      raster_in_batches(triangles, list, tile, sampling, timed, raster, [&](std::vector<SampleFragment>& fragments) {
-        depth_test_equal(triangles, tile, sampling, timed(testing), surface, fragments, accesses);
-        memory.test_equal(accesses, testing);
-        shade_all(fragments);
-      });
+      raster_in_batches(triangles, list, tile, sampling, timed, raster, held,
+                        [&](std::vector<SampleFragment>& fragments) {
+                          depth_test_equal(triangles, tile, sampling, timed(testing), surface, fragments, accesses);
+                          memory.test_equal(accesses, testing);
+                          shade_all(fragments);
+                        });
       memory.flush(testing);
     }
     std::vector<float> bytes(tile.pixels());
@@ -62,7 +65,8 @@ FrameResult render_msaa(const Trace& trace, const Frame& frame, const MsaaOption
     write_image(run.memory, tile, resolving);
     TileResult result{resolve(surface, tile.pixels(), colors, frame.background, timed(resolving)),
                       {{"fragments", std::move(counts)}, {"bytes", std::move(bytes)}},
-                      {raster, shading, testing, resolving}};
+                      {raster, shading, testing, resolving},
+                      held};
     if (options.at == ShadeAt::centroid) result.pixel_counters.emplace_back("centroids", std::move(centroids));
     return result;
   };

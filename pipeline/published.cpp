@@ -84,11 +84,15 @@ FrameResult render_published(const Trace& trace, const Frame& frame, const Publi
             composition{"compose"}, resolving{"resolve"};
         std::vector<PixelTriangle> pairs;
         std::vector<Fragment> fragments;
-        conservative_raster(state.triangles, list, tile, timed(raster), pairs);
+        conservative_raster(state.triangles, list, tile, timed(raster), pairs, nullptr, PairDepths::none);
         beam_fragment(state.triangles, pairs, tile, state.options, timed(fragment), fragments);
+        BinBuffers held;
+        held.holds("bin_pairs", pairs.size() * kPixelTriangleBytes);
+        held.holds("bin_fragments", fragments.size() * state.bytes.fragment);
         shade(state.colors, fragments, timed(shading), &state.triangles.attributes);
         const std::vector<SortRecord> records = sort_records(fragments, beam.sort);
-        const ABuffer buffer = a_buffer(records, tile.pixels(), state.bytes.fragment, timed(buffering));
+        const ABuffer buffer =
+            a_buffer(records, tile.pixels(), state.bytes.fragment, state.bytes.fragment, timed(buffering));
         PixelCounters counts = count_per_pixel(tile, buffer, fragments);
         const std::vector<PixelColor> aggregates = compose_tile(state, fragments, buffer, timed(composition));
         std::vector<bool> full;
@@ -99,7 +103,8 @@ FrameResult render_published(const Trace& trace, const Frame& frame, const Publi
         counts.emplace_back("bytes", std::move(bytes));
         return TileResult{resolve(aggregates, frame.background, state.bytes.aggregate, timed(resolving)),
                           std::move(counts),
-                          {raster, fragment, shading, buffering, composition, resolving}};
+                          {raster, fragment, shading, buffering, composition, resolving},
+                          held};
       });
   const auto buffering = std::find_if(result.stages.begin(), result.stages.end(),
                                       [](const StageCounters& stage) { return stage.stage == "a_buffer"; });
@@ -119,10 +124,10 @@ std::vector<PixelWeights> published_weights(const Trace& trace, const Frame& fra
                  StageCounters unused{"weights"};
                  std::vector<PixelTriangle> pairs;
                  std::vector<Fragment> fragments;
-                 conservative_raster(state.triangles, list, tile, unused, pairs);
+                 conservative_raster(state.triangles, list, tile, unused, pairs, nullptr, PairDepths::none);
                  beam_fragment(state.triangles, pairs, tile, state.options, unused, fragments);
                  const ABuffer buffer =
-                     a_buffer(sort_records(fragments, beam.sort), tile.pixels(), state.bytes.fragment, unused);
+                     a_buffer(sort_records(fragments, beam.sort), tile.pixels(), 0, state.bytes.fragment, unused);
                  // Composition is linear in colour. A fragment that alone has a channel, as 1, leaves its weight there:
                  // three fragments of each pixel at a time.
                  std::vector<PixelWeights> found(tile.pixels());

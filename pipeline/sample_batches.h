@@ -4,22 +4,27 @@
 #include <vector>
 
 #include "pipeline/batches.h"
+#include "pipeline/tiles.h"
 #include "pipeline/timeline.h"
+#include "stages/raster_cost.h"
 #include "stages/sample_raster.h"
 #include "stages/tile.h"
 
 namespace beampipe {
 
 // One pass of sample_raster over the list's triangles in order, with nothing behind the cells that it has closed so
-// far, as a hierarchical depth buffer does it; calls body(fragments) for each batch.
+// far, as a hierarchical depth buffer does it; calls body(fragments) for each batch, which `held` is told of.
 template <class Body>
 void raster_in_batches(const SetupTriangles& triangles, const TriangleList& list, const Tile& tile,
-                       const Sampling& sampling, const StageTimer& timed, StageCounters& raster, Body&& body) {
+                       const Sampling& sampling, const StageTimer& timed, StageCounters& raster, BinBuffers& held,
+                       Body&& body) {
   std::vector<SampleFragment> fragments;
   ClosedDepth closed(cells_of(tile, sampling.grid));
+  held.holds("closed_depth", closed.bytes());
   for_each_batch(list, [&](const TriangleList& batch) {
     fragments.clear();
     sample_raster(triangles, batch, tile, sampling, timed(raster), fragments, &closed);
+    held.holds("batch_fragments", fragments.size() * kSampleFragmentBytes);
     body(fragments);
   });
 }

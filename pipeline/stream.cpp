@@ -51,6 +51,7 @@ FrameResult render_shape(const Trace& trace, const Frame& frame, const StreamOpt
         settling{"settle"}, resolving{"resolve"};
     std::vector<OwnerPixel<Words, Layers>> pixels(tile.pixels(), cleared_pixel<Words, Layers>());
     std::vector<float> passes(tile.pixels()), counts(tile.pixels()), bytes(tile.pixels());
+    BinBuffers held;
     std::vector<PixelTriangle> pairs;
     std::vector<Fragment> fragments;
     const ZOrder order(tile.width(), tile.height());
@@ -58,6 +59,7 @@ FrameResult render_shape(const Trace& trace, const Frame& frame, const StreamOpt
     AggregateMemory state(run.memory, order, {framebuffer.begin(), framebuffer.end() - 1});
     AggregateMemory color(run.memory, order, {framebuffer.back()});
     ClosedDepth closed(tile);
+    held.holds("closed_depth", closed.bytes());
     Tile box = tile;
     for (int pass = 1; box.x0 < box.x1; ++pass) {
       for (std::size_t i = 0; i < pixels.size(); ++i) passes[i] += is_unfinished(pixels[i]);
@@ -65,6 +67,8 @@ FrameResult render_shape(const Trace& trace, const Frame& frame, const StreamOpt
         pairs.clear(), fragments.clear();
         conservative_raster(triangles, batch, box, timed(raster), pairs, &closed);
         beam_fragment(triangles, pairs, tile, options, timed(fragment), fragments);
+        held.holds("batch_pairs", pairs.size() * kPairWithDepthBytes);
+        held.holds("batch_fragments", fragments.size() * options.fragment_bytes);
         for (const Fragment& item : fragments) ++counts[item.pixel];
         claim(triangles, fragments, tile, positions, timed(claiming), pixels);
         if (run.memory.modelled)
@@ -73,7 +77,8 @@ FrameResult render_shape(const Trace& trace, const Frame& frame, const StreamOpt
       state.flush({}, claiming);
       fragments.clear();
       beam_fragment(triangles, owners(triangles, pixels, tile), tile, options, timed(fragment), fragments);
-      shade_visible(colors, fragments, timed(shading));
+      held.holds("owner_fragments", fragments.size() * options.fragment_bytes);
+      shade_visible(colors, fragments, timed(shading), &triangles.attributes);
       settle(fragments, pass == stream.passes, timed(settling), pixels);
       if (run.memory.modelled) {
         move_settled(fragments, state, settling);
@@ -82,6 +87,7 @@ FrameResult render_shape(const Trace& trace, const Frame& frame, const StreamOpt
       state.flush({}, settling);
       color.flush({}, settling);
       close_finished(pixels, tile, closed);
+      closed.charge(settling);
       box = unfinished_box(pixels, tile);
     }
     state.add_bytes(bytes);
@@ -90,7 +96,8 @@ FrameResult render_shape(const Trace& trace, const Frame& frame, const StreamOpt
     write_image(run.memory, tile, resolving);
     return TileResult{resolve(settled_colors(pixels), frame.background, sizeof pixels[0], timed(resolving)),
                       {{"fragments", std::move(counts)}, {"passes", std::move(passes)}, {"bytes", std::move(bytes)}},
-                      {raster, fragment, claiming, shading, settling, resolving}};
+                      {raster, fragment, claiming, shading, settling, resolving},
+                      held};
   };
   FrameResult result = render_tiles(frame, triangles, setup, kBinSize, run, render_tile);
   charge_passes(triangles, result);

@@ -44,11 +44,20 @@ struct Surface {
   std::uint32_t bytes_per_pixel = 0;
 };
 
+// What is held beside the framebuffer: the most items at once, in the bytes that the modelled hardware has for one.
+struct Buffer {
+  std::string name;
+  std::uint64_t peak_bytes = 0;
+  bool per_bin = false;  // on chip, while a bin is worked on: of the bin that needs the most; else of the whole frame
+  bool operator==(const Buffer&) const = default;
+};
+
 struct FrameResult {
   Image image;
   std::map<std::string, std::vector<float>> pixel_counters;  // name -> width x height values ("fragments", ...)
   std::vector<StageCounters> stages;                         // in pipeline order
   std::uint64_t a_buffer_peak_bytes = 0;
+  std::vector<Buffer> buffers;  // all but the A-buffer
 };
 
 // What one triangle is worth in one pixel: the pixel is the sum of weight times the triangle's colour, and the

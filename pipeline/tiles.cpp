@@ -37,8 +37,11 @@ FrameResult render_tiles(const Frame& frame, const SetupTriangles& triangles, co
   result.image = {frame.width, frame.height, std::vector<float>(4 * pixels)};
   result.stages = {vertex_setup};
   stream(options.memory, vertex_setup.bytes_read, result.stages.front());
+  std::uint64_t list_bytes = 0;
+  BinBuffers of_bins;
   const auto render_band = [&](const Band& band) {
     const std::vector<TriangleList> lists = bin_triangles(triangles, grid, band);
+    for (const TriangleList& list : lists) list_bytes += list.size() * sizeof list[0];
     std::vector<TileResult> results(lists.size());
     const auto render = [&](std::size_t i) { results[i] = renderer(grid.tiles[band.first + i], lists[i]); };
     render(0);  // tells which counters there are
@@ -50,6 +53,7 @@ FrameResult render_tiles(const Frame& frame, const SetupTriangles& triangles, co
     });
     result.stages.resize(1 + results.front().stages.size());
     for (const TileResult& of_tile : results) {
+      for (const auto& [name, bytes] : of_tile.buffers.peaks()) of_bins.holds(name, bytes);
       for (std::size_t s = 0; s < of_tile.stages.size(); ++s) {
         result.stages[s + 1].stage = of_tile.stages[s].stage;
         result.stages[s + 1] += of_tile.stages[s];
@@ -65,6 +69,9 @@ FrameResult render_tiles(const Frame& frame, const SetupTriangles& triangles, co
   raster.items_in += vertex_setup.items_out;
   raster.bytes_read += vertex_setup.items_out * sizeof(SetupTriangle);
   if (!options.memory.modelled) result.pixel_counters.erase("bytes");
+  result.buffers = {{"setup_triangles", triangles.triangles.size() * (sizeof(SetupTriangle) + sizeof(FlatAttributes))},
+                    {"bin_lists", list_bytes}};
+  for (const auto& [name, bytes] : of_bins.peaks()) result.buffers.push_back({name, bytes, true});
   return result;
 }
 

@@ -6,6 +6,7 @@
 #include <algorithm>
 #include <functional>
 #include <glm/glm.hpp>
+#include <map>
 #include <string>
 #include <vector>
 
@@ -16,11 +17,25 @@
 
 namespace beampipe {
 
+// The most bytes that a bin's buffers hold, by name.
+class BinBuffers {
+ public:
+  void holds(const std::string& name, std::uint64_t bytes) {
+    std::uint64_t& peak = peaks_[name];
+    peak = std::max(peak, bytes);
+  }
+  const std::map<std::string, std::uint64_t>& peaks() const { return peaks_; }
+
+ private:
+  std::map<std::string, std::uint64_t> peaks_;
+};
+
 // What a technique makes of one tile. Images and counters: one value per pixel of the tile, row by row.
 struct TileResult {
   std::vector<glm::vec4> image;  // may be empty, when a later stage makes the frame's
   std::vector<std::pair<std::string, std::vector<float>>> pixel_counters;
   std::vector<StageCounters> stages;  // in pipeline order, the same stages for every tile
+  BinBuffers buffers = {};
 };
 
 using TileRenderer = std::function<TileResult(const Tile&, const TriangleList&)>;

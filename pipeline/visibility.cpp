@@ -33,7 +33,8 @@ TileResult visibility_tile(const SetupTriangles& triangles, const TriangleList& 
   std::vector<float> counts(tile.pixels()), bytes(tile.pixels());
   SampleMemory memory(run.memory, tile, sampling, kVisibilityBytes);
   std::vector<SampleAccess> accesses;
-  raster_in_batches(triangles, list, tile, sampling, timed, raster, [&](std::vector<SampleFragment>& fragments) {
+  BinBuffers held;
+  raster_in_batches(triangles, list, tile, sampling, timed, raster, held, [&](std::vector<SampleFragment>& fragments) {
     depth_test(triangles, fragments, tile, sampling, timed(testing), surface, accesses);
     memory.test_and_write(accesses, testing);
     count_fragments(fragments, tile, sampling.grid, counts);
@@ -44,7 +45,7 @@ TileResult visibility_tile(const SetupTriangles& triangles, const TriangleList& 
   light(shown.size(), timed(lighting));
   const ZOrder order(tile.width(), tile.height());
   memory.add_bytes(bytes);
-  TileSurface gbuffer(run.memory, order, kGBufferBytes);
+  TileSurface gbuffer(run.memory, order, 1, kGBufferBytes);
   memory.read_color(shading);
   fetch_attributes(run.memory, surface, shown, shading);
   write_pixels(shown, gbuffer, shading);
@@ -52,7 +53,8 @@ TileResult visibility_tile(const SetupTriangles& triangles, const TriangleList& 
   surface.color_bytes = kSampleColorBytes;
   return {resolve(surface, tile.pixels(), colors, background, timed(resolving)),
           {{"fragments", std::move(counts)}, {"bytes", std::move(bytes)}},
-          {raster, testing, shading, lighting, resolving}};
+          {raster, testing, shading, lighting, resolving},
+          held};
 }
 
 std::vector<Surface> visibility_framebuffer() {

@@ -32,12 +32,15 @@ FrameResult render_shape(const Trace& trace, const Frame& frame, const Z3Options
     std::vector<float> counts(tile.pixels()), bytes(tile.pixels());
     const ZOrder order(tile.width(), tile.height());
     AggregateMemory memory(run.memory, order, z3_framebuffer(z3));
+    BinBuffers held;
     std::vector<PixelTriangle> pairs;
     std::vector<Fragment> fragments;
     for_each_batch(list, [&](const TriangleList& batch) {
       pairs.clear(), fragments.clear();
       conservative_raster(triangles, batch, tile, timed(raster), pairs);
       beam_fragment(triangles, pairs, tile, options, timed(fragment), fragments);
+      held.holds("batch_pairs", pairs.size() * kPairWithDepthBytes);
+      held.holds("batch_fragments", fragments.size() * options.fragment_bytes);
       shade(colors, fragments, timed(shading));
       for (const Fragment& item : fragments) ++counts[item.pixel];
       compose_z3(fragments, positions, z3.merge, timed(composition), pixels);
@@ -49,7 +52,8 @@ FrameResult render_shape(const Trace& trace, const Frame& frame, const Z3Options
     write_image(run.memory, tile, resolving);
     return TileResult{resolve(z3_colors(pixels), frame.background, sizeof pixels[0], timed(resolving)),
                       {{"fragments", std::move(counts)}, {"bytes", std::move(bytes)}},
-                      {raster, fragment, shading, composition, resolving}};
+                      {raster, fragment, shading, composition, resolving},
+                      held};
   });
 }
 

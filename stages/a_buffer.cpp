@@ -34,8 +34,8 @@ std::vector<SortRecord> sort_records(const std::vector<PixelTriangle>& pairs, co
   return records;
 }
 
-ABuffer a_buffer(const std::vector<SortRecord>& records, std::size_t pixels, std::uint32_t record_bytes,
-                 StageCounters& counters) {
+ABuffer a_buffer(const std::vector<SortRecord>& records, std::size_t pixels, std::uint32_t item_bytes,
+                 std::uint32_t record_bytes, StageCounters& counters) {
   ABuffer buffer;
   buffer.first.assign(pixels + 1, 0);
   for (const SortRecord& record : records) ++buffer.first[record.pixel + 1];
@@ -58,8 +58,9 @@ ABuffer a_buffer(const std::vector<SortRecord>& records, std::size_t pixels, std
   counters.items_in += records.size();
   counters.items_out += records.size();
   counters.ops += cost * comparisons;
-  counters.bytes_read += a_buffer_bytes(records.size(), pixels, record_bytes);
-  counters.bytes_written += a_buffer_bytes(records.size(), pixels, record_bytes);
+  counters.bytes_read +=
+      records.size() * (item_bytes + kLinkBytes) + a_buffer_bytes(records.size(), pixels, record_bytes);
+  counters.bytes_written += records.size() * (kLinkBytes + record_bytes + kLinkBytes);
   return buffer;
 }
 

@@ -39,9 +39,10 @@ enum class SortKey { centroid, nearest };
 std::vector<SortRecord> sort_records(const std::vector<Fragment>& fragments, SortKey key);
 std::vector<SortRecord> sort_records(const std::vector<PixelTriangle>& pairs, const Tile& tile);  // nearest depth
 
-// `record_bytes`: of a record as it is stored, without its link.
-ABuffer a_buffer(const std::vector<SortRecord>& records, std::size_t pixels, std::uint32_t record_bytes,
-                 StageCounters& counters);
+// Insertion exchanges a pixel's head link and writes a record with the old one; then every pixel's head and records are
+// read, and sorted. `item_bytes`: of what comes in; `record_bytes`: of a record as it is stored, without its link.
+ABuffer a_buffer(const std::vector<SortRecord>& records, std::size_t pixels, std::uint32_t item_bytes,
+                 std::uint32_t record_bytes, StageCounters& counters);
 
 // Records per pixel.
 std::vector<float> depths_of(const ABuffer& buffer);

@@ -292,7 +292,8 @@ void beam_fragment(const SetupTriangles& triangles, const std::vector<PixelTrian
   if (options.mask == MaskSource::grid) cost += grid_mask_cost(*options.grid);
   counters.ops += cost * covered.coverage.size();
   counters.ops += near_cost * (located * options.positions.size() * kMaxMaskSamples);
-  counters.bytes_read += in.size() * options.pair_bytes;
+  const std::uint32_t pair_bytes = options.clipped_depth ? kPixelTriangleBytes : kPairWithDepthBytes;
+  counters.bytes_read += in.size() * (pair_bytes + sizeof(SetupTriangle));
   counters.bytes_written += (out.size() - before) * options.fragment_bytes;
   counters.lanes_used += out.size() - before;
   counters.lanes_issued += in.size();

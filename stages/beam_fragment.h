@@ -53,7 +53,6 @@ struct BeamFragmentOptions {
   int tiny_positions = 0;
   // The depth range of the clipped triangle (the paper); else that of the pair, which contains it.
   bool clipped_depth = true;
-  std::uint32_t pair_bytes = kPixelTriangleBytes;  // that are read for a pair
 };
 
 // For masks on a grid, without the clipped triangle's depth range. `grid` must outlive it.

@@ -240,7 +240,8 @@ void compose_whole(const std::vector<PixelTriangle>& whole, const Tile& tile, co
   }
   counters.items_in += whole.size();
   counters.items_out += whole.size();
-  counters.bytes_read += whole.size() * kWaitingPairBytes;
+  if (std::is_same_v<Channel, HalfBits>) counters.ops.convert += 3 * whole.size();
+  counters.bytes_read += whole.size() * kPairWithDepthBytes;
   counters.bytes_written += whole.size() * sizeof(StoredAggregate<Words, Channel>);
 }
 

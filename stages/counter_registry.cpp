@@ -56,6 +56,9 @@ const std::vector<CounterInfo>& stage_counters() {
       {"sector_bytes", "sectors", "bytes",
        "asked of the memory system in sectors of 32 bytes, read and written; nothing for queues on chip",
        [](const S& s) { return s.sector_bytes; }},
+      {"l2_bytes", "L2", "bytes",
+       "asked of L2 in sectors: what ROP caches and L1 do not hold, and what they write back or through",
+       [](const S& s) { return s.l2_bytes; }},
       {"dram_bytes", "DRAM", "bytes", "moved to and from DRAM behind the modelled caches, read and written",
        [](const S& s) { return s.dram_bytes; }},
       {"lanes_used", "lanes used", "lanes", "lanes with work", [](const S& s) { return s.lanes_used; }},
@@ -70,13 +73,13 @@ const std::vector<StageInfo>& stage_list() {
        "HandWorked.TriangleMsaa", "SetupTwins.VertexSetup", "HandWorked.TriangleMsaa", "HandWorked.TriangleMsaa",
        kMoves},
       {"conservative_raster", "setup triangles", "(pixel, triangle) pairs that touch and may be seen",
-       "touched out of tested pixels", " ops.fetch ops.special ops.convert sector_bytes dram_bytes ",
+       "touched out of tested pixels", " ops.fetch ops.special sector_bytes l2_bytes dram_bytes ",
        "HandWorked.TriangleBeam", "RasterTwins.ConservativeRaster", "HandWorked.TriangleBeam",
        "HandWorked.TriangleBeam", "RasterTwins.ConservativeRaster"},
       {"sample_raster", "setup triangles, in each pass", "(cell, triangle) pairs with a sample",
        "covered samples out of those of partly covered cells",
-       " ops.fetch ops.special ops.convert sector_bytes dram_bytes ", "HandWorked.QuadsMsaa",
-       "RasterTwins.SampleRaster", "HandWorked.QuadsMsaa", "HandWorked.QuadsMsaa", "RasterTwins.SampleRaster"},
+       " ops.fetch ops.special sector_bytes l2_bytes dram_bytes ", "HandWorked.QuadsMsaa", "RasterTwins.SampleRaster",
+       "HandWorked.QuadsMsaa", "HandWorked.QuadsMsaa", "RasterTwins.SampleRaster"},
       {"beam_fragment", "(pixel, triangle) pairs", "fragments: pairs with area", "fragments out of pairs", "",
        "HandWorked.TriangleBeam", "TwinCounts.BeamFragmentOnAGrid", "HandWorked.TriangleBeam",
        "HandWorked.TriangleBeam", "TwinCounts.BeamFragmentOnAGrid"},
@@ -89,6 +92,9 @@ const std::vector<StageInfo>& stage_list() {
       {"a_buffer", "pairs (beam), fragments (published)", "the same, sorted per pixel", "",
        " ops.mul_add ops.bit ops.fetch ops.special ops.convert ", "HandWorked.TriangleBeam", "TwinCounts.SortAndMerge",
        "HandWorked.TriangleBeam", "HandWorked.TriangleBeam", kMoves},
+      {"windows", "pairs, near to far", "windows of pairs that overlap in depth", "",
+       " ops.mul_add ops.bit ops.fetch ops.special ops.convert l2_bytes dram_bytes ", "HandWorked.TriangleBeam",
+       "WindowTwins.Windows", "HandWorked.TriangleBeam", "HandWorked.TriangleBeam", kMoves},
       {"compose", "fragments", "aggregates: windows (beam), pixels (others)",
        "compared positions out of those of all fragments looked at", "", "HandWorked.TriangleBeam",
        "ComposeTwins.ComposeWindow", "HandWorked.TriangleBeam", "HandWorked.TriangleBeam",
@@ -121,7 +127,7 @@ const std::vector<StageInfo>& stage_list() {
        " ops.bit ops.fetch ops.special ", "HandWorked.TriangleMsaa", "ShadingTwins.ResolveSamples",
        "HandWorked.TriangleMsaa", "HandWorked.TriangleMsaa", "ShadingTwins.ResolveSamples"},
       {"reference_raster", "setup triangles", "samples that were nearer", "all",
-       " ops.bit ops.fetch ops.special ops.convert bytes_written sector_bytes dram_bytes ",
+       " ops.bit ops.fetch ops.special ops.convert bytes_written sector_bytes l2_bytes dram_bytes ",
        "ReferenceRaster.FansCoverEverySample", "ReferenceRaster.FansCoverEverySample", kMoves, kMoves,
        "ReferenceRaster.FansCoverEverySample"},
   };
@@ -138,7 +144,7 @@ const char* test_of(const StageInfo& stage, const CounterInfo& counter) {
   const std::string name = counter.name;
   if (name.starts_with("ops.")) return stage.ops_test;
   if (name.starts_with("lanes_")) return stage.lanes_test;
-  if (name == "sector_bytes" || name == "dram_bytes") return stage.memory_test;
+  if (name == "sector_bytes" || name == "l2_bytes" || name == "dram_bytes") return stage.memory_test;
   return name.find("bytes") == std::string::npos ? stage.items_test : stage.logical_test;
 }
 
@@ -162,11 +168,12 @@ const std::vector<PixelCounterInfo>& pixel_counters() {
 
 const std::vector<FrameCounterInfo>& frame_counters() {
   static const std::vector<FrameCounterInfo> counters = {
-      {"logical_bytes, sector_bytes, dram_bytes", "bytes", "sums over the stages",
+      {"logical_bytes, sector_bytes, l2_bytes, dram_bytes", "bytes", "sums over the stages",
        "ReportJson.HasTheKeysOfTheContract"},
       {"a_buffer_peak_bytes", "bytes", "of the whole frame's A-buffer, which stands in memory until it is composed",
        "Counters.BeamCountsEveryTouchedPixel"},
-      {"buffers", "bytes", "peak bytes of every buffer of the frame", "ReportJson.HasTheKeysOfTheContract"},
+      {"buffers", "bytes", "peak bytes of every buffer: of the frame, or of the bin that needs the most",
+       "Buffers.AreWhatIsAllocated"},
       {"peak_bytes_per_pixel", "bytes per pixel",
        "of a technique: its framebuffer and, in the frame where it is largest, its A-buffer",
        "ReportJson.HasTheKeysOfTheContract"},
@@ -191,7 +198,7 @@ std::string counters_page() {
       "Made from `stages/counter_registry.cpp`, which the program writes `report.json` from. The tests "
       "`CounterRegistry.*` fail when\nthis page is not what the registry says, when a technique has a stage or a pixel "
       "counter that is not here, when a counter never\nmoves in a stage that lists it or moves in one that does not, "
-      "and when there is no test of a name that stands here. What the three\ncolumns of bytes mean: "
+      "and when there is no test of a name that stands here. What the\ncolumns of bytes mean: "
       "[accounting.md](accounting.md).\n\n"
       "Operations are those of the stage's scalar twin on counting numbers. Where the test is "
       "`CounterRegistry.EveryCounterMovesWhereItIsListed`,\nnothing but that is tested of the counter there.\n\n"

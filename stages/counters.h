@@ -61,6 +61,7 @@ struct StageCounters {
   Count lanes_used = 0;     // lanes with work; for `shade` the fragments
   Count lanes_issued = 0;   // lanes that ran; for `shade` with the helpers of 2x2 quads
   Count sector_bytes = 0;   // asked of the memory system, read and written, in whole sectors
+  Count l2_bytes = 0;       // of that, what the caches before L2 do not hold, and what they evict
   Count dram_bytes = 0;     // moved to and from DRAM behind the modelled caches, read and written
 
   Count logical_bytes() const { return bytes_read + bytes_written; }
@@ -74,6 +75,7 @@ struct StageCounters {
     lanes_used += other.lanes_used;
     lanes_issued += other.lanes_issued;
     sector_bytes += other.sector_bytes;
+    l2_bytes += other.l2_bytes;
     dram_bytes += other.dram_bytes;
     return *this;
   }

@@ -9,6 +9,9 @@ namespace beampipe {
 // A (pixel, triangle) pair on its way to the fragment stage: 16-bit x and y, 32-bit triangle; `full` takes a spare bit.
 inline constexpr std::uint32_t kPixelTriangleBytes = 8;
 
+// The same with the nearest and the farthest depth, 2 x float32.
+inline constexpr std::uint32_t kPairWithDepthBytes = kPixelTriangleBytes + 8;
+
 // A sample fragment adds its 16-bit coverage mask.
 inline constexpr std::uint64_t kSampleFragmentBytes = kPixelTriangleBytes + 2;
 

@@ -1,9 +1,7 @@
 #include "stages/sample_raster.h"
 
-#include <algorithm>
-#include <cmath>
-
 #include "simd/sample_test.h"
+#include "stages/pair_bounds.h"
 #include "stages/raster_cost.h"
 
 namespace beampipe {
@@ -21,17 +19,10 @@ CellEdges cell_edges(const EdgeSet& set, std::int64_t x, std::int64_t y) {
 
 // Between these the depths of all the triangle's samples lie as the depth test rounds them: it computes them in single
 // precision from a corner of the cell, a pixel's slopes away at most.
-struct SampleDepths {
-  float nearest, farthest;
-  explicit SampleDepths(const SetupTriangle& triangle) {
-    constexpr double kRounding = 0x1p-21;  // of what is added up: eight times a single rounding
-    const auto [low, high] = std::minmax({triangle.vertex_z[0], triangle.vertex_z[1], triangle.vertex_z[2]});
-    const double reach = std::abs(triangle.depth.dzdx) + std::abs(triangle.depth.dzdy);
-    const auto margin =
-        static_cast<float>(kRounding * (reach + std::max(std::abs(double{low}), std::abs(double{high}))));
-    nearest = low - margin, farthest = high + margin;
-  }
-};
+DepthBounds<float> sample_bounds(const SetupTriangle& triangle) {
+  const auto& z = triangle.vertex_z;
+  return sample_bounds(vertex_bounds(z), triangle.depth.dzdx, triangle.depth.dzdy);
+}
 
 OperationCounts sample_test_cost(const SamplePattern& pattern) {
   return count_operations([&](OperationCounts& counts) {
@@ -57,7 +48,7 @@ void sample_raster(const SetupTriangles& triangles, const TriangleList& list, co
   std::vector<std::size_t> destination;  // and where their masks go
   for (const std::uint32_t index : list) {
     const SetupTriangle& triangle = triangles.triangles[index];
-    const SampleDepths depths(triangle);
+    const DepthBounds<float> depths = sample_bounds(triangle);
     if (closed && closed->hides_everywhere(depths.nearest)) continue;
     const EdgeSet set(triangle);
     traverse(triangle, set, tile, sampling.grid, FullMeans::samples, quad, counts,
@@ -82,6 +73,11 @@ void sample_raster(const SetupTriangles& triangles, const TriangleList& list, co
   counters.items_out += out.size() - before;
   counters.ops += traversal_cost(counts, FullMeans::samples);
   counters.ops += sample_test_cost(pattern) * partial.size();
+  if (closed) {
+    static const OperationCounts bounds_cost = sample_bounds_cost();
+    counters.ops += bounds_cost * list.size();
+    closed->charge(counters);
+  }
   counters.bytes_written += (out.size() - before) * kSampleFragmentBytes;
   counters.lanes_issued += partial.size() * static_cast<std::size_t>(pattern.count);
   for (const std::uint32_t mask : masks) counters.lanes_used += static_cast<std::uint64_t>(std::popcount(mask));

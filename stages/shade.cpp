@@ -1,5 +1,7 @@
 #include "stages/shade.h"
 
+#include <algorithm>
+
 #include "stages/counting.h"
 #include "stages/half_bits.h"
 #include "stages/raster_cost.h"
@@ -65,6 +67,15 @@ std::uint64_t lit_invocations(const Items& fragments, const std::vector<FlatAttr
   return 4 * quads;
 }
 
+template <class Items>
+void count_one_by_one(const Items& items, const std::vector<FlatAttributes>* attributes, StageCounters& counters) {
+  std::uint64_t lit = items.size();
+  if (attributes)
+    lit = static_cast<std::uint64_t>(
+        std::count_if(items.begin(), items.end(), [&](const auto& item) { return (*attributes)[item.triangle].lit; }));
+  count_invocations(items.size(), items.size(), lit, invocation_cost(), sizeof(FlatAttributes), 6, counters);
+}
+
 }  // namespace
 
 std::vector<glm::vec3> shade_triangles(const SetupTriangles& triangles, const std::optional<glm::vec3>& light) {
@@ -92,13 +103,15 @@ void shade(const std::vector<glm::vec3>& colors, std::vector<Fragment>& fragment
                     invocation_cost(), sizeof(FlatAttributes), 6, counters);
 }
 
-void shade_visible(const std::vector<glm::vec3>& colors, std::vector<Fragment>& fragments, StageCounters& counters) {
+void shade_visible(const std::vector<glm::vec3>& colors, std::vector<Fragment>& fragments, StageCounters& counters,
+                   const std::vector<FlatAttributes>* attributes) {
   for (Fragment& fragment : fragments) fragment.color = fragment.alpha * colors[fragment.triangle];
-  shade_visible(fragments.size(), counters);
+  count_one_by_one(fragments, attributes, counters);
 }
 
-void shade_visible(std::uint64_t fragments, StageCounters& counters) {
-  count_invocations(fragments, fragments, fragments, invocation_cost(), sizeof(FlatAttributes), 6, counters);
+void shade_visible(const std::vector<PixelTriangle>& whole, StageCounters& counters,
+                   const std::vector<FlatAttributes>* attributes) {
+  count_one_by_one(whole, attributes, counters);
 }
 
 void shade(const std::vector<SampleFragment>& fragments, StageCounters& counters,

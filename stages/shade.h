@@ -28,10 +28,12 @@ void shade(const std::vector<glm::vec3>& colors, std::vector<Fragment>& fragment
            const std::vector<FlatAttributes>* attributes = nullptr);
 
 // The same for fragments that are known to be visible: one by one, not in quads.
-void shade_visible(const std::vector<glm::vec3>& colors, std::vector<Fragment>& fragments, StageCounters& counters);
+void shade_visible(const std::vector<glm::vec3>& colors, std::vector<Fragment>& fragments, StageCounters& counters,
+                   const std::vector<FlatAttributes>* attributes = nullptr);
 
 // The counts alone, where the triangle's colour is taken as it is.
-void shade_visible(std::uint64_t fragments, StageCounters& counters);
+void shade_visible(const std::vector<PixelTriangle>& whole, StageCounters& counters,
+                   const std::vector<FlatAttributes>* attributes = nullptr);
 
 // At the pixel's centre or centroid, which is the same for flat colours: counts, for fragments that keep their
 // triangle's index in place of its colour.

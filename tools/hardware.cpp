@@ -43,8 +43,7 @@ const std::map<std::string, Clocks>& units() {
        [](const Rates& rates, const StageCounters& s) { return over(s.items_in, rates.at("rop_samples_per_clk")); }},
       {"rop_fragments",
        [](const Rates& rates, const StageCounters& s) { return over(s.items_in, rates.at("rop_fragments_per_clk")); }},
-      {"l2",
-       [](const Rates& rates, const StageCounters& s) { return over(s.sector_bytes, rates.at("l2_bytes_per_clk")); }},
+      {"l2", [](const Rates& rates, const StageCounters& s) { return over(s.l2_bytes, rates.at("l2_bytes_per_clk")); }},
       {"dram",
        [](const Rates& rates, const StageCounters& s) { return over(s.dram_bytes, rates.at("dram_bytes_per_clk")); }},
   };

@@ -1,7 +1,7 @@
 // Modelled time: what a stage did, divided by what the named hardware does per clock.
 //
 // A description is a JSON file (tools/hardware/titan_v.json is the one that is built in, with its sources): rates, and
-// implementations that say which units each stage runs on. Every stage uses L2 (its sector bytes) and DRAM as well. A
+// implementations that say which units each stage runs on. Every stage uses L2 and DRAM as well. A
 // stage takes as long as its busiest unit. Units are taken to be always full: no latency, no divergence within a warp,
 // no driver. So times are lower bounds, and ratios between them are what to look at.
 #pragma once

@@ -100,6 +100,7 @@ FrameReport write_frame(OutputFolder& output, const std::string& spec, std::size
   report.image = stem + ".exr";
   report.picture = stem + ".png";
   report.a_buffer_peak_bytes = result.a_buffer_peak_bytes;
+  report.buffers = result.buffers;
   report.stages = result.stages;
   report.pixels = std::uint64_t{result.image.width} * result.image.height;
   Planes counters{result.image.width, result.image.height, result.pixel_counters};

@@ -25,12 +25,17 @@ Json to_json(const StageCounters& stage) {
   return json;
 }
 
-// Everything that the frame needs in memory at once, at its peak.
+// Everything that the frame holds at its peak.
 Json buffers_json(const TechniqueReport& result, const FrameReport& frame) {
-  Json json = Json::array();
+  std::vector<Buffer> buffers;
   for (const Surface& surface : result.framebuffer)
-    json.push_back({{"name", surface.name}, {"peak_bytes", surface.bytes_per_pixel * frame.pixels}});
-  if (frame.a_buffer_peak_bytes > 0) json.push_back({{"name", "a_buffer"}, {"peak_bytes", frame.a_buffer_peak_bytes}});
+    buffers.push_back({surface.name, surface.bytes_per_pixel * frame.pixels});
+  if (frame.a_buffer_peak_bytes > 0) buffers.push_back({"a_buffer", frame.a_buffer_peak_bytes});
+  buffers.insert(buffers.end(), frame.buffers.begin(), frame.buffers.end());
+  Json json = Json::array();
+  for (const Buffer& buffer : buffers)
+    json.push_back(
+        {{"name", buffer.name}, {"peak_bytes", buffer.peak_bytes}, {"held", buffer.per_bin ? "bin" : "frame"}});
   return json;
 }
 
@@ -50,7 +55,7 @@ Json to_json(const FrameReport& frame, const TechniqueReport& result, const Hard
   StageCounters all;
   for (const StageCounters& stage : frame.stages) all += stage;
   const Json sums = to_json(all);
-  for (const char* column : {"logical_bytes", "sector_bytes", "dram_bytes"}) json[column] = sums.at(column);
+  for (const char* column : {"logical_bytes", "sector_bytes", "l2_bytes", "dram_bytes"}) json[column] = sums.at(column);
   json["buffers"] = buffers_json(result, frame);
   for (const SavedWork& saved : saved_work(frame.stages)) json["saved"][saved.name] = saved.amount;
   json["stages"] = Json::array();
@@ -103,6 +108,7 @@ Json to_json(const MemoryParameters& memory) {
           {"compression", memory.compression},
           {"sector_bytes", memory.sector_bytes},
           {"rop_cache", to_json(memory.rop)},
+          {"l1_cache", to_json(memory.l1)},
           {"l2_cache", to_json(memory.l2)},
           {"plane_bytes", memory.plane_bytes},
           {"triangles_per_batch", memory.triangles_per_batch},

@@ -36,6 +36,7 @@ struct FrameReport {
   std::optional<double> flicker;  // of the error, since the frame before
   WallTime wall_ms;
   std::uint64_t a_buffer_peak_bytes = 0;
+  std::vector<Buffer> buffers;  // all but the A-buffer
   std::vector<StageCounters> stages;
   std::uint64_t pixels = 0;
 };

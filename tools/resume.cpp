@@ -21,10 +21,10 @@ constexpr const char* kFolder = "unfinished";
 const std::map<std::string, std::string> kDigested = {
     {"program", "another build of beampipe"}, {"trace", "another trace"}, {"hardware", "another --hardware"}};
 
-constexpr std::uint64_t StageCounters::*kCounters[] = {&StageCounters::items_in,     &StageCounters::items_out,
-                                                       &StageCounters::bytes_read,   &StageCounters::bytes_written,
-                                                       &StageCounters::lanes_used,   &StageCounters::lanes_issued,
-                                                       &StageCounters::sector_bytes, &StageCounters::dram_bytes};
+constexpr std::uint64_t StageCounters::*kCounters[] = {
+    &StageCounters::items_in,      &StageCounters::items_out,  &StageCounters::bytes_read,
+    &StageCounters::bytes_written, &StageCounters::lanes_used, &StageCounters::lanes_issued,
+    &StageCounters::sector_bytes,  &StageCounters::l2_bytes,   &StageCounters::dram_bytes};
 constexpr std::uint64_t OperationCounts::*kOperations[] = {&OperationCounts::mul_add, &OperationCounts::add,
                                                            &OperationCounts::bit,     &OperationCounts::fetch,
                                                            &OperationCounts::special, &OperationCounts::convert};
@@ -56,7 +56,10 @@ Json record_of(const FrameReport& frame) {
                {"wall_ms", {wall.median, wall.min, wall.max, wall.runs, wall.with_memory_model}},
                {"a_buffer_peak_bytes", frame.a_buffer_peak_bytes},
                {"pixels", frame.pixels},
+               {"buffers", Json::array()},
                {"stages", Json::array()}};
+  for (const Buffer& buffer : frame.buffers)
+    json["buffers"].push_back({buffer.name, buffer.peak_bytes, buffer.per_bin});
   if (wall.modelling_run) json["modelling_run_ms"] = *wall.modelling_run;
   if (frame.error) json["error"] = to_json(*frame.error);
   if (frame.flicker) json["flicker"] = *frame.flicker;
@@ -75,6 +78,7 @@ FrameReport report_of(const Json& json) {
   if (json.contains("modelling_run_ms")) frame.wall_ms.modelling_run = json["modelling_run_ms"].get<double>();
   frame.a_buffer_peak_bytes = json.at("a_buffer_peak_bytes");
   frame.pixels = json.at("pixels");
+  for (const Json& buffer : json.at("buffers")) frame.buffers.push_back({buffer.at(0), buffer.at(1), buffer.at(2)});
   for (const Json& stage : json.at("stages")) frame.stages.push_back(stage_of(stage));
   if (json.contains("error")) {
     const Json& error = json["error"];

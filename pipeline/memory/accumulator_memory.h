@@ -43,16 +43,16 @@ class AccumulatorMemory : public TileSurface {
 class StencilMemory : public TileSurface {
  public:
   StencilMemory(const MemoryParameters& parameters, const ZOrder& order, const Sampling& sampling)
-      : TileSurface(parameters, order, static_cast<std::uint32_t>(sampling.pattern.count)) {}
+      : TileSurface(parameters, order, static_cast<std::uint32_t>(sampling.pattern.count), 1) {}
 
   // Reads the values of the fragments' samples; writes those of the samples that they are left with.
   void test(const std::vector<SampleFragment>& fragments, const Tile& tile, StageCounters& counters) {
     for (const SampleFragment& fragment : fragments)
-      access(fragment.triangle, pixel_of(fragment, tile), fragment.mask, 0, 1, counters);
+      access(fragment.triangle, pixel_of(fragment, tile), fragment.mask, 0, counters);
   }
   void mark(const std::vector<SampleFragment>& fragments, const Tile& tile, StageCounters& counters) {
     for (const SampleFragment& fragment : fragments)
-      access(fragment.triangle, pixel_of(fragment, tile), 0, fragment.mask, 1, counters);
+      access(fragment.triangle, pixel_of(fragment, tile), 0, fragment.mask, counters);
   }
 };
 

@@ -11,18 +11,24 @@
 
 namespace beampipe {
 
-// Records that follow each other in memory, behind the L2 cache.
+// Records that follow each other in memory, as shaders read and write them: writes go to L2, reads through an L1.
 class LinearMemory {
  public:
   LinearMemory(const MemoryParameters& parameters, std::size_t records, std::uint32_t record_bytes);
 
-  // Reads or writes a whole record.
-  void access(std::uint32_t key, std::uint32_t record, bool write, StageCounters& counters);
-  void flush(StageCounters& counters) { cache_.flush(counters); }
+  // A whole record.
+  void write(std::uint32_t key, std::uint32_t record, StageCounters& counters);
+  void read(std::uint32_t key, std::uint32_t record, StageCounters& counters);
+
+  // The end of a pass over the frame.
+  void flush(StageCounters& counters);
 
  private:
+  template <class Access>
+  void each_line(std::uint32_t record, Access&& access) const;
+
   std::uint32_t record_bytes_, line_bytes_;
-  BlockCache cache_;
+  BlockCache l2_, l1_;
 };
 
 class ABufferMemory {
@@ -38,14 +44,16 @@ class ABufferMemory {
   void compose(std::uint32_t pixel, const ABuffer& buffer, std::uint32_t merged, StageCounters& counters);
   void finish(StageCounters& counters) { records_.flush(counters); }
 
-  // Logical bytes of a pixel with so many records, of which `merged` were looked at: heads, filling, sorting, reading.
+  // Logical bytes of a pixel with so many records, of which `merged` were looked at: filling, heads and records read to
+  // be sorted, records read in order.
   float bytes_of(std::uint32_t records, std::uint32_t merged) const {
-    return static_cast<float>(records * (2 * kLinkBytes + 2 * record_bytes_) + merged * record_bytes_);
+    return static_cast<float>(records * (2 * kLinkBytes + record_bytes_) + kLinkBytes + records * record_bytes_ +
+                              merged * record_bytes_);
   }
 
  private:
   std::uint32_t record_bytes_;  // with the link
-  TileSurface heads_;
+  TileSurface heads_;           // exchanged by atomic operations, which L2 does
   LinearMemory records_;
 };
 

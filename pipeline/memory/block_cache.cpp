@@ -15,9 +15,9 @@ constexpr std::array<std::uint8_t, 256> kBits = [] {
 
 }  // namespace
 
-BlockCache::BlockCache(const MemoryParameters& memory, const CacheParameters& cache, std::size_t blocks,
+BlockCache::BlockCache(const MemoryParameters& memory, const CacheParameters& cache, Level level, std::size_t blocks,
                        std::uint32_t block_bytes, bool cleared, CompressedBytes compressed_bytes)
-    : modelled_(memory.modelled), block_bytes_(block_bytes), ways_(cache.ways) {
+    : modelled_(memory.modelled), level_(level), block_bytes_(block_bytes), ways_(cache.ways) {
   const std::uint32_t sectors = (block_bytes + kSectorBytes - 1) / kSectorBytes;
   if (sectors == 0 || sectors > kMaxBlockSectors || block_bytes > cache.line_bytes)
     throw std::invalid_argument("a block must fill at least one sector and at most one cache line");
@@ -28,6 +28,30 @@ BlockCache::BlockCache(const MemoryParameters& memory, const CacheParameters& ca
   if (memory.compression) compressed_bytes_ = std::move(compressed_bytes);
   states_.assign(blocks, cleared ? State{0} : kRaw);
   lines_.resize(has_line_for_each_ ? blocks : sets_ * ways_);
+  line_of_.assign(blocks, kNone);
+}
+
+BlockCache::BlockCache(const MemoryParameters& memory, const CacheParameters& cache, BlockCache& next)
+    : BlockCache(memory, cache, Level::l2, next.blocks(), next.block_bytes_, false, nullptr) {
+  next_ = &next;
+}
+
+void BlockCache::begin_request(std::uint32_t key, std::size_t block, StageCounters& counters) {
+  finish_request();
+  request_.block = block;
+  request_.key = key;
+  request_.counters = &counters;
+  const std::uint32_t line = line_of_[block];
+  request_.counts_bytes = line == kNone ? states_[block] != 0 : lines_[line].valid != all_sectors_;
+}
+
+void BlockCache::count_written(std::uint32_t first, std::uint32_t bytes) {
+  const std::uint32_t end = first + bytes;
+  for (std::uint32_t at = first; at < end;) {
+    const std::uint32_t sector = at / kSectorBytes, stop = std::min(end, (sector + 1) * kSectorBytes);
+    request_.written_bytes[sector] += stop - at;
+    at = stop;
+  }
 }
 
 void BlockCache::finish_request() {
@@ -35,44 +59,56 @@ void BlockCache::finish_request() {
   if ((request.read | request.write) == 0) return;
   StageCounters& counters = *request.counters;
   std::uint32_t overwritten = 0;
-  for (std::uint32_t left = request.write; left != 0; left &= left - 1) {
+  for (std::uint32_t left = request.counts_bytes ? request.write : 0; left != 0; left &= left - 1) {
     const auto sector = static_cast<std::uint32_t>(std::countr_zero(left));
     const std::uint32_t whole = std::min(kSectorBytes, block_bytes_ - sector * kSectorBytes);
     if (request.written_bytes[sector] >= whole) overwritten |= 1u << sector;
     request.written_bytes[sector] = 0;
   }
-  counters.sector_bytes += (kBits[request.read] + kBits[request.write]) * kSectorBytes;
-  Line& line = line_of(request.block, overwritten == all_sectors_ && request.read == 0, counters);
-  const auto missing = static_cast<Sectors>((request.read | (request.write & ~overwritten)) & ~line.valid);
-  counters.dram_bytes += kBits[missing] * kSectorBytes;
-  line.valid |= missing | request.write;
-  line.dirty |= request.write;
-  line.used = ++now_;
+  const std::uint64_t bytes = (kBits[request.read] + kBits[request.write]) * kSectorBytes;
+  counters.sector_bytes += bytes;
+  if (level_ == Level::l2 && !next_) counters.l2_bytes += bytes;
+  serve(request.block, request.read, request.write, static_cast<Sectors>(overwritten), counters);
   request.block = ~std::size_t{0};
   request.read = request.write = 0;
 }
 
-BlockCache::Line& BlockCache::line_of(std::size_t block, bool overwritten, StageCounters& counters) {
-  Line* victim;
-  if (has_line_for_each_) {
-    victim = &lines_[block];
-    if (victim->block == block) return *victim;
+void BlockCache::serve(std::size_t block, Sectors read, Sectors write, Sectors overwritten, StageCounters& counters) {
+  Line& line = line_of_[block] != kNone ? lines_[line_of_[block]]
+                                        : make_line(block, overwritten == all_sectors_ && read == 0, counters);
+  const auto missing = static_cast<Sectors>((read | (write & ~overwritten)) & ~line.valid);
+  if (missing != 0 && next_) {
+    counters.l2_bytes += kBits[missing] * kSectorBytes;
+    next_->serve(block, missing, 0, 0, counters);
   } else {
-    Line* const set = &lines_[block % sets_ * ways_];
-    victim = set;
-    for (Line* line = set; line != set + ways_; ++line) {
-      if (line->block == block) return *line;
-      if (line->used < victim->used) victim = line;
-    }
-    if (victim->block != kEmpty) write_back(*victim, counters);
+    pass_on(kBits[missing], counters);
   }
-  *victim = {static_cast<std::uint32_t>(block), 0, 0, 0};
+  line.valid |= missing | write;
+  line.dirty |= write;
+  line.used = ++now_;
+}
+
+BlockCache::Line& BlockCache::make_line(std::size_t block, bool overwritten, StageCounters& counters) {
+  std::size_t place = block;
+  if (!has_line_for_each_) {
+    const std::size_t set = block % sets_ * ways_;
+    place = set;
+    for (std::size_t line = set; line < set + ways_; ++line)
+      if (lines_[line].used < lines_[place].used) place = line;
+    if (lines_[place].block != kNone) {
+      write_back(lines_[place], counters);
+      line_of_[lines_[place].block] = kNone;
+    }
+  }
+  line_of_[block] = static_cast<std::uint32_t>(place);
+  Line& line = lines_[place];
+  line = {static_cast<std::uint32_t>(block), 0, 0, 0};
   const State state = states_[block];
   if (state != kRaw && !overwritten) {  // a cleared block is known; a compressed one is fetched and unpacked as a whole
-    counters.dram_bytes += state * kSectorBytes;
-    victim->valid = all_sectors_;
+    pass_on(state, counters);
+    line.valid = all_sectors_;
   }
-  return *victim;
+  return line;
 }
 
 void BlockCache::write_back(const Line& line, StageCounters& counters) {
@@ -81,21 +117,28 @@ void BlockCache::write_back(const Line& line, StageCounters& counters) {
   if (compressed_bytes_ && line.valid == all_sectors_) {
     const std::uint32_t sectors = (compressed_bytes_(line.block) + kSectorBytes - 1) / kSectorBytes;
     if (sectors < kBits[all_sectors_]) {
-      counters.dram_bytes += sectors * kSectorBytes;
+      pass_on(sectors, counters);
       state = static_cast<State>(sectors);
       return;
     }
   }
   const Sectors written = state == kRaw ? line.dirty : all_sectors_;
-  counters.dram_bytes += kBits[written] * kSectorBytes;
+  pass_on(kBits[written], counters);
   state = kRaw;
+}
+
+// To or from what lies behind the cache.
+void BlockCache::pass_on(std::uint32_t sectors, StageCounters& counters) const {
+  counters.dram_bytes += sectors * kSectorBytes;
+  if (level_ == Level::rop) counters.l2_bytes += sectors * kSectorBytes;
 }
 
 void BlockCache::flush(StageCounters& counters) {
   finish_request();
   for (Line& line : lines_) {
-    if (line.block == kEmpty) continue;
+    if (line.block == kNone) continue;
     write_back(line, counters);
+    line_of_[line.block] = kNone;
     line = {};
   }
 }
@@ -104,8 +147,10 @@ void BlockCache::stream_read(std::size_t block, StageCounters& counters) const {
   if (!modelled_) return;
   const std::uint32_t raw = kBits[all_sectors_] * kSectorBytes;
   const State state = states_[block];
+  const std::uint32_t moved = state == kRaw ? raw : state * kSectorBytes;
   counters.sector_bytes += raw;
-  counters.dram_bytes += state == kRaw ? raw : state * kSectorBytes;
+  counters.l2_bytes += level_ == Level::rop ? moved : raw;
+  counters.dram_bytes += moved;
 }
 
 }  // namespace beampipe

@@ -18,36 +18,59 @@ namespace beampipe {
 
 inline constexpr std::uint32_t kMaxBlockSectors = 8;
 
+using Sectors = std::uint8_t;  // a bit for each sector of a block
+
+// Of bytes [first, first + bytes) of a block.
+inline Sectors sectors_of(std::uint32_t first, std::uint32_t bytes) {
+  constexpr std::uint32_t kSectorBytes = MemoryParameters::sector_bytes;
+  return static_cast<Sectors>((2u << (first + bytes - 1) / kSectorBytes) - (1u << first / kSectorBytes));
+}
+
 class BlockCache {
  public:
   // Bytes that a block takes when compressed; its raw size or more: it does not compress.
   using CompressedBytes = std::function<std::uint32_t(std::size_t block)>;
 
+  // Where the cache stands, which says what its bytes are counted as.
+  // rop: what it lacks or evicts moves through L2 to and from DRAM; L2 keeps nothing of it, as the surfaces of a frame
+  //      are larger.
+  // l2:  what is asked of it is L2's, what it lacks or evicts DRAM's.
+  enum class Level { rop, l2 };
+
   // `block_bytes` <= cache.line_bytes, at most kMaxBlockSectors. `cleared`: the state that all blocks start in; else
   // they are raw. An empty `compressed_bytes`: nothing compresses. Where memory is not modelled, nothing is done or
   // counted.
-  BlockCache(const MemoryParameters& memory, const CacheParameters& cache, std::size_t blocks,
+  BlockCache(const MemoryParameters& memory, const CacheParameters& cache, Level level, std::size_t blocks,
              std::uint32_t block_bytes, bool cleared, CompressedBytes compressed_bytes);
+
+  // A cache that is read through, with the blocks of `next`, an L2: asks `next` for the sectors that it lacks.
+  // `next` must outlive it.
+  BlockCache(const MemoryParameters& memory, const CacheParameters& cache, BlockCache& next);
 
   // Reads or writes bytes [first, first + bytes) of a block. Accesses of a stage that follow each other with the same
   // block and key (the triangle, usually) are one request, each of whose sectors is asked for once to be read and once
-  // to be written. Adds to counters.sector_bytes what is asked for, and to counters.dram_bytes what is fetched and
-  // written back for it. A sector that is written in part is fetched first. No byte is written twice in one request.
+  // to be written. Adds to counters.sector_bytes what is asked for, to counters.l2_bytes what L2 is asked for, and to
+  // counters.dram_bytes what is fetched and written back for it. A sector that is written in part is fetched first. No
+  // byte is written twice in one request.
   void read(std::uint32_t key, std::size_t block, std::uint32_t first, std::uint32_t bytes, StageCounters& counters) {
-    if (!modelled_) return;
-    begin_request(key, block, counters);
-    request_.read |= sectors_of(first, bytes);
+    access(key, block, sectors_of(first, bytes), 0, counters, [](auto&&) {});
   }
   void write(std::uint32_t key, std::size_t block, std::uint32_t first, std::uint32_t bytes, StageCounters& counters) {
+    access(key, block, 0, sectors_of(first, bytes), counters, [&](auto&& count) { count(first, bytes); });
+  }
+
+  // Both, for whoever knows the sectors: each_write(count) calls count(first, bytes) for every run of bytes that is
+  // written. It is called only where it matters whether sectors are written as a whole.
+  template <class EachWrite>
+  void access(std::uint32_t key, std::size_t block, Sectors read, Sectors write, StageCounters& counters,
+              EachWrite&& each_write) {
     if (!modelled_) return;
-    begin_request(key, block, counters);
-    request_.write |= sectors_of(first, bytes);
-    const std::uint32_t end = first + bytes;
-    for (std::uint32_t at = first; at < end;) {
-      const std::uint32_t sector = at / kSectorBytes, stop = std::min(end, (sector + 1) * kSectorBytes);
-      request_.written_bytes[sector] += stop - at;
-      at = stop;
-    }
+    if (block != request_.block || key != request_.key || &counters != request_.counters)
+      begin_request(key, block, counters);
+    request_.read |= read;
+    request_.write |= write;
+    if (write != 0 && request_.counts_bytes)
+      each_write([this](std::uint32_t first, std::uint32_t bytes) { count_written(first, bytes); });
   }
 
   // Writes back every dirty line and empties the cache.
@@ -60,15 +83,14 @@ class BlockCache {
 
  private:
   static constexpr std::uint32_t kSectorBytes = MemoryParameters::sector_bytes;
-  using Sectors = std::uint8_t;  // a bit for each sector of a block
 
   // In memory: kRaw, or the sectors that the block is compressed to; 0: cleared.
   using State = std::uint8_t;
   static constexpr State kRaw = 255;
-  static constexpr std::uint32_t kEmpty = ~0u;
+  static constexpr std::uint32_t kNone = ~0u;
 
   struct Line {
-    std::uint32_t block = kEmpty;
+    std::uint32_t block = kNone;
     Sectors valid = 0, dirty = 0;
     std::uint64_t used = 0;  // when, for least recently used
   };
@@ -78,32 +100,28 @@ class BlockCache {
     std::size_t block = ~std::size_t{0};
     StageCounters* counters = nullptr;  // of the stage that asks
     std::uint32_t key = 0;
+    bool counts_bytes = false;  // some sector may have to be fetched unless it is written as a whole
     Sectors read = 0, write = 0;
     std::array<std::uint32_t, kMaxBlockSectors> written_bytes{};
   };
 
-  static Sectors sectors_of(std::uint32_t first, std::uint32_t bytes) {
-    return static_cast<Sectors>((2u << (first + bytes - 1) / kSectorBytes) - (1u << first / kSectorBytes));
-  }
-
-  void begin_request(std::uint32_t key, std::size_t block, StageCounters& counters) {
-    if (block == request_.block && key == request_.key && &counters == request_.counters) return;
-    finish_request();
-    request_.block = block;
-    request_.key = key;
-    request_.counters = &counters;
-  }
-
+  void begin_request(std::uint32_t key, std::size_t block, StageCounters& counters);
   void finish_request();
-  Line& line_of(std::size_t block, bool overwritten, StageCounters& counters);
+  void count_written(std::uint32_t first, std::uint32_t bytes);
+  void serve(std::size_t block, Sectors read, Sectors write, Sectors overwritten, StageCounters& counters);
+  Line& make_line(std::size_t block, bool overwritten, StageCounters& counters);
   void write_back(const Line& line, StageCounters& counters);
+  void pass_on(std::uint32_t sectors, StageCounters& counters) const;
 
   bool modelled_;
+  Level level_;
+  BlockCache* next_ = nullptr;
   std::uint32_t block_bytes_;
   Sectors all_sectors_;
   std::size_t sets_, ways_;
   bool has_line_for_each_;  // a cache that has a line for every block evicts none: line i is block i's
   std::vector<Line> lines_;
+  std::vector<std::uint32_t> line_of_;  // by block: which line holds it, or kNone
   std::vector<State> states_;
   CompressedBytes compressed_bytes_;
   Request request_;

@@ -26,13 +26,14 @@ void fetch_attributes(const MemoryParameters& memory, const SampleTile& surface,
   for (const std::uint32_t pixel : pixels) triangles.insert(surface.triangle[pixel]);
   const std::uint64_t sectors = (sizeof(FlatAttributes) + memory.sector_bytes - 1) / memory.sector_bytes;
   counters.sector_bytes += pixels.size() * sectors * memory.sector_bytes;
+  counters.l2_bytes += triangles.size() * sectors * memory.sector_bytes;
   counters.dram_bytes += triangles.size() * sectors * memory.sector_bytes;
 }
 
 void move_light_and_resolve(const MemoryParameters& memory, const Tile& tile, const ZOrder& order,
                             const std::vector<std::uint32_t>& pixels, TileSurface& gbuffer, StageCounters& lighting,
                             StageCounters& resolving) {
-  TileSurface color(memory, order, kSampleColorBytes);
+  TileSurface color(memory, order, 1, kSampleColorBytes);
   gbuffer.read_all(lighting);
   write_pixels(pixels, color, lighting);
   color.read_all(resolving);

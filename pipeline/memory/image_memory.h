@@ -13,6 +13,7 @@ inline void stream(const MemoryParameters& memory, std::uint64_t bytes, StageCou
   if (!memory.modelled) return;
   const std::uint64_t whole = (bytes + memory.sector_bytes - 1) / memory.sector_bytes * memory.sector_bytes;
   counters.sector_bytes += whole;
+  counters.l2_bytes += whole;
   counters.dram_bytes += whole;
 }
 

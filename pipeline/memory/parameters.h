@@ -2,7 +2,9 @@
 //
 // What is modelled: the surfaces of one bin (a scheduling tile) at a time, as a binning rasterizer draws them: all
 // triangles of the bin in order, then the next bin. A cache per surface class, empty at the start of a bin; at the end
-// of each pass over the frame, what is dirty is written back, since the next pass starts with another bin.
+// of each pass over the frame, what is dirty is written back, since the next pass starts with another bin. What a
+// stage asks for and its cache holds stays there; L2 is asked for what that cache lacks or evicts, DRAM for what L2
+// does.
 // What passes between stages is taken to stay in queues on chip: it is in the logical bytes and in neither of the
 // others.
 #pragma once
@@ -30,8 +32,13 @@ struct MemoryParameters {
   // which does a 2x2 quad per clock. A Titan V has 96 ROPs (TechPowerUp): 24 such units.
   CacheParameters rop{24 * 16 * 1024, 4, 256};
 
-  // What shaders read and write: the A-buffer, vertices, histories. Source: GPGPU-Sim's Volta: 32 sets of 24 lines of
-  // 128 bytes in each slice, 96 KiB; 48 slices make a Titan V's 4.5 MiB (NVIDIA's figure).
+  // What shaders read goes through the L1 of the multiprocessor that works on the bin; what they write goes past it.
+  // Source: GPGPU-Sim's Volta: 4 sets of 64 lines, write-through. (With what is not used as shared memory it grows to
+  // 128 KiB.)
+  CacheParameters l1{32 * 1024, 64, 128};
+
+  // Behind it, for what shaders read and write: the A-buffer, setup triangles. Source: GPGPU-Sim's Volta: 32 sets of 24
+  // lines of 128 bytes in each slice, 96 KiB; 48 slices make a Titan V's 4.5 MiB (NVIDIA's figure).
   CacheParameters l2{48 * 96 * 1024, 24, 128};
 
   // Block states cleared, compressed and raw; without compression, cleared and raw. Clearing a surface sets states,

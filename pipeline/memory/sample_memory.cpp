@@ -32,10 +32,10 @@ SampleMemory::SampleMemory(const MemoryParameters& parameters, const Tile& tile,
       same_value_(std::move(same_value)),
       color_sample_bytes_(color_bytes),
       owner_(parameters.modelled ? order_.positions * samples_ : 0, kNoTriangle),
-      depth_(parameters, order_, static_cast<std::uint32_t>(samples_) * kSampleDepthBytes,
+      depth_(parameters, order_, static_cast<std::uint32_t>(samples_), kSampleDepthBytes,
              [this](std::size_t first, std::size_t elements) { return depth_bytes(first, elements); }) {
   if (color_bytes > 0)
-    color_.emplace(parameters, order_, static_cast<std::uint32_t>(samples_) * color_bytes,
+    color_.emplace(parameters, order_, static_cast<std::uint32_t>(samples_), color_bytes,
                    [this](std::size_t first, std::size_t elements) { return this->color_bytes(first, elements); });
 }
 
@@ -47,9 +47,8 @@ void SampleMemory::replay(const std::vector<SampleAccess>& accesses, bool write_
   for (const SampleAccess& access : accesses) {
     const std::uint32_t element = cell_place_[access.cell];
     const std::size_t first = std::size_t{order_.of[element]} * samples_;
-    depth_.access(access.triangle, element, access.tested, write_depth ? access.passed : 0, kSampleDepthBytes,
-                  counters);
-    if (write_color) color_->access(access.triangle, element, 0, access.passed, color_sample_bytes_, counters);
+    depth_.access(access.triangle, element, access.tested, write_depth ? access.passed : 0, counters);
+    if (write_color) color_->access(access.triangle, element, 0, access.passed, counters);
     if (access.passed == all) {
       std::fill_n(owner_.begin() + static_cast<std::ptrdiff_t>(first), samples_, access.triangle);
       continue;

@@ -12,12 +12,31 @@ std::uint32_t spread_bits(std::uint32_t x) {  // bit i to bit 2 i, of 16
   return (x | x << 1) & 0x55555555u;
 }
 
-int log2_block_elements(const MemoryParameters& parameters, std::uint32_t element_bytes) {
-  return std::bit_width(std::max(parameters.rop.line_bytes / element_bytes, 1u)) - 1;
+const CacheParameters& cache_of(const MemoryParameters& parameters, BlockCache::Level level) {
+  return level == BlockCache::Level::rop ? parameters.rop : parameters.l2;
 }
 
-std::size_t block_count(const MemoryParameters& parameters, const ZOrder& order, std::uint32_t element_bytes) {
-  return ((order.positions - 1) >> log2_block_elements(parameters, element_bytes)) + 1;
+int log2_block_elements(const CacheParameters& cache, std::uint32_t element_bytes) {
+  return std::bit_width(std::max(cache.line_bytes / element_bytes, 1u)) - 1;
+}
+
+std::size_t block_count(const ZOrder& order, int log2_elements) { return ((order.positions - 1) >> log2_elements) + 1; }
+
+// By element of a block, byte of the parts' mask, and value of that byte.
+std::vector<Sectors> part_sectors(std::uint32_t elements, std::uint32_t parts, std::uint32_t part_bytes) {
+  std::vector<Sectors> table;
+  for (std::uint32_t element = 0; element < elements; ++element) {
+    for (std::uint32_t first = 0; first < parts; first += 8) {
+      const std::size_t begin = table.size();
+      table.resize(begin + 256);
+      for (std::uint32_t part = first; part < std::min(first + 8, parts); ++part) {
+        const Sectors sectors = sectors_of((element * parts + part) * part_bytes, part_bytes);
+        const std::size_t masks = std::size_t{1} << (part - first);  // of the parts before this one
+        for (std::size_t mask = 0; mask < masks; ++mask) table[begin + masks + mask] = table[begin + mask] | sectors;
+      }
+    }
+  }
+  return table;
 }
 
 }  // namespace
@@ -32,41 +51,39 @@ ZOrder::ZOrder(std::int32_t width, std::int32_t height) {
   }
 }
 
-TileSurface::TileSurface(const MemoryParameters& parameters, const ZOrder& order, std::uint32_t element_bytes,
-                         CompressedBytes compressed_bytes)
+TileSurface::TileSurface(const MemoryParameters& parameters, const ZOrder& order, std::uint32_t parts,
+                         std::uint32_t part_bytes, CompressedBytes compressed_bytes, BlockCache::Level level)
     : order_(order),
-      element_bytes_(element_bytes),
+      part_bytes_(part_bytes),
+      element_bytes_(parts * part_bytes),
+      mask_bytes_((parts + 7) / 8),
       triangles_per_batch_(parameters.triangles_per_batch),
-      log2_elements_per_block_(log2_block_elements(parameters, element_bytes)),
+      log2_elements_per_block_(log2_block_elements(cache_of(parameters, level), element_bytes_)),
       touched_bytes_(parameters.modelled ? order.of.size() : 0),
-      cache_(parameters, parameters.rop, block_count(parameters, order, element_bytes),
-             element_bytes << log2_elements_per_block_, true,
+      cache_(parameters, cache_of(parameters, level), level, block_count(order, log2_elements_per_block_),
+             element_bytes_ << log2_elements_per_block_, true,
              compressed_bytes
                  ? BlockCache::CompressedBytes([compressed_bytes, log2 = log2_elements_per_block_](std::size_t block) {
                      return compressed_bytes(block << log2, std::size_t{1} << log2);
                    })
-                 : nullptr) {}
+                 : nullptr) {
+  if (parameters.modelled) part_sectors_ = part_sectors(1u << log2_elements_per_block_, parts, part_bytes);
+}
 
 void TileSurface::access(std::uint32_t key, std::uint32_t element, std::uint32_t read, std::uint32_t write,
-                         std::uint32_t part_bytes, StageCounters& counters) {
+                         StageCounters& counters) {
   if (touched_bytes_.empty()) return;  // nothing is modelled
   if (triangles_per_batch_ > 0 && key / triangles_per_batch_ != batch_) {
     cache_.flush(counters);
     batch_ = key / triangles_per_batch_;
   }
-  touched_bytes_[element] += static_cast<std::uint32_t>(std::popcount(read) + std::popcount(write)) * part_bytes;
+  touched_bytes_[element] += static_cast<std::uint32_t>(std::popcount(read) + std::popcount(write)) * part_bytes_;
   const std::uint32_t position = order_.of[element], block = position >> log2_elements_per_block_;
-  const std::uint32_t start = (position - (block << log2_elements_per_block_)) * element_bytes_;
-  const auto each_run = [&](std::uint32_t parts, auto&& touch) {  // run by run of neighbouring parts
-    while (parts != 0) {
-      const auto first = static_cast<std::uint32_t>(std::countr_zero(parts));
-      const auto count = static_cast<std::uint32_t>(std::countr_one(parts >> first));
-      touch(start + first * part_bytes, count * part_bytes);
-      parts &= first + count < 32 ? ~0u << (first + count) : 0u;
-    }
-  };
-  each_run(read, [&](std::uint32_t first, std::uint32_t bytes) { cache_.read(key, block, first, bytes, counters); });
-  each_run(write, [&](std::uint32_t first, std::uint32_t bytes) { cache_.write(key, block, first, bytes, counters); });
+  const std::uint32_t place = position - (block << log2_elements_per_block_);
+  cache_.access(key, block, sectors_of_parts(place, read), sectors_of_parts(place, write), counters, [&](auto&& count) {
+    for (std::uint32_t left = write; left != 0; left &= left - 1)
+      count(place * element_bytes_ + static_cast<std::uint32_t>(std::countr_zero(left)) * part_bytes_, part_bytes_);
+  });
 }
 
 void TileSurface::read_all(StageCounters& counters) {

@@ -24,22 +24,20 @@ class TileSurface {
   // Compressed bytes of the block whose first element is at position `first`.
   using CompressedBytes = std::function<std::uint32_t(std::size_t first, std::size_t elements)>;
 
-  // Elements of `element_bytes` <= 256. A block has as many of them, a power of two, as fit into a cache line. Starts
-  // out cleared.
-  TileSurface(const MemoryParameters& parameters, const ZOrder& order, std::uint32_t element_bytes,
-              CompressedBytes compressed_bytes = nullptr);
+  // Elements of `parts` x `part_bytes` <= 256 bytes, at most 16 parts. A block has as many of them, a power of two, as
+  // fit into a cache line: of a ROP cache, or of L2. Starts out cleared.
+  TileSurface(const MemoryParameters& parameters, const ZOrder& order, std::uint32_t parts, std::uint32_t part_bytes,
+              CompressedBytes compressed_bytes = nullptr, BlockCache::Level level = BlockCache::Level::rop);
 
-  // Reads and writes parts of an element, `part_bytes` each; bit p of a mask is part p. `key` as in BlockCache: the
-  // triangle, which also tells when a batch of triangles ends.
+  // Reads and writes parts of an element; bit p of a mask is part p. `key` as in BlockCache: the triangle, which also
+  // tells when a batch of triangles ends.
   void access(std::uint32_t key, std::uint32_t element, std::uint32_t read, std::uint32_t write,
-              std::uint32_t part_bytes, StageCounters& counters);
+              StageCounters& counters);
 
-  // The same for a whole element.
-  void read(std::uint32_t key, std::uint32_t element, StageCounters& counters) {
-    access(key, element, 1, 0, element_bytes_, counters);
-  }
+  // The same for the whole of an element of one part.
+  void read(std::uint32_t key, std::uint32_t element, StageCounters& counters) { access(key, element, 1, 0, counters); }
   void write(std::uint32_t key, std::uint32_t element, StageCounters& counters) {
-    access(key, element, 0, 1, element_bytes_, counters);
+    access(key, element, 0, 1, counters);
   }
 
   // The end of a pass over the frame: everything goes back to memory.
@@ -57,9 +55,18 @@ class TileSurface {
   }
 
  private:
+  // The sectors of parts of an element that is the n-th of its block, by the parts' mask, a byte of it at a time.
+  Sectors sectors_of_parts(std::uint32_t n, std::uint32_t parts) const {
+    const Sectors* const table = &part_sectors_[n * mask_bytes_ << kMaskBits];
+    return mask_bytes_ == 1 ? table[parts] : table[parts & 0xff] | table[1 << kMaskBits | parts >> kMaskBits];
+  }
+
+  static constexpr int kMaskBits = 8;
+
   const ZOrder& order_;
-  std::uint32_t element_bytes_, triangles_per_batch_, batch_ = 0;
+  std::uint32_t part_bytes_, element_bytes_, mask_bytes_, triangles_per_batch_, batch_ = 0;
   int log2_elements_per_block_;
+  std::vector<Sectors> part_sectors_;
   std::vector<std::uint32_t> touched_bytes_;
   BlockCache cache_;
 };

@@ -145,6 +145,7 @@ void expect_same(const FrameResult& a, const FrameResult& b, const std::string& 
   EXPECT_EQ(a.pixel_counters, b.pixel_counters) << what;
   EXPECT_EQ(a.stages, b.stages) << what;
   EXPECT_EQ(a.a_buffer_peak_bytes, b.a_buffer_peak_bytes) << what;
+  EXPECT_EQ(a.buffers, b.buffers) << what;
 }
 
 TEST(Bands, ResultsAreThoseOfTheWholeFrame) {

@@ -38,7 +38,7 @@ TEST(Counters, BeamCountsEveryTouchedPixel) {
   // A-buffer: a triangle's number, a depth range and a 4-byte link each, and a 4-byte head per pixel. A fragment has 62
   // bytes: a 42-byte aggregate, pixel, plane, centroid; aggregates are read and written once per window.
   EXPECT_EQ(result.a_buffer_peak_bytes, touched * 16 + 64 * 4);
-  EXPECT_EQ(stage(result, "compose").bytes_read, (with_area - 1) * (62 + 42) + 12);
+  EXPECT_EQ(stage(result, "compose").bytes_read, (with_area - 1) * (62 + 42) + 16);
   EXPECT_EQ(stage(result, "compose").bytes_written, with_area * 42);
   // As published, shading is in quads. Pixels 1..4 lie in the quads 0, 1, 2 of each axis; the lower left half of these
   // 3 x 3 has 6, with 4 lanes each.

@@ -40,6 +40,7 @@ void expect_same(const FrameResult& a, const FrameResult& b, const std::string& 
   EXPECT_EQ(a.pixel_counters, b.pixel_counters) << what;
   EXPECT_EQ(a.stages, b.stages) << what;
   EXPECT_EQ(a.a_buffer_peak_bytes, b.a_buffer_peak_bytes) << what;
+  EXPECT_EQ(a.buffers, b.buffers) << what;
 }
 
 // Every technique on every instruction set, with 1 to 16 threads in turn (all of them when thorough): each against one

@@ -11,7 +11,7 @@ namespace {
 
 struct Bytes {
   const char* stage;
-  std::uint64_t items_in, items_out, read, written, sectors, dram;
+  std::uint64_t items_in, items_out, read, written, sectors, l2, dram;
 };
 
 void expect_bytes(const char* sample, const char* spec, const std::vector<Bytes>& expected, bool compression = true) {
@@ -29,6 +29,7 @@ void expect_bytes(const char* sample, const char* spec, const std::vector<Bytes>
     EXPECT_EQ(found.bytes_read, stage.read) << stage.stage;
     EXPECT_EQ(found.bytes_written, stage.written) << stage.stage;
     EXPECT_EQ(found.sector_bytes, stage.sectors) << stage.stage;
+    EXPECT_EQ(found.l2_bytes, stage.l2) << stage.stage;
     EXPECT_EQ(found.dram_bytes, stage.dram) << stage.stage;
   }
 }
@@ -37,45 +38,48 @@ constexpr std::uint64_t kSetup = 116;  // bytes that a triangle's setup passes o
 
 TEST(HandWorked, TriangleMsaa) {
   expect_bytes("paper_triangle.json", "msaa:1",
-               {{"vertex_setup", 1, 1, 48, kSetup, 64, 64},
-                {"sample_raster", 1, 6, 88, 6 * 10, 0, 0},
-                {"shade", 6, 6, 6 * 38, 6 * 6, 0, 0},
-                {"depth_test", 6, 6, 6 * 14, 6 * 10, 64 + 64 + 128, 32 + 384},
-                {"resolve", 64, 64, 384, 384, 768, 768}});
+               {{"vertex_setup", 1, 1, 48, kSetup, 64, 64, 64},
+                {"sample_raster", 1, 6, 88 + 13 * 4, 6 * 10, 0, 0, 0},
+                {"shade", 6, 6, 6 * 38, 6 * 6, 0, 0, 0},
+                {"depth_test", 6, 6, 6 * 14, 6 * 10, 64 + 64 + 128, 32 + 384, 32 + 384},
+                {"resolve", 64, 64, 384, 384, 768, 768, 768}});
 }
 
 TEST(HandWorked, TriangleMsaaWithoutCompression) {
   expect_bytes("paper_triangle.json", "msaa:1",
-               {{"vertex_setup", 1, 1, 48, kSetup, 64, 64},
-                {"sample_raster", 1, 6, 88, 6 * 10, 0, 0},
-                {"shade", 6, 6, 6 * 38, 6 * 6, 0, 0},
-                {"depth_test", 6, 6, 6 * 14, 6 * 10, 64 + 64 + 128, 256 + 384},
-                {"resolve", 64, 64, 384, 384, 768, 768}},
+               {{"vertex_setup", 1, 1, 48, kSetup, 64, 64, 64},
+                {"sample_raster", 1, 6, 88 + 13 * 4, 6 * 10, 0, 0, 0},
+                {"shade", 6, 6, 6 * 38, 6 * 6, 0, 0, 0},
+                {"depth_test", 6, 6, 6 * 14, 6 * 10, 64 + 64 + 128, 256 + 384, 256 + 384},
+                {"resolve", 64, 64, 384, 384, 768, 768, 768}},
                false);
 }
 
 TEST(HandWorked, TriangleBeam) {
   constexpr std::uint64_t kPairs = 13, kFragments = 10, kWhole = 1, kPartial = kFragments - kWhole, kFragment = 62,
-                          kBuffer = kPairs * 16 + 64 * 4;
-  expect_bytes("paper_triangle.json", "beam",
-               {{"vertex_setup", 1, 1, 48, kSetup, 64 + 96, 64 + 96},
-                {"conservative_raster", 1, kPairs, 88, kPairs * 8, 0, 0},
-                {"a_buffer", kPairs, kPairs, kBuffer, kBuffer, 320 + 256 + 224 + 416, 256 + 256 + 256 + 224},
-                {"beam_fragment", kPairs - kWhole, kPartial, (kPairs - kWhole) * (12 + 88), kPartial * kFragment,
-                 416 + 1152, 96},
-                {"shade", kFragments, kFragments, kFragments * 28, kFragments * 6, 0, 0},
-                {"compose", kFragments, kFragments, kPartial * (kFragment + 42) + kWhole * 12, kFragments * 42,
-                 128 + 320 + 192, 256 + 1024 + 384},
-                {"resolve", 64, 64, 64 * 42, 384, 256 + 2048 + 384 + 384, 256 + 1024 + 384 + 384}});
+                          kPair = 16, kRecord = 12 + 4, kHead = 4;
+  expect_bytes(
+      "paper_triangle.json", "beam",
+      {{"vertex_setup", 1, 1, 48, kSetup, 64 + 96, 64 + 96, 64 + 96},
+       {"conservative_raster", 1, kPairs, 88 + 4 * (kPairs + 1) + kPairs * (kPair + 4), kPairs * kPair + 4, 0, 0, 0},
+       {"a_buffer", kPairs, kPairs, kPairs * (kPair + kHead) + 64 * kHead + kPairs * kRecord,
+        kPairs * (kHead + kRecord), 320 + 256 + 224 + 416, 320 + 256 + 224 + 224, 256 + 256 + 256 + 224},
+       {"windows", kPairs, kPairs, kPairs * kRecord, kPairs * kPair, 416, 0, 0},
+       {"beam_fragment", kPairs - kWhole, kPartial, (kPairs - kWhole) * (kPair + 88), kPartial * kFragment, 1152, 96,
+        96},
+       {"shade", kFragments, kFragments, kFragments * 28, kFragments * 6, 0, 0, 0},
+       {"compose", kFragments, kFragments, kPartial * (kFragment + 42) + kWhole * kPair, kFragments * 42,
+        128 + 320 + 192, 256 + 1024 + 384, 256 + 1024 + 384},
+       {"resolve", 64, 64, 64 * 42, 384, 256 + 2048 + 384 + 384, 256 + 1024 + 384 + 384, 256 + 1024 + 384 + 384}});
 }
 
 TEST(HandWorked, QuadsMsaa) {
   expect_bytes("paper_quads.json", "msaa:1",
-               {{"vertex_setup", 4, 4, 2 * 72, 4 * kSetup, 160, 160},
-                {"sample_raster", 4, 32, 4 * 88, 32 * 10, 0, 0},
-                {"shade", 32, 32, 32 * 38, 32 * 6, 0, 0},
-                {"depth_test", 32, 28, 32 * 14, 28 * 10, 576 + 384, 96 + 384},
-                {"resolve", 64, 64, 384, 384, 768, 768}});
+               {{"vertex_setup", 4, 4, 2 * 72, 4 * kSetup, 160, 160, 160},
+                {"sample_raster", 4, 32, 4 * 88 + (4 * 13 + 2) * 4, 32 * 10 + 2 * 4, 0, 0, 0},
+                {"shade", 32, 32, 32 * 38, 32 * 6, 0, 0, 0},
+                {"depth_test", 32, 28, 32 * 14, 28 * 10, 576 + 384, 96 + 384, 96 + 384},
+                {"resolve", 64, 64, 384, 384, 768, 768, 768}});
 }
 
 // Pixel (2, 3) of the triangle, which is covered whole; and (0, 0), which nothing touches.
@@ -86,8 +90,10 @@ TEST(HandWorked, BytesOfAPixel) {
   };
   EXPECT_EQ(bytes("msaa:1", 2, 3), 4 + 4 + 6) << "depth read and written, colour written";
   EXPECT_EQ(bytes("acaa:1", 2, 3), 4 + 4 + 4 + 2 * 8) << "depth again; the accumulator read and written";
-  EXPECT_EQ(bytes("beam", 2, 3), 2 * 4 + 3 * 16 + 42) << "head; record written, sorted, composed; aggregate";
-  for (const char* spec : {"msaa:1", "acaa:1", "beam"}) EXPECT_EQ(bytes(spec, 0, 0), 0) << spec;
+  EXPECT_EQ(bytes("beam", 2, 3), 3 * 4 + 3 * 16 + 42)
+      << "head exchanged, and read; record written, sorted, put into a window; aggregate";
+  for (const char* spec : {"msaa:1", "acaa:1"}) EXPECT_EQ(bytes(spec, 0, 0), 0) << spec;
+  EXPECT_EQ(bytes("beam", 0, 0), 4) << "the head";
   RunOptions run{1};
   run.memory.modelled = false;
   EXPECT_FALSE(parse_technique("beam").render(trace, 0, run).pixel_counters.contains("bytes"));

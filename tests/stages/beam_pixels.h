@@ -33,7 +33,7 @@ inline Fragments beam_fragments(const SetupTriangles& triangles, const Tile& til
 
 inline ABuffer sorted(const Fragments& fragments, std::size_t pixels) {
   StageCounters counters;
-  return a_buffer(sort_records(fragments.list, SortKey::centroid), pixels, sizeof(SlidesAggregate), counters);
+  return a_buffer(sort_records(fragments.list, SortKey::centroid), pixels, 0, sizeof(SlidesAggregate), counters);
 }
 
 // The composed pixels of a tile; `colors` has one per triangle.

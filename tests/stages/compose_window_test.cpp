@@ -31,9 +31,9 @@ std::vector<PixelColor> composed_as(const SetupTriangles& triangles, const std::
   std::vector<StoredAggregate<Words, Channel>> pixels(tile.pixels());
   ClosedDepth closed(tile);
   conservative_raster(triangles, all_of(triangles), tile, counters, pairs, &closed);
-  const ABuffer buffer = a_buffer(sort_records(pairs, tile), tile.pixels(), kWaitingPairBytes, counters);
-  Windows windows(pairs, buffer);
-  while (windows.next([&](std::uint32_t pixel) { return !is_closed(pixels[pixel]); }, window, whole)) {
+  const ABuffer buffer = a_buffer(sort_records(pairs, tile), tile.pixels(), 0, kWaitingPairBytes, counters);
+  Windows windows(pairs, buffer, kWaitingPairBytes);
+  while (windows.next([&](std::uint32_t pixel) { return !is_closed(pixels[pixel]); }, counters, window, whole)) {
     std::vector<Fragment> fragments;
     std::vector<float> areas;
     beam_fragment(triangles, window, tile, options, counters, fragments);

@@ -142,15 +142,18 @@ TEST(ConservativeRaster, QuadNumbersNameQuads) {
 // The bounds take 8 minima and maxima, 2 sums and a shift each, and 4 more to stay in the tile. Before the first cell:
 // its corner, 2 products; of each edge the value there (2 products and sums), two steps (2 products), and its deepest
 // and shallowest corner (3 operations each). Then per edge a sum for each of 3 steps, and per cell twice a sum and a
-// comparison.
+// comparison. The nearest and the farthest vertex take 4; for each pair the plane is 2 products, 4 sums and 3
+// conversions, how far it reaches 1 product, 1 sum and 2 absolute values, and the bounds are 2 sums and 4 minima and
+// maxima.
 TEST(ConservativeRaster, CountsCellsAndOperations) {
   SetupTriangles triangles;
   add_triangle(triangles, {300, 300}, {700, 310}, {310, 700});
   const Raster raster = rasterize(triangles, kFrame);
   EXPECT_EQ(raster.counters.lanes_issued, 4u);
   EXPECT_EQ(raster.counters.lanes_used, 3u);
-  EXPECT_EQ(raster.counters.ops, (OperationCounts{2 + 3 * 4, 16 + 3 * 8 + 3 * 3 + 4 * 3 * 4, 4, 0, 0, 0}));
-  EXPECT_EQ(raster.counters.bytes_written, 3u * 8);
+  EXPECT_EQ(raster.counters.ops,
+            (OperationCounts{2 + 3 * 4 + 3 * 3, 16 + 3 * 8 + 3 * 3 + 4 * 3 * 4 + 4 + 3 * 11, 4 + 3 * 2, 0, 0, 3 * 3}));
+  EXPECT_EQ(raster.counters.bytes_written, 3u * 16);
 }
 
 }  // namespace

@@ -76,7 +76,7 @@ class RasterTwins : public SceneTwins {
 TEST_P(RasterTwins, ConservativeRaster) {
   StageCounters counters;
   std::vector<PixelTriangle> pairs;
-  conservative_raster(triangles_, list_, tile_, counters, pairs);
+  conservative_raster(triangles_, list_, tile_, counters, pairs, nullptr, PairDepths::none);
   std::vector<Cell> found, expected;
   for (const PixelTriangle& pair : pairs) found.push_back({pair.triangle, pair.x, pair.y, pair.full ? 1u : 0u});
   for (const std::uint32_t index : list_)

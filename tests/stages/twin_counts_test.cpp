@@ -130,7 +130,7 @@ TEST_P(TwinCounts, SortAndMerge) {
   options.positions = {pattern};
   beam_fragment(triangles_, pairs, tile_, options, ignored, fragments);
   shade(std::vector<glm::vec3>(list_.size(), glm::vec3(0.5f)), fragments, ignored);
-  const ABuffer buffer = a_buffer(sort_records(fragments, SortKey::centroid), tile_.pixels(), 42, sorting);
+  const ABuffer buffer = a_buffer(sort_records(fragments, SortKey::centroid), tile_.pixels(), 42, 42, sorting);
 
   std::vector<std::vector<std::uint32_t>> arrived(tile_.pixels());
   for (std::uint32_t i = 0; i < fragments.size(); ++i) arrived[fragments[i].pixel].push_back(i);

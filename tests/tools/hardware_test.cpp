@@ -13,7 +13,7 @@ StageCounters stage(const std::string& name) {
   StageCounters counters{name};
   counters.items_in = 6000, counters.items_out = 9600;
   counters.ops = {5120, 5120, 0, 0, 1280, 0};
-  counters.sector_bytes = 1536 * 3, counters.dram_bytes = 4487;
+  counters.l2_bytes = 1536 * 3, counters.dram_bytes = 4487;
   return counters;
 }
 

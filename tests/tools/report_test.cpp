@@ -26,8 +26,9 @@ Report sample_report() {
     frame.picture = "msaa_8/frame_000" + std::to_string(index) + ".png";
     frame.wall_ms = {2.0 * static_cast<double>(index), 1.0, 20.0, 3, false, 44.0};
     frame.a_buffer_peak_bytes = 100 * (10 - index);
+    frame.buffers = {{"pairs", 64, true}};
     frame.pixels = 50;
-    frame.stages = {{"vertex_setup", 3, 1, {1, 2, 3, 4, 5, 6}, 36, 80, 3, 4, 128, 96}};
+    frame.stages = {{"vertex_setup", 3, 1, {1, 2, 3, 4, 5, 6}, 36, 80, 3, 4, 128, 112, 96}};
   }
   return report;
 }
@@ -67,14 +68,16 @@ TEST(ReportJson, HasTheKeysOfTheContract) {
                     {"fetch", 4},  {"special", 5}, {"convert", 6}};
   const Json stage = {{"stage", "vertex_setup"}, {"items_in", 3},       {"items_out", 1},       {"ops", ops},
                       {"bytes_read", 36},        {"bytes_written", 80}, {"logical_bytes", 116}, {"sector_bytes", 128},
-                      {"dram_bytes", 96},        {"lanes_used", 3},     {"lanes_issued", 4}};
+                      {"l2_bytes", 112},         {"dram_bytes", 96},    {"lanes_used", 3},      {"lanes_issued", 4}};
   EXPECT_EQ(frame["stages"].at(0), stage);
   EXPECT_EQ(frame["logical_bytes"], 116) << "of all stages";
   EXPECT_EQ(frame["sector_bytes"], 128);
+  EXPECT_EQ(frame["l2_bytes"], 112);
   EXPECT_EQ(frame["dram_bytes"], 96);
-  EXPECT_EQ(frame["buffers"], (Json{{{"name", "depth"}, {"peak_bytes", 50 * 32}},
-                                    {{"name", "color"}, {"peak_bytes", 50 * 48}},
-                                    {{"name", "a_buffer"}, {"peak_bytes", 500}}}));
+  EXPECT_EQ(frame["buffers"], (Json{{{"name", "depth"}, {"peak_bytes", 50 * 32}, {"held", "frame"}},
+                                    {{"name", "color"}, {"peak_bytes", 50 * 48}, {"held", "frame"}},
+                                    {{"name", "a_buffer"}, {"peak_bytes", 500}, {"held", "frame"}},
+                                    {{"name", "pairs"}, {"peak_bytes", 64}, {"held", "bin"}}}));
   EXPECT_FALSE(frame.contains("modelled_ms")) << "there is no hardware";
   const Json& memory = json["memory_system"];
   EXPECT_EQ(memory["modelled"], true);

@@ -1,0 +1,111 @@
+// The listed buffers: constant where that is claimed, grown as stated where not, and what the heap really holds.
+#include <gtest/gtest.h>
+
+#include "counted_heap.h"
+#include "pipeline/technique.h"
+#include "stages/a_buffer.h"
+#include "stages/beam_fragment.h"
+#include "test_traces.h"
+#include "traces/scenes.h"
+
+namespace beampipe {
+namespace {
+
+std::uint64_t bytes_of(const FrameResult& result, const std::string& name) {
+  if (name == "a_buffer") return result.a_buffer_peak_bytes;
+  for (const Buffer& buffer : result.buffers)
+    if (buffer.name == name) return buffer.peak_bytes;
+  throw std::runtime_error("no buffer " + name);
+}
+
+FrameResult render(const char* spec, const Trace& trace) {
+  RunOptions run{1};
+  run.memory.modelled = false;
+  return parse_technique(spec).render(trace, 0, run);
+}
+
+// Triangles over the lower left half of one pixel, from far to near: none hides another.
+Trace halves(int layers) {
+  std::vector<PixelSpaceTriangle> triangles;
+  for (int i = 0; i < layers; ++i) {
+    const double z = 0.9 - 0.8 * i / layers;
+    triangles.push_back({{{2.0, 2.0, z}, {3.0, 3.0, z}, {2.0, 3.0, z}}, glm::vec3(0.5f)});
+  }
+  return pixel_trace(4, 4, triangles);
+}
+
+// What grows with triangles alone, of a renderer that bins a frame; and the queue between stages, which is of a batch
+// of 512 triangles.
+bool is_per_triangle(const std::string& name) {
+  return name == "setup_triangles" || name == "bin_lists" || name.starts_with("batch_");
+}
+
+TEST(Buffers, StreamingOrderHoldsTheSameForEachPixelHoweverDeepItIs) {
+  std::vector<Buffer> first;
+  for (const int layers : {1, 10, 100, 1000, 10000}) {
+    std::vector<Buffer> now = render("beam:order=stream", halves(layers)).buffers;
+    const auto batch = static_cast<std::uint64_t>(std::min(layers, 512));
+    for (const Buffer& buffer : now) {
+      if (buffer.name == "batch_fragments") {
+        EXPECT_LE(buffer.peak_bytes, batch * 4 * 66) << layers;
+      }
+    }
+    std::erase_if(now, [](const Buffer& buffer) { return is_per_triangle(buffer.name); });
+    EXPECT_FALSE(now.empty());
+    if (first.empty()) first = now;
+    EXPECT_EQ(now, first) << layers;
+  }
+}
+
+TEST(Buffers, TheABufferGrowsByARecordForEveryPairThatIsNotHidden) {
+  for (const int layers : {1, 10, 100, 1000, 10000}) {
+    const FrameResult sorted = render("beam", halves(layers)), published = render("beam:rules=paper", halves(layers));
+    const auto count = static_cast<std::uint64_t>(layers);
+    // Its pixel, and those that it touches without an area.
+    const std::uint64_t touched = sorted.stages.at(1).items_out / count;
+    EXPECT_EQ(sorted.stages.at(1).items_out, touched * count);
+    EXPECT_EQ(bytes_of(sorted, "a_buffer"), 16 * 4 + touched * count * 16) << layers;
+    EXPECT_EQ(bytes_of(sorted, "waiting_pairs"), touched * count * 16) << layers;
+    EXPECT_EQ(bytes_of(published, "a_buffer"), 16 * 4 + count * 46) << layers;
+    EXPECT_EQ(bytes_of(published, "setup_triangles"), count * 116);
+    EXPECT_EQ(bytes_of(published, "bin_lists"), count * 4);
+  }
+}
+
+// Where everything is hidden but the nearest, the sorted A-buffer is flat too.
+TEST(Buffers, HiddenPairsAreNotInTheABuffer) {
+  for (const std::uint32_t layers : {10u, 1000u}) {
+    const Trace trace = make_scene("stack", {.triangles = layers, .width = 4, .height = 4});
+    EXPECT_EQ(bytes_of(render("beam", trace), "a_buffer"), 16u * (4 + 16)) << layers;
+  }
+}
+
+// How much more the heap holds for more triangles: what is listed, and what the simulator works in beside it. That is,
+// for each triangle, the vertices of vertex_setup, and for each pair that waits with the others of its bin what
+// kPairBytes and kSortBytes say, which --memory-limit goes by.
+TEST(Buffers, AreWhatIsAllocated) {
+  constexpr double kVertexBytes = 400;
+  struct Measured {
+    double heap, listed, pairs;
+  };
+  const auto measure = [](const char* spec, int layers) {
+    const Trace trace = halves(layers);
+    const std::int64_t before = heap_bytes();
+    restart_heap_peak();
+    const FrameResult result = render(spec, trace);
+    Measured measured{static_cast<double>(heap_peak() - before), static_cast<double>(result.a_buffer_peak_bytes),
+                      result.a_buffer_peak_bytes > 0 ? static_cast<double>(result.stages.at(1).items_out) : 0.0};
+    for (const Buffer& buffer : result.buffers) measured.listed += static_cast<double>(buffer.peak_bytes);
+    return measured;
+  };
+  for (const char* spec : {"beam", "beam:order=stream", "beam:rules=paper", "alpha", "z3", "msaa:8", "acaa:8"}) {
+    const Measured few = measure(spec, 4000), many = measure(spec, 16000);
+    const double heap = many.heap - few.heap, listed = many.listed - few.listed;
+    EXPECT_GE(heap, listed) << spec << ": something is listed that is not held";
+    EXPECT_LE(heap, listed + 12000 * kVertexBytes + (many.pairs - few.pairs) * (kPairBytes + kSortBytes))
+        << spec << ": something is held that is not listed";
+  }
+}
+
+}  // namespace
+}  // namespace beampipe

@@ -1,0 +1,12 @@
+// What operator new has given out in this program.
+#pragma once
+
+#include <cstdint>
+
+namespace beampipe {
+
+std::int64_t heap_bytes();
+std::int64_t heap_peak();  // the most since the last restart
+void restart_heap_peak();
+
+}  // namespace beampipe
