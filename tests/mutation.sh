@@ -16,18 +16,28 @@ mutants=(  # file | constant as it is | broken
   'simd/sample_pattern.cpp|{1, -3}, {-1, 3}|{1, -2}, {-1, 3}'
   'simd/sample_pattern.cpp|pattern.x[static_cast<std::size_t>(i)] = i * 8 + 4|pattern.x[static_cast<std::size_t>(i)] = i * 8 + 3'
   'simd/conserve.h|fraction * fraction * own_error|fraction * own_error'
-  'stages/compose_window.cpp|kSurfaceReach = 1.0f / 64.0f|kSurfaceReach = 1.0f'
-  'stages/compose_window.cpp|kSpeckShares = 4.0f|kSpeckShares = 1.0f'
+  'stages/compose_cost.h|kSurfaceReach = 1.0f / 64.0f|kSurfaceReach = 1.0f'
+  'stages/compose_cost.h|kSpeckShares = 4.0f|kSpeckShares = 1.0f'
   'stages/compose_window.cpp|votes / 3.0f|votes / 2.0f'
   'stages/beam_fragment.h|kZeroArea = 5e-7f|kZeroArea = 5e-5f'
   'stages/reference_raster.cpp|2 * reversed + 1|2 * reversed'
-  'stages/vertex_setup.cpp|Real(double{kSubpixelUnits}) + Real(0.5)|Real(double{kSubpixelUnits}) + Real(0.25)'
+  'simd/vertex_transform.h|Real(double{kSubpixelUnits}) + Real(0.5)|Real(double{kSubpixelUnits}) + Real(0.25)'
+  'simd/vertex_transform.cpp|hn::Le(hn::Abs(value), w)|hn::Lt(hn::Abs(value), w)'
+  'simd/vertex_transform.cpp|hn::Gt(w, zero)|hn::Ge(w, zero)'
+  'simd/vertex_transform.h|magnitude(v.z) <= v.w|magnitude(v.z) < v.w'
   'stages/vertex_setup.h|kGuardBand = 32768.0|kGuardBand = 65536.0'
   'simd/window_owners.cpp|kFar = std::numeric_limits<float>::infinity()|kFar = -0.25f'
   'simd/position_mask.cpp|kSmallSlope = 1 << 20|kSmallSlope = 1 << 25'
   'simd/position_mask.cpp|kDecided = 1 << 30|kDecided = 1 << 20'
   'simd/cell_rows.cpp|hn::Iota(d, 0.0)|hn::Iota(d, 1.0)'
   'stages/windows.cpp|nearest <= farthest|nearest < farthest'
+  'stages/merge_sort.h|return depth < other|return depth <= other'
+  'stages/merge_sort.h|comes_first(depth_of(from[i]), depth_of(from[j]))|!comes_first(depth_of(from[j]), depth_of(from[i]))'
+  'stages/sample_raster.cpp|kRounding = 0x1p-21|kRounding = 0x1p-31'
+  'stages/closed_depth.h|nearest > depth_[tile_.index(x, y)]|nearest >= depth_[tile_.index(x, y)]'
+  'stages/closed_depth.h|nearest > farthest_|nearest >= farthest_'
+  'pipeline/bands.cpp|edge.b > 0 ? bottom : top|edge.b > 0 ? top : bottom'
+  'pipeline/bands.cpp|floor_of(-at_zero - 1,|floor_of(-at_zero,'
 )
 
 unnoticed=0
@@ -43,7 +53,10 @@ for mutant in "${mutants[@]}"; do
     exit 1
   fi
   noticed=
-  for folder in simd stages pipeline; do
+  folders=(simd stages pipeline)
+  [[ $file == stages/* ]] && folders=(stages pipeline)
+  [[ $file == pipeline/* ]] && folders=(pipeline)
+  for folder in "${folders[@]}"; do
     cmake --build "$build" --target "${folder}_tests" >/dev/null
     log=$("$build/tests/${folder}_tests" --gtest_fail_fast --gtest_brief=1 2>&1) && continue
     noticed=$(sed -n 's/^\[  FAILED  \] \([^ ,]*\).*/\1/p' <<<"$log" | head -1)
