@@ -85,5 +85,18 @@ TEST(VertexTransform, CornersOfTheViewLandOnCornersOfThePicture) {
   });
 }
 
+TEST(VertexTransform, TheEyeIsNotInView) {
+  VertexTransform transform = camera(1, 3, 1);
+  transform.to_clip[14] = 0;  // x, y, z and w are 0 there
+  const std::vector<float> eye = {0, 0, 0};
+  EXPECT_FALSE(transform_vertex_scalar(transform, 0, 0, 0).in_view);
+  on_every_target([&] {
+    ProjectedVertex found;
+    EXPECT_EQ(transform_vertices(eye.data(), 1, transform, &found), 0u);
+    EXPECT_TRUE(found.finite);
+    EXPECT_FALSE(found.in_view);
+  });
+}
+
 }  // namespace
 }  // namespace beampipe
