@@ -82,6 +82,10 @@ TEST(VertexTransform, CornersOfTheViewLandOnCornersOfThePicture) {
     EXPECT_EQ(found[0].screen.z, -1.0) << "near plane";
     EXPECT_NEAR(found[1].screen.z, 0, 1e-15) << "far plane";
     EXPECT_FALSE(found[3].in_view) << "behind the camera";
+    for (std::size_t i = 0; i < 4; ++i) {
+      const float* p = positions.data() + 3 * i;
+      EXPECT_EQ(found[i].in_view, transform_vertex_scalar(transform, p[0], p[1], p[2]).in_view) << i;
+    }
   });
 }
 
