@@ -32,9 +32,16 @@ def all_bytes(result):
     return sum(stage["bytes_read"] + stage["bytes_written"] for stage in measure.stages(result).values())
 
 
+def dram_bytes(result):
+    return sum(stage["dram_bytes"] for stage in measure.stages(result).values())
+
+
 def given_back(results, count):
     one, eight, acaa = (count(results[spec]) for spec in (ONE, EIGHT, ACAA))
     return (eight - acaa) / (eight - one)
+
+
+COUNTS = {"surface bytes": surface_bytes, "all counted bytes": all_bytes, "DRAM bytes": dram_bytes}
 
 
 def precision(program, folder, trace):
@@ -54,7 +61,7 @@ def main():
         sys.exit(__doc__.strip())
     program, shares = sys.argv[1], []
     measure.print_head("scene", *[f"`{spec}`" for spec in PICTURES],
-                       *[f"MB per frame: `{spec}`" for spec in (ONE, EIGHT, ACAA)], "given back", "of all counted bytes")
+                       *[f"MB per frame: `{spec}`" for spec in (ONE, EIGHT, ACAA)], *[f"given back of {what}" for what in COUNTS])
     with tempfile.TemporaryDirectory() as folder:
         traces = [(path, pathlib.Path(path).stem) for path in sys.argv[2:]]
         traces += [(measure.make(program, scene, f"{folder}/{scene}.json"), scene) for scene in measure.PROCEDURAL]
@@ -63,7 +70,7 @@ def main():
             truth = f"{folder}/{results[EIGHT]['frames'][0]['image']}"
             differences = [measure.difference(program, f"{folder}/{results[spec]['frames'][0]['image']}", truth)["rmse"]
                            for spec in PICTURES]
-            shares.append([given_back(results, surface_bytes), given_back(results, all_bytes)])
+            shares.append([given_back(results, count) for count in COUNTS.values()])
             measure.print_row(name, *[f"{difference:.5f}" for difference in differences],
                               *[f"{surface_bytes(results[spec]) / 1e6:.2f}" for spec in (ONE, EIGHT, ACAA)],
                               *[f"{100 * share:.0f} %" for share in shares[-1]])

@@ -30,7 +30,7 @@ struct Accumulator {
   float sample_share;                // of the pixel: 1 / samples of all passes
   float limit = 1;                   // what alpha may sum up to so far: the share of the samples that were looked at
   std::vector<glm::vec4> color;      // one per pixel of the tile; alpha: the shares so far
-  std::vector<float> background;     // the share of accumulate_background: only to know the image's A
+  std::vector<float> background;     // the share of accumulate_background: only to know the image's A, and not counted
   std::vector<std::uint32_t> taken;  // stencil: samples that were passed before, since it was cleared
 
   Accumulator(const Tile& tile, int samples, AccumulatorFormat accumulator_format, DoubleCounting counting);

@@ -161,7 +161,10 @@ std::vector<std::uint32_t> looks_of(const Frame& frame) {
   for (const Draw& draw : frame.draws) {
     std::uint32_t look = mix_bits(mix_bits(kHashStart + static_cast<std::uint32_t>(looks.size())) ^ draw.mesh);
     if (draw.kd) look = hash(look, *draw.kd);
-    if (draw.shading == Shading::lambert) look = hash(look, frame.light_direction.value_or(glm::vec3(0.0f)));
+    if (draw.shading == Shading::lambert) {
+      look = hash(look, frame.light_direction.value_or(glm::vec3(0.0f)));
+      for (int axis = 0; axis < 3; ++axis) look = hash(look, glm::vec3(draw.transform[axis]));
+    }
     looks.push_back(look);
   }
   looks.push_back(hash(mix_bits(~kHashStart), frame.background));

@@ -41,7 +41,7 @@ std::vector<glm::vec2> motion(const SampleTile& surface, const Tile& tile, const
                               StageCounters& counters);
 
 // For each draw, and behind them for the background, a hash of all that its colours are made from: which draw and mesh
-// it is, its Kd, shading and light. Where it is and which way it is turned is not in it.
+// it is, its Kd, shading, light and, where it is lit, which way it is turned. Where it is is not in it.
 std::vector<std::uint32_t> looks_of(const Frame& frame);
 
 // What the samples of each pixel of a tile show, row by row.

@@ -3,6 +3,7 @@
 
 #include <cmath>
 #include <filesystem>
+#include <glm/gtc/matrix_transform.hpp>
 
 #include "pipeline/technique.h"
 #include "test_traces.h"
@@ -170,6 +171,24 @@ TEST(Dvm, WhatChangesItsLookLeavesNoGhost) {
   changed = lit;
   changed.frames[0].draws[0].mesh = 1;
   expect_no_ghost(lit, changed, "mesh");
+}
+
+// A lit square turns in place by 3 degrees a frame, and stops: it has the shade of the frame, not of those before.
+TEST(Dvm, WhatTurnsUnderTheLightLeavesNoGhost) {
+  Trace trace = pixel_trace(24, 16, quad(-8, -4, 8, 4, 0, glm::vec3(1)));
+  Frame& frame = trace.frames[0];
+  frame.projection[2][2] = 1.0 / 16, frame.projection[3][2] = 0;  // depth for a square on its edge
+  frame.draws[0].shading = Shading::lambert;
+  frame.light_direction = glm::normalize(glm::vec3(1, 0, 1));
+  const glm::dmat4 middle = glm::translate(glm::dmat4(1.0), glm::dvec3(12, 8, 0));
+  const Technique technique = parse_technique("dvm"), truth = parse_technique("msaa:8");
+  History history;
+  for (int i = 0; i < 20; ++i) {
+    frame.draws[0].transform = glm::rotate(middle, glm::radians(3.0 * std::min(i, 14)), glm::dvec3(0, 1, 0));
+    const Image found = technique.render(trace, 0, {1, &history}).image, exact = truth.render(trace, 0, {1}).image;
+    EXPECT_LT(std::abs(red(found, 12, 8) - red(exact, 12, 8)), 2e-3) << i;
+    EXPECT_LT(worst_difference(found, exact), 4e-3) << i;
+  }
 }
 
 // The same where none of a pixel's samples is given to a shading sample: 16 draws in a quad, of which 12 stay unknown.

@@ -140,8 +140,15 @@ TEST(Motion, ALookIsOfAllThatColorsAreMadeFrom) {
   EXPECT_EQ(changed([](Frame& f) { f.background = glm::vec3(1, 0, 0); }), (Which{false, false, true}));
   EXPECT_EQ(changed([](Frame& f) { f.draws[0].transform[3][0] = 1; }), (Which{false, false, false}));
   EXPECT_EQ(changed([](Frame& f) { f.light_direction = glm::vec3(1, 0, 0); }), (Which{false, false, false})) << "unlit";
+  const glm::dmat4 turn = glm::rotate(kIdentity, 0.05, glm::dvec3(0, 1, 0));
+  EXPECT_EQ(changed([&](Frame& f) { f.draws[1].transform = turn; }), (Which{false, false, false})) << "unlit";
   frame.draws[0].shading = Shading::lambert;
   EXPECT_EQ(changed([](Frame&) {}), (Which{true, false, false}));
+  const std::uint32_t lit = looks_of(frame)[0];
+  frame.draws[0].transform[3][0] = 1;
+  EXPECT_EQ(looks_of(frame)[0], lit) << "where it is";
+  frame.draws[0].transform = turn;
+  EXPECT_NE(looks_of(frame)[0], lit) << "which way it is turned";
 }
 
 TEST(Motion, DrawsAreKnownByIndexAndMesh) {
