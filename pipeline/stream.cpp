@@ -94,10 +94,11 @@ FrameResult render_shape(const Trace& trace, const Frame& frame, const StreamOpt
     color.add_bytes(bytes);
     color.read_all(resolving);
     write_image(run.memory, tile, resolving);
-    return TileResult{resolve(settled_colors(pixels), frame.background, sizeof pixels[0], timed(resolving)),
-                      {{"fragments", std::move(counts)}, {"passes", std::move(passes)}, {"bytes", std::move(bytes)}},
-                      {raster, fragment, claiming, shading, settling, resolving},
-                      held};
+    return TileResult{
+        resolve(settled_colors(pixels), frame.background, framebuffer.back().bytes_per_pixel, timed(resolving)),
+        {{"fragments", std::move(counts)}, {"passes", std::move(passes)}, {"bytes", std::move(bytes)}},
+        {raster, fragment, claiming, shading, settling, resolving},
+        held};
   };
   FrameResult result = render_tiles(frame, triangles, setup, kBinSize, run, render_tile);
   charge_passes(triangles, result);

@@ -4,6 +4,7 @@
 
 #include <set>
 
+#include "stages/counter_registry.h"
 #include "tools/claims.h"
 
 namespace beampipe {
@@ -51,6 +52,13 @@ TEST(Hardware, ShadersShareTheirUnitBetweenStages) {
   const ModelledTime time = modelled_time(titan, titan.implementations.at(0), {busy, busy});
   EXPECT_NEAR(clocks(titan, time.overlap_ms), 200, 1e-6);
   EXPECT_EQ(time.busiest, "shader");
+}
+
+// A stage without one would work for nothing. The reference is no pipeline of a GPU.
+TEST(Hardware, EveryStageHasUnits) {
+  for (const Implementation& implementation : titan_v().implementations)
+    for (const StageInfo& stage : stage_list())
+      EXPECT_EQ(implementation.units.contains(stage.name), stage.name != std::string("reference_raster")) << stage.name;
 }
 
 std::string refusal(const std::string& from, const std::string& to) {

@@ -188,7 +188,7 @@ function addPane(pane) {
     if (pixel) setCursor(pixel);
   });
   canvas.addEventListener("keydown", (event) => pressKey(pane, event));
-  new ResizeObserver(redrawAll).observe(canvas);
+  new ResizeObserver(() => requestAnimationFrame(redrawAll)).observe(canvas);
   view.panes.push(pane);
   return pane;
 }

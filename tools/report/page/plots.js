@@ -138,9 +138,9 @@ function makeFigure(figure) {
   };
   select.addEventListener("change", draw);
   let drawnWidth = 0;
-  new ResizeObserver(() => {
+  new ResizeObserver(() => requestAnimationFrame(() => {
     if (element.clientWidth !== drawnWidth) draw();
     drawnWidth = element.clientWidth;
-  }).observe(element);
+  })).observe(element);
   return element;
 }
