@@ -98,7 +98,7 @@ GROWTH = {
                   for n in (1000, 10_000, 100_000, 1_000_000)],
     "pixels": [("hairball", ["--triangles", "100000", "--width", str(16 * h // 9), "--height", str(h)], 16 * h * h // 9)
                for h in (180, 360, 720, 1440, 2160)],
-    "fragments per pixel": [("stack", ["--triangles", str(n), "--width", "64", "--height", "36"], n)
+    "layers per pixel": [("stack", ["--triangles", str(n), "--width", "64", "--height", "36"], n)
                             for n in (1, 10, 100, 1000, 10_000)],
 }
 GROWING = ["beam", "beam:order=stream", "msaa:8", "msaa:32"]

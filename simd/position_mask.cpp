@@ -124,10 +124,6 @@ PositionGrid::PositionGrid(int count)
     first_cells.y[8 + s] = first_cells.y[s];
   }
   first_cells.count = 16;
-  for (int i = 0; i < cells.columns * cells.rows; ++i) {
-    cell_x[static_cast<std::size_t>(i)] = i % cells.columns * cell_width;
-    cell_y[static_cast<std::size_t>(i)] = i / cells.columns * cell_height;
-  }
 }
 
 HWY_EXPORT(position_masks_kernel);

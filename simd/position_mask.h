@@ -17,8 +17,6 @@ struct PositionGrid {
   CellCounts cells;
   int cell_width = 0, cell_height = 0;  // 1/256 px
   SamplePattern first_cells;            // the positions of the first two cells of the first row
-  // Upper left corners of the cells, row by row, 1/256 px; 0 beyond.
-  alignas(64) std::array<std::int32_t, 32> cell_x{}, cell_y{};
 
   explicit PositionGrid(int count);
   int count() const { return 8 * cells.columns * cells.rows; }
@@ -41,7 +39,7 @@ WideMask position_mask_scalar(const PixelTriangleOf<Int>& in, const PositionGrid
           edges[k].a * Int(grid.first_cells.x[s]) + edges[k].b * Int(grid.first_cells.y[s]) + edges[k].c;
   }
   for (int cell = 0; cell < grid.cells.columns * grid.cells.rows; ++cell) {
-    const Int left(grid.cell_x[static_cast<std::size_t>(cell)]), top(grid.cell_y[static_cast<std::size_t>(cell)]);
+    const Int left(cell % grid.cells.columns * grid.cell_width), top(cell / grid.cells.columns * grid.cell_height);
     Int of_cell[3];
     for (int k = 0; k < 3; ++k) of_cell[k] = edges[k].a * left + edges[k].b * top;
     for (std::size_t s = 0; s < 8; ++s) {

@@ -1,7 +1,5 @@
 #include "simd/vertex_transform.h"
 
-#include <bit>
-
 #undef HWY_TARGET_INCLUDE
 #define HWY_TARGET_INCLUDE "simd/vertex_transform.cpp"
 #include "hwy/foreach_target.h"

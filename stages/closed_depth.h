@@ -1,6 +1,6 @@
 // The depth behind which a pixel is closed: a triangle that covers the whole pixel hides all that lies behind its
 // farthest depth there. One float per pixel of the tile and one for the tile, as in a hierarchical depth buffer
-// (Greene, Kass and Miller 1993).
+// (Greene, Kass and Miller 1993). Techniques that test samples have it for the cells of their grid.
 #pragma once
 
 #include <algorithm>

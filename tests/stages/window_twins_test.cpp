@@ -14,7 +14,7 @@
 #include "stages/shade.h"
 #include "stages/vertex_setup.h"
 #include "stages/windows.h"
-#include "traces/scenes.h"
+#include "tests/traces/scene_names.h"
 
 namespace beampipe {
 namespace {
