@@ -28,6 +28,7 @@ struct RunOptions {
   // Bytes for what is kept per triangle and pixel, all threads together; 0: no limit. Beyond it, a frame is rendered in
   // bands of tiles, with the same result; where a single tile needs more, rendering throws std::runtime_error.
   std::uint64_t memory_limit = 0;
+  int tile_size = 0;             // pixels on each side, even; 0: the technique's own. Pictures do not depend on it.
   Timeline* timeline = nullptr;  // where each stage call is recorded with its times; null: nowhere
 };
 

@@ -31,7 +31,7 @@ void place(TileResult& tile_result, const Tile& tile, const Frame& frame, FrameR
 FrameResult render_tiles(const Frame& frame, const SetupTriangles& triangles, const StageCounters& vertex_setup,
                          int tile_size, const RunOptions& options, std::size_t pair_bytes,
                          const TileRenderer& renderer) {
-  const TileGrid grid(frame, tile_size);
+  const TileGrid grid(frame, options.tile_size > 0 ? options.tile_size : tile_size);
   const std::size_t pixels = std::size_t{frame.width} * frame.height;
   FrameResult result;
   result.image = {frame.width, frame.height, std::vector<float>(4 * pixels)};
@@ -77,7 +77,7 @@ FrameResult render_tiles(const Frame& frame, const SetupTriangles& triangles, co
 
 void for_each_tile(const Frame& frame, int tile_size, const RunOptions& options, StageCounters& counters,
                    const std::function<void(const Tile&, StageCounters&)>& work) {
-  const std::vector<Tile> tiles = TileGrid(frame, tile_size).tiles;
+  const std::vector<Tile> tiles = TileGrid(frame, options.tile_size > 0 ? options.tile_size : tile_size).tiles;
   std::vector<StageCounters> of_tiles(tiles.size(), StageCounters{counters.stage});
   on_threads(options.threads, [&] {
     tbb::parallel_for(std::size_t{0}, tiles.size(), [&](std::size_t i) {

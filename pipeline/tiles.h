@@ -40,10 +40,10 @@ struct TileResult {
 
 using TileRenderer = std::function<TileResult(const Tile&, const TriangleList&)>;
 
-// Renders the frame tile by tile. `tile_size` in pixels, even. `vertex_setup`: of all passes over the geometry; the
-// raster stage, the first of every tile's, is charged with reading each setup triangle once in each of them.
-// `pair_bytes`: what the renderer keeps, until the tile is done, for each pixel that a triangle touches
-// (RunOptions::memory_limit); 0 when it works on a few triangles at a time.
+// Renders the frame tile by tile. `tile_size` in pixels, even, where the options name none. `vertex_setup`: of all
+// passes over the geometry; the raster stage, the first of every tile's, is charged with reading each setup triangle
+// once in each of them. `pair_bytes`: what the renderer keeps, until the tile is done, for each pixel that a triangle
+// touches (RunOptions::memory_limit); 0 when it works on a few triangles at a time.
 FrameResult render_tiles(const Frame& frame, const SetupTriangles& triangles, const StageCounters& vertex_setup,
                          int tile_size, const RunOptions& options, std::size_t pair_bytes,
                          const TileRenderer& renderer);

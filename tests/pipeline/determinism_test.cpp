@@ -60,6 +60,26 @@ TEST(Determinism, AnyInstructionSetAndNumberOfThreads) {
   }
 }
 
+// From the smallest tile, one quad, to one that is larger than the frame.
+TEST(Determinism, AnyTileSize) {
+  const Trace trace = random_trace(90, 70, 200, 5);
+  RunOptions options;
+  options.memory.modelled = false;  // its caches go tile by tile
+  for (const char* spec : kSpecs) {
+    const Technique technique = parse_technique(spec);
+    options.tile_size = 0;
+    const FrameResult expected = technique.render(trace, 0, options);
+    for (const int tile_size : {2, 6, 8, 16, 22, 32, 64, 128}) {
+      SCOPED_TRACE(spec + (" tile size: " + std::to_string(tile_size)));
+      options.tile_size = tile_size;
+      const FrameResult found = technique.render(trace, 0, options);
+      EXPECT_EQ(found.image.rgba, expected.image.rgba);
+      for (const auto& [name, values] : expected.pixel_counters)
+        EXPECT_EQ(found.pixel_counters.at(name), values) << name;
+    }
+  }
+}
+
 TEST(Determinism, TheFrameIsTheSameWhereverTilesFallInIt) {
   // The right and lower half of a frame, rendered alone: other tiles, same pixels.
   const Trace whole = random_trace(96, 96, 300, 9);
