@@ -3,6 +3,7 @@
 #include <string>
 
 #include "pipeline/memory/accumulator_memory.h"
+#include "pipeline/memory/geometry_memory.h"
 #include "pipeline/memory/image_memory.h"
 #include "pipeline/memory/sample_memory.h"
 #include "pipeline/sample_batches.h"
@@ -19,9 +20,6 @@ FrameResult render_acaa(const Trace& trace, const Frame& frame, const AcaaOption
   const SetupTriangles triangles = vertex_setup(trace, frame, StageTimer(run.timeline)(setup));
   const std::vector<glm::vec3> colors = shade_triangles(triangles, frame.light_direction);
   const std::vector<Sampling> rounds = acaa_rounds(options.samples);
-  StageCounters geometry;  // the triangles come twice per round
-  for (std::size_t i = 0; i < 2 * rounds.size(); ++i) geometry += setup;
-  geometry.stage = setup.stage;
 
   const TileRenderer render_tile = [&](const Tile& tile, const TriangleList& list) {
     const StageTimer timed(run.timeline, tile);
@@ -51,6 +49,7 @@ FrameResult render_acaa(const Trace& trace, const Frame& frame, const AcaaOption
         color.blend_background(depth, accumulation);
       }
       accumulator.taken.assign(tile.pixels(), 0);
+      AttributesInOrder attributes(run.memory);
       raster_in_batches(triangles, list, tile, sampling, timed, raster, held,
                         [&](std::vector<SampleFragment>& fragments) {
                           depth_test_equal(triangles, tile, sampling, timed(testing), depth, fragments, accesses);
@@ -61,6 +60,7 @@ FrameResult render_acaa(const Trace& trace, const Frame& frame, const AcaaOption
                             taken.mark(fragments, tile, stencil);
                           }
                           shade(fragments, timed(shading), &triangles.attributes);
+                          attributes.read(fragments, shading);
                           accumulate(fragments, colors, tile, timed(accumulation), accumulator);
                           color.blend(fragments, tile, accumulation);
                           count_fragments(fragments, tile, sampling.grid, counts);
@@ -77,12 +77,13 @@ FrameResult render_acaa(const Trace& trace, const Frame& frame, const AcaaOption
     TileResult result{resolve(accumulator, frame.background, timed(resolving)),
                       {{"visible_fragments", std::move(counts)}, {"bytes", std::move(bytes)}},
                       {raster, testing},
-                      held};
+                      held,
+                      2 * static_cast<int>(rounds.size())};
     if (options.double_counting == DoubleCounting::stencil) result.stages.push_back(stencil);
     result.stages.insert(result.stages.end(), {shading, accumulation, resolving});
     return result;
   };
-  return render_tiles(frame, triangles, geometry, bin_size(rounds.front().pattern.count), run, render_tile);
+  return render_tiles(frame, triangles, setup, bin_size(rounds.front().pattern.count), run, render_tile);
 }
 
 std::vector<Surface> acaa_framebuffer(const AcaaOptions& options) {

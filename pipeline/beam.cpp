@@ -5,7 +5,7 @@
 #include <string>
 
 #include "pipeline/memory/beam_memory.h"
-#include "pipeline/memory/image_memory.h"
+#include "pipeline/memory/geometry_memory.h"
 #include "pipeline/tiles.h"
 #include "pipeline/timeline.h"
 #include "stages/a_buffer.h"
@@ -42,7 +42,6 @@ struct BeamFrame {
 template <std::size_t Words, class Channel>
 FrameResult render_shape(const Trace& trace, const Frame& frame, const BeamOptions& beam, const RunOptions& run) {
   BeamFrame state(trace, frame, beam.positions, run);
-  stream(run.memory, state.triangles.triangles.size() * sizeof(SetupTriangle), state.setup);  // kept to be read again
   FrameResult result = render_tiles(
       frame, state.triangles, state.setup, kBinSize, run, kBufferedBytes,
       [&](const Tile& tile, const TriangleList& list) {
@@ -62,6 +61,7 @@ FrameResult render_shape(const Trace& trace, const Frame& frame, const BeamOptio
         const ABuffer buffer =
             a_buffer(records, tile.pixels(), kPairWithDepthBytes, kWaitingPairBytes, timed(buffering));
         Windows windows(pairs, buffer, kWaitingPairBytes);
+        TriangleFetches fetches(run.memory, list);
         while (windows.next([&](std::uint32_t pixel) { return !is_closed(pixels[pixel]); }, timed(windowing), window,
                             whole)) {
           fragments.clear();
@@ -69,15 +69,18 @@ FrameResult render_shape(const Trace& trace, const Frame& frame, const BeamOptio
           held.holds("window_pairs", (window.size() + whole.size()) * kPairWithDepthBytes);
           held.holds("window_fragments", fragments.size() * state.options.fragment_bytes);
           shade_visible(state.colors, fragments, timed(shading), &state.triangles.attributes);
+          fetches.setup(window, fragment);
+          fetches.attributes(fragments, shading);
           compose_window(fragments, state.positions, timed(composition), pixels, areas);
           shade_visible(whole, timed(shading), &state.triangles.attributes);
+          fetches.attributes(whole, shading);
           compose_whole(whole, tile, state.colors, timed(composition), pixels);
           for (const Fragment& item : fragments) tiny[item.pixel] += item.tiny;
         }
         std::vector<float> bytes = count_sorted_composition(
             run.memory, tile, buffer, records, kWaitingPairBytes, windows.looked_at, covered_pixels(pixels),
             closed_pixels(pixels), beam_framebuffer(beam), buffering, windowing, composition, resolving);
-        count_triangle_fetches(run.memory, tile, list, buffer, records, windows.partial, fragment);
+        fetches.flush(shading);
         return TileResult{resolve(composed_colors(pixels), frame.background, sizeof pixels[0], timed(resolving)),
                           {{"fragments", depths_of(buffer)},
                            {"tiny_triangles", std::move(tiny)},

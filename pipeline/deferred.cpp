@@ -1,6 +1,7 @@
 #include "pipeline/deferred.h"
 
 #include "pipeline/memory/gbuffer_memory.h"
+#include "pipeline/memory/geometry_memory.h"
 #include "pipeline/memory/sample_memory.h"
 #include "pipeline/sample_batches.h"
 #include "pipeline/tiles.h"
@@ -17,7 +18,6 @@ FrameResult render_deferred(const Trace& trace, const Frame& frame, const RunOpt
   const SetupTriangles triangles = vertex_setup(trace, frame, StageTimer(run.timeline)(setup));
   const std::vector<glm::vec3> colors = shade_triangles(triangles, frame.light_direction);
   const Sampling sampling{CellGrid{}, standard_pattern(1)};
-  setup += setup;  // the triangles come twice
   return render_tiles(frame, triangles, setup, kBinSize, run, [&](const Tile& tile, const TriangleList& list) {
     const StageTimer timed(run.timeline, tile);
     StageCounters raster{"sample_raster"}, testing{"depth_test"}, shading{"shade"}, lighting{"light"},
@@ -26,6 +26,7 @@ FrameResult render_deferred(const Trace& trace, const Frame& frame, const RunOpt
     SampleMemory memory(run.memory, tile, sampling, 0);
     const ZOrder order(tile.width(), tile.height());
     TileSurface gbuffer(run.memory, order, 1, kGBufferBytes);
+    AttributesInOrder attributes(run.memory);
     std::vector<SampleAccess> accesses;
     BinBuffers held;
     raster_in_batches(triangles, list, tile, sampling, timed, raster, held,
@@ -39,6 +40,7 @@ FrameResult render_deferred(const Trace& trace, const Frame& frame, const RunOpt
                         depth_test_equal(triangles, tile, sampling, timed(testing), surface, fragments, accesses);
                         memory.test_equal(accesses, testing);
                         write_gbuffer(fragments, timed(shading));
+                        attributes.read(fragments, shading);
                         for (const SampleAccess& access : accesses)
                           gbuffer.access(access.triangle, access.cell, 0, access.passed, shading);
                       });
@@ -51,7 +53,8 @@ FrameResult render_deferred(const Trace& trace, const Frame& frame, const RunOpt
     return TileResult{resolve(surface, tile.pixels(), colors, frame.background, timed(resolving)),
                       {},
                       {raster, testing, shading, lighting, resolving},
-                      held};
+                      held,
+                      2};
   });
 }
 

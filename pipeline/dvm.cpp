@@ -1,5 +1,6 @@
 #include "pipeline/dvm.h"
 
+#include "pipeline/memory/geometry_memory.h"
 #include "pipeline/memory/image_memory.h"
 #include "pipeline/memory/sample_memory.h"
 #include "pipeline/sample_batches.h"
@@ -57,6 +58,11 @@ FrameResult render_dvm(const Trace& trace, const Frame& frame, const DvmOptions&
         memory.read_color(selecting);
         stream(run.memory, shaded * kShadingSampleBytes, selecting);
         stream(run.memory, shaded * (kVisibilityBytes + kGBufferBytes), shading);
+        TriangleFetches fetches(run.memory, list);
+        for (const SampleQuad& quad : selected)
+          for (const std::uint32_t triangle : quad.triangle)
+            if (triangle != kNoTriangle) fetches.attributes(triangle, shading);
+        fetches.flush(shading);
         stream(run.memory, shaded * (kGBufferBytes + kSampleColorBytes), lighting);
         memory.read_depth(moving);
         memory.read_color(moving);

@@ -2,6 +2,7 @@
 
 #include <string>
 
+#include "pipeline/memory/geometry_memory.h"
 #include "pipeline/memory/image_memory.h"
 #include "pipeline/memory/sample_memory.h"
 #include "pipeline/sample_batches.h"
@@ -25,7 +26,6 @@ FrameResult render_msaa(const Trace& trace, const Frame& frame, const MsaaOption
   const SetupTriangles triangles = vertex_setup(trace, frame, StageTimer(run.timeline)(setup));
   const std::vector<glm::vec3> colors = round_to_half(shade_triangles(triangles, frame.light_direction));
   const Sampling sampling = msaa_sampling(options.samples);
-  if (options.prepass) setup += setup;  // the triangles come twice
 
   const TileRenderer render_tile = [&](const Tile& tile, const TriangleList& list) {
     const StageTimer timed(run.timeline, tile);
@@ -36,8 +36,10 @@ FrameResult render_msaa(const Trace& trace, const Frame& frame, const MsaaOption
     BinBuffers held;
     const auto same_color = [&](std::uint32_t a, std::uint32_t b) { return colors[a] == colors[b]; };
     SampleMemory memory(run.memory, tile, sampling, color_bytes(options), same_color);
+    AttributesInOrder attributes(run.memory);
     const auto shade_all = [&](const std::vector<SampleFragment>& fragments) {
       shade(fragments, timed(shading), &triangles.attributes);
+      attributes.read(fragments, shading);
       if (options.at == ShadeAt::centroid)
         count_centroids(triangles, fragments, tile, sampling, timed(shading), centroids);
     };
@@ -66,7 +68,8 @@ FrameResult render_msaa(const Trace& trace, const Frame& frame, const MsaaOption
     TileResult result{resolve(surface, tile.pixels(), colors, frame.background, timed(resolving)),
                       {{"fragments", std::move(counts)}, {"bytes", std::move(bytes)}},
                       {raster, shading, testing, resolving},
-                      held};
+                      held,
+                      options.prepass ? 2 : 1};
     if (options.at == ShadeAt::centroid) result.pixel_counters.emplace_back("centroids", std::move(centroids));
     return result;
   };

@@ -4,6 +4,7 @@
 #include <string>
 
 #include "pipeline/memory/beam_memory.h"
+#include "pipeline/memory/geometry_memory.h"
 #include "pipeline/tiles.h"
 #include "pipeline/timeline.h"
 #include "stages/a_buffer.h"
@@ -90,6 +91,7 @@ FrameResult render_published(const Trace& trace, const Frame& frame, const Publi
         held.holds("bin_pairs", pairs.size() * kPixelTriangleBytes);
         held.holds("bin_fragments", fragments.size() * state.bytes.fragment);
         shade(state.colors, fragments, timed(shading), &state.triangles.attributes);
+        AttributesInOrder(run.memory).read(fragments, shading);
         const std::vector<SortRecord> records = sort_records(fragments, beam.sort);
         const ABuffer buffer =
             a_buffer(records, tile.pixels(), state.bytes.fragment, state.bytes.fragment, timed(buffering));

@@ -17,7 +17,9 @@ FrameResult render_reference(const Trace& trace, const Frame& frame, const RunOp
   StageCounters setup;
   const SetupTriangles triangles = vertex_setup(trace, frame, StageTimer(run.timeline)(setup));
   const std::vector<glm::vec3> colors = shade_triangles(triangles, frame.light_direction);
-  return render_tiles(frame, triangles, setup, kTileSize, run, [&](const Tile& tile, const TriangleList& list) {
+  RunOptions without_memory = run;
+  without_memory.memory.modelled = false;  // nobody builds a machine for this
+  return render_tiles(frame, triangles, setup, kTileSize, without_memory, [&](const Tile& tile, const TriangleList& list) {
     const StageTimer timed(run.timeline, tile);
     StageCounters raster{"reference_raster"}, resolving{"resolve"};
     ReferenceTile surface(tile);

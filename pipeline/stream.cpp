@@ -6,6 +6,7 @@
 
 #include "pipeline/batches.h"
 #include "pipeline/memory/beam_memory.h"
+#include "pipeline/memory/geometry_memory.h"
 #include "pipeline/memory/image_memory.h"
 #include "pipeline/tiles.h"
 #include "pipeline/timeline.h"
@@ -17,18 +18,6 @@
 
 namespace beampipe {
 namespace {
-
-// Each pass draws the frame's geometry again, as many times as the pixel that takes the most passes needs.
-void charge_passes(const SetupTriangles& triangles, FrameResult& result) {
-  const std::vector<float>& passes = result.pixel_counters.at("passes");
-  const StageCounters once = result.stages[0];
-  StageCounters &vertices = result.stages[0], &raster = result.stages[1];
-  for (float pass = 1; pass < *std::max_element(passes.begin(), passes.end()); ++pass) {
-    vertices += once;
-    raster.items_in += triangles.triangles.size();
-    raster.bytes_read += triangles.triangles.size() * sizeof(SetupTriangle);
-  }
-}
 
 // Moves the state of each pixel that has owners, once; their fragments stand pixel by pixel.
 void move_settled(const std::vector<Fragment>& fragments, AggregateMemory& memory, StageCounters& counters) {
@@ -61,7 +50,10 @@ FrameResult render_shape(const Trace& trace, const Frame& frame, const StreamOpt
     ClosedDepth closed(tile);
     held.holds("closed_depth", closed.bytes());
     Tile box = tile;
-    for (int pass = 1; box.x0 < box.x1; ++pass) {
+    TriangleFetches fetches(run.memory, list);
+    int pass = 0;
+    while (box.x0 < box.x1) {
+      ++pass;
       for (std::size_t i = 0; i < pixels.size(); ++i) passes[i] += is_unfinished(pixels[i]);
       for_each_batch(list, [&](const TriangleList& batch) {
         pairs.clear(), fragments.clear();
@@ -76,9 +68,13 @@ FrameResult render_shape(const Trace& trace, const Frame& frame, const StreamOpt
       });
       state.flush({}, claiming);
       fragments.clear();
-      beam_fragment(triangles, owners(triangles, pixels, tile), tile, options, timed(fragment), fragments);
+      const std::vector<PixelTriangle> owned = owners(triangles, pixels, tile);
+      beam_fragment(triangles, owned, tile, options, timed(fragment), fragments);
       held.holds("owner_fragments", fragments.size() * options.fragment_bytes);
       shade_visible(colors, fragments, timed(shading), &triangles.attributes);
+      fetches.setup(owned, fragment);
+      fetches.attributes(fragments, shading);
+      fetches.flush(shading);
       settle(fragments, pass == stream.passes, timed(settling), pixels);
       if (run.memory.modelled) {
         move_settled(fragments, state, settling);
@@ -98,11 +94,10 @@ FrameResult render_shape(const Trace& trace, const Frame& frame, const StreamOpt
         resolve(settled_colors(pixels), frame.background, framebuffer.back().bytes_per_pixel, timed(resolving)),
         {{"fragments", std::move(counts)}, {"passes", std::move(passes)}, {"bytes", std::move(bytes)}},
         {raster, fragment, claiming, shading, settling, resolving},
-        held};
+        held,
+        pass};
   };
-  FrameResult result = render_tiles(frame, triangles, setup, kBinSize, run, render_tile);
-  charge_passes(triangles, result);
-  return result;
+  return render_tiles(frame, triangles, setup, kBinSize, run, render_tile);
 }
 
 }  // namespace

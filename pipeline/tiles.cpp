@@ -6,7 +6,7 @@
 #include <algorithm>
 
 #include "pipeline/bands.h"
-#include "pipeline/memory/image_memory.h"
+#include "pipeline/memory/geometry_memory.h"
 #include "pipeline/threads.h"
 #include "pipeline/timeline.h"
 
@@ -35,13 +35,20 @@ FrameResult render_tiles(const Frame& frame, const SetupTriangles& triangles, co
   const std::size_t pixels = std::size_t{frame.width} * frame.height;
   FrameResult result;
   result.image = {frame.width, frame.height, std::vector<float>(4 * pixels)};
-  result.stages = {vertex_setup};
-  stream(options.memory, vertex_setup.bytes_read, result.stages.front());
+  StageCounters setup_pass = vertex_setup, raster_pass;  // what one pass over the geometry takes
+  move_setup(options.memory, vertex_setup.bytes_read, triangles.triangles.size(), setup_pass);
+  raster_pass.items_in = vertex_setup.items_out;
+  raster_pass.bytes_read = vertex_setup.items_out * sizeof(SetupTriangle);
+  result.stages = {StageCounters{vertex_setup.stage}};
+  int passes = 1;
   std::uint64_t list_bytes = 0;
   BinBuffers of_bins;
   const auto render_band = [&](const Band& band) {
     const std::vector<TriangleList> lists = bin_triangles(triangles, grid, band);
-    for (const TriangleList& list : lists) list_bytes += list.size() * sizeof list[0];
+    for (const TriangleList& list : lists) {
+      list_bytes += list.size() * sizeof list[0];
+      move_bin(options.memory, list, raster_pass);
+    }
     std::vector<TileResult> results(lists.size());
     const auto render = [&](std::size_t i) { results[i] = renderer(grid.tiles[band.first + i], lists[i]); };
     render(0);  // tells which counters there are
@@ -53,6 +60,7 @@ FrameResult render_tiles(const Frame& frame, const SetupTriangles& triangles, co
     });
     result.stages.resize(1 + results.front().stages.size());
     for (const TileResult& of_tile : results) {
+      passes = std::max(passes, of_tile.passes);
       for (const auto& [name, bytes] : of_tile.buffers.peaks()) of_bins.holds(name, bytes);
       for (std::size_t s = 0; s < of_tile.stages.size(); ++s) {
         result.stages[s + 1].stage = of_tile.stages[s].stage;
@@ -65,9 +73,10 @@ FrameResult render_tiles(const Frame& frame, const SetupTriangles& triangles, co
     if (band.first > 0) malloc_trim(0);  // what glibc keeps of the freed memory of a band adds to that of the next
     on_threads(options.threads, [&] { render_band(band); });
   }
-  StageCounters& raster = result.stages[1];
-  raster.items_in += vertex_setup.items_out;
-  raster.bytes_read += vertex_setup.items_out * sizeof(SetupTriangle);
+  for (int pass = 0; pass < passes; ++pass) {
+    result.stages[0] += setup_pass;
+    result.stages[1] += raster_pass;
+  }
   if (!options.memory.modelled) result.pixel_counters.erase("bytes");
   result.buffers = {{"setup_triangles", triangles.triangles.size() * (sizeof(SetupTriangle) + sizeof(FlatAttributes))},
                     {"bin_lists", list_bytes}};

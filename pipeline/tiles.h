@@ -36,13 +36,14 @@ struct TileResult {
   std::vector<std::pair<std::string, std::vector<float>>> pixel_counters;
   std::vector<StageCounters> stages;  // in pipeline order, the same stages for every tile
   BinBuffers buffers = {};
+  int passes = 1;  // over the bin's triangles
 };
 
 using TileRenderer = std::function<TileResult(const Tile&, const TriangleList&)>;
 
-// Renders the frame tile by tile. `tile_size` in pixels, even, where the options name none. `vertex_setup`: of all
-// passes over the geometry; the raster stage, the first of every tile's, is charged with reading each setup triangle
-// once in each of them. `pair_bytes`: what the renderer keeps, until the tile is done, for each pixel that a triangle
+// Renders the frame tile by tile. `tile_size` in pixels, even, where the options name none. `vertex_setup`: of one pass;
+// it runs in each pass, and the raster stage, the first of every tile's, reads each setup triangle (in memory, each bin
+// those of its list). `pair_bytes`: what the renderer keeps, until the tile is done, for each pixel that a triangle
 // touches (RunOptions::memory_limit); 0 when it works on a few triangles at a time.
 FrameResult render_tiles(const Frame& frame, const SetupTriangles& triangles, const StageCounters& vertex_setup,
                          int tile_size, const RunOptions& options, std::size_t pair_bytes,

@@ -2,6 +2,7 @@
 
 #include "pipeline/deferred.h"
 #include "pipeline/memory/gbuffer_memory.h"
+#include "pipeline/memory/geometry_memory.h"
 #include "pipeline/memory/sample_memory.h"
 #include "pipeline/sample_batches.h"
 #include "pipeline/tiles.h"
@@ -47,7 +48,9 @@ TileResult visibility_tile(const SetupTriangles& triangles, const TriangleList& 
   memory.add_bytes(bytes);
   TileSurface gbuffer(run.memory, order, 1, kGBufferBytes);
   memory.read_color(shading);
-  fetch_attributes(run.memory, surface, shown, shading);
+  TriangleFetches fetches(run.memory, list);
+  for (const std::uint32_t pixel : shown) fetches.attributes(surface.triangle[pixel], shading);
+  fetches.flush(shading);
   write_pixels(shown, gbuffer, shading);
   move_light_and_resolve(run.memory, tile, order, shown, gbuffer, lighting, resolving);
   surface.color_bytes = kSampleColorBytes;

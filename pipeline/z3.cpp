@@ -5,6 +5,7 @@
 
 #include "pipeline/batches.h"
 #include "pipeline/memory/beam_memory.h"
+#include "pipeline/memory/geometry_memory.h"
 #include "pipeline/memory/image_memory.h"
 #include "pipeline/tiles.h"
 #include "pipeline/timeline.h"
@@ -32,6 +33,7 @@ FrameResult render_shape(const Trace& trace, const Frame& frame, const Z3Options
     std::vector<float> counts(tile.pixels()), bytes(tile.pixels());
     const ZOrder order(tile.width(), tile.height());
     AggregateMemory memory(run.memory, order, z3_framebuffer(z3));
+    AttributesInOrder attributes(run.memory);
     BinBuffers held;
     std::vector<PixelTriangle> pairs;
     std::vector<Fragment> fragments;
@@ -42,6 +44,7 @@ FrameResult render_shape(const Trace& trace, const Frame& frame, const Z3Options
       held.holds("batch_pairs", pairs.size() * kPairWithDepthBytes);
       held.holds("batch_fragments", fragments.size() * options.fragment_bytes);
       shade(colors, fragments, timed(shading));
+      attributes.read(fragments, shading);
       for (const Fragment& item : fragments) ++counts[item.pixel];
       compose_z3(fragments, positions, z3.merge, timed(composition), pixels);
       for (const Fragment& item : fragments) memory.merge(item.triangle, item.pixel, composition);

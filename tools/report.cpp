@@ -111,7 +111,6 @@ Json to_json(const MemoryParameters& memory) {
           {"l1_cache", to_json(memory.l1)},
           {"l2_cache", to_json(memory.l2)},
           {"plane_bytes", memory.plane_bytes},
-          {"triangles_per_batch", memory.triangles_per_batch},
           {"bin_pixels", kBinSize}};
 }
 

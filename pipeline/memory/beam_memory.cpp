@@ -6,50 +6,16 @@
 
 namespace beampipe {
 
-LinearMemory::LinearMemory(const MemoryParameters& parameters, std::size_t records, std::uint32_t record_bytes)
-    : record_bytes_(record_bytes),
-      line_bytes_(parameters.l2.line_bytes),
-      l2_(parameters, parameters.l2, BlockCache::Level::l2, (records * record_bytes_ + line_bytes_ - 1) / line_bytes_,
-          line_bytes_, false, nullptr),
-      l1_(parameters, parameters.l1, l2_) {}
-
-template <class Access>
-void LinearMemory::each_line(std::uint32_t record, Access&& access) const {
-  const std::size_t begin = std::size_t{record} * record_bytes_, end = begin + record_bytes_;
-  for (std::size_t at = begin; at < end;) {
-    const std::size_t block = at / line_bytes_, stop = std::min(end, (block + 1) * line_bytes_);
-    access(block, static_cast<std::uint32_t>(at % line_bytes_), static_cast<std::uint32_t>(stop - at));
-    at = stop;
-  }
-}
-
-void LinearMemory::write(std::uint32_t key, std::uint32_t record, StageCounters& counters) {
-  each_line(record, [&](std::size_t block, std::uint32_t first, std::uint32_t bytes) {
-    l2_.write(key, block, first, bytes, counters);
-  });
-}
-
-void LinearMemory::read(std::uint32_t key, std::uint32_t record, StageCounters& counters) {
-  each_line(record, [&](std::size_t block, std::uint32_t first, std::uint32_t bytes) {
-    l1_.read(key, block, first, bytes, counters);
-  });
-}
-
-void LinearMemory::flush(StageCounters& counters) {
-  l1_.flush(counters);
-  l2_.flush(counters);
-}
-
 ABufferMemory::ABufferMemory(const MemoryParameters& parameters, const ZOrder& order, std::size_t records,
                              std::uint32_t record_bytes)
     : record_bytes_(record_bytes + kLinkBytes),
       heads_(parameters, order, 1, kLinkBytes, nullptr, BlockCache::Level::l2),
-      records_(parameters, records, record_bytes_) {}
+      records_(parameters, records * record_bytes_) {}
 
 void ABufferMemory::insert(const std::vector<SortRecord>& records, StageCounters& counters) {
   for (std::uint32_t i = 0; i < records.size(); ++i) {
     heads_.access(records[i].triangle, records[i].pixel, 1, 1, counters);
-    records_.write(records[i].triangle, i, counters);
+    records_.write(records[i].triangle, std::size_t{i} * record_bytes_, record_bytes_, counters);
   }
   heads_.flush(counters);
   records_.flush(counters);
@@ -58,11 +24,11 @@ void ABufferMemory::insert(const std::vector<SortRecord>& records, StageCounters
 
 void ABufferMemory::sort(std::uint32_t pixel, const ABuffer& buffer, StageCounters& counters) {
   for (std::uint32_t i = buffer.first[pixel]; i < buffer.first[pixel + 1]; ++i)
-    records_.read(pixel, buffer.records[i], counters);
+    read_record(pixel, buffer.records[i], counters);
 }
 
 void ABufferMemory::compose(std::uint32_t pixel, const ABuffer& buffer, std::uint32_t merged, StageCounters& counters) {
-  for (std::uint32_t i = 0; i < merged; ++i) records_.read(pixel, buffer.records[buffer.first[pixel] + i], counters);
+  for (std::uint32_t i = 0; i < merged; ++i) read_record(pixel, buffer.records[buffer.first[pixel] + i], counters);
 }
 
 AggregateMemory::AggregateMemory(const MemoryParameters& parameters, const ZOrder& order,
@@ -146,22 +112,6 @@ std::vector<float> count_sorted_composition(const MemoryParameters& parameters, 
   write_image(parameters, tile, resolving);
   aggregates.add_bytes(bytes);
   return bytes;
-}
-
-void count_triangle_fetches(const MemoryParameters& parameters, const Tile& tile, const TriangleList& list,
-                            const ABuffer& buffer, const std::vector<SortRecord>& records,
-                            const std::vector<float>& partial, StageCounters& fetching) {
-  if (!parameters.modelled) return;
-  const ZOrder order(tile.width(), tile.height());
-  LinearMemory triangles(parameters, list.size(), sizeof(SetupTriangle));
-  for_each_list(order, tile, buffer, [&](std::uint32_t pixel) {
-    for (std::uint32_t i = 0; i < static_cast<std::uint32_t>(partial[pixel]); ++i) {
-      const std::uint32_t triangle = records[buffer.records[buffer.first[pixel] + i]].triangle;
-      const auto place = std::lower_bound(list.begin(), list.end(), triangle) - list.begin();
-      triangles.read(pixel, static_cast<std::uint32_t>(place), fetching);
-    }
-  });
-  triangles.flush(fetching);
 }
 
 }  // namespace beampipe

@@ -4,32 +4,13 @@
 
 #include <vector>
 
+#include "pipeline/memory/linear_memory.h"
 #include "pipeline/memory/tile_surface.h"
 #include "pipeline/technique.h"
 #include "stages/a_buffer.h"
 #include "stages/resolve.h"
 
 namespace beampipe {
-
-// Records that follow each other in memory, as shaders read and write them: writes go to L2, reads through an L1.
-class LinearMemory {
- public:
-  LinearMemory(const MemoryParameters& parameters, std::size_t records, std::uint32_t record_bytes);
-
-  // A whole record.
-  void write(std::uint32_t key, std::uint32_t record, StageCounters& counters);
-  void read(std::uint32_t key, std::uint32_t record, StageCounters& counters);
-
-  // The end of a pass over the frame.
-  void flush(StageCounters& counters);
-
- private:
-  template <class Access>
-  void each_line(std::uint32_t record, Access&& access) const;
-
-  std::uint32_t record_bytes_, line_bytes_;
-  BlockCache l2_, l1_;
-};
 
 class ABufferMemory {
  public:
@@ -52,6 +33,10 @@ class ABufferMemory {
   }
 
  private:
+  void read_record(std::uint32_t pixel, std::uint32_t record, StageCounters& counters) {
+    records_.read(pixel, std::size_t{record} * record_bytes_, record_bytes_, counters);
+  }
+
   std::uint32_t record_bytes_;  // with the link
   TileSurface heads_;           // exchanged by atomic operations, which L2 does
   LinearMemory records_;
@@ -92,11 +77,5 @@ std::vector<float> count_sorted_composition(const MemoryParameters& parameters, 
                                             const std::vector<bool>& full, const std::vector<Surface>& framebuffer,
                                             StageCounters& buffering, StageCounters& fetching,
                                             StageCounters& composition, StageCounters& resolving);
-
-// Setup triangles that are read again for the pairs of a sorted A-buffer: those of the bin's list, which follow each
-// other in memory. `partial`, per pixel: of how many of its first records fragments are made.
-void count_triangle_fetches(const MemoryParameters& parameters, const Tile& tile, const TriangleList& list,
-                            const ABuffer& buffer, const std::vector<SortRecord>& records,
-                            const std::vector<float>& partial, StageCounters& fetching);
 
 }  // namespace beampipe

@@ -1,7 +1,5 @@
 #include "pipeline/memory/gbuffer_memory.h"
 
-#include <set>
-
 #include "pipeline/memory/image_memory.h"
 #include "stages/shade.h"
 
@@ -17,17 +15,6 @@ std::vector<std::uint32_t> shown_pixels(const SampleTile& surface, const Tile& t
 void write_pixels(const std::vector<std::uint32_t>& pixels, TileSurface& to, StageCounters& counters) {
   for (const std::uint32_t pixel : pixels) to.write(0, pixel, counters);
   to.flush(counters);
-}
-
-void fetch_attributes(const MemoryParameters& memory, const SampleTile& surface,
-                      const std::vector<std::uint32_t>& pixels, StageCounters& counters) {
-  if (!memory.modelled) return;
-  std::set<std::uint32_t> triangles;
-  for (const std::uint32_t pixel : pixels) triangles.insert(surface.triangle[pixel]);
-  const std::uint64_t sectors = (sizeof(FlatAttributes) + memory.sector_bytes - 1) / memory.sector_bytes;
-  counters.sector_bytes += pixels.size() * sectors * memory.sector_bytes;
-  counters.l2_bytes += triangles.size() * sectors * memory.sector_bytes;
-  counters.dram_bytes += triangles.size() * sectors * memory.sector_bytes;
 }
 
 void move_light_and_resolve(const MemoryParameters& memory, const Tile& tile, const ZOrder& order,

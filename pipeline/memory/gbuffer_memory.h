@@ -14,11 +14,6 @@ std::vector<std::uint32_t> shown_pixels(const SampleTile& surface, const Tile& t
 // Writes each of the pixels once, and ends the pass.
 void write_pixels(const std::vector<std::uint32_t>& pixels, TileSurface& to, StageCounters& counters);
 
-// By a pixel's triangle number its attributes are fetched from memory: a request each, and each triangle of the bin,
-// no more than L1 holds, once from L2 and DRAM.
-void fetch_attributes(const MemoryParameters& memory, const SampleTile& surface,
-                      const std::vector<std::uint32_t>& pixels, StageCounters& counters);
-
 // Light: from the G-buffer to colour. Resolve: from colour to the picture.
 void move_light_and_resolve(const MemoryParameters& memory, const Tile& tile, const ZOrder& order,
                             const std::vector<std::uint32_t>& pixels, TileSurface& gbuffer, StageCounters& lighting,

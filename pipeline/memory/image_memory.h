@@ -1,21 +1,11 @@
-// What a pass over the frame writes or reads once, pixel by pixel: streams that no cache can help.
+// What a pass over the frame writes or reads once, pixel by pixel.
 #pragma once
 
-#include "pipeline/memory/parameters.h"
-#include "stages/counters.h"
+#include "pipeline/memory/linear_memory.h"
 #include "stages/motion.h"
 #include "stages/tile.h"
 
 namespace beampipe {
-
-// `bytes` in a row, read or written: whole sectors, each moved once.
-inline void stream(const MemoryParameters& memory, std::uint64_t bytes, StageCounters& counters) {
-  if (!memory.modelled) return;
-  const std::uint64_t whole = (bytes + memory.sector_bytes - 1) / memory.sector_bytes * memory.sector_bytes;
-  counters.sector_bytes += whole;
-  counters.l2_bytes += whole;
-  counters.dram_bytes += whole;
-}
 
 inline constexpr std::uint64_t kImagePixelBytes = 6;  // fp16 RGB
 

@@ -50,10 +50,6 @@ struct MemoryParameters {
   // Compression", plane encoding.
   std::uint32_t plane_bytes = 12;
 
-  // Triangles that the binning hardware takes at once; after as many the caches are written back and empty, as other
-  // bins have passed through them. 0: the whole frame is binned. No vendor gives its number.
-  std::uint32_t triangles_per_batch = 0;
-
   bool operator==(const MemoryParameters&) const = default;
 };
 

@@ -57,7 +57,6 @@ TileSurface::TileSurface(const MemoryParameters& parameters, const ZOrder& order
       part_bytes_(part_bytes),
       element_bytes_(parts * part_bytes),
       mask_bytes_((parts + 7) / 8),
-      triangles_per_batch_(parameters.triangles_per_batch),
       log2_elements_per_block_(log2_block_elements(cache_of(parameters, level), element_bytes_)),
       touched_bytes_(parameters.modelled ? order.of.size() : 0),
       cache_(parameters, cache_of(parameters, level), level, block_count(order, log2_elements_per_block_),
@@ -73,10 +72,6 @@ TileSurface::TileSurface(const MemoryParameters& parameters, const ZOrder& order
 void TileSurface::access(std::uint32_t key, std::uint32_t element, std::uint32_t read, std::uint32_t write,
                          StageCounters& counters) {
   if (touched_bytes_.empty()) return;  // nothing is modelled
-  if (triangles_per_batch_ > 0 && key / triangles_per_batch_ != batch_) {
-    cache_.flush(counters);
-    batch_ = key / triangles_per_batch_;
-  }
   touched_bytes_[element] += static_cast<std::uint32_t>(std::popcount(read) + std::popcount(write)) * part_bytes_;
   const std::uint32_t position = order_.of[element], block = position >> log2_elements_per_block_;
   const std::uint32_t place = position - (block << log2_elements_per_block_);

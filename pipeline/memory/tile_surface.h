@@ -29,8 +29,7 @@ class TileSurface {
   TileSurface(const MemoryParameters& parameters, const ZOrder& order, std::uint32_t parts, std::uint32_t part_bytes,
               CompressedBytes compressed_bytes = nullptr, BlockCache::Level level = BlockCache::Level::rop);
 
-  // Reads and writes parts of an element; bit p of a mask is part p. `key` as in BlockCache: the triangle, which also
-  // tells when a batch of triangles ends.
+  // Reads and writes parts of an element; bit p of a mask is part p. `key` as in BlockCache: the triangle.
   void access(std::uint32_t key, std::uint32_t element, std::uint32_t read, std::uint32_t write,
               StageCounters& counters);
 
@@ -64,7 +63,7 @@ class TileSurface {
   static constexpr int kMaskBits = 8;
 
   const ZOrder& order_;
-  std::uint32_t part_bytes_, element_bytes_, mask_bytes_, triangles_per_batch_, batch_ = 0;
+  std::uint32_t part_bytes_, element_bytes_, mask_bytes_;
   int log2_elements_per_block_;
   std::vector<Sectors> part_sectors_;
   std::vector<std::uint32_t> touched_bytes_;

@@ -206,16 +206,5 @@ TEST(TileSurface, BinsAtTheBorderOfTheFrame) {
   EXPECT_EQ(meter.since(), (Bytes{3 * 256, 3 * 256}));
 }
 
-TEST(TileSurface, ABatchOfTrianglesEndsWithEmptyCaches) {
-  MemoryParameters parameters;
-  parameters.triangles_per_batch = 10;
-  const ZOrder order(2, 2);
-  TileSurface surface(parameters, order, 1, 8);
-  Meter meter;
-  for (const std::uint32_t triangle : {8, 9, 10}) surface.write(triangle, 0, meter.counters);
-  surface.flush(meter.counters);
-  EXPECT_EQ(meter.since(), (Bytes{3 * 32, 256 + 64})) << "the cleared block whole, then a sector fetched and written";
-}
-
 }  // namespace
 }  // namespace beampipe

@@ -35,21 +35,23 @@ void expect_bytes(const char* sample, const char* spec, const std::vector<Bytes>
 }
 
 constexpr std::uint64_t kSetup = 116;  // bytes that a triangle's setup passes on: 88, and 28 of attributes
+constexpr std::uint64_t kTriangleSetup = 64 + 96 + 32;  // in sectors: vertices read, setup and attributes written
+constexpr std::uint64_t kTriangleRaster = 2 * 32 + 96;  // list written and read, setup read
 
 TEST(HandWorked, TriangleMsaa) {
   expect_bytes("paper_triangle.json", "msaa:1",
-               {{"vertex_setup", 1, 1, 48, kSetup, 64, 64, 64},
-                {"sample_raster", 1, 6, 88 + 13 * 4, 6 * 10, 0, 0, 0},
-                {"shade", 6, 6, 6 * 38, 6 * 6, 0, 0, 0},
+               {{"vertex_setup", 1, 1, 48, kSetup, kTriangleSetup, kTriangleSetup, kTriangleSetup},
+                {"sample_raster", 1, 6, 88 + 13 * 4, 6 * 10, kTriangleRaster, kTriangleRaster, kTriangleRaster},
+                {"shade", 6, 6, 6 * 38, 6 * 6, 32, 32, 32},
                 {"depth_test", 6, 6, 6 * 14, 6 * 10, 64 + 64 + 128, 32 + 384, 32 + 384},
                 {"resolve", 64, 64, 384, 384, 768, 768, 768}});
 }
 
 TEST(HandWorked, TriangleMsaaWithoutCompression) {
   expect_bytes("paper_triangle.json", "msaa:1",
-               {{"vertex_setup", 1, 1, 48, kSetup, 64, 64, 64},
-                {"sample_raster", 1, 6, 88 + 13 * 4, 6 * 10, 0, 0, 0},
-                {"shade", 6, 6, 6 * 38, 6 * 6, 0, 0, 0},
+               {{"vertex_setup", 1, 1, 48, kSetup, kTriangleSetup, kTriangleSetup, kTriangleSetup},
+                {"sample_raster", 1, 6, 88 + 13 * 4, 6 * 10, kTriangleRaster, kTriangleRaster, kTriangleRaster},
+                {"shade", 6, 6, 6 * 38, 6 * 6, 32, 32, 32},
                 {"depth_test", 6, 6, 6 * 14, 6 * 10, 64 + 64 + 128, 256 + 384, 256 + 384},
                 {"resolve", 64, 64, 384, 384, 768, 768, 768}},
                false);
@@ -60,26 +62,28 @@ TEST(HandWorked, TriangleBeam) {
                           kPair = 16, kRecord = 12 + 4, kHead = 4;
   expect_bytes(
       "paper_triangle.json", "beam",
-      {{"vertex_setup", 1, 1, 48, kSetup, 64 + 96, 64 + 96, 64 + 96},
-       {"conservative_raster", 1, kPairs, 88 + 4 * (kPairs + 1) + kPairs * (kPair + 4), kPairs * kPair + 4, 0, 0, 0},
+      {{"vertex_setup", 1, 1, 48, kSetup, kTriangleSetup, kTriangleSetup, kTriangleSetup},
+       {"conservative_raster", 1, kPairs, 88 + 4 * (kPairs + 1) + kPairs * (kPair + 4), kPairs * kPair + 4,
+        kTriangleRaster, kTriangleRaster, kTriangleRaster},
        {"a_buffer", kPairs, kPairs, kPairs * (kPair + kHead) + 64 * kHead + kPairs * kRecord,
         kPairs * (kHead + kRecord), 320 + 256 + 224 + 416, 320 + 256 + 224 + 224, 256 + 256 + 256 + 224},
        {"windows", kPairs, kPairs, kPairs * kRecord, kPairs * kPair, 416, 0, 0},
        {"beam_fragment", kPairs - kWhole, kPartial, (kPairs - kWhole) * (kPair + 88), kPartial * kFragment, 1152, 96,
         96},
-       {"shade", kFragments, kFragments, kFragments * 28, kFragments * 6, 0, 0, 0},
+       {"shade", kFragments, kFragments, kFragments * 28, kFragments * 6, kFragments * 32, 32, 32},
        {"compose", kFragments, kFragments, kPartial * (kFragment + 42) + kWhole * kPair, kFragments * 42,
         128 + 320 + 192, 256 + 1024 + 384, 256 + 1024 + 384},
        {"resolve", 64, 64, 64 * 42, 384, 256 + 2048 + 384 + 384, 256 + 1024 + 384 + 384, 256 + 1024 + 384 + 384}});
 }
 
 TEST(HandWorked, QuadsMsaa) {
-  expect_bytes("paper_quads.json", "msaa:1",
-               {{"vertex_setup", 4, 4, 2 * 72, 4 * kSetup, 160, 160, 160},
-                {"sample_raster", 4, 32, 4 * 88 + (4 * 13 + 2) * 4, 32 * 10 + 2 * 4, 0, 0, 0},
-                {"shade", 32, 32, 32 * 38, 32 * 6, 0, 0, 0},
-                {"depth_test", 32, 28, 32 * 14, 28 * 10, 576 + 384, 96 + 384, 96 + 384},
-                {"resolve", 64, 64, 384, 384, 768, 768, 768}});
+  expect_bytes(
+      "paper_quads.json", "msaa:1",
+      {{"vertex_setup", 4, 4, 2 * 72, 4 * kSetup, 160 + 352 + 128, 160 + 352 + 128, 160 + 352 + 128},
+       {"sample_raster", 4, 32, 4 * 88 + (4 * 13 + 2) * 4, 32 * 10 + 2 * 4, 2 * 32 + 352, 2 * 32 + 352, 2 * 32 + 352},
+       {"shade", 32, 32, 32 * 38, 32 * 6, 128, 128, 128},
+       {"depth_test", 32, 28, 32 * 14, 28 * 10, 576 + 384, 96 + 384, 96 + 384},
+       {"resolve", 64, 64, 384, 384, 768, 768, 768}});
 }
 
 // Pixel (2, 3) of the triangle, which is covered whole; and (0, 0), which nothing touches.

@@ -1,0 +1,80 @@
+// What is moved of the frame's geometry, which is binned as a whole: vertex_setup writes setup triangles and their
+// attributes, two arrays in primitive order, and each bin reads those of its list.
+#pragma once
+
+#include <cstdint>
+#include <vector>
+
+#include "pipeline/memory/linear_memory.h"
+#include "stages/counters.h"
+#include "stages/setup_triangle.h"
+#include "stages/tile.h"
+
+namespace beampipe {
+
+// One run of vertex_setup: what it reads of vertices and indices, once; what it writes for so many triangles.
+void move_setup(const MemoryParameters& memory, std::uint64_t vertex_bytes, std::size_t triangles,
+                StageCounters& counters);
+
+// One pass of the raster stage over a bin: its list, 4 bytes per triangle, which binning has written for it, and the
+// triangles' setup.
+void move_bin(const MemoryParameters& memory, const TriangleList& list, StageCounters& counters);
+
+// Attributes that are read in primitive order, as forward shading does in one pass over a bin: each triangle's once.
+class AttributesInOrder {
+ public:
+  explicit AttributesInOrder(const MemoryParameters& memory) : records_(memory, sizeof(FlatAttributes)) {}
+
+  template <class Fragment>
+  void read(const std::vector<Fragment>& fragments, StageCounters& counters) {
+    for (const Fragment& fragment : fragments) records_.read(fragment.triangle, counters);
+  }
+
+ private:
+  RecordsInOrder records_;
+};
+
+// Setup and attributes that shaders fetch by a triangle's number, through the L1 of the multiprocessor that works on
+// the bin; each fetch is a request of its own.
+class TriangleFetches {
+ public:
+  TriangleFetches(const MemoryParameters& memory, const TriangleList& list);
+
+  void setup(std::uint32_t triangle, StageCounters& counters) {
+    if (modelled_) lines_.read(++request_, places_.setup[rank(triangle)], sizeof(SetupTriangle), counters);
+  }
+  void attributes(std::uint32_t triangle, StageCounters& counters) {
+    if (modelled_) lines_.read(++request_, places_.attributes[rank(triangle)], sizeof(FlatAttributes), counters);
+  }
+
+  // Of all pairs' or fragments' triangles.
+  template <class Item>
+  void setup(const std::vector<Item>& items, StageCounters& counters) {
+    for (const Item& item : items) setup(item.triangle, counters);
+  }
+  template <class Item>
+  void attributes(const std::vector<Item>& items, StageCounters& counters) {
+    for (const Item& item : items) attributes(item.triangle, counters);
+  }
+
+  // The end of a pass over the frame.
+  void flush(StageCounters& counters) { lines_.flush(counters); }
+
+ private:
+  std::size_t rank(std::uint32_t triangle) const;
+
+  // Of each triangle of the list, in a memory that holds only the lines that the bin's records lie in.
+  struct Places {
+    std::vector<std::uint32_t> setup, attributes;
+    std::uint32_t end = 0;  // of that memory, in bytes
+  };
+  static Places places_of(const TriangleList& list, std::uint32_t line_bytes);
+
+  bool modelled_;
+  const TriangleList& list_;
+  Places places_;
+  LinearMemory lines_;
+  std::uint32_t request_ = 0;
+};
+
+}  // namespace beampipe

@@ -1,0 +1,61 @@
+// Memory without surfaces: streams that no cache can help, records in a row, and records that shaders read and write.
+#pragma once
+
+#include <algorithm>
+#include <cstdint>
+
+#include "pipeline/memory/block_cache.h"
+#include "pipeline/memory/parameters.h"
+#include "stages/counters.h"
+
+namespace beampipe {
+
+// `bytes` in a row, read or written: whole sectors, each moved once.
+inline void stream(const MemoryParameters& memory, std::uint64_t bytes, StageCounters& counters) {
+  if (!memory.modelled) return;
+  const std::uint64_t whole = (bytes + memory.sector_bytes - 1) / memory.sector_bytes * memory.sector_bytes;
+  counters.sector_bytes += whole;
+  counters.l2_bytes += whole;
+  counters.dram_bytes += whole;
+}
+
+// Some records of an array, read in their order: a sector of the record before is there still.
+class RecordsInOrder {
+ public:
+  RecordsInOrder(const MemoryParameters& memory, std::uint32_t record_bytes)
+      : memory_(memory), record_bytes_(record_bytes) {}
+
+  void read(std::uint32_t record, StageCounters& counters) {
+    const std::uint64_t begin = std::uint64_t{record} * record_bytes_, end = begin + record_bytes_;
+    const std::uint64_t first = std::max(begin / memory_.sector_bytes, read_to_);
+    const std::uint64_t behind = (end + memory_.sector_bytes - 1) / memory_.sector_bytes;
+    if (behind <= first) return;
+    stream(memory_, (behind - first) * memory_.sector_bytes, counters);
+    read_to_ = behind;
+  }
+
+ private:
+  MemoryParameters memory_;
+  std::uint64_t record_bytes_, read_to_ = 0;  // sectors before it have been read, or passed over
+};
+
+// As shaders read and write it: writes go to L2, reads through an L1. Bytes [begin, begin + bytes) of it.
+class LinearMemory {
+ public:
+  LinearMemory(const MemoryParameters& memory, std::size_t size);
+
+  void write(std::uint32_t key, std::size_t begin, std::uint32_t bytes, StageCounters& counters);
+  void read(std::uint32_t key, std::size_t begin, std::uint32_t bytes, StageCounters& counters);
+
+  // The end of a pass over the frame.
+  void flush(StageCounters& counters);
+
+ private:
+  template <class Access>
+  void each_line(std::size_t begin, std::uint32_t bytes, Access&& access) const;
+
+  std::uint32_t line_bytes_;
+  BlockCache l2_, l1_;
+};
+
+}  // namespace beampipe
