@@ -19,13 +19,14 @@ FrameResult render_reference(const Trace& trace, const Frame& frame, const RunOp
   const std::vector<glm::vec3> colors = shade_triangles(triangles, frame.light_direction);
   RunOptions without_memory = run;
   without_memory.memory.modelled = false;  // nobody builds a machine for this
-  return render_tiles(frame, triangles, setup, kTileSize, without_memory, [&](const Tile& tile, const TriangleList& list) {
-    const StageTimer timed(run.timeline, tile);
-    StageCounters raster{"reference_raster"}, resolving{"resolve"};
-    ReferenceTile surface(tile);
-    reference_raster(triangles, list, tile, timed(raster), surface);
-    return TileResult{resolve(surface, tile, colors, frame.background, timed(resolving)), {}, {raster, resolving}};
-  });
+  return render_tiles(
+      frame, triangles, setup, kTileSize, without_memory, [&](const Tile& tile, const TriangleList& list) {
+        const StageTimer timed(run.timeline, tile);
+        StageCounters raster{"reference_raster"}, resolving{"resolve"};
+        ReferenceTile surface(tile);
+        reference_raster(triangles, list, tile, timed(raster), surface);
+        return TileResult{resolve(surface, tile, colors, frame.background, timed(resolving)), {}, {raster, resolving}};
+      });
 }
 
 std::vector<Surface> reference_framebuffer() {

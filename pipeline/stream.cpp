@@ -19,6 +19,13 @@
 namespace beampipe {
 namespace {
 
+// A later pass over a bin: its list and its triangles' setup stand in memory and are read again.
+void replay(const MemoryParameters& memory, const TriangleList& list, StageCounters& raster) {
+  raster.items_in += list.size();
+  raster.bytes_read += list.size() * sizeof(SetupTriangle);
+  read_bin(memory, list, raster);
+}
+
 // Moves the state of each pixel that has owners, once; their fragments stand pixel by pixel.
 void move_settled(const std::vector<Fragment>& fragments, AggregateMemory& memory, StageCounters& counters) {
   for (std::size_t i = 0; i < fragments.size(); ++i)
@@ -51,9 +58,8 @@ FrameResult render_shape(const Trace& trace, const Frame& frame, const StreamOpt
     held.holds("closed_depth", closed.bytes());
     Tile box = tile;
     TriangleFetches fetches(run.memory, list);
-    int pass = 0;
-    while (box.x0 < box.x1) {
-      ++pass;
+    for (int pass = 1; box.x0 < box.x1; ++pass) {
+      if (pass > 1) replay(run.memory, list, raster);
       for (std::size_t i = 0; i < pixels.size(); ++i) passes[i] += is_unfinished(pixels[i]);
       for_each_batch(list, [&](const TriangleList& batch) {
         pairs.clear(), fragments.clear();
@@ -94,8 +100,7 @@ FrameResult render_shape(const Trace& trace, const Frame& frame, const StreamOpt
         resolve(settled_colors(pixels), frame.background, framebuffer.back().bytes_per_pixel, timed(resolving)),
         {{"fragments", std::move(counts)}, {"passes", std::move(passes)}, {"bytes", std::move(bytes)}},
         {raster, fragment, claiming, shading, settling, resolving},
-        held,
-        pass};
+        held};
   };
   return render_tiles(frame, triangles, setup, kBinSize, run, render_tile);
 }

@@ -47,7 +47,8 @@ FrameResult render_tiles(const Frame& frame, const SetupTriangles& triangles, co
     const std::vector<TriangleList> lists = bin_triangles(triangles, grid, band);
     for (const TriangleList& list : lists) {
       list_bytes += list.size() * sizeof list[0];
-      move_bin(options.memory, list, raster_pass);
+      write_list(options.memory, list, raster_pass);
+      read_bin(options.memory, list, raster_pass);
     }
     std::vector<TileResult> results(lists.size());
     const auto render = [&](std::size_t i) { results[i] = renderer(grid.tiles[band.first + i], lists[i]); };

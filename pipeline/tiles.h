@@ -36,7 +36,7 @@ struct TileResult {
   std::vector<std::pair<std::string, std::vector<float>>> pixel_counters;
   std::vector<StageCounters> stages;  // in pipeline order, the same stages for every tile
   BinBuffers buffers = {};
-  int passes = 1;  // over the bin's triangles
+  int passes = 1;  // in which an application draws the frame
 };
 
 using TileRenderer = std::function<TileResult(const Tile&, const TriangleList&)>;

@@ -28,9 +28,12 @@ void move_setup(const MemoryParameters& memory, std::uint64_t vertex_bytes, std:
   stream(memory, triangles * sizeof(FlatAttributes), counters);
 }
 
-void move_bin(const MemoryParameters& memory, const TriangleList& list, StageCounters& counters) {
-  stream(memory, list.size() * sizeof list[0], counters);  // written
-  stream(memory, list.size() * sizeof list[0], counters);  // read
+void write_list(const MemoryParameters& memory, const TriangleList& list, StageCounters& counters) {
+  stream(memory, list.size() * sizeof list[0], counters);
+}
+
+void read_bin(const MemoryParameters& memory, const TriangleList& list, StageCounters& counters) {
+  stream(memory, list.size() * sizeof list[0], counters);
   RecordsInOrder setup(memory, sizeof(SetupTriangle));
   for (const std::uint32_t triangle : list) setup.read(triangle, counters);
 }

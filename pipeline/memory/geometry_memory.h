@@ -16,9 +16,11 @@ namespace beampipe {
 void move_setup(const MemoryParameters& memory, std::uint64_t vertex_bytes, std::size_t triangles,
                 StageCounters& counters);
 
-// One pass of the raster stage over a bin: its list, 4 bytes per triangle, which binning has written for it, and the
-// triangles' setup.
-void move_bin(const MemoryParameters& memory, const TriangleList& list, StageCounters& counters);
+// Binning: a bin's list, 4 bytes per triangle.
+void write_list(const MemoryParameters& memory, const TriangleList& list, StageCounters& counters);
+
+// One pass of the raster stage over a bin: the list, and the setup of its triangles.
+void read_bin(const MemoryParameters& memory, const TriangleList& list, StageCounters& counters);
 
 // Attributes that are read in primitive order, as forward shading does in one pass over a bin: each triangle's once.
 class AttributesInOrder {

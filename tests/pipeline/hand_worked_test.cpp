@@ -86,6 +86,26 @@ TEST(HandWorked, QuadsMsaa) {
        {"resolve", 64, 64, 384, 384, 768, 768, 768}});
 }
 
+TEST(HandWorked, QuadsBeam) {
+  constexpr std::uint64_t kPairs = 52, kTaken = 50, kFragments = 38, kWindows = 31, kFragment = 62, kPair = 16,
+                          kRecord = 12 + 4, kHead = 4;
+  constexpr std::uint64_t kSetupSectors = 13 * 3 + 13 * 4 + 12 * 4 + 12 * 3, kAttributeSectors = 10 + 20 + 18 + 18;
+  expect_bytes(
+      "paper_quads.json", "beam",
+      {{"vertex_setup", 4, 4, 2 * 72, 4 * kSetup, 160 + 352 + 128, 160 + 352 + 128, 160 + 352 + 128},
+       {"conservative_raster", 4, kPairs, 4 * 88 + 4 * (kPairs + 4) + kPairs * (kPair + 4), kPairs * kPair + 4 * 4,
+        2 * 32 + 352, 2 * 32 + 352, 2 * 32 + 352},
+       {"a_buffer", kPairs, kPairs, kPairs * (kPair + kHead) + 64 * kHead + kPairs * kRecord,
+        kPairs * (kHead + kRecord), 768 + 256 + 896 + 1664, 768 + 256 + 896 + 832, 256 + 256 + 896 + 832},
+       {"windows", kTaken, kWindows, (kTaken + 1) * kRecord, kTaken * kPair, (kTaken + 1) * 32, 0, 0},
+       {"beam_fragment", kTaken, kFragments, kTaken * (kPair + 88), kFragments * kFragment, kSetupSectors * 32, 352,
+        352},
+       {"shade", kFragments, kFragments, kFragments * 28, kFragments * 6, kAttributeSectors * 32, 128, 128},
+       {"compose", kFragments, kWindows, kFragments * kFragment + kWindows * 42, kWindows * 42, 160 + 896 + 256,
+        256 + 1280 + 384, 256 + 1280 + 384},
+       {"resolve", 64, 64, 64 * 42, 384, 256 + 2048 + 384 + 384, 256 + 1280 + 384 + 384, 256 + 1280 + 384 + 384}});
+}
+
 // Pixel (2, 3) of the triangle, which is covered whole; and (0, 0), which nothing touches.
 TEST(HandWorked, BytesOfAPixel) {
   const Trace trace = read_trace(std::filesystem::path(BEAMPIPE_SOURCE_FOLDER) / "traces/samples/paper_triangle.json");
