@@ -4,6 +4,7 @@
 #include <tbb/parallel_for.h>
 
 #include <algorithm>
+#include <mutex>
 
 #include "pipeline/bands.h"
 #include "pipeline/memory/geometry_memory.h"
@@ -14,16 +15,16 @@ namespace beampipe {
 namespace {
 
 // What was rendered of a tile, to its place in the frame.
-void place(TileResult& tile_result, const Tile& tile, const Frame& frame, FrameResult& result) {
+void place(const TileResult& tile_result, const Tile& tile, const Frame& frame, FrameResult& result) {
   const auto* image = reinterpret_cast<const float*>(tile_result.image.data());
   for (std::int32_t y = tile.y0; y < tile.y1 && !tile_result.image.empty(); ++y, image += 4 * tile.width())
     std::copy_n(
         image, 4 * tile.width(),
         result.image.rgba.data() + 4 * (static_cast<std::size_t>(y) * frame.width + static_cast<std::size_t>(tile.x0)));
-  for (const auto& [name, values] : tile_result.pixel_counters)
-    copy_to_frame(values, tile, frame, result.pixel_counters.at(name));
-  tile_result.image = {};
-  tile_result.pixel_counters = {};
+  for (const auto& [name, values] : tile_result.pixel_counters) {
+    const auto of_frame = result.pixel_counters.find(name);
+    if (of_frame != result.pixel_counters.end()) copy_to_frame(values, tile, frame, of_frame->second);
+  }
 }
 
 }  // namespace
@@ -43,6 +44,7 @@ FrameResult render_tiles(const Frame& frame, const SetupTriangles& triangles, co
   int passes = 1;
   std::uint64_t list_bytes = 0;
   BinBuffers of_bins;
+  std::mutex adding;
   const auto render_band = [&](const Band& band) {
     const std::vector<TriangleList> lists = bin_triangles(triangles, grid, band);
     for (const TriangleList& list : lists) {
@@ -50,24 +52,25 @@ FrameResult render_tiles(const Frame& frame, const SetupTriangles& triangles, co
       write_list(options.memory, list, raster_pass);
       read_bin(options.memory, list, raster_pass);
     }
-    std::vector<TileResult> results(lists.size());
-    const auto render = [&](std::size_t i) { results[i] = renderer(grid.tiles[band.first + i], lists[i]); };
-    render(0);  // tells which counters there are
-    for (const auto& [name, values] : results.front().pixel_counters) result.pixel_counters[name].resize(pixels);
-    place(results.front(), grid.tiles[band.first], frame, result);
-    tbb::parallel_for(std::size_t{1}, lists.size(), [&](std::size_t i) {
-      render(i);
-      place(results[i], grid.tiles[band.first + i], frame, result);
-    });
-    result.stages.resize(1 + results.front().stages.size());
-    for (const TileResult& of_tile : results) {
+    // Nothing of a tile is kept but these sums, so that large frames take no more than their pictures.
+    const auto add = [&](const TileResult& of_tile) {
+      const std::lock_guard lock(adding);
       passes = std::max(passes, of_tile.passes);
       for (const auto& [name, bytes] : of_tile.buffers.peaks()) of_bins.holds(name, bytes);
-      for (std::size_t s = 0; s < of_tile.stages.size(); ++s) {
-        result.stages[s + 1].stage = of_tile.stages[s].stage;
-        result.stages[s + 1] += of_tile.stages[s];
-      }
-    }
+      for (std::size_t s = 0; s < of_tile.stages.size(); ++s) result.stages[s + 1] += of_tile.stages[s];
+    };
+    const TileResult first = renderer(grid.tiles[band.first], lists.front());  // tells which counters there are
+    for (const auto& [name, values] : first.pixel_counters)
+      if (name != "bytes" || options.memory.modelled) result.pixel_counters[name].resize(pixels);
+    result.stages.resize(1 + first.stages.size());
+    for (std::size_t s = 0; s < first.stages.size(); ++s) result.stages[s + 1].stage = first.stages[s].stage;
+    add(first);
+    place(first, grid.tiles[band.first], frame, result);
+    tbb::parallel_for(std::size_t{1}, lists.size(), [&](std::size_t i) {
+      const TileResult of_tile = renderer(grid.tiles[band.first + i], lists[i]);
+      add(of_tile);
+      place(of_tile, grid.tiles[band.first + i], frame, result);
+    });
   };
   for (const Band& band :
        split_into_bands(triangles, grid, pair_bytes, thread_count(options.threads), options.memory_limit)) {
@@ -78,7 +81,6 @@ FrameResult render_tiles(const Frame& frame, const SetupTriangles& triangles, co
     result.stages[0] += setup_pass;
     result.stages[1] += raster_pass;
   }
-  if (!options.memory.modelled) result.pixel_counters.erase("bytes");
   result.buffers = {{"setup_triangles", triangles.triangles.size() * (sizeof(SetupTriangle) + sizeof(FlatAttributes))},
                     {"bin_lists", list_bytes}};
   for (const auto& [name, bytes] : of_bins.peaks()) result.buffers.push_back({name, bytes, true});
