@@ -2,7 +2,7 @@
 """Modelled DRAM bytes per frame, as docs/accounting.md shows them.
 
 dram_bytes.py BEAMPIPE TRACE...   the first frame of each trace, with block compression and without
-dram_bytes.py BEAMPIPE --stack    a stack of 1 to 10,000 triangles over a 4 x 4 picture: peak bytes of the buffers that are held for pixels
+dram_bytes.py BEAMPIPE --stack    a stack of 1 to 10,000 triangles over a 4 x 4 picture, and from afar: peak bytes of the buffers that are held for pixels
 """
 import json
 import pathlib
@@ -40,15 +40,18 @@ def dram_table(program, traces):
         print(f"| {pathlib.Path(trace).stem} | {one_pass:.1f} | {numbers[0]} | `{least}` | {numbers[1]} |", flush=True)
 
 
-def stack_table(program):
+def stack_table(program, camera):
     print("| fragments per pixel | " + " | ".join(f"`{t}`" for t in STACK) + " |")
     print("|---" * (len(STACK) + 1) + "|")
     with tempfile.TemporaryDirectory() as folder:
-        trace = str(pathlib.Path(folder) / "stack.json")
+        path = pathlib.Path(folder) / "stack.json"
         for layers in (1, 10, 100, 1000, 10000):
             subprocess.run([program, "make", "stack", "--triangles", str(layers), "--width", "4", "--height", "4",
-                            "-o", trace], check=True, stdout=subprocess.DEVNULL)
-            frames = run(program, trace, STACK)
+                            "-o", path], check=True, stdout=subprocess.DEVNULL)
+            trace = json.loads(path.read_text())
+            trace["frames"][0]["camera"].update(camera)
+            path.write_text(json.dumps(trace))
+            frames = run(program, path, STACK)
             peaks = [sum(buffer["peak_bytes"] for buffer in frames[t]["buffers"] if not PER_TRIANGLE.match(buffer["name"]))
                      / 1024 for t in STACK]
             print(f"| {layers} | " + " | ".join(f"{peak:.1f}" for peak in peaks) + " |", flush=True)
@@ -56,7 +59,9 @@ def stack_table(program):
 
 if __name__ == "__main__":
     if len(sys.argv) == 3 and sys.argv[2] == "--stack":
-        stack_table(sys.argv[1])
+        stack_table(sys.argv[1], {})
+        print("\nFrom afar, where each covers parts of four pixels:\n")
+        stack_table(sys.argv[1], {"eye": [0, 0, 300], "far": 400})
     elif len(sys.argv) > 2:
         dram_table(sys.argv[1], sys.argv[2:])
     else:
