@@ -50,6 +50,7 @@ FrameResult render_shape(const Trace& trace, const Frame& frame, const StreamOpt
     BinBuffers held;
     std::vector<PixelTriangle> pairs;
     std::vector<Fragment> fragments;
+    std::vector<std::uint32_t> remade;
     const ZOrder order(tile.width(), tile.height());
     const std::vector<Surface> framebuffer = stream_framebuffer(stream);
     AggregateMemory state(run.memory, order, {framebuffer.begin(), framebuffer.end() - 1});
@@ -61,6 +62,7 @@ FrameResult render_shape(const Trace& trace, const Frame& frame, const StreamOpt
     for (int pass = 1; box.x0 < box.x1; ++pass) {
       if (pass > 1) replay(run.memory, list, raster);
       for (std::size_t i = 0; i < pixels.size(); ++i) passes[i] += is_unfinished(pixels[i]);
+      fetches.load_setup();
       for_each_batch(list, [&](const TriangleList& batch) {
         pairs.clear(), fragments.clear();
         conservative_raster(triangles, batch, box, timed(raster), pairs, &closed);
@@ -68,10 +70,13 @@ FrameResult render_shape(const Trace& trace, const Frame& frame, const StreamOpt
         held.holds("batch_pairs", pairs.size() * kPairWithDepthBytes);
         held.holds("batch_fragments", fragments.size() * options.fragment_bytes);
         for (const Fragment& item : fragments) ++counts[item.pixel];
-        claim(triangles, fragments, tile, positions, timed(claiming), pixels);
+        remade.clear();
+        claim(triangles, fragments, tile, positions, timed(claiming), pixels, run.memory.modelled ? &remade : nullptr);
         if (run.memory.modelled)
           for (const Fragment& item : fragments) state.merge(item.triangle, item.pixel, claiming);
+        for (const std::uint32_t owner : remade) fetches.depth(owner, claiming);
       });
+      fetches.flush(claiming);
       state.flush({}, claiming);
       fragments.clear();
       const std::vector<PixelTriangle> owned = owners(triangles, pixels, tile);

@@ -22,8 +22,9 @@ class PixelClaim {
  public:
   using Pixel = OwnerPixel<Words, Layers>;
 
-  PixelClaim(const SetupTriangles& triangles, const Tile& tile, const PositionSet& positions)
-      : triangles_(triangles), tile_(tile), positions_(positions) {}
+  PixelClaim(const SetupTriangles& triangles, const Tile& tile, const PositionSet& positions,
+             std::vector<std::uint32_t>* remade)
+      : triangles_(triangles), tile_(tile), positions_(positions), remade_(remade) {}
 
   void add(const Fragment& fragment, Pixel& pixel) {
     if (fragment.mask.none()) {
@@ -75,6 +76,7 @@ class PixelClaim {
 
   DepthPlane<float> owner_plane(std::size_t layer, const Fragment& fragment, const Pixel& pixel) {
     ++counts.planes_made;
+    if (remade_) remade_->push_back(pixel.triangle(layer));
     const auto index = static_cast<std::int32_t>(fragment.pixel);
     return pixel_plane(triangles_.triangles[pixel.triangle(layer)], tile_.x0 + index % tile_.width(),
                        tile_.y0 + index / tile_.width());
@@ -117,6 +119,7 @@ class PixelClaim {
   const SetupTriangles& triangles_;
   const Tile& tile_;
   const PositionSet& positions_;
+  std::vector<std::uint32_t>* const remade_;
 };
 
 OperationCounts nearest_cost() {  // per position
@@ -164,8 +167,9 @@ OperationCounts speck_depth_cost() {
 
 template <std::size_t Words, std::size_t Layers>
 void claim(const SetupTriangles& triangles, const std::vector<Fragment>& fragments, const Tile& tile,
-           const PositionSet& positions, StageCounters& counters, std::vector<OwnerPixel<Words, Layers>>& pixels) {
-  PixelClaim<Words, Layers> claims(triangles, tile, positions);
+           const PositionSet& positions, StageCounters& counters, std::vector<OwnerPixel<Words, Layers>>& pixels,
+           std::vector<std::uint32_t>* remade) {
+  PixelClaim<Words, Layers> claims(triangles, tile, positions, remade);
   for (const Fragment& fragment : fragments) claims.add(fragment, pixels[fragment.pixel]);
 
   constexpr std::uint64_t kPositions = 32 * Words;
@@ -190,9 +194,10 @@ void claim(const SetupTriangles& triangles, const std::vector<Fragment>& fragmen
   counters.lanes_issued += fragments.size();
 }
 
-#define BEAMPIPE_CLAIM(words, layers)                                                                  \
-  template void claim<words, layers>(const SetupTriangles&, const std::vector<Fragment>&, const Tile&, \
-                                     const PositionSet&, StageCounters&, std::vector<OwnerPixel<words, layers>>&);
+#define BEAMPIPE_CLAIM(words, layers)                                                                             \
+  template void claim<words, layers>(const SetupTriangles&, const std::vector<Fragment>&, const Tile&,            \
+                                     const PositionSet&, StageCounters&, std::vector<OwnerPixel<words, layers>>&, \
+                                     std::vector<std::uint32_t>*);
 BEAMPIPE_OWNER_PIXELS(BEAMPIPE_CLAIM)
 #undef BEAMPIPE_CLAIM
 

@@ -20,9 +20,11 @@ constexpr std::uint32_t streaming_fragment_bytes(std::size_t words) {
 }
 
 // `pixels`: one per pixel of the tile, kept from batch to batch and from pass to pass; empty (cleared_pixel) before
-// the first. items_out: claims that took a position.
+// the first. Owners' depth planes are made again from their setup triangles, as often as fragments are compared with
+// them: `remade`, if it is not null, gets those triangles' indices added. items_out: claims that took a position.
 template <std::size_t Words, std::size_t Layers>
 void claim(const SetupTriangles& triangles, const std::vector<Fragment>& fragments, const Tile& tile,
-           const PositionSet& positions, StageCounters& counters, std::vector<OwnerPixel<Words, Layers>>& pixels);
+           const PositionSet& positions, StageCounters& counters, std::vector<OwnerPixel<Words, Layers>>& pixels,
+           std::vector<std::uint32_t>* remade = nullptr);
 
 }  // namespace beampipe

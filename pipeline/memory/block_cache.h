@@ -73,6 +73,9 @@ class BlockCache {
       each_write([this](std::uint32_t first, std::uint32_t bytes) { count_written(first, bytes); });
   }
 
+  // Serves what has been asked for so far.
+  void finish_request();
+
   // Writes back every dirty line and empties the cache.
   void flush(StageCounters& counters);
 
@@ -106,7 +109,6 @@ class BlockCache {
   };
 
   void begin_request(std::uint32_t key, std::size_t block, StageCounters& counters);
-  void finish_request();
   void count_written(std::uint32_t first, std::uint32_t bytes);
   void serve(std::size_t block, Sectors read, Sectors write, Sectors overwritten, StageCounters& counters);
   Line& make_line(std::size_t block, bool overwritten, StageCounters& counters);

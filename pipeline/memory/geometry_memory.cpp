@@ -51,6 +51,10 @@ TriangleFetches::Places TriangleFetches::places_of(const TriangleList& list, std
   return places;
 }
 
+void TriangleFetches::load_setup() {
+  for (const std::uint32_t place : places_.setup) lines_.load(place, sizeof(SetupTriangle));
+}
+
 std::size_t TriangleFetches::rank(std::uint32_t triangle) const {
   return static_cast<std::size_t>(std::lower_bound(list_.begin(), list_.end(), triangle) - list_.begin());
 }

@@ -2,6 +2,7 @@
 // attributes, two arrays in primitive order, and each bin reads those of its list.
 #pragma once
 
+#include <cstddef>
 #include <cstdint>
 #include <vector>
 
@@ -49,6 +50,12 @@ class TriangleFetches {
     if (modelled_) lines_.read(++request_, places_.attributes[rank(triangle)], sizeof(FlatAttributes), counters);
   }
 
+  // The depth plane alone.
+  void depth(std::uint32_t triangle, StageCounters& counters) {
+    constexpr std::size_t kBegin = offsetof(SetupTriangle, depth);
+    if (modelled_) lines_.read(++request_, places_.setup[rank(triangle)] + kBegin, sizeof(ScreenDepth), counters);
+  }
+
   // Of all pairs' or fragments' triangles.
   template <class Item>
   void setup(const std::vector<Item>& items, StageCounters& counters) {
@@ -58,6 +65,9 @@ class TriangleFetches {
   void attributes(const std::vector<Item>& items, StageCounters& counters) {
     for (const Item& item : items) attributes(item.triangle, counters);
   }
+
+  // At the start of a pass whose raster stage runs just before: L2 holds the setup that it has read.
+  void load_setup();
 
   // The end of a pass over the frame.
   void flush(StageCounters& counters) { lines_.flush(counters); }

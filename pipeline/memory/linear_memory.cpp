@@ -30,6 +30,14 @@ void LinearMemory::read(std::uint32_t key, std::size_t begin, std::uint32_t byte
   });
 }
 
+void LinearMemory::load(std::size_t begin, std::uint32_t bytes) {
+  StageCounters counted_there;
+  each_line(begin, bytes, [&](std::size_t line, std::uint32_t first, std::uint32_t part) {
+    l2_.read(0, line, first, part, counted_there);
+  });
+  l2_.finish_request();
+}
+
 void LinearMemory::flush(StageCounters& counters) {
   l1_.flush(counters);
   l2_.flush(counters);

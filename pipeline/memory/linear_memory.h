@@ -47,6 +47,9 @@ class LinearMemory {
   void write(std::uint32_t key, std::size_t begin, std::uint32_t bytes, StageCounters& counters);
   void read(std::uint32_t key, std::size_t begin, std::uint32_t bytes, StageCounters& counters);
 
+  // Has L2 hold what another stage has just read through it.
+  void load(std::size_t begin, std::uint32_t bytes);
+
   // The end of a pass over the frame.
   void flush(StageCounters& counters);
 

@@ -97,6 +97,18 @@ TEST(GeometryMemory, WhatL1CannotHoldIsAskedOfL2AgainAndNotOfDram) {
   EXPECT_EQ(counters.l2_bytes, 2 * 88'000u);
 }
 
+TEST(GeometryMemory, WhatTheRasterHasReadIsInL2) {
+  StageCounters counters;
+  TriangleFetches fetches({}, {0, 1, 7});
+  fetches.load_setup();
+  fetches.depth(7, counters);  // bytes 656 to 695: sectors 20 and 21
+  fetches.depth(7, counters);
+  fetches.flush(counters);
+  EXPECT_EQ(counters.sector_bytes, 2 * 64u);
+  EXPECT_EQ(counters.l2_bytes, 64u);
+  EXPECT_EQ(counters.dram_bytes, 0u);
+}
+
 TEST(GeometryMemory, WhereNothingIsModelledNothingIsCounted) {
   MemoryParameters off;
   off.modelled = false;

@@ -351,12 +351,15 @@ TEST_P(TwinCounts, Claim) {
   beam_fragment(triangles_, pairs, tile_, {MaskSource::exact, positions.patterns, nullptr, nullptr, 66, 0}, ignored,
                 fragments);
   std::vector<OwnerPixel<kWords, kLayers>> pixels(tile_.pixels(), cleared_pixel<kWords, kLayers>()), twins = pixels;
-  claim(triangles_, fragments, tile_, positions, counters, pixels);
+  std::vector<std::uint32_t> remade;
+  claim(triangles_, fragments, tile_, positions, counters, pixels, &remade);
   ClaimTwin<kWords, kLayers> twin(triangles_, tile_, positions, twin_);
   for (const Fragment& fragment : fragments) twin.add(fragment, twins[fragment.pixel]);
   EXPECT_EQ(counters.lanes_used, counters.items_out);
   EXPECT_EQ(counters.lanes_issued, fragments.size());
   EXPECT_EQ(counters.ops, twin_);
+  EXPECT_EQ(counters.bytes_read, fragments.size() * (streaming_fragment_bytes(kWords) + sizeof pixels[0]) +
+                                     remade.size() * sizeof(ScreenDepth));
   for (std::size_t i = 0; i < pixels.size(); ++i) {
     ASSERT_EQ(pixels[i].owner[0], twins[i].owner[0]) << i;
     ASSERT_EQ(pixels[i].dropped, twins[i].dropped) << i;
