@@ -1,0 +1,51 @@
+// Clipping of triangles in clip space: to the near and far planes and to the guard band.
+#pragma once
+
+#include <array>
+#include <cstdint>
+#include <vector>
+
+#include "simd/vertex_transform.h"
+#include "traces/trace.h"
+
+namespace beampipe {
+
+// Clip planes as inner products that are >= 0 inside: near, far, then the guard band's four sides.
+inline constexpr int kPlanes = 6;
+using ClipPlanes = std::array<std::array<double, 4>, kPlanes>;
+
+ClipPlanes clip_planes(const Frame& frame);
+
+template <class Real>
+Real plane_distance(const std::array<Real, 4>& plane, const ClipVertex<Real>& v) {
+  return plane[0] * v.x + plane[1] * v.y + plane[2] * v.z + plane[3] * v.w;
+}
+
+// Where an edge that leaves the inside meets the plane.
+template <class Real>
+ClipVertex<Real> crossing(const ClipVertex<Real>& in, const ClipVertex<Real>& out, Real in_distance,
+                          Real out_distance) {
+  const Real t = in_distance / (in_distance - out_distance);
+  return {in.x + t * (out.x - in.x), in.y + t * (out.y - in.y), in.z + t * (out.z - in.z), in.w + t * (out.w - in.w)};
+}
+
+// Outside one side of the view volume with all three vertices?
+template <class Real>
+bool outside_view(const std::array<ClipVertex<Real>, 3>& v) {
+  bool left = true, right = true, below = true, above = true, before = true, behind = true;
+  for (const ClipVertex<Real>& p : v) {
+    const Real minus_w = Real(0.0) - p.w;
+    left &= p.x<minus_w, right &= p.x> p.w;
+    below &= p.y<minus_w, above &= p.y> p.w;
+    before &= p.z<minus_w, behind &= p.z> p.w;
+  }
+  return left | right | below | above | before | behind;
+}
+
+using Polygon = std::vector<ClipVertex<double>>;
+
+// Sutherland-Hodgman against one plane. A crossing is always computed from its inner to its outer vertex, so that two
+// triangles that share the edge get the same point. Adds the crossings to `crossings`.
+Polygon clip_to_plane(const Polygon& polygon, const std::array<double, 4>& plane, std::uint64_t& crossings);
+
+}  // namespace beampipe
