@@ -176,6 +176,8 @@ const std::vector<FrameCounterInfo>& frame_counters() {
       {"peak_bytes_per_pixel", "bytes per pixel",
        "of a technique: its framebuffer and, in the frame where it is largest, its A-buffer",
        "ReportJson.HasTheKeysOfTheContract"},
+      {"pixel_counters", "as the counter's", "mean and max over the pixels of each counter of a pixel",
+       "ReportJson.HasTheKeysOfTheContract"},
       {"saved", "pairs, pixels",
        "work that was not done, found from the stages' counters: hidden_pairs, pairs that raster left out behind "
        "triangles which cover their pixel; whole_pixels, which took the short way; pairs_behind_closed, pairs in the "

@@ -9,6 +9,7 @@
 #include "tools/image_io.h"
 #include "tools/render.h"
 #include "tools/resume.h"
+#include "tools/trace_events.h"
 
 namespace beampipe {
 namespace {
@@ -61,10 +62,10 @@ std::optional<double> pooled_flicker(const TechniqueReport& result) {
 
 class Comparison {
  public:
-  Comparison(const CompareArguments& arguments, OutputFolder& output)
+  Comparison(const CompareArguments& arguments, RunPlan plan, OutputFolder& output)
       : arguments_(arguments),
         output_(output),
-        plan_(make_plan(arguments)),
+        plan_(std::move(plan)),
         maker_(made_by("compare", plan_, own_options(arguments))),
         records_(output, maker_) {
     std::erase_if(plan_.techniques, [](const Technique& technique) { return technique.spec == "reference"; });
@@ -274,9 +275,14 @@ void add_compare_command(CLI::App& app, InterruptGate& gate) {
                     "also with the triangles shuffled, near to far and far to near: errors, and how far they differ");
   command->footer(kFooter + technique_help());
   command->callback([arguments, &gate] {
+    RunPlan plan = make_plan(*arguments);
+    const TraceEvents events(arguments->trace_events, plan);
     OutputFolder output(arguments->output, gate);
-    const std::optional<Report> report = Comparison(*arguments, output).run();  // its progress line is gone by now
-    report ? finish_report(output, *report) : tell_finished(output);
+    // Its progress line is gone by the time that the report is finished.
+    const std::optional<Report> report = Comparison(*arguments, std::move(plan), output).run();
+    if (!report) return tell_finished(output);
+    finish_report(output, *report);
+    events.write(gate);
   });
 }
 

@@ -2,7 +2,6 @@
 
 #include <memory>
 
-#include "pipeline/timeline.h"
 #include "tools/commands.h"
 #include "tools/render.h"
 #include "tools/resume.h"
@@ -11,25 +10,9 @@
 namespace beampipe {
 namespace {
 
-struct RunCommandArguments : RunArguments {
-  std::string trace_events;  // empty: none
-};
-
-void write_timeline(const Timeline& timeline, const std::filesystem::path& file, InterruptGate& gate) {
-  OutputFolder folder(file.parent_path(), gate);
-  folder.write(file.filename().string(), trace_events_json(timeline));
-  folder.keep();
-}
-
-void run(const RunCommandArguments& arguments, InterruptGate& gate) {
+void run(const RunArguments& arguments, InterruptGate& gate) {
   RunPlan plan = make_plan(arguments);
-  Timeline timeline;
-  std::filesystem::path events;
-  if (!arguments.trace_events.empty()) {
-    events = std::filesystem::absolute(arguments.trace_events);
-    require_writable_folder(events.parent_path());
-    plan.options.timeline = &timeline;
-  }
+  const TraceEvents events(arguments.trace_events, plan);
   OutputFolder output(arguments.output, gate);
   require_writable_folders(output, plan.techniques);
   const auto maker = made_by("run", plan, nlohmann::ordered_json::object());
@@ -64,17 +47,15 @@ void run(const RunCommandArguments& arguments, InterruptGate& gate) {
     }
   }
   finish_report(output, report);
-  if (plan.options.timeline) write_timeline(timeline, events, gate);
+  events.write(gate);
 }
 
 }  // namespace
 
 void add_run_command(CLI::App& app, InterruptGate& gate) {
-  const auto arguments = std::make_shared<RunCommandArguments>();
+  const auto arguments = std::make_shared<RunArguments>();
   CLI::App* command = app.add_subcommand("run", "Render a trace: pictures, per-pixel counters, report.json");
   add_run_arguments(*command, *arguments);
-  command->add_option("--trace-events", arguments->trace_events,
-                      "file for a timeline of stages per tile and thread, for ui.perfetto.dev (JSON)");
   command->footer("Example:\n  beampipe run fence.json -t beam msaa:1,8 --repeat 5 -o out\n\nTechniques:\n" +
                   technique_help());
   command->callback([arguments, &gate] { run(*arguments, gate); });

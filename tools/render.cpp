@@ -108,6 +108,7 @@ FrameReport write_frame(OutputFolder& output, const std::string& spec, std::size
     report.error = measure_error(result.image, *reference);
     counters.channels["error"] = pixel_errors(result.image, *reference);
   }
+  for (const auto& [name, values] : counters.channels) report.pixel_counters[name] = measure_counter(values);
   output.remove(frame_record_name(frame));  // an earlier one would say that the frame is whole
   output.write(report.image, encode_exr(result.image));
   output.remove("report.json");  // an earlier one would describe pictures that are no longer there

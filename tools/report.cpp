@@ -57,9 +57,12 @@ Json to_json(const FrameReport& frame, const TechniqueReport& result, const Hard
   const Json sums = to_json(all);
   for (const char* column : {"logical_bytes", "sector_bytes", "l2_bytes", "dram_bytes"}) json[column] = sums.at(column);
   json["buffers"] = buffers_json(result, frame);
+  for (const auto& [name, stats] : frame.pixel_counters)
+    json["pixel_counters"][name] = {{"mean", stats.mean}, {"max", stats.max}};
   for (const SavedWork& saved : saved_work(frame.stages)) json["saved"][saved.name] = saved.amount;
   json["stages"] = Json::array();
   for (const StageCounters& stage : frame.stages) json["stages"].push_back(to_json(stage));
+  if (result.technique == "reference") return json;  // what no hardware is meant to run
   for (const Implementation& implementation : hardware.implementations) {
     const ModelledTime time = modelled_time(hardware, implementation, frame.stages);
     json["modelled_ms"][implementation.name] = {
@@ -149,6 +152,15 @@ WallTime wall_time(std::vector<double> milliseconds) {
   const std::size_t runs = milliseconds.size();
   const double median = (milliseconds[(runs - 1) / 2] + milliseconds[runs / 2]) / 2;
   return {.median = median, .min = milliseconds.front(), .max = milliseconds.back(), .runs = static_cast<int>(runs)};
+}
+
+PixelCounterStats measure_counter(const std::vector<float>& values) {
+  PixelCounterStats stats;
+  for (const float value : values) {
+    stats.mean += value / static_cast<double>(values.size());
+    stats.max = std::max<double>(stats.max, value);
+  }
+  return stats;
 }
 
 std::string program_version() { return BEAMPIPE_VERSION; }

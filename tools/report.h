@@ -2,6 +2,7 @@
 #pragma once
 
 #include <cstdint>
+#include <map>
 #include <nlohmann/json.hpp>
 #include <optional>
 #include <string>
@@ -27,6 +28,13 @@ struct WallTime {
 // Throws std::invalid_argument when there is none.
 WallTime wall_time(std::vector<double> milliseconds);
 
+// Of one counter, over the pixels of a frame.
+struct PixelCounterStats {
+  double mean = 0, max = 0;
+};
+
+PixelCounterStats measure_counter(const std::vector<float>& values);
+
 struct FrameReport {
   std::size_t index = 0;  // in the trace
   std::string image;      // paths are relative to the report's folder
@@ -38,6 +46,7 @@ struct FrameReport {
   std::uint64_t a_buffer_peak_bytes = 0;
   std::vector<Buffer> buffers;  // all but the A-buffer
   std::vector<StageCounters> stages;
+  std::map<std::string, PixelCounterStats> pixel_counters;  // by name
   std::uint64_t pixels = 0;
 };
 

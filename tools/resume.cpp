@@ -56,8 +56,10 @@ Json record_of(const FrameReport& frame) {
                {"wall_ms", {wall.median, wall.min, wall.max, wall.runs, wall.with_memory_model}},
                {"a_buffer_peak_bytes", frame.a_buffer_peak_bytes},
                {"pixels", frame.pixels},
+               {"pixel_counters", Json::object()},
                {"buffers", Json::array()},
                {"stages", Json::array()}};
+  for (const auto& [name, stats] : frame.pixel_counters) json["pixel_counters"][name] = {stats.mean, stats.max};
   for (const Buffer& buffer : frame.buffers)
     json["buffers"].push_back({buffer.name, buffer.peak_bytes, buffer.per_bin});
   if (wall.modelling_run) json["modelling_run_ms"] = *wall.modelling_run;
@@ -78,6 +80,8 @@ FrameReport report_of(const Json& json) {
   if (json.contains("modelling_run_ms")) frame.wall_ms.modelling_run = json["modelling_run_ms"].get<double>();
   frame.a_buffer_peak_bytes = json.at("a_buffer_peak_bytes");
   frame.pixels = json.at("pixels");
+  for (const auto& [name, stats] : json.at("pixel_counters").items())
+    frame.pixel_counters[name] = {stats.at(0), stats.at(1)};
   for (const Json& buffer : json.at("buffers")) frame.buffers.push_back({buffer.at(0), buffer.at(1), buffer.at(2)});
   for (const Json& stage : json.at("stages")) frame.stages.push_back(stage_of(stage));
   if (json.contains("error")) {

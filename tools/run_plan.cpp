@@ -76,6 +76,8 @@ void add_run_arguments(CLI::App& command, RunArguments& arguments) {
                    "go on behind the last whole frame that the same command left in the folder when it was stopped");
   command.add_option("--hardware", arguments.hardware,
                      "description of the hardware whose times are modelled (default: one of Titan V class)");
+  command.add_option("--trace-events", arguments.trace_events,
+                     "file for a timeline of stages per tile and thread, for ui.perfetto.dev (JSON)");
   command.add_flag("--no-memory-model", arguments.no_memory_model,
                    "do not model caches: frames are faster, sector_bytes and dram_bytes are 0");
   command.add_flag("--no-compression", arguments.no_compression, "model memory without block compression");

@@ -14,7 +14,7 @@ namespace beampipe {
 
 // As the user wrote them.
 struct RunArguments {
-  std::string trace, output, frames, hardware;
+  std::string trace, output, frames, hardware, trace_events;
   std::vector<std::string> specs;
   std::string simd;                // empty: the best
   std::uint64_t memory_limit = 0;  // bytes; 0: the default

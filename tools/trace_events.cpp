@@ -50,4 +50,18 @@ std::string trace_events_json(const Timeline& timeline) {
   return Json{{"displayTimeUnit", "ms"}, {"traceEvents", std::move(events)}}.dump() + "\n";
 }
 
+TraceEvents::TraceEvents(const std::string& file, RunPlan& plan) {
+  if (file.empty()) return;
+  file_ = std::filesystem::absolute(file);
+  require_writable_folder(file_.parent_path());
+  plan.options.timeline = &timeline_;
+}
+
+void TraceEvents::write(InterruptGate& gate) const {
+  if (file_.empty()) return;
+  OutputFolder folder(file_.parent_path(), gate);
+  folder.write(file_.filename(), trace_events_json(timeline_));
+  folder.keep();
+}
+
 }  // namespace beampipe

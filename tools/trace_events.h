@@ -1,13 +1,30 @@
 // A timeline as a file for ui.perfetto.dev or chrome://tracing (the Trace Event Format, JSON).
 #pragma once
 
+#include <filesystem>
 #include <string>
 
 #include "pipeline/timeline.h"
+#include "tools/run_plan.h"
 
 namespace beampipe {
 
 // Each event is a slice on its thread, named after the stage and told its tile; times are microseconds since the first.
 std::string trace_events_json(const Timeline& timeline);
+
+// What --trace-events asks for; nothing when it was not given.
+class TraceEvents {
+ public:
+  // Lets the plan record its stages here. Throws std::runtime_error, one line, unless the file can be written.
+  TraceEvents(const std::string& file, RunPlan& plan);
+  TraceEvents(const TraceEvents&) = delete;
+  TraceEvents& operator=(const TraceEvents&) = delete;
+
+  void write(InterruptGate& gate) const;
+
+ private:
+  std::filesystem::path file_;
+  Timeline timeline_;
+};
 
 }  // namespace beampipe

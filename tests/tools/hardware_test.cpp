@@ -142,5 +142,21 @@ TEST(Claims, AcaaGivesBack) {
   EXPECT_EQ(given_back(), 0.5);
 }
 
+TEST(Claims, MostFragmentsOfAPixelAreThoseOfTheClassroom) {
+  Report report;
+  TechniqueReport& result = report.results.emplace_back();
+  result.technique = "beam:rules=paper";
+  result.frames.emplace_back().pixel_counters["fragments"] = {2.5, 61};
+  const auto most = [&]() -> std::optional<double> {
+    for (const Claim& claim : all_claims(report))
+      if (claim.unit == "fragments") return claim.ours;
+    return {};
+  };
+  report.trace = "fence.json";
+  EXPECT_FALSE(most());
+  report.trace = "some/classroom.json";
+  EXPECT_EQ(most(), 61);
+}
+
 }  // namespace
 }  // namespace beampipe

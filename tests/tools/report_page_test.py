@@ -5,6 +5,7 @@ usage: report_page_test.py BEAMPIPE CHROMIUM CHROMEDRIVER
 """
 
 import csv
+import functools
 import json
 import pathlib
 import re
@@ -146,8 +147,49 @@ class ReportPage(unittest.TestCase):
                 self.assertLessEqual(abs(shown - expected), 0.0005 * abs(expected), f"{key} is shown as {text}")
             bound = "at least" if result["equivalent_msaa_is_lower_bound"] else "exact"
             self.assertEqual(row["emr_bound"][0], bound)
-            times = [frame["wall_ms"]["median"] for frame in result["frames"]]
-            self.assertAlmostEqual(float(row["wall_ms"][0]), sum(times) / 2, 9)
+            mean = lambda value: sum(value(frame) for frame in result["frames"]) / len(result["frames"])
+            self.assertAlmostEqual(float(row["wall_ms"][0]), mean(lambda frame: frame["wall_ms"]["median"]), 9)
+            self.assertEqual(float(row["dram_bytes"][0]), mean(lambda frame: frame["dram_bytes"]))
+            for way in ["shaders", "fixed_function"]:
+                for kind in ["overlap", "sum"]:
+                    value, text = row[f"modelled_ms_{way}_{kind}"]
+                    if result["technique"] == "reference":
+                        self.assertEqual((value, text), ("", "–"), "it is not for hardware")
+                    else:
+                        self.assertAlmostEqual(float(value), mean(lambda frame: frame["modelled_ms"][way][kind]), 12)
+
+    def assert_rows(self, table, records, keys):
+        """The table's rows hold the values that `keys`, {column: function of a record}, find in the records."""
+        rows = table_rows(self.browser, table)
+        self.assertEqual(len(rows), len(records))
+        for row, record in zip(rows, records):
+            for key, find in keys.items():
+                expected, shown = find(record), row[key][0]
+                if expected is None:
+                    self.assertEqual(row[key], ("", "–"), f"{table} {key}")
+                elif isinstance(expected, str):
+                    self.assertEqual(shown, expected, f"{table} {key}")
+                else:
+                    self.assertEqual(float(shown), expected, f"{table} {key}")
+            self.assertLessEqual(set(row), set(keys), f"{table}: columns that are not compared")
+
+    def test_frames_framebuffers_and_claims_equal_the_report(self):
+        members = lambda key: [{**member, "technique": result["technique"]}
+                               for result in self.report["results"] for member in result[key]]
+        plain = lambda *keys: {key: lambda record, key=key: record.get(key) for key in keys}
+        self.assert_rows("framebuffer", members("framebuffer"),
+                         {**plain("technique", "format", "bytes_per_pixel"), "surface": lambda record: record["name"]})
+        self.assert_rows("claims", self.report["claims"],
+                         {**plain("unit", "published_low", "published_high", "ours", "difference", "source", "beside",
+                                  "command"), "claim": lambda record: record["name"]})
+        of = lambda *path: lambda record: functools.reduce(lambda at, key: (at or {}).get(key), path, record)
+        self.assert_rows("frames", members("frames"), {
+            **plain("technique", "a_buffer_peak_bytes", "logical_bytes", "sector_bytes", "l2_bytes", "dram_bytes", "flicker"),
+            "frame": of("index"), "wall_ms": of("wall_ms", "median"), "wall_ms_min": of("wall_ms", "min"),
+            "wall_ms_max": of("wall_ms", "max"), "runs": of("wall_ms", "runs"), "rmse": of("error", "rmse"),
+            "bias": of("error", "bias"),
+            **{f"modelled_ms_{way}_{kind}": of("modelled_ms", way, kind)
+               for way in ["shaders", "fixed_function"] for kind in ["overlap", "sum"]}})
 
     def test_memory_of_headline_and_frontier_has_the_a_buffer_in_it(self):
         results = {result["technique"]: result for result in self.report["results"] if result["technique"] != "reference"}
@@ -171,19 +213,29 @@ class ReportPage(unittest.TestCase):
         self.assertEqual(points, {spec: result["peak_bytes_per_pixel"] for spec, result in results.items()})
 
     def test_stage_numbers_equal_the_sums_of_the_report(self):
+        def add(sums, record, prefix=""):
+            for key, value in record.items():
+                if isinstance(value, dict):
+                    add(sums, value, "" if key == "ops" else key + "_")
+                elif key != "stage":
+                    name = "ops" if key == "total" else prefix + key
+                    sums[name] = sums.get(name, 0) + value
+
         expected = {}
         for result in self.report["results"]:
             for frame in result["frames"]:
                 for stage in frame["stages"]:
-                    sums = expected.setdefault((result["technique"], stage["stage"]), {})
-                    for key, value in [("items_in", stage["items_in"]), ("items_out", stage["items_out"]),
-                                       ("ops", stage["ops"]["total"]), ("special", stage["ops"]["special"]),
-                                       ("bytes_read", stage["bytes_read"]), ("bytes_written", stage["bytes_written"])]:
-                        sums[key] = sums.get(key, 0) + value
+                    add(expected.setdefault((result["technique"], stage["stage"]), {}), stage)
+        quotient = lambda a, b: a / b if b else None
+        for sums in expected.values():
+            sums["ops_per_byte"] = quotient(sums["ops"], sums["logical_bytes"])
+            sums["lane_use"] = quotient(sums["lanes_used"], sums["lanes_issued"])
         rows = table_rows(self.browser, "stages")
         self.assertEqual([(row["technique"][0], row["stage"][0]) for row in rows], list(expected))
         for row, sums in zip(rows, expected.values()):
-            self.assertEqual({key: int(row[key][0]) for key in sums}, sums)
+            self.assertEqual({key: float(value) if value else None for key, (value, _) in row.items()
+                              if key not in ["technique", "stage"]},
+                             {key: sums.get(key) for key in row if key not in ["technique", "stage"]})
 
     def test_saved_work_is_that_of_the_stages(self):
         rows = {row["technique"][0]: row for row in table_rows(self.browser, "saved")}
@@ -278,6 +330,12 @@ class ReportPage(unittest.TestCase):
         frame = self.report["results"][TECHNIQUES.index("msaa:8")]["frames"][0]
         self.assertAlmostEqual(mean ** 0.5, frame["error"]["rmse"], delta=1e-5 + 1e-3 * frame["error"]["rmse"])
         self.assertLessEqual(high, frame["error"]["max"])
+        for result in self.report["results"]:
+            for name, stats in result["frames"][0].get("pixel_counters", {}).items():
+                layer = self.browser.run("return loadLayer(arguments[0], arguments[1]).then(({ mean, high }) => [mean, high])",
+                                         result["technique"], name)
+                for found, expected in zip(layer, [stats["mean"], stats["max"]]):
+                    self.assertAlmostEqual(found, expected, delta=stats["max"] / 65535, msg=f"{result['technique']} {name}")
 
     def test_tables_sort(self):
         values = lambda: [float(row["rmse"][0]) for row in table_rows(self.browser, "techniques")]

@@ -25,11 +25,12 @@ constexpr const char* kReport = R"({"beampipe_report": 1, "trace": "dots.json", 
     "frames": [
      {"index": 3, "picture": "beam/frame_0003.png", "counters": "beam/frame_0003_counters.exr",
       "wall_ms": {"median": 4, "min": 4, "max": 4, "runs": 1}, "modelled_ms": {"shaders": {"overlap": 2, "sum": 3}},
+      "dram_bytes": 800,
       "stages": [{"stage": "compose", "ops": {"total": 3000000, "bit": 2}, "bytes_read": 500000,
                   "bytes_written": 250000, "dram_bytes": 1000000, "lanes_used": 3, "lanes_issued": 8,
                   "modelled_ms": {"shaders": 0.5}}]},
      {"index": 4, "picture": "beam/frame_0004.png", "wall_ms": {"median": 8, "min": 8, "max": 8, "runs": 1},
-      "modelled_ms": {"shaders": {"overlap": 4, "sum": 5}},
+      "modelled_ms": {"shaders": {"overlap": 4, "sum": 5}}, "dram_bytes": 1200,
       "stages": [{"stage": "compose", "ops": {"total": 1000000, "bit": 3}, "bytes_read": 200000,
                   "bytes_written": 50000, "dram_bytes": 1000000, "lanes_used": 1, "lanes_issued": 8,
                   "modelled_ms": {"shaders": 0.3}}]}]},
@@ -73,14 +74,21 @@ TEST_F(ReportParts, StagesAreSummedOverFrames) {
   EXPECT_EQ(cell(stages, 0, "lane_use"), 0.25);
   EXPECT_EQ(cell(stages, 0, "modelled_ms_shaders"), 0.8);
   EXPECT_EQ(cell(stages, 0, "sector_bytes"), "no such column") << "what the report has not is left out";
-  EXPECT_EQ(named(tables, "frames").rows.size(), 4u);
+  const Table& frames = named(tables, "frames");
+  ASSERT_EQ(frames.rows.size(), 4u);
+  EXPECT_EQ(cell(frames, 1, "modelled_ms_shaders_sum"), 5);
+  EXPECT_EQ(cell(frames, 1, "dram_bytes"), 1200);
+  EXPECT_TRUE(cell(frames, 2, "modelled_ms_shaders_sum").is_null());
 }
 
 TEST_F(ReportParts, TechniquesHaveTimesBoundsAndWhatMsaaWouldTake) {
   const std::vector<Table> tables = report_tables(read());
   const Table& techniques = named(tables, "techniques");
   EXPECT_EQ(cell(techniques, 0, "wall_ms"), 6.0);
-  EXPECT_EQ(cell(techniques, 0, "modelled_ms_shaders"), 3.0);
+  EXPECT_EQ(cell(techniques, 0, "modelled_ms_shaders_overlap"), 3.0);
+  EXPECT_EQ(cell(techniques, 0, "modelled_ms_shaders_sum"), 4.0);
+  EXPECT_EQ(cell(techniques, 0, "dram_bytes"), 1000.0) << "the mean of the frames";
+  EXPECT_TRUE(cell(techniques, 1, "modelled_ms_shaders_overlap").is_null()) << "the reference runs on no hardware";
   EXPECT_EQ(cell(techniques, 0, "emr_bound"), "at least");
   EXPECT_EQ(cell(techniques, 0, "peak_bytes_per_pixel"), 49);
   EXPECT_EQ(cell(techniques, 0, "msaa_bytes_per_pixel"), 80.0);

@@ -28,6 +28,7 @@ Report sample_report() {
     frame.a_buffer_peak_bytes = 100 * (10 - index);
     frame.buffers = {{"pairs", 64, true}};
     frame.pixels = 50;
+    frame.pixel_counters = {{"fragments", {1.5, 4}}};
     frame.stages = {{"vertex_setup", 3, 1, {1, 2, 3, 4, 5, 6}, 36, 80, 3, 4, 128, 112, 96}};
   }
   return report;
@@ -79,11 +80,24 @@ TEST(ReportJson, HasTheKeysOfTheContract) {
                                     {{"name", "a_buffer"}, {"peak_bytes", 500}, {"held", "frame"}},
                                     {{"name", "pairs"}, {"peak_bytes", 64}, {"held", "bin"}}}));
   EXPECT_FALSE(frame.contains("modelled_ms")) << "there is no hardware";
+  EXPECT_EQ(frame["pixel_counters"], (Json{{"fragments", {{"mean", 1.5}, {"max", 4.0}}}}));
   const Json& memory = json["memory_system"];
   EXPECT_EQ(memory["modelled"], true);
   EXPECT_EQ(memory["compression"], true);
   EXPECT_EQ(memory["sector_bytes"], 32);
   EXPECT_EQ(memory["rop_cache"], (Json{{"bytes", 24 * 16384}, {"ways", 4}, {"line_bytes", 256}}));
+}
+
+TEST(ReportJson, TheReferenceRunsOnNoHardware) {
+  Report report = sample_report();
+  report.hardware = titan_v();
+  const Json with = to_json(report)["results"][0]["frames"][0];
+  EXPECT_TRUE(with.contains("modelled_ms"));
+  EXPECT_TRUE(with["stages"][0].contains("modelled_ms"));
+  report.results[0].technique = "reference";
+  const Json without = to_json(report)["results"][0]["frames"][0];
+  EXPECT_FALSE(without.contains("modelled_ms"));
+  EXPECT_FALSE(without["stages"][0].contains("modelled_ms"));
 }
 
 TEST(ReportJson, SaysNothingOfErrorsThatWereNotMeasured) {
@@ -124,6 +138,12 @@ TEST(ReportJson, IsTextEvenWhenAFileNameIsNotUtf8) {
   Report report = sample_report();
   report.trace = "caf\xE9.json";
   EXPECT_NO_THROW(Json::parse(json_text(to_json(report))));
+}
+
+TEST(PixelCounters, AreSummedUpByMeanAndMax) {
+  const PixelCounterStats stats = measure_counter({1, 0, 7, 2});
+  EXPECT_EQ(stats.mean, 2.5);
+  EXPECT_EQ(stats.max, 7);
 }
 
 TEST(WallTime, IsMedianMinMaxAndRuns) {

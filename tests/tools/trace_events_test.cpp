@@ -53,6 +53,20 @@ TEST(TraceEvents, HoldEveryStageOfEveryTechnique) {
   }
 }
 
+TEST(TraceEvents, ComparisonsHaveThemToo) {
+  const TemporaryFolder folder;
+  write_text(folder / "trace.json", kTrace);
+  const Outcome outcome =
+      run_program({"compare", (folder / "trace.json").string(), "-o", (folder / "out").string(), "--ladder", "1",
+                   "--trace-events", (folder / "events.json").string(), "-t", "beam"});
+  ASSERT_EQ(outcome.exit_code, 0) << outcome.err;
+  const Json events = Json::parse(read_text(folder / "events.json"));
+  std::set<std::string> names;
+  for (const Json& event : events.at("traceEvents")) names.insert(event.at("name"));
+  for (const char* name : {"beam, frame 0", "reference, frame 0", "compose", "reference_raster"})
+    EXPECT_TRUE(names.contains(name)) << name;
+}
+
 TEST(TraceEvents, AreNotWrittenUnlessAskedFor) {
   const TemporaryFolder folder;
   write_text(folder / "trace.json", kTrace);

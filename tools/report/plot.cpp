@@ -87,7 +87,7 @@ ScatterPlot speed_plot(const std::vector<ReportFile>& reports, const std::string
   const bool modelled = !implementation.empty();
   ScatterPlot plot{modelled ? "speed_" + implementation : "speed",
                    "Time and error: " + scenes_text(reports),
-                   modelled ? "time of the modelled hardware (" + implementation + "), ms per frame"
+                   modelled ? "modelled time (" + implementation + ", stages overlap), ms per frame"
                             : "wall time of the simulator, ms per frame",
                    "RMSE, linear light (lower is better)",
                    {{kMsaa, {}, true}},
@@ -96,7 +96,7 @@ ScatterPlot speed_plot(const std::vector<ReportFile>& reports, const std::string
   for (const TechniqueSummary& summary : mean_summaries(reports)) {
     if (!summary.rmse || (modelled && !summary.modelled_ms.contains(implementation))) continue;
     compared = true;
-    const double ms = modelled ? summary.modelled_ms.at(implementation) : summary.wall_ms;
+    const double ms = modelled ? summary.modelled_ms.at(implementation).overlap : summary.wall_ms;
     add_point(plot, summary.spec, {ms, *summary.rmse, summary.spec});
   }
   if (!compared) throw_not_compared(reports);

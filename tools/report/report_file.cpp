@@ -42,9 +42,12 @@ TechniqueSummary mean_summary(const std::vector<TechniqueSummary>& of_one_techni
     mean.emr->is_upper_bound |= summary.emr->is_upper_bound;
   }
   for (auto& [implementation, mean_ms] : mean.modelled_ms) {
-    std::vector<double> modelled;
-    for (const TechniqueSummary& summary : of_one_technique) modelled.push_back(summary.modelled_ms.at(implementation));
-    mean_ms = geometric_mean(modelled);
+    std::vector<double> overlap, sum;
+    for (const TechniqueSummary& summary : of_one_technique) {
+      overlap.push_back(summary.modelled_ms.at(implementation).overlap);
+      sum.push_back(summary.modelled_ms.at(implementation).sum);
+    }
+    mean_ms = {geometric_mean(overlap), geometric_mean(sum)};
   }
   mean.bytes_per_pixel = geometric_mean(bytes);
   mean.wall_ms = geometric_mean(ms);
@@ -96,10 +99,13 @@ TechniqueSummary read_summary(const Json& result) {
   for (const Json& frame : result.at("frames")) medians.push_back(frame.at("wall_ms").at("median"));
   summary.wall_ms = wall_time(std::move(medians)).median;
   for (const Json& frame : result["frames"]) {
+    const auto frames = static_cast<double>(result["frames"].size());
+    summary.dram_bytes += frame.value("dram_bytes", 0.0) / frames;
     const Json times = frame.value("modelled_ms", Json::object());
     for (const auto& [implementation, time] : times.items()) {
-      summary.modelled_ms[implementation] +=
-          time.at("overlap").get<double>() / static_cast<double>(result["frames"].size());
+      ModelledMs& mean = summary.modelled_ms[implementation];
+      mean.overlap += time.at("overlap").get<double>() / frames;
+      mean.sum += time.at("sum").get<double>() / frames;
     }
   }
   if (result.contains("error")) summary.rmse = result["error"].at("rmse");

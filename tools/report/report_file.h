@@ -18,13 +18,19 @@ struct ReportError : std::runtime_error {
   using std::runtime_error::runtime_error;
 };
 
+// Per frame, the mean of the frames: with all stages at once, and one after the other.
+struct ModelledMs {
+  double overlap = 0, sum = 0;
+};
+
 // What one technique cost and bought, over all frames of a report.
 struct TechniqueSummary {
   std::string spec;
   double bytes_per_pixel = 0;  // of framebuffer and A-buffer, at their peak
   double wall_ms = 0;          // per frame: the median of the frames' medians
-  // Per frame, by the way in which the modelled hardware runs the techniques: all stages at once. Empty: not modelled.
-  std::map<std::string, double> modelled_ms;
+  // By the way in which the modelled hardware runs the techniques. Empty: not modelled.
+  std::map<std::string, ModelledMs> modelled_ms;
+  double dram_bytes = 0;              // per frame: the mean of the frames
   std::optional<double> rmse;         // after `compare`
   std::optional<EquivalentMsaa> emr;  // after `compare`
 };

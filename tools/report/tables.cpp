@@ -48,6 +48,9 @@ const std::vector<Source> kTechniqueColumns = {
       "How long the simulator took on the machine that ran it, not hardware: the median over the frames. Of a single "
       "run it has the memory model's own time in it."},
      "/wall_ms"},
+    {{"dram_bytes", "DRAM", "bytes per frame",
+      "Moved to and from DRAM behind the modelled caches, read and written: the mean of the frames."},
+     "/dram_bytes"},
     {{"bias", "bias", "linear light, 0..1", "Mean signed error over R, G and B of all pixels."}, "/error/bias"},
     {{"p99", "p99", "linear light, 0..1", "The absolute error that 99 % of all values do not exceed."}, "/error/p99"},
     {{"max", "max", "linear light, 0..1", "The largest absolute error."}, "/error/max"},
@@ -60,8 +63,8 @@ const std::vector<Source> kSurfaceColumns = {
     {{"bytes_per_pixel", "bytes/pixel", "bytes", "What this surface takes per pixel."}, "/bytes_per_pixel"},
 };
 
-// What the registry of counters has, and two quotients.
-std::vector<Source> stage_columns() {
+// What the registry of counters has, two quotients and modelled times.
+std::vector<Source> stage_columns(const ReportFile& report) {
   std::vector<Source> columns = {
       {{"technique", "technique", "", "The spec that names the technique."}, "/technique"},
       {{"stage", "stage", "", "A stage of the technique's pipeline; stages stand in pipeline order."}, "/stage"}};
@@ -76,6 +79,10 @@ std::vector<Source> stage_columns() {
       {{"ops_per_byte", "op/byte", "operations per byte", "Operations by logical bytes read and written."},
        "/ops_per_byte"});
   columns.push_back({{"lane_use", "lane use", "part, 0..1", "Lanes with work by lanes issued."}, "/lane_use"});
+  for (const auto& [implementation, ms] : report.techniques.front().modelled_ms)
+    columns.push_back({{"modelled_ms_" + implementation, "modelled, " + implementation, "ms",
+                        "What the modelled hardware takes for this stage: the time of its busiest unit."},
+                       "/modelled_ms/" + implementation});
   return columns;
 }
 
@@ -90,6 +97,13 @@ const std::vector<Source> kFrameColumns = {
       "One rendering more, which modelled caches and DRAM, for the counts. Absent: the wall time has that in it."},
      "/wall_ms/modelling_run"},
     {{"a_buffer_peak_bytes", "A-buffer", "bytes", "The most that the A-buffer held."}, "/a_buffer_peak_bytes"},
+    {{"logical_bytes", "logical", "bytes", "What all stages read and write, each time they do."}, "/logical_bytes"},
+    {{"sector_bytes", "sectors", "bytes", "What all stages ask of the memory system, in sectors of 32 bytes."},
+     "/sector_bytes"},
+    {{"l2_bytes", "L2", "bytes", "What is asked of L2, in sectors: what the caches before it do not hold or evict."},
+     "/l2_bytes"},
+    {{"dram_bytes", "DRAM", "bytes", "Moved to and from DRAM behind the modelled caches, read and written."},
+     "/dram_bytes"},
     {{"rmse", "RMSE", "linear light, 0..1", "Root of the mean square error of this frame."}, "/error/rmse"},
     {{"bias", "bias", "linear light, 0..1", "Mean signed error of this frame."}, "/error/bias"},
     {{"flicker", "flicker", "linear light, 0..1", "RMS change of the error since the frame before."}, "/flicker"},
@@ -128,12 +142,18 @@ Table make_table(const std::string& name, const std::string& title, const std::v
   return table;
 }
 
-// One more column for each way in which the modelled hardware runs the techniques.
-std::vector<Source> with_modelled_times(std::vector<Source> sources, const ReportFile& report, const std::string& unit,
-                                        const std::string& definition) {
+// Two more columns for each way in which the modelled hardware runs the techniques.
+std::vector<Source> with_modelled_times(std::vector<Source> sources, const ReportFile& report,
+                                        const std::string& unit) {
   for (const auto& [implementation, ms] : report.techniques.front().modelled_ms) {
-    sources.push_back({{"modelled_ms_" + implementation, "modelled: " + implementation, unit, definition},
-                       "/modelled_ms/" + implementation});
+    const std::string key = "modelled_ms_" + implementation, pointer = "/modelled_ms/" + implementation;
+    const std::string title = "modelled, " + implementation + ", ";
+    sources.push_back({{key + "_overlap", title + "overlap", unit,
+                        "What the modelled hardware takes when all stages run at once: the time of its busiest unit."},
+                       pointer + "/overlap"});
+    sources.push_back({{key + "_sum", title + "sum", unit,
+                        "What the modelled hardware takes when the stages run one after the other: the sum of theirs."},
+                       pointer + "/sum"});
   }
   return sources;
 }
@@ -145,7 +165,9 @@ std::vector<Json> technique_records(const ReportFile& report) {
     Json record = result;
     const TechniqueSummary summary = read_summary(result);
     record["wall_ms"] = summary.wall_ms;
-    record["modelled_ms"] = summary.modelled_ms;
+    if (result.at("frames").front().contains("dram_bytes")) record["dram_bytes"] = summary.dram_bytes;
+    for (const auto& [implementation, ms] : summary.modelled_ms)
+      record["modelled_ms"][implementation] = {{"overlap", ms.overlap}, {"sum", ms.sum}};
     if (summary.emr) {
       record["emr_bound"] = summary.emr->is_lower_bound   ? "at least"
                             : summary.emr->is_upper_bound ? "at most"
@@ -206,22 +228,16 @@ std::string csv_field(const Json& value) {
 std::vector<Table> report_tables(const ReportFile& report) {
   const Json& results = report.json.at("results");
   std::vector<Table> tables;
-  tables.push_back(
-      make_table("techniques", "Techniques",
-                 with_modelled_times(
-                     kTechniqueColumns, report, "ms per frame",
-                     "What the modelled hardware takes when all stages run at once: the time of its busiest unit."),
-                 technique_records(report)));
+  tables.push_back(make_table("techniques", "Techniques",
+                              with_modelled_times(kTechniqueColumns, report, "ms per frame"),
+                              technique_records(report)));
   tables.push_back(make_table("framebuffer", "Framebuffers", kSurfaceColumns, members(results, "framebuffer")));
-  tables.push_back(
-      make_table("stages", "Stages, all frames together",
-                 with_modelled_times(stage_columns(), report, "ms",
-                                     "What the modelled hardware takes for this stage: the time of its busiest unit."),
-                 stage_records(report)));
+  tables.push_back(make_table("stages", "Stages, all frames together", stage_columns(report), stage_records(report)));
   const std::vector<Json> saved = saved_records(results);
   if (!saved.empty()) tables.push_back(make_table("saved", "Saved work, all frames together", saved_columns(), saved));
   const std::vector<Json> frames = members(results, "frames");
-  if (frames.size() > results.size()) tables.push_back(make_table("frames", "Frames", kFrameColumns, frames));
+  if (frames.size() > results.size())
+    tables.push_back(make_table("frames", "Frames", with_modelled_times(kFrameColumns, report, "ms"), frames));
   const auto& claims = report.json.find("claims");
   if (claims != report.json.end() && !claims->empty()) {
     tables.push_back(
