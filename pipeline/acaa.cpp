@@ -26,7 +26,7 @@ FrameResult render_acaa(const Trace& trace, const Frame& frame, const AcaaOption
     StageCounters raster{"sample_raster"}, testing{"depth_test"}, stencil{"stencil_test"}, shading{"shade"},
         accumulation{"accumulate"}, resolving{"resolve"};
     Accumulator accumulator(tile, options.samples, options.color, options.double_counting);
-    std::vector<float> counts(tile.pixels()), bytes(tile.pixels());
+    std::vector<float> counts(tile.pixels()), visible(tile.pixels()), bytes(tile.pixels());
     std::vector<SampleAccess> accesses;
     BinBuffers held;
     const ZOrder order(tile.width(), tile.height());
@@ -41,6 +41,7 @@ FrameResult render_acaa(const Trace& trace, const Frame& frame, const AcaaOption
                         [&](std::vector<SampleFragment>& fragments) {
                           depth_test(triangles, fragments, tile, sampling, timed(testing), depth, accesses);
                           memory.test_depth(accesses, testing);
+                          count_fragments(fragments, tile, sampling.grid, counts);
                         });
       memory.flush(testing);
       if (options.double_counting == DoubleCounting::saturate) {
@@ -63,7 +64,7 @@ FrameResult render_acaa(const Trace& trace, const Frame& frame, const AcaaOption
                           attributes.read(fragments, shading);
                           accumulate(fragments, colors, tile, timed(accumulation), accumulator);
                           color.blend(fragments, tile, accumulation);
-                          count_fragments(fragments, tile, sampling.grid, counts);
+                          count_fragments(fragments, tile, sampling.grid, visible);
                         });
       memory.flush(testing);
       memory.add_bytes(bytes);
@@ -74,11 +75,12 @@ FrameResult render_acaa(const Trace& trace, const Frame& frame, const AcaaOption
     color.add_bytes(bytes);
     color.read_all(resolving);
     write_image(run.memory, tile, resolving);
-    TileResult result{resolve(accumulator, frame.background, timed(resolving)),
-                      {{"visible_fragments", std::move(counts)}, {"bytes", std::move(bytes)}},
-                      {raster, testing},
-                      held,
-                      2 * static_cast<int>(rounds.size())};
+    TileResult result{
+        resolve(accumulator, frame.background, timed(resolving)),
+        {{"fragments", std::move(counts)}, {"visible_fragments", std::move(visible)}, {"bytes", std::move(bytes)}},
+        {raster, testing},
+        held,
+        2 * static_cast<int>(rounds.size())};
     if (options.double_counting == DoubleCounting::stencil) result.stages.push_back(stencil);
     result.stages.insert(result.stages.end(), {shading, accumulation, resolving});
     return result;

@@ -27,12 +27,14 @@ FrameResult render_deferred(const Trace& trace, const Frame& frame, const RunOpt
     const ZOrder order(tile.width(), tile.height());
     TileSurface gbuffer(run.memory, order, 1, kGBufferBytes);
     AttributesInOrder attributes(run.memory);
+    std::vector<float> counts(tile.pixels()), bytes(tile.pixels());
     std::vector<SampleAccess> accesses;
     BinBuffers held;
     raster_in_batches(triangles, list, tile, sampling, timed, raster, held,
                       [&](std::vector<SampleFragment>& fragments) {
                         depth_test(triangles, fragments, tile, sampling, timed(testing), surface, accesses);
                         memory.test_depth(accesses, testing);
+                        count_fragments(fragments, tile, sampling.grid, counts);
                       });
     memory.flush(testing);
     raster_in_batches(triangles, list, tile, sampling, timed, raster, held,
@@ -48,10 +50,11 @@ FrameResult render_deferred(const Trace& trace, const Frame& frame, const RunOpt
     gbuffer.flush(shading);
     const std::vector<std::uint32_t> shown = shown_pixels(surface, tile);
     light(shown.size(), timed(lighting));
-    move_light_and_resolve(run.memory, tile, order, shown, gbuffer, lighting, resolving);
+    move_light_and_resolve(run.memory, tile, order, shown, gbuffer, lighting, resolving, bytes);
+    memory.add_bytes(bytes);
     surface.color_bytes = kSampleColorBytes;
     return TileResult{resolve(surface, tile.pixels(), colors, frame.background, timed(resolving)),
-                      {},
+                      {{"fragments", std::move(counts)}, {"bytes", std::move(bytes)}},
                       {raster, testing, shading, lighting, resolving},
                       held,
                       2};

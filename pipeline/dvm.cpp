@@ -19,6 +19,19 @@ namespace {
 // The clamp fades out below this motion, in pixels: the article's remedy for flicker at edges between lit facets.
 constexpr float kStillPixels = 0.05f;
 
+// Shading samples with their G-buffer and colour are written at the pixel of the quad that stores them.
+void add_sample_bytes(const std::vector<SampleQuad>& quads, const Tile& tile, std::vector<float>& bytes) {
+  const std::size_t columns = (static_cast<std::size_t>(tile.width()) + 1) / 2;
+  for (std::size_t q = 0; q < quads.size(); ++q)
+    for (std::size_t p = 0; p < 4; ++p) {
+      if (quads[q].mask[p] == 0) continue;
+      const std::size_t x = 2 * (q % columns) + p % 2, y = 2 * (q / columns) + p / 2;
+      const bool is_shaded = quads[q].triangle[p] != kNoTriangle;
+      bytes[y * static_cast<std::size_t>(tile.width()) + x] +=
+          static_cast<float>(kShadingSampleBytes + (is_shaded ? kGBufferBytes + kSampleColorBytes : 0));
+    }
+}
+
 }  // namespace
 
 FrameResult render_dvm(const Trace& trace, const Frame& frame, const DvmOptions& options, const RunOptions& run) {
@@ -43,12 +56,14 @@ FrameResult render_dvm(const Trace& trace, const Frame& frame, const DvmOptions&
             lighting{"light"}, moving{"motion"};
         SampleTile surface(tile, sampling, kVisibilityBytes);
         SampleMemory memory(run.memory, tile, sampling, kVisibilityBytes);
+        std::vector<float> counts(tile.pixels()), bytes(tile.pixels());
         std::vector<SampleAccess> accesses;
         BinBuffers held;
         raster_in_batches(triangles, list, tile, sampling, timed, raster, held,
                           [&](std::vector<SampleFragment>& fragments) {
                             depth_test(triangles, fragments, tile, sampling, timed(testing), surface, accesses);
                             memory.test_and_write(accesses, testing);
+                            count_fragments(fragments, tile, sampling.grid, counts);
                           });
         memory.flush(testing);
         const std::vector<SampleQuad> selected = sample_select(surface, tile, materials, select, timed(selecting));
@@ -73,7 +88,12 @@ FrameResult render_dvm(const Trace& trace, const Frame& frame, const DvmOptions&
         const PixelContents found = contents(surface, tile, frame, triangles.draws, to_last, looks, timed(moving));
         copy_to_frame(found.looks, tile, frame, current.looks);
         copy_to_frame(found.speeds, tile, frame, current.speeds);
-        return TileResult{{}, {}, {raster, testing, selecting, shading, lighting, moving}, held};
+        memory.add_bytes(bytes);
+        add_sample_bytes(selected, tile, bytes);
+        return TileResult{{},
+                          {{"fragments", std::move(counts)}, {"bytes", std::move(bytes)}},
+                          {raster, testing, selecting, shading, lighting, moving},
+                          held};
       });
 
   StageCounters spreading{"dilate"}, accumulation{"temporal"};

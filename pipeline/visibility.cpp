@@ -52,7 +52,7 @@ TileResult visibility_tile(const SetupTriangles& triangles, const TriangleList& 
   for (const std::uint32_t pixel : shown) fetches.attributes(surface.triangle[pixel], shading);
   fetches.flush(shading);
   write_pixels(shown, gbuffer, shading);
-  move_light_and_resolve(run.memory, tile, order, shown, gbuffer, lighting, resolving);
+  move_light_and_resolve(run.memory, tile, order, shown, gbuffer, lighting, resolving, bytes);
   surface.color_bytes = kSampleColorBytes;
   return {resolve(surface, tile.pixels(), colors, background, timed(resolving)),
           {{"fragments", std::move(counts)}, {"bytes", std::move(bytes)}},

@@ -30,7 +30,7 @@ FrameResult render_shape(const Trace& trace, const Frame& frame, const Z3Options
     StageCounters raster{"conservative_raster"}, fragment{"beam_fragment"}, shading{"shade"}, composition{"compose"},
         resolving{"resolve"};
     std::vector<Z3Pixel<Words, Layers>> pixels(tile.pixels());
-    std::vector<float> counts(tile.pixels()), bytes(tile.pixels());
+    std::vector<float> counts(tile.pixels()), merges(tile.pixels()), bytes(tile.pixels());
     const ZOrder order(tile.width(), tile.height());
     AggregateMemory memory(run.memory, order, z3_framebuffer(z3));
     AttributesInOrder attributes(run.memory);
@@ -46,7 +46,7 @@ FrameResult render_shape(const Trace& trace, const Frame& frame, const Z3Options
       shade(colors, fragments, timed(shading));
       attributes.read(fragments, shading);
       for (const Fragment& item : fragments) ++counts[item.pixel];
-      compose_z3(fragments, positions, z3.merge, timed(composition), pixels);
+      compose_z3(fragments, positions, z3.merge, timed(composition), pixels, merges);
       for (const Fragment& item : fragments) memory.merge(item.triangle, item.pixel, composition);
     });
     memory.flush({}, composition);
@@ -54,7 +54,7 @@ FrameResult render_shape(const Trace& trace, const Frame& frame, const Z3Options
     memory.read_all(resolving);
     write_image(run.memory, tile, resolving);
     return TileResult{resolve(z3_colors(pixels), frame.background, sizeof pixels[0], timed(resolving)),
-                      {{"fragments", std::move(counts)}, {"bytes", std::move(bytes)}},
+                      {{"fragments", std::move(counts)}, {"merges", std::move(merges)}, {"bytes", std::move(bytes)}},
                       {raster, fragment, shading, composition, resolving},
                       held};
   });

@@ -16,10 +16,25 @@ CountedFragment counted_fragment(OperationCounts& counts) {
   return {{one, all, {one, one, one}, one, one, one, {one, one, one}}, all};
 }
 
-OperationCounts merge_cost(const SamplePattern& pattern, const MergeRules& rules) {
+// Numbers of a stored aggregate that are not as they are worked on.
+std::uint64_t packed_numbers(PaperStorage storage) {
+  switch (storage) {
+    case PaperStorage::slides:
+      return 3;  // colour
+    case PaperStorage::text:
+      return 6;  // colour, slopes, thickness
+    case PaperStorage::float32:
+      break;
+  }
+  return 0;
+}
+
+// The aggregate is loaded before each merge, and stored behind it.
+OperationCounts merge_cost(const SamplePattern& pattern, const MergeRules& rules, PaperStorage storage) {
   return count_operations([&](OperationCounts& counts) {
     const CountedFragment fragment = counted_fragment(counts);
     merge_scalar(fragment, fragment.surface, pattern, rules);
+    counts.convert += 2 * packed_numbers(storage);
   });
 }
 
@@ -27,6 +42,7 @@ OperationCounts over_cost() {
   return count_operations([](OperationCounts& counts) {
     const CountedFragment fragment = counted_fragment(counts);
     over_scalar(fragment, fragment.surface);
+    counts.convert += 2 * 3;  // fp16 colour
   });
 }
 
@@ -97,7 +113,7 @@ std::vector<Aggregate> compose_stored(const std::vector<Fragment>& fragments, co
 std::vector<Aggregate> compose(const std::vector<Fragment>& fragments, const ABuffer& buffer,
                                const SamplePattern& pattern, const MergeRules& rules, PaperStorage storage,
                                StageCounters& counters) {
-  count_merges(buffer.records.size(), buffer.first.size() - 1, merge_cost(pattern, rules),
+  count_merges(buffer.records.size(), buffer.first.size() - 1, merge_cost(pattern, rules, storage),
                paper_aggregate_bytes(storage), paper_aggregate_bytes(storage), counters);
   switch (storage) {
     case PaperStorage::slides:

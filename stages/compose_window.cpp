@@ -209,6 +209,7 @@ void compose_window(const std::vector<Fragment>& fragments, const PositionSet& p
                                part = {.special = 1}, order_test = {.add = 1}, addition = addition_cost(),
                                speck = speck_cost(), surface = surface_cost(), open_test = {.add = 1},
                                closing = closing_cost();
+  constexpr OperationCounts formats = {.convert = std::is_same_v<Channel, HalfBits> ? 2 * 3 : 0};  // load and store
   const ComposeWork& work = composer.work();
   counters.items_in += fragments.size();
   counters.items_out += windows;
@@ -222,6 +223,7 @@ void compose_window(const std::vector<Fragment>& fragments, const PositionSet& p
   counters.ops += surface * work.surface_tests;
   counters.ops += open_test * windows;
   counters.ops += closing * work.closed;
+  counters.ops += formats * windows;
   counters.bytes_read +=
       fragments.size() * conserving_fragment_bytes(32 * Words) + windows * sizeof(StoredAggregate<Words, Channel>);
   counters.bytes_written += windows * sizeof(StoredAggregate<Words, Channel>);

@@ -140,10 +140,14 @@ class PixelLayers {
 
 template <std::size_t Words, std::size_t Layers>
 void compose_z3(const std::vector<Fragment>& fragments, const PositionSet& positions, LayerMerge merge,
-                StageCounters& counters, std::vector<Z3Pixel<Words, Layers>>& pixels) {
+                StageCounters& counters, std::vector<Z3Pixel<Words, Layers>>& pixels, std::vector<float>& merges) {
   PixelLayers<Words, Layers> layers(positions, merge);
   std::uint64_t taken = 0;
-  for (const Fragment& fragment : fragments) taken += layers.add(fragment, pixels[fragment.pixel]);
+  for (const Fragment& fragment : fragments) {
+    const std::uint64_t before = layers.merges;
+    taken += layers.add(fragment, pixels[fragment.pixel]);
+    merges[fragment.pixel] += static_cast<float>(layers.merges - before);
+  }
   constexpr std::uint64_t kFragmentBytes = 4 + 4 * Words + 12 + 6;  // pixel, mask, depth plane, colour
   counters.items_in += fragments.size();
   counters.items_out += taken;
@@ -178,7 +182,7 @@ std::vector<PixelColor> z3_colors(const std::vector<Z3Pixel<Words, Layers>>& pix
 
 #define BEAMPIPE_Z3(words, layers)                                                                       \
   template void compose_z3(const std::vector<Fragment>&, const PositionSet&, LayerMerge, StageCounters&, \
-                           std::vector<Z3Pixel<words, layers>>&);                                        \
+                           std::vector<Z3Pixel<words, layers>>&, std::vector<float>&);                   \
   template std::vector<PixelColor> z3_colors(const std::vector<Z3Pixel<words, layers>>&);
 BEAMPIPE_Z3_PIXELS(BEAMPIPE_Z3)
 #undef BEAMPIPE_Z3

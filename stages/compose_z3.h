@@ -44,10 +44,11 @@ static_assert(sizeof(Z3Pixel<4, 3>) == 74);
 // The shapes that there are: X(words, layers).
 #define BEAMPIPE_Z3_PIXELS(X) X(1, 2) X(1, 3) X(4, 3)
 
-// `pixels`: one per pixel of the tile, kept from batch to batch; zero before the first.
+// `pixels`: one per pixel of the tile, kept from batch to batch; zero before the first. `merges` beside them: one is
+// added where two layers become one.
 template <std::size_t Words, std::size_t Layers>
 void compose_z3(const std::vector<Fragment>& fragments, const PositionSet& positions, LayerMerge merge,
-                StageCounters& counters, std::vector<Z3Pixel<Words, Layers>>& pixels);
+                StageCounters& counters, std::vector<Z3Pixel<Words, Layers>>& pixels, std::vector<float>& merges);
 
 template <std::size_t Words, std::size_t Layers>
 std::vector<PixelColor> z3_colors(const std::vector<Z3Pixel<Words, Layers>>& pixels);

@@ -149,13 +149,18 @@ const char* test_of(const StageInfo& stage, const CounterInfo& counter) {
 
 const std::vector<PixelCounterInfo>& pixel_counters() {
   static const std::vector<PixelCounterInfo> counters = {
-      {"fragments", "fragments", "triangles with a fragment in the pixel", "beam, alpha, msaa, visibility",
-       kPixelMoves},
-      {"bytes", "bytes", "logical bytes of the framebuffer's surfaces and the A-buffer, where memory is modelled",
-       "beam, alpha, z3, msaa, acaa, visibility", "HandWorked.BytesOfAPixel"},
+      {"fragments", "fragments", "triangles with a fragment in the pixel; of acaa beyond 16 samples in each round",
+       "all but reference", "Counters.EveryTechniqueCountsFragmentsAndBytesOfPixels"},
+      {"bytes", "bytes",
+       "logical bytes of the framebuffer's surfaces and the A-buffer, where memory is modelled; without passes that "
+       "read "
+       "all of a surface, each pixel once, and what accumulates over time",
+       "all but reference", "HandWorked.BytesOfAPixel"},
       {"centroids", "fragments", "fragments that are shaded at the centroid, their triangle not covering the centre",
        "msaa:N,at=centroid", "Msaa.TheCentroidIsForFragmentsThatOneSampleMisses"},
-      {"merges", "fragments", "fragments that were looked at before the pixel was full", "beam, alpha", kPixelMoves},
+      {"merges", "fragments",
+       "fragments that were looked at before the pixel was full; of z3, layers that became one with another",
+       "beam, alpha, z3", kPixelMoves},
       {"tiny_triangles", "fragments", "fragments that cover no mask position", "beam", kPixelMoves},
       {"largest_window", "fragments", "fragments of the largest window of overlapping depths", "beam", kPixelMoves},
       {"visible_fragments", "fragments", "triangles with a visible sample in the pixel", "acaa", kPixelMoves},

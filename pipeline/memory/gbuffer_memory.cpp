@@ -19,12 +19,14 @@ void write_pixels(const std::vector<std::uint32_t>& pixels, TileSurface& to, Sta
 
 void move_light_and_resolve(const MemoryParameters& memory, const Tile& tile, const ZOrder& order,
                             const std::vector<std::uint32_t>& pixels, TileSurface& gbuffer, StageCounters& lighting,
-                            StageCounters& resolving) {
+                            StageCounters& resolving, std::vector<float>& bytes) {
   TileSurface color(memory, order, 1, kSampleColorBytes);
   gbuffer.read_all(lighting);
   write_pixels(pixels, color, lighting);
   color.read_all(resolving);
   write_image(memory, tile, resolving);
+  gbuffer.add_bytes(bytes);
+  color.add_bytes(bytes);
 }
 
 }  // namespace beampipe

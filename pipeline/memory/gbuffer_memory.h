@@ -14,9 +14,9 @@ std::vector<std::uint32_t> shown_pixels(const SampleTile& surface, const Tile& t
 // Writes each of the pixels once, and ends the pass.
 void write_pixels(const std::vector<std::uint32_t>& pixels, TileSurface& to, StageCounters& counters);
 
-// Light: from the G-buffer to colour. Resolve: from colour to the picture.
+// Light: from the G-buffer to colour. Resolve: from colour to the picture. Adds to `bytes` what each pixel was written.
 void move_light_and_resolve(const MemoryParameters& memory, const Tile& tile, const ZOrder& order,
                             const std::vector<std::uint32_t>& pixels, TileSurface& gbuffer, StageCounters& lighting,
-                            StageCounters& resolving);
+                            StageCounters& resolving, std::vector<float>& bytes);
 
 }  // namespace beampipe

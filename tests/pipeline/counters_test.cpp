@@ -1,7 +1,10 @@
 // Counters of frames that can be counted by hand.
 #include <gtest/gtest.h>
 
+#include <numeric>
+
 #include "pipeline/technique.h"
+#include "stages/sample_raster.h"
 #include "test_traces.h"
 
 namespace beampipe {
@@ -109,6 +112,39 @@ TEST(Counters, AcaaReadsDepthTwiceAndOneColor) {
   EXPECT_EQ(stage(saturated, "accumulate").items_in, 10u + 64 - 1);
   EXPECT_EQ(stage(acaa, "resolve").bytes_read, 64u * 8);
   EXPECT_EQ(stage(msaa, "resolve").bytes_read, 64u * 8 * 6);
+}
+
+double sum_of(const FrameResult& result, const std::string& counter) {
+  const std::vector<float>& values = result.pixel_counters.at(counter);
+  return std::accumulate(values.begin(), values.end(), 0.0);
+}
+
+TEST(Counters, EveryTechniqueCountsFragmentsAndBytesOfPixels) {
+  const Trace trace = random_trace(40, 30, 400, 2);
+  for (const char* spec : {"beam", "beam:order=stream", "beam:rules=paper", "alpha", "z3", "msaa:8", "msaa:32",
+                           "acaa:8", "deferred", "visibility", "taa:4", "dvm"}) {
+    const FrameResult result = parse_technique(spec).render(trace, 0, {2});
+    EXPECT_GT(sum_of(result, "fragments"), 400) << spec;
+    EXPECT_GT(sum_of(result, "bytes"), 400) << spec;
+  }
+}
+
+// Pixel by pixel the same is counted as stage by stage: what tests read and write, what shading samples, the G-buffer
+// and the colour are written.
+TEST(Counters, PixelsAddUpToStages) {
+  const Trace trace = random_trace(40, 30, 400, 2);
+  for (const char* spec : {"msaa:8", "visibility", "taa:4", "deferred", "dvm"}) {
+    const FrameResult result = parse_technique(spec).render(trace, 0, {2});
+    const std::uint64_t fragments = stage(result, "sample_raster").items_out;
+    std::uint64_t bytes = stage(result, "depth_test").logical_bytes() - fragments * kSampleFragmentBytes;
+    for (const StageCounters& counters : result.stages) {
+      if (counters.stage == "sample_select" || counters.stage == "light") bytes += counters.bytes_written;
+      if (counters.stage == "shade" && std::string(spec) != "msaa:8") bytes += counters.bytes_written;
+    }
+    EXPECT_EQ(sum_of(result, "bytes"), bytes) << spec;
+    if (std::string(spec) == "deferred") continue;  // its fragments come twice
+    EXPECT_EQ(sum_of(result, "fragments"), fragments) << spec;
+  }
 }
 
 TEST(Counters, EveryStageWorks) {

@@ -116,7 +116,10 @@ TEST(HandWorked, BytesOfAPixel) {
   EXPECT_EQ(bytes("acaa:1", 2, 3), 4 + 4 + 4 + 2 * 8) << "depth again; the accumulator read and written";
   EXPECT_EQ(bytes("beam", 2, 3), 3 * 4 + 3 * 16 + 42)
       << "head exchanged, and read; record written, sorted, put into a window; aggregate";
-  for (const char* spec : {"msaa:1", "acaa:1"}) EXPECT_EQ(bytes(spec, 0, 0), 0) << spec;
+  EXPECT_EQ(bytes("visibility", 2, 3), 4 + 4 + 4 + 8 + 6) << "a number in place of colour; G-buffer, colour written";
+  EXPECT_EQ(bytes("deferred", 2, 3), 4 + 4 + 4 + 8 + 6) << "depth again in place of the number";
+  EXPECT_EQ(bytes("dvm", 2, 3), 8 * (4 + 4 + 4) + 9 + 8 + 6) << "8 samples, one of which is shaded";
+  for (const char* spec : {"msaa:1", "acaa:1", "deferred"}) EXPECT_EQ(bytes(spec, 0, 0), 0) << spec;
   EXPECT_EQ(bytes("beam", 0, 0), 4) << "the head";
   RunOptions run{1};
   run.memory.modelled = false;

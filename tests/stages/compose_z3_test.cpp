@@ -23,7 +23,8 @@ std::vector<Z3Pixel<Words, Layers>> composed(const SetupTriangles& triangles, co
                 fragments);
   shade(colors, fragments, counters);
   std::vector<Z3Pixel<Words, Layers>> pixels(tile.pixels());
-  compose_z3(fragments, positions, merge, composition, pixels);
+  std::vector<float> merges(tile.pixels());
+  compose_z3(fragments, positions, merge, composition, pixels, merges);
   if (counts) *counts = composition.ops;
   return pixels;
 }

@@ -153,13 +153,22 @@ TEST_P(TwinCounts, SortAndMerge) {
                                              counted(0),
                                              counted(0),
                                              {counted(in.surface.color[0]), counted(0), counted(0)}};
-      over_scalar(FragmentOf<Float, Bits>{surface, Bits(in.tiny, twin_)}, surface);
+      const auto above = over_scalar(FragmentOf<Float, Bits>{surface, Bits(in.tiny, twin_)}, surface);
+      for (const Float& channel : above.color) converted(converted(channel));  // from fp16, and back to it
     }
   };
   twin_ = {};
   count_over();
   compose_over(fragments, buffer, over);
   EXPECT_EQ(over.ops, twin_);
+
+  StageCounters as_it_is, packed;  // every merge loads an aggregate and stores it
+  compose(fragments, buffer, pattern, {}, PaperStorage::float32, as_it_is);
+  compose(fragments, buffer, pattern, {}, PaperStorage::slides, packed);
+  EXPECT_EQ(packed.ops.convert - as_it_is.ops.convert, 2 * 3 * fragments.size());
+  packed = {};
+  compose(fragments, buffer, pattern, {}, PaperStorage::text, packed);
+  EXPECT_EQ(packed.ops.convert - as_it_is.ops.convert, 2 * 6 * fragments.size());
 }
 
 TEST_P(TwinCounts, DepthTest) {
