@@ -16,9 +16,6 @@
 namespace beampipe {
 namespace {
 
-// The clamp fades out below this motion, in pixels: the article's remedy for flicker at edges between lit facets.
-constexpr float kStillPixels = 0.05f;
-
 // Shading samples with their G-buffer and colour are written at the pixel of the quad that stores them.
 void add_sample_bytes(const std::vector<SampleQuad>& quads, const Tile& tile, std::vector<float>& bytes) {
   const std::size_t columns = (static_cast<std::size_t>(tile.width()) + 1) / 2;

@@ -8,6 +8,9 @@
 
 namespace beampipe {
 
+// The clamp fades out below this motion, in pixels: the article's remedy for flicker at edges between lit facets.
+inline constexpr float kStillPixels = 0.05f;
+
 struct DvmOptions {
   float blend = 0.1f;
   std::uint32_t seed = 1;

@@ -5,6 +5,9 @@
 #include <filesystem>
 #include <limits>
 
+#include "pipeline/dvm.h"
+#include "pipeline/sampling.h"
+#include "pipeline/taa.h"
 #include "simd/mask_table.h"
 #include "stages/paper_storage.h"
 #include "stages/sample_select.h"
@@ -32,6 +35,15 @@ constexpr const char* kBoat =
 constexpr const char* kAcaaCommand =
     "beampipe make classroom -o classroom.json && beampipe run classroom.json -t msaa:1,prepass "
     "-t msaa:8,color=rgba16f,prepass -t acaa:8 -o out/acaa";
+
+std::string number(double value, int digits = 4) {
+  char text[32];
+  std::snprintf(text, sizeof text, "%.*g", digits, value);
+  return text;
+}
+
+// 0.1f as 0.1.
+double written(float value) { return std::stod(number(static_cast<double>(value), 6)); }
 
 double bytes_of(const char* spec) { return parse_technique(spec).framebuffer_bytes_per_pixel(); }
 
@@ -62,10 +74,14 @@ void add_memory_claims(std::vector<Claim>& claims) {
   bytes("beam, with fp16 RGB", 42, 42, bytes_of("beam:rules=paper"), kSlides);
   bytes("beam, without colour, a plane of three coefficients", 32, 32, kTextBytesWithoutColor, kPaper);
   bytes("beam, area-conserving rules, 256 positions, with fp16 RGB", 42, 42, bytes_of("beam"), kSlides);
+  add("beam, bytes over those of MSAA 8x, with colour", "", 0, 1, bytes_of("beam:rules=paper") / bytes_of("msaa:8"),
+      kPaper);
   bytes("MSAA 8x, without colour", 24, 32, bytes_without_color("msaa:8"), kSlides);
   bytes("MSAA 8x, with fp16 RGB", 72, 80, bytes_of("msaa:8"), kSlides);
   bytes("MSAA 32x, without colour", 96, 128, bytes_without_color("msaa:32"), kSlides);
   bytes("MSAA 32x, with fp16 RGB", 288, 320, bytes_of("msaa:32"), kSlides);
+  add("MSAA beyond hardware's rates, samples of a super-resolved pixel", "samples", 8, 8,
+      msaa_sampling(32).pattern.count, kPaper);
   add("beam, bits of the mask", "bits", 32, 32, 8 * bytes_of("beam:rules=paper", "mask"),
       "Crassin et al. 2018, section 2");
   add("beam, table of masks", "KiB", 16, 16, kTableAngles * kTableDistances * 4 / 1024.0,
@@ -74,9 +90,19 @@ void add_memory_claims(std::vector<Claim>& claims) {
   add("ACAA 8x, fp16 RGBA, 3840 x 2160", "MiB", 316, 316, mebibytes_at_4k("acaa:8"), kAcaa);
   add("ACAA 8x, part of MSAA's memory that is saved", "", 0.5, kOrMore,
       1 - bytes_of("acaa:8") / bytes_of("msaa:8,color=rgba16f"), kAcaa);
+  bytes("DVM, visibility id of a shading sample", 4, 4, bytes_of("dvm", "shading_visibility"), kDvm);
+  bytes("DVM, mask of a shading sample", 4, 4, bytes_of("dvm", "mask"), kDvm);
+  bytes("DVM, location of a shading sample", 5 / 8.0, 1, bytes_of("dvm", "location"), kDvm);
   bytes("DVM, visibility id, mask and location of a shading sample", 4 + 4 + 5 / 8.0, 4 + 4 + 1, kShadingSampleBytes,
         kDvm);
+  add("DVM, visibility samples of a pixel", "", 8, 8, kQuadSamples / 4.0, kDvm);
   add("DVM, visibility samples of a 2x2 quad", "", 32, 32, kQuadSamples, kDvm);
+  add("DVM, shading samples of a 2x2 quad", "", 4, 4, std::size(SampleQuad{}.mask), kDvm);
+  add("DVM, motion below which the clamp fades out", "pixels", 0.05, 0.05, written(kStillPixels), kDvm);
+  add("TAA, jitter positions", "", 8, 8, TaaOptions{}.samples, kDvm);
+  add("TAA, weight T of a new frame", "", 0.05, 0.1, written(TaaOptions{}.blend), kDvm);
+  add("TAA, what the first frame still counts after 1 frame at T = 0.1", "", 0.9, 0.9, 1 - written(TaaOptions{}.blend),
+      kDvm);
   const struct {
     double blend, published[5];
   } fading[] = {{0.1, {0.430, 0.206, 0.042, 0.0087, 0.0018}}, {0.05, {0.663, 0.463, 0.215, 0.099, 0.046}}};
@@ -182,12 +208,6 @@ void add_acaa_claims(const Report& report, std::vector<Claim>& claims) {
   add("ACAA, part of MSAA's framebuffer traffic that is saved (section 1)", 0.3, 0.3, saved, kTraffic);
   add("ACAA, part of what MSAA adds to 1x in frame time that is saved", 0.5, 0.5, time_given_back, kTime);
   add("ACAA, part of MSAA's frame time that is saved", 0.2, 0.3, time_saved, kTime);
-}
-
-std::string number(double value, int digits = 4) {
-  char text[32];
-  std::snprintf(text, sizeof text, "%.*g", digits, value);
-  return text;
 }
 
 }  // namespace

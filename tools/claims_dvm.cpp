@@ -10,6 +10,7 @@ namespace beampipe {
 namespace {
 
 constexpr const char* kSource = "DVM article, Performance";
+constexpr const char* kTriangleCulling = "DVM article, Triangle Culling, Quad Utilization and MSAA";
 constexpr double kNone = std::numeric_limits<double>::quiet_NaN();  // the path does not have the pass
 
 // What of ours is put beside a pass: stages. None: nothing here is that pass alone.
@@ -24,6 +25,9 @@ const std::array<Pass, 7> kPasses = {{{"PrePass", {}},
                                       {"Motion", {"motion"}},
                                       {"Resolve/TAA", {"dilate", "temporal", "resolve"}},
                                       {"Other", {}}}};
+
+// Where visibility is drawn, the pass before all others is all of the geometry: depth and triangle ids.
+const std::vector<std::string> kVisibilityPass = {"vertex_setup", "sample_raster", "depth_test"};
 
 struct Path {
   const char* name;
@@ -100,7 +104,7 @@ class DvmClaims {
       const auto& ms = path.ms[density];
       for (std::size_t pass = 0; pass < kPasses.size(); ++pass) {
         if (ms[pass] != ms[pass]) continue;  // not a number
-        const auto& stages = kPasses[pass].stages;
+        const auto& stages = stages_of(path, pass);
         const auto ours = stages.empty() ? std::nullopt : modelled_ms(report_, frame(path.spec, density), stages);
         add(density, std::string(path.name) + ", " + kPasses[pass].name, "ms", ms[pass], ours, beside(path, pass));
       }
@@ -157,9 +161,18 @@ class DvmClaims {
       std::optional<double> ours;
       if (scene_of(report_) == scene) ours = lanes_per_pixel(first_frame(report_, spec));
       claims_.push_back({std::string("two triangles per pixel, ") + spec + ", invocations per pixel", "", published,
-                         published == 8 ? std::numeric_limits<double>::infinity() : published, ours,
-                         "DVM article, Triangle Culling, Quad Utilization and MSAA", command_of("half"), ""});
+                         published == 8 ? std::numeric_limits<double>::infinity() : published, ours, kTriangleCulling,
+                         command_of("half"), ""});
     }
+    const StageCounters* const raster =
+        scene_of(report_) == scene ? stage_of(first_frame(report_, "msaa:1,prepass"), "sample_raster") : nullptr;
+    std::optional<double> culled;
+    if (raster && raster->items_in > 0)
+      culled = 1 - static_cast<double>(raster->items_out) / static_cast<double>(raster->items_in);
+    claims_.push_back(
+        {"two triangles per pixel, part of the triangles that cover no pixel's centre", "", 0.5, 0.5, culled,
+         kTriangleCulling, command_of("half"),
+         "1 - (pixel, triangle) pairs over triangles: a triangle of that size covers one centre or none"});
   }
 
  private:
@@ -182,10 +195,16 @@ class DvmClaims {
     return static_cast<double>(shade->lanes_issued) / static_cast<double>(shade->lanes_used);
   }
 
+  static const std::vector<std::string>& stages_of(const Path& path, std::size_t pass) {
+    const std::string spec = path.spec;
+    return pass == 0 && (spec == "taa:8" || spec == "dvm") ? kVisibilityPass : kPasses[pass].stages;
+  }
+
   static std::string beside(const Path& path, std::size_t pass) {
-    const auto& stages = kPasses[pass].stages;
+    const auto& stages = stages_of(path, pass);
     if (stages.empty())
-      return pass == 0 ? "none: depth passes are not counted apart" : "none: copies, tone mapping and user interface";
+      return pass == 0 ? "none: this depth pass is not counted apart from the shading pass"
+                       : "none: copies, tone mapping and user interface";
     std::string names;
     for (const std::string& stage : stages) names += (names.empty() ? "" : ", ") + stage;
     const std::string spec = path.spec;

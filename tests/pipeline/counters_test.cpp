@@ -4,7 +4,7 @@
 #include <numeric>
 
 #include "pipeline/technique.h"
-#include "stages/sample_raster.h"
+#include "stages/raster_cost.h"
 #include "test_traces.h"
 
 namespace beampipe {
