@@ -103,8 +103,7 @@ void add_stress_command(CLI::App& app) {
       ->check(CLI::Range(1, 1024));
   command->add_flag("--heavy", arguments->heavy,
                     "also a pixel with a million fragments, a gigabyte and a minute, and 16384 x 16384 pixels, for "
-                    "techniques that are "
-                    "named: 10 GB and minutes each");
+                    "techniques that are named: 5 to 9 GB and a minute or two each; taa and dvm need 30 GB");
   command->footer(
       "Each cell is the largest error over all pixels and R, G, B, A against rational arithmetic: of the areas, or, "
       "for\n"

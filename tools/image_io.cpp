@@ -108,18 +108,19 @@ void require_ended_channels(const std::filesystem::path& file) {
 }
 
 // Uncompressed bytes that a byte of a file can stand for: 1032 in deflate (RFC 1951: a 258-byte match in 2 bits), less
-// in RLE, PIZ and B44; DWA keeps flat blocks of 64 pixels in one more such step.
-constexpr std::uint64_t kMostExpansion = 1100, kMostDwaExpansion = 64 * kMostExpansion;
+// in RLE, PIZ and B44. DWA keeps flat blocks of 64 pixels in one more such step: what is more than 64 MiB must be less
+// flat than that.
+constexpr std::uint64_t kMostExpansion = 1100, kMostFlatBytes = std::uint64_t{64} << 20;
 
 void require_plausible_size(const Imf::Header& header, Size size, std::uint64_t file_bytes) {
   std::uint64_t pixel_bytes = 0;
   for (auto channel = header.channels().begin(); channel != header.channels().end(); ++channel)
     pixel_bytes += channel.channel().type == Imf::HALF ? 2 : 4;
   const bool dwa = header.compression() == Imf::DWAA_COMPRESSION || header.compression() == Imf::DWAB_COMPRESSION;
-  const std::uint64_t most = file_bytes * (dwa ? kMostDwaExpansion : kMostExpansion);
+  const std::uint64_t most = std::max(file_bytes * kMostExpansion, dwa ? kMostFlatBytes : 0);
   if (pixel_bytes * size.width * size.height <= most) return;
   throw std::runtime_error("it claims " + std::to_string(size.width) + " x " + std::to_string(size.height) +
-                           " pixels, more than its " + std::to_string(file_bytes) + " bytes can hold");
+                           " pixels, too many for its " + std::to_string(file_bytes) + " bytes");
 }
 
 Size checked_size(const Imf::Header& header) {

@@ -150,6 +150,22 @@ TEST(Exr, AClaimThatTheFileCannotHoldIsAnError) {
   EXPECT_NE(claim(1'000'000), "");
 }
 
+// Flat pictures take next to nothing in DWA: they are read up to a size that every machine has memory for.
+TEST(Exr, AFlatPictureInDwaIsReadUnlessItIsLarge) {
+  TemporaryFolder folder;
+  const auto write_flat = [&](int width) {
+    Imf::Header header(width, 1024);
+    header.compression() = Imf::DWAB_COMPRESSION;
+    write_exr(folder / "a.exr", header, {"R", "G", "B"});
+    return std::filesystem::file_size(folder / "a.exr");
+  };
+  EXPECT_LT(1100 * write_flat(2048), 12u * 2048 * 1024);
+  EXPECT_EQ(read_exr(folder / "a.exr").rgba.size(), 4u * 2048 * 1024);
+  write_flat(6144);
+  const std::string error = error_of_reading(folder / "a.exr");
+  EXPECT_NE(error.find("it claims 6144 x 1024 pixels"), std::string::npos) << error;
+}
+
 // The library takes memory for what an attribute claims before it reads it.
 TEST(Exr, AnAttributeThatClaimsMoreThanItHasIsAnError) {
   TemporaryFolder folder;

@@ -55,7 +55,7 @@ class Screen {
 
 constexpr const char* kOver = "OVER takes fragments for independent of each other";
 constexpr const char* kPaper = "masks of 32 positions; local coverage above 1 is lost";
-constexpr const char* kText = "masks of 32 positions; slopes and thickness in 16 bits";
+constexpr const char* kText = "slopes in 16 bits make a slab of equal planes, of which each later triangle takes half";
 constexpr const char* kFull = "a mask without a gap counts as full coverage: corners beyond its positions are lost";
 constexpr const char* kDepth = "32-bit depth: surfaces less than its rounding apart change places";
 constexpr const char* kTwice = "without a stencil equal depths count twice";
@@ -306,6 +306,7 @@ HardCase coincident() {
   Screen screen(16, 16);
   const glm::dvec3 a(1.3, 2.1, 0.2), b(14.7, 4.4, 0.7), c(6.2, 15.1, 0.5);
   screen.triangle(a, b, c, kRed).triangle(b, c, a, kGreen).triangle(c, b, a, kBlue);
+  const double twice_halved = 0.75 - (0.75 / 4 + 0.125 / 4 + 0.25 / 2);  // red, by the shares of all three
   return {"coincident",
           "three equal triangles: the first one stays",
           screen.trace(),
@@ -314,7 +315,7 @@ HardCase coincident() {
            {"acaa:8,double=stencil", {0x1p-11, "fp16"}},
            {"alpha", {0.6, kOver}},
            {"beam:rules=paper", {0.4, kPaper}},
-           {"beam:rules=paper,storage=text", {0.45, kText}},
+           {"beam:rules=paper,storage=text", {twice_halved + 0x1p-11, kText}},
            {"beam", {0.25, kMask}}}};
 }
 
