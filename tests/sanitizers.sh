@@ -19,7 +19,8 @@ build_tbb() {
   apt-get "${options[@]}" update
   apt-get "${options[@]}" source --download-only onetbb
   tar --extract --strip-components 1 --file onetbb_*.orig.tar.xz
-  cmake -G Ninja -B build -DCMAKE_BUILD_TYPE=RelWithDebInfo -DTBB_SANITIZE=thread -DTBB_TEST=OFF -DTBBMALLOC_BUILD=OFF
+  cmake -G Ninja -B build -DCMAKE_BUILD_TYPE=RelWithDebInfo -DTBB_SANITIZE=thread -DTBB_TEST=OFF -DTBB_STRICT=OFF \
+    -DTBBMALLOC_BUILD=OFF
   cmake --build build
   cmake --install build --prefix "$folder"
   cd - >/dev/null
