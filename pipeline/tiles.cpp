@@ -49,6 +49,7 @@ FrameResult render_tiles(const Frame& frame, const SetupTriangles& triangles, co
     const std::vector<TriangleList> lists = bin_triangles(triangles, grid, band);
     for (const TriangleList& list : lists) {
       list_bytes += list.size() * sizeof list[0];
+      raster_pass.empty_tiles += list.empty();
       write_list(options.memory, list, raster_pass);
       read_bin(options.memory, list, raster_pass);
     }

@@ -19,11 +19,15 @@ class ClosedDepth {
   // Pixels in frame coordinates, inside the tile.
   bool hides(std::int32_t x, std::int32_t y, float nearest) {
     ++work_.pixel_tests;
-    return nearest > depth_[tile_.index(x, y)];
+    const bool hidden = nearest > depth_[tile_.index(x, y)];
+    work_.hidden += hidden;
+    return hidden;
   }
   bool hides_everywhere(float nearest) {
     ++work_.tile_tests;
-    return nearest > farthest_;
+    const bool hidden = nearest > farthest_;
+    work_.hidden_everywhere += hidden;
+    return hidden;
   }
 
   // A triangle covers the whole pixel, nowhere in it farther than this.
@@ -54,6 +58,8 @@ class ClosedDepth {
     counters.ops.add += work_.pixel_tests + work_.tile_tests + work_.closings + work_.changes + 2 * refreshed;
     counters.bytes_read += (work_.pixel_tests + work_.closings + 2 * refreshed) * sizeof(float);
     counters.bytes_written += work_.changes * sizeof(float);
+    counters.hidden_items += work_.hidden;
+    counters.hidden_triangles += work_.hidden_everywhere;
     work_ = {};
   }
 
@@ -68,6 +74,7 @@ class ClosedDepth {
   // What was done since it was charged.
   struct Work {
     std::uint64_t pixel_tests = 0, tile_tests = 0, closings = 0, changes = 0, refreshes = 0;
+    std::uint64_t hidden = 0, hidden_everywhere = 0;
   } work_;
 };
 

@@ -63,6 +63,16 @@ const std::vector<CounterInfo>& stage_counters() {
        [](const S& s) { return s.dram_bytes; }},
       {"lanes_used", "lanes used", "lanes", "lanes with work", [](const S& s) { return s.lanes_used; }},
       {"lanes_issued", "lanes issued", "lanes", "lanes that ran", [](const S& s) { return s.lanes_issued; }},
+      {"hidden_items", "hidden", "items",
+       "pairs (of samples' techniques cells) that a triangle touches and that are left out behind another, which "
+       "covers "
+       "the whole pixel (cell)",
+       [](const S& s) { return s.hidden_items; }},
+      {"hidden_triangles", "hidden triangles", "triangles",
+       "left out of a tile whose every pixel (cell) is closed before them, once for each tile, in each pass",
+       [](const S& s) { return s.hidden_triangles; }},
+      {"empty_tiles", "empty tiles", "tiles", "tiles that no triangle touches, in each pass",
+       [](const S& s) { return s.empty_tiles; }},
   };
   return counters;
 }
@@ -126,7 +136,8 @@ const std::vector<StageInfo>& stage_list() {
        " ops.bit ops.fetch ops.special ", "HandWorked.TriangleMsaa", "ShadingTwins.ResolveSamples",
        "HandWorked.TriangleMsaa", "HandWorked.TriangleMsaa", "ShadingTwins.ResolveSamples"},
       {"reference_raster", "setup triangles", "samples that were nearer", "all",
-       " ops.bit ops.fetch ops.special ops.convert bytes_written sector_bytes l2_bytes dram_bytes ",
+       " ops.bit ops.fetch ops.special ops.convert bytes_written sector_bytes l2_bytes dram_bytes hidden_items "
+       "hidden_triangles ",
        "ReferenceRaster.FansCoverEverySample", "ReferenceRaster.FansCoverEverySample", kMoves, kMoves,
        "ReferenceRaster.FansCoverEverySample"},
   };
@@ -136,6 +147,8 @@ const std::vector<StageInfo>& stage_list() {
 bool has_counter(const StageInfo& stage, const CounterInfo& counter) {
   const std::string name = counter.name;
   if (name.starts_with("lanes_")) return *stage.lanes != '\0';
+  const bool rasterizes = std::string(stage.name).ends_with("_raster");
+  if ((name.starts_with("hidden_") || name == "empty_tiles") && !rasterizes) return false;
   return std::string(stage.silent).find(" " + name + " ") == std::string::npos;
 }
 
@@ -143,6 +156,7 @@ const char* test_of(const StageInfo& stage, const CounterInfo& counter) {
   const std::string name = counter.name;
   if (name.starts_with("ops.")) return stage.ops_test;
   if (name.starts_with("lanes_")) return stage.lanes_test;
+  if (name.starts_with("hidden_") || name == "empty_tiles") return "Counters.WhatIsHiddenIsCountedOnce";
   if (name == "sector_bytes" || name == "l2_bytes" || name == "dram_bytes") return stage.memory_test;
   return name.find("bytes") == std::string::npos ? stage.items_test : stage.logical_test;
 }
@@ -183,10 +197,12 @@ const std::vector<FrameCounterInfo>& frame_counters() {
        "ReportJson.HasTheKeysOfTheContract"},
       {"pixel_counters", "as the counter's", "mean and max over the pixels of each counter of a pixel",
        "ReportJson.HasTheKeysOfTheContract"},
-      {"saved", "pairs, pixels",
-       "work that was not done, found from the stages' counters: hidden_pairs, pairs that raster left out behind "
-       "triangles which cover their pixel; whole_pixels, which took the short way; pairs_behind_closed, pairs in the "
-       "A-buffer that nothing looked at",
+      {"saved", "see the page",
+       "work that was not done, found from the stages' counters: hidden_pairs or hidden_cells, what raster left out "
+       "behind "
+       "triangles which cover their pixel or cell; hidden_triangles, left out of a whole tile; empty_tiles; "
+       "whole_pixels, "
+       "which took the short way; pairs_behind_closed, pairs in the A-buffer that nothing looked at",
        "SavedWork.IsFoundFromTheStages"},
       {"wall_ms", "milliseconds",
        "of the simulator on this machine; with_memory_model says whether the model's own time is in it, and "

@@ -63,6 +63,10 @@ struct StageCounters {
   Count sector_bytes = 0;   // asked of the memory system, read and written, in whole sectors
   Count l2_bytes = 0;       // of that, what the caches before L2 do not hold, and what they evict
   Count dram_bytes = 0;     // moved to and from DRAM behind the modelled caches, read and written
+  // Of the stages that rasterize:
+  Count hidden_items = 0;      // pairs (or cells) left out behind what closes their pixel (or cell)
+  Count hidden_triangles = 0;  // left out behind what closes all of a tile, once for each tile
+  Count empty_tiles = 0;       // tiles without a triangle
 
   Count logical_bytes() const { return bytes_read + bytes_written; }
 
@@ -77,6 +81,9 @@ struct StageCounters {
     sector_bytes += other.sector_bytes;
     l2_bytes += other.l2_bytes;
     dram_bytes += other.dram_bytes;
+    hidden_items += other.hidden_items;
+    hidden_triangles += other.hidden_triangles;
+    empty_tiles += other.empty_tiles;
     return *this;
   }
   bool operator==(const StageCounters&) const = default;

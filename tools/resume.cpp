@@ -22,9 +22,10 @@ const std::map<std::string, std::string> kDigested = {
     {"program", "another build of beampipe"}, {"trace", "another trace"}, {"hardware", "another --hardware"}};
 
 constexpr std::uint64_t StageCounters::*kCounters[] = {
-    &StageCounters::items_in,      &StageCounters::items_out,  &StageCounters::bytes_read,
-    &StageCounters::bytes_written, &StageCounters::lanes_used, &StageCounters::lanes_issued,
-    &StageCounters::sector_bytes,  &StageCounters::l2_bytes,   &StageCounters::dram_bytes};
+    &StageCounters::items_in,      &StageCounters::items_out,        &StageCounters::bytes_read,
+    &StageCounters::bytes_written, &StageCounters::lanes_used,       &StageCounters::lanes_issued,
+    &StageCounters::sector_bytes,  &StageCounters::l2_bytes,         &StageCounters::dram_bytes,
+    &StageCounters::hidden_items,  &StageCounters::hidden_triangles, &StageCounters::empty_tiles};
 constexpr std::uint64_t OperationCounts::*kOperations[] = {&OperationCounts::mul_add, &OperationCounts::add,
                                                            &OperationCounts::bit,     &OperationCounts::fetch,
                                                            &OperationCounts::special, &OperationCounts::convert};

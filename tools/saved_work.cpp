@@ -8,14 +8,31 @@ std::vector<SavedWork> saved_work(const std::vector<StageCounters>& stages) {
   const auto find = [&](const char* name) {
     return std::find_if(stages.begin(), stages.end(), [&](const StageCounters& stage) { return stage.stage == name; });
   };
-  const auto raster = find("conservative_raster"), buffer = find("a_buffer"), fragment = find("beam_fragment"),
-             composition = find("compose");
+  const auto pairs = find("conservative_raster"), cells = find("sample_raster"), buffer = find("a_buffer"),
+             fragment = find("beam_fragment"), composition = find("compose");
   std::vector<SavedWork> saved;
-  if (raster == stages.end()) return saved;
+  if (pairs == stages.end() && cells == stages.end()) return saved;
+  const StageCounters& raster = pairs != stages.end() ? *pairs : *cells;
+  saved.push_back(
+      {"empty_tiles", "empty tiles", "tiles", "tiles that no triangle touches, in each pass", raster.empty_tiles});
+  saved.push_back(
+      {"hidden_triangles", "hidden triangles", "triangles",
+       "triangles that raster left out of a tile, every pixel (cell) of which is covered by nearer ones: once "
+       "for each tile and pass",
+       raster.hidden_triangles});
+  if (pairs == stages.end()) {
+    saved.push_back(
+        {"hidden_cells", "hidden cells", "cells",
+         "touched cells (pixels, or parts of super-resolved ones) that raster left out behind triangles "
+         "which cover the cell, and whose samples were not tested. Triangles hidden in their whole tile are "
+         "not in it",
+         raster.hidden_items});
+    return saved;
+  }
   saved.push_back({"hidden_pairs", "hidden pairs", "pairs",
-                   "touched pixels that raster left out behind triangles which cover the pixel: conservative_raster's "
-                   "lanes_used less its items_out. Triangles hidden in their whole tile are in neither",
-                   raster->lanes_used - raster->items_out});
+                   "touched pixels that raster left out behind triangles which cover the pixel. Triangles hidden in "
+                   "their whole tile are not in it",
+                   raster.hidden_items});
   // Fragments are made behind the A-buffer in sorted order only.
   if (buffer == stages.end() || fragment == stages.end() || composition == stages.end() || fragment < buffer)
     return saved;

@@ -45,7 +45,17 @@ Trace test_trace() {
   return trace;
 }
 
-// Sums over both frames of every technique, by stage.
+// One triangle closes the first tile and the left of the second; two lie behind it, one of them in both tiles. The last
+// tile is empty.
+Trace hidden_trace() {
+  const glm::vec3 gray(0.5f);
+  return pixel_trace(128, 32,
+                     {{{{-1, -1, 0.3}, {66, -1, 0.3}, {-1, 66, 0.3}}, gray},
+                      {{{2, 2, 0.6}, {9, 2, 0.6}, {2, 9, 0.6}}, gray},
+                      {{{20, 2, 0.6}, {50, 2, 0.6}, {20, 9, 0.6}}, gray}});
+}
+
+// Sums over all frames of every technique, by stage.
 const std::map<std::string, StageCounters>& sums() {
   static const std::map<std::string, StageCounters> all = [] {
     std::map<std::string, StageCounters> by_stage;
@@ -58,6 +68,8 @@ const std::map<std::string, StageCounters>& sums() {
         for (const StageCounters& stage : parse_technique(spec).render(trace, frame, run).stages)
           by_stage[stage.stage] += stage;
       }
+      for (const StageCounters& stage : parse_technique(spec).render(hidden_trace(), 0, {2}).stages)
+        by_stage[stage.stage] += stage;
     }
     return by_stage;
   }();

@@ -2,6 +2,7 @@
 #include <gtest/gtest.h>
 
 #include <numeric>
+#include <tuple>
 
 #include "pipeline/technique.h"
 #include "stages/raster_cost.h"
@@ -145,6 +146,27 @@ TEST(Counters, PixelsAddUpToStages) {
     if (std::string(spec) == "deferred") continue;  // its fragments come twice
     EXPECT_EQ(sum_of(result, "fragments"), fragments) << spec;
   }
+}
+
+// A triangle closes the first of four tiles, 32 x 32 pixels, and those pixels of the second where x + y < 64. Behind it
+// lies one triangle in the first tile alone, and one in a row of pixels of both, 8 of them in the second.
+TEST(Counters, WhatIsHiddenIsCountedOnce) {
+  const Trace trace = pixel_trace(128, 32,
+                                  {{{{-1, -1, 0.3}, {66, -1, 0.3}, {-1, 66, 0.3}}, glm::vec3(1)},
+                                   {{{2, 2, 0.6}, {9, 2, 0.6}, {2, 9, 0.6}}, glm::vec3(1)},
+                                   {{{28.1, 2.1, 0.6}, {39.9, 2.1, 0.6}, {28.1, 2.4, 0.6}}, glm::vec3(1)}});
+  for (const auto& [spec, raster, passes] : {std::tuple{"beam", "conservative_raster", 1u},
+                                             {"beam:order=stream", "conservative_raster", 1u},
+                                             {"msaa:8", "sample_raster", 1u},
+                                             {"deferred", "sample_raster", 2u}}) {
+    const StageCounters found = stage(parse_technique(spec).render(trace, 0, {2}), raster);
+    EXPECT_EQ(found.empty_tiles, passes) << spec;
+    EXPECT_EQ(found.hidden_triangles, 2u * passes) << spec;
+    EXPECT_EQ(found.hidden_items, 8u * passes) << spec << ": of the second tile";
+  }
+  const StageCounters super = stage(parse_technique("msaa:32").render(trace, 0, {2}), "sample_raster");
+  EXPECT_EQ(super.hidden_items, 16u) << "a pixel has 2 x 2 cells, and the triangle is in the upper ones";
+  EXPECT_EQ(stage(parse_technique("z3").render(trace, 0, {2}), "conservative_raster").hidden_items, 0u);
 }
 
 TEST(Counters, EveryStageWorks) {

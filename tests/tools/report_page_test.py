@@ -254,7 +254,7 @@ class ReportPage(unittest.TestCase):
         self.assertGreater(min(expected.values()), 0)
 
     def test_csv_files_hold_the_same(self):
-        for name in ["techniques", "framebuffer", "stages", "saved", "frames"]:
+        for name in ["techniques", "framebuffer", "stages", "saved", "frames", "claims"]:
             with open(self.folder / "tables" / f"{name}.csv", newline="") as file:
                 lines = list(csv.DictReader(file))
             rows = table_rows(self.browser, name)
@@ -276,6 +276,40 @@ class ReportPage(unittest.TestCase):
         plots = {path.stem for path in (self.folder / "plots").iterdir()}
         self.assertLessEqual({"frontier", "speed", "logical_bytes", "roofline_beam", "roofline_msaa_8"}, plots)
         self.assertIn(">msaa:8<", (self.folder / "plots" / "frontier.svg").read_text())
+
+    def test_plots_hold_the_numbers_of_the_report(self):
+        results = {result["technique"]: result for result in self.report["results"] if result["technique"] != "reference"}
+        mean = lambda result, value: sum(value(frame) for frame in result["frames"]) / len(result["frames"])
+        figures = {choice["plot"]["name"]: choice["plot"] for choice in
+                   self.browser.run("return data.figures.flatMap((figure) => figure.choices)")}
+        points = lambda name: {point["label"]: (point["x"], point["y"])
+                               for series in figures[name]["series"] for point in series["points"]}
+        times = {"speed": lambda frame: frame["wall_ms"]["median"],
+                 "speed_shaders": lambda frame: frame["modelled_ms"]["shaders"]["overlap"],
+                 "speed_fixed_function": lambda frame: frame["modelled_ms"]["fixed_function"]["overlap"]}
+        for name, time in times.items():
+            found = points(name)
+            self.assertEqual(set(found), set(results))
+            for technique, result in results.items():
+                self.assertAlmostEqual(found[technique][0], mean(result, time), 9, f"{name} {technique}")
+                self.assertEqual(found[technique][1], result["error"]["rmse"], f"{name} {technique}")
+        for name in ["logical", "sector", "dram"]:
+            plot = figures[name + "_bytes"]
+            self.assertEqual(plot["categories"], list(results))
+            for i, result in enumerate(results.values()):
+                self.assertAlmostEqual(sum(part["values"][i] for part in plot["parts"]),
+                                       mean(result, lambda frame: frame[name + "_bytes"]) / 1e6, 9, f"{name} {i}")
+        for technique, result in results.items():
+            found = points("roofline_" + technique.replace(":", "_"))
+            for at, stage in enumerate(result["frames"][0]["stages"]):
+                total = lambda value: sum(value(frame["stages"][at]) for frame in result["frames"])
+                ops, dram = total(lambda s: s["ops"]["total"]), total(lambda s: s["dram_bytes"])
+                ms = total(lambda s: s["modelled_ms"]["shaders"])
+                if ops and dram and ms:
+                    self.assertAlmostEqual(found[stage["stage"]][0] / (ops / dram), 1, 9)
+                    self.assertAlmostEqual(found[stage["stage"]][1] / (ops / ms / 1e6), 1, 9)
+                else:
+                    self.assertNotIn(stage["stage"], found)
 
     def test_divider_moves_by_keyboard_and_pointer(self):
         left, right = [self.pixel(x, 0.5) for x in (0.48, 0.52)]

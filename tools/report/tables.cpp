@@ -19,15 +19,6 @@ struct Source {
 
 const std::vector<Source> kTechniqueColumns = {
     {{"technique", "technique", "", "The spec that names the technique, as `beampipe run -t` takes it."}, "/technique"},
-    {{"framebuffer_bytes_per_pixel", "framebuffer", "bytes per pixel",
-      "What the technique's framebuffer takes per pixel, all surfaces together."},
-     "/framebuffer_bytes_per_pixel"},
-    {{"peak_bytes_per_pixel", "with A-buffer", "bytes per pixel",
-      "What framebuffer and A-buffer take per pixel, in the frame where the A-buffer is largest."},
-     "/peak_bytes_per_pixel"},
-    {{"a_buffer_peak_bytes", "A-buffer", "bytes",
-      "The most that the A-buffer in front of the framebuffer held at any time of a frame; 0: there is none."},
-     "/a_buffer_peak_bytes"},
     {{"rmse", "RMSE", "linear light, 0..1",
       "Root of the mean square error over R, G and B of all pixels against the reference."},
      "/error/rmse"},
@@ -37,20 +28,29 @@ const std::vector<Source> kTechniqueColumns = {
     {{"emr_bound", "EMR is", "",
       "Whether the EMR is exact, or a bound: at least the best rung of the MSAA ladder, or at most the worst."},
      "/emr_bound"},
-    {{"msaa_bytes_per_pixel", "as MSAA", "bytes",
+    {{"framebuffer_bytes_per_pixel", "framebuffer", "bytes per pixel",
+      "What the technique's framebuffer takes per pixel, all surfaces together."},
+     "/framebuffer_bytes_per_pixel"},
+    {{"peak_bytes_per_pixel", "with A-buffer", "bytes per pixel",
+      "What framebuffer and A-buffer take per pixel, in the frame where the A-buffer is largest."},
+     "/peak_bytes_per_pixel"},
+    {{"msaa_bytes_per_pixel", "as MSAA", "bytes per pixel",
       "What MSAA of the same error takes per pixel: EMR times the bytes of msaa:1."},
      "/msaa_bytes_per_pixel"},
-    {{"flicker", "flicker", "linear light, 0..1",
-      "RMS over pixels of how much the error changes from one frame to the next, pooled over the frames but the "
-      "first."},
-     "/flicker"},
+    {{"a_buffer_peak_bytes", "A-buffer", "bytes",
+      "The most that the A-buffer in front of the framebuffer held at any time of a frame; 0: there is none."},
+     "/a_buffer_peak_bytes"},
+    {{"dram_bytes", "DRAM", "bytes per frame",
+      "Moved to and from DRAM behind the modelled caches, read and written: the mean of the frames."},
+     "/dram_bytes"},
     {{"wall_ms", "wall time", "ms per frame",
       "How long the simulator took on the machine that ran it, not hardware: the median over the frames. Of a single "
       "run it has the memory model's own time in it."},
      "/wall_ms"},
-    {{"dram_bytes", "DRAM", "bytes per frame",
-      "Moved to and from DRAM behind the modelled caches, read and written: the mean of the frames."},
-     "/dram_bytes"},
+    {{"flicker", "flicker", "linear light, 0..1",
+      "RMS over pixels of how much the error changes from one frame to the next, pooled over the frames but the "
+      "first."},
+     "/flicker"},
     {{"bias", "bias", "linear light, 0..1", "Mean signed error over R, G and B of all pixels."}, "/error/bias"},
     {{"p99", "p99", "linear light, 0..1", "The absolute error that 99 % of all values do not exceed."}, "/error/p99"},
     {{"max", "max", "linear light, 0..1", "The largest absolute error."}, "/error/max"},
@@ -142,18 +142,23 @@ Table make_table(const std::string& name, const std::string& title, const std::v
   return table;
 }
 
-// Two more columns for each way in which the modelled hardware runs the techniques.
+// Two more columns behind the DRAM bytes for each way in which the modelled hardware runs the techniques.
 std::vector<Source> with_modelled_times(std::vector<Source> sources, const ReportFile& report,
                                         const std::string& unit) {
+  auto place =
+      std::find_if(sources.begin(), sources.end(), [](const Source& s) { return s.column.key == "dram_bytes"; });
   for (const auto& [implementation, ms] : report.techniques.front().modelled_ms) {
     const std::string key = "modelled_ms_" + implementation, pointer = "/modelled_ms/" + implementation;
     const std::string title = "modelled, " + implementation + ", ";
-    sources.push_back({{key + "_overlap", title + "overlap", unit,
-                        "What the modelled hardware takes when all stages run at once: the time of its busiest unit."},
-                       pointer + "/overlap"});
-    sources.push_back({{key + "_sum", title + "sum", unit,
-                        "What the modelled hardware takes when the stages run one after the other: the sum of theirs."},
-                       pointer + "/sum"});
+    const Source overlap = {
+        {key + "_overlap", title + "overlap", unit,
+         "What the modelled hardware takes when all stages run at once: the time of its busiest unit."},
+        pointer + "/overlap"};
+    const Source sum = {
+        {key + "_sum", title + "sum", unit,
+         "What the modelled hardware takes when the stages run one after the other: the sum of theirs."},
+        pointer + "/sum"};
+    place = std::next(sources.insert(std::next(place), {overlap, sum}));
   }
   return sources;
 }
@@ -208,7 +213,10 @@ std::vector<Json> saved_records(const Json& results) {
 
 std::vector<Source> saved_columns() {
   std::vector<Source> columns = {{{"technique", "technique", "", "The spec that names the technique."}, "/technique"}};
+  std::vector<SavedWork> all = saved_work({{"sample_raster"}});
   for (const SavedWork& saved : saved_work({{"conservative_raster"}, {"a_buffer"}, {"beam_fragment"}, {"compose"}}))
+    if (saved.name != std::string("empty_tiles") && saved.name != std::string("hidden_triangles")) all.push_back(saved);
+  for (const SavedWork& saved : all)
     columns.push_back({{saved.name, saved.title, saved.unit, sentence(saved.meaning)}, std::string("/") + saved.name});
   return columns;
 }
