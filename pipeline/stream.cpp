@@ -19,17 +19,22 @@
 namespace beampipe {
 namespace {
 
-// A later pass over a bin: its list and its triangles' setup stand in memory and are read again.
-void replay(const MemoryParameters& memory, const TriangleList& list, StageCounters& raster) {
+// A later pass over a bin: its list, its triangles' setup and what it has closed stand in memory and are read again.
+void replay(const MemoryParameters& memory, const TriangleList& list, const ClosedDepth& closed,
+            StageCounters& raster) {
+  stream(memory, closed.bytes(), raster);
   raster.items_in += list.size();
   raster.bytes_read += list.size() * sizeof(SetupTriangle);
   read_bin(memory, list, raster);
 }
 
-// Moves the state of each pixel that has owners, once; their fragments stand pixel by pixel.
-void move_settled(const std::vector<Fragment>& fragments, AggregateMemory& memory, StageCounters& counters) {
-  for (std::size_t i = 0; i < fragments.size(); ++i)
-    if (i == 0 || fragments[i].pixel != fragments[i - 1].pixel) memory.merge(0, fragments[i].pixel, counters);
+// The pixels that a pass has to decide about.
+template <class Pixel>
+std::vector<std::uint32_t> unfinished_pixels(const std::vector<Pixel>& pixels) {
+  std::vector<std::uint32_t> unfinished;
+  for (std::uint32_t i = 0; i < pixels.size(); ++i)
+    if (is_unfinished(pixels[i])) unfinished.push_back(i);
+  return unfinished;
 }
 
 template <std::size_t Words, std::size_t Layers>
@@ -60,12 +65,14 @@ FrameResult render_shape(const Trace& trace, const Frame& frame, const StreamOpt
     Tile box = tile;
     TriangleFetches fetches(run.memory, list);
     for (int pass = 1; box.x0 < box.x1; ++pass) {
-      if (pass > 1) replay(run.memory, list, raster);
-      for (std::size_t i = 0; i < pixels.size(); ++i) passes[i] += is_unfinished(pixels[i]);
+      if (pass > 1) replay(run.memory, list, closed, raster);
+      const std::vector<std::uint32_t> unfinished = unfinished_pixels(pixels);
+      for (const std::uint32_t pixel : unfinished) ++passes[pixel];
       fetches.load_setup();
       for_each_batch(list, [&](const TriangleList& batch) {
         pairs.clear(), fragments.clear();
-        conservative_raster(triangles, batch, box, timed(raster), pairs, &closed);
+        conservative_raster(triangles, batch, box, timed(raster), pairs, &closed, PairDepths::bounds,
+                            PassOn::when_found);
         beam_fragment(triangles, pairs, tile, options, timed(fragment), fragments);
         held.holds("batch_pairs", pairs.size() * kPairWithDepthBytes);
         held.holds("batch_fragments", fragments.size() * options.fragment_bytes);
@@ -79,7 +86,7 @@ FrameResult render_shape(const Trace& trace, const Frame& frame, const StreamOpt
       fetches.flush(claiming);
       state.flush({}, claiming);
       fragments.clear();
-      const std::vector<PixelTriangle> owned = owners(triangles, pixels, tile);
+      const std::vector<PixelTriangle> owned = owners(triangles, pixels, tile, timed(settling));
       beam_fragment(triangles, owned, tile, options, timed(fragment), fragments);
       held.holds("owner_fragments", fragments.size() * options.fragment_bytes);
       shade_visible(colors, fragments, timed(shading), &triangles.attributes);
@@ -87,15 +94,16 @@ FrameResult render_shape(const Trace& trace, const Frame& frame, const StreamOpt
       fetches.attributes(fragments, shading);
       fetches.flush(shading);
       settle(fragments, pass == stream.passes, timed(settling), pixels);
-      if (run.memory.modelled) {
-        move_settled(fragments, state, settling);
-        move_settled(fragments, color, settling);
+      for (const std::uint32_t pixel : unfinished) {
+        state.merge(0, pixel, settling);
+        color.merge(0, pixel, settling);
       }
       state.flush({}, settling);
       color.flush({}, settling);
       close_finished(pixels, tile, closed);
       closed.charge(settling);
       box = unfinished_box(pixels, tile);
+      if (box.x0 < box.x1) beampipe::stream(run.memory, closed.bytes(), settling);  // for the next pass
     }
     state.add_bytes(bytes);
     color.add_bytes(bytes);

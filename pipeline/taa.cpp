@@ -38,11 +38,14 @@ FrameResult render_taa(const Trace& trace, const Frame& frame, const TaaOptions&
         const StageTimer timed(run.timeline, tile);
         StageCounters moving{"motion"};
         SampleTile surface(tile, sampling, kVisibilityBytes);
-        TileResult one = visibility_tile(triangles, list, tile, sampling, colors, frame.background, run, surface);
+        SampleMemory memory(run.memory, tile, sampling, kVisibilityBytes);
+        TileResult one =
+            visibility_tile(triangles, list, tile, sampling, colors, frame.background, run, memory, surface);
         copy_to_frame(one.image, tile, frame, current.color);
         copy_to_frame(motion(surface, tile, frame, triangles.draws, to_last, timed(moving)), tile, frame,
                       current.motion);
-        stream(run.memory, tile.pixels() * (kSampleDepthBytes + kVisibilityBytes), moving);
+        memory.read_depth(moving);
+        memory.read_color(moving);
         stream(run.memory, tile.pixels() * kMotionBytes, moving);
         one.stages.push_back(moving);
         return one;

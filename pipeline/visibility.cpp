@@ -21,18 +21,18 @@ FrameResult render_visibility(const Trace& trace, const Frame& frame, const RunO
   const Sampling sampling{CellGrid{}, standard_pattern(1)};
   return render_tiles(frame, triangles, setup, kBinSize, run, [&](const Tile& tile, const TriangleList& list) {
     SampleTile surface(tile, sampling, kVisibilityBytes);
-    return visibility_tile(triangles, list, tile, sampling, colors, frame.background, run, surface);
+    SampleMemory memory(run.memory, tile, sampling, kVisibilityBytes);
+    return visibility_tile(triangles, list, tile, sampling, colors, frame.background, run, memory, surface);
   });
 }
 
 TileResult visibility_tile(const SetupTriangles& triangles, const TriangleList& list, const Tile& tile,
                            const Sampling& sampling, const std::vector<glm::vec3>& colors, const glm::vec3& background,
-                           const RunOptions& run, SampleTile& surface) {
+                           const RunOptions& run, SampleMemory& memory, SampleTile& surface) {
   const StageTimer timed(run.timeline, tile);
   StageCounters raster{"sample_raster"}, testing{"depth_test"}, shading{"shade"}, lighting{"light"},
       resolving{"resolve"};
   std::vector<float> counts(tile.pixels()), bytes(tile.pixels());
-  SampleMemory memory(run.memory, tile, sampling, kVisibilityBytes);
   std::vector<SampleAccess> accesses;
   BinBuffers held;
   raster_in_batches(triangles, list, tile, sampling, timed, raster, held, [&](std::vector<SampleFragment>& fragments) {

@@ -2,6 +2,7 @@
 // without quads.
 #pragma once
 
+#include "pipeline/memory/sample_memory.h"
 #include "pipeline/technique.h"
 #include "pipeline/tiles.h"
 #include "stages/sample_raster.h"
@@ -10,10 +11,11 @@ namespace beampipe {
 
 FrameResult render_visibility(const Trace& trace, const Frame& frame, const RunOptions& run);
 
-// What `visibility` does in a tile: its triangle ids and depths stay in `surface`. `sampling`: of one sample.
+// What `visibility` does in a tile: its triangle ids and depths stay in `surface`, and in memory. `sampling`: of one
+// sample.
 TileResult visibility_tile(const SetupTriangles& triangles, const TriangleList& list, const Tile& tile,
                            const Sampling& sampling, const std::vector<glm::vec3>& colors, const glm::vec3& background,
-                           const RunOptions& run, SampleTile& surface);
+                           const RunOptions& run, SampleMemory& memory, SampleTile& surface);
 
 std::vector<Surface> visibility_framebuffer();
 

@@ -43,7 +43,7 @@ FrameResult render_shape(const Trace& trace, const Frame& frame, const Z3Options
       beam_fragment(triangles, pairs, tile, options, timed(fragment), fragments);
       held.holds("batch_pairs", pairs.size() * kPairWithDepthBytes);
       held.holds("batch_fragments", fragments.size() * options.fragment_bytes);
-      shade(colors, fragments, timed(shading));
+      shade(colors, fragments, timed(shading), &triangles.attributes);
       attributes.read(fragments, shading);
       for (const Fragment& item : fragments) ++counts[item.pixel];
       compose_z3(fragments, positions, z3.merge, timed(composition), pixels, merges);

@@ -27,14 +27,16 @@ inline OperationCounts box_cost() {
   });
 }
 
-// Of a triangle, before its first cell: the cell's corner; per edge the value there, the steps to the right and down,
-// and what the deepest and the shallowest corner of a cell have on top.
+// Of a triangle, before its first cell: the cell's corner; per edge a, b and c, the value there, the steps to the right
+// and down, and what the deepest and the shallowest corner of a cell have on top.
 inline OperationCounts start_cost(FullMeans meaning) {
   return count_operations([&](OperationCounts& counts) {
     using Int = Counted<std::int64_t>;
     const Int one(1, counts), zero(0);
     const Int x = one * one, y = one * one;
     for (int k = 0; k < 3; ++k) {
+      const Int a = one - one, b = one - one;
+      static_cast<void>(zero - (a * one + b * one));  // c
       const Int right = one * one, down = one * one;
       greater(right, zero) + greater(down, zero);
       const Int shallowest = lesser(right, zero) + lesser(down, zero);

@@ -4,6 +4,8 @@
 #include <array>
 
 #include "simd/conserve.h"
+#include "stages/claim.h"
+#include "stages/pair_bounds.h"
 #include "stages/plane_cost.h"
 
 namespace beampipe {
@@ -116,14 +118,27 @@ OperationCounts pixel_cost() {
   return all += numbers;
 }
 
+// Of one pixel: which positions each layer owns.
+template <std::size_t Words, std::size_t Layers>
+OperationCounts owners_cost() {
+  using Pixel = OwnerPixel<Words, Layers>;
+  OperationCounts masks;
+  for (std::uint32_t state = Pixel::kFirstLayer; state < Pixel::kDeferred; ++state)
+    masks += find_cost<std::bit_width(Pixel::kSettled)>(state);
+  return masks * Words;
+}
+
 }  // namespace
 
 template <std::size_t Words, std::size_t Layers>
 std::vector<PixelTriangle> owners(const SetupTriangles& triangles, const std::vector<OwnerPixel<Words, Layers>>& pixels,
-                                  const Tile& tile) {
+                                  const Tile& tile, StageCounters& counters) {
   using Pixel = OwnerPixel<Words, Layers>;
   std::vector<PixelTriangle> pairs;
+  std::uint64_t looked_at = 0;
   for (std::size_t i = 0; i < pixels.size(); ++i) {
+    if (!is_unfinished(pixels[i])) continue;
+    ++looked_at;
     const auto x = tile.x0 + static_cast<std::int32_t>(i) % tile.width();
     const auto y = tile.y0 + static_cast<std::int32_t>(i) / tile.width();
     for (std::size_t k = 0; k < Layers; ++k)
@@ -131,6 +146,11 @@ std::vector<PixelTriangle> owners(const SetupTriangles& triangles, const std::ve
         pairs.push_back(
             pixel_triangle(triangles, pixels[i].triangle(k), static_cast<std::uint32_t>(pairs.size()), x, y, false));
   }
+  counters.ops += owners_cost<Words, Layers>() * looked_at;
+  counters.ops += pair_bounds_cost() * pairs.size();
+  counters.ops += vertex_bounds_cost() * pairs.size();
+  counters.bytes_read += looked_at * sizeof(Pixel);
+  counters.bytes_written += pairs.size() * kPairWithDepthBytes;
   return pairs;
 }
 
@@ -155,7 +175,8 @@ void settle(const std::vector<Fragment>& fragments, bool last_pass, StageCounter
   counters.ops += pixel_cost<Words, Layers>() * worked_on;
   counters.ops += owner_cost(Words) * seen;
   counters.ops.add += compared;
-  counters.bytes_read += worked_on * sizeof(OwnerPixel<Words, Layers>);
+  counters.bytes_read +=
+      worked_on * sizeof(OwnerPixel<Words, Layers>) + fragments.size() * streaming_fragment_bytes(Words);
   counters.bytes_written += worked_on * sizeof(OwnerPixel<Words, Layers>);
   counters.lanes_used += fragments.size();
   counters.lanes_issued += fragments.size();
@@ -174,7 +195,7 @@ std::vector<PixelColor> settled_colors(const std::vector<OwnerPixel<Words, Layer
 
 #define BEAMPIPE_SETTLE(words, layers)                                                                               \
   template std::vector<PixelTriangle> owners(const SetupTriangles&, const std::vector<OwnerPixel<words, layers>>&,   \
-                                             const Tile&);                                                           \
+                                             const Tile&, StageCounters&);                                           \
   template void settle(const std::vector<Fragment>&, bool, StageCounters&, std::vector<OwnerPixel<words, layers>>&); \
   template std::vector<PixelColor> settled_colors(const std::vector<OwnerPixel<words, layers>>&);
 BEAMPIPE_OWNER_PIXELS(BEAMPIPE_SETTLE)

@@ -11,10 +11,11 @@
 
 namespace beampipe {
 
-// What must be known again of the owners: one per pixel and layer, pixel by pixel.
+// What must be known again of the owners of pixels that are not finished: one pair per pixel and layer that owns a
+// position, pixel by pixel. Counts reading those pixels and writing the pairs.
 template <std::size_t Words, std::size_t Layers>
 std::vector<PixelTriangle> owners(const SetupTriangles& triangles, const std::vector<OwnerPixel<Words, Layers>>& pixels,
-                                  const Tile& tile);
+                                  const Tile& tile, StageCounters& counters);
 
 // `fragments`: made from owners(), shaded. Their areas are simd/conserve.h's, as in sorted order; but where a speck may
 // be seen, whose area nobody has, areas are counted by positions alone, which has no bias. `last_pass`: positions that

@@ -75,18 +75,8 @@ OperationCounts normal_cost() {
 // Is every corner of a clipped polygon's triangle before the eye?
 OperationCounts fan_cost() { return {.add = 3}; }
 
-// Once per triangle: of each edge a, b and c, of each corner the depth (stages/setup_triangle.h).
-OperationCounts edges_cost() {
-  return count_operations([](OperationCounts& counts) {
-    using Int = Counted<std::int64_t>;
-    const Int x(1, counts), zero(0);
-    for (int k = 0; k < 3; ++k) {
-      const Int a = x - x, b = x - x;
-      static_cast<void>(zero - (a * x + b * x));
-      to_float(x);
-    }
-  });
-}
+// The corners' depths as they are stored.
+OperationCounts depths_cost() { return {.convert = 3}; }
 
 OperationCounts slopes_cost() {
   return count_operations([](OperationCounts& counts) {
@@ -107,7 +97,7 @@ OperationCounts setup_cost(const SetupWork& work) {
   ops += project_cost() * work.projected;
   ops += area_cost() * work.areas;
   ops += slopes_cost() * work.triangles;
-  ops += edges_cost() * work.triangles;
+  ops += depths_cost() * work.triangles;
   ops += normal_cost() * work.normals;
   return ops;
 }

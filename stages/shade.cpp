@@ -73,7 +73,8 @@ void count_one_by_one(const Items& items, const std::vector<FlatAttributes>* att
   if (attributes)
     lit = static_cast<std::uint64_t>(
         std::count_if(items.begin(), items.end(), [&](const auto& item) { return (*attributes)[item.triangle].lit; }));
-  count_invocations(items.size(), items.size(), lit, invocation_cost(), sizeof(FlatAttributes), 6, counters);
+  count_invocations(items.size(), items.size(), lit, invocation_cost(), sizeof(FlatAttributes) + kPixelTriangleBytes, 6,
+                    counters);
 }
 
 }  // namespace
@@ -100,7 +101,7 @@ void shade(const std::vector<glm::vec3>& colors, std::vector<Fragment>& fragment
            const std::vector<FlatAttributes>* attributes) {
   for (Fragment& fragment : fragments) fragment.color = fragment.alpha * colors[fragment.triangle];
   count_invocations(fragments.size(), quad_invocations(fragments), lit_invocations(fragments, attributes),
-                    invocation_cost(), sizeof(FlatAttributes), 6, counters);
+                    invocation_cost(), sizeof(FlatAttributes) + kPixelTriangleBytes, 6, counters);
 }
 
 void shade_visible(const std::vector<glm::vec3>& colors, std::vector<Fragment>& fragments, StageCounters& counters,

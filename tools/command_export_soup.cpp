@@ -63,7 +63,8 @@ void add_export_soup_command(CLI::App& app) {
   command->add_option("--frame", arguments->frame, "which frame, counted from 0 (default: 0)");
   command->add_flag("--allow-outside", arguments->allow_outside, "let the trace name meshes outside its own folder");
   command->footer(
-      "\nThe file, little-endian: \"SOUP\"; uint32 version 1, width, height, triangles; float background[3]; then for each\n"
+      "\nThe file, little-endian: \"SOUP\"; uint32 version 1, width, height, triangles; float background[3]; then for "
+      "each\n"
       "triangle float clip[3][4], in OpenGL clip space with w = 1, and float rgb[3], linear.");
   command->callback([arguments] {
     const Trace trace = read_trace(arguments->trace, {.allow_outside = arguments->allow_outside});

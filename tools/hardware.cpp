@@ -27,7 +27,7 @@ const std::map<std::string, Clocks>& units() {
        [](const Rates& rates, const StageCounters& s) { return over(s.items_out, rates.at("raster_pixels_per_clk")); }},
       {"conservative_raster",
        [](const Rates& rates, const StageCounters& s) {
-         return over(s.items_out, rates.at("conservative_pixels_per_clk"));
+         return over(s.lanes_used, rates.at("conservative_pixels_per_clk"));  // touched, hidden ones too
        }},
       {"quads",
        [](const Rates& rates, const StageCounters& s) { return over(s.lanes_issued, 4 * rates.at("quads_per_clk")); }},

@@ -62,7 +62,7 @@ Json to_json(const FrameReport& frame, const TechniqueReport& result, const Hard
   for (const SavedWork& saved : saved_work(frame.stages)) json["saved"][saved.name] = saved.amount;
   json["stages"] = Json::array();
   for (const StageCounters& stage : frame.stages) json["stages"].push_back(to_json(stage));
-  if (result.technique == "reference") return json;  // what no hardware is meant to run
+  if (all.sector_bytes == 0) return json;  // without memory, as the reference runs, a time would mean nothing
   for (const Implementation& implementation : hardware.implementations) {
     const ModelledTime time = modelled_time(hardware, implementation, frame.stages);
     json["modelled_ms"][implementation.name] = {
@@ -107,14 +107,10 @@ Json to_json(const CacheParameters& cache) {
 }
 
 Json to_json(const MemoryParameters& memory) {
-  return {{"modelled", memory.modelled},
-          {"compression", memory.compression},
-          {"sector_bytes", memory.sector_bytes},
-          {"rop_cache", to_json(memory.rop)},
-          {"l1_cache", to_json(memory.l1)},
-          {"l2_cache", to_json(memory.l2)},
-          {"plane_bytes", memory.plane_bytes},
-          {"bin_pixels", kBinSize}};
+  return {{"modelled", memory.modelled},         {"compression", memory.compression},
+          {"sector_bytes", memory.sector_bytes}, {"rop_cache", to_json(memory.rop)},
+          {"l1_cache", to_json(memory.l1)},      {"l2_cache", to_json(memory.l2)},
+          {"plane_bytes", memory.plane_bytes},   {"bin_pixels", kBinSize}};
 }
 
 [[gnu::format(printf, 1, 2)]] std::string format(const char* pattern, ...) {

@@ -70,7 +70,7 @@ TEST(HandWorked, TriangleBeam) {
        {"windows", kPairs, kPairs, kPairs * kRecord, kPairs * kPair, 416, 0, 0},
        {"beam_fragment", kPairs - kWhole, kPartial, (kPairs - kWhole) * (kPair + 88), kPartial * kFragment, 1152, 96,
         96},
-       {"shade", kFragments, kFragments, kFragments * 28, kFragments * 6, kFragments * 32, 32, 32},
+       {"shade", kFragments, kFragments, kFragments * (28 + 8), kFragments * 6, kFragments * 32, 32, 32},
        {"compose", kFragments, kFragments, kPartial * (kFragment + 42) + kWhole * kPair, kFragments * 42,
         128 + 320 + 192, 256 + 1024 + 384, 256 + 1024 + 384},
        {"resolve", 64, 64, 64 * 42, 384, 256 + 2048 + 384 + 384, 256 + 1024 + 384 + 384, 256 + 1024 + 384 + 384}});
@@ -100,7 +100,7 @@ TEST(HandWorked, QuadsBeam) {
        {"windows", kTaken, kWindows, (kTaken + 1) * kRecord, kTaken * kPair, (kTaken + 1) * 32, 0, 0},
        {"beam_fragment", kTaken, kFragments, kTaken * (kPair + 88), kFragments * kFragment, kSetupSectors * 32, 352,
         352},
-       {"shade", kFragments, kFragments, kFragments * 28, kFragments * 6, kAttributeSectors * 32, 128, 128},
+       {"shade", kFragments, kFragments, kFragments * (28 + 8), kFragments * 6, kAttributeSectors * 32, 128, 128},
        {"compose", kFragments, kWindows, kFragments * kFragment + kWindows * 42, kWindows * 42, 160 + 896 + 256,
         256 + 1280 + 384, 256 + 1280 + 384},
        {"resolve", 64, 64, 64 * 42, 384, 256 + 2048 + 384 + 384, 256 + 1280 + 384 + 384, 256 + 1280 + 384 + 384}});

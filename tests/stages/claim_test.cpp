@@ -5,6 +5,7 @@
 #include <set>
 
 #include "stages/conservative_raster.h"
+#include "stages/pair_bounds.h"
 #include "stages/settle.h"
 #include "stages/shade.h"
 #include "tests/simd/random.h"
@@ -45,7 +46,7 @@ struct Stream {
     claim(triangles, wanted, tile, positions, counters, pixels);
   }
   void settle_all(const std::vector<glm::vec3>& colors, bool last = false) {
-    std::vector<Fragment> seen = fragments_of(owners(triangles, pixels, tile));
+    std::vector<Fragment> seen = fragments_of(owners(triangles, pixels, tile, counters));
     shade_visible(colors, seen, counters);
     settle(seen, last, counters, pixels);
   }
@@ -223,8 +224,17 @@ TEST(Settle, CountsItsArithmetic) {
   add_everywhere(triangles, -0.5f);
   Stream<4, 5> stream{triangles, kPixel};
   stream.claim_all();
-  std::vector<Fragment> seen = stream.fragments_of(owners(triangles, stream.pixels, kPixel));
+  StageCounters finding;
+  std::vector<Fragment> seen = stream.fragments_of(owners(triangles, stream.pixels, kPixel, finding));
   ASSERT_EQ(seen.size(), 1u);
+  // Four words: states 1 to 5 of three bits, two ands each, and eight bits to be inverted. The owner's plane and its
+  // depths in the pixel (stages/pair_bounds.h).
+  OperationCounts search{0, 0, 4 * (5 * 2 + 8), 0, 0, 0};
+  search += pair_bounds_cost();
+  search += vertex_bounds_cost();
+  EXPECT_EQ(finding.ops, search);
+  EXPECT_EQ(finding.bytes_read, 80u);
+  EXPECT_EQ(finding.bytes_written, 16u);
   StageCounters counters;
   settle(seen, true, counters, stream.pixels);
   // Four words: states 1 to 7 of three bits (two ands each, and nine bits to be inverted in all), two states put (three
@@ -238,7 +248,7 @@ TEST(Settle, CountsItsArithmetic) {
   EXPECT_EQ(counters.ops, all);
   EXPECT_EQ(counters.lanes_used, 1u);
   EXPECT_EQ(counters.lanes_issued, 1u);
-  EXPECT_EQ(counters.bytes_read, 80u);
+  EXPECT_EQ(counters.bytes_read, 80u + 40u) << "the pixel and the fragment";
   EXPECT_EQ(counters.bytes_written, 80u);
 }
 

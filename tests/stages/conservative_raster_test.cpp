@@ -152,7 +152,7 @@ TEST(ConservativeRaster, CountsCellsAndOperations) {
   EXPECT_EQ(raster.counters.lanes_issued, 4u);
   EXPECT_EQ(raster.counters.lanes_used, 3u);
   EXPECT_EQ(raster.counters.ops,
-            (OperationCounts{2 + 3 * 4 + 3 * 3, 16 + 3 * 8 + 3 * 3 + 4 * 3 * 4 + 4 + 3 * 11, 4 + 3 * 2, 0, 0, 3 * 3}));
+            (OperationCounts{2 + 3 * 6 + 3 * 3, 16 + 3 * 12 + 3 * 3 + 4 * 3 * 4 + 4 + 3 * 11, 4 + 3 * 2, 0, 0, 3 * 3}));
   EXPECT_EQ(raster.counters.bytes_written, 3u * 16);
 }
 

@@ -35,7 +35,10 @@ class RasterTwins : public SceneTwins {
     std::array<Stepped, 3> edges;
     for (int k = 0; k < 3; ++k) {
       const Edge edge = edge_of(triangle, k);
-      const Int a = integer(edge.a), b = integer(edge.b), c = integer(edge.c);
+      const int next = (k + 1) % 3;
+      const Int from_x = integer(triangle.x[k]), from_y = integer(triangle.y[k]);
+      const Int a = from_y - integer(triangle.y[next]), b = integer(triangle.x[next]) - from_x;
+      const Int c = zero - (a * from_x + b * from_y);
       Stepped& e = edges[static_cast<std::size_t>(k)];
       e = {a * x + b * y + c, a * integer(grid.cell_width()), b * integer(grid.cell_height()), {}, {}};
       e.deepest = greater(e.to_right, zero) + greater(e.down, zero);

@@ -175,7 +175,7 @@ TEST(SampleRaster, CountsSamplesAndOperations) {
   EXPECT_EQ(raster.counters.lanes_used, 1u);
   EXPECT_EQ(raster.counters.lanes_issued, 4u);
   EXPECT_EQ(raster.counters.ops,
-            (OperationCounts{2 + 3 * 4 + 4 * 3 * 2, 16 + 3 * 9 + 3 * 4 + 3 + 4 * 3 * 3, 4, 0, 0, 0}));
+            (OperationCounts{2 + 3 * 6 + 4 * 3 * 2, 16 + 3 * 13 + 3 * 4 + 3 + 4 * 3 * 3, 4, 0, 0, 0}));
   EXPECT_EQ(raster.counters.bytes_written, 10u);
 }
 

@@ -126,12 +126,7 @@ class SetupTwins : public SceneTwins {
     if (area2.value == 0 || draw.cull == (front ? Cull::front : Cull::back)) return;
     ++made_;
     const std::array<Placed, 3> corners = {a, b, c};
-    for (std::size_t k = 0; k < 3; ++k) {  // a x + b y + c of each edge, and the corner's depth
-      const Placed &from = corners[k], &to = corners[(k + 1) % 3];
-      const Int ea = from.y - to.y, eb = to.x - from.x;
-      static_cast<void>(Int(0) - (ea * from.x + eb * from.y));
-      to_float(from.depth);
-    }
+    for (const Placed& corner : corners) to_float(corner.depth);
     std::array<Placed, 3> p = corners;
     for (const std::size_t i : {0, 1, 0}) {
       ++twin_.add;  // a comparison of keys

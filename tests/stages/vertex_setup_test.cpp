@@ -176,9 +176,8 @@ TEST(VertexSetup, CountsOperations) {
   EXPECT_EQ(outside.items_out, 0u);
   vertex_setup_of(clip_space_scene({{0, 0, 0}, {0.5f, 0, 0}, {0, 0.5f, 0}}), inside);
   // All in view: nothing to test against planes.
-  EXPECT_EQ(inside.ops,
-            (OperationCounts{3 * 12 + 3 * (8 + 2 + 2) + 2 + 8 + 3 * 2, 3 * (12 + 4) + 3 * (3 + 2) + 6 + 3 + 9 + 3 * 4,
-                             3 * 3, 0, 3 + 1, 3 * 2 + 3 * 2 + 3}));
+  EXPECT_EQ(inside.ops, (OperationCounts{3 * 12 + 3 * (8 + 2 + 2) + 2 + 8, 3 * (12 + 4) + 3 * (3 + 2) + 6 + 3 + 9,
+                                         3 * 3, 0, 3 + 1, 3 * 2 + 3 * 2 + 3}));
   EXPECT_EQ(inside.items_out, 1u);
 }
 
