@@ -71,10 +71,9 @@ FrameResult render_shape(const Trace& trace, const Frame& frame, const StreamOpt
       fetches.load_setup();
       for_each_batch(list, [&](const TriangleList& batch) {
         pairs.clear(), fragments.clear();
-        conservative_raster(triangles, batch, box, timed(raster), pairs, &closed, PairDepths::bounds,
-                            PassOn::when_found);
+        const std::size_t waited = conservative_raster(triangles, batch, box, timed(raster), pairs, &closed);
         beam_fragment(triangles, pairs, tile, options, timed(fragment), fragments);
-        held.holds("batch_pairs", pairs.size() * kPairWithDepthBytes);
+        held.holds("batch_pairs", waited * kPairWithDepthBytes);
         held.holds("batch_fragments", fragments.size() * options.fragment_bytes);
         for (const Fragment& item : fragments) ++counts[item.pixel];
         remade.clear();

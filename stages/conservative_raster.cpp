@@ -17,7 +17,7 @@ void set_depths(const SetupTriangle& triangle, const DepthBounds<float>& vertice
 
 std::size_t conservative_raster(const SetupTriangles& triangles, const TriangleList& list, const Tile& tile,
                                 StageCounters& counters, std::vector<PixelTriangle>& out, ClosedDepth* closed,
-                                PairDepths depths, PassOn pass_on) {
+                                PairDepths depths) {
   const std::size_t before = out.size();
   std::uint32_t quad = 0;
   TraversalCounts counts;
@@ -37,11 +37,11 @@ std::size_t conservative_raster(const SetupTriangles& triangles, const TriangleL
   }
   const std::size_t waited = out.size();
   const std::uint32_t pair_bytes = depths == PairDepths::bounds ? kPairWithDepthBytes : kPixelTriangleBytes;
-  if (closed && pass_on == PassOn::at_the_end) {  // what was closed later than it was found
+  if (closed) {  // what was closed later than it was found
     counters.bytes_read += waited * pair_bytes;
     std::erase_if(out, [&](const PixelTriangle& pair) { return closed->hides(pair.x, pair.y, pair.nearest); });
+    closed->charge(counters);
   }
-  if (closed) closed->charge(counters);
   counters.ops += traversal_cost(counts, FullMeans::area);
   if (depths == PairDepths::bounds) {
     static const OperationCounts vertices_cost = vertex_bounds_cost(), bounds_cost = pair_bounds_cost();

@@ -25,16 +25,12 @@ struct PixelTriangle {
 // Whether pairs are given their depths; else these are 0.
 enum class PairDepths { bounds, none };
 
-// When pairs are passed on: as they are found; or when all triangles of the list have come, so that what a later one
-// hides is left out as well.
-enum class PassOn { when_found, at_the_end };
-
 // Appends to `out`, triangle by triangle in the list's order. With `closed`, what cannot be seen behind triangles that
-// cover whole pixels, of this list or of those before, is left out. Returns how many pairs were found and waited, where
-// they do.
+// cover whole pixels, of this list or of those before, is left out. Returns how many pairs waited in `out` before those
+// were left out that a later triangle hides.
 std::size_t conservative_raster(const SetupTriangles& triangles, const TriangleList& list, const Tile& tile,
                                 StageCounters& counters, std::vector<PixelTriangle>& out, ClosedDepth* closed = nullptr,
-                                PairDepths depths = PairDepths::bounds, PassOn pass_on = PassOn::at_the_end);
+                                PairDepths depths = PairDepths::bounds);
 
 // The pair of a triangle and a pixel that it touches.
 PixelTriangle pixel_triangle(const SetupTriangles& triangles, std::uint32_t index, std::uint32_t quad, std::int32_t x,

@@ -32,8 +32,6 @@ class WindowTwins : public testing::TestWithParam<SceneKind> {
     for (std::uint32_t i = 0; i < triangles_.triangles.size(); ++i) list_.push_back(i);
   }
 
-  void closed_depth(PassOn pass_on);
-
   Float real(float value) { return Float(value, twin_); }
   Real real(double value) { return Real(value, twin_); }
 
@@ -84,12 +82,8 @@ TEST_P(WindowTwins, DepthBounds) {
   EXPECT_EQ(counters.bytes_written, pairs.size() * (8 + 8));
 }
 
-// Two lists after each other, as batches of triangles come in streaming order; and with pairs that wait, in sorted
-// order.
-TEST_P(WindowTwins, ClosedDepth) { closed_depth(PassOn::at_the_end); }
-TEST_P(WindowTwins, ClosedDepthWherePairsPassOn) { closed_depth(PassOn::when_found); }
-
-void WindowTwins::closed_depth(PassOn pass_on) {
+// Two lists after each other, as the passes of streaming order bring them.
+TEST_P(WindowTwins, ClosedDepth) {
   const TriangleList halves[2] = {{list_.begin(), list_.begin() + static_cast<std::ptrdiff_t>(list_.size() / 2)},
                                   {list_.begin() + static_cast<std::ptrdiff_t>(list_.size() / 2), list_.end()}};
   ClosedDepth closed(tile_);
@@ -99,8 +93,7 @@ void WindowTwins::closed_depth(PassOn pass_on) {
   for (const TriangleList& list : halves) {
     StageCounters counters;
     std::vector<PixelTriangle> pairs, found;
-    const std::size_t waited =
-        conservative_raster(triangles_, list, tile_, counters, pairs, &closed, PairDepths::bounds, pass_on);
+    const std::size_t waited = conservative_raster(triangles_, list, tile_, counters, pairs, &closed);
     twin_ = {};
     std::uint64_t read = 0, written = 0;
     const auto hidden = [&](const PixelTriangle& pair, const Float& nearest) {
@@ -135,10 +128,8 @@ void WindowTwins::closed_depth(PassOn pass_on) {
       }
     }
     EXPECT_EQ(waited, found.size());
-    if (pass_on == PassOn::at_the_end) {
-      read += found.size() * 16;
-      std::erase_if(found, [&](const PixelTriangle& pair) { return hidden(pair, real(pair.nearest)); });
-    }
+    read += found.size() * 16;
+    std::erase_if(found, [&](const PixelTriangle& pair) { return hidden(pair, real(pair.nearest)); });
     ASSERT_EQ(found.size(), pairs.size());
     for (std::size_t i = 0; i < pairs.size(); ++i) ASSERT_EQ(found[i].triangle, pairs[i].triangle);
     EXPECT_EQ(counters.ops, twin_);
