@@ -175,11 +175,12 @@ void add_error_claims(const Report& report, std::vector<Claim>& claims) {
 
 // ---- ACAA ----
 
-// Depth, colour, accumulator and resolve: without geometry, which no technique of these saves.
+// Without geometry and its attributes, which no technique of these saves.
 double framebuffer_dram(const FrameReport& frame) {
   double bytes = 0;
   for (const StageCounters& stage : frame.stages)
-    if (stage.stage != "vertex_setup") bytes += static_cast<double>(stage.dram_bytes);
+    if (stage.stage == "depth_test" || stage.stage == "accumulate" || stage.stage == "resolve")
+      bytes += static_cast<double>(stage.dram_bytes);
   return bytes;
 }
 
@@ -198,7 +199,7 @@ void add_acaa_claims(const Report& report, std::vector<Claim>& claims) {
       time_saved = quotient(ms, msaa_ms);
     }
   }
-  constexpr const char* kTraffic = "modelled DRAM bytes of all stages but vertex_setup";
+  constexpr const char* kTraffic = "modelled DRAM bytes of depth_test, accumulate and resolve";
   constexpr const char* kTime = "modelled, stage after stage: there is no such GPU here";
   const auto add = [&](const char* name, double low, double high, std::optional<double> ours, const char* beside) {
     claims.push_back({name, "", low, high, ours, kAcaa, kAcaaCommand, beside});

@@ -47,10 +47,28 @@ TEST(Counters, BeamCountsEveryTouchedPixel) {
   // As published, shading is in quads. Pixels 1..4 lie in the quads 0, 1, 2 of each axis; the lower left half of these
   // 3 x 3 has 6, with 4 lanes each.
   EXPECT_EQ(stage(parse_technique("beam:rules=paper").render(half_square(), 0, {1}), "shade").lanes_issued, 4u * 6);
+  const StageCounters merging = stage(parse_technique("beam:rules=paper").render(half_square(), 0, {1}), "compose");
+  EXPECT_EQ(merging.items_in, with_area);
+  EXPECT_EQ(merging.items_out, 64u) << "pixels";
+  EXPECT_EQ(merging.bytes_read, with_area * 42);
+  EXPECT_EQ(merging.bytes_written, 64u * 42);
+  EXPECT_EQ(merging.lanes_used, with_area);
+  EXPECT_EQ(merging.lanes_issued, with_area);
   // The paper's fragment is its aggregate; without masks and slabs there is a coverage, a colour and a depth.
   EXPECT_EQ(parse_technique("beam:rules=paper").render(half_square(), 0, {1}).a_buffer_peak_bytes,
             with_area * 46 + 256);
   EXPECT_EQ(parse_technique("alpha").render(half_square(), 0, {1}).a_buffer_peak_bytes, with_area * 18 + 256);
+}
+
+TEST(Counters, Z3ReadsAndWritesAPixelForEachFragment) {
+  const StageCounters merging = stage(parse_technique("z3").render(half_square(), 0, {1}), "compose");
+  const std::uint64_t fragments = 1 + 2 + 3 + 4;
+  EXPECT_EQ(merging.items_in, fragments);
+  EXPECT_EQ(merging.items_out, fragments);
+  EXPECT_EQ(merging.bytes_read, fragments * (26 + 50)) << "pixel, mask, plane, colour; three layers and their owners";
+  EXPECT_EQ(merging.bytes_written, fragments * 50);
+  EXPECT_EQ(merging.lanes_used, fragments);
+  EXPECT_EQ(merging.lanes_issued, fragments);
 }
 
 TEST(Counters, MsaaCountsSamples) {
@@ -106,11 +124,21 @@ TEST(Counters, AcaaReadsDepthTwiceAndOneColor) {
   const std::uint64_t samples = stage(msaa, "depth_test").items_in;
   EXPECT_EQ(stage(acaa, "depth_test").items_in, 2 * samples);
   EXPECT_EQ(stage(acaa, "depth_test").bytes_written, samples * 4);
+  const std::uint64_t fragment_bytes = kSampleFragmentBytes + 6;  // with the shader's colour
   EXPECT_EQ(stage(acaa, "accumulate").items_in, 10u);
+  EXPECT_EQ(stage(acaa, "accumulate").items_out, 10u);
+  EXPECT_EQ(stage(acaa, "accumulate").bytes_read, 10 * (fragment_bytes + 8));
   EXPECT_EQ(stage(acaa, "accumulate").bytes_written, 10u * 8);
   // Saturation first adds the background of each pixel that is not full; only (2, 3) is.
   const FrameResult saturated = parse_technique("acaa:8,double=saturate").render(half_square(), 0, {1});
   EXPECT_EQ(stage(saturated, "accumulate").items_in, 10u + 64 - 1);
+  EXPECT_EQ(stage(saturated, "accumulate").bytes_read, 10 * fragment_bytes + (10 + 64 - 1) * 8 + 64 * 8 * 4);
+  const StageCounters stencil =
+      stage(parse_technique("acaa:8,double=stencil").render(half_square(), 0, {1}), "stencil_test");
+  EXPECT_EQ(stencil.items_in, samples);
+  EXPECT_EQ(stencil.items_out, samples);
+  EXPECT_EQ(stencil.bytes_read, samples) << "one byte each";
+  EXPECT_EQ(stencil.bytes_written, samples);
   EXPECT_EQ(stage(acaa, "resolve").bytes_read, 64u * 8);
   EXPECT_EQ(stage(msaa, "resolve").bytes_read, 64u * 8 * 6);
 }
@@ -145,6 +173,33 @@ TEST(Counters, PixelsAddUpToStages) {
     EXPECT_EQ(sum_of(result, "bytes"), bytes) << spec;
     if (std::string(spec) == "deferred") continue;  // its fragments come twice
     EXPECT_EQ(sum_of(result, "fragments"), fragments) << spec;
+  }
+}
+
+// Every pixel is read as it is stored and written as fp16 RGB. What is read and written lies in memory as a whole.
+TEST(Counters, ResolveReadsEveryPixelOnce) {
+  const Trace trace = random_trace(64, 32, 400, 2);
+  RunOptions raw{2};
+  raw.memory.compression = false;
+  for (const auto& [spec, items, stored_bytes] : {std::tuple{"beam", 1u, 42u},
+                                                  {"beam:rules=paper", 1u, 42u},
+                                                  {"beam:order=stream", 1u, 8u},
+                                                  {"alpha", 1u, 10u},
+                                                  {"z3", 1u, 50u},
+                                                  {"msaa:8", 8u, 48u},
+                                                  {"msaa:32", 32u, 192u},
+                                                  {"acaa:8", 1u, 8u},
+                                                  {"visibility", 1u, 6u}}) {
+    const StageCounters resolving = stage(parse_technique(spec).render(trace, 0, raw), "resolve");
+    EXPECT_EQ(resolving.items_in, 64u * 32 * items) << spec;
+    EXPECT_EQ(resolving.items_out, 64u * 32) << spec;
+    EXPECT_EQ(resolving.bytes_read, 64u * 32 * stored_bytes) << spec;
+    EXPECT_EQ(resolving.bytes_written, 64u * 32 * 6) << spec;
+    EXPECT_EQ(resolving.lanes_used, resolving.items_in) << spec;
+    EXPECT_EQ(resolving.lanes_issued, resolving.items_in) << spec;
+    EXPECT_GE(resolving.sector_bytes, resolving.logical_bytes()) << spec;
+    EXPECT_LE(resolving.sector_bytes, resolving.logical_bytes() * 105 / 100) << spec << ": 50 bytes lie across sectors";
+    EXPECT_EQ(resolving.dram_bytes, resolving.sector_bytes) << spec;
   }
 }
 

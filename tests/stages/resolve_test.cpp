@@ -19,7 +19,6 @@ TEST(Resolve, AggregateOverTheBackground) {
   EXPECT_EQ(counters.bytes_written, 2u * 6);
 }
 
-// The aggregate's colour is stored in fp16: 1 + 2^-12 becomes 1.
 TEST(Resolve, MeanOfTheSamples) {
   const Tile tile{0, 0, 2, 1};
   const Sampling sampling{CellGrid{}, standard_pattern(4)};

@@ -126,9 +126,9 @@ TEST(Claims, AcaaGivesBack) {
   const auto add = [&](const char* spec, std::uint64_t dram) {
     TechniqueReport& result = report.results.emplace_back();
     result.technique = spec;
-    StageCounters setup{"vertex_setup"}, testing{"depth_test"};
-    setup.dram_bytes = 1000, testing.dram_bytes = dram;
-    result.frames.emplace_back().stages = {setup, testing};
+    StageCounters setup{"vertex_setup"}, raster{"sample_raster"}, testing{"depth_test"}, resolving{"resolve"};
+    setup.dram_bytes = 1000, raster.dram_bytes = 2000, testing.dram_bytes = dram - 5, resolving.dram_bytes = 5;
+    result.frames.emplace_back().stages = {setup, raster, testing, resolving};
   };
   add("msaa:1,prepass", 10);
   const auto given_back = [&]() -> std::optional<double> {

@@ -170,7 +170,7 @@ std::vector<Json> technique_records(const ReportFile& report) {
     Json record = result;
     const TechniqueSummary summary = read_summary(result);
     record["wall_ms"] = summary.wall_ms;
-    if (result.at("frames").front().contains("dram_bytes")) record["dram_bytes"] = summary.dram_bytes;
+    if (summary.dram_bytes > 0) record["dram_bytes"] = summary.dram_bytes;  // else nothing was modelled
     for (const auto& [implementation, ms] : summary.modelled_ms)
       record["modelled_ms"][implementation] = {{"overlap", ms.overlap}, {"sum", ms.sum}};
     if (summary.emr) {

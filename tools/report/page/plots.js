@@ -50,7 +50,7 @@ function logScale(values, range) {
 }
 
 function drawScatter(svg, plot, width) {
-  const margin = { left: 74, right: 14, top: 8, bottom: 44 }, height = Math.max(280, Math.min(440, width * 0.7));
+  const margin = { left: 74, right: 14, top: 8, bottom: 44 }, height = Math.max(320, Math.min(440, width * 0.7));
   const inner = { width: width - margin.left - margin.right, height: height - margin.top - margin.bottom };
   const points = plot.series.flatMap((series, i) =>
     series.points.map((point) => ({ ...point, color: data.colors[i], mark: series.marks })));
