@@ -71,6 +71,15 @@ TEST(Counters, Z3ReadsAndWritesAPixelForEachFragment) {
   EXPECT_EQ(merging.lanes_issued, fragments);
 }
 
+TEST(Counters, DvmSelectsOutOfEightSamplesAPixel) {
+  const StageCounters selecting = stage(parse_technique("dvm").render(half_square(), 0, {1}), "sample_select");
+  EXPECT_EQ(selecting.items_in, 64u * 8);
+  EXPECT_EQ(selecting.bytes_read, 64u * 8 * 4) << "a visibility id each";
+  EXPECT_EQ(selecting.items_out, 64u) << "every pixel stores a sample";
+  EXPECT_EQ(selecting.bytes_written, 64u * 9);
+  EXPECT_EQ(selecting.lanes_issued, 64u);
+}
+
 TEST(Counters, MsaaCountsSamples) {
   const FrameResult one = parse_technique("msaa:1").render(half_square(), 0, {1});
   // Pixel centres (x + 1/2, y + 1/2) with x <= y and 1 <= x, y <= 4; those on the diagonal (a top right edge) are not

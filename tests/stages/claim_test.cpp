@@ -237,6 +237,8 @@ TEST(Settle, CountsItsArithmetic) {
   EXPECT_EQ(finding.bytes_written, 16u);
   StageCounters counters;
   settle(seen, true, counters, stream.pixels);
+  EXPECT_EQ(counters.items_in, 1u);
+  EXPECT_EQ(counters.items_out, 0u) << "it is the last pass";
   // Four words: states 1 to 7 of three bits (two ands each, and nine bits to be inverted in all), two states put (three
   // and six), owners' positions joined, and what is deferred taken away.
   OperationCounts all{0, 0, 4 * (7 * 2 + 9 + 3 + 6 + 7), 0, 0, 0};

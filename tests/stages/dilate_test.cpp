@@ -61,6 +61,10 @@ TEST(Dilate, CountsWhatItLooksAt) {
   OperationCounts all = pixel * 16;
   all += neighbor * neighbors;
   EXPECT_EQ(counters.ops, all);
+  EXPECT_EQ(counters.items_in, 16u);
+  EXPECT_EQ(counters.items_out, 16u);
+  EXPECT_EQ(counters.lanes_used, 0u) << "nothing is known";
+  EXPECT_EQ(counters.lanes_issued, 16u);
 }
 
 }  // namespace

@@ -174,6 +174,11 @@ TEST(Motion, CountsItsArithmetic) {
   const OperationCounts pixel{0 + 3 + 9 + 2 * 3, 2 * 7 + 2 + 2 + 9 + 2 + 2 + 1, 0, 2, 2 + 1, 4};
   EXPECT_EQ(counters.ops, pixel * (kSize * kSize));
   EXPECT_EQ(counters.bytes_read, kSize * kSize * (8 * 4 + 4));
+  EXPECT_EQ(counters.bytes_written, kSize * kSize * 4u);
+  EXPECT_EQ(counters.items_in, kSize * kSize * 8u);
+  EXPECT_EQ(counters.items_out, kSize * kSize * 1u);
+  EXPECT_EQ(counters.lanes_used, kSize * kSize * 1u);
+  EXPECT_EQ(counters.lanes_issued, kSize * kSize * 1u);
   counters = {};
   contents(full_surface(-0.5f, {CellGrid{}, standard_pattern(8)}), kTile, frame, {0},
            to_last_frame(poses_of(frame), poses_of(frame)), looks_of(frame), counters);

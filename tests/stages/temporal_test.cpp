@@ -129,6 +129,10 @@ TEST(Temporal, CountsWhatItLooksAt) {
   EXPECT_EQ(counters.ops, all);
   EXPECT_EQ(counters.bytes_read, 2u * (8 + 17 + 4) + 4 * 8);
   EXPECT_EQ(counters.bytes_written, 2u * 8);
+  EXPECT_EQ(counters.items_in, 2u);
+  EXPECT_EQ(counters.items_out, 2u);
+  EXPECT_EQ(counters.lanes_used, 1u) << "one has a history";
+  EXPECT_EQ(counters.lanes_issued, 2u);
   counters = {};
   temporal(fixture.frame, {0.1f, 0.05f}, fixture.history, {0, 0, 2, 1}, counters, image);
   all += OperationCounts{0, 3 + 1 + 1 + 1, 0, 0, 1, 1};  // the texel that weighs the most; part; whether it is the same
