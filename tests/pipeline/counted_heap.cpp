@@ -32,6 +32,13 @@ void* operator new(std::size_t bytes) {
   beampipe::count(static_cast<std::int64_t>(malloc_usable_size(memory)));
   return memory;
 }
+void* operator new(std::size_t bytes, const std::nothrow_t&) noexcept {  // a sanitizer's would not count
+  try {
+    return operator new(bytes);
+  } catch (const std::bad_alloc&) {
+    return nullptr;
+  }
+}
 void operator delete(void* memory) noexcept {
   if (memory) beampipe::count(-static_cast<std::int64_t>(malloc_usable_size(memory)));
   std::free(memory);

@@ -98,8 +98,9 @@ TEST(GeometryMemory, WhatL1CannotHoldIsAskedOfL2AgainAndNotOfDram) {
 }
 
 TEST(GeometryMemory, WhatTheRasterHasReadIsInL2) {
+  const TriangleList list = {0, 1, 7};
   StageCounters counters;
-  TriangleFetches fetches({}, {0, 1, 7});
+  TriangleFetches fetches({}, list);
   fetches.load_setup();
   fetches.depth(7, counters);  // bytes 656 to 695: sectors 20 and 21
   fetches.depth(7, counters);
@@ -116,7 +117,8 @@ TEST(GeometryMemory, WhereNothingIsModelledNothingIsCounted) {
   move_setup(off, 48, 4, counters);
   write_list(off, {0, 1}, counters);
   read_bin(off, {0, 1}, counters);
-  TriangleFetches fetches(off, {0, 1});
+  const TriangleList list = {0, 1};
+  TriangleFetches fetches(off, list);
   fetches.setup(1, counters);
   fetches.flush(counters);
   EXPECT_EQ(counters, StageCounters{});
