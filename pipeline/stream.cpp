@@ -28,13 +28,10 @@ void replay(const MemoryParameters& memory, const TriangleList& list, const Clos
   read_bin(memory, list, raster);
 }
 
-// The pixels that a pass has to decide about.
-template <class Pixel>
-std::vector<std::uint32_t> unfinished_pixels(const std::vector<Pixel>& pixels) {
-  std::vector<std::uint32_t> unfinished;
-  for (std::uint32_t i = 0; i < pixels.size(); ++i)
-    if (is_unfinished(pixels[i])) unfinished.push_back(i);
-  return unfinished;
+// Moves the state of each pixel that has owners, once; their fragments stand pixel by pixel.
+void move_settled(const std::vector<Fragment>& fragments, AggregateMemory& memory, StageCounters& counters) {
+  for (std::size_t i = 0; i < fragments.size(); ++i)
+    if (i == 0 || fragments[i].pixel != fragments[i - 1].pixel) memory.merge(0, fragments[i].pixel, counters);
 }
 
 template <std::size_t Words, std::size_t Layers>
@@ -66,8 +63,7 @@ FrameResult render_shape(const Trace& trace, const Frame& frame, const StreamOpt
     TriangleFetches fetches(run.memory, list);
     for (int pass = 1; box.x0 < box.x1; ++pass) {
       if (pass > 1) replay(run.memory, list, closed, raster);
-      const std::vector<std::uint32_t> unfinished = unfinished_pixels(pixels);
-      for (const std::uint32_t pixel : unfinished) ++passes[pixel];
+      for (std::size_t i = 0; i < pixels.size(); ++i) passes[i] += is_unfinished(pixels[i]);
       fetches.load_setup();
       for_each_batch(list, [&](const TriangleList& batch) {
         pairs.clear(), fragments.clear();
@@ -93,9 +89,9 @@ FrameResult render_shape(const Trace& trace, const Frame& frame, const StreamOpt
       fetches.attributes(fragments, shading);
       fetches.flush(shading);
       settle(fragments, pass == stream.passes, timed(settling), pixels);
-      for (const std::uint32_t pixel : unfinished) {
-        state.merge(0, pixel, settling);
-        color.merge(0, pixel, settling);
+      if (run.memory.modelled) {
+        move_settled(fragments, state, settling);
+        move_settled(fragments, color, settling);
       }
       state.flush({}, settling);
       color.flush({}, settling);

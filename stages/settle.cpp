@@ -135,21 +135,21 @@ std::vector<PixelTriangle> owners(const SetupTriangles& triangles, const std::ve
                                   const Tile& tile, StageCounters& counters) {
   using Pixel = OwnerPixel<Words, Layers>;
   std::vector<PixelTriangle> pairs;
-  std::uint64_t looked_at = 0;
+  std::uint64_t claimed = 0;  // pixels
   for (std::size_t i = 0; i < pixels.size(); ++i) {
-    if (!is_unfinished(pixels[i])) continue;
-    ++looked_at;
+    const std::size_t before = pairs.size();
     const auto x = tile.x0 + static_cast<std::int32_t>(i) % tile.width();
     const auto y = tile.y0 + static_cast<std::int32_t>(i) / tile.width();
     for (std::size_t k = 0; k < Layers; ++k)
       if (!pixels[i].positions_in(Pixel::kFirstLayer + static_cast<std::uint32_t>(k)).none())
         pairs.push_back(
             pixel_triangle(triangles, pixels[i].triangle(k), static_cast<std::uint32_t>(pairs.size()), x, y, false));
+    claimed += pairs.size() > before;
   }
-  counters.ops += owners_cost<Words, Layers>() * looked_at;
+  counters.ops += owners_cost<Words, Layers>() * claimed;
   counters.ops += pair_bounds_cost() * pairs.size();
   counters.ops += vertex_bounds_cost() * pairs.size();
-  counters.bytes_read += looked_at * sizeof(Pixel);
+  counters.bytes_read += claimed * sizeof(Pixel);
   counters.bytes_written += pairs.size() * kPairWithDepthBytes;
   return pairs;
 }
@@ -165,6 +165,7 @@ void settle(const std::vector<Fragment>& fragments, bool last_pass, StageCounter
     while (fragment != end && fragment->pixel == i) ++fragment;
     if (!is_unfinished(pixels[i])) continue;
     const std::size_t owners = settle_pixel(begin, fragment, last_pass, pixels[i]);
+    if (begin == fragment) continue;  // what nothing has claimed stays cleared in memory, and is the background
     ++worked_on;
     seen += owners;
     compared += owners * (owners - 1) / 2;  // to sort them

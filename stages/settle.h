@@ -11,8 +11,8 @@
 
 namespace beampipe {
 
-// What must be known again of the owners of pixels that are not finished: one pair per pixel and layer that owns a
-// position, pixel by pixel. Counts reading those pixels and writing the pairs.
+// What must be known again of the owners: one pair per pixel and layer that owns a position, pixel by pixel. Counts
+// reading the pixels that have any, and writing the pairs.
 template <std::size_t Words, std::size_t Layers>
 std::vector<PixelTriangle> owners(const SetupTriangles& triangles, const std::vector<OwnerPixel<Words, Layers>>& pixels,
                                   const Tile& tile, StageCounters& counters);
