@@ -9,7 +9,7 @@
 #include "simd/sample_test.h"
 #include "stages/counting.h"
 #include "stages/fragment_geometry.h"
-#include "stages/raster_cost.h"
+#include "stages/plane_cost.h"
 
 namespace beampipe {
 namespace {
@@ -107,21 +107,29 @@ PixelTriangleOf<CountedInt> counted_triangle(OperationCounts& counts) {
   return in_pixel(vertices, vertices, zero, zero);
 }
 
-// Of a (pixel, triangle): geometry, depth at the centre, coverage.
+PixelTriangleOf<CountedInt> vertices_at_hand(OperationCounts& counts) {
+  PixelTriangleOf<CountedInt> triangle;
+  for (int k = 0; k < 3; ++k) triangle.x[k] = triangle.y[k] = CountedInt(0, counts);
+  return triangle;
+}
+
+// Of a (pixel, triangle): geometry and coverage.
 OperationCounts coverage_cost() {
+  return count_operations(
+      [](OperationCounts& counts) { coverage_scalar<CountedInt, CountedFloat>(counted_triangle(counts)); });
+}
+
+OperationCounts centroid_depth_cost() {
   return count_operations([](OperationCounts& counts) {
-    const Counted<double> plane(1.0, counts);
-    to_float(plane_at(plane, plane, plane, plane, plane, plane, plane));
-    coverage_scalar<CountedInt, CountedFloat>(counted_triangle(counts));
+    const CountedFloat one(1.0f, counts), half(0.5f);
+    lesser(greater(depth_at(DepthPlane<CountedFloat>{one, one, one}, one - half, one - half), one), one);
   });
 }
 
 OperationCounts clipped_depth_cost() {
   return count_operations([](OperationCounts& counts) {
-    PixelTriangleOf<CountedInt> triangle;
     DepthRangeInput<CountedFloat> in;
-    for (int k = 0; k < 3; ++k) triangle.x[k] = triangle.y[k] = CountedInt(0, counts);
-    set_geometry(triangle, in);
+    set_geometry(vertices_at_hand(counts), in);
     in.z = in.dzdu = in.dzdv = in.vertex_z[0] = in.vertex_z[1] = in.vertex_z[2] = CountedFloat(1.0f, counts);
     depth_range_scalar(in);
   });
@@ -129,11 +137,8 @@ OperationCounts clipped_depth_cost() {
 
 OperationCounts grid_mask_cost(const PositionGrid& grid) {
   const auto count_for = [](int positions) {
-    return count_operations([&](OperationCounts& counts) {
-      PixelTriangleOf<CountedInt> triangle;
-      for (int k = 0; k < 3; ++k) triangle.x[k] = triangle.y[k] = CountedInt(0, counts);
-      position_mask_scalar(triangle, PositionGrid(positions));
-    });
+    return count_operations(
+        [&](OperationCounts& counts) { position_mask_scalar(vertices_at_hand(counts), PositionGrid(positions)); });
   };
   static const std::array costs{count_for(32), count_for(64), count_for(128), count_for(256)};
   return costs[static_cast<std::size_t>(std::countr_zero(static_cast<unsigned>(grid.count() / 32)))];
@@ -151,6 +156,31 @@ OperationCounts table_mask_cost(const MaskTable& table) {
     table_mask_scalar(triangle, table);
   });
   return cost;
+}
+
+// Of a triangle, while its pairs follow each other: its edges, and which of them have the samples on them;
+OperationCounts exact_edges_cost() {
+  return count_operations([](OperationCounts& counts) {
+    for (int k = 0; k < 3; ++k) {
+      const EdgeInPixel<CountedInt> edge = edge_in_pixel(vertices_at_hand(counts), k);
+      owns_its_samples(edge.a, edge.b);
+    }
+  });
+}
+
+// or its edges, where they stand in the table, and the inverse of their lengths.
+OperationCounts table_edges_cost() {
+  return count_operations([](OperationCounts& counts) {
+    const Counted<double> zero(0.0), one(1.0, counts);
+    for (int k = 0; k < 3; ++k) {
+      const EdgeInPixel<CountedInt> edge = edge_in_pixel(vertices_at_hand(counts), k);
+      const Counted<double> a = to_double(edge.a), b = to_double(edge.b);
+      const bool flip = (b < zero) | ((b == zero) & (a < zero));
+      const Counted<double> theta = select(flip, zero - b, b) / select(flip, zero - a, a);  // an arc tangent
+      lesser(converted(theta * one), one);
+      select(flip, one, one) / (square_root(a * a + b * b) * one);
+    }
+  });
 }
 
 OperationCounts nearest_cost() {  // per position
@@ -182,6 +212,7 @@ struct Covered {
   std::vector<Coverage<float>> coverage;
   std::vector<WideMask> masks;
   std::vector<DepthRange<float>> depth;  // when it is that of the clipped triangle
+  std::uint64_t triangles = 0;           // whose edges were prepared
 };
 
 Covered cover(const SetupTriangles& triangles, const std::vector<PixelTriangle>& in,
@@ -193,6 +224,7 @@ Covered cover(const SetupTriangles& triangles, const std::vector<PixelTriangle>&
   Edge edges[3] = {};
   EdgeDirection directions[3] = {};
   const SetupTriangle* last = nullptr;
+  std::uint64_t prepared = 0;
   partial.reserve(in.size());
   for (const PixelTriangle& pair : in) {
     if (pair.full && !options.clipped_depth) continue;
@@ -205,6 +237,7 @@ Covered cover(const SetupTriangles& triangles, const std::vector<PixelTriangle>&
       edges[k] = edge_of(triangle, k);
       if (options.mask == MaskSource::table) directions[k] = edge_direction(edges[k]);
     }
+    prepared += last != &triangle;
     last = &triangle;
     if (options.mask == MaskSource::table) {
       lookups.push_back(table_edges(edges, directions, pair.x, pair.y));
@@ -213,7 +246,7 @@ Covered cover(const SetupTriangles& triangles, const std::vector<PixelTriangle>&
     }
   }
   Covered covered{std::vector<Coverage<float>>(partial.size()), std::vector<WideMask>(partial.size()),
-                  std::vector<DepthRange<float>>(ranges.size())};
+                  std::vector<DepthRange<float>>(ranges.size()), prepared};
   coverage(partial.data(), partial.size(), covered.coverage.data());
   depth_range(ranges.data(), ranges.size(), covered.depth.data());
   if (options.mask == MaskSource::grid)
@@ -232,14 +265,29 @@ std::size_t mask_words(const BeamFragmentOptions& options) {
   return options.grid ? static_cast<std::size_t>(options.grid->count() / kMaxMaskSamples) : options.positions.size();
 }
 
-// Gives a fragment that covers no position the nearest ones. Returns how many.
-std::uint64_t locate(const BeamFragmentOptions& options, Fragment& fragment) {
-  const auto positions = static_cast<float>(options.positions.size() * kMaxMaskSamples);
-  int k = 0;
-  for (; k < options.tiny_positions && static_cast<float>(k) < fragment.alpha * positions; ++k)
-    fragment.mask.set(nearest_position(options.positions, fragment.centroid_u, fragment.centroid_v, fragment.mask));
-  return static_cast<std::uint64_t>(k);
-}
+// Gives fragments that cover no position the nearest ones.
+struct Locator {
+  const BeamFragmentOptions& options;
+  std::uint64_t fragments = 0, comparisons = 0, given = 0;
+
+  void locate(Fragment& fragment) {
+    if (options.tiny_positions == 0) return;
+    const float filled = fragment.alpha * static_cast<float>(options.positions.size() * kMaxMaskSamples);
+    ++fragments;
+    for (int k = 0; k < options.tiny_positions; ++k) {
+      ++comparisons;
+      if (static_cast<float>(k) >= filled) return;
+      fragment.mask.set(nearest_position(options.positions, fragment.centroid_u, fragment.centroid_v, fragment.mask));
+      ++given;
+    }
+  }
+
+  OperationCounts cost() const {
+    OperationCounts counts = nearest_cost() * (given * options.positions.size() * kMaxMaskSamples);
+    counts.mul_add += fragments, counts.add += comparisons, counts.bit += given;
+    return counts;
+  }
+};
 
 }  // namespace
 
@@ -249,12 +297,14 @@ void beam_fragment(const SetupTriangles& triangles, const std::vector<PixelTrian
   WideMask whole;
   std::fill_n(whole.words.begin(), mask_words(options), ~0u);
   const std::size_t before = out.size();
-  std::uint64_t located = 0;
+  Locator locator{options};
+  std::uint64_t partial = 0, centroids = 0;  // pairs that are not full; fragments with a depth at the centroid
   std::size_t next = 0;
   out.reserve(before + in.size());
   for (const PixelTriangle& pair : in) {
     const std::size_t i = next;
     next += !pair.full || options.clipped_depth;
+    partial += !pair.full;
     if (!pair.full && covered.coverage[i].alpha <= kZeroArea) continue;
     const SetupTriangle& triangle = triangles.triangles[pair.triangle];
     Fragment fragment;
@@ -274,28 +324,39 @@ void beam_fragment(const SetupTriangles& triangles, const std::vector<PixelTrian
     }
     fragment.z_min = options.clipped_depth ? covered.depth[i].z_min : pair.nearest;
     fragment.z_max = options.clipped_depth ? covered.depth[i].z_max : pair.farthest;
-    fragment.centroid_z = depth_at(fragment.plane, fragment.centroid_u - 0.5f, fragment.centroid_v - 0.5f);
-    fragment.centroid_z = lesser(greater(fragment.centroid_z, fragment.z_min), fragment.z_max);
     fragment.tiny = options.mask != MaskSource::none && fragment.mask.none();
-    if (fragment.tiny) located += locate(options, fragment);
+    fragment.centroid_z = 0;
+    if (options.clipped_depth || fragment.tiny) {
+      const float z = depth_at(fragment.plane, fragment.centroid_u - 0.5f, fragment.centroid_v - 0.5f);
+      fragment.centroid_z = lesser(greater(z, fragment.z_min), fragment.z_max);
+      ++centroids;
+    }
+    if (fragment.tiny) locator.locate(fragment);
     out.push_back(fragment);
   }
 
   static const OperationCounts area_cost = coverage_cost(), range_cost = clipped_depth_cost(),
-                               near_cost = nearest_cost();
+                               depth_cost = plane_cost(), centroid_cost = centroid_depth_cost(),
+                               exact_cost = exact_edges_cost(), table_cost = table_edges_cost();
+  const std::size_t made = out.size() - before;
   counters.items_in += in.size();
-  counters.items_out += out.size() - before;
+  counters.items_out += made;
   OperationCounts cost = area_cost;
   if (options.clipped_depth) cost += range_cost;
   if (options.mask == MaskSource::table) cost += table_mask_cost(*options.table);
   if (options.mask == MaskSource::exact) cost += exact_mask_cost(options.positions);
   if (options.mask == MaskSource::grid) cost += grid_mask_cost(*options.grid);
   counters.ops += cost * covered.coverage.size();
-  counters.ops += near_cost * (located * options.positions.size() * kMaxMaskSamples);
+  counters.ops.add += partial;  // is there any area?
+  counters.ops += depth_cost * (options.clipped_depth ? in.size() : made);
+  counters.ops += centroid_cost * centroids;
+  if (options.mask == MaskSource::table) counters.ops += table_cost * covered.triangles;
+  if (options.mask == MaskSource::exact) counters.ops += exact_cost * covered.triangles;
+  counters.ops += locator.cost();
   const std::uint32_t pair_bytes = options.clipped_depth ? kPixelTriangleBytes : kPairWithDepthBytes;
   counters.bytes_read += in.size() * (pair_bytes + sizeof(SetupTriangle));
-  counters.bytes_written += (out.size() - before) * options.fragment_bytes;
-  counters.lanes_used += out.size() - before;
+  counters.bytes_written += made * options.fragment_bytes;
+  counters.lanes_used += made;
   counters.lanes_issued += in.size();
 }
 

@@ -20,13 +20,14 @@
 namespace beampipe {
 
 struct Fragment {
-  std::uint32_t triangle;                    // index into SetupTriangles
-  std::uint32_t quad;                        // as in PixelTriangle
-  std::uint32_t pixel;                       // within the tile, row by row
-  bool front;                                // as in SetupTriangle
-  bool tiny;                                 // covers no mask position
-  float centroid_u, centroid_v, centroid_z;  // of the clipped triangle: pixels from the upper left corner, depth
-  float alpha;                               // area of the clipped triangle, 0..1
+  std::uint32_t triangle;        // index into SetupTriangles
+  std::uint32_t quad;            // as in PixelTriangle
+  std::uint32_t pixel;           // within the tile, row by row
+  bool front;                    // as in SetupTriangle
+  bool tiny;                     // covers no mask position
+  float centroid_u, centroid_v;  // of the clipped triangle: pixels from the upper left corner
+  float centroid_z;              // depth there; 0 where nobody asks: neither clipped_depth nor tiny
+  float alpha;                   // area of the clipped triangle, 0..1
   WideMask mask;
   DepthPlane<float> plane;
   float z_min, z_max;

@@ -46,15 +46,19 @@ Layer merged(const Layer& a, const Layer& b) {
 
 using Real = Counted<float>;
 
-// From the stored formats, or into them: two slopes and a colour.
+// Of a layer, from the stored formats, or into them: two slopes and a colour.
 OperationCounts format_cost() { return {0, 0, 0, 0, 0, 5}; }
+
+// A fragment's slopes into the stored format and back, as those are that they are compared with; its colour from fp16.
+OperationCounts arrival_cost() { return {0, 0, 0, 0, 0, 2 * 2 + 3}; }
 
 // Of a word: each layer's positions and those that the fragment covers; what is lost by either, branch-free.
 template <std::size_t Layers, std::size_t Bits>
 OperationCounts contest_cost() {
   OperationCounts counts;
   for (std::uint32_t k = 0; k < Layers; ++k) counts += find_cost<Bits>(k + 1);
-  counts.bit += Layers * (1 + 4 + 2);  // contested; arriving without (contested without nearer); layer without both
+  // Contested; arriving without (contested without nearer); layer without what is both.
+  counts.bit += Layers * (1 + 4 + 3);
   return counts;
 }
 
@@ -152,7 +156,8 @@ void compose_z3(const std::vector<Fragment>& fragments, const PositionSet& posit
   counters.items_in += fragments.size();
   counters.items_out += taken;
   constexpr std::size_t kBits = std::bit_width(Layers);
-  counters.ops += format_cost() * (fragments.size() * (Layers + 1) + taken * Layers);
+  counters.ops += arrival_cost() * fragments.size();
+  counters.ops += format_cost() * ((fragments.size() + taken) * Layers);
   counters.ops += contest_cost<Layers, kBits>() * (Words * fragments.size());
   counters.ops += nearer_cost() * (32 * Words * layers.planes_compared);
   counters.ops += merge_cost(Layers + 1, Words, merge) * layers.merges;

@@ -16,7 +16,11 @@ std::string row(std::initializer_list<std::string> cells) {
   return text + "\n";
 }
 
-std::string code(const std::string& name) { return "`" + name + "`"; }
+// Also of several, with ", " between them.
+std::string code(std::string names) {
+  for (std::size_t at = 0; (at = names.find(", ", at)) != names.npos; at += 4) names.replace(at, 2, "`, `");
+  return "`" + names + "`";
+}
 
 // What adds to a counter in that stage.
 std::string meaning(const StageInfo& stage, const CounterInfo& counter) {
@@ -45,7 +49,8 @@ const std::vector<CounterInfo>& stage_counters() {
       {"ops.bit", "bit", "operations", "and, or, not, absolute values, population counts",
        [](const S& s) { return s.ops.bit; }},
       {"ops.fetch", "fetch", "operations", "table look-ups", [](const S& s) { return s.ops.fetch; }},
-      {"ops.special", "special", "operations", "divisions and square roots", [](const S& s) { return s.ops.special; }},
+      {"ops.special", "special", "operations", "divisions, remainders, square roots, arc tangents",
+       [](const S& s) { return s.ops.special; }},
       {"ops.convert", "convert", "operations", "between integer and float, float and fp16 or normalized formats",
        [](const S& s) { return s.ops.convert; }},
       {"bytes_read", "read", "bytes",
@@ -90,8 +95,8 @@ const std::vector<StageInfo>& stage_list() {
        "covered samples out of those of partly covered cells", " ops.fetch ops.special ", "HandWorked.QuadsMsaa",
        "RasterTwins.SampleRaster", "HandWorked.QuadsMsaa", "HandWorked.QuadsMsaa", "RasterTwins.SampleRaster"},
       {"beam_fragment", "(pixel, triangle) pairs", "fragments: pairs with area", "fragments out of pairs", "",
-       "HandWorked.TriangleBeam", "TwinCounts.BeamFragmentOnAGrid", "HandWorked.TriangleBeam",
-       "HandWorked.TriangleBeam", "TwinCounts.BeamFragmentOnAGrid"},
+       "HandWorked.TriangleBeam", "FragmentTwins.OnAGrid", "HandWorked.TriangleBeam", "HandWorked.TriangleBeam",
+       "FragmentTwins.OnAGrid"},
       {"shade", "fragments (or shading samples)", "the same, with colour or material",
        "fragments out of the pixels of their 2x2 quads; behind visibility one by one", " ops.fetch ",
        "Counters.ShadingRunsInWholeQuads", "ShadingTwins.ShadeSampleFragmentsInQuads", "HandWorked.TriangleMsaa",
@@ -99,15 +104,15 @@ const std::vector<StageInfo>& stage_list() {
       {"light", "pixels with a material", "the same, with colour", "all", " ops.bit ops.fetch ops.special ops.convert ",
        kMoves, "ShadingTwins.GBufferAndLight", kMoves, kMoves, "ShadingTwins.GBufferAndLight"},
       {"a_buffer", "pairs (beam), fragments (published)", "the same, sorted per pixel", "",
-       " ops.mul_add ops.bit ops.fetch ops.special ops.convert ", "HandWorked.TriangleBeam", "TwinCounts.SortAndMerge",
+       " ops.mul_add ops.bit ops.fetch ops.special ops.convert ", "HandWorked.TriangleBeam", "TwinCounts.Sort",
        "HandWorked.TriangleBeam", "HandWorked.TriangleBeam", kMoves},
       {"windows", "pairs, near to far", "windows of pairs that overlap in depth", "",
        " ops.mul_add ops.bit ops.fetch ops.special ops.convert l2_bytes dram_bytes ", "HandWorked.TriangleBeam",
        "WindowTwins.Windows", "HandWorked.TriangleBeam", "HandWorked.TriangleBeam", kMoves},
       {"compose", "fragments", "aggregates: windows (beam), pixels (others)",
        "compared positions out of those of all fragments looked at", "", "HandWorked.TriangleBeam",
-       "ComposeTwins.ComposeWindow", "HandWorked.TriangleBeam", "HandWorked.TriangleBeam",
-       "ComposeTwins.ComposeWindow"},
+       "ComposeTwins.ComposeWindow, MergeTwins.Compose, MergeTwins.Over, MergeTwins.ComposeZ3",
+       "HandWorked.TriangleBeam", "HandWorked.TriangleBeam", "ComposeTwins.ComposeWindow"},
       {"claim", "fragments, in each pass", "fragments that took a position",
        "fragments that took a position out of all", " ops.special ", "Claim.CountsWhatItReadsAndWrites",
        "TwinCounts.Claim", "Claim.CountsWhatItReadsAndWrites", kMoves, "TwinCounts.Claim"},

@@ -20,7 +20,8 @@ struct CounterInfo {
 // Of a stage, in the order in which report.json has them.
 const std::vector<CounterInfo>& stage_counters();
 
-// A stage, and the tests that check its counters: names of ctest, without the scene that a test is run on.
+// A stage, and the tests that check its counters: names of ctest, without the scene that a test is run on;
+// several have ", " between them.
 struct StageInfo {
   const char* name;
   const char* items_in;   // what they are

@@ -77,8 +77,10 @@ TEST(Determinism, AnyTileSize) {
       EXPECT_EQ(found.pixel_counters, expected.pixel_counters);
       ASSERT_EQ(found.stages.size(), expected.stages.size());
       for (std::size_t i = 0; i < found.stages.size(); ++i) {
-        const StageCounters &a = found.stages[i], &b = expected.stages[i];
+        StageCounters a = found.stages[i], b = expected.stages[i];
         EXPECT_EQ(a.items_out, b.items_out) << a.stage;
+        if (std::string(spec).starts_with("beam:rules=paper") && a.stage == "beam_fragment")
+          a.ops = b.ops = {};  // a triangle's edges are made ready for masks in each tile
         // What rasters set up, and passes of settling, are counted tile by tile.
         if (!a.stage.ends_with("_raster") && a.stage != "settle") {
           EXPECT_EQ(a, b) << a.stage;

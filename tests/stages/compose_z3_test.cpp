@@ -89,9 +89,9 @@ TEST(ComposeZ3, CountsItsArithmetic) {
   add_everywhere(triangles, -0.5f);
   OperationCounts counts;
   composed<1, 2>(triangles, white, kPixel, LayerMerge::depth, &counts);
-  // Five numbers to and from the formats of the fragment and of two layers, and into both. Of one word: two states of
-  // two bits found and put, and seven operations on the positions of each layer.
-  const OperationCounts one{0, 0, 2 * (2 + 3) + 2 * 7, 0, 0, 5 * 3 + 5 * 2};
+  // Two slopes rounded to the stored format and a colour from fp16; five numbers from the formats of two layers and
+  // into them. Of one word: two states of two bits found and put, and eight operations on the positions of each layer.
+  const OperationCounts one{0, 0, 2 * (2 + 3) + 2 * 8, 0, 0, 2 * 2 + 3 + 2 * 5 + 2 * 5};
   EXPECT_EQ(counts, one);
   add_left_of(triangles, 192, -0.6f);
   add_left_of(triangles, 64, -0.9f);
