@@ -38,8 +38,8 @@ OperationCounts pixel_cost() {
     const Counted<float> one(1.0f, counts), values[4] = {one, one, one, one};
     Counted<float> weights[4];
     const Counted<float> inverse = one / weigh(masks, bits, weights);
-    for (int channel = 0; channel < 3 * 4; ++channel) mean(values, weights, inverse);  // colour, low, high
-    for (int channel = 0; channel < 3; ++channel) converted(one);                      // its own sample, from fp16
+    for (int channel = 0; channel < 3 * 4; ++channel) converted(mean(values, weights, inverse));  // colour, low, high
+    for (int channel = 0; channel < 3; ++channel) converted(one);  // its own sample, from fp16
   });
 }
 

@@ -55,14 +55,15 @@ OperationCounts reuse_cost(bool fading) {
   return count_operations([&](OperationCounts& counts) {
     const CountedReal one(1.0f, counts), four[4] = {one, one, one, one};
     CountedReal weights[4];
-    to_integer(one), to_integer(one);  // the first texel
+    to_float(to_integer(one)), to_float(to_integer(one));  // the first texel
     texel_weights(one, one, one, one, weights);
     for (int value = 0; value < 4 * (4 + 2); ++value) converted(one);
     if (fading) {
       for (int tap = 1; tap < 4; ++tap) greater(one, one);  // the texel that weighs the most
-      select(one != one, one, clamp_part(converted(one), one));
+      const CountedReal fading_in = clamp_part(converted(one), one);
+      select(one != one, one, select(one > one, fading_in, one));  // by its look, and by whether anything is known
     }
-    one* one;  // the blend by what is known
+    converted(one) * one;  // the blend by what is known
     for (int c = 0; c < 4; ++c) blend_channel(four, weights, one, one, one, one, one);
   });
 }
@@ -137,6 +138,7 @@ void neighborhood_box(const Tile& tile, StageCounters& counters, CurrentFrame& f
   }
   neighbors -= tile.pixels();  // which are none of their own
   counters.ops += neighbor_cost() * neighbors;
+  counters.ops.convert += (4 + 2 * 4) * tile.pixels();  // its own colour, from fp16; its box, into it
   counters.bytes_read += (neighbors + tile.pixels()) * kCurrentColorBytes;
   counters.bytes_written += tile.pixels() * kCurrentBoxBytes;
 }

@@ -55,9 +55,9 @@ TEST(Dilate, CountsWhatItLooksAt) {
   const std::uint64_t neighbors = 4 * 3 + 8 * 5 + 4 * 8;  // corners, sides, inside
   EXPECT_EQ(counters.bytes_read, 16 * (6 + 4 + 4) + neighbors * (6 + 4));
   EXPECT_EQ(counters.bytes_written, 16u * (8 + 16 + 1));
-  // A pixel: four masks, their counts added up, a division, twelve means of four. A neighbour: whether it is of the
-  // same draw, then a selection and a minimum or maximum for four channels.
-  const OperationCounts pixel{12 * 5, 3 + 12 * 3, 4 + 4, 0, 1, 4 + 3}, neighbor{0, 1 + 4 * 4, 0, 0, 0, 3};
+  // A pixel: four masks, their counts added up, a division, twelve means of four, to fp16. A neighbour: whether it is
+  // of the same draw, then a selection and a minimum or maximum for four channels.
+  const OperationCounts pixel{12 * 5, 3 + 12 * 3, 4 + 4, 0, 1, 4 + 3 + 12}, neighbor{0, 1 + 4 * 4, 0, 0, 0, 3};
   OperationCounts all = pixel * 16;
   all += neighbor * neighbors;
   EXPECT_EQ(counters.ops, all);

@@ -122,8 +122,10 @@ TEST(Temporal, CountsWhatItLooksAt) {
   std::vector<glm::vec4> image(2);
   temporal(fixture.frame, {0.1f}, fixture.history, {0, 0, 2, 1}, counters, image);
   // Both: two sums, four comparisons, the motion and four channels from fp16, four into it. The first: where its texels
-  // begin, four weights, 24 values from fp16, and for each channel 4 weights, the clamp, and two blends.
-  const OperationCounts both{0, 2 + 4, 0, 0, 0, 2 + 8}, first{4 + 1 + 4 * 6, 6 + 4 * (3 + 2 + 4), 0, 0, 0, 2 + 24};
+  // begin, four weights, 24 values from fp16 and the known part, and for each channel 4 weights, the clamp, and two
+  // blends.
+  const OperationCounts both{0, 2 + 4, 0, 0, 0, 2 + 8},
+      first{4 + 1 + 4 * 6, 6 + 4 * (3 + 2 + 4), 0, 0, 0, 2 + 2 + 24 + 1};
   OperationCounts all = both * 2;
   all += first;
   EXPECT_EQ(counters.ops, all);
@@ -135,12 +137,13 @@ TEST(Temporal, CountsWhatItLooksAt) {
   EXPECT_EQ(counters.lanes_issued, 2u);
   counters = {};
   temporal(fixture.frame, {0.1f, 0.05f}, fixture.history, {0, 0, 2, 1}, counters, image);
-  all += OperationCounts{0, 3 + 1 + 1 + 1, 0, 0, 1, 1};  // the texel that weighs the most; part; whether it is the same
+  all +=
+      OperationCounts{0, 3 + 1 + 2 + 2, 0, 0, 1, 1};  // the texel that weighs the most; part; its look; is any known?
   EXPECT_EQ(counters.ops, all);
   EXPECT_EQ(counters.bytes_read, 2u * (8 + 17 + 4 + 4 + 2) + 4 * 8 + 4);
   counters = {};
   neighborhood_box({0, 0, 2, 1}, counters, fixture.frame);
-  EXPECT_EQ(counters.ops, (OperationCounts{0, 2 * 8, 0, 0, 0, 2 * 4})) << "each has one neighbour";
+  EXPECT_EQ(counters.ops, (OperationCounts{0, 2 * 8, 0, 0, 0, 2 * (4 + 4 + 8)})) << "each has one neighbour";
   EXPECT_EQ(counters.bytes_read, 2u * 2 * 8);
   EXPECT_EQ(counters.bytes_written, 2u * 17);
 }

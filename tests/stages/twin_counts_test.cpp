@@ -17,7 +17,11 @@
 namespace beampipe {
 namespace {
 
-class TwinCounts : public SceneTwins {};
+class TwinCounts : public SceneTwins {
+ protected:
+  template <std::size_t Words, std::size_t Layers>
+  void expect_equal_claims();
+};
 
 TEST_P(TwinCounts, Sort) {
   StageCounters raster, ignored, sorting;
@@ -220,31 +224,37 @@ class ClaimTwin {
   OperationCounts& counts_;
 };
 
-TEST_P(TwinCounts, Claim) {
-  constexpr std::size_t kWords = 4, kLayers = 1;  // one layer: much is dropped
-  const PositionSet positions(cell_patterns(32 * kWords));
+template <std::size_t Words, std::size_t Layers>
+void TwinCounts::expect_equal_claims() {
+  const PositionSet positions(cell_patterns(32 * Words));
   StageCounters raster, ignored, counters;
   std::vector<PixelTriangle> pairs;
   std::vector<Fragment> fragments;
   conservative_raster(triangles_, list_, tile_, raster, pairs);
   beam_fragment(triangles_, pairs, tile_, {MaskSource::exact, positions.patterns, nullptr, nullptr, 66, 0}, ignored,
                 fragments);
-  std::vector<OwnerPixel<kWords, kLayers>> pixels(tile_.pixels(), cleared_pixel<kWords, kLayers>()), twins = pixels;
+  std::vector<OwnerPixel<Words, Layers>> pixels(tile_.pixels(), cleared_pixel<Words, Layers>()), twins = pixels;
   std::vector<std::uint32_t> remade;
   claim(triangles_, fragments, tile_, positions, counters, pixels, &remade);
-  ClaimTwin<kWords, kLayers> twin(triangles_, tile_, positions, twin_);
+  twin_ = {};
+  ClaimTwin<Words, Layers> twin(triangles_, tile_, positions, twin_);
   for (const Fragment& fragment : fragments) twin.add(fragment, twins[fragment.pixel]);
   EXPECT_EQ(counters.lanes_used, counters.items_out);
   EXPECT_EQ(counters.lanes_issued, fragments.size());
   EXPECT_EQ(counters.ops, twin_);
-  EXPECT_EQ(counters.bytes_read, fragments.size() * (streaming_fragment_bytes(kWords) + sizeof pixels[0]) +
+  EXPECT_EQ(counters.bytes_read, fragments.size() * (streaming_fragment_bytes(Words) + sizeof pixels[0]) +
                                      remade.size() * sizeof(ScreenDepth));
   for (std::size_t i = 0; i < pixels.size(); ++i) {
     ASSERT_EQ(pixels[i].owner[0], twins[i].owner[0]) << i;
     ASSERT_EQ(pixels[i].dropped, twins[i].dropped) << i;
-    for (std::uint32_t state = 0; state <= OwnerPixel<kWords, kLayers>::kSettled; ++state)
+    for (std::uint32_t state = 0; state <= OwnerPixel<Words, Layers>::kSettled; ++state)
       ASSERT_EQ(pixels[i].positions_in(state), twins[i].positions_in(state)) << i;
   }
+}
+
+TEST_P(TwinCounts, Claim) {
+  expect_equal_claims<4, 5>();
+  expect_equal_claims<4, 1>();  // much is dropped
 }
 
 TEST_P(TwinCounts, Accumulate) {
