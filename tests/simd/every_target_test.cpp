@@ -34,6 +34,14 @@ TEST(EveryTarget, DispatchesToEachSupportedTargetInTurnAndThenToTheBest) {
   EXPECT_EQ(HWY_DYNAMIC_DISPATCH(own_target)(), best);
 }
 
+TEST(EveryTarget, IsNamedWhileItIsInUse) {
+  std::vector<std::string> used;
+  on_every_target([&] { used.push_back(simd_target()); });
+  EXPECT_EQ(used, simd_targets());
+  EXPECT_THROW(use_simd_target("abacus"), std::invalid_argument);
+  EXPECT_EQ(simd_target(), used.front());
+}
+
 }  // namespace
 }  // namespace beampipe
 #endif

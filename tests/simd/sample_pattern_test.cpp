@@ -95,5 +95,10 @@ TEST(SamplePattern, HammersleyHasOneSamplePerElementaryBox) {
   }
 }
 
+TEST(SamplePattern, MasksHave32To256Positions) {
+  EXPECT_THROW(cell_patterns(16), std::invalid_argument);
+  EXPECT_THROW(cell_patterns(96), std::invalid_argument);
+}
+
 }  // namespace
 }  // namespace beampipe
