@@ -71,7 +71,8 @@ FrameResult render_shape(const Trace& trace, const Frame& frame, const StreamOpt
         beam_fragment(triangles, pairs, tile, options, timed(fragment), fragments);
         held.holds("batch_pairs", waited * kPairWithDepthBytes);
         held.holds("batch_fragments", fragments.size() * options.fragment_bytes);
-        for (const Fragment& item : fragments) ++counts[item.pixel];
+        if (pass == 1)
+          for (const Fragment& item : fragments) ++counts[item.pixel];
         remade.clear();
         claim(triangles, fragments, tile, positions, timed(claiming), pixels, run.memory.modelled ? &remade : nullptr);
         if (run.memory.modelled)

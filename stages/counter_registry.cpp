@@ -9,6 +9,7 @@ namespace {
 constexpr const char* kMoves = "CounterRegistry.EveryCounterMovesWhereItIsListed";
 
 constexpr const char* kPixelMoves = "CounterRegistry.EveryPixelCounterMovesSomewhere";
+constexpr const char* kCorners = "Counters.PixelsOfFourCornersAndASpeck";
 
 std::string row(std::initializer_list<std::string> cells) {
   std::string text = "|";
@@ -99,7 +100,7 @@ const std::vector<StageInfo>& stage_list() {
        "FragmentTwins.OnAGrid"},
       {"shade", "fragments (or shading samples)", "the same, with colour or material",
        "fragments out of the pixels of their 2x2 quads; behind visibility one by one", " ops.fetch ",
-       "Counters.ShadingRunsInWholeQuads", "ShadingTwins.ShadeSampleFragmentsInQuads", "HandWorked.TriangleMsaa",
+       "HandWorked.TriangleMsaa", "ShadingTwins.ShadeSampleFragmentsInQuads", "HandWorked.TriangleMsaa",
        "HandWorked.TriangleMsaa", "Counters.ShadingRunsInWholeQuads"},
       {"light", "pixels with a material", "the same, with colour", "all", " ops.bit ops.fetch ops.special ops.convert ",
        kMoves, "ShadingTwins.GBufferAndLight", kMoves, kMoves, "ShadingTwins.GBufferAndLight"},
@@ -123,7 +124,7 @@ const std::vector<StageInfo>& stage_list() {
        "samples tested out of those of their cells", " ops.bit ops.fetch ops.special ", "HandWorked.QuadsMsaa",
        "TwinCounts.DepthTest", "HandWorked.QuadsMsaa", "HandWorked.QuadsMsaa", "TwinCounts.DepthTest"},
       {"stencil_test", "samples tested", "samples that passed", "all",
-       " ops.mul_add ops.bit ops.fetch ops.special ops.convert ", "ShadingTwins.StencilTest",
+       " ops.mul_add ops.bit ops.fetch ops.special ops.convert ", "Counters.AcaaReadsDepthTwiceAndOneColor",
        "ShadingTwins.StencilTest", kMoves, kMoves, "ShadingTwins.StencilTest"},
       {"accumulate", "fragments with visible samples", "the same, added", "all", " ops.fetch ops.special ",
        "Counters.AcaaReadsDepthTwiceAndOneColor", "TwinCounts.Accumulate", "Counters.AcaaReadsDepthTwiceAndOneColor",
@@ -145,7 +146,7 @@ const std::vector<StageInfo>& stage_list() {
       {"reference_raster", "setup triangles", "samples that were nearer", "all",
        " ops.bit ops.fetch ops.special ops.convert bytes_written sector_bytes l2_bytes dram_bytes hidden_items "
        "hidden_triangles ",
-       "ReferenceRaster.FansCoverEverySample", "ReferenceRaster.FansCoverEverySample", kMoves, kMoves,
+       "HandWorked.TriangleReference", "ReferenceRaster.FansCoverEverySample", kMoves, kMoves,
        "ReferenceRaster.FansCoverEverySample"},
   };
   return stages;
@@ -171,7 +172,7 @@ const char* test_of(const StageInfo& stage, const CounterInfo& counter) {
 const std::vector<PixelCounterInfo>& pixel_counters() {
   static const std::vector<PixelCounterInfo> counters = {
       {"fragments", "fragments", "triangles with a fragment in the pixel; of acaa beyond 16 samples in each round",
-       "all but reference", "Counters.EveryTechniqueCountsFragmentsAndBytesOfPixels"},
+       "all but reference", kCorners},
       {"bytes", "bytes",
        "logical bytes of the framebuffer's surfaces and the A-buffer, where memory is modelled; without passes that "
        "read "
@@ -181,12 +182,36 @@ const std::vector<PixelCounterInfo>& pixel_counters() {
        "msaa:N,at=centroid", "Msaa.TheCentroidIsForFragmentsThatOneSampleMisses"},
       {"merges", "fragments",
        "fragments that were looked at before the pixel was full; of z3, layers that became one with another",
-       "beam, alpha, z3", kPixelMoves},
-      {"tiny_triangles", "fragments", "fragments that cover no mask position", "beam", kPixelMoves},
-      {"largest_window", "fragments", "fragments of the largest window of overlapping depths", "beam", kPixelMoves},
-      {"visible_fragments", "fragments", "triangles with a visible sample in the pixel", "acaa", kPixelMoves},
-      {"passes", "passes", "passes over the triangles until the pixel was settled", "beam:order=stream", kPixelMoves},
+       "beam, alpha, z3", kCorners},
+      {"tiny_triangles", "fragments", "fragments that cover no mask position", "beam", kCorners},
+      {"largest_window", "fragments", "fragments of the largest window of overlapping depths", "beam", kCorners},
+      {"visible_fragments", "fragments", "triangles with a visible sample in the pixel", "acaa", kCorners},
+      {"passes", "passes", "passes over the triangles until the pixel was settled", "beam:order=stream", kCorners},
       {"unknown", "part of the pixel", "what no shading sample was given to", "dvm", kPixelMoves},
+  };
+  return counters;
+}
+
+const std::vector<PixelCounterInfo>& error_counters() {
+  constexpr const char *kUnit = "linear light, 0..1", *kCauses = "compare --causes: beam, alpha",
+                       *kCausesTest = "ErrorCauses.PartsAddUpToEachPixelsError";
+  static const std::vector<PixelCounterInfo> counters = {
+      {"error", kUnit, "root of the mean square error over R, G and B against the reference", "compare",
+       "PixelErrors.AreTheRootOfTheMeanSquareOfTheChannels"},
+      {"cause_leak", kUnit, "part of the pixel's error: a triangle that is hidden altogether shows", kCauses,
+       "ErrorCauses.TheBackgroundLeaksThroughTwoTrianglesThatOverTakesForIndependent"},
+      {"cause_mask", kUnit, "part of the pixel's error: an outline is in the wrong place between mask positions",
+       kCauses, "ErrorCauses.AnOutlineBetweenPositionsIsTheMasks"},
+      {"cause_order", kUnit, "part of the pixel's error: of two triangles the farther was taken for the nearer",
+       kCauses, "ErrorCauses.WhatIsNearerButSortedBehindIsOutOfOrder"},
+      {"cause_interpenetration", kUnit, "part of the pixel's error: two triangles are each nearer somewhere", kCauses,
+       "ErrorCauses.CrossingTrianglesInterpenetrate"},
+      {"cause_tiny", kUnit, "part of the pixel's error: a triangle covers no mask position", kCauses,
+       "ErrorCauses.FansOfTinyTrianglesLeak"},
+      {"cause_mixed", kUnit, "part of the pixel's error: one gave way in place of another that was merged before it",
+       kCauses, "ErrorCauses.RedGivesWayWhereGreenIsHidden"},
+      {"cause_rounding", kUnit, "part of the pixel's error: what weights do not explain, fp16 colours", kCauses,
+       kCausesTest},
   };
   return counters;
 }
@@ -244,6 +269,8 @@ std::string counters_page() {
   page += "\n## Of a pixel\n\n" + row({"counter", "unit", "what it counts", "techniques", "test"}) +
           "|---|---|---|---|---|\n";
   for (const PixelCounterInfo& counter : pixel_counters())
+    page += row({code(counter.name), counter.unit, counter.meaning, counter.techniques, code(counter.test)});
+  for (const PixelCounterInfo& counter : error_counters())
     page += row({code(counter.name), counter.unit, counter.meaning, counter.techniques, code(counter.test)});
   page += "\n## Of a frame\n\n" + row({"counter", "unit", "what it is", "test"}) + "|---|---|---|---|\n";
   for (const FrameCounterInfo& counter : frame_counters())

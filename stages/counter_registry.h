@@ -54,6 +54,9 @@ struct PixelCounterInfo {
 
 const std::vector<PixelCounterInfo>& pixel_counters();
 
+// What comparisons with the reference add to them.
+const std::vector<PixelCounterInfo>& error_counters();
+
 // Of a frame: keys of report.json.
 struct FrameCounterInfo {
   const char* name;

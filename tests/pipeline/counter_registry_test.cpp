@@ -129,6 +129,7 @@ TEST(CounterRegistry, NamesTestsThatThereAre) {
   for (const StageInfo& stage : stage_list())
     for (const CounterInfo& counter : stage_counters()) expect_test(test_of(stage, counter), stage.name);
   for (const PixelCounterInfo& counter : pixel_counters()) expect_test(counter.test, counter.name);
+  for (const PixelCounterInfo& counter : error_counters()) expect_test(counter.test, counter.name);
   for (const FrameCounterInfo& counter : frame_counters()) expect_test(counter.test, counter.name);
 }
 

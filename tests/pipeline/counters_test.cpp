@@ -167,6 +167,46 @@ TEST(Counters, EveryTechniqueCountsFragmentsAndBytesOfPixels) {
   }
 }
 
+// However many passes there are, a triangle counts once.
+TEST(Counters, FragmentsOfAPixelAreThoseOfTheFirstPass) {
+  const Trace trace = random_trace(40, 30, 400, 2);
+  const FrameResult all = parse_technique("beam:order=stream,layers=1").render(trace, 0, {2});
+  const FrameResult first = parse_technique("beam:order=stream,layers=1,passes=1").render(trace, 0, {2});
+  EXPECT_EQ(all.pixel_counters.at("fragments"), first.pixel_counters.at("fragments"));
+  EXPECT_GT(sum_of(all, "passes"), sum_of(first, "passes"));
+}
+
+// In each corner of pixel (1, 1) a triangle, the four at four depths or at one, and in its middle one that covers no
+// position.
+TEST(Counters, PixelsOfFourCornersAndASpeck) {
+  const auto corners = [](double step) {
+    const auto z = [&](int k) { return 0.1 + k * step; };
+    std::vector<PixelSpaceTriangle> triangles = {
+        {{{1.02, 1.02, z(0)}, {1.4, 1.02, z(0)}, {1.02, 1.4, z(0)}}, glm::vec3(1)},
+        {{{1.98, 1.02, z(1)}, {1.98, 1.4, z(1)}, {1.6, 1.02, z(1)}}, glm::vec3(1)},
+        {{{1.98, 1.98, z(2)}, {1.6, 1.98, z(2)}, {1.98, 1.6, z(2)}}, glm::vec3(1)},
+        {{{1.02, 1.98, z(3)}, {1.02, 1.6, z(3)}, {1.4, 1.98, z(3)}}, glm::vec3(1)},
+        {{{1.5, 1.5, 0.05}, {1.51, 1.5, 0.05}, {1.5, 1.51, 0.05}}, glm::vec3(1)}};
+    return pixel_trace(4, 4, triangles);
+  };
+  const auto at = [](const FrameResult& result, const char* counter) {
+    return result.pixel_counters.at(counter).at(1 * 4 + 1);
+  };
+  const FrameResult apart = parse_technique("beam").render(corners(0.1), 0, {1});
+  EXPECT_EQ(at(apart, "fragments"), 5);
+  EXPECT_EQ(at(apart, "merges"), 5);
+  EXPECT_EQ(at(apart, "tiny_triangles"), 1);
+  EXPECT_EQ(at(apart, "largest_window"), 1);
+  EXPECT_EQ(at(parse_technique("beam").render(corners(0), 0, {1}), "largest_window"), 4);
+  EXPECT_EQ(at(parse_technique("alpha").render(corners(0.1), 0, {1}), "merges"), 5);
+  EXPECT_EQ(at(parse_technique("z3").render(corners(0.1), 0, {1}), "merges"), 1) << "four owners, three layers";
+  EXPECT_EQ(at(parse_technique("beam:order=stream,layers=1").render(corners(0.1), 0, {1}), "passes"), 4);
+  EXPECT_EQ(at(parse_technique("beam:order=stream").render(corners(0.1), 0, {1}), "passes"), 1) << "room for five";
+  const FrameResult acaa = parse_technique("acaa:8").render(corners(0.1), 0, {1});
+  EXPECT_EQ(at(acaa, "visible_fragments"), at(parse_technique("msaa:8").render(corners(0.1), 0, {1}), "fragments"))
+      << "nothing is hidden";
+}
+
 // Pixel by pixel the same is counted as stage by stage: what tests read and write, what shading samples, the G-buffer
 // and the colour are written.
 TEST(Counters, PixelsAddUpToStages) {

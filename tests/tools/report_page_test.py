@@ -400,6 +400,15 @@ class ReportPage(unittest.TestCase):
                                                  ".fontSize) * document.querySelector('svg').clientWidth /"
                                                  " document.querySelector('svg').viewBox.baseVal.width"), 10)
 
+    def test_first_columns_leave_room_on_a_phone(self):
+        self.browser.resize(360, 740)
+        self.wait_for_frame()
+        for table, (head, box) in self.browser.run(
+                "return Object.fromEntries([...document.querySelectorAll('table')].map((table, i) =>"
+                " [table.id || i, [table.querySelector('tbody th')?.clientWidth ?? 0, table.parentElement.clientWidth]]))"
+        ).items():
+            self.assertLessEqual(head, 0.6 * box, table)
+
     def test_light_and_dark(self):
         paper = lambda: self.browser.run("return getComputedStyle(document.body).backgroundColor")
         self.assertEqual(paper(), "rgb(255, 255, 255)")

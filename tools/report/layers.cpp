@@ -53,16 +53,13 @@ Json map_of(const std::string& name, const Planes& planes, const std::vector<flo
           {"png", png_url(encode_png(planes.width, planes.height, rgb))}};
 }
 
-// The error first, then the registry's counters in its order.
+// In the registry's order, errors first.
 Json kinds_of(const std::set<std::string>& names) {
   Json kinds = Json::array();
-  if (names.contains("error"))
-    kinds.push_back({{"name", "error"},
-                     {"unit", "linear light, 0..1"},
-                     {"definition", "Root of the mean square error over R, G and B against the reference."}});
-  for (const PixelCounterInfo& counter : pixel_counters())
-    if (names.contains(counter.name))
-      kinds.push_back({{"name", counter.name}, {"unit", counter.unit}, {"definition", sentence(counter.meaning)}});
+  for (const auto* counters : {&error_counters(), &pixel_counters()})
+    for (const PixelCounterInfo& counter : *counters)
+      if (names.contains(counter.name))
+        kinds.push_back({{"name", counter.name}, {"unit", counter.unit}, {"definition", sentence(counter.meaning)}});
   for (const std::string& name : names)
     if (std::none_of(kinds.begin(), kinds.end(), [&](const Json& kind) { return kind["name"] == name; }))
       kinds.push_back({{"name", name}, {"unit", ""}, {"definition", ""}});
