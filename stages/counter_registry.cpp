@@ -118,7 +118,7 @@ const std::vector<StageInfo>& stage_list() {
        "fragments that took a position out of all", " ops.special ", "Claim.CountsWhatItReadsAndWrites",
        "TwinCounts.Claim", "Claim.CountsWhatItReadsAndWrites", kMoves, "TwinCounts.Claim"},
       {"settle", "owners' fragments, in each pass", "pixels that need another pass", "owners, all", " ops.fetch ",
-       "Settle.CountsItsArithmetic", "Settle.CountsItsArithmetic", "Settle.CountsItsArithmetic", kMoves,
+       "Settle.CountsItsArithmetic", "SettleTwins.Settle", "Settle.CountsItsArithmetic", kMoves,
        "Settle.CountsItsArithmetic"},
       {"depth_test", "samples tested, in each pass", "samples that passed",
        "samples tested out of those of their cells", " ops.bit ops.fetch ops.special ", "HandWorked.QuadsMsaa",

@@ -47,7 +47,7 @@ std::size_t settle_pixel(const Fragment* begin, const Fragment* end, bool last_p
   }
   for (std::size_t i = 0; i < count; ++i) {
     const Owner& owner = seen[i];
-    const float area = speck ? owner.visible / kPositions
+    const float area = speck ? owner.visible * (1 / kPositions)
                              : visible_area(owner.fragment->alpha, owner.covered, owner.visible, kPositions, taken);
     taken.area += area;
     taken.positions += owner.visible;
@@ -88,7 +88,7 @@ OperationCounts owner_cost(std::size_t words) {
     count_mask(counts, words), count_mask(counts, words);
     one / one;  // the share that is seen, by which owners are sorted
     Taken<Real> taken{one, one};
-    const Real area = visible_area(one, one, one, one, taken);
+    const Real area = select(true, one * one, visible_area(one, one, one, one, taken));  // beside specks, or not
     taken = {taken.area + area, taken.positions + one};
     const Real share = area / one;
     for (int c = 0; c < 3; ++c) one + share* one;
@@ -107,15 +107,30 @@ OperationCounts pixel_cost() {
   masks.bit += Layers + 2;  // owners' positions joined to the settled ones; without, of what is deferred still
   const OperationCounts numbers = count_operations([](OperationCounts& counts) {
     const Real one(1.0f, counts), units(kAreaUnits);
-    count_mask(counts, Words), count_mask(counts, Words);  // settled, deferred
+    count_mask(counts, Words);  // settled
     Real area = to_float(Counted<std::int64_t>(0, counts)) / units, color[3] = {one, one, one};
     for (Real& channel : color) channel = converted(channel) * area;
-    area = lesser(area * (one / one), one);  // scaled to what is covered
+    area = lesser(area * one, one);  // scaled to what is covered
     for (Real& channel : color) channel = converted(channel / area);
     to_integer(area * units + one);
   });
   OperationCounts all = masks * Words;
   return all += numbers;
+}
+
+// Of one pixel behind which there is no pass: all positions settled, those undecided counted, and the scale.
+template <std::size_t Words, std::size_t Layers>
+OperationCounts finish_cost() {
+  using Pixel = OwnerPixel<Words, Layers>;
+  OperationCounts masks = find_cost<std::bit_width(Pixel::kSettled)>(Pixel::kEmpty);
+  masks.bit += 2;
+  OperationCounts all = masks * Words;
+  return all += count_operations([](OperationCounts& counts) {
+           const Real one(1.0f, counts);
+           count_mask(counts, Words), count_mask(counts, Words);  // settled, deferred
+           const Real inverse = one / one, rest = one / (one - one);
+           select(one + one == one, inverse, lesser(rest, inverse));
+         });
 }
 
 // Of one pixel: which positions each layer owns.
@@ -174,6 +189,7 @@ void settle(const std::vector<Fragment>& fragments, bool last_pass, StageCounter
   counters.items_in += fragments.size();
   counters.items_out += unfinished;
   counters.ops += pixel_cost<Words, Layers>() * worked_on;
+  counters.ops += finish_cost<Words, Layers>() * (worked_on - unfinished);
   counters.ops += owner_cost(Words) * seen;
   counters.ops.add += compared;
   counters.bytes_read +=

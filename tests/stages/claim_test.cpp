@@ -242,11 +242,13 @@ TEST(Settle, CountsItsArithmetic) {
   // Four words: states 1 to 7 of three bits (two ands each, and nine bits to be inverted in all), two states put (three
   // and six), owners' positions joined, and what is deferred taken away.
   OperationCounts all{0, 0, 4 * (7 * 2 + 9 + 3 + 6 + 7), 0, 0, 0};
-  // Two population counts of four words; area and colour from their formats, by the area, scaled, divided, and back.
-  all += OperationCounts{3 + 1 + 1, 6 + 1 + 1, 8, 0, 1 + 1 + 3, 8 + 1 + 3 + 3 + 1};
+  // A population count of four words; area and colour from their formats, by the area, scaled, divided, and back.
+  all += OperationCounts{3 + 1 + 1, 3 + 1 + 1, 4, 0, 1 + 3, 4 + 1 + 3 + 3 + 1};
+  // It is finished: what is empty found and joined, two counts, and the scale.
+  all += OperationCounts{0, 6 + 5, 4 * (3 + 2 + 2) + 8, 0, 2, 8};
   // The owner: two more, the part that is seen, its area (simd/conserve.h), and what it adds to area, positions,
   // colour.
-  all += OperationCounts{3 + 3, 6 + 12 + 2 + 3, 8, 0, 1 + 5 + 1, 8};
+  all += OperationCounts{3 + 3 + 1, 6 + 12 + 2 + 3 + 1, 8, 0, 1 + 5 + 1, 8};
   EXPECT_EQ(counters.ops, all);
   EXPECT_EQ(counters.lanes_used, 1u);
   EXPECT_EQ(counters.lanes_issued, 1u);
