@@ -76,10 +76,9 @@ TEST(HandWorked, TriangleBeam) {
        {"resolve", 64, 64, 64 * 42, 384, 256 + 2048 + 384 + 384, 256 + 1024 + 384 + 384, 256 + 1024 + 384 + 384}});
 }
 
-// Sides of 3.5 pixels are 224 steps of the 64 x 64 samples, which lie in the middle of each: half of the square that the
-// diagonal cuts, where the samples on it are the other triangle's.
+// Half of 3.5 x 3.5 pixels, and on this triangle as many samples as area.
 TEST(HandWorked, TriangleReference) {
-  constexpr std::uint64_t kSamples = 224 * 224 / 2;
+  constexpr std::uint64_t kSamples = 4096 * 49 / 8;
   const Trace trace = read_trace(std::filesystem::path(BEAMPIPE_SOURCE_FOLDER) / "traces/samples/paper_triangle.json");
   const FrameResult result = parse_technique("reference").render(trace, 0, {1});
   ASSERT_EQ(result.stages.size(), 3u);
