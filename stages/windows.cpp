@@ -34,7 +34,6 @@ OperationCounts order_test_cost() {
 Windows::Windows(const std::vector<PixelTriangle>& pairs, const ABuffer& buffer, std::uint32_t record_bytes)
     : largest(buffer.first.size() - 1),
       taken(buffer.first.size() - 1),
-      partial(buffer.first.size() - 1),
       looked_at(buffer.first.size() - 1),
       pairs_(pairs),
       buffer_(buffer),
@@ -68,7 +67,6 @@ void Windows::take(std::uint32_t pixel, Work& work, std::vector<PixelTriangle>& 
     work.order_tests +=
         merge_sort(indices_.data(), indices_.size(), scratch_, [](std::uint32_t index) { return index; });
     for (const std::uint32_t index : indices_) window.push_back(pairs_[index]);
-    partial[pixel] += size;
   }
   largest[pixel] = std::max(largest[pixel], size);
   taken[pixel] += size;

@@ -39,9 +39,8 @@ class Windows {
     return !window.empty() || !whole.empty();
   }
 
-  // Per pixel: the pairs of its largest window so far, of all its windows, and of those that did not go to `whole`; and
-  // how many records were looked at.
-  std::vector<float> largest, taken, partial, looked_at;
+  // Per pixel: the pairs of its largest window so far, and of all its windows; and how many records were looked at.
+  std::vector<float> largest, taken, looked_at;
 
  private:
   struct Work {

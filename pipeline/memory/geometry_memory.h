@@ -41,7 +41,9 @@ class AttributesInOrder {
 // the bin; each fetch is a request of its own.
 class TriangleFetches {
  public:
+  // `list` must outlive it.
   TriangleFetches(const MemoryParameters& memory, const TriangleList& list);
+  TriangleFetches(const MemoryParameters& memory, TriangleList&& list) = delete;
 
   void setup(std::uint32_t triangle, StageCounters& counters) {
     if (modelled_) lines_.read(++request_, places_.setup[rank(triangle)], sizeof(SetupTriangle), counters);
