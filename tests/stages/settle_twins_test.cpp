@@ -6,6 +6,7 @@
 #include "stages/pair_bounds.h"
 #include "stages/settle.h"
 #include "stages/shade.h"
+#include "tests/stages/counted_states.h"
 #include "tests/stages/scene_twins.h"
 
 namespace beampipe {
@@ -50,7 +51,7 @@ class PassTwin {
     std::vector<Owner> seen;
     for (std::uint32_t k = 0; k < Layers; ++k) {
       const Mask owned = find(pixel, Pixel::kFirstLayer + k);
-      settled = joined(settled, owned);
+      settled = either(settled, owned);
       if (none(owned) || seen.size() == fragments.size()) continue;
       const Fragment& fragment = fragments[seen.size()];
       if (fragment.triangle != pixel.triangle(k)) continue;
@@ -82,7 +83,7 @@ class PassTwin {
       const bool full = count(settled) + undecided == positions;
       const Float inverse = one / area, rest = positions / (positions - undecided);
       if (area.value > 0) scale = select(full, inverse, lesser(rest, inverse));
-      settled = joined(settled, joined(deferred, find(pixel, Pixel::kEmpty)));
+      settled = either(settled, either(deferred, find(pixel, Pixel::kEmpty)));
     }
     for (std::size_t c = 0; c < 3; ++c) {
       const Float mean = converted(color[c] / area);
@@ -97,7 +98,6 @@ class PassTwin {
 
  private:
   using Mask = std::array<Bits, Words>;
-  static constexpr std::size_t kBits = std::bit_width(Pixel::kSettled);
 
   Bits bits(std::uint32_t word) { return Bits(word, counts_); }
   Float real(float value) { return Float(value, counts_); }
@@ -107,29 +107,13 @@ class PassTwin {
   static bool none(const Mask& mask) {
     return std::all_of(mask.begin(), mask.end(), [](const Bits& word) { return word.value == 0; });
   }
-  static Mask joined(Mask a, const Mask& b) {
-    for (std::size_t w = 0; w < Words; ++w) a[w] = a[w] | b[w];
-    return a;
-  }
   static Float count(const Mask& mask) {
     Float sum = bit_count(mask[0]);
     for (std::size_t w = 1; w < Words; ++w) sum = sum + bit_count(mask[w]);
     return sum;
   }
-  Mask find(const Pixel& pixel, std::uint32_t state) {
-    Mask mask;
-    for (std::size_t w = 0; w < Words; ++w) {
-      std::array<Bits, kBits> planes;
-      for (std::size_t b = 0; b < kBits; ++b) planes[b] = bits(pixel.states.planes[b][w]);
-      mask[w] = word_in_state(planes, state);
-    }
-    return mask;
-  }
-  void put(const Mask& mask, std::uint32_t state, Pixel& pixel) {
-    for (std::size_t w = 0; w < Words; ++w)
-      for (std::size_t b = 0; b < kBits; ++b)
-        pixel.states.planes[b][w] = word_put(bits(pixel.states.planes[b][w]), mask[w], state >> b & 1).value;
-  }
+  Mask find(const Pixel& pixel, std::uint32_t state) { return find_counted(pixel, state, counts_); }
+  void put(const Mask& mask, std::uint32_t state, Pixel& pixel) { put_counted(mask, state, pixel, counts_); }
 
   const SetupTriangles& triangles_;
   OperationCounts& counts_;

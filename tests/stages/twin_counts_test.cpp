@@ -12,6 +12,7 @@
 #include "stages/merge_sort.h"
 #include "stages/settle.h"
 #include "stages/vertex_setup.h"
+#include "tests/stages/counted_states.h"
 #include "tests/stages/scene_twins.h"
 
 namespace beampipe {
@@ -143,25 +144,9 @@ class ClaimTwin {
     for (std::size_t w = 0; w < Words; ++w) a[w] = a[w] & b[w];
     return a;
   }
-  static Mask either(Mask a, const Mask& b) {
-    for (std::size_t w = 0; w < Words; ++w) a[w] = a[w] | b[w];
-    return a;
-  }
 
-  Mask find(std::uint32_t state, const Pixel& pixel) {
-    Mask mask;
-    for (std::size_t w = 0; w < Words; ++w) {
-      std::array<Bits, kBits> planes;
-      for (std::size_t b = 0; b < kBits; ++b) planes[b] = bits(pixel.states.planes[b][w]);
-      mask[w] = word_in_state(planes, state);
-    }
-    return mask;
-  }
-  void put(const Mask& mask, std::uint32_t state, Pixel& pixel) {
-    for (std::size_t w = 0; w < Words; ++w)
-      for (std::size_t b = 0; b < kBits; ++b)
-        pixel.states.planes[b][w] = word_put(bits(pixel.states.planes[b][w]), mask[w], state >> b & 1).value;
-  }
+  Mask find(std::uint32_t state, const Pixel& pixel) { return find_counted(pixel, state, counts_); }
+  void put(const Mask& mask, std::uint32_t state, Pixel& pixel) { put_counted(mask, state, pixel, counts_); }
 
   template <class Body>
   void each_position(Body&& body) {
