@@ -54,7 +54,7 @@ ABuffer a_buffer(const std::vector<SortRecord>& records, std::size_t pixels, std
                               [](const Entry& entry) { return entry.depth; });
   buffer.records.reserve(lists.size());
   for (const Entry& entry : lists) buffer.records.push_back(entry.record);
-  static const OperationCounts cost = comparison_cost();
+  static const UnitCost cost = comparison_cost();
   counters.items_in += records.size();
   counters.items_out += records.size();
   counters.ops += cost * comparisons;

@@ -140,12 +140,12 @@ OperationCounts grid_mask_cost(const PositionGrid& grid) {
     return count_operations(
         [&](OperationCounts& counts) { position_mask_scalar(vertices_at_hand(counts), PositionGrid(positions)); });
   };
-  static const std::array costs{count_for(32), count_for(64), count_for(128), count_for(256)};
+  static const std::array<UnitCost, 4> costs{count_for(32), count_for(64), count_for(128), count_for(256)};
   return costs[static_cast<std::size_t>(std::countr_zero(static_cast<unsigned>(grid.count() / 32)))];
 }
 
 OperationCounts table_mask_cost(const MaskTable& table) {
-  static const OperationCounts cost = count_operations([&](OperationCounts& counts) {
+  static const UnitCost cost = count_operations([&](OperationCounts& counts) {
     const CountedInt zero(0, counts);
     TableTriangleOf<Counted<std::int32_t>, Counted<std::uint32_t>, CountedFloat> triangle;
     for (auto& edge : triangle.edges) {
@@ -194,11 +194,11 @@ OperationCounts nearest_cost() {  // per position
 }
 
 OperationCounts exact_mask_cost(const std::vector<SamplePattern>& positions) {
-  static const OperationCounts per_edges = count_operations([](OperationCounts& counts) {
+  static const UnitCost per_edges = count_operations([](OperationCounts& counts) {
     const CountedInt zero(0, counts);
     for (int k = 0; k < 3; ++k) owned_edge(counted_edge(counts), zero, zero, zero);
   });
-  static const OperationCounts per_position = count_operations([](OperationCounts& counts) {
+  static const UnitCost per_position = count_operations([](OperationCounts& counts) {
     const CountedInt zero(0, counts), edges[3] = {zero, zero, zero};
     sample_mask_scalar(edges, edges, edges, standard_pattern(1));
   });
@@ -335,9 +335,9 @@ void beam_fragment(const SetupTriangles& triangles, const std::vector<PixelTrian
     out.push_back(fragment);
   }
 
-  static const OperationCounts area_cost = coverage_cost(), range_cost = clipped_depth_cost(),
-                               depth_cost = plane_cost(), centroid_cost = centroid_depth_cost(),
-                               exact_cost = exact_edges_cost(), table_cost = table_edges_cost();
+  static const UnitCost area_cost = coverage_cost(), range_cost = clipped_depth_cost(), depth_cost = plane_cost(),
+                        centroid_cost = centroid_depth_cost(), exact_cost = exact_edges_cost(),
+                        table_cost = table_edges_cost();
   const std::size_t made = out.size() - before;
   counters.items_in += in.size();
   counters.items_out += made;

@@ -205,10 +205,10 @@ void compose_window(const std::vector<Fragment>& fragments, const PositionSet& p
     composer.close(aggregate);
     store(aggregate, pixels[pixel]);
   }
-  static const OperationCounts masks = mask_cost(Words), contest = contest_cost(Words), test = depth_compare_cost(),
-                               part = {.special = 1}, order_test = {.add = 1}, addition = addition_cost(),
-                               speck = speck_cost(), surface = surface_cost(), open_test = {.add = 1},
-                               closing = closing_cost();
+  static const UnitCost masks = mask_cost(Words), contest = contest_cost(Words), test = depth_compare_cost(),
+                        addition = addition_cost(), speck = speck_cost(), surface = surface_cost(),
+                        closing = closing_cost();
+  constexpr OperationCounts part{.special = 1}, order_test{.add = 1}, open_test{.add = 1};
   constexpr OperationCounts formats = {.convert = std::is_same_v<Channel, HalfBits> ? 2 * 3 : 0};  // load and store
   const ComposeWork& work = composer.work();
   counters.items_in += fragments.size();

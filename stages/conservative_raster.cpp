@@ -44,7 +44,7 @@ std::size_t conservative_raster(const SetupTriangles& triangles, const TriangleL
   }
   counters.ops += traversal_cost(counts, FullMeans::area);
   if (depths == PairDepths::bounds) {
-    static const OperationCounts vertices_cost = vertex_bounds_cost(), bounds_cost = pair_bounds_cost();
+    static const UnitCost vertices_cost = vertex_bounds_cost(), bounds_cost = pair_bounds_cost();
     counters.ops += vertices_cost * list.size();
     counters.ops += bounds_cost * counts.cells_touched;
   }

@@ -125,4 +125,10 @@ OperationCounts count_operations(Twin&& twin) {
   return counts;
 }
 
+// What one item costs, worked out once. It is a copy because g++ 12.2 loses counts that a function makes in place in a
+// static object (as -fno-ipa-reference does not).
+struct UnitCost : OperationCounts {
+  UnitCost(const OperationCounts& counts) : OperationCounts(counts) {}
+};
+
 }  // namespace beampipe

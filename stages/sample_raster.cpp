@@ -74,7 +74,7 @@ void sample_raster(const SetupTriangles& triangles, const TriangleList& list, co
   counters.ops += traversal_cost(counts, FullMeans::samples);
   counters.ops += sample_test_cost(pattern) * partial.size();
   if (closed) {
-    static const OperationCounts bounds_cost = sample_bounds_cost();
+    static const UnitCost bounds_cost = sample_bounds_cost();
     counters.ops += bounds_cost * list.size();
     closed->charge(counters);
   }

@@ -31,8 +31,14 @@ struct CurrentFrame {
   std::vector<std::uint32_t> looks;  // of all that is in the pixel (PixelContents)
   std::vector<float> speeds;
 
+  static constexpr std::uint32_t kPixelBytes =
+      3 * sizeof(glm::vec4) + 2 * sizeof(float) + sizeof(glm::vec2) + sizeof(std::uint32_t);
+
   CurrentFrame(std::uint32_t frame_width, std::uint32_t frame_height);
 };
+
+// What `temporal` works in, in this program: the frame by itself, what comes of it, and the picture.
+inline constexpr std::uint32_t kTemporalWorkingBytes = CurrentFrame::kPixelBytes + 2 * sizeof(glm::vec4);
 
 // A pixel on its way to `temporal`: the picture as fp16 RGBA; its box, twice as much, and the known part in a byte.
 inline constexpr std::uint64_t kCurrentColorBytes = 8, kCurrentBoxBytes = 2 * 8 + 1;

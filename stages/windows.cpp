@@ -73,8 +73,7 @@ void Windows::take(std::uint32_t pixel, Work& work, std::vector<PixelTriangle>& 
 }
 
 void Windows::count(const Work& work, std::size_t windows, std::size_t taken_now, StageCounters& counters) const {
-  static const OperationCounts range_test = range_test_cost(), extension = extension_cost(),
-                               order_test = order_test_cost();
+  static const UnitCost range_test = range_test_cost(), extension = extension_cost(), order_test = order_test_cost();
   counters.items_in += taken_now;
   counters.items_out += windows;
   counters.ops += range_test * work.range_tests;
