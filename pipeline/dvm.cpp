@@ -105,7 +105,7 @@ FrameResult render_dvm(const Trace& trace, const Frame& frame, const DvmOptions&
     stream(run.memory, tile.pixels() * (kSpeedBytes + kLookBytes * (history.frames > 0 ? 2 : 1)), counters);
   });
   result.pixel_counters["unknown"] = unknown_part(current);
-  result.image = image_of(frame, image);
+  copy_to_image(image, result.image);
   history = {history.frames + 1, current.width, current.height, std::move(image), std::move(current.looks), poses};
   result.stages.insert(result.stages.end(), {spreading, accumulation});
   return result;

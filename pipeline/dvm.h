@@ -5,6 +5,7 @@
 
 #include "pipeline/technique.h"
 #include "stages/materials.h"
+#include "stages/sample_select.h"
 
 namespace beampipe {
 
@@ -16,6 +17,9 @@ struct DvmOptions {
   std::uint32_t seed = 1;
   MaterialBy material = MaterialBy::color;
 };
+
+// Per pixel, in this program (Technique::working_bytes_per_pixel): a quad is of four pixels.
+inline constexpr std::uint32_t kDvmWorkingBytes = kTemporalWorkingBytes + sizeof(SampleQuad) / 4;
 
 FrameResult render_dvm(const Trace& trace, const Frame& frame, const DvmOptions& options, const RunOptions& run);
 

@@ -23,6 +23,11 @@ FrameResult render_reference(const Trace& trace, const Frame& frame, const RunOp
       frame, triangles, setup, kTileSize, without_memory, [&](const Tile& tile, const TriangleList& list) {
         const StageTimer timed(run.timeline, tile);
         StageCounters raster{"reference_raster"}, resolving{"resolve"};
+        if (list.empty()) {  // no samples are set up to find that all are the background's
+          resolving.items_out = tile.pixels();
+          resolving.bytes_written = tile.pixels() * sizeof(glm::vec4);
+          return TileResult{std::vector(tile.pixels(), glm::vec4(frame.background, 0)), {}, {raster, resolving}};
+        }
         ReferenceTile surface(tile);
         reference_raster(triangles, list, tile, timed(raster), surface);
         return TileResult{resolve(surface, tile, colors, frame.background, timed(resolving)), {}, {raster, resolving}};

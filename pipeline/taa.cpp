@@ -59,7 +59,7 @@ FrameResult render_taa(const Trace& trace, const Frame& frame, const TaaOptions&
     temporal(current, {options.blend}, history, tile, counters, image);
     move_temporal(run.memory, tile, history.frames > 0, counters);
   });
-  result.image = image_of(frame, image);
+  copy_to_image(image, result.image);
   history = {history.frames + 1, current.width, current.height, std::move(image), {}, poses};
   result.stages.push_back(accumulation);
   return result;

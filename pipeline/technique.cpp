@@ -124,7 +124,7 @@ Technique make_taa(Spec& spec) {
   TaaOptions options;
   options.samples = spec.samples(kMaxTaaSamples);
   options.blend = static_cast<float>(spec.number("blend", options.blend, 0.001, 1));
-  return {spec.text(), taa_framebuffer(), 0, bind_options(render_taa, options), {}, true};
+  return {spec.text(), taa_framebuffer(), 0, bind_options(render_taa, options), {}, true, kTemporalWorkingBytes};
 }
 
 Technique make_dvm(Spec& spec) {
@@ -132,7 +132,7 @@ Technique make_dvm(Spec& spec) {
   options.blend = static_cast<float>(spec.number("blend", options.blend, 0.001, 1));
   options.seed = static_cast<std::uint32_t>(spec.number("seed", options.seed, 0, 4294967295.0));
   options.material = spec.choice<MaterialBy>("material", {{"color", MaterialBy::color}, {"draw", MaterialBy::draw}});
-  return {spec.text(), dvm_framebuffer(), 0, bind_options(render_dvm, options), {}, true};
+  return {spec.text(), dvm_framebuffer(), 0, bind_options(render_dvm, options), {}, true, kDvmWorkingBytes};
 }
 
 Technique make_reference(Spec& spec) {

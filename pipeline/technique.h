@@ -79,6 +79,9 @@ struct Technique {
   // How `render` weighs what it sees, for each pixel of the frame, row by row. Null where that is not known.
   std::function<std::vector<PixelWeights>(const Trace&, std::size_t frame, const RunOptions&)> weights = {};
   bool keeps_history = false;  // a frame's picture depends on the frames before it (RunOptions::history)
+  // What the program itself holds of a frame, in bytes per pixel, at the very least: the picture, and what stages leave
+  // there for each other.
+  std::uint32_t working_bytes_per_pixel = sizeof(glm::vec4);
 
   std::uint32_t framebuffer_bytes_per_pixel() const {
     std::uint32_t bytes = 0;

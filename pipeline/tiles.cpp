@@ -101,9 +101,8 @@ void for_each_tile(const Frame& frame, int tile_size, const RunOptions& options,
   for (const StageCounters& of_tile : of_tiles) counters += of_tile;
 }
 
-Image image_of(const Frame& frame, const std::vector<glm::vec4>& pixels) {
-  const float* const first = &pixels.front().x;
-  return {frame.width, frame.height, std::vector<float>(first, first + 4 * pixels.size())};
+void copy_to_image(const std::vector<glm::vec4>& pixels, Image& image) {
+  std::copy_n(&pixels.front().x, 4 * pixels.size(), image.rgba.begin());
 }
 
 }  // namespace beampipe

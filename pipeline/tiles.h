@@ -69,6 +69,7 @@ void copy_to_frame(const std::vector<Value>& tile_values, const Tile& tile, cons
                 frame_values.data() + static_cast<std::size_t>(y) * frame.width + static_cast<std::size_t>(tile.x0));
 }
 
-Image image_of(const Frame& frame, const std::vector<glm::vec4>& pixels);
+// A frame's pixels, row by row, into its picture.
+void copy_to_image(const std::vector<glm::vec4>& pixels, Image& image);
 
 }  // namespace beampipe

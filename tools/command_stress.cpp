@@ -7,6 +7,7 @@
 #include <set>
 
 #include "tools/commands.h"
+#include "tools/machine_memory.h"
 #include "tools/progress.h"
 #include "tools/report.h"
 #include "tools/run_plan.h"
@@ -74,6 +75,7 @@ void stress(const StressArguments& arguments) {
       notes.push_back(hard_case.name + ": " + hard_case.what);
       for (const Technique& technique : techniques) {
         progress.show(hard_case.name + ": " + technique.spec);
+        require_memory(technique, hard_case.trace.frames[0], hard_case.name, machine_memory());
         const Verdict verdict = judge.judge(technique, options);
         row.push_back(cell_of(verdict));
         failures += !verdict.passes();
@@ -103,7 +105,7 @@ void add_stress_command(CLI::App& app) {
       ->check(CLI::Range(1, 1024));
   command->add_flag("--heavy", arguments->heavy,
                     "also a pixel with a million fragments, a gigabyte and a minute, and 16384 x 16384 pixels, for "
-                    "techniques that are named: 5 to 9 GB and a minute or two each; taa and dvm need 30 GB");
+                    "techniques that are named: 5 to 9 GB and a minute or two each; taa and dvm need 32 GB");
   command->footer(
       "Each cell is the largest error over all pixels and R, G, B, A against rational arithmetic: of the areas, or, "
       "for\n"

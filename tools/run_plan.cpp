@@ -1,7 +1,5 @@
 #include "tools/run_plan.h"
 
-#include <unistd.h>
-
 #include <algorithm>
 #include <charconv>
 #include <filesystem>
@@ -11,6 +9,7 @@
 
 #include "simd/target.h"
 #include "tools/commands.h"
+#include "tools/machine_memory.h"
 #include "tools/report.h"
 #include "traces/trace_io.h"
 
@@ -25,26 +24,6 @@ void require_trace(const RunArguments& arguments) {
   if (std::error_code ignored; !arguments.specs.empty() && std::filesystem::exists(arguments.specs.back(), ignored))
     hint = ": " + arguments.specs.back() + " was taken for a technique; write the trace before -t";
   throw UsageError("TRACE is missing" + hint);
-}
-
-// What a frame takes at the very least, per pixel: its tiles' pictures, the whole one, and its copy for the caller.
-constexpr std::uint64_t kLeastPixelBytes = 3 * 4 * sizeof(float);
-
-std::uint64_t machine_memory() {
-  return static_cast<std::uint64_t>(sysconf(_SC_PHYS_PAGES)) * static_cast<std::uint64_t>(sysconf(_SC_PAGESIZE));
-}
-
-// The system grants memory that it does not have, and ends the program when that is used.
-void require_memory(const RunPlan& plan) {
-  const std::uint64_t memory = machine_memory();
-  for (const std::size_t i : plan.frames) {
-    const Frame& frame = plan.trace.frames[i];
-    const std::uint64_t needed = std::uint64_t{frame.width} * frame.height * kLeastPixelBytes;
-    if (needed <= memory) continue;
-    throw std::runtime_error("frame " + std::to_string(i) + ": its " + std::to_string(frame.width) + " x " +
-                             std::to_string(frame.height) + " pixels need at least " + std::to_string(needed >> 20) +
-                             " MiB, and this machine has " + std::to_string(memory >> 20));
-  }
 }
 
 }  // namespace
@@ -97,7 +76,9 @@ RunPlan make_plan(const RunArguments& arguments) {
   if (!arguments.simd.empty()) use_simd_target(arguments.simd);
   plan.trace = read_trace(arguments.trace, {.allow_outside = arguments.allow_outside});
   plan.frames = parse_frame_range(arguments.frames, plan.trace.frames.size());
-  require_memory(plan);
+  for (const std::size_t frame : plan.frames)
+    for (const Technique& technique : plan.techniques)
+      require_memory(technique, plan.trace.frames[frame], "frame " + std::to_string(frame), machine_memory());
   return plan;
 }
 

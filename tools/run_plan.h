@@ -33,8 +33,8 @@ struct RunPlan {
   RunOptions options;  // with the number of threads resolved
 };
 
-// Also chooses the instruction set. Throws UsageError, SpecError, TraceError, or std::runtime_error where the pictures
-// alone are larger than memory.
+// Also chooses the instruction set. Throws UsageError, SpecError, TraceError, or std::runtime_error where a frame
+// needs more memory than the machine has.
 RunPlan make_plan(const RunArguments& arguments);
 
 // Throws OutputError unless every technique's folder can be written.

@@ -107,5 +107,21 @@ TEST(Buffers, AreWhatIsAllocated) {
   }
 }
 
+// What a frame is refused by, before it is begun, is held, and is most of what is held.
+TEST(Buffers, WorkingBytesAreHeldPerPixel) {
+  Trace trace = halves(1);
+  trace.frames[0].width = trace.frames[0].height = 512;
+  for (const char* spec : {"beam", "beam:order=stream", "beam:rules=paper", "alpha", "z3", "msaa:8", "acaa:8",
+                           "deferred", "visibility", "taa:8", "dvm"}) {
+    const std::int64_t before = heap_bytes();
+    restart_heap_peak();
+    render(spec, trace);
+    const double held = static_cast<double>(heap_peak() - before) / (512 * 512);
+    const std::uint32_t stated = parse_technique(spec).working_bytes_per_pixel;
+    EXPECT_GE(held, stated) << spec;
+    EXPECT_LE(held, stated + 24) << spec;
+  }
+}
+
 }  // namespace
 }  // namespace beampipe
