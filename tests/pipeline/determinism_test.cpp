@@ -81,6 +81,7 @@ TEST(Determinism, AnyTileSize) {
         EXPECT_EQ(a.items_out, b.items_out) << a.stage;
         if (std::string(spec).starts_with("beam:rules=paper") && a.stage == "beam_fragment")
           a.ops = b.ops = {};  // a triangle's edges are made ready for masks in each tile
+        if (spec == std::string("reference") && a.stage == "resolve") continue;  // leaves out tiles without a triangle
         // What rasters set up, and passes of settling, are counted tile by tile.
         if (!a.stage.ends_with("_raster") && a.stage != "settle") {
           EXPECT_EQ(a, b) << a.stage;
