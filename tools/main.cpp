@@ -56,7 +56,7 @@ int run(int argc, char** argv, beampipe::InterruptGate& gate) {
   beampipe::add_report_command(app, gate);
   beampipe::add_plot_command(app, gate);
   beampipe::add_claims_command(app);
-  beampipe::add_stress_command(app);
+  beampipe::add_stress_command(app, gate);
   beampipe::add_diff_command(app);
   beampipe::add_info_command(app);
   beampipe::add_export_soup_command(app);

@@ -430,6 +430,22 @@ TEST_F(ProgramTest, AFailedWriteIsOneLineAndLeavesEarlierResultsWhole) {
   EXPECT_EQ(read_text(folder_ / "out/report.json"), report);
 }
 
+TEST_F(ProgramTest, StressWritesWhatItFoundAndItsTraces) {
+  const std::string table =
+      succeed({"stress", "-t", "msaa:1", "dvm", "--case", "one_pixel", "--case", "not_finite", "-o", path("stress")});
+  EXPECT_NE(table.find("one_pixel    exact  2^-2.0*"), std::string::npos) << table;
+  const Json found = Json::parse(read_text(folder_ / "stress/stress.json"));
+  ASSERT_EQ(found.size(), 4u);
+  EXPECT_EQ(found[0]["case"], "not_finite");
+  EXPECT_EQ(found[3]["technique"], "dvm");
+  EXPECT_EQ(found[3]["error"], 0.25);
+  EXPECT_EQ(found[3]["passes"], true);
+  EXPECT_EQ(found[3]["reason"], "its 2x2 quad reaches beyond the frame");
+  succeed({"run", path("stress/traces/one_pixel.json"), "-t", "msaa:1", "-o", path("again")});
+  expect_one_error_line(run_program({"stress", "--case", "none_such", "-o", path("other")}), 2, "none_such");
+  EXPECT_FALSE(std::filesystem::exists(folder_ / "other"));
+}
+
 void pause(int milliseconds) { std::this_thread::sleep_for(std::chrono::milliseconds(milliseconds)); }
 
 // A run that goes on for hours after its first image.
