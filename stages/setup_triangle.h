@@ -40,6 +40,9 @@ struct SetupTriangles {
   std::vector<FlatAttributes> attributes;  // one per triangle
   std::vector<std::uint32_t> draws;        // one per triangle: index into Frame::draws
 
+  static constexpr std::uint64_t kTriangleBytes =
+      sizeof(SetupTriangle) + sizeof(FlatAttributes) + sizeof(std::uint32_t);
+
   void reserve(std::size_t count) {
     triangles.reserve(count);
     attributes.reserve(count);

@@ -171,9 +171,9 @@ SetupWork add_draw(const View& view, const Mesh& mesh, const Draw& draw, std::ui
     chunks[first / kChunk].out.reserve(end - first);
     for (std::size_t t = first; t < end; ++t) chunks[first / kChunk].add(t);
   });
-  std::size_t count = out.triangles.size();
+  std::size_t count = 0;
   for (const TriangleSetup& chunk : chunks) count += chunk.out.triangles.size();
-  out.reserve(count);
+  if (out.triangles.empty()) out.reserve(count);  // once: what later draws add lets the vectors grow
   SetupWork work;
   work.transformed = vertices.size();
   for (const std::size_t of_chunk : in_view) work.projected += of_chunk;

@@ -3,6 +3,8 @@
 // Transform to clip space (double precision), cull, clip to the near and far planes and, where the triangle reaches
 // beyond it, to the guard band; project, snap to 1/256 px, depth plane. Triangles outside the view volume, of zero area
 // after snapping, or with a vertex that is not finite are dropped.
+// Double precision knows a vertex that is 10^14 px away to 1/64 px: from 10^15 px on, edges lie beside their place, and
+// from 10^17 px on, parts of what is clipped are missing.
 #pragma once
 
 #include "stages/counters.h"

@@ -105,7 +105,8 @@ void stress(const StressArguments& arguments, InterruptGate& gate) {
   if (!folder.empty()) require_writable_folder(folder);
   for (const HardCase& hard_case : cases)
     for (const Technique& technique : techniques)
-      require_memory(technique, hard_case.trace.frames[0], hard_case.name, machine_memory());
+      require_memory(hard_case.trace, hard_case.trace.frames[0], technique.working_bytes_per_pixel,
+                     hard_case.name + " with " + technique.spec, machine_memory());
   RunOptions options;
   options.threads = arguments.threads;
   options.memory.modelled = false;  // pictures alone are judged

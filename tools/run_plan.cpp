@@ -78,7 +78,8 @@ RunPlan make_plan(const RunArguments& arguments) {
   plan.frames = parse_frame_range(arguments.frames, plan.trace.frames.size());
   for (const std::size_t frame : plan.frames)
     for (const Technique& technique : plan.techniques)
-      require_memory(technique, plan.trace.frames[frame], "frame " + std::to_string(frame), machine_memory());
+      require_memory(plan.trace, plan.trace.frames[frame], technique.working_bytes_per_pixel,
+                     "frame " + std::to_string(frame) + " with " + technique.spec, machine_memory());
   return plan;
 }
 

@@ -5,6 +5,7 @@
 #include "pipeline/technique.h"
 #include "stages/a_buffer.h"
 #include "stages/beam_fragment.h"
+#include "stages/vertex_setup.h"
 #include "test_traces.h"
 #include "traces/scenes.h"
 
@@ -105,6 +106,20 @@ TEST(Buffers, AreWhatIsAllocated) {
     EXPECT_LE(heap, listed + 12000 * kVertexBytes + (many.pairs - few.pairs) * (kPairBytes + kSortBytes))
         << spec << ": something is held that is not listed";
   }
+}
+
+// Setting up a frame's draws takes memory as their triangles do, however many draws there are: twice the draws, twice
+// the memory, all of it counted that is given out on the way.
+TEST(Buffers, DrawsAreNotCopiedAgainForEachThatFollows) {
+  const auto given_for = [](std::size_t draws) {
+    Trace trace = halves(1);
+    trace.frames[0].draws.resize(draws, trace.frames[0].draws[0]);
+    StageCounters counters;
+    const std::int64_t before = heap_given();
+    EXPECT_EQ(vertex_setup(trace, trace.frames[0], counters).triangles.size(), draws);
+    return static_cast<double>(heap_given() - before);
+  };
+  EXPECT_LE(given_for(4000), 2.5 * given_for(2000));
 }
 
 // What a frame is refused by, before it is begun, is held, and is most of what is held.

@@ -9,10 +9,11 @@
 namespace beampipe {
 namespace {
 
-std::atomic<std::int64_t> held{0}, peak{0};
+std::atomic<std::int64_t> held{0}, peak{0}, given{0};
 
 void count(std::int64_t bytes) {
   const std::int64_t now = held += bytes;
+  if (bytes > 0) given += bytes;
   std::int64_t most = peak;
   while (now > most && !peak.compare_exchange_weak(most, now)) {
   }
@@ -22,6 +23,7 @@ void count(std::int64_t bytes) {
 
 std::int64_t heap_bytes() { return held; }
 std::int64_t heap_peak() { return peak; }
+std::int64_t heap_given() { return given; }
 void restart_heap_peak() { peak = held.load(); }
 
 }  // namespace beampipe

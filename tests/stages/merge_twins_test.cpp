@@ -278,7 +278,7 @@ TEST_P(MergeTwins, ComposeZ3) {
     for (std::size_t i = 0; i < found.size(); ++i) {
       ASSERT_EQ(found[i].alpha, expected[i].alpha) << i;
       ASSERT_EQ(found[i].color, expected[i].color) << i;
-      for (std::size_t k = 0; k < Layers; ++k) ASSERT_EQ(pixels[i].layers[k].z, twins[i].layers[k].z) << i;
+      for (std::size_t k = 0; k < Layers; ++k) ASSERT_EQ(+pixels[i].layers[k].z, +twins[i].layers[k].z) << i;  // packed
     }
   };
   compare(Z3Pixel<1, 3>(), LayerMerge::depth);

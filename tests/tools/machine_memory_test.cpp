@@ -2,26 +2,43 @@
 
 #include <gtest/gtest.h>
 
+#include "pipeline/technique.h"
+
 namespace beampipe {
 namespace {
 
-TEST(MachineMemory, IsAskedForBeforeItIsTaken) {
-  Frame frame;
-  frame.width = frame.height = 16384;
-  const Technique msaa = parse_technique("msaa:1"), dvm = parse_technique("dvm");
-  constexpr std::uint64_t kGiB = std::uint64_t{1} << 30;
-  require_memory(msaa, frame, "frame 0", 4 * kGiB);
-  require_memory(dvm, frame, "frame 0", 32 * kGiB);
+constexpr std::uint64_t kGiB = std::uint64_t{1} << 30;
+
+std::string refusal(const Trace& trace, const char* spec, std::uint64_t memory) {
   try {
-    require_memory(dvm, frame, "frame 3", 16 * kGiB);
-    FAIL() << "dvm keeps more than 100 bytes per pixel";
+    require_memory(trace, trace.frames[0], parse_technique(spec).working_bytes_per_pixel, spec, memory);
+    return "";
   } catch (const std::runtime_error& error) {
-    EXPECT_STREQ(error.what(),
-                 "frame 3: dvm needs at least 27904 MiB for 16384 x 16384 pixels, and this machine has 16384");
+    return error.what();
   }
 }
 
-TEST(MachineMemory, IsKnown) { EXPECT_GT(machine_memory(), std::uint64_t{1} << 28); }
+TEST(MachineMemory, OfPixelsIsAskedForBeforeItIsTaken) {
+  Trace trace;
+  trace.frames.resize(1);
+  trace.frames[0].width = trace.frames[0].height = 16384;
+  EXPECT_EQ(refusal(trace, "msaa:1", 4 * kGiB), "");
+  EXPECT_EQ(refusal(trace, "dvm", 32 * kGiB), "");
+  EXPECT_EQ(refusal(trace, "dvm", 16 * kGiB),
+            "dvm: 16384 x 16384 pixels and 0 triangles may need 27904 MiB, and this machine has 16384");
+}
+
+TEST(MachineMemory, OfTrianglesThatAreDrawnAgainAndAgainIsAskedForBeforeItIsTaken) {
+  Trace trace;
+  trace.meshes.resize(1);
+  trace.meshes[0].triangles.resize(30000);
+  trace.frames.resize(1);
+  trace.frames[0].draws.resize(30000);
+  EXPECT_EQ(refusal(trace, "beam", 128 * kGiB), "");
+  EXPECT_NE(refusal(trace, "beam", 64 * kGiB).find("900000000 triangles may need 102"), std::string::npos);
+}
+
+TEST(MachineMemory, IsKnown) { EXPECT_GT(machine_memory(), kGiB / 4); }
 
 }  // namespace
 }  // namespace beampipe

@@ -212,7 +212,9 @@ HardCase fp16_sums() {
   result.trace = screen.trace();
   result.limits = {{"alpha", {0.5, kOver}},
                    {"beam:rules=paper", {0.45, kPaper}},
-                   {"acaa", {0.05, "each sum is rounded to fp16: 2^-12 at most, 256 times"}}};
+                   {"acaa", {0.05, "each sum is rounded to fp16: 2^-12 at most, 256 times"}},
+                   {"acaa:8,color=unorm8", {9 * 0.5 / 255, "each sum is rounded to 8 bits: 2^-9 at most, 9 times"}},
+                   {"acaa:8,color=fp32", {0x1p-11, "sums in fp32"}}};
   return result;
 }
 
@@ -252,12 +254,13 @@ HardCase near_plane() {
           }};
 }
 
-HardCase guard_band() {
+// `far` times millions of pixels outside.
+HardCase guard_band(double far, const std::string& name, const std::string& what) {
   Screen screen(16, 16);
-  screen.triangle({-3e6, 2e6}, {4e6, -1e6}, {1e6, 5e6}, 0.5, kRed);
-  screen.triangle({-8e6, 8.3}, {8e6, -4.2}, {9e6, -7e6}, 0.25, kGreen);
-  return {"guard_band",
-          "vertices millions of pixels outside",
+  screen.triangle({-3e6 * far, 2e6 * far}, {4e6 * far, -1e6 * far}, {1e6 * far, 5e6 * far}, 0.5, kRed);
+  screen.triangle({-8e6 * far, 8.3}, {8e6 * far, -4.2}, {9e6 * far, -7e6 * far}, 0.25, kGreen);
+  return {name,
+          what,
           screen.trace(),
           {},
           {{"alpha", {0.3, kOver}}, {"beam:rules=paper", {0.1, kPaper}}, {"beam", {0.01, kMask}}}};
@@ -435,7 +438,8 @@ std::vector<HardCase> hard_cases(bool with_heavy) {
                                  tiled_pixel(),
                                  fp16_sums(),
                                  near_plane(),
-                                 guard_band(),
+                                 guard_band(1, "guard_band", "vertices millions of pixels outside"),
+                                 guard_band(1e6, "guard_band_far", "vertices 10^13 pixels outside"),
                                  wide_coordinates(),
                                  depth_range(),
                                  depth_range_turned(),
