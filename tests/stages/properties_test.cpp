@@ -10,24 +10,13 @@
 #include "stages/sample_raster.h"
 #include "tests/simd/coverage_cases.h"
 #include "tests/stages/beam_pixels.h"
-#include "tests/thorough.h"
+#include "tests/stages/search.h"
 
 namespace beampipe {
 namespace {
 
 constexpr Tile kTile{0, 0, 12, 10};
 constexpr double kAlphaError = 5e-7;  // simd/coverage.h
-
-// Calls body(random) `count` times, each time with a seed of its own.
-template <class Body>
-void search(std::uint64_t first_seed, int count, Body&& body) {
-  for (int i = 0; i < count * thoroughness(); ++i) {
-    Random random(first_seed + static_cast<std::uint64_t>(i));
-    SCOPED_TRACE(random.name());
-    body(random);
-    if (testing::Test::HasFailure()) return;
-  }
-}
 
 using Rational = boost::multiprecision::cpp_rational;
 

@@ -1,0 +1,24 @@
+// Random cases, each with a seed of its own that a failure names.
+#pragma once
+
+#include <gtest/gtest.h>
+
+#include <cstdint>
+
+#include "tests/simd/random.h"
+#include "tests/thorough.h"
+
+namespace beampipe {
+
+// Calls body(random) `count` times, or as many times more as the search is to be thorough.
+template <class Body>
+void search(std::uint64_t first_seed, int count, Body&& body) {
+  for (int i = 0; i < count * thoroughness(); ++i) {
+    Random random(first_seed + static_cast<std::uint64_t>(i));
+    SCOPED_TRACE(random.name());
+    body(random);
+    if (testing::Test::HasFailure()) return;
+  }
+}
+
+}  // namespace beampipe
