@@ -99,6 +99,8 @@ void make(const MakeArguments& arguments, const CLI::App& command, InterruptGate
     throw UsageError("--triangles and --seed are for procedural scenes only");
   }
   const std::filesystem::path file = arguments.output;
+  if (std::error_code none; is_model && std::filesystem::equivalent(file, arguments.scene, none))
+    throw UsageError("-o " + arguments.output + " is the model itself");
   require_writable_folder(file.has_parent_path() ? file.parent_path() : ".");
   if (command.count("--orbit") && arguments.frames < 2) throw UsageError("--orbit needs --frames N with N > 1");
   if (command.count("--pan") && arguments.frames < 2) throw UsageError("--pan needs --frames N with N > 1");

@@ -364,6 +364,7 @@ TEST_F(ProgramTest, EveryMistakeIsOneLineAndLeavesNothing) {
       {{"make", "fence", "--eye", "1,2,3", "-o", path("a.json")}, 2, "--eye"},
       {{"make", "fence", "--width", "16385", "-o", path("a.json")}, 2, "--width"},
       {{"make", path("missing.obj"), "-o", path("a.json")}, 1, "missing.obj"},
+      {{"make", path("model.obj"), "-o", path("./model.obj")}, 2, "the model itself"},
       {{"make", path("model.obj"), "--seed", "2", "-o", path("a.json")}, 2, "--seed"},
       {{"make", path("model.obj"), "--eye", "1,2", "-o", path("a.json")}, 2, "--eye"},
       {{"make", path("model.obj"), "--near", "3", "--far", "2", "-o", path("a.json")}, 2, "near"},
