@@ -278,6 +278,7 @@ void add_compare_command(CLI::App& app, InterruptGate& gate) {
     RunPlan plan = make_plan(*arguments);
     const TraceEvents events(arguments->trace_events, plan);
     OutputFolder output(arguments->output, gate);
+    output.lock();
     // Its progress line is gone by the time that the report is finished.
     const std::optional<Report> report = Comparison(*arguments, std::move(plan), output).run();
     if (!report) return tell_finished(output);

@@ -8,7 +8,7 @@
 #include "stages/shade.h"
 #include "stages/vertex_setup.h"
 #include "tools/commands.h"
-#include "traces/atomic_file.h"
+#include "tools/output.h"
 #include "traces/trace_io.h"
 
 namespace beampipe {
@@ -54,7 +54,7 @@ std::string soup_of(const Trace& trace, const Frame& frame) {
 
 }  // namespace
 
-void add_export_soup_command(CLI::App& app) {
+void add_export_soup_command(CLI::App& app, InterruptGate& gate) {
   const auto arguments = std::make_shared<ExportArguments>();
   CLI::App* command = app.add_subcommand(
       "export-soup", "Write a frame's triangles, clipped, culled, snapped and lit, for other renderers");
@@ -66,14 +66,16 @@ void add_export_soup_command(CLI::App& app) {
       "\nThe file, little-endian: \"SOUP\"; uint32 version 1, width, height, triangles; float background[3]; then for "
       "each\n"
       "triangle float clip[3][4], in OpenGL clip space with w = 1, and float rgb[3], linear.");
-  command->callback([arguments] {
+  command->callback([arguments, &gate] {
+    const std::filesystem::path file = std::filesystem::absolute(arguments->output);
+    require_writable_folder(file.parent_path());
     const Trace trace = read_trace(arguments->trace, {.allow_outside = arguments->allow_outside});
     if (arguments->frame >= trace.frames.size())
       throw UsageError("--frame: expected 0 to " + std::to_string(trace.frames.size() - 1) + ", found " +
                        std::to_string(arguments->frame));
-    AtomicFile file(arguments->output);
-    file.write(soup_of(trace, trace.frames[arguments->frame]));
-    file.commit();
+    OutputFolder output(file.parent_path(), gate);
+    output.write(file.filename(), soup_of(trace, trace.frames[arguments->frame]));
+    output.keep();
   });
 }
 

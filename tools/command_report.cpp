@@ -31,8 +31,9 @@ std::size_t position_of(const ReportFile& report, std::optional<std::size_t> fra
 }
 
 void write_report(const ReportArguments& arguments, InterruptGate& gate) {
+  OutputFolder output(arguments.folder, gate);
+  output.lock();
   const ReportFile report = read_report(arguments.folder);
-  OutputFolder output(report.folder, gate);
   std::vector<Figure> figures;
   try {
     const std::vector<Table> tables = report_tables(report);

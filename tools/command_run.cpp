@@ -14,6 +14,7 @@ void run(const RunArguments& arguments, InterruptGate& gate) {
   RunPlan plan = make_plan(arguments);
   const TraceEvents events(arguments.trace_events, plan);
   OutputFolder output(arguments.output, gate);
+  output.lock();
   require_writable_folders(output, plan.techniques);
   const auto maker = made_by("run", plan, nlohmann::ordered_json::object());
   FrameRecords records(output, maker);

@@ -76,8 +76,8 @@ std::string digest_of(const Trace& trace) {
   return digest.text();
 }
 
-std::string digest_of_program() {
-  std::ifstream file("/proc/self/exe", std::ios::binary);
+std::string digest_of_file(const std::filesystem::path& path) {
+  std::ifstream file(path, std::ios::binary);
   Digest digest;
   std::vector<char> bytes(1 << 20);
   while (file.read(bytes.data(), std::ssize(bytes)) || file.gcount() > 0)

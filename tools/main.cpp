@@ -59,7 +59,7 @@ int run(int argc, char** argv, beampipe::InterruptGate& gate) {
   beampipe::add_stress_command(app, gate);
   beampipe::add_diff_command(app);
   beampipe::add_info_command(app);
-  beampipe::add_export_soup_command(app);
+  beampipe::add_export_soup_command(app, gate);
   beampipe::add_make_command(app, gate);
   try {
     app.parse(argc, argv);

@@ -1,5 +1,10 @@
 #include "tools/output.h"
 
+#include <fcntl.h>
+#include <sys/file.h>
+#include <unistd.h>
+
+#include <cerrno>
 #include <stdexcept>
 #include <system_error>
 #include <vector>
@@ -42,14 +47,27 @@ void require_writable_folder(const fs::path& folder) {
 OutputFolder::~OutputFolder() {
   std::error_code ignored;
   for (auto path = new_.rbegin(); path != new_.rend(); ++path) fs::remove(*path, ignored);  // a folder: only if empty
+  if (lock_ >= 0) ::close(lock_);
 }
 
-void OutputFolder::write(const fs::path& name, std::string_view bytes) {
+void OutputFolder::lock() {
+  locks_ = true;
+  if (lock_ < 0) lock_ = ::open(folder_.c_str(), O_RDONLY | O_DIRECTORY | O_CLOEXEC);
+  if (lock_ >= 0 && ::flock(lock_, LOCK_EX | LOCK_NB) != 0 && errno == EWOULDBLOCK)
+    throw std::runtime_error(folder_.string() + ": is being written by another program");
+}
+
+void OutputFolder::make(const fs::path& folder) {
+  for (const fs::path& missing : missing_folders(folder))
+    if (fs::create_directory(missing)) new_.push_back(missing);
+}
+
+void OutputFolder::write(const fs::path& name, std::string_view bytes, const std::vector<fs::path>& outdated) {
   auto held = gate_.hold();
   const fs::path target = folder_ / name;
-  for (const fs::path& folder : missing_folders(target.parent_path())) {
-    if (fs::create_directory(folder)) new_.push_back(folder);
-  }
+  make(folder_);
+  if (locks_) lock();
+  make(target.parent_path());
   const bool is_new = !fs::exists(target);
   AtomicFile file(target);
   gate_.set_unfinished(AtomicFile::temporary_of(target));
@@ -57,6 +75,7 @@ void OutputFolder::write(const fs::path& name, std::string_view bytes) {
   file.write(bytes);
   file.flush();
   held.lock();
+  for (const fs::path& old : outdated) fs::remove(folder_ / old);
   file.commit();
   gate_.set_unfinished({});
   if (is_new) new_.push_back(target);

@@ -25,9 +25,16 @@ class OutputFolder {
 
   const std::filesystem::path& path() const { return folder_; }
 
-  // Writes folder/name. `name` may lie in a subfolder, which is made if need be.
+  // Keeps the folder from other programs that call this, from now on, or from when it is made, until this object ends.
+  // Throws std::runtime_error, one line, when another has it: now, or at the first write(). File systems without such
+  // locks let everybody in.
+  void lock();
+
+  // Writes folder/name. `name` may lie in a subfolder, which is made if need be. Removes the files `outdated` when the
+  // bytes are on the disk, and before the new file appears.
   // Throws std::runtime_error, one line that names the file.
-  void write(const std::filesystem::path& name, std::string_view bytes);
+  void write(const std::filesystem::path& name, std::string_view bytes,
+             const std::vector<std::filesystem::path>& outdated = {});
 
   // Removes folder/name if it exists.
   void remove(const std::filesystem::path& name);
@@ -36,8 +43,12 @@ class OutputFolder {
   void keep() { new_.clear(); }
 
  private:
+  void make(const std::filesystem::path& folder);
+
   std::filesystem::path folder_;
   InterruptGate& gate_;
+  bool locks_ = false;
+  int lock_ = -1;                           // the opened folder; negative: not yet
   std::vector<std::filesystem::path> new_;  // files and folders, in the order in which they came
 };
 

@@ -109,9 +109,8 @@ FrameReport write_frame(OutputFolder& output, const std::string& spec, std::size
     counters.channels["error"] = pixel_errors(result.image, *reference);
   }
   for (const auto& [name, values] : counters.channels) report.pixel_counters[name] = measure_counter(values);
-  output.remove(frame_record_name(frame));  // an earlier one would say that the frame is whole
-  output.write(report.image, encode_exr(result.image));
-  output.remove("report.json");  // an earlier one would describe pictures that are no longer there
+  // Earlier ones would speak of pictures that are no longer there.
+  output.write(report.image, encode_exr(result.image), {"report.json", frame_record_name(frame)});
   output.write(report.picture, encode_png(result.image));
   if (!counters.channels.empty()) {
     report.counters = stem + "_counters.exr";

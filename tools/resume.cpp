@@ -104,12 +104,27 @@ Json read_json(const fs::path& path) {
 
 Json maker_of(const Json& json) { return json.is_object() ? json.value("made_by", Json()) : Json(); }
 
-bool pictures_are_there(const fs::path& folder, const FrameRecord& record) {
+// Of those of the frame's files that are there, by name.
+Json digests_of_files(const fs::path& folder, const FrameRecord& record) {
+  Json digests = Json::object();
   std::error_code ignored;
   for (const FrameReport& report : record.reports)
     for (const std::string& name : {report.image, report.picture, report.counters})
-      if (!name.empty() && !fs::is_regular_file(folder / name, ignored)) return false;
-  return true;
+      if (fs::is_regular_file(folder / name, ignored)) digests[name] = digest_of_file(folder / name);
+  return digests;
+}
+
+Json sealed(Json record) {
+  record["digest"] = digest_of(json_text(record));
+  return record;
+}
+
+// Null: it is not as it was sealed.
+Json unsealed(Json record) {
+  if (!record.is_object()) return nullptr;
+  const Json digest = record["digest"];
+  record.erase("digest");
+  return digest == digest_of(json_text(record)) ? record : Json();
 }
 
 std::string range_text(const std::vector<std::size_t>& frames) {
@@ -121,7 +136,7 @@ std::string range_text(const std::vector<std::size_t>& frames) {
 Json made_by(const std::string& command, const RunPlan& plan, const Json& more) {
   Json json = {{"command", command},
                {"version", program_version()},
-               {"program", digest_of_program()},
+               {"program", digest_of_file("/proc/self/exe")},
                {"trace", digest_of(plan.trace)},
                {"techniques", Json::array()},
                {"frames", range_text(plan.frames)},
@@ -162,12 +177,12 @@ std::vector<FrameRecord> FrameRecords::read(const std::vector<std::size_t>& fram
 
   std::vector<FrameRecord> records;
   for (const std::size_t frame : frames) {
-    const Json json = read_json(output_.path() / frame_record_name(frame));
+    const Json json = unsealed(read_json(output_.path() / frame_record_name(frame)));
     if (maker_of(json) != maker_) break;
     FrameRecord record;
     for (const Json& technique : json.at("techniques")) record.reports.push_back(report_of(technique));
     record.sums = json.at("sums");
-    if (!pictures_are_there(output_.path(), record)) break;
+    if (json.at("files") != digests_of_files(output_.path(), record)) break;
     records.push_back(std::move(record));
   }
   return records;
@@ -176,7 +191,8 @@ std::vector<FrameRecord> FrameRecords::read(const std::vector<std::size_t>& fram
 void FrameRecords::write(const FrameRecord& record) {
   Json json = {{"beampipe_frame", 1}, {"made_by", maker_}, {"sums", record.sums}, {"techniques", Json::array()}};
   for (const FrameReport& report : record.reports) json["techniques"].push_back(record_of(report));
-  output_.write(frame_record_name(record.reports.front().index), json_text(json));
+  json["files"] = digests_of_files(output_.path(), record);
+  output_.write(frame_record_name(record.reports.front().index), json_text(sealed(std::move(json))));
 }
 
 void FrameRecords::remove() {

@@ -1,7 +1,7 @@
 // Going on with a run that was stopped.
 //
-// Each finished frame leaves a record, DIR/unfinished/frame_0007.json: what report.json is to say of it, and the sums
-// over the frames so far. It is written behind the frame's pictures, so that they are whole where it is there. When
+// Each finished frame leaves a record, DIR/unfinished/frame_0007.json: what report.json is to say of it, the sums over
+// the frames so far, and digests of the frame's files and of the record itself. It is written behind the files. When
 // report.json is written, the records go away.
 #pragma once
 
@@ -32,8 +32,8 @@ class FrameRecords {
   // Throws std::runtime_error, one line, when another made it.
   bool is_finished();
 
-  // The records of `frames` up to the first that is missing, or one of whose pictures is. Throws std::runtime_error,
-  // one line that says what has changed, when all that is there was made by another.
+  // The records of `frames` up to the first that is missing or damaged, or one of whose files is. Throws
+  // std::runtime_error, one line that says what has changed, when all that is there was made by another.
   std::vector<FrameRecord> read(const std::vector<std::size_t>& frames) const;
 
   void write(const FrameRecord& record);

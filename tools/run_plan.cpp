@@ -86,6 +86,9 @@ RunPlan make_plan(const RunArguments& arguments) {
 void require_writable_folders(const OutputFolder& output, const std::vector<Technique>& techniques) {
   require_writable_folder(output.path());
   for (const Technique& technique : techniques) require_writable_folder(output.path() / spec_folder(technique.spec));
+  const std::filesystem::path report = output.path() / "report.json";
+  if (std::filesystem::exists(report) && !std::filesystem::is_regular_file(report))
+    throw std::runtime_error(report.string() + ": expected a regular file or none, found something else");
 }
 
 std::vector<std::size_t> parse_frame_range(const std::string& text, std::size_t frames) {

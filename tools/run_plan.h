@@ -37,7 +37,7 @@ struct RunPlan {
 // needs more memory than the machine has.
 RunPlan make_plan(const RunArguments& arguments);
 
-// Throws OutputError unless every technique's folder can be written.
+// Throws std::runtime_error, one line, unless every technique's folder and report.json can be written.
 void require_writable_folders(const OutputFolder& output, const std::vector<Technique>& techniques);
 
 // "A-B" or "A", counted from 0, both ends included. Throws UsageError unless A <= B < frames.

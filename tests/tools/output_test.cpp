@@ -61,6 +61,48 @@ TEST(OutputFolder, AFailureLeavesNothingNew) {
   EXPECT_EQ(folder.list(), Names{"taken/"});
 }
 
+// At no moment do a file and what speaks of an earlier one stand side by side; nor is the latter lost for nothing.
+TEST(OutputFolder, WhatIsOutdatedGoesWhenTheNewFileIsReadyAndBeforeItAppears) {
+  TemporaryFolder folder;
+  InterruptGate gate;
+  write_text(folder / "report", "1");
+  OutputFolder output(folder.string(), gate);
+  std::filesystem::create_directory(folder / "taken");
+  EXPECT_THROW(output.write("taken", "bytes", {"report"}), std::runtime_error);
+  EXPECT_EQ(folder.list(), (Names{"report", "taken/"}));
+  output.write("picture", "bytes", {"report", "never_there"});
+  EXPECT_EQ(folder.list(), (Names{"picture", "taken/"}));
+  write_text(folder / "taken/file", "so that the folder cannot be removed");
+  EXPECT_THROW(output.write("second", "bytes", {"taken"}), std::runtime_error);
+  EXPECT_EQ(folder.list(), (Names{"picture", "taken/", "taken/file"}));
+}
+
+TEST(OutputFolder, IsLockedAgainstOthers) {
+  TemporaryFolder folder;
+  InterruptGate gate;
+  const auto expect_locked = [&](auto call) {
+    try {
+      call();
+      ADD_FAILURE() << "not locked";
+    } catch (const std::runtime_error& error) {
+      EXPECT_EQ(error.what(), (folder / "a").string() + ": is being written by another program");
+    }
+  };
+  OutputFolder early(folder / "a", gate), late(folder / "a", gate);
+  early.lock();  // as long as the folder does not exist, both may
+  {
+    OutputFolder output(folder / "a", gate);
+    output.lock();
+    output.write("f", "1");
+    output.keep();
+    expect_locked([&] { early.write("b/g", "2"); });
+    expect_locked([&] { late.lock(); });
+    EXPECT_EQ(folder.list(), (Names{"a/", "a/f"}));
+  }
+  late.lock();
+  expect_locked([&] { early.lock(); });
+}
+
 TEST(OutputFolder, RemovesAFileThatMayNotBeThere) {
   TemporaryFolder folder;
   InterruptGate gate;

@@ -4,8 +4,11 @@
 
 #include <png.h>
 
+#include <chrono>
 #include <cmath>
+#include <csignal>
 #include <random>
+#include <thread>
 
 #include "tests/tools/program.h"
 #include "tools/report/label_placement.h"
@@ -171,6 +174,36 @@ TEST_F(PlotTest, ErrorsAreOneLine) {
   setenv("PATH", path("empty").c_str(), 1);
   expect_error({"plot", path("good"), "-o", path("p.svg")}, 1, "cannot run the program gnuplot");
   setenv("PATH", search_path.c_str(), 1);
+  EXPECT_FALSE(std::filesystem::exists(folder_ / "p.svg"));
+}
+
+// Of a gnuplot that never ends, nothing is left: no process and no file.
+TEST_F(PlotTest, AnInterruptEndsGnuplotToo) {
+  make_report("a", report_text("beam", 42, 100, 0.01, 50));
+  std::filesystem::create_directory(folder_ / "temporary");
+  std::filesystem::create_directory(folder_ / "bin");
+  write_text(folder_ / "bin/gnuplot", "#!/bin/sh\necho $$ >" + path("pid.part") + " && mv " + path("pid.part") + " " +
+                                          path("pid") + "\nexec sleep 60\n");
+  std::filesystem::permissions(folder_ / "bin/gnuplot", std::filesystem::perms::owner_all);
+  const std::string search_path = getenv("PATH");
+  setenv("PATH", (path("bin") + ":" + search_path).c_str(), 1);
+  setenv("TMPDIR", path("temporary").c_str(), 1);
+  const auto pause = [] { std::this_thread::sleep_for(std::chrono::milliseconds(10)); };
+  {
+    Program program({"plot", path("a"), "-o", path("p.svg")});
+    setenv("PATH", search_path.c_str(), 1);
+    unsetenv("TMPDIR");
+    for (int i = 0; i < 3000 && !std::filesystem::exists(folder_ / "pid"); ++i) pause();
+    program.signal(SIGTERM);
+    EXPECT_EQ(program.wait().exit_code, 128 + SIGTERM);
+  }
+  const auto runs = [process = "/proc/" + std::to_string(std::stoi(read_text(folder_ / "pid")))] {
+    std::string command;  // of a process that is no more, empty
+    return static_cast<bool>(std::getline(std::ifstream(process + "/cmdline"), command));
+  };
+  for (int i = 0; i < 500 && runs(); ++i) pause();
+  EXPECT_FALSE(runs());
+  EXPECT_TRUE(std::filesystem::is_empty(folder_ / "temporary"));
   EXPECT_FALSE(std::filesystem::exists(folder_ / "p.svg"));
 }
 

@@ -13,6 +13,7 @@
 #include "simd/target.h"
 #include "tools/image_io.h"
 #include "tools/metrics.h"
+#include "tools/output.h"
 
 namespace beampipe {
 namespace {
@@ -510,6 +511,49 @@ TEST_F(ProgramTest, CtrlCEndsALongFrameAndALongFileAtOnce) {
   frame.signal(SIGINT);
   EXPECT_EQ(frame.wait().exit_code, 130);
   EXPECT_EQ(folder_.list(), (Names{"trace.json", "wide.json"}));
+}
+
+TEST_F(ProgramTest, CtrlCLeavesNoSoup) {
+  succeed({"make", "hairball", "--triangles", "300000", "-o", path("big.json")});
+  const Names before = folder_.list();
+  Program program({"export-soup", path("big.json"), "-o", path("big.soup")});
+  for (int i = 0; i < 30000 && folder_.list() == before; ++i) pause(1);
+  program.signal(SIGTERM);
+  if (program.wait().exit_code == 0) return;  // it was faster
+  EXPECT_EQ(folder_.list(), before);
+}
+
+TEST_F(ProgramTest, OneProgramAtATimeWritesIntoAFolder) {
+  Program program(long_run(path("trace.json"), path("out")));
+  for (int i = 0; i < 3000 && !std::filesystem::exists(folder_ / "out/msaa_1/frame_0000_counters.exr"); ++i) pause(10);
+  const Names before = folder_.list();
+  const std::vector<Names> others = {{"run", path("trace.json"), "-t", "beam", "-o", path("out")},
+                                     {"run", path("trace.json"), "-t", "beam", "-o", path("out"), "--resume"},
+                                     {"compare", path("trace.json"), "-t", "beam", "-o", path("out")}};
+  for (const Names& other : others) {
+    expect_one_error_line(run_program(other), 1, path("out") + ": is being written by another program");
+    EXPECT_EQ(folder_.list(), before);
+  }
+  program.signal(SIGKILL);
+  program.wait();
+  succeed(others[0]);
+}
+
+TEST_F(ProgramTest, ReportKeepsOutOfAFolderInUse) {
+  succeed({"compare", path("trace.json"), "-t", "msaa:1", "--ladder", "1", "-o", path("out")});
+  InterruptGate gate;
+  OutputFolder writer(path("out"), gate);
+  writer.lock();
+  expect_one_error_line(run_program({"report", path("out")}), 1, "is being written by another program");
+  EXPECT_FALSE(std::filesystem::exists(folder_ / "out/report.html"));
+}
+
+TEST_F(ProgramTest, AFolderInTheReportsPlaceIsRefusedAtOnce) {
+  std::filesystem::create_directories(folder_ / "out/report.json");
+  const Names before = folder_.list();
+  expect_one_error_line(run_program({"run", path("trace.json"), "-t", "msaa:1", "-o", path("out")}), 1,
+                        "out/report.json: expected a regular file or none, found something else");
+  EXPECT_EQ(folder_.list(), before);
 }
 
 TEST_F(ProgramTest, ATerminalShowsProgressAfterASecond) {

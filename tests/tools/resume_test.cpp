@@ -1,5 +1,7 @@
 // Runs that are killed and go on.
 
+#include "tools/resume.h"
+
 #include <chrono>
 #include <csignal>
 #include <cstdio>
@@ -161,6 +163,52 @@ TEST_F(ResumeTest, GoesOnAtTheFirstFrameThatLacksAPicture) {
   EXPECT_EQ(succeed(resume("run", "out", {"msaa:2"})).err, "");
   succeed(command("run", "whole", {"msaa:2"}));
   EXPECT_EQ(differences("out", "whole"), std::set<std::string>{});
+}
+
+// What a power failure or another program did to them.
+TEST_F(ResumeTest, DamagedFilesOfAFinishedFrameAreMadeAgain) {
+  make_trace(2);
+  for (const std::string verb : {"run", "compare"}) {
+    Names specs = {"msaa:2"};
+    if (verb == "compare") specs.insert(specs.end(), {"--ladder", "1"});
+    succeed(command(verb, verb + "_whole", specs));
+    for (const std::string file : {"frame_0000.exr", "frame_0000.png", "frame_0000_counters.exr"}) {
+      SCOPED_TRACE(verb + " " + file);
+      const std::string out = verb + "_" + file;
+      leave_unfinished(verb, out, specs);
+      const fs::path damaged = folder_ / out / "msaa_2" / file;
+      std::string bytes = read_text(damaged);
+      ++bytes.at(bytes.size() / 2);
+      write_text(damaged, file == "frame_0000.exr" ? "" : bytes);
+      succeed(resume(verb, out, specs));
+      EXPECT_EQ(differences(out, verb + "_whole"), std::set<std::string>{});
+    }
+  }
+}
+
+TEST_F(ResumeTest, AFrameWhoseRecordIsDamagedIsMadeAgain) {
+  make_trace(2);
+  const Names specs = {"msaa:2", "--ladder", "1"};
+  succeed(command("compare", "whole", specs));
+  leave_unfinished("compare", "out", specs);
+  const fs::path record = folder_ / "out" / frame_record_name(0);
+  const std::vector<std::function<void(Json&)>> damages = {[](Json& json) { json.erase("sums"); },
+                                                           [](Json& json) { json["sums"]["ladder"] = "none"; },
+                                                           [](Json& json) { json["techniques"] = Json::array(); },
+                                                           [](Json& json) { json["techniques"][0]["image"] = 7; },
+                                                           [](Json& json) { json["techniques"][0]["stages"].clear(); },
+                                                           [](Json& json) { json.erase("digest"); },
+                                                           [](Json& json) { json = Json::array({json}); }};
+  for (std::size_t i = 0; i < damages.size(); ++i) {
+    SCOPED_TRACE(i);
+    const std::string out = "out_" + std::to_string(i);
+    fs::copy(folder_ / "out", folder_ / out, fs::copy_options::recursive);
+    Json json = Json::parse(read_text(record));
+    damages[i](json);
+    write_text(folder_ / out / frame_record_name(0), json.dump());
+    EXPECT_EQ(succeed(resume("compare", out, specs)).err, "") << "it starts again";
+    EXPECT_EQ(differences(out, "whole"), std::set<std::string>{});
+  }
 }
 
 TEST_F(ResumeTest, OrdersAndCausesGoOnToTheSameSums) {

@@ -1,11 +1,14 @@
 #include "tools/report/gnuplot.h"
 
+#include <sys/mman.h>
+#include <sys/prctl.h>
 #include <sys/wait.h>
+#include <unistd.h>
 
 #include <algorithm>
 #include <cmath>
+#include <csignal>
 #include <cstdio>
-#include <filesystem>
 #include <fstream>
 #include <memory>
 #include <sstream>
@@ -16,14 +19,13 @@
 namespace beampipe {
 namespace {
 
-namespace fs = std::filesystem;
-
 constexpr int kWidth = 760, kHeight = 520;                                     // px
 constexpr double kLeft = 0.105, kRight = 0.975, kBottom = 0.12, kTop = 0.915;  // of the picture: where the axes are
 constexpr int kFontSize = 12, kLabelHeight = 14;                               // px
 constexpr double kCharacterWidth = 6.9;                                        // px, of most fonts at this size
 constexpr double kPointRadius = 5;                                             // px
 constexpr int kPngScale = 2;                                                   // PNG pixels per px
+constexpr int kNoProgram = 127;                                                // exit code, as of a shell
 
 // In single quotes gnuplot takes everything as it is.
 std::string quoted(const std::string& text) {
@@ -156,43 +158,51 @@ void write_series(std::ostream& script, const ScatterPlot& plot) {
   script << blocks.str() << plots.str() << "\n";
 }
 
-// A folder of its own that goes away with it.
-class ScratchFolder {
+// Without a name in any folder: it goes away with the program, however that ends.
+class MemoryFile {
  public:
-  ScratchFolder() {
-    std::string name = (fs::temp_directory_path() / "beampipe-plot-XXXXXX").string();
-    if (!mkdtemp(name.data())) throw std::runtime_error("cannot make a temporary folder " + name);
-    path_ = name;
+  MemoryFile() : descriptor_(memfd_create("gnuplot", 0)) {
+    if (descriptor_ < 0) throw std::runtime_error("cannot make a file in memory");
   }
-  ~ScratchFolder() {
-    std::error_code ignored;
-    fs::remove_all(path_, ignored);
-  }
-  ScratchFolder(const ScratchFolder&) = delete;
-  ScratchFolder& operator=(const ScratchFolder&) = delete;
+  ~MemoryFile() { close(descriptor_); }
+  MemoryFile(const MemoryFile&) = delete;
+  MemoryFile& operator=(const MemoryFile&) = delete;
 
-  fs::path operator/(const char* name) const { return path_ / name; }
+  int descriptor() const { return descriptor_; }
+  void write(const std::string& text) const { std::ofstream(path(), std::ios::binary) << text; }
+  std::string read() const {
+    std::ifstream file(path(), std::ios::binary);
+    return {std::istreambuf_iterator<char>(file), {}};
+  }
 
  private:
-  fs::path path_;
+  std::string path() const { return "/proc/self/fd/" + std::to_string(descriptor_); }
+
+  int descriptor_;
 };
 
-std::string read_all(std::istream&& stream) { return {std::istreambuf_iterator<char>(stream), {}}; }
-
-// What gnuplot prints on standard output.
+// What gnuplot prints on standard output. It ends when this program does.
 std::string run_gnuplot(const std::string& script) {
-  const ScratchFolder scratch;
-  std::ofstream(scratch / "script") << script;
-  const std::string command = "cd '" + (scratch / "").string() + "' && gnuplot script >picture 2>messages";
-  const int status = std::system(command.c_str());
-  if (WIFEXITED(status) && WEXITSTATUS(status) == 127) {
+  const MemoryFile input, picture, messages;
+  input.write(script);
+  const pid_t parent = getpid(), child = fork();
+  if (child < 0) throw std::runtime_error("cannot start another process to run gnuplot");
+  if (child == 0) {
+    dup2(input.descriptor(), STDIN_FILENO);
+    dup2(picture.descriptor(), STDOUT_FILENO);
+    dup2(messages.descriptor(), STDERR_FILENO);
+    prctl(PR_SET_PDEATHSIG, SIGKILL);
+    if (getppid() == parent) execlp("gnuplot", "gnuplot", nullptr);
+    _exit(kNoProgram);
+  }
+  int status = 0;
+  waitpid(child, &status, 0);
+  if (WIFEXITED(status) && WEXITSTATUS(status) == kNoProgram) {
     throw std::runtime_error("cannot run the program gnuplot, which draws the plots (Debian package gnuplot-nox)");
   }
-  std::string picture = read_all(std::ifstream(scratch / "picture", std::ios::binary));
-  if (status != 0 || picture.empty()) {
-    throw std::runtime_error("gnuplot could not draw: " + read_all(std::ifstream(scratch / "messages")));
-  }
-  return picture;
+  std::string bytes = picture.read();
+  if (status != 0 || bytes.empty()) throw std::runtime_error("gnuplot could not draw: " + messages.read());
+  return bytes;
 }
 
 std::string terminal(PlotFormat format) {
