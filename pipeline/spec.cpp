@@ -2,6 +2,7 @@
 
 #include <bit>
 #include <charconv>
+#include <cstdint>
 
 #include "pipeline/technique.h"
 
@@ -53,13 +54,18 @@ bool Spec::flag(std::string_view key) {
   return false;
 }
 
-double Spec::number(std::string_view key, double fallback, double low, double high) {
+template <class Number>
+Number Spec::number(std::string_view key, Number fallback, Number low, Number high) {
   const std::string* const text = take(key);
   if (!text) return fallback;
-  double value = 0;
+  Number value{};
   if (!parse(*text, value) || !(low <= value && value <= high)) fail();
   return value;
 }
+
+template int Spec::number(std::string_view, int, int, int);
+template std::uint32_t Spec::number(std::string_view, std::uint32_t, std::uint32_t, std::uint32_t);
+template float Spec::number(std::string_view, float, float, float);
 
 const std::string* Spec::take(std::string_view key) {
   for (Item& item : items_) {

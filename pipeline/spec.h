@@ -22,8 +22,9 @@ class Spec {
   // "key" alone.
   bool flag(std::string_view key);
 
-  // "key=number" with low <= number <= high.
-  double number(std::string_view key, double fallback, double low, double high);
+  // "key=number" with low <= number <= high; int and std::uint32_t: a whole one; float.
+  template <class Number>
+  Number number(std::string_view key, Number fallback, Number low, Number high);
 
   // "key=word", with what each word stands for; the first is the default.
   template <class Value>

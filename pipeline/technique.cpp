@@ -59,7 +59,7 @@ Technique make_stream(Spec& spec) {
   StreamOptions options;
   options.positions = spec.choice<int>("bits", {{"128", 128}, {"256", 256}, {"64", 64}, {"32", 32}});
   options.layers = spec.choice<int>("layers", {{"5", 5}, {"1", 1}});
-  options.passes = static_cast<int>(spec.number("passes", 0, 1, 1000));
+  options.passes = spec.number("passes", 0, 1, 1000);
   return {spec.text(), stream_framebuffer(options), 0, bind_options(render_stream, options)};
 }
 
@@ -123,14 +123,14 @@ Technique make_visibility(Spec& spec) {
 Technique make_taa(Spec& spec) {
   TaaOptions options;
   options.samples = spec.samples(kMaxTaaSamples);
-  options.blend = static_cast<float>(spec.number("blend", options.blend, 0.001, 1));
+  options.blend = spec.number("blend", options.blend, 0.001f, 1.0f);
   return {spec.text(), taa_framebuffer(), 0, bind_options(render_taa, options), {}, true, kTemporalWorkingBytes};
 }
 
 Technique make_dvm(Spec& spec) {
   DvmOptions options;
-  options.blend = static_cast<float>(spec.number("blend", options.blend, 0.001, 1));
-  options.seed = static_cast<std::uint32_t>(spec.number("seed", options.seed, 0, 4294967295.0));
+  options.blend = spec.number("blend", options.blend, 0.001f, 1.0f);
+  options.seed = spec.number("seed", options.seed, 0u, std::numeric_limits<std::uint32_t>::max());
   options.material = spec.choice<MaterialBy>("material", {{"color", MaterialBy::color}, {"draw", MaterialBy::draw}});
   return {spec.text(), dvm_framebuffer(), 0, bind_options(render_dvm, options), {}, true, kDvmWorkingBytes};
 }

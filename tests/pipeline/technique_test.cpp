@@ -49,6 +49,7 @@ TEST(Technique, WrongSpecsSayWhatWasExpected) {
                            "beam:order=primitive",
                            "beam:order=stream,layers=2",
                            "beam:order=stream,passes=0",
+                           "beam:order=stream,passes=1.5",
                            "beam:rules=paper,order=stream",
                            "z3:layers=3",
                            "beam:fuzzy=mix",
@@ -74,6 +75,8 @@ TEST(Technique, WrongSpecsSayWhatWasExpected) {
                            "taa:8,blend=x",
                            "dvm:8",
                            "dvm:seed=-1",
+                           "dvm:seed=1.5",
+                           "dvm:seed=4294967296",
                            "visibility:8",
                            "deferred:"}) {
     try {
