@@ -2,7 +2,6 @@
 #pragma once
 
 #include <cstdint>
-#include <filesystem>
 #include <glm/glm.hpp>
 #include <initializer_list>
 #include <nlohmann/json.hpp>
@@ -24,11 +23,8 @@ std::string in_quotes(std::string_view text);
 // A key as a step of a JSON pointer: "/" and "~" escaped.
 std::string pointer_step(std::string_view key);
 
-// Throws TraceError unless `file` is a regular file, or a link to one, of at most 16 GiB: pipes and devices may have no
-// end.
-void require_input_file(const std::filesystem::path& file, const std::string& where);
-
-// Parses a whole file; broken JSON, duplicate keys and numbers out of range throw TraceError.
+// Parses a whole file; broken JSON, duplicate keys, numbers out of range, more than 32 levels of arrays and objects,
+// and what open_input_file refuses throw TraceError.
 Json parse_json(const std::string& file);
 
 // All readers throw TraceError when the value is not what they are named after.

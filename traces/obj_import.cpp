@@ -1,12 +1,13 @@
 #include <tiny_obj_loader.h>
 
+#include <algorithm>
 #include <charconv>
 #include <cmath>
-#include <fstream>
 #include <map>
 #include <sstream>
 #include <string_view>
 
+#include "traces/input_file.h"
 #include "traces/json_cursor.h"
 #include "traces/trace_io.h"
 #include "traces/triangulate.h"
@@ -18,40 +19,94 @@ namespace fs = std::filesystem;
 
 constexpr glm::vec3 kGrey{0.8f};              // of faces without a material
 constexpr std::uint32_t kMostCorners = 4096;  // of a face: finding its triangles takes their cube in the worst case
-constexpr std::string_view kBlanks = " \t\r";
+constexpr std::string_view kBlanks = " \t";
 
 std::string_view trim(std::string_view text) {
   const std::size_t first = text.find_first_not_of(kBlanks);
   return first == text.npos ? "" : text.substr(first, text.find_last_not_of(kBlanks) - first + 1);
 }
 
-std::string_view take_word(std::string_view& line) {
-  line = trim(line);
-  const std::string_view word = line.substr(0, line.find_first_of(kBlanks));
-  line.remove_prefix(word.size());
-  return word;
+// Up to \n, \r\n or \r, as the loader's lines.
+std::string_view take_line(std::string_view& text) {
+  const auto end = std::find_if(text.begin(), text.end(), [](char c) { return c == '\n' || c == '\r'; });
+  const std::string_view line(text.begin(), end);
+  text.remove_prefix(line.size());
+  text.remove_prefix(text.starts_with("\r\n") ? 2 : !text.empty());
+  return line;
 }
 
-bool is_finite_float(std::string_view word) {
-  if (word.starts_with('+')) word.remove_prefix(1);
-  double value = 0;
+std::string_view take_word(std::string_view& line) {
+  const auto is_blank = [](char c) { return c == ' ' || c == '\t'; };
+  const auto start = std::find_if_not(line.begin(), line.end(), is_blank);
+  const auto end = std::find_if(start, line.end(), is_blank);
+  line = {end, line.end()};
+  return {start, end};
+}
+
+// Whether the whole word is a number that can be stored.
+template <class Number>
+bool is_number(std::string_view word) {
+  if (word.starts_with('+') && !word.starts_with("+-")) word.remove_prefix(1);
+  Number value = 0;
   const auto [end, error] = std::from_chars(word.data(), word.data() + word.size(), value);
   return error == std::errc() && end == word.data() + word.size() && std::isfinite(static_cast<float>(value));
 }
 
-// The loader reads "nan", "1,5" and missing coordinates as 0, so that they must be found before.
-void check_numbers(std::string_view text, std::string_view keyword, const std::string& where) {
-  for (std::size_t number = 1; !text.empty(); ++number) {
-    const std::string_view whole = text.substr(0, text.find('\n'));
-    text.remove_prefix(std::min(whole.size() + 1, text.size()));
-    std::string_view line = whole;
-    if (take_word(line) != keyword) continue;
-    for (int i = 0; i < 3; ++i) {
-      if (is_finite_float(take_word(line))) continue;
-      fail_trace(where + ": line " + std::to_string(number),
-                 "three finite numbers after \"" + std::string(keyword) + "\"", in_quotes(trim(whole)));
-    }
+bool has_three_numbers(std::string_view line) {
+  for (int i = 0; i < 3; ++i)
+    if (!is_number<double>(take_word(line))) return false;
+  return true;
+}
+
+// "3", "3/1", "3//1", "3/1/1": vertex, texture coordinate, normal.
+bool is_corner(std::string_view word) {
+  for (int part = 0; part < 3; ++part) {
+    const std::string_view index = word.substr(0, word.find('/'));
+    if (!is_number<int>(index) && (part == 0 || !index.empty())) return false;
+    if (index.size() == word.size()) return true;
+    word.remove_prefix(index.size() + 1);
   }
+  return false;
+}
+
+bool has_only_corners(std::string_view line) {
+  for (std::string_view word = take_word(line); !word.empty(); word = take_word(line))
+    if (!is_corner(word)) return false;
+  return true;
+}
+
+// The loader reads "nan", "1,5" and missing coordinates as 0, and "3x" and 2^32 + 3 as 3, so that they must be found
+// before.
+void check_lines(std::string_view text, const std::string& where) {
+  for (std::size_t number = 1; !text.empty(); ++number) {
+    const std::string_view whole = take_line(text);
+    std::string_view line = whole;
+    const std::string_view keyword = take_word(line);
+    std::string expected;
+    if ((keyword == "v" || keyword == "Kd") && !has_three_numbers(line)) expected = "three finite numbers";
+    if (keyword == "f" && !has_only_corners(line)) expected = "corners such as 3, 3/1, 3//1 or 3/1/1";
+    if (expected.empty()) continue;
+    fail_trace(where + ": line " + std::to_string(number), expected + " after " + in_quotes(keyword),
+               in_quotes(trim(whole)));
+  }
+}
+
+bool is_finite(const glm::vec3& v) { return std::isfinite(v.x) && std::isfinite(v.y) && std::isfinite(v.z); }
+
+// A whole OBJ or material library, without the byte order mark that some editors write before UTF-8.
+std::stringstream read_text(const fs::path& file, const std::string& where) {
+  constexpr std::string_view kByteOrderMark = "\xEF\xBB\xBF";
+  std::ifstream stream = open_input_file(file, where);
+  char start[kByteOrderMark.size()] = {};
+  stream.read(start, sizeof start);
+  if (std::string_view(start, sizeof start) != kByteOrderMark) {
+    stream.clear();
+    stream.seekg(0);
+  }
+  std::stringstream text;
+  text << stream.rdbuf();
+  check_lines(text.view(), where);
+  return text;
 }
 
 // Reads the material libraries that an OBJ names; only from the OBJ's own folder.
@@ -69,10 +124,7 @@ class Materials : public tinyobj::MaterialReader {
       fail_trace(where_, "an mtllib in the OBJ's folder", in_quotes(name));
     }
     if (!fs::exists(file, error)) return false;
-    require_input_file(file, where_ + ": " + name);
-    std::stringstream text;
-    text << std::ifstream(file, std::ios::binary).rdbuf();
-    read(text, where_ + ": " + name);
+    read(file, where_ + ": " + name);
     return true;
   }
 
@@ -82,16 +134,16 @@ class Materials : public tinyobj::MaterialReader {
   }
 
  private:
-  void read(std::stringstream& text, const std::string& where) {
-    check_numbers(text.view(), "Kd", where);
+  void read(const fs::path& file, const std::string& where) {
+    std::stringstream text = read_text(file, where);
     std::map<std::string, int> index;
     std::vector<tinyobj::material_t> materials;
     std::string warning, error;
     tinyobj::LoadMtl(&index, &materials, &text, &warning, &error);
     for (const tinyobj::material_t& material : materials) {
       const glm::vec3 kd(material.diffuse[0], material.diffuse[1], material.diffuse[2]);
-      if (glm::any(glm::lessThan(kd, glm::vec3(0.0f)))) {
-        fail_trace(where, "a Kd of 0 and up", "a negative one in material " + in_quotes(material.name));
+      if (!is_finite(kd) || glm::any(glm::lessThan(kd, glm::vec3(0.0f)))) {
+        fail_trace(where, "finite Kd of 0 and up", "another one in material " + in_quotes(material.name));
       }
       kd_.emplace(trim(material.name), kd);
     }
@@ -143,12 +195,7 @@ Polygons load(std::istream& text, Materials& materials) {
 
 Mesh read_obj(const fs::path& file, const std::string& named_by) {
   const std::string where = (named_by.empty() ? "" : named_by + ": ") + file.string();
-  require_input_file(file, where);
-  std::ifstream stream(file, std::ios::binary);
-  if (!stream) fail_trace(where, "a readable file", "none");
-  std::stringstream text;
-  text << stream.rdbuf();
-  check_numbers(text.view(), "v", where);
+  std::stringstream text = read_text(file, where);
   Materials materials(file, where);
   Polygons polygons = load(text, materials);
   if (polygons.sizes.empty()) fail_trace(where, "at least one face", "none");
@@ -157,6 +204,11 @@ Mesh read_obj(const fs::path& file, const std::string& named_by) {
   mesh.name = file.stem().string();
   mesh.positions = std::move(polygons.positions);
   const auto vertices = static_cast<std::int64_t>(mesh.positions.size());
+  // The loader takes 0e500 for 0 times infinity.
+  const auto odd = std::find_if_not(mesh.positions.begin(), mesh.positions.end(), is_finite);
+  if (odd != mesh.positions.end()) {
+    fail_trace(where + ": vertex " + std::to_string(odd - mesh.positions.begin() + 1), "finite numbers", "others");
+  }
   std::vector<glm::vec3> corners;
   const std::int64_t* first = polygons.corners.data();
   for (std::size_t i = 0; i < polygons.sizes.size(); first += polygons.sizes[i], ++i) {

@@ -1,4 +1,7 @@
-// Any bytes as an OBJ and, behind the first NUL, its material library: one error, or a mesh whose parts fit together.
+// Any bytes as an OBJ and, behind the first NUL, its material library: one error, or a mesh of finite numbers whose
+// parts fit together.
+#include <cmath>
+
 #include "tests/fuzz/fuzz_input.h"
 #include "traces/trace_io.h"
 
@@ -12,6 +15,10 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size
   try {
     const Mesh mesh = read_obj(file, "");
     if (mesh.colors.size() != mesh.triangles.size()) std::abort();
+    for (const auto& vectors : {mesh.positions, mesh.colors})
+      for (const glm::vec3& v : vectors)
+        for (int i = 0; i < 3; ++i)
+          if (!std::isfinite(v[i])) std::abort();
     for (const glm::uvec3& t : mesh.triangles)
       for (int i = 0; i < 3; ++i)
         if (t[i] >= mesh.positions.size()) std::abort();

@@ -112,7 +112,47 @@ TEST_F(ObjImportTest, SaysWhatIsWrong) {
   std::string corners;
   for (int i = 0; i < 5000; ++i) corners.append(" ").append(std::to_string(i % 4 + 1));
   EXPECT_EQ(error(kSquare + "f" + corners + "\n"), start + "face 1: expected at most 4096 corners, found 5000");
-  EXPECT_EQ(error(kSquare + "f a b c\n"), start + "face 1: " + range + "1");
+}
+
+TEST_F(ObjImportTest, ReadsNothingThatItsChecksHaveNotSeen) {
+  const std::string start = "scene.json: /meshes/m/obj: mesh.obj: ";
+  const std::string number = "expected three finite numbers after \"v\", found ";
+  EXPECT_EQ(error("v 0 0 0\r\n#\rv 1e39 1 .5\n"), start + "line 3: " + number + "\"v 1e39 1 .5\"");
+  EXPECT_EQ(error("v 0 0 0\rv nan 0 0\r"), start + "line 2: " + number + "\"v nan 0 0\"");
+  EXPECT_EQ(error("#\rv 1"), start + "line 2: " + number + "\"v 1\"");
+  EXPECT_EQ(error(" \tv\t0 0 \tnan\n"), start + "line 1: " + number + "\"v\\t0 0 \\tnan\"");
+  EXPECT_EQ(error("v +-5 0 0\n"), start + "line 1: " + number + "\"v +-5 0 0\"");
+  EXPECT_EQ(error(std::string("v 0 0 0\0001\n", 10)), start + "line 1: " + number + "\"v 0 0 0\\u00001\"");
+  EXPECT_EQ(error("v 0 0 \\\n0\n"), start + "line 1: " + number + "\"v 0 0 \\\\\"");
+  EXPECT_EQ(error("v 0 0 0\nv 0 0e500 0\nf 1 2 1\n"), start + "vertex 2: expected finite numbers, found others");
+  write("m.mtl", "newmtl a\n#\rKd 1e39 1 1\n");
+  EXPECT_EQ(error("mtllib m.mtl\n"),
+            start + "m.mtl: line 3: expected three finite numbers after \"Kd\", found \"Kd 1e39 1 1\"");
+  write("m.mtl", "newmtl a\nKd 1 0e500 1\n");
+  EXPECT_EQ(error("mtllib m.mtl\n"),
+            start + "m.mtl: expected finite Kd of 0 and up, found another one in material \"a\"");
+}
+
+TEST_F(ObjImportTest, TakesIndicesInEveryFormAndNothingElse) {
+  for (const char* face :
+       {"1 2 3", "1/5 2/5 3/5", "1//6 2//6 3//6", "1/5/6 2/5/6 3/5/6", "-4/-1 -3//-1 +3", "1/ 2/ 3/"})
+    EXPECT_EQ(load(kSquare + "f " + face + "\r\n").triangles, (std::vector<glm::uvec3>{{0, 1, 2}})) << face;
+  for (const char* index :
+       {"4294967299", "99999999999999999999", "-4294967295", "3x", "2.9", "c", "+-3", "/3", "3/1x", "3/1/1/1"}) {
+    const std::string face = std::string("f 1 2 ") + index;
+    EXPECT_EQ(error(kSquare + "#\r\n" + face + "\n"),
+              "scene.json: /meshes/m/obj: mesh.obj: line 6: expected corners such as 3, 3/1, 3//1 or 3/1/1 after "
+              "\"f\", found \"" +
+                  face + "\"");
+  }
+}
+
+TEST_F(ObjImportTest, SkipsAByteOrderMark) {
+  write("m.mtl", "\xEF\xBB\xBFnewmtl red\nKd 1 0 0\n");
+  const Mesh mesh = load("\xEF\xBB\xBFv 5 0 0\nmtllib m.mtl\nusemtl red\n" + kSquare + "f 1 2 3\n");
+  EXPECT_EQ(mesh.positions.size(), 5u);
+  EXPECT_EQ(mesh.colors[0], glm::vec3(1, 0, 0));
+  EXPECT_NE(error("\xEF\xBB\xBFv nan 0 0\n").find("line 1: expected three finite numbers"), std::string::npos);
 }
 
 TEST_F(ObjImportTest, SaysWhatIsWrongWithMaterials) {
@@ -120,7 +160,7 @@ TEST_F(ObjImportTest, SaysWhatIsWrongWithMaterials) {
   write("m.mtl", "newmtl red\nKd 1 0\n");
   EXPECT_EQ(error("mtllib m.mtl\n"), start + "line 2: expected three finite numbers after \"Kd\", found \"Kd 1 0\"");
   write("m.mtl", "newmtl red\nKd 1 -1 0\n");
-  EXPECT_EQ(error("mtllib m.mtl\n"), start + "expected a Kd of 0 and up, found a negative one in material \"red\"");
+  EXPECT_EQ(error("mtllib m.mtl\n"), start + "expected finite Kd of 0 and up, found another one in material \"red\"");
 }
 
 TEST_F(ObjImportTest, NamesFilesThatCannotBeRead) {

@@ -1,0 +1,25 @@
+#include "traces/input_file.h"
+
+#include <cstdint>
+
+#include "traces/json_cursor.h"
+
+namespace beampipe {
+
+std::ifstream open_input_file(const std::filesystem::path& file, const std::string& where) {
+  constexpr std::uint64_t kMostBytes = std::uint64_t{16} << 30;
+  std::error_code error;
+  const std::filesystem::file_status status = std::filesystem::status(file, error);
+  if (!std::filesystem::exists(status)) fail_trace(where, "a readable file", "none");
+  if (std::filesystem::is_directory(status)) fail_trace(where, "a readable file", "a folder");
+  if (!std::filesystem::is_regular_file(status)) fail_trace(where, "a regular file", "a pipe or a device");
+  const std::uint64_t size = std::filesystem::file_size(file, error);
+  if (!error && size > kMostBytes) fail_trace(where, "at most 16 GiB", std::to_string(size >> 30) + " GiB");
+  std::ifstream stream(file, std::ios::binary);
+  stream.peek();  // some of the kernel's files open, and then cannot be read
+  if (stream.fail()) fail_trace(where, "a readable file", "none");
+  stream.clear();  // of the end, in an empty file
+  return stream;
+}
+
+}  // namespace beampipe
