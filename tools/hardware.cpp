@@ -1,17 +1,15 @@
 #include "tools/hardware.h"
 
 #include <algorithm>
-#include <fstream>
 #include <functional>
 #include <iterator>
 #include <stdexcept>
 
 #include "tools/hardware_text.h"
+#include "traces/json_cursor.h"
 
 namespace beampipe {
 namespace {
-
-using Json = nlohmann::ordered_json;
 
 // What a unit has to do for a stage, in clocks.
 using Clocks = std::function<double(const std::map<std::string, double>& rates, const StageCounters& stage)>;
@@ -59,12 +57,7 @@ constexpr const char* kRates[] = {"triangles_per_clk",     "raster_pixels_per_cl
 // Reads a file's values, naming the file and the key in what it throws.
 class Reader {
  public:
-  Reader(const std::string& text, std::string file) : file_(std::move(file)) {
-    try {
-      json_ = Json::parse(text);
-    } catch (const Json::parse_error& error) {
-      fail("", std::string("expected JSON: ") + error.what());
-    }
+  Reader(const Json& json, const std::string& file) : file_(file), json_(json) {
     if (!json_.is_object()) fail("", "expected an object");
   }
 
@@ -130,21 +123,19 @@ class Reader {
     throw std::runtime_error(file_ + ": " + (key.empty() ? "" : key + ": ") + what);
   }
 
-  std::string file_;
-  Json json_;
+  const std::string& file_;
+  const Json& json_;
 };
 
 }  // namespace
 
-Hardware titan_v() { return parse_hardware(kTitanVText, "the built-in description"); }
+Hardware titan_v() { return parse_hardware(Json::parse(kTitanVText), "the built-in description"); }
 
 Hardware read_hardware(const std::filesystem::path& file) {
-  std::ifstream stream(file, std::ios::binary);
-  if (!stream) throw std::runtime_error("cannot read " + file.string());
-  return parse_hardware({std::istreambuf_iterator<char>(stream), {}}, file.string());
+  return parse_hardware(parse_json(file.string()), file.string());
 }
 
-Hardware parse_hardware(const std::string& text, const std::string& file) { return Reader(text, file).read(); }
+Hardware parse_hardware(const Json& json, const std::string& file) { return Reader(json, file).read(); }
 
 std::map<std::string, double> unit_times(const Hardware& hardware, const Implementation& implementation,
                                          const StageCounters& stage) {

@@ -34,7 +34,7 @@ Hardware titan_v();
 
 // Throws std::runtime_error, one line that names the file, the key, what was expected and what was found.
 Hardware read_hardware(const std::filesystem::path& file);
-Hardware parse_hardware(const std::string& text, const std::string& file);
+Hardware parse_hardware(const nlohmann::ordered_json& json, const std::string& file);
 
 // Milliseconds by unit ("triangles", "shader", "dram", ...), those that the stage uses.
 std::map<std::string, double> unit_times(const Hardware& hardware, const Implementation& implementation,

@@ -2,17 +2,17 @@
 
 #include <cstdio>
 #include <filesystem>
-#include <fstream>
 #include <iostream>
 #include <map>
 
 #include "simd/target.h"
 #include "tools/digest.h"
+#include "traces/json_cursor.h"
+#include "traces/trace_io.h"
 
 namespace beampipe {
 namespace {
 
-using Json = nlohmann::ordered_json;
 namespace fs = std::filesystem;
 
 constexpr const char* kFolder = "unfinished";
@@ -95,11 +95,12 @@ FrameReport report_of(const Json& json) {
 
 // Null: there is none, or it is not JSON.
 Json read_json(const fs::path& path) {
-  std::error_code ignored;
-  if (!fs::is_regular_file(path, ignored)) return nullptr;
-  std::ifstream file(path, std::ios::binary);
-  const Json json = Json::parse(file, nullptr, false);
-  return json.is_object() ? json : Json();
+  try {
+    Json json = parse_json(path.string());
+    return json.is_object() ? json : Json();
+  } catch (const TraceError&) {
+    return nullptr;
+  }
 }
 
 Json maker_of(const Json& json) { return json.is_object() ? json.value("made_by", Json()) : Json(); }

@@ -4,6 +4,8 @@
 #include <map>
 #include <nlohmann/json.hpp>
 
+#include "traces/atomic_file.h"
+
 namespace beampipe {
 namespace {
 
@@ -54,6 +56,8 @@ TraceEvents::TraceEvents(const std::string& file, RunPlan& plan) {
   if (file.empty()) return;
   file_ = std::filesystem::absolute(file);
   require_writable_folder(file_.parent_path());
+  if (!file_.has_filename()) throw std::runtime_error(file + ": expected the name of a file, found a folder's");
+  if (std::filesystem::exists(file_.parent_path())) AtomicFile probe(file_);  // never committed
   plan.options.timeline = &timeline_;
 }
 

@@ -66,7 +66,7 @@ std::string refusal(const std::string& from, const std::string& to) {
   const std::size_t at = text.find(from);
   EXPECT_NE(at, text.npos) << from;
   try {
-    parse_hardware(text.replace(at, from.size(), to), "h.json");
+    parse_hardware(nlohmann::ordered_json::parse(text.replace(at, from.size(), to)), "h.json");
   } catch (const std::runtime_error& error) {
     return error.what();
   }
@@ -80,7 +80,6 @@ TEST(Hardware, ErrorsNameTheKey) {
   EXPECT_EQ(refusal("\"quads_per_clk\":24", "\"quads_per_clk\":24,\"x\":1"), "h.json: rates.x: there is no such key");
   EXPECT_NE(refusal("[\"rop_samples\"]", "[\"rop\"]").find("implementations.shaders.units.depth_test: expected units"),
             std::string::npos);
-  EXPECT_NE(refusal("{", "").find("h.json: expected JSON"), std::string::npos);
 }
 
 // Of no report there are the numbers that need no rendering.

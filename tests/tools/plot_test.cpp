@@ -164,9 +164,10 @@ TEST_F(PlotTest, ErrorsAreOneLine) {
   std::filesystem::create_directory(folder_ / "empty");
   expect_error({"plot", path("good"), "-o", path("plot.pdf")}, 2, "ends in .svg or .png");
   expect_error({"plot", path("nowhere"), "-o", path("p.svg")}, 1, "no such folder");
-  expect_error({"plot", path("empty"), "-o", path("p.svg")}, 1, "empty/report.json: cannot be read");
-  expect_error({"plot", path("broken"), "-o", path("p.svg")}, 1, "not a report that beampipe wrote");
-  expect_error({"plot", path("other"), "-o", path("p.svg")}, 1, "beampipe_report");
+  expect_error({"plot", path("empty"), "-o", path("p.svg")}, 1,
+               "empty/report.json: expected a readable file, found none");
+  expect_error({"plot", path("broken"), "-o", path("p.svg")}, 1, "broken/report.json: byte 24: expected valid JSON");
+  expect_error({"plot", path("other"), "-o", path("p.svg")}, 1, "not a report that beampipe wrote");
   expect_error({"plot", path("run"), "-o", path("p.svg")}, 1, "expected the report of `beampipe compare`");
   expect_error({"plot", path("good"), "--kind", "pie", "-o", path("p.svg")}, 2, "pie");
 

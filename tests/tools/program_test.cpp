@@ -4,6 +4,7 @@
 
 #include <pty.h>
 #include <sys/resource.h>
+#include <sys/stat.h>
 
 #include <chrono>
 #include <csignal>
@@ -328,6 +329,10 @@ TEST_F(ProgramTest, EveryInstructionSetGivesTheSamePictures) {
 TEST_F(ProgramTest, EveryMistakeIsOneLineAndLeavesNothing) {
   write_text(folder_ / "broken.json", "{\"beampipe_trace\": 1,");
   write_text(folder_ / "model.obj", "v 0 0 0\nv 4 0 0\nv 0 3 0\nf 1 2 3\n");
+  write_text(folder_ / "nested.json", std::string(1 << 20, '['));
+  for (const char* report : {"piped", "endless"}) std::filesystem::create_directory(folder_ / report);
+  ASSERT_EQ(mkfifo(path("piped/report.json").c_str(), 0666), 0);
+  std::filesystem::create_symlink("/dev/zero", folder_ / "endless/report.json");
   const std::string trace = path("trace.json"), out = path("out");
   const struct {
     std::vector<std::string> arguments;
@@ -345,6 +350,14 @@ TEST_F(ProgramTest, EveryMistakeIsOneLineAndLeavesNothing) {
       {{"run", "-t", "beam", trace, "-o", out}, 2, "was taken for a technique; write the trace before -t"},
       {{"run", "-t", "beam", "-o", out}, 2, "TRACE is missing"},
       {{"run", "/dev/zero", "-t", "beam", "-o", out}, 1, "expected a regular file"},
+      {{"run", trace, "-t", "beam", "-o", out, "--hardware", path("piped/report.json")}, 1, "expected a regular file"},
+      {{"run", trace, "-t", "beam", "-o", out, "--hardware", "/dev/zero"}, 1, "expected a regular file"},
+      {{"run", trace, "-t", "beam", "-o", out, "--hardware", path("broken.json")}, 1, "expected valid JSON"},
+      {{"run", trace, "-t", "beam", "-o", out, "--hardware", path("nested.json")}, 1, "nested.json: byte 33"},
+      {{"report", path("piped")}, 1, "piped/report.json: expected a regular file"},
+      {{"plot", path("endless"), "-o", path("p.svg")}, 1, "endless/report.json: expected a regular file"},
+      {{"claims", path("piped")}, 1, "piped/report.json: expected a regular file"},
+      {{"diff", path("piped/report.json"), path("piped/report.json")}, 1, "not a file"},
       {{"run", trace, "-t", "beam", "-o", out, "--simd", "avx9"}, 2, "scalar"},
       {{"run", trace, "-t", "beam", "-o", out, "--frames", "1-2"}, 2, "--frames 1-2"},
       {{"run", trace, "-t", "beam", "-o", out, "--threads", "0"}, 2, "--threads"},

@@ -1,5 +1,7 @@
 // --trace-events: every stage of every technique is there, inside the frame that it belongs to.
 
+#include <sys/stat.h>
+
 #include <nlohmann/json.hpp>
 #include <set>
 
@@ -70,11 +72,18 @@ TEST(TraceEvents, ComparisonsHaveThemToo) {
 TEST(TraceEvents, AreNotWrittenUnlessAskedFor) {
   const TemporaryFolder folder;
   write_text(folder / "trace.json", kTrace);
-  const Outcome missing =
-      run_program({"run", (folder / "trace.json").string(), "-t", "beam", "-o", (folder / "out").string(),
-                   "--trace-events", (folder / "trace.json/e").string()});
-  EXPECT_EQ(missing.exit_code, 1);
-  EXPECT_EQ(folder.list(), std::vector<std::string>{"trace.json"}) << "checked before anything is rendered";
+  std::filesystem::create_directory(folder / "events");
+  ASSERT_EQ(mkfifo((folder / "pipe").c_str(), 0666), 0);
+  const std::vector<std::string> before = folder.list();
+  for (const std::string& file : {(folder / "trace.json/e").string(), (folder / "events").string(),
+                                  (folder / "pipe").string(), (folder / "new/").string(), std::string("/dev/full")}) {
+    const Outcome refused = run_program({"run", (folder / "trace.json").string(), "-t", "beam", "-o",
+                                         (folder / "out").string(), "--trace-events", file});
+    EXPECT_EQ(refused.exit_code, 1);
+    EXPECT_NE(refused.err.find(": expected "), std::string::npos) << refused.err;
+    EXPECT_EQ(refused.err.find("frame"), std::string::npos) << "checked before anything is rendered: " << refused.err;
+    EXPECT_EQ(folder.list(), before);
+  }
 }
 
 }  // namespace

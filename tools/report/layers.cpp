@@ -2,7 +2,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <fstream>
 #include <iterator>
 #include <limits>
 #include <set>
@@ -10,6 +9,7 @@
 #include "stages/counter_registry.h"
 #include "tools/image_io.h"
 #include "tools/report/tables.h"
+#include "traces/input_file.h"
 
 namespace beampipe {
 namespace {
@@ -77,7 +77,7 @@ std::filesystem::path file_of(const ReportFile& report, const std::string& name)
 }
 
 std::string read_file(const std::filesystem::path& file) {
-  std::ifstream stream(file, std::ios::binary);
+  std::ifstream stream = open_input_file(file, file.string());
   std::string bytes{std::istreambuf_iterator<char>(stream), {}};
   if (!stream) throw ImageError(file.string() + ": cannot be read, although report.json names it");
   return bytes;

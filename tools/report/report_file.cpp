@@ -2,23 +2,13 @@
 
 #include <algorithm>
 #include <cmath>
-#include <fstream>
-#include <iterator>
 #include <map>
 
 #include "tools/report.h"
+#include "traces/json_cursor.h"
 
 namespace beampipe {
 namespace {
-
-using Json = nlohmann::ordered_json;
-
-std::string read_bytes(const std::filesystem::path& file) {
-  std::ifstream stream(file, std::ios::binary);
-  std::string bytes{std::istreambuf_iterator<char>(stream), {}};
-  if (!stream) throw ReportError(file.string() + ": cannot be read; expected what `beampipe compare` writes");
-  return bytes;
-}
 
 // Of positive numbers; 0 when one of them is 0; to the last bit when they are all the same.
 double geometric_mean(const std::vector<double>& values) {
@@ -141,9 +131,8 @@ ReportFile read_report(const std::filesystem::path& folder) {
     throw ReportError(folder.string() + ": no such folder; expected one that `beampipe compare` or `run` wrote");
   }
   ReportFile report{folder, {}, {}, {}, {}};
-  const std::string bytes = read_bytes(file);
+  report.json = parse_json(file.string());
   try {
-    report.json = Json::parse(bytes);
     if (report.json.at("beampipe_report") != 1) throw std::runtime_error("its beampipe_report is not 1");
     report.scene = std::filesystem::path(report.json.at("trace").get<std::string>()).stem().string();
     for (const Json& result : report.json.at("results")) {

@@ -51,7 +51,7 @@ TechniqueSummary read_summary(const nlohmann::ordered_json& result);
 // there is something to divide by).
 std::vector<nlohmann::ordered_json> stage_records(const ReportFile& report);
 
-// Reads FOLDER/report.json. Throws ReportError.
+// Reads FOLDER/report.json. Throws ReportError; TraceError when it is no file of JSON.
 ReportFile read_report(const std::filesystem::path& folder);
 
 // Geometric means of rmse, emr and times over several reports, of the techniques that are in all of them, in the order
