@@ -8,6 +8,7 @@
 #include "stages/shade.h"
 #include "stages/vertex_setup.h"
 #include "tools/commands.h"
+#include "tools/machine_memory.h"
 #include "tools/output.h"
 #include "traces/trace_io.h"
 
@@ -68,13 +69,17 @@ void add_export_soup_command(CLI::App& app, InterruptGate& gate) {
       "triangle float clip[3][4], in OpenGL clip space with w = 1, and float rgb[3], linear.");
   command->callback([arguments, &gate] {
     const std::filesystem::path file = std::filesystem::absolute(arguments->output);
+    if (std::error_code none; std::filesystem::equivalent(file, arguments->trace, none))
+      throw UsageError("-o " + arguments->output + " is the trace itself");
     require_writable_folder(file.parent_path());
     const Trace trace = read_trace(arguments->trace, {.allow_outside = arguments->allow_outside});
     if (arguments->frame >= trace.frames.size())
       throw UsageError("--frame: expected 0 to " + std::to_string(trace.frames.size() - 1) + ", found " +
                        std::to_string(arguments->frame));
+    const Frame& frame = trace.frames[arguments->frame];
+    require_memory(trace, frame, 0, "frame " + std::to_string(arguments->frame), machine_memory());
     OutputFolder output(file.parent_path(), gate);
-    output.write(file.filename(), soup_of(trace, trace.frames[arguments->frame]));
+    output.write(file.filename(), soup_of(trace, frame));
     output.keep();
   });
 }

@@ -372,6 +372,7 @@ TEST_F(ProgramTest, EveryMistakeIsOneLineAndLeavesNothing) {
       {{"diff", trace, trace}, 1, "trace.json"},
       {{"diff", trace}, 2, "B"},
       {{"info", path("missing.json")}, 1, "missing.json"},
+      {{"export-soup", trace, "-o", trace}, 2, "the trace itself"},
       {{"make", "-o", path("a.json")}, 2, "SCENE"},
       {{"make", "fence"}, 2, "-o"},
       {{"make", "no_such_scene", "-o", path("a.json")}, 2, "no_such_scene"},
