@@ -1,4 +1,5 @@
-// What the fuzz targets share: a folder in memory for the bytes to be read from, as a user's files are.
+// What the fuzz targets share: a folder for the bytes to be read from, as a user's files are. libFuzzer ends without
+// destructors, so that run.sh removes it: it lies in the folder for temporary files.
 #pragma once
 
 #include <cstdint>
@@ -14,11 +15,10 @@ namespace beampipe {
 class FuzzFolder {
  public:
   FuzzFolder() {
-    std::string name = "/dev/shm/beampipe-fuzz-XXXXXX";
+    std::string name = (std::filesystem::temp_directory_path() / "beampipe-fuzz-XXXXXX").string();
     if (!mkdtemp(name.data())) throw std::runtime_error("cannot make " + name);
     path_ = name;
   }
-  ~FuzzFolder() { std::filesystem::remove_all(path_); }
 
   std::filesystem::path write(const std::string& name, std::string_view bytes) const {
     std::ofstream(path_ / name, std::ios::binary) << bytes;

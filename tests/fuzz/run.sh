@@ -8,6 +8,9 @@ cd "$(dirname "${BASH_SOURCE[0]}")/../.."
 seconds=${1:-20}
 targets=("${@:2}")
 ((${#targets[@]} > 0)) || targets=(trace obj exr spec)
+TMPDIR=$(mktemp --directory /dev/shm/beampipe-fuzz-XXXXXX)  # in memory
+export TMPDIR
+trap 'rm -r "$TMPDIR"' EXIT
 cmake --preset fuzz >/dev/null
 cmake --build --preset fuzz --parallel "$(nproc)" --target "${targets[@]/%/_fuzz}"
 for target in "${targets[@]}"; do
