@@ -171,9 +171,6 @@ SetupWork add_draw(const View& view, const Mesh& mesh, const Draw& draw, std::ui
     chunks[first / kChunk].out.reserve(end - first);
     for (std::size_t t = first; t < end; ++t) chunks[first / kChunk].add(t);
   });
-  std::size_t count = 0;
-  for (const TriangleSetup& chunk : chunks) count += chunk.out.triangles.size();
-  if (out.triangles.empty()) out.reserve(count);  // once: what later draws add lets the vectors grow
   SetupWork work;
   work.transformed = vertices.size();
   for (const std::size_t of_chunk : in_view) work.projected += of_chunk;
@@ -191,11 +188,14 @@ SetupTriangles vertex_setup(const Trace& trace, const Frame& frame, StageCounter
   const View view(frame);
   SetupWork work;
   counters.stage = "vertex_setup";
+  std::size_t triangles = 0;
+  for (const Draw& draw : frame.draws) triangles += trace.meshes[draw.mesh].triangles.size();
+  out.reserve(triangles);  // once, whatever is culled: what is not written takes no memory
+  counters.items_in += triangles;
   for (std::uint32_t i = 0; i < frame.draws.size(); ++i) {
     const Draw& draw = frame.draws[i];
     const Mesh& mesh = trace.meshes[draw.mesh];
     work += add_draw(view, mesh, draw, i, out);
-    counters.items_in += mesh.triangles.size();
     counters.bytes_read += mesh.triangles.size() * sizeof(glm::uvec3) + mesh.positions.size() * sizeof(glm::vec3);
   }
   work.triangles = out.triangles.size();
