@@ -90,7 +90,9 @@ class Comparison {
     std::vector<FrameRecord> finished;
     if (arguments_.resume) {
       if (records_.is_finished()) return std::nullopt;
-      finished = records_.read(plan_.frames);
+      std::vector<std::string> specs = specs_of(plan_.techniques);
+      specs.push_back(reference_.spec);
+      finished = records_.read(plan_.frames, specs, sums());
       tell_resumption(plan_, finished.size());
     }
     for (const FrameRecord& record : finished) recall_frame(record);
@@ -178,10 +180,17 @@ class Comparison {
     FrameRecord record;
     for (const TechniqueReport& result : results_) record.reports.push_back(result.frames.back());
     record.reports.push_back(reference_result_.frames.back());
-    for (const Rung& rung : ladder_) record.sums["ladder"].push_back({rung.squares, rung.pixels});
-    for (const CauseShares& causes : causes_) record.sums["causes"].push_back(causes.sums());
-    if (orders_) record.sums["orders"] = orders_->sums();
+    record.sums = sums();
     records_.write(record);
+  }
+
+  // Of what was added so far.
+  nlohmann::ordered_json sums() const {
+    nlohmann::ordered_json sums;
+    for (const Rung& rung : ladder_) sums["ladder"].push_back({rung.squares, rung.pixels});
+    for (const CauseShares& causes : causes_) sums["causes"].push_back(causes.sums());
+    if (orders_) sums["orders"] = orders_->sums();
+    return sums;
   }
 
   // Takes over what an earlier comparison found. The EXRs hold the pictures to the last bit.
@@ -276,7 +285,7 @@ void add_compare_command(CLI::App& app, InterruptGate& gate) {
   command->footer(kFooter + technique_help());
   command->callback([arguments, &gate] {
     RunPlan plan = make_plan(*arguments);
-    const TraceEvents events(arguments->trace_events, plan);
+    const TraceEvents events(*arguments, plan);
     OutputFolder output(arguments->output, gate);
     output.lock();
     // Its progress line is gone by the time that the report is finished.

@@ -71,7 +71,7 @@ void add_export_soup_command(CLI::App& app, InterruptGate& gate) {
     const std::filesystem::path file = std::filesystem::absolute(arguments->output);
     if (std::error_code none; std::filesystem::equivalent(file, arguments->trace, none))
       throw UsageError("-o " + arguments->output + " is the trace itself");
-    require_writable_folder(file.parent_path());
+    require_writable_file(file);
     const Trace trace = read_trace(arguments->trace, {.allow_outside = arguments->allow_outside});
     if (arguments->frame >= trace.frames.size())
       throw UsageError("--frame: expected 0 to " + std::to_string(trace.frames.size() - 1) + ", found " +

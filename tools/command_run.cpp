@@ -12,7 +12,7 @@ namespace {
 
 void run(const RunArguments& arguments, InterruptGate& gate) {
   RunPlan plan = make_plan(arguments);
-  const TraceEvents events(arguments.trace_events, plan);
+  const TraceEvents events(arguments, plan);
   OutputFolder output(arguments.output, gate);
   output.lock();
   require_writable_folders(output, plan.techniques);
@@ -21,7 +21,7 @@ void run(const RunArguments& arguments, InterruptGate& gate) {
   std::vector<FrameRecord> finished;
   if (arguments.resume) {
     if (records.is_finished()) return tell_finished(output);
-    finished = records.read(plan.frames);
+    finished = records.read(plan.frames, specs_of(plan.techniques), nullptr);
     tell_resumption(plan, finished.size());
   }
 

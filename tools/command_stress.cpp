@@ -102,7 +102,10 @@ void stress(const StressArguments& arguments, InterruptGate& gate) {
   const std::vector<Technique> techniques = parse_techniques(arguments.specs);
   const std::vector<HardCase> cases = chosen_cases(arguments);
   const std::filesystem::path folder = arguments.output;
-  if (!folder.empty()) require_writable_folder(folder);
+  if (!folder.empty()) {
+    require_writable_folder(folder / "traces");
+    require_writable_file(folder / "stress.json");
+  }
   for (const HardCase& hard_case : cases)
     for (const Technique& technique : techniques)
       require_memory(hard_case.trace, hard_case.trace.frames[0], technique.working_bytes_per_pixel,

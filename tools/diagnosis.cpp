@@ -23,6 +23,10 @@ double sum_of_squares(const Image& a, const Image& b) {
 
 }  // namespace
 
+CauseShares::CauseShares() {
+  for (const char* cause : kErrorCauses) squares_[cause] = 0;
+}
+
 void CauseShares::add(const Technique& technique, const RunPlan& plan, std::size_t frame, const Image& reference,
                       FrameResult& result) {
   if (!technique.weights) return;
@@ -50,6 +54,11 @@ void CauseShares::set_sums(const nlohmann::ordered_json& sums) {
   sums.at(1).get_to(all_squares_);
 }
 
+OrderComparison::OrderComparison(std::vector<Technique> techniques) : techniques_(std::move(techniques)) {
+  const std::size_t orders = kOrders.size();
+  sums_.assign(techniques_.size(), {std::vector<double>(orders), std::vector<double>(orders * (orders - 1) / 2)});
+}
+
 void OrderComparison::add(const Technique& reference, const RunPlan& plan, std::size_t frame, Progress& progress) {
   std::vector<std::vector<Image>> pictures(techniques_.size());
   for (std::size_t k = 0; k < kOrders.size(); ++k) {
@@ -60,7 +69,6 @@ void OrderComparison::add(const Technique& reference, const RunPlan& plan, std::
     const Image truth = render_picture(reference, ordered, 0, progress);
     for (std::size_t i = 0; i < techniques_.size(); ++i) {
       pictures[i].push_back(render_picture(techniques_[i], ordered, 0, progress));
-      sums_[i].errors.resize(kOrders.size());
       sums_[i].errors[k] += sum_of_squares(pictures[i].back(), truth);
     }
     if (k == 0) values_ += 3.0 * truth.width * truth.height;
@@ -69,7 +77,6 @@ void OrderComparison::add(const Technique& reference, const RunPlan& plan, std::
     std::size_t pair = 0;
     for (std::size_t a = 0; a < kOrders.size(); ++a) {
       for (std::size_t b = a + 1; b < kOrders.size(); ++b, ++pair) {
-        sums_[i].differences.resize(std::max(sums_[i].differences.size(), pair + 1));
         sums_[i].differences[pair] += sum_of_squares(pictures[i][a], pictures[i][b]);
       }
     }

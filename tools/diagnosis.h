@@ -16,6 +16,8 @@ namespace beampipe {
 // The parts of the mean square error that causes have, pooled over frames.
 class CauseShares {
  public:
+  CauseShares();
+
   // Splits the frame's error (pipeline/error_causes.h), and adds one layer per cause, "cause_leak" and so on, to the
   // result's counters. Nothing where the technique does not tell its weights.
   void add(const Technique& technique, const RunPlan& plan, std::size_t frame, const Image& reference,
@@ -37,8 +39,7 @@ class CauseShares {
 // at equal depth the earlier triangle wins, so that faces which coincide look different in the reference too.
 class OrderComparison {
  public:
-  explicit OrderComparison(std::vector<Technique> techniques)
-      : techniques_(std::move(techniques)), sums_(techniques_.size()) {}
+  explicit OrderComparison(std::vector<Technique> techniques);
 
   void add(const Technique& reference, const RunPlan& plan, std::size_t frame, Progress& progress);
 

@@ -5,6 +5,9 @@
 #include <unistd.h>
 
 #include <cerrno>
+#include <climits>
+#include <cstdlib>
+#include <cstring>
 #include <stdexcept>
 #include <system_error>
 #include <vector>
@@ -26,6 +29,23 @@ std::vector<fs::path> missing_folders(const fs::path& folder) {
   return missing;
 }
 
+// If not, errno says why.
+bool can_create_files(const fs::path& folder) {
+  int probe = ::open(folder.c_str(), O_TMPFILE | O_WRONLY | O_CLOEXEC, 0600);      // has no name
+  if (probe < 0 && (errno == EOPNOTSUPP || errno == EISDIR || errno == EINVAL)) {  // the file system has none such
+    std::string name = folder / ".beampipe-XXXXXX";
+    probe = ::mkostemp(name.data(), O_CLOEXEC);
+    if (probe >= 0) ::unlink(name.c_str());
+  }
+  if (probe >= 0) ::close(probe);
+  return probe >= 0;
+}
+
+void require_short_name(const fs::path& path, const fs::path& written) {
+  if (written.filename().native().size() > NAME_MAX)
+    throw std::runtime_error(path.string() + ": a name in it is too long for a file system");
+}
+
 }  // namespace
 
 void require_writable_folder(const fs::path& folder) {
@@ -37,11 +57,19 @@ void require_writable_folder(const fs::path& folder) {
     const std::string where = missing.empty() ? "" : " at " + existing.string();
     throw std::runtime_error(folder.string() + ": expected a folder, found something else" + where);
   }
-  try {
-    AtomicFile probe(existing / ".beampipe-probe");  // never committed
-  } catch (const std::exception& error) {
-    throw std::runtime_error(folder.string() + ": cannot write into this folder: " + error.what());
-  }
+  for (const fs::path& name : missing) require_short_name(folder, name);
+  if (!can_create_files(existing))
+    throw std::runtime_error(folder.string() + ": cannot write into this folder: " + std::strerror(errno));
+}
+
+void require_writable_file(const fs::path& file) {
+  if (!file.has_filename()) throw std::runtime_error(file.string() + ": expected the name of a file, found a folder's");
+  std::error_code ignored;
+  const fs::file_status status = fs::status(file, ignored);
+  if (fs::exists(status) && !fs::is_regular_file(status))
+    throw std::runtime_error(file.string() + ": expected a regular file or none, found something else");
+  require_writable_folder(file.parent_path());
+  require_short_name(file, AtomicFile::temporary_of(file));
 }
 
 OutputFolder::~OutputFolder() {

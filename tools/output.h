@@ -13,6 +13,10 @@ namespace beampipe {
 // nothing behind.
 void require_writable_folder(const std::filesystem::path& folder);
 
+// Throws std::runtime_error, one line, unless OutputFolder could write `file`, which has a folder in its name: a new
+// one, or in place of a regular one.
+void require_writable_file(const std::filesystem::path& file);
+
 // Made when the first file is written, not before. Its files are whole or not there, and an earlier file stays as it
 // was when it cannot be replaced. The files and folders that came new since the last keep() go away with this object,
 // so that an error leaves nothing half done; after an interrupt, which ends the program without destructors, they stay.

@@ -92,9 +92,7 @@ Image render_picture(const Technique& technique, const RunPlan& plan, std::size_
 
 FrameReport write_frame(OutputFolder& output, const std::string& spec, std::size_t frame, const FrameResult& result,
                         const Image* reference) {
-  char number[32];
-  std::snprintf(number, sizeof number, "/frame_%04zu", frame);
-  const std::string stem = spec_folder(spec) + number;
+  const std::string stem = frame_stem(spec, frame);
   FrameReport report;
   report.index = frame;
   report.image = stem + ".exr";

@@ -211,6 +211,12 @@ std::string spec_folder(std::string_view spec) {
   return folder;
 }
 
+std::string frame_stem(std::string_view spec, std::size_t frame) {
+  char number[32];
+  std::snprintf(number, sizeof number, "/frame_%04zu", frame);
+  return spec_folder(spec) + number;
+}
+
 std::string emr_text(const EquivalentMsaa& emr) {
   const std::string samples = emr.samples < 100 ? format("%.3g", emr.samples) : format("%.0f", emr.samples);
   return (emr.is_lower_bound ? "≥ " : emr.is_upper_bound ? "< " : "") + samples;

@@ -97,6 +97,9 @@ std::string json_text(const nlohmann::ordered_json& json);
 // The folder of a technique's images: the spec, every character outside [A-Za-z0-9.=-] turned into _.
 std::string spec_folder(std::string_view spec);
 
+// "msaa_8/frame_0007": how the names of a frame's files begin, in the output folder.
+std::string frame_stem(std::string_view spec, std::size_t frame);
+
 // One row per technique under one row of titles; `folder` is where the pictures' paths start.
 std::string table_text(const Report& report, const std::string& folder);
 

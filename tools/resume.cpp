@@ -1,6 +1,6 @@
 #include "tools/resume.h"
 
-#include <cstdio>
+#include <algorithm>
 #include <filesystem>
 #include <iostream>
 #include <map>
@@ -128,6 +128,20 @@ Json unsealed(Json record) {
   return digest == digest_of(json_text(record)) ? record : Json();
 }
 
+// Whether it is of this frame and technique.
+bool is_of(const FrameReport& report, std::size_t frame, const std::string& spec) {
+  const std::string stem = frame_stem(spec, frame);
+  return report.index == frame && report.image == stem + ".exr" && report.picture == stem + ".png" &&
+         (report.counters.empty() || report.counters == stem + "_counters.exr");
+}
+
+Json with_all_numbers_0(Json json) {
+  if (json.is_number()) return 0;
+  for (Json& child : json)
+    if (json.is_structured()) child = with_all_numbers_0(child);
+  return json;
+}
+
 std::string range_text(const std::vector<std::size_t>& frames) {
   return std::to_string(frames.front()) + "-" + std::to_string(frames.back());
 }
@@ -139,7 +153,7 @@ Json made_by(const std::string& command, const RunPlan& plan, const Json& more) 
                {"version", program_version()},
                {"program", digest_of_file("/proc/self/exe")},
                {"trace", digest_of(plan.trace)},
-               {"techniques", Json::array()},
+               {"techniques", specs_of(plan.techniques)},
                {"frames", range_text(plan.frames)},
                {"repeat", plan.repeat},
                {"threads", plan.options.threads},
@@ -147,16 +161,11 @@ Json made_by(const std::string& command, const RunPlan& plan, const Json& more) 
                {"memory_model", plan.options.memory.modelled},
                {"compression", plan.options.memory.compression},
                {"hardware", digest_of(plan.hardware.json.dump())}};
-  for (const Technique& technique : plan.techniques) json["techniques"].push_back(technique.spec);
   json.update(more);
   return json;
 }
 
-std::string frame_record_name(std::size_t frame) {
-  char name[32];
-  std::snprintf(name, sizeof name, "/frame_%04zu.json", frame);
-  return kFolder + std::string(name);
-}
+std::string frame_record_name(std::size_t frame) { return frame_stem(kFolder, frame) + ".json"; }
 
 bool FrameRecords::is_finished() {
   const Json report = read_json(output_.path() / "report.json");
@@ -166,7 +175,8 @@ bool FrameRecords::is_finished() {
   return true;
 }
 
-std::vector<FrameRecord> FrameRecords::read(const std::vector<std::size_t>& frames) const {
+std::vector<FrameRecord> FrameRecords::read(const std::vector<std::size_t>& frames,
+                                            const std::vector<std::string>& specs, const Json& no_sums) const {
   bool some_are_ours = false;
   Json other;
   for (const fs::path& path : list()) {
@@ -178,15 +188,30 @@ std::vector<FrameRecord> FrameRecords::read(const std::vector<std::size_t>& fram
 
   std::vector<FrameRecord> records;
   for (const std::size_t frame : frames) {
+    std::optional<FrameRecord> record = read(frame, specs, no_sums);
+    if (!record) break;
+    records.push_back(std::move(*record));
+  }
+  return records;
+}
+
+std::optional<FrameRecord> FrameRecords::read(std::size_t frame, const std::vector<std::string>& specs,
+                                              const Json& no_sums) const {
+  try {
     const Json json = unsealed(read_json(output_.path() / frame_record_name(frame)));
-    if (maker_of(json) != maker_) break;
+    if (maker_of(json) != maker_) return std::nullopt;
     FrameRecord record;
     for (const Json& technique : json.at("techniques")) record.reports.push_back(report_of(technique));
     record.sums = json.at("sums");
-    if (json.at("files") != digests_of_files(output_.path(), record)) break;
-    records.push_back(std::move(record));
+    const bool is_ours = std::equal(record.reports.begin(), record.reports.end(), specs.begin(), specs.end(),
+                                    [&](const auto& report, const auto& spec) { return is_of(report, frame, spec); });
+    if (!is_ours || with_all_numbers_0(record.sums) != with_all_numbers_0(no_sums) ||
+        json.at("files") != digests_of_files(output_.path(), record))
+      return std::nullopt;
+    return record;
+  } catch (const Json::exception&) {  // something in it is missing, or of another type
+    return std::nullopt;
   }
-  return records;
 }
 
 void FrameRecords::write(const FrameRecord& record) {

@@ -6,6 +6,7 @@
 #pragma once
 
 #include <nlohmann/json.hpp>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -32,9 +33,11 @@ class FrameRecords {
   // Throws std::runtime_error, one line, when another made it.
   bool is_finished();
 
-  // The records of `frames` up to the first that is missing or damaged, or one of whose files is. Throws
+  // The records of `frames` up to the first that is missing or damaged, or one of whose files is. Each has one report
+  // per spec and sums like `no_sums` but for the numbers; one that differs counts as damaged. Throws
   // std::runtime_error, one line that says what has changed, when all that is there was made by another.
-  std::vector<FrameRecord> read(const std::vector<std::size_t>& frames) const;
+  std::vector<FrameRecord> read(const std::vector<std::size_t>& frames, const std::vector<std::string>& specs,
+                                const nlohmann::ordered_json& no_sums) const;
 
   void write(const FrameRecord& record);
 
@@ -42,6 +45,8 @@ class FrameRecords {
   void remove();
 
  private:
+  std::optional<FrameRecord> read(std::size_t frame, const std::vector<std::string>& specs,
+                                  const nlohmann::ordered_json& no_sums) const;
   std::vector<std::filesystem::path> list() const;
   [[noreturn]] void refuse(const nlohmann::ordered_json& other_maker) const;
 

@@ -11,6 +11,7 @@
 #include "tools/commands.h"
 #include "tools/machine_memory.h"
 #include "tools/report.h"
+#include "tools/resume.h"
 #include "traces/trace_io.h"
 
 namespace beampipe {
@@ -55,8 +56,9 @@ void add_run_arguments(CLI::App& command, RunArguments& arguments) {
                    "go on behind the last whole frame that the same command left in the folder when it was stopped");
   command.add_option("--hardware", arguments.hardware,
                      "description of the hardware whose times are modelled (default: one of Titan V class)");
-  command.add_option("--trace-events", arguments.trace_events,
-                     "file for a timeline of stages per tile and thread, for ui.perfetto.dev (JSON)");
+  command.add_option(
+      "--trace-events", arguments.trace_events,
+      "file, outside the output folder, for a timeline of stages per tile and thread, for ui.perfetto.dev (JSON)");
   command.add_flag("--no-memory-model", arguments.no_memory_model,
                    "do not model caches: frames are faster, sector_bytes and dram_bytes are 0");
   command.add_flag("--no-compression", arguments.no_compression, "model memory without block compression");
@@ -83,12 +85,17 @@ RunPlan make_plan(const RunArguments& arguments) {
   return plan;
 }
 
+std::vector<std::string> specs_of(const std::vector<Technique>& techniques) {
+  std::vector<std::string> specs;
+  for (const Technique& technique : techniques) specs.push_back(technique.spec);
+  return specs;
+}
+
 void require_writable_folders(const OutputFolder& output, const std::vector<Technique>& techniques) {
   require_writable_folder(output.path());
   for (const Technique& technique : techniques) require_writable_folder(output.path() / spec_folder(technique.spec));
-  const std::filesystem::path report = output.path() / "report.json";
-  if (std::filesystem::exists(report) && !std::filesystem::is_regular_file(report))
-    throw std::runtime_error(report.string() + ": expected a regular file or none, found something else");
+  require_writable_folder((output.path() / frame_record_name(0)).parent_path());
+  require_writable_file(output.path() / "report.json");
 }
 
 std::vector<std::size_t> parse_frame_range(const std::string& text, std::size_t frames) {

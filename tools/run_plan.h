@@ -37,7 +37,10 @@ struct RunPlan {
 // needs more memory than the machine has.
 RunPlan make_plan(const RunArguments& arguments);
 
-// Throws std::runtime_error, one line, unless every technique's folder and report.json can be written.
+std::vector<std::string> specs_of(const std::vector<Technique>& techniques);
+
+// Throws std::runtime_error, one line, unless every technique's folder, that of the frames' records and
+// report.json can be written.
 void require_writable_folders(const OutputFolder& output, const std::vector<Technique>& techniques);
 
 // "A-B" or "A", counted from 0, both ends included. Throws UsageError unless A <= B < frames.

@@ -4,11 +4,12 @@
 #include <map>
 #include <nlohmann/json.hpp>
 
-#include "traces/atomic_file.h"
+#include "tools/commands.h"
 
 namespace beampipe {
 namespace {
 
+namespace fs = std::filesystem;
 using Json = nlohmann::ordered_json;
 using Time = Timeline::Clock::time_point;
 
@@ -52,12 +53,17 @@ std::string trace_events_json(const Timeline& timeline) {
   return Json{{"displayTimeUnit", "ms"}, {"traceEvents", std::move(events)}}.dump() + "\n";
 }
 
-TraceEvents::TraceEvents(const std::string& file, RunPlan& plan) {
-  if (file.empty()) return;
-  file_ = std::filesystem::absolute(file);
-  require_writable_folder(file_.parent_path());
-  if (!file_.has_filename()) throw std::runtime_error(file + ": expected the name of a file, found a folder's");
-  if (std::filesystem::exists(file_.parent_path())) AtomicFile probe(file_);  // never committed
+TraceEvents::TraceEvents(const RunArguments& arguments, RunPlan& plan) {
+  if (arguments.trace_events.empty()) return;
+  const std::string option = "--trace-events " + arguments.trace_events;
+  const fs::path file = fs::absolute(arguments.trace_events);
+  require_writable_file(file);
+  file_ = fs::weakly_canonical(file.parent_path()) / file.filename();
+  if (std::error_code none; fs::equivalent(file_, arguments.trace, none))
+    throw UsageError(option + " is the trace itself");
+  const fs::path from_output = file_.lexically_relative(fs::weakly_canonical(fs::current_path() / arguments.output));
+  if (*from_output.begin() != "..")
+    throw UsageError(option + " is in the output folder, among what is made there: expected a file beside it");
   plan.options.timeline = &timeline_;
 }
 

@@ -15,8 +15,9 @@ std::string trace_events_json(const Timeline& timeline);
 // What --trace-events asks for; nothing when it was not given.
 class TraceEvents {
  public:
-  // Lets the plan record its stages here. Throws std::runtime_error, one line, unless the file can be written.
-  TraceEvents(const std::string& file, RunPlan& plan);
+  // Lets the plan record its stages here. Throws, one line, before anything is rendered: UsageError when the file is
+  // the trace or in the output folder, std::runtime_error unless it can be written.
+  TraceEvents(const RunArguments& arguments, RunPlan& plan);
   TraceEvents(const TraceEvents&) = delete;
   TraceEvents& operator=(const TraceEvents&) = delete;
 

@@ -121,6 +121,24 @@ TEST(RequireWritableFolder, LeavesNothingBehind) {
   EXPECT_EQ(folder.list(), Names{});
 }
 
+TEST(RequireWritableFolder, ProgramsThatAskTogetherDoNotDisturbOneAnother) {
+  TemporaryFolder folder;
+  std::vector<std::thread> threads;
+  for (int i = 0; i < 4; ++i)
+    threads.emplace_back([&] {
+      for (int k = 0; k < 200; ++k) EXPECT_NO_THROW(require_writable_folder(folder / "new"));
+    });
+  for (std::thread& thread : threads) thread.join();
+  EXPECT_EQ(folder.list(), Names{});
+}
+
+TEST(RequireWritableFolder, RefusesNamesThatNoFileCanHave) {
+  TemporaryFolder folder;
+  EXPECT_THROW(require_writable_folder(folder / std::string(256, 'x') / "below"), std::runtime_error);
+  require_writable_file(folder / "new" / std::string(251, 'x'));
+  EXPECT_THROW(require_writable_file(folder / "new" / std::string(252, 'x')), std::runtime_error) << "with .tmp";
+}
+
 TEST(RequireWritableFolder, RefusesWhatIsInTheWay) {
   TemporaryFolder folder;
   write_text(folder / "file", "");

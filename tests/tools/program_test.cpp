@@ -460,6 +460,14 @@ TEST_F(ProgramTest, StressWritesWhatItFoundAndItsTraces) {
   succeed({"run", path("stress/traces/one_pixel.json"), "-t", "msaa:1", "-o", path("again")});
   expect_one_error_line(run_program({"stress", "--case", "none_such", "-o", path("other")}), 2, "none_such");
   EXPECT_FALSE(std::filesystem::exists(folder_ / "other"));
+  std::filesystem::create_directory(folder_ / "other");
+  write_text(folder_ / "other/traces", "");
+  write_text(folder_ / "other/unfinished", "");
+  const std::string something_else = ": expected a folder, found something else";
+  expect_one_error_line(run_program({"stress", "-t", "msaa:1", "--case", "one_pixel", "-o", path("other")}), 1,
+                        path("other/traces") + something_else);
+  expect_one_error_line(run_program({"run", path("stress/traces/one_pixel.json"), "-t", "msaa:1", "-o", path("other")}),
+                        1, path("other/unfinished") + something_else);
 }
 
 void pause(int milliseconds) { std::this_thread::sleep_for(std::chrono::milliseconds(milliseconds)); }

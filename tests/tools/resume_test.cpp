@@ -15,6 +15,8 @@
 #include "tests/simd/random.h"
 #include "tests/thorough.h"
 #include "tests/tools/program.h"
+#include "tools/digest.h"
+#include "tools/report.h"
 
 namespace beampipe {
 namespace {
@@ -206,6 +208,47 @@ TEST_F(ResumeTest, AFrameWhoseRecordIsDamagedIsMadeAgain) {
     Json json = Json::parse(read_text(record));
     damages[i](json);
     write_text(folder_ / out / frame_record_name(0), json.dump());
+    EXPECT_EQ(succeed(resume("compare", out, specs)).err, "") << "it starts again";
+    EXPECT_EQ(differences(out, "whole"), std::set<std::string>{});
+  }
+}
+
+// Its digest is right: it is another frame's, or another program's.
+TEST_F(ResumeTest, ARecordThatSpeaksOfSomethingElseIsNotBelieved) {
+  make_trace(2);
+  const Names specs = {"msaa:2", "--ladder", "1", "--causes", "--orders"};
+  succeed(command("compare", "whole", specs));
+  leave_unfinished("compare", "out", specs);
+  const fs::path record = folder_ / "out" / frame_record_name(0);
+  fs::copy(folder_ / "out", folder_ / "copied", fs::copy_options::recursive);
+  fs::copy(record, folder_ / "copied" / frame_record_name(1));
+  succeed(resume("compare", "copied", specs));
+  EXPECT_EQ(differences("copied", "whole"), std::set<std::string>{});
+
+  const std::vector<std::function<void(Json&)>> changes = {
+      [](Json& json) { json["techniques"].erase(1); },
+      [](Json& json) { json["techniques"].push_back(json["techniques"][0]); },
+      [](Json& json) { std::swap(json["techniques"][0], json["techniques"][1]); },
+      [](Json& json) { json["techniques"] = json["files"] = nullptr; },
+      [](Json& json) { json["techniques"][0]["index"] = 1; },
+      [](Json& json) { json["techniques"][0]["image"] = "../trace.json"; },
+      [](Json& json) { json["techniques"][0]["picture"] = 7; },
+      [](Json& json) { json["techniques"][0].erase("stages"); },
+      [](Json& json) { json.erase("files"); },
+      [](Json& json) { json.erase("sums"); },
+      [](Json& json) { json["sums"]["ladder"].clear(); },
+      [](Json& json) { json["sums"]["causes"][0][0].clear(); },
+      [](Json& json) { json["sums"]["orders"]["techniques"][0][0].push_back(1); },
+      [](Json& json) { json["sums"]["orders"]["values"] = "many"; }};
+  for (std::size_t i = 0; i < changes.size(); ++i) {
+    SCOPED_TRACE(i);
+    const std::string out = "out_" + std::to_string(i);
+    fs::copy(folder_ / "out", folder_ / out, fs::copy_options::recursive);
+    Json json = Json::parse(read_text(record));
+    json.erase("digest");
+    changes[i](json);
+    json["digest"] = digest_of(json_text(json));
+    write_text(folder_ / out / frame_record_name(0), json_text(json));
     EXPECT_EQ(succeed(resume("compare", out, specs)).err, "") << "it starts again";
     EXPECT_EQ(differences(out, "whole"), std::set<std::string>{});
   }

@@ -69,21 +69,45 @@ TEST(TraceEvents, ComparisonsHaveThemToo) {
     EXPECT_TRUE(names.contains(name)) << name;
 }
 
-TEST(TraceEvents, AreNotWrittenUnlessAskedFor) {
-  const TemporaryFolder folder;
-  write_text(folder / "trace.json", kTrace);
-  std::filesystem::create_directory(folder / "events");
-  ASSERT_EQ(mkfifo((folder / "pipe").c_str(), 0666), 0);
-  const std::vector<std::string> before = folder.list();
-  for (const std::string& file : {(folder / "trace.json/e").string(), (folder / "events").string(),
-                                  (folder / "pipe").string(), (folder / "new/").string(), std::string("/dev/full")}) {
-    const Outcome refused = run_program({"run", (folder / "trace.json").string(), "-t", "beam", "-o",
-                                         (folder / "out").string(), "--trace-events", file});
-    EXPECT_EQ(refused.exit_code, 1);
-    EXPECT_NE(refused.err.find(": expected "), std::string::npos) << refused.err;
+class RefusedTraceEvents : public testing::Test {
+ protected:
+  RefusedTraceEvents() { write_text(folder_ / "trace.json", kTrace); }
+  std::string path(const std::string& name) const { return (folder_ / name).string(); }
+
+  void expect_refused(const std::string& file, int exit_code, const std::string& expected) const {
+    SCOPED_TRACE(file);
+    const std::vector<std::string> before = folder_.list();
+    const Outcome refused =
+        run_program({"run", path("trace.json"), "-t", "beam", "-o", path("out"), "--trace-events", file});
+    EXPECT_EQ(refused.exit_code, exit_code);
+    EXPECT_NE(refused.err.find(expected), std::string::npos) << refused.err;
+    EXPECT_EQ(std::count(refused.err.begin(), refused.err.end(), '\n'), 1) << refused.err;
     EXPECT_EQ(refused.err.find("frame"), std::string::npos) << "checked before anything is rendered: " << refused.err;
-    EXPECT_EQ(folder.list(), before);
+    EXPECT_EQ(folder_.list(), before);
+    EXPECT_EQ(read_text(folder_ / "trace.json"), kTrace);
   }
+
+  TemporaryFolder folder_;
+};
+
+TEST_F(RefusedTraceEvents, WhereNoFileCanBeWritten) {
+  std::filesystem::create_directory(folder_ / "events");
+  ASSERT_EQ(mkfifo(path("pipe").c_str(), 0666), 0);
+  for (const std::string& file :
+       {path("trace.json/e"), path("events"), path("pipe"), path("new/"), std::string("/dev/full")})
+    expect_refused(file, 1, ": expected ");
+  expect_refused(path("new/" + std::string(300, 'x')), 1, "too long");
+}
+
+TEST_F(RefusedTraceEvents, OverTheTraceOrInTheOutputFolder) {
+  std::filesystem::create_symlink("trace.json", folder_ / "link.json");
+  for (const char* file : {"trace.json", "new/../trace.json", "link.json"})
+    expect_refused(path(file), 2, "is the trace itself");
+  for (const char* file : {"out", "out/e.json", "out/report.json/e"}) expect_refused(path(file), 2, "output folder");
+  std::filesystem::create_directory(folder_ / "out");
+  std::filesystem::create_directory_symlink("out", folder_ / "alias");
+  for (const char* file : {"out/report.json", "alias/e.json", "out/beam/picture.png"})
+    expect_refused(path(file), 2, "output folder");
 }
 
 }  // namespace
