@@ -126,7 +126,7 @@ OperationCounts count_operations(Twin&& twin) {
 }
 
 // What one item costs, worked out once. It is a copy because g++ 12.2 loses counts that a function makes in place in a
-// static object (as -fno-ipa-reference does not).
+// static object; with -fno-ipa-reference it does not.
 struct UnitCost : OperationCounts {
   UnitCost(const OperationCounts& counts) : OperationCounts(counts) {}
 };

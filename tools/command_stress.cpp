@@ -163,8 +163,8 @@ void add_stress_command(CLI::App& app, InterruptGate& gate) {
   command->add_option("--threads", arguments->threads, "threads to use (default: all that the machine has)")
       ->check(CLI::Range(1, 1024));
   command->add_flag("--heavy", arguments->heavy,
-                    "also a pixel with a million fragments, a gigabyte and a minute, and 16384 x 16384 pixels, for "
-                    "techniques that are named: 5 to 9 GB and a minute or two each; taa and dvm need 32 GB");
+                    "also deep_pixel_1000000, a gigabyte and a minute, and widest_and_highest, 16384 x 16384 pixels: 5 "
+                    "to 9 GB and a minute or two for each technique (name them with -t: taa and dvm need 30 GB)");
   command->footer(
       "Each cell is the largest error over all pixels and R, G, B, A against rational arithmetic: of the areas, or, "
       "for\n"

@@ -97,16 +97,14 @@ bool is_finite(const glm::vec3& v) { return std::isfinite(v.x) && std::isfinite(
 std::stringstream read_text(const fs::path& file, const std::string& where) {
   constexpr std::string_view kByteOrderMark = "\xEF\xBB\xBF";
   std::ifstream stream = open_input_file(file, where);
-  char start[kByteOrderMark.size()] = {};
-  stream.read(start, sizeof start);
-  if (std::string_view(start, sizeof start) != kByteOrderMark) {
-    stream.clear();
-    stream.seekg(0);
-  }
-  std::stringstream text;
-  text << stream.rdbuf();
-  check_lines(text.view(), where);
-  return text;
+  std::string text;
+  char part[1 << 16];
+  while (stream.read(part, sizeof part) || stream.gcount() > 0)
+    text.append(part, static_cast<std::size_t>(stream.gcount()));
+  if (stream.bad()) fail_trace(where, "a file that can be read to its end", "one that cannot");
+  if (text.starts_with(kByteOrderMark)) text.erase(0, kByteOrderMark.size());
+  check_lines(text, where);
+  return std::stringstream(std::move(text));
 }
 
 // Reads the material libraries that an OBJ names; only from the OBJ's own folder.

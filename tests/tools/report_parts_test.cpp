@@ -137,6 +137,11 @@ TEST_F(ReportParts, LayersTakeOnlyFilesOfTheFolder) {
   std::string text = kReport;
   text.replace(text.find("beam/frame_0003.png"), 19, "../frame_00000003.png");
   EXPECT_THROW(report_layers(read(text), 0), ReportError);
+  const TemporaryFolder other;
+  write_text(other / "secret.png", "secret");
+  std::filesystem::create_directory(folder_ / "beam");
+  std::filesystem::create_symlink(other / "secret.png", folder_ / "beam/frame_0003.png");
+  EXPECT_THROW(report_layers(read(), 0), ReportError) << "by way of a link";
 }
 
 TEST_F(ReportParts, LayersHoldThePicturesAndTheCounters) {

@@ -68,8 +68,10 @@ Json kinds_of(const std::set<std::string>& names) {
 
 // A file that report.json names: inside its folder, so that a report from elsewhere cannot show other files.
 std::filesystem::path file_of(const ReportFile& report, const std::string& name) {
-  const std::filesystem::path path = std::filesystem::path(name).lexically_normal();
-  if (path.empty() || path.is_absolute() || *path.begin() == "..") {
+  // Links are followed before it is judged.
+  const std::filesystem::path folder = std::filesystem::weakly_canonical(report.folder),
+                              path = std::filesystem::weakly_canonical(folder / name).lexically_relative(folder);
+  if (name.empty() || path.empty() || *path.begin() == "..") {
     throw ReportError((report.folder / "report.json").string() + ": it names " + name +
                       "; expected a file in its own folder");
   }

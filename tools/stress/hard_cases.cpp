@@ -65,14 +65,14 @@ constexpr const char* kMask = "areas of what is partly hidden are estimated from
 constexpr const char* kUnseen = "a triangle that covers no position is not seen";
 constexpr const char* kSlopes = "slopes of layers are stored in 8 bits: crossings move by a few positions";
 
-const std::string kStream = "beam:order=stream", kSmallStream = "beam:order=stream,bits=64,layers=1";
+const std::string kStream = "beam:order=stream", kSmallStream = "beam:order=stream,bits=64",
+                  kCoarseStream = "beam:order=stream,bits=32";
 
 // Of techniques that take a mask without a gap for full coverage, in pixels that so many edges cut.
 std::map<std::string, StatedLimit> full_masks(int edges = 1) {
-  return {{"beam", {edges * largest_cut(256), kFull}},
-          {"beam:bits=32", {edges * largest_cut(32), kFull}},
-          {kStream, {edges * largest_cut(128), kFull}},
-          {kSmallStream, {edges * largest_cut(64), kFull}}};
+  return {{"beam", {edges * largest_cut(256), kFull}},        {"beam:bits=64", {edges * largest_cut(64), kFull}},
+          {"beam:bits=32", {edges * largest_cut(32), kFull}}, {kStream, {edges * largest_cut(128), kFull}},
+          {kCoarseStream, {edges * largest_cut(32), kFull}},  {kSmallStream, {edges * largest_cut(64), kFull}}};
 }
 
 HardCase slivers() {
@@ -108,7 +108,7 @@ HardCase specks() {
           "areas from 10^-6 px (snapped to none) and 7.6 x 10^-6 px up",
           screen.trace(),
           {},
-          {{kStream, {0x1p-7, kUnseen}}, {kSmallStream, {0x1p-6, kUnseen}}}};
+          {{kStream, {0x1p-7, kUnseen}}, {kSmallStream, {0x1p-6, kUnseen}}, {kCoarseStream, {0x1p-6, kUnseen}}}};
 }
 
 HardCase large() {
@@ -132,7 +132,8 @@ HardCase through_samples() {
     screen.triangle({u, 0}, {u, 2}, {i + 1, 2}, 0.5, kRed);
     screen.triangle({i, 2 + i / 16.0}, {i + 1, 2 + i / 16.0}, {i, 4}, 0.5, kGreen);
   }
-  return {"through_samples", "edges through sample positions", screen.trace(), {}, {}};
+  return {
+      "through_samples", "edges through sample positions", screen.trace(), {}, {{kCoarseStream, {0x1p-6, kUnseen}}}};
 }
 
 HardCase edge_on() {
@@ -148,6 +149,7 @@ HardCase edge_on() {
           {},
           {{"beam", {0.02, kMask}},
            {kSmallStream, {0.05, kMask}},
+           {kCoarseStream, {0.06, kMask}},
            {"beam:rules=paper", {0.03, kPaper}},
            {"alpha", {0.01, kOver}}}};
 }
@@ -347,16 +349,22 @@ HardCase grazing() {
   screen.triangle({0, 0, 0.5}, {16, 0, 0.5}, {8, 16, 0.5}, kRed);
   screen.triangle({0, 1, 0.49999}, {16, 2, 0.50001}, {7, 15, 0.500005}, kGreen);
   screen.triangle({0, 12, 0.3}, {16, 3, 0.7}, {15, 16, 0.6}, kBlue);
-  return {"grazing",
-          "triangles that cut through each other at 10^-6 depth per pixel",
-          screen.trace(),
-          {},
-          {{"beam", {0.25, kMask}},
-           {"beam:rules=paper", {0.5, kPaper}},
-           {"msaa", {0.1, kDepth}},
-           {"acaa", {0.1, kDepth}},
-           {"z3", {3.0 / 32, kSlopes}},
-           {"alpha", {0.5, kOver}}}};
+  HardCase result{"grazing",
+                  "triangles that cut through each other at 10^-6 depth per pixel",
+                  screen.trace(),
+                  {},
+                  {{"beam", {0.25, kMask}},
+                   {"beam:rules=paper", {0.5, kPaper}},
+                   {"msaa", {0.1, kDepth}},
+                   {"acaa", {0.1, kDepth}},
+                   {"z3", {3.0 / 32, kSlopes}},
+                   {"alpha", {0.5, kOver}}}};
+  // A sample that changes places takes its share of the largest colour along.
+  for (const int samples : {1, 2, 4})
+    for (const char* name : {"msaa:", "acaa:"})
+      result.limits[name + std::to_string(samples)] = {0.75 / samples, kDepth};
+  for (const char* name : {"taa", "deferred", "visibility"}) result.limits[name] = {0.75, kDepth};
+  return result;
 }
 
 HardCase not_finite() {
@@ -452,6 +460,8 @@ std::vector<HardCase> hard_cases(bool with_heavy) {
                                  widest(16384, 2, "widest", 1),
                                  widest(2, 16384, "highest", 1),
                                  deep_pixel(5000)};
+  for (HardCase& hard_case : cases)
+    hard_case.limits["dvm:material=draw"] = {0.75, "triangles of a draw share the colours of a quad's four samples"};
   if (with_heavy) {
     cases.push_back(deep_pixel(1'000'000));
     // Its sides are so steep that for many rows both lie near the borders of one column of pixels.
