@@ -240,6 +240,11 @@ TEST(ComposeWindow, NothingThereIsTransparent) {
   EXPECT_EQ(found.color, glm::vec3(0));
 }
 
+TEST(PositionSet, IsThereForFourNumbersOfPositions) {
+  for (const int count : {32, 64, 128, 256}) EXPECT_EQ(cell_positions(count).count(), count);
+  EXPECT_THROW(cell_positions(96), std::invalid_argument);
+}
+
 TEST(PositionSet, TheNearestPositionsAreTheNearest) {
   const PositionSet positions(cell_patterns(128));
   Random random(73);
