@@ -22,4 +22,14 @@ std::ifstream open_input_file(const std::filesystem::path& file, const std::stri
   return stream;
 }
 
+std::string read_input_file(const std::filesystem::path& file, const std::string& where) {
+  std::ifstream stream = open_input_file(file, where);
+  std::string bytes;
+  char part[1 << 16];
+  while (stream.read(part, sizeof part) || stream.gcount() > 0)
+    bytes.append(part, static_cast<std::size_t>(stream.gcount()));
+  if (stream.bad()) fail_trace(where, "a file that can be read to its end", "one that cannot");
+  return bytes;
+}
+
 }  // namespace beampipe

@@ -11,4 +11,7 @@ namespace beampipe {
 // cannot be read, throws TraceError, which starts with `where`.
 std::ifstream open_input_file(const std::filesystem::path& file, const std::string& where);
 
+// All of its bytes. Throws TraceError.
+std::string read_input_file(const std::filesystem::path& file, const std::string& where);
+
 }  // namespace beampipe

@@ -96,12 +96,7 @@ bool is_finite(const glm::vec3& v) { return std::isfinite(v.x) && std::isfinite(
 // A whole OBJ or material library, without the byte order mark that some editors write before UTF-8.
 std::stringstream read_text(const fs::path& file, const std::string& where) {
   constexpr std::string_view kByteOrderMark = "\xEF\xBB\xBF";
-  std::ifstream stream = open_input_file(file, where);
-  std::string text;
-  char part[1 << 16];
-  while (stream.read(part, sizeof part) || stream.gcount() > 0)
-    text.append(part, static_cast<std::size_t>(stream.gcount()));
-  if (stream.bad()) fail_trace(where, "a file that can be read to its end", "one that cannot");
+  std::string text = read_input_file(file, where);
   if (text.starts_with(kByteOrderMark)) text.erase(0, kByteOrderMark.size());
   check_lines(text, where);
   return std::stringstream(std::move(text));

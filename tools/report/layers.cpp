@@ -2,7 +2,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <iterator>
 #include <limits>
 #include <set>
 
@@ -78,13 +77,6 @@ std::filesystem::path file_of(const ReportFile& report, const std::string& name)
   return report.folder / path;
 }
 
-std::string read_file(const std::filesystem::path& file) {
-  std::ifstream stream = open_input_file(file, file.string());
-  std::string bytes{std::istreambuf_iterator<char>(stream), {}};
-  if (!stream) throw ImageError(file.string() + ": cannot be read, although report.json names it");
-  return bytes;
-}
-
 }  // namespace
 
 Json report_layers(const ReportFile& report, std::size_t position) {
@@ -93,8 +85,9 @@ Json report_layers(const ReportFile& report, std::size_t position) {
   for (const Json& result : report.json.at("results")) {
     const Json& frame = result.at("frames").at(position);
     layers["frame"] = frame.at("index");
+    const std::filesystem::path picture = file_of(report, frame.at("picture"));
     Json technique = {{"technique", result.at("technique")},
-                      {"picture", png_url(read_file(file_of(report, frame.at("picture"))))},
+                      {"picture", png_url(read_input_file(picture, picture.string()))},
                       {"maps", Json::array()}};
     if (frame.contains("counters")) {
       const Planes planes = read_exr_planes(file_of(report, frame["counters"]));
