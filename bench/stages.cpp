@@ -4,12 +4,12 @@
 
 #include "pipeline/bands.h"
 #include "pipeline/threads.h"
-#include "stages/compose_window.h"
-#include "stages/conservative_raster.h"
-#include "stages/resolve.h"
-#include "stages/shade.h"
-#include "stages/vertex_setup.h"
-#include "stages/windows.h"
+#include "stages/beam/compose_beam.h"
+#include "stages/beam/windows.h"
+#include "stages/geometry/vertex_setup.h"
+#include "stages/picture/resolve.h"
+#include "stages/picture/shade.h"
+#include "stages/raster/conservative_raster.h"
 #include "traces/scenes.h"
 
 namespace beampipe {

@@ -7,7 +7,7 @@
 #include <stdexcept>
 #include <string>
 
-#include "stages/traverse.h"
+#include "stages/raster/traverse.h"
 
 namespace beampipe {
 namespace {
@@ -17,7 +17,7 @@ std::int64_t floor_of(std::int64_t value, std::int64_t by) { return value / by -
 
 // Keeps, of the columns [left, right] of a row of closed tiles between `top` and `bottom` (1/256 px), those where the
 // closed triangle does not lie wholly beyond one of its edges: tested as cells are, at the corner that lies deepest
-// inside (stages/traverse.h).
+// inside (stages/raster/traverse.h).
 void narrow(const EdgeSet& set, std::int64_t top, std::int64_t bottom, std::int64_t tile_size, std::int32_t& left,
             std::int32_t& right) {
   for (const Edge& edge : set.edges) {

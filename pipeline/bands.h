@@ -6,8 +6,8 @@
 #include <cstdint>
 #include <vector>
 
-#include "stages/setup_triangle.h"
-#include "stages/tile.h"
+#include "stages/data/setup_triangle.h"
+#include "stages/data/tile.h"
 #include "traces/trace.h"
 
 namespace beampipe {

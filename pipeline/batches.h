@@ -4,7 +4,7 @@
 #include <algorithm>
 #include <cstddef>
 
-#include "stages/tile.h"
+#include "stages/data/tile.h"
 
 namespace beampipe {
 

@@ -4,11 +4,11 @@
 #include <cmath>
 
 #include "pipeline/tiles.h"
-#include "stages/beam_fragment.h"
-#include "stages/conservative_raster.h"
-#include "stages/reference_raster.h"
-#include "stages/shade.h"
-#include "stages/vertex_setup.h"
+#include "stages/beam/beam_fragment.h"
+#include "stages/geometry/vertex_setup.h"
+#include "stages/picture/shade.h"
+#include "stages/raster/conservative_raster.h"
+#include "stages/raster/reference_raster.h"
 
 namespace beampipe {
 namespace {

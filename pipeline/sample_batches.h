@@ -6,9 +6,9 @@
 #include "pipeline/batches.h"
 #include "pipeline/tiles.h"
 #include "pipeline/timeline.h"
-#include "stages/raster_cost.h"
-#include "stages/sample_raster.h"
-#include "stages/tile.h"
+#include "stages/data/tile.h"
+#include "stages/raster/raster_cost.h"
+#include "stages/raster/sample_raster.h"
 
 namespace beampipe {
 

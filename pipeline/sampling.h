@@ -3,7 +3,7 @@
 
 #include <vector>
 
-#include "stages/sample_raster.h"
+#include "stages/raster/sample_raster.h"
 
 namespace beampipe {
 

@@ -11,8 +11,8 @@
 #include <vector>
 
 #include "pipeline/memory/parameters.h"
-#include "stages/counters.h"
-#include "stages/temporal.h"
+#include "stages/cost/counters.h"
+#include "stages/temporal/temporal.h"
 #include "traces/trace.h"
 
 namespace beampipe {

@@ -11,9 +11,9 @@
 #include <vector>
 
 #include "pipeline/technique.h"
-#include "stages/counters.h"
-#include "stages/setup_triangle.h"
-#include "stages/tile.h"
+#include "stages/cost/counters.h"
+#include "stages/data/setup_triangle.h"
+#include "stages/data/tile.h"
 
 namespace beampipe {
 
@@ -41,10 +41,10 @@ struct TileResult {
 
 using TileRenderer = std::function<TileResult(const Tile&, const TriangleList&)>;
 
-// Renders the frame tile by tile. `tile_size` in pixels, even, where the options name none. `vertex_setup`: of one pass;
-// it runs in each pass, and the raster stage, the first of every tile's, reads each setup triangle (in memory, each bin
-// those of its list). `pair_bytes`: what the renderer keeps, until the tile is done, for each pixel that a triangle
-// touches (RunOptions::memory_limit); 0 when it works on a few triangles at a time.
+// Renders the frame tile by tile. `tile_size` in pixels, even, where the options name none. `vertex_setup`: of one
+// pass; it runs in each pass, and the raster stage, the first of every tile's, reads each setup triangle (in memory,
+// each bin those of its list). `pair_bytes`: what the renderer keeps, until the tile is done, for each pixel that a
+// triangle touches (RunOptions::memory_limit); 0 when it works on a few triangles at a time.
 FrameResult render_tiles(const Frame& frame, const SetupTriangles& triangles, const StageCounters& vertex_setup,
                          int tile_size, const RunOptions& options, std::size_t pair_bytes,
                          const TileRenderer& renderer);

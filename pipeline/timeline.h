@@ -10,8 +10,8 @@
 #include <utility>
 #include <vector>
 
-#include "stages/counters.h"
-#include "stages/tile.h"
+#include "stages/cost/counters.h"
+#include "stages/data/tile.h"
 
 namespace beampipe {
 

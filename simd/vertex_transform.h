@@ -1,6 +1,6 @@
 // A draw's vertices in clip space and on screen. Double precision: one rounding to 1/256 px is all that a vertex gets.
 //
-// Clip space: x, y and z of what is in view lie in [-w, w]. Screen: stages/setup_triangle.h.
+// Clip space: x, y and z of what is in view lie in [-w, w]. Screen: stages/data/setup_triangle.h.
 #pragma once
 
 #include <array>

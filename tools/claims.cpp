@@ -5,13 +5,13 @@
 #include <filesystem>
 #include <limits>
 
-#include "pipeline/dvm.h"
 #include "pipeline/sampling.h"
-#include "pipeline/taa.h"
+#include "pipeline/techniques/dvm.h"
+#include "pipeline/techniques/taa.h"
 #include "simd/mask_table.h"
-#include "stages/paper_storage.h"
-#include "stages/sample_select.h"
-#include "stages/temporal.h"
+#include "stages/data/paper_aggregate.h"
+#include "stages/samples/sample_select.h"
+#include "stages/temporal/temporal.h"
 
 namespace beampipe {
 namespace {
@@ -112,7 +112,7 @@ void add_memory_claims(std::vector<Claim>& claims) {
       claims.push_back({"TAA, what the first frame still counts after " + std::to_string(kFrames[i]) +
                             " frames at T = " + (blend == 0.1 ? "0.1" : "0.05"),
                         "", published[i], published[i], std::pow(1 - blend, kFrames[i]), kDvm, kNoRendering,
-                        "(1 - T)^frames, as in stages/temporal.h"});
+                        "(1 - T)^frames, as in stages/temporal/temporal.h"});
 }
 
 // ---- Times and errors of the paper ----

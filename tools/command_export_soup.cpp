@@ -5,8 +5,8 @@
 #include <memory>
 #include <string>
 
-#include "stages/shade.h"
-#include "stages/vertex_setup.h"
+#include "stages/geometry/vertex_setup.h"
+#include "stages/picture/shade.h"
 #include "tools/commands.h"
 #include "tools/machine_memory.h"
 #include "tools/output.h"

@@ -4,7 +4,7 @@
 
 #include <stdexcept>
 
-#include "stages/setup_triangle.h"
+#include "stages/data/setup_triangle.h"
 
 namespace beampipe {
 

@@ -5,7 +5,7 @@
 #include <cstdio>
 #include <stdexcept>
 
-#include "stages/counter_registry.h"
+#include "stages/cost/counter_registry.h"
 #include "tools/claims.h"
 #include "tools/saved_work.h"
 

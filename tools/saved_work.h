@@ -5,7 +5,7 @@
 #include <string>
 #include <vector>
 
-#include "stages/counters.h"
+#include "stages/cost/counters.h"
 
 namespace beampipe {
 

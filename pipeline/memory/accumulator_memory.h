@@ -5,8 +5,8 @@
 #include <vector>
 
 #include "pipeline/memory/tile_surface.h"
-#include "simd/depth_test.h"
-#include "stages/depth_test.h"
+#include "simd/depth_compare.h"
+#include "stages/samples/test_depth.h"
 
 namespace beampipe {
 

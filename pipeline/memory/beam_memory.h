@@ -7,8 +7,8 @@
 #include "pipeline/memory/linear_memory.h"
 #include "pipeline/memory/tile_surface.h"
 #include "pipeline/technique.h"
-#include "stages/a_buffer.h"
-#include "stages/resolve.h"
+#include "stages/beam/a_buffer.h"
+#include "stages/picture/resolve.h"
 
 namespace beampipe {
 

@@ -12,7 +12,7 @@
 #include <vector>
 
 #include "pipeline/memory/parameters.h"
-#include "stages/counters.h"
+#include "stages/cost/counters.h"
 
 namespace beampipe {
 

@@ -1,7 +1,7 @@
 #include "pipeline/memory/gbuffer_memory.h"
 
 #include "pipeline/memory/image_memory.h"
-#include "stages/shade.h"
+#include "stages/picture/shade.h"
 
 namespace beampipe {
 

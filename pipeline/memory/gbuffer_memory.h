@@ -4,7 +4,7 @@
 #include <vector>
 
 #include "pipeline/memory/tile_surface.h"
-#include "stages/depth_test.h"
+#include "stages/samples/test_depth.h"
 
 namespace beampipe {
 

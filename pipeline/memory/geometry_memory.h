@@ -7,9 +7,9 @@
 #include <vector>
 
 #include "pipeline/memory/linear_memory.h"
-#include "stages/counters.h"
-#include "stages/setup_triangle.h"
-#include "stages/tile.h"
+#include "stages/cost/counters.h"
+#include "stages/data/setup_triangle.h"
+#include "stages/data/tile.h"
 
 namespace beampipe {
 

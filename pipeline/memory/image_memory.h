@@ -2,8 +2,8 @@
 #pragma once
 
 #include "pipeline/memory/linear_memory.h"
-#include "stages/motion.h"
-#include "stages/tile.h"
+#include "stages/data/tile.h"
+#include "stages/temporal/motion.h"
 
 namespace beampipe {
 

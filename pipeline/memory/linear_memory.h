@@ -6,7 +6,7 @@
 
 #include "pipeline/memory/block_cache.h"
 #include "pipeline/memory/parameters.h"
-#include "stages/counters.h"
+#include "stages/cost/counters.h"
 
 namespace beampipe {
 

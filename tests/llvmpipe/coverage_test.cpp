@@ -16,8 +16,8 @@
 #include <map>
 #include <random>
 
-#include "stages/sample_raster.h"
-#include "stages/vertex_setup.h"
+#include "stages/geometry/vertex_setup.h"
+#include "stages/raster/sample_raster.h"
 #include "tests/llvmpipe/llvmpipe.h"
 #include "tests/llvmpipe/snapped.h"
 

@@ -5,7 +5,7 @@
 #include <glm/glm.hpp>
 #include <vector>
 
-#include "stages/setup_triangle.h"
+#include "stages/data/setup_triangle.h"
 
 namespace beampipe {
 

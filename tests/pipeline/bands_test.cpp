@@ -3,9 +3,9 @@
 #include <gtest/gtest.h>
 
 #include "pipeline/technique.h"
-#include "stages/conservative_raster.h"
-#include "stages/vertex_setup.h"
-#include "test_traces.h"
+#include "stages/geometry/vertex_setup.h"
+#include "stages/raster/conservative_raster.h"
+#include "tests/pipeline/test_traces.h"
 #include "tests/simd/random.h"
 
 namespace beampipe {

@@ -1,12 +1,12 @@
 // The listed buffers: constant where that is claimed, grown as stated where not, and what the heap really holds.
 #include <gtest/gtest.h>
 
-#include "counted_heap.h"
 #include "pipeline/technique.h"
-#include "stages/a_buffer.h"
-#include "stages/beam_fragment.h"
-#include "stages/vertex_setup.h"
-#include "test_traces.h"
+#include "stages/beam/a_buffer.h"
+#include "stages/beam/beam_fragment.h"
+#include "stages/geometry/vertex_setup.h"
+#include "tests/pipeline/counted_heap.h"
+#include "tests/pipeline/test_traces.h"
 #include "traces/scenes.h"
 
 namespace beampipe {

@@ -1,4 +1,4 @@
-#include "counted_heap.h"
+#include "tests/pipeline/counted_heap.h"
 
 #include <malloc.h>
 

@@ -1,5 +1,5 @@
 // The registry of counters says what there is: nothing is missing in it, and nothing in it is dead.
-#include "stages/counter_registry.h"
+#include "stages/cost/counter_registry.h"
 
 #include <gtest/gtest.h>
 
@@ -13,7 +13,7 @@
 #include <set>
 
 #include "pipeline/technique.h"
-#include "test_traces.h"
+#include "tests/pipeline/test_traces.h"
 
 namespace beampipe {
 namespace {

@@ -5,8 +5,8 @@
 #include <tuple>
 
 #include "pipeline/technique.h"
-#include "stages/raster_cost.h"
-#include "test_traces.h"
+#include "stages/raster/raster_cost.h"
+#include "tests/pipeline/test_traces.h"
 
 namespace beampipe {
 namespace {

@@ -2,7 +2,7 @@
 #include <gtest/gtest.h>
 
 #include "pipeline/technique.h"
-#include "test_traces.h"
+#include "tests/pipeline/test_traces.h"
 #include "tests/simd/every_target.h"
 #include "tests/thorough.h"
 

@@ -5,7 +5,7 @@
 
 #include <cmath>
 
-#include "test_traces.h"
+#include "tests/pipeline/test_traces.h"
 
 namespace beampipe {
 namespace {

@@ -4,7 +4,7 @@
 #include <cmath>
 
 #include "pipeline/technique.h"
-#include "test_traces.h"
+#include "tests/pipeline/test_traces.h"
 
 namespace beampipe {
 namespace {
@@ -95,7 +95,7 @@ TEST(Pictures, OfTwoEqualTrianglesTheEarlierIsSeen) {
 }
 
 // Every sample of every pixel against every triangle, by barycentric coordinates in double: no raster, no spans, no
-// tiles. The reference's positions (stages/reference_raster.h): 256 rows of 16, each shifted by its bit-reversed
+// tiles. The reference's positions (stages/raster/reference_raster.h): 256 rows of 16, each shifted by its bit-reversed
 // number.
 Image brute_force(const Trace& trace) {
   const Frame& frame = trace.frames[0];

@@ -3,7 +3,7 @@
 #include <random>
 #include <vector>
 
-#include "simd/depth_test.h"
+#include "simd/depth_compare.h"
 #include "simd/match.h"
 #include "tests/simd/every_target.h"
 

@@ -2,7 +2,7 @@
 
 #include <gtest/gtest.h>
 
-#include "simd/sample_test.h"
+#include "simd/sample_mask.h"
 #include "tests/simd/coverage_cases.h"
 #include "tests/simd/every_target.h"
 

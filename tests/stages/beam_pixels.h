@@ -3,12 +3,12 @@
 
 #include <vector>
 
-#include "stages/a_buffer.h"
-#include "stages/beam_fragment.h"
-#include "stages/compose.h"
-#include "stages/conservative_raster.h"
-#include "stages/paper_storage.h"
-#include "stages/shade.h"
+#include "stages/beam/a_buffer.h"
+#include "stages/beam/beam_fragment.h"
+#include "stages/beam/compose_paper.h"
+#include "stages/data/paper_aggregate.h"
+#include "stages/picture/shade.h"
+#include "stages/raster/conservative_raster.h"
 #include "tests/stages/screen_triangles.h"
 
 namespace beampipe {

@@ -1,11 +1,12 @@
-// Positions of a pixel by their state (stages/owner_pixel.h) in counting numbers, for the twins of claim and settle.
+// Positions of a pixel by their state (stages/data/owner_pixel.h) in counting numbers, for the twins of claim and
+// settle.
 #pragma once
 
 #include <array>
 #include <bit>
 
-#include "stages/counting.h"
-#include "stages/owner_pixel.h"
+#include "stages/cost/counting.h"
+#include "stages/data/owner_pixel.h"
 
 namespace beampipe {
 

@@ -3,10 +3,10 @@
 
 #include <gtest/gtest.h>
 
-#include "stages/counting.h"
-#include "stages/setup_triangle.h"
-#include "stages/tile.h"
-#include "stages/vertex_setup.h"
+#include "stages/cost/counting.h"
+#include "stages/data/setup_triangle.h"
+#include "stages/data/tile.h"
+#include "stages/geometry/vertex_setup.h"
 #include "tests/traces/scene_names.h"
 
 namespace beampipe {

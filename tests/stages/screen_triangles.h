@@ -6,8 +6,8 @@
 #include <utility>
 #include <vector>
 
-#include "stages/setup_triangle.h"
-#include "stages/tile.h"
+#include "stages/data/setup_triangle.h"
+#include "stages/data/tile.h"
 #include "tests/simd/random.h"
 
 namespace beampipe {

@@ -3,7 +3,7 @@
 
 #include <vector>
 
-#include "stages/vertex_setup.h"
+#include "stages/geometry/vertex_setup.h"
 
 namespace beampipe {
 

@@ -4,7 +4,7 @@
 
 #include <set>
 
-#include "stages/counter_registry.h"
+#include "stages/cost/counter_registry.h"
 #include "tools/claims.h"
 
 namespace beampipe {

@@ -5,7 +5,7 @@
 #include <limits>
 #include <set>
 
-#include "stages/counter_registry.h"
+#include "stages/cost/counter_registry.h"
 #include "tools/image_io.h"
 #include "tools/report/tables.h"
 #include "traces/input_file.h"

@@ -45,8 +45,8 @@ struct BarPlot {
 // Colours of series and parts, in order: Tableau's ten, which most eyes can tell apart, then their light twins.
 extern const std::array<const char*, 20> kPlotColors;
 
-// Peak bytes of framebuffer and A-buffer per pixel against EMR; MSAA is a line through the rungs of the ladder. Throws ReportError
-// when no technique has an EMR.
+// Peak bytes of framebuffer and A-buffer per pixel against EMR; MSAA is a line through the rungs of the ladder. Throws
+// ReportError when no technique has an EMR.
 ScatterPlot frontier_plot(const std::vector<ReportFile>& reports);
 
 // Milliseconds against RMSE. `implementation` names a way in which the modelled hardware runs the techniques, "" stands

@@ -4,7 +4,7 @@
 #include <cctype>
 
 #include "pipeline/technique.h"
-#include "stages/counter_registry.h"
+#include "stages/cost/counter_registry.h"
 #include "tools/saved_work.h"
 
 namespace beampipe {

@@ -285,7 +285,7 @@ constexpr std::array<glm::vec3, 3> kNearerOne{
     kFartherOne{{{-5000, -5000, kBehindIt}, {6000, -4000, kBehindIt}, {0, 8000, kBehindIt}}};
 
 HardCase depth_range() {
-  // Depth is finest far away (stages/setup_triangle.h), as a reversed buffer's.
+  // Depth is finest far away (stages/data/setup_triangle.h), as a reversed buffer's.
   return {"depth_range",
           "near to far 1 : 10^7, surfaces 10^-6 apart at the far end; the nearer one is drawn last",
           perspective(0.001, 10000, {kFartherOne, kNearerOne}),

@@ -4,7 +4,7 @@
 #include <cmath>
 #include <cstdlib>
 
-#include "pipeline/msaa.h"
+#include "pipeline/techniques/msaa.h"
 #include "simd/sample_pattern.h"
 
 namespace beampipe {

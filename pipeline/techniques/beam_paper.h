@@ -1,0 +1,35 @@
+// The beam pipeline as published (Crassin et al. 2018): conservative raster, fragments with analytic coverage and a
+// localization mask, shaded and put into an A-buffer, and merged from near to far into one aggregate per pixel.
+#pragma once
+
+#include "pipeline/technique.h"
+#include "stages/beam/a_buffer.h"
+#include "stages/beam/beam_fragment.h"
+#include "stages/data/paper_aggregate.h"
+
+namespace beampipe {
+
+enum class Rules {
+  paper,  // simd/merge.h: the published rules
+  over,   // alpha OVER alone: what masks and slabs are worth
+};
+
+struct PublishedOptions {
+  Rules rules = Rules::paper;
+  MaskSource mask = MaskSource::table;  // none: with `over`
+  SortKey sort = SortKey::centroid;
+  int tiny_positions = 0;  // BeamFragmentOptions::tiny_positions
+  MergeRules merge{};
+  PaperStorage storage = PaperStorage::slides;
+};
+
+FrameResult render_published(const Trace& trace, const Frame& frame, const PublishedOptions& beam,
+                             const RunOptions& run);
+
+// Technique::weights.
+std::vector<PixelWeights> published_weights(const Trace& trace, const Frame& frame, const PublishedOptions& beam,
+                                            const RunOptions& run);
+
+std::vector<Surface> published_framebuffer(const PublishedOptions& beam);
+
+}  // namespace beampipe

@@ -1,0 +1,20 @@
+// Z3 (Jouppi and Chang 1999): the published way to do without an A-buffer. Fragments in primitive order into a few
+// layers per pixel; what is too much is merged (stages/beam/compose_z3.h).
+#pragma once
+
+#include "pipeline/technique.h"
+#include "stages/beam/compose_z3.h"
+
+namespace beampipe {
+
+struct Z3Options {
+  int positions = 32;  // with `layers` one of BEAMPIPE_Z3_PIXELS
+  int layers = 3;
+  LayerMerge merge = LayerMerge::depth;
+};
+
+FrameResult render_z3(const Trace& trace, const Frame& frame, const Z3Options& z3, const RunOptions& run);
+
+std::vector<Surface> z3_framebuffer(const Z3Options& z3);
+
+}  // namespace beampipe

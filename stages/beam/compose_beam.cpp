@@ -1,0 +1,258 @@
+#include "stages/beam/compose_beam.h"
+
+#include <algorithm>
+#include <cstring>
+
+#include "stages/beam/compose_beam_cost.h"
+
+namespace beampipe {
+namespace {
+
+constexpr std::uint32_t kNobody = ~0u;
+
+// What is kept from one window to the next, as it is worked on.
+struct PixelAggregate {
+  WideMask mask;
+  Taken<float> taken{0.0f, 0.0f};
+  glm::vec3 color{0.0f};  // times area
+};
+
+template <std::size_t Words, class Channel>
+PixelAggregate load(const StoredAggregate<Words, Channel>& stored) {
+  PixelAggregate aggregate;
+  std::memcpy(aggregate.mask.words.data(), stored.mask, sizeof stored.mask);
+  aggregate.taken.area = stored.area;
+  aggregate.color = {stored.color[0], stored.color[1], stored.color[2]};
+  return aggregate;
+}
+
+template <std::size_t Words, class Channel>
+void store(const PixelAggregate& aggregate, StoredAggregate<Words, Channel>& stored) {
+  std::memcpy(stored.mask, aggregate.mask.words.data(), sizeof stored.mask);
+  stored.area = aggregate.taken.area;
+  for (int c = 0; c < 3; ++c) stored.color[c] = Channel(aggregate.color[c]);
+}
+
+// What was done, for the counters.
+struct ComposeWork {
+  std::uint64_t fragments = 0;                 // whose masks were looked at
+  std::uint64_t contestants = 0;               // of windows with contested positions
+  std::uint64_t depth_tests = 0;               // at those
+  std::uint64_t partial = 0, order_tests = 0;  // partly hidden fragments, which are sorted
+  std::uint64_t visible = 0;                   // fragments with positions that were added
+  std::uint64_t specks = 0, surface_tests = 0;
+  std::uint64_t closed = 0;  // pixels of which nothing is left
+};
+
+class PixelComposer {
+ public:
+  explicit PixelComposer(const PositionSet& positions) : positions_(positions) {}
+
+  // Adds the window's fragments, all of one pixel, in primitive order. areas[i]: what fragment i adds.
+  void add_window(const Fragment* fragments, std::size_t count, PixelAggregate& aggregate, float* areas) {
+    work_.fragments += count;
+    aggregate.taken.positions = find_owners(fragments, count, aggregate.mask);
+    bool specks = false;
+    for (std::size_t i = 0; i < count; ++i) {
+      areas[i] = 0;
+      specks |= ownership_[i].covered == 0;
+    }
+    if (specks) find_specks(fragments, count, aggregate.mask, areas);
+    // Whole fragments first, specks among them: what they took beyond their positions is then known to those that are
+    // partly hidden.
+    partial_.clear();
+    for (std::uint32_t i = 0; i < count; ++i) {
+      const Ownership& seen = ownership_[i];
+      if (seen.visible == seen.covered) {
+        add(fragments[i], seen, aggregate, areas[i]);
+      } else if (seen.visible > 0) {
+        partial_.push_back({static_cast<float>(seen.visible) / static_cast<float>(seen.covered), i});
+      }
+    }
+    work_.partial += partial_.size();
+    std::sort(partial_.begin(), partial_.end(), [this](const Partial& a, const Partial& b) {
+      ++work_.order_tests;
+      return a.visible > b.visible || (a.visible == b.visible && a.fragment < b.fragment);
+    });
+    for (const Partial& next : partial_)
+      add(fragments[next.fragment], ownership_[next.fragment], aggregate, areas[next.fragment]);
+  }
+
+  // Nothing is left for the background: what rounding left goes to what is there.
+  void close(PixelAggregate& aggregate) {
+    if (aggregate.taken.positions != static_cast<float>(positions_.count())) return;
+    aggregate.color *= 1.0f / aggregate.taken.area;
+    aggregate.taken.area = 1.0f;
+    ++work_.closed;
+  }
+
+  const ComposeWork& work() const { return work_; }
+
+ private:
+  // Returns how many positions are taken.
+  float find_owners(const Fragment* fragments, std::size_t count, const WideMask& taken) {
+    planes_.resize(count);
+    ownership_.resize(count);
+    for (std::size_t i = 0; i < count; ++i) planes_[i] = {fragments[i].mask, corner_plane(fragments[i].plane)};
+    const WindowCounts counts =
+        window_owners(planes_.data(), count, taken, positions_.patterns.data(), ownership_.data());
+    work_.depth_tests += counts.tests;
+    if (counts.tests > 0) work_.contestants += count;
+    return static_cast<float>(counts.taken);
+  }
+
+  // `area`: in, that of a speck; out, what is added.
+  void add(const Fragment& fragment, const Ownership& seen, PixelAggregate& aggregate, float& area) {
+    work_.visible += seen.covered > 0;
+    area = seen.covered > 0
+               ? visible_area(fragment.alpha, static_cast<float>(seen.covered), static_cast<float>(seen.visible),
+                              static_cast<float>(positions_.count()), aggregate.taken)
+               : std::min(area, 1.0f - aggregate.taken.area);
+    aggregate.taken.area += area;
+    aggregate.taken.positions += static_cast<float>(seen.visible);
+    aggregate.mask = aggregate.mask | seen.owned;
+    const float share = area / fragment.alpha;
+    aggregate.color += share * fragment.color;
+  }
+
+  // Fragments that cover no position. Each asks the owners of the three nearest positions whether it lies before them,
+  // or on the same surface. Around one position the two sides of a thin closed body both cover no position: the side
+  // with the lesser area is taken for hidden by the other.
+  void find_specks(const Fragment* fragments, std::size_t count, const WideMask& taken, float* areas) {
+    const auto positions = static_cast<std::size_t>(positions_.count());
+    list_owners(count);
+    front_.resize(positions);
+    back_.resize(positions);
+    for (std::size_t i = 0; i < count; ++i) {
+      if (ownership_[i].covered > 0) continue;
+      ++work_.specks;
+      const Fragment& fragment = fragments[i];
+      const std::array<std::uint8_t, 3>& nearest = positions_.nearest_to(fragment.centroid_u, fragment.centroid_v);
+      float votes = 0;
+      for (const std::uint8_t position : nearest)
+        votes += !taken.test(position) && is_nearer(fragment, fragments, owner_of(position, count));
+      areas[i] = fragment.alpha * votes / 3.0f;
+      (fragment.front ? front_ : back_)[nearest[0]] += areas[i];
+    }
+    for (std::size_t i = 0; i < count; ++i) {
+      if (ownership_[i].covered > 0) continue;
+      const std::size_t place = positions_.nearest_to(fragments[i].centroid_u, fragments[i].centroid_v)[0];
+      if ((front_[place] >= back_[place]) != fragments[i].front) areas[i] = 0;
+      areas[i] *= std::min(
+          1.0f, kSpeckShares / (static_cast<float>(positions_.count()) * std::max(front_[place], back_[place])));
+    }
+    for (std::size_t i = 0; i < count; ++i) {
+      if (ownership_[i].covered > 0) continue;
+      const std::size_t place = positions_.nearest_to(fragments[i].centroid_u, fragments[i].centroid_v)[0];
+      front_[place] = back_[place] = 0;
+    }
+  }
+
+  // Small windows are searched, large ones have a table.
+  static constexpr std::size_t kSearched = 32;
+
+  void list_owners(std::size_t count) {
+    if (count <= kSearched) return;
+    owner_.assign(static_cast<std::size_t>(positions_.count()), kNobody);
+    for (std::uint32_t i = 0; i < count; ++i)
+      for (std::size_t w = 0; w < kMaxMaskWords; ++w)
+        for (std::uint32_t left = ownership_[i].owned.words[w]; left != 0; left &= left - 1)
+          owner_[w * kMaxMaskSamples + static_cast<std::size_t>(std::countr_zero(left))] = i;
+  }
+
+  std::uint32_t owner_of(std::size_t position, std::size_t count) const {
+    if (count > kSearched) return owner_[position];
+    for (std::uint32_t i = 0; i < count; ++i)
+      if (ownership_[i].owned.test(position)) return i;
+    return kNobody;
+  }
+
+  bool is_nearer(const Fragment& fragment, const Fragment* fragments, std::uint32_t owner) {
+    if (owner == kNobody) return true;
+    ++work_.surface_tests;
+    const DepthPlane<float>& plane = fragments[owner].plane;
+    const float u = fragment.centroid_u - 0.5f, v = fragment.centroid_v - 0.5f;
+    return fragment.centroid_z <=
+           depth_at(plane, u, v) + kSurfaceReach * (magnitude(plane.dzdu) + magnitude(plane.dzdv));
+  }
+
+  const PositionSet& positions_;
+  std::vector<MaskedPlane> planes_;  // of the window at hand, per fragment
+  std::vector<Ownership> ownership_;
+  struct Partial {
+    float visible;  // part of its positions
+    std::uint32_t fragment;
+  };
+  std::vector<Partial> partial_;      // fragments that are partly hidden
+  std::vector<std::uint32_t> owner_;  // per position: which fragment
+  std::vector<float> front_, back_;   // area of specks that face either way, by nearest position; else zeros
+  ComposeWork work_;
+};
+
+}  // namespace
+
+template <std::size_t Words, class Channel>
+void compose_window(const std::vector<Fragment>& fragments, const PositionSet& positions, StageCounters& counters,
+                    std::vector<StoredAggregate<Words, Channel>>& pixels, std::vector<float>& areas) {
+  PixelComposer composer(positions);
+  areas.resize(fragments.size());
+  std::uint64_t windows = 0;
+  for (std::size_t begin = 0, end = 0; begin < fragments.size(); begin = end, ++windows) {
+    const std::uint32_t pixel = fragments[begin].pixel;
+    while (end < fragments.size() && fragments[end].pixel == pixel) ++end;
+    PixelAggregate aggregate = load(pixels[pixel]);
+    composer.add_window(fragments.data() + begin, end - begin, aggregate, areas.data() + begin);
+    composer.close(aggregate);
+    store(aggregate, pixels[pixel]);
+  }
+  static const UnitCost masks = mask_cost(Words), contest = contest_cost(Words), test = depth_compare_cost(),
+                        addition = addition_cost(), speck = speck_cost(), surface = surface_cost(),
+                        closing = closing_cost();
+  constexpr OperationCounts part{.special = 1}, order_test{.add = 1}, open_test{.add = 1};
+  constexpr OperationCounts formats = {.convert = std::is_same_v<Channel, HalfBits> ? 2 * 3 : 0};  // load and store
+  const ComposeWork& work = composer.work();
+  counters.items_in += fragments.size();
+  counters.items_out += windows;
+  counters.ops += masks * work.fragments;
+  counters.ops += contest * work.contestants;
+  counters.ops += test * work.depth_tests;
+  counters.ops += part * work.partial;
+  counters.ops += order_test * work.order_tests;
+  counters.ops += addition * work.visible;
+  counters.ops += speck * work.specks;
+  counters.ops += surface * work.surface_tests;
+  counters.ops += open_test * windows;
+  counters.ops += closing * work.closed;
+  counters.ops += formats * windows;
+  counters.bytes_read +=
+      fragments.size() * conserving_fragment_bytes(32 * Words) + windows * sizeof(StoredAggregate<Words, Channel>);
+  counters.bytes_written += windows * sizeof(StoredAggregate<Words, Channel>);
+  counters.lanes_used += work.depth_tests;
+  counters.lanes_issued += work.fragments * 32 * Words;
+}
+
+template <std::size_t Words, class Channel>
+void compose_whole(const std::vector<PixelTriangle>& whole, const Tile& tile, const std::vector<glm::vec3>& colors,
+                   StageCounters& counters, std::vector<StoredAggregate<Words, Channel>>& pixels) {
+  for (const PixelTriangle& pair : whole) {
+    auto& pixel = pixels[tile.index(pair.x, pair.y)];
+    std::memset(pixel.mask, 0xff, sizeof pixel.mask);
+    pixel.area = 1.0f;
+    for (int c = 0; c < 3; ++c) pixel.color[c] = Channel(colors[pair.triangle][c]);
+  }
+  counters.items_in += whole.size();
+  counters.items_out += whole.size();
+  if (std::is_same_v<Channel, HalfBits>) counters.ops.convert += 3 * whole.size();
+  counters.bytes_read += whole.size() * kPairWithDepthBytes;
+  counters.bytes_written += whole.size() * sizeof(StoredAggregate<Words, Channel>);
+}
+
+#define BEAMPIPE_COMPOSE(words, channel)                                                                     \
+  template void compose_window(const std::vector<Fragment>&, const PositionSet&, StageCounters&,             \
+                               std::vector<StoredAggregate<words, channel>>&, std::vector<float>&);          \
+  template void compose_whole(const std::vector<PixelTriangle>&, const Tile&, const std::vector<glm::vec3>&, \
+                              StageCounters&, std::vector<StoredAggregate<words, channel>>&);
+BEAMPIPE_STORED_AGGREGATES(BEAMPIPE_COMPOSE)
+#undef BEAMPIPE_COMPOSE
+
+}  // namespace beampipe

@@ -1,0 +1,134 @@
+// Numbers that count: running a scalar twin on them tells what the stage's arithmetic costs per item.
+#pragma once
+
+#include <bit>
+#include <cmath>
+#include <cstdint>
+#include <type_traits>
+
+#include "stages/cost/counters.h"
+
+namespace beampipe {
+
+// Value plus where to count. Constants carry no tally; an operation counts in whichever operand's tally there is.
+template <class Value>
+struct Counted {
+  Value value{};
+  OperationCounts* tally = nullptr;
+
+  Counted() = default;
+  explicit Counted(Value v) : value(v) {}
+  Counted(Value v, OperationCounts& counts) : value(v), tally(&counts) {}
+};
+
+template <class Value>
+OperationCounts* tally_of(const Counted<Value>& x, const Counted<Value>& y) {
+  return x.tally ? x.tally : y.tally;
+}
+
+template <class Value>
+Counted<Value> counted(OperationCounts* tally, Count OperationCounts::*kind, Value value) {
+  Counted<Value> result(value);
+  result.tally = tally;
+  if (tally) tally->*kind += 1;
+  return result;
+}
+
+#define BEAMPIPE_COUNTED_BINARY(op, kind)                                              \
+  template <class Value>                                                               \
+  Counted<Value> operator op(const Counted<Value>& x, const Counted<Value>& y) {       \
+    return counted(tally_of(x, y), &OperationCounts::kind, Value(x.value op y.value)); \
+  }
+BEAMPIPE_COUNTED_BINARY(+, add)
+BEAMPIPE_COUNTED_BINARY(-, add)
+BEAMPIPE_COUNTED_BINARY(*, mul_add)
+BEAMPIPE_COUNTED_BINARY(/, special)
+BEAMPIPE_COUNTED_BINARY(&, bit)
+BEAMPIPE_COUNTED_BINARY(|, bit)
+BEAMPIPE_COUNTED_BINARY(^, bit)
+BEAMPIPE_COUNTED_BINARY(%, special)
+#undef BEAMPIPE_COUNTED_BINARY
+
+template <class Value>
+Counted<Value> operator>>(const Counted<Value>& x, int places) {
+  return counted(x.tally, &OperationCounts::bit, Value(x.value >> places));
+}
+
+template <class Value>
+Counted<Value> operator~(const Counted<Value>& x) {
+  return counted(x.tally, &OperationCounts::bit, Value(~x.value));
+}
+
+#define BEAMPIPE_COUNTED_COMPARISON(op)                                \
+  template <class Value>                                               \
+  bool operator op(const Counted<Value>& x, const Counted<Value>& y) { \
+    if (OperationCounts* tally = tally_of(x, y)) ++tally->add;         \
+    return x.value op y.value;                                         \
+  }
+BEAMPIPE_COUNTED_COMPARISON(<)
+BEAMPIPE_COUNTED_COMPARISON(<=)
+BEAMPIPE_COUNTED_COMPARISON(>)
+BEAMPIPE_COUNTED_COMPARISON(>=)
+BEAMPIPE_COUNTED_COMPARISON(==)
+BEAMPIPE_COUNTED_COMPARISON(!=)
+#undef BEAMPIPE_COUNTED_COMPARISON
+
+template <class Value>
+Counted<Value> select(bool condition, const Counted<Value>& yes, const Counted<Value>& no) {
+  return counted(tally_of(yes, no), &OperationCounts::add, condition ? yes.value : no.value);
+}
+template <class Value>
+Counted<Value> lesser(const Counted<Value>& x, const Counted<Value>& y) {
+  return counted(tally_of(x, y), &OperationCounts::add, x.value < y.value ? x.value : y.value);
+}
+template <class Value>
+Counted<Value> greater(const Counted<Value>& x, const Counted<Value>& y) {
+  return counted(tally_of(x, y), &OperationCounts::add, x.value > y.value ? x.value : y.value);
+}
+template <class Value>
+Counted<Value> magnitude(const Counted<Value>& x) {
+  return counted(x.tally, &OperationCounts::bit, x.value < 0 ? -x.value : x.value);
+}
+template <class Value>
+Counted<Value> square_root(const Counted<Value>& x) {
+  return counted(x.tally, &OperationCounts::special, static_cast<Value>(std::sqrt(x.value)));
+}
+inline Counted<std::int32_t> to_integer(const Counted<float>& x) {
+  return counted(x.tally, &OperationCounts::convert, static_cast<std::int32_t>(x.value));
+}
+template <class Value>
+Counted<float> to_float(const Counted<Value>& x) {
+  return counted(x.tally, &OperationCounts::convert, static_cast<float>(x.value));
+}
+template <class Value>
+Counted<double> to_double(const Counted<Value>& x) {
+  return counted(x.tally, &OperationCounts::convert, static_cast<double>(x.value));
+}
+template <class Value>
+Counted<Value> converted(const Counted<Value>& x) {
+  return counted(x.tally, &OperationCounts::convert, x.value);
+}
+inline Counted<std::uint32_t> fetch(const std::uint32_t* table, const Counted<std::int32_t>& index) {
+  return counted(index.tally, &OperationCounts::fetch, table[index.value]);
+}
+// A population count and the conversion of its result.
+inline Counted<float> bit_count(const Counted<std::uint32_t>& mask) {
+  if (mask.tally) ++mask.tally->convert;
+  return counted(mask.tally, &OperationCounts::bit, static_cast<float>(std::popcount(mask.value)));
+}
+
+// Runs `twin` on counting numbers made by the function it is given, and returns what it counted.
+template <class Twin>
+OperationCounts count_operations(Twin&& twin) {
+  OperationCounts counts;
+  twin(counts);
+  return counts;
+}
+
+// What one item costs, worked out once. It is a copy because g++ 12.2 loses counts that a function makes in place in a
+// static object; with -fno-ipa-reference it does not.
+struct UnitCost : OperationCounts {
+  UnitCost(const OperationCounts& counts) : OperationCounts(counts) {}
+};
+
+}  // namespace beampipe

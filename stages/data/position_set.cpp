@@ -1,0 +1,45 @@
+#include "stages/data/position_set.h"
+
+#include <algorithm>
+#include <stdexcept>
+#include <string>
+#include <utility>
+
+#include "simd/wide_mask.h"
+
+namespace beampipe {
+
+PositionSet::PositionSet(std::vector<SamplePattern> words) : patterns(std::move(words)) {
+  for (int y = 0; y < kPlaces; ++y) {
+    for (int x = 0; x < kPlaces; ++x) {
+      // Squared distance in 1/256 px, then the position's number: ties go to the lower one.
+      std::array<std::pair<int, int>, kMaxMaskWords * kMaxMaskSamples> by_distance;
+      for (int i = 0; i < count(); ++i) {
+        const SamplePattern& pattern = patterns[static_cast<std::size_t>(i / kMaxMaskSamples)];
+        const auto s = static_cast<std::size_t>(i % kMaxMaskSamples);
+        constexpr int kPlace = kSubpixelUnits / kPlaces;
+        const int dx = pattern.x[s] - (x * kPlace + kPlace / 2), dy = pattern.y[s] - (y * kPlace + kPlace / 2);
+        by_distance[static_cast<std::size_t>(i)] = {dx * dx + dy * dy, i};
+      }
+      std::partial_sort(by_distance.begin(), by_distance.begin() + 3, by_distance.begin() + count());
+      nearest.push_back({static_cast<std::uint8_t>(by_distance[0].second),
+                         static_cast<std::uint8_t>(by_distance[1].second),
+                         static_cast<std::uint8_t>(by_distance[2].second)});
+    }
+  }
+}
+
+const std::array<std::uint8_t, 3>& PositionSet::nearest_to(float u, float v) const {
+  const auto place = [](float x) { return std::clamp(static_cast<int>(x * kPlaces), 0, kPlaces - 1); };
+  return nearest[static_cast<std::size_t>(place(v) * kPlaces + place(u))];
+}
+
+const PositionSet& cell_positions(int count) {
+  static const std::array sets{PositionSet(cell_patterns(32)), PositionSet(cell_patterns(64)),
+                               PositionSet(cell_patterns(128)), PositionSet(cell_patterns(256))};
+  for (const PositionSet& set : sets)
+    if (set.count() == count) return set;
+  throw std::invalid_argument("expected 32, 64, 128 or 256 positions, found " + std::to_string(count));
+}
+
+}  // namespace beampipe

@@ -1,0 +1,32 @@
+#include "stages/geometry/clip.h"
+
+#include "stages/geometry/vertex_setup.h"
+
+namespace beampipe {
+
+ClipPlanes clip_planes(const Frame& frame) {
+  // Pixel x lies in [-G, G]: (x / w + 1) W / 2 >= -G, and so on.
+  const double right = 2 * kGuardBand / frame.width - 1, left = 2 * kGuardBand / frame.width + 1;
+  const double low = 2 * kGuardBand / frame.height - 1, high = 2 * kGuardBand / frame.height + 1;
+  return {{{0, 0, 1, 1}, {0, 0, -1, 1}, {1, 0, 0, left}, {-1, 0, 0, right}, {0, 1, 0, low}, {0, -1, 0, high}}};
+}
+
+Polygon clip_to_plane(const Polygon& polygon, const std::array<double, 4>& plane, std::uint64_t& crossings) {
+  std::vector<double> distances;
+  for (const ClipVertex<double>& vertex : polygon) distances.push_back(plane_distance(plane, vertex));
+  Polygon clipped;
+  for (std::size_t i = 0; i < polygon.size(); ++i) {
+    const std::size_t next = (i + 1) % polygon.size();
+    const ClipVertex<double>&from = polygon[i], &to = polygon[next];
+    const double from_distance = distances[i], to_distance = distances[next];
+    if (from_distance >= 0) clipped.push_back(from);
+    if ((from_distance >= 0) == (to_distance >= 0)) continue;
+    const bool leaving = from_distance >= 0;
+    const ClipVertex<double>&in = leaving ? from : to, &out = leaving ? to : from;
+    clipped.push_back(crossing(in, out, leaving ? from_distance : to_distance, leaving ? to_distance : from_distance));
+    ++crossings;
+  }
+  return clipped;
+}
+
+}  // namespace beampipe

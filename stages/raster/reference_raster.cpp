@@ -1,0 +1,131 @@
+#include "stages/raster/reference_raster.h"
+
+#include <algorithm>
+#include <limits>
+
+#include "simd/depth_span.h"
+#include "simd/sample_pattern.h"
+#include "stages/cost/counting.h"
+
+namespace beampipe {
+namespace {
+
+// Sample positions are integers in 1/8192 px: x = 512 i + 2 reverse(row) + 1, y = 32 row + 16.
+constexpr std::int64_t kReferenceUnits = 8192;                       // per pixel
+constexpr std::int64_t kStep = kReferenceUnits / kReferenceColumns;  // between samples of a row
+constexpr std::int64_t kRowStep = kReferenceUnits / kReferenceRows;  // between rows
+constexpr std::int64_t kScale = kReferenceUnits / kSubpixelUnits;    // per 1/256 px
+
+std::int64_t row_offset(std::int64_t row) {  // of the first sample of a pixel
+  std::int64_t reversed = 0;
+  for (int bit = 0; bit < 8; ++bit) reversed |= ((row >> bit) & 1) << (7 - bit);
+  return 2 * reversed + 1;
+}
+
+std::int64_t floor_quotient(std::int64_t dividend, std::int64_t divisor) {  // divisor > 0
+  const std::int64_t quotient = dividend / divisor;
+  return quotient - (dividend % divisor < 0);
+}
+
+// Samples [first, end) of a sample row, in frame coordinates.
+struct Span {
+  std::int64_t first, end;
+};
+
+// Keeps the samples i with a (kStep i + offset) + rest >= 0.
+void cut(Span& span, std::int64_t a, std::int64_t offset, std::int64_t rest) {
+  const std::int64_t at_zero = a * offset + rest, per_sample = a * kStep;
+  if (per_sample == 0) {
+    if (at_zero < 0) span.end = span.first;
+  } else if (per_sample > 0) {
+    span.first = std::max(span.first, -floor_quotient(at_zero, per_sample));
+  } else {
+    span.end = std::min(span.end, floor_quotient(at_zero, -per_sample) + 1);
+  }
+}
+
+OperationCounts sample_cost() {
+  return count_operations([](OperationCounts& counts) {
+    const Counted<double> one(1.0, counts);
+    Counted<double> depth;
+    depth_span_sample(one, one, one, one, one, one, one, depth);
+  });
+}
+
+}  // namespace
+
+ReferenceTile::ReferenceTile(const Tile& tile)
+    : row_samples(static_cast<std::size_t>(tile.width() * kReferenceColumns)) {
+  const std::size_t samples = row_samples * static_cast<std::size_t>(tile.height() * kReferenceRows);
+  depth.assign(samples, std::numeric_limits<double>::infinity());
+  owner.assign(samples, kNoOwner);
+}
+
+void reference_raster(const SetupTriangles& triangles, const TriangleList& list, const Tile& tile,
+                      StageCounters& counters, ReferenceTile& surface) {
+  const std::int64_t left = std::int64_t{tile.x0} * kReferenceColumns,
+                     right = std::int64_t{tile.x1} * kReferenceColumns;
+  const std::int64_t top = std::int64_t{tile.y0} * kReferenceRows, bottom = std::int64_t{tile.y1} * kReferenceRows;
+  const OperationCounts per_sample = sample_cost();
+  for (const std::uint32_t index : list) {
+    const SetupTriangle& t = triangles.triangles[index];
+    const auto [y_low, y_high] = std::minmax({t.y[0], t.y[1], t.y[2]});
+    const Edge edges[3] = {edge_of(t, 0), edge_of(t, 1), edge_of(t, 2)};
+    const std::int64_t first_row = std::max(top, floor_quotient(y_low * kScale, kRowStep));
+    const std::int64_t end_row = std::min(bottom, floor_quotient(y_high * kScale, kRowStep) + 1);
+    for (std::int64_t row = first_row; row < end_row; ++row) {
+      const std::int64_t y = row * kRowStep + kRowStep / 2, offset = row_offset(row);
+      Span span{left, right};
+      for (const Edge& edge : edges) cut(span, edge.a, offset, edge.b * y + edge.c * kScale - (edge.owns ? 0 : 1));
+      if (span.first >= span.end) continue;
+      const double unit = 1.0 / kReferenceUnits;
+      const DepthSpan depths{t.depth.z, t.depth.dzdx, t.depth.dzdy * (static_cast<double>(y) * unit - t.depth.anchor_y),
+                             static_cast<double>(span.first * kStep + offset) * unit - t.depth.anchor_x,
+                             static_cast<double>(kStep) * unit};
+      const std::size_t at =
+          static_cast<std::size_t>(row - top) * surface.row_samples + static_cast<std::size_t>(span.first - left);
+      const auto count = static_cast<std::size_t>(span.end - span.first);
+      counters.items_out += depth_span(depths, count, index, surface.depth.data() + at, surface.owner.data() + at);
+      counters.lanes_used += count;
+      counters.lanes_issued += count;
+      counters.ops += per_sample * count;
+      counters.bytes_read += count * sizeof(double);
+    }
+  }
+}
+
+std::vector<glm::vec4> resolve(const ReferenceTile& surface, const Tile& tile, const std::vector<glm::vec3>& colors,
+                               const glm::vec3& background, StageCounters& counters) {
+  const double share = 1.0 / kReferenceSamples;
+  const glm::dvec3 clear = background;
+  std::vector<glm::vec4> image;
+  image.reserve(tile.pixels());
+  for (std::int32_t y = 0; y < tile.height(); ++y) {
+    for (std::int32_t x = 0; x < tile.width(); ++x) {
+      glm::dvec3 sum(0.0);
+      std::uint32_t covered = 0;
+      for (std::int32_t row = 0; row < kReferenceRows; ++row) {
+        const std::uint64_t* owner = surface.owner.data() +
+                                     static_cast<std::size_t>(y * kReferenceRows + row) * surface.row_samples +
+                                     static_cast<std::size_t>(x * kReferenceColumns);
+        for (std::int32_t s = 0; s < kReferenceColumns; ++s) {
+          covered += owner[s] != kNoOwner;
+          sum += owner[s] == kNoOwner ? clear : glm::dvec3(colors[owner[s]]);
+        }
+      }
+      image.emplace_back(glm::vec3(sum * share), static_cast<float>(covered * share));
+    }
+  }
+  constexpr std::uint64_t kSamples = kReferenceSamples;
+  counters.items_in += tile.pixels() * kSamples;
+  counters.items_out += tile.pixels();
+  constexpr OperationCounts kSum{.add = 3};  // three channels
+  constexpr OperationCounts kMean{.mul_add = 3};
+  counters.ops += kSum * (tile.pixels() * kSamples);
+  counters.ops += kMean * tile.pixels();
+  counters.bytes_read += tile.pixels() * kSamples * sizeof(std::uint64_t);
+  counters.bytes_written += tile.pixels() * sizeof(glm::vec4);
+  return image;
+}
+
+}  // namespace beampipe

@@ -1,0 +1,169 @@
+// ACAA against MSAA: the same picture but for the accumulator's precision and for depths that coincide.
+#include "pipeline/techniques/acaa.h"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+
+#include "pipeline/technique.h"
+#include "pipeline/techniques/msaa.h"
+#include "tests/pipeline/test_traces.h"
+
+namespace beampipe {
+namespace {
+
+FrameResult render(const std::string& spec, const Trace& trace) { return parse_technique(spec).render(trace, 0, {1}); }
+
+double worst_difference(const Image& a, const Image& b) {
+  double worst = 0;
+  for (std::size_t i = 0; i < a.rgba.size(); ++i) worst = std::max(worst, std::abs(double{a.rgba[i]} - b.rgba[i]));
+  return worst;
+}
+
+glm::vec4 pixel(const Image& image, std::uint32_t x, std::uint32_t y) {
+  const float* rgba = image.rgba.data() + 4 * (std::size_t{y} * image.width + x);
+  return {rgba[0], rgba[1], rgba[2], rgba[3]};
+}
+
+// A triangle over the whole of a small frame at one depth.
+PixelSpaceTriangle everywhere(double z, const glm::vec3& color) {
+  return {{{-1, -1, z}, {13, -2, z}, {-2, 12, z}}, color};
+}
+
+TEST(Acaa, OpaquePicturesAreThoseOfMsaa) {
+  const Trace trace = random_trace(60, 40, 300, 5);
+  for (const int samples : {1, 2, 4, 8, 16, 32, 64, 256}) {
+    const std::string n = std::to_string(samples);
+    const Image truth = render("msaa:" + n, trace).image;
+    // MSAA's samples are fp16 (2^-12 of 1); beyond that an fp32 accumulator only rounds sums of up to `samples` terms.
+    EXPECT_LT(worst_difference(render("acaa:" + n + ",color=fp32", trace).image, truth), 0x1p-12 + samples * 0x1p-24)
+        << n;
+    // Shares are multiples of 2^-8, which fp16 holds exactly up to 1, so alpha errs nowhere. Sums of colours are at
+    // most 1, and each, one per visible fragment, is rounded by at most half an fp16 step below 1, which is 2^-12.
+    const FrameResult fp16 = render("acaa:" + n + ",color=fp16", trace);
+    const std::vector<float>& sums = fp16.pixel_counters.at("visible_fragments");
+    for (std::size_t i = 0; i < truth.rgba.size(); ++i) {
+      EXPECT_LE(std::abs(double{fp16.image.rgba[i]} - truth.rgba[i]), (sums[i / 4] + 1) * 0x1p-12 + samples * 0x1p-24)
+          << n << " samples, pixel " << i / 4;
+    }
+  }
+}
+
+TEST(Acaa, EverySumIsRoundedToTheFormat) {
+  // A single fragment in each pixel.
+  const Trace trace = pixel_trace(4, 4, {{{{-1, -1, 0.5}, {3.3, -1, 0.5}, {-1, 9, 0.5}}, glm::vec3(0.3f, 0.6f, 0.9f)}});
+  const Image exact = render("acaa:8,color=fp32", trace).image;
+  const double fp16 = worst_difference(render("acaa:8,color=fp16", trace).image, exact);
+  const double unorm8 = worst_difference(render("acaa:8,color=unorm8", trace).image, exact);
+  EXPECT_GT(fp16, 0);
+  EXPECT_LE(fp16, 0x1p-12);
+  EXPECT_GT(unorm8, 0x1p-12);
+  EXPECT_LE(unorm8, 0.5 / 255 + 1e-6);
+  const Image coarse = render("acaa:8,color=unorm8", trace).image;
+  for (std::size_t i = 0; i < coarse.rgba.size(); ++i) {
+    if (i % 4 == 3) continue;
+    EXPECT_NEAR(coarse.rgba[i] * 255, std::round(coarse.rgba[i] * 255), 1e-4);
+  }
+}
+
+TEST(Acaa, ManySmallSharesLoseMorePrecisionInFewerBits) {
+  const Trace trace = random_trace(40, 30, 4000, 8);
+  const Image exact = render("acaa:64,color=fp32", trace).image;
+  const auto rmse = [&](const char* spec) {
+    const Image image = render(spec, trace).image;
+    double sum = 0;
+    for (std::size_t i = 0; i < image.rgba.size(); ++i) sum += std::pow(double{image.rgba[i]} - exact.rgba[i], 2);
+    return std::sqrt(sum / static_cast<double>(image.rgba.size()));
+  };
+  const double fp16 = rmse("acaa:64,color=fp16"), unorm8 = rmse("acaa:64,color=unorm8");
+  EXPECT_GT(fp16, 0);
+  EXPECT_GT(unorm8, 4 * fp16);
+  EXPECT_LT(unorm8, 0.05);
+}
+
+TEST(Acaa, CoincidentDepthsCountTwiceUnlessRemedied) {
+  const Trace trace = pixel_trace(4, 4, {everywhere(0.5, {0.25f, 0, 0}), everywhere(0.5, {0, 0.5f, 0})});
+  EXPECT_EQ(pixel(render("acaa:8", trace).image, 1, 1), glm::vec4(0.25f, 0.5f, 0, 1));
+  // The first one's alone, as in MSAA.
+  for (const char* spec : {"acaa:8,double=stencil", "acaa:8,double=saturate", "acaa:32,double=stencil",
+                           "acaa:32,double=saturate", "acaa:256,double=saturate", "msaa:8"})
+    EXPECT_EQ(pixel(render(spec, trace).image, 1, 1), glm::vec4(0.25f, 0, 0, 1)) << spec;
+}
+
+TEST(Acaa, SaturationStopsAtWhatGeometryCovers) {
+  // Twice the same half of the frame, over a background: no more than the covered samples, whoever fills them.
+  const PixelSpaceTriangle left{{{-1, -9, 0.5}, {1.5, -9, 0.5}, {1.5, 30, 0.5}}, glm::vec3(0, 1, 0)};
+  PixelSpaceTriangle again = left;
+  again.color = glm::vec3(1, 0, 0);
+  const Trace trace = pixel_trace(4, 4, {left, again}, glm::vec3(0, 0, 1));
+  for (const char* spec : {"acaa:4,double=saturate,color=fp32", "acaa:64,double=saturate,color=fp32",
+                           "acaa:4,double=stencil,color=fp32"}) {
+    const Image image = render(spec, trace).image;
+    EXPECT_NEAR(pixel(image, 1, 1).g + pixel(image, 1, 1).b, 1, 1e-6) << spec;
+    EXPECT_EQ(pixel(image, 1, 1).r, 0) << spec;
+  }
+  EXPECT_NEAR(pixel(render("acaa:4,color=fp32", trace).image, 1, 1).r, 0.5, 1e-6);
+  EXPECT_NEAR(pixel(render("acaa:4,double=saturate,color=fp32", trace).image, 1, 1).a, 0.5, 1e-6);
+}
+
+TEST(Acaa, HiddenFragmentsAreNotShaded) {
+  const auto layers = [](double first, double second, double third) {
+    return pixel_trace(
+        4, 4, {everywhere(first, glm::vec3(1)), everywhere(second, glm::vec3(1)), everywhere(third, glm::vec3(1))});
+  };
+  Trace trace = layers(0.7, 0.5, 0.3);  // far to near
+  const auto shaded = [&](const char* spec) {
+    for (const StageCounters& stage : render(spec, trace).stages)
+      if (stage.stage == "shade") return stage.lanes_used;
+    return std::uint64_t{0};
+  };
+  EXPECT_EQ(shaded("msaa:8"), 3u * 16);
+  EXPECT_EQ(shaded("msaa:8,prepass"), 16u);
+  EXPECT_EQ(shaded("acaa:8"), 16u);
+  EXPECT_EQ(shaded("acaa:64"), 4 * 16u);  // in each of four rounds
+  trace = layers(0.3, 0.7, 0.5);
+  EXPECT_EQ(shaded("msaa:8"), 16u) << "behind closed cells";
+}
+
+TEST(Acaa, ADepthPassDoesNotChangeThePictureOfMsaa) {
+  const Trace trace = random_trace(60, 40, 300, 6);
+  for (const char* n : {"1", "8", "64"})
+    EXPECT_EQ(render(std::string("msaa:").append(n), trace).image.rgba,
+              render(std::string("msaa:").append(n).append(",prepass"), trace).image.rgba);
+}
+
+TEST(Acaa, RoundsAreTheSamplesOfMsaa) {
+  for (const int samples : {1, 4, 16, 32, 64, 128, 256}) {
+    std::vector<std::pair<int, int>> positions;
+    for (const Sampling& round : acaa_rounds(samples)) {
+      EXPECT_LE(round.pattern.count, 16);
+      for (std::size_t s = 0; s < static_cast<std::size_t>(round.pattern.count); ++s)
+        positions.emplace_back(round.pattern.x[s], round.pattern.y[s]);
+    }
+    const Sampling all = msaa_sampling(samples);
+    std::vector<std::pair<int, int>> expected;
+    for (int row = 0; row < all.grid.rows; ++row)
+      for (int column = 0; column < all.grid.columns; ++column)
+        for (std::size_t s = 0; s < static_cast<std::size_t>(all.pattern.count); ++s)
+          expected.emplace_back(column * all.grid.cell_width() + all.pattern.x[s],
+                                row * all.grid.cell_height() + all.pattern.y[s]);
+    std::sort(positions.begin(), positions.end());
+    std::sort(expected.begin(), expected.end());
+    EXPECT_EQ(positions, expected) << samples;
+  }
+}
+
+TEST(Acaa, MemoryAtFourK) {
+  // The talk: at 3840 x 2160, 8 samples, MSAA takes 759 MB and ACAA 316 MB (MiB, with fp16 RGBA and 32-bit depth).
+  const auto mebibytes = [](const char* spec) {
+    return 3840.0 * 2160 * parse_technique(spec).framebuffer_bytes_per_pixel() / (1 << 20);
+  };
+  EXPECT_EQ(std::lround(mebibytes("msaa:8,color=rgba16f")), 759);
+  EXPECT_EQ(std::lround(mebibytes("acaa:8")), 316);
+  EXPECT_EQ(parse_technique("acaa:8,double=stencil").framebuffer_bytes_per_pixel(), 48u);
+  EXPECT_EQ(parse_technique("acaa:256").framebuffer_bytes_per_pixel(),
+            parse_technique("acaa:16").framebuffer_bytes_per_pixel());
+}
+
+}  // namespace
+}  // namespace beampipe

@@ -1,0 +1,98 @@
+#include "simd/sample_mask.h"
+
+#include <gtest/gtest.h>
+
+#include <vector>
+
+#include "tests/simd/every_target.h"
+#include "tests/simd/random.h"
+
+namespace beampipe {
+namespace {
+
+std::uint32_t twin(const CellEdges& cell, const SamplePattern& pattern) {
+  std::int64_t a[3], b[3];
+  for (int k = 0; k < 3; ++k) a[k] = cell.a[k], b[k] = cell.b[k];
+  return sample_mask_scalar<std::int64_t>(a, b, cell.c, pattern);
+}
+
+void expect_kernel_equals_twin(const std::vector<CellEdges>& cells, const SamplePattern& pattern) {
+  on_every_target([&] {
+    std::vector<std::uint32_t> masks(cells.size(), 0xdeadbeef);
+    sample_masks(cells.data(), cells.size(), pattern, masks.data());
+    for (std::size_t i = 0; i < cells.size(); ++i)
+      ASSERT_EQ(masks[i], twin(cells[i], pattern)) << "cell " << i << ", " << pattern.count << " samples";
+  });
+}
+
+SamplePattern random_pattern(Random& random, int count) {
+  SamplePattern pattern;
+  pattern.count = count;
+  for (std::size_t i = 0; i < static_cast<std::size_t>(count); ++i)
+    pattern.x[i] = random.int32(0, 255), pattern.y[i] = random.int32(0, 255);
+  return pattern;
+}
+
+// Slopes of every size, many of them at the limits between the kernel's number types, and edges that run exactly
+// through a sample or miss it by one.
+CellEdges random_edges(Random& random, const SamplePattern& pattern) {
+  constexpr std::int32_t kBorder = 1 << 20, kLargest = 1 << 24;
+  constexpr std::int32_t kSpecial[] = {0, 1, kBorder - 1, kBorder, kBorder + 1, kLargest};
+  constexpr std::int64_t kDecided = 1 << 30, kHighest = (std::int64_t{1} << 52) - 1;
+  constexpr std::int64_t kExtremes[] = {kHighest, kDecided, kDecided + 1, kDecided - 1, (std::int64_t{1} << 31), 1, 0};
+  const auto slope = [&] {
+    const std::int32_t magnitude =
+        random.one_in(3) ? random.pick(kSpecial) : random.int32(0, (1 << random.int32(0, 24)) - 1);
+    return random.one_in(2) ? magnitude : -magnitude;
+  };
+  CellEdges cell;
+  for (int k = 0; k < 3; ++k) {
+    cell.a[k] = slope(), cell.b[k] = slope();
+    const auto s = static_cast<std::size_t>(random.integer(0, pattern.count - 1));
+    const std::int64_t through = -(std::int64_t{cell.a[k]} * pattern.x[s] + std::int64_t{cell.b[k]} * pattern.y[s]);
+    cell.c[k] = through + random.integer(-1, 1);
+    if (random.one_in(5)) cell.c[k] = random.pick(kExtremes) * (random.one_in(3) ? -1 : 1);
+  }
+  return cell;
+}
+
+TEST(SampleTest, KernelEqualsTwinForEveryPatternSize) {
+  Random random(21);
+  SCOPED_TRACE(random.name());
+  for (int count = 1; count <= kMaxMaskSamples; ++count) {
+    const SamplePattern pattern = random_pattern(random, count);
+    std::vector<CellEdges> cells;
+    for (int i = 0; i < 3'000; ++i) cells.push_back(random_edges(random, pattern));
+    expect_kernel_equals_twin(cells, pattern);
+  }
+}
+
+TEST(SampleTest, KernelEqualsTwinForTheStandardPatterns) {
+  Random random(22);
+  SCOPED_TRACE(random.name());
+  std::vector<SamplePattern> patterns = {hammersley_pattern(), standard_pattern(8, 128, 64),
+                                         standard_pattern(8, 16, 16)};
+  for (const int count : {1, 2, 4, 8, 16}) patterns.push_back(standard_pattern(count));
+  for (const SamplePattern& pattern : patterns) {
+    std::vector<CellEdges> cells;
+    for (int i = 0; i < 5'000; ++i) cells.push_back(random_edges(random, pattern));
+    expect_kernel_equals_twin(cells, pattern);
+  }
+}
+
+TEST(SampleTest, SampleOnAnEdgeIsCovered) {
+  // x >= 128, y <= 64, and an edge that cuts nothing.
+  SamplePattern pattern;
+  pattern.count = 3;
+  pattern.x = {128, 127, 128};
+  pattern.y = {64, 64, 65};
+  const CellEdges cell{{1, 0, 0}, {0, -1, 0}, {-128, 64, 0}};
+  on_every_target([&] {
+    std::uint32_t mask = 0;
+    sample_masks(&cell, 1, pattern, &mask);
+    EXPECT_EQ(mask, 0b001u);
+  });
+}
+
+}  // namespace
+}  // namespace beampipe

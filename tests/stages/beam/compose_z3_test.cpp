@@ -1,0 +1,109 @@
+#include "stages/beam/compose_z3.h"
+
+#include <gtest/gtest.h>
+
+#include "stages/picture/shade.h"
+#include "stages/raster/conservative_raster.h"
+#include "tests/simd/random.h"
+#include "tests/stages/screen_triangles.h"
+
+namespace beampipe {
+namespace {
+
+template <std::size_t Words, std::size_t Layers>
+std::vector<Z3Pixel<Words, Layers>> composed(const SetupTriangles& triangles, const std::vector<glm::vec3>& colors,
+                                             const Tile& tile, LayerMerge merge = LayerMerge::depth,
+                                             OperationCounts* counts = nullptr) {
+  const PositionSet positions(cell_patterns(32 * Words));
+  StageCounters counters, composition;
+  std::vector<PixelTriangle> pairs;
+  std::vector<Fragment> fragments;
+  conservative_raster(triangles, all_of(triangles), tile, counters, pairs);
+  beam_fragment(triangles, pairs, tile, {MaskSource::exact, positions.patterns, nullptr, nullptr, 26, 0}, counters,
+                fragments);
+  shade(colors, fragments, counters);
+  std::vector<Z3Pixel<Words, Layers>> pixels(tile.pixels());
+  std::vector<float> merges(tile.pixels());
+  compose_z3(fragments, positions, merge, composition, pixels, merges);
+  if (counts) *counts = composition.ops;
+  return pixels;
+}
+
+const Tile kPixel{0, 0, 1, 1};
+
+TEST(ComposeZ3, LayersThatFitAreWeightedByTheirPositions) {
+  SetupTriangles triangles;
+  add_everywhere(triangles, -0.5f);
+  add_left_of(triangles, 64, -0.75f);
+  add_right_of(triangles, 192, -0.6f);
+  const PixelColor found = z3_colors(composed<4, 3>(triangles, {{1, 0, 0}, {0, 1, 0}, {0, 0, 1}}, kPixel)).at(0);
+  EXPECT_EQ(found.alpha, 1.0f);
+  EXPECT_EQ(found.color, glm::vec3(0.5f, 0.25f, 0.25f));
+}
+
+TEST(ComposeZ3, OrderDoesNotMatterWhileLayersFit) {
+  for (const bool front_first : {true, false}) {
+    SetupTriangles triangles;
+    if (front_first) add_left_of(triangles, 128, -0.75f);
+    add_everywhere(triangles, -0.5f);
+    if (!front_first) add_left_of(triangles, 128, -0.75f);
+    std::vector<glm::vec3> colors = {{1, 0, 0}, {0, 1, 0}};
+    if (!front_first) std::swap(colors[0], colors[1]);
+    EXPECT_EQ(z3_colors(composed<1, 2>(triangles, colors, kPixel)).at(0).color, glm::vec3(0.5f, 0.5f, 0))
+        << front_first;
+  }
+}
+
+TEST(ComposeZ3, TheClosestTwoAreMerged) {
+  // Three strips beside each other: the two that are close in depth share one colour, so that what comes between them
+  // and the third hides them as one.
+  SetupTriangles triangles;
+  add_everywhere(triangles, -0.4f);
+  add_left_of(triangles, 192, -0.41f);
+  add_left_of(triangles, 64, -0.9f);
+  const std::vector<glm::vec3> colors = {{1, 0, 0}, {0, 1, 0}, {0, 0, 1}};
+  const auto pixels = composed<1, 2>(triangles, colors, kPixel);
+  const PixelColor before = z3_colors(pixels).at(0);
+  EXPECT_NEAR(before.color.r, 0.25, 1e-3);
+  EXPECT_NEAR(before.color.g, 0.5, 1e-3);
+  EXPECT_NEAR(before.color.b, 0.25, 1e-3);
+  EXPECT_NEAR(pixels[0].layers[0].z, -0.4 - 0.01 * 2 / 3, 1e-4);  // 16 and 8 positions
+}
+
+TEST(ComposeZ3, WeightsNeverPassOne) {
+  Random random(91);
+  SCOPED_TRACE(random.name());
+  const SetupTriangles triangles = random_triangles(random, 80);
+  const std::vector<glm::vec3> white(triangles.triangles.size(), glm::vec3(1.0f));
+  for (const LayerMerge merge : {LayerMerge::depth, LayerMerge::color})
+    for (const PixelColor& pixel : z3_colors(composed<1, 3>(triangles, white, {0, 0, 12, 12}, merge))) {
+      EXPECT_GE(pixel.alpha, 0.0f);
+      EXPECT_LE(pixel.alpha, 1.0f);
+      EXPECT_NEAR(pixel.color.r, pixel.alpha, 2e-3);  // fp16
+    }
+}
+
+TEST(ComposeZ3, CountsItsArithmetic) {
+  const std::vector<glm::vec3> white(3, glm::vec3(1.0f));
+  SetupTriangles triangles;
+  add_everywhere(triangles, -0.5f);
+  OperationCounts counts;
+  composed<1, 2>(triangles, white, kPixel, LayerMerge::depth, &counts);
+  // Two slopes rounded to the stored format and a colour from fp16; five numbers from the formats of two layers and
+  // into them. Of one word: two states of two bits found and put, and eight operations on the positions of each layer.
+  const OperationCounts one{0, 0, 2 * (2 + 3) + 2 * 8, 0, 0, 2 * 2 + 3 + 2 * 5 + 2 * 5};
+  EXPECT_EQ(counts, one);
+  add_left_of(triangles, 192, -0.6f);
+  add_left_of(triangles, 64, -0.9f);
+  composed<1, 2>(triangles, white, kPixel, LayerMerge::depth, &counts);
+  OperationCounts all = one * 3;
+  // Planes compared at 32 positions: the second with the first, the third with the second.
+  all += OperationCounts{4, 4 + 1, 0, 0, 0, 0} * (32 * 2);
+  // Three layers, three pairs: depths' difference, the least of them; two population counts, shares, six means, a
+  // union.
+  all += OperationCounts{12, 3 + 3 + 2 + 6, 3 + 2 + 1, 0, 1, 2};
+  EXPECT_EQ(counts, all);
+}
+
+}  // namespace
+}  // namespace beampipe

@@ -1,0 +1,292 @@
+// The twins of compose as it was published and as Z3 has it: one fragment after the other into its pixel.
+#include <algorithm>
+#include <cmath>
+
+#include "simd/plane_order.h"
+#include "stages/beam/compose_paper.h"
+#include "stages/beam/compose_z3.h"
+#include "stages/picture/shade.h"
+#include "stages/raster/conservative_raster.h"
+#include "tests/stages/scene_twins.h"
+
+namespace beampipe {
+namespace {
+
+class MergeTwins : public SceneTwins {
+ protected:
+  void make_fragments(const BeamFragmentOptions& options) {
+    StageCounters ignored;
+    std::vector<PixelTriangle> pairs;
+    conservative_raster(triangles_, list_, tile_, ignored, pairs);
+    beam_fragment(triangles_, pairs, tile_, options, ignored, fragments_);
+    shade(shade_triangles(triangles_, trace_.frames[0].light_direction), fragments_, ignored);
+  }
+  void make_published_fragments() {
+    const SamplePattern pattern = hammersley_pattern();
+    const MaskTable table(pattern);
+    BeamFragmentOptions options;
+    options.positions = {pattern};
+    options.table = &table;
+    options.tiny_positions = 1;
+    make_fragments(options);
+    StageCounters ignored;
+    buffer_ = a_buffer(sort_records(fragments_, SortKey::centroid), tile_.pixels(), 42, 42, ignored);
+  }
+
+  AggregateOf<Float, Bits> counting(const Aggregate& a) {
+    return {real(a.alpha), bits(a.mask),  {real(a.plane.z), real(a.plane.dzdu), real(a.plane.dzdv)}, real(a.thickness),
+            real(a.z_min), real(a.z_max), {real(a.color[0]), real(a.color[1]), real(a.color[2])}};
+  }
+  FragmentOf<Float, Bits> counting(const Fragment& fragment) {
+    const MergeFragment in = merge_fragment(fragment);
+    return {counting(in.surface), bits(in.tiny)};
+  }
+  static Aggregate value_of(const AggregateOf<Float, Bits>& a) {
+    return {a.alpha.value, a.mask.value,  {a.plane.z.value, a.plane.dzdu.value, a.plane.dzdv.value}, a.thickness.value,
+            a.z_min.value, a.z_max.value, {a.color[0].value, a.color[1].value, a.color[2].value}};
+  }
+
+  // The numbers of an aggregate that a merge reads from its storage's formats, and writes into them.
+  static void convert(AggregateOf<Float, Bits>& a, PaperStorage storage) {
+    if (storage == PaperStorage::float32) return;
+    for (Float& channel : a.color) channel = converted(channel);
+    if (storage == PaperStorage::text)
+      for (Float* const number : {&a.plane.dzdu, &a.plane.dzdv, &a.thickness}) *number = converted(*number);
+  }
+
+  // `merged`: a fragment and what is there -> what is there then, as it is stored.
+  template <class Merged>
+  std::vector<Aggregate> merge_all(Merged&& merged) {
+    std::vector<Aggregate> pixels(tile_.pixels(), kEmptyAggregate);
+    twin_ = {};
+    for (std::size_t pixel = 0; pixel < tile_.pixels(); ++pixel)
+      for (std::uint32_t i = buffer_.first[pixel]; i < buffer_.first[pixel + 1]; ++i)
+        pixels[pixel] = merged(fragments_[buffer_.records[i]], pixels[pixel]);
+    return pixels;
+  }
+
+  static void expect_same(const std::vector<Aggregate>& found, const std::vector<Aggregate>& expected) {
+    ASSERT_EQ(found.size(), expected.size());
+    for (std::size_t i = 0; i < found.size(); ++i) {
+      const Aggregate &a = found[i], &b = expected[i];
+      ASSERT_EQ(a.alpha, b.alpha) << i;
+      ASSERT_EQ(a.mask, b.mask) << i;
+      ASSERT_EQ(a.plane.z, b.plane.z) << i;
+      ASSERT_EQ(a.plane.dzdu, b.plane.dzdu) << i;
+      ASSERT_EQ(a.plane.dzdv, b.plane.dzdv) << i;
+      ASSERT_EQ(a.thickness, b.thickness) << i;
+      ASSERT_EQ(a.z_min, b.z_min) << i;
+      ASSERT_EQ(a.z_max, b.z_max) << i;
+      for (int c = 0; c < 3; ++c) ASSERT_EQ(a.color[c], b.color[c]) << i;
+    }
+  }
+
+  template <class Stored>
+  void compose_into(PaperStorage storage) {
+    const SamplePattern pattern = hammersley_pattern();
+    const MergeRules rules;
+    const std::vector<Aggregate> expected = merge_all([&](const Fragment& fragment, const Aggregate& before) {
+      AggregateOf<Float, Bits> old = counting(before);
+      convert(old, storage);
+      AggregateOf<Float, Bits> merged = merge_scalar(counting(fragment), old, pattern, rules);
+      convert(merged, storage);
+      return Aggregate(Stored(value_of(merged)));
+    });
+    StageCounters counters;
+    expect_same(compose(fragments_, buffer_, pattern, rules, storage, counters), expected);
+    EXPECT_EQ(counters.ops, twin_);
+    EXPECT_EQ(counters.lanes_used, fragments_.size());
+    EXPECT_EQ(counters.lanes_issued, fragments_.size());
+  }
+
+  std::vector<Fragment> fragments_;
+  ABuffer buffer_;
+};
+
+TEST_P(MergeTwins, Compose) {
+  make_published_fragments();
+  compose_into<SlidesAggregate>(PaperStorage::slides);
+  compose_into<TextAggregate>(PaperStorage::text);
+  compose_into<Aggregate>(PaperStorage::float32);
+}
+
+TEST_P(MergeTwins, Over) {
+  make_published_fragments();
+  const std::vector<Aggregate> expected = merge_all([&](const Fragment& fragment, const Aggregate& before) {
+    AggregateOf<Float, Bits> old = counting(before);
+    convert(old, PaperStorage::slides);
+    AggregateOf<Float, Bits> merged = over_scalar(counting(fragment), old);
+    convert(merged, PaperStorage::slides);
+    return Aggregate(SlidesAggregate(value_of(merged)));
+  });
+  StageCounters counters;
+  expect_same(compose_over(fragments_, buffer_, counters), expected);
+  EXPECT_EQ(counters.ops, twin_);
+}
+
+// ---- Z3 ----
+
+struct CountedLayer {
+  Float z, dzdu, dzdv;
+  Float color[3];
+  std::vector<Bits> mask;
+
+  bool empty() const {
+    return std::all_of(mask.begin(), mask.end(), [](const Bits& word) { return word.value == 0; });
+  }
+};
+
+template <std::size_t Words, std::size_t Layers>
+class Z3Twin {
+ public:
+  using Pixel = Z3Pixel<Words, Layers>;
+
+  Z3Twin(const PositionSet& positions, LayerMerge merge, OperationCounts& counts)
+      : positions_(positions), merge_(merge), counts_(counts) {}
+
+  // Returns whether two layers became one.
+  bool add(const Fragment& fragment, Pixel& pixel) {
+    CountedLayer arriving = arriving_layer(fragment);
+    std::vector<CountedLayer> layers;
+    for (std::uint32_t k = 0; k < Layers; ++k) {
+      CountedLayer layer = loaded(pixel, k);
+      std::vector<Bits> contested;
+      for (std::size_t w = 0; w < Words; ++w) contested.push_back(layer.mask[w] & bits(fragment.mask.words[w]));
+      const std::vector<Bits> nearer = positions_won(arriving, layer, contested);
+      for (std::size_t w = 0; w < Words; ++w) {
+        arriving.mask[w] = arriving.mask[w] & ~(contested[w] & ~nearer[w]);
+        layer.mask[w] = layer.mask[w] & ~(contested[w] & nearer[w]);
+      }
+      if (!layer.empty()) layers.push_back(layer);
+    }
+    if (arriving.empty()) return false;
+    layers.push_back(arriving);
+    const bool one_too_many = layers.size() > Layers;
+    if (one_too_many) merge_two(layers);
+    for (std::uint32_t k = 0; k < Layers; ++k) store(k < layers.size() ? &layers[k] : nullptr, k, pixel);
+    return one_too_many;
+  }
+
+ private:
+  Float real(float value) { return Float(value, counts_); }
+  Bits bits(std::uint32_t word) { return Bits(word, counts_); }
+
+  // Its colour comes as fp16, and not times alpha; its slopes are rounded as those that they are compared with.
+  CountedLayer arriving_layer(const Fragment& fragment) {
+    const auto slope = [&](float value) { return converted(converted(real(UpperHalf(value)))); };
+    CountedLayer layer{real(fragment.plane.z), slope(fragment.plane.dzdu), slope(fragment.plane.dzdv), {}, {}};
+    for (int c = 0; c < 3; ++c) layer.color[c] = converted(real(HalfBits(fragment.color[c] / fragment.alpha)));
+    for (std::size_t w = 0; w < Words; ++w) layer.mask.push_back(bits(fragment.mask.words[w]));
+    return layer;
+  }
+
+  CountedLayer loaded(const Pixel& pixel, std::uint32_t k) {
+    const Z3Layer& stored = pixel.layers[k];
+    CountedLayer layer{real(stored.z), converted(real(stored.slopes[0])), converted(real(stored.slopes[1])), {}, {}};
+    for (int c = 0; c < 3; ++c) layer.color[c] = converted(real(stored.color[c]));
+    for (std::size_t w = 0; w < Words; ++w) {
+      std::array<Bits, std::bit_width(Layers)> planes;
+      for (std::size_t b = 0; b < planes.size(); ++b) planes[b] = bits(pixel.owners.planes[b][w]);
+      layer.mask.push_back(word_in_state(planes, k + 1));
+    }
+    return layer;
+  }
+
+  void store(const CountedLayer* layer, std::uint32_t k, Pixel& pixel) {
+    for (int number = 0; number < 2 + 3; ++number) converted(real(0));
+    for (std::size_t w = 0; w < Words; ++w)
+      for (std::size_t b = 0; b < std::bit_width(Layers); ++b)
+        pixel.owners.planes[b][w] =
+            word_put(bits(pixel.owners.planes[b][w]), layer ? layer->mask[w] : bits(0), (k + 1) >> b & 1).value;
+    if (!layer) return;
+    pixel.layers[k].z = layer->z.value;
+    pixel.layers[k].slopes[0] = UpperHalf(layer->dzdu.value), pixel.layers[k].slopes[1] = UpperHalf(layer->dzdv.value);
+    for (int c = 0; c < 3; ++c) pixel.layers[k].color[c] = HalfBits(layer->color[c].value);
+  }
+
+  // Where the first layer is nearer, asked where any position is contested.
+  std::vector<Bits> positions_won(const CountedLayer& a, const CountedLayer& b, const std::vector<Bits>& contested) {
+    std::vector<Bits> nearer(Words, bits(0));
+    if (std::all_of(contested.begin(), contested.end(), [](const Bits& word) { return word.value == 0; }))
+      return nearer;
+    for (std::size_t w = 0; w < Words; ++w)
+      for (std::size_t s = 0; s < 32; ++s)
+        nearer[w].value |= std::uint32_t{nearer_scalar<Float>({a.z, a.dzdu, a.dzdv}, {b.z, b.dzdu, b.dzdv},
+                                                              real(position_u(positions_.patterns[w], s)),
+                                                              real(position_v(positions_.patterns[w], s)))}
+                           << s;
+    return nearer;
+  }
+
+  Float count(const CountedLayer& layer) {
+    Float sum = bit_count(layer.mask[0]);
+    for (std::size_t w = 1; w < Words; ++w) sum = sum + bit_count(layer.mask[w]);
+    return sum;
+  }
+
+  void merge_two(std::vector<CountedLayer>& layers) {
+    std::vector<Float> sizes;
+    if (merge_ == LayerMerge::color)
+      for (const CountedLayer& layer : layers) sizes.push_back(count(layer));
+    std::size_t first = 0, second = 1;
+    float least = INFINITY;
+    for (std::size_t i = 0; i < layers.size(); ++i) {
+      for (std::size_t j = i + 1; j < layers.size(); ++j) {
+        const CountedLayer &a = layers[i], &b = layers[j];
+        Float loss = magnitude(a.z - b.z);
+        if (merge_ == LayerMerge::color) {
+          counts_.add -= 1, counts_.bit -= 1;  // depths are not asked
+          const Float red = a.color[0] - b.color[0], green = a.color[1] - b.color[1], blue = a.color[2] - b.color[2];
+          loss = (red * red + green * green + blue * blue) * sizes[i] * sizes[j] / (sizes[i] + sizes[j]);
+        }
+        if (loss < real(least)) least = loss.value, first = i, second = j;
+      }
+    }
+    CountedLayer &a = layers[first], &b = layers[second];
+    const Float in_a = sizes.empty() ? count(a) : sizes[first], in_b = sizes.empty() ? count(b) : sizes[second];
+    const Float share = in_a / (in_a + in_b), rest = Float(1.0f) - share;
+    const auto mean = [&](const Float& x, const Float& y) { return share * x + rest * y; };
+    a.z = mean(a.z, b.z), a.dzdu = mean(a.dzdu, b.dzdu), a.dzdv = mean(a.dzdv, b.dzdv);
+    for (int c = 0; c < 3; ++c) a.color[c] = mean(a.color[c], b.color[c]);
+    for (std::size_t w = 0; w < Words; ++w) a.mask[w] = a.mask[w] | b.mask[w];
+    std::swap(b, layers.back());
+    layers.pop_back();
+  }
+
+  const PositionSet& positions_;
+  LayerMerge merge_;
+  OperationCounts& counts_;
+};
+
+TEST_P(MergeTwins, ComposeZ3) {
+  const auto compare = [&]<std::size_t Words, std::size_t Layers>(Z3Pixel<Words, Layers>, LayerMerge merge) {
+    const PositionGrid grid(32 * Words);
+    const PositionSet positions(cell_patterns(32 * Words));
+    fragments_.clear();
+    make_fragments(grid_options(grid, 0));
+    std::vector<Z3Pixel<Words, Layers>> pixels(tile_.pixels()), twins = pixels;
+    std::vector<float> merges(tile_.pixels()), twin_merges = merges;
+    StageCounters counters;
+    compose_z3(fragments_, positions, merge, counters, pixels, merges);
+    twin_ = {};
+    Z3Twin<Words, Layers> twin(positions, merge, twin_);
+    for (const Fragment& fragment : fragments_)
+      twin_merges[fragment.pixel] += twin.add(fragment, twins[fragment.pixel]) ? 1.0f : 0.0f;
+    EXPECT_EQ(counters.ops, twin_);
+    EXPECT_EQ(merges, twin_merges);
+    const std::vector<PixelColor> found = z3_colors(pixels), expected = z3_colors(twins);
+    for (std::size_t i = 0; i < found.size(); ++i) {
+      ASSERT_EQ(found[i].alpha, expected[i].alpha) << i;
+      ASSERT_EQ(found[i].color, expected[i].color) << i;
+      for (std::size_t k = 0; k < Layers; ++k) ASSERT_EQ(+pixels[i].layers[k].z, +twins[i].layers[k].z) << i;  // packed
+    }
+  };
+  compare(Z3Pixel<1, 3>(), LayerMerge::depth);
+  compare(Z3Pixel<1, 3>(), LayerMerge::color);
+  compare(Z3Pixel<4, 3>(), LayerMerge::depth);
+}
+
+BEAMPIPE_ON_EVERY_SCENE(MergeTwins);
+
+}  // namespace
+}  // namespace beampipe

@@ -1,0 +1,206 @@
+// Searches: what must hold for every triangle, tried on random ones. BEAMPIPE_THOROUGH=N tries N times as many; a
+// failure names the seed of its case.
+#include <gtest/gtest.h>
+
+#include <boost/multiprecision/cpp_int.hpp>
+#include <cmath>
+#include <cstdio>
+#include <map>
+
+#include "stages/raster/sample_raster.h"
+#include "tests/simd/coverage_cases.h"
+#include "tests/stages/beam_pixels.h"
+#include "tests/stages/search.h"
+
+namespace beampipe {
+namespace {
+
+constexpr Tile kTile{0, 0, 12, 10};
+constexpr double kAlphaError = 5e-7;  // simd/coverage.h
+
+using Rational = boost::multiprecision::cpp_rational;
+
+// Whether the open triangle and the open pixel have a point in common: by clipping, in doubles where those are sure,
+// and in rational numbers where they are not.
+template <class Number>
+Number clipped_area(const SetupTriangle& t, std::int32_t x, std::int32_t y) {
+  using Corners = std::vector<std::pair<Number, Number>>;
+  Corners polygon;
+  for (int k = 0; k < 3; ++k) polygon.emplace_back(Number(t.x[k] - 256 * x), Number(t.y[k] - 256 * y));
+  for (int side = 0; side < 4; ++side) {
+    const auto inside_by = [&](const std::pair<Number, Number>& p) -> Number {
+      return side == 0 ? p.first : side == 1 ? Number(256 - p.first) : side == 2 ? p.second : Number(256 - p.second);
+    };
+    Corners kept;
+    for (std::size_t i = 0; i < polygon.size(); ++i) {
+      const auto &from = polygon[i], &to = polygon[(i + 1) % polygon.size()];
+      const Number d_from = inside_by(from), d_to = inside_by(to);
+      if (d_from >= 0) kept.push_back(from);
+      if ((d_from >= 0) == (d_to >= 0)) continue;
+      const Number s = d_from / (d_from - d_to);
+      kept.emplace_back(Number(from.first + s * (to.first - from.first)),
+                        Number(from.second + s * (to.second - from.second)));
+    }
+    polygon = std::move(kept);
+  }
+  Number twice = 0;
+  for (std::size_t i = 0; i < polygon.size(); ++i) {
+    const auto &p = polygon[i], &q = polygon[(i + 1) % polygon.size()];
+    twice += p.first * q.second - q.first * p.second;
+  }
+  return twice / 2;
+}
+
+bool has_area(const SetupTriangle& t, std::int32_t x, std::int32_t y) {
+  const double area = clipped_area<double>(t, x, y);  // in 1/65536 px, from coordinates below 2^24: error below 0.01
+  return area > 1 || clipped_area<Rational>(t, x, y) > 0;
+}
+
+// No pixel with common area is missed. What is found without area touches the pixel in a point or along an edge:
+// triangle and pixel are closed sets.
+TEST(Properties, ConservativeRasterMissesNoPixel) {
+  std::uint64_t pairs = 0, without_area = 0, on_corner = 0;
+  search(1'000'000, 4'000, [&](Random& random) {
+    const SetupTriangles triangles = random_triangles(random, 1);
+    const SetupTriangle& t = triangles.triangles[0];
+    std::vector<PixelTriangle> found;
+    StageCounters counters;
+    conservative_raster(triangles, {0}, kTile, counters, found);
+    std::map<std::pair<std::int32_t, std::int32_t>, bool> is_found;
+    for (const PixelTriangle& pair : found) is_found[{pair.x, pair.y}] = true;
+    for (std::int32_t y = kTile.y0; y < kTile.y1; ++y) {
+      for (std::int32_t x = kTile.x0; x < kTile.x1; ++x) {
+        const bool area = has_area(t, x, y), listed = is_found.contains({x, y});
+        ASSERT_TRUE(listed || !area) << "pixel " << x << ", " << y << " is missed";
+        pairs += listed;
+        if (!listed || area) continue;
+        ++without_area;
+        bool vertex_on_border = false;
+        for (int k = 0; k < 3; ++k) vertex_on_border |= t.x[k] % 256 == 0 || t.y[k] % 256 == 0;
+        on_corner += !vertex_on_border;
+      }
+    }
+  });
+  std::printf(
+      "pairs %llu, of them without area %llu; no vertex lies on a pixel border, an edge goes through a pixel "
+      "corner: %llu\n",
+      static_cast<unsigned long long>(pairs), static_cast<unsigned long long>(without_area),
+      static_cast<unsigned long long>(on_corner));
+  EXPECT_LT(without_area, pairs / 4) << "vertices lie on pixel borders far more often than in scenes";
+}
+
+// Random points split a triangle around the tile into three, again and again: edges at all angles, specks and slivers.
+SetupTriangles random_partition(Random& random, int splits) {
+  using Corners = std::array<ScreenPoint, 3>;
+  std::vector<Corners> parts = {{{{-9'000, -9'000}, {20'000, -9'000}, {-9'000, 20'000}}}};
+  for (int i = 0; i < splits; ++i) {
+    const auto at = static_cast<std::size_t>(random.integer(0, static_cast<std::int64_t>(parts.size()) - 1));
+    const Corners t = parts[at];
+    double u = random.real(0, 1), v = random.real(0, 1);
+    if (u + v > 1) u = 1 - u, v = 1 - v;
+    const auto mix = [&](std::int32_t a, std::int32_t b, std::int32_t c) {
+      return static_cast<std::int32_t>(std::floor(a + u * (b - a) + v * (c - a)));
+    };
+    ScreenPoint p{mix(t[0].x, t[1].x, t[2].x), mix(t[0].y, t[1].y, t[2].y)};
+    if (twice_area(t[0], t[1], p) < 0 || twice_area(t[1], t[2], p) < 0 || twice_area(t[2], t[0], p) < 0) continue;
+    parts[at] = {t[0], t[1], p};
+    parts.push_back({t[1], t[2], p});
+    parts.push_back({t[2], t[0], p});
+  }
+  SetupTriangles triangles;
+  for (const Corners& t : parts) add_triangle(triangles, t[0], t[1], t[2]);
+  return triangles;
+}
+
+TEST(Properties, EverySampleOfAPartitionOnce) {
+  search(2'000'000, 150, [&](Random& random) {
+    const SetupTriangles parts = random_partition(random, random.int32(1, 200));
+    for (const int samples : {1, 8, 16}) {
+      const Sampling sampling{CellGrid{}, standard_pattern(samples)};
+      std::vector<SampleFragment> fragments;
+      StageCounters counters;
+      sample_raster(parts, all_of(parts), kTile, sampling, counters, fragments);
+      std::vector<std::uint32_t> once(kTile.pixels());
+      for (const SampleFragment& fragment : fragments) {
+        std::uint32_t& seen = once[static_cast<std::size_t>(fragment.y * kTile.width() + fragment.x)];
+        ASSERT_EQ(seen & fragment.mask, 0u) << "a sample twice";
+        seen |= fragment.mask;
+      }
+      for (const std::uint32_t seen : once) ASSERT_EQ(seen, (1u << samples) - 1) << "a sample never";
+    }
+  });
+}
+
+// Every part rounds its own sum by 2^-24 at most (shared edges cancel exactly), or is dropped below kZeroArea.
+TEST(Properties, AreasOfAPartitionAddUp) {
+  double worst = 0;
+  search(3'000'000, 150, [&](Random& random) {
+    const SetupTriangles parts = random_partition(random, random.int32(1, 200));
+    std::vector<PixelTriangle> pairs;
+    StageCounters counters;
+    conservative_raster(parts, all_of(parts), kTile, counters, pairs);
+    std::vector<double> sum(kTile.pixels()), dropped(kTile.pixels()), kept(kTile.pixels());
+    for (const PixelTriangle& pair : pairs) ++dropped[static_cast<std::size_t>(pair.y * kTile.width() + pair.x)];
+    for (const Fragment& fragment : beam_fragments(parts, kTile, MaskSource::exact).list) {
+      sum[fragment.pixel] += fragment.alpha;
+      ++kept[fragment.pixel], --dropped[fragment.pixel];
+    }
+    for (std::size_t i = 0; i < sum.size(); ++i) {
+      worst = std::max(worst, std::abs(sum[i] - 1));
+      ASSERT_NEAR(sum[i], 1, 0x1p-24 * kept[i] + kZeroArea * dropped[i]);
+    }
+  });
+  std::printf("largest difference from 1: %.3g\n", worst);
+}
+
+// A triangle inside another has no more area in any pixel, and no mask position that the other has not. Vertices on odd
+// 1/256 px: on an edge that only one of them has, a position at a vertex could be theirs or not.
+TEST(Properties, AreaAndMaskGrowWithTheTriangle) {
+  search(4'000'000, 1'500, [&](Random& random) {
+    const auto odd = [&](std::int32_t low, std::int32_t high) { return 2 * random.int32(low / 2, high / 2) + 1; };
+    ScreenPoint p[3];
+    for (ScreenPoint& point : p) point = {odd(-1500, 4500), odd(-1500, 4000)};
+    const std::int32_t times = 2 * random.int32(1, 20) + 1;
+    // The third vertex, moved away from the first along their edge: the smaller one lies in the larger.
+    const ScreenPoint far{p[0].x + times * (p[2].x - p[0].x), p[0].y + times * (p[2].y - p[0].y)};
+    SetupTriangles smaller, larger;
+    add_triangle(smaller, p[0], p[1], p[2]);
+    add_triangle(larger, p[0], p[1], far);
+    std::map<std::uint32_t, Fragment> in_larger;
+    for (const Fragment& fragment : beam_fragments(larger, kTile, MaskSource::exact, 0).list)
+      in_larger.emplace(fragment.pixel, fragment);
+    for (const Fragment& fragment : beam_fragments(smaller, kTile, MaskSource::exact, 0).list) {
+      const auto whole = in_larger.find(fragment.pixel);
+      ASSERT_TRUE(whole != in_larger.end() || fragment.alpha <= kZeroArea + 2 * kAlphaError);
+      if (whole == in_larger.end()) continue;
+      ASSERT_LE(fragment.alpha, whole->second.alpha + 2 * kAlphaError);
+      ASSERT_TRUE(without(fragment.mask, whole->second.mask).none());
+    }
+  });
+}
+
+TEST(Properties, MovingByWholePixelsChangesNothing) {
+  search(5'000'000, 2'000, [&](Random& random) {
+    const SetupTriangles here = random_triangles(random, 1);
+    const std::int32_t right = 2 * random.int32(-25, 8'000),
+                       down = 2 * random.int32(-25, 8'000);  // tiles start at even pixels
+    SetupTriangles there = here;
+    SetupTriangle& t = there.triangles[0];
+    for (int k = 0; k < 3; ++k) {
+      t.x[k] += 256 * right, t.y[k] += 256 * down;
+      if (std::abs(t.x[k]) > 1 << 23 || std::abs(t.y[k]) > 1 << 23) return;  // beyond the guard band
+    }
+    const Tile moved{right, down, right + kTile.x1, down + kTile.y1};
+    const auto a = beam_fragments(here, kTile, MaskSource::exact).list;
+    const auto b = beam_fragments(there, moved, MaskSource::exact).list;
+    ASSERT_EQ(a.size(), b.size());
+    for (std::size_t i = 0; i < a.size(); ++i) {
+      ASSERT_EQ(a[i].pixel, b[i].pixel);
+      ASSERT_EQ(a[i].alpha, b[i].alpha);
+      ASSERT_EQ(a[i].mask, b[i].mask);
+    }
+  });
+}
+
+}  // namespace
+}  // namespace beampipe

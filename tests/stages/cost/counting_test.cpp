@@ -1,0 +1,99 @@
+// Scalar twins run on counting numbers: what they count is what a reader counts in the code.
+#include "stages/cost/counting.h"
+
+#include <gtest/gtest.h>
+
+#include "simd/depth_compare.h"
+#include "simd/sample_mask.h"
+#include "tests/simd/merge_cases.h"
+
+namespace beampipe {
+namespace {
+
+using Real = Counted<float>;
+using Bits = Counted<std::uint32_t>;
+
+TEST(Counting, EachOperatorCountsAsItsKind) {
+  OperationCounts counts;
+  const Real x(3.0f, counts), y(2.0f);  // y is a constant
+  const Bits m(6u, counts), n(3u, counts);
+  EXPECT_EQ((x + y).value, 5.0f);
+  EXPECT_EQ((y - x).value, -1.0f);
+  EXPECT_TRUE(x > y);
+  EXPECT_EQ(lesser(x, y).value, 2.0f);
+  EXPECT_EQ(greater(x, y).value, 3.0f);
+  EXPECT_EQ(select(false, x, y).value, 2.0f);
+  EXPECT_EQ(counts, (OperationCounts{0, 6, 0, 0, 0, 0}));
+  EXPECT_EQ((x * y).value, 6.0f);
+  EXPECT_EQ((x / y).value, 1.5f);
+  EXPECT_EQ((m & n).value, 2u);
+  EXPECT_EQ((m | ~n).value, 6u | ~3u);
+  EXPECT_EQ(bit_count(m).value, 2.0f);
+  EXPECT_EQ(counts, (OperationCounts{1, 6, 4, 0, 1, 1}));
+}
+
+TEST(Counting, ConstantsCostNothing) {
+  OperationCounts counts;
+  const Real one(1.0f), two = one + one;
+  EXPECT_EQ(counts, OperationCounts{});
+  EXPECT_EQ((two * Real(3.0f, counts)).value, 6.0f);
+  EXPECT_EQ(counts.total(), 1u);
+}
+
+// rest = 1 - alpha; alpha + rest alpha'; three channels likewise.
+TEST(Counting, PlainOver) {
+  const OperationCounts counts = count_operations([](OperationCounts& tally) {
+    const Real one(1.0f, tally);
+    const FragmentOf<Real, Bits> fragment{{one, Bits(1u, tally), {one, one, one}, one, one, one, {one, one, one}},
+                                          Bits(0u, tally)};
+    over_scalar(fragment, fragment.surface);
+  });
+  EXPECT_EQ(counts, (OperationCounts{4, 5, 0, 0, 0, 0}));
+}
+
+// z + dzdx x + dzdy y, and the comparison.
+TEST(Counting, DepthTest) {
+  const OperationCounts counts = count_operations([](OperationCounts& tally) {
+    const Real one(1.0f, tally);
+    Real depth;
+    depth_test_scalar(one, one, one, one, one, one, depth);
+  });
+  EXPECT_EQ(counts, (OperationCounts{2, 3, 0, 0, 0, 0}));
+}
+
+// Per sample and edge a x + b y + c >= 0: 2 products, 2 sums, a comparison.
+TEST(Counting, SampleTest) {
+  const OperationCounts counts = count_operations([](OperationCounts& tally) {
+    using Int = Counted<std::int64_t>;
+    const Int one(1, tally), edges[3] = {one, one, one};
+    sample_mask_scalar(edges, edges, edges, standard_pattern(4));
+  });
+  EXPECT_EQ(counts, (OperationCounts{4 * 3 * 2, 4 * 3 * 3, 0, 0, 0, 0}));
+}
+
+// A twin costs the same whatever it works on: its counts are charged per item without looking at the item.
+TEST(Counting, MergeCostsTheSameForEveryInput) {
+  const SamplePattern pattern = hammersley_pattern();
+  MergeRules rules;
+  const auto cost = [&](float alpha, std::uint32_t mask, float z, std::uint32_t old_mask, std::uint32_t tiny) {
+    return count_operations([&](OperationCounts& tally) {
+      const auto real = [&](float value) { return Real(value, tally); };
+      const auto surface = [&](std::uint32_t bits, float depth) {
+        return AggregateOf<Real, Bits>{real(alpha), Bits(bits, tally), {real(depth), real(0.1f), real(0)}, real(0.2f),
+                                       real(depth), real(depth),       {real(1), real(1), real(1)}};
+      };
+      merge_scalar(FragmentOf<Real, Bits>{surface(mask, z), Bits(tiny, tally)}, surface(old_mask, -0.5f), pattern,
+                   rules);
+    });
+  };
+  for (const MergeRules& each : every_merge_rule()) {
+    rules = each;
+    const OperationCounts typical = cost(0.5f, 0xffffu, -0.5f, 0xff00u, 0u);
+    EXPECT_GT(typical.total(), 32u * 10);
+    EXPECT_EQ(cost(1.0f, ~0u, -0.9f, 0u, 0u), typical);
+    EXPECT_EQ(cost(1e-6f, 1u, -0.1f, ~0u, ~0u), typical);
+  }
+}
+
+}  // namespace
+}  // namespace beampipe

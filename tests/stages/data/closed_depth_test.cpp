@@ -1,0 +1,30 @@
+#include "stages/data/closed_depth.h"
+
+#include <gtest/gtest.h>
+
+namespace beampipe {
+namespace {
+
+TEST(ClosedDepth, HidesWhatLiesBehindAndNotWhatLiesThere) {
+  ClosedDepth closed(Tile{4, 6, 6, 7});
+  EXPECT_FALSE(closed.hides(4, 6, 0.0f));
+  closed.close(4, 6, -0.5f);
+  closed.close(4, 6, -0.25f);  // farther than what is known
+  EXPECT_TRUE(closed.hides(4, 6, -0.4375f));
+  EXPECT_FALSE(closed.hides(4, 6, -0.5f));
+  EXPECT_FALSE(closed.hides(5, 6, 0.0f)) << "its neighbour";
+}
+
+TEST(ClosedDepth, HidesEverywhereWhatLiesBehindTheFarthestPixel) {
+  ClosedDepth closed(Tile{4, 6, 6, 7});
+  closed.close(4, 6, -0.5f);
+  closed.refresh();
+  EXPECT_FALSE(closed.hides_everywhere(0.0f));
+  closed.close(5, 6, -0.25f);
+  closed.refresh();
+  EXPECT_TRUE(closed.hides_everywhere(-0.1875f));
+  EXPECT_FALSE(closed.hides_everywhere(-0.25f));
+}
+
+}  // namespace
+}  // namespace beampipe

@@ -1,0 +1,113 @@
+#include "stages/picture/shade.h"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+
+#include "tests/stages/beam_pixels.h"
+
+namespace beampipe {
+namespace {
+
+SetupTriangles with_attributes(const FlatAttributes& flat) {
+  SetupTriangles triangles;
+  add_triangle(triangles, {0, 0}, {256, 0}, {0, 256});
+  triangles.attributes[0] = flat;
+  return triangles;
+}
+
+TEST(Shade, LambertIsTheCosineTowardsTheLight) {
+  const glm::vec3 kd(0.5f, 1.0f, 2.0f), down(0, -1, 0), slanted(0.6f, -0.8f, 0);
+  const auto color = [&](const glm::vec3& normal, const glm::vec3& light) {
+    return shade_triangles(with_attributes({kd, normal, true}), light).at(0);
+  };
+  EXPECT_EQ(color({0, 1, 0}, down), kd);
+  EXPECT_EQ(color({0, -1, 0}, down), glm::vec3(0.0f));  // lit from behind
+  EXPECT_EQ(color({1, 0, 0}, down), glm::vec3(0.0f));
+  const glm::vec3 expected = 0.8f * kd, found = color({0, 1, 0}, slanted);
+  for (int c = 0; c < 3; ++c) EXPECT_FLOAT_EQ(found[c], expected[c]);
+}
+
+TEST(Shade, UnlitIsKd) {
+  const glm::vec3 kd(0.5f, 1.0f, 2.0f);
+  EXPECT_EQ(shade_triangles(with_attributes({kd, {0, -1, 0}, false}), glm::vec3(0, -1, 0)).at(0), kd);
+  EXPECT_EQ(shade_triangles(with_attributes({kd, {0, 0, 0}, false}), std::nullopt).at(0), kd);
+}
+
+TEST(Shade, FragmentsGetTheirTrianglesColorTimesAlpha) {
+  SetupTriangles triangles;
+  add_triangle(triangles, {64, -5'000}, {64, 5'000}, {-5'000, 0});  // a quarter of the pixel
+  Fragments fragments = beam_fragments(triangles, {0, 0, 1, 1}, MaskSource::table);
+  StageCounters counters;
+  shade({{1, 2, 4}}, fragments.list, counters);
+  ASSERT_EQ(fragments.list.size(), 1u);
+  EXPECT_NEAR(fragments.list[0].color[0], 0.25, 1e-6);
+  EXPECT_NEAR(fragments.list[0].color[1], 0.5, 2e-6);
+  EXPECT_NEAR(fragments.list[0].color[2], 1.0, 4e-6);
+}
+
+struct Lanes {
+  std::uint64_t used, issued;
+  bool operator==(const Lanes&) const = default;
+};
+
+Lanes beam_lanes(const SetupTriangles& triangles) {
+  Fragments fragments = beam_fragments(triangles, {0, 0, 8, 8}, MaskSource::table);
+  StageCounters counters;
+  shade(std::vector<glm::vec3>(triangles.triangles.size(), glm::vec3(1.0f)), fragments.list, counters);
+  return {counters.lanes_used, counters.lanes_issued};
+}
+
+Lanes sample_lanes(const SetupTriangles& triangles) {
+  std::vector<SampleFragment> fragments;
+  StageCounters raster, counters;
+  sample_raster(triangles, all_of(triangles), {0, 0, 8, 8}, {CellGrid{}, standard_pattern(8)}, raster, fragments);
+  shade(fragments, counters);
+  return {counters.lanes_used, counters.lanes_issued};
+}
+
+TEST(Shade, OnePixelTriangleUsesOneLaneOfFour) {
+  SetupTriangles triangles;
+  add_triangle(triangles, {3 * 256 + 20, 20}, {4 * 256 - 20, 30}, {3 * 256 + 30, 230});
+  EXPECT_EQ(beam_lanes(triangles), (Lanes{1, 4}));
+  EXPECT_EQ(sample_lanes(triangles), (Lanes{1, 4}));
+}
+
+// Two triangles in the same pixel: a quad each.
+TEST(Shade, TrianglesDoNotShareQuads) {
+  SetupTriangles triangles;
+  add_triangle(triangles, {20, 20}, {230, 30}, {20, 230});
+  add_triangle(triangles, {240, 240}, {30, 240}, {240, 40});
+  EXPECT_EQ(beam_lanes(triangles), (Lanes{2, 8}));
+  EXPECT_EQ(sample_lanes(triangles), (Lanes{2, 8}));
+}
+
+// All of 8 x 8 pixels: 16 whole quads.
+TEST(Shade, CoveredQuadsHaveNoHelpers) {
+  SetupTriangles triangles;
+  add_triangle(triangles, {-9'000, -9'000}, {20'000, -9'000}, {-9'000, 20'000});
+  EXPECT_EQ(beam_lanes(triangles), (Lanes{64, 64}));
+  EXPECT_EQ(sample_lanes(triangles), (Lanes{64, 64}));
+}
+
+// Per invocation of the lambert shader: 3 products and 2 sums make the inner product, it is negated (a subtraction) and
+// compared with 0; 3 products make the colour. Four invocations fill the quad.
+TEST(Shade, CountsOperationsPerInvocation) {
+  SetupTriangles triangles;
+  add_triangle(triangles, {20, 20}, {230, 30}, {20, 230});
+  Fragments fragments = beam_fragments(triangles, {0, 0, 8, 8}, MaskSource::table);
+  StageCounters counters;
+  shade({glm::vec3(1.0f)}, fragments.list, counters);
+  EXPECT_EQ(counters.ops, (OperationCounts{4 * 6, 4 * 4, 0, 0, 0, 0}));
+}
+
+// fp16 has 11 significant bits: 1 + 2^-11 lies half-way between 1 and the next, and goes to the even one.
+TEST(Shade, HalfRounding) {
+  const std::vector<glm::vec3> found = round_to_half({{1.0f + 0x1p-11f, 1.0f + 0x1.8p-11f, 1e9f}, {0.1f, 0, 0}});
+  EXPECT_EQ(found[0], glm::vec3(1.0f, 1.0f + 0x1p-10f, 65504.0f));
+  EXPECT_NEAR(found[1].x, 0.1f, 0.1f * 0x1p-11f);
+  EXPECT_NE(found[1].x, 0.1f);
+}
+
+}  // namespace
+}  // namespace beampipe

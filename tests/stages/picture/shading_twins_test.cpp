@@ -1,0 +1,177 @@
+// The twins of shade and resolve: what one lane does for a fragment, and what a pixel of the picture is made of.
+#include "simd/position_mask.h"
+#include "stages/beam/beam_fragment.h"
+#include "stages/picture/resolve.h"
+#include "stages/picture/shade.h"
+#include "stages/raster/conservative_raster.h"
+#include "stages/raster/sample_raster.h"
+#include "stages/samples/accumulate.h"
+#include "stages/samples/test_depth.h"
+#include "tests/stages/scene_twins.h"
+
+namespace beampipe {
+namespace {
+
+class ShadingTwins : public SceneTwins {
+ protected:
+  void SetUp() override {
+    SceneTwins::SetUp();
+    light_ = trace_.frames[0].light_direction.value_or(glm::vec3(0, -1, 0));
+    colors_ = shade_triangles(triangles_, light_);
+  }
+
+  std::array<Float, 3> vector(const glm::vec3& v) { return {real(v.x), real(v.y), real(v.z)}; }
+
+  // kd max(0, -n . l), which the picture's colour is held against.
+  void lambert(std::uint32_t triangle) {
+    const FlatAttributes& flat = triangles_.attributes[triangle];
+    const auto kd = vector(flat.kd), n = vector(flat.normal), l = vector(light_);
+    const Float zero(0.0f), cosine = greater(zero - (n[0] * l[0] + n[1] * l[1] + n[2] * l[2]), zero);
+    for (std::size_t c = 0; c < 3; ++c) {
+      const Float color = kd[c] * cosine;
+      if (flat.lit) {
+        EXPECT_FLOAT_EQ(color.value, colors_[triangle][static_cast<int>(c)]);
+      }
+    }
+  }
+
+  // Four lanes for each quad with a fragment of a lit triangle. Fragments of one quad follow each other.
+  template <class Items>
+  std::uint64_t shade_quads(const Items& fragments) {
+    std::uint64_t lanes = 0;
+    for (std::size_t i = 0; i < fragments.size(); ++i) {
+      if (i > 0 && fragments[i].quad == fragments[i - 1].quad) continue;
+      lanes += 4;
+      if (!triangles_.attributes[fragments[i].triangle].lit) continue;
+      for (int lane = 0; lane < 4; ++lane) lambert(fragments[i].triangle);
+    }
+    return lanes;
+  }
+
+  std::vector<Fragment> beam_fragments() {
+    const PositionGrid grid(256);
+    StageCounters ignored;
+    std::vector<PixelTriangle> pairs;
+    std::vector<Fragment> fragments;
+    conservative_raster(triangles_, list_, tile_, ignored, pairs);
+    beam_fragment(triangles_, pairs, tile_, grid_options(grid, 0), ignored, fragments);
+    return fragments;
+  }
+  std::vector<SampleFragment> sample_fragments(const Sampling& sampling) {
+    StageCounters ignored;
+    std::vector<SampleFragment> fragments;
+    sample_raster(triangles_, list_, tile_, sampling, ignored, fragments);
+    return fragments;
+  }
+
+  glm::vec3 light_;
+  std::vector<glm::vec3> colors_;
+};
+
+TEST_P(ShadingTwins, ShadeFragmentsInQuads) {
+  std::vector<Fragment> fragments = beam_fragments();
+  StageCounters counters;
+  shade(colors_, fragments, counters, &triangles_.attributes);
+  EXPECT_EQ(counters.lanes_issued, shade_quads(fragments));
+  EXPECT_EQ(counters.ops, twin_);
+}
+
+TEST_P(ShadingTwins, ShadeSampleFragmentsInQuads) {
+  const std::vector<SampleFragment> fragments = sample_fragments({CellGrid{}, standard_pattern(8)});
+  StageCounters counters;
+  shade(fragments, counters, &triangles_.attributes);
+  EXPECT_EQ(counters.lanes_issued, shade_quads(fragments));
+  EXPECT_EQ(counters.ops, twin_);
+}
+
+TEST_P(ShadingTwins, ResolveAggregates) {
+  const glm::vec3 background(0.25f, 0.5f, 0.75f);
+  std::vector<PixelColor> pixels(tile_.pixels(), PixelColor{0.0f, glm::vec3(0.0f)});
+  for (const Fragment& fragment : beam_fragments())  // the last fragment of each pixel is all that is in it
+    pixels[fragment.pixel] = {fragment.alpha, fragment.alpha * colors_[fragment.triangle]};
+  StageCounters counters;
+  const std::vector<glm::vec4> image = resolve(pixels, background, 42, counters);
+  for (std::size_t i = 0; i < pixels.size(); ++i) {
+    const Float rest = Float(1.0f) - real(pixels[i].alpha);
+    for (int c = 0; c < 3; ++c) {
+      const Float color = converted(real(pixels[i].color[c])) + real(background[c]) * rest;
+      ASSERT_EQ(color.value, image[i][c]);
+    }
+  }
+  EXPECT_EQ(counters.ops, twin_);
+}
+
+TEST_P(ShadingTwins, ResolveSamples) {
+  const glm::vec3 background(0.25f, 0.5f, 0.75f);
+  const Sampling sampling{CellGrid{}, standard_pattern(8)};
+  StageCounters ignored, counters;
+  SampleTile surface(tile_, sampling);
+  std::vector<SampleAccess> accesses;
+  depth_test(triangles_, sample_fragments(sampling), tile_, sampling, ignored, surface, accesses);
+  const std::vector<glm::vec4> image = resolve(surface, tile_.pixels(), colors_, background, counters);
+  for (std::size_t pixel = 0; pixel < tile_.pixels(); ++pixel) {
+    for (int c = 0; c < 3; ++c) {
+      Float sum(0.0f);
+      for (std::size_t s = 0; s < 8; ++s) {
+        const std::uint32_t owner = surface.triangle[8 * pixel + s];
+        sum = sum + converted(real(owner == kNoTriangle ? background[c] : colors_[owner][c]));
+      }
+      const Float mean = sum * Float(1.0f / 8);
+      ASSERT_NEAR(mean.value, image[pixel][c], 1e-6f + 1e-6f * mean.value);
+    }
+  }
+  EXPECT_EQ(counters.ops, twin_);
+  EXPECT_EQ(counters.lanes_used, 8 * tile_.pixels());
+  EXPECT_EQ(counters.lanes_issued, 8 * tile_.pixels());
+}
+
+// Kd and the normal as integers, and later the cosine, for one invocation per visible sample.
+TEST_P(ShadingTwins, GBufferAndLight) {
+  StageCounters gbuffer, lighting;
+  write_gbuffer(list_.size(), gbuffer);
+  light(list_.size(), lighting);
+  for (const std::uint32_t triangle : list_) {
+    const FlatAttributes& flat = triangles_.attributes[triangle];
+    for (const Float& kd : vector(flat.kd)) to_integer(kd * Float(255.0f) + Float(0.5f));
+    for (const Float& normal : vector(flat.normal)) to_integer(normal * Float(511.5f) + Float(512.0f));
+  }
+  EXPECT_EQ(gbuffer.ops, twin_);
+  twin_ = {};
+  for (const std::uint32_t triangle : list_) lambert(triangle);
+  EXPECT_EQ(lighting.ops, twin_);
+  EXPECT_EQ(lighting.lanes_used, list_.size());
+  EXPECT_EQ(lighting.lanes_issued, list_.size());
+}
+
+// A sample takes the first fragment that comes, and no other.
+TEST_P(ShadingTwins, StencilTest) {
+  std::vector<SampleFragment> fragments = sample_fragments({CellGrid{}, standard_pattern(8)}), twins = fragments;
+  StageCounters counters;
+  Accumulator accumulator(tile_, 8, AccumulatorFormat::fp16, DoubleCounting::stencil);
+  stencil_test(tile_, counters, accumulator, fragments);
+  std::vector<std::uint32_t> stencil(8 * tile_.pixels());
+  std::uint64_t passed = 0;
+  for (SampleFragment& fragment : twins) {
+    for (std::size_t s = 0; s < 8; ++s) {
+      if (!(fragment.mask >> s & 1)) continue;
+      std::uint32_t& taken = stencil[8 * tile_.index(fragment.x, fragment.y) + s];
+      if (bits(taken) == bits(0)) {
+        taken = 1, ++passed;
+      } else {
+        fragment.mask &= ~(1u << s);
+      }
+    }
+  }
+  std::erase_if(twins, [](const SampleFragment& fragment) { return fragment.mask == 0; });
+  ASSERT_EQ(fragments.size(), twins.size());
+  for (std::size_t i = 0; i < twins.size(); ++i) ASSERT_EQ(fragments[i].mask, twins[i].mask);
+  EXPECT_EQ(counters.items_out, passed);
+  EXPECT_EQ(counters.ops, twin_);
+  EXPECT_EQ(counters.lanes_used, counters.items_in);
+  EXPECT_EQ(counters.lanes_issued, counters.items_in);
+}
+
+BEAMPIPE_ON_EVERY_SCENE(ShadingTwins);
+
+}  // namespace
+}  // namespace beampipe

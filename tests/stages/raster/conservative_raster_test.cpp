@@ -1,0 +1,160 @@
+#include "stages/raster/conservative_raster.h"
+
+#include <gtest/gtest.h>
+
+#include <map>
+#include <set>
+#include <tuple>
+#include <vector>
+
+#include "tests/stages/screen_triangles.h"
+
+namespace beampipe {
+namespace {
+
+constexpr Tile kFrame{0, 0, 12, 10};
+
+using Pair = std::tuple<std::uint32_t, std::int32_t, std::int32_t, bool>;  // triangle, x, y, full
+
+struct Raster {
+  std::vector<PixelTriangle> pairs;
+  StageCounters counters;
+
+  std::set<Pair> set() const {
+    std::set<Pair> all;
+    for (const PixelTriangle& p : pairs) all.emplace(p.triangle, p.x, p.y, p.full);
+    return all;
+  }
+};
+
+Raster rasterize(const SetupTriangles& triangles, const Tile& tile) {
+  Raster raster;
+  conservative_raster(triangles, all_of(triangles), tile, raster.counters, raster.pairs);
+  return raster;
+}
+
+// Closed triangle meets closed square, by segment intersection: nothing in common with separating axes.
+
+struct At {
+  std::int64_t x, y;
+};
+
+int side_of(const At& p, const At& q, const At& r) {
+  const std::int64_t cross = (q.x - p.x) * (r.y - p.y) - (r.x - p.x) * (q.y - p.y);
+  return (cross > 0) - (cross < 0);
+}
+
+bool in_box(const At& p, const At& q, const At& r) {  // r within the bounds of p and q
+  return std::min(p.x, q.x) <= r.x && r.x <= std::max(p.x, q.x) && std::min(p.y, q.y) <= r.y &&
+         r.y <= std::max(p.y, q.y);
+}
+
+bool segments_meet(const At& p, const At& q, const At& r, const At& s) {
+  const int pqr = side_of(p, q, r), pqs = side_of(p, q, s), rsp = side_of(r, s, p), rsq = side_of(r, s, q);
+  if (pqr != pqs && rsp != rsq) return true;
+  return (pqr == 0 && in_box(p, q, r)) || (pqs == 0 && in_box(p, q, s)) || (rsp == 0 && in_box(r, s, p)) ||
+         (rsq == 0 && in_box(r, s, q));
+}
+
+struct Truth {
+  bool touched, full;
+};
+
+Truth truth(const SetupTriangle& t, std::int32_t x, std::int32_t y) {
+  const std::int64_t left = 256 * x, top = 256 * y;
+  const At corners[4] = {{left, top}, {left + 256, top}, {left + 256, top + 256}, {left, top + 256}};
+  At v[3];
+  for (int k = 0; k < 3; ++k) v[k] = {t.x[k], t.y[k]};
+  int corners_inside = 0;
+  bool touched = false;
+  for (const At& c : corners)
+    corners_inside += side_of(v[0], v[1], c) >= 0 && side_of(v[1], v[2], c) >= 0 && side_of(v[2], v[0], c) >= 0;
+  for (int k = 0; k < 3; ++k) {
+    touched |= in_box(corners[0], corners[2], v[k]);
+    for (int side = 0; side < 4; ++side)
+      touched |= segments_meet(v[k], v[(k + 1) % 3], corners[side], corners[(side + 1) % 4]);
+  }
+  return {touched || corners_inside > 0, corners_inside == 4};
+}
+
+TEST(ConservativeRaster, FindsExactlyTheTouchedPixels) {
+  Random random(101);
+  SCOPED_TRACE(random.name());
+  const SetupTriangles triangles = random_triangles(random, 6'000);
+  std::set<Pair> expected;
+  for (std::uint32_t i = 0; i < triangles.triangles.size(); ++i)
+    for (std::int32_t y = kFrame.y0; y < kFrame.y1; ++y)
+      for (std::int32_t x = kFrame.x0; x < kFrame.x1; ++x)
+        if (const Truth found = truth(triangles.triangles[i], x, y); found.touched)
+          expected.emplace(i, x, y, found.full);
+  const Raster raster = rasterize(triangles, kFrame);
+  EXPECT_EQ(raster.set().size(), raster.pairs.size()) << "a pixel came twice";
+  EXPECT_TRUE(raster.set() == expected);
+  EXPECT_EQ(raster.counters.items_out, expected.size());
+}
+
+TEST(ConservativeRaster, CornersTouch) {
+  // Its right-angled corner is the pixel corner (2, 2); the triangle lies below and to the right.
+  SetupTriangles triangles;
+  add_triangle(triangles, {512, 512}, {600, 512}, {512, 600});
+  const std::set<Pair> expected = {{0, 1, 1, false}, {0, 2, 1, false}, {0, 1, 2, false}, {0, 2, 2, false}};
+  EXPECT_EQ(rasterize(triangles, kFrame).set(), expected);
+}
+
+TEST(ConservativeRaster, TilesTogetherGiveWhatOneTileGives) {
+  Random random(102);
+  SCOPED_TRACE(random.name());
+  const SetupTriangles triangles = random_triangles(random, 2'000);
+  const Raster whole = rasterize(triangles, kFrame);
+  for (const std::int32_t size : {2, 4, 8}) {
+    Raster split;
+    for (std::int32_t y = 0; y < kFrame.y1; y += size)
+      for (std::int32_t x = 0; x < kFrame.x1; x += size) {
+        const Raster tile = rasterize(triangles, {x, y, std::min(x + size, kFrame.x1), std::min(y + size, kFrame.y1)});
+        split.pairs.insert(split.pairs.end(), tile.pairs.begin(), tile.pairs.end());
+        split.counters += tile.counters;
+      }
+    EXPECT_TRUE(split.set() == whole.set()) << size;
+    split.counters.ops = whole.counters.ops;  // bounds and first edge values are found in every tile
+    EXPECT_TRUE(split.counters == whole.counters) << size;
+  }
+}
+
+// Pixels share a quad number if and only if they share triangle and 2x2 quad, and they follow one another.
+TEST(ConservativeRaster, QuadNumbersNameQuads) {
+  Random random(103);
+  SCOPED_TRACE(random.name());
+  const SetupTriangles triangles = random_triangles(random, 2'000);
+  std::map<std::uint32_t, std::tuple<std::uint32_t, std::int32_t, std::int32_t>> quads;
+  std::set<std::tuple<std::uint32_t, std::int32_t, std::int32_t>> distinct;
+  std::uint32_t last = 0;
+  for (const PixelTriangle& p : rasterize(triangles, kFrame).pairs) {
+    const std::tuple where(p.triangle, p.x >> 1, p.y >> 1);
+    EXPECT_EQ(quads.try_emplace(p.quad, where).first->second, where);
+    EXPECT_GE(p.quad, last);
+    last = p.quad;
+    distinct.insert(where);
+  }
+  EXPECT_EQ(distinct.size(), quads.size());
+}
+
+// By hand: the triangle's bounds touch the pixels 1..2 in x and in y, the triangle all of them but (2, 2).
+// The bounds take 8 minima and maxima, 2 sums and a shift each, and 4 more to stay in the tile. Before the first cell:
+// its corner, 2 products; of each edge the value there (2 products and sums), two steps (2 products), and its deepest
+// and shallowest corner (3 operations each). Then per edge a sum for each of 3 steps, and per cell twice a sum and a
+// comparison. The nearest and the farthest vertex take 4; for each pair the plane is 2 products, 4 sums and 3
+// conversions, how far it reaches 1 product, 1 sum and 2 absolute values, and the bounds are 2 sums and 4 minima and
+// maxima.
+TEST(ConservativeRaster, CountsCellsAndOperations) {
+  SetupTriangles triangles;
+  add_triangle(triangles, {300, 300}, {700, 310}, {310, 700});
+  const Raster raster = rasterize(triangles, kFrame);
+  EXPECT_EQ(raster.counters.lanes_issued, 4u);
+  EXPECT_EQ(raster.counters.lanes_used, 3u);
+  EXPECT_EQ(raster.counters.ops,
+            (OperationCounts{2 + 3 * 6 + 3 * 3, 16 + 3 * 12 + 3 * 3 + 4 * 3 * 4 + 4 + 3 * 11, 4 + 3 * 2, 0, 0, 3 * 3}));
+  EXPECT_EQ(raster.counters.bytes_written, 3u * 16);
+}
+
+}  // namespace
+}  // namespace beampipe

@@ -1,0 +1,71 @@
+// Quads that can be worked out by hand.
+#include "stages/samples/dilate.h"
+
+#include <gtest/gtest.h>
+
+namespace beampipe {
+namespace {
+
+const std::vector<glm::vec3> kColors = {glm::vec3(1.0f), glm::vec3(0.5f), glm::vec3(0.25f)};
+const std::vector<std::uint32_t> kDraws = {0, 1, 0};
+const glm::vec3 kBackground(0.125f);
+
+CurrentFrame dilated(const QuadFrame& quads, std::uint32_t width, std::uint32_t height) {
+  CurrentFrame frame(width, height);
+  StageCounters counters;
+  const Tile all{0, 0, static_cast<std::int32_t>(width), static_cast<std::int32_t>(height)};
+  dilate(quads, kColors, kDraws, kBackground, all, counters, frame);
+  return frame;
+}
+
+TEST(Dilate, APixelIsTheMeanWeightedByItsBits) {
+  QuadFrame quads(2, 2);
+  // Pixel 0: five samples of shading sample 0 and three of sample 3. Pixel 1: all of sample 1. Pixel 2: two of sample
+  // 2, background. Pixel 3: none.
+  quads.quads[0] = {{0, 1, kNoTriangle, 2}, {0x1fu, 0xff00u, 0x030000u, 0xe0u}, {0, 8, 16, 24}};
+  const CurrentFrame frame = dilated(quads, 2, 2);
+  EXPECT_FLOAT_EQ(frame.color[0].r, (5 * 1.0f + 3 * 0.25f) / 8);
+  EXPECT_FLOAT_EQ(frame.color[0].a, 1);
+  EXPECT_FLOAT_EQ(frame.color[1].r, 0.5f);
+  EXPECT_FLOAT_EQ(frame.color[2].r, 0.125f);
+  EXPECT_FLOAT_EQ(frame.color[2].a, 0);
+  EXPECT_FLOAT_EQ(frame.color[3].r, 0.25f);  // its own sample's
+  EXPECT_EQ(frame.known, (std::vector<float>{1, 1, 0.25f, 0}));
+  EXPECT_EQ(unknown_part(frame), (std::vector<float>{0, 0, 0.75f, 1}));
+}
+
+TEST(Dilate, BoxesAreOfNeighborsOfTheSameDraw) {
+  // Two quads beside each other: triangles 0 1 | 2 0 above, 1 1 | 1 1 below; each sample has its own pixel.
+  QuadFrame quads(4, 2);
+  quads.quads[0] = {{0, 1, 1, 1}, {0xffu, 0xff00u, 0xff0000u, 0xff000000u}, {0, 8, 16, 24}};
+  quads.quads[1] = {{2, 0, 1, 1}, {0xffu, 0xff00u, 0xff0000u, 0xff000000u}, {0, 8, 16, 24}};
+  const CurrentFrame frame = dilated(quads, 4, 2);
+  EXPECT_EQ(frame.low[0].r, 1.0f);  // no neighbour of draw 0 within a pixel
+  EXPECT_EQ(frame.high[0].r, 1.0f);
+  EXPECT_EQ(frame.low[2].r, 0.25f);  // itself,
+  EXPECT_EQ(frame.high[2].r, 1.0f);  // and the one on its right
+  EXPECT_EQ(frame.low[5].r, 0.5f);
+  EXPECT_EQ(frame.high[5].r, 0.5f);
+}
+
+TEST(Dilate, CountsWhatItLooksAt) {
+  CurrentFrame frame(4, 4);
+  StageCounters counters;
+  dilate(QuadFrame(4, 4), kColors, kDraws, kBackground, {0, 0, 4, 4}, counters, frame);
+  const std::uint64_t neighbors = 4 * 3 + 8 * 5 + 4 * 8;  // corners, sides, inside
+  EXPECT_EQ(counters.bytes_read, 16 * (6 + 4 + 4) + neighbors * (6 + 4));
+  EXPECT_EQ(counters.bytes_written, 16u * (8 + 16 + 1));
+  // A pixel: four masks, their counts added up, a division, twelve means of four, to fp16. A neighbour: whether it is
+  // of the same draw, then a selection and a minimum or maximum for four channels.
+  const OperationCounts pixel{12 * 5, 3 + 12 * 3, 4 + 4, 0, 1, 4 + 3 + 12}, neighbor{0, 1 + 4 * 4, 0, 0, 0, 3};
+  OperationCounts all = pixel * 16;
+  all += neighbor * neighbors;
+  EXPECT_EQ(counters.ops, all);
+  EXPECT_EQ(counters.items_in, 16u);
+  EXPECT_EQ(counters.items_out, 16u);
+  EXPECT_EQ(counters.lanes_used, 0u) << "nothing is known";
+  EXPECT_EQ(counters.lanes_issued, 16u);
+}
+
+}  // namespace
+}  // namespace beampipe

@@ -1,0 +1,120 @@
+#include "stages/samples/sample_select.h"
+
+#include <gtest/gtest.h>
+
+#include <bit>
+#include <map>
+#include <random>
+#include <set>
+
+namespace beampipe {
+namespace {
+
+constexpr Tile kQuad{0, 0, 2, 2};
+const Sampling kEight{CellGrid{}, standard_pattern(8)};
+
+// A surface whose sample i (pixel by pixel, 8 each) shows triangle ids[i]; every triangle is a material of its own.
+SampleTile surface_of(const std::vector<std::uint32_t>& ids, const Tile& tile = kQuad) {
+  SampleTile surface(tile, kEight);
+  std::copy(ids.begin(), ids.end(), surface.triangle.begin());
+  return surface;
+}
+
+const std::vector<std::uint32_t> kOwnMaterials = {0, 1, 2, 3, 4, 5, 6, 7};
+
+SampleQuad select(const SampleTile& surface, const SelectOptions& options, const Tile& tile = kQuad) {
+  StageCounters counters;
+  return sample_select(surface, tile, kOwnMaterials, options, counters).front();
+}
+
+// What must hold for any quad: masks are disjoint, hold samples of their own material only, and the pixels' samples
+// come from shading samples of the same pixel where there is one of the material.
+void check(const std::vector<std::uint32_t>& ids, const SampleQuad& quad) {
+  std::uint32_t all = 0;
+  std::set<std::uint32_t> shaded;
+  for (int i = 0; i < 4; ++i) {
+    EXPECT_EQ(all & quad.mask[i], 0u);
+    all |= quad.mask[i];
+    EXPECT_EQ(quad.triangle[i], ids[quad.location[i]]);
+    shaded.insert(quad.triangle[i]);
+  }
+  for (std::uint32_t s = 0; s < 32; ++s) {
+    const bool has_sample = shaded.count(ids[s]) > 0;
+    ASSERT_EQ(all >> s & 1, has_sample ? 1u : 0u) << s;
+    for (int i = 0; i < 4; ++i) {
+      if (!(quad.mask[i] >> s & 1)) continue;
+      EXPECT_EQ(quad.triangle[i], ids[s]);
+      bool local = false;
+      for (int j = 0; j < 4; ++j) local |= quad.triangle[j] == ids[s] && quad.location[j] / 8u == s / 8;
+      if (local) {
+        EXPECT_EQ(quad.location[i] / 8u, s / 8);
+      }
+    }
+  }
+}
+
+TEST(SampleSelect, OneMaterialKeepsTheJitteredSamples) {
+  const SampleTile surface = surface_of(std::vector<std::uint32_t>(32, 5));
+  for (std::uint32_t jitter = 0; jitter < 8; ++jitter) {
+    const SampleQuad quad = select(surface, {jitter, 1});
+    for (std::uint32_t p = 0; p < 4; ++p) {
+      EXPECT_EQ(quad.location[p], 8 * p + jitter);
+      EXPECT_EQ(quad.mask[p], 0xffu << 8 * p);
+    }
+  }
+}
+
+TEST(SampleSelect, EveryMaterialOfUpToFourGetsASample) {
+  std::mt19937 bits(3);
+  for (int round = 0; round < 2000; ++round) {
+    std::vector<std::uint32_t> ids(32);
+    const std::uint32_t count = 1 + bits() % 6;
+    for (auto& id : ids) id = bits() % 3 ? 0 : bits() % count;
+    const SampleQuad quad =
+        select(surface_of(ids), {static_cast<std::uint32_t>(bits() % 8), static_cast<std::uint32_t>(bits())});
+    check(ids, quad);
+    const std::set<std::uint32_t> present(ids.begin(), ids.end());
+    const std::set<std::uint32_t> shaded(std::begin(quad.triangle), std::end(quad.triangle));
+    EXPECT_EQ(shaded.size(), std::min<std::size_t>(present.size(), 4));
+  }
+}
+
+TEST(SampleSelect, BackgroundIsAMaterial) {
+  std::vector<std::uint32_t> ids(32, kNoTriangle);
+  ids[17] = 2;
+  const SampleQuad quad = select(surface_of(ids), {0, 9});
+  check(ids, quad);
+  StageCounters counters;
+  EXPECT_EQ(shaded_samples(sample_select(surface_of(ids), kQuad, kOwnMaterials, {0, 9}, counters)), 1u);
+}
+
+TEST(SampleSelect, NoSampleIsStarved) {
+  // Pixel 0 alone has material 1, at its samples 2..7. The switched sample is any of the four, and its place any of the
+  // six.
+  std::vector<std::uint32_t> ids(32, 0);
+  for (std::size_t s = 2; s < 8; ++s) ids[s] = 1;
+  std::map<int, int> slots, places;
+  for (std::uint32_t seed = 0; seed < 6000; ++seed) {
+    const SampleQuad quad = select(surface_of(ids), {0, seed});
+    for (int i = 0; i < 4; ++i)
+      if (quad.triangle[i] == 1) ++slots[i], ++places[quad.location[i]];
+  }
+  ASSERT_EQ(slots.size(), 4u);
+  ASSERT_EQ(places.size(), 6u);
+  for (const auto& [slot, times] : slots) EXPECT_NEAR(times, 1500, 200) << slot;
+  for (const auto& [place, times] : places) EXPECT_NEAR(times, 1000, 160) << place;
+}
+
+TEST(SampleSelect, PixelsOutsideTheFrameHaveNoSamples) {
+  const Tile tile{4, 6, 5, 7};  // one pixel
+  const std::vector<std::uint32_t> ids = {0, 0, 0, 1, 1, 1, 2, 2};
+  const SampleQuad quad = select(surface_of(ids, tile), {3, 1}, tile);
+  EXPECT_EQ(quad.mask[0], 0b00111000u);
+  for (int i = 1; i < 4; ++i) {
+    EXPECT_EQ(quad.mask[i], 0u);
+    EXPECT_EQ(quad.triangle[i], kNoTriangle);
+  }
+}
+
+}  // namespace
+}  // namespace beampipe

@@ -1,0 +1,85 @@
+// Centre or centroid, against closed forms.
+#include "stages/samples/shading_point.h"
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+
+#include "tests/stages/screen_triangles.h"
+
+namespace beampipe {
+namespace {
+
+constexpr Tile kTile{0, 0, 8, 8};
+
+std::vector<SampleFragment> fragments_of(const SetupTriangles& triangles, const Sampling& sampling) {
+  TriangleList list;
+  for (std::uint32_t i = 0; i < triangles.triangles.size(); ++i) list.push_back(i);
+  std::vector<SampleFragment> fragments;
+  StageCounters counters;
+  sample_raster(triangles, list, kTile, sampling, counters, fragments);
+  return fragments;
+}
+
+TEST(ShadingPoint, IsTheMeanOfTheCoveredSamplesWhereTheCentreIsNotCovered) {
+  SetupTriangles triangles;
+  add_left_of(triangles, 2 * 256 + 100, -0.5f);  // of pixel 2 the left 100/256: not its centre
+  const Sampling sampling{CellGrid{}, standard_pattern(4)};
+  bool tried = false;
+  for (const SampleFragment& fragment : fragments_of(triangles, sampling)) {
+    const SetupTriangle& triangle = triangles.triangles[0];
+    const glm::dvec2 centre(fragment.x + 0.5, fragment.y + 0.5);
+    EXPECT_EQ(shading_point(triangle, fragment, sampling, ShadeAt::centre).position, centre);
+    const ShadingPoint point = shading_point(triangle, fragment, sampling, ShadeAt::centroid);
+    EXPECT_EQ(point.is_centre, fragment.x < 2);
+    if (point.is_centre) {
+      EXPECT_EQ(point.position, centre);
+      continue;
+    }
+    tried = true;
+    // Of the standard four, (-2, -6), (6, -2), (-6, 2) and (2, 6) sixteenths from the centre, the first and the third.
+    EXPECT_EQ(point.position, centre + glm::dvec2(-4, -2) / 16.0);
+  }
+  EXPECT_TRUE(tried);
+}
+
+// What varies across a triangle, here its depth, leaves the vertices' range where it is extrapolated: by as much as the
+// gradient is steep. At the centroid it does not.
+TEST(ShadingPoint, ExtrapolatesAtTheCentreOnly) {
+  for (const Sampling& sampling :
+       {Sampling{CellGrid{}, standard_pattern(8)}, Sampling{CellGrid{2, 2}, standard_pattern(8, 128, 128)}}) {
+    SetupTriangles triangles;
+    for (std::int32_t i = 0; i < 7; ++i)  // slivers of a third of a pixel, from 0 to 1 within 90/256 px
+      add_triangle(triangles, {i * 290 + 20, 0, 0.0f}, {i * 290 + 110, 0, 1.0f}, {i * 290 + 60, 2048, 0.5f});
+    double farthest = 0;
+    for (const SampleFragment& fragment : fragments_of(triangles, sampling)) {
+      const SetupTriangle& triangle = triangles.triangles[fragment.triangle];
+      const auto value = [&](ShadeAt at) {
+        const glm::dvec2 point = shading_point(triangle, fragment, sampling, at).position;
+        return triangle.depth.at(point.x, point.y);
+      };
+      farthest = std::max(farthest, std::max(value(ShadeAt::centre) - 1, -value(ShadeAt::centre)));
+      EXPECT_GE(value(ShadeAt::centroid), -1e-9);
+      EXPECT_LE(value(ShadeAt::centroid), 1 + 1e-9);
+    }
+    EXPECT_GT(farthest, 0.25);
+  }
+}
+
+TEST(ShadingPoint, CountsWhatItLooksAt) {
+  SetupTriangles triangles;
+  add_left_of(triangles, 2 * 256 + 100, -0.5f);
+  const Sampling sampling{CellGrid{}, standard_pattern(4)};
+  StageCounters counters;
+  std::vector<float> centroids(kTile.pixels());
+  count_centroids(triangles, fragments_of(triangles, sampling), kTile, sampling, counters, centroids);
+  for (std::size_t i = 0; i < centroids.size(); ++i) EXPECT_EQ(centroids[i], i % 8 == 2) << i;
+  // Of 3 x 8 fragments: three edges, two products, two sums, a comparison. Of 8: for each sample a bit, whether it is
+  // set, two selections and two sums; the number of bits, a division, two products.
+  OperationCounts all = OperationCounts{3 * 2, 3 * 3, 0, 0, 0, 0} * 24;
+  all += OperationCounts{2, 4 * 5, 4 + 1, 0, 1, 1} * 8;
+  EXPECT_EQ(counters.ops, all);
+}
+
+}  // namespace
+}  // namespace beampipe

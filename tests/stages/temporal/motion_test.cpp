@@ -1,0 +1,196 @@
+// Motion vectors against closed forms.
+#include "stages/temporal/motion.h"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <glm/gtc/matrix_transform.hpp>
+#include <limits>
+
+namespace beampipe {
+namespace {
+
+constexpr std::int32_t kSize = 16;
+constexpr Tile kTile{0, 0, kSize, kSize};
+constexpr double kHalf = 0x1p-11;  // relative error of an fp16 number
+
+// Orthographic: world x, y in pixels (y up), z in -1..1.
+Frame flat_frame(const glm::dmat4& transform) {
+  Frame frame;
+  frame.width = frame.height = kSize;
+  frame.projection = glm::ortho<double>(0, kSize, 0, kSize, -1, 1);
+  frame.draws.emplace_back();
+  frame.draws[0].transform = transform;
+  return frame;
+}
+
+// Every pixel shows triangle 0 of draw 0 at one depth.
+SampleTile full_surface(float depth, const Sampling& sampling = {CellGrid{}, standard_pattern(1)}) {
+  SampleTile surface(kTile, sampling, 0);
+  std::fill(surface.depth.begin(), surface.depth.end(), depth);
+  std::fill(surface.triangle.begin(), surface.triangle.end(), 0u);
+  return surface;
+}
+
+std::vector<glm::vec2> vectors(const SampleTile& surface, const Frame& now, const Frame& before) {
+  StageCounters counters;
+  return motion(surface, kTile, now, {0}, to_last_frame(poses_of(now), poses_of(before)), counters);
+}
+
+const glm::dmat4 kIdentity(1.0);
+
+TEST(Motion, WhatStandsStillDoesNotMove) {
+  const Frame frame = flat_frame(glm::rotate(kIdentity, 0.3, glm::dvec3(0, 0, 1)));
+  for (const glm::vec2& v : vectors(full_surface(-0.5f), frame, frame)) EXPECT_EQ(v, glm::vec2(0));
+}
+
+TEST(Motion, PointsBackAlongADrawsTranslation) {
+  const Frame before = flat_frame(kIdentity), now = flat_frame(glm::translate(kIdentity, glm::dvec3(2.5, 1, 0)));
+  for (const glm::vec2& v : vectors(full_surface(-0.5f), now, before)) EXPECT_EQ(v, glm::vec2(-2.5, 1));  // y is down
+}
+
+TEST(Motion, PointsBackAlongADrawsRotation) {
+  // A quarter turn, counter-clockwise, about the middle of the frame: (x, y) was at (y, -x) of it, y up.
+  const glm::dvec3 middle(kSize / 2, kSize / 2, 0);
+  const glm::dmat4 turn = glm::translate(kIdentity, middle) * glm::rotate(kIdentity, std::acos(0.0), {0, 0, 1}) *
+                          glm::translate(kIdentity, -middle);
+  const std::vector<glm::vec2> found = vectors(full_surface(-0.5f), flat_frame(turn), flat_frame(kIdentity));
+  for (std::int32_t row = 0; row < kSize; ++row) {
+    for (std::int32_t column = 0; column < kSize; ++column) {
+      const double x = column + 0.5 - kSize / 2, up = kSize / 2 - row - 0.5;
+      const glm::vec2 v = found[static_cast<std::size_t>(row * kSize + column)];
+      EXPECT_NEAR(v.x, up - x, kHalf * kSize);
+      EXPECT_NEAR(v.y, -(-x - up), kHalf * kSize);
+    }
+  }
+}
+
+TEST(Motion, FollowsTheCameraByDepth) {
+  // The camera goes forward by 2: what is 10 before it now was 12 before it, and 10/12 as far from the middle. The
+  // background, at the far plane, was 100 before it and 102.
+  Frame now;
+  now.width = now.height = kSize;
+  now.projection = glm::perspectiveRH_NO(1.0, 1.0, 1.0, 100.0);
+  now.draws.emplace_back();
+  Frame before = now;
+  before.view = glm::translate(kIdentity, glm::dvec3(0, 0, -2));
+  const glm::dvec4 clip = now.projection * glm::dvec4(0, 0, -10, 1);
+  SampleTile surface = full_surface(static_cast<float>((clip.z / clip.w - 1) / 2));
+  surface.triangle[3] = kNoTriangle, surface.depth[3] = kFarDepth;
+  const std::vector<glm::vec2> found = vectors(surface, now, before);
+  for (std::int32_t column = 0; column < kSize; ++column) {
+    const double x = column + 0.5 - kSize / 2;
+    const double scale = column == 3 ? 100.0 / 102 : 10.0 / 12;
+    EXPECT_NEAR(found[static_cast<std::size_t>(column)].x, x * scale - x, kHalf * kSize) << column;
+  }
+  // And backward by 20: it was behind the eye.
+  before.view = glm::translate(kIdentity, glm::dvec3(0, 0, 20));
+  EXPECT_EQ(vectors(surface, now, before)[0].x, std::numeric_limits<float>::infinity());
+}
+
+TEST(Motion, FollowsTheNearestSample) {
+  const Frame before = flat_frame(kIdentity), now = flat_frame(glm::translate(kIdentity, glm::dvec3(1, 0, 0)));
+  SampleTile surface(kTile, {CellGrid{}, standard_pattern(8)}, 0);  // background
+  surface.depth[5] = -0.25f, surface.triangle[5] = 0;               // sample 5 of the first pixel
+  const std::vector<glm::vec2> found = vectors(surface, now, before);
+  EXPECT_EQ(found[0], glm::vec2(-1, 0));
+  EXPECT_EQ(found[1], glm::vec2(0, 0));
+}
+
+PixelContents contents_of(const SampleTile& surface, const Frame& now, const Frame& before) {
+  StageCounters counters;
+  const std::vector<std::uint32_t> draws = {0, 1};
+  return contents(surface, kTile, now, draws, to_last_frame(poses_of(now), poses_of(before)), looks_of(now), counters);
+}
+
+TEST(Motion, ContentsAreThoseOfAllSamples) {
+  Frame before = flat_frame(kIdentity), now = flat_frame(glm::translate(kIdentity, glm::dvec3(3, 4, 0)));
+  before.draws.emplace_back(), now.draws.emplace_back();
+  now.draws[0].mesh = before.draws[0].mesh = 1;
+  SampleTile surface = full_surface(-0.5f, {CellGrid{}, standard_pattern(8)});  // draw 0, which moves by 5
+  std::fill_n(surface.triangle.begin() + 8, 8, 1u);                             // pixel 1: draw 1, which stands
+  std::fill_n(surface.triangle.begin() + 16, 7, 1u);                            // pixel 2: both
+  std::fill_n(surface.triangle.begin() + 24, 2, 1u);                            // pixel 3: both, and the background
+  surface.triangle[31] = kNoTriangle, surface.depth[31] = kFarDepth;
+  const PixelContents found = contents_of(surface, now, before);
+  EXPECT_EQ(std::vector<float>(found.speeds.begin(), found.speeds.begin() + 4), (std::vector<float>{5, 0, 5, 5}));
+  const std::vector<std::uint32_t> looks = looks_of(now);
+  EXPECT_EQ(found.looks[0], looks[0]);
+  EXPECT_EQ(found.looks[1], looks[1]);
+  EXPECT_EQ(found.looks[2], looks[0] ^ looks[1]);
+  EXPECT_EQ(found.looks[3], looks[0] ^ looks[1] ^ looks[2]);
+}
+
+TEST(Motion, ALookIsOfAllThatColorsAreMadeFrom) {
+  Frame frame = flat_frame(kIdentity);
+  frame.draws.resize(2);
+  const std::vector<std::uint32_t> before = looks_of(frame);
+  const auto changed = [&](const auto& change) {
+    Frame after = frame;
+    change(after);
+    const std::vector<std::uint32_t> looks = looks_of(after);
+    std::vector<bool> result;
+    for (std::size_t i = 0; i < looks.size(); ++i) result.push_back(looks[i] != before[i]);
+    return result;
+  };
+  using Which = std::vector<bool>;
+  EXPECT_NE(before[0], before[1]) << "which draw it is";
+  EXPECT_EQ(changed([](Frame& f) { f.draws[0].mesh = 1; }), (Which{true, false, false}));
+  EXPECT_EQ(changed([](Frame& f) { f.draws[1].kd = glm::vec3(0, 0, 1); }), (Which{false, true, false}));
+  EXPECT_EQ(changed([](Frame& f) { f.background = glm::vec3(1, 0, 0); }), (Which{false, false, true}));
+  EXPECT_EQ(changed([](Frame& f) { f.draws[0].transform[3][0] = 1; }), (Which{false, false, false}));
+  EXPECT_EQ(changed([](Frame& f) { f.light_direction = glm::vec3(1, 0, 0); }), (Which{false, false, false})) << "unlit";
+  const glm::dmat4 turn = glm::rotate(kIdentity, 0.05, glm::dvec3(0, 1, 0));
+  EXPECT_EQ(changed([&](Frame& f) { f.draws[1].transform = turn; }), (Which{false, false, false})) << "unlit";
+  frame.draws[0].shading = Shading::lambert;
+  EXPECT_EQ(changed([](Frame&) {}), (Which{true, false, false}));
+  const std::uint32_t lit = looks_of(frame)[0];
+  frame.draws[0].transform[3][0] = 1;
+  EXPECT_EQ(looks_of(frame)[0], lit) << "where it is";
+  frame.draws[0].transform = turn;
+  EXPECT_NE(looks_of(frame)[0], lit) << "which way it is turned";
+}
+
+TEST(Motion, DrawsAreKnownByIndexAndMesh) {
+  const Frame before = flat_frame(kIdentity);
+  Frame now = flat_frame(glm::translate(kIdentity, glm::dvec3(1, 0, 0)));
+  now.draws[0].mesh = 1;
+  EXPECT_EQ(vectors(full_surface(-0.5f), now, before)[0], glm::vec2(0));
+  Frame without = before;
+  without.draws.clear();
+  now.draws[0].mesh = 0;
+  EXPECT_EQ(vectors(full_surface(-0.5f), now, without)[0], glm::vec2(0));
+  EXPECT_EQ(vectors(full_surface(-0.5f), now, before)[0], glm::vec2(-1, 0));
+}
+
+TEST(Motion, CountsItsArithmetic) {
+  const Frame frame = flat_frame(kIdentity);
+  StageCounters counters;
+  motion(full_surface(-0.5f, {CellGrid{}, standard_pattern(8)}), kTile, frame, {0},
+         to_last_frame(poses_of(frame), poses_of(frame)), counters);
+  // Seven comparisons and selections for the nearest of 8 samples; to the clip space of this frame: x, y (multiplied,
+  // divided, and one taken away), depth; three rows of a matrix; a division, two coordinates to pixels; the difference;
+  // in front of the eye? Then to float and fp16.
+  const OperationCounts pixel{0 + 3 + 9 + 2 * 3, 2 * 7 + 2 + 2 + 9 + 2 + 2 + 1, 0, 2, 2 + 1, 4};
+  EXPECT_EQ(counters.ops, pixel * (kSize * kSize));
+  EXPECT_EQ(counters.bytes_read, kSize * kSize * (8 * 4 + 4));
+  EXPECT_EQ(counters.bytes_written, kSize * kSize * 4u);
+  EXPECT_EQ(counters.items_in, kSize * kSize * 8u);
+  EXPECT_EQ(counters.items_out, kSize * kSize * 1u);
+  EXPECT_EQ(counters.lanes_used, kSize * kSize * 1u);
+  EXPECT_EQ(counters.lanes_issued, kSize * kSize * 1u);
+  counters = {};
+  contents(full_surface(-0.5f, {CellGrid{}, standard_pattern(8)}), kTile, frame, {0},
+           to_last_frame(poses_of(frame), poses_of(frame)), looks_of(frame), counters);
+  // Eight samples' draws, and whether one is new: 28 pairs; a root, to fp16. Of the one draw: its look, its matrix, the
+  // motion, its square, the greater.
+  const OperationCounts set{0, 28, 0, 8, 1, 1}, draw{18 + 2, 18 + 2, 1, 2, 2 + 1, 4};
+  OperationCounts all = set * (kSize * kSize);
+  all += draw * (kSize * kSize);
+  EXPECT_EQ(counters.ops, all);
+  EXPECT_EQ(counters.bytes_read, kSize * kSize * 8 * 4);
+  EXPECT_EQ(counters.bytes_written, kSize * kSize * (4 + 2));
+}
+
+}  // namespace
+}  // namespace beampipe

@@ -1,0 +1,298 @@
+// The twins of the stages that carry pixels from one frame to the next: motion, what is in a pixel, dilate, and the
+// accumulation. Each pixel by itself, after a frame in which the camera and the first draw were elsewhere.
+#include <half.h>
+
+#include <algorithm>
+#include <cmath>
+#include <glm/gtc/matrix_transform.hpp>
+#include <limits>
+
+#include "stages/data/half_bits.h"
+#include "stages/picture/shade.h"
+#include "stages/raster/sample_raster.h"
+#include "stages/samples/dilate.h"
+#include "stages/samples/sample_select.h"
+#include "stages/samples/test_depth.h"
+#include "stages/temporal/motion.h"
+#include "stages/temporal/temporal.h"
+#include "tests/stages/scene_twins.h"
+
+namespace beampipe {
+namespace {
+
+constexpr std::size_t kSamples = 8;
+
+class TemporalTwins : public SceneTwins {
+ protected:
+  void SetUp() override {
+    SceneTwins::SetUp();
+    const Frame& frame = trace_.frames[0];
+    const Sampling sampling{CellGrid{}, standard_pattern(kSamples)};
+    StageCounters ignored;
+    std::vector<SampleFragment> fragments;
+    std::vector<SampleAccess> accesses;
+    surface_ = SampleTile(tile_, sampling);
+    sample_raster(triangles_, list_, tile_, sampling, ignored, fragments);
+    depth_test(triangles_, fragments, tile_, sampling, ignored, surface_, accesses);
+    colors_ = shade_triangles(triangles_, frame.light_direction);
+    Poses before = poses_of(frame);
+    before.view_projection = glm::translate(glm::dmat4(1.0), glm::dvec3(0.05, -0.03, 0)) * before.view_projection;
+    before.draws[0].transform[3][0] += 0.1;
+    to_last_ = to_last_frame(poses_of(frame), before);
+    looks_ = looks_of(frame);
+    quads_.insert(tile_, sample_select(surface_, tile_, triangles_.draws, {.jitter = 5, .seed = 7}, ignored));
+  }
+
+  std::size_t draw_at(std::size_t sample) {
+    ++twin_.fetch;
+    const std::uint32_t triangle = surface_.triangle[sample];
+    return triangle == kNoTriangle ? looks_.size() - 1 : triangles_.draws[triangle];
+  }
+
+  struct Vector {
+    Float x, y;
+  };
+
+  // From pixel i to where a point at that depth was: through the last frame's clip space to its screen.
+  Vector moved(std::size_t draw, std::size_t i, float depth) {
+    ++twin_.fetch;  // the draw's matrix
+    const glm::dmat4& m = to_last_[draw];
+    const Frame& frame = trace_.frames[0];
+    const Real one(1.0), two(2.0), half(0.5), width = real(double(frame.width)), height = real(double(frame.height));
+    const Real center_x = real(static_cast<double>(i % frame.width) + 0.5),
+               center_y = real(static_cast<double>(i / frame.width) + 0.5);
+    const Real x = two * center_x / width - one, y = one - two * center_y / height;
+    const Real z = two * lesser(real(double{depth}), Real(0.0)) + one;
+    const auto row = [&](int r) { return real(m[0][r]) * x + real(m[1][r]) * y + real(m[2][r]) * z + real(m[3][r]); };
+    const Real w = row(3), inverse = one / w;
+    const Real dx = (row(0) * inverse + one) * half * width - center_x;
+    const Real dy = (one - row(1) * inverse) * half * height - center_y;
+    const bool in_front = w > Real(0.0);
+    const auto stored = [&](const Real& distance) {
+      const float value = converted(to_float(distance)).value;
+      return real(in_front ? static_cast<float>(::half(value)) : std::numeric_limits<float>::infinity());
+    };
+    return {stored(dx), stored(dy)};
+  }
+
+  // All that `temporal` reads.
+  CurrentFrame current_frame() {
+    StageCounters ignored;
+    CurrentFrame frame(trace_.frames[0].width, trace_.frames[0].height);
+    dilate(quads_, colors_, triangles_.draws, trace_.frames[0].background, tile_, ignored, frame);
+    frame.motion = motion(surface_, tile_, trace_.frames[0], triangles_.draws, to_last_, ignored);
+    PixelContents found = contents(surface_, tile_, trace_.frames[0], triangles_.draws, to_last_, looks_, ignored);
+    frame.looks = std::move(found.looks), frame.speeds = std::move(found.speeds);
+    return frame;
+  }
+
+  // To an integer, and a number again.
+  Float floored(const Float& x) {
+    to_float(to_integer(x));
+    return real(std::floor(x.value));
+  }
+
+  // Calls visit(j) for the pixels around pixel i.
+  template <class Visit>
+  void each_neighbor(std::size_t i, Visit&& visit) const {
+    const auto width = tile_.width(), x = static_cast<std::int32_t>(i) % width,
+               y = static_cast<std::int32_t>(i) / width;
+    for (std::int32_t ny = y - 1; ny <= y + 1; ++ny)
+      for (std::int32_t nx = x - 1; nx <= x + 1; ++nx)
+        if ((nx != x || ny != y) && nx >= 0 && ny >= 0 && nx < width && ny < tile_.height())
+          visit(static_cast<std::size_t>(ny * width + nx));
+  }
+
+  SampleTile surface_{{}, {CellGrid{}, standard_pattern(kSamples)}};
+  std::vector<glm::vec3> colors_;
+  std::vector<glm::dmat4> to_last_;
+  std::vector<std::uint32_t> looks_;
+  QuadFrame quads_{48, 28};
+};
+
+TEST_P(TemporalTwins, Motion) {
+  StageCounters counters;
+  const std::vector<glm::vec2> found = motion(surface_, tile_, trace_.frames[0], triangles_.draws, to_last_, counters);
+  for (std::size_t i = 0; i < tile_.pixels(); ++i) {
+    std::size_t at = kSamples * i;
+    Float nearest = real(surface_.depth[at]);
+    for (std::size_t s = kSamples * i + 1; s < kSamples * (i + 1); ++s) {
+      const Float depth = real(surface_.depth[s]);
+      const bool nearer = depth < nearest;
+      nearest = select(nearer, depth, nearest);
+      at = nearer ? s : at;
+    }
+    const Vector twin = moved(draw_at(at), i, nearest.value);
+    ASSERT_EQ(found[i], glm::vec2(twin.x.value, twin.y.value)) << i;
+  }
+  EXPECT_EQ(counters.ops, twin_);
+}
+
+TEST_P(TemporalTwins, Contents) {
+  StageCounters counters;
+  const PixelContents found = contents(surface_, tile_, trace_.frames[0], triangles_.draws, to_last_, looks_, counters);
+  for (std::size_t i = 0; i < tile_.pixels(); ++i) {
+    Bits look(0u);
+    Float fastest = real(0.0f);
+    Int draws[kSamples];
+    for (std::size_t s = 0; s < kSamples; ++s) {
+      const std::size_t draw = draw_at(kSamples * i + s);
+      draws[s] = integer(static_cast<std::int64_t>(draw));
+      bool met = false;
+      for (std::size_t before = 0; before < s; ++before) met |= draws[before] == draws[s];
+      if (met) continue;
+      ++twin_.fetch;
+      look = look ^ bits(looks_[draw]);
+      const Vector moves = moved(draw, i, surface_.depth[kSamples * i + s]);
+      fastest = greater(fastest, moves.x * moves.x + moves.y * moves.y);
+    }
+    ASSERT_EQ(found.looks[i], look.value) << i;
+    ASSERT_EQ(found.speeds[i], static_cast<float>(::half(converted(square_root(fastest)).value))) << i;
+  }
+  EXPECT_EQ(counters.ops, twin_);
+}
+
+TEST_P(TemporalTwins, Dilate) {
+  const std::int32_t width = tile_.width();
+  struct Sample {
+    Int draw;
+    std::array<Float, 4> color;  // RGB is stored as fp16
+  };
+  const auto sample_at = [&](std::size_t i) {
+    const auto x = static_cast<std::int32_t>(i) % width, y = static_cast<std::int32_t>(i) / width;
+    const std::uint32_t triangle =
+        quads_.quads[static_cast<std::size_t>(y / 2 * quads_.columns + x / 2)].triangle[y % 2 * 2 + x % 2];
+    const bool none = triangle == kNoTriangle;
+    const glm::vec3 color = none ? trace_.frames[0].background : colors_[triangle];
+    return Sample{
+        integer(none ? -1 : std::int64_t{triangles_.draws[triangle]}),
+        {converted(real(color.r)), converted(real(color.g)), converted(real(color.b)), real(none ? 0.0f : 1.0f)}};
+  };
+  struct Shown {
+    std::array<Float, 4> color, low, high;
+  };
+  std::vector<Shown> shown;
+  for (std::size_t i = 0; i < tile_.pixels(); ++i) {
+    const Sample own = sample_at(i);
+    Shown pixel{own.color, own.color, own.color};
+    each_neighbor(i, [&](std::size_t j) {
+      const Sample other = sample_at(j);
+      const bool same_draw = other.draw == own.draw;
+      for (std::size_t c = 0; c < 4; ++c) {
+        pixel.low[c] = lesser(pixel.low[c], select(same_draw, other.color[c], pixel.low[c]));
+        pixel.high[c] = greater(pixel.high[c], select(same_draw, other.color[c], pixel.high[c]));
+      }
+    });
+    shown.push_back(pixel);
+  }
+  CurrentFrame found(trace_.frames[0].width, trace_.frames[0].height);
+  StageCounters counters;
+  dilate(quads_, colors_, triangles_.draws, trace_.frames[0].background, tile_, counters, found);
+  for (std::size_t i = 0; i < tile_.pixels(); ++i) {
+    const auto x = static_cast<std::int32_t>(i) % width, y = static_cast<std::int32_t>(i) / width;
+    const std::size_t first = i - static_cast<std::size_t>(x % 2 + y % 2 * width);
+    const std::size_t quad[4] = {first, first + 1, first + static_cast<std::size_t>(width),
+                                 first + static_cast<std::size_t>(width) + 1};
+    const SampleQuad& masks = quads_.quads[static_cast<std::size_t>(y / 2 * quads_.columns + x / 2)];
+    const Bits here = bits(0xffu << 8 * (x % 2 + y % 2 * 2));
+    Float weights[4];
+    for (int k = 0; k < 4; ++k) weights[k] = bit_count(bits(masks.mask[k]) & here);
+    const Float known = weights[0] + weights[1] + weights[2] + weights[3], inverse = Float(1.0f) / known;
+    ASSERT_EQ(found.known[i], known.value / 8) << i;
+    const auto mean = [&](std::array<Float, 4> Shown::*values, std::size_t c) {
+      Float sum = (shown[quad[0]].*values)[c] * weights[0];
+      for (std::size_t k = 1; k < 4; ++k) sum = sum + (shown[quad[k]].*values)[c] * weights[k];
+      const Float written = converted(sum * inverse);
+      return known.value > 0 ? written.value : shown[i].color[c].value;  // its own, where nothing is known
+    };
+    for (std::size_t c = 0; c < 4; ++c) {
+      const auto channel = static_cast<int>(c);
+      ASSERT_EQ(found.color[i][channel], mean(&Shown::color, c)) << i;
+      ASSERT_EQ(found.low[i][channel], mean(&Shown::low, c)) << i;
+      ASSERT_EQ(found.high[i][channel], mean(&Shown::high, c)) << i;
+    }
+  }
+  EXPECT_EQ(counters.ops, twin_);
+}
+
+TEST_P(TemporalTwins, NeighborhoodBox) {
+  CurrentFrame frame = current_frame();
+  StageCounters counters;
+  neighborhood_box(tile_, counters, frame);
+  for (std::size_t i = 0; i < tile_.pixels(); ++i) {
+    for (int c = 0; c < 4; ++c) {
+      const Float own = converted(real(frame.color[i][c]));
+      Float low = own, high = own;
+      each_neighbor(i, [&](std::size_t j) {
+        const Float color = converted(real(frame.color[j][c]));
+        low = lesser(low, color), high = greater(high, color);
+      });
+      ASSERT_EQ(frame.low[i][c], converted(low).value) << i;
+      ASSERT_EQ(frame.high[i][c], converted(high).value) << i;
+    }
+  }
+  EXPECT_EQ(counters.ops, twin_);
+}
+
+TEST_P(TemporalTwins, Temporal) {
+  const CurrentFrame frame = current_frame();
+  History history{1, frame.width, frame.height, frame.color, frame.looks, {}};
+  for (std::size_t i = 0; i < tile_.pixels(); ++i) {  // something else was there, and lighter
+    for (int c = 0; c < 4; ++c) history.color[i][c] = HalfBits(0.5f + 0.5f * frame.color[(i * 7) % tile_.pixels()][c]);
+    if (i % 5 == 0) history.looks[i] ^= 1;
+  }
+  for (const float still_px : {0.0f, 2.0f}) {
+    const TemporalOptions options{0.1f, still_px};
+    StageCounters counters;
+    std::vector<glm::vec4> image(tile_.pixels());
+    temporal(frame, options, history, tile_, counters, image);
+    twin_ = {};
+    for (std::size_t i = 0; i < tile_.pixels(); ++i) {
+      const Float one(1.0f), half(0.5f), width(float(frame.width)), height(float(frame.height)), zero(0.0f);
+      const Float x = Float(static_cast<float>(i % std::size_t{48}) + 0.5f) + converted(real(frame.motion[i].x));
+      const Float y = Float(static_cast<float>(i / std::size_t{48}) + 0.5f) + converted(real(frame.motion[i].y));
+      const bool on_screen = (x >= zero) & (x <= width) & (y >= zero) & (y <= height);
+      std::array<Float, 4> color;
+      for (int c = 0; c < 4; ++c) color[static_cast<std::size_t>(c)] = converted(real(frame.color[i][c]));
+      if (on_screen) {
+        const Float in_x = x - half, in_y = y - half;
+        const Float left = floored(in_x), top = floored(in_y), fx = in_x - left, fy = in_y - top;
+        const Float rest_x = one - fx, rest_y = one - fy;
+        const Float weights[4] = {rest_x * rest_y, fx * rest_y, rest_x * fy, fx * fy};
+        std::size_t texels[4];
+        for (int t = 0; t < 4; ++t) {
+          const int column = std::clamp(int(left.value) + t % 2, 0, frame.width - 1);
+          const int row = std::clamp(int(top.value) + t / 2, 0, frame.height - 1);
+          texels[t] = static_cast<std::size_t>(row * frame.width + column);
+        }
+        const Float known = converted(real(frame.known[i]));
+        Float clamped = real(1.0f);
+        if (still_px > 0) {
+          std::size_t nearest = 0;
+          for (std::size_t t = 1; t < 4; ++t)
+            if (weights[t] > weights[nearest]) nearest = t;
+          const bool other = bits(history.looks[texels[nearest]]) != bits(frame.looks[i]), any = known > zero;
+          const Float faded = lesser(converted(real(frame.speeds[i])) / real(still_px), one);
+          clamped = select(other, real(1.0f), select(any, faded, real(0.0f)));
+        }
+        const Float blend = real(options.blend) * known;
+        for (std::size_t c = 0; c < 4; ++c) {
+          const auto channel = static_cast<int>(c);
+          const auto texel = [&](int t) { return converted(real(history.color[texels[t]][channel])) * weights[t]; };
+          const Float old = texel(0) + texel(1) + texel(2) + texel(3);
+          const Float low = converted(real(frame.low[i][channel])), high = converted(real(frame.high[i][channel]));
+          const Float kept = old + (greater(low, lesser(high, old)) - old) * clamped;
+          color[c] = kept + (color[c] - kept) * blend;
+        }
+      }
+      for (std::size_t c = 0; c < 4; ++c)
+        ASSERT_EQ(image[i][static_cast<int>(c)], float(HalfBits(converted(color[c]).value))) << i;
+    }
+    EXPECT_EQ(counters.ops, twin_);
+  }
+}
+
+BEAMPIPE_ON_EVERY_SCENE(TemporalTwins);
+
+}  // namespace
+}  // namespace beampipe
