@@ -2,8 +2,8 @@
 // operations as the scalar twins count them.
 #include <benchmark/benchmark.h>
 
-#include "pipeline/bands.h"
-#include "pipeline/threads.h"
+#include "pipeline/bins/bands.h"
+#include "pipeline/bins/threads.h"
 #include "stages/beam/compose_beam.h"
 #include "stages/beam/windows.h"
 #include "stages/geometry/vertex_setup.h"

@@ -1,5 +1,6 @@
 #include "pipeline/technique.h"
 
+#include "pipeline/bins/threads.h"
 #include "pipeline/spec.h"
 #include "pipeline/techniques/acaa.h"
 #include "pipeline/techniques/beam.h"
@@ -12,7 +13,6 @@
 #include "pipeline/techniques/taa.h"
 #include "pipeline/techniques/visibility.h"
 #include "pipeline/techniques/z3.h"
-#include "pipeline/threads.h"
 
 namespace beampipe {
 namespace {
@@ -51,8 +51,7 @@ Technique make_published(Spec& spec) {
   options.merge = merge_rules(spec);
   options.storage = spec.choice<PaperStorage>(
       "storage", {{"slides", PaperStorage::slides}, {"text", PaperStorage::text}, {"float32", PaperStorage::float32}});
-  return {spec.text(), published_framebuffer(options), 0, bind_options(render_published, options),
-          bind_options(published_weights, options)};
+  return {spec.text(), published_framebuffer(options), 0, bind_options(render_published, options), true};
 }
 
 Technique make_stream(Spec& spec) {
@@ -69,16 +68,14 @@ Technique make_beam(Spec& spec) {
   BeamOptions options;
   options.positions = spec.choice<int>("bits", {{"256", 256}, {"128", 128}, {"64", 64}, {"32", 32}});
   options.storage = spec.choice<Storage>("storage", {{"packed", Storage::packed}, {"float32", Storage::float32}});
-  return {spec.text(), beam_framebuffer(options), 0, bind_options(render_beam, options),
-          bind_options(beam_weights, options)};
+  return {spec.text(), beam_framebuffer(options), 0, bind_options(render_beam, options), true};
 }
 
 Technique make_alpha(Spec& spec) {
   PublishedOptions options;
   options.rules = Rules::over;
   options.mask = MaskSource::none;
-  return {spec.text(), published_framebuffer(options), 0, bind_options(render_published, options),
-          bind_options(published_weights, options)};
+  return {spec.text(), published_framebuffer(options), 0, bind_options(render_published, options), true};
 }
 
 Technique make_z3(Spec& spec) {
@@ -124,7 +121,7 @@ Technique make_taa(Spec& spec) {
   TaaOptions options;
   options.samples = spec.samples(kMaxTaaSamples);
   options.blend = spec.number("blend", options.blend, 0.001f, 1.0f);
-  return {spec.text(), taa_framebuffer(), 0, bind_options(render_taa, options), {}, true, kTemporalWorkingBytes};
+  return {spec.text(), taa_framebuffer(), 0, bind_options(render_taa, options), false, true, kTemporalWorkingBytes};
 }
 
 Technique make_dvm(Spec& spec) {
@@ -132,7 +129,7 @@ Technique make_dvm(Spec& spec) {
   options.blend = spec.number("blend", options.blend, 0.001f, 1.0f);
   options.seed = spec.number("seed", options.seed, 0u, std::numeric_limits<std::uint32_t>::max());
   options.material = spec.choice<MaterialBy>("material", {{"color", MaterialBy::color}, {"draw", MaterialBy::draw}});
-  return {spec.text(), dvm_framebuffer(), 0, bind_options(render_dvm, options), {}, true, kDvmWorkingBytes};
+  return {spec.text(), dvm_framebuffer(), 0, bind_options(render_dvm, options), false, true, kDvmWorkingBytes};
 }
 
 Technique make_reference(Spec& spec) {

@@ -4,7 +4,7 @@
 #include <cstdio>
 #include <iostream>
 
-#include "pipeline/timeline.h"
+#include "pipeline/bins/timeline.h"
 #include "simd/target.h"
 #include "tools/image_io.h"
 #include "tools/resume.h"

@@ -1,6 +1,6 @@
 // Accumulative antialiasing (Enderton et al. 2015): a depth-only pass at N samples, then a pass that adds each visible
-// fragment's colour, weighted by its visible samples, to one accumulator per pixel. Above 16 samples: several such
-// rounds, each with another part of the samples, on the same surfaces.
+// fragment's colour, weighted by its visible samples, to one accumulator per pixel. Above 16 samples there are several
+// such rounds, each with another part of the samples, on the same surfaces.
 #pragma once
 
 #include "pipeline/sampling.h"

@@ -1,5 +1,5 @@
-// beam, sorted: visibility first. Pairs of pixels and triangles are sorted by depth in an A-buffer; window by window,
-// near to far, they become shaded fragments and are composed, until the pixel is closed.
+// The beam in sorted order. An A-buffer sorts the pairs of each pixel by depth. Window by window, near to far, pairs
+// become shaded fragments and are composed, until the pixel is closed.
 #pragma once
 
 #include "pipeline/technique.h"
@@ -13,10 +13,6 @@ struct BeamOptions {
 };
 
 FrameResult render_beam(const Trace& trace, const Frame& frame, const BeamOptions& beam, const RunOptions& run);
-
-// Technique::weights. Depth is compared position by position, so `order` decides nothing.
-std::vector<PixelWeights> beam_weights(const Trace& trace, const Frame& frame, const BeamOptions& beam,
-                                       const RunOptions& run);
 
 std::vector<Surface> beam_framebuffer(const BeamOptions& beam);
 

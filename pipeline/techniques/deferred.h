@@ -1,5 +1,4 @@
-// One sample per pixel, shaded after visibility is known: depth pass, then materials in 2x2 quads into a G-buffer, then
-// light.
+// Deferred shading with one sample per pixel: a depth pass, then materials in 2x2 quads into a G-buffer, then light.
 #pragma once
 
 #include "pipeline/technique.h"

@@ -2,17 +2,10 @@
 
 #include <string>
 
-#include "pipeline/memory/geometry_memory.h"
-#include "pipeline/memory/image_memory.h"
-#include "pipeline/memory/sample_memory.h"
-#include "pipeline/sample_batches.h"
-#include "pipeline/tiles.h"
-#include "pipeline/timeline.h"
-#include "stages/geometry/vertex_setup.h"
-#include "stages/picture/resolve.h"
-#include "stages/picture/shade.h"
-#include "stages/raster/sample_raster.h"
-#include "stages/samples/test_depth.h"
+#include "pipeline/bins/render_bins.h"
+#include "pipeline/units/depth_test_unit.h"
+#include "pipeline/units/fragment_units.h"
+#include "pipeline/units/raster_units.h"
 
 namespace beampipe {
 namespace {
@@ -22,58 +15,36 @@ std::uint32_t color_bytes(const MsaaOptions& options) { return options.rgba ? 8 
 }  // namespace
 
 FrameResult render_msaa(const Trace& trace, const Frame& frame, const MsaaOptions& options, const RunOptions& run) {
-  StageCounters setup;
-  const SetupTriangles triangles = vertex_setup(trace, frame, StageTimer(run.timeline)(setup));
-  const std::vector<glm::vec3> colors = round_to_half(shade_triangles(triangles, frame.light_direction));
+  const FrameContext context(trace, frame, run);
+  const std::vector<glm::vec3> colors = round_to_half(context.colors);
   const Sampling sampling = msaa_sampling(options.samples);
+  const auto first_pass =
+      options.prepass ? DepthTestUnit::FirstPass::writes_depth_alone : DepthTestUnit::FirstPass::writes_color;
+  const auto same_color = [&](std::uint32_t a, std::uint32_t b) { return colors[a] == colors[b]; };
+  const BinPlan plan{.stages = {"sample_raster", "shade", "depth_test", "resolve"},
+                     .tile_size = bin_size(options.samples)};
+  return render_bins(context, plan, [&](Bin& bin) {
+    SampleRasterUnit raster(bin);
+    SampleShadeUnit shade(bin, sampling, options.at);
+    DepthTestUnit depth_test(bin, sampling, color_bytes(options), first_pass, same_color);
 
-  const TileRenderer render_tile = [&](const Tile& tile, const TriangleList& list) {
-    const StageTimer timed(run.timeline, tile);
-    StageCounters raster{"sample_raster"}, shading{"shade"}, testing{"depth_test"}, resolving{"resolve"};
-    SampleTile surface(tile, sampling, options.prepass ? 0 : color_bytes(options));
-    std::vector<float> counts(tile.pixels()), centroids(tile.pixels());
-    std::vector<SampleAccess> accesses;
-    BinBuffers held;
-    const auto same_color = [&](std::uint32_t a, std::uint32_t b) { return colors[a] == colors[b]; };
-    SampleMemory memory(run.memory, tile, sampling, color_bytes(options), same_color);
-    AttributesInOrder attributes(run.memory);
-    const auto shade_all = [&](const std::vector<SampleFragment>& fragments) {
-      shade(fragments, timed(shading), &triangles.attributes);
-      attributes.read(fragments, shading);
-      if (options.at == ShadeAt::centroid)
-        count_centroids(triangles, fragments, tile, sampling, timed(shading), centroids);
-    };
-    raster_in_batches(
-        triangles, list, tile, sampling, timed, raster, held, [&](std::vector<SampleFragment>& fragments) {
-          if (!options.prepass) shade_all(fragments);
-          depth_test(triangles, fragments, tile, sampling, timed(testing), surface, accesses);
-          options.prepass ? memory.test_depth(accesses, testing) : memory.test_and_write(accesses, testing);
-          count_fragments(fragments, tile, sampling.grid, counts);
-        });
-    memory.flush(testing);
-    surface.color_bytes = color_bytes(options);
-    if (options.prepass) {  // shades and writes what is visible; which triangle that is, the surface knows already
-      raster_in_batches(triangles, list, tile, sampling, timed, raster, held,
-                        [&](std::vector<SampleFragment>& fragments) {
-                          depth_test_equal(triangles, tile, sampling, timed(testing), surface, fragments, accesses);
-                          memory.test_equal(accesses, testing);
-                          shade_all(fragments);
-                        });
-      memory.flush(testing);
+    raster.pass(sampling, [&](std::vector<SampleFragment>& fragments) {
+      if (!options.prepass) shade(fragments);
+      depth_test.test(fragments);
+    });
+    depth_test.end_pass();
+    depth_test.add_color(color_bytes(options));
+    if (options.prepass) {  // shades and writes what is visible; the surface already knows which triangles are
+      raster.pass(sampling, [&](std::vector<SampleFragment>& fragments) {
+        depth_test.test_equal(fragments);
+        shade(fragments);
+      });
+      depth_test.end_pass();
     }
-    std::vector<float> bytes(tile.pixels());
-    memory.add_bytes(bytes);
-    memory.read_color(resolving);
-    write_image(run.memory, tile, resolving);
-    TileResult result{resolve(surface, tile.pixels(), colors, frame.background, timed(resolving)),
-                      {{"fragments", std::move(counts)}, {"bytes", std::move(bytes)}},
-                      {raster, shading, testing, resolving},
-                      held,
-                      options.prepass ? 2 : 1};
-    if (options.at == ShadeAt::centroid) result.pixel_counters.emplace_back("centroids", std::move(centroids));
-    return result;
-  };
-  return render_tiles(frame, triangles, setup, bin_size(options.samples), run, render_tile);
+    depth_test.count_bytes();
+    depth_test.read_colors(bin.stage("resolve"));
+    bin.finish(depth_test.resolve_samples(colors, bin.stage("resolve")));
+  });
 }
 
 std::vector<Surface> msaa_framebuffer(const MsaaOptions& options) {

@@ -3,60 +3,35 @@
 #include <stdexcept>
 #include <string>
 
-#include "pipeline/batches.h"
-#include "pipeline/memory/beam_memory.h"
-#include "pipeline/memory/geometry_memory.h"
-#include "pipeline/memory/image_memory.h"
-#include "pipeline/tiles.h"
-#include "pipeline/timeline.h"
-#include "stages/geometry/vertex_setup.h"
-#include "stages/picture/shade.h"
-#include "stages/raster/conservative_raster.h"
+#include "pipeline/bins/render_bins.h"
+#include "pipeline/units/fragment_units.h"
+#include "pipeline/units/layer_units.h"
+#include "pipeline/units/raster_units.h"
 
 namespace beampipe {
 namespace {
 
 template <std::size_t Words, std::size_t Layers>
 FrameResult render_shape(const Trace& trace, const Frame& frame, const Z3Options& z3, const RunOptions& run) {
-  StageCounters setup;
-  const SetupTriangles triangles = vertex_setup(trace, frame, StageTimer(run.timeline)(setup));
-  const std::vector<glm::vec3> colors = shade_triangles(triangles, frame.light_direction);
+  const FrameContext context(trace, frame, run);
   const PositionSet& positions = cell_positions(z3.positions);
   const PositionGrid grid(z3.positions);
   const BeamFragmentOptions options = grid_options(grid, 4 + 4 * Words + 12);
+  const BinPlan plan{.stages = {"conservative_raster", "beam_fragment", "shade", "compose", "resolve"}};
+  return render_bins(context, plan, [&](Bin& bin) {
+    ConservativeRasterUnit raster(bin, "batch_pairs", PairDepths::bounds, ConservativeRasterUnit::Hidden::kept);
+    BeamFragmentUnit make_fragments(bin, options);
+    ShadeUnit shade(bin);
+    ComposeZ3Unit<Words, Layers> compose(bin, positions, z3.merge, z3_framebuffer(z3));
+    std::vector<float>& counts = bin.pixel_counter("fragments");
 
-  return render_tiles(frame, triangles, setup, kBinSize, run, [&](const Tile& tile, const TriangleList& list) {
-    const StageTimer timed(run.timeline, tile);
-    StageCounters raster{"conservative_raster"}, fragment{"beam_fragment"}, shading{"shade"}, composition{"compose"},
-        resolving{"resolve"};
-    std::vector<Z3Pixel<Words, Layers>> pixels(tile.pixels());
-    std::vector<float> counts(tile.pixels()), merges(tile.pixels()), bytes(tile.pixels());
-    const ZOrder order(tile.width(), tile.height());
-    AggregateMemory memory(run.memory, order, z3_framebuffer(z3));
-    AttributesInOrder attributes(run.memory);
-    BinBuffers held;
-    std::vector<PixelTriangle> pairs;
-    std::vector<Fragment> fragments;
-    for_each_batch(list, [&](const TriangleList& batch) {
-      pairs.clear(), fragments.clear();
-      conservative_raster(triangles, batch, tile, timed(raster), pairs);
-      beam_fragment(triangles, pairs, tile, options, timed(fragment), fragments);
-      held.holds("batch_pairs", pairs.size() * kPairWithDepthBytes);
-      held.holds("batch_fragments", fragments.size() * options.fragment_bytes);
-      shade(colors, fragments, timed(shading), &triangles.attributes);
-      attributes.read(fragments, shading);
-      for (const Fragment& item : fragments) ++counts[item.pixel];
-      compose_z3(fragments, positions, z3.merge, timed(composition), pixels, merges);
-      for (const Fragment& item : fragments) memory.merge(item.triangle, item.pixel, composition);
+    for_each_batch(bin.list, [&](const TriangleList& batch) {
+      std::vector<Fragment>& fragments = make_fragments(raster(batch, bin.tile), "batch_fragments");
+      count_by_pixel(fragments, counts);
+      shade(fragments);
+      compose(fragments);
     });
-    memory.flush({}, composition);
-    memory.add_bytes(bytes);
-    memory.read_all(resolving);
-    write_image(run.memory, tile, resolving);
-    return TileResult{resolve(z3_colors(pixels), frame.background, sizeof pixels[0], timed(resolving)),
-                      {{"fragments", std::move(counts)}, {"merges", std::move(merges)}, {"bytes", std::move(bytes)}},
-                      {raster, fragment, shading, composition, resolving},
-                      held};
+    bin.finish(compose.resolve_layers());
   });
 }
 

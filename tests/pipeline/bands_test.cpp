@@ -1,4 +1,4 @@
-#include "pipeline/bands.h"
+#include "pipeline/bins/bands.h"
 
 #include <gtest/gtest.h>
 

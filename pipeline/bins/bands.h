@@ -1,5 +1,5 @@
-// Bands: runs of tiles that are worked on at once, so that what they keep for each triangle fits into the memory that a
-// frame may take. A band is of whole tiles, so that results do not depend on it.
+// Bands: runs of tiles that are rendered together. They keep the memory for lists and pairs below a limit. A band
+// consists of whole tiles, so results do not depend on bands.
 #pragma once
 
 #include <cstddef>
@@ -24,10 +24,9 @@ struct Band {
   std::size_t first, last;  // tiles [first, last)
 };
 
-// In order, all tiles together: one band where there is no limit (0 bytes) or the whole frame fits. What counts: for
-// each tile of a band the list of its triangles, and for those that are worked on, one per thread, `pair_bytes` for
-// each pixel that a triangle touches. Throws std::runtime_error, one line that says how much is needed, when a single
-// tile does not fit.
+// Splits all tiles, in order, into bands: a single one without a limit (0 bytes) or when the whole frame fits. A band
+// needs the triangle lists of all its tiles, and `pair_bytes` per pair for the tiles that are rendered at once, one per
+// thread. Throws std::runtime_error, one line that says how much is needed, when a single tile does not fit.
 std::vector<Band> split_into_bands(const SetupTriangles& triangles, const TileGrid& grid, std::size_t pair_bytes,
                                    int threads, std::uint64_t memory_limit);
 

@@ -1,4 +1,4 @@
-#include "pipeline/bands.h"
+#include "pipeline/bins/bands.h"
 
 #include <tbb/parallel_for.h>
 #include <tbb/task_arena.h>
@@ -12,20 +12,20 @@
 namespace beampipe {
 namespace {
 
-// Rounds down, also below 0; `by` > 0.
+// Division that rounds down for negative values too; `by` > 0.
 std::int64_t floor_of(std::int64_t value, std::int64_t by) { return value / by - (value % by < 0); }
 
-// Keeps, of the columns [left, right] of a row of closed tiles between `top` and `bottom` (1/256 px), those where the
-// closed triangle does not lie wholly beyond one of its edges: tested as cells are, at the corner that lies deepest
-// inside (stages/raster/traverse.h).
+// Narrows the columns [left, right] of a row of tiles between `top` and `bottom` (1/256 px) to those that no edge of the
+// triangle excludes. As for cells, each edge is tested at the corner of the tile that lies deepest inside
+// (stages/raster/traverse.h). Tiles and triangle are closed sets.
 void narrow(const EdgeSet& set, std::int64_t top, std::int64_t bottom, std::int64_t tile_size, std::int32_t& left,
             std::int32_t& right) {
   for (const Edge& edge : set.edges) {
     const std::int64_t at_zero = edge.at(0, edge.b > 0 ? bottom : top);
-    if (edge.a > 0) {  // from where a tile's right side is inside
+    if (edge.a > 0) {  // the first tile whose right side is inside
       const std::int64_t outside = floor_of(-at_zero - 1, edge.a * tile_size);
       left = static_cast<std::int32_t>(std::clamp<std::int64_t>(outside, left, right + 1));
-    } else if (edge.a < 0) {  // up to where a tile's left side is
+    } else if (edge.a < 0) {  // the last tile whose left side is inside
       const std::int64_t inside = floor_of(at_zero, -edge.a * tile_size);
       right = static_cast<std::int32_t>(std::clamp<std::int64_t>(inside, left - 1, right));
     } else if (at_zero < 0) {
@@ -56,7 +56,7 @@ void for_touched_tiles(const SetupTriangle& triangle, const TileGrid& grid, cons
   }
 }
 
-// What tiles take at once, in bytes.
+// Memory that tiles need at the same time, in bytes.
 struct Need {
   std::uint64_t lists = 0, pairs = 0, largest = 0;
 
@@ -70,8 +70,9 @@ struct Need {
   }
 };
 
-// Of pixels that a triangle touches, at most: those of its box; or its area and those that its border touches, 2 for
-// each pixel of height and 2 of width of each side's (at most 4 meet in a corner), which twice the box's are.
+// An upper bound of the pixels that a triangle touches: those of its box, or its area plus the pixels that its border
+// touches. A side touches at most 2 pixels per pixel of its height and 2 per pixel of its width, plus 4 at corners, and
+// the heights and widths of all sides add up to twice the box's.
 std::uint64_t most_pixels(const SetupTriangle& triangle, std::uint64_t width, std::uint64_t height) {
   const auto side = [&](int k) {
     return glm::dvec2(triangle.x[k] - triangle.x[0], triangle.y[k] - triangle.y[0]) / double{kSubpixelUnits};
@@ -82,7 +83,7 @@ std::uint64_t most_pixels(const SetupTriangle& triangle, std::uint64_t width, st
   return static_cast<std::uint64_t>(std::min(by_border, static_cast<double>(width * height)));
 }
 
-// Not less than what the frame needs as one band, and quickly found: by the triangles' bounds.
+// An upper bound, found quickly from the triangles' bounds, of what the frame needs as one band.
 std::uint64_t most_bytes(const SetupTriangles& triangles, const TileGrid& grid, std::size_t pair_bytes) {
   const Tile frame{0, 0, grid.tiles.back().x1, grid.tiles.back().y1};
   std::uint64_t bytes = 0;
@@ -155,7 +156,7 @@ std::vector<Band> split_into_bands(const SetupTriangles& triangles, const TileGr
 }
 
 std::vector<TriangleList> bin_triangles(const SetupTriangles& triangles, const TileGrid& grid, const Band& band) {
-  // A chunk of triangles per thread is binned side by side, and what they found is put behind each other.
+  // Each thread bins a chunk of the triangles; then the lists of the chunks are joined in order.
   const std::size_t count = triangles.triangles.size(), tiles = band.last - band.first;
   const auto chunks = static_cast<std::size_t>(tbb::this_task_arena::max_concurrency());
   const std::size_t chunk_size = count / chunks + 1;

@@ -1,4 +1,4 @@
-// When each stage ran, on which thread and in which tile: for looking at, not part of any result.
+// Records when each stage ran, on which thread and in which tile. It is for viewers and part of no result.
 #pragma once
 
 #include <chrono>
@@ -22,17 +22,17 @@ class Timeline {
   struct Event {
     std::string stage;
     std::thread::id thread;
-    std::optional<std::pair<std::int32_t, std::int32_t>> tile;  // its first pixel; none: the stage works on the frame
+    std::optional<std::pair<std::int32_t, std::int32_t>> tile;  // its first pixel; none when the stage works on the whole frame
     Clock::time_point start, end;
   };
 
-  // From any thread.
+  // May be called from any thread.
   void add(Event event) {
     const std::lock_guard lock(mutex_);
     events_.push_back(std::move(event));
   }
 
-  // Once no thread adds any more.
+  // Call it when no thread adds any more.
   const std::vector<Event>& events() const { return events_; }
 
  private:
@@ -40,12 +40,12 @@ class Timeline {
   std::vector<Event> events_;
 };
 
-// Stands for a stage's counters in the call of the stage, and records how long that call took:
+// Takes the place of a stage's counters in the call of the stage, and records how long that call took:
 //   const StageTimer timed(run.timeline, tile);
 //   conservative_raster(triangles, list, tile, timed(raster), pairs);
 class StageTimer {
  public:
-  // Lives until the end of the call that it was made in.
+  // Lives until the end of the full expression, which is the call of the stage.
   class Span {
    public:
     Span(Timeline* timeline, const Tile* tile, StageCounters& counters)
@@ -70,7 +70,7 @@ class StageTimer {
     Timeline::Clock::time_point start_;
   };
 
-  // `timeline` null: records nothing. The tile must outlive the timer.
+  // A null `timeline` records nothing. The tile must outlive the timer.
   explicit StageTimer(Timeline* timeline) : timeline_(timeline) {}
   StageTimer(Timeline* timeline, const Tile& tile) : timeline_(timeline), tile_(&tile) {}
 

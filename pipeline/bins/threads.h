@@ -1,4 +1,4 @@
-// As many threads as are asked for; 0: all that the machine has.
+// Runs work on a given number of threads. 0 stands for all that the machine has.
 #pragma once
 
 #include <tbb/global_control.h>
@@ -12,8 +12,7 @@ namespace beampipe {
 
 inline int thread_count(int threads) { return threads > 0 ? threads : tbb::info::default_concurrency(); }
 
-// Runs `work`, whose parallel loops take so many threads. Returns what it
-// returns.
+// Runs `work` with its parallel loops on so many threads, and returns what it returns.
 template <class Work>
 auto on_threads(int threads, Work&& work) {
   const int allowed = thread_count(threads);
