@@ -31,7 +31,7 @@ BEAM = [
     ("windows", "one window", "A-buffer", "read"),
     ("beam_fragment", "fragments", "setup triangles", "read"),
     ("shade", "colours", "attributes", "read"),
-    ("compose", "aggregates", "framebuffer", "both"),
+    ("compose", "aggregates", "framebuffer", "write"),
     ("resolve", "", "framebuffer,|picture", "both"),
 ]
 
@@ -125,7 +125,7 @@ def beam_part():
 def other_part():
     """The other techniques, one row each."""
     text(20, 402, "In each bin: the other techniques", 13, "start", weight="bold")
-    note = ("beam:order=stream repeats its stages in passes; acaa draws the triangles twice, for depth and for colour; "
+    note = ("beam:order=stream repeats its stages in passes; acaa and deferred draw the triangles twice; "
             "dilate and temporal work on whole frames.")
     text(20, 420, note, 9.5, "start", fill="#555")
     y, height, row = 434, 20, 27
