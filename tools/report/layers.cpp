@@ -6,7 +6,7 @@
 #include <set>
 
 #include "stages/cost/counter_registry.h"
-#include "tools/image_io.h"
+#include "tools/files/image_io.h"
 #include "tools/report/tables.h"
 #include "traces/input_file.h"
 

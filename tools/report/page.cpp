@@ -1,7 +1,7 @@
 #include "tools/report/page.h"
 
-#include "tools/report.h"
 #include "tools/report/page_files.h"
+#include "tools/report/report.h"
 
 namespace beampipe {
 namespace {

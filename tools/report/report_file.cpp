@@ -4,7 +4,7 @@
 #include <cmath>
 #include <map>
 
-#include "tools/report.h"
+#include "tools/report/report.h"
 #include "traces/json_cursor.h"
 
 namespace beampipe {

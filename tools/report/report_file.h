@@ -9,7 +9,7 @@
 #include <string>
 #include <vector>
 
-#include "tools/metrics.h"
+#include "tools/evaluate/metrics.h"
 
 namespace beampipe {
 

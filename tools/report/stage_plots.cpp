@@ -2,8 +2,8 @@
 
 #include <algorithm>
 
-#include "tools/report.h"
 #include "tools/report/plot.h"
+#include "tools/report/report.h"
 
 namespace beampipe {
 namespace {
