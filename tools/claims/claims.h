@@ -33,20 +33,4 @@ Json to_json(const Claim& claim);
 // As a Markdown table.
 std::string claims_text(const std::vector<Claim>& claims);
 
-// ---- What the lists of claims are made with ----
-
-// Appends those of the article on decoupled visibility multisampling.
-void add_dvm_claims(const Report& report, std::vector<Claim>& claims);
-
-// "fence" of "some/where/fence.json".
-std::string scene_of(const Report& report);
-
-// Null: the report does not have the technique.
-const FrameReport* first_frame(const Report& report, const std::string& spec);
-
-// The prototype as the papers ran it, in shaders, stage after stage; of the stages named, or of all. Nothing where
-// times are not modelled.
-std::optional<double> modelled_ms(const Report& report, const FrameReport* frame,
-                                  const std::vector<std::string>& stages = {});
-
 }  // namespace beampipe

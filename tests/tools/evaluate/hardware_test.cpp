@@ -2,10 +2,7 @@
 
 #include <gtest/gtest.h>
 
-#include <set>
-
 #include "stages/cost/counter_registry.h"
-#include "tools/claims/claims.h"
 
 namespace beampipe {
 namespace {
@@ -80,81 +77,6 @@ TEST(Hardware, ErrorsNameTheKey) {
   EXPECT_EQ(refusal("\"quads_per_clk\":24", "\"quads_per_clk\":24,\"x\":1"), "h.json: rates.x: there is no such key");
   EXPECT_NE(refusal("[\"rop_samples\"]", "[\"rop\"]").find("implementations.shaders.units.depth_test: expected units"),
             std::string::npos);
-}
-
-// Of no report there are the numbers that need no rendering.
-TEST(Claims, BytesPerPixelAreThePublishedOnes) {
-  const std::vector<Claim> claims = answered_claims({});
-  EXPECT_GE(claims.size(), 20u);
-  for (const Claim& claim : claims)
-    EXPECT_NEAR(*claim.difference(), 0, claim.unit == "MiB" ? 0.5 : 0.001) << claim.name;
-}
-
-TEST(Claims, HaveDistinctNamesAndCommandsThatRun) {
-  std::set<std::string> names;
-  for (const Claim& claim : all_claims({})) {
-    EXPECT_TRUE(names.insert(claim.name).second) << claim.name;
-    EXPECT_FALSE(claim.source.empty()) << claim.name;
-    EXPECT_EQ(claim.command.rfind("beampipe ", 0), 0u) << claim.command;
-    for (const char* placeholder : {"TRACE", "SPEC", "DIR"})
-      EXPECT_EQ(claim.command.find(placeholder), std::string::npos) << claim.command;
-    EXPECT_TRUE(claim.published_low <= claim.published_high) << claim.name;
-    const std::size_t technique = claim.command.rfind(" -t ");
-    if (technique == std::string::npos) continue;
-    const std::size_t end = claim.command.find(' ', technique + 4);
-    EXPECT_NO_THROW(parse_technique(claim.command.substr(technique + 4, end - technique - 4))) << claim.command;
-  }
-  EXPECT_GT(names.size(), 150u);
-}
-
-TEST(Claims, DifferenceIsFromTheNearerEnd) {
-  Claim claim{"", "", 24, 32, 40, "", "", ""};
-  EXPECT_EQ(claim.difference(), 8);
-  claim.ours = 20;
-  EXPECT_EQ(claim.difference(), -4);
-  claim.ours = 30;
-  EXPECT_EQ(claim.difference(), 0);
-  claim.ours.reset();
-  EXPECT_FALSE(claim.difference());
-  EXPECT_TRUE(to_json(claim)["ours"].is_null());
-}
-
-// 30 bytes more at 1x to MSAA, half of which ACAA saves.
-TEST(Claims, AcaaGivesBack) {
-  Report report;
-  const auto add = [&](const char* spec, std::uint64_t dram) {
-    TechniqueReport& result = report.results.emplace_back();
-    result.technique = spec;
-    StageCounters setup{"vertex_setup"}, raster{"sample_raster"}, testing{"depth_test"}, resolving{"resolve"};
-    setup.dram_bytes = 1000, raster.dram_bytes = 2000, testing.dram_bytes = dram - 5, resolving.dram_bytes = 5;
-    result.frames.emplace_back().stages = {setup, raster, testing, resolving};
-  };
-  add("msaa:1,prepass", 10);
-  const auto given_back = [&]() -> std::optional<double> {
-    for (const Claim& claim : all_claims(report))
-      if (claim.name.starts_with("ACAA, part of what MSAA adds to 1x in framebuffer traffic")) return claim.ours;
-    return {};
-  };
-  EXPECT_FALSE(given_back());
-  add("msaa:8,color=rgba16f,prepass", 40);
-  add("acaa:8", 25);
-  EXPECT_EQ(given_back(), 0.5);
-}
-
-TEST(Claims, MostFragmentsOfAPixelAreThoseOfTheClassroom) {
-  Report report;
-  TechniqueReport& result = report.results.emplace_back();
-  result.technique = "beam:rules=paper";
-  result.frames.emplace_back().pixel_counters["fragments"] = {2.5, 61};
-  const auto most = [&]() -> std::optional<double> {
-    for (const Claim& claim : all_claims(report))
-      if (claim.unit == "fragments") return claim.ours;
-    return {};
-  };
-  report.trace = "fence.json";
-  EXPECT_FALSE(most());
-  report.trace = "some/classroom.json";
-  EXPECT_EQ(most(), 61);
 }
 
 }  // namespace

@@ -1,53 +1,103 @@
 #!/usr/bin/env python3
 """The report page in a browser: headless Chromium, driven by chromedriver.
 
-usage: report_page_test.py BEAMPIPE CHROMIUM CHROMEDRIVER
+usage: report_page_test.py BEAMPIPE CHROMIUM CHROMEDRIVER [SECONDS]
+
+Chromedriver, and then Chromium, may each take SECONDS to start (60 by default). If one does not start, the test ends with
+one line that says why.
 """
 
 import csv
 import functools
+import http.client
 import json
+import os
 import pathlib
 import re
+import signal
 import subprocess
 import sys
 import tempfile
+import time
 import unittest
+import urllib.error
 import urllib.request
 
 BEAMPIPE, CHROMIUM, CHROMEDRIVER = sys.argv[1:4]
+START_LIMIT = float(sys.argv[4]) if len(sys.argv) > 4 else 60
 TECHNIQUES = ["beam", "alpha", "msaa:1", "msaa:8"]
 KEYS = {"left": "\ue012", "right": "\ue014", "end": "\ue010", "home": "\ue011"}  # WebDriver's names of keys
+
+
+class CannotStart(Exception):
+    """Chromedriver or Chromium does not start; the message is one line."""
 
 
 class Browser:
     """One window, over the WebDriver protocol."""
 
     def __init__(self):
-        self.driver = subprocess.Popen([CHROMEDRIVER, "--port=0"], stdout=subprocess.PIPE, text=True)
-        for line in self.driver.stdout:
-            if started := re.search(r"started successfully on port (\d+)", line):
-                self.url = f"http://127.0.0.1:{started[1]}"
-                break
+        self.folder = tempfile.TemporaryDirectory(ignore_cleanup_errors=True)  # processes that are ending may still write
+        # The driver writes to a file, because a pipe stays open for as long as any process that the driver started. It
+        # leads a process group of its own, so that end_processes() ends what was started here and nothing else.
+        self.log = pathlib.Path(self.folder.name) / "chromedriver.log"
+        try:
+            with open(self.log, "w") as log:
+                self.driver = subprocess.Popen([CHROMEDRIVER, "--port=0"], stdin=subprocess.DEVNULL, stdout=log, stderr=log,
+                                               env={**os.environ, "TMPDIR": self.folder.name}, start_new_session=True)
+        except OSError as error:
+            raise CannotStart(f"chromedriver does not start: {error}")
+        try:
+            self.url = f"http://127.0.0.1:{self.wait_for_port()}"
+            self.url += "/session/" + self.start_session()
+        except BaseException:
+            self.end_processes()
+            raise
+
+    def wait_for_port(self):
+        end = time.monotonic() + START_LIMIT
+        while time.monotonic() < end:
+            # Looks without reaping the process, so that its number cannot become that of another one.
+            ended = os.waitid(os.P_PID, self.driver.pid, os.WEXITED | os.WNOHANG | os.WNOWAIT)
+            output = self.log.read_text()
+            if started := re.search(r"started successfully on port (\d+)", output):
+                return started[1]
+            if ended:
+                last_line = (output.splitlines() or ["it printed nothing"])[-1]
+                raise CannotStart(f"chromedriver does not start: it ended with status {ended.si_status} ({last_line})")
+            time.sleep(0.02)
+        raise CannotStart(f"chromedriver does not start: it named no port within {START_LIMIT:g} s")
+
+    def start_session(self):
         arguments = ["--headless=new", "--no-sandbox", "--disable-gpu", "--disable-dev-shm-usage"]
         options = {"goog:chromeOptions": {"binary": CHROMIUM, "args": arguments},
                    "goog:loggingPrefs": {"browser": "ALL"}}
-        session = self.send("POST", "/session", {"capabilities": {"alwaysMatch": options}})
-        self.url += "/session/" + session["sessionId"]
+        try:
+            return self.send("POST", "/session", {"capabilities": {"alwaysMatch": options}}, START_LIMIT)["sessionId"]
+        except urllib.error.HTTPError as error:
+            reason = json.load(error)["value"]["message"].splitlines()[0]
+        except TimeoutError:
+            reason = f"it gave no answer within {START_LIMIT:g} s"
+        except (OSError, http.client.HTTPException) as error:
+            reason = f"chromedriver failed: {error}"
+        raise CannotStart(f"Chromium does not start: {reason}")
 
-    def send(self, method, path, body=None):
+    def send(self, method, path, body=None, limit=60):
         data = None if body is None else json.dumps(body).encode()
         request = urllib.request.Request(self.url + path, data, {"Content-Type": "application/json"}, method=method)
-        with urllib.request.build_opener(urllib.request.ProxyHandler({})).open(request, timeout=60) as answer:
+        with urllib.request.build_opener(urllib.request.ProxyHandler({})).open(request, timeout=limit) as answer:
             return json.load(answer)["value"]
 
     def close(self):
         try:
             self.send("DELETE", "")
         finally:
-            self.driver.terminate()
-            self.driver.wait()
-            self.driver.stdout.close()
+            self.end_processes()
+
+    def end_processes(self):
+        os.killpg(self.driver.pid, signal.SIGKILL)
+        self.driver.wait()
+        self.folder.cleanup()
 
     def open(self, file):
         self.send("POST", "/url", {"url": file.as_uri()})
@@ -102,8 +152,6 @@ class ReportPage(unittest.TestCase):
                           ["report", str(cls.folder)]]:
             subprocess.run([BEAMPIPE, *arguments], check=True, stdout=subprocess.DEVNULL)
         cls.report = json.loads((cls.folder / "report.json").read_text())
-        cls.browser = Browser()
-        cls.addClassCleanup(cls.browser.close)
 
     def setUp(self):
         self.browser.resize(1280, 900)
@@ -419,5 +467,16 @@ class ReportPage(unittest.TestCase):
         self.assertEqual(paper(), "rgb(255, 255, 255)", "light by choice")
 
 
+def main():
+    try:
+        ReportPage.browser = Browser()
+    except CannotStart as error:
+        sys.exit(f"report_page_test.py: {error}")
+    try:
+        unittest.main(argv=sys.argv[:1])
+    finally:
+        ReportPage.browser.close()
+
+
 if __name__ == "__main__":
-    unittest.main(argv=sys.argv[:1])
+    main()
