@@ -1,13 +1,13 @@
 #!/usr/bin/env bash
-# From nothing to a first comparison: installs packages, builds, makes a chain-link fence, and compares beam with MSAA on it.
-# Results go to out/demo, or to the folder that is named as the argument.
+# Installs what the program needs, builds it, makes the scene of a chain-link fence, and compares beam with multisampling
+# on it. The results go to out/demo, or to the folder given as the argument.
 set -euo pipefail
 
 output=$(realpath --canonicalize-missing "${1:-"$(dirname "${BASH_SOURCE[0]}")/../out/demo"}")
 cd "$(dirname "${BASH_SOURCE[0]}")/.."
 
-tools/install_packages.sh
-cmake --preset release
+tools/install_packages.sh build
+cmake --preset release -DBEAMPIPE_TESTS=OFF
 cmake --build --preset release --target beampipe --parallel "$(nproc)"
 
 build/release/tools/beampipe make fence -o "$output/fence.json"

@@ -1,18 +1,31 @@
 #!/usr/bin/env bash
-# Installs the Debian packages that beampipe is built from, those that are missing. Does nothing when all are there.
+# Installs the Debian packages of one set that are not installed yet: tools/install_packages.sh build|test
+#   build  what the program needs to be built and to run
+#   test   everything in `build`, and what the tests, the fuzz targets and the benchmarks need
 set -euo pipefail
 
-packages=(
+build=(
   g++ cmake ninja-build
   libglm-dev libopenexr-dev libimath-dev libhwy-dev libtbb-dev libpng-dev libtinyobjloader-dev
   libcli11-dev nlohmann-json3-dev
-  gnuplot-nox                       # draws the plots, when the program runs
-  node-d3                           # draws the plots of the report page
-  chromium chromium-driver python3  # test the report page
-  libboost-dev                      # headers: exact arithmetic
+  libboost-dev  # only headers: checksums and exact arithmetic
+  node-d3       # D3, which becomes part of the report page
+)
+test=(
+  gnuplot-nox                       # draws the files of `beampipe plot` and the plots of `beampipe report`
+  chromium chromium-driver python3  # tests of the report page
   libgtest-dev libbenchmark-dev
   clang-14 libclang-rt-14-dev       # fuzz targets
 )
+
+case ${1:-} in
+  build) packages=("${build[@]}") ;;
+  test) packages=("${build[@]}" "${test[@]}") ;;
+  *)
+    echo "usage: tools/install_packages.sh build|test" >&2
+    exit 2
+    ;;
+esac
 
 missing=()
 for package in "${packages[@]}"; do
@@ -22,13 +35,13 @@ done
 ((${#missing[@]} == 0)) && exit 0
 
 if ! command -v apt-get >/dev/null; then
-  echo "install_packages.sh: no apt-get here; install what these Debian packages hold: ${missing[*]}" >&2
+  echo "install_packages.sh: apt-get is missing. Please install the contents of these Debian packages: ${missing[*]}" >&2
   exit 1
 fi
 as_root=()
 if ((EUID != 0)); then
   if ! command -v sudo >/dev/null; then
-    echo "install_packages.sh: run as root, or install first: ${missing[*]}" >&2
+    echo "install_packages.sh: sudo is missing. Please install these packages as root: ${missing[*]}" >&2
     exit 1
   fi
   as_root=(sudo)

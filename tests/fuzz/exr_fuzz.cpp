@@ -1,7 +1,7 @@
 // Any bytes as an EXR: one error, or a picture that can be compared with itself.
 #include "tests/fuzz/fuzz_input.h"
-#include "tools/image_io.h"
-#include "tools/metrics.h"
+#include "tools/evaluate/metrics.h"
+#include "tools/files/image_io.h"
 
 extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
   using namespace beampipe;

@@ -1,0 +1,234 @@
+// Claims: the published figures as data, the formulas of our numbers, and what becomes of both.
+#include "tools/claims/claims.h"
+
+#include <gtest/gtest.h>
+
+#include <limits>
+#include <set>
+#include <stdexcept>
+
+#include "tools/claims/our_figures.h"
+#include "tools/claims/published_figures.h"
+
+namespace beampipe {
+namespace {
+
+// ---- The data ----
+
+// A file with one group of one claim; `fields` are those of the claim, beside its name.
+std::string file_with(const std::string& fields, const std::string& topic = "design") {
+  return R"({"beampipe_claims": 1, "publication": "A book", "groups": [{"topic": ")" + topic +
+         R"(", "source": "page 1", "unit": "ms", "command": "beampipe claims",
+             "claims": [{"name": "a claim", )" +
+         fields + "}]}]}";
+}
+
+PublishedFigure figure_with(const std::string& fields) {
+  return parse_published_figures(file_with(fields), "book.json").at(0);
+}
+
+std::string refusal(const std::string& text) {
+  try {
+    parse_published_figures(text, "book.json");
+  } catch (const std::exception& error) {
+    return error.what();
+  }
+  return "";
+}
+
+TEST(PublishedFigures, AreOneNumberOrARangeOrALowerBound) {
+  EXPECT_EQ(figure_with(R"("published": 4, "formula": "f")").low, 4);
+  EXPECT_EQ(figure_with(R"("published": 4, "formula": "f")").high, 4);
+  EXPECT_EQ(figure_with(R"("published_low": 4, "published_high": 6, "formula": "f")").high, 6);
+  EXPECT_EQ(figure_with(R"("published_low": 4, "formula": "f")").high, std::numeric_limits<double>::infinity());
+}
+
+TEST(PublishedFigures, AClaimsOwnFieldsComeBeforeThoseOfItsGroup) {
+  const PublishedFigure shared = figure_with(R"("published": 4, "formula": "f")");
+  EXPECT_EQ(shared.unit, "ms");
+  EXPECT_EQ(shared.source, "page 1");
+  const PublishedFigure own = figure_with(R"("published": 4, "formula": "f", "unit": "", "source": "page 2")");
+  EXPECT_EQ(own.unit, "");
+  EXPECT_EQ(own.source, "page 2");
+}
+
+TEST(PublishedFigures, NameAFormulaOrTheReasonWhyThereIsNone) {
+  EXPECT_EQ(figure_with(R"("published": 4, "no_number": "nobody counted")").remark, "none: nobody counted");
+  const std::string claim = "book.json: /groups/0/claims/0: ";
+  EXPECT_EQ(refusal(file_with(R"("published": 4)")), claim + "expected the key \"formula\", found none");
+  EXPECT_EQ(refusal(file_with(R"("published": 4, "formula": "f", "no_number": "why")")),
+            claim + "expected either \"formula\" or \"no_number\", found both");
+}
+
+TEST(PublishedFigures, ErrorsNameThePlace) {
+  EXPECT_EQ(refusal(file_with(R"("formula": "f")")),
+            "book.json: /groups/0/claims/0: expected the key \"published_low\", found none");
+  EXPECT_TRUE(refusal(file_with(R"("published": "4", "formula": "f")"))
+                  .starts_with("book.json: /groups/0/claims/0/published: expected a number"));
+  EXPECT_TRUE(refusal(file_with(R"("published": 4, "formula": "f", "colour": 1)"))
+                  .starts_with("book.json: /groups/0/claims/0/colour: expected one of the keys"));
+  EXPECT_TRUE(refusal(file_with(R"("published": 4, "formula": "f")", "gossip"))
+                  .starts_with("book.json: /groups/0/topic: expected one of"));
+}
+
+// ---- Figures and formulas ----
+
+std::string mismatch(const std::vector<PublishedFigure>& figures, const std::vector<Formula>& formulas) {
+  try {
+    expect_formulas_match(figures, formulas);
+  } catch (const std::logic_error& error) {
+    return error.what();
+  }
+  return "";
+}
+
+TEST(Formulas, EachIsNamedByAFigureAndEachFigureNamesOneThatIsThere) {
+  const std::vector<PublishedFigure> figures = published_figures();
+  std::vector<Formula> formulas = our_formulas();
+  EXPECT_EQ(mismatch(figures, formulas), "");
+
+  const Formula last = formulas.back();
+  formulas.pop_back();
+  EXPECT_TRUE(mismatch(figures, formulas).ends_with(": there is no formula " + last.id)) << mismatch(figures, formulas);
+  formulas.push_back(last);
+  formulas.push_back(last);
+  EXPECT_EQ(mismatch(figures, formulas), "claims: there are two formulas " + last.id);
+  formulas.back().id = "beam.beauty";
+  EXPECT_EQ(mismatch(figures, formulas), "claims: no published figure names the formula beam.beauty");
+}
+
+TEST(Formulas, OfEveryPassAreModelledTimesOfItsStages) {
+  Report report;
+  report.trace = "density_low.json";
+  report.hardware = titan_v();
+  TechniqueReport& result = report.results.emplace_back();
+  result.technique = "dvm";
+  StageCounters shade{"shade"}, light{"light"};
+  shade.dram_bytes = 1'000'000, light.dram_bytes = 3'000'000;
+  result.frames.emplace_back().stages = {shade, light};
+  const auto ours = [&](const std::string& name) -> std::optional<double> {
+    for (const Claim& claim : all_claims(report))
+      if (claim.name == name) return claim.ours;
+    ADD_FAILURE() << "no claim " << name;
+    return {};
+  };
+  const double megabyte = 1'000'000 / titan_v().rates.at("dram_bytes_per_clk") / (titan_v().clock_mhz * 1e3);
+  EXPECT_DOUBLE_EQ(ours("low density, DVM, Material").value(), megabyte);
+  EXPECT_DOUBLE_EQ(ours("low density, DVM, Lighting").value(), 3 * megabyte);
+  EXPECT_DOUBLE_EQ(ours("low density, DVM, Total").value(), 4 * megabyte);
+  EXPECT_FALSE(ours("low density, DVM, Motion"));
+  EXPECT_FALSE(ours("low density, Deferred, Material"));
+  EXPECT_FALSE(ours("high density, DVM, Material"));
+  report.trace = "density_high.json";
+  EXPECT_DOUBLE_EQ(ours("high density, DVM, Material").value(), megabyte);
+  EXPECT_DOUBLE_EQ(ours("high density, brute-force supersampling of visibility, 8x, Material and Lighting").value(),
+                   32 * megabyte);
+  report.memory.modelled = false;
+  EXPECT_FALSE(ours("high density, DVM, Material"));
+}
+
+// ---- Claims ----
+
+TEST(Claims, SayWhyThereIsNoNumberOfOurs) {
+  int without = 0;
+  for (const PublishedFigure& figure : published_figures()) {
+    without += figure.formula.empty();
+    EXPECT_EQ(figure.formula.empty(), figure.remark.starts_with("none: ")) << figure.name;
+  }
+  EXPECT_GT(without, 50);
+}
+
+TEST(Claims, OfTimesAreThereForEachImplementation) {
+  Report report;
+  report.hardware = titan_v();
+  report.hardware.implementations.resize(1);
+  report.hardware.implementations[0].name = "relays";
+  const auto names = [&] {
+    std::set<std::string> found;
+    for (const Claim& claim : all_claims(report))
+      if (claim.name.starts_with("msaa:32 / beam, time")) found.insert(claim.name);
+    return found;
+  };
+  EXPECT_EQ(names(), std::set<std::string>{"msaa:32 / beam, time, beam as relays"});
+  report.hardware = {};
+  EXPECT_EQ(names(), (std::set<std::string>{"msaa:32 / beam, time, beam as shaders",
+                                            "msaa:32 / beam, time, beam as fixed_function"}));
+}
+
+// Without a report there are the numbers that need no rendering.
+TEST(Claims, BytesPerPixelAreThePublishedOnes) {
+  const std::vector<Claim> claims = answered_claims({});
+  EXPECT_GE(claims.size(), 20u);
+  for (const Claim& claim : claims)
+    EXPECT_NEAR(*claim.difference(), 0, claim.unit == "MiB" ? 0.5 : 0.001) << claim.name;
+}
+
+TEST(Claims, HaveDistinctNamesAndCommandsThatRun) {
+  std::set<std::string> names;
+  for (const Claim& claim : all_claims({})) {
+    EXPECT_TRUE(names.insert(claim.name).second) << claim.name;
+    EXPECT_FALSE(claim.source.empty()) << claim.name;
+    EXPECT_EQ(claim.command.rfind("beampipe ", 0), 0u) << claim.command;
+    for (const char* placeholder : {"TRACE", "SPEC", "DIR"})
+      EXPECT_EQ(claim.command.find(placeholder), std::string::npos) << claim.command;
+    EXPECT_TRUE(claim.published_low <= claim.published_high) << claim.name;
+    const std::size_t technique = claim.command.rfind(" -t ");
+    if (technique == std::string::npos) continue;
+    const std::size_t end = claim.command.find(' ', technique + 4);
+    EXPECT_NO_THROW(parse_technique(claim.command.substr(technique + 4, end - technique - 4))) << claim.command;
+  }
+  EXPECT_GT(names.size(), 150u);
+}
+
+TEST(Claims, DifferenceIsFromTheNearerEnd) {
+  Claim claim{"", "", 24, 32, 40, "", "", ""};
+  EXPECT_EQ(claim.difference(), 8);
+  claim.ours = 20;
+  EXPECT_EQ(claim.difference(), -4);
+  claim.ours = 30;
+  EXPECT_EQ(claim.difference(), 0);
+  claim.ours.reset();
+  EXPECT_FALSE(claim.difference());
+  EXPECT_TRUE(to_json(claim)["ours"].is_null());
+}
+
+// MSAA adds 30 bytes to those of one sample per pixel, and ACAA saves half of them.
+TEST(Claims, AcaaGivesBack) {
+  Report report;
+  const auto add = [&](const char* spec, std::uint64_t dram) {
+    TechniqueReport& result = report.results.emplace_back();
+    result.technique = spec;
+    StageCounters setup{"vertex_setup"}, raster{"sample_raster"}, testing{"depth_test"}, resolving{"resolve"};
+    setup.dram_bytes = 1000, raster.dram_bytes = 2000, testing.dram_bytes = dram - 5, resolving.dram_bytes = 5;
+    result.frames.emplace_back().stages = {setup, raster, testing, resolving};
+  };
+  add("msaa:1,prepass", 10);
+  const auto given_back = [&]() -> std::optional<double> {
+    for (const Claim& claim : all_claims(report))
+      if (claim.name.starts_with("ACAA, part of what MSAA adds to 1x in framebuffer traffic")) return claim.ours;
+    return {};
+  };
+  EXPECT_FALSE(given_back());
+  add("msaa:8,color=rgba16f,prepass", 40);
+  add("acaa:8", 25);
+  EXPECT_EQ(given_back(), 0.5);
+}
+
+TEST(Claims, MostFragmentsOfAPixelAreThoseOfTheClassroom) {
+  Report report;
+  TechniqueReport& result = report.results.emplace_back();
+  result.technique = "beam:rules=paper";
+  result.frames.emplace_back().pixel_counters["fragments"] = {2.5, 61};
+  const auto most = [&]() -> std::optional<double> {
+    for (const Claim& claim : all_claims(report))
+      if (claim.unit == "fragments") return claim.ours;
+    return {};
+  };
+  report.trace = "fence.json";
+  EXPECT_FALSE(most());
+  report.trace = "some/classroom.json";
+  EXPECT_EQ(most(), 61);
+}
+
+}  // namespace
+}  // namespace beampipe

@@ -1,0 +1,174 @@
+#include "tools/evaluate/metrics.h"
+
+#include <cmath>
+#include <limits>
+
+#include "tests/tools/fixtures.h"
+
+namespace beampipe {
+namespace {
+
+TEST(ErrorStats, OfEqualPicturesAreZero) {
+  const Image image = flat_image(7, 5, 0.3f);
+  EXPECT_EQ(measure_error(image, image), ErrorStats{});
+}
+
+TEST(ErrorStats, OfAConstantOffset) {
+  const ErrorStats stats = measure_error(flat_image(7, 5, 0.25f), flat_image(7, 5, 0.75f));
+  EXPECT_DOUBLE_EQ(stats.rmse, 0.5);
+  EXPECT_DOUBLE_EQ(stats.bias, -0.5);
+  EXPECT_DOUBLE_EQ(stats.p99, 0.5);
+  EXPECT_DOUBLE_EQ(stats.max, 0.5);
+}
+
+TEST(ErrorStats, OppositeErrorsHaveNoBias) {
+  Image image = flat_image(2, 1, 0.5f);
+  image.rgba[0] = 0.75f;
+  image.rgba[4] = 0.25f;
+  const ErrorStats stats = measure_error(image, flat_image(2, 1, 0.5f));
+  EXPECT_DOUBLE_EQ(stats.bias, 0.0);
+  EXPECT_DOUBLE_EQ(stats.rmse, std::sqrt(2 * 0.25 * 0.25 / 6));
+  EXPECT_DOUBLE_EQ(stats.max, 0.25);
+}
+
+TEST(ErrorStats, AlphaDoesNotCount) {
+  Image image = flat_image(2, 2, 0.5f);
+  for (std::size_t i = 3; i < image.rgba.size(); i += 4) image.rgba[i] = 0.0f;
+  EXPECT_EQ(measure_error(image, flat_image(2, 2, 0.5f)), ErrorStats{});
+}
+
+// Errors 1/1024 .. n/1024, negative every second time, in an order that is not theirs.
+Image staircase(std::uint32_t pixels) {
+  Image image = flat_image(pixels, 1, 0.0f);
+  const std::uint32_t n = 3 * pixels;
+  for (std::uint32_t i = 0; i < n; ++i) {
+    const float error = static_cast<float>((i * 7) % n + 1) / 1024.0f;
+    image.rgba[4 * (i / 3) + i % 3] = i % 2 ? -error : error;
+  }
+  return image;
+}
+
+TEST(ErrorStats, P99IsTheValueAtRankCeilOf99Percent) {
+  // n values: rank ceil(0.99 n). 3 does not reach 100 values; 99 to 102 lie around it; 300 and 303 around the third.
+  const std::uint32_t cases[][2] = {{1, 3}, {33, 99}, {34, 101}, {100, 297}, {101, 300}, {200, 594}};
+  for (const auto& [pixels, rank] : cases) {
+    const ErrorStats stats = measure_error(staircase(pixels), flat_image(pixels, 1, 0.0f));
+    EXPECT_DOUBLE_EQ(stats.p99 * 1024, rank) << pixels << " pixels";
+    EXPECT_DOUBLE_EQ(stats.max * 1024, 3 * pixels) << pixels << " pixels";
+  }
+}
+
+TEST(ErrorStats, PoolingFramesIsMeasuringThemAsOnePicture) {
+  Image joined = staircase(500);
+  const Image zero = flat_image(500, 1, 0.0f);
+  ErrorAccumulator pooled(500);
+  for (const auto& [first, width] : {std::pair<std::uint32_t, std::uint32_t>{0, 20}, {20, 430}, {450, 50}}) {
+    const auto begin = joined.rgba.begin() + 4 * first;
+    pooled.add(Image{width, 1, std::vector<float>(begin, begin + 4 * width)}, flat_image(width, 1, 0.0f));
+  }
+  const ErrorStats whole = measure_error(joined, zero), parts = pooled.stats();
+  EXPECT_EQ(parts.p99, whole.p99);
+  EXPECT_EQ(parts.max, whole.max);
+  EXPECT_DOUBLE_EQ(parts.rmse, whole.rmse);
+  EXPECT_NEAR(parts.bias, whole.bias, 1e-15);
+}
+
+TEST(ErrorStats, RefusesWhatCannotBeCompared) {
+  EXPECT_THROW(measure_error(flat_image(2, 3, 0), flat_image(3, 2, 0)), std::invalid_argument);
+  EXPECT_THROW(pixel_errors(flat_image(2, 3, 0), flat_image(3, 2, 0)), std::invalid_argument);
+  Image image = flat_image(4, 3, 0.5f);
+  image.rgba[4 * (4 * 2 + 1) + 2] = std::numeric_limits<float>::infinity();
+  try {
+    measure_error(image, flat_image(4, 3, 0.5f));
+    FAIL() << "an infinite value was measured";
+  } catch (const std::runtime_error& error) {
+    EXPECT_NE(std::string(error.what()).find("(1, 2)"), std::string::npos) << error.what();
+  }
+}
+
+TEST(ErrorStats, WantsExactlyThePixelsThatWereAnnounced) {
+  ErrorAccumulator accumulator(6);
+  accumulator.add(flat_image(2, 2, 0), flat_image(2, 2, 0));
+  EXPECT_THROW(accumulator.stats(), std::logic_error);
+  accumulator.add(flat_image(2, 1, 0), flat_image(2, 1, 0));
+  EXPECT_EQ(accumulator.stats(), ErrorStats{});
+}
+
+TEST(PixelErrors, AreTheRootOfTheMeanSquareOfTheChannels) {
+  Image image = flat_image(2, 1, 0.0f);
+  image.rgba[4] = 0.5f;
+  image.rgba[6] = -0.25f;
+  const std::vector<float> errors = pixel_errors(image, flat_image(2, 1, 0.0f));
+  ASSERT_EQ(errors.size(), 2u);
+  EXPECT_EQ(errors[0], 0.0f);
+  EXPECT_FLOAT_EQ(errors[1], static_cast<float>(std::sqrt((0.25 + 0.0625) / 3)));
+}
+
+const std::vector<LadderRung> kLadder = {{1, 0.4}, {4, 0.1}, {16, 0.025}};  // RMSE = 0.4 / N
+
+TEST(EquivalentMsaa, OfARungIsThatRung) {
+  for (const LadderRung& rung : kLadder) {
+    EXPECT_EQ(equivalent_msaa(rung.rmse, kLadder), (EquivalentMsaa{static_cast<double>(rung.samples), false, false}));
+  }
+}
+
+TEST(EquivalentMsaa, IsStraightInLogLogBetweenRungs) {
+  for (const double n : {1.1, 2.0, 3.9, 5.0, 15.9}) {
+    const EquivalentMsaa emr = equivalent_msaa(0.4 / n, kLadder);
+    EXPECT_NEAR(emr.samples, n, 1e-9);
+    EXPECT_FALSE(emr.is_lower_bound || emr.is_upper_bound);
+  }
+}
+
+TEST(EquivalentMsaa, OutsideTheLadderIsABound) {
+  EXPECT_EQ(equivalent_msaa(0.41, kLadder), (EquivalentMsaa{1, false, true}));
+  EXPECT_EQ(equivalent_msaa(0.02, kLadder), (EquivalentMsaa{16, true, false}));
+  EXPECT_EQ(equivalent_msaa(0.0, kLadder), (EquivalentMsaa{16, true, false}));
+}
+
+TEST(EquivalentMsaa, ARungThatIsWorseThanOneBeforeIsSkipped) {
+  // As a curve: 0.4 at 1, 0.1 at 4, still 0.1 at 8 and 16, 0.05 at 32.
+  const std::vector<LadderRung> ladder = {{1, 0.4}, {4, 0.1}, {8, 0.2}, {16, 0.1}, {32, 0.05}};
+  EXPECT_EQ(equivalent_msaa(0.1, ladder), (EquivalentMsaa{4, false, false}));  // the smallest such N
+  EXPECT_NEAR(equivalent_msaa(0.2, ladder).samples, 2.0, 1e-9);
+  EXPECT_NEAR(equivalent_msaa(0.1 / std::sqrt(2.0), ladder).samples, 16 * std::sqrt(2.0), 1e-9);
+  // Worse at the end: the last rung is still what a better technique is measured by.
+  EXPECT_EQ(equivalent_msaa(0.05, {{1, 0.4}, {4, 0.1}, {8, 0.2}}), (EquivalentMsaa{8, true, false}));
+  EXPECT_EQ(best_rmse({{1, 0.4}, {4, 0.1}, {8, 0.2}}), 0.1);
+}
+
+TEST(EquivalentMsaa, WithRmseZero) {
+  const std::vector<LadderRung> exact_at_4 = {{1, 0.4}, {2, 0.2}, {4, 0.0}, {8, 0.0}};
+  EXPECT_EQ(equivalent_msaa(0.0, exact_at_4), (EquivalentMsaa{4, false, false}));
+  EXPECT_EQ(equivalent_msaa(0.1, exact_at_4), (EquivalentMsaa{2, false, false}));
+  const std::vector<LadderRung> always_exact = {{1, 0.0}, {2, 0.0}};
+  EXPECT_EQ(equivalent_msaa(0.0, always_exact), (EquivalentMsaa{1, false, false}));
+  EXPECT_EQ(equivalent_msaa(0.1, always_exact), (EquivalentMsaa{1, false, true}));
+}
+
+TEST(EquivalentMsaa, WithOneRung) {
+  EXPECT_EQ(equivalent_msaa(0.1, {{8, 0.1}}), (EquivalentMsaa{8, false, false}));
+  EXPECT_EQ(equivalent_msaa(0.2, {{8, 0.1}}), (EquivalentMsaa{8, false, true}));
+  EXPECT_EQ(equivalent_msaa(0.05, {{8, 0.1}}), (EquivalentMsaa{8, true, false}));
+}
+
+TEST(EquivalentMsaa, NeedsARisingLadder) {
+  EXPECT_THROW(equivalent_msaa(0.1, {}), std::invalid_argument);
+  EXPECT_THROW(equivalent_msaa(0.1, {{4, 0.1}, {4, 0.1}}), std::invalid_argument);
+  EXPECT_THROW(equivalent_msaa(0.1, {{4, 0.1}, {2, 0.2}}), std::invalid_argument);
+  EXPECT_THROW(equivalent_msaa(0.1, {{0, 0.1}}), std::invalid_argument);
+}
+
+TEST(Flicker, IsTheChangeOfTheErrorAlone) {
+  const Image reference{1, 2, {0, 0, 0, 1, 0.5f, 0.5f, 0.5f, 1}}, brighter{1, 2, {1, 1, 1, 1, 1, 1, 1, 1}};
+  const Image image{1, 2, {0.25f, 0, 0, 1, 0.5f, 0.5f, 0.5f, 0}};
+  const Image next{1, 2, {1.25f, 1, 1, 1, 1, 1, 0.25f, 1}};
+  const std::vector<float> before = signed_errors(image, reference), after = signed_errors(next, brighter);
+  EXPECT_EQ(before, (std::vector<float>{0.25f, 0, 0, 0, 0, 0}));
+  EXPECT_DOUBLE_EQ(flicker(before, after), std::sqrt(0.75 * 0.75 / 6));
+  EXPECT_EQ(flicker(before, before), 0);
+  EXPECT_THROW(flicker(before, {}), std::invalid_argument);
+}
+
+}  // namespace
+}  // namespace beampipe

@@ -1,0 +1,237 @@
+#include "tools/files/image_io.h"
+
+#include <ImathBox.h>
+#include <ImfChannelList.h>
+#include <ImfFrameBuffer.h>
+#include <ImfHeader.h>
+#include <ImfOutputFile.h>
+#include <png.h>
+
+#include <cmath>
+#include <limits>
+
+#include "tests/tools/fixtures.h"
+
+namespace beampipe {
+namespace {
+
+// Values that need all 32 bits, differ in every channel, and would show rows, columns or channels that changed places.
+Image speaking_image(std::uint32_t width, std::uint32_t height) {
+  Image image{width, height, {}};
+  for (std::uint32_t i = 0; i < 4 * width * height; ++i) image.rgba.push_back(1.0f / (3.0f + static_cast<float>(i)));
+  return image;
+}
+
+std::string error_of_reading(const std::filesystem::path& file) {
+  try {
+    read_exr(file);
+  } catch (const ImageError& error) {
+    return error.what();
+  }
+  ADD_FAILURE() << file << " was read";
+  return "";
+}
+
+// Writes one-valued float channels under a header of the test's own making.
+void write_exr(const std::filesystem::path& file, Imf::Header header, const std::vector<std::string>& channels) {
+  const Imath::Box2i data = header.dataWindow();
+  const std::size_t width = static_cast<std::size_t>(data.max.x - data.min.x + 1);
+  const std::size_t height = static_cast<std::size_t>(data.max.y - data.min.y + 1);
+  std::vector<float> values(width * height, 0.25f);
+  Imf::FrameBuffer buffer;
+  for (const std::string& channel : channels) {
+    header.channels().insert(channel, Imf::Channel(Imf::FLOAT));
+    char* first = reinterpret_cast<char*>(values.data() - data.min.x - data.min.y * static_cast<std::ptrdiff_t>(width));
+    buffer.insert(channel, Imf::Slice(Imf::FLOAT, first, sizeof(float), sizeof(float) * width));
+  }
+  Imf::OutputFile output(file.c_str(), header);
+  output.setFrameBuffer(buffer);
+  output.writePixels(static_cast<int>(height));
+}
+
+struct Rgb8 {
+  std::uint32_t width, height;
+  std::vector<std::uint8_t> bytes;
+};
+
+Rgb8 decode_png(const std::string& bytes) {
+  png_image png{};
+  png.version = PNG_IMAGE_VERSION;
+  EXPECT_TRUE(png_image_begin_read_from_memory(&png, bytes.data(), bytes.size())) << png.message;
+  EXPECT_EQ(png.format, static_cast<std::uint32_t>(PNG_FORMAT_RGB));
+  Rgb8 rgb{png.width, png.height, std::vector<std::uint8_t>(std::size_t{3} * png.width * png.height)};
+  EXPECT_TRUE(png_image_finish_read(&png, nullptr, rgb.bytes.data(), 0, nullptr)) << png.message;
+  return rgb;
+}
+
+TEST(Exr, ComesBackToTheLastBit) {
+  TemporaryFolder folder;
+  const Image image = speaking_image(5, 37);  // more rows than one ZIP block holds
+  write_text(folder / "a.exr", encode_exr(image));
+  const Image back = read_exr(folder / "a.exr");
+  EXPECT_EQ(back.width, 5u);
+  EXPECT_EQ(back.height, 37u);
+  EXPECT_EQ(back.rgba, image.rgba);
+}
+
+TEST(Exr, ChannelsAreNamedAndRowZeroIsOnTop) {
+  TemporaryFolder folder;
+  const Image image = speaking_image(3, 2);
+  write_text(folder / "a.exr", encode_exr(image));
+  const Planes planes = read_exr_planes(folder / "a.exr");
+  ASSERT_EQ(planes.channels.size(), 4u);
+  EXPECT_EQ(planes.channels.at("R")[0], image.rgba[0]);
+  EXPECT_EQ(planes.channels.at("G")[1], image.rgba[5]);
+  EXPECT_EQ(planes.channels.at("B")[3], image.rgba[14]);
+  EXPECT_EQ(planes.channels.at("A")[5], image.rgba[23]);
+}
+
+TEST(Exr, PlanesComeBackUnderTheirNames) {
+  TemporaryFolder folder;
+  const Planes planes{2, 2, {{"fragments", {0, 1, 2, 3}}, {"error", {0.5f, 0.25f, 0.125f, 1e-20f}}}};
+  write_text(folder / "a.exr", encode_exr(planes));
+  const Planes back = read_exr_planes(folder / "a.exr");
+  EXPECT_EQ(back.width, 2u);
+  EXPECT_EQ(back.height, 2u);
+  EXPECT_EQ(back.channels, planes.channels);
+}
+
+TEST(Exr, APlaneOfTheWrongSizeIsAnError) {
+  EXPECT_THROW(encode_exr(Planes{2, 2, {{"fragments", {0, 1, 2}}}}), std::invalid_argument);
+}
+
+TEST(Exr, WithoutAlphaAlphaIsOne) {
+  TemporaryFolder folder;
+  write_exr(folder / "a.exr", Imf::Header(2, 1), {"R", "G", "B"});
+  EXPECT_EQ(read_exr(folder / "a.exr").rgba, (std::vector<float>{0.25f, 0.25f, 0.25f, 1, 0.25f, 0.25f, 0.25f, 1}));
+}
+
+TEST(Exr, AMissingColourChannelIsAnErrorThatNamesIt) {
+  TemporaryFolder folder;
+  write_exr(folder / "a.exr", Imf::Header(2, 1), {"R", "B", "A"});
+  EXPECT_NE(error_of_reading(folder / "a.exr").find("no channel G"), std::string::npos);
+}
+
+TEST(Exr, ADataWindowThatIsNotTheWholePictureIsAnError) {
+  TemporaryFolder folder;
+  const Imath::Box2i whole({0, 0}, {7, 7}), part({2, 2}, {5, 5}), shifted({1, 0}, {8, 7});
+  write_exr(folder / "part.exr", Imf::Header(whole, part), {"R", "G", "B", "A"});
+  write_exr(folder / "shifted.exr", Imf::Header(shifted, shifted), {"R", "G", "B", "A"});
+  EXPECT_NE(error_of_reading(folder / "part.exr").find("data window"), std::string::npos);
+  EXPECT_NE(error_of_reading(folder / "shifted.exr").find("data window"), std::string::npos);
+}
+
+TEST(Exr, WhatIsNoImageIsAnErrorOfOneLineThatNamesTheFile) {
+  TemporaryFolder folder;
+  write_text(folder / "text.exr", "{\"not\": \"an image\"}\n");
+  write_text(folder / "empty.exr", "");
+  for (const char* name : {"text.exr", "empty.exr", "missing.exr", "."}) {
+    const std::string error = error_of_reading(folder / name);
+    EXPECT_NE(error.find((folder / name).string()), std::string::npos) << error;
+    EXPECT_EQ(error.find('\n'), std::string::npos) << error;
+  }
+}
+
+// A header may claim what it likes: memory is taken only for what the file can hold.
+TEST(Exr, AClaimThatTheFileCannotHoldIsAnError) {
+  TemporaryFolder folder;
+  const std::string bytes = encode_exr(speaking_image(9, 40));
+  const auto claim = [&](std::int32_t side) {
+    std::string claimed = bytes;
+    for (const std::string window : {"dataWindow", "displayWindow"}) {
+      const std::size_t at = claimed.find(window) + window.size() + 1 + sizeof "box2i" + 4 + 8;  // its maximum
+      for (std::size_t i = 0; i < 8; ++i) claimed[at + i] = static_cast<char>((side - 1) >> (8 * (i % 4)));
+    }
+    write_text(folder / "a.exr", claimed + std::string(1 << 16, '\1'));  // what may pass for its line offsets
+    return error_of_reading(folder / "a.exr");
+  };
+  EXPECT_NE(claim(16384).find("it claims 16384 x 16384 pixels"), std::string::npos) << claim(16384);
+  EXPECT_NE(claim(16385), "");
+  EXPECT_NE(claim(1'000'000), "");
+}
+
+// Flat pictures take next to nothing in DWA: they are read up to a size that every machine has memory for.
+TEST(Exr, AFlatPictureInDwaIsReadUnlessItIsLarge) {
+  TemporaryFolder folder;
+  const auto write_flat = [&](int width) {
+    Imf::Header header(width, 1024);
+    header.compression() = Imf::DWAB_COMPRESSION;
+    write_exr(folder / "a.exr", header, {"R", "G", "B"});
+    return std::filesystem::file_size(folder / "a.exr");
+  };
+  EXPECT_LT(1100 * write_flat(2048), 12u * 2048 * 1024);
+  EXPECT_EQ(read_exr(folder / "a.exr").rgba.size(), 4u * 2048 * 1024);
+  write_flat(6144);
+  const std::string error = error_of_reading(folder / "a.exr");
+  EXPECT_NE(error.find("it claims 6144 x 1024 pixels"), std::string::npos) << error;
+}
+
+// The library takes memory for what an attribute claims before it reads it.
+TEST(Exr, AnAttributeThatClaimsMoreThanItHasIsAnError) {
+  TemporaryFolder folder;
+  const auto number = [](std::uint32_t value) {
+    return std::string{char(value), char(value >> 8), char(value >> 16), char(value >> 24)};
+  };
+  const std::string start = number(20000630) + number(2), huge = number(1'900'000'000);
+  const struct {
+    std::string type, size, value;
+  } attributes[] = {{"unknown", huge, "rest"},
+                    {"string", huge, "rest"},
+                    {"floatvector", huge, "rest"},
+                    {"stringvector", number(8), huge + "rest"},
+                    {"preview", number(12), number(20'000) + number(20'000) + "rest"},
+                    {"box2i", number(1'000'000), "rest"}};
+  for (const auto& [type, size, value] : attributes) {
+    const std::string attribute = "fragm" + std::string(1, '\0') + type + '\0' + size + value;
+    write_text(folder / "a.exr", start + attribute + std::string(1000, '\0'));
+    const std::string error = error_of_reading(folder / "a.exr");
+    EXPECT_NE(error.find("'fragm'"), std::string::npos) << error;
+  }
+}
+
+// The library would read on behind it, the core would not: as the last attribute of a header that has all others.
+TEST(Exr, AListOfChannelsWithoutItsEndIsAnError) {
+  TemporaryFolder folder;
+  std::string bytes = encode_exr(speaking_image(4, 3));
+  constexpr std::size_t kFirst = 8, kSize = sizeof "channels" + sizeof "chlist", kFourChannels = 4 * (2 + 16) + 1;
+  ASSERT_EQ(bytes.find("channels"), kFirst);
+  std::string channels = bytes.substr(kFirst, kSize + 4 + kFourChannels);
+  ASSERT_EQ(channels[kSize]--, static_cast<char>(kFourChannels));
+  bytes.erase(kFirst, channels.size());
+  const std::string last = "screenWindowWidth";
+  bytes.insert(bytes.find(last) + last.size() + 1 + sizeof "float" + 4 + 4, channels);
+  write_text(folder / "a.exr", bytes);
+  const std::string error = error_of_reading(folder / "a.exr");
+  EXPECT_NE(error.find("list of channels does not end"), std::string::npos) << error;
+}
+
+TEST(Exr, EveryTruncatedFileIsAnError) {
+  TemporaryFolder folder;
+  const std::string bytes = encode_exr(speaking_image(9, 40));
+  for (std::size_t size = 0; size < bytes.size(); size += 7) {
+    write_text(folder / "a.exr", bytes.substr(0, size));
+    EXPECT_THROW(read_exr(folder / "a.exr"), ImageError) << size << " of " << bytes.size() << " bytes";
+  }
+}
+
+TEST(Png, IsClampedAndFollowsTheSrgbCurve) {
+  const float nan = std::numeric_limits<float>::quiet_NaN();
+  Image image = flat_image(4, 1, 0.0f);
+  const std::vector<float> reds = {0.5f, 2.0f, -1.0f, nan};
+  for (std::size_t i = 0; i < 4; ++i) image.rgba[4 * i] = reds[i];
+  image.rgba[1] = 1.0f;        // white level
+  image.rgba[2] = 0.0031308f;  // where the curve's two parts meet: 255 * 12.92 * 0.0031308 = 10.3
+  const Rgb8 rgb = decode_png(encode_png(image));
+  EXPECT_EQ(rgb.width, 4u);
+  EXPECT_EQ(rgb.height, 1u);
+  EXPECT_EQ(rgb.bytes, (std::vector<std::uint8_t>{188, 255, 10, 255, 0, 0, 0, 0, 0, 0, 0, 0}));
+}
+
+TEST(Png, RowZeroIsOnTop) {
+  Image image = flat_image(1, 2, 0.0f);
+  image.rgba[0] = 1.0f;
+  EXPECT_EQ(decode_png(encode_png(image)).bytes, (std::vector<std::uint8_t>{255, 0, 0, 0, 0, 0}));
+}
+
+}  // namespace
+}  // namespace beampipe

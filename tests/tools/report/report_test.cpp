@@ -1,0 +1,192 @@
+#include "tests/tools/fixtures.h"
+#include "tools/report/report_json.h"
+#include "tools/report/report_text.h"
+
+namespace beampipe {
+namespace {
+
+std::vector<std::string> keys_of(const Json& json) {
+  std::vector<std::string> keys;
+  for (const auto& item : json.members()) keys.push_back(item.key);
+  return keys;
+}
+
+Report sample_report() {
+  Report report{"a.json", "1.2.3", "AVX2", 2, {}, {}, {}, {}};
+  TechniqueReport& result = report.results.emplace_back();
+  result.technique = "msaa:8";
+  result.framebuffer = {{"depth", "D32F x 8", 32}, {"color", "RGB16F x 8", 48}};
+  result.framebuffer_bytes_per_pixel = 80;
+  for (const std::size_t index : {4, 5}) {
+    FrameReport& frame = result.frames.emplace_back();
+    frame.index = index;
+    frame.image = "msaa_8/frame_000" + std::to_string(index) + ".exr";
+    frame.picture = "msaa_8/frame_000" + std::to_string(index) + ".png";
+    frame.wall_ms = {2.0 * static_cast<double>(index), 1.0, 20.0, 3, false, 44.0};
+    frame.a_buffer_peak_bytes = 100 * (10 - index);
+    frame.buffers = {{"pairs", 64, true}};
+    frame.pixels = 50;
+    frame.pixel_counters = {{"fragments", {1.5, 4}}};
+    frame.stages = {{"vertex_setup", 3, 1, {1, 2, 3, 4, 5, 6}, 36, 80, 3, 4, 128, 112, 96, 5, 6, 7}};
+  }
+  return report;
+}
+
+Report compared_report() {
+  Report report = sample_report();
+  report.msaa_ladder = {{1, 0.5}, {8, 0.125}};
+  report.results[0].error = ErrorStats{0.125, -0.25, 0.5, 1.0};
+  report.results[0].equivalent_msaa = EquivalentMsaa{8, false, false};
+  for (FrameReport& frame : report.results[0].frames) frame.error = ErrorStats{0.125, -0.25, 0.5, 1.0};
+  return report;
+}
+
+TEST(ReportJson, HasTheKeysOfTheContract) {
+  const Json json = to_json(sample_report());
+  EXPECT_EQ(json["beampipe_report"], 1);
+  EXPECT_EQ(json["trace"], "a.json");
+  EXPECT_EQ(json["version"], "1.2.3");
+  EXPECT_EQ(json["simd"], "AVX2");
+  EXPECT_EQ(json["threads"], 2);
+  const Json& result = json["results"].at(0);
+  EXPECT_EQ(result["technique"], "msaa:8");
+  EXPECT_EQ(result["framebuffer_bytes_per_pixel"], 80);
+  EXPECT_EQ(result["peak_bytes_per_pixel"], 80 + 600.0 / 50) << "the A-buffer of the frame where it is largest";
+  EXPECT_EQ(result["framebuffer"].at(1), (Json{{"name", "color"}, {"format", "RGB16F x 8"}, {"bytes_per_pixel", 48}}));
+  EXPECT_EQ(result["a_buffer_peak_bytes"], 600) << "the most of all frames";
+  const Json& frame = result["frames"].at(1);
+  EXPECT_EQ(frame["index"], 5);
+  EXPECT_EQ(frame["image"], "msaa_8/frame_0005.exr");
+  EXPECT_EQ(frame["wall_ms"], (Json{{"median", 10.0},
+                                    {"min", 1.0},
+                                    {"max", 20.0},
+                                    {"runs", 3},
+                                    {"with_memory_model", false},
+                                    {"modelling_run", 44.0}}));
+  const Json ops = {{"total", 21}, {"mul_add", 1}, {"add", 2},    {"bit", 3},
+                    {"fetch", 4},  {"special", 5}, {"convert", 6}};
+  const Json stage = {{"stage", "vertex_setup"}, {"items_in", 3},         {"items_out", 1},       {"ops", ops},
+                      {"bytes_read", 36},        {"bytes_written", 80},   {"logical_bytes", 116}, {"sector_bytes", 128},
+                      {"l2_bytes", 112},         {"dram_bytes", 96},      {"lanes_used", 3},      {"lanes_issued", 4},
+                      {"hidden_items", 5},       {"hidden_triangles", 6}, {"empty_tiles", 7}};
+  EXPECT_EQ(frame["stages"].at(0), stage);
+  EXPECT_EQ(frame["logical_bytes"], 116) << "of all stages";
+  EXPECT_EQ(frame["sector_bytes"], 128);
+  EXPECT_EQ(frame["l2_bytes"], 112);
+  EXPECT_EQ(frame["dram_bytes"], 96);
+  EXPECT_EQ(frame["buffers"], (Json::array({{{"name", "depth"}, {"peak_bytes", 50 * 32}, {"held", "frame"}},
+                                            {{"name", "color"}, {"peak_bytes", 50 * 48}, {"held", "frame"}},
+                                            {{"name", "a_buffer"}, {"peak_bytes", 500}, {"held", "frame"}},
+                                            {{"name", "pairs"}, {"peak_bytes", 64}, {"held", "bin"}}})));
+  EXPECT_FALSE(frame.contains("modelled_ms")) << "there is no hardware";
+  EXPECT_EQ(frame["pixel_counters"], (Json{{"fragments", {{"mean", 1.5}, {"max", 4.0}}}}));
+  const Json& memory = json["memory_system"];
+  EXPECT_EQ(memory["modelled"], true);
+  EXPECT_EQ(memory["compression"], true);
+  EXPECT_EQ(memory["sector_bytes"], 32);
+  EXPECT_EQ(memory["rop_cache"], (Json{{"bytes", 24 * 16384}, {"ways", 4}, {"line_bytes", 256}}));
+}
+
+TEST(ReportJson, WithoutMemoryThereAreNoModelledTimes) {
+  Report report = sample_report();
+  report.hardware = titan_v();
+  const Json with = to_json(report)["results"][0]["frames"][0];
+  EXPECT_TRUE(with.contains("modelled_ms"));
+  EXPECT_TRUE(with["stages"][0].contains("modelled_ms"));
+  for (StageCounters& stage : report.results[0].frames[0].stages) stage.sector_bytes = 0;
+  const Json without = to_json(report)["results"][0]["frames"][0];
+  EXPECT_FALSE(without.contains("modelled_ms"));
+  EXPECT_FALSE(without["stages"][0].contains("modelled_ms"));
+}
+
+TEST(ReportJson, SaysNothingOfErrorsThatWereNotMeasured) {
+  const Json json = to_json(sample_report());
+  EXPECT_FALSE(json.contains("msaa_ladder"));
+  EXPECT_FALSE(json["results"][0].contains("error"));
+  EXPECT_FALSE(json["results"][0].contains("equivalent_msaa"));
+  EXPECT_FALSE(json["results"][0].contains("equivalent_msaa_is_lower_bound"));
+  EXPECT_FALSE(json["results"][0]["frames"][0].contains("error"));
+}
+
+TEST(ReportJson, HasErrorsAndEquivalentRatesAfterCompare) {
+  Report report = compared_report();
+  const Json error = {{"rmse", 0.125}, {"bias", -0.25}, {"p99", 0.5}, {"max", 1.0}};
+  Json result = to_json(report)["results"][0];
+  EXPECT_EQ(to_json(report)["msaa_ladder"].at(1), (Json{{"samples", 8}, {"rmse", 0.125}}));
+  EXPECT_EQ(result["error"], error);
+  EXPECT_EQ(result["frames"][0]["error"], error);
+  EXPECT_EQ(result["equivalent_msaa"], 8.0);
+  EXPECT_EQ(result["equivalent_msaa_is_lower_bound"], false);
+  EXPECT_FALSE(result.contains("equivalent_msaa_is_upper_bound"));
+
+  report.results[0].equivalent_msaa = EquivalentMsaa{256, true, false};
+  EXPECT_EQ(to_json(report)["results"][0]["equivalent_msaa_is_lower_bound"], true);
+  report.results[0].equivalent_msaa = EquivalentMsaa{1, false, true};
+  result = to_json(report)["results"][0];
+  EXPECT_EQ(result["equivalent_msaa_is_lower_bound"], false);
+  EXPECT_EQ(result["equivalent_msaa_is_upper_bound"], true);
+}
+
+TEST(ReportJson, KeysKeepTheirOrder) {
+  EXPECT_EQ(keys_of(to_json(compared_report())),
+            (std::vector<std::string>{"beampipe_report", "trace", "version", "simd", "threads", "memory_system",
+                                      "msaa_ladder", "results", "claims"}));
+}
+
+TEST(ReportJson, IsTextEvenWhenAFileNameIsNotUtf8) {
+  Report report = sample_report();
+  report.trace = "caf\xE9.json";
+  EXPECT_NO_THROW(parse_json_text(json_text(to_json(report)), "report.json"));
+}
+
+TEST(PixelCounters, AreSummedUpByMeanAndMax) {
+  const PixelCounterStats stats = measure_counter({1, 0, 7, 2});
+  EXPECT_EQ(stats.mean, 2.5);
+  EXPECT_EQ(stats.max, 7);
+}
+
+TEST(WallTime, IsMedianMinMaxAndRuns) {
+  const WallTime odd = wall_time({5, 1, 3});
+  EXPECT_EQ(odd.median, 3);
+  EXPECT_EQ(odd.min, 1);
+  EXPECT_EQ(odd.max, 5);
+  EXPECT_EQ(odd.runs, 3);
+  EXPECT_EQ(wall_time({4, 1, 2, 100}).median, 3);
+  EXPECT_EQ(wall_time({7}).median, 7);
+  EXPECT_THROW(wall_time({}), std::invalid_argument);
+}
+
+TEST(SpecFolder, TurnsEverythingElseIntoUnderscores) {
+  EXPECT_EQ(spec_folder("msaa:8"), "msaa_8");
+  EXPECT_EQ(spec_folder("beam:mask=exact,k=1.5-x"), "beam_mask=exact_k=1.5-x");
+  EXPECT_EQ(spec_folder("a/b\\c d_\xC3\xA9"), "a_b_c_d___");
+}
+
+TEST(Table, HasOneRowPerTechnique) {
+  EXPECT_EQ(table_text(sample_report(), "out"),
+            "technique  bytes/pixel  with A-buffer   ms  picture\n"
+            "msaa:8              80             92  9.0  out/msaa_8/frame_0004.png and 1 more\n");
+}
+
+TEST(Table, HasErrorsAfterCompare) {
+  Report report = compared_report();
+  report.results[0].frames.resize(1);
+  report.results.push_back(report.results[0]);
+  report.results[1].technique = "beam";
+  report.results[1].equivalent_msaa = EquivalentMsaa{256, true, false};
+  EXPECT_EQ(table_text(report, "out"),
+            "technique  bytes/pixel  with A-buffer      RMSE       bias      p99      max    EMR   ms  picture\n"
+            "msaa:8              80             92  0.125000  -0.250000  0.50000  1.00000      8  8.0  "
+            "out/msaa_8/frame_0004.png\n"
+            "beam                80             92  0.125000  -0.250000  0.50000  1.00000  ≥ 256  8.0  "
+            "out/msaa_8/frame_0004.png\n");
+}
+
+TEST(Table, MarksBoundsOfEquivalentRates) {
+  EXPECT_EQ(emr_text({36.24, false, false}), "36.2");
+  EXPECT_EQ(emr_text({1024, true, false}), "≥ 1024");
+  EXPECT_EQ(emr_text({1, false, true}), "< 1");
+}
+
+}  // namespace
+}  // namespace beampipe

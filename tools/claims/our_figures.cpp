@@ -1,0 +1,319 @@
+#include "tools/claims/our_figures.h"
+
+#include <algorithm>
+#include <cmath>
+#include <set>
+#include <stdexcept>
+
+#include "pipeline/sampling.h"
+#include "pipeline/techniques/dvm.h"
+#include "pipeline/techniques/taa.h"
+#include "simd/mask_table.h"
+#include "stages/data/paper_aggregate.h"
+#include "stages/samples/sample_select.h"
+#include "stages/temporal/temporal.h"
+
+namespace beampipe {
+namespace {
+
+using Number = std::optional<double>;
+using Ours = std::function<Number(const Findings&)>;
+
+Number quotient(Number a, Number b) { return a && b && *b != 0 ? Number(*a / *b) : std::nullopt; }
+Number difference(Number a, Number b) { return a && b ? Number(*a - *b) : std::nullopt; }
+
+// ---- What needs no rendering ----
+
+Ours constant(double value) {
+  return [value](const Findings&) { return value; };
+}
+
+double bytes_of(const char* spec) { return parse_technique(spec).framebuffer_bytes_per_pixel(); }
+
+double bytes_of(const char* spec, const std::string& surface) {
+  for (const Surface& each : parse_technique(spec).framebuffer)
+    if (each.name == surface) return each.bytes_per_pixel;
+  return 0;
+}
+
+double bytes_without_color(const char* spec) { return bytes_of(spec) - bytes_of(spec, "color"); }
+
+double mebibytes_at_4k(const char* spec) { return bytes_of(spec) * 3840 * 2160 / (1024.0 * 1024.0); }
+
+// The decimal number that was written in the code: 0.1 for 0.1f, which is not the same double.
+double written(float value) {
+  char text[32];
+  std::snprintf(text, sizeof text, "%.6g", static_cast<double>(value));
+  return std::stod(text);
+}
+
+// What the first frame still counts after so many frames, each of which counts `weight`.
+Ours history(double weight, int frames) { return constant(std::pow(1 - weight, frames)); }
+
+// ---- What reports have ----
+
+const FrameReport* frame_of(const Findings& found, const std::string& spec) {
+  for (const TechniqueReport& result : found.report.results)
+    if (result.technique == spec && !result.frames.empty()) return &result.frames.front();
+  return nullptr;
+}
+
+const StageCounters* stage_of(const Findings& found, const std::string& spec, const std::string& name) {
+  const FrameReport* const frame = frame_of(found, spec);
+  if (!frame) return nullptr;
+  for (const StageCounters& stage : frame->stages)
+    if (stage.stage == name) return &stage;
+  return nullptr;
+}
+
+// Modelled milliseconds of the stages that are named, or of all, one stage after the other.
+Number milliseconds(const Findings& found, const std::string& spec, const std::vector<std::string>& stages = {}) {
+  const FrameReport* const frame = frame_of(found, spec);
+  if (!frame || !found.report.memory.modelled || found.report.hardware.implementations.empty()) return {};
+  const ModelledTime time = modelled_time(found.report.hardware, found.implementation, frame->stages);
+  if (stages.empty()) return time.sum_ms;
+  Number sum;
+  for (std::size_t i = 0; i < frame->stages.size(); ++i)
+    if (std::find(stages.begin(), stages.end(), frame->stages[i].stage) != stages.end())
+      sum = sum.value_or(0) + time.stages[i];
+  return sum;
+}
+
+Ours ms(const std::string& spec, const std::vector<std::string>& stages = {}) {
+  return [=](const Findings& found) { return milliseconds(found, spec, stages); };
+}
+
+Ours ms_over_beam(const std::string& spec) {
+  return [=](const Findings& found) {
+    return quotient(milliseconds(found, spec), milliseconds(found, "beam:rules=paper"));
+  };
+}
+
+// Material and lighting of dvm, as often as there are samples.
+Ours ms_supersampled(double samples) {
+  return [=](const Findings& found) -> Number {
+    const Number once = milliseconds(found, "dvm", {"shade", "light"});
+    if (!once) return {};
+    return samples * *once;
+  };
+}
+
+Number emr_of_beam(const Findings& found) {
+  for (const TechniqueReport& result : found.report.results)
+    if (result.technique == "beam:rules=paper" && result.equivalent_msaa) return result.equivalent_msaa->samples;
+  return {};
+}
+
+Number most_fragments_of_beam(const Findings& found) {
+  const FrameReport* const frame = frame_of(found, "beam:rules=paper");
+  if (!frame || !frame->pixel_counters.contains("fragments")) return {};
+  return frame->pixel_counters.at("fragments").max;
+}
+
+// ---- Accumulative antialiasing against multisampling ----
+
+struct AcaaNumbers {
+  double one = 0, msaa = 0, acaa = 0;
+};
+
+// What ACAA saves, as a part of what MSAA adds to one sample per pixel.
+Number part_of_added(const std::optional<AcaaNumbers>& of) {
+  return of ? quotient(of->msaa - of->acaa, of->msaa - of->one) : std::nullopt;
+}
+
+// What ACAA saves, as a part of what MSAA takes.
+Number part_of_all(const std::optional<AcaaNumbers>& of) {
+  return of ? quotient(of->msaa - of->acaa, of->msaa) : std::nullopt;
+}
+
+constexpr const char* kOneSample = "msaa:1,prepass";
+constexpr const char* kMsaa = "msaa:8,color=rgba16f,prepass";
+constexpr const char* kAcaa = "acaa:8";
+
+// DRAM bytes without those of geometry and its attributes, which are the same for all three.
+std::optional<AcaaNumbers> acaa_traffic(const Findings& found) {
+  const FrameReport *const one = frame_of(found, kOneSample), *const msaa = frame_of(found, kMsaa),
+                           *const acaa = frame_of(found, kAcaa);
+  if (!found.report.memory.modelled || !one || !msaa || !acaa) return {};
+  const auto bytes = [](const FrameReport& frame) {
+    double sum = 0;
+    for (const StageCounters& stage : frame.stages)
+      if (stage.stage == "depth_test" || stage.stage == "accumulate" || stage.stage == "resolve")
+        sum += static_cast<double>(stage.dram_bytes);
+    return sum;
+  };
+  return AcaaNumbers{bytes(*one), bytes(*msaa), bytes(*acaa)};
+}
+
+std::optional<AcaaNumbers> acaa_times(const Findings& found) {
+  const Number one = milliseconds(found, kOneSample), msaa = milliseconds(found, kMsaa),
+               acaa = milliseconds(found, kAcaa);
+  if (!one || !msaa || !acaa) return {};
+  return AcaaNumbers{*one, *msaa, *acaa};
+}
+
+// ---- Shader invocations ----
+
+Number invocations_per_pixel(const Findings& found, const std::string& spec) {
+  const StageCounters* const shade = stage_of(found, spec, "shade");
+  const FrameReport* const frame = frame_of(found, spec);
+  if (!shade || frame->pixels == 0) return {};
+  return static_cast<double>(shade->lanes_issued) / static_cast<double>(frame->pixels);
+}
+
+Ours invocations(const std::string& spec) {
+  return [=](const Findings& found) { return invocations_per_pixel(found, spec); };
+}
+
+Ours invocations_over_forward(const std::string& spec) {
+  return [=](const Findings& found) {
+    return quotient(invocations_per_pixel(found, spec), invocations_per_pixel(found, kOneSample));
+  };
+}
+
+// Invocations fill whole quads, and those outside the triangle are not needed.
+Number invocations_over_needed(const Findings& found) {
+  const StageCounters* const shade = stage_of(found, kOneSample, "shade");
+  if (!shade || shade->lanes_used == 0) return {};
+  return static_cast<double>(shade->lanes_issued) / static_cast<double>(shade->lanes_used);
+}
+
+// Triangles so small that each covers the centre of one pixel or of none.
+Number triangles_without_center(const Findings& found) {
+  const StageCounters* const raster = stage_of(found, kOneSample, "sample_raster");
+  if (!raster || raster->items_in == 0) return {};
+  return 1 - static_cast<double>(raster->items_out) / static_cast<double>(raster->items_in);
+}
+
+Number dvm_less_visibility(const Findings& found) {
+  return difference(milliseconds(found, "dvm"), milliseconds(found, "taa:8"));
+}
+
+Number visibility_over_deferred(const Findings& found) {
+  return quotient(milliseconds(found, "taa:8", {"shade"}), milliseconds(found, "deferred", {"shade"}));
+}
+
+}  // namespace
+
+std::vector<Formula> our_formulas() {
+  // If the article draws visibility first, its first pass is all of the geometry.
+  const std::vector<std::string> pre_pass = {"vertex_setup", "sample_raster", "depth_test"};
+  return {
+      {"beam.bytes.coverage", constant(bytes_of("beam:rules=paper", "coverage"))},
+      {"beam.bytes.mask", constant(bytes_of("beam:rules=paper", "mask"))},
+      {"beam.bytes.depth_plane", constant(bytes_of("beam:rules=paper", "depth_plane"))},
+      {"beam.bytes.thickness", constant(bytes_of("beam:rules=paper", "thickness"))},
+      {"beam.bytes.depth_range", constant(bytes_of("beam:rules=paper", "depth_range"))},
+      {"beam.bytes.color", constant(bytes_of("beam:rules=paper", "color"))},
+      {"beam.bytes.without_color", constant(bytes_without_color("beam:rules=paper"))},
+      {"beam.bytes", constant(bytes_of("beam:rules=paper"))},
+      {"beam.bytes.three_coefficients", constant(kTextBytesWithoutColor)},
+      {"beam.bytes.area_conserving", constant(bytes_of("beam"))},
+      {"beam.bytes_over_msaa_8", constant(bytes_of("beam:rules=paper") / bytes_of("msaa:8"))},
+      {"msaa_8.bytes.without_color", constant(bytes_without_color("msaa:8"))},
+      {"msaa_8.bytes", constant(bytes_of("msaa:8"))},
+      {"msaa_32.bytes.without_color", constant(bytes_without_color("msaa:32"))},
+      {"msaa_32.bytes", constant(bytes_of("msaa:32"))},
+      {"msaa.samples_of_super_resolved_pixel", constant(msaa_sampling(32).pattern.count)},
+      {"beam.mask_bits", constant(8 * bytes_of("beam:rules=paper", "mask"))},
+      {"beam.mask_table_kib", constant(kTableAngles * kTableDistances * 4 / 1024.0)},
+      {"msaa_8.mib_at_4k", constant(mebibytes_at_4k("msaa:8,color=rgba16f"))},
+      {"acaa_8.mib_at_4k", constant(mebibytes_at_4k("acaa:8"))},
+      {"acaa_8.memory_saved", constant(1 - bytes_of("acaa:8") / bytes_of("msaa:8,color=rgba16f"))},
+      {"dvm.bytes.visibility", constant(bytes_of("dvm", "shading_visibility"))},
+      {"dvm.bytes.mask", constant(bytes_of("dvm", "mask"))},
+      {"dvm.bytes.location", constant(bytes_of("dvm", "location"))},
+      {"dvm.bytes.shading_sample", constant(kShadingSampleBytes)},
+      {"dvm.visibility_samples.pixel", constant(kQuadSamples / 4.0)},
+      {"dvm.visibility_samples.quad", constant(kQuadSamples)},
+      {"dvm.shading_samples.quad", constant(std::size(SampleQuad{}.mask))},
+      {"dvm.still_pixels", constant(written(kStillPixels))},
+      {"taa.jitter_positions", constant(TaaOptions{}.samples)},
+      {"taa.weight", constant(written(TaaOptions{}.blend))},
+      {"taa.history.1_at_0.1", history(written(TaaOptions{}.blend), 1)},
+      {"taa.history.8_at_0.1", history(0.1, 8)},
+      {"taa.history.15_at_0.1", history(0.1, 15)},
+      {"taa.history.30_at_0.1", history(0.1, 30)},
+      {"taa.history.45_at_0.1", history(0.1, 45)},
+      {"taa.history.60_at_0.1", history(0.1, 60)},
+      {"taa.history.8_at_0.05", history(0.05, 8)},
+      {"taa.history.15_at_0.05", history(0.05, 15)},
+      {"taa.history.30_at_0.05", history(0.05, 30)},
+      {"taa.history.45_at_0.05", history(0.05, 45)},
+      {"taa.history.60_at_0.05", history(0.05, 60)},
+      {"acaa.added_traffic_saved", [](const Findings& found) { return part_of_added(acaa_traffic(found)); }},
+      {"acaa.traffic_saved", [](const Findings& found) { return part_of_all(acaa_traffic(found)); }},
+      {"acaa.added_ms_saved", [](const Findings& found) { return part_of_added(acaa_times(found)); }},
+      {"acaa.ms_saved", [](const Findings& found) { return part_of_all(acaa_times(found)); }},
+      {"ms.beam:rules=paper", ms("beam:rules=paper")},
+      {"ms.msaa:32", ms("msaa:32")},
+      {"ms.msaa:128", ms("msaa:128")},
+      {"ms.msaa:256", ms("msaa:256")},
+      {"ms_over_beam.msaa:32", ms_over_beam("msaa:32")},
+      {"ms_over_beam.msaa:64", ms_over_beam("msaa:64")},
+      {"ms_over_beam.msaa:128", ms_over_beam("msaa:128")},
+      {"ms_over_beam.msaa:256", ms_over_beam("msaa:256")},
+      {"beam.emr", emr_of_beam},
+      {"beam.most_fragments", most_fragments_of_beam},
+      {"ms.msaa:1,prepass.Material", ms("msaa:1,prepass", {"shade"})},
+      {"ms.msaa:1,prepass.Resolve/TAA", ms("msaa:1,prepass", {"resolve"})},
+      {"ms.msaa:1,prepass", ms("msaa:1,prepass")},
+      {"ms.msaa:2,prepass.Material", ms("msaa:2,prepass", {"shade"})},
+      {"ms.msaa:2,prepass.Resolve/TAA", ms("msaa:2,prepass", {"resolve"})},
+      {"ms.msaa:2,prepass", ms("msaa:2,prepass")},
+      {"ms.msaa:4,prepass.Material", ms("msaa:4,prepass", {"shade"})},
+      {"ms.msaa:4,prepass.Resolve/TAA", ms("msaa:4,prepass", {"resolve"})},
+      {"ms.msaa:4,prepass", ms("msaa:4,prepass")},
+      {"ms.msaa:8,prepass.Material", ms("msaa:8,prepass", {"shade"})},
+      {"ms.msaa:8,prepass.Resolve/TAA", ms("msaa:8,prepass", {"resolve"})},
+      {"ms.msaa:8,prepass", ms("msaa:8,prepass")},
+      {"ms.deferred.Material", ms("deferred", {"shade"})},
+      {"ms.deferred.Lighting", ms("deferred", {"light"})},
+      {"ms.deferred.Resolve/TAA", ms("deferred", {"resolve"})},
+      {"ms.deferred", ms("deferred")},
+      {"ms.taa:8.PrePass", ms("taa:8", pre_pass)},
+      {"ms.taa:8.Material", ms("taa:8", {"shade"})},
+      {"ms.taa:8.Lighting", ms("taa:8", {"light"})},
+      {"ms.taa:8.Motion", ms("taa:8", {"motion"})},
+      {"ms.taa:8.Resolve/TAA", ms("taa:8", {"temporal", "resolve"})},
+      {"ms.taa:8", ms("taa:8")},
+      {"ms.dvm.PrePass", ms("dvm", pre_pass)},
+      {"ms.dvm.Material", ms("dvm", {"shade"})},
+      {"ms.dvm.Lighting", ms("dvm", {"light"})},
+      {"ms.dvm.VisUtil", ms("dvm", {"sample_select"})},
+      {"ms.dvm.Motion", ms("dvm", {"motion"})},
+      {"ms.dvm.Resolve/TAA", ms("dvm", {"dilate", "temporal"})},
+      {"ms.dvm", ms("dvm")},
+      {"ms.dvm_less_visibility", dvm_less_visibility},
+      {"ms.visibility_over_deferred.Material", visibility_over_deferred},
+      {"ms.supersampled.1x", ms_supersampled(1)},
+      {"ms.supersampled.2x", ms_supersampled(2)},
+      {"ms.supersampled.4x", ms_supersampled(4)},
+      {"ms.supersampled.8x", ms_supersampled(8)},
+      {"invocations.msaa:1,prepass", invocations("msaa:1,prepass")},
+      {"invocations.msaa:2,prepass", invocations("msaa:2,prepass")},
+      {"invocations.msaa:4,prepass", invocations("msaa:4,prepass")},
+      {"invocations.msaa:8,prepass", invocations("msaa:8,prepass")},
+      {"invocations_over_forward.msaa:2,prepass", invocations_over_forward("msaa:2,prepass")},
+      {"invocations_over_forward.msaa:4,prepass", invocations_over_forward("msaa:4,prepass")},
+      {"invocations_over_forward.msaa:8,prepass", invocations_over_forward("msaa:8,prepass")},
+      {"invocations_over_needed", invocations_over_needed},
+      {"triangles_without_center", triangles_without_center},
+  };
+}
+
+void expect_formulas_match(const std::vector<PublishedFigure>& figures, const std::vector<Formula>& formulas) {
+  std::set<std::string> known, used;
+  for (const Formula& formula : formulas)
+    if (!known.insert(formula.id).second) throw std::logic_error("claims: there are two formulas " + formula.id);
+  for (const PublishedFigure& figure : figures) {
+    if (figure.formula.empty()) continue;
+    if (!known.contains(figure.formula))
+      throw std::logic_error("claims: \"" + figure.name + "\": there is no formula " + figure.formula);
+    used.insert(figure.formula);
+  }
+  for (const std::string& id : known)
+    if (!used.contains(id)) throw std::logic_error("claims: no published figure names the formula " + id);
+}
+
+}  // namespace beampipe

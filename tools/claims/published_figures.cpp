@@ -1,0 +1,76 @@
+#include "tools/claims/published_figures.h"
+
+#include <algorithm>
+#include <limits>
+
+#include "tools/claims/published_text.h"
+#include "traces/json_cursor.h"
+
+namespace beampipe {
+namespace {
+
+// The text of a field of the claim or, if the claim does not have it, of its group; empty if neither has it.
+std::string text_of(const JsonCursor& claim, const JsonCursor& group, std::string_view key) {
+  if (const auto own = claim.find(key)) return own->string();
+  if (const auto shared = group.find(key)) return shared->string();
+  return "";
+}
+
+void read_numbers(const JsonCursor& claim, PublishedFigure& figure) {
+  if (const auto one = claim.find("published")) {
+    figure.low = figure.high = one->number();
+    return;
+  }
+  figure.low = claim["published_low"].number();
+  const auto high = claim.find("published_high");
+  figure.high = high ? high->number() : std::numeric_limits<double>::infinity();
+}
+
+PublishedFigure read_claim(const JsonCursor& claim, const JsonCursor& group) {
+  claim.expect_keys({"name", "published", "published_low", "published_high", "derived_from", "unit", "source", "remark",
+                     "formula", "no_number"});
+  PublishedFigure figure;
+  figure.name = claim["name"].string();
+  read_numbers(claim, figure);
+  figure.unit = text_of(claim, group, "unit");
+  figure.source = text_of(claim, group, "source");
+  figure.remark = text_of(claim, group, "remark");
+  figure.command = group["command"].string();
+  figure.scene = text_of(claim, group, "scene");
+  if (const auto reason = claim.find("no_number"))
+    figure.remark = "none: " + reason->string();
+  else
+    figure.formula = claim["formula"].string();
+  if (claim.has("formula") && claim.has("no_number")) claim.fail("either \"formula\" or \"no_number\"", "both");
+  return figure;
+}
+
+}  // namespace
+
+std::vector<PublishedFigure> parse_published_figures(const std::string& text, const std::string& file) {
+  const Json json = parse_json_text(text, file);
+  const JsonCursor publication(json, file);
+  publication.expect_keys({"beampipe_claims", "publication", "groups"});
+  publication["beampipe_claims"].integer(1, 1);
+  std::vector<PublishedFigure> figures;
+  for (const JsonCursor& group : publication["groups"].elements()) {
+    group.expect_keys({"topic", "source", "scene", "unit", "command", "remark", "claims"});
+    for (const JsonCursor& claim : group["claims"].elements()) {
+      figures.push_back(read_claim(claim, group));
+      figures.back().topic = group["topic"].choice({"design", "traffic", "time", "quality", "passes"});
+    }
+  }
+  return figures;
+}
+
+std::vector<PublishedFigure> published_figures() {
+  std::vector<PublishedFigure> all;
+  for (const PublishedText& publication : kPublishedTexts) {
+    const auto figures = parse_published_figures(publication.text, publication.file);
+    all.insert(all.end(), figures.begin(), figures.end());
+  }
+  std::stable_sort(all.begin(), all.end(), [](const auto& a, const auto& b) { return a.topic < b.topic; });
+  return all;
+}
+
+}  // namespace beampipe

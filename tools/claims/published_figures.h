@@ -1,0 +1,32 @@
+// What publications state in numbers. These are data: tools/claims/published/*.json, one file per publication, built
+// into the program.
+//
+// A file holds groups of claims. Each field of a claim except its name, its numbers and its formula may stand in its
+// group instead, for all claims of the group. A claim names either the formula of our number
+// (tools/claims/our_figures.h) or, as "no_number", the reason why there is none.
+#pragma once
+
+#include <string>
+#include <vector>
+
+namespace beampipe {
+
+struct PublishedFigure {
+  std::string name;          // with "{implementation}" in it: one claim for each implementation of the hardware
+  std::string unit;          // empty: a ratio or a count
+  double low = 0, high = 0;  // the same if one number is published; high is infinity for "or more"
+  std::string source;        // the place in the publication
+  std::string command;       // what to run to get our number
+  std::string remark;        // what our number is if it is not the same quantity, or why there is none
+  std::string scene;         // the name of the only trace that has our number; empty: any
+  std::string formula;       // empty: there is no number of ours
+  std::size_t topic = 0;     // claims are listed topic by topic, and within a topic in the order of the files
+};
+
+// All that are built in, in the order in which they are listed.
+std::vector<PublishedFigure> published_figures();
+
+// Those of one file. Throws TraceError, one line that names the file and the place in it.
+std::vector<PublishedFigure> parse_published_figures(const std::string& text, const std::string& file);
+
+}  // namespace beampipe

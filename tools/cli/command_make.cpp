@@ -1,0 +1,164 @@
+// beampipe make: a trace from a procedural scene or from a model of the user's own.
+
+#include <algorithm>
+#include <filesystem>
+#include <iostream>
+#include <memory>
+
+#include "tools/cli/commands.h"
+#include "tools/cli/framing.h"
+#include "tools/files/output.h"
+#include "tools/report/report_text.h"
+#include "traces/atomic_file.h"
+#include "traces/scenes.h"
+#include "traces/trace_io.h"
+
+namespace beampipe {
+namespace {
+
+constexpr std::uint32_t kMaxSide = 16384;  // as in a trace
+
+struct MakeArguments {
+  std::string scene, output;
+  SceneOptions options;
+  std::uint32_t frames = 1;
+  double orbit = 0;
+  std::vector<double> pan;
+  bool list = false;
+  // For models only.
+  std::vector<double> eye, target, up, background;
+  double fovy = 0, near = 0, far = 0;
+  bool unlit = false, lambert = false;
+};
+
+bool names_a_model(const std::string& scene) {
+  std::string extension = std::filesystem::path(scene).extension().string();
+  std::transform(extension.begin(), extension.end(), extension.begin(),
+                 [](char c) { return c >= 'A' && c <= 'Z' ? static_cast<char>(c + 32) : c; });
+  return extension == ".obj";
+}
+
+glm::dvec3 vector_of(const std::vector<double>& values) { return {values.at(0), values.at(1), values.at(2)}; }
+
+CameraWishes wishes_of(const MakeArguments& arguments, const Command& command) {
+  CameraWishes wishes;
+  if (!arguments.eye.empty()) wishes.eye = vector_of(arguments.eye);
+  if (!arguments.target.empty()) wishes.target = vector_of(arguments.target);
+  if (!arguments.up.empty()) wishes.up = vector_of(arguments.up);
+  if (command.was_given("--fovy")) wishes.fovy_deg = arguments.fovy;
+  if (command.was_given("--near")) wishes.near = arguments.near;
+  if (command.was_given("--far")) wishes.far = arguments.far;
+  return wishes;
+}
+
+Trace make_from_model(const MakeArguments& arguments, const Command& command) {
+  Trace trace;
+  trace.meshes.push_back(read_obj(arguments.scene, ""));
+  Frame& frame = trace.frames.emplace_back();
+  frame.width = arguments.options.width;
+  frame.height = arguments.options.height;
+  frame.background = arguments.background.empty() ? glm::vec3(1.0f) : glm::vec3(vector_of(arguments.background));
+  try {
+    set_camera(frame, frame_mesh(trace.meshes[0], frame.width, frame.height, wishes_of(arguments, command)));
+  } catch (const std::invalid_argument& error) {
+    throw UsageError(arguments.scene + ": " + error.what());
+  }
+  Draw& draw = frame.draws.emplace_back();
+  if (!arguments.unlit) {
+    draw.shading = Shading::lambert;
+    frame.light_direction = shoulder_light(*frame.camera);
+  }
+  return trace;
+}
+
+Trace make_from_scene(const MakeArguments& arguments, const Command& command) {
+  for (const char* option :
+       {"--eye", "--target", "--up", "--fovy", "--near", "--far", "--background", "--lambert", "--unlit"}) {
+    if (command.was_given(option)) throw UsageError(std::string(option) + " is for models (.obj) only");
+  }
+  const std::vector<SceneKind>& kinds = scene_kinds();
+  if (std::none_of(kinds.begin(), kinds.end(), [&](const SceneKind& kind) { return kind.name == arguments.scene; })) {
+    throw UsageError("there is no scene named " + arguments.scene +
+                     " (see beampipe make --list), and it is no .obj file");
+  }
+  return make_scene(arguments.scene, arguments.options);
+}
+
+void list_scenes() {
+  std::vector<std::vector<std::string>> rows;
+  for (const SceneKind& kind : scene_kinds()) rows.push_back({std::string(kind.name), std::string(kind.description)});
+  std::cout << align_columns(rows, {0, 1});
+}
+
+void make(const MakeArguments& arguments, const Command& command, InterruptGate& gate) {
+  if (arguments.list) return list_scenes();
+  if (arguments.scene.empty()) throw UsageError("make needs a SCENE or a model (see beampipe make --help)");
+  if (arguments.output.empty()) throw UsageError("make needs -o FILE");
+  const bool is_model = names_a_model(arguments.scene);
+  if (is_model && (command.was_given("--triangles") || command.was_given("--seed"))) {
+    throw UsageError("--triangles and --seed are for procedural scenes only");
+  }
+  const std::filesystem::path file = arguments.output;
+  if (std::error_code none; is_model && std::filesystem::equivalent(file, arguments.scene, none))
+    throw UsageError("-o " + arguments.output + " is the model itself");
+  require_writable_folder(file.has_parent_path() ? file.parent_path() : ".");
+  if (command.was_given("--orbit") && arguments.frames < 2) throw UsageError("--orbit needs --frames N with N > 1");
+  if (command.was_given("--pan") && arguments.frames < 2) throw UsageError("--pan needs --frames N with N > 1");
+  Trace trace = is_model ? make_from_model(arguments, command) : make_from_scene(arguments, command);
+  if (!arguments.pan.empty()) {
+    pan_picture(trace, arguments.frames, arguments.pan.at(0), arguments.pan.at(1));
+  } else if (arguments.frames > 1) {
+    orbit_camera(trace, arguments.frames, arguments.orbit);
+  }
+  std::size_t triangles = 0;
+  for (const Mesh& mesh : trace.meshes) triangles += mesh.triangles.size();
+  if (file.has_parent_path()) std::filesystem::create_directories(file.parent_path());
+  {
+    const auto held = gate.hold();
+    gate.set_unfinished(AtomicFile::temporary_of(file));
+  }
+  write_trace(trace, file);
+  std::cout << arguments.output << ": " << triangles << " triangles, " << arguments.options.width << " x "
+            << arguments.options.height << " pixels\n";
+}
+
+}  // namespace
+
+void add_make_command(CommandLine& line, InterruptGate& gate) {
+  const auto arguments = std::make_shared<MakeArguments>();
+  Command command = line.add_command("make", "Make a trace: a procedural scene, or your own model with a camera");
+  command.add("SCENE", arguments->scene, "a procedural scene (see --list), or a model: MODEL.obj");
+  command.add("-o,--output", arguments->output, "the trace to write (JSON)");
+  command.add_flag("--list", arguments->list, "list the procedural scenes");
+  command.add("--width", arguments->options.width, "pixels").between(1, kMaxSide).shows_default();
+  command.add("--height", arguments->options.height, "pixels").between(1, kMaxSide).shows_default();
+  command.add("--frames", arguments->frames, "how many frames (default: 1)").between(1, 100000);
+  const Option orbit =
+      command.add("--orbit", arguments->orbit, "degrees that the camera goes around its target in all (default: 0)");
+  command.add("--pan", arguments->pan, "pixels that the picture moves from frame to frame, right and down")
+      .exactly(2, "X,Y")
+      .excludes(orbit);
+
+  Command scene = command.add_group("Procedural scenes");
+  scene.add("--triangles", arguments->options.triangles, "about how many (default: the scene's own number)")
+      .between(1, 100000000);
+  scene.add("--seed", arguments->options.seed, "same seed, same scene").shows_default();
+
+  Command model = command.add_group("Models");
+  model.add("--eye", arguments->eye, "where the camera is (default: where all of the model is in view)")
+      .exactly(3, "X,Y,Z");
+  model.add("--target", arguments->target, "where it looks (default: the middle of the model)").exactly(3, "X,Y,Z");
+  model.add("--up", arguments->up, "what is up (default: 0,1,0)").exactly(3, "X,Y,Z");
+  model.add("--fovy", arguments->fovy, "full vertical angle of view in degrees (default: 36)");
+  model.add("--near", arguments->near, "near plane (default: just before the model)");
+  model.add("--far", arguments->far, "far plane (default: just behind the model)");
+  model.add("--background", arguments->background, "linear colour (default: 1,1,1)").exactly(3, "R,G,B");
+  const Option lambert = model.add_flag("--lambert", arguments->lambert, "light from over the shoulder (the default)");
+  model.add_flag("--unlit", arguments->unlit, "plain material colours").excludes(lambert);
+  command.footer(
+      "Examples:\n  beampipe make hairball --triangles 100000 --seed 7 -o hairball.json\n"
+      "  beampipe make model.obj -o model.json\n  beampipe make model.obj --eye 3,2,5 --fovy 45 --unlit -o model.json");
+  command.set_work([arguments, command, &gate] { make(*arguments, command, gate); });
+}
+
+}  // namespace beampipe

@@ -1,0 +1,54 @@
+// beampipe plot: what a report found, as a picture file.
+
+#include <iostream>
+#include <memory>
+
+#include "tools/cli/commands.h"
+#include "tools/files/output.h"
+#include "tools/report/gnuplot.h"
+#include "tools/report/plot.h"
+
+namespace beampipe {
+namespace {
+
+struct PlotArguments {
+  std::vector<std::string> folders;
+  std::string output, kind = "frontier";
+};
+
+PlotFormat format_of(const std::filesystem::path& file) {
+  if (file.extension() == ".svg") return PlotFormat::svg;
+  if (file.extension() == ".png") return PlotFormat::png;
+  throw UsageError("--output " + file.string() + ": expected a name that ends in .svg or .png");
+}
+
+void plot(const PlotArguments& arguments, InterruptGate& gate) {
+  const std::filesystem::path file = arguments.output;
+  const PlotFormat format = format_of(file);
+  std::vector<ReportFile> reports;
+  for (const std::string& folder : arguments.folders) reports.push_back(read_report(folder));
+  const ScatterPlot plot = arguments.kind == "speed" ? speed_plot(reports) : frontier_plot(reports);
+  for (const std::string& note : plot.notes) std::cerr << "beampipe: note: " << note << "\n";
+  OutputFolder output(std::filesystem::absolute(file).parent_path(), gate);
+  output.write(file.filename(), draw(plot, format));
+  output.keep();
+}
+
+}  // namespace
+
+void add_plot_command(CommandLine& line, InterruptGate& gate) {
+  const auto arguments = std::make_shared<PlotArguments>();
+  Command command = line.add_command("plot", "Draw what compare found: memory or time against accuracy");
+  command.add("DIR", arguments->folders, "one or more folders that compare wrote").required();
+  command.add("-o,--output", arguments->output, "the picture: FILE.svg or FILE.png").required();
+  command.add("--kind", arguments->kind, "frontier: bytes per pixel and EMR; speed: ms and RMSE")
+      .one_of({"frontier", "speed"})
+      .shows_default();
+  command.footer(
+      "With several folders, the geometric mean over them of each technique that is in all. A triangle stands for a\n"
+      "bound: up where the EMR is at least, down where it is at most the value drawn.\n\n"
+      "Example:\n  beampipe plot out/fence out/maple -o frontier.svg");
+  command.set_work([arguments, &gate] { plot(*arguments, gate); });
+}
+
+}  // namespace beampipe

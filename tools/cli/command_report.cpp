@@ -1,0 +1,74 @@
+// beampipe report: the page, the plots and the tables of what run or compare left.
+
+#include <iostream>
+#include <memory>
+
+#include "tools/cli/commands.h"
+#include "tools/files/output.h"
+#include "tools/report/figures.h"
+#include "tools/report/gnuplot.h"
+#include "tools/report/layers.h"
+#include "tools/report/page.h"
+#include "tools/report/tables.h"
+
+namespace beampipe {
+namespace {
+
+struct ReportArguments {
+  std::string folder;
+  std::optional<std::size_t> frame;
+};
+
+// Where the frame with this index stands in the report.
+std::size_t position_of(const ReportFile& report, std::optional<std::size_t> frame) {
+  if (!frame) return 0;
+  const auto& frames = report.json.at("results").at(0).at("frames").elements();
+  for (std::size_t i = 0; i < frames.size(); ++i) {
+    if (frames[i].at("index").get<std::size_t>() == *frame) return i;
+  }
+  throw UsageError("--frame " + std::to_string(*frame) + ": expected one of the report's frames, " +
+                   frames.front().at("index").dump() + " to " + frames.back().at("index").dump());
+}
+
+void write_report(const ReportArguments& arguments, InterruptGate& gate) {
+  OutputFolder output(arguments.folder, gate);
+  output.lock();
+  const ReportFile report = read_report(arguments.folder);
+  std::vector<Figure> figures;
+  try {
+    const std::vector<Table> tables = report_tables(report);
+    figures = report_figures(report);
+    const auto layers = report_layers(report, position_of(report, arguments.frame));
+    output.write("report.html", page_html(report, tables, figures, layers));
+    for (const Table& table : tables) output.write("tables/" + table.name + ".csv", csv_text(table));
+  } catch (const JsonError& error) {
+    throw ReportError((report.folder / "report.json").string() + ": not a report that beampipe wrote: " + error.what());
+  }
+  output.keep();
+  for (const Figure& figure : figures) {
+    for (const auto& choice : figure.choices) {
+      std::visit([&](const auto& plot) { output.write("plots/" + plot.name + ".svg", draw(plot, PlotFormat::svg)); },
+                 choice.second);
+    }
+  }
+  output.keep();
+  std::cout << "page:   " << (report.folder / "report.html").string()
+            << "\ntables: " << (report.folder / "tables").string()
+            << "/*.csv\nplots:  " << (report.folder / "plots").string() << "/*.svg\n";
+}
+
+}  // namespace
+
+void add_report_command(CommandLine& line, InterruptGate& gate) {
+  const auto arguments = std::make_shared<ReportArguments>();
+  Command command = line.add_command("report", "Make a page for reading of what run or compare left");
+  command.add("DIR", arguments->folder, "the folder that run or compare wrote").required();
+  command.add("--frame", arguments->frame, "the frame whose pictures the page shows (default: the first)");
+  command.footer(
+      "Writes into DIR: report.html, one file with everything in it, to be opened in a browser; tables/*.csv, every\n"
+      "table of the page; plots/*.svg, every plot.\n\nExample:\n  beampipe compare fence.json -t beam msaa:8 -o out\n"
+      "  beampipe report out");
+  command.set_work([arguments, &gate] { write_report(*arguments, gate); });
+}
+
+}  // namespace beampipe

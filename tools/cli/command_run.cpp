@@ -1,0 +1,67 @@
+// beampipe run: pictures, counters and times of one or more techniques.
+
+#include <memory>
+
+#include "tools/cli/commands.h"
+#include "tools/cli/run_arguments.h"
+#include "tools/cli/run_report.h"
+#include "tools/cli/trace_events.h"
+#include "tools/evaluate/render.h"
+#include "tools/evaluate/resume.h"
+
+namespace beampipe {
+namespace {
+
+void run(const RunArguments& arguments, InterruptGate& gate) {
+  RunPlan plan = make_plan(arguments);
+  const TraceEvents events(arguments, plan);
+  OutputFolder output(arguments.output, gate);
+  output.lock();
+  require_writable_folders(output, plan.techniques);
+  const auto maker = made_by("run", plan, Json::object());
+  FrameRecords records(output, maker);
+  std::vector<FrameRecord> finished;
+  if (arguments.resume) {
+    if (records.is_finished()) return tell_finished(output);
+    finished = records.read(plan.frames, specs_of(plan.techniques), nullptr);
+    tell_resumption(plan, finished.size());
+  }
+
+  Report report = new_report(plan, maker);
+  for (const Technique& technique : plan.techniques) report.results.push_back(new_technique_report(technique));
+  for (const FrameRecord& record : finished)
+    for (std::size_t i = 0; i < record.reports.size(); ++i) report.results[i].frames.push_back(record.reports[i]);
+  if (finished.size() < plan.frames.size()) {
+    Progress progress;
+    std::vector<History> histories = rebuild_histories(plan, finished.size(), progress);
+    for (std::size_t at = finished.size(); at < plan.frames.size(); ++at) {
+      const std::size_t frame = plan.frames[at];
+      FrameRecord record;
+      const std::vector<WallTime> times =
+          render_frame(plan, frame, progress, histories, [&](std::size_t i, FrameResult&& result) {
+            record.reports.push_back(write_frame(output, plan.techniques[i].spec, frame, result, nullptr));
+          });
+      for (std::size_t i = 0; i < times.size(); ++i) {
+        record.reports[i].wall_ms = times[i];
+        report.results[i].frames.push_back(record.reports[i]);
+      }
+      records.write(record);
+      output.keep();
+    }
+  }
+  finish_report(output, report);
+  events.write(gate);
+}
+
+}  // namespace
+
+void add_run_command(CommandLine& line, InterruptGate& gate) {
+  const auto arguments = std::make_shared<RunArguments>();
+  Command command = line.add_command("run", "Render a trace: pictures, per-pixel counters, report.json");
+  add_run_arguments(command, *arguments);
+  command.footer("Example:\n  beampipe run fence.json -t beam msaa:1,8 --repeat 5 -o out\n\nTechniques:\n" +
+                 technique_help());
+  command.set_work([arguments, &gate] { run(*arguments, gate); });
+}
+
+}  // namespace beampipe

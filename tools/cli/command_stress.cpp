@@ -1,0 +1,175 @@
+// beampipe stress: hard cases against exact arithmetic.
+
+#include <cmath>
+#include <cstdio>
+#include <iostream>
+#include <memory>
+#include <set>
+
+#include "tools/cli/commands.h"
+#include "tools/cli/run_arguments.h"
+#include "tools/evaluate/machine_memory.h"
+#include "tools/evaluate/progress.h"
+#include "tools/files/output.h"
+#include "tools/report/report_text.h"
+#include "tools/stress/judge.h"
+#include "traces/atomic_file.h"
+#include "traces/trace_io.h"
+
+namespace beampipe {
+namespace {
+
+struct StressArguments {
+  std::vector<std::string> specs = {"beam",
+                                    "beam:storage=float32",
+                                    "beam:bits=32",
+                                    "beam:order=stream",
+                                    "beam:order=stream,bits=64,layers=1",
+                                    "z3",
+                                    "z3:shape=128x3",
+                                    "beam:rules=paper",
+                                    "beam:rules=paper,storage=text",
+                                    "beam:rules=paper,storage=float32",
+                                    "alpha",
+                                    "msaa:1,8,16,256",
+                                    "acaa:8",
+                                    "acaa:8,double=stencil",
+                                    "acaa:8,color=unorm8",
+                                    "acaa:8,color=fp32",
+                                    "acaa:256",
+                                    "deferred",
+                                    "visibility",
+                                    "taa:8",
+                                    "dvm",
+                                    "reference"};
+  std::vector<std::string> cases;
+  std::string output;
+  int threads = 0;
+  bool heavy = false;
+};
+
+// "exact", "2^-12.3" or "nan"; with a star where the limit is not the format's, and a ! beyond the limit.
+std::string cell_of(const Verdict& verdict) {
+  char text[32] = "exact";
+  if (std::isnan(verdict.error)) {
+    std::snprintf(text, sizeof text, "nan");
+  } else if (verdict.error > 0) {
+    std::snprintf(text, sizeof text, "2^%.1f", std::log2(verdict.error));
+  }
+  const double format = verdict.reason.empty() ? verdict.limit : kFormatError;
+  return text + std::string(!verdict.passes() ? "!" : verdict.error > format ? "*" : "");
+}
+
+Json json_of(const HardCase& hard_case, const std::string& spec, const Verdict& verdict) {
+  return {{"case", hard_case.name}, {"what", hard_case.what},   {"technique", spec},
+          {"error", verdict.error},  // null for NaN
+          {"limit", verdict.limit}, {"reason", verdict.reason}, {"passes", verdict.passes()}};
+}
+
+bool is_finite(const Trace& trace) {
+  for (const Mesh& mesh : trace.meshes)
+    for (const glm::vec3& position : mesh.positions)
+      if (!std::isfinite(position.x + position.y + position.z)) return false;
+  return true;
+}
+
+// For `run` and `compare`.
+void save_trace(const HardCase& hard_case, const std::filesystem::path& folder, InterruptGate& gate) {
+  if (!is_finite(hard_case.trace)) return;  // JSON has no such numbers
+  const std::filesystem::path file = folder / (hard_case.name + ".json");
+  {
+    const auto held = gate.hold();
+    std::filesystem::create_directories(folder);
+    gate.set_unfinished(AtomicFile::temporary_of(file));
+  }
+  write_trace(hard_case.trace, file);
+}
+
+// Those that are named, or all. Throws UsageError for a name that no case has.
+std::vector<HardCase> chosen_cases(const StressArguments& arguments) {
+  std::vector<HardCase> cases = hard_cases(arguments.heavy);
+  if (arguments.cases.empty()) return cases;
+  std::set<std::string> missing(arguments.cases.begin(), arguments.cases.end());
+  const std::set<std::string> named = missing;
+  for (const HardCase& hard_case : cases) missing.erase(hard_case.name);
+  if (!missing.empty()) throw UsageError("there is no hard case named " + *missing.begin());
+  std::erase_if(cases, [&](const HardCase& hard_case) { return !named.contains(hard_case.name); });
+  return cases;
+}
+
+void stress(const StressArguments& arguments, InterruptGate& gate) {
+  const std::vector<Technique> techniques = parse_techniques(arguments.specs);
+  const std::vector<HardCase> cases = chosen_cases(arguments);
+  const std::filesystem::path folder = arguments.output;
+  if (!folder.empty()) {
+    require_writable_folder(folder / "traces");
+    require_writable_file(folder / "stress.json");
+  }
+  for (const HardCase& hard_case : cases)
+    for (const Technique& technique : techniques)
+      require_memory(hard_case.trace, hard_case.trace.frames[0], technique.working_bytes_per_pixel,
+                     hard_case.name + " with " + technique.spec, machine_memory());
+  RunOptions options;
+  options.threads = arguments.threads;
+  options.memory.modelled = false;  // pictures alone are judged
+  std::vector<std::vector<std::string>> rows(1, {"case"});
+  for (const Technique& technique : techniques) rows[0].push_back(technique.spec);
+  std::vector<std::string> notes;
+  Json results = Json::array();
+  std::uint64_t failures = 0;
+  {
+    Progress progress;
+    for (const HardCase& hard_case : cases) {
+      if (!folder.empty()) save_trace(hard_case, folder / "traces", gate);
+      Judge judge(hard_case);
+      std::vector<std::string>& row = rows.emplace_back(1, hard_case.name);
+      notes.push_back(hard_case.name + ": " + hard_case.what);
+      for (const Technique& technique : techniques) {
+        progress.show(hard_case.name + ": " + technique.spec);
+        const Verdict verdict = judge.judge(technique, options);
+        row.push_back(cell_of(verdict));
+        results.push_back(json_of(hard_case, technique.spec, verdict));
+        failures += !verdict.passes();
+        if (!verdict.reason.empty() && verdict.error > kFormatError) {
+          char limit[32];
+          std::snprintf(limit, sizeof limit, "%.3g", verdict.limit);
+          notes.push_back("  " + technique.spec + " up to " + limit + ": " + verdict.reason);
+        }
+      }
+    }
+  }
+  std::cout << align_columns(rows, {0}) << "\n";
+  for (const std::string& note : notes) std::cout << note << "\n";
+  if (!folder.empty()) {
+    OutputFolder output(folder, gate);
+    output.write("stress.json", results.dump(1) + "\n");
+    output.keep();
+  }
+  if (failures > 0) throw std::runtime_error(std::to_string(failures) + " results are beyond their limits");
+}
+
+}  // namespace
+
+void add_stress_command(CommandLine& line, InterruptGate& gate) {
+  const auto arguments = std::make_shared<StressArguments>();
+  Command command =
+      line.add_command("stress", "Hold the techniques to exact arithmetic in cases that are hard on numbers");
+  command.add("-t,--technique", arguments->specs, "techniques (default: one or more of each kind)");
+  command.add("--case", arguments->cases, "only these cases (default: all)");
+  command.add("-o,--output", arguments->output,
+              "folder for stress.json, which has all errors and limits, and for the cases as traces (all but "
+              "not_finite: JSON has no such numbers)");
+  command.add("--threads", arguments->threads, "threads to use (default: all that the machine has)").between(1, 1024);
+  command.add_flag("--heavy", arguments->heavy,
+                   "also deep_pixel_1000000, a gigabyte and a minute, and widest_and_highest, 16384 x 16384 pixels: 5 "
+                   "to 9 GB and a minute or two for each technique (name them with -t: taa and dvm need 30 GB)");
+  command.footer(
+      "Each cell is the largest error over all pixels and R, G, B, A against rational arithmetic: of the areas, or, "
+      "for\n"
+      "techniques that sample, of their samples. *: more than fp16 rounding, for a stated reason. !: beyond the "
+      "stated\n"
+      "limit; then the exit code is 1.");
+  command.set_work([arguments, &gate] { stress(*arguments, gate); });
+}
+
+}  // namespace beampipe

@@ -1,0 +1,21 @@
+// The subcommands of the program, one per file. Each function adds its command, with options and help, to the command
+// line.
+#pragma once
+
+#include "tools/cli/command_line.h"
+#include "tools/files/interrupt.h"
+
+namespace beampipe {
+
+void add_run_command(CommandLine& line, InterruptGate& gate);
+void add_compare_command(CommandLine& line, InterruptGate& gate);
+void add_report_command(CommandLine& line, InterruptGate& gate);
+void add_plot_command(CommandLine& line, InterruptGate& gate);
+void add_claims_command(CommandLine& line);
+void add_stress_command(CommandLine& line, InterruptGate& gate);
+void add_diff_command(CommandLine& line);
+void add_info_command(CommandLine& line);
+void add_export_soup_command(CommandLine& line, InterruptGate& gate);
+void add_make_command(CommandLine& line, InterruptGate& gate);
+
+}  // namespace beampipe

@@ -1,0 +1,85 @@
+// The program `beampipe`.
+
+#include <malloc.h>
+
+#include <csignal>
+#include <exception>
+#include <iostream>
+#include <new>
+#include <string>
+
+#include "pipeline/technique.h"
+#include "tools/cli/commands.h"
+#include "tools/evaluate/results.h"
+
+namespace {
+
+constexpr int kRuntimeError = 1, kUsageError = 2;
+
+constexpr const char* kDescription =
+    "beampipe simulates the beam rasterization pipeline and the techniques it is judged against, stage by stage:\n"
+    "pictures, their error, and what every stage cost.";
+
+constexpr const char* kExamples = R"(Examples:
+  beampipe make fence -o fence.json
+  beampipe compare fence.json -t beam msaa:8 -o out
+  beampipe make model.obj -o model.json        (your own model, with a camera that frames it)
+  beampipe run model.json -t beam -o out
+  beampipe report out                          (a page of it all, to open in a browser)
+  beampipe plot out -o frontier.svg
+  beampipe diff out/beam/frame_0000.exr out/reference/frame_0000.exr
+`beampipe COMMAND --help` tells more. Exit codes: 0 done, 1 could not be done, 2 wrong usage, 130 interrupted.)";
+
+// Errors are one line whatever file names and libraries put into them.
+int report_error(std::string message, int exit_code) {
+  for (char& c : message) {
+    if (static_cast<unsigned char>(c) < 0x20 || c == 0x7F) c = ' ';
+  }
+  std::cerr << "beampipe: error: " << message.substr(0, message.find_last_not_of(' ') + 1) << std::endl;
+  return exit_code;
+}
+
+// Each frame takes and frees the same memory. By default glibc gives large blocks back at once, and the next frame pays
+// for every page of them again: a third of vertex_setup's time.
+void keep_freed_memory() {
+  constexpr int kLargest = 1 << 30;  // bytes
+  mallopt(M_MMAP_THRESHOLD, kLargest);
+  mallopt(M_TRIM_THRESHOLD, kLargest);
+}
+
+int run(int argc, char** argv, beampipe::InterruptGate& gate) {
+  keep_freed_memory();
+  beampipe::CommandLine line("beampipe", beampipe::program_version(), kDescription, kExamples);
+  beampipe::add_run_command(line, gate);
+  beampipe::add_compare_command(line, gate);
+  beampipe::add_report_command(line, gate);
+  beampipe::add_plot_command(line, gate);
+  beampipe::add_claims_command(line);
+  beampipe::add_stress_command(line, gate);
+  beampipe::add_diff_command(line);
+  beampipe::add_info_command(line);
+  beampipe::add_export_soup_command(line, gate);
+  beampipe::add_make_command(line, gate);
+  line.run(argc, argv);
+  std::cout.flush();
+  if (!std::cout) return report_error("cannot write to standard output", kRuntimeError);
+  return 0;
+}
+
+}  // namespace
+
+int main(int argc, char** argv) {
+  std::signal(SIGXFSZ, SIG_IGN);  // a file size limit is an error of writing, not the end
+  beampipe::InterruptGate gate;
+  try {
+    return run(argc, argv, gate);
+  } catch (const beampipe::UsageError& error) {
+    return report_error(error.what(), kUsageError);
+  } catch (const beampipe::SpecError& error) {
+    return report_error(error.what(), kUsageError);
+  } catch (const std::bad_alloc&) {
+    return report_error("out of memory", kRuntimeError);
+  } catch (const std::exception& error) {
+    return report_error(error.what(), kRuntimeError);
+  }
+}

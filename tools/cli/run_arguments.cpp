@@ -1,0 +1,132 @@
+#include "tools/cli/run_arguments.h"
+
+#include <algorithm>
+#include <charconv>
+#include <filesystem>
+#include <map>
+#include <numeric>
+#include <thread>
+
+#include "simd/target.h"
+#include "tools/evaluate/machine_memory.h"
+#include "tools/evaluate/results.h"
+#include "traces/trace_io.h"
+
+namespace beampipe {
+
+namespace {
+
+// What follows -t is taken for techniques, even if it is a trace.
+void require_trace(const RunArguments& arguments) {
+  if (!arguments.trace.empty()) return;
+  std::string hint;
+  if (std::error_code ignored; !arguments.specs.empty() && std::filesystem::exists(arguments.specs.back(), ignored))
+    hint = ": " + arguments.specs.back() + " was taken for a technique; write the trace before -t";
+  throw UsageError("TRACE is missing" + hint);
+}
+
+}  // namespace
+
+void add_run_arguments(Command& command, RunArguments& arguments) {
+  command.add("TRACE", arguments.trace, "the trace to render (JSON)");
+  command.add("-t,--technique", arguments.specs, "one or more techniques; may be repeated (list below)").required();
+  command.add("-o,--output", arguments.output, "folder for pictures and report.json; made if need be").required();
+  command.add("--frames", arguments.frames, "only frames A-B of the trace, counted from 0 (default: all)");
+  command.add("--threads", arguments.threads, "threads to use (default: all that the machine has)").between(1, 1024);
+  command.add("--simd", arguments.simd, "instruction set to use; the results are the same (default: the first here)")
+      .one_of(simd_targets());
+  command
+      .add("--memory-limit", arguments.memory_limit,
+           "for what is kept per triangle and pixel, such as 512MB: a frame that needs more is rendered in bands, with "
+           "the same results (default: half of the machine's memory)")
+      .bytes()
+      .between(std::uint64_t{1} << 20, std::uint64_t{1} << 50);
+  command
+      .add("--repeat", arguments.repeat,
+           "times to render each frame, for steadier times (default: 1; above it, times are without the memory model, "
+           "which one more rendering is for)")
+      .between(1, 1000000);
+  command.add_flag("--resume", arguments.resume,
+                   "go on after the last whole frame that the same command left in the folder when it was stopped");
+  command.add("--hardware", arguments.hardware,
+              "description of the hardware whose times are modelled (default: one of Titan V class)");
+  command.add("--trace-events", arguments.trace_events,
+              "file, outside the output folder, for a timeline of stages per tile and thread, for ui.perfetto.dev "
+              "(JSON)");
+  command.add_flag("--no-memory-model", arguments.no_memory_model,
+                   "do not model caches: frames are faster, sector_bytes and dram_bytes are 0");
+  command.add_flag("--no-compression", arguments.no_compression, "model memory without block compression");
+  command.add_flag("--allow-outside", arguments.allow_outside, "let the trace name meshes outside its own folder");
+}
+
+RunPlan make_plan(const RunArguments& arguments) {
+  require_trace(arguments);
+  RunPlan plan;
+  plan.trace_file = arguments.trace;
+  plan.techniques = parse_techniques(arguments.specs);
+  plan.repeat = arguments.repeat;
+  plan.options.threads = arguments.threads > 0 ? arguments.threads : std::max(1u, std::thread::hardware_concurrency());
+  if (!arguments.hardware.empty()) plan.hardware = read_hardware(arguments.hardware);
+  plan.options.memory.modelled = !arguments.no_memory_model;
+  plan.options.memory.compression = !arguments.no_compression;
+  plan.options.memory_limit = arguments.memory_limit > 0 ? arguments.memory_limit : machine_memory() / 2;
+  if (!arguments.simd.empty()) use_simd_target(arguments.simd);
+  plan.trace = read_trace(arguments.trace, {.allow_outside = arguments.allow_outside});
+  plan.frames = parse_frame_range(arguments.frames, plan.trace.frames.size());
+  for (const std::size_t frame : plan.frames)
+    for (const Technique& technique : plan.techniques)
+      require_memory(plan.trace, plan.trace.frames[frame], technique.working_bytes_per_pixel,
+                     "frame " + std::to_string(frame) + " with " + technique.spec, machine_memory());
+  return plan;
+}
+
+std::vector<std::size_t> parse_frame_range(const std::string& text, std::size_t frames) {
+  if (frames == 0) throw UsageError("the trace has no frames");
+  std::size_t first = 0, last = frames - 1;
+  if (!text.empty()) {
+    const char* const end = text.data() + text.size();
+    auto parsed = std::from_chars(text.data(), end, first);
+    last = first;
+    if (parsed.ec == std::errc() && parsed.ptr != end && *parsed.ptr == '-') {
+      parsed = std::from_chars(parsed.ptr + 1, end, last);
+    }
+    if (parsed.ec != std::errc() || parsed.ptr != end || first > last || last >= frames) {
+      throw UsageError("--frames " + text + ": expected A-B or A with frames from 0 to " + std::to_string(frames - 1));
+    }
+  }
+  std::vector<std::size_t> range(last - first + 1);
+  std::iota(range.begin(), range.end(), first);
+  return range;
+}
+
+std::vector<std::string> expand_specs(const std::vector<std::string>& specs) {
+  const std::string prefix = "msaa:";
+  std::vector<std::string> expanded;
+  for (const std::string& spec : specs) {
+    const bool is_list = spec.starts_with(prefix) && spec.find_first_not_of("0123456789,", prefix.size()) == spec.npos;
+    if (!is_list) {
+      expanded.push_back(spec);
+      continue;
+    }
+    for (std::size_t at = prefix.size(), comma; at <= spec.size(); at = comma + 1) {
+      comma = std::min(spec.find(',', at), spec.size());
+      expanded.push_back(prefix + spec.substr(at, comma - at));
+    }
+  }
+  return expanded;
+}
+
+std::vector<Technique> parse_techniques(const std::vector<std::string>& specs) {
+  std::vector<Technique> techniques;
+  std::map<std::string, std::string> spec_of_folder;
+  for (const std::string& spec : expand_specs(specs)) {
+    techniques.push_back(parse_technique(spec));
+    const auto [other, is_new] = spec_of_folder.emplace(spec_folder(spec), spec);
+    if (is_new) continue;
+    if (other->second == spec) throw UsageError("technique " + spec + " is given twice");
+    throw UsageError("techniques " + other->second + " and " + spec + " would both write to folder " + other->first);
+  }
+  return techniques;
+}
+
+}  // namespace beampipe

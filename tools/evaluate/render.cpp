@@ -1,0 +1,138 @@
+#include "tools/evaluate/render.h"
+
+#include <chrono>
+#include <cstdio>
+
+#include "pipeline/bins/timeline.h"
+#include "simd/target.h"
+#include "tools/evaluate/resume.h"
+#include "tools/files/image_io.h"
+
+namespace beampipe {
+namespace {
+
+// "frame 7 (3 of 5): ", or nothing when there is only one.
+std::string frame_text(const RunPlan& plan, std::size_t frame) {
+  if (plan.frames.size() == 1) return "";
+  return "frame " + std::to_string(frame) + " (" + std::to_string(frame - plan.frames.front() + 1) + " of " +
+         std::to_string(plan.frames.size()) + "): ";
+}
+
+// Renders; `milliseconds` becomes the wall time.
+FrameResult render_timed(const Technique& technique, const RunPlan& plan, std::size_t frame, Progress& progress,
+                         bool model_memory, History* history, double& milliseconds) {
+  RunOptions options = plan.options;
+  options.history = history;
+  options.memory.modelled = model_memory;
+  progress.show(frame_text(plan, frame) + technique.spec);
+  const auto start = std::chrono::steady_clock::now();
+  FrameResult result = technique.render(plan.trace, frame, options);
+  const auto end = std::chrono::steady_clock::now();
+  milliseconds = std::chrono::duration<double, std::milli>(end - start).count();
+  if (options.timeline)
+    options.timeline->add(
+        {technique.spec + ", frame " + std::to_string(frame), std::this_thread::get_id(), {}, start, end});
+  return result;
+}
+
+}  // namespace
+
+std::vector<WallTime> render_frame(const RunPlan& plan, std::size_t frame, Progress& progress,
+                                   std::vector<History>& histories,
+                                   const std::function<void(std::size_t, FrameResult&&)>& use) {
+  const bool model = plan.options.memory.modelled, one_more = model && plan.repeat > 1;
+  const int runs = plan.repeat + one_more;
+  std::vector<std::vector<double>> milliseconds(plan.techniques.size(), std::vector<double>(runs));
+  for (int run = 0; run < runs; ++run) {
+    for (std::size_t i = 0; i < plan.techniques.size(); ++i) {
+      History history = histories[i];
+      FrameResult result =
+          render_timed(plan.techniques[i], plan, frame, progress, model && run == 0, &history, milliseconds[i][run]);
+      if (run == 0) use(i, std::move(result));
+      if (run + 1 == runs) histories[i] = std::move(history);
+    }
+  }
+  std::vector<WallTime> times;
+  for (const std::vector<double>& of_runs : milliseconds) {
+    WallTime& time = times.emplace_back(wall_time({of_runs.begin() + one_more, of_runs.end()}));
+    time.with_memory_model = model && !one_more;
+    if (one_more) time.modelling_run = of_runs.front();
+  }
+  return times;
+}
+
+std::vector<History> rebuild_histories(const RunPlan& plan, std::size_t frames, Progress& progress) {
+  std::vector<History> histories(plan.techniques.size());
+  double milliseconds = 0;  // nobody asks
+  for (std::size_t i = 0; i < plan.techniques.size(); ++i) {
+    if (!plan.techniques[i].keeps_history) continue;
+    for (std::size_t at = 0; at < frames; ++at)
+      render_timed(plan.techniques[i], plan, plan.frames[at], progress, false, &histories[i], milliseconds);
+  }
+  return histories;
+}
+
+FrameResult render_once(const Technique& technique, const RunPlan& plan, std::size_t frame, Progress& progress,
+                        WallTime* time) {
+  const bool model = plan.options.memory.modelled;
+  double milliseconds = 0;
+  FrameResult result = render_timed(technique, plan, frame, progress, model, nullptr, milliseconds);
+  if (time) {
+    *time = wall_time({milliseconds});
+    time->with_memory_model = model;
+  }
+  return result;
+}
+
+Image render_picture(const Technique& technique, const RunPlan& plan, std::size_t frame, Progress& progress) {
+  double milliseconds = 0;
+  return render_timed(technique, plan, frame, progress, false, nullptr, milliseconds).image;
+}
+
+FrameReport write_frame(OutputFolder& output, const std::string& spec, std::size_t frame, const FrameResult& result,
+                        const Image* reference) {
+  const std::string stem = frame_stem(spec, frame);
+  FrameReport report;
+  report.index = frame;
+  report.image = stem + ".exr";
+  report.picture = stem + ".png";
+  report.a_buffer_peak_bytes = result.a_buffer_peak_bytes;
+  report.buffers = result.buffers;
+  report.stages = result.stages;
+  report.pixels = std::uint64_t{result.image.width} * result.image.height;
+  Planes counters{result.image.width, result.image.height, result.pixel_counters};
+  if (reference) {
+    report.error = measure_error(result.image, *reference);
+    counters.channels["error"] = pixel_errors(result.image, *reference);
+  }
+  for (const auto& [name, values] : counters.channels) report.pixel_counters[name] = measure_counter(values);
+  // Earlier ones would speak of pictures that are no longer there.
+  output.write(report.image, encode_exr(result.image), {"report.json", frame_record_name(frame)});
+  output.write(report.picture, encode_png(result.image));
+  if (!counters.channels.empty()) {
+    report.counters = stem + "_counters.exr";
+    output.write(report.counters, encode_exr(counters));
+  }
+  return report;
+}
+
+void require_writable_folders(const OutputFolder& output, const std::vector<Technique>& techniques) {
+  require_writable_folder(output.path());
+  for (const Technique& technique : techniques) require_writable_folder(output.path() / spec_folder(technique.spec));
+  require_writable_folder((output.path() / frame_record_name(0)).parent_path());
+  require_writable_file(output.path() / "report.json");
+}
+
+Report new_report(const RunPlan& plan, const Json& made_by) {
+  return {plan.trace_file,
+          program_version(),
+          simd_target(),
+          plan.options.threads,
+          plan.options.memory,
+          plan.hardware,
+          {},
+          {},
+          made_by};
+}
+
+}  // namespace beampipe

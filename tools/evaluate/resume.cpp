@@ -1,0 +1,191 @@
+#include "tools/evaluate/resume.h"
+
+#include <algorithm>
+#include <filesystem>
+#include <map>
+
+#include "simd/target.h"
+#include "tools/files/digest.h"
+#include "tools/report/report_json.h"
+#include "traces/trace_io.h"
+
+namespace beampipe {
+namespace {
+
+namespace fs = std::filesystem;
+
+constexpr const char* kFolder = "unfinished";
+
+// Of what made_by holds only as digests.
+const std::map<std::string, std::string> kDigested = {
+    {"program", "another build of beampipe"}, {"trace", "another trace"}, {"hardware", "another --hardware"}};
+
+Json record_of(const FrameReport& frame) {
+  Json json = to_json(frame, TechniqueReport{}, Hardware{});
+  json["pixels"] = frame.pixels;
+  return json;
+}
+
+FrameReport report_of(const Json& json) {
+  FrameReport frame = frame_of(json);
+  frame.pixels = json.at("pixels").get<std::uint64_t>();
+  return frame;
+}
+
+// Null: there is none, or it is not JSON.
+Json read_json(const fs::path& path) {
+  try {
+    Json json = parse_json(path.string());
+    return json.is_object() ? json : Json();
+  } catch (const TraceError&) {
+    return nullptr;
+  }
+}
+
+Json maker_of(const Json& json) { return json.is_object() ? json.value("made_by", Json()) : Json(); }
+
+// Of those of the frame's files that are there, by name.
+Json digests_of_files(const fs::path& folder, const FrameRecord& record) {
+  Json digests = Json::object();
+  std::error_code ignored;
+  for (const FrameReport& report : record.reports)
+    for (const std::string& name : {report.image, report.picture, report.counters})
+      if (fs::is_regular_file(folder / name, ignored)) digests[name] = digest_of_file(folder / name);
+  return digests;
+}
+
+Json sealed(Json record) {
+  record["digest"] = digest_of(json_text(record));
+  return record;
+}
+
+// Null: it is not as it was sealed.
+Json unsealed(Json record) {
+  if (!record.is_object()) return nullptr;
+  const Json digest = record["digest"];
+  record.erase("digest");
+  return digest == digest_of(json_text(record)) ? record : Json();
+}
+
+// Whether it is of this frame and technique.
+bool is_of(const FrameReport& report, std::size_t frame, const std::string& spec) {
+  const std::string stem = frame_stem(spec, frame);
+  return report.index == frame && report.image == stem + ".exr" && report.picture == stem + ".png" &&
+         (report.counters.empty() || report.counters == stem + "_counters.exr");
+}
+
+Json with_all_numbers_0(Json json) {
+  if (json.is_number()) return 0;
+  if (json.is_array())
+    for (Json& element : json.elements()) element = with_all_numbers_0(element);
+  if (json.is_object())
+    for (auto& [key, value] : json.members()) value = with_all_numbers_0(value);
+  return json;
+}
+
+std::string range_text(const std::vector<std::size_t>& frames) {
+  return std::to_string(frames.front()) + "-" + std::to_string(frames.back());
+}
+
+}  // namespace
+
+Json made_by(const std::string& command, const RunPlan& plan, const Json& more) {
+  Json json = {{"command", command},
+               {"version", program_version()},
+               {"program", digest_of_file("/proc/self/exe")},
+               {"trace", digest_of(plan.trace)},
+               {"techniques", specs_of(plan.techniques)},
+               {"frames", range_text(plan.frames)},
+               {"repeat", plan.repeat},
+               {"threads", plan.options.threads},
+               {"simd", simd_target()},
+               {"memory_model", plan.options.memory.modelled},
+               {"compression", plan.options.memory.compression},
+               {"hardware", digest_of(plan.hardware.json.dump())}};
+  for (const auto& [name, value] : more.members()) json[name] = value;
+  return json;
+}
+
+std::string frame_record_name(std::size_t frame) { return frame_stem(kFolder, frame) + ".json"; }
+
+bool FrameRecords::is_finished() {
+  const Json report = read_json(output_.path() / "report.json");
+  if (!report.is_object()) return false;
+  if (maker_of(report) != maker_) refuse(maker_of(report));
+  remove();
+  return true;
+}
+
+std::vector<FrameRecord> FrameRecords::read(const std::vector<std::size_t>& frames,
+                                            const std::vector<std::string>& specs, const Json& no_sums) const {
+  bool some_are_ours = false;
+  Json other;
+  for (const fs::path& path : list()) {
+    Json maker = maker_of(read_json(path));
+    some_are_ours |= maker == maker_;
+    if (maker.is_object()) other = std::move(maker);
+  }
+  if (!some_are_ours && other.is_object()) refuse(other);
+
+  std::vector<FrameRecord> records;
+  for (const std::size_t frame : frames) {
+    std::optional<FrameRecord> record = read(frame, specs, no_sums);
+    if (!record) break;
+    records.push_back(std::move(*record));
+  }
+  return records;
+}
+
+std::optional<FrameRecord> FrameRecords::read(std::size_t frame, const std::vector<std::string>& specs,
+                                              const Json& no_sums) const {
+  try {
+    const Json json = unsealed(read_json(output_.path() / frame_record_name(frame)));
+    if (maker_of(json) != maker_) return std::nullopt;
+    FrameRecord record;
+    for (const Json& technique : json.at("techniques").elements()) record.reports.push_back(report_of(technique));
+    record.sums = json.at("sums");
+    const bool is_ours = std::equal(record.reports.begin(), record.reports.end(), specs.begin(), specs.end(),
+                                    [&](const auto& report, const auto& spec) { return is_of(report, frame, spec); });
+    if (!is_ours || with_all_numbers_0(record.sums) != with_all_numbers_0(no_sums) ||
+        json.at("files") != digests_of_files(output_.path(), record))
+      return std::nullopt;
+    return record;
+  } catch (const JsonError&) {  // something in it is missing, or of another type
+    return std::nullopt;
+  }
+}
+
+void FrameRecords::write(const FrameRecord& record) {
+  Json json = {{"beampipe_frame", 1}, {"made_by", maker_}, {"sums", record.sums}, {"techniques", Json::array()}};
+  for (const FrameReport& report : record.reports) json["techniques"].push_back(record_of(report));
+  json["files"] = digests_of_files(output_.path(), record);
+  output_.write(frame_record_name(record.reports.front().index), json_text(sealed(std::move(json))));
+}
+
+void FrameRecords::remove() {
+  for (const fs::path& path : list()) output_.remove(path.lexically_relative(output_.path()));
+  output_.remove(kFolder);  // unless something else is in it
+}
+
+std::vector<fs::path> FrameRecords::list() const {
+  std::vector<fs::path> paths;
+  std::error_code ignored;
+  for (const auto& entry : fs::directory_iterator(output_.path() / kFolder, ignored))
+    if (entry.path().filename().string().starts_with("frame_")) paths.push_back(entry.path());
+  return paths;
+}
+
+void FrameRecords::refuse(const Json& other) const {
+  std::string what = "something else";
+  for (const auto& [name, value] : maker_.members()) {
+    if (!other.contains(name) || other.at(name) == value) continue;
+    const auto digested = kDigested.find(name);
+    what =
+        digested != kDigested.end() ? digested->second : name + " " + other.at(name).dump() + ", not " + value.dump();
+    break;
+  }
+  throw std::runtime_error(output_.path().string() + ": cannot resume: what is there was made with " + what +
+                           "; start again without --resume, or in another folder");
+}
+
+}  // namespace beampipe

@@ -1,0 +1,30 @@
+// What is to be rendered.
+#pragma once
+
+#include <cstddef>
+#include <string>
+#include <vector>
+
+#include "pipeline/technique.h"
+#include "tools/evaluate/hardware.h"
+#include "traces/trace.h"
+
+namespace beampipe {
+
+struct RunPlan {
+  std::string trace_file;  // as the user named it
+  Trace trace;
+  std::vector<Technique> techniques;
+  std::vector<std::size_t> frames;  // rising
+  int repeat = 1;
+  Hardware hardware = titan_v();
+  RunOptions options;  // with the number of threads resolved
+};
+
+inline std::vector<std::string> specs_of(const std::vector<Technique>& techniques) {
+  std::vector<std::string> specs;
+  for (const Technique& technique : techniques) specs.push_back(technique.spec);
+  return specs;
+}
+
+}  // namespace beampipe
