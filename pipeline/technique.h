@@ -72,7 +72,7 @@ struct SurfaceWeight {
 using PixelWeights = std::vector<SurfaceWeight>;
 
 struct Technique {
-  std::string spec;  // as the user wrote it
+  std::string spec = {};  // as the user wrote it
   std::vector<Surface> framebuffer;
   std::uint32_t samples = 0;  // N of msaa:N, else 0
   std::function<FrameResult(const Trace&, std::size_t frame, const RunOptions&)> render;
@@ -90,15 +90,15 @@ struct Technique {
   }
 };
 
-// One line: the spec, what is wrong, what was expected.
+// One line, "technique 'SPEC': bits must be 32, 64, 128 or 256": the spec, and what would have been right.
 struct SpecError : std::runtime_error {
   using std::runtime_error::runtime_error;
 };
 
-// "beam", "msaa:8", "acaa:8,double=stencil", ...: those that technique_help() lists. Throws SpecError.
+// Of a spec such as "beam", "msaa:8" or "acaa:8,double=stencil"; technique_help() lists all. Throws SpecError.
 Technique parse_technique(std::string_view spec);
 
-// Lines "SPEC  what it is", for --help.
+// All techniques and their options, for --help.
 std::string technique_help();
 
 }  // namespace beampipe
