@@ -3,8 +3,8 @@
 // A pixel is the sum of weight times colour over its surfaces, one of which is the background. The technique's weights
 // and the reference's weights (shares of its samples) both add up to 1. So the error is area that moved from surfaces
 // with too little weight to surfaces with too much. What one surface lost is split over the gaining surfaces in
-// proportion to their gains: moving area a from surface i to surface j is an error of a (colour_j - colour_i), and these
-// transfers add up to the error of the pixel. The cause of a transfer is the first of these that holds:
+// proportion to their gains: moving area a from surface i to surface j is an error of a (colour_j - colour_i), and
+// these transfers add up to the error of the pixel. The cause of a transfer is the first of these that holds:
 //   tiny               i or j covers no position of the technique's mask
 //   interpenetration   each is nearer than the other somewhere in the pixel
 //   order              i is nearer wherever they overlap, but the technique took j to be nearer

@@ -19,8 +19,8 @@ namespace beampipe {
 
 class Timeline;
 
-// The weight of one triangle in one pixel. The pixel is the sum of weight times colour over its triangles; the background
-// has what is left to 1.
+// The weight of one triangle in one pixel. The pixel is the sum of weight times colour over its triangles; the
+// background has what is left to 1.
 struct SurfaceWeight {
   std::uint32_t triangle;  // index into SetupTriangles
   float weight;
@@ -63,7 +63,8 @@ struct Surface {
 struct Buffer {
   std::string name;
   std::uint64_t peak_bytes = 0;
-  bool per_bin = false;  // on chip while a bin is rendered, for the bin that needs the most; else in memory, for the frame
+  bool per_bin =
+      false;  // on chip while a bin is rendered, for the bin that needs the most; else in memory, for the frame
   bool operator==(const Buffer&) const = default;
 };
 
@@ -76,7 +77,7 @@ struct FrameResult {
 };
 
 struct Technique {
-  std::string spec;  // as the user wrote it
+  std::string spec = {};  // as the user wrote it
   std::vector<Surface> framebuffer;
   std::uint32_t samples = 0;  // N of msaa:N, else 0
   std::function<FrameResult(const Trace&, std::size_t frame, const RunOptions&)> render;
@@ -93,15 +94,15 @@ struct Technique {
   }
 };
 
-// One line that names the spec, what is wrong, and what was expected.
+// One line, "technique 'SPEC': bits must be 32, 64, 128 or 256": the spec, and what would have been right.
 struct SpecError : std::runtime_error {
   using std::runtime_error::runtime_error;
 };
 
-// "beam", "msaa:8", "acaa:8,double=stencil", ...: those that technique_help() lists. Throws SpecError.
+// Of a spec such as "beam", "msaa:8" or "acaa:8,double=stencil"; technique_help() lists all. Throws SpecError.
 Technique parse_technique(std::string_view spec);
 
-// Lines "SPEC  what it is", for --help.
+// All techniques and their options, for --help.
 std::string technique_help();
 
 }  // namespace beampipe

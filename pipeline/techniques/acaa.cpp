@@ -11,13 +11,22 @@
 namespace beampipe {
 namespace {
 
+std::vector<Surface> acaa_framebuffer(const AcaaOptions& options) {
+  const auto n = static_cast<std::uint32_t>(std::min(options.samples, 16));
+  const char* const format = options.color == AccumulatorFormat::unorm8 ? "RGBA8"
+                             : options.color == AccumulatorFormat::fp16 ? "RGBA16F"
+                                                                        : "RGBA32F";
+  std::vector<Surface> surfaces = {{"depth", times("D32F", n), n * kSampleDepthBytes},
+                                   {"color", format, accumulator_bytes(options.color)}};
+  if (options.double_counting == DoubleCounting::stencil) surfaces.push_back({"stencil", times("S8UI", n), n});
+  return surfaces;
+}
+
 std::vector<std::string> stages_of(const AcaaOptions& options) {
   if (options.double_counting == DoubleCounting::stencil)
     return {"sample_raster", "depth_test", "stencil_test", "shade", "accumulate", "resolve"};
   return {"sample_raster", "depth_test", "shade", "accumulate", "resolve"};
 }
-
-}  // namespace
 
 FrameResult render_acaa(const Trace& trace, const Frame& frame, const AcaaOptions& options, const RunOptions& run) {
   const FrameContext context(trace, frame, run);
@@ -51,16 +60,28 @@ FrameResult render_acaa(const Trace& trace, const Frame& frame, const AcaaOption
   });
 }
 
-std::vector<Surface> acaa_framebuffer(const AcaaOptions& options) {
-  const auto n = static_cast<std::uint32_t>(std::min(options.samples, 16));
-  const std::string times = " x " + std::to_string(n);
-  const char* const format = options.color == AccumulatorFormat::unorm8 ? "RGBA8"
-                             : options.color == AccumulatorFormat::fp16 ? "RGBA16F"
-                                                                        : "RGBA32F";
-  std::vector<Surface> surfaces = {{"depth", "D32F" + times, n * kSampleDepthBytes},
-                                   {"color", format, accumulator_bytes(options.color)}};
-  if (options.double_counting == DoubleCounting::stencil) surfaces.push_back({"stencil", "S8UI" + times, n});
-  return surfaces;
+}  // namespace
+
+TechniqueKind acaa_kind() {
+  using A = AccumulatorFormat;
+  return {.name = "acaa",
+          .description = "accumulative antialiasing: N depth samples and one colour accumulator per pixel",
+          .source = "Enderton et al. 2015",
+          .make = make_from(
+              AcaaOptions{},
+              [](AcaaOptions& o) -> SpecOptions {
+                return {samples(o.samples, kMaxAcaaSamples, "samples per pixel"),
+                        choice("double", o.double_counting,
+                               {{"none", DoubleCounting::none},
+                                {"stencil", DoubleCounting::stencil},
+                                {"saturate", DoubleCounting::saturate}},
+                               "what keeps surfaces of equal depth from being counted twice"),
+                        choice("color", o.color, {{"unorm8", A::unorm8}, {"fp16", A::fp16}, {"fp32", A::fp32}},
+                               "format of the accumulator")};
+              },
+              [](const AcaaOptions& o) {
+                return Technique{.framebuffer = acaa_framebuffer(o), .render = bind_options(render_acaa, o)};
+              })};
 }
 
 }  // namespace beampipe

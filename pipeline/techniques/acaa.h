@@ -4,7 +4,7 @@
 #pragma once
 
 #include "pipeline/sampling.h"
-#include "pipeline/technique.h"
+#include "pipeline/technique_table.h"
 #include "stages/samples/accumulate.h"
 
 namespace beampipe {
@@ -17,8 +17,6 @@ struct AcaaOptions {
   AccumulatorFormat color = AccumulatorFormat::fp16;
 };
 
-FrameResult render_acaa(const Trace& trace, const Frame& frame, const AcaaOptions& options, const RunOptions& run);
-
-std::vector<Surface> acaa_framebuffer(const AcaaOptions& options);
+TechniqueKind acaa_kind();
 
 }  // namespace beampipe

@@ -13,6 +13,13 @@
 namespace beampipe {
 namespace {
 
+std::vector<Surface> beam_framebuffer(const BeamOptions& beam) {
+  const auto mask_bytes = static_cast<std::uint32_t>(beam.positions) / 8;
+  return {{"coverage", "R32F", 4},
+          {"mask", times("R32UI", mask_bytes / 4), mask_bytes},
+          beam.storage == Storage::packed ? Surface{"color", "RGB16F", 6} : Surface{"color", "RGB32F", 12}};
+}
+
 // Depth is compared position by position, so the order of merging decides nothing and is the same for all.
 void add_weights(const std::vector<Fragment>& fragments, const std::vector<float>& areas,
                  const std::vector<PixelTriangle>& whole, const Tile& tile, BinWeights& weights) {
@@ -68,8 +75,6 @@ FrameResult render_shape(const Trace& trace, const Frame& frame, const BeamOptio
   });
 }
 
-}  // namespace
-
 FrameResult render_beam(const Trace& trace, const Frame& frame, const BeamOptions& beam, const RunOptions& run) {
 #define BEAMPIPE_RENDER(words, channel)                                                                       \
   if (beam.positions == 32 * words && (beam.storage == Storage::packed) == std::is_same_v<channel, HalfBits>) \
@@ -79,11 +84,26 @@ FrameResult render_beam(const Trace& trace, const Frame& frame, const BeamOption
   throw std::invalid_argument("no aggregate of " + std::to_string(beam.positions) + " positions");
 }
 
-std::vector<Surface> beam_framebuffer(const BeamOptions& beam) {
-  const auto mask_bytes = static_cast<std::uint32_t>(beam.positions) / 8;
-  return {{"coverage", "R32F", 4},
-          {"mask", "R32UI x " + std::to_string(mask_bytes / 4), mask_bytes},
-          beam.storage == Storage::packed ? Surface{"color", "RGB16F", 6} : Surface{"color", "RGB32F", 12}};
+}  // namespace
+
+TechniqueKind beam_kind() {
+  return {.name = "beam",
+          .description =
+              "the triangles of a pixel, sorted by depth, become fragments with analytic coverage and a mask, "
+              "composed near to far into one area-conserving aggregate until the pixel is closed",
+          .source = "ours, after Crassin et al. 2018",
+          .make = make_from(
+              BeamOptions{},
+              [](BeamOptions& o) -> SpecOptions {
+                return {choice("bits", o.positions, {{"32", 32}, {"64", 64}, {"128", 128}, {"256", 256}},
+                               "positions of the mask"),
+                        choice("storage", o.storage, {{"packed", Storage::packed}, {"float32", Storage::float32}},
+                               "format of the aggregate's colour: fp16, or float32")};
+              },
+              [](const BeamOptions& o) {
+                return Technique{
+                    .framebuffer = beam_framebuffer(o), .render = bind_options(render_beam, o), .has_weights = true};
+              })};
 }
 
 }  // namespace beampipe

@@ -2,7 +2,7 @@
 // become shaded fragments and are composed, until the pixel is closed.
 #pragma once
 
-#include "pipeline/technique.h"
+#include "pipeline/technique_table.h"
 #include "stages/data/beam_aggregate.h"
 
 namespace beampipe {
@@ -12,8 +12,6 @@ struct BeamOptions {
   Storage storage = Storage::packed;
 };
 
-FrameResult render_beam(const Trace& trace, const Frame& frame, const BeamOptions& beam, const RunOptions& run);
-
-std::vector<Surface> beam_framebuffer(const BeamOptions& beam);
+TechniqueKind beam_kind();
 
 }  // namespace beampipe

@@ -14,16 +14,31 @@
 namespace beampipe {
 namespace {
 
+std::vector<Surface> paper_framebuffer(const PaperOptions& beam) {
+  const Surface color{"color", "RGB16F", kAggregateColorBytes}, coverage{"coverage", "R32F", 4};
+  if (beam.rules == Rules::over) return {coverage, color};
+  const Surface mask{"mask", "R32UI", 4}, thickness{"thickness", "R32F", 4}, range{"depth_range", "RG32F", 8};
+  switch (beam.storage) {
+    case PaperStorage::slides:
+      return {coverage, mask, {"depth_plane", "RGBA32F", 16}, thickness, range, color};
+    case PaperStorage::text:
+      return {coverage, mask, {"depth_plane", "R32F + RG16", 8}, {"thickness", "R16", 2}, range, color};
+    case PaperStorage::float32:
+      break;
+  }
+  return {coverage, mask, {"depth_plane", "RGB32F", 12}, thickness, range, {"color", "RGB32F", 12}};
+}
+
 struct RecordBytes {
   std::uint32_t fragment, aggregate;
 };
 
-RecordBytes record_bytes(const PublishedOptions& options) {
+RecordBytes record_bytes(const PaperOptions& options) {
   if (options.rules == Rules::over) return {kOverFragmentBytes, kOverBytes};
   return {paper_aggregate_bytes(options.storage), paper_aggregate_bytes(options.storage)};
 }
 
-BeamFragmentOptions fragment_options(const PublishedOptions& options, const SamplePattern& pattern,
+BeamFragmentOptions fragment_options(const PaperOptions& options, const SamplePattern& pattern,
                                      const MaskTable& table) {
   BeamFragmentOptions made;
   made.mask = options.mask;
@@ -48,9 +63,9 @@ std::vector<bool> full_pixels(const std::vector<PixelColor>& aggregates) {
   return full;
 }
 
-std::vector<PixelColor> compose_lists(const PublishedOptions& options, PaperStorage storage,
-                                      const SamplePattern& pattern, const std::vector<Fragment>& fragments,
-                                      const ABuffer& lists, StageCounters& counters) {
+std::vector<PixelColor> compose_lists(const PaperOptions& options, PaperStorage storage, const SamplePattern& pattern,
+                                      const std::vector<Fragment>& fragments, const ABuffer& lists,
+                                      StageCounters& counters) {
   return pixel_colors(options.rules == Rules::paper
                           ? compose(fragments, lists, pattern, options.merge, storage, counters)
                           : compose_over(fragments, lists, counters));
@@ -58,7 +73,7 @@ std::vector<PixelColor> compose_lists(const PublishedOptions& options, PaperStor
 
 // Composition is linear in colour: a fragment that alone has a channel, as 1, leaves its weight there. So three
 // fragments of each pixel are weighed at a time. Weights are those of unpacked aggregates.
-void add_weights(const PublishedOptions& options, const SamplePattern& pattern, std::vector<Fragment> fragments,
+void add_weights(const PaperOptions& options, const SamplePattern& pattern, std::vector<Fragment> fragments,
                  const ABuffer& lists, BinWeights& weights) {
   StageCounters unused;
   const std::size_t pixels = lists.first.size() - 1;
@@ -84,10 +99,7 @@ void add_weights(const PublishedOptions& options, const SamplePattern& pattern, 
   }
 }
 
-}  // namespace
-
-FrameResult render_published(const Trace& trace, const Frame& frame, const PublishedOptions& beam,
-                             const RunOptions& run) {
+FrameResult render_paper(const Trace& trace, const Frame& frame, const PaperOptions& beam, const RunOptions& run) {
   const FrameContext context(trace, frame, run);
   const SamplePattern pattern = hammersley_pattern();
   const MaskTable table(pattern);
@@ -110,7 +122,7 @@ FrameResult render_published(const Trace& trace, const Frame& frame, const Publi
         compose_lists(beam, beam.storage, pattern, fragments, lists, composition.timed());
     const std::vector<float>& merges = bin.pixel_counter("merges") = depths_of(lists);
     a_buffer.charge_memory(merges, composition);
-    charge_aggregates(bin, published_framebuffer(beam), pixels_with(merges), full_pixels(aggregates));
+    charge_aggregates(bin, paper_framebuffer(beam), pixels_with(merges), full_pixels(aggregates));
     count_specks(fragments, bin.pixel_counter("tiny_triangles"));
     bin.finish(resolve(aggregates, bin.background(), bytes.aggregate, bin.stage("resolve").timed()));
     if (weights) add_weights(beam, pattern, fragments, lists, weights);
@@ -118,19 +130,61 @@ FrameResult render_published(const Trace& trace, const Frame& frame, const Publi
   });
 }
 
-std::vector<Surface> published_framebuffer(const PublishedOptions& beam) {
-  const Surface color{"color", "RGB16F", kAggregateColorBytes}, coverage{"coverage", "R32F", 4};
-  if (beam.rules == Rules::over) return {coverage, color};
-  const Surface mask{"mask", "R32UI", 4}, thickness{"thickness", "R32F", 4}, range{"depth_range", "RG32F", 8};
-  switch (beam.storage) {
-    case PaperStorage::slides:
-      return {coverage, mask, {"depth_plane", "RGBA32F", 16}, thickness, range, color};
-    case PaperStorage::text:
-      return {coverage, mask, {"depth_plane", "R32F + RG16", 8}, {"thickness", "R16", 2}, range, color};
-    case PaperStorage::float32:
-      break;
-  }
-  return {coverage, mask, {"depth_plane", "RGB32F", 12}, thickness, range, {"color", "RGB32F", 12}};
+Technique make_paper(const PaperOptions& options) {
+  return {
+      .framebuffer = paper_framebuffer(options), .render = bind_options(render_paper, options), .has_weights = true};
+}
+
+// simd/merge_rules.h explains the policies, and docs/accuracy.md says where they come from.
+SpecOptions paper_options(PaperOptions& o) {
+  using R = MergeRules;
+  return {choice("mask", o.mask, {{"table", MaskSource::table}, {"exact", MaskSource::exact}},
+                 "masks from a 64 x 64 table, or from edge tests"),
+          choice("sort", o.sort, {{"centroid", SortKey::centroid}, {"nearest", SortKey::nearest}},
+                 "the fragment's depth that the A-buffer sorts by"),
+          choice("tiny", o.tiny_positions, {{"1", 1}, {"3", 3}}, "most mask positions that a speck is given"),
+          choice("overlap", o.merge.overlap,
+                 {{"tiny", R::Overlap::tiny},
+                  {"over", R::Overlap::over},
+                  {"add", R::Overlap::add},
+                  {"transition", R::Overlap::transition}},
+                 "how coverages combine where masks overlap: ADD for specks and OVER for others, OVER, ADD, or a "
+                 "transition from ADD to OVER"),
+          choice("local", o.merge.local, {{"clamp", R::Local::clamp}, {"keep", R::Local::keep}},
+                 "a local coverage above 1 is clamped to 1, or kept"),
+          choice("fuzzy", o.merge.fuzzy, {{"delta", R::Fuzzy::delta}, {"mix", R::Fuzzy::mix}},
+                 "blending within the slab: by the published formulas, or between over and under"),
+          choice("extents", o.merge.extents, {{"range", R::Extents::range}, {"slab", R::Extents::slab}},
+                 "the slab ends at its depth range, or at its thickness alone"),
+          choice("slab", o.merge.slab, {{"full", R::Slab::full}, {"visible", R::Slab::visible}},
+                 "the slab grows by the whole fragment, or by its visible positions"),
+          choice("plane", o.merge.plane, {{"area", R::Plane::area}, {"visible", R::Plane::visible}},
+                 "planes are weighted by coverage, or by what is visible of each"),
+          choice("thickness", o.merge.thickness,
+                 {{"larger", R::Thickness::larger}, {"containing", R::Thickness::containing}},
+                 "the slab keeps the larger thickness, or contains all merged fragments"),
+          choice("storage", o.storage,
+                 {{"slides", PaperStorage::slides}, {"text", PaperStorage::text}, {"float32", PaperStorage::float32}},
+                 "formats of the aggregate: as in the talk's slides, as in the paper's text, or float32")};
+}
+
+}  // namespace
+
+TechniqueKind beam_paper_kind() {
+  return {.name = "beam",
+          .variant = {"rules", "paper", "conserve"},
+          .description =
+              "the published rules: a 32-bit mask from a table, a depth slab, one aggregate per pixel; the "
+              "options are other readings of these rules, see docs/accuracy.md",
+          .source = "Crassin et al. 2018",
+          .make = make_from(PaperOptions{.tiny_positions = 1}, paper_options, make_paper)};
+}
+
+TechniqueKind alpha_kind() {
+  return {.name = "alpha",
+          .description = "the fragments of the published rules, blended by plain OVER, without masks",
+          .source = "Porter and Duff 1984",
+          .make = make_plain([] { return make_paper(PaperOptions{.rules = Rules::over, .mask = MaskSource::none}); })};
 }
 
 }  // namespace beampipe

@@ -1,9 +1,9 @@
 // The beam pipeline as published (Crassin et al. 2018). Conservative raster makes pairs; they become fragments with
-// analytic coverage and a localization mask, are shaded, sorted in an A-buffer, and merged near to far into one aggregate
-// per pixel.
+// analytic coverage and a localization mask, are shaded, sorted in an A-buffer, and merged near to far into one
+// aggregate per pixel.
 #pragma once
 
-#include "pipeline/technique.h"
+#include "pipeline/technique_table.h"
 #include "stages/beam/a_buffer.h"
 #include "stages/beam/beam_fragment.h"
 #include "stages/data/paper_aggregate.h"
@@ -15,7 +15,7 @@ enum class Rules {
   over,   // alpha OVER without masks and slabs, to show what those are worth
 };
 
-struct PublishedOptions {
+struct PaperOptions {
   Rules rules = Rules::paper;
   MaskSource mask = MaskSource::table;  // MaskSource::none with Rules::over
   SortKey sort = SortKey::centroid;
@@ -24,9 +24,7 @@ struct PublishedOptions {
   PaperStorage storage = PaperStorage::slides;
 };
 
-FrameResult render_published(const Trace& trace, const Frame& frame, const PublishedOptions& beam,
-                             const RunOptions& run);
-
-std::vector<Surface> published_framebuffer(const PublishedOptions& beam);
+TechniqueKind beam_paper_kind();
+TechniqueKind alpha_kind();  // the same fragments, Rules::over
 
 }  // namespace beampipe

@@ -11,6 +11,16 @@
 namespace beampipe {
 namespace {
 
+std::vector<Surface> stream_framebuffer(const StreamOptions& stream) {
+  const auto words = static_cast<std::uint32_t>(stream.positions / 32),
+             layers = static_cast<std::uint32_t>(stream.layers);
+  const std::uint32_t state_bytes = 4 * words * (layers == 1 ? 2 : 3);
+  return {{"owner_map", times("R32UI", state_bytes / 4), state_bytes},
+          {"owners", times("R32UI", layers), 4 * layers},
+          {"dropped_depth", "R32F", 4},
+          {"color", "RGB16F + R16", 8}};
+}
+
 template <std::size_t Words, std::size_t Layers>
 FrameResult render_shape(const Trace& trace, const Frame& frame, const StreamOptions& stream, const RunOptions& run) {
   const FrameContext context(trace, frame, run);
@@ -45,8 +55,6 @@ FrameResult render_shape(const Trace& trace, const Frame& frame, const StreamOpt
   });
 }
 
-}  // namespace
-
 FrameResult render_stream(const Trace& trace, const Frame& frame, const StreamOptions& stream, const RunOptions& run) {
 #define BEAMPIPE_RENDER(words, shape_layers)                           \
   if (stream.positions == 32 * words && stream.layers == shape_layers) \
@@ -57,14 +65,28 @@ FrameResult render_stream(const Trace& trace, const Frame& frame, const StreamOp
                               std::to_string(stream.layers) + " layers");
 }
 
-std::vector<Surface> stream_framebuffer(const StreamOptions& stream) {
-  const auto words = static_cast<std::uint32_t>(stream.positions / 32),
-             layers = static_cast<std::uint32_t>(stream.layers);
-  const std::uint32_t state_bytes = 4 * words * (layers == 1 ? 2 : 3);
-  return {{"owner_map", "R32UI x " + std::to_string(state_bytes / 4), state_bytes},
-          {"owners", "R32UI x " + std::to_string(layers), 4 * layers},
-          {"dropped_depth", "R32F", 4},
-          {"color", "RGB16F + R16", 8}};
+}  // namespace
+
+TechniqueKind beam_stream_kind() {
+  return {.name = "beam",
+          .variant = {"order", "stream", "sort"},
+          .description =
+              "fragments in primitive order, without an A-buffer; a pixel with more visible surfaces than "
+              "layers takes further passes over the geometry",
+          .source = "ours",
+          .make = make_from(
+              StreamOptions{},
+              [](StreamOptions& o) -> SpecOptions {
+                return {
+                    choice("bits", o.positions, {{"32", 32}, {"64", 64}, {"128", 128}, {"256", 256}},
+                           "positions of the mask"),
+                    choice("layers", o.layers, {{"1", 1}, {"5", 5}},
+                           "surfaces that a pixel keeps at once; fewer layers take more passes"),
+                    number("passes", o.passes, 1, 1000, "most passes over the geometry; without it there is no limit")};
+              },
+              [](const StreamOptions& o) {
+                return Technique{.framebuffer = stream_framebuffer(o), .render = bind_options(render_stream, o)};
+              })};
 }
 
 }  // namespace beampipe

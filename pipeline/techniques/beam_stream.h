@@ -3,7 +3,7 @@
 // further passes over the geometry; each pass settles the nearest surfaces that are left.
 #pragma once
 
-#include "pipeline/technique.h"
+#include "pipeline/technique_table.h"
 
 namespace beampipe {
 
@@ -13,8 +13,6 @@ struct StreamOptions {
   int passes = 0;       // the most passes; 0: until every pixel is settled
 };
 
-FrameResult render_stream(const Trace& trace, const Frame& frame, const StreamOptions& stream, const RunOptions& run);
-
-std::vector<Surface> stream_framebuffer(const StreamOptions& stream);
+TechniqueKind beam_stream_kind();
 
 }  // namespace beampipe

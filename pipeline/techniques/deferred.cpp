@@ -6,6 +6,7 @@
 #include "pipeline/units/raster_units.h"
 
 namespace beampipe {
+namespace {
 
 FrameResult render_deferred(const Trace& trace, const Frame& frame, const RunOptions& run) {
   const FrameContext context(trace, frame, run);
@@ -27,6 +28,17 @@ FrameResult render_deferred(const Trace& trace, const Frame& frame, const RunOpt
     gbuffer.end_pass();
     bin.finish(gbuffer.light_and_resolve(depth_test));
   });
+}
+
+}  // namespace
+
+TechniqueKind deferred_kind() {
+  return {.name = "deferred",
+          .description = "one sample per pixel: depth, then a G-buffer from 2x2 quads, then lighting per pixel",
+          .source = "Burns and Hunt 2013, Hable 2021",
+          .make = make_plain([] {
+            return Technique{.framebuffer = deferred_framebuffer(), .render = bind_options(render_deferred)};
+          })};
 }
 
 std::vector<Surface> deferred_framebuffer() {

@@ -1,5 +1,7 @@
 #include "pipeline/techniques/dvm.h"
 
+#include <limits>
+
 #include "pipeline/bins/render_bins.h"
 #include "pipeline/techniques/visibility.h"
 #include "pipeline/units/temporal_units.h"
@@ -10,6 +12,20 @@
 
 namespace beampipe {
 namespace {
+
+std::vector<Surface> dvm_framebuffer() {
+  return {{"depth", "D32F x 8", 8 * kSampleDepthBytes},
+          {"visibility", "R32UI x 8", 8 * kVisibilityBytes},
+          {"shading_visibility", "R32UI", kVisibilityBytes},
+          {"mask", "R32UI", 4},
+          {"location", "R8UI", 1},
+          {"gbuffer", "RGBA8 + RGB10A2", kGBufferBytes},
+          {"color", "RGB16F", kSampleColorBytes},
+          {"motion", "RG16F", kMotionBytes},
+          {"speed", "R16F", kSpeedBytes},
+          {"look", "R32UI x 2", 2 * kLookBytes},
+          {"history", "RGBA16F x 2", 16}};
+}
 
 // Counts each shading sample, with its G-buffer and colour, at the pixel of the quad that stores it.
 void add_sample_bytes(const std::vector<SampleQuad>& quads, const Tile& tile, std::vector<float>& bytes) {
@@ -37,8 +53,6 @@ void shade_samples(Bin& bin, const std::vector<SampleQuad>& quads) {
   light(shaded, lighting.timed());
   lighting.streams(shaded * (kGBufferBytes + kSampleColorBytes));
 }
-
-}  // namespace
 
 FrameResult render_dvm(const Trace& trace, const Frame& frame, const DvmOptions& options, const RunOptions& run) {
   const FrameContext context(trace, frame, run);
@@ -82,18 +96,29 @@ FrameResult render_dvm(const Trace& trace, const Frame& frame, const DvmOptions&
   return result;
 }
 
-std::vector<Surface> dvm_framebuffer() {
-  return {{"depth", "D32F x 8", 8 * kSampleDepthBytes},
-          {"visibility", "R32UI x 8", 8 * kVisibilityBytes},
-          {"shading_visibility", "R32UI", kVisibilityBytes},
-          {"mask", "R32UI", 4},
-          {"location", "R8UI", 1},
-          {"gbuffer", "RGBA8 + RGB10A2", kGBufferBytes},
-          {"color", "RGB16F", kSampleColorBytes},
-          {"motion", "RG16F", kMotionBytes},
-          {"speed", "R16F", kSpeedBytes},
-          {"look", "R32UI x 2", 2 * kLookBytes},
-          {"history", "RGBA16F x 2", 16}};
+}  // namespace
+
+TechniqueKind dvm_kind() {
+  constexpr std::uint32_t kMostSeed = std::numeric_limits<std::uint32_t>::max();
+  return {.name = "dvm",
+          .description =
+              "decoupled visibility multisampling: 8 triangle ids per pixel, four shaded samples per 2x2 quad "
+              "spread by their masks, accumulated over time",
+          .source = "Hable 2021",
+          .make = make_from(
+              DvmOptions{},
+              [](DvmOptions& o) -> SpecOptions {
+                return {number("blend", o.blend, 0.001f, 1.0f, "weight of each new frame"),
+                        number("seed", o.seed, 0u, kMostSeed, "seed of the random choices"),
+                        choice("material", o.material, {{"color", MaterialBy::color}, {"draw", MaterialBy::draw}},
+                               "samples share what is shaded within a draw and Kd, or within a draw")};
+              },
+              [](const DvmOptions& o) {
+                return Technique{.framebuffer = dvm_framebuffer(),
+                                 .render = bind_options(render_dvm, o),
+                                 .keeps_history = true,
+                                 .working_bytes_per_pixel = kDvmWorkingBytes};
+              })};
 }
 
 }  // namespace beampipe

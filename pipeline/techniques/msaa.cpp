@@ -12,7 +12,11 @@ namespace {
 
 std::uint32_t color_bytes(const MsaaOptions& options) { return options.rgba ? 8 : kSampleColorBytes; }
 
-}  // namespace
+std::vector<Surface> msaa_framebuffer(const MsaaOptions& options) {
+  const auto n = static_cast<std::uint32_t>(options.samples);
+  return {{"depth", times("D32F", n), n * kSampleDepthBytes},
+          {"color", times(options.rgba ? "RGBA16F" : "RGB16F", n), n * color_bytes(options)}};
+}
 
 FrameResult render_msaa(const Trace& trace, const Frame& frame, const MsaaOptions& options, const RunOptions& run) {
   const FrameContext context(trace, frame, run);
@@ -47,11 +51,32 @@ FrameResult render_msaa(const Trace& trace, const Frame& frame, const MsaaOption
   });
 }
 
-std::vector<Surface> msaa_framebuffer(const MsaaOptions& options) {
-  const auto n = static_cast<std::uint32_t>(options.samples);
-  const std::string times = " x " + std::to_string(n);
-  return {{"depth", "D32F" + times, n * kSampleDepthBytes},
-          {"color", (options.rgba ? "RGBA16F" : "RGB16F") + times, n * color_bytes(options)}};
+}  // namespace
+
+TechniqueKind msaa_kind() {
+  return {
+      .name = "msaa",
+      .description =
+          "multisampling: depth and colour at N samples, one shader invocation per triangle and pixel; above "
+          "16 samples, super-resolution of 8x",
+      .source = "Direct3D, Vulkan",
+      .make = make_from(
+          MsaaOptions{},
+          [](MsaaOptions& o) -> SpecOptions {
+            return {
+                samples(o.samples, kMaxMsaaSamples, "samples per pixel"),
+                choice("color", o.rgba, {{"rgb16f", false}, {"rgba16f", true}}, "format of a sample's colour"),
+                choice("at", o.at, {{"centre", ShadeAt::centre}, {"centroid", ShadeAt::centroid}},
+                       "where a fragment is shaded that does not cover the pixel's centre: there all the same, or at "
+                       "the centroid of its samples"),
+                flag("prepass", o.prepass,
+                     "depth first, so that only visible fragments are shaded; the picture is the same")};
+          },
+          [](const MsaaOptions& o) {
+            return Technique{.framebuffer = msaa_framebuffer(o),
+                             .samples = static_cast<std::uint32_t>(o.samples),
+                             .render = bind_options(render_msaa, o)};
+          })};
 }
 
 }  // namespace beampipe

@@ -3,7 +3,7 @@
 #pragma once
 
 #include "pipeline/sampling.h"
-#include "pipeline/technique.h"
+#include "pipeline/technique_table.h"
 #include "stages/samples/shading_point.h"
 
 namespace beampipe {
@@ -17,8 +17,6 @@ struct MsaaOptions {
   bool prepass = false;  // a depth pass first, so that only visible fragments are shaded. The picture is the same.
 };
 
-FrameResult render_msaa(const Trace& trace, const Frame& frame, const MsaaOptions& options, const RunOptions& run);
-
-std::vector<Surface> msaa_framebuffer(const MsaaOptions& options);
+TechniqueKind msaa_kind();
 
 }  // namespace beampipe

@@ -6,9 +6,12 @@
 namespace beampipe {
 namespace {
 
-constexpr int kTileSize = 4;  // px: 65,536 samples, 1 MiB
+std::vector<Surface> reference_framebuffer() {
+  constexpr std::uint32_t kSamples = kReferenceSamples;
+  return {{"depth", "D64F x 4096", 8 * kSamples}, {"owner", "R64UI x 4096", 8 * kSamples}};
+}
 
-}  // namespace
+constexpr int kTileSize = 4;  // px: 65,536 samples, 1 MiB
 
 FrameResult render_reference(const Trace& trace, const Frame& frame, const RunOptions& run) {
   RunOptions without_memory = run;
@@ -28,9 +31,15 @@ FrameResult render_reference(const Trace& trace, const Frame& frame, const RunOp
   });
 }
 
-std::vector<Surface> reference_framebuffer() {
-  constexpr std::uint32_t kSamples = kReferenceSamples;
-  return {{"depth", "D64F x 4096", 8 * kSamples}, {"owner", "R64UI x 4096", 8 * kSamples}};
+}  // namespace
+
+TechniqueKind reference_kind() {
+  return {.name = "reference",
+          .description = "4096 samples per pixel in double precision: the truth that errors are measured against",
+          .source = "ours",
+          .make = make_plain([] {
+            return Technique{.framebuffer = reference_framebuffer(), .render = bind_options(render_reference)};
+          })};
 }
 
 }  // namespace beampipe

@@ -8,6 +8,13 @@
 namespace beampipe {
 namespace {
 
+std::vector<Surface> taa_framebuffer() {
+  std::vector<Surface> surfaces = visibility_framebuffer();
+  surfaces.push_back({"motion", "RG16F", kMotionBytes});
+  surfaces.push_back({"history", "RGBA16F x 2", 16});  // the last one, and the one being written
+  return surfaces;
+}
+
 // Jittering the projection is the same as sampling at another position of the pixel.
 SamplePattern jittered(const TaaOptions& options, std::uint32_t frame) {
   const SamplePattern all = standard_pattern(options.samples);
@@ -17,8 +24,6 @@ SamplePattern jittered(const TaaOptions& options, std::uint32_t frame) {
   one.x[0] = all.x[i], one.y[0] = all.y[i];
   return one;
 }
-
-}  // namespace
 
 FrameResult render_taa(const Trace& trace, const Frame& frame, const TaaOptions& options, const RunOptions& run) {
   const FrameContext context(trace, frame, run);
@@ -41,11 +46,24 @@ FrameResult render_taa(const Trace& trace, const Frame& frame, const TaaOptions&
   return result;
 }
 
-std::vector<Surface> taa_framebuffer() {
-  std::vector<Surface> surfaces = visibility_framebuffer();
-  surfaces.push_back({"motion", "RG16F", kMotionBytes});
-  surfaces.push_back({"history", "RGBA16F x 2", 16});  // the last one, and the one being written
-  return surfaces;
+}  // namespace
+
+TechniqueKind taa_kind() {
+  return {.name = "taa",
+          .description = "temporal antialiasing of visibility at one sample per pixel, jittered over N positions",
+          .source = "Lottes 2011, Karis 2014, Salvi 2016",
+          .make = make_from(
+              TaaOptions{},
+              [](TaaOptions& o) -> SpecOptions {
+                return {samples(o.samples, kMaxTaaSamples, "positions of the jitter"),
+                        number("blend", o.blend, 0.001f, 1.0f, "weight of each new frame")};
+              },
+              [](const TaaOptions& o) {
+                return Technique{.framebuffer = taa_framebuffer(),
+                                 .render = bind_options(render_taa, o),
+                                 .keeps_history = true,
+                                 .working_bytes_per_pixel = kTemporalWorkingBytes};
+              })};
 }
 
 }  // namespace beampipe

@@ -6,6 +6,7 @@
 #include "pipeline/units/raster_units.h"
 
 namespace beampipe {
+namespace {
 
 FrameResult render_visibility(const Trace& trace, const Frame& frame, const RunOptions& run) {
   const FrameContext context(trace, frame, run);
@@ -16,6 +17,17 @@ FrameResult render_visibility(const Trace& trace, const Frame& frame, const RunO
     draw_visibility(bin, sampling, visibility);
     bin.finish(shade_visibility(bin, visibility));
   });
+}
+
+}  // namespace
+
+TechniqueKind visibility_kind() {
+  return {.name = "visibility",
+          .description = "one sample per pixel: triangle ids and depth, then shading per pixel",
+          .source = "Burns and Hunt 2013, Hable 2021",
+          .make = make_plain([] {
+            return Technique{.framebuffer = visibility_framebuffer(), .render = bind_options(render_visibility)};
+          })};
 }
 
 void draw_visibility(Bin& bin, const Sampling& sampling, DepthTestUnit& visibility) {

@@ -5,12 +5,12 @@
 #include <vector>
 
 #include "pipeline/bins/bin.h"
-#include "pipeline/technique.h"
+#include "pipeline/technique_table.h"
 #include "pipeline/units/depth_test_unit.h"
 
 namespace beampipe {
 
-FrameResult render_visibility(const Trace& trace, const Frame& frame, const RunOptions& run);
+TechniqueKind visibility_kind();
 
 // ---- Steps that other techniques share ----
 

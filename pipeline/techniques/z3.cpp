@@ -11,6 +11,14 @@
 namespace beampipe {
 namespace {
 
+std::vector<Surface> z3_framebuffer(const Z3Options& z3) {
+  const auto words = static_cast<std::uint32_t>(z3.positions / 32), layers = static_cast<std::uint32_t>(z3.layers);
+  return {{"owner_map", times("R32UI", 2 * words), 8 * words},
+          {"depth", times("R32F", layers), 4 * layers},
+          {"slopes", times("RG16BF", layers), 4 * layers},
+          {"color", times("RGB16F", layers), 6 * layers}};
+}
+
 template <std::size_t Words, std::size_t Layers>
 FrameResult render_shape(const Trace& trace, const Frame& frame, const Z3Options& z3, const RunOptions& run) {
   const FrameContext context(trace, frame, run);
@@ -35,8 +43,6 @@ FrameResult render_shape(const Trace& trace, const Frame& frame, const Z3Options
   });
 }
 
-}  // namespace
-
 FrameResult render_z3(const Trace& trace, const Frame& frame, const Z3Options& z3, const RunOptions& run) {
 #define BEAMPIPE_RENDER(words, shape_layers)                   \
   if (z3.positions == 32 * words && z3.layers == shape_layers) \
@@ -47,13 +53,33 @@ FrameResult render_z3(const Trace& trace, const Frame& frame, const Z3Options& z
                               std::to_string(z3.layers) + " layers");
 }
 
-std::vector<Surface> z3_framebuffer(const Z3Options& z3) {
-  const auto words = static_cast<std::uint32_t>(z3.positions / 32), layers = static_cast<std::uint32_t>(z3.layers);
-  const std::string times = " x " + std::to_string(layers);
-  return {{"owner_map", "R32UI x " + std::to_string(2 * words), 8 * words},
-          {"depth", "R32F" + times, 4 * layers},
-          {"slopes", "RG16BF" + times, 4 * layers},
-          {"color", "RGB16F" + times, 6 * layers}};
+}  // namespace
+
+TechniqueKind z3_kind() {
+  struct Shape {
+    int positions, layers;
+    bool operator==(const Shape&) const = default;
+  };
+  struct Z3Spec {
+    Shape shape{Z3Options{}.positions, Z3Options{}.layers};
+    LayerMerge merge = Z3Options{}.merge;
+  };
+  return {.name = "z3",
+          .description =
+              "fragments in primitive order, kept in a few layers per pixel; when there is no room, two layers merge",
+          .source = "Jouppi and Chang 1999",
+          .make = make_from(
+              Z3Spec{},
+              [](Z3Spec& o) -> SpecOptions {
+                return {choice("shape", o.shape, {{"32x2", {32, 2}}, {"32x3", {32, 3}}, {"128x3", {128, 3}}},
+                               "positions of the mask x layers"),
+                        choice("merge", o.merge, {{"depth", LayerMerge::depth}, {"color", LayerMerge::color}},
+                               "the two layers that merge are the closest in depth (as published), or in colour")};
+              },
+              [](const Z3Spec& o) {
+                const Z3Options options{o.shape.positions, o.shape.layers, o.merge};
+                return Technique{.framebuffer = z3_framebuffer(options), .render = bind_options(render_z3, options)};
+              })};
 }
 
 }  // namespace beampipe

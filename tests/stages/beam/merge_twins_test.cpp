@@ -21,7 +21,7 @@ class MergeTwins : public SceneTwins {
     beam_fragment(triangles_, pairs, tile_, options, ignored, fragments_);
     shade(shade_triangles(triangles_, trace_.frames[0].light_direction), fragments_, ignored);
   }
-  void make_published_fragments() {
+  void make_paper_fragments() {
     const SamplePattern pattern = hammersley_pattern();
     const MaskTable table(pattern);
     BeamFragmentOptions options;
@@ -104,14 +104,14 @@ class MergeTwins : public SceneTwins {
 };
 
 TEST_P(MergeTwins, Compose) {
-  make_published_fragments();
+  make_paper_fragments();
   compose_into<SlidesAggregate>(PaperStorage::slides);
   compose_into<TextAggregate>(PaperStorage::text);
   compose_into<Aggregate>(PaperStorage::float32);
 }
 
 TEST_P(MergeTwins, Over) {
-  make_published_fragments();
+  make_paper_fragments();
   const std::vector<Aggregate> expected = merge_all([&](const Fragment& fragment, const Aggregate& before) {
     AggregateOf<Float, Bits> old = counting(before);
     convert(old, PaperStorage::slides);
