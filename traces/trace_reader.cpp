@@ -138,9 +138,7 @@ Frame read_frame(const JsonCursor& at, const MeshIndex& index, const std::vector
 }  // namespace
 
 Trace read_trace(const fs::path& file, const ReadOptions& options) {
-  const std::string name = file.string();
-  const Json json = parse_json(name);
-  const JsonCursor root(json, name);
+  const JsonCursor root(file.string());
   root.expect_keys({"beampipe_trace", "meshes", "frames"});
   if (root["beampipe_trace"].number() != 1) root["beampipe_trace"].fail("version 1");
 

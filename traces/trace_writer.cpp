@@ -54,11 +54,9 @@ class TraceWriter {
   }
 
   void put_string(const std::string& text) {
-    try {
-      put(Json(text).dump());
-    } catch (const Json::exception&) {
-      fail("a mesh's name is not UTF-8");
-    }
+    const std::optional<std::string> quoted = json_string(text);
+    if (!quoted) fail("a mesh's name is not UTF-8");
+    put(*quoted);
   }
 
   // The shortest text that a reader turns into the same bits.
