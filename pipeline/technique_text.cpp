@@ -71,7 +71,7 @@ void put_wrapped(std::ostream& out, const std::string& text, std::size_t column)
 // In a table of Markdown a "|" ends the cell.
 std::string as_code(std::string text) {
   for (std::size_t at = 0; (at = text.find('|', at)) != text.npos; at += 2) text.insert(at, "\\");
-  return '`' + text + '`';
+  return std::string("`").append(text).append("`");
 }
 
 }  // namespace
