@@ -55,7 +55,7 @@ Spec::Spec(std::string_view text) : text_(text), name_(text.substr(0, text.find(
     item.has_value = equals != item.text.npos;
     if (item.has_value) item.value = item.text.substr(equals + 1);
     for (const Item& other : items_)
-      if (other.key == item.key) fail("'" + std::string(item.key) + "' is there twice");
+      if (other.key == item.key) fail(std::string("'").append(item.key).append("' is there twice"));
     items_.push_back(item);
     more = comma != rest.npos;
     if (more) rest.remove_prefix(comma + 1);
@@ -93,7 +93,7 @@ SpecOption samples(int& variable, int most, std::string help) {
   for (int count = 1; count <= most; count *= 2) words.emplace_back(std::to_string(count), count);
   SpecOption option = choice("N", variable, words, std::move(help));
   option.form = SpecOption::Form::samples;
-  option.usage = "N";
+  option.usage = option.key;
   option.fallback.clear();
   return option;
 }

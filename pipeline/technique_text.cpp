@@ -68,10 +68,15 @@ void put_wrapped(std::ostream& out, const std::string& text, std::size_t column)
   out << '\n';
 }
 
-// In a table of Markdown a "|" ends the cell.
-std::string as_code(std::string text) {
-  for (std::size_t at = 0; (at = text.find('|', at)) != text.npos; at += 2) text.insert(at, "\\");
-  return '`' + text + '`';
+// A "|" would end the cell of a Markdown table.
+std::string as_code(const std::string& text) {
+  std::string code = "`";
+  for (const char c : text) {
+    if (c == '|') code += '\\';
+    code += c;
+  }
+  code += '`';
+  return code;
 }
 
 }  // namespace
