@@ -26,7 +26,7 @@ std::string number_text(double value) {
 std::string describe(const Json& value) {
   if (value.is_array()) return "an array of " + std::to_string(value.size());
   if (value.is_object()) return "an object";
-  if (value.is_string()) return in_quotes(value.get_ref<const std::string&>());
+  if (value.is_string()) return in_quotes(value.get<std::string>());
   return value.dump();
 }
 
@@ -41,8 +41,7 @@ void fail_trace(const std::string& where, const std::string& expected, const std
 
 std::string in_quotes(std::string_view text) {
   const bool long_text = text.size() > kLongestFound;
-  const auto replace = Json::error_handler_t::replace;  // cutting may have split a UTF-8 sequence
-  return Json(text.substr(0, kLongestFound)).dump(-1, ' ', false, replace) + (long_text ? "..." : "");
+  return Json(text.substr(0, kLongestFound)).dump() + (long_text ? "..." : "");  // may have been cut within a character
 }
 
 std::string pointer_step(std::string_view key) {
@@ -77,7 +76,7 @@ void JsonCursor::expect_object() const {
 
 void JsonCursor::expect_keys(std::initializer_list<std::string_view> known) const {
   expect_object();
-  for (const auto& [key, value] : value_->items()) {
+  for (const auto& [key, value] : value_->members()) {
     if (std::find(known.begin(), known.end(), key) == known.end()) {
       child(value, key).fail("one of the keys " + names_of(known), in_quotes(key));
     }
@@ -91,8 +90,8 @@ bool JsonCursor::has(std::string_view key) const {
 
 std::optional<JsonCursor> JsonCursor::find(std::string_view key) const {
   expect_object();
-  const auto member = value_->find(key);
-  if (member == value_->end()) return std::nullopt;
+  const Json* member = value_->find(key);
+  if (!member) return std::nullopt;
   return child(*member, key);
 }
 
@@ -105,14 +104,14 @@ JsonCursor JsonCursor::operator[](std::string_view key) const {
 std::vector<std::pair<std::string, JsonCursor>> JsonCursor::members() const {
   expect_object();
   std::vector<std::pair<std::string, JsonCursor>> result;
-  for (const auto& [key, value] : value_->items()) result.emplace_back(key, child(value, key));
+  for (const auto& [key, value] : value_->members()) result.emplace_back(key, child(value, key));
   return result;
 }
 
 std::vector<JsonCursor> JsonCursor::elements() const {
   if (!value_->is_array()) fail("an array");
   std::vector<JsonCursor> result;
-  for (std::size_t i = 0; i < value_->size(); ++i) result.push_back(child((*value_)[i], std::to_string(i)));
+  for (std::size_t i = 0; i < value_->size(); ++i) result.push_back(child(value_->at(i), std::to_string(i)));
   return result;
 }
 
@@ -144,7 +143,7 @@ std::string JsonCursor::string() const {
 
 std::size_t JsonCursor::choice(std::initializer_list<std::string_view> names) const {
   const auto name =
-      value_->is_string() ? std::find(names.begin(), names.end(), value_->get_ref<const std::string&>()) : names.end();
+      value_->is_string() ? std::find(names.begin(), names.end(), value_->get<std::string>()) : names.end();
   if (name == names.end()) fail("one of " + names_of(names));
   return static_cast<std::size_t>(name - names.begin());
 }
@@ -160,7 +159,7 @@ const Json& JsonCursor::array_of_triples() const {
 }
 
 float JsonCursor::float_at(const Json& array, std::size_t i, bool negative_too) const {
-  const Json& element = array[i];
+  const Json& element = array.at(i);
   const float value = element.is_number() ? static_cast<float>(element.get<double>()) : NAN;
   if (!std::isfinite(value) || (value < 0 && !negative_too)) {
     child(element, std::to_string(i)).fail(negative_too ? "a number in a float's range" : "a number, 0 and up");
@@ -211,9 +210,9 @@ std::vector<glm::uvec3> JsonCursor::triples(std::uint32_t count) const {
   const Json& array = array_of_triples();
   std::vector<glm::uvec3> result(array.size() / 3);
   for (std::size_t i = 0; i < array.size(); ++i) {
-    const double value = array[i].is_number() ? array[i].get<double>() : -1.0;
+    const double value = array.at(i).is_number() ? array.at(i).get<double>() : -1.0;
     if (!(value >= 0 && value < count && value == std::floor(value))) {
-      child(array[i], std::to_string(i)).fail("an integer below the number of positions, " + std::to_string(count));
+      child(array.at(i), std::to_string(i)).fail("an integer below the number of positions, " + std::to_string(count));
     }
     result[i / 3][static_cast<int>(i % 3)] = static_cast<std::uint32_t>(value);
   }

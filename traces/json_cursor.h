@@ -4,15 +4,14 @@
 #include <cstdint>
 #include <glm/glm.hpp>
 #include <initializer_list>
-#include <nlohmann/json.hpp>
 #include <optional>
 #include <string>
 #include <string_view>
 #include <vector>
 
-namespace beampipe {
+#include "traces/json.h"
 
-using Json = nlohmann::ordered_json;  // keeps the order of keys, and with it the order of meshes
+namespace beampipe {
 
 // Throws TraceError "WHERE: expected EXPECTED, found FOUND", on one line whatever the parts contain.
 [[noreturn]] void fail_trace(const std::string& where, const std::string& expected, const std::string& found);
@@ -22,10 +21,6 @@ std::string in_quotes(std::string_view text);
 
 // A key as a step of a JSON pointer: "/" and "~" escaped.
 std::string pointer_step(std::string_view key);
-
-// Parses a whole file; broken JSON, duplicate keys, numbers out of range, more than 32 levels of arrays and objects,
-// and what open_input_file refuses throw TraceError.
-Json parse_json(const std::string& file);
 
 // All readers throw TraceError when the value is not what they are named after.
 class JsonCursor {

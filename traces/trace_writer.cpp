@@ -55,8 +55,8 @@ class TraceWriter {
 
   void put_string(const std::string& text) {
     try {
-      put(Json(text).dump());
-    } catch (const Json::exception&) {
+      put(json_string(text));
+    } catch (const JsonError&) {
       fail("a mesh's name is not UTF-8");
     }
   }

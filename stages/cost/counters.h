@@ -1,13 +1,14 @@
-// What a stage did in one frame, in items, operations, bytes and lanes.
+// What a stage did in one frame, in items, operations, bytes and lanes; and the one table of these counters.
 #pragma once
 
 #include <cstdint>
+#include <span>
 #include <string>
 
 namespace beampipe {
 
 #ifdef BEAMPIPE_COUNT_NOTHING
-// Drops what is added to it: a program without counters, to measure what they cost.
+// Drops whatever is added to it. A program built this way has no counters, which shows what counting costs.
 struct Count {
   constexpr Count(std::uint64_t = 0) {}
   constexpr operator std::uint64_t() const { return 0; }
@@ -19,14 +20,15 @@ struct Count {
 using Count = std::uint64_t;
 #endif
 
-// Scalar operations by kind, as the stage's scalar twin does them.
+// Scalar operations by kind, as the stage's scalar formulas perform them. The table in counters.cpp says what each
+// kind contains.
 struct OperationCounts {
-  Count mul_add = 0;  // multiplications; an addition behind one is an add
-  Count add = 0;      // additions, subtractions, comparisons, minima, maxima, selects
-  Count bit = 0;      // and, or, not, shift, population count
-  Count fetch = 0;    // table look-ups
-  Count special = 0;  // divisions, square roots
-  Count convert = 0;  // integer <-> float, float <-> half
+  Count mul_add = 0;
+  Count add = 0;
+  Count bit = 0;
+  Count fetch = 0;
+  Count special = 0;
+  Count convert = 0;
 
   Count total() const { return mul_add + add + bit + fetch + special + convert; }
 
@@ -51,42 +53,50 @@ struct OperationCounts {
   bool operator==(const OperationCounts&) const = default;
 };
 
+// The table in counters.cpp says what each counter is.
 struct StageCounters {
-  std::string stage;  // the design's stage name, for instance "conservative_raster"
+  std::string stage;  // the stage's name, for instance "conservative_raster"
   Count items_in = 0;
   Count items_out = 0;
   OperationCounts ops{};
-  Count bytes_read = 0;     // logical: what the algorithm touches
-  Count bytes_written = 0;  // logical
-  Count lanes_used = 0;     // lanes with work; for `shade` the fragments
-  Count lanes_issued = 0;   // lanes that ran; for `shade` with the helpers of 2x2 quads
-  Count sector_bytes = 0;   // asked of the memory system, read and written, in whole sectors
-  Count l2_bytes = 0;       // of that, what the caches before L2 do not hold, and what they evict
-  Count dram_bytes = 0;     // moved to and from DRAM behind the modelled caches, read and written
-  // Of the stages that rasterize:
-  Count hidden_items = 0;      // pairs (or cells) left out behind what closes their pixel (or cell)
-  Count hidden_triangles = 0;  // left out behind what closes all of a tile, once for each tile
-  Count empty_tiles = 0;       // tiles without a triangle
+  Count bytes_read = 0;
+  Count bytes_written = 0;
+  Count lanes_used = 0;
+  Count lanes_issued = 0;
+  Count sector_bytes = 0;
+  Count l2_bytes = 0;
+  Count dram_bytes = 0;
+  Count hidden_items = 0;
+  Count hidden_triangles = 0;
+  Count empty_tiles = 0;
 
   Count logical_bytes() const { return bytes_read + bytes_written; }
 
-  StageCounters& operator+=(const StageCounters& other) {
-    items_in += other.items_in;
-    items_out += other.items_out;
-    ops += other.ops;
-    bytes_read += other.bytes_read;
-    bytes_written += other.bytes_written;
-    lanes_used += other.lanes_used;
-    lanes_issued += other.lanes_issued;
-    sector_bytes += other.sector_bytes;
-    l2_bytes += other.l2_bytes;
-    dram_bytes += other.dram_bytes;
-    hidden_items += other.hidden_items;
-    hidden_triangles += other.hidden_triangles;
-    empty_tiles += other.empty_tiles;
-    return *this;
-  }
+  StageCounters& operator+=(const StageCounters& other);  // leaves `stage` as it is
   bool operator==(const StageCounters&) const = default;
 };
+
+// A counter of a stage. It is stored in StageCounters (`field`), in its operations (`operation`), or it is computed
+// from others (`sum`); exactly one of the three is not null.
+struct CounterInfo {
+  const char* name;   // as in report.json; "ops.add" is the key "add" of the object "ops"
+  const char* title;  // heading of a table's column
+  const char* unit;
+  const char* meaning;
+  Count StageCounters::*field = nullptr;
+  Count OperationCounts::*operation = nullptr;
+  Count (*sum)(const StageCounters&) = nullptr;
+
+  Count value(const StageCounters& counters) const {
+    return sum ? sum(counters) : field ? counters.*field : counters.ops.*operation;
+  }
+  // Where the counter is stored; null for a sum. Saving and restoring every stored counter restores the stage.
+  Count* stored(StageCounters& counters) const {
+    return sum ? nullptr : field ? &(counters.*field) : &(counters.ops.*operation);
+  }
+};
+
+// All counters of a stage, in the order in which report.json lists them.
+std::span<const CounterInfo> stage_counters();
 
 }  // namespace beampipe

@@ -13,6 +13,7 @@
 #include <set>
 
 #include "pipeline/technique.h"
+#include "tests/pipeline/counter_page.h"
 #include "tests/pipeline/test_traces.h"
 
 namespace beampipe {
@@ -124,14 +125,14 @@ TEST(CounterRegistry, NamesTestsThatThereAre) {
     for (std::size_t begin = 0, end = 0; end < named.size(); begin = end + 2) {
       end = std::min(named.find(", ", begin), named.size());
       const std::string test = named.substr(begin, end - begin);
-      EXPECT_TRUE(tests.contains(test)) << test << ", which the registry names for " << of;
+      EXPECT_TRUE(tests.contains(test)) << test << ", which tests/pipeline/counter_page.cpp names for " << of;
     }
   };
   for (const StageInfo& stage : stage_list())
-    for (const CounterInfo& counter : stage_counters()) expect_test(test_of(stage, counter), stage.name);
-  for (const PixelCounterInfo& counter : pixel_counters()) expect_test(counter.test, counter.name);
-  for (const PixelCounterInfo& counter : error_counters()) expect_test(counter.test, counter.name);
-  for (const FrameCounterInfo& counter : frame_counters()) expect_test(counter.test, counter.name);
+    for (const CounterInfo& counter : stage_counters()) expect_test(tests_of(stage, counter), stage.name);
+  for (const PixelCounterInfo& counter : pixel_counters()) expect_test(tests_of(counter), counter.name);
+  for (const PixelCounterInfo& counter : error_counters()) expect_test(tests_of(counter), counter.name);
+  for (const FrameCounterInfo& counter : frame_counters()) expect_test(tests_of(counter), counter.name);
 }
 
 TEST(CounterRegistry, EveryPixelCounterMovesSomewhere) {

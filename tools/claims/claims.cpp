@@ -62,10 +62,10 @@ std::vector<Claim> answered_claims(const Report& report) {
   return claims;
 }
 
-nlohmann::ordered_json to_json(const Claim& claim) {
-  nlohmann::ordered_json json = {{"name", claim.name}, {"unit", claim.unit}, {"published_low", claim.published_low}};
+Json to_json(const Claim& claim) {
+  Json json = {{"name", claim.name}, {"unit", claim.unit}, {"published_low", claim.published_low}};
   const auto or_null = [](std::optional<double> value) {
-    return value && std::isfinite(*value) ? nlohmann::ordered_json(*value) : nlohmann::ordered_json();
+    return value && std::isfinite(*value) ? Json(*value) : Json();
   };
   json["published_high"] = or_null(claim.published_high);  // null: or more
   json["ours"] = or_null(claim.ours);

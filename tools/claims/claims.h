@@ -1,12 +1,12 @@
 // Claims: the numbers that publications state, each with the number that this program finds.
 #pragma once
 
-#include <nlohmann/json.hpp>
 #include <optional>
 #include <string>
 #include <vector>
 
-#include "tools/report/report.h"
+#include "tools/evaluate/results.h"
+#include "traces/json.h"
 
 namespace beampipe {
 
@@ -28,7 +28,7 @@ std::vector<Claim> all_claims(const Report& report);
 // The claims for which the report gives a number.
 std::vector<Claim> answered_claims(const Report& report);
 
-nlohmann::ordered_json to_json(const Claim& claim);
+Json to_json(const Claim& claim);
 
 // As a Markdown table.
 std::string claims_text(const std::vector<Claim>& claims);

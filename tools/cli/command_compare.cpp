@@ -5,10 +5,12 @@
 #include <memory>
 
 #include "tools/cli/commands.h"
+#include "tools/cli/run_arguments.h"
+#include "tools/cli/run_report.h"
+#include "tools/cli/trace_events.h"
 #include "tools/evaluate/diagnosis.h"
 #include "tools/evaluate/render.h"
 #include "tools/evaluate/resume.h"
-#include "tools/evaluate/trace_events.h"
 #include "tools/files/image_io.h"
 
 namespace beampipe {
@@ -45,7 +47,7 @@ void naming(const std::string& spec, std::size_t frame, Body body) {
   }
 }
 
-nlohmann::ordered_json own_options(const CompareArguments& arguments) {
+Json own_options(const CompareArguments& arguments) {
   return {{"ladder", arguments.ladder}, {"causes", arguments.causes}, {"orders", arguments.orders}};
 }
 
@@ -115,7 +117,7 @@ class Comparison {
     reference_result_.error = ErrorStats{};
     reference_result_.equivalent_msaa = equivalent_msaa(0.0, rungs_);
 
-    Report report = new_report(arguments_, plan_, maker_);
+    Report report = new_report(plan_, maker_);
     report.msaa_ladder = rungs_;
     report.results = results_;
     report.results.push_back(reference_result_);
@@ -185,9 +187,9 @@ class Comparison {
   }
 
   // Of what was added so far.
-  nlohmann::ordered_json sums() const {
-    nlohmann::ordered_json sums;
-    for (const Rung& rung : ladder_) sums["ladder"].push_back({rung.squares, rung.pixels});
+  Json sums() const {
+    Json sums;
+    for (const Rung& rung : ladder_) sums["ladder"].push_back(Json::array({rung.squares, rung.pixels}));
     for (const CauseShares& causes : causes_) sums["causes"].push_back(causes.sums());
     if (orders_) sums["orders"] = orders_->sums();
     return sums;
@@ -204,8 +206,9 @@ class Comparison {
       last_errors_[i] = signed_errors(image, truth);
     }
     for (std::size_t i = 0; i < ladder_.size(); ++i) {
-      record.sums.at("ladder").at(i).at(0).get_to(ladder_[i].squares);
-      record.sums.at("ladder").at(i).at(1).get_to(ladder_[i].pixels);
+      const Json& sums = record.sums.at("ladder").at(i);
+      ladder_[i].squares = sums.at(0).get<double>();
+      ladder_[i].pixels = sums.at(1).get<double>();
     }
     for (std::size_t i = 0; i < causes_.size(); ++i) causes_[i].set_sums(record.sums.at("causes").at(i));
     if (orders_) orders_->set_sums(record.sums.at("orders"));
@@ -250,7 +253,7 @@ class Comparison {
   const CompareArguments& arguments_;
   OutputFolder& output_;
   RunPlan plan_;
-  nlohmann::ordered_json maker_;
+  Json maker_;
   FrameRecords records_;
   Technique reference_ = parse_technique("reference");
   std::vector<Rung> ladder_;
@@ -267,23 +270,21 @@ class Comparison {
 
 }  // namespace
 
-void add_compare_command(CLI::App& app, InterruptGate& gate) {
+void add_compare_command(CommandLine& line, InterruptGate& gate) {
   const auto arguments = std::make_shared<CompareArguments>();
-  CLI::App* command =
-      app.add_subcommand("compare", "Render a trace and the reference: pictures, errors, equivalent MSAA rates");
-  add_run_arguments(*command, *arguments);
+  Command command =
+      line.add_command("compare", "Render a trace and the reference: pictures, errors, equivalent MSAA rates");
+  add_run_arguments(command, *arguments);
   command
-      ->add_option("--ladder", arguments->ladder,
-                   "MSAA rates to find equivalent rates between (default: 1,2,4,...,256; 512 and 1024 if need be)")
-      ->delimiter(',')
-      ->allow_extra_args(false)
-      ->type_name("N,N,...");
-  command->add_flag("--causes", arguments->causes,
-                    "split each pixel's error by cause: layers of the counters, and a table (beam and alpha only)");
-  command->add_flag("--orders", arguments->orders,
-                    "also with the triangles shuffled, near to far and far to near: errors, and how far they differ");
-  command->footer(kFooter + technique_help());
-  command->callback([arguments, &gate] {
+      .add("--ladder", arguments->ladder,
+           "MSAA rates to find equivalent rates between (default: 1,2,4,...,256; 512 and 1024 if need be)")
+      .list("N,N,...");
+  command.add_flag("--causes", arguments->causes,
+                   "split each pixel's error by cause: layers of the counters, and a table (beam and alpha only)");
+  command.add_flag("--orders", arguments->orders,
+                   "also with the triangles shuffled, near to far and far to near: errors, and how far they differ");
+  command.footer(kFooter + technique_help());
+  command.set_work([arguments, &gate] {
     RunPlan plan = make_plan(*arguments);
     const TraceEvents events(*arguments, plan);
     OutputFolder output(arguments->output, gate);

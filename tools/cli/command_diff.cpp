@@ -7,7 +7,7 @@
 #include "tools/cli/commands.h"
 #include "tools/evaluate/metrics.h"
 #include "tools/files/image_io.h"
-#include "tools/report/report.h"
+#include "tools/report/report_json.h"
 
 namespace beampipe {
 namespace {
@@ -37,10 +37,10 @@ void diff(const DiffArguments& arguments) {
   }
   const std::uint64_t differing = differing_pixels(a, b);
   if (arguments.json) {
-    nlohmann::ordered_json json = {{"beampipe_diff", 1}, {"a", arguments.a}, {"b", arguments.b}};
+    Json json = {{"beampipe_diff", 1}, {"a", arguments.a}, {"b", arguments.b}};
     json["width"] = a.width;
     json["height"] = a.height;
-    json.update(to_json(stats));
+    for (const Json::Member& member : to_json(stats).members()) json[member.key] = member.value;
     json["differing_pixels"] = differing;
     std::cout << json_text(json);
     return;
@@ -54,16 +54,16 @@ void diff(const DiffArguments& arguments) {
 
 }  // namespace
 
-void add_diff_command(CLI::App& app) {
+void add_diff_command(CommandLine& line) {
   const auto arguments = std::make_shared<DiffArguments>();
-  CLI::App* command = app.add_subcommand("diff", "Tell how far picture A is from picture B");
-  command->add_option("A", arguments->a, "an EXR image")->required();
-  command->add_option("B", arguments->b, "an EXR image of the same size, taken as the truth")->required();
-  command->add_flag("--json", arguments->json, "print JSON");
-  command->footer(
+  Command command = line.add_command("diff", "Tell how far picture A is from picture B");
+  command.add("A", arguments->a, "an EXR image").required();
+  command.add("B", arguments->b, "an EXR image of the same size, taken as the truth").required();
+  command.add_flag("--json", arguments->json, "print JSON");
+  command.footer(
       "Compares R, G and B in linear light; bias is the mean of A - B. Exit code 0 whenever the two could be "
       "compared.");
-  command->callback([arguments] { diff(*arguments); });
+  command.set_work([arguments] { diff(*arguments); });
 }
 
 }  // namespace beampipe

@@ -55,19 +55,19 @@ std::string soup_of(const Trace& trace, const Frame& frame) {
 
 }  // namespace
 
-void add_export_soup_command(CLI::App& app, InterruptGate& gate) {
+void add_export_soup_command(CommandLine& line, InterruptGate& gate) {
   const auto arguments = std::make_shared<ExportArguments>();
-  CLI::App* command = app.add_subcommand(
+  Command command = line.add_command(
       "export-soup", "Write a frame's triangles, clipped, culled, snapped and lit, for other renderers");
-  command->add_option("TRACE", arguments->trace, "the trace (JSON)")->required();
-  command->add_option("-o,--output", arguments->output, "the file to be written")->required();
-  command->add_option("--frame", arguments->frame, "which frame, counted from 0 (default: 0)");
-  command->add_flag("--allow-outside", arguments->allow_outside, "let the trace name meshes outside its own folder");
-  command->footer(
+  command.add("TRACE", arguments->trace, "the trace (JSON)").required();
+  command.add("-o,--output", arguments->output, "the file to be written").required();
+  command.add("--frame", arguments->frame, "which frame, counted from 0 (default: 0)");
+  command.add_flag("--allow-outside", arguments->allow_outside, "let the trace name meshes outside its own folder");
+  command.footer(
       "\nThe file, little-endian: \"SOUP\"; uint32 version 1, width, height, triangles; float background[3]; then for "
       "each\n"
       "triangle float clip[3][4], in OpenGL clip space with w = 1, and float rgb[3], linear.");
-  command->callback([arguments, &gate] {
+  command.set_work([arguments, &gate] {
     const std::filesystem::path file = std::filesystem::absolute(arguments->output);
     if (std::error_code none; std::filesystem::equivalent(file, arguments->trace, none))
       throw UsageError("-o " + arguments->output + " is the trace itself");

@@ -6,13 +6,12 @@
 #include <memory>
 
 #include "tools/cli/commands.h"
-#include "tools/report/report.h"
+#include "tools/report/report_json.h"
+#include "tools/report/report_text.h"
 #include "traces/trace_io.h"
 
 namespace beampipe {
 namespace {
-
-using Json = nlohmann::ordered_json;
 
 struct InfoArguments {
   std::string trace;
@@ -58,7 +57,8 @@ Bounds bounds_of(const Mesh& mesh) {
 
 Json to_json(const Bounds& bounds) {
   if (bounds.empty()) return nullptr;
-  return {{"min", {bounds.min.x, bounds.min.y, bounds.min.z}}, {"max", {bounds.max.x, bounds.max.y, bounds.max.z}}};
+  return {{"min", Json::array({bounds.min.x, bounds.min.y, bounds.min.z})},
+          {"max", Json::array({bounds.max.x, bounds.max.y, bounds.max.z})}};
 }
 
 std::string text_of(const Bounds& bounds) {
@@ -108,13 +108,13 @@ std::string info_text(const Trace& trace) {
 
 }  // namespace
 
-void add_info_command(CLI::App& app) {
+void add_info_command(CommandLine& line) {
   const auto arguments = std::make_shared<InfoArguments>();
-  CLI::App* command = app.add_subcommand("info", "Tell what is in a trace");
-  command->add_option("TRACE", arguments->trace, "the trace (JSON)")->required();
-  command->add_flag("--json", arguments->json, "print JSON");
-  command->add_flag("--allow-outside", arguments->allow_outside, "let the trace name meshes outside its own folder");
-  command->callback([arguments] {
+  Command command = line.add_command("info", "Tell what is in a trace");
+  command.add("TRACE", arguments->trace, "the trace (JSON)").required();
+  command.add_flag("--json", arguments->json, "print JSON");
+  command.add_flag("--allow-outside", arguments->allow_outside, "let the trace name meshes outside its own folder");
+  command.set_work([arguments] {
     const Trace trace = read_trace(arguments->trace, {.allow_outside = arguments->allow_outside});
     std::cout << (arguments->json ? json_text(info_json(trace, arguments->trace)) : info_text(trace));
   });

@@ -8,7 +8,7 @@
 #include "tools/cli/commands.h"
 #include "tools/cli/framing.h"
 #include "tools/files/output.h"
-#include "tools/report/report.h"
+#include "tools/report/report_text.h"
 #include "traces/atomic_file.h"
 #include "traces/scenes.h"
 #include "traces/trace_io.h"
@@ -40,18 +40,18 @@ bool names_a_model(const std::string& scene) {
 
 glm::dvec3 vector_of(const std::vector<double>& values) { return {values.at(0), values.at(1), values.at(2)}; }
 
-CameraWishes wishes_of(const MakeArguments& arguments, const CLI::App& command) {
+CameraWishes wishes_of(const MakeArguments& arguments, const Command& command) {
   CameraWishes wishes;
   if (!arguments.eye.empty()) wishes.eye = vector_of(arguments.eye);
   if (!arguments.target.empty()) wishes.target = vector_of(arguments.target);
   if (!arguments.up.empty()) wishes.up = vector_of(arguments.up);
-  if (command.count("--fovy")) wishes.fovy_deg = arguments.fovy;
-  if (command.count("--near")) wishes.near = arguments.near;
-  if (command.count("--far")) wishes.far = arguments.far;
+  if (command.was_given("--fovy")) wishes.fovy_deg = arguments.fovy;
+  if (command.was_given("--near")) wishes.near = arguments.near;
+  if (command.was_given("--far")) wishes.far = arguments.far;
   return wishes;
 }
 
-Trace make_from_model(const MakeArguments& arguments, const CLI::App& command) {
+Trace make_from_model(const MakeArguments& arguments, const Command& command) {
   Trace trace;
   trace.meshes.push_back(read_obj(arguments.scene, ""));
   Frame& frame = trace.frames.emplace_back();
@@ -71,10 +71,10 @@ Trace make_from_model(const MakeArguments& arguments, const CLI::App& command) {
   return trace;
 }
 
-Trace make_from_scene(const MakeArguments& arguments, const CLI::App& command) {
+Trace make_from_scene(const MakeArguments& arguments, const Command& command) {
   for (const char* option :
        {"--eye", "--target", "--up", "--fovy", "--near", "--far", "--background", "--lambert", "--unlit"}) {
-    if (command.count(option)) throw UsageError(std::string(option) + " is for models (.obj) only");
+    if (command.was_given(option)) throw UsageError(std::string(option) + " is for models (.obj) only");
   }
   const std::vector<SceneKind>& kinds = scene_kinds();
   if (std::none_of(kinds.begin(), kinds.end(), [&](const SceneKind& kind) { return kind.name == arguments.scene; })) {
@@ -90,20 +90,20 @@ void list_scenes() {
   std::cout << align_columns(rows, {0, 1});
 }
 
-void make(const MakeArguments& arguments, const CLI::App& command, InterruptGate& gate) {
+void make(const MakeArguments& arguments, const Command& command, InterruptGate& gate) {
   if (arguments.list) return list_scenes();
   if (arguments.scene.empty()) throw UsageError("make needs a SCENE or a model (see beampipe make --help)");
   if (arguments.output.empty()) throw UsageError("make needs -o FILE");
   const bool is_model = names_a_model(arguments.scene);
-  if (is_model && (command.count("--triangles") || command.count("--seed"))) {
+  if (is_model && (command.was_given("--triangles") || command.was_given("--seed"))) {
     throw UsageError("--triangles and --seed are for procedural scenes only");
   }
   const std::filesystem::path file = arguments.output;
   if (std::error_code none; is_model && std::filesystem::equivalent(file, arguments.scene, none))
     throw UsageError("-o " + arguments.output + " is the model itself");
   require_writable_folder(file.has_parent_path() ? file.parent_path() : ".");
-  if (command.count("--orbit") && arguments.frames < 2) throw UsageError("--orbit needs --frames N with N > 1");
-  if (command.count("--pan") && arguments.frames < 2) throw UsageError("--pan needs --frames N with N > 1");
+  if (command.was_given("--orbit") && arguments.frames < 2) throw UsageError("--orbit needs --frames N with N > 1");
+  if (command.was_given("--pan") && arguments.frames < 2) throw UsageError("--pan needs --frames N with N > 1");
   Trace trace = is_model ? make_from_model(arguments, command) : make_from_scene(arguments, command);
   if (!arguments.pan.empty()) {
     pan_picture(trace, arguments.frames, arguments.pan.at(0), arguments.pan.at(1));
@@ -124,50 +124,41 @@ void make(const MakeArguments& arguments, const CLI::App& command, InterruptGate
 
 }  // namespace
 
-void add_make_command(CLI::App& app, InterruptGate& gate) {
+void add_make_command(CommandLine& line, InterruptGate& gate) {
   const auto arguments = std::make_shared<MakeArguments>();
-  CLI::App* command = app.add_subcommand("make", "Make a trace: a procedural scene, or your own model with a camera");
-  command->add_option("SCENE", arguments->scene, "a procedural scene (see --list), or a model: MODEL.obj");
-  command->add_option("-o,--output", arguments->output, "the trace to write (JSON)");
-  command->add_flag("--list", arguments->list, "list the procedural scenes");
-  command->add_option("--width", arguments->options.width, "pixels")
-      ->check(CLI::Range(1u, kMaxSide))
-      ->capture_default_str();
-  command->add_option("--height", arguments->options.height, "pixels")
-      ->check(CLI::Range(1u, kMaxSide))
-      ->capture_default_str();
+  Command command = line.add_command("make", "Make a trace: a procedural scene, or your own model with a camera");
+  command.add("SCENE", arguments->scene, "a procedural scene (see --list), or a model: MODEL.obj");
+  command.add("-o,--output", arguments->output, "the trace to write (JSON)");
+  command.add_flag("--list", arguments->list, "list the procedural scenes");
+  command.add("--width", arguments->options.width, "pixels").between(1, kMaxSide).shows_default();
+  command.add("--height", arguments->options.height, "pixels").between(1, kMaxSide).shows_default();
+  command.add("--frames", arguments->frames, "how many frames (default: 1)").between(1, 100000);
+  const Option orbit =
+      command.add("--orbit", arguments->orbit, "degrees that the camera goes around its target in all (default: 0)");
+  command.add("--pan", arguments->pan, "pixels that the picture moves from frame to frame, right and down")
+      .exactly(2, "X,Y")
+      .excludes(orbit);
 
-  command->add_option("--frames", arguments->frames, "how many frames (default: 1)")->check(CLI::Range(1u, 100000u));
-  CLI::Option* orbit = command->add_option("--orbit", arguments->orbit,
-                                           "degrees that the camera goes around its target in all (default: 0)");
-  command->add_option("--pan", arguments->pan, "pixels that the picture moves from frame to frame, right and down")
-      ->delimiter(',')
-      ->expected(2)
-      ->type_name("X,Y")
-      ->excludes(orbit);
+  Command scene = command.add_group("Procedural scenes");
+  scene.add("--triangles", arguments->options.triangles, "about how many (default: the scene's own number)")
+      .between(1, 100000000);
+  scene.add("--seed", arguments->options.seed, "same seed, same scene").shows_default();
 
-  CLI::App* scene = command->add_option_group("Procedural scenes");
-  scene->add_option("--triangles", arguments->options.triangles, "about how many (default: the scene's own number)")
-      ->check(CLI::Range(1u, 100000000u));
-  scene->add_option("--seed", arguments->options.seed, "same seed, same scene")->capture_default_str();
-
-  CLI::App* model = command->add_option_group("Models");
-  const auto add_vector = [model](const char* name, std::vector<double>& value, const char* help) {
-    return model->add_option(name, value, help)->delimiter(',')->expected(3)->type_name("X,Y,Z");
-  };
-  add_vector("--eye", arguments->eye, "where the camera is (default: where all of the model is in view)");
-  add_vector("--target", arguments->target, "where it looks (default: the middle of the model)");
-  add_vector("--up", arguments->up, "what is up (default: 0,1,0)");
-  model->add_option("--fovy", arguments->fovy, "full vertical angle of view in degrees (default: 36)");
-  model->add_option("--near", arguments->near, "near plane (default: just before the model)");
-  model->add_option("--far", arguments->far, "far plane (default: just behind the model)");
-  add_vector("--background", arguments->background, "linear colour (default: 1,1,1)")->type_name("R,G,B");
-  CLI::Option* lambert = model->add_flag("--lambert", arguments->lambert, "light from over the shoulder (the default)");
-  model->add_flag("--unlit", arguments->unlit, "plain material colours")->excludes(lambert);
-  command->footer(
+  Command model = command.add_group("Models");
+  model.add("--eye", arguments->eye, "where the camera is (default: where all of the model is in view)")
+      .exactly(3, "X,Y,Z");
+  model.add("--target", arguments->target, "where it looks (default: the middle of the model)").exactly(3, "X,Y,Z");
+  model.add("--up", arguments->up, "what is up (default: 0,1,0)").exactly(3, "X,Y,Z");
+  model.add("--fovy", arguments->fovy, "full vertical angle of view in degrees (default: 36)");
+  model.add("--near", arguments->near, "near plane (default: just before the model)");
+  model.add("--far", arguments->far, "far plane (default: just behind the model)");
+  model.add("--background", arguments->background, "linear colour (default: 1,1,1)").exactly(3, "R,G,B");
+  const Option lambert = model.add_flag("--lambert", arguments->lambert, "light from over the shoulder (the default)");
+  model.add_flag("--unlit", arguments->unlit, "plain material colours").excludes(lambert);
+  command.footer(
       "Examples:\n  beampipe make hairball --triangles 100000 --seed 7 -o hairball.json\n"
       "  beampipe make model.obj -o model.json\n  beampipe make model.obj --eye 3,2,5 --fovy 45 --unlit -o model.json");
-  command->callback([arguments, command, &gate] { make(*arguments, *command, gate); });
+  command.set_work([arguments, command, &gate] { make(*arguments, command, gate); });
 }
 
 }  // namespace beampipe

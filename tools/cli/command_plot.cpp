@@ -36,19 +36,19 @@ void plot(const PlotArguments& arguments, InterruptGate& gate) {
 
 }  // namespace
 
-void add_plot_command(CLI::App& app, InterruptGate& gate) {
+void add_plot_command(CommandLine& line, InterruptGate& gate) {
   const auto arguments = std::make_shared<PlotArguments>();
-  CLI::App* command = app.add_subcommand("plot", "Draw what compare found: memory or time against accuracy");
-  command->add_option("DIR", arguments->folders, "one or more folders that compare wrote")->required();
-  command->add_option("-o,--output", arguments->output, "the picture: FILE.svg or FILE.png")->required();
-  command->add_option("--kind", arguments->kind, "frontier: bytes per pixel and EMR; speed: ms and RMSE")
-      ->check(CLI::IsMember({"frontier", "speed"}))
-      ->capture_default_str();
-  command->footer(
+  Command command = line.add_command("plot", "Draw what compare found: memory or time against accuracy");
+  command.add("DIR", arguments->folders, "one or more folders that compare wrote").required();
+  command.add("-o,--output", arguments->output, "the picture: FILE.svg or FILE.png").required();
+  command.add("--kind", arguments->kind, "frontier: bytes per pixel and EMR; speed: ms and RMSE")
+      .one_of({"frontier", "speed"})
+      .shows_default();
+  command.footer(
       "With several folders, the geometric mean over them of each technique that is in all. A triangle stands for a\n"
       "bound: up where the EMR is at least, down where it is at most the value drawn.\n\n"
       "Example:\n  beampipe plot out/fence out/maple -o frontier.svg");
-  command->callback([arguments, &gate] { plot(*arguments, gate); });
+  command.set_work([arguments, &gate] { plot(*arguments, gate); });
 }
 
 }  // namespace beampipe

@@ -22,9 +22,9 @@ struct ReportArguments {
 // Where the frame with this index stands in the report.
 std::size_t position_of(const ReportFile& report, std::optional<std::size_t> frame) {
   if (!frame) return 0;
-  const auto& frames = report.json.at("results").front().at("frames");
+  const auto& frames = report.json.at("results").at(0).at("frames").elements();
   for (std::size_t i = 0; i < frames.size(); ++i) {
-    if (frames[i].at("index") == *frame) return i;
+    if (frames[i].at("index").get<std::size_t>() == *frame) return i;
   }
   throw UsageError("--frame " + std::to_string(*frame) + ": expected one of the report's frames, " +
                    frames.front().at("index").dump() + " to " + frames.back().at("index").dump());
@@ -41,7 +41,7 @@ void write_report(const ReportArguments& arguments, InterruptGate& gate) {
     const auto layers = report_layers(report, position_of(report, arguments.frame));
     output.write("report.html", page_html(report, tables, figures, layers));
     for (const Table& table : tables) output.write("tables/" + table.name + ".csv", csv_text(table));
-  } catch (const nlohmann::json::exception& error) {
+  } catch (const JsonError& error) {
     throw ReportError((report.folder / "report.json").string() + ": not a report that beampipe wrote: " + error.what());
   }
   output.keep();
@@ -59,16 +59,16 @@ void write_report(const ReportArguments& arguments, InterruptGate& gate) {
 
 }  // namespace
 
-void add_report_command(CLI::App& app, InterruptGate& gate) {
+void add_report_command(CommandLine& line, InterruptGate& gate) {
   const auto arguments = std::make_shared<ReportArguments>();
-  CLI::App* command = app.add_subcommand("report", "Make a page for reading of what run or compare left");
-  command->add_option("DIR", arguments->folder, "the folder that run or compare wrote")->required();
-  command->add_option("--frame", arguments->frame, "the frame whose pictures the page shows (default: the first)");
-  command->footer(
+  Command command = line.add_command("report", "Make a page for reading of what run or compare left");
+  command.add("DIR", arguments->folder, "the folder that run or compare wrote").required();
+  command.add("--frame", arguments->frame, "the frame whose pictures the page shows (default: the first)");
+  command.footer(
       "Writes into DIR: report.html, one file with everything in it, to be opened in a browser; tables/*.csv, every\n"
       "table of the page; plots/*.svg, every plot.\n\nExample:\n  beampipe compare fence.json -t beam msaa:8 -o out\n"
       "  beampipe report out");
-  command->callback([arguments, &gate] { write_report(*arguments, gate); });
+  command.set_work([arguments, &gate] { write_report(*arguments, gate); });
 }
 
 }  // namespace beampipe

@@ -3,9 +3,11 @@
 #include <memory>
 
 #include "tools/cli/commands.h"
+#include "tools/cli/run_arguments.h"
+#include "tools/cli/run_report.h"
+#include "tools/cli/trace_events.h"
 #include "tools/evaluate/render.h"
 #include "tools/evaluate/resume.h"
-#include "tools/evaluate/trace_events.h"
 
 namespace beampipe {
 namespace {
@@ -16,7 +18,7 @@ void run(const RunArguments& arguments, InterruptGate& gate) {
   OutputFolder output(arguments.output, gate);
   output.lock();
   require_writable_folders(output, plan.techniques);
-  const auto maker = made_by("run", plan, nlohmann::ordered_json::object());
+  const auto maker = made_by("run", plan, Json::object());
   FrameRecords records(output, maker);
   std::vector<FrameRecord> finished;
   if (arguments.resume) {
@@ -25,7 +27,7 @@ void run(const RunArguments& arguments, InterruptGate& gate) {
     tell_resumption(plan, finished.size());
   }
 
-  Report report = new_report(arguments, plan, maker);
+  Report report = new_report(plan, maker);
   for (const Technique& technique : plan.techniques) report.results.push_back(new_technique_report(technique));
   for (const FrameRecord& record : finished)
     for (std::size_t i = 0; i < record.reports.size(); ++i) report.results[i].frames.push_back(record.reports[i]);
@@ -53,13 +55,13 @@ void run(const RunArguments& arguments, InterruptGate& gate) {
 
 }  // namespace
 
-void add_run_command(CLI::App& app, InterruptGate& gate) {
+void add_run_command(CommandLine& line, InterruptGate& gate) {
   const auto arguments = std::make_shared<RunArguments>();
-  CLI::App* command = app.add_subcommand("run", "Render a trace: pictures, per-pixel counters, report.json");
-  add_run_arguments(*command, *arguments);
-  command->footer("Example:\n  beampipe run fence.json -t beam msaa:1,8 --repeat 5 -o out\n\nTechniques:\n" +
-                  technique_help());
-  command->callback([arguments, &gate] { run(*arguments, gate); });
+  Command command = line.add_command("run", "Render a trace: pictures, per-pixel counters, report.json");
+  add_run_arguments(command, *arguments);
+  command.footer("Example:\n  beampipe run fence.json -t beam msaa:1,8 --repeat 5 -o out\n\nTechniques:\n" +
+                 technique_help());
+  command.set_work([arguments, &gate] { run(*arguments, gate); });
 }
 
 }  // namespace beampipe

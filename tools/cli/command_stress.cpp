@@ -4,15 +4,14 @@
 #include <cstdio>
 #include <iostream>
 #include <memory>
-#include <nlohmann/json.hpp>
 #include <set>
 
 #include "tools/cli/commands.h"
+#include "tools/cli/run_arguments.h"
 #include "tools/evaluate/machine_memory.h"
 #include "tools/evaluate/progress.h"
-#include "tools/evaluate/run_plan.h"
 #include "tools/files/output.h"
-#include "tools/report/report.h"
+#include "tools/report/report_text.h"
 #include "tools/stress/judge.h"
 #include "traces/atomic_file.h"
 #include "traces/trace_io.h"
@@ -61,7 +60,7 @@ std::string cell_of(const Verdict& verdict) {
   return text + std::string(!verdict.passes() ? "!" : verdict.error > format ? "*" : "");
 }
 
-nlohmann::ordered_json json_of(const HardCase& hard_case, const std::string& spec, const Verdict& verdict) {
+Json json_of(const HardCase& hard_case, const std::string& spec, const Verdict& verdict) {
   return {{"case", hard_case.name}, {"what", hard_case.what},   {"technique", spec},
           {"error", verdict.error},  // null for NaN
           {"limit", verdict.limit}, {"reason", verdict.reason}, {"passes", verdict.passes()}};
@@ -116,7 +115,7 @@ void stress(const StressArguments& arguments, InterruptGate& gate) {
   std::vector<std::vector<std::string>> rows(1, {"case"});
   for (const Technique& technique : techniques) rows[0].push_back(technique.spec);
   std::vector<std::string> notes;
-  nlohmann::ordered_json results = nlohmann::ordered_json::array();
+  Json results = Json::array();
   std::uint64_t failures = 0;
   {
     Progress progress;
@@ -151,27 +150,26 @@ void stress(const StressArguments& arguments, InterruptGate& gate) {
 
 }  // namespace
 
-void add_stress_command(CLI::App& app, InterruptGate& gate) {
+void add_stress_command(CommandLine& line, InterruptGate& gate) {
   const auto arguments = std::make_shared<StressArguments>();
-  CLI::App* command =
-      app.add_subcommand("stress", "Hold the techniques to exact arithmetic in cases that are hard on numbers");
-  command->add_option("-t,--technique", arguments->specs, "techniques (default: one or more of each kind)");
-  command->add_option("--case", arguments->cases, "only these cases (default: all)");
-  command->add_option("-o,--output", arguments->output,
-                      "folder for stress.json, which has all errors and limits, and for the cases as traces (all but "
-                      "not_finite: JSON has no such numbers)");
-  command->add_option("--threads", arguments->threads, "threads to use (default: all that the machine has)")
-      ->check(CLI::Range(1, 1024));
-  command->add_flag("--heavy", arguments->heavy,
-                    "also deep_pixel_1000000, a gigabyte and a minute, and widest_and_highest, 16384 x 16384 pixels: 5 "
-                    "to 9 GB and a minute or two for each technique (name them with -t: taa and dvm need 30 GB)");
-  command->footer(
+  Command command =
+      line.add_command("stress", "Hold the techniques to exact arithmetic in cases that are hard on numbers");
+  command.add("-t,--technique", arguments->specs, "techniques (default: one or more of each kind)");
+  command.add("--case", arguments->cases, "only these cases (default: all)");
+  command.add("-o,--output", arguments->output,
+              "folder for stress.json, which has all errors and limits, and for the cases as traces (all but "
+              "not_finite: JSON has no such numbers)");
+  command.add("--threads", arguments->threads, "threads to use (default: all that the machine has)").between(1, 1024);
+  command.add_flag("--heavy", arguments->heavy,
+                   "also deep_pixel_1000000, a gigabyte and a minute, and widest_and_highest, 16384 x 16384 pixels: 5 "
+                   "to 9 GB and a minute or two for each technique (name them with -t: taa and dvm need 30 GB)");
+  command.footer(
       "Each cell is the largest error over all pixels and R, G, B, A against rational arithmetic: of the areas, or, "
       "for\n"
       "techniques that sample, of their samples. *: more than fp16 rounding, for a stated reason. !: beyond the "
       "stated\n"
       "limit; then the exit code is 1.");
-  command->callback([arguments, &gate] { stress(*arguments, gate); });
+  command.set_work([arguments, &gate] { stress(*arguments, gate); });
 }
 
 }  // namespace beampipe

@@ -8,12 +8,17 @@
 #include <new>
 #include <string>
 
+#include "pipeline/technique.h"
 #include "tools/cli/commands.h"
-#include "tools/report/report.h"
+#include "tools/evaluate/results.h"
 
 namespace {
 
 constexpr int kRuntimeError = 1, kUsageError = 2;
+
+constexpr const char* kDescription =
+    "beampipe simulates the beam rasterization pipeline and the techniques it is judged against, stage by stage:\n"
+    "pictures, their error, and what every stage cost.";
 
 constexpr const char* kExamples = R"(Examples:
   beampipe make fence -o fence.json
@@ -44,35 +49,18 @@ void keep_freed_memory() {
 
 int run(int argc, char** argv, beampipe::InterruptGate& gate) {
   keep_freed_memory();
-  CLI::App app(
-      "beampipe simulates the beam rasterization pipeline and the techniques it is judged against, stage by stage:\n"
-      "pictures, their error, and what every stage cost.",
-      "beampipe");
-  app.set_version_flag("--version", "beampipe " + beampipe::program_version());
-  app.require_subcommand(1);
-  app.footer(kExamples);
-  beampipe::add_run_command(app, gate);
-  beampipe::add_compare_command(app, gate);
-  beampipe::add_report_command(app, gate);
-  beampipe::add_plot_command(app, gate);
-  beampipe::add_claims_command(app);
-  beampipe::add_stress_command(app, gate);
-  beampipe::add_diff_command(app);
-  beampipe::add_info_command(app);
-  beampipe::add_export_soup_command(app, gate);
-  beampipe::add_make_command(app, gate);
-  try {
-    app.parse(argc, argv);
-  } catch (const CLI::Success& asked) {  // --help, --version
-    app.exit(asked);
-  } catch (const CLI::ParseError& error) {
-    if (app.get_subcommands().empty() && argc > 1 && argv[1][0] != '-') {
-      return report_error(std::string("there is no command ") + argv[1] + " (see beampipe --help)", kUsageError);
-    }
-    std::string command = "beampipe";
-    for (const CLI::App* used : app.get_subcommands()) command += " " + used->get_name();
-    return report_error(std::string(error.what()) + " (see " + command + " --help)", kUsageError);
-  }
+  beampipe::CommandLine line("beampipe", beampipe::program_version(), kDescription, kExamples);
+  beampipe::add_run_command(line, gate);
+  beampipe::add_compare_command(line, gate);
+  beampipe::add_report_command(line, gate);
+  beampipe::add_plot_command(line, gate);
+  beampipe::add_claims_command(line);
+  beampipe::add_stress_command(line, gate);
+  beampipe::add_diff_command(line);
+  beampipe::add_info_command(line);
+  beampipe::add_export_soup_command(line, gate);
+  beampipe::add_make_command(line, gate);
+  line.run(argc, argv);
   std::cout.flush();
   if (!std::cout) return report_error("cannot write to standard output", kRuntimeError);
   return 0;

@@ -47,11 +47,15 @@ std::vector<std::pair<std::string, double>> CauseShares::shares() const {
   return shares;
 }
 
-nlohmann::ordered_json CauseShares::sums() const { return {squares_, all_squares_}; }
+Json CauseShares::sums() const {
+  Json squares = Json::object();
+  for (const auto& [cause, sum] : squares_) squares[cause] = sum;
+  return Json::array({squares, all_squares_});
+}
 
-void CauseShares::set_sums(const nlohmann::ordered_json& sums) {
-  sums.at(0).get_to(squares_);
-  sums.at(1).get_to(all_squares_);
+void CauseShares::set_sums(const Json& sums) {
+  for (auto& [cause, sum] : squares_) sum = sums.at(0).at(cause).get<double>();
+  all_squares_ = sums.at(1).get<double>();
 }
 
 OrderComparison::OrderComparison(std::vector<Technique> techniques) : techniques_(std::move(techniques)) {
@@ -83,17 +87,20 @@ void OrderComparison::add(const Technique& reference, const RunPlan& plan, std::
   }
 }
 
-nlohmann::ordered_json OrderComparison::sums() const {
-  nlohmann::ordered_json json = {{"values", values_}, {"techniques", nlohmann::ordered_json::array()}};
-  for (const Sums& sums : sums_) json["techniques"].push_back({sums.errors, sums.differences});
+Json OrderComparison::sums() const {
+  Json json = {{"values", values_}, {"techniques", Json::array()}};
+  for (const Sums& sums : sums_) json["techniques"].push_back(Json::array({sums.errors, sums.differences}));
   return json;
 }
 
-void OrderComparison::set_sums(const nlohmann::ordered_json& sums) {
-  sums.at("values").get_to(values_);
+void OrderComparison::set_sums(const Json& sums) {
+  const auto read = [](const Json& from, std::vector<double>& to) {
+    for (std::size_t i = 0; i < to.size(); ++i) to[i] = from.at(i).get<double>();
+  };
+  values_ = sums.at("values").get<double>();
   for (std::size_t i = 0; i < sums_.size(); ++i) {
-    sums.at("techniques").at(i).at(0).get_to(sums_[i].errors);
-    sums.at("techniques").at(i).at(1).get_to(sums_[i].differences);
+    read(sums.at("techniques").at(i).at(0), sums_[i].errors);
+    read(sums.at("techniques").at(i).at(1), sums_[i].differences);
   }
 }
 

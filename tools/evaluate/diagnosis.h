@@ -8,8 +8,9 @@
 #include <vector>
 
 #include "tools/evaluate/progress.h"
+#include "tools/evaluate/results.h"
 #include "tools/evaluate/run_plan.h"
-#include "tools/report/report.h"
+#include "traces/json.h"
 
 namespace beampipe {
 
@@ -27,8 +28,8 @@ class CauseShares {
   std::vector<std::pair<std::string, double>> shares() const;
 
   // What was added so far, to go on from there.
-  nlohmann::ordered_json sums() const;
-  void set_sums(const nlohmann::ordered_json& sums);
+  Json sums() const;
+  void set_sums(const Json& sums);
 
  private:
   std::map<std::string, double> squares_;
@@ -47,8 +48,8 @@ class OrderComparison {
   void report(std::size_t i, TechniqueReport& report) const;
 
   // What was added so far, to go on from there.
-  nlohmann::ordered_json sums() const;
-  void set_sums(const nlohmann::ordered_json& sums);
+  Json sums() const;
+  void set_sums(const Json& sums);
 
  private:
   struct Sums {

@@ -6,7 +6,7 @@
 #include <stdexcept>
 
 #include "tools/evaluate/hardware_text.h"
-#include "traces/json_cursor.h"
+#include "traces/json.h"
 
 namespace beampipe {
 namespace {
@@ -73,9 +73,9 @@ class Reader {
     only(rates, "rates.", {std::begin(kRates), std::end(kRates)});
     for (const char* key : kRates) hardware.rates[key] = number(rates, "rates.", key);
     const Json& implementations = object(json_, "", "implementations");
-    if (implementations.empty()) fail("implementations", "expected at least one");
-    for (const auto& item : implementations.items())
-      hardware.implementations.push_back(implementation(item.key(), item.value()));
+    if (implementations.size() == 0) fail("implementations", "expected at least one");
+    for (const auto& item : implementations.members())
+      hardware.implementations.push_back(implementation(item.key, item.value));
     hardware.json = json_;
     return hardware;
   }
@@ -85,16 +85,16 @@ class Reader {
     const std::string prefix = "implementations." + name + ".";
     Implementation result{name, {}};
     const Json& stages = object(json, prefix, "units");
-    for (const auto& stage : stages.items()) {
-      const std::string key = prefix + "units." + stage.key();
-      if (!stage.value().is_array()) fail(key, "expected an array of units, found " + stage.value().dump());
-      for (const Json& unit : stage.value()) {
+    for (const auto& stage : stages.members()) {
+      const std::string key = prefix + "units." + stage.key;
+      if (!stage.value.is_array()) fail(key, "expected an array of units, found " + stage.value.dump());
+      for (const Json& unit : stage.value.elements()) {
         if (!unit.is_string() || !units().contains(unit.get<std::string>())) {
           std::string known;
           for (const auto& [known_unit, clocks] : units()) known += (known.empty() ? "" : ", ") + known_unit;
           fail(key, "expected units out of " + known + ", found " + unit.dump());
         }
-        result.units[stage.key()].push_back(unit.get<std::string>());
+        result.units[stage.key].push_back(unit.get<std::string>());
       }
     }
     return result;
@@ -115,9 +115,8 @@ class Reader {
     return value.get<double>();
   }
   void only(const Json& json, const std::string& prefix, const std::vector<std::string>& keys) const {
-    for (const auto& item : json.items())
-      if (std::find(keys.begin(), keys.end(), item.key()) == keys.end())
-        fail(prefix + item.key(), "there is no such key");
+    for (const auto& item : json.members())
+      if (std::find(keys.begin(), keys.end(), item.key) == keys.end()) fail(prefix + item.key, "there is no such key");
   }
   [[noreturn]] void fail(const std::string& key, const std::string& what) const {
     throw std::runtime_error(file_ + ": " + (key.empty() ? "" : key + ": ") + what);
@@ -129,7 +128,9 @@ class Reader {
 
 }  // namespace
 
-Hardware titan_v() { return parse_hardware(Json::parse(kTitanVText), "the built-in description"); }
+Hardware titan_v() {
+  return parse_hardware(parse_json_text(kTitanVText, "the built-in description"), "the built-in description");
+}
 
 Hardware read_hardware(const std::filesystem::path& file) {
   return parse_hardware(parse_json(file.string()), file.string());

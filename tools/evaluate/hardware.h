@@ -8,11 +8,11 @@
 
 #include <filesystem>
 #include <map>
-#include <nlohmann/json.hpp>
 #include <string>
 #include <vector>
 
 #include "stages/cost/counters.h"
+#include "traces/json.h"
 
 namespace beampipe {
 
@@ -26,7 +26,7 @@ struct Hardware {
   double clock_mhz = 0;
   std::map<std::string, double> rates;  // per clock, by name as in the file
   std::vector<Implementation> implementations;
-  nlohmann::ordered_json json;  // the whole file
+  Json json;  // the whole file
 };
 
 // What is built in.
@@ -34,7 +34,7 @@ Hardware titan_v();
 
 // Throws std::runtime_error, one line that names the file, the key, what was expected and what was found.
 Hardware read_hardware(const std::filesystem::path& file);
-Hardware parse_hardware(const nlohmann::ordered_json& json, const std::string& file);
+Hardware parse_hardware(const Json& json, const std::string& file);
 
 // Milliseconds by unit ("triangles", "shader", "dram", ...), those that the stage uses.
 std::map<std::string, double> unit_times(const Hardware& hardware, const Implementation& implementation,

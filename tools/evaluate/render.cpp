@@ -2,7 +2,6 @@
 
 #include <chrono>
 #include <cstdio>
-#include <iostream>
 
 #include "pipeline/timeline.h"
 #include "simd/target.h"
@@ -117,16 +116,15 @@ FrameReport write_frame(OutputFolder& output, const std::string& spec, std::size
   return report;
 }
 
-void finish_report(OutputFolder& output, const Report& report) {
-  output.write("report.json", json_text(to_json(report)));
-  output.keep();
-  FrameRecords(output, report.made_by).remove();
-  std::cout << table_text(report, output.path().string()) << causes_text(report) << orders_text(report)
-            << "report: " << (output.path() / "report.json").string() << "\n";
+void require_writable_folders(const OutputFolder& output, const std::vector<Technique>& techniques) {
+  require_writable_folder(output.path());
+  for (const Technique& technique : techniques) require_writable_folder(output.path() / spec_folder(technique.spec));
+  require_writable_folder((output.path() / frame_record_name(0)).parent_path());
+  require_writable_file(output.path() / "report.json");
 }
 
-Report new_report(const RunArguments& arguments, const RunPlan& plan, const nlohmann::ordered_json& made_by) {
-  return {arguments.trace,
+Report new_report(const RunPlan& plan, const Json& made_by) {
+  return {plan.trace_file,
           program_version(),
           simd_target(),
           plan.options.threads,

@@ -6,9 +6,10 @@
 #include <vector>
 
 #include "tools/evaluate/progress.h"
+#include "tools/evaluate/results.h"
 #include "tools/evaluate/run_plan.h"
 #include "tools/files/output.h"
-#include "tools/report/report.h"
+#include "traces/json.h"
 
 namespace beampipe {
 
@@ -38,10 +39,11 @@ Image render_picture(const Technique& technique, const RunPlan& plan, std::size_
 FrameReport write_frame(OutputFolder& output, const std::string& spec, std::size_t frame, const FrameResult& result,
                         const Image* reference);
 
-// Writes report.json, removes the records of single frames and prints the table.
-void finish_report(OutputFolder& output, const Report& report);
+// Throws std::runtime_error, one line, unless every technique's folder, that of the frames' records and report.json can
+// be written.
+void require_writable_folders(const OutputFolder& output, const std::vector<Technique>& techniques);
 
 // The parts of a report that are known before rendering.
-Report new_report(const RunArguments& arguments, const RunPlan& plan, const nlohmann::ordered_json& made_by);
+Report new_report(const RunPlan& plan, const Json& made_by);
 
 }  // namespace beampipe

@@ -5,29 +5,29 @@
 // report.json is written, the records go away.
 #pragma once
 
-#include <nlohmann/json.hpp>
 #include <optional>
 #include <string>
 #include <vector>
 
+#include "tools/evaluate/results.h"
 #include "tools/evaluate/run_plan.h"
 #include "tools/files/output.h"
-#include "tools/report/report.h"
+#include "traces/json.h"
 
 namespace beampipe {
 
 // What results depend on, by name: the command, the program and the trace by their contents, options. `more`: options
 // of the command's own.
-nlohmann::ordered_json made_by(const std::string& command, const RunPlan& plan, const nlohmann::ordered_json& more);
+Json made_by(const std::string& command, const RunPlan& plan, const Json& more);
 
 struct FrameRecord {
   std::vector<FrameReport> reports;  // one per technique
-  nlohmann::ordered_json sums;       // the command's own
+  Json sums;                         // the command's own
 };
 
 class FrameRecords {
  public:
-  FrameRecords(OutputFolder& output, nlohmann::ordered_json maker) : output_(output), maker_(std::move(maker)) {}
+  FrameRecords(OutputFolder& output, Json maker) : output_(output), maker_(std::move(maker)) {}
 
   // Whether report.json is there and made by the same; then removes the records that a kill may have left beside it.
   // Throws std::runtime_error, one line, when another made it.
@@ -37,7 +37,7 @@ class FrameRecords {
   // per spec and sums like `no_sums` but for the numbers; one that differs counts as damaged. Throws
   // std::runtime_error, one line that says what has changed, when all that is there was made by another.
   std::vector<FrameRecord> read(const std::vector<std::size_t>& frames, const std::vector<std::string>& specs,
-                                const nlohmann::ordered_json& no_sums) const;
+                                const Json& no_sums) const;
 
   void write(const FrameRecord& record);
 
@@ -45,20 +45,15 @@ class FrameRecords {
   void remove();
 
  private:
-  std::optional<FrameRecord> read(std::size_t frame, const std::vector<std::string>& specs,
-                                  const nlohmann::ordered_json& no_sums) const;
+  std::optional<FrameRecord> read(std::size_t frame, const std::vector<std::string>& specs, const Json& no_sums) const;
   std::vector<std::filesystem::path> list() const;
-  [[noreturn]] void refuse(const nlohmann::ordered_json& other_maker) const;
+  [[noreturn]] void refuse(const Json& other_maker) const;
 
   OutputFolder& output_;
-  nlohmann::ordered_json maker_;
+  Json maker_;
 };
 
 // In the output folder.
 std::string frame_record_name(std::size_t frame);
-
-// What --resume found: on stderr; that nothing is left to do, on stdout.
-void tell_resumption(const RunPlan& plan, std::size_t finished_frames);
-void tell_finished(const OutputFolder& output);
 
 }  // namespace beampipe

@@ -1,30 +1,18 @@
-// What `run` and `compare` were asked to do, checked as a whole before anything is rendered.
+// What is to be rendered.
 #pragma once
 
-#include <CLI/CLI.hpp>
+#include <cstddef>
 #include <string>
 #include <vector>
 
 #include "pipeline/technique.h"
 #include "tools/evaluate/hardware.h"
-#include "tools/files/output.h"
 #include "traces/trace.h"
 
 namespace beampipe {
 
-// As the user wrote them.
-struct RunArguments {
-  std::string trace, output, frames, hardware, trace_events;
-  std::vector<std::string> specs;
-  std::string simd;                // empty: the best
-  std::uint64_t memory_limit = 0;  // bytes; 0: the default
-  int threads = 0, repeat = 1;
-  bool allow_outside = false, no_memory_model = false, no_compression = false, resume = false;
-};
-
-void add_run_arguments(CLI::App& command, RunArguments& arguments);
-
 struct RunPlan {
+  std::string trace_file;  // as the user named it
   Trace trace;
   std::vector<Technique> techniques;
   std::vector<std::size_t> frames;  // rising
@@ -33,23 +21,10 @@ struct RunPlan {
   RunOptions options;  // with the number of threads resolved
 };
 
-// Also chooses the instruction set. Throws UsageError, SpecError, TraceError, or std::runtime_error where a frame
-// needs more memory than the machine has.
-RunPlan make_plan(const RunArguments& arguments);
-
-std::vector<std::string> specs_of(const std::vector<Technique>& techniques);
-
-// Throws std::runtime_error, one line, unless every technique's folder, that of the frames' records and
-// report.json can be written.
-void require_writable_folders(const OutputFolder& output, const std::vector<Technique>& techniques);
-
-// "A-B" or "A", counted from 0, both ends included. Throws UsageError unless A <= B < frames.
-std::vector<std::size_t> parse_frame_range(const std::string& text, std::size_t frames);
-
-// "msaa:1,8,32" stands for the three specs msaa:1, msaa:8 and msaa:32; every other spec for itself.
-std::vector<std::string> expand_specs(const std::vector<std::string>& specs);
-
-// Throws UsageError when a spec is there twice, or two specs have the same folder; SpecError when one is unknown.
-std::vector<Technique> parse_techniques(const std::vector<std::string>& specs);
+inline std::vector<std::string> specs_of(const std::vector<Technique>& techniques) {
+  std::vector<std::string> specs;
+  for (const Technique& technique : techniques) specs.push_back(technique.spec);
+  return specs;
+}
 
 }  // namespace beampipe

@@ -3,8 +3,6 @@
 namespace beampipe {
 namespace {
 
-using Json = nlohmann::ordered_json;
-
 constexpr const char* kBounds[] = {"none", "lower", "upper"};  // of PlotPoint::Bound
 
 Json to_json(const ScatterPlot& plot) {

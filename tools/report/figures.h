@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "tools/report/plot.h"
+#include "traces/json.h"
 
 namespace beampipe {
 
@@ -21,6 +22,6 @@ struct Figure {
 // Those that the report has the numbers for. Throws ReportError.
 std::vector<Figure> report_figures(const ReportFile& report);
 
-nlohmann::ordered_json to_json(const Figure& figure);
+Json to_json(const Figure& figure);
 
 }  // namespace beampipe

@@ -13,8 +13,6 @@
 namespace beampipe {
 namespace {
 
-using Json = nlohmann::ordered_json;
-
 std::string base64(const std::string& bytes) {
   constexpr char kDigits[] = "ABCDEFGHIJKLMNOPQRSTUVWXYZabcdefghijklmnopqrstuvwxyz0123456789+/";
   std::string text;
@@ -60,7 +58,8 @@ Json kinds_of(const std::set<std::string>& names) {
       if (names.contains(counter.name))
         kinds.push_back({{"name", counter.name}, {"unit", counter.unit}, {"definition", sentence(counter.meaning)}});
   for (const std::string& name : names)
-    if (std::none_of(kinds.begin(), kinds.end(), [&](const Json& kind) { return kind["name"] == name; }))
+    if (std::none_of(kinds.elements().begin(), kinds.elements().end(),
+                     [&](const Json& kind) { return kind.at("name") == name; }))
       kinds.push_back({{"name", name}, {"unit", ""}, {"definition", ""}});
   return kinds;
 }
@@ -82,15 +81,15 @@ std::filesystem::path file_of(const ReportFile& report, const std::string& name)
 Json report_layers(const ReportFile& report, std::size_t position) {
   Json layers = {{"frame", 0}, {"techniques", Json::array()}};
   std::set<std::string> names;
-  for (const Json& result : report.json.at("results")) {
+  for (const Json& result : report.json.at("results").elements()) {
     const Json& frame = result.at("frames").at(position);
     layers["frame"] = frame.at("index");
-    const std::filesystem::path picture = file_of(report, frame.at("picture"));
+    const std::filesystem::path picture = file_of(report, frame.at("picture").get<std::string>());
     Json technique = {{"technique", result.at("technique")},
                       {"picture", png_url(read_input_file(picture, picture.string()))},
                       {"maps", Json::array()}};
-    if (frame.contains("counters")) {
-      const Planes planes = read_exr_planes(file_of(report, frame["counters"]));
+    if (const Json* counters = frame.find("counters")) {
+      const Planes planes = read_exr_planes(file_of(report, counters->get<std::string>()));
       for (const auto& [name, values] : planes.channels) {
         technique["maps"].push_back(map_of(name, planes, values));
         names.insert(name);

@@ -1,9 +1,8 @@
 // What the page shows per pixel: each technique's picture and, per counter, a map of its values.
 #pragma once
 
-#include <nlohmann/json.hpp>
-
 #include "tools/report/report_file.h"
+#include "traces/json.h"
 
 namespace beampipe {
 
@@ -15,6 +14,6 @@ namespace beampipe {
 // 16-bit number q = 256 red + green of each pixel, which stands for the value low + q * step; for counts up to 65535
 // step is 1 and they are exact. low is 0 unless there are negative values. What is not finite counts as 0. Throws
 // ReportError and ImageError.
-nlohmann::ordered_json report_layers(const ReportFile& report, std::size_t position);
+Json report_layers(const ReportFile& report, std::size_t position);
 
 }  // namespace beampipe

@@ -1,12 +1,9 @@
 #include "tools/report/page.h"
 
 #include "tools/report/page_files.h"
-#include "tools/report/report.h"
 
 namespace beampipe {
 namespace {
-
-using Json = nlohmann::ordered_json;
 
 Json to_json(const Table& table) {
   Json json = {{"name", table.name}, {"title", table.title}, {"columns", Json::array()}, {"rows", table.rows}};
@@ -32,7 +29,7 @@ std::string escaped(const std::string& text) {
 // Inside <script> nothing may look like a tag.
 std::string script_json(const Json& json) {
   std::string text;
-  for (const char c : json.dump(-1, ' ', false, Json::error_handler_t::replace)) {
+  for (const char c : json.dump()) {
     text += c == '<' ? "\\u003c" : std::string(1, c);
   }
   return text;
@@ -43,13 +40,14 @@ std::string script_json(const Json& json) {
 std::string page_html(const ReportFile& report, const std::vector<Table>& tables, const std::vector<Figure>& figures,
                       const Json& layers) {
   const Json& results = report.json.at("results");
-  Json data = {{"scene", report.scene}, {"layers", layers}, {"colors", kPlotColors}};
+  Json data = {
+      {"scene", report.scene}, {"layers", layers}, {"colors", std::vector(kPlotColors.begin(), kPlotColors.end())}};
   data["facts"] = {{"trace", report.json.at("trace")},
-                   {"frames", std::to_string(results.front().at("frames").size())},
+                   {"frames", std::to_string(results.at(0).at("frames").size())},
                    {"techniques", std::to_string(results.size())},
-                   {"program", "beampipe " + report.json.value("version", "")},
+                   {"program", "beampipe " + report.json.value("version", std::string())},
                    {"threads", std::to_string(report.json.value("threads", 1))},
-                   {"SIMD target", report.json.value("simd", "")}};
+                   {"SIMD target", report.json.value("simd", std::string())}};
   data["tables"] = Json::array();
   for (const Table& table : tables) data["tables"].push_back(to_json(table));
   data["figures"] = Json::array();

@@ -4,8 +4,8 @@
 #include <cmath>
 #include <map>
 
-#include "tools/report/report.h"
-#include "traces/json_cursor.h"
+#include "tools/evaluate/results.h"
+#include "traces/json.h"
 
 namespace beampipe {
 namespace {
@@ -57,10 +57,10 @@ TechniqueSummary mean_summary(const std::vector<TechniqueSummary>& of_one_techni
 // Adds the numbers of `other` to those at the same places in `sum`.
 void add_numbers(Json& sum, const Json& other) {
   if (sum.is_null()) sum = Json::object();
-  for (const auto& [key, value] : other.items()) {
+  for (const auto& [key, value] : other.members()) {
     if (value.is_object()) {
       add_numbers(sum[key], value);
-    } else if (value.is_number_unsigned()) {
+    } else if (value.is_unsigned()) {
       sum[key] = sum.value(key, std::uint64_t{0}) + value.get<std::uint64_t>();
     } else if (value.is_number()) {
       sum[key] = sum.value(key, 0.0) + value.get<double>();
@@ -83,24 +83,25 @@ void add_derived(Json& stage) {
 
 TechniqueSummary read_summary(const Json& result) {
   TechniqueSummary summary;
-  summary.spec = result.at("technique");
-  summary.bytes_per_pixel = result.at("peak_bytes_per_pixel");
+  summary.spec = result.at("technique").get<std::string>();
+  summary.bytes_per_pixel = result.at("peak_bytes_per_pixel").get<double>();
   std::vector<double> medians;
-  for (const Json& frame : result.at("frames")) medians.push_back(frame.at("wall_ms").at("median"));
+  const std::vector<Json>& frames = result.at("frames").elements();
+  for (const Json& frame : frames) medians.push_back(frame.at("wall_ms").at("median").get<double>());
   summary.wall_ms = wall_time(std::move(medians)).median;
-  for (const Json& frame : result["frames"]) {
-    const auto frames = static_cast<double>(result["frames"].size());
-    summary.dram_bytes += frame.value("dram_bytes", 0.0) / frames;
+  for (const Json& frame : frames) {
+    const auto count = static_cast<double>(frames.size());
+    summary.dram_bytes += frame.value("dram_bytes", 0.0) / count;
     const Json times = frame.value("modelled_ms", Json::object());
-    for (const auto& [implementation, time] : times.items()) {
+    for (const auto& [implementation, time] : times.members()) {
       ModelledMs& mean = summary.modelled_ms[implementation];
-      mean.overlap += time.at("overlap").get<double>() / frames;
-      mean.sum += time.at("sum").get<double>() / frames;
+      mean.overlap += time.at("overlap").get<double>() / count;
+      mean.sum += time.at("sum").get<double>() / count;
     }
   }
-  if (result.contains("error")) summary.rmse = result["error"].at("rmse");
-  if (result.contains("equivalent_msaa")) {
-    summary.emr = {result["equivalent_msaa"], result.value("equivalent_msaa_is_lower_bound", false),
+  if (const Json* error = result.find("error")) summary.rmse = error->at("rmse").get<double>();
+  if (const Json* samples = result.find("equivalent_msaa")) {
+    summary.emr = {samples->get<double>(), result.value("equivalent_msaa_is_lower_bound", false),
                    result.value("equivalent_msaa_is_upper_bound", false)};
   }
   return summary;
@@ -108,9 +109,9 @@ TechniqueSummary read_summary(const Json& result) {
 
 std::vector<Json> stage_records(const ReportFile& report) {
   std::vector<Json> records;
-  for (const Json& result : report.json.at("results")) {
-    const Json& frames = result.at("frames");
-    std::vector<Json> stages(frames.front().at("stages").size());
+  for (const Json& result : report.json.at("results").elements()) {
+    const std::vector<Json>& frames = result.at("frames").elements();
+    std::vector<Json> stages(frames.at(0).at("stages").size());
     for (const Json& frame : frames) {
       for (std::size_t i = 0; i < stages.size(); ++i) add_numbers(stages[i], frame.at("stages").at(i));
     }
@@ -135,11 +136,12 @@ ReportFile read_report(const std::filesystem::path& folder) {
   try {
     if (report.json.at("beampipe_report") != 1) throw std::runtime_error("its beampipe_report is not 1");
     report.scene = std::filesystem::path(report.json.at("trace").get<std::string>()).stem().string();
-    for (const Json& result : report.json.at("results")) {
+    for (const Json& result : report.json.at("results").elements()) {
       if (result.at("technique") != "reference") report.techniques.push_back(read_summary(result));
     }
-    for (const Json& rung : report.json.value("msaa_ladder", Json::array())) {
-      report.msaa_ladder.push_back({rung.at("samples"), rung.at("rmse")});
+    const Json ladder = report.json.value("msaa_ladder", Json::array());
+    for (const Json& rung : ladder.elements()) {
+      report.msaa_ladder.push_back({rung.at("samples").get<std::uint32_t>(), rung.at("rmse").get<double>()});
     }
   } catch (const std::exception& error) {
     throw ReportError(file.string() + ": not a report that beampipe wrote: " + error.what());

@@ -3,13 +3,13 @@
 
 #include <filesystem>
 #include <map>
-#include <nlohmann/json.hpp>
 #include <optional>
 #include <stdexcept>
 #include <string>
 #include <vector>
 
 #include "tools/evaluate/metrics.h"
+#include "traces/json.h"
 
 namespace beampipe {
 
@@ -38,18 +38,18 @@ struct TechniqueSummary {
 struct ReportFile {
   std::filesystem::path folder;
   std::string scene;                         // the trace's file name without folder and extension
-  nlohmann::ordered_json json;               // the whole file
+  Json json;                                 // the whole file
   std::vector<TechniqueSummary> techniques;  // without `reference`, which the others are judged by
   std::vector<LadderRung> msaa_ladder;       // empty after `run`
 };
 
 // Of one member of the report's "results". Throws nlohmann's exceptions when it is not one.
-TechniqueSummary read_summary(const nlohmann::ordered_json& result);
+TechniqueSummary read_summary(const Json& result);
 
 // For each technique and stage, in order: what the frames' "stages" say, summed over the frames, and "technique",
 // "frames" (how many), "logical_bytes" (read and written), "ops_per_byte" (of these) and "lane_use" (the last two where
 // there is something to divide by).
-std::vector<nlohmann::ordered_json> stage_records(const ReportFile& report);
+std::vector<Json> stage_records(const ReportFile& report);
 
 // Reads FOLDER/report.json. Throws ReportError; TraceError when it is no file of JSON.
 ReportFile read_report(const std::filesystem::path& folder);

@@ -2,13 +2,11 @@
 
 #include <algorithm>
 
+#include "tools/evaluate/results.h"
 #include "tools/report/plot.h"
-#include "tools/report/report.h"
 
 namespace beampipe {
 namespace {
-
-using Json = nlohmann::ordered_json;
 
 constexpr double kMega = 1e6;
 
@@ -30,10 +28,10 @@ struct Roof {
 // Nothing when no hardware was modelled.
 std::optional<Roof> roof_of(const ReportFile& report) {
   if (!report.json.contains("hardware") || report.techniques.front().modelled_ms.empty()) return std::nullopt;
-  const Json& hardware = report.json["hardware"];
+  const Json& hardware = report.json.at("hardware");
   const Json& rates = hardware.at("rates");
   const double gigahertz = hardware.at("clock_mhz").get<double>() / 1000;
-  return Roof{hardware.at("implementations").begin().key(), gigahertz * rates.at("issue_per_clk").get<double>(),
+  return Roof{hardware.at("implementations").members().at(0).key, gigahertz * rates.at("issue_per_clk").get<double>(),
               gigahertz * rates.at("dram_bytes_per_clk").get<double>()};
 }
 
@@ -59,10 +57,12 @@ std::optional<BarPlot> bytes_plot(const ReportFile& report, const std::string& k
   BarPlot plot{kind + "_bytes", "Memory traffic by stage: " + report.scene, kind + " bytes, MB per frame", {}, {}};
   for (const TechniqueSummary& summary : report.techniques) plot.categories.push_back(summary.spec);
   for (const Json& stage : stage_records(report)) {
-    const auto bar = std::find(plot.categories.begin(), plot.categories.end(), stage.at("technique"));
+    const auto bar =
+        std::find(plot.categories.begin(), plot.categories.end(), stage.at("technique").get<std::string>());
     if (!stage.contains(key) || bar == plot.categories.end()) continue;
-    part_named(plot, stage.at("stage")).values[static_cast<std::size_t>(bar - plot.categories.begin())] +=
-        stage[key].get<double>() / stage.at("frames").get<double>() / kMega;
+    part_named(plot, stage.at("stage").get<std::string>())
+        .values[static_cast<std::size_t>(bar - plot.categories.begin())] +=
+        stage.at(key).get<double>() / stage.at("frames").get<double>() / kMega;
   }
   if (plot.parts.empty()) return std::nullopt;
   return plot;
@@ -80,8 +80,9 @@ ScatterPlot roofline_plot(const ReportFile& report, const std::string& technique
   std::string left_out;
   for (const Json& stage : stage_records(report)) {
     if (stage.at("technique") != technique) continue;
-    const std::string name = stage.at("stage");
-    const double ops = stage.at("ops").at("total"), bytes = stage.at(roof ? "dram_bytes" : "logical_bytes");
+    const std::string name = stage.at("stage").get<std::string>();
+    const double ops = stage.at("ops").at("total").get<double>(),
+                 bytes = stage.at(roof ? "dram_bytes" : "logical_bytes").get<double>();
     const double ms = roof ? stage.at("modelled_ms").at(roof->implementation).get<double>() : 1;
     if (ops > 0 && bytes > 0 && ms > 0) {
       const double height = roof ? ops / ms / 1e6 : ops / stage.at("frames").get<double>() / kMega;

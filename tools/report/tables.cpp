@@ -10,8 +10,6 @@
 namespace beampipe {
 namespace {
 
-using Json = nlohmann::ordered_json;
-
 struct Source {
   Column column;
   std::string pointer;  // where the value is in a row's record
@@ -126,17 +124,28 @@ const std::vector<Source> kClaimColumns = {
     {{"command", "command", "", "What finds our number."}, "/command"},
 };
 
+// Null where one of the keys on the way, which have "/" before them, is missing.
+const Json* value_at(const Json& record, std::string_view pointer) {
+  const Json* value = &record;
+  while (value && !pointer.empty()) {
+    const std::size_t end = std::min(pointer.find('/', 1), pointer.size());
+    value = value->find(pointer.substr(1, end - 1));
+    pointer.remove_prefix(end);
+  }
+  return value;
+}
+
 // One row per record, one column per source that any record has.
 Table make_table(const std::string& name, const std::string& title, const std::vector<Source>& sources,
                  const std::vector<Json>& records) {
   Table table{name, title, {}, std::vector<std::vector<Json>>(records.size())};
   for (const Source& source : sources) {
-    const Json::json_pointer pointer(source.pointer);
-    const auto has_it = [&](const Json& record) { return record.contains(pointer); };
+    const auto has_it = [&](const Json& record) { return value_at(record, source.pointer) != nullptr; };
     if (std::none_of(records.begin(), records.end(), has_it)) continue;
     table.columns.push_back(source.column);
     for (std::size_t i = 0; i < records.size(); ++i) {
-      table.rows[i].push_back(has_it(records[i]) ? records[i].at(pointer) : Json());
+      const Json* value = value_at(records[i], source.pointer);
+      table.rows[i].push_back(value ? *value : Json());
     }
   }
   return table;
@@ -166,7 +175,7 @@ std::vector<Source> with_modelled_times(std::vector<Source> sources, const Repor
 std::vector<Json> technique_records(const ReportFile& report) {
   const double msaa_bytes = parse_technique("msaa:1").framebuffer_bytes_per_pixel();
   std::vector<Json> records;
-  for (const Json& result : report.json.at("results")) {
+  for (const Json& result : report.json.at("results").elements()) {
     Json record = result;
     const TechniqueSummary summary = read_summary(result);
     record["wall_ms"] = summary.wall_ms;
@@ -187,8 +196,8 @@ std::vector<Json> technique_records(const ReportFile& report) {
 // The members of each record's array `key`, each with the record's technique.
 std::vector<Json> members(const Json& results, const std::string& key) {
   std::vector<Json> records;
-  for (const Json& result : results) {
-    for (Json member : result.at(key)) {
+  for (const Json& result : results.elements()) {
+    for (Json member : result.at(key).elements()) {
       member["technique"] = result.at("technique");
       records.push_back(std::move(member));
     }
@@ -199,11 +208,11 @@ std::vector<Json> members(const Json& results, const std::string& key) {
 // What each technique's shortcuts saved, over all frames.
 std::vector<Json> saved_records(const Json& results) {
   std::vector<Json> records;
-  for (const Json& result : results) {
+  for (const Json& result : results.elements()) {
     Json record = {{"technique", result.at("technique")}};
-    for (const Json& frame : result.at("frames")) {
+    for (const Json& frame : result.at("frames").elements()) {
       const Json saved = frame.value("saved", Json::object());
-      for (const auto& [name, amount] : saved.items())
+      for (const auto& [name, amount] : saved.members())
         record[name] = record.value(name, std::uint64_t{0}) + amount.get<std::uint64_t>();
     }
     if (record.size() > 1) records.push_back(std::move(record));
@@ -224,7 +233,7 @@ std::vector<Source> saved_columns() {
 std::string csv_field(const Json& value) {
   if (value.is_null()) return "";
   if (!value.is_string()) return value.dump();
-  const std::string text = value;
+  const std::string text = value.get<std::string>();
   if (text.find_first_of("\",\r\n") == text.npos) return text;
   std::string quoted = "\"";
   for (const char c : text) quoted += c == '"' ? "\"\"" : std::string(1, c);
@@ -246,10 +255,9 @@ std::vector<Table> report_tables(const ReportFile& report) {
   const std::vector<Json> frames = members(results, "frames");
   if (frames.size() > results.size())
     tables.push_back(make_table("frames", "Frames", with_modelled_times(kFrameColumns, report, "ms"), frames));
-  const auto& claims = report.json.find("claims");
-  if (claims != report.json.end() && !claims->empty()) {
-    tables.push_back(
-        make_table("claims", "Claims of the publications", kClaimColumns, {claims->begin(), claims->end()}));
+  const Json* claims = report.json.find("claims");
+  if (claims && claims->size() > 0) {
+    tables.push_back(make_table("claims", "Claims of the publications", kClaimColumns, claims->elements()));
   }
   return tables;
 }

@@ -1,11 +1,11 @@
 // The numbers of a report as tables: for the page, and as CSV files.
 #pragma once
 
-#include <nlohmann/json.hpp>
 #include <string>
 #include <vector>
 
 #include "tools/report/report_file.h"
+#include "traces/json.h"
 
 namespace beampipe {
 
@@ -20,7 +20,7 @@ struct Table {
   std::string name;   // for files: "techniques"
   std::string title;  // on the page
   std::vector<Column> columns;
-  std::vector<std::vector<nlohmann::ordered_json>> rows;  // beside columns: a number, a string, or null
+  std::vector<std::vector<Json>> rows;  // beside columns: a number, a string, or null
 };
 
 // Techniques, surfaces of their framebuffers, stages, frames (when there are several), claims (when there are some).

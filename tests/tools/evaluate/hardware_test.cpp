@@ -63,7 +63,7 @@ std::string refusal(const std::string& from, const std::string& to) {
   const std::size_t at = text.find(from);
   EXPECT_NE(at, text.npos) << from;
   try {
-    parse_hardware(nlohmann::ordered_json::parse(text.replace(at, from.size(), to)), "h.json");
+    parse_hardware(parse_json_text(text.replace(at, from.size(), to), "h.json"), "h.json");
   } catch (const std::runtime_error& error) {
     return error.what();
   }

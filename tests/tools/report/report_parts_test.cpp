@@ -56,7 +56,7 @@ const Table& named(const std::vector<Table>& tables, const std::string& name) {
   throw std::runtime_error("no table " + name);
 }
 
-nlohmann::ordered_json cell(const Table& table, std::size_t row, const std::string& key) {
+Json cell(const Table& table, std::size_t row, const std::string& key) {
   for (std::size_t i = 0; i < table.columns.size(); ++i) {
     if (table.columns[i].key == key) return table.rows.at(row).at(i);
   }

@@ -1,7 +1,6 @@
-#include "tools/evaluate/run_plan.h"
+#include "tools/cli/run_arguments.h"
 
 #include "tests/tools/fixtures.h"
-#include "tools/cli/commands.h"
 
 namespace beampipe {
 namespace {

@@ -5,7 +5,8 @@
 #include <string>
 
 #include "pipeline/timeline.h"
-#include "tools/evaluate/run_plan.h"
+#include "tools/cli/run_arguments.h"
+#include "tools/files/interrupt.h"
 
 namespace beampipe {
 

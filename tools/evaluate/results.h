@@ -1,9 +1,8 @@
-// What run and compare found: as report.json (its keys are a contract: add, never rename) and as a table for reading.
+// What run and compare find out about frames and techniques.
 #pragma once
 
 #include <cstdint>
 #include <map>
-#include <nlohmann/json.hpp>
 #include <optional>
 #include <string>
 #include <string_view>
@@ -12,6 +11,7 @@
 #include "pipeline/technique.h"
 #include "tools/evaluate/hardware.h"
 #include "tools/evaluate/metrics.h"
+#include "traces/json.h"
 
 namespace beampipe {
 
@@ -79,7 +79,7 @@ struct Report {
   Hardware hardware;  // whose times are modelled; without implementations: none
   std::vector<TechniqueReport> results;
   std::vector<LadderRung> msaa_ladder;  // empty: not measured
-  nlohmann::ordered_json made_by = {};  // what the results depend on (tools/evaluate/resume.h)
+  Json made_by = {};                    // what the results depend on (tools/evaluate/resume.h)
 };
 
 // For instance "0.1.0".
@@ -88,29 +88,10 @@ std::string program_version();
 // The report of a technique of which no frame has been rendered yet.
 TechniqueReport new_technique_report(const Technique& technique);
 
-nlohmann::ordered_json to_json(const ErrorStats& stats);
-nlohmann::ordered_json to_json(const Report& report);
-
-// The text of a JSON file; bytes that are not UTF-8 are replaced.
-std::string json_text(const nlohmann::ordered_json& json);
-
 // The folder of a technique's images: the spec, every character outside [A-Za-z0-9.=-] turned into _.
 std::string spec_folder(std::string_view spec);
 
 // "msaa_8/frame_0007": how the names of a frame's files begin, in the output folder.
 std::string frame_stem(std::string_view spec, std::size_t frame);
-
-// One row per technique under one row of titles; `folder` is where the pictures' paths start.
-std::string table_text(const Report& report, const std::string& folder);
-
-// What --causes and --orders found, each with an empty line before it; "" where they were not asked for.
-std::string causes_text(const Report& report);
-std::string orders_text(const Report& report);
-
-// Columns separated by two blanks; those named in `left` (by index) start at the left, the others end at the right.
-std::string align_columns(const std::vector<std::vector<std::string>>& rows, const std::vector<std::size_t>& left);
-
-// "36.2", "≥ 256" (lower bound), "< 1" (upper bound).
-std::string emr_text(const EquivalentMsaa& emr);
 
 }  // namespace beampipe

@@ -1,12 +1,18 @@
-// Parsing with what the JSON library lets pass or says badly: duplicate keys, numbers out of range, depth.
+// Text to values and back, by way of the library. It lets duplicate keys pass and any depth, and has long messages:
+// the handler below sees to that.
+#include <nlohmann/json.hpp>
 #include <set>
+#include <sstream>
 #include <string_view>
 
 #include "traces/input_file.h"
+#include "traces/json.h"
 #include "traces/json_cursor.h"
 
 namespace beampipe {
 namespace {
+
+using Library = nlohmann::ordered_json;
 
 // Of arrays and objects in each other: a report has 8, a trace 6. Each open one takes 200 bytes for its "[".
 constexpr std::size_t kMostLevels = 32;
@@ -23,7 +29,7 @@ std::string reason_of(const std::exception& error) {
 
 // Builds the value while it knows where the parser stands. As a handler of its own: given a callback, the library looks
 // through an array again for each object in it.
-class Builder : public nlohmann::json_sax<Json> {
+class Builder : public nlohmann::json_sax<Library> {
  public:
   // `stream`: what the parser reads, to know where it stands.
   Builder(const std::string& file, std::istream& stream) : file_(file), stream_(stream) {}
@@ -36,7 +42,7 @@ class Builder : public nlohmann::json_sax<Json> {
   bool number_unsigned(number_unsigned_t value) override { return add(value); }
   bool number_float(number_float_t value, const string_t&) override { return add(value); }
   bool string(string_t& value) override { return add(std::move(value)); }
-  bool binary(binary_t& value) override { return add(std::move(value)); }
+  bool binary(binary_t&) override { return false; }  // no text has that
   bool start_object(std::size_t) override { return enter(Json::object()); }
   bool start_array(std::size_t) override { return enter(Json::array()); }
   bool end_object() override { return leave(); }
@@ -46,8 +52,8 @@ class Builder : public nlohmann::json_sax<Json> {
     if (!levels_.back().keys.insert(key).second) fail_trace(where(), "each key once", in_quotes(key) + " again");
     return true;
   }
-  bool parse_error(std::size_t byte, const std::string&, const Json::exception& error) override {
-    if (dynamic_cast<const Json::out_of_range*>(&error)) fail_trace(where(), "a finite number", reason_of(error));
+  bool parse_error(std::size_t byte, const std::string&, const Library::exception& error) override {
+    if (dynamic_cast<const Library::out_of_range*>(&error)) fail_trace(where(), "a finite number", reason_of(error));
     fail_trace(file_ + ": byte " + std::to_string(byte), "valid JSON", reason_of(error));
   }
 
@@ -55,20 +61,19 @@ class Builder : public nlohmann::json_sax<Json> {
   std::string where() const {
     std::string pointer;
     for (const Level& level : levels_) {
-      // The element that is open is there already; behind the innermost array's last one stands what comes next.
+      // The element that is open is there already. In the innermost array the next one comes after the last.
       const std::size_t index = level.value->size() - (&level == &levels_.back() ? 0 : 1);
       pointer += '/' + (level.value->is_array() ? std::to_string(index) : pointer_step(level.key));
     }
     return file_ + ": " + (pointer.empty() ? "/" : pointer);
   }
 
-  // To its place: behind the others of an array or object, whose keys are known to differ.
+  // To its place: after the others of an array, or of an object, whose keys are known to differ.
   Json& place(Json&& value) {
     if (levels_.empty()) return root_ = std::move(value);
     Json& parent = *levels_.back().value;
-    if (parent.is_array()) return parent.emplace_back(std::move(value));
-    auto& members = parent.get_ref<Json::object_t&>();
-    return static_cast<Json::object_t::Container&>(members).emplace_back(levels_.back().key, std::move(value)).second;
+    if (parent.is_array()) return parent.elements().emplace_back(std::move(value));
+    return parent.members().emplace_back(Json::Member{levels_.back().key, std::move(value)}).value;
   }
   bool add(Json&& value) {
     place(std::move(value));
@@ -100,13 +105,54 @@ class Builder : public nlohmann::json_sax<Json> {
   std::vector<Level> levels_;
 };
 
+Json parse(std::istream& stream, const std::string& name) {
+  Builder builder(name, stream);
+  Library::sax_parse(stream, &builder);
+  return builder.take();
+}
+
+Library to_library(const Json& json) {
+  if (json.is_null()) return nullptr;
+  if (json.is_string()) return json.get<std::string>();
+  if (json.is_unsigned()) return json.get<std::uint64_t>();
+  if (json.is_integer()) return json.get<std::int64_t>();
+  if (json.is_number()) return json.get<double>();
+  if (json.is_array()) {
+    Library array = Library::array();
+    for (const Json& element : json.elements()) array.push_back(to_library(element));
+    return array;
+  }
+  if (json.is_object()) {
+    Library::object_t object;
+    for (const auto& [key, value] : json.members())
+      static_cast<Library::object_t::Container&>(object).emplace_back(key, to_library(value));
+    return object;
+  }
+  return json.get<bool>();
+}
+
 }  // namespace
+
+std::string Json::dump(int indent) const {
+  return to_library(*this).dump(indent, ' ', false, Library::error_handler_t::replace);
+}
+
+std::string json_string(const std::string& text) {
+  try {
+    return Library(text).dump();
+  } catch (const Library::exception&) {
+    throw JsonError("expected UTF-8, found other bytes");
+  }
+}
 
 Json parse_json(const std::string& file) {
   std::ifstream stream = open_input_file(file, file);
-  Builder builder(file, stream);
-  Json::sax_parse(stream, &builder);
-  return builder.take();
+  return parse(stream, file);
+}
+
+Json parse_json_text(const std::string& text, const std::string& name) {
+  std::istringstream stream(text);
+  return parse(stream, name);
 }
 
 }  // namespace beampipe

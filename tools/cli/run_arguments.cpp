@@ -1,4 +1,4 @@
-#include "tools/evaluate/run_plan.h"
+#include "tools/cli/run_arguments.h"
 
 #include <algorithm>
 #include <charconv>
@@ -8,17 +8,15 @@
 #include <thread>
 
 #include "simd/target.h"
-#include "tools/cli/commands.h"
 #include "tools/evaluate/machine_memory.h"
-#include "tools/evaluate/resume.h"
-#include "tools/report/report.h"
+#include "tools/evaluate/results.h"
 #include "traces/trace_io.h"
 
 namespace beampipe {
 
 namespace {
 
-// A trace behind -t is taken for a technique.
+// What follows -t is taken for techniques, even if it is a trace.
 void require_trace(const RunArguments& arguments) {
   if (!arguments.trace.empty()) return;
   std::string hint;
@@ -29,36 +27,32 @@ void require_trace(const RunArguments& arguments) {
 
 }  // namespace
 
-void add_run_arguments(CLI::App& command, RunArguments& arguments) {
-  command.add_option("TRACE", arguments.trace, "the trace to render (JSON)");
-  command.add_option("-t,--technique", arguments.specs, "one or more techniques; may be repeated (list below)")
-      ->required();
-  command.add_option("-o,--output", arguments.output, "folder for images and report.json; made if need be")->required();
-  command.add_option("--frames", arguments.frames, "only frames A-B of the trace, counted from 0 (default: all)");
-  command.add_option("--threads", arguments.threads, "threads to use (default: all that the machine has)")
-      ->check(CLI::Range(1, 1024));
+void add_run_arguments(Command& command, RunArguments& arguments) {
+  command.add("TRACE", arguments.trace, "the trace to render (JSON)");
+  command.add("-t,--technique", arguments.specs, "one or more techniques; may be repeated (list below)").required();
+  command.add("-o,--output", arguments.output, "folder for pictures and report.json; made if need be").required();
+  command.add("--frames", arguments.frames, "only frames A-B of the trace, counted from 0 (default: all)");
+  command.add("--threads", arguments.threads, "threads to use (default: all that the machine has)").between(1, 1024);
+  command.add("--simd", arguments.simd, "instruction set to use; the results are the same (default: the first here)")
+      .one_of(simd_targets());
   command
-      .add_option("--simd", arguments.simd,
-                  "instruction set to use; the results are the same (default: the first here)")
-      ->transform(CLI::IsMember(simd_targets(), CLI::ignore_case));
+      .add("--memory-limit", arguments.memory_limit,
+           "for what is kept per triangle and pixel, such as 512MB: a frame that needs more is rendered in bands, with "
+           "the same results (default: half of the machine's memory)")
+      .bytes()
+      .between(std::uint64_t{1} << 20, std::uint64_t{1} << 50);
   command
-      .add_option("--memory-limit", arguments.memory_limit,
-                  "for what is kept per triangle and pixel, such as 512MB: a frame that needs more is rendered in "
-                  "bands, with the same results (default: half of the machine's memory)")
-      ->transform(CLI::AsSizeValue(false))
-      ->check(CLI::Range(std::uint64_t{1} << 20, std::uint64_t{1} << 50));
-  command
-      .add_option("--repeat", arguments.repeat,
-                  "times to render each frame, for steadier times (default: 1; above it, times are "
-                  "without the memory model, which one more rendering is for)")
-      ->check(CLI::Range(1, 1000000));
+      .add("--repeat", arguments.repeat,
+           "times to render each frame, for steadier times (default: 1; above it, times are without the memory model, "
+           "which one more rendering is for)")
+      .between(1, 1000000);
   command.add_flag("--resume", arguments.resume,
-                   "go on behind the last whole frame that the same command left in the folder when it was stopped");
-  command.add_option("--hardware", arguments.hardware,
-                     "description of the hardware whose times are modelled (default: one of Titan V class)");
-  command.add_option(
-      "--trace-events", arguments.trace_events,
-      "file, outside the output folder, for a timeline of stages per tile and thread, for ui.perfetto.dev (JSON)");
+                   "go on after the last whole frame that the same command left in the folder when it was stopped");
+  command.add("--hardware", arguments.hardware,
+              "description of the hardware whose times are modelled (default: one of Titan V class)");
+  command.add("--trace-events", arguments.trace_events,
+              "file, outside the output folder, for a timeline of stages per tile and thread, for ui.perfetto.dev "
+              "(JSON)");
   command.add_flag("--no-memory-model", arguments.no_memory_model,
                    "do not model caches: frames are faster, sector_bytes and dram_bytes are 0");
   command.add_flag("--no-compression", arguments.no_compression, "model memory without block compression");
@@ -68,6 +62,7 @@ void add_run_arguments(CLI::App& command, RunArguments& arguments) {
 RunPlan make_plan(const RunArguments& arguments) {
   require_trace(arguments);
   RunPlan plan;
+  plan.trace_file = arguments.trace;
   plan.techniques = parse_techniques(arguments.specs);
   plan.repeat = arguments.repeat;
   plan.options.threads = arguments.threads > 0 ? arguments.threads : std::max(1u, std::thread::hardware_concurrency());
@@ -83,19 +78,6 @@ RunPlan make_plan(const RunArguments& arguments) {
       require_memory(plan.trace, plan.trace.frames[frame], technique.working_bytes_per_pixel,
                      "frame " + std::to_string(frame) + " with " + technique.spec, machine_memory());
   return plan;
-}
-
-std::vector<std::string> specs_of(const std::vector<Technique>& techniques) {
-  std::vector<std::string> specs;
-  for (const Technique& technique : techniques) specs.push_back(technique.spec);
-  return specs;
-}
-
-void require_writable_folders(const OutputFolder& output, const std::vector<Technique>& techniques) {
-  require_writable_folder(output.path());
-  for (const Technique& technique : techniques) require_writable_folder(output.path() / spec_folder(technique.spec));
-  require_writable_folder((output.path() / frame_record_name(0)).parent_path());
-  require_writable_file(output.path() / "report.json");
 }
 
 std::vector<std::size_t> parse_frame_range(const std::string& text, std::size_t frames) {

@@ -1,16 +1,16 @@
-#include "tools/evaluate/trace_events.h"
+#include "tools/cli/trace_events.h"
 
 #include <algorithm>
 #include <map>
-#include <nlohmann/json.hpp>
 
-#include "tools/cli/commands.h"
+#include "tools/files/output.h"
+#include "traces/json.h"
 
 namespace beampipe {
 namespace {
 
 namespace fs = std::filesystem;
-using Json = nlohmann::ordered_json;
+using Json = Json;
 using Time = Timeline::Clock::time_point;
 
 constexpr int kProcess = 1;

@@ -1,0 +1,87 @@
+#include "stages/cost/counters.h"
+
+#include <algorithm>
+#include <iterator>
+
+namespace beampipe {
+namespace {
+
+using Stage = StageCounters;
+using Ops = OperationCounts;
+
+constexpr CounterInfo field(const char* name, const char* title, const char* unit, const char* meaning,
+                            Count Stage::*counter) {
+  return {name, title, unit, meaning, counter, nullptr, nullptr};
+}
+
+constexpr CounterInfo operation(const char* name, const char* title, const char* meaning, Count Ops::*kind) {
+  return {name, title, "operations", meaning, nullptr, kind, nullptr};
+}
+
+constexpr CounterInfo sum(const char* name, const char* title, const char* unit, const char* meaning,
+                          Count (*value)(const Stage&)) {
+  return {name, title, unit, meaning, nullptr, nullptr, value};
+}
+
+constexpr CounterInfo kCounters[] = {
+    field("items_in", "items in", "items", "items that enter the stage", &Stage::items_in),
+    field("items_out", "items out", "items", "items that leave the stage", &Stage::items_out),
+    sum("ops.total", "operations", "operations", "operations of all kinds",
+        [](const Stage& stage) { return stage.ops.total(); }),
+    operation("ops.mul_add", "mul-add", "multiplications; the addition of a multiply-add counts as an `ops.add`",
+              &Ops::mul_add),
+    operation("ops.add", "add", "additions, subtractions, comparisons, minima, maxima and selections", &Ops::add),
+    operation("ops.bit", "bit", "bitwise operations, shifts, absolute values and population counts", &Ops::bit),
+    operation("ops.fetch", "fetch", "table look-ups", &Ops::fetch),
+    operation("ops.special", "special", "divisions, remainders, square roots and arc tangents", &Ops::special),
+    operation("ops.convert", "convert",
+              "conversions between integers and floats, and between float32 and fp16 or normalized formats",
+              &Ops::convert),
+    field("bytes_read", "read", "bytes",
+          "logical bytes that the stage reads, counted at every read; queues between stages are included",
+          &Stage::bytes_read),
+    field("bytes_written", "written", "bytes", "logical bytes that the stage writes", &Stage::bytes_written),
+    sum("logical_bytes", "logical", "bytes", "bytes_read + bytes_written",
+        [](const Stage& stage) { return stage.logical_bytes(); }),
+    field("sector_bytes", "sectors", "bytes",
+          "bytes that the stage requests from the memory system to read or write, in whole sectors of 32 bytes; a "
+          "queue that stays on chip requests nothing",
+          &Stage::sector_bytes),
+    field("l2_bytes", "L2", "bytes",
+          "bytes requested from L2, in whole sectors: what the ROP caches and L1 miss, write back or write through",
+          &Stage::l2_bytes),
+    field("dram_bytes", "DRAM", "bytes",
+          "bytes that move between the modelled caches and DRAM because of the stage, in either direction",
+          &Stage::dram_bytes),
+    field("lanes_used", "lanes used", "lanes", "lanes that have work", &Stage::lanes_used),
+    field("lanes_issued", "lanes issued", "lanes", "lanes that run, whether they have work or not",
+          &Stage::lanes_issued),
+    field("hidden_items", "hidden", "items",
+          "pairs (cells, in techniques that test samples) that a triangle touches and that are left out because "
+          "another triangle in front covers the whole pixel (cell)",
+          &Stage::hidden_items),
+    field("hidden_triangles", "hidden triangles", "triangles",
+          "triangles left out of a tile because other triangles in front cover each of its pixels (cells) completely; "
+          "counted once per tile and pass",
+          &Stage::hidden_triangles),
+    field("empty_tiles", "empty tiles", "tiles", "tiles that no triangle touches, counted in each pass",
+          &Stage::empty_tiles),
+};
+
+#ifndef BEAMPIPE_COUNT_NOTHING
+constexpr auto kStored = std::count_if(std::begin(kCounters), std::end(kCounters),
+                                       [](const CounterInfo& counter) { return counter.sum == nullptr; });
+static_assert(sizeof(StageCounters) == sizeof(std::string) + kStored * sizeof(Count), "the table misses a counter");
+#endif
+
+}  // namespace
+
+StageCounters& StageCounters::operator+=(const StageCounters& other) {
+  for (const CounterInfo& counter : kCounters)
+    if (Count* const stored = counter.stored(*this)) *stored += counter.value(other);
+  return *this;
+}
+
+std::span<const CounterInfo> stage_counters() { return kCounters; }
+
+}  // namespace beampipe

@@ -1,0 +1,103 @@
+#include "tools/cli/command_line.h"
+
+#include <CLI/CLI.hpp>
+#include <optional>
+
+namespace beampipe {
+
+Option& Option::required() {
+  option_->required();
+  return *this;
+}
+
+Option& Option::between(std::uint64_t low, std::uint64_t high) {
+  option_->check(CLI::Range(low, high));
+  return *this;
+}
+
+Option& Option::one_of(const std::vector<std::string>& choices) {
+  option_->transform(CLI::IsMember(choices, CLI::ignore_case));
+  return *this;
+}
+
+Option& Option::bytes() {
+  option_->transform(CLI::AsSizeValue(false));
+  return *this;
+}
+
+Option& Option::exactly(int values, const std::string& form) {
+  option_->delimiter(',')->expected(values)->type_name(form);
+  return *this;
+}
+
+Option& Option::list(const std::string& form) {
+  option_->delimiter(',')->allow_extra_args(false)->type_name(form);
+  return *this;
+}
+
+Option& Option::shows_default() {
+  option_->capture_default_str();
+  return *this;
+}
+
+Option& Option::excludes(const Option& other) {
+  option_->excludes(other.option_);
+  return *this;
+}
+
+template <class Value>
+Option Command::add(const std::string& names, Value& variable, const std::string& help) {
+  return Option(app_->add_option(names, variable, help));
+}
+template Option Command::add(const std::string&, std::string&, const std::string&);
+template Option Command::add(const std::string&, int&, const std::string&);
+template Option Command::add(const std::string&, double&, const std::string&);
+template Option Command::add(const std::string&, std::uint32_t&, const std::string&);
+template Option Command::add(const std::string&, std::uint64_t&, const std::string&);
+template Option Command::add(const std::string&, std::optional<std::uint64_t>&, const std::string&);
+template Option Command::add(const std::string&, std::vector<std::string>&, const std::string&);
+template Option Command::add(const std::string&, std::vector<double>&, const std::string&);
+template Option Command::add(const std::string&, std::vector<std::uint32_t>&, const std::string&);
+
+Option Command::add_flag(const std::string& names, bool& variable, const std::string& help) {
+  return Option(app_->add_flag(names, variable, help));
+}
+
+Command Command::add_group(const std::string& title) { return Command(app_->add_option_group(title)); }
+
+bool Command::was_given(const std::string& option) const { return app_->count(option) > 0; }
+
+void Command::footer(const std::string& text) { app_->footer(text); }
+
+void Command::set_work(std::function<void()> work) { app_->callback(std::move(work)); }
+
+CommandLine::CommandLine(const std::string& program, const std::string& version, const std::string& description,
+                         const std::string& footer)
+    : app_(std::make_unique<CLI::App>(description, program)) {
+  app_->set_version_flag("--version", program + " " + version);
+  app_->require_subcommand(1);
+  app_->footer(footer);
+}
+
+CommandLine::~CommandLine() = default;
+
+Command CommandLine::add_command(const std::string& name, const std::string& description) {
+  return Command(app_->add_subcommand(name, description));
+}
+
+void CommandLine::run(int argc, char** argv) {
+  const std::string program = app_->get_name();
+  try {
+    app_->parse(argc, argv);
+  } catch (const CLI::Success& asked) {  // --help, --version
+    app_->exit(asked);
+  } catch (const CLI::ParseError& error) {
+    const std::vector<CLI::App*> named = app_->get_subcommands();
+    if (named.empty() && argc > 1 && argv[1][0] != '-')
+      throw UsageError(std::string("there is no command ") + argv[1] + " (see " + program + " --help)");
+    throw UsageError(std::string(error.what()) + " (see " + program +
+                     (named.empty() ? "" : " " + named.front()->get_name()) + " --help)");
+  }
+}
+
+}  // namespace beampipe

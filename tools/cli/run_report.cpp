@@ -1,0 +1,34 @@
+#include "tools/cli/run_report.h"
+
+#include <iostream>
+
+#include "tools/evaluate/resume.h"
+#include "tools/report/report_json.h"
+#include "tools/report/report_text.h"
+
+namespace beampipe {
+
+void tell_resumption(const RunPlan& plan, std::size_t finished_frames) {
+  if (finished_frames == 0 || finished_frames == plan.frames.size()) return;
+  std::string text = "beampipe: " + std::to_string(finished_frames) + " of " + std::to_string(plan.frames.size()) +
+                     " frames are there; going on at frame " + std::to_string(plan.frames[finished_frames]);
+  std::string accumulating;
+  for (const Technique& technique : plan.techniques)
+    if (technique.keeps_history) accumulating += (accumulating.empty() ? "" : ", ") + technique.spec;
+  if (!accumulating.empty()) text += " (" + accumulating + ": earlier frames are rendered again for their history)";
+  std::cerr << text << std::endl;
+}
+
+void tell_finished(const OutputFolder& output) {
+  std::cout << "finished already\nreport: " << (output.path() / "report.json").string() << "\n";
+}
+
+void finish_report(OutputFolder& output, const Report& report) {
+  output.write("report.json", json_text(to_json(report)));
+  output.keep();
+  FrameRecords(output, report.made_by).remove();
+  std::cout << table_text(report, output.path().string()) << causes_text(report) << orders_text(report)
+            << "report: " << (output.path() / "report.json").string() << "\n";
+}
+
+}  // namespace beampipe

@@ -1,0 +1,60 @@
+#include "tools/evaluate/results.h"
+
+#include <algorithm>
+#include <cstdio>
+#include <stdexcept>
+
+namespace beampipe {
+
+WallTime wall_time(std::vector<double> milliseconds) {
+  if (milliseconds.empty()) throw std::invalid_argument("no run was timed");
+  std::sort(milliseconds.begin(), milliseconds.end());
+  const std::size_t runs = milliseconds.size();
+  const double median = (milliseconds[(runs - 1) / 2] + milliseconds[runs / 2]) / 2;
+  return {.median = median, .min = milliseconds.front(), .max = milliseconds.back(), .runs = static_cast<int>(runs)};
+}
+
+PixelCounterStats measure_counter(const std::vector<float>& values) {
+  PixelCounterStats stats;
+  for (const float value : values) {
+    stats.mean += value / static_cast<double>(values.size());
+    stats.max = std::max<double>(stats.max, value);
+  }
+  return stats;
+}
+
+std::string program_version() { return BEAMPIPE_VERSION; }
+
+double TechniqueReport::peak_bytes_per_pixel() const {
+  double most = 0;
+  for (const FrameReport& frame : frames)
+    if (frame.pixels > 0)
+      most = std::max(most, static_cast<double>(frame.a_buffer_peak_bytes) / static_cast<double>(frame.pixels));
+  return framebuffer_bytes_per_pixel + most;
+}
+
+TechniqueReport new_technique_report(const Technique& technique) {
+  TechniqueReport report;
+  report.technique = technique.spec;
+  report.framebuffer = technique.framebuffer;
+  report.framebuffer_bytes_per_pixel = technique.framebuffer_bytes_per_pixel();
+  return report;
+}
+
+std::string spec_folder(std::string_view spec) {
+  std::string folder(spec);
+  for (char& c : folder) {
+    const bool kept =
+        (c >= 'A' && c <= 'Z') || (c >= 'a' && c <= 'z') || (c >= '0' && c <= '9') || c == '.' || c == '=' || c == '-';
+    if (!kept) c = '_';
+  }
+  return folder;
+}
+
+std::string frame_stem(std::string_view spec, std::size_t frame) {
+  char number[32];
+  std::snprintf(number, sizeof number, "/frame_%04zu", frame);
+  return spec_folder(spec) + number;
+}
+
+}  // namespace beampipe

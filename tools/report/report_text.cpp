@@ -1,0 +1,117 @@
+#include "tools/report/report_text.h"
+
+#include <algorithm>
+#include <cstdarg>
+#include <cstdio>
+
+namespace beampipe {
+namespace {
+
+[[gnu::format(printf, 1, 2)]] std::string format(const char* pattern, ...) {
+  char text[64];
+  va_list arguments;
+  va_start(arguments, pattern);
+  std::vsnprintf(text, sizeof text, pattern, arguments);
+  va_end(arguments);
+  return text;
+}
+
+// Over the frames, the median of their medians.
+double median_ms(const TechniqueReport& result) {
+  std::vector<double> medians;
+  for (const FrameReport& frame : result.frames) medians.push_back(frame.wall_ms.median);
+  return wall_time(std::move(medians)).median;
+}
+
+std::string pictures(const TechniqueReport& result, const std::string& folder) {
+  std::string text = folder + "/" + result.frames.front().picture;
+  if (result.frames.size() > 1) text += " and " + std::to_string(result.frames.size() - 1) + " more";
+  return text;
+}
+
+// Of UTF-8 text, in characters.
+std::size_t width_of(const std::string& text) {
+  return static_cast<std::size_t>(std::count_if(text.begin(), text.end(), [](char c) { return (c & 0xC0) != 0x80; }));
+}
+
+}  // namespace
+
+std::string emr_text(const EquivalentMsaa& emr) {
+  const std::string samples = emr.samples < 100 ? format("%.3g", emr.samples) : format("%.0f", emr.samples);
+  return (emr.is_lower_bound ? "≥ " : emr.is_upper_bound ? "< " : "") + samples;
+}
+
+std::string table_text(const Report& report, const std::string& folder) {
+  const bool compared = !report.results.empty() && report.results.front().error.has_value();
+  std::vector<std::vector<std::string>> rows(1);
+  rows[0] = {"technique", "bytes/pixel", "with A-buffer"};
+  if (compared) rows[0].insert(rows[0].end(), {"RMSE", "bias", "p99", "max", "EMR"});
+  const bool moves = compared && report.results.front().flicker.has_value();
+  if (moves) rows[0].push_back("flicker");
+  const bool with_model = !report.results.empty() && report.results.front().frames.front().wall_ms.with_memory_model;
+  rows[0].insert(rows[0].end(), {with_model ? "ms with model" : "ms", "picture"});
+  for (const TechniqueReport& result : report.results) {
+    std::vector<std::string>& row = rows.emplace_back();
+    row = {result.technique, std::to_string(result.framebuffer_bytes_per_pixel),
+           format("%.0f", result.peak_bytes_per_pixel())};
+    if (compared) {
+      const ErrorStats& error = result.error.value();
+      row.insert(row.end(), {format("%.6f", error.rmse), format("%+.6f", error.bias), format("%.5f", error.p99),
+                             format("%.5f", error.max), emr_text(result.equivalent_msaa.value())});
+    }
+    if (moves) row.push_back(format("%.6f", result.flicker.value_or(0.0)));
+    row.insert(row.end(), {format("%.1f", median_ms(result)), pictures(result, folder)});
+  }
+  return align_columns(rows, {0, rows[0].size() - 1});
+}
+
+std::string causes_text(const Report& report) {
+  std::vector<std::vector<std::string>> rows(1);
+  for (const TechniqueReport& result : report.results) {
+    if (result.causes.empty()) continue;
+    std::vector<std::string>& row = rows.emplace_back(std::vector{result.technique});
+    rows[0] = {"part of the mean square error"};
+    for (const auto& [cause, part] : result.causes) {
+      rows[0].push_back(cause);
+      row.push_back(format("%.1f %%", 100 * part));
+    }
+  }
+  return rows.size() > 1 ? std::string("\n").append(align_columns(rows, {0})) : std::string();
+}
+
+std::string orders_text(const Report& report) {
+  std::vector<std::vector<std::string>> rows(1);
+  for (const TechniqueReport& result : report.results) {
+    if (result.orders.empty()) continue;
+    std::vector<std::string>& row = rows.emplace_back(std::vector{result.technique});
+    rows[0] = {"RMSE by order of triangles"};
+    for (const OrderReport& order : result.orders) {
+      rows[0].push_back(order.order);
+      row.push_back(format("%.6f", order.rmse));
+    }
+    rows[0].push_back("largest difference");
+    row.push_back(format("%.6f", result.order_difference));
+  }
+  return rows.size() > 1 ? std::string("\n").append(align_columns(rows, {0})) : std::string();
+}
+
+std::string align_columns(const std::vector<std::vector<std::string>>& rows, const std::vector<std::size_t>& left) {
+  std::vector<std::size_t> widths;
+  for (const auto& row : rows) {
+    widths.resize(std::max(widths.size(), row.size()));
+    for (std::size_t i = 0; i < row.size(); ++i) widths[i] = std::max(widths[i], width_of(row[i]));
+  }
+  std::string text;
+  for (const auto& row : rows) {
+    std::string line;
+    for (std::size_t i = 0; i < row.size(); ++i) {
+      const std::string blanks(widths[i] - width_of(row[i]), ' ');
+      const bool at_left = std::find(left.begin(), left.end(), i) != left.end();
+      line += (i > 0 ? "  " : "") + (at_left ? row[i] + blanks : blanks + row[i]);
+    }
+    text += line.substr(0, line.find_last_not_of(' ') + 1) + "\n";
+  }
+  return text;
+}
+
+}  // namespace beampipe
