@@ -8,7 +8,7 @@
 #include <vector>
 
 #include "tools/claims/published_figures.h"
-#include "tools/report/report.h"
+#include "tools/evaluate/results.h"
 
 namespace beampipe {
 

@@ -48,7 +48,7 @@ PublishedFigure read_claim(const JsonCursor& claim, const JsonCursor& group) {
 }  // namespace
 
 std::vector<PublishedFigure> parse_published_figures(const std::string& text, const std::string& file) {
-  const Json json = Json::parse(text);
+  const Json json = parse_json_text(text, file);
   const JsonCursor publication(json, file);
   publication.expect_keys({"beampipe_claims", "publication", "groups"});
   publication["beampipe_claims"].integer(1, 1);

@@ -2,11 +2,12 @@
 
 #include <algorithm>
 #include <functional>
-#include <iterator>
-#include <stdexcept>
+#include <initializer_list>
+#include <limits>
+#include <string_view>
 
 #include "tools/evaluate/hardware_text.h"
-#include "traces/json.h"
+#include "traces/json_cursor.h"
 
 namespace beampipe {
 namespace {
@@ -48,95 +49,56 @@ const std::map<std::string, Clocks>& units() {
   return all;
 }
 
-constexpr const char* kRates[] = {"triangles_per_clk",     "raster_pixels_per_clk", "conservative_pixels_per_clk",
-                                  "quads_per_clk",         "issue_per_clk",         "mul_add_per_clk",
-                                  "add_per_clk",           "bit_per_clk",           "fetch_per_clk",
-                                  "special_per_clk",       "convert_per_clk",       "rop_samples_per_clk",
-                                  "rop_fragments_per_clk", "l2_bytes_per_clk",      "dram_bytes_per_clk"};
+const std::initializer_list<std::string_view> kRates = {
+    "triangles_per_clk",     "raster_pixels_per_clk", "conservative_pixels_per_clk",
+    "quads_per_clk",         "issue_per_clk",         "mul_add_per_clk",
+    "add_per_clk",           "bit_per_clk",           "fetch_per_clk",
+    "special_per_clk",       "convert_per_clk",       "rop_samples_per_clk",
+    "rop_fragments_per_clk", "l2_bytes_per_clk",      "dram_bytes_per_clk"};
 
-// Reads a file's values, naming the file and the key in what it throws.
-class Reader {
- public:
-  Reader(const Json& json, const std::string& file) : file_(file), json_(json) {
-    if (!json_.is_object()) fail("", "expected an object");
-  }
+double positive_number(const JsonCursor& at) { return at.number_between(0, std::numeric_limits<double>::infinity()); }
 
-  Hardware read() {
-    only(json_, "", {"beampipe_hardware", "name", "clock_mhz", "rates", "sources", "implementations"});
-    if (number(json_, "", "beampipe_hardware") != 1) fail("beampipe_hardware", "expected version 1");
-    Hardware hardware;
-    const Json& name = at(json_, "", "name");
-    if (!name.is_string()) fail("name", "expected text, found " + name.dump());
-    hardware.name = name.get<std::string>();
-    hardware.clock_mhz = number(json_, "", "clock_mhz");
-    const Json& rates = object(json_, "", "rates");
-    only(rates, "rates.", {std::begin(kRates), std::end(kRates)});
-    for (const char* key : kRates) hardware.rates[key] = number(rates, "rates.", key);
-    const Json& implementations = object(json_, "", "implementations");
-    if (implementations.size() == 0) fail("implementations", "expected at least one");
-    for (const auto& item : implementations.members())
-      hardware.implementations.push_back(implementation(item.key, item.value));
-    hardware.json = json_;
-    return hardware;
+std::vector<std::string> read_units(const JsonCursor& stage) {
+  std::vector<std::string> names;
+  for (const JsonCursor& unit : stage.elements()) {
+    names.push_back(unit.string());
+    if (units().contains(names.back())) continue;
+    std::string known;
+    for (const auto& [name, clocks] : units()) known += (known.empty() ? "" : ", ") + name;
+    unit.fail("one of the units " + known);
   }
-
- private:
-  Implementation implementation(const std::string& name, const Json& json) {
-    const std::string prefix = "implementations." + name + ".";
-    Implementation result{name, {}};
-    const Json& stages = object(json, prefix, "units");
-    for (const auto& stage : stages.members()) {
-      const std::string key = prefix + "units." + stage.key;
-      if (!stage.value.is_array()) fail(key, "expected an array of units, found " + stage.value.dump());
-      for (const Json& unit : stage.value.elements()) {
-        if (!unit.is_string() || !units().contains(unit.get<std::string>())) {
-          std::string known;
-          for (const auto& [known_unit, clocks] : units()) known += (known.empty() ? "" : ", ") + known_unit;
-          fail(key, "expected units out of " + known + ", found " + unit.dump());
-        }
-        result.units[stage.key].push_back(unit.get<std::string>());
-      }
-    }
-    return result;
-  }
-
-  const Json& at(const Json& json, const std::string& prefix, const std::string& key) const {
-    if (!json.contains(key)) fail(prefix + key, "expected this key, found none");
-    return json.at(key);
-  }
-  const Json& object(const Json& json, const std::string& prefix, const std::string& key) const {
-    if (!json.is_object() || !at(json, prefix, key).is_object()) fail(prefix + key, "expected an object");
-    return json.at(key);
-  }
-  double number(const Json& json, const std::string& prefix, const std::string& key) const {
-    const Json& value = at(json, prefix, key);
-    if (!value.is_number() || !(value.get<double>() > 0))
-      fail(prefix + key, "expected a number above 0, found " + value.dump());
-    return value.get<double>();
-  }
-  void only(const Json& json, const std::string& prefix, const std::vector<std::string>& keys) const {
-    for (const auto& item : json.members())
-      if (std::find(keys.begin(), keys.end(), item.key) == keys.end()) fail(prefix + item.key, "there is no such key");
-  }
-  [[noreturn]] void fail(const std::string& key, const std::string& what) const {
-    throw std::runtime_error(file_ + ": " + (key.empty() ? "" : key + ": ") + what);
-  }
-
-  const std::string& file_;
-  const Json& json_;
-};
+  return names;
+}
 
 }  // namespace
 
 Hardware titan_v() {
-  return parse_hardware(parse_json_text(kTitanVText, "the built-in description"), "the built-in description");
+  const std::string file = "the built-in description";
+  return parse_hardware(parse_json_text(kTitanVText, file), file);
 }
 
 Hardware read_hardware(const std::filesystem::path& file) {
   return parse_hardware(parse_json(file.string()), file.string());
 }
 
-Hardware parse_hardware(const Json& json, const std::string& file) { return Reader(json, file).read(); }
+Hardware parse_hardware(const Json& json, const std::string& file) {
+  const JsonCursor root(json, file);
+  root.expect_keys({"beampipe_hardware", "name", "clock_mhz", "rates", "sources", "implementations"});
+  root["beampipe_hardware"].integer(1, 1);
+  Hardware hardware;
+  hardware.name = root["name"].string();
+  hardware.clock_mhz = positive_number(root["clock_mhz"]);
+  const JsonCursor rates = root["rates"];
+  rates.expect_keys(kRates);
+  for (const std::string_view rate : kRates) hardware.rates[std::string(rate)] = positive_number(rates[rate]);
+  for (const auto& [name, description] : root["implementations"].members()) {
+    Implementation& implementation = hardware.implementations.emplace_back(Implementation{name, {}});
+    for (const auto& [stage, names] : description["units"].members()) implementation.units[stage] = read_units(names);
+  }
+  if (hardware.implementations.empty()) root["implementations"].fail("at least one implementation", "none");
+  hardware.json = json;
+  return hardware;
+}
 
 std::map<std::string, double> unit_times(const Hardware& hardware, const Implementation& implementation,
                                          const StageCounters& stage) {

@@ -32,7 +32,7 @@ struct Hardware {
 // What is built in.
 Hardware titan_v();
 
-// Throws std::runtime_error, one line that names the file, the key, what was expected and what was found.
+// Throws TraceError, one line that names the file, the key, what was expected and what was found.
 Hardware read_hardware(const std::filesystem::path& file);
 Hardware parse_hardware(const Json& json, const std::string& file);
 
