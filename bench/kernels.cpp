@@ -1,5 +1,5 @@
-// What the kernels cost per item, on one core, with the best instruction set that it has.
-// Items are random triangles of a few pixels in the pixels that they touch, as fine meshes give them.
+// The time of kernels per item, on one core with its best instruction set. Each item is a pixel with a random
+// triangle around it, up to three pixels wide, as in fine meshes.
 #include <benchmark/benchmark.h>
 
 #include <random>
@@ -68,7 +68,7 @@ void rows_of_cells(benchmark::State& state) {
 }
 BENCHMARK(rows_of_cells)->Arg(2)->Arg(8)->Arg(32);
 
-// Windows of so many fragments with random masks of half of the positions.
+// Windows of a given number of fragments, whose random masks cover half of the positions.
 void owners_of_windows(benchmark::State& state) {
   const auto count = static_cast<std::size_t>(state.range(0));
   std::mt19937 random(2);

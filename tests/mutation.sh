@@ -1,7 +1,7 @@
 #!/usr/bin/env bash
-# Breaks one constant after the other and tells which test notices: tests/mutation.sh [BUILD FOLDER [FILE...]]
-# Works on this tree, one file at a time (all, or those that are named), and puts each file back. Ends with an error if
-# nothing notices a mutant.
+# Breaks one constant after the other and prints which test notices: tests/mutation.sh [BUILD FOLDER [FILE...]]
+# Changes this source tree, one file at a time (all files, or the named ones), and restores each file. Ends with an
+# error if there is a change that no test notices.
 set -euo pipefail
 cd "$(dirname "${BASH_SOURCE[0]}")/.."
 

@@ -17,35 +17,37 @@ const StageCounters& stage(const FrameResult& result, const std::string& name) {
   throw std::runtime_error("no stage " + name);
 }
 
-// The lower left half of the square [1, 5] x [1, 5], a little inside so that no border is only touched.
+// The lower left half of the square [1, 5] x [1, 5], made a little smaller so that it does not merely touch pixels
+// outside the square.
 Trace half_square() {
   return pixel_trace(8, 8, {{{{1.25, 1.25, 0.5}, {4.75, 4.75, 0.5}, {1.25, 4.75, 0.5}}, glm::vec3(1)}});
 }
 
 TEST(Counters, BeamCountsEveryTouchedPixel) {
   const FrameResult result = parse_technique("beam").render(half_square(), 0, {1});
-  // Rows 1 to 4 touch 1 + 1, 1 + 2, 1 + 3 and 4 pixels: the diagonal cuts through the pixels' corners, and a closed
-  // square is touched at its corner. Those with no area are dropped behind conservative_raster.
+  // Rows 1 to 4 touch 1 + 1, 1 + 2, 1 + 3 and 4 pixels. The diagonal runs through corners of pixels, and a corner
+  // belongs to the closed square of a pixel. Pairs without area are dropped after conservative_raster.
   const std::uint64_t touched = 1 + 2 + 3 + 4 + 3, with_area = 1 + 2 + 3 + 4;
   EXPECT_EQ(stage(result, "vertex_setup").items_in, 1u);
   EXPECT_EQ(stage(result, "vertex_setup").items_out, 1u);
   EXPECT_EQ(stage(result, "conservative_raster").items_in, 1u);
   EXPECT_EQ(stage(result, "conservative_raster").items_out, touched);
-  // Pixel (2, 3) is covered as a whole, by nothing else: no fragment is made there.
+  // The triangle covers the whole of pixel (2, 3), so no fragment is made there.
   EXPECT_EQ(stage(result, "beam_fragment").items_in, touched - 1);
   EXPECT_EQ(stage(result, "beam_fragment").items_out, with_area - 1);
   EXPECT_EQ(stage(result, "shade").items_in, with_area);
   EXPECT_EQ(stage(result, "a_buffer").items_in, touched);
   EXPECT_EQ(stage(result, "compose").items_in, with_area);
   EXPECT_EQ(stage(result, "resolve").items_out, 64u);
-  EXPECT_EQ(stage(result, "shade").lanes_issued, with_area);  // behind visibility: no quads, no helpers
-  // A-buffer: a triangle's number, a depth range and a 4-byte link each, and a 4-byte head per pixel. A fragment has 62
-  // bytes: a 42-byte aggregate, pixel, plane, centroid; aggregates are read and written once per window.
+  EXPECT_EQ(stage(result, "shade").lanes_issued, with_area);  // after visibility, without quads and helpers
+  // The A-buffer has a triangle's number, a depth range and a 4-byte link for each pair, and a 4-byte head per pixel. A
+  // fragment has 62 bytes: an aggregate of 42 bytes, the pixel, a plane and a centroid. Aggregates are read and written
+  // once per window.
   EXPECT_EQ(result.a_buffer_peak_bytes, touched * 16 + 64 * 4);
   EXPECT_EQ(stage(result, "compose").bytes_read, (with_area - 1) * (62 + 42) + 16);
   EXPECT_EQ(stage(result, "compose").bytes_written, with_area * 42);
-  // As published, shading is in quads. Pixels 1..4 lie in the quads 0, 1, 2 of each axis; the lower left half of these
-  // 3 x 3 has 6, with 4 lanes each.
+  // The published rules shade in quads. Pixels 1..4 lie in the quads 0, 1 and 2 of each axis. The lower left half of
+  // these 3 x 3 quads has 6 quads of 4 lanes.
   EXPECT_EQ(stage(parse_technique("beam:rules=paper").render(half_square(), 0, {1}), "shade").lanes_issued, 4u * 6);
   const StageCounters merging = stage(parse_technique("beam:rules=paper").render(half_square(), 0, {1}), "compose");
   EXPECT_EQ(merging.items_in, with_area);
@@ -54,7 +56,8 @@ TEST(Counters, BeamCountsEveryTouchedPixel) {
   EXPECT_EQ(merging.bytes_written, 64u * 42);
   EXPECT_EQ(merging.lanes_used, with_area);
   EXPECT_EQ(merging.lanes_issued, with_area);
-  // The paper's fragment is its aggregate; without masks and slabs there is a coverage, a colour and a depth.
+  // A fragment of the published rules is an aggregate. One of `alpha` has no mask and no depth slab, only a coverage, a
+  // colour and a depth.
   EXPECT_EQ(parse_technique("beam:rules=paper").render(half_square(), 0, {1}).a_buffer_peak_bytes,
             with_area * 46 + 256);
   EXPECT_EQ(parse_technique("alpha").render(half_square(), 0, {1}).a_buffer_peak_bytes, with_area * 18 + 256);
@@ -82,8 +85,8 @@ TEST(Counters, DvmSelectsOutOfEightSamplesAPixel) {
 
 TEST(Counters, MsaaCountsSamples) {
   const FrameResult one = parse_technique("msaa:1").render(half_square(), 0, {1});
-  // Pixel centres (x + 1/2, y + 1/2) with x <= y and 1 <= x, y <= 4; those on the diagonal (a top right edge) are not
-  // owned.
+  // Pixel centres (x + 1/2, y + 1/2) with x <= y and 1 <= x, y <= 4. Centres on the diagonal, which is a top right
+  // edge, do not belong to the triangle.
   EXPECT_EQ(stage(one, "depth_test").items_in, 6u);
   EXPECT_EQ(stage(one, "depth_test").items_out, 6u);
   EXPECT_EQ(stage(one, "depth_test").bytes_written, 6u * 10);
@@ -93,8 +96,9 @@ TEST(Counters, MsaaCountsSamples) {
   EXPECT_GT(stage(eight, "depth_test").items_in, stage(one, "depth_test").items_in * 7);
 }
 
-// msaa:1 has a fragment exactly where a triangle covers the centre, and here one of the eight samples is covered as
-// well. The picture is the same: colours are flat.
+// A fragment of msaa:8 moves to its centroid if the triangle does not cover the centre of the pixel. msaa:1 has a
+// fragment wherever the centre is covered, and here msaa:8 has one in each of these pixels too. The pictures are the
+// same because colours are flat.
 TEST(Msaa, TheCentroidIsForFragmentsThatOneSampleMisses) {
   const StageCounters one = stage(parse_technique("msaa:1").render(half_square(), 0, {1}), "shade");
   const FrameResult centre = parse_technique("msaa:8,at=centre").render(half_square(), 0, {1});
@@ -114,13 +118,15 @@ TEST(Counters, ShadingRunsInWholeQuads) {
   const auto shading = [](const char* spec) {
     return stage(parse_technique(spec).render(half_square(), 0, {1}), "shade");
   };
-  // Centres inside: (1, 2), (1, 3), (1, 4), (2, 3), (2, 4), (3, 4), in the quads (0, 1), (0, 2), (1, 1) and (1, 2).
+  // The triangle covers the centres of the pixels (1, 2), (1, 3), (1, 4), (2, 3), (2, 4) and (3, 4), which lie in the
+  // quads (0, 1), (0, 2), (1, 1) and (1, 2).
   for (const char* spec : {"msaa:1", "msaa:1,prepass", "deferred"}) {
     EXPECT_EQ(shading(spec).lanes_used, 6u) << spec;
     EXPECT_EQ(shading(spec).lanes_issued, 4u * 4) << spec;
   }
   EXPECT_EQ(shading("visibility").lanes_issued, 6u);
-  // At eight samples the diagonal's four pixels are covered in part, and two more quads of three by three are touched.
+  // With eight samples, the four pixels on the diagonal are covered in part. They lie in two more of the
+  // 3 x 3 quads.
   for (const char* spec : {"msaa:8", "msaa:8,prepass", "acaa:8"}) {
     EXPECT_EQ(shading(spec).lanes_used, 10u) << spec;
     EXPECT_EQ(shading(spec).lanes_issued, 6u * 4) << spec;
@@ -133,12 +139,12 @@ TEST(Counters, AcaaReadsDepthTwiceAndOneColor) {
   const std::uint64_t samples = stage(msaa, "depth_test").items_in;
   EXPECT_EQ(stage(acaa, "depth_test").items_in, 2 * samples);
   EXPECT_EQ(stage(acaa, "depth_test").bytes_written, samples * 4);
-  const std::uint64_t fragment_bytes = kSampleFragmentBytes + 6;  // with the shader's colour
+  const std::uint64_t fragment_bytes = kSampleFragmentBytes + 6;  // including the shaded colour
   EXPECT_EQ(stage(acaa, "accumulate").items_in, 10u);
   EXPECT_EQ(stage(acaa, "accumulate").items_out, 10u);
   EXPECT_EQ(stage(acaa, "accumulate").bytes_read, 10 * (fragment_bytes + 8));
   EXPECT_EQ(stage(acaa, "accumulate").bytes_written, 10u * 8);
-  // Saturation first adds the background of each pixel that is not full; only (2, 3) is.
+  // Saturation first adds the background to each pixel that is not full. Only pixel (2, 3) is full.
   const FrameResult saturated = parse_technique("acaa:8,double=saturate").render(half_square(), 0, {1});
   EXPECT_EQ(stage(saturated, "accumulate").items_in, 10u + 64 - 1);
   EXPECT_EQ(stage(saturated, "accumulate").bytes_read, 10 * fragment_bytes + (10 + 64 - 1) * 8 + 64 * 8 * 4);
@@ -167,7 +173,7 @@ TEST(Counters, EveryTechniqueCountsFragmentsAndBytesOfPixels) {
   }
 }
 
-// However many passes there are, a triangle counts once.
+// A triangle counts once, however many passes there are.
 TEST(Counters, FragmentsOfAPixelAreThoseOfTheFirstPass) {
   const Trace trace = random_trace(40, 30, 400, 2);
   const FrameResult all = parse_technique("beam:order=stream,layers=1").render(trace, 0, {2});
@@ -176,8 +182,8 @@ TEST(Counters, FragmentsOfAPixelAreThoseOfTheFirstPass) {
   EXPECT_GT(sum_of(all, "passes"), sum_of(first, "passes"));
 }
 
-// In each corner of pixel (1, 1) a triangle, the four at four depths or at one, and in its middle one that covers no
-// position.
+// Pixel (1, 1) has a triangle in each corner, all four at different depths or all at the same, and a speck in the
+// middle, which covers no position.
 TEST(Counters, PixelsOfFourCornersAndASpeck) {
   const auto corners = [](double step) {
     const auto z = [&](int k) { return 0.1 + k * step; };
@@ -207,8 +213,8 @@ TEST(Counters, PixelsOfFourCornersAndASpeck) {
       << "nothing is hidden";
 }
 
-// Pixel by pixel the same is counted as stage by stage: what tests read and write, what shading samples, the G-buffer
-// and the colour are written.
+// The bytes of all pixels add up to those of the stages: what depth tests read and write, and what is written of
+// shading samples, the G-buffer and the colour.
 TEST(Counters, PixelsAddUpToStages) {
   const Trace trace = random_trace(40, 30, 400, 2);
   for (const char* spec : {"msaa:8", "visibility", "taa:4", "deferred", "dvm"}) {
@@ -220,12 +226,12 @@ TEST(Counters, PixelsAddUpToStages) {
       if (counters.stage == "shade" && std::string(spec) != "msaa:8") bytes += counters.bytes_written;
     }
     EXPECT_EQ(sum_of(result, "bytes"), bytes) << spec;
-    if (std::string(spec) == "deferred") continue;  // its fragments come twice
+    if (std::string(spec) == "deferred") continue;  // its fragments come twice, once for each pass
     EXPECT_EQ(sum_of(result, "fragments"), fragments) << spec;
   }
 }
 
-// Every pixel is read as it is stored and written as fp16 RGB. What is read and written lies in memory as a whole.
+// Every pixel is read in its stored format and written as fp16 RGB. Both surfaces are contiguous in memory.
 TEST(Counters, ResolveReadsEveryPixelOnce) {
   const Trace trace = random_trace(64, 32, 400, 2);
   RunOptions raw{2};
@@ -252,8 +258,8 @@ TEST(Counters, ResolveReadsEveryPixelOnce) {
   }
 }
 
-// A triangle closes the first of four tiles, 32 x 32 pixels, and those pixels of the second where x + y < 64. Behind it
-// lies one triangle in the first tile alone, and one in a row of pixels of both, 8 of them in the second.
+// One triangle closes the first of four tiles of 32 x 32 pixels, and those pixels of the second where x + y < 64.
+// Behind it lie a triangle in the first tile alone, and one in a row of pixels of both tiles, 8 of them in the second.
 TEST(Counters, WhatIsHiddenIsCountedOnce) {
   const Trace trace = pixel_trace(128, 32,
                                   {{{{-1, -1, 0.3}, {66, -1, 0.3}, {-1, 66, 0.3}}, glm::vec3(1)},
@@ -275,7 +281,7 @@ TEST(Counters, WhatIsHiddenIsCountedOnce) {
 
 TEST(Counters, EveryStageWorks) {
   Trace trace = random_trace(40, 30, 50, 2);
-  trace.frames[0].draws[0].shading = Shading::lambert;  // unlit triangles need no operation
+  trace.frames[0].draws[0].shading = Shading::lambert;  // an unlit triangle needs no operations
   trace.frames[0].light_direction = glm::vec3(0, 0, 1);
   for (const char* spec : {"beam", "alpha", "msaa:4", "msaa:4,prepass", "acaa:4,double=stencil", "acaa:32", "deferred",
                            "visibility", "taa:8", "dvm", "reference"}) {

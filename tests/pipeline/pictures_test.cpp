@@ -1,4 +1,4 @@
-// Pictures whose pixels are known: closed forms, a brute-force renderer, and techniques against each other.
+// Pictures whose pixels are known from closed forms, from a brute-force renderer, or from another technique.
 #include <gtest/gtest.h>
 
 #include <cmath>
@@ -55,10 +55,10 @@ TEST(Pictures, RowZeroIsOnTop) {
 }
 
 TEST(Pictures, AnEdgeThroughAPixelCoversItsExactArea) {
-  // A quad over the left 5/16 of pixel (1, 1), over the background.
+  // A quad that covers the left 5/16 of pixel (1, 1).
   const Trace trace = pixel_trace(4, 4, quad(0, 0, 1.3125, 4, 0.5, kRed), kBlue);
   const glm::vec3 expected = 0.3125f * kRed + 0.6875f * kBlue;
-  // beam is analytic (rounded to fp16); the reference is exact for vertical edges.
+  // The coverage of beam is exact up to rounding to fp16. The reference is exact for vertical edges.
   for (const char* spec : {"beam", "beam:rules=paper,mask=exact", "reference"}) {
     const glm::vec3 found = pixel(render(spec, trace), 1, 1);
     for (int c = 0; c < 3; ++c) EXPECT_NEAR(found[c], expected[c], 2e-4) << spec;
@@ -66,7 +66,8 @@ TEST(Pictures, AnEdgeThroughAPixelCoversItsExactArea) {
 }
 
 TEST(Pictures, AlphaAloneLeaksBetweenTheTrianglesOfAQuad) {
-  // Two triangles of area 1/2 tile the pixel: OVER takes them for independent, 1 - (1/2)^2; masks know better.
+  // Two triangles of area 1/2 tile the pixel. OVER treats them as independent and finds 1 - (1/2)^2. Masks show that
+  // they do not overlap.
   const Trace trace = pixel_trace(2, 2, quad(0, 0, 1, 1, 0.5, kRed), kBlue);
   EXPECT_NEAR(pixel(render("alpha", trace), 0, 0).r, 0.75f, 1e-3);
   EXPECT_NEAR(pixel(render("beam:rules=paper,mask=exact", trace), 0, 0).r, 1.0f, 1e-3);
@@ -84,7 +85,8 @@ TEST(Pictures, FrontHidesBackInAnyOrder) {
 }
 
 TEST(Pictures, OfTwoEqualTrianglesTheEarlierIsSeen) {
-  // Steep, so that equality is not a given; the second starts elsewhere and turns the other way.
+  // The triangle is steep, and its copy starts with another vertex and has the opposite orientation, so that rounding
+  // could make their depths differ.
   const glm::dvec3 a(-1, -1, 0.1), b(13, -2, 0.6), c(-2, 12, 0.9);
   const Trace trace = pixel_trace(4, 4, {{{a, b, c}, kRed}, {{c, b, a}, kGreen}});
   for (const char* spec : {"beam", "beam:rules=paper,mask=exact", "msaa:1", "msaa:8", "msaa:256", "reference"}) {
@@ -94,9 +96,9 @@ TEST(Pictures, OfTwoEqualTrianglesTheEarlierIsSeen) {
   }
 }
 
-// Every sample of every pixel against every triangle, by barycentric coordinates in double: no raster, no spans, no
-// tiles. The reference's positions (stages/raster/reference_raster.h): 256 rows of 16, each shifted by its bit-reversed
-// number.
+// Tests every sample of every pixel against every triangle with barycentric coordinates in double, without raster,
+// spans or tiles. The sample positions are those of the reference (stages/raster/reference_raster.h): 256 rows of 16,
+// each shifted by the bit-reversed number of the row.
 Image brute_force(const Trace& trace) {
   const Frame& frame = trace.frames[0];
   const Mesh& mesh = trace.meshes[0];
@@ -141,7 +143,7 @@ Image brute_force(const Trace& trace) {
 TEST(Pictures, TheReferenceAgreesWithBruteForce) {
   const Trace trace = random_trace(6, 5, 60, 7);
   const Image reference = render("reference", trace), brute = brute_force(trace);
-  // Only samples that lie exactly on an edge may differ: the brute force has no top-left rule.
+  // Only samples exactly on an edge may differ, because brute_force() has no top-left rule.
   double largest = 0;
   for (std::size_t i = 0; i < brute.rgba.size(); ++i)
     if (i % 4 != 3) largest = std::max(largest, std::abs(double(brute.rgba[i]) - reference.rgba[i]));

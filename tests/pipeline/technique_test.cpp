@@ -15,7 +15,8 @@ namespace beampipe {
 namespace {
 
 TEST(Technique, FramebufferBytesAreThePublishedOnes) {
-  // Slide 23 of the paper's talk: beam 42 with colour; 8x and 32x MSAA with 4-byte depth and fp16 RGB 80 and 320.
+  // Slide 23 of Crassin et al. 2018: beam takes 42 bytes with colour. MSAA 8x and 32x with 4-byte depth and fp16 RGB
+  // take 80 and 320.
   EXPECT_EQ(parse_technique("beam").framebuffer_bytes_per_pixel(), 42u);
   EXPECT_EQ(parse_technique("beam:rules=paper").framebuffer_bytes_per_pixel(), 42u);
   EXPECT_EQ(parse_technique("beam:rules=paper,storage=text").framebuffer_bytes_per_pixel(), 32u);
@@ -25,7 +26,7 @@ TEST(Technique, FramebufferBytesAreThePublishedOnes) {
 }
 
 TEST(Technique, StreamingStatesFitTheirBudgets) {
-  EXPECT_EQ(parse_technique("beam:order=stream").framebuffer_bytes_per_pixel(), 80u);  // an 8x MSAA buffer
+  EXPECT_EQ(parse_technique("beam:order=stream").framebuffer_bytes_per_pixel(), 80u);  // as many as an MSAA 8x buffer
   EXPECT_EQ(parse_technique("beam:order=stream,bits=64,layers=1").framebuffer_bytes_per_pixel(), 32u);
   EXPECT_EQ(parse_technique("beam:order=stream,bits=256,layers=1").framebuffer_bytes_per_pixel(), 80u);
   EXPECT_EQ(parse_technique("z3").framebuffer_bytes_per_pixel(), 50u);

@@ -9,13 +9,13 @@
 
 namespace beampipe {
 
-// A triangle with corners in pixels (y down) and depths in 0..1, 0 the nearest.
+// The corners of a triangle are in pixels (y down), with depths from 0 (nearest) to 1.
 struct PixelSpaceTriangle {
   glm::dvec3 corners[3];
   glm::vec3 color;
 };
 
-// One orthographic frame whose triangles land exactly where they are written, to float precision.
+// One orthographic frame that shows the triangles at the given pixel coordinates, up to the precision of float.
 inline Trace pixel_trace(std::uint32_t width, std::uint32_t height, const std::vector<PixelSpaceTriangle>& triangles,
                          const glm::vec3& background = glm::vec3(0.0f)) {
   Trace trace;
@@ -40,7 +40,7 @@ inline Trace pixel_trace(std::uint32_t width, std::uint32_t height, const std::v
   return trace;
 }
 
-// Random triangles of mixed sizes that interpenetrate, the same for the same seed everywhere.
+// Random triangles of mixed sizes that interpenetrate. The same seed gives the same triangles on every machine.
 inline Trace random_trace(std::uint32_t width, std::uint32_t height, int count, std::uint32_t seed) {
   std::mt19937 bits(seed);
   const auto uniform = [&](double low, double high) { return low + (high - low) * (bits() / 4294967296.0); };

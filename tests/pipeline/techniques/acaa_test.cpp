@@ -1,4 +1,4 @@
-// ACAA against MSAA: the same picture but for the accumulator's precision and for depths that coincide.
+// ACAA and MSAA give the same picture except for the precision of the accumulator and for equal depths.
 #include "pipeline/techniques/acaa.h"
 
 #include <gtest/gtest.h>
@@ -25,7 +25,7 @@ glm::vec4 pixel(const Image& image, std::uint32_t x, std::uint32_t y) {
   return {rgba[0], rgba[1], rgba[2], rgba[3]};
 }
 
-// A triangle over the whole of a small frame at one depth.
+// A triangle at a constant depth that covers a small frame entirely.
 PixelSpaceTriangle everywhere(double z, const glm::vec3& color) {
   return {{{-1, -1, z}, {13, -2, z}, {-2, 12, z}}, color};
 }
@@ -35,11 +35,13 @@ TEST(Acaa, OpaquePicturesAreThoseOfMsaa) {
   for (const int samples : {1, 2, 4, 8, 16, 32, 64, 256}) {
     const std::string n = std::to_string(samples);
     const Image truth = render("msaa:" + n, trace).image;
-    // MSAA's samples are fp16 (2^-12 of 1); beyond that an fp32 accumulator only rounds sums of up to `samples` terms.
+    // The samples of MSAA are fp16, with errors of up to 2^-12 below 1. An fp32 accumulator adds only the rounding of
+    // sums of up to `samples` terms.
     EXPECT_LT(worst_difference(render("acaa:" + n + ",color=fp32", trace).image, truth), 0x1p-12 + samples * 0x1p-24)
         << n;
-    // Shares are multiples of 2^-8, which fp16 holds exactly up to 1, so alpha errs nowhere. Sums of colours are at
-    // most 1, and each, one per visible fragment, is rounded by at most half an fp16 step below 1, which is 2^-12.
+    // Shares are multiples of 2^-8, which fp16 represents exactly up to 1, so alpha has no error. Sums of colours are
+    // at most 1, and there is one per visible fragment. Each is rounded by at most half an fp16 step below 1, which is
+    // 2^-12.
     const FrameResult fp16 = render("acaa:" + n + ",color=fp16", trace);
     const std::vector<float>& sums = fp16.pixel_counters.at("visible_fragments");
     for (std::size_t i = 0; i < truth.rgba.size(); ++i) {
@@ -50,7 +52,7 @@ TEST(Acaa, OpaquePicturesAreThoseOfMsaa) {
 }
 
 TEST(Acaa, EverySumIsRoundedToTheFormat) {
-  // A single fragment in each pixel.
+  // There is a single fragment in each pixel.
   const Trace trace = pixel_trace(4, 4, {{{{-1, -1, 0.5}, {3.3, -1, 0.5}, {-1, 9, 0.5}}, glm::vec3(0.3f, 0.6f, 0.9f)}});
   const Image exact = render("acaa:8,color=fp32", trace).image;
   const double fp16 = worst_difference(render("acaa:8,color=fp16", trace).image, exact);
@@ -84,14 +86,14 @@ TEST(Acaa, ManySmallSharesLoseMorePrecisionInFewerBits) {
 TEST(Acaa, CoincidentDepthsCountTwiceUnlessRemedied) {
   const Trace trace = pixel_trace(4, 4, {everywhere(0.5, {0.25f, 0, 0}), everywhere(0.5, {0, 0.5f, 0})});
   EXPECT_EQ(pixel(render("acaa:8", trace).image, 1, 1), glm::vec4(0.25f, 0.5f, 0, 1));
-  // The first one's alone, as in MSAA.
+  // The colour of the first triangle alone, as in MSAA.
   for (const char* spec : {"acaa:8,double=stencil", "acaa:8,double=saturate", "acaa:32,double=stencil",
                            "acaa:32,double=saturate", "acaa:256,double=saturate", "msaa:8"})
     EXPECT_EQ(pixel(render(spec, trace).image, 1, 1), glm::vec4(0.25f, 0, 0, 1)) << spec;
 }
 
 TEST(Acaa, SaturationStopsAtWhatGeometryCovers) {
-  // Twice the same half of the frame, over a background: no more than the covered samples, whoever fills them.
+  // Two equal triangles cover the same half of the frame. Together they may add up to the covered samples and no more.
   const PixelSpaceTriangle left{{{-1, -9, 0.5}, {1.5, -9, 0.5}, {1.5, 30, 0.5}}, glm::vec3(0, 1, 0)};
   PixelSpaceTriangle again = left;
   again.color = glm::vec3(1, 0, 0);
@@ -120,7 +122,7 @@ TEST(Acaa, HiddenFragmentsAreNotShaded) {
   EXPECT_EQ(shaded("msaa:8"), 3u * 16);
   EXPECT_EQ(shaded("msaa:8,prepass"), 16u);
   EXPECT_EQ(shaded("acaa:8"), 16u);
-  EXPECT_EQ(shaded("acaa:64"), 4 * 16u);  // in each of four rounds
+  EXPECT_EQ(shaded("acaa:64"), 4 * 16u);  // once in each of four rounds
   trace = layers(0.3, 0.7, 0.5);
   EXPECT_EQ(shaded("msaa:8"), 16u) << "behind closed cells";
 }
@@ -154,7 +156,8 @@ TEST(Acaa, RoundsAreTheSamplesOfMsaa) {
 }
 
 TEST(Acaa, MemoryAtFourK) {
-  // The talk: at 3840 x 2160, 8 samples, MSAA takes 759 MB and ACAA 316 MB (MiB, with fp16 RGBA and 32-bit depth).
+  // According to the talk (Enderton et al. 2015), at 3840 x 2160 with 8 samples MSAA takes 759 MB and ACAA 316 MB.
+  // These are MiB, with fp16 RGBA and 32-bit depth.
   const auto mebibytes = [](const char* spec) {
     return 3840.0 * 2160 * parse_technique(spec).framebuffer_bytes_per_pixel() / (1 << 20);
   };

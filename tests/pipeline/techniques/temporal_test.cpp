@@ -1,4 +1,4 @@
-// Techniques that accumulate over frames: TAA and decoupled visibility.
+// Techniques that accumulate over frames: temporal antialiasing and decoupled visibility multisampling.
 #include <gtest/gtest.h>
 
 #include <cmath>
@@ -12,7 +12,7 @@
 namespace beampipe {
 namespace {
 
-// The last of `frames` frames of a trace that stands still.
+// Renders the same frame `frames` times and returns the last picture.
 Image render_frames(const std::string& spec, const Trace& trace, std::size_t frames, int threads = 1) {
   const Technique technique = parse_technique(spec);
   History history;
@@ -35,7 +35,7 @@ std::vector<PixelSpaceTriangle> quad(double x0, double y0, double x1, double y1,
   return {{{{x0, y0, z}, {x1, y0, z}, {x1, y1, z}}, color}, {{{x0, y0, z}, {x1, y1, z}, {x0, y1, z}}, color}};
 }
 
-// A white bar, `thick` pixels, over black; horizontal.
+// A horizontal white bar, `thick` pixels high, on black.
 Trace bar(double thick) { return pixel_trace(32, 16, quad(0, 8.1, 32, 8.1 + thick, 0.5, glm::vec3(1))); }
 
 double mean_red(const Image& image) {
@@ -52,16 +52,16 @@ TEST(Taa, TheFirstFrameIsOneSample) {
 }
 
 TEST(Taa, AnEdgeAccumulatesToItsCoverage) {
-  // The edge at x = 8.5 between wide areas: neighbours on both sides keep the clamp open.
+  // The edge at x = 8.5 lies between wide areas, so the clamp's box contains the colours of both.
   const Trace trace = pixel_trace(16, 8, quad(-4, -4, 8.5, 20, 0.5, glm::vec3(1)));
   const double found = red(render_frames("taa:8", trace, 64), 8, 4);
-  EXPECT_NEAR(found, 0.5, 0.12);                                        // T = 0.1 over a cycle of 8 leaves ripples
-  EXPECT_NEAR(red(render_frames("taa:8", trace, 1), 8, 4), 0.0, 1e-6);  // the first position lies right of the edge
+  EXPECT_NEAR(found, 0.5, 0.12);  // with T = 0.1 and a cycle of 8 frames the value still varies
+  EXPECT_NEAR(red(render_frames("taa:8", trace, 1), 8, 4), 0.0, 1e-6);  // the first position is right of the edge
 }
 
 TEST(Taa, BlendIsExponential) {
-  // All frames but the first lie still; the first is white, the others 3/4 grey, and no clamp in between: the box of a
-  // checker of grey and white pixels holds both. 1 - (1 - T)^n of the way is gone after n frames.
+  // Stripes that are black in the first frame are white in the later ones, and the other way round. The clamp never
+  // acts, because its box contains both colours. After n frames, a pixel has gone 1 - (1 - T)^n of the way.
   std::vector<PixelSpaceTriangle> before, after;
   for (int i = 0; i < 8; ++i) {
     for (const auto& t : quad(i, 0, i + 1, 8, 0.5, glm::vec3(i % 2 ? 1.0f : 0.0f))) before.push_back(t);
@@ -78,7 +78,7 @@ TEST(Taa, BlendIsExponential) {
   EXPECT_NEAR(red(image, 4, 4), 1 - std::pow(0.75, 3), 1e-3);
 }
 
-// Columns of a pixel, each of another grey.
+// Columns that are one pixel wide, each with a different grey.
 Trace columns() {
   std::vector<PixelSpaceTriangle> triangles;
   for (int i = -8; i < 40; ++i)
@@ -87,7 +87,7 @@ Trace columns() {
   return pixel_trace(24, 8, triangles);
 }
 
-// After one pixel to the right, every pixel's history must be its left neighbour's.
+// The picture moves by one pixel to the right, so each pixel must find the history of its left neighbour.
 void expect_shifted(const std::string& spec, const Trace& before, const Trace& after) {
   const Technique technique = parse_technique(spec);
   History history;
@@ -119,7 +119,7 @@ TEST(Taa, AnotherSizeOfFrameStartsAfresh) {
   EXPECT_EQ(history.width, 20);
 }
 
-// A draw that stood still and then jumps, or starts to move: where it was, nothing of it is left.
+// A draw that stood still jumps or starts to move. Nothing of it is left in its old place.
 TEST(Dvm, WhatLeavesItsRestLeavesNoTrail) {
   for (const double step : {10.0, 2.0}) {
     const Trace before = pixel_trace(24, 8, quad(4, -4, 8, 20, 0.5, glm::vec3(1)));
@@ -139,7 +139,7 @@ void add_draw(Trace& trace, const std::vector<PixelSpaceTriangle>& triangles) {
   trace.meshes.push_back(pixel_trace(1, 1, triangles).meshes[0]);
 }
 
-// After eight frames of `before`, a frame of `after` shows what a first frame would.
+// A frame of `after` that follows eight frames of `before` looks as if it were the first.
 void expect_no_ghost(const Trace& before, const Trace& after, const char* what) {
   const Technique technique = parse_technique("dvm");
   History history;
@@ -148,7 +148,7 @@ void expect_no_ghost(const Trace& before, const Trace& after, const char* what) 
   EXPECT_LT(worst_difference(found, technique.render(after, 0, {1}).image), 2e-3) << what;
 }
 
-// Nothing moves, but the picture is another: the history must not be believed.
+// Nothing moves, but colours change, so the history must be rejected.
 TEST(Dvm, WhatChangesItsLookLeavesNoGhost) {
   Trace lit = pixel_trace(24, 16, quad(4.3, 3.2, 15.6, 11.9, 0.5, glm::vec3(0.75f)), glm::vec3(0.125f));
   lit.meshes.push_back(lit.meshes[0]);
@@ -173,11 +173,12 @@ TEST(Dvm, WhatChangesItsLookLeavesNoGhost) {
   expect_no_ghost(lit, changed, "mesh");
 }
 
-// A lit square turns in place by 3 degrees a frame, and stops: it has the shade of the frame, not of those before.
+// A lit square turns in place by 3 degrees per frame and then stops. In every frame it has the shade of that frame, not
+// of earlier ones.
 TEST(Dvm, WhatTurnsUnderTheLightLeavesNoGhost) {
   Trace trace = pixel_trace(24, 16, quad(-8, -4, 8, 4, 0, glm::vec3(1)));
   Frame& frame = trace.frames[0];
-  frame.projection[2][2] = 1.0 / 16, frame.projection[3][2] = 0;  // depth for a square on its edge
+  frame.projection[2][2] = 1.0 / 16, frame.projection[3][2] = 0;  // depth range for a square that is seen edge-on
   frame.draws[0].shading = Shading::lambert;
   frame.light_direction = glm::normalize(glm::vec3(1, 0, 1));
   const glm::dmat4 middle = glm::translate(glm::dmat4(1.0), glm::dvec3(12, 8, 0));
@@ -191,7 +192,7 @@ TEST(Dvm, WhatTurnsUnderTheLightLeavesNoGhost) {
   }
 }
 
-// The same where none of a pixel's samples is given to a shading sample: 16 draws in a quad, of which 12 stay unknown.
+// The same for pixels with no sample in any shading sample's mask: a quad has 16 draws, of which 12 remain unknown.
 TEST(Dvm, WhatIsUnknownKeepsNoGhost) {
   Trace before = pixel_trace(2, 2, {});
   for (int i = 0; i < 16; ++i) {
@@ -203,7 +204,7 @@ TEST(Dvm, WhatIsUnknownKeepsNoGhost) {
   expect_no_ghost(before, after, "Kd");
 }
 
-// A square passes, a pixel a frame, behind wires that stand still and cover part of each of their pixels; then it
+// A square moves by one pixel per frame behind wires that stand still and cover their pixels only in part. Then it
 // stops.
 TEST(Dvm, WhatPassesBehindAStillSilhouetteLeavesNoTrail) {
   std::vector<PixelSpaceTriangle> wires;
@@ -221,13 +222,14 @@ TEST(Dvm, WhatPassesBehindAStillSilhouetteLeavesNoTrail) {
 }
 
 TEST(Dvm, ABarThinnerThanAPixelVanishesUnderTaaOnly) {
-  const Trace trace = bar(0.2);  // over one of the eight positions
+  const Trace trace = bar(0.2);  // covers one of the eight jitter positions
   const double truth = mean_red(render_frames("reference", trace, 1));
   const double msaa = mean_red(render_frames("msaa:8", trace, 1));
   ASSERT_NEAR(truth, 0.2 / 16, 1e-3);
   EXPECT_NEAR(mean_red(render_frames("dvm", trace, 1)), msaa, 1e-6);
   EXPECT_NEAR(mean_red(render_frames("dvm", trace, 60)), msaa, 1e-3);
-  // Each jitter cycle hits it once, and leaves T of a frame, which the next frame clamps away: T / 8 on average.
+  // Each jitter cycle hits the bar once. That frame adds T of its colour, which the next frame clamps away, so the
+  // average is T / 8.
   const Technique taa = parse_technique("taa:8");
   History history;
   double sum = 0;
@@ -240,10 +242,10 @@ TEST(Dvm, ABarThinnerThanAPixelVanishesUnderTaaOnly) {
   EXPECT_NEAR(sum, 0.1 / 16 / 8, 1e-4);
 }
 
-// Bars of 1.5, 0.5 and 0.2 pixels, a little slanted, around rows 6, 18 and 30; the camera stands still.
+// Slightly slanted bars, 1.5, 0.5 and 0.2 pixels thick, lie around the rows 6, 18 and 30. The camera stands still.
 TEST(Dvm, KeepsTheBarsOfTheSampleThatTaaLoses) {
   const Trace trace = read_trace(std::filesystem::path(BEAMPIPE_SOURCE_FOLDER) / "traces/samples/thin_bars.json");
-  // What each bar adds to the background's red, all told.
+  // The red that a bar adds to the background, summed over its pixels.
   const auto light = [&](const Image& image, std::uint32_t bar) {
     double sum = 0;
     for (std::uint32_t y = 12 * bar; y < 12 * bar + 12; ++y)
@@ -251,7 +253,7 @@ TEST(Dvm, KeepsTheBarsOfTheSampleThatTaaLoses) {
     return sum;
   };
   const Image truth = render_frames("reference", trace, 1);
-  const auto share_kept = [&](const std::string& spec, std::uint32_t bar) {  // over the last jitter cycle
+  const auto share_kept = [&](const std::string& spec, std::uint32_t bar) {  // averaged over the last jitter cycle
     const Technique technique = parse_technique(spec);
     History history;
     double sum = 0;
@@ -274,7 +276,7 @@ double rmse(const Image& a, const Image& b) {
   return std::sqrt(sum / static_cast<double>(a.rgba.size() / 4 * 3));
 }
 
-// A hut that passes before another one, under a camera that stands still.
+// A hut moves in front of another one. The camera stands still.
 TEST(Dvm, WhatMovesUnderAStillCameraLeavesNoTrail) {
   const Trace trace = read_trace(std::filesystem::path(BEAMPIPE_SOURCE_FOLDER) / "traces/samples/passing_huts.json");
   const Technique technique = parse_technique("dvm"), truth = parse_technique("msaa:64");
@@ -286,10 +288,10 @@ TEST(Dvm, WhatMovesUnderAStillCameraLeavesNoTrail) {
 }
 
 TEST(Dvm, TheFirstFrameIsMsaaWhereMaterialsAreFew) {
-  // Two flat draws' worth of colours: any sample of a material has its colour, so the masks are all that matters.
+  // Each material has a single colour, so the picture depends on nothing but the masks.
   std::vector<PixelSpaceTriangle> triangles = quad(2.3, 3.1, 17.7, 20.9, 0.5, glm::vec3(0.25f, 0.5f, 0.75f));
   triangles.push_back({{{5, 1, 0.3}, {29, 9, 0.4}, {11, 27, 0.2}}, glm::vec3(1.0f, 0.5f, 0.125f)});
-  for (const std::uint32_t size : {32u, 31u}) {  // odd: quads that stick out of the frame
+  for (const std::uint32_t size : {32u, 31u}) {  // with an odd size, quads extend beyond the frame
     const Trace trace = pixel_trace(size, size, triangles, glm::vec3(0.125f, 0.25f, 0.5f));
     const Image truth = render_frames("msaa:8", trace, 1);
     for (const char* spec : {"dvm", "dvm:seed=7"})
@@ -299,7 +301,7 @@ TEST(Dvm, TheFirstFrameIsMsaaWhereMaterialsAreFew) {
 }
 
 TEST(Dvm, PastFourMaterialsTimeMakesUpForWhatIsMissing) {
-  // Eight columns of 1/4 px in one quad, each another material.
+  // Eight columns of 1/4 px in one quad, each with its own material.
   std::vector<PixelSpaceTriangle> triangles;
   const auto value = [](int i) { return static_cast<float>(i * 5 % 8) / 8.0f; };
   for (int i = 0; i < 8; ++i)
@@ -308,7 +310,7 @@ TEST(Dvm, PastFourMaterialsTimeMakesUpForWhatIsMissing) {
   const FrameResult first = parse_technique("dvm").render(trace, 0, {1});
   double unknown = 0;
   for (const float part : first.pixel_counters.at("unknown")) unknown += part / 4;
-  EXPECT_GT(unknown, 0.3);  // half of the materials, and so about half of the samples
+  EXPECT_GT(unknown, 0.3);  // half of the materials, and so about half of the samples, have no shading sample
   EXPECT_LT(unknown, 0.7);
   const Image truth = render_frames("msaa:8", trace, 1), late = render_frames("dvm:blend=0.02", trace, 400);
   for (std::uint32_t x = 0; x < 2; ++x)
@@ -327,7 +329,8 @@ TEST(Dvm, ShadesOneSamplePerCoveredPixelAndNoHelpers) {
 }
 
 TEST(Dvm, MaterialByDrawSpreadsAcrossColors) {
-  // One draw, two colours side by side in a pixel: by draw they are one material and the pixel has one sample's colour.
+  // One draw has two colours side by side in a pixel. With material=draw they are one material, and the pixel gets the
+  // colour of one sample.
   std::vector<PixelSpaceTriangle> triangles = quad(0, 0, 0.5, 2, 0.5, glm::vec3(1));
   for (const auto& t : quad(0.5, 0, 2, 2, 0.5, glm::vec3(0))) triangles.push_back(t);
   const Trace trace = pixel_trace(2, 2, triangles);
@@ -337,7 +340,7 @@ TEST(Dvm, MaterialByDrawSpreadsAcrossColors) {
 }
 
 TEST(Temporal, FramesAreTheSameFromAnyNumberOfThreads) {
-  const Trace trace = random_trace(147, 81, 200, 7);  // several tiles, and odd
+  const Trace trace = random_trace(147, 81, 200, 7);  // several tiles, and odd sizes
   for (const char* spec : {"taa:8", "dvm"})
     EXPECT_EQ(render_frames(spec, trace, 5).rgba, render_frames(spec, trace, 5, 3).rgba);
   EXPECT_NE(render_frames("dvm", trace, 5).rgba, render_frames("dvm:seed=2", trace, 5).rgba);
