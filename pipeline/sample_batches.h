@@ -7,7 +7,6 @@
 #include "pipeline/tiles.h"
 #include "pipeline/timeline.h"
 #include "stages/data/tile.h"
-#include "stages/raster/raster_cost.h"
 #include "stages/raster/sample_raster.h"
 
 namespace beampipe {

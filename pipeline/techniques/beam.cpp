@@ -9,6 +9,7 @@
 #include "pipeline/tiles.h"
 #include "pipeline/timeline.h"
 #include "stages/beam/a_buffer.h"
+#include "stages/beam/beam_fragment.h"
 #include "stages/beam/compose_beam.h"
 #include "stages/beam/windows.h"
 #include "stages/geometry/vertex_setup.h"

@@ -10,8 +10,10 @@
 #include "pipeline/memory/image_memory.h"
 #include "pipeline/tiles.h"
 #include "pipeline/timeline.h"
+#include "stages/beam/beam_fragment.h"
 #include "stages/beam/claim.h"
 #include "stages/beam/settle.h"
+#include "stages/cost/closed_depth_cost.h"
 #include "stages/geometry/vertex_setup.h"
 #include "stages/picture/shade.h"
 #include "stages/raster/conservative_raster.h"
@@ -97,7 +99,7 @@ FrameResult render_shape(const Trace& trace, const Frame& frame, const StreamOpt
       state.flush({}, settling);
       color.flush({}, settling);
       close_finished(pixels, tile, closed);
-      closed.charge(settling);
+      charge(closed, settling);
       box = unfinished_box(pixels, tile);
       if (box.x0 < box.x1) beampipe::stream(run.memory, closed.bytes(), settling);  // for the next pass
     }

@@ -9,6 +9,7 @@
 #include "pipeline/memory/image_memory.h"
 #include "pipeline/tiles.h"
 #include "pipeline/timeline.h"
+#include "stages/beam/beam_fragment.h"
 #include "stages/geometry/vertex_setup.h"
 #include "stages/picture/shade.h"
 #include "stages/raster/conservative_raster.h"

@@ -1,15 +1,17 @@
-// What the stages count for whole batches is what their scalar twins count, item by item, on counting numbers with the
-// real data: on every procedural scene.
+// The stages count the same for whole batches as their scalar twins count item by item, on numbers that count and with
+// the real data of every procedural scene.
 #include <gtest/gtest.h>
 
 #include "simd/depth_compare.h"
 #include "stages/beam/a_buffer.h"
 #include "stages/beam/beam_fragment.h"
 #include "stages/beam/claim.h"
-#include "stages/beam/fragment_geometry.h"
 #include "stages/beam/merge_sort.h"
 #include "stages/beam/settle.h"
+#include "stages/data/fragment_geometry.h"
 #include "stages/geometry/vertex_setup.h"
+#include "stages/raster/conservative_raster.h"
+#include "stages/raster/sample_raster.h"
 #include "stages/samples/accumulate.h"
 #include "stages/samples/test_depth.h"
 #include "tests/stages/counted_states.h"
@@ -75,7 +77,7 @@ TEST_P(TwinCounts, DepthTest) {
   EXPECT_EQ(counters.lanes_issued, fragments.size() * 8);
 }
 
-// Claiming as it is done word by word and position by position, on counting numbers.
+// Claims word by word and position by position, on numbers that count.
 template <std::size_t Words, std::size_t Layers>
 class ClaimTwin {
  public:
@@ -239,7 +241,7 @@ void TwinCounts::expect_equal_claims() {
 
 TEST_P(TwinCounts, Claim) {
   expect_equal_claims<4, 5>();
-  expect_equal_claims<4, 1>();  // much is dropped
+  expect_equal_claims<4, 1>();  // many owners are dropped
 }
 
 TEST_P(TwinCounts, Accumulate) {
