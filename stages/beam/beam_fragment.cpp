@@ -142,6 +142,25 @@ WideMask whole_mask(const BeamFragmentOptions& options) {
   return mask;
 }
 
+// The fragment of a pair, without what the kernels compute.
+Fragment new_fragment(const PixelTriangle& pair, const SetupTriangle& triangle, const Tile& tile) {
+  Fragment fragment;
+  fragment.triangle = pair.triangle;
+  fragment.quad = pair.quad;
+  fragment.pixel = static_cast<std::uint32_t>(tile.index(pair.x, pair.y));
+  fragment.front = triangle.front;
+  fragment.plane = pixel_plane(triangle, pair.x, pair.y);
+  fragment.z_min = pair.nearest, fragment.z_max = pair.farthest;
+  fragment.centroid_z = 0;
+  fragment.color = glm::vec3(0.0f);
+  return fragment;
+}
+
+float depth_at_centroid(const Fragment& fragment) {
+  const float z = depth_at(fragment.plane, fragment.centroid_u - 0.5f, fragment.centroid_v - 0.5f);
+  return lesser(greater(z, fragment.z_min), fragment.z_max);
+}
+
 // Gives a speck the positions that are nearest to its centroid.
 void locate(const BeamFragmentOptions& options, Fragment& speck, BeamFragmentWork& work) {
   if (options.tiny_positions == 0) return;
@@ -171,14 +190,7 @@ void beam_fragment(const SetupTriangles& triangles, const std::vector<PixelTrian
     next += is_computed(pair, options);
     work.partial += !pair.full;
     if (!pair.full && computed.coverage[i].alpha <= kZeroArea) continue;
-    const SetupTriangle& triangle = triangles.triangles[pair.triangle];
-    Fragment fragment;
-    fragment.triangle = pair.triangle;
-    fragment.quad = pair.quad;
-    fragment.color = glm::vec3(0.0f);
-    fragment.pixel = static_cast<std::uint32_t>(tile.index(pair.x, pair.y));
-    fragment.front = triangle.front;
-    fragment.plane = pixel_plane(triangle, pair.x, pair.y);
+    Fragment fragment = new_fragment(pair, triangles.triangles[pair.triangle], tile);
     if (pair.full) {
       fragment.alpha = 1.0f, fragment.centroid_u = fragment.centroid_v = 0.5f;
       fragment.mask = whole;
@@ -187,13 +199,10 @@ void beam_fragment(const SetupTriangles& triangles, const std::vector<PixelTrian
       fragment.alpha = c.alpha, fragment.centroid_u = c.centroid_u, fragment.centroid_v = c.centroid_v;
       fragment.mask = computed.masks[i];
     }
-    fragment.z_min = options.clipped_depth ? computed.depth[i].z_min : pair.nearest;
-    fragment.z_max = options.clipped_depth ? computed.depth[i].z_max : pair.farthest;
+    if (options.clipped_depth) fragment.z_min = computed.depth[i].z_min, fragment.z_max = computed.depth[i].z_max;
     fragment.tiny = options.mask != MaskSource::none && fragment.mask.none();
-    fragment.centroid_z = 0;
     if (options.clipped_depth || fragment.tiny) {
-      const float z = depth_at(fragment.plane, fragment.centroid_u - 0.5f, fragment.centroid_v - 0.5f);
-      fragment.centroid_z = lesser(greater(z, fragment.z_min), fragment.z_max);
+      fragment.centroid_z = depth_at_centroid(fragment);
       ++work.centroid_depths;
     }
     if (fragment.tiny) locate(options, fragment, work);

@@ -119,10 +119,10 @@ OperationCounts table_edges_cost() {
 // Per position, when a speck's nearest free position is searched.
 OperationCounts nearest_position_cost() {
   return count_operations([](OperationCounts& counts) {
-    const CountedFloat x(0.0f), u(1.0f, counts);  // the positions are constants
-    CountedFloat least(4.0f, counts);
-    Counted<std::uint32_t> nearest(0u, counts);
-    keep_nearest(x, x, u, u, true, nearest, least, nearest);
+    const CountedFloat x(0.0f), u(1.0f, counts), least(4.0f, counts);  // the positions are constants
+    const Counted<std::uint32_t> index(0u, counts);
+    NearestPosition<CountedFloat, Counted<std::uint32_t>> search{u, u, least, index};
+    search.look_at(x, x, true, index);
     counts.bit += 1;  // the test whether the position is free
   });
 }

@@ -85,7 +85,7 @@ class PixelComposer {
   const ComposeWork& work() const { return work_; }
 
  private:
-  // Finds who owns which positions. Returns the number of positions that were taken before.
+  // Finds who owns which positions. Returns the number of positions that earlier windows have taken.
   float find_owners(const Fragment* fragments, std::size_t count, const WideMask& taken) {
     planes_.resize(count);
     ownership_.resize(count);

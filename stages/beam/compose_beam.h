@@ -26,7 +26,7 @@ template <std::size_t Words, class Channel>
 void compose_window(const std::vector<Fragment>& fragments, const PositionSet& positions, StageCounters& counters,
                     std::vector<StoredAggregate<Words, Channel>>& pixels, std::vector<float>& areas);
 
-// Composes pixels that a single triangle covers completely and hides. The pixels must be empty before. The result is
+// Composes pixels that a single triangle covers completely and hides. The pixels must be empty. The result is
 // that of compose_window for the triangle's fragment, which is not needed here. `colors`: one per triangle.
 template <std::size_t Words, class Channel>
 void compose_whole(const std::vector<PixelTriangle>& whole, const Tile& tile, const std::vector<glm::vec3>& colors,

@@ -26,7 +26,7 @@ constexpr std::uint64_t packed_numbers(PaperStorage storage) {
   return 0;
 }
 
-// Per merge. The aggregate is loaded before it and stored after it.
+// Per merge, with loading and storing the aggregate.
 inline OperationCounts merge_cost(const SamplePattern& pattern, const MergeRules& rules, PaperStorage storage) {
   return count_operations([&](OperationCounts& counts) {
     const auto fragment = counted_fragment(counts);

@@ -9,7 +9,7 @@
 
 namespace beampipe {
 
-// Does a record with this depth come before the other one?
+// Does a record with this depth precede the other one?
 template <class Float>
 bool comes_first(Float depth, Float other) {
   return depth < other;
@@ -18,7 +18,7 @@ bool comes_first(Float depth, Float other) {
 // So many records are compared each with each. The lists of most pixels are not longer.
 inline constexpr std::size_t kSortedRun = 8;
 
-// Sorts list[0, count) with count <= kSortedRun: a record's place is the number of records that come before it. Returns
+// Sorts list[0, count) with count <= kSortedRun: a record's place is the number of records that precede it. Returns
 // the number of comparisons. No branch depends on a depth, because no processor could predict such a branch.
 template <class Record, class Depth>
 std::uint64_t rank_sort(Record* list, std::size_t count, Depth&& depth_of) {

@@ -17,30 +17,39 @@ struct Owner {
 
 float visible_part(const Owner& owner) { return owner.visible / owner.covered; }
 
-// Returns the number of owners whose areas were added. [begin, end): their fragments, in the order of the layers.
+// Lists the owners that have fragments, those with the largest visible part first, as in sorted order. Returns their
+// number. [begin, end): the fragments, in the order of the layers.
+template <std::size_t Words, std::size_t Layers>
+std::size_t list_owners(const Fragment* begin, const Fragment* end, const OwnerPixel<Words, Layers>& pixel,
+                        std::array<Owner, Layers>& owners) {
+  std::size_t count = 0;
+  const Fragment* fragment = begin;
+  for (std::uint32_t k = 0; k < Layers; ++k) {
+    const WideMask owned = pixel.positions_in(OwnerPixel<Words, Layers>::kFirstLayer + k);
+    if (owned.none() || fragment == end || fragment->triangle != pixel.triangle(k)) continue;
+    const Owner owner{fragment, static_cast<float>(fragment->mask.count()), static_cast<float>(owned.count())};
+    std::size_t place = count++;
+    for (; place > 0 && visible_part(owner) > visible_part(owners[place - 1]); --place)
+      owners[place] = owners[place - 1];
+    owners[place] = owner;
+    ++fragment;
+  }
+  return count;
+}
+
+// Returns the number of owners whose areas were added. [begin, end): as in list_owners.
 template <std::size_t Words, std::size_t Layers>
 std::size_t settle_pixel(const Fragment* begin, const Fragment* end, bool last_pass, OwnerPixel<Words, Layers>& pixel) {
   using Pixel = OwnerPixel<Words, Layers>;
   constexpr auto kPositions = static_cast<float>(32 * Words);
   const bool speck = pixel.owner[0] & Pixel::kSpeck;
   const WideMask deferred = pixel.positions_in(Pixel::kDeferred);
-  std::array<Owner, Layers> seen;
-  std::size_t count = 0;
   WideMask settled = pixel.positions_in(Pixel::kSettled);
   Taken<float> taken{pixel.area / kAreaUnits, static_cast<float>(settled.count())};
   glm::vec3 color = taken.area * glm::vec3(pixel.color[0], pixel.color[1], pixel.color[2]);  // times area
-  const Fragment* fragment = begin;
-  for (std::uint32_t k = 0; k < Layers; ++k) {
-    const WideMask owned = pixel.positions_in(Pixel::kFirstLayer + k);
-    settled = settled | owned;
-    if (owned.none() || fragment == end || fragment->triangle != pixel.triangle(k)) continue;
-    // Those with the largest visible part come first, as in sorted order.
-    const Owner owner{fragment, static_cast<float>(fragment->mask.count()), static_cast<float>(owned.count())};
-    std::size_t place = count++;
-    for (; place > 0 && visible_part(owner) > visible_part(seen[place - 1]); --place) seen[place] = seen[place - 1];
-    seen[place] = owner;
-    ++fragment;
-  }
+  for (std::uint32_t k = 0; k < Layers; ++k) settled = settled | pixel.positions_in(Pixel::kFirstLayer + k);
+  std::array<Owner, Layers> seen;
+  const std::size_t count = list_owners(begin, end, pixel, seen);
   for (std::size_t i = 0; i < count; ++i) {
     const Owner& owner = seen[i];
     const float area = speck ? owner.visible * (1 / kPositions)

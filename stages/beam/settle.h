@@ -38,7 +38,7 @@ bool is_unfinished(const OwnerPixel<Words, Layers>& pixel) {
   return !pixel.states.all_in(OwnerPixel<Words, Layers>::kSettled);
 }
 
-// Closes finished pixels to everything, however near. This acts like a stencil test before fragments are computed.
+// Closes finished pixels to everything, however near. This acts like an early stencil test.
 template <std::size_t Words, std::size_t Layers>
 void close_finished(const std::vector<OwnerPixel<Words, Layers>>& pixels, const Tile& tile, ClosedDepth& closed) {
   constexpr float kInFront = -2.0f;  // nearer than every depth

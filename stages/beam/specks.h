@@ -21,29 +21,34 @@ inline constexpr float kSurfaceReach = 1.0f / 64.0f;
 // it than to any other position. Four times is enough not to affect dense meshes.
 inline constexpr float kSpeckShares = 4.0f;
 
-// One step of the search for the free position (x, y) that is nearest to (u, v), all in pixels. Float and Index may be
-// numbers that count.
+// The search for the free position that is nearest to (u, v), in pixels. Float and Index may be numbers that count.
 template <class Float, class Index>
-void keep_nearest(Float x, Float y, Float u, Float v, bool is_free, Index index, Float& least, Index& nearest) {
-  const Float du = x - u, dv = y - v;
-  const Float distance = du * du + dv * dv;
-  const bool nearer = (distance < least) & is_free;
-  least = select(nearer, distance, least);
-  nearest = select(nearer, index, nearest);
-}
+struct NearestPosition {
+  Float u, v;
+  Float least;  // square of the distance so far
+  Index position;
+
+  void look_at(Float x, Float y, bool is_free, Index index) {
+    const Float du = x - u, dv = y - v;
+    const Float distance = du * du + dv * dv;
+    const bool nearer = (distance < least) & is_free;
+    least = select(nearer, distance, least);
+    position = select(nearer, index, position);
+  }
+};
 
 // The position that is nearest to (u, v), of those that are not `taken`.
 inline std::size_t nearest_position(const std::vector<SamplePattern>& positions, float u, float v,
                                     const WideMask& taken) {
-  std::uint32_t nearest = 0;
-  float least = 4.0f;  // more than the square of the pixel's diagonal
+  constexpr float kFar = 4.0f;  // more than the square of the pixel's diagonal
+  NearestPosition<float, std::uint32_t> search{u, v, kFar, 0};
   for (std::uint32_t i = 0; i < positions.size() * kMaxMaskSamples; ++i) {
     const SamplePattern& pattern = positions[i / kMaxMaskSamples];
     const std::size_t s = i % kMaxMaskSamples;
-    keep_nearest(static_cast<float>(pattern.x[s]) * kUnit, static_cast<float>(pattern.y[s]) * kUnit, u, v,
-                 !taken.test(i), i, least, nearest);
+    search.look_at(static_cast<float>(pattern.x[s]) * kUnit, static_cast<float>(pattern.y[s]) * kUnit, !taken.test(i),
+                   i);
   }
-  return nearest;
+  return search.position;
 }
 
 }  // namespace beampipe

@@ -1,8 +1,8 @@
 // windows: sorted lists of pairs -> the next window of every open pixel.
 //
-// A window is a run of a pixel's list whose depth ranges overlap, so each window lies strictly behind the one before
-// it. Pixels are composed one window at a time. What lies behind a pixel's last open position is therefore never worked
-// on. Each record is read only once: the record that ends a window starts the next one.
+// A window is a run of a pixel's list whose depth ranges overlap, so windows lie strictly behind each other. Pixels are
+// composed one window at a time. What lies behind a pixel's last open position is therefore never worked on. Each
+// record is read only once: the record that ends a window starts the next one.
 #pragma once
 
 #include <cstdint>

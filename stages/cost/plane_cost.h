@@ -24,7 +24,7 @@ inline OperationCounts nearer_cost() {
 inline OperationCounts plane_cost() {
   return count_operations([](OperationCounts& counts) {
     const Counted<double> one(1.0, counts);
-    to_float(plane_at(one, one, one, one, one, one, one)), to_float(one), to_float(one);
+    to_float(ScreenDepthOf<Counted<double>>{one, one, one, one, one}.at(one, one)), to_float(one), to_float(one);
   });
 }
 

@@ -1,5 +1,5 @@
-// The area-conserving aggregate as it is stored. It is loaded before each window of fragments and stored after it, in
-// exactly these bytes.
+// The area-conserving aggregate as it is stored, in exactly these bytes. It is loaded at the start of each window of
+// fragments and stored at the end.
 #pragma once
 
 #include <cstddef>

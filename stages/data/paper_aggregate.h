@@ -1,5 +1,5 @@
-// The aggregate of the published rules as it is stored. It is loaded before each merge and stored after it, in exactly
-// these bytes.
+// The aggregate of the published rules as it is stored, in exactly these bytes. It is loaded at the start of each merge
+// and stored at the end.
 //
 // The talk (slide 23) states 36 bytes, and 6 bytes for the colour. The paper's text (section 3) states 32 bytes and
 // gives no layout, so there are two readings. If the 32 bytes are without colour, they are the talk's 36 bytes with

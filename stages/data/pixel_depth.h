@@ -12,12 +12,6 @@
 
 namespace beampipe {
 
-// Depth at (x, y), in pixels.
-template <class Real>
-Real plane_at(Real z, Real dzdx, Real dzdy, Real anchor_x, Real anchor_y, Real x, Real y) {
-  return z + dzdx * (x - anchor_x) + dzdy * (y - anchor_y);
-}
-
 // The triangle's depth plane in the pixel (x, y) of the frame: the depth at the pixel's centre and slopes per pixel.
 inline DepthPlane<float> pixel_plane(const SetupTriangle& triangle, std::int32_t x, std::int32_t y) {
   return {static_cast<float>(triangle.depth.at(x + 0.5, y + 0.5)), static_cast<float>(triangle.depth.dzdx),
@@ -26,12 +20,16 @@ inline DepthPlane<float> pixel_plane(const SetupTriangle& triangle, std::int32_t
 
 // The same for the samples of a cell: the depth at the cell's upper left corner (x, y), in pixels, and slopes per
 // 1/256 px.
-template <class Real, class Float>
-void cell_plane(Real z, Real dzdx, Real dzdy, Real anchor_x, Real anchor_y, Real x, Real y, Float& depth,
-                Float& slope_x, Float& slope_y) {
+template <class Float>
+struct CellPlane {
+  Float z, dzdx, dzdy;
+};
+
+template <class Real>
+auto cell_plane(const ScreenDepthOf<Real>& depth, Real x, Real y) {
   const Real unit(1.0 / kSubpixelUnits);
-  depth = to_float(plane_at(z, dzdx, dzdy, anchor_x, anchor_y, x, y));
-  slope_x = to_float(dzdx * unit), slope_y = to_float(dzdy * unit);
+  using Float = decltype(to_float(unit));
+  return CellPlane<Float>{to_float(depth.at(x, y)), to_float(depth.dzdx * unit), to_float(depth.dzdy * unit)};
 }
 
 template <class Float>

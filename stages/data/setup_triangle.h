@@ -11,14 +11,16 @@
 
 namespace beampipe {
 
-// Depth at (x, y), in pixels: z + dzdx (x - anchor_x) + dzdy (y - anchor_y). Three vertices give the same bits in any
-// order.
-struct ScreenDepth {
-  double z = 0, dzdx = 0, dzdy = 0;   // slopes per pixel
-  double anchor_x = 0, anchor_y = 0;  // pixels
+// A triangle's depth plane. Three vertices give the same bits in any order. Real is double or a number that counts.
+template <class Real>
+struct ScreenDepthOf {
+  Real z{}, dzdx{}, dzdy{};     // at the anchor; slopes per pixel
+  Real anchor_x{}, anchor_y{};  // pixels
 
-  double at(double x, double y) const { return z + dzdx * (x - anchor_x) + dzdy * (y - anchor_y); }
+  // Depth at (x, y), in pixels.
+  Real at(Real x, Real y) const { return z + dzdx * (x - anchor_x) + dzdy * (y - anchor_y); }
 };
+using ScreenDepth = ScreenDepthOf<double>;
 
 struct SetupTriangle {
   // Vertices in 1/256 px, |x| and |y| <= 2^23, ordered such that the inside is at E >= 0 for every edge (see Edge).

@@ -15,8 +15,8 @@ namespace beampipe {
 enum class PairDepths { bounds, none };
 
 // Appends to `out`, triangle by triangle in the order of the list. With `closed`, leaves out what is hidden behind
-// triangles that cover whole pixels, in this list or in earlier calls. Returns the number of pairs in `out` before it
-// removed those that a later triangle of the list hides.
+// triangles that cover whole pixels, in this list or in earlier calls. Returns the largest size of `out`, which may be
+// more than its size at the end: pairs that turned out to be hidden behind a later triangle are removed.
 std::size_t conservative_raster(const SetupTriangles& triangles, const TriangleList& list, const Tile& tile,
                                 StageCounters& counters, std::vector<PixelTriangle>& out, ClosedDepth* closed = nullptr,
                                 PairDepths depths = PairDepths::bounds);

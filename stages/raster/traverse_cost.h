@@ -18,8 +18,8 @@ inline OperationCounts box_cost() {
   });
 }
 
-// Per triangle, before its first cell: the cell's corner and, per edge, a, b and c, the value at the corner, the steps
-// to the right and down, and what to add for the cell's deepest and shallowest corners.
+// Per triangle, to set up its first cell: the cell's corner and, per edge, a, b and c, the value at the corner, the
+// steps to the right and down, and what to add for the cell's deepest and shallowest corners.
 inline OperationCounts start_cost(FullMeans meaning) {
   return count_operations([&](OperationCounts& counts) {
     using Int = Counted<std::int64_t>;

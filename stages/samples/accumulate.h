@@ -12,8 +12,8 @@
 
 namespace beampipe {
 
-// Adds the background for the samples that the depth-only pass left clear. DoubleCounting::saturate needs this before
-// the fragments, so that alpha saturates at what geometry covers. It costs another read of all depths.
+// Adds the background for the samples that the depth-only pass left clear. DoubleCounting::saturate needs this to be
+// done first, so that alpha saturates at what geometry covers. It costs another read of all depths.
 void accumulate_background(const SampleTile& depth, const glm::vec3& background, StageCounters& counters,
                            Accumulator& accumulator);
 

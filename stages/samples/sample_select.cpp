@@ -111,44 +111,58 @@ void share_out(QuadRandom& random, const std::uint32_t masks[4], const std::uint
   }
 }
 
+// What the selection of all quads starts with.
+struct Start {
+  std::vector<std::uint32_t> inside;    // per quad: the samples inside the frame
+  std::vector<std::uint32_t> ids;       // the materials of the samples, kQuadSamples per quad
+  std::vector<std::uint32_t> masks;     // per shading sample, four per quad: the samples of its material
+  std::vector<std::uint8_t> locations;  // likewise: the sample where it is shaded
+};
+
+Start start(const QuadGrid& grid, const SampleTile& surface, const std::vector<std::uint32_t>& materials,
+            std::uint32_t jitter) {
+  const std::size_t count = grid.count();
+  Start all{std::vector<std::uint32_t>(count), std::vector<std::uint32_t>(count * kQuadSamples, kNoTriangle),
+            std::vector<std::uint32_t>(4 * count), std::vector<std::uint8_t>(4 * count)};
+  for (std::size_t q = 0; q < count; ++q) {
+    for (int p = 0; p < 4; ++p) {
+      all.locations[4 * q + static_cast<std::size_t>(p)] =
+          static_cast<std::uint8_t>(8u * static_cast<unsigned>(p) + jitter);
+      if (!grid.has_pixel(q, p)) continue;
+      all.inside[q] |= 0xffu << 8 * p;
+      const std::uint32_t* const triangle = surface.triangle.data() + grid.first_sample(q, p);
+      std::uint32_t* const id = all.ids.data() + kQuadSamples * q + kSamples * static_cast<std::size_t>(p);
+      for (std::size_t s = 0; s < kSamples; ++s)
+        id[s] = triangle[s] == kNoTriangle ? kNoTriangle : materials[triangle[s]];
+    }
+  }
+  match_masks(all.ids.data(), all.locations.data(), count, all.masks.data());
+  for (std::size_t i = 0; i < 4 * count; ++i)
+    all.masks[i] &= all.inside[i / 4] >> 8 * (i % 4) & 1 ? all.inside[i / 4] : 0;
+  return all;
+}
+
 }  // namespace
 
 std::vector<SampleQuad> sample_select(const SampleTile& surface, const Tile& tile,
                                       const std::vector<std::uint32_t>& materials, const SelectOptions& options,
                                       StageCounters& counters) {
   const QuadGrid grid(tile);
+  Start all = start(grid, surface, materials, options.jitter);
   std::vector<SampleQuad> quads(grid.count());
-  std::vector<std::uint32_t> inside(grid.count()), ids(grid.count() * kQuadSamples, kNoTriangle);
-  // Of shading sample i of quad q, at [4 q + i]:
-  std::vector<std::uint32_t> masks(4 * grid.count());
-  std::vector<std::uint8_t> locations(4 * grid.count());
-  for (std::size_t q = 0; q < grid.count(); ++q) {
-    for (int p = 0; p < 4; ++p) {
-      locations[4 * q + static_cast<std::size_t>(p)] =
-          static_cast<std::uint8_t>(8u * static_cast<unsigned>(p) + options.jitter);
-      if (!grid.has_pixel(q, p)) continue;
-      inside[q] |= 0xffu << 8 * p;
-      const std::uint32_t* const triangle = surface.triangle.data() + grid.first_sample(q, p);
-      std::uint32_t* const id = ids.data() + kQuadSamples * q + kSamples * static_cast<std::size_t>(p);
-      for (std::size_t s = 0; s < kSamples; ++s)
-        id[s] = triangle[s] == kNoTriangle ? kNoTriangle : materials[triangle[s]];
-    }
-  }
-  match_masks(ids.data(), locations.data(), grid.count(), masks.data());
-
   SelectWork work;
   for (std::size_t q = 0; q < grid.count(); ++q) {
     QuadRandom random(options.seed, grid.x(q), grid.y(q), work);
-    std::uint32_t* const of_quad = masks.data() + 4 * q;
-    std::uint8_t* const where = locations.data() + 4 * q;
-    for (int p = 0; p < 4; ++p) of_quad[p] &= inside[q] >> 8 * p & 1 ? inside[q] : 0;
-    switch_samples({ids.data() + kQuadSamples * q, inside[q]}, random, of_quad, where, work);
-    share_out(random, of_quad, where, quads[q], work);
+    std::uint32_t* const masks = all.masks.data() + 4 * q;
+    std::uint8_t* const locations = all.locations.data() + 4 * q;
+    switch_samples({all.ids.data() + kQuadSamples * q, all.inside[q]}, random, masks, locations, work);
+    share_out(random, masks, locations, quads[q], work);
     for (int p = 0; p < 4; ++p) {
-      quads[q].location[p] = where[p];
-      quads[q].triangle[p] =
-          of_quad[p] == 0 ? kNoTriangle : surface.triangle[grid.first_sample(q, where[p] / 8) + where[p] % kSamples];
-      work.stored += of_quad[p] != 0;
+      quads[q].location[p] = locations[p];
+      quads[q].triangle[p] = masks[p] == 0
+                                 ? kNoTriangle
+                                 : surface.triangle[grid.first_sample(q, locations[p] / 8) + locations[p] % kSamples];
+      work.stored += masks[p] != 0;
     }
   }
   work.pixels = tile.pixels();

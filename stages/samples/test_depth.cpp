@@ -14,15 +14,14 @@ std::vector<CellDepth> cell_depths(const SetupTriangles& triangles, const std::v
   std::vector<CellDepth> items;
   items.reserve(fragments.size());
   for (const SampleFragment& fragment : fragments) {
-    const ScreenDepth& plane = triangles.triangles[fragment.triangle].depth;
     const auto pixel = static_cast<std::int32_t>(tile.index(grid.pixel_x(fragment.x), grid.pixel_y(fragment.y)));
-    const double left = fragment.x * cell_width, top = fragment.y * cell_height;
+    const CellPlane<float> plane =
+        cell_plane(triangles.triangles[fragment.triangle].depth, fragment.x * cell_width, fragment.y * cell_height);
     CellDepth& item = items.emplace_back();
     item.cell = static_cast<std::uint32_t>(pixel * grid.cells_per_pixel() + grid.in_pixel(fragment.x, fragment.y));
     item.mask = fragment.mask;
     item.triangle = fragment.triangle;
-    cell_plane(plane.z, plane.dzdx, plane.dzdy, plane.anchor_x, plane.anchor_y, left, top, item.z, item.dzdx,
-               item.dzdy);
+    item.z = plane.z, item.dzdx = plane.dzdx, item.dzdy = plane.dzdy;
   }
   return items;
 }

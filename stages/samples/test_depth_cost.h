@@ -21,8 +21,7 @@ inline OperationCounts sample_depth_cost() {
 inline OperationCounts cell_plane_cost() {
   return count_operations([](OperationCounts& counts) {
     const Counted<double> one(1.0, counts);
-    Counted<float> depth, slope_x, slope_y;
-    cell_plane(one, one, one, one, one, one, one, depth, slope_x, slope_y);
+    cell_plane<Counted<double>>({one, one, one, one, one}, one, one);
   });
 }
 

@@ -30,13 +30,11 @@ std::size_t draw_at(const SampleTile& surface, std::size_t i, const std::vector<
 }
 
 glm::vec2 pixel_motion(const glm::dmat4& to_last, double center_x, double center_y, float depth, const Frame& frame) {
-  double m[16];
-  for (int i = 0; i < 16; ++i) m[i] = to_last[i / 4][i % 4];
-  const double width = frame.width, height = frame.height;
-  double dx = 0, dy = 0;
-  if (!move<double>(m, center_x, center_y, depth, width, height, dx, dy))
-    return glm::vec2(std::numeric_limits<float>::infinity());
-  return {half(static_cast<float>(dx)), half(static_cast<float>(dy))};
+  Reprojection<double> reprojection{{}, static_cast<double>(frame.width), static_cast<double>(frame.height)};
+  for (int i = 0; i < 16; ++i) reprojection.m[i] = to_last[i / 4][i % 4];
+  const Movement<double> moved = movement<double>(reprojection, center_x, center_y, depth);
+  if (!moved.in_front) return glm::vec2(std::numeric_limits<float>::infinity());
+  return {half(static_cast<float>(moved.dx)), half(static_cast<float>(moved.dy))};
 }
 
 }  // namespace

@@ -10,11 +10,11 @@
 namespace beampipe {
 
 // The movement of one point, without its conversion to fp16.
-inline void count_move(OperationCounts& counts, Counted<double>& dx, Counted<double>& dy) {
+inline Movement<Counted<double>> counted_movement(OperationCounts& counts) {
   const Counted<double> one(1.0, counts);
-  Counted<double> m[16];
-  for (Counted<double>& element : m) element = one;
-  move(m, one, one, one, one, one, dx, dy);
+  Reprojection<Counted<double>> to_last{{}, one, one};
+  for (Counted<double>& element : to_last.m) element = one;
+  return movement(to_last, one, one, one);
 }
 
 // Per pixel: its nearest sample, that sample's draw and the draw's matrix, and the movement.
@@ -25,9 +25,8 @@ inline OperationCounts motion_cost(std::size_t samples) {
     const std::uint32_t table[1] = {};
     const Counted<std::int32_t> index(0, counts);
     fetch(table, index), fetch(table, index);
-    Counted<double> dx, dy;
-    count_move(counts, dx, dy);
-    converted(to_float(dx)), converted(to_float(dy));
+    const Movement<Counted<double>> moved = counted_movement(counts);
+    converted(to_float(moved.dx)), converted(to_float(moved.dy));
   });
 }
 
@@ -51,9 +50,8 @@ inline OperationCounts draw_cost() {
     fetch(table, index), fetch(table, index);
     const Counted<std::uint32_t> look(0, counts);
     look ^ look;
-    Counted<double> dx, dy;
-    count_move(counts, dx, dy);
-    const Counted<float> x(converted(to_float(dx))), y(converted(to_float(dy)));
+    const Movement<Counted<double>> moved = counted_movement(counts);
+    const Counted<float> x(converted(to_float(moved.dx))), y(converted(to_float(moved.dy)));
     greater(x, square_length(x, y));
   });
 }

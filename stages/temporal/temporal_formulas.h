@@ -7,28 +7,42 @@ namespace beampipe {
 
 // ---- motion ----
 
-// Transforms a point at (x, y) in normalized device coordinates and at clip-space depth z to its position in the last
-// frame, in pixels. `m`: to_last_frame's matrix, column-major. `w` is positive in front of the eye.
+// From one frame's screen to that of the last frame.
 template <class Real>
-void reproject(const Real m[16], Real x, Real y, Real z, Real width, Real height, Real& last_x, Real& last_y, Real& w) {
+struct Reprojection {
+  Real m[16];          // to_last_frame's matrix, column-major
+  Real width, height;  // pixels
+};
+
+// A position in the last frame, in pixels. `w` is positive in front of the eye.
+template <class Real>
+struct LastPosition {
+  Real x, y, w;
+};
+
+// (x, y): normalized device coordinates; `z`: clip-space depth.
+template <class Real>
+LastPosition<Real> reproject(const Reprojection<Real>& to_last, Real x, Real y, Real z) {
+  const auto& m = to_last.m;
   const auto row = [&](int r) { return m[r] * x + m[4 + r] * y + m[8 + r] * z + m[12 + r]; };
   const Real one(1.0f), half(0.5f);
-  w = row(3);
-  const Real inverse = one / w;
-  last_x = (row(0) * inverse + one) * half * width;
-  last_y = (one - row(1) * inverse) * half * height;
+  const Real w = row(3), inverse = one / w;
+  return {(row(0) * inverse + one) * half * to_last.width, (one - row(1) * inverse) * half * to_last.height, w};
 }
 
-// Finds the vector from a pixel's centre to where the surface there was, in pixels. Returns whether that was in front
-// of the eye.
+// The vector from a pixel's centre to where the surface there was in the last frame, in pixels.
 template <class Real>
-bool move(const Real m[16], Real center_x, Real center_y, Real depth, Real width, Real height, Real& dx, Real& dy) {
+struct Movement {
+  Real dx, dy;
+  bool in_front;  // it was in front of the eye
+};
+
+template <class Real>
+Movement<Real> movement(const Reprojection<Real>& to_last, Real center_x, Real center_y, Real depth) {
   const Real zero(0.0), one(1.0), two(2.0);
-  Real x, y, w;
-  reproject(m, two * center_x / width - one, one - two * center_y / height, two * lesser(depth, zero) + one, width,
-            height, x, y, w);
-  dx = x - center_x, dy = y - center_y;
-  return w > zero;
+  const LastPosition<Real> last = reproject(to_last, two * center_x / to_last.width - one,
+                                            one - two * center_y / to_last.height, two * lesser(depth, zero) + one);
+  return {last.x - center_x, last.y - center_y, last.w > zero};
 }
 
 template <class Real>

@@ -45,8 +45,9 @@ class WindowTwins : public testing::TestWithParam<SceneKind> {
 
   DepthBounds<Float> bounds_of(const PixelTriangle& pair, const DepthBounds<Float>& vertices) {
     const ScreenDepth& depth = triangles_.triangles[pair.triangle].depth;
-    const Float z = to_float(plane_at(real(depth.z), real(depth.dzdx), real(depth.dzdy), real(depth.anchor_x),
-                                      real(depth.anchor_y), real(pair.x + 0.5), real(pair.y + 0.5)));
+    const ScreenDepthOf<Real> counted = {real(depth.z), real(depth.dzdx), real(depth.dzdy), real(depth.anchor_x),
+                                         real(depth.anchor_y)};
+    const Float z = to_float(counted.at(real(pair.x + 0.5), real(pair.y + 0.5)));
     return pair_bounds<Float>({z, to_float(real(depth.dzdx)), to_float(real(depth.dzdy))}, vertices);
   }
 

@@ -58,9 +58,10 @@ TEST_P(TwinCounts, DepthTest) {
   depth_test(triangles_, fragments, tile_, sampling, counters, surface, accesses);
   for (const SampleFragment& fragment : fragments) {
     const ScreenDepth& plane = triangles_.triangles[fragment.triangle].depth;
-    Float z, dzdx, dzdy;
-    cell_plane(real(plane.z), real(plane.dzdx), real(plane.dzdy), real(plane.anchor_x), real(plane.anchor_y),
-               real(static_cast<double>(fragment.x)), real(static_cast<double>(fragment.y)), z, dzdx, dzdy);
+    const ScreenDepthOf<Real> counted = {real(plane.z), real(plane.dzdx), real(plane.dzdy), real(plane.anchor_x),
+                                         real(plane.anchor_y)};
+    const auto [z, dzdx, dzdy] =
+        cell_plane(counted, real(static_cast<double>(fragment.x)), real(static_cast<double>(fragment.y)));
     const auto first = static_cast<std::size_t>(fragment.y * tile_.width() + fragment.x) * 8;
     for (std::size_t s = 0; s < 8; ++s) {
       if (!(fragment.mask >> s & 1)) continue;
@@ -125,9 +126,9 @@ class ClaimTwin {
   Plane owner(std::uint32_t k, const Fragment& fragment, const Pixel& pixel) {
     const ScreenDepth& depth = triangles_.triangles[pixel.triangle(k)].depth;
     const auto at = static_cast<std::int32_t>(fragment.pixel);
-    const Real z = plane_at(real64(depth.z), real64(depth.dzdx), real64(depth.dzdy), real64(depth.anchor_x),
-                            real64(depth.anchor_y), real64(tile_.x0 + at % tile_.width() + 0.5),
-                            real64(tile_.y0 + at / tile_.width() + 0.5));
+    const ScreenDepthOf<Real> counted = {real64(depth.z), real64(depth.dzdx), real64(depth.dzdy),
+                                         real64(depth.anchor_x), real64(depth.anchor_y)};
+    const Real z = counted.at(real64(tile_.x0 + at % tile_.width() + 0.5), real64(tile_.y0 + at / tile_.width() + 0.5));
     return {to_float(z), to_float(real64(depth.dzdx)), to_float(real64(depth.dzdy))};
   }
 
