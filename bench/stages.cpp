@@ -4,6 +4,8 @@
 
 #include "pipeline/bins/bands.h"
 #include "pipeline/bins/threads.h"
+#include "stages/beam/a_buffer.h"
+#include "stages/beam/beam_fragment.h"
 #include "stages/beam/compose_beam.h"
 #include "stages/beam/windows.h"
 #include "stages/geometry/vertex_setup.h"

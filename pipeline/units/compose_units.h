@@ -8,7 +8,6 @@
 #include "stages/beam/compose_beam.h"
 #include "stages/beam/windows.h"
 #include "stages/picture/resolve.h"
-#include "stages/raster/raster_cost.h"
 
 namespace beampipe {
 

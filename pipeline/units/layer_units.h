@@ -10,6 +10,7 @@
 #include "stages/beam/claim.h"
 #include "stages/beam/compose_z3.h"
 #include "stages/beam/settle.h"
+#include "stages/cost/closed_depth_cost.h"
 #include "stages/picture/resolve.h"
 
 namespace beampipe {
@@ -100,7 +101,7 @@ class OwnersUnit {
     state_.flush({}, settle_.counters);
     color_.flush({}, settle_.counters);
     close_finished(pixels_, bin_.tile, closed);
-    closed.charge(settle_.counters);
+    charge(closed, settle_.counters);
   }
 
   // The closed depths are kept in memory for the next pass.

@@ -11,7 +11,6 @@
 
 #include "pipeline/bins/bin.h"
 #include "stages/raster/conservative_raster.h"
-#include "stages/raster/raster_cost.h"
 #include "stages/raster/sample_raster.h"
 
 namespace beampipe {

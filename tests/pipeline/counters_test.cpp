@@ -5,7 +5,7 @@
 #include <tuple>
 
 #include "pipeline/technique.h"
-#include "stages/raster/raster_cost.h"
+#include "stages/data/sample_fragment.h"
 #include "tests/pipeline/test_traces.h"
 
 namespace beampipe {

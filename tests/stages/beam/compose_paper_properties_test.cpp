@@ -1,9 +1,11 @@
-// What an area-conserving aggregate keeps whatever is composed into it, window by window. BEAMPIPE_THOROUGH=N tries N
-// times as many.
+// Properties that an area-conserving aggregate has, whatever is composed into it, window by window. BEAMPIPE_THOROUGH=N
+// tries N times as many cases.
 #include <gtest/gtest.h>
 
 #include <cstdio>
 
+#include "stages/beam/a_buffer.h"
+#include "stages/beam/beam_fragment.h"
 #include "stages/beam/compose_beam.h"
 #include "stages/beam/windows.h"
 #include "stages/picture/shade.h"
@@ -15,14 +17,14 @@ namespace beampipe {
 namespace {
 
 constexpr Tile kTile{0, 0, 12, 10};
-constexpr float kRounding = 1e-5f;  // of what is added up in float32, as often as a pixel has fragments
+constexpr float kRounding = 1e-5f;  // of a sum in float32 over the fragments of a pixel
 
 template <std::size_t Words>
 using Pixels = std::vector<StoredAggregate<Words, float>>;
 
-// Each pixel after its windows against what it was before: the area is what was there and what came, at most 1, and 1
-// where the mask has no gap; the mask is the union of what was there and what came; a colour lies between the least and
-// the greatest that came.
+// Compares each pixel after its windows with what it was earlier. The area is the sum of the old and the added area, at
+// most 1, and exactly 1 if the mask has no gap. The mask is the union of the old mask and the added ones. A colour lies
+// between the smallest and the largest added colour.
 template <std::size_t Words>
 void expect_kept(const Pixels<Words>& before, const Pixels<Words>& after, const std::vector<Fragment>& fragments,
                  const std::vector<float>& areas, float least, float greatest) {
@@ -47,7 +49,7 @@ void expect_kept(const Pixels<Words>& before, const Pixels<Words>& after, const 
   }
 }
 
-// Composes random triangles; returns how many fragments there were.
+// Composes random triangles. Returns the number of fragments.
 template <std::size_t Words>
 std::uint64_t compose_random(Random& random) {
   const PositionSet positions(cell_patterns(32 * Words));

@@ -1,4 +1,4 @@
-#include "stages/geometry/setup_cost.h"
+#include "stages/geometry/vertex_setup_cost.h"
 
 #include <array>
 
@@ -26,7 +26,7 @@ OperationCounts project_cost() {
     const CountedReal x(1.0, counts);
     const ScreenVertex<CountedReal> screen = project<CountedReal>({x, x, x, x}, x, x);
     converted(to_grid(screen.x)), converted(to_grid(screen.y));
-    for (int axis = 0; axis < 2; ++axis) converted(x) * CountedReal(1.0 / kSubpixelUnits);  // what was snapped
+    for (int axis = 0; axis < 2; ++axis) converted(x) * CountedReal(1.0 / kSubpixelUnits);  // snapped, back to pixels
   });
 }
 
@@ -51,7 +51,8 @@ OperationCounts crossing_cost() {
   });
 }
 
-OperationCounts area_cost() {  // and which way the triangle turns
+// The area, and which way the triangle turns.
+OperationCounts area_cost() {
   return count_operations([](OperationCounts& counts) {
     const Counted<std::int64_t> x(1, counts);
     static_cast<void>(doubled_area<Counted<std::int64_t>>({x, x, x}, {x, x, x}) < x);
@@ -72,34 +73,33 @@ OperationCounts normal_cost() {
   });
 }
 
-// Is every corner of a clipped polygon's triangle before the eye?
+// The test whether all three corners of a clipped polygon's triangle are in front of the eye.
 OperationCounts fan_cost() { return {.add = 3}; }
 
-// The corners' depths as they are stored.
+// Conversion of the corners' depths to the stored format.
 OperationCounts depths_cost() { return {.convert = 3}; }
 
 OperationCounts slopes_cost() {
   return count_operations([](OperationCounts& counts) {
     const CountedReal zero(0.0, counts), one(1.0, counts);
-    counts.add += 3;  // comparisons that put the corners in order
+    counts.add += 3;  // comparisons to sort the corners
     depth_slopes<CountedReal>({zero, zero, zero}, {one, zero, one}, {zero, one, one});
   });
 }
 
 }  // namespace
 
-OperationCounts setup_cost(const SetupWork& work) {
-  OperationCounts ops = transform_cost() * work.transformed;
-  ops += outside_cost() * work.outside_tests;
-  ops += plane_test_cost() * work.plane_tests;
-  ops += crossing_cost() * work.crossings;
-  ops += fan_cost() * work.fans;
-  ops += project_cost() * work.projected;
-  ops += area_cost() * work.areas;
-  ops += slopes_cost() * work.triangles;
-  ops += depths_cost() * work.triangles;
-  ops += normal_cost() * work.normals;
-  return ops;
+void charge(const SetupWork& work, StageCounters& counters) {
+  counters.ops += transform_cost() * work.transformed;
+  counters.ops += outside_cost() * work.outside_tests;
+  counters.ops += plane_test_cost() * work.plane_tests;
+  counters.ops += crossing_cost() * work.crossings;
+  counters.ops += fan_cost() * work.fans;
+  counters.ops += project_cost() * work.projected;
+  counters.ops += area_cost() * work.areas;
+  counters.ops += slopes_cost() * work.triangles;
+  counters.ops += depths_cost() * work.triangles;
+  counters.ops += normal_cost() * work.normals;
 }
 
 }  // namespace beampipe

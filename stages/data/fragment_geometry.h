@@ -1,5 +1,7 @@
-// A triangle as one pixel or cell of it sees it: the arithmetic in front of the kernels, for numbers and for counting
-// numbers. Int is std::int64_t, Float float, Real double, or each a counting number.
+// A triangle's vertices and edges relative to one pixel or cell: the arithmetic that prepares the kernels' input.
+//
+// The formulas work on numbers and on numbers that count (stages/cost/counting.h): Int is std::int64_t, Float is float
+// and Real is double, or each of them is a counting number.
 #pragma once
 
 #include <cstdint>
@@ -11,16 +13,16 @@
 
 namespace beampipe {
 
-inline constexpr float kUnit = 1.0f / kSubpixelUnits;  // px
+inline constexpr float kUnit = 1.0f / kSubpixelUnits;  // 1/256 px, in pixels
 
-// An edge's value at (x, y) in 1/256 px: a x + b y + c.
+// An edge's value at (x, y), both in 1/256 px: a x + b y + c.
 template <class Int>
 struct EdgeAt {
   Int a, b, c;
   Int at(Int x, Int y) const { return a * x + b * y + c; }
 };
 
-// The triangle as pixel (left, top), in 1/256 px, sees it.
+// The triangle relative to the pixel whose upper left corner is (left, top). All coordinates are in 1/256 px.
 template <class Int>
 PixelTriangleOf<Int> in_pixel(const Int x[3], const Int y[3], Int left, Int top) {
   PixelTriangleOf<Int> triangle;
@@ -28,7 +30,7 @@ PixelTriangleOf<Int> in_pixel(const Int x[3], const Int y[3], Int left, Int top)
   return triangle;
 }
 
-// All of a depth range's input but depth.
+// Sets everything in the input of a depth range except the depths.
 template <class Int, class Float>
 void set_geometry(const PixelTriangleOf<Int>& triangle, DepthRangeInput<Float>& in) {
   const Float unit(kUnit), unit_area(kUnit * kUnit);
@@ -42,29 +44,14 @@ void set_geometry(const PixelTriangleOf<Int>& triangle, DepthRangeInput<Float>& 
   }
 }
 
-// Depth at (x, y), in pixels.
-template <class Real>
-Real plane_at(Real z, Real dzdx, Real dzdy, Real anchor_x, Real anchor_y, Real x, Real y) {
-  return z + dzdx * (x - anchor_x) + dzdy * (y - anchor_y);
-}
-
-// A triangle's depth plane as the samples of one cell see it: depth at the cell's corner (x, y), in pixels, and slopes
-// per 1/256 px.
-template <class Real, class Float>
-void cell_plane(Real z, Real dzdx, Real dzdy, Real anchor_x, Real anchor_y, Real x, Real y, Float& depth,
-                Float& slope_x, Float& slope_y) {
-  const Real unit(1.0 / kSubpixelUnits);
-  depth = to_float(plane_at(z, dzdx, dzdy, anchor_x, anchor_y, x, y));
-  slope_x = to_float(dzdx * unit), slope_y = to_float(dzdy * unit);
-}
-
-// Edge values at the pixel's upper left corner, with the top-left rule.
+// An edge's value at the upper left corner of a pixel or cell, such that ">= 0" means inside by the top-left rule.
+// `not_owned` is 0 if the triangle owns the samples on this edge, else 1.
 template <class Int>
 Int owned_edge(const EdgeAt<Int>& edge, Int left, Int top, Int not_owned) {
   return edge.at(left, top) - not_owned;
 }
 
-// Of an edge from (x, y), in pixels: `per_unit` is 1 / its length in 1/256 px, in pixels.
+// The signed distance of (x, y) from an edge, in pixels. `per_unit` is 1 px divided by the length of the edge's normal.
 template <class Int, class Real>
 auto edge_distance(const EdgeAt<Int>& edge, Int x, Int y, Real per_unit) {
   return to_float(to_double(edge.at(x, y)) * per_unit);

@@ -1,4 +1,4 @@
-// What the raster stages charge: operations of the traversal, and the bytes of what they pass on.
+// What the traversal of cells costs.
 #pragma once
 
 #include "stages/cost/counting.h"
@@ -6,16 +6,7 @@
 
 namespace beampipe {
 
-// A (pixel, triangle) pair on its way to the fragment stage: 16-bit x and y, 32-bit triangle; `full` takes a spare bit.
-inline constexpr std::uint32_t kPixelTriangleBytes = 8;
-
-// The same with the nearest and the farthest depth, 2 x float32.
-inline constexpr std::uint32_t kPairWithDepthBytes = kPixelTriangleBytes + 8;
-
-// A sample fragment adds its 16-bit coverage mask.
-inline constexpr std::uint64_t kSampleFragmentBytes = kPixelTriangleBytes + 2;
-
-// The cells of a bounding box within the tile.
+// The range of cells that a triangle's bounding box touches within the tile.
 inline OperationCounts box_cost() {
   return count_operations([](OperationCounts& counts) {
     using Int = Counted<std::int64_t>;
@@ -27,8 +18,8 @@ inline OperationCounts box_cost() {
   });
 }
 
-// Of a triangle, before its first cell: the cell's corner; per edge a, b and c, the value there, the steps to the right
-// and down, and what the deepest and the shallowest corner of a cell have on top.
+// Per triangle, to set up its first cell: the cell's corner and, per edge, a, b and c, the value at the corner, the
+// steps to the right and down, and what to add for the cell's deepest and shallowest corners.
 inline OperationCounts start_cost(FullMeans meaning) {
   return count_operations([&](OperationCounts& counts) {
     using Int = Counted<std::int64_t>;
@@ -46,10 +37,10 @@ inline OperationCounts start_cost(FullMeans meaning) {
   });
 }
 
-// To the next cell, to the right or in the row below, per edge.
+// One step to the next cell, to the right or in the row below: an addition per edge.
 inline OperationCounts step_cost() { return {.add = 3}; }
 
-// Every edge at the cell's deepest and shallowest corner.
+// Every edge at the cell's deepest and shallowest corners.
 inline OperationCounts cell_test_cost() {
   return count_operations([](OperationCounts& counts) {
     const Counted<double> value(0.0, counts);

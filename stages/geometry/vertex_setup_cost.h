@@ -1,4 +1,4 @@
-// What vertex_setup's operations are: its formulas on counting numbers, as often as they ran.
+// What vertex_setup is charged.
 #pragma once
 
 #include "stages/cost/counters.h"
@@ -8,7 +8,8 @@ namespace beampipe {
 // How often each formula ran.
 struct SetupWork {
   std::uint64_t transformed = 0, outside_tests = 0, plane_tests = 0, crossings = 0, fans = 0, projected = 0, areas = 0;
-  std::uint64_t normals = 0, triangles = 0;  // triangles: that came out
+  std::uint64_t normals = 0;
+  std::uint64_t triangles = 0;  // setup triangles that were made
 
   SetupWork& operator+=(const SetupWork& other) {
     transformed += other.transformed, outside_tests += other.outside_tests, plane_tests += other.plane_tests;
@@ -18,6 +19,7 @@ struct SetupWork {
   }
 };
 
-OperationCounts setup_cost(const SetupWork& work);
+// Charges the operations.
+void charge(const SetupWork& work, StageCounters& counters);
 
 }  // namespace beampipe
