@@ -4,7 +4,7 @@
 
 #include "stages/cost/counters.h"
 #include "tools/claims/claims.h"
-#include "tools/files/saved_work.h"
+#include "tools/report/saved_work.h"
 
 namespace beampipe {
 namespace {
