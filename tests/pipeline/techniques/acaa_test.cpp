@@ -7,23 +7,12 @@
 
 #include "pipeline/technique.h"
 #include "pipeline/techniques/msaa.h"
+#include "stages/data/sample_fragment.h"
+#include "tests/pipeline/test_pictures.h"
 #include "tests/pipeline/test_traces.h"
 
 namespace beampipe {
 namespace {
-
-FrameResult render(const std::string& spec, const Trace& trace) { return parse_technique(spec).render(trace, 0, {1}); }
-
-double worst_difference(const Image& a, const Image& b) {
-  double worst = 0;
-  for (std::size_t i = 0; i < a.rgba.size(); ++i) worst = std::max(worst, std::abs(double{a.rgba[i]} - b.rgba[i]));
-  return worst;
-}
-
-glm::vec4 pixel(const Image& image, std::uint32_t x, std::uint32_t y) {
-  const float* rgba = image.rgba.data() + 4 * (std::size_t{y} * image.width + x);
-  return {rgba[0], rgba[1], rgba[2], rgba[3]};
-}
 
 // A triangle at a constant depth that covers a small frame entirely.
 PixelSpaceTriangle everywhere(double z, const glm::vec3& color) {
@@ -85,11 +74,11 @@ TEST(Acaa, ManySmallSharesLoseMorePrecisionInFewerBits) {
 
 TEST(Acaa, CoincidentDepthsCountTwiceUnlessRemedied) {
   const Trace trace = pixel_trace(4, 4, {everywhere(0.5, {0.25f, 0, 0}), everywhere(0.5, {0, 0.5f, 0})});
-  EXPECT_EQ(pixel(render("acaa:8", trace).image, 1, 1), glm::vec4(0.25f, 0.5f, 0, 1));
+  EXPECT_EQ(rgba_at(render("acaa:8", trace).image, 1, 1), glm::vec4(0.25f, 0.5f, 0, 1));
   // The colour of the first triangle alone, as in MSAA.
   for (const char* spec : {"acaa:8,double=stencil", "acaa:8,double=saturate", "acaa:32,double=stencil",
                            "acaa:32,double=saturate", "acaa:256,double=saturate", "msaa:8"})
-    EXPECT_EQ(pixel(render(spec, trace).image, 1, 1), glm::vec4(0.25f, 0, 0, 1)) << spec;
+    EXPECT_EQ(rgba_at(render(spec, trace).image, 1, 1), glm::vec4(0.25f, 0, 0, 1)) << spec;
 }
 
 TEST(Acaa, SaturationStopsAtWhatGeometryCovers) {
@@ -101,11 +90,11 @@ TEST(Acaa, SaturationStopsAtWhatGeometryCovers) {
   for (const char* spec : {"acaa:4,double=saturate,color=fp32", "acaa:64,double=saturate,color=fp32",
                            "acaa:4,double=stencil,color=fp32"}) {
     const Image image = render(spec, trace).image;
-    EXPECT_NEAR(pixel(image, 1, 1).g + pixel(image, 1, 1).b, 1, 1e-6) << spec;
-    EXPECT_EQ(pixel(image, 1, 1).r, 0) << spec;
+    EXPECT_NEAR(rgba_at(image, 1, 1).g + rgba_at(image, 1, 1).b, 1, 1e-6) << spec;
+    EXPECT_EQ(rgba_at(image, 1, 1).r, 0) << spec;
   }
-  EXPECT_NEAR(pixel(render("acaa:4,color=fp32", trace).image, 1, 1).r, 0.5, 1e-6);
-  EXPECT_NEAR(pixel(render("acaa:4,double=saturate,color=fp32", trace).image, 1, 1).a, 0.5, 1e-6);
+  EXPECT_NEAR(rgba_at(render("acaa:4,color=fp32", trace).image, 1, 1).r, 0.5, 1e-6);
+  EXPECT_NEAR(rgba_at(render("acaa:4,double=saturate,color=fp32", trace).image, 1, 1).a, 0.5, 1e-6);
 }
 
 TEST(Acaa, HiddenFragmentsAreNotShaded) {
@@ -127,11 +116,29 @@ TEST(Acaa, HiddenFragmentsAreNotShaded) {
   EXPECT_EQ(shaded("msaa:8"), 16u) << "behind closed cells";
 }
 
-TEST(Acaa, ADepthPassDoesNotChangeThePictureOfMsaa) {
-  const Trace trace = random_trace(60, 40, 300, 6);
-  for (const char* n : {"1", "8", "64"})
-    EXPECT_EQ(render(std::string("msaa:").append(n), trace).image.rgba,
-              render(std::string("msaa:").append(n).append(",prepass"), trace).image.rgba);
+TEST(Acaa, ReadsDepthTwiceAndOneColor) {
+  const FrameResult msaa = parse_technique("msaa:8").render(half_square(), 0, {1});
+  const FrameResult acaa = parse_technique("acaa:8").render(half_square(), 0, {1});
+  const std::uint64_t samples = stage_of(msaa, "depth_test").items_in;
+  EXPECT_EQ(stage_of(acaa, "depth_test").items_in, 2 * samples);
+  EXPECT_EQ(stage_of(acaa, "depth_test").bytes_written, samples * 4);
+  const std::uint64_t fragment_bytes = kSampleFragmentBytes + 6;  // including the shaded colour
+  EXPECT_EQ(stage_of(acaa, "accumulate").items_in, 10u);
+  EXPECT_EQ(stage_of(acaa, "accumulate").items_out, 10u);
+  EXPECT_EQ(stage_of(acaa, "accumulate").bytes_read, 10 * (fragment_bytes + 8));
+  EXPECT_EQ(stage_of(acaa, "accumulate").bytes_written, 10u * 8);
+  // Saturation first adds the background to each pixel that is not full. Only pixel (2, 3) is full.
+  const FrameResult saturated = parse_technique("acaa:8,double=saturate").render(half_square(), 0, {1});
+  EXPECT_EQ(stage_of(saturated, "accumulate").items_in, 10u + 64 - 1);
+  EXPECT_EQ(stage_of(saturated, "accumulate").bytes_read, 10 * fragment_bytes + (10 + 64 - 1) * 8 + 64 * 8 * 4);
+  const StageCounters stencil =
+      stage_of(parse_technique("acaa:8,double=stencil").render(half_square(), 0, {1}), "stencil_test");
+  EXPECT_EQ(stencil.items_in, samples);
+  EXPECT_EQ(stencil.items_out, samples);
+  EXPECT_EQ(stencil.bytes_read, samples) << "one byte each";
+  EXPECT_EQ(stencil.bytes_written, samples);
+  EXPECT_EQ(stage_of(acaa, "resolve").bytes_read, 64u * 8);
+  EXPECT_EQ(stage_of(msaa, "resolve").bytes_read, 64u * 8 * 6);
 }
 
 TEST(Acaa, RoundsAreTheSamplesOfMsaa) {
