@@ -1,4 +1,4 @@
-// Claims: the published figures as data, the formulas of our numbers, and what becomes of both.
+// Claims: the published figures, the formulas of our numbers, and the claims made of both.
 #include "tools/claims/claims.h"
 
 #include <gtest/gtest.h>
