@@ -99,14 +99,12 @@ std::uint64_t most_bytes(const SetupTriangles& triangles, const TileGrid& grid, 
 }
 
 std::uint64_t count_pairs(const SetupTriangles& triangles, const TriangleList& list, const Tile& tile) {
-  TraversalCounts counts;
-  std::uint32_t quad = 0;
+  Traversal traversal{tile};
   for (const std::uint32_t index : list) {
     const SetupTriangle& triangle = triangles.triangles[index];
-    traverse(triangle, EdgeSet(triangle), tile, CellGrid{}, FullMeans::area, quad, counts,
-             [](std::int32_t, std::int32_t, std::uint32_t, bool) {});
+    traverse(triangle, EdgeSet(triangle), traversal, [](std::int32_t, std::int32_t, std::uint32_t, bool) {});
   }
-  return counts.cells_touched;
+  return traversal.counts.cells_touched;
 }
 
 std::string mebibytes(std::uint64_t bytes) { return std::to_string((bytes + (1u << 20) - 1) >> 20) + " MiB"; }

@@ -4,6 +4,7 @@
 #include <cstdint>
 #include <vector>
 
+#include "simd/match.h"
 #include "stages/data/sample_tile.h"
 
 namespace beampipe {

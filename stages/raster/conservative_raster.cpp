@@ -9,20 +9,19 @@ std::size_t conservative_raster(const SetupTriangles& triangles, const TriangleL
                                 StageCounters& counters, std::vector<PixelTriangle>& out, ClosedDepth* closed,
                                 PairDepths depths) {
   const std::size_t before = out.size();
-  std::uint32_t quad = 0;
+  Traversal traversal{tile};
   ConservativeRasterWork work;
   for (const std::uint32_t index : list) {
     const SetupTriangle& triangle = triangles.triangles[index];
     const DepthBounds<float> vertices = vertex_bounds(triangle.vertex_z);
     if (closed && closed->hides_everywhere(vertices.nearest)) continue;
-    traverse(triangle, EdgeSet(triangle), tile, CellGrid{}, FullMeans::area, quad, work.traversal,
-             [&](std::int32_t x, std::int32_t y, std::uint32_t q, bool full) {
-               PixelTriangle pair{index, q, x, y, full, 0, 0};
-               if (depths == PairDepths::bounds) set_depths(triangle, vertices, pair);
-               if (closed && closed->hides(x, y, pair.nearest)) return;
-               if (closed && full) closed->close(x, y, pair.farthest);
-               out.push_back(pair);
-             });
+    traverse(triangle, EdgeSet(triangle), traversal, [&](std::int32_t x, std::int32_t y, std::uint32_t q, bool full) {
+      PixelTriangle pair{index, q, x, y, full, 0, 0};
+      if (depths == PairDepths::bounds) set_depths(triangle, vertices, pair);
+      if (closed && closed->hides(x, y, pair.nearest)) return;
+      if (closed && full) closed->close(x, y, pair.farthest);
+      out.push_back(pair);
+    });
     if (closed) closed->refresh();
   }
   const std::size_t waited = out.size();
@@ -31,6 +30,7 @@ std::size_t conservative_raster(const SetupTriangles& triangles, const TriangleL
     std::erase_if(out, [&](const PixelTriangle& pair) { return closed->hides(pair.x, pair.y, pair.nearest); });
     charge(*closed, counters);
   }
+  work.traversal = traversal.counts;
   work.triangles = list.size();
   work.pairs = out.size() - before;
   charge(work, depths, counters);

@@ -30,7 +30,7 @@ void sample_raster(const SetupTriangles& triangles, const TriangleList& list, co
                    ClosedDepth* closed) {
   const std::uint32_t every_sample = ~0u >> (kMaxMaskSamples - sampling.pattern.count);
   const std::size_t before = out.size();
-  std::uint32_t quad = 0;
+  Traversal traversal{tile, sampling.grid, FullMeans::samples};
   SampleRasterWork work;
   std::vector<CellEdges> partial;        // cells that need the sample test,
   std::vector<std::size_t> destination;  // and where their masks go in `out`
@@ -39,17 +39,16 @@ void sample_raster(const SetupTriangles& triangles, const TriangleList& list, co
     const DepthBounds<float> depths = sample_bounds(triangle);
     if (closed && closed->hides_everywhere(depths.nearest)) continue;
     const EdgeSet set(triangle);
-    traverse(triangle, set, tile, sampling.grid, FullMeans::samples, quad, work.traversal,
-             [&](std::int32_t x, std::int32_t y, std::uint32_t q, bool full) {
-               if (closed && closed->hides(x, y, depths.nearest)) return;
-               if (closed && full) closed->close(x, y, depths.farthest);
-               if (!full) {
-                 partial.push_back(cell_edges(set, std::int64_t{x} * sampling.grid.cell_width(),
-                                              std::int64_t{y} * sampling.grid.cell_height()));
-                 destination.push_back(out.size());
-               }
-               out.push_back({index, q, x, y, every_sample});
-             });
+    traverse(triangle, set, traversal, [&](std::int32_t x, std::int32_t y, std::uint32_t q, bool full) {
+      if (closed && closed->hides(x, y, depths.nearest)) return;
+      if (closed && full) closed->close(x, y, depths.farthest);
+      if (!full) {
+        partial.push_back(cell_edges(set, std::int64_t{x} * sampling.grid.cell_width(),
+                                     std::int64_t{y} * sampling.grid.cell_height()));
+        destination.push_back(out.size());
+      }
+      out.push_back({index, q, x, y, every_sample});
+    });
     if (closed) closed->refresh();
   }
   std::vector<std::uint32_t> masks(partial.size());
@@ -61,6 +60,7 @@ void sample_raster(const SetupTriangles& triangles, const TriangleList& list, co
   const auto start = out.begin() + static_cast<std::ptrdiff_t>(before);
   out.erase(std::remove_if(start, out.end(), [](const SampleFragment& f) { return f.mask == 0; }), out.end());
 
+  work.traversal = traversal.counts;
   work.partial_cells = partial.size();
   work.fragments = out.size() - before;
   charge(work, sampling.pattern, counters);

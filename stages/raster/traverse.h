@@ -54,28 +54,41 @@ struct TraversalCounts {
 // When a cell counts as full: the triangle covers the closed cell, or it owns every sample that the cell could have.
 enum class FullMeans { area, samples };
 
-// Calls visit(x, y, quad, full) for every touched cell, one 2x2 quad after the other. `quad` numbers the quads; it
-// counts up over all calls that share the variable. `full`: the triangle covers the whole cell.
+// The traversal of one triangle after the other.
+struct Traversal {
+  Tile tile;
+  CellGrid grid = {};
+  FullMeans meaning = FullMeans::area;
+  TraversalCounts counts = {};
+  std::uint32_t quad = 0;  // number of the next 2x2 quad
+};
+
+// What cell_row needs of an edge, except for the value where the row starts.
+inline EdgeOverCells edge_over_cells(const Edge& edge, const CellGrid& grid, FullMeans meaning) {
+  const std::int64_t right = std::int64_t{edge.a} * grid.cell_width(), down = std::int64_t{edge.b} * grid.cell_height();
+  const std::int64_t not_owned = meaning == FullMeans::samples && !edge.owns ? 1 : 0;
+  EdgeOverCells over{};
+  over.step = static_cast<double>(right);
+  over.deepest = static_cast<double>(std::max<std::int64_t>(right, 0) + std::max<std::int64_t>(down, 0));
+  over.shallowest = static_cast<double>(std::min<std::int64_t>(right, 0) + std::min<std::int64_t>(down, 0) - not_owned);
+  return over;
+}
+
+// Calls visit(x, y, quad, full) for every cell that the triangle touches, one 2x2 quad after the other. `quad`: the
+// same number for all cells in one quad. `full`: the triangle covers the whole cell. `set`: the triangle's edges.
 template <class Visit>
-void traverse(const SetupTriangle& triangle, const EdgeSet& set, const Tile& tile, const CellGrid& grid,
-              FullMeans meaning, std::uint32_t& quad, TraversalCounts& counts, Visit&& visit) {
-  const CellRange range = touched_range(triangle, tile, grid);
+void traverse(const SetupTriangle& triangle, const EdgeSet& set, Traversal& traversal, Visit&& visit) {
+  const CellGrid& grid = traversal.grid;
+  const CellRange range = touched_range(triangle, traversal.tile, grid);
+  TraversalCounts& counts = traversal.counts;
   ++counts.boxes;
   if (range.x0 >= range.x1 || range.y0 >= range.y1) return;
   ++counts.traversals;
-  const std::int64_t w = grid.cell_width(), h = grid.cell_height();
-  EdgeOverCells edges[3];
-  for (std::size_t k = 0; k < 3; ++k) {
-    const Edge& edge = set.edges[k];
-    const std::int64_t right = edge.a * w, down = edge.b * h;
-    const std::int64_t not_owned = meaning == FullMeans::samples && !edge.owns ? 1 : 0;
-    edges[k].step = static_cast<double>(right);
-    edges[k].deepest = static_cast<double>(std::max<std::int64_t>(right, 0) + std::max<std::int64_t>(down, 0));
-    edges[k].shallowest =
-        static_cast<double>(std::min<std::int64_t>(right, 0) + std::min<std::int64_t>(down, 0) - not_owned);
-  }
   counts.cells_tested +=
       static_cast<std::uint64_t>(range.x1 - range.x0) * static_cast<std::uint64_t>(range.y1 - range.y0);
+  const std::int64_t w = grid.cell_width(), h = grid.cell_height();
+  EdgeOverCells edges[3];
+  for (std::size_t k = 0; k < 3; ++k) edges[k] = edge_over_cells(set.edges[k], grid, traversal.meaning);
   for (std::int32_t quad_y = range.y0 & ~1; quad_y < range.y1; quad_y += 2) {
     for (std::int32_t left = range.x0 & ~1; left < range.x1; left += kCellsPerRow) {
       const std::uint32_t inside = left < range.x0 ? ~1u : ~0u;  // the range may start inside a quad
@@ -94,10 +107,10 @@ void traverse(const SetupTriangle& triangle, const EdgeSet& set, const Tile& til
           for (int x = first; x < first + 2; ++x) {
             if ((rows[y].touched >> x & 1) == 0) continue;
             ++counts.cells_touched;
-            visit(left + x, quad_y + y, quad, (rows[y].full >> x & 1) != 0);
+            visit(left + x, quad_y + y, traversal.quad, (rows[y].full >> x & 1) != 0);
           }
         }
-        ++quad;
+        ++traversal.quad;
       }
     }
   }

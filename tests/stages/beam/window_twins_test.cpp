@@ -159,17 +159,15 @@ TEST_P(WindowTwins, ClosedCells) {
     const Float open = real(1.0f);
     ASSERT_FALSE(bounds.nearest > open);
     std::uint64_t tests = 0, closings = 0;
-    std::uint32_t quad = 0;
-    TraversalCounts ignored;
-    traverse(triangle, EdgeSet(triangle), tile_, sampling.grid, FullMeans::samples, quad, ignored,
-             [&](std::int32_t, std::int32_t, std::uint32_t, bool full) {
-               ++tests;
-               ASSERT_FALSE(bounds.nearest > open);
-               if (!full) return;
-               ++closings;
-               ASSERT_FALSE(bounds.farthest >= open);
-               ASSERT_TRUE(open == Float(1.0f));
-             });
+    Traversal traversal{tile_, sampling.grid, FullMeans::samples};
+    traverse(triangle, EdgeSet(triangle), traversal, [&](std::int32_t, std::int32_t, std::uint32_t, bool full) {
+      ++tests;
+      ASSERT_FALSE(bounds.nearest > open);
+      if (!full) return;
+      ++closings;
+      ASSERT_FALSE(bounds.farthest >= open);
+      ASSERT_TRUE(open == Float(1.0f));
+    });
     const std::uint64_t cells = 4 * tile_.pixels(), refreshed = closings == cells ? 2 * cells : 0;
     twin_.add += refreshed;
     ASSERT_EQ(with.ops, twin_);
