@@ -12,8 +12,8 @@ namespace {
 
 using Bits = std::array<std::uint32_t, sizeof(Aggregate) / sizeof(std::uint32_t)>;
 
-// Aggregates of up to eight fragments, so that slabs have thickness and alphas have saturated.
-TEST(MergeKernel, EqualsTwinOnChains) {
+// Aggregates of up to eight fragments, so that slabs are thick and alphas reach 1.
+TEST(MergeKernel, EveryTargetEqualsTheFormulaOnChains) {
   const SamplePattern pattern = hammersley_pattern();
   const std::vector<MergeRules> every_rule = every_merge_rule();
   on_every_target([&] {
@@ -36,7 +36,7 @@ TEST(MergeKernel, EqualsTwinOnChains) {
   });
 }
 
-TEST(MergeKernel, EqualsTwinForEveryBatchSize) {
+TEST(MergeKernel, EveryTargetEqualsTheFormulaForEveryBatchSize) {
   const SamplePattern pattern = hammersley_pattern();
   Random random(42);
   SCOPED_TRACE(random.name());
