@@ -21,7 +21,7 @@ void coverage_kernel(const TriangleInPixel* in, std::size_t count, Coverage<floa
   map_rows<PixelTriangleOf<Ints>>(in, count, out, [](const PixelTriangleOf<Ints>& triangle) {
     PixelTriangleOf<Doubles> exact;
     for (int k = 0; k < 3; ++k) exact.x[k] = Doubles(triangle.x[k]), exact.y[k] = Doubles(triangle.y[k]);
-    return coverage_scalar<Doubles, Floats>(exact);
+    return coverage_formula<Doubles, Floats>(exact);
   });
 }
 

@@ -1,7 +1,7 @@
 // The formula of simd/depth_range.h. No include guard: see simd/scalar.h.
 
 template <class Float>
-DepthRange<Float> depth_range_scalar(const DepthRangeInput<Float>& in) {
+DepthRange<Float> depth_range_formula(const DepthRangeInput<Float>& in) {
   const Float zero(0.0f), one(1.0f), half(0.5f);
   DepthRange<Float> out;
   const Float z_nearest = lesser(lesser(in.vertex_z[0], in.vertex_z[1]), in.vertex_z[2]);

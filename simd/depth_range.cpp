@@ -16,7 +16,7 @@ namespace HWY_NAMESPACE {
 
 void depth_range_kernel(const DepthRangeInput<float>* in, std::size_t count, DepthRange<float>* out) {
   using Columns = DepthRangeInput<Floats>;
-  map_rows<Columns>(in, count, out, [](const Columns& columns) { return depth_range_scalar(columns); });
+  map_rows<Columns>(in, count, out, [](const Columns& columns) { return depth_range_formula(columns); });
 }
 
 }  // namespace HWY_NAMESPACE

@@ -2,7 +2,7 @@
 
 // An edge that is farther than half a diagonal from the centre has no sample inside, or all of them.
 template <class Int, class Mask, class Float>
-Mask table_mask_scalar(const TableTriangleOf<Int, Mask, Float>& triangle, const MaskTable& table) {
+Mask table_mask_formula(const TableTriangleOf<Int, Mask, Float>& triangle, const MaskTable& table) {
   const Float zero(0.0f), one(1.0f), reach(kHalfDiagonal);
   Mask mask(~0u);
   for (const TableEdgeOf<Int, Mask, Float>& edge : triangle.edges) {

@@ -20,7 +20,8 @@ namespace HWY_NAMESPACE {
 void table_masks_kernel(const TableTriangle* triangles, std::size_t count, const MaskTable& table,
                         std::uint32_t* masks) {
   using Columns = TableTriangleOf<Ints, Words, Floats>;
-  map_rows<Columns>(triangles, count, masks, [&](const Columns& columns) { return table_mask_scalar(columns, table); });
+  map_rows<Columns>(triangles, count, masks,
+                    [&](const Columns& columns) { return table_mask_formula(columns, table); });
 }
 
 }  // namespace HWY_NAMESPACE

@@ -56,8 +56,8 @@ namespace scalar {
 }
 using namespace scalar;
 
-inline std::uint32_t table_mask_scalar(const TableTriangle& triangle, const MaskTable& table) {
-  return table_mask_scalar<std::int32_t, std::uint32_t, float>(triangle, table);
+inline std::uint32_t table_mask_formula(const TableTriangle& triangle, const MaskTable& table) {
+  return table_mask_formula<std::int32_t, std::uint32_t, float>(triangle, table);
 }
 
 }  // namespace beampipe

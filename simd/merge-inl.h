@@ -7,8 +7,8 @@ struct BlendFactors {
 };
 
 template <class Float, class Mask>
-AggregateOf<Float, Mask> merge_scalar(const FragmentOf<Float, Mask>& fragment, const AggregateOf<Float, Mask>& old,
-                                      const SamplePattern& pattern, const MergeRules& rules) {
+AggregateOf<Float, Mask> merge_formula(const FragmentOf<Float, Mask>& fragment, const AggregateOf<Float, Mask>& old,
+                                       const SamplePattern& pattern, const MergeRules& rules) {
   const Float zero(0.0f), one(1.0f), half(0.5f), bits(32.0f);
   const AggregateOf<Float, Mask>& in = fragment.surface;
   const auto clamp = [&](Float value, Float low, Float high) { return lesser(greater(value, low), high); };
@@ -161,7 +161,7 @@ AggregateOf<Float, Mask> merge_scalar(const FragmentOf<Float, Mask>& fragment, c
 
 // Plain OVER of what is there on top of a fragment that lies behind it: alpha and colour alone, without masks.
 template <class Float, class Mask>
-AggregateOf<Float, Mask> over_scalar(const FragmentOf<Float, Mask>& fragment, AggregateOf<Float, Mask> old) {
+AggregateOf<Float, Mask> over_formula(const FragmentOf<Float, Mask>& fragment, AggregateOf<Float, Mask> old) {
   const Float rest = Float(1.0f) - old.alpha;
   old.alpha = old.alpha + rest * fragment.surface.alpha;
   for (int c = 0; c < 3; ++c) old.color[c] = old.color[c] + rest * fragment.surface.color[c];

@@ -24,7 +24,7 @@ void merge_kernel(const MergeFragment* fragments, std::size_t count, const Sampl
     const std::size_t n = HWY_MIN(lanes, count - first);
     const auto in = load_rows<FragmentOf<Floats, Words>>(fragments + first, n);
     const auto old = load_rows<AggregateOf<Floats, Words>>(aggregates + first, n);
-    store_rows(merge_scalar(in, old, pattern, rules), n, aggregates + first);
+    store_rows(merge_formula(in, old, pattern, rules), n, aggregates + first);
   }
 }
 

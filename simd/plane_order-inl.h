@@ -2,11 +2,11 @@
 // see simd/scalar.h.
 
 template <class Float>
-auto nearer_scalar(const DepthPlane<Float>& plane, const DepthPlane<Float>& other, Float u, Float v) {
+auto nearer_formula(const DepthPlane<Float>& plane, const DepthPlane<Float>& other, Float u, Float v) {
   return depth_at(plane, u, v) < depth_at(other, u, v);
 }
 
 template <class Float, class Bool>
-Float nearest_scalar(const DepthPlane<Float>& plane, Float u, Float v, Bool in_mask, Float nearest) {
+Float nearest_formula(const DepthPlane<Float>& plane, Float u, Float v, Bool in_mask, Float nearest) {
   return select(in_mask, lesser(nearest, depth_at(plane, u, v)), nearest);
 }

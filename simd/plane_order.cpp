@@ -36,7 +36,7 @@ void nearer_positions_kernel(const DepthPlane<float>& plane, const DepthPlane<fl
     std::uint32_t mask = 0;
     for (std::size_t s = 0; s < kMaxMaskSamples; s += hn::Lanes(D())) {
       const Reals u = offsets(patterns[w].x.data() + s), v = offsets(patterns[w].y.data() + s);
-      mask |= mask_bits(nearer_scalar(of_plane, of_other, u, v)) << s;
+      mask |= mask_bits(nearer_formula(of_plane, of_other, u, v)) << s;
     }
     masks[w] = mask;
   }
@@ -49,7 +49,7 @@ float nearest_depth_kernel(const DepthPlane<float>& plane, const SamplePattern* 
   for (std::size_t w = 0; w < words; ++w) {
     for (std::size_t s = 0; s < kMaxMaskSamples; s += hn::Lanes(D())) {
       const Reals u = offsets(patterns[w].x.data() + s), v = offsets(patterns[w].y.data() + s);
-      nearest = nearest_scalar(of_plane, u, v, mask_of_bits<D>(masks[w], s), nearest);
+      nearest = nearest_formula(of_plane, u, v, mask_of_bits<D>(masks[w], s), nearest);
     }
   }
   return hn::GetLane(hn::MinOfLanes(D(), nearest.raw));

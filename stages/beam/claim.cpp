@@ -125,7 +125,7 @@ class PixelClaim {
 OperationCounts nearest_cost() {  // per position
   return count_operations([](OperationCounts& counts) {
     const Counted<float> one(1.0f, counts);
-    nearest_scalar({one, one, one}, one, one, true, one);
+    nearest_formula({one, one, one}, one, one, true, one);
   });
 }
 

@@ -33,7 +33,7 @@ std::uint64_t packed_numbers(PaperStorage storage) {
 OperationCounts merge_cost(const SamplePattern& pattern, const MergeRules& rules, PaperStorage storage) {
   return count_operations([&](OperationCounts& counts) {
     const CountedFragment fragment = counted_fragment(counts);
-    merge_scalar(fragment, fragment.surface, pattern, rules);
+    merge_formula(fragment, fragment.surface, pattern, rules);
     counts.convert += 2 * packed_numbers(storage);
   });
 }
@@ -41,7 +41,7 @@ OperationCounts merge_cost(const SamplePattern& pattern, const MergeRules& rules
 OperationCounts over_cost() {
   return count_operations([](OperationCounts& counts) {
     const CountedFragment fragment = counted_fragment(counts);
-    over_scalar(fragment, fragment.surface);
+    over_formula(fragment, fragment.surface);
     counts.convert += 2 * 3;  // fp16 colour
   });
 }
@@ -132,7 +132,7 @@ std::vector<Aggregate> compose_over(const std::vector<Fragment>& fragments, cons
   std::vector<Aggregate> aggregates(pixels, kEmptyAggregate);
   for (std::size_t pixel = 0; pixel < pixels; ++pixel)
     for (std::uint32_t i = buffer.first[pixel]; i < buffer.first[pixel + 1]; ++i)
-      aggregates[pixel] = stored_over(over_scalar(merge_fragment(fragments[buffer.records[i]]), aggregates[pixel]));
+      aggregates[pixel] = stored_over(over_formula(merge_fragment(fragments[buffer.records[i]]), aggregates[pixel]));
   count_merges(buffer.records.size(), pixels, over_cost(), kOverFragmentBytes, kOverBytes, counters);
   return aggregates;
 }

@@ -65,7 +65,7 @@ inline TriangleInPixel kernel_input(const Triangle& t) {
 }
 
 inline Coverage<float> coverage_on_float(const Triangle& t, std::int64_t pixel_x = 0, std::int64_t pixel_y = 0) {
-  return coverage_scalar<std::int64_t, float>(in_pixel(t, pixel_x, pixel_y));
+  return coverage_formula<std::int64_t, float>(in_pixel(t, pixel_x, pixel_y));
 }
 
 inline DepthRangeInput<float> depth_range_input(const Triangle& t) {

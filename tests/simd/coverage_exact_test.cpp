@@ -43,7 +43,7 @@ TEST(CoverageExact, DepthRangeWithinHalfAMillionthOfTheSlopes) {
     const Triangle t = random_triangle(random);
     const ExactCoverage exact = exact_coverage(t);
     if (exact.area < kAlphaBound) continue;
-    const DepthRange<float> found = depth_range_scalar(depth_range_input(t));
+    const DepthRange<float> found = depth_range_formula(depth_range_input(t));
     const Slopes slopes = depth_slopes(t);
     const double bound = 5e-7 * (1 + std::abs(slopes.dzdu) + std::abs(slopes.dzdv));
     ASSERT_NEAR(found.z_min, exact.z_min, bound) << "triangle " << i;
@@ -61,7 +61,7 @@ TEST(CoverageExact, StaysWithinTheTriangleAndThePixel) {
     ASSERT_TRUE(found.alpha >= 0 && found.alpha <= 1);
     if (found.alpha == 0) continue;
     ASSERT_TRUE(found.centroid_u >= 0 && found.centroid_u <= 1 && found.centroid_v >= 0 && found.centroid_v <= 1);
-    const DepthRange<float> depth = depth_range_scalar(depth_range_input(t));
+    const DepthRange<float> depth = depth_range_formula(depth_range_input(t));
     ASSERT_LE(std::min({t.z[0], t.z[1], t.z[2]}), depth.z_min);
     ASSERT_LE(depth.z_min, depth.z_max);
     ASSERT_LE(depth.z_max, std::max({t.z[0], t.z[1], t.z[2]}));

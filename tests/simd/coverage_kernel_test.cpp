@@ -30,7 +30,7 @@ void expect_same_on_every_target(const std::vector<Triangle>& triangles) {
     depth_range(ranges_in.data(), in.size(), ranges.data());
     for (std::size_t i = 0; i < in.size(); ++i) {
       expect_same_bits(out[i], coverage_on_float(triangles[i]), i);
-      expect_same_bits(ranges[i], depth_range_scalar(ranges_in[i]), i);
+      expect_same_bits(ranges[i], depth_range_formula(ranges_in[i]), i);
     }
   });
 }
@@ -80,7 +80,7 @@ TEST(CoverageKernel, EveryTargetEqualsTheFormulaForEveryBatchSize) {
       depth_range(ranges_in.data(), count, ranges.data());
       for (std::size_t i = 0; i < in.size(); ++i) {
         expect_same_bits(out[i], i < count ? coverage_on_float(triangles[i]) : untouched, i);
-        expect_same_bits(ranges[i], i < count ? depth_range_scalar(ranges_in[i]) : no_range, i);
+        expect_same_bits(ranges[i], i < count ? depth_range_formula(ranges_in[i]) : no_range, i);
       }
     }
   });

@@ -28,7 +28,7 @@ TableEdge table_edge(std::int64_t a, std::int64_t b, std::int64_t c) {
 }
 
 std::uint32_t edge_mask(const TableEdge& edge, const MaskTable& table) {
-  return table_mask_scalar({{edge, kEverything, kEverything}}, table);
+  return table_mask_formula({{edge, kEverything, kEverything}}, table);
 }
 
 struct RandomEdge {
@@ -113,7 +113,7 @@ TEST(MaskTable, EveryTargetEqualsTheFormula) {
       std::vector<std::uint32_t> masks(triangles.size(), 0xdeadbeef);
       table_masks(triangles.data(), count, table, masks.data());
       for (std::size_t i = 0; i < triangles.size(); ++i)
-        ASSERT_EQ(masks[i], i < count ? table_mask_scalar(triangles[i], table) : 0xdeadbeef) << "triangle " << i;
+        ASSERT_EQ(masks[i], i < count ? table_mask_formula(triangles[i], table) : 0xdeadbeef) << "triangle " << i;
     }
   });
 }

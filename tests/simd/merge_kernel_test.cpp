@@ -26,7 +26,7 @@ TEST(MergeKernel, EveryTargetEqualsTheFormulaOnChains) {
         for (MergeFragment& fragment : fragments) fragment = random_fragment(random);
         std::vector<Aggregate> expected;
         for (std::size_t i = 0; i < fragments.size(); ++i)
-          expected.push_back(merge_scalar(fragments[i], aggregates[i], pattern, every_rule[rule]));
+          expected.push_back(merge_formula(fragments[i], aggregates[i], pattern, every_rule[rule]));
         merge(fragments.data(), fragments.size(), pattern, every_rule[rule], aggregates.data());
         for (std::size_t i = 0; i < aggregates.size(); ++i)
           ASSERT_EQ(std::bit_cast<Bits>(aggregates[i]), std::bit_cast<Bits>(expected[i]))
@@ -48,7 +48,7 @@ TEST(MergeKernel, EveryTargetEqualsTheFormulaForEveryBatchSize) {
       std::vector<Aggregate> aggregates(fragments.size(), old);
       merge(fragments.data(), count, pattern, {}, aggregates.data());
       for (std::size_t i = 0; i < aggregates.size(); ++i) {
-        const Aggregate expected = i < count ? merge_scalar(fragments[i], old, pattern, {}) : old;
+        const Aggregate expected = i < count ? merge_formula(fragments[i], old, pattern, {}) : old;
         ASSERT_EQ(std::bit_cast<Bits>(aggregates[i]), std::bit_cast<Bits>(expected)) << i << " of " << count;
       }
     }

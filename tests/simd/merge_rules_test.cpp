@@ -16,10 +16,10 @@ namespace {
 const SamplePattern kPattern = hammersley_pattern();
 
 Aggregate merged(const Aggregate& fragment, const Aggregate& old, const MergeRules& rules = {}) {
-  return merge_scalar<float, std::uint32_t>({fragment, 0u}, old, kPattern, rules);
+  return merge_formula<float, std::uint32_t>({fragment, 0u}, old, kPattern, rules);
 }
 Aggregate merged_tiny(const Aggregate& fragment, const Aggregate& old, const MergeRules& rules = {}) {
-  return merge_scalar<float, std::uint32_t>({fragment, kAllBits}, old, kPattern, rules);
+  return merge_formula<float, std::uint32_t>({fragment, kAllBits}, old, kPattern, rules);
 }
 
 MergeRules with_overlap(MergeRules::Overlap overlap) {
@@ -54,7 +54,7 @@ TEST(MergeRules, InvariantsOnChains) {
       Aggregate aggregate = kEmptyAggregate;
       for (int i = 0; i < 8; ++i) {
         const MergeFragment fragment = random_fragment(random);
-        const Aggregate now = merge_scalar(fragment, aggregate, kPattern, rules);
+        const Aggregate now = merge_formula(fragment, aggregate, kPattern, rules);
         ASSERT_NO_FATAL_FAILURE(expect_invariants(fragment, aggregate, rules, now))
             << "chain " << chain << ", fragment " << i;
         aggregate = now;
@@ -294,8 +294,8 @@ TEST(MergeRules, ThicknessReachesTheFragment) {
     const MergeFragment fragments[3] = {random_fragment(random), random_fragment(random), random_fragment(random)};
     const MergeRules rules = random.one_in(2) ? containing : MergeRules{};
     const Aggregate old =
-        merge_scalar(fragments[1], merge_scalar(fragments[0], kEmptyAggregate, kPattern, rules), kPattern, rules);
-    const Aggregate now = merge_scalar(fragments[2], old, kPattern, rules);
+        merge_formula(fragments[1], merge_formula(fragments[0], kEmptyAggregate, kPattern, rules), kPattern, rules);
+    const Aggregate now = merge_formula(fragments[2], old, kPattern, rules);
     const Aggregate& in = fragments[2].surface;
     double farthest = 0, moved = 0;
     for (std::size_t s = 0; s < 32; ++s) {
@@ -496,8 +496,8 @@ TEST(MergeRules, ThicknessContainsWhatWasThereBefore) {
 
 // OVER by hand: 1/2, and 1/2 of the 1/4 behind it.
 TEST(MergeRules, PlainOver) {
-  const Aggregate now = over_scalar<float, std::uint32_t>({flat_surface(0.25f, 1u, -0.1f, 1, 0), 0u},
-                                                          flat_surface(0.5f, 1u, -0.9f, 0, 1));
+  const Aggregate now = over_formula<float, std::uint32_t>({flat_surface(0.25f, 1u, -0.1f, 1, 0), 0u},
+                                                           flat_surface(0.5f, 1u, -0.9f, 0, 1));
   EXPECT_FLOAT_EQ(now.alpha, 0.625f);
   EXPECT_FLOAT_EQ(now.color[0], 0.125f);
   EXPECT_FLOAT_EQ(now.color[1], 0.5f);

@@ -81,7 +81,7 @@ TEST(PlaneOrder, NearerOnEveryTargetEqualsTheFormulaOnFloat) {
         for (std::size_t w = 0; w < patterns.size(); ++w)
           for (std::size_t s = 0; s < 32; ++s)
             ASSERT_EQ(masks[w] >> s & 1,
-                      nearer_scalar(planes[i], planes[i - 1], position_u(patterns[w], s), position_v(patterns[w], s)))
+                      nearer_formula(planes[i], planes[i - 1], position_u(patterns[w], s), position_v(patterns[w], s)))
                 << i << " position " << 32 * w + s;
       }
     });
@@ -102,8 +102,9 @@ TEST(PlaneOrder, NearestOnEveryTargetEqualsTheFormulaOnFloat) {
     for (std::size_t i = 0; i < planes.size(); ++i) {
       float expected = kNoDepth;
       for (std::size_t p = 0; p < 128; ++p)
-        expected = nearest_scalar(planes[i], position_u(patterns[p / 32], p % 32), position_v(patterns[p / 32], p % 32),
-                                  (masks[i][p / 32] >> (p % 32) & 1) != 0, expected);
+        expected =
+            nearest_formula(planes[i], position_u(patterns[p / 32], p % 32), position_v(patterns[p / 32], p % 32),
+                            (masks[i][p / 32] >> (p % 32) & 1) != 0, expected);
       ASSERT_EQ(nearest_depth(planes[i], patterns.data(), 4, masks[i].data()), expected) << i;
     }
   });
