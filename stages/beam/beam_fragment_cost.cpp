@@ -35,7 +35,7 @@ PixelTriangleOf<CountedInt> vertices_at_hand(OperationCounts& counts) {
 // Per pair: the vertices relative to the pixel, and the coverage.
 OperationCounts coverage_cost() {
   return count_operations(
-      [](OperationCounts& counts) { coverage_scalar<CountedInt, CountedFloat>(counted_triangle(counts)); });
+      [](OperationCounts& counts) { coverage_formula<CountedInt, CountedFloat>(counted_triangle(counts)); });
 }
 
 OperationCounts centroid_depth_cost() {
@@ -50,7 +50,7 @@ OperationCounts clipped_depth_cost() {
     DepthRangeInput<CountedFloat> in;
     set_geometry(vertices_at_hand(counts), in);
     in.z = in.dzdu = in.dzdv = in.vertex_z[0] = in.vertex_z[1] = in.vertex_z[2] = CountedFloat(1.0f, counts);
-    depth_range_scalar(in);
+    depth_range_formula(in);
   });
 }
 
@@ -72,7 +72,7 @@ OperationCounts table_mask_cost(const MaskTable& table) {
       edge.flip = Counted<std::uint32_t>(0u, counts);
       edge.distance = edge_distance(counted_edge(counts), zero, zero, Counted<double>(1.0, counts));
     }
-    table_mask_scalar(triangle, table);
+    table_mask_formula(triangle, table);
   });
   return cost;
 }

@@ -28,7 +28,7 @@ constexpr std::size_t kStateBits = std::bit_width(Pixel::kSettled);
 inline OperationCounts nearest_cost() {
   return count_operations([](OperationCounts& counts) {
     const Counted<float> one(1.0f, counts);
-    nearest_scalar({one, one, one}, one, one, true, one);
+    nearest_formula({one, one, one}, one, one, true, one);
   });
 }
 

@@ -79,7 +79,7 @@ std::vector<Aggregate> compose_over(const std::vector<Fragment>& fragments, cons
   std::vector<Aggregate> aggregates(pixels, kEmptyAggregate);
   for (std::size_t pixel = 0; pixel < pixels; ++pixel)
     for (std::uint32_t i = buffer.first[pixel]; i < buffer.first[pixel + 1]; ++i)
-      aggregates[pixel] = stored_over(over_scalar(merge_fragment(fragments[buffer.records[i]]), aggregates[pixel]));
+      aggregates[pixel] = stored_over(over_formula(merge_fragment(fragments[buffer.records[i]]), aggregates[pixel]));
   charge_merges(buffer, over_cost(), kOverFragmentBytes, kOverBytes, counters);
   return aggregates;
 }

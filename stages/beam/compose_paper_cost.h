@@ -30,7 +30,7 @@ constexpr std::uint64_t packed_numbers(PaperStorage storage) {
 inline OperationCounts merge_cost(const SamplePattern& pattern, const MergeRules& rules, PaperStorage storage) {
   return count_operations([&](OperationCounts& counts) {
     const auto fragment = counted_fragment(counts);
-    merge_scalar(fragment, fragment.surface, pattern, rules);
+    merge_formula(fragment, fragment.surface, pattern, rules);
     counts.convert += 2 * packed_numbers(storage);
   });
 }
@@ -38,7 +38,7 @@ inline OperationCounts merge_cost(const SamplePattern& pattern, const MergeRules
 inline OperationCounts over_cost() {
   return count_operations([](OperationCounts& counts) {
     const auto fragment = counted_fragment(counts);
-    over_scalar(fragment, fragment.surface);
+    over_formula(fragment, fragment.surface);
     counts.convert += 2 * 3;  // fp16 colour
   });
 }

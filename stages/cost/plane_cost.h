@@ -16,7 +16,7 @@ inline OperationCounts nearer_cost() {
   return count_operations([](OperationCounts& counts) {
     const Counted<float> one(1.0f, counts);
     const DepthPlane<Counted<float>> plane{one, one, one};
-    nearer_scalar(plane, plane, one, one);
+    nearer_formula(plane, plane, one, one);
   });
 }
 

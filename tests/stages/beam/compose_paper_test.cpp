@@ -172,7 +172,7 @@ TEST(Compose, PixelsDoNotMix) {
   for (std::size_t i = 0; i < tile.pixels(); ++i) {
     Aggregate alone = kEmptyAggregate;
     for (std::uint32_t k = buffer.first[i]; k < buffer.first[i + 1]; ++k)
-      alone = merge_scalar(merge_fragment(fragments.list[buffer.records[k]]), alone, pattern, {});
+      alone = merge_formula(merge_fragment(fragments.list[buffer.records[k]]), alone, pattern, {});
     ASSERT_EQ(found[i].alpha, alone.alpha) << "pixel " << i;
     ASSERT_EQ(found[i].mask, alone.mask);
     for (int c = 0; c < 3; ++c) ASSERT_EQ(found[i].color[c], alone.color[c]);

@@ -62,7 +62,7 @@ class FragmentTwins : public SceneTwins {
     DepthRange<Float> range{real(pair.nearest), real(pair.farthest)};
     if (!pair.full || options.clipped_depth) {
       const PixelTriangleOf<Int> seen = seen_from(triangle, pair);
-      const Coverage<Float> area = coverage_scalar<Int, Float>(seen);
+      const Coverage<Float> area = coverage_formula<Int, Float>(seen);
       if (!pair.full) covered = area;
       mask = masks(pair, seen, options);
       if (options.clipped_depth) {
@@ -114,7 +114,7 @@ class FragmentTwins : public SceneTwins {
     set_geometry(seen, in);
     in.z = plane.z, in.dzdu = plane.dzdu, in.dzdv = plane.dzdv;
     for (int k = 0; k < 3; ++k) in.vertex_z[k] = real(triangle.vertex_z[k]);
-    return depth_range_scalar(in);
+    return depth_range_formula(in);
   }
 
   WideMask masks(const PixelTriangle& pair, const PixelTriangleOf<Int>& seen, const BeamFragmentOptions& options) {
@@ -133,7 +133,7 @@ class FragmentTwins : public SceneTwins {
             direction.angle, bits(direction.flip ? ~0u : 0u),
             to_float(to_double(edges_[static_cast<std::size_t>(k)].at(center_x, center_y)) * direction.per_unit)};
       }
-      mask.words[0] = table_mask_scalar(lookup, *options.table).value;
+      mask.words[0] = table_mask_formula(lookup, *options.table).value;
       return mask;
     }
     Int a[3], b[3], c[3];

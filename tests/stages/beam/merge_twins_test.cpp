@@ -91,7 +91,7 @@ class MergeTwins : public SceneTwins {
     const std::vector<Aggregate> expected = merge_all([&](const Fragment& fragment, const Aggregate& before) {
       AggregateOf<Float, Bits> old = counting(before);
       convert(old, storage);
-      AggregateOf<Float, Bits> merged = merge_scalar(counting(fragment), old, pattern, rules);
+      AggregateOf<Float, Bits> merged = merge_formula(counting(fragment), old, pattern, rules);
       convert(merged, storage);
       return Aggregate(Stored(value_of(merged)));
     });
@@ -118,7 +118,7 @@ TEST_P(MergeTwins, Over) {
   const std::vector<Aggregate> expected = merge_all([&](const Fragment& fragment, const Aggregate& before) {
     AggregateOf<Float, Bits> old = counting(before);
     convert(old, PaperStorage::slides);
-    AggregateOf<Float, Bits> merged = over_scalar(counting(fragment), old);
+    AggregateOf<Float, Bits> merged = over_formula(counting(fragment), old);
     convert(merged, PaperStorage::slides);
     return Aggregate(SlidesAggregate(value_of(merged)));
   });
@@ -214,9 +214,9 @@ class Z3Twin {
       return nearer;
     for (std::size_t w = 0; w < Words; ++w)
       for (std::size_t s = 0; s < 32; ++s)
-        nearer[w].value |= std::uint32_t{nearer_scalar<Float>({a.z, a.dzdu, a.dzdv}, {b.z, b.dzdu, b.dzdv},
-                                                              real(position_u(positions_.patterns[w], s)),
-                                                              real(position_v(positions_.patterns[w], s)))}
+        nearer[w].value |= std::uint32_t{nearer_formula<Float>({a.z, a.dzdu, a.dzdv}, {b.z, b.dzdu, b.dzdv},
+                                                               real(position_u(positions_.patterns[w], s)),
+                                                               real(position_v(positions_.patterns[w], s)))}
                            << s;
     return nearer;
   }

@@ -46,7 +46,7 @@ TEST(Counting, PlainOver) {
     const Real one(1.0f, tally);
     const FragmentOf<Real, Bits> fragment{{one, Bits(1u, tally), {one, one, one}, one, one, one, {one, one, one}},
                                           Bits(0u, tally)};
-    over_scalar(fragment, fragment.surface);
+    over_formula(fragment, fragment.surface);
   });
   EXPECT_EQ(counts, (OperationCounts{4, 5, 0, 0, 0, 0}));
 }
@@ -82,8 +82,8 @@ TEST(Counting, MergeCostsTheSameForEveryInput) {
         return AggregateOf<Real, Bits>{real(alpha), Bits(bits, tally), {real(depth), real(0.1f), real(0)}, real(0.2f),
                                        real(depth), real(depth),       {real(1), real(1), real(1)}};
       };
-      merge_scalar(FragmentOf<Real, Bits>{surface(mask, z), Bits(tiny, tally)}, surface(old_mask, -0.5f), pattern,
-                   rules);
+      merge_formula(FragmentOf<Real, Bits>{surface(mask, z), Bits(tiny, tally)}, surface(old_mask, -0.5f), pattern,
+                    rules);
     });
   };
   for (const MergeRules& each : every_merge_rule()) {

@@ -160,14 +160,14 @@ class ClaimTwin {
   Mask nearer(const Plane& a, const Plane& b) {
     Mask mask = none();
     each_position([&](std::size_t w, std::size_t s, const Float& u, const Float& v) {
-      mask[w].value |= std::uint32_t{nearer_scalar(a, b, u, v)} << s;
+      mask[w].value |= std::uint32_t{nearer_formula(a, b, u, v)} << s;
     });
     return mask;
   }
   Float nearest(const Plane& of, const Mask& mask) {
     Float depth = real(kNoDepth);
     each_position([&](std::size_t w, std::size_t s, const Float& u, const Float& v) {
-      depth = nearest_scalar(of, u, v, mask[w].value >> s & 1, depth);
+      depth = nearest_formula(of, u, v, mask[w].value >> s & 1, depth);
     });
     return depth;
   }
