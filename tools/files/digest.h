@@ -1,4 +1,5 @@
-// Tells apart contents that differ by accident: CRC-64 of the XZ format, as 16 hexadecimal digits.
+// Digests that tell different contents apart: CRC-64 as in the XZ format, written as 16 hexadecimal digits. They detect
+// accidental changes, not deliberate forgeries.
 #pragma once
 
 #include <filesystem>
@@ -11,7 +12,7 @@ namespace beampipe {
 
 std::string digest_of(std::string_view bytes);
 
-// Of everything in the trace that a picture depends on.
+// Covers everything in the trace that a picture depends on.
 std::string digest_of(const Trace& trace);
 
 std::string digest_of_file(const std::filesystem::path& path);

@@ -39,9 +39,9 @@ class MemoryStream : public Imf::OStream {
   std::size_t position_ = 0;
 };
 
-// A view of floats `stride` apart as one channel of a picture that is `width` wide.
+// Describes a channel to OpenEXR: its values lie `stride` floats apart, in rows of `width` pixels.
 Imf::Slice slice_of(const float* first, std::uint32_t width, std::size_t stride, double fill = 0.0) {
-  // OpenEXR takes char* for reading and writing alike.
+  // OpenEXR takes the same char* for reading and for writing.
   char* base = const_cast<char*>(reinterpret_cast<const char*>(first));
   return Imf::Slice(Imf::FLOAT, base, stride * sizeof(float), stride * sizeof(float) * width, 1, 1, fill);
 }
@@ -65,8 +65,9 @@ struct Size {
   std::uint32_t width, height;
 };
 
-// Image files take memory for what an attribute of their header claims. The library's core holds each to its size, and
-// sizes to the file, but goes on after an error; here the first one counts.
+// OpenEXR's C++ library allocates as much memory as an attribute of a header claims to need. Its core library checks
+// the sizes of attributes against their types and against the file, but it continues after an error. This function runs
+// the core's checks and rejects the file at the first error.
 void require_sound_header(const std::filesystem::path& file) {
   std::string first_error;
   exr_context_initializer_t settings = EXR_DEFAULT_CONTEXT_INITIALIZER;
@@ -85,12 +86,13 @@ void require_sound_header(const std::filesystem::path& file) {
   if (!first_error.empty()) throw std::runtime_error(first_error);
 }
 
-// The core also takes a list of channels without the zero that ends it; the library reads on from there, and finds
-// attributes that nobody has held to their sizes. A header is a list of attributes: name and type, each up to a zero,
-// then the size, in 4 bytes from the lowest, and as many bytes; an empty name ends it (OpenEXR, "File Layout").
+// The core also accepts a list of channels without the zero that should end it. The C++ library then reads past the end
+// of the list and finds attributes whose sizes have not been checked. A header is a list of attributes; each has a name
+// and a type, which both end in a zero, the size of its value in 4 bytes, lowest first, and the value. An empty name
+// ends the header (OpenEXR, "File Layout").
 void require_ended_channels(const std::filesystem::path& file) {
   constexpr std::streamoff kMagicAndVersion = 8;
-  constexpr std::size_t kChannelFields = 16;  // behind a channel's name
+  constexpr std::size_t kChannelFields = 16;  // bytes that follow a channel's name
   std::ifstream stream(file, std::ios::binary);
   stream.seekg(kMagicAndVersion);
   std::string name, type;
@@ -98,7 +100,7 @@ void require_ended_channels(const std::filesystem::path& file) {
     unsigned char bytes[4] = {};
     stream.read(reinterpret_cast<char*>(bytes), sizeof bytes);
     const std::uint32_t size = bytes[0] | bytes[1] << 8 | bytes[2] << 16 | std::uint32_t{bytes[3]} << 24;
-    std::string value(size, '\0');  // the core has seen so many bytes
+    std::string value(size, '\0');  // the core has checked that the file has so many bytes
     stream.read(value.data(), size);
     if (type != "chlist") continue;
     std::size_t at = 0;
@@ -107,9 +109,9 @@ void require_ended_channels(const std::filesystem::path& file) {
   }
 }
 
-// Uncompressed bytes that a byte of a file can stand for: 1032 in deflate (RFC 1951: a 258-byte match in 2 bits), less
-// in RLE, PIZ and B44. DWA keeps flat blocks of 64 pixels in one more such step: what is more than 64 MiB must be less
-// flat than that.
+// How many uncompressed bytes one byte of a file can stand for: up to 1032 in deflate (RFC 1951: a match of 258 bytes
+// in 2 bits), fewer in RLE, PIZ and B44. DWA can shrink a flat block of 64 pixels once more by such a factor. A picture
+// of more than 64 MiB is accepted only if it is not as flat as that.
 constexpr std::uint64_t kMostExpansion = 1100, kMostFlatBytes = std::uint64_t{64} << 20;
 
 void require_plausible_size(const Imf::Header& header, Size size, std::uint64_t file_bytes) {
@@ -140,14 +142,15 @@ Size checked_size(const Imf::Header& header) {
   return {static_cast<std::uint32_t>(data.max.x + 1), static_cast<std::uint32_t>(data.max.y + 1)};
 }
 
-// Opens `file`, checks its windows, and lets `load(input, size)` read it; every failure becomes an ImageError.
+// Opens `file`, checks its header, and calls `load(input, size)` to read the pixels. Every failure becomes an
+// ImageError.
 template <typename Load>
 auto read_file(const std::filesystem::path& file, Load load) {
   try {
     std::error_code ignored;
     if (!std::filesystem::exists(file, ignored)) throw std::runtime_error("no such file");
     if (!std::filesystem::is_regular_file(file, ignored)) throw std::runtime_error("not a file");
-    Imf::Header::setMaxImageSize(kMaxSide, kMaxSide);  // before the library takes memory for what a header claims
+    Imf::Header::setMaxImageSize(kMaxSide, kMaxSide);  // must be set before the library allocates what a header claims
     require_sound_header(file);
     require_ended_channels(file);
     Imf::InputFile input(file.c_str());
@@ -165,7 +168,7 @@ void read_all(Imf::InputFile& input, const Imf::FrameBuffer& channels, Size size
 }
 
 std::uint8_t srgb_byte(float linear) {
-  const double clamped = linear > 0.0f ? std::min(static_cast<double>(linear), 1.0) : 0.0;  // NaN: 0
+  const double clamped = linear > 0.0f ? std::min(static_cast<double>(linear), 1.0) : 0.0;  // NaN becomes 0
   const double encoded = clamped <= 0.0031308 ? 12.92 * clamped : 1.055 * std::pow(clamped, 1.0 / 2.4) - 0.055;
   return static_cast<std::uint8_t>(std::lround(255.0 * encoded));
 }

@@ -1,7 +1,7 @@
-// Pictures to bytes and back: OpenEXR for numbers, PNG for looking.
+// Picture files: OpenEXR holds the numbers, PNG is for looking at.
 //
-// EXR files are scanline images, ZIP, 32-bit float channels, linear, row 0 on top, with the data window and the display
-// window both (0, 0) .. (width - 1, height - 1).
+// The EXR files are scanline images with ZIP compression and 32-bit float channels in linear light, row 0 on top. Their
+// data window and display window are both (0, 0) .. (width - 1, height - 1).
 #pragma once
 
 #include <cstdint>
@@ -32,17 +32,19 @@ std::string encode_exr(const Image& image);
 // The bytes of an EXR file with one channel per plane. Throws std::invalid_argument when a plane has the wrong size.
 std::string encode_exr(const Planes& planes);
 
-// The bytes of an 8-bit RGB PNG file for looking at: clamped to [0, 1], then the sRGB transfer curve; NaN is black.
+// The bytes of an 8-bit RGB PNG file for looking at: linear values are clamped to [0, 1] and encoded in sRGB. NaN is
+// black. Alpha is left out.
 std::string encode_png(const Image& image);
 
-// The bytes of an 8-bit RGB PNG file: `rgb` has three bytes per pixel, row 0 on top, and is stored as it is.
+// The bytes of an 8-bit RGB PNG file: `rgb` has three bytes per pixel, row 0 on top, and is stored unchanged.
 std::string encode_png(std::uint32_t width, std::uint32_t height, const std::vector<std::uint8_t>& rgb);
 
-// Reads an EXR with channels R, G, B (any type) and, where there is one, A; else A = 1. Throws ImageError when it is
-// broken, lacks a channel, is larger than 16384 on a side, or its data window is not the whole picture from (0, 0).
+// Reads an EXR file with channels R, G and B of any type, and A if there is one; otherwise A = 1. Throws ImageError if
+// the file is broken, lacks a channel, is larger than 16384 pixels on a side, or has a data window other than the whole
+// picture from (0, 0).
 Image read_exr(const std::filesystem::path& file);
 
-// Reads every channel of an EXR as float; the same errors.
+// Reads every channel of an EXR file as floats. Throws ImageError for the same reasons.
 Planes read_exr_planes(const std::filesystem::path& file);
 
 }  // namespace beampipe

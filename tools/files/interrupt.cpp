@@ -15,7 +15,7 @@ InterruptGate::InterruptGate() {
 
 InterruptGate::~InterruptGate() {
   closing_ = true;
-  pthread_kill(waiter_.native_handle(), SIGTERM);  // only wakes the waiter: the signal is sent to that thread alone
+  pthread_kill(waiter_.native_handle(), SIGTERM);  // wakes the waiting thread; no other thread gets this signal
   waiter_.join();
   pthread_sigmask(SIG_SETMASK, &previous_mask_, nullptr);
 }
@@ -24,9 +24,9 @@ void InterruptGate::wait_for_signal() {
   int signal = 0;
   sigwait(&signals_, &signal);
   if (closing_) return;
-  mutex_.lock();  // never unlocked: no file may be begun any more
+  mutex_.lock();  // never unlocked, so that no new file is started
   if (!unfinished_.empty()) ::unlink(unfinished_.c_str());
-  _exit(128 + signal);  // without destructors: other threads are still rendering
+  _exit(128 + signal);  // runs no destructors, because other threads are still rendering
 }
 
 }  // namespace beampipe

@@ -1,4 +1,4 @@
-// Lets Ctrl-C end the program at once, and leaves no half-written file.
+// Ctrl-C ends the program at once, but never leaves a half-written file.
 #pragma once
 
 #include <atomic>
@@ -9,9 +9,10 @@
 
 namespace beampipe {
 
-// While one lives, SIGINT and SIGTERM end the process with exit code 128 + signal (130 for Ctrl-C), at a moment when
-// nobody holds the gate. Whoever changes names of files and folders holds it meanwhile, never longer.
-// Construct it before any other thread is started: the two signals are blocked in this thread and in those it starts.
+// As long as this object exists, SIGINT and SIGTERM end the process with exit code 128 + signal (130 for Ctrl-C), but
+// only while no thread holds the gate. Code that creates, renames or removes files or folders must hold the gate, and
+// only for that short time. Construct the gate before the first thread is started: the two signals are blocked in the
+// constructing thread and in all threads that it starts.
 class InterruptGate {
  public:
   InterruptGate();
@@ -21,8 +22,8 @@ class InterruptGate {
 
   std::unique_lock<std::mutex> hold() { return std::unique_lock(mutex_); }
 
-  // The file that is being written: an interrupt removes it before it ends the program. Empty: none. Call it while
-  // holding the gate.
+  // Names the file that is being written, or none if `file` is empty. An interrupt removes that file before it ends the
+  // program. The caller must hold the gate.
   void set_unfinished(std::filesystem::path file) { unfinished_ = std::move(file); }
 
  private:

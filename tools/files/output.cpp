@@ -19,7 +19,7 @@ namespace {
 
 namespace fs = std::filesystem;
 
-// The folders on the way to `folder` that do not exist yet, outermost first.
+// `folder` and those of its parents that do not exist yet, outermost first.
 std::vector<fs::path> missing_folders(const fs::path& folder) {
   std::vector<fs::path> missing;
   std::error_code ignored;
@@ -29,10 +29,10 @@ std::vector<fs::path> missing_folders(const fs::path& folder) {
   return missing;
 }
 
-// If not, errno says why.
+// If the result is false, errno says why.
 bool can_create_files(const fs::path& folder) {
-  int probe = ::open(folder.c_str(), O_TMPFILE | O_WRONLY | O_CLOEXEC, 0600);      // has no name
-  if (probe < 0 && (errno == EOPNOTSUPP || errno == EISDIR || errno == EINVAL)) {  // the file system has none such
+  int probe = ::open(folder.c_str(), O_TMPFILE | O_WRONLY | O_CLOEXEC, 0600);      // a file without a name
+  if (probe < 0 && (errno == EOPNOTSUPP || errno == EISDIR || errno == EINVAL)) {  // not on this file system
     std::string name = folder / ".beampipe-XXXXXX";
     probe = ::mkostemp(name.data(), O_CLOEXEC);
     if (probe >= 0) ::unlink(name.c_str());
@@ -74,7 +74,8 @@ void require_writable_file(const fs::path& file) {
 
 OutputFolder::~OutputFolder() {
   std::error_code ignored;
-  for (auto path = new_.rbegin(); path != new_.rend(); ++path) fs::remove(*path, ignored);  // a folder: only if empty
+  for (auto path = new_.rbegin(); path != new_.rend(); ++path)
+    fs::remove(*path, ignored);  // removes a folder only if it is empty
   if (lock_ >= 0) ::close(lock_);
 }
 
@@ -99,7 +100,7 @@ void OutputFolder::write(const fs::path& name, std::string_view bytes, const std
   const bool is_new = !fs::exists(target);
   AtomicFile file(target);
   gate_.set_unfinished(AtomicFile::temporary_of(target));
-  held.unlock();  // a large file may take longer than Ctrl-C may
+  held.unlock();  // writing a large file takes longer than Ctrl-C may wait
   file.write(bytes);
   file.flush();
   held.lock();

@@ -1,4 +1,4 @@
-// The folder that results go to.
+// Writing results into a folder, completely or not at all.
 #pragma once
 
 #include <filesystem>
@@ -9,17 +9,18 @@
 
 namespace beampipe {
 
-// Throws std::runtime_error, one line, unless `folder` is one, or could be made, in which files can be created. Leaves
-// nothing behind.
+// Throws std::runtime_error, one line, unless files can be created in `folder`. The folder need not exist if it can be
+// created. Nothing is created by this check.
 void require_writable_folder(const std::filesystem::path& folder);
 
-// Throws std::runtime_error, one line, unless OutputFolder could write `file`, which has a folder in its name: a new
-// one, or in place of a regular one.
+// Throws std::runtime_error, one line, unless OutputFolder could write `file`: as a new file, or in place of a regular
+// file. The name must contain a folder.
 void require_writable_file(const std::filesystem::path& file);
 
-// Made when the first file is written, not before. Its files are whole or not there, and an earlier file stays as it
-// was when it cannot be replaced. The files and folders that came new since the last keep() go away with this object,
-// so that an error leaves nothing half done; after an interrupt, which ends the program without destructors, they stay.
+// A folder for results, which is created when the first file is written. Each file is either complete or absent; if a
+// file cannot be replaced, the old one stays as it was. The destructor removes all files and folders that were created
+// since the last keep(), so that an error leaves nothing half done. An interrupt ends the program without destructors,
+// and then they stay.
 class OutputFolder {
  public:
   OutputFolder(std::filesystem::path folder, InterruptGate& gate) : folder_(std::move(folder)), gate_(gate) {}
@@ -29,21 +30,20 @@ class OutputFolder {
 
   const std::filesystem::path& path() const { return folder_; }
 
-  // Keeps the folder from other programs that call this, from now on, or from when it is made, until this object ends.
-  // Throws std::runtime_error, one line, when another has it: now, or at the first write(). File systems without such
-  // locks let everybody in.
+  // Locks the folder against other programs that call this function, until this object is destroyed. If the folder does
+  // not exist yet, it is locked when it is created. Throws std::runtime_error, one line, if another program holds the
+  // lock; the first write() can throw it too. On file systems without such locks this does nothing.
   void lock();
 
-  // Writes folder/name. `name` may lie in a subfolder, which is made if need be. Removes the files `outdated` when the
-  // bytes are on the disk, and before the new file appears.
-  // Throws std::runtime_error, one line that names the file.
+  // Writes folder/name and creates the subfolders in `name`. Removes the `outdated` files once the new bytes are on the
+  // disk, before the new file appears under its name. Throws std::runtime_error, one line that names the file.
   void write(const std::filesystem::path& name, std::string_view bytes,
              const std::vector<std::filesystem::path>& outdated = {});
 
   // Removes folder/name if it exists.
   void remove(const std::filesystem::path& name);
 
-  // What was written so far stays.
+  // Everything written so far stays when this object is destroyed.
   void keep() { new_.clear(); }
 
  private:
@@ -52,8 +52,8 @@ class OutputFolder {
   std::filesystem::path folder_;
   InterruptGate& gate_;
   bool locks_ = false;
-  int lock_ = -1;                           // the opened folder; negative: not yet
-  std::vector<std::filesystem::path> new_;  // files and folders, in the order in which they came
+  int lock_ = -1;                           // file descriptor of the folder; negative before it is opened
+  std::vector<std::filesystem::path> new_;  // files and folders created since keep(), oldest first
 };
 
 }  // namespace beampipe

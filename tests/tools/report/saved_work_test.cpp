@@ -1,4 +1,4 @@
-#include "tools/files/saved_work.h"
+#include "tools/report/saved_work.h"
 
 #include <gtest/gtest.h>
 

@@ -1,4 +1,4 @@
-// Work that a technique did not do, as its stages' counters tell: nothing is counted twice for it.
+// Work that a technique avoided. The amounts follow from the stages' counters; nothing else is counted for them.
 #pragma once
 
 #include <cstdint>
@@ -17,7 +17,7 @@ struct SavedWork {
   std::uint64_t amount;
 };
 
-// Of a frame; empty where the technique has no such shortcut.
+// Of one frame. Empty if the technique takes no shortcuts.
 std::vector<SavedWork> saved_work(const std::vector<StageCounters>& stages);
 
 }  // namespace beampipe
