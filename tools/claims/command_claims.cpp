@@ -14,7 +14,8 @@ void print_claims(const std::vector<std::string>& folders) {
   std::vector<Claim> claims = all_claims({});
   for (const std::string& folder : folders) {
     const ReportFile report = read_report(folder);
-    for (const auto& found : report.json.value("claims", Json::array()).elements())
+    const Json answered = report.json.value("claims", Json::array());
+    for (const Json& found : answered.elements())
       for (Claim& claim : claims)
         if (!claim.ours && found.at("name") == claim.name && !found.at("ours").is_null())
           claim.ours = found.at("ours").get<double>();

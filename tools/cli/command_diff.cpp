@@ -1,4 +1,4 @@
-// beampipe diff: the error of one picture against another.
+// beampipe diff: measures the error of one picture against another.
 
 #include <cstdio>
 #include <iostream>
@@ -17,7 +17,7 @@ struct DiffArguments {
   bool json = false;
 };
 
-// Pixels of which R, G or B differ.
+// The number of pixels in which R, G or B differ.
 std::uint64_t differing_pixels(const Image& a, const Image& b) {
   std::uint64_t differing = 0;
   for (std::size_t i = 0; i < a.rgba.size(); i += 4) {
@@ -56,13 +56,16 @@ void diff(const DiffArguments& arguments) {
 
 void add_diff_command(CommandLine& line) {
   const auto arguments = std::make_shared<DiffArguments>();
-  Command command = line.add_command("diff", "Tell how far picture A is from picture B");
+  Command command = line.add_command("diff", "Measure how far picture A is from picture B");
   command.add("A", arguments->a, "an EXR image").required();
-  command.add("B", arguments->b, "an EXR image of the same size, taken as the truth").required();
-  command.add_flag("--json", arguments->json, "print JSON");
+  command.add("B", arguments->b, "an EXR image of the same size, which is taken as correct").required();
+  command.add_flag("--json", arguments->json, "print the result as JSON");
   command.footer(
-      "Compares R, G and B in linear light; bias is the mean of A - B. Exit code 0 whenever the two could be "
-      "compared.");
+      "Compares R, G and B in linear light and prints the number of pixels that differ, the root mean square error "
+      "(rmse),\n"
+      "the mean of A - B (bias), the 99th percentile of the absolute errors (p99) and the largest (max). The exit code "
+      "is\n"
+      "0 even if the pictures differ.");
   command.set_work([arguments] { diff(*arguments); });
 }
 

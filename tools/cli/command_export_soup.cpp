@@ -1,4 +1,4 @@
-// beampipe export-soup: a frame's triangles as other renderers can draw them.
+// beampipe export-soup: writes a frame's triangles in a form that other renderers can draw.
 
 #include <bit>
 #include <cstring>
@@ -30,8 +30,8 @@ void append(std::string& bytes, const Value& value) {
   bytes.append(raw, sizeof raw);
 }
 
-// "SOUP"; uint32 version 1, width, height, triangles; float background[3]; and for each triangle float clip[3][4]
-// (OpenGL clip space, w = 1: projected and snapped already) and float rgb[3] (linear, lit).
+// The bytes of the file: "SOUP"; uint32 version 1, width, height, triangles; float background[3]; and for each triangle
+// float clip[3][4] (OpenGL clip space with w = 1, already projected and snapped) and float rgb[3] (linear, lit).
 std::string soup_of(const Trace& trace, const Frame& frame) {
   StageCounters counters;
   const SetupTriangles setup = vertex_setup(trace, frame, counters);
@@ -57,16 +57,19 @@ std::string soup_of(const Trace& trace, const Frame& frame) {
 
 void add_export_soup_command(CommandLine& line, InterruptGate& gate) {
   const auto arguments = std::make_shared<ExportArguments>();
-  Command command = line.add_command(
-      "export-soup", "Write a frame's triangles, clipped, culled, snapped and lit, for other renderers");
-  command.add("TRACE", arguments->trace, "the trace (JSON)").required();
-  command.add("-o,--output", arguments->output, "the file to be written").required();
-  command.add("--frame", arguments->frame, "which frame, counted from 0 (default: 0)");
-  command.add_flag("--allow-outside", arguments->allow_outside, "let the trace name meshes outside its own folder");
+  Command command = line.add_command("export-soup",
+                                     "Write a frame's triangles for other renderers: clipped, culled, snapped and lit");
+  command.add("TRACE", arguments->trace, "the trace, a JSON file").required();
+  command.add("-o,--output", arguments->output, "the file to write").required();
+  command.add("--frame", arguments->frame, "the frame; the first one is 0 (default: 0)");
+  command.add_flag("--allow-outside", arguments->allow_outside,
+                   "allow the trace to name meshes outside its own folder");
   command.footer(
-      "\nThe file, little-endian: \"SOUP\"; uint32 version 1, width, height, triangles; float background[3]; then for "
-      "each\n"
-      "triangle float clip[3][4], in OpenGL clip space with w = 1, and float rgb[3], linear.");
+      "Other rasterizers can draw exactly these triangles, for comparison. The file is little-endian: \"SOUP\"; "
+      "uint32\n"
+      "version 1, width, height, triangles; float background[3]; then for each triangle float clip[3][4], in OpenGL "
+      "clip\n"
+      "space with w = 1, and float rgb[3], linear.");
   command.set_work([arguments, &gate] {
     const std::filesystem::path file = std::filesystem::absolute(arguments->output);
     if (std::error_code none; std::filesystem::equivalent(file, arguments->trace, none))

@@ -1,4 +1,4 @@
-// beampipe info: what is in a trace.
+// beampipe info: lists the frames and meshes of a trace.
 
 #include <glm/glm.hpp>
 #include <iostream>
@@ -23,7 +23,7 @@ struct Bounds {
 
   bool empty() const { return min.x > max.x; }
 
-  // Of the vertices that triangles use, transformed.
+  // Adds the transformed vertices of all triangles.
   void add(const Mesh& mesh, const glm::dmat4& transform) {
     for (const glm::uvec3& triangle : mesh.triangles) {
       for (int corner = 0; corner < 3; ++corner) {
@@ -110,10 +110,11 @@ std::string info_text(const Trace& trace) {
 
 void add_info_command(CommandLine& line) {
   const auto arguments = std::make_shared<InfoArguments>();
-  Command command = line.add_command("info", "Tell what is in a trace");
-  command.add("TRACE", arguments->trace, "the trace (JSON)").required();
-  command.add_flag("--json", arguments->json, "print JSON");
-  command.add_flag("--allow-outside", arguments->allow_outside, "let the trace name meshes outside its own folder");
+  Command command = line.add_command("info", "List the frames and meshes of a trace");
+  command.add("TRACE", arguments->trace, "the trace, a JSON file").required();
+  command.add_flag("--json", arguments->json, "print the list as JSON");
+  command.add_flag("--allow-outside", arguments->allow_outside,
+                   "allow the trace to name meshes outside its own folder");
   command.set_work([arguments] {
     const Trace trace = read_trace(arguments->trace, {.allow_outside = arguments->allow_outside});
     std::cout << (arguments->json ? json_text(info_json(trace, arguments->trace)) : info_text(trace));

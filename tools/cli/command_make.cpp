@@ -1,4 +1,4 @@
-// beampipe make: a trace from a procedural scene or from a model of the user's own.
+// beampipe make: makes a trace from a procedural scene or from the user's own model.
 
 #include <algorithm>
 #include <filesystem>
@@ -79,7 +79,7 @@ Trace make_from_scene(const MakeArguments& arguments, const Command& command) {
   const std::vector<SceneKind>& kinds = scene_kinds();
   if (std::none_of(kinds.begin(), kinds.end(), [&](const SceneKind& kind) { return kind.name == arguments.scene; })) {
     throw UsageError("there is no scene named " + arguments.scene +
-                     " (see beampipe make --list), and it is no .obj file");
+                     " (see beampipe make --list), and it is not an .obj file");
   }
   return make_scene(arguments.scene, arguments.options);
 }
@@ -126,35 +126,49 @@ void make(const MakeArguments& arguments, const Command& command, InterruptGate&
 
 void add_make_command(CommandLine& line, InterruptGate& gate) {
   const auto arguments = std::make_shared<MakeArguments>();
-  Command command = line.add_command("make", "Make a trace: a procedural scene, or your own model with a camera");
-  command.add("SCENE", arguments->scene, "a procedural scene (see --list), or a model: MODEL.obj");
-  command.add("-o,--output", arguments->output, "the trace to write (JSON)");
+  Command command = line.add_command("make", "Make a trace from a procedural scene, or from your own model");
+  command.add("SCENE", arguments->scene, "the name of a procedural scene (see --list), or a model: MODEL.obj");
+  command.add("-o,--output", arguments->output, "the trace to write, a JSON file");
   command.add_flag("--list", arguments->list, "list the procedural scenes");
-  command.add("--width", arguments->options.width, "pixels").between(1, kMaxSide).shows_default();
-  command.add("--height", arguments->options.height, "pixels").between(1, kMaxSide).shows_default();
-  command.add("--frames", arguments->frames, "how many frames (default: 1)").between(1, 100000);
+  command.add("--width", arguments->options.width, "width of the picture in pixels")
+      .between(1, kMaxSide)
+      .shows_default();
+  command.add("--height", arguments->options.height, "height of the picture in pixels")
+      .between(1, kMaxSide)
+      .shows_default();
+  command.add("--frames", arguments->frames, "the number of frames (default: 1)").between(1, 100000);
   const Option orbit =
-      command.add("--orbit", arguments->orbit, "degrees that the camera goes around its target in all (default: 0)");
-  command.add("--pan", arguments->pan, "pixels that the picture moves from frame to frame, right and down")
+      command.add("--orbit", arguments->orbit,
+                  "move the camera around its target by so many degrees, over all frames together (default: 0)");
+  command
+      .add("--pan", arguments->pan, "move the picture by so many pixels, right and down, from each frame to the next")
       .exactly(2, "X,Y")
       .excludes(orbit);
 
   Command scene = command.add_group("Procedural scenes");
-  scene.add("--triangles", arguments->options.triangles, "about how many (default: the scene's own number)")
+  scene
+      .add("--triangles", arguments->options.triangles,
+           "the approximate number of triangles (default: the scene's own)")
       .between(1, 100000000);
-  scene.add("--seed", arguments->options.seed, "same seed, same scene").shows_default();
+  scene
+      .add("--seed", arguments->options.seed,
+           "the seed of the scene's random numbers; the same seed makes the same scene")
+      .shows_default();
 
   Command model = command.add_group("Models");
-  model.add("--eye", arguments->eye, "where the camera is (default: where all of the model is in view)")
+  model.add("--eye", arguments->eye, "the position of the camera (default: far enough away to see the whole model)")
       .exactly(3, "X,Y,Z");
-  model.add("--target", arguments->target, "where it looks (default: the middle of the model)").exactly(3, "X,Y,Z");
-  model.add("--up", arguments->up, "what is up (default: 0,1,0)").exactly(3, "X,Y,Z");
-  model.add("--fovy", arguments->fovy, "full vertical angle of view in degrees (default: 36)");
-  model.add("--near", arguments->near, "near plane (default: just before the model)");
-  model.add("--far", arguments->far, "far plane (default: just behind the model)");
-  model.add("--background", arguments->background, "linear colour (default: 1,1,1)").exactly(3, "R,G,B");
-  const Option lambert = model.add_flag("--lambert", arguments->lambert, "light from over the shoulder (the default)");
-  model.add_flag("--unlit", arguments->unlit, "plain material colours").excludes(lambert);
+  model.add("--target", arguments->target, "the point that the camera looks at (default: the middle of the model)")
+      .exactly(3, "X,Y,Z");
+  model.add("--up", arguments->up, "the direction that is up (default: 0,1,0)").exactly(3, "X,Y,Z");
+  model.add("--fovy", arguments->fovy, "the full vertical angle of view in degrees (default: 36)");
+  model.add("--near", arguments->near, "the distance of the near plane (default: just in front of the model)");
+  model.add("--far", arguments->far, "the distance of the far plane (default: just behind the model)");
+  model.add("--background", arguments->background, "the colour of the background, linear (default: 1,1,1)")
+      .exactly(3, "R,G,B");
+  const Option lambert = model.add_flag("--lambert", arguments->lambert,
+                                        "shade the model with a light over the camera's shoulder (the default)");
+  model.add_flag("--unlit", arguments->unlit, "draw the plain colours of the materials").excludes(lambert);
   command.footer(
       "Examples:\n  beampipe make hairball --triangles 100000 --seed 7 -o hairball.json\n"
       "  beampipe make model.obj -o model.json\n  beampipe make model.obj --eye 3,2,5 --fovy 45 --unlit -o model.json");

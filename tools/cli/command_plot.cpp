@@ -1,4 +1,4 @@
-// beampipe plot: what a report found, as a picture file.
+// beampipe plot: draws the results of comparisons into a picture file.
 
 #include <iostream>
 #include <memory>
@@ -38,15 +38,20 @@ void plot(const PlotArguments& arguments, InterruptGate& gate) {
 
 void add_plot_command(CommandLine& line, InterruptGate& gate) {
   const auto arguments = std::make_shared<PlotArguments>();
-  Command command = line.add_command("plot", "Draw what compare found: memory or time against accuracy");
-  command.add("DIR", arguments->folders, "one or more folders that compare wrote").required();
+  Command command = line.add_command("plot", "Draw what compare found: memory or time against error");
+  command.add("DIR", arguments->folders, "one or more folders that compare has written").required();
   command.add("-o,--output", arguments->output, "the picture: FILE.svg or FILE.png").required();
-  command.add("--kind", arguments->kind, "frontier: bytes per pixel and EMR; speed: ms and RMSE")
+  command
+      .add("--kind", arguments->kind,
+           "frontier: memory (bytes per pixel) and equivalent MSAA rate; speed: time (ms) and error (RMSE)")
       .one_of({"frontier", "speed"})
       .shows_default();
   command.footer(
-      "With several folders, the geometric mean over them of each technique that is in all. A triangle stands for a\n"
-      "bound: up where the EMR is at least, down where it is at most the value drawn.\n\n"
+      "Given several folders, it draws the geometric means of the techniques that are in all of them. A triangle marks "
+      "a\n"
+      "bound: the equivalent MSAA rate is at least (triangle up) or at most (triangle down) the value drawn. Needs "
+      "the\n"
+      "program gnuplot.\n\n"
       "Example:\n  beampipe plot out/fence out/maple -o frontier.svg");
   command.set_work([arguments, &gate] { plot(*arguments, gate); });
 }

@@ -1,4 +1,4 @@
-// beampipe report: the page, the plots and the tables of what run or compare left.
+// beampipe report: makes a page, plots and tables from the results of run or compare.
 
 #include <iostream>
 #include <memory>
@@ -19,7 +19,7 @@ struct ReportArguments {
   std::optional<std::size_t> frame;
 };
 
-// Where the frame with this index stands in the report.
+// The position in the report of the frame with this index in the trace.
 std::size_t position_of(const ReportFile& report, std::optional<std::size_t> frame) {
   if (!frame) return 0;
   const auto& frames = report.json.at("results").at(0).at("frames").elements();
@@ -42,7 +42,7 @@ void write_report(const ReportArguments& arguments, InterruptGate& gate) {
     output.write("report.html", page_html(report, tables, figures, layers));
     for (const Table& table : tables) output.write("tables/" + table.name + ".csv", csv_text(table));
   } catch (const JsonError& error) {
-    throw ReportError((report.folder / "report.json").string() + ": not a report that beampipe wrote: " + error.what());
+    throw ReportError((report.folder / "report.json").string() + ": not a report of beampipe: " + error.what());
   }
   output.keep();
   for (const Figure& figure : figures) {
@@ -61,12 +61,14 @@ void write_report(const ReportArguments& arguments, InterruptGate& gate) {
 
 void add_report_command(CommandLine& line, InterruptGate& gate) {
   const auto arguments = std::make_shared<ReportArguments>();
-  Command command = line.add_command("report", "Make a page for reading of what run or compare left");
-  command.add("DIR", arguments->folder, "the folder that run or compare wrote").required();
-  command.add("--frame", arguments->frame, "the frame whose pictures the page shows (default: the first)");
+  Command command =
+      line.add_command("report", "Make a page to read, with tables and plots, from the results of run or compare");
+  command.add("DIR", arguments->folder, "the folder that run or compare has written").required();
+  command.add("--frame", arguments->frame, "the frame whose pictures the page shows (default: the first one)");
   command.footer(
-      "Writes into DIR: report.html, one file with everything in it, to be opened in a browser; tables/*.csv, every\n"
-      "table of the page; plots/*.svg, every plot.\n\nExample:\n  beampipe compare fence.json -t beam msaa:8 -o out\n"
+      "Writes into DIR: report.html, a single file to open in a browser; tables/*.csv, the tables of the page; and\n"
+      "plots/*.svg, its plots (needs the program gnuplot).\n\nExample:\n  beampipe compare fence.json -t beam msaa:8 "
+      "-o out\n"
       "  beampipe report out");
   command.set_work([arguments, &gate] { write_report(*arguments, gate); });
 }

@@ -57,10 +57,13 @@ void run(const RunArguments& arguments, InterruptGate& gate) {
 
 void add_run_command(CommandLine& line, InterruptGate& gate) {
   const auto arguments = std::make_shared<RunArguments>();
-  Command command = line.add_command("run", "Render a trace: pictures, per-pixel counters, report.json");
+  Command command = line.add_command("run", "Render a trace: pictures, what every stage cost, times");
   add_run_arguments(command, *arguments);
-  command.footer("Example:\n  beampipe run fence.json -t beam msaa:1,8 --repeat 5 -o out\n\nTechniques:\n" +
-                 technique_help());
+  command.footer(
+      "Writes into the folder: a picture of each frame and technique (EXR and PNG), counters per pixel (EXR), and\n"
+      "report.json with the cost of every stage. `beampipe report` makes a page of it.\n\nExample:\n  beampipe run "
+      "fence.json -t beam msaa:1,8 --repeat 5 -o out\n\nTechniques:\n" +
+      technique_help());
   command.set_work([arguments, &gate] { run(*arguments, gate); });
 }
 

@@ -1,4 +1,4 @@
-// beampipe stress: hard cases against exact arithmetic.
+// beampipe stress: compares techniques with exact arithmetic in hard cases.
 
 #include <cmath>
 #include <cstdio>
@@ -48,7 +48,7 @@ struct StressArguments {
   bool heavy = false;
 };
 
-// "exact", "2^-12.3" or "nan"; with a star where the limit is not the format's, and a ! beyond the limit.
+// "exact", "2^-12.3" or "nan", with a star if the limit is larger than that of the format, and a ! beyond the limit.
 std::string cell_of(const Verdict& verdict) {
   char text[32] = "exact";
   if (std::isnan(verdict.error)) {
@@ -73,9 +73,9 @@ bool is_finite(const Trace& trace) {
   return true;
 }
 
-// For `run` and `compare`.
+// Saves the case as a trace for `run` and `compare`.
 void save_trace(const HardCase& hard_case, const std::filesystem::path& folder, InterruptGate& gate) {
-  if (!is_finite(hard_case.trace)) return;  // JSON has no such numbers
+  if (!is_finite(hard_case.trace)) return;  // JSON has no NaN and no infinity
   const std::filesystem::path file = folder / (hard_case.name + ".json");
   {
     const auto held = gate.hold();
@@ -85,7 +85,7 @@ void save_trace(const HardCase& hard_case, const std::filesystem::path& folder, 
   write_trace(hard_case.trace, file);
 }
 
-// Those that are named, or all. Throws UsageError for a name that no case has.
+// The cases that are named, or all. Throws UsageError if no case has a name.
 std::vector<HardCase> chosen_cases(const StressArguments& arguments) {
   std::vector<HardCase> cases = hard_cases(arguments.heavy);
   if (arguments.cases.empty()) return cases;
@@ -111,7 +111,7 @@ void stress(const StressArguments& arguments, InterruptGate& gate) {
                      hard_case.name + " with " + technique.spec, machine_memory());
   RunOptions options;
   options.threads = arguments.threads;
-  options.memory.modelled = false;  // pictures alone are judged
+  options.memory.modelled = false;  // only the pictures are compared
   std::vector<std::vector<std::string>> rows(1, {"case"});
   for (const Technique& technique : techniques) rows[0].push_back(technique.spec);
   std::vector<std::string> notes;
@@ -153,22 +153,22 @@ void stress(const StressArguments& arguments, InterruptGate& gate) {
 void add_stress_command(CommandLine& line, InterruptGate& gate) {
   const auto arguments = std::make_shared<StressArguments>();
   Command command =
-      line.add_command("stress", "Hold the techniques to exact arithmetic in cases that are hard on numbers");
-  command.add("-t,--technique", arguments->specs, "techniques (default: one or more of each kind)");
-  command.add("--case", arguments->cases, "only these cases (default: all)");
+      line.add_command("stress", "Compare techniques with exact arithmetic in cases that are numerically hard");
+  command.add("-t,--technique", arguments->specs, "the techniques (default: some of each kind)");
+  command.add("--case", arguments->cases, "run only these cases (default: all)");
   command.add("-o,--output", arguments->output,
-              "folder for stress.json, which has all errors and limits, and for the cases as traces (all but "
-              "not_finite: JSON has no such numbers)");
-  command.add("--threads", arguments->threads, "threads to use (default: all that the machine has)").between(1, 1024);
-  command.add_flag("--heavy", arguments->heavy,
-                   "also deep_pixel_1000000, a gigabyte and a minute, and widest_and_highest, 16384 x 16384 pixels: 5 "
-                   "to 9 GB and a minute or two for each technique (name them with -t: taa and dvm need 30 GB)");
+              "a folder for stress.json, which holds all errors and limits, and for the traces of the cases (except "
+              "not_finite, because JSON has no NaN and no infinity)");
+  command.add("--threads", arguments->threads, "the number of threads (default: one per processor core)")
+      .between(1, 1024);
+  command.add_flag(
+      "--heavy", arguments->heavy,
+      "add deep_pixel_1000000, which takes a gigabyte and a minute, and widest_and_highest with 16384 x 16384 pixels, "
+      "which takes 5 to 9 GB and a minute or two for each technique (taa and dvm need 30 GB: name others with -t)");
   command.footer(
-      "Each cell is the largest error over all pixels and R, G, B, A against rational arithmetic: of the areas, or, "
-      "for\n"
-      "techniques that sample, of their samples. *: more than fp16 rounding, for a stated reason. !: beyond the "
-      "stated\n"
-      "limit; then the exit code is 1.");
+      R"(Each cell of the table is the largest error over all pixels and R, G, B, A. Techniques that sample are compared with
+the exact values at their samples, all others with exact areas. A star (*) marks an error above the rounding of fp16
+that has a stated reason, and an exclamation mark (!) one above the stated limit; then the exit code is 1.)");
   command.set_work([arguments, &gate] { stress(*arguments, gate); });
 }
 

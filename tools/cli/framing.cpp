@@ -9,14 +9,14 @@
 namespace beampipe {
 namespace {
 
-// Part of the picture's half width and half height that the model may fill.
+// How much of the picture's half width and half height the model may fill.
 constexpr double kFill = 0.95;
 
 void require(bool condition, const char* message) {
   if (!condition) throw std::invalid_argument(message);
 }
 
-// The vertices that triangles use.
+// The vertices of all triangles.
 std::vector<glm::dvec3> used_vertices(const Mesh& mesh) {
   std::vector<glm::dvec3> vertices;
   for (const glm::uvec3& triangle : mesh.triangles) {
@@ -69,7 +69,7 @@ Camera frame_mesh(const Mesh& mesh, std::uint32_t width, std::uint32_t height, c
     distance = std::max(distance, glm::dot(offset, basis.back) + std::max(right / slope_x, up / slope_y));
   }
   camera.eye = wishes.eye.value_or(camera.target + distance * basis.back);
-  require(camera.eye != camera.target, "no view from --target on has the model in it; give --eye too");
+  require(camera.eye != camera.target, "no view from --target shows the model; give --eye too");
 
   double nearest = std::numeric_limits<double>::infinity(), farthest = -nearest;
   for (const glm::dvec3& vertex : vertices) {

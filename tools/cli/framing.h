@@ -1,4 +1,4 @@
-// A camera and a light for a mesh that comes without.
+// Chooses a camera and a light for a mesh that has none.
 #pragma once
 
 #include <glm/glm.hpp>
@@ -8,18 +8,19 @@
 
 namespace beampipe {
 
-// What the user fixed; the rest is chosen.
+// What the user has asked for; everything else is chosen.
 struct CameraWishes {
   std::optional<glm::dvec3> eye, target, up;
   std::optional<double> fovy_deg, near, far;
 };
 
-// A camera that looks at the middle of the mesh from the front right and a little above (y up, 36 degrees), from just
-// so far that all of it is in view; near and far enclose it. Throws std::invalid_argument, in one line, when the mesh
-// has no triangles or is a single point, all of it is behind the eye, or the wishes make no camera.
+// A camera that looks at the middle of the mesh from the front right and a little above, with y up and a vertical angle
+// of 36 degrees. It is just far enough away to see the whole mesh, and its near and far planes enclose the mesh. Throws
+// std::invalid_argument, one line, if the mesh has no triangles, is a single point or lies behind the eye, or if there
+// is no camera with these wishes.
 Camera frame_mesh(const Mesh& mesh, std::uint32_t width, std::uint32_t height, const CameraWishes& wishes);
 
-// Light that falls over the viewer's shoulder, from above and a little from the left.
+// The direction in which light travels that comes over the viewer's left shoulder, from above.
 glm::vec3 shoulder_light(const Camera& camera);
 
 }  // namespace beampipe

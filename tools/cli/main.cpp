@@ -17,20 +17,21 @@ namespace {
 constexpr int kRuntimeError = 1, kUsageError = 2;
 
 constexpr const char* kDescription =
-    "beampipe simulates the beam rasterization pipeline and the techniques it is judged against, stage by stage:\n"
-    "pictures, their error, and what every stage cost.";
+    "beampipe simulates the beam rasterization pipeline and other antialiasing techniques stage by stage. It tells "
+    "how\n"
+    "their pictures look, how wrong they are, and what every stage costs.";
 
 constexpr const char* kExamples = R"(Examples:
   beampipe make fence -o fence.json
   beampipe compare fence.json -t beam msaa:8 -o out
-  beampipe make model.obj -o model.json        (your own model, with a camera that frames it)
+  beampipe make model.obj -o model.json        (your own model; the camera is chosen to show all of it)
   beampipe run model.json -t beam -o out
-  beampipe report out                          (a page of it all, to open in a browser)
+  beampipe report out                          (makes out/report.html, to open in a browser)
   beampipe plot out -o frontier.svg
   beampipe diff out/beam/frame_0000.exr out/reference/frame_0000.exr
-`beampipe COMMAND --help` tells more. Exit codes: 0 done, 1 could not be done, 2 wrong usage, 130 interrupted.)";
+`beampipe COMMAND --help` explains a command. Exit codes: 0 success, 1 failure, 2 wrong usage, 130 interrupted.)";
 
-// Errors are one line whatever file names and libraries put into them.
+// Prints the message as one line, whatever characters file names and libraries have put into it.
 int report_error(std::string message, int exit_code) {
   for (char& c : message) {
     if (static_cast<unsigned char>(c) < 0x20 || c == 0x7F) c = ' ';
@@ -39,8 +40,8 @@ int report_error(std::string message, int exit_code) {
   return exit_code;
 }
 
-// Each frame takes and frees the same memory. By default glibc gives large blocks back at once, and the next frame pays
-// for every page of them again: a third of vertex_setup's time.
+// Each frame allocates and frees the same memory. By default glibc returns large blocks to the system at once, and the
+// next frame gets every page of them anew. That took a third of the time of vertex_setup.
 void keep_freed_memory() {
   constexpr int kLargest = 1 << 30;  // bytes
   mallopt(M_MMAP_THRESHOLD, kLargest);
@@ -69,7 +70,7 @@ int run(int argc, char** argv, beampipe::InterruptGate& gate) {
 }  // namespace
 
 int main(int argc, char** argv) {
-  std::signal(SIGXFSZ, SIG_IGN);  // a file size limit is an error of writing, not the end
+  std::signal(SIGXFSZ, SIG_IGN);  // exceeding a file size limit must be a write error, not the end of the program
   beampipe::InterruptGate gate;
   try {
     return run(argc, argv, gate);

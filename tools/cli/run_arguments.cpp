@@ -16,7 +16,7 @@ namespace beampipe {
 
 namespace {
 
-// What follows -t is taken for techniques, even if it is a trace.
+// If the trace follows -t, it is taken for a technique; the message then says so.
 void require_trace(const RunArguments& arguments) {
   if (!arguments.trace.empty()) return;
   std::string hint;
@@ -28,35 +28,46 @@ void require_trace(const RunArguments& arguments) {
 }  // namespace
 
 void add_run_arguments(Command& command, RunArguments& arguments) {
-  command.add("TRACE", arguments.trace, "the trace to render (JSON)");
-  command.add("-t,--technique", arguments.specs, "one or more techniques; may be repeated (list below)").required();
-  command.add("-o,--output", arguments.output, "folder for pictures and report.json; made if need be").required();
-  command.add("--frames", arguments.frames, "only frames A-B of the trace, counted from 0 (default: all)");
-  command.add("--threads", arguments.threads, "threads to use (default: all that the machine has)").between(1, 1024);
-  command.add("--simd", arguments.simd, "instruction set to use; the results are the same (default: the first here)")
+  command.add("TRACE", arguments.trace, "the trace to render, a JSON file (`beampipe make` makes one)");
+  command
+      .add("-t,--technique", arguments.specs,
+           "one or more techniques, from the list below; this option may be repeated")
+      .required();
+  command.add("-o,--output", arguments.output, "the folder for pictures and report.json; it is created if necessary")
+      .required();
+  command.add("--frames", arguments.frames,
+              "render only frames A-B of the trace, or frame A; the first frame is 0 (default: all)");
+  command.add("--threads", arguments.threads, "the number of threads (default: one per processor core)")
+      .between(1, 1024);
+  command
+      .add("--simd", arguments.simd, "the instruction set; results do not depend on it (default: the first one here)")
       .one_of(simd_targets());
   command
       .add("--memory-limit", arguments.memory_limit,
-           "for what is kept per triangle and pixel, such as 512MB: a frame that needs more is rendered in bands, with "
-           "the same results (default: half of the machine's memory)")
+           "the most memory for data of triangles and pixels, such as 512MB. A frame that needs more is rendered in "
+           "bands, "
+           "one after the other, with the same results (default: half of the machine's memory)")
       .bytes()
       .between(std::uint64_t{1} << 20, std::uint64_t{1} << 50);
   command
       .add("--repeat", arguments.repeat,
-           "times to render each frame, for steadier times (default: 1; above it, times are without the memory model, "
-           "which one more rendering is for)")
+           "render each frame so many times and report the median time (default: 1). With more than one, the times do "
+           "not "
+           "include modelling memory, which one additional run does")
       .between(1, 1000000);
   command.add_flag("--resume", arguments.resume,
-                   "go on after the last whole frame that the same command left in the folder when it was stopped");
+                   "continue a stopped run: keep the finished frames that the same command left in the folder");
   command.add("--hardware", arguments.hardware,
-              "description of the hardware whose times are modelled (default: one of Titan V class)");
-  command.add("--trace-events", arguments.trace_events,
-              "file, outside the output folder, for a timeline of stages per tile and thread, for ui.perfetto.dev "
-              "(JSON)");
-  command.add_flag("--no-memory-model", arguments.no_memory_model,
-                   "do not model caches: frames are faster, sector_bytes and dram_bytes are 0");
-  command.add_flag("--no-compression", arguments.no_compression, "model memory without block compression");
-  command.add_flag("--allow-outside", arguments.allow_outside, "let the trace name meshes outside its own folder");
+              "a file that describes the hardware whose times are modelled (default: a GPU of the class of Titan V)");
+  command.add(
+      "--trace-events", arguments.trace_events,
+      "write a timeline of the stages per tile and thread to this file, which must be outside the output folder; "
+      "ui.perfetto.dev shows it");
+  command.add_flag(
+      "--no-memory-model", arguments.no_memory_model,
+      "do not model caches and DRAM: rendering is faster, and sector_bytes, l2_bytes and dram_bytes are 0");
+  command.add_flag("--no-compression", arguments.no_compression, "model memory without the compression of blocks");
+  command.add_flag("--allow-outside", arguments.allow_outside, "allow the trace to name meshes outside its own folder");
 }
 
 RunPlan make_plan(const RunArguments& arguments) {

@@ -10,29 +10,30 @@
 
 namespace beampipe {
 
-// As the user wrote them.
+// The arguments as the user wrote them.
 struct RunArguments {
   std::string trace, output, frames, hardware, trace_events;
   std::vector<std::string> specs;
-  std::string simd;                // empty: the best
+  std::string simd;                // empty: the best one that this machine has
   std::uint64_t memory_limit = 0;  // bytes; 0: the default
   int threads = 0, repeat = 1;
   bool allow_outside = false, no_memory_model = false, no_compression = false, resume = false;
 };
 
+// `arguments` must live until the command line is parsed.
 void add_run_arguments(Command& command, RunArguments& arguments);
 
-// Also chooses the instruction set. Throws UsageError, SpecError, TraceError, or std::runtime_error where a frame
-// needs more memory than the machine has.
+// Reads the trace and chooses the instruction set. Throws UsageError, SpecError, TraceError, or std::runtime_error if a
+// frame needs more memory than the machine has.
 RunPlan make_plan(const RunArguments& arguments);
 
 // "A-B" or "A", counted from 0, both ends included. Throws UsageError unless A <= B < frames.
 std::vector<std::size_t> parse_frame_range(const std::string& text, std::size_t frames);
 
-// "msaa:1,8,32" stands for the three specs msaa:1, msaa:8 and msaa:32; every other spec for itself.
+// Replaces "msaa:1,8,32" by the three specs msaa:1, msaa:8 and msaa:32, and keeps all other specs.
 std::vector<std::string> expand_specs(const std::vector<std::string>& specs);
 
-// Throws UsageError when a spec is there twice, or two specs have the same folder; SpecError when one is unknown.
+// Throws UsageError if a spec is given twice or two specs have the same folder, and SpecError if one is unknown.
 std::vector<Technique> parse_techniques(const std::vector<std::string>& specs);
 
 }  // namespace beampipe

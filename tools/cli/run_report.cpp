@@ -11,16 +11,17 @@ namespace beampipe {
 void tell_resumption(const RunPlan& plan, std::size_t finished_frames) {
   if (finished_frames == 0 || finished_frames == plan.frames.size()) return;
   std::string text = "beampipe: " + std::to_string(finished_frames) + " of " + std::to_string(plan.frames.size()) +
-                     " frames are there; going on at frame " + std::to_string(plan.frames[finished_frames]);
+                     " frames are finished; continuing with frame " + std::to_string(plan.frames[finished_frames]);
   std::string accumulating;
   for (const Technique& technique : plan.techniques)
     if (technique.keeps_history) accumulating += (accumulating.empty() ? "" : ", ") + technique.spec;
-  if (!accumulating.empty()) text += " (" + accumulating + ": earlier frames are rendered again for their history)";
+  if (!accumulating.empty())
+    text += " (" + accumulating + ": earlier frames are rendered again, because the next ones depend on them)";
   std::cerr << text << std::endl;
 }
 
 void tell_finished(const OutputFolder& output) {
-  std::cout << "finished already\nreport: " << (output.path() / "report.json").string() << "\n";
+  std::cout << "already finished\nreport: " << (output.path() / "report.json").string() << "\n";
 }
 
 void finish_report(OutputFolder& output, const Report& report) {

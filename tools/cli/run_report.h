@@ -9,11 +9,12 @@
 
 namespace beampipe {
 
-// What --resume found: how many frames are done, on stderr; that none is left to do, on stdout.
+// Messages of --resume: which frame comes next (stderr; nothing if all or none are finished), and that the whole run is
+// already finished (stdout).
 void tell_resumption(const RunPlan& plan, std::size_t finished_frames);
 void tell_finished(const OutputFolder& output);
 
-// Writes report.json, removes the records of single frames and prints the table.
+// Writes report.json, removes the records of the frames and prints the tables.
 void finish_report(OutputFolder& output, const Report& report);
 
 }  // namespace beampipe

@@ -62,8 +62,7 @@ TraceEvents::TraceEvents(const RunArguments& arguments, RunPlan& plan) {
   if (std::error_code none; fs::equivalent(file_, arguments.trace, none))
     throw UsageError(option + " is the trace itself");
   const fs::path from_output = file_.lexically_relative(fs::weakly_canonical(fs::current_path() / arguments.output));
-  if (*from_output.begin() != "..")
-    throw UsageError(option + " is in the output folder, among what is made there: expected a file beside it");
+  if (*from_output.begin() != "..") throw UsageError(option + " is in the output folder: expected a file outside it");
   plan.options.timeline = &timeline_;
 }
 

@@ -1,4 +1,4 @@
-// A timeline as a file for ui.perfetto.dev or chrome://tracing (the Trace Event Format, JSON).
+// Writes a timeline of stages in the Trace Event Format (JSON), which ui.perfetto.dev and chrome://tracing show.
 #pragma once
 
 #include <filesystem>
@@ -10,14 +10,15 @@
 
 namespace beampipe {
 
-// Each event is a slice on its thread, named after the stage and told its tile; times are microseconds since the first.
+// Each event becomes a slice of its thread, with the name of the stage and the tile. Times are in microseconds since
+// the first event.
 std::string trace_events_json(const Timeline& timeline);
 
-// What --trace-events asks for; nothing when it was not given.
+// What --trace-events asks for. Does nothing if the option was not given.
 class TraceEvents {
  public:
-  // Lets the plan record its stages here. Throws, one line, before anything is rendered: UsageError when the file is
-  // the trace or in the output folder, std::runtime_error unless it can be written.
+  // Makes the plan record its stages here. Throws UsageError if the file is the trace or lies in the output folder, and
+  // std::runtime_error, one line, if it cannot be written.
   TraceEvents(const RunArguments& arguments, RunPlan& plan);
   TraceEvents(const TraceEvents&) = delete;
   TraceEvents& operator=(const TraceEvents&) = delete;

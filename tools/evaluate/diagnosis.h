@@ -1,5 +1,5 @@
-// What compare finds out beyond the error itself, when it is asked to: causes of error, and how much the order of the
-// triangles matters.
+// What `compare` can find out beyond the error itself: the causes of errors (--causes), and how much pictures depend on
+// the order of the triangles (--orders).
 #pragma once
 
 #include <map>
@@ -14,20 +14,20 @@
 
 namespace beampipe {
 
-// The parts of the mean square error that causes have, pooled over frames.
+// How much each cause contributes to the mean square error, pooled over frames.
 class CauseShares {
  public:
   CauseShares();
 
-  // Splits the frame's error (pipeline/error_causes.h), and adds one layer per cause, "cause_leak" and so on, to the
-  // result's counters. Nothing where the technique does not tell its weights.
+  // Splits the frame's error by cause (pipeline/error_causes.h) and adds one layer per cause ("cause_leak", ...) to the
+  // result's per-pixel counters. Does nothing if the technique does not report weights.
   void add(const Technique& technique, const RunPlan& plan, std::size_t frame, const Image& reference,
            FrameResult& result);
 
-  // In the order of kErrorCauses; they add up to 1. Empty when nothing was added or there is no error.
+  // The shares in the order of kErrorCauses; they add up to 1. Empty if nothing was added or there is no error.
   std::vector<std::pair<std::string, double>> shares() const;
 
-  // What was added so far, to go on from there.
+  // The sums so far, as JSON: saved and restored to continue a stopped run.
   Json sums() const;
   void set_sums(const Json& sums);
 
@@ -36,29 +36,29 @@ class CauseShares {
   double all_squares_ = 0;
 };
 
-// Renders frames with their triangles in each TriangleOrder, every picture against the reference of the same order:
-// at equal depth the earlier triangle wins, so that faces which coincide look different in the reference too.
+// Renders frames with their triangles in each TriangleOrder and compares every picture with the reference in the same
+// order. (The order also matters to the reference: at equal depth the earlier triangle wins.)
 class OrderComparison {
  public:
   explicit OrderComparison(std::vector<Technique> techniques);
 
   void add(const Technique& reference, const RunPlan& plan, std::size_t frame, Progress& progress);
 
-  // Of technique i: fills `orders` and `order_difference`.
+  // Fills `orders` and `order_difference` of technique i.
   void report(std::size_t i, TechniqueReport& report) const;
 
-  // What was added so far, to go on from there.
+  // The sums so far, as JSON: saved and restored to continue a stopped run.
   Json sums() const;
   void set_sums(const Json& sums);
 
  private:
   struct Sums {
-    std::vector<double> errors;       // per order: of squared errors
-    std::vector<double> differences;  // per pair of orders: of squared differences
+    std::vector<double> errors;       // for each order, the sum of squared errors
+    std::vector<double> differences;  // for each pair of orders, the sum of squared differences
   };
   std::vector<Technique> techniques_;
   std::vector<Sums> sums_;
-  double values_ = 0;  // that each sum is over
+  double values_ = 0;  // the number of values in each sum
 };
 
 }  // namespace beampipe

@@ -12,7 +12,7 @@
 namespace beampipe {
 namespace {
 
-// What a unit has to do for a stage, in clocks.
+// The clocks that a unit needs for the work of a stage.
 using Clocks = std::function<double(const std::map<std::string, double>& rates, const StageCounters& stage)>;
 
 double over(std::uint64_t work, double rate) { return static_cast<double>(work) / rate; }
@@ -26,7 +26,7 @@ const std::map<std::string, Clocks>& units() {
        [](const Rates& rates, const StageCounters& s) { return over(s.items_out, rates.at("raster_pixels_per_clk")); }},
       {"conservative_raster",
        [](const Rates& rates, const StageCounters& s) {
-         return over(s.lanes_used, rates.at("conservative_pixels_per_clk"));  // touched, hidden ones too
+         return over(s.lanes_used, rates.at("conservative_pixels_per_clk"));  // touched pixels, hidden ones included
        }},
       {"quads",
        [](const Rates& rates, const StageCounters& s) { return over(s.lanes_issued, 4 * rates.at("quads_per_clk")); }},

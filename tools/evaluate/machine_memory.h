@@ -1,4 +1,4 @@
-// What a frame needs of the machine's memory, known before any is taken.
+// Checks before rendering that a frame fits into the machine's memory.
 #pragma once
 
 #include <cstdint>
@@ -10,9 +10,9 @@ namespace beampipe {
 
 std::uint64_t machine_memory();  // bytes
 
-// Throws std::runtime_error, in a line that starts with `name`, where the frame's pixels, of so many bytes each, and
-// its triangles, all of them in view, take more than `memory` bytes. (The system grants memory that it does not have,
-// and ends the program when that is used.)
+// Throws std::runtime_error, one line that starts with `name`, if the frame may need more than `memory` bytes: so many
+// bytes for each pixel, and those of all its triangles, as if all were in view. Without this check the system would
+// grant memory that it does not have, and kill the program when it is used.
 void require_memory(const Trace& trace, const Frame& frame, std::uint32_t bytes_per_pixel, const std::string& name,
                     std::uint64_t memory);
 

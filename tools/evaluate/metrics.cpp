@@ -24,7 +24,7 @@ double difference(const Image& image, const Image& reference, std::size_t value)
   return static_cast<double>(image.rgba[value]) - static_cast<double>(reference.rgba[value]);
 }
 
-// How many of n values have to be kept for p99: those from rank ceil(0.99 n) = n - floor(n / 100) up.
+// The number of values, out of n, from the rank of p99 to the last: that rank is ceil(0.99 n) = n - floor(n / 100).
 std::uint64_t values_from_p99_up(std::uint64_t n) { return n / 100 + 1; }
 
 }  // namespace
@@ -62,9 +62,10 @@ void ErrorAccumulator::add(const Image& image, const Image& reference) {
 }
 
 ErrorStats ErrorAccumulator::stats() const {
-  if (count_ != expected_) throw std::logic_error("error statistics: not the number of pixels that was announced");
+  if (count_ != expected_)
+    throw std::logic_error("error statistics: the number of pixels added is not the number announced");
   if (count_ == 0) return {};
-  // What is kept are exactly the values from p99's rank up.
+  // The stored values are exactly those from the rank of p99 to the last.
   const auto [p99, max] = std::minmax_element(largest_.begin(), largest_.end());
   const double n = static_cast<double>(count_);
   return {std::sqrt(sum_of_squares_ / n), sum_ / n, *p99, *max};
@@ -99,12 +100,12 @@ std::vector<float> signed_errors(const Image& image, const Image& reference) {
   return errors;
 }
 
-double flicker(const std::vector<float>& errors_before, const std::vector<float>& errors) {
-  if (errors_before.size() != errors.size())
+double flicker(const std::vector<float>& previous_errors, const std::vector<float>& errors) {
+  if (previous_errors.size() != errors.size())
     throw std::invalid_argument("two frames of different sizes do not flicker");
   double squares = 0;
   for (std::size_t i = 0; i < errors.size(); ++i) {
-    const double change = double{errors[i]} - errors_before[i];
+    const double change = double{errors[i]} - previous_errors[i];
     squares += change * change;
   }
   return errors.empty() ? 0.0 : std::sqrt(squares / static_cast<double>(errors.size()));
@@ -121,12 +122,12 @@ EquivalentMsaa equivalent_msaa(double rmse, const std::vector<LadderRung>& ladde
   if (rmse == before.rmse) return {static_cast<double>(before.samples), false, false};
   for (const LadderRung& rung : ladder) {
     if (rung.rmse >= before.rmse) {
-      if (rung.samples > before.samples) before.samples = rung.samples;  // the curve is level up to here
+      if (rung.samples > before.samples) before.samples = rung.samples;  // the curve is flat up to this rung
       continue;
     }
     if (rung.rmse == rmse) return {static_cast<double>(rung.samples), false, false};
     if (rung.rmse < rmse) {
-      const double part = std::log(before.rmse / rmse) / std::log(before.rmse / rung.rmse);  // 0 when rung.rmse is 0
+      const double part = std::log(before.rmse / rmse) / std::log(before.rmse / rung.rmse);  // 0 if rung.rmse is 0
       const double n0 = before.samples, n1 = rung.samples;
       return {n0 * std::pow(n1 / n0, part), false, false};
     }

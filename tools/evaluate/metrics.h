@@ -8,65 +8,67 @@
 
 namespace beampipe {
 
-// Of the differences image - reference over R, G, B of all pixels, in linear light. A (coverage) does not count.
+// Statistics of the differences image - reference, over R, G and B of all pixels, in linear light. Alpha is ignored.
 struct ErrorStats {
-  double rmse = 0;  // root of the mean square
-  double bias = 0;  // mean, signed
-  double p99 = 0;   // of the n absolute values in rising order, the one at rank ceil(0.99 n), counted from 1
+  double rmse = 0;  // root mean square
+  double bias = 0;  // mean of the signed differences
+  double p99 = 0;   // 99th percentile of the n absolute values: the one at rank ceil(0.99 n), counted from 1
   double max = 0;   // largest absolute value
   bool operator==(const ErrorStats&) const = default;
 };
 
-// Pools the errors of several frames as if they were one picture. Sums are taken in double precision, row by row in
-// order, so that the result is the same everywhere. Keeps about 1 % of the values: those that p99 can still depend on.
+// Pools the errors of several frames as if they were one picture. It adds up doubles row by row, in a fixed order, so
+// that the result is the same on every machine. It stores about 1 % of the values, which is what p99 needs.
 class ErrorAccumulator {
  public:
-  // `pixels`: how many will be added in all frames together.
+  // `pixels` is the number of pixels in all frames that will be added.
   explicit ErrorAccumulator(std::uint64_t pixels);
 
-  // Throws std::invalid_argument when the sizes differ, and std::runtime_error naming the pixel when a value is not
+  // Throws std::invalid_argument if the sizes differ, and std::runtime_error, which names the pixel, if a value is not
   // finite.
   void add(const Image& image, const Image& reference);
 
-  // Zero when no pixel was announced. Throws std::logic_error unless exactly the announced pixels were added.
+  // All zero if `pixels` was 0. Throws std::logic_error unless exactly that many pixels were added.
   ErrorStats stats() const;
 
  private:
-  std::uint64_t expected_ = 0, count_ = 0;  // values: three per pixel
+  std::uint64_t expected_ = 0, count_ = 0;  // values, three per pixel
   double sum_ = 0, sum_of_squares_ = 0;
-  std::vector<double> largest_;  // the floor(expected / 100) + 1 largest absolute errors so far, in no order
+  std::vector<double> largest_;  // the floor(expected / 100) + 1 largest absolute errors so far, unordered
 };
 
-// Of one picture; throws as ErrorAccumulator::add does.
+// The errors of one picture. Throws as ErrorAccumulator::add does.
 ErrorStats measure_error(const Image& image, const Image& reference);
 
-// Per pixel, the root of the mean square of the three channels' errors. Throws std::invalid_argument when sizes differ.
+// For each pixel, the root mean square of the errors in its three channels. Throws std::invalid_argument if the sizes
+// differ.
 std::vector<float> pixel_errors(const Image& image, const Image& reference);
 
-// image - reference of R, G, B, three values per pixel. Throws std::invalid_argument when sizes differ.
+// image - reference, three values per pixel: R, G and B. Throws std::invalid_argument if the sizes differ.
 std::vector<float> signed_errors(const Image& image, const Image& reference);
 
-// By how much the errors of two frames in a row differ, pixel by pixel: the root of the mean square. What changes in
-// the reference too does not count. Throws std::invalid_argument when the numbers of values differ.
-double flicker(const std::vector<float>& errors_before, const std::vector<float>& errors);
+// The root mean square of the change of the error from one frame to the next, over all values of signed_errors. A
+// change that the reference shows too is no flicker. Throws std::invalid_argument if the numbers of values differ.
+double flicker(const std::vector<float>& previous_errors, const std::vector<float>& errors);
 
-// A rung of the MSAA ladder: msaa:samples was measured to have this RMSE.
+// A rung of the MSAA ladder: the measured RMSE of msaa:samples.
 struct LadderRung {
   std::uint32_t samples = 0;
   double rmse = 0;
 };
 
+// An equivalent MSAA rate (EMR).
 struct EquivalentMsaa {
   double samples = 0;
-  bool is_lower_bound = false;  // better than the last rung: `samples` is the last rung's
-  bool is_upper_bound = false;  // worse than the first rung: `samples` is the first rung's
+  bool is_lower_bound = false;  // the error is below that of the last rung, whose samples these are
+  bool is_upper_bound = false;  // the error is above that of the first rung, whose samples these are
   bool operator==(const EquivalentMsaa&) const = default;
 };
 
-// The smallest N at which MSAA has this RMSE. The curve of MSAA is the running minimum of the measured RMSE over N, so
-// that it never rises, and is straight between rungs in log N and log RMSE. (Towards a rung with RMSE 0 such a line
-// falls at once: any RMSE between is worth the rung before.) Throws std::invalid_argument when the ladder is empty or
-// not rising.
+// The smallest N at which MSAA has this RMSE. The RMSE of MSAA as a function of N is the running minimum over the
+// rungs, so that it never rises, with straight lines between the rungs in log N and log RMSE. (A line to a rung with
+// RMSE 0 falls at once, so any RMSE in between has the N of the rung before it.) Throws std::invalid_argument if the
+// ladder is empty or its sample counts do not rise.
 EquivalentMsaa equivalent_msaa(double rmse, const std::vector<LadderRung>& ladder);
 
 // The lowest RMSE on the ladder.

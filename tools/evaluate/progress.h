@@ -1,4 +1,4 @@
-// What the program is doing, on one line of a terminal.
+// A line on the terminal that says what the program is doing.
 #pragma once
 
 #include <condition_variable>
@@ -8,8 +8,8 @@
 
 namespace beampipe {
 
-// Shows the latest text and the seconds since its own construction on stderr, from the second second on; erases it when
-// destroyed. Silent when stderr is not a terminal.
+// Shows the latest text on stderr, with the seconds since construction, after the first second. The destructor erases
+// the line. If stderr is not a terminal, nothing is shown.
 class Progress {
  public:
   Progress();
@@ -26,7 +26,7 @@ class Progress {
   std::condition_variable closed_;
   bool closing_ = false;
   std::string text_;
-  std::thread ticker_;  // none when silent
+  std::thread ticker_;  // not started if stderr is not a terminal
 };
 
 }  // namespace beampipe

@@ -11,14 +11,14 @@
 namespace beampipe {
 namespace {
 
-// "frame 7 (3 of 5): ", or nothing when there is only one.
+// "frame 7 (3 of 5): ", or "" if there is only one frame.
 std::string frame_text(const RunPlan& plan, std::size_t frame) {
   if (plan.frames.size() == 1) return "";
   return "frame " + std::to_string(frame) + " (" + std::to_string(frame - plan.frames.front() + 1) + " of " +
          std::to_string(plan.frames.size()) + "): ";
 }
 
-// Renders; `milliseconds` becomes the wall time.
+// Renders a frame; `milliseconds` becomes the wall time.
 FrameResult render_timed(const Technique& technique, const RunPlan& plan, std::size_t frame, Progress& progress,
                          bool model_memory, History* history, double& milliseconds) {
   RunOptions options = plan.options;
@@ -63,11 +63,11 @@ std::vector<WallTime> render_frame(const RunPlan& plan, std::size_t frame, Progr
 
 std::vector<History> rebuild_histories(const RunPlan& plan, std::size_t frames, Progress& progress) {
   std::vector<History> histories(plan.techniques.size());
-  double milliseconds = 0;  // nobody asks
+  double ignored_milliseconds = 0;
   for (std::size_t i = 0; i < plan.techniques.size(); ++i) {
     if (!plan.techniques[i].keeps_history) continue;
     for (std::size_t at = 0; at < frames; ++at)
-      render_timed(plan.techniques[i], plan, plan.frames[at], progress, false, &histories[i], milliseconds);
+      render_timed(plan.techniques[i], plan, plan.frames[at], progress, false, &histories[i], ignored_milliseconds);
   }
   return histories;
 }
@@ -89,6 +89,14 @@ Image render_picture(const Technique& technique, const RunPlan& plan, std::size_
   return render_timed(technique, plan, frame, progress, false, nullptr, milliseconds).image;
 }
 
+ErrorStats measure_named_error(const std::string& spec, std::size_t frame, const Image& image, const Image& reference) {
+  try {
+    return measure_error(image, reference);
+  } catch (const std::exception& error) {
+    throw std::runtime_error(spec + ", frame " + std::to_string(frame) + ": " + error.what());
+  }
+}
+
 FrameReport write_frame(OutputFolder& output, const std::string& spec, std::size_t frame, const FrameResult& result,
                         const Image* reference) {
   const std::string stem = frame_stem(spec, frame);
@@ -102,11 +110,11 @@ FrameReport write_frame(OutputFolder& output, const std::string& spec, std::size
   report.pixels = std::uint64_t{result.image.width} * result.image.height;
   Planes counters{result.image.width, result.image.height, result.pixel_counters};
   if (reference) {
-    report.error = measure_error(result.image, *reference);
+    report.error = measure_named_error(spec, frame, result.image, *reference);
     counters.channels["error"] = pixel_errors(result.image, *reference);
   }
   for (const auto& [name, values] : counters.channels) report.pixel_counters[name] = measure_counter(values);
-  // Earlier ones would speak of pictures that are no longer there.
+  // An older report or record would describe pictures that no longer exist.
   output.write(report.image, encode_exr(result.image), {"report.json", frame_record_name(frame)});
   output.write(report.picture, encode_png(result.image));
   if (!counters.channels.empty()) {

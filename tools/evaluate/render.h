@@ -1,4 +1,4 @@
-// Rendering frames with several techniques, timing them, and writing what comes out.
+// Renders frames with several techniques, times them, and writes the results.
 #pragma once
 
 #include <functional>
@@ -13,34 +13,38 @@
 
 namespace beampipe {
 
-// Renders one frame with every technique of the plan, plan.repeat times, one technique after the other (A B A B ...) so
-// that a slow moment of the machine does not fall on one alone. Where memory is modelled and there is more than one
-// run, one more comes first, for the counts, and those that are timed model nothing. The first result of each is handed
-// to `use` at once and then freed, so that memory holds one result at a time. `histories`, one per technique, are what
-// earlier frames left, and then what this one leaves; every run starts from the same. Returns the times, one per
-// technique.
+// Renders one frame plan.repeat times with every technique of the plan. Techniques take turns (A B A B ...), so that a
+// slow moment of the machine does not affect one of them alone. If the plan models memory and repeats frames, one more
+// run comes first, which models memory; the timed runs then model nothing. The first result of each technique goes to
+// `use` and is freed at once, so that only one result is in memory at a time. `histories` has one entry per technique:
+// at the start what earlier frames left, at the end what this frame leaves; every run starts from the former. Returns
+// the times, one per technique.
 std::vector<WallTime> render_frame(const RunPlan& plan, std::size_t frame, Progress& progress,
                                    std::vector<History>& histories,
                                    const std::function<void(std::size_t technique, FrameResult&&)>& use);
 
-// What the plan's first `frames` frames leave for the next: renders them again with the techniques that keep a history.
+// The histories after the plan's first `frames` frames. Renders those frames again with the techniques that keep one.
 std::vector<History> rebuild_histories(const RunPlan& plan, std::size_t frames, Progress& progress);
 
-// Renders with one technique, once.
+// Renders a frame once with one technique. If `time` is not null, it becomes the time that this took.
 FrameResult render_once(const Technique& technique, const RunPlan& plan, std::size_t frame, Progress& progress,
                         WallTime* time = nullptr);
 
-// The same for the picture alone: memory is not modelled.
+// Renders only a picture, without modelling memory.
 Image render_picture(const Technique& technique, const RunPlan& plan, std::size_t frame, Progress& progress);
 
-// Writes a frame's image, its picture and, if there are any, its per-pixel counters into the technique's folder;
-// returns the report, still without times. With a reference, the image's error is in the report and in a counter named
-// `error`. Throws OutputError, and as measure_error does before anything is written.
+// As measure_error, but what it throws says which technique and frame it is about.
+ErrorStats measure_named_error(const std::string& spec, std::size_t frame, const Image& image, const Image& reference);
+
+// Writes a frame's image (EXR), its picture (PNG) and its per-pixel counters, if there are any, into the technique's
+// folder. Returns the frame's report, which lacks the times. If `reference` is not null, the error of the image is in
+// the report and in a counter named `error`. Throws as OutputFolder::write does and, before anything is written, as
+// measure_named_error does.
 FrameReport write_frame(OutputFolder& output, const std::string& spec, std::size_t frame, const FrameResult& result,
                         const Image* reference);
 
-// Throws std::runtime_error, one line, unless every technique's folder, that of the frames' records and report.json can
-// be written.
+// Throws std::runtime_error, one line, unless report.json, the folder of every technique and the folder of frame
+// records can be written.
 void require_writable_folders(const OutputFolder& output, const std::vector<Technique>& techniques);
 
 // The parts of a report that are known before rendering.

@@ -15,20 +15,21 @@
 
 namespace beampipe {
 
-// Of the runs of one technique on one frame, in milliseconds. With an even number of runs the median is the mean of the
-// two in the middle.
+// How long one technique takes for one frame, in milliseconds, over several runs. If the number of runs is even, the
+// median is the mean of the two in the middle.
 struct WallTime {
   double median = 0, min = 0, max = 0;
   int runs = 0;
-  bool with_memory_model = false;  // the runs also modelled caches and DRAM
-  // What one rendering more took, which did, and which all counts are from. None: the runs themselves did, or nothing.
+  bool with_memory_model = false;  // the timed runs also modelled caches and DRAM
+  // The time of one additional run, which modelled memory and gave all counts. None if the timed runs model memory
+  // themselves, or if memory is not modelled.
   std::optional<double> modelling_run = {};
 };
 
-// Throws std::invalid_argument when there is none.
+// Throws std::invalid_argument if there is no run.
 WallTime wall_time(std::vector<double> milliseconds);
 
-// Of one counter, over the pixels of a frame.
+// Statistics of one counter over the pixels of a frame.
 struct PixelCounterStats {
   double mean = 0, max = 0;
 };
@@ -38,13 +39,13 @@ PixelCounterStats measure_counter(const std::vector<float>& values);
 struct FrameReport {
   std::size_t index = 0;  // in the trace
   std::string image;      // paths are relative to the report's folder
-  std::string picture;    // the image tonemapped, as PNG
-  std::string counters;   // empty: none were written
+  std::string picture;    // the image as PNG, for looking at
+  std::string counters;   // per-pixel counters; empty if none were written
   std::optional<ErrorStats> error;
-  std::optional<double> flicker;  // of the error, since the frame before
+  std::optional<double> flicker;  // change of the error since the previous frame
   WallTime wall_ms;
   std::uint64_t a_buffer_peak_bytes = 0;
-  std::vector<Buffer> buffers;  // all but the A-buffer
+  std::vector<Buffer> buffers;  // all except the A-buffer and the framebuffer
   std::vector<StageCounters> stages;
   std::map<std::string, PixelCounterStats> pixel_counters;  // by name
   std::uint64_t pixels = 0;
@@ -53,7 +54,7 @@ struct FrameReport {
 // The same frames with their triangles in another order.
 struct OrderReport {
   std::string order;  // "given", "shuffled", ...
-  double rmse = 0;    // against the reference of the same order
+  double rmse = 0;    // against the reference in the same order
 };
 
 struct TechniqueReport {
@@ -63,12 +64,13 @@ struct TechniqueReport {
   std::optional<ErrorStats> error;  // pooled over the frames
   std::optional<EquivalentMsaa> equivalent_msaa;
   std::vector<FrameReport> frames;
-  std::optional<double> flicker;                       // pooled over the frames but the first
-  std::vector<std::pair<std::string, double>> causes;  // part of the mean square error, by cause; empty: not asked for
-  std::vector<OrderReport> orders;                     // empty: not asked for
-  double order_difference = 0;  // RMS between the pictures of the two orders that differ the most
+  std::optional<double> flicker;  // pooled over all frames except the first
+  std::vector<std::pair<std::string, double>>
+      causes;                       // share of the mean square error by cause; empty without --causes
+  std::vector<OrderReport> orders;  // empty without --orders
+  double order_difference = 0;      // RMS difference between the two orders whose pictures differ most
 
-  // Of the framebuffer and, in the frame where it is largest, the A-buffer.
+  // Bytes of the framebuffer and of the A-buffer in the frame where it is largest.
   double peak_bytes_per_pixel() const;
 };
 
@@ -76,22 +78,22 @@ struct Report {
   std::string trace, version, simd;
   int threads = 0;
   MemoryParameters memory;
-  Hardware hardware;  // whose times are modelled; without implementations: none
+  Hardware hardware;  // whose times are modelled; nothing is modelled if it has no implementations
   std::vector<TechniqueReport> results;
-  std::vector<LadderRung> msaa_ladder;  // empty: not measured
-  Json made_by = {};                    // what the results depend on (tools/evaluate/resume.h)
+  std::vector<LadderRung> msaa_ladder;  // empty if not measured
+  Json made_by = {};                    // what the results depend on: made_by() in tools/evaluate/resume.h
 };
 
-// For instance "0.1.0".
+// Such as "0.1.0".
 std::string program_version();
 
 // The report of a technique of which no frame has been rendered yet.
 TechniqueReport new_technique_report(const Technique& technique);
 
-// The folder of a technique's images: the spec, every character outside [A-Za-z0-9.=-] turned into _.
+// The name of a technique's folder: its spec, with _ for every character outside [A-Za-z0-9.=-].
 std::string spec_folder(std::string_view spec);
 
-// "msaa_8/frame_0007": how the names of a frame's files begin, in the output folder.
+// What the names of a frame's files start with, in the output folder: "msaa_8/frame_0007".
 std::string frame_stem(std::string_view spec, std::size_t frame);
 
 }  // namespace beampipe

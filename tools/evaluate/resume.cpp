@@ -16,7 +16,7 @@ namespace fs = std::filesystem;
 
 constexpr const char* kFolder = "unfinished";
 
-// Of what made_by holds only as digests.
+// How messages name what made_by holds only as a digest.
 const std::map<std::string, std::string> kDigested = {
     {"program", "another build of beampipe"}, {"trace", "another trace"}, {"hardware", "another --hardware"}};
 
@@ -32,7 +32,7 @@ FrameReport report_of(const Json& json) {
   return frame;
 }
 
-// Null: there is none, or it is not JSON.
+// Null if there is no such file, or if it holds no JSON object.
 Json read_json(const fs::path& path) {
   try {
     Json json = parse_json(path.string());
@@ -44,7 +44,7 @@ Json read_json(const fs::path& path) {
 
 Json maker_of(const Json& json) { return json.is_object() ? json.value("made_by", Json()) : Json(); }
 
-// Of those of the frame's files that are there, by name.
+// Digests of the frame's files that exist, by name.
 Json digests_of_files(const fs::path& folder, const FrameRecord& record) {
   Json digests = Json::object();
   std::error_code ignored;
@@ -59,7 +59,7 @@ Json sealed(Json record) {
   return record;
 }
 
-// Null: it is not as it was sealed.
+// Null if the record has changed since it was sealed.
 Json unsealed(Json record) {
   if (!record.is_object()) return nullptr;
   const Json digest = record["digest"];
@@ -67,7 +67,7 @@ Json unsealed(Json record) {
   return digest == digest_of(json_text(record)) ? record : Json();
 }
 
-// Whether it is of this frame and technique.
+// Whether the report is about this frame and technique.
 bool is_of(const FrameReport& report, std::size_t frame, const std::string& spec) {
   const std::string stem = frame_stem(spec, frame);
   return report.index == frame && report.image == stem + ".exr" && report.picture == stem + ".png" &&
@@ -150,7 +150,7 @@ std::optional<FrameRecord> FrameRecords::read(std::size_t frame, const std::vect
         json.at("files") != digests_of_files(output_.path(), record))
       return std::nullopt;
     return record;
-  } catch (const JsonError&) {  // something in it is missing, or of another type
+  } catch (const JsonError&) {  // a key is missing, or a value has another type
     return std::nullopt;
   }
 }
@@ -164,7 +164,7 @@ void FrameRecords::write(const FrameRecord& record) {
 
 void FrameRecords::remove() {
   for (const fs::path& path : list()) output_.remove(path.lexically_relative(output_.path()));
-  output_.remove(kFolder);  // unless something else is in it
+  output_.remove(kFolder);  // stays if something else is in it
 }
 
 std::vector<fs::path> FrameRecords::list() const {
@@ -184,8 +184,8 @@ void FrameRecords::refuse(const Json& other) const {
         digested != kDigested.end() ? digested->second : name + " " + other.at(name).dump() + ", not " + value.dump();
     break;
   }
-  throw std::runtime_error(output_.path().string() + ": cannot resume: what is there was made with " + what +
-                           "; start again without --resume, or in another folder");
+  throw std::runtime_error(output_.path().string() + ": cannot resume, because the files there were made with " + what +
+                           "; start again without --resume, or use another folder");
 }
 
 }  // namespace beampipe

@@ -1,8 +1,8 @@
-// Going on with a run that was stopped.
+// Continuing a run that was stopped.
 //
-// Each finished frame leaves a record, DIR/unfinished/frame_0007.json: what report.json is to say of it, the sums over
-// the frames so far, and digests of the frame's files and of the record itself. It is written behind the files. When
-// report.json is written, the records go away.
+// Each finished frame leaves a record, DIR/unfinished/frame_0007.json. It holds what report.json will say about the
+// frame, the sums over all frames so far, and digests of the frame's files and of the record itself. It is written
+// after the frame's files. Once report.json is written, the records are removed.
 #pragma once
 
 #include <optional>
@@ -16,32 +16,32 @@
 
 namespace beampipe {
 
-// What results depend on, by name: the command, the program and the trace by their contents, options. `more`: options
-// of the command's own.
+// Everything that results depend on: the command, digests of the program and of the trace, and options. `more` holds
+// the options that only this command has.
 Json made_by(const std::string& command, const RunPlan& plan, const Json& more);
 
 struct FrameRecord {
   std::vector<FrameReport> reports;  // one per technique
-  Json sums;                         // the command's own
+  Json sums;                         // whatever the command adds up over frames
 };
 
 class FrameRecords {
  public:
   FrameRecords(OutputFolder& output, Json maker) : output_(output), maker_(std::move(maker)) {}
 
-  // Whether report.json is there and made by the same; then removes the records that a kill may have left beside it.
-  // Throws std::runtime_error, one line, when another made it.
+  // Whether report.json exists and was made by the same run. If so, this removes records that were left when the
+  // program was killed. Throws std::runtime_error, one line, if report.json was made by another run.
   bool is_finished();
 
-  // The records of `frames` up to the first that is missing or damaged, or one of whose files is. Each has one report
-  // per spec and sums like `no_sums` but for the numbers; one that differs counts as damaged. Throws
-  // std::runtime_error, one line that says what has changed, when all that is there was made by another.
+  // The records of `frames`, up to the first frame whose record or files are missing or damaged. A record must have one
+  // report per spec, and sums that differ from `no_sums` only in their numbers; otherwise it counts as damaged. Throws
+  // std::runtime_error, one line that says what has changed, if all records were made by another run.
   std::vector<FrameRecord> read(const std::vector<std::size_t>& frames, const std::vector<std::string>& specs,
                                 const Json& no_sums) const;
 
   void write(const FrameRecord& record);
 
-  // All of them.
+  // Removes all records.
   void remove();
 
  private:
@@ -53,7 +53,7 @@ class FrameRecords {
   Json maker_;
 };
 
-// In the output folder.
+// The path of a frame's record in the output folder.
 std::string frame_record_name(std::size_t frame);
 
 }  // namespace beampipe

@@ -1,4 +1,4 @@
-// What is to be rendered.
+// What `run` and `compare` are to render.
 #pragma once
 
 #include <cstddef>
@@ -15,10 +15,10 @@ struct RunPlan {
   std::string trace_file;  // as the user named it
   Trace trace;
   std::vector<Technique> techniques;
-  std::vector<std::size_t> frames;  // rising
+  std::vector<std::size_t> frames;  // indices into the trace, rising
   int repeat = 1;
   Hardware hardware = titan_v();
-  RunOptions options;  // with the number of threads resolved
+  RunOptions options;  // `threads` is the actual number, never 0
 };
 
 inline std::vector<std::string> specs_of(const std::vector<Technique>& techniques) {

@@ -43,8 +43,8 @@ std::vector<Figure> report_figures(const ReportFile& report) {
   if (!report.msaa_ladder.empty()) {
     figures.push_back(
         {"Memory and accuracy",
-         "Up and to the left is better; above the line a technique needs less memory than MSAA of the same "
-         "error. An A-buffer in front of the framebuffer counts with its peak. A triangle is a bound.",
+         "Up and to the left is better. Above the line a technique needs less memory than MSAA with the same "
+         "error. The memory includes the A-buffer at its peak. Triangles mark bounds.",
          {{"frontier", frontier_plot({report})}}});
     Figure speed{"Time and error", "Down and to the left is better.", {{"wall time", speed_plot({report})}}};
     for (const auto& [implementation, ms] : report.techniques.front().modelled_ms) {
@@ -53,17 +53,17 @@ std::vector<Figure> report_figures(const ReportFile& report) {
     figures.push_back(std::move(speed));
   }
   Figure bytes{"Bytes per stage", "What each technique reads and writes in a frame, by stage.", {}};
-  for (const auto& [label, key] :
-       {std::pair{"logical: what the stage touches", "logical_bytes"}, std::pair{"sectors of 32 bytes", "sector_bytes"},
-        std::pair{"DRAM: behind the modelled cache", "dram_bytes"}}) {
+  for (const auto& [label, key] : {std::pair{"logical: what the stage reads and writes", "logical_bytes"},
+                                   std::pair{"sectors of 32 bytes", "sector_bytes"},
+                                   std::pair{"DRAM: beyond the modelled caches", "dram_bytes"}}) {
     if (auto plot = bytes_plot(report, key)) bytes.choices.emplace_back(label, std::move(*plot));
   }
   if (!bytes.choices.empty()) figures.push_back(std::move(bytes));
-  Figure roofline{
-      "Roofline",
-      "How many operations a stage does, and how many per byte: far to the left memory limits it, far to the "
-      "right arithmetic.",
-      {}};
+  Figure roofline{"Roofline",
+                  "How many operations a stage performs, and how many per byte. Stages far to the left are limited by "
+                  "memory, stages "
+                  "far to the right by arithmetic.",
+                  {}};
   for (const TechniqueSummary& summary : report.techniques) {
     roofline.choices.emplace_back(summary.spec, roofline_plot(report, summary.spec));
   }

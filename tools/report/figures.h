@@ -1,4 +1,4 @@
-// The plots of one report, as the page shows them and as files.
+// The plots of one report, for the page and for files.
 #pragma once
 
 #include <string>
@@ -13,13 +13,13 @@ namespace beampipe {
 
 using Plot = std::variant<ScatterPlot, BarPlot>;
 
-// One place on the page, which shows one of several plots of the same kind.
+// A place on the page that shows one of several plots of the same kind.
 struct Figure {
   std::string title, caption;
-  std::vector<std::pair<std::string, Plot>> choices;  // what tells them apart, and the plot
+  std::vector<std::pair<std::string, Plot>> choices;  // the label of a choice, and its plot
 };
 
-// Those that the report has the numbers for. Throws ReportError.
+// The figures for which the report has numbers. Throws ReportError.
 std::vector<Figure> report_figures(const ReportFile& report);
 
 Json to_json(const Figure& figure);

@@ -20,28 +20,28 @@ namespace beampipe {
 namespace {
 
 constexpr int kWidth = 760, kHeight = 520;                                     // px
-constexpr double kLeft = 0.105, kRight = 0.975, kBottom = 0.12, kTop = 0.915;  // of the picture: where the axes are
+constexpr double kLeft = 0.105, kRight = 0.975, kBottom = 0.12, kTop = 0.915;  // the axes, as parts of the picture
 constexpr int kFontSize = 12, kLabelHeight = 14;                               // px
-constexpr double kCharacterWidth = 6.9;                                        // px, of most fonts at this size
+constexpr double kCharacterWidth = 6.9;                                        // px, in most fonts of this size
 constexpr double kPointRadius = 5;                                             // px
 constexpr int kPngScale = 2;                                                   // PNG pixels per px
-constexpr int kNoProgram = 127;                                                // exit code, as of a shell
+constexpr int kNoProgram = 127;  // exit code if there is no such program, as in a shell
 
-// In single quotes gnuplot takes everything as it is.
+// A string in single quotes, in which gnuplot interprets nothing.
 std::string quoted(const std::string& text) {
   std::string out = "'";
   for (const char c : text) out += c == '\'' ? "''" : static_cast<unsigned char>(c) < 0x20 ? " " : std::string(1, c);
   return out + "'";
 }
 
-// A field of a data block; what would end it is left out.
+// A field of a data block, without characters that would end it.
 std::string quoted_word(const std::string& text) {
   std::string out = "\"";
   for (const char c : text) out += c == '"' || c == '\\' || static_cast<unsigned char>(c) < 0x20 ? ' ' : c;
   return out + "\"";
 }
 
-// A logarithmic axis with some room beside the outermost values.
+// A logarithmic axis with some room around the values.
 struct LogRange {
   double low = 1, high = 10;
 
@@ -61,7 +61,7 @@ LogRange range_of(const ScatterPlot& plot, double PlotPoint::*value) {
   return {low / room, high * room};
 }
 
-// Powers of ten, and twice and five times them on short axes: "1, 2, 5, 10".
+// The powers of ten, and on short axes also two and five times these: "1, 2, 5, 10".
 std::string tics(const LogRange& range) {
   const bool is_short = std::log10(range.high / range.low) < 2.5;
   std::string text;
@@ -105,7 +105,7 @@ void write_labels(std::ostream& script, const ScatterPlot& plot, const LogRange&
              << (label.y + std::copysign(std::abs(label.y - point.y) - dy, point.y - label.y)) / task.height
              << " nohead back linecolor '#a0a0a0'\n";
     }
-    // Beside its point a label starts or ends there, however wide the font makes it.
+    // A label to the right (left) of its point starts (ends) there, however wide the font makes it.
     const int side = label.x > point.x + 1 ? 1 : label.x < point.x - 1 ? -1 : 0;
     script << "set label " << quoted(labels[i]) << " at graph "
            << (label.x - side * task.label_widths[i] / 2) / task.width << "," << label.y / task.height << " "
@@ -116,7 +116,7 @@ void write_labels(std::ostream& script, const ScatterPlot& plot, const LogRange&
   }
 }
 
-// Where the axes are, and how everything around them looks. `right`: where they end, of the picture.
+// The axes and everything around them. `right` is where the axes end, as a part of the picture's width.
 void write_frame(std::ostream& script, const std::string& title, const std::string& y_label, double right) {
   script << "set lmargin at screen " << kLeft << "\nset rmargin at screen " << right << "\nset bmargin at screen "
          << kBottom << "\nset tmargin at screen " << kTop << "\nset title " << quoted(title) << "\nset ylabel "
@@ -131,7 +131,7 @@ void write_axes(std::ostream& script, const ScatterPlot& plot, const LogRange& x
          << ")\nset ytics nomirror (" << tics(y) << ")\nset key off\n";
 }
 
-// One data block per series and kind of bound, so that each can have its marker.
+// One data block per series and kind of bound, because each has its own marker.
 void write_series(std::ostream& script, const ScatterPlot& plot) {
   constexpr int kMarkers[] = {7, 9, 11};  // disc, triangle up (at least), triangle down (at most)
   std::ostringstream blocks, plots;
@@ -158,7 +158,7 @@ void write_series(std::ostream& script, const ScatterPlot& plot) {
   script << blocks.str() << plots.str() << "\n";
 }
 
-// Without a name in any folder: it goes away with the program, however that ends.
+// A file that has no name in any folder, so that it disappears with the program, however the program ends.
 class MemoryFile {
  public:
   MemoryFile() : descriptor_(memfd_create("gnuplot", 0)) {
@@ -181,7 +181,7 @@ class MemoryFile {
   int descriptor_;
 };
 
-// What gnuplot prints on standard output. It ends when this program does.
+// Runs gnuplot and returns what it prints on standard output. It is killed if this program ends.
 std::string run_gnuplot(const std::string& script) {
   const MemoryFile input, picture, messages;
   input.write(script);
@@ -232,7 +232,7 @@ std::string draw(const ScatterPlot& plot, PlotFormat format) {
 }
 
 std::string draw(const BarPlot& plot, PlotFormat format) {
-  constexpr double kBarsRight = 0.76, kBarsBottom = 0.25;  // room for the key, and for names on end
+  constexpr double kBarsRight = 0.76, kBarsBottom = 0.25;  // room for the key and for slanted names
   std::ostringstream script;
   script.precision(9);
   script << terminal(format);

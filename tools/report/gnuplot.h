@@ -1,4 +1,4 @@
-// Plots as picture files, drawn by the program gnuplot.
+// Draws plots into picture files with the program gnuplot.
 #pragma once
 
 #include <string>
@@ -9,7 +9,8 @@ namespace beampipe {
 
 enum class PlotFormat { svg, png };
 
-// The bytes of an SVG or PNG file, on white. Throws std::runtime_error, one line, when gnuplot cannot be run or fails.
+// The bytes of an SVG or PNG file with a white background. Throws std::runtime_error, one line, if gnuplot cannot be
+// run or fails.
 std::string draw(const ScatterPlot& plot, PlotFormat format);
 std::string draw(const BarPlot& plot, PlotFormat format);
 

@@ -6,8 +6,8 @@
 namespace beampipe {
 namespace {
 
-constexpr double kGap = 2;       // px: between a point and its label
-constexpr double kLineStep = 4;  // px: no label is so small that it falls between two
+constexpr double kGap = 2;       // px between a point and its label
+constexpr double kLineStep = 4;  // px between points that stand for a line; every label is larger
 
 struct Box {
   double x0, y0, x1, y1;
@@ -25,7 +25,7 @@ double overlap(const Box& a, const Box& b) {
 
 double area(const Box& box) { return (box.x1 - box.x0) * (box.y1 - box.y0); }
 
-// Where a label may go, best first: right, left, above, below, then at the corners, then the same farther away.
+// The places for a label, best first: right, left, above and below, then the corners, then the same farther away.
 std::vector<PixelPoint> candidates(PixelPoint point, double width, double height, double radius) {
   constexpr int kSides[][2] = {{1, 0}, {-1, 0}, {0, 1}, {0, -1}, {1, -1}, {-1, 1}, {1, 1}, {-1, -1}};
   constexpr int kRings = 5;

@@ -1,4 +1,4 @@
-// Where the labels of a plot go so that they lie on no other label, point or line.
+// Places the labels of a plot so that they cover no other label, point or line.
 #pragma once
 
 #include <utility>
@@ -10,18 +10,18 @@ struct PixelPoint {
   double x = 0, y = 0;
 };
 
-// All in pixels of the plot's area, (0, 0) .. (width, height).
+// All lengths and places are in pixels of the plot's area, (0, 0) .. (width, height).
 struct LabelTask {
   double width = 0, height = 0;
   double label_height = 0;
   double point_radius = 0;
   std::vector<std::pair<PixelPoint, PixelPoint>> lines;
-  std::vector<PixelPoint> points;    // of every point, with a label or without
-  std::vector<double> label_widths;  // beside points; 0: no label
+  std::vector<PixelPoint> points;    // all points, with a label or without
+  std::vector<double> label_widths;  // one per point; 0 for a point without a label
 };
 
-// The centre of each point's label, beside points. Labels are placed one after the other: beside the point where that
-// is free, else in a circle farther away, and where nothing is free where the least is covered.
+// The centres of the labels, one per point. Labels are placed one after the other. Each goes next to its point if there
+// is room, otherwise farther away, and if there is no room at all, to the place where it covers the least.
 std::vector<PixelPoint> place_labels(const LabelTask& task);
 
 }  // namespace beampipe

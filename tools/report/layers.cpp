@@ -50,7 +50,8 @@ Json map_of(const std::string& name, const Planes& planes, const std::vector<flo
           {"png", png_url(encode_png(planes.width, planes.height, rgb))}};
 }
 
-// In the registry's order, errors first.
+// The counters with their definitions: first those of errors, then the others in the order of the registry, then
+// unknown ones.
 Json kinds_of(const std::set<std::string>& names) {
   Json kinds = Json::array();
   for (const auto* counters : {&error_counters(), &pixel_counters()})
@@ -64,9 +65,10 @@ Json kinds_of(const std::set<std::string>& names) {
   return kinds;
 }
 
-// A file that report.json names: inside its folder, so that a report from elsewhere cannot show other files.
+// The path of a file that report.json names. It must be inside the report's folder, so that a report from somewhere
+// else cannot show other files.
 std::filesystem::path file_of(const ReportFile& report, const std::string& name) {
-  // Links are followed before it is judged.
+  // Symbolic links are followed first.
   const std::filesystem::path folder = std::filesystem::weakly_canonical(report.folder),
                               path = std::filesystem::weakly_canonical(folder / name).lexically_relative(folder);
   if (name.empty() || path.empty() || *path.begin() == "..") {

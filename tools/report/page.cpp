@@ -14,7 +14,7 @@ Json to_json(const Table& table) {
   return json;
 }
 
-// Every place {{name}} of the page gets its text; each name stands there once.
+// Replaces {{name}}, which stands in the page once, by the text.
 std::string fill(std::string page, const std::string& name, const std::string& text) {
   const std::string place = "{{" + name + "}}";
   return page.replace(page.find(place), place.size(), text);
@@ -26,7 +26,7 @@ std::string escaped(const std::string& text) {
   return out;
 }
 
-// Inside <script> nothing may look like a tag.
+// JSON inside <script> must contain nothing that looks like a tag.
 std::string script_json(const Json& json) {
   std::string text;
   for (const char c : json.dump()) {
@@ -56,7 +56,9 @@ std::string page_html(const ReportFile& report, const std::vector<Table>& tables
   page = fill(page, "d3", kD3);
   page = fill(page, "scripts", kPageScripts);
   page = fill(page, "data", script_json(data));
-  return fill(page, "title", escaped(report.scene) + " · beampipe report");  // its place is the first of its name
+  return fill(
+      page, "title",
+      escaped(report.scene) + " · beampipe report");  // the page may contain the same characters again, but only later
 }
 
 }  // namespace beampipe

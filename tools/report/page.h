@@ -1,4 +1,4 @@
-// The page that an architect reads.
+// The report as a page for a browser.
 #pragma once
 
 #include <string>
@@ -10,8 +10,8 @@
 
 namespace beampipe {
 
-// HTML that needs no other file and no network: styles, scripts, numbers and pictures are in it. `layers` is what
-// report_layers gives.
+// HTML that contains its styles, scripts, numbers and pictures and needs no other file and no network. `layers` comes
+// from report_layers.
 std::string page_html(const ReportFile& report, const std::vector<Table>& tables, const std::vector<Figure>& figures,
                       const Json& layers);
 

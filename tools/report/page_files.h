@@ -1,11 +1,11 @@
-// The parts that every report page is made of.
+// The files that report pages are made of.
 #pragma once
 
 namespace beampipe {
 
-extern const char* const kPageHtml;  // with places for the others: {{css}}, {{d3}}, {{data}}, {{scripts}}, {{title}}
+extern const char* const kPageHtml;  // contains {{css}}, {{d3}}, {{data}}, {{scripts}} and {{title}}
 extern const char* const kPageCss;
-extern const char* const kPageScripts;  // ours
-extern const char* const kD3;           // the library that draws plots and zooms, d3js.org
+extern const char* const kPageScripts;  // the scripts in tools/report/page
+extern const char* const kD3;           // the library D3 (d3js.org), which draws plots and zooms
 
 }  // namespace beampipe

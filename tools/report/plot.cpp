@@ -9,7 +9,7 @@ namespace {
 
 constexpr const char* kMsaa = "msaa";
 
-// "beam" of "beam:bits=64": techniques of one family share a colour.
+// The family of "beam:bits=64" is "beam". Techniques of one family share a colour.
 std::string family_of(const std::string& spec) { return spec.substr(0, spec.find(':')); }
 
 PlotSeries& series_named(ScatterPlot& plot, const std::string& name) {
@@ -25,7 +25,7 @@ void add_point(ScatterPlot& plot, const std::string& spec, PlotPoint point) {
     series_named(plot, family_of(spec)).points.push_back(std::move(point));
   } else {
     plot.notes.push_back(spec + " is not drawn: " + (point.x > 0 ? plot.y_label : plot.x_label) +
-                         " is 0, which no logarithmic axis has");
+                         " is 0, which a logarithmic axis cannot show");
   }
 }
 
@@ -49,7 +49,7 @@ std::vector<LadderRung> longest_ladder(const std::vector<ReportFile>& reports) {
 
 [[noreturn]] void throw_not_compared(const std::vector<ReportFile>& reports) {
   throw ReportError((reports.front().folder / "report.json").string() +
-                    ": it has no errors; expected the report of `beampipe compare`");
+                    ": it has no errors; expected a report of `beampipe compare`");
 }
 
 }  // namespace

@@ -1,4 +1,4 @@
-// Plots as data: gnuplot draws them into files, JavaScript draws them on the report page.
+// Plots as data. gnuplot draws them into files, and JavaScript draws them on the report page.
 #pragma once
 
 #include <array>
@@ -11,16 +11,16 @@
 namespace beampipe {
 
 struct PlotPoint {
-  double x = 0, y = 0;                                            // positive: both axes are logarithmic
-  std::string label;                                              // short, beside the point; empty: none
-  enum class Bound { none, lower, upper } y_bound = Bound::none;  // y is at least (at most) this
+  double x = 0, y = 0;                                            // positive, because both axes are logarithmic
+  std::string label;                                              // a short text next to the point; empty for none
+  enum class Bound { none, lower, upper } y_bound = Bound::none;  // y is a lower (upper) bound
 };
 
 struct PlotSeries {
   std::string name;
   std::vector<PlotPoint> points;
-  bool line = false;  // a line through the points, in their order
-  bool marks = true;  // a mark at each point
+  bool line = false;  // draw a line through the points, in their order
+  bool marks = true;  // draw a mark at each point
 };
 
 // Points over two logarithmic axes.
@@ -28,38 +28,39 @@ struct ScatterPlot {
   std::string name;  // for files: "frontier"
   std::string title, x_label, y_label;
   std::vector<PlotSeries> series;
-  std::vector<std::string> notes;  // what could not be drawn, one line each
+  std::vector<std::string> notes;  // what could not be drawn, one line for each
 };
 
 // Bars of stacked parts, one bar per category.
 struct BarPlot {
   struct Part {
     std::string name;
-    std::vector<double> values;  // beside categories
+    std::vector<double> values;  // one per category
   };
   std::string name, title, y_label;
   std::vector<std::string> categories;
   std::vector<Part> parts;
 };
 
-// Colours of series and parts, in order: Tableau's ten, which most eyes can tell apart, then their light twins.
+// The colours of series and parts, in this order: Tableau's ten colours, which most people can tell apart, then lighter
+// versions of them.
 extern const std::array<const char*, 20> kPlotColors;
 
-// Peak bytes of framebuffer and A-buffer per pixel against EMR; MSAA is a line through the rungs of the ladder. Throws
-// ReportError when no technique has an EMR.
+// Memory (bytes of the framebuffer and of the A-buffer at its peak, per pixel) against EMR. MSAA is a line through the
+// rungs of its ladder. Throws ReportError if no technique has an EMR.
 ScatterPlot frontier_plot(const std::vector<ReportFile>& reports);
 
-// Milliseconds against RMSE. `implementation` names a way in which the modelled hardware runs the techniques, "" stands
-// for the wall time of the simulator. Throws ReportError when no technique has an error or such a time.
+// Milliseconds against RMSE. The times are modelled for the named implementation of the hardware, or, if it is "", the
+// wall times of the simulator. Throws ReportError if no technique has an error and such a time.
 ScatterPlot speed_plot(const std::vector<ReportFile>& reports, const std::string& implementation = "");
 
-// Megabytes per frame by stage, one bar per technique. `key`: "logical_bytes", "sector_bytes" or "dram_bytes"; nothing
-// when the report's stages do not have it.
+// Megabytes per frame by stage, one bar per technique. `key` is "logical_bytes", "sector_bytes" or "dram_bytes".
+// Nothing if the report's stages do not have this key.
 std::optional<BarPlot> bytes_plot(const ReportFile& report, const std::string& key);
 
-// A point per stage of a technique. With modelled hardware: operations per DRAM byte against operations per second,
-// under the roof of what the hardware issues and its DRAM moves; else operations per logical byte against operations
-// per frame.
+// One point per stage of a technique. If the report has modelled hardware: operations per DRAM byte against operations
+// per second, under a roof that the hardware's issue rate and DRAM rate form. Otherwise operations per logical byte
+// against operations per frame.
 ScatterPlot roofline_plot(const ReportFile& report, const std::string& technique);
 
 }  // namespace beampipe

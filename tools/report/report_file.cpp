@@ -10,7 +10,7 @@
 namespace beampipe {
 namespace {
 
-// Of positive numbers; 0 when one of them is 0; to the last bit when they are all the same.
+// The mean of positive numbers. It is 0 if one of them is 0, and exact if all are equal.
 double geometric_mean(const std::vector<double>& values) {
   if (std::count(values.begin(), values.end(), values.front()) == std::ssize(values)) return values.front();
   double sum = 0;
@@ -54,7 +54,7 @@ TechniqueSummary mean_summary(const std::vector<TechniqueSummary>& of_one_techni
   return mean;
 }
 
-// Adds the numbers of `other` to those at the same places in `sum`.
+// Adds the numbers in `other` to those under the same keys in `sum`.
 void add_numbers(Json& sum, const Json& other) {
   if (sum.is_null()) sum = Json::object();
   for (const auto& [key, value] : other.members()) {
@@ -129,7 +129,7 @@ ReportFile read_report(const std::filesystem::path& folder) {
   const std::filesystem::path file = folder / "report.json";
   std::error_code ignored;
   if (!std::filesystem::is_directory(folder, ignored)) {
-    throw ReportError(folder.string() + ": no such folder; expected one that `beampipe compare` or `run` wrote");
+    throw ReportError(folder.string() + ": no such folder; expected one that `beampipe compare` or `run` has written");
   }
   ReportFile report{folder, {}, {}, {}, {}};
   report.json = parse_json(file.string());
@@ -144,9 +144,9 @@ ReportFile read_report(const std::filesystem::path& folder) {
       report.msaa_ladder.push_back({rung.at("samples").get<std::uint32_t>(), rung.at("rmse").get<double>()});
     }
   } catch (const std::exception& error) {
-    throw ReportError(file.string() + ": not a report that beampipe wrote: " + error.what());
+    throw ReportError(file.string() + ": not a report of beampipe: " + error.what());
   }
-  if (report.techniques.empty()) throw ReportError(file.string() + ": it has no technique but the reference");
+  if (report.techniques.empty()) throw ReportError(file.string() + ": it has no technique except the reference");
   return report;
 }
 

@@ -1,4 +1,4 @@
-// report.json as `run` and `compare` left it, and what the plots take from it.
+// Reads report.json, and summarises it for plots and tables.
 #pragma once
 
 #include <filesystem>
@@ -18,45 +18,46 @@ struct ReportError : std::runtime_error {
   using std::runtime_error::runtime_error;
 };
 
-// Per frame, the mean of the frames: with all stages at once, and one after the other.
+// Modelled milliseconds per frame (the mean over the frames): with all stages at once, and one after the other.
 struct ModelledMs {
   double overlap = 0, sum = 0;
 };
 
-// What one technique cost and bought, over all frames of a report.
+// Cost and error of one technique, over all frames of a report.
 struct TechniqueSummary {
   std::string spec;
-  double bytes_per_pixel = 0;  // of framebuffer and A-buffer, at their peak
+  double bytes_per_pixel = 0;  // framebuffer, and A-buffer at its peak
   double wall_ms = 0;          // per frame: the median of the frames' medians
-  // By the way in which the modelled hardware runs the techniques. Empty: not modelled.
+  // By implementation of the modelled hardware. Empty if nothing was modelled.
   std::map<std::string, ModelledMs> modelled_ms;
-  double dram_bytes = 0;              // per frame: the mean of the frames
-  std::optional<double> rmse;         // after `compare`
-  std::optional<EquivalentMsaa> emr;  // after `compare`
+  double dram_bytes = 0;              // per frame: the mean over the frames
+  std::optional<double> rmse;         // only in reports of `compare`
+  std::optional<EquivalentMsaa> emr;  // only in reports of `compare`
 };
 
 struct ReportFile {
   std::filesystem::path folder;
-  std::string scene;                         // the trace's file name without folder and extension
+  std::string scene;                         // the name of the trace's file, without folder and extension
   Json json;                                 // the whole file
-  std::vector<TechniqueSummary> techniques;  // without `reference`, which the others are judged by
-  std::vector<LadderRung> msaa_ladder;       // empty after `run`
+  std::vector<TechniqueSummary> techniques;  // all techniques except `reference`
+  std::vector<LadderRung> msaa_ladder;       // empty in reports of `run`
 };
 
-// Of one member of the report's "results". Throws nlohmann's exceptions when it is not one.
+// Summarises one element of the report's "results". Throws JsonError if it is something else.
 TechniqueSummary read_summary(const Json& result);
 
-// For each technique and stage, in order: what the frames' "stages" say, summed over the frames, and "technique",
-// "frames" (how many), "logical_bytes" (read and written), "ops_per_byte" (of these) and "lane_use" (the last two where
-// there is something to divide by).
+// One object for each technique and stage, in their order: the numbers in "stages" summed over the frames, and these
+// keys: "technique", "frames" (their number), "logical_bytes" (read and written), "ops_per_byte" (operations per
+// logical byte) and "lane_use". The last two are missing if they would divide by zero.
 std::vector<Json> stage_records(const ReportFile& report);
 
-// Reads FOLDER/report.json. Throws ReportError; TraceError when it is no file of JSON.
+// Reads FOLDER/report.json. Throws ReportError, or TraceError if the file is not JSON.
 ReportFile read_report(const std::filesystem::path& folder);
 
-// Geometric means of rmse, emr and times over several reports, of the techniques that are in all of them, in the order
-// of the first. A mean is a lower (upper) bound when one of its values is; it can be both: then it is neither. Throws
-// ReportError when they have no technique in common, and std::invalid_argument when there is no report.
+// The geometric means over several reports of RMSE, EMR, times and bytes, for the techniques that are in all reports,
+// in the order of the first report. A mean is a lower (upper) bound if one of its values is. If it would be both, it is
+// marked as both and is neither. Throws ReportError if the reports have no technique in common, and
+// std::invalid_argument if there is no report.
 std::vector<TechniqueSummary> mean_summaries(const std::vector<ReportFile>& reports);
 
 }  // namespace beampipe

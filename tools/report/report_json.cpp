@@ -9,7 +9,7 @@
 namespace beampipe {
 namespace {
 
-// Among "buffers".
+// In "buffers".
 constexpr const char *kABuffer = "a_buffer", *kHeldByBin = "bin";
 
 // Where a counter stands in the JSON of a stage: "ops.add" is the key "add" of the object "ops".
@@ -59,7 +59,7 @@ WallTime wall_time_of(const Json& json) {
   return wall;
 }
 
-// Everything that the frame holds at its peak.
+// All buffers of the frame at their peak: the framebuffer's surfaces, the A-buffer and others.
 Json buffers_json(const TechniqueReport& result, const FrameReport& frame) {
   std::vector<Buffer> buffers;
   for (const Surface& surface : result.framebuffer)
@@ -136,7 +136,7 @@ Json to_json(const FrameReport& frame, const TechniqueReport& result, const Hard
   for (const SavedWork& saved : saved_work(frame.stages)) json["saved"][saved.name] = saved.amount;
   json["stages"] = Json::array();
   for (const StageCounters& stage : frame.stages) json["stages"].push_back(to_json(stage));
-  if (all.sector_bytes == 0) return json;  // without memory, as the reference runs, a time would mean nothing
+  if (all.sector_bytes == 0) return json;  // the reference models no memory, and times without it would mean nothing
   for (const Implementation& implementation : hardware.implementations) {
     const ModelledTime time = modelled_time(hardware, implementation, frame.stages);
     json["modelled_ms"][implementation.name] = {

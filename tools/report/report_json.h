@@ -1,4 +1,4 @@
-// report.json, as it is written. Its keys are a contract: add, never rename.
+// Writes report.json. Its keys are a contract: new ones may be added, but none may be renamed or removed.
 #pragma once
 
 #include <string>
@@ -11,14 +11,15 @@ namespace beampipe {
 Json to_json(const ErrorStats& stats);
 Json to_json(const Report& report);
 
-// A frame of report.json. `technique` tells the framebuffer, and `hardware` how to model times; both may be empty.
+// A frame, as in report.json. The framebuffer of `technique` and times modelled for `hardware` are included; both may
+// be empty.
 Json to_json(const FrameReport& frame, const TechniqueReport& technique, const Hardware& hardware);
 
-// The frame that to_json wrote, with an empty framebuffer; `pixels` is not in it. Throws JsonError when it is another
-// JSON.
+// Reads back a frame that was written with an empty framebuffer, except for `pixels`, which is not in the JSON. Throws
+// JsonError if a key is missing or a value has the wrong type.
 FrameReport frame_of(const Json& json);
 
-// The text of a JSON file; bytes that are not UTF-8 are replaced.
+// The text of a JSON file. Bytes that are not UTF-8 are replaced.
 std::string json_text(const Json& json);
 
 }  // namespace beampipe

@@ -16,7 +16,7 @@ namespace {
   return text;
 }
 
-// Over the frames, the median of their medians.
+// The median of the frames' medians.
 double median_ms(const TechniqueReport& result) {
   std::vector<double> medians;
   for (const FrameReport& frame : result.frames) medians.push_back(frame.wall_ms.median);
@@ -29,7 +29,7 @@ std::string pictures(const TechniqueReport& result, const std::string& folder) {
   return text;
 }
 
-// Of UTF-8 text, in characters.
+// The number of characters of a UTF-8 text.
 std::size_t width_of(const std::string& text) {
   return static_cast<std::size_t>(std::count_if(text.begin(), text.end(), [](char c) { return (c & 0xC0) != 0x80; }));
 }
@@ -70,7 +70,7 @@ std::string causes_text(const Report& report) {
   for (const TechniqueReport& result : report.results) {
     if (result.causes.empty()) continue;
     std::vector<std::string>& row = rows.emplace_back(std::vector{result.technique});
-    rows[0] = {"part of the mean square error"};
+    rows[0] = {"share of the mean square error"};
     for (const auto& [cause, part] : result.causes) {
       rows[0].push_back(cause);
       row.push_back(format("%.1f %%", 100 * part));

@@ -1,4 +1,4 @@
-// What run and compare found, as tables on the terminal.
+// The results of run and compare as tables for the terminal.
 #pragma once
 
 #include <cstddef>
@@ -9,14 +9,15 @@
 
 namespace beampipe {
 
-// One row per technique under one row of titles; `folder` is where the pictures' paths start.
+// A row of titles and one row per technique. `folder` is put in front of the pictures' paths.
 std::string table_text(const Report& report, const std::string& folder);
 
-// What --causes and --orders found, each with an empty line before it; "" where they were not asked for.
+// The results of --causes and --orders, each after an empty line, or "" if they were not asked for.
 std::string causes_text(const Report& report);
 std::string orders_text(const Report& report);
 
-// Columns separated by two blanks; those named in `left` (by index) start at the left, the others end at the right.
+// Aligns the cells of each column. Columns are separated by two blanks. Those whose index is in `left` are aligned on
+// the left, the others on the right.
 std::string align_columns(const std::vector<std::vector<std::string>>& rows, const std::vector<std::size_t>& left);
 
 // "36.2", "≥ 256" (lower bound), "< 1" (upper bound).

@@ -1,4 +1,4 @@
-// The plots of what each stage cost.
+// The plots of the cost of stages.
 
 #include <algorithm>
 
@@ -10,7 +10,7 @@ namespace {
 
 constexpr double kMega = 1e6;
 
-// Adds a part of that name, still 0 everywhere, unless there is one.
+// The part of that name. If there is none, adds one that is 0 everywhere.
 BarPlot::Part& part_named(BarPlot& plot, const std::string& name) {
   const auto is_it = [&](const BarPlot::Part& part) { return part.name == name; };
   const auto found = std::find_if(plot.parts.begin(), plot.parts.end(), is_it);
@@ -19,13 +19,13 @@ BarPlot::Part& part_named(BarPlot& plot, const std::string& name) {
   return plot.parts.back();
 }
 
-// What the modelled hardware can do at most.
+// The highest rates of the modelled hardware.
 struct Roof {
-  std::string implementation;             // the first that is described
-  double operations = 0, dram_bytes = 0;  // per second, in billions
+  std::string implementation;             // the first in the description
+  double operations = 0, dram_bytes = 0;  // billions per second
 };
 
-// Nothing when no hardware was modelled.
+// Nothing if no hardware was modelled.
 std::optional<Roof> roof_of(const ReportFile& report) {
   if (!report.json.contains("hardware") || report.techniques.front().modelled_ms.empty()) return std::nullopt;
   const Json& hardware = report.json.at("hardware");
@@ -35,7 +35,8 @@ std::optional<Roof> roof_of(const ReportFile& report) {
               gigahertz * rates.at("dram_bytes_per_clk").get<double>()};
 }
 
-// From the left of the leftmost stage, up to where DRAM no longer limits, and on to the right of the rightmost.
+// A line that rises from left of the leftmost stage, as long as DRAM is the limit, and then runs flat until right of
+// the rightmost stage.
 PlotSeries roof_line(const Roof& roof, const ScatterPlot& plot) {
   const double ridge = roof.operations / roof.dram_bytes;
   double left = ridge, right = ridge;
@@ -92,8 +93,8 @@ ScatterPlot roofline_plot(const ReportFile& report, const std::string& technique
     }
   }
   if (!left_out.empty())
-    plot.notes.push_back(std::string("Without operations or ") + (roof ? "DRAM " : "") +
-                         "bytes, and not drawn: " + left_out + ".");
+    plot.notes.push_back(std::string("Not drawn, because they have no operations or no ") + (roof ? "DRAM " : "") +
+                         "bytes: " + left_out + ".");
   if (roof && !plot.series.empty()) plot.series.push_back(roof_line(*roof, plot));
   return plot;
 }

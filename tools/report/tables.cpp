@@ -12,42 +12,43 @@ namespace {
 
 struct Source {
   Column column;
-  std::string pointer;  // where the value is in a row's record
+  std::string pointer;  // the keys to the value in a row's record, each after a "/"
 };
 
 const std::vector<Source> kTechniqueColumns = {
-    {{"technique", "technique", "", "The spec that names the technique, as `beampipe run -t` takes it."}, "/technique"},
+    {{"technique", "technique", "", "The technique's spec, as `beampipe run -t` takes it."}, "/technique"},
     {{"rmse", "RMSE", "linear light, 0..1",
-      "Root of the mean square error over R, G and B of all pixels against the reference."},
+      "Root mean square error against the reference, over R, G and B of all pixels."},
      "/error/rmse"},
     {{"emr", "EMR", "samples per pixel",
-      "Equivalent MSAA rate: the N at which msaa:N has the same RMSE on the same frames."},
+      "Equivalent MSAA rate: the number N at which msaa:N has the same RMSE on the same frames."},
      "/equivalent_msaa"},
     {{"emr_bound", "EMR is", "",
-      "Whether the EMR is exact, or a bound: at least the best rung of the MSAA ladder, or at most the worst."},
+      "Whether the EMR is exact or a bound: at least that of the best rung of the MSAA ladder, or at most that of the "
+      "worst."},
      "/emr_bound"},
     {{"framebuffer_bytes_per_pixel", "framebuffer", "bytes per pixel",
-      "What the technique's framebuffer takes per pixel, all surfaces together."},
+      "Size of the technique's framebuffer per pixel, all surfaces together."},
      "/framebuffer_bytes_per_pixel"},
     {{"peak_bytes_per_pixel", "with A-buffer", "bytes per pixel",
-      "What framebuffer and A-buffer take per pixel, in the frame where the A-buffer is largest."},
+      "Size of framebuffer and A-buffer per pixel, in the frame where the A-buffer is largest."},
      "/peak_bytes_per_pixel"},
     {{"msaa_bytes_per_pixel", "as MSAA", "bytes per pixel",
-      "What MSAA of the same error takes per pixel: EMR times the bytes of msaa:1."},
+      "Size per pixel of MSAA with the same error: EMR times the bytes of msaa:1."},
      "/msaa_bytes_per_pixel"},
     {{"a_buffer_peak_bytes", "A-buffer", "bytes",
-      "The most that the A-buffer in front of the framebuffer held at any time of a frame; 0: there is none."},
+      "The largest size of the A-buffer at any time of a frame; 0 if there is none."},
      "/a_buffer_peak_bytes"},
     {{"dram_bytes", "DRAM", "bytes per frame",
-      "Moved to and from DRAM behind the modelled caches, read and written: the mean of the frames."},
+      "Bytes that move between the modelled caches and DRAM, in either direction: the mean over the frames."},
      "/dram_bytes"},
     {{"wall_ms", "wall time", "ms per frame",
-      "How long the simulator took on the machine that ran it, not hardware: the median over the frames. Of a single "
-      "run it has the memory model's own time in it."},
+      "The time of the simulator on the machine that ran it, which says nothing about hardware: the median over the "
+      "frames. If each frame was run only once, this includes the time for modelling memory."},
      "/wall_ms"},
     {{"flicker", "flicker", "linear light, 0..1",
-      "RMS over pixels of how much the error changes from one frame to the next, pooled over the frames but the "
-      "first."},
+      "Root mean square, over pixels, of the change of the error from one frame to the next, pooled over all frames "
+      "except the first."},
      "/flicker"},
     {{"bias", "bias", "linear light, 0..1", "Mean signed error over R, G and B of all pixels."}, "/error/bias"},
     {{"p99", "p99", "linear light, 0..1", "The absolute error that 99 % of all values do not exceed."}, "/error/p99"},
@@ -55,17 +56,17 @@ const std::vector<Source> kTechniqueColumns = {
 };
 
 const std::vector<Source> kSurfaceColumns = {
-    {{"technique", "technique", "", "The spec that names the technique."}, "/technique"},
+    {{"technique", "technique", "", "The technique's spec."}, "/technique"},
     {{"surface", "surface", "", "One surface of the framebuffer."}, "/name"},
-    {{"format", "format", "", "What is stored per pixel; x N: N times."}, "/format"},
-    {{"bytes_per_pixel", "bytes/pixel", "bytes", "What this surface takes per pixel."}, "/bytes_per_pixel"},
+    {{"format", "format", "", "What is stored per pixel; \"x N\" means N times."}, "/format"},
+    {{"bytes_per_pixel", "bytes/pixel", "bytes", "Size of this surface per pixel."}, "/bytes_per_pixel"},
 };
 
-// What the registry of counters has, two quotients and modelled times.
+// The counters of the registry, two ratios, and modelled times.
 std::vector<Source> stage_columns(const ReportFile& report) {
   std::vector<Source> columns = {
-      {{"technique", "technique", "", "The spec that names the technique."}, "/technique"},
-      {{"stage", "stage", "", "A stage of the technique's pipeline; stages stand in pipeline order."}, "/stage"}};
+      {{"technique", "technique", "", "The technique's spec."}, "/technique"},
+      {{"stage", "stage", "", "A stage of the technique's pipeline, in pipeline order."}, "/stage"}};
   for (const CounterInfo& counter : stage_counters()) {
     std::string key = counter.name, pointer = "/" + key;
     std::replace(pointer.begin(), pointer.end(), '.', '/');
@@ -73,58 +74,62 @@ std::vector<Source> stage_columns(const ReportFile& report) {
     columns.push_back(
         {{key == "total" ? "ops" : key, counter.title, counter.unit, sentence(counter.meaning)}, pointer});
   }
-  columns.push_back(
-      {{"ops_per_byte", "op/byte", "operations per byte", "Operations by logical bytes read and written."},
-       "/ops_per_byte"});
-  columns.push_back({{"lane_use", "lane use", "part, 0..1", "Lanes with work by lanes issued."}, "/lane_use"});
+  columns.push_back({{"ops_per_byte", "op/byte", "operations per byte", "Operations per logical byte read or written."},
+                     "/ops_per_byte"});
+  columns.push_back({{"lane_use", "lane use", "part, 0..1", "Lanes with work, divided by lanes issued."}, "/lane_use"});
   for (const auto& [implementation, ms] : report.techniques.front().modelled_ms)
     columns.push_back({{"modelled_ms_" + implementation, "modelled, " + implementation, "ms",
-                        "What the modelled hardware takes for this stage: the time of its busiest unit."},
+                        "Time that the modelled hardware takes for this stage, which is that of its busiest unit."},
                        "/modelled_ms/" + implementation});
   return columns;
 }
 
 const std::vector<Source> kFrameColumns = {
-    {{"technique", "technique", "", "The spec that names the technique."}, "/technique"},
-    {{"frame", "frame", "index", "The frame's index in the trace, from 0."}, "/index"},
-    {{"wall_ms", "wall time", "ms", "Median of the runs of this frame."}, "/wall_ms/median"},
-    {{"wall_ms_min", "fastest", "ms", "The fastest run of this frame."}, "/wall_ms/min"},
-    {{"wall_ms_max", "slowest", "ms", "The slowest run of this frame."}, "/wall_ms/max"},
-    {{"runs", "runs", "runs", "How often this frame was timed."}, "/wall_ms/runs"},
+    {{"technique", "technique", "", "The technique's spec."}, "/technique"},
+    {{"frame", "frame", "index", "The frame's index in the trace; the first is 0."}, "/index"},
+    {{"wall_ms", "wall time", "ms", "Median time of the runs of this frame."}, "/wall_ms/median"},
+    {{"wall_ms_min", "fastest", "ms", "Time of the fastest run of this frame."}, "/wall_ms/min"},
+    {{"wall_ms_max", "slowest", "ms", "Time of the slowest run of this frame."}, "/wall_ms/max"},
+    {{"runs", "runs", "runs", "Number of timed runs of this frame."}, "/wall_ms/runs"},
     {{"modelling_ms", "with memory model", "ms",
-      "One rendering more, which modelled caches and DRAM, for the counts. Absent: the wall time has that in it."},
+      "Time of the additional run that modelled caches and DRAM and gave the counts. If there is none, the wall time "
+      "includes the modelling."},
      "/wall_ms/modelling_run"},
-    {{"a_buffer_peak_bytes", "A-buffer", "bytes", "The most that the A-buffer held."}, "/a_buffer_peak_bytes"},
-    {{"logical_bytes", "logical", "bytes", "What all stages read and write, each time they do."}, "/logical_bytes"},
-    {{"sector_bytes", "sectors", "bytes", "What all stages ask of the memory system, in sectors of 32 bytes."},
+    {{"a_buffer_peak_bytes", "A-buffer", "bytes", "The largest size of the A-buffer."}, "/a_buffer_peak_bytes"},
+    {{"logical_bytes", "logical", "bytes", "Bytes that all stages read and write, counted at every access."},
+     "/logical_bytes"},
+    {{"sector_bytes", "sectors", "bytes",
+      "Bytes that all stages request from the memory system, in sectors of 32 bytes."},
      "/sector_bytes"},
-    {{"l2_bytes", "L2", "bytes", "What is asked of L2, in sectors: what the caches before it do not hold or evict."},
+    {{"l2_bytes", "L2", "bytes",
+      "Bytes requested from L2, in sectors: what the caches closer to the stages miss or write back."},
      "/l2_bytes"},
-    {{"dram_bytes", "DRAM", "bytes", "Moved to and from DRAM behind the modelled caches, read and written."},
+    {{"dram_bytes", "DRAM", "bytes", "Bytes that move between the modelled caches and DRAM, in either direction."},
      "/dram_bytes"},
-    {{"rmse", "RMSE", "linear light, 0..1", "Root of the mean square error of this frame."}, "/error/rmse"},
+    {{"rmse", "RMSE", "linear light, 0..1", "Root mean square error of this frame."}, "/error/rmse"},
     {{"bias", "bias", "linear light, 0..1", "Mean signed error of this frame."}, "/error/bias"},
-    {{"flicker", "flicker", "linear light, 0..1", "RMS change of the error since the frame before."}, "/flicker"},
+    {{"flicker", "flicker", "linear light, 0..1", "Root mean square change of the error since the previous frame."},
+     "/flicker"},
 };
 
 const std::vector<Source> kClaimColumns = {
-    {{"claim", "claim", "", "What the publications say a technique takes or does."}, "/name"},
-    {{"unit", "unit", "", "What the claim's numbers count."}, "/unit"},
-    {{"published_low", "published", "see unit", "The number that is published, or the lower end of the range."},
+    {{"claim", "claim", "", "What a publication says about a technique."}, "/name"},
+    {{"unit", "unit", "", "The unit of the claim's numbers."}, "/unit"},
+    {{"published_low", "published", "see unit", "The published number, or the lower end of the published range."},
      "/published_low"},
-    {{"published_high", "up to", "see unit", "The upper end of the range that is published; a dash: or more."},
+    {{"published_high", "up to", "see unit", "The upper end of the published range; a dash means \"or more\"."},
      "/published_high"},
     {{"ours", "ours", "see unit",
-      "What this program finds, of this report; `beampipe claims` lists the claims that it does not answer as well."},
+      "The number in this report. `beampipe claims` also lists the claims that this report has no number for."},
      "/ours"},
-    {{"difference", "difference", "see unit", "Ours, less the nearer end of what is published; 0 within it."},
+    {{"difference", "difference", "see unit", "Ours minus the nearer end of the published range; 0 within the range."},
      "/difference"},
-    {{"source", "source", "", "Where the claim stands."}, "/source"},
-    {{"beside", "what ours is", "", "Where ours is not the same quantity: what it is."}, "/beside"},
-    {{"command", "command", "", "What finds our number."}, "/command"},
+    {{"source", "source", "", "The place of the claim in the publication."}, "/source"},
+    {{"beside", "what ours is", "", "What our number is, if it is not the same quantity."}, "/beside"},
+    {{"command", "command", "", "The command that finds our number."}, "/command"},
 };
 
-// Null where one of the keys on the way, which have "/" before them, is missing.
+// The value at a path of keys, each after a "/". Null if one of them is missing.
 const Json* value_at(const Json& record, std::string_view pointer) {
   const Json* value = &record;
   while (value && !pointer.empty()) {
@@ -151,7 +156,7 @@ Table make_table(const std::string& name, const std::string& title, const std::v
   return table;
 }
 
-// Two more columns behind the DRAM bytes for each way in which the modelled hardware runs the techniques.
+// Adds two columns after the DRAM bytes for each implementation of the modelled hardware.
 std::vector<Source> with_modelled_times(std::vector<Source> sources, const ReportFile& report,
                                         const std::string& unit) {
   auto place =
@@ -159,14 +164,12 @@ std::vector<Source> with_modelled_times(std::vector<Source> sources, const Repor
   for (const auto& [implementation, ms] : report.techniques.front().modelled_ms) {
     const std::string key = "modelled_ms_" + implementation, pointer = "/modelled_ms/" + implementation;
     const std::string title = "modelled, " + implementation + ", ";
-    const Source overlap = {
-        {key + "_overlap", title + "overlap", unit,
-         "What the modelled hardware takes when all stages run at once: the time of its busiest unit."},
-        pointer + "/overlap"};
-    const Source sum = {
-        {key + "_sum", title + "sum", unit,
-         "What the modelled hardware takes when the stages run one after the other: the sum of theirs."},
-        pointer + "/sum"};
+    const Source overlap = {{key + "_overlap", title + "overlap", unit,
+                             "Modelled time if all stages run at once: the time of the busiest unit."},
+                            pointer + "/overlap"};
+    const Source sum = {{key + "_sum", title + "sum", unit,
+                         "Modelled time if the stages run one after the other: the sum of their times."},
+                        pointer + "/sum"};
     place = std::next(sources.insert(std::next(place), {overlap, sum}));
   }
   return sources;
@@ -179,7 +182,7 @@ std::vector<Json> technique_records(const ReportFile& report) {
     Json record = result;
     const TechniqueSummary summary = read_summary(result);
     record["wall_ms"] = summary.wall_ms;
-    if (summary.dram_bytes > 0) record["dram_bytes"] = summary.dram_bytes;  // else nothing was modelled
+    if (summary.dram_bytes > 0) record["dram_bytes"] = summary.dram_bytes;  // otherwise no memory was modelled
     for (const auto& [implementation, ms] : summary.modelled_ms)
       record["modelled_ms"][implementation] = {{"overlap", ms.overlap}, {"sum", ms.sum}};
     if (summary.emr) {
@@ -193,7 +196,7 @@ std::vector<Json> technique_records(const ReportFile& report) {
   return records;
 }
 
-// The members of each record's array `key`, each with the record's technique.
+// The elements of each result's array `key`, each with the result's technique.
 std::vector<Json> members(const Json& results, const std::string& key) {
   std::vector<Json> records;
   for (const Json& result : results.elements()) {
@@ -205,7 +208,7 @@ std::vector<Json> members(const Json& results, const std::string& key) {
   return records;
 }
 
-// What each technique's shortcuts saved, over all frames.
+// The work that each technique saved, over all frames.
 std::vector<Json> saved_records(const Json& results) {
   std::vector<Json> records;
   for (const Json& result : results.elements()) {
@@ -221,7 +224,7 @@ std::vector<Json> saved_records(const Json& results) {
 }
 
 std::vector<Source> saved_columns() {
-  std::vector<Source> columns = {{{"technique", "technique", "", "The spec that names the technique."}, "/technique"}};
+  std::vector<Source> columns = {{{"technique", "technique", "", "The technique's spec."}, "/technique"}};
   std::vector<SavedWork> all = saved_work({{"sample_raster"}});
   for (const SavedWork& saved : saved_work({{"conservative_raster"}, {"a_buffer"}, {"beam_fragment"}, {"compose"}}))
     if (saved.name != std::string("empty_tiles") && saved.name != std::string("hidden_triangles")) all.push_back(saved);

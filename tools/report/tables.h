@@ -1,4 +1,4 @@
-// The numbers of a report as tables: for the page, and as CSV files.
+// The numbers of a report as tables, for the page and for CSV files.
 #pragma once
 
 #include <string>
@@ -20,17 +20,17 @@ struct Table {
   std::string name;   // for files: "techniques"
   std::string title;  // on the page
   std::vector<Column> columns;
-  std::vector<std::vector<Json>> rows;  // beside columns: a number, a string, or null
+  std::vector<std::vector<Json>> rows;  // one value per column: a number, a string or null
 };
 
-// Techniques, surfaces of their framebuffers, stages, frames (when there are several), claims (when there are some).
-// A column of which the report has no value is left out. Throws ReportError.
+// The tables of techniques, of their framebuffers' surfaces, of stages, of saved work, of frames (if there are several)
+// and of claims (if there are any). A column for which the report has no value is left out. Throws JsonError.
 std::vector<Table> report_tables(const ReportFile& report);
 
-// A definition as the registry of counters has it, as a sentence.
+// Makes a sentence of a definition of the registry of counters: a capital letter and a full stop.
 std::string sentence(std::string definition);
 
-// RFC 4180, one line of keys in front; null is an empty field.
+// CSV (RFC 4180). The first line has the keys; null is an empty field.
 std::string csv_text(const Table& table);
 
 }  // namespace beampipe

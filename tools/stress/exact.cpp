@@ -13,8 +13,8 @@ using Rational = boost::multiprecision::cpp_rational;
 using Integer = boost::multiprecision::cpp_int;
 using Vector4 = std::array<Rational, 4>;
 
-constexpr std::int64_t kUnits = 256;          // of the snapping grid per pixel
-constexpr std::int64_t kGuardPixels = 32768;  // a vertex lies at most so far from the viewport's origin
+constexpr std::int64_t kUnits = 256;          // steps of the snapping grid per pixel
+constexpr std::int64_t kGuardPixels = 32768;  // the largest distance of a vertex from the viewport's origin
 
 // ---- Vertices
 
@@ -66,13 +66,13 @@ struct Point {
   Rational x, y;
 };
 
-// z = zx x + zy y + z0, of the plane through a triangle's snapped vertices.
+// The plane through a triangle's snapped vertices: z = zx x + zy y + z0.
 struct Plane {
   Rational zx, zy, z0;
 };
 
 struct ScreenTriangle {
-  std::array<std::int64_t, 3> x, y;  // so ordered that the inside is on the positive side of every edge
+  std::array<std::int64_t, 3> x, y;  // in such an order that the inside is on the positive side of every edge
   Plane depth;
   glm::dvec3 color;
 };
@@ -143,7 +143,7 @@ std::vector<ScreenTriangle> screen_triangles(const Trace& trace, const Frame& fr
 
 using Polygon = std::vector<Point>;
 
-// The inside is where a x + b y + c >= 0.
+// The half plane a x + b y + c >= 0.
 struct HalfPlane {
   Rational a, b, c;
   Rational at(const Point& p) const { return a * p.x + b * p.y + c; }
@@ -183,10 +183,10 @@ std::array<HalfPlane, 3> edges_of(const ScreenTriangle& t) {
   return edges;
 }
 
-// The convex set where these half-planes meet: what one triangle hides of another.
+// The intersection of half planes: the convex set that one triangle hides of another.
 using HalfPlanes = std::vector<HalfPlane>;
 
-// The pieces of `pieces` outside the set.
+// The parts of the pieces that lie outside the set.
 std::vector<Polygon> without(const std::vector<Polygon>& pieces, const HalfPlanes& set) {
   std::vector<Polygon> outside;
   for (Polygon rest : pieces) {
@@ -202,7 +202,7 @@ std::vector<Polygon> without(const std::vector<Polygon>& pieces, const HalfPlane
   return outside;
 }
 
-// Is all of the box strictly on the inner side of all edges, all on the outer side of one, or neither?
+// Whether a whole pixel lies strictly inside all edges, outside one of them, or neither.
 enum class Side { inside, outside, crossing };
 
 Side side_of(const ScreenTriangle& t, std::int64_t left, std::int64_t top) {
@@ -243,13 +243,14 @@ glm::dvec4 pixel_areas(const std::vector<const ScreenTriangle*>& touching, std::
     for (std::size_t j = 0; j < touching.size() && !visible.empty(); ++j) {
       if (j == i) continue;
       const Plane &mine = touching[i]->depth, &other = touching[j]->depth;
-      const HalfPlane nearer{mine.zx - other.zx, mine.zy - other.zy, mine.z0 - other.z0};  // the other is, where >= 0
+      const HalfPlane nearer{mine.zx - other.zx, mine.zy - other.zy,
+                             mine.z0 - other.z0};  // the other triangle is nearer where this is >= 0
       const auto edges = edges_of(*touching[j]);
       HalfPlanes hides(edges.begin(), edges.end());
       if (nearer.a == 0 && nearer.b == 0) {
         if (nearer.c < 0 || (nearer.c == 0 && j > i)) continue;
       } else {
-        hides.push_back(nearer);  // where they cross, a line without area
+        hides.push_back(nearer);  // they intersect in a line, which has no area
       }
       visible = without(visible, hides);
     }
@@ -292,7 +293,7 @@ glm::dvec4 pixel_samples(const std::vector<const ScreenTriangle*>& touching, std
   return blended(shares, background);
 }
 
-// The pixels that the triangles' bounds touch.
+// Sets the rectangle of pixels that the triangles' bounds touch.
 void bound(const std::vector<ScreenTriangle>& triangles, const Frame& frame, ExactPicture& picture) {
   const auto within = [](std::int64_t pixel, std::uint32_t side) {
     return static_cast<int>(std::clamp<std::int64_t>(pixel, 0, side));

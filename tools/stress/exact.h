@@ -1,5 +1,5 @@
-// What a frame looks like, by exact rational arithmetic from the trace's own numbers: nothing in it is rounded but what
-// the pipeline is specified to round, vertices to 1/256 px. Slow, and shares no code with the stages.
+// The exact picture of a frame, computed in rational arithmetic from the trace's own numbers. Nothing is rounded except
+// what the pipeline must round: vertices, to 1/256 px. This is slow, and it shares no code with the stages.
 #pragma once
 
 #include <cstdint>
@@ -10,13 +10,14 @@
 
 namespace beampipe {
 
-// Places in a pixel, in 1/256 px from its upper left corner.
+// Places in a pixel, in units of 1/256 px from its upper left corner.
 using SamplePlaces = std::vector<glm::ivec2>;
 
-// RGBA of every pixel of a frame, row 0 on top: one by one in a rectangle around the triangles, alike elsewhere.
+// The RGBA of every pixel of a frame, row 0 on top: individual values in a rectangle around the triangles, and one
+// value for all other pixels.
 struct ExactPicture {
   glm::ivec2 low{0}, high{0};    // pixels [low, high)
-  std::vector<glm::dvec4> rgba;  // of those, row by row
+  std::vector<glm::dvec4> rgba;  // of these pixels, row by row
   glm::dvec4 elsewhere{0};
 
   const glm::dvec4& at(int x, int y) const {
@@ -26,11 +27,12 @@ struct ExactPicture {
   }
 };
 
-// Colours weighted by visible area, A the covered area. Depth LESS, at equal depth the earlier triangle. Unlit draws
-// without culling only; time grows with the cube of the triangles that overlap in a pixel.
+// Each colour counts by its visible area; A is the covered area. Of two triangles the nearer one is visible, at equal
+// depth the earlier one. Draws must be unlit and without culling. The time grows with the cube of the number of
+// triangles that overlap in a pixel.
 ExactPicture exact_areas(const Trace& trace, const Frame& frame);
 
-// The same with the mean of the samples at these places (top-left rule) in place of the area.
+// The same, but instead of areas the mean of samples at these places counts, with the top-left rule.
 ExactPicture exact_samples(const Trace& trace, const Frame& frame, const SamplePlaces& places);
 
 }  // namespace beampipe

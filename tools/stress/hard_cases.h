@@ -1,4 +1,4 @@
-// Traces that are hard on arithmetic, each with what is exactly true of it.
+// Traces that are hard on arithmetic, with what is known exactly about their pictures.
 #pragma once
 
 #include <functional>
@@ -12,7 +12,7 @@
 
 namespace beampipe {
 
-// How far a technique may be from the truth in one case, and why: what it is known not to do.
+// The largest error that a technique may have in a case, and the known reason for it.
 struct StatedLimit {
   double error;
   std::string reason;
@@ -20,20 +20,20 @@ struct StatedLimit {
 
 struct HardCase {
   std::string name;
-  std::string what;  // is hard about it
+  std::string what;  // is hard about it: a short phrase
   Trace trace;       // one frame
-  // What every pixel is, where it follows from how the trace was made; else tools/stress/exact.h works the picture out.
+  // The RGBA of every pixel, if it follows from how the trace was made. Otherwise tools/stress/exact.h computes it.
   std::optional<glm::dvec4> everywhere;
-  // By a spec, or what it starts with up to a ":" or ",": the longest counts. Others must be right to the last bit of
-  // their formats.
+  // By spec, or by the start of specs up to a ":" or ","; the longest one that fits counts. All other techniques must
+  // be correct to the last bit of their formats.
   std::map<std::string, StatedLimit> limits;
 };
 
-// An upper bound of the part of a pixel, 0..1, that a straight edge can cut off without one of so many mask positions
-// (simd/sample_pattern.h: cell_patterns).
+// An upper bound of the part of a pixel, 0..1, that a straight edge can cut off without touching any of so many mask
+// positions (cell_patterns in simd/sample_pattern.h).
 double largest_cut(int positions);
 
-// In a fixed order. Heavy: also those that take gigabytes and minutes.
+// All cases in a fixed order; `with_heavy` adds those that take gigabytes and minutes.
 std::vector<HardCase> hard_cases(bool with_heavy);
 
 }  // namespace beampipe

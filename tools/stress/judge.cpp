@@ -30,7 +30,7 @@ SamplePlaces places_of(const std::vector<SamplePattern>& patterns) {
 
 std::string name_of(const std::string& spec) { return spec.substr(0, spec.find(':')); }
 
-// Where a technique samples in its first frame; nothing when it works with areas.
+// The places of a technique's samples in its first frame; none if it works with areas.
 SamplePlaces places_of(const std::string& spec) {
   const std::string name = name_of(spec);
   if (name == "msaa" || name == "acaa") return places_of(msaa_sampling(std::atoi(spec.c_str() + name.size() + 1)));
@@ -43,12 +43,12 @@ SamplePlaces places_of(const std::string& spec) {
 
 double format_limit(const std::string& spec) {
   if (spec == "reference") return kReferenceError;
-  // One share per sample at most, and the background.
+  // At most one share per sample, and the background.
   if (spec.find("color=unorm8") != spec.npos) return (std::atoi(spec.c_str() + spec.find(':') + 1) + 1) * kUnorm8Error;
   return kFormatError;
 }
 
-// That of the spec, or else of it without its last options, one after the other.
+// The limit for the spec. If there is none, the last option is dropped, then the one before it, and so on.
 const StatedLimit* stated_limit(const HardCase& hard_case, std::string spec) {
   while (true) {
     const auto stated = hard_case.limits.find(spec);
@@ -83,7 +83,7 @@ Verdict Judge::judge(const Technique& technique, const RunOptions& options) {
       for (int c = 0; c < 4; ++c) {
         const double error = std::abs(static_cast<double>(found[c]) - truth.at(x, y)[c]);
         if (std::isnan(verdict.error) || error <= verdict.error) continue;
-        verdict.error = error;  // NaN too
+        verdict.error = error;  // also if it is NaN
       }
     }
   }

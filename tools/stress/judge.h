@@ -1,4 +1,4 @@
-// How wrong a technique is in a hard case, against exact arithmetic.
+// Compares what a technique renders in a hard case with exact arithmetic.
 #pragma once
 
 #include <optional>
@@ -10,22 +10,22 @@
 
 namespace beampipe {
 
-// Colours up to 1 in fp16: half a unit in the last place is 2^-12 for each of two roundings.
+// For colours up to 1 in fp16: two roundings of half a unit in the last place, which is 2^-12.
 inline constexpr double kFormatError = 0x1p-11;
-inline constexpr double kUnorm8Error = 0.5 / 255;  // of each sum in 8 bits
+inline constexpr double kUnorm8Error = 0.5 / 255;  // of each sum that is rounded to 8 bits
 
-// The reference's samples against the exact area: an edge may pass all 16 samples of a row on the wrong side by one
-// sample's distance, 1/16 of a row; rows are shifted against each other, so that errors of neighbours cancel.
+// The error of the reference's samples against the exact area. In each row of samples, an edge can be off by at most
+// one sample. Rows are shifted against each other, so that the errors of neighbouring rows cancel.
 inline constexpr double kReferenceError = 0x1p-8;
 
 struct Verdict {
-  double error = 0;                               // largest, over pixels and R, G, B, A
-  double limit = 0;                               // that is stated for it
-  std::string reason;                             // of a limit that is not the format's
+  double error = 0;                               // the largest over all pixels and R, G, B, A
+  double limit = 0;                               // the largest error allowed
+  std::string reason;                             // of the limit; empty if it is that of the format
   bool passes() const { return error <= limit; }  // false for NaN
 };
 
-// Techniques that sample are held to the exact value of their samples, all others to the exact area.
+// Techniques that sample are compared with exact samples at the same places, all others with exact areas.
 class Judge {
  public:
   explicit Judge(const HardCase& hard_case) : case_(hard_case) {}
@@ -36,7 +36,7 @@ class Judge {
   const ExactPicture& areas();
 
   const HardCase& case_;
-  std::optional<ExactPicture> areas_;  // worked out when first asked for
+  std::optional<ExactPicture> areas_;  // computed when it is first needed
 };
 
 }  // namespace beampipe

@@ -149,10 +149,10 @@ TEST_F(ResumeTest, AnErrorInALaterFrameLosesNothingThatWasFinished) {
   EXPECT_TRUE(fs::exists(folder_ / "out/unfinished/frame_0000.json"));
   const auto first = fs::last_write_time(folder_ / "out/msaa_2/frame_0000.exr");
   const Outcome outcome = succeed(resume("run", "out", specs));
-  EXPECT_EQ(
-      outcome.err,
-      "beampipe: 1 of 3 frames are there; going on at frame 1 (taa:4: earlier frames are rendered again for their "
-      "history)\n");
+  EXPECT_EQ(outcome.err,
+            "beampipe: 1 of 3 frames are finished; continuing with frame 1 (taa:4: earlier frames are rendered again, "
+            "because the next "
+            "ones depend on them)\n");
   EXPECT_EQ(fs::last_write_time(folder_ / "out/msaa_2/frame_0000.exr"), first) << "not written again";
   EXPECT_EQ(differences("out", "whole"), std::set<std::string>{});
 }
@@ -284,7 +284,7 @@ TEST_F(ResumeTest, WhatIsFinishedStaysAsItIs) {
   succeed(command("run", "out", {"msaa:2"}));
   EXPECT_FALSE(fs::exists(folder_ / "out/unfinished"));
   const std::string report = read_text(folder_ / "out/report.json");
-  EXPECT_EQ(succeed(resume("run", "out", {"msaa:2"})).out.find("finished already\n"), 0u);
+  EXPECT_EQ(succeed(resume("run", "out", {"msaa:2"})).out.find("already finished\n"), 0u);
   EXPECT_EQ(read_text(folder_ / "out/report.json"), report) << "with its times";
   refused(resume("run", "out", {"msaa:2", "--repeat", "2"}));
 }

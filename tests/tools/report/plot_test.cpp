@@ -167,7 +167,7 @@ TEST_F(PlotTest, ErrorsAreOneLine) {
   expect_error({"plot", path("empty"), "-o", path("p.svg")}, 1,
                "empty/report.json: expected a readable file, found none");
   expect_error({"plot", path("broken"), "-o", path("p.svg")}, 1, "broken/report.json: byte 24: expected valid JSON");
-  expect_error({"plot", path("other"), "-o", path("p.svg")}, 1, "not a report that beampipe wrote");
+  expect_error({"plot", path("other"), "-o", path("p.svg")}, 1, "not a report of beampipe");
   expect_error({"plot", path("run"), "-o", path("p.svg")}, 1, "expected the report of `beampipe compare`");
   expect_error({"plot", path("good"), "--kind", "pie", "-o", path("p.svg")}, 2, "pie");
 

@@ -1,7 +1,7 @@
 "use strict";
 // Elements, numbers as text, and the tooltip.
 
-// An element with attributes and children; what is not an element becomes text.
+// Makes an element with attributes and children. Children that are no elements become text.
 function make(tag, attributes = {}, ...children) {
   const element = document.createElement(tag);
   for (const [name, value] of Object.entries(attributes)) element.setAttribute(name, value);
@@ -11,7 +11,7 @@ function make(tag, attributes = {}, ...children) {
 
 const byId = (id) => document.getElementById(id);
 
-// For reading: whole numbers in groups of three, others to four digits, nothing as a dash.
+// A number as text for reading: whole numbers with groups of three digits, others with four digits, a dash for nothing.
 function numberText(value) {
   if (value === null || value === undefined) return "–";
   if (typeof value === "string") return value;

@@ -8,7 +8,7 @@ function makeCard(title, technique, text) {
   return make("div", { class: "card" }, title, make("strong", {}, technique), text);
 }
 
-// Who is most accurate, at any price and in the memory of msaa:8.
+// The techniques with the smallest error: of all, and of those that need no more memory than msaa:8.
 function makeCards(table) {
   const kBudget = 80;  // bytes per pixel
   const of = (row, key) => cell(table, row, key);
@@ -16,16 +16,16 @@ function makeCards(table) {
   const best = (rows) => rows.slice().sort((a, b) => of(a, "rmse") - of(b, "rmse"))[0];
   const winner = best(rivals), frugal = best(rivals.filter((row) => of(row, "peak_bytes_per_pixel") <= kBudget));
   const makeup = (row) => of(row, "a_buffer_peak_bytes") === 0 ? ""
-    : ` (${numberText(of(row, "framebuffer_bytes_per_pixel"))} of the framebuffer, the rest an A-buffer at its peak)`;
-  const budget = `in at most ${kBudget} bytes per pixel, what 8× MSAA takes`;
+    : ` (${numberText(of(row, "framebuffer_bytes_per_pixel"))} in the framebuffer, the rest in the A-buffer at its peak)`;
+  const budget = `with at most ${kBudget} bytes per pixel, as many as 8× MSAA takes`;
   const cards = [];
   for (const [title, row] of winner === frugal ? [[`Most accurate of all, and ${budget}`, winner]]
     : [["Most accurate", winner], [`Most accurate ${budget}`, frugal]]) {
     if (!row) continue;
     const bound = { exact: "", "at least": "at least ", "at most": "at most " }[of(row, "emr_bound")];
     cards.push(makeCard(title, of(row, "technique"),
-      `RMSE ${numberText(of(row, "rmse"))}, as good as MSAA with ${bound}${numberText(Math.round(of(row, "emr")))} samples, ` +
-      `in ${numberText(of(row, "peak_bytes_per_pixel"))} bytes per pixel${makeup(row)} where that takes ` +
+      `RMSE ${numberText(of(row, "rmse"))}, as good as MSAA with ${bound}${numberText(Math.round(of(row, "emr")))} samples. ` +
+      `Takes ${numberText(of(row, "peak_bytes_per_pixel"))} bytes per pixel${makeup(row)}; such MSAA takes ` +
       `${bound}${numberText(Math.round(of(row, "msaa_bytes_per_pixel")))}.`));
   }
   return cards;

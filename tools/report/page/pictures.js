@@ -28,12 +28,13 @@ function decodeOnce(url) {
 
 const isLogarithmic = () => byId("map-log").checked;
 
-// One scale for a kind of map in all techniques: ramp(part) is a colour, part(value) from 0 to 1, value(part).
+// The scale of a kind of map, which is the same for all techniques. part(value) is from 0 to 1, value(part) is its
+// inverse, and ramp(part) is a colour.
 function scaleOf(kind) {
   const maps = data.layers.techniques.flatMap((technique) => technique.maps.filter((map) => map.name === kind));
   const low = d3.min(maps, (map) => map.low), high = d3.max(maps, (map) => map.high);
   const linear = { low, high, ramp: low < 0 ? (t) => d3.interpolateRdBu(1 - t) : d3.interpolateInferno };
-  if (low < 0) linear.low = -(linear.high = Math.max(-low, high));  // 0 in the middle
+  if (low < 0) linear.low = -(linear.high = Math.max(-low, high));  // puts 0 in the middle
   const scale = isLogarithmic() && low >= 0
     ? d3.scaleSymlog().constant(maps.every((map) => map.step === 1) ? 1 : high / 1000)
     : d3.scaleLinear();
@@ -41,7 +42,7 @@ function scaleOf(kind) {
   return { ...linear, part: scale, value: scale.invert };
 }
 
-// { width, height, canvas, valueAt(x, y) as text } of a technique's picture or map.
+// A technique's picture or map: { width, height, canvas, valueAt(x, y) }. valueAt returns text.
 async function loadLayer(technique, name) {
   const map = mapNamed(technique, name);
   const { width, height, rgba } = await decodeOnce(map ? map.png : techniqueNamed(technique).picture);
@@ -81,8 +82,8 @@ function makeLegend(title, kind) {
 
 // ---- The view that all canvases share ----
 
-const kLargestPixel = 64;  // how large one pixel can be shown, in CSS pixels
-const view = { k: 1, x: 0, y: 0, panes: [], cursor: null };  // x, y: of the picture's corner, in widths of the canvas
+const kLargestPixel = 64;  // the largest size of a picture's pixel on the screen, in CSS pixels
+const view = { k: 1, x: 0, y: 0, panes: [], cursor: null };  // x, y: the picture's corner, in widths of the canvas
 
 function redrawAll() {
   if (view.waiting) return;
@@ -93,7 +94,8 @@ function redrawAll() {
   });
 }
 
-// A pane: { canvas, size(): layer that gives the aspect, paint(context, drawLayer), filter(event), onCursor() }.
+// A pane is { canvas, size(), paint(context, drawLayer), filter(event), onCursor() }; size() returns a layer with the
+// pane's aspect ratio.
 function drawPane(pane) {
   const { canvas } = pane, layer = pane.layer(), width = canvas.clientWidth;
   if (!layer || width === 0) return;
@@ -102,7 +104,7 @@ function drawPane(pane) {
   canvas.width = Math.round(width * ratio);
   canvas.height = Math.round(height * ratio);
   const context = canvas.getContext("2d");
-  const scale = view.k * canvas.width / layer.width;  // device pixels per pixel
+  const scale = view.k * canvas.width / layer.width;  // device pixels per pixel of the picture
   context.imageSmoothingEnabled = scale < 1;
   const drawLayer = ({ canvas: source }) => {
     context.setTransform(scale, 0, 0, scale, view.x * canvas.width, view.y * canvas.width);
@@ -149,7 +151,7 @@ function moveCursor(pane, dx, dy) {
   setCursor({ x, y });
 }
 
-// Zooms around the cursor, or the middle.
+// Zooms around the cursor, or around the middle if there is no cursor.
 function zoomBy(pane, factor) {
   const layer = pane.layer(), width = pane.canvas.clientWidth;
   const around = view.cursor && d3.zoomTransform(pane.canvas)
@@ -174,7 +176,7 @@ function pressKey(pane, event) {
 
 function addPane(pane) {
   const { canvas } = pane;
-  // The wheel scrolls the page, and one finger does, until the picture was clicked or zoomed.
+  // The wheel and one finger scroll the page until the picture has been clicked or zoomed.
   const mayZoom = (event) => event.type === "wheel" ? event.ctrlKey || document.activeElement === canvas
     : event.touches ? event.touches.length > 1 || view.k > 1 : event.button === 0;
   pane.zoom = d3.zoom().filter(() => mayZoom(d3.event) && (pane.filter?.(d3.event) ?? true)).on("zoom", () => {

@@ -1,8 +1,8 @@
-// Plots, drawn by D3 as wide as there is room.
+// Plots, drawn by D3 in the width of the page.
 
 const boundText = { none: "", lower: "≥ ", upper: "≤ " };
 
-// Places each label where it lies on no obstacle and no label yet; leaves out those for which there is no such place.
+// Places each label where it covers no obstacle and no other label. Labels without such a place are left out.
 // Obstacles are squares: { x, y, radius }.
 function placeLabels(labels, obstacles, width, height) {
   const boxes = obstacles.map(({ x, y, radius: r }) => ({ x0: x - r, y0: y - r, x1: x + r, y1: y + r }));
@@ -34,7 +34,7 @@ function lineObstacles(points) {
   });
 }
 
-// Powers of ten; on short axes twice and five times them too.
+// The powers of ten, and on short axes also two and five times these.
 function logTicks(scale) {
   const [low, high] = scale.domain(), decades = Math.log10(high / low);
   const values = d3.range(Math.floor(Math.log10(low)), Math.ceil(Math.log10(high)) + 1)
@@ -42,7 +42,7 @@ function logTicks(scale) {
   return values.filter((value) => value >= low && value <= high);
 }
 
-// A logarithmic scale with a little room at both ends.
+// A logarithmic scale with some room at both ends.
 function logScale(values, range) {
   const low = d3.min(values), high = d3.max(values);
   const room = Math.max(1.2, (high / low) ** 0.07);

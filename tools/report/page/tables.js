@@ -1,7 +1,7 @@
-// Tables: sorted by a click on a column's title, which tells on hover what the column means.
+// Tables. A click on a column's title sorts by it, and hovering over it shows what the column means.
 
 function compareCells(a, b) {
-  if (a === null || b === null) return (a === null) - (b === null);  // nothing comes last
+  if (a === null || b === null) return (a === null) - (b === null);  // empty cells come last
   return typeof a === "number" ? a - b : a.localeCompare(b);
 }
 

@@ -1,0 +1,141 @@
+// Whatever goes wrong, the program says so in one line and leaves nothing half done.
+#include <sys/resource.h>
+#include <sys/stat.h>
+
+#include <filesystem>
+
+#include "tests/tools/cli/program_fixture.h"
+
+namespace beampipe {
+namespace {
+
+TEST_F(ProgramTest, EveryMistakeIsOneLineAndLeavesNothing) {
+  write_text(folder_ / "broken.json", "{\"beampipe_trace\": 1,");
+  write_text(folder_ / "model.obj", "v 0 0 0\nv 4 0 0\nv 0 3 0\nf 1 2 3\n");
+  write_text(folder_ / "nested.json", std::string(1 << 20, '['));
+  for (const char* report : {"piped", "endless"}) std::filesystem::create_directory(folder_ / report);
+  ASSERT_EQ(mkfifo(path("piped/report.json").c_str(), 0666), 0);
+  std::filesystem::create_symlink("/dev/zero", folder_ / "endless/report.json");
+  const std::string trace = path("trace.json"), out = path("out");
+  const struct {
+    std::vector<std::string> arguments;
+    int exit_code;
+    std::string part;
+  } mistakes[] = {
+      {{}, 2, "subcommand"},
+      {{"frobnicate"}, 2, "no command frobnicate"},
+      {{"run", trace, "-t", "beam"}, 2, "--output"},
+      {{"run", trace, "-o", out}, 2, "--technique"},
+      {{"run", trace, "-t", "nonsense", "-o", out}, 2, "nonsense"},
+      {{"run", trace, "-t", "beam\nbeam", "-o", out}, 2, "beam beam"},
+      {{"run", trace, "-t", "msaa:3", "-o", out}, 2, "msaa:3"},
+      {{"run", trace, "-t", "beam", "beam", "-o", out}, 2, "twice"},
+      {{"run", "-t", "beam", trace, "-o", out}, 2, "was taken for a technique; write the trace before -t"},
+      {{"run", "-t", "beam", "-o", out}, 2, "TRACE is missing"},
+      {{"run", "/dev/zero", "-t", "beam", "-o", out}, 1, "expected a regular file"},
+      {{"run", trace, "-t", "beam", "-o", out, "--hardware", path("piped/report.json")}, 1, "expected a regular file"},
+      {{"run", trace, "-t", "beam", "-o", out, "--hardware", "/dev/zero"}, 1, "expected a regular file"},
+      {{"run", trace, "-t", "beam", "-o", out, "--hardware", path("broken.json")}, 1, "expected valid JSON"},
+      {{"run", trace, "-t", "beam", "-o", out, "--hardware", path("nested.json")}, 1, "nested.json: byte 33"},
+      {{"report", path("piped")}, 1, "piped/report.json: expected a regular file"},
+      {{"plot", path("endless"), "-o", path("p.svg")}, 1, "endless/report.json: expected a regular file"},
+      {{"claims", path("piped")}, 1, "piped/report.json: expected a regular file"},
+      {{"diff", path("piped/report.json"), path("piped/report.json")}, 1, "not a file"},
+      {{"run", trace, "-t", "beam", "-o", out, "--simd", "avx9"}, 2, "scalar"},
+      {{"run", trace, "-t", "beam", "-o", out, "--frames", "1-2"}, 2, "--frames 1-2"},
+      {{"run", trace, "-t", "beam", "-o", out, "--threads", "0"}, 2, "--threads"},
+      {{"run", trace, "-t", "beam", "-o", out, "--repeat", "0"}, 2, "--repeat"},
+      {{"run", path("missing.json"), "-t", "beam", "-o", out}, 1, "missing.json"},
+      {{"run", path("broken.json"), "-t", "beam", "-o", out}, 1, "broken.json"},
+      {{"run", trace, "-t", "beam", "-o", path("trace.json")}, 1, "expected a folder"},
+      {{"run", trace, "-t", "beam", "-o", path("trace.json/below")}, 1, "expected a folder"},
+      {{"run", trace, "-t", "beam", "-o", ""}, 1, "empty"},
+      {{"compare", trace, "-t", "beam", "-o", out, "--ladder", "1,3"}, 2, "msaa:3"},
+      {{"compare", trace, "-t", "nonsense", "-o", out}, 2, "nonsense"},
+      {{"diff", trace, trace}, 1, "trace.json"},
+      {{"diff", trace}, 2, "B"},
+      {{"info", path("missing.json")}, 1, "missing.json"},
+      {{"export-soup", trace, "-o", trace}, 2, "the trace itself"},
+      {{"make", "-o", path("a.json")}, 2, "SCENE"},
+      {{"make", "fence"}, 2, "-o"},
+      {{"make", "no_such_scene", "-o", path("a.json")}, 2, "no_such_scene"},
+      {{"make", "fence", "--eye", "1,2,3", "-o", path("a.json")}, 2, "--eye"},
+      {{"make", "fence", "--width", "16385", "-o", path("a.json")}, 2, "--width"},
+      {{"make", path("missing.obj"), "-o", path("a.json")}, 1, "missing.obj"},
+      {{"make", path("model.obj"), "-o", path("./model.obj")}, 2, "the model itself"},
+      {{"make", path("model.obj"), "--seed", "2", "-o", path("a.json")}, 2, "--seed"},
+      {{"make", path("model.obj"), "--eye", "1,2", "-o", path("a.json")}, 2, "--eye"},
+      {{"make", path("model.obj"), "--near", "3", "--far", "2", "-o", path("a.json")}, 2, "near"},
+      {{"make", path("model.obj"), "--lambert", "--unlit", "-o", path("a.json")}, 2, "excludes"},
+      {{"make", "soup", "-o", path("trace.json/a.json")}, 1, "trace.json"},
+  };
+  const Names before = folder_.list();
+  for (const auto& mistake : mistakes) {
+    std::string command;
+    for (const std::string& argument : mistake.arguments) command += " " + argument;
+    SCOPED_TRACE("beampipe" + command);
+    expect_one_error_line(run_program(mistake.arguments), mistake.exit_code, mistake.part);
+    EXPECT_EQ(folder_.list(), before);
+  }
+}
+
+TEST_F(ProgramTest, MeshesOutsideTheTracesFolderNeedPermission) {
+  std::filesystem::create_directory(folder_ / "inner");
+  write_text(folder_ / "model.obj", "v 0 0 0\nv 4 0 0\nv 0 3 0\nf 1 2 3\n");
+  write_text(folder_ / "inner/trace.json",
+             R"({"beampipe_trace": 1, "meshes": {"m": {"obj": "../model.obj"}}, "frames": [
+      {"width": 8, "height": 8, "background": [0,0,0], "draws": [{"mesh": "m"}],
+       "camera": {"eye": [0,0,9], "target": [0,0,0], "up": [0,1,0], "fovy_deg": 36, "near": 1, "far": 20}}]})");
+  expect_one_error_line(run_program({"info", path("inner/trace.json")}), 1, "model.obj");
+  succeed({"info", path("inner/trace.json"), "--allow-outside"});
+  expect_one_error_line(run_program({"run", path("inner/trace.json"), "-t", "msaa:1", "-o", path("out")}), 1,
+                        "model.obj");
+  succeed({"run", path("inner/trace.json"), "-t", "msaa:1", "-o", path("out"), "--allow-outside"});
+}
+
+// As long as this exists, this process and its children can write no file with more bytes, as if the disk were full.
+class FileSizeLimit {
+ public:
+  explicit FileSizeLimit(rlim_t bytes) {
+    getrlimit(RLIMIT_FSIZE, &before_);
+    const rlimit limit{bytes, before_.rlim_max};
+    setrlimit(RLIMIT_FSIZE, &limit);
+  }
+  ~FileSizeLimit() { setrlimit(RLIMIT_FSIZE, &before_); }
+
+ private:
+  rlimit before_;
+};
+
+TEST_F(ProgramTest, AFailedWriteIsOneLineAndLeavesEarlierResultsWhole) {
+  const std::vector<std::string> run = {"run", path("trace.json"), "-t", "msaa:1", "-o", path("out")};
+  Names before = folder_.list();
+  {
+    const FileSizeLimit limit(200);
+    expect_one_error_line(run_program(run), 1, "frame_0000.exr: cannot write");
+  }
+  EXPECT_EQ(folder_.list(), before);
+
+  succeed(run);
+  before = folder_.list();
+  const std::string image = read_text(folder_ / "out/msaa_1/frame_0000.exr");
+  const std::string report = read_text(folder_ / "out/report.json");
+  {
+    const FileSizeLimit limit(200);
+    expect_one_error_line(run_program(run), 1, "frame_0000.exr: cannot write");
+  }
+  EXPECT_EQ(folder_.list(), before);
+  EXPECT_EQ(read_text(folder_ / "out/msaa_1/frame_0000.exr"), image);
+  EXPECT_EQ(read_text(folder_ / "out/report.json"), report);
+}
+
+TEST_F(ProgramTest, AFolderInTheReportsPlaceIsRefusedAtOnce) {
+  std::filesystem::create_directories(folder_ / "out/report.json");
+  const Names before = folder_.list();
+  expect_one_error_line(run_program({"run", path("trace.json"), "-t", "msaa:1", "-o", path("out")}), 1,
+                        "out/report.json: expected a regular file or none, found something else");
+  EXPECT_EQ(folder_.list(), before);
+}
+
+}  // namespace
+}  // namespace beampipe

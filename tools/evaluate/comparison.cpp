@@ -1,0 +1,161 @@
+#include "tools/evaluate/comparison.h"
+
+#include <cmath>
+
+#include "tools/evaluate/render.h"
+#include "tools/files/image_io.h"
+
+namespace beampipe {
+namespace {
+
+Json own_options(const CompareOptions& options) {
+  return {{"ladder", options.ladder}, {"causes", options.causes}, {"orders", options.orders}};
+}
+
+// Pooled over the frames that follow another. None if there is only one frame.
+std::optional<double> pooled_flicker(const TechniqueReport& result) {
+  double squares = 0, frames = 0;
+  for (const FrameReport& frame : result.frames) {
+    if (!frame.flicker) continue;
+    squares += *frame.flicker * *frame.flicker;
+    ++frames;
+  }
+  return frames > 0 ? std::optional(std::sqrt(squares / frames)) : std::nullopt;
+}
+
+}  // namespace
+
+Comparison::Comparison(const CompareOptions& options, RunPlan plan, OutputFolder& output)
+    : options_(options),
+      output_(output),
+      plan_(std::move(plan)),
+      maker_(made_by("compare", plan_, own_options(options))),
+      records_(output, maker_),
+      ladder_(options.ladder) {
+  std::erase_if(plan_.techniques, [](const Technique& technique) { return technique.spec == "reference"; });
+  std::vector<Technique> written = plan_.techniques;
+  written.push_back(reference_);
+  require_writable_folders(output_, written);
+  for (const Technique& technique : plan_.techniques) {
+    results_.push_back(new_technique_report(technique));
+    errors_.push_back(new_errors());
+  }
+  reference_result_ = new_technique_report(reference_);
+  histories_.resize(plan_.techniques.size());
+  last_errors_.resize(plan_.techniques.size());
+  causes_.resize(plan_.techniques.size());
+  if (options.orders) orders_.emplace(std::move(written));
+}
+
+std::size_t Comparison::resume() {
+  std::vector<std::string> specs = specs_of(plan_.techniques);
+  specs.push_back(reference_.spec);
+  const std::vector<FrameRecord> finished = records_.read(plan_.frames, specs, sums());
+  for (const FrameRecord& record : finished) recall_frame(record);
+  return finished.size();
+}
+
+Report Comparison::run() {
+  Progress progress;
+  const std::size_t finished = reference_result_.frames.size();
+  if (finished < plan_.frames.size()) histories_ = rebuild_histories(plan_, finished, progress);
+  for (std::size_t at = finished; at < plan_.frames.size(); ++at) compare_frame(plan_.frames[at], progress);
+  return report(progress);
+}
+
+ErrorAccumulator Comparison::new_errors() const {
+  std::uint64_t pixels = 0;
+  for (const std::size_t frame : plan_.frames)
+    pixels += std::uint64_t{plan_.trace.frames[frame].width} * plan_.trace.frames[frame].height;
+  return ErrorAccumulator(pixels);
+}
+
+void Comparison::compare_frame(std::size_t frame, Progress& progress) {
+  WallTime reference_time;
+  const FrameResult truth = render_once(reference_, plan_, frame, progress, &reference_time);
+  FrameReport& report =
+      reference_result_.frames.emplace_back(write_frame(output_, reference_.spec, frame, truth, nullptr));
+  report.wall_ms = reference_time;
+  report.error = ErrorStats{};
+
+  const std::vector<WallTime> times =
+      render_frame(plan_, frame, progress, histories_, [&](std::size_t i, FrameResult&& result) {
+        if (options_.causes) causes_[i].add(plan_.techniques[i], plan_, frame, truth.image, result);
+        results_[i].frames.push_back(write_frame(output_, plan_.techniques[i].spec, frame, result, &truth.image));
+        errors_[i].add(result.image, truth.image);
+        std::vector<float> errors = signed_errors(result.image, truth.image);
+        if (errors.size() == last_errors_[i].size())
+          results_[i].frames.back().flicker = flicker(last_errors_[i], errors);
+        last_errors_[i] = std::move(errors);
+      });
+  for (std::size_t i = 0; i < times.size(); ++i) results_[i].frames.back().wall_ms = times[i];
+
+  ladder_.add(plan_, frame, truth.image, progress);
+  if (orders_) orders_->add(reference_, plan_, frame, progress);
+  write_record();
+  output_.keep();
+}
+
+// Of the last frame.
+void Comparison::write_record() {
+  FrameRecord record;
+  for (const TechniqueReport& result : results_) record.reports.push_back(result.frames.back());
+  record.reports.push_back(reference_result_.frames.back());
+  record.sums = sums();
+  records_.write(record);
+}
+
+// The EXR files hold the pictures to the last bit, so that the errors come out the same.
+void Comparison::recall_frame(const FrameRecord& record) {
+  reference_result_.frames.push_back(record.reports.back());
+  const Image truth = read_image(record.reports.back());
+  for (std::size_t i = 0; i < results_.size(); ++i) {
+    results_[i].frames.push_back(record.reports[i]);
+    const Image image = read_image(record.reports[i]);
+    errors_[i].add(image, truth);
+    last_errors_[i] = signed_errors(image, truth);
+  }
+  ladder_.set_sums(record.sums.at("ladder"));
+  for (std::size_t i = 0; i < causes_.size(); ++i) causes_[i].set_sums(record.sums.at("causes").at(i));
+  if (orders_) orders_->set_sums(record.sums.at("orders"));
+}
+
+Json Comparison::sums() const {
+  Json sums = {{"ladder", ladder_.sums()}, {"causes", Json::array()}};
+  for (const CauseShares& causes : causes_) sums["causes"].push_back(causes.sums());
+  if (orders_) sums["orders"] = orders_->sums();
+  return sums;
+}
+
+Image Comparison::read_image(const FrameReport& frame) const { return read_exr(output_.path() / frame.image); }
+
+Report Comparison::report(Progress& progress) {
+  for (std::size_t i = 0; i < results_.size(); ++i) results_[i].error = errors_[i].stats();
+  const auto read_reference = [&](std::size_t frame) {
+    for (const FrameReport& report : reference_result_.frames)
+      if (report.index == frame) return read_image(report);
+    throw std::logic_error("the reference was not rendered");
+  };
+  const std::vector<LadderRung> rungs = ladder_.rungs(plan_, results_, read_reference, progress);
+  for (std::size_t i = 0; i < results_.size(); ++i) {
+    TechniqueReport& result = results_[i];
+    const std::uint32_t samples = plan_.techniques[i].samples;
+    result.equivalent_msaa = samples > 0 ? EquivalentMsaa{static_cast<double>(samples), false, false}
+                                         : equivalent_msaa(result.error->rmse, rungs);
+    result.causes = causes_[i].shares();
+    result.flicker = pooled_flicker(result);
+    if (orders_) orders_->report(i, result);
+  }
+  if (orders_) orders_->report(results_.size(), reference_result_);
+  reference_result_.flicker = pooled_flicker(reference_result_);
+  reference_result_.error = ErrorStats{};
+  reference_result_.equivalent_msaa = equivalent_msaa(0.0, rungs);
+
+  Report report = new_report(plan_, maker_);
+  report.msaa_ladder = rungs;
+  report.results = results_;
+  report.results.push_back(reference_result_);
+  return report;
+}
+
+}  // namespace beampipe

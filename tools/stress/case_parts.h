@@ -1,0 +1,88 @@
+// What hard cases are built from: colours, a builder of traces, and the reasons of stated limits.
+#pragma once
+
+#include <glm/glm.hpp>
+#include <map>
+#include <string>
+#include <vector>
+
+#include "tools/stress/hard_cases.h"
+#include "traces/trace.h"
+
+namespace beampipe {
+
+// Colours whose sums are exact in fp16 if there are few terms, so that an error is not due to the format.
+inline constexpr glm::vec3 kRed{0.75f, 0.25f, 0.125f}, kGreen{0.125f, 0.75f, 0.25f}, kBlue{0.25f, 0.125f, 0.75f};
+inline constexpr glm::vec3 kBackground{0.5f, 0.5f, 1.0f};
+
+// Builds a trace with one frame. x and y are in pixels, y down; z runs from 0 at the near plane to 1 at the far plane.
+class Screen {
+ public:
+  Screen(std::uint32_t width, std::uint32_t height) {
+    frame_.width = width, frame_.height = height;
+    frame_.background = kBackground;
+    frame_.projection[0][0] = 2.0 / width;
+    frame_.projection[1][1] = -2.0 / height;
+    frame_.projection[2][2] = 2.0;
+    frame_.projection[3] = glm::dvec4(-1.0, 1.0, -1.0, 1.0);
+  }
+
+  Screen& triangle(const glm::dvec3& a, const glm::dvec3& b, const glm::dvec3& c, const glm::vec3& color) {
+    const auto first = static_cast<std::uint32_t>(mesh_.positions.size());
+    for (const glm::dvec3& corner : {a, b, c}) mesh_.positions.emplace_back(corner);
+    mesh_.triangles.emplace_back(first, first + 1, first + 2);
+    mesh_.colors.push_back(color);
+    return *this;
+  }
+  Screen& triangle(const glm::dvec2& a, const glm::dvec2& b, const glm::dvec2& c, double z, const glm::vec3& color) {
+    return triangle({a, z}, {b, z}, {c, z}, color);
+  }
+  Screen& rectangle(const glm::dvec2& low, const glm::dvec2& high, double z, const glm::vec3& color) {
+    triangle(low, {high.x, low.y}, high, z, color);
+    return triangle(low, high, {low.x, high.y}, z, color);
+  }
+  Frame& frame() { return frame_; }
+
+  Trace trace() {
+    Trace trace;
+    mesh_.name = "triangles";
+    trace.meshes.push_back(std::move(mesh_));
+    frame_.draws.emplace_back();
+    trace.frames.push_back(std::move(frame_));
+    return trace;
+  }
+
+ private:
+  Mesh mesh_;
+  Frame frame_;
+};
+
+inline constexpr const char* kOver = "OVER assumes that fragments cover a pixel independently of each other";
+inline constexpr const char* kPaper = "masks have 32 positions, and local coverage above 1 is lost";
+inline constexpr const char* kText =
+    "16-bit slopes turn equal planes into a slab, of which each later triangle takes half";
+inline constexpr const char* kFull =
+    "a mask without a gap counts as full coverage, so that corners between its positions are lost";
+inline constexpr const char* kDepth =
+    "surfaces that are closer to each other than the rounding of 32-bit depth change places";
+inline constexpr const char* kTwice = "without a stencil, triangles at equal depth count twice";
+inline constexpr const char* kStored =
+    "a sum in fp16 stops growing when a share is less than half a unit in its last place";
+inline constexpr const char* kMask = "areas of partly hidden triangles are estimated from mask positions";
+
+inline constexpr const char* kUnseen = "a triangle that covers no mask position is invisible";
+inline constexpr const char* kSlopes = "layers store slopes in 8 bits, which moves intersections by a few positions";
+
+inline const std::string kStream = "beam:order=stream", kSmallStream = "beam:order=stream,bits=64",
+                         kCoarseStream = "beam:order=stream,bits=32";
+
+// The limits of techniques that treat a mask without a gap as full coverage, if so many edges cut a pixel.
+std::map<std::string, StatedLimit> full_masks(int edges = 1);
+
+// The cases, in three files.
+std::vector<HardCase> coverage_cases();
+std::vector<HardCase> depth_cases();
+std::vector<HardCase> frame_cases();
+std::vector<HardCase> heavy_cases();
+
+}  // namespace beampipe

@@ -1,0 +1,78 @@
+// Frames at the ends of ranges: vertices that are not finite, the smallest and largest pictures, many layers.
+#include <limits>
+
+#include "tools/stress/case_parts.h"
+
+namespace beampipe {
+namespace {
+
+HardCase not_finite() {
+  Screen screen(8, 8);
+  const double nan = std::numeric_limits<double>::quiet_NaN(), inf = std::numeric_limits<double>::infinity();
+  screen.triangle({nan, 1}, {7, 1}, {1, 7}, 0.1, kRed);
+  screen.triangle({1, 1}, {7, inf}, {1, 7}, 0.1, kRed);
+  screen.triangle({1, 1}, {7, 1}, {-inf, 7}, 0.1, kRed);
+  screen.triangle({1, 1, nan}, {7, 1, 0.1}, {1, 7, 0.1}, kRed);
+  screen.triangle({1e-40, 1e-45}, {7.5, 1e-42}, {1e-44, 6.25}, 0.5, kGreen);
+  return {"not_finite",
+          "vertices that are NaN or infinite, whose triangles are dropped, and denormal ones",
+          screen.trace(),
+          {},
+          full_masks()};
+}
+
+HardCase empty_frame() {
+  Screen screen(5, 3);
+  HardCase result{"empty", "no triangles", {}, {}, {}};
+  result.trace = screen.trace();
+  result.everywhere = glm::dvec4(glm::dvec3(kBackground), 0.0);
+  return result;
+}
+
+HardCase one_pixel() {
+  Screen screen(1, 1);
+  screen.triangle({-0.3, 0.1}, {1.2, 0.4}, {0.3, 1.7}, 0.5, kRed);
+  return {"one_pixel",
+          "a viewport of 1 x 1",
+          screen.trace(),
+          {},
+          {{"dvm", {0.3, "its 2x2 quad extends beyond the frame"}}}};
+}
+
+HardCase widest(std::uint32_t width, std::uint32_t height, const std::string& name, int edges_in_a_pixel) {
+  Screen screen(width, height);
+  screen.triangle({width - 3.2, height * 0.1}, {width - 0.1, height * 0.5}, {width - 2.9, height * 0.9}, 0.5, kRed);
+  return {name,
+          "a viewport of " + std::to_string(width) + " x " + std::to_string(height),
+          screen.trace(),
+          {},
+          full_masks(edges_in_a_pixel)};
+}
+
+HardCase deep_pixel(int layers) {
+  Screen screen(1, 1);
+  for (int i = layers; i-- > 0;)
+    screen.triangle({-1, -1}, {3, -1}, {-1, 3}, static_cast<double>(i + 1) / (layers + 2), i == 0 ? kRed : kBlue);
+  HardCase result{"deep_pixel_" + std::to_string(layers),
+                  std::to_string(layers) + " fragments that cover one pixel, from far to near",
+                  {},
+                  {},
+                  {}};
+  result.everywhere = glm::dvec4(glm::dvec3(kRed), 1.0);
+  result.trace = screen.trace();
+  return result;
+}
+
+}  // namespace
+
+std::vector<HardCase> frame_cases() {
+  return {not_finite(),    empty_frame(), one_pixel(), widest(16384, 2, "widest", 1), widest(2, 16384, "highest", 1),
+          deep_pixel(5000)};
+}
+
+std::vector<HardCase> heavy_cases() {
+  // In the last case the sides are so steep that in many rows both lie near the borders of one column of pixels.
+  return {deep_pixel(1'000'000), widest(16384, 16384, "widest_and_highest", 2)};
+}
+
+}  // namespace beampipe
