@@ -8,7 +8,7 @@
 #include <string_view>
 
 #include "traces/input_file.h"
-#include "traces/json_cursor.h"
+#include "traces/json.h"
 #include "traces/trace_io.h"
 #include "traces/triangulate.h"
 
