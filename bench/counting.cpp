@@ -1,5 +1,5 @@
-// What counting costs: frames of one thread with the memory model and without. Built with BEAMPIPE_COUNT_NOTHING, the
-// same without any counters of stages.
+// What counting costs: the time of a frame on one thread, with the memory model and without. A build with
+// BEAMPIPE_COUNT_NOTHING measures the same without the counters of stages.
 #include <benchmark/benchmark.h>
 
 #include <string>

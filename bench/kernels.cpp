@@ -1,13 +1,20 @@
-// What the kernels cost per item, on one core, with the best instruction set that it has.
-// Items are random triangles of a few pixels in the pixels that they touch, as fine meshes give them.
+// The time of kernels per item, on one core with its best instruction set. Each item is a pixel with a random
+// triangle around it, up to three pixels wide, as in fine meshes.
 #include <benchmark/benchmark.h>
 
+#include <algorithm>
 #include <random>
 #include <vector>
 
 #include "simd/cell_rows.h"
 #include "simd/coverage.h"
+#include "simd/depth_range.h"
+#include "simd/depth_span.h"
+#include "simd/mask_table.h"
+#include "simd/merge.h"
+#include "simd/plane_order.h"
 #include "simd/position_mask.h"
+#include "simd/vertex_transform.h"
 #include "simd/window_owners.h"
 
 namespace beampipe {
@@ -45,6 +52,133 @@ void coverage_of_pixels(benchmark::State& state) {
 }
 BENCHMARK(coverage_of_pixels);
 
+// A number from `low` to `high`.
+float random_real(std::mt19937& random, float low, float high) {
+  return low + (high - low) * (static_cast<float>(random()) * 0x1p-32f);
+}
+
+DepthPlane<float> random_plane(std::mt19937& random) {
+  return {random_real(random, -1, 0), random_real(random, -0.05f, 0.05f), random_real(random, -0.05f, 0.05f)};
+}
+
+void depth_ranges_of_pixels(benchmark::State& state) {
+  std::mt19937 random(3);
+  std::vector<DepthRangeInput<float>> in;
+  for (const TriangleInPixel& t : triangles_in_pixels()) {
+    const DepthPlane<float> plane = random_plane(random);
+    DepthRangeInput<float> input;
+    for (int k = 0; k < 3; ++k) {
+      const EdgeInPixel<std::int32_t> edge = edge_in_pixel(t, k);
+      input.u[k] = static_cast<float>(t.x[k]) / kSubpixelUnits,
+      input.v[k] = static_cast<float>(t.y[k]) / kSubpixelUnits;
+      for (int i = 0; i < 4; ++i)
+        input.corner[k][i] =
+            static_cast<float>(edge.a * kSubpixelUnits * (i & 1) + edge.b * kSubpixelUnits * (i >> 1) + edge.c) / 65536;
+      input.vertex_z[k] = plane.z + plane.dzdu * (input.u[k] - 0.5f) + plane.dzdv * (input.v[k] - 0.5f);
+    }
+    input.z = plane.z, input.dzdu = plane.dzdu, input.dzdv = plane.dzdv;
+    in.push_back(input);
+  }
+  std::vector<DepthRange<float>> out(in.size());
+  for (auto _ : state) {
+    depth_range(in.data(), in.size(), out.data());
+    benchmark::DoNotOptimize(out.data());
+  }
+  count_items(state, in.size());
+}
+BENCHMARK(depth_ranges_of_pixels);
+
+void masks_by_table(benchmark::State& state) {
+  const MaskTable table(hammersley_pattern());
+  std::mt19937 random(4);
+  std::vector<TableTriangle> in(kItems);
+  for (TableTriangle& triangle : in)
+    for (TableEdge& edge : triangle.edges)
+      edge = {static_cast<std::int32_t>(random() % 32), random() % 2 ? ~0u : 0u, random_real(random, -1, 1)};
+  std::vector<std::uint32_t> out(in.size());
+  for (auto _ : state) {
+    table_masks(in.data(), in.size(), table, out.data());
+    benchmark::DoNotOptimize(out.data());
+  }
+  count_items(state, in.size());
+}
+BENCHMARK(masks_by_table);
+
+// With the default rules, and with those that do the most work.
+void merges_of_fragments(benchmark::State& state) {
+  using R = MergeRules;
+  const SamplePattern pattern = hammersley_pattern();
+  MergeRules rules;
+  if (state.range(0) != 0)
+    rules = {R::Overlap::transition, R::Local::keep,    R::Fuzzy::mix,           R::Extents::range,
+             R::Slab::visible,       R::Plane::visible, R::Thickness::containing};
+  std::mt19937 random(5);
+  std::vector<MergeFragment> fragments(kItems);
+  for (MergeFragment& fragment : fragments) {
+    const DepthPlane<float> plane = random_plane(random);
+    const auto mask = static_cast<std::uint32_t>(random());
+    fragment = {{random_real(random, 0, 1), mask, plane, 0, plane.z - 0.05f, plane.z + 0.05f, {0.1f, 0.2f, 0.3f}}, 0u};
+  }
+  std::vector<Aggregate> aggregates;
+  for (const MergeFragment& fragment : fragments) aggregates.push_back(fragment.surface);
+  for (auto _ : state) {
+    std::rotate(fragments.begin(), fragments.begin() + 1, fragments.end());
+    merge(fragments.data(), fragments.size(), pattern, rules, aggregates.data());
+    benchmark::DoNotOptimize(aggregates.data());
+  }
+  count_items(state, fragments.size());
+}
+BENCHMARK(merges_of_fragments)->Arg(0)->Arg(1);
+
+void transforms_of_vertices(benchmark::State& state) {
+  VertexTransform transform{{}, 1280, 720};
+  transform.to_clip[0] = transform.to_clip[5] = 1.5;
+  transform.to_clip[10] = transform.to_clip[11] = -1, transform.to_clip[14] = -0.1;
+  std::mt19937 random(6);
+  std::vector<float> positions(3 * kItems);
+  for (float& value : positions) value = random_real(random, -4, 2);
+  std::vector<ProjectedVertex> out(kItems);
+  for (auto _ : state) {
+    benchmark::DoNotOptimize(transform_vertices(positions.data(), kItems, transform, out.data()));
+    benchmark::DoNotOptimize(out.data());
+  }
+  count_items(state, kItems);
+}
+BENCHMARK(transforms_of_vertices);
+
+void orders_of_planes(benchmark::State& state) {
+  const std::vector<SamplePattern> patterns = cell_patterns(256);
+  std::mt19937 random(7);
+  std::vector<DepthPlane<float>> planes(kItems);
+  for (DepthPlane<float>& plane : planes) plane = random_plane(random);
+  std::uint32_t masks[kMaxMaskWords] = {};
+  float nearest = 0;
+  for (auto _ : state) {
+    for (std::size_t i = 1; i < planes.size(); ++i) {
+      nearer_positions(planes[i], planes[i - 1], patterns.data(), patterns.size(), masks);
+      nearest += nearest_depth(planes[i], patterns.data(), patterns.size(), masks);
+    }
+    benchmark::DoNotOptimize(nearest);
+  }
+  count_items(state, planes.size() - 1);
+}
+BENCHMARK(orders_of_planes);
+
+void depths_of_spans(benchmark::State& state) {
+  const auto count = static_cast<std::size_t>(state.range(0));
+  std::mt19937 random(8);
+  std::vector<double> depth(count);
+  for (double& z : depth) z = random_real(random, -1, 0);
+  std::vector<std::uint64_t> owner(count);
+  const DepthSpan span{-0.5, 1e-3, 0, 0, 1.0 / 64};
+  for (auto _ : state) {
+    benchmark::DoNotOptimize(depth_span(span, count, 9, depth.data(), owner.data()));
+    benchmark::DoNotOptimize(depth.data());
+  }
+  count_items(state, count);
+}
+BENCHMARK(depths_of_spans)->Arg(16)->Arg(250);
+
 void masks_of_pixels(benchmark::State& state) {
   const std::vector<TriangleInPixel> in = triangles_in_pixels();
   const PositionGrid grid(static_cast<int>(state.range(0)));
@@ -68,7 +202,7 @@ void rows_of_cells(benchmark::State& state) {
 }
 BENCHMARK(rows_of_cells)->Arg(2)->Arg(8)->Arg(32);
 
-// Windows of so many fragments with random masks of half of the positions.
+// Windows of a given number of fragments, whose random masks cover half of the positions.
 void owners_of_windows(benchmark::State& state) {
   const auto count = static_cast<std::size_t>(state.range(0));
   std::mt19937 random(2);

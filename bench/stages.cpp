@@ -1,9 +1,11 @@
-// What the stages of sorted beam cost per item of a frame, one after the other, on one core: nanoseconds, and
-// operations as the scalar twins count them.
+// What each stage of `beam` costs per item of a frame, on one core: nanoseconds, and the operations that the stage
+// counts.
 #include <benchmark/benchmark.h>
 
-#include "pipeline/bands.h"
-#include "pipeline/threads.h"
+#include "pipeline/bins/bands.h"
+#include "pipeline/bins/threads.h"
+#include "stages/beam/a_buffer.h"
+#include "stages/beam/beam_fragment.h"
 #include "stages/beam/compose_beam.h"
 #include "stages/beam/windows.h"
 #include "stages/geometry/vertex_setup.h"
@@ -18,7 +20,7 @@ namespace {
 constexpr int kPositions = 256, kTileSize = 32;
 using Pixels = std::vector<StoredAggregate<8, HalfBits>>;
 
-// A tile's way through the pipeline: what each stage read.
+// The input of every stage for one tile.
 struct TileWork {
   Tile tile;
   TriangleList list;
@@ -89,7 +91,7 @@ void report(benchmark::State& state, const StageCounters& counters) {
       benchmark::Counter(items * 1e-9, benchmark::Counter::kIsIterationInvariantRate | benchmark::Counter::kInvert);
 }
 
-// Runs body(tile, counters) for all tiles, again and again.
+// Measures body(tile, counters) over all tiles of a frame.
 template <class Body>
 void run_stage(benchmark::State& state, const FrameWork& frame, Body&& body) {
   StageCounters counters;

@@ -1,10 +1,10 @@
 #!/usr/bin/env python3
-"""What each open choice of the paper's rules is worth: the ablation tables of docs/accuracy.md.
+"""Makes the ablation tables of docs/accuracy.md: how each choice that the published rules leave open affects accuracy.
 
 usage: docs/ablation.py PROGRAM [TRACE...]
 
-PROGRAM is for instance build/release/tools/beampipe. Measured are the nine procedural scenes, which it makes, and the
-traces that are named. Prints the equivalent MSAA rate of the published rules with one policy changed at a time.
+PROGRAM is for instance build/release/tools/beampipe. The script makes the nine procedural scenes, and measures them and
+the given traces. It prints the equivalent MSAA rate of the published rules with one policy changed at a time.
 """
 import json
 import math

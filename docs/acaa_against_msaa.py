@@ -1,10 +1,10 @@
 #!/usr/bin/env python3
-"""ACAA against MSAA, scene by scene, as docs/techniques.md shows it.
+"""Compares ACAA with MSAA, scene by scene, for docs/techniques.md.
 
 usage: docs/acaa_against_msaa.py PROGRAM [TRACE...]
 
-PROGRAM is for instance build/release/tools/beampipe. Measured are the nine procedural scenes, which it makes, and the
-traces that are named; then, on one of the scenes, accumulators of all formats at more samples.
+PROGRAM is for instance build/release/tools/beampipe. The script makes the nine procedural scenes, and measures them and
+the given traces. Then it measures accumulators of all formats, with more samples, on one of the scenes.
 """
 import pathlib
 import sys
@@ -15,15 +15,15 @@ import measure
 PICTURES = ["acaa:8", "acaa:8,double=stencil", "acaa:8,double=saturate", "acaa:8,color=unorm8"]
 ONE, EIGHT, ACAA = "msaa:1,prepass", "msaa:8,prepass", "acaa:8"
 DEPTH_BYTES = 4  # per sample
-SCENE, SAMPLES, FORMATS = "terrain", [8, 64, 256], ["unorm8", "fp16", "fp32"]  # of `precision`
+SCENE, SAMPLES, FORMATS = "terrain", [8, 64, 256], ["unorm8", "fp16", "fp32"]  # for precision()
 
 
 def surface_bytes(result):
-    """Logical bytes that a frame moves to and from its depth and colour: what no fragment carries between stages."""
+    """Logical bytes that a frame moves to and from its depth and colour surfaces, without fragments between stages."""
     stages = measure.stages(result)
     test, resolve = stages["depth_test"], stages["resolve"]
     moved = test["items_in"] * DEPTH_BYTES + test["bytes_written"] + resolve["bytes_read"] + resolve["bytes_written"]
-    if "accumulate" in stages:  # what is added to was read before
+    if "accumulate" in stages:  # adding reads the accumulator first
         moved += 2 * stages["accumulate"]["bytes_written"]
     return moved
 

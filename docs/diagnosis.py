@@ -1,13 +1,13 @@
 #!/usr/bin/env python3
-"""Causes of error, order of triangles, and flicker: the tables of docs/accuracy.md.
+"""Makes the tables of docs/accuracy.md about causes of error, order of triangles, and flicker.
 
 usage: docs/diagnosis.py causes PROGRAM [TRACE...]
        docs/diagnosis.py orders PROGRAM [SCENE or TRACE...]
        docs/diagnosis.py motion PROGRAM [SCENE...]
 
 PROGRAM is for instance build/release/tools/beampipe. `causes` measures the nine procedural scenes, which it makes, and
-the traces that are named; `orders` and `motion` the procedural scenes, or what is named; `motion` eight frames whose
-pictures move by 0.19 and 0.07 pixels per frame.
+the given traces. `orders` and `motion` measure the given scenes and traces, or all procedural scenes if none is given.
+`motion` renders eight frames whose pictures move by 0.19 and 0.07 pixels per frame.
 """
 import json
 import pathlib

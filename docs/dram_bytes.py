@@ -1,8 +1,9 @@
 #!/usr/bin/env python3
-"""Modelled DRAM bytes per frame, as docs/accounting.md shows them.
+"""Makes the tables of docs/accounting.md about modelled DRAM bytes per frame, and about the peaks of buffers.
 
 dram_bytes.py BEAMPIPE TRACE...   the first frame of each trace, with block compression and without
-dram_bytes.py BEAMPIPE --stack    a stack of 1 to 10,000 triangles over a 4 x 4 picture, and from afar: peak bytes of the buffers that are held for pixels
+dram_bytes.py BEAMPIPE --stack    peak bytes of the buffers held for pixels, for a stack of 1 to 10,000 triangles that
+                                  covers a 4 x 4 picture, and for the same stack from afar
 """
 import json
 import pathlib
@@ -12,8 +13,8 @@ import sys
 import tempfile
 
 TECHNIQUES = ["beam", "beam:order=stream", "msaa:8", "msaa:32", "acaa:8"]
-PER_TRIANGLE = re.compile("setup_triangles|bin_lists|batch_")  # grow with triangles, or are of a batch of 512
-GEOMETRY = ("vertex_setup", "sample_raster")  # of one pass: written, binned and read
+PER_TRIANGLE = re.compile("setup_triangles|bin_lists|batch_")  # these grow with triangles or hold a batch of 512
+GEOMETRY = ("vertex_setup", "sample_raster")  # write, bin and read the triangles of one pass
 STACK = ["beam", "beam:order=stream", "beam:rules=paper", "msaa:8"]
 
 

@@ -1,11 +1,11 @@
 #!/usr/bin/env python3
-"""What memory buys which accuracy: the frontier tables and the plot of docs/accuracy.md.
+"""Makes the tables and the plot of docs/accuracy.md that compare memory with accuracy.
 
 usage: docs/frontier.py PROGRAM FOLDER [TRACE...]
 
-PROGRAM is for instance build/release/tools/beampipe. Measured are the nine procedural scenes, which it makes, and the
-traces that are named; what `compare` finds goes to FOLDER/<scene>. Prints EMR, RMSE and bias of each technique on each
-scene, and draws FOLDER/frontier.svg and .png, the geometric mean over all scenes.
+PROGRAM is for instance build/release/tools/beampipe. The script makes the nine procedural scenes, and measures them and
+the given traces. The results of `compare` go to FOLDER/<scene>. It prints EMR, RMSE and bias of each technique on each
+scene, and draws the geometric mean over all scenes as FOLDER/frontier.svg and .png.
 """
 import math
 import pathlib

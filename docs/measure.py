@@ -1,4 +1,4 @@
-"""What the scripts of this folder share: making traces, and running the program on them."""
+"""Functions that the scripts of this folder share: making traces, and running the program on them."""
 import json
 import subprocess
 
@@ -6,13 +6,13 @@ PROCEDURAL = ["hairball", "classroom", "boat", "pickets", "terrain", "sphere", "
 
 
 def make(program, what, trace, *options):
-    """A trace of a procedural scene or of a model; returns its path."""
+    """Makes a trace of a procedural scene or of a model, and returns its path."""
     subprocess.run([program, "make", what, *options, "-o", trace], check=True, stdout=subprocess.DEVNULL)
     return trace
 
 
 def results(program, command, trace, specs, folder, *options):
-    """What `run` or `compare` reports, by technique; the pictures stay in the folder."""
+    """Returns the results of `run` or `compare` by technique; the pictures stay in the folder."""
     subprocess.run([program, command, trace, "-t", *specs, *options, "-o", folder], check=True,
                    stdout=subprocess.DEVNULL)
     with open(f"{folder}/report.json", encoding="utf-8") as file:
@@ -20,12 +20,12 @@ def results(program, command, trace, specs, folder, *options):
 
 
 def stages(result, frame=0):
-    """A frame's counters by stage."""
+    """Returns a frame's counters by stage."""
     return {stage["stage"]: stage for stage in result["frames"][frame]["stages"]}
 
 
 def difference(program, a, b):
-    """Of picture a from picture b: rmse, bias, and so on."""
+    """Returns the error of picture a against picture b: rmse, bias, and so on."""
     answer = subprocess.run([program, "diff", a, b, "--json"], check=True, stdout=subprocess.PIPE)
     return json.loads(answer.stdout)
 

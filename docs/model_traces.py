@@ -1,9 +1,9 @@
 #!/usr/bin/env python3
-"""Traces of the eight OBJ models that docs/*.md measure, each with the camera that it was measured with.
+"""Makes traces of the eight OBJ models that docs/*.md measure, each with the camera used there.
 
 usage: docs/model_traces.py FOLDER WIDTH HEIGHT
 
-Writes NAME.json beside each NAME.obj in FOLDER that is one of the models. The light comes over the viewer's shoulder.
+Writes NAME.json next to each NAME.obj in FOLDER that is one of the models. The light comes over the viewer's shoulder.
 """
 import json
 import math

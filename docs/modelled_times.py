@@ -1,5 +1,5 @@
 #!/usr/bin/env python3
-"""Modelled times and their ratios beside the paper's, as docs/accounting.md shows them.
+"""Compares modelled times and their ratios with the paper's, for docs/accounting.md.
 
 modelled_times.py DIR...   folders that `beampipe run TRACE -t beam:rules=paper beam msaa:32,128,256 -o DIR` wrote
 """

@@ -1,10 +1,10 @@
 #!/usr/bin/env python3
-"""TAA and DVM against MSAA over 60 frames: error and flicker, as docs/techniques.md shows them.
+"""Compares the error and flicker of TAA and DVM with those of MSAA over 60 frames, for docs/techniques.md.
 
 usage: docs/over_time.py PROGRAM [MODEL.obj...]
 
-PROGRAM is for instance build/release/tools/beampipe. Measured are the scene `bars` under a camera that stands still, and
-the models that are named under one that goes around them by 3 degrees.
+PROGRAM is for instance build/release/tools/beampipe. The script measures the scene `bars` under a still camera, and the
+given models under a camera that goes around them by 3 degrees.
 """
 import math
 import pathlib

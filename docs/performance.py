@@ -1,14 +1,14 @@
 #!/usr/bin/env python3
-"""Frame times as docs/performance.md shows them.
+"""Measures the frame times of docs/performance.md.
 
 usage: docs/performance.py ratios  PROGRAM [--runs N] [--threads N] TRACE...
        docs/performance.py threads PROGRAM [--runs N] TRACE...
        docs/performance.py stages  PROGRAM TRACE...
        docs/performance.py growth  PROGRAM PLOT.svg
 
-PROGRAM is for instance build/release/tools/beampipe. Techniques take turns in one process, so that what else the
-machine does falls on all of them; a time is the median of the runs, with the memory model off. `growth` makes its own
-traces, and draws them with gnuplot.
+PROGRAM is for instance build/release/tools/beampipe. Techniques take turns in one process, so that other work of the
+machine affects all of them alike. A time is the median of the runs, with the memory model off. `growth` makes its own
+traces, and draws the plot with gnuplot.
 """
 import argparse
 import json
@@ -76,7 +76,7 @@ def print_threads(arguments):
 
 
 def print_stages(arguments):
-    """How much of the work was done, and how much was found not to matter."""
+    """Prints how much work each scene offers, and how much of it is done."""
     measure.print_head("scene", "pixels", "tested", "waiting pairs", "composed", "fragments with area", "depth tests")
     for trace in arguments.traces:
         with tempfile.TemporaryDirectory() as folder:
@@ -105,7 +105,7 @@ GROWING = ["beam", "beam:order=stream", "msaa:8", "msaa:32"]
 
 
 def peak_memory(program, trace, spec, folder):
-    """MiB that the whole process took, the trace included."""
+    """Peak MiB of the whole process, including the trace."""
     code = ("import resource, subprocess, sys; subprocess.run(sys.argv[1:], check=True, stdout=subprocess.DEVNULL); "
             "print(resource.getrusage(resource.RUSAGE_CHILDREN).ru_maxrss // 1024)")
     answer = subprocess.run([sys.executable, "-c", code, program, "run", trace, "-t", spec, "--threads", "1",

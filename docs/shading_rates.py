@@ -1,5 +1,5 @@
 #!/usr/bin/env python3
-"""Shading rates by technique and triangle density, as docs/techniques.md shows them.
+"""Measures shading rates by technique and triangle density, for docs/techniques.md.
 
 usage: docs/shading_rates.py PROGRAM   (for instance build/release/tools/beampipe)
 """

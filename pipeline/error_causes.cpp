@@ -3,10 +3,8 @@
 #include <algorithm>
 #include <cmath>
 
-#include "pipeline/tiles.h"
+#include "pipeline/bins/render_bins.h"
 #include "stages/beam/beam_fragment.h"
-#include "stages/geometry/vertex_setup.h"
-#include "stages/picture/shade.h"
 #include "stages/raster/conservative_raster.h"
 #include "stages/raster/reference_raster.h"
 
@@ -14,7 +12,7 @@ namespace beampipe {
 namespace {
 
 constexpr int kTileSize = 4;     // px, as in the reference
-constexpr int kPositions = 256;  // at which surfaces are compared
+constexpr int kPositions = 256;  // where surfaces are compared
 
 enum Cause : std::size_t { leak, mask, order, interpenetration, tiny, mixed, rounding };
 
@@ -22,15 +20,15 @@ enum Cause : std::size_t { leak, mask, order, interpenetration, tiny, mixed, rou
 struct PixelSurface {
   glm::dvec3 color;
   double weight = 0, truth = 0;        // parts of the pixel
-  const Fragment* fragment = nullptr;  // at the comparison's positions; null for the background
+  const Fragment* fragment = nullptr;  // with masks of those positions; null for the background
   std::uint32_t order = 0;
   bool tiny = false;
-  std::uint32_t latest_hider = 0;  // the highest order of what is nearer somewhere
+  std::uint32_t latest_hider = 0;  // the highest order of the surfaces that are nearer somewhere
 };
 
-// Where two surfaces overlap.
+// How two surfaces compare where they overlap.
 struct Nearer {
-  bool first = false, second = false;  // is nearer at some position
+  bool first = false, second = false;  // nearer at some position
 };
 
 class Comparer {
@@ -67,7 +65,7 @@ Cause cause_of(const PixelSurface& loser, const PixelSurface& gainer, const Comp
   return mask;
 }
 
-// The errors of one pixel, by cause but for rounding.
+// The errors of one pixel by cause, without rounding.
 std::array<glm::dvec3, kErrorCauses.size()> transfers(std::vector<PixelSurface>& surfaces, const Comparer& comparer) {
   for (PixelSurface& hidden : surfaces)
     for (const PixelSurface& hider : surfaces)
@@ -87,14 +85,14 @@ std::array<glm::dvec3, kErrorCauses.size()> transfers(std::vector<PixelSurface>&
   return errors;
 }
 
-// Every triangle that the technique or the reference sees in a pixel, and the background, which comes last.
+// Every triangle that the technique or the reference sees in a pixel, and last the background.
 class PixelSurfaces {
  public:
   PixelSurfaces(const std::vector<Fragment>& fragments, std::size_t pixels) : by_pixel_(pixels) {
     for (const Fragment& fragment : fragments) by_pixel_[fragment.pixel].push_back(&fragment);
   }
 
-  // `owners`: reference samples by triangle.
+  // `owners`: how many reference samples each triangle has.
   std::vector<PixelSurface> at(std::size_t pixel, const PixelWeights& weights,
                                const std::map<std::uint64_t, std::uint32_t>& owners,
                                const std::vector<glm::vec3>& colors, const glm::vec3& background) const {
@@ -102,7 +100,7 @@ class PixelSurfaces {
     for (const Fragment* fragment : by_pixel_[pixel]) {
       PixelSurface& surface = surfaces[fragment->triangle];
       surface.fragment = fragment;
-      surface.tiny = fragment->tiny;  // of those that the technique dropped
+      surface.tiny = fragment->tiny;  // for triangles that the technique dropped
     }
     double rest_of_weights = 1, rest_of_truth = 1;
     for (const SurfaceWeight& weight : weights) {
@@ -116,7 +114,7 @@ class PixelSurfaces {
       if (triangle == kNoOwner) continue;
       PixelSurface& surface = surfaces[static_cast<std::uint32_t>(triangle)];
       surface.truth = static_cast<double>(samples) / kReferenceSamples;
-      if (!surface.fragment) surface.tiny = true;  // less area than a fragment needs
+      if (!surface.fragment) surface.tiny = true;  // too little area for a fragment
       rest_of_truth -= surface.truth;
     }
     std::vector<PixelSurface> all;
@@ -150,42 +148,39 @@ glm::dvec3 rgb(const Image& image, std::size_t pixel) {
 std::map<std::string, std::vector<float>> error_causes(const Trace& trace, const Frame& frame,
                                                        const std::vector<PixelWeights>& weights, const Image& image,
                                                        const Image& reference, const RunOptions& run) {
-  StageCounters setup;
-  const SetupTriangles triangles = vertex_setup(trace, frame, setup);
-  const std::vector<glm::vec3> colors = shade_triangles(triangles, frame.light_direction);
+  const FrameContext context(trace, frame, run);
   const Comparer comparer;
   const BeamFragmentOptions options{MaskSource::exact, comparer.patterns()};
-  FrameResult result = render_tiles(
-      frame, triangles, setup, kTileSize, run, kPairBytes, [&](const Tile& tile, const TriangleList& list) {
-        StageCounters unused{"error_causes"};
-        ReferenceTile truth(tile);
-        reference_raster(triangles, list, tile, unused, truth);
-        std::vector<PixelTriangle> pairs;
-        std::vector<Fragment> fragments;
-        conservative_raster(triangles, list, tile, unused, pairs);
-        beam_fragment(triangles, pairs, tile, options, unused, fragments);
-        const PixelSurfaces surfaces(fragments, tile.pixels());
-        TileResult out{{}, {}, {unused}};
-        for (const char* cause : kErrorCauses)
-          out.pixel_counters.emplace_back(cause, std::vector<float>(tile.pixels()));
-        for (std::size_t i = 0; i < tile.pixels(); ++i) {
-          const auto columns = static_cast<std::size_t>(tile.width());
-          const std::size_t x = i % columns, y = i / columns;
-          const std::size_t pixel =
-              (static_cast<std::size_t>(tile.y0) + y) * frame.width + static_cast<std::size_t>(tile.x0) + x;
-          const glm::dvec3 error = rgb(image, pixel) - rgb(reference, pixel);
-          const double length = std::sqrt(glm::dot(error, error) / 3);
-          if (length == 0) continue;
-          std::vector<PixelSurface> seen =
-              surfaces.at(i, weights[pixel], count_owners(truth, x, y), colors, frame.background);
-          std::array<glm::dvec3, kErrorCauses.size()> errors = transfers(seen, comparer);
-          errors[rounding] = error;
-          for (std::size_t cause = 0; cause < rounding; ++cause) errors[rounding] -= errors[cause];
-          for (std::size_t cause = 0; cause < errors.size(); ++cause)
-            out.pixel_counters[cause].second[i] = static_cast<float>(glm::dot(errors[cause], error) / (3 * length));
-        }
-        return out;
-      });
+  const BinPlan plan{.stages = {"error_causes"}, .tile_size = kTileSize, .pair_bytes = kPairBytes};
+  FrameResult result = render_bins(context, plan, [&](Bin& bin) {
+    const Tile& tile = bin.tile;
+    StageCounters unused;
+    ReferenceTile truth(tile);
+    reference_raster(context.triangles, bin.list, tile, unused, truth);
+    std::vector<PixelTriangle> pairs;
+    std::vector<Fragment> fragments;
+    conservative_raster(context.triangles, bin.list, tile, unused, pairs);
+    beam_fragment(context.triangles, pairs, tile, options, unused, fragments);
+    const PixelSurfaces surfaces(fragments, tile.pixels());
+    std::array<std::vector<float>*, kErrorCauses.size()> found;
+    for (std::size_t cause = 0; cause < found.size(); ++cause) found[cause] = &bin.pixel_counter(kErrorCauses[cause]);
+    for (std::size_t i = 0; i < tile.pixels(); ++i) {
+      const auto columns = static_cast<std::size_t>(tile.width());
+      const std::size_t x = i % columns, y = i / columns;
+      const std::size_t pixel =
+          (static_cast<std::size_t>(tile.y0) + y) * frame.width + static_cast<std::size_t>(tile.x0) + x;
+      const glm::dvec3 error = rgb(image, pixel) - rgb(reference, pixel);
+      const double length = std::sqrt(glm::dot(error, error) / 3);
+      if (length == 0) continue;
+      std::vector<PixelSurface> seen =
+          surfaces.at(i, weights[pixel], count_owners(truth, x, y), context.colors, frame.background);
+      std::array<glm::dvec3, kErrorCauses.size()> errors = transfers(seen, comparer);
+      errors[rounding] = error;
+      for (std::size_t cause = 0; cause < rounding; ++cause) errors[rounding] -= errors[cause];
+      for (std::size_t cause = 0; cause < errors.size(); ++cause)
+        (*found[cause])[i] = static_cast<float>(glm::dot(errors[cause], error) / (3 * length));
+    }
+  });
   return std::move(result.pixel_counters);
 }
 

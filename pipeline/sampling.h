@@ -7,11 +7,11 @@
 
 namespace beampipe {
 
-// `samples`: a power of two, 1..1024. To 16, the standard positions. Above, the pixel is a grid of samples / 8 cells,
-// at least as wide as high.
+// `samples`: a power of two, 1..1024. Up to 16 samples are at the standard positions. Above, the pixel is a grid of
+// samples / 8 cells, at least as wide as high, with the 8 standard positions in each cell.
 Sampling msaa_sampling(int samples);
 
-// What each round of accumulation samples: together the samples of msaa:N, at most 16 at a time.
+// The samples of each round of accumulation. The rounds together have the samples of msaa:N, at most 16 each.
 std::vector<Sampling> acaa_rounds(int samples);
 
 }  // namespace beampipe

@@ -1,8 +1,8 @@
 #include "pipeline/spec.h"
 
-#include <bit>
+#include <algorithm>
 #include <charconv>
-#include <cstdint>
+#include <type_traits>
 
 #include "pipeline/technique.h"
 
@@ -10,77 +10,142 @@ namespace beampipe {
 namespace {
 
 template <class Number>
-bool parse(const std::string& text, Number& number) {
-  const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), number);
-  return error == std::errc{} && end == text.data() + text.size();
+std::string text_of(Number number) {
+  char text[32];
+  return {text, std::to_chars(text, text + sizeof text, number).ptr};
+}
+
+std::string joined(const std::vector<std::string>& words, std::string_view separator) {
+  std::string text;
+  for (const std::string& word : words) text.append(text.empty() ? "" : separator).append(word);
+  return text;
+}
+
+const SpecOption* find_option(const SpecOptions& options, std::string_view key) {
+  const auto found = std::find_if(options.begin(), options.end(), [&](const SpecOption& option) {
+    return option.form != SpecOption::Form::samples && option.key == key;
+  });
+  return found == options.end() ? nullptr : &*found;
+}
+
+void set_item(const Spec& spec, const Spec::Item& item, const std::string& title, const SpecOptions& options) {
+  const SpecOption* const option = find_option(options, item.key);
+  if (!option) {
+    std::vector<std::string> keys;
+    for (const SpecOption& each : options)
+      if (each.form != SpecOption::Form::samples) keys.push_back(each.key);
+    if (keys.empty()) spec.fail(title + " has no options");
+    spec.fail(title + " has no option '" + std::string(item.key) + "'; it has " + list_of(keys, "and"));
+  }
+  const bool is_flag = option->form == SpecOption::Form::flag;
+  if (is_flag && item.has_value) spec.fail(option->key + " must be without a value");
+  if (!option->set(item.value)) spec.fail(option->key + " must be " + option->expected);
 }
 
 }  // namespace
 
-std::string_view spec_name(std::string_view text) { return text.substr(0, text.find(':')); }
-
-Spec::Spec(std::string_view text, std::string usage) : text_(text), usage_(std::move(usage)) {
-  const std::size_t name = spec_name(text).size();
-  if (name == text.size()) return;
-  std::string_view rest = text.substr(name + 1);
+Spec::Spec(std::string_view text) : text_(text), name_(text.substr(0, text.find(':'))) {
+  if (name_.size() == text.size()) return;
+  std::string_view rest = text.substr(name_.size() + 1);
   for (bool more = true; more;) {
-    const std::size_t comma = rest.find(','), length = std::min(comma, rest.size());
-    const std::string_view item = rest.substr(0, length);
-    const std::size_t equals = item.find('=');
-    Item& added = items_.emplace_back();
-    added.key = item.substr(0, equals);
-    added.has_value = equals != item.npos;
-    if (added.has_value) added.value = item.substr(equals + 1);
+    const std::size_t comma = rest.find(',');
+    Item item{.text = rest.substr(0, comma), .key = {}, .value = {}};
+    const std::size_t equals = item.text.find('=');
+    item.key = item.text.substr(0, equals);
+    item.has_value = equals != item.text.npos;
+    if (item.has_value) item.value = item.text.substr(equals + 1);
+    for (const Item& other : items_)
+      if (other.key == item.key) fail(std::string("'").append(item.key).append("' is there twice"));
+    items_.push_back(item);
     more = comma != rest.npos;
     if (more) rest.remove_prefix(comma + 1);
   }
 }
 
-int Spec::samples(int most, int fallback) {
-  if (fallback > 0 && (items_.empty() || items_.front().has_value)) return fallback;
-  int samples = 0;
-  if (items_.empty() || items_.front().has_value || !parse(items_.front().key, samples)) fail();
-  if (items_.front().key.starts_with('0')) fail();
-  if (samples < 1 || samples > most || !std::has_single_bit(static_cast<unsigned>(samples))) fail();
-  items_.front().taken = true;
-  return samples;
+bool Spec::has(std::string_view key, std::string_view value) const {
+  return std::any_of(items_.begin(), items_.end(),
+                     [&](const Item& item) { return item.has_value && item.key == key && item.value == value; });
 }
 
-bool Spec::flag(std::string_view key) {
-  for (Item& item : items_) {
-    if (item.taken || item.has_value || item.key != key) continue;
-    return item.taken = true;
-  }
-  return false;
+void Spec::fail(const std::string& what) const { throw SpecError("technique '" + std::string(text_) + "': " + what); }
+
+SpecOption choice_of_words(std::string key, std::vector<std::string> words, std::string fallback, std::string help,
+                           std::function<void(std::size_t)> set_word) {
+  SpecOption option{.form = SpecOption::Form::value,
+                    .key = key,
+                    .usage = key + '=' + joined(words, "|"),
+                    .words = words,
+                    .expected = list_of(words),
+                    .fallback = std::move(fallback),
+                    .help = std::move(help),
+                    .set = {}};
+  option.set = [words = std::move(words), set_word = std::move(set_word)](std::string_view value) {
+    const auto found = std::find(words.begin(), words.end(), value);
+    if (found == words.end()) return false;
+    set_word(static_cast<std::size_t>(found - words.begin()));
+    return true;
+  };
+  return option;
+}
+
+SpecOption samples(int& variable, int most, std::string help) {
+  std::vector<std::pair<std::string, int>> words;
+  for (int count = 1; count <= most; count *= 2) words.emplace_back(std::to_string(count), count);
+  SpecOption option = choice("N", variable, words, std::move(help));
+  option.form = SpecOption::Form::samples;
+  option.usage = option.key;
+  option.fallback.clear();
+  return option;
+}
+
+SpecOption flag(std::string key, bool& variable, std::string help) {
+  const auto set = [&variable](std::string_view) { return variable = true; };
+  return {SpecOption::Form::flag, key, key, {}, "", "", std::move(help), set};
 }
 
 template <class Number>
-Number Spec::number(std::string_view key, Number fallback, Number low, Number high) {
-  const std::string* const text = take(key);
-  if (!text) return fallback;
-  Number value{};
-  if (!parse(*text, value) || !(low <= value && value <= high)) fail();
-  return value;
+SpecOption number(std::string key, Number& variable, Number low, Number high, std::string help) {
+  const auto in_range = [low, high](Number value) { return low <= value && value <= high; };
+  const std::string kind = std::is_integral_v<Number> ? "a whole number" : "a number";
+  return {.form = SpecOption::Form::value,
+          .key = key,
+          .usage = key + '=' + text_of(low) + ".." + text_of(high),
+          .words = {},
+          .expected = kind + " from " + text_of(low) + " to " + text_of(high),
+          .fallback = in_range(variable) ? text_of(variable) : "",
+          .help = std::move(help),
+          .set = [&variable, in_range](std::string_view text) {
+            Number value{};
+            const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), value);
+            if (error != std::errc{} || end != text.data() + text.size() || !in_range(value)) return false;
+            variable = value;
+            return true;
+          }};
 }
 
-template int Spec::number(std::string_view, int, int, int);
-template std::uint32_t Spec::number(std::string_view, std::uint32_t, std::uint32_t, std::uint32_t);
-template float Spec::number(std::string_view, float, float, float);
+template SpecOption number(std::string, int&, int, int, std::string);
+template SpecOption number(std::string, std::uint32_t&, std::uint32_t, std::uint32_t, std::string);
+template SpecOption number(std::string, float&, float, float, std::string);
 
-const std::string* Spec::take(std::string_view key) {
-  for (Item& item : items_) {
-    if (item.taken || !item.has_value || item.key != key) continue;
-    item.taken = true;
-    return &item.value;
+void set_options(const Spec& spec, const std::string& title, const SpecOptions& options) {
+  auto item = spec.items().begin();
+  const auto end = spec.items().end();
+  if (!options.empty() && options.front().form == SpecOption::Form::samples) {
+    const SpecOption& count = options.front();
+    if (item == end || !count.set(item->text)) spec.fail("N of " + title + " must be " + count.expected);
+    ++item;
   }
-  return nullptr;
+  for (; item != end; ++item) set_item(spec, *item, title, options);
 }
 
-void Spec::finish() const {
-  for (const Item& item : items_)
-    if (!item.taken) fail();
+std::string list_of(const std::vector<std::string>& words, std::string_view last) {
+  std::string text;
+  for (std::size_t i = 0; i < words.size(); ++i) {
+    if (i > 0 && i + 1 < words.size()) text += ", ";
+    if (i > 0 && i + 1 == words.size()) text.append(" ").append(last).append(" ");
+    text += words[i];
+  }
+  return text;
 }
-
-void Spec::fail() const { throw SpecError("technique '" + text_ + "': expected " + usage_); }
 
 }  // namespace beampipe

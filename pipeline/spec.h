@@ -1,6 +1,9 @@
-// Reading a technique's spec: "name[:item[,item...]]", an item being "value" or "key=value".
+// The grammar of specs, "name[:item[,item...]]", and the options that their items set. An item is "N" (the number of
+// samples, which comes first), "flag" or "key=value".
 #pragma once
 
+#include <cstdint>
+#include <functional>
 #include <string>
 #include <string_view>
 #include <utility>
@@ -8,49 +11,77 @@
 
 namespace beampipe {
 
-// Each function takes an item, if it is there; finish() complains about those that nothing took. All throw SpecError,
-// which names the spec and says what was expected: `usage`.
+// A spec, split into its parts. They are views of the text, which must live as long.
 class Spec {
  public:
-  Spec(std::string_view text, std::string usage);
+  struct Item {
+    std::string_view text, key, value;  // without "=" the key is the whole text
+    bool has_value = false;
+  };
 
-  const std::string& text() const { return text_; }
+  // Throws SpecError where a key occurs twice.
+  explicit Spec(std::string_view text);
 
-  // The first item: a power of two, 1..most. `fallback` when there are no items; 0: there must be one.
-  int samples(int most, int fallback = 0);
+  std::string_view name() const { return name_; }
+  const std::vector<Item>& items() const { return items_; }
+  bool has(std::string_view key, std::string_view value) const;
 
-  // "key" alone.
-  bool flag(std::string_view key);
-
-  // "key=number" with low <= number <= high; int and std::uint32_t: a whole one; float.
-  template <class Number>
-  Number number(std::string_view key, Number fallback, Number low, Number high);
-
-  // "key=word", with what each word stands for; the first is the default.
-  template <class Value>
-  Value choice(std::string_view key, const std::vector<std::pair<std::string_view, Value>>& words) {
-    const std::string* const word = take(key);
-    if (!word) return words.front().second;
-    for (const auto& [name, value] : words)
-      if (*word == name) return value;
-    fail();
-  }
-
-  void finish() const;
-  [[noreturn]] void fail() const;
+  // Throws SpecError "technique 'TEXT': WHAT".
+  [[noreturn]] void fail(const std::string& what) const;
 
  private:
-  const std::string* take(std::string_view key);  // what stands behind "key="
-
-  struct Item {
-    std::string key, value;
-    bool has_value = false, taken = false;
-  };
-  std::string text_, usage_;
+  std::string_view text_, name_;
   std::vector<Item> items_;
 };
 
-// What stands before the colon.
-std::string_view spec_name(std::string_view text);
+// One option of a technique, made by the functions below. It is bound to a variable, whose value at that time is the
+// option's default.
+struct SpecOption {
+  enum class Form { samples, flag, value } form;
+  std::string key;                 // "bits"; of the number of samples "N"
+  std::string usage;               // "bits=32|64|128|256", "prepass", "blend=0.001..1", "N"
+  std::vector<std::string> words;  // all values; none for a number in a range and for a flag
+  std::string expected;            // "32, 64, 128 or 256", "a number from 0.001 to 1"; empty for a flag
+  std::string fallback;            // the default, as a value; empty where there is none
+  std::string help;
+  std::function<bool(std::string_view)> set;  // sets the variable, or returns false if the value is not a valid one
+};
+using SpecOptions = std::vector<SpecOption>;
+
+// The number of samples, which a spec must have: 1, 2, 4, ... `most`, a power of two.
+SpecOption samples(int& variable, int most, std::string help);
+
+// "key" alone sets the variable to true.
+SpecOption flag(std::string key, bool& variable, std::string help);
+
+// "key=number" with low <= number <= high; of type int, std::uint32_t or float. A variable that is out of this range
+// says that the option has no default.
+template <class Number>
+SpecOption number(std::string key, Number& variable, Number low, Number high, std::string help);
+
+// What `choice` makes of its words; `set_word` sets the variable to the value of words[i].
+SpecOption choice_of_words(std::string key, std::vector<std::string> words, std::string fallback, std::string help,
+                           std::function<void(std::size_t)> set_word);
+
+// "key=word", with the value that each word stands for. One of them must be the variable's.
+template <class Value>
+SpecOption choice(std::string key, Value& variable, const std::vector<std::pair<std::string, Value>>& words,
+                  std::string help) {
+  std::vector<std::string> names;
+  std::string fallback;
+  for (const auto& [name, value] : words) {
+    names.push_back(name);
+    if (value == variable) fallback = name;
+  }
+  return choice_of_words(std::move(key), std::move(names), std::move(fallback), std::move(help),
+                         [&variable, words](std::size_t i) { variable = words[i].second; });
+}
+
+// Sets the options from the spec's items. Throws SpecError, which names the first item that is wrong and says what
+// would have been right. `title` is the technique's name in messages.
+void set_options(const Spec& spec, const std::string& title, const SpecOptions& options);
+
+// "a", "a or b", "a, b or c"; with `last` in place of "or".
+std::string list_of(const std::vector<std::string>& words, std::string_view last = "or");
 
 }  // namespace beampipe

@@ -1,4 +1,4 @@
-// Techniques by spec string, and what rendering one frame with one of them yields.
+// A technique by its spec string, and what rendering a frame with it gives. This is all that the tools need to know.
 #pragma once
 
 #include <cstddef>
@@ -19,37 +19,52 @@ namespace beampipe {
 
 class Timeline;
 
+// The weight of one triangle in one pixel. The pixel is the sum of weight times colour over its triangles; the
+// background has what is left to 1.
+struct SurfaceWeight {
+  std::uint32_t triangle;  // index into SetupTriangles
+  float weight;
+  std::uint32_t order;  // when it was merged, where that decides about depth; else 0
+  bool tiny;            // covers no position of the technique's mask
+};
+using PixelWeights = std::vector<SurfaceWeight>;
+
 struct RunOptions {
-  int threads = 0;  // 0: all that the machine has. The result does not depend on it.
-  // What earlier frames left, for techniques that accumulate over time: read, and made ready for the next frame. One
-  // per technique; frames in order. Null: the frame is a first one.
+  int threads = 0;  // 0: all that the machine has. Results do not depend on it.
+  // For techniques that accumulate over time: what earlier frames left. `render` reads it and prepares it for the next
+  // frame. Each technique needs its own, and frames must come in order. Null: the frame is a first one.
   History* history = nullptr;
-  MemoryParameters memory{};  // of the system that counts sectors and DRAM bytes
-  // Bytes for what is kept per triangle and pixel, all threads together; 0: no limit. Beyond it, a frame is rendered in
-  // bands of tiles, with the same result; where a single tile needs more, rendering throws std::runtime_error.
+  MemoryParameters memory{};  // the system that counts sectors, L2 and DRAM bytes
+  // The most bytes that all threads together may keep per triangle and pair; 0: no limit. A frame that needs more is
+  // rendered in bands of tiles, with the same result. When a single tile needs more, rendering throws
+  // std::runtime_error.
   std::uint64_t memory_limit = 0;
-  int tile_size = 0;             // pixels on each side, even; 0: the technique's own. Pictures do not depend on it.
-  Timeline* timeline = nullptr;  // where each stage call is recorded with its times; null: nowhere
+  int tile_size = 0;             // pixels on each side, even; 0: the technique's own. It does not change pictures.
+  Timeline* timeline = nullptr;  // where stage calls are recorded with their times; null: nowhere
+  // Where a technique with has_weights records the weights of the triangles in each pixel of the frame, row by row;
+  // null: nowhere. It changes nothing that is rendered or counted.
+  std::vector<PixelWeights>* weights = nullptr;
 };
 
-// Linear RGB plus A (the part of the pixel that geometry covers, 0..1); row 0 on top; 4 floats per pixel.
+// Linear RGB and A, the part of the pixel that geometry covers (0..1). Row 0 is on top; 4 floats per pixel.
 struct Image {
   std::uint32_t width = 0, height = 0;
   std::vector<float> rgba;
 };
 
-// One surface of the framebuffer that is modelled: its bytes are what the named format takes, per pixel.
+// One surface of the modelled framebuffer. Its bytes per pixel are those of the named format.
 struct Surface {
   std::string name;    // "depth", "color", "mask", ...
   std::string format;  // "D32F x 8", "RGB16F", ...
   std::uint32_t bytes_per_pixel = 0;
 };
 
-// What is held beside the framebuffer: the most items at once, in the bytes that the modelled hardware has for one.
+// A buffer beside the framebuffer: the most items that it held at once, in bytes of the modelled hardware.
 struct Buffer {
   std::string name;
   std::uint64_t peak_bytes = 0;
-  bool per_bin = false;  // on chip, while a bin is worked on: of the bin that needs the most; else of the whole frame
+  bool per_bin =
+      false;  // on chip while a bin is rendered, for the bin that needs the most; else in memory, for the frame
   bool operator==(const Buffer&) const = default;
 };
 
@@ -61,26 +76,15 @@ struct FrameResult {
   std::vector<Buffer> buffers;  // all but the A-buffer
 };
 
-// What one triangle is worth in one pixel: the pixel is the sum of weight times the triangle's colour, and the
-// background has what the weights leave of 1.
-struct SurfaceWeight {
-  std::uint32_t triangle;  // as vertex_setup numbers them
-  float weight;
-  std::uint32_t order;  // when it was merged, where that decides about depth; else the same for all
-  bool tiny;            // covers no mask position of the technique
-};
-using PixelWeights = std::vector<SurfaceWeight>;
-
 struct Technique {
-  std::string spec;  // as the user wrote it
+  std::string spec = {};  // as the user wrote it
   std::vector<Surface> framebuffer;
   std::uint32_t samples = 0;  // N of msaa:N, else 0
   std::function<FrameResult(const Trace&, std::size_t frame, const RunOptions&)> render;
-  // How `render` weighs what it sees, for each pixel of the frame, row by row. Null where that is not known.
-  std::function<std::vector<PixelWeights>(const Trace&, std::size_t frame, const RunOptions&)> weights = {};
-  bool keeps_history = false;  // a frame's picture depends on the frames before it (RunOptions::history)
-  // What the program itself holds of a frame, in bytes per pixel, at the very least: the picture, and what stages leave
-  // there for each other.
+  bool has_weights = false;    // `render` can fill RunOptions::weights
+  bool keeps_history = false;  // a frame's picture depends on earlier frames (RunOptions::history)
+  // The least memory that this program needs for a frame, in bytes per pixel: the picture, and what its stages hand to
+  // each other.
   std::uint32_t working_bytes_per_pixel = sizeof(glm::vec4);
 
   std::uint32_t framebuffer_bytes_per_pixel() const {
@@ -90,15 +94,15 @@ struct Technique {
   }
 };
 
-// One line: the spec, what is wrong, what was expected.
+// One line, "technique 'SPEC': bits must be 32, 64, 128 or 256": the spec, and what would have been right.
 struct SpecError : std::runtime_error {
   using std::runtime_error::runtime_error;
 };
 
-// "beam", "msaa:8", "acaa:8,double=stencil", ...: those that technique_help() lists. Throws SpecError.
+// Of a spec such as "beam", "msaa:8" or "acaa:8,double=stencil"; technique_help() lists all. Throws SpecError.
 Technique parse_technique(std::string_view spec);
 
-// Lines "SPEC  what it is", for --help.
+// All techniques and their options, for --help.
 std::string technique_help();
 
 }  // namespace beampipe

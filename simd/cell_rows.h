@@ -1,5 +1,5 @@
-// Conservative raster of a triangle over a row of cells (pixels, or parts of one): which are touched, which are covered
-// as a whole. Exact.
+// Conservative rasterization of a row of cells, which are pixels or parts of a pixel: which cells a triangle touches,
+// and which it covers completely. Exact.
 #pragma once
 
 #include <cstddef>
@@ -9,8 +9,9 @@ namespace beampipe {
 
 inline constexpr int kCellsPerRow = 32;  // bits of a row's masks
 
-// An edge over a row of cells: its value at the cell's upper left corner, E = start + step i for cell i, and what the
-// cell's deepest and shallowest corners have on top. All are integers below 2^52.
+// An edge over a row of cells. Its value at the upper left corner of cell i is start + step i. `deepest` and
+// `shallowest` are what the value gains from there to the corner of the cell where it is greatest and where it is
+// least. All values are integers below 2^52.
 struct EdgeOverCells {
   double start, step;
   double deepest, shallowest;
@@ -20,11 +21,12 @@ struct CellRow {
   std::uint32_t touched, full;  // bit i: cell i
 };
 
-// The first `count` <= kCellsPerRow cells: touched where every edge is >= 0 at its deepest corner, full where every one
-// is at its shallowest. Lanes are across cells.
+// Tests the first `count` cells, 1..kCellsPerRow. A cell is touched if every edge is >= 0 at the cell's deepest corner,
+// and full if every edge is >= 0 at its shallowest corner. Lanes are across cells.
 CellRow cell_row(const EdgeOverCells (&edges)[3], std::size_t count);
 
-// Scalar twin of one cell and one edge; Real is double or a counting number.
+// The scalar twin for one cell and one edge. `corner` is the edge's value at the upper left corner. Real is double or a
+// counting number.
 template <class Real>
 void cell_against_edge(Real corner, Real deepest, Real shallowest, bool& touched, bool& full) {
   touched &= corner + deepest >= Real(0.0);

@@ -1,5 +1,5 @@
-// Per-sample depth test of one triangle in the cells of a multisampled surface. LESS; the surface keeps, per sample,
-// the nearest depth and whose it is.
+// The depth test per sample of a multisampled surface, for one triangle in one cell at a time. The comparison is LESS.
+// The surface keeps the nearest depth of every sample and the triangle that it belongs to.
 #pragma once
 
 #include <cstddef>
@@ -9,15 +9,16 @@
 
 namespace beampipe {
 
-// Depth at sample (x, y) of the cell, in 1/256 px: z + dzdx x + dzdy y.
+// A triangle in a cell. Its depth at sample (x, y), in 1/256 px from the cell's upper left corner, is z + dzdx x + dzdy
+// y.
 struct CellDepth {
-  std::uint32_t cell;      // which cell: its samples start at cell * pattern.count
+  std::uint32_t cell;      // its samples start at cell * pattern.count
   std::uint32_t mask;      // samples to test
   std::uint32_t triangle;  // what to store where the test passes
   float z, dzdx, dzdy;
 };
 
-// Arrays of cells * pattern.count samples, readable and writable up to kSampleSlack further.
+// Arrays of cells * pattern.count samples. Another kSampleSlack samples after them must be readable and writable.
 inline constexpr std::size_t kSampleSlack = 64;
 struct SampleSurface {
   float* depth;
@@ -28,17 +29,17 @@ struct SampleCounts {
   std::uint64_t tested, passed;
 };
 
-// In order: a later item sees what an earlier one stored. `passed`, if not null, gets the samples that passed: a mask
-// per item. Lanes are across samples.
+// Works in order: an item sees what earlier items stored. passed[i], unless `passed` is null, becomes the mask of the
+// samples of items[i] that passed. Lanes are across samples.
 SampleCounts depth_test(const CellDepth* items, std::size_t count, const SamplePattern& pattern,
                         const SampleSurface& surface, std::uint32_t* passed = nullptr);
 
-// Behind a depth-only pass: masks[i] keeps those samples of items[i].mask that have the stored depth, to the last bit.
-// Reads `depth` as far as depth_test does. Lanes are across samples.
+// For the pass that follows a depth-only pass: masks[i] becomes the samples of items[i].mask whose depth equals the
+// stored one, to the last bit. Reads as far past the end of `depth` as depth_test does. Lanes are across samples.
 SampleCounts depth_equal(const CellDepth* items, std::size_t count, const SamplePattern& pattern, const float* depth,
                          std::uint32_t* masks);
 
-// Scalar twins of one sample: does it pass?
+// The scalar twins for one sample: does it pass?
 template <class Float>
 bool depth_test_scalar(Float z, Float dzdx, Float dzdy, Float x, Float y, Float stored, Float& depth) {
   depth = z + dzdx * x + dzdy * y;

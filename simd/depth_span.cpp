@@ -5,30 +5,32 @@
 #include "hwy/foreach_target.h"
 // foreach_target comes first
 #include "hwy/highway.h"
+#include "simd/lanes-inl.h"
 
 HWY_BEFORE_NAMESPACE();
 namespace beampipe {
 namespace HWY_NAMESPACE {
-namespace hn = hwy::HWY_NAMESPACE;
+
+#include "simd/depth_span-inl.h"
 
 std::uint64_t depth_span_kernel(const DepthSpan& span, std::size_t count, std::uint64_t owner_id, double* depth,
                                 std::uint64_t* owner) {
-  const hn::ScalableTag<double> d;
-  const hn::RebindToUnsigned<decltype(d)> du;
+  using D = hn::ScalableTag<double>;
+  using Reals = Lanes<D>;
+  const D d;
+  const hn::RebindToUnsigned<D> du;
   const std::size_t lanes = hn::Lanes(d);
   HWY_ALIGN double lane_index[hn::MaxLanes(d)];
   for (std::size_t lane = 0; lane < lanes; ++lane) lane_index[lane] = static_cast<double>(lane);
-  const auto z = hn::Set(d, span.z), dzdx = hn::Set(d, span.dzdx), row = hn::Set(d, span.row);
-  const auto first = hn::Load(d, lane_index);
+  const Reals z(span.z), dzdx(span.dzdx), row(span.row), x(span.x), step(span.step), first(hn::Load(d, lane_index));
   const auto id = hn::Set(du, owner_id);
   std::uint64_t passed = 0;
   std::size_t i = 0;
   for (; i + lanes <= count; i += lanes) {
-    const auto index = hn::Add(hn::Set(d, static_cast<double>(i)), first);
-    const auto x = hn::Add(hn::Set(d, span.x), hn::Mul(hn::Set(d, span.step), index));
-    const auto at = hn::Add(hn::Add(z, hn::Mul(dzdx, x)), row);
-    const auto pass = hn::Lt(at, hn::LoadU(d, depth + i));
-    hn::BlendedStore(at, pass, d, depth + i);
+    const Reals index = Reals(static_cast<double>(i)) + first, stored(hn::LoadU(d, depth + i));
+    Reals at;
+    const auto pass = depth_span_sample(z, dzdx, row, x, step, index, stored, at).raw;
+    hn::BlendedStore(at.raw, pass, d, depth + i);
     hn::BlendedStore(id, hn::RebindMask(du, pass), du, owner + i);
     passed += hn::CountTrue(d, pass);
   }

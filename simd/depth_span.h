@@ -1,4 +1,4 @@
-// Depth test of a horizontal run of samples in double precision: the inner loop of the reference.
+// The depth test of a horizontal run of samples in double precision: the inner loop of the reference.
 #pragma once
 
 #include <cstddef>
@@ -6,23 +6,23 @@
 
 namespace beampipe {
 
-// Sample i of the run lies at x + step i (pixels from the depth plane's anchor); its depth is (z + dzdx x_i) + row.
+// Sample i of the run lies at x_i = x + step i, in pixels from the depth plane's anchor. Its depth is
+// (z + dzdx x_i) + row.
 struct DepthSpan {
   double z, dzdx, row;
   double x, step;
 };
 
-// depth[i] and owner[i] are replaced where the span is nearer (LESS), i in [0, count). Returns how many were.
+// Replaces depth[i] and owner[i] where the span is nearer (LESS), for i in [0, count). Returns how many it replaced.
 std::uint64_t depth_span(const DepthSpan& span, std::size_t count, std::uint64_t owner_id, double* depth,
                          std::uint64_t* owner);
 
-// Scalar twins. Of one sample: is it nearer?
-template <class Real>
-bool depth_span_sample(Real z, Real dzdx, Real row, Real x, Real step, Real index, Real stored, Real& depth) {
-  depth = (z + dzdx * (x + step * index)) + row;
-  return depth < stored;
+namespace scalar {
+#include "simd/depth_span-inl.h"
 }
-// For the samples [first, count).
+using namespace scalar;
+
+// The scalar twin, for the samples [first, count).
 inline std::uint64_t depth_span_scalar(const DepthSpan& span, std::size_t first, std::size_t count,
                                        std::uint64_t owner_id, double* depth, std::uint64_t* owner) {
   std::uint64_t passed = 0;

@@ -8,49 +8,20 @@
 #include "hwy/foreach_target.h"
 // foreach_target comes first
 #include "hwy/highway.h"
+#include "simd/lanes-inl.h"
+#include "simd/soa-inl.h"
 
 HWY_BEFORE_NAMESPACE();
 namespace beampipe {
 namespace HWY_NAMESPACE {
-namespace hn = hwy::HWY_NAMESPACE;
+
+#include "simd/mask_table-inl.h"
 
 void table_masks_kernel(const TableTriangle* triangles, std::size_t count, const MaskTable& table,
                         std::uint32_t* masks) {
-  const hn::ScalableTag<float> d;
-  const hn::RebindToSigned<decltype(d)> di;
-  const hn::RebindToUnsigned<decltype(d)> du;
-  const std::size_t lanes = hn::Lanes(d);
-  HWY_ALIGN std::int32_t angle[hn::MaxLanes(d)];
-  HWY_ALIGN std::uint32_t flip[hn::MaxLanes(d)], words[hn::MaxLanes(d)];
-  HWY_ALIGN float distance[hn::MaxLanes(d)];
-  const auto reach = hn::Set(d, kHalfDiagonal);
-  for (std::size_t first = 0; first < count; first += lanes) {
-    const std::size_t n = HWY_MIN(lanes, count - first);
-    auto mask = hn::Set(du, ~0u);
-    for (int k = 0; k < 3; ++k) {
-      for (std::size_t lane = 0; lane < lanes; ++lane) {
-        const TableEdge& edge = triangles[first + HWY_MIN(lane, n - 1)].edges[k];
-        angle[lane] = edge.angle, flip[lane] = edge.flip, distance[lane] = edge.distance;
-      }
-      const auto r = hn::Load(d, distance);
-      const auto scaled = hn::Mul(hn::Add(hn::Mul(r, hn::Set(d, 1.0f / kHalfDiagonal)), hn::Set(d, 1.0f)),
-                                  hn::Set(d, static_cast<float>(kTableDistances / 2)));
-      const auto clamped = hn::Min(hn::Max(scaled, hn::Zero(d)), hn::Set(d, static_cast<float>(kTableDistances - 1)));
-      const auto column = hn::ConvertTo(di, clamped);
-      const auto flipped = hn::Load(du, flip);
-      const auto is_flipped = hn::RebindMask(di, hn::Ne(flipped, hn::Zero(du)));
-      const auto row = hn::Mul(hn::Load(di, angle), hn::Set(di, kTableDistances));
-      const auto index = hn::IfThenElse(
-          is_flipped, hn::Sub(hn::Add(row, hn::Set(di, (kTableAngles / 2 + 1) * kTableDistances - 1)), column),
-          hn::Add(row, column));
-      auto word = hn::GatherIndex(du, table.words(), index);
-      word = hn::IfThenElse(hn::RebindMask(du, hn::Le(r, hn::Neg(reach))), flipped, word);
-      word = hn::IfThenElse(hn::RebindMask(du, hn::Ge(r, reach)), hn::Not(flipped), word);
-      mask = hn::And(mask, word);
-    }
-    hn::Store(mask, du, words);
-    for (std::size_t lane = 0; lane < n; ++lane) masks[first + lane] = words[lane];
-  }
+  using Columns = TableTriangleOf<Ints, Words, Floats>;
+  map_rows<Columns>(triangles, count, masks,
+                    [&](const Columns& columns) { return table_mask_formula(columns, table); });
 }
 
 }  // namespace HWY_NAMESPACE

@@ -1,4 +1,4 @@
-// Which of the 32 samples of a 2x2 quad are of the same material as a given one.
+// Which of the 32 samples of a quad of 2 x 2 pixels have the same material as a given one.
 #pragma once
 
 #include <cstddef>
@@ -8,11 +8,11 @@ namespace beampipe {
 
 inline constexpr int kQuadSamples = 32;  // 4 pixels of 8 samples
 
-// `ids`: 32 per quad; `locations`: four per quad, each 0..31. masks[4 q + i] has bit s set when ids[32 q + s] is the
-// same as ids[32 q + locations[4 q + i]]. Lanes are across samples.
+// `ids` has 32 entries per quad, `locations` four, each 0..31. Bit s of masks[4 q + i]: ids[32 q + s] equals
+// ids[32 q + locations[4 q + i]]. Lanes are across samples.
 void match_masks(const std::uint32_t* ids, const std::uint8_t* locations, std::size_t quads, std::uint32_t* masks);
 
-// Scalar twin: the samples with this id. Id is std::uint32_t or a counting number.
+// The scalar twin: the samples that have this id. Id is std::uint32_t or a counting number.
 template <class Id>
 std::uint32_t match_mask_scalar(const Id ids[kQuadSamples], Id id) {
   std::uint32_t mask = 0;

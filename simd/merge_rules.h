@@ -1,53 +1,53 @@
-// What the paper (Crassin et al. 2018, section 2) and the slides of its talk leave open about merging: one named policy
-// each, with the first as the default, which is the paper's text where it speaks. docs/accuracy.md says what each is
-// worth.
+// Choices that the published rules for merging (Crassin et al. 2018, section 2, and the slides of the talk) leave open.
+// Each is a policy with a name. The first value is the default; it follows the text of the paper where the text
+// decides. docs/accuracy.md tells how much each choice matters.
 #pragma once
 
 namespace beampipe {
 
 struct MergeRules {
-  // How two coverages lie to each other where masks overlap and one surface is in front.
+  // How two coverages are correlated where masks overlap and one surface is in front.
   enum class Overlap {
-    tiny,        // tiny triangles beside what is there (ADD), all others independent (OVER): section 2.2.1
-    over,        // all independent: the formulas of section 2.2 alone
-    add,         // all beside each other, as far as there is room: the other end of slide 12's transition
-    transition,  // slide 12: from ADD to OVER by a fuzziness of |M_A|, alpha_A and "sadp(A, B)", see merge.h
+    tiny,        // specks lie beside what is there (ADD), all others are independent (OVER): section 2.2.1
+    over,        // all are independent: the formulas of section 2.2 alone
+    add,         // all lie beside each other as far as there is room: the other end of slide 12's transition
+    transition,  // slide 12: from ADD to OVER by a fuzziness of |M_A|, alpha_A and "sadp(A, B)", see merge-inl.h
   } overlap = Overlap::tiny;
 
-  // Local coverage alpha 32 / |M| above 1, which makes 1 - alpha' negative in the published formulas.
+  // What to do with a local coverage alpha 32 / |M| above 1, which makes 1 - alpha' negative in the published formulas.
   enum class Local {
-    clamp,  // to 1 where the surfaces overlap: a position cannot be covered more than wholly
-    keep,   // what shows keeps its area; what it hides is bounded by 0
+    clamp,  // clamp it to 1 where the surfaces overlap: a position cannot be more than fully covered
+    keep,   // keep it, so that a visible surface keeps its area; 1 - alpha' is clamped to 0
   } local = Local::clamp;
 
-  // Blending within the slab.
+  // How to blend within the slab.
   enum class Fuzzy {
     delta,  // b_i = alpha'_i (1 - Delta), b_a = alpha'_a Delta: section 2.2
-    mix,    // Delta between the fragment over and under the aggregate, so that area is not lost when both are thin
+    mix,    // interpolate by Delta from the fragment over to the fragment under the aggregate; loses no area
   } fuzzy = Fuzzy::delta;
 
   // Where the slab ends at a position, for the depth partition and for Delta.
   enum class Extents {
-    range,  // cut by z_min and z_max: "comparing the slabs S and depth ranges", section 2.2
-    slab,   // plane and thickness alone
+    range,  // clamped to z_min..z_max: "comparing the slabs S and depth ranges", section 2.2
+    slab,   // by plane and thickness alone
   } extents = Extents::range;
 
-  // What of a fragment thickens the slab and its depth range.
+  // Which part of a fragment extends the slab and its depth range.
   enum class Slab {
-    full,     // all of its positions: section 2.2, "the maximal distance from the fragment"
-    visible,  // those that are not behind the slab; a fragment that is behind it altogether leaves the slab alone
+    full,     // all of its positions: "the maximal distance from the fragment", section 2.2
+    visible,  // positions that are not behind the slab; a fragment that is all behind it changes nothing
   } slab = Slab::full;
 
-  // Weights of the planes: "a final coverage-weighted blend of the prior planes", section 2.2.
+  // How to weight the two planes: "a final coverage-weighted blend of the prior planes", section 2.2.
   enum class Plane {
     area,     // by alpha
-    visible,  // by what shows of each
+    visible,  // by what is visible of each
   } plane = Plane::area;
 
-  // Thickness that is kept from before.
+  // How much of the earlier thickness to keep.
   enum class Thickness {
-    larger,      // "or the input slab extent, if larger": section 2.2
-    containing,  // and by how much the plane moved: "bounds containing all merged primitives", figure 2
+    larger,      // all of it, "or the input slab extent, if larger": section 2.2
+    containing,  // and twice the distance that the plane moved: "bounds containing all merged primitives", figure 2
   } thickness = Thickness::larger;
 
   bool operator==(const MergeRules&) const = default;

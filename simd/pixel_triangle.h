@@ -15,20 +15,19 @@ struct PixelTriangleOf {
 };
 using TriangleInPixel = PixelTriangleOf<std::int32_t>;
 
-// E(x, y) = a x + b y + c, exact: below 2^50.
+// E(x, y) = a x + b y + c. All values are integers below 2^50, so 64-bit integers and doubles hold them exactly.
 template <class Int>
 struct EdgeInPixel {
   Int a, b, c;
 };
-template <class Int>
-EdgeInPixel<Int> edge_in_pixel(const PixelTriangleOf<Int>& triangle, int k) {
-  const int next = (k + 1) % 3;
-  const Int a = triangle.y[k] - triangle.y[next], b = triangle.x[next] - triangle.x[k];
-  return {a, b, Int(0) - (a * triangle.x[k] + b * triangle.y[k])};
-}
 
-// The top-left rule: does a triangle own the samples that lie exactly on such an edge? Left edges and horizontal top
-// ones do.
+namespace scalar {
+#include "simd/pixel_triangle-inl.h"
+}
+using namespace scalar;
+
+// The top-left rule: does a triangle own the samples that lie exactly on this edge? It does if the edge is a left edge
+// or a horizontal top edge.
 template <class Int>
 bool owns_its_samples(Int a, Int b) {
   return (a > Int(0)) | ((a == Int(0)) & (b > Int(0)));

@@ -5,39 +5,38 @@
 #include "hwy/foreach_target.h"
 // foreach_target comes first
 #include "hwy/highway.h"
+#include "simd/lanes-inl.h"
 
 HWY_BEFORE_NAMESPACE();
 namespace beampipe {
 namespace HWY_NAMESPACE {
-namespace hn = hwy::HWY_NAMESPACE;
+
+// This order: a formula finds only those above it.
+#include "simd/depth_plane-inl.h"
+//
+#include "simd/plane_order-inl.h"
 
 using D = hn::CappedTag<float, kMaxMaskSamples>;
-using V = hn::Vec<D>;
+using Reals = Lanes<D>;
 
-// From the pixel's centre: units to pixels is exact, so is the half.
-HWY_INLINE V offsets(const std::int32_t* units) {
-  const D d;
-  const hn::RebindToSigned<D> di;
-  const V pixels = hn::Mul(hn::ConvertTo(d, hn::Load(di, units)), hn::Set(d, 1.0f / kSubpixelUnits));
-  return hn::Sub(pixels, hn::Set(d, 0.5f));
+// Pixels from the pixel's centre.
+HWY_INLINE Reals offsets(const std::int32_t* units) {
+  const Reals whole(hn::ConvertTo(D(), hn::Load(hn::RebindToSigned<D>(), units)));
+  return whole * Reals(1.0f / kSubpixelUnits) - Reals(0.5f);
 }
 
-HWY_INLINE V depths(const DepthPlane<float>& plane, V u, V v) {
-  const D d;
-  const V along_u = hn::Add(hn::Set(d, plane.z), hn::Mul(hn::Set(d, plane.dzdu), u));
-  return hn::Add(along_u, hn::Mul(hn::Set(d, plane.dzdv), v));
+HWY_INLINE DepthPlane<Reals> in_every_lane(const DepthPlane<float>& plane) {
+  return {Reals(plane.z), Reals(plane.dzdu), Reals(plane.dzdv)};
 }
 
 void nearer_positions_kernel(const DepthPlane<float>& plane, const DepthPlane<float>& other,
                              const SamplePattern* patterns, std::size_t words, std::uint32_t* masks) {
-  const D d;
+  const DepthPlane<Reals> of_plane = in_every_lane(plane), of_other = in_every_lane(other);
   for (std::size_t w = 0; w < words; ++w) {
     std::uint32_t mask = 0;
-    for (std::size_t s = 0; s < kMaxMaskSamples; s += hn::Lanes(d)) {
-      const V u = offsets(patterns[w].x.data() + s), v = offsets(patterns[w].y.data() + s);
-      std::uint8_t bytes[8] = {};
-      hn::StoreMaskBits(d, hn::Lt(depths(plane, u, v), depths(other, u, v)), bytes);
-      mask |= (bytes[0] | std::uint32_t{bytes[1]} << 8) << s;
+    for (std::size_t s = 0; s < kMaxMaskSamples; s += hn::Lanes(D())) {
+      const Reals u = offsets(patterns[w].x.data() + s), v = offsets(patterns[w].y.data() + s);
+      mask |= mask_bits(nearer_formula(of_plane, of_other, u, v)) << s;
     }
     masks[w] = mask;
   }
@@ -45,17 +44,15 @@ void nearer_positions_kernel(const DepthPlane<float>& plane, const DepthPlane<fl
 
 float nearest_depth_kernel(const DepthPlane<float>& plane, const SamplePattern* patterns, std::size_t words,
                            const std::uint32_t* masks) {
-  const D d;
-  V nearest = hn::Set(d, kNoDepth);
+  const DepthPlane<Reals> of_plane = in_every_lane(plane);
+  Reals nearest(kNoDepth);
   for (std::size_t w = 0; w < words; ++w) {
-    for (std::size_t s = 0; s < kMaxMaskSamples; s += hn::Lanes(d)) {
-      const std::uint8_t bits[8] = {static_cast<std::uint8_t>(masks[w] >> s),
-                                    static_cast<std::uint8_t>(masks[w] >> s >> 8)};
-      const V u = offsets(patterns[w].x.data() + s), v = offsets(patterns[w].y.data() + s);
-      nearest = hn::IfThenElse(hn::LoadMaskBits(d, bits), hn::Min(nearest, depths(plane, u, v)), nearest);
+    for (std::size_t s = 0; s < kMaxMaskSamples; s += hn::Lanes(D())) {
+      const Reals u = offsets(patterns[w].x.data() + s), v = offsets(patterns[w].y.data() + s);
+      nearest = nearest_formula(of_plane, u, v, mask_of_bits<D>(masks[w], s), nearest);
     }
   }
-  return hn::GetLane(hn::MinOfLanes(d, nearest));
+  return hn::GetLane(hn::MinOfLanes(D(), nearest.raw));
 }
 
 }  // namespace HWY_NAMESPACE

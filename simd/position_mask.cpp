@@ -13,19 +13,19 @@ namespace beampipe {
 namespace HWY_NAMESPACE {
 namespace hn = hwy::HWY_NAMESPACE;
 
-// Both lane types hold every product and sum exactly: int32 below kSmallSlope with c clamped to where it still decides
-// the sign, double up to 2^53.
+// Both lane types hold every product and sum exactly: double up to 2^53, and int32 where slopes are below kSmallSlope
+// and c is clamped to +-kDecided, beyond which it decides the sign on its own.
 constexpr std::int64_t kSmallSlope = 1 << 20;
 constexpr std::int64_t kDecided = 1 << 30;
 
-// At most as many lanes as the two cells have that are computed once.
+// A vector has at most 16 lanes: the positions of the first two cells.
 template <class Lane, std::size_t kColumns, std::size_t kRows>
 HWY_INLINE void set_mask(const EdgeInPixel<std::int64_t> (&edges)[3], const PositionGrid& grid, WideMask& mask) {
   const hn::CappedTag<Lane, 16> d;
   using V = hn::Vec<decltype(d)>;
   const hn::Rebind<std::int32_t, decltype(d)> di;
-  const std::size_t lanes = hn::Lanes(d), parts = lanes > 8 ? 1 : 8 / lanes;  // vectors to a cell, or to two
-  const std::size_t step = lanes > 8 ? 2 : 1;                                 // cells to a vector
+  const std::size_t lanes = hn::Lanes(d), parts = lanes > 8 ? 1 : 8 / lanes;  // vectors per cell, or per two
+  const std::size_t step = lanes > 8 ? 2 : 1;                                 // cells per vector
   const auto load = [&](const std::int32_t* values) {
     if constexpr (sizeof(Lane) == 4) {
       return hn::Load(d, values);
@@ -34,7 +34,7 @@ HWY_INLINE void set_mask(const EdgeInPixel<std::int64_t> (&edges)[3], const Posi
     }
   };
   const auto set = [&](std::int64_t value) { return hn::Set(d, static_cast<Lane>(value)); };
-  // Negative if one of them is.
+  // Negative if one of the three is negative.
   const auto least = [](V e0, V e1, V e2) {
     if constexpr (sizeof(Lane) == 4) {
       return hn::Or3(e0, e1, e2);
@@ -46,7 +46,7 @@ HWY_INLINE void set_mask(const EdgeInPixel<std::int64_t> (&edges)[3], const Posi
   const V down0 = down(0), down1 = down(1), down2 = down(2);
   static_assert(std::endian::native == std::endian::little);
   mask = {};
-  auto* const bytes = reinterpret_cast<std::uint8_t*>(mask.words.data());  // a cell is a byte
+  auto* const bytes = reinterpret_cast<std::uint8_t*>(mask.words.data());  // a cell has 8 positions: one byte
   for (std::size_t part = 0; part < parts; ++part) {
     const V x = load(grid.first_cells.x.data() + part * lanes), y = load(grid.first_cells.y.data() + part * lanes);
     const auto base = [&](int k) {

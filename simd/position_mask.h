@@ -1,8 +1,8 @@
-// Which mask positions of a pixel a triangle covers: exact integer edge tests, as msaa:N does for its samples.
+// Which mask positions of a pixel a triangle covers: the exact edge tests that msaa:N makes for its samples.
 //
-// The positions (simd/sample_pattern.h, cell_patterns) are the same 8 in every cell of a grid. An edge value at a
-// position is its value at the position's place in the first cells, which is computed once, and what the cell's place
-// adds, which eight positions share.
+// The positions (cell_patterns in simd/sample_pattern.h) are the same 8 in every cell of a grid. So an edge's value at
+// a position is the sum of two parts: its value at the same position of the first cell, which is computed once, and
+// what the cell's offset from the first cell adds, which is the same for all 8.
 #pragma once
 
 #include <cstddef>
@@ -16,16 +16,16 @@ namespace beampipe {
 struct PositionGrid {
   CellCounts cells;
   int cell_width = 0, cell_height = 0;  // 1/256 px
-  SamplePattern first_cells;            // the positions of the first two cells of the first row
+  SamplePattern first_cells;            // 16 positions, those of the first two cells of the first row
 
   explicit PositionGrid(int count);
   int count() const { return 8 * cells.columns * cells.rows; }
 };
 
-// masks[i] = positions that in[i] covers, by the top-left rule. Lanes are across positions.
+// masks[i] = the positions that in[i] covers, by the top-left rule. Lanes are across positions.
 void position_masks(const TriangleInPixel* in, std::size_t count, const PositionGrid& grid, WideMask* masks);
 
-// Scalar twin; Int is std::int64_t or a counting number.
+// The scalar twin. Int is std::int64_t or a counting number.
 template <class Int>
 WideMask position_mask_scalar(const PixelTriangleOf<Int>& in, const PositionGrid& grid) {
   WideMask mask;

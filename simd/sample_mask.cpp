@@ -11,8 +11,8 @@ namespace beampipe {
 namespace HWY_NAMESPACE {
 namespace hn = hwy::HWY_NAMESPACE;
 
-// Both lane types hold every product and sum exactly: int32 below kSmallSlope with c clamped to where it still decides
-// the sign, double up to 2^53.
+// Both lane types hold every product and sum exactly: double up to 2^53, and int32 where slopes are below kSmallSlope
+// and c is clamped to +-kDecided, beyond which it decides the sign on its own.
 constexpr std::int32_t kSmallSlope = 1 << 20;
 constexpr std::int64_t kDecided = 1 << 30;
 

@@ -1,4 +1,4 @@
-// Which samples of a pixel (or cell) a triangle covers: exact integer edge tests.
+// Which samples of a pixel, or of a cell of a pixel, a triangle covers. The edge tests are exact.
 #pragma once
 
 #include <cstddef>
@@ -8,18 +8,18 @@
 
 namespace beampipe {
 
-// The three edges of a triangle seen from a cell's upper left corner: sample (x, y), in 1/256 px, is covered when
-// a[k] x + b[k] y + c[k] >= 0 for k = 0, 1, 2. The top-left rule is already in c (one less for edges that do not own
-// their samples). |a|, |b| <= 2^24, |c| < 2^52.
+// The three edges of a triangle, seen from a cell's upper left corner. Sample (x, y), in 1/256 px, is covered if
+// a[k] x + b[k] y + c[k] >= 0 for k = 0, 1, 2. The top-left rule is already in c, which is one less for edges that do
+// not own their samples. |a|, |b| <= 2^24, |c| < 2^52.
 struct CellEdges {
   std::int32_t a[3], b[3];
   std::int64_t c[3];
 };
 
-// masks[i] has bit s set when cells[i] covers sample s. Lanes are across samples.
+// Bit s of masks[i]: cells[i] covers sample s of the pattern. Lanes are across samples.
 void sample_masks(const CellEdges* cells, std::size_t count, const SamplePattern& pattern, std::uint32_t* masks);
 
-// Scalar twin; Int is std::int64_t or a counting number.
+// The scalar twin. Int is std::int64_t or a counting number.
 template <class Int>
 std::uint32_t sample_mask_scalar(const Int a[3], const Int b[3], const Int c[3], const SamplePattern& pattern) {
   std::uint32_t mask = 0;

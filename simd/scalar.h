@@ -1,5 +1,12 @@
-// What the scalar twins are written with: functions that exist for float, for double and for counting numbers alike.
-// A twin has no data-dependent branch: it selects, as a SIMD lane does, so that its operation count is a constant.
+// The functions that formulas use besides operators, for float and double. Formulas are templates: the same text is
+// compiled for float, for counting numbers (stages/cost/counting.h) and for vectors (simd/lanes-inl.h), each of which
+// has these functions too. A formula has no branch that depends on data: it selects, as a vector must, so that it
+// always costs the same number of operations.
+//
+// Formulas stand in files simd/*-inl.h without include guards. A header includes them once in namespace `scalar`; a
+// kernel includes them again in the namespace of each instruction set, because a compiler generates a function for the
+// instruction set that is chosen where the function stands. `scalar` is a namespace of its own so that a formula on
+// vectors does not find the formulas on numbers as well, through its arguments' types.
 #pragma once
 
 #include <bit>
@@ -22,7 +29,7 @@ inline std::int32_t to_integer(float x) { return static_cast<std::int32_t>(x); }
 inline float to_float(std::int64_t x) { return static_cast<float>(x); }
 inline float to_float(double x) { return static_cast<float>(x); }
 inline double to_double(std::int64_t x) { return static_cast<double>(x); }
-inline float converted(float x) { return x; }  // between formats of a surface, where it costs and rounds
+inline float converted(float x) { return x; }  // to another format of a surface; a counting number counts it
 inline std::uint32_t fetch(const std::uint32_t* table, std::int32_t index) { return table[index]; }
 inline float bit_count(std::uint32_t mask) { return static_cast<float>(std::popcount(mask)); }
 

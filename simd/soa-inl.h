@@ -1,5 +1,7 @@
-// Rows of 32-bit members (structs in memory) to and from columns (one vector per member). Included once per SIMD
-// target.
+// Between arrays of structs in memory and structs of vectors. Included once per SIMD target.
+//
+// A row is a struct of 32-bit members, such as Coverage<float>. Its columns are the same struct with a vector for each
+// member, such as Coverage<Floats>: lane i of every vector comes from row i.
 #if defined(BEAMPIPE_SIMD_SOA_INL_H_) == defined(HWY_TARGET_TOGGLE)
 #ifdef BEAMPIPE_SIMD_SOA_INL_H_
 #undef BEAMPIPE_SIMD_SOA_INL_H_
@@ -8,6 +10,7 @@
 #endif
 
 #include <cstddef>
+#include <cstdint>
 #include <cstring>
 
 #include "hwy/highway.h"
@@ -16,26 +19,44 @@ HWY_BEFORE_NAMESPACE();
 namespace beampipe {
 namespace HWY_NAMESPACE {
 
-// Column i starts at columns[i * lanes]; lanes past `rows` repeat the last row, so that no lane holds garbage.
-template <class Row, class Member>
-HWY_INLINE void rows_to_columns(const Row* HWY_RESTRICT row_data, std::size_t rows, std::size_t lanes,
-                                Member* HWY_RESTRICT columns) {
-  constexpr std::size_t kWidth = sizeof(Row) / sizeof(Member);
-  for (std::size_t lane = 0; lane < lanes; ++lane) {
-    Member row[kWidth];
-    std::memcpy(row, row_data + (lane < rows ? lane : rows - 1), sizeof row);
-    for (std::size_t i = 0; i < kWidth; ++i) columns[i * lanes + lane] = row[i];
+// Lanes past `count` repeat the last row, so that no lane holds garbage.
+template <class Columns, class Row>
+HWY_INLINE Columns load_rows(const Row* HWY_RESTRICT rows, std::size_t count) {
+  constexpr std::size_t kMembers = sizeof(Row) / sizeof(std::uint32_t), kLanes = sizeof(Columns) / sizeof(Row);
+  Columns columns;
+  auto* const bytes = reinterpret_cast<unsigned char*>(&columns);
+  const unsigned char* row[kLanes];
+  for (std::size_t lane = 0; lane < kLanes; ++lane)
+    row[lane] = reinterpret_cast<const unsigned char*>(rows + HWY_MIN(lane, count - 1));
+  for (std::size_t i = 0; i < kMembers; ++i) {
+    std::uint32_t member[kLanes];
+    for (std::size_t lane = 0; lane < kLanes; ++lane) std::memcpy(member + lane, row[lane] + 4 * i, 4);
+    std::memcpy(bytes + i * sizeof member, member, sizeof member);
+  }
+  return columns;
+}
+
+template <class Columns, class Row>
+HWY_INLINE void store_rows(const Columns& columns, std::size_t count, Row* HWY_RESTRICT rows) {
+  constexpr std::size_t kMembers = sizeof(Row) / sizeof(std::uint32_t), kLanes = sizeof(Columns) / sizeof(Row);
+  const auto* const bytes = reinterpret_cast<const unsigned char*>(&columns);
+  if (kMembers == 1 && count == kLanes) {  // nothing to transpose
+    std::memcpy(rows, bytes, sizeof columns);
+    return;
+  }
+  for (std::size_t lane = 0; lane < count; ++lane) {
+    auto* const row = reinterpret_cast<unsigned char*>(rows + lane);
+    for (std::size_t i = 0; i < kMembers; ++i) std::memcpy(row + 4 * i, bytes + 4 * (i * kLanes + lane), 4);
   }
 }
 
-template <class Row>
-HWY_INLINE void columns_to_rows(const float* HWY_RESTRICT columns, std::size_t rows, std::size_t lanes,
-                                Row* HWY_RESTRICT row_data) {
-  constexpr std::size_t kWidth = sizeof(Row) / sizeof(float);
-  for (std::size_t lane = 0; lane < rows; ++lane) {
-    float row[kWidth];
-    for (std::size_t i = 0; i < kWidth; ++i) row[i] = columns[i * lanes + lane];
-    std::memcpy(row_data + lane, row, sizeof row);
+// out[i] = formula(in[i]), a vector of rows at a time.
+template <class Columns, class In, class Out, class Formula>
+HWY_INLINE void map_rows(const In* HWY_RESTRICT in, std::size_t count, Out* HWY_RESTRICT out, const Formula& formula) {
+  constexpr std::size_t kLanes = sizeof(Columns) / sizeof(In);
+  for (std::size_t first = 0; first < count; first += kLanes) {
+    const std::size_t n = HWY_MIN(kLanes, count - first);
+    store_rows(formula(load_rows<Columns>(in + first, n)), n, out + first);
   }
 }
 

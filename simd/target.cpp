@@ -16,13 +16,13 @@ std::string name_of(std::int64_t target) {
   return name;
 }
 
-// Before any is chosen: afterwards the library tells only that one.
+// The list is made before one is chosen: afterwards the library names only the chosen one.
 const std::vector<std::int64_t>& all_targets() {
   static const std::vector<std::int64_t> targets = hwy::SupportedAndGeneratedTargets();
   return targets;
 }
 
-void choose(std::int64_t targets) {  // 0: all that the machine has
+void choose(std::int64_t targets) {  // 0 means all that the machine has
   hwy::SetSupportedTargetsForTest(targets);
   hwy::GetChosenTarget().DeInit();
 }

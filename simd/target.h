@@ -1,4 +1,5 @@
-// The instruction sets that the kernels were compiled for and this machine has. Results are the same bits on each.
+// The instruction sets that the kernels were compiled for and that this machine has. Results have the same bits on all
+// of them.
 #pragma once
 
 #include <string>
@@ -9,14 +10,14 @@ namespace beampipe {
 // Highway's names in lower case, the best first: "avx3", "avx2", "sse4", "ssse3", "scalar". At least one.
 std::vector<std::string> simd_targets();
 
-// The one in use.
+// The name of the one in use.
 std::string simd_target();
 
-// From now on every kernel of the process runs on this one. Call it while no kernel runs. Throws std::invalid_argument
-// unless simd_targets() has it.
+// From now on every kernel of the process uses this one. Call it while no kernel runs. Throws std::invalid_argument
+// unless simd_targets() contains the name.
 void use_simd_target(const std::string& name);
 
-// Back to the best one.
+// Goes back to the best one.
 void use_best_simd_target();
 
 }  // namespace beampipe

@@ -1,4 +1,4 @@
-// Localization masks of up to 256 bits, in words of 32: bit s of word w stands at position s of pattern w.
+// Localization masks of up to 256 bits, in words of 32: bit s of word w belongs to position s of pattern w.
 #pragma once
 
 #include <array>
@@ -14,7 +14,7 @@ struct WideMask {
   std::array<std::uint32_t, kMaxMaskWords> words{};
 
   int count() const {
-    // Bits of bytes, in parallel: this may run where there is no instruction for it.
+    // Counts the bits of all bytes in parallel: the baseline instruction set has no population count.
     std::uint64_t bytes = 0;
     for (std::size_t i = 0; i < kMaxMaskWords; i += 2) {
       std::uint64_t x = words[i] | std::uint64_t{words[i + 1]} << 32;

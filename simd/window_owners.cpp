@@ -41,8 +41,8 @@ HWY_INLINE std::uint32_t count_bits(const WideMask& mask) {
 
 using D = hn::CappedTag<float, 16>;
 
-// Of the contested positions of word `w` leaves each fragment those where it is nearest. The nearest depths stay in
-// registers while the fragments come one by one. Returns how many depths were computed.
+// Leaves every fragment those contested positions of word `w` where it is nearest. The nearest depths stay in registers
+// while the fragments pass one by one. Returns how many depths were computed.
 HWY_INLINE std::uint64_t contest(const MaskedPlane* in, std::size_t count, std::size_t w, std::uint32_t contested,
                                  const SamplePattern& pattern, Ownership* out) {
   const D d;
@@ -60,7 +60,7 @@ HWY_INLINE std::uint64_t contest(const MaskedPlane* in, std::size_t count, std::
     tests += static_cast<std::uint64_t>(std::popcount(tested));
     const CornerPlane& plane = in[i].plane;
     const auto corner = hn::Set(d, plane.corner), dzdx = hn::Set(d, plane.dzdx), dzdy = hn::Set(d, plane.dzdy);
-    std::uint32_t won = 0;  // from those before it
+    std::uint32_t won = 0;  // positions where it is nearer than all earlier fragments
     for (std::size_t v = 0; v < kVectors; ++v) {
       const std::uint64_t part = tested >> (v * kLanes);
       std::uint8_t bytes[8];
@@ -77,7 +77,7 @@ HWY_INLINE std::uint64_t contest(const MaskedPlane* in, std::size_t count, std::
     out[i].owned.words[w] = (out[i].owned.words[w] & ~contested) | won;
     out[i].visible -= static_cast<std::uint32_t>(std::popcount(tested & ~won));
   }
-  std::uint32_t later = 0;  // who was nearer last, is nearest
+  std::uint32_t later = 0;  // positions that later fragments won: the last one to be nearer is the nearest
   for (std::size_t i = count; i-- > 0;) {
     const std::uint32_t won = out[i].owned.words[w] & contested;
     out[i].owned.words[w] &= ~later;

@@ -1,12 +1,12 @@
 #!/usr/bin/env python3
-"""Lines and branches of stages/ and simd/ that the tests reach.
+"""Prints which lines and branches of stages/ and simd/ the tests reach.
 
     cmake --preset coverage && cmake --build --preset coverage --target simd_tests stages_tests pipeline_tests
     tests/coverage.py build/coverage [simd stages pipeline]
 
-runs those tests (all three, or those that are named), and prints a table and the lines that nothing reaches. A line or
-branch of a kernel that is compiled for several instruction sets is reached when one of them reaches it; branches that
-exceptions take do not count.
+runs those tests (all three, or the named ones) and prints a table with the lines that no test reaches. A kernel is
+compiled for several instruction sets; a line or branch of it counts as reached if it is reached with one of them.
+Branches that are taken only for exceptions do not count.
 """
 import collections
 import json

@@ -1,12 +1,13 @@
 #!/usr/bin/env bash
 # Builds with sanitizers and runs all tests under them: tests/sanitizers.sh address|thread [ctest options...]
 #   address  AddressSanitizer, UndefinedBehaviorSanitizer and LeakSanitizer
-#   thread   ThreadSanitizer, which needs a oneTBB that it knows: Debian's source, fetched and built into
-#            build/tsan/tbb. Kernels for the baseline instruction set alone: threads do the same with all.
+#   thread   ThreadSanitizer, which needs a oneTBB that is built with it: Debian's source, fetched and built into
+#            build/tsan/tbb. Kernels are built for the baseline instruction set only, because threads do the same work
+#            with every instruction set.
 set -euo pipefail
 cd "$(dirname "${BASH_SOURCE[0]}")/.."
 
-# Debian's source of oneTBB, without becoming root: apt with lists of its own, of the archives that it knows.
+# Fetches and builds Debian's source of oneTBB. No root is needed, because apt gets its own lists of the known archives.
 build_tbb() {
   local folder=$PWD/build/tsan/tbb lists
   [[ -d $folder/lib/cmake/TBB ]] && return

@@ -1,4 +1,5 @@
-// How much more than the quick run of continuous integration a search is to try: BEAMPIPE_THOROUGH=N, 1 by default.
+// How many times as much as in continuous integration a random search tries: the environment variable
+// BEAMPIPE_THOROUGH, 1 by default.
 #pragma once
 
 #include <algorithm>

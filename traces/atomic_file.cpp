@@ -29,9 +29,9 @@ AtomicFile::AtomicFile(const fs::path& target) : target_(target), temporary_(tem
   while (!open()) ::close(descriptor_);
 }
 
-// False: another program renamed or removed the file between our opening and locking it.
+// Returns false if another program renamed or removed the file after it was opened here, but not yet locked.
 bool AtomicFile::open() {
-  // Not blocking: a pipe under this name is an error, not something to wait for.
+  // O_NONBLOCK: a pipe under this name must be an error. Without the flag, opening would wait for its reader.
   descriptor_ = ::open(temporary_.c_str(), O_WRONLY | O_CREAT | O_CLOEXEC | O_NOFOLLOW | O_NONBLOCK, 0666);
   if (descriptor_ < 0) fail("create a file beside it");
   struct stat opened {

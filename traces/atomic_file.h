@@ -7,9 +7,10 @@
 
 namespace beampipe {
 
-// Writes beside the target under a temporary name, which goes away unless commit() has renamed it. What a killed
-// program left under that name is written over, so that no rubbish piles up; while it is locked, another is writing.
-// Everything throws std::runtime_error, one line that names the target.
+// Writes to a temporary file beside the target, which commit() renames to the target. Without commit() it is removed. A
+// temporary file that a killed program has left is overwritten, so that such files do not pile up; one that is locked
+// belongs to a program that is still writing, and is an error. All functions throw std::runtime_error, with one line
+// that names the target.
 class AtomicFile {
  public:
   explicit AtomicFile(const std::filesystem::path& target);

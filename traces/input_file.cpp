@@ -1,10 +1,18 @@
 #include "traces/input_file.h"
 
+#include <algorithm>
 #include <cstdint>
 
-#include "traces/json_cursor.h"
+#include "traces/trace_io.h"
 
 namespace beampipe {
+
+void fail_trace(const std::string& where, const std::string& expected, const std::string& found) {
+  std::string message = where + ": expected " + expected + ", found " + found;
+  std::replace_if(
+      message.begin(), message.end(), [](unsigned char c) { return c < 0x20 || c == 0x7f; }, '?');
+  throw TraceError(message);
+}
 
 std::ifstream open_input_file(const std::filesystem::path& file, const std::string& where) {
   constexpr std::uint64_t kMostBytes = std::uint64_t{16} << 30;
@@ -16,9 +24,9 @@ std::ifstream open_input_file(const std::filesystem::path& file, const std::stri
   const std::uint64_t size = std::filesystem::file_size(file, error);
   if (!error && size > kMostBytes) fail_trace(where, "at most 16 GiB", std::to_string(size >> 30) + " GiB");
   std::ifstream stream(file, std::ios::binary);
-  stream.peek();  // some of the kernel's files open, and then cannot be read
+  stream.peek();  // some files of the kernel can be opened but not read
   if (stream.fail()) fail_trace(where, "a readable file", "none");
-  stream.clear();  // of the end, in an empty file
+  stream.clear();  // peek() has found the end of an empty file
   return stream;
 }
 

@@ -1,4 +1,4 @@
-// Opening what a user named for reading.
+// Reading files that a user named, and errors about what is in them.
 #pragma once
 
 #include <filesystem>
@@ -7,11 +7,15 @@
 
 namespace beampipe {
 
-// Opens a regular file, or a link to one, of at most 16 GiB: pipes and devices may have no end. Anything else, and what
-// cannot be read, throws TraceError, which starts with `where`.
+// Throws TraceError "WHERE: expected EXPECTED, found FOUND". Control characters in the parts become "?", so that the
+// message is one line.
+[[noreturn]] void fail_trace(const std::string& where, const std::string& expected, const std::string& found);
+
+// Opens a regular file, or a link to one, of at most 16 GiB. Pipes and devices are refused, because they may have no
+// end. Throws TraceError for these and for a file that cannot be read; the message starts with `where`.
 std::ifstream open_input_file(const std::filesystem::path& file, const std::string& where);
 
-// All of its bytes. Throws TraceError.
+// Returns all bytes of a file that open_input_file() opens. Throws TraceError.
 std::string read_input_file(const std::filesystem::path& file, const std::string& where);
 
 }  // namespace beampipe

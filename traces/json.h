@@ -74,11 +74,13 @@ class Json {
   // Of an array or object; 0 of everything else.
   std::size_t size() const;
 
-  // Throw JsonError when it is not an array (object).
-  const Array& elements() const;
-  Array& elements();
-  const Object& members() const;
-  Object& members();
+  // Throw JsonError when it is not an array (object). Not of a temporary value, which a loop over them would outlive.
+  const Array& elements() const&;
+  Array& elements() &;
+  const Array& elements() && = delete;
+  const Object& members() const&;
+  Object& members() &;
+  const Object& members() && = delete;
 
   // Of an array; null becomes one. Throws JsonError when it is something else.
   void push_back(Json element);
@@ -126,6 +128,12 @@ struct Json::Member {
 
 // A JSON string with its quotes. Throws JsonError when the text is not UTF-8.
 std::string json_string(const std::string& text);
+
+// The same for messages: long texts are cut, and bytes that are not UTF-8 are replaced.
+std::string in_quotes(std::string_view text);
+
+// The JSON pointer of `value`, which must be `root` or in it; "" of `root` itself. Takes time in proportion to `root`.
+std::string pointer_to(const Json& value, const Json& root);
 
 // Parses a whole file; broken JSON, duplicate keys, numbers out of range, more than 32 levels of arrays and objects,
 // and what open_input_file refuses throw TraceError.

@@ -2,14 +2,16 @@
 
 #include <algorithm>
 #include <cmath>
+#include <glm/gtc/type_ptr.hpp>
+#include <limits>
 #include <sstream>
 
-#include "traces/trace_io.h"
+#include "traces/input_file.h"
 
 namespace beampipe {
 namespace {
 
-constexpr std::size_t kLongestFound = 60;  // characters of a value that a message shows
+constexpr double kNan = std::numeric_limits<double>::quiet_NaN();
 
 std::string names_of(std::initializer_list<std::string_view> names) {
   std::string text;
@@ -23,51 +25,32 @@ std::string number_text(double value) {
   return text.str();
 }
 
-std::string describe(const Json& value) {
-  if (value.is_array()) return "an array of " + std::to_string(value.size());
-  if (value.is_object()) return "an object";
-  if (value.is_string()) return in_quotes(value.get<std::string>());
-  return value.dump();
-}
+double number_or_nan(const Json& value) { return value.is_number() ? value.get<double>() : kNan; }
+
+bool is_float(double value) { return std::isfinite(static_cast<float>(value)); }
 
 }  // namespace
-
-void fail_trace(const std::string& where, const std::string& expected, const std::string& found) {
-  std::string message = where + ": expected " + expected + ", found " + found;
-  std::replace_if(
-      message.begin(), message.end(), [](unsigned char c) { return c < 0x20 || c == 0x7f; }, '?');
-  throw TraceError(message);
-}
-
-std::string in_quotes(std::string_view text) {
-  const bool long_text = text.size() > kLongestFound;
-  return Json(text.substr(0, kLongestFound)).dump() + (long_text ? "..." : "");  // may have been cut within a character
-}
-
-std::string pointer_step(std::string_view key) {
-  std::string step;
-  for (char c : key) {
-    if (c == '~') {
-      step += "~0";
-    } else if (c == '/') {
-      step += "~1";
-    } else {
-      step += c;
-    }
-  }
-  return step;
-}
 
 void JsonCursor::fail(const std::string& expected, const std::string& found) const {
   fail_trace(where(), expected, found);
 }
 
-std::string JsonCursor::where() const { return *file_ + ": " + (pointer_.empty() ? "/" : pointer_); }
+std::string JsonCursor::where() const {
+  const std::string pointer = pointer_to(*value_, *root_);
+  return *file_ + ": " + (pointer.empty() ? "/" : pointer);
+}
 
-std::string JsonCursor::found() const { return describe(*value_); }
+std::string JsonCursor::found() const {
+  if (value_->is_array()) return "an array of " + std::to_string(value_->size());
+  if (value_->is_object()) return "an object";
+  if (value_->is_string()) return in_quotes(value_->get<std::string>());
+  return value_->dump();
+}
 
-JsonCursor JsonCursor::child(const Json& value, std::string_view step) const {
-  return JsonCursor(value, *file_, pointer_ + '/' + pointer_step(step));
+JsonCursor JsonCursor::at(const Json& value) const {
+  JsonCursor cursor = *this;
+  cursor.value_ = &value;
+  return cursor;
 }
 
 void JsonCursor::expect_object() const {
@@ -76,11 +59,9 @@ void JsonCursor::expect_object() const {
 
 void JsonCursor::expect_keys(std::initializer_list<std::string_view> known) const {
   expect_object();
-  for (const auto& [key, value] : value_->members()) {
-    if (std::find(known.begin(), known.end(), key) == known.end()) {
-      child(value, key).fail("one of the keys " + names_of(known), in_quotes(key));
-    }
-  }
+  for (const auto& [key, value] : value_->members())
+    if (std::find(known.begin(), known.end(), key) == known.end())
+      at(value).fail("one of the keys " + names_of(known), in_quotes(key));
 }
 
 bool JsonCursor::has(std::string_view key) const {
@@ -90,28 +71,28 @@ bool JsonCursor::has(std::string_view key) const {
 
 std::optional<JsonCursor> JsonCursor::find(std::string_view key) const {
   expect_object();
-  const Json* member = value_->find(key);
-  if (!member) return std::nullopt;
-  return child(*member, key);
+  const Json* const found = value_->find(key);
+  if (!found) return std::nullopt;
+  return at(*found);
 }
 
 JsonCursor JsonCursor::operator[](std::string_view key) const {
-  const std::optional<JsonCursor> member = find(key);
-  if (!member) fail("the key " + in_quotes(key), "none");
-  return *member;
+  const std::optional<JsonCursor> found = find(key);
+  if (!found) fail("the key " + in_quotes(key), "none");
+  return *found;
 }
 
 std::vector<std::pair<std::string, JsonCursor>> JsonCursor::members() const {
   expect_object();
   std::vector<std::pair<std::string, JsonCursor>> result;
-  for (const auto& [key, value] : value_->members()) result.emplace_back(key, child(value, key));
+  for (const auto& [key, value] : value_->members()) result.emplace_back(key, at(value));
   return result;
 }
 
 std::vector<JsonCursor> JsonCursor::elements() const {
   if (!value_->is_array()) fail("an array");
   std::vector<JsonCursor> result;
-  for (std::size_t i = 0; i < value_->size(); ++i) result.push_back(child(value_->at(i), std::to_string(i)));
+  for (const Json& value : value_->elements()) result.push_back(at(value));
   return result;
 }
 
@@ -121,7 +102,7 @@ double JsonCursor::number() const {
 }
 
 double JsonCursor::number_between(double low, double high) const {
-  const double value = value_->is_number() ? number() : low;
+  const double value = number_or_nan(*value_);
   if (!(value > low && value < high)) {
     fail("a number above " + number_text(low) + (std::isinf(high) ? "" : " and below " + number_text(high)));
   }
@@ -129,7 +110,7 @@ double JsonCursor::number_between(double low, double high) const {
 }
 
 std::uint32_t JsonCursor::integer(std::uint32_t low, std::uint32_t high) const {
-  const double value = value_->is_number() ? number() : -1.0;
+  const double value = number_or_nan(*value_);
   if (!(value >= low && value <= high && value == std::floor(value))) {
     fail("an integer " + std::to_string(low) + ".." + std::to_string(high));
   }
@@ -148,75 +129,52 @@ std::size_t JsonCursor::choice(std::initializer_list<std::string_view> names) co
   return static_cast<std::size_t>(name - names.begin());
 }
 
-const Json& JsonCursor::array_of(std::size_t length) const {
-  if (!value_->is_array() || value_->size() != length) fail("an array of " + std::to_string(length) + " numbers");
-  return *value_;
+void JsonCursor::expect_numbers(std::size_t count) const {
+  if (!value_->is_array() || value_->size() != count) fail("an array of " + std::to_string(count) + " numbers");
 }
 
-const Json& JsonCursor::array_of_triples() const {
-  if (!value_->is_array() || value_->size() % 3 != 0) fail("an array of numbers, three for each item");
-  return *value_;
+std::vector<double> JsonCursor::numbers(std::size_t count) const {
+  expect_numbers(count);
+  std::vector<double> result;
+  for (const Json& value : value_->elements()) result.push_back(at(value).number());
+  return result;
 }
 
-float JsonCursor::float_at(const Json& array, std::size_t i, bool negative_too) const {
-  const Json& element = array.at(i);
-  const float value = element.is_number() ? static_cast<float>(element.get<double>()) : NAN;
-  if (!std::isfinite(value) || (value < 0 && !negative_too)) {
-    child(element, std::to_string(i)).fail(negative_too ? "a number in a float's range" : "a number, 0 and up");
-  }
-  return value;
-}
-
-glm::dvec3 JsonCursor::vec3() const {
-  array_of(3);
-  const std::vector<JsonCursor> e = elements();
-  return {e[0].number(), e[1].number(), e[2].number()};
-}
+glm::dvec3 JsonCursor::vec3() const { return glm::make_vec3(numbers(3).data()); }
 
 glm::vec3 JsonCursor::color() const {
-  array_of(3);
+  expect_numbers(3);
   return colors()[0];
 }
 
-glm::dmat4 JsonCursor::matrix() const {
-  array_of(16);
-  const std::vector<JsonCursor> e = elements();
-  glm::dmat4 result;
-  for (int column = 0; column < 4; ++column) {
-    for (int row = 0; row < 4; ++row) result[column][row] = e[static_cast<std::size_t>(4 * column + row)].number();
+glm::dmat4 JsonCursor::matrix() const { return glm::make_mat4(numbers(16).data()); }
+
+template <class Vector, class IsValid>
+std::vector<Vector> JsonCursor::triples_of(const std::string& expected, IsValid is_valid) const {
+  if (!value_->is_array() || value_->size() % 3 != 0) fail("an array of numbers, three for each item");
+  const Json::Array& array = value_->elements();
+  std::vector<Vector> result(array.size() / 3);
+  for (std::size_t i = 0; i < array.size(); ++i) {
+    const double value = number_or_nan(array[i]);
+    if (!is_valid(value)) at(array[i]).fail(expected);
+    result[i / 3][static_cast<int>(i % 3)] = static_cast<typename Vector::value_type>(value);
   }
   return result;
 }
 
 std::vector<glm::vec3> JsonCursor::vec3s() const {
-  const Json& array = array_of_triples();
-  std::vector<glm::vec3> result(array.size() / 3);
-  for (std::size_t i = 0; i < array.size(); ++i) {
-    result[i / 3][static_cast<int>(i % 3)] = float_at(array, i, true);
-  }
-  return result;
+  return triples_of<glm::vec3>("a number in a float's range", is_float);
 }
 
 std::vector<glm::vec3> JsonCursor::colors() const {
-  const Json& array = array_of_triples();
-  std::vector<glm::vec3> result(array.size() / 3);
-  for (std::size_t i = 0; i < array.size(); ++i) {
-    result[i / 3][static_cast<int>(i % 3)] = float_at(array, i, false);
-  }
-  return result;
+  return triples_of<glm::vec3>("a number, 0 and up",
+                               [](double value) { return is_float(value) && static_cast<float>(value) >= 0; });
 }
 
 std::vector<glm::uvec3> JsonCursor::triples(std::uint32_t count) const {
-  const Json& array = array_of_triples();
-  std::vector<glm::uvec3> result(array.size() / 3);
-  for (std::size_t i = 0; i < array.size(); ++i) {
-    const double value = array.at(i).is_number() ? array.at(i).get<double>() : -1.0;
-    if (!(value >= 0 && value < count && value == std::floor(value))) {
-      child(array.at(i), std::to_string(i)).fail("an integer below the number of positions, " + std::to_string(count));
-    }
-    result[i / 3][static_cast<int>(i % 3)] = static_cast<std::uint32_t>(value);
-  }
-  return result;
+  return triples_of<glm::uvec3>(
+      "an integer below the number of positions, " + std::to_string(count),
+      [count](double value) { return value >= 0 && value < count && value == std::floor(value); });
 }
 
 }  // namespace beampipe

@@ -1,4 +1,4 @@
-// A JSON value and the place where it stands, for readers whose every error names file, JSON pointer and expectation.
+// Reading JSON values, with errors that name the file, the JSON pointer of the value, and what was expected there.
 #pragma once
 
 #include <cstdint>
@@ -7,28 +7,22 @@
 #include <optional>
 #include <string>
 #include <string_view>
+#include <utility>
 #include <vector>
 
 #include "traces/json.h"
 
 namespace beampipe {
 
-// Throws TraceError "WHERE: expected EXPECTED, found FOUND", on one line whatever the parts contain.
-[[noreturn]] void fail_trace(const std::string& where, const std::string& expected, const std::string& found);
-
-// A quoted string on one line, for messages.
-std::string in_quotes(std::string_view text);
-
-// A key as a step of a JSON pointer: "/" and "~" escaped.
-std::string pointer_step(std::string_view key);
-
-// All readers throw TraceError when the value is not what they are named after.
+// A value in a file, both of which must outlive the cursor. Its place is searched for only when a message needs it, so
+// that cursors are cheap. Each reader throws TraceError if the value is not what the reader is named after.
 class JsonCursor {
  public:
-  JsonCursor(const Json& value, const std::string& file) : JsonCursor(value, file, "") {}
+  // The whole of a file.
+  JsonCursor(const Json& json, const std::string& file) : value_(&json), root_(&json), file_(&file) {}
 
   // Members of an object.
-  void expect_keys(std::initializer_list<std::string_view> known) const;
+  void expect_keys(std::initializer_list<std::string_view> known) const;  // there are no other keys
   bool has(std::string_view key) const;
   JsonCursor operator[](std::string_view key) const;           // required
   std::optional<JsonCursor> find(std::string_view key) const;  // optional
@@ -38,7 +32,7 @@ class JsonCursor {
   std::vector<JsonCursor> elements() const;
 
   double number() const;
-  double number_between(double low, double high) const;  // both excluded
+  double number_between(double low, double high) const;  // low < number < high
   std::uint32_t integer(std::uint32_t low, std::uint32_t high) const;
   std::string string() const;
   std::size_t choice(std::initializer_list<std::string_view> names) const;  // index of the string in `names`
@@ -50,23 +44,22 @@ class JsonCursor {
   std::vector<glm::vec3> colors() const;                       // the same, 0 and up
   std::vector<glm::uvec3> triples(std::uint32_t count) const;  // flat array of triples of integers below `count`
 
-  std::string where() const;  // "FILE: POINTER"
+  std::string where() const;  // "FILE: POINTER"; takes time in proportion to the file
   std::string found() const;  // the value in a few words
   [[noreturn]] void fail(const std::string& expected) const { fail(expected, found()); }
   [[noreturn]] void fail(const std::string& expected, const std::string& found) const;
 
  private:
-  JsonCursor(const Json& value, const std::string& file, std::string pointer)
-      : value_(&value), file_(&file), pointer_(std::move(pointer)) {}
-  JsonCursor child(const Json& value, std::string_view step) const;
+  JsonCursor at(const Json& value) const;
   void expect_object() const;
-  const Json& array_of(std::size_t length) const;
-  const Json& array_of_triples() const;
-  float float_at(const Json& array, std::size_t i, bool negative_too) const;
+  void expect_numbers(std::size_t count) const;  // an array of this length
+  std::vector<double> numbers(std::size_t count) const;
+  template <class Vector, class IsValid>
+  std::vector<Vector> triples_of(const std::string& expected, IsValid is_valid) const;
 
   const Json* value_;
+  const Json* root_;
   const std::string* file_;
-  std::string pointer_;
 };
 
 }  // namespace beampipe

@@ -1,5 +1,5 @@
-// Text to values and back, by way of the library. It lets duplicate keys pass and any depth, and has long messages:
-// the handler below sees to that.
+// Turns text into values and back with the JSON library. The library accepts duplicate keys and any depth, and its
+// messages are long; Builder below refuses the former and shortens the latter.
 #include <nlohmann/json.hpp>
 #include <set>
 #include <sstream>
@@ -7,15 +7,17 @@
 
 #include "traces/input_file.h"
 #include "traces/json.h"
-#include "traces/json_cursor.h"
 
 namespace beampipe {
 namespace {
 
 using Library = nlohmann::ordered_json;
 
-// Of arrays and objects in each other: a report has 8, a trace 6. Each open one takes 200 bytes for its "[".
+// Nested arrays and objects: a report has 8 levels, a trace has 6. The parser takes 200 bytes for each "[" that is
+// open.
 constexpr std::size_t kMostLevels = 32;
+
+constexpr std::size_t kLongestQuote = 60;  // bytes of a text that a message shows
 
 // The library's message without its prefixes: "line 3, column 7: syntax error ...".
 std::string reason_of(const std::exception& error) {
@@ -27,11 +29,15 @@ std::string reason_of(const std::exception& error) {
   return message;
 }
 
-// Builds the value while it knows where the parser stands. As a handler of its own: given a callback, the library looks
-// through an array again for each object in it.
+std::string place_in(const std::string& file, const Library::json_pointer& pointer) {
+  return file + ": " + (pointer.empty() ? "/" : pointer.to_string());
+}
+
+// Builds the value of a text and knows the place of each part while it is read. The library offers a callback as well,
+// but then it searches an array again at the end of each object in it, which takes the square of their number.
 class Builder : public nlohmann::json_sax<Library> {
  public:
-  // `stream`: what the parser reads, to know where it stands.
+  // The parser must read from `stream`.
   Builder(const std::string& file, std::istream& stream) : file_(file), stream_(stream) {}
 
   Json take() { return std::move(root_); }
@@ -42,7 +48,7 @@ class Builder : public nlohmann::json_sax<Library> {
   bool number_unsigned(number_unsigned_t value) override { return add(value); }
   bool number_float(number_float_t value, const string_t&) override { return add(value); }
   bool string(string_t& value) override { return add(std::move(value)); }
-  bool binary(binary_t&) override { return false; }  // no text has that
+  bool binary(binary_t&) override { return false; }  // texts have none
   bool start_object(std::size_t) override { return enter(Json::object()); }
   bool start_array(std::size_t) override { return enter(Json::array()); }
   bool end_object() override { return leave(); }
@@ -58,17 +64,20 @@ class Builder : public nlohmann::json_sax<Library> {
   }
 
  private:
+  // The place of the value that comes next.
   std::string where() const {
-    std::string pointer;
+    Library::json_pointer pointer;
     for (const Level& level : levels_) {
-      // The element that is open is there already. In the innermost array the next one comes after the last.
-      const std::size_t index = level.value->size() - (&level == &levels_.back() ? 0 : 1);
-      pointer += '/' + (level.value->is_array() ? std::to_string(index) : pointer_step(level.key));
+      if (!level.value->is_array()) {
+        pointer /= level.key;
+      } else {  // all arrays but the innermost hold the element that is open already
+        pointer /= level.value->size() - (&level == &levels_.back() ? 0 : 1);
+      }
     }
-    return file_ + ": " + (pointer.empty() ? "/" : pointer);
+    return place_in(file_, pointer);
   }
 
-  // To its place: after the others of an array, or of an object, whose keys are known to differ.
+  // Appends to the array or object that is open. The keys of an object are known to differ.
   Json& place(Json&& value) {
     if (levels_.empty()) return root_ = std::move(value);
     Json& parent = *levels_.back().value;
@@ -94,7 +103,7 @@ class Builder : public nlohmann::json_sax<Library> {
   }
 
   struct Level {
-    Json* value;  // array or object; stays where it is while it is open
+    Json* value;  // array or object; it is not moved while it is open
     std::string key;
     std::set<std::string> keys;
   };
@@ -131,6 +140,24 @@ Library to_library(const Json& json) {
   return json.get<bool>();
 }
 
+// Extends the pointer to `from` so that it points to `value`. False if that is not in `from`.
+bool extend_to(const Json& value, const Json& from, Library::json_pointer& pointer) {
+  if (&from == &value) return true;
+  const auto is_below = [&](auto step, const Json& child) {
+    pointer /= step;
+    if (extend_to(value, child, pointer)) return true;
+    pointer.pop_back();
+    return false;
+  };
+  if (from.is_array())
+    for (std::size_t i = 0; i < from.size(); ++i)
+      if (is_below(i, from.elements()[i])) return true;
+  if (from.is_object())
+    for (const auto& [key, child] : from.members())
+      if (is_below(key, child)) return true;
+  return false;
+}
+
 }  // namespace
 
 std::string Json::dump(int indent) const {
@@ -143,6 +170,17 @@ std::string json_string(const std::string& text) {
   } catch (const Library::exception&) {
     throw JsonError("expected UTF-8, found other bytes");
   }
+}
+
+std::string in_quotes(std::string_view text) {
+  const bool is_long = text.size() > kLongestQuote;
+  return Json(text.substr(0, kLongestQuote)).dump() + (is_long ? "..." : "");  // the cut may have split a character
+}
+
+std::string pointer_to(const Json& value, const Json& root) {
+  Library::json_pointer pointer;
+  extend_to(value, root, pointer);
+  return pointer.to_string();
 }
 
 Json parse_json(const std::string& file) {

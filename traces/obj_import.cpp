@@ -8,7 +8,7 @@
 #include <string_view>
 
 #include "traces/input_file.h"
-#include "traces/json_cursor.h"
+#include "traces/json.h"
 #include "traces/trace_io.h"
 #include "traces/triangulate.h"
 
@@ -18,7 +18,7 @@ namespace {
 namespace fs = std::filesystem;
 
 constexpr glm::vec3 kGrey{0.8f};              // of faces without a material
-constexpr std::uint32_t kMostCorners = 4096;  // of a face: finding its triangles takes their cube in the worst case
+constexpr std::uint32_t kMostCorners = 4096;  // of a face: triangulating takes the cube of this in the worst case
 constexpr std::string_view kBlanks = " \t";
 
 std::string_view trim(std::string_view text) {
@@ -26,7 +26,7 @@ std::string_view trim(std::string_view text) {
   return first == text.npos ? "" : text.substr(first, text.find_last_not_of(kBlanks) - first + 1);
 }
 
-// Up to \n, \r\n or \r, as the loader's lines.
+// Takes a line off the text. It ends with \n, \r\n or \r, as the loader's lines do.
 std::string_view take_line(std::string_view& text) {
   const auto end = std::find_if(text.begin(), text.end(), [](char c) { return c == '\n' || c == '\r'; });
   const std::string_view line(text.begin(), end);
@@ -43,7 +43,7 @@ std::string_view take_word(std::string_view& line) {
   return {start, end};
 }
 
-// Whether the whole word is a number that can be stored.
+// The whole word is a number, and a float can hold it.
 template <class Number>
 bool is_number(std::string_view word) {
   if (word.starts_with('+') && !word.starts_with("+-")) word.remove_prefix(1);
@@ -75,8 +75,8 @@ bool has_only_corners(std::string_view line) {
   return true;
 }
 
-// The loader reads "nan", "1,5" and missing coordinates as 0, and "3x" and 2^32 + 3 as 3, so that they must be found
-// before.
+// The loader reads "nan", "1,5" and missing coordinates as 0, and "3x" and 2^32 + 3 as 3. Such lines are found here,
+// and the loader reads a text only after this check.
 void check_lines(std::string_view text, const std::string& where) {
   for (std::size_t number = 1; !text.empty(); ++number) {
     const std::string_view whole = take_line(text);
@@ -93,7 +93,7 @@ void check_lines(std::string_view text, const std::string& where) {
 
 bool is_finite(const glm::vec3& v) { return std::isfinite(v.x) && std::isfinite(v.y) && std::isfinite(v.z); }
 
-// A whole OBJ or material library, without the byte order mark that some editors write before UTF-8.
+// A whole OBJ or material library, without the byte order mark with which some editors start UTF-8.
 std::stringstream read_text(const fs::path& file, const std::string& where) {
   constexpr std::string_view kByteOrderMark = "\xEF\xBB\xBF";
   std::string text = read_input_file(file, where);
@@ -102,7 +102,7 @@ std::stringstream read_text(const fs::path& file, const std::string& where) {
   return std::stringstream(std::move(text));
 }
 
-// Reads the material libraries that an OBJ names; only from the OBJ's own folder.
+// Reads the material libraries that an OBJ names, which must be in the OBJ's own folder.
 class Materials : public tinyobj::MaterialReader {
  public:
   Materials(const fs::path& obj, const std::string& where) : obj_(obj), where_(where) {}
@@ -147,13 +147,13 @@ class Materials : public tinyobj::MaterialReader {
   std::map<std::string, glm::vec3, std::less<>> kd_;
 };
 
-// What the loader's callbacks collect: polygons of any size, one after the other.
+// What the loader's callbacks collect: polygons of any size, in the order of the file.
 struct Polygons {
   explicit Polygons(Materials& library) : materials(library) {}
 
   Materials& materials;
   std::vector<glm::vec3> positions;
-  std::vector<std::int64_t> corners;  // from 0, not yet checked
+  std::vector<std::int64_t> corners;  // vertices of all polygons, counted from 0; not checked yet
   std::vector<std::uint32_t> sizes;
   std::vector<glm::vec3> colors;
   glm::vec3 color = kGrey;
@@ -164,7 +164,7 @@ Polygons& polygons(void* user_data) { return *static_cast<Polygons*>(user_data);
 void add_polygon(void* user_data, tinyobj::index_t* indices, int count) {
   Polygons& out = polygons(user_data);
   for (int i = 0; i < count; ++i) {
-    // Counted from 1, or backwards from the last vertex so far; 0 and what is not a number become -1.
+    // The file counts vertices from 1 up, or from -1 down, which is the last vertex so far. 0 becomes -1 here.
     const std::int64_t named = indices[i].vertex_index;
     out.corners.push_back(named < 0 ? static_cast<std::int64_t>(out.positions.size()) + named : named - 1);
   }
@@ -197,7 +197,7 @@ Mesh read_obj(const fs::path& file, const std::string& named_by) {
   mesh.name = file.stem().string();
   mesh.positions = std::move(polygons.positions);
   const auto vertices = static_cast<std::int64_t>(mesh.positions.size());
-  // The loader takes 0e500 for 0 times infinity.
+  // The loader computes 0e500 as 0 times infinity, which is not a number.
   const auto odd = std::find_if_not(mesh.positions.begin(), mesh.positions.end(), is_finite);
   if (odd != mesh.positions.end()) {
     fail_trace(where + ": vertex " + std::to_string(odd - mesh.positions.begin() + 1), "finite numbers", "others");

@@ -14,21 +14,20 @@ constexpr std::uint32_t kMostTriangles = 100'000'000, kLargestSide = 16384;
 
 const std::vector<SceneKind>& scene_kinds() {
   static const std::vector<SceneKind> kinds = {
-      {"hairball", "curled strands far below a pixel that grow from a ball in all directions", make_hairball},
+      {"hairball", "curled strands, much thinner than a pixel, that grow from a ball in all directions", make_hairball},
       {"classroom", "finely tessellated desks and chairs; window blinds with draw strings of three braided threads",
        make_classroom},
       {"boat", "rigging: stays, shrouds with ratlines, and ropes of three braided strands", make_boat},
       {"pickets", "thin pickets lined up in depth, so that near ones nearly hide far ones", make_pickets},
       {"terrain", "a heightfield with about one triangle for each pixel, and more towards the horizon", make_terrain},
-      {"sphere", "finely tessellated closed spheres before a backdrop that must not shine through", make_sphere},
+      {"sphere", "finely tessellated closed spheres in front of a backdrop that must not shine through", make_sphere},
       {"fence", "chain-link fences of thin woven wires, one behind the other", make_fence},
       {"soup", "random triangles of all sizes that cut through each other", make_soup},
       {"foliage", "trees with leaves of two triangles each", make_foliage},
       {"bars", "rods from two pixels thick down to a quarter of one", make_bars},
-      {"density", "a wall that fills the picture once; width x height / triangles are its pixels per triangle",
+      {"density", "a wall that fills the picture once, with (width x height / triangles) pixels per triangle",
        make_density},
-      {"stack", "triangles that each cover the whole picture: as many fragments in every pixel as there are triangles",
-       make_stack},
+      {"stack", "triangles that each cover the whole picture, so that every pixel has a fragment of each", make_stack},
   };
   return kinds;
 }

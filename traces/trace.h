@@ -1,4 +1,4 @@
-// A trace: a recorded draw stream. Frames, each with a camera and draws of meshes.
+// A trace is a recorded draw stream: frames, each with a camera and draws of meshes.
 //
 // Conventions, everywhere in beampipe:
 //   - matrices are column-major and multiply column vectors; clip space is OpenGL's (-w <= x, y, z <= w, y up);
@@ -44,9 +44,9 @@ struct Camera {
 struct Frame {
   std::uint32_t width = 0, height = 0;  // pixels, each 1..16384
   glm::vec3 background{0.0f};
-  std::optional<Camera> camera;  // where `view` and `projection` came from, when the trace names a camera
+  std::optional<Camera> camera;  // if the trace names one; `view` and `projection` are made from it
   glm::dmat4 view{1.0}, projection{1.0};
-  std::optional<glm::vec3> light_direction;  // world space, the way the light travels; normalised
+  std::optional<glm::vec3> light_direction;  // in which the light travels, in world space; normalised
   std::vector<Draw> draws;
 };
 
@@ -56,16 +56,17 @@ struct Trace {
 };
 
 // Sets frame.camera, frame.view (right-handed look-at) and frame.projection (perspective, aspect = width / height).
-// frame.width and frame.height must be set before.
+// frame.width and frame.height must be set already.
 void set_camera(Frame& frame, const Camera& camera);
 
-// Makes `frames` frames of the trace's first: its camera goes around its target, about `up`, by `degrees` in all, at
-// even steps; the light stays. Throws std::invalid_argument when there is no such frame or it names no camera.
+// Replaces the trace's frames by `frames` copies of the first one, whose camera turns about `up` around its target, in
+// even steps, by `degrees` in all. The light stays where it is. Throws std::invalid_argument if the trace has no frame,
+// if its first frame names no camera, or if `frames` is 0.
 void orbit_camera(Trace& trace, std::uint32_t frames, double degrees);
 
-// Makes `frames` frames of the trace's first: its picture moves by (x, y) pixels per frame, x to the right and y down,
-// as if the film were shifted, so that nothing but the sampling changes. The frames name no camera. Throws
-// std::invalid_argument when there is no frame.
+// Replaces the trace's frames by `frames` copies of the first one, in which the picture moves by (x, y) pixels per
+// frame, x to the right and y down. This shifts the film and not the camera, so that only the sampling changes. The
+// frames name no camera. Throws std::invalid_argument if the trace has no frame, or if `frames` is 0.
 void pan_picture(Trace& trace, std::uint32_t frames, double x, double y);
 
 }  // namespace beampipe

@@ -9,15 +9,15 @@
 
 namespace beampipe {
 
-// One line, "FILE: PLACE: expected WHAT, found WHAT". PLACE is a JSON pointer ("/" for the whole), or "byte N" where
-// the JSON is broken. Errors in an OBJ follow the place in the trace that named it: "scene.json: /meshes/ship/obj:
-// ship.obj: line 12: expected ...".
+// One line, "FILE: PLACE: expected WHAT, found WHAT". PLACE is a JSON pointer ("/" for the whole file), or "byte N"
+// where the JSON is broken. An error in an OBJ starts with the place in the trace that names the OBJ: "scene.json:
+// /meshes/ship/obj: ship.obj: line 12: expected ...".
 struct TraceError : std::runtime_error {
   using std::runtime_error::runtime_error;
 };
 
 struct ReadOptions {
-  bool allow_outside = false;  // let mesh paths leave the trace's folder; they must be regular files all the same
+  bool allow_outside = false;  // mesh paths may leave the trace's folder; they must still be regular files
 };
 
 // Reads and validates a trace with all its meshes. Throws TraceError.
@@ -25,12 +25,13 @@ Trace read_trace(const std::filesystem::path& file, const ReadOptions& options =
 
 // Reads one OBJ with its .mtl (Kd per face; faces without a material are 0.8 grey; polygons are triangulated).
 // A missing .mtl counts as no material; one outside the OBJ's folder is an error. The mesh gets the file's name without
-// ".obj". `named_by`, unless empty, prefixes errors with the place in the trace that named the file. Throws TraceError.
+// ".obj". Errors start with `named_by`, the place in the trace that names the file, unless it is empty. Throws
+// TraceError.
 Mesh read_obj(const std::filesystem::path& file, const std::string& named_by);
 
-// Writes a trace with its meshes inline, atomically (temporary name, then rename); read_trace gives back the same bits.
-// A frame's camera, if there is one, stands for its view and projection. Throws std::runtime_error, one line, and then
-// leaves what was there.
+// Writes a trace with its meshes inline; read_trace() gives back the same bits. A frame with a camera is written with
+// it in place of its view and projection. The file appears under its name when it is complete. Throws
+// std::runtime_error, with one line, and leaves the file that was there as it is.
 void write_trace(const Trace& trace, const std::filesystem::path& file);
 
 }  // namespace beampipe

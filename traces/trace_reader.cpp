@@ -11,7 +11,7 @@ namespace {
 namespace fs = std::filesystem;
 
 constexpr std::uint32_t kLargestSide = 16384;
-constexpr std::uint64_t kMostTriangles = 1'000'000'000;  // of a frame, by repeated draws: they are numbered in 32 bits
+constexpr std::uint64_t kMostTriangles = 1'000'000'000;  // of a frame, whose triangles are numbered in 32 bits
 constexpr glm::vec3 kGrey{0.8f};
 constexpr double kInfinity = std::numeric_limits<double>::infinity();
 
@@ -22,7 +22,7 @@ bool is_inside(const fs::path& path, const fs::path& folder) {
   return !relative.empty() && *relative.begin() != "..";
 }
 
-// The OBJ's path, with symbolic links followed before it is judged.
+// Returns the path of an OBJ. Whether it stays in the trace's folder is decided after following symbolic links.
 fs::path mesh_path(const JsonCursor& at, const fs::path& trace_file, const ReadOptions& options) {
   const fs::path named = at.string();
   if (named.native().find('\0') != std::string::npos) at.fail("a path without NUL characters");
@@ -98,7 +98,7 @@ glm::vec3 read_light(const JsonCursor& at) {
   const glm::dvec3 direction = at["direction"].vec3();
   const double length = glm::length(direction);
   if (!(length > 0) || std::isinf(length)) at["direction"].fail("a vector with a length", "none or an infinite one");
-  // A vector that is normalised to a float's precision stays as it is, so that writing and reading change no bit.
+  // A vector that is normalised to a float's precision is kept, so that writing and reading change no bit.
   return glm::vec3(std::abs(length - 1) < 1e-6 ? direction : direction / length);
 }
 

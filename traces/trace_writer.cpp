@@ -4,13 +4,13 @@
 #include <string_view>
 
 #include "traces/atomic_file.h"
-#include "traces/json_cursor.h"
+#include "traces/json.h"
 #include "traces/trace_io.h"
 
 namespace beampipe {
 namespace {
 
-constexpr std::size_t kChunk = 1 << 20;  // bytes gathered before they are written
+constexpr std::size_t kChunk = 1 << 20;  // bytes that are written at once
 
 class TraceWriter {
  public:
@@ -67,14 +67,14 @@ class TraceWriter {
     char text[32];
     const auto end = std::to_chars(text, text + sizeof text, value).ptr;
     put({text, end});
-    if (value == 0 && std::signbit(value)) put(".0");  // readers take "-0" for an integer without a sign
+    if (value == 0 && std::signbit(value)) put(".0");  // a reader takes "-0" for an integer, which loses the sign
   }
 
   void put_number(float value) {
     char text[32];
     const auto end = std::to_chars(text, text + sizeof text, value).ptr;
     double read = 0;
-    std::from_chars(text, end, read);  // readers go through double, which may round twice
+    std::from_chars(text, end, read);  // a reader rounds to double and then to float, which may give another float
     const bool same = std::isfinite(value) && value != 0 && static_cast<float>(read) == value;
     same ? put({text, end}) : put_number(static_cast<double>(value));
   }

@@ -11,10 +11,11 @@ using Points = std::vector<glm::dvec2>;
 
 double cross(const glm::dvec2& a, const glm::dvec2& b) { return a.x * b.y - a.y * b.x; }
 
-// Twice the signed area of the triangle: positive when counter-clockwise.
+// Twice the signed area of a triangle, which is positive if it is counter-clockwise.
 double area(const glm::dvec2& a, const glm::dvec2& b, const glm::dvec2& c) { return cross(b - a, c - a); }
 
-// Along the axis where the polygon's normal (Newell's) is longest, turned so that the polygon is counter-clockwise.
+// Projects along the axis in which the polygon's normal (Newell's) is longest, so that the polygon is
+// counter-clockwise.
 Points project(const std::vector<glm::vec3>& corners) {
   const glm::dvec3 origin(corners[0]);
   glm::dvec3 normal(0.0);
@@ -33,7 +34,7 @@ Points project(const std::vector<glm::vec3>& corners) {
   return points;
 }
 
-// The corner at `i` of the ring can be cut off: it is convex and no other corner lies in or on its triangle.
+// The corner ring[i] can be cut off: it is convex, and no other corner lies in or on its triangle.
 bool is_ear(const Points& points, const std::vector<std::uint32_t>& ring, std::size_t i) {
   const std::size_t n = ring.size();
   const glm::dvec2 a = points[ring[(i + n - 1) % n]], b = points[ring[i]], c = points[ring[(i + 1) % n]];
@@ -60,7 +61,7 @@ std::vector<glm::uvec3> triangulate(const std::vector<glm::vec3>& corners) {
     const std::size_t n = ring.size();
     std::size_t tries = 0;
     while (tries < n && !is_ear(points, ring, (i + tries) % n)) ++tries;
-    i = (i + tries) % n;  // with no ear at all, any corner will do
+    i = (i + tries) % n;  // if there is no ear, any corner will do
     triangles.emplace_back(ring[(i + n - 1) % n], ring[i], ring[(i + 1) % n]);
     ring.erase(ring.begin() + static_cast<std::ptrdiff_t>(i));
     i = ring.size() > i ? i : 1;

@@ -7,8 +7,8 @@
 
 namespace beampipe {
 
-// Clips ears off a simple polygon, concave or not and nearly planar, and returns its n - 2 triangles as indices into
-// `corners`, with the polygon's winding. Any other polygon also gives n - 2 triangles, which may overlap.
+// Returns the n - 2 triangles of a simple and nearly planar polygon, which may be concave: indices into `corners`, with
+// the polygon's winding. Works by ear clipping. Any other polygon also gives n - 2 triangles, but they may overlap.
 std::vector<glm::uvec3> triangulate(const std::vector<glm::vec3>& corners);
 
 }  // namespace beampipe

@@ -104,7 +104,7 @@ BlockCache::Line& BlockCache::make_line(std::size_t block, bool overwritten, Sta
   Line& line = lines_[place];
   line = {static_cast<std::uint32_t>(block), 0, 0, 0};
   const State state = states_[block];
-  if (state != kRaw && !overwritten) {  // a cleared block is known; a compressed one is fetched and unpacked as a whole
+  if (state != kRaw && !overwritten) {  // a cleared block needs no fetch; a compressed one is fetched and unpacked whole
     pass_on(state, counters);
     line.valid = all_sectors_;
   }
@@ -127,7 +127,7 @@ void BlockCache::write_back(const Line& line, StageCounters& counters) {
   state = kRaw;
 }
 
-// To or from what lies behind the cache.
+// To or from the next level.
 void BlockCache::pass_on(std::uint32_t sectors, StageCounters& counters) const {
   counters.dram_bytes += sectors * kSectorBytes;
   if (level_ == Level::rop) counters.l2_bytes += sectors * kSectorBytes;

@@ -1,7 +1,7 @@
-// Blocks of memory behind a set-associative write-back cache: which bytes really move.
+// A set-associative write-back cache over blocks of memory. It tells which bytes really move.
 //
-// A block has a state in memory: cleared (its content is known from the state), compressed to some sectors, or raw. A
-// line of the cache holds one block, each of its sectors valid or not, dirty or not.
+// In memory a block is cleared (the state alone tells its content), compressed to some number of sectors, or raw. A line
+// of the cache holds one block; each sector of the line is valid or not, and dirty or not.
 #pragma once
 
 #include <algorithm>
@@ -28,30 +28,29 @@ inline Sectors sectors_of(std::uint32_t first, std::uint32_t bytes) {
 
 class BlockCache {
  public:
-  // Bytes that a block takes when compressed; its raw size or more: it does not compress.
+  // Returns the bytes that a block takes when compressed. Its raw size or more means that it does not compress.
   using CompressedBytes = std::function<std::uint32_t(std::size_t block)>;
 
-  // Where the cache stands, which says what its bytes are counted as.
-  // rop: what it lacks or evicts moves through L2 to and from DRAM; L2 keeps nothing of it, as the surfaces of a frame
-  //      are larger.
-  // l2:  what is asked of it is L2's, what it lacks or evicts DRAM's.
+  // Where the cache stands, which decides how its bytes are counted.
+  // rop: misses and evictions move through L2 to and from DRAM. L2 keeps none of them, because the surfaces of a frame
+  //      are larger than L2.
+  // l2:  requests count as L2 bytes, misses and evictions as DRAM bytes.
   enum class Level { rop, l2 };
 
-  // `block_bytes` <= cache.line_bytes, at most kMaxBlockSectors. `cleared`: the state that all blocks start in; else
-  // they are raw. An empty `compressed_bytes`: nothing compresses. Where memory is not modelled, nothing is done or
-  // counted.
+  // `block_bytes` <= cache.line_bytes, at most kMaxBlockSectors sectors. `cleared`: all blocks start out cleared, else
+  // raw. Without `compressed_bytes` nothing compresses. Without a memory model the cache does and counts nothing.
   BlockCache(const MemoryParameters& memory, const CacheParameters& cache, Level level, std::size_t blocks,
              std::uint32_t block_bytes, bool cleared, CompressedBytes compressed_bytes);
 
-  // A cache that is read through, with the blocks of `next`, an L2: asks `next` for the sectors that it lacks.
+  // A read-only cache in front of `next`, an L2, with the same blocks. It asks `next` for the sectors that it lacks.
   // `next` must outlive it.
   BlockCache(const MemoryParameters& memory, const CacheParameters& cache, BlockCache& next);
 
-  // Reads or writes bytes [first, first + bytes) of a block. Accesses of a stage that follow each other with the same
-  // block and key (the triangle, usually) are one request, each of whose sectors is asked for once to be read and once
-  // to be written. Adds to counters.sector_bytes what is asked for, to counters.l2_bytes what L2 is asked for, and to
-  // counters.dram_bytes what is fetched and written back for it. A sector that is written in part is fetched first. No
-  // byte is written twice in one request.
+  // Reads or writes bytes [first, first + bytes) of a block. Consecutive accesses of a stage with the same block and key
+  // (usually the triangle) form one request, which asks for each sector at most once to read and once to write. Adds
+  // the request to counters.sector_bytes, what L2 is asked for to counters.l2_bytes, and what is fetched and written
+  // back to counters.dram_bytes. A sector that is written only in part is fetched first. No byte is written twice in
+  // one request.
   void read(std::uint32_t key, std::size_t block, std::uint32_t first, std::uint32_t bytes, StageCounters& counters) {
     access(key, block, sectors_of(first, bytes), 0, counters, [](auto&&) {});
   }
@@ -59,8 +58,8 @@ class BlockCache {
     access(key, block, 0, sectors_of(first, bytes), counters, [&](auto&& count) { count(first, bytes); });
   }
 
-  // Both, for whoever knows the sectors: each_write(count) calls count(first, bytes) for every run of bytes that is
-  // written. It is called only where it matters whether sectors are written as a whole.
+  // Reads and writes, for a caller that already knows the sectors. each_write(count) calls count(first, bytes) for every
+  // run of bytes that is written; it is only called where it matters whether sectors are written as a whole.
   template <class EachWrite>
   void access(std::uint32_t key, std::size_t block, Sectors read, Sectors write, StageCounters& counters,
               EachWrite&& each_write) {
@@ -73,13 +72,13 @@ class BlockCache {
       each_write([this](std::uint32_t first, std::uint32_t bytes) { count_written(first, bytes); });
   }
 
-  // Serves what has been asked for so far.
+  // Serves the request that is still open.
   void finish_request();
 
   // Writes back every dirty line and empties the cache.
   void flush(StageCounters& counters);
 
-  // Reads a whole block past the cache, which is empty.
+  // Reads a whole block without going through the cache, which must be empty.
   void stream_read(std::size_t block, StageCounters& counters) const;
 
   std::size_t blocks() const { return states_.size(); }
@@ -87,7 +86,7 @@ class BlockCache {
  private:
   static constexpr std::uint32_t kSectorBytes = MemoryParameters::sector_bytes;
 
-  // In memory: kRaw, or the sectors that the block is compressed to; 0: cleared.
+  // State of a block in memory: kRaw, or the number of sectors that it is compressed to; 0 means cleared.
   using State = std::uint8_t;
   static constexpr State kRaw = 255;
   static constexpr std::uint32_t kNone = ~0u;
@@ -98,12 +97,12 @@ class BlockCache {
     std::uint64_t used = 0;  // when, for least recently used
   };
 
-  // What is asked of one block.
+  // The open request: what has been asked of one block so far.
   struct Request {
     std::size_t block = ~std::size_t{0};
     StageCounters* counters = nullptr;  // of the stage that asks
     std::uint32_t key = 0;
-    bool counts_bytes = false;  // some sector may have to be fetched unless it is written as a whole
+    bool counts_bytes = false;  // a sector may have to be fetched unless all of it is written
     Sectors read = 0, write = 0;
     std::array<std::uint32_t, kMaxBlockSectors> written_bytes{};
   };
@@ -121,7 +120,7 @@ class BlockCache {
   std::uint32_t block_bytes_;
   Sectors all_sectors_;
   std::size_t sets_, ways_;
-  bool has_line_for_each_;  // a cache that has a line for every block evicts none: line i is block i's
+  bool has_line_for_each_;  // one line per block: line i holds block i and nothing is evicted
   std::vector<Line> lines_;
   std::vector<std::uint32_t> line_of_;  // by block: which line holds it, or kNone
   std::vector<State> states_;

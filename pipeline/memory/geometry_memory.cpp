@@ -5,7 +5,7 @@
 namespace beampipe {
 namespace {
 
-// Adds the places of the triangles' records to `places`; `end`: of the lines that are in use, in bytes.
+// Adds the places of the triangles' records to `places`. `end`: bytes of the lines that are in use so far.
 void place_records(const TriangleList& list, std::uint32_t record_bytes, std::uint32_t line_bytes,
                    std::vector<std::uint32_t>& places, std::uint32_t& end) {
   std::uint64_t last_line = ~std::uint64_t{0};

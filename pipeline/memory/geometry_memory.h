@@ -1,5 +1,5 @@
-// What is moved of the frame's geometry, which is binned as a whole: vertex_setup writes setup triangles and their
-// attributes, two arrays in primitive order, and each bin reads those of its list.
+// Memory traffic of geometry. The frame is binned as a whole: vertex_setup writes setup triangles and their attributes as
+// two arrays in primitive order, and each bin reads those of its list.
 #pragma once
 
 #include <cstddef>
@@ -13,17 +13,17 @@
 
 namespace beampipe {
 
-// One run of vertex_setup: what it reads of vertices and indices, once; what it writes for so many triangles.
+// One run of vertex_setup: it reads `vertex_bytes` of vertices and indices once, and writes so many triangles.
 void move_setup(const MemoryParameters& memory, std::uint64_t vertex_bytes, std::size_t triangles,
                 StageCounters& counters);
 
-// Binning: a bin's list, 4 bytes per triangle.
+// Binning writes a bin's list, 4 bytes per triangle.
 void write_list(const MemoryParameters& memory, const TriangleList& list, StageCounters& counters);
 
-// One pass of the raster stage over a bin: the list, and the setup of its triangles.
+// One pass of the raster stage over a bin reads the list and the setup of its triangles.
 void read_bin(const MemoryParameters& memory, const TriangleList& list, StageCounters& counters);
 
-// Attributes that are read in primitive order, as forward shading does in one pass over a bin: each triangle's once.
+// Attributes read in primitive order, as forward shading does in one pass over a bin: each triangle's are read once.
 class AttributesInOrder {
  public:
   explicit AttributesInOrder(const MemoryParameters& memory) : records_(memory, sizeof(FlatAttributes)) {}
@@ -37,8 +37,8 @@ class AttributesInOrder {
   RecordsInOrder records_;
 };
 
-// Setup and attributes that shaders fetch by a triangle's number, through the L1 of the multiprocessor that works on
-// the bin; each fetch is a request of its own.
+// Setup and attributes that shaders fetch by triangle number, through the L1 of the multiprocessor that works on the
+// bin. Each fetch is a request of its own.
 class TriangleFetches {
  public:
   // `list` must outlive it.
@@ -58,7 +58,7 @@ class TriangleFetches {
     if (modelled_) lines_.read(++request_, places_.setup[rank(triangle)] + kBegin, sizeof(ScreenDepth), counters);
   }
 
-  // Of all pairs' or fragments' triangles.
+  // For the triangles of all pairs or fragments.
   template <class Item>
   void setup(const std::vector<Item>& items, StageCounters& counters) {
     for (const Item& item : items) setup(item.triangle, counters);
@@ -68,7 +68,7 @@ class TriangleFetches {
     for (const Item& item : items) attributes(item.triangle, counters);
   }
 
-  // At the start of a pass whose raster stage runs just before: L2 holds the setup that it has read.
+  // The raster stage of this pass has just read the setup of the bin's triangles, so L2 holds it.
   void load_setup();
 
   // The end of a pass over the frame.
@@ -77,7 +77,7 @@ class TriangleFetches {
  private:
   std::size_t rank(std::uint32_t triangle) const;
 
-  // Of each triangle of the list, in a memory that holds only the lines that the bin's records lie in.
+  // Where the records of the list's triangles lie, in a memory of only those lines that hold a record of the bin.
   struct Places {
     std::vector<std::uint32_t> setup, attributes;
     std::uint32_t end = 0;  // of that memory, in bytes

@@ -1,4 +1,5 @@
-// Memory without surfaces: streams that no cache can help, records in a row, and records that shaders read and write.
+// Memory other than surfaces: streams that no cache can help, records read in order, and records that shaders read and
+// write anywhere.
 #pragma once
 
 #include <algorithm>
@@ -10,7 +11,7 @@
 
 namespace beampipe {
 
-// `bytes` in a row, read or written: whole sectors, each moved once.
+// Reads or writes `bytes` in a row: whole sectors, each moved once.
 inline void stream(const MemoryParameters& memory, std::uint64_t bytes, StageCounters& counters) {
   if (!memory.modelled) return;
   const std::uint64_t whole = (bytes + memory.sector_bytes - 1) / memory.sector_bytes * memory.sector_bytes;
@@ -19,7 +20,7 @@ inline void stream(const MemoryParameters& memory, std::uint64_t bytes, StageCou
   counters.dram_bytes += whole;
 }
 
-// Some records of an array, read in their order: a sector of the record before is there still.
+// Some records of an array, read in increasing order. A sector that the previous record shares is not read again.
 class RecordsInOrder {
  public:
   RecordsInOrder(const MemoryParameters& memory, std::uint32_t record_bytes)
@@ -36,10 +37,10 @@ class RecordsInOrder {
 
  private:
   MemoryParameters memory_;
-  std::uint64_t record_bytes_, read_to_ = 0;  // sectors before it have been read, or passed over
+  std::uint64_t record_bytes_, read_to_ = 0;  // all sectors below it have been read or skipped
 };
 
-// As shaders read and write it: writes go to L2, reads through an L1. Bytes [begin, begin + bytes) of it.
+// Memory as shaders access it: writes go to L2, reads go through an L1. Accesses are bytes [begin, begin + bytes).
 class LinearMemory {
  public:
   LinearMemory(const MemoryParameters& memory, std::size_t size);
@@ -47,7 +48,7 @@ class LinearMemory {
   void write(std::uint32_t key, std::size_t begin, std::uint32_t bytes, StageCounters& counters);
   void read(std::uint32_t key, std::size_t begin, std::uint32_t bytes, StageCounters& counters);
 
-  // Has L2 hold what another stage has just read through it.
+  // Another stage has just read this through L2, so L2 holds it. Charges nothing.
   void load(std::size_t begin, std::uint32_t bytes);
 
   // The end of a pass over the frame.

@@ -5,7 +5,7 @@
 namespace beampipe {
 namespace {
 
-// Where the cells of pixels, numbered pixel by pixel, lie in the grid of cells, row by row.
+// Cells are numbered pixel by pixel. This is where each lies in the grid of cells, row by row.
 std::vector<std::uint32_t> cell_places(const Tile& tile, const CellGrid& grid) {
   std::vector<std::uint32_t> places;
   places.reserve(tile.pixels() * static_cast<std::size_t>(grid.cells_per_pixel()));
@@ -61,7 +61,7 @@ void SampleMemory::replay(const std::vector<SampleAccess>& accesses, bool write_
 void SampleMemory::flush(StageCounters& counters) {
   depth_.flush(counters);
   if (color_) color_->flush(counters);
-  std::fill(owner_.begin(), owner_.end(), kNoTriangle);  // the next pass writes another surface, which is clear
+  std::fill(owner_.begin(), owner_.end(), kNoTriangle);  // the next pass writes another, cleared surface
 }
 
 void SampleMemory::add_bytes(std::vector<float>& pixels) const {
@@ -73,7 +73,7 @@ void SampleMemory::add_bytes(std::vector<float>& pixels) const {
   }
 }
 
-// Planes, and for each sample which one: a cleared sample's has a number too.
+// The planes of the block, and for each sample the number of its plane. "Cleared" counts as a plane of its own.
 std::uint32_t SampleMemory::depth_bytes(std::size_t first, std::size_t elements) const {
   const std::size_t begin = first * samples_, end = std::min((first + elements) * samples_, owner_.size());
   const std::size_t samples = elements * samples_, raw = samples * kSampleDepthBytes;
@@ -97,7 +97,7 @@ std::uint32_t SampleMemory::depth_bytes(std::size_t first, std::size_t elements)
   return static_cast<std::uint32_t>(planes.size() * plane_bytes_ + (samples * index_bits + 7) / 8);
 }
 
-// One value per element where all its samples agree, in every element of the block.
+// One value per element, when the samples of each element of the block agree.
 std::uint32_t SampleMemory::color_bytes(std::size_t first, std::size_t elements) const {
   const auto compressed = static_cast<std::uint32_t>(elements) * color_sample_bytes_;
   for (std::size_t element = first; element < std::min(first + elements, order_.positions); ++element) {

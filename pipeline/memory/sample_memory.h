@@ -1,4 +1,4 @@
-// The multisampled surfaces of one bin in memory: depth, and with it colour or visibility ids.
+// The multisampled surfaces of one bin in memory: depth, and beside it colour or visibility ids.
 #pragma once
 
 #include <functional>
@@ -12,14 +12,15 @@ namespace beampipe {
 
 class SampleMemory {
  public:
-  // Whether two triangles write the same value into the second surface.
+  // Tells whether two triangles write the same value into the second surface.
   using SameValue = std::function<bool(std::uint32_t triangle, std::uint32_t other)>;
 
-  // `color_bytes` of a sample of the second surface; 0: there is depth alone.
+  // `color_bytes`: of a sample of the second surface; 0 when there is only depth.
   SampleMemory(const MemoryParameters& parameters, const Tile& tile, const Sampling& sampling,
                std::uint32_t color_bytes, SameValue same_value = std::equal_to<std::uint32_t>());
 
-  // Tests read depth. Where they pass they write depth, or the second surface, or both.
+  // Every test reads depth. Samples that pass write both surfaces (test_and_write), depth (test_depth) or the second
+  // surface (test_equal).
   void test_and_write(const std::vector<SampleAccess>& accesses, StageCounters& counters) {
     replay(accesses, true, true, counters);
   }
@@ -36,7 +37,7 @@ class SampleMemory {
   // The end of a pass over the frame.
   void flush(StageCounters& counters);
 
-  // Passes that read all of a surface.
+  // Passes of other stages that read every sample of a surface.
   void read_depth(StageCounters& counters) { depth_.read_all(counters); }
   void read_color(StageCounters& counters) { color_->read_all(counters); }
 
@@ -52,11 +53,11 @@ class SampleMemory {
   std::uint32_t plane_bytes_;
   std::size_t samples_;                    // per cell
   std::size_t cells_;                      // per pixel
-  std::vector<std::uint32_t> cell_place_;  // of a cell, row by row in the grid of cells
+  std::vector<std::uint32_t> cell_place_;  // where each cell lies in the grid of cells, row by row
   ZOrder order_;
   SameValue same_value_;
   std::uint32_t color_sample_bytes_;
-  std::vector<std::uint32_t> owner_;  // of the samples that this pass has written, by position in Z order
+  std::vector<std::uint32_t> owner_;  // triangle of each sample that this pass has written, in Z order
   TileSurface depth_;
   std::optional<TileSurface> color_;
 };

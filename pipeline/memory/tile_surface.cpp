@@ -22,7 +22,7 @@ int log2_block_elements(const CacheParameters& cache, std::uint32_t element_byte
 
 std::size_t block_count(const ZOrder& order, int log2_elements) { return ((order.positions - 1) >> log2_elements) + 1; }
 
-// By element of a block, byte of the parts' mask, and value of that byte.
+// Indexed by element of a block, byte of the mask of parts, and value of that byte.
 std::vector<Sectors> part_sectors(std::uint32_t elements, std::uint32_t parts, std::uint32_t part_bytes) {
   std::vector<Sectors> table;
   for (std::uint32_t element = 0; element < elements; ++element) {
@@ -31,7 +31,7 @@ std::vector<Sectors> part_sectors(std::uint32_t elements, std::uint32_t parts, s
       table.resize(begin + 256);
       for (std::uint32_t part = first; part < std::min(first + 8, parts); ++part) {
         const Sectors sectors = sectors_of((element * parts + part) * part_bytes, part_bytes);
-        const std::size_t masks = std::size_t{1} << (part - first);  // of the parts before this one
+        const std::size_t masks = std::size_t{1} << (part - first);  // of the lower parts
         for (std::size_t mask = 0; mask < masks; ++mask) table[begin + masks + mask] = table[begin + mask] | sectors;
       }
     }
@@ -71,7 +71,7 @@ TileSurface::TileSurface(const MemoryParameters& parameters, const ZOrder& order
 
 void TileSurface::access(std::uint32_t key, std::uint32_t element, std::uint32_t read, std::uint32_t write,
                          StageCounters& counters) {
-  if (touched_bytes_.empty()) return;  // nothing is modelled
+  if (touched_bytes_.empty()) return;  // there is no memory model
   touched_bytes_[element] += static_cast<std::uint32_t>(std::popcount(read) + std::popcount(write)) * part_bytes_;
   const std::uint32_t position = order_.of[element], block = position >> log2_elements_per_block_;
   const std::uint32_t place = position - (block << log2_elements_per_block_);
@@ -84,7 +84,7 @@ void TileSurface::access(std::uint32_t key, std::uint32_t element, std::uint32_t
 void TileSurface::read_all(StageCounters& counters) {
   if (touched_bytes_.empty()) return;
   flush(counters);
-  std::vector<std::uint8_t> used(cache_.blocks());  // of a bin at the frame's border some hold no element
+  std::vector<std::uint8_t> used(cache_.blocks());  // at the frame's border some blocks hold no element
   for (const std::uint32_t position : order_.of) used[position >> log2_elements_per_block_] = 1;
   for (std::size_t block = 0; block < used.size(); ++block)
     if (used[block]) cache_.stream_read(block, counters);

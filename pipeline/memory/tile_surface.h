@@ -1,5 +1,5 @@
-// One surface of a bin in memory: elements (pixels, or the cells of super-resolved pixels) of a fixed size in blocks
-// along a Z-order curve, behind a cache.
+// One surface of a bin in memory, seen through a cache. Its elements are pixels, or cells of super-resolved pixels; blocks
+// of them follow a Z-order curve.
 #pragma once
 
 #include <cstddef>
@@ -10,30 +10,30 @@
 
 namespace beampipe {
 
-// Elements of a bin in Z order, whatever its width and height: element (x, y) of a row-by-row numbering is at position
-// of[y * width + x]; where width or height is no power of two, positions between are left out.
+// The Z order of a bin's elements. Element (x, y) is at position of[y * width + x]. Where width or height is not a power
+// of two, some positions are unused.
 struct ZOrder {
   std::vector<std::uint32_t> of;
-  std::size_t positions = 0;  // one beyond the last
+  std::size_t positions = 0;  // one more than the largest position
 
   ZOrder(std::int32_t width, std::int32_t height);
 };
 
 class TileSurface {
  public:
-  // Compressed bytes of the block whose first element is at position `first`.
+  // Returns the compressed bytes of the block whose first element is at position `first`.
   using CompressedBytes = std::function<std::uint32_t(std::size_t first, std::size_t elements)>;
 
-  // Elements of `parts` x `part_bytes` <= 256 bytes, at most 16 parts. A block has as many of them, a power of two, as
-  // fit into a cache line: of a ROP cache, or of L2. Starts out cleared.
+  // An element has `parts` (at most 16) of `part_bytes` each, together at most 256 bytes. A block has as many elements,
+  // a power of two, as fit into a line of the cache. The surface starts out cleared. `order` must outlive it.
   TileSurface(const MemoryParameters& parameters, const ZOrder& order, std::uint32_t parts, std::uint32_t part_bytes,
               CompressedBytes compressed_bytes = nullptr, BlockCache::Level level = BlockCache::Level::rop);
 
-  // Reads and writes parts of an element; bit p of a mask is part p. `key` as in BlockCache: the triangle.
+  // Reads and writes parts of an element; bit p of a mask is part p. `key`: the triangle, as in BlockCache.
   void access(std::uint32_t key, std::uint32_t element, std::uint32_t read, std::uint32_t write,
               StageCounters& counters);
 
-  // The same for the whole of an element of one part.
+  // The same for elements of a single part.
   void read(std::uint32_t key, std::uint32_t element, StageCounters& counters) { access(key, element, 1, 0, counters); }
   void write(std::uint32_t key, std::uint32_t element, StageCounters& counters) {
     access(key, element, 0, 1, counters);
@@ -45,16 +45,16 @@ class TileSurface {
   // A pass that reads every element of the bin once.
   void read_all(StageCounters& counters);
 
-  // Logical bytes that were read and written of each element, one by one; empty where memory is not modelled.
+  // Logical bytes read and written, one value per element; empty without a memory model.
   const std::vector<std::uint32_t>& touched_bytes() const { return touched_bytes_; }
 
-  // Adds them, where elements are pixels.
+  // Adds them to values of pixels, where elements are pixels.
   void add_bytes(std::vector<float>& pixels) const {
     for (std::size_t i = 0; i < touched_bytes_.size(); ++i) pixels[i] += static_cast<float>(touched_bytes_[i]);
   }
 
  private:
-  // The sectors of parts of an element that is the n-th of its block, by the parts' mask, a byte of it at a time.
+  // The sectors of some parts of the n-th element of a block. The table is looked up by bytes of the mask of parts.
   Sectors sectors_of_parts(std::uint32_t n, std::uint32_t parts) const {
     const Sectors* const table = &part_sectors_[n * mask_bytes_ << kMaskBits];
     return mask_bytes_ == 1 ? table[parts] : table[parts & 0xff] | table[1 << kMaskBits | parts >> kMaskBits];

@@ -2,102 +2,86 @@
 
 #include <string>
 
-#include "pipeline/memory/accumulator_memory.h"
-#include "pipeline/memory/geometry_memory.h"
-#include "pipeline/memory/image_memory.h"
-#include "pipeline/memory/sample_memory.h"
-#include "pipeline/sample_batches.h"
-#include "pipeline/tiles.h"
-#include "pipeline/timeline.h"
-#include "stages/geometry/vertex_setup.h"
-#include "stages/picture/shade.h"
-#include "stages/samples/test_depth.h"
+#include "pipeline/bins/render_bins.h"
+#include "pipeline/units/accumulate_unit.h"
+#include "pipeline/units/depth_test_unit.h"
+#include "pipeline/units/fragment_units.h"
+#include "pipeline/units/raster_units.h"
 
 namespace beampipe {
-
-FrameResult render_acaa(const Trace& trace, const Frame& frame, const AcaaOptions& options, const RunOptions& run) {
-  StageCounters setup;
-  const SetupTriangles triangles = vertex_setup(trace, frame, StageTimer(run.timeline)(setup));
-  const std::vector<glm::vec3> colors = shade_triangles(triangles, frame.light_direction);
-  const std::vector<Sampling> rounds = acaa_rounds(options.samples);
-
-  const TileRenderer render_tile = [&](const Tile& tile, const TriangleList& list) {
-    const StageTimer timed(run.timeline, tile);
-    StageCounters raster{"sample_raster"}, testing{"depth_test"}, stencil{"stencil_test"}, shading{"shade"},
-        accumulation{"accumulate"}, resolving{"resolve"};
-    Accumulator accumulator(tile, options.samples, options.color, options.double_counting);
-    std::vector<float> counts(tile.pixels()), visible(tile.pixels()), bytes(tile.pixels());
-    std::vector<SampleAccess> accesses;
-    BinBuffers held;
-    const ZOrder order(tile.width(), tile.height());
-    AccumulatorMemory color(run.memory, order, 1, accumulator_bytes(options.color));
-    accumulator.limit = 0;
-    for (const Sampling& sampling : rounds) {
-      accumulator.limit += static_cast<float>(sampling.pattern.count) * accumulator.sample_share;
-      SampleTile depth(tile, sampling, 0);
-      SampleMemory memory(run.memory, tile, sampling, 0);
-      StencilMemory taken(run.memory, order, sampling);
-      raster_in_batches(triangles, list, tile, sampling, timed, raster, held,
-                        [&](std::vector<SampleFragment>& fragments) {
-                          depth_test(triangles, fragments, tile, sampling, timed(testing), depth, accesses);
-                          memory.test_depth(accesses, testing);
-                          count_fragments(fragments, tile, sampling.grid, counts);
-                        });
-      memory.flush(testing);
-      if (options.double_counting == DoubleCounting::saturate) {
-        accumulate_background(depth, frame.background, timed(accumulation), accumulator);
-        memory.read_depth(accumulation);
-        color.blend_background(depth, accumulation);
-      }
-      accumulator.taken.assign(tile.pixels(), 0);
-      AttributesInOrder attributes(run.memory);
-      raster_in_batches(triangles, list, tile, sampling, timed, raster, held,
-                        [&](std::vector<SampleFragment>& fragments) {
-                          depth_test_equal(triangles, tile, sampling, timed(testing), depth, fragments, accesses);
-                          memory.test_equal(accesses, testing);
-                          if (options.double_counting == DoubleCounting::stencil) {
-                            taken.test(fragments, tile, stencil);
-                            stencil_test(tile, timed(stencil), accumulator, fragments);
-                            taken.mark(fragments, tile, stencil);
-                          }
-                          shade(fragments, timed(shading), &triangles.attributes);
-                          attributes.read(fragments, shading);
-                          accumulate(fragments, colors, tile, timed(accumulation), accumulator);
-                          color.blend(fragments, tile, accumulation);
-                          count_fragments(fragments, tile, sampling.grid, visible);
-                        });
-      memory.flush(testing);
-      memory.add_bytes(bytes);
-      taken.add_bytes(bytes);
-      taken.flush(stencil);
-      color.flush(accumulation);
-    }
-    color.add_bytes(bytes);
-    color.read_all(resolving);
-    write_image(run.memory, tile, resolving);
-    TileResult result{
-        resolve(accumulator, frame.background, timed(resolving)),
-        {{"fragments", std::move(counts)}, {"visible_fragments", std::move(visible)}, {"bytes", std::move(bytes)}},
-        {raster, testing},
-        held,
-        2 * static_cast<int>(rounds.size())};
-    if (options.double_counting == DoubleCounting::stencil) result.stages.push_back(stencil);
-    result.stages.insert(result.stages.end(), {shading, accumulation, resolving});
-    return result;
-  };
-  return render_tiles(frame, triangles, setup, bin_size(rounds.front().pattern.count), run, render_tile);
-}
+namespace {
 
 std::vector<Surface> acaa_framebuffer(const AcaaOptions& options) {
   const auto n = static_cast<std::uint32_t>(std::min(options.samples, 16));
-  const std::string times = " x " + std::to_string(n);
   const char* const format = options.color == AccumulatorFormat::unorm8 ? "RGBA8"
                              : options.color == AccumulatorFormat::fp16 ? "RGBA16F"
                                                                         : "RGBA32F";
-  std::vector<Surface> surfaces = {{"depth", "D32F" + times, n * kSampleDepthBytes},
+  std::vector<Surface> surfaces = {{"depth", times("D32F", n), n * kSampleDepthBytes},
                                    {"color", format, accumulator_bytes(options.color)}};
-  if (options.double_counting == DoubleCounting::stencil) surfaces.push_back({"stencil", "S8UI" + times, n});
+  if (options.double_counting == DoubleCounting::stencil) surfaces.push_back({"stencil", times("S8UI", n), n});
   return surfaces;
+}
+
+std::vector<std::string> stages_of(const AcaaOptions& options) {
+  if (options.double_counting == DoubleCounting::stencil)
+    return {"sample_raster", "depth_test", "stencil_test", "shade", "accumulate", "resolve"};
+  return {"sample_raster", "depth_test", "shade", "accumulate", "resolve"};
+}
+
+FrameResult render_acaa(const Trace& trace, const Frame& frame, const AcaaOptions& options, const RunOptions& run) {
+  const FrameContext context(trace, frame, run);
+  const std::vector<Sampling> rounds = acaa_rounds(options.samples);
+  const BinPlan plan{.stages = stages_of(options), .tile_size = bin_size(rounds.front().pattern.count)};
+  return render_bins(context, plan, [&](Bin& bin) {
+    SampleRasterUnit raster(bin);
+    SampleShadeUnit shade(bin);
+    AccumulateUnit accumulate(bin, options.samples, options.color, options.double_counting);
+    std::vector<float>& visible = bin.pixel_counter("visible_fragments");
+
+    for (const Sampling& sampling : rounds) {
+      DepthTestUnit depth_test(bin, sampling, 0);
+      raster.pass(sampling, [&](const auto& fragments) { depth_test.test(fragments); });
+      depth_test.end_pass();
+      if (accumulate.blends_background()) depth_test.read_depths(accumulate.stage);
+      accumulate.start_round(sampling, depth_test.surface());
+      shade.start_pass();
+      raster.pass(sampling, [&](std::vector<SampleFragment>& fragments) {
+        depth_test.test_equal(fragments);
+        accumulate.test_stencil(fragments);
+        shade(fragments);
+        accumulate(fragments);
+        count_by_pixel(fragments, bin.tile, sampling.grid, visible);
+      });
+      depth_test.end_pass();
+      depth_test.count_bytes();
+      accumulate.finish_round();
+    }
+    bin.finish(accumulate.resolve_accumulator());
+  });
+}
+
+}  // namespace
+
+TechniqueKind acaa_kind() {
+  using A = AccumulatorFormat;
+  return {.name = "acaa",
+          .description = "accumulative antialiasing: N depth samples and one colour accumulator per pixel",
+          .source = "Enderton et al. 2015",
+          .make = make_from(
+              AcaaOptions{},
+              [](AcaaOptions& o) -> SpecOptions {
+                return {samples(o.samples, kMaxAcaaSamples, "samples per pixel"),
+                        choice("double", o.double_counting,
+                               {{"none", DoubleCounting::none},
+                                {"stencil", DoubleCounting::stencil},
+                                {"saturate", DoubleCounting::saturate}},
+                               "what keeps surfaces of equal depth from being counted twice"),
+                        choice("color", o.color, {{"unorm8", A::unorm8}, {"fp16", A::fp16}, {"fp32", A::fp32}},
+                               "format of the accumulator")};
+              },
+              [](const AcaaOptions& o) {
+                return Technique{.framebuffer = acaa_framebuffer(o), .render = bind_options(render_acaa, o)};
+              })};
 }
 
 }  // namespace beampipe

@@ -1,10 +1,10 @@
 // Accumulative antialiasing (Enderton et al. 2015): a depth-only pass at N samples, then a pass that adds each visible
-// fragment's colour, weighted by its visible samples, to one accumulator per pixel. Above 16 samples: several such
-// rounds, each with another part of the samples, on the same surfaces.
+// fragment's colour, weighted by its visible samples, to one accumulator per pixel. Above 16 samples there are several
+// such rounds, each with another part of the samples, on the same surfaces.
 #pragma once
 
 #include "pipeline/sampling.h"
-#include "pipeline/technique.h"
+#include "pipeline/technique_table.h"
 #include "stages/samples/accumulate.h"
 
 namespace beampipe {
@@ -17,8 +17,6 @@ struct AcaaOptions {
   AccumulatorFormat color = AccumulatorFormat::fp16;
 };
 
-FrameResult render_acaa(const Trace& trace, const Frame& frame, const AcaaOptions& options, const RunOptions& run);
-
-std::vector<Surface> acaa_framebuffer(const AcaaOptions& options);
+TechniqueKind acaa_kind();
 
 }  // namespace beampipe

@@ -1,142 +1,79 @@
 #include "pipeline/techniques/beam.h"
 
-#include <algorithm>
 #include <stdexcept>
 #include <string>
 
-#include "pipeline/memory/beam_memory.h"
-#include "pipeline/memory/geometry_memory.h"
-#include "pipeline/tiles.h"
-#include "pipeline/timeline.h"
-#include "stages/beam/a_buffer.h"
-#include "stages/beam/compose_beam.h"
-#include "stages/beam/windows.h"
-#include "stages/geometry/vertex_setup.h"
-#include "stages/picture/resolve.h"
-#include "stages/picture/shade.h"
-#include "stages/raster/conservative_raster.h"
+#include "pipeline/bins/bin_weights.h"
+#include "pipeline/bins/render_bins.h"
+#include "pipeline/units/a_buffer_unit.h"
+#include "pipeline/units/compose_units.h"
+#include "pipeline/units/fragment_units.h"
+#include "pipeline/units/raster_units.h"
 
 namespace beampipe {
 namespace {
 
-// That a pair takes until its tile is done; its window may be all of them.
-constexpr std::size_t kBufferedBytes = kPairBytes + kSortBytes;
+std::vector<Surface> beam_framebuffer(const BeamOptions& beam) {
+  const auto mask_bytes = static_cast<std::uint32_t>(beam.positions) / 8;
+  return {{"coverage", "R32F", 4},
+          {"mask", times("R32UI", mask_bytes / 4), mask_bytes},
+          beam.storage == Storage::packed ? Surface{"color", "RGB16F", 6} : Surface{"color", "RGB32F", 12}};
+}
 
-// What the tiles of a frame have in common.
-struct BeamFrame {
-  StageCounters setup;
-  SetupTriangles triangles;
-  std::vector<glm::vec3> colors;
-  const PositionSet& positions;
-  PositionGrid grid;
-  BeamFragmentOptions options;
+// Depth is compared position by position, so the order of merging decides nothing and is the same for all.
+void add_weights(const std::vector<Fragment>& fragments, const std::vector<float>& areas,
+                 const std::vector<PixelTriangle>& whole, const Tile& tile, BinWeights& weights) {
+  for (const PixelTriangle& pair : whole) weights.at(tile.index(pair.x, pair.y)) = {{pair.triangle, 1.0f, 0, false}};
+  for (std::size_t i = 0; i < fragments.size(); ++i)
+    weights.at(fragments[i].pixel).push_back({fragments[i].triangle, areas[i], 0, fragments[i].tiny});
+}
 
-  BeamFrame(const Trace& trace, const Frame& frame, int count, const RunOptions& run)
-      : triangles(vertex_setup(trace, frame, StageTimer(run.timeline)(setup))),
-        colors(shade_triangles(triangles, frame.light_direction)),
-        positions(cell_positions(count)),
-        grid(count),
-        options(grid_options(grid, conserving_fragment_bytes(count))) {}
-};
+// The areas of a closed pixel are scaled so that their sum is 1.
+template <class Compose>
+void scale_closed(const Compose& compose, BinWeights& weights) {
+  for (std::size_t pixel = 0; pixel < weights.pixels(); ++pixel) {
+    if (compose.is_open(pixel)) continue;
+    float sum = 0;
+    for (const SurfaceWeight& surface : weights.at(pixel)) sum += surface.weight;
+    for (SurfaceWeight& surface : weights.at(pixel)) surface.weight /= sum;
+  }
+}
 
 template <std::size_t Words, class Channel>
 FrameResult render_shape(const Trace& trace, const Frame& frame, const BeamOptions& beam, const RunOptions& run) {
-  BeamFrame state(trace, frame, beam.positions, run);
-  FrameResult result = render_tiles(
-      frame, state.triangles, state.setup, kBinSize, run, kBufferedBytes,
-      [&](const Tile& tile, const TriangleList& list) {
-        const StageTimer timed(run.timeline, tile);
-        StageCounters raster{"conservative_raster"}, buffering{"a_buffer"}, windowing{"windows"},
-            fragment{"beam_fragment"}, shading{"shade"}, composition{"compose"}, resolving{"resolve"};
-        std::vector<StoredAggregate<Words, Channel>> pixels(tile.pixels());
-        std::vector<PixelTriangle> pairs, window, whole;
-        std::vector<Fragment> fragments;
-        std::vector<float> areas, tiny(tile.pixels());
-        ClosedDepth closed(tile);
-        BinBuffers held;
-        const std::size_t waited = conservative_raster(state.triangles, list, tile, timed(raster), pairs, &closed);
-        held.holds("waiting_pairs", waited * kPairWithDepthBytes);
-        held.holds("closed_depth", closed.bytes());
-        const std::vector<SortRecord> records = sort_records(pairs, tile);
-        const ABuffer buffer =
-            a_buffer(records, tile.pixels(), kPairWithDepthBytes, kWaitingPairBytes, timed(buffering));
-        Windows windows(pairs, buffer, kWaitingPairBytes);
-        TriangleFetches fetches(run.memory, list);
-        while (windows.next([&](std::uint32_t pixel) { return !is_closed(pixels[pixel]); }, timed(windowing), window,
-                            whole)) {
-          fragments.clear();
-          beam_fragment(state.triangles, window, tile, state.options, timed(fragment), fragments);
-          held.holds("window_pairs", (window.size() + whole.size()) * kPairWithDepthBytes);
-          held.holds("window_fragments", fragments.size() * state.options.fragment_bytes);
-          shade_visible(state.colors, fragments, timed(shading), &state.triangles.attributes);
-          fetches.setup(window, fragment);
-          fetches.attributes(fragments, shading);
-          compose_window(fragments, state.positions, timed(composition), pixels, areas);
-          shade_visible(whole, timed(shading), &state.triangles.attributes);
-          fetches.attributes(whole, shading);
-          compose_whole(whole, tile, state.colors, timed(composition), pixels);
-          for (const Fragment& item : fragments) tiny[item.pixel] += item.tiny;
-        }
-        std::vector<float> bytes = count_sorted_composition(
-            run.memory, tile, buffer, records, kWaitingPairBytes, windows.looked_at, covered_pixels(pixels),
-            closed_pixels(pixels), beam_framebuffer(beam), buffering, windowing, composition, resolving);
-        fetches.flush(shading);
-        return TileResult{resolve(composed_colors(pixels), frame.background, sizeof pixels[0], timed(resolving)),
-                          {{"fragments", depths_of(buffer)},
-                           {"tiny_triangles", std::move(tiny)},
-                           {"largest_window", std::move(windows.largest)},
-                           {"merges", std::move(windows.taken)},
-                           {"bytes", std::move(bytes)}},
-                          {raster, buffering, windowing, fragment, shading, composition, resolving},
-                          held};
-      });
-  const auto buffering = std::find_if(result.stages.begin(), result.stages.end(),
-                                      [](const StageCounters& stage) { return stage.stage == "a_buffer"; });
-  result.a_buffer_peak_bytes =
-      a_buffer_bytes(buffering->items_in, std::uint64_t{frame.width} * frame.height, kWaitingPairBytes);
-  return result;
-}
+  const FrameContext context(trace, frame, run);
+  const PositionSet& positions = cell_positions(beam.positions);
+  const PositionGrid grid(beam.positions);
+  const BeamFragmentOptions fragment_options = grid_options(grid, conserving_fragment_bytes(beam.positions));
+  const BinPlan plan{
+      .stages = {"conservative_raster", "a_buffer", "windows", "beam_fragment", "shade", "compose", "resolve"},
+      .pair_bytes = kPairBytes + kSortBytes};
+  return render_bins(context, plan, [&](Bin& bin) {
+    ConservativeRasterUnit raster(bin, "waiting_pairs", PairDepths::bounds, ConservativeRasterUnit::Hidden::left_out);
+    ABufferUnit a_buffer(bin, kPairWithDepthBytes, kWaitingPairBytes);
+    BeamFragmentUnit make_fragments(bin, fragment_options);
+    ShadeUnit shade(bin);
+    ComposeBeamUnit<Words, Channel> compose(bin, positions);
+    BinWeights weights(bin);
+    std::vector<float>& specks = bin.pixel_counter("tiny_triangles");
 
-template <std::size_t Words>
-std::vector<PixelWeights> weights_of(const Trace& trace, const Frame& frame, const BeamOptions& beam,
-                                     const RunOptions& run) {
-  const BeamFrame state(trace, frame, beam.positions, run);
-  std::vector<PixelWeights> weights(std::size_t{frame.width} * frame.height);
-  render_tiles(
-      frame, state.triangles, state.setup, kBinSize, run, kBufferedBytes,
-      [&](const Tile& tile, const TriangleList& list) {
-        StageCounters unused{"weights"};
-        std::vector<StoredAggregate<Words, float>> pixels(tile.pixels());  // as they are before colours are packed
-        std::vector<PixelTriangle> pairs, window, whole;
-        std::vector<Fragment> fragments;
-        std::vector<float> areas;
-        std::vector<PixelWeights> found(tile.pixels());
-        ClosedDepth closed(tile);
-        conservative_raster(state.triangles, list, tile, unused, pairs, &closed);
-        const ABuffer buffer = a_buffer(sort_records(pairs, tile), tile.pixels(), 0, kWaitingPairBytes, unused);
-        Windows windows(pairs, buffer, kWaitingPairBytes);
-        while (windows.next([&](std::uint32_t pixel) { return !is_closed(pixels[pixel]); }, unused, window, whole)) {
-          fragments.clear();
-          beam_fragment(state.triangles, window, tile, state.options, unused, fragments);
-          compose_window(fragments, state.positions, unused, pixels, areas);
-          compose_whole(whole, tile, state.colors, unused, pixels);
-          for (const PixelTriangle& pair : whole) found[tile.index(pair.x, pair.y)] = {{pair.triangle, 1.0f, 0, false}};
-          for (std::size_t i = 0; i < fragments.size(); ++i)
-            found[fragments[i].pixel].push_back({fragments[i].triangle, areas[i], 0, fragments[i].tiny});
-        }
-        for (std::size_t i = 0; i < tile.pixels(); ++i) {
-          if (!is_closed(pixels[i])) continue;
-          float sum = 0;  // a closed pixel's areas are scaled to 1
-          for (const SurfaceWeight& surface : found[i]) sum += surface.weight;
-          for (SurfaceWeight& surface : found[i]) surface.weight /= sum;
-        }
-        copy_to_frame(found, tile, frame, weights);
-        return TileResult{{}, {}, {unused}};
-      });
-  return weights;
+    const std::vector<PixelTriangle>& pairs = raster();
+    WindowsUnit windows(bin, pairs, a_buffer(sort_records(pairs, bin.tile)));
+    while (windows.next([&](std::uint32_t pixel) { return compose.is_open(pixel); })) {
+      std::vector<Fragment>& fragments = make_fragments.fetched(windows.pairs, "window_fragments");
+      shade.visible(fragments);
+      shade.visible(windows.whole);
+      compose(fragments, windows.whole);
+      count_specks(fragments, specks);
+      if (weights) add_weights(fragments, compose.areas(), windows.whole, bin.tile, weights);
+    }
+    shade.finish_fetches();
+    a_buffer.charge_memory(windows.finish(), windows.stage);
+    bin.finish(compose.resolve_aggregates(beam_framebuffer(beam)));
+    if (weights) scale_closed(compose, weights);
+    weights.finish();
+  });
 }
-
-}  // namespace
 
 FrameResult render_beam(const Trace& trace, const Frame& frame, const BeamOptions& beam, const RunOptions& run) {
 #define BEAMPIPE_RENDER(words, channel)                                                                       \
@@ -147,25 +84,26 @@ FrameResult render_beam(const Trace& trace, const Frame& frame, const BeamOption
   throw std::invalid_argument("no aggregate of " + std::to_string(beam.positions) + " positions");
 }
 
-std::vector<PixelWeights> beam_weights(const Trace& trace, const Frame& frame, const BeamOptions& beam,
-                                       const RunOptions& run) {
-  switch (beam.positions) {
-    case 32:
-      return weights_of<1>(trace, frame, beam, run);
-    case 64:
-      return weights_of<2>(trace, frame, beam, run);
-    case 128:
-      return weights_of<4>(trace, frame, beam, run);
-    default:
-      return weights_of<8>(trace, frame, beam, run);
-  }
-}
+}  // namespace
 
-std::vector<Surface> beam_framebuffer(const BeamOptions& beam) {
-  const auto mask_bytes = static_cast<std::uint32_t>(beam.positions) / 8;
-  return {{"coverage", "R32F", 4},
-          {"mask", "R32UI x " + std::to_string(mask_bytes / 4), mask_bytes},
-          beam.storage == Storage::packed ? Surface{"color", "RGB16F", 6} : Surface{"color", "RGB32F", 12}};
+TechniqueKind beam_kind() {
+  return {.name = "beam",
+          .description =
+              "the triangles of a pixel, sorted by depth, become fragments with analytic coverage and a mask, "
+              "composed near to far into one area-conserving aggregate until the pixel is closed",
+          .source = "ours, after Crassin et al. 2018",
+          .make = make_from(
+              BeamOptions{},
+              [](BeamOptions& o) -> SpecOptions {
+                return {choice("bits", o.positions, {{"32", 32}, {"64", 64}, {"128", 128}, {"256", 256}},
+                               "positions of the mask"),
+                        choice("storage", o.storage, {{"packed", Storage::packed}, {"float32", Storage::float32}},
+                               "format of the aggregate's colour: fp16, or float32")};
+              },
+              [](const BeamOptions& o) {
+                return Technique{
+                    .framebuffer = beam_framebuffer(o), .render = bind_options(render_beam, o), .has_weights = true};
+              })};
 }
 
 }  // namespace beampipe

@@ -1,8 +1,8 @@
-// beam, sorted: visibility first. Pairs of pixels and triangles are sorted by depth in an A-buffer; window by window,
-// near to far, they become shaded fragments and are composed, until the pixel is closed.
+// The beam in sorted order. An A-buffer sorts the pairs of each pixel by depth. Window by window, near to far, pairs
+// become shaded fragments and are composed, until the pixel is closed.
 #pragma once
 
-#include "pipeline/technique.h"
+#include "pipeline/technique_table.h"
 #include "stages/data/beam_aggregate.h"
 
 namespace beampipe {
@@ -12,12 +12,6 @@ struct BeamOptions {
   Storage storage = Storage::packed;
 };
 
-FrameResult render_beam(const Trace& trace, const Frame& frame, const BeamOptions& beam, const RunOptions& run);
-
-// Technique::weights. Depth is compared position by position, so `order` decides nothing.
-std::vector<PixelWeights> beam_weights(const Trace& trace, const Frame& frame, const BeamOptions& beam,
-                                       const RunOptions& run);
-
-std::vector<Surface> beam_framebuffer(const BeamOptions& beam);
+TechniqueKind beam_kind();
 
 }  // namespace beampipe

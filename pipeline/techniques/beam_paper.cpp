@@ -3,163 +3,18 @@
 #include <algorithm>
 #include <string>
 
-#include "pipeline/memory/beam_memory.h"
-#include "pipeline/memory/geometry_memory.h"
-#include "pipeline/tiles.h"
-#include "pipeline/timeline.h"
-#include "stages/beam/a_buffer.h"
+#include "pipeline/bins/bin_weights.h"
+#include "pipeline/bins/render_bins.h"
+#include "pipeline/units/a_buffer_unit.h"
+#include "pipeline/units/compose_units.h"
+#include "pipeline/units/fragment_units.h"
+#include "pipeline/units/raster_units.h"
 #include "stages/beam/compose_paper.h"
-#include "stages/geometry/vertex_setup.h"
-#include "stages/picture/resolve.h"
-#include "stages/picture/shade.h"
-#include "stages/raster/conservative_raster.h"
 
 namespace beampipe {
 namespace {
 
-using PixelCounters = std::vector<std::pair<std::string, std::vector<float>>>;
-
-PixelCounters count_per_pixel(const Tile& tile, const ABuffer& buffer, const std::vector<Fragment>& fragments) {
-  std::vector<float> count(tile.pixels()), tiny(tile.pixels());
-  for (std::size_t pixel = 0; pixel < tile.pixels(); ++pixel) count[pixel] = static_cast<float>(buffer.depth_of(pixel));
-  for (const Fragment& fragment : fragments)
-    if (fragment.tiny) ++tiny[fragment.pixel];
-  return {{"fragments", count}, {"tiny_triangles", std::move(tiny)}, {"merges", std::move(count)}};
-}
-
-struct RecordBytes {
-  std::uint32_t fragment, aggregate;
-};
-
-RecordBytes record_bytes(const PublishedOptions& beam) {
-  switch (beam.rules) {
-    case Rules::over:
-      return {kOverFragmentBytes, kOverBytes};
-    case Rules::paper:
-      break;
-  }
-  return {paper_aggregate_bytes(beam.storage), paper_aggregate_bytes(beam.storage)};
-}
-
-// What the stages of a frame have in common.
-struct PublishedFrame {
-  const PublishedOptions& beam;
-  StageCounters setup;
-  SetupTriangles triangles;
-  std::vector<glm::vec3> colors;
-  SamplePattern pattern;
-  MaskTable table;
-  RecordBytes bytes;
-  BeamFragmentOptions options;
-
-  PublishedFrame(const Trace& trace, const Frame& frame, const PublishedOptions& beam_options, const RunOptions& run)
-      : beam(beam_options),
-        triangles(vertex_setup(trace, frame, StageTimer(run.timeline)(setup))),
-        colors(shade_triangles(triangles, frame.light_direction)),
-        pattern(hammersley_pattern()),
-        table(pattern),
-        bytes(record_bytes(beam)),
-        options{beam.mask,      beam.mask == MaskSource::none ? std::vector<SamplePattern>{} : std::vector{pattern},
-                &table,         nullptr,
-                bytes.fragment, beam.tiny_positions} {}
-};
-
-std::vector<PixelColor> compose_tile(const PublishedFrame& state, const std::vector<Fragment>& fragments,
-                                     const ABuffer& buffer, StageCounters& counters) {
-  return pixel_colors(state.beam.rules == Rules::paper
-                          ? compose(fragments, buffer, state.pattern, state.beam.merge, state.beam.storage, counters)
-                          : compose_over(fragments, buffer, counters));
-}
-
-}  // namespace
-
-FrameResult render_published(const Trace& trace, const Frame& frame, const PublishedOptions& beam,
-                             const RunOptions& run) {
-  const PublishedFrame state(trace, frame, beam, run);
-  const std::vector<Surface> framebuffer = published_framebuffer(beam);
-  FrameResult result = render_tiles(
-      frame, state.triangles, state.setup, kBinSize, run, kPairBytes + kSortBytes,
-      [&](const Tile& tile, const TriangleList& list) {
-        const StageTimer timed(run.timeline, tile);
-        StageCounters raster{"conservative_raster"}, fragment{"beam_fragment"}, shading{"shade"}, buffering{"a_buffer"},
-            composition{"compose"}, resolving{"resolve"};
-        std::vector<PixelTriangle> pairs;
-        std::vector<Fragment> fragments;
-        conservative_raster(state.triangles, list, tile, timed(raster), pairs, nullptr, PairDepths::none);
-        beam_fragment(state.triangles, pairs, tile, state.options, timed(fragment), fragments);
-        BinBuffers held;
-        held.holds("bin_pairs", pairs.size() * kPixelTriangleBytes);
-        held.holds("bin_fragments", fragments.size() * state.bytes.fragment);
-        shade(state.colors, fragments, timed(shading), &state.triangles.attributes);
-        AttributesInOrder(run.memory).read(fragments, shading);
-        const std::vector<SortRecord> records = sort_records(fragments, beam.sort);
-        const ABuffer buffer =
-            a_buffer(records, tile.pixels(), state.bytes.fragment, state.bytes.fragment, timed(buffering));
-        PixelCounters counts = count_per_pixel(tile, buffer, fragments);
-        const std::vector<PixelColor> aggregates = compose_tile(state, fragments, buffer, timed(composition));
-        std::vector<bool> full;
-        for (const PixelColor& aggregate : aggregates) full.push_back(aggregate.alpha == 1.0f);
-        std::vector<float> bytes = count_sorted_composition(
-            run.memory, tile, buffer, records, state.bytes.fragment, counts.back().second,
-            std::vector<bool>(tile.pixels(), true), full, framebuffer, buffering, composition, composition, resolving);
-        counts.emplace_back("bytes", std::move(bytes));
-        return TileResult{resolve(aggregates, frame.background, state.bytes.aggregate, timed(resolving)),
-                          std::move(counts),
-                          {raster, fragment, shading, buffering, composition, resolving},
-                          held};
-      });
-  const auto buffering = std::find_if(result.stages.begin(), result.stages.end(),
-                                      [](const StageCounters& stage) { return stage.stage == "a_buffer"; });
-  result.a_buffer_peak_bytes =
-      a_buffer_bytes(buffering->items_in, std::uint64_t{frame.width} * frame.height, state.bytes.fragment);
-  return result;
-}
-
-std::vector<PixelWeights> published_weights(const Trace& trace, const Frame& frame, const PublishedOptions& beam,
-                                            const RunOptions& run) {
-  PublishedOptions exact = beam;  // weights as they are before colours are packed
-  exact.storage = PaperStorage::float32;
-  const PublishedFrame state(trace, frame, exact, run);
-  std::vector<PixelWeights> weights(std::size_t{frame.width} * frame.height);
-  render_tiles(frame, state.triangles, state.setup, kBinSize, run, kPairBytes + kSortBytes,
-               [&](const Tile& tile, const TriangleList& list) {
-                 StageCounters unused{"weights"};
-                 std::vector<PixelTriangle> pairs;
-                 std::vector<Fragment> fragments;
-                 conservative_raster(state.triangles, list, tile, unused, pairs, nullptr, PairDepths::none);
-                 beam_fragment(state.triangles, pairs, tile, state.options, unused, fragments);
-                 const ABuffer buffer =
-                     a_buffer(sort_records(fragments, beam.sort), tile.pixels(), 0, state.bytes.fragment, unused);
-                 // Composition is linear in colour. A fragment that alone has a channel, as 1, leaves its weight there:
-                 // three fragments of each pixel at a time.
-                 std::vector<PixelWeights> found(tile.pixels());
-                 std::uint32_t deepest = 0;
-                 for (std::size_t pixel = 0; pixel < tile.pixels(); ++pixel)
-                   deepest = std::max(deepest, buffer.depth_of(pixel));
-                 for (std::uint32_t first = 0; first < deepest; first += 3) {
-                   for (std::size_t pixel = 0; pixel < tile.pixels(); ++pixel) {
-                     for (std::uint32_t k = 0; k < buffer.depth_of(pixel); ++k) {
-                       Fragment& fragment = fragments[buffer.records[buffer.first[pixel] + k]];
-                       fragment.color = glm::vec3(0.0f);
-                       if (k >= first && k < first + 3) fragment.color[static_cast<int>(k - first)] = fragment.alpha;
-                     }
-                   }
-                   const std::vector<PixelColor> composed = compose_tile(state, fragments, buffer, unused);
-                   for (std::size_t pixel = 0; pixel < tile.pixels(); ++pixel) {
-                     for (std::uint32_t k = first; k < std::min(first + 3, buffer.depth_of(pixel)); ++k) {
-                       const Fragment& fragment = fragments[buffer.records[buffer.first[pixel] + k]];
-                       const float weight = composed[pixel].color[static_cast<int>(k - first)];
-                       found[pixel].push_back({fragment.triangle, weight, k, fragment.tiny});
-                     }
-                   }
-                 }
-                 copy_to_frame(found, tile, frame, weights);
-                 return TileResult{{}, {}, {unused}};
-               });
-  return weights;
-}
-
-std::vector<Surface> published_framebuffer(const PublishedOptions& beam) {
+std::vector<Surface> paper_framebuffer(const PaperOptions& beam) {
   const Surface color{"color", "RGB16F", kAggregateColorBytes}, coverage{"coverage", "R32F", 4};
   if (beam.rules == Rules::over) return {coverage, color};
   const Surface mask{"mask", "R32UI", 4}, thickness{"thickness", "R32F", 4}, range{"depth_range", "RG32F", 8};
@@ -172,6 +27,164 @@ std::vector<Surface> published_framebuffer(const PublishedOptions& beam) {
       break;
   }
   return {coverage, mask, {"depth_plane", "RGB32F", 12}, thickness, range, {"color", "RGB32F", 12}};
+}
+
+struct RecordBytes {
+  std::uint32_t fragment, aggregate;
+};
+
+RecordBytes record_bytes(const PaperOptions& options) {
+  if (options.rules == Rules::over) return {kOverFragmentBytes, kOverBytes};
+  return {paper_aggregate_bytes(options.storage), paper_aggregate_bytes(options.storage)};
+}
+
+BeamFragmentOptions fragment_options(const PaperOptions& options, const SamplePattern& pattern,
+                                     const MaskTable& table) {
+  BeamFragmentOptions made;
+  made.mask = options.mask;
+  if (options.mask != MaskSource::none) made.positions = {pattern};
+  made.table = &table;
+  made.fragment_bytes = record_bytes(options).fragment;
+  made.tiny_positions = options.tiny_positions;
+  return made;
+}
+
+// Per pixel: does it have records?
+std::vector<bool> pixels_with(const std::vector<float>& records) {
+  std::vector<bool> with;
+  for (const float count : records) with.push_back(count > 0);
+  return with;
+}
+
+// Per pixel: does nothing show through it?
+std::vector<bool> full_pixels(const std::vector<PixelColor>& aggregates) {
+  std::vector<bool> full;
+  for (const PixelColor& aggregate : aggregates) full.push_back(aggregate.alpha == 1.0f);
+  return full;
+}
+
+std::vector<PixelColor> compose_lists(const PaperOptions& options, PaperStorage storage, const SamplePattern& pattern,
+                                      const std::vector<Fragment>& fragments, const ABuffer& lists,
+                                      StageCounters& counters) {
+  return pixel_colors(options.rules == Rules::paper
+                          ? compose(fragments, lists, pattern, options.merge, storage, counters)
+                          : compose_over(fragments, lists, counters));
+}
+
+// Composition is linear in colour: a fragment that alone has a channel, as 1, leaves its weight there. So three
+// fragments of each pixel are weighed at a time. Weights are those of unpacked aggregates.
+void add_weights(const PaperOptions& options, const SamplePattern& pattern, std::vector<Fragment> fragments,
+                 const ABuffer& lists, BinWeights& weights) {
+  StageCounters unused;
+  const std::size_t pixels = lists.first.size() - 1;
+  std::uint32_t deepest = 0;
+  for (std::size_t pixel = 0; pixel < pixels; ++pixel) deepest = std::max(deepest, lists.depth_of(pixel));
+  for (std::uint32_t first = 0; first < deepest; first += 3) {
+    for (std::size_t pixel = 0; pixel < pixels; ++pixel) {
+      for (std::uint32_t k = 0; k < lists.depth_of(pixel); ++k) {
+        Fragment& fragment = fragments[lists.records[lists.first[pixel] + k]];
+        fragment.color = glm::vec3(0.0f);
+        if (k >= first && k < first + 3) fragment.color[static_cast<int>(k - first)] = fragment.alpha;
+      }
+    }
+    const std::vector<PixelColor> composed =
+        compose_lists(options, PaperStorage::float32, pattern, fragments, lists, unused);
+    for (std::size_t pixel = 0; pixel < pixels; ++pixel) {
+      for (std::uint32_t k = first; k < std::min(first + 3, lists.depth_of(pixel)); ++k) {
+        const Fragment& fragment = fragments[lists.records[lists.first[pixel] + k]];
+        const float weight = composed[pixel].color[static_cast<int>(k - first)];
+        weights.at(pixel).push_back({fragment.triangle, weight, k, fragment.tiny});
+      }
+    }
+  }
+}
+
+FrameResult render_paper(const Trace& trace, const Frame& frame, const PaperOptions& beam, const RunOptions& run) {
+  const FrameContext context(trace, frame, run);
+  const SamplePattern pattern = hammersley_pattern();
+  const MaskTable table(pattern);
+  const RecordBytes bytes = record_bytes(beam);
+  const BeamFragmentOptions options = fragment_options(beam, pattern, table);
+  const BinPlan plan{.stages = {"conservative_raster", "beam_fragment", "shade", "a_buffer", "compose", "resolve"},
+                     .pair_bytes = kPairBytes + kSortBytes};
+  return render_bins(context, plan, [&](Bin& bin) {
+    ConservativeRasterUnit raster(bin, "bin_pairs", PairDepths::none, ConservativeRasterUnit::Hidden::kept);
+    BeamFragmentUnit make_fragments(bin, options);
+    ShadeUnit shade(bin);
+    ABufferUnit a_buffer(bin, bytes.fragment, bytes.fragment);
+    const BinStage composition = bin.stage("compose");
+    BinWeights weights(bin);
+
+    std::vector<Fragment>& fragments = make_fragments(raster(), "bin_fragments");
+    shade(fragments);
+    const ABuffer& lists = a_buffer(sort_records(fragments, beam.sort));
+    const std::vector<PixelColor> aggregates =
+        compose_lists(beam, beam.storage, pattern, fragments, lists, composition.timed());
+    const std::vector<float>& merges = bin.pixel_counter("merges") = depths_of(lists);
+    a_buffer.charge_memory(merges, composition);
+    charge_aggregates(bin, paper_framebuffer(beam), pixels_with(merges), full_pixels(aggregates));
+    count_specks(fragments, bin.pixel_counter("tiny_triangles"));
+    bin.finish(resolve(aggregates, bin.background(), bytes.aggregate, bin.stage("resolve").timed()));
+    if (weights) add_weights(beam, pattern, fragments, lists, weights);
+    weights.finish();
+  });
+}
+
+Technique make_paper(const PaperOptions& options) {
+  return {
+      .framebuffer = paper_framebuffer(options), .render = bind_options(render_paper, options), .has_weights = true};
+}
+
+// simd/merge_rules.h explains the policies, and docs/accuracy.md says where they come from.
+SpecOptions paper_options(PaperOptions& o) {
+  using R = MergeRules;
+  return {choice("mask", o.mask, {{"table", MaskSource::table}, {"exact", MaskSource::exact}},
+                 "masks from a 64 x 64 table, or from edge tests"),
+          choice("sort", o.sort, {{"centroid", SortKey::centroid}, {"nearest", SortKey::nearest}},
+                 "the fragment's depth that the A-buffer sorts by"),
+          choice("tiny", o.tiny_positions, {{"1", 1}, {"3", 3}}, "most mask positions that a speck is given"),
+          choice("overlap", o.merge.overlap,
+                 {{"tiny", R::Overlap::tiny},
+                  {"over", R::Overlap::over},
+                  {"add", R::Overlap::add},
+                  {"transition", R::Overlap::transition}},
+                 "how coverages combine where masks overlap: ADD for specks and OVER for others, OVER, ADD, or a "
+                 "transition from ADD to OVER"),
+          choice("local", o.merge.local, {{"clamp", R::Local::clamp}, {"keep", R::Local::keep}},
+                 "a local coverage above 1 is clamped to 1, or kept"),
+          choice("fuzzy", o.merge.fuzzy, {{"delta", R::Fuzzy::delta}, {"mix", R::Fuzzy::mix}},
+                 "blending within the slab: by the published formulas, or between over and under"),
+          choice("extents", o.merge.extents, {{"range", R::Extents::range}, {"slab", R::Extents::slab}},
+                 "the slab ends at its depth range, or at its thickness alone"),
+          choice("slab", o.merge.slab, {{"full", R::Slab::full}, {"visible", R::Slab::visible}},
+                 "the slab grows by the whole fragment, or by its visible positions"),
+          choice("plane", o.merge.plane, {{"area", R::Plane::area}, {"visible", R::Plane::visible}},
+                 "planes are weighted by coverage, or by what is visible of each"),
+          choice("thickness", o.merge.thickness,
+                 {{"larger", R::Thickness::larger}, {"containing", R::Thickness::containing}},
+                 "the slab keeps the larger thickness, or contains all merged fragments"),
+          choice("storage", o.storage,
+                 {{"slides", PaperStorage::slides}, {"text", PaperStorage::text}, {"float32", PaperStorage::float32}},
+                 "formats of the aggregate: as in the talk's slides, as in the paper's text, or float32")};
+}
+
+}  // namespace
+
+TechniqueKind beam_paper_kind() {
+  return {.name = "beam",
+          .variant = {"rules", "paper", "conserve"},
+          .description =
+              "the published rules: a 32-bit mask from a table, a depth slab, one aggregate per pixel; the "
+              "options are other readings of these rules, see docs/accuracy.md",
+          .source = "Crassin et al. 2018",
+          .make = make_from(PaperOptions{.tiny_positions = 1}, paper_options, make_paper)};
+}
+
+TechniqueKind alpha_kind() {
+  return {.name = "alpha",
+          .description = "the fragments of the published rules, blended by plain OVER, without masks",
+          .source = "Porter and Duff 1984",
+          .make = make_plain([] { return make_paper(PaperOptions{.rules = Rules::over, .mask = MaskSource::none}); })};
 }
 
 }  // namespace beampipe

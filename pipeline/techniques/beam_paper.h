@@ -1,8 +1,9 @@
-// The beam pipeline as published (Crassin et al. 2018): conservative raster, fragments with analytic coverage and a
-// localization mask, shaded and put into an A-buffer, and merged from near to far into one aggregate per pixel.
+// The beam pipeline as published (Crassin et al. 2018). Conservative raster makes pairs; they become fragments with
+// analytic coverage and a localization mask, are shaded, sorted in an A-buffer, and merged near to far into one
+// aggregate per pixel.
 #pragma once
 
-#include "pipeline/technique.h"
+#include "pipeline/technique_table.h"
 #include "stages/beam/a_buffer.h"
 #include "stages/beam/beam_fragment.h"
 #include "stages/data/paper_aggregate.h"
@@ -11,25 +12,19 @@ namespace beampipe {
 
 enum class Rules {
   paper,  // simd/merge.h: the published rules
-  over,   // alpha OVER alone: what masks and slabs are worth
+  over,   // alpha OVER without masks and slabs, to show what those are worth
 };
 
-struct PublishedOptions {
+struct PaperOptions {
   Rules rules = Rules::paper;
-  MaskSource mask = MaskSource::table;  // none: with `over`
+  MaskSource mask = MaskSource::table;  // MaskSource::none with Rules::over
   SortKey sort = SortKey::centroid;
   int tiny_positions = 0;  // BeamFragmentOptions::tiny_positions
   MergeRules merge{};
   PaperStorage storage = PaperStorage::slides;
 };
 
-FrameResult render_published(const Trace& trace, const Frame& frame, const PublishedOptions& beam,
-                             const RunOptions& run);
-
-// Technique::weights.
-std::vector<PixelWeights> published_weights(const Trace& trace, const Frame& frame, const PublishedOptions& beam,
-                                            const RunOptions& run);
-
-std::vector<Surface> published_framebuffer(const PublishedOptions& beam);
+TechniqueKind beam_paper_kind();
+TechniqueKind alpha_kind();  // the same fragments, Rules::over
 
 }  // namespace beampipe

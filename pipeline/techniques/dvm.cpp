@@ -1,115 +1,17 @@
 #include "pipeline/techniques/dvm.h"
 
-#include "pipeline/memory/geometry_memory.h"
-#include "pipeline/memory/image_memory.h"
-#include "pipeline/memory/sample_memory.h"
-#include "pipeline/sample_batches.h"
-#include "pipeline/tiles.h"
-#include "pipeline/timeline.h"
-#include "stages/geometry/vertex_setup.h"
+#include <limits>
+
+#include "pipeline/bins/render_bins.h"
+#include "pipeline/techniques/visibility.h"
+#include "pipeline/units/temporal_units.h"
 #include "stages/picture/shade.h"
 #include "stages/samples/dilate.h"
 #include "stages/samples/materials.h"
 #include "stages/samples/sample_select.h"
-#include "stages/samples/test_depth.h"
 
 namespace beampipe {
 namespace {
-
-// Shading samples with their G-buffer and colour are written at the pixel of the quad that stores them.
-void add_sample_bytes(const std::vector<SampleQuad>& quads, const Tile& tile, std::vector<float>& bytes) {
-  const std::size_t columns = (static_cast<std::size_t>(tile.width()) + 1) / 2;
-  for (std::size_t q = 0; q < quads.size(); ++q)
-    for (std::size_t p = 0; p < 4; ++p) {
-      if (quads[q].mask[p] == 0) continue;
-      const std::size_t x = 2 * (q % columns) + p % 2, y = 2 * (q / columns) + p / 2;
-      const bool is_shaded = quads[q].triangle[p] != kNoTriangle;
-      bytes[y * static_cast<std::size_t>(tile.width()) + x] +=
-          static_cast<float>(kShadingSampleBytes + (is_shaded ? kGBufferBytes + kSampleColorBytes : 0));
-    }
-}
-
-}  // namespace
-
-FrameResult render_dvm(const Trace& trace, const Frame& frame, const DvmOptions& options, const RunOptions& run) {
-  History first;
-  History& history = run.history ? *run.history : first;
-  StageCounters setup;
-  const SetupTriangles triangles = vertex_setup(trace, frame, StageTimer(run.timeline)(setup));
-  const std::vector<glm::vec3> colors = shade_triangles(triangles, frame.light_direction);
-  const std::vector<std::uint32_t> materials = material_ids(triangles, options.material);
-  const Sampling sampling{CellGrid{}, standard_pattern(8)};
-  const SelectOptions select{history.frames % 8, options.seed + history.frames};
-  const Poses poses = poses_of(frame);
-  const std::vector<std::uint32_t> looks = looks_of(frame);
-  const std::vector<glm::dmat4> to_last = to_last_frame(poses, history.frames > 0 ? history.poses : poses);
-  CurrentFrame current(frame.width, frame.height);
-  QuadFrame quads(frame.width, frame.height);
-
-  FrameResult result =
-      render_tiles(frame, triangles, setup, kBinSize, run, [&](const Tile& tile, const TriangleList& list) {
-        const StageTimer timed(run.timeline, tile);
-        StageCounters raster{"sample_raster"}, testing{"depth_test"}, selecting{"sample_select"}, shading{"shade"},
-            lighting{"light"}, moving{"motion"};
-        SampleTile surface(tile, sampling, kVisibilityBytes);
-        SampleMemory memory(run.memory, tile, sampling, kVisibilityBytes);
-        std::vector<float> counts(tile.pixels()), bytes(tile.pixels());
-        std::vector<SampleAccess> accesses;
-        BinBuffers held;
-        raster_in_batches(triangles, list, tile, sampling, timed, raster, held,
-                          [&](std::vector<SampleFragment>& fragments) {
-                            depth_test(triangles, fragments, tile, sampling, timed(testing), surface, accesses);
-                            memory.test_and_write(accesses, testing);
-                            count_fragments(fragments, tile, sampling.grid, counts);
-                          });
-        memory.flush(testing);
-        const std::vector<SampleQuad> selected = sample_select(surface, tile, materials, select, timed(selecting));
-        const std::uint64_t shaded = shaded_samples(selected);
-        write_gbuffer(shaded, timed(shading));
-        light(shaded, timed(lighting));
-        memory.read_color(selecting);
-        stream(run.memory, shaded * kShadingSampleBytes, selecting);
-        stream(run.memory, shaded * (kVisibilityBytes + kGBufferBytes), shading);
-        TriangleFetches fetches(run.memory, list);
-        for (const SampleQuad& quad : selected)
-          for (const std::uint32_t triangle : quad.triangle)
-            if (triangle != kNoTriangle) fetches.attributes(triangle, shading);
-        fetches.flush(shading);
-        stream(run.memory, shaded * (kGBufferBytes + kSampleColorBytes), lighting);
-        memory.read_depth(moving);
-        memory.read_color(moving);
-        stream(run.memory, tile.pixels() * (kMotionBytes + kLookBytes + kSpeedBytes), moving);
-        quads.insert(tile, selected);
-        copy_to_frame(motion(surface, tile, frame, triangles.draws, to_last, timed(moving)), tile, frame,
-                      current.motion);
-        const PixelContents found = contents(surface, tile, frame, triangles.draws, to_last, looks, timed(moving));
-        copy_to_frame(found.looks, tile, frame, current.looks);
-        copy_to_frame(found.speeds, tile, frame, current.speeds);
-        memory.add_bytes(bytes);
-        add_sample_bytes(selected, tile, bytes);
-        return TileResult{{},
-                          {{"fragments", std::move(counts)}, {"bytes", std::move(bytes)}},
-                          {raster, testing, selecting, shading, lighting, moving},
-                          held};
-      });
-
-  StageCounters spreading{"dilate"}, accumulation{"temporal"};
-  std::vector<glm::vec4> image(current.color.size());
-  for_each_tile(frame, kBinSize, run, spreading, [&](const Tile& tile, StageCounters& counters) {
-    dilate(quads, colors, triangles.draws, frame.background, tile, counters, current);
-    stream(run.memory, tile.pixels() * (kSampleColorBytes + kShadingSampleBytes), counters);
-  });
-  for_each_tile(frame, kBinSize, run, accumulation, [&](const Tile& tile, StageCounters& counters) {
-    temporal(current, {options.blend, kStillPixels}, history, tile, counters, image);
-    move_temporal(run.memory, tile, history.frames > 0, counters);
-    stream(run.memory, tile.pixels() * (kSpeedBytes + kLookBytes * (history.frames > 0 ? 2 : 1)), counters);
-  });
-  result.pixel_counters["unknown"] = unknown_part(current);
-  copy_to_image(image, result.image);
-  history = {history.frames + 1, current.width, current.height, std::move(image), std::move(current.looks), poses};
-  result.stages.insert(result.stages.end(), {spreading, accumulation});
-  return result;
-}
 
 std::vector<Surface> dvm_framebuffer() {
   return {{"depth", "D32F x 8", 8 * kSampleDepthBytes},
@@ -123,6 +25,100 @@ std::vector<Surface> dvm_framebuffer() {
           {"speed", "R16F", kSpeedBytes},
           {"look", "R32UI x 2", 2 * kLookBytes},
           {"history", "RGBA16F x 2", 16}};
+}
+
+// Counts each shading sample, with its G-buffer and colour, at the pixel of the quad that stores it.
+void add_sample_bytes(const std::vector<SampleQuad>& quads, const Tile& tile, std::vector<float>& bytes) {
+  const std::size_t columns = (static_cast<std::size_t>(tile.width()) + 1) / 2;
+  for (std::size_t q = 0; q < quads.size(); ++q)
+    for (std::size_t p = 0; p < 4; ++p) {
+      if (quads[q].mask[p] == 0) continue;
+      const std::size_t x = 2 * (q % columns) + p % 2, y = 2 * (q / columns) + p / 2;
+      const bool is_shaded = quads[q].triangle[p] != kNoTriangle;
+      bytes[y * static_cast<std::size_t>(tile.width()) + x] +=
+          static_cast<float>(kShadingSampleBytes + (is_shaded ? kGBufferBytes + kSampleColorBytes : 0));
+    }
+}
+
+// Materials and light of the quads' shading samples, one by one.
+void shade_samples(Bin& bin, const std::vector<SampleQuad>& quads) {
+  const BinStage shading = bin.stage("shade"), lighting = bin.stage("light");
+  const std::uint64_t shaded = shaded_samples(quads);
+  write_gbuffer(shaded, shading.timed());
+  shading.streams(shaded * (kVisibilityBytes + kGBufferBytes));
+  for (const SampleQuad& quad : quads)
+    for (const std::uint32_t triangle : quad.triangle)
+      if (triangle != kNoTriangle) bin.triangle_fetches().attributes(triangle, shading.counters);
+  bin.triangle_fetches().flush(shading.counters);
+  light(shaded, lighting.timed());
+  lighting.streams(shaded * (kGBufferBytes + kSampleColorBytes));
+}
+
+FrameResult render_dvm(const Trace& trace, const Frame& frame, const DvmOptions& options, const RunOptions& run) {
+  const FrameContext context(trace, frame, run);
+  TemporalFrame over_time(context);
+  const std::uint32_t frames = over_time.history().frames;
+  const std::vector<std::uint32_t> materials = material_ids(context.triangles, options.material);
+  const std::vector<std::uint32_t> looks = looks_of(frame);
+  const Sampling sampling{CellGrid{}, standard_pattern(8)};
+  const SelectOptions select{frames % 8, options.seed + frames};
+  QuadFrame quads(frame.width, frame.height);
+
+  const BinPlan plan{.stages = {"sample_raster", "depth_test", "sample_select", "shade", "light", "motion"}};
+  FrameResult result = render_bins(context, plan, [&](Bin& bin) {
+    const BinStage selecting = bin.stage("sample_select"), moving = bin.stage("motion");
+    DepthTestUnit visibility(bin, sampling, kVisibilityBytes);
+    draw_visibility(bin, sampling, visibility);
+    const std::vector<SampleQuad> selected =
+        sample_select(visibility.surface(), bin.tile, materials, select, selecting.timed());
+    visibility.read_colors(selecting);
+    selecting.streams(shaded_samples(selected) * kShadingSampleBytes);
+    shade_samples(bin, selected);
+    quads.insert(bin.tile, selected);
+    over_time.find_motion(bin, visibility);
+    const PixelContents found = contents(visibility.surface(), bin.tile, frame, context.triangles.draws,
+                                         over_time.to_last(), looks, moving.timed());
+    moving.streams(bin.tile.pixels() * (kLookBytes + kSpeedBytes));
+    copy_to_frame(found.looks, bin.tile, frame, over_time.current.looks);
+    copy_to_frame(found.speeds, bin.tile, frame, over_time.current.speeds);
+    if (bin.models_memory()) add_sample_bytes(selected, bin.tile, bin.pixel_counter("bytes"));
+  });
+  run_on_tiles(context, "dilate", result, [&](const Tile& tile, const BinStage& stage) {
+    dilate(quads, context.colors, context.triangles.draws, frame.background, tile, stage.timed(), over_time.current);
+    stage.streams(tile.pixels() * (kSampleColorBytes + kShadingSampleBytes));
+  });
+  run_on_tiles(context, "temporal", result, [&](const Tile& tile, const BinStage& stage) {
+    over_time.accumulate(tile, {options.blend, kStillPixels}, stage);
+    stage.streams(tile.pixels() * (kSpeedBytes + kLookBytes * (frames > 0 ? 2 : 1)));
+  });
+  result.pixel_counters["unknown"] = unknown_part(over_time.current);
+  over_time.finish(result);
+  return result;
+}
+
+}  // namespace
+
+TechniqueKind dvm_kind() {
+  constexpr std::uint32_t kMostSeed = std::numeric_limits<std::uint32_t>::max();
+  return {.name = "dvm",
+          .description =
+              "decoupled visibility multisampling: 8 triangle ids per pixel, four shaded samples per 2x2 quad "
+              "spread by their masks, accumulated over time",
+          .source = "Hable 2021",
+          .make = make_from(
+              DvmOptions{},
+              [](DvmOptions& o) -> SpecOptions {
+                return {number("blend", o.blend, 0.001f, 1.0f, "weight of each new frame"),
+                        number("seed", o.seed, 0u, kMostSeed, "seed of the random choices"),
+                        choice("material", o.material, {{"color", MaterialBy::color}, {"draw", MaterialBy::draw}},
+                               "samples share what is shaded within a draw and Kd, or within a draw")};
+              },
+              [](const DvmOptions& o) {
+                return Technique{.framebuffer = dvm_framebuffer(),
+                                 .render = bind_options(render_dvm, o),
+                                 .keeps_history = true,
+                                 .working_bytes_per_pixel = kDvmWorkingBytes};
+              })};
 }
 
 }  // namespace beampipe

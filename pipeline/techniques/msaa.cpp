@@ -2,85 +2,81 @@
 
 #include <string>
 
-#include "pipeline/memory/geometry_memory.h"
-#include "pipeline/memory/image_memory.h"
-#include "pipeline/memory/sample_memory.h"
-#include "pipeline/sample_batches.h"
-#include "pipeline/tiles.h"
-#include "pipeline/timeline.h"
-#include "stages/geometry/vertex_setup.h"
-#include "stages/picture/resolve.h"
-#include "stages/picture/shade.h"
-#include "stages/raster/sample_raster.h"
-#include "stages/samples/test_depth.h"
+#include "pipeline/bins/render_bins.h"
+#include "pipeline/units/depth_test_unit.h"
+#include "pipeline/units/fragment_units.h"
+#include "pipeline/units/raster_units.h"
 
 namespace beampipe {
 namespace {
 
 std::uint32_t color_bytes(const MsaaOptions& options) { return options.rgba ? 8 : kSampleColorBytes; }
 
-}  // namespace
-
-FrameResult render_msaa(const Trace& trace, const Frame& frame, const MsaaOptions& options, const RunOptions& run) {
-  StageCounters setup;
-  const SetupTriangles triangles = vertex_setup(trace, frame, StageTimer(run.timeline)(setup));
-  const std::vector<glm::vec3> colors = round_to_half(shade_triangles(triangles, frame.light_direction));
-  const Sampling sampling = msaa_sampling(options.samples);
-
-  const TileRenderer render_tile = [&](const Tile& tile, const TriangleList& list) {
-    const StageTimer timed(run.timeline, tile);
-    StageCounters raster{"sample_raster"}, shading{"shade"}, testing{"depth_test"}, resolving{"resolve"};
-    SampleTile surface(tile, sampling, options.prepass ? 0 : color_bytes(options));
-    std::vector<float> counts(tile.pixels()), centroids(tile.pixels());
-    std::vector<SampleAccess> accesses;
-    BinBuffers held;
-    const auto same_color = [&](std::uint32_t a, std::uint32_t b) { return colors[a] == colors[b]; };
-    SampleMemory memory(run.memory, tile, sampling, color_bytes(options), same_color);
-    AttributesInOrder attributes(run.memory);
-    const auto shade_all = [&](const std::vector<SampleFragment>& fragments) {
-      shade(fragments, timed(shading), &triangles.attributes);
-      attributes.read(fragments, shading);
-      if (options.at == ShadeAt::centroid)
-        count_centroids(triangles, fragments, tile, sampling, timed(shading), centroids);
-    };
-    raster_in_batches(
-        triangles, list, tile, sampling, timed, raster, held, [&](std::vector<SampleFragment>& fragments) {
-          if (!options.prepass) shade_all(fragments);
-          depth_test(triangles, fragments, tile, sampling, timed(testing), surface, accesses);
-          options.prepass ? memory.test_depth(accesses, testing) : memory.test_and_write(accesses, testing);
-          count_fragments(fragments, tile, sampling.grid, counts);
-        });
-    memory.flush(testing);
-    surface.color_bytes = color_bytes(options);
-    if (options.prepass) {  // shades and writes what is visible; which triangle that is, the surface knows already
-      raster_in_batches(triangles, list, tile, sampling, timed, raster, held,
-                        [&](std::vector<SampleFragment>& fragments) {
-                          depth_test_equal(triangles, tile, sampling, timed(testing), surface, fragments, accesses);
-                          memory.test_equal(accesses, testing);
-                          shade_all(fragments);
-                        });
-      memory.flush(testing);
-    }
-    std::vector<float> bytes(tile.pixels());
-    memory.add_bytes(bytes);
-    memory.read_color(resolving);
-    write_image(run.memory, tile, resolving);
-    TileResult result{resolve(surface, tile.pixels(), colors, frame.background, timed(resolving)),
-                      {{"fragments", std::move(counts)}, {"bytes", std::move(bytes)}},
-                      {raster, shading, testing, resolving},
-                      held,
-                      options.prepass ? 2 : 1};
-    if (options.at == ShadeAt::centroid) result.pixel_counters.emplace_back("centroids", std::move(centroids));
-    return result;
-  };
-  return render_tiles(frame, triangles, setup, bin_size(options.samples), run, render_tile);
-}
-
 std::vector<Surface> msaa_framebuffer(const MsaaOptions& options) {
   const auto n = static_cast<std::uint32_t>(options.samples);
-  const std::string times = " x " + std::to_string(n);
-  return {{"depth", "D32F" + times, n * kSampleDepthBytes},
-          {"color", (options.rgba ? "RGBA16F" : "RGB16F") + times, n * color_bytes(options)}};
+  return {{"depth", times("D32F", n), n * kSampleDepthBytes},
+          {"color", times(options.rgba ? "RGBA16F" : "RGB16F", n), n * color_bytes(options)}};
+}
+
+FrameResult render_msaa(const Trace& trace, const Frame& frame, const MsaaOptions& options, const RunOptions& run) {
+  const FrameContext context(trace, frame, run);
+  const std::vector<glm::vec3> colors = round_to_half(context.colors);
+  const Sampling sampling = msaa_sampling(options.samples);
+  const auto first_pass =
+      options.prepass ? DepthTestUnit::FirstPass::writes_depth_alone : DepthTestUnit::FirstPass::writes_color;
+  const auto same_color = [&](std::uint32_t a, std::uint32_t b) { return colors[a] == colors[b]; };
+  const BinPlan plan{.stages = {"sample_raster", "shade", "depth_test", "resolve"},
+                     .tile_size = bin_size(options.samples)};
+  return render_bins(context, plan, [&](Bin& bin) {
+    SampleRasterUnit raster(bin);
+    SampleShadeUnit shade(bin, sampling, options.at);
+    DepthTestUnit depth_test(bin, sampling, color_bytes(options), first_pass, same_color);
+
+    raster.pass(sampling, [&](std::vector<SampleFragment>& fragments) {
+      if (!options.prepass) shade(fragments);
+      depth_test.test(fragments);
+    });
+    depth_test.end_pass();
+    depth_test.add_color(color_bytes(options));
+    if (options.prepass) {  // shades and writes what is visible; the surface already knows which triangles are
+      raster.pass(sampling, [&](std::vector<SampleFragment>& fragments) {
+        depth_test.test_equal(fragments);
+        shade(fragments);
+      });
+      depth_test.end_pass();
+    }
+    depth_test.count_bytes();
+    depth_test.read_colors(bin.stage("resolve"));
+    bin.finish(depth_test.resolve_samples(colors, bin.stage("resolve")));
+  });
+}
+
+}  // namespace
+
+TechniqueKind msaa_kind() {
+  return {
+      .name = "msaa",
+      .description =
+          "multisampling: depth and colour at N samples, one shader invocation per triangle and pixel; above "
+          "16 samples, super-resolution of 8x",
+      .source = "Direct3D, Vulkan",
+      .make = make_from(
+          MsaaOptions{},
+          [](MsaaOptions& o) -> SpecOptions {
+            return {
+                samples(o.samples, kMaxMsaaSamples, "samples per pixel"),
+                choice("color", o.rgba, {{"rgb16f", false}, {"rgba16f", true}}, "format of a sample's colour"),
+                choice("at", o.at, {{"centre", ShadeAt::centre}, {"centroid", ShadeAt::centroid}},
+                       "where a fragment is shaded that does not cover the pixel's centre: there all the same, or at "
+                       "the centroid of its samples"),
+                flag("prepass", o.prepass,
+                     "depth first, so that only visible fragments are shaded; the picture is the same")};
+          },
+          [](const MsaaOptions& o) {
+            return Technique{.framebuffer = msaa_framebuffer(o),
+                             .samples = static_cast<std::uint32_t>(o.samples),
+                             .render = bind_options(render_msaa, o)};
+          })};
 }
 
 }  // namespace beampipe

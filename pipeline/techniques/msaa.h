@@ -1,9 +1,9 @@
-// Multisampling: N depth and colour samples per pixel, shading once per triangle and pixel. N to 16 at the standard
-// positions; above, super-resolution of 8x multisampling, as the paper made its own comparisons.
+// Multisampling: N depth and colour samples per pixel, shaded once per triangle and pixel. Up to 16 samples are at the
+// standard positions. Above, the picture is super-resolved 8x multisampling, as in the comparisons of Crassin et al.
 #pragma once
 
 #include "pipeline/sampling.h"
-#include "pipeline/technique.h"
+#include "pipeline/technique_table.h"
 #include "stages/samples/shading_point.h"
 
 namespace beampipe {
@@ -12,13 +12,11 @@ inline constexpr int kMaxMsaaSamples = 1024;
 
 struct MsaaOptions {
   int samples = 1;
-  bool rgba = false;  // fp16 RGBA samples in place of RGB: 12 bytes per sample with depth, as the ACAA talk counts
+  bool rgba = false;  // fp16 RGBA samples instead of RGB: 12 bytes per sample with depth, as in the ACAA talk
   ShadeAt at = ShadeAt::centre;
-  bool prepass = false;  // depth first, so that only what is visible is shaded. The image is the same.
+  bool prepass = false;  // a depth pass first, so that only visible fragments are shaded. The picture is the same.
 };
 
-FrameResult render_msaa(const Trace& trace, const Frame& frame, const MsaaOptions& options, const RunOptions& run);
-
-std::vector<Surface> msaa_framebuffer(const MsaaOptions& options);
+TechniqueKind msaa_kind();
 
 }  // namespace beampipe

@@ -1,42 +1,45 @@
 #include "pipeline/techniques/reference.h"
 
-#include "pipeline/tiles.h"
-#include "pipeline/timeline.h"
-#include "stages/geometry/vertex_setup.h"
-#include "stages/picture/shade.h"
+#include "pipeline/bins/render_bins.h"
 #include "stages/raster/reference_raster.h"
 
 namespace beampipe {
 namespace {
 
-constexpr int kTileSize = 4;  // px: 65,536 samples, 1 MiB
-
-}  // namespace
-
-FrameResult render_reference(const Trace& trace, const Frame& frame, const RunOptions& run) {
-  StageCounters setup;
-  const SetupTriangles triangles = vertex_setup(trace, frame, StageTimer(run.timeline)(setup));
-  const std::vector<glm::vec3> colors = shade_triangles(triangles, frame.light_direction);
-  RunOptions without_memory = run;
-  without_memory.memory.modelled = false;  // nobody builds a machine for this
-  return render_tiles(
-      frame, triangles, setup, kTileSize, without_memory, [&](const Tile& tile, const TriangleList& list) {
-        const StageTimer timed(run.timeline, tile);
-        StageCounters raster{"reference_raster"}, resolving{"resolve"};
-        if (list.empty()) {  // no samples are set up to find that all are the background's
-          resolving.items_out = tile.pixels();
-          resolving.bytes_written = tile.pixels() * sizeof(glm::vec4);
-          return TileResult{std::vector(tile.pixels(), glm::vec4(frame.background, 0)), {}, {raster, resolving}};
-        }
-        ReferenceTile surface(tile);
-        reference_raster(triangles, list, tile, timed(raster), surface);
-        return TileResult{resolve(surface, tile, colors, frame.background, timed(resolving)), {}, {raster, resolving}};
-      });
-}
-
 std::vector<Surface> reference_framebuffer() {
   constexpr std::uint32_t kSamples = kReferenceSamples;
   return {{"depth", "D64F x 4096", 8 * kSamples}, {"owner", "R64UI x 4096", 8 * kSamples}};
+}
+
+constexpr int kTileSize = 4;  // px: 65,536 samples, 1 MiB
+
+FrameResult render_reference(const Trace& trace, const Frame& frame, const RunOptions& run) {
+  RunOptions without_memory = run;
+  without_memory.memory.modelled = false;  // no hardware is modelled for this
+  const FrameContext context(trace, frame, without_memory);
+  const BinPlan plan{.stages = {"reference_raster", "resolve"}, .tile_size = kTileSize};
+  return render_bins(context, plan, [&](Bin& bin) {
+    const BinStage resolving = bin.stage("resolve");
+    if (bin.list.empty()) {  // every sample shows the background, so no samples are set up
+      resolving.counters.items_out = bin.tile.pixels();
+      resolving.counters.bytes_written = bin.tile.pixels() * sizeof(glm::vec4);
+      return bin.finish(std::vector(bin.tile.pixels(), glm::vec4(frame.background, 0)));
+    }
+    ReferenceTile samples(bin.tile);
+    reference_raster(context.triangles, bin.list, bin.tile, bin.stage("reference_raster").timed(), samples);
+    bin.finish(resolve(samples, bin.tile, context.colors, frame.background, resolving.timed()));
+  });
+}
+
+}  // namespace
+
+TechniqueKind reference_kind() {
+  return {.name = "reference",
+          .description = "4096 samples per pixel in double precision: the truth that errors are measured against",
+          .source = "ours",
+          .make = make_plain([] {
+            return Technique{.framebuffer = reference_framebuffer(), .render = bind_options(render_reference)};
+          })};
 }
 
 }  // namespace beampipe

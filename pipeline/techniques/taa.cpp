@@ -1,16 +1,21 @@
 #include "pipeline/techniques/taa.h"
 
-#include "pipeline/memory/image_memory.h"
+#include "pipeline/bins/render_bins.h"
 #include "pipeline/techniques/visibility.h"
-#include "pipeline/tiles.h"
-#include "pipeline/timeline.h"
-#include "stages/geometry/vertex_setup.h"
+#include "pipeline/units/temporal_units.h"
 #include "stages/picture/shade.h"
 
 namespace beampipe {
 namespace {
 
-// Sampling at another position of the pixel is what jittering the projection comes to.
+std::vector<Surface> taa_framebuffer() {
+  std::vector<Surface> surfaces = visibility_framebuffer();
+  surfaces.push_back({"motion", "RG16F", kMotionBytes});
+  surfaces.push_back({"history", "RGBA16F x 2", 16});  // the last one, and the one being written
+  return surfaces;
+}
+
+// Jittering the projection is the same as sampling at another position of the pixel.
 SamplePattern jittered(const TaaOptions& options, std::uint32_t frame) {
   const SamplePattern all = standard_pattern(options.samples);
   const std::size_t i = frame % static_cast<std::uint32_t>(options.samples);
@@ -20,56 +25,45 @@ SamplePattern jittered(const TaaOptions& options, std::uint32_t frame) {
   return one;
 }
 
-}  // namespace
-
 FrameResult render_taa(const Trace& trace, const Frame& frame, const TaaOptions& options, const RunOptions& run) {
-  History first;
-  History& history = run.history ? *run.history : first;
-  StageCounters setup;
-  const SetupTriangles triangles = vertex_setup(trace, frame, StageTimer(run.timeline)(setup));
-  const std::vector<glm::vec3> colors = shade_triangles(triangles, frame.light_direction);
-  const Sampling sampling{CellGrid{}, jittered(options, history.frames)};
-  const Poses poses = poses_of(frame);
-  const std::vector<glm::dmat4> to_last = to_last_frame(poses, history.frames > 0 ? history.poses : poses);
-  CurrentFrame current(frame.width, frame.height);
-
-  FrameResult result =
-      render_tiles(frame, triangles, setup, kBinSize, run, [&](const Tile& tile, const TriangleList& list) {
-        const StageTimer timed(run.timeline, tile);
-        StageCounters moving{"motion"};
-        SampleTile surface(tile, sampling, kVisibilityBytes);
-        SampleMemory memory(run.memory, tile, sampling, kVisibilityBytes);
-        TileResult one =
-            visibility_tile(triangles, list, tile, sampling, colors, frame.background, run, memory, surface);
-        copy_to_frame(one.image, tile, frame, current.color);
-        copy_to_frame(motion(surface, tile, frame, triangles.draws, to_last, timed(moving)), tile, frame,
-                      current.motion);
-        memory.read_depth(moving);
-        memory.read_color(moving);
-        stream(run.memory, tile.pixels() * kMotionBytes, moving);
-        one.stages.push_back(moving);
-        return one;
-      });
-
-  StageCounters accumulation{"temporal"};
-  std::vector<glm::vec4> image(current.color.size());
-  for_each_tile(frame, kBinSize, run, accumulation, [&](const Tile& tile, StageCounters& counters) {
-    neighborhood_box(tile, counters, current);
-    stream(run.memory, tile.pixels() * kImagePixelBytes, counters);
-    temporal(current, {options.blend}, history, tile, counters, image);
-    move_temporal(run.memory, tile, history.frames > 0, counters);
+  const FrameContext context(trace, frame, run);
+  TemporalFrame over_time(context);
+  const Sampling sampling{CellGrid{}, jittered(options, over_time.history().frames)};
+  const BinPlan plan{.stages = {"sample_raster", "depth_test", "shade", "light", "resolve", "motion"}};
+  FrameResult result = render_bins(context, plan, [&](Bin& bin) {
+    DepthTestUnit visibility(bin, sampling, kVisibilityBytes);
+    draw_visibility(bin, sampling, visibility);
+    bin.finish(shade_visibility(bin, visibility));
+    copy_to_frame(bin.picture(), bin.tile, frame, over_time.current.color);
+    over_time.find_motion(bin, visibility);
   });
-  copy_to_image(image, result.image);
-  history = {history.frames + 1, current.width, current.height, std::move(image), {}, poses};
-  result.stages.push_back(accumulation);
+  run_on_tiles(context, "temporal", result, [&](const Tile& tile, const BinStage& stage) {
+    neighborhood_box(tile, stage.timed(), over_time.current);
+    stage.streams(tile.pixels() * kPictureBytes);
+    over_time.accumulate(tile, {options.blend}, stage);
+  });
+  over_time.finish(result);
   return result;
 }
 
-std::vector<Surface> taa_framebuffer() {
-  std::vector<Surface> surfaces = visibility_framebuffer();
-  surfaces.push_back({"motion", "RG16F", kMotionBytes});
-  surfaces.push_back({"history", "RGBA16F x 2", 16});  // the last one, and the one being written
-  return surfaces;
+}  // namespace
+
+TechniqueKind taa_kind() {
+  return {.name = "taa",
+          .description = "temporal antialiasing of visibility at one sample per pixel, jittered over N positions",
+          .source = "Lottes 2011, Karis 2014, Salvi 2016",
+          .make = make_from(
+              TaaOptions{},
+              [](TaaOptions& o) -> SpecOptions {
+                return {samples(o.samples, kMaxTaaSamples, "positions of the jitter"),
+                        number("blend", o.blend, 0.001f, 1.0f, "weight of each new frame")};
+              },
+              [](const TaaOptions& o) {
+                return Technique{.framebuffer = taa_framebuffer(),
+                                 .render = bind_options(render_taa, o),
+                                 .keeps_history = true,
+                                 .working_bytes_per_pixel = kTemporalWorkingBytes};
+              })};
 }
 
 }  // namespace beampipe

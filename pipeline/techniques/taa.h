@@ -1,9 +1,9 @@
-// Temporal antialiasing: one visibility sample per pixel and frame, jittered over the N standard positions, accumulated
-// by reprojection, a clamp to the 3x3 neighbourhood's colours, and a blend (Lottes, Karis, Salvi, as the DVM article
-// sums up).
+// Temporal antialiasing: one visibility sample per pixel and frame, jittered over the N standard positions. Frames are
+// accumulated by reprojection, a clamp to the colours of the 3x3 neighbourhood, and a blend (Lottes, Karis and Salvi,
+// as summed up in the DVM article).
 #pragma once
 
-#include "pipeline/technique.h"
+#include "pipeline/technique_table.h"
 
 namespace beampipe {
 
@@ -14,8 +14,6 @@ struct TaaOptions {
   float blend = 0.1f;
 };
 
-FrameResult render_taa(const Trace& trace, const Frame& frame, const TaaOptions& options, const RunOptions& run);
-
-std::vector<Surface> taa_framebuffer();
+TechniqueKind taa_kind();
 
 }  // namespace beampipe

@@ -1,21 +1,25 @@
-// One sample per pixel, shaded after visibility is known: triangle ids and depth, then materials and light per pixel,
+// A visibility buffer with one sample per pixel: triangle ids and depth first, then materials and light pixel by pixel,
 // without quads.
 #pragma once
 
-#include "pipeline/memory/sample_memory.h"
-#include "pipeline/technique.h"
-#include "pipeline/tiles.h"
-#include "stages/raster/sample_raster.h"
+#include <vector>
+
+#include "pipeline/bins/bin.h"
+#include "pipeline/technique_table.h"
+#include "pipeline/units/depth_test_unit.h"
 
 namespace beampipe {
 
-FrameResult render_visibility(const Trace& trace, const Frame& frame, const RunOptions& run);
+TechniqueKind visibility_kind();
 
-// What `visibility` does in a tile: its triangle ids and depths stay in `surface`, and in memory. `sampling`: of one
-// sample.
-TileResult visibility_tile(const SetupTriangles& triangles, const TriangleList& list, const Tile& tile,
-                           const Sampling& sampling, const std::vector<glm::vec3>& colors, const glm::vec3& background,
-                           const RunOptions& run, SampleMemory& memory, SampleTile& surface);
+// ---- Steps that other techniques share ----
+
+// Draws triangle ids and depths at the samples. Stages: sample_raster, depth_test.
+void draw_visibility(Bin& bin, const Sampling& sampling, DepthTestUnit& visibility);
+
+// Materials, light and resolve of a visibility buffer of one sample per pixel. Returns the picture. Stages: shade,
+// light, resolve.
+std::vector<glm::vec4> shade_visibility(Bin& bin, DepthTestUnit& visibility);
 
 std::vector<Surface> visibility_framebuffer();
 

@@ -3,64 +3,45 @@
 #include <stdexcept>
 #include <string>
 
-#include "pipeline/batches.h"
-#include "pipeline/memory/beam_memory.h"
-#include "pipeline/memory/geometry_memory.h"
-#include "pipeline/memory/image_memory.h"
-#include "pipeline/tiles.h"
-#include "pipeline/timeline.h"
-#include "stages/geometry/vertex_setup.h"
-#include "stages/picture/shade.h"
-#include "stages/raster/conservative_raster.h"
+#include "pipeline/bins/render_bins.h"
+#include "pipeline/units/fragment_units.h"
+#include "pipeline/units/layer_units.h"
+#include "pipeline/units/raster_units.h"
 
 namespace beampipe {
 namespace {
 
+std::vector<Surface> z3_framebuffer(const Z3Options& z3) {
+  const auto words = static_cast<std::uint32_t>(z3.positions / 32), layers = static_cast<std::uint32_t>(z3.layers);
+  return {{"owner_map", times("R32UI", 2 * words), 8 * words},
+          {"depth", times("R32F", layers), 4 * layers},
+          {"slopes", times("RG16BF", layers), 4 * layers},
+          {"color", times("RGB16F", layers), 6 * layers}};
+}
+
 template <std::size_t Words, std::size_t Layers>
 FrameResult render_shape(const Trace& trace, const Frame& frame, const Z3Options& z3, const RunOptions& run) {
-  StageCounters setup;
-  const SetupTriangles triangles = vertex_setup(trace, frame, StageTimer(run.timeline)(setup));
-  const std::vector<glm::vec3> colors = shade_triangles(triangles, frame.light_direction);
+  const FrameContext context(trace, frame, run);
   const PositionSet& positions = cell_positions(z3.positions);
   const PositionGrid grid(z3.positions);
   const BeamFragmentOptions options = grid_options(grid, 4 + 4 * Words + 12);
+  const BinPlan plan{.stages = {"conservative_raster", "beam_fragment", "shade", "compose", "resolve"}};
+  return render_bins(context, plan, [&](Bin& bin) {
+    ConservativeRasterUnit raster(bin, "batch_pairs", PairDepths::bounds, ConservativeRasterUnit::Hidden::kept);
+    BeamFragmentUnit make_fragments(bin, options);
+    ShadeUnit shade(bin);
+    ComposeZ3Unit<Words, Layers> compose(bin, positions, z3.merge, z3_framebuffer(z3));
+    std::vector<float>& counts = bin.pixel_counter("fragments");
 
-  return render_tiles(frame, triangles, setup, kBinSize, run, [&](const Tile& tile, const TriangleList& list) {
-    const StageTimer timed(run.timeline, tile);
-    StageCounters raster{"conservative_raster"}, fragment{"beam_fragment"}, shading{"shade"}, composition{"compose"},
-        resolving{"resolve"};
-    std::vector<Z3Pixel<Words, Layers>> pixels(tile.pixels());
-    std::vector<float> counts(tile.pixels()), merges(tile.pixels()), bytes(tile.pixels());
-    const ZOrder order(tile.width(), tile.height());
-    AggregateMemory memory(run.memory, order, z3_framebuffer(z3));
-    AttributesInOrder attributes(run.memory);
-    BinBuffers held;
-    std::vector<PixelTriangle> pairs;
-    std::vector<Fragment> fragments;
-    for_each_batch(list, [&](const TriangleList& batch) {
-      pairs.clear(), fragments.clear();
-      conservative_raster(triangles, batch, tile, timed(raster), pairs);
-      beam_fragment(triangles, pairs, tile, options, timed(fragment), fragments);
-      held.holds("batch_pairs", pairs.size() * kPairWithDepthBytes);
-      held.holds("batch_fragments", fragments.size() * options.fragment_bytes);
-      shade(colors, fragments, timed(shading), &triangles.attributes);
-      attributes.read(fragments, shading);
-      for (const Fragment& item : fragments) ++counts[item.pixel];
-      compose_z3(fragments, positions, z3.merge, timed(composition), pixels, merges);
-      for (const Fragment& item : fragments) memory.merge(item.triangle, item.pixel, composition);
+    for_each_batch(bin.list, [&](const TriangleList& batch) {
+      std::vector<Fragment>& fragments = make_fragments(raster(batch, bin.tile), "batch_fragments");
+      count_by_pixel(fragments, counts);
+      shade(fragments);
+      compose(fragments);
     });
-    memory.flush({}, composition);
-    memory.add_bytes(bytes);
-    memory.read_all(resolving);
-    write_image(run.memory, tile, resolving);
-    return TileResult{resolve(z3_colors(pixels), frame.background, sizeof pixels[0], timed(resolving)),
-                      {{"fragments", std::move(counts)}, {"merges", std::move(merges)}, {"bytes", std::move(bytes)}},
-                      {raster, fragment, shading, composition, resolving},
-                      held};
+    bin.finish(compose.resolve_layers());
   });
 }
-
-}  // namespace
 
 FrameResult render_z3(const Trace& trace, const Frame& frame, const Z3Options& z3, const RunOptions& run) {
 #define BEAMPIPE_RENDER(words, shape_layers)                   \
@@ -72,13 +53,33 @@ FrameResult render_z3(const Trace& trace, const Frame& frame, const Z3Options& z
                               std::to_string(z3.layers) + " layers");
 }
 
-std::vector<Surface> z3_framebuffer(const Z3Options& z3) {
-  const auto words = static_cast<std::uint32_t>(z3.positions / 32), layers = static_cast<std::uint32_t>(z3.layers);
-  const std::string times = " x " + std::to_string(layers);
-  return {{"owner_map", "R32UI x " + std::to_string(2 * words), 8 * words},
-          {"depth", "R32F" + times, 4 * layers},
-          {"slopes", "RG16BF" + times, 4 * layers},
-          {"color", "RGB16F" + times, 6 * layers}};
+}  // namespace
+
+TechniqueKind z3_kind() {
+  struct Shape {
+    int positions, layers;
+    bool operator==(const Shape&) const = default;
+  };
+  struct Z3Spec {
+    Shape shape{Z3Options{}.positions, Z3Options{}.layers};
+    LayerMerge merge = Z3Options{}.merge;
+  };
+  return {.name = "z3",
+          .description =
+              "fragments in primitive order, kept in a few layers per pixel; when there is no room, two layers merge",
+          .source = "Jouppi and Chang 1999",
+          .make = make_from(
+              Z3Spec{},
+              [](Z3Spec& o) -> SpecOptions {
+                return {choice("shape", o.shape, {{"32x2", {32, 2}}, {"32x3", {32, 3}}, {"128x3", {128, 3}}},
+                               "positions of the mask x layers"),
+                        choice("merge", o.merge, {{"depth", LayerMerge::depth}, {"color", LayerMerge::color}},
+                               "the two layers that merge are the closest in depth (as published), or in colour")};
+              },
+              [](const Z3Spec& o) {
+                const Z3Options options{o.shape.positions, o.shape.layers, o.merge};
+                return Technique{.framebuffer = z3_framebuffer(options), .render = bind_options(render_z3, options)};
+              })};
 }
 
 }  // namespace beampipe

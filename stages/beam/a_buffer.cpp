@@ -2,20 +2,10 @@
 
 #include <algorithm>
 
+#include "stages/beam/a_buffer_cost.h"
 #include "stages/beam/merge_sort.h"
-#include "stages/cost/counting.h"
 
 namespace beampipe {
-namespace {
-
-OperationCounts comparison_cost() {
-  return count_operations([](OperationCounts& counts) {
-    const Counted<float> depth(0.0f, counts);
-    comes_first(depth, depth);
-  });
-}
-
-}  // namespace
 
 std::vector<SortRecord> sort_records(const std::vector<Fragment>& fragments, SortKey key) {
   std::vector<SortRecord> records;
@@ -54,13 +44,7 @@ ABuffer a_buffer(const std::vector<SortRecord>& records, std::size_t pixels, std
                               [](const Entry& entry) { return entry.depth; });
   buffer.records.reserve(lists.size());
   for (const Entry& entry : lists) buffer.records.push_back(entry.record);
-  static const UnitCost cost = comparison_cost();
-  counters.items_in += records.size();
-  counters.items_out += records.size();
-  counters.ops += cost * comparisons;
-  counters.bytes_read +=
-      records.size() * (item_bytes + kLinkBytes) + a_buffer_bytes(records.size(), pixels, record_bytes);
-  counters.bytes_written += records.size() * (kLinkBytes + record_bytes + kLinkBytes);
+  charge(ABufferWork{records.size(), pixels, comparisons, item_bytes, record_bytes}, counters);
   return buffer;
 }
 

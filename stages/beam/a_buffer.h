@@ -1,53 +1,36 @@
-// a_buffer: what waits for composition, in primitive order -> per pixel, the list of it from near to far (Carpenter
-// 1984).
+// a_buffer: pairs or fragments in primitive order -> per pixel, a list of them from near to far (Carpenter 1984).
 //
-// Equal depth: the earlier record first.
+// Among equal depths the earlier record comes first.
 #pragma once
 
 #include <cstdint>
 #include <vector>
 
-#include "stages/beam/beam_fragment.h"
 #include "stages/cost/counters.h"
+#include "stages/data/fragment.h"
+#include "stages/data/pair.h"
+#include "stages/data/sorted_lists.h"
+#include "stages/data/tile.h"
 
 namespace beampipe {
 
-// What is sorted of a fragment, or of a pixel and triangle that will be one.
-struct SortRecord {
-  std::uint32_t pixel;     // within the tile
-  std::uint32_t triangle;  // index into SetupTriangles
-  float depth;
-};
-
-// What sorting takes per record, itself included.
-inline constexpr std::size_t kSortBytes = sizeof(SortRecord) + 3 * sizeof(std::uint64_t);
-
-struct ABuffer {
-  std::vector<std::uint32_t> first;    // per pixel of the tile, and one more: where its list starts in `records`
-  std::vector<std::uint32_t> records;  // indices of records
-
-  std::uint32_t depth_of(std::size_t pixel) const { return first[pixel + 1] - first[pixel]; }
-};
-
-// A stored record has a link to the next one; a pixel has one head link.
-inline constexpr std::uint32_t kLinkBytes = 4;
-
-// What near and far mean for a fragment: the depth at the clipped triangle's centroid, or its nearest depth in the
-// pixel.
+// The depth that a fragment is sorted by: at the centroid of the clipped triangle, or its nearest depth in the pixel.
 enum class SortKey { centroid, nearest };
 
 std::vector<SortRecord> sort_records(const std::vector<Fragment>& fragments, SortKey key);
-std::vector<SortRecord> sort_records(const std::vector<PixelTriangle>& pairs, const Tile& tile);  // nearest depth
+// Pairs are sorted by their nearest depth.
+std::vector<SortRecord> sort_records(const std::vector<PixelTriangle>& pairs, const Tile& tile);
 
-// Insertion exchanges a pixel's head link and writes a record with the old one; then every pixel's head and records are
-// read, and sorted. `item_bytes`: of what comes in; `record_bytes`: of a record as it is stored, without its link.
+// The modelled machine inserts a record by exchanging the pixel's head link and writing the record with the old link.
+// Then it reads every pixel's head and its records, sorts them and writes them. `item_bytes`: size of an item that
+// comes in. `record_bytes`: size of a stored record without its link.
 ABuffer a_buffer(const std::vector<SortRecord>& records, std::size_t pixels, std::uint32_t item_bytes,
                  std::uint32_t record_bytes, StageCounters& counters);
 
-// Records per pixel.
+// Per pixel, the number of its records.
 std::vector<float> depths_of(const ABuffer& buffer);
 
-// Bytes of the whole buffer, which stands in memory until it is composed.
+// Size of the whole buffer, which stays in memory until it is composed.
 std::uint64_t a_buffer_bytes(std::uint64_t records, std::uint64_t pixels, std::uint32_t record_bytes);
 
 }  // namespace beampipe

@@ -1,16 +1,20 @@
 #include "stages/beam/compose_beam.h"
 
 #include <algorithm>
+#include <bit>
 #include <cstring>
 
+#include "simd/conserve.h"
+#include "simd/window_owners.h"
 #include "stages/beam/compose_beam_cost.h"
+#include "stages/beam/specks.h"
 
 namespace beampipe {
 namespace {
 
-constexpr std::uint32_t kNobody = ~0u;
+constexpr std::uint32_t kNoOwner = ~0u;
 
-// What is kept from one window to the next, as it is worked on.
+// The aggregate while a window is added to it.
 struct PixelAggregate {
   WideMask mask;
   Taken<float> taken{0.0f, 0.0f};
@@ -33,24 +37,15 @@ void store(const PixelAggregate& aggregate, StoredAggregate<Words, Channel>& sto
   for (int c = 0; c < 3; ++c) stored.color[c] = Channel(aggregate.color[c]);
 }
 
-// What was done, for the counters.
-struct ComposeWork {
-  std::uint64_t fragments = 0;                 // whose masks were looked at
-  std::uint64_t contestants = 0;               // of windows with contested positions
-  std::uint64_t depth_tests = 0;               // at those
-  std::uint64_t partial = 0, order_tests = 0;  // partly hidden fragments, which are sorted
-  std::uint64_t visible = 0;                   // fragments with positions that were added
-  std::uint64_t specks = 0, surface_tests = 0;
-  std::uint64_t closed = 0;  // pixels of which nothing is left
-};
-
 class PixelComposer {
  public:
   explicit PixelComposer(const PositionSet& positions) : positions_(positions) {}
 
-  // Adds the window's fragments, all of one pixel, in primitive order. areas[i]: what fragment i adds.
+  // Adds a window's fragments, which are all of one pixel and in primitive order. Sets areas[i] to what fragment i
+  // adds.
   void add_window(const Fragment* fragments, std::size_t count, PixelAggregate& aggregate, float* areas) {
     work_.fragments += count;
+    ++work_.windows;
     aggregate.taken.positions = find_owners(fragments, count, aggregate.mask);
     bool specks = false;
     for (std::size_t i = 0; i < count; ++i) {
@@ -58,8 +53,8 @@ class PixelComposer {
       specks |= ownership_[i].covered == 0;
     }
     if (specks) find_specks(fragments, count, aggregate.mask, areas);
-    // Whole fragments first, specks among them: what they took beyond their positions is then known to those that are
-    // partly hidden.
+    // First specks and fragments that are completely visible. What they take beyond their positions is then known when
+    // the fragments that are partly hidden are added.
     partial_.clear();
     for (std::uint32_t i = 0; i < count; ++i) {
       const Ownership& seen = ownership_[i];
@@ -78,7 +73,8 @@ class PixelComposer {
       add(fragments[next.fragment], ownership_[next.fragment], aggregate, areas[next.fragment]);
   }
 
-  // Nothing is left for the background: what rounding left goes to what is there.
+  // If all positions are taken, nothing of the background can be visible. The rest of the area, which rounding leaves,
+  // is distributed over the surfaces.
   void close(PixelAggregate& aggregate) {
     if (aggregate.taken.positions != static_cast<float>(positions_.count())) return;
     aggregate.color *= 1.0f / aggregate.taken.area;
@@ -89,7 +85,7 @@ class PixelComposer {
   const ComposeWork& work() const { return work_; }
 
  private:
-  // Returns how many positions are taken.
+  // Finds who owns which positions. Returns the number of positions that earlier windows have taken.
   float find_owners(const Fragment* fragments, std::size_t count, const WideMask& taken) {
     planes_.resize(count);
     ownership_.resize(count);
@@ -101,7 +97,7 @@ class PixelComposer {
     return static_cast<float>(counts.taken);
   }
 
-  // `area`: in, that of a speck; out, what is added.
+  // `area`: a speck's area on input; the area that was added on output.
   void add(const Fragment& fragment, const Ownership& seen, PixelAggregate& aggregate, float& area) {
     work_.visible += seen.covered > 0;
     area = seen.covered > 0
@@ -115,9 +111,9 @@ class PixelComposer {
     aggregate.color += share * fragment.color;
   }
 
-  // Fragments that cover no position. Each asks the owners of the three nearest positions whether it lies before them,
-  // or on the same surface. Around one position the two sides of a thin closed body both cover no position: the side
-  // with the lesser area is taken for hidden by the other.
+  // Sets the areas of the specks. Each of the three positions nearest to a speck votes for it if the speck lies in
+  // front of the position's owner or on the same surface. If the specks around one position face both ways, they may be
+  // the two sides of a thin closed body; then the side with the smaller area counts as hidden behind the other.
   void find_specks(const Fragment* fragments, std::size_t count, const WideMask& taken, float* areas) {
     const auto positions = static_cast<std::size_t>(positions_.count());
     list_owners(count);
@@ -148,12 +144,13 @@ class PixelComposer {
     }
   }
 
-  // Small windows are searched, large ones have a table.
+  // The owner of a position is searched in windows of up to this many fragments, and looked up in a table in larger
+  // ones.
   static constexpr std::size_t kSearched = 32;
 
   void list_owners(std::size_t count) {
     if (count <= kSearched) return;
-    owner_.assign(static_cast<std::size_t>(positions_.count()), kNobody);
+    owner_.assign(static_cast<std::size_t>(positions_.count()), kNoOwner);
     for (std::uint32_t i = 0; i < count; ++i)
       for (std::size_t w = 0; w < kMaxMaskWords; ++w)
         for (std::uint32_t left = ownership_[i].owned.words[w]; left != 0; left &= left - 1)
@@ -164,11 +161,11 @@ class PixelComposer {
     if (count > kSearched) return owner_[position];
     for (std::uint32_t i = 0; i < count; ++i)
       if (ownership_[i].owned.test(position)) return i;
-    return kNobody;
+    return kNoOwner;
   }
 
   bool is_nearer(const Fragment& fragment, const Fragment* fragments, std::uint32_t owner) {
-    if (owner == kNobody) return true;
+    if (owner == kNoOwner) return true;
     ++work_.surface_tests;
     const DepthPlane<float>& plane = fragments[owner].plane;
     const float u = fragment.centroid_u - 0.5f, v = fragment.centroid_v - 0.5f;
@@ -177,15 +174,17 @@ class PixelComposer {
   }
 
   const PositionSet& positions_;
-  std::vector<MaskedPlane> planes_;  // of the window at hand, per fragment
+  // Of the current window, per fragment:
+  std::vector<MaskedPlane> planes_;
   std::vector<Ownership> ownership_;
   struct Partial {
-    float visible;  // part of its positions
+    float visible;  // the visible part of its positions, 0..1
     std::uint32_t fragment;
   };
-  std::vector<Partial> partial_;      // fragments that are partly hidden
-  std::vector<std::uint32_t> owner_;  // per position: which fragment
-  std::vector<float> front_, back_;   // area of specks that face either way, by nearest position; else zeros
+  std::vector<Partial> partial_;  // fragments that are partly hidden
+  // Per position:
+  std::vector<std::uint32_t> owner_;  // index of the fragment
+  std::vector<float> front_, back_;   // area of the nearest specks that face either way; zeros between windows
   ComposeWork work_;
 };
 
@@ -196,8 +195,7 @@ void compose_window(const std::vector<Fragment>& fragments, const PositionSet& p
                     std::vector<StoredAggregate<Words, Channel>>& pixels, std::vector<float>& areas) {
   PixelComposer composer(positions);
   areas.resize(fragments.size());
-  std::uint64_t windows = 0;
-  for (std::size_t begin = 0, end = 0; begin < fragments.size(); begin = end, ++windows) {
+  for (std::size_t begin = 0, end = 0; begin < fragments.size(); begin = end) {
     const std::uint32_t pixel = fragments[begin].pixel;
     while (end < fragments.size() && fragments[end].pixel == pixel) ++end;
     PixelAggregate aggregate = load(pixels[pixel]);
@@ -205,30 +203,7 @@ void compose_window(const std::vector<Fragment>& fragments, const PositionSet& p
     composer.close(aggregate);
     store(aggregate, pixels[pixel]);
   }
-  static const UnitCost masks = mask_cost(Words), contest = contest_cost(Words), test = depth_compare_cost(),
-                        addition = addition_cost(), speck = speck_cost(), surface = surface_cost(),
-                        closing = closing_cost();
-  constexpr OperationCounts part{.special = 1}, order_test{.add = 1}, open_test{.add = 1};
-  constexpr OperationCounts formats = {.convert = std::is_same_v<Channel, HalfBits> ? 2 * 3 : 0};  // load and store
-  const ComposeWork& work = composer.work();
-  counters.items_in += fragments.size();
-  counters.items_out += windows;
-  counters.ops += masks * work.fragments;
-  counters.ops += contest * work.contestants;
-  counters.ops += test * work.depth_tests;
-  counters.ops += part * work.partial;
-  counters.ops += order_test * work.order_tests;
-  counters.ops += addition * work.visible;
-  counters.ops += speck * work.specks;
-  counters.ops += surface * work.surface_tests;
-  counters.ops += open_test * windows;
-  counters.ops += closing * work.closed;
-  counters.ops += formats * windows;
-  counters.bytes_read +=
-      fragments.size() * conserving_fragment_bytes(32 * Words) + windows * sizeof(StoredAggregate<Words, Channel>);
-  counters.bytes_written += windows * sizeof(StoredAggregate<Words, Channel>);
-  counters.lanes_used += work.depth_tests;
-  counters.lanes_issued += work.fragments * 32 * Words;
+  charge<Words, Channel>(composer.work(), counters);
 }
 
 template <std::size_t Words, class Channel>
@@ -240,11 +215,7 @@ void compose_whole(const std::vector<PixelTriangle>& whole, const Tile& tile, co
     pixel.area = 1.0f;
     for (int c = 0; c < 3; ++c) pixel.color[c] = Channel(colors[pair.triangle][c]);
   }
-  counters.items_in += whole.size();
-  counters.items_out += whole.size();
-  if (std::is_same_v<Channel, HalfBits>) counters.ops.convert += 3 * whole.size();
-  counters.bytes_read += whole.size() * kPairWithDepthBytes;
-  counters.bytes_written += whole.size() * sizeof(StoredAggregate<Words, Channel>);
+  charge_whole<Words, Channel>(whole.size(), counters);
 }
 
 #define BEAMPIPE_COMPOSE(words, channel)                                                                     \

@@ -1,44 +1,54 @@
-// What composing windows is charged with: its scalar twins on counting numbers.
+// What compose_window and compose_whole are charged.
 #pragma once
+
+#include <type_traits>
 
 #include "simd/conserve.h"
 #include "simd/window_owners.h"
+#include "stages/beam/specks.h"
 #include "stages/cost/counting.h"
+#include "stages/data/beam_aggregate.h"
+#include "stages/data/pair.h"
 #include "stages/data/position_set.h"
 
 namespace beampipe {
 
-// A speck of a smooth surface counts as part of the surface that owns the position beside it when it lies at most this
-// far behind, in pixels of that surface's slope: a quarter of the distance between positions of a 256-bit mask.
-inline constexpr float kSurfaceReach = 1.0f / 64.0f;
-
-// Specks whose nearest position is the same have at most so many times that position's share of the pixel together;
-// more is several surfaces on top of each other. Twice is about the most that lies nearest to one position; four times
-// leaves dense meshes alone.
-inline constexpr float kSpeckShares = 4.0f;
+// How often each operation was done.
+struct ComposeWork {
+  std::uint64_t fragments = 0, windows = 0;
+  std::uint64_t contestants = 0;  // fragments of windows in which several fragments cover the same position
+  std::uint64_t depth_tests = 0;  // comparisons at such positions
+  std::uint64_t partial = 0;      // fragments that are partly hidden, which are sorted
+  std::uint64_t order_tests = 0;  // to sort them
+  std::uint64_t visible = 0;      // fragments with positions that were added
+  std::uint64_t specks = 0;
+  std::uint64_t surface_tests = 0;  // of specks
+  std::uint64_t closed = 0;         // pixels that were closed
+};
 
 using CountedFloat = Counted<float>;
 using CountedBits = Counted<std::uint32_t>;
 
-// A fragment's masks, word by word: what is open of it, what others want too; how many positions it covers and has.
+// Per fragment, word by word: the positions of its mask that are still open and those that other fragments cover too;
+// the numbers of positions that it covers and owns.
 inline OperationCounts mask_cost(std::size_t words) {
   return count_operations([&](OperationCounts& counts) {
     const CountedBits mask(~0u, counts);
     CountedFloat covered(0.0f), visible(0.0f);
     for (std::size_t i = 0; i < words; ++i) {
       const CountedBits open = mask & ~mask;
-      mask | (mask & open);  // wanted twice
-      mask | open;           // wanted once
+      mask | (mask & open);  // covered by several fragments
+      mask | open;           // covered by any fragment
       mask | open;           // taken
       covered = covered + bit_count(mask);
       visible = visible + bit_count(open);
     }
-    static_cast<void>(visible == covered);  // is it whole?
+    static_cast<void>(visible == covered);  // is all of it visible?
   });
 }
 
-// A fragment of a window with contested positions: its depth at the pixel's corner, slopes per 1/256 px, and its mask
-// without what it has lost.
+// Per fragment of a window in which several fragments cover the same position: its depth at the pixel's corner, its
+// slopes per 1/256 px, and its mask without the positions that it has lost.
 inline OperationCounts contest_cost(std::size_t words) {
   return count_operations([&](OperationCounts& counts) {
     const CountedFloat one(1.0f, counts);
@@ -49,7 +59,7 @@ inline OperationCounts contest_cost(std::size_t words) {
   });
 }
 
-// Area and colour of a fragment, times the part that is seen, on top of what is there.
+// To add a fragment's visible area and the same share of its colour.
 inline void add_color(const CountedFloat& area, const CountedFloat& one) {
   const CountedFloat share = area / one;
   one + area;
@@ -65,16 +75,17 @@ inline OperationCounts addition_cost() {
   });
 }
 
-// A fragment that covers no position: the three that are nearest, asked for who owns them; the two sides' areas there.
+// Per speck: to find the three nearest positions and their owners, to sum up the areas of both sides there, and to add
+// the speck's area and colour.
 inline OperationCounts speck_cost() {
   return count_operations([](OperationCounts& counts) {
     const CountedFloat one(1.0f, counts), limit(kSpeckShares);
     for (int axis = 0; axis < 2; ++axis) lesser(greater(converted(one * CountedFloat(PositionSet::kPlaces)), one), one);
     CountedFloat votes(0.0f);
     for (int vote = 0; vote < 3; ++vote) votes = votes + one;
-    counts.fetch += 1 + 3;                  // the positions, their owners
-    counts.bit += 3;                        // are they taken?
-    one + one* votes / CountedFloat(3.0f);  // of the side that it faces
+    counts.fetch += 1 + 3;                  // the positions and their owners
+    counts.bit += 3;                        // the test whether they are taken
+    one + one* votes / CountedFloat(3.0f);  // the area of the side that it faces
     const CountedFloat larger = greater(one, one);
     const bool is_front = one >= one;
     static_cast<void>(is_front);
@@ -83,7 +94,7 @@ inline OperationCounts speck_cost() {
   });
 }
 
-// Is a speck before a surface, or on it?
+// The test whether a speck lies in front of a surface or on it.
 inline OperationCounts surface_cost() {
   return count_operations([](OperationCounts& counts) {
     const CountedFloat one(1.0f, counts), half(0.5f);
@@ -93,6 +104,7 @@ inline OperationCounts surface_cost() {
   });
 }
 
+// To scale a closed pixel's colour.
 inline OperationCounts closing_cost() {
   return count_operations([](OperationCounts& counts) {
     const CountedFloat one(1.0f, counts), scale = one / one;
@@ -100,12 +112,55 @@ inline OperationCounts closing_cost() {
   });
 }
 
+// The comparison of a fragment's depth at one position.
 inline OperationCounts depth_compare_cost() {
   return count_operations([](OperationCounts& counts) {
     const Counted<float> one(1.0f, counts);
     Counted<float> depth;
     nearer_at(one, one, one, one, one, one, depth);
   });
+}
+
+// fp16 colours are converted when an aggregate is loaded and when it is stored.
+template <class Channel>
+constexpr OperationCounts format_cost() {
+  return {.convert = std::is_same_v<Channel, HalfBits> ? 2 * 3 : 0};
+}
+
+template <std::size_t Words, class Channel>
+void charge(const ComposeWork& work, StageCounters& counters) {
+  static const UnitCost of_mask = mask_cost(Words), of_contestant = contest_cost(Words),
+                        of_depth_test = depth_compare_cost(), of_addition = addition_cost(), of_speck = speck_cost(),
+                        of_surface_test = surface_cost(), of_closing = closing_cost();
+  constexpr OperationCounts of_visible_part{.special = 1}, of_order_test{.add = 1}, of_closed_test{.add = 1};
+  counters.items_in += work.fragments;
+  counters.items_out += work.windows;
+  counters.ops += of_mask * work.fragments;
+  counters.ops += of_contestant * work.contestants;
+  counters.ops += of_depth_test * work.depth_tests;
+  counters.ops += of_visible_part * work.partial;
+  counters.ops += of_order_test * work.order_tests;
+  counters.ops += of_addition * work.visible;
+  counters.ops += of_speck * work.specks;
+  counters.ops += of_surface_test * work.surface_tests;
+  counters.ops += of_closed_test * work.windows;
+  counters.ops += of_closing * work.closed;
+  counters.ops += format_cost<Channel>() * work.windows;
+  counters.bytes_read += work.fragments * conserving_fragment_bytes(32 * Words);
+  counters.bytes_read += work.windows * sizeof(StoredAggregate<Words, Channel>);
+  counters.bytes_written += work.windows * sizeof(StoredAggregate<Words, Channel>);
+  counters.lanes_used += work.depth_tests;
+  counters.lanes_issued += work.fragments * 32 * Words;
+}
+
+// Pixels that one triangle covers: the pair is read, and its colour is converted and stored.
+template <std::size_t Words, class Channel>
+void charge_whole(std::uint64_t pixels, StageCounters& counters) {
+  counters.items_in += pixels;
+  counters.items_out += pixels;
+  if (std::is_same_v<Channel, HalfBits>) counters.ops.convert += 3 * pixels;
+  counters.bytes_read += pixels * kPairWithDepthBytes;
+  counters.bytes_written += pixels * sizeof(StoredAggregate<Words, Channel>);
 }
 
 }  // namespace beampipe

@@ -1,28 +1,32 @@
-// compose: fragments from near to far -> one aggregate per pixel. The ROP of the beam pipeline.
+// compose: fragments from near to far -> one aggregate per pixel, by the published rules. It is the ROP of their
+// pipeline.
 #pragma once
 
 #include <vector>
 
 #include "simd/merge.h"
-#include "stages/beam/a_buffer.h"
 #include "stages/cost/counters.h"
+#include "stages/data/fragment.h"
 #include "stages/data/paper_aggregate.h"
+#include "stages/data/sorted_lists.h"
 
 namespace beampipe {
 
-// A fragment as the paper's rules see it: with 32 mask positions.
+// The fragment in the form that the published rules take, with 32 mask positions.
 MergeFragment merge_fragment(const Fragment& fragment);
 
-// The paper's rules (simd/merge.h). One aggregate per pixel of the tile; kEmptyAggregate where nothing is.
+// Merges by the published rules (simd/merge.h). `buffer`: the lists of `fragments`. Returns one aggregate per pixel of
+// the tile, kEmptyAggregate where nothing is.
 std::vector<Aggregate> compose(const std::vector<Fragment>& fragments, const ABuffer& buffer,
                                const SamplePattern& pattern, const MergeRules& rules, PaperStorage storage,
                                StageCounters& counters);
 
-// OVER alone has no masks and slabs: coverage and colour; a fragment has the depth that it is sorted by as well.
+// Sizes in the modelled machine of an aggregate and of a fragment for compose_over, which needs neither masks nor
+// slabs. The aggregate has coverage and colour. The fragment also has the depth that it is sorted by.
 inline constexpr std::uint32_t kOverBytes = 4 + kAggregateColorBytes;
 inline constexpr std::uint32_t kOverFragmentBytes = kOverBytes + 4;
 
-// Plain OVER: alpha and colour, as if every fragment were independent of every other.
+// Plain OVER: blends alpha and colour as if every fragment were independent of every other.
 std::vector<Aggregate> compose_over(const std::vector<Fragment>& fragments, const ABuffer& buffer,
                                     StageCounters& counters);
 

@@ -1,4 +1,5 @@
-// The sort of the A-buffer: a merge sort, whose comparisons do not depend on a library.
+// The sort of the A-buffer. It is a merge sort of our own, so that the number of comparisons does not depend on a
+// library.
 #pragma once
 
 #include <algorithm>
@@ -8,15 +9,17 @@
 
 namespace beampipe {
 
+// Does a record with this depth precede the other one?
 template <class Float>
 bool comes_first(Float depth, Float other) {
   return depth < other;
 }
 
-inline constexpr std::size_t kSortedRun = 8;  // records that are compared each with each, most pixels' lists
+// So many records are compared each with each. The lists of most pixels are not longer.
+inline constexpr std::size_t kSortedRun = 8;
 
-// Sorts list[0, count), of up to kSortedRun records: each goes behind as many as come before it. Returns the
-// comparisons. No branch depends on a depth, which nobody could predict.
+// Sorts list[0, count) with count <= kSortedRun: a record's place is the number of records that precede it. Returns
+// the number of comparisons. No branch depends on a depth, because no processor could predict such a branch.
 template <class Record, class Depth>
 std::uint64_t rank_sort(Record* list, std::size_t count, Depth&& depth_of) {
   std::array<Record, kSortedRun> from;
@@ -32,8 +35,8 @@ std::uint64_t rank_sort(Record* list, std::size_t count, Depth&& depth_of) {
   return count * (count - 1) / 2;
 }
 
-// Sorts list[0, count) by depth_of(record), near to far, equal depths as they are: sorted runs, which are merged.
-// Returns the comparisons, which depend on the depths alone.
+// Sorts list[0, count) by depth_of(record), from near to far; equal depths keep their order. Sorts short runs and
+// merges them. Returns the number of comparisons, which depends on the depths alone.
 template <class Record, class Depth>
 std::uint64_t merge_sort(Record* list, std::size_t count, std::vector<Record>& scratch, Depth&& depth_of) {
   std::uint64_t comparisons = 0;

@@ -4,47 +4,52 @@
 #include <array>
 
 #include "simd/conserve.h"
-#include "stages/beam/claim.h"
-#include "stages/cost/plane_cost.h"
-#include "stages/raster/pair_bounds.h"
+#include "stages/beam/settle_cost.h"
 
 namespace beampipe {
 namespace {
 
-constexpr float kAreaUnits = 65535.0f;  // of a whole pixel
-
-// An owner and what is seen of it.
+// An owner, and how much of it is visible.
 struct Owner {
   const Fragment* fragment;
   float covered, visible;  // mask positions
 };
 
-float whole(const Owner& owner) { return owner.visible / owner.covered; }
+float visible_part(const Owner& owner) { return owner.visible / owner.covered; }
 
-// Returns how many owners' areas it has added.
+// Lists the owners that have fragments, those with the largest visible part first, as in sorted order. Returns their
+// number. [begin, end): the fragments, in the order of the layers.
+template <std::size_t Words, std::size_t Layers>
+std::size_t list_owners(const Fragment* begin, const Fragment* end, const OwnerPixel<Words, Layers>& pixel,
+                        std::array<Owner, Layers>& owners) {
+  std::size_t count = 0;
+  const Fragment* fragment = begin;
+  for (std::uint32_t k = 0; k < Layers; ++k) {
+    const WideMask owned = pixel.positions_in(OwnerPixel<Words, Layers>::kFirstLayer + k);
+    if (owned.none() || fragment == end || fragment->triangle != pixel.triangle(k)) continue;
+    const Owner owner{fragment, static_cast<float>(fragment->mask.count()), static_cast<float>(owned.count())};
+    std::size_t place = count++;
+    for (; place > 0 && visible_part(owner) > visible_part(owners[place - 1]); --place)
+      owners[place] = owners[place - 1];
+    owners[place] = owner;
+    ++fragment;
+  }
+  return count;
+}
+
+// Returns the number of owners whose areas were added. [begin, end): as in list_owners.
 template <std::size_t Words, std::size_t Layers>
 std::size_t settle_pixel(const Fragment* begin, const Fragment* end, bool last_pass, OwnerPixel<Words, Layers>& pixel) {
   using Pixel = OwnerPixel<Words, Layers>;
   constexpr auto kPositions = static_cast<float>(32 * Words);
   const bool speck = pixel.owner[0] & Pixel::kSpeck;
   const WideMask deferred = pixel.positions_in(Pixel::kDeferred);
-  std::array<Owner, Layers> seen;
-  std::size_t count = 0;
   WideMask settled = pixel.positions_in(Pixel::kSettled);
   Taken<float> taken{pixel.area / kAreaUnits, static_cast<float>(settled.count())};
   glm::vec3 color = taken.area * glm::vec3(pixel.color[0], pixel.color[1], pixel.color[2]);  // times area
-  const Fragment* fragment = begin;
-  for (std::uint32_t k = 0; k < Layers; ++k) {
-    const WideMask owned = pixel.positions_in(Pixel::kFirstLayer + k);
-    settled = settled | owned;
-    if (owned.none() || fragment == end || fragment->triangle != pixel.triangle(k)) continue;
-    // Whole ones first, as in sorted order.
-    const Owner owner{fragment, static_cast<float>(fragment->mask.count()), static_cast<float>(owned.count())};
-    std::size_t place = count++;
-    for (; place > 0 && whole(owner) > whole(seen[place - 1]); --place) seen[place] = seen[place - 1];
-    seen[place] = owner;
-    ++fragment;
-  }
+  for (std::uint32_t k = 0; k < Layers; ++k) settled = settled | pixel.positions_in(Pixel::kFirstLayer + k);
+  std::array<Owner, Layers> seen;
+  const std::size_t count = list_owners(begin, end, pixel, seen);
   for (std::size_t i = 0; i < count; ++i) {
     const Owner& owner = seen[i];
     const float area = speck ? owner.visible * (1 / kPositions)
@@ -55,7 +60,8 @@ std::size_t settle_pixel(const Fragment* begin, const Fragment* end, bool last_p
   }
   float scale = 1;
   if (deferred.none() || last_pass) {
-    // A pixel that is covered everywhere leaves nothing for the background. What no pass decided is like the rest.
+    // If all positions are covered, nothing of the background is visible. Positions that no pass has decided are
+    // assumed to look like the rest.
     const auto undecided = static_cast<float>(deferred.count());
     const bool full = settled.count() + deferred.count() == 32 * static_cast<int>(Words);
     if (taken.area > 0) scale = full ? 1 / taken.area : std::min(kPositions / (kPositions - undecided), 1 / taken.area);
@@ -70,79 +76,6 @@ std::size_t settle_pixel(const Fragment* begin, const Fragment* end, bool last_p
   return count;
 }
 
-using Real = Counted<float>;
-
-// Population counts of a mask's words, added up.
-void count_mask(OperationCounts& counts, std::size_t words) {
-  Real sum;
-  for (std::size_t w = 0; w < words; ++w) {
-    const Real bits = bit_count(Counted<std::uint32_t>(0, counts));
-    sum = w == 0 ? bits : sum + bits;
-  }
-}
-
-// Of one owner: how much of it is seen, its area, its colour.
-OperationCounts owner_cost(std::size_t words) {
-  return count_operations([&](OperationCounts& counts) {
-    const Real one(1.0f, counts);
-    count_mask(counts, words), count_mask(counts, words);
-    one / one;  // the share that is seen, by which owners are sorted
-    Taken<Real> taken{one, one};
-    const Real area = select(true, one * one, visible_area(one, one, one, one, taken));  // beside specks, or not
-    taken = {taken.area + area, taken.positions + one};
-    const Real share = area / one;
-    for (int c = 0; c < 3; ++c) one + share* one;
-  });
-}
-
-// Of one pixel besides: its state's masks, its colour and area from their formats and back.
-template <std::size_t Words, std::size_t Layers>
-OperationCounts pixel_cost() {
-  using Pixel = OwnerPixel<Words, Layers>;
-  constexpr std::size_t kBits = std::bit_width(Pixel::kSettled);
-  OperationCounts masks;
-  for (std::uint32_t state = Pixel::kFirstLayer; state <= Pixel::kSettled; ++state) masks += find_cost<kBits>(state);
-  masks += put_cost<kBits>(Pixel::kSettled);
-  masks += put_cost<kBits>(Pixel::kEmpty);
-  masks.bit += Layers + 2;  // owners' positions joined to the settled ones; without, of what is deferred still
-  const OperationCounts numbers = count_operations([](OperationCounts& counts) {
-    const Real one(1.0f, counts), units(kAreaUnits);
-    count_mask(counts, Words);  // settled
-    Real area = to_float(Counted<std::int64_t>(0, counts)) / units, color[3] = {one, one, one};
-    for (Real& channel : color) channel = converted(channel) * area;
-    area = lesser(area * one, one);  // scaled to what is covered
-    for (Real& channel : color) channel = converted(channel / area);
-    to_integer(area * units + one);
-  });
-  OperationCounts all = masks * Words;
-  return all += numbers;
-}
-
-// Of one pixel behind which there is no pass: all positions settled, those undecided counted, and the scale.
-template <std::size_t Words, std::size_t Layers>
-OperationCounts finish_cost() {
-  using Pixel = OwnerPixel<Words, Layers>;
-  OperationCounts masks = find_cost<std::bit_width(Pixel::kSettled)>(Pixel::kEmpty);
-  masks.bit += 2;
-  OperationCounts all = masks * Words;
-  return all += count_operations([](OperationCounts& counts) {
-           const Real one(1.0f, counts);
-           count_mask(counts, Words), count_mask(counts, Words);  // settled, deferred
-           const Real inverse = one / one, rest = one / (one - one);
-           select(one + one == one, inverse, lesser(rest, inverse));
-         });
-}
-
-// Of one pixel: which positions each layer owns.
-template <std::size_t Words, std::size_t Layers>
-OperationCounts owners_cost() {
-  using Pixel = OwnerPixel<Words, Layers>;
-  OperationCounts masks;
-  for (std::uint32_t state = Pixel::kFirstLayer; state < Pixel::kDeferred; ++state)
-    masks += find_cost<std::bit_width(Pixel::kSettled)>(state);
-  return masks * Words;
-}
-
 }  // namespace
 
 template <std::size_t Words, std::size_t Layers>
@@ -155,17 +88,16 @@ std::vector<PixelTriangle> owners(const SetupTriangles& triangles, const std::ve
     const std::size_t before = pairs.size();
     const auto x = tile.x0 + static_cast<std::int32_t>(i) % tile.width();
     const auto y = tile.y0 + static_cast<std::int32_t>(i) / tile.width();
-    for (std::size_t k = 0; k < Layers; ++k)
-      if (!pixels[i].positions_in(Pixel::kFirstLayer + static_cast<std::uint32_t>(k)).none())
-        pairs.push_back(
-            pixel_triangle(triangles, pixels[i].triangle(k), static_cast<std::uint32_t>(pairs.size()), x, y, false));
+    for (std::size_t k = 0; k < Layers; ++k) {
+      if (pixels[i].positions_in(Pixel::kFirstLayer + static_cast<std::uint32_t>(k)).none()) continue;
+      const SetupTriangle& triangle = triangles.triangles[pixels[i].triangle(k)];
+      PixelTriangle& pair = pairs.emplace_back();
+      pair = {pixels[i].triangle(k), static_cast<std::uint32_t>(pairs.size() - 1), x, y, false, 0, 0};
+      set_depths(triangle, vertex_bounds(triangle.vertex_z), pair);
+    }
     claimed += pairs.size() > before;
   }
-  counters.ops += owners_cost<Words, Layers>() * claimed;
-  counters.ops += pair_bounds_cost() * pairs.size();
-  counters.ops += vertex_bounds_cost() * pairs.size();
-  counters.bytes_read += claimed * sizeof(Pixel);
-  counters.bytes_written += pairs.size() * kPairWithDepthBytes;
+  charge_owners<Words, Layers>(claimed, pairs.size(), counters);
   return pairs;
 }
 
@@ -174,29 +106,20 @@ void settle(const std::vector<Fragment>& fragments, bool last_pass, StageCounter
             std::vector<OwnerPixel<Words, Layers>>& pixels) {
   const Fragment* fragment = fragments.data();
   const Fragment* const end = fragment + fragments.size();
-  std::uint64_t worked_on = 0, unfinished = 0, seen = 0, compared = 0;
+  SettleWork work;
+  work.fragments = fragments.size();
   for (std::size_t i = 0; i < pixels.size(); ++i) {
     const Fragment* const begin = fragment;
     while (fragment != end && fragment->pixel == i) ++fragment;
     if (!is_unfinished(pixels[i])) continue;
     const std::size_t owners = settle_pixel(begin, fragment, last_pass, pixels[i]);
-    if (begin == fragment) continue;  // what nothing has claimed stays cleared in memory, and is the background
-    ++worked_on;
-    seen += owners;
-    compared += owners * (owners - 1) / 2;  // to sort them
-    unfinished += is_unfinished(pixels[i]);
+    if (begin == fragment) continue;  // a pixel without owners stays cleared in memory and shows the background
+    ++work.pixels;
+    work.owners += owners;
+    work.comparisons += owners * (owners - 1) / 2;
+    work.unfinished += is_unfinished(pixels[i]);
   }
-  counters.items_in += fragments.size();
-  counters.items_out += unfinished;
-  counters.ops += pixel_cost<Words, Layers>() * worked_on;
-  counters.ops += finish_cost<Words, Layers>() * (worked_on - unfinished);
-  counters.ops += owner_cost(Words) * seen;
-  counters.ops.add += compared;
-  counters.bytes_read +=
-      worked_on * sizeof(OwnerPixel<Words, Layers>) + fragments.size() * streaming_fragment_bytes(Words);
-  counters.bytes_written += worked_on * sizeof(OwnerPixel<Words, Layers>);
-  counters.lanes_used += fragments.size();
-  counters.lanes_issued += fragments.size();
+  charge<Words, Layers>(work, counters);
 }
 
 template <std::size_t Words, std::size_t Layers>

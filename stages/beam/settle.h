@@ -1,39 +1,47 @@
-// settle: the end of a pass in streaming order. The owners' areas go into the pixels' colours, their positions are
-// settled, and those that were deferred are free for the next pass.
+// settle: the owners of a pass in streaming order -> the colours of the pixels. It ends a pass.
+//
+// The owners' areas are added to the pixels' colours, their positions become settled, and deferred positions become
+// empty for the next pass.
 #pragma once
 
 #include <algorithm>
 #include <vector>
 
-#include "stages/beam/beam_fragment.h"
+#include "stages/cost/counters.h"
+#include "stages/data/closed_depth.h"
+#include "stages/data/fragment.h"
 #include "stages/data/owner_pixel.h"
-#include "stages/picture/resolve.h"
+#include "stages/data/pair.h"
+#include "stages/data/pixel_formats.h"
+#include "stages/data/setup_triangle.h"
+#include "stages/data/tile.h"
 
 namespace beampipe {
 
-// What must be known again of the owners: one pair per pixel and layer that owns a position, pixel by pixel. Counts
-// reading the pixels that have any, and writing the pairs.
+// Returns the pairs whose fragments settle() needs: one for each layer of a pixel that owns a position, pixel by pixel.
+// Charges reading the pixels that have owners, and writing the pairs.
 template <std::size_t Words, std::size_t Layers>
 std::vector<PixelTriangle> owners(const SetupTriangles& triangles, const std::vector<OwnerPixel<Words, Layers>>& pixels,
                                   const Tile& tile, StageCounters& counters);
 
-// `fragments`: made from owners(), shaded. Their areas are simd/conserve.h's, as in sorted order; but where a speck may
-// be seen, whose area nobody has, areas are counted by positions alone, which has no bias. `last_pass`: positions that
-// are still deferred are taken to look like the rest of the pixel. items_out: pixels that need another pass.
+// `fragments`: the shaded fragments of the pairs from owners(). Areas follow simd/conserve.h, as in sorted order. The
+// exception is a pixel in which a speck may be visible. Since the speck's area is not known, areas there are counted by
+// positions alone, which has no bias. In the last pass, positions that are still deferred are assumed to look like the
+// rest of the pixel. Counts as items out the pixels that need another pass.
 template <std::size_t Words, std::size_t Layers>
 void settle(const std::vector<Fragment>& fragments, bool last_pass, StageCounters& counters,
             std::vector<OwnerPixel<Words, Layers>>& pixels);
 
-// Before the first pass and after every one: is there anything to decide in the pixel?
+// Between passes: is any position of the pixel not yet settled?
 template <std::size_t Words, std::size_t Layers>
 bool is_unfinished(const OwnerPixel<Words, Layers>& pixel) {
   return !pixel.states.all_in(OwnerPixel<Words, Layers>::kSettled);
 }
 
-// Finished pixels are closed to all that comes, however near: a stencil test before anything is computed of a fragment.
+// Closes finished pixels to everything, however near. This acts like an early stencil test.
 template <std::size_t Words, std::size_t Layers>
 void close_finished(const std::vector<OwnerPixel<Words, Layers>>& pixels, const Tile& tile, ClosedDepth& closed) {
-  constexpr float kInFront = -2.0f;  // of every depth
+  constexpr float kInFront = -2.0f;  // nearer than every depth
   const OwnerPixel<Words, Layers>* pixel = pixels.data();
   for (std::int32_t y = tile.y0; y < tile.y1; ++y)
     for (std::int32_t x = tile.x0; x < tile.x1; ++x, ++pixel)
@@ -41,7 +49,7 @@ void close_finished(const std::vector<OwnerPixel<Words, Layers>>& pixels, const 
   closed.refresh();
 }
 
-// The box of the pixels that need another pass, its corners even; empty when there are none.
+// The bounding box of the pixels that need another pass, with even corners. It is empty if there are none.
 template <std::size_t Words, std::size_t Layers>
 Tile unfinished_box(const std::vector<OwnerPixel<Words, Layers>>& pixels, const Tile& tile) {
   Tile box{tile.x1, tile.y1, tile.x0, tile.y0};

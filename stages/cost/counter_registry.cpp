@@ -114,12 +114,11 @@ const std::vector<FrameCounterInfo>& frame_counters() {
       {"peak_bytes_per_pixel", "bytes per pixel",
        "size of a technique's framebuffer, plus its A-buffer in the frame where that is largest"},
       {"pixel_counters", "as the counter's", "mean and maximum of each pixel counter over the pixels"},
-      {"saved", "see the page",
+      {"saved", "pairs, cells, triangles, tiles or pixels",
        "work that was not done, derived from the counters of the stages: hidden_pairs or hidden_cells, which the "
-       "raster "
-       "stage left out because a triangle in front covers the whole pixel or cell; hidden_triangles, which were left "
-       "out of a whole tile; empty_tiles; whole_pixels, for which no fragment was made because one triangle covers and "
-       "hides everything; pairs_behind_closed, pairs of the A-buffer that were never read"},
+       "raster stage left out because a triangle in front covers the whole pixel or cell; hidden_triangles, which were "
+       "left out of a whole tile; empty_tiles; whole_pixels, for which no fragment was made because one triangle "
+       "covers and hides everything; pairs_behind_closed, pairs of the A-buffer that were never read"},
       {"wall_ms", "milliseconds",
        "time that the simulator took on this machine; with_memory_model says whether it includes the memory model; "
        "modelling_run is, with --repeat, the time of the extra run that includes it"},

@@ -15,7 +15,7 @@ struct StageInfo {
   const char* items_out;
   const char* lanes_used;    // "" if the stage counts no lanes
   const char* lanes_issued;  // likewise
-  // Counters, besides lanes, that stay 0 in this stage whatever the scene: names with a blank before and after each.
+  // Counters, besides lanes, that stay 0 in this stage for every scene. There are blanks around each name.
   const char* silent;
 };
 

@@ -1,4 +1,4 @@
-// Numbers that count: running a scalar twin on them tells what the stage's arithmetic costs per item.
+// Numbers that count: a scalar formula that runs on them shows how many operations it takes per item.
 #pragma once
 
 #include <bit>
@@ -10,7 +10,8 @@
 
 namespace beampipe {
 
-// Value plus where to count. Constants carry no tally; an operation counts in whichever operand's tally there is.
+// A value and the place where operations on it are counted. Constants have no tally; an operation is counted if one of
+// its operands has one.
 template <class Value>
 struct Counted {
   Value value{};
@@ -117,16 +118,16 @@ inline Counted<float> bit_count(const Counted<std::uint32_t>& mask) {
   return counted(mask.tally, &OperationCounts::bit, static_cast<float>(std::popcount(mask.value)));
 }
 
-// Runs `twin` on counting numbers made by the function it is given, and returns what it counted.
-template <class Twin>
-OperationCounts count_operations(Twin&& twin) {
+// Calls formula(counts), which runs a scalar formula on numbers that count there, and returns the counts.
+template <class Formula>
+OperationCounts count_operations(Formula&& formula) {
   OperationCounts counts;
-  twin(counts);
+  formula(counts);
   return counts;
 }
 
-// What one item costs, worked out once. It is a copy because g++ 12.2 loses counts that a function makes in place in a
-// static object; with -fno-ipa-reference it does not.
+// The cost of one item, for static constants. It copies the counts because g++ 12.2 loses counts that a function makes
+// in place in a static object (it keeps them with -fno-ipa-reference).
 struct UnitCost : OperationCounts {
   UnitCost(const OperationCounts& counts) : OperationCounts(counts) {}
 };

@@ -1,32 +1,61 @@
-// What depth planes and the states of mask positions are charged with.
+// The cost of formulas that several stages share: depth planes, depth bounds, and the states of mask positions.
 #pragma once
 
-#include <bit>
+#include <array>
+#include <cstdint>
 
 #include "simd/plane_order.h"
-#include "stages/beam/fragment_geometry.h"
 #include "stages/cost/counting.h"
+#include "stages/data/pixel_depth.h"
 #include "stages/data/position_states.h"
 
 namespace beampipe {
 
+// To compare two planes at one position.
 inline OperationCounts nearer_cost() {
   return count_operations([](OperationCounts& counts) {
     const Counted<float> one(1.0f, counts);
     const DepthPlane<Counted<float>> plane{one, one, one};
-    nearer_scalar(plane, plane, one, one);
+    nearer_formula(plane, plane, one, one);
   });
 }
 
-// Making a triangle's plane over a pixel.
+// To make a triangle's plane in a pixel.
 inline OperationCounts plane_cost() {
   return count_operations([](OperationCounts& counts) {
     const Counted<double> one(1.0, counts);
-    to_float(plane_at(one, one, one, one, one, one, one)), to_float(one), to_float(one);
+    to_float(ScreenDepthOf<Counted<double>>{one, one, one, one, one}.at(one, one)), to_float(one), to_float(one);
   });
 }
 
-// Of a word of 32 positions with so many bits of state: finding those in `state`, and putting some into it.
+inline OperationCounts vertex_bounds_cost() {
+  return count_operations([](OperationCounts& counts) {
+    const Counted<float> z[3] = {Counted<float>(0, counts), Counted<float>(0, counts), Counted<float>(0, counts)};
+    vertex_bounds(z);
+  });
+}
+
+// The depth bounds of a pair, including its plane.
+inline OperationCounts pair_bounds_cost() {
+  OperationCounts cost = plane_cost();
+  cost += count_operations([](OperationCounts& counts) {
+    const Counted<float> z(0.0f, counts);
+    pair_bounds<Counted<float>>({z, z, z}, {z, z});
+  });
+  return cost;
+}
+
+// The depth bounds of a triangle's samples, including those of its vertices.
+inline OperationCounts sample_bounds_cost() {
+  return count_operations([](OperationCounts& counts) {
+    const Counted<float> z[3] = {Counted<float>(0, counts), Counted<float>(0, counts), Counted<float>(0, counts)};
+    const Counted<double> slope(0.0, counts);
+    sample_bounds(vertex_bounds(z), slope, slope);
+  });
+}
+
+// Per word of 32 positions whose states have `Bits` bits: to find the positions that are in `state`, and to put
+// positions into it.
 template <std::size_t Bits>
 OperationCounts find_cost(std::uint32_t state) {
   return count_operations([&](OperationCounts& counts) {

@@ -1,4 +1,4 @@
-// 16-bit floats as they stand in packed structs.
+// 16-bit floats for use in packed structs.
 #pragma once
 
 #include <half.h>
@@ -9,7 +9,8 @@
 
 namespace beampipe {
 
-struct HalfBits {  // fp16
+// An fp16 number. Values above the largest fp16 number become that number.
+struct HalfBits {
   std::uint16_t bits = 0;
 
   HalfBits() = default;
@@ -21,7 +22,8 @@ struct HalfBits {  // fp16
   }
 };
 
-// The upper half of a float32, rounded: as wide a range, for depth slopes that go down to 1e-9 per pixel.
+// The upper half of a float32, rounded. It has the range of a float32, which depth slopes need: they go down to 1e-9
+// per pixel.
 struct UpperHalf {
   std::uint16_t bits = 0;
 

@@ -1,8 +1,10 @@
-// The published aggregate as it is stored: loaded before each merge and stored behind it, in exactly these bytes.
+// The aggregate of the published rules as it is stored, in exactly these bytes. It is loaded at the start of each merge
+// and stored at the end.
 //
-// The talk (slide 23) has 36 bytes and 6 of colour. The paper's text (section 3) has 32 and gives no layout; there are
-// two readings. Without colour, 32 are the talk's 36 with a plane of three coefficients, all that a depth over a pixel
-// needs, in place of four. With colour, they are what is left when slopes and thickness take 16 bits each.
+// The talk (slide 23) states 36 bytes, and 6 bytes for the colour. The paper's text (section 3) states 32 bytes and
+// gives no layout, so there are two readings. If the 32 bytes are without colour, they are the talk's 36 bytes with
+// three plane coefficients instead of four; three are all that a depth over a pixel needs. If they include the colour,
+// slopes and thickness must take 16 bits each.
 #pragma once
 
 #include <cstdint>
@@ -14,15 +16,15 @@ namespace beampipe {
 
 enum class PaperStorage {
   slides,   // 42 bytes: slide 23 of the talk
-  text,     // 32 bytes with colour: section 3's size, in a layout of ours
-  float32,  // every number a float32: what packing costs
+  text,     // 32 bytes with colour: the size that section 3 states, in a layout of our own
+  float32,  // every number as float32: shows what packing costs
 };
 
 #pragma pack(push, 2)
 struct SlidesAggregate {
   float alpha;
   std::uint32_t mask;
-  float plane[4];  // z, dz/du, dz/dv; a plane over the pixel has no use for the fourth
+  float plane[4];  // z, dz/du, dz/dv; the fourth is not used
   float thickness, z_min, z_max;
   HalfBits color[3];
 
@@ -42,7 +44,7 @@ static_assert(sizeof(SlidesAggregate) == 42);
 
 inline constexpr std::uint32_t kAggregateColorBytes = sizeof(SlidesAggregate::color);
 
-// The text's size read as without colour.
+// The reading of the text's size that leaves out the colour.
 inline constexpr std::uint32_t kTextBytesWithoutColor = sizeof(SlidesAggregate) - kAggregateColorBytes - sizeof(float);
 
 struct TextAggregate {

@@ -12,7 +12,7 @@ namespace beampipe {
 PositionSet::PositionSet(std::vector<SamplePattern> words) : patterns(std::move(words)) {
   for (int y = 0; y < kPlaces; ++y) {
     for (int x = 0; x < kPlaces; ++x) {
-      // Squared distance in 1/256 px, then the position's number: ties go to the lower one.
+      // Squared distance in 1/256 px, then the position's number, so that the lower number wins a tie.
       std::array<std::pair<int, int>, kMaxMaskWords * kMaxMaskSamples> by_distance;
       for (int i = 0; i < count(); ++i) {
         const SamplePattern& pattern = patterns[static_cast<std::size_t>(i / kMaxMaskSamples)];

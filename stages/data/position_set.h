@@ -1,4 +1,4 @@
-// Mask positions, and the three nearest of them to every place in the pixel.
+// Mask positions, and for every place in the pixel the three positions that are nearest to it.
 #pragma once
 
 #include <array>
@@ -10,16 +10,17 @@
 namespace beampipe {
 
 struct PositionSet {
-  static constexpr int kPlaces = 64;  // places per axis that are told apart
+  static constexpr int kPlaces = 64;  // places per axis in the table `nearest`
   std::vector<SamplePattern> patterns;
   std::vector<std::array<std::uint8_t, 3>> nearest;  // kPlaces x kPlaces, row by row
 
   explicit PositionSet(std::vector<SamplePattern> patterns);
   int count() const { return static_cast<int>(patterns.size()) * kMaxMaskSamples; }
-  const std::array<std::uint8_t, 3>& nearest_to(float u, float v) const;  // u, v in 0..1
+  // (u, v): pixels from the pixel's upper left corner, 0..1.
+  const std::array<std::uint8_t, 3>& nearest_to(float u, float v) const;
 };
 
-// That of cell_patterns(count); made once.
+// The set of cell_patterns(count), which is made only once. `count`: 32, 64, 128 or 256; throws std::invalid_argument.
 const PositionSet& cell_positions(int count);
 
 }  // namespace beampipe

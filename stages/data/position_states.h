@@ -1,4 +1,4 @@
-// One small number per mask position, packed as bit planes: plane b has bit b of every position's state.
+// A state (a small number) for each mask position, stored as bit planes: plane b has bit b of every position's state.
 #pragma once
 
 #include <array>
@@ -9,9 +9,9 @@
 
 namespace beampipe {
 
-// ---- Of a word, which may be a counting number ----
+// ---- One word of 32 positions; Word is std::uint32_t or a number that counts ----
 
-// Of 32 positions those in `state`. `planes`: a word of each bit plane.
+// Returns the positions that are in `state`. `planes`: one word of each bit plane.
 template <class Word, std::size_t Bits>
 Word word_in_state(const std::array<Word, Bits>& planes, std::uint32_t state) {
   Word word = state & 1 ? planes[0] : ~planes[0];
@@ -19,7 +19,7 @@ Word word_in_state(const std::array<Word, Bits>& planes, std::uint32_t state) {
   return word;
 }
 
-// A bit plane's word when `positions` are put into a state with this bit set, or not.
+// Returns a bit plane's word after `positions` were put into a state. `set`: does the state have this plane's bit?
 template <class Word>
 Word word_put(Word plane, Word positions, bool set) {
   return set ? plane | positions : plane & ~positions;
@@ -35,6 +35,7 @@ struct PositionStates {
     return state;
   }
 
+  // Are all positions in this state?
   bool all_in(std::uint32_t state) const {
     std::uint32_t all = ~0u;
     for (std::size_t w = 0; w < Words; ++w)

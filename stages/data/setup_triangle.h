@@ -1,8 +1,8 @@
-// What vertex_setup makes and every raster stage reads.
+// Setup triangles: the result of vertex_setup and the input of every raster stage.
 //
-// Screen space: x to the right, y down, pixel (0,0) is the upper left one and covers [0,1] x [0,1]; positions are
-// integers in 1/256 px. Depth is -1 at the near plane and 0 at the far plane, linear in screen space: (z / w - 1) / 2.
-// A 32-bit float is finest around 0, so distant depths are told apart as well as with a reversed depth buffer.
+// Screen space: x points right and y points down. Pixel (0, 0) is the upper left one and covers [0, 1] x [0, 1].
+// Positions are integers in 1/256 px. Depth is linear in screen space, -1 at the near plane and 0 at the far plane:
+// (z / w - 1) / 2. Floats are finest around 0, so distant depths differ as well as in a reversed depth buffer.
 #pragma once
 
 #include <cstdint>
@@ -11,32 +11,34 @@
 
 namespace beampipe {
 
-// Depth at (x, y): z + dzdx (x - anchor_x) + dzdy (y - anchor_y), in pixels; the same bits for the same three vertices
-// in any order.
-struct ScreenDepth {
-  double z = 0, dzdx = 0, dzdy = 0;   // slopes per pixel
-  double anchor_x = 0, anchor_y = 0;  // pixels
+// A triangle's depth plane. Three vertices give the same bits in any order. Real is double or a number that counts.
+template <class Real>
+struct ScreenDepthOf {
+  Real z{}, dzdx{}, dzdy{};     // at the anchor; slopes per pixel
+  Real anchor_x{}, anchor_y{};  // pixels
 
-  double at(double x, double y) const { return z + dzdx * (x - anchor_x) + dzdy * (y - anchor_y); }
+  // Depth at (x, y), in pixels.
+  Real at(Real x, Real y) const { return z + dzdx * (x - anchor_x) + dzdy * (y - anchor_y); }
 };
+using ScreenDepth = ScreenDepthOf<double>;
 
 struct SetupTriangle {
-  // Vertices in 1/256 px, |x|, |y| <= 2^23, ordered so that the inside is at E >= 0 for every edge (see Edge).
+  // Vertices in 1/256 px, |x| and |y| <= 2^23, ordered such that the inside is at E >= 0 for every edge (see Edge).
   std::int32_t x[3], y[3];
   float vertex_z[3];
   ScreenDepth depth;
-  bool front;  // counter-clockwise on screen, as the trace's vertices were ordered
+  bool front;  // the trace's vertices are counter-clockwise on screen
 };
 
-// Flat shading inputs of a triangle: the same at every pixel.
+// A triangle's inputs for flat shading; they are the same at every pixel.
 struct FlatAttributes {
   glm::vec3 kd;
   glm::vec3 normal;  // world space, unit length, towards the viewer
-  bool lit;          // lambert; else unlit
+  bool lit;          // by Lambert's law; else the colour is kd
 };
 
 struct SetupTriangles {
-  std::vector<SetupTriangle> triangles;    // in primitive order; a clipped triangle gives several in a row
+  std::vector<SetupTriangle> triangles;    // in primitive order; clipping may turn one triangle into several in a row
   std::vector<FlatAttributes> attributes;  // one per triangle
   std::vector<std::uint32_t> draws;        // one per triangle: index into Frame::draws
 
@@ -50,9 +52,9 @@ struct SetupTriangles {
   }
 };
 
-// Edge from vertex k to vertex k + 1: E(x, y) = a x + b y + c with x, y in 1/256 px, >= 0 inside. `owns` is the
-// top-left rule: a sample exactly on the edge belongs to the triangle if the edge is a left one (a > 0) or a horizontal
-// top one (a = 0, b > 0).
+// Edge from vertex k to vertex k + 1: E(x, y) = a x + b y + c, with x and y in 1/256 px. E >= 0 inside. `owns` is the
+// top-left rule: a sample exactly on the edge belongs to the triangle if this is a left edge (a > 0) or a horizontal
+// top edge (a = 0, b > 0).
 struct Edge {
   std::int32_t a, b;
   std::int64_t c;

@@ -1,11 +1,9 @@
 #include "stages/geometry/clip.h"
 
-#include "stages/geometry/vertex_setup.h"
-
 namespace beampipe {
 
 ClipPlanes clip_planes(const Frame& frame) {
-  // Pixel x lies in [-G, G]: (x / w + 1) W / 2 >= -G, and so on.
+  // A vertex must lie within -G..G pixels: (x / w + 1) W / 2 >= -G, and so on.
   const double right = 2 * kGuardBand / frame.width - 1, left = 2 * kGuardBand / frame.width + 1;
   const double low = 2 * kGuardBand / frame.height - 1, high = 2 * kGuardBand / frame.height + 1;
   return {{{0, 0, 1, 1}, {0, 0, -1, 1}, {1, 0, 0, left}, {-1, 0, 0, right}, {0, 1, 0, low}, {0, -1, 0, high}}};

@@ -1,4 +1,4 @@
-// Clipping of triangles in clip space: to the near and far planes and to the guard band.
+// Clipping of triangles in clip space, to the near and far planes and to the guard band.
 #pragma once
 
 #include <array>
@@ -10,7 +10,10 @@
 
 namespace beampipe {
 
-// Clip planes as inner products that are >= 0 inside: near, far, then the guard band's four sides.
+// How far from the viewport's origin a snapped vertex may lie, on every side, in pixels: 2^23 in 1/256 px.
+inline constexpr double kGuardBand = 32768.0;
+
+// Clip planes as inner products that are >= 0 inside: near, far, then the four sides of the guard band.
 inline constexpr int kPlanes = 6;
 using ClipPlanes = std::array<std::array<double, 4>, kPlanes>;
 
@@ -21,7 +24,7 @@ Real plane_distance(const std::array<Real, 4>& plane, const ClipVertex<Real>& v)
   return plane[0] * v.x + plane[1] * v.y + plane[2] * v.z + plane[3] * v.w;
 }
 
-// Where an edge that leaves the inside meets the plane.
+// The point where an edge crosses the plane, from its inner to its outer vertex.
 template <class Real>
 ClipVertex<Real> crossing(const ClipVertex<Real>& in, const ClipVertex<Real>& out, Real in_distance,
                           Real out_distance) {
@@ -29,7 +32,7 @@ ClipVertex<Real> crossing(const ClipVertex<Real>& in, const ClipVertex<Real>& ou
   return {in.x + t * (out.x - in.x), in.y + t * (out.y - in.y), in.z + t * (out.z - in.z), in.w + t * (out.w - in.w)};
 }
 
-// Outside one side of the view volume with all three vertices?
+// Do all three vertices lie outside the same side of the view volume?
 template <class Real>
 bool outside_view(const std::array<ClipVertex<Real>, 3>& v) {
   bool left = true, right = true, below = true, above = true, before = true, behind = true;
@@ -44,8 +47,8 @@ bool outside_view(const std::array<ClipVertex<Real>, 3>& v) {
 
 using Polygon = std::vector<ClipVertex<double>>;
 
-// Sutherland-Hodgman against one plane. A crossing is always computed from its inner to its outer vertex, so that two
-// triangles that share the edge get the same point. Adds the crossings to `crossings`.
+// Clips to one plane (Sutherland and Hodgman). A crossing is always computed from the inner to the outer vertex, so two
+// triangles that share the edge get the same point. Adds the number of crossings to `crossings`.
 Polygon clip_to_plane(const Polygon& polygon, const std::array<double, 4>& plane, std::uint64_t& crossings);
 
 }  // namespace beampipe

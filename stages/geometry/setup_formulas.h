@@ -1,4 +1,4 @@
-// What vertex_setup computes of one triangle, for numbers and for numbers that count (stages/cost/counting.h).
+// The formulas of vertex_setup for one triangle, for numbers and for numbers that count (stages/cost/counting.h).
 #pragma once
 
 #include <array>
@@ -8,7 +8,7 @@
 
 namespace beampipe {
 
-// Depth plane through three snapped vertices; `area2` is twice their signed area.
+// Slopes of the depth plane through three snapped vertices, per pixel.
 template <class Real>
 struct Slopes {
   Real dzdx, dzdy;
@@ -22,7 +22,7 @@ Slopes<Real> depth_slopes(const ScreenVertex<Real>& p, const ScreenVertex<Real>&
   return {(qz * ry - rz * qy) * inverse, (rz * qx - qz * rx) * inverse};
 }
 
-// Twice the signed area; positive: clockwise with y down.
+// Twice the signed area; positive if the vertices are clockwise with y down.
 template <class Int>
 Int doubled_area(const std::array<Int, 3>& x, const std::array<Int, 3>& y) {
   return (x[1] - x[0]) * (y[2] - y[0]) - (x[2] - x[0]) * (y[1] - y[0]);
@@ -33,14 +33,14 @@ struct Vector {
   Real x, y, z;
 };
 
-// `m`: column-major. The sums are paired as glm does.
+// `m`: column-major. The sums are grouped as in glm.
 template <class Real>
 Vector<Real> world_point(const std::array<Real, 16>& m, const Vector<Real>& p) {
   const auto row = [&](std::size_t r) { return (m[r] * p.x + m[4 + r] * p.y) + (m[8 + r] * p.z + m[12 + r]); };
   return {row(0), row(1), row(2)};
 }
 
-// The normal of a triangle, whose length is not one, and that length.
+// The normal of a triangle, not normalized, and its length.
 template <class Real>
 Vector<Real> face_normal(const Vector<Real>& p, const Vector<Real>& q, const Vector<Real>& r, Real& length) {
   const Real ax = q.x - p.x, ay = q.y - p.y, az = q.z - p.z;

@@ -7,8 +7,8 @@
 
 #include "simd/vertex_transform.h"
 #include "stages/geometry/clip.h"
-#include "stages/geometry/setup_cost.h"
 #include "stages/geometry/setup_formulas.h"
+#include "stages/geometry/vertex_setup_cost.h"
 
 namespace beampipe {
 namespace {
@@ -19,10 +19,10 @@ std::array<double, 16> elements_of(const glm::dmat4& matrix) {  // column-major
   return elements;
 }
 
-// What the draws of a frame have in common.
+// What all draws of a frame share.
 struct View {
   double width, height;
-  glm::dmat4 to_clip;  // from the world
+  glm::dmat4 to_clip;  // from world space
   ClipPlanes planes;
   bool mirrored;
 
@@ -31,12 +31,12 @@ struct View {
         height(frame.height),
         to_clip(frame.projection * frame.view),
         planes(clip_planes(frame)),
-        // Front faces are counter-clockwise on screen; a mirroring view or projection turns that around in the world.
-        // Clip space is left-handed, so that what does not mirror has a negative determinant.
+        // Front faces are counter-clockwise on screen. A view or projection that mirrors reverses that in world space.
+        // Clip space is left-handed, so a matrix that does not mirror has a negative determinant.
         mirrored(glm::determinant(to_clip) > 0) {}
 };
 
-// Triangles of one draw, one after the other, into `out`.
+// Sets up triangles of one draw, one after the other, and appends them to `out`.
 class TriangleSetup {
  public:
   TriangleSetup(const View& view, const Mesh& mesh, const Draw& draw, std::uint32_t draw_index,
@@ -100,7 +100,7 @@ class TriangleSetup {
       triangle.x[k] = turned[k]->x, triangle.y[k] = turned[k]->y;
       triangle.vertex_z[k] = static_cast<float>(turned[k]->screen.z);
     }
-    // Sorted, so that equal triangles have equal depth whatever vertex they start with and whichever way they turn.
+    // Sorted, so that a triangle has the same depth whichever vertex comes first and whichever way it turns.
     std::array<ScreenVertex<double>, 3> p = {a.screen, b.screen, c.screen};
     const auto put_in_order = [&p](std::size_t i) {
       const auto key = [](const ScreenVertex<double>& v) { return std::array{v.x, v.y, v.z}; };
@@ -146,16 +146,16 @@ void append(const SetupTriangles& part, SetupTriangles& whole) {
   whole.draws.insert(whole.draws.end(), part.draws.begin(), part.draws.end());
 }
 
-constexpr std::size_t kChunk = 4096;  // vertices or triangles that one thread takes at once
+constexpr std::size_t kChunk = 4096;  // vertices or triangles per task
 
-// Calls work(first, end) for chunks of [0, count), side by side.
+// Calls work(first, end) for chunks of [0, count), in parallel.
 template <class ChunkWork>
 void for_each_chunk(std::size_t count, ChunkWork&& work) {
   tbb::parallel_for(std::size_t{0}, (count + kChunk - 1) / kChunk,
                     [&](std::size_t chunk) { work(chunk * kChunk, std::min(count, (chunk + 1) * kChunk)); });
 }
 
-// The draw's triangles, chunk by chunk, behind those of `out`.
+// Appends the draw's triangles to `out`, chunk by chunk.
 SetupWork add_draw(const View& view, const Mesh& mesh, const Draw& draw, std::uint32_t draw_index,
                    SetupTriangles& out) {
   const VertexTransform transform{elements_of(view.to_clip * draw.transform), view.width, view.height};
@@ -190,7 +190,7 @@ SetupTriangles vertex_setup(const Trace& trace, const Frame& frame, StageCounter
   counters.stage = "vertex_setup";
   std::size_t triangles = 0;
   for (const Draw& draw : frame.draws) triangles += trace.meshes[draw.mesh].triangles.size();
-  out.reserve(triangles);  // once, whatever is culled: what is not written takes no memory
+  out.reserve(triangles);  // once, for all triangles, culled or not: pages that are never written take no memory
   counters.items_in += triangles;
   for (std::uint32_t i = 0; i < frame.draws.size(); ++i) {
     const Draw& draw = frame.draws[i];
@@ -200,7 +200,7 @@ SetupTriangles vertex_setup(const Trace& trace, const Frame& frame, StageCounter
   }
   work.triangles = out.triangles.size();
   counters.items_out = out.triangles.size();
-  counters.ops += setup_cost(work);
+  charge(work, counters);
   counters.bytes_written += out.triangles.size() * (sizeof(SetupTriangle) + sizeof(FlatAttributes));
   return out;
 }

@@ -1,10 +1,11 @@
 // vertex_setup: draws -> setup triangles.
 //
-// Transform to clip space (double precision), cull, clip to the near and far planes and, where the triangle reaches
-// beyond it, to the guard band; project, snap to 1/256 px, depth plane. Triangles outside the view volume, of zero area
-// after snapping, or with a vertex that is not finite are dropped.
-// Double precision knows a vertex that is 10^14 px away to 1/64 px: from 10^15 px on, edges lie beside their place, and
-// from 10^17 px on, parts of what is clipped are missing.
+// Transforms to clip space in double precision, culls, clips to the near and far planes (and to the guard band, if the
+// triangle extends beyond it), projects, snaps to 1/256 px and computes the depth plane. Triangles are dropped if they
+// lie outside the view volume, if their area is zero after snapping, or if a vertex is not finite.
+//
+// Double precision resolves a vertex that is 10^14 px away to 1/64 px. From 10^15 px on, edges are displaced, and from
+// 10^17 px on, parts of clipped triangles are missing.
 #pragma once
 
 #include "stages/cost/counters.h"
@@ -13,10 +14,8 @@
 
 namespace beampipe {
 
-// Pixels beyond the viewport's origin, on every side, that a snapped vertex may lie at: 2^23 in 1/256 px.
-inline constexpr double kGuardBand = 32768.0;
-
-// Runs on the threads that oneTBB has where it is called; the result does not depend on them.
+// Runs on the threads of the oneTBB arena that it is called in. The result does not depend on their number. Sets the
+// counters' stage name.
 SetupTriangles vertex_setup(const Trace& trace, const Frame& frame, StageCounters& counters);
 
 }  // namespace beampipe

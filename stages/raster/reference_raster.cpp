@@ -5,7 +5,7 @@
 
 #include "simd/depth_span.h"
 #include "simd/sample_pattern.h"
-#include "stages/cost/counting.h"
+#include "stages/raster/reference_raster_cost.h"
 
 namespace beampipe {
 namespace {
@@ -16,7 +16,8 @@ constexpr std::int64_t kStep = kReferenceUnits / kReferenceColumns;  // between 
 constexpr std::int64_t kRowStep = kReferenceUnits / kReferenceRows;  // between rows
 constexpr std::int64_t kScale = kReferenceUnits / kSubpixelUnits;    // per 1/256 px
 
-std::int64_t row_offset(std::int64_t row) {  // of the first sample of a pixel
+// The x of a pixel's first sample in this row, in 1/8192 px.
+std::int64_t row_offset(std::int64_t row) {
   std::int64_t reversed = 0;
   for (int bit = 0; bit < 8; ++bit) reversed |= ((row >> bit) & 1) << (7 - bit);
   return 2 * reversed + 1;
@@ -32,7 +33,7 @@ struct Span {
   std::int64_t first, end;
 };
 
-// Keeps the samples i with a (kStep i + offset) + rest >= 0.
+// Keeps the samples i at which a (kStep i + offset) + rest >= 0.
 void cut(Span& span, std::int64_t a, std::int64_t offset, std::int64_t rest) {
   const std::int64_t at_zero = a * offset + rest, per_sample = a * kStep;
   if (per_sample == 0) {
@@ -42,14 +43,6 @@ void cut(Span& span, std::int64_t a, std::int64_t offset, std::int64_t rest) {
   } else {
     span.end = std::min(span.end, floor_quotient(at_zero, -per_sample) + 1);
   }
-}
-
-OperationCounts sample_cost() {
-  return count_operations([](OperationCounts& counts) {
-    const Counted<double> one(1.0, counts);
-    Counted<double> depth;
-    depth_span_sample(one, one, one, one, one, one, one, depth);
-  });
 }
 
 }  // namespace
@@ -66,7 +59,7 @@ void reference_raster(const SetupTriangles& triangles, const TriangleList& list,
   const std::int64_t left = std::int64_t{tile.x0} * kReferenceColumns,
                      right = std::int64_t{tile.x1} * kReferenceColumns;
   const std::int64_t top = std::int64_t{tile.y0} * kReferenceRows, bottom = std::int64_t{tile.y1} * kReferenceRows;
-  const OperationCounts per_sample = sample_cost();
+  std::uint64_t covered = 0, nearer = 0;  // samples
   for (const std::uint32_t index : list) {
     const SetupTriangle& t = triangles.triangles[index];
     const auto [y_low, y_high] = std::minmax({t.y[0], t.y[1], t.y[2]});
@@ -85,13 +78,11 @@ void reference_raster(const SetupTriangles& triangles, const TriangleList& list,
       const std::size_t at =
           static_cast<std::size_t>(row - top) * surface.row_samples + static_cast<std::size_t>(span.first - left);
       const auto count = static_cast<std::size_t>(span.end - span.first);
-      counters.items_out += depth_span(depths, count, index, surface.depth.data() + at, surface.owner.data() + at);
-      counters.lanes_used += count;
-      counters.lanes_issued += count;
-      counters.ops += per_sample * count;
-      counters.bytes_read += count * sizeof(double);
+      nearer += depth_span(depths, count, index, surface.depth.data() + at, surface.owner.data() + at);
+      covered += count;
     }
   }
+  charge_reference(covered, nearer, counters);
 }
 
 std::vector<glm::vec4> resolve(const ReferenceTile& surface, const Tile& tile, const std::vector<glm::vec3>& colors,
@@ -116,15 +107,7 @@ std::vector<glm::vec4> resolve(const ReferenceTile& surface, const Tile& tile, c
       image.emplace_back(glm::vec3(sum * share), static_cast<float>(covered * share));
     }
   }
-  constexpr std::uint64_t kSamples = kReferenceSamples;
-  counters.items_in += tile.pixels() * kSamples;
-  counters.items_out += tile.pixels();
-  constexpr OperationCounts kSum{.add = 3};  // three channels
-  constexpr OperationCounts kMean{.mul_add = 3};
-  counters.ops += kSum * (tile.pixels() * kSamples);
-  counters.ops += kMean * tile.pixels();
-  counters.bytes_read += tile.pixels() * kSamples * sizeof(std::uint64_t);
-  counters.bytes_written += tile.pixels() * sizeof(glm::vec4);
+  charge_reference_resolve(tile.pixels(), counters);
   return image;
 }
 

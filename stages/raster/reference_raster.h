@@ -1,11 +1,13 @@
 // reference_raster: setup triangles -> the nearest triangle at each of 4096 samples per pixel.
 //
-// The truth that every technique is judged against, on the same snapped triangles: spans per sample row by exact
-// integer division (a path of its own beside sample_raster's edge tests), depth in double precision, LESS.
+// This is the reference that every technique is compared with, on the same snapped triangles. It computes the span of
+// samples that a triangle covers in each sample row by exact integer division, independently of the edge tests of
+// sample_raster. Depth is in double precision, and the depth test is LESS.
 //
-// A pixel has 256 rows of 16 samples; each row is shifted by its bit-reversed number, so that all 4096 samples have
-// different x. Vertical and horizontal edges at 1/256 px then get their exact area, which a regular 64 x 64 grid misses
-// by up to 1/128 px, and misses together with every pattern that shares its columns (8x super-resolved to 256x does).
+// A pixel has 256 rows of 16 samples. Each row is shifted by its bit-reversed number, so all 4096 samples have
+// different x. Vertical and horizontal edges at multiples of 1/256 px therefore get their exact area. A regular 64 x 64
+// grid would be wrong by up to 1/128 px, and so would every pattern that shares its columns (8x super-resolved to 256x
+// does).
 #pragma once
 
 #include <cstdint>
@@ -23,7 +25,7 @@ inline constexpr std::int32_t kReferenceColumns = 16;  // samples per row and pi
 inline constexpr std::int32_t kReferenceSamples = kReferenceRows * kReferenceColumns;
 inline constexpr std::uint64_t kNoOwner = ~std::uint64_t{0};
 
-// Sample rows from top to bottom over the whole tile.
+// The samples of a tile: sample rows from top to bottom, each across the whole tile.
 struct ReferenceTile {
   std::vector<double> depth;
   std::vector<std::uint64_t> owner;  // index into SetupTriangles, or kNoOwner
@@ -32,10 +34,12 @@ struct ReferenceTile {
   explicit ReferenceTile(const Tile& tile);
 };
 
+// Counts as items out the samples at which a triangle is nearer than all earlier ones.
 void reference_raster(const SetupTriangles& triangles, const TriangleList& list, const Tile& tile,
                       StageCounters& counters, ReferenceTile& surface);
 
-// Mean of each pixel's samples, summed in double.
+// Returns the mean of each pixel's samples, summed in double precision: RGBA per pixel of the tile. `colors`: one per
+// triangle.
 std::vector<glm::vec4> resolve(const ReferenceTile& surface, const Tile& tile, const std::vector<glm::vec3>& colors,
                                const glm::vec3& background, StageCounters& counters);
 

@@ -1,8 +1,8 @@
-// Which cells of a grid a triangle touches: the traversal that both raster stages share.
+// The traversal that both raster stages share: which cells of a grid a triangle touches.
 //
-// A cell is a pixel, or a part of one (super-resolution). Triangles and cells are closed sets, tested exactly in
-// integers: the bounding box and, per edge, the cell's corner that lies deepest inside. No cell with common area is
-// missed.
+// A cell is a pixel, or a part of one if pixels are super-resolved. Triangles and cells are closed sets and are tested
+// exactly, in integers: a cell must touch the bounding box, and its corner that lies deepest inside an edge must be
+// inside, for each edge. No cell that has area in common with the triangle is missed.
 #pragma once
 
 #include <algorithm>
@@ -11,29 +11,13 @@
 #include <cstdint>
 
 #include "simd/cell_rows.h"
-#include "simd/sample_pattern.h"
+#include "stages/data/sample_fragment.h"
 #include "stages/data/setup_triangle.h"
 #include "stages/data/tile.h"
 
 namespace beampipe {
 
-// Cells per pixel in x and y; powers of two up to 16.
-struct CellGrid {
-  std::int32_t columns = 1, rows = 1;
-
-  std::int32_t cell_width() const { return kSubpixelUnits / columns; }  // 1/256 px
-  std::int32_t cell_height() const { return kSubpixelUnits / rows; }
-  std::int32_t cells_per_pixel() const { return columns * rows; }
-  // Of a cell: the pixel that it lies in, and its number there, row by row.
-  std::int32_t pixel_x(std::int32_t x) const { return x >> std::countr_zero(static_cast<std::uint32_t>(columns)); }
-  std::int32_t pixel_y(std::int32_t y) const { return y >> std::countr_zero(static_cast<std::uint32_t>(rows)); }
-  std::int32_t in_pixel(std::int32_t x, std::int32_t y) const {
-    return (y & (rows - 1)) * columns + (x & (columns - 1));
-  }
-  bool operator==(const CellGrid&) const = default;
-};
-
-// Half-open range of cells in frame coordinates.
+// A half-open range of cells, frame coordinates.
 struct CellRange {
   std::int32_t x0, y0, x1, y1;
 };
@@ -48,7 +32,7 @@ inline std::int32_t floor_divide(std::int32_t value, std::int32_t by_power_of_tw
   return value >> std::countr_zero(static_cast<std::uint32_t>(by_power_of_two));
 }
 
-// The cells that the triangle's closed bounding box touches, within the tile.
+// The cells within the tile that the triangle's closed bounding box touches.
 inline CellRange touched_range(const SetupTriangle& t, const Tile& tile, const CellGrid& grid) {
   const auto [x_low, x_high] = std::minmax({t.x[0], t.x[1], t.x[2]});
   const auto [y_low, y_high] = std::minmax({t.y[0], t.y[1], t.y[2]});
@@ -59,41 +43,55 @@ inline CellRange touched_range(const SetupTriangle& t, const Tile& tile, const C
           std::min(floor_divide(y_high, h) + 1, tile.y1 * grid.rows)};
 }
 
-// What the traversal did, for the counters.
+// What the traversal did; stages/raster/traverse_cost.h charges it.
 struct TraversalCounts {
-  std::uint64_t boxes = 0;       // bounding boxes that were looked for cells
-  std::uint64_t traversals = 0;  // and that had any
+  std::uint64_t boxes = 0;       // triangles whose bounding box was computed
+  std::uint64_t traversals = 0;  // triangles whose bounding box touches a cell of the tile
   std::uint64_t cells_tested = 0;
   std::uint64_t cells_touched = 0;
 };
 
-enum class FullMeans { area, samples };  // covered to its closed border, or with every sample owned
+// When a cell counts as full: the triangle covers the closed cell, or it owns every sample that the cell could have.
+enum class FullMeans { area, samples };
 
-// Calls visit(x, y, quad, full) for every touched cell, 2x2 quad by quad; `quad` counts up over all calls that share
-// the counter. `full`: the triangle covers the whole cell.
+// The traversal of one triangle after the other.
+struct Traversal {
+  Tile tile;
+  CellGrid grid = {};
+  FullMeans meaning = FullMeans::area;
+  TraversalCounts counts = {};
+  std::uint32_t quad = 0;  // number of the next 2x2 quad
+};
+
+// What cell_row needs of an edge, except for the value where the row starts.
+inline EdgeOverCells edge_over_cells(const Edge& edge, const CellGrid& grid, FullMeans meaning) {
+  const std::int64_t right = std::int64_t{edge.a} * grid.cell_width(), down = std::int64_t{edge.b} * grid.cell_height();
+  const std::int64_t not_owned = meaning == FullMeans::samples && !edge.owns ? 1 : 0;
+  EdgeOverCells over{};
+  over.step = static_cast<double>(right);
+  over.deepest = static_cast<double>(std::max<std::int64_t>(right, 0) + std::max<std::int64_t>(down, 0));
+  over.shallowest = static_cast<double>(std::min<std::int64_t>(right, 0) + std::min<std::int64_t>(down, 0) - not_owned);
+  return over;
+}
+
+// Calls visit(x, y, quad, full) for every cell that the triangle touches, one 2x2 quad after the other. `quad`: the
+// same number for all cells in one quad. `full`: the triangle covers the whole cell. `set`: the triangle's edges.
 template <class Visit>
-void traverse(const SetupTriangle& triangle, const EdgeSet& set, const Tile& tile, const CellGrid& grid,
-              FullMeans meaning, std::uint32_t& quad, TraversalCounts& counts, Visit&& visit) {
-  const CellRange range = touched_range(triangle, tile, grid);
+void traverse(const SetupTriangle& triangle, const EdgeSet& set, Traversal& traversal, Visit&& visit) {
+  const CellGrid& grid = traversal.grid;
+  const CellRange range = touched_range(triangle, traversal.tile, grid);
+  TraversalCounts& counts = traversal.counts;
   ++counts.boxes;
   if (range.x0 >= range.x1 || range.y0 >= range.y1) return;
   ++counts.traversals;
-  const std::int64_t w = grid.cell_width(), h = grid.cell_height();
-  EdgeOverCells edges[3];
-  for (std::size_t k = 0; k < 3; ++k) {
-    const Edge& edge = set.edges[k];
-    const std::int64_t right = edge.a * w, down = edge.b * h;
-    const std::int64_t not_owned = meaning == FullMeans::samples && !edge.owns ? 1 : 0;
-    edges[k].step = static_cast<double>(right);
-    edges[k].deepest = static_cast<double>(std::max<std::int64_t>(right, 0) + std::max<std::int64_t>(down, 0));
-    edges[k].shallowest =
-        static_cast<double>(std::min<std::int64_t>(right, 0) + std::min<std::int64_t>(down, 0) - not_owned);
-  }
   counts.cells_tested +=
       static_cast<std::uint64_t>(range.x1 - range.x0) * static_cast<std::uint64_t>(range.y1 - range.y0);
+  const std::int64_t w = grid.cell_width(), h = grid.cell_height();
+  EdgeOverCells edges[3];
+  for (std::size_t k = 0; k < 3; ++k) edges[k] = edge_over_cells(set.edges[k], grid, traversal.meaning);
   for (std::int32_t quad_y = range.y0 & ~1; quad_y < range.y1; quad_y += 2) {
     for (std::int32_t left = range.x0 & ~1; left < range.x1; left += kCellsPerRow) {
-      const std::uint32_t inside = left < range.x0 ? ~1u : ~0u;  // the range may start within a quad
+      const std::uint32_t inside = left < range.x0 ? ~1u : ~0u;  // the range may start inside a quad
       CellRow rows[2] = {};
       for (std::int32_t y = std::max(quad_y, range.y0); y < std::min(quad_y + 2, range.y1); ++y) {
         for (std::size_t k = 0; k < 3; ++k) edges[k].start = static_cast<double>(set.edges[k].at(left * w, y * h));
@@ -109,10 +107,10 @@ void traverse(const SetupTriangle& triangle, const EdgeSet& set, const Tile& til
           for (int x = first; x < first + 2; ++x) {
             if ((rows[y].touched >> x & 1) == 0) continue;
             ++counts.cells_touched;
-            visit(left + x, quad_y + y, quad, (rows[y].full >> x & 1) != 0);
+            visit(left + x, quad_y + y, traversal.quad, (rows[y].full >> x & 1) != 0);
           }
         }
-        ++quad;
+        ++traversal.quad;
       }
     }
   }

@@ -1,31 +1,25 @@
-// dilate: shading samples with their masks -> pixels. Each pixel's colour is the mean of its quad's four colours,
-// weighted by how many of the pixel's visibility samples each of them was given; so is the box for the history's clamp.
+// dilate: shading samples with their masks -> pixels of the current frame.
+//
+// A pixel's colour is the mean of the four colours of its quad, weighted by the number of the pixel's visibility
+// samples that each shading sample was given. The box that the history is clamped to is the same mean of four boxes.
 #pragma once
 
 #include <glm/glm.hpp>
 #include <vector>
 
-#include "stages/samples/sample_select.h"
-#include "stages/temporal/temporal.h"
+#include "stages/cost/counters.h"
+#include "stages/data/frame_history.h"
+#include "stages/data/sample_quad.h"
 
 namespace beampipe {
 
-// All of a frame's quads, row by row.
-struct QuadFrame {
-  std::int32_t columns = 0, rows = 0;
-  std::vector<SampleQuad> quads;
-
-  QuadFrame(std::uint32_t width, std::uint32_t height);
-  void insert(const Tile& tile, const std::vector<SampleQuad>& of_tile);
-};
-
-// Sets color, low, high and known of the tile's pixels. `colors` and `draws`: one per triangle. A shading sample's box
-// is that of the 3x3 samples around it that are of the same draw. A pixel none of whose visibility samples was given
-// takes the colour of its own shading sample, and is known by 0.
+// Sets color, low, high and known of the tile's pixels. `colors` and `draws`: one per triangle. The box of a shading
+// sample spans those of the 3x3 shading samples around it that belong to the same draw. If none of a pixel's visibility
+// samples was given to a shading sample, the pixel takes the colour of its own shading sample, and `known` is 0.
 void dilate(const QuadFrame& quads, const std::vector<glm::vec3>& colors, const std::vector<std::uint32_t>& draws,
             const glm::vec3& background, const Tile& tile, StageCounters& counters, CurrentFrame& frame);
 
-// Per pixel, the part whose material has no shading sample in the quad.
+// Per pixel, the part of it whose material has no shading sample in the quad, 0..1.
 std::vector<float> unknown_part(const CurrentFrame& frame);
 
 }  // namespace beampipe

@@ -1,4 +1,4 @@
-// What makes two triangles of the same material: a shading sample of one may stand for the other.
+// Materials for decoupled shading: a shading sample of a triangle may stand for any triangle of the same material.
 #pragma once
 
 #include <cstdint>
@@ -8,12 +8,13 @@
 
 namespace beampipe {
 
+// What two triangles of the same material have in common.
 enum class MaterialBy {
-  color,  // the draw and the Kd: an OBJ's material groups, which a renderer would draw one by one
-  draw,   // the draw alone, as if a texture made its colours
+  color,  // the draw and the Kd, like the material groups of an OBJ file, which a renderer would draw one by one
+  draw,   // the draw alone, as if the colours came from a texture
 };
 
-// A number for each triangle's material.
+// Returns the number of each triangle's material.
 std::vector<std::uint32_t> material_ids(const SetupTriangles& triangles, MaterialBy by);
 
 }  // namespace beampipe

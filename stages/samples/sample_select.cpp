@@ -3,29 +3,48 @@
 #include <algorithm>
 #include <bit>
 
-#include "stages/cost/counting.h"
-#include "stages/samples/mix_bits.h"
+#include "simd/match.h"
+#include "stages/data/mix_bits.h"
+#include "stages/samples/sample_select_cost.h"
 
 namespace beampipe {
 namespace {
 
-// What was done, for the counters.
-struct SelectWork {
-  std::uint64_t picks = 0, skips = 0;  // one of several at random; bits before it
-  std::uint64_t searches = 0;          // for a shading sample to spare
-  std::uint64_t switched = 0;
-  std::uint64_t groups = 0;                 // of shading samples of one material
-  std::uint64_t given = 0, given_once = 0;  // visibility samples; those that had one shading sample to go to
+constexpr std::size_t kSamples = 8;  // per pixel
+
+// The tile's quads, and the samples of their pixels in the visibility buffer.
+class QuadGrid {
+ public:
+  explicit QuadGrid(const Tile& tile) : tile_(tile), columns_((tile.width() + 1) / 2), rows_((tile.height() + 1) / 2) {}
+
+  std::size_t count() const { return static_cast<std::size_t>(columns_ * rows_); }
+  // Of a quad: its place in the frame, in quads.
+  std::int32_t x(std::size_t quad) const { return tile_.x0 / 2 + static_cast<std::int32_t>(quad) % columns_; }
+  std::int32_t y(std::size_t quad) const { return tile_.y0 / 2 + static_cast<std::int32_t>(quad) / columns_; }
+  // Is pixel p of the quad inside the tile?
+  bool has_pixel(std::size_t quad, int p) const { return pixel_x(quad, p) < tile_.x1 && pixel_y(quad, p) < tile_.y1; }
+  // Index of the pixel's first sample.
+  std::size_t first_sample(std::size_t quad, int p) const {
+    return tile_.index(pixel_x(quad, p), pixel_y(quad, p)) * kSamples;
+  }
+
+ private:
+  std::int32_t pixel_x(std::size_t quad, int p) const { return 2 * x(quad) + p % 2; }
+  std::int32_t pixel_y(std::size_t quad, int p) const { return 2 * y(quad) + p / 2; }
+
+  const Tile& tile_;
+  std::int32_t columns_, rows_;
 };
 
-// A 32-bit hash as hardware would have it; the same for the same seed and quad, whatever else is rendered.
+// A 32-bit hash, as hardware might have it. It gives the same numbers for the same seed and quad, whatever else is
+// rendered.
 class QuadRandom {
  public:
   QuadRandom(std::uint32_t seed, std::int32_t x, std::int32_t y, SelectWork& work)
       : work_(work),
         state_(mix_bits(mix_bits(mix_bits(seed) ^ static_cast<std::uint32_t>(x)) ^ static_cast<std::uint32_t>(y))) {}
 
-  // One of the bits that are set.
+  // The number of one of the bits that are set.
   int pick(std::uint32_t bits) {
     state_ = mix_bits(state_ + 0x9e3779b9u);
     const std::uint32_t skips = state_ % static_cast<std::uint32_t>(std::popcount(bits));
@@ -39,13 +58,13 @@ class QuadRandom {
   std::uint32_t state_;
 };
 
-// The samples' materials, and which of them are inside the frame.
+// The materials of a quad's samples, and which of the samples are inside the frame.
 struct QuadMaterials {
-  std::uint32_t ids[kQuadSamples];
+  const std::uint32_t* ids;  // kQuadSamples
   std::uint32_t inside;
 };
 
-// Shading samples whose material has another one.
+// Returns the shading samples whose material has another shading sample, as bits.
 std::uint32_t to_spare(const std::uint32_t masks[4]) {
   std::uint32_t slots = 0;
   for (int i = 0; i < 4; ++i)
@@ -53,7 +72,8 @@ std::uint32_t to_spare(const std::uint32_t masks[4]) {
   return slots;
 }
 
-// Switches shading samples until every material has one or none is to spare.
+// Switches shading samples until every material has one or no shading sample can be spared. masks[i]: the samples of
+// shading sample i's material.
 void switch_samples(const QuadMaterials& quad, QuadRandom& random, std::uint32_t masks[4], std::uint8_t locations[4],
                     SelectWork& work) {
   std::uint32_t missing = quad.inside & ~(masks[0] | masks[1] | masks[2] | masks[3]);
@@ -75,7 +95,7 @@ void share_out(QuadRandom& random, const std::uint32_t masks[4], const std::uint
   for (int i = 0; i < 4; ++i) {
     std::uint32_t same = 0;
     for (int j = 0; j < 4; ++j) same |= std::uint32_t{masks[i] != 0 && masks[i] == masks[j]} << j;
-    if (same == 0 || std::countr_zero(same) != i) continue;  // nothing, or done with the first of them
+    if (same == 0 || std::countr_zero(same) != i) continue;  // no mask, or not the first of its material
     ++work.groups;
     for (int pixel = 0; pixel < 4; ++pixel) {
       std::uint32_t here = same;
@@ -91,108 +111,64 @@ void share_out(QuadRandom& random, const std::uint32_t masks[4], const std::uint
   }
 }
 
-OperationCounts match_cost() {
-  return count_operations([](OperationCounts& counts) {
-    Counted<std::uint32_t> ids[kQuadSamples];
-    for (auto& id : ids) id = Counted<std::uint32_t>(0, counts);
-    match_mask_scalar(ids, ids[0]);
-    counts.bit += kQuadSamples;  // gathering the comparisons into a mask
-  });
+// What the selection of all quads starts with.
+struct Start {
+  std::vector<std::uint32_t> inside;    // per quad: the samples inside the frame
+  std::vector<std::uint32_t> ids;       // the materials of the samples, kQuadSamples per quad
+  std::vector<std::uint32_t> masks;     // per shading sample, four per quad: the samples of its material
+  std::vector<std::uint8_t> locations;  // likewise: the sample where it is shaded
+};
+
+Start start(const QuadGrid& grid, const SampleTile& surface, const std::vector<std::uint32_t>& materials,
+            std::uint32_t jitter) {
+  const std::size_t count = grid.count();
+  Start all{std::vector<std::uint32_t>(count), std::vector<std::uint32_t>(count * kQuadSamples, kNoTriangle),
+            std::vector<std::uint32_t>(4 * count), std::vector<std::uint8_t>(4 * count)};
+  for (std::size_t q = 0; q < count; ++q) {
+    for (int p = 0; p < 4; ++p) {
+      all.locations[4 * q + static_cast<std::size_t>(p)] =
+          static_cast<std::uint8_t>(8u * static_cast<unsigned>(p) + jitter);
+      if (!grid.has_pixel(q, p)) continue;
+      all.inside[q] |= 0xffu << 8 * p;
+      const std::uint32_t* const triangle = surface.triangle.data() + grid.first_sample(q, p);
+      std::uint32_t* const id = all.ids.data() + kQuadSamples * q + kSamples * static_cast<std::size_t>(p);
+      for (std::size_t s = 0; s < kSamples; ++s)
+        id[s] = triangle[s] == kNoTriangle ? kNoTriangle : materials[triangle[s]];
+    }
+  }
+  match_masks(all.ids.data(), all.locations.data(), count, all.masks.data());
+  for (std::size_t i = 0; i < 4 * count; ++i)
+    all.masks[i] &= all.inside[i / 4] >> 8 * (i % 4) & 1 ? all.inside[i / 4] : 0;
+  return all;
 }
-
-using CountedBits = Counted<std::uint32_t>;
-
-// The quad's random state; its samples inside the frame, and those whose material has no shading sample; which shading
-// samples are of one material, four by four, and whether each is the first of them.
-OperationCounts quad_cost() {
-  return count_operations([](OperationCounts& counts) {
-    const CountedBits x(1, counts);
-    mix_bits(mix_bits(mix_bits(x) ^ x) ^ x);
-    for (int p = 0; p < 4; ++p) x& x;
-    x & ~(x | x | x | x);
-    counts += OperationCounts{.add = 4 * (4 * 2 + 1), .bit = 4 * (4 + 1)};
-  });
-}
-
-OperationCounts pick_cost() {
-  return count_operations([](OperationCounts& counts) {
-    const CountedBits x(1, counts);
-    mix_bits(x + x) % x;
-    counts.bit += 2;  // how many bits there are, and the number of the one
-  });
-}
-
-// For each pixel: of four shading samples, is it there; else any of them, is it the only one; the material's samples.
-OperationCounts group_cost() { return OperationCounts{.add = 4 * (4 + 1), .bit = 4 * (4 * 2 + 2)}; }
 
 }  // namespace
 
 std::vector<SampleQuad> sample_select(const SampleTile& surface, const Tile& tile,
                                       const std::vector<std::uint32_t>& materials, const SelectOptions& options,
                                       StageCounters& counters) {
-  const std::int32_t columns = (tile.width() + 1) / 2, rows = (tile.height() + 1) / 2;
-  const auto count = static_cast<std::size_t>(columns * rows);
-  std::vector<QuadMaterials> found(count);
-  std::vector<SampleQuad> quads(count);
-  std::vector<std::uint32_t> ids(count * kQuadSamples, kNoTriangle), masks(4 * count);
-  std::vector<std::uint8_t> locations(4 * count);
-  const auto first_sample = [&](std::size_t quad, int p) {  // of pixel p; past the surface's end when outside
-    const auto x = 2 * (static_cast<std::int32_t>(quad) % columns) + p % 2,
-               y = 2 * (static_cast<std::int32_t>(quad) / columns) + p / 2;
-    return x < tile.width() && y < tile.height() ? static_cast<std::size_t>(y * tile.width() + x) * 8
-                                                 : tile.pixels() * 8;
-  };
-  for (std::size_t q = 0; q < count; ++q) {
-    found[q].inside = 0;
-    for (int p = 0; p < 4; ++p) {
-      locations[4 * q + static_cast<std::size_t>(p)] =
-          static_cast<std::uint8_t>(8u * static_cast<unsigned>(p) + options.jitter);
-      const std::size_t at = first_sample(q, p);
-      if (at == tile.pixels() * 8) continue;
-      found[q].inside |= 0xffu << 8 * p;
-      for (std::size_t s = 0; s < 8; ++s) {
-        const std::uint32_t triangle = surface.triangle[at + s];
-        ids[kQuadSamples * q + 8 * static_cast<std::size_t>(p) + s] =
-            triangle == kNoTriangle ? kNoTriangle : materials[triangle];
-      }
-    }
-    std::copy_n(ids.data() + kQuadSamples * q, kQuadSamples, found[q].ids);
-  }
-  match_masks(ids.data(), locations.data(), count, masks.data());
-
-  std::uint64_t stored = 0;
+  const QuadGrid grid(tile);
+  Start all = start(grid, surface, materials, options.jitter);
+  std::vector<SampleQuad> quads(grid.count());
   SelectWork work;
-  for (std::size_t q = 0; q < count; ++q) {
-    QuadRandom random(options.seed, tile.x0 / 2 + static_cast<std::int32_t>(q) % columns,
-                      tile.y0 / 2 + static_cast<std::int32_t>(q) / columns, work);
-    std::uint32_t* const of_quad = masks.data() + 4 * q;
-    std::uint8_t* const where = locations.data() + 4 * q;
-    for (int p = 0; p < 4; ++p) of_quad[p] &= found[q].inside >> 8 * p & 1 ? found[q].inside : 0;
-    switch_samples(found[q], random, of_quad, where, work);
-    share_out(random, of_quad, where, quads[q], work);
+  for (std::size_t q = 0; q < grid.count(); ++q) {
+    QuadRandom random(options.seed, grid.x(q), grid.y(q), work);
+    std::uint32_t* const masks = all.masks.data() + 4 * q;
+    std::uint8_t* const locations = all.locations.data() + 4 * q;
+    switch_samples({all.ids.data() + kQuadSamples * q, all.inside[q]}, random, masks, locations, work);
+    share_out(random, masks, locations, quads[q], work);
     for (int p = 0; p < 4; ++p) {
-      quads[q].location[p] = where[p];
-      quads[q].triangle[p] =
-          of_quad[p] == 0 ? kNoTriangle : surface.triangle[first_sample(q, where[p] / 8) + where[p] % 8u];
-      stored += of_quad[p] != 0;
+      quads[q].location[p] = locations[p];
+      quads[q].triangle[p] = masks[p] == 0
+                                 ? kNoTriangle
+                                 : surface.triangle[grid.first_sample(q, locations[p] / 8) + locations[p] % kSamples];
+      work.stored += masks[p] != 0;
     }
   }
-
-  counters.items_in += tile.pixels() * 8;
-  counters.items_out += stored;
-  counters.ops += match_cost() * (4 * count + work.switched);
-  counters.ops += quad_cost() * count;
-  counters.ops += OperationCounts{.add = 24, .bit = 12} * work.searches;  // 12 pairs: there, equal; noted
-  counters.ops += OperationCounts{.bit = 3} * work.switched;              // within the frame; no longer missing
-  counters.ops += pick_cost() * work.picks;
-  counters.ops += OperationCounts{.add = 1, .bit = 1} * work.skips;
-  counters.ops += group_cost() * work.groups;
-  counters.ops += OperationCounts{.add = 2, .bit = 4} * work.given;  // the lowest bit, into its mask, off the list
-  counters.ops += OperationCounts{.bit = 1} * work.given_once;       // whose number that is
-  counters.bytes_read += tile.pixels() * 8 * 4;
-  counters.bytes_written += stored * kShadingSampleBytes;
-  counters.lanes_used += shaded_samples(quads);
-  counters.lanes_issued += 4 * count;
+  work.pixels = tile.pixels();
+  work.quads = grid.count();
+  work.shaded = shaded_samples(quads);
+  charge(work, counters);
   return quads;
 }
 

@@ -1,42 +1,32 @@
-// sample_select: the 8x visibility buffer -> four shading samples per 2x2 quad (decoupled visibility multisampling).
+// sample_select: the visibility buffer with 8 samples per pixel -> four shading samples per 2x2 quad (decoupled
+// visibility multisampling).
 //
-// Each pixel brings the sample at the frame's jitter position. Where a material of the quad has none, a sample of a
-// material that has several is switched to it, both chosen at random, so that no sample is starved. Then each of the
-// quad's 32 visibility samples is given to a shading sample of its material: one at the same pixel if there is one.
-// With more than four materials some visibility samples stay without.
+// Each pixel starts with the sample at the frame's jitter position. If a material of the quad has no shading sample,
+// one of a material that has several is switched to it. Both are chosen at random, so that no sample is starved. Then
+// each of the quad's 32 visibility samples is given to a shading sample of its material, to one at the same pixel if
+// there is one. If a quad has more than four materials, some visibility samples are not given to any shading sample.
 #pragma once
 
 #include <cstdint>
 #include <vector>
 
-#include "simd/match.h"
 #include "stages/cost/counters.h"
-#include "stages/samples/test_depth.h"
+#include "stages/data/sample_quad.h"
 
 namespace beampipe {
 
-// Bit 8 p + s of a mask is sample s of pixel p; pixel p = 0..3 is (p % 2, p / 2) of the quad. Shading sample p is
-// stored at pixel p. Those of pixels outside the frame (odd sizes) have no mask.
-struct SampleQuad {
-  std::uint32_t triangle[4];  // what is shaded; kNoTriangle: background
-  std::uint32_t mask[4];      // the visibility samples that take this colour
-  std::uint8_t location[4];   // where it is shaded: a bit number
-};
-
 struct SelectOptions {
-  std::uint32_t jitter = 0;  // 0..7: the sample that each pixel brings
-  std::uint32_t seed = 1;    // of the random choices: another one for each frame
+  std::uint32_t jitter = 0;  // the sample that each pixel starts with, 0..7
+  std::uint32_t seed = 1;    // for the random choices; a different one for each frame
 };
 
-// The quads of the tile, row by row. `surface` has 8 samples per pixel; `materials`: one per triangle, below
-// kNoTriangle, which is the background's.
+// Returns the quads of the tile, row by row. `surface` has 8 samples per pixel. `materials`: one per triangle, below
+// kNoTriangle, which stands for the background's material.
 std::vector<SampleQuad> sample_select(const SampleTile& surface, const Tile& tile,
                                       const std::vector<std::uint32_t>& materials, const SelectOptions& options,
                                       StageCounters& counters);
 
-// How many of the quads' shading samples show a triangle.
+// The number of shading samples in these quads that show a triangle.
 std::uint64_t shaded_samples(const std::vector<SampleQuad>& quads);
-
-inline constexpr std::uint64_t kShadingSampleBytes = 4 + 4 + 1;  // visibility id, mask, location
 
 }  // namespace beampipe

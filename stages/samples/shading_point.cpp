@@ -1,48 +1,9 @@
 #include "stages/samples/shading_point.h"
 
-#include "stages/beam/fragment_geometry.h"
-#include "stages/cost/counting.h"
+#include "stages/samples/sample_formulas.h"
+#include "stages/samples/shading_point_cost.h"
 
 namespace beampipe {
-namespace {
-
-// Is the point inside an edge? `not_owned`: 0 for an edge that owns what lies on it, else 1.
-template <class Int>
-bool is_inside(const EdgeAt<Int>& edge, Int x, Int y, Int not_owned) {
-  return edge.at(x, y) >= not_owned;
-}
-
-// The mean position of the samples whose bit is set, in 1/256 px from the cell's corner.
-template <class Bits, class Real>
-void mean_position(Bits mask, const Bits bits[], const Real x[], const Real y[], int samples, Real& mean_x,
-                   Real& mean_y) {
-  const Real zero(0.0f);
-  Real sum_x = zero, sum_y = zero;
-  for (int s = 0; s < samples; ++s) {
-    const bool covered = (mask & bits[s]) != Bits(0);
-    sum_x = sum_x + select(covered, x[s], zero), sum_y = sum_y + select(covered, y[s], zero);
-  }
-  const Real share = Real(1.0f) / bit_count(mask);
-  mean_x = sum_x * share, mean_y = sum_y * share;
-}
-
-OperationCounts centre_cost() {
-  return count_operations([](OperationCounts& counts) {
-    const Counted<std::int64_t> one(1, counts);
-    for (int k = 0; k < 3; ++k) is_inside(EdgeAt<Counted<std::int64_t>>{one, one, one}, one, one, one);
-  });
-}
-
-OperationCounts centroid_cost(int samples) {
-  return count_operations([&](OperationCounts& counts) {
-    std::vector<Counted<std::uint32_t>> bits(static_cast<std::size_t>(samples));
-    std::vector<Counted<float>> x(bits.size(), Counted<float>(1.0f, counts));
-    Counted<float> mean_x, mean_y;
-    mean_position(Counted<std::uint32_t>(1, counts), bits.data(), x.data(), x.data(), samples, mean_x, mean_y);
-  });
-}
-
-}  // namespace
 
 ShadingPoint shading_point(const SetupTriangle& triangle, const SampleFragment& fragment, const Sampling& sampling,
                            ShadeAt at) {
@@ -75,8 +36,7 @@ void count_centroids(const SetupTriangles& triangles, const std::vector<SampleFr
     ++centroids[tile.index(sampling.grid.pixel_x(fragment.x), sampling.grid.pixel_y(fragment.y))];
     ++moved;
   }
-  counters.ops += centre_cost() * fragments.size();
-  counters.ops += centroid_cost(sampling.pattern.count) * moved;
+  charge_shading_points(fragments.size(), moved, sampling.pattern.count, counters);
 }
 
 }  // namespace beampipe

@@ -1,18 +1,19 @@
-// Where a fragment is shaded: at its cell's centre or, where its triangle does not cover that, at the centroid of the
-// samples that it covers (D3D's and Vulkan's centroid interpolation).
+// The point where a fragment is shaded: the centre of its cell or, if its triangle does not cover that, the centroid of
+// the samples that it covers (centroid interpolation in D3D and Vulkan).
 #pragma once
 
 #include <glm/glm.hpp>
 #include <vector>
 
 #include "stages/cost/counters.h"
-#include "stages/raster/sample_raster.h"
+#include "stages/data/sample_fragment.h"
+#include "stages/data/setup_triangle.h"
 
 namespace beampipe {
 
 enum class ShadeAt {
-  centre,    // always: outside the triangle, what varies across it is extrapolated
-  centroid,  // where the triangle does not cover the centre; it lies inside the triangle
+  centre,    // always at the centre; if that is outside the triangle, varying attributes are extrapolated
+  centroid,  // at the centroid if the triangle does not cover the centre; the centroid lies inside the triangle
 };
 
 struct ShadingPoint {
@@ -22,8 +23,8 @@ struct ShadingPoint {
 ShadingPoint shading_point(const SetupTriangle& triangle, const SampleFragment& fragment, const Sampling& sampling,
                            ShadeAt at);
 
-// What ShadeAt::centroid costs: charges finding each fragment's point, and adds to `centroids`, one per pixel of the
-// tile, its fragments that are not shaded at the centre.
+// Charges what it costs to find each fragment's shading point with ShadeAt::centroid. Adds to `centroids`, one per
+// pixel of the tile, the number of fragments that are not shaded at the centre.
 void count_centroids(const SetupTriangles& triangles, const std::vector<SampleFragment>& fragments, const Tile& tile,
                      const Sampling& sampling, StageCounters& counters, std::vector<float>& centroids);
 

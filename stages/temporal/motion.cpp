@@ -8,91 +8,21 @@
 #include <limits>
 
 #include "simd/scalar.h"
-#include "stages/cost/counting.h"
-#include "stages/picture/shade.h"
-#include "stages/samples/mix_bits.h"
+#include "stages/data/mix_bits.h"
+#include "stages/temporal/motion_cost.h"
+#include "stages/temporal/temporal_formulas.h"
 
 namespace beampipe {
 namespace {
 
-// A position in pixels, in the last frame, of a point at (x, y) in normalized device coordinates and depth z. `m`:
-// to_last_frame's, column-major.
-template <class Real>
-void reproject(const Real m[16], Real x, Real y, Real z, Real width, Real height, Real& last_x, Real& last_y, Real& w) {
-  const auto row = [&](int r) { return m[r] * x + m[4 + r] * y + m[8 + r] * z + m[12 + r]; };
-  const Real one(1.0f), half(0.5f);
-  w = row(3);
-  const Real inverse = one / w;
-  last_x = (row(0) * inverse + one) * half * width;
-  last_y = (one - row(1) * inverse) * half * height;
-}
-
-// From a pixel's centre, in pixels, to where that was, and in front of the eye or not.
-template <class Real>
-bool move(const Real m[16], Real center_x, Real center_y, Real depth, Real width, Real height, Real& dx, Real& dy) {
-  const Real zero(0.0), one(1.0), two(2.0);
-  Real x, y, w;
-  reproject(m, two * center_x / width - one, one - two * center_y / height, two * lesser(depth, zero) + one, width,
-            height, x, y, w);
-  dx = x - center_x, dy = y - center_y;
-  return w > zero;
-}
-
-template <class Real>
-Real square_length(Real x, Real y) {
-  return x * x + y * y;
-}
-
-OperationCounts pixel_cost(std::size_t samples) {
-  return count_operations([&](OperationCounts& counts) {
-    const Counted<double> one(1.0, counts);
-    Counted<double> m[16], dx, dy;
-    for (Counted<double>& element : m) element = one;
-    for (std::size_t s = 1; s < samples; ++s) select(one < one, one, one);  // the nearest
-    const std::uint32_t table[1] = {};
-    const Counted<std::int32_t> index(0, counts);
-    fetch(table, index), fetch(table, index);  // its draw; the draw's matrix
-    move(m, one, one, one, one, one, dx, dy);
-    converted(to_float(dx)), converted(to_float(dy));
-  });
-}
-
-// Of a pixel: its samples' draws, each compared with those before it; the root of the greatest square, to fp16.
-OperationCounts contents_cost(std::size_t samples) {
-  return count_operations([&](OperationCounts& counts) {
-    const std::uint32_t table[1] = {};
-    const Counted<std::int32_t> index(0, counts);
-    for (std::size_t s = 0; s < samples; ++s) fetch(table, index);
-    for (std::size_t pair = 0; pair < samples * (samples - 1) / 2; ++pair) static_cast<void>(index == index);
-    converted(square_root(Counted<float>(1.0f, counts)));
-  });
-}
-
-// Of a draw in a pixel: its look and its matrix; where it was; the greater of two squares.
-OperationCounts draw_cost() {
-  return count_operations([](OperationCounts& counts) {
-    const std::uint32_t table[1] = {};
-    const Counted<std::int32_t> index(0, counts);
-    fetch(table, index), fetch(table, index);
-    static_cast<void>(Counted<std::uint32_t>(0, counts) ^
-                      Counted<std::uint32_t>(0, counts));  // the look, into the others
-    const Counted<double> one(1.0, counts);
-    Counted<double> m[16], dx, dy;
-    for (Counted<double>& element : m) element = one;
-    move(m, one, one, one, one, one, dx, dy);
-    const Counted<float> x(converted(to_float(dx))), y(converted(to_float(dy)));
-    greater(x, square_length(x, y));
-  });
-}
-
-constexpr std::uint32_t kHashStart = 0x9e3779b9u;  // not 0, which mix_bits leaves as it is
+constexpr std::uint32_t kHashStart = 0x9e3779b9u;  // not 0, because mix_bits maps 0 to 0
 
 std::uint32_t hash(std::uint32_t state, const glm::vec3& color) {
   for (int c = 0; c < 3; ++c) state = mix_bits(state ^ std::bit_cast<std::uint32_t>(color[c]));
   return state;
 }
 
-// Whose sample i is: behind the draws, the background.
+// The draw that sample i shows; for the background, the number of draws.
 std::size_t draw_at(const SampleTile& surface, std::size_t i, const std::vector<std::uint32_t>& draws,
                     const Frame& frame) {
   const std::uint32_t triangle = surface.triangle[i];
@@ -100,13 +30,11 @@ std::size_t draw_at(const SampleTile& surface, std::size_t i, const std::vector<
 }
 
 glm::vec2 pixel_motion(const glm::dmat4& to_last, double center_x, double center_y, float depth, const Frame& frame) {
-  double m[16];
-  for (int i = 0; i < 16; ++i) m[i] = to_last[i / 4][i % 4];
-  const double width = frame.width, height = frame.height;
-  double dx = 0, dy = 0;
-  if (!move<double>(m, center_x, center_y, depth, width, height, dx, dy))
-    return glm::vec2(std::numeric_limits<float>::infinity());
-  return {half(static_cast<float>(dx)), half(static_cast<float>(dy))};
+  Reprojection<double> reprojection{{}, static_cast<double>(frame.width), static_cast<double>(frame.height)};
+  for (int i = 0; i < 16; ++i) reprojection.m[i] = to_last[i / 4][i % 4];
+  const Movement<double> moved = movement<double>(reprojection, center_x, center_y, depth);
+  if (!moved.in_front) return glm::vec2(std::numeric_limits<float>::infinity());
+  return {half(static_cast<float>(moved.dx)), half(static_cast<float>(moved.dy))};
 }
 
 }  // namespace
@@ -145,14 +73,7 @@ std::vector<glm::vec2> motion(const SampleTile& surface, const Tile& tile, const
       vectors.push_back(pixel_motion(to_last[draw_at(surface, at, draws, frame)], x + 0.5, y + 0.5, *nearest, frame));
     }
   }
-  const std::size_t pixels = vectors.size();
-  counters.items_in += pixels * samples;
-  counters.items_out += pixels;
-  counters.ops += pixel_cost(samples) * pixels;
-  counters.bytes_read += pixels * (samples * kSampleDepthBytes + kVisibilityBytes);
-  counters.bytes_written += pixels * kMotionBytes;
-  counters.lanes_used += pixels;
-  counters.lanes_issued += pixels;
+  charge_motion(vectors.size(), samples, counters);
   return vectors;
 }
 
@@ -176,7 +97,7 @@ PixelContents contents(const SampleTile& surface, const Tile& tile, const Frame&
                        const std::vector<std::uint32_t>& looks, StageCounters& counters) {
   const std::size_t samples = surface.samples_per_pixel;
   PixelContents found;
-  std::uint64_t moved = 0;
+  std::uint64_t shown = 0;  // draws, in all pixels together
   std::vector<std::size_t> here;
   for (std::int32_t y = tile.y0; y < tile.y1; ++y) {
     for (std::int32_t x = tile.x0; x < tile.x1; ++x) {
@@ -193,14 +114,10 @@ PixelContents contents(const SampleTile& surface, const Tile& tile, const Frame&
       }
       found.looks.push_back(look);
       found.speeds.push_back(half(std::sqrt(fastest)));
-      moved += here.size();
+      shown += here.size();
     }
   }
-  const std::size_t pixels = found.looks.size();
-  counters.ops += contents_cost(samples) * pixels;
-  counters.ops += draw_cost() * moved;
-  counters.bytes_read += pixels * samples * kVisibilityBytes;  // the depths are at hand
-  counters.bytes_written += pixels * (kLookBytes + kSpeedBytes);
+  charge_contents(found.looks.size(), samples, shown, counters);
   return found;
 }
 

@@ -4,80 +4,12 @@
 #include <cmath>
 
 #include "simd/scalar.h"
-#include "stages/cost/counting.h"
 #include "stages/data/half_bits.h"
+#include "stages/temporal/temporal_cost.h"
+#include "stages/temporal/temporal_formulas.h"
 
 namespace beampipe {
 namespace {
-
-constexpr std::uint64_t kHistoryBytes = 8;  // fp16 RGBA
-
-// One channel: four texels weighted, clamped by as much as `clamped` says, blended with the new colour.
-template <class Real>
-Real blend_channel(const Real texels[4], const Real weights[4], Real low, Real high, Real clamped, Real color,
-                   Real blend) {
-  const Real old = texels[0] * weights[0] + texels[1] * weights[1] + texels[2] * weights[2] + texels[3] * weights[3];
-  const Real in_box = greater(low, lesser(high, old));
-  const Real kept = old + (in_box - old) * clamped;
-  return kept + (color - kept) * blend;
-}
-
-// Bilinear weights of the four texels around (x, y), of which (left, top) is the first; all in texels.
-template <class Real>
-void texel_weights(Real x, Real y, Real left, Real top, Real weights[4]) {
-  const Real one(1.0f), half(0.5f);
-  const Real fx = x - half - left, fy = y - half - top, rest_x = one - fx, rest_y = one - fy;
-  weights[0] = rest_x * rest_y, weights[1] = fx * rest_y, weights[2] = rest_x * fy, weights[3] = fx * fy;
-}
-
-// How much of the clamp is in force: the speed over that from which it is whole.
-template <class Real>
-Real clamp_part(Real speed, Real still_px) {
-  return lesser(speed / still_px, Real(1.0f));
-}
-
-using CountedReal = Counted<float>;
-
-// Of every pixel: where it was, and whether that is on the screen; the colour from fp16 and back.
-OperationCounts pixel_cost() {
-  return count_operations([&](OperationCounts& counts) {
-    const CountedReal one(1.0f, counts);
-    for (int axis = 0; axis < 2; ++axis) {
-      const CountedReal at = one + converted(one);
-      static_cast<void>(at >= one), static_cast<void>(at <= one);
-    }
-    for (int c = 0; c < 4; ++c) converted(converted(one));
-  });
-}
-
-// Of a pixel that has a history: its texels and its box, from fp16, and what is made of them.
-OperationCounts reuse_cost(bool fading) {
-  return count_operations([&](OperationCounts& counts) {
-    const CountedReal one(1.0f, counts), four[4] = {one, one, one, one};
-    CountedReal weights[4];
-    to_float(to_integer(one)), to_float(to_integer(one));  // the first texel
-    texel_weights(one, one, one, one, weights);
-    for (int value = 0; value < 4 * (4 + 2); ++value) converted(one);
-    if (fading) {
-      for (int tap = 1; tap < 4; ++tap) greater(one, one);  // the texel that weighs the most
-      const CountedReal fading_in = clamp_part(converted(one), one);
-      select(one != one, one, select(one > one, fading_in, one));  // by its look, and by whether anything is known
-    }
-    converted(one) * one;  // the blend by what is known
-    for (int c = 0; c < 4; ++c) blend_channel(four, weights, one, one, one, one, one);
-  });
-}
-
-// Of a neighbour: least and greatest, four channels from fp16.
-OperationCounts neighbor_cost() {
-  return count_operations([](OperationCounts& counts) {
-    const CountedReal one(1.0f, counts);
-    for (int c = 0; c < 4; ++c) {
-      const CountedReal color = converted(one);
-      lesser(one, color), greater(one, color);
-    }
-  });
-}
 
 glm::vec4 round_half(glm::vec4 color) {
   for (int c = 0; c < 4; ++c) color[c] = HalfBits(color[c]);
@@ -102,23 +34,16 @@ Taps taps_at(const History& history, float x, float y) {
   return taps;
 }
 
+// The part of the clamp that applies, 0..1.
 float clamp_part(const CurrentFrame& frame, std::size_t pixel, const History& history, const Taps& taps,
                  float still_px) {
   if (still_px == 0) return 1;
   const auto nearest = std::max_element(taps.weights, taps.weights + 4) - taps.weights;
   if (history.looks[taps.texels[nearest]] != frame.looks[pixel]) return 1;
-  return frame.known[pixel] > 0 ? clamp_part(frame.speeds[pixel], still_px) : 0;  // else no box
+  return frame.known[pixel] > 0 ? clamp_by_speed(frame.speeds[pixel], still_px) : 0;  // an unknown pixel has no box
 }
 
 }  // namespace
-
-CurrentFrame::CurrentFrame(std::uint32_t frame_width, std::uint32_t frame_height)
-    : width(static_cast<std::int32_t>(frame_width)), height(static_cast<std::int32_t>(frame_height)) {
-  const std::size_t pixels = std::size_t{frame_width} * frame_height;
-  color.resize(pixels), low.resize(pixels), high.resize(pixels), motion.resize(pixels);
-  looks.resize(pixels), speeds.resize(pixels);
-  known.assign(pixels, 1.0f);
-}
 
 void neighborhood_box(const Tile& tile, StageCounters& counters, CurrentFrame& frame) {
   std::uint64_t neighbors = 0;
@@ -136,11 +61,7 @@ void neighborhood_box(const Tile& tile, StageCounters& counters, CurrentFrame& f
       frame.low[at] = low, frame.high[at] = high;
     }
   }
-  neighbors -= tile.pixels();  // which are none of their own
-  counters.ops += neighbor_cost() * neighbors;
-  counters.ops.convert += (4 + 2 * 4) * tile.pixels();  // its own colour, from fp16; its box, into it
-  counters.bytes_read += (neighbors + tile.pixels()) * kCurrentColorBytes;
-  counters.bytes_written += tile.pixels() * kCurrentBoxBytes;
+  charge_box(tile.pixels(), neighbors - tile.pixels(), counters);  // pixels do not count as their own neighbours
 }
 
 void temporal(const CurrentFrame& frame, const TemporalOptions& options, const History& history, const Tile& tile,
@@ -171,19 +92,7 @@ void temporal(const CurrentFrame& frame, const TemporalOptions& options, const H
       ++reused;
     }
   }
-
-  const std::size_t pixels = tile.pixels();
-  counters.items_in += pixels;
-  counters.items_out += pixels;
-  const bool fading = options.still_px > 0;
-  counters.ops += pixel_cost() * pixels;
-  counters.ops += reuse_cost(fading) * reused;
-  counters.bytes_read += pixels * (kCurrentColorBytes + kCurrentBoxBytes + kMotionBytes);
-  counters.bytes_read += reused * 4 * kHistoryBytes;
-  if (fading) counters.bytes_read += pixels * (kLookBytes + kSpeedBytes) + reused * kLookBytes;
-  counters.bytes_written += pixels * kHistoryBytes;
-  counters.lanes_used += reused;
-  counters.lanes_issued += pixels;
+  charge_temporal(tile.pixels(), reused, options.still_px > 0, counters);
 }
 
 }  // namespace beampipe

@@ -1,5 +1,5 @@
-// What the fuzz targets share: a folder for the bytes to be read from, as a user's files are. libFuzzer ends without
-// destructors, so that run.sh removes it: it lies in the folder for temporary files.
+// What the fuzz targets share. A folder holds the bytes as a file, because the program reads users' files that way.
+// libFuzzer ends without calling destructors, so run.sh removes the folder, which lies in that for temporary files.
 #pragma once
 
 #include <cstdint>
@@ -33,7 +33,7 @@ inline std::string_view text_of(const std::uint8_t* data, std::size_t size) {
   return {reinterpret_cast<const char*>(data), size};
 }
 
-// Errors are one line.
+// Ends the program unless the message is one line.
 inline void require_one_line(std::string_view message) {
   if (message.empty()) std::abort();
   for (const char c : message)

@@ -1,5 +1,5 @@
-// Any bytes as an OBJ and, behind the first NUL, its material library: one error, or a mesh of finite numbers whose
-// parts fit together.
+// Reads any bytes as an OBJ file and, after the first NUL, its material library. They give an error of one line, or a
+// mesh of finite numbers whose parts fit together.
 #include <cmath>
 
 #include "tests/fuzz/fuzz_input.h"

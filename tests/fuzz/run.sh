@@ -1,7 +1,7 @@
 #!/usr/bin/env bash
 # Builds the fuzz targets with clang's libFuzzer and sanitizers, and runs each: tests/fuzz/run.sh [SECONDS each] [TARGET...]
-# What is found goes to build/fuzz/found/TARGET and is started from next time; a crash leaves its input in build/fuzz and
-# ends with an error.
+# Inputs that reach new code go to build/fuzz/found/TARGET, and the next run starts from them. A crash leaves its input
+# in build/fuzz and ends the script with an error.
 set -euo pipefail
 cd "$(dirname "${BASH_SOURCE[0]}")/../.."
 

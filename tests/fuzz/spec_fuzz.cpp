@@ -1,4 +1,4 @@
-// Any words as techniques: one error, or techniques with a framebuffer.
+// Parses any words as specs of techniques. Each gives an error or a technique with a framebuffer.
 #include "pipeline/technique.h"
 #include "tests/fuzz/fuzz_input.h"
 

@@ -1,4 +1,4 @@
-// Any bytes as a trace: one error, or a trace that comes back from a file as it went in.
+// Reads any bytes as a trace. They give an error of one line, or a trace that can be written and read again.
 #include "tests/fuzz/fuzz_input.h"
 #include "traces/trace_io.h"
 

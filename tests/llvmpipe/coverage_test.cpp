@@ -1,11 +1,11 @@
-// beampipe's raster against Mesa's llvmpipe, sample for sample.
+// Compares beampipe's raster with Mesa's llvmpipe, sample by sample.
 //
-// Both snap vertices to 1/256 px. Where vertices lie on that grid inside the frame both see the same triangle, and
-// coverage must be the same at every sample. Elsewhere they may see different ones: llvmpipe clips to the frame's sides
-// and snaps the new vertices, which bends edges, where beampipe has a guard band; and llvmpipe computes in float,
-// beampipe in double, so that a vertex very near the middle between two grid points can be snapped to either.
-// A triangle that differs is explained when beampipe's raster, given what llvmpipe saw (snapped.h), covers exactly the
-// samples that llvmpipe did.
+// Both snap vertices to 1/256 px. If the vertices lie on that grid and inside the frame, both see the same triangle,
+// and every sample must agree. Otherwise they may see different triangles, for two reasons. llvmpipe clips to the sides
+// of the frame and snaps the new vertices, which bends edges; beampipe has a guard band instead. And llvmpipe computes
+// in float, beampipe in double, so a vertex very near the middle between two grid points can be snapped to either of
+// them. A difference counts as explained if beampipe's raster covers exactly the samples that llvmpipe covers once it
+// is given one of the triangles that llvmpipe may have seen (snapped.h).
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -30,7 +30,8 @@ constexpr Tile kFrame{0, 0, kSize, kSize};
 
 using Triangle = ClipTriangle;
 
-// Clip space is x, y, -z - 2, -z of these (near plane at 1, no far one), exactly in float for few enough bits.
+// The projection turns a position into the clip coordinates x, y, -z - 2, -z, with the near plane at 1 and no far
+// plane. That is exact in float if the coordinates have few enough bits.
 SetupTriangles set_up(const Triangle& clip) {
   Trace trace;
   Mesh mesh;
@@ -51,7 +52,7 @@ SetupTriangles set_up(const Triangle& clip) {
 
 glm::vec4 clip_point(float x, float y, float w) { return {x, y, w - 2, w}; }
 
-// From pixels (y down); on the screen plane w = 2, where clip depth is 0.
+// A point given in pixels (y down), on the plane w = 2, where the clip depth is 0.
 glm::vec4 at_pixel(double x, double y) {
   return clip_point(static_cast<float>(2 * (x / (kSize / 2) - 1)), static_cast<float>(2 * (1 - y / (kSize / 2))), 2);
 }
@@ -70,7 +71,7 @@ std::vector<std::uint32_t> coverage(const SetupTriangles& triangles, int samples
   return masks;
 }
 
-// From a sample to the nearest edge line of the triangles, in 1/256 px.
+// The distance from a sample to the nearest edge line of the triangles, in 1/256 px.
 double distance_to_edge(const SetupTriangles& triangles, const SamplePattern& pattern, std::size_t pixel, int sample) {
   const auto s = static_cast<std::size_t>(sample);
   const auto x = static_cast<std::int64_t>(pixel % kSize) * kUnits + pattern.x[s];
@@ -87,8 +88,8 @@ double distance_to_edge(const SetupTriangles& triangles, const SamplePattern& pa
 
 struct Tally {
   std::uint64_t triangles = 0, samples = 0, covered = 0, differences = 0;
-  std::uint64_t clipped = 0, snapped = 0, unexplained = 0;  // triangles that differ, by reason
-  double farthest = 0;                                      // a differing sample from an edge, 1/256 px
+  std::uint64_t clipped = 0, snapped = 0, unexplained = 0;  // triangles with differences, by reason
+  double farthest = 0;  // the largest distance of a differing sample from an edge, in 1/256 px
 };
 
 class Coverage : public testing::Test {
@@ -122,7 +123,7 @@ class Coverage : public testing::Test {
       ++(!explained(triangle, expected) ? tally.unexplained : needs_clipping(triangle) ? tally.clipped : tally.snapped);
   }
 
-  // Is there one way to clip and snap the triangle that covers what was expected at each number of samples?
+  // Is there one way to clip and snap the triangle that gives the expected coverage at every number of samples?
   static bool explained(const Triangle& triangle, const std::map<int, std::vector<std::uint32_t>>& expected) {
     const std::vector<SetupTriangles> alternatives = snapped_alternatives(triangle, kSize);
     return std::any_of(alternatives.begin(), alternatives.end(), [&](const SetupTriangles& seen) {
@@ -184,7 +185,7 @@ TEST_F(Coverage, SmallTriangles) {
   EXPECT_EQ(tally.differences, 0u);
 }
 
-// Vertices and edges exactly on samples: 4x positions and centres are multiples of 32/256 px.
+// Vertices and edges lie exactly on samples: centres and the sample positions of 4x are multiples of 32/256 px.
 TEST_F(Coverage, EdgesThroughSamples) {
   const Tally tally = compare_many("edges through samples", 1500, [&] {
     return Triangle{grid_point(0, kSize * kUnits, 32), grid_point(0, kSize * kUnits, 32),
@@ -193,7 +194,7 @@ TEST_F(Coverage, EdgesThroughSamples) {
   EXPECT_EQ(tally.differences, 0u);
 }
 
-// From no area at all to a third of a pixel wide.
+// From triangles without any area to ones that are a third of a pixel wide.
 TEST_F(Coverage, Slivers) {
   const Tally tally = compare_many("slivers", 1500, [&] {
     const std::int64_t wide = integer(0, 2) == 0 ? 2 : 80;
@@ -214,7 +215,7 @@ TEST_F(Coverage, AlongTheFramesSides) {
   EXPECT_EQ(tally.differences, 0u);
 }
 
-// Triangles around a hub, at many angles; each must agree, so that their shared edges do.
+// Triangles around a common vertex, at many angles. If each agrees, their shared edges do too.
 TEST_F(Coverage, SharedEdges) {
   const auto hub_x = integer(28, 36) * kUnits + 128, hub_y = integer(28, 36) * kUnits + 96;
   int i = 0;
@@ -261,7 +262,7 @@ TEST_F(Coverage, Perspective) {
   });
 }
 
-// One or two vertices behind the near plane or the eye.
+// One or two vertices lie behind the near plane or the eye.
 TEST_F(Coverage, BehindTheEye) {
   compare_many("behind the eye", 1000, [&] {
     const auto point = [&](double low, double high) {

@@ -21,7 +21,7 @@ constexpr const char* kWhite = R"(#version 450
 out vec4 color;
 void main() { color = vec4(1.0); })";
 
-// One triangle over the whole frame, and each pixel's samples as bits of an unsigned integer.
+// Draws one triangle over the whole frame that turns the samples of each pixel into bits of an unsigned integer.
 constexpr const char* kFrameVertex = R"(#version 450
 void main() { gl_Position = vec4(gl_VertexID == 1 ? 3.0 : -1.0, gl_VertexID == 2 ? 3.0 : -1.0, 0.0, 1.0); })";
 
@@ -69,7 +69,7 @@ struct Llvmpipe::Objects {
   EGLContext context = EGL_NO_CONTEXT;
   GLsizei size = 0;
   GLuint draw = 0, gather = 0, vertex_array = 0;
-  GLuint surface[5] = {}, target[5] = {};  // by number of samples: 1 and 4
+  GLuint surface[5] = {}, target[5] = {};  // indexed by the number of samples, 1 or 4
   GLuint masks = 0, mask_target = 0;
 
   void create() {
@@ -77,7 +77,7 @@ struct Llvmpipe::Objects {
     gather = link(kFrameVertex, kGather);
     glGenVertexArrays(1, &vertex_array);
     glBindVertexArray(vertex_array);
-    glCreateTextures(GL_TEXTURE_2D, 1, &surface[1]);  // llvmpipe makes 4 of 1 for a multisample texture
+    glCreateTextures(GL_TEXTURE_2D, 1, &surface[1]);  // llvmpipe turns 1 sample into 4 for a multisample texture
     glTextureStorage2D(surface[1], 1, GL_R32F, size, size);
     glCreateTextures(GL_TEXTURE_2D_MULTISAMPLE, 1, &surface[4]);
     glTextureStorage2DMultisample(surface[4], 4, GL_R32F, size, size, GL_TRUE);
@@ -121,8 +121,8 @@ std::unique_ptr<Llvmpipe> Llvmpipe::start(int size, std::string& missing) {
   return mesa;
 }
 
-// Rows of a framebuffer object start at y = -1 in memory. Drawing upside down puts beampipe's row 0 there, so that
-// "top" means the same to both for edges and sample positions.
+// The first row of a framebuffer object in memory is the one at y = -1. Drawing upside down puts beampipe's row 0
+// there, so that both mean the same by "top" for edges and sample positions.
 std::vector<std::uint32_t> Llvmpipe::coverage(const glm::vec4 clip[3], int samples) {
   const Objects& objects = *objects_;
   glm::vec4 corners[3];

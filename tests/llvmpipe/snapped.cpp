@@ -9,10 +9,10 @@ namespace {
 
 constexpr int kUnits = 256;  // per pixel
 
-// Float positions are good to about 1/500 of a unit at 64 px, and clipping adds to it.
-constexpr double kUndecided = 0.02;  // units from the middle between two grid points
+// At 64 px, positions in float have errors of about 1/500 of a unit, and clipping adds to them.
+constexpr double kUndecided = 0.02;  // distance from the middle between two grid points, in units
 
-// Inner products that are >= 0 inside.
+// Planes whose inner product with a point is >= 0 inside the volume.
 constexpr std::array<std::array<double, 4>, 6> kViewVolume = {
     {{1, 0, 0, 1}, {-1, 0, 0, 1}, {0, 1, 0, 1}, {0, -1, 0, 1}, {0, 0, 1, 1}, {0, 0, -1, 1}}};
 
@@ -36,7 +36,7 @@ Polygon clip_to_view(const ClipTriangle& clip) {
   return polygon;
 }
 
-// The grid points that a coordinate may be snapped to: one or two.
+// The one or two grid points that a coordinate may be snapped to.
 std::vector<std::int32_t> snaps(double units) {
   const double down = std::floor(units), past = units - down;
   const auto low = static_cast<std::int32_t>(down);

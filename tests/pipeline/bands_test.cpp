@@ -1,4 +1,4 @@
-#include "pipeline/bands.h"
+#include "pipeline/bins/bands.h"
 
 #include <gtest/gtest.h>
 
@@ -27,7 +27,7 @@ SetupTriangles setup_of(const Trace& trace) {
   return vertex_setup(trace, trace.frames[0], unused);
 }
 
-// 100 layers, tiles of 1024 pixels, 10 bytes for each: 1,024,000 bytes a tile, 400 bytes a list.
+// 100 layers over tiles of 1024 pixels make 102,400 pairs of 10 bytes in a tile, and a list of 400 bytes.
 TEST(Bands, HoldAsManyTilesAsFit) {
   const Trace trace = stack_trace(96, 64, 100);
   const SetupTriangles triangles = setup_of(trace);
@@ -72,7 +72,7 @@ TEST(Bands, ListsAreThoseOfTheWholeFrame) {
   }
 }
 
-// Corners on pixel corners or anywhere, in the frame or far from it; long diagonals among them.
+// The corners lie on pixel corners or anywhere, inside the frame or far outside it. Some triangles are long diagonals.
 SetupTriangle random_triangle(Random& random, std::int32_t width, std::int32_t height) {
   const int reach = random.pick(std::array{1, 8, 40, 400});
   const std::int32_t left = random.int32(-reach, width), top = random.int32(-reach, height);
@@ -100,8 +100,8 @@ std::size_t count_pairs(const SetupTriangles& triangles, const Tile& tile) {
   return pairs.size();
 }
 
-// No tile that a triangle touches lacks it, and few lists hold one in vain: at the tips of slivers, and where the
-// borders of tiles and triangles meet.
+// Every tile that a triangle touches has it in its list. A few lists also hold a triangle that does not touch the tile:
+// at the tips of slivers, and where the border of a triangle meets that of a tile.
 TEST(Bands, ListsHoldWhatTilesTouch) {
   Random random(71);
   SCOPED_TRACE(random.name());
@@ -123,14 +123,14 @@ TEST(Bands, ListsHoldWhatTilesTouch) {
   EXPECT_LT(static_cast<double>(listed), 1.05 * static_cast<double>(touched));
 }
 
-// The quick look at the whole frame never takes a triangle for less than it is.
+// The quick estimate for the whole frame never counts fewer pairs than a triangle has.
 TEST(Bands, NoTriangleSlipsThroughTheLimit) {
   Random random(72);
   SCOPED_TRACE(random.name());
   Frame frame;
   frame.width = frame.height = 64;
   const TileGrid grid(frame, 64);
-  constexpr std::size_t kHuge = 1 << 20;  // bytes a pair
+  constexpr std::size_t kHuge = 1 << 20;  // bytes per pair
   for (int i = 0; i < 20'000; ++i) {
     SetupTriangles one;
     one.triangles.push_back(random_triangle(random, 64, 64));
@@ -154,7 +154,7 @@ TEST(Bands, ResultsAreThoseOfTheWholeFrame) {
     const Technique technique = parse_technique(spec);
     RunOptions options{2};
     const FrameResult whole = technique.render(trace, 0, options);
-    // Up to what the fullest tile needs, as the errors say it: one band holds few tiles.
+    // Raises the limit to what each error asks for, up to what the fullest tile needs. A band then holds few tiles.
     int errors = 0;
     for (options.memory_limit = 1;;) {
       try {
@@ -172,7 +172,7 @@ TEST(Bands, ResultsAreThoseOfTheWholeFrame) {
   }
 }
 
-// Techniques that work on a few triangles at a time keep lists of them.
+// Techniques that work on a few triangles at a time keep no pairs, but their lists alone can exceed the limit.
 TEST(Bands, ListsAloneMakeBandsToo) {
   const Trace trace = random_trace(150, 70, 2000, 3);
   for (const char* spec : {"beam:order=stream", "z3", "msaa:8", "dvm", "reference"}) {

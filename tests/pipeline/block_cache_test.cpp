@@ -8,7 +8,7 @@
 namespace beampipe {
 namespace {
 
-// Two sets of two ways, lines of 128 bytes: 4 sectors.
+// Two sets of two ways, with lines of 128 bytes, which are 4 sectors.
 constexpr CacheParameters kSmall{512, 2, 128};
 
 MemoryParameters memory() { return {}; }
@@ -21,7 +21,7 @@ std::ostream& operator<<(std::ostream& out, const Bytes& bytes) {
   return out << bytes.sector << " in sectors, " << bytes.dram << " of DRAM";
 }
 
-// What the counters have gained since the last call.
+// Tells how much the counters have grown since the last call.
 class Meter {
  public:
   StageCounters counters;
@@ -40,7 +40,7 @@ TEST(BlockCache, FetchesTheSectorsThatAreRead) {
   Meter meter;
   cache.read(1, 0, 40, 4, meter.counters);   // sector 1
   cache.read(1, 0, 60, 8, meter.counters);   // sectors 1 and 2, of the same request
-  cache.read(2, 0, 64, 32, meter.counters);  // another request for sector 2, which is there
+  cache.read(2, 0, 64, 32, meter.counters);  // another request for sector 2, which is in the cache
   cache.read(2, 1, 0, 128, meter.counters);  // another block
   cache.flush(meter.counters);
   EXPECT_EQ(meter.since(), (Bytes{2 * 32 + 32 + 128, 2 * 32 + 128}));
@@ -53,10 +53,10 @@ TEST(BlockCache, WritesBackWhatIsDirtyOnce) {
   cache.write(2, 0, 0, 32, meter.counters);
   cache.flush(meter.counters);
   EXPECT_EQ(meter.since(), (Bytes{64, 32}));
-  cache.write(3, 0, 8, 16, meter.counters);  // part of one: fetched first
+  cache.write(3, 0, 8, 16, meter.counters);  // part of a sector, which is fetched first
   cache.flush(meter.counters);
   EXPECT_EQ(meter.since(), (Bytes{32, 64}));
-  cache.write(4, 0, 0, 20, meter.counters);  // whole in two pieces of one request
+  cache.write(4, 0, 0, 20, meter.counters);  // a whole sector, in two pieces of one request
   cache.write(4, 0, 20, 12, meter.counters);
   cache.flush(meter.counters);
   EXPECT_EQ(meter.since(), (Bytes{32, 32}));
@@ -69,8 +69,8 @@ TEST(BlockCache, TheLeastRecentlyUsedLineOfItsSetGoes) {
   Meter meter;
   for (const std::size_t block : {0, 2, 0, 4})
     cache.read(static_cast<std::uint32_t>(block), block, 0, 32, meter.counters);
-  cache.read(9, 0, 0, 32, meter.counters);  // was used after 2: still there
-  cache.read(9, 2, 0, 32, meter.counters);  // gone
+  cache.read(9, 0, 0, 32, meter.counters);  // used more recently than block 2, so it is still there
+  cache.read(9, 2, 0, 32, meter.counters);  // evicted
   cache.read(9, 1, 0, 32, meter.counters);  // the other set
   cache.flush(meter.counters);
   EXPECT_EQ(meter.since(), (Bytes{7 * 32, 5 * 32}));
@@ -84,7 +84,7 @@ TEST(BlockCache, ClearedBlocksAreNotFetchedAndGoBackWhole) {
   EXPECT_EQ(meter.since(), (Bytes{128, 0}));
   cache.stream_read(0, meter.counters);
   EXPECT_EQ(meter.since(), (Bytes{128, 0}));
-  cache.write(1, 0, 4, 4, meter.counters);  // the rest of the block is clear, and memory does not know it yet
+  cache.write(1, 0, 4, 4, meter.counters);  // memory does not know yet that the rest of the block is cleared
   cache.flush(meter.counters);
   EXPECT_EQ(meter.since(), (Bytes{32, 128}));
   cache.stream_read(0, meter.counters);
@@ -103,11 +103,11 @@ TEST(BlockCache, CompressedBlocksMoveTheirCompressedSize) {
   EXPECT_EQ(meter.since(), (Bytes{32, 64})) << "fetched whole, and clean";
   cache.stream_read(0, meter.counters);
   EXPECT_EQ(meter.since(), (Bytes{128, 64}));
-  size = 128;  // no gain: raw
+  size = 128;  // compression gains nothing, so the block is stored raw
   cache.write(3, 0, 0, 4, meter.counters);
   cache.flush(meter.counters);
   EXPECT_EQ(meter.since(), (Bytes{32, 64 + 128}));
-  size = 1;  // a line of which only one sector is there cannot be compressed
+  size = 1;  // a line with only one sector in the cache cannot be compressed
   cache.write(4, 0, 0, 32, meter.counters);
   cache.flush(meter.counters);
   EXPECT_EQ(meter.since(), (Bytes{32, 32}));
@@ -129,7 +129,7 @@ TEST(BlockCache, CompressionAndModelCanBeSwitchedOff) {
   EXPECT_EQ(meter.since(), (Bytes{0, 0}));
 }
 
-// What a ROP cache holds costs L2 nothing; what an L2 is asked for does.
+// Requests that a ROP cache can answer do not count as L2 bytes. All requests to an L2 do.
 TEST(BlockCache, L2IsAskedForWhatTheCacheBeforeItLacksOrEvicts) {
   for (const BlockCache::Level level : {BlockCache::Level::rop, BlockCache::Level::l2}) {
     BlockCache cache(memory(), kSmall, level, 8, 128, false, nullptr);
@@ -155,10 +155,10 @@ TEST(BlockCache, ReadingThroughAnL1) {
   const auto read = [&](std::uint32_t key, std::size_t block, std::uint32_t first, std::uint32_t bytes) {
     l1.read(key, block, first, bytes, counters);
   };
-  read(1, 0, 0, 64);   // neither has it
-  read(2, 0, 32, 64);  // one sector of it L1 has
-  read(3, 1, 0, 32);   // block 0 leaves L1
-  read(4, 0, 0, 96);   // and is in L2
+  read(1, 0, 0, 64);   // in neither cache
+  read(2, 0, 32, 64);  // L1 has one of the two sectors
+  read(3, 1, 0, 32);   // evicts block 0 from L1
+  read(4, 0, 0, 96);   // block 0 is still in L2
   l1.flush(counters);
   l2.flush(counters);
   EXPECT_EQ(counters.sector_bytes, 64u + 64 + 32 + 96);

@@ -1,4 +1,5 @@
-// The listed buffers: constant where that is claimed, grown as stated where not, and what the heap really holds.
+// The buffers that a technique lists: some have a constant size, others grow by a stated rule, and together they are
+// what the heap really holds.
 #include <gtest/gtest.h>
 
 #include "pipeline/technique.h"
@@ -25,7 +26,7 @@ FrameResult render(const char* spec, const Trace& trace) {
   return parse_technique(spec).render(trace, 0, run);
 }
 
-// Triangles over the lower left half of one pixel, from far to near: none hides another.
+// Triangles over the lower left half of one pixel, from far to near, so that none hides a later one.
 Trace halves(int layers) {
   std::vector<PixelSpaceTriangle> triangles;
   for (int i = 0; i < layers; ++i) {
@@ -35,8 +36,8 @@ Trace halves(int layers) {
   return pixel_trace(4, 4, triangles);
 }
 
-// What grows with triangles alone, of a renderer that bins a frame; and the queue between stages, which is of a batch
-// of 512 triangles.
+// The buffers of binning, which grow with the number of triangles alone, and the queue between stages, which holds the
+// fragments of one batch of 512 triangles.
 bool is_per_triangle(const std::string& name) {
   return name == "setup_triangles" || name == "bin_lists" || name.starts_with("batch_");
 }
@@ -62,7 +63,7 @@ TEST(Buffers, TheABufferGrowsByARecordForEveryPairThatIsNotHidden) {
   for (const int layers : {1, 10, 100, 1000, 10000}) {
     const FrameResult sorted = render("beam", halves(layers)), published = render("beam:rules=paper", halves(layers));
     const auto count = static_cast<std::uint64_t>(layers);
-    // Its pixel, and those that it touches without an area.
+    // The pixel that a triangle covers, and those that it touches without covering any area.
     const std::uint64_t touched = sorted.stages.at(1).items_out / count;
     EXPECT_EQ(sorted.stages.at(1).items_out, touched * count);
     EXPECT_EQ(bytes_of(sorted, "a_buffer"), 16 * 4 + touched * count * 16) << layers;
@@ -73,7 +74,7 @@ TEST(Buffers, TheABufferGrowsByARecordForEveryPairThatIsNotHidden) {
   }
 }
 
-// Where everything is hidden but the nearest, the sorted A-buffer is flat too.
+// If all triangles but the nearest are hidden, the size of the sorted A-buffer is constant too.
 TEST(Buffers, HiddenPairsAreNotInTheABuffer) {
   for (const std::uint32_t layers : {10u, 1000u}) {
     const Trace trace = make_scene("stack", {.triangles = layers, .width = 4, .height = 4});
@@ -81,9 +82,9 @@ TEST(Buffers, HiddenPairsAreNotInTheABuffer) {
   }
 }
 
-// How much more the heap holds for more triangles: what is listed, and what the simulator works in beside it. That is,
-// for each triangle, the vertices of vertex_setup, and for each pair that waits with the others of its bin what
-// kPairBytes and kSortBytes say, which --memory-limit goes by.
+// More triangles make the heap grow by the listed buffers and by what the simulator itself needs: the vertices of
+// vertex_setup for each triangle, and for each pair that waits with the others of its bin kPairBytes and kSortBytes,
+// which --memory-limit is based on.
 TEST(Buffers, AreWhatIsAllocated) {
   constexpr double kVertexBytes = 400;
   struct Measured {
@@ -108,8 +109,8 @@ TEST(Buffers, AreWhatIsAllocated) {
   }
 }
 
-// Setting up a frame's draws takes memory as their triangles do, however many draws there are: twice the draws, twice
-// the memory, all of it counted that is given out on the way.
+// The memory to set up a frame's draws grows in proportion to their number. All allocations count, including those that
+// have been freed.
 TEST(Buffers, DrawsAreNotCopiedAgainForEachThatFollows) {
   const auto given_for = [](std::size_t draws) {
     Trace trace = halves(1);
@@ -122,7 +123,8 @@ TEST(Buffers, DrawsAreNotCopiedAgainForEachThatFollows) {
   EXPECT_LE(given_for(4000), 2.5 * given_for(2000));
 }
 
-// What a frame is refused by, before it is begun, is held, and is most of what is held.
+// A frame that needs too much memory is refused before it begins, by its working bytes per pixel. They are really
+// allocated, and they are most of what is allocated.
 TEST(Buffers, WorkingBytesAreHeldPerPixel) {
   Trace trace = halves(1);
   trace.frames[0].width = trace.frames[0].height = 512;

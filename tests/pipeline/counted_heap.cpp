@@ -34,7 +34,7 @@ void* operator new(std::size_t bytes) {
   beampipe::count(static_cast<std::int64_t>(malloc_usable_size(memory)));
   return memory;
 }
-void* operator new(std::size_t bytes, const std::nothrow_t&) noexcept {  // a sanitizer's would not count
+void* operator new(std::size_t bytes, const std::nothrow_t&) noexcept {  // a sanitizer's own operator would not count
   try {
     return operator new(bytes);
   } catch (const std::bad_alloc&) {

@@ -54,11 +54,10 @@ const std::map<std::string, StageTests>& tests_of_stages() {
        {"HandWorked.QuadsMsaa", "TwinCounts.DepthTest", "HandWorked.QuadsMsaa", "HandWorked.QuadsMsaa",
         "TwinCounts.DepthTest"}},
       {"stencil_test",
-       {"Counters.AcaaReadsDepthTwiceAndOneColor", "ShadingTwins.StencilTest", kMoves, kMoves,
-        "ShadingTwins.StencilTest"}},
+       {"Acaa.ReadsDepthTwiceAndOneColor", "ShadingTwins.StencilTest", kMoves, kMoves, "ShadingTwins.StencilTest"}},
       {"accumulate",
-       {"Counters.AcaaReadsDepthTwiceAndOneColor", "TwinCounts.Accumulate", "Counters.AcaaReadsDepthTwiceAndOneColor",
-        kMoves, "TwinCounts.Accumulate"}},
+       {"Acaa.ReadsDepthTwiceAndOneColor", "TwinCounts.Accumulate", "Acaa.ReadsDepthTwiceAndOneColor", kMoves,
+        "TwinCounts.Accumulate"}},
       {"sample_select", {kMoves, "SelectTwins.SampleSelect", kMoves, kMoves, "SelectTwins.SampleSelect"}},
       {"motion",
        {"Motion.CountsItsArithmetic", "TemporalTwins.Motion, TemporalTwins.Contents", "Motion.CountsItsArithmetic",
@@ -105,7 +104,7 @@ const std::map<std::string, std::string>& tests_of_frame_counters() {
   static const std::string keys = "ReportJson.HasTheKeysOfTheContract";
   static const std::map<std::string, std::string> tests = {
       {"logical_bytes, sector_bytes, l2_bytes, dram_bytes", keys},
-      {"a_buffer_peak_bytes", "Counters.BeamCountsEveryTouchedPixel"},
+      {"a_buffer_peak_bytes", "Beam.CountsEveryTouchedPixel"},
       {"buffers", "Buffers.AreWhatIsAllocated"},
       {"peak_bytes_per_pixel", keys},
       {"pixel_counters", keys},

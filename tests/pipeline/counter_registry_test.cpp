@@ -1,4 +1,4 @@
-// The registry of counters is complete, and nothing in it is dead.
+// The registry of counters is complete, and every counter in it moves somewhere.
 #include "stages/cost/counter_registry.h"
 
 #include <gtest/gtest.h>
@@ -35,7 +35,7 @@ constexpr const char* kSpecs[] = {"beam",
                                   "dvm",
                                   "reference"};
 
-// Two frames of small triangles all over the picture, some of them lit, some cut by the view's sides.
+// Two frames of small lit triangles all over the picture. The sides of the view cut some of them.
 Trace test_trace() {
   Trace trace = random_trace(40, 30, 400, 2);
   trace.frames.push_back(trace.frames.front());
@@ -46,8 +46,8 @@ Trace test_trace() {
   return trace;
 }
 
-// One triangle closes the first tile and the left of the second; two lie behind it, one of them in both tiles. The last
-// tile is empty.
+// One triangle closes the first tile and the left part of the second. Two triangles lie behind it, one of them in both
+// tiles. The last tile is empty.
 Trace hidden_trace() {
   const glm::vec3 gray(0.5f);
   return pixel_trace(128, 32,
@@ -56,7 +56,7 @@ Trace hidden_trace() {
                       {{{20, 2, 0.6}, {50, 2, 0.6}, {20, 9, 0.6}}, gray}});
 }
 
-// Sums over all frames of every technique, by stage.
+// The counters of each stage, summed over all frames of every technique.
 const std::map<std::string, StageCounters>& sums() {
   static const std::map<std::string, StageCounters> all = [] {
     std::map<std::string, StageCounters> by_stage;
@@ -97,7 +97,8 @@ TEST(CounterRegistry, EveryCounterMovesWhereItIsListed) {
   }
 }
 
-// The names of all tests, as ctest has them, without the scenes that some are run on: "Scenes/TwinCounts.Claim/fence".
+// The names of all tests as ctest lists them, without the scene that a name may contain, as in
+// "Scenes/TwinCounts.Claim/fence".
 std::set<std::string> names_of_tests() {
   const std::string command = std::string(BEAMPIPE_CTEST) + " --test-dir " + BEAMPIPE_BUILD_FOLDER + " -N";
   std::set<std::string> names;
@@ -111,7 +112,7 @@ std::set<std::string> names_of_tests() {
     const std::size_t dot = name.find('.');
     if (dot == name.npos) continue;
     name.erase(std::min(name.find('/', dot), name.size()));
-    names.insert(name.substr(name.find('/') + 1));  // all of it where there is none
+    names.insert(name.substr(name.find('/') + 1));  // the whole name if it has no slash
   }
   if (list) pclose(list);
   return names;
@@ -147,7 +148,7 @@ TEST(CounterRegistry, EveryPixelCounterMovesSomewhere) {
   for (const auto& [name, sum] : found) ADD_FAILURE() << name << " is not in the registry";
 }
 
-// BEAMPIPE_WRITE_DOCS=1 writes the page in place of comparing it.
+// With BEAMPIPE_WRITE_DOCS=1 the test writes the page first.
 TEST(CounterRegistry, ThePageIsWhatTheRegistrySays) {
   const std::filesystem::path page = std::filesystem::path(BEAMPIPE_SOURCE_FOLDER) / "docs/counters.md";
   if (std::getenv("BEAMPIPE_WRITE_DOCS")) std::ofstream(page, std::ios::binary) << counters_page();

@@ -1,4 +1,4 @@
-// The same picture and the same counters whatever the number of threads, the SIMD target and the order of work.
+// Pictures and counters do not depend on the number of threads, the SIMD target or the order of work.
 #include <gtest/gtest.h>
 
 #include "pipeline/technique.h"
@@ -43,8 +43,8 @@ void expect_same(const FrameResult& a, const FrameResult& b, const std::string& 
   EXPECT_EQ(a.buffers, b.buffers) << what;
 }
 
-// Every technique on every instruction set, with 1 to 16 threads in turn (all of them when thorough): each against one
-// thread and the best instruction set.
+// Compares every technique on every instruction set, with 1 to 16 threads in turn (with each of these numbers if
+// thorough), with one thread and the best instruction set.
 TEST(Determinism, AnyInstructionSetAndNumberOfThreads) {
   const Trace trace = random_trace(150, 70, 400, 3);
   int threads = 0;
@@ -60,11 +60,11 @@ TEST(Determinism, AnyInstructionSetAndNumberOfThreads) {
   }
 }
 
-// From the smallest tile, one quad, to one that is larger than the frame: pictures and counters.
+// Pictures and counters with tiles from a single quad to one that is larger than the frame.
 TEST(Determinism, AnyTileSize) {
   const Trace trace = random_trace(90, 70, 200, 5);
   RunOptions options;
-  options.memory.modelled = false;  // its caches go tile by tile
+  options.memory.modelled = false;  // its caches depend on the tile
   for (const char* spec : kSpecs) {
     const Technique technique = parse_technique(spec);
     options.tile_size = 0;
@@ -80,9 +80,9 @@ TEST(Determinism, AnyTileSize) {
         StageCounters a = found.stages[i], b = expected.stages[i];
         EXPECT_EQ(a.items_out, b.items_out) << a.stage;
         if (std::string(spec).starts_with("beam:rules=paper") && a.stage == "beam_fragment")
-          a.ops = b.ops = {};  // a triangle's edges are made ready for masks in each tile
-        if (spec == std::string("reference") && a.stage == "resolve") continue;  // leaves out tiles without a triangle
-        // What rasters set up, and passes of settling, are counted tile by tile.
+          a.ops = b.ops = {};  // the edges of a triangle are prepared for masks once per tile
+        if (spec == std::string("reference") && a.stage == "resolve") continue;  // it skips tiles without triangles
+        // Rasters count their setup once per tile, and `settle` counts its passes per tile.
         if (!a.stage.ends_with("_raster") && a.stage != "settle") {
           EXPECT_EQ(a, b) << a.stage;
         }
@@ -92,17 +92,17 @@ TEST(Determinism, AnyTileSize) {
 }
 
 TEST(Determinism, TheFrameIsTheSameWhereverTilesFallInIt) {
-  // The right and lower half of a frame, rendered alone: other tiles, same pixels.
+  // Rendered alone, the lower right quarter of a frame has the same pixels in other tiles.
   const Trace whole = random_trace(96, 96, 300, 9);
   Trace part = whole;
   Frame& frame = part.frames[0];
   frame.width = frame.height = 48;
-  glm::dmat4 half(1.0);  // the quadrant's clip space is [0, 1] x [-1, 0] of the whole's
+  glm::dmat4 half(1.0);  // the quarter's clip space is [0, 1] x [-1, 0] of that of the whole
   half[0][0] = half[1][1] = 2.0;
   half[3] = glm::dvec4(-1.0, 1.0, 0.0, 1.0);
   frame.projection = half * frame.projection;
   for (const std::string spec : kSpecs) {
-    if (spec.starts_with("dvm")) continue;  // its random choices hang on where in the frame a pixel is
+    if (spec.starts_with("dvm")) continue;  // its random choices depend on the pixel's place in the frame
     const Technique technique = parse_technique(spec);
     const Image a = technique.render(whole, 0, {2}).image, b = technique.render(part, 0, {2}).image;
     for (std::size_t y = 0; y < 48; ++y) {

@@ -1,4 +1,4 @@
-// Pixels whose error has one known cause, and that the parts are the whole.
+// The causes of errors: pixels whose error has one known cause, and sums over all causes.
 #include "pipeline/error_causes.h"
 
 #include <gtest/gtest.h>
@@ -19,11 +19,14 @@ struct Explained {
 
 Explained explain(const std::string& spec, const Trace& trace) {
   const Technique technique = parse_technique(spec);
-  const RunOptions run{2};
+  std::vector<PixelWeights> weights;
+  RunOptions run{2};
+  run.weights = &weights;
   const Image image = technique.render(trace, 0, run).image;
+  run.weights = nullptr;
   const Image reference = parse_technique("reference").render(trace, 0, run).image;
   Explained found;
-  found.layers = error_causes(trace, trace.frames[0], technique.weights(trace, 0, run), image, reference, run);
+  found.layers = error_causes(trace, trace.frames[0], weights, image, reference, run);
   for (std::size_t i = 0; i < image.rgba.size(); i += 4) {
     double squares = 0;
     for (std::size_t c = 0; c < 3; ++c) squares += std::pow(double(image.rgba[i + c]) - reference.rgba[i + c], 2);
@@ -32,13 +35,13 @@ Explained explain(const std::string& spec, const Trace& trace) {
   return found;
 }
 
-// The part of a single pixel's error that a cause has.
+// The part of the first pixel's error that is due to a cause.
 double part(const Explained& found, const std::string& cause) {
   return double(found.layers.at(cause).at(0)) / found.error.at(0);
 }
 
 const glm::vec3 kRed(1, 0, 0), kGreen(0, 1, 0), kBlue(0, 0, 1);
-constexpr double kMostly = 0.98;  // the rest is fp16
+constexpr double kMostly = 0.98;  // the rest comes from rounding to fp16
 
 // A triangle that fills the pixel [0, 1] x [0, 1], at depth z + slope x.
 PixelSpaceTriangle filling(double z, double slope, const glm::vec3& color) {
@@ -63,7 +66,7 @@ TEST(ErrorCauses, PartsAddUpToEachPixelsError) {
       double sum = 0;
       for (const auto& [cause, layer] : found.layers) sum += layer.at(i);
       ASSERT_NEAR(sum, found.error[i], 1e-6) << spec << ", pixel " << i;
-      // What the weights leave over is no more than fp16 makes of colours up to 1: they make the picture.
+      // The weights reproduce the picture except for rounding, which is that of fp16 for colours up to 1.
       ASSERT_LE(std::abs(found.layers.at("rounding").at(i)), 0.6e-3) << spec << ", pixel " << i;
       largest = std::max(largest, found.error[i]);
     }
@@ -85,7 +88,7 @@ TEST(ErrorCauses, CrossingTrianglesInterpenetrate) {
   EXPECT_GT(part(found, "interpenetration"), kMostly);
 }
 
-// The slanted triangle is the nearer one wherever the other is, but its centroid is the farther one.
+// The slanted triangle is nearer wherever both are, but its centroid is farther away.
 TEST(ErrorCauses, WhatIsNearerButSortedBehindIsOutOfOrder) {
   const PixelSpaceTriangle patch{{{0, 0, 0.45}, {0.2, 0.5, 0.45}, {0, 1, 0.45}}, kBlue};
   const Explained found = explain("alpha", pixel_trace(1, 1, {filling(0.4, 0.15, kRed), patch}));
@@ -93,7 +96,7 @@ TEST(ErrorCauses, WhatIsNearerButSortedBehindIsOutOfOrder) {
   EXPECT_GT(part(found, "order"), kMostly);
 }
 
-// 97/256 of the pixel is 12 1/8 positions, of which the mask has 12.
+// 97/256 of the pixel corresponds to 12 1/8 positions, but the mask can hold only 12.
 TEST(ErrorCauses, AnOutlineBetweenPositionsIsTheMasks) {
   std::vector<PixelSpaceTriangle> triangles = {filling(0.8, 0, kBlue)};
   triangles.push_back({{{97 / 256.0, -2, 0.2}, {97 / 256.0, 3, 0.2}, {-3, 0.5, 0.2}}, kRed});
@@ -102,7 +105,7 @@ TEST(ErrorCauses, AnOutlineBetweenPositionsIsTheMasks) {
   EXPECT_GT(part(found, "mask"), 0.9);
 }
 
-// 64 triangles around a point: those that cover no position lose their area, to the background for the most part.
+// A fan of 64 triangles: those that cover no position lose their area, mostly to the background.
 TEST(ErrorCauses, FansOfTinyTrianglesLeak) {
   std::vector<PixelSpaceTriangle> fan;
   const auto rim = [](int i) {
@@ -115,7 +118,7 @@ TEST(ErrorCauses, FansOfTinyTrianglesLeak) {
   EXPECT_GT(part(found, "tiny") + part(found, "leak"), kMostly);
 }
 
-// Red is beside green. Blue comes last and hides green's right end, but is taken from the mean of red and green.
+// Red lies beside green. Blue lies behind the right end of green, but is merged with the mean of red and green.
 TEST(ErrorCauses, RedGivesWayWhereGreenIsHidden) {
   std::vector<PixelSpaceTriangle> triangles;
   add_column(triangles, 0, 0.5, 0.2, 0, kRed);
@@ -126,8 +129,8 @@ TEST(ErrorCauses, RedGivesWayWhereGreenIsHidden) {
 }
 
 TEST(ErrorCauses, OnlyTechniquesThatTellTheirWeightsAreExplained) {
-  EXPECT_TRUE(parse_technique("beam:bits=64").weights);
-  EXPECT_FALSE(parse_technique("msaa:8").weights);
+  EXPECT_TRUE(parse_technique("beam:bits=64").has_weights);
+  EXPECT_FALSE(parse_technique("msaa:8").has_weights);
 }
 
 }  // namespace

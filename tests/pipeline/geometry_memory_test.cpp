@@ -1,4 +1,4 @@
-// What bins read of setup triangles and attributes: in order and by number.
+// How bins read setup triangles and attributes: in order, and by triangle number.
 #include "pipeline/memory/geometry_memory.h"
 
 #include <gtest/gtest.h>
@@ -52,7 +52,7 @@ TEST(GeometryMemory, AttributesInOrderAreReadOncePerTriangle) {
   AttributesInOrder attributes{MemoryParameters{}};
   attributes.read(std::vector<Fragment>{{0}, {0}, {0}, {2}}, counters);  // bytes 0 to 27 and 56 to 83: sectors 0 to 2
   EXPECT_EQ(counters.dram_bytes, 96u);
-  attributes.read(std::vector<Fragment>{{2}, {3}}, counters);  // to 111
+  attributes.read(std::vector<Fragment>{{2}, {3}}, counters);  // up to byte 111
   EXPECT_EQ(counters.dram_bytes, 128u);
   EXPECT_EQ(counters.sector_bytes, 128u);
 }

@@ -1,4 +1,4 @@
-// Two traces whose counters are worked out on paper (docs/accounting.md): every byte of every stage.
+// Every byte of every stage for two traces, worked out by hand (docs/accounting.md).
 #include <gtest/gtest.h>
 
 #include <filesystem>
@@ -34,9 +34,9 @@ void expect_bytes(const char* sample, const char* spec, const std::vector<Bytes>
   }
 }
 
-constexpr std::uint64_t kSetup = 116;  // bytes that a triangle's setup passes on: 88, and 28 of attributes
-constexpr std::uint64_t kTriangleSetup = 64 + 96 + 32;  // in sectors: vertices read, setup and attributes written
-constexpr std::uint64_t kTriangleRaster = 2 * 32 + 96;  // list written and read, setup read
+constexpr std::uint64_t kSetup = 116;  // bytes that the setup of a triangle passes on: 88, and 28 of attributes
+constexpr std::uint64_t kTriangleSetup = 64 + 96 + 32;  // bytes in sectors: vertices read, setup and attributes written
+constexpr std::uint64_t kTriangleRaster = 2 * 32 + 96;  // bytes in sectors: list written and read, setup read
 
 TEST(HandWorked, TriangleMsaa) {
   expect_bytes("paper_triangle.json", "msaa:1",
@@ -76,7 +76,7 @@ TEST(HandWorked, TriangleBeam) {
        {"resolve", 64, 64, 64 * 42, 384, 256 + 2048 + 384 + 384, 256 + 1024 + 384 + 384, 256 + 1024 + 384 + 384}});
 }
 
-// Half of 3.5 x 3.5 pixels, and on this triangle as many samples as area.
+// The triangle has half of the area of 3.5 x 3.5 pixels, and its number of samples is exactly proportional to its area.
 TEST(HandWorked, TriangleReference) {
   constexpr std::uint64_t kSamples = 4096 * 49 / 8;
   const Trace trace = read_trace(std::filesystem::path(BEAMPIPE_SOURCE_FOLDER) / "traces/samples/paper_triangle.json");
@@ -117,7 +117,7 @@ TEST(HandWorked, QuadsBeam) {
        {"resolve", 64, 64, 64 * 42, 384, 256 + 2048 + 384 + 384, 256 + 1280 + 384 + 384, 256 + 1280 + 384 + 384}});
 }
 
-// Pixel (2, 3) of the triangle, which is covered whole; and (0, 0), which nothing touches.
+// Pixel (2, 3), which the triangle covers entirely, and pixel (0, 0), which it does not touch.
 TEST(HandWorked, BytesOfAPixel) {
   const Trace trace = read_trace(std::filesystem::path(BEAMPIPE_SOURCE_FOLDER) / "traces/samples/paper_triangle.json");
   const auto bytes = [&](const char* spec, std::size_t x, std::size_t y) {

@@ -2,11 +2,21 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
+#include <cstdlib>
+#include <filesystem>
+#include <fstream>
+#include <iterator>
+#include <map>
+
+#include "pipeline/technique_table.h"
+
 namespace beampipe {
 namespace {
 
 TEST(Technique, FramebufferBytesAreThePublishedOnes) {
-  // Slide 23 of the paper's talk: beam 42 with colour; 8x and 32x MSAA with 4-byte depth and fp16 RGB 80 and 320.
+  // Slide 23 of Crassin et al. 2018: beam takes 42 bytes with colour. MSAA 8x and 32x with 4-byte depth and fp16 RGB
+  // take 80 and 320.
   EXPECT_EQ(parse_technique("beam").framebuffer_bytes_per_pixel(), 42u);
   EXPECT_EQ(parse_technique("beam:rules=paper").framebuffer_bytes_per_pixel(), 42u);
   EXPECT_EQ(parse_technique("beam:rules=paper,storage=text").framebuffer_bytes_per_pixel(), 32u);
@@ -16,7 +26,7 @@ TEST(Technique, FramebufferBytesAreThePublishedOnes) {
 }
 
 TEST(Technique, StreamingStatesFitTheirBudgets) {
-  EXPECT_EQ(parse_technique("beam:order=stream").framebuffer_bytes_per_pixel(), 80u);  // an 8x MSAA buffer
+  EXPECT_EQ(parse_technique("beam:order=stream").framebuffer_bytes_per_pixel(), 80u);  // as many as an MSAA 8x buffer
   EXPECT_EQ(parse_technique("beam:order=stream,bits=64,layers=1").framebuffer_bytes_per_pixel(), 32u);
   EXPECT_EQ(parse_technique("beam:order=stream,bits=256,layers=1").framebuffer_bytes_per_pixel(), 80u);
   EXPECT_EQ(parse_technique("z3").framebuffer_bytes_per_pixel(), 50u);
@@ -32,62 +42,176 @@ TEST(Technique, EveryMsaaRateOfTheRangeIsKnown) {
   }
 }
 
-TEST(Technique, WrongSpecsSayWhatWasExpected) {
-  for (const char* spec : {"",
-                           "bean",
-                           "msaa",
-                           "msaa:",
-                           "msaa:3",
-                           "msaa:0",
-                           "msaa:-8",
-                           "msaa:8x",
-                           "msaa:2048",
-                           "msaa:8,8",
-                           "beam:mask=fast",
-                           "beam:rules=paper,bits=64",
-                           "beam:bits=64,mask=exact",
-                           "beam:order=primitive",
-                           "beam:order=stream,layers=2",
-                           "beam:order=stream,passes=0",
-                           "beam:order=stream,passes=1.5",
-                           "beam:rules=paper,order=stream",
-                           "z3:layers=3",
-                           "beam:fuzzy=mix",
-                           "beam:rules=paper,tiny=2",
-                           "beam:rules=paper,overlap=none",
-                           "beam:rules=paper,slab=visible,slab=full",
-                           "beam:",
-                           "beam:mask=table,mask=table",
-                           "alpha:1",
-                           "reference:64",
-                           "beam ",
-                           "msaa:8,color=rgb8",
-                           "msaa:8,at=corner",
-                           "msaa:prepass",
-                           "msaa:8,prepass,prepass",
-                           "acaa",
-                           "acaa:512",
-                           "acaa:8,double=yes",
-                           "taa",
-                           "taa:32",
-                           "taa:8,blend=0",
-                           "taa:8,blend=1.5",
-                           "taa:8,blend=x",
-                           "dvm:8",
-                           "dvm:seed=-1",
-                           "dvm:seed=1.5",
-                           "dvm:seed=4294967296",
-                           "visibility:8",
-                           "deferred:"}) {
-    try {
-      parse_technique(spec);
-      ADD_FAILURE() << "'" << spec << "' was taken";
-    } catch (const SpecError& error) {
-      const std::string message = error.what();
-      EXPECT_NE(message.find(std::string("'").append(spec).append("'")), std::string::npos) << message;
-      EXPECT_NE(message.find("expected"), std::string::npos) << message;
-      EXPECT_EQ(message.find('\n'), std::string::npos) << message;
+// The error of a wrong spec, which must be one line that names the spec; without "technique 'SPEC': ".
+std::string error_of(const std::string& spec) {
+  try {
+    parse_technique(spec);
+  } catch (const SpecError& error) {
+    const std::string message = error.what(), start = "technique '" + spec + "': ";
+    EXPECT_EQ(message.find('\n'), std::string::npos) << message;
+    EXPECT_EQ(message.rfind(start, 0), 0u) << message;
+    return message.substr(std::min(start.size(), message.size()));
+  }
+  return "no error";
+}
+
+TEST(Technique, WrongSpecsSayWhatWouldBeRight) {
+  const std::string names = "the name must be beam, alpha, z3, msaa, acaa, deferred, visibility, taa, dvm or reference";
+  const std::string msaa_rates = "N of msaa:N must be 1, 2, 4, 8, 16, 32, 64, 128, 256, 512 or 1024";
+  const std::string acaa_rates = "N of acaa:N must be 1, 2, 4, 8, 16, 32, 64, 128 or 256";
+  const std::string taa_rates = "N of taa:N must be 1, 2, 4, 8 or 16";
+  const std::string of_beam = "; it has bits, storage, order and rules";
+  const std::string of_paper =
+      "; it has mask, sort, tiny, overlap, local, fuzzy, extents, slab, plane, thickness, storage, order and rules";
+  const std::string of_dvm = "; it has blend, seed and material";
+  for (const auto& [spec, error] : std::map<std::string, std::string>{
+           {"", names},
+           {"bean", names},
+           {"beam ", names},
+           {"bean:bits=64", names},
+           {"msaa", msaa_rates},
+           {"msaa:", msaa_rates},
+           {"msaa:3", msaa_rates},
+           {"msaa:0", msaa_rates},
+           {"msaa:08", msaa_rates},
+           {"msaa:-8", msaa_rates},
+           {"msaa:8x", msaa_rates},
+           {"msaa:N=8", msaa_rates},
+           {"msaa:2048", msaa_rates},
+           {"msaa:prepass", msaa_rates},
+           {"msaa:prepass,8", msaa_rates},
+           {"msaa:8,8", "'8' is there twice"},
+           {"msaa:8,16", "msaa:N has no option '16'; it has color, at and prepass"},
+           {"msaa:8,", "msaa:N has no option ''; it has color, at and prepass"},
+           {"msaa:8,N=8", "msaa:N has no option 'N'; it has color, at and prepass"},
+           {"msaa:8,color=rgb8", "color must be rgb16f or rgba16f"},
+           {"msaa:8,color", "color must be rgb16f or rgba16f"},
+           {"msaa:8,at=corner", "at must be centre or centroid"},
+           {"msaa:8,prepass,prepass", "'prepass' is there twice"},
+           {"msaa:8,prepass=1", "prepass must be without a value"},
+           {"beam:", "beam has no option ''" + of_beam},
+           {"beam:64", "beam has no option '64'" + of_beam},
+           {"beam:mask=fast", "beam has no option 'mask'" + of_beam},
+           {"beam:fuzzy=mix", "beam has no option 'fuzzy'" + of_beam},
+           {"beam:bits=64,mask=exact", "beam has no option 'mask'" + of_beam},
+           {"beam:bits=48", "bits must be 32, 64, 128 or 256"},
+           {"beam:bits=", "bits must be 32, 64, 128 or 256"},
+           {"beam:storage=text", "storage must be packed or float32"},
+           {"beam:mask=table,mask=table", "'mask' is there twice"},
+           {"beam:order=primitive", "order must be sort or stream"},
+           {"beam:rules=slides", "rules must be conserve or paper"},
+           {"beam:rules=conserve,rules=paper", "'rules' is there twice"},
+           {"beam:order=stream,layers=2", "layers must be 1 or 5"},
+           {"beam:order=stream,passes=0", "passes must be a whole number from 1 to 1000"},
+           {"beam:order=stream,passes=1.5", "passes must be a whole number from 1 to 1000"},
+           {"beam:order=stream,storage=packed",
+            "beam:order=stream has no option 'storage'; it has bits, layers, passes, order and rules"},
+           {"beam:rules=paper,order=stream", "beam:order=stream must be without rules=paper"},
+           {"beam:rules=paper,bits=64", "beam:rules=paper has no option 'bits'" + of_paper},
+           {"beam:rules=paper,mask=fast", "mask must be table or exact"},
+           {"beam:rules=paper,tiny=2", "tiny must be 1 or 3"},
+           {"beam:rules=paper,overlap=none", "overlap must be tiny, over, add or transition"},
+           {"beam:rules=paper,slab=visible,slab=full", "'slab' is there twice"},
+           {"z3:layers=3", "z3 has no option 'layers'; it has shape and merge"},
+           {"z3:shape=64x3", "shape must be 32x2, 32x3 or 128x3"},
+           {"alpha:1", "alpha has no options"},
+           {"reference:64", "reference has no options"},
+           {"visibility:8", "visibility has no options"},
+           {"deferred:", "deferred has no options"},
+           {"acaa", acaa_rates},
+           {"acaa:512", acaa_rates},
+           {"acaa:8,double=yes", "double must be none, stencil or saturate"},
+           {"taa", taa_rates},
+           {"taa:32", taa_rates},
+           {"taa:8,blend=0", "blend must be a number from 0.001 to 1"},
+           {"taa:8,blend=1.5", "blend must be a number from 0.001 to 1"},
+           {"taa:8,blend=nan", "blend must be a number from 0.001 to 1"},
+           {"taa:8,blend=x", "blend must be a number from 0.001 to 1"},
+           {"taa:8,blend=0.5x", "blend must be a number from 0.001 to 1"},
+           {"dvm:8", "dvm has no option '8'" + of_dvm},
+           {"dvm:=8", "dvm has no option ''" + of_dvm},
+           {"dvm:seed=-1", "seed must be a whole number from 0 to 4294967295"},
+           {"dvm:seed=1.5", "seed must be a whole number from 0 to 4294967295"},
+           {"dvm:seed=4294967296", "seed must be a whole number from 0 to 4294967295"}})
+    EXPECT_EQ(error_of(spec), error);
+}
+
+TEST(Technique, DefaultsMayBeWritten) {
+  for (const char* spec : {"beam:rules=conserve", "beam:order=sort", "beam:order=sort,rules=conserve,bits=64",
+                           "beam:rules=conserve,order=stream", "beam:layers=1,order=stream", "beam:tiny=3,rules=paper"})
+    EXPECT_EQ(parse_technique(spec).spec, spec);
+}
+
+// A spec with samples, where the technique needs them, and one option: "msaa:8,at=centroid".
+std::string spec_with(const TechniqueKind& kind, const std::string& item) {
+  std::string spec = title_of(kind);
+  if (spec.ends_with(":N")) spec.replace(spec.size() - 1, 1, "8");
+  return spec + (spec.find(':') == spec.npos ? ':' : ',') + item;
+}
+
+TEST(TechniqueTable, EveryWordIsTakenAndNoOther) {
+  std::size_t words = 0;
+  for (const TechniqueKind& kind : technique_kinds()) {
+    SpecOptions options;
+    kind.make([&](const SpecOptions& all) { options = all; });
+    for (const SpecOption& option : options) {
+      if (option.form != SpecOption::Form::value) continue;
+      for (const std::string& word : option.words) {
+        const std::string spec = spec_with(kind, option.key + '=' + word);
+        EXPECT_EQ(parse_technique(spec).spec, spec);
+        EXPECT_NE(option.expected.find(word), std::string::npos) << option.expected;
+        ++words;
+      }
+      EXPECT_EQ(error_of(spec_with(kind, option.key + "=other")), option.key + " must be " + option.expected);
     }
+  }
+  EXPECT_GT(words, 50u);
+}
+
+TEST(TechniqueTable, DefaultsAreAmongTheValues) {
+  for (const TechniqueKind& kind : technique_kinds()) {
+    SpecOptions options;
+    kind.make([&](const SpecOptions& all) { options = all; });
+    for (const SpecOption& option : options) {
+      if (option.form != SpecOption::Form::value || option.words.empty()) continue;
+      EXPECT_EQ(std::count(option.words.begin(), option.words.end(), option.fallback), 1)
+          << title_of(kind) << ", " << option.key << ": '" << option.fallback << "'";
+    }
+  }
+}
+
+TEST(TechniqueTable, HelpNamesEveryTechniqueAndOption) {
+  const std::string help = technique_help();
+  for (const TechniqueKind& kind : technique_kinds()) {
+    EXPECT_NE(help.find("\n  " + title_of(kind) + "\n    "), std::string::npos) << title_of(kind);
+    kind.make([&](const SpecOptions& options) {
+      for (const SpecOption& option : options) EXPECT_NE(help.find("      " + option.usage), std::string::npos);
+    });
+  }
+  EXPECT_NE(help.find("bits=32|64|128|256"), std::string::npos);
+  EXPECT_NE(help.find("weight of each new frame (0.1)"), std::string::npos);
+  for (std::size_t begin = 0; begin < help.size();) {
+    const std::size_t end = help.find('\n', begin);
+    EXPECT_LE(end - begin, 100u) << help.substr(begin, end - begin);
+    begin = end + 1;
+  }
+}
+
+// BEAMPIPE_WRITE_DOCS=1 writes the tables into the page in place of comparing them.
+TEST(TechniqueTable, ThePageHasItsTables) {
+  const std::filesystem::path file = std::filesystem::path(BEAMPIPE_SOURCE_FOLDER) / "docs/techniques.md";
+  std::ifstream stream(file, std::ios::binary);
+  std::string page{std::istreambuf_iterator<char>(stream), {}};
+  const std::string first = "<!-- tables of pipeline/technique_table.cpp: begin -->\n";
+  const std::string last = "<!-- tables of pipeline/technique_table.cpp: end -->\n";
+  const std::size_t begin = page.find(first) + first.size(), end = page.find(last);
+  ASSERT_NE(page.find(first), std::string::npos);
+  ASSERT_NE(end, std::string::npos);
+  if (std::getenv("BEAMPIPE_WRITE_DOCS")) {
+    page.replace(begin, end - begin, technique_tables());
+    std::ofstream(file, std::ios::binary) << page;
+  } else {
+    EXPECT_EQ(page.substr(begin, end - begin), technique_tables());
   }
 }
 

@@ -9,13 +9,13 @@
 
 namespace beampipe {
 
-// A triangle with corners in pixels (y down) and depths in 0..1, 0 the nearest.
+// The corners of a triangle are in pixels (y down), with depths from 0 (nearest) to 1.
 struct PixelSpaceTriangle {
   glm::dvec3 corners[3];
   glm::vec3 color;
 };
 
-// One orthographic frame whose triangles land exactly where they are written, to float precision.
+// One orthographic frame that shows the triangles at the given pixel coordinates, up to the precision of float.
 inline Trace pixel_trace(std::uint32_t width, std::uint32_t height, const std::vector<PixelSpaceTriangle>& triangles,
                          const glm::vec3& background = glm::vec3(0.0f)) {
   Trace trace;
@@ -40,7 +40,23 @@ inline Trace pixel_trace(std::uint32_t width, std::uint32_t height, const std::v
   return trace;
 }
 
-// Random triangles of mixed sizes that interpenetrate, the same for the same seed everywhere.
+// The lower left half of the square [1, 5] x [1, 5], made a little smaller so that it does not merely touch pixels
+// outside the square.
+inline Trace half_square() {
+  return pixel_trace(8, 8, {{{{1.25, 1.25, 0.5}, {4.75, 4.75, 0.5}, {1.25, 4.75, 0.5}}, glm::vec3(1)}});
+}
+
+// Two triangles that fill [x0, x1] x [y0, y1].
+inline std::vector<PixelSpaceTriangle> quad(double x0, double y0, double x1, double y1, double z,
+                                            const glm::vec3& color) {
+  return {{{{x0, y0, z}, {x1, y0, z}, {x1, y1, z}}, color}, {{{x0, y0, z}, {x1, y1, z}, {x0, y1, z}}, color}};
+}
+
+inline void append(std::vector<PixelSpaceTriangle>& to, const std::vector<PixelSpaceTriangle>& from) {
+  to.insert(to.end(), from.begin(), from.end());
+}
+
+// Random triangles of mixed sizes that interpenetrate. The same seed gives the same triangles on every machine.
 inline Trace random_trace(std::uint32_t width, std::uint32_t height, int count, std::uint32_t seed) {
   std::mt19937 bits(seed);
   const auto uniform = [&](double low, double high) { return low + (high - low) * (bits() / 4294967296.0); };

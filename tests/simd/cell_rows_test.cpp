@@ -10,7 +10,7 @@
 namespace beampipe {
 namespace {
 
-// Edges of every steepness, many of them exactly through a corner of a cell.
+// Edges of all slopes. Many of them pass exactly through a corner of a cell.
 EdgeOverCells random_edge(Random& random) {
   const auto slope = [&] {
     return random.integer(-1, 1) * random.integer(0, std::int64_t{1} << random.integer(0, 32));

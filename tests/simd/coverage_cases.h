@@ -22,7 +22,7 @@ struct Triangle {
   Corner p[3];
   float z[3] = {-0.5f, -0.5f, -0.5f};
 
-  std::int64_t area2() const {  // 2 x 65536 x the area in pixels; the inside is at E >= 0 when it is positive
+  std::int64_t area2() const {  // 2 x 65536 x the area in pixels; where positive, the inside is at E >= 0
     return (p[1].x - p[0].x) * (p[2].y - p[0].y) - (p[2].x - p[0].x) * (p[1].y - p[0].y);
   }
 };
@@ -47,7 +47,8 @@ inline Slopes depth_slopes(const Triangle& t) {
   return {t.z[0] + dzdu * (0.5 - double(t.p[0].x) / 256) + dzdv * (0.5 - double(t.p[0].y) / 256), dzdu, dzdv};
 }
 
-// The triangle seen from pixel (pixel_x, pixel_y) of the frame that its corners are given in.
+// The triangle as seen from pixel (pixel_x, pixel_y). Its corners are given in 1/256 px from the corner of pixel (0,
+// 0).
 inline PixelTriangleOf<std::int64_t> in_pixel(const Triangle& t, std::int64_t pixel_x = 0, std::int64_t pixel_y = 0) {
   PixelTriangleOf<std::int64_t> seen;
   for (int k = 0; k < 3; ++k) seen.x[k] = t.p[k].x - 256 * pixel_x, seen.y[k] = t.p[k].y - 256 * pixel_y;
@@ -63,8 +64,8 @@ inline TriangleInPixel kernel_input(const Triangle& t) {
   return seen;
 }
 
-inline Coverage<float> twin_coverage(const Triangle& t, std::int64_t pixel_x = 0, std::int64_t pixel_y = 0) {
-  return coverage_scalar<std::int64_t, float>(in_pixel(t, pixel_x, pixel_y));
+inline Coverage<float> coverage_on_float(const Triangle& t, std::int64_t pixel_x = 0, std::int64_t pixel_y = 0) {
+  return coverage_formula<std::int64_t, float>(in_pixel(t, pixel_x, pixel_y));
 }
 
 inline DepthRangeInput<float> depth_range_input(const Triangle& t) {
@@ -83,7 +84,7 @@ inline DepthRangeInput<float> depth_range_input(const Triangle& t) {
   return in;
 }
 
-// Polygon clipping (Sutherland and Hodgman 1974), nothing in common with the kernel's sums over edges.
+// Polygon clipping (Sutherland and Hodgman 1974). It has nothing in common with the formula's sums over edges.
 struct Point {
   double u, v;
 };
@@ -160,7 +161,7 @@ inline Triangle random_triangle(Random& random) {
       const std::int64_t own = mixed ? random.integer(0, 4) : kind;
       corner = {coordinate(own), coordinate(own)};
     }
-    if (sliver) {  // the third vertex beside the line through the others
+    if (sliver) {  // the third vertex lies close to the line through the others
       const double s = random.real(-0.2, 1.2);
       const auto near_line = [&](std::int64_t from, std::int64_t to) {
         const auto at = from + static_cast<std::int64_t>(s * static_cast<double>(to - from)) + random.integer(-1, 1);

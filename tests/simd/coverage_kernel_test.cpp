@@ -18,8 +18,8 @@ void expect_same_bits(const Row& found, const Row& expected, std::size_t i) {
   ASSERT_EQ(std::bit_cast<Bits>(found), std::bit_cast<Bits>(expected)) << "triangle " << i;
 }
 
-// Both kernels: coverage and depth range.
-void expect_kernels_equal_twins(const std::vector<Triangle>& triangles) {
+// For both kernels, coverage and depth range.
+void expect_same_on_every_target(const std::vector<Triangle>& triangles) {
   std::vector<TriangleInPixel> in;
   std::vector<DepthRangeInput<float>> ranges_in;
   for (const Triangle& t : triangles) in.push_back(kernel_input(t)), ranges_in.push_back(depth_range_input(t));
@@ -29,23 +29,23 @@ void expect_kernels_equal_twins(const std::vector<Triangle>& triangles) {
     coverage(in.data(), in.size(), out.data());
     depth_range(ranges_in.data(), in.size(), ranges.data());
     for (std::size_t i = 0; i < in.size(); ++i) {
-      expect_same_bits(out[i], twin_coverage(triangles[i]), i);
-      expect_same_bits(ranges[i], depth_range_scalar(ranges_in[i]), i);
+      expect_same_bits(out[i], coverage_on_float(triangles[i]), i);
+      expect_same_bits(ranges[i], depth_range_formula(ranges_in[i]), i);
     }
   });
 }
 
-TEST(CoverageKernel, EqualsTwinOnRandomTriangles) {
+TEST(CoverageKernel, EveryTargetEqualsTheFormulaOnRandomTriangles) {
   Random random(1);
   SCOPED_TRACE(random.name());
   std::vector<Triangle> triangles;
   for (int i = 0; i < 50'000; ++i) triangles.push_back(random_triangle(random));
-  expect_kernels_equal_twins(triangles);
+  expect_same_on_every_target(triangles);
 }
 
-// Vertices on a lattice through the pixel's corners and middles: edges along borders, touches in a point or along a
-// side.
-TEST(CoverageKernel, EqualsTwinOnTouches) {
+// Vertices on a lattice through the pixel's corners and the middles of its sides, so that edges run along the pixel's
+// border and triangles touch it in a point or along a side.
+TEST(CoverageKernel, EveryTargetEqualsTheFormulaOnTouches) {
   std::vector<Triangle> triangles;
   constexpr std::int64_t kAt[] = {-256, 0, 128, 256, 512};
   const auto point = [&](std::size_t i) { return Corner{kAt[i % 5], kAt[i / 5]}; };
@@ -55,11 +55,11 @@ TEST(CoverageKernel, EqualsTwinOnTouches) {
         const Triangle t{{point(i), point(j), point(k)}, {-0.0f, -0.5f, -1.0f}};
         if (t.area2() != 0) triangles.push_back(oriented(t));
       }
-  expect_kernels_equal_twins(triangles);
+  expect_same_on_every_target(triangles);
 }
 
-// Batches that do not fill the last vector, and nothing written past their end.
-TEST(CoverageKernel, EqualsTwinForEveryBatchSize) {
+// Batches that do not fill the last vector. Nothing may be written past their end.
+TEST(CoverageKernel, EveryTargetEqualsTheFormulaForEveryBatchSize) {
   Random random(2);
   SCOPED_TRACE(random.name());
   std::vector<Triangle> triangles;
@@ -79,8 +79,8 @@ TEST(CoverageKernel, EqualsTwinForEveryBatchSize) {
       coverage(in.data(), count, out.data());
       depth_range(ranges_in.data(), count, ranges.data());
       for (std::size_t i = 0; i < in.size(); ++i) {
-        expect_same_bits(out[i], i < count ? twin_coverage(triangles[i]) : untouched, i);
-        expect_same_bits(ranges[i], i < count ? depth_range_scalar(ranges_in[i]) : no_range, i);
+        expect_same_bits(out[i], i < count ? coverage_on_float(triangles[i]) : untouched, i);
+        expect_same_bits(ranges[i], i < count ? depth_range_formula(ranges_in[i]) : no_range, i);
       }
     }
   });

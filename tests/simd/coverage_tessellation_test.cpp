@@ -1,4 +1,4 @@
-// What the two sides of shared edges add up to.
+// The areas of triangles that share edges add up to the area of what they tile.
 #include <gtest/gtest.h>
 
 #include <cmath>
@@ -9,19 +9,19 @@
 namespace beampipe {
 namespace {
 
-// Shared edges cancel exactly; what is left is the rounding of each triangle's own sum, 2^-24 near 1.
+// Shared edges cancel exactly. What remains is the rounding of each triangle's own sum, 2^-24 for sums near 1.
 constexpr double kPerTriangle = 0x1p-24;
 
 struct Sum {
   double alpha = 0;
-  int triangles = 0;  // that took part
+  int triangles = 0;  // with alpha > 0
 };
 
 Sum sum_of_alpha(const std::vector<Triangle>& triangles) {
   Sum sum;
   for (const Triangle& t : triangles) {
     if (t.area2() == 0) continue;
-    const float alpha = twin_coverage(oriented(t)).alpha;
+    const float alpha = coverage_on_float(oriented(t)).alpha;
     sum.alpha += alpha;
     sum.triangles += alpha > 0;
   }
@@ -56,7 +56,7 @@ TEST(CoverageTessellation, FansCloseThePixel) {
   for (int round = 0; round < 400; ++round) {
     const std::int64_t reach = round % 4 == 0 ? kLimit : 600, spokes = random.integer(3, 300);
     const Corner hub{random.integer(-100, 356), random.integer(-100, 356)};
-    std::vector<Corner> rim = {{-reach, -reach}};  // around the border of a square, its corners included
+    std::vector<Corner> rim = {{-reach, -reach}};  // points along the border of a square, including its corners
     const auto along = [&](std::int64_t n) { return -reach + 2 * reach * (n + 1) / (spokes + 1); };
     for (std::int64_t n = 0; n < spokes; ++n) rim.push_back({along(n), -reach});
     rim.push_back({reach, -reach});
@@ -95,7 +95,9 @@ TEST(CoverageTessellation, GridsCloseThePixel) {
     const auto cells = static_cast<std::size_t>((256 - 2 * low) / cell + 1);
     std::vector<Corner> at((cells + 1) * (cells + 1));
     for (std::size_t i = 0; i < at.size(); ++i) {
-      const auto jitter = [&] { return random.integer(-cell / 3, cell / 3); };  // keeps every cell convex enough
+      const auto jitter = [&] {
+        return random.integer(-cell / 3, cell / 3);
+      };  // small enough to keep one diagonal inside each cell
       at[i] = {low + cell * static_cast<std::int64_t>(i % (cells + 1)) + jitter(),
                low + cell * static_cast<std::int64_t>(i / (cells + 1)) + jitter()};
     }
@@ -104,7 +106,7 @@ TEST(CoverageTessellation, GridsCloseThePixel) {
       for (std::size_t column = 0; column < cells; ++column) {
         const std::size_t i = row * (cells + 1) + column, below = i + cells + 1;
         const Triangle upper{{at[i], at[i + 1], at[below]}}, lower{{at[i + 1], at[below + 1], at[below]}};
-        if (upper.area2() <= 0 || lower.area2() <= 0) {  // the other diagonal
+        if (upper.area2() <= 0 || lower.area2() <= 0) {  // split along the other diagonal
           grid.push_back({{at[i], at[i + 1], at[below + 1]}});
           grid.push_back({{at[i], at[below + 1], at[below]}});
         } else {
@@ -116,7 +118,7 @@ TEST(CoverageTessellation, GridsCloseThePixel) {
   }
 }
 
-// A triangle's coverage of all pixels is its area; each pixel sees it translated.
+// A triangle's coverages of all pixels add up to its area. Each pixel sees the triangle from its own corner.
 TEST(CoverageTessellation, PixelsShareOutTheTriangle) {
   Random random(11);
   SCOPED_TRACE(random.name());
@@ -127,7 +129,7 @@ TEST(CoverageTessellation, PixelsShareOutTheTriangle) {
     t = oriented(t);
     double sum = 0;
     for (std::int64_t y = 0; y < 12; ++y)
-      for (std::int64_t x = 0; x < 12; ++x) sum += twin_coverage(t, x, y).alpha;
+      for (std::int64_t x = 0; x < 12; ++x) sum += coverage_on_float(t, x, y).alpha;
     ASSERT_NEAR(sum, static_cast<double>(t.area2()) / (2 * 65536), 144 * kPerTriangle);
   }
 }

@@ -38,8 +38,8 @@ std::uint64_t twin(const std::vector<CellDepth>& items, const SamplePattern& pat
   return passed;
 }
 
-// Several items in a cell, depths that tie, neighbours that a wide store must leave alone.
-TEST(DepthTest, KernelEqualsTwinForEveryPatternSize) {
+// Several items per cell, equal depths, and neighbouring samples that a wide store must not change.
+TEST(DepthCompare, KernelEqualsTwinForEveryPatternSize) {
   Random random(51);
   SCOPED_TRACE(random.name());
   constexpr float kSlopes[] = {0.0f, 0.0f, 1.0f / 4096, -1.0f / 4096, 1e-5f};
@@ -69,9 +69,9 @@ TEST(DepthTest, KernelEqualsTwinForEveryPatternSize) {
   }
 }
 
-TEST(DepthTest, NearerReplacesEqualDoesNot) {
+TEST(DepthCompare, NearerReplacesEqualDoesNot) {
   const SamplePattern pattern = standard_pattern(4);
-  // Triangle 1 takes all, 2 is as far, 3 is nearer in samples 0 and 2 only, 4 is farther.
+  // Triangle 1 takes all samples, 2 has the same depth, 3 is nearer but covers samples 0 and 2 only, 4 is farther.
   const std::vector<CellDepth> items = {{0, 0b1111u, 1, -0.5f, 0, 0},
                                         {0, 0b1111u, 2, -0.5f, 0, 0},
                                         {0, 0b0101u, 3, -0.75f, 0, 0},

@@ -1,4 +1,4 @@
-// Runs a check once per instruction set that kernels were compiled for and this machine has.
+// Runs a check once for each instruction set that the kernels were compiled for and that this machine has.
 #pragma once
 
 #include <gtest/gtest.h>
@@ -7,7 +7,7 @@
 
 namespace beampipe {
 
-// While `check` runs, the kernels dispatch to one target; afterwards to the machine's best again, even if it throws.
+// While `check` runs, all kernels use one target. Afterwards they use the machine's best one again, even if it throws.
 template <class Check>
 void on_every_target(Check&& check) {
   struct Restore {

@@ -24,7 +24,7 @@ namespace {
 
 HWY_EXPORT(own_target);
 
-// Were the helper to leave the dispatch alone, every comparison of kernels with their twins would test one target only.
+// If the helper did not change the dispatch, every comparison of kernels would test one target only.
 TEST(EveryTarget, DispatchesToEachSupportedTargetInTurnAndThenToTheBest) {
   const std::int64_t best = HWY_DYNAMIC_DISPATCH(own_target)();
   std::set<std::int64_t> seen;

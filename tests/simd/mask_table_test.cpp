@@ -14,9 +14,9 @@
 namespace beampipe {
 namespace {
 
-constexpr TableEdge kEverything{0, 0, 1.0f};  // an edge with the whole pixel inside
+constexpr TableEdge kEverything{0, 0, 1.0f};  // the whole pixel is inside this edge
 
-// As a pixel sees the edge a x + b y + c >= 0; c at its centre, everything in 1/256 px.
+// The edge a x + b y + c >= 0 as a pixel sees it, with x and y from the pixel's centre in 1/256 px.
 TableEdge table_edge(std::int64_t a, std::int64_t b, std::int64_t c) {
   bool flip = false;
   TableEdge edge;
@@ -28,7 +28,7 @@ TableEdge table_edge(std::int64_t a, std::int64_t b, std::int64_t c) {
 }
 
 std::uint32_t edge_mask(const TableEdge& edge, const MaskTable& table) {
-  return table_mask_scalar({{edge, kEverything, kEverything}}, table);
+  return table_mask_formula({{edge, kEverything, kEverything}}, table);
 }
 
 struct RandomEdge {
@@ -42,7 +42,7 @@ RandomEdge random_edge(Random& random) {
   if (edge.a == 0 && edge.b == 0) edge.b = random.one_in(2) ? 1 : -1;
   if (random.one_in(6)) edge.b = edge.a == 0 ? edge.b : 0;
   const std::int64_t cuts = 180 * (std::abs(edge.a) + std::abs(edge.b));
-  if (!random.one_in(4)) edge.c = random.integer(-cuts, cuts);  // else through the centre
+  if (!random.one_in(4)) edge.c = random.integer(-cuts, cuts);  // otherwise the edge passes through the centre
   return edge;
 }
 
@@ -88,7 +88,7 @@ std::vector<float> border_distances() {
   return distances;
 }
 
-TEST(MaskTable, ComplementsAtTheBordersOfBins) {
+TEST(MaskTable, ComplementsWhereTheColumnChanges) {
   const MaskTable table(hammersley_pattern());
   for (std::int32_t angle = 0; angle < kTableAngles / 2; ++angle)
     for (const float distance : border_distances())
@@ -96,7 +96,7 @@ TEST(MaskTable, ComplementsAtTheBordersOfBins) {
           << angle << ", " << distance;
 }
 
-TEST(MaskTable, KernelEqualsTwin) {
+TEST(MaskTable, EveryTargetEqualsTheFormula) {
   const MaskTable table(hammersley_pattern());
   Random random(32);
   SCOPED_TRACE(random.name());
@@ -113,14 +113,14 @@ TEST(MaskTable, KernelEqualsTwin) {
       std::vector<std::uint32_t> masks(triangles.size(), 0xdeadbeef);
       table_masks(triangles.data(), count, table, masks.data());
       for (std::size_t i = 0; i < triangles.size(); ++i)
-        ASSERT_EQ(masks[i], i < count ? table_mask_scalar(triangles[i], table) : 0xdeadbeef) << "triangle " << i;
+        ASSERT_EQ(masks[i], i < count ? table_mask_formula(triangles[i], table) : 0xdeadbeef) << "triangle " << i;
     }
   });
 }
 
-// A sample that the table puts on the wrong side of an edge lies near it: half a bin of distance, 1 / (64 sqrt 2) px,
-// and half a bin of angle, pi / 64, seen from at most half a diagonal away: 0.0458 px. On average it is a quarter of a
-// sample.
+// A sample that the table puts on the wrong side of an edge lies within 0.0458 px of the edge: half a step of distance,
+// 1 / (64 sqrt 2) px, and half a step of angle, pi / 64, seen from at most half a diagonal away. On average a quarter
+// of a sample is on the wrong side.
 TEST(MaskTable, DiffersFromTheExactMaskOnlyNearTheEdge) {
   const SamplePattern pattern = hammersley_pattern();
   const MaskTable table(pattern);

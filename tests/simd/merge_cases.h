@@ -13,13 +13,13 @@ namespace beampipe {
 
 inline constexpr std::uint32_t kAllBits = ~0u;
 
-// A surface of constant depth and colour; the colour is given before it is multiplied by alpha.
+// A surface of constant depth and colour. `red` and `green` are given before they are multiplied by alpha.
 inline Aggregate flat_surface(float alpha, std::uint32_t mask, float z, float red, float green = 0.0f) {
   return {alpha, mask, {z, 0.0f, 0.0f}, 0.0f, z, z, {red * alpha, green * alpha, 0.0f}};
 }
 
-// What the raster stages can send, the hard ones often: specks, full pixels, single bits, planes equal to those before
-// or as steep as slivers have them, depths of either zero.
+// What the raster stages can send, with hard cases often: specks, full pixels, single bits, planes equal to earlier
+// ones or as steep as those of slivers, depths of +0 and -0.
 inline MergeFragment random_fragment(Random& random) {
   constexpr float kAlphas[] = {1.0f, 0.99999994f, 5.1e-7f, 0.5f, 1.0f / 32};
   constexpr std::uint32_t kMasks[] = {kAllBits, 1u, 0x80000000u, 0x0000ffffu, 0xffff0000u, 0x55555555u};
@@ -44,7 +44,7 @@ inline MergeFragment random_fragment(Random& random) {
   return fragment;
 }
 
-// The published rules, each policy's other values alone, and all of the last ones together.
+// The published rules; the rules that differ from them in one value; and the last value of every policy together.
 inline std::vector<MergeRules> every_merge_rule() {
   using R = MergeRules;
   std::vector<MergeRules> rules(11);

@@ -12,8 +12,8 @@ namespace {
 
 using Bits = std::array<std::uint32_t, sizeof(Aggregate) / sizeof(std::uint32_t)>;
 
-// Aggregates of up to eight fragments, so that slabs have thickness and alphas have saturated.
-TEST(MergeKernel, EqualsTwinOnChains) {
+// Aggregates of up to eight fragments, so that slabs are thick and alphas reach 1.
+TEST(MergeKernel, EveryTargetEqualsTheFormulaOnChains) {
   const SamplePattern pattern = hammersley_pattern();
   const std::vector<MergeRules> every_rule = every_merge_rule();
   on_every_target([&] {
@@ -26,7 +26,7 @@ TEST(MergeKernel, EqualsTwinOnChains) {
         for (MergeFragment& fragment : fragments) fragment = random_fragment(random);
         std::vector<Aggregate> expected;
         for (std::size_t i = 0; i < fragments.size(); ++i)
-          expected.push_back(merge_scalar(fragments[i], aggregates[i], pattern, every_rule[rule]));
+          expected.push_back(merge_formula(fragments[i], aggregates[i], pattern, every_rule[rule]));
         merge(fragments.data(), fragments.size(), pattern, every_rule[rule], aggregates.data());
         for (std::size_t i = 0; i < aggregates.size(); ++i)
           ASSERT_EQ(std::bit_cast<Bits>(aggregates[i]), std::bit_cast<Bits>(expected[i]))
@@ -36,7 +36,7 @@ TEST(MergeKernel, EqualsTwinOnChains) {
   });
 }
 
-TEST(MergeKernel, EqualsTwinForEveryBatchSize) {
+TEST(MergeKernel, EveryTargetEqualsTheFormulaForEveryBatchSize) {
   const SamplePattern pattern = hammersley_pattern();
   Random random(42);
   SCOPED_TRACE(random.name());
@@ -48,7 +48,7 @@ TEST(MergeKernel, EqualsTwinForEveryBatchSize) {
       std::vector<Aggregate> aggregates(fragments.size(), old);
       merge(fragments.data(), count, pattern, {}, aggregates.data());
       for (std::size_t i = 0; i < aggregates.size(); ++i) {
-        const Aggregate expected = i < count ? merge_scalar(fragments[i], old, pattern, {}) : old;
+        const Aggregate expected = i < count ? merge_formula(fragments[i], old, pattern, {}) : old;
         ASSERT_EQ(std::bit_cast<Bits>(aggregates[i]), std::bit_cast<Bits>(expected)) << i << " of " << count;
       }
     }

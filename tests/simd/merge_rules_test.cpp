@@ -1,8 +1,11 @@
-// The rules of merging, on the scalar twin: what always holds, and cases that can be worked out by hand.
+// The rules of merging, by the formula on float: what always holds, and cases worked out by hand.
 #include <gtest/gtest.h>
 
 #include <algorithm>
+#include <array>
 #include <bit>
+#include <cmath>
+#include <cstdint>
 
 #include "tests/simd/merge_cases.h"
 #include "tests/thorough.h"
@@ -13,24 +16,30 @@ namespace {
 const SamplePattern kPattern = hammersley_pattern();
 
 Aggregate merged(const Aggregate& fragment, const Aggregate& old, const MergeRules& rules = {}) {
-  return merge_scalar<float, std::uint32_t>({fragment, 0u}, old, kPattern, rules);
+  return merge_formula<float, std::uint32_t>({fragment, 0u}, old, kPattern, rules);
 }
 Aggregate merged_tiny(const Aggregate& fragment, const Aggregate& old, const MergeRules& rules = {}) {
-  return merge_scalar<float, std::uint32_t>({fragment, kAllBits}, old, kPattern, rules);
+  return merge_formula<float, std::uint32_t>({fragment, kAllBits}, old, kPattern, rules);
+}
+
+MergeRules with_overlap(MergeRules::Overlap overlap) {
+  MergeRules rules;
+  rules.overlap = overlap;
+  return rules;
 }
 
 void expect_invariants(const MergeFragment& fragment, const Aggregate& old, const MergeRules& rules,
                        const Aggregate& now) {
   const Aggregate& in = fragment.surface;
   ASSERT_GE(now.alpha, 0.0f);
-  ASSERT_LE(now.alpha, 1.0f + 1.2e-7f);  // scaled down to 1, which rounds
+  ASSERT_LE(now.alpha, 1.0f + 1.2e-7f);  // scaling down to 1 rounds
   ASSERT_EQ(now.mask, in.mask | old.mask);
   if (rules.slab == MergeRules::Slab::full) {
     ASSERT_EQ(now.z_min, std::min(in.z_min, old.z_min));
     ASSERT_EQ(now.z_max, std::max(in.z_max, old.z_max));
   }
   ASSERT_GE(now.thickness, old.thickness);
-  for (int c = 0; c < 3; ++c) {  // convex combination of what went in, to rounding
+  for (int c = 0; c < 3; ++c) {  // a convex combination of both colours, except for rounding
     const float from_in = in.color[c] / in.alpha, from_old = old.alpha > 0 ? old.color[c] / old.alpha : from_in;
     ASSERT_GE(now.color[c], now.alpha * std::min(from_in, from_old) * 0.999998f);
     ASSERT_LE(now.color[c], now.alpha * std::max(from_in, from_old) * 1.000002f);
@@ -45,7 +54,7 @@ TEST(MergeRules, InvariantsOnChains) {
       Aggregate aggregate = kEmptyAggregate;
       for (int i = 0; i < 8; ++i) {
         const MergeFragment fragment = random_fragment(random);
-        const Aggregate now = merge_scalar(fragment, aggregate, kPattern, rules);
+        const Aggregate now = merge_formula(fragment, aggregate, kPattern, rules);
         ASSERT_NO_FATAL_FAILURE(expect_invariants(fragment, aggregate, rules, now))
             << "chain " << chain << ", fragment " << i;
         aggregate = now;
@@ -95,8 +104,8 @@ TEST(MergeRules, DisjointHalvesAdd) {
   EXPECT_FLOAT_EQ(now.color[1], 0.5f);
 }
 
-// Where the masks overlap nothing is known of how the coverages lie: independent, as OVER has it.
-// In front: 1/2, and of the old 1/2 x (1 - 1/2) = 1/4 remains.
+// Where masks overlap, the coverages count as independent, as in OVER. The surface in front shows 1/2, and the one
+// behind shows 1/2 x (1 - 1/2) = 1/4.
 TEST(MergeRules, OverlappingHalvesAreIndependent) {
   const Aggregate back = flat_surface(0.5f, kAllBits, -0.1f, 1, 0), front = flat_surface(0.5f, kAllBits, -0.9f, 0, 1);
   for (const Aggregate& now : {merged(front, back), merged(back, front)}) {
@@ -106,19 +115,19 @@ TEST(MergeRules, OverlappingHalvesAreIndependent) {
   }
 }
 
-// A tiny triangle lies beside what is there as long as there is room: 1/2 + 1/4 in the one position that it was given.
-TEST(MergeRules, TinyTriangleLiesBeside) {
+// A speck lies beside what is there as long as there is room: 1/2 + 1/4 in the one position that it was given.
+TEST(MergeRules, SpeckLiesBeside) {
   const Aggregate old = flat_surface(0.5f, kAllBits, -0.9f, 0, 1), tiny = flat_surface(0.25f / 32, 1u, -0.1f, 1, 0);
   const Aggregate beside = merged_tiny(tiny, old);
   EXPECT_FLOAT_EQ(beside.alpha, 0.5f + 0.25f / 32);
   EXPECT_FLOAT_EQ(beside.color[0], 0.25f / 32);
   EXPECT_FLOAT_EQ(beside.color[1], 0.5f);
-  // Not tiny, half of it is hidden.
+  // If it were no speck, half of it would be hidden.
   EXPECT_FLOAT_EQ(merged(tiny, old).alpha, 0.5f + 0.125f / 32);
 }
 
-// In a slab of depths -0.6 to -0.4 a fragment at -0.45 is 3/4 on the way to its back: 1/4 of it and 3/4 of the slab
-// show.
+// In a slab from -0.6 to -0.4, a fragment at -0.45 is 3/4 of the way to the back: 1/4 of the fragment and 3/4 of the
+// slab are visible.
 TEST(MergeRules, WithinTheSlabDeltaShares) {
   Aggregate old = flat_surface(1, kAllBits, -0.5f, 0, 1);
   old.thickness = 0.2f;
@@ -130,7 +139,7 @@ TEST(MergeRules, WithinTheSlabDeltaShares) {
   EXPECT_GE(now.thickness, 0.2f);
 }
 
-// Crossing planes: the fragment is nearer left of the middle, the old one right of it. 16 positions each.
+// Two planes cross. The fragment is nearer left of the middle, the aggregate right of it, with 16 positions each.
 TEST(MergeRules, CrossingPlanesShareThePixel) {
   Aggregate in = flat_surface(1, kAllBits, -0.5f, 1, 0);
   in.plane.dzdu = 0.2f;
@@ -141,8 +150,8 @@ TEST(MergeRules, CrossingPlanesShareThePixel) {
   EXPECT_FLOAT_EQ(now.color[1], 0.5f);
 }
 
-// A steep old plane passes, in parts of the pixel, far behind the depth range that its triangle really has there. What
-// lies behind that range is behind everywhere; what lies before it is in front everywhere.
+// A steep plane leaves the depth range that its triangle really has in the pixel. What lies behind that range is behind
+// everywhere, and what lies in front of it is in front everywhere.
 TEST(MergeRules, DepthRangeBoundsTheSlabOnBothSides) {
   for (const float slope : {-4.0f, 4.0f}) {
     Aggregate old = flat_surface(1, kAllBits, -0.5f, 0, 1);
@@ -157,33 +166,160 @@ TEST(MergeRules, DepthRangeBoundsTheSlabOnBothSides) {
   }
 }
 
-// The slab reaches the fragment: every covered position's depth is within half a thickness of the new plane.
+// A surface that covers `part` of every position of its mask.
+Aggregate masked_surface(std::uint32_t mask, const DepthPlane<float>& plane, float red, float green, float part = 1) {
+  Aggregate surface = flat_surface(part * static_cast<float>(std::popcount(mask)) / 32, mask, -0.5f, red, green);
+  surface.plane = plane;
+  surface.z_min = -4.0f, surface.z_max = 4.0f;  // no plane of these tests leaves this range within the pixel
+  return surface;
+}
+
+// Depths in integers: the planes are multiples of 2^-10, so depths at positions are multiples of 2^-18, exact in float.
+// Every position shows the nearer surface; at equal depth the earlier one.
+TEST(MergeRules, CrossingPlanesShareTheirOverlapByPosition) {
+  Random random(45);
+  SCOPED_TRACE(random.name());
+  int ties = 0;
+  for (int i = 0; i < 20'000; ++i) {
+    const auto integers = [&] {
+      return std::array{random.integer(-600, -400), random.integer(-200, 200), random.integer(-200, 200)};
+    };
+    const std::array<std::int64_t, 3> in = integers();
+    std::array<std::int64_t, 3> old = integers();
+    if (random.one_in(3)) old = {in[0], in[2], in[1]};  // equal depth where u = v
+    const auto plane = [](const std::array<std::int64_t, 3>& p) {
+      return DepthPlane<float>{static_cast<float>(p[0]) / 1024, static_cast<float>(p[1]) / 1024,
+                               static_cast<float>(p[2]) / 1024};
+    };
+    const std::uint32_t in_mask = random.word() | 1u, old_mask = random.word() | 2u;
+    int shows_in = 0, shows_old = 0;
+    for (std::size_t s = 0; s < 32; ++s) {
+      const auto depth = [&](const std::array<std::int64_t, 3>& p) {
+        return 256 * p[0] + p[1] * (kPattern.x[s] - 128) + p[2] * (kPattern.y[s] - 128);
+      };
+      const bool has_in = in_mask >> s & 1, has_old = old_mask >> s & 1;
+      const bool in_is_nearer = depth(in) < depth(old);
+      shows_in += has_in && (!has_old || in_is_nearer);
+      shows_old += has_old && (!has_in || !in_is_nearer);
+      ties += has_in && has_old && depth(in) == depth(old);
+    }
+    const Aggregate now = merged(masked_surface(in_mask, plane(in), 1, 0), masked_surface(old_mask, plane(old), 0, 1));
+    ASSERT_NEAR(now.color[0], shows_in / 32.0, 1e-6) << i;
+    ASSERT_NEAR(now.color[1], shows_old / 32.0, 1e-6) << i;
+    ASSERT_NEAR(now.alpha, std::popcount(in_mask | old_mask) / 32.0, 1e-6) << i;
+  }
+  EXPECT_GT(ties, 1'000);
+}
+
+// A slab of thickness 1 that a plane crosses: positions in front of it show the fragment, those behind it the
+// aggregate, and those within it a blend by Delta, which is taken at the mean of the positions within.
+TEST(MergeRules, WithinTheSlabDeltaIsTakenAtTheMeanPosition) {
+  Random random(46);
+  SCOPED_TRACE(random.name());
+  int mixed = 0;
+  for (int i = 0; i < 20'000; ++i) {
+    const float steep = random.one_in(2) ? 0.1f : 1.0f;
+    const auto plane = [&](float z) {
+      return DepthPlane<float>{z, random.real32(-steep, steep), random.real32(-steep, steep)};
+    };
+    const std::uint32_t mask = random.word() | 1u << random.integer(0, 31);
+    const float part_in = random.one_in(2) ? 1.0f : random.real32(0.1, 1);
+    const float part_old = random.one_in(2) ? 1.0f : random.real32(0.1, 1);
+    const Aggregate in = masked_surface(mask, plane(random.real32(-1, 0)), 1, 0, part_in);
+    Aggregate old = masked_surface(mask, plane(-0.5f), 0, 1, part_old);
+    old.thickness = 1.0f;
+    // 0 at the slab's front, 1 at its back.
+    const auto depth_in_slab = [&](double u, double v) {
+      return in.plane.z - old.plane.z + 0.5 + (in.plane.dzdu - double(old.plane.dzdu)) * u +
+             (in.plane.dzdv - double(old.plane.dzdv)) * v;
+    };
+    int in_front = 0, behind = 0, within = 0;
+    double u_sum = 0, v_sum = 0;
+    bool undecided = false;
+    for (std::size_t s = 0; s < 32; ++s) {
+      if (!(mask >> s & 1)) continue;
+      const double u = kPattern.x[s] / 256.0 - 0.5, v = kPattern.y[s] / 256.0 - 0.5, depth = depth_in_slab(u, v);
+      undecided |= std::abs(depth) < 1e-5 || std::abs(depth - 1) < 1e-5;
+      in_front += depth<0, behind += depth> 1;
+      if (depth < 0 || depth > 1) continue;
+      ++within, u_sum += u, v_sum += v;
+    }
+    if (undecided) continue;
+    mixed += within > 0 && in_front + behind > 0;
+    const double delta = within > 0 ? depth_in_slab(u_sum / within, v_sum / within) : 0;
+    const Aggregate now = merged(in, old, random.one_in(2) ? with_overlap(MergeRules::Overlap::over) : MergeRules{});
+    const double red = part_in * (in_front + behind * (1.0 - part_old) + within * (1 - delta));
+    const double green = part_old * (in_front * (1.0 - part_in) + behind + within * delta);
+    ASSERT_NEAR(now.color[0], red / 32, 2e-6) << i;
+    ASSERT_NEAR(now.color[1], green / 32, 2e-6) << i;
+  }
+  EXPECT_GT(mixed, 5'000);
+}
+
+// Two surfaces beside each other that are larger than their masks, 1 in half of the positions and 1/2 in the other
+// half, are scaled down to the pixel: 2/3 and 1/3.
+TEST(MergeRules, AreasAboveOneAreScaled) {
+  const Aggregate now =
+      merged(flat_surface(1.0f, 0x0000ffffu, -0.1f, 1, 0), flat_surface(0.5f, 0xffff0000u, -0.9f, 0, 1));
+  EXPECT_FLOAT_EQ(now.alpha, 1.0f);
+  EXPECT_FLOAT_EQ(now.color[0], 2.0f / 3);
+  EXPECT_FLOAT_EQ(now.color[1], 1.0f / 3);
+}
+
+TEST(MergeRules, PlanesAreMeansByArea) {
+  Random random(47);
+  SCOPED_TRACE(random.name());
+  for (int i = 0; i < 20'000; ++i) {
+    const auto surface = [&] {
+      Aggregate of = flat_surface(random.real32(0.01, 1), random.word() | 1u, random.real32(-1, 0), 1);
+      of.plane.dzdu = random.real32(-1, 1), of.plane.dzdv = random.real32(-1, 1);
+      return of;
+    };
+    const Aggregate in = surface(), old = surface(), now = merged(in, old);
+    const double area = double(in.alpha) + old.alpha;
+    const auto mean = [&](float of_in, float of_old) { return (of_in * in.alpha + double(of_old) * old.alpha) / area; };
+    ASSERT_NEAR(now.plane.z, mean(in.plane.z, old.plane.z), 1e-6) << i;
+    ASSERT_NEAR(now.plane.dzdu, mean(in.plane.dzdu, old.plane.dzdu), 1e-6) << i;
+    ASSERT_NEAR(now.plane.dzdv, mean(in.plane.dzdv, old.plane.dzdv), 1e-6) << i;
+  }
+}
+
+// The slab reaches the fragment: at every covered position the fragment is within half the thickness of the new plane.
 TEST(MergeRules, ThicknessReachesTheFragment) {
   Random random(44);
   SCOPED_TRACE(random.name());
+  MergeRules containing;
+  containing.thickness = MergeRules::Thickness::containing;
   for (int i = 0; i < 20'000; ++i) {
-    const MergeFragment first = random_fragment(random), second = random_fragment(random);
-    const Aggregate now = merge_scalar(second, merge_scalar(first, kEmptyAggregate, kPattern, {}), kPattern, {});
-    const Aggregate& in = second.surface;
+    const MergeFragment fragments[3] = {random_fragment(random), random_fragment(random), random_fragment(random)};
+    const MergeRules rules = random.one_in(2) ? containing : MergeRules{};
+    const Aggregate old =
+        merge_formula(fragments[1], merge_formula(fragments[0], kEmptyAggregate, kPattern, rules), kPattern, rules);
+    const Aggregate now = merge_formula(fragments[2], old, kPattern, rules);
+    const Aggregate& in = fragments[2].surface;
+    double farthest = 0, moved = 0;
     for (std::size_t s = 0; s < 32; ++s) {
-      if (!(in.mask >> s & 1)) continue;
       const double u = kPattern.x[s] / 256.0 - 0.5, v = kPattern.y[s] / 256.0 - 0.5;
       const double z =
           std::clamp(in.plane.z + in.plane.dzdu * u + in.plane.dzdv * v, double(in.z_min), double(in.z_max));
       const double middle = now.plane.z + now.plane.dzdu * u + now.plane.dzdv * v;
-      const double rounding = 1e-6 * (1 + std::abs(double(now.plane.dzdu)) + std::abs(double(now.plane.dzdv)));
-      ASSERT_LE(std::abs(z - middle), now.thickness / 2 + rounding);
+      const double old_middle = old.plane.z + old.plane.dzdu * u + old.plane.dzdv * v;
+      if (in.mask >> s & 1) farthest = std::max(farthest, std::abs(z - middle));
+      if (old.mask >> s & 1) moved = std::max(moved, std::abs(old_middle - middle));
     }
+    const auto steepness = [](const DepthPlane<float>& plane) {
+      return std::abs(double(plane.dzdu)) + std::abs(double(plane.dzdv));
+    };
+    const double size = steepness(now.plane) + steepness(in.plane) + steepness(old.plane) + now.thickness;
+    const double rounding = 1e-6 * (1 + size);
+    ASSERT_LE(farthest, now.thickness / 2 + rounding);
+    // Nor is it thicker than it must be.
+    const double kept = rules == containing ? old.thickness + 2 * moved : old.thickness;
+    ASSERT_NEAR(now.thickness, std::max(kept, 2 * farthest), rounding) << i;
   }
 }
 
-MergeRules with_overlap(MergeRules::Overlap overlap) {
-  MergeRules rules;
-  rules.overlap = overlap;
-  return rules;
-}
-
-// 1/4 over 1/2: independent 1/4 + 1/2 x 3/4, beside each other 1/4 + 1/2.
+// 1/4 over 1/2: independent coverages give 1/4 + 1/2 x 3/4, coverages beside each other 1/4 + 1/2.
 TEST(MergeRules, OverlapIsIndependentOrBeside) {
   using Overlap = MergeRules::Overlap;
   const Aggregate back = flat_surface(0.5f, kAllBits, -0.1f, 0, 1), front = flat_surface(0.25f, kAllBits, -0.9f, 1, 0);
@@ -196,8 +332,8 @@ TEST(MergeRules, OverlapIsIndependentOrBeside) {
   }
 }
 
-// Slide 12's transition: the aggregate leaves half of its mask open, and the two lie as far apart as they span in
-// depth: fuzziness 1/2 x 1, halfway between 0.75 and 0.625. At the same depth it is ADD.
+// The transition of slide 12. The aggregate leaves half of its mask open, and the distance of the two is all of their
+// depth range: a fuzziness of 1/2 x 1, halfway between 0.75 and 0.625. At the same depth it is ADD.
 TEST(MergeRules, TransitionGoesFromAddToOverWithDistance) {
   const MergeRules rules = with_overlap(MergeRules::Overlap::transition);
   const Aggregate old = flat_surface(0.5f, kAllBits, -0.9f, 0, 1);
@@ -205,19 +341,57 @@ TEST(MergeRules, TransitionGoesFromAddToOverWithDistance) {
   EXPECT_FLOAT_EQ(merged(flat_surface(0.25f, kAllBits, -0.9f, 1, 0), old, rules).alpha, 0.75f);
 }
 
-// 1/16 in one position is twice what the position holds: `keep` shows all of it, `clamp` half.
-TEST(MergeRules, LocalCoverageAboveOneIsKeptOrClamped) {
-  MergeRules rules;
-  const Aggregate in = flat_surface(1.0f / 16, 1u, -0.9f, 1, 0), old = flat_surface(0.5f, 0x0000ffffu, -0.1f, 0, 1);
-  EXPECT_FLOAT_EQ(merged(in, old, rules).color[0], 1.0f / 32);
-  rules.local = MergeRules::Local::keep;
-  const Aggregate now = merged(in, old, rules);
-  EXPECT_FLOAT_EQ(now.color[0], 1.0f / 16);
-  EXPECT_FLOAT_EQ(now.color[1], 15.0f / 32);  // the position that is hidden shows nothing of it, and not less
+// The same with sloping planes, partial masks and depth ranges that clamp the planes. The fragment is in front
+// everywhere.
+TEST(MergeRules, TransitionTakesTheMeanDistanceOverTheOverlap) {
+  const MergeRules rules = with_overlap(MergeRules::Overlap::transition);
+  Random random(48);
+  SCOPED_TRACE(random.name());
+  for (int i = 0; i < 20'000; ++i) {
+    const float part_in = random.real32(0.1, 1), part_old = random.real32(0.1, 1);
+    const auto surface = [&](float z, float part, float red, float green) {
+      const DepthPlane<float> plane{z, random.real32(-0.2, 0.2), random.real32(-0.2, 0.2)};
+      Aggregate of = masked_surface(random.word() | 1u, plane, red, green, part);
+      of.z_min = z - random.real32(0, 0.1), of.z_max = z + random.real32(0, 0.1);
+      return of;
+    };
+    const Aggregate in = surface(-0.9f, part_in, 1, 0), old = surface(-0.3f, part_old, 0, 1);
+    double apart = 0;
+    for (std::size_t s = 0; s < 32; ++s) {
+      if (!(in.mask & old.mask & 1u << s)) continue;
+      const double u = kPattern.x[s] / 256.0 - 0.5, v = kPattern.y[s] / 256.0 - 0.5;
+      const auto depth = [&](const Aggregate& of) {
+        return std::clamp(of.plane.z + of.plane.dzdu * u + of.plane.dzdv * v, double(of.z_min), double(of.z_max));
+      };
+      apart += depth(old) - depth(in);
+    }
+    const int overlap = std::popcount(in.mask & old.mask), only_old = std::popcount(old.mask & ~in.mask);
+    const double open_part = std::popcount(old.mask) / 32.0 * (1 - part_old);
+    const double fuzziness = open_part * apart / overlap / (double(old.z_max) - in.z_min);
+    const double beside = std::min(part_old, 1 - part_in), independent = part_old * (1 - part_in);
+    const double shows = only_old * part_old + overlap * (beside + (independent - beside) * fuzziness);
+    const Aggregate now = merged(in, old, rules);
+    ASSERT_NEAR(now.color[0], in.color[0], 2e-6) << i;
+    ASSERT_NEAR(now.color[1], shows / 32, 2e-6) << i;
+  }
 }
 
-// Two coverages of 1/2 in the middle of the slab: the published blend keeps 1/4 of each; `mix` is halfway between
-// 1/2 over 1/4 and 1/4 under 1/2.
+// An area of 1/16 in one position is twice what the position can hold. `keep` shows all of it, `clamp` half.
+TEST(MergeRules, LocalCoverageAboveOneIsKeptOrClamped) {
+  const Aggregate front = flat_surface(1.0f / 16, 1u, -0.9f, 1, 0), back = flat_surface(0.5f, 0x0000ffffu, -0.1f, 0, 1);
+  MergeRules keep;
+  keep.local = MergeRules::Local::keep;
+  for (const bool front_last : {true, false}) {
+    const Aggregate &in = front_last ? front : back, &old = front_last ? back : front;
+    EXPECT_FLOAT_EQ(merged(in, old).color[0], 1.0f / 32);
+    const Aggregate now = merged(in, old, keep);
+    EXPECT_FLOAT_EQ(now.color[0], 1.0f / 16);
+    EXPECT_FLOAT_EQ(now.color[1], 15.0f / 32);  // the hidden position shows nothing, rather than a negative amount
+  }
+}
+
+// Two coverages of 1/2 in the middle of the slab. The published blend keeps 1/4 of each. `mix` is halfway between 1/2
+// over 1/4 and 1/4 under 1/2.
 TEST(MergeRules, WithinTheSlabAreaIsLostOrMixed) {
   Aggregate old = flat_surface(0.5f, kAllBits, -0.5f, 0, 1);
   old.thickness = 0.2f;
@@ -232,7 +406,7 @@ TEST(MergeRules, WithinTheSlabAreaIsLostOrMixed) {
 }
 
 // A slab of thickness 0.4 around -0.5 whose surfaces lie between -0.55 and -0.45. A fragment at -0.4 is behind the
-// surfaces, but in the slab.
+// surfaces but within the slab.
 TEST(MergeRules, ExtentsAreCutByTheRangeOrNot) {
   Aggregate old = flat_surface(1, kAllBits, -0.5f, 0, 1);
   old.thickness = 0.4f;
@@ -241,19 +415,63 @@ TEST(MergeRules, ExtentsAreCutByTheRangeOrNot) {
   EXPECT_EQ(merged(in, old).color[0], 0.0f);
   MergeRules rules;
   rules.extents = MergeRules::Extents::slab;
-  EXPECT_NEAR(merged(in, old, rules).color[0], 0.25f, 1e-6);  // 3/4 on the way to its back
+  EXPECT_NEAR(merged(in, old, rules).color[0], 0.25f, 1e-6);  // 3/4 of the way to the back
 }
 
 TEST(MergeRules, WhatIsHiddenLeavesTheSlabAlone) {
   const Aggregate front = flat_surface(1, kAllBits, -0.9f, 0, 1), behind = flat_surface(1, kAllBits, -0.1f, 1, 0);
-  EXPECT_NEAR(merged(behind, front).thickness, 0.8f, 1e-6);  // reaches from the middle of both to either
+  EXPECT_NEAR(merged(behind, front).thickness, 0.8f, 1e-6);  // reaches both surfaces from the mean depth
   MergeRules rules;
   rules.slab = MergeRules::Slab::visible;
   const Aggregate now = merged(behind, front, rules);
   EXPECT_EQ(now.plane.z, front.plane.z);
   EXPECT_EQ(now.thickness, 0.0f);
   EXPECT_EQ(now.z_max, front.z_max);
-  EXPECT_NEAR(merged(front, behind, rules).thickness, 0.8f, 1e-6);  // what hides is seen
+  EXPECT_NEAR(merged(front, behind, rules).thickness, 0.8f, 1e-6);  // the fragment in front is visible
+}
+
+// A thin fragment crosses a thin aggregate. The slab reaches the fragment at its visible positions and no farther.
+TEST(MergeRules, VisiblePositionsAloneExtendTheSlab) {
+  MergeRules rules;
+  rules.slab = MergeRules::Slab::visible;
+  Random random(49);
+  SCOPED_TRACE(random.name());
+  int hidden = 0, partly = 0;
+  for (int i = 0; i < 20'000; ++i) {
+    const auto surface = [&](float red, float green) {
+      const DepthPlane<float> plane{random.real32(-0.55, -0.45), random.real32(-0.1, 0.1), random.real32(-0.1, 0.1)};
+      Aggregate of = masked_surface(random.word() | 1u, plane, red, green);
+      of.z_min = random.real32(-0.95, -0.9), of.z_max = random.real32(-0.1, -0.05);
+      return of;
+    };
+    const Aggregate in = surface(1, 0);
+    Aggregate old = surface(0, 1);
+    if (random.one_in(3)) old.mask |= in.mask;
+    const Aggregate now = merged(in, old, rules);
+    double farthest = 0;
+    int reached = 0;
+    bool undecided = false;
+    for (std::size_t s = 0; s < 32; ++s) {
+      if (!(in.mask >> s & 1)) continue;
+      const double u = kPattern.x[s] / 256.0 - 0.5, v = kPattern.y[s] / 256.0 - 0.5;
+      const auto depth = [&](const Aggregate& of) { return of.plane.z + of.plane.dzdu * u + of.plane.dzdv * v; };
+      undecided |= std::abs(depth(in) - depth(old)) < 1e-6;
+      if ((old.mask >> s & 1) && depth(in) >= depth(old)) continue;
+      ++reached, farthest = std::max(farthest, std::abs(depth(in) - depth(now)));
+    }
+    if (undecided) continue;
+    (reached == 0 ? hidden : partly) += reached < std::popcount(in.mask);
+    ASSERT_NEAR(now.thickness, 2 * farthest, 1e-6) << i;
+    ASSERT_EQ(now.z_min, reached == 0 ? old.z_min : std::min(in.z_min, old.z_min)) << i;
+    ASSERT_EQ(now.z_max, reached == 0 ? old.z_max : std::max(in.z_max, old.z_max)) << i;
+    const double part = reached == 0 ? 0 : double(in.alpha) / (double(in.alpha) + old.alpha);
+    const auto mean = [&](float of_in, float of_old) { return of_in * part + of_old * (1 - part); };
+    ASSERT_NEAR(now.plane.z, mean(in.plane.z, old.plane.z), 1e-6) << i;
+    ASSERT_NEAR(now.plane.dzdu, mean(in.plane.dzdu, old.plane.dzdu), 1e-6) << i;
+    ASSERT_NEAR(now.plane.dzdv, mean(in.plane.dzdv, old.plane.dzdv), 1e-6) << i;
+  }
+  EXPECT_GT(hidden, 500);
+  EXPECT_GT(partly, 5'000);
 }
 
 TEST(MergeRules, PlanesAreWeightedByAreaOrByWhatShows) {
@@ -264,7 +482,7 @@ TEST(MergeRules, PlanesAreWeightedByAreaOrByWhatShows) {
   EXPECT_FLOAT_EQ(merged(behind, front, rules).plane.z, -0.9f);
 }
 
-// A thin slab at -0.9 and a second surface at -0.1: the plane moves to -0.5, and must still reach the first one's slab.
+// A thin slab at -0.9 and a second surface at -0.1. The plane moves to -0.5 and must still reach the whole first slab.
 TEST(MergeRules, ThicknessContainsWhatWasThereBefore) {
   Aggregate old = flat_surface(1, kAllBits, -0.9f, 0, 1);
   old.thickness = 0.1f;
@@ -276,10 +494,10 @@ TEST(MergeRules, ThicknessContainsWhatWasThereBefore) {
   EXPECT_NEAR(merged(in, old, rules).thickness, 0.1f + 2 * 0.4f, 1e-6);
 }
 
-// OVER by hand: 1/2 and behind it 1/2 of 1/4.
+// OVER by hand: 1/2, and 1/2 of the 1/4 behind it.
 TEST(MergeRules, PlainOver) {
-  const Aggregate now = over_scalar<float, std::uint32_t>({flat_surface(0.25f, 1u, -0.1f, 1, 0), 0u},
-                                                          flat_surface(0.5f, 1u, -0.9f, 0, 1));
+  const Aggregate now = over_formula<float, std::uint32_t>({flat_surface(0.25f, 1u, -0.1f, 1, 0), 0u},
+                                                           flat_surface(0.5f, 1u, -0.9f, 0, 1));
   EXPECT_FLOAT_EQ(now.alpha, 0.625f);
   EXPECT_FLOAT_EQ(now.color[0], 0.125f);
   EXPECT_FLOAT_EQ(now.color[1], 0.5f);

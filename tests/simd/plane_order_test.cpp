@@ -2,7 +2,11 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
+#include <array>
 #include <cmath>
+#include <cstdint>
+#include <vector>
 
 #include "tests/simd/every_target.h"
 #include "tests/simd/random.h"
@@ -10,7 +14,7 @@
 namespace beampipe {
 namespace {
 
-// Planes that are steep, level, equal, or one bit apart at the centre.
+// Planes that are steep, flat, equal, or one bit apart at the centre.
 std::vector<DepthPlane<float>> hard_planes(Random& random) {
   std::vector<DepthPlane<float>> planes;
   for (int i = 0; i < 60; ++i) {
@@ -23,7 +27,48 @@ std::vector<DepthPlane<float>> hard_planes(Random& random) {
   return planes;
 }
 
-TEST(PlaneOrder, NearerEqualsTwin) {
+// A plane whose depth at every position is a multiple of 2^-18 with few enough bits that float arithmetic is exact.
+struct IntegerPlane {
+  std::int64_t z, dzdu, dzdv;  // times 2^-10
+
+  DepthPlane<float> plane() const {
+    const auto real = [](std::int64_t value) { return static_cast<float>(value) / 1024; };
+    return {real(z), real(dzdu), real(dzdv)};
+  }
+  std::int64_t at(const SamplePattern& pattern, std::size_t s) const {  // times 2^-18; the centre is at 128
+    return 256 * z + dzdu * (pattern.x[s] - 128) + dzdv * (pattern.y[s] - 128);
+  }
+};
+
+TEST(PlaneOrder, EqualsIntegerArithmetic) {
+  Random random(63);
+  SCOPED_TRACE(random.name());
+  const std::vector<SamplePattern> patterns = cell_patterns(256);
+  int ties = 0;
+  on_every_target([&] {
+    for (int draw = 0; draw < 300; ++draw) {
+      const auto slope = [&] { return random.integer(-8, 8) * random.integer(0, 100); };
+      const IntegerPlane plane{random.integer(-1024, 0), slope(), slope()};
+      IntegerPlane other{random.integer(-1024, 0), slope(), slope()};
+      if (random.one_in(3)) other = {plane.z, plane.dzdv, plane.dzdu};  // they meet along a diagonal
+      std::uint32_t masks[8], few[8];
+      nearer_positions(plane.plane(), other.plane(), patterns.data(), patterns.size(), masks);
+      std::int64_t nearest = 1 << 18;
+      for (std::size_t p = 0; p < 256; ++p) {
+        const std::int64_t depth = plane.at(patterns[p / 32], p % 32), of_other = other.at(patterns[p / 32], p % 32);
+        ASSERT_EQ(masks[p / 32] >> (p % 32) & 1, depth < of_other) << "draw " << draw << ", position " << p;
+        ties += depth == of_other;
+        if (p % 32 == 0) few[p / 32] = random.word() & random.word() & random.word() & random.word();
+        if (few[p / 32] >> (p % 32) & 1) nearest = std::min(nearest, depth);
+      }
+      const float found = nearest_depth(plane.plane(), patterns.data(), patterns.size(), few);
+      ASSERT_EQ(found, static_cast<float>(nearest) / (1 << 18)) << "draw " << draw;
+    }
+  });
+  EXPECT_GT(ties, 100);
+}
+
+TEST(PlaneOrder, NearerOnEveryTargetEqualsTheFormulaOnFloat) {
   Random random(61);
   SCOPED_TRACE(random.name());
   const std::vector<DepthPlane<float>> planes = hard_planes(random);
@@ -36,14 +81,14 @@ TEST(PlaneOrder, NearerEqualsTwin) {
         for (std::size_t w = 0; w < patterns.size(); ++w)
           for (std::size_t s = 0; s < 32; ++s)
             ASSERT_EQ(masks[w] >> s & 1,
-                      nearer_scalar(planes[i], planes[i - 1], position_u(patterns[w], s), position_v(patterns[w], s)))
+                      nearer_formula(planes[i], planes[i - 1], position_u(patterns[w], s), position_v(patterns[w], s)))
                 << i << " position " << 32 * w + s;
       }
     });
   }
 }
 
-TEST(PlaneOrder, NearestEqualsTwin) {
+TEST(PlaneOrder, NearestOnEveryTargetEqualsTheFormulaOnFloat) {
   Random random(62);
   SCOPED_TRACE(random.name());
   const std::vector<SamplePattern> patterns = cell_patterns(128);
@@ -57,8 +102,9 @@ TEST(PlaneOrder, NearestEqualsTwin) {
     for (std::size_t i = 0; i < planes.size(); ++i) {
       float expected = kNoDepth;
       for (std::size_t p = 0; p < 128; ++p)
-        expected = nearest_scalar(planes[i], position_u(patterns[p / 32], p % 32), position_v(patterns[p / 32], p % 32),
-                                  (masks[i][p / 32] >> (p % 32) & 1) != 0, expected);
+        expected =
+            nearest_formula(planes[i], position_u(patterns[p / 32], p % 32), position_v(patterns[p / 32], p % 32),
+                            (masks[i][p / 32] >> (p % 32) & 1) != 0, expected);
       ASSERT_EQ(nearest_depth(planes[i], patterns.data(), 4, masks[i].data()), expected) << i;
     }
   });

@@ -29,7 +29,7 @@ TEST(PositionMask, KernelEqualsTwinOnRandomTriangles) {
   }
 }
 
-// Slopes at the border between the kernel's number types.
+// Slopes at the limit where the kernel changes its number type.
 TEST(PositionMask, KernelEqualsTwinOnLongEdges) {
   Random random(62);
   SCOPED_TRACE(random.name());
@@ -51,7 +51,7 @@ TEST(PositionMask, KernelEqualsTwinOnLongEdges) {
   });
 }
 
-// The positions are those of cell_patterns, and covered is what sample_masks says is covered.
+// The positions are those of cell_patterns, and the covered ones are those that sample_masks finds.
 TEST(PositionMask, EqualsSampleMasksOfTheSamePositions) {
   Random random(63);
   SCOPED_TRACE(random.name());

@@ -1,4 +1,4 @@
-// Random numbers for property tests: from a fixed seed, the same on every machine (SplitMix64, Steele et al. 2014).
+// Random numbers for property tests: the same from the same seed on every machine (SplitMix64, Steele et al. 2014).
 #pragma once
 
 #include <cstdint>
@@ -17,7 +17,7 @@ class Random {
     return z ^ (z >> 31);
   }
   std::uint32_t word() { return static_cast<std::uint32_t>(bits() >> 32); }
-  std::int64_t integer(std::int64_t low, std::int64_t high) {  // both included
+  std::int64_t integer(std::int64_t low, std::int64_t high) {  // from low to high, both included
     return low + static_cast<std::int64_t>(bits() % static_cast<std::uint64_t>(high - low + 1));
   }
   std::int32_t int32(std::int32_t low, std::int32_t high) { return static_cast<std::int32_t>(integer(low, high)); }

@@ -33,8 +33,8 @@ SamplePattern random_pattern(Random& random, int count) {
   return pattern;
 }
 
-// Slopes of every size, many of them at the limits between the kernel's number types, and edges that run exactly
-// through a sample or miss it by one.
+// Slopes of every size, many of them at the limit where the kernel changes its number type. Edges pass exactly through
+// a sample or miss it by one unit.
 CellEdges random_edges(Random& random, const SamplePattern& pattern) {
   constexpr std::int32_t kBorder = 1 << 20, kLargest = 1 << 24;
   constexpr std::int32_t kSpecial[] = {0, 1, kBorder - 1, kBorder, kBorder + 1, kLargest};
@@ -56,7 +56,7 @@ CellEdges random_edges(Random& random, const SamplePattern& pattern) {
   return cell;
 }
 
-TEST(SampleTest, KernelEqualsTwinForEveryPatternSize) {
+TEST(SampleMask, KernelEqualsTwinForEveryPatternSize) {
   Random random(21);
   SCOPED_TRACE(random.name());
   for (int count = 1; count <= kMaxMaskSamples; ++count) {
@@ -67,7 +67,7 @@ TEST(SampleTest, KernelEqualsTwinForEveryPatternSize) {
   }
 }
 
-TEST(SampleTest, KernelEqualsTwinForTheStandardPatterns) {
+TEST(SampleMask, KernelEqualsTwinForTheStandardPatterns) {
   Random random(22);
   SCOPED_TRACE(random.name());
   std::vector<SamplePattern> patterns = {hammersley_pattern(), standard_pattern(8, 128, 64),
@@ -80,8 +80,8 @@ TEST(SampleTest, KernelEqualsTwinForTheStandardPatterns) {
   }
 }
 
-TEST(SampleTest, SampleOnAnEdgeIsCovered) {
-  // x >= 128, y <= 64, and an edge that cuts nothing.
+TEST(SampleMask, SampleOnAnEdgeIsCovered) {
+  // x >= 128, y <= 64, and an edge that has everything inside.
   SamplePattern pattern;
   pattern.count = 3;
   pattern.x = {128, 127, 128};

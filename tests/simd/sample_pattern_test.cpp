@@ -57,7 +57,7 @@ TEST(SamplePattern, StandardLocationsInOrder) {
   for (const auto& [count, expected] : kVulkan) EXPECT_EQ(locations(standard_pattern(count), 256, 256), expected);
 }
 
-// The cells of super-resolution, down to 1/16 px: scaled without rounding.
+// Cells down to 1/16 px are scaled without rounding.
 TEST(SamplePattern, StandardLocationsInCells) {
   for (const int width : {128, 64, 32, 16})
     for (const int height : {256, 128, 64, 32, 16})
@@ -83,8 +83,8 @@ TEST(SamplePattern, HammersleyHasOneSamplePerRowAndColumn) {
   EXPECT_EQ(rows, centers);
 }
 
-// A (0, 5, 2)-net in base 2: one sample in every box of 1/32 px, whatever its shape; a diagonal set would pass the test
-// above.
+// The pattern is a (0, 5, 2)-net in base 2: every box of area 1/32 px has one sample, whatever its shape. A diagonal
+// pattern would pass the test above, but not this one.
 TEST(SamplePattern, HammersleyHasOneSamplePerElementaryBox) {
   const SamplePattern pattern = hammersley_pattern();
   for (int wide = 0; wide <= 5; ++wide) {

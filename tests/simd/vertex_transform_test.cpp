@@ -2,6 +2,11 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <cstdint>
+#include <cstdlib>
 #include <cstring>
 #include <limits>
 #include <utility>
@@ -22,7 +27,8 @@ VertexTransform camera(double near, double far, double scale) {
   return transform;
 }
 
-// Mostly before the camera; some behind it, in its plane, on the view volume's border, huge, denormal, or no numbers.
+// Mostly in front of the camera. Some are behind it, in its plane, on the border of the view volume, huge, denormal, or
+// not a number.
 float coordinate(Random& random) {
   if (random.one_in(12))
     return random.pick(std::array{0.0f, -0.0f, -1.0f, 1.0f, 3e38f, 1e-42f, std::numeric_limits<float>::infinity(),
@@ -32,7 +38,7 @@ float coordinate(Random& random) {
 
 bool same_bits(double a, double b) { return std::memcmp(&a, &b, sizeof a) == 0 || (std::isnan(a) && std::isnan(b)); }
 
-TEST(VertexTransform, KernelEqualsTwin) {
+TEST(VertexTransform, EveryTargetEqualsTheFormulaOnDouble) {
   Random random(91);
   SCOPED_TRACE(random.name());
   std::size_t seen_in_all = 0;
@@ -67,6 +73,57 @@ TEST(VertexTransform, KernelEqualsTwin) {
     }
   });
   EXPECT_GT(seen_in_all, 1'000u);
+}
+
+// On small integers double arithmetic is exact, and so is integer arithmetic. The matrix is given by rows here.
+TEST(VertexTransform, EqualsIntegerArithmetic) {
+  Random random(92);
+  SCOPED_TRACE(random.name());
+  constexpr std::int64_t kWidth = 1280, kHeight = 720;
+  int seen_in_all = 0, border_in_all = 0;
+  on_every_target([&] {
+    for (int draw = 0; draw < 2'000; ++draw) {
+      std::int64_t matrix[4][4], p[3], clip[4];
+      for (auto& row : matrix)
+        for (std::int64_t& element : row) element = random.integer(-20, 20);
+      for (std::int64_t& coordinate : p) coordinate = random.integer(-9, 9);
+      const auto sum = [&](int row) {
+        return matrix[row][0] * p[0] + matrix[row][1] * p[1] + matrix[row][2] * p[2] + matrix[row][3];
+      };
+      // w is a power of two, so that dividing by it is exact; now and then it is negative. Some vertices are exactly on
+      // a plane that bounds the view volume.
+      matrix[3][3] += (std::int64_t{1} << random.integer(6, 9)) * (random.one_in(8) ? -1 : 1) - sum(3);
+      for (int row = 0; row < 3; ++row)
+        if (random.one_in(6)) matrix[row][3] += (random.one_in(2) ? 1 : -1) * sum(3) - sum(row);
+      for (int row = 0; row < 4; ++row) clip[row] = sum(row);
+      VertexTransform transform{{}, kWidth, kHeight};
+      for (std::size_t row = 0; row < 4; ++row)
+        for (std::size_t column = 0; column < 4; ++column)
+          transform.to_clip[4 * column + row] = static_cast<double>(matrix[row][column]);
+      const float position[3] = {static_cast<float>(p[0]), static_cast<float>(p[1]), static_cast<float>(p[2])};
+      ProjectedVertex found;
+      const std::size_t seen = transform_vertices(position, 1, transform, &found);
+
+      const std::int64_t w = clip[3], farthest = std::max({std::abs(clip[0]), std::abs(clip[1]), std::abs(clip[2])});
+      const bool in_view = w > 0 && farthest <= w;
+      ASSERT_TRUE(found.finite);
+      ASSERT_EQ(found.in_view, in_view) << "draw " << draw;
+      ASSERT_EQ(seen, in_view);
+      const double as_doubles[4] = {found.clip.x, found.clip.y, found.clip.z, found.clip.w};
+      for (int row = 0; row < 4; ++row) ASSERT_EQ(as_doubles[row], static_cast<double>(clip[row])) << "draw " << draw;
+      seen_in_all += in_view, border_in_all += in_view && farthest == w;
+      if (!in_view) continue;
+      // Pixels are (x / w + 1) / 2 of the width, and (1 - y / w) / 2 of the height; the grid rounds half up.
+      const auto grid = [&](std::int64_t part, std::int64_t size) { return (part * size * 256 + w) / (2 * w); };
+      ASSERT_EQ(found.x, grid(clip[0] + w, kWidth)) << "draw " << draw;
+      ASSERT_EQ(found.y, grid(w - clip[1], kHeight)) << "draw " << draw;
+      ASSERT_EQ(found.screen.x * 256, found.x);
+      ASSERT_EQ(found.screen.y * 256, found.y);
+      ASSERT_EQ(found.screen.z * static_cast<double>(2 * w), static_cast<double>(clip[2] - w)) << "draw " << draw;
+    }
+  });
+  EXPECT_GT(seen_in_all, 1'000);
+  EXPECT_GT(border_in_all, 100);
 }
 
 TEST(VertexTransform, CornersOfTheViewLandOnCornersOfThePicture) {

@@ -20,7 +20,7 @@ WideMask random_mask(Random& random, std::size_t words) {
   return mask;
 }
 
-// Planes of every steepness, many of them equal, so that ties decide.
+// Planes of all slopes. Many are equal, so that ties decide.
 MaskedPlane random_fragment(Random& random, std::size_t words) {
   DepthPlane<float> plane{random.real32(-1, 0), 0, 0};
   if (random.one_in(3)) plane.z = -0.5f;
@@ -69,7 +69,7 @@ TEST(WindowOwners, KernelEqualsTwinWhereDepthsAreNotFinite) {
   expect_twin(random, 500, {std::numeric_limits<float>::quiet_NaN(), kInfinity, -kInfinity});
 }
 
-// Every position that is covered and not taken has one owner, and nothing else has.
+// Every position that is covered and not taken has exactly one owner. Other positions have none.
 TEST(WindowOwners, PartitionWhatIsOpen) {
   Random random(66);
   SCOPED_TRACE(random.name());

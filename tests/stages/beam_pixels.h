@@ -1,4 +1,4 @@
-// The beam pipeline's stages one after the other, as far as a test needs them.
+// Runs the stages of the beam pipeline one after the other, as far as a test needs them.
 #pragma once
 
 #include <vector>
@@ -36,7 +36,7 @@ inline ABuffer sorted(const Fragments& fragments, std::size_t pixels) {
   return a_buffer(sort_records(fragments.list, SortKey::centroid), pixels, 0, sizeof(SlidesAggregate), counters);
 }
 
-// The composed pixels of a tile; `colors` has one per triangle.
+// Returns the composed pixels of a tile. `colors`: one per triangle.
 inline std::vector<Aggregate> beam_pixels(const SetupTriangles& triangles, const std::vector<glm::vec3>& colors,
                                           const Tile& tile, MaskSource mask, const MergeRules& rules = {}) {
   Fragments fragments = beam_fragments(triangles, tile, mask);

@@ -1,5 +1,5 @@
-// Positions of a pixel by their state (stages/data/owner_pixel.h) in counting numbers, for the twins of claim and
-// settle.
+// The positions of a pixel by their state (stages/data/owner_pixel.h), as numbers that count, for the scalar twins of
+// claim and settle.
 #pragma once
 
 #include <array>

@@ -1,4 +1,4 @@
-// Scalar twins on counting numbers, with the data of every procedural scene.
+// Runs scalar twins on numbers that count, with the data of every procedural scene.
 #pragma once
 
 #include <gtest/gtest.h>
@@ -19,7 +19,7 @@ using Bits = Counted<std::uint32_t>;
 class SceneTwins : public testing::TestWithParam<SceneKind> {
  protected:
   void SetUp() override {
-    const std::uint32_t triangles = GetParam().name == "stack" ? 8 : 1500;  // each covers the whole picture
+    const std::uint32_t triangles = GetParam().name == "stack" ? 8 : 1500;  // each triangle covers the whole picture
     trace_ = make_scene(GetParam().name, {.triangles = triangles, .width = 48, .height = 28});
     triangles_ = vertex_setup(trace_, trace_.frames[0], setup_);
     for (std::uint32_t i = 0; i < triangles_.triangles.size(); ++i) list_.push_back(i);
@@ -35,11 +35,11 @@ class SceneTwins : public testing::TestWithParam<SceneKind> {
   Trace trace_;
   SetupTriangles triangles_;
   TriangleList list_;
-  StageCounters setup_;   // what vertex_setup counted
-  OperationCounts twin_;  // what the twins have counted
+  StageCounters setup_;   // counted by vertex_setup
+  OperationCounts twin_;  // counted by the twins
 };
 
-// For a suite that is SceneTwins under its own name.
+// Instantiates a suite that is derived from SceneTwins.
 #define BEAMPIPE_ON_EVERY_SCENE(suite)                                      \
   INSTANTIATE_TEST_SUITE_P(Scenes, suite, testing::ValuesIn(scene_kinds()), \
                            [](const auto& scene) { return std::string(scene.param.name); })

@@ -1,4 +1,4 @@
-// Setup triangles from screen positions, without vertex_setup.
+// Makes setup triangles from screen positions, without vertex_setup.
 #pragma once
 
 #include <algorithm>
@@ -21,7 +21,7 @@ inline std::int64_t twice_area(const ScreenPoint& p, const ScreenPoint& q, const
   return std::int64_t{q.x - p.x} * (r.y - p.y) - std::int64_t{r.x - p.x} * (q.y - p.y);
 }
 
-// Vertices in either order; nothing is added for triangles of zero area, as vertex_setup does.
+// The vertices may be in either order. Like vertex_setup, adds nothing for a triangle of zero area.
 inline void add_triangle(SetupTriangles& triangles, const ScreenPoint& p, ScreenPoint q, ScreenPoint r) {
   const std::int64_t area2 = twice_area(p, q, r);
   if (area2 == 0) return;
@@ -38,7 +38,7 @@ inline void add_triangle(SetupTriangles& triangles, const ScreenPoint& p, Screen
   triangles.attributes.push_back({glm::vec3(1.0f), glm::vec3(0.0f), false});
 }
 
-// Upright edges through the pixels of rows -30 to 30, and all of the tiles that tests use.
+// Upright edges through the pixels of rows -30 to 30, which contain the tiles of all tests.
 inline void add_left_of(SetupTriangles& triangles, std::int32_t x, float z) {
   add_triangle(triangles, {x, -9'000, z}, {x, 9'000, z}, {-9'000, 0, z});
 }
@@ -55,8 +55,7 @@ inline TriangleList all_of(const SetupTriangles& triangles) {
   return list;
 }
 
-// Every point on the border of a square around the hub is joined to it: an edge at each of 4 x `per_side` angles, or at
-// as many random ones.
+// Points on the border of a square around the hub are connected to it, at 4 x `per_side` regular or random angles.
 inline SetupTriangles fan_around(const ScreenPoint& hub, std::int32_t reach, std::int32_t per_side,
                                  Random* random = nullptr) {
   std::vector<ScreenPoint> rim;
@@ -84,7 +83,7 @@ inline SetupTriangles fan_around(const ScreenPoint& hub, std::int32_t reach, std
   return fan;
 }
 
-// Triangles of every size around a tile of up to 12 pixels; many vertices lie on pixel borders or on sample positions.
+// Triangles of all sizes around a tile of up to 12 pixels. Many vertices lie on pixel borders or on sample positions.
 inline SetupTriangles random_triangles(Random& random, int count) {
   const auto coordinate = [&](std::int64_t kind) {
     switch (kind) {

@@ -1,4 +1,4 @@
-// Random cases, each with a seed of its own that a failure names.
+// Random cases. Each has its own seed, which a failure names.
 #pragma once
 
 #include <gtest/gtest.h>
@@ -10,7 +10,7 @@
 
 namespace beampipe {
 
-// Calls body(random) `count` times, or as many times more as the search is to be thorough.
+// Calls body(random) `count` times, multiplied by how thorough the search is to be (tests/thorough.h).
 template <class Body>
 void search(std::uint64_t first_seed, int count, Body&& body) {
   for (int i = 0; i < count * thoroughness(); ++i) {

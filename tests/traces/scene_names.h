@@ -1,4 +1,4 @@
-// A scene's name in the names of tests, where its bytes would be otherwise.
+// Makes googletest print a scene as its name. It would print its bytes otherwise.
 #pragma once
 
 #include <ostream>

@@ -1,4 +1,4 @@
-// The schema and the reader may not drift apart: what one names, requires or limits, the other does too.
+// The schema and the reader must not drift apart: both name, require and limit the same things.
 #include <nlohmann/json.hpp>
 #include <set>
 

@@ -1,4 +1,4 @@
-// A folder of its own for each test, gone afterwards; and what every reader test needs.
+// A folder for each test, which is removed after it, and helpers for tests of readers and writers.
 #pragma once
 
 #include <gtest/gtest.h>
@@ -36,7 +36,7 @@ class FolderTest : public testing::Test {
     return text.str();
   }
 
-  // The TraceError's message, with the folder's own name cut out; "no error" if there is none.
+  // The message of the TraceError that `call` throws, without the folder's name; "no error" if it throws none.
   template <typename Call>
   std::string error_of(Call call) const {
     try {

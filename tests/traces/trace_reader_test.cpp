@@ -27,7 +27,7 @@ class TraceReaderTest : public FolderTest {
   std::string error_in(const std::string& text) const {
     return error_of([&] { read_text(text); });
   }
-  // The error in the valid trace when the value at `pointer` is replaced by `value`.
+  // The error for the valid trace with the value at `pointer` replaced by `value`.
   std::string error_with(const std::string& pointer, const std::string& value) const {
     Json json = Json::parse(kValid);
     json[Json::json_pointer(pointer)] = Json::parse(value);
@@ -103,7 +103,7 @@ TEST_F(TraceReaderTest, CameraPutsTheTargetInTheMiddleAndUpUp) {
   EXPECT_GT(project({0, 0.1, 0}).y, 0);
   EXPECT_NEAR(project(eye + 1.0 * forward).z, -1, 1e-9);
   EXPECT_NEAR(project(eye + 200.0 * forward).z, 1, 1e-9);
-  // 18 degrees above the middle is the upper edge; the picture is 16:9.
+  // The upper edge is 18 degrees above the middle, and the picture is 16:9.
   const glm::dvec3 right = glm::normalize(glm::cross(forward, glm::dvec3(0, 1, 0))), up = glm::cross(right, forward);
   const double tangent = std::tan(18 * 3.14159265358979 / 180);
   EXPECT_NEAR(project(eye + forward + tangent * up).y, 1, 1e-9);
@@ -205,7 +205,7 @@ TEST_F(TraceReaderTest, FindsDuplicateKeysWhereverTheyAre) {
   text = kValid;
   text.replace(text.find("\"a\": {"), 3, "\"b\"");
   EXPECT_EQ(error_in(text), "scene.json: /meshes/b: expected each key once, found \"b\" again");
-  // The same key in sibling objects is no duplicate: the valid trace is full of them.
+  // The same key in two objects is no duplicate, and the valid trace has many such keys.
   EXPECT_EQ(error_in(kValid), "no error");
 }
 
@@ -265,7 +265,7 @@ TEST_F(TraceReaderTest, RefusesPipesAndDevices) {
   EXPECT_EQ(error_of([&] { read_obj(path("mesh.obj"), ""); }), "mesh.obj: pipe" + expected);
 }
 
-// What a small file can ask for is refused before memory is taken for it.
+// A small file can ask for a lot of memory. It must be refused without taking that memory.
 TEST_F(TraceReaderTest, RefusesMoreThanAFrameMayHave) {
   std::string indices, draws;
   for (int i = 0; i < 10'000; ++i) indices += i ? ",0,0,0" : "0,0,0";

@@ -74,7 +74,7 @@ Trace example() {
   const float most = std::numeric_limits<float>::max(), least = std::numeric_limits<float>::denorm_min();
   mesh.positions[0] = {-0.0f, most, -most};
   mesh.positions[1] = {least, -least, 16777216.0f};
-  mesh.positions[2].x = 7.038531e-26f;  // its shortest text, read as a double first, rounds to another float
+  mesh.positions[2].x = 7.038531e-26f;  // its shortest text, rounded to double and then to float, is another float
   Mesh empty;
   empty.name = "";
 
@@ -93,7 +93,7 @@ Trace example() {
   set_camera(frame, {{0.1, 0.2, 1.0 / 3}, {-5, 6, 7.7}, {0.01, 1, 0}, 35.9, 1e-3, 12345.678});
   frame.background = color();
   frame.draws = {{0, glm::dmat4(1.0), {}, Cull::none, Shading::lambert}};
-  for (int i = 0; i < 50; ++i) {  // normalised directions come back as they were
+  for (int i = 0; i < 50; ++i) {  // reading must give back normalised directions bit by bit
     frame.light_direction =
         glm::normalize(glm::vec3(static_cast<float>(random() % 1000) - 499.5f, 1.0f, 2.0f + static_cast<float>(i)));
     trace.frames.push_back(frame);
@@ -163,7 +163,7 @@ TEST_F(TraceWriterTest, RefusesWhatNoReaderWouldTake) {
   EXPECT_EQ(failure(trace, "trace.json"), "trace.json: cannot write the trace: a draw names no mesh");
   trace.frames.clear();
   EXPECT_EQ(failure(trace, "trace.json"), "trace.json: cannot write the trace: it has no frame");
-  // What was there is still there, and nothing else.
+  // The old file is still there, and no other file.
   EXPECT_EQ(read("trace.json"), "old");
   EXPECT_EQ(files(), 1u);
 }

@@ -10,7 +10,7 @@
 namespace beampipe {
 namespace {
 
-// Two draws of the same mesh of triangles at depths 1, 5 and 3, the second 1 further away, seen along -z.
+// Two draws of a mesh with triangles at depths 1, 5 and 3, seen along -z. The second draw is 1 farther away.
 Trace two_draws() {
   Trace trace;
   Mesh& mesh = trace.meshes.emplace_back();
@@ -29,7 +29,7 @@ Trace two_draws() {
   return trace;
 }
 
-// What the frame draws, in order: the triangle's colour, and whose draw it was.
+// What the frame draws, in order: each triangle's colour and its draw's culling, by which the draws differ.
 std::vector<std::pair<float, Cull>> drawn(const Trace& trace) {
   std::vector<std::pair<float, Cull>> triangles;
   for (const Draw& draw : trace.frames.at(0).draws)

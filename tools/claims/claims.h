@@ -1,4 +1,4 @@
-// What the publications state in numbers, beside what this program finds.
+// Claims: the numbers that publications state, each with the number that this program finds.
 #pragma once
 
 #include <optional>
@@ -12,20 +12,20 @@ namespace beampipe {
 
 struct Claim {
   std::string name, unit;
-  double published_low = 0, published_high = 0;  // the same when one number is published; infinity: "or more"
-  std::optional<double> ours;                    // empty: the report does not have what it takes
-  std::string source, command;                   // the command whose report has it
-  std::string beside;  // what ours is where it is not the same quantity, or why there is none; empty: it is the same
+  double published_low = 0, published_high = 0;  // the same if one number is published; high is infinity for "or more"
+  std::optional<double> ours;                    // empty if the report does not have what our number is computed from
+  std::string source, command;  // the place in the publication; the command whose report has our number
+  std::string beside;  // how our number differs from the published quantity, or why there is none; empty: it does not
 
-  // From the nearer end of what is published; 0 within it.
+  // Our number minus the nearer end of the published range; 0 within the range, empty without a number of ours.
   std::optional<double> difference() const;
 };
 
-// All of them, whatever the report is of; numbers from first frames. Of a report without results only what needs no
-// rendering has `ours`. Where a claim is about a scene, ours is of a trace of that name.
+// All claims, with the numbers that the first frames of the report give. A claim about a scene has a number only if the
+// report's trace has the name of that scene. A report without results gives only the numbers that need no rendering.
 std::vector<Claim> all_claims(const Report& report);
 
-// Those that the report answers.
+// The claims for which the report gives a number.
 std::vector<Claim> answered_claims(const Report& report);
 
 Json to_json(const Claim& claim);

@@ -9,6 +9,7 @@
 #include "pipeline/techniques/dvm.h"
 #include "pipeline/techniques/taa.h"
 #include "simd/mask_table.h"
+#include "simd/match.h"
 #include "stages/data/paper_aggregate.h"
 #include "stages/samples/sample_select.h"
 #include "stages/temporal/temporal.h"

@@ -36,7 +36,7 @@ PublishedFigure read_claim(const JsonCursor& claim, const JsonCursor& group) {
   figure.source = text_of(claim, group, "source");
   figure.remark = text_of(claim, group, "remark");
   figure.command = group["command"].string();
-  figure.scene = text_of(claim, group, "scene");
+  if (const auto scene = group.find("scene")) figure.scene = scene->string();
   if (const auto reason = claim.find("no_number"))
     figure.remark = "none: " + reason->string();
   else

@@ -1,8 +1,8 @@
 // What publications state in numbers. These are data: tools/claims/published/*.json, one file per publication, built
 // into the program.
 //
-// A file holds groups of claims. Each field of a claim except its name, its numbers and its formula may stand in its
-// group instead, for all claims of the group. A claim names either the formula of our number
+// A file holds groups of claims with the same topic and command. A group also has the unit, the source and the remark
+// of those of its claims that do not have their own. A claim names either the formula of our number
 // (tools/claims/our_figures.h) or, as "no_number", the reason why there is none.
 #pragma once
 

@@ -4,7 +4,7 @@
 #include <filesystem>
 #include <string>
 
-#include "pipeline/timeline.h"
+#include "pipeline/bins/timeline.h"
 #include "tools/cli/run_arguments.h"
 #include "tools/files/interrupt.h"
 

@@ -29,8 +29,11 @@ CauseShares::CauseShares() {
 
 void CauseShares::add(const Technique& technique, const RunPlan& plan, std::size_t frame, const Image& reference,
                       FrameResult& result) {
-  if (!technique.weights) return;
-  const auto weights = technique.weights(plan.trace, frame, plan.options);
+  if (!technique.has_weights) return;
+  std::vector<PixelWeights> weights;
+  RunOptions weighed = plan.options;
+  weighed.weights = &weights;
+  technique.render(plan.trace, frame, weighed);
   auto layers = error_causes(plan.trace, plan.trace.frames.at(frame), weights, result.image, reference, plan.options);
   const std::vector<float> errors = pixel_errors(result.image, reference);
   for (auto& [cause, layer] : layers) {

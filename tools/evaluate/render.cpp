@@ -3,7 +3,7 @@
 #include <chrono>
 #include <cstdio>
 
-#include "pipeline/timeline.h"
+#include "pipeline/bins/timeline.h"
 #include "simd/target.h"
 #include "tools/evaluate/resume.h"
 #include "tools/files/image_io.h"

@@ -19,7 +19,7 @@ constexpr glm::vec3 kSpar(0.62f, 0.42f, 0.18f), kRope(0.75f, 0.66f, 0.45f), kTar
 double half_beam(double u) { return 2.0 * std::pow(std::max(0.0, 4 * u * (1 - u)), u > 0.5 ? 0.75 : 0.35); }
 double rail_height(double u) { return 1.2 + 1.0 * (u - 0.4) * (u - 0.4) * 4; }
 
-// u from stern to bow, v from the port rail (-1) under the keel to the starboard rail (1).
+// u goes from stern to bow, v from the port rail (-1) under the keel to the starboard rail (1).
 dvec3 hull_point(double u, double v) {
   const double rail = rail_height(u), side = std::pow(std::abs(v), 0.55), y = -0.9 + (rail + 0.9) * v * v;
   return {-8 + 16 * u + 0.8 * (y - 0.5) * (u > 0.5 ? u - 0.5 : 0), y, half_beam(u) * std::copysign(side, v)};
@@ -71,7 +71,7 @@ void add_spars(MeshBuilder& spars, double budget) {
 void add_sail(MeshBuilder& sail, double budget) {
   sail.color = {0.80f, 0.62f, 0.42f};
   const int n = divisions(budget, 2, 2);
-  sail.surface(n, n, [](double u, double v) {  // between boom and gaff, bellied by the wind
+  sail.surface(n, n, [](double u, double v) {  // between boom and gaff, filled by the wind
     const dvec3 low = dvec3(-2.6, 2.9, 0) + u * dvec3(-6.1, 0.35, 0),
                 high = dvec3(-2.6, 8.0, 0) + u * dvec3(-4.2, 1.8, 0);
     return low + v * (high - low) - dvec3(0, 0, 2.4 * u * (1 - u) * 4 * v * (1 - v));

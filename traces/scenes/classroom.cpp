@@ -8,7 +8,7 @@ namespace {
 
 using glm::dvec3;
 
-// Metres. The left wall, x = 0, has the windows; the front wall, z = 0, the blackboard.
+// Metres. The left wall, x = 0, has the windows, and the front wall, z = 0, has the blackboard.
 constexpr dvec3 kRoom(8, 3, 9);
 constexpr double kSill = 0.95, kLintel = 2.6;
 constexpr double kWindows[][2] = {{1.0, 3.4}, {4.2, 6.6}};  // z from, to
@@ -25,7 +25,7 @@ void add_legs(MeshBuilder& mesh, double x, double z, double top, double radius, 
   }
 }
 
-// A desk and the chair behind it, its middle on the floor at `at`.
+// A desk and the chair behind it. The middle of the desk is above `at` on the floor.
 void add_desk(MeshBuilder& mesh, const dvec3& at, double turn, double budget, Random& random) {
   const auto put = [=](const dvec3& p) {
     return at + dvec3(std::cos(turn) * p.x + std::sin(turn) * p.z, p.y, std::cos(turn) * p.z - std::sin(turn) * p.x);
@@ -70,7 +70,7 @@ void add_strings(MeshBuilder& strings, const double (&window)[2], double budget)
   const double width = window[1] - window[0];
   const int count = budget < 300 ? 2 : 4;
   const int segments = std::max(4, static_cast<int>(budget / count / (3 * 6)));
-  for (int i = 0; i < count; ++i) {  // the first is to be pulled and hangs below the sill; the others go up the blind
+  for (int i = 0; i < count; ++i) {  // the first is the one to pull, which hangs below the sill; others end at the sill
     const double z = window[0] + width * (i == 0 ? 0.92 : 0.3 * i - 0.1), end = i == 0 ? 0.35 : kSill;
     strings.color = i == 0 ? glm::vec3(0.85f, 0.20f, 0.10f) : glm::vec3(0.95f, 0.93f, 0.85f);
     strings.braid(line({0.11, kLintel, z}, {0.11, end, z}, segments), kThread, segments / 8.0, 3);
@@ -123,7 +123,7 @@ void add_teacher_corner(MeshBuilder& mesh, double budget, Random& random) {
   add_bar(mesh, {1.6, 0.78, 1.35}, {1.6, 0.86, 1.35}, 0.05, 0.05 * budget);
 }
 
-// What is out there, and the ceiling: shown as they are, without the light from inside.
+// The view outside and the ceiling, which the light inside does not reach: they are unlit.
 std::vector<Mesh> unlit_parts() {
   MeshBuilder parts("outside and ceiling");
   parts.color = {1.0f, 1.0f, 0.95f};

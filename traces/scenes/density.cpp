@@ -10,9 +10,9 @@ using glm::dvec3;
 
 constexpr double kDistance = 6, kFovyDeg = 40;
 
-// A wall that fills the picture once and to its borders, of triangles of about the same size: pixels per triangle are
-// the picture's pixels divided by the triangles. Its points are moved a little, so that triangles meet the pixel grid
-// in all ways.
+// A wall that fills the picture exactly once, with triangles of about the same size: their number of pixels is the
+// picture's, divided by the number of triangles. Its points are moved a little, so that the triangles lie on the pixel
+// grid in all ways.
 std::vector<Mesh> build(double budget, const SceneOptions& options, Random& random) {
   const double half_height = kDistance * std::tan(glm::radians(kFovyDeg / 2));
   const double half_width = half_height * options.width / options.height;

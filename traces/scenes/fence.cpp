@@ -19,7 +19,7 @@ constexpr Fence kFences[] = {{0.0, 0.10, 6.2, 2.5, {0.75f, 0.77f, 0.80f}},
                              {-3.6, 0.20, 10.5, 2.8, {0.60f, 0.28f, 0.10f}},
                              {-6.0, -0.10, 13.5, 3.0, {0.85f, 0.80f, 0.15f}}};
 
-// Wires are flattened helices that run upwards; each hooks into its neighbour's bends.
+// Wires are flattened helices that run upwards. Each hooks into the bends of its neighbours.
 void add_fence(MeshBuilder& mesh, const Fence& fence, double cell) {
   mesh.place = [=](const dvec3& p) {
     return dvec3(std::cos(fence.yaw) * p.x + std::sin(fence.yaw) * p.z, p.y,
@@ -61,7 +61,7 @@ std::vector<Mesh> build(double budget, Random& random) {
 
   double area = 0;
   for (const Fence& fence : kFences) area += fence.width * fence.height;
-  // 48 triangles for each cell: a wire's turn has four segments of six, and takes up half a cell's height twice.
+  // Each cell has 24 triangles: one turn of a wire, which is as high as the cell, has four segments of six triangles.
   const double left = std::max(0.3 * budget, budget - 900.0 - static_cast<double>(backdrop.triangle_count()));
   const double cell = std::min(2.0, std::sqrt(24 * area / left));
   for (const Fence& fence : kFences) {

@@ -16,7 +16,7 @@ struct Twig {
   dvec3 start, end;
 };
 
-// Grows a limb and those that sprout from it; the last ones are where leaves sit.
+// Grows a limb and the limbs that sprout from it. The last of these are the twigs that bear leaves.
 class Tree {
  public:
   Tree(MeshBuilder& wood, Random& random, int segments) : wood_(wood), random_(random), segments_(segments) {}
@@ -38,7 +38,7 @@ class Tree {
     const dvec3 along = (end - start) / length;
     const dvec3 across = glm::normalize(glm::cross(along, random_.direction()));
     const int sprouts = level == 0 ? 9 : 5;
-    for (int i = 0; i < sprouts; ++i) {  // each a golden angle further around
+    for (int i = 0; i < sprouts; ++i) {  // each turned by the golden angle from the last
       const double t = 0.4 + 0.6 * (i + 1) / sprouts, angle = 2.39996 * i;
       const dvec3 outward = std::cos(angle) * across + std::sin(angle) * glm::cross(along, across);
       const dvec3 from = start + t * (end - start);
@@ -54,7 +54,7 @@ class Tree {
   std::vector<Twig> twigs_;
 };
 
-// Two triangles, folded along the middle.
+// A leaf is two triangles, folded along the middle.
 void add_leaf(MeshBuilder& leaves, const dvec3& stem, double size, Random& random) {
   const dvec3 along = glm::normalize(random.direction() + dvec3(0, -0.3, 0));
   const dvec3 across = glm::normalize(glm::cross(along, random.direction()));

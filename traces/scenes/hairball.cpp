@@ -11,7 +11,7 @@ using glm::dvec3;
 constexpr glm::vec3 kShades[] = {
     {0.55f, 0.25f, 0.08f}, {0.80f, 0.55f, 0.20f}, {0.25f, 0.12f, 0.06f}, {0.90f, 0.75f, 0.45f}, {0.60f, 0.12f, 0.05f}};
 
-// From the ball outwards, circling around a direction that itself bends.
+// A strand that leaves the ball and winds around a direction, which bends as well.
 Path curl(Random& random, int segments) {
   const dvec3 outward = random.direction();
   const dvec3 side = glm::normalize(glm::cross(outward, random.direction()));
@@ -36,7 +36,7 @@ std::vector<Mesh> build(double budget, Random& random) {
   const int segments = budget < 20000 ? 12 : 24;
   const double left = budget - static_cast<double>(ball.triangle_count());
   const int strands = std::max(1, static_cast<int>(left / (6 * segments + 2)));
-  // Thinner as there are more, so that about the same part of the ball stays visible.
+  // The more strands there are, the thinner they get, so that about the same part of the ball stays visible.
   const double radius = 0.005 * std::pow(1000.0 / strands, 0.7);
   for (int i = 0; i < strands; ++i) {
     hair.color = random.vary(kShades[random.bits() % std::size(kShades)], 0.25);

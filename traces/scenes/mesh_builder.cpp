@@ -22,7 +22,7 @@ dvec3 tangent(const Path& path, std::size_t i) {
   return length > 0 ? difference / length : dvec3(0, 1, 0);
 }
 
-// Carried along without twisting.
+// The axes at each point of a path, carried along it without twisting.
 std::vector<Across> axes_along(const Path& path) {
   std::vector<Across> axes(path.size());
   const dvec3 first = tangent(path, 0);

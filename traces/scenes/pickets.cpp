@@ -11,7 +11,7 @@ using glm::dvec3;
 constexpr dvec3 kEye(0, 1.5, 6);
 constexpr int kRows = 8;
 
-// A thin board with a pointed top, its back at z: 16 triangles.
+// A thin board with a pointed top, whose back is at z. It has 16 triangles.
 void add_picket(MeshBuilder& mesh, double x, double z, double width, double height) {
   const double left = x - width / 2, right = x + width / 2, shoulder = height - width;
   const dvec3 outline[] = {
@@ -33,7 +33,8 @@ std::vector<Mesh> build(double budget, Random& random) {
   ground.color = {0.20f, 0.35f, 0.10f};
   ground.quad({-40, 0, 5}, {40, 0, 5}, {40, 0, -40}, {-40, 0, -40});
 
-  // Every picket stands where the first row's hides it from the eye but for a sliver of a few percent of its width.
+  // A picket of the first row hides those of all other rows from the eye, but for slivers of a few percent of their
+  // width.
   const int count = std::max(3, static_cast<int>(budget / (16 * kRows)));
   const double spacing = 7.2 / count;
   for (int row = 0; row < kRows; ++row) {

@@ -1,4 +1,4 @@
-// Random numbers that are the same on every machine, which those of the standard distributions are not.
+// Random numbers that are the same on every machine. Those of the standard library's distributions are not.
 #pragma once
 
 #include <cmath>
@@ -27,7 +27,7 @@ class Random {
     return {r * std::cos(angle), r * std::sin(angle), z};
   }
 
-  // `color` made darker or brighter, and each channel a little different.
+  // Makes `color` darker or brighter, and changes each channel a little.
   glm::vec3 vary(const glm::vec3& color, double amount) {
     const double all = uniform(1 - amount, 1 + amount);
     glm::vec3 result;

@@ -10,20 +10,23 @@
 
 namespace beampipe {
 
-// Makes a scene's meshes with about `budget` triangles; the same for the same budget and random numbers.
+// Makes a scene's meshes, with about `budget` triangles. The same budget and random numbers make the same meshes.
 using BuildMeshes = std::function<std::vector<Mesh>(double budget, Random& random)>;
 
-// Calls `build` with different budgets until it makes about as many triangles as `options` ask for.
+// Calls `build` with different budgets until it makes about as many triangles as `options` ask for. If it never does,
+// the closest attempt is returned.
 std::vector<Mesh> build_to_budget(const SceneOptions& options, std::uint32_t default_triangles,
                                   const BuildMeshes& build);
 
 enum class Shoulder { left, right };
 
-// One frame under a blue sky: every mesh drawn once with lambert shading, the light over the viewer's shoulder.
+// One frame under a blue sky. Every mesh is drawn once with lambert shading; the light comes over the viewer's
+// shoulder.
 Trace one_frame(const SceneOptions& options, const Camera& camera, std::vector<Mesh> meshes,
                 Shoulder light_over = Shoulder::left);
 
-// The number of divisions, at least `least`, at which something with `per_square` * divisions^2 triangles has `budget`.
+// The number of divisions, at least `least`, that gives a shape with `per_square` * divisions^2 triangles about
+// `budget` triangles.
 int divisions(double budget, double per_square, int least);
 
 Trace make_hairball(const SceneOptions& options);

@@ -8,12 +8,12 @@ namespace {
 
 using glm::dvec3;
 
-// Sizes from a third of the picture to a fraction of a pixel, every octave as often as the next but the largest rarer.
+// Sizes from a fraction of a pixel to a third of the picture. The larger a triangle is, the rarer.
 std::vector<Mesh> build(double budget, Random& random) {
   MeshBuilder soup("soup");
   const int count = std::max(1, static_cast<int>(budget));
   for (int i = 0; i < count; ++i) {
-    const double octave = 9 * (1 - std::sqrt(1 - random.uniform()));  // near 0, the smallest, most often
+    const double octave = 9 * (1 - std::sqrt(1 - random.uniform()));  // most often near 0, which is the smallest size
     const double size = 0.004 * std::exp2(octave);
     const dvec3 center(random.uniform(-3.6, 3.6), random.uniform(-2.1, 2.1), random.uniform(-3, 1));
     dvec3 corners[3];

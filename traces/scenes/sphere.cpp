@@ -22,7 +22,7 @@ std::vector<Mesh> build(double budget, Random& random) {
   large.color = {0.85f, 0.12f, 0.08f};
   add_sphere(large, dvec3(0.0), 1.25, 0.7 * budget);
 
-  // On a ring around the large one, in front of it and behind.
+  // On a ring around the large sphere, partly in front of it and partly behind it.
   const int count = budget < 5000 ? 4 : 16;
   for (int i = 0; i < count; ++i) {
     const double angle = 6.283185307179586 * (i + 0.3) / count, radius = random.uniform(0.06, 0.22);

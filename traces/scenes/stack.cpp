@@ -8,7 +8,7 @@ namespace {
 
 constexpr double kDistance = 10, kFovyDeg = 40, kDepth = 4;
 
-// Triangles one behind the other, in no order, each of which covers the whole picture: a pixel has as many fragments as
+// Triangles at random depths, each of which covers the whole picture, so that every pixel has as many fragments as
 // there are triangles.
 std::vector<Mesh> build(double budget, const SceneOptions& options, Random& random) {
   const double half_height = std::tan(glm::radians(kFovyDeg / 2));  // at distance 1
@@ -19,7 +19,7 @@ std::vector<Mesh> build(double budget, const SceneOptions& options, Random& rand
   for (int i = 0; i < triangles; ++i) {
     const double z = random.uniform(-kDepth / 2, kDepth / 2), distance = kDistance - z;
     const double x = random.uniform(-0.9, 0.9) * half_width, y = random.uniform(-0.9, 0.9) * half_height;
-    // Around (x, y), its inscribed circle holds the picture.
+    // The triangle's inscribed circle, which is around (x, y), contains the picture.
     const double circle = 2 * std::hypot(half_width, half_height), turn = random.uniform(0, 2 * std::numbers::pi);
     const auto first = static_cast<std::uint32_t>(stack.positions.size());
     for (int corner = 0; corner < 3; ++corner) {

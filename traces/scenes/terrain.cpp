@@ -11,7 +11,7 @@ constexpr double kNear = 1.2, kFar = 60.0;
 
 double smooth(double t) { return t * t * (3 - 2 * t); }
 
-// Values at integer points, smoothly joined; 0..1.
+// Random values at integer points, joined smoothly; 0..1.
 double noise(double x, double z, std::uint64_t seed) {
   const double fx = std::floor(x), fz = std::floor(z);
   const auto value = [&](int dx, int dz) {
@@ -39,8 +39,8 @@ glm::vec3 ground_color(const dvec3& at, double steepness, std::uint64_t seed, Ra
   return random.vary(noise(0.9 * at.x, 0.9 * at.z, seed + 99) > 0.55 ? straw : grass, 0.25);
 }
 
-// A fan of rows in front of the viewer. Rows are as many times farther as the one before, so that triangles keep their
-// width on the screen and get flatter and denser towards the horizon.
+// A fan of rows in front of the viewer. Each row is farther away than the last by the same factor, so that triangles
+// keep their width on the screen and get flatter and denser towards the horizon.
 std::vector<Mesh> build(double budget, Random& random) {
   Mesh ground;
   ground.name = "ground";

@@ -9,7 +9,7 @@
 namespace beampipe {
 namespace {
 
-constexpr std::uint32_t kItem = 50, kRecord = 42;  // bytes of a fragment that comes in, and of a stored one
+constexpr std::uint32_t kItem = 50, kRecord = 42;  // bytes of an incoming and of a stored fragment
 
 SortRecord record_at(std::uint32_t pixel, float depth) { return {pixel, 0, depth}; }
 
@@ -34,7 +34,7 @@ TEST(ABuffer, NearToFarPerPixel) {
 }
 
 TEST(ABuffer, EqualDepthKeepsTheOrderOfArrival) {
-  std::vector<SortRecord> records;  // more than any small-sort threshold
+  std::vector<SortRecord> records;  // more than one sorted run
   for (int i = 0; i < 100; ++i) records.push_back(record_at(0, i % 2 == 0 ? -0.5f : -0.25f));
   List expected;
   for (std::uint32_t i = 0; i < 100; i += 2) expected.push_back(i);
@@ -43,7 +43,7 @@ TEST(ABuffer, EqualDepthKeepsTheOrderOfArrival) {
   EXPECT_EQ(list_of(a_buffer(records, 1, kItem, kRecord, counters), 0), expected);
 }
 
-// Sorted by nearest depth, a fragment that starts nearer comes first, wherever its centroid is.
+// If sorted by nearest depth, the fragment with the nearest point comes first, wherever its centroid is.
 TEST(ABuffer, TheKeyMayBeTheNearestDepth) {
   std::vector<Fragment> fragments(2);
   fragments[0].centroid_z = -0.75f, fragments[1].centroid_z = -0.5f;
@@ -61,8 +61,8 @@ TEST(ABuffer, NothingIn) {
   EXPECT_TRUE(buffer.records.empty());
 }
 
-// The record and a 4-byte link per fragment; a 4-byte head per pixel. Insertion reads what comes in, and reads and
-// writes the head each time; then everything is read once.
+// There is a record and a 4-byte link per fragment, and a 4-byte head per pixel. Each insertion reads the incoming
+// fragment and reads and writes the head. Then everything is read once.
 TEST(ABuffer, Bytes) {
   EXPECT_EQ(a_buffer_bytes(0, 100, kRecord), 400u);
   EXPECT_EQ(a_buffer_bytes(10, 100, kRecord), 10u * 46 + 400);

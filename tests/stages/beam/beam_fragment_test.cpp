@@ -13,7 +13,7 @@ namespace {
 constexpr Tile kPixel{0, 0, 1, 1};
 constexpr MaskSource kBoth[] = {MaskSource::table, MaskSource::exact};
 
-constexpr double kPerTriangle = 0x1p-24;  // rounding of its own sum; shared edges cancel exactly
+constexpr double kPerTriangle = 0x1p-24;  // each triangle rounds its own sum; shared edges cancel exactly
 
 TEST(BeamFragment, AlphasOfATessellationSumToOne) {
   Random random(131);
@@ -35,7 +35,7 @@ TEST(BeamFragment, AlphasOfATessellationSumToOne) {
   }
 }
 
-// The left quarter of the pixel: columns 0..7 of the Hammersley pattern, whose bits are in the order of x.
+// The left quarter of the pixel contains columns 0..7 of the Hammersley pattern, whose bits are sorted by x.
 TEST(BeamFragment, OneEdge) {
   SetupTriangles triangles;
   add_triangle(triangles, {64, -5'000}, {64, 5'000}, {-5'000, 0});
@@ -47,7 +47,7 @@ TEST(BeamFragment, OneEdge) {
     EXPECT_NEAR(fragment.centroid_u, 0.125, 1e-6);
     EXPECT_NEAR(fragment.centroid_v, 0.5, 1e-6);
     EXPECT_EQ(fragment.tiny, 0u);
-    // The table's edge is at most 0.046 px off, half as far again as columns are apart.
+    // The table's edge is wrong by at most 0.046 px, which is 1.5 times the distance between columns.
     EXPECT_LE(std::popcount(fragment.mask.words[0] ^ 0x000000ffu), source == MaskSource::exact ? 0 : 2);
   }
 }
@@ -107,7 +107,7 @@ TEST(BeamFragment, TinyMeansNoPositionAndOneBitNearest) {
   EXPECT_GT(tiny, 100);
 }
 
-// As many positions as the area fills, but no more than three: the nearest ones.
+// A speck gets the nearest positions, as many as its area fills, but at most three.
 TEST(BeamFragment, TinyTrianglesAreGivenUpToThreePositions) {
   Random random(135);
   SCOPED_TRACE(random.name());
@@ -134,7 +134,7 @@ TEST(BeamFragment, TinyTrianglesAreGivenUpToThreePositions) {
   for (const std::size_t count : {1u, 2u, 3u}) EXPECT_GT(given[count], 5) << count;
 }
 
-// Two triangles whose common edge runs through the pixel share out the mask.
+// Two triangles have a common edge in the pixel. Every position belongs to exactly one of them.
 TEST(BeamFragment, MasksOfASharedEdgeAreComplements) {
   Random random(133);
   SCOPED_TRACE(random.name());
@@ -177,7 +177,7 @@ TEST(BeamFragment, MovingByWholePixelsChangesNothing) {
   }
 }
 
-// The triangle fills the lower right quarter of four pixels and touches the others along its borders only.
+// The triangle fills the lower right quarter of four pixels and only touches the others along its borders.
 TEST(BeamFragment, TouchedPixelsWithoutAreaAreDroppedAndCounted) {
   SetupTriangles triangles;
   add_triangle(triangles, {256, 256}, {512, 256}, {256, 512});
@@ -185,7 +185,7 @@ TEST(BeamFragment, TouchedPixelsWithoutAreaAreDroppedAndCounted) {
   ASSERT_EQ(fragments.list.size(), 1u);
   EXPECT_EQ(fragments.list[0].pixel, 1u * 4 + 1);
   EXPECT_EQ(fragments.list[0].alpha, 0.5f);
-  // All of pixels 0..2 in x and y, but for (2, 2), which it does not touch.
+  // All of the pixels 0..2 in x and y, except (2, 2), which it does not touch.
   EXPECT_EQ(fragments.counters.items_in, 8u);
   EXPECT_EQ(fragments.counters.items_out, 1u);
 }

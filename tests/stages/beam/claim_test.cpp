@@ -4,10 +4,11 @@
 
 #include <set>
 
+#include "stages/beam/beam_fragment.h"
 #include "stages/beam/settle.h"
+#include "stages/cost/plane_cost.h"
 #include "stages/picture/shade.h"
 #include "stages/raster/conservative_raster.h"
-#include "stages/raster/pair_bounds.h"
 #include "tests/simd/random.h"
 #include "tests/stages/screen_triangles.h"
 
@@ -16,7 +17,7 @@ namespace {
 
 const Tile kPixel{0, 0, 1, 1};
 
-// A tile in streaming order, pass by pass.
+// Runs a tile in streaming order, pass by pass.
 template <std::size_t Words, std::size_t Layers>
 struct Stream {
   using Pixel = OwnerPixel<Words, Layers>;
@@ -53,7 +54,7 @@ struct Stream {
   bool finished() const {
     return std::none_of(pixels.begin(), pixels.end(), [](const Pixel& pixel) { return is_unfinished(pixel); });
   }
-  int run(const std::vector<glm::vec3>& colors) {  // returns the passes
+  int run(const std::vector<glm::vec3>& colors) {  // returns the number of passes
     int passes = 0;
     for (; !finished(); ++passes) claim_all(), settle_all(colors);
     return passes;
@@ -67,8 +68,8 @@ std::vector<glm::vec3> random_colors(const SetupTriangles& triangles, Random& ra
   return colors;
 }
 
-// Whatever is settled in whichever pass belongs to the nearest triangle, the earlier one of equal depths; every covered
-// position is settled once, and no other one ever has an owner.
+// A position that is settled, in any pass, belongs to the nearest triangle, and to the earlier one among equal depths.
+// Every covered position is settled once, and other positions never have an owner.
 template <std::size_t Words, std::size_t Layers>
 void expect_nearest_owners(std::int64_t seed) {
   Random random(seed);
@@ -123,7 +124,7 @@ TEST(Claim, EveryPositionIsSettledOnceForItsNearestTriangle) {
 
 TEST(Claim, AnEdgeOverASurfaceSplitsThePixel) {
   SetupTriangles triangles;
-  add_left_of(triangles, 77, -0.75f);  // 77/256 of the pixel
+  add_left_of(triangles, 77, -0.75f);  // the left 77/256 of the pixel
   add_everywhere(triangles, -0.5f);
   Stream<1, 5> stream{triangles, kPixel};
   EXPECT_EQ(stream.run({{1, 0, 0}, {0, 1, 0}}), 1);
@@ -134,7 +135,7 @@ TEST(Claim, AnEdgeOverASurfaceSplitsThePixel) {
 }
 
 TEST(Claim, SurfacesInAnyOrderOverTheWholePixelTakeOnePass) {
-  // 60 of them, each covered by the nearest: with one layer as well.
+  // 60 triangles that cover everything. The nearest one hides the others, so one layer is enough.
   for (const bool back_to_front : {true, false}) {
     SetupTriangles triangles;
     for (int i = 0; i < 60; ++i)
@@ -148,8 +149,8 @@ TEST(Claim, SurfacesInAnyOrderOverTheWholePixelTakeOnePass) {
 }
 
 TEST(Claim, MoreVisibleSurfacesThanLayersTakeMorePasses) {
-  // Eleven upright strips: five layers need three passes, one layer eleven. Their order does not matter.
-  constexpr double kColumn = 1.0 / 64;  // a strip that is partly hidden is known to a column of positions
+  // With eleven upright strips, five layers need three passes, and one layer needs eleven. Their order does not matter.
+  constexpr double kColumn = 1.0 / 64;  // a partly hidden strip is only known to one column of positions
   for (const int first : {0, 4, 7}) {
     SetupTriangles triangles;
     std::vector<glm::vec3> colors;
@@ -189,7 +190,7 @@ TEST(Claim, TheLastPassGivesWhatIsUndecidedToTheRest) {
 }
 
 TEST(Claim, SpecksMakeAreasCountByPositions) {
-  // A triangle that hits one position of 32 counts with its own area; beside a speck, with 1/32.
+  // A triangle that covers one position of 32 counts with its own area. With a speck in the pixel, it counts as 1/32.
   SetupTriangles triangles;
   const SamplePattern pattern = cell_patterns(32)[0];
   const std::int32_t x = pattern.x[5], y = pattern.y[5];
@@ -227,8 +228,8 @@ TEST(Settle, CountsItsArithmetic) {
   StageCounters finding;
   std::vector<Fragment> seen = stream.fragments_of(owners(triangles, stream.pixels, kPixel, finding));
   ASSERT_EQ(seen.size(), 1u);
-  // Four words: states 1 to 5 of three bits, two ands each, and eight bits to be inverted. The owner's plane and its
-  // depths in the pixel (stages/raster/pair_bounds.h).
+  // For four words: to find states 1 to 5 of three bits takes two ands each, and eight inversions in all. Then the
+  // owner's plane and its depth bounds in the pixel (stages/data/pixel_depth.h).
   OperationCounts search{0, 0, 4 * (5 * 2 + 8), 0, 0, 0};
   search += pair_bounds_cost();
   search += vertex_bounds_cost();
@@ -239,14 +240,15 @@ TEST(Settle, CountsItsArithmetic) {
   settle(seen, true, counters, stream.pixels);
   EXPECT_EQ(counters.items_in, 1u);
   EXPECT_EQ(counters.items_out, 0u) << "it is the last pass";
-  // Four words: states 1 to 7 of three bits (two ands each, and nine bits to be inverted in all), two states put (three
-  // and six), owners' positions joined, and what is deferred taken away.
+  // For four words: to find states 1 to 7 of three bits (two ands each, and nine inversions in all), to put two states
+  // (three and six operations), to join the owners' positions, and to take away what is deferred.
   OperationCounts all{0, 0, 4 * (7 * 2 + 9 + 3 + 6 + 7), 0, 0, 0};
-  // A population count of four words; area and colour from their formats, by the area, scaled, divided, and back.
+  // A population count of four words. Area and colour are converted from their formats, multiplied by the area, scaled,
+  // divided and converted back.
   all += OperationCounts{3 + 1 + 1, 3 + 1 + 1, 4, 0, 1 + 3, 4 + 1 + 3 + 3 + 1};
-  // It is finished: what is empty found and joined, two counts, and the scale.
+  // The pixel is finished: empty positions are found and joined, then two counts and the scale.
   all += OperationCounts{0, 6 + 5, 4 * (3 + 2 + 2) + 8, 0, 2, 8};
-  // The owner: two more, the part that is seen, its area (simd/conserve.h), and what it adds to area, positions,
+  // The owner: two more counts, its visible part, its area (simd/conserve.h), and what it adds to area, positions and
   // colour.
   all += OperationCounts{3 + 3 + 1, 6 + 12 + 2 + 3 + 1, 8, 0, 1 + 5 + 1, 8};
   EXPECT_EQ(counters.ops, all);

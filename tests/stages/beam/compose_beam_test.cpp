@@ -8,6 +8,8 @@
 #include <numbers>
 
 #include "simd/conserve.h"
+#include "stages/beam/a_buffer.h"
+#include "stages/beam/beam_fragment.h"
 #include "stages/beam/windows.h"
 #include "stages/data/position_set.h"
 #include "stages/picture/shade.h"
@@ -61,20 +63,21 @@ std::vector<PixelColor> composed(const SetupTriangles& triangles, const std::vec
 }
 
 TEST(VisibleArea, TheBackgroundGetsWhatIsLeft) {
-  // 100 of 256 positions taken, with an area that no position count gives.
+  // 100 of 256 positions are taken. The area is not a multiple of 1/256.
   const Taken<float> taken{0.4f, 100};
   EXPECT_NEAR(visible_area(1.0f, 256.0f, 156.0f, 256.0f, taken), 0.6f, 1e-6);
 }
 
 TEST(VisibleArea, AWholeFragmentHasItsOwnArea) {
   EXPECT_NEAR(visible_area(0.3f, 70.0f, 70.0f, 256.0f, Taken<float>{0.4f, 100}), 0.3f, 1e-6);
-  EXPECT_NEAR(visible_area(0.7f, 170.0f, 170.0f, 256.0f, Taken<float>{0.4f, 86}), 0.6f, 1e-6);  // no more than is free
+  EXPECT_NEAR(visible_area(0.7f, 170.0f, 170.0f, 256.0f, Taken<float>{0.4f, 86}), 0.6f, 1e-6);  // at most the free area
 }
 
 TEST(VisibleArea, APartOfAFragmentBringsPartOfTheErrorsAlong) {
-  // Half of it is seen: 56 / 256, and a quarter of the 1/16 by which its area is more than its 112 positions.
+  // Half of it is visible: 56 / 256, plus a quarter of 1/16, by which its area exceeds that of its 112 positions.
   EXPECT_NEAR(visible_area(0.5f, 112.0f, 56.0f, 256.0f, Taken<float>{0.25f, 64}), 0.234375f, 1e-6);
-  // What is in front took 0.05 more than its 64 positions: of the 192 that were left, 56 give up their share.
+  // The surfaces in front took 0.05 more than their 64 positions. This fragment owns 56 of the 192 remaining positions
+  // and gives up the same share of the 0.05.
   EXPECT_NEAR(visible_area(0.5f, 112.0f, 56.0f, 256.0f, Taken<float>{0.3f, 64}), 0.2197917f, 1e-6);
 }
 
@@ -95,7 +98,7 @@ TEST(VisibleArea, StaysBetweenNothingAndWhatIsFree) {
 TEST(ComposeWindow, AnEdgeOverASurfaceSplitsThePixelExactly) {
   for (const int bits : {32, 64, 128, 256}) {
     SetupTriangles triangles;
-    add_left_of(triangles, 77, -0.75f);  // 77/256 of the pixel
+    add_left_of(triangles, 77, -0.75f);  // the left 77/256 of the pixel
     add_everywhere(triangles, -0.5f);
     const PixelColor found = composed(triangles, {{1, 0, 0}, {0, 1, 0}}, kPixel, bits).at(0);
     EXPECT_NEAR(found.alpha, 1.0, 1e-6);
@@ -114,7 +117,7 @@ TEST(ComposeWindow, ColorIsStoredAsHalfBehindEveryWindow) {
 }
 
 TEST(ComposeWindow, ASurfaceOfManyTrianglesHidesWhatIsBehind) {
-  // A fan of 64 around the pixel's middle closes it; behind it another colour, which must not show at all.
+  // A fan of 64 triangles around the pixel's centre closes it. Behind it is another colour, which must not show at all.
   SetupTriangles triangles;
   std::vector<glm::vec3> colors;
   std::vector<ScreenPoint> rim;
@@ -133,8 +136,8 @@ TEST(ComposeWindow, ASurfaceOfManyTrianglesHidesWhatIsBehind) {
   EXPECT_NEAR(found.color.g, 0.0, 2e-6);
 }
 
-// A disc of radius 2 pixels cut into triangles far smaller than the mask's cells, all in one plane, flat or tilted:
-// what is seen of it must be its area, in all pixels together.
+// A disc with a radius of 2 pixels is cut into triangles that are far smaller than the mask's cells. All lie in one
+// plane, which is flat or tilted. The visible area in all pixels together must be the disc's area.
 TEST(ComposeWindow, ADenseMeshKeepsItsSilhouette) {
   constexpr int kRings = 60, kSectors = 240;
   const Tile tile{0, 0, 8, 8};
@@ -165,7 +168,7 @@ TEST(ComposeWindow, ADenseMeshKeepsItsSilhouette) {
   }
 }
 
-// A quarter of the distance between positions, 1/64 px, along the slope of the surface that owns them.
+// The limit is a quarter of the distance between positions, 1/64 px, along the slope of the surface that owns them.
 TEST(ComposeWindow, ASpeckBelongsToASurfaceThatIsHardlyNearer) {
   constexpr float kSlope = 0.01f;  // per pixel
   for (const auto& [behind, shows] : {std::pair(kSlope / 128, true), {kSlope / 32, false}}) {
@@ -181,7 +184,7 @@ TEST(ComposeWindow, ASpeckBelongsToASurfaceThatIsHardlyNearer) {
 }
 
 TEST(ComposeWindow, WeightsOfAClosedSceneSumToOne) {
-  // Every pixel is closed by one big triangle; with all colours white the weights are the picture.
+  // One big triangle closes every pixel. All colours are white, so the picture shows the weights.
   Random random(72);
   SCOPED_TRACE(random.name());
   const Tile tile{0, 0, 16, 16};
@@ -212,7 +215,7 @@ TEST(ComposeWindow, WindowsSeparateWhatDoesNotOverlapInDepth) {
   EXPECT_EQ(windows, std::vector<float>{1});
 }
 
-// Leaving out what full pixels hide changes nothing that is seen.
+// To leave out what is hidden behind full pixels changes nothing that is visible.
 TEST(ComposeWindow, ClosedPixelsHideNothingThatIsSeen) {
   Random random(74);
   SCOPED_TRACE(random.name());
@@ -223,7 +226,7 @@ TEST(ComposeWindow, ClosedPixelsHideNothingThatIsSeen) {
   const SetupTriangles behind = random_triangles(random, 200);
   const auto first_behind = static_cast<std::uint32_t>(all.triangles.size());
   for (const SetupTriangle& triangle : behind.triangles) {
-    SetupTriangle moved = triangle;  // into the depths behind the wall
+    SetupTriangle moved = triangle;  // moved behind the wall
     for (float& z : moved.vertex_z) z = -0.5f;
     moved.depth.z = -0.5, moved.depth.dzdx = moved.depth.dzdy = 0;
     all.triangles.push_back(moved);
@@ -250,7 +253,7 @@ TEST(PositionSet, TheNearestPositionsAreTheNearest) {
   Random random(73);
   SCOPED_TRACE(random.name());
   for (int i = 0; i < 2000; ++i) {
-    // The middle of a place, where the table is exact.
+    // The centre of a place of the table, where the table is exact.
     const int x = random.int32(0, 63), y = random.int32(0, 63);
     const auto& found = positions.nearest_to((static_cast<float>(x) + 0.5f) / 64, (static_cast<float>(y) + 0.5f) / 64);
     std::vector<int> distances;

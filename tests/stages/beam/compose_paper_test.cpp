@@ -26,7 +26,7 @@ TEST(Compose, EmptyPixel) {
 
 TEST(Compose, OneEdge) {
   for (const MaskSource mask : {MaskSource::table, MaskSource::exact})
-    for (const std::int32_t x : {1, 37, 64, 128, 200, 255}) {  // area alone decides, never the mask
+    for (const std::int32_t x : {1, 37, 64, 128, 200, 255}) {  // only the area matters, not the mask
       SetupTriangles triangles;
       add_left_of(triangles, x, -0.5f);
       const Aggregate found = pixel(triangles, mask);
@@ -35,7 +35,7 @@ TEST(Compose, OneEdge) {
     }
 }
 
-TEST(Compose, TwoEdgesOfOneTriangle) {  // its right angle is in the pixel's middle: the lower left quarter
+TEST(Compose, TwoEdgesOfOneTriangle) {  // the lower left quarter: the right angle is at the pixel's centre
   SetupTriangles triangles;
   add_triangle(triangles, {128, 128}, {128, 9'000}, {-9'000, 128});
   EXPECT_NEAR(pixel(triangles).alpha, 0.25, 1e-6);
@@ -67,8 +67,8 @@ TEST(Compose, SharedEdgeClosesThePixel) {
     }
 }
 
-// Front over a full back, whichever comes first: with k whole columns of positions covered, the mask says what the area
-// says, and the picture is exact.
+// A front triangle over one that covers the whole pixel, in either order. If the front one covers k whole columns of
+// positions, its mask has the same coverage as its area, and the picture is exact.
 TEST(Compose, FrontOverBack) {
   for (const bool front_first : {true, false})
     for (const std::int32_t x : {64, 128, 192}) {
@@ -84,7 +84,7 @@ TEST(Compose, FrontOverBack) {
     }
 }
 
-// With an area that the mask cannot say, the overlap's share is at most one position's worth wrong.
+// If the mask cannot represent the area, the error of the overlap is at most the area of one position.
 TEST(Compose, FrontOverBackWithinOnePosition) {
   for (std::int32_t x = 1; x < 256; ++x) {
     SetupTriangles triangles;
@@ -109,8 +109,7 @@ struct FanAlphas {
   double least = 1, mean = 0;
 };
 
-// Alphas of pixels that fans of one flat colour close. `tiny`: of those with triangles that cover no mask position, or
-// of those without.
+// The alphas of pixels that fans of a single flat colour close. `tiny` selects the pixels with specks or those without.
 FanAlphas fan_alphas(Random& random, std::int32_t per_side, bool tiny, MaskSource mask) {
   FanAlphas alphas;
   int fans = 0;
@@ -132,7 +131,7 @@ FanAlphas fan_alphas(Random& random, std::int32_t per_side, bool tiny, MaskSourc
   return alphas;
 }
 
-// Where every triangle has positions of its own, the masks share out the pixel and the areas add up.
+// If every triangle has positions of its own, no two masks overlap and the areas add up.
 TEST(Compose, FansWithoutTinyTrianglesCloseThePixel) {
   Random random(141);
   SCOPED_TRACE(random.name());
@@ -142,8 +141,8 @@ TEST(Compose, FansWithoutTinyTrianglesCloseThePixel) {
   }
 }
 
-// Tiny triangles share positions with their neighbours, where the published rules lose coverage: at worst a third of
-// the pixel, on average up to a quarter, and what is behind shines through. Fewer and larger triangles leak less.
+// Specks share positions with their neighbours, and the published rules lose coverage there: at worst a third of the
+// pixel, on average up to a quarter. What is behind shows through. Fewer and larger triangles leak less.
 TEST(Compose, FansOfTinyTrianglesLeak) {
   Random random(143);
   SCOPED_TRACE(random.name());
@@ -155,7 +154,7 @@ TEST(Compose, FansOfTinyTrianglesLeak) {
     }
 }
 
-// The stage merges the r-th fragments of all pixels at once; each pixel must come out as if it were alone.
+// The stage merges the r-th fragments of all pixels at once. Each pixel must get the same result as if it were alone.
 TEST(Compose, PixelsDoNotMix) {
   Random random(142);
   SCOPED_TRACE(random.name());
@@ -173,14 +172,15 @@ TEST(Compose, PixelsDoNotMix) {
   for (std::size_t i = 0; i < tile.pixels(); ++i) {
     Aggregate alone = kEmptyAggregate;
     for (std::uint32_t k = buffer.first[i]; k < buffer.first[i + 1]; ++k)
-      alone = merge_scalar(merge_fragment(fragments.list[buffer.records[k]]), alone, pattern, {});
+      alone = merge_formula(merge_fragment(fragments.list[buffer.records[k]]), alone, pattern, {});
     ASSERT_EQ(found[i].alpha, alone.alpha) << "pixel " << i;
     ASSERT_EQ(found[i].mask, alone.mask);
     for (int c = 0; c < 3; ++c) ASSERT_EQ(found[i].color[c], alone.color[c]);
   }
 }
 
-// Near to far 1/2, 1/4, 1/4 of coverage, independent: 1/2; 1/4 of the remaining 1/2; 1/4 of the remaining 3/8.
+// From near to far the coverages are 1/2, 1/4 and 1/4, all independent: 1/2, 1/4 of the remaining 1/2, and 1/4 of the
+// remaining 3/8.
 TEST(Compose, PlainOver) {
   SetupTriangles triangles;
   add_left_of(triangles, 64, -0.25f);
@@ -195,7 +195,8 @@ TEST(Compose, PlainOver) {
   EXPECT_NEAR(found.color[0], 0.375 / 4, 1e-6);
   EXPECT_NEAR(found.alpha, 0.5 + 0.125 + 0.09375, 1e-6);
   EXPECT_EQ(counters.items_in, 3u);
-  // Per merge: 1 - alpha; a product and a sum each for alpha and three channels; these from fp16 and back.
+  // Per merge: 1 - alpha; a product and a sum each for alpha and three channels; the channels are converted from fp16
+  // and back.
   EXPECT_EQ(counters.ops, (OperationCounts{3 * 4, 3 * 5, 0, 0, 0, 3 * 6}));
 }
 

@@ -1,10 +1,11 @@
-// The twin of compose_window: one window of one pixel after the other, position by position.
+// The scalar twin of compose_window: one window of one pixel after the other, position by position.
 #include <algorithm>
 #include <limits>
 #include <optional>
 
 #include "simd/conserve.h"
 #include "simd/position_mask.h"
+#include "stages/beam/beam_fragment.h"
 #include "stages/beam/compose_beam.h"
 #include "stages/picture/shade.h"
 #include "stages/raster/conservative_raster.h"
@@ -20,7 +21,7 @@ using Stored = StoredAggregate<kWords, Channel>;
 
 class ComposeTwins : public SceneTwins {
  protected:
-  // What `fragments`, of one pixel, leave in it.
+  // Composes `fragments`, which belong to one pixel.
   template <class Channel>
   void compose(const Fragment* fragments, std::size_t count, Stored<Channel>& pixel) {
     const auto format = [](const Float& value) { return std::is_same_v<Channel, float> ? value : converted(value); };
@@ -47,7 +48,7 @@ class ComposeTwins : public SceneTwins {
       taken = taken | seen[i].owned;
     }
     static_cast<void>(positions == real(float(kPositions)));
-    if (positions.value == float(kPositions)) {  // nothing is left for the background
+    if (positions.value == float(kPositions)) {  // nothing of the background is visible
       const Float scale = real(1.0f) / area;
       for (Float& channel : color) channel = channel * scale;
       area = real(1.0f);
@@ -66,7 +67,7 @@ class ComposeTwins : public SceneTwins {
     Float covered{0.0f}, visible{0.0f};
   };
 
-  // Each open position goes to the fragment that is nearest there; depth is asked where there are several.
+  // Each open position goes to the fragment that is nearest there. Depths are compared only if there are several.
   std::vector<Seen> owners(const Fragment* fragments, std::size_t count, const WideMask& taken) {
     std::vector<Seen> seen(count);
     WideMask once, twice;
@@ -83,7 +84,7 @@ class ComposeTwins : public SceneTwins {
     for (Seen& fragment : seen) {
       for (const std::uint32_t word : fragment.owned.words) {
         fragment.visible = fragment.visible + bit_count(bits(word));
-        bits(0) | bits(word);  // into what is taken
+        bits(0) | bits(word);  // joined to what is taken
       }
     }
     return seen;
@@ -114,7 +115,7 @@ class ComposeTwins : public SceneTwins {
     }
   }
 
-  // Fragments that show as a whole before those that are partly hidden, the most visible of these first.
+  // Fragments that are completely visible come first, then those that are partly hidden, the most visible first.
   std::vector<std::size_t> whole_first(const std::vector<Seen>& seen) {
     std::vector<std::size_t> order, partial;
     std::vector<float> part(seen.size());
@@ -127,7 +128,7 @@ class ComposeTwins : public SceneTwins {
       }
     }
     std::sort(partial.begin(), partial.end(), [&](std::size_t a, std::size_t b) {
-      ++twin_.add;  // of keys
+      ++twin_.add;  // a comparison of keys
       return part[a] > part[b] || (part[a] == part[b] && a < b);
     });
     order.insert(order.end(), partial.begin(), partial.end());
@@ -140,8 +141,9 @@ class ComposeTwins : public SceneTwins {
     return {};
   }
 
-  // Each asks the owners of the three nearest positions whether it is before them, or on the same surface: its area
-  // times the part of them that agree. Of the two sides of a surface the one with less area at a position is dropped.
+  // Each speck is compared with the owners of the three nearest positions: is it in front of them or on the same
+  // surface? Its area is multiplied by the part of them for which that is true. If the specks at a position show both
+  // sides of a surface, the side with less area is dropped.
   void find_specks(const Fragment* fragments, const std::vector<Seen>& seen, const WideMask& taken,
                    std::vector<Float>& areas) {
     std::vector<Float> sides[2];
@@ -178,7 +180,7 @@ class ComposeTwins : public SceneTwins {
     }
   }
 
-  // At most 1/64 px of the surface's slope behind it.
+  // It may be at most 1/64 px of the surface's slope behind the surface.
   bool is_before(const Fragment& fragment, const DepthPlane<float>& plane) {
     const Float half(0.5f), dzdu = real(plane.dzdu), dzdv = real(plane.dzdv);
     const Float u = real(fragment.centroid_u) - half, v = real(fragment.centroid_v) - half;

@@ -2,6 +2,7 @@
 
 #include <gtest/gtest.h>
 
+#include "stages/beam/beam_fragment.h"
 #include "stages/picture/shade.h"
 #include "stages/raster/conservative_raster.h"
 #include "tests/simd/random.h"
@@ -55,8 +56,8 @@ TEST(ComposeZ3, OrderDoesNotMatterWhileLayersFit) {
 }
 
 TEST(ComposeZ3, TheClosestTwoAreMerged) {
-  // Three strips beside each other: the two that are close in depth share one colour, so that what comes between them
-  // and the third hides them as one.
+  // Three strips next to each other. The two that are close in depth are merged, so a fragment between them and the
+  // third hides both.
   SetupTriangles triangles;
   add_everywhere(triangles, -0.4f);
   add_left_of(triangles, 192, -0.41f);
@@ -89,18 +90,19 @@ TEST(ComposeZ3, CountsItsArithmetic) {
   add_everywhere(triangles, -0.5f);
   OperationCounts counts;
   composed<1, 2>(triangles, white, kPixel, LayerMerge::depth, &counts);
-  // Two slopes rounded to the stored format and a colour from fp16; five numbers from the formats of two layers and
-  // into them. Of one word: two states of two bits found and put, and eight operations on the positions of each layer.
+  // Two slopes are rounded to the stored format and a colour is converted from fp16. Five numbers of each of two layers
+  // are converted from the stored formats and back. For one word, two states of two bits are found and put, and there
+  // are eight operations on the positions of each layer.
   const OperationCounts one{0, 0, 2 * (2 + 3) + 2 * 8, 0, 0, 2 * 2 + 3 + 2 * 5 + 2 * 5};
   EXPECT_EQ(counts, one);
   add_left_of(triangles, 192, -0.6f);
   add_left_of(triangles, 64, -0.9f);
   composed<1, 2>(triangles, white, kPixel, LayerMerge::depth, &counts);
   OperationCounts all = one * 3;
-  // Planes compared at 32 positions: the second with the first, the third with the second.
+  // Planes are compared at 32 positions: the second with the first, the third with the second.
   all += OperationCounts{4, 4 + 1, 0, 0, 0, 0} * (32 * 2);
-  // Three layers, three pairs: depths' difference, the least of them; two population counts, shares, six means, a
-  // union.
+  // Three layers make three pairs: the difference of their depths, and the least of these. Then two population counts,
+  // the shares, six means and a union.
   all += OperationCounts{12, 3 + 3 + 2 + 6, 3 + 2 + 1, 0, 1, 2};
   EXPECT_EQ(counts, all);
 }

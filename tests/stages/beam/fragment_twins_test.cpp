@@ -1,4 +1,4 @@
-// The twin of beam_fragment: one (pixel, triangle) after the other, as the paper describes a fragment.
+// The scalar twin of beam_fragment: one pair after the other, as the paper describes a fragment.
 #include <cmath>
 #include <numbers>
 #include <optional>
@@ -9,7 +9,8 @@
 #include "simd/position_mask.h"
 #include "simd/sample_mask.h"
 #include "stages/beam/beam_fragment.h"
-#include "stages/beam/fragment_geometry.h"
+#include "stages/data/fragment_geometry.h"
+#include "stages/raster/conservative_raster.h"
 #include "tests/stages/scene_twins.h"
 
 namespace beampipe {
@@ -61,7 +62,7 @@ class FragmentTwins : public SceneTwins {
     DepthRange<Float> range{real(pair.nearest), real(pair.farthest)};
     if (!pair.full || options.clipped_depth) {
       const PixelTriangleOf<Int> seen = seen_from(triangle, pair);
-      const Coverage<Float> area = coverage_scalar<Int, Float>(seen);
+      const Coverage<Float> area = coverage_formula<Int, Float>(seen);
       if (!pair.full) covered = area;
       mask = masks(pair, seen, options);
       if (options.clipped_depth) {
@@ -69,7 +70,7 @@ class FragmentTwins : public SceneTwins {
         range = clipped_range(triangle, seen, plane);
       }
     }
-    if (!pair.full && covered.alpha <= Float(5e-7f)) return {};  // what rounding leaves of nothing
+    if (!pair.full && covered.alpha <= Float(5e-7f)) return {};  // a rounding error of 0
     if (pair.full) std::fill_n(mask.words.begin(), words(options), ~0u);
     if (!options.clipped_depth) plane = pixel_plane_of(triangle, pair);
     out.alpha = covered.alpha.value;
@@ -113,7 +114,7 @@ class FragmentTwins : public SceneTwins {
     set_geometry(seen, in);
     in.z = plane.z, in.dzdu = plane.dzdu, in.dzdv = plane.dzdv;
     for (int k = 0; k < 3; ++k) in.vertex_z[k] = real(triangle.vertex_z[k]);
-    return depth_range_scalar(in);
+    return depth_range_formula(in);
   }
 
   WideMask masks(const PixelTriangle& pair, const PixelTriangleOf<Int>& seen, const BeamFragmentOptions& options) {
@@ -132,7 +133,7 @@ class FragmentTwins : public SceneTwins {
             direction.angle, bits(direction.flip ? ~0u : 0u),
             to_float(to_double(edges_[static_cast<std::size_t>(k)].at(center_x, center_y)) * direction.per_unit)};
       }
-      mask.words[0] = table_mask_scalar(lookup, *options.table).value;
+      mask.words[0] = table_mask_formula(lookup, *options.table).value;
       return mask;
     }
     Int a[3], b[3], c[3];
@@ -146,8 +147,8 @@ class FragmentTwins : public SceneTwins {
     return mask;
   }
 
-  // The edges of a triangle. For exact masks, which have the samples on them; for the table, which way they run, in 32
-  // steps of half a turn, and what makes distances of their values.
+  // The edges of a triangle. For exact masks: whether they own the samples on them. For the table: their directions, in
+  // 32 steps per half turn, and the factor that turns their values into distances.
   void direct(const SetupTriangle& triangle, bool for_table) {
     for (int k = 0; k < 3; ++k) {
       const int next = (k + 1) % 3;
@@ -173,7 +174,7 @@ class FragmentTwins : public SceneTwins {
     }
   }
 
-  // The paper's: the nearest position; the slides': the nearest ones, as many as the area fills.
+  // The paper gives a speck the nearest position; the slides give it the nearest ones, as many as its area fills.
   WideMask located(const Coverage<Float>& covered, const BeamFragmentOptions& options) {
     WideMask mask;
     const Float filled = covered.alpha * Float(static_cast<float>(32 * options.positions.size()));
@@ -202,10 +203,10 @@ class FragmentTwins : public SceneTwins {
   };
   std::array<EdgeAt<Int>, 3> edges_;
   std::array<Direction, 3> directions_;
-  std::uint32_t directed_ = kNoTriangle;  // whose they are
+  std::uint32_t directed_ = kNoTriangle;  // the triangle that they belong to
 };
 
-TEST_P(FragmentTwins, OnAGrid) {  // where full pixels take the short way
+TEST_P(FragmentTwins, OnAGrid) {  // full pixels are not computed
   const PositionGrid grid(256);
   expect_equal(grid_options(grid, 0));
 }

@@ -1,8 +1,11 @@
-// The twins of compose as it was published and as Z3 has it: one fragment after the other into its pixel.
+// The scalar twins of compose by the published rules and of compose_z3: one fragment after the other is added to its
+// pixel.
 #include <algorithm>
 #include <cmath>
 
 #include "simd/plane_order.h"
+#include "stages/beam/a_buffer.h"
+#include "stages/beam/beam_fragment.h"
 #include "stages/beam/compose_paper.h"
 #include "stages/beam/compose_z3.h"
 #include "stages/picture/shade.h"
@@ -21,7 +24,7 @@ class MergeTwins : public SceneTwins {
     beam_fragment(triangles_, pairs, tile_, options, ignored, fragments_);
     shade(shade_triangles(triangles_, trace_.frames[0].light_direction), fragments_, ignored);
   }
-  void make_published_fragments() {
+  void make_paper_fragments() {
     const SamplePattern pattern = hammersley_pattern();
     const MaskTable table(pattern);
     BeamFragmentOptions options;
@@ -46,7 +49,7 @@ class MergeTwins : public SceneTwins {
             a.z_min.value, a.z_max.value, {a.color[0].value, a.color[1].value, a.color[2].value}};
   }
 
-  // The numbers of an aggregate that a merge reads from its storage's formats, and writes into them.
+  // The numbers of an aggregate that each merge converts from the stored formats and back.
   static void convert(AggregateOf<Float, Bits>& a, PaperStorage storage) {
     if (storage == PaperStorage::float32) return;
     for (Float& channel : a.color) channel = converted(channel);
@@ -54,7 +57,7 @@ class MergeTwins : public SceneTwins {
       for (Float* const number : {&a.plane.dzdu, &a.plane.dzdv, &a.thickness}) *number = converted(*number);
   }
 
-  // `merged`: a fragment and what is there -> what is there then, as it is stored.
+  // `merged`: takes a fragment and the old aggregate and returns the new aggregate as it is stored.
   template <class Merged>
   std::vector<Aggregate> merge_all(Merged&& merged) {
     std::vector<Aggregate> pixels(tile_.pixels(), kEmptyAggregate);
@@ -88,7 +91,7 @@ class MergeTwins : public SceneTwins {
     const std::vector<Aggregate> expected = merge_all([&](const Fragment& fragment, const Aggregate& before) {
       AggregateOf<Float, Bits> old = counting(before);
       convert(old, storage);
-      AggregateOf<Float, Bits> merged = merge_scalar(counting(fragment), old, pattern, rules);
+      AggregateOf<Float, Bits> merged = merge_formula(counting(fragment), old, pattern, rules);
       convert(merged, storage);
       return Aggregate(Stored(value_of(merged)));
     });
@@ -104,18 +107,18 @@ class MergeTwins : public SceneTwins {
 };
 
 TEST_P(MergeTwins, Compose) {
-  make_published_fragments();
+  make_paper_fragments();
   compose_into<SlidesAggregate>(PaperStorage::slides);
   compose_into<TextAggregate>(PaperStorage::text);
   compose_into<Aggregate>(PaperStorage::float32);
 }
 
 TEST_P(MergeTwins, Over) {
-  make_published_fragments();
+  make_paper_fragments();
   const std::vector<Aggregate> expected = merge_all([&](const Fragment& fragment, const Aggregate& before) {
     AggregateOf<Float, Bits> old = counting(before);
     convert(old, PaperStorage::slides);
-    AggregateOf<Float, Bits> merged = over_scalar(counting(fragment), old);
+    AggregateOf<Float, Bits> merged = over_formula(counting(fragment), old);
     convert(merged, PaperStorage::slides);
     return Aggregate(SlidesAggregate(value_of(merged)));
   });
@@ -144,7 +147,7 @@ class Z3Twin {
   Z3Twin(const PositionSet& positions, LayerMerge merge, OperationCounts& counts)
       : positions_(positions), merge_(merge), counts_(counts) {}
 
-  // Returns whether two layers became one.
+  // Returns whether two layers were merged.
   bool add(const Fragment& fragment, Pixel& pixel) {
     CountedLayer arriving = arriving_layer(fragment);
     std::vector<CountedLayer> layers;
@@ -171,7 +174,7 @@ class Z3Twin {
   Float real(float value) { return Float(value, counts_); }
   Bits bits(std::uint32_t word) { return Bits(word, counts_); }
 
-  // Its colour comes as fp16, and not times alpha; its slopes are rounded as those that they are compared with.
+  // Its colour is fp16 and not multiplied by alpha. Its slopes are rounded like those that they are compared with.
   CountedLayer arriving_layer(const Fragment& fragment) {
     const auto slope = [&](float value) { return converted(converted(real(UpperHalf(value)))); };
     CountedLayer layer{real(fragment.plane.z), slope(fragment.plane.dzdu), slope(fragment.plane.dzdv), {}, {}};
@@ -204,16 +207,16 @@ class Z3Twin {
     for (int c = 0; c < 3; ++c) pixel.layers[k].color[c] = HalfBits(layer->color[c].value);
   }
 
-  // Where the first layer is nearer, asked where any position is contested.
+  // The positions where the first layer is nearer. They are only computed if a position is contested.
   std::vector<Bits> positions_won(const CountedLayer& a, const CountedLayer& b, const std::vector<Bits>& contested) {
     std::vector<Bits> nearer(Words, bits(0));
     if (std::all_of(contested.begin(), contested.end(), [](const Bits& word) { return word.value == 0; }))
       return nearer;
     for (std::size_t w = 0; w < Words; ++w)
       for (std::size_t s = 0; s < 32; ++s)
-        nearer[w].value |= std::uint32_t{nearer_scalar<Float>({a.z, a.dzdu, a.dzdv}, {b.z, b.dzdu, b.dzdv},
-                                                              real(position_u(positions_.patterns[w], s)),
-                                                              real(position_v(positions_.patterns[w], s)))}
+        nearer[w].value |= std::uint32_t{nearer_formula<Float>({a.z, a.dzdu, a.dzdv}, {b.z, b.dzdu, b.dzdv},
+                                                               real(position_u(positions_.patterns[w], s)),
+                                                               real(position_v(positions_.patterns[w], s)))}
                            << s;
     return nearer;
   }
@@ -235,7 +238,7 @@ class Z3Twin {
         const CountedLayer &a = layers[i], &b = layers[j];
         Float loss = magnitude(a.z - b.z);
         if (merge_ == LayerMerge::color) {
-          counts_.add -= 1, counts_.bit -= 1;  // depths are not asked
+          counts_.add -= 1, counts_.bit -= 1;  // depths are not compared
           const Float red = a.color[0] - b.color[0], green = a.color[1] - b.color[1], blue = a.color[2] - b.color[2];
           loss = (red * red + green * green + blue * blue) * sizes[i] * sizes[j] / (sizes[i] + sizes[j]);
         }

@@ -1,4 +1,4 @@
-// Searches: what must hold for every triangle, tried on random ones. BEAMPIPE_THOROUGH=N tries N times as many; a
+// Properties that must hold for every triangle, tried on random ones. BEAMPIPE_THOROUGH=N tries N times as many. A
 // failure names the seed of its case.
 #include <gtest/gtest.h>
 
@@ -20,8 +20,8 @@ constexpr double kAlphaError = 5e-7;  // simd/coverage.h
 
 using Rational = boost::multiprecision::cpp_rational;
 
-// Whether the open triangle and the open pixel have a point in common: by clipping, in doubles where those are sure,
-// and in rational numbers where they are not.
+// Do the open triangle and the open pixel have a point in common? Decided by clipping, in doubles where these are
+// precise enough, otherwise in rational numbers.
 template <class Number>
 Number clipped_area(const SetupTriangle& t, std::int32_t x, std::int32_t y) {
   using Corners = std::vector<std::pair<Number, Number>>;
@@ -56,8 +56,8 @@ bool has_area(const SetupTriangle& t, std::int32_t x, std::int32_t y) {
   return area > 1 || clipped_area<Rational>(t, x, y) > 0;
 }
 
-// No pixel with common area is missed. What is found without area touches the pixel in a point or along an edge:
-// triangle and pixel are closed sets.
+// No pixel that has area in common with the triangle is missed. A pixel that is found without common area touches the
+// triangle in a point or along an edge, because both are closed sets.
 TEST(Properties, ConservativeRasterMissesNoPixel) {
   std::uint64_t pairs = 0, without_area = 0, on_corner = 0;
   search(1'000'000, 4'000, [&](Random& random) {
@@ -89,7 +89,8 @@ TEST(Properties, ConservativeRasterMissesNoPixel) {
   EXPECT_LT(without_area, pairs / 4) << "vertices lie on pixel borders far more often than in scenes";
 }
 
-// Random points split a triangle around the tile into three, again and again: edges at all angles, specks and slivers.
+// Random points repeatedly split a triangle around the tile into three. This makes edges at all angles, specks and
+// slivers.
 SetupTriangles random_partition(Random& random, int splits) {
   using Corners = std::array<ScreenPoint, 3>;
   std::vector<Corners> parts = {{{{-9'000, -9'000}, {20'000, -9'000}, {-9'000, 20'000}}}};
@@ -131,7 +132,7 @@ TEST(Properties, EverySampleOfAPartitionOnce) {
   });
 }
 
-// Every part rounds its own sum by 2^-24 at most (shared edges cancel exactly), or is dropped below kZeroArea.
+// Every part rounds its own sum by at most 2^-24, or is dropped below kZeroArea. Shared edges cancel exactly.
 TEST(Properties, AreasOfAPartitionAddUp) {
   double worst = 0;
   search(3'000'000, 150, [&](Random& random) {
@@ -153,15 +154,16 @@ TEST(Properties, AreasOfAPartitionAddUp) {
   std::printf("largest difference from 1: %.3g\n", worst);
 }
 
-// A triangle inside another has no more area in any pixel, and no mask position that the other has not. Vertices on odd
-// 1/256 px: on an edge that only one of them has, a position at a vertex could be theirs or not.
+// A triangle inside another one has at most the other's area in every pixel, and only mask positions of the other.
+// Vertices have odd coordinates in 1/256 px, so that no position lies on a vertex, where the top-left rule could give
+// it to the inner triangle alone.
 TEST(Properties, AreaAndMaskGrowWithTheTriangle) {
   search(4'000'000, 1'500, [&](Random& random) {
     const auto odd = [&](std::int32_t low, std::int32_t high) { return 2 * random.int32(low / 2, high / 2) + 1; };
     ScreenPoint p[3];
     for (ScreenPoint& point : p) point = {odd(-1500, 4500), odd(-1500, 4000)};
     const std::int32_t times = 2 * random.int32(1, 20) + 1;
-    // The third vertex, moved away from the first along their edge: the smaller one lies in the larger.
+    // The third vertex is moved away from the first along their edge, so the smaller triangle lies in the larger one.
     const ScreenPoint far{p[0].x + times * (p[2].x - p[0].x), p[0].y + times * (p[2].y - p[0].y)};
     SetupTriangles smaller, larger;
     add_triangle(smaller, p[0], p[1], p[2]);

@@ -1,11 +1,11 @@
-// The twins of what ends a pass in streaming order: which owners a pixel has, and what they leave in it.
+// The scalar twins of the end of a pass in streaming order: which owners a pixel has, and what they add to it.
 #include "simd/conserve.h"
+#include "stages/beam/beam_fragment.h"
 #include "stages/beam/claim.h"
-#include "stages/beam/fragment_geometry.h"
 #include "stages/beam/settle.h"
+#include "stages/data/fragment_geometry.h"
 #include "stages/picture/shade.h"
 #include "stages/raster/conservative_raster.h"
-#include "stages/raster/pair_bounds.h"
 #include "tests/stages/counted_states.h"
 #include "tests/stages/scene_twins.h"
 
@@ -19,7 +19,7 @@ class PassTwin {
 
   PassTwin(const SetupTriangles& triangles, OperationCounts& counts) : triangles_(triangles), counts_(counts) {}
 
-  // The depths between which each owner of the pixel at (x, y) lies in it.
+  // The depth bounds of each owner of the pixel (x, y).
   std::vector<PixelTriangle> owners(const Pixel& pixel, std::int32_t x, std::int32_t y) {
     std::vector<PixelTriangle> pairs;
     for (std::uint32_t k = 0; k < Layers; ++k) {
@@ -36,7 +36,7 @@ class PassTwin {
     return pairs;
   }
 
-  // `fragments`: those of the pixel's owners that have area.
+  // `fragments`: of the pixel's owners, those that have area.
   void settle(const std::vector<Fragment>& fragments, bool last_pass, Pixel& pixel) {
     const Float one(1.0f), positions = real(32.0f * Words), units(65535.0f);
     Mask settled = find(pixel, Pixel::kSettled), deferred = find(pixel, Pixel::kDeferred);
@@ -61,7 +61,7 @@ class PassTwin {
       owner.part = owner.visible / owner.covered;
       seen.push_back(owner);
     }
-    // Each stands behind those of which a greater part is seen, and at equal parts behind those before it.
+    // Sorted by the visible part, the largest first; equal parts keep their order.
     for (std::size_t i = 0; i < seen.size(); ++i)
       for (std::size_t j = 0; j < i; ++j) ++(seen[i].part > seen[j].part ? seen[j].rank : seen[i].rank);
     const bool speck = pixel.owner[0] & Pixel::kSpeck;
@@ -78,7 +78,7 @@ class PassTwin {
         color[c] = color[c] + share * real(owner.fragment->color[static_cast<int>(c)]);
     }
     Float scale = real(1.0f);
-    if (none(deferred) || last_pass) {  // nothing is left for the background, or as much as nobody decided about
+    if (none(deferred) || last_pass) {  // the background shows nothing, or only at positions that no pass decided
       const Float undecided = count(deferred);
       const bool full = count(settled) + undecided == positions;
       const Float inverse = one / area, rest = positions / (positions - undecided);
@@ -151,7 +151,7 @@ class SettleTwins : public SceneTwins {
           ASSERT_EQ(found[next].nearest, pair.nearest) << i;
           ASSERT_EQ(found[next++].farthest, pair.farthest) << i;
         }
-        if (next == first) twin_ = before;  // nothing has claimed it: it is known to be clear
+        if (next == first) twin_ = before;  // a pixel without owners is known to be clear
       }
       EXPECT_EQ(next, found.size());
       EXPECT_EQ(counters.ops, twin_);

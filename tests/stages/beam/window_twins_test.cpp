@@ -1,19 +1,21 @@
-// What hides and orders pairs in front of their fragments is counted as its scalar twins count it, pair by pair, on
-// every procedural scene: depth bounds, the closed depth, windows; and the short way of whole pixels.
+// Everything that hides and orders pairs before fragments are made is counted as its scalar twins count it, pair by
+// pair and on every procedural scene: depth bounds, closed depths and windows. The same holds for the composition of
+// pixels that a single triangle covers.
 #include <gtest/gtest.h>
 
 #include "stages/beam/a_buffer.h"
 #include "stages/beam/beam_fragment.h"
 #include "stages/beam/compose_beam.h"
-#include "stages/beam/fragment_geometry.h"
 #include "stages/beam/merge_sort.h"
 #include "stages/beam/windows.h"
+#include "stages/cost/counting.h"
 #include "stages/data/closed_depth.h"
+#include "stages/data/fragment_geometry.h"
 #include "stages/geometry/vertex_setup.h"
 #include "stages/picture/shade.h"
 #include "stages/raster/conservative_raster.h"
-#include "stages/raster/pair_bounds.h"
 #include "stages/raster/sample_raster.h"
+#include "stages/raster/traverse.h"
 #include "tests/traces/scene_names.h"
 
 namespace beampipe {
@@ -25,7 +27,7 @@ using Real = Counted<double>;
 class WindowTwins : public testing::TestWithParam<SceneKind> {
  protected:
   void SetUp() override {
-    const std::uint32_t triangles = GetParam().name == "stack" ? 40 : 1500;  // each covers the whole picture
+    const std::uint32_t triangles = GetParam().name == "stack" ? 40 : 1500;  // each triangle covers the whole picture
     const Trace trace = make_scene(GetParam().name, {.triangles = triangles, .width = 40, .height = 24});
     StageCounters ignored;
     triangles_ = vertex_setup(trace, trace.frames[0], ignored);
@@ -43,12 +45,13 @@ class WindowTwins : public testing::TestWithParam<SceneKind> {
 
   DepthBounds<Float> bounds_of(const PixelTriangle& pair, const DepthBounds<Float>& vertices) {
     const ScreenDepth& depth = triangles_.triangles[pair.triangle].depth;
-    const Float z = to_float(plane_at(real(depth.z), real(depth.dzdx), real(depth.dzdy), real(depth.anchor_x),
-                                      real(depth.anchor_y), real(pair.x + 0.5), real(pair.y + 0.5)));
+    const ScreenDepthOf<Real> counted = {real(depth.z), real(depth.dzdx), real(depth.dzdy), real(depth.anchor_x),
+                                         real(depth.anchor_y)};
+    const Float z = to_float(counted.at(real(pair.x + 0.5), real(pair.y + 0.5)));
     return pair_bounds<Float>({z, to_float(real(depth.dzdx)), to_float(real(depth.dzdy))}, vertices);
   }
 
-  // Of one triangle, without anything that hides; the traversal alone is counted.
+  // Rasterizes one triangle with nothing that hides it. Only the traversal is counted.
   std::vector<PixelTriangle> touched(std::uint32_t index) {
     std::vector<PixelTriangle> pairs;
     StageCounters traversal;
@@ -60,7 +63,7 @@ class WindowTwins : public testing::TestWithParam<SceneKind> {
   const Tile tile_{0, 0, 40, 24};
   SetupTriangles triangles_;
   TriangleList list_;
-  OperationCounts twin_;  // what the twins have counted
+  OperationCounts twin_;  // counted by the twins
 };
 
 TEST_P(WindowTwins, DepthBounds) {
@@ -82,14 +85,14 @@ TEST_P(WindowTwins, DepthBounds) {
   EXPECT_EQ(counters.bytes_written, pairs.size() * (8 + 8));
 }
 
-// Two lists after each other, as the passes of streaming order bring them.
+// Two lists one after the other, as in the passes of streaming order.
 TEST_P(WindowTwins, ClosedDepth) {
   const TriangleList halves[2] = {{list_.begin(), list_.begin() + static_cast<std::ptrdiff_t>(list_.size() / 2)},
                                   {list_.begin() + static_cast<std::ptrdiff_t>(list_.size() / 2), list_.end()}};
   ClosedDepth closed(tile_);
   std::vector<Float> depth(tile_.pixels(), Float(1.0f));
   Float farthest(1.0f);
-  std::size_t changes = 0;  // pixels nearer than the farthest, counted as they change
+  std::size_t changes = 0;  // pixels nearer than the farthest one
   for (const TriangleList& list : halves) {
     StageCounters counters;
     std::vector<PixelTriangle> pairs, found;
@@ -138,7 +141,8 @@ TEST_P(WindowTwins, ClosedDepth) {
   }
 }
 
-// Sample techniques ask the same of cells. A triangle hides nothing of itself: what is asked is what is added.
+// Techniques that test samples use closed depths for cells. A triangle does not hide itself, so all its cells are
+// added.
 TEST_P(WindowTwins, ClosedCells) {
   const Sampling sampling{CellGrid{2, 2}, standard_pattern(8, 128, 128)};
   for (const std::uint32_t index : list_) {
@@ -155,17 +159,15 @@ TEST_P(WindowTwins, ClosedCells) {
     const Float open = real(1.0f);
     ASSERT_FALSE(bounds.nearest > open);
     std::uint64_t tests = 0, closings = 0;
-    std::uint32_t quad = 0;
-    TraversalCounts ignored;
-    traverse(triangle, EdgeSet(triangle), tile_, sampling.grid, FullMeans::samples, quad, ignored,
-             [&](std::int32_t, std::int32_t, std::uint32_t, bool full) {
-               ++tests;
-               ASSERT_FALSE(bounds.nearest > open);
-               if (!full) return;
-               ++closings;
-               ASSERT_FALSE(bounds.farthest >= open);
-               ASSERT_TRUE(open == Float(1.0f));
-             });
+    Traversal traversal{tile_, sampling.grid, FullMeans::samples};
+    traverse(triangle, EdgeSet(triangle), traversal, [&](std::int32_t, std::int32_t, std::uint32_t, bool full) {
+      ++tests;
+      ASSERT_FALSE(bounds.nearest > open);
+      if (!full) return;
+      ++closings;
+      ASSERT_FALSE(bounds.farthest >= open);
+      ASSERT_TRUE(open == Float(1.0f));
+    });
     const std::uint64_t cells = 4 * tile_.pixels(), refreshed = closings == cells ? 2 * cells : 0;
     twin_.add += refreshed;
     ASSERT_EQ(with.ops, twin_);

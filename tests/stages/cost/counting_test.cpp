@@ -1,4 +1,4 @@
-// Scalar twins run on counting numbers: what they count is what a reader counts in the code.
+// Scalar formulas on numbers that count: the counts are those that a reader finds in the code.
 #include "stages/cost/counting.h"
 
 #include <gtest/gtest.h>
@@ -40,18 +40,18 @@ TEST(Counting, ConstantsCostNothing) {
   EXPECT_EQ(counts.total(), 1u);
 }
 
-// rest = 1 - alpha; alpha + rest alpha'; three channels likewise.
+// rest = 1 - alpha; alpha + rest alpha'; the same for three channels.
 TEST(Counting, PlainOver) {
   const OperationCounts counts = count_operations([](OperationCounts& tally) {
     const Real one(1.0f, tally);
     const FragmentOf<Real, Bits> fragment{{one, Bits(1u, tally), {one, one, one}, one, one, one, {one, one, one}},
                                           Bits(0u, tally)};
-    over_scalar(fragment, fragment.surface);
+    over_formula(fragment, fragment.surface);
   });
   EXPECT_EQ(counts, (OperationCounts{4, 5, 0, 0, 0, 0}));
 }
 
-// z + dzdx x + dzdy y, and the comparison.
+// z + dzdx x + dzdy y, and a comparison.
 TEST(Counting, DepthTest) {
   const OperationCounts counts = count_operations([](OperationCounts& tally) {
     const Real one(1.0f, tally);
@@ -61,7 +61,7 @@ TEST(Counting, DepthTest) {
   EXPECT_EQ(counts, (OperationCounts{2, 3, 0, 0, 0, 0}));
 }
 
-// Per sample and edge a x + b y + c >= 0: 2 products, 2 sums, a comparison.
+// Per sample and edge, a x + b y + c >= 0: 2 products, 2 sums, a comparison.
 TEST(Counting, SampleTest) {
   const OperationCounts counts = count_operations([](OperationCounts& tally) {
     using Int = Counted<std::int64_t>;
@@ -71,7 +71,7 @@ TEST(Counting, SampleTest) {
   EXPECT_EQ(counts, (OperationCounts{4 * 3 * 2, 4 * 3 * 3, 0, 0, 0, 0}));
 }
 
-// A twin costs the same whatever it works on: its counts are charged per item without looking at the item.
+// A formula costs the same for all values. That is why its counts can be charged per item without looking at the item.
 TEST(Counting, MergeCostsTheSameForEveryInput) {
   const SamplePattern pattern = hammersley_pattern();
   MergeRules rules;
@@ -82,8 +82,8 @@ TEST(Counting, MergeCostsTheSameForEveryInput) {
         return AggregateOf<Real, Bits>{real(alpha), Bits(bits, tally), {real(depth), real(0.1f), real(0)}, real(0.2f),
                                        real(depth), real(depth),       {real(1), real(1), real(1)}};
       };
-      merge_scalar(FragmentOf<Real, Bits>{surface(mask, z), Bits(tiny, tally)}, surface(old_mask, -0.5f), pattern,
-                   rules);
+      merge_formula(FragmentOf<Real, Bits>{surface(mask, z), Bits(tiny, tally)}, surface(old_mask, -0.5f), pattern,
+                    rules);
     });
   };
   for (const MergeRules& each : every_merge_rule()) {

@@ -1,15 +1,17 @@
-// What the stages count for whole batches is what their scalar twins count, item by item, on counting numbers with the
-// real data: on every procedural scene.
+// The stages count the same for whole batches as their scalar twins count item by item, on numbers that count and with
+// the real data of every procedural scene.
 #include <gtest/gtest.h>
 
 #include "simd/depth_compare.h"
 #include "stages/beam/a_buffer.h"
 #include "stages/beam/beam_fragment.h"
 #include "stages/beam/claim.h"
-#include "stages/beam/fragment_geometry.h"
 #include "stages/beam/merge_sort.h"
 #include "stages/beam/settle.h"
+#include "stages/data/fragment_geometry.h"
 #include "stages/geometry/vertex_setup.h"
+#include "stages/raster/conservative_raster.h"
+#include "stages/raster/sample_raster.h"
 #include "stages/samples/accumulate.h"
 #include "stages/samples/test_depth.h"
 #include "tests/stages/counted_states.h"
@@ -56,9 +58,10 @@ TEST_P(TwinCounts, DepthTest) {
   depth_test(triangles_, fragments, tile_, sampling, counters, surface, accesses);
   for (const SampleFragment& fragment : fragments) {
     const ScreenDepth& plane = triangles_.triangles[fragment.triangle].depth;
-    Float z, dzdx, dzdy;
-    cell_plane(real(plane.z), real(plane.dzdx), real(plane.dzdy), real(plane.anchor_x), real(plane.anchor_y),
-               real(static_cast<double>(fragment.x)), real(static_cast<double>(fragment.y)), z, dzdx, dzdy);
+    const ScreenDepthOf<Real> counted = {real(plane.z), real(plane.dzdx), real(plane.dzdy), real(plane.anchor_x),
+                                         real(plane.anchor_y)};
+    const auto [z, dzdx, dzdy] =
+        cell_plane(counted, real(static_cast<double>(fragment.x)), real(static_cast<double>(fragment.y)));
     const auto first = static_cast<std::size_t>(fragment.y * tile_.width() + fragment.x) * 8;
     for (std::size_t s = 0; s < 8; ++s) {
       if (!(fragment.mask >> s & 1)) continue;
@@ -75,7 +78,7 @@ TEST_P(TwinCounts, DepthTest) {
   EXPECT_EQ(counters.lanes_issued, fragments.size() * 8);
 }
 
-// Claiming as it is done word by word and position by position, on counting numbers.
+// Claims word by word and position by position, on numbers that count.
 template <std::size_t Words, std::size_t Layers>
 class ClaimTwin {
  public:
@@ -123,9 +126,9 @@ class ClaimTwin {
   Plane owner(std::uint32_t k, const Fragment& fragment, const Pixel& pixel) {
     const ScreenDepth& depth = triangles_.triangles[pixel.triangle(k)].depth;
     const auto at = static_cast<std::int32_t>(fragment.pixel);
-    const Real z = plane_at(real64(depth.z), real64(depth.dzdx), real64(depth.dzdy), real64(depth.anchor_x),
-                            real64(depth.anchor_y), real64(tile_.x0 + at % tile_.width() + 0.5),
-                            real64(tile_.y0 + at / tile_.width() + 0.5));
+    const ScreenDepthOf<Real> counted = {real64(depth.z), real64(depth.dzdx), real64(depth.dzdy),
+                                         real64(depth.anchor_x), real64(depth.anchor_y)};
+    const Real z = counted.at(real64(tile_.x0 + at % tile_.width() + 0.5), real64(tile_.y0 + at / tile_.width() + 0.5));
     return {to_float(z), to_float(real64(depth.dzdx)), to_float(real64(depth.dzdy))};
   }
 
@@ -157,14 +160,14 @@ class ClaimTwin {
   Mask nearer(const Plane& a, const Plane& b) {
     Mask mask = none();
     each_position([&](std::size_t w, std::size_t s, const Float& u, const Float& v) {
-      mask[w].value |= std::uint32_t{nearer_scalar(a, b, u, v)} << s;
+      mask[w].value |= std::uint32_t{nearer_formula(a, b, u, v)} << s;
     });
     return mask;
   }
   Float nearest(const Plane& of, const Mask& mask) {
     Float depth = real(kNoDepth);
     each_position([&](std::size_t w, std::size_t s, const Float& u, const Float& v) {
-      depth = nearest_scalar(of, u, v, mask[w].value >> s & 1, depth);
+      depth = nearest_formula(of, u, v, mask[w].value >> s & 1, depth);
     });
     return depth;
   }
@@ -239,7 +242,7 @@ void TwinCounts::expect_equal_claims() {
 
 TEST_P(TwinCounts, Claim) {
   expect_equal_claims<4, 5>();
-  expect_equal_claims<4, 1>();  // much is dropped
+  expect_equal_claims<4, 1>();  // many owners are dropped
 }
 
 TEST_P(TwinCounts, Accumulate) {

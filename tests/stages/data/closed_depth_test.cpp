@@ -9,7 +9,7 @@ TEST(ClosedDepth, HidesWhatLiesBehindAndNotWhatLiesThere) {
   ClosedDepth closed(Tile{4, 6, 6, 7});
   EXPECT_FALSE(closed.hides(4, 6, 0.0f));
   closed.close(4, 6, -0.5f);
-  closed.close(4, 6, -0.25f);  // farther than what is known
+  closed.close(4, 6, -0.25f);  // farther than the depth that is known
   EXPECT_TRUE(closed.hides(4, 6, -0.4375f));
   EXPECT_FALSE(closed.hides(4, 6, -0.5f));
   EXPECT_FALSE(closed.hides(5, 6, 0.0f)) << "its neighbour";

@@ -16,8 +16,8 @@ namespace {
 
 constexpr std::int32_t kWidth = 48, kHeight = 32;
 
-// Per sample: how many front faces cover it, less how many back faces. A closed surface that snapping folds over itself
-// keeps this number; a crack or an overlap changes it.
+// Per sample: the number of front faces that cover it minus the number of back faces. If snapping folds a closed
+// surface over itself, this number stays the same; a crack or an overlap changes it.
 std::vector<int> winding(Scene scene) {
   const Sampling sampling{CellGrid{}, standard_pattern(16)};
   std::vector<int> sum(kWidth * kHeight * 16);
@@ -35,7 +35,8 @@ std::vector<int> winding(Scene scene) {
   return sum;
 }
 
-// A floor of small triangles at y = 0 around a camera at height 1 that looks along -z; it reaches behind the camera.
+// A floor of small triangles at y = 0 around a camera at height 1 that looks along -z. The floor extends behind the
+// camera.
 Scene floor_scene(Random& random, double near, double far, double tilt_deg) {
   constexpr int kCells = 40;
   Mesh mesh;
@@ -59,8 +60,8 @@ Scene floor_scene(Random& random, double near, double far, double tilt_deg) {
   return scene;
 }
 
-// Looking down: floor wherever there is a sample, out of thousands of pieces, some behind the camera or through the
-// near plane.
+// The camera looks down. Every sample shows the floor, which consists of thousands of pieces; some are behind the
+// camera or cross the near plane.
 TEST(Clipping, FloorThroughTheNearPlaneIsWatertight) {
   Random random(161);
   SCOPED_TRACE(random.name());
@@ -71,9 +72,9 @@ TEST(Clipping, FloorThroughTheNearPlaneIsWatertight) {
   }
 }
 
-// Looking along the floor: near clipping, the guard band (vertices just before the camera project 10,000s of pixels
-// away) and, with far = 8, the far plane. Below the horizon's last rows every sample is covered once; elsewhere once or
-// not.
+// The camera looks along the floor. This clips to the near plane, to the guard band (vertices just in front of the
+// camera are projected tens of thousands of pixels away) and, with far = 8, to the far plane. Every sample a few rows
+// below the horizon is covered once; the others are covered once or not at all.
 TEST(Clipping, FloorToTheHorizonIsWatertight) {
   Random random(162);
   SCOPED_TRACE(random.name());
@@ -82,8 +83,8 @@ TEST(Clipping, FloorToTheHorizonIsWatertight) {
       const std::vector<int> found = winding(floor_scene(random, near, far, 0));
       const std::set<int> values(found.begin(), found.end());
       EXPECT_EQ(values, (std::set<int>{0, 1})) << near << ", " << far;
-      // Half the frame is tan(50 deg) at distance 1. A floor point at distance d is 1 / (d tan 50) of 16 px below the
-      // middle; the near plane and the floor's edges (8 to the sides and 13 ahead, or far) bound what is covered.
+      // Half the frame is tan(50 deg) at distance 1. A floor point at distance d lies 16 px / (d tan 50) below the
+      // middle. The near plane and the floor's edges (8 to the sides and 13 ahead, or far) limit what is covered.
       const double per_unit = kHeight / 2 / std::tan(glm::radians(50.0));
       const double highest = kHeight / 2 + per_unit / std::min(far, 12.5) + 1;
       const double lowest = kHeight / 2 + per_unit / near - 1;
@@ -100,8 +101,8 @@ TEST(Clipping, FloorToTheHorizonIsWatertight) {
     }
 }
 
-// Neighbours run along their common edge in opposite directions, and still find the same crossing to the last bit: a
-// plane's anchor is a vertex before snapping, in double precision.
+// Neighbours run along their common edge in opposite directions, but must find the same crossing to the last bit. A
+// plane's anchor is a vertex that is not yet snapped, in double precision.
 TEST(Clipping, NeighboursGetTheSameCrossing) {
   Random random(164);
   SCOPED_TRACE(random.name());
@@ -150,10 +151,10 @@ TEST(Clipping, DepthStaysBetweenNearAndFar) {
     }
 }
 
-// One vertex before the near plane: two pieces; the polygon has 3 vertices at the near plane and 4 at the five others,
-// and each is an inner product of 4 products and 3 sums, and a comparison, as are those that found out that it must be
-// clipped. Each of two crossings is a quotient, 4 products and 9 sums. Of a piece 3 comparisons tell that it is before
-// the eye; the rest of it costs what a triangle does (see VertexSetup.CountsOperations).
+// One vertex is in front of the near plane, so two pieces remain. The polygon has 3 vertices at the near plane and 4 at
+// each of the five other planes. Each test of a vertex is an inner product of 4 products and 3 sums, and a comparison;
+// so are the tests that decided to clip. Each of two crossings is a quotient, 4 products and 9 sums. 3 comparisons test
+// whether a piece is in front of the eye. The rest costs the same as for any triangle (VertexSetup.CountsOperations).
 TEST(Clipping, CountsPiecesAndPlaneTests) {
   StageCounters counters;
   const SetupTriangles out = vertex_setup_of(clip_space_scene({{0, 0, -2}, {0.5f, 0, 0}, {0, 0.5f, 0}}), counters);
@@ -161,7 +162,7 @@ TEST(Clipping, CountsPiecesAndPlaneTests) {
   EXPECT_EQ(counters.items_in, 1u);
   EXPECT_EQ(counters.items_out, 2u);
   const std::uint64_t tests = 6 * 3 + 3 + 5 * 4;
-  const std::uint64_t projected = 2 + 2 * 3;  // vertices in view, and those of the pieces
+  const std::uint64_t projected = 2 + 2 * 3;  // vertices in view, and the vertices of the pieces
   EXPECT_EQ(counters.ops, (OperationCounts{36 + projected * 12 + 2 * (2 + 8) + 4 * tests + 2 * 4,
                                            36 + 12 + 21 + projected * 5 + 2 * (3 + 6 + 3 + 9) + 4 * tests + 2 * 9, 9, 0,
                                            projected + 2 + 2, projected * 4 + 2 * 3}));

@@ -1,4 +1,4 @@
-// The twin of vertex_setup: a textbook's vertex and triangle setup, one item after the other.
+// The scalar twin of vertex_setup: vertex and triangle setup as in a textbook, one item after the other.
 #include <algorithm>
 #include <cmath>
 
@@ -14,7 +14,7 @@ struct Vertex {
 
 struct Placed {
   Int x, y;            // 1/256 px
-  Real px, py, depth;  // px, px, -1..0
+  Real px, py, depth;  // pixels, pixels, -1..0
 };
 
 class SetupTwins : public SceneTwins {
@@ -48,7 +48,7 @@ class SetupTwins : public SceneTwins {
   std::size_t made_ = 0;  // triangles
 
  private:
-  // M (x, y, z, 1), and is -w <= x, y, z <= w?
+  // M (x, y, z, 1), and the test -w <= x, y, z <= w.
   Vertex transformed(const glm::dmat4& m, const glm::vec3& p) {
     Real out[4];
     for (int row = 0; row < 4; ++row)
@@ -59,7 +59,7 @@ class SetupTwins : public SceneTwins {
     return {out[0], out[1], out[2], out[3], in_view};
   }
 
-  // ((x / w + 1) W / 2, (1 - y / w) H / 2, (z / w - 1) / 2), and to the nearest 1/256 px.
+  // ((x / w + 1) W / 2, (1 - y / w) H / 2, (z / w - 1) / 2), snapped to the nearest 1/256 px.
   Placed place(const Vertex& v) {
     const Real one(1.0), half(0.5), inverse = one / v.w;
     const Real x = (v.x * inverse + one) * half * real(double(trace_.frames[0].width));
@@ -84,7 +84,7 @@ class SetupTwins : public SceneTwins {
     return std::any_of(sides, sides + 6, [](bool side) { return side; });
   }
 
-  // Sutherland-Hodgman at the near and far planes and the guard band, where a vertex is beyond one of them.
+  // Clips (Sutherland and Hodgman) to the near and far planes and the guard band, if a vertex is outside of one.
   std::vector<Vertex> clipped(std::vector<Vertex> polygon) {
     const double band_x = 65536.0 / trace_.frames[0].width, band_y = 65536.0 / trace_.frames[0].height;
     const double planes[6][4] = {{0, 0, 1, 1},           {0, 0, -1, 1},         {1, 0, 0, band_x + 1},
@@ -140,7 +140,7 @@ class SetupTwins : public SceneTwins {
     if (draw.shading == Shading::lambert) normal(draw, mesh, t);
   }
 
-  // The cross product of two sides in the world, of length 1.
+  // The cross product of two sides in world space, normalized.
   void normal(const Draw& draw, const Mesh& mesh, const glm::uvec3& t) {
     std::array<Real, 3> world[3];
     for (int k = 0; k < 3; ++k) {

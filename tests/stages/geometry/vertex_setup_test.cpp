@@ -29,7 +29,7 @@ TEST(VertexSetup, ScreenPositionsInClosedForm) {
   };
   expect_vertex(32 * 256, 16 * 256, -1.0f);
   expect_vertex(48 * 256, 16 * 256, -0.5f);
-  expect_vertex(32 * 256, 4 * 256, 0.0f);  // up is a smaller y
+  expect_vertex(32 * 256, 4 * 256, 0.0f);  // y is smaller further up
   for (int k = 0; k < 3; ++k) EXPECT_NEAR(t.depth.at(t.x[k] / 256.0, t.y[k] / 256.0), t.vertex_z[k], 1e-12);
   // Inside is where all edges are positive.
   for (int k = 0; k < 3; ++k) EXPECT_GT(edge_of(t, k).at(36 * 256, 14 * 256), 0);
@@ -53,7 +53,7 @@ TEST(VertexSetup, PerspectiveDividesByW) {
   EXPECT_NEAR(far_z, (0.25 - 18.0 / 32) / 2, 1e-7);
 }
 
-// Half-way cases go towards larger coordinates: round(x 256) = floor(x 256 + 1/2).
+// A tie is rounded to the larger coordinate: round(x 256) = floor(x 256 + 1/2).
 TEST(VertexSetup, SnapsToTheNearest256th) {
   const auto at = [](double units) { return static_cast<float>(units / 256 / 32 - 1); };  // in a frame of 64 px
   const Scene scene = clip_space_scene({{at(1000.5), 0, 0}, {at(2000.25), 0, 0}, {at(3000.75), 0.5f, 0}});
@@ -72,10 +72,10 @@ TEST(VertexSetup, DropsWhatCannotBeSeen) {
   for (const float bad : {kNaN, kInfinity, -kInfinity}) EXPECT_EQ(left({{0, 0, 0}, {0.5f, bad, 0}, {0, 0.5f, 0}}), 0u);
   EXPECT_EQ(left({{0, 0, 0}, {0.5f, 0, 0}, {0, 0.5f, kNaN}}), 0u);
   EXPECT_EQ(left({{0, 0, 0}, {0.25f, 0.25f, 0}, {0.5f, 0.5f, 0}}), 0u);   // a line
-  EXPECT_EQ(left({{0, 0, 0}, {1e-6f, 0, 0}, {0, 1e-6f, 0}}), 0u);         // a point once snapped
-  EXPECT_EQ(left({{2, 0, 0}, {3, 0, 0}, {2, 0.5f, 0}}), 0u);              // beside the frame
+  EXPECT_EQ(left({{0, 0, 0}, {1e-6f, 0, 0}, {0, 1e-6f, 0}}), 0u);         // a point after snapping
+  EXPECT_EQ(left({{2, 0, 0}, {3, 0, 0}, {2, 0.5f, 0}}), 0u);              // outside the frame
   EXPECT_EQ(left({{0, 0, 1.5f}, {0.5f, 0, 2}, {0, 0.5f, 1.5f}}), 0u);     // beyond the far plane
-  EXPECT_EQ(left({{0, 0, -1.5f}, {0.5f, 0, -2}, {0, 0.5f, -1.5f}}), 0u);  // before the near plane
+  EXPECT_EQ(left({{0, 0, -1.5f}, {0.5f, 0, -2}, {0, 0.5f, -1.5f}}), 0u);  // in front of the near plane
 }
 
 TEST(VertexSetup, CullsByTheWindingOnScreen) {
@@ -99,8 +99,8 @@ TEST(VertexSetup, CullsByTheWindingOnScreen) {
   }
 }
 
-// Copies of a triangle, each starting with another vertex or turning the other way, have the same depth to the last
-// bit: "the earlier wins" needs that.
+// Copies of a triangle that start with another vertex or turn the other way have the same depth to the last bit. The
+// rule that the earlier triangle wins a tie depends on it.
 TEST(VertexSetup, DepthPlaneDoesNotDependOnTheOrderOfVertices) {
   Random random(151);
   SCOPED_TRACE(random.name());
@@ -120,12 +120,12 @@ TEST(VertexSetup, DepthPlaneDoesNotDependOnTheOrderOfVertices) {
       const ScreenDepth &first = out.triangles[0].depth, &d = t.depth;
       ASSERT_EQ(std::tie(d.z, d.dzdx, d.dzdy, d.anchor_x, d.anchor_y),
                 std::tie(first.z, first.dzdx, first.dzdy, first.anchor_x, first.anchor_y));
-      ASSERT_GT(edge_of(t, 0).at(t.x[2], t.y[2]), 0);  // whichever way it turned
+      ASSERT_GT(edge_of(t, 0).at(t.x[2], t.y[2]), 0);  // whichever way it turns
     }
   }
 }
 
-// Towards the viewer, whatever mirrors: the draw, the view, or the projection.
+// Normals point towards the viewer, even if the draw, the view or the projection mirrors.
 TEST(VertexSetup, LambertNormalsFaceTheViewer) {
   Random random(152);
   SCOPED_TRACE(random.name());
@@ -161,13 +161,16 @@ TEST(VertexSetup, KdOfTheDrawReplacesTheMeshs) {
   EXPECT_EQ(scene.setup().attributes.at(0).kd, glm::vec3(3.0f));
 }
 
-// Three vertices outside the view cost their transformation, 4 rows of 3 products and 3 sums each, and 7 operations
-// each to compare them with the view volume: -w, and 6 comparisons. A triangle inside adds 6 planes x 3 vertices, each
-// an inner product of 4 products and 3 sums and a comparison; per vertex, 1 / w, 3 products and a sum for x, the same
-// for y, 2 and 1 for z, and for x and y a product, a sum and a conversion to fixed point, a conversion and a product
-// back; its area, 2 products, 5 differences and a comparison; for its depth plane 3 comparisons to have its corners in
-// one order, 6 differences, an area (2 products, 1 difference), its reciprocal, and twice 3 products and a difference;
-// for each edge 2 products and 4 sums; and for each corner its depth in 32 bits.
+// The cost of three vertices outside the view, each: the transformation (4 rows of 3 products and 3 sums), and 7
+// operations to compare it with the view volume (-w, and 6 comparisons). A triangle inside adds:
+// - 6 planes x 3 vertices, each an inner product of 4 products and 3 sums, and a comparison;
+// - per vertex, 1 / w; 3 products and a sum for x, the same for y, 2 products and a sum for z; for x and y each a
+// product,
+//   a sum and a conversion to fixed point, and a conversion and a product back;
+// - its area, 2 products, 5 differences and a comparison;
+// - its depth plane: 3 comparisons to sort its corners, 6 differences, an area (2 products, 1 difference), its
+//   reciprocal, and twice 3 products and a difference;
+// - for each edge 2 products and 4 sums, and for each corner its depth in 32 bits.
 TEST(VertexSetup, CountsOperations) {
   StageCounters outside, inside;
   vertex_setup_of(clip_space_scene({{2, 0, 0}, {3, 0, 0}, {2, 0.5f, 0}}), outside);
@@ -175,7 +178,7 @@ TEST(VertexSetup, CountsOperations) {
   EXPECT_EQ(outside.items_in, 1u);
   EXPECT_EQ(outside.items_out, 0u);
   vertex_setup_of(clip_space_scene({{0, 0, 0}, {0.5f, 0, 0}, {0, 0.5f, 0}}), inside);
-  // All in view: nothing to test against planes.
+  // All vertices are in view, so none is tested against planes.
   EXPECT_EQ(inside.ops, (OperationCounts{3 * 12 + 3 * (8 + 2 + 2) + 2 + 8, 3 * (12 + 4) + 3 * (3 + 2) + 6 + 3 + 9,
                                          3 * 3, 0, 3 + 1, 3 * 2 + 3 * 2 + 3}));
   EXPECT_EQ(inside.items_out, 1u);

@@ -4,6 +4,7 @@
 
 #include <cmath>
 
+#include "stages/raster/sample_raster.h"
 #include "tests/stages/beam_pixels.h"
 
 namespace beampipe {
@@ -73,7 +74,7 @@ TEST(Shade, OnePixelTriangleUsesOneLaneOfFour) {
   EXPECT_EQ(sample_lanes(triangles), (Lanes{1, 4}));
 }
 
-// Two triangles in the same pixel: a quad each.
+// Two triangles in the same pixel have one quad each.
 TEST(Shade, TrianglesDoNotShareQuads) {
   SetupTriangles triangles;
   add_triangle(triangles, {20, 20}, {230, 30}, {20, 230});
@@ -82,7 +83,7 @@ TEST(Shade, TrianglesDoNotShareQuads) {
   EXPECT_EQ(sample_lanes(triangles), (Lanes{2, 8}));
 }
 
-// All of 8 x 8 pixels: 16 whole quads.
+// All of 8 x 8 pixels make 16 whole quads.
 TEST(Shade, CoveredQuadsHaveNoHelpers) {
   SetupTriangles triangles;
   add_triangle(triangles, {-9'000, -9'000}, {20'000, -9'000}, {-9'000, 20'000});
@@ -90,8 +91,8 @@ TEST(Shade, CoveredQuadsHaveNoHelpers) {
   EXPECT_EQ(sample_lanes(triangles), (Lanes{64, 64}));
 }
 
-// Per invocation of the lambert shader: 3 products and 2 sums make the inner product, it is negated (a subtraction) and
-// compared with 0; 3 products make the colour. Four invocations fill the quad.
+// Per invocation of the Lambert shader: 3 products and 2 sums for the inner product, a subtraction to negate it, a
+// comparison with 0, and 3 products for the colour. Four invocations fill the quad.
 TEST(Shade, CountsOperationsPerInvocation) {
   SetupTriangles triangles;
   add_triangle(triangles, {20, 20}, {230, 30}, {20, 230});
@@ -101,7 +102,7 @@ TEST(Shade, CountsOperationsPerInvocation) {
   EXPECT_EQ(counters.ops, (OperationCounts{4 * 6, 4 * 4, 0, 0, 0, 0}));
 }
 
-// fp16 has 11 significant bits: 1 + 2^-11 lies half-way between 1 and the next, and goes to the even one.
+// fp16 has 11 significant bits. 1 + 2^-11 lies half-way between 1 and the next number and is rounded to the even one.
 TEST(Shade, HalfRounding) {
   const std::vector<glm::vec3> found = round_to_half({{1.0f + 0x1p-11f, 1.0f + 0x1.8p-11f, 1e9f}, {0.1f, 0, 0}});
   EXPECT_EQ(found[0], glm::vec3(1.0f, 1.0f + 0x1p-10f, 65504.0f));

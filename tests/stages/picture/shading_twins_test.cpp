@@ -1,4 +1,5 @@
-// The twins of shade and resolve: what one lane does for a fragment, and what a pixel of the picture is made of.
+// The scalar twins of shade and resolve: the work of one lane for a fragment, and the sum that makes a pixel of the
+// picture.
 #include "simd/position_mask.h"
 #include "stages/beam/beam_fragment.h"
 #include "stages/picture/resolve.h"
@@ -22,7 +23,7 @@ class ShadingTwins : public SceneTwins {
 
   std::array<Float, 3> vector(const glm::vec3& v) { return {real(v.x), real(v.y), real(v.z)}; }
 
-  // kd max(0, -n . l), which the picture's colour is held against.
+  // kd max(0, -n . l), compared with the picture's colour.
   void lambert(std::uint32_t triangle) {
     const FlatAttributes& flat = triangles_.attributes[triangle];
     const auto kd = vector(flat.kd), n = vector(flat.normal), l = vector(light_);
@@ -35,7 +36,7 @@ class ShadingTwins : public SceneTwins {
     }
   }
 
-  // Four lanes for each quad with a fragment of a lit triangle. Fragments of one quad follow each other.
+  // Four lanes for each quad with a fragment of a lit triangle. Fragments of one quad are consecutive.
   template <class Items>
   std::uint64_t shade_quads(const Items& fragments) {
     std::uint64_t lanes = 0;
@@ -87,7 +88,7 @@ TEST_P(ShadingTwins, ShadeSampleFragmentsInQuads) {
 TEST_P(ShadingTwins, ResolveAggregates) {
   const glm::vec3 background(0.25f, 0.5f, 0.75f);
   std::vector<PixelColor> pixels(tile_.pixels(), PixelColor{0.0f, glm::vec3(0.0f)});
-  for (const Fragment& fragment : beam_fragments())  // the last fragment of each pixel is all that is in it
+  for (const Fragment& fragment : beam_fragments())  // each pixel contains only its last fragment
     pixels[fragment.pixel] = {fragment.alpha, fragment.alpha * colors_[fragment.triangle]};
   StageCounters counters;
   const std::vector<glm::vec4> image = resolve(pixels, background, 42, counters);
@@ -125,7 +126,7 @@ TEST_P(ShadingTwins, ResolveSamples) {
   EXPECT_EQ(counters.lanes_issued, 8 * tile_.pixels());
 }
 
-// Kd and the normal as integers, and later the cosine, for one invocation per visible sample.
+// Per visible sample, one invocation converts Kd and the normal to integers, and a later one computes the cosine.
 TEST_P(ShadingTwins, GBufferAndLight) {
   StageCounters gbuffer, lighting;
   write_gbuffer(list_.size(), gbuffer);
@@ -143,7 +144,7 @@ TEST_P(ShadingTwins, GBufferAndLight) {
   EXPECT_EQ(lighting.lanes_issued, list_.size());
 }
 
-// A sample takes the first fragment that comes, and no other.
+// A sample takes only the first fragment.
 TEST_P(ShadingTwins, StencilTest) {
   std::vector<SampleFragment> fragments = sample_fragments({CellGrid{}, standard_pattern(8)}), twins = fragments;
   StageCounters counters;

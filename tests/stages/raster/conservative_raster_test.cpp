@@ -33,7 +33,7 @@ Raster rasterize(const SetupTriangles& triangles, const Tile& tile) {
   return raster;
 }
 
-// Closed triangle meets closed square, by segment intersection: nothing in common with separating axes.
+// Does the closed triangle meet the closed square? Decided by intersecting segments, unlike the product.
 
 struct At {
   std::int64_t x, y;
@@ -88,7 +88,7 @@ TEST(ConservativeRaster, FindsExactlyTheTouchedPixels) {
         if (const Truth found = truth(triangles.triangles[i], x, y); found.touched)
           expected.emplace(i, x, y, found.full);
   const Raster raster = rasterize(triangles, kFrame);
-  EXPECT_EQ(raster.set().size(), raster.pairs.size()) << "a pixel came twice";
+  EXPECT_EQ(raster.set().size(), raster.pairs.size()) << "a pixel occurs twice";
   EXPECT_TRUE(raster.set() == expected);
   EXPECT_EQ(raster.counters.items_out, expected.size());
 }
@@ -115,12 +115,13 @@ TEST(ConservativeRaster, TilesTogetherGiveWhatOneTileGives) {
         split.counters += tile.counters;
       }
     EXPECT_TRUE(split.set() == whole.set()) << size;
-    split.counters.ops = whole.counters.ops;  // bounds and first edge values are found in every tile
+    split.counters.ops = whole.counters.ops;  // bounds and first edge values are computed in every tile
     EXPECT_TRUE(split.counters == whole.counters) << size;
   }
 }
 
-// Pixels share a quad number if and only if they share triangle and 2x2 quad, and they follow one another.
+// Pixels have the same quad number if and only if they have the same triangle and 2x2 quad, and then they are
+// consecutive.
 TEST(ConservativeRaster, QuadNumbersNameQuads) {
   Random random(103);
   SCOPED_TRACE(random.name());
@@ -138,13 +139,15 @@ TEST(ConservativeRaster, QuadNumbersNameQuads) {
   EXPECT_EQ(distinct.size(), quads.size());
 }
 
-// By hand: the triangle's bounds touch the pixels 1..2 in x and in y, the triangle all of them but (2, 2).
-// The bounds take 8 minima and maxima, 2 sums and a shift each, and 4 more to stay in the tile. Before the first cell:
-// its corner, 2 products; of each edge the value there (2 products and sums), two steps (2 products), and its deepest
-// and shallowest corner (3 operations each). Then per edge a sum for each of 3 steps, and per cell twice a sum and a
-// comparison. The nearest and the farthest vertex take 4; for each pair the plane is 2 products, 4 sums and 3
-// conversions, how far it reaches 1 product, 1 sum and 2 absolute values, and the bounds are 2 sums and 4 minima and
-// maxima.
+// Counted by hand. The triangle's bounds touch the pixels 1..2 in x and in y, and the triangle touches all of them
+// except (2, 2).
+// - The bounds take 8 minima and maxima, 2 sums and a shift each, and 4 more to stay in the tile.
+// - Before the first cell: its corner, 2 products; for each edge the value there (2 products and sums), two steps (2
+//   products), and its deepest and shallowest corner (3 operations each).
+// - Then, per edge, a sum for each of 3 steps and, per cell, twice a sum and a comparison.
+// - The nearest and the farthest vertex take 4. For each pair, the plane takes 2 products, 4 sums and 3 conversions,
+// its
+//   reach 1 product, 1 sum and 2 absolute values, and the bounds 2 sums and 4 minima and maxima.
 TEST(ConservativeRaster, CountsCellsAndOperations) {
   SetupTriangles triangles;
   add_triangle(triangles, {300, 300}, {700, 310}, {310, 700});

@@ -1,11 +1,12 @@
-// The raster stages' twin: the cells of a triangle's bounding box, one after the other, with edge values that are
-// stepped from cell to cell and from row to row.
+// The scalar twin of the raster stages: it visits the cells of a triangle's bounding box one after the other and steps
+// the edge values from cell to cell and from row to row.
 #include <algorithm>
 #include <array>
 
 #include "simd/sample_mask.h"
 #include "stages/raster/conservative_raster.h"
 #include "stages/raster/sample_raster.h"
+#include "stages/raster/traverse.h"
 #include "tests/stages/scene_twins.h"
 
 namespace beampipe {
@@ -14,7 +15,7 @@ namespace {
 struct Cell {
   std::uint32_t triangle;
   std::int32_t x, y;
-  std::uint32_t samples;  // of a touched cell 1, or its mask
+  std::uint32_t samples;  // 1 for a touched cell, or its mask
 
   auto operator<=>(const Cell&) const = default;
 };
@@ -67,7 +68,7 @@ class RasterTwins : public SceneTwins {
   std::uint64_t cells_ = 0;  // that were tested
 
  private:
-  // Cells `size` units wide that the closed interval of three coordinates touches, within [first, end).
+  // The cells within [first, end), each `size` units wide, that the closed interval of three coordinates touches.
   std::pair<Int, Int> cells(const std::int32_t at[3], int size, int first, int end) {
     const Int a = integer(at[0]), b = integer(at[1]), c = integer(at[2]), one(1);
     const int places = std::countr_zero(static_cast<unsigned>(size));

@@ -11,9 +11,9 @@
 namespace beampipe {
 namespace {
 
-// Owners by testing every triangle at every sample, first to last. A pixel's 256 rows have 16 samples each; those of
-// row r start (reverse(r) + 1/2) / 256 of their distance to the right, reverse() being that of 8 bits. Units: 1/8192
-// px.
+// Finds the owners by testing every triangle at every sample, from the first to the last. A pixel has 256 rows of 16
+// samples. Those of row r are shifted to the right by (reverse(r) + 1/2) / 256 of the distance between samples;
+// reverse() reverses 8 bits. Units: 1/8192 px.
 std::vector<std::uint64_t> brute_force(const SetupTriangles& triangles, const Tile& tile) {
   std::vector<std::uint64_t> owners;
   for (std::int64_t row = tile.y0 * 256; row < tile.y1 * 256; ++row) {
@@ -51,10 +51,10 @@ TEST(ReferenceRaster, EqualsATestOfEverySample) {
       const std::int32_t x = random.int32(0, 2'000), y = random.int32(-200, 200), length = random.int32(8, 100) * 2 + 1;
       const ScreenPoint from{x, y, -0.9f}, to{x + length, y + 16 * length, -0.9f};
       add_triangle(triangles, from, to,
-                   {x - 3'000, y + 100, random.real32(-1, 0)});  // does not own it, and comes first
+                   {x - 3'000, y + 100, random.real32(-1, 0)});  // comes first, but does not own the edge
       add_triangle(triangles, from, to, {x + 3'000, y - 100, random.real32(-1, 0)});
     }
-    triangles.triangles.push_back(triangles.triangles.front());  // the same depths again: must not win
+    triangles.triangles.push_back(triangles.triangles.front());  // the same depths again must not win
     const Tile tile = round % 2 == 0 ? Tile{0, 0, 4, 4} : Tile{6, 2, 9, 5};
     ReferenceTile surface(tile);
     StageCounters counters;
@@ -70,10 +70,10 @@ TEST(ReferenceRaster, FansCoverEverySample) {
   StageCounters counters;
   reference_raster(fan, all_of(fan), tile, counters, surface);
   EXPECT_EQ(std::count(surface.owner.begin(), surface.owner.end(), kNoOwner), 0);
-  EXPECT_EQ(counters.lanes_used, tile.pixels() * 4096);  // each sample was in one span
+  EXPECT_EQ(counters.lanes_used, tile.pixels() * 4096);  // each sample is in one span
   EXPECT_EQ(counters.lanes_issued, counters.lanes_used);
   EXPECT_EQ(counters.items_out, counters.lanes_used);
-  // Per sample 2 products and 3 sums make the depth, and one comparison; nothing is charged for finding the spans.
+  // Per sample, 2 products and 3 sums for the depth, and one comparison. Finding the spans is not charged.
   EXPECT_EQ(counters.ops, (OperationCounts{2, 4, 0, 0, 0, 0} * counters.lanes_used));
 }
 

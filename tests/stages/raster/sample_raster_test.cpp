@@ -39,7 +39,7 @@ Raster rasterize(const SetupTriangles& triangles, const Tile& tile, const Sampli
   return raster;
 }
 
-// How often each sample of the frame is covered.
+// The number of triangles that cover each sample of the frame.
 std::vector<int> hits(const SetupTriangles& triangles, const Sampling& sampling) {
   const int columns = kFrame.x1 * sampling.grid.columns, rows = kFrame.y1 * sampling.grid.rows;
   const int count = sampling.pattern.count;
@@ -72,7 +72,8 @@ TEST(SampleRaster, GiantsLeaveNoSampleOutAndTakeNoneTwice) {
   expect_each_sample_once(fan_around({1'000, 1'100}, (1 << 23) - 2'000, 500, &random));
 }
 
-// The hub on a sample, and so on the edges of all triangles of the fan; some edges run through further samples.
+// The hub lies on a sample, which is therefore on the edges of all triangles of the fan. Some edges pass through more
+// samples.
 TEST(SampleRaster, FansAroundASample) {
   Random random(113);
   SCOPED_TRACE(random.name());
@@ -89,8 +90,8 @@ TEST(SampleRaster, FansAroundASample) {
   }
 }
 
-// A sample on an edge counts as if it lay a little to the right, and less than that further down: then no sample is on
-// any edge.
+// A sample on an edge counts as if it lay a little further to the right, and even less further down. Then no sample
+// lies on any edge.
 bool covers(const SetupTriangle& t, std::int64_t x, std::int64_t y) {
   for (int k = 0; k < 3; ++k) {
     const std::int64_t px = t.x[k], py = t.y[k], qx = t.x[(k + 1) % 3], qy = t.y[(k + 1) % 3];
@@ -120,7 +121,7 @@ TEST(SampleRaster, EqualsATestOfEverySample) {
         }
     const Raster raster = rasterize(triangles, kFrame, sampling);
     for (const SampleFragment& f : raster.fragments) found[{f.triangle, f.x, f.y}] = f.mask;
-    EXPECT_EQ(found.size(), raster.fragments.size()) << "a cell came twice";
+    EXPECT_EQ(found.size(), raster.fragments.size()) << "a cell occurs twice";
     EXPECT_TRUE(found == expected) << name_of(sampling);
     EXPECT_EQ(raster.counters.items_out, expected.size());
   }
@@ -143,7 +144,7 @@ TEST(SampleRaster, TilesTogetherGiveWhatOneTileGives) {
         counters += tile.counters;
       }
     EXPECT_TRUE(found == expected) << name_of(sampling);
-    counters.ops = whole.counters.ops;  // bounds and first edge values are found in every tile
+    counters.ops = whole.counters.ops;  // bounds and first edge values are computed in every tile
     EXPECT_TRUE(counters == whole.counters) << name_of(sampling);
   }
 }
@@ -162,10 +163,10 @@ TEST(SampleRaster, QuadNumbersNameQuads) {
   EXPECT_EQ(distinct.size(), quads.size());
 }
 
-// By hand: one triangle in one pixel; of the four samples at (96, 32), (224, 96), (32, 160), (160, 224) it covers the
-// first. Bounds and edges as in ConservativeRaster.CountsCellsAndOperations, and per edge a sum for the top-left rule.
-// One cell: per edge twice a sum and a comparison, the top-left rule, and per sample 2 products, 2 sums and a
-// comparison.
+// Counted by hand. One triangle in one pixel covers the first of the four samples at (96, 32), (224, 96), (32, 160) and
+// (160, 224). Bounds and edges cost as much as in ConservativeRaster.CountsCellsAndOperations, plus a sum per edge for
+// the top-left rule. For the one cell, per edge: twice a sum and a comparison, the top-left rule and, per sample, 2
+// products, 2 sums and a comparison.
 TEST(SampleRaster, CountsSamplesAndOperations) {
   SetupTriangles triangles;
   add_triangle(triangles, {80, 20}, {120, 30}, {90, 60});

@@ -1,4 +1,4 @@
-// Quads that can be worked out by hand.
+// Quads that are worked out by hand.
 #include "stages/samples/dilate.h"
 
 #include <gtest/gtest.h>
@@ -20,8 +20,8 @@ CurrentFrame dilated(const QuadFrame& quads, std::uint32_t width, std::uint32_t 
 
 TEST(Dilate, APixelIsTheMeanWeightedByItsBits) {
   QuadFrame quads(2, 2);
-  // Pixel 0: five samples of shading sample 0 and three of sample 3. Pixel 1: all of sample 1. Pixel 2: two of sample
-  // 2, background. Pixel 3: none.
+  // Pixel 0 has five samples of shading sample 0 and three of sample 3. Pixel 1 has only samples of sample 1. Pixel 2
+  // has two of sample 2, the background. Pixel 3 has none.
   quads.quads[0] = {{0, 1, kNoTriangle, 2}, {0x1fu, 0xff00u, 0x030000u, 0xe0u}, {0, 8, 16, 24}};
   const CurrentFrame frame = dilated(quads, 2, 2);
   EXPECT_FLOAT_EQ(frame.color[0].r, (5 * 1.0f + 3 * 0.25f) / 8);
@@ -29,18 +29,18 @@ TEST(Dilate, APixelIsTheMeanWeightedByItsBits) {
   EXPECT_FLOAT_EQ(frame.color[1].r, 0.5f);
   EXPECT_FLOAT_EQ(frame.color[2].r, 0.125f);
   EXPECT_FLOAT_EQ(frame.color[2].a, 0);
-  EXPECT_FLOAT_EQ(frame.color[3].r, 0.25f);  // its own sample's
+  EXPECT_FLOAT_EQ(frame.color[3].r, 0.25f);  // the colour of its own sample
   EXPECT_EQ(frame.known, (std::vector<float>{1, 1, 0.25f, 0}));
   EXPECT_EQ(unknown_part(frame), (std::vector<float>{0, 0, 0.75f, 1}));
 }
 
 TEST(Dilate, BoxesAreOfNeighborsOfTheSameDraw) {
-  // Two quads beside each other: triangles 0 1 | 2 0 above, 1 1 | 1 1 below; each sample has its own pixel.
+  // Two quads next to each other: triangles 0 1 | 2 0 above, 1 1 | 1 1 below. Each sample has its own pixel.
   QuadFrame quads(4, 2);
   quads.quads[0] = {{0, 1, 1, 1}, {0xffu, 0xff00u, 0xff0000u, 0xff000000u}, {0, 8, 16, 24}};
   quads.quads[1] = {{2, 0, 1, 1}, {0xffu, 0xff00u, 0xff0000u, 0xff000000u}, {0, 8, 16, 24}};
   const CurrentFrame frame = dilated(quads, 4, 2);
-  EXPECT_EQ(frame.low[0].r, 1.0f);  // no neighbour of draw 0 within a pixel
+  EXPECT_EQ(frame.low[0].r, 1.0f);  // no neighbour belongs to draw 0
   EXPECT_EQ(frame.high[0].r, 1.0f);
   EXPECT_EQ(frame.low[2].r, 0.25f);  // itself,
   EXPECT_EQ(frame.high[2].r, 1.0f);  // and the one on its right
@@ -55,8 +55,8 @@ TEST(Dilate, CountsWhatItLooksAt) {
   const std::uint64_t neighbors = 4 * 3 + 8 * 5 + 4 * 8;  // corners, sides, inside
   EXPECT_EQ(counters.bytes_read, 16 * (6 + 4 + 4) + neighbors * (6 + 4));
   EXPECT_EQ(counters.bytes_written, 16u * (8 + 16 + 1));
-  // A pixel: four masks, their counts added up, a division, twelve means of four, to fp16. A neighbour: whether it is
-  // of the same draw, then a selection and a minimum or maximum for four channels.
+  // Per pixel: four masks, the sum of their counts, a division, twelve means of four values, to fp16. Per neighbour:
+  // the test whether it belongs to the same draw, then a selection and a minimum or maximum for four channels.
   const OperationCounts pixel{12 * 5, 3 + 12 * 3, 4 + 4, 0, 1, 4 + 3 + 12}, neighbor{0, 1 + 4 * 4, 0, 0, 0, 3};
   OperationCounts all = pixel * 16;
   all += neighbor * neighbors;

@@ -13,7 +13,7 @@ namespace {
 constexpr Tile kQuad{0, 0, 2, 2};
 const Sampling kEight{CellGrid{}, standard_pattern(8)};
 
-// A surface whose sample i (pixel by pixel, 8 each) shows triangle ids[i]; every triangle is a material of its own.
+// A surface whose sample i (pixel by pixel, 8 each) shows triangle ids[i]. Every triangle has its own material.
 SampleTile surface_of(const std::vector<std::uint32_t>& ids, const Tile& tile = kQuad) {
   SampleTile surface(tile, kEight);
   std::copy(ids.begin(), ids.end(), surface.triangle.begin());
@@ -27,8 +27,8 @@ SampleQuad select(const SampleTile& surface, const SelectOptions& options, const
   return sample_select(surface, tile, kOwnMaterials, options, counters).front();
 }
 
-// What must hold for any quad: masks are disjoint, hold samples of their own material only, and the pixels' samples
-// come from shading samples of the same pixel where there is one of the material.
+// Properties of every quad: masks are disjoint and contain only samples of their own material. A pixel's samples go to
+// a shading sample at the same pixel if there is one of their material.
 void check(const std::vector<std::uint32_t>& ids, const SampleQuad& quad) {
   std::uint32_t all = 0;
   std::set<std::uint32_t> shaded;
@@ -89,8 +89,8 @@ TEST(SampleSelect, BackgroundIsAMaterial) {
 }
 
 TEST(SampleSelect, NoSampleIsStarved) {
-  // Pixel 0 alone has material 1, at its samples 2..7. The switched sample is any of the four, and its place any of the
-  // six.
+  // Only pixel 0 has material 1, at its samples 2..7. Any of the four shading samples may be switched, to any of these
+  // six places.
   std::vector<std::uint32_t> ids(32, 0);
   for (std::size_t s = 2; s < 8; ++s) ids[s] = 1;
   std::map<int, int> slots, places;

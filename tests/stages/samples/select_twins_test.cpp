@@ -1,4 +1,4 @@
-// The twin of sample_select: quad by quad, on counting words.
+// The scalar twin of sample_select: quad by quad, on words that count.
 #include <bit>
 
 #include "stages/raster/sample_raster.h"
@@ -11,7 +11,7 @@ namespace {
 
 class SelectTwins : public SceneTwins {
  protected:
-  // One quad: 32 samples' materials, those inside the frame; where it lies.
+  // Processes one quad: the materials of 32 samples, the samples inside the frame, and the quad's place.
   void select(const std::uint32_t (&ids)[32], std::uint32_t inside, int x, int y, const SelectOptions& options,
               std::uint32_t (&given)[4], int (&location)[4]) {
     state_ = mixed(mixed(mixed(bits(options.seed)) ^ bits(static_cast<std::uint32_t>(x))) ^
@@ -42,7 +42,7 @@ class SelectTwins : public SceneTwins {
   }
 
  private:
-  Bits mixed(Bits x) {  // Murmur3's finalizer
+  Bits mixed(Bits x) {  // the last step of Murmur3
     x = x ^ (x >> 16), x = x * Bits(0x85ebca6bu);
     x = x ^ (x >> 13), x = x * Bits(0xc2b2ae35u);
     return x ^ (x >> 16);
@@ -53,10 +53,10 @@ class SelectTwins : public SceneTwins {
     return integer(word.value == 0 ? -1 : std::countr_zero(word.value));
   }
 
-  // One of the bits that are set: drops as many of the lowest as the random number says.
+  // One of the bits that are set: drops the lowest bits, as many as the random number says.
   int pick(Bits word) {
     state_ = mixed(state_ + bits(0x9e3779b9u));
-    ++twin_.bit;  // how many there are
+    ++twin_.bit;  // the number of set bits
     const Bits skips = state_ % bits(static_cast<std::uint32_t>(std::popcount(word.value)));
     for (std::uint32_t skip = 0; skip < skips.value; ++skip) word = word & (word - Bits(1u));
     return static_cast<int>(lowest(word).value);
@@ -71,7 +71,7 @@ class SelectTwins : public SceneTwins {
     return mask;
   }
 
-  // Shading samples whose material has another one.
+  // Shading samples whose material has another shading sample.
   Bits shared(const Bits (&mask)[4]) {
     Bits slots(0u);
     for (int i = 0; i < 4; ++i) {
@@ -84,7 +84,8 @@ class SelectTwins : public SceneTwins {
     return slots;
   }
 
-  // A material's samples go to its shading sample at the same pixel, else to any.
+  // A material's samples go to its shading sample at the same pixel or, if there is none, to any of its shading
+  // samples.
   void share_out(std::uint32_t alike, std::uint32_t mask, const int (&location)[4], std::uint32_t (&given)[4]) {
     for (int pixel = 0; pixel < 4; ++pixel) {
       Bits here = bits(alike);
@@ -94,7 +95,7 @@ class SelectTwins : public SceneTwins {
         here = here & bits(is_here ? ~0u : ~(1u << j));
       }
       const Bits candidates = here != bits(0) ? here : bits(alike);
-      ++twin_.bit;  // is it one?
+      ++twin_.bit;  // the test whether there is only one
       const bool one = std::has_single_bit(candidates.value);
       Bits left = bits(mask) & bits(0xffu << 8 * pixel);
       while (left.value != 0) {

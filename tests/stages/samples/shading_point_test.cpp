@@ -1,10 +1,11 @@
-// Centre or centroid, against closed forms.
+// Compares shading points with closed forms.
 #include "stages/samples/shading_point.h"
 
 #include <gtest/gtest.h>
 
 #include <algorithm>
 
+#include "stages/raster/sample_raster.h"
 #include "tests/stages/screen_triangles.h"
 
 namespace beampipe {
@@ -23,7 +24,7 @@ std::vector<SampleFragment> fragments_of(const SetupTriangles& triangles, const 
 
 TEST(ShadingPoint, IsTheMeanOfTheCoveredSamplesWhereTheCentreIsNotCovered) {
   SetupTriangles triangles;
-  add_left_of(triangles, 2 * 256 + 100, -0.5f);  // of pixel 2 the left 100/256: not its centre
+  add_left_of(triangles, 2 * 256 + 100, -0.5f);  // the left 100/256 of pixel 2, without its centre
   const Sampling sampling{CellGrid{}, standard_pattern(4)};
   bool tried = false;
   for (const SampleFragment& fragment : fragments_of(triangles, sampling)) {
@@ -37,19 +38,20 @@ TEST(ShadingPoint, IsTheMeanOfTheCoveredSamplesWhereTheCentreIsNotCovered) {
       continue;
     }
     tried = true;
-    // Of the standard four, (-2, -6), (6, -2), (-6, 2) and (2, 6) sixteenths from the centre, the first and the third.
+    // The standard samples are at (-2, -6), (6, -2), (-6, 2) and (2, 6) sixteenths from the centre. The triangle covers
+    // the first and the third.
     EXPECT_EQ(point.position, centre + glm::dvec2(-4, -2) / 16.0);
   }
   EXPECT_TRUE(tried);
 }
 
-// What varies across a triangle, here its depth, leaves the vertices' range where it is extrapolated: by as much as the
-// gradient is steep. At the centroid it does not.
+// An attribute that varies across a triangle, here its depth, leaves the range of the vertices if it is extrapolated,
+// and all the more the steeper its gradient is. At the centroid it stays within the range.
 TEST(ShadingPoint, ExtrapolatesAtTheCentreOnly) {
   for (const Sampling& sampling :
        {Sampling{CellGrid{}, standard_pattern(8)}, Sampling{CellGrid{2, 2}, standard_pattern(8, 128, 128)}}) {
     SetupTriangles triangles;
-    for (std::int32_t i = 0; i < 7; ++i)  // slivers of a third of a pixel, from 0 to 1 within 90/256 px
+    for (std::int32_t i = 0; i < 7; ++i)  // slivers a third of a pixel wide; depth goes from 0 to 1 within 90/256 px
       add_triangle(triangles, {i * 290 + 20, 0, 0.0f}, {i * 290 + 110, 0, 1.0f}, {i * 290 + 60, 2048, 0.5f});
     double farthest = 0;
     for (const SampleFragment& fragment : fragments_of(triangles, sampling)) {
@@ -74,8 +76,9 @@ TEST(ShadingPoint, CountsWhatItLooksAt) {
   std::vector<float> centroids(kTile.pixels());
   count_centroids(triangles, fragments_of(triangles, sampling), kTile, sampling, counters, centroids);
   for (std::size_t i = 0; i < centroids.size(); ++i) EXPECT_EQ(centroids[i], i % 8 == 2) << i;
-  // Of 3 x 8 fragments: three edges, two products, two sums, a comparison. Of 8: for each sample a bit, whether it is
-  // set, two selections and two sums; the number of bits, a division, two products.
+  // For each of 3 x 8 fragments and each of three edges: two products, two sums, a comparison. For each of 8 fragments:
+  // per sample a bit, the test whether it is set, two selections and two sums; then the number of bits, a division and
+  // two products.
   OperationCounts all = OperationCounts{3 * 2, 3 * 3, 0, 0, 0, 0} * 24;
   all += OperationCounts{2, 4 * 5, 4 + 1, 0, 1, 1} * 8;
   EXPECT_EQ(counters.ops, all);

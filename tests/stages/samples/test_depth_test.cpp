@@ -6,6 +6,8 @@
 #include <cmath>
 #include <vector>
 
+#include "stages/data/closed_depth.h"
+#include "stages/raster/sample_raster.h"
 #include "tests/stages/screen_triangles.h"
 
 namespace beampipe {
@@ -28,7 +30,7 @@ Tested render(const SetupTriangles& triangles, const Sampling& sampling, const T
   return tested;
 }
 
-// Triangles at few depths or slanted, large ones and slivers, whose planes are steep.
+// Triangles at a few depths or slanted ones; large ones, and slivers with steep planes.
 SetupTriangles random_layers(Random& random) {
   SetupTriangles triangles;
   const auto corner = [&](std::int32_t reach, float z, float slant) {
@@ -62,7 +64,7 @@ TEST(DepthTestStage, NearerWinsInAnyOrder) {
 }
 
 TEST(DepthTestStage, EqualDepthKeepsTheEarlier) {
-  SetupTriangles triangles;  // slanted, so that depths are not round
+  SetupTriangles triangles;  // slanted, so that depths are not round numbers
   add_triangle(triangles, {-9'000, -9'000, -0.9f}, {20'000, -9'000, -0.3f}, {-9'000, 20'000, -0.2f});
   triangles.triangles.push_back(triangles.triangles[0]);
   for (const Sampling& sampling : {kMsaa8, Sampling{CellGrid{4, 2}, standard_pattern(8, 64, 128)}}) {
@@ -72,7 +74,8 @@ TEST(DepthTestStage, EqualDepthKeepsTheEarlier) {
   }
 }
 
-// Holds the surface without what lies behind closed cells to that with all. Returns how many fragments were left out.
+// Compares the surface without what is hidden behind closed cells to the surface with everything. Returns how many
+// fragments were left out.
 std::size_t left_out(const SetupTriangles& triangles, const Sampling& sampling) {
   SampleTile all(kTile, sampling), open(kTile, sampling);
   StageCounters unused;
@@ -90,7 +93,7 @@ std::size_t left_out(const SetupTriangles& triangles, const Sampling& sampling) 
   return before - fragments.size();
 }
 
-// What is left out behind closed cells would not have passed: the surface is the same to the last bit.
+// Fragments that are left out behind closed cells would not have passed, so the surface is the same to the last bit.
 TEST(DepthTestStage, ClosedCellsHideNothingThatPasses) {
   Random random(81);
   SCOPED_TRACE(random.name());
@@ -103,8 +106,8 @@ TEST(DepthTestStage, ClosedCellsHideNothingThatPasses) {
   EXPECT_GT(hidden, 100'000u);
 }
 
-// A layer at one depth, and a steep triangle that begins behind it by the last bit, at a sample: rounding brings some
-// before it there.
+// A layer at one depth, and a steep triangle that begins behind it by the last bit, at a sample. Rounding moves some of
+// them in front of the layer there.
 TEST(DepthTestStage, ClosedCellsHideNothingThatRoundingBringsBeforeThem) {
   Random random(82);
   SCOPED_TRACE(random.name());
@@ -134,7 +137,7 @@ TEST(DepthTestStage, UncoveredSamplesKeepTheBackground) {
   }
 }
 
-// Two planes that cross at x = 4 px, half-way along the tile: each sample belongs to the one that is nearer there.
+// Two planes cross at x = 4 px, in the middle of the tile. Each sample belongs to the one that is nearer there.
 TEST(DepthTestStage, CrossingPlanesAreComparedAtTheSamples) {
   for (const Sampling& sampling : {kMsaa8, Sampling{CellGrid{2, 2}, standard_pattern(8, 128, 128)}}) {
     SetupTriangles triangles;
@@ -162,7 +165,7 @@ TEST(DepthTestStage, CrossingPlanesAreComparedAtTheSamples) {
   }
 }
 
-// Per sample tested: 2 products and 2 sums make the depth, and one comparison. Per fragment the plane's value at the
+// Per tested sample: 2 products and 2 sums for the depth, and one comparison. Per fragment: the plane's value at the
 // cell's corner, 2 products and 4 sums, and its two slopes, a product each; all three are converted.
 TEST(DepthTestStage, CountsOperationsAndBytes) {
   SetupTriangles triangles;

@@ -1,4 +1,4 @@
-// Motion vectors against closed forms.
+// Compares motion vectors with closed forms.
 #include "stages/temporal/motion.h"
 
 #include <gtest/gtest.h>
@@ -50,7 +50,7 @@ TEST(Motion, PointsBackAlongADrawsTranslation) {
 }
 
 TEST(Motion, PointsBackAlongADrawsRotation) {
-  // A quarter turn, counter-clockwise, about the middle of the frame: (x, y) was at (y, -x) of it, y up.
+  // A quarter turn, counter-clockwise, about the centre of the frame: (x, y) was at (y, -x), with y up.
   const glm::dvec3 middle(kSize / 2, kSize / 2, 0);
   const glm::dmat4 turn = glm::translate(kIdentity, middle) * glm::rotate(kIdentity, std::acos(0.0), {0, 0, 1}) *
                           glm::translate(kIdentity, -middle);
@@ -66,8 +66,8 @@ TEST(Motion, PointsBackAlongADrawsRotation) {
 }
 
 TEST(Motion, FollowsTheCameraByDepth) {
-  // The camera goes forward by 2: what is 10 before it now was 12 before it, and 10/12 as far from the middle. The
-  // background, at the far plane, was 100 before it and 102.
+  // The camera moves forward by 2. A surface that is now 10 in front of it was 12 in front of it, and 10/12 as far from
+  // the centre of the picture. The background, at the far plane, is 100 in front of it and was 102.
   Frame now;
   now.width = now.height = kSize;
   now.projection = glm::perspectiveRH_NO(1.0, 1.0, 1.0, 100.0);
@@ -83,7 +83,7 @@ TEST(Motion, FollowsTheCameraByDepth) {
     const double scale = column == 3 ? 100.0 / 102 : 10.0 / 12;
     EXPECT_NEAR(found[static_cast<std::size_t>(column)].x, x * scale - x, kHalf * kSize) << column;
   }
-  // And backward by 20: it was behind the eye.
+  // The camera moves backward by 20: the surface was behind the eye.
   before.view = glm::translate(kIdentity, glm::dvec3(0, 0, 20));
   EXPECT_EQ(vectors(surface, now, before)[0].x, std::numeric_limits<float>::infinity());
 }
@@ -108,7 +108,7 @@ TEST(Motion, ContentsAreThoseOfAllSamples) {
   before.draws.emplace_back(), now.draws.emplace_back();
   now.draws[0].mesh = before.draws[0].mesh = 1;
   SampleTile surface = full_surface(-0.5f, {CellGrid{}, standard_pattern(8)});  // draw 0, which moves by 5
-  std::fill_n(surface.triangle.begin() + 8, 8, 1u);                             // pixel 1: draw 1, which stands
+  std::fill_n(surface.triangle.begin() + 8, 8, 1u);                             // pixel 1: draw 1, which stands still
   std::fill_n(surface.triangle.begin() + 16, 7, 1u);                            // pixel 2: both
   std::fill_n(surface.triangle.begin() + 24, 2, 1u);                            // pixel 3: both, and the background
   surface.triangle[31] = kNoTriangle, surface.depth[31] = kFarDepth;
@@ -134,7 +134,7 @@ TEST(Motion, ALookIsOfAllThatColorsAreMadeFrom) {
     return result;
   };
   using Which = std::vector<bool>;
-  EXPECT_NE(before[0], before[1]) << "which draw it is";
+  EXPECT_NE(before[0], before[1]) << "the index of the draw";
   EXPECT_EQ(changed([](Frame& f) { f.draws[0].mesh = 1; }), (Which{true, false, false}));
   EXPECT_EQ(changed([](Frame& f) { f.draws[1].kd = glm::vec3(0, 0, 1); }), (Which{false, true, false}));
   EXPECT_EQ(changed([](Frame& f) { f.background = glm::vec3(1, 0, 0); }), (Which{false, false, true}));
@@ -146,9 +146,9 @@ TEST(Motion, ALookIsOfAllThatColorsAreMadeFrom) {
   EXPECT_EQ(changed([](Frame&) {}), (Which{true, false, false}));
   const std::uint32_t lit = looks_of(frame)[0];
   frame.draws[0].transform[3][0] = 1;
-  EXPECT_EQ(looks_of(frame)[0], lit) << "where it is";
+  EXPECT_EQ(looks_of(frame)[0], lit) << "the position has no influence";
   frame.draws[0].transform = turn;
-  EXPECT_NE(looks_of(frame)[0], lit) << "which way it is turned";
+  EXPECT_NE(looks_of(frame)[0], lit) << "the orientation has";
 }
 
 TEST(Motion, DrawsAreKnownByIndexAndMesh) {
@@ -168,9 +168,9 @@ TEST(Motion, CountsItsArithmetic) {
   StageCounters counters;
   motion(full_surface(-0.5f, {CellGrid{}, standard_pattern(8)}), kTile, frame, {0},
          to_last_frame(poses_of(frame), poses_of(frame)), counters);
-  // Seven comparisons and selections for the nearest of 8 samples; to the clip space of this frame: x, y (multiplied,
-  // divided, and one taken away), depth; three rows of a matrix; a division, two coordinates to pixels; the difference;
-  // in front of the eye? Then to float and fp16.
+  // Seven comparisons and selections find the nearest of 8 samples. To this frame's clip space: x and y (multiplied,
+  // divided, minus one) and the depth. Then three rows of a matrix, a division, two coordinates to pixels, the
+  // difference, the test whether it is in front of the eye, and the conversions to float and fp16.
   const OperationCounts pixel{0 + 3 + 9 + 2 * 3, 2 * 7 + 2 + 2 + 9 + 2 + 2 + 1, 0, 2, 2 + 1, 4};
   EXPECT_EQ(counters.ops, pixel * (kSize * kSize));
   EXPECT_EQ(counters.bytes_read, kSize * kSize * (8 * 4 + 4));
@@ -182,8 +182,8 @@ TEST(Motion, CountsItsArithmetic) {
   counters = {};
   contents(full_surface(-0.5f, {CellGrid{}, standard_pattern(8)}), kTile, frame, {0},
            to_last_frame(poses_of(frame), poses_of(frame)), looks_of(frame), counters);
-  // Eight samples' draws, and whether one is new: 28 pairs; a root, to fp16. Of the one draw: its look, its matrix, the
-  // motion, its square, the greater.
+  // The draws of eight samples are compared in 28 pairs. Then a root, to fp16. For the one draw: its look, its matrix,
+  // the motion, its square and the maximum.
   const OperationCounts set{0, 28, 0, 8, 1, 1}, draw{18 + 2, 18 + 2, 1, 2, 2 + 1, 4};
   OperationCounts all = set * (kSize * kSize);
   all += draw * (kSize * kSize);

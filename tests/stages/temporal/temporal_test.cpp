@@ -1,4 +1,4 @@
-// One pixel at a time, against the formula.
+// Compares single pixels with the formula.
 #include "stages/temporal/temporal.h"
 
 #include <gtest/gtest.h>
@@ -11,8 +11,8 @@ namespace {
 
 constexpr float kOld = 1.0f, kOther = 0.5f, kNew = 0.25f;
 
-// Two pixels in a row. The history is kOld at the first and kOther at the second; the new frame is kNew at both, and
-// its boxes hold everything.
+// Two pixels in a row. The history is kOld at the first and kOther at the second. The new frame is kNew at both, and
+// its boxes contain all colours.
 struct Fixture {
   CurrentFrame frame{2, 1};
   History history{1, 2, 1, {glm::vec4(kOld), glm::vec4(kOther)}, {0, 0}, {}};
@@ -86,10 +86,10 @@ TEST(Temporal, WhatIsKnownInPartWeighsLess) {
   fixture.frame.known[0] = 0.5f;
   EXPECT_NEAR(fixture.first_pixel({0.2f}), blended(kOld, 0.1f), kFp16);
   fixture.frame.known[0] = 0;
-  fixture.close_box();  // means nothing then
+  fixture.close_box();  // has no effect on an unknown pixel
   EXPECT_EQ(fixture.first_pixel({0.2f, 0.05f}), kOld);
   fixture.history.looks[0] = 7;
-  EXPECT_EQ(fixture.first_pixel({0.2f, 0.05f}), kNew) << "what was there is gone";
+  EXPECT_EQ(fixture.first_pixel({0.2f, 0.05f}), kNew) << "the old surface is gone";
 }
 
 TEST(Temporal, ANeighborhoodsBoxEndsAtTheFrame) {
@@ -108,22 +108,22 @@ TEST(Temporal, ANeighborhoodsBoxEndsAtTheFrame) {
 TEST(Temporal, WhereThePixelLookedOtherwiseTheClampIsWhole) {
   Fixture fixture;
   fixture.close_box();
-  EXPECT_NEAR(fixture.first_pixel({0.1f, 0.05f}), blended(kOld, 0.1f), kFp16) << "at rest nothing is clamped";
+  EXPECT_NEAR(fixture.first_pixel({0.1f, 0.05f}), blended(kOld, 0.1f), kFp16) << "nothing is clamped at rest";
   fixture.history.looks[1] = 7;
-  EXPECT_NEAR(fixture.first_pixel({0.1f, 0.05f}), blended(kOld, 0.1f), kFp16) << "beside it";
+  EXPECT_NEAR(fixture.first_pixel({0.1f, 0.05f}), blended(kOld, 0.1f), kFp16) << "the nearest texel has the same look";
   fixture.history.looks[0] = 7;
   EXPECT_EQ(fixture.first_pixel({0.1f, 0.05f}), kNew);
 }
 
 TEST(Temporal, CountsWhatItLooksAt) {
   Fixture fixture;
-  fixture.frame.motion[1] = glm::vec2(1000);  // off the screen: nothing to reuse
+  fixture.frame.motion[1] = glm::vec2(1000);  // off the screen, so there is nothing to reuse
   StageCounters counters;
   std::vector<glm::vec4> image(2);
   temporal(fixture.frame, {0.1f}, fixture.history, {0, 0, 2, 1}, counters, image);
-  // Both: two sums, four comparisons, the motion and four channels from fp16, four into it. The first: where its texels
-  // begin, four weights, 24 values from fp16 and the known part, and for each channel 4 weights, the clamp, and two
-  // blends.
+  // Both pixels: two sums, four comparisons, the motion and four channels from fp16, and four to fp16. The first pixel:
+  // its first texel, four weights, 24 values from fp16, the known part and, for each channel, 4 weights, the clamp and
+  // two blends.
   const OperationCounts both{0, 2 + 4, 0, 0, 0, 2 + 8},
       first{4 + 1 + 4 * 6, 6 + 4 * (3 + 2 + 4), 0, 0, 0, 2 + 2 + 24 + 1};
   OperationCounts all = both * 2;
@@ -137,8 +137,8 @@ TEST(Temporal, CountsWhatItLooksAt) {
   EXPECT_EQ(counters.lanes_issued, 2u);
   counters = {};
   temporal(fixture.frame, {0.1f, 0.05f}, fixture.history, {0, 0, 2, 1}, counters, image);
-  all +=
-      OperationCounts{0, 3 + 1 + 2 + 2, 0, 0, 1, 1};  // the texel that weighs the most; part; its look; is any known?
+  all += OperationCounts{0, 3 + 1 + 2 + 2, 0, 0, 1,
+                         1};  // the texel with the largest weight, the part of the clamp, the look, the known part
   EXPECT_EQ(counters.ops, all);
   EXPECT_EQ(counters.bytes_read, 2u * (8 + 17 + 4 + 4 + 2) + 4 * 8 + 4);
   counters = {};

@@ -1,5 +1,5 @@
-// The twins of the stages that carry pixels from one frame to the next: motion, what is in a pixel, dilate, and the
-// accumulation. Each pixel by itself, after a frame in which the camera and the first draw were elsewhere.
+// The scalar twins of the stages that carry pixels from one frame to the next: motion, contents, dilate, temporal. They
+// process each pixel alone. In the last frame, the camera and the first draw were elsewhere.
 #include <half.h>
 
 #include <algorithm>
@@ -53,7 +53,7 @@ class TemporalTwins : public SceneTwins {
     Float x, y;
   };
 
-  // From pixel i to where a point at that depth was: through the last frame's clip space to its screen.
+  // The movement of a point at this depth in pixel i, through the last frame's clip space to its screen.
   Vector moved(std::size_t draw, std::size_t i, float depth) {
     ++twin_.fetch;  // the draw's matrix
     const glm::dmat4& m = to_last_[draw];
@@ -75,7 +75,7 @@ class TemporalTwins : public SceneTwins {
     return {stored(dx), stored(dy)};
   }
 
-  // All that `temporal` reads.
+  // Everything that `temporal` reads.
   CurrentFrame current_frame() {
     StageCounters ignored;
     CurrentFrame frame(trace_.frames[0].width, trace_.frames[0].height);
@@ -86,7 +86,7 @@ class TemporalTwins : public SceneTwins {
     return frame;
   }
 
-  // To an integer, and a number again.
+  // Converts to an integer and back.
   Float floored(const Float& x) {
     to_float(to_integer(x));
     return real(std::floor(x.value));
@@ -203,7 +203,7 @@ TEST_P(TemporalTwins, Dilate) {
       Float sum = (shown[quad[0]].*values)[c] * weights[0];
       for (std::size_t k = 1; k < 4; ++k) sum = sum + (shown[quad[k]].*values)[c] * weights[k];
       const Float written = converted(sum * inverse);
-      return known.value > 0 ? written.value : shown[i].color[c].value;  // its own, where nothing is known
+      return known.value > 0 ? written.value : shown[i].color[c].value;  // its own sample's, if nothing is known
     };
     for (std::size_t c = 0; c < 4; ++c) {
       const auto channel = static_cast<int>(c);
@@ -237,7 +237,7 @@ TEST_P(TemporalTwins, NeighborhoodBox) {
 TEST_P(TemporalTwins, Temporal) {
   const CurrentFrame frame = current_frame();
   History history{1, frame.width, frame.height, frame.color, frame.looks, {}};
-  for (std::size_t i = 0; i < tile_.pixels(); ++i) {  // something else was there, and lighter
+  for (std::size_t i = 0; i < tile_.pixels(); ++i) {  // something else was there, with a lighter colour
     for (int c = 0; c < 4; ++c) history.color[i][c] = HalfBits(0.5f + 0.5f * frame.color[(i * 7) % tile_.pixels()][c]);
     if (i % 5 == 0) history.looks[i] ^= 1;
   }

@@ -1,10 +1,14 @@
-// Claims: the published figures as data, the formulas of our numbers, and what becomes of both.
+// Claims: the published figures, the formulas of our numbers, and the claims made of both.
 #include "tools/claims/claims.h"
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
+#include <filesystem>
+#include <fstream>
 #include <limits>
 #include <set>
+#include <sstream>
 #include <stdexcept>
 
 #include "tools/claims/our_figures.h"
@@ -190,6 +194,28 @@ TEST(Claims, DifferenceIsFromTheNearerEnd) {
   claim.ours.reset();
   EXPECT_FALSE(claim.difference());
   EXPECT_TRUE(to_json(claim)["ours"].is_null());
+}
+
+// The rows of a Markdown table in a text, without the columns of our number and the difference, which need rendering.
+std::vector<std::vector<std::string>> rows_without_numbers(std::istream& text) {
+  std::vector<std::vector<std::string>> rows;
+  for (std::string line; std::getline(text, line);) {
+    if (!line.starts_with("| ")) continue;
+    std::vector<std::string>& row = rows.emplace_back();
+    for (std::size_t from = 2, to; (to = line.find(" |", from)) != line.npos; from = std::min(to + 3, line.size()))
+      row.push_back(line.substr(from, to - from));
+    if (row.size() == 8) row.erase(row.begin() + 3, row.begin() + 5);
+  }
+  return rows;
+}
+
+TEST(Claims, AreThoseOfThePage) {
+  std::ifstream page(std::filesystem::path(BEAMPIPE_SOURCE_FOLDER) / "docs/claims.md");
+  std::istringstream printed(claims_text(all_claims({})));
+  const auto expected = rows_without_numbers(printed), found = rows_without_numbers(page);
+  EXPECT_GT(expected.size(), 200u);
+  ASSERT_EQ(found.size(), expected.size());
+  for (std::size_t i = 0; i < expected.size(); ++i) EXPECT_EQ(found[i], expected[i]);
 }
 
 // MSAA adds 30 bytes to those of one sample per pixel, and ACAA saves half of them.

@@ -1,5 +1,7 @@
 #!/usr/bin/env python3
-"""report_page_test.py where chromedriver or Chromium does not start: one line, soon, and no process stays.
+"""Runs report_page_test.py with a chromedriver or a Chromium that does not start.
+
+The test must end soon, print one line and leave no process.
 
 usage: report_page_start_test.py CHROMEDRIVER
 """

@@ -1,5 +1,5 @@
 #!/usr/bin/env python3
-"""The report page in a browser: headless Chromium, driven by chromedriver.
+"""Tests the report page in a browser, headless Chromium, through chromedriver.
 
 usage: report_page_test.py BEAMPIPE CHROMIUM CHROMEDRIVER [SECONDS]
 

@@ -1,0 +1,160 @@
+#!/usr/bin/env python3
+"""Draws the figure of the pipeline: docs/pipeline_figure.py docs/pictures/pipeline.svg"""
+import sys
+
+WIDTH, HEIGHT = 800, 706
+MONO = "DejaVu Sans Mono, Menlo, Consolas, monospace"
+
+# Folders of stages, with the colours of their boxes: fill, border.
+COLORS = {
+    "geometry": ("#e8e3f4", "#6f5aa8"),
+    "raster": ("#dcebf9", "#2f6fab"),
+    "beam": ("#fde8cd", "#b8690f"),
+    "samples": ("#dff1de", "#3b823a"),
+    "temporal": ("#f9dde5", "#a83a5c"),
+    "picture": ("#ececec", "#666666"),
+}
+FOLDER_OF = {
+    "vertex_setup": "geometry",
+    "conservative_raster": "raster", "sample_raster": "raster", "reference_raster": "raster",
+    "a_buffer": "beam", "windows": "beam", "beam_fragment": "beam", "compose": "beam", "claim": "beam", "settle": "beam",
+    "depth_test": "samples", "stencil_test": "samples", "accumulate": "samples", "sample_select": "samples",
+    "dilate": "samples",
+    "motion": "temporal", "temporal": "temporal",
+    "shade": "picture", "light": "picture", "resolve": "picture",
+}
+
+# The stages of `beam`: what each hands on, what it uses off chip, and whether it reads that, writes it, or both.
+BEAM = [
+    ("conservative_raster", "pairs", "bin list,|setup triangles", "read"),
+    ("a_buffer", "sorted pairs", "A-buffer", "both"),
+    ("windows", "one window", "A-buffer", "read"),
+    ("beam_fragment", "fragments", "setup triangles", "read"),
+    ("shade", "colours", "attributes", "read"),
+    ("compose", "aggregates", "framebuffer", "write"),
+    ("resolve", "", "framebuffer,|picture", "both"),
+]
+
+# The other techniques, with their stages in order.
+OTHERS = [
+    ("beam:rules=paper, alpha", "conservative_raster beam_fragment shade a_buffer compose resolve"),
+    ("z3", "conservative_raster beam_fragment shade compose resolve"),
+    ("beam:order=stream", "conservative_raster beam_fragment claim beam_fragment shade settle resolve"),
+    ("msaa:N", "sample_raster shade depth_test resolve"),
+    ("acaa:N", "sample_raster depth_test stencil_test shade accumulate resolve"),
+    ("deferred, visibility", "sample_raster depth_test shade light resolve"),
+    ("taa:N", "sample_raster depth_test shade light resolve motion temporal"),
+    ("dvm", "sample_raster depth_test sample_select shade light motion dilate temporal"),
+    ("reference", "reference_raster resolve"),
+]
+
+parts = []
+
+
+def text(x, y, string, size=11, anchor="middle", family=None, weight=None, fill="#222"):
+    extra = f' font-family="{family}"' if family else ""
+    extra += f' font-weight="{weight}"' if weight else ""
+    parts.append(f'<text x="{x}" y="{y}" font-size="{size}" text-anchor="{anchor}" fill="{fill}"{extra}>{string}</text>')
+
+
+def box(x, y, width, height, fill, border, dashed=False):
+    dash = ' stroke-dasharray="5 4"' if dashed else ""
+    parts.append(f'<rect x="{x}" y="{y}" width="{width}" height="{height}" rx="5" fill="{fill}" stroke="{border}"{dash}/>')
+
+
+def arrow(path, dashed=False, both=False):
+    dash = ' stroke-dasharray="4 3"' if dashed else ""
+    start = ' marker-start="url(#head)"' if both else ""
+    parts.append(f'<path d="{path}" fill="none" stroke="#444" stroke-width="1.2"{dash}{start} marker-end="url(#head)"/>')
+
+
+def stage(x, y, width, height, name, lines, size):
+    box(x, y, width, height, *COLORS[FOLDER_OF[name]])
+    for i, line in enumerate(lines):
+        text(x + width / 2, y + height / 2 + 4 + (i - (len(lines) - 1) / 2) * (size + 2), line, size, family=MONO)
+
+
+def frame_part():
+    """From the trace to the bins, once per frame."""
+    text(20, 30, "Once per frame", 13, "start", weight="bold")
+    box(20, 44, 130, 46, "#ffffff", "#666666")
+    text(85, 64, "trace")
+    text(85, 80, "meshes, camera, draws", 10, fill="#555")
+    arrow("M150 67 H196")
+    stage(200, 44, 130, 46, "vertex_setup", ["vertex_setup"], 11)
+    text(265, 103, "transform, clip, snap to 1/256 px", 10, fill="#555")
+    text(398, 60, "setup triangles", 10)
+    arrow("M330 67 H466")
+    box(470, 44, 130, 46, "#ffffff", "#666666")
+    text(535, 64, "bins")
+    text(535, 80, "triangles per tile", 10, fill="#555")
+    text(632, 60, "bin list", 10)
+    arrow("M600 67 H666")
+    box(670, 44, 110, 46, "#ffffff", "#666666")
+    text(725, 64, "threads")
+    text(725, 80, "a bin each", 10, fill="#555")
+
+
+def beam_part():
+    """The stages of `beam` in one bin, and the memory under them."""
+    top, left, pitch, width, height = 206, 26, 109, 92, 46
+    text(20, 144, "In each bin: beam", 13, "start", weight="bold")
+    box(12, 154, 776, 220, "none", "#999999", dashed=True)
+    for i, (name, out, memory, use) in enumerate(BEAM):
+        x = left + i * pitch
+        lines = {"conservative_raster": ["conservative", "_raster"], "beam_fragment": ["beam", "_fragment"]}.get(name, [name])
+        stage(x, top, width, height, name, lines, 11)
+        if out:
+            arrow(f"M{x + width} {top + 23} H{x + pitch - 4}")
+            text(x + width + 8, top - 8, out, 10)
+        start, end = (50, 4) if use == "read" else (4, 50)
+        arrow(f"M{x + width / 2} {top + height + start} V{top + height + end}", both=use == "both")
+        for row, line in enumerate(memory.split("|")):
+            text(x + width / 2, top + height + 72 + 14 * row, line, 10)
+    # The loop over windows.
+    x_from, x_to = left + 5 * pitch + width / 2 + 20, left + 2 * pitch + width / 2 - 8
+    y = top - 26
+    arrow(f"M{x_from} {top} V{y} H{x_to} V{top - 4}", dashed=True)
+    text((x_from + x_to) / 2, y - 6, "next window of every pixel that is not closed yet", 10)
+    # Memory.
+    box(left - 4, top + height + 54, 752, 42, "none", "#b5b5b5")
+    text(left - 4, top + height + 112, "off chip: L2 and DRAM, through modelled caches", 10, "start", fill="#555")
+    text(776, top + height + 112, "on chip: pairs, windows, fragments and closed depths of the bin", 10, "end", fill="#555")
+
+
+def other_part():
+    """The other techniques, one row each."""
+    text(20, 402, "In each bin: the other techniques", 13, "start", weight="bold")
+    note = ("beam:order=stream repeats its stages in passes; acaa and deferred draw the triangles twice; "
+            "dilate and temporal work on whole frames.")
+    text(20, 420, note, 9.5, "start", fill="#555")
+    y, height, row = 434, 20, 27
+    for name, stages in OTHERS:
+        text(20, y + 14, name, 10, "start", family=MONO)
+        x = 172
+        for i, item in enumerate(stages.split()):
+            width = 5.6 * len(item) + 10
+            stage(x, y, width, height, item, [item], 9)
+            if i + 1 < len(stages.split()):
+                arrow(f"M{x + width} {y + 10} H{x + width + 10}")
+            x += width + 14
+        y += row
+    y += 14
+    text(20, y, "Folders in stages/:", 10, "start", fill="#555")
+    x = 172
+    for folder, (fill, border) in COLORS.items():
+        box(x, y - 10, 12, 12, fill, border)
+        text(x + 18, y, folder, 10, "start", family=MONO)
+        x += 18 + 6.1 * len(folder) + 18
+
+
+frame_part()
+beam_part()
+other_part()
+with open(sys.argv[1], "w") as file:
+    file.write(f'<svg xmlns="http://www.w3.org/2000/svg" viewBox="0 0 {WIDTH} {HEIGHT}" width="{WIDTH}" height="{HEIGHT}" '
+               'font-family="DejaVu Sans, Helvetica, Arial, sans-serif">\n'
+               '<title>The beam pipeline and the other techniques, stage by stage</title>\n'
+               '<defs><marker id="head" viewBox="0 0 8 8" refX="7" refY="4" markerWidth="7" markerHeight="7" '
+               'orient="auto-start-reverse"><path d="M0 0 L8 4 L0 8 z" fill="#444"/></marker></defs>\n'
+               f'<rect width="{WIDTH}" height="{HEIGHT}" rx="8" fill="#ffffff"/>\n' + "\n".join(parts) + "\n</svg>\n")

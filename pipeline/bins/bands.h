@@ -1,0 +1,36 @@
+// Bands: runs of tiles that are rendered together. They keep the memory for lists and pairs below a limit. A band
+// consists of whole tiles, so results do not depend on bands.
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+#include <vector>
+
+#include "stages/data/setup_triangle.h"
+#include "stages/data/tile.h"
+#include "traces/trace.h"
+
+namespace beampipe {
+
+// The tiles of a frame, row by row.
+struct TileGrid {
+  std::int32_t size = 0, columns = 0;  // pixels on each side; tiles in a row
+  std::vector<Tile> tiles;
+
+  TileGrid(const Frame& frame, std::int32_t tile_size);
+};
+
+struct Band {
+  std::size_t first, last;  // tiles [first, last)
+};
+
+// Splits all tiles, in order, into bands: a single one without a limit (0 bytes) or when the whole frame fits. A band
+// needs the triangle lists of all its tiles, and `pair_bytes` per pair for the tiles that are rendered at once, one per
+// thread. Throws std::runtime_error, one line that says how much is needed, when a single tile does not fit.
+std::vector<Band> split_into_bands(const SetupTriangles& triangles, const TileGrid& grid, std::size_t pair_bytes,
+                                   int threads, std::uint64_t memory_limit);
+
+// One list per tile of the band: the triangles whose closed bounds touch it.
+std::vector<TriangleList> bin_triangles(const SetupTriangles& triangles, const TileGrid& grid, const Band& band);
+
+}  // namespace beampipe

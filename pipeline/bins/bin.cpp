@@ -1,0 +1,40 @@
+#include "pipeline/bins/bin.h"
+
+#include <stdexcept>
+
+namespace beampipe {
+Bin::Bin(const FrameContext& frame_context, const Tile& bin_tile, const TriangleList& triangles,
+         const std::vector<std::string>& stages)
+    : context(frame_context), tile(bin_tile), list(triangles), timer_(context.run.timeline, tile) {
+  stages_.reserve(stages.size());
+  for (const std::string& name : stages) stages_.push_back(StageCounters{name});
+}
+
+BinStage Bin::stage(std::string_view name) {
+  for (StageCounters& counters : stages_)
+    if (counters.stage == name) return {counters, timer_, memory()};
+  throw std::logic_error("the technique has no stage " + std::string(name));
+}
+
+std::vector<float>& Bin::pixel_counter(const std::string& name) {
+  std::vector<float>& values = pixel_counters_[name];
+  if (values.empty()) values.resize(tile.pixels());
+  return values;
+}
+
+void Bin::finish(std::vector<glm::vec4> picture) {
+  picture_ = std::move(picture);
+  stage("resolve").streams(tile.pixels() * kPictureBytes);
+}
+
+const ZOrder& Bin::z_order() {
+  if (!z_order_) z_order_.emplace(tile.width(), tile.height());
+  return *z_order_;
+}
+
+TriangleFetches& Bin::triangle_fetches() {
+  if (!triangle_fetches_) triangle_fetches_.emplace(memory(), list);
+  return *triangle_fetches_;
+}
+
+}  // namespace beampipe

@@ -1,0 +1,113 @@
+// A bin: one tile of the frame and the triangles that touch it. It owns everything that is recorded while a technique
+// renders it: stage counters and times, on-chip buffers, per-pixel counters, and the picture.
+#pragma once
+
+#include <algorithm>
+#include <cstdint>
+#include <glm/glm.hpp>
+#include <map>
+#include <optional>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "pipeline/bins/frame_context.h"
+#include "pipeline/bins/timeline.h"
+#include "pipeline/memory/geometry_memory.h"
+#include "pipeline/memory/linear_memory.h"
+#include "pipeline/memory/tile_surface.h"
+#include "stages/data/tile.h"
+
+namespace beampipe {
+
+inline constexpr std::uint64_t kPictureBytes = 6;  // per pixel of a finished picture: fp16 RGB
+
+// One stage of a bin: its counters, and the timer that records when it runs.
+class BinStage {
+ public:
+  BinStage(StageCounters& stage_counters, const StageTimer& timer, const MemoryParameters& memory)
+      : counters(stage_counters), timer_(timer), memory_(memory) {}
+
+  // Stands for the counters in the call of the stage function, and times that call:
+  //   conservative_raster(triangles, list, tile, stage.timed(), pairs);
+  StageTimer::Span timed() const { return timer_(counters); }
+
+  // Charges reading or writing `bytes` in a row, which no cache helps with.
+  void streams(std::uint64_t bytes) const { stream(memory_, bytes, counters); }
+
+  StageCounters& counters;
+
+ private:
+  const StageTimer& timer_;
+  const MemoryParameters& memory_;
+};
+
+class Bin {
+ public:
+  const FrameContext& context;
+  const Tile& tile;
+  const TriangleList& list;
+
+  // `stages`: the names of the stages, in the order of the pipeline. Everything that is passed must outlive the bin.
+  Bin(const FrameContext& frame_context, const Tile& bin_tile, const TriangleList& triangles,
+      const std::vector<std::string>& stages);
+  Bin(const Bin&) = delete;
+  Bin& operator=(const Bin&) = delete;
+
+  // The stage of that name. Throws std::logic_error when the technique has not listed it.
+  BinStage stage(std::string_view name);
+
+  const SetupTriangles& triangles() const { return context.triangles; }
+  const glm::vec3& background() const { return context.frame.background; }
+
+  // One value per pixel of the tile, row by row; all 0 when it is first asked for.
+  std::vector<float>& pixel_counter(const std::string& name);
+
+  // An on-chip buffer holds so many bytes now. Its peak is recorded.
+  void holds(const std::string& buffer, std::uint64_t bytes) {
+    std::uint64_t& peak = buffer_peaks_[buffer];
+    peak = std::max(peak, bytes);
+  }
+
+  // The bin keeps so many bytes of A-buffer in memory.
+  void keeps_a_buffer(std::uint64_t bytes) { a_buffer_bytes_ += bytes; }
+
+  // The application draws the frame once more for this bin.
+  void starts_geometry_pass() { ++geometry_passes_; }
+
+  // The finished picture: RGBA, one per pixel of the tile. Charges `resolve` with writing it to memory.
+  void finish(std::vector<glm::vec4> picture);
+
+  // ---- The modelled memory system ----
+  const MemoryParameters& memory() const { return context.run.memory; }
+  bool models_memory() const { return memory().modelled; }
+  const ZOrder& z_order();              // of the tile's pixels
+  TriangleFetches& triangle_fetches();  // setup and attributes that shaders fetch by a triangle's number
+
+  // ---- What was recorded ----
+  const std::vector<glm::vec4>& picture() const { return picture_; }  // empty: a later stage makes the frame's
+  const std::vector<StageCounters>& stages() const { return stages_; }
+  const std::map<std::string, std::vector<float>>& pixel_counters() const { return pixel_counters_; }
+  const std::map<std::string, std::uint64_t>& buffer_peaks() const { return buffer_peaks_; }
+  std::uint64_t a_buffer_bytes() const { return a_buffer_bytes_; }
+  int geometry_passes() const { return std::max(geometry_passes_, 1); }
+
+ private:
+  StageTimer timer_;
+  std::vector<StageCounters> stages_;  // never grows: memory models tell stages apart by the address of their counters
+  std::map<std::string, std::vector<float>> pixel_counters_;
+  std::map<std::string, std::uint64_t> buffer_peaks_;
+  std::uint64_t a_buffer_bytes_ = 0;
+  int geometry_passes_ = 0;
+  std::vector<glm::vec4> picture_;
+  std::optional<ZOrder> z_order_;
+  std::optional<TriangleFetches> triangle_fetches_;
+};
+
+// Adds one to a pixel's count for each of its fragments.
+template <class Fragment>
+void count_by_pixel(const std::vector<Fragment>& fragments, std::vector<float>& counts) {
+  for (const Fragment& fragment : fragments) ++counts[fragment.pixel];
+}
+
+}  // namespace beampipe

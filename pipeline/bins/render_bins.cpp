@@ -1,0 +1,147 @@
+#include "pipeline/bins/render_bins.h"
+
+#include <malloc.h>
+#include <tbb/parallel_for.h>
+
+#include <mutex>
+
+#include "pipeline/bins/bands.h"
+#include "pipeline/bins/threads.h"
+#include "pipeline/memory/geometry_memory.h"
+
+namespace beampipe {
+namespace {
+
+TileGrid tile_grid(const FrameContext& context, int tile_size) {
+  return {context.frame, context.run.tile_size > 0 ? context.run.tile_size : tile_size};
+}
+
+// What one pass over the geometry costs, whatever the technique.
+struct GeometryPass {
+  StageCounters setup, raster;
+
+  explicit GeometryPass(const FrameContext& context) : setup(context.setup) {
+    const std::uint64_t triangles = context.setup.items_out;
+    move_setup(context.run.memory, context.setup.bytes_read, context.triangles.triangles.size(), setup);
+    raster.items_in = triangles;
+    raster.bytes_read = triangles * sizeof(SetupTriangle);
+  }
+
+  void add_list(const MemoryParameters& memory, const TriangleList& list) {
+    raster.empty_tiles += list.empty();
+    write_list(memory, list, raster);
+    read_bin(memory, list, raster);
+  }
+};
+
+// Adds up what bins recorded. Only sums and the picture are kept, so that a large frame takes no more than its picture.
+class FrameRecorder {
+ public:
+  FrameRecorder(const FrameContext& context, const BinPlan& plan) : context_(context) {
+    const Frame& frame = context.frame;
+    result_.image = {frame.width, frame.height, std::vector<float>(4 * pixels())};
+    result_.stages.push_back(StageCounters{context.setup.stage});
+    for (const std::string& name : plan.stages) result_.stages.push_back(StageCounters{name});
+  }
+
+  // From any thread.
+  void add(const Bin& bin) {
+    std::map<std::string, std::vector<float>*> counters;  // of the frame
+    {
+      const std::lock_guard lock(mutex_);
+      for (std::size_t s = 0; s < bin.stages().size(); ++s) result_.stages[s + 1] += bin.stages()[s];
+      for (const auto& [name, bytes] : bin.buffer_peaks()) {
+        std::uint64_t& peak = buffer_peaks_[name];
+        peak = std::max(peak, bytes);
+      }
+      result_.a_buffer_peak_bytes += bin.a_buffer_bytes();
+      geometry_passes_ = std::max(geometry_passes_, bin.geometry_passes());
+      for (const auto& [name, values] : bin.pixel_counters()) {
+        std::vector<float>& of_frame = result_.pixel_counters[name];
+        of_frame.resize(pixels());
+        counters[name] = &of_frame;
+      }
+    }
+    for (const auto& [name, values] : bin.pixel_counters())
+      copy_to_frame(values, bin.tile, context_.frame, *counters.at(name));
+    if (!bin.picture().empty()) place(bin.picture(), bin.tile);
+  }
+
+  FrameResult finish(const GeometryPass& pass, std::uint64_t list_bytes) {
+    for (int i = 0; i < geometry_passes_; ++i) {
+      result_.stages[0] += pass.setup;
+      result_.stages[1] += pass.raster;
+    }
+    const std::uint64_t triangles = context_.triangles.triangles.size();
+    result_.buffers = {{"setup_triangles", triangles * (sizeof(SetupTriangle) + sizeof(FlatAttributes))},
+                       {"bin_lists", list_bytes}};
+    for (const auto& [name, bytes] : buffer_peaks_) result_.buffers.push_back({name, bytes, true});
+    return std::move(result_);
+  }
+
+ private:
+  std::size_t pixels() const { return std::size_t{context_.frame.width} * context_.frame.height; }
+
+  void place(const std::vector<glm::vec4>& picture, const Tile& tile) {
+    const glm::vec4* from = picture.data();
+    for (std::int32_t y = tile.y0; y < tile.y1; ++y, from += tile.width()) {
+      const std::size_t first = static_cast<std::size_t>(y) * context_.frame.width + static_cast<std::size_t>(tile.x0);
+      std::copy_n(&from->x, 4 * tile.width(), result_.image.rgba.data() + 4 * first);
+    }
+  }
+
+  const FrameContext& context_;
+  std::mutex mutex_;
+  FrameResult result_;
+  std::map<std::string, std::uint64_t> buffer_peaks_;
+  int geometry_passes_ = 1;
+};
+
+}  // namespace
+
+FrameResult render_bins(const FrameContext& context, const BinPlan& plan, const BinRenderer& render) {
+  const RunOptions& run = context.run;
+  const TileGrid grid = tile_grid(context, plan.tile_size);
+  if (run.weights) run.weights->assign(std::size_t{context.frame.width} * context.frame.height, {});
+  GeometryPass pass(context);
+  FrameRecorder recorder(context, plan);
+  std::uint64_t list_bytes = 0;
+  const auto render_band = [&](const Band& band) {
+    const std::vector<TriangleList> lists = bin_triangles(context.triangles, grid, band);
+    for (const TriangleList& list : lists) {
+      list_bytes += list.size() * sizeof list[0];
+      pass.add_list(run.memory, list);
+    }
+    tbb::parallel_for(std::size_t{0}, lists.size(), [&](std::size_t i) {
+      Bin bin(context, grid.tiles[band.first + i], lists[i], plan.stages);
+      render(bin);
+      recorder.add(bin);
+    });
+  };
+  for (const Band& band :
+       split_into_bands(context.triangles, grid, plan.pair_bytes, thread_count(run.threads), run.memory_limit)) {
+    if (band.first > 0) malloc_trim(0);  // glibc would keep the freed memory of a band on top of the next one's
+    on_threads(run.threads, [&] { render_band(band); });
+  }
+  return recorder.finish(pass, list_bytes);
+}
+
+void run_on_tiles(const FrameContext& context, const std::string& stage, FrameResult& result,
+                  const std::function<void(const Tile&, const BinStage&)>& work) {
+  const std::vector<Tile> tiles = tile_grid(context, kBinSize).tiles;
+  std::vector<StageCounters> of_tiles(tiles.size(), StageCounters{stage});
+  on_threads(context.run.threads, [&] {
+    tbb::parallel_for(std::size_t{0}, tiles.size(), [&](std::size_t i) {
+      const StageTimer timer(context.run.timeline, tiles[i]);
+      work(tiles[i], BinStage(of_tiles[i], timer, context.run.memory));
+    });
+  });
+  StageCounters& counters = result.stages.emplace_back(StageCounters{stage});
+  for (const StageCounters& of_tile : of_tiles) counters += of_tile;
+}
+
+void copy_to_image(const std::vector<glm::vec4>& pixels, Image& image) {
+  std::copy_n(&pixels.front().x, 4 * pixels.size(), image.rgba.begin());
+}
+
+}  // namespace beampipe

@@ -1,0 +1,53 @@
+// Renders a frame bin by bin: sorts the triangles into bins, puts the bins onto threads, and adds up what they
+// recorded. Pictures depend neither on the number of threads nor on the tile size. Counters do not depend on the number
+// of threads; those of the modelled caches and of what is decided bin by bin depend on the tile size.
+#pragma once
+
+#include <algorithm>
+#include <cstddef>
+#include <functional>
+#include <glm/glm.hpp>
+#include <string>
+#include <vector>
+
+#include "pipeline/bins/bin.h"
+#include "pipeline/bins/frame_context.h"
+#include "pipeline/memory/parameters.h"
+#include "pipeline/technique.h"
+
+namespace beampipe {
+
+// How a technique renders its bins.
+struct BinPlan {
+  std::vector<std::string> stages;  // of a bin, in the order of the pipeline; the first one rasterizes
+  int tile_size = kBinSize;         // pixels on each side, even; RunOptions::tile_size overrides it
+  // Bytes that this program keeps for each pair until the bin is finished (RunOptions::memory_limit). 0: the technique
+  // works on a few triangles at a time.
+  std::size_t pair_bytes = 0;
+};
+
+using BinRenderer = std::function<void(Bin&)>;
+
+// `render` is called for every bin of the frame, on any thread. vertex_setup runs once in each geometry pass, and the
+// raster stage reads every setup triangle in each pass (from memory: each bin reads those of its list).
+FrameResult render_bins(const FrameContext& context, const BinPlan& plan, const BinRenderer& render);
+
+// Runs a stage that reads whole frames and makes the pixels of one tile at a time, after all bins are finished. Adds
+// its counters to the end of result.stages.
+void run_on_tiles(const FrameContext& context, const std::string& stage, FrameResult& result,
+                  const std::function<void(const Tile&, const BinStage&)>& work);
+
+// Copies a tile's values, one per pixel, to their places in the frame's. Several tiles may do so at the same time.
+template <class Value>
+void copy_to_frame(const std::vector<Value>& tile_values, const Tile& tile, const Frame& frame,
+                   std::vector<Value>& frame_values) {
+  const Value* from = tile_values.data();
+  for (std::int32_t y = tile.y0; y < tile.y1; ++y, from += tile.width())
+    std::copy_n(from, tile.width(),
+                frame_values.data() + static_cast<std::size_t>(y) * frame.width + static_cast<std::size_t>(tile.x0));
+}
+
+// Copies a frame's pixels, row by row, into its picture.
+void copy_to_image(const std::vector<glm::vec4>& pixels, Image& image);
+
+}  // namespace beampipe

@@ -1,0 +1,24 @@
+// Runs work on a given number of threads. 0 stands for all that the machine has.
+#pragma once
+
+#include <tbb/global_control.h>
+#include <tbb/info.h>
+#include <tbb/task_arena.h>
+
+#include <cstddef>
+#include <utility>
+
+namespace beampipe {
+
+inline int thread_count(int threads) { return threads > 0 ? threads : tbb::info::default_concurrency(); }
+
+// Runs `work` with its parallel loops on so many threads, and returns what it returns.
+template <class Work>
+auto on_threads(int threads, Work&& work) {
+  const int allowed = thread_count(threads);
+  const tbb::global_control control(tbb::global_control::max_allowed_parallelism, static_cast<std::size_t>(allowed));
+  tbb::task_arena arena(allowed);
+  return arena.execute(std::forward<Work>(work));
+}
+
+}  // namespace beampipe

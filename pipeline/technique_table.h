@@ -1,0 +1,73 @@
+// The table of techniques: what each is called, what it is, where it comes from, and its options. Specs are parsed by
+// it; the errors, --help and the list in docs/techniques.md are written from it.
+#pragma once
+
+#include <functional>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include "pipeline/bins/threads.h"
+#include "pipeline/spec.h"
+#include "pipeline/technique.h"
+
+namespace beampipe {
+
+// "key=word" in a spec chooses this variant of the techniques of one name. `otherwise` is the word of all others, which
+// their specs may say.
+struct Variant {
+  std::string key, word, otherwise;
+};
+
+struct TechniqueKind {
+  std::string name;
+  Variant variant = {};     // empty: the technique of this name that is meant where no variant is chosen
+  std::string description;  // one line, no full stop
+  std::string source;       // "ours", or who published it and when
+  // Gives the options, bound to variables that have their defaults, to `read`, which may set them. Then makes the
+  // technique from these variables, without its spec.
+  std::function<Technique(const std::function<void(const SpecOptions&)>& read)> make;
+};
+
+// In the order of --help and the docs.
+const std::vector<TechniqueKind>& technique_kinds();
+
+// "beam", "beam:order=stream", "msaa:N".
+std::string title_of(const TechniqueKind& kind);
+
+// Two tables in Markdown, for docs/techniques.md: all techniques, and all of their options.
+std::string technique_tables();
+
+// "D32F x 8": the format of a surface that has `count` values per pixel.
+std::string times(const char* format, std::uint32_t count);
+
+// TechniqueKind::make for a technique whose options are a struct. `bind(options)` returns the options that a spec can
+// set, and `build(options)` makes the technique.
+template <class Options, class Bind, class Build>
+auto make_from(Options defaults, Bind bind, Build build) {
+  return [=](const std::function<void(const SpecOptions&)>& read) {
+    Options options = defaults;
+    read(bind(options));
+    return build(options);
+  };
+}
+
+// The same for a technique without options.
+template <class Build>
+auto make_plain(Build build) {
+  return [=](const std::function<void(const SpecOptions&)>& read) {
+    read({});
+    return build();
+  };
+}
+
+// Technique::render from a function of the frame and, if the technique has any, its options. It runs on as many threads
+// as RunOptions says.
+template <class Render, class... Options>
+auto bind_options(Render* render, const Options&... options) {
+  return [=](const Trace& trace, std::size_t frame, const RunOptions& run) {
+    return on_threads(run.threads, [&] { return render(trace, trace.frames.at(frame), options..., run); });
+  };
+}
+
+}  // namespace beampipe

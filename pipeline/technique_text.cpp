@@ -1,0 +1,126 @@
+// What --help and docs/techniques.md say of the techniques.
+#include <algorithm>
+#include <sstream>
+
+#include "pipeline/technique_table.h"
+
+namespace beampipe {
+namespace {
+
+using Form = SpecOption::Form;
+
+// The number of samples that stands for all where a table has room for one.
+constexpr const char* kExampleSamples = "8";
+
+constexpr std::size_t kHelpWidth = 100;  // characters of a line
+
+SpecOptions options_of(const TechniqueKind& kind) {
+  SpecOptions options;
+  kind.make([&](const SpecOptions& all) { options = all; });
+  for (SpecOption& option : options) option.set = nullptr;  // the variables are gone
+  return options;
+}
+
+bool has_samples(const SpecOptions& options) { return !options.empty() && options.front().form == Form::samples; }
+
+// Of the framebuffer when options[i] is `word`, and all others are as they are by default.
+std::uint32_t bytes_with(const TechniqueKind& kind, std::size_t i, const std::string& word) {
+  const auto set = [&](const SpecOptions& options) {
+    if (has_samples(options)) options.front().set(kExampleSamples);
+    options[i].set(word);
+  };
+  return kind.make(set).framebuffer_bytes_per_pixel();
+}
+
+// For each word of options[i], if they differ: "14, 18, 26, 42".
+std::string bytes_by_word(const TechniqueKind& kind, std::size_t i, const std::vector<std::string>& words) {
+  std::vector<std::uint32_t> bytes;
+  for (const std::string& word : words) bytes.push_back(bytes_with(kind, i, word));
+  if (std::all_of(bytes.begin(), bytes.end(), [&](std::uint32_t each) { return each == bytes.front(); })) return "";
+  std::string text;
+  for (const std::uint32_t each : bytes) text += (text.empty() ? "" : ", ") + std::to_string(each);
+  return text;
+}
+
+std::string bytes_of(const TechniqueKind& kind) {
+  if (has_samples(options_of(kind)))
+    return std::to_string(bytes_with(kind, 0, kExampleSamples)) + " for N = " + kExampleSamples;
+  return std::to_string(kind.make([](const SpecOptions&) {}).framebuffer_bytes_per_pixel());
+}
+
+std::string help_of(const SpecOption& option) {
+  if (option.form == Form::samples) return option.help + ": " + option.expected;
+  return option.help + (option.fallback.empty() ? "" : " (" + option.fallback + ")");
+}
+
+// Writes the words of `text` from this column on; lines that follow the first begin there too.
+void put_wrapped(std::ostream& out, const std::string& text, std::size_t column) {
+  std::istringstream words(text);
+  std::size_t at = column;
+  for (std::string word; words >> word; at += word.size()) {
+    if (at > column && at + 1 + word.size() > kHelpWidth) {
+      out << '\n' << std::string(column, ' ');
+      at = column;
+    }
+    if (at > column) out << ' ', ++at;
+    out << word;
+  }
+  out << '\n';
+}
+
+// A "|" would end the cell of a Markdown table.
+std::string as_code(const std::string& text) {
+  std::string code = "`";
+  for (const char c : text) {
+    if (c == '|') code += '\\';
+    code += c;
+  }
+  code += '`';
+  return code;
+}
+
+}  // namespace
+
+std::string title_of(const TechniqueKind& kind) {
+  const auto& [key, word, otherwise] = kind.variant;
+  if (!key.empty()) return kind.name + ':' + key + '=' + word;
+  return kind.name + (has_samples(options_of(kind)) ? ":N" : "");
+}
+
+std::string technique_help() {
+  std::ostringstream help;
+  help << "  NAME, or NAME:OPTION,OPTION,... with options in any order, but N first; defaults in parentheses\n";
+  for (const TechniqueKind& kind : technique_kinds()) {
+    help << "\n  " << title_of(kind) << "\n    ";
+    put_wrapped(help, kind.description + " (" + kind.source + ")", 4);
+    const SpecOptions options = options_of(kind);
+    std::size_t width = 0;
+    for (const SpecOption& option : options) width = std::max(width, option.usage.size());
+    for (const SpecOption& option : options) {
+      help << "      " << option.usage << std::string(width - option.usage.size() + 2, ' ');
+      put_wrapped(help, help_of(option), 6 + width + 2);
+    }
+  }
+  return help.str();
+}
+
+std::string technique_tables() {
+  std::ostringstream tables, options;
+  tables << "| spec | technique | source | bytes per pixel |\n|---|---|---|---|\n";
+  options << "| technique | option | what it is | default | bytes per pixel, by value |\n|---|---|---|---|---|\n";
+  for (const TechniqueKind& kind : technique_kinds()) {
+    const std::string title = as_code(title_of(kind));
+    tables << "| " << title << " | " << kind.description << " | " << kind.source << " | " << bytes_of(kind) << " |\n";
+    const SpecOptions all = options_of(kind);
+    for (std::size_t i = 0; i < all.size(); ++i) {
+      const SpecOption& option = all[i];
+      options << "| " << title << " | " << as_code(option.usage) << " | " << option.help
+              << (option.form == Form::samples ? ": " + option.expected : "") << " | "
+              << (option.fallback.empty() ? "" : as_code(option.fallback)) << " | "
+              << (option.words.empty() ? "" : bytes_by_word(kind, i, option.words)) << " |\n";
+    }
+  }
+  return tables.str() + '\n' + options.str();
+}
+
+}  // namespace beampipe

@@ -1,0 +1,72 @@
+#include "pipeline/units/accumulate_unit.h"
+
+namespace beampipe {
+
+AccumulateUnit::AccumulateUnit(Bin& bin, int samples, AccumulatorFormat format, DoubleCounting double_counting)
+    : stage(bin.stage("accumulate")),
+      bin_(bin),
+      accumulator_(bin.tile, samples, format, double_counting),
+      color_(bin.memory(), bin.z_order(), 1, accumulator_bytes(format)) {
+  accumulator_.limit = 0;
+}
+
+void AccumulateUnit::start_round(const Sampling& sampling, const SampleTile& depth) {
+  accumulator_.limit += static_cast<float>(sampling.pattern.count) * accumulator_.sample_share;
+  accumulator_.taken.assign(bin_.tile.pixels(), 0);
+  if (accumulator_.double_counting == DoubleCounting::stencil)
+    stencil_.emplace(bin_.memory(), bin_.z_order(), static_cast<std::uint32_t>(sampling.pattern.count), 1u);
+  if (!blends_background()) return;
+  accumulate_background(depth, bin_.background(), stage.timed(), accumulator_);
+  if (bin_.models_memory()) blend_background(depth);
+}
+
+void AccumulateUnit::test_stencil(std::vector<SampleFragment>& fragments) {
+  if (!stencil_) return;
+  access_stencil(fragments, false);
+  stencil_test(bin_.tile, bin_.stage("stencil_test").timed(), accumulator_, fragments);
+  access_stencil(fragments, true);
+}
+
+void AccumulateUnit::operator()(std::vector<SampleFragment>& fragments) {
+  accumulate(fragments, bin_.context.colors, bin_.tile, stage.timed(), accumulator_);
+  for (const SampleFragment& fragment : fragments)
+    blend(fragment.triangle, static_cast<std::uint32_t>(bin_.tile.index(fragment.x, fragment.y)));
+}
+
+void AccumulateUnit::finish_round() {
+  if (stencil_) {
+    if (bin_.models_memory()) stencil_->add_bytes(bin_.pixel_counter("bytes"));
+    stencil_->flush(bin_.stage("stencil_test").counters);
+  }
+  color_.flush(stage.counters);
+}
+
+std::vector<glm::vec4> AccumulateUnit::resolve_accumulator() {
+  const BinStage resolving = bin_.stage("resolve");
+  if (bin_.models_memory()) color_.add_bytes(bin_.pixel_counter("bytes"));
+  color_.read_all(resolving.counters);
+  return resolve(accumulator_, bin_.background(), resolving.timed());
+}
+
+void AccumulateUnit::blend(std::uint32_t triangle, std::uint32_t pixel) {
+  color_.read(triangle, pixel, stage.counters);
+  color_.write(triangle, pixel, stage.counters);
+}
+
+// Wherever a sample is still clear.
+void AccumulateUnit::blend_background(const SampleTile& depth) {
+  const auto samples = static_cast<std::ptrdiff_t>(depth.samples_per_pixel);
+  for (std::uint32_t pixel = 0; pixel < bin_.tile.pixels(); ++pixel) {
+    const auto first = depth.depth.begin() + pixel * samples;
+    if (std::find(first, first + samples, kFarDepth) != first + samples) blend(kNoTriangle, pixel);
+  }
+}
+
+void AccumulateUnit::access_stencil(const std::vector<SampleFragment>& fragments, bool write) {
+  StageCounters& counters = bin_.stage("stencil_test").counters;
+  for (const SampleFragment& fragment : fragments)
+    stencil_->access(fragment.triangle, static_cast<std::uint32_t>(bin_.tile.index(fragment.x, fragment.y)),
+                     write ? 0 : fragment.mask, write ? fragment.mask : 0, counters);
+}
+
+}  // namespace beampipe

@@ -1,0 +1,43 @@
+// Accumulative antialiasing in a bin: stencil test and colour accumulator, round after round.
+#pragma once
+
+#include <optional>
+#include <vector>
+
+#include "pipeline/bins/bin.h"
+#include "stages/samples/accumulate.h"
+
+namespace beampipe {
+
+class AccumulateUnit {
+ public:
+  AccumulateUnit(Bin& bin, int samples, AccumulatorFormat format, DoubleCounting double_counting);
+
+  // A round accumulates at the positions of `sampling`, whose depths a depth-only pass has found.
+  void start_round(const Sampling& sampling, const SampleTile& depth);
+  void operator()(std::vector<SampleFragment>& fragments);  // after the stencil test, when there is one
+  void finish_round();
+
+  // Reads the stencil values of the fragments' samples, and leaves of each fragment the samples that no earlier one has
+  // taken. Does nothing without a stencil.
+  void test_stencil(std::vector<SampleFragment>& fragments);
+
+  // Does the background take part in accumulation? It then reads every depth once more.
+  bool blends_background() const { return accumulator_.double_counting == DoubleCounting::saturate; }
+
+  std::vector<glm::vec4> resolve_accumulator();
+
+  const BinStage stage;
+
+ private:
+  void blend(std::uint32_t triangle, std::uint32_t pixel);  // adding to an accumulator reads and writes it
+  void blend_background(const SampleTile& depth);
+  void access_stencil(const std::vector<SampleFragment>& fragments, bool write);
+
+  Bin& bin_;
+  Accumulator accumulator_;
+  TileSurface color_;
+  std::optional<TileSurface> stencil_;  // of the round: a byte per sample
+};
+
+}  // namespace beampipe

@@ -1,0 +1,80 @@
+// Composition in sorted order: windows of pairs from the A-buffer, and the aggregates that their fragments go into.
+#pragma once
+
+#include <vector>
+
+#include "pipeline/bins/bin.h"
+#include "pipeline/technique.h"
+#include "stages/beam/compose_beam.h"
+#include "stages/beam/windows.h"
+#include "stages/picture/resolve.h"
+
+namespace beampipe {
+
+class WindowsUnit {
+ public:
+  // `sorted`: the pairs that `lists` sorts by nearest depth. Both must outlive the unit.
+  WindowsUnit(Bin& bin, const std::vector<PixelTriangle>& sorted, const ABuffer& lists)
+      : stage(bin.stage("windows")), bin_(bin), windows_(sorted, lists, kWaitingPairBytes) {}
+
+  // The next window of every pixel that is open; false when there is none.
+  template <class IsOpen>
+  bool next(IsOpen&& is_open) {
+    if (!windows_.next(is_open, stage.timed(), pairs, whole)) return false;
+    bin_.holds("window_pairs", (pairs.size() + whole.size()) * kPairWithDepthBytes);
+    return true;
+  }
+
+  // Records the counters of each pixel. Returns how many records of each were looked at.
+  const std::vector<float>& finish() {
+    bin_.pixel_counter("largest_window") = windows_.largest;
+    bin_.pixel_counter("merges") = windows_.taken;
+    return windows_.looked_at;
+  }
+
+  const BinStage stage;
+  std::vector<PixelTriangle> pairs;  // of the windows, pixel by pixel, each in primitive order
+  std::vector<PixelTriangle> whole;  // windows of one pair that is all that can be seen of its pixel
+
+ private:
+  Bin& bin_;
+  Windows windows_;
+};
+
+// Charges aggregates that were composed on chip: `compose` writes those that are `written`, `resolve` reads them all.
+// Both are one per pixel; `full`: nothing shows through the pixel.
+void charge_aggregates(Bin& bin, const std::vector<Surface>& framebuffer, const std::vector<bool>& written,
+                       const std::vector<bool>& full);
+
+template <std::size_t Words, class Channel>
+class ComposeBeamUnit {
+ public:
+  ComposeBeamUnit(Bin& bin, const PositionSet& positions)
+      : bin_(bin), stage_(bin.stage("compose")), positions_(positions), pixels_(bin.tile.pixels()) {}
+
+  bool is_open(std::size_t pixel) const { return !is_closed(pixels_[pixel]); }
+
+  // `fragments`: at most one window of each pixel. `whole`: pairs that are all that can be seen of their pixels.
+  void operator()(const std::vector<Fragment>& fragments, const std::vector<PixelTriangle>& whole) {
+    compose_window(fragments, positions_, stage_.timed(), pixels_, areas_);
+    compose_whole(whole, bin_.tile, bin_.context.colors, stage_.timed(), pixels_);
+  }
+
+  // What each of the last fragments added to its pixel's area.
+  const std::vector<float>& areas() const { return areas_; }
+
+  // The picture. `framebuffer`: the surfaces that hold an aggregate.
+  std::vector<glm::vec4> resolve_aggregates(const std::vector<Surface>& framebuffer) {
+    charge_aggregates(bin_, framebuffer, covered_pixels(pixels_), closed_pixels(pixels_));
+    return resolve(composed_colors(pixels_), bin_.background(), sizeof pixels_[0], bin_.stage("resolve").timed());
+  }
+
+ private:
+  Bin& bin_;
+  BinStage stage_;
+  const PositionSet& positions_;
+  std::vector<StoredAggregate<Words, Channel>> pixels_;
+  std::vector<float> areas_;
+};
+
+}  // namespace beampipe

@@ -1,0 +1,71 @@
+// The depth test of a bin with the multisampled surface that it reads and writes: depth, and with it colour or
+// visibility ids.
+#pragma once
+
+#include <vector>
+
+#include "pipeline/bins/bin.h"
+#include "pipeline/memory/sample_memory.h"
+#include "stages/samples/test_depth.h"
+
+namespace beampipe {
+
+class DepthTestUnit {
+ public:
+  // `sampling` must outlive it. `color_bytes` of a sample beside its depth; 0: there is depth alone.
+  DepthTestUnit(Bin& bin, const Sampling& sampling, std::uint32_t color_bytes)
+      : DepthTestUnit(bin, sampling, color_bytes, color_bytes, std::equal_to<std::uint32_t>()) {}
+
+  // For a surface with colours that the first pass does not write: a depth pre-pass.
+  enum class FirstPass { writes_color, writes_depth_alone };
+  DepthTestUnit(Bin& bin, const Sampling& sampling, std::uint32_t color_bytes, FirstPass first,
+                SampleMemory::SameValue same_color)
+      : DepthTestUnit(bin, sampling, first == FirstPass::writes_color ? color_bytes : 0, color_bytes,
+                      std::move(same_color)) {}
+
+  // Tests and writes what passes. Counts each pixel's fragments.
+  void test(const std::vector<SampleFragment>& fragments);
+
+  // Leaves of each fragment the samples that have the stored depth, and drops fragments without any.
+  void test_equal(std::vector<SampleFragment>& fragments);
+  const std::vector<SampleAccess>& accesses() const { return accesses_; }  // of the last test
+
+  void end_pass() { memory_.flush(stage_.counters); }
+
+  // From here on the surface's colours count: what is written and resolved.
+  void add_color(std::uint32_t color_bytes) { surface_.color_bytes = color_bytes; }
+
+  // Passes of other stages that read every sample.
+  void read_depths(const BinStage& by) { memory_.read_depth(by.counters); }
+  void read_colors(const BinStage& by) { memory_.read_color(by.counters); }
+
+  // The mean colour of each pixel's samples. `colors`: of the triangles.
+  std::vector<glm::vec4> resolve_samples(const std::vector<glm::vec3>& colors, const BinStage& resolving) const;
+
+  // Adds the bytes that tests and writes have moved to the bin's counter. Once, at the end.
+  void count_bytes();
+
+  const SampleTile& surface() const { return surface_; }
+
+ private:
+  DepthTestUnit(Bin& bin, const Sampling& sampling, std::uint32_t first_color_bytes, std::uint32_t color_bytes,
+                SampleMemory::SameValue same_color);
+
+  Bin& bin_;
+  BinStage stage_;
+  const Sampling& sampling_;
+  SampleTile surface_;
+  SampleMemory memory_;
+  std::vector<float>& fragments_;  // per pixel
+  std::vector<SampleAccess> accesses_;
+};
+
+// Adds one to a pixel's count for each triangle that has a fragment there, in however many cells of the pixel. The
+// fragments of one triangle follow each other.
+void count_by_pixel(const std::vector<SampleFragment>& fragments, const Tile& tile, const CellGrid& grid,
+                    std::vector<float>& counts);
+
+// The pixels of the tile, row by row, at which a surface of one sample per pixel shows a triangle.
+std::vector<std::uint32_t> shown_pixels(const SampleTile& surface, const Tile& tile);
+
+}  // namespace beampipe

@@ -1,0 +1,108 @@
+// From pairs to shaded fragments: the fragment stage of the beam, and shading.
+#pragma once
+
+#include <string>
+#include <utility>
+#include <vector>
+
+#include "pipeline/bins/bin.h"
+#include "stages/beam/beam_fragment.h"
+#include "stages/picture/shade.h"
+#include "stages/samples/shading_point.h"
+
+namespace beampipe {
+
+class BeamFragmentUnit {
+ public:
+  // `options` must outlive it.
+  BeamFragmentUnit(Bin& bin, const BeamFragmentOptions& options)
+      : bin_(bin), stage_(bin.stage("beam_fragment")), options_(options) {}
+
+  // The fragments of pairs that follow each other in primitive order; `buffer` is the name of the on-chip buffer that
+  // holds them. They are valid until the next call.
+  std::vector<Fragment>& operator()(const std::vector<PixelTriangle>& pairs, const std::string& buffer) {
+    fragments_.clear();
+    beam_fragment(bin_.triangles(), pairs, bin_.tile, options_, stage_.timed(), fragments_);
+    bin_.holds(buffer, fragments_.size() * options_.fragment_bytes);
+    return fragments_;
+  }
+
+  // The same for pairs in any order: their setup triangles are fetched by number.
+  std::vector<Fragment>& fetched(const std::vector<PixelTriangle>& pairs, const std::string& buffer) {
+    (*this)(pairs, buffer);
+    bin_.triangle_fetches().setup(pairs, stage_.counters);
+    return fragments_;
+  }
+
+ private:
+  Bin& bin_;
+  BinStage stage_;
+  const BeamFragmentOptions& options_;
+  std::vector<Fragment> fragments_;
+};
+
+// Adds one to a pixel's count for each of its fragments that covers no mask position.
+inline void count_specks(const std::vector<Fragment>& fragments, std::vector<float>& specks) {
+  for (const Fragment& fragment : fragments) specks[fragment.pixel] += fragment.tiny;
+}
+
+class ShadeUnit {
+ public:
+  explicit ShadeUnit(Bin& bin) : bin_(bin), stage_(bin.stage("shade")), in_order_(bin.memory()) {}
+
+  // Forward shading: fragments in primitive order, in 2x2 quads.
+  void operator()(std::vector<Fragment>& fragments) {
+    shade(bin_.context.colors, fragments, stage_.timed(), &attributes());
+    in_order_.read(fragments, stage_.counters);
+  }
+  // Fragments that are known to be visible, in any order: one by one, attributes fetched by triangle number.
+  void visible(std::vector<Fragment>& fragments) {
+    shade_visible(bin_.context.colors, fragments, stage_.timed(), &attributes());
+    bin_.triangle_fetches().attributes(fragments, stage_.counters);
+  }
+  void visible(const std::vector<PixelTriangle>& whole) {
+    shade_visible(whole, stage_.timed(), &attributes());
+    bin_.triangle_fetches().attributes(whole, stage_.counters);
+  }
+
+  void finish_fetches() { bin_.triangle_fetches().flush(stage_.counters); }
+
+ private:
+  const std::vector<FlatAttributes>& attributes() const { return bin_.triangles().attributes; }
+
+  Bin& bin_;
+  BinStage stage_;
+  AttributesInOrder in_order_;
+};
+
+// Forward shading of sample fragments in primitive order, in 2x2 quads.
+class SampleShadeUnit {
+ public:
+  explicit SampleShadeUnit(Bin& bin) : bin_(bin), stage_(bin.stage("shade")), in_order_(bin.memory()) {}
+
+  // `sampling` must outlive it. Shading at centroids counts, per pixel, the fragments that are not shaded at the
+  // centre.
+  SampleShadeUnit(Bin& bin, const Sampling& sampling, ShadeAt at) : SampleShadeUnit(bin) {
+    if (at != ShadeAt::centroid) return;
+    sampling_ = &sampling;
+    centroids_ = &bin.pixel_counter("centroids");
+  }
+
+  void operator()(const std::vector<SampleFragment>& fragments) {
+    shade(fragments, stage_.timed(), &bin_.triangles().attributes);
+    in_order_.read(fragments, stage_.counters);
+    if (centroids_) count_centroids(bin_.triangles(), fragments, bin_.tile, *sampling_, stage_.timed(), *centroids_);
+  }
+
+  // Attributes are read again from the start.
+  void start_pass() { in_order_ = AttributesInOrder(bin_.memory()); }
+
+ private:
+  Bin& bin_;
+  BinStage stage_;
+  AttributesInOrder in_order_;
+  const Sampling* sampling_ = nullptr;
+  std::vector<float>* centroids_ = nullptr;
+};
+
+}  // namespace beampipe

@@ -1,0 +1,55 @@
+#include "pipeline/units/gbuffer_unit.h"
+
+namespace beampipe {
+namespace {
+
+// Writes each of the pixels once, and ends the pass.
+void write_pixels(const std::vector<std::uint32_t>& pixels, TileSurface& to, StageCounters& counters) {
+  for (const std::uint32_t pixel : pixels) to.write(0, pixel, counters);
+  to.flush(counters);
+}
+
+}  // namespace
+
+GBufferUnit::GBufferUnit(Bin& bin)
+    : bin_(bin),
+      shading_(bin.stage("shade")),
+      lighting_(bin.stage("light")),
+      attributes_(bin.memory()),
+      gbuffer_(bin.memory(), bin.z_order(), 1, kGBufferBytes) {}
+
+void GBufferUnit::write_fragments(const std::vector<SampleFragment>& fragments,
+                                  const std::vector<SampleAccess>& accesses) {
+  write_gbuffer(fragments, shading_.timed());
+  attributes_.read(fragments, shading_.counters);
+  for (const SampleAccess& access : accesses)
+    gbuffer_.access(access.triangle, access.cell, 0, access.passed, shading_.counters);
+}
+
+void GBufferUnit::write_visible(DepthTestUnit& visibility) {
+  const std::vector<std::uint32_t> shown = shown_pixels(visibility.surface(), bin_.tile);
+  write_gbuffer(shown.size(), shading_.timed());
+  visibility.read_colors(shading_);
+  for (const std::uint32_t pixel : shown)
+    bin_.triangle_fetches().attributes(visibility.surface().triangle[pixel], shading_.counters);
+  bin_.triangle_fetches().flush(shading_.counters);
+  write_pixels(shown, gbuffer_, shading_.counters);
+}
+
+std::vector<glm::vec4> GBufferUnit::light_and_resolve(DepthTestUnit& surface) {
+  const BinStage resolving = bin_.stage("resolve");
+  const std::vector<std::uint32_t> shown = shown_pixels(surface.surface(), bin_.tile);
+  light(shown.size(), lighting_.timed());
+  TileSurface color(bin_.memory(), bin_.z_order(), 1, kSampleColorBytes);
+  gbuffer_.read_all(lighting_.counters);
+  write_pixels(shown, color, lighting_.counters);
+  color.read_all(resolving.counters);
+  if (bin_.models_memory()) {
+    gbuffer_.add_bytes(bin_.pixel_counter("bytes"));
+    color.add_bytes(bin_.pixel_counter("bytes"));
+  }
+  surface.add_color(kSampleColorBytes);
+  return surface.resolve_samples(bin_.context.colors, resolving);
+}
+
+}  // namespace beampipe

@@ -1,0 +1,27 @@
+#include "pipeline/units/raster_units.h"
+
+namespace beampipe {
+
+ConservativeRasterUnit::ConservativeRasterUnit(Bin& bin, std::string buffer, PairDepths depths, Hidden hidden)
+    : bin_(bin), stage_(bin.stage("conservative_raster")), buffer_(std::move(buffer)), depths_(depths) {
+  if (hidden == Hidden::kept) return;
+  closed_.emplace(bin.tile);
+  bin_.holds("closed_depth", closed_->bytes());
+}
+
+std::vector<PixelTriangle>& ConservativeRasterUnit::operator()(const TriangleList& triangles, const Tile& box) {
+  pairs_.clear();
+  const std::size_t most = conservative_raster(bin_.triangles(), triangles, box, stage_.timed(), pairs_,
+                                               closed_ ? &*closed_ : nullptr, depths_);
+  bin_.holds(buffer_, most * (depths_ == PairDepths::bounds ? kPairWithDepthBytes : kPixelTriangleBytes));
+  return pairs_;
+}
+
+void ConservativeRasterUnit::start_next_pass() {
+  stage_.streams(closed_->bytes());
+  stage_.counters.items_in += bin_.list.size();
+  stage_.counters.bytes_read += bin_.list.size() * sizeof(SetupTriangle);
+  read_bin(bin_.memory(), bin_.list, stage_.counters);
+}
+
+}  // namespace beampipe

@@ -1,0 +1,43 @@
+// What techniques that accumulate over frames share: this frame by itself, the history, and how both meet.
+#pragma once
+
+#include <vector>
+
+#include "pipeline/bins/bin.h"
+#include "pipeline/units/depth_test_unit.h"
+#include "stages/temporal/motion.h"
+#include "stages/temporal/temporal.h"
+
+namespace beampipe {
+
+class TemporalFrame {
+ public:
+  explicit TemporalFrame(const FrameContext& context);
+
+  // What earlier frames left.
+  const History& history() const { return history_; }
+
+  // Clip space of this frame to that of the last one, by draw.
+  const std::vector<glm::dmat4>& to_last() const { return to_last_; }
+
+  // Stage `motion` of a bin: how the nearest surface of each pixel moved.
+  void find_motion(Bin& bin, DepthTestUnit& visibility);
+
+  // Stage `temporal` of a tile, on whole frames.
+  void accumulate(const Tile& tile, const TemporalOptions& options, const BinStage& stage);
+
+  // Hands the picture to the result, and leaves the history for the next frame.
+  void finish(FrameResult& result);
+
+  CurrentFrame current;
+
+ private:
+  const FrameContext& context_;
+  History first_;  // of a frame that has no history
+  History& history_;
+  Poses poses_;
+  std::vector<glm::dmat4> to_last_;
+  std::vector<glm::vec4> picture_;
+};
+
+}  // namespace beampipe

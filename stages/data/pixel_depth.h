@@ -1,0 +1,67 @@
+// The depth of a triangle in one pixel or cell: its plane, and bounds on it. For numbers and for numbers that count
+// (stages/cost/counting.h).
+#pragma once
+
+#include <cstdint>
+
+#include "simd/depth_range.h"
+#include "simd/merge.h"
+#include "simd/sample_pattern.h"
+#include "simd/scalar.h"
+#include "stages/data/setup_triangle.h"
+
+namespace beampipe {
+
+// The triangle's depth plane in the pixel (x, y) of the frame: the depth at the pixel's centre and slopes per pixel.
+inline DepthPlane<float> pixel_plane(const SetupTriangle& triangle, std::int32_t x, std::int32_t y) {
+  return {static_cast<float>(triangle.depth.at(x + 0.5, y + 0.5)), static_cast<float>(triangle.depth.dzdx),
+          static_cast<float>(triangle.depth.dzdy)};
+}
+
+// The same for the samples of a cell: the depth at the cell's upper left corner (x, y), in pixels, and slopes per
+// 1/256 px.
+template <class Float>
+struct CellPlane {
+  Float z, dzdx, dzdy;
+};
+
+template <class Real>
+auto cell_plane(const ScreenDepthOf<Real>& depth, Real x, Real y) {
+  const Real unit(1.0 / kSubpixelUnits);
+  using Float = decltype(to_float(unit));
+  return CellPlane<Float>{to_float(depth.at(x, y)), to_float(depth.dzdx * unit), to_float(depth.dzdy * unit)};
+}
+
+template <class Float>
+struct DepthBounds {
+  Float nearest, farthest;
+};
+
+// Bounds of a triangle anywhere: the depths of its vertices.
+template <class Float>
+DepthBounds<Float> vertex_bounds(const Float z[3]) {
+  return {lesser(lesser(z[0], z[1]), z[2]), greater(greater(z[0], z[1]), z[2])};
+}
+
+// Bounds within a pixel: the range of the plane over the whole pixel, limited to the depths of the vertices.
+template <class Float>
+DepthBounds<Float> pair_bounds(const DepthPlane<Float>& plane, const DepthBounds<Float>& vertices) {
+  const Float reach = Float(0.5f) * (magnitude(plane.dzdu) + magnitude(plane.dzdv));
+  return {lesser(greater(plane.z - reach, vertices.nearest), vertices.farthest),
+          greater(lesser(plane.z + reach, vertices.farthest), vertices.nearest)};
+}
+
+inline double to_double(float x) { return x; }
+
+// Bounds of the depths that the depth test computes for the triangle's samples. The test works in single precision from
+// a corner of the cell, at most one pixel away, so its results may lie beyond the vertices by a rounding error. The
+// margin is eight roundings of the largest sum that can occur.
+template <class Float, class Real>
+DepthBounds<Float> sample_bounds(const DepthBounds<Float>& vertices, Real dzdx, Real dzdy) {
+  const Real rounding(0x1p-21);
+  const Real largest = greater(magnitude(to_double(vertices.nearest)), magnitude(to_double(vertices.farthest)));
+  const Float margin = to_float(rounding * (magnitude(dzdx) + magnitude(dzdy) + largest));
+  return {vertices.nearest - margin, vertices.farthest + margin};
+}
+
+}  // namespace beampipe

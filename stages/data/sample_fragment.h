@@ -1,0 +1,50 @@
+// A sample fragment: a triangle's samples in one cell. Sample fragments go from sample_raster to the depth test.
+#pragma once
+
+#include <bit>
+#include <cstdint>
+
+#include "simd/sample_pattern.h"
+#include "stages/data/pair.h"
+#include "stages/data/tile.h"
+
+namespace beampipe {
+
+// Cells per pixel in x and y: powers of two up to 16. A cell is a pixel, or a part of one if pixels are super-resolved.
+struct CellGrid {
+  std::int32_t columns = 1, rows = 1;
+
+  std::int32_t cell_width() const { return kSubpixelUnits / columns; }  // 1/256 px
+  std::int32_t cell_height() const { return kSubpixelUnits / rows; }
+  std::int32_t cells_per_pixel() const { return columns * rows; }
+  // The pixel that a cell lies in, and the cell's number within that pixel, row by row.
+  std::int32_t pixel_x(std::int32_t x) const { return x >> std::countr_zero(static_cast<std::uint32_t>(columns)); }
+  std::int32_t pixel_y(std::int32_t y) const { return y >> std::countr_zero(static_cast<std::uint32_t>(rows)); }
+  std::int32_t in_pixel(std::int32_t x, std::int32_t y) const {
+    return (y & (rows - 1)) * columns + (x & (columns - 1));
+  }
+  bool operator==(const CellGrid&) const = default;
+};
+
+// How a pixel is sampled: a grid of cells, each with the pattern's positions (already scaled to the cell).
+struct Sampling {
+  CellGrid grid;
+  SamplePattern pattern;
+};
+
+// The tile measured in cells instead of pixels.
+inline Tile cells_of(const Tile& tile, const CellGrid& grid) {
+  return {tile.x0 * grid.columns, tile.y0 * grid.rows, tile.x1 * grid.columns, tile.y1 * grid.rows};
+}
+
+struct SampleFragment {
+  std::uint32_t triangle;  // index into SetupTriangles
+  std::uint32_t quad;      // the same number for all cells of one triangle in one 2x2 quad
+  std::int32_t x, y;       // cell, frame coordinates
+  std::uint32_t mask;      // bit s: the triangle covers sample s of the pattern; not 0
+};
+
+// Size in the modelled machine: a pair with a 16-bit coverage mask.
+inline constexpr std::uint64_t kSampleFragmentBytes = kPixelTriangleBytes + 2;
+
+}  // namespace beampipe

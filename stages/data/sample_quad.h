@@ -1,0 +1,33 @@
+// The shading samples of decoupled visibility multisampling: four per 2x2 quad of pixels.
+#pragma once
+
+#include <cstdint>
+#include <vector>
+
+#include "simd/match.h"
+#include "stages/data/sample_tile.h"
+
+namespace beampipe {
+
+// Pixel p = 0..3 of a quad is its pixel (p % 2, p / 2), and shading sample p is stored there. Bit 8 p + s of a mask is
+// sample s of pixel p. If the frame's size is odd, a quad's pixels outside the frame have no bits in any mask.
+struct SampleQuad {
+  std::uint32_t triangle[4];  // the triangle that is shaded; kNoTriangle: the background
+  std::uint32_t mask[4];      // the visibility samples that take this colour
+  std::uint8_t location[4];   // the sample where it is shaded: a bit number
+};
+
+// Size of a shading sample in the modelled machine: visibility id, mask and location.
+inline constexpr std::uint64_t kShadingSampleBytes = 4 + 4 + 1;
+
+// All quads of a frame, row by row.
+struct QuadFrame {
+  std::int32_t columns = 0, rows = 0;
+  std::vector<SampleQuad> quads;
+
+  QuadFrame(std::uint32_t width, std::uint32_t height);  // pixels
+  // `of_tile`: the tile's quads, row by row.
+  void insert(const Tile& tile, const std::vector<SampleQuad>& of_tile);
+};
+
+}  // namespace beampipe

@@ -1,0 +1,38 @@
+// The multisampled surface of a tile: a depth and a triangle for each sample.
+#pragma once
+
+#include <cstdint>
+#include <vector>
+
+#include "stages/data/sample_fragment.h"
+
+namespace beampipe {
+
+inline constexpr std::uint32_t kNoTriangle = ~0u;  // the background
+inline constexpr float kFarDepth = 1.0f;           // beyond every depth: the cleared surface
+
+// Sizes in the modelled machine, per sample.
+inline constexpr std::uint32_t kSampleDepthBytes = 4;  // 32-bit depth
+inline constexpr std::uint32_t kSampleColorBytes = 6;  // fp16 RGB
+
+// Samples are ordered by pixel (row by row), by cell within the pixel and by sample within the cell. Instead of its
+// colour, a sample keeps the index of its triangle, which has one colour. In the modelled machine a sample has
+// kSampleDepthBytes of depth and `color_bytes` of colour or of a visibility id: 0 while only depth is written.
+struct SampleTile {
+  std::vector<float> depth;
+  std::vector<std::uint32_t> triangle;
+  std::size_t samples_per_pixel = 0;
+  std::uint32_t color_bytes = kSampleColorBytes;
+
+  SampleTile(const Tile& tile, const Sampling& sampling, std::uint32_t color_bytes_per_sample = kSampleColorBytes);
+};
+
+// What a fragment did to the samples of its cell; the memory model replays it. Bit s of a mask is sample s.
+struct SampleAccess {
+  std::uint32_t cell;      // within the tile: pixel (row by row) x cells per pixel + cell within the pixel
+  std::uint32_t triangle;  // index into SetupTriangles
+  std::uint32_t tested;    // samples whose depth was read
+  std::uint32_t passed;    // samples that were written
+};
+
+}  // namespace beampipe

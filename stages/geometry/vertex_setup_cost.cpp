@@ -1,0 +1,105 @@
+#include "stages/geometry/vertex_setup_cost.h"
+
+#include <array>
+
+#include "simd/sample_pattern.h"
+#include "stages/cost/counting.h"
+#include "stages/geometry/clip.h"
+#include "stages/geometry/setup_formulas.h"
+
+namespace beampipe {
+namespace {
+
+using CountedReal = Counted<double>;
+
+OperationCounts transform_cost() {
+  return count_operations([](OperationCounts& counts) {
+    std::array<CountedReal, 16> matrix;
+    matrix.fill(CountedReal(1.0, counts));
+    const CountedReal x(1.0, counts);
+    static_cast<void>(in_view(transform_vertex(matrix, x, x, x)));
+  });
+}
+
+OperationCounts project_cost() {
+  return count_operations([](OperationCounts& counts) {
+    const CountedReal x(1.0, counts);
+    const ScreenVertex<CountedReal> screen = project<CountedReal>({x, x, x, x}, x, x);
+    converted(to_grid(screen.x)), converted(to_grid(screen.y));
+    for (int axis = 0; axis < 2; ++axis) converted(x) * CountedReal(1.0 / kSubpixelUnits);  // snapped, back to pixels
+  });
+}
+
+OperationCounts outside_cost() {
+  return count_operations([](OperationCounts& counts) {
+    const CountedReal x(1.0, counts);
+    outside_view<CountedReal>({{{x, x, x, x}, {x, x, x, x}, {x, x, x, x}}});
+  });
+}
+
+OperationCounts plane_test_cost() {
+  return count_operations([](OperationCounts& counts) {
+    const CountedReal x(1.0, counts);
+    static_cast<void>(plane_distance<CountedReal>({x, x, x, x}, {x, x, x, x}) < x);
+  });
+}
+
+OperationCounts crossing_cost() {
+  return count_operations([](OperationCounts& counts) {
+    const CountedReal x(1.0, counts);
+    crossing<CountedReal>({x, x, x, x}, {x, x, x, x}, x, CountedReal(0.0, counts));
+  });
+}
+
+// The area, and which way the triangle turns.
+OperationCounts area_cost() {
+  return count_operations([](OperationCounts& counts) {
+    const Counted<std::int64_t> x(1, counts);
+    static_cast<void>(doubled_area<Counted<std::int64_t>>({x, x, x}, {x, x, x}) < x);
+  });
+}
+
+OperationCounts normal_cost() {
+  return count_operations([](OperationCounts& counts) {
+    const CountedReal x(1.0, counts);
+    std::array<CountedReal, 16> matrix;
+    matrix.fill(x);
+    const auto world = [&] { return world_point<CountedReal>(matrix, {x, x, x}); };
+    CountedReal length;
+    const Vector<CountedReal> normal = face_normal(world(), world(), world(), length);
+    static_cast<void>(length > CountedReal(0.0));
+    const CountedReal scale = x / x;
+    for (const CountedReal& component : {normal.x, normal.y, normal.z}) converted(component * scale);
+  });
+}
+
+// The test whether all three corners of a clipped polygon's triangle are in front of the eye.
+OperationCounts fan_cost() { return {.add = 3}; }
+
+// Conversion of the corners' depths to the stored format.
+OperationCounts depths_cost() { return {.convert = 3}; }
+
+OperationCounts slopes_cost() {
+  return count_operations([](OperationCounts& counts) {
+    const CountedReal zero(0.0, counts), one(1.0, counts);
+    counts.add += 3;  // comparisons to sort the corners
+    depth_slopes<CountedReal>({zero, zero, zero}, {one, zero, one}, {zero, one, one});
+  });
+}
+
+}  // namespace
+
+void charge(const SetupWork& work, StageCounters& counters) {
+  counters.ops += transform_cost() * work.transformed;
+  counters.ops += outside_cost() * work.outside_tests;
+  counters.ops += plane_test_cost() * work.plane_tests;
+  counters.ops += crossing_cost() * work.crossings;
+  counters.ops += fan_cost() * work.fans;
+  counters.ops += project_cost() * work.projected;
+  counters.ops += area_cost() * work.areas;
+  counters.ops += slopes_cost() * work.triangles;
+  counters.ops += depths_cost() * work.triangles;
+  counters.ops += normal_cost() * work.normals;
+}
+
+}  // namespace beampipe

@@ -1,0 +1,25 @@
+// What vertex_setup is charged.
+#pragma once
+
+#include "stages/cost/counters.h"
+
+namespace beampipe {
+
+// How often each formula ran.
+struct SetupWork {
+  std::uint64_t transformed = 0, outside_tests = 0, plane_tests = 0, crossings = 0, fans = 0, projected = 0, areas = 0;
+  std::uint64_t normals = 0;
+  std::uint64_t triangles = 0;  // setup triangles that were made
+
+  SetupWork& operator+=(const SetupWork& other) {
+    transformed += other.transformed, outside_tests += other.outside_tests, plane_tests += other.plane_tests;
+    crossings += other.crossings, fans += other.fans, projected += other.projected, areas += other.areas;
+    normals += other.normals, triangles += other.triangles;
+    return *this;
+  }
+};
+
+// Charges the operations.
+void charge(const SetupWork& work, StageCounters& counters);
+
+}  // namespace beampipe

@@ -1,0 +1,79 @@
+// The formulas of the stages that work on samples, for numbers and for numbers that count (stages/cost/counting.h).
+#pragma once
+
+#include "simd/scalar.h"
+#include "stages/data/fragment_geometry.h"
+
+namespace beampipe {
+
+// ---- accumulate; colours and sums are R, G, B, A ----
+
+// Adds color x share to the sum. With `saturate`, the share is at most what alpha lacks to `limit`.
+template <class Real>
+void add_weighted(const Real color[4], Real share, bool saturate, Real limit, Real sum[4]) {
+  if (saturate) share = greater(lesser(share, limit - sum[3]), Real(0.0f));
+  for (int c = 0; c < 4; ++c) sum[c] = sum[c] + color[c] * share;
+}
+
+// Converts a sum to the accumulator's format or from it.
+template <class Real>
+void convert_sum(Real sum[4]) {
+  for (int c = 0; c < 4; ++c) sum[c] = converted(sum[c]);
+}
+
+// Blends a sum over the background, which shows as far as alpha leaves it.
+template <class Real>
+void sum_over_background(const Real sum[4], const Real background[3], Real pixel[3]) {
+  const Real left = greater(Real(1.0f) - sum[3], Real(0.0f));
+  for (int c = 0; c < 3; ++c) pixel[c] = sum[c] + background[c] * left;
+}
+
+// ---- dilate ----
+
+// Sets the weights of a quad's four shading samples in a pixel, and returns their sum. A weight is the number of the
+// pixel's visibility samples that the shading sample was given; `base` has the bits of the pixel.
+template <class Bits, class Real>
+Real weigh(const Bits masks[4], Bits base, Real weights[4]) {
+  for (int i = 0; i < 4; ++i) weights[i] = bit_count(masks[i] & base);
+  return weights[0] + weights[1] + weights[2] + weights[3];
+}
+
+// `inverse`: 1 / the sum of the weights.
+template <class Real>
+Real weighted_mean(const Real values[4], const Real weights[4], Real inverse) {
+  return (values[0] * weights[0] + values[1] * weights[1] + values[2] * weights[2] + values[3] * weights[3]) * inverse;
+}
+
+// Extends the box by a neighbour's colour if it belongs to the same draw.
+template <class Real>
+void grow_box(const Real color[4], bool same_draw, Real low[4], Real high[4]) {
+  for (int c = 0; c < 4; ++c) {
+    low[c] = lesser(low[c], select(same_draw, color[c], low[c]));
+    high[c] = greater(high[c], select(same_draw, color[c], high[c]));
+  }
+}
+
+// ---- shading_point ----
+
+// Is the point inside the edge? `not_owned`: 0 if points on the edge belong to the triangle, else 1.
+template <class Int>
+bool is_inside(const EdgeAt<Int>& edge, Int x, Int y, Int not_owned) {
+  return edge.at(x, y) >= not_owned;
+}
+
+// The mean position of the samples whose bits are set in `mask`. bits[s] is the bit of sample s, which lies at (x[s],
+// y[s]), in 1/256 px from the cell's corner.
+template <class Bits, class Real>
+void mean_position(Bits mask, const Bits bits[], const Real x[], const Real y[], int samples, Real& mean_x,
+                   Real& mean_y) {
+  const Real zero(0.0f);
+  Real sum_x = zero, sum_y = zero;
+  for (int s = 0; s < samples; ++s) {
+    const bool covered = (mask & bits[s]) != Bits(0);
+    sum_x = sum_x + select(covered, x[s], zero), sum_y = sum_y + select(covered, y[s], zero);
+  }
+  const Real share = Real(1.0f) / bit_count(mask);
+  mean_x = sum_x * share, mean_y = sum_y * share;
+}
+
+}  // namespace beampipe

@@ -1,0 +1,80 @@
+// The formulas of motion and temporal, for numbers and for numbers that count (stages/cost/counting.h).
+#pragma once
+
+#include "simd/scalar.h"
+
+namespace beampipe {
+
+// ---- motion ----
+
+// From one frame's screen to that of the last frame.
+template <class Real>
+struct Reprojection {
+  Real m[16];          // to_last_frame's matrix, column-major
+  Real width, height;  // pixels
+};
+
+// A position in the last frame, in pixels. `w` is positive in front of the eye.
+template <class Real>
+struct LastPosition {
+  Real x, y, w;
+};
+
+// (x, y): normalized device coordinates; `z`: clip-space depth.
+template <class Real>
+LastPosition<Real> reproject(const Reprojection<Real>& to_last, Real x, Real y, Real z) {
+  const auto& m = to_last.m;
+  const auto row = [&](int r) { return m[r] * x + m[4 + r] * y + m[8 + r] * z + m[12 + r]; };
+  const Real one(1.0f), half(0.5f);
+  const Real w = row(3), inverse = one / w;
+  return {(row(0) * inverse + one) * half * to_last.width, (one - row(1) * inverse) * half * to_last.height, w};
+}
+
+// The vector from a pixel's centre to where the surface there was in the last frame, in pixels.
+template <class Real>
+struct Movement {
+  Real dx, dy;
+  bool in_front;  // it was in front of the eye
+};
+
+template <class Real>
+Movement<Real> movement(const Reprojection<Real>& to_last, Real center_x, Real center_y, Real depth) {
+  const Real zero(0.0), one(1.0), two(2.0);
+  const LastPosition<Real> last = reproject(to_last, two * center_x / to_last.width - one,
+                                            one - two * center_y / to_last.height, two * lesser(depth, zero) + one);
+  return {last.x - center_x, last.y - center_y, last.w > zero};
+}
+
+template <class Real>
+Real square_length(Real x, Real y) {
+  return x * x + y * y;
+}
+
+// ---- temporal ----
+
+// One channel: the history's four texels are weighted, clamped to the box as far as `clamped` (0..1) says, and blended
+// with the new colour.
+template <class Real>
+Real blend_channel(const Real texels[4], const Real weights[4], Real low, Real high, Real clamped, Real color,
+                   Real blend) {
+  const Real old = texels[0] * weights[0] + texels[1] * weights[1] + texels[2] * weights[2] + texels[3] * weights[3];
+  const Real in_box = greater(low, lesser(high, old));
+  const Real kept = old + (in_box - old) * clamped;
+  return kept + (color - kept) * blend;
+}
+
+// The bilinear weights of the four texels around (x, y). (left, top) is the first of them. All are in texels.
+template <class Real>
+void texel_weights(Real x, Real y, Real left, Real top, Real weights[4]) {
+  const Real one(1.0f), half(0.5f);
+  const Real fx = x - half - left, fy = y - half - top, rest_x = one - fx, rest_y = one - fy;
+  weights[0] = rest_x * rest_y, weights[1] = fx * rest_y, weights[2] = rest_x * fy, weights[3] = fx * fy;
+}
+
+// The part of the clamp that applies, 0..1: it grows with the speed up to `still_px`.
+template <class Real>
+Real clamp_by_speed(Real speed, Real still_px) {
+  return lesser(speed / still_px, Real(1.0f));
+}
+
+}  // namespace beampipe

@@ -1,0 +1,55 @@
+// Rendering a trace's first frame in a test, and looking at what came out.
+#pragma once
+
+#include <algorithm>
+#include <cmath>
+#include <numeric>
+#include <stdexcept>
+#include <string>
+
+#include "pipeline/technique.h"
+
+namespace beampipe {
+
+inline FrameResult render(const std::string& spec, const Trace& trace) {
+  return parse_technique(spec).render(trace, 0, {1});
+}
+inline Image picture(const std::string& spec, const Trace& trace) { return render(spec, trace).image; }
+
+inline glm::vec4 rgba_at(const Image& image, std::uint32_t x, std::uint32_t y) {
+  const float* rgba = image.rgba.data() + 4 * (std::size_t{y} * image.width + x);
+  return {rgba[0], rgba[1], rgba[2], rgba[3]};
+}
+inline glm::vec3 pixel(const Image& image, std::uint32_t x, std::uint32_t y) { return rgba_at(image, x, y); }
+
+// Over R, G and B of all pixels.
+inline double rmse(const Image& a, const Image& b) {
+  double sum = 0;
+  for (std::size_t i = 0; i < a.rgba.size(); ++i)
+    if (i % 4 != 3) sum += (double(a.rgba[i]) - b.rgba[i]) * (double(a.rgba[i]) - b.rgba[i]);
+  return std::sqrt(sum / (0.75 * static_cast<double>(a.rgba.size())));
+}
+
+inline double worst_difference(const Image& a, const Image& b) {
+  double worst = 0;
+  for (std::size_t i = 0; i < a.rgba.size(); ++i) worst = std::max(worst, std::abs(double{a.rgba[i]} - b.rgba[i]));
+  return worst;
+}
+
+// Throws std::runtime_error when the frame has no such stage.
+inline const StageCounters& stage_of(const FrameResult& result, const std::string& name) {
+  for (const StageCounters& counters : result.stages)
+    if (counters.stage == name) return counters;
+  throw std::runtime_error("no stage " + name);
+}
+inline StageCounters stage_of(FrameResult&& result, const std::string& name) {
+  return stage_of(static_cast<const FrameResult&>(result), name);
+}
+
+// The sum of a counter over all pixels.
+inline double sum_of(const FrameResult& result, const std::string& counter) {
+  const std::vector<float>& values = result.pixel_counters.at(counter);
+  return std::accumulate(values.begin(), values.end(), 0.0);
+}
+
+}  // namespace beampipe

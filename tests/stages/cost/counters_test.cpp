@@ -1,0 +1,67 @@
+// The table of a stage's counters: adding up, saving and restoring depend on it.
+#include "stages/cost/counters.h"
+
+#include <gtest/gtest.h>
+
+#include <set>
+
+namespace beampipe {
+namespace {
+
+// The k-th stored counter is k times `unit`.
+StageCounters numbered(std::uint64_t unit) {
+  StageCounters counters{"numbered"};
+  std::uint64_t value = 0;
+  for (const CounterInfo& counter : stage_counters())
+    if (Count* const stored = counter.stored(counters)) *stored = value += unit;
+  return counters;
+}
+
+TEST(StageCountersTable, NamesEachCounterOnce) {
+  StageCounters counters;
+  std::set<std::string> names;
+  std::set<const Count*> places;
+  std::size_t stored = 0;
+  for (const CounterInfo& counter : stage_counters()) {
+    EXPECT_TRUE(names.insert(counter.name).second) << counter.name;
+    const Count* const place = counter.stored(counters);
+    if (!place) continue;
+    ++stored;
+    EXPECT_TRUE(places.insert(place).second) << counter.name << " is stored where another counter is";
+  }
+  EXPECT_EQ(stored, (sizeof(StageCounters) - sizeof(std::string)) / sizeof(Count));
+}
+
+TEST(StageCountersTable, ValuesAreThoseOfTheFields) {
+  const StageCounters counters = numbered(1);
+  EXPECT_EQ(counters.items_in, 1u);
+  EXPECT_EQ(counters.items_out, 2u);
+  EXPECT_EQ(counters.ops, (OperationCounts{3, 4, 5, 6, 7, 8}));
+  EXPECT_EQ(counters.bytes_read, 9u);
+  EXPECT_EQ(counters.bytes_written, 10u);
+  EXPECT_EQ(counters.sector_bytes, 11u);
+  EXPECT_EQ(counters.l2_bytes, 12u);
+  EXPECT_EQ(counters.dram_bytes, 13u);
+  EXPECT_EQ(counters.lanes_used, 14u);
+  EXPECT_EQ(counters.lanes_issued, 15u);
+  EXPECT_EQ(counters.hidden_items, 16u);
+  EXPECT_EQ(counters.hidden_triangles, 17u);
+  EXPECT_EQ(counters.empty_tiles, 18u);
+  std::uint64_t value = 0;
+  for (const CounterInfo& counter : stage_counters()) {
+    const std::string name = counter.name;
+    const std::uint64_t expected = name == "ops.total" ? 3 + 4 + 5 + 6 + 7 + 8 : name == "logical_bytes" ? 19 : ++value;
+    EXPECT_EQ(counter.value(counters), expected) << name;
+  }
+}
+
+TEST(StageCountersTable, AdditionAddsEachCounterAndKeepsTheName) {
+  StageCounters sum = numbered(1);
+  StageCounters other = numbered(100);
+  other.stage = "other";
+  sum += other;
+  EXPECT_EQ(sum, numbered(101));
+}
+
+}  // namespace
+}  // namespace beampipe
