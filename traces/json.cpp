@@ -79,19 +79,19 @@ template std::uint64_t Json::get() const;
 
 std::size_t Json::size() const { return is_array() ? elements().size() : is_object() ? members().size() : 0; }
 
-const Json::Array& Json::elements() const {
+const Json::Array& Json::elements() const& {
   if (!is_array()) fail("an array", *this);
   return *std::get<std::unique_ptr<Array>>(value_);
 }
 
-Json::Array& Json::elements() { return const_cast<Array&>(std::as_const(*this).elements()); }
+Json::Array& Json::elements() & { return const_cast<Array&>(std::as_const(*this).elements()); }
 
-const Json::Object& Json::members() const {
+const Json::Object& Json::members() const& {
   if (!is_object()) fail("an object", *this);
   return *std::get<std::unique_ptr<Object>>(value_);
 }
 
-Json::Object& Json::members() { return const_cast<Object&>(std::as_const(*this).members()); }
+Json::Object& Json::members() & { return const_cast<Object&>(std::as_const(*this).members()); }
 
 void Json::push_back(Json element) {
   if (is_null()) *this = array();

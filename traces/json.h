@@ -74,11 +74,13 @@ class Json {
   // Of an array or object; 0 of everything else.
   std::size_t size() const;
 
-  // Throw JsonError when it is not an array (object).
-  const Array& elements() const;
-  Array& elements();
-  const Object& members() const;
-  Object& members();
+  // Throw JsonError when it is not an array (object). Not of a temporary value, which a loop over them would outlive.
+  const Array& elements() const&;
+  Array& elements() &;
+  const Array& elements() && = delete;
+  const Object& members() const&;
+  Object& members() &;
+  const Object& members() && = delete;
 
   // Of an array; null becomes one. Throws JsonError when it is something else.
   void push_back(Json element);

@@ -1,4 +1,4 @@
-// What the tests of the tools share: a folder of their own, files, pictures.
+// What the tests of tools/ share: temporary folders, files and pictures.
 #pragma once
 
 #include <gtest/gtest.h>
@@ -15,7 +15,7 @@
 
 namespace beampipe {
 
-// A new empty folder, removed with all that is in it.
+// A new empty folder. The destructor removes it with everything in it.
 class TemporaryFolder {
  public:
   TemporaryFolder() {
@@ -33,7 +33,7 @@ class TemporaryFolder {
   std::filesystem::path operator/(const std::filesystem::path& name) const { return path_ / name; }
   std::string string() const { return path_.string(); }
 
-  // Everything in it, as sorted relative paths; folders end in "/".
+  // Everything in the folder, as sorted relative paths. Names of folders end in "/".
   std::vector<std::string> list() const {
     std::vector<std::string> names;
     for (const auto& entry : std::filesystem::recursive_directory_iterator(path_)) {
@@ -59,7 +59,7 @@ inline void write_text(const std::filesystem::path& file, const std::string& tex
   if (!stream.flush()) ADD_FAILURE() << "cannot write " << file;
 }
 
-// A picture with every value the same, but A = 1.
+// A picture in which R, G and B have the same value everywhere, and A = 1.
 inline Image flat_image(std::uint32_t width, std::uint32_t height, float value) {
   Image image{width, height, std::vector<float>(std::size_t{4} * width * height, value)};
   for (std::size_t i = 3; i < image.rgba.size(); i += 4) image.rgba[i] = 1.0f;

@@ -15,15 +15,15 @@
 namespace beampipe {
 
 struct Outcome {
-  int exit_code = -1;  // -1: ended by a signal
+  int exit_code = -1;  // -1 if a signal ended the program
   std::string out, err;
-  std::uint64_t peak_bytes = 0;  // of memory, resident
+  std::uint64_t peak_bytes = 0;  // of resident memory
 };
 
-// A started `beampipe ARGUMENTS`, its output going to files.
+// A running `beampipe ARGUMENTS`, whose output goes to files.
 class Program {
  public:
-  // `terminal`: where standard error goes instead, when not negative.
+  // If `terminal` is not negative, standard error goes to this file descriptor instead of a file.
   explicit Program(const std::vector<std::string>& arguments, int terminal = -1) {
     std::vector<std::string> words = {BEAMPIPE_PROGRAM};
     words.insert(words.end(), arguments.begin(), arguments.end());
@@ -60,7 +60,7 @@ class Program {
   }
 
  private:
-  // Nothing where the process was killed before it opened the file, or writes to a terminal.
+  // Empty if the process was killed before it opened the file, or writes to a terminal.
   std::string text_of(const char* name) const {
     return std::filesystem::exists(output_ / name) ? read_text(output_ / name) : "";
   }

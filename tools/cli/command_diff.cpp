@@ -40,7 +40,8 @@ void diff(const DiffArguments& arguments) {
     Json json = {{"beampipe_diff", 1}, {"a", arguments.a}, {"b", arguments.b}};
     json["width"] = a.width;
     json["height"] = a.height;
-    for (const Json::Member& member : to_json(stats).members()) json[member.key] = member.value;
+    const Json errors = to_json(stats);
+    for (const auto& [key, value] : errors.members()) json[key] = value;
     json["differing_pixels"] = differing;
     std::cout << json_text(json);
     return;

@@ -5,7 +5,7 @@
 namespace beampipe {
 namespace {
 
-// A box from `low` to `high`, corners only as far as triangles go.
+// A box from `low` to `high`.
 Mesh box(glm::vec3 low, glm::vec3 high) {
   Mesh mesh;
   for (int i = 0; i < 8; ++i) {
@@ -16,7 +16,7 @@ Mesh box(glm::vec3 low, glm::vec3 high) {
   return mesh;
 }
 
-// The least clip-space w, and the largest |x| or |y| and the largest |z| over w, of all vertices.
+// Over all vertices: the smallest w in clip space, the largest |x| / w or |y| / w, and the largest |z| / w.
 struct Reach {
   double least_w = 1e300, across = 0, depth = 0;
 };

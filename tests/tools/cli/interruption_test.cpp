@@ -18,7 +18,7 @@ namespace {
 
 void pause(int milliseconds) { std::this_thread::sleep_for(std::chrono::milliseconds(milliseconds)); }
 
-// A run that goes on for hours after its first image.
+// A run that would take hours after it has written its first image.
 std::vector<std::string> long_run(const std::string& trace, const std::string& out) {
   return {"run", trace, "-t", "msaa:1", "-o", out, "--frames", "0", "--repeat", "1000000", "--threads", "1"};
 }
@@ -28,18 +28,18 @@ TEST_F(ProgramTest, CtrlCKeepsFinishedImagesAndLeavesNothingElse) {
   write_text(folder_ / "out/report.json", "of pictures that will be replaced");
   Program program(long_run(path("trace.json"), path("out")));
   for (int i = 0; i < 3000 && !std::filesystem::exists(folder_ / "out/msaa_1/frame_0000_counters.exr"); ++i) pause(10);
-  pause(1500);  // long enough for progress to show, if it did
+  pause(1500);  // long enough for a line of progress to appear
   program.signal(SIGINT);
   const Outcome outcome = program.wait();
   EXPECT_EQ(outcome.exit_code, 130);
   EXPECT_EQ(outcome.out, "");
-  EXPECT_EQ(outcome.err, "") << "progress is for terminals only";
+  EXPECT_EQ(outcome.err, "") << "progress is shown on terminals only";
   EXPECT_EQ(folder_.list(), (Names{"out/", "out/msaa_1/", "out/msaa_1/frame_0000.exr", "out/msaa_1/frame_0000.png",
                                    "out/msaa_1/frame_0000_counters.exr", "trace.json"}));
   EXPECT_EQ(read_exr(folder_ / "out/msaa_1/frame_0000.exr").width, 20u);
 }
 
-// Neither a frame nor a file that would take much longer is waited for.
+// Ctrl-C waits neither for a long frame nor for a large file.
 TEST_F(ProgramTest, CtrlCEndsALongFrameAndALongFileAtOnce) {
   Program file({"make", "hairball", "--triangles", "5000000", "-o", path("big.json")});
   pause(1500);
@@ -61,7 +61,7 @@ TEST_F(ProgramTest, CtrlCLeavesNoSoup) {
   Program program({"export-soup", path("big.json"), "-o", path("big.soup")});
   for (int i = 0; i < 30000 && folder_.list() == before; ++i) pause(1);
   program.signal(SIGTERM);
-  if (program.wait().exit_code == 0) return;  // it was faster
+  if (program.wait().exit_code == 0) return;  // it had already finished
   EXPECT_EQ(folder_.list(), before);
 }
 
@@ -93,7 +93,7 @@ TEST_F(ProgramTest, ReportKeepsOutOfAFolderInUse) {
 TEST_F(ProgramTest, ATerminalShowsProgressAfterASecond) {
   int terminal = -1, program_side = -1;
   if (openpty(&terminal, &program_side, nullptr, nullptr, nullptr) != 0)
-    GTEST_SKIP() << "this system gives no pseudo-terminal: " << std::strerror(errno);
+    GTEST_SKIP() << "there is no pseudo-terminal on this system: " << std::strerror(errno);
   fcntl(terminal, F_SETFL, O_NONBLOCK);
   const auto start = std::chrono::steady_clock::now();
   Program program(long_run(path("trace.json"), path("out")), program_side);

@@ -1,4 +1,4 @@
-// Whatever goes wrong, the program says so in one line and leaves nothing half done.
+// Errors are reported in one line, and nothing half done is left.
 #include <sys/resource.h>
 #include <sys/stat.h>
 

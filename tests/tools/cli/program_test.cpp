@@ -10,13 +10,13 @@
 namespace beampipe {
 namespace {
 
-using Parsed = nlohmann::json;  // not the program's own Json
+using Parsed = nlohmann::json;  // independent of the program's own Json
 
 Parsed parsed(const std::filesystem::path& file) { return Parsed::parse(read_text(file)); }
 
 TEST_F(ProgramTest, HelpTeachesAndVersionIsOneLine) {
   EXPECT_NE(succeed({"--help"}).find("beampipe compare fence.json -t beam"), std::string::npos);
-  EXPECT_NE(succeed({"run", "--help"}).find("msaa:N"), std::string::npos) << "run lists the techniques";
+  EXPECT_NE(succeed({"run", "--help"}).find("msaa:N"), std::string::npos) << "the help of run lists the techniques";
   EXPECT_NE(succeed({"compare", "--help"}).find("msaa:N"), std::string::npos);
   const std::string version = succeed({"--version"});
   EXPECT_EQ(version.rfind("beampipe 0.", 0), 0u) << version;
@@ -60,7 +60,7 @@ TEST_F(ProgramTest, RunWritesImagesCountersAndReport) {
       EXPECT_LE(frame["wall_ms"]["median"], frame["wall_ms"]["max"]);
       EXPECT_EQ(frame["wall_ms"]["with_memory_model"], false);
       EXPECT_GT(frame["wall_ms"]["modelling_run"], 0);
-      EXPECT_GT(frame["dram_bytes"], 0) << "one more run, for the counts";
+      EXPECT_GT(frame["dram_bytes"], 0) << "an additional run models memory";
       ASSERT_FALSE(frame["stages"].empty());
       EXPECT_EQ(frame["stages"][0]["stage"], "vertex_setup");
       const Parsed& ops = frame["stages"][0]["ops"];
@@ -75,7 +75,7 @@ TEST_F(ProgramTest, RunWritesImagesCountersAndReport) {
 TEST_F(ProgramTest, ImagesAreLinearWithRowZeroOnTop) {
   succeed({"run", path("trace.json"), "-t", "msaa:4", "beam", "--frames", "0", "-o", path("out")});
   const Parsed wall = parsed(folder_ / "out/report.json")["results"][0]["frames"][0]["wall_ms"];
-  EXPECT_EQ(wall["with_memory_model"], true) << "the only run is the one that counts";
+  EXPECT_EQ(wall["with_memory_model"], true) << "the only run models memory";
   EXPECT_FALSE(wall.contains("modelling_run"));
   for (const std::string spec : {"msaa_4", "beam"}) {
     const Image image = read_exr(folder_ / "out" / spec / "frame_0000.exr");
@@ -116,7 +116,8 @@ TEST_F(ProgramTest, CompareMeasuresAgainstTheReference) {
   EXPECT_EQ(ladder[0]["rmse"], json["results"][0]["error"]["rmse"]);
   EXPECT_EQ(ladder[3]["rmse"], json["results"][1]["error"]["rmse"]);
   EXPECT_LT(ladder[8]["rmse"], ladder[0]["rmse"]);
-  EXPECT_FALSE(std::filesystem::exists(folder_ / "out/msaa_16")) << "rungs that nobody asked for are not written";
+  EXPECT_FALSE(std::filesystem::exists(folder_ / "out/msaa_16"))
+      << "pictures of rungs are written only if they are asked for";
 
   for (std::size_t i = 0; i < 3; ++i) {
     const Parsed& result = json["results"][i];
@@ -150,13 +151,13 @@ TEST_F(ProgramTest, CompareTakesALadderOfTheUsersChoice) {
   ASSERT_EQ(json["msaa_ladder"].size(), 2u);
   EXPECT_EQ(json["msaa_ladder"][0]["samples"], 1);
   EXPECT_EQ(json["msaa_ladder"][1]["samples"], 2);
-  ASSERT_EQ(json["results"].size(), 2u) << "the reference is there once";
+  ASSERT_EQ(json["results"].size(), 2u) << "the reference appears once";
   EXPECT_EQ(json["results"][1]["equivalent_msaa"], 2.0);
   EXPECT_EQ(json["results"][1]["equivalent_msaa_is_lower_bound"], true);
 }
 
 TEST_F(ProgramTest, CompareExtendsItsLadderForTechniquesThatAreBetter) {
-  // One edge over a plain background: its analytic coverage is nearly exact.
+  // The picture has one edge over a plain background, where analytic coverage is nearly exact.
   write_text(folder_ / "edge.json", R"({"beampipe_trace": 1,
     "meshes": {"red": {"positions": [-1,-0.9,0, 0.97,1,0, -1,1,0], "indices": [0,1,2], "colors": [1,0.25,0]}},
     "frames": [{"width": 20, "height": 12, "background": [0,0,0.5], "view": [1,0,0,0, 0,1,0,0, 0,0,1,0, 0,0,0,1],
@@ -170,7 +171,7 @@ TEST_F(ProgramTest, CompareExtendsItsLadderForTechniquesThatAreBetter) {
   EXPECT_EQ(json["results"][0]["equivalent_msaa_is_lower_bound"], false);
 
   succeed({"compare", path("edge.json"), "-t", "msaa:1024", "-o", path("out")});
-  EXPECT_EQ(parsed(folder_ / "out/report.json")["msaa_ladder"].size(), 9u) << "MSAA itself is no reason to extend";
+  EXPECT_EQ(parsed(folder_ / "out/report.json")["msaa_ladder"].size(), 9u) << "a good MSAA does not extend the ladder";
 }
 
 TEST_F(ProgramTest, DiffTellsTheError) {
@@ -307,7 +308,7 @@ TEST_F(ProgramTest, StressWritesWhatItFoundAndItsTraces) {
                         1, path("other/unfinished") + something_else);
 }
 
-// 200 layers over 12 tiles, with the least memory that one tile can do with.
+// 200 layers over 12 tiles, rendered with the smallest amount of memory that one tile can do with.
 TEST_F(ProgramTest, MemoryLimitBoundsThePeakAndChangesNothing) {
   succeed({"make", "stack", "--triangles", "200", "--width", "128", "--height", "96", "-o", path("deep.json")});
   const auto run = [&](const std::string& limit, const std::string& out) {
@@ -322,10 +323,10 @@ TEST_F(ProgramTest, MemoryLimitBoundsThePeakAndChangesNothing) {
   const std::uint64_t needed = std::stoull(refused.err.substr(refused.err.find(needs) + needs.size()));
   const Outcome banded = run(std::to_string(needed) + "MB", "banded"), whole = run("16GB", "whole");
   ASSERT_EQ(banded.exit_code, 0) << banded.err;
-#if !defined(__SANITIZE_ADDRESS__) && !defined(__SANITIZE_THREAD__)  // they take memory of their own
-  constexpr std::uint64_t kProgram = 40;                             // MiB, with the trace and the pictures
+#if !defined(__SANITIZE_ADDRESS__) && !defined(__SANITIZE_THREAD__)  // sanitizers take memory themselves
+  constexpr std::uint64_t kProgram = 40;                             // MiB, including the trace and the pictures
   EXPECT_LT(banded.peak_bytes >> 20, needed + kProgram);
-  EXPECT_GT(whole.peak_bytes >> 20, needed + kProgram) << "or the test shows nothing";
+  EXPECT_GT(whole.peak_bytes >> 20, needed + kProgram) << "otherwise this test shows nothing";
 #endif
   for (const char* file : {"frame_0000.exr", "frame_0000_counters.exr"})
     EXPECT_EQ(read_text(folder_ / "banded/beam_rules=paper" / file),

@@ -1,4 +1,4 @@
-// --trace-events: every stage of every technique is there, inside the frame that it belongs to.
+// --trace-events writes every stage of every technique, within its frame.
 
 #include <sys/stat.h>
 

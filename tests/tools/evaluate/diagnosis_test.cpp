@@ -1,4 +1,4 @@
-// compare --causes and --orders, make --pan and flicker, through the built program.
+// compare --causes, compare --orders, make --pan and flicker, with the built program.
 #include <gtest/gtest.h>
 
 #include <cmath>
@@ -25,7 +25,7 @@ class DiagnosisTest : public testing::Test {
 
   Json report() const { return Json::parse(read_text(folder_ / "out/report.json")); }
 
-  // Two quads that coincide, red and then green, and a blue triangle across them.
+  // Two quads in the same place, first a red one and then a green one, and a blue triangle across them.
   void write_coincident() {
     write_text(folder_ / "trace.json", R"({"beampipe_trace": 1,
       "meshes": {"faces": {"positions": [-0.9,-0.8,0, 0.7,-0.8,0, 0.7,0.9,0, -0.9,0.9,0, -1,0,-0.5, 1,0.1,0.5, 0,1,0.5],
@@ -65,7 +65,7 @@ TEST_F(DiagnosisTest, CausesAddUpToTheErrorLayerAndToOne) {
     parts += reported;
   }
   EXPECT_NEAR(parts, 1.0, 1e-4);
-  EXPECT_FALSE(json["results"][1].contains("error_causes")) << "msaa does not tell its weights";
+  EXPECT_FALSE(json["results"][1].contains("error_causes")) << "msaa reports no weights";
   EXPECT_NE(table.find("interpenetration"), std::string::npos);
 }
 
@@ -77,10 +77,10 @@ TEST_F(DiagnosisTest, OrdersDifferWhereFacesCoincide) {
   for (const Json& result : json["results"]) {
     const Json& orders = result["orders"];
     for (const char* order : {"given", "shuffled", "near_to_far", "far_to_near"}) EXPECT_TRUE(orders.contains(order));
-    EXPECT_GT(orders["largest_difference"], 0.1) << "red or green";
+    EXPECT_GT(orders["largest_difference"], 0.1) << "either the red or the green quad is visible";
   }
   EXPECT_EQ(json["results"][0]["orders"]["given"]["rmse"], json["results"][0]["error"]["rmse"]);
-  EXPECT_LT(json["results"][0]["orders"]["shuffled"]["rmse"], 0.1) << "against the reference of the same order";
+  EXPECT_LT(json["results"][0]["orders"]["shuffled"]["rmse"], 0.1) << "against the reference in the same order";
   EXPECT_EQ(json["results"][1]["orders"]["shuffled"]["rmse"], 0.0);
   EXPECT_NE(table.find("far_to_near"), std::string::npos);
 }
@@ -98,7 +98,7 @@ TEST_F(DiagnosisTest, PanMovesThePictureByWholePixelsToo) {
       const float* to = &after.rgba[4 * ((y + 1) * 24 + x + 2)];
       equal += std::abs(from[0] - to[0]) < 0.05f && std::abs(from[1] - to[1]) < 0.05f;
     }
-  EXPECT_GT(equal, all * 9 / 10) << "but for vertices that snap otherwise";
+  EXPECT_GT(equal, all * 9 / 10) << "except where vertices snap differently";
 
   const Json result = report()["results"][0];
   double squares = 0;

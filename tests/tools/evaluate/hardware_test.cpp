@@ -17,8 +17,8 @@ StageCounters stage(const std::string& name) {
 
 double clocks(const Hardware& hardware, double ms) { return ms * hardware.clock_mhz * 1e3; }
 
-// Work over rate, unit by unit: 6000 triangles at 6 per clock; 9600 pixels at 96; two clocks of float operations; three
-// of L2; ten of DRAM.
+// Each unit takes its work divided by its rate: 6000 triangles at 6 per clock, 9600 pixels at 96 per clock, two clocks
+// of float operations, three clocks of L2 and ten of DRAM.
 TEST(Hardware, TimeIsWorkOverRate) {
   const Hardware titan = titan_v();
   const Implementation& shaders = titan.implementations.at(0);
@@ -51,7 +51,7 @@ TEST(Hardware, ShadersShareTheirUnitBetweenStages) {
   EXPECT_EQ(time.busiest, "shader");
 }
 
-// A stage without one would work for nothing. The reference is no pipeline of a GPU.
+// A stage without units would cost nothing. The reference is not a pipeline of a GPU.
 TEST(Hardware, EveryStageHasUnits) {
   for (const Implementation& implementation : titan_v().implementations)
     for (const StageInfo& stage : stage_list())

@@ -37,7 +37,7 @@ TEST(ErrorStats, AlphaDoesNotCount) {
   EXPECT_EQ(measure_error(image, flat_image(2, 2, 0.5f)), ErrorStats{});
 }
 
-// Errors 1/1024 .. n/1024, negative every second time, in an order that is not theirs.
+// Errors 1/1024 .. n/1024 in mixed order, every second one negative.
 Image staircase(std::uint32_t pixels) {
   Image image = flat_image(pixels, 1, 0.0f);
   const std::uint32_t n = 3 * pixels;
@@ -49,7 +49,7 @@ Image staircase(std::uint32_t pixels) {
 }
 
 TEST(ErrorStats, P99IsTheValueAtRankCeilOf99Percent) {
-  // n values: rank ceil(0.99 n). 3 does not reach 100 values; 99 to 102 lie around it; 300 and 303 around the third.
+  // The rank of p99 is ceil(0.99 n). 3 values are fewer than 100; 99 to 102 are around 100, and 300 and 303 around 300.
   const std::uint32_t cases[][2] = {{1, 3}, {33, 99}, {34, 101}, {100, 297}, {101, 300}, {200, 594}};
   for (const auto& [pixels, rank] : cases) {
     const ErrorStats stats = measure_error(staircase(pixels), flat_image(pixels, 1, 0.0f));
@@ -80,7 +80,7 @@ TEST(ErrorStats, RefusesWhatCannotBeCompared) {
   image.rgba[4 * (4 * 2 + 1) + 2] = std::numeric_limits<float>::infinity();
   try {
     measure_error(image, flat_image(4, 3, 0.5f));
-    FAIL() << "an infinite value was measured";
+    FAIL() << "an infinite value was accepted";
   } catch (const std::runtime_error& error) {
     EXPECT_NE(std::string(error.what()).find("(1, 2)"), std::string::npos) << error.what();
   }
@@ -127,12 +127,12 @@ TEST(EquivalentMsaa, OutsideTheLadderIsABound) {
 }
 
 TEST(EquivalentMsaa, ARungThatIsWorseThanOneBeforeIsSkipped) {
-  // As a curve: 0.4 at 1, 0.1 at 4, still 0.1 at 8 and 16, 0.05 at 32.
+  // The curve is 0.4 at 1, 0.1 at 4, still 0.1 at 8 and 16, and 0.05 at 32.
   const std::vector<LadderRung> ladder = {{1, 0.4}, {4, 0.1}, {8, 0.2}, {16, 0.1}, {32, 0.05}};
-  EXPECT_EQ(equivalent_msaa(0.1, ladder), (EquivalentMsaa{4, false, false}));  // the smallest such N
+  EXPECT_EQ(equivalent_msaa(0.1, ladder), (EquivalentMsaa{4, false, false}));  // the smallest N with this error
   EXPECT_NEAR(equivalent_msaa(0.2, ladder).samples, 2.0, 1e-9);
   EXPECT_NEAR(equivalent_msaa(0.1 / std::sqrt(2.0), ladder).samples, 16 * std::sqrt(2.0), 1e-9);
-  // Worse at the end: the last rung is still what a better technique is measured by.
+  // If the error rises at the end, a technique that is better than all rungs still gets the last rung.
   EXPECT_EQ(equivalent_msaa(0.05, {{1, 0.4}, {4, 0.1}, {8, 0.2}}), (EquivalentMsaa{8, true, false}));
   EXPECT_EQ(best_rmse({{1, 0.4}, {4, 0.1}, {8, 0.2}}), 0.1);
 }

@@ -1,4 +1,4 @@
-// Runs that are killed and go on.
+// Runs that are killed and continued.
 
 #include "tools/evaluate/resume.h"
 
@@ -28,14 +28,14 @@ void pause(double milliseconds) {
   std::this_thread::sleep_for(std::chrono::duration<double, std::milli>(milliseconds));
 }
 
-// Takes out what no two runs have in common: times.
+// Removes the times, which differ between any two runs.
 void drop_times(Json& json) {
   if (json.is_object()) json.erase("wall_ms");
   for (Json& child : json)
     if (child.is_structured()) drop_times(child);
 }
 
-// Every file under the folder; JSON without times.
+// The contents of every file under the folder, JSON without times.
 std::map<std::string, std::string> contents(const fs::path& folder) {
   std::map<std::string, std::string> files;
   for (const auto& entry : fs::recursive_directory_iterator(folder)) {
@@ -75,7 +75,7 @@ class ResumeTest : public testing::Test {
         records += entry.path().extension() == ".json";
     return records;
   }
-  // Names that differ between the two folders, or whose contents do.
+  // The files that are only in one of the folders or have different contents.
   std::set<std::string> differences(const std::string& a, const std::string& b) const {
     const auto left = contents(folder_ / a), right = contents(folder_ / b);
     std::set<std::string> names;
@@ -97,7 +97,7 @@ class ResumeTest : public testing::Test {
     EXPECT_NE(outcome.err.find("cannot resume"), std::string::npos) << outcome.err;
     return outcome.err;
   }
-  // Stopped behind its first frame: a picture of the second cannot be written.
+  // Leaves a run that stopped after its first frame, because a picture of the second could not be written.
   void leave_unfinished(const std::string& verb, const std::string& out, const Names& more) {
     const fs::path in_the_way = folder_ / (out + "/msaa_2/frame_0001.png");
     fs::create_directories(in_the_way);
@@ -110,8 +110,8 @@ class ResumeTest : public testing::Test {
   TemporaryFolder folder_;
 };
 
-// kill -9 at random moments, each time going on where the last one stopped. taa and dvm carry history from frame to
-// frame; compare keeps sums.
+// Kills the program (kill -9) at random moments and continues each time. taa and dvm carry a history from frame to
+// frame, and compare keeps sums.
 TEST_F(ResumeTest, TwentyFramesKilledTenTimesAreTheSameAsUndisturbed) {
   make_trace(20);
   for (const std::string verb : {"run", "compare"}) {
@@ -124,7 +124,7 @@ TEST_F(ResumeTest, TwentyFramesKilledTenTimesAreTheSameAsUndisturbed) {
     Random random(std::random_device{}());
     SCOPED_TRACE(random.name());
     int killed = 0;
-    std::string finished;  // frames, at each kill
+    std::string finished;  // the number of finished frames at each kill
     for (int i = 0; i < 10 * thoroughness(); ++i) {
       Program program(resume(verb, verb + "_killed", specs));
       pause(random.real(0, 0.3 * whole_ms));
@@ -153,7 +153,7 @@ TEST_F(ResumeTest, AnErrorInALaterFrameLosesNothingThatWasFinished) {
             "beampipe: 1 of 3 frames are finished; continuing with frame 1 (taa:4: earlier frames are rendered again, "
             "because the next "
             "ones depend on them)\n");
-  EXPECT_EQ(fs::last_write_time(folder_ / "out/msaa_2/frame_0000.exr"), first) << "not written again";
+  EXPECT_EQ(fs::last_write_time(folder_ / "out/msaa_2/frame_0000.exr"), first) << "it is not written again";
   EXPECT_EQ(differences("out", "whole"), std::set<std::string>{});
 }
 
@@ -166,7 +166,7 @@ TEST_F(ResumeTest, GoesOnAtTheFirstFrameThatLacksAPicture) {
   EXPECT_EQ(differences("out", "whole"), std::set<std::string>{});
 }
 
-// What a power failure or another program did to them.
+// Files can be damaged by a power failure or by another program.
 TEST_F(ResumeTest, DamagedFilesOfAFinishedFrameAreMadeAgain) {
   make_trace(2);
   for (const std::string verb : {"run", "compare"}) {
@@ -207,12 +207,12 @@ TEST_F(ResumeTest, AFrameWhoseRecordIsDamagedIsMadeAgain) {
     Json json = Json::parse(read_text(record));
     damages[i](json);
     write_text(folder_ / out / frame_record_name(0), json.dump());
-    EXPECT_EQ(succeed(resume("compare", out, specs)).err, "") << "it starts again";
+    EXPECT_EQ(succeed(resume("compare", out, specs)).err, "") << "the run starts from the beginning";
     EXPECT_EQ(differences(out, "whole"), std::set<std::string>{});
   }
 }
 
-// Its digest is right: it is another frame's, or another program's.
+// The digest of the record is correct, but it belongs to another frame or another program.
 TEST_F(ResumeTest, ARecordThatSpeaksOfSomethingElseIsNotBelieved) {
   make_trace(2);
   const Names specs = {"msaa:2", "--ladder", "1", "--causes", "--orders"};
@@ -248,7 +248,7 @@ TEST_F(ResumeTest, ARecordThatSpeaksOfSomethingElseIsNotBelieved) {
     changes[i](json);
     json["digest"] = digest_of(json.dump(2) + "\n");
     write_text(folder_ / out / frame_record_name(0), json.dump(2) + "\n");
-    EXPECT_EQ(succeed(resume("compare", out, specs)).err, "") << "it starts again";
+    EXPECT_EQ(succeed(resume("compare", out, specs)).err, "") << "the run starts from the beginning";
     EXPECT_EQ(differences(out, "whole"), std::set<std::string>{});
   }
 }
@@ -274,7 +274,7 @@ TEST_F(ResumeTest, WhatAnotherTraceOrOptionLeftIsRefused) {
   make_trace(2, 201);
   EXPECT_NE(refused(resume("run", "out", {"msaa:2"})).find("another trace"), std::string::npos);
   EXPECT_EQ(contents(folder_ / "out"), before);
-  succeed(command("run", "out", {"msaa:2"}));  // without --resume it starts again
+  succeed(command("run", "out", {"msaa:2"}));  // without --resume, a run starts from the beginning
   succeed(command("run", "fresh", {"msaa:2"}));
   EXPECT_EQ(differences("out", "fresh"), std::set<std::string>{});
 }
@@ -285,11 +285,11 @@ TEST_F(ResumeTest, WhatIsFinishedStaysAsItIs) {
   EXPECT_FALSE(fs::exists(folder_ / "out/unfinished"));
   const std::string report = read_text(folder_ / "out/report.json");
   EXPECT_EQ(succeed(resume("run", "out", {"msaa:2"})).out.find("already finished\n"), 0u);
-  EXPECT_EQ(read_text(folder_ / "out/report.json"), report) << "with its times";
+  EXPECT_EQ(read_text(folder_ / "out/report.json"), report) << "the old report with its times";
   refused(resume("run", "out", {"msaa:2", "--repeat", "2"}));
 }
 
-// Killed when the report was written and records not yet removed.
+// The program was killed after it had written the report, but before it had removed the records.
 TEST_F(ResumeTest, RecordsBesideAReportAreRemoved) {
   make_trace(2);
   succeed(command("run", "out", {"msaa:2"}));

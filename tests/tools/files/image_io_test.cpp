@@ -15,7 +15,7 @@
 namespace beampipe {
 namespace {
 
-// Values that need all 32 bits, differ in every channel, and would show rows, columns or channels that changed places.
+// Values that need all 32 bits and differ in every pixel and channel, so that exchanged rows, columns or channels show.
 Image speaking_image(std::uint32_t width, std::uint32_t height) {
   Image image{width, height, {}};
   for (std::uint32_t i = 0; i < 4 * width * height; ++i) image.rgba.push_back(1.0f / (3.0f + static_cast<float>(i)));
@@ -28,11 +28,11 @@ std::string error_of_reading(const std::filesystem::path& file) {
   } catch (const ImageError& error) {
     return error.what();
   }
-  ADD_FAILURE() << file << " was read";
+  ADD_FAILURE() << file << " was accepted";
   return "";
 }
 
-// Writes one-valued float channels under a header of the test's own making.
+// Writes a file with the header of a test, whose float channels have one value each.
 void write_exr(const std::filesystem::path& file, Imf::Header header, const std::vector<std::string>& channels) {
   const Imath::Box2i data = header.dataWindow();
   const std::size_t width = static_cast<std::size_t>(data.max.x - data.min.x + 1);
@@ -132,17 +132,17 @@ TEST(Exr, WhatIsNoImageIsAnErrorOfOneLineThatNamesTheFile) {
   }
 }
 
-// A header may claim what it likes: memory is taken only for what the file can hold.
+// Whatever a header claims, memory is allocated only for what the file can contain.
 TEST(Exr, AClaimThatTheFileCannotHoldIsAnError) {
   TemporaryFolder folder;
   const std::string bytes = encode_exr(speaking_image(9, 40));
   const auto claim = [&](std::int32_t side) {
     std::string claimed = bytes;
     for (const std::string window : {"dataWindow", "displayWindow"}) {
-      const std::size_t at = claimed.find(window) + window.size() + 1 + sizeof "box2i" + 4 + 8;  // its maximum
+      const std::size_t at = claimed.find(window) + window.size() + 1 + sizeof "box2i" + 4 + 8;  // the box's maximum
       for (std::size_t i = 0; i < 8; ++i) claimed[at + i] = static_cast<char>((side - 1) >> (8 * (i % 4)));
     }
-    write_text(folder / "a.exr", claimed + std::string(1 << 16, '\1'));  // what may pass for its line offsets
+    write_text(folder / "a.exr", claimed + std::string(1 << 16, '\1'));  // bytes that could be its line offsets
     return error_of_reading(folder / "a.exr");
   };
   EXPECT_NE(claim(16384).find("it claims 16384 x 16384 pixels"), std::string::npos) << claim(16384);
@@ -150,7 +150,7 @@ TEST(Exr, AClaimThatTheFileCannotHoldIsAnError) {
   EXPECT_NE(claim(1'000'000), "");
 }
 
-// Flat pictures take next to nothing in DWA: they are read up to a size that every machine has memory for.
+// Flat pictures take almost no space in DWA. They are read up to a size for which every machine has memory.
 TEST(Exr, AFlatPictureInDwaIsReadUnlessItIsLarge) {
   TemporaryFolder folder;
   const auto write_flat = [&](int width) {
@@ -166,7 +166,7 @@ TEST(Exr, AFlatPictureInDwaIsReadUnlessItIsLarge) {
   EXPECT_NE(error.find("it claims 6144 x 1024 pixels"), std::string::npos) << error;
 }
 
-// The library takes memory for what an attribute claims before it reads it.
+// The library allocates what an attribute claims before it reads the attribute.
 TEST(Exr, AnAttributeThatClaimsMoreThanItHasIsAnError) {
   TemporaryFolder folder;
   const auto number = [](std::uint32_t value) {
@@ -189,7 +189,8 @@ TEST(Exr, AnAttributeThatClaimsMoreThanItHasIsAnError) {
   }
 }
 
-// The library would read on behind it, the core would not: as the last attribute of a header that has all others.
+// The library would read past the end of this list; the core would not. The list is the last attribute of a header that
+// has all others.
 TEST(Exr, AListOfChannelsWithoutItsEndIsAnError) {
   TemporaryFolder folder;
   std::string bytes = encode_exr(speaking_image(4, 3));
@@ -219,8 +220,8 @@ TEST(Png, IsClampedAndFollowsTheSrgbCurve) {
   Image image = flat_image(4, 1, 0.0f);
   const std::vector<float> reds = {0.5f, 2.0f, -1.0f, nan};
   for (std::size_t i = 0; i < 4; ++i) image.rgba[4 * i] = reds[i];
-  image.rgba[1] = 1.0f;        // white level
-  image.rgba[2] = 0.0031308f;  // where the curve's two parts meet: 255 * 12.92 * 0.0031308 = 10.3
+  image.rgba[1] = 1.0f;        // white
+  image.rgba[2] = 0.0031308f;  // where the two parts of the curve meet: 255 * 12.92 * 0.0031308 = 10.3
   const Rgb8 rgb = decode_png(encode_png(image));
   EXPECT_EQ(rgb.width, 4u);
   EXPECT_EQ(rgb.height, 1u);

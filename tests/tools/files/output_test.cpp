@@ -61,7 +61,8 @@ TEST(OutputFolder, AFailureLeavesNothingNew) {
   EXPECT_EQ(folder.list(), Names{"taken/"});
 }
 
-// At no moment do a file and what speaks of an earlier one stand side by side; nor is the latter lost for nothing.
+// A new file and an old report about its predecessor never exist at the same time, and the old report is not removed if
+// the new file cannot be written.
 TEST(OutputFolder, WhatIsOutdatedGoesWhenTheNewFileIsReadyAndBeforeItAppears) {
   TemporaryFolder folder;
   InterruptGate gate;
@@ -83,13 +84,13 @@ TEST(OutputFolder, IsLockedAgainstOthers) {
   const auto expect_locked = [&](auto call) {
     try {
       call();
-      ADD_FAILURE() << "not locked";
+      ADD_FAILURE() << "the folder is not locked";
     } catch (const std::runtime_error& error) {
       EXPECT_EQ(error.what(), (folder / "a").string() + ": is being written by another program");
     }
   };
   OutputFolder early(folder / "a", gate), late(folder / "a", gate);
-  early.lock();  // as long as the folder does not exist, both may
+  early.lock();  // both locks are possible as long as the folder does not exist
   {
     OutputFolder output(folder / "a", gate);
     output.lock();
@@ -136,7 +137,8 @@ TEST(RequireWritableFolder, RefusesNamesThatNoFileCanHave) {
   TemporaryFolder folder;
   EXPECT_THROW(require_writable_folder(folder / std::string(256, 'x') / "below"), std::runtime_error);
   require_writable_file(folder / "new" / std::string(251, 'x'));
-  EXPECT_THROW(require_writable_file(folder / "new" / std::string(252, 'x')), std::runtime_error) << "with .tmp";
+  EXPECT_THROW(require_writable_file(folder / "new" / std::string(252, 'x')), std::runtime_error)
+      << "the temporary name, with .tmp, is too long";
 }
 
 TEST(RequireWritableFolder, RefusesWhatIsInTheWay) {

@@ -1,4 +1,4 @@
-// Plots: means over reports, labels that keep clear of each other, and the files that gnuplot makes of them.
+// Plots: means over reports, labels that do not cover each other, and the files that gnuplot draws.
 
 #include "tools/report/plot.h"
 
@@ -16,7 +16,7 @@
 namespace beampipe {
 namespace {
 
-// A report of msaa:1, msaa:8 and one technique, as `compare` writes it.
+// A report of `compare` on msaa:1, msaa:8 and one other technique.
 std::string report_text(const std::string& spec, int bytes, double emr, double rmse, double ms,
                         const std::string& more = "") {
   const auto result = [](const std::string& name, int size, double n, double error, double time,
@@ -80,7 +80,7 @@ TEST_F(PlotTest, SeveralReportsGiveGeometricMeansAndTheirBounds) {
 
   const ReportFile other = read_report(make_report("c", report_text("alpha", 10, 4, 0.01, 50)));
   const std::vector<TechniqueSummary> common = mean_summaries({reports[0], other});
-  ASSERT_EQ(common.size(), 2u) << "only what all reports have";
+  ASSERT_EQ(common.size(), 2u) << "only techniques that are in all reports";
   EXPECT_EQ(common[0].spec, "msaa:8");
 }
 
@@ -144,7 +144,7 @@ TEST_F(PlotTest, PngDecodesAndIsNotBlank) {
   std::vector<std::uint8_t> rgb(PNG_IMAGE_SIZE(png));
   ASSERT_TRUE(png_image_finish_read(&png, nullptr, rgb.data(), 0, nullptr)) << png.message;
   EXPECT_EQ(png.width, 1520u);
-  EXPECT_EQ(rgb[0], 255) << "white in the corner";
+  EXPECT_EQ(rgb[0], 255) << "the corner is white";
   EXPECT_GT(std::count_if(rgb.begin(), rgb.end(), [](std::uint8_t c) { return c < 128; }), 2000);
 }
 
@@ -178,7 +178,7 @@ TEST_F(PlotTest, ErrorsAreOneLine) {
   EXPECT_FALSE(std::filesystem::exists(folder_ / "p.svg"));
 }
 
-// Of a gnuplot that never ends, nothing is left: no process and no file.
+// If gnuplot never ends and the program is interrupted, no process and no file is left.
 TEST_F(PlotTest, AnInterruptEndsGnuplotToo) {
   make_report("a", report_text("beam", 42, 100, 0.01, 50));
   std::filesystem::create_directory(folder_ / "temporary");
@@ -199,7 +199,7 @@ TEST_F(PlotTest, AnInterruptEndsGnuplotToo) {
     EXPECT_EQ(program.wait().exit_code, 128 + SIGTERM);
   }
   const auto runs = [process = "/proc/" + std::to_string(std::stoi(read_text(folder_ / "pid")))] {
-    std::string command;  // of a process that is no more, empty
+    std::string command;  // empty for a process that has ended
     return static_cast<bool>(std::getline(std::ifstream(process + "/cmdline"), command));
   };
   for (int i = 0; i < 500 && runs(); ++i) pause();

@@ -1,4 +1,4 @@
-// The parts of the report page on a report that is small enough to work out by hand.
+// The parts of the report page, for a report whose numbers can be computed by hand.
 
 #include "tests/tools/fixtures.h"
 #include "tools/files/image_io.h"
@@ -10,7 +10,7 @@
 namespace beampipe {
 namespace {
 
-// Two frames of one technique with one stage, and the reference.
+// A report with two frames of one technique, which has one stage, and of the reference.
 constexpr const char* kReport = R"({"beampipe_report": 1, "trace": "dots.json", "threads": 1, "simd": "AVX2",
   "hardware": {"clock_mhz": 1000, "rates": {"issue_per_clk": 100, "dram_bytes_per_clk": 10},
                "implementations": {"shaders": {}}},
@@ -73,7 +73,7 @@ TEST_F(ReportParts, StagesAreSummedOverFrames) {
   EXPECT_EQ(cell(stages, 0, "ops_per_byte"), 4.0);
   EXPECT_EQ(cell(stages, 0, "lane_use"), 0.25);
   EXPECT_EQ(cell(stages, 0, "modelled_ms_shaders"), 0.8);
-  EXPECT_EQ(cell(stages, 0, "sector_bytes"), "no such column") << "what the report has not is left out";
+  EXPECT_EQ(cell(stages, 0, "sector_bytes"), "no such column") << "columns without values are left out";
   const Table& frames = named(tables, "frames");
   ASSERT_EQ(frames.rows.size(), 4u);
   EXPECT_EQ(cell(frames, 1, "modelled_ms_shaders_sum"), 5);
@@ -87,8 +87,9 @@ TEST_F(ReportParts, TechniquesHaveTimesBoundsAndWhatMsaaWouldTake) {
   EXPECT_EQ(cell(techniques, 0, "wall_ms"), 6.0);
   EXPECT_EQ(cell(techniques, 0, "modelled_ms_shaders_overlap"), 3.0);
   EXPECT_EQ(cell(techniques, 0, "modelled_ms_shaders_sum"), 4.0);
-  EXPECT_EQ(cell(techniques, 0, "dram_bytes"), 1000.0) << "the mean of the frames";
-  EXPECT_TRUE(cell(techniques, 1, "modelled_ms_shaders_overlap").is_null()) << "the reference runs on no hardware";
+  EXPECT_EQ(cell(techniques, 0, "dram_bytes"), 1000.0) << "the mean over the frames";
+  EXPECT_TRUE(cell(techniques, 1, "modelled_ms_shaders_overlap").is_null())
+      << "no hardware is modelled for the reference";
   EXPECT_EQ(cell(techniques, 0, "emr_bound"), "at least");
   EXPECT_EQ(cell(techniques, 0, "peak_bytes_per_pixel"), 49);
   EXPECT_EQ(cell(techniques, 0, "msaa_bytes_per_pixel"), 80.0);
@@ -171,8 +172,8 @@ TEST_F(ReportParts, LayersHoldThePicturesAndTheCounters) {
   const std::string page = page_html(hostile, report_tables(hostile), report_figures(hostile), layers);
   std::size_t ends = 0;
   for (std::size_t at = page.find("</script>"); at != page.npos; at = page.find("</script>", at + 1)) ++ends;
-  EXPECT_EQ(ends, 3u) << "what the report says cannot end a script";
-  EXPECT_EQ(page.find("{{"), page.npos) << "every place is filled";
+  EXPECT_EQ(ends, 3u) << "text from the report cannot end a script";
+  EXPECT_EQ(page.find("{{"), page.npos) << "all places are filled";
 }
 
 }  // namespace

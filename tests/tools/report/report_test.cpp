@@ -53,7 +53,7 @@ TEST(ReportJson, HasTheKeysOfTheContract) {
   EXPECT_EQ(result["framebuffer_bytes_per_pixel"], 80);
   EXPECT_EQ(result["peak_bytes_per_pixel"], 80 + 600.0 / 50) << "the A-buffer of the frame where it is largest";
   EXPECT_EQ(result["framebuffer"].at(1), (Json{{"name", "color"}, {"format", "RGB16F x 8"}, {"bytes_per_pixel", 48}}));
-  EXPECT_EQ(result["a_buffer_peak_bytes"], 600) << "the most of all frames";
+  EXPECT_EQ(result["a_buffer_peak_bytes"], 600) << "the largest of all frames";
   const Json& frame = result["frames"].at(1);
   EXPECT_EQ(frame["index"], 5);
   EXPECT_EQ(frame["image"], "msaa_8/frame_0005.exr");
@@ -70,7 +70,7 @@ TEST(ReportJson, HasTheKeysOfTheContract) {
                       {"l2_bytes", 112},         {"dram_bytes", 96},      {"lanes_used", 3},      {"lanes_issued", 4},
                       {"hidden_items", 5},       {"hidden_triangles", 6}, {"empty_tiles", 7}};
   EXPECT_EQ(frame["stages"].at(0), stage);
-  EXPECT_EQ(frame["logical_bytes"], 116) << "of all stages";
+  EXPECT_EQ(frame["logical_bytes"], 116) << "the sum over all stages";
   EXPECT_EQ(frame["sector_bytes"], 128);
   EXPECT_EQ(frame["l2_bytes"], 112);
   EXPECT_EQ(frame["dram_bytes"], 96);
@@ -78,7 +78,7 @@ TEST(ReportJson, HasTheKeysOfTheContract) {
                                             {{"name", "color"}, {"peak_bytes", 50 * 48}, {"held", "frame"}},
                                             {{"name", "a_buffer"}, {"peak_bytes", 500}, {"held", "frame"}},
                                             {{"name", "pairs"}, {"peak_bytes", 64}, {"held", "bin"}}})));
-  EXPECT_FALSE(frame.contains("modelled_ms")) << "there is no hardware";
+  EXPECT_FALSE(frame.contains("modelled_ms")) << "no hardware is modelled";
   EXPECT_EQ(frame["pixel_counters"], (Json{{"fragments", {{"mean", 1.5}, {"max", 4.0}}}}));
   const Json& memory = json["memory_system"];
   EXPECT_EQ(memory["modelled"], true);

@@ -24,7 +24,7 @@ TEST(SavedWork, IsFoundFromTheStages) {
   fragment.items_in = 9, fragment.items_out = 7;
   composition.items_in = 7 + 2;
   Amounts expected = {{"hidden_pairs", 5}, {"hidden_triangles", 4}, {"empty_tiles", 3}};
-  EXPECT_EQ(saved_by({raster, fragment, buffer, composition}), expected) << "as published: fragments are sorted";
+  EXPECT_EQ(saved_by({raster, fragment, buffer, composition}), expected) << "published rules: fragments are sorted";
   expected["whole_pixels"] = 2, expected["pairs_behind_closed"] = 15 - 9 - 2;
   EXPECT_EQ(saved_by({raster, buffer, fragment, composition}), expected);
   raster.stage = "sample_raster";

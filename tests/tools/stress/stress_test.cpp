@@ -1,4 +1,4 @@
-// The hard cases against exact arithmetic, and that arithmetic against closed forms.
+// Compares techniques with exact arithmetic in the hard cases, and exact arithmetic with closed forms.
 
 #include <gtest/gtest.h>
 
@@ -20,13 +20,14 @@ void expect_pixel(const glm::dvec4& found, const glm::dvec4& expected) {
 }
 
 TEST(Exact, AreasOfHalfAndOfCrossingTriangles) {
-  // The lower left half; then one whole pixel cut by depth along x = 1/4: the nearer part of the second is its left.
+  // First a triangle over the lower left half; then two that cover the whole pixel and intersect at x = 1/4. The second
+  // one is nearer on the left.
   const Trace half = pixel_trace(1, 1, {{{{0, 0, 0.5}, {0, 1, 0.5}, {1, 1, 0.5}}, kWhite}});
   expect_pixel(exact_areas(half, half.frames[0]).at(0, 0), {0.5, 0.5, 0.5, 0.5});
   const Trace cross = pixel_trace(1, 1,
                                   {{{{-1, -1, 0.5}, {3, -1, 0.5}, {-1, 3, 0.5}}, {1, 0, 0}},
                                    {{{-1, -1, 0.1875}, {3, -1, 1.1875}, {-1, 3, 0.1875}}, {0, 1, 0}}});
-  // z of the second: 0.1875 + (x + 1) / 4; it crosses 0.5 at x = 0.25 (and the far plane beyond the pixel).
+  // z of the second is 0.1875 + (x + 1) / 4. It is 0.5 at x = 0.25, and reaches the far plane only outside the pixel.
   expect_pixel(exact_areas(cross, cross.frames[0]).at(0, 0), {0.75, 0.25, 0, 1});
 }
 
@@ -37,7 +38,7 @@ TEST(Exact, EqualDepthIsTheEarliersAndEdgesAreTopLeft) {
   const Trace same = pixel_trace(1, 1, {first, second});
   expect_pixel(exact_areas(same, same.frames[0]).at(0, 0), {1, 0, 0, 1});
   expect_pixel(exact_samples(same, same.frames[0], {{128, 128}}).at(0, 0), {1, 0, 0, 1});
-  // Two halves share the edge x = 1/2, on which the sample lies: it is the right one's left edge.
+  // Two halves share the edge x = 1/2, on which the sample lies. It is the left edge of the right one.
   const Trace halves = pixel_trace(1, 1,
                                    {{{{0.5, -4, 0.5}, {0.5, 4, 0.5}, {-4, 0, 0.5}}, {1, 0, 0}},
                                     {{{0.5, -4, 0.5}, {0.5, 4, 0.5}, {5, 0, 0.5}}, {0, 1, 0}}});
@@ -45,12 +46,12 @@ TEST(Exact, EqualDepthIsTheEarliersAndEdgesAreTopLeft) {
 }
 
 TEST(Exact, ClipsAtTheNearPlane) {
-  // z = 2 x - 1: the left half of the pixel lies before the near plane.
+  // z = 2 x - 1, so that the left half of the pixel is in front of the near plane.
   const Trace trace = pixel_trace(1, 1, {{{{-3, -3, -7}, {5, -3, 9}, {-3, 5, -7}}, kWhite}});
   expect_pixel(exact_areas(trace, trace.frames[0]).at(0, 0), {0.5, 0.5, 0.5, 0.5});
 }
 
-// The part of the unit square where a x + b y >= c, by clipping.
+// The area of the unit square where a x + b y >= c, computed by clipping.
 double part_beyond(double a, double b, double c) {
   const glm::dvec2 square[] = {{0, 0}, {1, 0}, {1, 1}, {0, 1}};
   std::vector<glm::dvec2> kept;
