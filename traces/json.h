@@ -126,6 +126,9 @@ struct Json::Member {
   bool operator==(const Member&) const = default;
 };
 
+// The text of a JSON file: indented by two blanks, with an end of line.
+std::string json_text(const Json& json);
+
 // A JSON string with its quotes. Throws JsonError when the text is not UTF-8.
 std::string json_string(const std::string& text);
 

@@ -164,6 +164,8 @@ std::string Json::dump(int indent) const {
   return to_library(*this).dump(indent, ' ', false, Library::error_handler_t::replace);
 }
 
+std::string json_text(const Json& json) { return json.dump(2) + "\n"; }
+
 std::string json_string(const std::string& text) {
   try {
     return Library(text).dump();

@@ -5,9 +5,9 @@
 #include <memory>
 
 #include "tools/cli/commands.h"
+#include "tools/evaluate/frame_json.h"
 #include "tools/evaluate/metrics.h"
 #include "tools/files/image_io.h"
-#include "tools/report/report_json.h"
 
 namespace beampipe {
 namespace {

@@ -6,8 +6,8 @@
 #include <memory>
 
 #include "tools/cli/commands.h"
-#include "tools/report/report_json.h"
 #include "tools/report/report_text.h"
+#include "traces/json.h"
 #include "traces/trace_io.h"
 
 namespace beampipe {

@@ -5,8 +5,8 @@
 #include <map>
 
 #include "simd/target.h"
+#include "tools/evaluate/frame_json.h"
 #include "tools/files/digest.h"
-#include "tools/report/report_json.h"
 #include "traces/trace_io.h"
 
 namespace beampipe {

@@ -2,76 +2,11 @@
 
 #include <algorithm>
 
-#include "stages/cost/counters.h"
 #include "tools/claims/claims.h"
-#include "tools/report/saved_work.h"
+#include "tools/evaluate/frame_json.h"
 
 namespace beampipe {
 namespace {
-
-// In "buffers".
-constexpr const char *kABuffer = "a_buffer", *kHeldByBin = "bin";
-
-// Where a counter stands in the JSON of a stage: "ops.add" is the key "add" of the object "ops".
-std::pair<std::string_view, std::string_view> keys_of(const CounterInfo& counter) {
-  const std::string_view name = counter.name;
-  const std::size_t dot = name.find('.');
-  return dot == name.npos ? std::pair(std::string_view(), name) : std::pair(name.substr(0, dot), name.substr(dot + 1));
-}
-
-Json to_json(const StageCounters& stage) {
-  Json json = {{"stage", stage.stage}};
-  for (const CounterInfo& counter : stage_counters()) {
-    const auto [group, key] = keys_of(counter);
-    Json& object = group.empty() ? json : json[group];
-    object[key] = std::uint64_t{counter.value(stage)};
-  }
-  return json;
-}
-
-StageCounters stage_of(const Json& json) {
-  StageCounters stage{json.at("stage").get<std::string>()};
-  for (const CounterInfo& counter : stage_counters()) {
-    const auto [group, key] = keys_of(counter);
-    const Json& object = group.empty() ? json : json.at(group);
-    if (Count* stored = counter.stored(stage)) *stored = object.at(key).get<std::uint64_t>();
-  }
-  return stage;
-}
-
-Json to_json(const WallTime& wall) {
-  Json json = {{"median", wall.median},
-               {"min", wall.min},
-               {"max", wall.max},
-               {"runs", wall.runs},
-               {"with_memory_model", wall.with_memory_model}};
-  if (wall.modelling_run) json["modelling_run"] = *wall.modelling_run;
-  return json;
-}
-
-WallTime wall_time_of(const Json& json) {
-  WallTime wall{.median = json.at("median").get<double>(),
-                .min = json.at("min").get<double>(),
-                .max = json.at("max").get<double>(),
-                .runs = json.at("runs").get<int>(),
-                .with_memory_model = json.at("with_memory_model").get<bool>()};
-  if (const Json* modelling_run = json.find("modelling_run")) wall.modelling_run = modelling_run->get<double>();
-  return wall;
-}
-
-// All buffers of the frame at their peak: the framebuffer's surfaces, the A-buffer and others.
-Json buffers_json(const TechniqueReport& result, const FrameReport& frame) {
-  std::vector<Buffer> buffers;
-  for (const Surface& surface : result.framebuffer)
-    buffers.push_back({surface.name, surface.bytes_per_pixel * frame.pixels});
-  if (frame.a_buffer_peak_bytes > 0) buffers.push_back({kABuffer, frame.a_buffer_peak_bytes});
-  buffers.insert(buffers.end(), frame.buffers.begin(), frame.buffers.end());
-  Json json = Json::array();
-  for (const Buffer& buffer : buffers)
-    json.push_back(
-        {{"name", buffer.name}, {"peak_bytes", buffer.peak_bytes}, {"held", buffer.per_bin ? kHeldByBin : "frame"}});
-  return json;
-}
 
 Json to_json(const TechniqueReport& result, const Hardware& hardware) {
   Json json = {{"technique", result.technique},
@@ -98,7 +33,7 @@ Json to_json(const TechniqueReport& result, const Hardware& hardware) {
     json["orders"]["largest_difference"] = result.order_difference;
   }
   json["frames"] = Json::array();
-  for (const FrameReport& frame : result.frames) json["frames"].push_back(to_json(frame, result, hardware));
+  for (const FrameReport& frame : result.frames) json["frames"].push_back(beampipe::to_json(frame, result, hardware));
   return json;
 }
 
@@ -114,61 +49,6 @@ Json to_json(const MemoryParameters& memory) {
 }
 
 }  // namespace
-
-Json to_json(const ErrorStats& stats) {
-  return {{"rmse", stats.rmse}, {"bias", stats.bias}, {"p99", stats.p99}, {"max", stats.max}};
-}
-
-Json to_json(const FrameReport& frame, const TechniqueReport& result, const Hardware& hardware) {
-  Json json = {{"index", frame.index}, {"image", frame.image}, {"picture", frame.picture}};
-  if (!frame.counters.empty()) json["counters"] = frame.counters;
-  if (frame.error) json["error"] = beampipe::to_json(*frame.error);
-  if (frame.flicker) json["flicker"] = *frame.flicker;
-  json["wall_ms"] = to_json(frame.wall_ms);
-  json["a_buffer_peak_bytes"] = frame.a_buffer_peak_bytes;
-  StageCounters all;
-  for (const StageCounters& stage : frame.stages) all += stage;
-  const Json sums = to_json(all);
-  for (const char* column : {"logical_bytes", "sector_bytes", "l2_bytes", "dram_bytes"}) json[column] = sums.at(column);
-  json["buffers"] = buffers_json(result, frame);
-  for (const auto& [name, stats] : frame.pixel_counters)
-    json["pixel_counters"][name] = {{"mean", stats.mean}, {"max", stats.max}};
-  for (const SavedWork& saved : saved_work(frame.stages)) json["saved"][saved.name] = saved.amount;
-  json["stages"] = Json::array();
-  for (const StageCounters& stage : frame.stages) json["stages"].push_back(to_json(stage));
-  if (all.sector_bytes == 0) return json;  // the reference models no memory, and times without it would mean nothing
-  for (const Implementation& implementation : hardware.implementations) {
-    const ModelledTime time = modelled_time(hardware, implementation, frame.stages);
-    json["modelled_ms"][implementation.name] = {
-        {"overlap", time.overlap_ms}, {"sum", time.sum_ms}, {"busiest", time.busiest}};
-    for (std::size_t i = 0; i < time.stages.size(); ++i)
-      json["stages"][i]["modelled_ms"][implementation.name] = time.stages[i];
-  }
-  return json;
-}
-
-FrameReport frame_of(const Json& json) {
-  FrameReport frame;
-  frame.index = json.at("index").get<std::size_t>();
-  frame.image = json.at("image").get<std::string>();
-  frame.picture = json.at("picture").get<std::string>();
-  frame.counters = json.value("counters", std::string());
-  if (const Json* error = json.find("error"))
-    frame.error = {error->at("rmse").get<double>(), error->at("bias").get<double>(), error->at("p99").get<double>(),
-                   error->at("max").get<double>()};
-  if (const Json* flicker = json.find("flicker")) frame.flicker = flicker->get<double>();
-  frame.wall_ms = wall_time_of(json.at("wall_ms"));
-  frame.a_buffer_peak_bytes = json.at("a_buffer_peak_bytes").get<std::uint64_t>();
-  for (const Json& buffer : json.at("buffers").elements())
-    if (buffer.at("name") != kABuffer)
-      frame.buffers.push_back({buffer.at("name").get<std::string>(), buffer.at("peak_bytes").get<std::uint64_t>(),
-                               buffer.at("held") == kHeldByBin});
-  if (const Json* counters = json.find("pixel_counters"))
-    for (const auto& [name, stats] : counters->members())
-      frame.pixel_counters[name] = {stats.at("mean").get<double>(), stats.at("max").get<double>()};
-  for (const Json& stage : json.at("stages").elements()) frame.stages.push_back(stage_of(stage));
-  return frame;
-}
 
 Json to_json(const Report& report) {
   Json json = {{"beampipe_report", 1}, {"trace", report.trace},     {"version", report.version},
@@ -187,7 +67,5 @@ Json to_json(const Report& report) {
   for (const Claim& claim : answered_claims(report)) json["claims"].push_back(to_json(claim));
   return json;
 }
-
-std::string json_text(const Json& json) { return json.dump(2) + "\n"; }
 
 }  // namespace beampipe

@@ -5,7 +5,7 @@
 
 #include "pipeline/technique.h"
 #include "stages/cost/counter_registry.h"
-#include "tools/report/saved_work.h"
+#include "tools/evaluate/saved_work.h"
 
 namespace beampipe {
 namespace {

@@ -1,4 +1,4 @@
-#include "tools/report/saved_work.h"
+#include "tools/evaluate/saved_work.h"
 
 #include <gtest/gtest.h>
 

@@ -1,0 +1,21 @@
+// The JSON of one frame's results, as report.json and the records of unfinished runs contain it.
+#pragma once
+
+#include "tools/evaluate/hardware.h"
+#include "tools/evaluate/metrics.h"
+#include "tools/evaluate/results.h"
+#include "traces/json.h"
+
+namespace beampipe {
+
+Json to_json(const ErrorStats& stats);
+
+// A frame, as in report.json. The framebuffer of `technique` and times modelled for `hardware` are included; both may
+// be empty.
+Json to_json(const FrameReport& frame, const TechniqueReport& technique, const Hardware& hardware);
+
+// Reads back a frame that was written with an empty framebuffer, except for `pixels`, which is not in the JSON. Throws
+// JsonError if a key is missing or a value has the wrong type.
+FrameReport frame_of(const Json& json);
+
+}  // namespace beampipe
