@@ -168,7 +168,7 @@ TEST_F(PlotTest, ErrorsAreOneLine) {
                "empty/report.json: expected a readable file, found none");
   expect_error({"plot", path("broken"), "-o", path("p.svg")}, 1, "broken/report.json: byte 24: expected valid JSON");
   expect_error({"plot", path("other"), "-o", path("p.svg")}, 1, "not a report of beampipe");
-  expect_error({"plot", path("run"), "-o", path("p.svg")}, 1, "expected the report of `beampipe compare`");
+  expect_error({"plot", path("run"), "-o", path("p.svg")}, 1, "expected a report of `beampipe compare`");
   expect_error({"plot", path("good"), "--kind", "pie", "-o", path("p.svg")}, 2, "pie");
 
   const std::string search_path = getenv("PATH");
