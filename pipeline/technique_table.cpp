@@ -1,18 +1,20 @@
 #include "pipeline/technique_table.h"
 
-#include "pipeline/techniques/acaa.h"
-#include "pipeline/techniques/beam.h"
-#include "pipeline/techniques/beam_paper.h"
-#include "pipeline/techniques/beam_stream.h"
-#include "pipeline/techniques/deferred.h"
-#include "pipeline/techniques/dvm.h"
-#include "pipeline/techniques/msaa.h"
-#include "pipeline/techniques/reference.h"
-#include "pipeline/techniques/taa.h"
-#include "pipeline/techniques/visibility.h"
-#include "pipeline/techniques/z3.h"
-
 namespace beampipe {
+
+// Each is defined in the file of its name in pipeline/techniques/.
+TechniqueKind beam_kind();
+TechniqueKind beam_stream_kind();
+TechniqueKind beam_paper_kind();
+TechniqueKind alpha_kind();  // in beam_paper.cpp
+TechniqueKind z3_kind();
+TechniqueKind msaa_kind();
+TechniqueKind acaa_kind();
+TechniqueKind deferred_kind();
+TechniqueKind visibility_kind();
+TechniqueKind taa_kind();
+TechniqueKind dvm_kind();
+TechniqueKind reference_kind();
 
 const std::vector<TechniqueKind>& technique_kinds() {
   static const std::vector<TechniqueKind> kinds = {

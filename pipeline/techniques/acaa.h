@@ -4,7 +4,7 @@
 #pragma once
 
 #include "pipeline/sampling.h"
-#include "pipeline/technique_table.h"
+#include "pipeline/technique.h"
 #include "stages/samples/accumulate.h"
 
 namespace beampipe {
@@ -16,7 +16,5 @@ struct AcaaOptions {
   DoubleCounting double_counting = DoubleCounting::none;
   AccumulatorFormat color = AccumulatorFormat::fp16;
 };
-
-TechniqueKind acaa_kind();
 
 }  // namespace beampipe

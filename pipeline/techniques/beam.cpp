@@ -1,17 +1,24 @@
-#include "pipeline/techniques/beam.h"
-
+// The beam in sorted order. An A-buffer sorts the pairs of each pixel by depth. Window by window, near to far, pairs
+// become shaded fragments and are composed, until the pixel is closed.
 #include <stdexcept>
 #include <string>
 
 #include "pipeline/bins/bin_weights.h"
 #include "pipeline/bins/render_bins.h"
+#include "pipeline/technique_table.h"
 #include "pipeline/units/a_buffer_unit.h"
 #include "pipeline/units/compose_units.h"
 #include "pipeline/units/fragment_units.h"
 #include "pipeline/units/raster_units.h"
+#include "stages/data/beam_aggregate.h"
 
 namespace beampipe {
 namespace {
+
+struct BeamOptions {
+  int positions = 256;  // of the mask: 32, 64, 128 or 256
+  Storage storage = Storage::packed;
+};
 
 std::vector<Surface> beam_framebuffer(const BeamOptions& beam) {
   const auto mask_bytes = static_cast<std::uint32_t>(beam.positions) / 8;

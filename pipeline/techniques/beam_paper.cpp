@@ -1,18 +1,37 @@
-#include "pipeline/techniques/beam_paper.h"
-
+// The beam pipeline as published (Crassin et al. 2018). Conservative raster makes pairs; they become fragments with
+// analytic coverage and a localization mask, are shaded, sorted in an A-buffer, and merged near to far into one
+// aggregate per pixel.
 #include <algorithm>
 #include <string>
 
 #include "pipeline/bins/bin_weights.h"
 #include "pipeline/bins/render_bins.h"
+#include "pipeline/technique_table.h"
 #include "pipeline/units/a_buffer_unit.h"
 #include "pipeline/units/compose_units.h"
 #include "pipeline/units/fragment_units.h"
 #include "pipeline/units/raster_units.h"
+#include "stages/beam/a_buffer.h"
+#include "stages/beam/beam_fragment.h"
 #include "stages/beam/compose_paper.h"
+#include "stages/data/paper_aggregate.h"
 
 namespace beampipe {
 namespace {
+
+enum class Rules {
+  paper,  // simd/merge.h: the published rules
+  over,   // alpha OVER without masks and slabs, to show what those are worth
+};
+
+struct PaperOptions {
+  Rules rules = Rules::paper;
+  MaskSource mask = MaskSource::table;  // MaskSource::none with Rules::over
+  SortKey sort = SortKey::centroid;
+  int tiny_positions = 0;  // BeamFragmentOptions::tiny_positions
+  MergeRules merge{};
+  PaperStorage storage = PaperStorage::slides;
+};
 
 std::vector<Surface> paper_framebuffer(const PaperOptions& beam) {
   const Surface color{"color", "RGB16F", kAggregateColorBytes}, coverage{"coverage", "R32F", 4};

@@ -1,15 +1,23 @@
-#include "pipeline/techniques/beam_stream.h"
-
+// The beam in streaming order: fragments come in primitive order, without an A-buffer or any memory per fragment. A
+// pixel keeps only its state (stages/data/owner_pixel.h). A pixel that shows more surfaces than it has layers takes
+// further passes over the geometry; each pass settles the nearest surfaces that are left.
 #include <stdexcept>
 #include <string>
 
 #include "pipeline/bins/render_bins.h"
+#include "pipeline/technique_table.h"
 #include "pipeline/units/fragment_units.h"
 #include "pipeline/units/layer_units.h"
 #include "pipeline/units/raster_units.h"
 
 namespace beampipe {
 namespace {
+
+struct StreamOptions {
+  int positions = 128;  // 32, 64, 128 or 256
+  int layers = 5;       // 1 or 5
+  int passes = 0;       // the most passes; 0: until every pixel is settled
+};
 
 std::vector<Surface> stream_framebuffer(const StreamOptions& stream) {
   const auto words = static_cast<std::uint32_t>(stream.positions / 32),

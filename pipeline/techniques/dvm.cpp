@@ -3,6 +3,7 @@
 #include <limits>
 
 #include "pipeline/bins/render_bins.h"
+#include "pipeline/technique_table.h"
 #include "pipeline/techniques/visibility.h"
 #include "pipeline/units/temporal_units.h"
 #include "stages/picture/shade.h"

@@ -3,7 +3,7 @@
 // masks, and accumulated over time.
 #pragma once
 
-#include "pipeline/technique_table.h"
+#include "pipeline/technique.h"
 #include "stages/samples/materials.h"
 #include "stages/samples/sample_select.h"
 
@@ -21,7 +21,5 @@ struct DvmOptions {
 
 // Technique::working_bytes_per_pixel. A quad has four pixels.
 inline constexpr std::uint32_t kDvmWorkingBytes = kTemporalWorkingBytes + sizeof(SampleQuad) / 4;
-
-TechniqueKind dvm_kind();
 
 }  // namespace beampipe

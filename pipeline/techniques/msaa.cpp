@@ -3,6 +3,7 @@
 #include <string>
 
 #include "pipeline/bins/render_bins.h"
+#include "pipeline/technique_table.h"
 #include "pipeline/units/depth_test_unit.h"
 #include "pipeline/units/fragment_units.h"
 #include "pipeline/units/raster_units.h"

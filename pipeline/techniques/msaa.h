@@ -3,7 +3,7 @@
 #pragma once
 
 #include "pipeline/sampling.h"
-#include "pipeline/technique_table.h"
+#include "pipeline/technique.h"
 #include "stages/samples/shading_point.h"
 
 namespace beampipe {
@@ -16,7 +16,5 @@ struct MsaaOptions {
   ShadeAt at = ShadeAt::centre;
   bool prepass = false;  // a depth pass first, so that only visible fragments are shaded. The picture is the same.
 };
-
-TechniqueKind msaa_kind();
 
 }  // namespace beampipe

@@ -1,6 +1,7 @@
 #include "pipeline/techniques/taa.h"
 
 #include "pipeline/bins/render_bins.h"
+#include "pipeline/technique_table.h"
 #include "pipeline/techniques/visibility.h"
 #include "pipeline/units/temporal_units.h"
 #include "stages/picture/shade.h"

@@ -3,7 +3,7 @@
 // as summed up in the DVM article).
 #pragma once
 
-#include "pipeline/technique_table.h"
+#include "pipeline/technique.h"
 
 namespace beampipe {
 
@@ -13,7 +13,5 @@ struct TaaOptions {
   int samples = 8;  // jitter positions: 1, 2, 4, 8 or 16
   float blend = 0.1f;
 };
-
-TechniqueKind taa_kind();
 
 }  // namespace beampipe

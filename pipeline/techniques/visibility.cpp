@@ -1,6 +1,7 @@
 #include "pipeline/techniques/visibility.h"
 
 #include "pipeline/bins/render_bins.h"
+#include "pipeline/technique_table.h"
 #include "pipeline/techniques/deferred.h"
 #include "pipeline/units/gbuffer_unit.h"
 #include "pipeline/units/raster_units.h"

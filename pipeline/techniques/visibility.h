@@ -5,12 +5,10 @@
 #include <vector>
 
 #include "pipeline/bins/bin.h"
-#include "pipeline/technique_table.h"
+#include "pipeline/technique.h"
 #include "pipeline/units/depth_test_unit.h"
 
 namespace beampipe {
-
-TechniqueKind visibility_kind();
 
 // ---- Steps that other techniques share ----
 

@@ -1,15 +1,23 @@
-#include "pipeline/techniques/z3.h"
-
+// Z3 (Jouppi and Chang 1999), an earlier way to do without an A-buffer. Fragments go in primitive order into a few
+// layers per pixel; when there are too many, two layers are merged (stages/beam/compose_z3.h).
 #include <stdexcept>
 #include <string>
 
 #include "pipeline/bins/render_bins.h"
+#include "pipeline/technique_table.h"
 #include "pipeline/units/fragment_units.h"
 #include "pipeline/units/layer_units.h"
 #include "pipeline/units/raster_units.h"
+#include "stages/beam/compose_z3.h"
 
 namespace beampipe {
 namespace {
+
+struct Z3Options {
+  int positions = 32;  // together with `layers` one of BEAMPIPE_Z3_PIXELS
+  int layers = 3;
+  LayerMerge merge = LayerMerge::depth;
+};
 
 std::vector<Surface> z3_framebuffer(const Z3Options& z3) {
   const auto words = static_cast<std::uint32_t>(z3.positions / 32), layers = static_cast<std::uint32_t>(z3.layers);

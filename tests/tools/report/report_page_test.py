@@ -257,7 +257,7 @@ class ReportPage(unittest.TestCase):
         frugal = best([result for result in results.values() if result["peak_bytes_per_pixel"] <= 80])
         for card, result in [(cards[0], best(results.values())), (cards[-1], frugal)]:
             self.assertIn(result["technique"], card)
-            self.assertIn(f"in {number(result['peak_bytes_per_pixel'])} bytes per pixel", card)
+            self.assertIn(f"Takes {number(result['peak_bytes_per_pixel'])} bytes per pixel", card)
 
         points = dict(self.browser.run("""return [...document.querySelectorAll("[data-plot=frontier] .point")]
                                               .map((point) => [point.dataset.tip.split("\\n")[0], point.__data__.x])"""))
