@@ -105,7 +105,7 @@ TEST(Json, BrokenTextNamesTheFile) {
     parse_json_text("{\"a\": 1, \"a\": 2}", "t.json");
     ADD_FAILURE() << "a key was accepted twice";
   } catch (const TraceError& error) {
-    EXPECT_EQ(error.what(), std::string("t.json: /: expected each key once, found \"a\" again"));
+    EXPECT_EQ(error.what(), std::string("t.json: /a: expected each key once, found \"a\" again"));
   }
 }
 

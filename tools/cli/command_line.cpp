@@ -2,8 +2,38 @@
 
 #include <CLI/CLI.hpp>
 #include <optional>
+#include <type_traits>
 
 namespace beampipe {
+namespace {
+
+// Breaks the lines of a help text, which --help prints in a column.
+std::string wrapped(const std::string& text) {
+  constexpr std::size_t kWidth = 88;
+  std::string lines;
+  std::size_t start = 0;
+  while (text.size() - start > kWidth) {
+    const std::size_t end = text.rfind(' ', start + kWidth);
+    if (end == text.npos || end <= start) break;
+    lines += text.substr(start, end - start) + "\n";
+    start = end + 1;
+  }
+  return lines + text.substr(start);
+}
+
+// What --help shows as an option's value.
+template <class Value>
+const char* type_name() {
+  if constexpr (std::is_integral_v<Value> || std::is_same_v<Value, std::optional<std::uint64_t>>) {
+    return "N";
+  } else if constexpr (std::is_same_v<Value, double>) {
+    return "NUMBER";
+  } else {
+    return "TEXT";
+  }
+}
+
+}  // namespace
 
 Option& Option::required() {
   option_->required();
@@ -11,7 +41,7 @@ Option& Option::required() {
 }
 
 Option& Option::between(std::uint64_t low, std::uint64_t high) {
-  option_->check(CLI::Range(low, high));
+  option_->check(CLI::Range(low, high).description(std::to_string(low) + ".." + std::to_string(high)));
   return *this;
 }
 
@@ -20,8 +50,9 @@ Option& Option::one_of(const std::vector<std::string>& choices) {
   return *this;
 }
 
-Option& Option::bytes() {
-  option_->transform(CLI::AsSizeValue(false));
+Option& Option::bytes(std::uint64_t low, std::uint64_t high) {
+  option_->transform(CLI::AsSizeValue(false).description(""));
+  option_->check(CLI::Range(low, high).description(""))->type_name("SIZE");
   return *this;
 }
 
@@ -47,7 +78,7 @@ Option& Option::excludes(const Option& other) {
 
 template <class Value>
 Option Command::add(const std::string& names, Value& variable, const std::string& help) {
-  return Option(app_->add_option(names, variable, help));
+  return Option(app_->add_option(names, variable, wrapped(help))->type_name(type_name<Value>()));
 }
 template Option Command::add(const std::string&, std::string&, const std::string&);
 template Option Command::add(const std::string&, int&, const std::string&);
@@ -60,7 +91,7 @@ template Option Command::add(const std::string&, std::vector<double>&, const std
 template Option Command::add(const std::string&, std::vector<std::uint32_t>&, const std::string&);
 
 Option Command::add_flag(const std::string& names, bool& variable, const std::string& help) {
-  return Option(app_->add_flag(names, variable, help));
+  return Option(app_->add_flag(names, variable, wrapped(help)));
 }
 
 Command Command::add_group(const std::string& title) { return Command(app_->add_option_group(title)); }

@@ -47,8 +47,7 @@ void add_run_arguments(Command& command, RunArguments& arguments) {
            "the most memory for data of triangles and pixels, such as 512MB. A frame that needs more is rendered in "
            "bands, "
            "one after the other, with the same results (default: half of the machine's memory)")
-      .bytes()
-      .between(std::uint64_t{1} << 20, std::uint64_t{1} << 50);
+      .bytes(std::uint64_t{1} << 20, std::uint64_t{1} << 50);
   command
       .add("--repeat", arguments.repeat,
            "render each frame so many times and report the median time (default: 1). With more than one, the times do "
