@@ -24,10 +24,10 @@ using Pixels = std::vector<StoredAggregate<8, HalfBits>>;
 struct TileWork {
   Tile tile;
   TriangleList list;
-  std::vector<PixelTriangle> pairs;
+  std::vector<Pair> pairs;
   std::vector<SortRecord> records;
   ABuffer buffer;
-  std::vector<std::vector<PixelTriangle>> windows;
+  std::vector<std::vector<Pair>> windows;
   std::vector<std::vector<Fragment>> fragments;
   Pixels pixels;
 };
@@ -62,9 +62,9 @@ struct FrameWork {
     ClosedDepth closed(work.tile);
     conservative_raster(triangles, work.list, work.tile, unused, work.pairs, &closed);
     work.records = sort_records(work.pairs, work.tile);
-    work.buffer = a_buffer(work.records, work.tile.pixels(), 0, kWaitingPairBytes, unused);
-    Windows windows(work.pairs, work.buffer, kWaitingPairBytes);
-    std::vector<PixelTriangle> window, whole;
+    work.buffer = a_buffer(work.records, work.tile.pixels(), 0, kStoredPairBytes, unused);
+    Windows windows(work.pairs, work.buffer, kStoredPairBytes);
+    std::vector<Pair> window, whole;
     std::vector<float> areas;
     while (windows.next([&](std::uint32_t pixel) { return !is_closed(work.pixels[pixel]); }, unused, window, whole)) {
       std::vector<Fragment> fragments;
@@ -105,7 +105,7 @@ void run_stage(benchmark::State& state, const FrameWork& frame, Body&& body) {
 void raster(benchmark::State& state, const std::string& scene) {
   const FrameWork& frame = frame_of(scene);
   run_stage(state, frame, [&](const TileWork& work, StageCounters& counters) {
-    std::vector<PixelTriangle> pairs;
+    std::vector<Pair> pairs;
     ClosedDepth closed(work.tile);
     conservative_raster(frame.triangles, work.list, work.tile, counters, pairs, &closed);
   });
@@ -113,7 +113,7 @@ void raster(benchmark::State& state, const std::string& scene) {
 
 void sort(benchmark::State& state, const std::string& scene) {
   run_stage(state, frame_of(scene), [&](const TileWork& work, StageCounters& counters) {
-    a_buffer(sort_records(work.pairs, work.tile), work.tile.pixels(), 0, kWaitingPairBytes, counters);
+    a_buffer(sort_records(work.pairs, work.tile), work.tile.pixels(), 0, kStoredPairBytes, counters);
   });
 }
 
@@ -121,7 +121,7 @@ void fragment(benchmark::State& state, const std::string& scene) {
   const FrameWork& frame = frame_of(scene);
   run_stage(state, frame, [&](const TileWork& work, StageCounters& counters) {
     std::vector<Fragment> fragments;
-    for (const std::vector<PixelTriangle>& window : work.windows) {
+    for (const std::vector<Pair>& window : work.windows) {
       fragments.clear();
       beam_fragment(frame.triangles, window, work.tile, frame.options, counters, fragments);
     }

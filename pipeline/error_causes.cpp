@@ -151,13 +151,13 @@ std::map<std::string, std::vector<float>> error_causes(const Trace& trace, const
   const FrameContext context(trace, frame, run);
   const Comparer comparer;
   const BeamFragmentOptions options{MaskSource::exact, comparer.patterns()};
-  const BinPlan plan{.stages = {"error_causes"}, .tile_size = kTileSize, .pair_bytes = kPairBytes};
+  const BinPlan plan{.stages = {"error_causes"}, .tile_size = kTileSize, .pair_bytes = kPairWorkingBytes};
   FrameResult result = render_bins(context, plan, [&](Bin& bin) {
     const Tile& tile = bin.tile;
     StageCounters unused;
     ReferenceTile truth(tile);
     reference_raster(context.triangles, bin.list, tile, unused, truth);
-    std::vector<PixelTriangle> pairs;
+    std::vector<Pair> pairs;
     std::vector<Fragment> fragments;
     conservative_raster(context.triangles, bin.list, tile, unused, pairs);
     beam_fragment(context.triangles, pairs, tile, options, unused, fragments);

@@ -41,7 +41,7 @@ EdgeIntegral<Float> edge_integral(Float v0, Float v1, Float a, Float b, Float c,
 
 // Int holds edge values exactly. They are rounded to Float only afterwards, so that reversing an edge negates them.
 template <class Int, class Float>
-Coverage<Float> coverage_formula(const PixelTriangleOf<Int>& in) {
+Coverage<Float> coverage_formula(const TriangleInPixelOf<Int>& in) {
   const Float zero(0.0f), one(1.0f), unit(1.0f / kSubpixelUnits), unit_area(1.0f / kSubpixelUnits / kSubpixelUnits);
   Float u[3], v[3];
   for (int k = 0; k < 3; ++k) u[k] = to_float(in.x[k]) * unit, v[k] = to_float(in.y[k]) * unit;

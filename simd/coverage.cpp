@@ -13,13 +13,13 @@ namespace beampipe {
 namespace HWY_NAMESPACE {
 
 // This order: a formula finds only those above it.
-#include "simd/pixel_triangle-inl.h"
+#include "simd/triangle_in_pixel-inl.h"
 //
 #include "simd/coverage-inl.h"
 
 void coverage_kernel(const TriangleInPixel* in, std::size_t count, Coverage<float>* out) {
-  map_rows<PixelTriangleOf<Ints>>(in, count, out, [](const PixelTriangleOf<Ints>& triangle) {
-    PixelTriangleOf<Doubles> exact;
+  map_rows<TriangleInPixelOf<Ints>>(in, count, out, [](const TriangleInPixelOf<Ints>& triangle) {
+    TriangleInPixelOf<Doubles> exact;
     for (int k = 0; k < 3; ++k) exact.x[k] = Doubles(triangle.x[k]), exact.y[k] = Doubles(triangle.y[k]);
     return coverage_formula<Doubles, Floats>(exact);
   });

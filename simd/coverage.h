@@ -6,8 +6,8 @@
 
 #include <cstddef>
 
-#include "simd/pixel_triangle.h"
 #include "simd/scalar.h"
+#include "simd/triangle_in_pixel.h"
 
 namespace beampipe {
 

@@ -11,8 +11,9 @@
 
 namespace beampipe {
 
-// One pair of a pixel and a triangle. Vertices are exact. corner[k] holds the values of edge k (simd/pixel_triangle.h)
-// at the pixel's corners (0,0), (1,0), (0,1), (1,1): exact integers, rounded to float, times 2^-16.
+// One pair of a pixel and a triangle. Vertices are exact. corner[k] holds the values of edge k
+// (simd/triangle_in_pixel.h) at the pixel's corners (0,0), (1,0), (0,1), (1,1): exact integers, rounded to float, times
+// 2^-16.
 template <class Float>
 struct DepthRangeInput {
   Float u[3], v[3];  // vertices, pixels

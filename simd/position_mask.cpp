@@ -76,7 +76,7 @@ HWY_INLINE void set_mask(const EdgeInPixel<std::int64_t> (&edges)[3], const Posi
 template <std::size_t kColumns, std::size_t kRows>
 void set_masks(const TriangleInPixel* in, std::size_t count, const PositionGrid& grid, WideMask* masks) {
   for (std::size_t i = 0; i < count; ++i) {
-    PixelTriangleOf<std::int64_t> triangle;
+    TriangleInPixelOf<std::int64_t> triangle;
     for (int k = 0; k < 3; ++k) triangle.x[k] = in[i].x[k], triangle.y[k] = in[i].y[k];
     EdgeInPixel<std::int64_t> edges[3];
     bool small = true;

@@ -7,7 +7,7 @@
 
 #include <cstddef>
 
-#include "simd/pixel_triangle.h"
+#include "simd/triangle_in_pixel.h"
 #include "simd/wide_mask.h"
 
 namespace beampipe {
@@ -27,7 +27,7 @@ void position_masks(const TriangleInPixel* in, std::size_t count, const Position
 
 // The scalar twin. Int is std::int64_t or a counting number.
 template <class Int>
-WideMask position_mask_scalar(const PixelTriangleOf<Int>& in, const PositionGrid& grid) {
+WideMask position_mask_scalar(const TriangleInPixelOf<Int>& in, const PositionGrid& grid) {
   WideMask mask;
   EdgeInPixel<Int> edges[3];
   Int at_position[3][8];

@@ -13,7 +13,7 @@ mutants=(  # file | text as it is | broken
   'simd/lanes-inl.h|yes.raw, no.raw|no.raw, yes.raw'
   'simd/lanes-inl.h|hn::DemoteTo(half, x.part[1].raw)|hn::DemoteTo(half, x.part[0].raw)'
   'simd/soa-inl.h|rows + HWY_MIN(lane, count - 1)|rows'
-  'simd/pixel_triangle-inl.h|triangle.y[k] - triangle.y[next]|triangle.y[next] - triangle.y[k]'
+  'simd/triangle_in_pixel-inl.h|triangle.y[k] - triangle.y[next]|triangle.y[next] - triangle.y[k]'
   'simd/coverage-inl.h|1.0f / 6.0f|1.0f / 6.1f'
   'simd/coverage-inl.h|a * b <= zero|a * b >= zero'
   'simd/coverage-inl.h|half * beyond * (from + to)|half * beyond * (from + from)'

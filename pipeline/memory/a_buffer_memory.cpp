@@ -18,12 +18,13 @@ void ABufferMemory::insert(const std::vector<SortRecord>& records, StageCounters
   heads_.read_all(counters);
 }
 
-void ABufferMemory::sort(std::uint32_t pixel, const ABuffer& buffer, StageCounters& counters) {
+void ABufferMemory::read_to_sort(std::uint32_t pixel, const ABuffer& buffer, StageCounters& counters) {
   for (std::uint32_t i = buffer.first[pixel]; i < buffer.first[pixel + 1]; ++i)
     read_record(pixel, buffer.records[i], counters);
 }
 
-void ABufferMemory::compose(std::uint32_t pixel, const ABuffer& buffer, std::uint32_t read, StageCounters& counters) {
+void ABufferMemory::read_in_order(std::uint32_t pixel, const ABuffer& buffer, std::uint32_t read,
+                                  StageCounters& counters) {
   for (std::uint32_t i = 0; i < read; ++i) read_record(pixel, buffer.records[buffer.first[pixel] + i], counters);
 }
 

@@ -19,8 +19,8 @@ class ABufferMemory {
 
   // The pass that empties it, pixel by pixel: every record is read to be sorted; then the first `read` ones are read
   // again in order.
-  void sort(std::uint32_t pixel, const ABuffer& buffer, StageCounters& counters);
-  void compose(std::uint32_t pixel, const ABuffer& buffer, std::uint32_t read, StageCounters& counters);
+  void read_to_sort(std::uint32_t pixel, const ABuffer& buffer, StageCounters& counters);
+  void read_in_order(std::uint32_t pixel, const ABuffer& buffer, std::uint32_t read, StageCounters& counters);
   void finish(StageCounters& counters) { records_.flush(counters); }
 
   // Logical bytes of a pixel with so many records, of which `read` were read in order: filling, heads and records read
@@ -46,7 +46,7 @@ void for_each_list(const ZOrder& order, const Tile& tile, const ABuffer& buffer,
   std::vector<std::uint32_t> pixel_at(order.positions, ~0u);
   for (std::uint32_t pixel = 0; pixel < tile.pixels(); ++pixel) pixel_at[order.of[pixel]] = pixel;
   for (const std::uint32_t pixel : pixel_at)
-    if (pixel != ~0u && buffer.depth_of(pixel) > 0) visit(pixel);
+    if (pixel != ~0u && buffer.record_count(pixel) > 0) visit(pixel);
 }
 
 }  // namespace beampipe

@@ -29,8 +29,8 @@ std::vector<Surface> beam_framebuffer(const BeamOptions& beam) {
 
 // Depth is compared position by position, so the order of merging decides nothing and is the same for all.
 void add_weights(const std::vector<Fragment>& fragments, const std::vector<float>& areas,
-                 const std::vector<PixelTriangle>& whole, const Tile& tile, BinWeights& weights) {
-  for (const PixelTriangle& pair : whole) weights.at(tile.index(pair.x, pair.y)) = {{pair.triangle, 1.0f, 0, false}};
+                 const std::vector<Pair>& whole, const Tile& tile, BinWeights& weights) {
+  for (const Pair& pair : whole) weights.at(tile.index(pair.x, pair.y)) = {{pair.triangle, 1.0f, 0, false}};
   for (std::size_t i = 0; i < fragments.size(); ++i)
     weights.at(fragments[i].pixel).push_back({fragments[i].triangle, areas[i], 0, fragments[i].tiny});
 }
@@ -54,17 +54,17 @@ FrameResult render_shape(const Trace& trace, const Frame& frame, const BeamOptio
   const BeamFragmentOptions fragment_options = grid_options(grid, conserving_fragment_bytes(beam.positions));
   const BinPlan plan{
       .stages = {"conservative_raster", "a_buffer", "windows", "beam_fragment", "shade", "compose", "resolve"},
-      .pair_bytes = kPairBytes + kSortBytes};
+      .pair_bytes = kPairWorkingBytes + kSortBytes};
   return render_bins(context, plan, [&](Bin& bin) {
     ConservativeRasterUnit raster(bin, "waiting_pairs", PairDepths::bounds, ConservativeRasterUnit::Hidden::left_out);
-    ABufferUnit a_buffer(bin, kPairWithDepthBytes, kWaitingPairBytes);
+    ABufferUnit a_buffer(bin, kPairWithDepthBytes, kStoredPairBytes);
     BeamFragmentUnit make_fragments(bin, fragment_options);
     ShadeUnit shade(bin);
     ComposeBeamUnit<Words, Channel> compose(bin, positions);
     BinWeights weights(bin);
     std::vector<float>& specks = bin.pixel_counter("tiny_triangles");
 
-    const std::vector<PixelTriangle>& pairs = raster();
+    const std::vector<Pair>& pairs = raster();
     WindowsUnit windows(bin, pairs, a_buffer(sort_records(pairs, bin.tile)));
     while (windows.next([&](std::uint32_t pixel) { return compose.is_open(pixel); })) {
       std::vector<Fragment>& fragments = make_fragments.fetched(windows.pairs, "window_fragments");

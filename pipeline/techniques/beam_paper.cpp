@@ -97,10 +97,10 @@ void add_weights(const PaperOptions& options, const SamplePattern& pattern, std:
   StageCounters unused;
   const std::size_t pixels = lists.first.size() - 1;
   std::uint32_t deepest = 0;
-  for (std::size_t pixel = 0; pixel < pixels; ++pixel) deepest = std::max(deepest, lists.depth_of(pixel));
+  for (std::size_t pixel = 0; pixel < pixels; ++pixel) deepest = std::max(deepest, lists.record_count(pixel));
   for (std::uint32_t first = 0; first < deepest; first += 3) {
     for (std::size_t pixel = 0; pixel < pixels; ++pixel) {
-      for (std::uint32_t k = 0; k < lists.depth_of(pixel); ++k) {
+      for (std::uint32_t k = 0; k < lists.record_count(pixel); ++k) {
         Fragment& fragment = fragments[lists.records[lists.first[pixel] + k]];
         fragment.color = glm::vec3(0.0f);
         if (k >= first && k < first + 3) fragment.color[static_cast<int>(k - first)] = fragment.alpha;
@@ -109,7 +109,7 @@ void add_weights(const PaperOptions& options, const SamplePattern& pattern, std:
     const std::vector<PixelColor> composed =
         compose_lists(options, PaperStorage::float32, pattern, fragments, lists, unused);
     for (std::size_t pixel = 0; pixel < pixels; ++pixel) {
-      for (std::uint32_t k = first; k < std::min(first + 3, lists.depth_of(pixel)); ++k) {
+      for (std::uint32_t k = first; k < std::min(first + 3, lists.record_count(pixel)); ++k) {
         const Fragment& fragment = fragments[lists.records[lists.first[pixel] + k]];
         const float weight = composed[pixel].color[static_cast<int>(k - first)];
         weights.at(pixel).push_back({fragment.triangle, weight, k, fragment.tiny});
@@ -125,7 +125,7 @@ FrameResult render_paper(const Trace& trace, const Frame& frame, const PaperOpti
   const RecordBytes bytes = record_bytes(beam);
   const BeamFragmentOptions options = fragment_options(beam, pattern, table);
   const BinPlan plan{.stages = {"conservative_raster", "beam_fragment", "shade", "a_buffer", "compose", "resolve"},
-                     .pair_bytes = kPairBytes + kSortBytes};
+                     .pair_bytes = kPairWorkingBytes + kSortBytes};
   return render_bins(context, plan, [&](Bin& bin) {
     ConservativeRasterUnit raster(bin, "bin_pairs", PairDepths::none, ConservativeRasterUnit::Hidden::kept);
     BeamFragmentUnit make_fragments(bin, options);
@@ -139,7 +139,7 @@ FrameResult render_paper(const Trace& trace, const Frame& frame, const PaperOpti
     const ABuffer& lists = a_buffer(sort_records(fragments, beam.sort));
     const std::vector<PixelColor> aggregates =
         compose_lists(beam, beam.storage, pattern, fragments, lists, composition.timed());
-    const std::vector<float>& merges = bin.pixel_counter("merges") = depths_of(lists);
+    const std::vector<float>& merges = bin.pixel_counter("merges") = record_counts(lists);
     a_buffer.charge_memory(merges, composition);
     charge_aggregates(bin, paper_framebuffer(beam), pixels_with(merges), full_pixels(aggregates));
     count_specks(fragments, bin.pixel_counter("tiny_triangles"));

@@ -14,8 +14,8 @@ namespace beampipe {
 class WindowsUnit {
  public:
   // `sorted`: the pairs that `lists` sorts by nearest depth. Both must outlive the unit.
-  WindowsUnit(Bin& bin, const std::vector<PixelTriangle>& sorted, const ABuffer& lists)
-      : stage(bin.stage("windows")), bin_(bin), windows_(sorted, lists, kWaitingPairBytes) {}
+  WindowsUnit(Bin& bin, const std::vector<Pair>& sorted, const ABuffer& lists)
+      : stage(bin.stage("windows")), bin_(bin), windows_(sorted, lists, kStoredPairBytes) {}
 
   // The next window of every pixel that is open; false when there is none.
   template <class IsOpen>
@@ -33,8 +33,8 @@ class WindowsUnit {
   }
 
   const BinStage stage;
-  std::vector<PixelTriangle> pairs;  // of the windows, pixel by pixel, each in primitive order
-  std::vector<PixelTriangle> whole;  // windows of one pair that is all that can be seen of its pixel
+  std::vector<Pair> pairs;  // of the windows, pixel by pixel, each in primitive order
+  std::vector<Pair> whole;  // windows of one pair that is all that can be seen of its pixel
 
  private:
   Bin& bin_;
@@ -55,7 +55,7 @@ class ComposeBeamUnit {
   bool is_open(std::size_t pixel) const { return !is_closed(pixels_[pixel]); }
 
   // `fragments`: at most one window of each pixel. `whole`: pairs that are all that can be seen of their pixels.
-  void operator()(const std::vector<Fragment>& fragments, const std::vector<PixelTriangle>& whole) {
+  void operator()(const std::vector<Fragment>& fragments, const std::vector<Pair>& whole) {
     compose_window(fragments, positions_, stage_.timed(), pixels_, areas_);
     compose_whole(whole, bin_.tile, bin_.context.colors, stage_.timed(), pixels_);
   }

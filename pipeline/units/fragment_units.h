@@ -20,7 +20,7 @@ class BeamFragmentUnit {
 
   // The fragments of pairs that follow each other in primitive order; `buffer` is the name of the on-chip buffer that
   // holds them. They are valid until the next call.
-  std::vector<Fragment>& operator()(const std::vector<PixelTriangle>& pairs, const std::string& buffer) {
+  std::vector<Fragment>& operator()(const std::vector<Pair>& pairs, const std::string& buffer) {
     fragments_.clear();
     beam_fragment(bin_.triangles(), pairs, bin_.tile, options_, stage_.timed(), fragments_);
     bin_.holds(buffer, fragments_.size() * options_.fragment_bytes);
@@ -28,7 +28,7 @@ class BeamFragmentUnit {
   }
 
   // The same for pairs in any order: their setup triangles are fetched by number.
-  std::vector<Fragment>& fetched(const std::vector<PixelTriangle>& pairs, const std::string& buffer) {
+  std::vector<Fragment>& fetched(const std::vector<Pair>& pairs, const std::string& buffer) {
     (*this)(pairs, buffer);
     bin_.triangle_fetches().setup(pairs, stage_.counters);
     return fragments_;
@@ -60,7 +60,7 @@ class ShadeUnit {
     shade_visible(bin_.context.colors, fragments, stage_.timed(), &attributes());
     bin_.triangle_fetches().attributes(fragments, stage_.counters);
   }
-  void visible(const std::vector<PixelTriangle>& whole) {
+  void visible(const std::vector<Pair>& whole) {
     shade_visible(whole, stage_.timed(), &attributes());
     bin_.triangle_fetches().attributes(whole, stage_.counters);
   }

@@ -85,7 +85,7 @@ class OwnersUnit {
   }
 
   // The end of the geometry pass. Returns the pairs of the owners, whose fragments settle_positions() needs again.
-  std::vector<PixelTriangle> finish_claims() {
+  std::vector<Pair> finish_claims() {
     bin_.triangle_fetches().flush(claim_.counters);
     state_.flush({}, claim_.counters);
     return owners(bin_.triangles(), pixels_, bin_.tile, settle_.timed());

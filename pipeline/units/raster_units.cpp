@@ -9,11 +9,11 @@ ConservativeRasterUnit::ConservativeRasterUnit(Bin& bin, std::string buffer, Pai
   bin_.holds("closed_depth", closed_->bytes());
 }
 
-std::vector<PixelTriangle>& ConservativeRasterUnit::operator()(const TriangleList& triangles, const Tile& box) {
+std::vector<Pair>& ConservativeRasterUnit::operator()(const TriangleList& triangles, const Tile& box) {
   pairs_.clear();
   const std::size_t most = conservative_raster(bin_.triangles(), triangles, box, stage_.timed(), pairs_,
                                                closed_ ? &*closed_ : nullptr, depths_);
-  bin_.holds(buffer_, most * (depths_ == PairDepths::bounds ? kPairWithDepthBytes : kPixelTriangleBytes));
+  bin_.holds(buffer_, most * (depths_ == PairDepths::bounds ? kPairWithDepthBytes : kPairBytes));
   return pairs_;
 }
 

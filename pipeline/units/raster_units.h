@@ -32,8 +32,8 @@ class ConservativeRasterUnit {
   ConservativeRasterUnit(Bin& bin, std::string buffer, PairDepths depths, Hidden hidden);
 
   // The pairs of the triangles in the box. They are valid until the next call.
-  std::vector<PixelTriangle>& operator()(const TriangleList& triangles, const Tile& box);
-  std::vector<PixelTriangle>& operator()() { return (*this)(bin_.list, bin_.tile); }
+  std::vector<Pair>& operator()(const TriangleList& triangles, const Tile& box);
+  std::vector<Pair>& operator()() { return (*this)(bin_.list, bin_.tile); }
 
   // Another pass over the bin reads the list, the setup triangles and the closed depths from memory again.
   void start_next_pass();
@@ -46,7 +46,7 @@ class ConservativeRasterUnit {
   std::string buffer_;
   PairDepths depths_;
   std::optional<ClosedDepth> closed_;
-  std::vector<PixelTriangle> pairs_;
+  std::vector<Pair> pairs_;
 };
 
 class SampleRasterUnit {

@@ -16,10 +16,10 @@ std::vector<SortRecord> sort_records(const std::vector<Fragment>& fragments, Sor
   return records;
 }
 
-std::vector<SortRecord> sort_records(const std::vector<PixelTriangle>& pairs, const Tile& tile) {
+std::vector<SortRecord> sort_records(const std::vector<Pair>& pairs, const Tile& tile) {
   std::vector<SortRecord> records;
   records.reserve(pairs.size());
-  for (const PixelTriangle& pair : pairs)
+  for (const Pair& pair : pairs)
     records.push_back({static_cast<std::uint32_t>(tile.index(pair.x, pair.y)), pair.triangle, pair.nearest});
   return records;
 }
@@ -40,7 +40,7 @@ ABuffer a_buffer(const std::vector<SortRecord>& records, std::size_t pixels, std
 
   std::uint64_t comparisons = 0;
   for (std::size_t pixel = 0; pixel < pixels; ++pixel)
-    comparisons += merge_sort(lists.data() + buffer.first[pixel], buffer.depth_of(pixel), scratch,
+    comparisons += merge_sort(lists.data() + buffer.first[pixel], buffer.record_count(pixel), scratch,
                               [](const Entry& entry) { return entry.depth; });
   buffer.records.reserve(lists.size());
   for (const Entry& entry : lists) buffer.records.push_back(entry.record);
@@ -48,10 +48,10 @@ ABuffer a_buffer(const std::vector<SortRecord>& records, std::size_t pixels, std
   return buffer;
 }
 
-std::vector<float> depths_of(const ABuffer& buffer) {
+std::vector<float> record_counts(const ABuffer& buffer) {
   std::vector<float> depths(buffer.first.size() - 1);
   for (std::size_t pixel = 0; pixel < depths.size(); ++pixel)
-    depths[pixel] = static_cast<float>(buffer.depth_of(pixel));
+    depths[pixel] = static_cast<float>(buffer.record_count(pixel));
   return depths;
 }
 

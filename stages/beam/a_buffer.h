@@ -19,7 +19,7 @@ enum class SortKey { centroid, nearest };
 
 std::vector<SortRecord> sort_records(const std::vector<Fragment>& fragments, SortKey key);
 // Pairs are sorted by their nearest depth.
-std::vector<SortRecord> sort_records(const std::vector<PixelTriangle>& pairs, const Tile& tile);
+std::vector<SortRecord> sort_records(const std::vector<Pair>& pairs, const Tile& tile);
 
 // The modelled machine inserts a record by exchanging the pixel's head link and writing the record with the old link.
 // Then it reads every pixel's head and its records, sorts them and writes them. `item_bytes`: size of an item that
@@ -28,7 +28,7 @@ ABuffer a_buffer(const std::vector<SortRecord>& records, std::size_t pixels, std
                  std::uint32_t record_bytes, StageCounters& counters);
 
 // Per pixel, the number of its records.
-std::vector<float> depths_of(const ABuffer& buffer);
+std::vector<float> record_counts(const ABuffer& buffer);
 
 // Size of the whole buffer, which stays in memory until it is composed.
 std::uint64_t a_buffer_bytes(std::uint64_t records, std::uint64_t pixels, std::uint32_t record_bytes);

@@ -10,14 +10,14 @@
 namespace beampipe {
 namespace {
 
-TriangleInPixel seen_from(const SetupTriangle& triangle, const PixelTriangle& pair) {
+TriangleInPixel seen_from(const SetupTriangle& triangle, const Pair& pair) {
   return in_pixel(triangle.x, triangle.y, pair.x * kSubpixelUnits, pair.y * kSubpixelUnits);
 }
 
 DepthRangeInput<float> depth_range_input(const SetupTriangle& triangle, const TriangleInPixel& narrow,
                                          const DepthPlane<float>& plane) {
   DepthRangeInput<float> in;
-  PixelTriangleOf<std::int64_t> wide;
+  TriangleInPixelOf<std::int64_t> wide;
   for (int k = 0; k < 3; ++k) {
     wide.x[k] = narrow.x[k], wide.y[k] = narrow.y[k];
     in.vertex_z[k] = triangle.vertex_z[k];
@@ -66,9 +66,7 @@ TableTriangle table_edges(const Edge (&edges)[3], const EdgeDirection (&directio
   return triangle;
 }
 
-bool is_computed(const PixelTriangle& pair, const BeamFragmentOptions& options) {
-  return !pair.full || options.clipped_depth;
-}
+bool is_computed(const Pair& pair, const BeamFragmentOptions& options) { return !pair.full || options.clipped_depth; }
 
 // What the kernels read: one item per computed pair, in the order of the pairs.
 struct KernelInput {
@@ -79,14 +77,14 @@ struct KernelInput {
   std::uint64_t prepared = 0;                  // triangles whose edges were prepared for masks
 };
 
-KernelInput kernel_input(const SetupTriangles& triangles, const std::vector<PixelTriangle>& in,
+KernelInput kernel_input(const SetupTriangles& triangles, const std::vector<Pair>& in,
                          const BeamFragmentOptions& options) {
   KernelInput kernels;
   Edge edges[3] = {};
   EdgeDirection directions[3] = {};
   const SetupTriangle* last = nullptr;
   kernels.triangles.reserve(in.size());
-  for (const PixelTriangle& pair : in) {
+  for (const Pair& pair : in) {
     if (!is_computed(pair, options)) continue;
     const SetupTriangle& triangle = triangles.triangles[pair.triangle];
     kernels.triangles.push_back(seen_from(triangle, pair));
@@ -143,7 +141,7 @@ WideMask whole_mask(const BeamFragmentOptions& options) {
 }
 
 // The fragment of a pair, without what the kernels compute.
-Fragment new_fragment(const PixelTriangle& pair, const SetupTriangle& triangle, const Tile& tile) {
+Fragment new_fragment(const Pair& pair, const SetupTriangle& triangle, const Tile& tile) {
   Fragment fragment;
   fragment.triangle = pair.triangle;
   fragment.quad = pair.quad;
@@ -176,7 +174,7 @@ void locate(const BeamFragmentOptions& options, Fragment& speck, BeamFragmentWor
 
 }  // namespace
 
-void beam_fragment(const SetupTriangles& triangles, const std::vector<PixelTriangle>& in, const Tile& tile,
+void beam_fragment(const SetupTriangles& triangles, const std::vector<Pair>& in, const Tile& tile,
                    const BeamFragmentOptions& options, StageCounters& counters, std::vector<Fragment>& out) {
   const KernelInput kernels = kernel_input(triangles, in, options);
   const KernelOutput computed = run_kernels(kernels, options);
@@ -185,7 +183,7 @@ void beam_fragment(const SetupTriangles& triangles, const std::vector<PixelTrian
   BeamFragmentWork work;
   std::size_t next = 0;
   out.reserve(before + in.size());
-  for (const PixelTriangle& pair : in) {
+  for (const Pair& pair : in) {
     const std::size_t i = next;
     next += is_computed(pair, options);
     work.partial += !pair.full;

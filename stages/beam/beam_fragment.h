@@ -49,8 +49,8 @@ inline BeamFragmentOptions grid_options(const PositionGrid& grid, std::uint32_t 
 
 // Working memory of beam_fragment per pair, with the pair and its fragment. Those two count twice, because a growing
 // vector copies its contents from one place to another.
-inline constexpr std::size_t kPairBytes =
-    2 * (sizeof(PixelTriangle) + sizeof(Fragment)) + sizeof(TriangleInPixel) + sizeof(Coverage<float>) +
+inline constexpr std::size_t kPairWorkingBytes =
+    2 * (sizeof(Pair) + sizeof(Fragment)) + sizeof(TriangleInPixel) + sizeof(Coverage<float>) +
     sizeof(DepthRangeInput<float>) + sizeof(DepthRange<float>) + std::max(sizeof(TableTriangle), sizeof(CellEdges)) +
     sizeof(WideMask) + sizeof(std::uint32_t);
 
@@ -58,7 +58,7 @@ inline constexpr std::size_t kPairBytes =
 inline constexpr float kZeroArea = 5e-7f;
 
 // Appends to `out` in the order of `in`. Pairs whose area is 0 are dropped; items_in - items_out counts them.
-void beam_fragment(const SetupTriangles& triangles, const std::vector<PixelTriangle>& in, const Tile& tile,
+void beam_fragment(const SetupTriangles& triangles, const std::vector<Pair>& in, const Tile& tile,
                    const BeamFragmentOptions& options, StageCounters& counters, std::vector<Fragment>& out);
 
 }  // namespace beampipe

@@ -20,14 +20,14 @@ EdgeAt<CountedInt> counted_edge(OperationCounts& counts) {
 }
 
 // A triangle whose vertices are yet to be made relative to the pixel.
-PixelTriangleOf<CountedInt> counted_triangle(OperationCounts& counts) {
+TriangleInPixelOf<CountedInt> counted_triangle(OperationCounts& counts) {
   const CountedInt zero(0, counts), vertices[3] = {zero, zero, zero};
   return in_pixel(vertices, vertices, zero, zero);
 }
 
 // A triangle whose vertices are already relative to the pixel.
-PixelTriangleOf<CountedInt> vertices_at_hand(OperationCounts& counts) {
-  PixelTriangleOf<CountedInt> triangle;
+TriangleInPixelOf<CountedInt> vertices_at_hand(OperationCounts& counts) {
+  TriangleInPixelOf<CountedInt> triangle;
   for (int k = 0; k < 3; ++k) triangle.x[k] = triangle.y[k] = CountedInt(0, counts);
   return triangle;
 }
@@ -148,7 +148,7 @@ void charge(const BeamFragmentWork& work, const BeamFragmentOptions& options, St
   if (options.mask == MaskSource::exact) counters.ops += of_exact_edges * work.triangles;
   counters.ops += nearest_position_cost() * (work.given * options.positions.size() * kMaxMaskSamples);
   counters.ops += {.mul_add = work.specks, .add = work.speck_comparisons, .bit = work.given};
-  const std::uint32_t pair_bytes = options.clipped_depth ? kPixelTriangleBytes : kPairWithDepthBytes;
+  const std::uint32_t pair_bytes = options.clipped_depth ? kPairBytes : kPairWithDepthBytes;
   counters.bytes_read += work.pairs * (pair_bytes + sizeof(SetupTriangle));
   counters.bytes_written += work.fragments * options.fragment_bytes;
   counters.lanes_used += work.fragments;

@@ -207,9 +207,9 @@ void compose_window(const std::vector<Fragment>& fragments, const PositionSet& p
 }
 
 template <std::size_t Words, class Channel>
-void compose_whole(const std::vector<PixelTriangle>& whole, const Tile& tile, const std::vector<glm::vec3>& colors,
+void compose_whole(const std::vector<Pair>& whole, const Tile& tile, const std::vector<glm::vec3>& colors,
                    StageCounters& counters, std::vector<StoredAggregate<Words, Channel>>& pixels) {
-  for (const PixelTriangle& pair : whole) {
+  for (const Pair& pair : whole) {
     auto& pixel = pixels[tile.index(pair.x, pair.y)];
     std::memset(pixel.mask, 0xff, sizeof pixel.mask);
     pixel.area = 1.0f;
@@ -218,11 +218,11 @@ void compose_whole(const std::vector<PixelTriangle>& whole, const Tile& tile, co
   charge_whole<Words, Channel>(whole.size(), counters);
 }
 
-#define BEAMPIPE_COMPOSE(words, channel)                                                                     \
-  template void compose_window(const std::vector<Fragment>&, const PositionSet&, StageCounters&,             \
-                               std::vector<StoredAggregate<words, channel>>&, std::vector<float>&);          \
-  template void compose_whole(const std::vector<PixelTriangle>&, const Tile&, const std::vector<glm::vec3>&, \
-                              StageCounters&, std::vector<StoredAggregate<words, channel>>&);
+#define BEAMPIPE_COMPOSE(words, channel)                                                                            \
+  template void compose_window(const std::vector<Fragment>&, const PositionSet&, StageCounters&,                    \
+                               std::vector<StoredAggregate<words, channel>>&, std::vector<float>&);                 \
+  template void compose_whole(const std::vector<Pair>&, const Tile&, const std::vector<glm::vec3>&, StageCounters&, \
+                              std::vector<StoredAggregate<words, channel>>&);
 BEAMPIPE_STORED_AGGREGATES(BEAMPIPE_COMPOSE)
 #undef BEAMPIPE_COMPOSE
 

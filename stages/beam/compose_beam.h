@@ -29,7 +29,7 @@ void compose_window(const std::vector<Fragment>& fragments, const PositionSet& p
 // Composes pixels that a single triangle covers completely and hides. The pixels must be empty. The result is
 // that of compose_window for the triangle's fragment, which is not needed here. `colors`: one per triangle.
 template <std::size_t Words, class Channel>
-void compose_whole(const std::vector<PixelTriangle>& whole, const Tile& tile, const std::vector<glm::vec3>& colors,
+void compose_whole(const std::vector<Pair>& whole, const Tile& tile, const std::vector<glm::vec3>& colors,
                    StageCounters& counters, std::vector<StoredAggregate<Words, Channel>>& pixels);
 
 // Are all positions of the pixel taken, so that nothing farther can be visible in it?

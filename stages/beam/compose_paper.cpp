@@ -23,13 +23,13 @@ std::vector<Aggregate> compose_stored(const std::vector<Fragment>& fragments, co
   std::vector<std::uint32_t> order(pixels);
   std::iota(order.begin(), order.end(), 0u);
   std::stable_sort(order.begin(), order.end(),
-                   [&](std::uint32_t a, std::uint32_t b) { return buffer.depth_of(a) > buffer.depth_of(b); });
+                   [&](std::uint32_t a, std::uint32_t b) { return buffer.record_count(a) > buffer.record_count(b); });
   std::vector<Stored> stored(pixels, Stored(kEmptyAggregate));
   std::vector<Aggregate> merging(pixels);
   std::vector<MergeFragment> arriving(pixels);
   std::size_t active = pixels;
   for (std::uint32_t round = 0;; ++round) {
-    while (active > 0 && buffer.depth_of(order[active - 1]) <= round) --active;
+    while (active > 0 && buffer.record_count(order[active - 1]) <= round) --active;
     if (active == 0) break;
     for (std::size_t i = 0; i < active; ++i) {
       arriving[i] = merge_fragment(fragments[buffer.records[buffer.first[order[i]] + round]]);

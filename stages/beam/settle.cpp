@@ -79,10 +79,10 @@ std::size_t settle_pixel(const Fragment* begin, const Fragment* end, bool last_p
 }  // namespace
 
 template <std::size_t Words, std::size_t Layers>
-std::vector<PixelTriangle> owners(const SetupTriangles& triangles, const std::vector<OwnerPixel<Words, Layers>>& pixels,
-                                  const Tile& tile, StageCounters& counters) {
+std::vector<Pair> owners(const SetupTriangles& triangles, const std::vector<OwnerPixel<Words, Layers>>& pixels,
+                         const Tile& tile, StageCounters& counters) {
   using Pixel = OwnerPixel<Words, Layers>;
-  std::vector<PixelTriangle> pairs;
+  std::vector<Pair> pairs;
   std::uint64_t claimed = 0;  // pixels
   for (std::size_t i = 0; i < pixels.size(); ++i) {
     const std::size_t before = pairs.size();
@@ -91,7 +91,7 @@ std::vector<PixelTriangle> owners(const SetupTriangles& triangles, const std::ve
     for (std::size_t k = 0; k < Layers; ++k) {
       if (pixels[i].positions_in(Pixel::kFirstLayer + static_cast<std::uint32_t>(k)).none()) continue;
       const SetupTriangle& triangle = triangles.triangles[pixels[i].triangle(k)];
-      PixelTriangle& pair = pairs.emplace_back();
+      Pair& pair = pairs.emplace_back();
       pair = {pixels[i].triangle(k), static_cast<std::uint32_t>(pairs.size() - 1), x, y, false, 0, 0};
       set_depths(triangle, vertex_bounds(triangle.vertex_z), pair);
     }
@@ -133,10 +133,10 @@ std::vector<PixelColor> settled_colors(const std::vector<OwnerPixel<Words, Layer
   return colors;
 }
 
-#define BEAMPIPE_SETTLE(words, layers)                                                                               \
-  template std::vector<PixelTriangle> owners(const SetupTriangles&, const std::vector<OwnerPixel<words, layers>>&,   \
-                                             const Tile&, StageCounters&);                                           \
-  template void settle(const std::vector<Fragment>&, bool, StageCounters&, std::vector<OwnerPixel<words, layers>>&); \
+#define BEAMPIPE_SETTLE(words, layers)                                                                                 \
+  template std::vector<Pair> owners(const SetupTriangles&, const std::vector<OwnerPixel<words, layers>>&, const Tile&, \
+                                    StageCounters&);                                                                   \
+  template void settle(const std::vector<Fragment>&, bool, StageCounters&, std::vector<OwnerPixel<words, layers>>&);   \
   template std::vector<PixelColor> settled_colors(const std::vector<OwnerPixel<words, layers>>&);
 BEAMPIPE_OWNER_PIXELS(BEAMPIPE_SETTLE)
 #undef BEAMPIPE_SETTLE

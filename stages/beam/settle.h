@@ -21,8 +21,8 @@ namespace beampipe {
 // Returns the pairs whose fragments settle() needs: one for each layer of a pixel that owns a position, pixel by pixel.
 // Charges reading the pixels that have owners, and writing the pairs.
 template <std::size_t Words, std::size_t Layers>
-std::vector<PixelTriangle> owners(const SetupTriangles& triangles, const std::vector<OwnerPixel<Words, Layers>>& pixels,
-                                  const Tile& tile, StageCounters& counters);
+std::vector<Pair> owners(const SetupTriangles& triangles, const std::vector<OwnerPixel<Words, Layers>>& pixels,
+                         const Tile& tile, StageCounters& counters);
 
 // `fragments`: the shaded fragments of the pairs from owners(). Areas follow simd/conserve.h, as in sorted order. The
 // exception is a pixel in which a speck may be visible. Since the speck's area is not known, areas there are counted by

@@ -8,7 +8,7 @@
 
 namespace beampipe {
 
-Windows::Windows(const std::vector<PixelTriangle>& pairs, const ABuffer& buffer, std::uint32_t record_bytes)
+Windows::Windows(const std::vector<Pair>& pairs, const ABuffer& buffer, std::uint32_t record_bytes)
     : largest(buffer.first.size() - 1),
       taken(buffer.first.size() - 1),
       looked_at(buffer.first.size() - 1),
@@ -17,11 +17,10 @@ Windows::Windows(const std::vector<PixelTriangle>& pairs, const ABuffer& buffer,
       next_(buffer.first.begin(), buffer.first.end() - 1),
       record_bytes_(record_bytes) {
   for (std::uint32_t pixel = 0; pixel < next_.size(); ++pixel)
-    if (buffer.depth_of(pixel) > 0) waiting_.push_back(pixel);
+    if (buffer.record_count(pixel) > 0) waiting_.push_back(pixel);
 }
 
-void Windows::take(std::uint32_t pixel, WindowsWork& work, std::vector<PixelTriangle>& window,
-                   std::vector<PixelTriangle>& whole) {
+void Windows::take(std::uint32_t pixel, WindowsWork& work, std::vector<Pair>& window, std::vector<Pair>& whole) {
   const std::uint32_t end = buffer_.first[pixel + 1];
   std::uint32_t& next = next_[pixel];
   indices_.clear();
@@ -37,7 +36,7 @@ void Windows::take(std::uint32_t pixel, WindowsWork& work, std::vector<PixelTria
   const float looked = static_cast<float>(tests) + (taken[pixel] == 0 ? 1.0f : 0.0f);
   work.reads += static_cast<std::uint64_t>(looked);
   looked_at[pixel] += looked;
-  const PixelTriangle& first = pairs_[indices_.front()];
+  const Pair& first = pairs_[indices_.front()];
   if (size == 1 && first.full && taken[pixel] == 0) {
     whole.push_back(first);
   } else {

@@ -32,15 +32,14 @@ class Windows {
  public:
   // `buffer` sorts `pairs` by their nearest depth; both must outlive this object. `record_bytes`: size of a pair in the
   // buffer, without its link.
-  Windows(const std::vector<PixelTriangle>& pairs, const ABuffer& buffer, std::uint32_t record_bytes);
+  Windows(const std::vector<Pair>& pairs, const ABuffer& buffer, std::uint32_t record_bytes);
 
   // Replaces `window` by the next windows of all pixels that have records left and for which is_open(pixel) is true:
   // pixel by pixel, and in primitive order within each. If a pixel's first window is a single pair that covers the
   // whole pixel, nothing else can be visible there; that pair goes to `whole` instead. Returns whether there are any
   // pairs.
   template <class IsOpen>
-  bool next(IsOpen&& is_open, StageCounters& counters, std::vector<PixelTriangle>& window,
-            std::vector<PixelTriangle>& whole) {
+  bool next(IsOpen&& is_open, StageCounters& counters, std::vector<Pair>& window, std::vector<Pair>& whole) {
     window.clear(), whole.clear();
     std::erase_if(waiting_, [&](std::uint32_t pixel) { return !is_open(pixel); });
     WindowsWork work;
@@ -54,11 +53,10 @@ class Windows {
   std::vector<float> largest, taken, looked_at;
 
  private:
-  void take(std::uint32_t pixel, WindowsWork& work, std::vector<PixelTriangle>& window,
-            std::vector<PixelTriangle>& whole);
+  void take(std::uint32_t pixel, WindowsWork& work, std::vector<Pair>& window, std::vector<Pair>& whole);
   void count(const WindowsWork& work, std::size_t windows, std::size_t taken_now, StageCounters& counters) const;
 
-  const std::vector<PixelTriangle>& pairs_;
+  const std::vector<Pair>& pairs_;
   const ABuffer& buffer_;
   std::vector<std::uint32_t> next_;               // per pixel: the next record, an index into the buffer's records
   std::vector<std::uint32_t> waiting_;            // pixels that have records left

@@ -12,7 +12,7 @@ namespace beampipe {
 
 struct Fragment {
   std::uint32_t triangle;        // index into SetupTriangles
-  std::uint32_t quad;            // as in PixelTriangle
+  std::uint32_t quad;            // as in Pair
   std::uint32_t pixel;           // index within the tile, row by row
   bool front;                    // as in SetupTriangle
   bool tiny;                     // a speck: it covers no mask position

@@ -7,9 +7,9 @@
 #include <cstdint>
 
 #include "simd/depth_range.h"
-#include "simd/pixel_triangle.h"
 #include "simd/sample_pattern.h"
 #include "simd/scalar.h"
+#include "simd/triangle_in_pixel.h"
 
 namespace beampipe {
 
@@ -24,15 +24,15 @@ struct EdgeAt {
 
 // The triangle relative to the pixel whose upper left corner is (left, top). All coordinates are in 1/256 px.
 template <class Int>
-PixelTriangleOf<Int> in_pixel(const Int x[3], const Int y[3], Int left, Int top) {
-  PixelTriangleOf<Int> triangle;
+TriangleInPixelOf<Int> in_pixel(const Int x[3], const Int y[3], Int left, Int top) {
+  TriangleInPixelOf<Int> triangle;
   for (int k = 0; k < 3; ++k) triangle.x[k] = x[k] - left, triangle.y[k] = y[k] - top;
   return triangle;
 }
 
 // Sets everything in the input of a depth range except the depths.
 template <class Int, class Float>
-void set_geometry(const PixelTriangleOf<Int>& triangle, DepthRangeInput<Float>& in) {
+void set_geometry(const TriangleInPixelOf<Int>& triangle, DepthRangeInput<Float>& in) {
   const Float unit(kUnit), unit_area(kUnit * kUnit);
   for (int k = 0; k < 3; ++k) {
     const EdgeInPixel<Int> edge = edge_in_pixel(triangle, k);

@@ -8,7 +8,7 @@
 
 namespace beampipe {
 
-struct PixelTriangle {
+struct Pair {
   std::uint32_t triangle;  // index into SetupTriangles
   std::uint32_t quad;      // the same number for all pixels of one triangle in one 2x2 quad
   std::int32_t x, y;       // pixel, frame coordinates
@@ -19,16 +19,16 @@ struct PixelTriangle {
 
 // Sizes of a pair in the modelled machine. Between two stages: 16-bit x and y and a 32-bit triangle index; `full` fits
 // into a spare bit.
-inline constexpr std::uint32_t kPixelTriangleBytes = 8;
+inline constexpr std::uint32_t kPairBytes = 8;
 
 // The same with the two depth bounds as float32.
-inline constexpr std::uint32_t kPairWithDepthBytes = kPixelTriangleBytes + 8;
+inline constexpr std::uint32_t kPairWithDepthBytes = kPairBytes + 8;
 
 // In the A-buffer: the triangle index and the two depth bounds.
-inline constexpr std::uint32_t kWaitingPairBytes = 4 + 8;
+inline constexpr std::uint32_t kStoredPairBytes = 4 + 8;
 
 // Sets nearest and farthest. `vertices`: vertex_bounds of the triangle.
-inline void set_depths(const SetupTriangle& triangle, const DepthBounds<float>& vertices, PixelTriangle& pair) {
+inline void set_depths(const SetupTriangle& triangle, const DepthBounds<float>& vertices, Pair& pair) {
   const DepthBounds<float> bounds = pair_bounds(pixel_plane(triangle, pair.x, pair.y), vertices);
   pair.nearest = bounds.nearest, pair.farthest = bounds.farthest;
 }

@@ -45,6 +45,6 @@ struct SampleFragment {
 };
 
 // Size in the modelled machine: a pair with a 16-bit coverage mask.
-inline constexpr std::uint64_t kSampleFragmentBytes = kPixelTriangleBytes + 2;
+inline constexpr std::uint64_t kSampleFragmentBytes = kPairBytes + 2;
 
 }  // namespace beampipe

@@ -22,7 +22,7 @@ struct ABuffer {
   std::vector<std::uint32_t> records;  // indices of the records that were sorted
 
   // How many records the pixel has.
-  std::uint32_t depth_of(std::size_t pixel) const { return first[pixel + 1] - first[pixel]; }
+  std::uint32_t record_count(std::size_t pixel) const { return first[pixel + 1] - first[pixel]; }
 };
 
 // Size in the modelled machine of the link from a stored record to the next one, and of a pixel's link to its first.

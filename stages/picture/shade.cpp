@@ -27,21 +27,18 @@ std::vector<glm::vec3> round_to_half(std::vector<glm::vec3> colors) {
 void shade(const std::vector<glm::vec3>& colors, std::vector<Fragment>& fragments, StageCounters& counters,
            const std::vector<FlatAttributes>* attributes) {
   for (Fragment& fragment : fragments) fragment.color = fragment.alpha * colors[fragment.triangle];
-  charge(in_quads(fragments, attributes), lambert_cost(), sizeof(FlatAttributes) + kPixelTriangleBytes, kColorBytes,
-         counters);
+  charge(in_quads(fragments, attributes), lambert_cost(), sizeof(FlatAttributes) + kPairBytes, kColorBytes, counters);
 }
 
 void shade_visible(const std::vector<glm::vec3>& colors, std::vector<Fragment>& fragments, StageCounters& counters,
                    const std::vector<FlatAttributes>* attributes) {
   for (Fragment& fragment : fragments) fragment.color = fragment.alpha * colors[fragment.triangle];
-  charge(one_by_one(fragments, attributes), lambert_cost(), sizeof(FlatAttributes) + kPixelTriangleBytes, kColorBytes,
-         counters);
+  charge(one_by_one(fragments, attributes), lambert_cost(), sizeof(FlatAttributes) + kPairBytes, kColorBytes, counters);
 }
 
-void shade_visible(const std::vector<PixelTriangle>& whole, StageCounters& counters,
+void shade_visible(const std::vector<Pair>& whole, StageCounters& counters,
                    const std::vector<FlatAttributes>* attributes) {
-  charge(one_by_one(whole, attributes), lambert_cost(), sizeof(FlatAttributes) + kPixelTriangleBytes, kColorBytes,
-         counters);
+  charge(one_by_one(whole, attributes), lambert_cost(), sizeof(FlatAttributes) + kPairBytes, kColorBytes, counters);
 }
 
 void shade(const std::vector<SampleFragment>& fragments, StageCounters& counters,

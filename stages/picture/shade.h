@@ -35,7 +35,7 @@ void shade_visible(const std::vector<glm::vec3>& colors, std::vector<Fragment>& 
                    const std::vector<FlatAttributes>* attributes = nullptr);
 
 // Only charges the shading of pairs that cover their whole pixel; they take their triangle's colour as it is.
-void shade_visible(const std::vector<PixelTriangle>& whole, StageCounters& counters,
+void shade_visible(const std::vector<Pair>& whole, StageCounters& counters,
                    const std::vector<FlatAttributes>* attributes = nullptr);
 
 // Only charges the shading of sample fragments, in 2x2 quads; they keep their triangle's index instead of a colour.

@@ -6,7 +6,7 @@
 namespace beampipe {
 
 std::size_t conservative_raster(const SetupTriangles& triangles, const TriangleList& list, const Tile& tile,
-                                StageCounters& counters, std::vector<PixelTriangle>& out, ClosedDepth* closed,
+                                StageCounters& counters, std::vector<Pair>& out, ClosedDepth* closed,
                                 PairDepths depths) {
   const std::size_t before = out.size();
   Traversal traversal{tile};
@@ -16,7 +16,7 @@ std::size_t conservative_raster(const SetupTriangles& triangles, const TriangleL
     const DepthBounds<float> vertices = vertex_bounds(triangle.vertex_z);
     if (closed && closed->hides_everywhere(vertices.nearest)) continue;
     traverse(triangle, EdgeSet(triangle), traversal, [&](std::int32_t x, std::int32_t y, std::uint32_t q, bool full) {
-      PixelTriangle pair{index, q, x, y, full, 0, 0};
+      Pair pair{index, q, x, y, full, 0, 0};
       if (depths == PairDepths::bounds) set_depths(triangle, vertices, pair);
       if (closed && closed->hides(x, y, pair.nearest)) return;
       if (closed && full) closed->close(x, y, pair.farthest);
@@ -27,7 +27,7 @@ std::size_t conservative_raster(const SetupTriangles& triangles, const TriangleL
   const std::size_t waited = out.size();
   if (closed) {  // pixels may have been closed after a pair was found in them
     work.tested_again = waited;
-    std::erase_if(out, [&](const PixelTriangle& pair) { return closed->hides(pair.x, pair.y, pair.nearest); });
+    std::erase_if(out, [&](const Pair& pair) { return closed->hides(pair.x, pair.y, pair.nearest); });
     charge(*closed, counters);
   }
   work.traversal = traversal.counts;

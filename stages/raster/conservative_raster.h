@@ -18,7 +18,7 @@ enum class PairDepths { bounds, none };
 // triangles that cover whole pixels, in this list or in earlier calls. Returns the largest size of `out`, which may be
 // more than its size at the end: pairs that turned out to be hidden behind a later triangle are removed.
 std::size_t conservative_raster(const SetupTriangles& triangles, const TriangleList& list, const Tile& tile,
-                                StageCounters& counters, std::vector<PixelTriangle>& out, ClosedDepth* closed = nullptr,
+                                StageCounters& counters, std::vector<Pair>& out, ClosedDepth* closed = nullptr,
                                 PairDepths depths = PairDepths::bounds);
 
 }  // namespace beampipe

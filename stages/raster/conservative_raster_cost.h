@@ -16,7 +16,7 @@ struct ConservativeRasterWork {
 };
 
 inline void charge(const ConservativeRasterWork& work, PairDepths depths, StageCounters& counters) {
-  const std::uint32_t pair_bytes = depths == PairDepths::bounds ? kPairWithDepthBytes : kPixelTriangleBytes;
+  const std::uint32_t pair_bytes = depths == PairDepths::bounds ? kPairWithDepthBytes : kPairBytes;
   counters.items_out += work.pairs;
   counters.ops += traversal_cost(work.traversal, FullMeans::area);
   if (depths == PairDepths::bounds) {

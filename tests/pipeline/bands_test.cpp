@@ -95,7 +95,7 @@ SetupTriangle random_triangle(Random& random, std::int32_t width, std::int32_t h
 
 std::size_t count_pairs(const SetupTriangles& triangles, const Tile& tile) {
   StageCounters unused;
-  std::vector<PixelTriangle> pairs;
+  std::vector<Pair> pairs;
   conservative_raster(triangles, {0}, tile, unused, pairs);
   return pairs.size();
 }

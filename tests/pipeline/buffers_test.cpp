@@ -83,8 +83,8 @@ TEST(Buffers, HiddenPairsAreNotInTheABuffer) {
 }
 
 // More triangles make the heap grow by the listed buffers and by what the simulator itself needs: the vertices of
-// vertex_setup for each triangle, and for each pair that waits with the others of its bin kPairBytes and kSortBytes,
-// which --memory-limit is based on.
+// vertex_setup for each triangle, and for each pair that waits with the others of its bin kPairWorkingBytes and
+// kSortBytes, which --memory-limit is based on.
 TEST(Buffers, AreWhatIsAllocated) {
   constexpr double kVertexBytes = 400;
   struct Measured {
@@ -104,7 +104,7 @@ TEST(Buffers, AreWhatIsAllocated) {
     const Measured few = measure(spec, 4000), many = measure(spec, 16000);
     const double heap = many.heap - few.heap, listed = many.listed - few.listed;
     EXPECT_GE(heap, listed) << spec << ": something is listed that is not held";
-    EXPECT_LE(heap, listed + 12000 * kVertexBytes + (many.pairs - few.pairs) * (kPairBytes + kSortBytes))
+    EXPECT_LE(heap, listed + 12000 * kVertexBytes + (many.pairs - few.pairs) * (kPairWorkingBytes + kSortBytes))
         << spec << ": something is held that is not listed";
   }
 }

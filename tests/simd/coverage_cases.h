@@ -49,8 +49,8 @@ inline Slopes depth_slopes(const Triangle& t) {
 
 // The triangle as seen from pixel (pixel_x, pixel_y). Its corners are given in 1/256 px from the corner of pixel (0,
 // 0).
-inline PixelTriangleOf<std::int64_t> in_pixel(const Triangle& t, std::int64_t pixel_x = 0, std::int64_t pixel_y = 0) {
-  PixelTriangleOf<std::int64_t> seen;
+inline TriangleInPixelOf<std::int64_t> in_pixel(const Triangle& t, std::int64_t pixel_x = 0, std::int64_t pixel_y = 0) {
+  TriangleInPixelOf<std::int64_t> seen;
   for (int k = 0; k < 3; ++k) seen.x[k] = t.p[k].x - 256 * pixel_x, seen.y[k] = t.p[k].y - 256 * pixel_y;
   return seen;
 }

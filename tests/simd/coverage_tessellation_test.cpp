@@ -37,7 +37,7 @@ TEST(CoverageTessellation, ReversedEdgeIntegratesToTheOppositeNumber) {
   Random random(7);
   SCOPED_TRACE(random.name());
   for (int i = 0; i < 100'000; ++i) {
-    const PixelTriangleOf<std::int64_t> t = in_pixel(random_triangle(random));
+    const TriangleInPixelOf<std::int64_t> t = in_pixel(random_triangle(random));
     const EdgeInPixel<std::int64_t> edge = edge_in_pixel(t, 0);
     const auto a = static_cast<float>(edge.a), b = static_cast<float>(edge.b), c = static_cast<float>(edge.c),
                c_right = static_cast<float>(edge.c + 256 * edge.a), v0 = static_cast<float>(t.y[0]) / 256,

@@ -13,7 +13,7 @@ TEST(PositionMask, KernelEqualsTwinOnRandomTriangles) {
   Random random(61);
   SCOPED_TRACE(random.name());
   std::vector<TriangleInPixel> in;
-  std::vector<PixelTriangleOf<std::int64_t>> wide;
+  std::vector<TriangleInPixelOf<std::int64_t>> wide;
   for (int i = 0; i < 4'000; ++i) {
     const Triangle t = random_triangle(random);
     in.push_back(kernel_input(t)), wide.push_back(in_pixel(t));
@@ -59,7 +59,7 @@ TEST(PositionMask, EqualsSampleMasksOfTheSamePositions) {
     const PositionGrid grid(positions);
     const std::vector<SamplePattern> patterns = cell_patterns(positions);
     for (int i = 0; i < 2'000; ++i) {
-      const PixelTriangleOf<std::int64_t> t = in_pixel(random_triangle(random));
+      const TriangleInPixelOf<std::int64_t> t = in_pixel(random_triangle(random));
       std::int64_t a[3], b[3], c[3];
       for (int k = 0; k < 3; ++k) {
         const EdgeInPixel<std::int64_t> edge = edge_in_pixel(t, k);

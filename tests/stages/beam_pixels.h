@@ -22,7 +22,7 @@ inline Fragments beam_fragments(const SetupTriangles& triangles, const Tile& til
                                 int tiny_positions = 1) {
   static const SamplePattern pattern = hammersley_pattern();
   static const MaskTable table(pattern);
-  std::vector<PixelTriangle> pairs;
+  std::vector<Pair> pairs;
   StageCounters raster;
   conservative_raster(triangles, all_of(triangles), tile, raster, pairs);
   Fragments fragments;

@@ -28,7 +28,7 @@ TEST(ABuffer, NearToFarPerPixel) {
   EXPECT_EQ(list_of(buffer, 1), List{});
   EXPECT_EQ(list_of(buffer, 2), (List{2, 4, 0}));
   EXPECT_EQ(list_of(buffer, 3), List{});
-  EXPECT_EQ(buffer.depth_of(2), 3u);
+  EXPECT_EQ(buffer.record_count(2), 3u);
   EXPECT_EQ(counters.items_in, 5u);
   EXPECT_EQ(counters.items_out, 5u);
 }

@@ -24,10 +24,10 @@ TEST(BeamFragment, AlphasOfATessellationSumToOne) {
     const std::int32_t reach = round % 3 == 0 ? (1 << 23) - 2048 : 3'000;
     const SetupTriangles fan = fan_around(hub, reach, random.int32(1, 200), &random);
     double sum[16] = {}, parts[16] = {}, dropped[16] = {};
-    std::vector<PixelTriangle> pairs;
+    std::vector<Pair> pairs;
     StageCounters counters;
     conservative_raster(fan, all_of(fan), tile, counters, pairs);
-    for (const PixelTriangle& pair : pairs) ++dropped[4 * pair.y + pair.x];
+    for (const Pair& pair : pairs) ++dropped[4 * pair.y + pair.x];
     for (const Fragment& fragment : beam_fragments(fan, tile, MaskSource::table).list)
       sum[fragment.pixel] += fragment.alpha, ++parts[fragment.pixel], --dropped[fragment.pixel];
     for (int pixel = 0; pixel < 16; ++pixel)

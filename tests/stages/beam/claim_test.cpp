@@ -30,12 +30,12 @@ struct Stream {
 
   Stream(const SetupTriangles& of, const Tile& in)
       : triangles(of), tile(in), pixels(tile.pixels(), cleared_pixel<Words, Layers>()) {
-    std::vector<PixelTriangle> pairs;
+    std::vector<Pair> pairs;
     conservative_raster(triangles, all_of(triangles), tile, counters, pairs);
     fragments = fragments_of(pairs);
   }
 
-  std::vector<Fragment> fragments_of(const std::vector<PixelTriangle>& pairs) {
+  std::vector<Fragment> fragments_of(const std::vector<Pair>& pairs) {
     std::vector<Fragment> made;
     beam_fragment(triangles, pairs, tile, {MaskSource::exact, positions.patterns, nullptr, nullptr, 66, 0}, counters,
                   made);

@@ -62,11 +62,11 @@ std::uint64_t compose_random(Random& random) {
     colors.emplace_back(random.real32(kLeast, kGreatest), random.real32(kLeast, kGreatest),
                         random.real32(kLeast, kGreatest));
   StageCounters counters;
-  std::vector<PixelTriangle> pairs, window, whole;
+  std::vector<Pair> pairs, window, whole;
   ClosedDepth closed(kTile);
   conservative_raster(triangles, all_of(triangles), kTile, counters, pairs, &closed);
-  const ABuffer buffer = a_buffer(sort_records(pairs, kTile), kTile.pixels(), 0, kWaitingPairBytes, counters);
-  Windows windows(pairs, buffer, kWaitingPairBytes);
+  const ABuffer buffer = a_buffer(sort_records(pairs, kTile), kTile.pixels(), 0, kStoredPairBytes, counters);
+  Windows windows(pairs, buffer, kStoredPairBytes);
   Pixels<Words> pixels(kTile.pixels());
   std::uint64_t merged = 0;
   while (windows.next([&](std::uint32_t pixel) { return !is_closed(pixels[pixel]); }, counters, window, whole)) {

@@ -29,12 +29,12 @@ std::vector<PixelColor> composed_as(const SetupTriangles& triangles, const std::
   const PositionGrid grid(32 * Words);
   const BeamFragmentOptions options = grid_options(grid, conserving_fragment_bytes(32 * Words));
   StageCounters counters;
-  std::vector<PixelTriangle> pairs, window, whole;
+  std::vector<Pair> pairs, window, whole;
   std::vector<StoredAggregate<Words, Channel>> pixels(tile.pixels());
   ClosedDepth closed(tile);
   conservative_raster(triangles, all_of(triangles), tile, counters, pairs, &closed);
-  const ABuffer buffer = a_buffer(sort_records(pairs, tile), tile.pixels(), 0, kWaitingPairBytes, counters);
-  Windows windows(pairs, buffer, kWaitingPairBytes);
+  const ABuffer buffer = a_buffer(sort_records(pairs, tile), tile.pixels(), 0, kStoredPairBytes, counters);
+  Windows windows(pairs, buffer, kStoredPairBytes);
   while (windows.next([&](std::uint32_t pixel) { return !is_closed(pixels[pixel]); }, counters, window, whole)) {
     std::vector<Fragment> fragments;
     std::vector<float> areas;

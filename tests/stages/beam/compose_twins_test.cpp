@@ -192,7 +192,7 @@ class ComposeTwins : public SceneTwins {
 TEST_P(ComposeTwins, ComposeWindow) {
   const PositionGrid grid(kPositions);
   StageCounters ignored;
-  std::vector<PixelTriangle> pairs;
+  std::vector<Pair> pairs;
   std::vector<Fragment> fragments;
   conservative_raster(triangles_, list_, tile_, ignored, pairs);
   beam_fragment(triangles_, pairs, tile_, grid_options(grid, 0), ignored, fragments);

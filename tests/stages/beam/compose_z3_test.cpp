@@ -17,7 +17,7 @@ std::vector<Z3Pixel<Words, Layers>> composed(const SetupTriangles& triangles, co
                                              OperationCounts* counts = nullptr) {
   const PositionSet positions(cell_patterns(32 * Words));
   StageCounters counters, composition;
-  std::vector<PixelTriangle> pairs;
+  std::vector<Pair> pairs;
   std::vector<Fragment> fragments;
   conservative_raster(triangles, all_of(triangles), tile, counters, pairs);
   beam_fragment(triangles, pairs, tile, {MaskSource::exact, positions.patterns, nullptr, nullptr, 26, 0}, counters,

@@ -20,13 +20,13 @@ class FragmentTwins : public SceneTwins {
  protected:
   void expect_equal(const BeamFragmentOptions& options) {
     StageCounters ignored, counters;
-    std::vector<PixelTriangle> pairs;
+    std::vector<Pair> pairs;
     std::vector<Fragment> fragments;
     conservative_raster(triangles_, list_, tile_, ignored, pairs);
     beam_fragment(triangles_, pairs, tile_, options, counters, fragments);
     twin_ = {}, directed_ = kNoTriangle;
     std::size_t next = 0;
-    for (const PixelTriangle& pair : pairs) {
+    for (const Pair& pair : pairs) {
       const std::optional<Fragment> twin = fragment(pair, options);
       if (!twin) continue;
       ASSERT_LT(next, fragments.size());
@@ -53,7 +53,7 @@ class FragmentTwins : public SceneTwins {
  private:
   static constexpr std::uint32_t kNoTriangle = ~0u;
 
-  std::optional<Fragment> fragment(const PixelTriangle& pair, const BeamFragmentOptions& options) {
+  std::optional<Fragment> fragment(const Pair& pair, const BeamFragmentOptions& options) {
     const SetupTriangle& triangle = triangles_.triangles[pair.triangle];
     Fragment out;
     DepthPlane<Float> plane;
@@ -61,7 +61,7 @@ class FragmentTwins : public SceneTwins {
     WideMask mask;
     DepthRange<Float> range{real(pair.nearest), real(pair.farthest)};
     if (!pair.full || options.clipped_depth) {
-      const PixelTriangleOf<Int> seen = seen_from(triangle, pair);
+      const TriangleInPixelOf<Int> seen = seen_from(triangle, pair);
       const Coverage<Float> area = coverage_formula<Int, Float>(seen);
       if (!pair.full) covered = area;
       mask = masks(pair, seen, options);
@@ -92,8 +92,8 @@ class FragmentTwins : public SceneTwins {
     return options.grid ? static_cast<std::size_t>(options.grid->count()) / 32 : options.positions.size();
   }
 
-  PixelTriangleOf<Int> seen_from(const SetupTriangle& triangle, const PixelTriangle& pair) {
-    PixelTriangleOf<Int> seen;
+  TriangleInPixelOf<Int> seen_from(const SetupTriangle& triangle, const Pair& pair) {
+    TriangleInPixelOf<Int> seen;
     for (int k = 0; k < 3; ++k) {
       seen.x[k] = integer(triangle.x[k]) - integer(256 * pair.x);
       seen.y[k] = integer(triangle.y[k]) - integer(256 * pair.y);
@@ -101,14 +101,14 @@ class FragmentTwins : public SceneTwins {
     return seen;
   }
 
-  DepthPlane<Float> pixel_plane_of(const SetupTriangle& triangle, const PixelTriangle& pair) {
+  DepthPlane<Float> pixel_plane_of(const SetupTriangle& triangle, const Pair& pair) {
     const ScreenDepth& depth = triangle.depth;
     const Real dzdx = real(depth.dzdx), dzdy = real(depth.dzdy);
     const Real dx = real(pair.x + 0.5) - real(depth.anchor_x), dy = real(pair.y + 0.5) - real(depth.anchor_y);
     return {to_float(real(depth.z) + dzdx * dx + dzdy * dy), to_float(dzdx), to_float(dzdy)};
   }
 
-  DepthRange<Float> clipped_range(const SetupTriangle& triangle, const PixelTriangleOf<Int>& seen,
+  DepthRange<Float> clipped_range(const SetupTriangle& triangle, const TriangleInPixelOf<Int>& seen,
                                   const DepthPlane<Float>& plane) {
     DepthRangeInput<Float> in;
     set_geometry(seen, in);
@@ -117,7 +117,7 @@ class FragmentTwins : public SceneTwins {
     return depth_range_formula(in);
   }
 
-  WideMask masks(const PixelTriangle& pair, const PixelTriangleOf<Int>& seen, const BeamFragmentOptions& options) {
+  WideMask masks(const Pair& pair, const TriangleInPixelOf<Int>& seen, const BeamFragmentOptions& options) {
     WideMask mask;
     if (options.mask == MaskSource::none) return mask;
     if (options.grid) return position_mask_scalar(seen, *options.grid);

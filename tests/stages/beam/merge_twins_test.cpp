@@ -19,7 +19,7 @@ class MergeTwins : public SceneTwins {
  protected:
   void make_fragments(const BeamFragmentOptions& options) {
     StageCounters ignored;
-    std::vector<PixelTriangle> pairs;
+    std::vector<Pair> pairs;
     conservative_raster(triangles_, list_, tile_, ignored, pairs);
     beam_fragment(triangles_, pairs, tile_, options, ignored, fragments_);
     shade(shade_triangles(triangles_, trace_.frames[0].light_direction), fragments_, ignored);

@@ -63,11 +63,11 @@ TEST(Properties, ConservativeRasterMissesNoPixel) {
   search(1'000'000, 4'000, [&](Random& random) {
     const SetupTriangles triangles = random_triangles(random, 1);
     const SetupTriangle& t = triangles.triangles[0];
-    std::vector<PixelTriangle> found;
+    std::vector<Pair> found;
     StageCounters counters;
     conservative_raster(triangles, {0}, kTile, counters, found);
     std::map<std::pair<std::int32_t, std::int32_t>, bool> is_found;
-    for (const PixelTriangle& pair : found) is_found[{pair.x, pair.y}] = true;
+    for (const Pair& pair : found) is_found[{pair.x, pair.y}] = true;
     for (std::int32_t y = kTile.y0; y < kTile.y1; ++y) {
       for (std::int32_t x = kTile.x0; x < kTile.x1; ++x) {
         const bool area = has_area(t, x, y), listed = is_found.contains({x, y});
@@ -137,11 +137,11 @@ TEST(Properties, AreasOfAPartitionAddUp) {
   double worst = 0;
   search(3'000'000, 150, [&](Random& random) {
     const SetupTriangles parts = random_partition(random, random.int32(1, 200));
-    std::vector<PixelTriangle> pairs;
+    std::vector<Pair> pairs;
     StageCounters counters;
     conservative_raster(parts, all_of(parts), kTile, counters, pairs);
     std::vector<double> sum(kTile.pixels()), dropped(kTile.pixels()), kept(kTile.pixels());
-    for (const PixelTriangle& pair : pairs) ++dropped[static_cast<std::size_t>(pair.y * kTile.width() + pair.x)];
+    for (const Pair& pair : pairs) ++dropped[static_cast<std::size_t>(pair.y * kTile.width() + pair.x)];
     for (const Fragment& fragment : beam_fragments(parts, kTile, MaskSource::exact).list) {
       sum[fragment.pixel] += fragment.alpha;
       ++kept[fragment.pixel], --dropped[fragment.pixel];

@@ -20,8 +20,8 @@ class PassTwin {
   PassTwin(const SetupTriangles& triangles, OperationCounts& counts) : triangles_(triangles), counts_(counts) {}
 
   // The depth bounds of each owner of the pixel (x, y).
-  std::vector<PixelTriangle> owners(const Pixel& pixel, std::int32_t x, std::int32_t y) {
-    std::vector<PixelTriangle> pairs;
+  std::vector<Pair> owners(const Pixel& pixel, std::int32_t x, std::int32_t y) {
+    std::vector<Pair> pairs;
     for (std::uint32_t k = 0; k < Layers; ++k) {
       if (none(find(pixel, Pixel::kFirstLayer + k))) continue;
       const SetupTriangle& triangle = triangles_.triangles[pixel.triangle(k)];
@@ -129,7 +129,7 @@ class SettleTwins : public SceneTwins {
     const BeamFragmentOptions options = grid_options(grid, 0);
     const std::vector<glm::vec3> colors = shade_triangles(triangles_, trace_.frames[0].light_direction);
     StageCounters ignored;
-    std::vector<PixelTriangle> pairs;
+    std::vector<Pair> pairs;
     std::vector<Fragment> fragments;
     conservative_raster(triangles_, list_, tile_, ignored, pairs);
     beam_fragment(triangles_, pairs, tile_, options, ignored, fragments);
@@ -139,14 +139,14 @@ class SettleTwins : public SceneTwins {
       claim(triangles_, fragments, tile_, positions, ignored, pixels);
       std::vector<Pixel> twins = pixels;
       StageCounters counters;
-      const std::vector<PixelTriangle> found = owners(triangles_, pixels, tile_, counters);
+      const std::vector<Pair> found = owners(triangles_, pixels, tile_, counters);
       twin_ = {};
       std::size_t next = 0;
       for (std::size_t i = 0; i < twins.size(); ++i) {
         const OperationCounts before = twin_;
         const std::size_t first = next;
         const auto x = static_cast<std::int32_t>(i) % tile_.width(), y = static_cast<std::int32_t>(i) / tile_.width();
-        for (const PixelTriangle& pair : twin.owners(twins[i], x, y)) {
+        for (const Pair& pair : twin.owners(twins[i], x, y)) {
           ASSERT_EQ(found.at(next).triangle, pair.triangle) << i;
           ASSERT_EQ(found[next].nearest, pair.nearest) << i;
           ASSERT_EQ(found[next++].farthest, pair.farthest) << i;

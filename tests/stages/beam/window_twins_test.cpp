@@ -43,7 +43,7 @@ class WindowTwins : public testing::TestWithParam<SceneKind> {
     return vertex_bounds(counted);
   }
 
-  DepthBounds<Float> bounds_of(const PixelTriangle& pair, const DepthBounds<Float>& vertices) {
+  DepthBounds<Float> bounds_of(const Pair& pair, const DepthBounds<Float>& vertices) {
     const ScreenDepth& depth = triangles_.triangles[pair.triangle].depth;
     const ScreenDepthOf<Real> counted = {real(depth.z), real(depth.dzdx), real(depth.dzdy), real(depth.anchor_x),
                                          real(depth.anchor_y)};
@@ -52,8 +52,8 @@ class WindowTwins : public testing::TestWithParam<SceneKind> {
   }
 
   // Rasterizes one triangle with nothing that hides it. Only the traversal is counted.
-  std::vector<PixelTriangle> touched(std::uint32_t index) {
-    std::vector<PixelTriangle> pairs;
+  std::vector<Pair> touched(std::uint32_t index) {
+    std::vector<Pair> pairs;
     StageCounters traversal;
     conservative_raster(triangles_, {index}, tile_, traversal, pairs, nullptr, PairDepths::none);
     twin_ += traversal.ops;
@@ -68,12 +68,12 @@ class WindowTwins : public testing::TestWithParam<SceneKind> {
 
 TEST_P(WindowTwins, DepthBounds) {
   StageCounters counters;
-  std::vector<PixelTriangle> pairs;
+  std::vector<Pair> pairs;
   conservative_raster(triangles_, list_, tile_, counters, pairs);
   std::size_t next = 0;
   for (const std::uint32_t index : list_) {
     const DepthBounds<Float> vertices = vertices_of(index);
-    for (const PixelTriangle& pair : touched(index)) {
+    for (const Pair& pair : touched(index)) {
       const DepthBounds<Float> bounds = bounds_of(pair, vertices);
       ASSERT_EQ(bounds.nearest.value, pairs[next].nearest);
       ASSERT_EQ(bounds.farthest.value, pairs[next].farthest);
@@ -95,18 +95,18 @@ TEST_P(WindowTwins, ClosedDepth) {
   std::size_t changes = 0;  // pixels nearer than the farthest one
   for (const TriangleList& list : halves) {
     StageCounters counters;
-    std::vector<PixelTriangle> pairs, found;
+    std::vector<Pair> pairs, found;
     const std::size_t waited = conservative_raster(triangles_, list, tile_, counters, pairs, &closed);
     twin_ = {};
     std::uint64_t read = 0, written = 0;
-    const auto hidden = [&](const PixelTriangle& pair, const Float& nearest) {
+    const auto hidden = [&](const Pair& pair, const Float& nearest) {
       read += 4;
       return nearest > depth[tile_.index(pair.x, pair.y)];
     };
     for (const std::uint32_t index : list) {
       const DepthBounds<Float> vertices = vertices_of(index);
       if (vertices.nearest > farthest) continue;
-      for (PixelTriangle pair : touched(index)) {
+      for (Pair pair : touched(index)) {
         const DepthBounds<Float> bounds = bounds_of(pair, vertices);
         if (hidden(pair, bounds.nearest)) continue;
         pair.nearest = bounds.nearest.value, pair.farthest = bounds.farthest.value;
@@ -132,7 +132,7 @@ TEST_P(WindowTwins, ClosedDepth) {
     }
     EXPECT_EQ(waited, found.size());
     read += found.size() * 16;
-    std::erase_if(found, [&](const PixelTriangle& pair) { return hidden(pair, real(pair.nearest)); });
+    std::erase_if(found, [&](const Pair& pair) { return hidden(pair, real(pair.nearest)); });
     ASSERT_EQ(found.size(), pairs.size());
     for (std::size_t i = 0; i < pairs.size(); ++i) ASSERT_EQ(found[i].triangle, pairs[i].triangle);
     EXPECT_EQ(counters.ops, twin_);
@@ -181,7 +181,7 @@ TEST_P(WindowTwins, Windows) {
   const PositionSet positions(cell_patterns(32 * kWords));
   const PositionGrid grid(32 * kWords);
   StageCounters ignored, counters, whole_pixels;
-  std::vector<PixelTriangle> pairs, window, whole;
+  std::vector<Pair> pairs, window, whole;
   std::vector<StoredAggregate<kWords, HalfBits>> pixels(tile_.pixels());
   const std::vector<glm::vec3> colors(list_.size(), glm::vec3(0.5f));
   conservative_raster(triangles_, list_, tile_, ignored, pairs);
@@ -195,13 +195,13 @@ TEST_P(WindowTwins, Windows) {
     std::size_t in_window = 0, in_whole = 0;
     for (std::uint32_t pixel = 0; pixel < tile_.pixels(); ++pixel) {
       const std::uint32_t* const list = buffer.records.data() + buffer.first[pixel];
-      const std::uint32_t depth = buffer.depth_of(pixel), first = next[pixel];
+      const std::uint32_t depth = buffer.record_count(pixel), first = next[pixel];
       if (first == depth || is_closed(pixels[pixel])) continue;
       Float farthest = real(pairs[list[first]].farthest);
       read += first == 0 ? 16 : 0;
       std::vector<std::uint32_t> members = {list[first]};
       while (++next[pixel] < depth) {
-        const PixelTriangle& pair = pairs[list[next[pixel]]];
+        const Pair& pair = pairs[list[next[pixel]]];
         read += 16;
         if (!overlaps(real(pair.nearest), farthest)) break;
         farthest = greater(farthest, real(pair.farthest));

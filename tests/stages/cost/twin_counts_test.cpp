@@ -28,7 +28,7 @@ class TwinCounts : public SceneTwins {
 
 TEST_P(TwinCounts, Sort) {
   StageCounters raster, ignored, sorting;
-  std::vector<PixelTriangle> pairs;
+  std::vector<Pair> pairs;
   conservative_raster(triangles_, list_, tile_, raster, pairs);
   std::vector<Fragment> fragments;
   BeamFragmentOptions options;
@@ -216,7 +216,7 @@ template <std::size_t Words, std::size_t Layers>
 void TwinCounts::expect_equal_claims() {
   const PositionSet positions(cell_patterns(32 * Words));
   StageCounters raster, ignored, counters;
-  std::vector<PixelTriangle> pairs;
+  std::vector<Pair> pairs;
   std::vector<Fragment> fragments;
   conservative_raster(triangles_, list_, tile_, raster, pairs);
   beam_fragment(triangles_, pairs, tile_, {MaskSource::exact, positions.patterns, nullptr, nullptr, 66, 0}, ignored,

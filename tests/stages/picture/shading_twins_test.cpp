@@ -52,7 +52,7 @@ class ShadingTwins : public SceneTwins {
   std::vector<Fragment> beam_fragments() {
     const PositionGrid grid(256);
     StageCounters ignored;
-    std::vector<PixelTriangle> pairs;
+    std::vector<Pair> pairs;
     std::vector<Fragment> fragments;
     conservative_raster(triangles_, list_, tile_, ignored, pairs);
     beam_fragment(triangles_, pairs, tile_, grid_options(grid, 0), ignored, fragments);

@@ -14,15 +14,15 @@ namespace {
 
 constexpr Tile kFrame{0, 0, 12, 10};
 
-using Pair = std::tuple<std::uint32_t, std::int32_t, std::int32_t, bool>;  // triangle, x, y, full
+using TouchedPair = std::tuple<std::uint32_t, std::int32_t, std::int32_t, bool>;  // triangle, x, y, full
 
 struct Raster {
-  std::vector<PixelTriangle> pairs;
+  std::vector<Pair> pairs;
   StageCounters counters;
 
-  std::set<Pair> set() const {
-    std::set<Pair> all;
-    for (const PixelTriangle& p : pairs) all.emplace(p.triangle, p.x, p.y, p.full);
+  std::set<TouchedPair> set() const {
+    std::set<TouchedPair> all;
+    for (const Pair& p : pairs) all.emplace(p.triangle, p.x, p.y, p.full);
     return all;
   }
 };
@@ -81,7 +81,7 @@ TEST(ConservativeRaster, FindsExactlyTheTouchedPixels) {
   Random random(101);
   SCOPED_TRACE(random.name());
   const SetupTriangles triangles = random_triangles(random, 6'000);
-  std::set<Pair> expected;
+  std::set<TouchedPair> expected;
   for (std::uint32_t i = 0; i < triangles.triangles.size(); ++i)
     for (std::int32_t y = kFrame.y0; y < kFrame.y1; ++y)
       for (std::int32_t x = kFrame.x0; x < kFrame.x1; ++x)
@@ -97,7 +97,7 @@ TEST(ConservativeRaster, CornersTouch) {
   // Its right-angled corner is the pixel corner (2, 2); the triangle lies below and to the right.
   SetupTriangles triangles;
   add_triangle(triangles, {512, 512}, {600, 512}, {512, 600});
-  const std::set<Pair> expected = {{0, 1, 1, false}, {0, 2, 1, false}, {0, 1, 2, false}, {0, 2, 2, false}};
+  const std::set<TouchedPair> expected = {{0, 1, 1, false}, {0, 2, 1, false}, {0, 1, 2, false}, {0, 2, 2, false}};
   EXPECT_EQ(rasterize(triangles, kFrame).set(), expected);
 }
 
@@ -129,7 +129,7 @@ TEST(ConservativeRaster, QuadNumbersNameQuads) {
   std::map<std::uint32_t, std::tuple<std::uint32_t, std::int32_t, std::int32_t>> quads;
   std::set<std::tuple<std::uint32_t, std::int32_t, std::int32_t>> distinct;
   std::uint32_t last = 0;
-  for (const PixelTriangle& p : rasterize(triangles, kFrame).pairs) {
+  for (const Pair& p : rasterize(triangles, kFrame).pairs) {
     const std::tuple where(p.triangle, p.x >> 1, p.y >> 1);
     EXPECT_EQ(quads.try_emplace(p.quad, where).first->second, where);
     EXPECT_GE(p.quad, last);

@@ -79,10 +79,10 @@ class RasterTwins : public SceneTwins {
 
 TEST_P(RasterTwins, ConservativeRaster) {
   StageCounters counters;
-  std::vector<PixelTriangle> pairs;
+  std::vector<Pair> pairs;
   conservative_raster(triangles_, list_, tile_, counters, pairs, nullptr, PairDepths::none);
   std::vector<Cell> found, expected;
-  for (const PixelTriangle& pair : pairs) found.push_back({pair.triangle, pair.x, pair.y, pair.full ? 1u : 0u});
+  for (const Pair& pair : pairs) found.push_back({pair.triangle, pair.x, pair.y, pair.full ? 1u : 0u});
   for (const std::uint32_t index : list_)
     each_touched_cell(triangles_.triangles[index], CellGrid{}, FullMeans::area,
                       [&](std::int32_t x, std::int32_t y, const std::array<Int, 3>&, bool full) {

@@ -1,8 +1,8 @@
-// Formulas of simd/pixel_triangle.h. No include guard: see simd/scalar.h.
+// Formulas of simd/triangle_in_pixel.h. No include guard: see simd/scalar.h.
 
 // Edge k of the triangle.
 template <class Int>
-EdgeInPixel<Int> edge_in_pixel(const PixelTriangleOf<Int>& triangle, int k) {
+EdgeInPixel<Int> edge_in_pixel(const TriangleInPixelOf<Int>& triangle, int k) {
   const int next = (k + 1) % 3;
   const Int a = triangle.y[k] - triangle.y[next], b = triangle.x[next] - triangle.x[k];
   return {a, b, Int(0) - (a * triangle.x[k] + b * triangle.y[k])};

@@ -10,10 +10,10 @@ namespace beampipe {
 // Vertices in 1/256 px from the pixel's upper left corner, x to the right, y down, |x|, |y| <= 2^24; ordered so that
 // the inside is at E >= 0 for every edge. Edge k runs from vertex k to vertex (k + 1) % 3.
 template <class Int>
-struct PixelTriangleOf {
+struct TriangleInPixelOf {
   Int x[3], y[3];
 };
-using TriangleInPixel = PixelTriangleOf<std::int32_t>;
+using TriangleInPixel = TriangleInPixelOf<std::int32_t>;
 
 // E(x, y) = a x + b y + c. All values are integers below 2^50, so 64-bit integers and doubles hold them exactly.
 template <class Int>
@@ -22,7 +22,7 @@ struct EdgeInPixel {
 };
 
 namespace scalar {
-#include "simd/pixel_triangle-inl.h"
+#include "simd/triangle_in_pixel-inl.h"
 }
 using namespace scalar;
 
