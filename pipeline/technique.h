@@ -12,7 +12,7 @@
 
 #include "pipeline/memory/parameters.h"
 #include "stages/cost/counters.h"
-#include "stages/temporal/temporal.h"
+#include "stages/data/frame_history.h"
 #include "traces/trace.h"
 
 namespace beampipe {

@@ -66,9 +66,17 @@ mutants=(  # file | text as it is | broken
   'stages/data/pixel_depth.h|rounding(0x1p-21)|rounding(0x1p-31)'
   'stages/data/closed_depth.h|nearest > depth_[tile_.index(x, y)]|nearest >= depth_[tile_.index(x, y)]'
   'stages/data/closed_depth.h|nearest > farthest_|nearest >= farthest_'
-  'pipeline/bands.cpp|edge.b > 0 ? bottom : top|edge.b > 0 ? top : bottom'
-  'pipeline/bands.cpp|floor_of(-at_zero - 1,|floor_of(-at_zero,'
+  'pipeline/bins/bands.cpp|edge.b > 0 ? bottom : top|edge.b > 0 ? top : bottom'
+  'pipeline/bins/bands.cpp|floor_of(-at_zero - 1,|floor_of(-at_zero,'
 )
+
+for mutant in "${mutants[@]}"; do  # before anything is built
+  IFS='|' read -r file whole broken <<<"$mutant"
+  [[ -f $file ]] && WHOLE=$whole perl -0ne 'exit !/\Q$ENV{WHOLE}\E/' "$file" || {
+    echo "$file has no \"$whole\" any more" >&2
+    exit 1
+  }
+done
 
 unnoticed=0
 for mutant in "${mutants[@]}"; do
@@ -78,10 +86,6 @@ for mutant in "${mutants[@]}"; do
   cp "$file" "$original"
   trap 'cp "$original" "$file"' EXIT
   WHOLE=$whole BROKEN=$broken perl -0pi -e 's/\Q$ENV{WHOLE}\E/$ENV{BROKEN}/' "$file"
-  if cmp -s "$file" "$original"; then
-    echo "$file has no \"$whole\" any more" >&2
-    exit 1
-  fi
   noticed=
   folders=(simd stages pipeline)
   [[ $file == stages/* ]] && folders=(stages pipeline)

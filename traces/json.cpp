@@ -1,6 +1,7 @@
 #include "traces/json.h"
 
 #include <algorithm>
+#include <utility>
 
 namespace beampipe {
 namespace {
@@ -45,7 +46,7 @@ Json::Json(const Json& other) {
   value_ = std::visit(copy, other.value_);
 }
 
-Json::Json(Json&& other) noexcept = default;
+Json::Json(Json&& other) noexcept : value_(std::exchange(other.value_, nullptr)) {}
 
 Json& Json::operator=(Json other) noexcept {
   value_.swap(other.value_);

@@ -68,9 +68,11 @@ class FrameRecorder {
   }
 
   FrameResult finish(const GeometryPass& pass, std::uint64_t list_bytes) {
+    StageCounters& setup = result_.stages.at(0);   // vertex_setup, then the stages of the plan,
+    StageCounters& raster = result_.stages.at(1);  // whose first one rasterizes
     for (int i = 0; i < geometry_passes_; ++i) {
-      result_.stages[0] += pass.setup;
-      result_.stages[1] += pass.raster;
+      setup += pass.setup;
+      raster += pass.raster;
     }
     const std::uint64_t triangles = context_.triangles.triangles.size();
     result_.buffers = {{"setup_triangles", triangles * (sizeof(SetupTriangle) + sizeof(FlatAttributes))},

@@ -74,6 +74,15 @@ TEST(Json, NullBecomesWhatIsPutIntoIt) {
   EXPECT_EQ(array.dump(), "[1]");
 }
 
+TEST(Json, AValueThatWasMovedFromIsNull) {
+  for (Json json : {Json("text"), Json::array({1}), Json({{"a", 1}}), Json(7)}) {
+    const Json taken = std::move(json);
+    EXPECT_TRUE(json.is_null()) << taken.dump();
+    EXPECT_EQ(json.size(), 0u);
+    EXPECT_EQ(Json(json), Json());
+  }
+}
+
 TEST(Json, ValueHasADefault) {
   const Json json = {{"a", 2}};
   EXPECT_EQ(json.value("a", 1), 2);

@@ -19,15 +19,22 @@ TEST(Z3, ReadsAndWritesAPixelForEachFragment) {
   EXPECT_EQ(merging.lanes_issued, fragments);
 }
 
-// Where no pixel shows more surfaces than there are layers, nothing is merged, and each position has its own surface.
+// Two triangles fit into three layers, so nothing is merged and each position keeps its own surface.
 TEST(Z3, WithoutMergesThePictureIsThatOfTheMaskPositions) {
-  std::vector<PixelSpaceTriangle> triangles = quad(0.3, 0.3, 3.6, 3.7, 0.6, glm::vec3(1, 0, 0));
-  append(triangles, quad(1.2, 1.1, 2.7, 5.0, 0.3, glm::vec3(0, 1, 0)));
-  const FrameResult found = render("z3", pixel_trace(6, 6, triangles));
+  const Trace trace = pixel_trace(6, 6,
+                                  {{{{-1, -1, 0.6}, {13, -1, 0.6}, {-1, 13, 0.6}}, glm::vec3(1, 0, 0)},
+                                   {{{1.2, 0.8, 0.3}, {4.9, 0.9, 0.3}, {1.1, 4.7, 0.3}}, glm::vec3(0, 1, 0)}});
+  const FrameResult found = render("z3", trace);
   EXPECT_EQ(sum_of(found, "merges"), 0);
-  const Image settled = picture("beam:order=stream,bits=32", pixel_trace(6, 6, triangles));
-  EXPECT_LT(worst_difference(found.image, settled), 0.2) << "areas are counted by 32 positions";
-  EXPECT_EQ(pixel(found.image, 2, 2), glm::vec3(0, 1, 0)) << "a pixel that one surface covers";
+  EXPECT_EQ(pixel(found.image, 2, 1), glm::vec3(0, 1, 0)) << "a pixel that the nearer triangle covers";
+  EXPECT_EQ(pixel(found.image, 5, 5), glm::vec3(1, 0, 0)) << "a pixel that the farther triangle covers alone";
+  // A pixel's red and green are shares of 32 positions.
+  for (std::uint32_t y = 0; y < 6; ++y)
+    for (std::uint32_t x = 0; x < 6; ++x) {
+      const float green = 32 * pixel(found.image, x, y).g;
+      EXPECT_NEAR(green, std::round(green), 0.02) << x << ' ' << y;
+      EXPECT_NEAR(pixel(found.image, x, y).r + pixel(found.image, x, y).g, 1, 1e-3) << x << ' ' << y;
+    }
 }
 
 }  // namespace
