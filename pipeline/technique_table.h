@@ -13,15 +13,15 @@
 
 namespace beampipe {
 
-// "key=word" in a spec chooses this variant of the techniques of one name. `otherwise` is the word of all others, which
-// their specs may say.
+// "key=word" in a spec chooses this variant of the techniques of one name. `otherwise`: the key's value
+// for the default variant; specs may state it.
 struct Variant {
   std::string key, word, otherwise;
 };
 
 struct TechniqueKind {
   std::string name;
-  Variant variant = {};     // empty: the technique of this name that is meant where no variant is chosen
+  Variant variant = {};     // empty: the default technique of this name
   std::string description;  // one line, no full stop
   std::string source;       // "ours", or who published it and when
   // Gives the options, bound to variables that have their defaults, to `read`, which may set them. Then makes the

@@ -9,7 +9,7 @@ namespace {
 
 using Form = SpecOption::Form;
 
-// The number of samples that stands for all where a table has room for one.
+// Sample count used where a table has one column.
 constexpr const char* kExampleSamples = "8";
 
 constexpr std::size_t kHelpWidth = 100;  // characters of a line
@@ -17,13 +17,13 @@ constexpr std::size_t kHelpWidth = 100;  // characters of a line
 SpecOptions options_of(const TechniqueKind& kind) {
   SpecOptions options;
   kind.make([&](const SpecOptions& all) { options = all; });
-  for (SpecOption& option : options) option.set = nullptr;  // the variables are gone
+  for (SpecOption& option : options) option.set = nullptr;  // they point to locals that no longer exist
   return options;
 }
 
 bool has_samples(const SpecOptions& options) { return !options.empty() && options.front().form == Form::samples; }
 
-// Of the framebuffer when options[i] is `word`, and all others are as they are by default.
+// Returns the framebuffer's bytes per pixel with options[i] set to `word` and all other options at their defaults.
 std::uint32_t bytes_with(const TechniqueKind& kind, std::size_t i, const std::string& word) {
   const auto set = [&](const SpecOptions& options) {
     if (has_samples(options)) options.front().set(kExampleSamples);
@@ -32,7 +32,7 @@ std::uint32_t bytes_with(const TechniqueKind& kind, std::size_t i, const std::st
   return kind.make(set).framebuffer_bytes_per_pixel();
 }
 
-// For each word of options[i], if they differ: "14, 18, 26, 42".
+// Returns the bytes for each word of options[i], or nothing if all are equal: "14, 18, 26, 42".
 std::string bytes_by_word(const TechniqueKind& kind, std::size_t i, const std::vector<std::string>& words) {
   std::vector<std::uint32_t> bytes;
   for (const std::string& word : words) bytes.push_back(bytes_with(kind, i, word));

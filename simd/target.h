@@ -10,7 +10,7 @@ namespace beampipe {
 // Highway's names in lower case, the best first: "avx3", "avx2", "sse4", "ssse3", "scalar". At least one.
 std::vector<std::string> simd_targets();
 
-// The name of the one in use.
+// The active instruction set's name.
 std::string simd_target();
 
 // From now on every kernel of the process uses this one. Call it while no kernel runs. Throws std::invalid_argument

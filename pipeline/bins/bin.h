@@ -72,7 +72,7 @@ class Bin {
   // The bin keeps so many bytes of A-buffer in memory.
   void keeps_a_buffer(std::uint64_t bytes) { a_buffer_bytes_ += bytes; }
 
-  // The application draws the frame once more for this bin.
+  // Counts one more geometry pass for this bin.
   void starts_geometry_pass() { ++geometry_passes_; }
 
   // The finished picture: RGBA, one per pixel of the tile. Charges `resolve` with writing it to memory.

@@ -34,7 +34,7 @@ struct GeometryPass {
   }
 };
 
-// Adds up what bins recorded. Only sums and the picture are kept, so that a large frame takes no more than its picture.
+// Adds up what bins recorded. Only sums and the picture are kept, so that memory use stays that of the picture.
 class FrameRecorder {
  public:
   FrameRecorder(const FrameContext& context, const BinPlan& plan) : context_(context) {
@@ -44,7 +44,7 @@ class FrameRecorder {
     for (const std::string& name : plan.stages) result_.stages.push_back(StageCounters{name});
   }
 
-  // From any thread.
+  // Thread-safe.
   void add(const Bin& bin) {
     std::map<std::string, std::vector<float>*> counters;  // of the frame
     {
@@ -122,7 +122,7 @@ FrameResult render_bins(const FrameContext& context, const BinPlan& plan, const 
   };
   for (const Band& band :
        split_into_bands(context.triangles, grid, plan.pair_bytes, thread_count(run.threads), run.memory_limit)) {
-    if (band.first > 0) malloc_trim(0);  // glibc would keep the freed memory of a band on top of the next one's
+    if (band.first > 0) malloc_trim(0);  // glibc would keep the freed memory of a band in addition to the next one's
     on_threads(run.threads, [&] { render_band(band); });
   }
   return recorder.finish(pass, list_bytes);

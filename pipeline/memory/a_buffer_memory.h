@@ -1,4 +1,4 @@
-// What the A-buffer of one bin moves: the pass over the frame that fills it, and the pass that empties it.
+// Memory traffic of one bin's A-buffer: insertion, sorting, reading in order.
 #pragma once
 
 #include <vector>

@@ -1,4 +1,4 @@
-// A set-associative write-back cache over blocks of memory. It tells which bytes really move.
+// A set-associative write-back cache over blocks of memory. It counts the bytes that really move.
 //
 // In memory a block is cleared (the state alone tells its content), compressed to some number of sectors, or raw. A line
 // of the cache holds one block; each sector of the line is valid or not, and dirty or not.
@@ -38,7 +38,7 @@ class BlockCache {
   enum class Level { rop, l2 };
 
   // `block_bytes` <= cache.line_bytes, at most kMaxBlockSectors sectors. `cleared`: all blocks start out cleared, else
-  // raw. Without `compressed_bytes` nothing compresses. Without a memory model the cache does and counts nothing.
+  // raw. Without `compressed_bytes` nothing compresses. If memory is not modelled, all calls do nothing.
   BlockCache(const MemoryParameters& memory, const CacheParameters& cache, Level level, std::size_t blocks,
              std::uint32_t block_bytes, bool cleared, CompressedBytes compressed_bytes);
 

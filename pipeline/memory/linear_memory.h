@@ -29,10 +29,10 @@ class RecordsInOrder {
   void read(std::uint32_t record, StageCounters& counters) {
     const std::uint64_t begin = std::uint64_t{record} * record_bytes_, end = begin + record_bytes_;
     const std::uint64_t first = std::max(begin / memory_.sector_bytes, read_to_);
-    const std::uint64_t behind = (end + memory_.sector_bytes - 1) / memory_.sector_bytes;
-    if (behind <= first) return;
-    stream(memory_, (behind - first) * memory_.sector_bytes, counters);
-    read_to_ = behind;
+    const std::uint64_t end_sector = (end + memory_.sector_bytes - 1) / memory_.sector_bytes;
+    if (end_sector <= first) return;
+    stream(memory_, (end_sector - first) * memory_.sector_bytes, counters);
+    read_to_ = end_sector;
   }
 
  private:

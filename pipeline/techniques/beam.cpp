@@ -27,7 +27,7 @@ std::vector<Surface> beam_framebuffer(const BeamOptions& beam) {
           beam.storage == Storage::packed ? Surface{"color", "RGB16F", 6} : Surface{"color", "RGB32F", 12}};
 }
 
-// Depth is compared position by position, so the order of merging decides nothing and is the same for all.
+// Depth is compared position by position, so merge order does not matter; 0 is recorded for every fragment.
 void add_weights(const std::vector<Fragment>& fragments, const std::vector<float>& areas,
                  const std::vector<Pair>& whole, const Tile& tile, BinWeights& weights) {
   for (const Pair& pair : whole) weights.at(tile.index(pair.x, pair.y)) = {{pair.triangle, 1.0f, 0, false}};

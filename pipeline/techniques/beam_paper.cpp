@@ -90,8 +90,8 @@ std::vector<PixelColor> compose_lists(const PaperOptions& options, PaperStorage 
                           : compose_over(fragments, lists, counters));
 }
 
-// Composition is linear in colour: a fragment that alone has a channel, as 1, leaves its weight there. So three
-// fragments of each pixel are weighed at a time. Weights are those of unpacked aggregates.
+// Composition is linear in colour. Set one fragment's channel to 1 and all others to 0: the composed channel is that
+// fragment's weight. RGB gives three weights per run. Weights are those of unpacked aggregates.
 void add_weights(const PaperOptions& options, const SamplePattern& pattern, std::vector<Fragment> fragments,
                  const ABuffer& lists, BinWeights& weights) {
   StageCounters unused;

@@ -1,6 +1,6 @@
 // Decoupled visibility multisampling (the article of that name). Visibility has 8 samples per pixel, a 2x2 quad has
-// four shading samples. They are switched so that every material of the quad has one, spread over the quad by their
-// masks, and accumulated over time.
+// four shading samples. Shading samples are reassigned so that every material of the quad has one. Their masks spread
+// the colours over the quad, and the picture is accumulated over time.
 #pragma once
 
 #include "pipeline/technique.h"

@@ -38,8 +38,8 @@ FrameResult render_msaa(const Trace& trace, const Frame& frame, const MsaaOption
       depth_test.test(fragments);
     });
     depth_test.end_pass();
-    depth_test.add_color(color_bytes(options));
     if (options.prepass) {  // shades and writes what is visible; the surface already knows which triangles are
+      depth_test.add_color(color_bytes(options));
       raster.pass(sampling, [&](std::vector<SampleFragment>& fragments) {
         depth_test.test_equal(fragments);
         shade(fragments);

@@ -34,7 +34,7 @@ class WindowsUnit {
 
   const BinStage stage;
   std::vector<Pair> pairs;  // of the windows, pixel by pixel, each in primitive order
-  std::vector<Pair> whole;  // windows of one pair that is all that can be seen of its pixel
+  std::vector<Pair> whole;  // single-pair windows that cover their whole pixel
 
  private:
   Bin& bin_;
@@ -42,7 +42,7 @@ class WindowsUnit {
 };
 
 // Charges aggregates that were composed on chip: `compose` writes those that are `written`, `resolve` reads them all.
-// Both are one per pixel; `full`: nothing shows through the pixel.
+// Both are one per pixel; `full`: the pixel is closed.
 void charge_aggregates(Bin& bin, const std::vector<Surface>& framebuffer, const std::vector<bool>& written,
                        const std::vector<bool>& full);
 

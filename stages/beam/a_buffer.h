@@ -22,8 +22,8 @@ std::vector<SortRecord> sort_records(const std::vector<Fragment>& fragments, Sor
 std::vector<SortRecord> sort_records(const std::vector<Pair>& pairs, const Tile& tile);
 
 // The modelled machine inserts a record by exchanging the pixel's head link and writing the record with the old link.
-// Then it reads every pixel's head and its records, sorts them and writes them. `item_bytes`: size of an item that
-// comes in. `record_bytes`: size of a stored record without its link.
+// Then it reads every pixel's head and records to sort them; nothing is written back. `item_bytes`: size of an item
+// that comes in. `record_bytes`: size of a stored record without its link.
 ABuffer a_buffer(const std::vector<SortRecord>& records, std::size_t pixels, std::uint32_t item_bytes,
                  std::uint32_t record_bytes, StageCounters& counters);
 

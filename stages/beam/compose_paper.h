@@ -1,5 +1,6 @@
 // compose: fragments from near to far -> one aggregate per pixel, by the published rules. It is the ROP of their
-// pipeline.
+// pipeline. compose_over does the same for `alpha`, without masks. The file is named after the rules because every
+// technique has its own `compose`.
 #pragma once
 
 #include <vector>

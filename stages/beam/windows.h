@@ -1,7 +1,7 @@
 // windows: sorted lists of pairs -> the next window of every open pixel.
 //
 // A window is a run of a pixel's list whose depth ranges overlap, so windows lie strictly behind each other. Pixels are
-// composed one window at a time. What lies behind a pixel's last open position is therefore never worked on. Each
+// composed one window at a time. Once all positions are taken, farther windows are skipped. Each
 // record is read only once: the record that ends a window starts the next one.
 #pragma once
 

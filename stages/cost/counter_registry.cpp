@@ -73,7 +73,7 @@ const std::vector<PixelCounterInfo>& pixel_counters() {
        "fragments that are shaded at the centroid, because their triangle does not cover the centre",
        "msaa:N,at=centroid"},
       {"merges", "fragments",
-       "fragments that were composed before the pixel was full; for z3, how often two layers became one",
+       "fragments that were composed before the pixel was closed; for z3, how often two layers became one",
        "beam, alpha, z3"},
       {"tiny_triangles", "fragments", "fragments that cover no mask position (specks)", "beam"},
       {"largest_window", "fragments", "fragments of the largest window", "beam"},

@@ -2,7 +2,7 @@
 //
 // Screen space: x points right and y points down. Pixel (0, 0) is the upper left one and covers [0, 1] x [0, 1].
 // Positions are integers in 1/256 px. Depth is linear in screen space, -1 at the near plane and 0 at the far plane:
-// (z / w - 1) / 2. Floats are finest around 0, so distant depths differ as well as in a reversed depth buffer.
+// (z / w - 1) / 2. As in reversed Z, float precision is highest near 0, i.e. far away.
 #pragma once
 
 #include <cstdint>

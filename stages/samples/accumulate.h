@@ -25,8 +25,8 @@ void stencil_test(const Tile& tile, StageCounters& counters, Accumulator& accumu
 void accumulate(const std::vector<SampleFragment>& fragments, const std::vector<glm::vec3>& colors, const Tile& tile,
                 StageCounters& counters, Accumulator& accumulator);
 
-// Blends the accumulated colours over the background, which shows as far as alpha leaves it. Returns RGBA per pixel of
-// the tile.
+// Blends the accumulated colours over the background, which is weighted by 1 - alpha. Returns RGBA per pixel of the
+// tile.
 std::vector<glm::vec4> resolve(const Accumulator& accumulator, const glm::vec3& background, StageCounters& counters);
 
 }  // namespace beampipe

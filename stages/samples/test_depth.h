@@ -1,5 +1,6 @@
 // depth_test: sample fragments -> the multisampled surface of the tile.
 //
+// The file is not called depth_test because files whose names end in _test are tests.
 // The test is LESS, so at equal depth the earlier triangle stays.
 #pragma once
 

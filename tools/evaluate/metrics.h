@@ -1,4 +1,4 @@
-// How wrong a picture is, and how much MSAA would be as wrong.
+// How large a picture's error is, and which MSAA rate has the same error.
 #pragma once
 
 #include <cstdint>

@@ -20,7 +20,7 @@ struct StatedLimit {
 
 struct HardCase {
   std::string name;
-  std::string what;  // is hard about it: a short phrase
+  std::string what;  // what makes the case hard: a short phrase
   Trace trace;       // one frame
   // The RGBA of every pixel, if it follows from how the trace was made. Otherwise tools/stress/exact.h computes it.
   std::optional<glm::dvec4> everywhere;
