@@ -1,5 +1,5 @@
-// A technique by its spec string, and what rendering a frame with it gives. Most tools need
-// nothing else; a few also use a technique's own header, such as pipeline/techniques/msaa.h.
+// A technique by its spec string, and what rendering a frame with it gives. Most tools need nothing else; a
+// few also use a technique's own header, such as pipeline/techniques/msaa.h.
 #pragma once
 
 #include <cstddef>

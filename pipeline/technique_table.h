@@ -13,8 +13,8 @@
 
 namespace beampipe {
 
-// "key=word" in a spec chooses this variant of the techniques of one name. `otherwise`: the key's value
-// for the default variant; specs may state it.
+// "key=word" in a spec chooses this variant of the techniques of one name. `otherwise`: the key's value for the
+// default variant; specs may state it.
 struct Variant {
   std::string key, word, otherwise;
 };

@@ -1,7 +1,7 @@
 // A set-associative write-back cache over blocks of memory. It counts the bytes that really move.
 //
-// In memory a block is cleared (the state alone tells its content), compressed to some number of sectors, or raw. A line
-// of the cache holds one block; each sector of the line is valid or not, and dirty or not.
+// In memory a block is cleared (the state alone tells its content), compressed to some number of sectors, or raw. A
+// line of the cache holds one block; each sector of the line is valid or not, and dirty or not.
 #pragma once
 
 #include <algorithm>
@@ -46,11 +46,11 @@ class BlockCache {
   // `next` must outlive it.
   BlockCache(const MemoryParameters& memory, const CacheParameters& cache, BlockCache& next);
 
-  // Reads or writes bytes [first, first + bytes) of a block. Consecutive accesses of a stage with the same block and key
-  // (usually the triangle) form one request, which asks for each sector at most once to read and once to write. Adds
-  // the request to counters.sector_bytes, what L2 is asked for to counters.l2_bytes, and what is fetched and written
-  // back to counters.dram_bytes. A sector that is written only in part is fetched first. No byte is written twice in
-  // one request.
+  // Reads or writes bytes [first, first + bytes) of a block. Consecutive accesses of a stage with the same block and
+  // key (usually the triangle) form one request, which asks for each sector at most once to read and once to write.
+  // Adds the request to counters.sector_bytes, what L2 is asked for to counters.l2_bytes, and what is fetched and
+  // written back to counters.dram_bytes. A sector that is written only in part is fetched first. No byte is written
+  // twice in one request.
   void read(std::uint32_t key, std::size_t block, std::uint32_t first, std::uint32_t bytes, StageCounters& counters) {
     access(key, block, sectors_of(first, bytes), 0, counters, [](auto&&) {});
   }
@@ -58,8 +58,8 @@ class BlockCache {
     access(key, block, 0, sectors_of(first, bytes), counters, [&](auto&& count) { count(first, bytes); });
   }
 
-  // Reads and writes, for a caller that already knows the sectors. each_write(count) calls count(first, bytes) for every
-  // run of bytes that is written; it is only called where it matters whether sectors are written as a whole.
+  // Reads and writes, for a caller that already knows the sectors. each_write(count) calls count(first, bytes) for
+  // every run of bytes that is written; it is only called where it matters whether sectors are written as a whole.
   template <class EachWrite>
   void access(std::uint32_t key, std::size_t block, Sectors read, Sectors write, StageCounters& counters,
               EachWrite&& each_write) {

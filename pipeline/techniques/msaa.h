@@ -1,7 +1,8 @@
 // Multisampling: N depth and colour samples per pixel, shaded once per triangle and pixel. Up to 16 samples are at the
 // standard positions. Above, the picture is super-resolved 8x multisampling, as in the comparisons of Crassin et al.
 //
-// Without `prepass`, shading is charged before the depth test (late Z). Only hierarchical Z removes hidden fragments early.
+// Without `prepass`, shading is charged before the depth test (late Z). Only hierarchical Z removes hidden fragments
+// early.
 #pragma once
 
 #include "pipeline/sampling.h"

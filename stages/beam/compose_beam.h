@@ -1,4 +1,5 @@
-// compose_window (stage `compose` of beam): one window of fragments per pixel -> the pixels' area-conserving aggregates.
+// compose_window (stage `compose` of beam): one window of fragments per pixel -> the pixels' area-conserving
+// aggregates.
 //
 // Within a window (stages/beam/windows.h), depth is compared position by position (simd/window_owners.h), so fragments
 // that interpenetrate need no order. Then each visible fragment adds its area (simd/conserve.h) to the aggregate. The

@@ -17,8 +17,8 @@ namespace beampipe {
 inline constexpr float kSurfaceReach = 1.0f / 64.0f;
 
 // All specks that have the same nearest position may together cover at most this many times a position's share of the
-// pixel; if they cover more, they are several layers. About twice a position's share is nearer to
-// it than to any other position. Four times is enough not to affect dense meshes.
+// pixel; if they cover more, they are several layers. About twice a position's share is nearer to it than to any other
+// position. Four times is enough not to affect dense meshes.
 inline constexpr float kSpeckShares = 4.0f;
 
 // The search for the free position that is nearest to (u, v), in pixels. Float and Index may be numbers that count.

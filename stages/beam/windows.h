@@ -1,8 +1,8 @@
 // windows: sorted lists of pairs -> the next window of every open pixel.
 //
 // A window is a run of a pixel's list whose depth ranges overlap, so windows lie strictly behind each other. Pixels are
-// composed one window at a time. Once all positions are taken, farther windows are skipped. Each
-// record is read only once: the record that ends a window starts the next one.
+// composed one window at a time. Once all positions are taken, farther windows are skipped. Each record is read only
+// once: the record that ends a window starts the next one.
 #pragma once
 
 #include <cstdint>
