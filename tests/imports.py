@@ -2,103 +2,149 @@
 """Checks that #include arrows point the right way. Prints file:line and the broken rule, and fails if there is one.
 
 Usage: imports.py [REPOSITORY]
+       imports.py --self-test    checks that wrong arrows are found, and right ones are not
 
 The rules:
 
-1.  Folders. A file includes its own folder and those that stand after the arrow:
-        tools    -> pipeline, stages, simd, traces
-        pipeline -> stages, simd, traces
-        stages   -> simd, traces
-        simd     -> nothing else
-        traces   -> nothing else
-2.  Inside stages/. Each subfolder is a group of stages, except for data/ (types that stages share) and cost/ (counters
-    and costs that stages share):
-        data    -> simd
-        cost    -> data, simd
-        a group -> data, cost, simd, traces
-3.  A stage knows no other stage. A header in a group is a stage's header if its first line reads "// name: in -> out".
-    Only the files of that stage include it: those with the same name, with or without "_cost" at the end. For instance,
-    only claim.cpp, claim_cost.h and claim_cost.cpp may include claim.h.
-
-tests/ and bench/ may include anything. Third-party headers, which are in angle brackets or stand in no folder of the
-repository, are not checked.
+1.  Paths. An include of our own files is in quotes and starts at the root of the repository, without "." or "..".
+    Third-party headers are in angle brackets; only those of Highway (hwy/) may be in quotes. No include is a macro.
+2.  Folders. Imports run tools -> pipeline -> stages -> simd. All but simd may include traces, which stands alone.
+3.  Inside tools/: cli -> report -> claims -> evaluate -> files. Only cli includes stress, which includes none of them.
+4.  Inside pipeline/: techniques -> units -> bins -> memory. All of them may include technique.h, which may include only
+    memory. The other files at the root of pipeline/ may include bins and memory; only techniques may include them.
+5.  Inside stages/. Each subfolder is a group of stages, except for data/ (types that stages share) and cost/ (counters
+    and costs that stages share): group -> cost -> data -> simd. Of these, only groups may include traces. No group
+    includes another.
+6.  A stage knows no other stage. The files of stage X in a group are X.h, X.cpp, X_cost.h and X_cost.cpp, and they
+    include no other files of the group than these and the headers in SHARED_IN_GROUP.
+7.  Not checked: tests/ and bench/, which may include anything, but which the folders above may not include.
 """
 
 import re
 import sys
-from pathlib import Path
+from pathlib import Path, PurePosixPath
 
 FOLDERS = {
-    "tools": {"pipeline", "stages", "simd", "traces"},
-    "pipeline": {"stages", "simd", "traces"},
-    "stages": {"simd", "traces"},
-    "simd": set(),
-    "traces": set(),
-}
-STAGE_FOLDERS = {"data": {"simd"}, "cost": {"data", "simd"}}
-ANY_STAGE_GROUP = {"data", "cost", "simd", "traces"}
+    "tools": {"pipeline", "stages", "simd", "traces"}, "pipeline": {"stages", "simd", "traces"},
+    "stages": {"simd", "traces"}, "simd": set(), "traces": set()}
+# What each place in a folder may include of the same folder, besides itself. "root": the files in no subfolder.
+ORDER = {
+    "tools": {
+        "cli": {"report", "stress", "claims", "evaluate", "files"}, "report": {"claims", "evaluate", "files"},
+        "stress": set(), "claims": {"evaluate", "files"}, "evaluate": {"files"}, "files": set()},
+    "pipeline": {
+        "techniques": {"root", "units", "bins", "memory", "technique.h"}, "root": {"bins", "memory", "technique.h"},
+        "units": {"bins", "memory", "technique.h"}, "bins": {"memory", "technique.h"},
+        "memory": {"technique.h"}, "technique.h": {"memory"}},
+    "stages": {"data": set(), "cost": {"data"}}}
+STAGE_GROUP = {"data", "cost"}
+# Headers in stage groups that are no stage's own: formulas of stages and costs, and algorithms in files of their own.
+SHARED_IN_GROUP = {
+    "stages/beam/merge_sort.h", "stages/beam/specks.h", "stages/geometry/clip.h", "stages/geometry/setup_formulas.h",
+    "stages/picture/picture_formulas.h", "stages/raster/traverse.h", "stages/raster/traverse_cost.h",
+    "stages/samples/sample_formulas.h", "stages/temporal/temporal_formulas.h"}
+# For the self-test: the rule that is expected ("-" for none), the file, and its text.
+CASES = r"""
+our own files are included in quotes|tools/cli/main.cpp|#include <pipeline/technique.h>
+without . or ..|pipeline/bins/bin.cpp|#include "../pipeline/technique.h"
+without . or ..|stages/beam/claim.cpp|#include <stages/../pipeline/technique.h>
+starts at the root|stages/beam/claim.cpp|#include "settle.h"
+not written out|stages/beam/claim.cpp|#include SETTLE
+simd/ may not include traces/|simd/match.cpp|/* " */ # /**/ include /**/ "traces/trace.h" // a comment
+tools/ may not include tests/|tools/claims/text.h.in|auto a = R"(")";\n#include "tests/x.h"
+stages/data may not include traces/|stages/data/pair.h|#include "traces/trace.h"
+data may not include cost|stages/data/pair.h|#include "stages/cost/counters.h"
+beam may not include picture|stages/beam/claim.cpp|#include "stages/picture/picture_formulas.h"
+file of the stage settle|stages/beam/claim.cpp|#include "stages/beam/settle_cost.h"
+file of the stage claim|stages/beam/specks.h|#include "stages/beam/claim.h"
+file of the stage shading_point|stages/samples/accumulate.cpp|#include "stages/samples/shading_point.h"
+file of the stage materials|stages/samples/dilate_cost.h|#include "stages/samples/materials.h"
+units may not include techniques|pipeline/units/gbuffer_unit.h|#include "pipeline/techniques/msaa.h"
+bins may not include units|pipeline/bins/bin.h|#include "pipeline/units/gbuffer_unit.h"
+root may not include units|pipeline/technique_table.h|#include "pipeline/units/gbuffer_unit.h"
+memory may not include root|pipeline/memory/parameters.h|#include "pipeline/technique_table.h"
+technique.h may not include root|pipeline/technique.h|#include "pipeline/spec.h"
+evaluate may not include report|tools/evaluate/render.cpp|#include "tools/report/plot.h"
+report may not include stress|tools/report/plot.cpp|#include "tools/stress/judge.h"
+-|stages/beam/claim_cost.h|#include "stages/beam/claim.h"\n#include "stages/beam/specks.h"\n#include <map>
+-|tools/cli/main.cpp|// /*\n#include "pipeline/technique.h"\n/* #include "settle.h"\n#include "settle.h" */"/*"
+-|simd/match.cpp|#include "hwy/highway.h"\nauto text = R"x(\n#include "settle.h"\n)x";"""
+SOURCE = re.compile(r".*\.(h|hpp|c|cc|cpp|inc|inl)(\.in)?")
+# Strings are matched so that "/*" in one does not begin a comment. A raw string may contain whole lines of code.
+COMMENT_OR_STRING = re.compile(
+    r'''//[^\n]*|/\*.*?\*/|R"(?P<end>[^\s()\\]*)\(.*?\)(?P=end)"|"(?:\\.|[^"\\\n])*"|'(?:\\.|[^'\\\n])\'''', re.DOTALL)
+INCLUDE = re.compile(r'^[ \t]*#[ \t]*include\b[ \t]*(.*?)[ \t]*$', re.MULTILINE)
 
-INCLUDE = re.compile(r'\s*#\s*include\s*"([^"]+)"')
-STAGE_HEADER = re.compile(r"// \w+: .+ -> ")
+
+def place(path):
+    """The part of its top folder that the file is in: a key of ORDER[top folder], or a group of stages."""
+    if len(path.parts) > 2:
+        return path.parts[1]
+    return "technique.h" if str(path) == "pipeline/technique.h" else "root"
 
 
-def sources(repository):
-    for folder in FOLDERS:
-        for path in sorted((repository / folder).rglob("*")):
-            if path.suffix in {".h", ".cpp"}:
-                yield path.relative_to(repository)
-
-
-def is_stage_header(repository, path):
-    if path.parts[0] != "stages" or path.suffix != ".h" or path.parts[1] in STAGE_FOLDERS:
-        return False
-    with open(repository / path, encoding="utf-8") as file:
-        # A long first line may be wrapped before its arrow.
-        return STAGE_HEADER.match(file.readline().rstrip() + " " + file.readline().removeprefix("//").strip()) is not None
-
-
-def stage_of(path):
-    """The name of the stage that the file belongs to, if it belongs to one."""
-    return path.stem.removesuffix("_cost")
-
-
-def broken_rule(source, target, stage_headers):
-    """What is wrong with `source` including `target`, or None. Both are paths in the repository."""
+def broken_rule(source, include):
+    """What is wrong with the line `#include include` in the file `source`, a path in the repository, or None."""
+    match = re.fullmatch(r'"([^"]+)"|<([^>]+)>', include)
+    if not match:
+        return "the path is not written out"
+    target = PurePosixPath(match[1] or match[2])
     folder, other = source.parts[0], target.parts[0]
-    if other not in FOLDERS:
+    if {"", ".", ".."} & set((match[1] or match[2]).split("/")):
+        return "a path starts at the root of the repository, without . or .."
+    if match[2]:
+        return "our own files are included in quotes" if other in {*FOLDERS, "bench", "tests"} else None
+    if other == "hwy":
+        return None
+    if other in {"bench", "tests"} or other in FOLDERS and other != folder and other not in FOLDERS[folder]:
         return f"{folder}/ may not include {other}/"
-    if other != folder and other not in FOLDERS[folder]:
-        return f"{folder}/ may not include {other}/: the arrows are tools -> pipeline -> stages -> simd, and traces alone"
-    if folder == "stages":
-        group, other_group = source.parts[1], target.parts[1] if other == "stages" else other
-        allowed = STAGE_FOLDERS.get(group, ANY_STAGE_GROUP)
-        if other_group != group and other_group not in allowed:
-            return f"stages/{group}/ may only include itself, {', '.join(sorted(allowed))}"
-        own = source.parent == target.parent and stage_of(source) == target.stem
-        if target in stage_headers and not own:
-            return f"{target} is the header of another stage: what stages share belongs in stages/data/ or stages/cost/"
+    if other not in FOLDERS or len(target.parts) == 1:
+        return "a path in quotes starts at the root of the repository"
+    here, there = place(source), place(target)
+    if folder == "stages" and here in ORDER["stages"] and other == "traces":
+        return f"stages/{here} may not include traces/"
+    if folder == other and folder in ORDER and here != there:
+        allowed = ORDER[folder].get(here, STAGE_GROUP if folder == "stages" else set())
+        return None if there in allowed else f"in {folder}/, {here} may not include {there}"
+    if folder == other == "stages" and here not in ORDER["stages"] and str(target) not in SHARED_IN_GROUP:
+        stage, other_stage = (path.name.split(".")[0].removesuffix("_cost") for path in (source, target))
+        return None if stage == other_stage else f"{stage} may not include a file of the stage {other_stage}"
     return None
+
+
+def broken_rules(source, text):
+    """Yields (line number, what is included, broken rule) for a file's text."""
+    code = COMMENT_OR_STRING.sub(lambda m: m[0] if m[0][0] in "\"'" else " " + "\n" * m[0].count("\n"), text)
+    for match in INCLUDE.finditer(code):
+        rule = broken_rule(source, match[1])
+        if rule:
+            yield code.count("\n", 0, match.start()) + 1, match[1], rule
+
+
+def self_test():
+    failed = 0
+    for case in CASES.strip().splitlines():
+        expected, source, text = case.split("|")
+        rules = [rule for _, _, rule in broken_rules(PurePosixPath(source), text.replace("\\n", "\n"))]
+        passes = not rules if expected == "-" else len(rules) == 1 and expected in rules[0]
+        if not passes or not SOURCE.fullmatch(source):
+            print(f"{case}: found {rules}")
+            failed = 1
+    return failed
 
 
 def main():
     repository = Path(sys.argv[1] if len(sys.argv) > 1 else Path(__file__).parent.parent)
-    files = list(sources(repository))
-    stage_headers = {path for path in files if is_stage_header(repository, path)}
-    if not stage_headers:
-        print("expected headers of stages, which begin with \"// name: in -> out\"; found none")
-        return 1
-    broken = 0
-    for source in files:
-        for number, line in enumerate((repository / source).read_text(encoding="utf-8").splitlines(), start=1):
-            match = INCLUDE.match(line)
-            if not match or not (repository / match[1]).is_file():
-                continue
-            rule = broken_rule(source, Path(match[1]), stage_headers)
-            if rule:
-                print(f"{source}:{number}: {match[1]}: {rule}")
-                broken += 1
+    broken = [f"{header}: is in SHARED_IN_GROUP but does not exist" for header in sorted(SHARED_IN_GROUP)
+              if not (repository / header).is_file()]
+    for path in sorted(path for folder in FOLDERS for path in (repository / folder).rglob("*")):
+        if SOURCE.fullmatch(path.name):
+            source = PurePosixPath(path.relative_to(repository).as_posix())
+            for line, include, rule in broken_rules(source, path.read_text(encoding="utf-8")):
+                broken.append(f"{source}:{line}: {include}: {rule}")
+    print(*broken, sep="\n", end="\n" if broken else "")
     return 1 if broken else 0
 
 
 if __name__ == "__main__":
-    sys.exit(main())
+    sys.exit(self_test() if sys.argv[1:] == ["--self-test"] else main())
