@@ -138,7 +138,8 @@ TEST(Technique, WrongSpecsSayWhatWouldBeRight) {
 
 TEST(Technique, DefaultsMayBeWritten) {
   for (const char* spec : {"beam:rules=conserve", "beam:order=sort", "beam:order=sort,rules=conserve,bits=64",
-                           "beam:rules=conserve,order=stream", "beam:layers=1,order=stream", "beam:tiny=3,rules=paper"})
+                           "beam:rules=paper,order=sort", "beam:rules=conserve,order=stream",
+                           "beam:layers=1,order=stream", "beam:tiny=3,rules=paper"})
     EXPECT_EQ(parse_technique(spec).spec, spec);
 }
 

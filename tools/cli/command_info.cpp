@@ -1,5 +1,6 @@
 // beampipe info: lists the frames and meshes of a trace.
 
+#include <cstdio>
 #include <glm/glm.hpp>
 #include <iostream>
 #include <limits>
