@@ -17,13 +17,14 @@ TEST(BeamStream, FragmentsOfAPixelAreThoseOfTheFirstPass) {
   EXPECT_GT(sum_of(all, "passes"), sum_of(first, "passes"));
 }
 
-// With enough passes every position is settled, and the state of a pixel has no influence on the picture.
+// With fewer layers a pixel is settled in more passes. Each pass stores area and colour in 16 bits, so the pictures
+// differ a little: here by 6.8e-4.
 TEST(BeamStream, LayersOnlyDecideHowManyPassesThereAre) {
   const Trace trace = random_trace(40, 30, 200, 4);
   const FrameResult one = render("beam:order=stream,bits=64,layers=1", trace);
   const FrameResult five = render("beam:order=stream,bits=64,layers=5", trace);
   EXPECT_GT(sum_of(one, "passes"), sum_of(five, "passes"));
-  EXPECT_LT(rmse(one.image, five.image), 2e-3);
+  EXPECT_LT(rmse(one.image, five.image), 1e-3);
 }
 
 }  // namespace
