@@ -103,7 +103,8 @@ class FrameRecorder {
 
 FrameResult render_bins(const FrameContext& context, const BinPlan& plan, const BinRenderer& render) {
   const RunOptions& run = context.run;
-  const TileGrid grid = tile_grid(context, plan.tile_size);
+  const TileGrid grid =
+      plan.keeps_tile_size ? TileGrid{context.frame, plan.tile_size} : tile_grid(context, plan.tile_size);
   if (run.weights) run.weights->assign(std::size_t{context.frame.width} * context.frame.height, {});
   GeometryPass pass(context);
   FrameRecorder recorder(context, plan);

@@ -77,7 +77,7 @@ FrameResult render_stream(const Trace& trace, const Frame& frame, const StreamOp
 
 TechniqueKind beam_stream_kind() {
   return {.name = "beam",
-          .variant = {"order", "stream", "sort"},
+          .variant = {"order", "stream", "sorted"},
           .description =
               "fragments in primitive order, without an A-buffer; a pixel with more visible surfaces than "
               "layers takes further passes over the geometry",

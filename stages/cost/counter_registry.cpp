@@ -12,6 +12,7 @@ const std::vector<StageInfo>& stage_list() {
        "pixels that are tested", " ops.fetch ops.special "},
       {"sample_raster", "setup triangles, counted in each pass", "cells in which a triangle covers a sample",
        "covered samples of partly covered cells", "all samples of partly covered cells", " ops.fetch ops.special "},
+      {"bin_sort", "triangles of the bins' lists", "the same triangles, near to far", "", "", " ops.special "},
       {"beam_fragment", "pairs", "fragments: pairs whose covered area is not 0", "fragments", "pairs", ""},
       {"shade", "fragments, or shading samples", "the same items, with a colour or a material", "the items",
        "the pixels of the items' 2x2 quads; the items alone if shading follows a visibility test", " ops.fetch "},

@@ -1,0 +1,90 @@
+// The beam in near-first order: each bin's triangles are sorted near to far, roughly; then one pass over them composes
+// each pixel in a state of fixed size. Nothing waits, and nothing is kept per fragment.
+#include <algorithm>
+#include <stdexcept>
+#include <string>
+
+#include "pipeline/bins/render_bins.h"
+#include "pipeline/technique_table.h"
+#include "pipeline/units/fragment_units.h"
+#include "pipeline/units/owner_units.h"
+#include "pipeline/units/raster_units.h"
+
+namespace beampipe {
+namespace {
+
+struct NearFirstOptions {
+  int positions = 256;  // of the mask: 32, 64, 128 or 256
+  int slots = 5;        // owners of a pixel
+  int bin = kBinSize;   // pixels on each side
+};
+
+std::vector<Surface> near_first_framebuffer() { return {{"color", "RGB16F", 6}}; }
+
+template <std::size_t Words, std::size_t Slots>
+FrameResult render_shape(const Trace& trace, const Frame& frame, const NearFirstOptions& near_first,
+                         const RunOptions& run) {
+  const FrameContext context(trace, frame, run);
+  const PositionSet& positions = cell_positions(near_first.positions);
+  const PositionGrid grid(near_first.positions);
+  const BeamFragmentOptions options = grid_options(grid, owners_fragment_bytes(Words));
+  const float brightest = brightest_of(context.colors);
+  const BinPlan plan{
+      .stages = {"conservative_raster", "bin_sort", "beam_fragment", "compose", "shade", "resolve"},
+      .tile_size = near_first.bin,
+      .keeps_tile_size = true};
+  return render_bins(context, plan, [&](Bin& bin) {
+    const OrderedList ordered = sort_bin(bin);
+    ConservativeRasterUnit raster(bin, "", PairDepths::bounds, ConservativeRasterUnit::Hidden::left_out);
+    BeamFragmentUnit make_fragments(bin, options);
+    ShadeUnit shade(bin);
+    ComposeOwnersUnit<Words, Slots> compose(bin, positions, ordered.triangles, &ordered.watermarks, brightest,
+                                            OpenPixels::on_chip, {});
+    std::vector<float>& counts = bin.pixel_counter("fragments");
+
+    raster.queued(ordered.triangles, [&](const std::vector<Pair>& pairs, std::size_t first) {
+      const std::vector<Fragment>& fragments = make_fragments.queued(pairs);
+      count_by_pixel(fragments, counts);
+      compose(fragments, first, raster.closed(), shade);
+    });
+    bin.finish(compose.resolve_owners(shade));
+    shade.finish_fetches();
+  });
+}
+
+FrameResult render_near_first(const Trace& trace, const Frame& frame, const NearFirstOptions& near_first,
+                              const RunOptions& run) {
+#define BEAMPIPE_RENDER(words, pixel_slots)                                 \
+  if (near_first.positions == 32 * words && near_first.slots == pixel_slots) \
+    return render_shape<words, pixel_slots>(trace, frame, near_first, run);
+  BEAMPIPE_OPEN_PIXELS(BEAMPIPE_RENDER)
+#undef BEAMPIPE_RENDER
+  throw std::invalid_argument("no pixel of this shape: " + std::to_string(near_first.positions) + " positions, " +
+                              std::to_string(near_first.slots) + " slots");
+}
+
+}  // namespace
+
+TechniqueKind beam_near_first_kind() {
+  return {.name = "beam",
+          .variant = {"order", "near-first", "sorted"},
+          .description =
+              "each bin's triangles, sorted near to far, become fragments with analytic coverage and a mask; a pixel "
+              "keeps the owners of its mask positions until nothing nearer can come, in a state of fixed size",
+          .source = "ours, after Crassin et al. 2018",
+          .make = make_from(
+              NearFirstOptions{},
+              [](NearFirstOptions& o) -> SpecOptions {
+                return {choice("bits", o.positions, {{"32", 32}, {"64", 64}, {"128", 128}, {"256", 256}},
+                               "positions of the mask"),
+                        choice("slots", o.slots,
+                               {{"2", 2}, {"4", 4}, {"5", 5}, {"7", 7}, {"8", 8}, {"16", 16}, {"32", 32}},
+                               "owners that a pixel keeps at once; if there are more, two become one"),
+                        choice("bin", o.bin, {{"8", 8}, {"16", 16}, {"32", 32}}, "pixels on each side of a bin")};
+              },
+              [](const NearFirstOptions& o) {
+                return Technique{.framebuffer = near_first_framebuffer(), .render = bind_options(render_near_first, o)};
+              })};
+}
+
+}  // namespace beampipe
