@@ -108,8 +108,9 @@ constexpr std::uint32_t owners_fragment_bytes(std::size_t words) {
 }
 
 // The instances that exist: X(words, slots).
-#define BEAMPIPE_OPEN_PIXELS(X)                                                                             \
-  X(1, 2) X(2, 2) X(2, 4) X(2, 8) X(2, 16) X(2, 32) X(4, 2) X(4, 4) X(4, 7) X(4, 8) X(4, 16) X(4, 32) \
-  X(8, 2) X(8, 4) X(8, 5) X(8, 8) X(8, 16) X(8, 32)
+#define BEAMPIPE_SLOT_COUNTS(X, words) \
+  X(words, 2) X(words, 4) X(words, 5) X(words, 7) X(words, 8) X(words, 16) X(words, 32)
+#define BEAMPIPE_OPEN_PIXELS(X) \
+  BEAMPIPE_SLOT_COUNTS(X, 1) BEAMPIPE_SLOT_COUNTS(X, 2) BEAMPIPE_SLOT_COUNTS(X, 4) BEAMPIPE_SLOT_COUNTS(X, 8)
 
 }  // namespace beampipe

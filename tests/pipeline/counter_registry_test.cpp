@@ -19,9 +19,9 @@
 namespace beampipe {
 namespace {
 
-constexpr const char* kSpecs[] = {"beam",
+constexpr const char* kSpecs[] = {"beam:order=sorted",
                                   "beam:rules=paper",
-                                  "beam:order=stream",
+                                  "beam:order=stream,passes=0",
                                   "z3",
                                   "alpha",
                                   "msaa:4,at=centroid",

@@ -10,14 +10,14 @@ namespace beampipe {
 namespace {
 
 const char* const kSpecs[] = {
-    "beam",
-    "beam:storage=float32",
+    "beam:order=sorted",
+    "beam:order=sorted,storage=float32",
     "beam:rules=paper,mask=exact",
     "beam:rules=paper,storage=text",
     "beam:rules=paper,sort=nearest,tiny=3,overlap=transition,local=keep,fuzzy=mix,extents=slab,"
     "slab=visible,plane=visible,thickness=containing",
-    "beam:order=stream",
-    "beam:order=stream,bits=64,layers=1",
+    "beam:order=stream,passes=0",
+    "beam:order=stream,passes=0,bits=64,layers=1",
     "beam:order=stream,passes=1",
     "z3",
     "z3:shape=128x3,merge=color",

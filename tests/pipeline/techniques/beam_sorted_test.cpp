@@ -9,7 +9,7 @@ namespace beampipe {
 namespace {
 
 TEST(Beam, CountsEveryTouchedPixel) {
-  const FrameResult result = parse_technique("beam").render(half_square(), 0, {1});
+  const FrameResult result = parse_technique("beam:order=sorted").render(half_square(), 0, {1});
   // Rows 1 to 4 touch 1 + 1, 1 + 2, 1 + 3 and 4 pixels. The diagonal runs through corners of pixels, and a corner
   // belongs to the closed square of a pixel. Pairs without area are dropped after conservative_raster.
   const std::uint64_t touched = 1 + 2 + 3 + 4 + 3, with_area = 1 + 2 + 3 + 4;
@@ -36,7 +36,7 @@ TEST(Beam, CountsEveryTouchedPixel) {
 TEST(Beam, IsNearerToTheReferenceThanAlphaAndOneSample) {
   const Trace trace = random_trace(48, 32, 150, 5);
   const Image reference = picture("reference", trace);
-  const double beam = rmse(picture("beam", trace), reference);
+  const double beam = rmse(picture("beam:order=sorted", trace), reference);
   EXPECT_LT(beam, 0.5 * rmse(picture("msaa:1", trace), reference));
   EXPECT_LT(beam, rmse(picture("alpha", trace), reference));
 }
