@@ -3,6 +3,7 @@
 #pragma once
 
 #include <functional>
+#include <map>
 #include <string>
 #include <utility>
 #include <vector>
@@ -17,6 +18,7 @@ namespace beampipe {
 // default variant; specs may state it.
 struct Variant {
   std::string key, word, otherwise;
+  std::map<std::string, std::string> implies = {};  // what other keys' values this variant has, if not their defaults
 };
 
 struct TechniqueKind {

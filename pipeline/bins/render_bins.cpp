@@ -126,7 +126,9 @@ FrameResult render_bins(const FrameContext& context, const BinPlan& plan, const 
     if (band.first > 0) malloc_trim(0);  // glibc would keep the freed memory of a band in addition to the next one's
     on_threads(run.threads, [&] { render_band(band); });
   }
-  return recorder.finish(pass, list_bytes);
+  FrameResult result = recorder.finish(pass, list_bytes);
+  result.bin_pixels = static_cast<std::uint32_t>(grid.size * grid.size);
+  return result;
 }
 
 void run_on_tiles(const FrameContext& context, const std::string& stage, FrameResult& result,

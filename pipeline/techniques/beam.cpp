@@ -22,17 +22,15 @@ struct BeamOptions {
 std::vector<Surface> beam_framebuffer() { return {{"color", "RGB16F", 6}}; }
 
 template <std::size_t Words, std::size_t Slots>
-FrameResult render_shape(const Trace& trace, const Frame& frame, const BeamOptions& beam,
-                         const RunOptions& run) {
+FrameResult render_shape(const Trace& trace, const Frame& frame, const BeamOptions& beam, const RunOptions& run) {
   const FrameContext context(trace, frame, run);
   const PositionSet& positions = cell_positions(beam.positions);
   const PositionGrid grid(beam.positions);
   const BeamFragmentOptions options = grid_options(grid, owners_fragment_bytes(Words));
   const float brightest = brightest_of(context.colors);
-  const BinPlan plan{
-      .stages = {"conservative_raster", "bin_sort", "beam_fragment", "compose", "shade", "resolve"},
-      .tile_size = beam.bin,
-      .keeps_tile_size = true};
+  const BinPlan plan{.stages = {"conservative_raster", "bin_sort", "beam_fragment", "compose", "shade", "resolve"},
+                     .tile_size = beam.bin,
+                     .keeps_tile_size = true};
   return render_bins(context, plan, [&](Bin& bin) {
     const OrderedList ordered = sort_bin(bin);
     ConservativeRasterUnit raster(bin, "", PairDepths::bounds, ConservativeRasterUnit::Hidden::left_out);
@@ -40,21 +38,17 @@ FrameResult render_shape(const Trace& trace, const Frame& frame, const BeamOptio
     ShadeUnit shade(bin);
     ComposeOwnersUnit<Words, Slots> compose(bin, positions, ordered.triangles, &ordered.watermarks, brightest,
                                             OpenPixels::on_chip, {});
-    std::vector<float>& counts = bin.pixel_counter("fragments");
 
     raster.queued(ordered.triangles, [&](const std::vector<Pair>& pairs, std::size_t first) {
-      const std::vector<Fragment>& fragments = make_fragments.queued(pairs);
-      count_by_pixel(fragments, counts);
-      compose(fragments, first, raster.closed(), shade);
+      compose(make_fragments.queued(pairs), first, raster.closed(), shade);
     });
     bin.finish(compose.resolve_owners(shade));
     shade.finish_fetches();
   });
 }
 
-FrameResult render_beam(const Trace& trace, const Frame& frame, const BeamOptions& beam,
-                              const RunOptions& run) {
-#define BEAMPIPE_RENDER(words, pixel_slots)                                 \
+FrameResult render_beam(const Trace& trace, const Frame& frame, const BeamOptions& beam, const RunOptions& run) {
+#define BEAMPIPE_RENDER(words, pixel_slots)                      \
   if (beam.positions == 32 * words && beam.slots == pixel_slots) \
     return render_shape<words, pixel_slots>(trace, frame, beam, run);
   BEAMPIPE_OPEN_PIXELS(BEAMPIPE_RENDER)
@@ -74,12 +68,12 @@ TechniqueKind beam_kind() {
           .make = make_from(
               BeamOptions{},
               [](BeamOptions& o) -> SpecOptions {
-                return {choice("bits", o.positions, {{"32", 32}, {"64", 64}, {"128", 128}, {"256", 256}},
-                               "positions of the mask"),
-                        choice("slots", o.slots,
-                               {{"2", 2}, {"4", 4}, {"5", 5}, {"7", 7}, {"8", 8}, {"16", 16}, {"32", 32}},
-                               "owners that a pixel keeps at once; if there are more, two become one"),
-                        choice("bin", o.bin, {{"8", 8}, {"16", 16}, {"32", 32}}, "pixels on each side of a bin")};
+                return {
+                    choice("bits", o.positions, {{"32", 32}, {"64", 64}, {"128", 128}, {"256", 256}},
+                           "positions of the mask"),
+                    choice("slots", o.slots, {{"2", 2}, {"4", 4}, {"5", 5}, {"7", 7}, {"8", 8}, {"16", 16}, {"32", 32}},
+                           "owners that a pixel keeps at once; if there are more, two become one"),
+                    choice("bin", o.bin, {{"8", 8}, {"16", 16}, {"32", 32}}, "pixels on each side of a bin")};
               },
               [](const BeamOptions& o) {
                 return Technique{.framebuffer = beam_framebuffer(), .render = bind_options(render_beam, o)};

@@ -191,7 +191,7 @@ SpecOptions paper_options(PaperOptions& o) {
 
 TechniqueKind beam_paper_kind() {
   return {.name = "beam",
-          .variant = {"rules", "paper", "conserve"},
+          .variant = {"rules", "paper", "conserve", {{"order", "sorted"}}},
           .description =
               "the published rules: a 32-bit mask from a table, a depth slab, one aggregate per pixel; the "
               "options are other readings of these rules, see docs/accuracy.md",

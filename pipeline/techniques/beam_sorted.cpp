@@ -83,7 +83,7 @@ FrameResult render_shape(const Trace& trace, const Frame& frame, const SortedOpt
 }
 
 FrameResult render_sorted(const Trace& trace, const Frame& frame, const SortedOptions& sorted, const RunOptions& run) {
-#define BEAMPIPE_RENDER(words, channel)                                                                       \
+#define BEAMPIPE_RENDER(words, channel)                                                                           \
   if (sorted.positions == 32 * words && (sorted.storage == Storage::packed) == std::is_same_v<channel, HalfBits>) \
     return render_shape<words, channel>(trace, frame, sorted, run);
   BEAMPIPE_STORED_AGGREGATES(BEAMPIPE_RENDER)
@@ -109,8 +109,9 @@ TechniqueKind beam_sorted_kind() {
                                "format of the aggregate's colour: fp16, or float32")};
               },
               [](const SortedOptions& o) {
-                return Technique{
-                    .framebuffer = sorted_framebuffer(o), .render = bind_options(render_sorted, o), .has_weights = true};
+                return Technique{.framebuffer = sorted_framebuffer(o),
+                                 .render = bind_options(render_sorted, o),
+                                 .has_weights = true};
               })};
 }
 

@@ -34,7 +34,7 @@ std::vector<Surface> open_pixel_surfaces() {
 }
 
 std::vector<Surface> stream_framebuffer(const StreamOptions& stream) {
-#define BEAMPIPE_SURFACES(words, pixel_slots)                                                    \
+#define BEAMPIPE_SURFACES(words, pixel_slots)                                              \
   if (stream.passes == 1 && stream.positions == 32 * words && stream.slots == pixel_slots) \
     return open_pixel_surfaces<words, pixel_slots>();
   BEAMPIPE_OPEN_PIXELS(BEAMPIPE_SURFACES)
@@ -63,12 +63,9 @@ FrameResult render_one_pass(const Trace& trace, const Frame& frame, const Stream
     ShadeUnit shade(bin);
     ComposeOwnersUnit<Words, Slots> compose(bin, positions, bin.list, nullptr, brightest, OpenPixels::in_memory,
                                             stream_framebuffer(stream));
-    std::vector<float>& counts = bin.pixel_counter("fragments");
 
     raster.queued(bin.list, [&](const std::vector<Pair>& pairs, std::size_t first) {
-      const std::vector<Fragment>& fragments = make_fragments.queued(pairs);
-      count_by_pixel(fragments, counts);
-      compose(fragments, first, raster.closed(), shade);
+      compose(make_fragments.queued(pairs), first, raster.closed(), shade);
     });
     bin.finish(compose.resolve_owners(shade));
     shade.finish_fetches();
@@ -110,12 +107,12 @@ FrameResult render_passes(const Trace& trace, const Frame& frame, const StreamOp
 }
 
 FrameResult render_stream(const Trace& trace, const Frame& frame, const StreamOptions& stream, const RunOptions& run) {
-#define BEAMPIPE_RENDER(words, pixel_slots)                                                      \
+#define BEAMPIPE_RENDER(words, pixel_slots)                                                \
   if (stream.passes == 1 && stream.positions == 32 * words && stream.slots == pixel_slots) \
     return render_one_pass<words, pixel_slots>(trace, frame, stream, run);
   BEAMPIPE_OPEN_PIXELS(BEAMPIPE_RENDER)
 #undef BEAMPIPE_RENDER
-#define BEAMPIPE_RENDER(words, pixel_layers)                                                       \
+#define BEAMPIPE_RENDER(words, pixel_layers)                                                 \
   if (stream.passes != 1 && stream.positions == 32 * words && stream.layers == pixel_layers) \
     return render_passes<words, pixel_layers>(trace, frame, stream, run);
   BEAMPIPE_OWNER_PIXELS(BEAMPIPE_RENDER)
@@ -126,29 +123,28 @@ FrameResult render_stream(const Trace& trace, const Frame& frame, const StreamOp
 }  // namespace
 
 TechniqueKind beam_stream_kind() {
-  return {.name = "beam",
-          .variant = {"order", "stream", "near-first"},
-          .description =
-              "fragments in primitive order, without an A-buffer, bins or a sort; of more owners than a pixel has slots "
-              "for, two become one, or the pixel takes further passes over the geometry",
-          .source = "ours",
-          .make = make_from(
-              StreamOptions{},
-              [](StreamOptions& o) -> SpecOptions {
-                return {
-                    choice("bits", o.positions, {{"32", 32}, {"64", 64}, {"128", 128}, {"256", 256}},
-                           "positions of the mask"),
-                    number("passes", o.passes, 0, 1000,
-                           "most passes over the geometry; 0: until every pixel is settled"),
-                    choice("slots", o.slots,
-                           {{"2", 2}, {"4", 4}, {"5", 5}, {"7", 7}, {"8", 8}, {"16", 16}, {"32", 32}},
-                           "in one pass: owners that a pixel keeps at once"),
-                    choice("layers", o.layers, {{"1", 1}, {"5", 5}},
-                           "in several passes: surfaces that a pixel keeps at once")};
-              },
-              [](const StreamOptions& o) {
-                return Technique{.framebuffer = stream_framebuffer(o), .render = bind_options(render_stream, o)};
-              })};
+  return {
+      .name = "beam",
+      .variant = {"order", "stream", "near-first"},
+      .description =
+          "fragments in primitive order, without an A-buffer, bins or a sort; of more owners than a pixel has slots "
+          "for, two become one, or the pixel takes further passes over the geometry",
+      .source = "ours",
+      .make = make_from(
+          StreamOptions{},
+          [](StreamOptions& o) -> SpecOptions {
+            return {
+                choice("bits", o.positions, {{"32", 32}, {"64", 64}, {"128", 128}, {"256", 256}},
+                       "positions of the mask"),
+                number("passes", o.passes, 0, 1000, "most passes over the geometry; 0: until every pixel is settled"),
+                choice("slots", o.slots, {{"2", 2}, {"4", 4}, {"5", 5}, {"7", 7}, {"8", 8}, {"16", 16}, {"32", 32}},
+                       "in one pass: owners that a pixel keeps at once"),
+                choice("layers", o.layers, {{"1", 1}, {"5", 5}},
+                       "in several passes: surfaces that a pixel keeps at once")};
+          },
+          [](const StreamOptions& o) {
+            return Technique{.framebuffer = stream_framebuffer(o), .render = bind_options(render_stream, o)};
+          })};
 }
 
 }  // namespace beampipe

@@ -35,15 +35,16 @@ class ComposeOwnersUnit {
                     const std::vector<Surface>& framebuffer)
       : bin_(bin),
         stage_(bin.stage("compose")),
-        owners_{bin.triangles(), list, watermarks, bin.tile, positions, bin.context.colors, brightest,
-                bin.models_memory()},
-        merges_(bin.pixel_counter("merges")),
+        owners_{bin.triangles(),    list,      watermarks,         bin.tile, positions,
+                bin.context.colors, brightest, bin.models_memory()},
+        maps_{bin.pixel_counter("fragments"), bin.pixel_counter("merges")},
         pixels_(bin.tile.pixels()) {
     if (list.size() > OwnerSlot::kMostTriangles)
       throw std::runtime_error("a bin has " + std::to_string(list.size()) + " triangles, more than the " +
                                std::to_string(OwnerSlot::kMostTriangles) + " that an owner can name");
     if (where == OpenPixels::on_chip) {
       bin.holds("open_pixels", pixels_.size() * sizeof pixels_[0]);
+      if (bin.models_memory()) bin.pixel_counter("bytes").assign(pixels_.size(), kPictureBytes);
     } else {
       memory_.emplace(bin.memory(), bin.z_order(), framebuffer);
     }
@@ -53,7 +54,7 @@ class ComposeOwnersUnit {
   // `first`: as in compose_owners.
   void operator()(const std::vector<Fragment>& fragments, std::size_t first, ClosedDepth& closed, ShadeUnit& shade) {
     OwnersResult result;
-    compose_owners(owners_, fragments, first, stage_.timed(), pixels_, closed, merges_, result);
+    compose_owners(owners_, fragments, first, stage_.timed(), pixels_, closed, maps_, result);
     charge(closed, stage_.counters);
     if (memory_)
       for (const Fragment& fragment : fragments) memory_->merge(fragment.triangle, fragment.pixel, stage_.counters);
@@ -83,7 +84,7 @@ class ComposeOwnersUnit {
   Bin& bin_;
   BinStage stage_;
   OwnersBin owners_;
-  std::vector<float>& merges_;
+  OwnersMaps maps_;
   std::vector<OpenPixel<Words, Slots>> pixels_;
   std::optional<AggregateMemory> memory_;
 };

@@ -20,8 +20,8 @@ std::vector<Pair>& ConservativeRasterUnit::operator()(const TriangleList& triang
 }
 
 void ConservativeRasterUnit::drop_hidden(std::vector<Pair>& pairs) {
-  stage_.counters.items_out -= std::erase_if(
-      pairs, [this](const Pair& pair) { return closed_->hides(pair.x, pair.y, pair.nearest); });
+  stage_.counters.items_out -=
+      std::erase_if(pairs, [this](const Pair& pair) { return closed_->hides(pair.x, pair.y, pair.nearest); });
   charge(*closed_, stage_.counters);
 }
 

@@ -20,15 +20,19 @@ class OwnerComposer {
   OwnerComposer(const OwnersBin& bin, OwnersResult& result)
       : bin_(bin), result_(result), width_(static_cast<std::uint32_t>(bin.tile.width())) {}
 
-  // `number`: of the fragment's triangle in the list. Returns whether two owners became one.
-  bool add(const Fragment& fragment, std::uint32_t number, Pixel& pixel, ClosedDepth& closed) {
+  enum class Outcome { hidden, composed, merged };  // merged: two owners became one
+
+  // `number`: of the fragment's triangle in the list. Whether closed pixels hide the fragment is decided here, although
+  // the raster has left out many already: so pictures do not depend on how far the raster is ahead.
+  Outcome add(const Fragment& fragment, std::uint32_t number, Pixel& pixel, ClosedDepth& closed) {
     ++work.fragments;
     const std::uint32_t row = fragment.pixel / width_;
     x_ = bin_.tile.x0 + static_cast<std::int32_t>(fragment.pixel - row * width_);
     y_ = bin_.tile.y0 + static_cast<std::int32_t>(row);
+    if (closed.is_hidden(x_, y_, fragment.z_min)) return Outcome::hidden;
     if (fragment.mask.none()) {
       add_speck(fragment, pixel);
-      return false;
+      return Outcome::composed;
     }
     ++work.masks;
     const WideMask empty = pixel.states.positions_in(Pixel::kEmpty);
@@ -48,7 +52,7 @@ class OwnerComposer {
       }
       room = k;
     }
-    if (claimed.none()) return false;
+    if (claimed.none()) return Outcome::composed;
     ++work.claims;
     bool merged = false;
     if (room == Slots) {
@@ -60,7 +64,7 @@ class OwnerComposer {
       pixel.slots[room] = slot_of(fragment, number);
     }
     if (closes && without(empty, claimed).none()) close(pixel, closed);
-    return merged;
+    return merged ? Outcome::merged : Outcome::composed;
   }
 
   // All owners are final. Returns the pixel's colour.
@@ -243,13 +247,14 @@ class OwnerComposer {
     for (const Owner* owner = owners_.data(); owner != owners_.data() + count; ++owner) {
       ++work.settled;
       const float exact = (owner->covered() + owner->slot.error()) / kPositions;
-      const float area = visible_area(exact, owner->covered(), owner->visible, kPositions,
-                                      Taken<float>{pixel.area, final_positions});
+      const float area =
+          visible_area(exact, owner->covered(), owner->visible, kPositions, Taken<float>{pixel.area, final_positions});
       const glm::vec3 color = color_of(owner->slot) * (1 / bin_.brightest);
       final_positions += owner->visible;
-      pixel.area.add(area);
-      for (int c = 0; c < 3; ++c) pixel.color[c].add(area * color[c]);
-      for (int c = 0; c < 3; ++c) pixel.counted_color[c].add(owner->visible / kPositions * color[c]);
+      const float threshold = rounding_threshold(bin_.list[owner->slot.triangle()]);
+      pixel.area.add(area, threshold);
+      for (int c = 0; c < 3; ++c) pixel.color[c].add(area * color[c], threshold);
+      for (int c = 0; c < 3; ++c) pixel.counted_color[c].add(owner->visible / kPositions * color[c], threshold);
       put(owner->owned, Pixel::kFinal, pixel);
       pixel.slots[owner->index].clear();
     }
@@ -293,19 +298,19 @@ class OwnerComposer {
     if (votes == 0) return;
     FixedSum &same = pixel.specks[fragment.front], &opposite = pixel.specks[!fragment.front];
     const float before = greater(same, opposite);
-    same.add(fragment.alpha * votes / 3.0f);
+    const float threshold = rounding_threshold(fragment.triangle);
+    same.add(fragment.alpha * votes / 3.0f, threshold);
     const float area = lesser(greater(same, opposite) - before, 1.0f - pixel.area);
     if (area <= 0) return;
     ++work.specks_added;
     const glm::vec3 color = shade(fragment.triangle) * (area / bin_.brightest);
-    pixel.area.add(area);
-    for (int c = 0; c < 3; ++c) pixel.color[c].add(color[c]);
+    pixel.area.add(area, threshold);
+    for (int c = 0; c < 3; ++c) pixel.color[c].add(color[c], threshold);
   }
 
   bool is_nearer(const Fragment& speck, const OwnerSlot& slot) {
     ++work.speck_comparisons;
-    return is_on_or_before(speck.centroid_z, plane_of(slot), speck.centroid_u - 0.5f,
-                           speck.centroid_v - 0.5f);
+    return is_on_or_before(speck.centroid_z, plane_of(slot), speck.centroid_u - 0.5f, speck.centroid_v - 0.5f);
   }
 
   // The analytic estimate, no farther from the counted one than the tolerances allow.
@@ -326,8 +331,8 @@ class OwnerComposer {
 
   const OwnersBin& bin_;
   OwnersResult& result_;
-  const std::uint32_t width_;     // of the tile
-  std::int32_t x_ = 0, y_ = 0;    // the fragment's pixel, frame coordinates
+  const std::uint32_t width_;            // of the tile
+  std::int32_t x_ = 0, y_ = 0;           // the fragment's pixel, frame coordinates
   std::array<Owner, Slots + 1> owners_;  // of one pixel, and the fragment that needs a slot
 };
 
@@ -336,12 +341,15 @@ class OwnerComposer {
 template <std::size_t Words, std::size_t Slots>
 void compose_owners(const OwnersBin& bin, const std::vector<Fragment>& fragments, std::size_t first,
                     StageCounters& counters, std::vector<OpenPixel<Words, Slots>>& pixels, ClosedDepth& closed,
-                    std::vector<float>& merges, OwnersResult& result) {
+                    const OwnersMaps& maps, OwnersResult& result) {
   OwnerComposer<Words, Slots> composer(bin, result);
   auto number = static_cast<std::uint32_t>(first);
   for (const Fragment& fragment : fragments) {
     while (bin.list[number] != fragment.triangle) ++number;
-    merges[fragment.pixel] += composer.add(fragment, number, pixels[fragment.pixel], closed);
+    using Outcome = typename OwnerComposer<Words, Slots>::Outcome;
+    const Outcome outcome = composer.add(fragment, number, pixels[fragment.pixel], closed);
+    maps.fragments[fragment.pixel] += outcome != Outcome::hidden;
+    maps.merges[fragment.pixel] += outcome == Outcome::merged;
   }
   charge<Words, Slots>(composer.work, counters);
 }
@@ -356,11 +364,11 @@ std::vector<PixelColor> finish_owners(const OwnersBin& bin, StageCounters& count
   return colors;
 }
 
-#define BEAMPIPE_COMPOSE(words, slots)                                                                              \
-  template void compose_owners<words, slots>(const OwnersBin&, const std::vector<Fragment>&, std::size_t,           \
-                                             StageCounters&, std::vector<OpenPixel<words, slots>>&, ClosedDepth&,   \
-                                             std::vector<float>&, OwnersResult&);                                   \
-  template std::vector<PixelColor> finish_owners<words, slots>(const OwnersBin&, StageCounters&,                    \
+#define BEAMPIPE_COMPOSE(words, slots)                                                                            \
+  template void compose_owners<words, slots>(const OwnersBin&, const std::vector<Fragment>&, std::size_t,         \
+                                             StageCounters&, std::vector<OpenPixel<words, slots>>&, ClosedDepth&, \
+                                             const OwnersMaps&, OwnersResult&);                                   \
+  template std::vector<PixelColor> finish_owners<words, slots>(const OwnersBin&, StageCounters&,                  \
                                                                std::vector<OpenPixel<words, slots>>&, OwnersResult&);
 BEAMPIPE_OPEN_PIXELS(BEAMPIPE_COMPOSE)
 #undef BEAMPIPE_COMPOSE

@@ -29,7 +29,7 @@ struct OwnersWork {
   std::uint64_t settled = 0;          // owners that became final
   std::uint64_t bounds_found = 0;     // depth bounds of the owners of pixels without empty positions
   std::uint64_t specks = 0, speck_comparisons = 0, specks_added = 0;
-  std::uint64_t limited = 0;          // pixels whose estimates were compared at the end
+  std::uint64_t limited = 0;  // pixels whose estimates were compared at the end
 };
 
 // The population counts of a mask's words, and their sum.
@@ -42,7 +42,12 @@ inline OperationCounts count_cost(std::size_t words) {
 
 // To add to a sum in fixed point.
 inline void add_fixed(const Counted<float>& x) {
-  to_integer(x * Counted<float>(FixedSum::kUnits) + Counted<float>(0.5f)) + Counted<std::int32_t>(0);
+  to_integer(x * Counted<float>(FixedSum::kUnits) + Counted<float>(1.0f)) + Counted<std::int32_t>(0);
+}
+
+// The threshold of a triangle's sums, less than 1.
+inline void find_threshold(OperationCounts& counts) {
+  Counted<float>(1.0f) - rounding_threshold(Counted<std::uint32_t>(0, counts));
 }
 
 // Per word of a fragment's mask: to find the positions that are empty and those of each slot, and to intersect them
@@ -93,7 +98,7 @@ inline OperationCounts mean_cost() {
   });
 }
 
-inline OperationCounts merge_cost_cost() {
+inline OperationCounts pair_cost() {
   return count_operations([](OperationCounts& counts) {
     const Counted<float> one(1.0f, counts);
     const DepthPlane<Counted<float>> plane{one, one, one};
@@ -104,7 +109,7 @@ inline OperationCounts merge_cost_cost() {
 }
 
 // The error and the weight of two owners, their mean colour, and the formats of the slot.
-inline OperationCounts merge_cost_of_two() {
+inline OperationCounts merge_cost() {
   return count_operations([](OperationCounts& counts) {
     const Counted<float> one(1.0f, counts);
     for (int owner = 0; owner < 2; ++owner) {
@@ -113,10 +118,10 @@ inline OperationCounts merge_cost_of_two() {
     }
     const Counted<float> scale = one / (one + one);
     for (int c = 0; c < 3; ++c) to_integer((one * one + one * one) * scale * one + one);
-    to_integer(one * (one + one));                   // the error
-    counts.bit += 3 + 4;                             // to pack both words
-    lesser(greater(one, one), greater(one, one));    // the largest channel, for the exponent
-    counts.convert += 2;                             // the exponents of two colours
+    to_integer(one * (one + one));                 // the error
+    counts.bit += 3 + 4;                           // to pack both words
+    lesser(greater(one, one), greater(one, one));  // the largest channel, for the exponent
+    counts.convert += 2;                           // the exponents of two colours
   });
 }
 
@@ -126,8 +131,10 @@ inline OperationCounts settle_owner_cost() {
     using Real = Counted<float>;
     const Real one(1.0f, counts), per_position(1.0f);
     one / one;
+    find_threshold(counts);
     const Real exact = (one + one) * per_position;
-    const Real area = visible_area(exact, one, one, one, Taken<Real>{to_float(Counted<std::int32_t>(0, counts)) * one, one});
+    const Real area =
+        visible_area(exact, one, one, one, Taken<Real>{to_float(Counted<std::int32_t>(0, counts)) * one, one});
     one + one;
     add_fixed(area);
     const Real share = one * per_position;
@@ -155,6 +162,7 @@ inline OperationCounts speck_area_cost() {
     using Real = Counted<float>;
     const Real one(1.0f, counts);
     const Real sums = to_float(Counted<std::int32_t>(0, counts)) + to_float(Counted<std::int32_t>(0, counts));
+    find_threshold(counts);
     add_fixed(one * one / Real(3.0f));
     const Real area = lesser(greater(sums, sums) - greater(sums, sums), one - one);
     const Real share = area / one;
@@ -181,14 +189,15 @@ void charge(const OwnersWork& work, StageCounters& counters) {
   static const UnitCost of_mask = owned_cost<Words, Slots>() * Words, of_put = put_cost<Pixel::kBits>(0) * Words,
                         of_plane = plane_cost(), of_gap = plane_gap_cost(), of_nearer = nearer_cost() * kPositions,
                         of_count = count_cost(Words), of_finality = finality_cost(),
-                        of_farthest = farthest_cost() * kPositions,
-                        of_mean = mean_cost(), of_pair = merge_cost_cost(), of_merge = merge_cost_of_two(),
-                        of_settled = settle_owner_cost(), of_bounds = pair_bounds_cost(),
+                        of_farthest = farthest_cost() * kPositions, of_mean = mean_cost(), of_pair = pair_cost(),
+                        of_merge = merge_cost(), of_settled = settle_owner_cost(), of_bounds = pair_bounds_cost(),
                         of_speck = speck_votes_cost(Pixel::kBits), of_speck_test = speck_test_cost(),
                         of_speck_area = speck_area_cost(), of_limit = limit_cost();
-  constexpr OperationCounts kOfOrderTest{.add = 1}, kOfPosition{.add = 2};  // a position's x and y
+  constexpr OperationCounts kOfHiddenTest{.add = 1}, kOfOrderTest{.add = 1},
+      kOfPosition{.add = 2};  // a position's x and y
   counters.items_in += work.fragments;
   counters.items_out += work.claims;
+  counters.ops += kOfHiddenTest * work.fragments;
   counters.ops += of_mask * work.masks;
   counters.ops += of_put * work.puts;
   counters.ops += of_plane * work.planes;
@@ -208,7 +217,8 @@ void charge(const OwnersWork& work, StageCounters& counters) {
   counters.ops += of_speck_test * work.speck_comparisons;
   counters.ops += of_speck_area * work.specks_added;
   counters.ops += of_limit * work.limited;
-  counters.bytes_read += work.fragments * (owners_fragment_bytes(Words) + sizeof(Pixel)) + work.limited * sizeof(Pixel);
+  counters.bytes_read +=
+      work.fragments * (owners_fragment_bytes(Words) + sizeof(float) + sizeof(Pixel)) + work.limited * sizeof(Pixel);
   counters.bytes_read += work.planes * sizeof(ScreenDepth);
   counters.bytes_written += (work.claims + work.specks_added) * sizeof(Pixel);
   counters.lanes_used += work.claims;

@@ -5,6 +5,7 @@
 #include "simd/plane_order.h"
 #include "simd/scalar.h"
 #include "stages/beam/specks.h"
+#include "stages/data/mix_bits.h"
 
 namespace beampipe {
 
@@ -16,8 +17,7 @@ struct PlaneGap {
 };
 template <class Float>
 PlaneGap<Float> plane_gap(const DepthPlane<Float>& plane, const DepthPlane<Float>& other) {
-  return {plane.z - other.z,
-          Float(0.5f) * (magnitude(plane.dzdu - other.dzdu) + magnitude(plane.dzdv - other.dzdv))};
+  return {plane.z - other.z, Float(0.5f) * (magnitude(plane.dzdu - other.dzdu) + magnitude(plane.dzdv - other.dzdv))};
 }
 
 // The distance in depth of two planes at (u, v), in pixels from the pixel's centre.
@@ -57,11 +57,19 @@ Estimate<Float> limited_estimate(const Estimate<Float>& analytic, const Estimate
   Float brightest = zero;
   for (int c = 0; c < 3; ++c) {
     brightest = greater(brightest, analytic.color[c] / analytic.area);
-    brightest = greater(brightest, select(counted.area > zero, counted.color[c] / greater(counted.area, one / positions), zero));
+    brightest = greater(brightest,
+                        select(counted.area > zero, counted.color[c] / greater(counted.area, one / positions), zero));
   }
   const Float tolerance = Float(kColorTolerance) / positions * brightest;
   for (int c = 0; c < 3; ++c) result.color[c] = limited(scale * analytic.color[c], counted.color[c], tolerance);
   return result;
+}
+
+// Where FixedSum rounds what a triangle adds: any number above 0 and up to 1, as long as triangles differ.
+template <class Bits>
+auto rounding_threshold(Bits triangle) {
+  using Float = decltype(to_float(mix_bits(triangle)));
+  return (to_float(mix_bits(triangle) >> 8) + Float(1.0f)) * Float(0x1p-24f);
 }
 
 }  // namespace beampipe

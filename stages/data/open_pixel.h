@@ -16,15 +16,17 @@
 
 namespace beampipe {
 
-// A number from 0 to almost 2 in 16 bits. Sums of areas and colours are kept in it: unlike a sum of floats, it loses
-// nothing of a small addend, however many there are.
+// A number from 0 to almost 2 in 16 bits. Sums of areas and colours are kept in it: a sum of fp16 numbers stops growing
+// when addends are small.
 struct FixedSum {
   static constexpr float kUnits = 32768.0f;
   std::uint16_t units = 0;
 
   operator float() const { return static_cast<float>(units) / kUnits; }
-  void add(float x) {
-    const auto sum = static_cast<std::int32_t>(units) + static_cast<std::int32_t>(x * kUnits + 0.5f);
+  // `threshold`: 0..1, different for each addend. The part of a unit above it counts as a whole unit, so that many small
+  // addends are right on average.
+  void add(float x, float threshold) {
+    const auto sum = static_cast<std::int32_t>(units) + static_cast<std::int32_t>(x * kUnits + 1.0f - threshold);
     units = static_cast<std::uint16_t>(std::clamp(sum, 0, 0xffff));
   }
 };
@@ -80,17 +82,17 @@ static_assert(sizeof(OwnerSlot) == 8);
 template <std::size_t Words, std::size_t Slots>  // 32 positions a word
 struct OpenPixel {
   // States of a position.
-  static constexpr std::uint32_t kEmpty = 0;            // nothing covers it yet
-  static constexpr std::uint32_t kFirstSlot = 1;        // the first slot owns it; the next states are the other slots
-  static constexpr std::uint32_t kFinal = Slots + 1;    // nothing that comes later can be nearer
+  static constexpr std::uint32_t kEmpty = 0;          // nothing covers it yet
+  static constexpr std::uint32_t kFirstSlot = 1;      // the first slot owns it; the next states are the other slots
+  static constexpr std::uint32_t kFinal = Slots + 1;  // nothing that comes later can be nearer
   static constexpr std::size_t kBits = std::bit_width(kFinal);
 
   PositionStates<Words, kBits> states{};
   OwnerSlot slots[Slots];
   // What is final, in two estimates. Colours are linear RGB times area, in units of the frame's brightest colour.
-  FixedSum color[3], area;     // by analytic area
-  FixedSum counted_color[3];   // by mask positions; their number says the area
-  FixedSum specks[2];          // the areas of visible specks that face away from the viewer, and towards the viewer
+  FixedSum color[3], area;    // by analytic area
+  FixedSum counted_color[3];  // by mask positions; their number says the area
+  FixedSum specks[2];         // the areas of visible specks that face away from the viewer, and towards the viewer
 
   static constexpr std::uint32_t owned_by(std::size_t slot) { return kFirstSlot + static_cast<std::uint32_t>(slot); }
 };
@@ -101,8 +103,8 @@ static_assert(sizeof(OpenPixel<4, 7>) == 138);
 static_assert(sizeof(OpenPixel<2, 4>) == 74);
 static_assert(sizeof(OpenPixel<1, 2>) == 42);
 
-// Size of a fragment between beam_fragment and compose in the modelled machine: pixel (16 bits), triangle (24), centroid
-// (16), area (16), mask, and depth plane as 3 x float32.
+// Size of a fragment between beam_fragment and compose in the modelled machine: pixel (16 bits), triangle (24),
+// centroid (16), area (16), mask, and depth plane as 3 x float32.
 constexpr std::uint32_t owners_fragment_bytes(std::size_t words) {
   return 2 + 3 + 2 + 2 + static_cast<std::uint32_t>(words) * 4 + 12;
 }

@@ -61,7 +61,8 @@ TEST(Buffers, StreamingOrderHoldsTheSameForEachPixelHoweverDeepItIs) {
 
 TEST(Buffers, TheABufferGrowsByARecordForEveryPairThatIsNotHidden) {
   for (const int layers : {1, 10, 100, 1000, 10000}) {
-    const FrameResult sorted = render("beam:order=sorted", halves(layers)), published = render("beam:rules=paper", halves(layers));
+    const FrameResult sorted = render("beam:order=sorted", halves(layers)),
+                      published = render("beam:rules=paper", halves(layers));
     const auto count = static_cast<std::uint64_t>(layers);
     // The pixel that a triangle covers, and those that it touches without covering any area.
     const std::uint64_t touched = sorted.stages.at(1).items_out / count;
@@ -100,7 +101,8 @@ TEST(Buffers, AreWhatIsAllocated) {
     for (const Buffer& buffer : result.buffers) measured.listed += static_cast<double>(buffer.peak_bytes);
     return measured;
   };
-  for (const char* spec : {"beam:order=sorted", "beam:order=stream,passes=0", "beam:rules=paper", "alpha", "z3", "msaa:8", "acaa:8"}) {
+  for (const char* spec : {"beam", "beam:order=sorted", "beam:order=stream", "beam:order=stream,passes=0",
+                           "beam:rules=paper", "alpha", "z3", "msaa:8", "acaa:8"}) {
     const Measured few = measure(spec, 4000), many = measure(spec, 16000);
     const double heap = many.heap - few.heap, listed = many.listed - few.listed;
     EXPECT_GE(heap, listed) << spec << ": something is listed that is not held";
@@ -128,8 +130,9 @@ TEST(Buffers, DrawsAreNotCopiedAgainForEachThatFollows) {
 TEST(Buffers, WorkingBytesAreHeldPerPixel) {
   Trace trace = halves(1);
   trace.frames[0].width = trace.frames[0].height = 512;
-  for (const char* spec : {"beam:order=sorted", "beam:order=stream,passes=0", "beam:rules=paper", "alpha", "z3", "msaa:8", "acaa:8",
-                           "deferred", "visibility", "taa:8", "dvm"}) {
+  for (const char* spec :
+       {"beam", "beam:order=sorted", "beam:order=stream", "beam:order=stream,passes=0", "beam:rules=paper", "alpha",
+        "z3", "msaa:8", "acaa:8", "deferred", "visibility", "taa:8", "dvm"}) {
     const std::int64_t before = heap_bytes();
     restart_heap_peak();
     render(spec, trace);

@@ -28,6 +28,8 @@ const std::map<std::string, StageTests>& tests_of_stages() {
       {"sample_raster",
        {"HandWorked.QuadsMsaa", "RasterTwins.SampleRaster", "HandWorked.QuadsMsaa", "HandWorked.QuadsMsaa",
         "RasterTwins.SampleRaster"}},
+      {"bin_sort",
+       {"BinSort.CountsItsTriangles", "BinSort.CountsItsTriangles", "BinSort.CountsItsTriangles", kMoves, kMoves}},
       {"beam_fragment",
        {"HandWorked.TriangleBeam", "FragmentTwins.OnAGrid", "HandWorked.TriangleBeam", "HandWorked.TriangleBeam",
         "FragmentTwins.OnAGrid"}},

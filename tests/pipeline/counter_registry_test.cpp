@@ -19,7 +19,9 @@
 namespace beampipe {
 namespace {
 
-constexpr const char* kSpecs[] = {"beam:order=sorted",
+constexpr const char* kSpecs[] = {"beam",
+                                  "beam:order=sorted",
+                                  "beam:order=stream",
                                   "beam:rules=paper",
                                   "beam:order=stream,passes=0",
                                   "z3",

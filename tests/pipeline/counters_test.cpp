@@ -41,8 +41,9 @@ TEST(Counters, ShadingRunsInWholeQuads) {
 
 TEST(Counters, EveryTechniqueCountsFragmentsAndBytesOfPixels) {
   const Trace trace = random_trace(40, 30, 400, 2);
-  for (const char* spec : {"beam:order=sorted", "beam:order=stream,passes=0", "beam:rules=paper", "alpha", "z3", "msaa:8", "msaa:32",
-                           "acaa:8", "deferred", "visibility", "taa:4", "dvm"}) {
+  for (const char* spec :
+       {"beam", "beam:order=sorted", "beam:order=stream", "beam:order=stream,passes=0", "beam:rules=paper", "alpha",
+        "z3", "msaa:8", "msaa:32", "acaa:8", "deferred", "visibility", "taa:4", "dvm"}) {
     const FrameResult result = parse_technique(spec).render(trace, 0, {2});
     EXPECT_GT(sum_of(result, "fragments"), 400) << spec;
     EXPECT_GT(sum_of(result, "bytes"), 400) << spec;
@@ -74,7 +75,8 @@ TEST(Counters, PixelsOfFourCornersAndASpeck) {
   EXPECT_EQ(at(parse_technique("alpha").render(corners(0.1), 0, {1}), "merges"), 5);
   EXPECT_EQ(at(parse_technique("z3").render(corners(0.1), 0, {1}), "merges"), 1) << "four owners, three layers";
   EXPECT_EQ(at(parse_technique("beam:order=stream,passes=0,layers=1").render(corners(0.1), 0, {1}), "passes"), 4);
-  EXPECT_EQ(at(parse_technique("beam:order=stream,passes=0").render(corners(0.1), 0, {1}), "passes"), 1) << "room for five";
+  EXPECT_EQ(at(parse_technique("beam:order=stream,passes=0").render(corners(0.1), 0, {1}), "passes"), 1)
+      << "room for five";
   const FrameResult acaa = parse_technique("acaa:8").render(corners(0.1), 0, {1});
   EXPECT_EQ(at(acaa, "visible_fragments"), at(parse_technique("msaa:8").render(corners(0.1), 0, {1}), "fragments"))
       << "nothing is hidden";
@@ -150,8 +152,8 @@ TEST(Counters, EveryStageWorks) {
   Trace trace = random_trace(40, 30, 50, 2);
   trace.frames[0].draws[0].shading = Shading::lambert;  // an unlit triangle needs no operations
   trace.frames[0].light_direction = glm::vec3(0, 0, 1);
-  for (const char* spec : {"beam:order=sorted", "alpha", "msaa:4", "msaa:4,prepass", "acaa:4,double=stencil", "acaa:32", "deferred",
-                           "visibility", "taa:8", "dvm", "reference"}) {
+  for (const char* spec : {"beam:order=sorted", "alpha", "msaa:4", "msaa:4,prepass", "acaa:4,double=stencil", "acaa:32",
+                           "deferred", "visibility", "taa:8", "dvm", "reference"}) {
     for (const StageCounters& counters : parse_technique(spec).render(trace, 0, {2}).stages) {
       EXPECT_FALSE(counters.stage.empty()) << spec;
       EXPECT_GT(counters.items_in, 0u) << spec << ' ' << counters.stage;

@@ -58,7 +58,8 @@ void add_column(std::vector<PixelSpaceTriangle>& triangles, double x0, double x1
 
 TEST(ErrorCauses, PartsAddUpToEachPixelsError) {
   const Trace trace = random_trace(40, 24, 150, 7);
-  for (const char* spec : {"beam:order=sorted", "beam:order=sorted,bits=32", "beam:rules=paper", "beam:rules=paper,fuzzy=mix,tiny=3", "alpha"}) {
+  for (const char* spec : {"beam:order=sorted", "beam:order=sorted,bits=32", "beam:rules=paper",
+                           "beam:rules=paper,fuzzy=mix,tiny=3", "alpha"}) {
     const Explained found = explain(spec, trace);
     ASSERT_EQ(found.layers.size(), kErrorCauses.size());
     double largest = 0;

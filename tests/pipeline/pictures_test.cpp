@@ -57,7 +57,8 @@ TEST(Pictures, OfTwoEqualTrianglesTheEarlierIsSeen) {
   // could make their depths differ.
   const glm::dvec3 a(-1, -1, 0.1), b(13, -2, 0.6), c(-2, 12, 0.9);
   const Trace trace = pixel_trace(4, 4, {{{a, b, c}, kRed}, {{c, b, a}, kGreen}});
-  for (const char* spec : {"beam:order=sorted", "beam:rules=paper,mask=exact", "msaa:1", "msaa:8", "msaa:256", "reference"}) {
+  for (const char* spec :
+       {"beam:order=sorted", "beam:rules=paper,mask=exact", "msaa:1", "msaa:8", "msaa:256", "reference"}) {
     const Image image = picture(spec, trace);
     for (std::uint32_t y = 0; y < 4; ++y)
       for (std::uint32_t x = 0; x < 4; ++x) EXPECT_EQ(pixel(image, x, y), kRed) << spec << ' ' << x << ' ' << y;
