@@ -26,7 +26,7 @@ float nearest_in(const SetupTriangle& triangle, const Tile& tile) {
 // Floats of one sign are in the order of their bits. Cutting off bits of a magnitude rounds it down, which is towards
 // the far plane at 0, so the key is taken from the magnitude rounded up.
 std::uint32_t sort_key(float depth) {
-  const std::uint32_t magnitude = std::bit_cast<std::uint32_t>(std::max(-depth, 0.0f));
+  const std::uint32_t magnitude = std::bit_cast<std::uint32_t>(std::max(0.0f, -depth));  // not -0
   const std::uint32_t kept = (magnitude + (1u << kDroppedBits) - 1) >> kDroppedBits;
   return kFarthestKey - std::min(kept, kFarthestKey);
 }
