@@ -393,7 +393,8 @@ TEST(ComposeOwners, TenThousandRandomFragmentsInOnePixel) {
   }
 }
 
-// Without merges the picture does not depend on the order in which triangles come: the nearest own the positions.
+// Without merges the picture does not depend on the order in which triangles come: the nearest own the positions. Only
+// roundings differ, by 3.1e-5 here. Specks are left out: they are compared with the owners that came earlier.
 TEST(ComposeOwners, TheOrderOfArrivalDoesNotMatterWhileSlotsSuffice) {
   double worst = 0;
   for (std::uint64_t seed = 320; seed < 340; ++seed) {
@@ -414,8 +415,7 @@ TEST(ComposeOwners, TheOrderOfArrivalDoesNotMatterWhileSlotsSuffice) {
       for (int c = 0; c < 3; ++c) worst = std::max(worst, std::abs(double{found[i].color[c]} - expected[i].color[c]));
     }
   }
-  std::printf("order: worst %g\n", worst);
-  EXPECT_LT(worst, 2.0 / 256);
+  EXPECT_LT(worst, 1e-4);  // three units of FixedSum
 }
 
 // ---- Specks ----
