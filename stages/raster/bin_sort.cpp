@@ -12,14 +12,15 @@ namespace {
 constexpr int kDroppedBits = 7;  // of a float's 31 bits without its sign
 constexpr std::uint32_t kFarthestKey = (1u << 24) - 1;
 
-// The nearest depth of the triangle in the tile, as pair_bounds for a pixel. Both round, so this one has a margin: eight
-// roundings of the largest sum that can occur. Without it, one triangle in a thousand is nearer by a rounding error.
+// The nearest depth of the triangle in the tile, as pair_bounds for a pixel. Both round, so this one has a margin:
+// eight roundings of the largest sum that can occur. Without it, one triangle in a thousand is nearer by a rounding
+// error.
 float nearest_in(const SetupTriangle& triangle, const Tile& tile) {
   constexpr float kRounding = 0x1p-21f;
   const float width = static_cast<float>(tile.width()), height = static_cast<float>(tile.height());
-  DepthPlane<float> plane{
-      static_cast<float>(triangle.depth.at(0.5 * (tile.x0 + tile.x1), 0.5 * (tile.y0 + tile.y1))),
-      width * static_cast<float>(triangle.depth.dzdx), height * static_cast<float>(triangle.depth.dzdy)};
+  DepthPlane<float> plane{static_cast<float>(triangle.depth.at(0.5 * (tile.x0 + tile.x1), 0.5 * (tile.y0 + tile.y1))),
+                          width * static_cast<float>(triangle.depth.dzdx),
+                          height * static_cast<float>(triangle.depth.dzdy)};
   plane.z -= kRounding * (magnitude(plane.z) + magnitude(plane.dzdu) + magnitude(plane.dzdv));
   return pair_bounds(plane, vertex_bounds(triangle.vertex_z)).nearest;
 }

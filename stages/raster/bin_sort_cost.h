@@ -13,9 +13,9 @@ inline constexpr std::uint64_t kKeyBytes = 4;    // a key of 24 bits takes a wor
 inline OperationCounts key_cost() {
   OperationCounts cost = pair_bounds_cost();
   cost += vertex_bounds_cost();
-  cost.mul_add += 2;  // the reach over the bin's width and height
+  cost.mul_add += 2;                           // the reach over the bin's width and height
   cost += {.mul_add = 1, .add = 3, .bit = 3};  // the margin: a sum of three magnitudes, times a constant
-  cost.bit += 2;      // a shift and a complement
+  cost.bit += 2;                               // a shift and a complement
   return cost;
 }
 

@@ -141,9 +141,8 @@ TEST(PlaneOrder, FarthestOnEveryTargetEqualsTheFormulaOnFloat) {
         const std::array<std::uint32_t, 8>& mask = masks[i % masks.size()];
         float expected = kInFront;
         for (std::size_t p = 0; p < static_cast<std::size_t>(positions); ++p)
-          expected =
-              farthest_formula(planes[i], position_u(patterns[p / 32], p % 32), position_v(patterns[p / 32], p % 32),
-                               has(mask, p), expected);
+          expected = farthest_formula(planes[i], position_u(patterns[p / 32], p % 32),
+                                      position_v(patterns[p / 32], p % 32), has(mask, p), expected);
         ASSERT_EQ(farthest_depth(planes[i], patterns.data(), patterns.size(), mask.data()), expected) << i;
       }
     });

@@ -293,7 +293,8 @@ void expect_merged_strips() {
     colors.push_back(i % 3 == 0 ? kRed : i % 3 == 1 ? kGreen : kBlue);
   }
   Random random(301);
-  for (const TriangleList& list : {all_of(triangles), reversed(all_of(triangles)), shuffled(all_of(triangles), random)}) {
+  for (const TriangleList& list :
+       {all_of(triangles), reversed(all_of(triangles)), shuffled(all_of(triangles), random)}) {
     OpenTile<Words, Slots> tile(triangles, colors);
     const PixelColor found = tile.compose(list).at(0);
     constexpr double kAll = 6.0 * kStrips / 256;
@@ -320,7 +321,8 @@ TEST(ComposeOwners, MergedOwnersKeepTheirArea) {
 TEST(ComposeOwners, EachSurfaceWithoutASlotMakesOneMerge) {
   for (int strips = 1; strips <= 20; ++strips) {
     SetupTriangles triangles;
-    for (int i = 0; i < strips; ++i) add_strip(triangles, 8 + 12 * i, 20 + 12 * i, -0.5f - 0.01f * static_cast<float>(i));
+    for (int i = 0; i < strips; ++i)
+      add_strip(triangles, 8 + 12 * i, 20 + 12 * i, -0.5f - 0.01f * static_cast<float>(i));
     const std::vector<glm::vec3> colors(triangles.triangles.size(), glm::vec3(0.25f, 0.5f, 1.0f));
     OpenTile<8, 5> tile(triangles, colors);
     const PixelColor found = tile.compose(all_of(triangles)).at(0);
@@ -386,7 +388,8 @@ TEST(ComposeOwners, TenThousandRandomFragmentsInOnePixel) {
       }
       EXPECT_EQ(tile.composing.items_in, tile.fragments.size());
     };
-    OpenTile<8, 5> unsorted(triangles, colors, {0, 0, 1, 1}, kBrightest), sorted(triangles, colors, {0, 0, 1, 1}, kBrightest);
+    OpenTile<8, 5> unsorted(triangles, colors, {0, 0, 1, 1}, kBrightest),
+        sorted(triangles, colors, {0, 0, 1, 1}, kBrightest);
     check(unsorted, unsorted.compose(all_of(triangles)).at(0));
     EXPECT_GT(unsorted.fragments.size(), 5000u);
     check(sorted, sorted.compose_sorted().at(0));

@@ -91,9 +91,8 @@ TEST(OwnersTwins, SurfacesThatInterpenetrate) {
   Five tile(triangles, colors);
   tile.compose({0, 1});
   // As above, but the planes are compared at all positions, and the second one takes some.
-  EXPECT_EQ(tile.composing.ops,
-            sum({masks_of_five(), put(3), count(), plane_cost(), pair_bounds_cost(), masks_of_five(), plane_cost(),
-                 plane_gap_cost(), nearer(), put(3), count()}));
+  EXPECT_EQ(tile.composing.ops, sum({masks_of_five(), put(3), count(), plane_cost(), pair_bounds_cost(),
+                                     masks_of_five(), plane_cost(), plane_gap_cost(), nearer(), put(3), count()}));
   EXPECT_EQ(tile.composing.bytes_read, 2 * (kFragment + kPixelOfFive + kPlane));
   EXPECT_EQ(tile.composing.bytes_written, 2 * kPixelOfFive);
   // Two owners take one comparison to sort.
@@ -124,8 +123,14 @@ TEST(OwnersTwins, ThreeSurfacesInTwoSlots) {
   const std::vector<float> watermarks{-0.9f, -0.89f, -0.2f};
   settled.compose({0, 1, 2}, &watermarks);
   ASSERT_EQ(settled.merges[0], 0);
-  EXPECT_EQ(settled.composing.ops, sum({adding, put(2), plane_cost() * 2, finality_cost() * 2, count() * 2, {.add = 1},
-                                        settle_owner_cost() * 2, put(2) * 2}));
+  EXPECT_EQ(settled.composing.ops, sum({adding,
+                                        put(2),
+                                        plane_cost() * 2,
+                                        finality_cost() * 2,
+                                        count() * 2,
+                                        {.add = 1},
+                                        settle_owner_cost() * 2,
+                                        put(2) * 2}));
   EXPECT_EQ(settled.composing.bytes_read, reading + planes);
   EXPECT_EQ(settled.composing.bytes_written, 3 * kPixelOfTwo);
 
@@ -139,9 +144,8 @@ TEST(OwnersTwins, ThreeSurfacesInTwoSlots) {
   const std::vector<float> within{-0.9f, -0.8f, -0.796f};
   partly.compose({0, 1, 2}, &within);
   ASSERT_EQ(partly.merges[0], 0);
-  EXPECT_EQ(partly.composing.ops,
-            sum({adding, put(2), plane_cost() * 2, finality_cost() * 2, farthest_cost() * (32 * kWords), count(),
-                 settle_owner_cost(), put(2)}));
+  EXPECT_EQ(partly.composing.ops, sum({adding, put(2), plane_cost() * 2, finality_cost() * 2,
+                                       farthest_cost() * (32 * kWords), count(), settle_owner_cost(), put(2)}));
 }
 
 TEST(OwnersTwins, Specks) {
@@ -168,7 +172,8 @@ TEST(OwnersTwins, Specks) {
   Five hidden(behind, colors);
   hidden.compose({0, 1});
   ASSERT_EQ(hidden.fragments.size(), 2u);
-  EXPECT_EQ(hidden.composing.ops, sum({masks_of_five(), put(3), count(), votes, plane_cost() * 3, speck_test_cost() * 3}));
+  EXPECT_EQ(hidden.composing.ops,
+            sum({masks_of_five(), put(3), count(), votes, plane_cost() * 3, speck_test_cost() * 3}));
   EXPECT_EQ(hidden.composing.bytes_read, 2 * (kFragment + kPixelOfFive) + 3 * kPlane);
   EXPECT_EQ(hidden.composing.bytes_written, kPixelOfFive);
 
@@ -178,8 +183,8 @@ TEST(OwnersTwins, Specks) {
   Five added(before, colors);
   added.compose({0, 1});
   ASSERT_TRUE(added.fragments.at(1).mask.none());
-  EXPECT_EQ(added.composing.ops, sum({masks_of_five(), put(3), count(), votes, plane_cost() * 3, speck_test_cost() * 3,
-                                      speck_area_cost()}));
+  EXPECT_EQ(added.composing.ops,
+            sum({masks_of_five(), put(3), count(), votes, plane_cost() * 3, speck_test_cost() * 3, speck_area_cost()}));
   EXPECT_EQ(added.composing.bytes_written, 2 * kPixelOfFive);
 }
 

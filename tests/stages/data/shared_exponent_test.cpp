@@ -61,8 +61,7 @@ TEST(SharedExponent, IsStable) {
   Random random(212);
   SCOPED_TRACE(random.name());
   for (int i = 0; i < 10'000; ++i) {
-    const glm::vec3 once =
-        SharedExponent(glm::vec3(random.real32(0, 2), random.real32(0, 2), random.real32(0, 2)));
+    const glm::vec3 once = SharedExponent(glm::vec3(random.real32(0, 2), random.real32(0, 2), random.real32(0, 2)));
     ASSERT_EQ(glm::vec3(SharedExponent(once)), once);
   }
 }

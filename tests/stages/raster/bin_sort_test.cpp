@@ -135,9 +135,7 @@ TEST(BinSort, WatermarksAreTight) {
   SetupTriangles triangles;
   add_triangle(triangles, {0, 0, -0.75f}, {4096, 0, -0.25f}, {0, 4096, -0.75f});  // farther to the right
   StageCounters counters;
-  const auto watermark = [&](const Tile& tile) {
-    return bin_sort(triangles, {0}, tile, counters).watermarks.at(0);
-  };
+  const auto watermark = [&](const Tile& tile) { return bin_sort(triangles, {0}, tile, counters).watermarks.at(0); };
   EXPECT_NEAR(watermark({0, 0, 16, 16}), -0.75f, 1e-4);
   EXPECT_NEAR(watermark({8, 0, 16, 16}), -0.5f, 1e-4);
   EXPECT_NEAR(watermark({12, 0, 16, 8}), -0.375f, 1e-4);
@@ -153,9 +151,9 @@ TEST(BinSort, CountsItsWork) {
   // written once before.
   EXPECT_EQ(counters.bytes_read, 37u * 3 * 8);
   EXPECT_EQ(counters.bytes_written, 37u * (4 + 3 * 8));
-  // A key: the bounds of a pair, with two slopes times the size of the bin; a margin, which is a sum of three magnitudes
-  // times a constant and is subtracted; a shift and a complement. A pass: a shift
-  // and a mask for the digit, the digit's counter is read and increased, and the place is computed.
+  // A key: the bounds of a pair, with two slopes times the size of the bin; a margin, which is a sum of three
+  // magnitudes times a constant and is subtracted; a shift and a complement. A pass: a shift and a mask for the digit,
+  // the digit's counter is read and increased, and the place is computed.
   OperationCounts expected = pair_bounds_cost();
   expected += vertex_bounds_cost();
   expected += {.mul_add = 2 + 1, .add = 3 + 3 * 2, .bit = 3 + 2 + 3 * 2, .fetch = 3 * 2};
