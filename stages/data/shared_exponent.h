@@ -13,7 +13,7 @@ struct SharedExponent {
 
   SharedExponent() = default;
 
-  // `color`: linear RGB, not negative. The error of a channel is at most 2^-8 of the largest channel.
+  // `color`: linear RGB, not negative. The error of a channel is at most 1/255 of the largest channel.
   explicit SharedExponent(const glm::vec3& color) {
     const float largest = std::max({color[0], color[1], color[2]});
     if (!(largest > 0x1p-100f)) return;

@@ -12,12 +12,16 @@ namespace {
 constexpr int kDroppedBits = 7;  // of a float's 31 bits without its sign
 constexpr std::uint32_t kFarthestKey = (1u << 24) - 1;
 
-// Bounds of the triangle's depth in the tile, as pair_bounds for a pixel.
+// The nearest depth of the triangle in the tile, as pair_bounds for a pixel. Both round, so this one has a margin:
+// eight roundings of the largest sum that can occur. Without it, one triangle in a thousand is nearer by a rounding
+// error.
 float nearest_in(const SetupTriangle& triangle, const Tile& tile) {
+  constexpr float kRounding = 0x1p-21f;
   const float width = static_cast<float>(tile.width()), height = static_cast<float>(tile.height());
-  const DepthPlane<float> plane{
-      static_cast<float>(triangle.depth.at(0.5 * (tile.x0 + tile.x1), 0.5 * (tile.y0 + tile.y1))),
-      width * static_cast<float>(triangle.depth.dzdx), height * static_cast<float>(triangle.depth.dzdy)};
+  DepthPlane<float> plane{static_cast<float>(triangle.depth.at(0.5 * (tile.x0 + tile.x1), 0.5 * (tile.y0 + tile.y1))),
+                          width * static_cast<float>(triangle.depth.dzdx),
+                          height * static_cast<float>(triangle.depth.dzdy)};
+  plane.z -= kRounding * (magnitude(plane.z) + magnitude(plane.dzdu) + magnitude(plane.dzdv));
   return pair_bounds(plane, vertex_bounds(triangle.vertex_z)).nearest;
 }
 
@@ -26,7 +30,7 @@ float nearest_in(const SetupTriangle& triangle, const Tile& tile) {
 // Floats of one sign are in the order of their bits. Cutting off bits of a magnitude rounds it down, which is towards
 // the far plane at 0, so the key is taken from the magnitude rounded up.
 std::uint32_t sort_key(float depth) {
-  const std::uint32_t magnitude = std::bit_cast<std::uint32_t>(std::max(-depth, 0.0f));
+  const std::uint32_t magnitude = std::bit_cast<std::uint32_t>(std::max(0.0f, -depth));  // not -0
   const std::uint32_t kept = (magnitude + (1u << kDroppedBits) - 1) >> kDroppedBits;
   return kFarthestKey - std::min(kept, kFarthestKey);
 }

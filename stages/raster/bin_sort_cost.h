@@ -9,12 +9,13 @@ namespace beampipe {
 inline constexpr std::uint64_t kSortPasses = 3;  // 8 bits of the key at a time
 inline constexpr std::uint64_t kKeyBytes = 4;    // a key of 24 bits takes a word of the list
 
-// The plane at the middle of the bin, its reach, the depths of the vertices, and the key's bits.
+// The plane at the middle of the bin, its margin, its reach, the depths of the vertices, and the key's bits.
 inline OperationCounts key_cost() {
   OperationCounts cost = pair_bounds_cost();
   cost += vertex_bounds_cost();
-  cost.mul_add += 2;  // the reach over the bin's width and height
-  cost.bit += 2;      // a shift and a complement
+  cost.mul_add += 2;                           // the reach over the bin's width and height
+  cost += {.mul_add = 1, .add = 3, .bit = 3};  // the margin: a sum of three magnitudes, times a constant
+  cost.bit += 2;                               // a shift and a complement
   return cost;
 }
 
