@@ -65,11 +65,12 @@ Estimate<Float> limited_estimate(const Estimate<Float>& analytic, const Estimate
   return result;
 }
 
-// Where FixedSum rounds what a triangle adds: any number above 0 and up to 1, as long as triangles differ.
+// Where FixedSum rounds what a triangle adds: a number above 0 and up to 1 that differs from triangle to triangle. Eight
+// bits of it are exact in the sum of a float and the largest addend.
 template <class Bits>
 auto rounding_threshold(Bits triangle) {
   using Float = decltype(to_float(mix_bits(triangle)));
-  return (to_float(mix_bits(triangle) >> 8) + Float(1.0f)) * Float(0x1p-24f);
+  return (to_float(mix_bits(triangle) >> 24) + Float(1.0f)) * Float(0x1p-8f);
 }
 
 }  // namespace beampipe

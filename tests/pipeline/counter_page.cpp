@@ -29,7 +29,7 @@ const std::map<std::string, StageTests>& tests_of_stages() {
        {"HandWorked.QuadsMsaa", "RasterTwins.SampleRaster", "HandWorked.QuadsMsaa", "HandWorked.QuadsMsaa",
         "RasterTwins.SampleRaster"}},
       {"bin_sort",
-       {"BinSort.CountsItsTriangles", "BinSort.CountsItsTriangles", "BinSort.CountsItsTriangles", kMoves, kMoves}},
+       {"BinSort.CountsItsWork", "BinSort.CountsItsWork", "BinSort.CountsItsWork", kMoves, kMoves}},
       {"beam_fragment",
        {"HandWorked.TriangleBeam", "FragmentTwins.OnAGrid", "HandWorked.TriangleBeam", "HandWorked.TriangleBeam",
         "FragmentTwins.OnAGrid"}},
@@ -106,9 +106,12 @@ const std::map<std::string, std::string>& tests_of_frame_counters() {
   static const std::string keys = "ReportJson.HasTheKeysOfTheContract";
   static const std::map<std::string, std::string> tests = {
       {"logical_bytes, sector_bytes, l2_bytes, dram_bytes", keys},
-      {"a_buffer_peak_bytes", "Beam.CountsEveryTouchedPixel"},
+      {"a_buffer_peak_bytes", "BeamSorted.CountsEveryTouchedPixel"},
       {"buffers", "Buffers.AreWhatIsAllocated"},
       {"peak_bytes_per_pixel", keys},
+      {"on_chip_bytes_per_pixel", "Beam.BuffersHaveTheSameSizeHoweverDeepAPixelIs"},
+      {"off_chip_bytes_per_pixel", keys},
+      {"bin_pixels", keys},
       {"pixel_counters", keys},
       {"saved", "SavedWork.IsFoundFromTheStages"},
       {"wall_ms", keys},

@@ -23,7 +23,7 @@ struct OpenTile {
   const PositionSet& positions = cell_positions(kPositions);
   std::vector<Pixel> pixels;
   ClosedDepth closed;
-  std::vector<float> merges;
+  std::vector<float> counts, merges;  // per pixel: fragments that no closed pixel hid, owners that became one
   std::vector<Fragment> fragments;         // all that were composed
   StageCounters composing{}, finishing{};  // counted by compose_owners and finish_owners
   OwnersResult result{};
@@ -36,6 +36,7 @@ struct OpenTile {
         brightest(brightest_channel),
         pixels(in.pixels()),
         closed(in),
+        counts(in.pixels()),
         merges(in.pixels()) {}
 
   // Composes the triangles of the list, in its order. `watermarks` may be null.
@@ -46,7 +47,7 @@ struct OpenTile {
     conservative_raster(triangles, list, tile, ignored, pairs);
     beam_fragment(triangles, pairs, tile, grid_options(grid, owners_fragment_bytes(Words)), ignored, fragments);
     const OwnersBin bin{triangles, list, watermarks, tile, positions, colors, brightest, false};
-    compose_owners(bin, fragments, 0, composing, pixels, closed, merges, result);
+    compose_owners(bin, fragments, 0, composing, pixels, closed, {counts, merges}, result);
     return finish_owners(bin, finishing, pixels, result);
   }
   std::vector<PixelColor> compose_sorted(bool with_watermarks = true) {

@@ -8,7 +8,7 @@
 namespace beampipe {
 namespace {
 
-TEST(Beam, CountsEveryTouchedPixel) {
+TEST(BeamSorted, CountsEveryTouchedPixel) {
   const FrameResult result = parse_technique("beam:order=sorted").render(half_square(), 0, {1});
   // Rows 1 to 4 touch 1 + 1, 1 + 2, 1 + 3 and 4 pixels. The diagonal runs through corners of pixels, and a corner
   // belongs to the closed square of a pixel. Pairs without area are dropped after conservative_raster.
@@ -33,7 +33,7 @@ TEST(Beam, CountsEveryTouchedPixel) {
   EXPECT_EQ(stage_of(result, "compose").bytes_written, with_area * 42);
 }
 
-TEST(Beam, IsNearerToTheReferenceThanAlphaAndOneSample) {
+TEST(BeamSorted, IsNearerToTheReferenceThanAlphaAndOneSample) {
   const Trace trace = random_trace(48, 32, 150, 5);
   const Image reference = picture("reference", trace);
   const double beam = rmse(picture("beam:order=sorted", trace), reference);

@@ -17,7 +17,7 @@ constexpr glm::vec3 kRed{1, 0, 0}, kGreen{0, 1, 0}, kBlue{0, 0, 1};
 
 // How far the result may be from a sum of `surfaces` exact areas: each is rounded to half a unit of FixedSum, and the
 // error of its mask to half of 1/32 position.
-double step(int surfaces, int positions) { return surfaces * (0.5 / FixedSum::kUnits + 1.0 / 64 / positions) + 1e-6; }
+double step(int surfaces, int positions) { return surfaces * (1.0 / FixedSum::kUnits + 1.0 / 64 / positions) + 1e-6; }
 
 std::vector<glm::vec3> random_colors(const SetupTriangles& triangles, Random& random, float brightest = 1) {
   std::vector<glm::vec3> colors;
