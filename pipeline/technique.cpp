@@ -27,11 +27,10 @@ std::vector<const TechniqueKind*> kinds_named(std::string_view name) {
 const TechniqueKind& chosen_kind(const Spec& spec, const std::vector<const TechniqueKind*>& kinds) {
   const TechniqueKind *plain = nullptr, *chosen = nullptr;
   for (const TechniqueKind* const kind : kinds) {
-    const auto& [key, word, otherwise, implies] = kind->variant;
+    const auto& [key, word, otherwise, owns] = kind->variant;
     if (!is_variant(*kind)) plain = kind;
     if (!is_variant(*kind) || !spec.has(key, word)) continue;
-    if (chosen && implies.contains(chosen->variant.key) && implies.at(chosen->variant.key) == chosen->variant.word)
-      chosen = nullptr;
+    if (chosen && owns == chosen->variant.key) chosen = nullptr;
     if (chosen) spec.fail(title_of(*chosen) + " must be without " + key + '=' + word);
     chosen = kind;
   }
@@ -44,16 +43,14 @@ SpecOptions variant_options(const TechniqueKind& chosen, const std::vector<const
   std::map<std::string, std::vector<std::string>> words;  // by key; the default comes first
   for (const TechniqueKind* const kind : kinds) {
     if (!is_variant(*kind)) continue;
-    const auto& [key, word, otherwise, implies] = kind->variant;
+    const auto& [key, word, otherwise, owns] = kind->variant;
     if (words[key].empty()) words[key].push_back(otherwise);
     words[key].push_back(word);
   }
   SpecOptions options;
   for (const auto& [key, of_key] : words) {
-    const auto implied = chosen.variant.implies.find(key);
-    const std::string valid = chosen.variant.key == key                 ? chosen.variant.word
-                              : implied != chosen.variant.implies.end() ? implied->second
-                                                                        : of_key.front();
+    if (key == chosen.variant.owns) continue;
+    const std::string valid = chosen.variant.key == key ? chosen.variant.word : of_key.front();
     std::string usage = key + '=' + of_key.front();
     for (std::size_t i = 1; i < of_key.size(); ++i) usage += '|' + of_key[i];
     options.push_back({.form = SpecOption::Form::value,

@@ -3,7 +3,6 @@
 #pragma once
 
 #include <functional>
-#include <map>
 #include <string>
 #include <utility>
 #include <vector>
@@ -18,7 +17,7 @@ namespace beampipe {
 // default variant; specs may state it.
 struct Variant {
   std::string key, word, otherwise;
-  std::map<std::string, std::string> implies = {};  // what other keys' values this variant has, if not their defaults
+  std::string owns = {};  // the key of other variants that is an option of this one
 };
 
 struct TechniqueKind {

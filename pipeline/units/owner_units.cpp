@@ -12,6 +12,11 @@ float brightest_of(const std::vector<glm::vec3>& colors) {
   return brightest > 0 ? brightest : 1.0f;
 }
 
+void hold_open_pixels(Bin& bin, std::size_t bytes_per_pixel) {
+  bin.holds("open_pixels", bin.tile.pixels() * bytes_per_pixel);
+  if (bin.models_memory()) bin.pixel_counter("bytes").assign(bin.tile.pixels(), kPictureBytes);
+}
+
 OrderedList sort_bin(Bin& bin) {
   const BinStage stage = bin.stage("bin_sort");
   OrderedList ordered = bin_sort(bin.triangles(), bin.list, bin.tile, stage.timed());

@@ -25,6 +25,9 @@ float brightest_of(const std::vector<glm::vec3>& colors);
 // Where open pixels are kept: on chip while their bin is rendered, or in the framebuffer, through its caches.
 enum class OpenPixels { on_chip, in_memory };
 
+// The bin keeps its pixels on chip in so many bytes each; only the picture goes to memory.
+void hold_open_pixels(Bin& bin, std::size_t bytes_per_pixel);
+
 template <std::size_t Words, std::size_t Slots>
 class ComposeOwnersUnit {
  public:
@@ -43,8 +46,7 @@ class ComposeOwnersUnit {
       throw std::runtime_error("a bin has " + std::to_string(list.size()) + " triangles, more than the " +
                                std::to_string(OwnerSlot::kMostTriangles) + " that an owner can name");
     if (where == OpenPixels::on_chip) {
-      bin.holds("open_pixels", pixels_.size() * sizeof pixels_[0]);
-      if (bin.models_memory()) bin.pixel_counter("bytes").assign(pixels_.size(), kPictureBytes);
+      hold_open_pixels(bin, sizeof pixels_[0]);
     } else {
       memory_.emplace(bin.memory(), bin.z_order(), framebuffer);
     }

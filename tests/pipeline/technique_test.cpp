@@ -63,7 +63,8 @@ TEST(Technique, WrongSpecsSayWhatWouldBeRight) {
   const std::string taa_rates = "N of taa:N must be 1, 2, 4, 8 or 16";
   const std::string of_beam = "; it has bits, slots, bin, order and rules";
   const std::string of_paper =
-      "; it has mask, sort, tiny, overlap, local, fuzzy, extents, slab, plane, thickness, storage, order and rules";
+      "; it has mask, sort, tiny, overlap, local, fuzzy, extents, slab, plane, thickness, storage, order, "
+      "layers and rules";
   const std::string of_dvm = "; it has blend, seed and material";
   for (const auto& [spec, error] : std::map<std::string, std::string>{
            {"", names},
@@ -108,7 +109,7 @@ TEST(Technique, WrongSpecsSayWhatWouldBeRight) {
            {"beam:order=stream,passes=1.5", "passes must be a whole number from 0 to 1000"},
            {"beam:order=stream,passes=0,storage=packed",
             "beam:order=stream has no option 'storage'; it has bits, passes, slots, layers, order and rules"},
-           {"beam:rules=paper,order=stream", "beam:order=stream must be without rules=paper"},
+           {"beam:rules=paper,order=sort", "order must be sorted, near-first or stream"},
            {"beam:rules=paper,bits=64", "beam:rules=paper has no option 'bits'" + of_paper},
            {"beam:rules=paper,mask=fast", "mask must be table or exact"},
            {"beam:rules=paper,tiny=2", "tiny must be 1 or 3"},

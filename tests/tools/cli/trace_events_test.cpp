@@ -20,7 +20,7 @@ constexpr const char* kTrace = R"({"beampipe_trace": 1,
 TEST(TraceEvents, HoldEveryStageOfEveryTechnique) {
   const std::vector<std::string> specs = {"beam",
                                           "beam:order=sorted",
-                                          "beam:rules=paper",
+                                          "beam:rules=paper", "beam:rules=paper,order=near-first",
                                           "beam:order=stream",
                                           "beam:order=stream,passes=0",
                                           "z3",
