@@ -101,10 +101,9 @@ TEST(Buffers, AreWhatIsAllocated) {
     for (const Buffer& buffer : result.buffers) measured.listed += static_cast<double>(buffer.peak_bytes);
     return measured;
   };
-  for (const char* spec : {"beam", "beam:order=sorted", "beam:order=stream", "beam:order=stream,passes=0",
-                           "beam:rules=paper",
-                           "beam:rules=paper,order=near-first", "beam:rules=paper,order=stream", "alpha", "z3", "msaa:8",
-                           "acaa:8"}) {
+  for (const char* spec :
+       {"beam", "beam:order=sorted", "beam:order=stream", "beam:order=stream,passes=0", "beam:rules=paper",
+        "beam:rules=paper,order=near-first", "beam:rules=paper,order=stream", "alpha", "z3", "msaa:8", "acaa:8"}) {
     const Measured few = measure(spec, 4000), many = measure(spec, 16000);
     const double heap = many.heap - few.heap, listed = many.listed - few.listed;
     EXPECT_GE(heap, listed) << spec << ": something is listed that is not held";

@@ -41,10 +41,9 @@ TEST(Counters, ShadingRunsInWholeQuads) {
 
 TEST(Counters, EveryTechniqueCountsFragmentsAndBytesOfPixels) {
   const Trace trace = random_trace(40, 30, 400, 2);
-  for (const char* spec :
-       {"beam", "beam:order=sorted", "beam:order=stream", "beam:order=stream,passes=0", "beam:rules=paper", "beam:rules=paper,order=near-first",
-        "beam:rules=paper,order=stream", "alpha",
-        "z3", "msaa:8", "msaa:32", "acaa:8", "deferred", "visibility", "taa:4", "dvm"}) {
+  for (const char* spec : {"beam", "beam:order=sorted", "beam:order=stream", "beam:order=stream,passes=0",
+                           "beam:rules=paper", "beam:rules=paper,order=near-first", "beam:rules=paper,order=stream",
+                           "alpha", "z3", "msaa:8", "msaa:32", "acaa:8", "deferred", "visibility", "taa:4", "dvm"}) {
     const FrameResult result = parse_technique(spec).render(trace, 0, {2});
     EXPECT_GT(sum_of(result, "fragments"), 400) << spec;
     EXPECT_GT(sum_of(result, "bytes"), 400) << spec;
