@@ -242,7 +242,8 @@ class OwnerComposer {
     auto final_positions = static_cast<float>(pixel.states.positions_in(Pixel::kFinal).count());
     for (const Owner* owner = owners_.data(); owner != owners_.data() + count; ++owner) {
       ++work.settled;
-      const float exact = (owner->covered() + owner->slot.error()) / kPositions;
+      // What is left of a merged surface may be less than the error of its mask.
+      const float exact = greater(owner->covered() + owner->slot.error(), 0.0f) / kPositions;
       const float area = visible_area(exact, owner->covered(), owner->visible, kPositions,
                                       Taken<float>{pixel.area, final_positions});
       const glm::vec3 color = color_of(owner->slot) * (1 / bin_.brightest);

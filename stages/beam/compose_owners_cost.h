@@ -126,7 +126,7 @@ inline OperationCounts settle_owner_cost() {
     using Real = Counted<float>;
     const Real one(1.0f, counts), per_position(1.0f);
     one / one;
-    const Real exact = (one + one) * per_position;
+    const Real exact = greater(one + one, Real(0.0f)) * per_position;
     const Real area = visible_area(exact, one, one, one, Taken<Real>{to_float(Counted<std::int32_t>(0, counts)) * one, one});
     one + one;
     add_fixed(area);
