@@ -69,6 +69,7 @@ class OwnerComposer {
 
   // All owners are final. Returns the pixel's colour.
   PixelColor finish(Pixel& pixel) {
+    ++work.finished;
     if (const OwnerSlot* slot = only_owner(pixel)) return {1.0f, color_of(*slot)};
     std::size_t count = 0;
     for (std::size_t k = 0; k < Slots; ++k)
@@ -242,11 +243,13 @@ class OwnerComposer {
   // Adds owners_[0 .. count - 1] to what is final. Those that show the largest part of their positions come first: what
   // they take beyond their positions is then known when the others are added.
   void settle(std::size_t count, Pixel& pixel) {
+    ++work.settlings;
     sort_by_fraction(count);
     auto final_positions = static_cast<float>(pixel.states.positions_in(Pixel::kFinal).count());
     for (const Owner* owner = owners_.data(); owner != owners_.data() + count; ++owner) {
       ++work.settled;
-      const float exact = (owner->covered() + owner->slot.error()) / kPositions;
+      // What is left of a merged surface may be less than the error of its mask.
+      const float exact = greater(owner->covered() + owner->slot.error(), 0.0f) / kPositions;
       const float area =
           visible_area(exact, owner->covered(), owner->visible, kPositions, Taken<float>{pixel.area, final_positions});
       const glm::vec3 color = color_of(owner->slot) * (1 / bin_.brightest);

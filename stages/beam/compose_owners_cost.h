@@ -26,10 +26,12 @@ struct OwnersWork {
   std::uint64_t pairs_compared = 0;   // of owners
   std::uint64_t merges = 0;           // of two owners
   std::uint64_t order_tests = 0;      // to sort owners that become final
+  std::uint64_t settlings = 0;        // of one owner or of several at once
   std::uint64_t settled = 0;          // owners that became final
   std::uint64_t bounds_found = 0;     // depth bounds of the owners of pixels without empty positions
   std::uint64_t specks = 0, speck_comparisons = 0, specks_added = 0;
-  std::uint64_t limited = 0;  // pixels whose estimates were compared at the end
+  std::uint64_t finished = 0;  // pixels that were read at the end
+  std::uint64_t limited = 0;   // of these, pixels whose estimates were compared
 };
 
 // The population counts of a mask's words, and their sum.
@@ -132,7 +134,7 @@ inline OperationCounts settle_owner_cost() {
     const Real one(1.0f, counts), per_position(1.0f);
     one / one;
     find_threshold(counts);
-    const Real exact = (one + one) * per_position;
+    const Real exact = greater(one + one, Real(0.0f)) * per_position;
     const Real area =
         visible_area(exact, one, one, one, Taken<Real>{to_float(Counted<std::int32_t>(0, counts)) * one, one});
     one + one;
@@ -187,14 +189,15 @@ void charge(const OwnersWork& work, StageCounters& counters) {
   using Pixel = OpenPixel<Words, Slots>;
   constexpr std::uint64_t kPositions = 32 * Words;
   static const UnitCost of_mask = owned_cost<Words, Slots>() * Words, of_put = put_cost<Pixel::kBits>(0) * Words,
-                        of_plane = plane_cost(), of_gap = plane_gap_cost(), of_nearer = nearer_cost() * kPositions,
-                        of_count = count_cost(Words), of_finality = finality_cost(),
-                        of_farthest = farthest_cost() * kPositions, of_mean = mean_cost(), of_pair = pair_cost(),
-                        of_merge = merge_cost(), of_settled = settle_owner_cost(), of_bounds = pair_bounds_cost(),
+                        of_find = find_cost<Pixel::kBits>(Pixel::kFinal) * Words, of_plane = plane_cost(),
+                        of_gap = plane_gap_cost(), of_nearer = nearer_cost() * kPositions, of_count = count_cost(Words),
+                        of_finality = finality_cost(), of_farthest = farthest_cost() * kPositions,
+                        of_mean = mean_cost(), of_pair = pair_cost(), of_merge = merge_cost(),
+                        of_settled = settle_owner_cost(), of_bounds = pair_bounds_cost(),
                         of_speck = speck_votes_cost(Pixel::kBits), of_speck_test = speck_test_cost(),
                         of_speck_area = speck_area_cost(), of_limit = limit_cost();
-  constexpr OperationCounts kOfHiddenTest{.add = 1}, kOfOrderTest{.add = 1},
-      kOfPosition{.add = 2};  // a position's x and y
+  constexpr OperationCounts kOfOnlyOwner{.add = Slots},                        // does one owner have the whole pixel?
+      kOfHiddenTest{.add = 1}, kOfOrderTest{.add = 1}, kOfPosition{.add = 2};  // a position's x and y
   counters.items_in += work.fragments;
   counters.items_out += work.claims;
   counters.ops += kOfHiddenTest * work.fragments;
@@ -203,7 +206,10 @@ void charge(const OwnersWork& work, StageCounters& counters) {
   counters.ops += of_plane * work.planes;
   counters.ops += of_gap * work.contests;
   counters.ops += of_nearer * work.planes_compared;
-  counters.ops += of_count * (work.listed + work.claims);  // of a claim: the positions that the fragment covers
+  counters.ops += of_find * (work.listed + work.settlings + work.limited);  // the owner's positions, or the final ones
+  counters.ops += of_count * (work.listed + work.settlings + work.limited);
+  counters.ops += of_count * work.claims;  // the positions that the fragment covers
+  counters.ops += kOfOnlyOwner * work.finished;
   counters.ops += of_finality * work.finality_tests;
   counters.ops += of_farthest * work.farthest_found;
   counters.ops += kOfPosition * (kPositions * work.measured);
@@ -218,7 +224,7 @@ void charge(const OwnersWork& work, StageCounters& counters) {
   counters.ops += of_speck_area * work.specks_added;
   counters.ops += of_limit * work.limited;
   counters.bytes_read +=
-      work.fragments * (owners_fragment_bytes(Words) + sizeof(float) + sizeof(Pixel)) + work.limited * sizeof(Pixel);
+      work.fragments * (owners_fragment_bytes(Words) + sizeof(float) + sizeof(Pixel)) + work.finished * sizeof(Pixel);
   counters.bytes_read += work.planes * sizeof(ScreenDepth);
   counters.bytes_written += (work.claims + work.specks_added) * sizeof(Pixel);
   counters.lanes_used += work.claims;

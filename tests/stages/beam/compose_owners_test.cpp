@@ -355,6 +355,68 @@ TEST(ComposeOwners, MergesTheClosestSurfaces) {
   EXPECT_NEAR(found.color.g, 96.0 / 256, 0.012);
 }
 
+// Two surfaces that become one have the depth of the larger one: a surface between the two depths loses or wins all.
+TEST(ComposeOwners, MergedSurfacesHaveTheDepthOfTheLargerOne) {
+  for (const bool larger_is_nearer : {true, false}) {
+    SetupTriangles triangles;
+    add_left_of(triangles, 160, larger_is_nearer ? -0.56f : -0.54f);
+    add_right_of(triangles, 216, larger_is_nearer ? -0.54f : -0.56f);
+    add_triangle(triangles, {180, -9'000, -0.1f}, {200, -9'000, -0.1f}, {200, 9'000, -0.1f});
+    add_everywhere(triangles, -0.55f);
+    const std::vector<glm::vec3> colors{kRed, kRed, kGreen, kBlue};
+    for (const TriangleList& list : {TriangleList{0, 1, 2, 3}, TriangleList{1, 0, 2, 3}}) {
+      OpenTile<8, 2> tile(triangles, colors);
+      const PixelColor found = tile.compose(list).at(0);
+      EXPECT_EQ(tile.merges[0], 1);
+      EXPECT_NEAR(found.color.r, larger_is_nearer ? 200.0 / 256 : 0, 0.012);
+      EXPECT_NEAR(found.color.b, larger_is_nearer ? 56.0 / 256 : 1, 0.012);
+    }
+  }
+}
+
+// A surface in front of several owners frees the slots of all.
+TEST(ComposeOwners, HiddenOwnersGiveBackTheirSlots) {
+  SetupTriangles triangles;
+  add_left_of(triangles, 128, -0.2f);
+  add_right_of(triangles, 128, -0.2f);
+  add_everywhere(triangles, -0.5f);
+  add_left_of(triangles, 78, -0.8f);
+  const std::vector<glm::vec3> colors{kBlue, kBlue, kGreen, kRed};
+  OpenTile<8, 2> tile(triangles, colors);
+  expect_pixel(tile.compose(all_of(triangles)).at(0), 1, {78 / 256.0, 178 / 256.0, 0}, 0.012);
+  EXPECT_EQ(tile.merges[0], 0);
+  EXPECT_EQ(tile.result.shaded.size(), 2u);
+}
+
+// A merged surface of which little remains visible does not take area away from others, whatever the error of its mask.
+TEST(ComposeOwners, HiddenPartsOfMergedSurfacesTakeNoArea) {
+  int negative = 0;
+  for (int x = 48; x < 56; ++x) {
+    for (int left = 0; left < 24; ++left) {
+      SetupTriangles triangles;
+      add_left_of(triangles, x, -0.5f);
+      add_right_of(triangles, 154, -0.499f);
+      add_triangle(triangles, {60, -9'000, -0.1f}, {90, -9'000, -0.1f}, {90, 9'000, -0.1f});
+      // All but a few positions at the upper left corner.
+      add_triangle(triangles, {left - 3'000, 3'000, -0.9f}, {left + 3'000, -3'000, -0.9f}, {20'000, 20'000, -0.9f});
+      const std::vector<glm::vec3> colors(4, glm::vec3(1.0f));
+      OpenTile<8, 2> tile(triangles, colors);
+      tile.compose({0, 2, 1, 3});
+      ASSERT_EQ(tile.merges[0], 1);
+      float errors = 0;
+      for (const std::size_t i : {0, 2}) {
+        const Fragment& fragment = tile.fragments.at(i);
+        errors += fragment.alpha * 256 - static_cast<float>(fragment.mask.count());
+      }
+      const Fragment& cover = tile.fragments.at(3);
+      if (cover.mask.count() == 256) continue;
+      negative += errors < 0;
+      EXPECT_GE(tile.pixels[0].area, cover.alpha - step(3, 256)) << x << " " << left;
+    }
+  }
+  EXPECT_GT(negative, 5);
+}
+
 TEST(ComposeOwners, TenThousandRandomFragmentsInOnePixel) {
   for (const std::uint64_t seed : {311, 312, 313, 314}) {
     Random random(seed);

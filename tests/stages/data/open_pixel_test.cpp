@@ -2,8 +2,9 @@
 
 #include <gtest/gtest.h>
 
+#include <array>
 #include <cmath>
-#include <cstring>
+#include <vector>
 
 #include "tests/simd/random.h"
 
