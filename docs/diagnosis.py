@@ -16,9 +16,9 @@ import sys
 import tempfile
 
 SCENES = ["hairball", "classroom", "boat", "pickets", "terrain", "sphere", "fence", "soup", "foliage"]
-EXPLAINED = ["beam", "beam:rules=paper"]
-ORDERED = ["beam", "beam:rules=paper", "beam:order=stream", "z3", "msaa:8", "reference"]
-MOVED = ["beam", "beam:rules=paper", "beam:order=stream", "msaa:8", "msaa:32", "msaa:256"]
+EXPLAINED = ["beam:order=sorted", "beam:rules=paper"]
+ORDERED = ["beam:order=sorted", "beam:rules=paper", "beam:order=stream,passes=0", "z3", "msaa:8", "reference"]
+MOVED = ["beam:order=sorted", "beam:rules=paper", "beam:order=stream,passes=0", "msaa:8", "msaa:32", "msaa:256"]
 
 
 def compare(program, trace, folder, *arguments):

@@ -12,10 +12,10 @@ import subprocess
 import sys
 import tempfile
 
-TECHNIQUES = ["beam", "beam:order=stream", "msaa:8", "msaa:32", "acaa:8"]
+TECHNIQUES = ["beam:order=sorted", "beam:order=stream,passes=0", "msaa:8", "msaa:32", "acaa:8"]
 PER_TRIANGLE = re.compile("setup_triangles|bin_lists|batch_")  # these grow with triangles or hold a batch of 512
 GEOMETRY = ("vertex_setup", "sample_raster")  # write, bin and read the triangles of one pass
-STACK = ["beam", "beam:order=stream", "beam:rules=paper", "msaa:8"]
+STACK = ["beam:order=sorted", "beam:order=stream,passes=0", "beam:rules=paper", "msaa:8"]
 
 
 def run(program, trace, techniques, *options):

@@ -1,7 +1,7 @@
 #!/usr/bin/env python3
 """Compares modelled times and their ratios with the paper's, for docs/accounting.md.
 
-modelled_times.py DIR...   folders that `beampipe run TRACE -t beam:rules=paper beam msaa:32,128,256 -o DIR` wrote
+modelled_times.py DIR...   folders that `beampipe run TRACE -t beam:rules=paper beam:order=sorted msaa:32,128,256 -o DIR` wrote
 """
 import json
 import pathlib

@@ -20,7 +20,7 @@ import tempfile
 
 import measure
 
-RATIOS = ["beam", "beam:order=stream", "msaa:4", "msaa:8", "msaa:32", "msaa:256"]
+RATIOS = ["beam:order=sorted", "beam:order=stream,passes=0", "msaa:4", "msaa:8", "msaa:32", "msaa:256"]
 
 
 def frame_times(program, trace, specs, runs, threads):
@@ -33,7 +33,7 @@ def frame_times(program, trace, specs, runs, threads):
 
 
 def equivalent_rate(program, trace):
-    """EMR of beam on the same scene at 320 x 180."""
+    """EMR of sorted order on the same scene at 320 x 180."""
     with open(trace, encoding="utf-8") as file:
         small = json.load(file)
     for frame in small["frames"]:
@@ -43,19 +43,19 @@ def equivalent_rate(program, trace):
         with open(path, "w", encoding="utf-8") as file:
             json.dump(small, file)
         with tempfile.TemporaryDirectory() as folder:
-            found = measure.results(program, "compare", path, ["beam"], folder, "--no-memory-model")
-            rate = f"{found['beam']['equivalent_msaa']:.0f}"
-            return "≥ " + rate if found["beam"].get("equivalent_msaa_is_lower_bound") else rate
+            found = measure.results(program, "compare", path, RATIOS[:1], folder, "--no-memory-model")
+            result = found[RATIOS[0]]
+            rate = f"{result['equivalent_msaa']:.0f}"
+            return "≥ " + rate if result.get("equivalent_msaa_is_lower_bound") else rate
     finally:
         os.remove(path)
 
 
 def print_ratios(arguments):
-    measure.print_head("scene", "`beam` ms", "spread", "`beam:order=stream`", "`msaa:4`", "`msaa:8`", "`msaa:32`",
-                       "`msaa:256`", "EMR")
+    measure.print_head("scene", f"`{RATIOS[0]}` ms", "spread", *(f"`{spec}`" for spec in RATIOS[1:]), "EMR")
     for trace in arguments.traces:
         times = frame_times(arguments.program, trace, RATIOS, arguments.runs, arguments.threads)
-        median, least, most = times["beam"]
+        median, least, most = times[RATIOS[0]]
         others = [f"{times[spec][0] / median:.2f}" for spec in RATIOS[1:]]
         measure.print_row(name_of(trace), f"{median:.0f}", f"{least:.0f} to {most:.0f}", *others,
                           equivalent_rate(arguments.program, trace))
@@ -63,7 +63,7 @@ def print_ratios(arguments):
 
 
 def print_threads(arguments):
-    specs = ["beam", "msaa:8", "msaa:256"]
+    specs = ["beam:order=sorted", "msaa:8", "msaa:256"]
     measure.print_head("scene", *(f"`{spec}`" for spec in specs))
     for trace in arguments.traces:
         rounds = {spec: [] for spec in specs}
@@ -80,8 +80,8 @@ def print_stages(arguments):
     measure.print_head("scene", "pixels", "tested", "waiting pairs", "composed", "fragments with area", "depth tests")
     for trace in arguments.traces:
         with tempfile.TemporaryDirectory() as folder:
-            result = measure.results(arguments.program, "run", trace, ["beam"], folder, "--no-memory-model")["beam"]
-        stage = measure.stages(result)
+            found = measure.results(arguments.program, "run", trace, RATIOS[:1], folder, "--no-memory-model")
+        stage = measure.stages(found[RATIOS[0]])
         measure.print_row(name_of(trace), stage["resolve"]["items_out"], stage["conservative_raster"]["lanes_issued"],
                           stage["a_buffer"]["items_in"], stage["beam_fragment"]["items_in"],
                           stage["beam_fragment"]["items_out"], stage["compose"]["lanes_used"])
@@ -101,7 +101,7 @@ GROWTH = {
     "layers per pixel": [("stack", ["--triangles", str(n), "--width", "64", "--height", "36"], n)
                             for n in (1, 10, 100, 1000, 10_000)],
 }
-GROWING = ["beam", "beam:order=stream", "msaa:8", "msaa:32"]
+GROWING = ["beam:order=sorted", "beam:order=stream,passes=0", "msaa:8", "msaa:32"]
 
 
 def peak_memory(program, trace, spec, folder):

@@ -2,7 +2,7 @@
 """Draws the figure of the pipeline: docs/pipeline_figure.py docs/pictures/pipeline.svg"""
 import sys
 
-WIDTH, HEIGHT = 800, 706
+WIDTH, HEIGHT = 800, 760
 MONO = "DejaVu Sans Mono, Menlo, Consolas, monospace"
 
 # Folders of stages, with the colours of their boxes: fill, border.
@@ -16,7 +16,7 @@ COLORS = {
 }
 FOLDER_OF = {
     "vertex_setup": "geometry",
-    "conservative_raster": "raster", "sample_raster": "raster", "reference_raster": "raster",
+    "bin_sort": "raster", "conservative_raster": "raster", "sample_raster": "raster", "reference_raster": "raster",
     "a_buffer": "beam", "windows": "beam", "beam_fragment": "beam", "compose": "beam", "claim": "beam", "settle": "beam",
     "depth_test": "samples", "stencil_test": "samples", "accumulate": "samples", "sample_select": "samples",
     "dilate": "samples",
@@ -26,20 +26,21 @@ FOLDER_OF = {
 
 # The stages of `beam`: what each hands on, what it uses off chip, and whether it reads that, writes it, or both.
 BEAM = [
-    ("conservative_raster", "pairs", "bin list,|setup triangles", "read"),
-    ("a_buffer", "sorted pairs", "A-buffer", "both"),
-    ("windows", "one window", "A-buffer", "read"),
-    ("beam_fragment", "fragments", "setup triangles", "read"),
+    ("bin_sort", "sorted list", "bin list", "both"),
+    ("conservative_raster", "pairs", "setup triangles", "read"),
+    ("beam_fragment", "fragments", "", ""),
+    ("compose", "final owners", "depth planes|of owners", "read"),
     ("shade", "colours", "attributes", "read"),
-    ("compose", "aggregates", "framebuffer", "write"),
-    ("resolve", "", "framebuffer,|picture", "both"),
+    ("resolve", "", "picture", "write"),
 ]
 
 # The other techniques, with their stages in order.
 OTHERS = [
+    ("beam:order=sorted", "conservative_raster a_buffer windows beam_fragment shade compose resolve"),
+    ("beam:order=stream", "conservative_raster beam_fragment compose shade resolve"),
+    ("\u2026,passes=N", "conservative_raster beam_fragment claim beam_fragment shade settle resolve"),
     ("beam:rules=paper, alpha", "conservative_raster beam_fragment shade a_buffer compose resolve"),
     ("z3", "conservative_raster beam_fragment shade compose resolve"),
-    ("beam:order=stream", "conservative_raster beam_fragment claim beam_fragment shade settle resolve"),
     ("msaa:N", "sample_raster shade depth_test resolve"),
     ("acaa:N", "sample_raster depth_test stencil_test shade accumulate resolve"),
     ("deferred, visibility", "sample_raster depth_test shade light resolve"),
@@ -97,7 +98,7 @@ def frame_part():
 
 def beam_part():
     """The stages of `beam` in one bin, and the memory under them."""
-    top, left, pitch, width, height = 206, 26, 109, 92, 46
+    top, left, pitch, width, height = 206, 26, 130, 98, 46
     text(20, 144, "In each bin: beam", 13, "start", weight="bold")
     box(12, 154, 776, 220, "none", "#999999", dashed=True)
     for i, (name, out, memory, use) in enumerate(BEAM):
@@ -107,25 +108,27 @@ def beam_part():
         if out:
             arrow(f"M{x + width} {top + 23} H{x + pitch - 4}")
             text(x + width + 8, top - 8, out, 10)
+        if not use:
+            continue
         start, end = (50, 4) if use == "read" else (4, 50)
         arrow(f"M{x + width / 2} {top + height + start} V{top + height + end}", both=use == "both")
         for row, line in enumerate(memory.split("|")):
             text(x + width / 2, top + height + 72 + 14 * row, line, 10)
-    # The loop over windows.
-    x_from, x_to = left + 5 * pitch + width / 2 + 20, left + 2 * pitch + width / 2 - 8
+    # Closed pixels: from compose back to the raster.
+    x_from, x_to = left + 3 * pitch + width / 2, left + pitch + width / 2
     y = top - 26
     arrow(f"M{x_from} {top} V{y} H{x_to} V{top - 4}", dashed=True)
-    text((x_from + x_to) / 2, y - 6, "next window of every pixel that is not closed yet", 10)
+    text((x_from + x_to) / 2, y - 6, "closed pixels hide what lies behind them", 10)
     # Memory.
     box(left - 4, top + height + 54, 752, 42, "none", "#b5b5b5")
     text(left - 4, top + height + 112, "off chip: L2 and DRAM, through modelled caches", 10, "start", fill="#555")
-    text(776, top + height + 112, "on chip: pairs, windows, fragments and closed depths of the bin", 10, "end", fill="#555")
+    text(776, top + height + 112, "on chip: open pixels and closed depths of the bin, queues of pairs and fragments", 10, "end", fill="#555")
 
 
 def other_part():
     """The other techniques, one row each."""
     text(20, 402, "In each bin: the other techniques", 13, "start", weight="bold")
-    note = ("beam:order=stream repeats its stages in passes; acaa and deferred draw the triangles twice; "
+    note = ("sorted order repeats windows to compose; passes=N repeats all its stages; acaa and deferred draw twice; "
             "dilate and temporal work on whole frames.")
     text(20, 420, note, 9.5, "start", fill="#555")
     y, height, row = 434, 20, 27

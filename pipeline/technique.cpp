@@ -1,5 +1,7 @@
 #include "pipeline/technique.h"
 
+#include <map>
+
 #include "pipeline/technique_table.h"
 
 namespace beampipe {
@@ -25,9 +27,10 @@ std::vector<const TechniqueKind*> kinds_named(std::string_view name) {
 const TechniqueKind& chosen_kind(const Spec& spec, const std::vector<const TechniqueKind*>& kinds) {
   const TechniqueKind *plain = nullptr, *chosen = nullptr;
   for (const TechniqueKind* const kind : kinds) {
-    const auto& [key, word, otherwise] = kind->variant;
+    const auto& [key, word, otherwise, owns] = kind->variant;
     if (!is_variant(*kind)) plain = kind;
     if (!is_variant(*kind) || !spec.has(key, word)) continue;
+    if (chosen && owns == chosen->variant.key) chosen = nullptr;
     if (chosen) spec.fail(title_of(*chosen) + " must be without " + key + '=' + word);
     chosen = kind;
   }
@@ -37,17 +40,25 @@ const TechniqueKind& chosen_kind(const Spec& spec, const std::vector<const Techn
 
 // The options that choose between the variants of a name. The choice is made already: they accept it, and nothing else.
 SpecOptions variant_options(const TechniqueKind& chosen, const std::vector<const TechniqueKind*>& kinds) {
-  SpecOptions options;
+  std::map<std::string, std::vector<std::string>> words;  // by key; the default comes first
   for (const TechniqueKind* const kind : kinds) {
     if (!is_variant(*kind)) continue;
-    const auto& [key, word, otherwise] = kind->variant;
-    const std::string valid = kind == &chosen ? word : otherwise;
+    const auto& [key, word, otherwise, owns] = kind->variant;
+    if (words[key].empty()) words[key].push_back(otherwise);
+    words[key].push_back(word);
+  }
+  SpecOptions options;
+  for (const auto& [key, of_key] : words) {
+    if (key == chosen.variant.owns) continue;
+    const std::string valid = chosen.variant.key == key ? chosen.variant.word : of_key.front();
+    std::string usage = key + '=' + of_key.front();
+    for (std::size_t i = 1; i < of_key.size(); ++i) usage += '|' + of_key[i];
     options.push_back({.form = SpecOption::Form::value,
                        .key = key,
-                       .usage = key + '=' + otherwise + '|' + word,
-                       .words = {otherwise, word},
-                       .expected = otherwise + " or " + word,
-                       .fallback = otherwise,
+                       .usage = usage,
+                       .words = of_key,
+                       .expected = list_of(of_key),
+                       .fallback = of_key.front(),
                        .help = "",
                        .set = [valid](std::string_view value) { return value == valid; }});
   }

@@ -4,6 +4,7 @@ namespace beampipe {
 
 // Each is defined in the file of its name in pipeline/techniques/.
 TechniqueKind beam_kind();
+TechniqueKind beam_sorted_kind();
 TechniqueKind beam_stream_kind();
 TechniqueKind beam_paper_kind();
 TechniqueKind alpha_kind();  // in beam_paper.cpp
@@ -18,7 +19,7 @@ TechniqueKind reference_kind();
 
 const std::vector<TechniqueKind>& technique_kinds() {
   static const std::vector<TechniqueKind> kinds = {
-      beam_kind(), beam_stream_kind(), beam_paper_kind(), alpha_kind(), z3_kind(),  msaa_kind(),
+      beam_kind(), beam_sorted_kind(), beam_stream_kind(), beam_paper_kind(), alpha_kind(), z3_kind(),  msaa_kind(),
       acaa_kind(), deferred_kind(),    visibility_kind(), taa_kind(),   dvm_kind(), reference_kind(),
   };
   return kinds;

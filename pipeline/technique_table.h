@@ -17,6 +17,7 @@ namespace beampipe {
 // default variant; specs may state it.
 struct Variant {
   std::string key, word, otherwise;
+  std::string owns = {};  // the key of other variants that is an option of this one
 };
 
 struct TechniqueKind {

@@ -82,7 +82,7 @@ std::string as_code(const std::string& text) {
 }  // namespace
 
 std::string title_of(const TechniqueKind& kind) {
-  const auto& [key, word, otherwise] = kind.variant;
+  const auto& [key, word, otherwise, owns] = kind.variant;
   if (!key.empty()) return kind.name + ':' + key + '=' + word;
   return kind.name + (has_samples(options_of(kind)) ? ":N" : "");
 }

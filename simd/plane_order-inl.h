@@ -10,3 +10,8 @@ template <class Float, class Bool>
 Float nearest_formula(const DepthPlane<Float>& plane, Float u, Float v, Bool in_mask, Float nearest) {
   return select(in_mask, lesser(nearest, depth_at(plane, u, v)), nearest);
 }
+
+template <class Float, class Bool>
+Float farthest_formula(const DepthPlane<Float>& plane, Float u, Float v, Bool in_mask, Float farthest) {
+  return select(in_mask, greater(farthest, depth_at(plane, u, v)), farthest);
+}

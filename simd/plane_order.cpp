@@ -30,15 +30,18 @@ HWY_INLINE DepthPlane<Reals> in_every_lane(const DepthPlane<float>& plane) {
 }
 
 void nearer_positions_kernel(const DepthPlane<float>& plane, const DepthPlane<float>& other,
-                             const SamplePattern* patterns, std::size_t words, std::uint32_t* masks) {
+                             const SamplePattern* patterns, std::size_t words, std::uint32_t* masks,
+                             const std::uint32_t* where) {
   const DepthPlane<Reals> of_plane = in_every_lane(plane), of_other = in_every_lane(other);
   for (std::size_t w = 0; w < words; ++w) {
     std::uint32_t mask = 0;
+    masks[w] = 0;
+    if (where && where[w] == 0) continue;
     for (std::size_t s = 0; s < kMaxMaskSamples; s += hn::Lanes(D())) {
       const Reals u = offsets(patterns[w].x.data() + s), v = offsets(patterns[w].y.data() + s);
       mask |= mask_bits(nearer_formula(of_plane, of_other, u, v)) << s;
     }
-    masks[w] = mask;
+    masks[w] = where ? mask & where[w] : mask;
   }
 }
 
@@ -55,6 +58,34 @@ float nearest_depth_kernel(const DepthPlane<float>& plane, const SamplePattern* 
   return hn::GetLane(hn::MinOfLanes(D(), nearest.raw));
 }
 
+float farthest_depth_kernel(const DepthPlane<float>& plane, const SamplePattern* patterns, std::size_t words,
+                            const std::uint32_t* masks) {
+  const DepthPlane<Reals> of_plane = in_every_lane(plane);
+  Reals farthest(kInFront);
+  for (std::size_t w = 0; w < words; ++w) {
+    if (masks[w] == 0) continue;
+    for (std::size_t s = 0; s < kMaxMaskSamples; s += hn::Lanes(D())) {
+      const Reals u = offsets(patterns[w].x.data() + s), v = offsets(patterns[w].y.data() + s);
+      farthest = farthest_formula(of_plane, u, v, mask_of_bits<D>(masks[w], s), farthest);
+    }
+  }
+  return hn::GetLane(hn::MaxOfLanes(D(), farthest.raw));
+}
+
+PositionSums position_sums_kernel(const SamplePattern* patterns, std::size_t words, const std::uint32_t* masks) {
+  using DI = hn::RebindToSigned<D>;
+  auto x = hn::Zero(DI()), y = hn::Zero(DI());
+  for (std::size_t w = 0; w < words; ++w) {
+    if (masks[w] == 0) continue;
+    for (std::size_t s = 0; s < kMaxMaskSamples; s += hn::Lanes(D())) {
+      const auto in_mask = hn::RebindMask(DI(), mask_of_bits<D>(masks[w], s).raw);
+      x = hn::Add(x, hn::IfThenElseZero(in_mask, hn::Load(DI(), patterns[w].x.data() + s)));
+      y = hn::Add(y, hn::IfThenElseZero(in_mask, hn::Load(DI(), patterns[w].y.data() + s)));
+    }
+  }
+  return {hn::GetLane(hn::SumOfLanes(DI(), x)), hn::GetLane(hn::SumOfLanes(DI(), y))};
+}
+
 }  // namespace HWY_NAMESPACE
 }  // namespace beampipe
 HWY_AFTER_NAMESPACE();
@@ -63,13 +94,22 @@ HWY_AFTER_NAMESPACE();
 namespace beampipe {
 HWY_EXPORT(nearer_positions_kernel);
 void nearer_positions(const DepthPlane<float>& plane, const DepthPlane<float>& other, const SamplePattern* patterns,
-                      std::size_t words, std::uint32_t* masks) {
-  HWY_DYNAMIC_DISPATCH(nearer_positions_kernel)(plane, other, patterns, words, masks);
+                      std::size_t words, std::uint32_t* masks, const std::uint32_t* where) {
+  HWY_DYNAMIC_DISPATCH(nearer_positions_kernel)(plane, other, patterns, words, masks, where);
 }
 HWY_EXPORT(nearest_depth_kernel);
 float nearest_depth(const DepthPlane<float>& plane, const SamplePattern* patterns, std::size_t words,
                     const std::uint32_t* masks) {
   return HWY_DYNAMIC_DISPATCH(nearest_depth_kernel)(plane, patterns, words, masks);
+}
+HWY_EXPORT(farthest_depth_kernel);
+float farthest_depth(const DepthPlane<float>& plane, const SamplePattern* patterns, std::size_t words,
+                     const std::uint32_t* masks) {
+  return HWY_DYNAMIC_DISPATCH(farthest_depth_kernel)(plane, patterns, words, masks);
+}
+HWY_EXPORT(position_sums_kernel);
+PositionSums position_sums(const SamplePattern* patterns, std::size_t words, const std::uint32_t* masks) {
+  return HWY_DYNAMIC_DISPATCH(position_sums_kernel)(patterns, words, masks);
 }
 }  // namespace beampipe
 #endif

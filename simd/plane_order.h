@@ -1,4 +1,4 @@
-// Depth planes at mask positions: where one is nearer than another, and the least depth of one.
+// Depth planes at mask positions: where one is nearer than another, and the least and the greatest depth of one.
 #pragma once
 
 #include <cstddef>
@@ -11,14 +11,26 @@
 namespace beampipe {
 
 // Bit s of masks[w]: at position s of patterns[w], `plane` is strictly nearer than `other`. Each pattern has 32
-// positions. Lanes are across positions. The same bits as the formula on float, on every target.
+// positions. With `where`, only the positions in these masks are looked at; the bits of the others are 0. Lanes are
+// across positions. The same bits as the formula on float, on every target.
 void nearer_positions(const DepthPlane<float>& plane, const DepthPlane<float>& other, const SamplePattern* patterns,
-                      std::size_t words, std::uint32_t* masks);
+                      std::size_t words, std::uint32_t* masks, const std::uint32_t* where = nullptr);
 
 // The least depth of `plane` over the positions in `masks`, as above. kNoDepth when there are none.
 inline constexpr float kNoDepth = 1.0f;  // beyond the far plane, which is at 0
 float nearest_depth(const DepthPlane<float>& plane, const SamplePattern* patterns, std::size_t words,
                     const std::uint32_t* masks);
+
+// The greatest depth of `plane` over the positions in `masks`. kInFront when there are none.
+inline constexpr float kInFront = -2.0f;  // nearer than every depth
+float farthest_depth(const DepthPlane<float>& plane, const SamplePattern* patterns, std::size_t words,
+                     const std::uint32_t* masks);
+
+// The sums of the coordinates of the positions in `masks`, in 1/256 px from the pixel's upper left corner.
+struct PositionSums {
+  std::int32_t x, y;
+};
+PositionSums position_sums(const SamplePattern* patterns, std::size_t words, const std::uint32_t* masks);
 
 namespace scalar {
 #include "simd/plane_order-inl.h"

@@ -28,6 +28,7 @@ inline double square_root(double x) { return std::sqrt(x); }
 inline std::int32_t to_integer(float x) { return static_cast<std::int32_t>(x); }  // towards 0
 inline float to_float(std::int64_t x) { return static_cast<float>(x); }
 inline float to_float(double x) { return static_cast<float>(x); }
+inline float to_float(std::uint32_t x) { return static_cast<float>(x); }
 inline double to_double(std::int64_t x) { return static_cast<double>(x); }
 inline float converted(float x) { return x; }  // to another format of a surface; a counting number counts it
 inline std::uint32_t fetch(const std::uint32_t* table, std::int32_t index) { return table[index]; }

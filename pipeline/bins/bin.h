@@ -35,6 +35,9 @@ class BinStage {
   // Charges reading or writing `bytes` in a row, which no cache helps with.
   void streams(std::uint64_t bytes) const { stream(memory_, bytes, counters); }
 
+  // Charges moving `bytes` in a row between a stage and L2, which holds them.
+  void moves_in_l2(std::uint64_t bytes) const { stream_in_l2(memory_, bytes, counters); }
+
   StageCounters& counters;
 
  private:

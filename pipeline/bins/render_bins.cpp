@@ -103,7 +103,8 @@ class FrameRecorder {
 
 FrameResult render_bins(const FrameContext& context, const BinPlan& plan, const BinRenderer& render) {
   const RunOptions& run = context.run;
-  const TileGrid grid = tile_grid(context, plan.tile_size);
+  const TileGrid grid =
+      plan.keeps_tile_size ? TileGrid{context.frame, plan.tile_size} : tile_grid(context, plan.tile_size);
   if (run.weights) run.weights->assign(std::size_t{context.frame.width} * context.frame.height, {});
   GeometryPass pass(context);
   FrameRecorder recorder(context, plan);
@@ -125,7 +126,9 @@ FrameResult render_bins(const FrameContext& context, const BinPlan& plan, const 
     if (band.first > 0) malloc_trim(0);  // glibc would keep the freed memory of a band in addition to the next one's
     on_threads(run.threads, [&] { render_band(band); });
   }
-  return recorder.finish(pass, list_bytes);
+  FrameResult result = recorder.finish(pass, list_bytes);
+  result.bin_pixels = static_cast<std::uint32_t>(grid.size * grid.size);
+  return result;
 }
 
 void run_on_tiles(const FrameContext& context, const std::string& stage, FrameResult& result,

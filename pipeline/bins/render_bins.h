@@ -21,6 +21,7 @@ namespace beampipe {
 struct BinPlan {
   std::vector<std::string> stages;  // of a bin, in the order of the pipeline; the first one rasterizes
   int tile_size = kBinSize;         // pixels on each side, even; RunOptions::tile_size overrides it
+  bool keeps_tile_size = false;     // it does not, because the picture depends on the bins
   // Bytes that this program keeps for each pair until the bin is finished (RunOptions::memory_limit). 0: the technique
   // works on a few triangles at a time.
   std::size_t pair_bytes = 0;

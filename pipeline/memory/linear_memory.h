@@ -20,6 +20,14 @@ inline void stream(const MemoryParameters& memory, std::uint64_t bytes, StageCou
   counters.dram_bytes += whole;
 }
 
+// The same, if L2 holds them all.
+inline void stream_in_l2(const MemoryParameters& memory, std::uint64_t bytes, StageCounters& counters) {
+  if (!memory.modelled) return;
+  const std::uint64_t whole = (bytes + memory.sector_bytes - 1) / memory.sector_bytes * memory.sector_bytes;
+  counters.sector_bytes += whole;
+  counters.l2_bytes += whole;
+}
+
 // Some records of an array, read in increasing order. A sector that the previous record shares is not read again.
 class RecordsInOrder {
  public:

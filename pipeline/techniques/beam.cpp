@@ -1,94 +1,60 @@
-// The beam in sorted order. An A-buffer sorts the pairs of each pixel by depth. Window by window, near to far, pairs
-// become shaded fragments and are composed, until the pixel is closed.
+// The beam in near-first order: each bin's triangles are sorted near to far, roughly; then one pass over them composes
+// each pixel in a state of fixed size. Nothing waits, and nothing is kept per fragment.
+#include <algorithm>
 #include <stdexcept>
 #include <string>
 
-#include "pipeline/bins/bin_weights.h"
 #include "pipeline/bins/render_bins.h"
 #include "pipeline/technique_table.h"
-#include "pipeline/units/a_buffer_unit.h"
-#include "pipeline/units/compose_units.h"
 #include "pipeline/units/fragment_units.h"
+#include "pipeline/units/owner_units.h"
 #include "pipeline/units/raster_units.h"
-#include "stages/data/beam_aggregate.h"
 
 namespace beampipe {
 namespace {
 
 struct BeamOptions {
   int positions = 256;  // of the mask: 32, 64, 128 or 256
-  Storage storage = Storage::packed;
+  int slots = 5;        // owners of a pixel
+  int bin = kBinSize;   // pixels on each side
 };
 
-std::vector<Surface> beam_framebuffer(const BeamOptions& beam) {
-  const auto mask_bytes = static_cast<std::uint32_t>(beam.positions) / 8;
-  return {{"coverage", "R32F", 4},
-          {"mask", times("R32UI", mask_bytes / 4), mask_bytes},
-          beam.storage == Storage::packed ? Surface{"color", "RGB16F", 6} : Surface{"color", "RGB32F", 12}};
-}
+std::vector<Surface> beam_framebuffer() { return {{"color", "RGB16F", 6}}; }
 
-// Depth is compared position by position, so merge order does not matter; 0 is recorded for every fragment.
-void add_weights(const std::vector<Fragment>& fragments, const std::vector<float>& areas,
-                 const std::vector<Pair>& whole, const Tile& tile, BinWeights& weights) {
-  for (const Pair& pair : whole) weights.at(tile.index(pair.x, pair.y)) = {{pair.triangle, 1.0f, 0, false}};
-  for (std::size_t i = 0; i < fragments.size(); ++i)
-    weights.at(fragments[i].pixel).push_back({fragments[i].triangle, areas[i], 0, fragments[i].tiny});
-}
-
-// The areas of a closed pixel are scaled so that their sum is 1.
-template <class Compose>
-void scale_closed(const Compose& compose, BinWeights& weights) {
-  for (std::size_t pixel = 0; pixel < weights.pixels(); ++pixel) {
-    if (compose.is_open(pixel)) continue;
-    float sum = 0;
-    for (const SurfaceWeight& surface : weights.at(pixel)) sum += surface.weight;
-    for (SurfaceWeight& surface : weights.at(pixel)) surface.weight /= sum;
-  }
-}
-
-template <std::size_t Words, class Channel>
+template <std::size_t Words, std::size_t Slots>
 FrameResult render_shape(const Trace& trace, const Frame& frame, const BeamOptions& beam, const RunOptions& run) {
   const FrameContext context(trace, frame, run);
   const PositionSet& positions = cell_positions(beam.positions);
   const PositionGrid grid(beam.positions);
-  const BeamFragmentOptions fragment_options = grid_options(grid, conserving_fragment_bytes(beam.positions));
-  const BinPlan plan{
-      .stages = {"conservative_raster", "a_buffer", "windows", "beam_fragment", "shade", "compose", "resolve"},
-      .pair_bytes = kPairWorkingBytes + kSortBytes};
+  const BeamFragmentOptions options = grid_options(grid, owners_fragment_bytes(Words));
+  const float brightest = brightest_of(context.colors);
+  const BinPlan plan{.stages = {"conservative_raster", "bin_sort", "beam_fragment", "compose", "shade", "resolve"},
+                     .tile_size = beam.bin,
+                     .keeps_tile_size = true};
   return render_bins(context, plan, [&](Bin& bin) {
-    ConservativeRasterUnit raster(bin, "waiting_pairs", PairDepths::bounds, ConservativeRasterUnit::Hidden::left_out);
-    ABufferUnit a_buffer(bin, kPairWithDepthBytes, kStoredPairBytes);
-    BeamFragmentUnit make_fragments(bin, fragment_options);
+    const OrderedList ordered = sort_bin(bin);
+    ConservativeRasterUnit raster(bin, "", PairDepths::bounds, ConservativeRasterUnit::Hidden::left_out);
+    BeamFragmentUnit make_fragments(bin, options);
     ShadeUnit shade(bin);
-    ComposeBeamUnit<Words, Channel> compose(bin, positions);
-    BinWeights weights(bin);
-    std::vector<float>& specks = bin.pixel_counter("tiny_triangles");
+    ComposeOwnersUnit<Words, Slots> compose(bin, positions, ordered.triangles, &ordered.watermarks, brightest,
+                                            OpenPixels::on_chip, {});
 
-    const std::vector<Pair>& pairs = raster();
-    WindowsUnit windows(bin, pairs, a_buffer(sort_records(pairs, bin.tile)));
-    while (windows.next([&](std::uint32_t pixel) { return compose.is_open(pixel); })) {
-      std::vector<Fragment>& fragments = make_fragments.fetched(windows.pairs, "window_fragments");
-      shade.visible(fragments);
-      shade.visible(windows.whole);
-      compose(fragments, windows.whole);
-      count_specks(fragments, specks);
-      if (weights) add_weights(fragments, compose.areas(), windows.whole, bin.tile, weights);
-    }
+    raster.queued(ordered.triangles, [&](const std::vector<Pair>& pairs, std::size_t first) {
+      compose(make_fragments.queued(pairs), first, raster.closed(), shade);
+    });
+    bin.finish(compose.resolve_owners(shade));
     shade.finish_fetches();
-    a_buffer.charge_memory(windows.finish(), windows.stage);
-    bin.finish(compose.resolve_aggregates(beam_framebuffer(beam)));
-    if (weights) scale_closed(compose, weights);
-    weights.finish();
   });
 }
 
 FrameResult render_beam(const Trace& trace, const Frame& frame, const BeamOptions& beam, const RunOptions& run) {
-#define BEAMPIPE_RENDER(words, channel)                                                                       \
-  if (beam.positions == 32 * words && (beam.storage == Storage::packed) == std::is_same_v<channel, HalfBits>) \
-    return render_shape<words, channel>(trace, frame, beam, run);
-  BEAMPIPE_STORED_AGGREGATES(BEAMPIPE_RENDER)
+#define BEAMPIPE_RENDER(words, pixel_slots)                      \
+  if (beam.positions == 32 * words && beam.slots == pixel_slots) \
+    return render_shape<words, pixel_slots>(trace, frame, beam, run);
+  BEAMPIPE_OPEN_PIXELS(BEAMPIPE_RENDER)
 #undef BEAMPIPE_RENDER
-  throw std::invalid_argument("no aggregate of " + std::to_string(beam.positions) + " positions");
+  throw std::invalid_argument("no pixel of this shape: " + std::to_string(beam.positions) + " positions, " +
+                              std::to_string(beam.slots) + " slots");
 }
 
 }  // namespace
@@ -96,20 +62,21 @@ FrameResult render_beam(const Trace& trace, const Frame& frame, const BeamOption
 TechniqueKind beam_kind() {
   return {.name = "beam",
           .description =
-              "the triangles of a pixel, sorted by depth, become fragments with analytic coverage and a mask, "
-              "composed near to far into one area-conserving aggregate until the pixel is closed",
+              "each bin's triangles, sorted near to far, become fragments with analytic coverage and a mask; a pixel "
+              "keeps the owners of its mask positions until nothing nearer can come, in a state of fixed size",
           .source = "ours, after Crassin et al. 2018",
           .make = make_from(
               BeamOptions{},
               [](BeamOptions& o) -> SpecOptions {
-                return {choice("bits", o.positions, {{"32", 32}, {"64", 64}, {"128", 128}, {"256", 256}},
-                               "positions of the mask"),
-                        choice("storage", o.storage, {{"packed", Storage::packed}, {"float32", Storage::float32}},
-                               "format of the aggregate's colour: fp16, or float32")};
+                return {
+                    choice("bits", o.positions, {{"32", 32}, {"64", 64}, {"128", 128}, {"256", 256}},
+                           "positions of the mask"),
+                    choice("slots", o.slots, {{"2", 2}, {"4", 4}, {"5", 5}, {"7", 7}, {"8", 8}, {"16", 16}, {"32", 32}},
+                           "owners that a pixel keeps at once; if there are more, two become one"),
+                    choice("bin", o.bin, {{"8", 8}, {"16", 16}, {"32", 32}}, "pixels on each side of a bin")};
               },
               [](const BeamOptions& o) {
-                return Technique{
-                    .framebuffer = beam_framebuffer(o), .render = bind_options(render_beam, o), .has_weights = true};
+                return Technique{.framebuffer = beam_framebuffer(), .render = bind_options(render_beam, o)};
               })};
 }
 

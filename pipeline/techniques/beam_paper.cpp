@@ -1,6 +1,7 @@
 // The beam pipeline as published (Crassin et al. 2018). Conservative raster makes pairs; they become fragments with
 // analytic coverage and a localization mask, are shaded, sorted in an A-buffer, and merged near to far into one
-// aggregate per pixel.
+// aggregate per pixel. Without the A-buffer, each pixel keeps a few aggregates, into which fragments are merged as they
+// come: near to far, roughly, in sorted bins, or in primitive order.
 #include <algorithm>
 #include <string>
 
@@ -10,6 +11,8 @@
 #include "pipeline/units/a_buffer_unit.h"
 #include "pipeline/units/compose_units.h"
 #include "pipeline/units/fragment_units.h"
+#include "pipeline/units/owner_units.h"
+#include "pipeline/units/paper_layers_unit.h"
 #include "pipeline/units/raster_units.h"
 #include "stages/beam/a_buffer.h"
 #include "stages/beam/beam_fragment.h"
@@ -24,6 +27,8 @@ enum class Rules {
   over,   // alpha OVER without masks and slabs, to show what those are worth
 };
 
+enum class PaperOrder { sorted, near_first, stream };
+
 struct PaperOptions {
   Rules rules = Rules::paper;
   MaskSource mask = MaskSource::table;  // MaskSource::none with Rules::over
@@ -31,9 +36,11 @@ struct PaperOptions {
   int tiny_positions = 0;  // BeamFragmentOptions::tiny_positions
   MergeRules merge{};
   PaperStorage storage = PaperStorage::slides;
+  PaperOrder order = PaperOrder::sorted;
+  int layers = 3;  // aggregates of a pixel, without an A-buffer
 };
 
-std::vector<Surface> paper_framebuffer(const PaperOptions& beam) {
+std::vector<Surface> aggregate_surfaces(const PaperOptions& beam) {
   const Surface color{"color", "RGB16F", kAggregateColorBytes}, coverage{"coverage", "R32F", 4};
   if (beam.rules == Rules::over) return {coverage, color};
   const Surface mask{"mask", "R32UI", 4}, thickness{"thickness", "R32F", 4}, range{"depth_range", "RG32F", 8};
@@ -46,6 +53,18 @@ std::vector<Surface> paper_framebuffer(const PaperOptions& beam) {
       break;
   }
   return {coverage, mask, {"depth_plane", "RGB32F", 12}, thickness, range, {"color", "RGB32F", 12}};
+}
+
+std::vector<Surface> paper_framebuffer(const PaperOptions& beam) {
+  if (beam.order == PaperOrder::near_first) return {{"color", "RGB16F", kAggregateColorBytes}};
+  std::vector<Surface> surfaces = aggregate_surfaces(beam);
+  if (beam.order == PaperOrder::sorted) return surfaces;
+  const auto layers = static_cast<std::uint32_t>(beam.layers);
+  for (Surface& surface : surfaces) {
+    surface.format = times(surface.format.c_str(), layers);
+    surface.bytes_per_pixel *= layers;
+  }
+  return surfaces;
 }
 
 struct RecordBytes {
@@ -118,7 +137,7 @@ void add_weights(const PaperOptions& options, const SamplePattern& pattern, std:
   }
 }
 
-FrameResult render_paper(const Trace& trace, const Frame& frame, const PaperOptions& beam, const RunOptions& run) {
+FrameResult render_sorted(const Trace& trace, const Frame& frame, const PaperOptions& beam, const RunOptions& run) {
   const FrameContext context(trace, frame, run);
   const SamplePattern pattern = hammersley_pattern();
   const MaskTable table(pattern);
@@ -149,49 +168,90 @@ FrameResult render_paper(const Trace& trace, const Frame& frame, const PaperOpti
   });
 }
 
+// Without an A-buffer.
+FrameResult render_layers(const Trace& trace, const Frame& frame, const PaperOptions& beam, const RunOptions& run) {
+  const FrameContext context(trace, frame, run);
+  const SamplePattern pattern = hammersley_pattern();
+  const MaskTable table(pattern);
+  const BeamFragmentOptions options = fragment_options(beam, pattern, table);
+  const bool sorts = beam.order == PaperOrder::near_first;
+  BinPlan plan{.stages = {"conservative_raster", "beam_fragment", "shade", "compose", "resolve"},
+               .keeps_tile_size = sorts};
+  if (sorts) plan.stages.push_back("bin_sort");
+  return render_bins(context, plan, [&](Bin& bin) {
+    const TriangleList list = sorts ? sort_bin(bin).triangles : bin.list;
+    ConservativeRasterUnit raster(bin, "batch_pairs", PairDepths::none, ConservativeRasterUnit::Hidden::kept);
+    BeamFragmentUnit make_fragments(bin, options);
+    ShadeUnit shade(bin);
+    ComposeLayersUnit compose(bin, pattern, beam.merge, static_cast<std::size_t>(beam.layers), beam.storage,
+                              sorts ? OpenPixels::on_chip : OpenPixels::in_memory, paper_framebuffer(beam));
+    std::vector<float>& counts = bin.pixel_counter("fragments");
+
+    for_each_batch(list, [&](const TriangleList& batch) {
+      std::vector<Fragment>& fragments = make_fragments(raster(batch, bin.tile), "batch_fragments");
+      count_by_pixel(fragments, counts);
+      shade(fragments);
+      compose(fragments);
+    });
+    bin.finish(compose.resolve_layers());
+  });
+}
+
+FrameResult render_paper(const Trace& trace, const Frame& frame, const PaperOptions& beam, const RunOptions& run) {
+  return beam.order == PaperOrder::sorted ? render_sorted(trace, frame, beam, run)
+                                          : render_layers(trace, frame, beam, run);
+}
+
 Technique make_paper(const PaperOptions& options) {
-  return {
-      .framebuffer = paper_framebuffer(options), .render = bind_options(render_paper, options), .has_weights = true};
+  return {.framebuffer = paper_framebuffer(options),
+          .render = bind_options(render_paper, options),
+          .has_weights = options.order == PaperOrder::sorted};
 }
 
 // simd/merge_rules.h explains the policies, and docs/accuracy.md says where they come from.
 SpecOptions paper_options(PaperOptions& o) {
   using R = MergeRules;
-  return {choice("mask", o.mask, {{"table", MaskSource::table}, {"exact", MaskSource::exact}},
-                 "masks from a 64 x 64 table, or from edge tests"),
-          choice("sort", o.sort, {{"centroid", SortKey::centroid}, {"nearest", SortKey::nearest}},
-                 "the fragment's depth that the A-buffer sorts by"),
-          choice("tiny", o.tiny_positions, {{"1", 1}, {"3", 3}}, "most mask positions that a speck is given"),
-          choice("overlap", o.merge.overlap,
-                 {{"tiny", R::Overlap::tiny},
-                  {"over", R::Overlap::over},
-                  {"add", R::Overlap::add},
-                  {"transition", R::Overlap::transition}},
-                 "how coverages combine where masks overlap: ADD for specks and OVER for others, OVER, ADD, or a "
-                 "transition from ADD to OVER"),
-          choice("local", o.merge.local, {{"clamp", R::Local::clamp}, {"keep", R::Local::keep}},
-                 "a local coverage above 1 is clamped to 1, or kept"),
-          choice("fuzzy", o.merge.fuzzy, {{"delta", R::Fuzzy::delta}, {"mix", R::Fuzzy::mix}},
-                 "blending within the slab: by the published formulas, or between over and under"),
-          choice("extents", o.merge.extents, {{"range", R::Extents::range}, {"slab", R::Extents::slab}},
-                 "the slab ends at its depth range, or at its thickness alone"),
-          choice("slab", o.merge.slab, {{"full", R::Slab::full}, {"visible", R::Slab::visible}},
-                 "the slab grows by the whole fragment, or by its visible positions"),
-          choice("plane", o.merge.plane, {{"area", R::Plane::area}, {"visible", R::Plane::visible}},
-                 "planes are weighted by coverage, or by what is visible of each"),
-          choice("thickness", o.merge.thickness,
-                 {{"larger", R::Thickness::larger}, {"containing", R::Thickness::containing}},
-                 "the slab keeps the larger thickness, or contains all merged fragments"),
-          choice("storage", o.storage,
-                 {{"slides", PaperStorage::slides}, {"text", PaperStorage::text}, {"float32", PaperStorage::float32}},
-                 "formats of the aggregate: as in the talk's slides, as in the paper's text, or float32")};
+  return {
+      choice("mask", o.mask, {{"table", MaskSource::table}, {"exact", MaskSource::exact}},
+             "masks from a 64 x 64 table, or from edge tests"),
+      choice("sort", o.sort, {{"centroid", SortKey::centroid}, {"nearest", SortKey::nearest}},
+             "the fragment's depth that the A-buffer sorts by"),
+      choice("tiny", o.tiny_positions, {{"1", 1}, {"3", 3}}, "most mask positions that a speck is given"),
+      choice("overlap", o.merge.overlap,
+             {{"tiny", R::Overlap::tiny},
+              {"over", R::Overlap::over},
+              {"add", R::Overlap::add},
+              {"transition", R::Overlap::transition}},
+             "how coverages combine where masks overlap: ADD for specks and OVER for others, OVER, ADD, or a "
+             "transition from ADD to OVER"),
+      choice("local", o.merge.local, {{"clamp", R::Local::clamp}, {"keep", R::Local::keep}},
+             "a local coverage above 1 is clamped to 1, or kept"),
+      choice("fuzzy", o.merge.fuzzy, {{"delta", R::Fuzzy::delta}, {"mix", R::Fuzzy::mix}},
+             "blending within the slab: by the published formulas, or between over and under"),
+      choice("extents", o.merge.extents, {{"range", R::Extents::range}, {"slab", R::Extents::slab}},
+             "the slab ends at its depth range, or at its thickness alone"),
+      choice("slab", o.merge.slab, {{"full", R::Slab::full}, {"visible", R::Slab::visible}},
+             "the slab grows by the whole fragment, or by its visible positions"),
+      choice("plane", o.merge.plane, {{"area", R::Plane::area}, {"visible", R::Plane::visible}},
+             "planes are weighted by coverage, or by what is visible of each"),
+      choice("thickness", o.merge.thickness,
+             {{"larger", R::Thickness::larger}, {"containing", R::Thickness::containing}},
+             "the slab keeps the larger thickness, or contains all merged fragments"),
+      choice("storage", o.storage,
+             {{"slides", PaperStorage::slides}, {"text", PaperStorage::text}, {"float32", PaperStorage::float32}},
+             "formats of the aggregate: as in the talk's slides, as in the paper's text, or float32"),
+      choice("order", o.order,
+             {{"sorted", PaperOrder::sorted}, {"near-first", PaperOrder::near_first}, {"stream", PaperOrder::stream}},
+             "fragments are sorted in an A-buffer, come from sorted bins, or come in primitive order"),
+      choice("layers", o.layers, {{"1", 1}, {"2", 2}, {"3", 3}, {"4", 4}, {"8", 8}},
+             "without an A-buffer: aggregates that a pixel keeps")};
 }
 
 }  // namespace
 
 TechniqueKind beam_paper_kind() {
   return {.name = "beam",
-          .variant = {"rules", "paper", "conserve"},
+          .variant = {"rules", "paper", "conserve", "order"},
           .description =
               "the published rules: a 32-bit mask from a table, a depth slab, one aggregate per pixel; the "
               "options are other readings of these rules, see docs/accuracy.md",

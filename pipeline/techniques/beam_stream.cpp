@@ -1,13 +1,16 @@
-// The beam in streaming order: fragments come in primitive order, without an A-buffer or any memory per fragment. A
-// pixel keeps only its state (stages/data/owner_pixel.h). A pixel that shows more surfaces than it has layers takes
-// further passes over the geometry; each pass settles the nearest surfaces that are left.
+// The beam in streaming order, as immediate-mode hardware works: fragments come in primitive order, without an A-buffer
+// or any memory per fragment. A pixel keeps only its state.
+//
+// In one pass, a pixel that has more owners than slots makes one of two (stages/data/open_pixel.h). In several passes
+// (stages/data/owner_pixel.h), it takes further passes over the geometry; each settles the nearest surfaces that are
+// left.
 #include <stdexcept>
-#include <string>
 
 #include "pipeline/bins/render_bins.h"
 #include "pipeline/technique_table.h"
 #include "pipeline/units/fragment_units.h"
 #include "pipeline/units/layer_units.h"
+#include "pipeline/units/owner_units.h"
 #include "pipeline/units/raster_units.h"
 
 namespace beampipe {
@@ -15,11 +18,27 @@ namespace {
 
 struct StreamOptions {
   int positions = 128;  // 32, 64, 128 or 256
-  int layers = 5;       // 1 or 5
-  int passes = 0;       // the most passes; 0: until every pixel is settled
+  int passes = 1;       // the most passes; 0: until every pixel is settled
+  int slots = 7;        // in one pass: owners of a pixel
+  int layers = 5;       // in several passes: 1 or 5
 };
 
+template <std::size_t Words, std::size_t Slots>
+std::vector<Surface> open_pixel_surfaces() {
+  using Pixel = OpenPixel<Words, Slots>;
+  constexpr std::uint32_t kMap = sizeof(Pixel::states), kOwners = sizeof(Pixel::slots),
+                          kSums = sizeof(Pixel) - kMap - kOwners;
+  return {{"owner_map", times("R32UI", kMap / 4), kMap},
+          {"owners", times("RG32UI", Slots), kOwners},
+          {"sums", times("R16", kSums / 2), kSums}};
+}
+
 std::vector<Surface> stream_framebuffer(const StreamOptions& stream) {
+#define BEAMPIPE_SURFACES(words, pixel_slots)                                              \
+  if (stream.passes == 1 && stream.positions == 32 * words && stream.slots == pixel_slots) \
+    return open_pixel_surfaces<words, pixel_slots>();
+  BEAMPIPE_OPEN_PIXELS(BEAMPIPE_SURFACES)
+#undef BEAMPIPE_SURFACES
   const auto words = static_cast<std::uint32_t>(stream.positions / 32),
              layers = static_cast<std::uint32_t>(stream.layers);
   const std::uint32_t state_bytes = 4 * words * (layers == 1 ? 2 : 3);
@@ -29,8 +48,32 @@ std::vector<Surface> stream_framebuffer(const StreamOptions& stream) {
           {"color", "RGB16F + R16", 8}};
 }
 
+template <std::size_t Words, std::size_t Slots>
+FrameResult render_one_pass(const Trace& trace, const Frame& frame, const StreamOptions& stream,
+                            const RunOptions& run) {
+  const FrameContext context(trace, frame, run);
+  const PositionSet& positions = cell_positions(stream.positions);
+  const PositionGrid grid(stream.positions);
+  const BeamFragmentOptions options = grid_options(grid, owners_fragment_bytes(Words));
+  const float brightest = brightest_of(context.colors);
+  const BinPlan plan{.stages = {"conservative_raster", "beam_fragment", "compose", "shade", "resolve"}};
+  return render_bins(context, plan, [&](Bin& bin) {
+    ConservativeRasterUnit raster(bin, "", PairDepths::bounds, ConservativeRasterUnit::Hidden::left_out);
+    BeamFragmentUnit make_fragments(bin, options);
+    ShadeUnit shade(bin);
+    ComposeOwnersUnit<Words, Slots> compose(bin, positions, bin.list, nullptr, brightest, OpenPixels::in_memory,
+                                            stream_framebuffer(stream));
+
+    raster.queued(bin.list, [&](const std::vector<Pair>& pairs, std::size_t first) {
+      compose(make_fragments.queued(pairs), first, raster.closed(), shade);
+    });
+    bin.finish(compose.resolve_owners(shade));
+    shade.finish_fetches();
+  });
+}
+
 template <std::size_t Words, std::size_t Layers>
-FrameResult render_shape(const Trace& trace, const Frame& frame, const StreamOptions& stream, const RunOptions& run) {
+FrameResult render_passes(const Trace& trace, const Frame& frame, const StreamOptions& stream, const RunOptions& run) {
   const FrameContext context(trace, frame, run);
   const PositionSet& positions = cell_positions(stream.positions);
   const PositionGrid grid(stream.positions);
@@ -64,37 +107,44 @@ FrameResult render_shape(const Trace& trace, const Frame& frame, const StreamOpt
 }
 
 FrameResult render_stream(const Trace& trace, const Frame& frame, const StreamOptions& stream, const RunOptions& run) {
-#define BEAMPIPE_RENDER(words, shape_layers)                           \
-  if (stream.positions == 32 * words && stream.layers == shape_layers) \
-    return render_shape<words, shape_layers>(trace, frame, stream, run);
+#define BEAMPIPE_RENDER(words, pixel_slots)                                                \
+  if (stream.passes == 1 && stream.positions == 32 * words && stream.slots == pixel_slots) \
+    return render_one_pass<words, pixel_slots>(trace, frame, stream, run);
+  BEAMPIPE_OPEN_PIXELS(BEAMPIPE_RENDER)
+#undef BEAMPIPE_RENDER
+#define BEAMPIPE_RENDER(words, pixel_layers)                                                 \
+  if (stream.passes != 1 && stream.positions == 32 * words && stream.layers == pixel_layers) \
+    return render_passes<words, pixel_layers>(trace, frame, stream, run);
   BEAMPIPE_OWNER_PIXELS(BEAMPIPE_RENDER)
 #undef BEAMPIPE_RENDER
-  throw std::invalid_argument("no pixel of this shape: " + std::to_string(stream.positions) + " positions, " +
-                              std::to_string(stream.layers) + " layers");
+  throw std::invalid_argument("no pixel of this shape");
 }
 
 }  // namespace
 
 TechniqueKind beam_stream_kind() {
-  return {.name = "beam",
-          .variant = {"order", "stream", "sort"},
-          .description =
-              "fragments in primitive order, without an A-buffer; a pixel with more visible surfaces than "
-              "layers takes further passes over the geometry",
-          .source = "ours",
-          .make = make_from(
-              StreamOptions{},
-              [](StreamOptions& o) -> SpecOptions {
-                return {
-                    choice("bits", o.positions, {{"32", 32}, {"64", 64}, {"128", 128}, {"256", 256}},
-                           "positions of the mask"),
-                    choice("layers", o.layers, {{"1", 1}, {"5", 5}},
-                           "surfaces that a pixel keeps at once; fewer layers take more passes"),
-                    number("passes", o.passes, 1, 1000, "most passes over the geometry; without it there is no limit")};
-              },
-              [](const StreamOptions& o) {
-                return Technique{.framebuffer = stream_framebuffer(o), .render = bind_options(render_stream, o)};
-              })};
+  return {
+      .name = "beam",
+      .variant = {"order", "stream", "near-first"},
+      .description =
+          "fragments in primitive order, without an A-buffer, bins or a sort; of more owners than a pixel has slots "
+          "for, two become one, or the pixel takes further passes over the geometry",
+      .source = "ours",
+      .make = make_from(
+          StreamOptions{},
+          [](StreamOptions& o) -> SpecOptions {
+            return {
+                choice("bits", o.positions, {{"32", 32}, {"64", 64}, {"128", 128}, {"256", 256}},
+                       "positions of the mask"),
+                number("passes", o.passes, 0, 1000, "most passes over the geometry; 0: until every pixel is settled"),
+                choice("slots", o.slots, {{"2", 2}, {"4", 4}, {"5", 5}, {"7", 7}, {"8", 8}, {"16", 16}, {"32", 32}},
+                       "in one pass: owners that a pixel keeps at once"),
+                choice("layers", o.layers, {{"1", 1}, {"5", 5}},
+                       "in several passes: surfaces that a pixel keeps at once")};
+          },
+          [](const StreamOptions& o) {
+            return Technique{.framebuffer = stream_framebuffer(o), .render = bind_options(render_stream, o)};
+          })};
 }
 
 }  // namespace beampipe

@@ -1,11 +1,13 @@
 // From pairs to shaded fragments: the fragment stage of the beam, and shading.
 #pragma once
 
+#include <algorithm>
 #include <string>
 #include <utility>
 #include <vector>
 
 #include "pipeline/bins/bin.h"
+#include "pipeline/units/raster_units.h"
 #include "stages/beam/beam_fragment.h"
 #include "stages/picture/shade.h"
 #include "stages/samples/shading_point.h"
@@ -21,13 +23,19 @@ class BeamFragmentUnit {
   // The fragments of pairs that follow each other in primitive order; `buffer` is the name of the on-chip buffer that
   // holds them. They are valid until the next call.
   std::vector<Fragment>& operator()(const std::vector<Pair>& pairs, const std::string& buffer) {
-    fragments_.clear();
-    beam_fragment(bin_.triangles(), pairs, bin_.tile, options_, stage_.timed(), fragments_);
+    make(pairs);
     bin_.holds(buffer, fragments_.size() * options_.fragment_bytes);
     return fragments_;
   }
 
-  // The same for pairs in any order: their setup triangles are fetched by number.
+  // The same, where a queue of kQueueItems fragments leads to the next stage.
+  std::vector<Fragment>& queued(const std::vector<Pair>& pairs) {
+    make(pairs);
+    bin_.holds("fragment_queue", std::min(fragments_.size(), kQueueItems) * options_.fragment_bytes);
+    return fragments_;
+  }
+
+  // As the first, for pairs in any order: their setup triangles are fetched by number.
   std::vector<Fragment>& fetched(const std::vector<Pair>& pairs, const std::string& buffer) {
     (*this)(pairs, buffer);
     bin_.triangle_fetches().setup(pairs, stage_.counters);
@@ -35,6 +43,11 @@ class BeamFragmentUnit {
   }
 
  private:
+  void make(const std::vector<Pair>& pairs) {
+    fragments_.clear();
+    beam_fragment(bin_.triangles(), pairs, bin_.tile, options_, stage_.timed(), fragments_);
+  }
+
   Bin& bin_;
   BinStage stage_;
   const BeamFragmentOptions& options_;
@@ -63,6 +76,11 @@ class ShadeUnit {
   void visible(const std::vector<Pair>& whole) {
     shade_visible(whole, stage_.timed(), &attributes());
     bin_.triangle_fetches().attributes(whole, stage_.counters);
+  }
+
+  void visible(const std::vector<ShadedTriangle>& shaded) {
+    shade_visible(shaded, stage_.timed(), &attributes());
+    bin_.triangle_fetches().attributes(shaded, stage_.counters);
   }
 
   void finish_fetches() { bin_.triangle_fetches().flush(stage_.counters); }

@@ -1,5 +1,7 @@
 #include "pipeline/units/raster_units.h"
 
+#include "stages/cost/closed_depth_cost.h"
+
 namespace beampipe {
 
 ConservativeRasterUnit::ConservativeRasterUnit(Bin& bin, std::string buffer, PairDepths depths, Hidden hidden)
@@ -15,6 +17,12 @@ std::vector<Pair>& ConservativeRasterUnit::operator()(const TriangleList& triang
                                                closed_ ? &*closed_ : nullptr, depths_);
   bin_.holds(buffer_, most * (depths_ == PairDepths::bounds ? kPairWithDepthBytes : kPairBytes));
   return pairs_;
+}
+
+void ConservativeRasterUnit::drop_hidden(std::vector<Pair>& pairs) {
+  stage_.counters.items_out -=
+      std::erase_if(pairs, [this](const Pair& pair) { return closed_->hides(pair.x, pair.y, pair.nearest); });
+  charge(*closed_, stage_.counters);
 }
 
 void ConservativeRasterUnit::start_next_pass() {

@@ -25,6 +25,13 @@ void for_each_batch(const TriangleList& list, Body&& body) {
   }
 }
 
+// Entries of a queue between two stages on chip. A stage whose queue is full waits for the next stage.
+inline constexpr std::size_t kQueueItems = 32;
+
+// Size of a queued pair in the modelled machine: pixel (16 bits), the triangle's number in the bin's list (24), whether
+// the pair is full (8), and its nearest depth as float32.
+inline constexpr std::uint64_t kQueuedPairBytes = 10;
+
 class ConservativeRasterUnit {
  public:
   // `buffer`: the name of the on-chip buffer that holds the pairs.
@@ -35,12 +42,38 @@ class ConservativeRasterUnit {
   std::vector<Pair>& operator()(const TriangleList& triangles, const Tile& box);
   std::vector<Pair>& operator()() { return (*this)(bin_.list, bin_.tile); }
 
+  // Calls body(pairs, first) for the pairs of the bin's pixels, in the order of the list, where a queue of kQueueItems
+  // pairs leads to the next stage. The body closes pixels. The simulator takes more pairs at once, which changes
+  // nothing but how soon a closed pixel hides pairs. The first pair belongs to list[first] or to a later triangle.
+  template <class Body>
+  void queued(const TriangleList& list, Body&& body) {
+    constexpr std::size_t kTriangles = 64, kPairs = 256;
+    std::vector<Pair> chunk;
+    for (std::size_t first = 0; first < list.size(); first += kTriangles) {
+      const auto begin = list.begin() + static_cast<std::ptrdiff_t>(first);
+      const TriangleList batch(begin, begin + static_cast<std::ptrdiff_t>(std::min(kTriangles, list.size() - first)));
+      pairs_.clear();
+      conservative_raster(bin_.triangles(), batch, bin_.tile, stage_.timed(), pairs_, &*closed_, depths_,
+                          Closing::by_later_stage);
+      bin_.holds("pair_queue", std::min(pairs_.size(), kQueueItems) * kQueuedPairBytes);
+      for (std::size_t at = 0; at < pairs_.size(); at += kPairs) {
+        const auto from = pairs_.begin() + static_cast<std::ptrdiff_t>(at);
+        chunk.assign(from, from + static_cast<std::ptrdiff_t>(std::min(kPairs, pairs_.size() - at)));
+        if (at > 0) drop_hidden(chunk);
+        body(chunk, first);
+      }
+    }
+  }
+
   // Another pass over the bin reads the list, the setup triangles and the closed depths from memory again.
   void start_next_pass();
 
   ClosedDepth& closed() { return *closed_; }  // with Hidden::left_out
 
  private:
+  // Drops pairs that closed pixels hide by now.
+  void drop_hidden(std::vector<Pair>& pairs);
+
   Bin& bin_;
   BinStage stage_;
   std::string buffer_;

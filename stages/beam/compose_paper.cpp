@@ -4,6 +4,7 @@
 #include <numeric>
 
 #include "stages/beam/compose_paper_cost.h"
+#include "stages/beam/paper_fragment.h"
 
 namespace beampipe {
 namespace {
@@ -44,18 +45,6 @@ std::vector<Aggregate> compose_stored(const std::vector<Fragment>& fragments, co
 }
 
 }  // namespace
-
-MergeFragment merge_fragment(const Fragment& fragment) {
-  const glm::vec3& color = fragment.color;
-  return {{fragment.alpha,
-           fragment.mask.words[0],
-           fragment.plane,
-           0.0f,
-           fragment.z_min,
-           fragment.z_max,
-           {color.r, color.g, color.b}},
-          fragment.tiny ? ~0u : 0u};
-}
 
 std::vector<Aggregate> compose(const std::vector<Fragment>& fragments, const ABuffer& buffer,
                                const SamplePattern& pattern, const MergeRules& rules, PaperStorage storage,

@@ -13,9 +13,6 @@
 
 namespace beampipe {
 
-// The fragment in the form that the published rules take, with 32 mask positions.
-MergeFragment merge_fragment(const Fragment& fragment);
-
 // Merges by the published rules (simd/merge.h). `buffer`: the lists of `fragments`. Returns one aggregate per pixel of
 // the tile, kEmptyAggregate where nothing is.
 std::vector<Aggregate> compose(const std::vector<Fragment>& fragments, const ABuffer& buffer,

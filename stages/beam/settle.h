@@ -41,7 +41,6 @@ bool is_unfinished(const OwnerPixel<Words, Layers>& pixel) {
 // Closes finished pixels to everything, however near. This acts like an early stencil test.
 template <std::size_t Words, std::size_t Layers>
 void close_finished(const std::vector<OwnerPixel<Words, Layers>>& pixels, const Tile& tile, ClosedDepth& closed) {
-  constexpr float kInFront = -2.0f;  // nearer than every depth
   const OwnerPixel<Words, Layers>* pixel = pixels.data();
   for (std::int32_t y = tile.y0; y < tile.y1; ++y)
     for (std::int32_t x = tile.x0; x < tile.x1; ++x, ++pixel)

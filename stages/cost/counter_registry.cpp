@@ -12,6 +12,7 @@ const std::vector<StageInfo>& stage_list() {
        "pixels that are tested", " ops.fetch ops.special "},
       {"sample_raster", "setup triangles, counted in each pass", "cells in which a triangle covers a sample",
        "covered samples of partly covered cells", "all samples of partly covered cells", " ops.fetch ops.special "},
+      {"bin_sort", "triangles of the bins' lists", "the same triangles, near to far", "", "", " ops.special "},
       {"beam_fragment", "pairs", "fragments: pairs whose covered area is not 0", "fragments", "pairs", ""},
       {"shade", "fragments, or shading samples", "the same items, with a colour or a material", "the items",
        "the pixels of the items' 2x2 quads; the items alone if shading follows a visibility test", " ops.fetch "},
@@ -113,6 +114,12 @@ const std::vector<FrameCounterInfo>& frame_counters() {
        "peak size of every buffer; for a buffer that each bin has, its size in the bin that needs the most"},
       {"peak_bytes_per_pixel", "bytes per pixel",
        "size of a technique's framebuffer, plus its A-buffer in the frame where that is largest"},
+      {"on_chip_bytes_per_pixel", "bytes per pixel",
+       "size of all buffers that a bin has on chip (open pixels, closed depths, queues, windows, batches), each at its "
+       "peak in the bin that needs the most, over the pixels of a whole bin"},
+      {"off_chip_bytes_per_pixel", "bytes per pixel",
+       "peak_bytes_per_pixel: what depends on pixels or fragments and is in memory; geometry and bin lists are apart"},
+      {"bin_pixels", "pixels", "pixels of a whole bin"},
       {"pixel_counters", "as the counter's", "mean and maximum of each pixel counter over the pixels"},
       {"saved", "pairs, cells, triangles, tiles or pixels",
        "work that was not done, derived from the counters of the stages: hidden_pairs or hidden_cells, which the "

@@ -31,6 +31,9 @@ class ClosedDepth {
     return hidden;
   }
 
+  // The same, for a stage that charges the test itself.
+  bool is_hidden(std::int32_t x, std::int32_t y, float nearest) const { return nearest > depth_[tile_.index(x, y)]; }
+
   // Is it hidden in every pixel of the tile?
   bool hides_everywhere(float nearest) {
     ++work_.tile_tests;

@@ -43,19 +43,25 @@ struct PositionStates {
     return all == ~0u;
   }
 
+  // The loops over words have no branches, so that compilers use vectors.
   WideMask positions_in(std::uint32_t state) const {
     WideMask mask;
-    for (std::size_t w = 0; w < Words; ++w) {
-      std::array<std::uint32_t, Bits> of_word;
-      for (std::size_t b = 0; b < Bits; ++b) of_word[b] = planes[b][w];
-      mask.words[w] = word_in_state(of_word, state);
+    for (std::size_t w = 0; w < Words; ++w) mask.words[w] = ~0u;
+    for (std::size_t b = 0; b < Bits; ++b) {
+      const std::uint32_t flipped = state >> b & 1 ? 0 : ~0u;
+      for (std::size_t w = 0; w < Words; ++w) mask.words[w] &= planes[b][w] ^ flipped;
     }
     return mask;
   }
 
   void put(const WideMask& positions, std::uint32_t into) {
-    for (std::size_t b = 0; b < Bits; ++b)
-      for (std::size_t w = 0; w < Words; ++w) planes[b][w] = word_put(planes[b][w], positions.words[w], into >> b & 1);
+    for (std::size_t b = 0; b < Bits; ++b) {
+      if (into >> b & 1) {
+        for (std::size_t w = 0; w < Words; ++w) planes[b][w] = word_put(planes[b][w], positions.words[w], true);
+      } else {
+        for (std::size_t w = 0; w < Words; ++w) planes[b][w] = word_put(planes[b][w], positions.words[w], false);
+      }
+    }
   }
 };
 

@@ -41,6 +41,11 @@ void shade_visible(const std::vector<Pair>& whole, StageCounters& counters,
   charge(one_by_one(whole, attributes), lambert_cost(), sizeof(FlatAttributes) + kPairBytes, kColorBytes, counters);
 }
 
+void shade_visible(const std::vector<ShadedTriangle>& shaded, StageCounters& counters,
+                   const std::vector<FlatAttributes>* attributes) {
+  charge(one_by_one(shaded, attributes), lambert_cost(), sizeof(FlatAttributes) + kPairBytes, kColorBytes, counters);
+}
+
 void shade(const std::vector<SampleFragment>& fragments, StageCounters& counters,
            const std::vector<FlatAttributes>* attributes) {
   charge(in_quads(fragments, attributes), lambert_cost(), sizeof(FlatAttributes) + kSampleFragmentBytes, kColorBytes,

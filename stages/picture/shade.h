@@ -14,6 +14,7 @@
 #include "stages/data/pixel_formats.h"
 #include "stages/data/sample_fragment.h"
 #include "stages/data/setup_triangle.h"
+#include "stages/data/shaded_triangle.h"
 
 namespace beampipe {
 
@@ -36,6 +37,10 @@ void shade_visible(const std::vector<glm::vec3>& colors, std::vector<Fragment>& 
 
 // Only charges the shading of pairs that cover their whole pixel; they take their triangle's colour as it is.
 void shade_visible(const std::vector<Pair>& whole, StageCounters& counters,
+                   const std::vector<FlatAttributes>* attributes = nullptr);
+
+// Only charges the shading of triangles that a later stage shades where it needs their colours.
+void shade_visible(const std::vector<ShadedTriangle>& shaded, StageCounters& counters,
                    const std::vector<FlatAttributes>* attributes = nullptr);
 
 // Only charges the shading of sample fragments, in 2x2 quads; they keep their triangle's index instead of a colour.

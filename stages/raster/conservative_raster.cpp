@@ -6,8 +6,8 @@
 namespace beampipe {
 
 std::size_t conservative_raster(const SetupTriangles& triangles, const TriangleList& list, const Tile& tile,
-                                StageCounters& counters, std::vector<Pair>& out, ClosedDepth* closed,
-                                PairDepths depths) {
+                                StageCounters& counters, std::vector<Pair>& out, ClosedDepth* closed, PairDepths depths,
+                                Closing closing) {
   const std::size_t before = out.size();
   Traversal traversal{tile};
   ConservativeRasterWork work;
@@ -19,17 +19,17 @@ std::size_t conservative_raster(const SetupTriangles& triangles, const TriangleL
       Pair pair{index, q, x, y, full, 0, 0};
       if (depths == PairDepths::bounds) set_depths(triangle, vertices, pair);
       if (closed && closed->hides(x, y, pair.nearest)) return;
-      if (closed && full) closed->close(x, y, pair.farthest);
+      if (closed && full && closing == Closing::by_raster) closed->close(x, y, pair.farthest);
       out.push_back(pair);
     });
     if (closed) closed->refresh();
   }
   const std::size_t waited = out.size();
-  if (closed) {  // pixels may have been closed after a pair was found in them
+  if (closed && closing == Closing::by_raster) {  // pixels may have been closed after a pair was found in them
     work.tested_again = waited;
     std::erase_if(out, [&](const Pair& pair) { return closed->hides(pair.x, pair.y, pair.nearest); });
-    charge(*closed, counters);
   }
+  if (closed) charge(*closed, counters);
   work.traversal = traversal.counts;
   work.triangles = list.size();
   work.pairs = out.size() - before;

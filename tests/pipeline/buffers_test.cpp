@@ -45,7 +45,7 @@ bool is_per_triangle(const std::string& name) {
 TEST(Buffers, StreamingOrderHoldsTheSameForEachPixelHoweverDeepItIs) {
   std::vector<Buffer> first;
   for (const int layers : {1, 10, 100, 1000, 10000}) {
-    std::vector<Buffer> now = render("beam:order=stream", halves(layers)).buffers;
+    std::vector<Buffer> now = render("beam:order=stream,passes=0", halves(layers)).buffers;
     const auto batch = static_cast<std::uint64_t>(std::min(layers, 512));
     for (const Buffer& buffer : now) {
       if (buffer.name == "batch_fragments") {
@@ -61,7 +61,8 @@ TEST(Buffers, StreamingOrderHoldsTheSameForEachPixelHoweverDeepItIs) {
 
 TEST(Buffers, TheABufferGrowsByARecordForEveryPairThatIsNotHidden) {
   for (const int layers : {1, 10, 100, 1000, 10000}) {
-    const FrameResult sorted = render("beam", halves(layers)), published = render("beam:rules=paper", halves(layers));
+    const FrameResult sorted = render("beam:order=sorted", halves(layers)),
+                      published = render("beam:rules=paper", halves(layers));
     const auto count = static_cast<std::uint64_t>(layers);
     // The pixel that a triangle covers, and those that it touches without covering any area.
     const std::uint64_t touched = sorted.stages.at(1).items_out / count;
@@ -78,7 +79,7 @@ TEST(Buffers, TheABufferGrowsByARecordForEveryPairThatIsNotHidden) {
 TEST(Buffers, HiddenPairsAreNotInTheABuffer) {
   for (const std::uint32_t layers : {10u, 1000u}) {
     const Trace trace = make_scene("stack", {.triangles = layers, .width = 4, .height = 4});
-    EXPECT_EQ(bytes_of(render("beam", trace), "a_buffer"), 16u * (4 + 16)) << layers;
+    EXPECT_EQ(bytes_of(render("beam:order=sorted", trace), "a_buffer"), 16u * (4 + 16)) << layers;
   }
 }
 
@@ -100,7 +101,9 @@ TEST(Buffers, AreWhatIsAllocated) {
     for (const Buffer& buffer : result.buffers) measured.listed += static_cast<double>(buffer.peak_bytes);
     return measured;
   };
-  for (const char* spec : {"beam", "beam:order=stream", "beam:rules=paper", "alpha", "z3", "msaa:8", "acaa:8"}) {
+  for (const char* spec :
+       {"beam", "beam:order=sorted", "beam:order=stream", "beam:order=stream,passes=0", "beam:rules=paper",
+        "beam:rules=paper,order=near-first", "beam:rules=paper,order=stream", "alpha", "z3", "msaa:8", "acaa:8"}) {
     const Measured few = measure(spec, 4000), many = measure(spec, 16000);
     const double heap = many.heap - few.heap, listed = many.listed - few.listed;
     EXPECT_GE(heap, listed) << spec << ": something is listed that is not held";
@@ -128,8 +131,9 @@ TEST(Buffers, DrawsAreNotCopiedAgainForEachThatFollows) {
 TEST(Buffers, WorkingBytesAreHeldPerPixel) {
   Trace trace = halves(1);
   trace.frames[0].width = trace.frames[0].height = 512;
-  for (const char* spec : {"beam", "beam:order=stream", "beam:rules=paper", "alpha", "z3", "msaa:8", "acaa:8",
-                           "deferred", "visibility", "taa:8", "dvm"}) {
+  for (const char* spec :
+       {"beam", "beam:order=sorted", "beam:order=stream", "beam:order=stream,passes=0", "beam:rules=paper", "alpha",
+        "z3", "msaa:8", "acaa:8", "deferred", "visibility", "taa:8", "dvm"}) {
     const std::int64_t before = heap_bytes();
     restart_heap_peak();
     render(spec, trace);

@@ -28,6 +28,7 @@ const std::map<std::string, StageTests>& tests_of_stages() {
       {"sample_raster",
        {"HandWorked.QuadsMsaa", "RasterTwins.SampleRaster", "HandWorked.QuadsMsaa", "HandWorked.QuadsMsaa",
         "RasterTwins.SampleRaster"}},
+      {"bin_sort", {"BinSort.CountsItsWork", "BinSort.CountsItsWork", "BinSort.CountsItsWork", kMoves, kMoves}},
       {"beam_fragment",
        {"HandWorked.TriangleBeam", "FragmentTwins.OnAGrid", "HandWorked.TriangleBeam", "HandWorked.TriangleBeam",
         "FragmentTwins.OnAGrid"}},
@@ -104,9 +105,12 @@ const std::map<std::string, std::string>& tests_of_frame_counters() {
   static const std::string keys = "ReportJson.HasTheKeysOfTheContract";
   static const std::map<std::string, std::string> tests = {
       {"logical_bytes, sector_bytes, l2_bytes, dram_bytes", keys},
-      {"a_buffer_peak_bytes", "Beam.CountsEveryTouchedPixel"},
+      {"a_buffer_peak_bytes", "BeamSorted.CountsEveryTouchedPixel"},
       {"buffers", "Buffers.AreWhatIsAllocated"},
       {"peak_bytes_per_pixel", keys},
+      {"on_chip_bytes_per_pixel", "Beam.BuffersHaveTheSameSizeHoweverDeepAPixelIs"},
+      {"off_chip_bytes_per_pixel", keys},
+      {"bin_pixels", keys},
       {"pixel_counters", keys},
       {"saved", "SavedWork.IsFoundFromTheStages"},
       {"wall_ms", keys},

@@ -20,8 +20,10 @@ namespace beampipe {
 namespace {
 
 constexpr const char* kSpecs[] = {"beam",
-                                  "beam:rules=paper",
+                                  "beam:order=sorted",
                                   "beam:order=stream",
+                                  "beam:rules=paper",
+                                  "beam:order=stream,passes=0",
                                   "z3",
                                   "alpha",
                                   "msaa:4,at=centroid",

@@ -41,8 +41,9 @@ TEST(Counters, ShadingRunsInWholeQuads) {
 
 TEST(Counters, EveryTechniqueCountsFragmentsAndBytesOfPixels) {
   const Trace trace = random_trace(40, 30, 400, 2);
-  for (const char* spec : {"beam", "beam:order=stream", "beam:rules=paper", "alpha", "z3", "msaa:8", "msaa:32",
-                           "acaa:8", "deferred", "visibility", "taa:4", "dvm"}) {
+  for (const char* spec : {"beam", "beam:order=sorted", "beam:order=stream", "beam:order=stream,passes=0",
+                           "beam:rules=paper", "beam:rules=paper,order=near-first", "beam:rules=paper,order=stream",
+                           "alpha", "z3", "msaa:8", "msaa:32", "acaa:8", "deferred", "visibility", "taa:4", "dvm"}) {
     const FrameResult result = parse_technique(spec).render(trace, 0, {2});
     EXPECT_GT(sum_of(result, "fragments"), 400) << spec;
     EXPECT_GT(sum_of(result, "bytes"), 400) << spec;
@@ -65,16 +66,17 @@ TEST(Counters, PixelsOfFourCornersAndASpeck) {
   const auto at = [](const FrameResult& result, const char* counter) {
     return result.pixel_counters.at(counter).at(1 * 4 + 1);
   };
-  const FrameResult apart = parse_technique("beam").render(corners(0.1), 0, {1});
+  const FrameResult apart = parse_technique("beam:order=sorted").render(corners(0.1), 0, {1});
   EXPECT_EQ(at(apart, "fragments"), 5);
   EXPECT_EQ(at(apart, "merges"), 5);
   EXPECT_EQ(at(apart, "tiny_triangles"), 1);
   EXPECT_EQ(at(apart, "largest_window"), 1);
-  EXPECT_EQ(at(parse_technique("beam").render(corners(0), 0, {1}), "largest_window"), 4);
+  EXPECT_EQ(at(parse_technique("beam:order=sorted").render(corners(0), 0, {1}), "largest_window"), 4);
   EXPECT_EQ(at(parse_technique("alpha").render(corners(0.1), 0, {1}), "merges"), 5);
   EXPECT_EQ(at(parse_technique("z3").render(corners(0.1), 0, {1}), "merges"), 1) << "four owners, three layers";
-  EXPECT_EQ(at(parse_technique("beam:order=stream,layers=1").render(corners(0.1), 0, {1}), "passes"), 4);
-  EXPECT_EQ(at(parse_technique("beam:order=stream").render(corners(0.1), 0, {1}), "passes"), 1) << "room for five";
+  EXPECT_EQ(at(parse_technique("beam:order=stream,passes=0,layers=1").render(corners(0.1), 0, {1}), "passes"), 4);
+  EXPECT_EQ(at(parse_technique("beam:order=stream,passes=0").render(corners(0.1), 0, {1}), "passes"), 1)
+      << "room for five";
   const FrameResult acaa = parse_technique("acaa:8").render(corners(0.1), 0, {1});
   EXPECT_EQ(at(acaa, "visible_fragments"), at(parse_technique("msaa:8").render(corners(0.1), 0, {1}), "fragments"))
       << "nothing is hidden";
@@ -103,9 +105,9 @@ TEST(Counters, ResolveReadsEveryPixelOnce) {
   const Trace trace = random_trace(64, 32, 400, 2);
   RunOptions raw{2};
   raw.memory.compression = false;
-  for (const auto& [spec, items, stored_bytes] : {std::tuple{"beam", 1u, 42u},
+  for (const auto& [spec, items, stored_bytes] : {std::tuple{"beam:order=sorted", 1u, 42u},
                                                   {"beam:rules=paper", 1u, 42u},
-                                                  {"beam:order=stream", 1u, 8u},
+                                                  {"beam:order=stream,passes=0", 1u, 8u},
                                                   {"alpha", 1u, 10u},
                                                   {"z3", 1u, 50u},
                                                   {"msaa:8", 8u, 48u},
@@ -132,8 +134,8 @@ TEST(Counters, WhatIsHiddenIsCountedOnce) {
                                   {{{{-1, -1, 0.3}, {66, -1, 0.3}, {-1, 66, 0.3}}, glm::vec3(1)},
                                    {{{2, 2, 0.6}, {9, 2, 0.6}, {2, 9, 0.6}}, glm::vec3(1)},
                                    {{{28.1, 2.1, 0.6}, {39.9, 2.1, 0.6}, {28.1, 2.4, 0.6}}, glm::vec3(1)}});
-  for (const auto& [spec, raster, passes] : {std::tuple{"beam", "conservative_raster", 1u},
-                                             {"beam:order=stream", "conservative_raster", 1u},
+  for (const auto& [spec, raster, passes] : {std::tuple{"beam:order=sorted", "conservative_raster", 1u},
+                                             {"beam:order=stream,passes=0", "conservative_raster", 1u},
                                              {"msaa:8", "sample_raster", 1u},
                                              {"deferred", "sample_raster", 2u}}) {
     const StageCounters found = stage_of(parse_technique(spec).render(trace, 0, {2}), raster);
@@ -150,8 +152,8 @@ TEST(Counters, EveryStageWorks) {
   Trace trace = random_trace(40, 30, 50, 2);
   trace.frames[0].draws[0].shading = Shading::lambert;  // an unlit triangle needs no operations
   trace.frames[0].light_direction = glm::vec3(0, 0, 1);
-  for (const char* spec : {"beam", "alpha", "msaa:4", "msaa:4,prepass", "acaa:4,double=stencil", "acaa:32", "deferred",
-                           "visibility", "taa:8", "dvm", "reference"}) {
+  for (const char* spec : {"beam:order=sorted", "alpha", "msaa:4", "msaa:4,prepass", "acaa:4,double=stencil", "acaa:32",
+                           "deferred", "visibility", "taa:8", "dvm", "reference"}) {
     for (const StageCounters& counters : parse_technique(spec).render(trace, 0, {2}).stages) {
       EXPECT_FALSE(counters.stage.empty()) << spec;
       EXPECT_GT(counters.items_in, 0u) << spec << ' ' << counters.stage;

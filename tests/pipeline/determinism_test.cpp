@@ -11,14 +11,20 @@ namespace {
 
 const char* const kSpecs[] = {
     "beam",
-    "beam:storage=float32",
+    "beam:bits=64,slots=4",
+    "beam:bits=32,slots=2,bin=8",
+    "beam:order=sorted",
+    "beam:order=sorted,storage=float32",
     "beam:rules=paper,mask=exact",
     "beam:rules=paper,storage=text",
     "beam:rules=paper,sort=nearest,tiny=3,overlap=transition,local=keep,fuzzy=mix,extents=slab,"
     "slab=visible,plane=visible,thickness=containing",
+    "beam:order=stream,passes=0",
+    "beam:order=stream,passes=0,bits=64,layers=1",
+    "beam:rules=paper,order=near-first",
+    "beam:rules=paper,order=stream,layers=2",
     "beam:order=stream",
-    "beam:order=stream,bits=64,layers=1",
-    "beam:order=stream,passes=1",
+    "beam:order=stream,bits=256,slots=4",
     "z3",
     "z3:shape=128x3,merge=color",
     "alpha",
@@ -60,6 +66,12 @@ TEST(Determinism, AnyInstructionSetAndNumberOfThreads) {
   }
 }
 
+// In bounded memory and in one pass: pixels are closed while the raster goes on.
+bool is_one_pass(const std::string& spec) {
+  return spec.find("passes=0") == spec.npos && spec.find("rules=") == spec.npos &&
+         (spec.starts_with("beam:order=stream") || (spec.starts_with("beam") && spec.find("order=") == spec.npos));
+}
+
 // Pictures and counters with tiles from a single quad to one that is larger than the frame.
 TEST(Determinism, AnyTileSize) {
   const Trace trace = random_trace(90, 70, 200, 5);
@@ -76,6 +88,8 @@ TEST(Determinism, AnyTileSize) {
       EXPECT_EQ(found.image.rgba, expected.image.rgba);
       EXPECT_EQ(found.pixel_counters, expected.pixel_counters);
       ASSERT_EQ(found.stages.size(), expected.stages.size());
+      // In one pass, a closed pixel hides what the raster has not found yet, and that depends on the tile.
+      if (is_one_pass(spec)) continue;
       for (std::size_t i = 0; i < found.stages.size(); ++i) {
         StageCounters a = found.stages[i], b = expected.stages[i];
         EXPECT_EQ(a.items_out, b.items_out) << a.stage;
@@ -103,6 +117,8 @@ TEST(Determinism, TheFrameIsTheSameWhereverTilesFallInIt) {
   frame.projection = half * frame.projection;
   for (const std::string spec : kSpecs) {
     if (spec.starts_with("dvm")) continue;  // its random choices depend on the pixel's place in the frame
+    if (is_one_pass(spec) || spec.find("near-first") != spec.npos)
+      continue;  // bins are sorted as a whole, and sums are rounded by a triangle's number
     const Technique technique = parse_technique(spec);
     const Image a = technique.render(whole, 0, {2}).image, b = technique.render(part, 0, {2}).image;
     for (std::size_t y = 0; y < 48; ++y) {

@@ -58,7 +58,8 @@ void add_column(std::vector<PixelSpaceTriangle>& triangles, double x0, double x1
 
 TEST(ErrorCauses, PartsAddUpToEachPixelsError) {
   const Trace trace = random_trace(40, 24, 150, 7);
-  for (const char* spec : {"beam", "beam:bits=32", "beam:rules=paper", "beam:rules=paper,fuzzy=mix,tiny=3", "alpha"}) {
+  for (const char* spec : {"beam:order=sorted", "beam:order=sorted,bits=32", "beam:rules=paper",
+                           "beam:rules=paper,fuzzy=mix,tiny=3", "alpha"}) {
     const Explained found = explain(spec, trace);
     ASSERT_EQ(found.layers.size(), kErrorCauses.size());
     double largest = 0;
@@ -129,7 +130,7 @@ TEST(ErrorCauses, RedGivesWayWhereGreenIsHidden) {
 }
 
 TEST(ErrorCauses, OnlyTechniquesThatTellTheirWeightsAreExplained) {
-  EXPECT_TRUE(parse_technique("beam:bits=64").has_weights);
+  EXPECT_TRUE(parse_technique("beam:order=sorted,bits=64").has_weights);
   EXPECT_FALSE(parse_technique("msaa:8").has_weights);
 }
 

@@ -61,7 +61,7 @@ TEST(HandWorked, TriangleBeam) {
   constexpr std::uint64_t kPairs = 13, kFragments = 10, kWhole = 1, kPartial = kFragments - kWhole, kFragment = 62,
                           kPair = 16, kRecord = 12 + 4, kHead = 4;
   expect_bytes(
-      "paper_triangle.json", "beam",
+      "paper_triangle.json", "beam:order=sorted",
       {{"vertex_setup", 1, 1, 48, kSetup, kTriangleSetup, kTriangleSetup, kTriangleSetup},
        {"conservative_raster", 1, kPairs, 88 + 4 * (kPairs + 1) + kPairs * (kPair + 4), kPairs * kPair + 4,
         kTriangleRaster, kTriangleRaster, kTriangleRaster},
@@ -102,7 +102,7 @@ TEST(HandWorked, QuadsBeam) {
                           kRecord = 12 + 4, kHead = 4;
   constexpr std::uint64_t kSetupSectors = 13 * 3 + 13 * 4 + 12 * 4 + 12 * 3, kAttributeSectors = 10 + 20 + 18 + 18;
   expect_bytes(
-      "paper_quads.json", "beam",
+      "paper_quads.json", "beam:order=sorted",
       {{"vertex_setup", 4, 4, 2 * 72, 4 * kSetup, 160 + 352 + 128, 160 + 352 + 128, 160 + 352 + 128},
        {"conservative_raster", 4, kPairs, 4 * 88 + 4 * (kPairs + 4) + kPairs * (kPair + 4), kPairs * kPair + 4 * 4,
         2 * 32 + 352, 2 * 32 + 352, 2 * 32 + 352},
@@ -125,16 +125,16 @@ TEST(HandWorked, BytesOfAPixel) {
   };
   EXPECT_EQ(bytes("msaa:1", 2, 3), 4 + 4 + 6) << "depth read and written, colour written";
   EXPECT_EQ(bytes("acaa:1", 2, 3), 4 + 4 + 4 + 2 * 8) << "depth again; the accumulator read and written";
-  EXPECT_EQ(bytes("beam", 2, 3), 3 * 4 + 3 * 16 + 42)
+  EXPECT_EQ(bytes("beam:order=sorted", 2, 3), 3 * 4 + 3 * 16 + 42)
       << "head exchanged, and read; record written, sorted, put into a window; aggregate";
   EXPECT_EQ(bytes("visibility", 2, 3), 4 + 4 + 4 + 8 + 6) << "a number in place of colour; G-buffer, colour written";
   EXPECT_EQ(bytes("deferred", 2, 3), 4 + 4 + 4 + 8 + 6) << "depth again in place of the number";
   EXPECT_EQ(bytes("dvm", 2, 3), 8 * (4 + 4 + 4) + 9 + 8 + 6) << "8 samples, one of which is shaded";
   for (const char* spec : {"msaa:1", "acaa:1", "deferred"}) EXPECT_EQ(bytes(spec, 0, 0), 0) << spec;
-  EXPECT_EQ(bytes("beam", 0, 0), 4) << "the head";
+  EXPECT_EQ(bytes("beam:order=sorted", 0, 0), 4) << "the head";
   RunOptions run{1};
   run.memory.modelled = false;
-  EXPECT_FALSE(parse_technique("beam").render(trace, 0, run).pixel_counters.contains("bytes"));
+  EXPECT_FALSE(parse_technique("beam:order=sorted").render(trace, 0, run).pixel_counters.contains("bytes"));
 }
 
 }  // namespace

@@ -17,7 +17,7 @@ namespace {
 TEST(Technique, FramebufferBytesAreThePublishedOnes) {
   // Slide 23 of Crassin et al. 2018: beam takes 42 bytes with colour. MSAA 8x and 32x with 4-byte depth and fp16 RGB
   // take 80 and 320.
-  EXPECT_EQ(parse_technique("beam").framebuffer_bytes_per_pixel(), 42u);
+  EXPECT_EQ(parse_technique("beam:order=sorted").framebuffer_bytes_per_pixel(), 42u);
   EXPECT_EQ(parse_technique("beam:rules=paper").framebuffer_bytes_per_pixel(), 42u);
   EXPECT_EQ(parse_technique("beam:rules=paper,storage=text").framebuffer_bytes_per_pixel(), 32u);
   EXPECT_EQ(parse_technique("msaa:8").framebuffer_bytes_per_pixel(), 80u);
@@ -26,9 +26,10 @@ TEST(Technique, FramebufferBytesAreThePublishedOnes) {
 }
 
 TEST(Technique, StreamingStatesFitTheirBudgets) {
-  EXPECT_EQ(parse_technique("beam:order=stream").framebuffer_bytes_per_pixel(), 80u);  // as many as an MSAA 8x buffer
-  EXPECT_EQ(parse_technique("beam:order=stream,bits=64,layers=1").framebuffer_bytes_per_pixel(), 32u);
-  EXPECT_EQ(parse_technique("beam:order=stream,bits=256,layers=1").framebuffer_bytes_per_pixel(), 80u);
+  EXPECT_EQ(parse_technique("beam:order=stream,passes=0").framebuffer_bytes_per_pixel(),
+            80u);  // as many as an MSAA 8x buffer
+  EXPECT_EQ(parse_technique("beam:order=stream,passes=0,bits=64,layers=1").framebuffer_bytes_per_pixel(), 32u);
+  EXPECT_EQ(parse_technique("beam:order=stream,passes=0,bits=256,layers=1").framebuffer_bytes_per_pixel(), 80u);
   EXPECT_EQ(parse_technique("z3").framebuffer_bytes_per_pixel(), 50u);
   EXPECT_EQ(parse_technique("z3:shape=32x2").framebuffer_bytes_per_pixel(), 36u);
   EXPECT_EQ(parse_technique("z3:shape=128x3").framebuffer_bytes_per_pixel(), 74u);
@@ -60,9 +61,10 @@ TEST(Technique, WrongSpecsSayWhatWouldBeRight) {
   const std::string msaa_rates = "N of msaa:N must be 1, 2, 4, 8, 16, 32, 64, 128, 256, 512 or 1024";
   const std::string acaa_rates = "N of acaa:N must be 1, 2, 4, 8, 16, 32, 64, 128 or 256";
   const std::string taa_rates = "N of taa:N must be 1, 2, 4, 8 or 16";
-  const std::string of_beam = "; it has bits, storage, order and rules";
+  const std::string of_beam = "; it has bits, slots, bin, order and rules";
   const std::string of_paper =
-      "; it has mask, sort, tiny, overlap, local, fuzzy, extents, slab, plane, thickness, storage, order and rules";
+      "; it has mask, sort, tiny, overlap, local, fuzzy, extents, slab, plane, thickness, storage, order, "
+      "layers and rules";
   const std::string of_dvm = "; it has blend, seed and material";
   for (const auto& [spec, error] : std::map<std::string, std::string>{
            {"", names},
@@ -93,20 +95,21 @@ TEST(Technique, WrongSpecsSayWhatWouldBeRight) {
            {"beam:64", "beam has no option '64'" + of_beam},
            {"beam:mask=fast", "beam has no option 'mask'" + of_beam},
            {"beam:fuzzy=mix", "beam has no option 'fuzzy'" + of_beam},
-           {"beam:bits=64,mask=exact", "beam has no option 'mask'" + of_beam},
-           {"beam:bits=48", "bits must be 32, 64, 128 or 256"},
-           {"beam:bits=", "bits must be 32, 64, 128 or 256"},
-           {"beam:storage=text", "storage must be packed or float32"},
+           {"beam:order=sorted,bits=64,mask=exact",
+            "beam:order=sorted has no option 'mask'; it has bits, storage, order and rules"},
+           {"beam:order=sorted,bits=48", "bits must be 32, 64, 128 or 256"},
+           {"beam:order=sorted,bits=", "bits must be 32, 64, 128 or 256"},
+           {"beam:order=sorted,storage=text", "storage must be packed or float32"},
            {"beam:mask=table,mask=table", "'mask' is there twice"},
-           {"beam:order=primitive", "order must be sort or stream"},
+           {"beam:order=primitive", "order must be near-first, sorted or stream"},
            {"beam:rules=slides", "rules must be conserve or paper"},
            {"beam:rules=conserve,rules=paper", "'rules' is there twice"},
-           {"beam:order=stream,layers=2", "layers must be 1 or 5"},
-           {"beam:order=stream,passes=0", "passes must be a whole number from 1 to 1000"},
-           {"beam:order=stream,passes=1.5", "passes must be a whole number from 1 to 1000"},
-           {"beam:order=stream,storage=packed",
-            "beam:order=stream has no option 'storage'; it has bits, layers, passes, order and rules"},
-           {"beam:rules=paper,order=stream", "beam:order=stream must be without rules=paper"},
+           {"beam:order=stream,passes=0,layers=2", "layers must be 1 or 5"},
+           {"beam:order=stream,passes=-1", "passes must be a whole number from 0 to 1000"},
+           {"beam:order=stream,passes=1.5", "passes must be a whole number from 0 to 1000"},
+           {"beam:order=stream,passes=0,storage=packed",
+            "beam:order=stream has no option 'storage'; it has bits, passes, slots, layers, order and rules"},
+           {"beam:rules=paper,order=sort", "order must be sorted, near-first or stream"},
            {"beam:rules=paper,bits=64", "beam:rules=paper has no option 'bits'" + of_paper},
            {"beam:rules=paper,mask=fast", "mask must be table or exact"},
            {"beam:rules=paper,tiny=2", "tiny must be 1 or 3"},
@@ -137,8 +140,8 @@ TEST(Technique, WrongSpecsSayWhatWouldBeRight) {
 }
 
 TEST(Technique, DefaultsMayBeWritten) {
-  for (const char* spec : {"beam:rules=conserve", "beam:order=sort", "beam:order=sort,rules=conserve,bits=64",
-                           "beam:rules=paper,order=sort", "beam:rules=conserve,order=stream",
+  for (const char* spec : {"beam:rules=conserve", "beam:order=sorted", "beam:order=sorted,rules=conserve,bits=64",
+                           "beam:rules=paper,order=sorted", "beam:rules=conserve,order=stream",
                            "beam:layers=1,order=stream", "beam:tiny=3,rules=paper"})
     EXPECT_EQ(parse_technique(spec).spec, spec);
 }

@@ -110,5 +110,107 @@ TEST(PlaneOrder, NearestOnEveryTargetEqualsTheFormulaOnFloat) {
   });
 }
 
+// Masks without positions, with all of them, with one, and random ones; a word may be empty while others are not.
+std::vector<std::array<std::uint32_t, 8>> hard_masks(Random& random) {
+  std::vector<std::array<std::uint32_t, 8>> masks(2);
+  masks[1].fill(~0u);
+  for (std::size_t position = 0; position < 256; position += 5) {
+    masks.emplace_back();
+    masks.back()[position / 32] = 1u << (position % 32);
+  }
+  for (int i = 0; i < 60; ++i) {
+    masks.emplace_back();
+    for (std::uint32_t& word : masks.back()) word = random.one_in(3) ? 0 : random.word();
+  }
+  return masks;
+}
+
+bool has(const std::array<std::uint32_t, 8>& mask, std::size_t position) {
+  return mask[position / 32] >> (position % 32) & 1;
+}
+
+TEST(PlaneOrder, FarthestOnEveryTargetEqualsTheFormulaOnFloat) {
+  Random random(64);
+  SCOPED_TRACE(random.name());
+  const std::vector<DepthPlane<float>> planes = hard_planes(random);
+  const std::vector<std::array<std::uint32_t, 8>> masks = hard_masks(random);
+  for (const int positions : {32, 64, 128, 256}) {
+    const std::vector<SamplePattern> patterns = cell_patterns(positions);
+    on_every_target([&] {
+      for (std::size_t i = 0; i < planes.size(); ++i) {
+        const std::array<std::uint32_t, 8>& mask = masks[i % masks.size()];
+        float expected = kInFront;
+        for (std::size_t p = 0; p < static_cast<std::size_t>(positions); ++p)
+          expected = farthest_formula(planes[i], position_u(patterns[p / 32], p % 32),
+                                      position_v(patterns[p / 32], p % 32), has(mask, p), expected);
+        ASSERT_EQ(farthest_depth(planes[i], patterns.data(), patterns.size(), mask.data()), expected) << i;
+      }
+    });
+  }
+}
+
+TEST(PlaneOrder, FarthestEqualsIntegerArithmetic) {
+  Random random(65);
+  SCOPED_TRACE(random.name());
+  const std::vector<SamplePattern> patterns = cell_patterns(256);
+  const std::vector<std::array<std::uint32_t, 8>> masks = hard_masks(random);
+  on_every_target([&] {
+    for (const auto& mask : masks) {
+      const auto slope = [&] { return random.integer(-8, 8) * random.integer(0, 100); };
+      const IntegerPlane plane{random.integer(-1024, 0), slope(), slope()};
+      bool any = false;
+      std::int64_t farthest = 0;
+      for (std::size_t p = 0; p < 256; ++p) {
+        if (!has(mask, p)) continue;
+        const std::int64_t depth = plane.at(patterns[p / 32], p % 32);
+        farthest = any ? std::max(farthest, depth) : depth;
+        any = true;
+      }
+      // Depths of these planes may be in front of everything that is visible, but an owner's are not.
+      const float expected = any ? std::max(kInFront, static_cast<float>(farthest) / (1 << 18)) : kInFront;
+      ASSERT_EQ(farthest_depth(plane.plane(), patterns.data(), patterns.size(), mask.data()), expected);
+    }
+  });
+}
+
+TEST(PlaneOrder, PositionSumsAreSumsOfIntegers) {
+  Random random(66);
+  SCOPED_TRACE(random.name());
+  const std::vector<std::array<std::uint32_t, 8>> masks = hard_masks(random);
+  for (const int positions : {32, 64, 128, 256}) {
+    const std::vector<SamplePattern> patterns = cell_patterns(positions);
+    on_every_target([&] {
+      for (std::size_t i = 0; i < masks.size(); ++i) {
+        std::int32_t x = 0, y = 0;
+        for (std::size_t p = 0; p < static_cast<std::size_t>(positions); ++p)
+          if (has(masks[i], p)) x += patterns[p / 32].x[p % 32], y += patterns[p / 32].y[p % 32];
+        const PositionSums sums = position_sums(patterns.data(), patterns.size(), masks[i].data());
+        ASSERT_EQ(sums.x, x) << i;
+        ASSERT_EQ(sums.y, y) << i;
+      }
+    });
+  }
+}
+
+TEST(PlaneOrder, NearerLooksOnlyAtPositionsOfTheMask) {
+  Random random(67);
+  SCOPED_TRACE(random.name());
+  const std::vector<DepthPlane<float>> planes = hard_planes(random);
+  const std::vector<std::array<std::uint32_t, 8>> masks = hard_masks(random);
+  for (const int positions : {32, 128, 256}) {
+    const std::vector<SamplePattern> patterns = cell_patterns(positions);
+    on_every_target([&] {
+      for (std::size_t i = 1; i < planes.size(); ++i) {
+        const std::array<std::uint32_t, 8>& where = masks[i % masks.size()];
+        std::uint32_t all[8], some[8];
+        std::fill(some, some + 8, ~0u);
+        nearer_positions(planes[i], planes[i - 1], patterns.data(), patterns.size(), all);
+        nearer_positions(planes[i], planes[i - 1], patterns.data(), patterns.size(), some, where.data());
+        for (std::size_t w = 0; w < patterns.size(); ++w) ASSERT_EQ(some[w], all[w] & where[w]) << i << " word " << w;
+      }
+    });
+  }
+}
+
 }  // namespace
 }  // namespace beampipe

@@ -210,7 +210,7 @@ std::vector<Formula> our_formulas() {
       {"beam.bytes.without_color", constant(bytes_without_color("beam:rules=paper"))},
       {"beam.bytes", constant(bytes_of("beam:rules=paper"))},
       {"beam.bytes.three_coefficients", constant(kTextBytesWithoutColor)},
-      {"beam.bytes.area_conserving", constant(bytes_of("beam"))},
+      {"beam.bytes.area_conserving", constant(bytes_of("beam:order=sorted"))},
       {"beam.bytes_over_msaa_8", constant(bytes_of("beam:rules=paper") / bytes_of("msaa:8"))},
       {"msaa_8.bytes.without_color", constant(bytes_without_color("msaa:8"))},
       {"msaa_8.bytes", constant(bytes_of("msaa:8"))},

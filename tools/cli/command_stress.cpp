@@ -20,11 +20,13 @@ namespace beampipe {
 namespace {
 
 struct StressArguments {
-  std::vector<std::string> specs = {"beam",
-                                    "beam:storage=float32",
-                                    "beam:bits=32",
-                                    "beam:order=stream",
-                                    "beam:order=stream,bits=64,layers=1",
+  std::vector<std::string> specs = {"beam:order=near-first",
+                                    "beam:order=sorted",
+                                    "beam:order=stream,passes=1",
+                                    "beam:order=sorted,storage=float32",
+                                    "beam:order=sorted,bits=32",
+                                    "beam:order=stream,passes=0",
+                                    "beam:order=stream,passes=0,bits=64,layers=1",
                                     "z3",
                                     "z3:shape=128x3",
                                     "beam:rules=paper",

@@ -86,6 +86,7 @@ Json to_json(const FrameReport& frame, const TechniqueReport& result, const Hard
   if (frame.flicker) json["flicker"] = *frame.flicker;
   json["wall_ms"] = to_json(frame.wall_ms);
   json["a_buffer_peak_bytes"] = frame.a_buffer_peak_bytes;
+  json["bin_pixels"] = frame.bin_pixels;
   StageCounters all;
   for (const StageCounters& stage : frame.stages) all += stage;
   const Json sums = to_json(all);
@@ -119,6 +120,7 @@ FrameReport frame_of(const Json& json) {
   if (const Json* flicker = json.find("flicker")) frame.flicker = flicker->get<double>();
   frame.wall_ms = wall_time_of(json.at("wall_ms"));
   frame.a_buffer_peak_bytes = json.at("a_buffer_peak_bytes").get<std::uint64_t>();
+  frame.bin_pixels = json.at("bin_pixels").get<std::uint64_t>();
   for (const Json& buffer : json.at("buffers").elements())
     if (buffer.at("name") != kABuffer)
       frame.buffers.push_back({buffer.at("name").get<std::string>(), buffer.at("peak_bytes").get<std::uint64_t>(),

@@ -108,6 +108,7 @@ FrameReport write_frame(OutputFolder& output, const std::string& spec, std::size
   report.buffers = result.buffers;
   report.stages = result.stages;
   report.pixels = std::uint64_t{result.image.width} * result.image.height;
+  report.bin_pixels = result.bin_pixels;
   Planes counters{result.image.width, result.image.height, result.pixel_counters};
   if (reference) {
     report.error = measure_named_error(spec, frame, result.image, *reference);

@@ -49,6 +49,7 @@ struct FrameReport {
   std::vector<StageCounters> stages;
   std::map<std::string, PixelCounterStats> pixel_counters;  // by name
   std::uint64_t pixels = 0;
+  std::uint64_t bin_pixels = 0;  // of a whole bin
 };
 
 // The same frames with their triangles in another order.
@@ -72,6 +73,9 @@ struct TechniqueReport {
 
   // Bytes of the framebuffer and of the A-buffer in the frame where it is largest.
   double peak_bytes_per_pixel() const;
+
+  // All buffers that a bin has on chip at their peaks, over the pixels of a bin; in the frame where that is largest.
+  double on_chip_bytes_per_pixel() const;
 };
 
 struct Report {

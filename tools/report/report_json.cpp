@@ -11,7 +11,9 @@ namespace {
 Json to_json(const TechniqueReport& result, const Hardware& hardware) {
   Json json = {{"technique", result.technique},
                {"framebuffer_bytes_per_pixel", result.framebuffer_bytes_per_pixel},
-               {"peak_bytes_per_pixel", result.peak_bytes_per_pixel()}};
+               {"peak_bytes_per_pixel", result.peak_bytes_per_pixel()},
+               {"on_chip_bytes_per_pixel", result.on_chip_bytes_per_pixel()},
+               {"off_chip_bytes_per_pixel", result.peak_bytes_per_pixel()}};
   json["framebuffer"] = Json::array();
   for (const Surface& surface : result.framebuffer) {
     json["framebuffer"].push_back(

@@ -50,6 +50,7 @@ double format_limit(const std::string& spec) {
 
 // The limit for the spec. If there is none, the last option is dropped, then the one before it, and so on.
 const StatedLimit* stated_limit(const HardCase& hard_case, std::string spec) {
+  if (spec == "beam") spec = "beam:order=near-first";  // its default, whose limits are its own
   while (true) {
     const auto stated = hard_case.limits.find(spec);
     if (stated != hard_case.limits.end()) return &stated->second;

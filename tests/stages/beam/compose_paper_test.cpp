@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "stages/beam/paper_fragment.h"
 #include "tests/stages/beam_pixels.h"
 
 namespace beampipe {

@@ -8,6 +8,7 @@
 #include "stages/beam/beam_fragment.h"
 #include "stages/beam/compose_paper.h"
 #include "stages/beam/compose_z3.h"
+#include "stages/beam/paper_fragment.h"
 #include "stages/picture/shade.h"
 #include "stages/raster/conservative_raster.h"
 #include "tests/stages/scene_twins.h"

@@ -1,0 +1,118 @@
+// The beam in sorted order. An A-buffer sorts the pairs of each pixel by depth. Window by window, near to far, pairs
+// become shaded fragments and are composed, until the pixel is closed.
+#include <stdexcept>
+#include <string>
+
+#include "pipeline/bins/bin_weights.h"
+#include "pipeline/bins/render_bins.h"
+#include "pipeline/technique_table.h"
+#include "pipeline/units/a_buffer_unit.h"
+#include "pipeline/units/compose_units.h"
+#include "pipeline/units/fragment_units.h"
+#include "pipeline/units/raster_units.h"
+#include "stages/data/beam_aggregate.h"
+
+namespace beampipe {
+namespace {
+
+struct SortedOptions {
+  int positions = 256;  // of the mask: 32, 64, 128 or 256
+  Storage storage = Storage::packed;
+};
+
+std::vector<Surface> sorted_framebuffer(const SortedOptions& sorted) {
+  const auto mask_bytes = static_cast<std::uint32_t>(sorted.positions) / 8;
+  return {{"coverage", "R32F", 4},
+          {"mask", times("R32UI", mask_bytes / 4), mask_bytes},
+          sorted.storage == Storage::packed ? Surface{"color", "RGB16F", 6} : Surface{"color", "RGB32F", 12}};
+}
+
+// Depth is compared position by position, so merge order does not matter; 0 is recorded for every fragment.
+void add_weights(const std::vector<Fragment>& fragments, const std::vector<float>& areas,
+                 const std::vector<Pair>& whole, const Tile& tile, BinWeights& weights) {
+  for (const Pair& pair : whole) weights.at(tile.index(pair.x, pair.y)) = {{pair.triangle, 1.0f, 0, false}};
+  for (std::size_t i = 0; i < fragments.size(); ++i)
+    weights.at(fragments[i].pixel).push_back({fragments[i].triangle, areas[i], 0, fragments[i].tiny});
+}
+
+// The areas of a closed pixel are scaled so that their sum is 1.
+template <class Compose>
+void scale_closed(const Compose& compose, BinWeights& weights) {
+  for (std::size_t pixel = 0; pixel < weights.pixels(); ++pixel) {
+    if (compose.is_open(pixel)) continue;
+    float sum = 0;
+    for (const SurfaceWeight& surface : weights.at(pixel)) sum += surface.weight;
+    for (SurfaceWeight& surface : weights.at(pixel)) surface.weight /= sum;
+  }
+}
+
+template <std::size_t Words, class Channel>
+FrameResult render_shape(const Trace& trace, const Frame& frame, const SortedOptions& sorted, const RunOptions& run) {
+  const FrameContext context(trace, frame, run);
+  const PositionSet& positions = cell_positions(sorted.positions);
+  const PositionGrid grid(sorted.positions);
+  const BeamFragmentOptions fragment_options = grid_options(grid, conserving_fragment_bytes(sorted.positions));
+  const BinPlan plan{
+      .stages = {"conservative_raster", "a_buffer", "windows", "beam_fragment", "shade", "compose", "resolve"},
+      .pair_bytes = kPairWorkingBytes + kSortBytes};
+  return render_bins(context, plan, [&](Bin& bin) {
+    ConservativeRasterUnit raster(bin, "waiting_pairs", PairDepths::bounds, ConservativeRasterUnit::Hidden::left_out);
+    ABufferUnit a_buffer(bin, kPairWithDepthBytes, kStoredPairBytes);
+    BeamFragmentUnit make_fragments(bin, fragment_options);
+    ShadeUnit shade(bin);
+    ComposeBeamUnit<Words, Channel> compose(bin, positions);
+    BinWeights weights(bin);
+    std::vector<float>& specks = bin.pixel_counter("tiny_triangles");
+
+    const std::vector<Pair>& pairs = raster();
+    WindowsUnit windows(bin, pairs, a_buffer(sort_records(pairs, bin.tile)));
+    while (windows.next([&](std::uint32_t pixel) { return compose.is_open(pixel); })) {
+      std::vector<Fragment>& fragments = make_fragments.fetched(windows.pairs, "window_fragments");
+      shade.visible(fragments);
+      shade.visible(windows.whole);
+      compose(fragments, windows.whole);
+      count_specks(fragments, specks);
+      if (weights) add_weights(fragments, compose.areas(), windows.whole, bin.tile, weights);
+    }
+    shade.finish_fetches();
+    a_buffer.charge_memory(windows.finish(), windows.stage);
+    bin.finish(compose.resolve_aggregates(sorted_framebuffer(sorted)));
+    if (weights) scale_closed(compose, weights);
+    weights.finish();
+  });
+}
+
+FrameResult render_sorted(const Trace& trace, const Frame& frame, const SortedOptions& sorted, const RunOptions& run) {
+#define BEAMPIPE_RENDER(words, channel)                                                                           \
+  if (sorted.positions == 32 * words && (sorted.storage == Storage::packed) == std::is_same_v<channel, HalfBits>) \
+    return render_shape<words, channel>(trace, frame, sorted, run);
+  BEAMPIPE_STORED_AGGREGATES(BEAMPIPE_RENDER)
+#undef BEAMPIPE_RENDER
+  throw std::invalid_argument("no aggregate of " + std::to_string(sorted.positions) + " positions");
+}
+
+}  // namespace
+
+TechniqueKind beam_sorted_kind() {
+  return {.name = "beam",
+          .variant = {"order", "sorted", "near-first"},
+          .description =
+              "the triangles of a pixel, sorted by depth, become fragments with analytic coverage and a mask, "
+              "composed near to far into one area-conserving aggregate until the pixel is closed",
+          .source = "ours, after Crassin et al. 2018",
+          .make = make_from(
+              SortedOptions{},
+              [](SortedOptions& o) -> SpecOptions {
+                return {choice("bits", o.positions, {{"32", 32}, {"64", 64}, {"128", 128}, {"256", 256}},
+                               "positions of the mask"),
+                        choice("storage", o.storage, {{"packed", Storage::packed}, {"float32", Storage::float32}},
+                               "format of the aggregate's colour: fp16, or float32")};
+              },
+              [](const SortedOptions& o) {
+                return Technique{.framebuffer = sorted_framebuffer(o),
+                                 .render = bind_options(render_sorted, o),
+                                 .has_weights = true};
+              })};
+}
+
+}  // namespace beampipe

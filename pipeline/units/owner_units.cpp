@@ -1,0 +1,35 @@
+#include "pipeline/units/owner_units.h"
+
+#include <algorithm>
+
+#include "stages/raster/bin_sort_cost.h"
+
+namespace beampipe {
+
+float brightest_of(const std::vector<glm::vec3>& colors) {
+  float brightest = 0;
+  for (const glm::vec3& color : colors) brightest = std::max({brightest, color[0], color[1], color[2]});
+  return brightest > 0 ? brightest : 1.0f;
+}
+
+void hold_open_pixels(Bin& bin, std::size_t bytes_per_pixel) {
+  bin.holds("open_pixels", bin.tile.pixels() * bytes_per_pixel);
+  if (bin.models_memory()) bin.pixel_counter("bytes").assign(bin.tile.pixels(), kPictureBytes);
+}
+
+OrderedList sort_bin(Bin& bin) {
+  const BinStage stage = bin.stage("bin_sort");
+  OrderedList ordered = bin_sort(bin.triangles(), bin.list, bin.tile, stage.timed());
+  // Binning writes the keys beside the list. The sort works in L2 if the list and its copy fit there.
+  const std::uint64_t entries = bin.list.size() * (sizeof(std::uint32_t) + kKeyBytes);
+  stage.streams(bin.list.size() * kKeyBytes);
+  if (2 * entries > bin.memory().l2.bytes) {
+    stage.streams(2 * kSortPasses * entries);
+  } else {
+    stage.streams(bin.list.size() * kKeyBytes);
+    stage.moves_in_l2(2 * kSortPasses * entries - bin.list.size() * kKeyBytes);
+  }
+  return ordered;
+}
+
+}  // namespace beampipe

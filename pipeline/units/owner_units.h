@@ -1,0 +1,94 @@
+// Composition in bounded memory: a bin's triangles near to far, and the open pixels that own mask positions.
+#pragma once
+
+#include <optional>
+#include <stdexcept>
+#include <string>
+#include <vector>
+
+#include "pipeline/bins/bin.h"
+#include "pipeline/memory/aggregate_memory.h"
+#include "pipeline/units/fragment_units.h"
+#include "stages/beam/compose_owners.h"
+#include "stages/cost/closed_depth_cost.h"
+#include "stages/picture/resolve.h"
+#include "stages/raster/bin_sort.h"
+
+namespace beampipe {
+
+// Sorts the bin's list near to far, with its memory traffic.
+OrderedList sort_bin(Bin& bin);
+
+// The largest channel of all colours; above 0.
+float brightest_of(const std::vector<glm::vec3>& colors);
+
+// Where open pixels are kept: on chip while their bin is rendered, or in the framebuffer, through its caches.
+enum class OpenPixels { on_chip, in_memory };
+
+// The bin keeps its pixels on chip in so many bytes each; only the picture goes to memory.
+void hold_open_pixels(Bin& bin, std::size_t bytes_per_pixel);
+
+template <std::size_t Words, std::size_t Slots>
+class ComposeOwnersUnit {
+ public:
+  // `list`: the triangles in the order in which they are taken. `watermarks` may be null. `framebuffer`: the surfaces
+  // of open pixels in memory. All but the framebuffer must outlive the unit.
+  ComposeOwnersUnit(Bin& bin, const PositionSet& positions, const TriangleList& list,
+                    const std::vector<float>* watermarks, float brightest, OpenPixels where,
+                    const std::vector<Surface>& framebuffer)
+      : bin_(bin),
+        stage_(bin.stage("compose")),
+        owners_{bin.triangles(),    list,      watermarks,         bin.tile, positions,
+                bin.context.colors, brightest, bin.models_memory()},
+        maps_{bin.pixel_counter("fragments"), bin.pixel_counter("merges")},
+        pixels_(bin.tile.pixels()) {
+    if (list.size() > OwnerSlot::kMostTriangles)
+      throw std::runtime_error("a bin has " + std::to_string(list.size()) + " triangles, more than the " +
+                               std::to_string(OwnerSlot::kMostTriangles) + " that an owner can name");
+    if (where == OpenPixels::on_chip) {
+      hold_open_pixels(bin, sizeof pixels_[0]);
+    } else {
+      memory_.emplace(bin.memory(), bin.z_order(), framebuffer);
+    }
+    bin.triangle_fetches().load_setup();
+  }
+
+  // `first`: as in compose_owners.
+  void operator()(const std::vector<Fragment>& fragments, std::size_t first, ClosedDepth& closed, ShadeUnit& shade) {
+    OwnersResult result;
+    compose_owners(owners_, fragments, first, stage_.timed(), pixels_, closed, maps_, result);
+    charge(closed, stage_.counters);
+    if (memory_)
+      for (const Fragment& fragment : fragments) memory_->merge(fragment.triangle, fragment.pixel, stage_.counters);
+    finish(result, shade);
+  }
+
+  // The picture.
+  std::vector<glm::vec4> resolve_owners(ShadeUnit& shade) {
+    OwnersResult result;
+    if (memory_) {
+      memory_->flush({}, stage_.counters);
+      memory_->read_all(bin_.stage("resolve").counters);
+      if (bin_.models_memory()) memory_->add_bytes(bin_.pixel_counter("bytes"));
+    }
+    const std::vector<PixelColor> colors = finish_owners(owners_, stage_.timed(), pixels_, result);
+    finish(result, shade);
+    bin_.triangle_fetches().flush(stage_.counters);
+    return resolve(colors, bin_.background(), kColorBytes + sizeof(std::uint16_t), bin_.stage("resolve").timed());
+  }
+
+ private:
+  void finish(const OwnersResult& result, ShadeUnit& shade) {
+    for (const std::uint32_t triangle : result.fetched) bin_.triangle_fetches().depth(triangle, stage_.counters);
+    shade.visible(result.shaded);
+  }
+
+  Bin& bin_;
+  BinStage stage_;
+  OwnersBin owners_;
+  OwnersMaps maps_;
+  std::vector<OpenPixel<Words, Slots>> pixels_;
+  std::optional<AggregateMemory> memory_;
+};
+
+}  // namespace beampipe

@@ -1,0 +1,95 @@
+#include "stages/beam/compose_layers.h"
+
+#include <algorithm>
+
+#include "stages/beam/compose_layers_cost.h"
+#include "stages/beam/paper_fragment.h"
+
+namespace beampipe {
+namespace {
+
+bool is_empty(const Aggregate& aggregate) { return aggregate.mask == 0; }
+
+// Merges what lies farther away into what is nearer.
+Aggregate merged(const Aggregate& nearer, const MergeFragment& farther, const SamplePattern& pattern,
+                 const MergeRules& rules) {
+  Aggregate result = nearer;
+  merge(&farther, 1, pattern, rules, &result);
+  result.thickness = std::max(result.thickness, farther.surface.thickness);  // a fragment has none, an aggregate may
+  return result;
+}
+
+}  // namespace
+
+AggregateLayers::AggregateLayers(std::size_t pixels, std::size_t layers, PaperStorage storage)
+    : layers_(layers), storage_(storage), aggregates_(pixels * layers, kEmptyAggregate) {}
+
+Aggregate AggregateLayers::stored(const Aggregate& aggregate) const {
+  switch (storage_) {
+    case PaperStorage::slides:
+      return SlidesAggregate(aggregate);
+    case PaperStorage::text:
+      return TextAggregate(aggregate);
+    case PaperStorage::float32:
+      break;
+  }
+  return aggregate;
+}
+
+void AggregateLayers::add(const std::vector<Fragment>& fragments, const SamplePattern& pattern, const MergeRules& rules,
+                          StageCounters& counters, std::vector<float>& merges) {
+  LayersWork work;
+  std::vector<MergeFragment> all(layers_ + 1);  // of one pixel, near to far
+  for (const Fragment& fragment : fragments) {
+    Aggregate* const layers = aggregates_.data() + fragment.pixel * layers_;
+    const MergeFragment incoming = merge_fragment(fragment);
+    ++work.fragments;
+    if (layers_ == 1) {
+      ++work.merges;
+      merges[fragment.pixel] += !is_empty(layers[0]);
+      layers[0] = stored(merged(layers[0], incoming, pattern, rules));
+      continue;
+    }
+    std::size_t count = 0, place = 0;
+    for (; count < layers_ && !is_empty(layers[count]); ++count) {
+      all[count] = {layers[count], 0u};
+      place += layers[count].z_min <= incoming.surface.z_min;
+    }
+    std::move_backward(all.begin() + static_cast<std::ptrdiff_t>(place),
+                       all.begin() + static_cast<std::ptrdiff_t>(count),
+                       all.begin() + static_cast<std::ptrdiff_t>(count) + 1);
+    all[place] = incoming;
+    ++count;
+    if (count > layers_) {
+      std::size_t closest = 0;
+      float least = depth_between(all[0].surface, all[1].surface);
+      for (std::size_t k = 1; k + 1 < count; ++k)
+        if (const float gap = depth_between(all[k].surface, all[k + 1].surface); gap < least) least = gap, closest = k;
+      all[closest] = {merged(all[closest].surface, all[closest + 1], pattern, rules), 0u};
+      all.erase(all.begin() + static_cast<std::ptrdiff_t>(closest) + 1);
+      all.emplace_back();
+      --count;
+      ++work.merges;
+      ++merges[fragment.pixel];
+    }
+    for (std::size_t k = 0; k < count; ++k) layers[k] = stored(all[k].surface);
+  }
+  charge(work, layers_, pattern, rules, storage_, counters);
+}
+
+std::vector<Aggregate> AggregateLayers::finish(const SamplePattern& pattern, const MergeRules& rules,
+                                               StageCounters& counters) const {
+  LayersWork work;
+  std::vector<Aggregate> result;
+  for (std::size_t first = 0; first < aggregates_.size(); first += layers_) {
+    Aggregate pixel = aggregates_[first];
+    for (std::size_t k = 1; k < layers_ && !is_empty(aggregates_[first + k]); ++k, ++work.merges)
+      pixel = merged(pixel, {aggregates_[first + k], 0u}, pattern, rules);
+    work.finished += !is_empty(pixel);
+    result.push_back(pixel);
+  }
+  charge(work, layers_, pattern, rules, storage_, counters);
+  return result;
+}
+
+}  // namespace beampipe

@@ -1,0 +1,41 @@
+// What compose_layers is charged.
+#pragma once
+
+#include "simd/merge.h"
+#include "stages/beam/paper_fragment.h"
+#include "stages/cost/counting.h"
+#include "stages/data/paper_aggregate.h"
+
+namespace beampipe {
+
+// How often each operation was done.
+struct LayersWork {
+  std::uint64_t fragments = 0, merges = 0;
+  std::uint64_t finished = 0;  // pixels whose aggregates were read and merged at the end
+};
+
+// Per fragment, for each layer: is it nearer, and how close are it and the next one?
+inline OperationCounts layer_cost() {
+  return count_operations([](OperationCounts& counts) {
+    const Counted<float> one(1.0f, counts);
+    AggregateOf<Counted<float>, Counted<std::uint32_t>> layer;
+    layer.z_min = layer.z_max = one;
+    static_cast<void>(layer.z_min <= one);
+    static_cast<void>(depth_between(layer, layer) < one);
+  });
+}
+
+inline void charge(const LayersWork& work, std::size_t layers, const SamplePattern& pattern, const MergeRules& rules,
+                   PaperStorage storage, StageCounters& counters) {
+  const std::uint64_t pixel_bytes = layers * paper_aggregate_bytes(storage);
+  counters.items_in += work.fragments;
+  counters.items_out += work.fragments;
+  counters.ops += merge_cost(pattern, rules, storage) * work.merges;
+  if (layers > 1) counters.ops += layer_cost() * (layers * work.fragments);
+  counters.bytes_read += work.fragments * (paper_aggregate_bytes(storage) + pixel_bytes) + work.finished * pixel_bytes;
+  counters.bytes_written += work.fragments * pixel_bytes;
+  counters.lanes_used += work.fragments;
+  counters.lanes_issued += work.fragments;
+}
+
+}  // namespace beampipe

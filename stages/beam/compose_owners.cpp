@@ -1,0 +1,379 @@
+#include "stages/beam/compose_owners.h"
+
+#include <algorithm>
+#include <array>
+
+#include "simd/conserve.h"
+#include "simd/plane_order.h"
+#include "stages/beam/compose_owners_cost.h"
+#include "stages/beam/owner_formulas.h"
+#include "stages/data/pixel_depth.h"
+
+namespace beampipe {
+namespace {
+
+template <std::size_t Words, std::size_t Slots>
+class OwnerComposer {
+ public:
+  using Pixel = OpenPixel<Words, Slots>;
+
+  OwnerComposer(const OwnersBin& bin, OwnersResult& result)
+      : bin_(bin), result_(result), width_(static_cast<std::uint32_t>(bin.tile.width())) {}
+
+  enum class Outcome { hidden, composed, merged };  // merged: two owners became one
+
+  // `number`: of the fragment's triangle in the list. Whether closed pixels hide the fragment is decided here, although
+  // the raster has left out many already: so pictures do not depend on how far the raster is ahead.
+  Outcome add(const Fragment& fragment, std::uint32_t number, Pixel& pixel, ClosedDepth& closed) {
+    ++work.fragments;
+    const std::uint32_t row = fragment.pixel / width_;
+    x_ = bin_.tile.x0 + static_cast<std::int32_t>(fragment.pixel - row * width_);
+    y_ = bin_.tile.y0 + static_cast<std::int32_t>(row);
+    if (closed.is_hidden(x_, y_, fragment.z_min)) return Outcome::hidden;
+    if (fragment.mask.none()) {
+      add_speck(fragment, pixel);
+      return Outcome::composed;
+    }
+    ++work.masks;
+    const WideMask empty = pixel.states.positions_in(Pixel::kEmpty);
+    WideMask claimed = fragment.mask & empty;
+    bool closes = !empty.none();  // may this fragment close the pixel, or close it nearer than before?
+    std::size_t room = Slots;
+    for (std::size_t k = 0; k < Slots; ++k) {
+      OwnerSlot& slot = pixel.slots[k];
+      if (!slot.is_free()) {
+        const WideMask owned = pixel.states.positions_in(Pixel::owned_by(k)), contested = owned & fragment.mask;
+        if (contested.none()) continue;
+        const WideMask won = positions_won(fragment, slot, contested);
+        claimed = claimed | won;
+        if (won != owned) continue;
+        slot.clear();
+        closes = true;
+      }
+      room = k;
+    }
+    if (claimed.none()) return Outcome::composed;
+    ++work.claims;
+    bool merged = false;
+    if (room == Slots) {
+      put(claimed, Pixel::kEmpty, pixel);
+      room = make_room(fragment, claimed, number, pixel, merged);
+    }
+    if (room < Slots) {
+      put(claimed, Pixel::owned_by(room), pixel);
+      pixel.slots[room] = slot_of(fragment, number);
+    }
+    if (closes && without(empty, claimed).none()) close(pixel, closed);
+    return merged ? Outcome::merged : Outcome::composed;
+  }
+
+  // All owners are final. Returns the pixel's colour.
+  PixelColor finish(Pixel& pixel) {
+    ++work.finished;
+    if (const OwnerSlot* slot = only_owner(pixel)) return {1.0f, color_of(*slot)};
+    std::size_t count = 0;
+    for (std::size_t k = 0; k < Slots; ++k)
+      if (!pixel.slots[k].is_free()) list_owner(pixel, k, owners_[count++]);
+    settle(count, pixel);
+    return limited(pixel);
+  }
+
+  OwnersWork work;
+
+ private:
+  static constexpr auto kPositions = static_cast<float>(32 * Words);
+
+  struct Owner {
+    OwnerSlot slot;
+    std::size_t index = 0;  // of the slot; Slots: it has none yet
+    WideMask owned;
+    float visible = 0;  // positions that it owns
+    DepthPlane<float> plane{};
+    float mean_u = 0, mean_v = 0;  // of these positions, in pixels from the pixel's centre
+
+    float covered() const { return slot.is_merged() ? visible : slot.covered(); }
+    float fraction() const { return visible / covered(); }
+  };
+
+  static OwnerSlot slot_of(const Fragment& fragment, std::uint32_t number) {
+    const auto covered = static_cast<std::uint32_t>(fragment.mask.count());
+    OwnerSlot slot;
+    slot.set(number, fragment.alpha * kPositions - static_cast<float>(covered), covered, fragment.centroid_u,
+             fragment.centroid_v);
+    return slot;
+  }
+
+  void put(const WideMask& mask, std::uint32_t state, Pixel& pixel) {
+    ++work.puts;
+    pixel.states.put(mask, state);
+  }
+
+  const SetupTriangle& triangle_of(const OwnerSlot& slot) const {
+    return bin_.triangles.triangles[bin_.list[slot.triangle()]];
+  }
+
+  // In the fragment's pixel.
+  DepthPlane<float> plane_of(const OwnerSlot& slot) {
+    ++work.planes;
+    if (bin_.lists_fetches) result_.fetched.push_back(bin_.list[slot.triangle()]);
+    return pixel_plane(triangle_of(slot), x_, y_);
+  }
+
+  // The contested positions that the fragment takes from the owner. The difference of two planes is a plane: most
+  // often it has one sign in the whole pixel.
+  WideMask positions_won(const Fragment& fragment, const OwnerSlot& slot, const WideMask& contested) {
+    ++work.contests;
+    const DepthPlane<float> owner = plane_of(slot);
+    const PlaneGap<float> gap = plane_gap(fragment.plane, owner);
+    if (gap.middle < -gap.reach) return contested;
+    if (gap.middle > gap.reach) return {};
+    ++work.planes_compared;
+    const bool is_earlier = fragment.triangle < bin_.list[slot.triangle()];
+    const DepthPlane<float>&one = is_earlier ? owner : fragment.plane, &other = is_earlier ? fragment.plane : owner;
+    WideMask nearer;
+    nearer_positions(one, other, bin_.positions.patterns.data(), Words, nearer.words.data(), contested.words.data());
+    return is_earlier ? without(contested, nearer) : nearer;
+  }
+
+  // Settles the owners that are final or, if there are none, makes one owner of two. Returns the slot that became free;
+  // Slots if the fragment is one of the two, because then its positions already have an owner.
+  std::size_t make_room(const Fragment& fragment, const WideMask& claimed, std::uint32_t number, Pixel& pixel,
+                        bool& merged) {
+    DepthPlane<float> planes[Slots];
+    for (std::size_t k = 0; k < Slots; ++k) planes[k] = plane_of(pixel.slots[k]);
+    if (bin_.watermarks) {
+      std::size_t count = 0;
+      for (std::size_t k = 0; k < Slots; ++k)
+        if (is_final(pixel, k, planes[k], (*bin_.watermarks)[number])) list_owner(pixel, k, owners_[count++]);
+      if (count > 0) {
+        settle(count, pixel);
+        return owners_.front().index;
+      }
+    }
+    for (std::size_t k = 0; k < Slots; ++k) {
+      list_owner(pixel, k, owners_[k]);
+      owners_[k].plane = planes[k];
+    }
+    owners_.back() = {slot_of(fragment, number), Slots, claimed, static_cast<float>(claimed.count()), fragment.plane};
+    for (Owner& owner : owners_) measure(owner);
+    merged = true;
+    return merge_closest(pixel);
+  }
+
+  // Is the owner nowhere farther than the watermark? Its plane over the whole pixel most often says that it is, or that
+  // it is not.
+  bool is_final(const Pixel& pixel, std::size_t k, const DepthPlane<float>& plane, float watermark) {
+    ++work.finality_tests;
+    const float reach = 0.5f * (magnitude(plane.dzdu) + magnitude(plane.dzdv));
+    if (plane.z - reach > watermark) return false;
+    if (plane.z + reach <= watermark) return true;
+    ++work.farthest_found;
+    const WideMask owned = pixel.states.positions_in(Pixel::owned_by(k));
+    return farthest_depth(plane, bin_.positions.patterns.data(), Words, owned.words.data()) <= watermark;
+  }
+
+  // The owner of all positions of a pixel that nothing else is known of; null if there is no such owner.
+  static const OwnerSlot* only_owner(const Pixel& pixel) {
+    if (pixel.area > 0) return nullptr;
+    const OwnerSlot* only = nullptr;
+    for (const OwnerSlot& slot : pixel.slots) {
+      if (slot.is_free()) continue;
+      if (only || slot.is_merged()) return nullptr;
+      only = &slot;
+    }
+    if (!only || !pixel.states.all_in(Pixel::owned_by(static_cast<std::size_t>(only - pixel.slots)))) return nullptr;
+    return only->covered() == kPositions ? only : nullptr;
+  }
+
+  // All but the plane and the mean.
+  void list_owner(const Pixel& pixel, std::size_t k, Owner& owner) {
+    ++work.listed;
+    owner.slot = pixel.slots[k];
+    owner.index = k;
+    owner.owned = pixel.states.positions_in(Pixel::owned_by(k));
+    owner.visible = static_cast<float>(owner.owned.count());
+  }
+
+  // Finds the mean of the positions that it owns.
+  void measure(Owner& owner) {
+    ++work.measured;
+    const PositionSums sums = position_sums(bin_.positions.patterns.data(), Words, owner.owned.words.data());
+    const float per_unit = 1.0f / (owner.visible * kSubpixelUnits);
+    owner.mean_u = static_cast<float>(sums.x) * per_unit - 0.5f;
+    owner.mean_v = static_cast<float>(sums.y) * per_unit - 0.5f;
+  }
+
+  // How much depth changes, over all positions, if the two become one.
+  float merge_cost(const Owner& one, const Owner& other) {
+    ++work.pairs_compared;
+    return lesser(one.visible, other.visible) * (depth_gap(one.plane, other.plane, one.mean_u, one.mean_v) +
+                                                 depth_gap(one.plane, other.plane, other.mean_u, other.mean_v));
+  }
+
+  std::size_t merge_closest(Pixel& pixel) {
+    ++work.merges;
+    std::size_t first = 0, second = 1;
+    float least = merge_cost(owners_[0], owners_[1]);
+    for (std::size_t j = 2; j < owners_.size(); ++j)
+      for (std::size_t i = 0; i < j; ++i)
+        if (const float cost = merge_cost(owners_[i], owners_[j]); cost < least) least = cost, first = i, second = j;
+    Owner &one = owners_[first], &other = owners_[second];  // only the other one may be without a slot
+    const Owner& larger = one.visible >= other.visible ? one : other;
+    const float error_of_one = one.fraction() * one.fraction() * one.slot.error();
+    const float error_of_other = other.fraction() * other.fraction() * other.slot.error();
+    const float part = std::max(one.visible + error_of_one, kLeastArea);
+    const float other_part = std::max(other.visible + error_of_other, kLeastArea);
+    const glm::vec3 color = (part * color_of(one.slot) + other_part * color_of(other.slot)) * (1 / (part + other_part));
+    put(one.owned | other.owned, Pixel::owned_by(one.index), pixel);
+    pixel.slots[one.index].set_merged(larger.slot.triangle(), error_of_one + error_of_other, color);
+    if (other.index < Slots) pixel.slots[other.index].clear();
+    return other.index;
+  }
+
+  glm::vec3 color_of(const OwnerSlot& slot) {
+    if (slot.is_merged()) return slot.color();
+    return shade(bin_.list[slot.triangle()]);
+  }
+
+  glm::vec3 shade(std::uint32_t triangle) {
+    result_.shaded.push_back({triangle});
+    return bin_.colors[triangle];
+  }
+
+  // Adds owners_[0 .. count - 1] to what is final. Those that show the largest part of their positions come first: what
+  // they take beyond their positions is then known when the others are added.
+  void settle(std::size_t count, Pixel& pixel) {
+    ++work.settlings;
+    sort_by_fraction(count);
+    auto final_positions = static_cast<float>(pixel.states.positions_in(Pixel::kFinal).count());
+    for (const Owner* owner = owners_.data(); owner != owners_.data() + count; ++owner) {
+      ++work.settled;
+      // What is left of a merged surface may be less than the error of its mask.
+      const float exact = greater(owner->covered() + owner->slot.error(), 0.0f) / kPositions;
+      const float area =
+          visible_area(exact, owner->covered(), owner->visible, kPositions, Taken<float>{pixel.area, final_positions});
+      const glm::vec3 color = color_of(owner->slot) * (1 / bin_.brightest);
+      final_positions += owner->visible;
+      const float threshold = rounding_threshold(bin_.list[owner->slot.triangle()]);
+      pixel.area.add(area, threshold);
+      for (int c = 0; c < 3; ++c) pixel.color[c].add(area * color[c], threshold);
+      for (int c = 0; c < 3; ++c) pixel.counted_color[c].add(owner->visible / kPositions * color[c], threshold);
+      put(owner->owned, Pixel::kFinal, pixel);
+      pixel.slots[owner->index].clear();
+    }
+  }
+
+  // Equal ones keep their order.
+  void sort_by_fraction(std::size_t count) {
+    for (std::size_t i = 1; i < count; ++i) {
+      for (std::size_t j = i; j > 0; --j) {
+        ++work.order_tests;
+        if (owners_[j].fraction() <= owners_[j - 1].fraction()) break;
+        std::swap(owners_[j], owners_[j - 1]);
+      }
+    }
+  }
+
+  // A pixel without empty positions hides what lies behind all of its owners.
+  void close(const Pixel& pixel, ClosedDepth& closed) {
+    float farthest = kInFront;
+    for (const OwnerSlot& slot : pixel.slots) {
+      if (slot.is_free()) continue;
+      ++work.bounds_found;
+      const DepthBounds<float> anywhere{kInFront, kNoDepth};
+      const DepthBounds<float> vertices = slot.is_merged() ? anywhere : vertex_bounds(triangle_of(slot).vertex_z);
+      farthest = std::max(farthest, pair_bounds(plane_of(slot), vertices).farthest);
+    }
+    closed.close(x_, y_, farthest);
+  }
+
+  // Each of the three positions nearest to a speck votes for it, if it is free or its owner is not nearer. Of specks
+  // that face towards the viewer and specks that face away, those with the smaller area are the hidden sides of thin
+  // bodies.
+  void add_speck(const Fragment& fragment, Pixel& pixel) {
+    ++work.specks;
+    float votes = 0;
+    for (const std::uint8_t position : bin_.positions.nearest_to(fragment.centroid_u, fragment.centroid_v)) {
+      const std::uint32_t state = pixel.states.at(position);
+      if (state == Pixel::kFinal) continue;
+      votes += state == Pixel::kEmpty || is_nearer(fragment, pixel.slots[state - Pixel::kFirstSlot]);
+    }
+    if (votes == 0) return;
+    FixedSum &same = pixel.specks[fragment.front], &opposite = pixel.specks[!fragment.front];
+    const float before = greater(same, opposite);
+    const float threshold = rounding_threshold(fragment.triangle);
+    same.add(fragment.alpha * votes / 3.0f, threshold);
+    const float area = lesser(greater(same, opposite) - before, 1.0f - pixel.area);
+    if (area <= 0) return;
+    ++work.specks_added;
+    const glm::vec3 color = shade(fragment.triangle) * (area / bin_.brightest);
+    pixel.area.add(area, threshold);
+    for (int c = 0; c < 3; ++c) pixel.color[c].add(color[c], threshold);
+  }
+
+  bool is_nearer(const Fragment& speck, const OwnerSlot& slot) {
+    ++work.speck_comparisons;
+    return is_on_or_before(speck.centroid_z, plane_of(slot), speck.centroid_u - 0.5f, speck.centroid_v - 0.5f);
+  }
+
+  // The analytic estimate, no farther from the counted one than the tolerances allow.
+  PixelColor limited(const Pixel& pixel) {
+    const auto count = static_cast<float>(pixel.states.positions_in(Pixel::kFinal).count());
+    if (pixel.area <= 0) return {0.0f, glm::vec3(0.0f)};
+    ++work.limited;
+    Estimate<float> analytic{pixel.area, {}}, counted{count / kPositions, {}};
+    for (int c = 0; c < 3; ++c) {
+      analytic.color[c] = pixel.color[c] * bin_.brightest;
+      counted.color[c] = pixel.counted_color[c] * bin_.brightest;
+    }
+    const Estimate<float> result = limited_estimate(analytic, counted, kPositions);
+    return {result.area, {result.color[0], result.color[1], result.color[2]}};
+  }
+
+  static constexpr float kLeastArea = 1e-3f;  // positions; keeps the weights of a mean positive
+
+  const OwnersBin& bin_;
+  OwnersResult& result_;
+  const std::uint32_t width_;            // of the tile
+  std::int32_t x_ = 0, y_ = 0;           // the fragment's pixel, frame coordinates
+  std::array<Owner, Slots + 1> owners_;  // of one pixel, and the fragment that needs a slot
+};
+
+}  // namespace
+
+template <std::size_t Words, std::size_t Slots>
+void compose_owners(const OwnersBin& bin, const std::vector<Fragment>& fragments, std::size_t first,
+                    StageCounters& counters, std::vector<OpenPixel<Words, Slots>>& pixels, ClosedDepth& closed,
+                    const OwnersMaps& maps, OwnersResult& result) {
+  OwnerComposer<Words, Slots> composer(bin, result);
+  auto number = static_cast<std::uint32_t>(first);
+  for (const Fragment& fragment : fragments) {
+    while (bin.list[number] != fragment.triangle) ++number;
+    using Outcome = typename OwnerComposer<Words, Slots>::Outcome;
+    const Outcome outcome = composer.add(fragment, number, pixels[fragment.pixel], closed);
+    maps.fragments[fragment.pixel] += outcome != Outcome::hidden;
+    maps.merges[fragment.pixel] += outcome == Outcome::merged;
+  }
+  charge<Words, Slots>(composer.work, counters);
+}
+
+template <std::size_t Words, std::size_t Slots>
+std::vector<PixelColor> finish_owners(const OwnersBin& bin, StageCounters& counters,
+                                      std::vector<OpenPixel<Words, Slots>>& pixels, OwnersResult& result) {
+  OwnerComposer<Words, Slots> composer(bin, result);
+  std::vector<PixelColor> colors(pixels.size());
+  for (std::uint32_t i = 0; i < pixels.size(); ++i) colors[i] = composer.finish(pixels[i]);
+  charge<Words, Slots>(composer.work, counters);
+  return colors;
+}
+
+#define BEAMPIPE_COMPOSE(words, slots)                                                                            \
+  template void compose_owners<words, slots>(const OwnersBin&, const std::vector<Fragment>&, std::size_t,         \
+                                             StageCounters&, std::vector<OpenPixel<words, slots>>&, ClosedDepth&, \
+                                             const OwnersMaps&, OwnersResult&);                                   \
+  template std::vector<PixelColor> finish_owners<words, slots>(const OwnersBin&, StageCounters&,                  \
+                                                               std::vector<OpenPixel<words, slots>>&, OwnersResult&);
+BEAMPIPE_OPEN_PIXELS(BEAMPIPE_COMPOSE)
+#undef BEAMPIPE_COMPOSE
+
+}  // namespace beampipe

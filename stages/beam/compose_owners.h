@@ -1,0 +1,68 @@
+// compose_owners (stage `compose` of beam in near-first and streaming order): fragments -> owners of mask positions ->
+// colours of pixels.
+//
+// A fragment takes the positions where it is nearer than their owners; at equal depth the triangle that comes first in
+// the trace keeps them. What lies in front of the watermark is final: its area (simd/conserve.h) and colour are added
+// to the pixel, and its slot is free again. If all slots are in use and nothing is final, two owners become one: those
+// whose depth planes are closest at the positions that they own. From then on they share a mean colour and one depth
+// plane.
+//
+// Specks own no position. They are added at once, if the owners of the positions next to them do not hide them.
+//
+// Two estimates of a pixel are kept. The analytic one is far more accurate where visibility is simple, but where
+// hundreds of triangles meet in a pixel, it may be wrong about which specks are seen. Counting positions is never worse
+// than multisampling. So the result is the analytic estimate, limited to what the error of counted positions explains.
+#pragma once
+
+#include <cstdint>
+#include <vector>
+
+#include "stages/cost/counters.h"
+#include "stages/data/closed_depth.h"
+#include "stages/data/fragment.h"
+#include "stages/data/open_pixel.h"
+#include "stages/data/pixel_formats.h"
+#include "stages/data/position_set.h"
+#include "stages/data/setup_triangle.h"
+#include "stages/data/shaded_triangle.h"
+#include "stages/data/tile.h"
+
+namespace beampipe {
+
+// What a bin has in common for all its fragments.
+struct OwnersBin {
+  const SetupTriangles& triangles;
+  const TriangleList& list;              // at most OwnerSlot::kMostTriangles, in the order in which they are taken
+  const std::vector<float>* watermarks;  // as in OrderedList; null: nothing is final before the end
+  const Tile& tile;
+  const PositionSet& positions;
+  const std::vector<glm::vec3>& colors;  // what the shader returns, one per triangle
+  float brightest;                       // the largest channel of all colours
+  bool lists_fetches;                    // fill OwnersResult::fetched
+};
+
+// What was done, beside what is charged.
+struct OwnersResult {
+  std::vector<ShadedTriangle> shaded;  // once for each time that one was shaded
+  std::vector<std::uint32_t> fetched;  // triangles, once for each time that an owner's depth plane was computed again
+};
+
+// Counts per pixel of the tile.
+struct OwnersMaps {
+  std::vector<float>& fragments;  // those that no closed pixel hid
+  std::vector<float>& merges;     // how often two owners became one
+};
+
+// `fragments` follow each other in the order of the list; the first one's triangle is at or after list[first]. Closes
+// pixels in `closed` whose positions all have owners. Counts as items out the fragments that take a position.
+template <std::size_t Words, std::size_t Slots>
+void compose_owners(const OwnersBin& bin, const std::vector<Fragment>& fragments, std::size_t first,
+                    StageCounters& counters, std::vector<OpenPixel<Words, Slots>>& pixels, ClosedDepth& closed,
+                    const OwnersMaps& maps, OwnersResult& result);
+
+// After the last fragment: all owners are final. Returns the pixels' colours.
+template <std::size_t Words, std::size_t Slots>
+std::vector<PixelColor> finish_owners(const OwnersBin& bin, StageCounters& counters,
+                                      std::vector<OpenPixel<Words, Slots>>& pixels, OwnersResult& result);
+
+}  // namespace beampipe

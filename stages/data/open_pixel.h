@@ -1,0 +1,118 @@
+// All that a pixel keeps while its bin is open, in exactly these bytes: which surface owns which mask position, and the
+// sums of what is final. It is loaded and stored for every fragment, as an aggregate is.
+//
+// Owners are surfaces that later fragments may still hide. Their number is fixed; if there is one more, two of them
+// become one (stages/beam/compose_owners.h).
+#pragma once
+
+#include <algorithm>
+#include <bit>
+#include <cstddef>
+#include <cstdint>
+#include <glm/glm.hpp>
+
+#include "stages/data/position_states.h"
+#include "stages/data/shared_exponent.h"
+
+namespace beampipe {
+
+// A number from 0 to almost 2 in 16 bits. Sums of areas and colours are kept in it: a sum of fp16 numbers stops growing
+// when addends are small.
+struct FixedSum {
+  static constexpr float kUnits = 32768.0f;
+  std::uint16_t units = 0;
+
+  operator float() const { return static_cast<float>(units) / kUnits; }
+  // `threshold`: 0..1, different for each addend. The part of a unit above it counts as a whole unit, so that many small
+  // addends are right on average.
+  void add(float x, float threshold) {
+    const auto sum = static_cast<std::int32_t>(units) + static_cast<std::int32_t>(x * kUnits + 1.0f - threshold);
+    units = static_cast<std::uint16_t>(std::clamp(sum, 0, 0xffff));
+  }
+};
+
+// One owner, in 8 bytes. A surface that came from one triangle is shaded when it becomes final; until then it needs no
+// colour, only the place to shade it at. A surface that came from several has the mean of their colours, and the depth
+// plane of the one with the most positions.
+class OwnerSlot {
+ public:
+  // The number of a triangle in the bin's list has 23 bits.
+  static constexpr std::uint32_t kMostTriangles = (1u << 23) - 1;
+
+  bool is_free() const { return triangle() == kMostTriangles; }
+  std::uint32_t triangle() const { return word_ & kMostTriangles; }
+  bool is_merged() const { return word_ >> 23 & 1; }
+
+  // The error that the mask makes for the surface: its exact area, times the number of positions in a pixel, minus the
+  // positions that it covers. From -4 to almost 4, in steps of 1/32.
+  float error() const { return static_cast<float>(static_cast<std::int8_t>(word_ >> 24)) / kErrorUnits; }
+
+  // Of a surface from one triangle: how many positions it covers, and its centroid in the pixel, 0..1.
+  float covered() const { return static_cast<float>(payload_ & 0xffff); }
+  glm::vec2 centroid() const { return glm::vec2(payload_ >> 16 & 0xff, payload_ >> 24) * (1.0f / 255.0f); }
+
+  // Of a merged surface; linear RGB.
+  glm::vec3 color() const { return std::bit_cast<SharedExponent>(payload_); }
+
+  void clear() { word_ = kMostTriangles; }
+  void set(std::uint32_t number, float error, std::uint32_t covered, float u, float v) {
+    word_ = number | error_bits(error);
+    payload_ = covered | to_byte(u) << 16 | to_byte(v) << 24;
+  }
+  void set_merged(std::uint32_t number, float error, const glm::vec3& color) {
+    word_ = number | 1u << 23 | error_bits(error);
+    payload_ = std::bit_cast<std::uint32_t>(SharedExponent(color));
+  }
+
+ private:
+  static constexpr float kErrorUnits = 32.0f;
+
+  static std::uint32_t error_bits(float error) {
+    const float units = std::clamp(error * kErrorUnits, -127.0f, 127.0f);
+    return static_cast<std::uint32_t>(static_cast<std::int32_t>(units + (units < 0 ? -0.5f : 0.5f))) << 24;
+  }
+  static std::uint32_t to_byte(float x) { return static_cast<std::uint32_t>(x * 255.0f + 0.5f); }
+
+  std::uint32_t word_ = kMostTriangles;  // triangle, merged, error
+  std::uint32_t payload_ = 0;
+};
+static_assert(sizeof(OwnerSlot) == 8);
+
+#pragma pack(push, 2)
+template <std::size_t Words, std::size_t Slots>  // 32 positions a word
+struct OpenPixel {
+  // States of a position.
+  static constexpr std::uint32_t kEmpty = 0;          // nothing covers it yet
+  static constexpr std::uint32_t kFirstSlot = 1;      // the first slot owns it; the next states are the other slots
+  static constexpr std::uint32_t kFinal = Slots + 1;  // nothing that comes later can be nearer
+  static constexpr std::size_t kBits = std::bit_width(kFinal);
+
+  PositionStates<Words, kBits> states{};
+  OwnerSlot slots[Slots];
+  // What is final, in two estimates. Colours are linear RGB times area, in units of the frame's brightest colour.
+  FixedSum color[3], area;    // by analytic area
+  FixedSum counted_color[3];  // by mask positions; their number says the area
+  FixedSum specks[2];         // the areas of visible specks that face away from the viewer, and towards the viewer
+
+  static constexpr std::uint32_t owned_by(std::size_t slot) { return kFirstSlot + static_cast<std::uint32_t>(slot); }
+};
+#pragma pack(pop)
+
+static_assert(sizeof(OpenPixel<8, 5>) == 154);
+static_assert(sizeof(OpenPixel<4, 7>) == 138);
+static_assert(sizeof(OpenPixel<2, 4>) == 74);
+static_assert(sizeof(OpenPixel<1, 2>) == 42);
+
+// Size of a fragment between beam_fragment and compose in the modelled machine: pixel (16 bits), triangle (24),
+// centroid (16), area (16), mask, and depth plane as 3 x float32.
+constexpr std::uint32_t owners_fragment_bytes(std::size_t words) {
+  return 2 + 3 + 2 + 2 + static_cast<std::uint32_t>(words) * 4 + 12;
+}
+
+// The instances that exist: X(words, slots).
+#define BEAMPIPE_SLOT_COUNTS(X, words) \
+  X(words, 2) X(words, 4) X(words, 5) X(words, 7) X(words, 8) X(words, 16) X(words, 32)
+#define BEAMPIPE_OPEN_PIXELS(X) \
+  BEAMPIPE_SLOT_COUNTS(X, 1) BEAMPIPE_SLOT_COUNTS(X, 2) BEAMPIPE_SLOT_COUNTS(X, 4) BEAMPIPE_SLOT_COUNTS(X, 8)
+
+}  // namespace beampipe

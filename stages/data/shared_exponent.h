@@ -1,0 +1,36 @@
+// A colour in four bytes: three mantissas and one exponent (Ward 1991, "Real Pixels").
+#pragma once
+
+#include <algorithm>
+#include <cmath>
+#include <cstdint>
+#include <glm/glm.hpp>
+
+namespace beampipe {
+
+struct SharedExponent {
+  std::uint8_t mantissa[3] = {}, exponent = 0;  // exponent 0: black
+
+  SharedExponent() = default;
+
+  // `color`: linear RGB, not negative. The error of a channel is at most 1/255 of the largest channel.
+  explicit SharedExponent(const glm::vec3& color) {
+    const float largest = std::max({color[0], color[1], color[2]});
+    if (!(largest > 0x1p-100f)) return;
+    int power = 0;
+    std::frexp(largest * (1 + 0x1p-9f), &power);  // what would be rounded up to 256 takes the next exponent
+    power = std::min(power, 127);
+    for (int c = 0; c < 3; ++c)
+      mantissa[c] = static_cast<std::uint8_t>(std::min(std::ldexp(color[c], 8 - power) + 0.5f, 255.0f));
+    exponent = static_cast<std::uint8_t>(power + 128);
+  }
+
+  operator glm::vec3() const {
+    if (exponent == 0) return glm::vec3(0.0f);
+    const float unit = std::ldexp(1.0f, exponent - 128 - 8);
+    return unit * glm::vec3(mantissa[0], mantissa[1], mantissa[2]);
+  }
+};
+static_assert(sizeof(SharedExponent) == 4);
+
+}  // namespace beampipe

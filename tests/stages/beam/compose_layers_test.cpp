@@ -1,0 +1,150 @@
+#include "stages/beam/compose_layers.h"
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+
+#include "stages/beam/a_buffer.h"
+#include "stages/beam/beam_fragment.h"
+#include "stages/beam/compose_paper.h"
+#include "stages/raster/conservative_raster.h"
+#include "tests/simd/random.h"
+#include "tests/stages/screen_triangles.h"
+
+namespace beampipe {
+namespace {
+
+constexpr Tile kTile{0, 0, 4, 4};
+const SamplePattern kPattern = hammersley_pattern();
+
+// Fragments of triangles in the tile, shaded in different colours, in primitive order.
+std::vector<Fragment> random_fragments(Random& random, int triangles) {
+  SetupTriangles setup;
+  for (int i = 0; i < triangles; ++i) {
+    const float z = random.real32(-0.95, -0.05);
+    const auto point = [&] {
+      return ScreenPoint{random.int32(-200, 1224), random.int32(-200, 1224), z + random.real32(-0.04, 0.04)};
+    };
+    add_triangle(setup, point(), point(), point());
+  }
+  TriangleList list(setup.triangles.size());
+  for (std::uint32_t i = 0; i < list.size(); ++i) list[i] = i;
+  StageCounters unused;
+  std::vector<Pair> pairs;
+  conservative_raster(setup, list, kTile, unused, pairs);
+  BeamFragmentOptions options;
+  options.mask = MaskSource::exact;
+  options.positions = {kPattern};
+  options.tiny_positions = 1;
+  options.clipped_depth = true;
+  std::vector<Fragment> fragments;
+  beam_fragment(setup, pairs, kTile, options, unused, fragments);
+  for (Fragment& fragment : fragments)
+    fragment.color = fragment.alpha * glm::vec3(random.real32(0, 1), random.real32(0, 1), random.real32(0, 1));
+  return fragments;
+}
+
+// The order of the A-buffer: within a pixel, near to far.
+std::vector<Fragment> near_to_far(std::vector<Fragment> fragments) {
+  std::stable_sort(fragments.begin(), fragments.end(),
+                   [](const Fragment& a, const Fragment& b) { return a.z_min < b.z_min; });
+  return fragments;
+}
+
+std::vector<Aggregate> composed(const std::vector<Fragment>& fragments, std::size_t layers, StageCounters& counters,
+                                std::vector<float>& merges, PaperStorage storage = PaperStorage::float32) {
+  AggregateLayers pixels(kTile.pixels(), layers, storage);
+  merges.assign(kTile.pixels(), 0);
+  pixels.add(fragments, kPattern, {}, counters, merges);
+  return pixels.finish(kPattern, {}, counters);
+}
+
+void expect_same(const std::vector<Aggregate>& found, const std::vector<Aggregate>& expected, float tolerance = 0) {
+  ASSERT_EQ(found.size(), expected.size());
+  for (std::size_t i = 0; i < found.size(); ++i) {
+    EXPECT_NEAR(found[i].alpha, expected[i].alpha, tolerance) << i;
+    EXPECT_EQ(found[i].mask, expected[i].mask) << i;
+    for (int c = 0; c < 3; ++c) EXPECT_NEAR(found[i].color[c], expected[i].color[c], tolerance) << i;
+    EXPECT_NEAR(found[i].thickness, expected[i].thickness, tolerance) << i;
+  }
+}
+
+// One aggregate, and fragments from near to far, are the published rules with an A-buffer, to the bit.
+TEST(ComposeLayers, OneLayerNearToFarIsTheABuffer) {
+  Random random(71);
+  SCOPED_TRACE(random.name());
+  for (int i = 0; i < 20; ++i) {
+    const std::vector<Fragment> fragments = random_fragments(random, 12);
+    for (const PaperStorage storage : {PaperStorage::slides, PaperStorage::text, PaperStorage::float32}) {
+      StageCounters counters;
+      const ABuffer lists = a_buffer(sort_records(fragments, SortKey::nearest), kTile.pixels(), 42, 42, counters);
+      const std::vector<Aggregate> expected = compose(fragments, lists, kPattern, {}, storage, counters);
+      std::vector<float> merges;
+      expect_same(composed(near_to_far(fragments), 1, counters, merges, storage), expected);
+    }
+  }
+}
+
+// While there are at least as many layers as fragments, the order in which these come does not matter. Specks are left
+// out: a stored aggregate does not say that it was one. The first fragment of a pixel is kept as it is, where the
+// A-buffer merges it into an empty aggregate, which rounds.
+TEST(ComposeLayers, EnoughLayersAreTheABufferInAnyOrder) {
+  Random random(72);
+  SCOPED_TRACE(random.name());
+  for (int i = 0; i < 20; ++i) {
+    std::vector<Fragment> fragments = random_fragments(random, 8);
+    std::erase_if(fragments, [](const Fragment& fragment) { return fragment.tiny; });
+    StageCounters counters;
+    const ABuffer lists = a_buffer(sort_records(fragments, SortKey::nearest), kTile.pixels(), 42, 42, counters);
+    const std::vector<Aggregate> expected = compose(fragments, lists, kPattern, {}, PaperStorage::float32, counters);
+    std::vector<float> merges;
+    expect_same(composed(fragments, 8, counters, merges), expected, 1e-5f);
+    EXPECT_EQ(*std::max_element(merges.begin(), merges.end()), 0);
+  }
+}
+
+// Fewer layers merge on the way. Every merge is counted, masks are joined, and no colour or area leaves its range.
+TEST(ComposeLayers, FewerLayersMergeTheClosest) {
+  Random random(73);
+  SCOPED_TRACE(random.name());
+  for (int i = 0; i < 20; ++i) {
+    const std::vector<Fragment> fragments = random_fragments(random, 30);
+    for (const std::size_t layers : {2u, 3u, 4u}) {
+      StageCounters counters;
+      std::vector<float> merges;
+      const std::vector<Aggregate> found = composed(fragments, layers, counters, merges);
+      std::vector<std::size_t> counts(kTile.pixels());
+      std::vector<std::uint32_t> masks(kTile.pixels());
+      for (const Fragment& fragment : fragments) {
+        ++counts[fragment.pixel];
+        masks[fragment.pixel] |= fragment.mask.words[0];
+      }
+      for (std::size_t pixel = 0; pixel < found.size(); ++pixel) {
+        EXPECT_EQ(merges[pixel], counts[pixel] > layers ? static_cast<float>(counts[pixel] - layers) : 0.0f);
+        EXPECT_EQ(found[pixel].mask, masks[pixel]);
+        EXPECT_GE(found[pixel].alpha, 0.0f);
+        EXPECT_LE(found[pixel].alpha, 1.0f);
+        for (const float channel : found[pixel].color) {
+          EXPECT_GE(channel, 0.0f);
+          EXPECT_LE(channel, found[pixel].alpha * 1.00001f);
+        }
+      }
+      EXPECT_EQ(counters.items_in, fragments.size());
+    }
+  }
+}
+
+TEST(ComposeLayers, CountsBytes) {
+  Random random(74);
+  const std::vector<Fragment> fragments = random_fragments(random, 10);
+  StageCounters counters;
+  AggregateLayers pixels(kTile.pixels(), 3, PaperStorage::slides);
+  std::vector<float> merges(kTile.pixels());
+  pixels.add(fragments, kPattern, {}, counters, merges);
+  EXPECT_EQ(pixels.bytes_per_pixel(), 3u * 42);
+  EXPECT_EQ(counters.bytes_read, fragments.size() * (42 + 3 * 42));
+  EXPECT_EQ(counters.bytes_written, fragments.size() * 3 * 42);
+}
+
+}  // namespace
+}  // namespace beampipe

@@ -1,0 +1,180 @@
+#include "stages/data/open_pixel.h"
+
+#include <gtest/gtest.h>
+
+#include <array>
+#include <cmath>
+#include <vector>
+
+#include "tests/simd/random.h"
+
+namespace beampipe {
+namespace {
+
+TEST(OpenPixel, ASlotKeepsItsTriangleAndItsCentroid) {
+  OwnerSlot slot;
+  EXPECT_TRUE(slot.is_free());
+  for (const std::uint32_t number : {0u, 1u, 0x7fu, 0x12345u, OwnerSlot::kMostTriangles - 1}) {
+    for (const std::uint32_t covered : {1u, 32u, 255u, 256u}) {
+      slot.set(number, -1.0f, covered, 0.25f, 1.0f);
+      EXPECT_FALSE(slot.is_free());
+      EXPECT_FALSE(slot.is_merged());
+      EXPECT_EQ(slot.triangle(), number);
+      EXPECT_EQ(slot.covered(), static_cast<float>(covered));
+      EXPECT_EQ(slot.error(), -1.0f);
+      EXPECT_NEAR(slot.centroid().x, 0.25f, 0.5f / 255);
+      EXPECT_EQ(slot.centroid().y, 1.0f);
+    }
+  }
+  for (int i = 0; i <= 255; ++i) {  // every byte of both coordinates
+    slot.set(7, 0, 1, static_cast<float>(i) / 255, static_cast<float>(255 - i) / 255);
+    EXPECT_FLOAT_EQ(slot.centroid().x, static_cast<float>(i) / 255);
+    EXPECT_FLOAT_EQ(slot.centroid().y, static_cast<float>(255 - i) / 255);
+    EXPECT_EQ(slot.covered(), 1.0f);
+  }
+  slot.clear();
+  EXPECT_TRUE(slot.is_free());
+}
+
+TEST(OpenPixel, AMergedSlotKeepsAColour) {
+  OwnerSlot slot;
+  slot.set_merged(OwnerSlot::kMostTriangles - 1, 3.5f, {1.0f, 0.5f, 0.25f});
+  EXPECT_TRUE(slot.is_merged());
+  EXPECT_FALSE(slot.is_free());
+  EXPECT_EQ(slot.triangle(), OwnerSlot::kMostTriangles - 1);
+  EXPECT_EQ(slot.error(), 3.5f);
+  EXPECT_EQ(slot.color(), glm::vec3(1.0f, 0.5f, 0.25f));
+  slot.set(3, 0, 5, 0, 0);
+  EXPECT_FALSE(slot.is_merged());
+  slot.set_merged(3, 0, {0, 0, 0});
+  EXPECT_EQ(slot.color(), glm::vec3(0.0f));
+  slot.clear();
+  EXPECT_TRUE(slot.is_free());
+  EXPECT_FALSE(slot.is_merged());
+}
+
+// The error of a mask is rounded to the nearest step of 1/32 position, and limited to what 8 bits hold.
+TEST(OpenPixel, TheErrorOfASlotIsRoundedAndLimited) {
+  Random random(201);
+  SCOPED_TRACE(random.name());
+  constexpr float kMost = 127.0f / 32;
+  OwnerSlot slot;
+  const auto stored = [&](float error, bool merged) {
+    merged ? slot.set_merged(12345, error, glm::vec3(1.0f)) : slot.set(12345, error, 10, 0.5f, 0.5f);
+    EXPECT_EQ(slot.triangle(), 12345u) << error;
+    EXPECT_EQ(slot.is_merged(), merged) << error;
+    return slot.error();
+  };
+  for (const bool merged : {false, true}) {
+    for (int step = -127; step <= 127; ++step) {
+      const float error = static_cast<float>(step) / 32;
+      EXPECT_EQ(stored(error, merged), error);
+    }
+    for (int i = 0; i < 10'000; ++i) {
+      const float error = random.real32(-kMost, kMost);
+      ASSERT_LE(std::abs(stored(error, merged) - error), 1.0f / 64) << error;
+    }
+    for (const float error : {3.98f, 4.0f, 100.0f, 1e30f}) {
+      EXPECT_EQ(stored(error, merged), kMost) << error;
+      EXPECT_EQ(stored(-error, merged), -kMost) << error;
+    }
+  }
+}
+
+// With thresholds that differ, sums of many small addends are right on average: a sum of n has a standard deviation of
+// at most sqrt(n) / 2 units, and five of these are allowed.
+TEST(FixedSum, ManySmallAddendsAreRightOnAverage) {
+  Random random(202);
+  SCOPED_TRACE(random.name());
+  for (const double largest : {2.0 / 32768, 1.0 / 65536, 1e-6}) {
+    FixedSum sum;
+    double exact = 0;
+    int count = 0;
+    for (; count < 100'000 && exact < 1.8; ++count) {
+      const float x = random.real32(0, largest);
+      exact += x;
+      sum.add(x, random.real32(0x1p-24, 1));
+    }
+    EXPECT_LE(std::abs(sum - exact), 5 * 0.5 * std::sqrt(count) / 32768) << largest;
+  }
+}
+
+TEST(FixedSum, RoundsAtTheThreshold) {
+  for (const float threshold : {0x1p-8f, 0.25f, 0.5f, 1.0f}) {
+    FixedSum sum;
+    for (int i = 0; i < 60'000; ++i) sum.add(1.0f / 32768, threshold);  // whole units are exact
+    EXPECT_EQ(sum.units, 60'000);
+    sum.add(0.0f, threshold);
+    EXPECT_EQ(sum.units, 60'000);
+    sum.add(0.3f / 32768, threshold);
+    EXPECT_EQ(sum.units, threshold < 0.3f ? 60'001 : 60'000);
+  }
+}
+
+TEST(FixedSum, StopsAtItsLimits) {
+  FixedSum sum;
+  for (int i = 0; i < 100; ++i) sum.add(0.3f, 0.5f);
+  EXPECT_EQ(sum.units, 0xffff);
+  sum.add(2.0f, 0.5f);
+  EXPECT_EQ(sum.units, 0xffff);
+}
+
+// Every position is in the state that it was put into last, the two ways to find positions agree, and words beyond the
+// pixel's are 0.
+template <std::size_t Words, std::size_t Bits>
+void expect_states(std::uint64_t seed) {
+  Random random(seed);
+  SCOPED_TRACE(random.name());
+  PositionStates<Words, Bits> states{};
+  std::vector<std::uint32_t> expected(32 * Words);
+  for (int step = 0; step < 200; ++step) {
+    WideMask positions;
+    for (std::size_t w = 0; w < Words; ++w)
+      positions.words[w] = random.one_in(5) ? ~0u : random.one_in(4) ? 0 : random.word() & random.word();
+    const auto into = static_cast<std::uint32_t>(random.integer(0, (1 << Bits) - 1));
+    states.put(positions, into);
+    for (std::size_t p = 0; p < expected.size(); ++p)
+      if (positions.test(p)) expected[p] = into;
+    for (std::uint32_t state = 0; state < 1u << Bits; ++state) {
+      const WideMask found = states.positions_in(state);
+      bool all = true;
+      for (std::size_t p = 0; p < expected.size(); ++p) {
+        ASSERT_EQ(found.test(p), expected[p] == state) << p;
+        all &= expected[p] == state;
+      }
+      EXPECT_EQ(states.all_in(state), all);
+      for (std::size_t w = 0; w < kMaxMaskWords; ++w) {
+        std::array<std::uint32_t, Bits> planes{};
+        if (w < Words)
+          for (std::size_t b = 0; b < Bits; ++b) planes[b] = states.planes[b][w];
+        ASSERT_EQ(found.words[w], w < Words ? word_in_state(planes, state) : 0) << w;
+      }
+    }
+    for (std::size_t p = 0; p < expected.size(); ++p) ASSERT_EQ(states.at(p), expected[p]);
+  }
+}
+
+TEST(OpenPixel, StatesOfPositions) {
+  expect_states<1, 2>(203);
+  expect_states<2, 3>(204);
+  expect_states<4, 4>(205);
+  expect_states<8, 3>(206);
+  expect_states<8, 6>(207);
+}
+
+TEST(OpenPixel, StatesHaveEnoughBitsForEverySlot) {
+  const auto check = []<std::size_t Words, std::size_t Slots>(OpenPixel<Words, Slots> pixel) {
+    using Pixel = OpenPixel<Words, Slots>;
+    EXPECT_LT(Pixel::owned_by(Slots - 1), Pixel::kFinal);
+    EXPECT_LT(Pixel::kFinal, 1u << Pixel::kBits);
+    EXPECT_TRUE(pixel.states.all_in(Pixel::kEmpty));
+    for (const OwnerSlot& slot : pixel.slots) EXPECT_TRUE(slot.is_free());
+    EXPECT_EQ(pixel.area.units, 0);
+  };
+#define BEAMPIPE_CHECK(words, slots) check(OpenPixel<words, slots>());
+  BEAMPIPE_OPEN_PIXELS(BEAMPIPE_CHECK)
+#undef BEAMPIPE_CHECK
+}
+
+}  // namespace
+}  // namespace beampipe

@@ -1,0 +1,60 @@
+// Runs the stages around compose_owners one after the other, for a tile of open pixels.
+#pragma once
+
+#include <vector>
+
+#include "stages/beam/beam_fragment.h"
+#include "stages/beam/compose_owners.h"
+#include "stages/raster/bin_sort.h"
+#include "stages/raster/conservative_raster.h"
+#include "tests/stages/screen_triangles.h"
+
+namespace beampipe {
+
+template <std::size_t Words, std::size_t Slots>
+struct OpenTile {
+  using Pixel = OpenPixel<Words, Slots>;
+  static constexpr int kPositions = 32 * static_cast<int>(Words);
+
+  const SetupTriangles& triangles;
+  const std::vector<glm::vec3>& colors;
+  Tile tile;
+  float brightest;
+  const PositionSet& positions = cell_positions(kPositions);
+  std::vector<Pixel> pixels;
+  ClosedDepth closed;
+  std::vector<float> counts, merges;  // per pixel: fragments that no closed pixel hid, owners that became one
+  std::vector<Fragment> fragments;         // all that were composed
+  StageCounters composing{}, finishing{};  // counted by compose_owners and finish_owners
+  OwnersResult result{};
+
+  OpenTile(const SetupTriangles& of, const std::vector<glm::vec3>& in_colors, const Tile& in = {0, 0, 1, 1},
+           float brightest_channel = 1)
+      : triangles(of),
+        colors(in_colors),
+        tile(in),
+        brightest(brightest_channel),
+        pixels(in.pixels()),
+        closed(in),
+        counts(in.pixels()),
+        merges(in.pixels()) {}
+
+  // Composes the triangles of the list, in its order. `watermarks` may be null.
+  std::vector<PixelColor> compose(const TriangleList& list, const std::vector<float>* watermarks = nullptr) {
+    const PositionGrid grid(kPositions);
+    StageCounters ignored;
+    std::vector<Pair> pairs;
+    conservative_raster(triangles, list, tile, ignored, pairs);
+    beam_fragment(triangles, pairs, tile, grid_options(grid, owners_fragment_bytes(Words)), ignored, fragments);
+    const OwnersBin bin{triangles, list, watermarks, tile, positions, colors, brightest, false};
+    compose_owners(bin, fragments, 0, composing, pixels, closed, {counts, merges}, result);
+    return finish_owners(bin, finishing, pixels, result);
+  }
+  std::vector<PixelColor> compose_sorted(bool with_watermarks = true) {
+    StageCounters ignored;
+    const OrderedList ordered = bin_sort(triangles, all_of(triangles), tile, ignored);
+    return compose(ordered.triangles, with_watermarks ? &ordered.watermarks : nullptr);
+  }
+};
+
+}  // namespace beampipe
