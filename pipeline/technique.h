@@ -75,7 +75,7 @@ struct FrameResult {
   std::vector<StageCounters> stages;                         // in pipeline order
   std::uint64_t a_buffer_peak_bytes = 0;
   std::vector<Buffer> buffers;  // all but the A-buffer
-  std::uint32_t bin_pixels = 0;  // of a whole bin
+  std::uint32_t bin_pixels = 0;  // of the largest bin
 };
 
 struct Technique {

@@ -127,7 +127,8 @@ FrameResult render_bins(const FrameContext& context, const BinPlan& plan, const 
     on_threads(run.threads, [&] { render_band(band); });
   }
   FrameResult result = recorder.finish(pass, list_bytes);
-  result.bin_pixels = static_cast<std::uint32_t>(grid.size * grid.size);
+  const auto side = static_cast<std::uint32_t>(grid.size);
+  result.bin_pixels = std::min(side, context.frame.width) * std::min(side, context.frame.height);
   return result;
 }
 

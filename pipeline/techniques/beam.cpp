@@ -27,7 +27,6 @@ FrameResult render_shape(const Trace& trace, const Frame& frame, const BeamOptio
   const PositionSet& positions = cell_positions(beam.positions);
   const PositionGrid grid(beam.positions);
   const BeamFragmentOptions options = grid_options(grid, owners_fragment_bytes(Words));
-  const float brightest = brightest_of(context.colors);
   const BinPlan plan{.stages = {"conservative_raster", "bin_sort", "beam_fragment", "compose", "shade", "resolve"},
                      .tile_size = beam.bin,
                      .keeps_tile_size = true};
@@ -36,7 +35,7 @@ FrameResult render_shape(const Trace& trace, const Frame& frame, const BeamOptio
     ConservativeRasterUnit raster(bin, "", PairDepths::bounds, ConservativeRasterUnit::Hidden::left_out);
     BeamFragmentUnit make_fragments(bin, options);
     ShadeUnit shade(bin);
-    ComposeOwnersUnit<Words, Slots> compose(bin, positions, ordered.triangles, &ordered.watermarks, brightest,
+    ComposeOwnersUnit<Words, Slots> compose(bin, positions, ordered.triangles, &ordered.watermarks,
                                             OpenPixels::on_chip, {});
 
     raster.queued(ordered.triangles, [&](const std::vector<Pair>& pairs, std::size_t first) {

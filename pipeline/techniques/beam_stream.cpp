@@ -55,13 +55,12 @@ FrameResult render_one_pass(const Trace& trace, const Frame& frame, const Stream
   const PositionSet& positions = cell_positions(stream.positions);
   const PositionGrid grid(stream.positions);
   const BeamFragmentOptions options = grid_options(grid, owners_fragment_bytes(Words));
-  const float brightest = brightest_of(context.colors);
   const BinPlan plan{.stages = {"conservative_raster", "beam_fragment", "compose", "shade", "resolve"}};
   return render_bins(context, plan, [&](Bin& bin) {
     ConservativeRasterUnit raster(bin, "", PairDepths::bounds, ConservativeRasterUnit::Hidden::left_out);
     BeamFragmentUnit make_fragments(bin, options);
     ShadeUnit shade(bin);
-    ComposeOwnersUnit<Words, Slots> compose(bin, positions, bin.list, nullptr, brightest, OpenPixels::in_memory,
+    ComposeOwnersUnit<Words, Slots> compose(bin, positions, bin.list, nullptr, OpenPixels::in_memory,
                                             stream_framebuffer(stream));
 
     raster.queued(bin.list, [&](const std::vector<Pair>& pairs, std::size_t first) {

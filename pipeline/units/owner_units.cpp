@@ -6,12 +6,6 @@
 
 namespace beampipe {
 
-float brightest_of(const std::vector<glm::vec3>& colors) {
-  float brightest = 0;
-  for (const glm::vec3& color : colors) brightest = std::max({brightest, color[0], color[1], color[2]});
-  return brightest > 0 ? brightest : 1.0f;
-}
-
 void hold_open_pixels(Bin& bin, std::size_t bytes_per_pixel) {
   bin.holds("open_pixels", bin.tile.pixels() * bytes_per_pixel);
   if (bin.models_memory()) bin.pixel_counter("bytes").assign(bin.tile.pixels(), kPictureBytes);

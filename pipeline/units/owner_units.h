@@ -19,9 +19,6 @@ namespace beampipe {
 // Sorts the bin's list near to far, with its memory traffic.
 OrderedList sort_bin(Bin& bin);
 
-// The largest channel of all colours; above 0.
-float brightest_of(const std::vector<glm::vec3>& colors);
-
 // Where open pixels are kept: on chip while their bin is rendered, or in the framebuffer, through its caches.
 enum class OpenPixels { on_chip, in_memory };
 
@@ -34,12 +31,12 @@ class ComposeOwnersUnit {
   // `list`: the triangles in the order in which they are taken. `watermarks` may be null. `framebuffer`: the surfaces
   // of open pixels in memory. All but the framebuffer must outlive the unit.
   ComposeOwnersUnit(Bin& bin, const PositionSet& positions, const TriangleList& list,
-                    const std::vector<float>* watermarks, float brightest, OpenPixels where,
+                    const std::vector<float>* watermarks, OpenPixels where,
                     const std::vector<Surface>& framebuffer)
       : bin_(bin),
         stage_(bin.stage("compose")),
         owners_{bin.triangles(),    list,      watermarks,         bin.tile, positions,
-                bin.context.colors, brightest, bin.models_memory()},
+                bin.context.colors, bin.models_memory()},
         maps_{bin.pixel_counter("fragments"), bin.pixel_counter("merges")},
         pixels_(bin.tile.pixels()) {
     if (list.size() > OwnerSlot::kMostTriangles)

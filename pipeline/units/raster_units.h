@@ -26,7 +26,7 @@ void for_each_batch(const TriangleList& list, Body&& body) {
 }
 
 // Entries of a queue between two stages on chip. A stage whose queue is full waits for the next stage.
-inline constexpr std::size_t kQueueItems = 32;
+inline constexpr std::size_t kQueueItems = 24;
 
 // Size of a queued pair in the modelled machine: pixel (16 bits), the triangle's number in the bin's list (24), whether
 // the pair is full (8), and its nearest depth as float32.

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <array>
+#include <bit>
 
 #include "simd/conserve.h"
 #include "simd/plane_order.h"
@@ -210,13 +211,25 @@ class OwnerComposer {
                                                  depth_gap(one.plane, other.plane, other.mean_u, other.mean_v));
   }
 
+  std::uint32_t trace_number(const Owner& owner) const { return bin_.list[owner.slot.triangle()]; }
+
+  // Of owners at equal depth, those become one that lie closest in the trace: the fewest triangles come between them.
+  std::uint32_t distance_in_trace(std::size_t i, std::size_t j) const {
+    const std::uint32_t one = trace_number(owners_[i]), other = trace_number(owners_[j]);
+    return std::max(one, other) - std::min(one, other);
+  }
+
   std::size_t merge_closest(Pixel& pixel) {
     ++work.merges;
     std::size_t first = 0, second = 1;
     float least = merge_cost(owners_[0], owners_[1]);
-    for (std::size_t j = 2; j < owners_.size(); ++j)
-      for (std::size_t i = 0; i < j; ++i)
-        if (const float cost = merge_cost(owners_[i], owners_[j]); cost < least) least = cost, first = i, second = j;
+    for (std::size_t j = 2; j < owners_.size(); ++j) {
+      for (std::size_t i = 0; i < j; ++i) {
+        const float cost = merge_cost(owners_[i], owners_[j]);
+        if (cost > least || (cost == least && distance_in_trace(i, j) >= distance_in_trace(first, second))) continue;
+        least = cost, first = i, second = j;
+      }
+    }
     Owner &one = owners_[first], &other = owners_[second];  // only the other one may be without a slot
     const Owner& larger = one.visible >= other.visible ? one : other;
     const float error_of_one = one.fraction() * one.fraction() * one.slot.error();
@@ -225,7 +238,9 @@ class OwnerComposer {
     const float other_part = std::max(other.visible + error_of_other, kLeastArea);
     const glm::vec3 color = (part * color_of(one.slot) + other_part * color_of(other.slot)) * (1 / (part + other_part));
     put(one.owned | other.owned, Pixel::owned_by(one.index), pixel);
-    pixel.slots[one.index].set_merged(larger.slot.triangle(), error_of_one + error_of_other, color);
+    const std::uint32_t contents = one.slot.content() + 3 * other.slot.content();
+    pixel.slots[one.index].set_merged(larger.slot.triangle(), error_of_one + error_of_other, color,
+                                      rounding_threshold(contents));
     if (other.index < Slots) pixel.slots[other.index].clear();
     return other.index;
   }
@@ -252,12 +267,14 @@ class OwnerComposer {
       const float exact = greater(owner->covered() + owner->slot.error(), 0.0f) / kPositions;
       const float area =
           visible_area(exact, owner->covered(), owner->visible, kPositions, Taken<float>{pixel.area, final_positions});
-      const glm::vec3 color = color_of(owner->slot) * (1 / bin_.brightest);
+      const glm::vec3 color = color_of(owner->slot);
+      const float counted = owner->visible / kPositions;
       final_positions += owner->visible;
-      const float threshold = rounding_threshold(bin_.list[owner->slot.triangle()]);
+      const float threshold = rounding_threshold(owner->slot.content());
       pixel.area.add(area, threshold);
-      for (int c = 0; c < 3; ++c) pixel.color[c].add(area * color[c], threshold);
-      for (int c = 0; c < 3; ++c) pixel.counted_color[c].add(owner->visible / kPositions * color[c], threshold);
+      pixel.colors.add({area * color[0], area * color[1], area * color[2], counted * color[0], counted * color[1],
+                        counted * color[2]},
+                       threshold);
       put(owner->owned, Pixel::kFinal, pixel);
       pixel.slots[owner->index].clear();
     }
@@ -301,14 +318,15 @@ class OwnerComposer {
     if (votes == 0) return;
     FixedSum &same = pixel.specks[fragment.front], &opposite = pixel.specks[!fragment.front];
     const float before = greater(same, opposite);
-    const float threshold = rounding_threshold(fragment.triangle);
+    const float threshold = rounding_threshold(std::bit_cast<std::uint32_t>(fragment.alpha) ^
+                                               std::bit_cast<std::uint32_t>(fragment.centroid_z));
     same.add(fragment.alpha * votes / 3.0f, threshold);
     const float area = lesser(greater(same, opposite) - before, 1.0f - pixel.area);
     if (area <= 0) return;
     ++work.specks_added;
-    const glm::vec3 color = shade(fragment.triangle) * (area / bin_.brightest);
+    const glm::vec3 color = area * shade(fragment.triangle);
     pixel.area.add(area, threshold);
-    for (int c = 0; c < 3; ++c) pixel.color[c].add(color[c], threshold);
+    pixel.colors.add({color[0], color[1], color[2], 0, 0, 0}, threshold);
   }
 
   bool is_nearer(const Fragment& speck, const OwnerSlot& slot) {
@@ -322,10 +340,7 @@ class OwnerComposer {
     if (pixel.area <= 0) return {0.0f, glm::vec3(0.0f)};
     ++work.limited;
     Estimate<float> analytic{pixel.area, {}}, counted{count / kPositions, {}};
-    for (int c = 0; c < 3; ++c) {
-      analytic.color[c] = pixel.color[c] * bin_.brightest;
-      counted.color[c] = pixel.counted_color[c] * bin_.brightest;
-    }
+    for (std::size_t c = 0; c < 3; ++c) analytic.color[c] = pixel.colors[c], counted.color[c] = pixel.colors[c + 3];
     const Estimate<float> result = limited_estimate(analytic, counted, kPositions);
     return {result.area, {result.color[0], result.color[1], result.color[2]}};
   }

@@ -37,7 +37,6 @@ struct OwnersBin {
   const Tile& tile;
   const PositionSet& positions;
   const std::vector<glm::vec3>& colors;  // what the shader returns, one per triangle
-  float brightest;                       // the largest channel of all colours
   bool lists_fetches;                    // fill OwnersResult::fetched
 };
 

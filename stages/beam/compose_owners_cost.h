@@ -47,6 +47,17 @@ inline void add_fixed(const Counted<float>& x) {
   to_integer(x * Counted<float>(FixedSum::kUnits) + Counted<float>(1.0f)) + Counted<std::int32_t>(0);
 }
 
+// To add to a pixel's sums of colours: the exponent, whether the six sums have room, and the additions.
+inline void add_colors(const Counted<float>& x, OperationCounts& counts) {
+  constexpr std::size_t kCount = ColorSums::kCount;
+  counts.bit += 3 * kCount + 3 * kCount;  // bits of the exponent and of the sums are taken apart and put together
+  for (std::size_t i = 0; i < kCount; ++i) {
+    const Counted<float> units = x * Counted<float>(1.0f);
+    static_cast<void>(to_float(Counted<std::int32_t>(0, counts)) + units < x);
+    to_integer(units + Counted<float>(1.0f)) + Counted<std::int32_t>(0);
+  }
+}
+
 // The threshold of a triangle's sums, less than 1.
 inline void find_threshold(OperationCounts& counts) {
   Counted<float>(1.0f) - rounding_threshold(Counted<std::uint32_t>(0, counts));
@@ -140,11 +151,8 @@ inline OperationCounts settle_owner_cost() {
     one + one;
     add_fixed(area);
     const Real share = one * per_position;
-    for (int c = 0; c < 3; ++c) {
-      const Real channel = one * one;
-      add_fixed(area * channel);
-      add_fixed(share * channel);
-    }
+    for (int c = 0; c < 3; ++c) area *one, share *one;
+    add_colors(one, counts);
   });
 }
 
@@ -167,9 +175,9 @@ inline OperationCounts speck_area_cost() {
     find_threshold(counts);
     add_fixed(one * one / Real(3.0f));
     const Real area = lesser(greater(sums, sums) - greater(sums, sums), one - one);
-    const Real share = area / one;
     add_fixed(area);
-    for (int c = 0; c < 3; ++c) add_fixed(one * share);
+    for (int c = 0; c < 3; ++c) one* area;
+    add_colors(one, counts);
   });
 }
 
@@ -225,7 +233,7 @@ void charge(const OwnersWork& work, StageCounters& counters) {
   counters.ops += of_limit * work.limited;
   counters.bytes_read +=
       work.fragments * (owners_fragment_bytes(Words) + sizeof(float) + sizeof(Pixel)) + work.finished * sizeof(Pixel);
-  counters.bytes_read += work.planes * sizeof(ScreenDepth);
+  counters.bytes_read += work.planes * (sizeof(std::uint32_t) + sizeof(ScreenDepth));  // by its number in the list
   counters.bytes_written += (work.claims + work.specks_added) * sizeof(Pixel);
   counters.lanes_used += work.claims;
   counters.lanes_issued += work.fragments;

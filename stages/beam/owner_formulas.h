@@ -65,12 +65,13 @@ Estimate<Float> limited_estimate(const Estimate<Float>& analytic, const Estimate
   return result;
 }
 
-// Where FixedSum rounds what a triangle adds: a number above 0 and up to 1 that differs from triangle to triangle. Eight
-// bits of it are exact in the sum of a float and the largest addend.
+// Where sums round what a surface adds: a number above 0 and up to 1 that differs from surface to surface. It depends on
+// `content`, what the surface is, and not on the order of triangles. Its eight bits are exact in the sum of a float and
+// the largest addend.
 template <class Bits>
-auto rounding_threshold(Bits triangle) {
-  using Float = decltype(to_float(mix_bits(triangle)));
-  return (to_float(mix_bits(triangle) >> 24) + Float(1.0f)) * Float(0x1p-8f);
+auto rounding_threshold(Bits content) {
+  using Float = decltype(to_float(mix_bits(content)));
+  return (to_float(mix_bits(content) >> 24) + Float(1.0f)) * Float(0x1p-8f);
 }
 
 }  // namespace beampipe

@@ -116,10 +116,10 @@ const std::vector<FrameCounterInfo>& frame_counters() {
        "size of a technique's framebuffer, plus its A-buffer in the frame where that is largest"},
       {"on_chip_bytes_per_pixel", "bytes per pixel",
        "size of all buffers that a bin has on chip (open pixels, closed depths, queues, windows, batches), each at its "
-       "peak in the bin that needs the most, over the pixels of a whole bin"},
+       "peak in the bin that needs the most, over the pixels of the largest bin"},
       {"off_chip_bytes_per_pixel", "bytes per pixel",
        "peak_bytes_per_pixel: what depends on pixels or fragments and is in memory; geometry and bin lists are apart"},
-      {"bin_pixels", "pixels", "pixels of a whole bin"},
+      {"bin_pixels", "pixels", "pixels of the largest bin"},
       {"pixel_counters", "as the counter's", "mean and maximum of each pixel counter over the pixels"},
       {"saved", "pairs, cells, triangles, tiles or pixels",
        "work that was not done, derived from the counters of the stages: hidden_pairs or hidden_cells, which the "

@@ -23,12 +23,58 @@ struct FixedSum {
   std::uint16_t units = 0;
 
   operator float() const { return static_cast<float>(units) / kUnits; }
-  // `threshold`: 0..1, different for each addend. The part of a unit above it counts as a whole unit, so that many small
-  // addends are right on average.
+  // `threshold`: 0..1, different for each addend. The part of a unit above it counts as a whole unit, so that many
+  // small addends are right on average.
   void add(float x, float threshold) {
     const auto sum = static_cast<std::int32_t>(units) + static_cast<std::int32_t>(x * kUnits + 1.0f - threshold);
     units = static_cast<std::uint16_t>(std::clamp(sum, 0, 0xffff));
   }
+};
+
+// Sums of colours: RGB by analytic area, and RGB by counted positions, in 12 bytes. Each has 15 bits; the sixteenth
+// bits together are the exponent of all six, which grows with the largest sum. Colours are linear RGB times area.
+class ColorSums {
+ public:
+  static constexpr std::size_t kCount = 6;
+
+  float operator[](std::size_t i) const { return static_cast<float>(words_[i] & kLargest) * unit(exponent()); }
+
+  // `addends` are not negative. `threshold`: as in FixedSum.
+  void add(const float (&addends)[kCount], float threshold) {
+    int power = exponent();
+    std::uint32_t sums[kCount];
+    for (std::size_t i = 0; i < kCount; ++i) sums[i] = words_[i] & kLargest;
+    while (power < kMostExponent && !fits(sums, addends, 1 / unit(power))) {
+      for (std::uint32_t& sum : sums) sum = (sum + 1) / 2;
+      ++power;
+    }
+    for (std::size_t i = 0; i < kCount; ++i) {
+      const float units = std::min(addends[i] / unit(power), static_cast<float>(kLargest));
+      const std::uint32_t sum = sums[i] + static_cast<std::uint32_t>(units + 1.0f - threshold);
+      words_[i] = static_cast<std::uint16_t>(std::min(sum, kLargest) | (power >> i & 1) << 15);
+    }
+  }
+
+ private:
+  static constexpr std::uint32_t kLargest = 0x7fff;
+  static constexpr int kMostExponent = 63;
+
+  // Units from 2^-40, so that sums up to 2^-25 are exact to that, to 2^23.
+  static float unit(int power) { return std::bit_cast<float>(static_cast<std::uint32_t>(power - 40 + 127) << 23); }
+
+  static bool fits(const std::uint32_t (&sums)[kCount], const float (&addends)[kCount], float per_unit) {
+    for (std::size_t i = 0; i < kCount; ++i)
+      if (!(static_cast<float>(sums[i]) + addends[i] * per_unit + 1.0f < static_cast<float>(kLargest))) return false;
+    return true;
+  }
+
+  int exponent() const {
+    int power = 0;
+    for (std::size_t i = 0; i < kCount; ++i) power |= words_[i] >> 15 << i;
+    return power;
+  }
+
+  std::uint16_t words_[kCount] = {};
 };
 
 // One owner, in 8 bytes. A surface that came from one triangle is shaded when it becomes final; until then it needs no
@@ -54,14 +100,17 @@ class OwnerSlot {
   // Of a merged surface; linear RGB.
   glm::vec3 color() const { return std::bit_cast<SharedExponent>(payload_); }
 
+  // Bits that say what the owner is, other than the number of its triangle.
+  std::uint32_t content() const { return payload_ ^ (word_ >> 24) << 9; }
+
   void clear() { word_ = kMostTriangles; }
   void set(std::uint32_t number, float error, std::uint32_t covered, float u, float v) {
     word_ = number | error_bits(error);
     payload_ = covered | to_byte(u) << 16 | to_byte(v) << 24;
   }
-  void set_merged(std::uint32_t number, float error, const glm::vec3& color) {
+  void set_merged(std::uint32_t number, float error, const glm::vec3& color, float threshold) {
     word_ = number | 1u << 23 | error_bits(error);
-    payload_ = std::bit_cast<std::uint32_t>(SharedExponent(color));
+    payload_ = std::bit_cast<std::uint32_t>(SharedExponent(color, threshold));
   }
 
  private:
@@ -89,10 +138,9 @@ struct OpenPixel {
 
   PositionStates<Words, kBits> states{};
   OwnerSlot slots[Slots];
-  // What is final, in two estimates. Colours are linear RGB times area, in units of the frame's brightest colour.
-  FixedSum color[3], area;    // by analytic area
-  FixedSum counted_color[3];  // by mask positions; their number says the area
-  FixedSum specks[2];         // the areas of visible specks that face away from the viewer, and towards the viewer
+  ColorSums colors;    // of what is final
+  FixedSum area;       // of what is final, by analytic area; the number of its positions is the counted area
+  FixedSum specks[2];  // the areas of visible specks that face away from the viewer, and towards the viewer
 
   static constexpr std::uint32_t owned_by(std::size_t slot) { return kFirstSlot + static_cast<std::uint32_t>(slot); }
 };
@@ -103,10 +151,10 @@ static_assert(sizeof(OpenPixel<4, 7>) == 138);
 static_assert(sizeof(OpenPixel<2, 4>) == 74);
 static_assert(sizeof(OpenPixel<1, 2>) == 42);
 
-// Size of a fragment between beam_fragment and compose in the modelled machine: pixel (16 bits), triangle (24),
-// centroid (16), area (16), mask, and depth plane as 3 x float32.
+// Size of a fragment between beam_fragment and compose in the modelled machine: pixel and facing (16 bits), triangle
+// (24), centroid (16), area (16), mask, and depth plane and nearest depth as 4 x float32.
 constexpr std::uint32_t owners_fragment_bytes(std::size_t words) {
-  return 2 + 3 + 2 + 2 + static_cast<std::uint32_t>(words) * 4 + 12;
+  return 2 + 3 + 2 + 2 + static_cast<std::uint32_t>(words) * 4 + 16;
 }
 
 // The instances that exist: X(words, slots).

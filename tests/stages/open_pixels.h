@@ -19,7 +19,6 @@ struct OpenTile {
   const SetupTriangles& triangles;
   const std::vector<glm::vec3>& colors;
   Tile tile;
-  float brightest;
   const PositionSet& positions = cell_positions(kPositions);
   std::vector<Pixel> pixels;
   ClosedDepth closed;
@@ -28,12 +27,10 @@ struct OpenTile {
   StageCounters composing{}, finishing{};  // counted by compose_owners and finish_owners
   OwnersResult result{};
 
-  OpenTile(const SetupTriangles& of, const std::vector<glm::vec3>& in_colors, const Tile& in = {0, 0, 1, 1},
-           float brightest_channel = 1)
+  OpenTile(const SetupTriangles& of, const std::vector<glm::vec3>& in_colors, const Tile& in = {0, 0, 1, 1})
       : triangles(of),
         colors(in_colors),
         tile(in),
-        brightest(brightest_channel),
         pixels(in.pixels()),
         closed(in),
         counts(in.pixels()),
@@ -46,7 +43,7 @@ struct OpenTile {
     std::vector<Pair> pairs;
     conservative_raster(triangles, list, tile, ignored, pairs);
     beam_fragment(triangles, pairs, tile, grid_options(grid, owners_fragment_bytes(Words)), ignored, fragments);
-    const OwnersBin bin{triangles, list, watermarks, tile, positions, colors, brightest, false};
+    const OwnersBin bin{triangles, list, watermarks, tile, positions, colors, false};
     compose_owners(bin, fragments, 0, composing, pixels, closed, {counts, merges}, result);
     return finish_owners(bin, finishing, pixels, result);
   }

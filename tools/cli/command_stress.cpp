@@ -20,9 +20,9 @@ namespace beampipe {
 namespace {
 
 struct StressArguments {
-  std::vector<std::string> specs = {"beam:order=near-first",
+  std::vector<std::string> specs = {"beam",
                                     "beam:order=sorted",
-                                    "beam:order=stream,passes=1",
+                                    "beam:order=stream",
                                     "beam:order=sorted,storage=float32",
                                     "beam:order=sorted,bits=32",
                                     "beam:order=stream,passes=0",

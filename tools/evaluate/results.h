@@ -49,7 +49,7 @@ struct FrameReport {
   std::vector<StageCounters> stages;
   std::map<std::string, PixelCounterStats> pixel_counters;  // by name
   std::uint64_t pixels = 0;
-  std::uint64_t bin_pixels = 0;  // of a whole bin
+  std::uint64_t bin_pixels = 0;  // of the largest bin
 };
 
 // The same frames with their triangles in another order.

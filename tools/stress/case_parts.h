@@ -73,10 +73,6 @@ inline constexpr const char* kMask = "areas of partly hidden triangles are estim
 inline constexpr const char* kUnseen = "a triangle that covers no mask position is invisible";
 inline constexpr const char* kSlopes = "layers store slopes in 8 bits, which moves intersections by a few positions";
 
-inline constexpr const char* kCounted =
-    "the result is within three positions of what counting them gives, and counting is wrong by up to one at an edge";
-
-inline const std::string kOnePass = "beam:order=near-first", kOnePassStream = "beam:order=stream,passes=1";
 inline const std::string kStream = "beam:order=stream,passes=0", kSmallStream = "beam:order=stream,passes=0,bits=64",
                          kCoarseStream = "beam:order=stream,passes=0,bits=32";
 

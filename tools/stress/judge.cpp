@@ -50,7 +50,6 @@ double format_limit(const std::string& spec) {
 
 // The limit for the spec. If there is none, the last option is dropped, then the one before it, and so on.
 const StatedLimit* stated_limit(const HardCase& hard_case, std::string spec) {
-  if (spec == "beam") spec = "beam:order=near-first";  // its default, whose limits are its own
   while (true) {
     const auto stated = hard_case.limits.find(spec);
     if (stated != hard_case.limits.end()) return &stated->second;
@@ -58,6 +57,24 @@ const StatedLimit* stated_limit(const HardCase& hard_case, std::string spec) {
     if (end == spec.npos) return nullptr;
     spec.resize(end);
   }
+}
+
+// The positions of the mask, if the spec is of the beam in one pass; else 0.
+int one_pass_positions(const std::string& spec) {
+  const auto has = [&](const char* text) { return spec.find(text) != spec.npos; };
+  if (!spec.starts_with("beam") || has("rules=paper") || has("order=sorted")) return 0;
+  if (has("passes=") && !has("passes=1")) return 0;
+  if (const std::size_t bits = spec.find("bits="); bits != spec.npos) return std::atoi(spec.c_str() + bits + 5);
+  return has("order=stream") ? 128 : 256;
+}
+
+// In one pass, a result is within three positions of what counting them gives, and counting is wrong by one more at an
+// edge. Other limits are those of 256 positions.
+StatedLimit one_pass_limit(const StatedLimit* several_passes, int positions) {
+  constexpr double kPositions = 4;
+  const StatedLimit counted{kPositions / positions, "areas and colours are limited to what mask positions say"};
+  if (!several_passes || counted.error >= several_passes->error * 256 / positions) return counted;
+  return {several_passes->error * 256 / positions, several_passes->reason};
 }
 
 }  // namespace
@@ -89,7 +106,11 @@ Verdict Judge::judge(const Technique& technique, const RunOptions& options) {
     }
   }
   verdict.limit = format_limit(technique.spec);
-  if (const StatedLimit* stated = stated_limit(case_, technique.spec)) {
+  const StatedLimit* const stated = stated_limit(case_, technique.spec);
+  if (const int positions = one_pass_positions(technique.spec)) {
+    const StatedLimit limit = one_pass_limit(stated_limit(case_, "beam"), positions);
+    verdict.limit = limit.error, verdict.reason = limit.reason;
+  } else if (stated) {
     verdict.limit = stated->error;
     verdict.reason = stated->reason;
   }

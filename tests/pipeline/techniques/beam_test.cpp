@@ -31,21 +31,21 @@ Trace layers_in_a_pixel(int layers, Layers kind) {
   return pixel_trace(4, 4, triangles);
 }
 
-// All buffers but the triangles and the bins' lists have a size that does not depend on the triangles. Queues have 32
-// entries: of 10 bytes a pair and of 53 a fragment.
+// All buffers but the triangles and the bins' lists have a size that does not depend on the triangles. Queues have 24
+// entries: of 10 bytes a pair and of 57 a fragment.
 TEST(Beam, BuffersHaveTheSameSizeHoweverDeepAPixelIs) {
   for (const Layers kind : {Layers::beside, Layers::behind, Layers::crossing}) {
     float area_of_one = 0;
     for (const int layers : {1, 10, 100, 1000, 10'000}) {
       SCOPED_TRACE(std::to_string(layers) + " layers of kind " + std::to_string(static_cast<int>(kind)));
       const FrameResult result = render("beam", layers_in_a_pixel(layers, kind));
-      const auto queued = static_cast<std::uint64_t>(std::min(layers, 32)), count = static_cast<std::uint64_t>(layers);
+      const auto queued = static_cast<std::uint64_t>(std::min(layers, 24)), count = static_cast<std::uint64_t>(layers);
       EXPECT_EQ(result.a_buffer_peak_bytes, 0u);
       std::map<std::string, std::uint64_t> bytes;
       for (const Buffer& buffer : result.buffers) bytes[buffer.name] = buffer.peak_bytes;
       const std::map<std::string, std::uint64_t> expected{
           {"setup_triangles", count * 116}, {"bin_lists", count * 4},    {"closed_depth", 17 * 4},
-          {"open_pixels", 16 * 154},        {"pair_queue", queued * 10}, {"fragment_queue", queued * 53}};
+          {"open_pixels", 16 * 154},        {"pair_queue", queued * 10}, {"fragment_queue", queued * 57}};
       EXPECT_EQ(bytes, expected);
       const std::uint64_t seen = stage_of(result, "shade").items_in;
       if (kind == Layers::behind) {

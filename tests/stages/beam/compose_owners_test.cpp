@@ -450,8 +450,8 @@ TEST(ComposeOwners, TenThousandRandomFragmentsInOnePixel) {
       }
       EXPECT_EQ(tile.composing.items_in, tile.fragments.size());
     };
-    OpenTile<8, 5> unsorted(triangles, colors, {0, 0, 1, 1}, kBrightest),
-        sorted(triangles, colors, {0, 0, 1, 1}, kBrightest);
+    OpenTile<8, 5> unsorted(triangles, colors, {0, 0, 1, 1}),
+        sorted(triangles, colors, {0, 0, 1, 1});
     check(unsorted, unsorted.compose(all_of(triangles)).at(0));
     EXPECT_GT(unsorted.fragments.size(), 5000u);
     check(sorted, sorted.compose_sorted().at(0));

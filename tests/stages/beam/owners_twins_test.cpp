@@ -12,9 +12,10 @@ constexpr std::size_t kWords = 4;
 using Five = OpenTile<kWords, 5>;
 using Two = OpenTile<kWords, 2>;
 
-// A fragment: pixel, triangle, centroid, area, mask, plane; and the pixel's closed depth. A pixel: three bit planes,
-// five slots, and nine sums of two bytes. A plane of an owner: five doubles of a setup triangle.
-constexpr std::uint64_t kFragment = 2 + 3 + 2 + 2 + 16 + 12 + 4, kPlane = 5 * 8;
+// A fragment: pixel, triangle, centroid, area, mask, plane, depth; and the pixel's closed depth. A pixel: three bit planes,
+// five slots, and nine sums of two bytes. A plane of an owner: its number in the
+// list, and five doubles of a setup triangle.
+constexpr std::uint64_t kFragment = 2 + 3 + 2 + 2 + 16 + 16 + 4, kPlane = 4 + 5 * 8;
 constexpr std::uint64_t kPixelOfFive = 3 * 16 + 5 * 8 + 9 * 2, kPixelOfTwo = 2 * 16 + 2 * 8 + 9 * 2;
 
 // Each fragment is compared with its pixel's closed depth.

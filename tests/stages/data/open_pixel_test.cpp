@@ -38,7 +38,7 @@ TEST(OpenPixel, ASlotKeepsItsTriangleAndItsCentroid) {
 
 TEST(OpenPixel, AMergedSlotKeepsAColour) {
   OwnerSlot slot;
-  slot.set_merged(OwnerSlot::kMostTriangles - 1, 3.5f, {1.0f, 0.5f, 0.25f});
+  slot.set_merged(OwnerSlot::kMostTriangles - 1, 3.5f, {1.0f, 0.5f, 0.25f}, 0.5f);
   EXPECT_TRUE(slot.is_merged());
   EXPECT_FALSE(slot.is_free());
   EXPECT_EQ(slot.triangle(), OwnerSlot::kMostTriangles - 1);
@@ -46,7 +46,7 @@ TEST(OpenPixel, AMergedSlotKeepsAColour) {
   EXPECT_EQ(slot.color(), glm::vec3(1.0f, 0.5f, 0.25f));
   slot.set(3, 0, 5, 0, 0);
   EXPECT_FALSE(slot.is_merged());
-  slot.set_merged(3, 0, {0, 0, 0});
+  slot.set_merged(3, 0, {0, 0, 0}, 0.5f);
   EXPECT_EQ(slot.color(), glm::vec3(0.0f));
   slot.clear();
   EXPECT_TRUE(slot.is_free());
@@ -60,7 +60,7 @@ TEST(OpenPixel, TheErrorOfASlotIsRoundedAndLimited) {
   constexpr float kMost = 127.0f / 32;
   OwnerSlot slot;
   const auto stored = [&](float error, bool merged) {
-    merged ? slot.set_merged(12345, error, glm::vec3(1.0f)) : slot.set(12345, error, 10, 0.5f, 0.5f);
+    merged ? slot.set_merged(12345, error, glm::vec3(1.0f), 0.5f) : slot.set(12345, error, 10, 0.5f, 0.5f);
     EXPECT_EQ(slot.triangle(), 12345u) << error;
     EXPECT_EQ(slot.is_merged(), merged) << error;
     return slot.error();
@@ -117,6 +117,44 @@ TEST(FixedSum, StopsAtItsLimits) {
   EXPECT_EQ(sum.units, 0xffff);
   sum.add(2.0f, 0.5f);
   EXPECT_EQ(sum.units, 0xffff);
+}
+
+// The six sums against doubles: colours from 10^-6 to 10^6, added in any order, are right to the sum's last bits, and
+// many small addends are right on average.
+TEST(ColorSums, AreRightWhateverTheSizeOfColors) {
+  Random random(203);
+  SCOPED_TRACE(random.name());
+  for (const double brightest : {1e-6, 1e-3, 1.0, 100.0, 1e6}) {
+    for (int run = 0; run < 20; ++run) {
+      ColorSums sums;
+      double exact[ColorSums::kCount] = {}, largest = 0;
+      const int count = 1 + random.int32(0, 400);
+      for (int k = 0; k < count; ++k) {
+        float addends[ColorSums::kCount];
+        for (std::size_t i = 0; i < ColorSums::kCount; ++i) {
+          addends[i] = random.real32(0, brightest / count);
+          exact[i] += addends[i];
+          largest = std::max(largest, exact[i]);
+        }
+        sums.add(addends, random.real32(0x1p-8, 1));
+      }
+      // A unit is at most 2^-13 of the largest sum. Each addend is wrong by a unit at most, and errors cancel.
+      for (std::size_t i = 0; i < ColorSums::kCount; ++i)
+        EXPECT_NEAR(sums[i], exact[i], largest * 0x1p-13 * (2 + 3 * std::sqrt(count))) << brightest;
+    }
+  }
+}
+
+TEST(ColorSums, HoldABrightColorAfterDarkOnes) {
+  ColorSums sums;
+  for (int k = 0; k < 100; ++k) sums.add({0.004f, 0.002f, 0.001f, 0.004f, 0.002f, 0.001f}, 0.5f);
+  EXPECT_NEAR(sums[0], 0.4, 0.001);
+  sums.add({900.0f, 0.0f, 0.0f, 900.0f, 0.0f, 0.0f}, 0.5f);
+  EXPECT_NEAR(sums[0], 900.4, 0.1);
+  EXPECT_NEAR(sums[1], 0.2, 0.1);
+  sums.add({1e38f, 0.0f, 0.0f, 0.0f, 0.0f, 0.0f}, 0.5f);  // more than a sum can hold
+  EXPECT_GT(sums[0], 1e11);
+  EXPECT_TRUE(std::isfinite(sums[0]));
 }
 
 // Every position is in the state that it was put into last, the two ways to find positions agree, and words beyond the

@@ -100,7 +100,7 @@ TEST_P(HardCases, AreWithinTheirLimits) {
 }
 
 INSTANTIATE_TEST_SUITE_P(Techniques, HardCases,
-                         testing::Values("beam:order=near-first", "beam:order=sorted", "beam:order=stream,passes=1", "beam:order=stream,passes=0",
+                         testing::Values("beam", "beam:bits=64,slots=4", "beam:order=sorted", "beam:order=stream", "beam:order=stream,passes=0",
                                          "beam:order=stream,passes=0,bits=64,layers=1", "z3", "beam:rules=paper",
                                          "alpha", "msaa:8", "acaa:8,double=stencil", "acaa:8", "visibility",
                                          "reference"));
