@@ -234,8 +234,10 @@ class OwnerComposer {
     const Owner& larger = one.visible >= other.visible ? one : other;
     const float error_of_one = one.fraction() * one.fraction() * one.slot.error();
     const float error_of_other = other.fraction() * other.fraction() * other.slot.error();
-    const float part = std::max(one.visible + error_of_one, kLeastArea);
-    const float other_part = std::max(other.visible + error_of_other, kLeastArea);
+    // The mean is weighted by areas. Once an error has reached its limit, areas are not known any more.
+    const bool counted = one.slot.error_is_limited() || other.slot.error_is_limited();
+    const float part = counted ? one.visible : std::max(one.visible + error_of_one, kLeastArea);
+    const float other_part = counted ? other.visible : std::max(other.visible + error_of_other, kLeastArea);
     const glm::vec3 color = (part * color_of(one.slot) + other_part * color_of(other.slot)) * (1 / (part + other_part));
     put(one.owned | other.owned, Pixel::owned_by(one.index), pixel);
     const std::uint32_t contents = one.slot.content() + 3 * other.slot.content();

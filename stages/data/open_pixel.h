@@ -11,6 +11,7 @@
 #include <cstdint>
 #include <glm/glm.hpp>
 
+#include "simd/scalar.h"
 #include "stages/data/position_states.h"
 #include "stages/data/shared_exponent.h"
 
@@ -93,6 +94,8 @@ class OwnerSlot {
   // positions that it covers. From -4 to almost 4, in steps of 1/32.
   float error() const { return static_cast<float>(static_cast<std::int8_t>(word_ >> 24)) / kErrorUnits; }
 
+  bool error_is_limited() const { return magnitude(error()) >= kLargestError / kErrorUnits; }
+
   // Of a surface from one triangle: how many positions it covers, and its centroid in the pixel, 0..1.
   float covered() const { return static_cast<float>(payload_ & 0xffff); }
   glm::vec2 centroid() const { return glm::vec2(payload_ >> 16 & 0xff, payload_ >> 24) * (1.0f / 255.0f); }
@@ -114,10 +117,10 @@ class OwnerSlot {
   }
 
  private:
-  static constexpr float kErrorUnits = 32.0f;
+  static constexpr float kErrorUnits = 32.0f, kLargestError = 127.0f;
 
   static std::uint32_t error_bits(float error) {
-    const float units = std::clamp(error * kErrorUnits, -127.0f, 127.0f);
+    const float units = std::clamp(error * kErrorUnits, -kLargestError, kLargestError);
     return static_cast<std::uint32_t>(static_cast<std::int32_t>(units + (units < 0 ? -0.5f : 0.5f))) << 24;
   }
   static std::uint32_t to_byte(float x) { return static_cast<std::uint32_t>(x * 255.0f + 0.5f); }

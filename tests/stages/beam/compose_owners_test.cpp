@@ -336,6 +336,40 @@ TEST(ComposeOwners, EachSurfaceWithoutASlotMakesOneMerge) {
   }
 }
 
+// A pixel of 16 x 16 cells of two triangles each, which brighten from cell to cell and come near to far. Hardly any has
+// a slot of its own, and still the mean is right, to the tolerance of colours.
+TEST(ComposeOwners, TheMeanOfManyMergedSurfacesIsTheirMean) {
+  for (const bool in_steps : {false, true}) {
+    Random random(346);
+    SCOPED_TRACE(random.name());
+    std::vector<int> cells(256);
+    for (int i = 0; i < 256; ++i) cells[static_cast<std::size_t>(i)] = i;
+    for (std::size_t i = cells.size(); i > 1; --i)
+      std::swap(cells[i - 1], cells[static_cast<std::size_t>(random.integer(0, static_cast<std::int64_t>(i) - 1))]);
+    SetupTriangles triangles;
+    std::vector<glm::vec3> colors;
+    double mean = 0;
+    for (int rank = 0; rank < 256; ++rank) {
+      const int x = cells[static_cast<std::size_t>(rank)] % 16 * 16,
+                y = cells[static_cast<std::size_t>(rank)] / 16 * 16;
+      const float z = -0.9f + 0.4f * static_cast<float>(rank) / 256, far = z + 0.25f;
+      add_triangle(triangles, {x, y, z}, {x + 16, y, far}, {x + 16, y + 16, far});
+      add_triangle(triangles, {x, y, z}, {x + 16, y + 16, far}, {x, y + 16, z});
+      const float bright = in_steps ? (rank < 128 ? 0.5f : 0.9f) : 0.5f + 0.4f * static_cast<float>(rank) / 256;
+      mean += bright / 256;
+      colors.insert(colors.end(), 2, glm::vec3(bright, 0.5f * bright, 1.0f));
+    }
+    ASSERT_EQ(triangles.triangles.size(), 512u);
+    OpenTile<8, 5> tile(triangles, colors);
+    const PixelColor found = tile.compose_sorted().at(0);
+    EXPECT_GT(tile.merges[0], 200);
+    EXPECT_NEAR(found.alpha, 1, kAreaTolerance / 256);
+    EXPECT_NEAR(found.color[0], mean, 0.9 * (kColorTolerance + 2) / 256);
+    EXPECT_NEAR(found.color[1], mean / 2, 0.9 * (kColorTolerance + 2) / 256);
+    EXPECT_NEAR(found.color[2], 1, (kColorTolerance + 2) / 256);
+  }
+}
+
 // The two whose depths are closest become one: the surface far behind them keeps its own colour and its own depth.
 TEST(ComposeOwners, MergesTheClosestSurfaces) {
   SetupTriangles triangles;
@@ -450,8 +484,7 @@ TEST(ComposeOwners, TenThousandRandomFragmentsInOnePixel) {
       }
       EXPECT_EQ(tile.composing.items_in, tile.fragments.size());
     };
-    OpenTile<8, 5> unsorted(triangles, colors, {0, 0, 1, 1}),
-        sorted(triangles, colors, {0, 0, 1, 1});
+    OpenTile<8, 5> unsorted(triangles, colors, {0, 0, 1, 1}), sorted(triangles, colors, {0, 0, 1, 1});
     check(unsorted, unsorted.compose(all_of(triangles)).at(0));
     EXPECT_GT(unsorted.fragments.size(), 5000u);
     check(sorted, sorted.compose_sorted().at(0));
