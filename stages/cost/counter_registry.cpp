@@ -74,19 +74,24 @@ const std::vector<PixelCounterInfo>& pixel_counters() {
        "fragments that are shaded at the centroid, because their triangle does not cover the centre",
        "msaa:N,at=centroid"},
       {"merges", "fragments",
-       "fragments that were composed before the pixel was closed; for z3, how often two layers became one",
+       "beam:order=sorted, published rules in sorted order and alpha: fragments that were composed before the pixel "
+       "was "
+       "closed; others: how often two owners, aggregates or layers became one",
        "beam, alpha, z3"},
-      {"tiny_triangles", "fragments", "fragments that cover no mask position (specks)", "beam"},
-      {"largest_window", "fragments", "fragments of the largest window", "beam"},
+      {"tiny_triangles", "fragments", "fragments that cover no mask position (specks)",
+       "beam:order=sorted, beam:rules=paper, alpha"},
+      {"largest_window", "fragments", "fragments of the largest window", "beam:order=sorted"},
       {"visible_fragments", "fragments", "triangles that have a visible sample in the pixel", "acaa"},
-      {"passes", "passes", "passes over the triangles until the pixel was settled", "beam:order=stream"},
+      {"passes", "passes", "passes over the triangles until the pixel was settled",
+       "beam:order=stream in several passes"},
       {"unknown", "part of the pixel", "visibility samples that were not assigned to any shading sample", "dvm"},
   };
   return counters;
 }
 
 const std::vector<PixelCounterInfo>& error_counters() {
-  constexpr const char *kUnit = "linear light, 0..1", *kCauses = "compare --causes: beam, alpha";
+  constexpr const char *kUnit = "linear light, 0..1",
+                       *kCauses = "compare --causes: beam:order=sorted, beam:rules=paper, alpha";
   static const std::vector<PixelCounterInfo> counters = {
       {"error", kUnit, "root of the mean square error over R, G and B against the reference", "compare"},
       {"cause_leak", kUnit, "part of the pixel's error: a triangle shows that is completely hidden", kCauses},

@@ -52,7 +52,8 @@ void add_compare_command(CommandLine& line, InterruptGate& gate) {
           "1024 if these are not enough)")
       .list("N,N,...");
   command.add_flag("--causes", options->causes,
-                   "split each pixel's error by cause, as layers of the counters and as a table (beam and alpha only)");
+                   "split each pixel's error by cause, as layers of the counters and as a table "
+                   "(beam:order=sorted, beam:rules=paper and alpha only)");
   command.add_flag("--orders", options->orders,
                    "also render with the triangles shuffled, from near to far and from far to near, and tell the error "
                    "of each order and how far the pictures differ");
