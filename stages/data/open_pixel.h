@@ -45,12 +45,13 @@ class ColorSums {
     int power = exponent();
     std::uint32_t sums[kCount];
     for (std::size_t i = 0; i < kCount; ++i) sums[i] = words_[i] & kLargest;
-    while (power < kMostExponent && !fits(sums, addends, 1 / unit(power))) {
+    while (power < kMostExponent && !fits(sums, addends, per_unit(power))) {
       for (std::uint32_t& sum : sums) sum = (sum + 1) / 2;
       ++power;
     }
+    const float scale = per_unit(power);
     for (std::size_t i = 0; i < kCount; ++i) {
-      const float units = std::min(addends[i] / unit(power), static_cast<float>(kLargest));
+      const float units = std::min(addends[i] * scale, static_cast<float>(kLargest));
       const std::uint32_t sum = sums[i] + static_cast<std::uint32_t>(units + 1.0f - threshold);
       words_[i] = static_cast<std::uint16_t>(std::min(sum, kLargest) | (power >> i & 1) << 15);
     }
@@ -62,6 +63,7 @@ class ColorSums {
 
   // Units from 2^-40, so that sums up to 2^-25 are exact to that, to 2^23.
   static float unit(int power) { return std::bit_cast<float>(static_cast<std::uint32_t>(power - 40 + 127) << 23); }
+  static float per_unit(int power) { return std::bit_cast<float>(static_cast<std::uint32_t>(40 - power + 127) << 23); }
 
   static bool fits(const std::uint32_t (&sums)[kCount], const float (&addends)[kCount], float per_unit) {
     for (std::size_t i = 0; i < kCount; ++i)
