@@ -22,8 +22,22 @@ OrderedList sort_bin(Bin& bin);
 // Where open pixels are kept: on chip while their bin is rendered, or in the framebuffer, through its caches.
 enum class OpenPixels { on_chip, in_memory };
 
-// The bin keeps its pixels on chip in so many bytes each; only the picture goes to memory.
-void hold_open_pixels(Bin& bin, std::size_t bytes_per_pixel);
+// What open pixels cost where they are kept. On chip, only the picture goes to memory.
+class OpenPixelStore {
+ public:
+  // `framebuffer`: the surfaces of open pixels in memory.
+  OpenPixelStore(Bin& bin, OpenPixels where, std::size_t bytes_per_pixel, const std::vector<Surface>& framebuffer);
+
+  // Stage `compose` reads and writes the pixel of each fragment.
+  void merge(const std::vector<Fragment>& fragments);
+
+  // After the last fragment: `resolve` reads all pixels.
+  void finish();
+
+ private:
+  Bin& bin_;
+  std::optional<AggregateMemory> memory_;
+};
 
 template <std::size_t Words, std::size_t Slots>
 class ComposeOwnersUnit {
@@ -31,22 +45,16 @@ class ComposeOwnersUnit {
   // `list`: the triangles in the order in which they are taken. `watermarks` may be null. `framebuffer`: the surfaces
   // of open pixels in memory. All but the framebuffer must outlive the unit.
   ComposeOwnersUnit(Bin& bin, const PositionSet& positions, const TriangleList& list,
-                    const std::vector<float>* watermarks, OpenPixels where,
-                    const std::vector<Surface>& framebuffer)
+                    const std::vector<float>* watermarks, OpenPixels where, const std::vector<Surface>& framebuffer)
       : bin_(bin),
         stage_(bin.stage("compose")),
-        owners_{bin.triangles(),    list,      watermarks,         bin.tile, positions,
-                bin.context.colors, bin.models_memory()},
+        owners_{bin.triangles(), list, watermarks, bin.tile, positions, bin.context.colors, bin.models_memory()},
         maps_{bin.pixel_counter("fragments"), bin.pixel_counter("merges")},
-        pixels_(bin.tile.pixels()) {
+        pixels_(bin.tile.pixels()),
+        store_(bin, where, sizeof pixels_[0], framebuffer) {
     if (list.size() > OwnerSlot::kMostTriangles)
       throw std::runtime_error("a bin has " + std::to_string(list.size()) + " triangles, more than the " +
                                std::to_string(OwnerSlot::kMostTriangles) + " that an owner can name");
-    if (where == OpenPixels::on_chip) {
-      hold_open_pixels(bin, sizeof pixels_[0]);
-    } else {
-      memory_.emplace(bin.memory(), bin.z_order(), framebuffer);
-    }
     bin.triangle_fetches().load_setup();
   }
 
@@ -55,19 +63,14 @@ class ComposeOwnersUnit {
     OwnersResult result;
     compose_owners(owners_, fragments, first, stage_.timed(), pixels_, closed, maps_, result);
     charge(closed, stage_.counters);
-    if (memory_)
-      for (const Fragment& fragment : fragments) memory_->merge(fragment.triangle, fragment.pixel, stage_.counters);
+    store_.merge(fragments);
     finish(result, shade);
   }
 
   // The picture.
   std::vector<glm::vec4> resolve_owners(ShadeUnit& shade) {
     OwnersResult result;
-    if (memory_) {
-      memory_->flush({}, stage_.counters);
-      memory_->read_all(bin_.stage("resolve").counters);
-      if (bin_.models_memory()) memory_->add_bytes(bin_.pixel_counter("bytes"));
-    }
+    store_.finish();
     const std::vector<PixelColor> colors = finish_owners(owners_, stage_.timed(), pixels_, result);
     finish(result, shade);
     bin_.triangle_fetches().flush(stage_.counters);
@@ -85,7 +88,7 @@ class ComposeOwnersUnit {
   OwnersBin owners_;
   OwnersMaps maps_;
   std::vector<OpenPixel<Words, Slots>> pixels_;
-  std::optional<AggregateMemory> memory_;
+  OpenPixelStore store_;
 };
 
 }  // namespace beampipe

@@ -1,11 +1,9 @@
 // Composition by the published rules without an A-buffer: a few aggregates per pixel.
 #pragma once
 
-#include <optional>
 #include <vector>
 
 #include "pipeline/bins/bin.h"
-#include "pipeline/memory/aggregate_memory.h"
 #include "pipeline/units/owner_units.h"
 #include "stages/beam/compose_layers.h"
 
@@ -21,29 +19,19 @@ class ComposeLayersUnit {
         pattern_(pattern),
         rules_(rules),
         merges_(bin.pixel_counter("merges")),
-        layers_(bin.tile.pixels(), layers, storage) {
-    if (where == OpenPixels::on_chip) {
-      hold_open_pixels(bin, layers_.bytes_per_pixel());
-    } else {
-      memory_.emplace(bin.memory(), bin.z_order(), framebuffer);
-    }
-  }
+        layers_(bin.tile.pixels(), layers, storage),
+        store_(bin, where, layers_.bytes_per_pixel(), framebuffer) {}
 
   void operator()(const std::vector<Fragment>& fragments) {
     layers_.add(fragments, pattern_, rules_, stage_.timed(), merges_);
-    if (memory_)
-      for (const Fragment& fragment : fragments) memory_->merge(fragment.triangle, fragment.pixel, stage_.counters);
+    store_.merge(fragments);
   }
 
   std::vector<glm::vec4> resolve_layers() {
-    const BinStage resolving = bin_.stage("resolve");
-    if (memory_) {
-      memory_->flush({}, stage_.counters);
-      memory_->read_all(resolving.counters);
-      if (bin_.models_memory()) memory_->add_bytes(bin_.pixel_counter("bytes"));
-    }
+    store_.finish();
     const std::vector<PixelColor> colors = pixel_colors(layers_.finish(pattern_, rules_, stage_.timed()));
-    return resolve(colors, bin_.background(), static_cast<std::uint32_t>(layers_.bytes_per_pixel()), resolving.timed());
+    return resolve(colors, bin_.background(), static_cast<std::uint32_t>(layers_.bytes_per_pixel()),
+                   bin_.stage("resolve").timed());
   }
 
  private:
@@ -53,7 +41,7 @@ class ComposeLayersUnit {
   MergeRules rules_;
   std::vector<float>& merges_;
   AggregateLayers layers_;
-  std::optional<AggregateMemory> memory_;
+  OpenPixelStore store_;
 };
 
 }  // namespace beampipe
