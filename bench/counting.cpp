@@ -19,7 +19,8 @@ void render(benchmark::State& state, const std::string& spec, bool model_memory)
 }
 
 const bool registered = [] {
-  for (const std::string spec : {"beam:order=sorted", "beam:order=stream,passes=0", "beam:rules=paper", "msaa:8", "msaa:256", "acaa:8"}) {
+  for (const std::string spec : {"beam", "beam:order=sorted", "beam:order=stream", "beam:order=stream,passes=0",
+                                 "beam:rules=paper", "msaa:8", "msaa:256", "acaa:8"}) {
     for (const bool model : {false, true}) {
       benchmark::RegisterBenchmark((spec + (model ? "/memory_model" : "")).c_str(), render, spec, model)
           ->Unit(benchmark::kMillisecond);

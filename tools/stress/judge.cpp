@@ -63,7 +63,8 @@ const StatedLimit* stated_limit(const HardCase& hard_case, std::string spec) {
 int one_pass_positions(const std::string& spec) {
   const auto has = [&](const char* text) { return spec.find(text) != spec.npos; };
   if (!spec.starts_with("beam") || has("rules=paper") || has("order=sorted")) return 0;
-  if (has("passes=") && !has("passes=1")) return 0;
+  if (const std::size_t passes = spec.find("passes="); passes != spec.npos)
+    if (std::atoi(spec.c_str() + passes + 7) != 1) return 0;
   if (const std::size_t bits = spec.find("bits="); bits != spec.npos) return std::atoi(spec.c_str() + bits + 5);
   return has("order=stream") ? 128 : 256;
 }
@@ -106,11 +107,10 @@ Verdict Judge::judge(const Technique& technique, const RunOptions& options) {
     }
   }
   verdict.limit = format_limit(technique.spec);
-  const StatedLimit* const stated = stated_limit(case_, technique.spec);
   if (const int positions = one_pass_positions(technique.spec)) {
     const StatedLimit limit = one_pass_limit(stated_limit(case_, "beam"), positions);
     verdict.limit = limit.error, verdict.reason = limit.reason;
-  } else if (stated) {
+  } else if (const StatedLimit* stated = stated_limit(case_, technique.spec)) {
     verdict.limit = stated->error;
     verdict.reason = stated->reason;
   }
