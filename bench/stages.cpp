@@ -44,7 +44,7 @@ struct FrameWork {
     StageCounters unused;
     const Frame& frame = trace.frames[0];
     triangles = vertex_setup(trace, frame, unused);
-    colors = shade_triangles(triangles, frame.light_direction);
+    colors = shade_triangles(triangles, frame.lighting);
     options = grid_options(grid, conserving_fragment_bytes(kPositions));
     const TileGrid tile_grid(frame, kTileSize);
     std::vector<TriangleList> lists = bin_triangles(triangles, tile_grid, {0, tile_grid.tiles.size()});

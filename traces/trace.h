@@ -3,7 +3,7 @@
 // Conventions, everywhere in beampipe:
 //   - matrices are column-major and multiply column vectors; clip space is OpenGL's (-w <= x, y, z <= w, y up);
 //   - colours are linear RGB, unbounded above, 0 and up;
-//   - images have row 0 on top.
+//   - pictures and images have row 0 on top.
 #pragma once
 
 #include <cstdint>
@@ -12,25 +12,39 @@
 #include <string>
 #include <vector>
 
+#include "traces/material.h"
+
 namespace beampipe {
 
 enum class Cull { none, back, front };  // front faces are counter-clockwise in clip space (y up)
 enum class Shading { unlit, lambert };
 
-// Indexed triangles; `colors` has one linear RGB (the OBJ's Kd) per triangle.
+inline constexpr std::uint32_t kNoMaterial = ~0u;
+
+// Indexed triangles. Each is either flat, with one colour, or has a material, whose inputs vary over the triangle.
 struct Mesh {
   std::string name;
   std::vector<glm::vec3> positions;
   std::vector<glm::uvec3> triangles;  // indices into positions
-  std::vector<glm::vec3> colors;      // same length as triangles
+  std::vector<glm::vec3> colors;      // one per triangle, linear RGB (the OBJ's Kd); of flat triangles
+
+  // One per triangle: index into Trace::materials, or kNoMaterial if the triangle is flat. Empty: all are flat.
+  std::vector<std::uint32_t> materials;
+
+  // One per vertex, or empty. Only triangles with a material use them.
+  std::vector<glm::vec3> normals;        // unit length; empty: the triangles' own normals
+  std::vector<glm::vec4> tangents;       // unit length, towards u; w is the sign of the bitangent, as in glTF
+  std::vector<glm::vec2> uvs[2];         // texture coordinates
+  std::vector<glm::vec4> vertex_colors;  // linear RGBA; multiplied by the material's base colour
 };
 
 struct Draw {
   std::uint32_t mesh = 0;  // index into Trace::meshes
   glm::dmat4 transform{1.0};
-  std::optional<glm::vec3> kd;  // replaces the mesh's colours
+  std::optional<glm::vec3> kd;  // replaces the mesh's colours; its triangles are flat
   Cull cull = Cull::none;
-  Shading shading = Shading::unlit;
+  Shading shading = Shading::unlit;       // of flat triangles
+  std::optional<std::uint32_t> material;  // replaces the mesh's materials: index into Trace::materials; not with kd
 };
 
 // A pinhole camera. Lengths in scene units, 0 < near < far; fovy is the full vertical angle, in degrees, 0 < fovy <
@@ -41,16 +55,36 @@ struct Camera {
   double near = 0, far = 0;
 };
 
+// Infinitely far away.
+struct Light {
+  glm::vec3 direction{0.0f, 0.0f, -1.0f};  // in which the light travels, in world space; normalised
+  glm::vec3 color{1.0f};                   // linear RGB: what a white diffuse surface that faces the light reflects
+};
+
+// Light from all around: a surface that faces `up` receives `sky`, one that faces down `ground`, others a mix.
+struct Ambient {
+  glm::vec3 sky{0.0f}, ground{0.0f};  // linear RGB
+  glm::vec3 up{0.0f, 1.0f, 0.0f};     // world space, normalised
+};
+
+struct Lighting {
+  std::vector<Light> lights;  // at most kMostLights
+  std::optional<Ambient> ambient;
+};
+inline constexpr std::size_t kMostLights = 16;
+
 struct Frame {
   std::uint32_t width = 0, height = 0;  // pixels, each 1..16384
   glm::vec3 background{0.0f};
   std::optional<Camera> camera;  // if the trace names one; `view` and `projection` are made from it
   glm::dmat4 view{1.0}, projection{1.0};
-  std::optional<glm::vec3> light_direction;  // in which the light travels, in world space; normalised
+  Lighting lighting;
   std::vector<Draw> draws;
 };
 
 struct Trace {
+  std::vector<Image> images;
+  std::vector<Material> materials;
   std::vector<Mesh> meshes;
   std::vector<Frame> frames;
 };

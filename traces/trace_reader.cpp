@@ -123,10 +123,10 @@ Frame read_frame(const JsonCursor& at, const MeshIndex& index, const std::vector
   frame.height = at["height"].integer(1, kLargestSide);
   if (const auto background = at.find("background")) frame.background = background->color();
   read_view(at, frame);
-  if (const auto light = at.find("light")) frame.light_direction = read_light(*light);
+  if (const auto light = at.find("light")) frame.lighting.lights.push_back({.direction = read_light(*light)});
   std::uint64_t triangles = 0;
   for (const JsonCursor& draw : at["draws"].elements()) {
-    frame.draws.push_back(read_draw(draw, index, frame.light_direction.has_value()));
+    frame.draws.push_back(read_draw(draw, index, !frame.lighting.lights.empty()));
     triangles += meshes[frame.draws.back().mesh].triangles.size();
     if (triangles > kMostTriangles) {
       draw.fail("at most " + std::to_string(kMostTriangles) + " triangles in a frame", std::to_string(triangles));

@@ -143,8 +143,8 @@ class TraceWriter {
       put_array(",\n\"view\": ", frame.view);
       put_array(",\n\"projection\": ", frame.projection);
     }
-    if (frame.light_direction) {
-      put_array(",\n\"light\": {\"direction\": ", *frame.light_direction);
+    if (!frame.lighting.lights.empty()) {
+      put_array(",\n\"light\": {\"direction\": ", frame.lighting.lights[0].direction);
       put("}");
     }
     put(",\n\"draws\": [");

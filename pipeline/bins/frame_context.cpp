@@ -10,6 +10,6 @@ FrameContext::FrameContext(const Trace& trace, const Frame& rendered, const RunO
     : frame(rendered),
       run(options),
       triangles(vertex_setup(trace, frame, StageTimer(run.timeline)(setup))),
-      colors(shade_triangles(triangles, frame.light_direction)) {}
+      colors(shade_triangles(triangles, frame.lighting)) {}
 
 }  // namespace beampipe

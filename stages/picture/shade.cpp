@@ -6,13 +6,23 @@
 
 namespace beampipe {
 
-std::vector<glm::vec3> shade_triangles(const SetupTriangles& triangles, const std::optional<glm::vec3>& light) {
+std::vector<glm::vec3> shade_triangles(const SetupTriangles& triangles, const Lighting& lighting) {
   std::vector<glm::vec3> colors;
   colors.reserve(triangles.attributes.size());
-  const glm::vec3 direction = light.value_or(glm::vec3(0.0f));
   for (const FlatAttributes& flat : triangles.attributes) {
     glm::vec3 color = flat.kd;
-    if (flat.lit) lambert(&flat.kd.x, &flat.normal.x, &direction.x, &color.x);
+    if (flat.lit) {
+      color = glm::vec3(0.0f);
+      for (const Light& light : lighting.lights) {
+        glm::vec3 reflected;
+        lambert(&flat.kd.x, &flat.normal.x, &light.direction.x, &reflected.x);
+        color += light.color * reflected;
+      }
+      if (lighting.ambient) {
+        const Ambient& ambient = *lighting.ambient;
+        color += flat.kd * glm::mix(ambient.ground, ambient.sky, 0.5f + 0.5f * glm::dot(flat.normal, ambient.up));
+      }
+    }
     colors.push_back(color);
   }
   return colors;

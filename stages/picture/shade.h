@@ -15,12 +15,12 @@
 #include "stages/data/sample_fragment.h"
 #include "stages/data/setup_triangle.h"
 #include "stages/data/shaded_triangle.h"
+#include "traces/trace.h"
 
 namespace beampipe {
 
-// Returns the colour of each triangle: kd, times max(0, -normal . light) if it is lit. `light`: the direction in which
-// the light travels.
-std::vector<glm::vec3> shade_triangles(const SetupTriangles& triangles, const std::optional<glm::vec3>& light);
+// Returns the colour of each triangle: kd, times the light that it receives if it is lit.
+std::vector<glm::vec3> shade_triangles(const SetupTriangles& triangles, const Lighting& lighting);
 
 // Rounds the colours as a framebuffer of fp16 RGB does.
 std::vector<glm::vec3> round_to_half(std::vector<glm::vec3> colors);

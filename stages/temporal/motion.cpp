@@ -83,7 +83,7 @@ std::vector<std::uint32_t> looks_of(const Frame& frame) {
     std::uint32_t look = mix_bits(mix_bits(kHashStart + static_cast<std::uint32_t>(looks.size())) ^ draw.mesh);
     if (draw.kd) look = hash(look, *draw.kd);
     if (draw.shading == Shading::lambert) {
-      look = hash(look, frame.light_direction.value_or(glm::vec3(0.0f)));
+      for (const Light& light : frame.lighting.lights) look = hash(hash(look, light.direction), light.color);
       for (int axis = 0; axis < 3; ++axis) look = hash(look, glm::vec3(draw.transform[axis]));
     }
     looks.push_back(look);

@@ -43,7 +43,7 @@ Trace test_trace() {
   trace.frames.push_back(trace.frames.front());
   for (Frame& frame : trace.frames) {
     for (Draw& draw : frame.draws) draw.shading = Shading::lambert;
-    frame.light_direction = glm::vec3(0, 0, 1);
+    frame.lighting.lights = {{glm::vec3(0, 0, 1)}};
   }
   return trace;
 }

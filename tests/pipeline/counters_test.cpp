@@ -151,7 +151,7 @@ TEST(Counters, WhatIsHiddenIsCountedOnce) {
 TEST(Counters, EveryStageWorks) {
   Trace trace = random_trace(40, 30, 50, 2);
   trace.frames[0].draws[0].shading = Shading::lambert;  // an unlit triangle needs no operations
-  trace.frames[0].light_direction = glm::vec3(0, 0, 1);
+  trace.frames[0].lighting.lights = {{glm::vec3(0, 0, 1)}};
   for (const char* spec : {"beam:order=sorted", "alpha", "msaa:4", "msaa:4,prepass", "acaa:4,double=stencil", "acaa:32",
                            "deferred", "visibility", "taa:8", "dvm", "reference"}) {
     for (const StageCounters& counters : parse_technique(spec).render(trace, 0, {2}).stages) {

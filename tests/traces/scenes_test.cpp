@@ -39,7 +39,8 @@ TEST_P(ScenesTest, IsATraceThatReadsBack) {
   write_trace(trace, path("trace.json"));
   const Trace back = read_trace(path("trace.json"));
   EXPECT_EQ(count(back), count(trace));
-  EXPECT_EQ(back.frames[0].light_direction, trace.frames[0].light_direction);
+  ASSERT_EQ(back.frames[0].lighting.lights.size(), 1u);
+  EXPECT_EQ(back.frames[0].lighting.lights[0].direction, trace.frames[0].lighting.lights[0].direction);
 }
 
 TEST_P(ScenesTest, KeepsToItsTriangles) {
@@ -62,7 +63,7 @@ TEST_P(ScenesTest, TheCameraDoesNotDependOnTheTriangles) {
   const Frame few = make({.triangles = 1000}).frames[0], many = make({.triangles = 20000, .seed = 9}).frames[0];
   EXPECT_EQ(few.view, many.view);
   EXPECT_EQ(few.projection, many.projection);
-  EXPECT_EQ(few.light_direction, many.light_direction);
+  EXPECT_EQ(few.lighting.lights[0].direction, many.lighting.lights[0].direction);
 }
 
 TEST_P(ScenesTest, HasSoundMeshes) {
@@ -87,8 +88,8 @@ TEST_P(ScenesTest, IsInThePictureAndLit) {
   const Frame& frame = trace.frames[0];
   EXPECT_EQ(frame.width, 320u);
   EXPECT_EQ(frame.height, 180u);
-  ASSERT_TRUE(frame.light_direction);
-  EXPECT_NEAR(glm::length(*frame.light_direction), 1, 1e-6);
+  ASSERT_EQ(frame.lighting.lights.size(), 1u);
+  EXPECT_NEAR(glm::length(frame.lighting.lights[0].direction), 1, 1e-6);
   std::size_t inside = 0, lit = 0, all = 0;
   double left = 1, right = -1, bottom = 1, top = -1;  // of what is inside
   for (const Draw& draw : frame.draws) {
@@ -105,7 +106,7 @@ TEST_P(ScenesTest, IsInThePictureAndLit) {
       top = std::max(top, p.y / p.w);
       glm::dvec3 normal = glm::cross(b - a, c - a);
       if (glm::dot(normal, frame.camera->eye - a) < 0) normal = -normal;
-      lit += glm::dot(normal, glm::dvec3(*frame.light_direction)) < 0;
+      lit += glm::dot(normal, glm::dvec3(frame.lighting.lights[0].direction)) < 0;
     }
   }
   EXPECT_GT(inside, all / 2);

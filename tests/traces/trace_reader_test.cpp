@@ -63,7 +63,8 @@ TEST_F(TraceReaderTest, ReadsEveryField) {
   EXPECT_EQ(frame.camera->fovy_deg, 36);
   EXPECT_EQ(frame.camera->near, 1);
   EXPECT_EQ(frame.camera->far, 200);
-  EXPECT_EQ(frame.light_direction, glm::vec3(0, 0, -1));
+  ASSERT_EQ(frame.lighting.lights.size(), 1u);
+  EXPECT_EQ(frame.lighting.lights[0].direction, glm::vec3(0, 0, -1));
   ASSERT_EQ(frame.draws.size(), 2u);
   EXPECT_EQ(frame.draws[0].mesh, 0u);
   EXPECT_EQ(frame.draws[0].transform[3], glm::dvec4(5, 6, 7, 1));
@@ -79,7 +80,7 @@ TEST_F(TraceReaderTest, ReadsEveryField) {
 
   const Frame& second = trace.frames[1];
   EXPECT_FALSE(second.camera);
-  EXPECT_FALSE(second.light_direction);
+  EXPECT_TRUE(second.lighting.lights.empty());
   EXPECT_EQ(second.background, glm::vec3(0.0f));
   EXPECT_EQ(second.view[3], glm::dvec4(9, 8, 7, 1));
   EXPECT_EQ(second.projection[2], glm::dvec4(0, 0, -1, -1));

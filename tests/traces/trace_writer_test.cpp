@@ -32,8 +32,9 @@ void expect_same(const Frame& a, const Frame& b) {
   if (a.camera && b.camera) expect_same_bits(*a.camera, *b.camera);
   expect_same_bits(a.view, b.view);
   expect_same_bits(a.projection, b.projection);
-  ASSERT_EQ(a.light_direction.has_value(), b.light_direction.has_value());
-  if (a.light_direction) expect_same_bits(*a.light_direction, *b.light_direction);
+  ASSERT_EQ(a.lighting.lights.size(), b.lighting.lights.size());
+  for (std::size_t i = 0; i < a.lighting.lights.size(); ++i)
+    expect_same_bits(a.lighting.lights[i].direction, b.lighting.lights[i].direction);
   ASSERT_EQ(a.draws.size(), b.draws.size());
   for (std::size_t i = 0; i < a.draws.size(); ++i) {
     EXPECT_EQ(a.draws[i].mesh, b.draws[i].mesh);
@@ -94,8 +95,8 @@ Trace example() {
   frame.background = color();
   frame.draws = {{0, glm::dmat4(1.0), {}, Cull::none, Shading::lambert}};
   for (int i = 0; i < 50; ++i) {  // reading must give back normalised directions bit by bit
-    frame.light_direction =
-        glm::normalize(glm::vec3(static_cast<float>(random() % 1000) - 499.5f, 1.0f, 2.0f + static_cast<float>(i)));
+    frame.lighting.lights = {
+        {glm::normalize(glm::vec3(static_cast<float>(random() % 1000) - 499.5f, 1.0f, 2.0f + static_cast<float>(i)))}};
     trace.frames.push_back(frame);
   }
   return trace;

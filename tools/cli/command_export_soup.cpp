@@ -35,7 +35,7 @@ void append(std::string& bytes, const Value& value) {
 std::string soup_of(const Trace& trace, const Frame& frame) {
   StageCounters counters;
   const SetupTriangles setup = vertex_setup(trace, frame, counters);
-  const std::vector<glm::vec3> colors = shade_triangles(setup, frame.light_direction);
+  const std::vector<glm::vec3> colors = shade_triangles(setup, frame.lighting);
   std::string bytes = "SOUP";
   for (const std::size_t number : {std::size_t{1}, std::size_t{frame.width}, std::size_t{frame.height}, colors.size()})
     append(bytes, static_cast<std::uint32_t>(number));

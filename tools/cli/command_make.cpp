@@ -66,7 +66,7 @@ Trace make_from_model(const MakeArguments& arguments, const Command& command) {
   Draw& draw = frame.draws.emplace_back();
   if (!arguments.unlit) {
     draw.shading = Shading::lambert;
-    frame.light_direction = shoulder_light(*frame.camera);
+    frame.lighting.lights.push_back({.direction = shoulder_light(*frame.camera)});
   }
   return trace;
 }

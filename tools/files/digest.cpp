@@ -26,9 +26,15 @@ class Digest {
     add_bytes(values.data(), values.size() * sizeof(Value));
   }
 
-  void add(const std::optional<glm::vec3>& vector) {
-    add(vector.has_value());
-    add(vector.value_or(glm::vec3(0.0f)));
+  template <class Value>
+  void add(const std::optional<Value>& value) {
+    add(value.has_value());
+    if (value) add(*value);
+  }
+
+  template <class... Values>
+  void add_all(const Values&... values) {
+    (add(values), ...);
   }
 
   std::string text() const {
@@ -52,26 +58,22 @@ std::string digest_of(std::string_view bytes) {
 
 std::string digest_of(const Trace& trace) {
   Digest digest;
+  for (const Image& image : trace.images) digest.add_all(image.width, image.height, image.texels);
+  for (const Material& material : trace.materials) {
+    digest.add_all(material.base_color, material.base_texture, material.metallic, material.roughness,
+                   material.metallic_roughness_texture, material.normal_texture, material.normal_scale,
+                   material.emissive, material.emissive_texture, material.alpha_mode, material.alpha_cutoff,
+                   material.double_sided, material.unlit);
+  }
   for (const Mesh& mesh : trace.meshes) {
-    digest.add(mesh.positions);
-    digest.add(mesh.triangles);
-    digest.add(mesh.colors);
+    digest.add_all(mesh.positions, mesh.triangles, mesh.colors, mesh.materials, mesh.normals, mesh.tangents,
+                   mesh.uvs[0], mesh.uvs[1], mesh.vertex_colors);
   }
   for (const Frame& frame : trace.frames) {
-    digest.add(frame.width);
-    digest.add(frame.height);
-    digest.add(frame.background);
-    digest.add(frame.view);
-    digest.add(frame.projection);
-    digest.add(frame.light_direction);
-    digest.add(frame.draws.size());
-    for (const Draw& draw : frame.draws) {
-      digest.add(draw.mesh);
-      digest.add(draw.transform);
-      digest.add(draw.kd);
-      digest.add(draw.cull);
-      digest.add(draw.shading);
-    }
+    digest.add_all(frame.width, frame.height, frame.background, frame.view, frame.projection, frame.lighting.lights,
+                   frame.lighting.ambient, frame.draws.size());
+    for (const Draw& draw : frame.draws)
+      digest.add_all(draw.mesh, draw.transform, draw.kd, draw.material, draw.cull, draw.shading);
   }
   return digest.text();
 }

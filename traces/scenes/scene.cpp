@@ -34,7 +34,8 @@ Trace one_frame(const SceneOptions& options, const Camera& camera, std::vector<M
   const glm::dvec3 forward = glm::normalize(camera.target - camera.eye);
   const glm::dvec3 right = glm::normalize(glm::cross(forward, camera.up));
   const double sideways = light_over == Shoulder::left ? 0.35 : -0.35;
-  frame.light_direction = glm::vec3(glm::normalize(forward + sideways * right - 0.45 * glm::cross(right, forward)));
+  const glm::dvec3 direction = glm::normalize(forward + sideways * right - 0.45 * glm::cross(right, forward));
+  frame.lighting.lights.push_back({.direction = direction});
   for (std::uint32_t i = 0; i < meshes.size(); ++i) {
     Draw draw;
     draw.mesh = i;

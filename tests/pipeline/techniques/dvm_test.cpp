@@ -57,16 +57,16 @@ TEST(Dvm, WhatChangesItsLookLeavesNoGhost) {
   lit.meshes.push_back(lit.meshes[0]);
   for (glm::vec3& color : lit.meshes[1].colors) color = glm::vec3(0.25f, 0.5f, 0.0f);
   lit.frames[0].draws[0].shading = Shading::lambert;
-  lit.frames[0].light_direction = glm::vec3(0, 0, 1);
+  lit.frames[0].lighting.lights = {{glm::vec3(0, 0, 1)}};
   Trace changed = lit;
-  changed.frames[0].light_direction = glm::normalize(glm::vec3(1, 0, 0.25f));
+  changed.frames[0].lighting.lights = {{glm::normalize(glm::vec3(1, 0, 0.25f))}};
   expect_no_ghost(lit, changed, "light");
   changed = lit;
   changed.frames[0].draws[0].kd = glm::vec3(0, 1, 0);
   expect_no_ghost(lit, changed, "Kd");
   changed = lit;
   changed.frames[0].draws[0].shading = Shading::unlit;
-  changed.frames[0].light_direction = lit.frames[0].light_direction = glm::normalize(glm::vec3(1, 0, 0.25f));
+  changed.frames[0].lighting = lit.frames[0].lighting = {{{glm::normalize(glm::vec3(1, 0, 0.25f))}}, {}};
   expect_no_ghost(lit, changed, "shading");
   changed = lit;
   changed.frames[0].background = glm::vec3(1, 0, 0.5f);
@@ -83,7 +83,7 @@ TEST(Dvm, WhatTurnsUnderTheLightLeavesNoGhost) {
   Frame& frame = trace.frames[0];
   frame.projection[2][2] = 1.0 / 16, frame.projection[3][2] = 0;  // depth range for a square that is seen edge-on
   frame.draws[0].shading = Shading::lambert;
-  frame.light_direction = glm::normalize(glm::vec3(1, 0, 1));
+  frame.lighting.lights = {{glm::normalize(glm::vec3(1, 0, 1))}};
   const glm::dmat4 middle = glm::translate(glm::dmat4(1.0), glm::dvec3(12, 8, 0));
   const Technique technique = parse_technique("dvm"), truth = parse_technique("msaa:8");
   History history;

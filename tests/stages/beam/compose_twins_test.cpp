@@ -196,7 +196,7 @@ TEST_P(ComposeTwins, ComposeWindow) {
   std::vector<Fragment> fragments;
   conservative_raster(triangles_, list_, tile_, ignored, pairs);
   beam_fragment(triangles_, pairs, tile_, grid_options(grid, 0), ignored, fragments);
-  shade_visible(shade_triangles(triangles_, trace_.frames[0].light_direction), fragments, ignored);
+  shade_visible(shade_triangles(triangles_, trace_.frames[0].lighting), fragments, ignored);
   std::stable_sort(fragments.begin(), fragments.end(), [](const auto& a, const auto& b) { return a.pixel < b.pixel; });
   const auto compare = [&]<class Channel>(Channel) {
     std::vector<Stored<Channel>> pixels(tile_.pixels()), twins = pixels;

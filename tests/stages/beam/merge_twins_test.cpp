@@ -23,7 +23,7 @@ class MergeTwins : public SceneTwins {
     std::vector<Pair> pairs;
     conservative_raster(triangles_, list_, tile_, ignored, pairs);
     beam_fragment(triangles_, pairs, tile_, options, ignored, fragments_);
-    shade(shade_triangles(triangles_, trace_.frames[0].light_direction), fragments_, ignored);
+    shade(shade_triangles(triangles_, trace_.frames[0].lighting), fragments_, ignored);
   }
   void make_paper_fragments() {
     const SamplePattern pattern = hammersley_pattern();

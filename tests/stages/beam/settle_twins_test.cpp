@@ -127,7 +127,7 @@ class SettleTwins : public SceneTwins {
     const PositionGrid grid(32 * Words);
     const PositionSet positions(cell_patterns(32 * Words));
     const BeamFragmentOptions options = grid_options(grid, 0);
-    const std::vector<glm::vec3> colors = shade_triangles(triangles_, trace_.frames[0].light_direction);
+    const std::vector<glm::vec3> colors = shade_triangles(triangles_, trace_.frames[0].lighting);
     StageCounters ignored;
     std::vector<Pair> pairs;
     std::vector<Fragment> fragments;

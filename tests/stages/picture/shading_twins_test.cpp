@@ -17,8 +17,8 @@ class ShadingTwins : public SceneTwins {
  protected:
   void SetUp() override {
     SceneTwins::SetUp();
-    light_ = trace_.frames[0].light_direction.value_or(glm::vec3(0, -1, 0));
-    colors_ = shade_triangles(triangles_, light_);
+    if (!trace_.frames[0].lighting.lights.empty()) light_ = trace_.frames[0].lighting.lights[0].direction;
+    colors_ = shade_triangles(triangles_, {{{light_}}, {}});
   }
 
   std::array<Float, 3> vector(const glm::vec3& v) { return {real(v.x), real(v.y), real(v.z)}; }
@@ -65,7 +65,7 @@ class ShadingTwins : public SceneTwins {
     return fragments;
   }
 
-  glm::vec3 light_;
+  glm::vec3 light_{0, -1, 0};
   std::vector<glm::vec3> colors_;
 };
 

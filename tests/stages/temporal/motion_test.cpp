@@ -139,7 +139,8 @@ TEST(Motion, ALookIsOfAllThatColorsAreMadeFrom) {
   EXPECT_EQ(changed([](Frame& f) { f.draws[1].kd = glm::vec3(0, 0, 1); }), (Which{false, true, false}));
   EXPECT_EQ(changed([](Frame& f) { f.background = glm::vec3(1, 0, 0); }), (Which{false, false, true}));
   EXPECT_EQ(changed([](Frame& f) { f.draws[0].transform[3][0] = 1; }), (Which{false, false, false}));
-  EXPECT_EQ(changed([](Frame& f) { f.light_direction = glm::vec3(1, 0, 0); }), (Which{false, false, false})) << "unlit";
+  EXPECT_EQ(changed([](Frame& f) { f.lighting.lights = {{glm::vec3(1, 0, 0)}}; }), (Which{false, false, false}))
+      << "unlit";
   const glm::dmat4 turn = glm::rotate(kIdentity, 0.05, glm::dvec3(0, 1, 0));
   EXPECT_EQ(changed([&](Frame& f) { f.draws[1].transform = turn; }), (Which{false, false, false})) << "unlit";
   frame.draws[0].shading = Shading::lambert;

@@ -34,7 +34,7 @@ class TemporalTwins : public SceneTwins {
     surface_ = SampleTile(tile_, sampling);
     sample_raster(triangles_, list_, tile_, sampling, ignored, fragments);
     depth_test(triangles_, fragments, tile_, sampling, ignored, surface_, accesses);
-    colors_ = shade_triangles(triangles_, frame.light_direction);
+    colors_ = shade_triangles(triangles_, frame.lighting);
     Poses before = poses_of(frame);
     before.view_projection = glm::translate(glm::dmat4(1.0), glm::dvec3(0.05, -0.03, 0)) * before.view_projection;
     before.draws[0].transform[3][0] += 0.1;

@@ -1,0 +1,55 @@
+// What surfaces are made of: glTF 2.0's metallic-roughness model, with its textures.
+//
+// Source: Khronos Group, glTF 2.0 Specification, sections 3.8 (textures), 3.9 (materials) and appendix B (BRDF).
+#pragma once
+
+#include <cstdint>
+#include <glm/glm.hpp>
+#include <optional>
+#include <string>
+#include <vector>
+
+namespace beampipe {
+
+// 8 bits per channel as stored: base colours and emission are encoded as sRGB, everything else is linear, and alpha is
+// always linear. Row 0 is on top. The texture coordinate (0, 0) is the upper left corner of the upper left texel.
+struct Image {
+  std::string name;
+  std::uint32_t width = 0, height = 0;  // texels, each 1..16384
+  std::vector<glm::u8vec4> texels;      // RGBA, row by row
+};
+
+enum class Wrap { repeat, clamp, mirror };
+enum class Filter { nearest, linear };
+enum class MipFilter { none, nearest, linear };  // none: always the image itself; linear: trilinear filtering
+
+struct Texture {
+  std::uint32_t image = 0;   // index into Trace::images
+  std::uint32_t uv_set = 0;  // 0 or 1
+  Wrap wrap_u = Wrap::repeat, wrap_v = Wrap::repeat;
+  Filter magnify = Filter::linear, minify = Filter::linear;
+  MipFilter mip = MipFilter::linear;
+
+  bool operator==(const Texture&) const = default;
+};
+
+// opaque: alpha is ignored. mask: the surface is there where alpha is at least the cutoff. blend: alpha is opacity.
+enum class AlphaMode { opaque, mask, blend };
+
+struct Material {
+  std::string name;
+  glm::vec4 base_color{1.0f};           // linear RGBA; multiplied by the texture and by the vertices' colours
+  std::optional<Texture> base_texture;  // sRGB, with alpha
+  float metallic = 0, roughness = 1;    // 0..1
+  std::optional<Texture> metallic_roughness_texture;  // linear: roughness in G, metallic in B
+  std::optional<Texture> normal_texture;              // linear: tangent space, 0..255 for -1..1
+  float normal_scale = 1;
+  glm::vec3 emissive{0.0f};                 // linear RGB
+  std::optional<Texture> emissive_texture;  // sRGB
+  AlphaMode alpha_mode = AlphaMode::opaque;
+  float alpha_cutoff = 0.5f;
+  bool double_sided = false;  // false: back faces are culled
+  bool unlit = false;         // the colour is the base colour, whatever the lights
+};
+
+}  // namespace beampipe
