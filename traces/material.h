@@ -13,7 +13,7 @@ namespace beampipe {
 
 // 8 bits per channel as stored: base colours and emission are encoded as sRGB, everything else is linear, and alpha is
 // always linear. Row 0 is on top. The texture coordinate (0, 0) is the upper left corner of the upper left texel.
-struct Image {
+struct TextureImage {
   std::string name;
   std::uint32_t width = 0, height = 0;  // texels, each 1..16384
   std::vector<glm::u8vec4> texels;      // RGBA, row by row

@@ -83,7 +83,7 @@ struct Frame {
 };
 
 struct Trace {
-  std::vector<Image> images;
+  std::vector<TextureImage> images;
   std::vector<Material> materials;
   std::vector<Mesh> meshes;
   std::vector<Frame> frames;

@@ -58,7 +58,7 @@ std::string digest_of(std::string_view bytes) {
 
 std::string digest_of(const Trace& trace) {
   Digest digest;
-  for (const Image& image : trace.images) digest.add_all(image.width, image.height, image.texels);
+  for (const TextureImage& image : trace.images) digest.add_all(image.width, image.height, image.texels);
   for (const Material& material : trace.materials) {
     digest.add_all(material.base_color, material.base_texture, material.metallic, material.roughness,
                    material.metallic_roughness_texture, material.normal_texture, material.normal_scale,
