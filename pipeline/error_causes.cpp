@@ -94,8 +94,8 @@ class PixelSurfaces {
 
   // `owners`: how many reference samples each triangle has.
   std::vector<PixelSurface> at(std::size_t pixel, const PixelWeights& weights,
-                               const std::map<std::uint64_t, std::uint32_t>& owners,
-                               const std::vector<glm::vec3>& colors, const glm::vec3& background) const {
+                               const std::map<std::uint64_t, std::uint32_t>& owners, const TileShader& shader,
+                               const glm::vec3& background) const {
     std::map<std::uint32_t, PixelSurface> surfaces;
     for (const Fragment* fragment : by_pixel_[pixel]) {
       PixelSurface& surface = surfaces[fragment->triangle];
@@ -119,7 +119,7 @@ class PixelSurfaces {
     }
     std::vector<PixelSurface> all;
     for (auto& [triangle, surface] : surfaces) {
-      surface.color = colors[triangle];
+      surface.color = shader.color(triangle, static_cast<std::uint32_t>(pixel), 0.5f, 0.5f);
       all.push_back(surface);
     }
     all.push_back({background, rest_of_weights, rest_of_truth, nullptr, ~0u, false, 0});
@@ -173,7 +173,7 @@ std::map<std::string, std::vector<float>> error_causes(const Trace& trace, const
       const double length = std::sqrt(glm::dot(error, error) / 3);
       if (length == 0) continue;
       std::vector<PixelSurface> seen =
-          surfaces.at(i, weights[pixel], count_owners(truth, x, y), context.colors, frame.background);
+          surfaces.at(i, weights[pixel], count_owners(truth, x, y), bin.shader(), frame.background);
       std::array<glm::dvec3, kErrorCauses.size()> errors = transfers(seen, comparer);
       errors[rounding] = error;
       for (std::size_t cause = 0; cause < rounding; ++cause) errors[rounding] -= errors[cause];

@@ -14,6 +14,7 @@
 #include "pipeline/memory/parameters.h"
 #include "stages/cost/counters.h"
 #include "stages/data/frame_history.h"
+#include "stages/surface/surface_shader.h"
 #include "traces/trace.h"
 
 namespace beampipe {
@@ -42,6 +43,9 @@ struct RunOptions {
   std::uint64_t memory_limit = 0;
   int tile_size = 0;             // pixels on each side, even; 0: the technique's own. It does not change pictures.
   Timeline* timeline = nullptr;  // where stage calls are recorded with their times; null: nowhere
+  // The trace's textures, which frames share; null: the frame prepares its own.
+  const TextureSet* textures = nullptr;
+  SurfaceColors colors = SurfaceColors::by_place;
   // Where a technique with has_weights records the weights of the triangles in each pixel of the frame, row by row;
   // null: nowhere. It changes nothing that is rendered or counted.
   std::vector<PixelWeights>* weights = nullptr;
@@ -74,7 +78,7 @@ struct FrameResult {
   std::map<std::string, std::vector<float>> pixel_counters;  // name -> width x height values ("fragments", ...)
   std::vector<StageCounters> stages;                         // in pipeline order
   std::uint64_t a_buffer_peak_bytes = 0;
-  std::vector<Buffer> buffers;  // all but the A-buffer
+  std::vector<Buffer> buffers;   // all but the A-buffer
   std::uint32_t bin_pixels = 0;  // of the largest bin
 };
 

@@ -25,6 +25,7 @@ inline std::int32_t select(bool condition, std::int32_t yes, std::int32_t no) { 
 inline double lesser(double a, double b) { return a < b ? a : b; }
 inline double greater(double a, double b) { return a > b ? a : b; }
 inline double square_root(double x) { return std::sqrt(x); }
+inline float square_root(float x) { return std::sqrt(x); }
 inline std::int32_t to_integer(float x) { return static_cast<std::int32_t>(x); }  // towards 0
 inline float to_float(std::int64_t x) { return static_cast<float>(x); }
 inline float to_float(double x) { return static_cast<float>(x); }

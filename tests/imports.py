@@ -12,9 +12,9 @@ The rules:
 3.  Inside tools/: cli -> report -> claims -> evaluate -> files. Only cli includes stress, which includes none of them.
 4.  Inside pipeline/: techniques -> units -> bins -> memory. All of them may include technique.h, which may include only
     memory. The other files at the root of pipeline/ may include bins and memory; only techniques may include them.
-5.  Inside stages/. Each subfolder is a group of stages, except for data/ (types that stages share) and cost/ (counters
-    and costs that stages share): group -> cost -> data -> simd. Of these, only groups may include traces. No group
-    includes another.
+5.  Inside stages/. Each subfolder is a group of stages, except for data/ (types that stages share), cost/ (counters
+    and costs that stages share) and surface/ (what surfaces look like, wherever they are shaded): group -> surface ->
+    cost -> data -> simd. Of these, only groups and surface/ may include traces. No group includes another.
 6.  A stage knows no other stage. The files of stage X in a group are X.h, X.cpp, X_cost.h and X_cost.cpp, and they
     include no other files of the group than these and the headers in SHARED_IN_GROUP.
 7.  Not checked: tests/ and bench/, which may include anything, but which the folders above may not include.
@@ -36,8 +36,9 @@ ORDER = {
         "techniques": {"root", "units", "bins", "memory", "technique.h"}, "root": {"bins", "memory", "technique.h"},
         "units": {"bins", "memory", "technique.h"}, "bins": {"memory", "technique.h"},
         "memory": {"technique.h"}, "technique.h": {"memory"}},
-    "stages": {"data": set(), "cost": {"data"}}}
-STAGE_GROUP = {"data", "cost"}
+    "stages": {"data": set(), "cost": {"data"}, "surface": {"data", "cost"}}}
+STAGE_GROUP = {"data", "cost", "surface"}
+WITHOUT_TRACES = {"data", "cost"}
 # Headers in stage groups that are no stage's own: formulas of stages and costs, and algorithms in files of their own.
 SHARED_IN_GROUP = {
     "stages/beam/merge_sort.h", "stages/beam/owner_formulas.h", "stages/beam/paper_fragment.h", "stages/beam/specks.h", "stages/geometry/clip.h", "stages/geometry/setup_formulas.h",
@@ -101,7 +102,7 @@ def broken_rule(source, include):
     if other not in FOLDERS or len(target.parts) == 1:
         return "a path in quotes starts at the root of the repository"
     here, there = place(source), place(target)
-    if folder == "stages" and here in ORDER["stages"] and other == "traces":
+    if folder == "stages" and here in WITHOUT_TRACES and other == "traces":
         return f"stages/{here} may not include traces/"
     if folder == other and folder in ORDER and here != there:
         allowed = ORDER[folder].get(here, STAGE_GROUP if folder == "stages" else set())

@@ -61,6 +61,7 @@ class Bin {
   BinStage stage(std::string_view name);
 
   const SetupTriangles& triangles() const { return context.triangles; }
+  TileShader shader() const { return {context.shader, tile}; }
   const glm::vec3& background() const { return context.frame.background; }
 
   // One value per pixel of the tile, row by row; all 0 when it is first asked for.

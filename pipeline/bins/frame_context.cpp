@@ -2,14 +2,27 @@
 
 #include "pipeline/bins/timeline.h"
 #include "stages/geometry/vertex_setup.h"
-#include "stages/picture/shade.h"
 
 namespace beampipe {
+namespace {
 
-FrameContext::FrameContext(const Trace& trace, const Frame& rendered, const RunOptions& options)
+ShadingRules with_colors(ShadingRules rules, SurfaceColors colors) {
+  rules.colors = colors;
+  return rules;
+}
+
+}  // namespace
+
+FrameContext::FrameContext(const Trace& trace, const Frame& rendered, const RunOptions& options,
+                           const ShadingRules& rules)
     : frame(rendered),
       run(options),
       triangles(vertex_setup(trace, frame, StageTimer(run.timeline)(setup))),
-      colors(shade_triangles(triangles, frame.lighting)) {}
+      own_textures(run.textures || triangles.surfaces.empty() ? std::nullopt : std::make_optional<TextureSet>(trace)),
+      shader(triangles, trace, frame,
+             run.textures   ? run.textures
+             : own_textures ? &*own_textures
+                            : nullptr,
+             with_colors(rules, run.colors)) {}
 
 }  // namespace beampipe

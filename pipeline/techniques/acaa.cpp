@@ -30,7 +30,7 @@ std::vector<std::string> stages_of(const AcaaOptions& options) {
 }
 
 FrameResult render_acaa(const Trace& trace, const Frame& frame, const AcaaOptions& options, const RunOptions& run) {
-  const FrameContext context(trace, frame, run);
+  const FrameContext context(trace, frame, run, {.derivatives = Derivatives::quad});
   const std::vector<Sampling> rounds = acaa_rounds(options.samples);
   const BinPlan plan{.stages = stages_of(options), .tile_size = bin_size(rounds.front().pattern.count)};
   return render_bins(context, plan, [&](Bin& bin) {
@@ -50,7 +50,7 @@ FrameResult render_acaa(const Trace& trace, const Frame& frame, const AcaaOption
         depth_test.test_equal(fragments);
         accumulate.test_stencil(fragments);
         shade(fragments);
-        accumulate(fragments);
+        accumulate(fragments, sampling);
         count_by_pixel(fragments, bin.tile, sampling.grid, visible);
       });
       depth_test.end_pass();

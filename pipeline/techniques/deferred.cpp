@@ -10,7 +10,8 @@ namespace beampipe {
 namespace {
 
 FrameResult render_deferred(const Trace& trace, const Frame& frame, const RunOptions& run) {
-  const FrameContext context(trace, frame, run);
+  const FrameContext context(trace, frame, run,
+                             {.derivatives = Derivatives::quad, .storage = MaterialStorage::gbuffer});
   const Sampling sampling{CellGrid{}, standard_pattern(1)};
   const BinPlan plan{.stages = {"sample_raster", "depth_test", "shade", "light", "resolve"}};
   return render_bins(context, plan, [&](Bin& bin) {

@@ -42,21 +42,24 @@ void add_sample_bytes(const std::vector<SampleQuad>& quads, const Tile& tile, st
 }
 
 // Materials and light of the quads' shading samples, one by one.
-void shade_samples(Bin& bin, const std::vector<SampleQuad>& quads) {
+void shade_samples(Bin& bin, const SamplePattern& pattern, std::vector<SampleQuad>& quads) {
   const BinStage shading = bin.stage("shade"), lighting = bin.stage("light");
   const std::uint64_t shaded = shaded_samples(quads);
-  write_gbuffer(shaded, shading.timed());
-  shading.streams(shaded * (kVisibilityBytes + kGBufferBytes));
+  std::vector<std::uint32_t> triangles;
   for (const SampleQuad& quad : quads)
     for (const std::uint32_t triangle : quad.triangle)
-      if (triangle != kNoTriangle) bin.triangle_fetches().attributes(triangle, shading.counters);
+      if (triangle != kNoTriangle) triangles.push_back(triangle);
+  color_samples(bin.shader(), bin.tile, pattern, quads);
+  write_gbuffer(bin.shader(), triangles, shading.timed());
+  shading.streams(shaded * (kVisibilityBytes + kGBufferBytes));
+  for (const std::uint32_t triangle : triangles) bin.triangle_fetches().attributes(triangle, shading.counters);
   bin.triangle_fetches().flush(shading.counters);
-  light(shaded, lighting.timed());
+  light(bin.shader(), triangles, lighting.timed());
   lighting.streams(shaded * (kGBufferBytes + kSampleColorBytes));
 }
 
 FrameResult render_dvm(const Trace& trace, const Frame& frame, const DvmOptions& options, const RunOptions& run) {
-  const FrameContext context(trace, frame, run);
+  const FrameContext context(trace, frame, run, {.storage = MaterialStorage::gbuffer});
   TemporalFrame over_time(context);
   const std::uint32_t frames = over_time.history().frames;
   const std::vector<std::uint32_t> materials = material_ids(context.triangles, options.material);
@@ -70,11 +73,11 @@ FrameResult render_dvm(const Trace& trace, const Frame& frame, const DvmOptions&
     const BinStage selecting = bin.stage("sample_select"), moving = bin.stage("motion");
     DepthTestUnit visibility(bin, sampling, kVisibilityBytes);
     draw_visibility(bin, sampling, visibility);
-    const std::vector<SampleQuad> selected =
+    std::vector<SampleQuad> selected =
         sample_select(visibility.surface(), bin.tile, materials, select, selecting.timed());
     visibility.read_colors(selecting);
     selecting.streams(shaded_samples(selected) * kShadingSampleBytes);
-    shade_samples(bin, selected);
+    shade_samples(bin, sampling.pattern, selected);
     quads.insert(bin.tile, selected);
     over_time.find_motion(bin, visibility);
     const PixelContents found = contents(visibility.surface(), bin.tile, frame, context.triangles.draws,
@@ -85,7 +88,7 @@ FrameResult render_dvm(const Trace& trace, const Frame& frame, const DvmOptions&
     if (bin.models_memory()) add_sample_bytes(selected, bin.tile, bin.pixel_counter("bytes"));
   });
   run_on_tiles(context, "dilate", result, [&](const Tile& tile, const BinStage& stage) {
-    dilate(quads, context.colors, context.triangles.draws, frame.background, tile, stage.timed(), over_time.current);
+    dilate(quads, context.triangles.draws, frame.background, tile, stage.timed(), over_time.current);
     stage.streams(tile.pixels() * (kSampleColorBytes + kShadingSampleBytes));
   });
   run_on_tiles(context, "temporal", result, [&](const Tile& tile, const BinStage& stage) {

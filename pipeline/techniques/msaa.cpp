@@ -20,12 +20,11 @@ std::vector<Surface> msaa_framebuffer(const MsaaOptions& options) {
 }
 
 FrameResult render_msaa(const Trace& trace, const Frame& frame, const MsaaOptions& options, const RunOptions& run) {
-  const FrameContext context(trace, frame, run);
-  const std::vector<glm::vec3> colors = round_to_half(context.colors);
+  const FrameContext context(trace, frame, run, {.derivatives = Derivatives::quad, .rounds_to_half = true});
   const Sampling sampling = msaa_sampling(options.samples);
   const auto first_pass =
       options.prepass ? DepthTestUnit::FirstPass::writes_depth_alone : DepthTestUnit::FirstPass::writes_color;
-  const auto same_color = [&](std::uint32_t a, std::uint32_t b) { return colors[a] == colors[b]; };
+  const auto same_color = [&](std::uint32_t a, std::uint32_t b) { return context.shader.same_color(a, b); };
   const BinPlan plan{.stages = {"sample_raster", "shade", "depth_test", "resolve"},
                      .tile_size = bin_size(options.samples)};
   return render_bins(context, plan, [&](Bin& bin) {
@@ -48,7 +47,7 @@ FrameResult render_msaa(const Trace& trace, const Frame& frame, const MsaaOption
     }
     depth_test.count_bytes();
     depth_test.read_colors(bin.stage("resolve"));
-    bin.finish(depth_test.resolve_samples(colors, bin.stage("resolve")));
+    bin.finish(depth_test.resolve_samples(options.at, bin.stage("resolve")));
   });
 }
 

@@ -27,7 +27,7 @@ FrameResult render_reference(const Trace& trace, const Frame& frame, const RunOp
     }
     ReferenceTile samples(bin.tile);
     reference_raster(context.triangles, bin.list, bin.tile, bin.stage("reference_raster").timed(), samples);
-    bin.finish(resolve(samples, bin.tile, context.colors, frame.background, resolving.timed()));
+    bin.finish(resolve(samples, bin.tile, bin.shader(), frame.background, resolving.timed()));
   });
 }
 

@@ -27,7 +27,7 @@ SamplePattern jittered(const TaaOptions& options, std::uint32_t frame) {
 }
 
 FrameResult render_taa(const Trace& trace, const Frame& frame, const TaaOptions& options, const RunOptions& run) {
-  const FrameContext context(trace, frame, run);
+  const FrameContext context(trace, frame, run, {.storage = MaterialStorage::gbuffer});
   TemporalFrame over_time(context);
   const Sampling sampling{CellGrid{}, jittered(options, over_time.history().frames)};
   const BinPlan plan{.stages = {"sample_raster", "depth_test", "shade", "light", "resolve", "motion"}};

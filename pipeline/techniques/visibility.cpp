@@ -10,7 +10,7 @@ namespace beampipe {
 namespace {
 
 FrameResult render_visibility(const Trace& trace, const Frame& frame, const RunOptions& run) {
-  const FrameContext context(trace, frame, run);
+  const FrameContext context(trace, frame, run, {.storage = MaterialStorage::gbuffer});
   const Sampling sampling{CellGrid{}, standard_pattern(1)};
   const BinPlan plan{.stages = {"sample_raster", "depth_test", "shade", "light", "resolve"}};
   return render_bins(context, plan, [&](Bin& bin) {

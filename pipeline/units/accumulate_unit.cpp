@@ -1,5 +1,7 @@
 #include "pipeline/units/accumulate_unit.h"
 
+#include "pipeline/units/sample_places.h"
+
 namespace beampipe {
 
 AccumulateUnit::AccumulateUnit(Bin& bin, int samples, AccumulatorFormat format, DoubleCounting double_counting)
@@ -27,8 +29,13 @@ void AccumulateUnit::test_stencil(std::vector<SampleFragment>& fragments) {
   access_stencil(fragments, true);
 }
 
-void AccumulateUnit::operator()(std::vector<SampleFragment>& fragments) {
-  accumulate(fragments, bin_.context.colors, bin_.tile, stage.timed(), accumulator_);
+void AccumulateUnit::operator()(const std::vector<SampleFragment>& fragments, const Sampling& sampling) {
+  std::vector<glm::vec2> at;
+  if (!bin_.context.shader.is_flat()) {
+    const SamplePlaces places(bin_, sampling, ShadeAt::centroid);
+    for (const SampleFragment& fragment : fragments) at.push_back(places.of(fragment));
+  }
+  accumulate(fragments, bin_.shader(), at, bin_.tile, stage.timed(), accumulator_);
   for (const SampleFragment& fragment : fragments)
     blend(fragment.triangle, static_cast<std::uint32_t>(bin_.tile.index(fragment.x, fragment.y)));
 }

@@ -15,7 +15,9 @@ class AccumulateUnit {
 
   // A round accumulates at the positions of `sampling`, whose depths a depth-only pass has found.
   void start_round(const Sampling& sampling, const SampleTile& depth);
-  void operator()(std::vector<SampleFragment>& fragments);  // after the stencil test, when there is one
+  // After the stencil test, when there is one. A fragment is shaded at its pixel's centre or, if its triangle does not
+  // cover that, at the centroid of the samples that it adds.
+  void operator()(const std::vector<SampleFragment>& fragments, const Sampling& sampling);
   void finish_round();
 
   // Reads the stencil values of the fragments' samples, and leaves of each fragment the samples that no earlier one has

@@ -1,5 +1,6 @@
 #include "pipeline/units/depth_test_unit.h"
 
+#include "pipeline/units/sample_places.h"
 #include "stages/picture/resolve.h"
 
 namespace beampipe {
@@ -25,9 +26,11 @@ void DepthTestUnit::test_equal(std::vector<SampleFragment>& fragments) {
   memory_.test_equal(accesses_, stage_.counters);
 }
 
-std::vector<glm::vec4> DepthTestUnit::resolve_samples(const std::vector<glm::vec3>& colors,
-                                                      const BinStage& resolving) const {
-  return resolve(surface_, bin_.tile.pixels(), colors, bin_.background(), resolving.timed());
+std::vector<glm::vec4> DepthTestUnit::resolve_samples(ShadeAt at, const BinStage& resolving) const {
+  const SamplePlaces places(bin_, sampling_, at);
+  return resolve(surface_, bin_.tile.pixels(), bin_.shader(), bin_.background(), resolving.timed(),
+                 static_cast<std::size_t>(sampling_.grid.cells_per_pixel()),
+                 [&](std::uint32_t triangle, std::size_t cell) { return places.of(triangle, cell); });
 }
 
 void DepthTestUnit::count_bytes() {

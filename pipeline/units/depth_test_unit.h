@@ -6,6 +6,7 @@
 
 #include "pipeline/bins/bin.h"
 #include "pipeline/memory/sample_memory.h"
+#include "stages/samples/shading_point.h"
 #include "stages/samples/test_depth.h"
 
 namespace beampipe {
@@ -39,8 +40,8 @@ class DepthTestUnit {
   void read_depths(const BinStage& by) { memory_.read_depth(by.counters); }
   void read_colors(const BinStage& by) { memory_.read_color(by.counters); }
 
-  // The mean colour of each pixel's samples. `colors`: of the triangles.
-  std::vector<glm::vec4> resolve_samples(const std::vector<glm::vec3>& colors, const BinStage& resolving) const;
+  // The mean colour of each pixel's samples.
+  std::vector<glm::vec4> resolve_samples(ShadeAt at, const BinStage& resolving) const;
 
   // Adds the bytes that tests and writes have moved to the bin's counter. Once, at the end.
   void count_bytes();

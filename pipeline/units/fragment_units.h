@@ -61,35 +61,35 @@ inline void count_specks(const std::vector<Fragment>& fragments, std::vector<flo
 
 class ShadeUnit {
  public:
-  explicit ShadeUnit(Bin& bin) : bin_(bin), stage_(bin.stage("shade")), in_order_(bin.memory()) {}
+  explicit ShadeUnit(Bin& bin)
+      : bin_(bin), stage_(bin.stage("shade")), shader_(bin.shader()), in_order_(bin.memory()) {}
 
   // Forward shading: fragments in primitive order, in 2x2 quads.
   void operator()(std::vector<Fragment>& fragments) {
-    shade(bin_.context.colors, fragments, stage_.timed(), &attributes());
+    shade(shader_, fragments, stage_.timed());
     in_order_.read(fragments, stage_.counters);
   }
   // Fragments that are known to be visible, in any order: one by one, attributes fetched by triangle number.
   void visible(std::vector<Fragment>& fragments) {
-    shade_visible(bin_.context.colors, fragments, stage_.timed(), &attributes());
+    shade_visible(shader_, fragments, stage_.timed());
     bin_.triangle_fetches().attributes(fragments, stage_.counters);
   }
   void visible(const std::vector<Pair>& whole) {
-    shade_visible(whole, stage_.timed(), &attributes());
+    shade_visible(shader_, whole, stage_.timed());
     bin_.triangle_fetches().attributes(whole, stage_.counters);
   }
 
   void visible(const std::vector<ShadedTriangle>& shaded) {
-    shade_visible(shaded, stage_.timed(), &attributes());
+    shade_visible(shader_, shaded, stage_.timed());
     bin_.triangle_fetches().attributes(shaded, stage_.counters);
   }
 
   void finish_fetches() { bin_.triangle_fetches().flush(stage_.counters); }
 
  private:
-  const std::vector<FlatAttributes>& attributes() const { return bin_.triangles().attributes; }
-
   Bin& bin_;
   BinStage stage_;
+  TileShader shader_;
   AttributesInOrder in_order_;
 };
 
@@ -107,7 +107,7 @@ class SampleShadeUnit {
   }
 
   void operator()(const std::vector<SampleFragment>& fragments) {
-    shade(fragments, stage_.timed(), &bin_.triangles().attributes);
+    shade(bin_.shader(), fragments, stage_.timed());
     in_order_.read(fragments, stage_.counters);
     if (centroids_) count_centroids(bin_.triangles(), fragments, bin_.tile, *sampling_, stage_.timed(), *centroids_);
   }

@@ -9,6 +9,13 @@ void write_pixels(const std::vector<std::uint32_t>& pixels, TileSurface& to, Sta
   to.flush(counters);
 }
 
+std::vector<std::uint32_t> triangles_at(const std::vector<std::uint32_t>& pixels, const SampleTile& surface) {
+  std::vector<std::uint32_t> triangles;
+  triangles.reserve(pixels.size());
+  for (const std::uint32_t pixel : pixels) triangles.push_back(surface.triangle[pixel]);
+  return triangles;
+}
+
 }  // namespace
 
 GBufferUnit::GBufferUnit(Bin& bin)
@@ -20,7 +27,7 @@ GBufferUnit::GBufferUnit(Bin& bin)
 
 void GBufferUnit::write_fragments(const std::vector<SampleFragment>& fragments,
                                   const std::vector<SampleAccess>& accesses) {
-  write_gbuffer(fragments, shading_.timed());
+  write_gbuffer(bin_.shader(), fragments, shading_.timed());
   attributes_.read(fragments, shading_.counters);
   for (const SampleAccess& access : accesses)
     gbuffer_.access(access.triangle, access.cell, 0, access.passed, shading_.counters);
@@ -28,7 +35,7 @@ void GBufferUnit::write_fragments(const std::vector<SampleFragment>& fragments,
 
 void GBufferUnit::write_visible(DepthTestUnit& visibility) {
   const std::vector<std::uint32_t> shown = shown_pixels(visibility.surface(), bin_.tile);
-  write_gbuffer(shown.size(), shading_.timed());
+  write_gbuffer(bin_.shader(), triangles_at(shown, visibility.surface()), shading_.timed());
   visibility.read_colors(shading_);
   for (const std::uint32_t pixel : shown)
     bin_.triangle_fetches().attributes(visibility.surface().triangle[pixel], shading_.counters);
@@ -39,7 +46,7 @@ void GBufferUnit::write_visible(DepthTestUnit& visibility) {
 std::vector<glm::vec4> GBufferUnit::light_and_resolve(DepthTestUnit& surface) {
   const BinStage resolving = bin_.stage("resolve");
   const std::vector<std::uint32_t> shown = shown_pixels(surface.surface(), bin_.tile);
-  light(shown.size(), lighting_.timed());
+  light(bin_.shader(), triangles_at(shown, surface.surface()), lighting_.timed());
   TileSurface color(bin_.memory(), bin_.z_order(), 1, kSampleColorBytes);
   gbuffer_.read_all(lighting_.counters);
   write_pixels(shown, color, lighting_.counters);
@@ -49,7 +56,7 @@ std::vector<glm::vec4> GBufferUnit::light_and_resolve(DepthTestUnit& surface) {
     color.add_bytes(bin_.pixel_counter("bytes"));
   }
   surface.add_color(kSampleColorBytes);
-  return surface.resolve_samples(bin_.context.colors, resolving);
+  return surface.resolve_samples(ShadeAt::sample, resolving);
 }
 
 }  // namespace beampipe

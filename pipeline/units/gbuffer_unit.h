@@ -6,6 +6,7 @@
 
 #include "pipeline/bins/bin.h"
 #include "pipeline/units/depth_test_unit.h"
+#include "stages/data/pixel_formats.h"
 #include "stages/picture/shade.h"
 
 namespace beampipe {

@@ -48,7 +48,7 @@ class ComposeOwnersUnit {
                     const std::vector<float>* watermarks, OpenPixels where, const std::vector<Surface>& framebuffer)
       : bin_(bin),
         stage_(bin.stage("compose")),
-        owners_{bin.triangles(), list, watermarks, bin.tile, positions, bin.context.colors, bin.models_memory()},
+        owners_{bin.triangles(), list, watermarks, bin.tile, positions, bin.shader(), bin.models_memory()},
         maps_{bin.pixel_counter("fragments"), bin.pixel_counter("merges")},
         pixels_(bin.tile.pixels()),
         store_(bin, where, sizeof pixels_[0], framebuffer) {

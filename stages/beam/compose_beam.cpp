@@ -207,21 +207,23 @@ void compose_window(const std::vector<Fragment>& fragments, const PositionSet& p
 }
 
 template <std::size_t Words, class Channel>
-void compose_whole(const std::vector<Pair>& whole, const Tile& tile, const std::vector<glm::vec3>& colors,
-                   StageCounters& counters, std::vector<StoredAggregate<Words, Channel>>& pixels) {
+void compose_whole(const std::vector<Pair>& whole, const Tile& tile, const TileShader& shader, StageCounters& counters,
+                   std::vector<StoredAggregate<Words, Channel>>& pixels) {
   for (const Pair& pair : whole) {
-    auto& pixel = pixels[tile.index(pair.x, pair.y)];
+    const std::size_t index = tile.index(pair.x, pair.y);
+    const glm::vec3 color = shader.color(pair.triangle, static_cast<std::uint32_t>(index), 0.5f, 0.5f);
+    auto& pixel = pixels[index];
     std::memset(pixel.mask, 0xff, sizeof pixel.mask);
     pixel.area = 1.0f;
-    for (int c = 0; c < 3; ++c) pixel.color[c] = Channel(colors[pair.triangle][c]);
+    for (int c = 0; c < 3; ++c) pixel.color[c] = Channel(color[c]);
   }
   charge_whole<Words, Channel>(whole.size(), counters);
 }
 
-#define BEAMPIPE_COMPOSE(words, channel)                                                                            \
-  template void compose_window(const std::vector<Fragment>&, const PositionSet&, StageCounters&,                    \
-                               std::vector<StoredAggregate<words, channel>>&, std::vector<float>&);                 \
-  template void compose_whole(const std::vector<Pair>&, const Tile&, const std::vector<glm::vec3>&, StageCounters&, \
+#define BEAMPIPE_COMPOSE(words, channel)                                                                \
+  template void compose_window(const std::vector<Fragment>&, const PositionSet&, StageCounters&,        \
+                               std::vector<StoredAggregate<words, channel>>&, std::vector<float>&);     \
+  template void compose_whole(const std::vector<Pair>&, const Tile&, const TileShader&, StageCounters&, \
                               std::vector<StoredAggregate<words, channel>>&);
 BEAMPIPE_STORED_AGGREGATES(BEAMPIPE_COMPOSE)
 #undef BEAMPIPE_COMPOSE

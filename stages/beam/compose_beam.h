@@ -17,6 +17,7 @@
 #include "stages/data/pixel_formats.h"
 #include "stages/data/position_set.h"
 #include "stages/data/tile.h"
+#include "stages/surface/surface_shader.h"
 
 namespace beampipe {
 
@@ -28,10 +29,10 @@ void compose_window(const std::vector<Fragment>& fragments, const PositionSet& p
                     std::vector<StoredAggregate<Words, Channel>>& pixels, std::vector<float>& areas);
 
 // Composes pixels that a single triangle covers completely and hides. The pixels must be empty. The result is
-// that of compose_window for the triangle's fragment, which is not needed here. `colors`: one per triangle.
+// that of compose_window for the triangle's fragment, which is not needed here.
 template <std::size_t Words, class Channel>
-void compose_whole(const std::vector<Pair>& whole, const Tile& tile, const std::vector<glm::vec3>& colors,
-                   StageCounters& counters, std::vector<StoredAggregate<Words, Channel>>& pixels);
+void compose_whole(const std::vector<Pair>& whole, const Tile& tile, const TileShader& shader, StageCounters& counters,
+                   std::vector<StoredAggregate<Words, Channel>>& pixels);
 
 // Are all positions of the pixel taken, so that nothing farther can be visible in it?
 template <std::size_t Words, class Channel>

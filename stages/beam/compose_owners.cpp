@@ -27,6 +27,7 @@ class OwnerComposer {
   // the raster has left out many already: so pictures do not depend on how far the raster is ahead.
   Outcome add(const Fragment& fragment, std::uint32_t number, Pixel& pixel, ClosedDepth& closed) {
     ++work.fragments;
+    pixel_ = fragment.pixel;
     const std::uint32_t row = fragment.pixel / width_;
     x_ = bin_.tile.x0 + static_cast<std::int32_t>(fragment.pixel - row * width_);
     y_ = bin_.tile.y0 + static_cast<std::int32_t>(row);
@@ -68,9 +69,10 @@ class OwnerComposer {
     return merged ? Outcome::merged : Outcome::composed;
   }
 
-  // All owners are final. Returns the pixel's colour.
-  PixelColor finish(Pixel& pixel) {
+  // All owners are final. `index`: of the pixel in the tile. Returns the pixel's colour.
+  PixelColor finish(Pixel& pixel, std::uint32_t index) {
     ++work.finished;
+    pixel_ = index;
     if (const OwnerSlot* slot = only_owner(pixel)) return {1.0f, color_of(*slot)};
     std::size_t count = 0;
     for (std::size_t k = 0; k < Slots; ++k)
@@ -249,12 +251,13 @@ class OwnerComposer {
 
   glm::vec3 color_of(const OwnerSlot& slot) {
     if (slot.is_merged()) return slot.color();
-    return shade(bin_.list[slot.triangle()]);
+    const glm::vec2 centroid = slot.centroid();
+    return shade(bin_.list[slot.triangle()], centroid.x, centroid.y);
   }
 
-  glm::vec3 shade(std::uint32_t triangle) {
-    result_.shaded.push_back({triangle});
-    return bin_.colors[triangle];
+  glm::vec3 shade(std::uint32_t triangle, float u, float v) {
+    result_.shaded.push_back({triangle, pixel_, u, v});
+    return bin_.shader.color(triangle, pixel_, u, v);
   }
 
   // Adds owners_[0 .. count - 1] to what is final. Those that show the largest part of their positions come first: what
@@ -326,7 +329,7 @@ class OwnerComposer {
     const float area = lesser(greater(same, opposite) - before, 1.0f - pixel.area);
     if (area <= 0) return;
     ++work.specks_added;
-    const glm::vec3 color = area * shade(fragment.triangle);
+    const glm::vec3 color = area * shade(fragment.triangle, fragment.centroid_u, fragment.centroid_v);
     pixel.area.add(area, threshold);
     pixel.colors.add({color[0], color[1], color[2], 0, 0, 0}, threshold);
   }
@@ -352,6 +355,7 @@ class OwnerComposer {
   const OwnersBin& bin_;
   OwnersResult& result_;
   const std::uint32_t width_;            // of the tile
+  std::uint32_t pixel_ = 0;              // index within the tile
   std::int32_t x_ = 0, y_ = 0;           // the fragment's pixel, frame coordinates
   std::array<Owner, Slots + 1> owners_;  // of one pixel, and the fragment that needs a slot
 };
@@ -379,7 +383,7 @@ std::vector<PixelColor> finish_owners(const OwnersBin& bin, StageCounters& count
                                       std::vector<OpenPixel<Words, Slots>>& pixels, OwnersResult& result) {
   OwnerComposer<Words, Slots> composer(bin, result);
   std::vector<PixelColor> colors(pixels.size());
-  for (std::uint32_t i = 0; i < pixels.size(); ++i) colors[i] = composer.finish(pixels[i]);
+  for (std::uint32_t i = 0; i < pixels.size(); ++i) colors[i] = composer.finish(pixels[i], i);
   charge<Words, Slots>(composer.work, counters);
   return colors;
 }

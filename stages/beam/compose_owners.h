@@ -26,6 +26,7 @@
 #include "stages/data/setup_triangle.h"
 #include "stages/data/shaded_triangle.h"
 #include "stages/data/tile.h"
+#include "stages/surface/surface_shader.h"
 
 namespace beampipe {
 
@@ -36,8 +37,8 @@ struct OwnersBin {
   const std::vector<float>* watermarks;  // as in OrderedList; null: nothing is final before the end
   const Tile& tile;
   const PositionSet& positions;
-  const std::vector<glm::vec3>& colors;  // what the shader returns, one per triangle
-  bool lists_fetches;                    // fill OwnersResult::fetched
+  TileShader shader;
+  bool lists_fetches;  // fill OwnersResult::fetched
 };
 
 // What was done, beside what is charged.

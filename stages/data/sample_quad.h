@@ -2,6 +2,7 @@
 #pragma once
 
 #include <cstdint>
+#include <glm/glm.hpp>
 #include <vector>
 
 #include "simd/match.h"
@@ -15,6 +16,7 @@ struct SampleQuad {
   std::uint32_t triangle[4];  // the triangle that is shaded; kNoTriangle: the background
   std::uint32_t mask[4];      // the visibility samples that take this colour
   std::uint8_t location[4];   // the sample where it is shaded: a bit number
+  glm::vec3 color[4];         // linear RGB, once it is shaded; not of the background
 };
 
 // Size of a shading sample in the modelled machine: visibility id, mask and location.

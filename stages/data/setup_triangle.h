@@ -9,6 +9,8 @@
 #include <glm/glm.hpp>
 #include <vector>
 
+#include "stages/data/surface.h"
+
 namespace beampipe {
 
 // A triangle's depth plane. Three vertices give the same bits in any order. Real is double or a number that counts.
@@ -41,6 +43,8 @@ struct SetupTriangles {
   std::vector<SetupTriangle> triangles;    // in primitive order; clipping may turn one triangle into several in a row
   std::vector<FlatAttributes> attributes;  // one per triangle
   std::vector<std::uint32_t> draws;        // one per triangle: index into Frame::draws
+  std::vector<SetupSurface> surfaces;      // one per triangle; empty if all triangles are flat
+  std::vector<SurfaceVertex> vertices;     // of the draws with materials
 
   static constexpr std::uint64_t kTriangleBytes =
       sizeof(SetupTriangle) + sizeof(FlatAttributes) + sizeof(std::uint32_t);

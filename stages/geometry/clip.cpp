@@ -11,17 +11,19 @@ ClipPlanes clip_planes(const Frame& frame) {
 
 Polygon clip_to_plane(const Polygon& polygon, const std::array<double, 4>& plane, std::uint64_t& crossings) {
   std::vector<double> distances;
-  for (const ClipVertex<double>& vertex : polygon) distances.push_back(plane_distance(plane, vertex));
+  for (const ClippedVertex& vertex : polygon) distances.push_back(plane_distance(plane, vertex));
   Polygon clipped;
   for (std::size_t i = 0; i < polygon.size(); ++i) {
     const std::size_t next = (i + 1) % polygon.size();
-    const ClipVertex<double>&from = polygon[i], &to = polygon[next];
+    const ClippedVertex &from = polygon[i], &to = polygon[next];
     const double from_distance = distances[i], to_distance = distances[next];
     if (from_distance >= 0) clipped.push_back(from);
     if ((from_distance >= 0) == (to_distance >= 0)) continue;
     const bool leaving = from_distance >= 0;
-    const ClipVertex<double>&in = leaving ? from : to, &out = leaving ? to : from;
-    clipped.push_back(crossing(in, out, leaving ? from_distance : to_distance, leaving ? to_distance : from_distance));
+    const ClippedVertex &in = leaving ? from : to, &out = leaving ? to : from;
+    const double t = crossing_place(leaving ? from_distance : to_distance, leaving ? to_distance : from_distance);
+    clipped.push_back({crossing<double>(in, out, t), in.second + t * (out.second - in.second),
+                       in.third + t * (out.third - in.third)});
     ++crossings;
   }
   return clipped;

@@ -26,10 +26,14 @@ Real plane_distance(const std::array<Real, 4>& plane, const ClipVertex<Real>& v)
 
 // The point where an edge crosses the plane, from its inner to its outer vertex.
 template <class Real>
-ClipVertex<Real> crossing(const ClipVertex<Real>& in, const ClipVertex<Real>& out, Real in_distance,
-                          Real out_distance) {
-  const Real t = in_distance / (in_distance - out_distance);
+ClipVertex<Real> crossing(const ClipVertex<Real>& in, const ClipVertex<Real>& out, Real t) {
   return {in.x + t * (out.x - in.x), in.y + t * (out.y - in.y), in.z + t * (out.z - in.z), in.w + t * (out.w - in.w)};
+}
+
+// Where on the edge that is: 0 at the inner vertex, 1 at the outer one.
+template <class Real>
+Real crossing_place(Real in_distance, Real out_distance) {
+  return in_distance / (in_distance - out_distance);
 }
 
 // Do all three vertices lie outside the same side of the view volume?
@@ -45,7 +49,12 @@ bool outside_view(const std::array<ClipVertex<Real>, 3>& v) {
   return left | right | below | above | before | behind;
 }
 
-using Polygon = std::vector<ClipVertex<double>>;
+// A vertex of a clipped triangle. `second` and `third` are the weights of the triangle's vertices in it, as in
+// Barycentrics.
+struct ClippedVertex : ClipVertex<double> {
+  double second = 0, third = 0;
+};
+using Polygon = std::vector<ClippedVertex>;
 
 // Clips to one plane (Sutherland and Hodgman). A crossing is always computed from the inner to the outer vertex, so two
 // triangles that share the edge get the same point. Adds the number of crossings to `crossings`.

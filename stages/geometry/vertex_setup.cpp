@@ -4,6 +4,8 @@
 
 #include <algorithm>
 #include <array>
+#include <cmath>
+#include <glm/gtc/matrix_inverse.hpp>
 
 #include "simd/vertex_transform.h"
 #include "stages/geometry/clip.h"
@@ -25,6 +27,7 @@ struct View {
   glm::dmat4 to_clip;  // from world space
   ClipPlanes planes;
   bool mirrored;
+  glm::dvec4 eye;  // world space; w is 1, or 0 if xyz is the direction towards a viewer at infinity
 
   explicit View(const Frame& frame)
       : width(frame.width),
@@ -33,17 +36,127 @@ struct View {
         planes(clip_planes(frame)),
         // Front faces are counter-clockwise on screen. A view or projection that mirrors reverses that in world space.
         // Clip space is left-handed, so a matrix that does not mirror has a negative determinant.
-        mirrored(glm::determinant(to_clip) > 0) {}
+        mirrored(glm::determinant(to_clip) > 0),
+        eye(viewer(glm::inverse(to_clip))) {}
+
+ private:
+  // The eye is where x, y and w are 0 in clip space.
+  static glm::dvec4 viewer(const glm::dmat4& to_world) {
+    const glm::dvec4 point = to_world * glm::dvec4(0, 0, -1, 0);
+    const double distance = glm::length(glm::dvec3(point));
+    if (std::abs(point.w) > 1e-12 * distance) return point / point.w;
+    return distance > 0 ? point / distance : glm::dvec4(0, 0, 1, 0);
+  }
 };
+
+// The material of a triangle; kNoMaterial: it is flat.
+std::uint32_t material_of(const Draw& draw, const Mesh& mesh, std::size_t triangle) {
+  if (draw.kd) return kNoMaterial;
+  if (draw.material) return *draw.material;
+  return mesh.materials.empty() ? kNoMaterial : mesh.materials[triangle];
+}
+
+// Is the colour the same everywhere, whatever the light?
+bool is_flat(const Material& material, const Mesh& mesh) {
+  return material.unlit && !material.base_texture && mesh.vertex_colors.empty() &&
+         material.alpha_mode == AlphaMode::opaque;
+}
+
+// Runs the vertex shader on the attributes that a material may read.
+class VertexShader {
+ public:
+  VertexShader(const View& view, const Draw& draw, const Mesh& mesh)
+      : view_(view),
+        mesh_(mesh),
+        to_world_(draw.transform),
+        normal_to_world_(glm::inverseTranspose(glm::dmat3(draw.transform))),
+        handedness_(glm::determinant(glm::dmat3(draw.transform)) < 0 ? -1.0f : 1.0f) {}
+
+  glm::dvec3 world(std::uint32_t vertex) const {
+    return glm::dvec3(to_world_ * glm::dvec4(glm::dvec3(mesh_.positions[vertex]), 1.0));
+  }
+
+  SurfaceVertex operator()(std::uint32_t i) const {
+    SurfaceVertex vertex;
+    vertex.to_eye = glm::vec3(glm::dvec3(view_.eye) - view_.eye.w * world(i));
+    if (!mesh_.normals.empty()) vertex.normal = glm::vec3(unit(normal_to_world_ * glm::dvec3(mesh_.normals[i])));
+    if (!mesh_.tangents.empty()) {
+      const glm::dvec3 tangent = glm::dmat3(to_world_) * glm::dvec3(mesh_.tangents[i]);
+      vertex.tangent = glm::vec4(glm::vec3(unit(tangent)), mesh_.tangents[i].w * handedness_);
+    }
+    for (int set = 0; set < 2; ++set)
+      if (!mesh_.uvs[set].empty()) vertex.uvs[set] = mesh_.uvs[set][i];
+    if (!mesh_.vertex_colors.empty()) vertex.color = mesh_.vertex_colors[i];
+    return vertex;
+  }
+
+ private:
+  static glm::dvec3 unit(const glm::dvec3& v) {
+    const double length = glm::length(v);
+    return length > 0 ? v / length : glm::dvec3(0.0);
+  }
+
+  const View& view_;
+  const Mesh& mesh_;
+  glm::dmat4 to_world_;
+  glm::dmat3 normal_to_world_;
+  float handedness_;  // -1: the transform mirrors
+};
+
+// The direction of u in world space; w: sign of the bitangent. 0 if the texture coordinates span no area.
+glm::vec4 triangle_tangent(const std::array<glm::dvec3, 3>& p, const std::array<glm::dvec2, 3>& uv) {
+  const glm::dvec3 a = p[1] - p[0], b = p[2] - p[0];
+  const glm::dvec2 s = uv[1] - uv[0], t = uv[2] - uv[0];
+  const double area = s.x * t.y - t.x * s.y;
+  const glm::dvec3 tangent = (a * t.y - b * s.y) * (area < 0 ? -1.0 : 1.0);
+  const double length = glm::length(tangent);
+  if (area == 0 || !(length > 0) || std::isinf(length)) return glm::vec4(0.0f);
+  // v points down in the image, and the bitangent up.
+  return glm::vec4(glm::vec3(tangent / length), area < 0 ? 1.0f : -1.0f);
+}
+
+ClippedVertex corner(const ProjectedVertex& vertex, double second, double third) {
+  return {vertex.clip, second, third};
+}
+
+// A vertex on the screen, and the weights of its triangle's vertices in it.
+struct ScreenCorner {
+  const ProjectedVertex& vertex;
+  double second, third;
+};
+
+BarycentricPlanes<float> barycentric_planes(const std::array<ScreenCorner, 3>& corners) {
+  const double w = std::min({corners[0].vertex.clip.w, corners[1].vertex.clip.w, corners[2].vertex.clip.w});
+  // From the values of a plane at the corners, times w of the corner.
+  const auto plane = [&](const std::array<double, 3>& values) {
+    std::array<ScreenVertex<double>, 3> p;
+    for (std::size_t k = 0; k < 3; ++k) {
+      const ProjectedVertex& vertex = corners[k].vertex;
+      p[k] = {vertex.screen.x, vertex.screen.y, values[k] * (w / vertex.clip.w)};
+    }
+    const Slopes<double> slopes = depth_slopes(p[0], p[1], p[2]);
+    return ScreenPlane<float>{static_cast<float>(p[0].z), static_cast<float>(slopes.dzdx),
+                              static_cast<float>(slopes.dzdy)};
+  };
+  return {plane({1, 1, 1}), plane({corners[0].second, corners[1].second, corners[2].second}),
+          plane({corners[0].third, corners[1].third, corners[2].third})};
+}
+
+constexpr std::uint32_t kNoVertices = ~0u;  // of frames whose triangles are all flat
 
 // Sets up triangles of one draw, one after the other, and appends them to `out`.
 class TriangleSetup {
  public:
-  TriangleSetup(const View& view, const Mesh& mesh, const Draw& draw, std::uint32_t draw_index,
-                const VertexTransform& transform, const std::vector<ProjectedVertex>& vertices)
+  // `first_vertex`: where the draw's vertices start in SetupTriangles::vertices.
+  TriangleSetup(const View& view, const Trace& trace, const Draw& draw, std::uint32_t draw_index,
+                const VertexTransform& transform, const std::vector<ProjectedVertex>& vertices,
+                std::uint32_t first_vertex)
       : view_(view),
-        mesh_(mesh),
+        materials_(trace.materials),
+        mesh_(trace.meshes[draw.mesh]),
         draw_(draw),
+        first_vertex_(first_vertex),
+        transform_mirrors_(glm::determinant(glm::dmat3(draw.transform)) < 0),
         to_world_(elements_of(draw.transform)),
         draw_index_(draw_index),
         transform_(transform),
@@ -53,11 +166,11 @@ class TriangleSetup {
     const glm::uvec3& index = mesh_.triangles[t];
     const std::array<const ProjectedVertex*, 3> v = {&vertices_[index.x], &vertices_[index.y], &vertices_[index.z]};
     if (v[0]->in_view && v[1]->in_view && v[2]->in_view) {
-      add_on_screen(t, *v[0], *v[1], *v[2]);
+      add_on_screen(t, {*v[0], 0, 0}, {*v[1], 1, 0}, {*v[2], 0, 1});
     } else if (v[0]->finite && v[1]->finite && v[2]->finite) {
       ++work.outside_tests;
-      const std::array<ClipVertex<double>, 3> clip = {v[0]->clip, v[1]->clip, v[2]->clip};
-      if (!outside_view(clip)) add_clipped(t, clip);
+      if (!outside_view<double>({v[0]->clip, v[1]->clip, v[2]->clip}))
+        add_clipped(t, {corner(*v[0], 0, 0), corner(*v[1], 1, 0), corner(*v[2], 0, 1)});
     }
   }
 
@@ -65,35 +178,38 @@ class TriangleSetup {
   SetupWork work;
 
  private:
-  void add_clipped(std::size_t t, const std::array<ClipVertex<double>, 3>& v) {
-    Polygon polygon(v.begin(), v.end());
+  void add_clipped(std::size_t t, Polygon polygon) {
     bool clipped = false;
     for (const auto& plane : view_.planes)
-      for (const ClipVertex<double>& p : v) clipped |= plane_distance(plane, p) < 0;
-    work.plane_tests += view_.planes.size() * v.size();
+      for (const ClippedVertex& p : polygon) clipped |= plane_distance<double>(plane, p) < 0;
+    work.plane_tests += view_.planes.size() * polygon.size();
     for (std::size_t i = 0; clipped && i < view_.planes.size(); ++i) {
       work.plane_tests += polygon.size();
       polygon = clip_to_plane(polygon, view_.planes[i], work.crossings);
     }
-    const auto on_screen = [&](const ClipVertex<double>& p) {
-      ProjectedVertex vertex{};
-      vertex.clip = p;
-      place_on_screen(transform_, vertex);
+    std::vector<ProjectedVertex> vertices(polygon.size());
+    const auto on_screen = [&](std::size_t i) -> ScreenCorner {
+      vertices[i] = {};
+      vertices[i].clip = polygon[i];
+      place_on_screen(transform_, vertices[i]);
       ++work.projected;
-      return vertex;
+      return {vertices[i], polygon[i].second, polygon[i].third};
     };
     work.fans += polygon.size() < 3 ? 0 : polygon.size() - 2;
     for (std::size_t i = 2; i < polygon.size(); ++i)
       if (polygon[0].w > 0 && polygon[i - 1].w > 0 && polygon[i].w > 0)
-        add_on_screen(t, on_screen(polygon[0]), on_screen(polygon[i - 1]), on_screen(polygon[i]));
+        add_on_screen(t, on_screen(0), on_screen(i - 1), on_screen(i));
   }
 
-  void add_on_screen(std::size_t t, const ProjectedVertex& a, const ProjectedVertex& b, const ProjectedVertex& c) {
+  void add_on_screen(std::size_t t, const ScreenCorner& first, const ScreenCorner& second, const ScreenCorner& third) {
+    const ProjectedVertex &a = first.vertex, &b = second.vertex, &c = third.vertex;
+    const std::uint32_t material = material_of(draw_, mesh_, t);
     ++work.areas;
     const std::int64_t area2 = doubled_area<std::int64_t>({a.x, b.x, c.x}, {a.y, b.y, c.y});
     if (area2 == 0) return;
     const bool front = area2 < 0;  // counter-clockwise with y up
     if (draw_.cull == (front ? Cull::front : Cull::back)) return;
+    if (material != kNoMaterial && !materials_[material].double_sided && shows_back(front)) return;
     SetupTriangle triangle;
     const std::array<const ProjectedVertex*, 3> turned = {&a, front ? &c : &b, front ? &b : &c};
     for (std::size_t k = 0; k < 3; ++k) {
@@ -111,12 +227,47 @@ class TriangleSetup {
     triangle.depth = {p[0].z, slopes.dzdx, slopes.dzdy, p[0].x, p[0].y};
     triangle.front = front;
     out.triangles.push_back(triangle);
-    out.attributes.push_back(attributes(t, front));
+    out.attributes.push_back(attributes(t, material, front));
     out.draws.push_back(draw_index_);
+    if (has_surfaces()) out.surfaces.push_back(surface(t, material, front, {first, second, third}));
   }
 
-  FlatAttributes attributes(std::size_t t, bool front) {
-    FlatAttributes flat{draw_.kd.value_or(mesh_.colors[t]), glm::vec3(0), draw_.shading == Shading::lambert};
+  // Does the viewer see the triangle from the side from which the mesh's vertices are clockwise?
+  bool shows_back(bool front) const { return (front == view_.mirrored) != transform_mirrors_; }
+
+  bool has_surfaces() const { return first_vertex_ != kNoVertices; }
+
+  SetupSurface surface(std::size_t t, std::uint32_t material, bool front, const std::array<ScreenCorner, 3>& corners) {
+    SetupSurface surface;
+    if (material == kNoMaterial || is_flat(materials_[material], mesh_)) return surface;
+    ++work.surfaces;
+    const glm::uvec3& index = mesh_.triangles[t];
+    surface.material = material;
+    for (int k = 0; k < 3; ++k) surface.vertices[static_cast<std::size_t>(k)] = first_vertex_ + index[k];
+    surface.turned = shows_back(front);
+    surface.has_own_normal = mesh_.normals.empty();
+    if (const auto& texture = materials_[material].normal_texture; texture && mesh_.tangents.empty()) {
+      ++work.tangents;
+      const VertexShader shader(view_, draw_, mesh_);
+      const std::vector<glm::vec2>& uvs = mesh_.uvs[texture->uv_set];
+      surface.tangent = triangle_tangent({shader.world(index.x), shader.world(index.y), shader.world(index.z)},
+                                         {uvs[index.x], uvs[index.y], uvs[index.z]});
+      if (transform_mirrors_) surface.tangent.w = -surface.tangent.w;
+    }
+    surface.anchor_x = static_cast<float>(corners[0].vertex.screen.x);
+    surface.anchor_y = static_cast<float>(corners[0].vertex.screen.y);
+    surface.planes = barycentric_planes(corners);
+    return surface;
+  }
+
+  FlatAttributes attributes(std::size_t t, std::uint32_t material, bool front) {
+    FlatAttributes flat{glm::vec3(0), glm::vec3(0), draw_.shading == Shading::lambert};
+    if (material == kNoMaterial) {
+      flat.kd = draw_.kd.value_or(mesh_.colors[t]);
+    } else {
+      flat.kd = glm::vec3(materials_[material].base_color);
+      flat.lit = !materials_[material].unlit && mesh_.normals.empty();
+    }
     if (!flat.lit) return flat;
     ++work.normals;
     const auto world = [&](std::uint32_t i) {
@@ -132,8 +283,11 @@ class TriangleSetup {
   }
 
   const View& view_;
+  const std::vector<Material>& materials_;
   const Mesh& mesh_;
   const Draw& draw_;
+  std::uint32_t first_vertex_;
+  bool transform_mirrors_;
   std::array<double, 16> to_world_;
   std::uint32_t draw_index_;
   const VertexTransform& transform_;
@@ -144,6 +298,7 @@ void append(const SetupTriangles& part, SetupTriangles& whole) {
   whole.triangles.insert(whole.triangles.end(), part.triangles.begin(), part.triangles.end());
   whole.attributes.insert(whole.attributes.end(), part.attributes.begin(), part.attributes.end());
   whole.draws.insert(whole.draws.end(), part.draws.begin(), part.draws.end());
+  whole.surfaces.insert(whole.surfaces.end(), part.surfaces.begin(), part.surfaces.end());
 }
 
 constexpr std::size_t kChunk = 4096;  // vertices or triangles per task
@@ -156,8 +311,9 @@ void for_each_chunk(std::size_t count, ChunkWork&& work) {
 }
 
 // Appends the draw's triangles to `out`, chunk by chunk.
-SetupWork add_draw(const View& view, const Mesh& mesh, const Draw& draw, std::uint32_t draw_index,
-                   SetupTriangles& out) {
+SetupWork add_draw(const View& view, const Trace& trace, const Draw& draw, std::uint32_t draw_index,
+                   std::uint32_t first_vertex, SetupTriangles& out) {
+  const Mesh& mesh = trace.meshes[draw.mesh];
   const VertexTransform transform{elements_of(view.to_clip * draw.transform), view.width, view.height};
   std::vector<ProjectedVertex> vertices(mesh.positions.size());
   std::vector<std::size_t> in_view((vertices.size() + kChunk - 1) / kChunk);
@@ -166,7 +322,7 @@ SetupWork add_draw(const View& view, const Mesh& mesh, const Draw& draw, std::ui
         transform_vertices(&mesh.positions[first].x, end - first, transform, vertices.data() + first);
   });
   std::vector<TriangleSetup> chunks((mesh.triangles.size() + kChunk - 1) / kChunk,
-                                    TriangleSetup(view, mesh, draw, draw_index, transform, vertices));
+                                    TriangleSetup(view, trace, draw, draw_index, transform, vertices, first_vertex));
   for_each_chunk(mesh.triangles.size(), [&](std::size_t first, std::size_t end) {
     chunks[first / kChunk].out.reserve(end - first);
     for (std::size_t t = first; t < end; ++t) chunks[first / kChunk].add(t);
@@ -181,6 +337,27 @@ SetupWork add_draw(const View& view, const Mesh& mesh, const Draw& draw, std::ui
   return work;
 }
 
+bool has_material(const Draw& draw, const Mesh& mesh) { return !draw.kd && (draw.material || !mesh.materials.empty()); }
+
+std::uint64_t attribute_bytes(const Mesh& mesh) {
+  return (mesh.normals.empty() ? 0u : 12u) + (mesh.tangents.empty() ? 0u : 16u) + (mesh.uvs[0].empty() ? 0u : 8u) +
+         (mesh.uvs[1].empty() ? 0u : 8u) + (mesh.vertex_colors.empty() ? 0u : 16u);
+}
+
+// Runs the vertex shader on the attributes of a draw. Returns the bytes that it reads and writes.
+void shade_vertices(const View& view, const Draw& draw, const Mesh& mesh, StageCounters& counters,
+                    std::vector<SurfaceVertex>& out) {
+  const std::size_t first = out.size(), count = mesh.positions.size();
+  const VertexShader shader(view, draw, mesh);
+  out.resize(first + count);
+  for_each_chunk(count, [&](std::size_t begin, std::size_t end) {
+    for (std::size_t i = begin; i < end; ++i) out[first + i] = shader(static_cast<std::uint32_t>(i));
+  });
+  const std::uint64_t attributes = attribute_bytes(mesh);
+  counters.bytes_read += count * attributes;
+  counters.bytes_written += count * (sizeof(glm::vec3) + attributes);
+}
+
 }  // namespace
 
 SetupTriangles vertex_setup(const Trace& trace, const Frame& frame, StageCounters& counters) {
@@ -192,16 +369,25 @@ SetupTriangles vertex_setup(const Trace& trace, const Frame& frame, StageCounter
   for (const Draw& draw : frame.draws) triangles += trace.meshes[draw.mesh].triangles.size();
   out.reserve(triangles);  // once, for all triangles, culled or not: pages that are never written take no memory
   counters.items_in += triangles;
+  const bool has_materials = std::any_of(frame.draws.begin(), frame.draws.end(),
+                                         [&](const Draw& draw) { return has_material(draw, trace.meshes[draw.mesh]); });
   for (std::uint32_t i = 0; i < frame.draws.size(); ++i) {
     const Draw& draw = frame.draws[i];
     const Mesh& mesh = trace.meshes[draw.mesh];
-    work += add_draw(view, mesh, draw, i, out);
+    const auto first_vertex = static_cast<std::uint32_t>(out.vertices.size());
+    work += add_draw(view, trace, draw, i, has_materials ? first_vertex : kNoVertices, out);
+    if (has_material(draw, mesh)) {
+      work.shaded_vertices += mesh.positions.size();
+      work.vertex_vectors += mesh.positions.size() * (std::size_t{!mesh.normals.empty()} + !mesh.tangents.empty());
+      shade_vertices(view, draw, mesh, counters, out.vertices);
+    }
     counters.bytes_read += mesh.triangles.size() * sizeof(glm::uvec3) + mesh.positions.size() * sizeof(glm::vec3);
   }
   work.triangles = out.triangles.size();
   counters.items_out = out.triangles.size();
   charge(work, counters);
   counters.bytes_written += out.triangles.size() * (sizeof(SetupTriangle) + sizeof(FlatAttributes));
+  counters.bytes_written += work.surfaces * kSurfaceBytes + work.tangents * sizeof(glm::vec4);
   return out;
 }
 

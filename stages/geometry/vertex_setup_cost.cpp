@@ -47,7 +47,7 @@ OperationCounts plane_test_cost() {
 OperationCounts crossing_cost() {
   return count_operations([](OperationCounts& counts) {
     const CountedReal x(1.0, counts);
-    crossing<CountedReal>({x, x, x, x}, {x, x, x, x}, x, CountedReal(0.0, counts));
+    crossing<CountedReal>({x, x, x, x}, {x, x, x, x}, crossing_place(x, CountedReal(0.0, counts)));
   });
 }
 
@@ -87,6 +87,56 @@ OperationCounts slopes_cost() {
   });
 }
 
+// World position, and the direction to the eye.
+OperationCounts to_eye_cost() {
+  return count_operations([](OperationCounts& counts) {
+    const CountedReal x(1.0, counts);
+    std::array<CountedReal, 16> matrix;
+    matrix.fill(x);
+    const Vector<CountedReal> world = world_point<CountedReal>(matrix, {x, x, x});
+    for (const CountedReal& component : {world.x, world.y, world.z}) converted(x - component);
+  });
+}
+
+// A normal or a tangent: a 3 x 3 matrix, and its length.
+OperationCounts vertex_vector_cost() {
+  return count_operations([](OperationCounts& counts) {
+    const CountedReal x(1.0, counts);
+    const auto row = [&] { return x * x + x * x + x * x; };
+    const CountedReal length = square_root(row());
+    for (int component = 0; component < 3; ++component) converted(row() / length);
+  });
+}
+
+// Three planes from 1 / w and two weights.
+OperationCounts surface_cost() {
+  return count_operations([](OperationCounts& counts) {
+    const CountedReal zero(0.0, counts), one(1.0, counts);
+    const CountedReal smallest = lesser(lesser(one, one), one);
+    for (int corner = 0; corner < 3; ++corner) {
+      const CountedReal w = smallest / one;
+      for (int weight = 0; weight < 2; ++weight) static_cast<void>(one * w);
+    }
+    for (int plane = 0; plane < 3; ++plane) {
+      const Slopes<CountedReal> slopes =
+          depth_slopes<CountedReal>({zero, zero, zero}, {one, zero, one}, {zero, one, one});
+      converted(one), converted(slopes.dzdx), converted(slopes.dzdy);
+    }
+  });
+}
+
+// Edges of the triangle in space and in texture coordinates, and a unit vector.
+OperationCounts tangent_cost() {
+  return count_operations([](OperationCounts& counts) {
+    const CountedReal x(1.0, counts);
+    for (int edge = 0; edge < 2 * (3 + 2); ++edge) static_cast<void>(x - x);
+    static_cast<void>(x * x - x * x < x);
+    const auto component = [&] { return (x * x - x * x) * x; };
+    const CountedReal length = square_root(component() * x + component() * x + component() * x);
+    for (int axis = 0; axis < 3; ++axis) converted(x / length);
+  });
+}
+
 }  // namespace
 
 void charge(const SetupWork& work, StageCounters& counters) {
@@ -100,6 +150,10 @@ void charge(const SetupWork& work, StageCounters& counters) {
   counters.ops += slopes_cost() * work.triangles;
   counters.ops += depths_cost() * work.triangles;
   counters.ops += normal_cost() * work.normals;
+  counters.ops += to_eye_cost() * work.shaded_vertices;
+  counters.ops += vertex_vector_cost() * work.vertex_vectors;
+  counters.ops += surface_cost() * work.surfaces;
+  counters.ops += tangent_cost() * work.tangents;
 }
 
 }  // namespace beampipe

@@ -9,12 +9,15 @@ namespace beampipe {
 struct SetupWork {
   std::uint64_t transformed = 0, outside_tests = 0, plane_tests = 0, crossings = 0, fans = 0, projected = 0, areas = 0;
   std::uint64_t normals = 0;
-  std::uint64_t triangles = 0;  // setup triangles that were made
+  std::uint64_t shaded_vertices = 0, vertex_vectors = 0, surfaces = 0, tangents = 0;  // of draws with materials
+  std::uint64_t triangles = 0;                                                        // setup triangles that were made
 
   SetupWork& operator+=(const SetupWork& other) {
     transformed += other.transformed, outside_tests += other.outside_tests, plane_tests += other.plane_tests;
     crossings += other.crossings, fans += other.fans, projected += other.projected, areas += other.areas;
     normals += other.normals, triangles += other.triangles;
+    shaded_vertices += other.shaded_vertices, vertex_vectors += other.vertex_vectors;
+    surfaces += other.surfaces, tangents += other.tangents;
     return *this;
   }
 };

@@ -25,9 +25,10 @@ std::vector<glm::vec4> resolve(const std::vector<PixelColor>& aggregates, const 
   return image;
 }
 
-std::vector<glm::vec4> resolve(const SampleTile& surface, std::size_t pixels, const std::vector<glm::vec3>& colors,
-                               const glm::vec3& background, StageCounters& counters) {
-  const std::size_t samples = surface.samples_per_pixel;
+std::vector<glm::vec4> resolve(const SampleTile& surface, std::size_t pixels, const TileShader& shader,
+                               const glm::vec3& background, StageCounters& counters, std::size_t cells,
+                               const CellPlaces& place_of) {
+  const std::size_t samples = surface.samples_per_pixel, samples_per_cell = samples / cells;
   const glm::dvec3 clear = background;
   std::vector<glm::vec4> image;
   image.reserve(pixels);
@@ -38,10 +39,16 @@ std::vector<glm::vec4> resolve(const SampleTile& surface, std::size_t pixels, co
     std::size_t covered = 0;
     for (std::size_t s = 0; s < samples;) {
       const std::uint32_t triangle = owner[s];
+      const bool is_same_everywhere = triangle == kNoTriangle || shader.is_flat(triangle);
+      const std::size_t most = is_same_everywhere ? samples : s - s % samples_per_cell + samples_per_cell;
       std::size_t end = s + 1;
-      while (end < samples && owner[end] == triangle) ++end;
+      while (end < most && owner[end] == triangle) ++end;
       const auto run = static_cast<double>(end - s);
-      sum += run * (triangle == kNoTriangle ? clear : glm::dvec3(colors[triangle]));
+      CellPlace place{};
+      if (!is_same_everywhere) place = place_of(triangle, pixel * cells + s / samples_per_cell);
+      sum += run * (triangle == kNoTriangle ? clear
+                                            : glm::dvec3(shader.color(triangle, static_cast<std::uint32_t>(pixel),
+                                                                      place.u, place.v, place.width)));
       if (triangle != kNoTriangle) covered += end - s;
       s = end;
     }

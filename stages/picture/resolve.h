@@ -1,6 +1,7 @@
 // resolve: framebuffer -> picture: linear RGB over the background, and A, the part of the pixel that geometry covers.
 #pragma once
 
+#include <functional>
 #include <glm/glm.hpp>
 #include <vector>
 
@@ -8,6 +9,7 @@
 #include "stages/cost/counters.h"
 #include "stages/data/pixel_formats.h"
 #include "stages/data/sample_tile.h"
+#include "stages/surface/surface_shader.h"
 
 namespace beampipe {
 
@@ -18,8 +20,17 @@ std::vector<PixelColor> pixel_colors(const std::vector<Aggregate>& aggregates);
 std::vector<glm::vec4> resolve(const std::vector<PixelColor>& aggregates, const glm::vec3& background,
                                std::uint32_t stored_bytes, StageCounters& counters);
 
-// Returns the mean of each pixel's samples (a box filter of one pixel). `colors`: one per triangle.
-std::vector<glm::vec4> resolve(const SampleTile& surface, std::size_t pixels, const std::vector<glm::vec3>& colors,
-                               const glm::vec3& background, StageCounters& counters);
+// Where the samples of a triangle in a cell were shaded. `cell`: as in SampleAccess.
+struct CellPlace {
+  float u, v;   // in the pixel, from its upper left corner, 0..1
+  float width;  // of the cell, in pixels
+};
+using CellPlaces = std::function<CellPlace(std::uint32_t triangle, std::size_t cell)>;
+
+// Returns the mean of each pixel's samples (a box filter of one pixel). `cells`: per pixel. `place_of` is asked for
+// triangles that are not flat.
+std::vector<glm::vec4> resolve(const SampleTile& surface, std::size_t pixels, const TileShader& shader,
+                               const glm::vec3& background, StageCounters& counters, std::size_t cells = 1,
+                               const CellPlaces& place_of = {});
 
 }  // namespace beampipe

@@ -1,79 +1,67 @@
 #include "stages/picture/shade.h"
 
-#include "stages/data/half_bits.h"
-#include "stages/picture/picture_formulas.h"
+#include "stages/data/pixel_formats.h"
 #include "stages/picture/shade_cost.h"
 
 namespace beampipe {
+namespace {
 
-std::vector<glm::vec3> shade_triangles(const SetupTriangles& triangles, const Lighting& lighting) {
-  std::vector<glm::vec3> colors;
-  colors.reserve(triangles.attributes.size());
-  for (const FlatAttributes& flat : triangles.attributes) {
-    glm::vec3 color = flat.kd;
-    if (flat.lit) {
-      color = glm::vec3(0.0f);
-      for (const Light& light : lighting.lights) {
-        glm::vec3 reflected;
-        lambert(&flat.kd.x, &flat.normal.x, &light.direction.x, &reflected.x);
-        color += light.color * reflected;
-      }
-      if (lighting.ambient) {
-        const Ambient& ambient = *lighting.ambient;
-        color += flat.kd * glm::mix(ambient.ground, ambient.sky, 0.5f + 0.5f * glm::dot(flat.normal, ambient.up));
-      }
+void shade_at_centroids(const TileShader& shader, std::vector<Fragment>& fragments) {
+  for (Fragment& fragment : fragments)
+    fragment.color =
+        fragment.alpha * shader.color(fragment.triangle, fragment.pixel, fragment.centroid_u, fragment.centroid_v);
+}
+
+}  // namespace
+
+void shade(const TileShader& shader, std::vector<Fragment>& fragments, StageCounters& counters) {
+  shade_at_centroids(shader, fragments);
+  charge(in_quads(shader, fragments, whole_shader), kPairBytes, kColorBytes, counters);
+}
+
+void shade_visible(const TileShader& shader, std::vector<Fragment>& fragments, StageCounters& counters) {
+  shade_at_centroids(shader, fragments);
+  charge(one_by_one(shader, fragments, whole_shader), kPairBytes, kColorBytes, counters);
+}
+
+void shade_visible(const TileShader& shader, const std::vector<Pair>& whole, StageCounters& counters) {
+  charge(one_by_one(shader, whole, whole_shader), kPairBytes, kColorBytes, counters);
+}
+
+void shade_visible(const TileShader& shader, const std::vector<ShadedTriangle>& shaded, StageCounters& counters) {
+  charge(one_by_one(shader, shaded, whole_shader), kPairBytes, kColorBytes, counters);
+}
+
+void shade(const TileShader& shader, const std::vector<SampleFragment>& fragments, StageCounters& counters) {
+  charge(in_quads(shader, fragments, whole_shader), kSampleFragmentBytes, kColorBytes, counters);
+}
+
+void color_samples(const TileShader& shader, const Tile& tile, const SamplePattern& pattern,
+                   std::vector<SampleQuad>& quads) {
+  const std::size_t columns = (static_cast<std::size_t>(tile.width()) + 1) / 2;
+  for (std::size_t q = 0; q < quads.size(); ++q) {
+    for (std::size_t p = 0; p < 4; ++p) {
+      SampleQuad& quad = quads[q];
+      if (quad.triangle[p] == kNoTriangle) continue;
+      const std::size_t pixel = quad.location[p] / 8u, sample = quad.location[p] % 8u;
+      const std::size_t x = q % columns * 2 + pixel % 2, y = q / columns * 2 + pixel / 2;
+      const auto index = static_cast<std::uint32_t>(y * static_cast<std::size_t>(tile.width()) + x);
+      quad.color[p] = shader.color(quad.triangle[p], index, static_cast<float>(pattern.x[sample]) / kSubpixelUnits,
+                                   static_cast<float>(pattern.y[sample]) / kSubpixelUnits);
     }
-    colors.push_back(color);
   }
-  return colors;
 }
 
-std::vector<glm::vec3> round_to_half(std::vector<glm::vec3> colors) {
-  for (glm::vec3& color : colors)
-    for (int c = 0; c < 3; ++c) color[c] = HalfBits(color[c]);
-  return colors;
+void write_gbuffer(const TileShader& shader, const std::vector<SampleFragment>& fragments, StageCounters& counters) {
+  charge(in_quads(shader, fragments, material_half), kSampleFragmentBytes, kGBufferBytes, counters);
 }
 
-void shade(const std::vector<glm::vec3>& colors, std::vector<Fragment>& fragments, StageCounters& counters,
-           const std::vector<FlatAttributes>* attributes) {
-  for (Fragment& fragment : fragments) fragment.color = fragment.alpha * colors[fragment.triangle];
-  charge(in_quads(fragments, attributes), lambert_cost(), sizeof(FlatAttributes) + kPairBytes, kColorBytes, counters);
+void write_gbuffer(const TileShader& shader, const std::vector<std::uint32_t>& triangles, StageCounters& counters) {
+  charge(one_by_one(shader, triangles, material_half), kVisibilityBytes, kGBufferBytes, counters);
 }
 
-void shade_visible(const std::vector<glm::vec3>& colors, std::vector<Fragment>& fragments, StageCounters& counters,
-                   const std::vector<FlatAttributes>* attributes) {
-  for (Fragment& fragment : fragments) fragment.color = fragment.alpha * colors[fragment.triangle];
-  charge(one_by_one(fragments, attributes), lambert_cost(), sizeof(FlatAttributes) + kPairBytes, kColorBytes, counters);
-}
-
-void shade_visible(const std::vector<Pair>& whole, StageCounters& counters,
-                   const std::vector<FlatAttributes>* attributes) {
-  charge(one_by_one(whole, attributes), lambert_cost(), sizeof(FlatAttributes) + kPairBytes, kColorBytes, counters);
-}
-
-void shade_visible(const std::vector<ShadedTriangle>& shaded, StageCounters& counters,
-                   const std::vector<FlatAttributes>* attributes) {
-  charge(one_by_one(shaded, attributes), lambert_cost(), sizeof(FlatAttributes) + kPairBytes, kColorBytes, counters);
-}
-
-void shade(const std::vector<SampleFragment>& fragments, StageCounters& counters,
-           const std::vector<FlatAttributes>* attributes) {
-  charge(in_quads(fragments, attributes), lambert_cost(), sizeof(FlatAttributes) + kSampleFragmentBytes, kColorBytes,
-         counters);
-}
-
-void write_gbuffer(const std::vector<SampleFragment>& fragments, StageCounters& counters) {
-  charge(in_quads(fragments, nullptr), material_cost(), sizeof(FlatAttributes) + kSampleFragmentBytes, kGBufferBytes,
-         counters);
-}
-
-void write_gbuffer(std::uint64_t samples, StageCounters& counters) {
-  charge({samples, samples, samples}, material_cost(), sizeof(FlatAttributes) + kVisibilityBytes, kGBufferBytes,
-         counters);
-}
-
-void light(std::uint64_t samples, StageCounters& counters) {
-  charge({samples, samples, samples}, lambert_cost(), kGBufferBytes, kColorBytes, counters);
+void light(const TileShader& shader, const std::vector<std::uint32_t>& triangles, StageCounters& counters) {
+  charge(one_by_one(shader, triangles, light_half), kGBufferBytes, kColorBytes, counters);
 }
 
 }  // namespace beampipe

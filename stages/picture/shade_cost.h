@@ -6,66 +6,97 @@
 #include "stages/cost/counting.h"
 #include "stages/data/pair.h"
 #include "stages/data/pixel_formats.h"
-#include "stages/data/setup_triangle.h"
-#include "stages/picture/picture_formulas.h"
+#include "stages/surface/surface_shader.h"
 
 namespace beampipe {
 
-inline OperationCounts lambert_cost() {
-  return count_operations([](OperationCounts& counts) {
-    const Counted<float> one(1.0f, counts), in[3] = {one, one, one};
-    Counted<float> color[3];
-    lambert(in, in, in, color);
+// Components become integers of the G-buffer: six of a flat triangle's Kd and normal; of a material, roughness and
+// metallic as well.
+inline OperationCounts pack_cost(int components) {
+  return count_operations([&](OperationCounts& counts) {
+    const Counted<float> value(1.0f, counts), scale(1.0f), offset(1.0f);
+    for (int component = 0; component < components; ++component) to_integer(value * scale + offset);
   });
 }
 
-// Six components, of Kd and of the normal, become integers of the G-buffer.
-inline OperationCounts material_cost() {
-  return count_operations([](OperationCounts& counts) {
-    const Counted<float> value(1.0f, counts), scale(1.0f), offset(1.0f);
-    for (int component = 0; component < 6; ++component) to_integer(value * scale + offset);
-  });
+// What an invocation does: operations, and bytes that it reads of the triangle.
+struct InvocationWork {
+  OperationCounts ops;
+  std::uint64_t input_bytes;
+};
+
+inline InvocationWork whole_shader(const TileShader& shader, std::uint32_t triangle) {
+  const SurfaceShader::Work& work = shader.work(triangle);
+  OperationCounts ops = work.material;
+  return {ops += work.light, work.input_bytes};
+}
+inline InvocationWork material_half(const TileShader& shader, std::uint32_t triangle) {
+  static const UnitCost flat = pack_cost(6), varying = pack_cost(8);
+  const SurfaceShader::Work& work = shader.work(triangle);
+  OperationCounts ops = work.material;
+  return {ops += shader.is_flat(triangle) ? flat : varying, work.input_bytes};
+}
+// Lighting reads the G-buffer. It computes for all flat triangles, lit or not.
+inline InvocationWork light_half(const TileShader& shader, std::uint32_t triangle) {
+  return {(shader.is_flat(triangle) ? shader.lit_flat() : shader.work(triangle)).light, 0};
 }
 
 // What the shader runs on.
 struct Invocations {
-  std::uint64_t items;        // fragments or samples
-  std::uint64_t invocations;  // with the helper invocations of 2x2 quads
-  std::uint64_t computed;     // invocations that are charged operations
+  std::uint64_t items = 0;        // fragments or samples
+  std::uint64_t invocations = 0;  // with the helper invocations of 2x2 quads
+  OperationCounts ops{};
+  std::uint64_t input_bytes = 0;
 };
+
+inline std::uint32_t triangle_of(std::uint32_t triangle) { return triangle; }
+template <class Item>
+std::uint32_t triangle_of(const Item& item) {
+  return item.triangle;
+}
+
+// Consecutive items of one triangle are charged at once.
+template <class Items, class WorkOf>
+Invocations one_by_one(const TileShader& shader, const Items& items, WorkOf&& work_of) {
+  Invocations result{items.size(), items.size()};
+  for (std::size_t first = 0, end = 0; first < items.size(); first = end) {
+    const std::uint32_t triangle = triangle_of(items[first]);
+    while (end < items.size() && triangle_of(items[end]) == triangle) ++end;
+    const InvocationWork work = work_of(shader, triangle);
+    result.ops += work.ops * (end - first);
+    result.input_bytes += work.input_bytes * (end - first);
+  }
+  return result;
+}
 
 template <class Items>
 bool starts_quad(const Items& fragments, std::size_t i) {
   return i == 0 || fragments[i].quad != fragments[i - 1].quad;
 }
 
-// `attributes`: of the triangles; only quads of lit triangles compute. Null: all compute.
-template <class Items>
-Invocations in_quads(const Items& fragments, const std::vector<FlatAttributes>* attributes) {
-  std::uint64_t quads = 0, lit = 0;
-  for (std::size_t i = 0; i < fragments.size(); ++i) {
-    if (!starts_quad(fragments, i)) continue;
-    ++quads;
-    lit += !attributes || (*attributes)[fragments[i].triangle].lit;
+// The same in 2x2 quads: all four invocations compute.
+template <class Items, class WorkOf>
+Invocations in_quads(const TileShader& shader, const Items& fragments, WorkOf&& work_of) {
+  Invocations result{fragments.size()};
+  for (std::size_t first = 0, end = 0; first < fragments.size(); first = end) {
+    std::uint64_t quads = 0;
+    for (; end < fragments.size() && fragments[end].triangle == fragments[first].triangle; ++end)
+      quads += starts_quad(fragments, end);
+    const InvocationWork work = work_of(shader, fragments[first].triangle);
+    result.invocations += 4 * quads;
+    result.ops += work.ops * (4 * quads);
+    result.input_bytes += work.input_bytes * (end - first);
   }
-  return {fragments.size(), 4 * quads, 4 * lit};
+  return result;
 }
 
-// The same for items that are shaded one by one.
-template <class Items>
-Invocations one_by_one(const Items& items, const std::vector<FlatAttributes>* attributes) {
-  std::uint64_t lit = 0;
-  for (const auto& item : items) lit += !attributes || (*attributes)[item.triangle].lit;
-  return {items.size(), items.size(), lit};
-}
-
-// `cost`: per invocation that computes; bytes: per item.
-inline void charge(const Invocations& shaded, const OperationCounts& cost, std::uint64_t bytes_read,
-                   std::uint64_t bytes_written, StageCounters& counters) {
+// Bytes are per item.
+inline void charge(const Invocations& shaded, std::uint64_t bytes_read, std::uint64_t bytes_written,
+                   StageCounters& counters) {
   counters.items_in += shaded.items;
   counters.items_out += shaded.items;
-  counters.ops += cost * shaded.computed;
-  counters.bytes_read += shaded.items * bytes_read;
+  counters.ops += shaded.ops;
+  counters.bytes_read += shaded.items * bytes_read + shaded.input_bytes;
   counters.bytes_written += shaded.items * bytes_written;
   counters.lanes_used += shaded.items;
   counters.lanes_issued += shaded.invocations;

@@ -85,25 +85,99 @@ void reference_raster(const SetupTriangles& triangles, const TriangleList& list,
   charge_reference(covered, nearer, counters);
 }
 
-std::vector<glm::vec4> resolve(const ReferenceTile& surface, const Tile& tile, const std::vector<glm::vec3>& colors,
+namespace {
+
+// Adds the colours of the samples of one pixel. `owner`: of its first sample.
+class PixelSum {
+ public:
+  PixelSum(const TileShader& shader, const glm::vec3& background, std::size_t row_samples)
+      : shader_(shader), clear_(background), row_samples_(row_samples) {}
+
+  void add_flat(const std::uint64_t* owner, glm::dvec3& sum) const {
+    for (std::int32_t row = 0; row < kReferenceRows; ++row, owner += row_samples_)
+      for (std::int32_t s = 0; s < kReferenceColumns; ++s)
+        sum += owner[s] == kNoOwner ? clear_ : glm::dvec3(shader_.color(triangle_of(owner[s]), 0, 0, 0));
+  }
+
+  void add_varying(const std::uint64_t* owner, std::uint32_t pixel, glm::dvec3& sum) const {
+    static_assert(kReferenceColumns == kReferenceCells && kReferenceRows % kReferenceCells == 0);
+    for (std::int32_t row = 0; row < kReferenceRows; row += kRowsPerCell)
+      for (std::int32_t column = 0; column < kReferenceColumns; ++column)
+        add_cell(owner + static_cast<std::size_t>(row) * row_samples_ + column, row, column, pixel, sum);
+  }
+
+  // Do all samples show the background or flat triangles?
+  bool is_flat(const std::uint64_t* owner) const {
+    if (shader_.is_flat()) return true;
+    for (std::int32_t row = 0; row < kReferenceRows; ++row, owner += row_samples_)
+      for (std::int32_t s = 0; s < kReferenceColumns; ++s)
+        if (owner[s] != kNoOwner && !shader_.is_flat(triangle_of(owner[s]))) return false;
+    return true;
+  }
+
+ private:
+  static constexpr std::int32_t kRowsPerCell = kReferenceRows / kReferenceCells;
+
+  static std::uint32_t triangle_of(std::uint64_t owner) { return static_cast<std::uint32_t>(owner); }
+
+  void add_cell(const std::uint64_t* owner, std::int32_t row, std::int32_t column, std::uint32_t pixel,
+                glm::dvec3& sum) const {
+    std::int32_t added[kRowsPerCell];  // rows whose samples are added
+    std::int32_t left = 0;
+    for (std::int32_t i = 0; i < kRowsPerCell; ++i) added[left++] = i;
+    const auto owner_at = [&](std::int32_t i) { return owner[static_cast<std::size_t>(i) * row_samples_]; };
+    while (left > 0) {
+      const std::uint64_t first = owner_at(added[0]);
+      std::int64_t count = 0, x = 0, y = 0;  // of this owner's samples, in 1/8192 px
+      std::int32_t rest = 0;
+      for (std::int32_t k = 0; k < left; ++k) {
+        const std::int32_t i = added[k];
+        if (owner_at(i) != first) {
+          added[rest++] = i;
+          continue;
+        }
+        ++count;
+        x += kStep * column + row_offset(row + i);
+        y += kRowStep * (row + i) + kRowStep / 2;
+      }
+      left = rest;
+      const float unit = 1.0f / (static_cast<float>(count) * static_cast<float>(kReferenceUnits));
+      sum += static_cast<double>(count) *
+             (first == kNoOwner ? clear_
+                                : glm::dvec3(shader_.color(triangle_of(first), pixel, static_cast<float>(x) * unit,
+                                                           static_cast<float>(y) * unit, 1.0f / kReferenceCells)));
+    }
+  }
+
+  const TileShader& shader_;
+  glm::dvec3 clear_;
+  std::size_t row_samples_;
+};
+
+}  // namespace
+
+std::vector<glm::vec4> resolve(const ReferenceTile& surface, const Tile& tile, const TileShader& shader,
                                const glm::vec3& background, StageCounters& counters) {
   const double share = 1.0 / kReferenceSamples;
-  const glm::dvec3 clear = background;
+  const PixelSum sum_of(shader, background, surface.row_samples);
   std::vector<glm::vec4> image;
   image.reserve(tile.pixels());
   for (std::int32_t y = 0; y < tile.height(); ++y) {
     for (std::int32_t x = 0; x < tile.width(); ++x) {
+      const std::uint64_t* const owner = surface.owner.data() +
+                                         static_cast<std::size_t>(y * kReferenceRows) * surface.row_samples +
+                                         static_cast<std::size_t>(x * kReferenceColumns);
       glm::dvec3 sum(0.0);
-      std::uint32_t covered = 0;
-      for (std::int32_t row = 0; row < kReferenceRows; ++row) {
-        const std::uint64_t* owner = surface.owner.data() +
-                                     static_cast<std::size_t>(y * kReferenceRows + row) * surface.row_samples +
-                                     static_cast<std::size_t>(x * kReferenceColumns);
-        for (std::int32_t s = 0; s < kReferenceColumns; ++s) {
-          covered += owner[s] != kNoOwner;
-          sum += owner[s] == kNoOwner ? clear : glm::dvec3(colors[owner[s]]);
-        }
+      if (sum_of.is_flat(owner)) {
+        sum_of.add_flat(owner, sum);
+      } else {
+        sum_of.add_varying(owner, static_cast<std::uint32_t>(tile.width() * y + x), sum);
       }
+      std::uint32_t covered = 0;
+      for (std::int32_t row = 0; row < kReferenceRows; ++row)
+        for (std::int32_t s = 0; s < kReferenceColumns; ++s)
+          covered +=
+              owner[static_cast<std::size_t>(row) * surface.row_samples + static_cast<std::size_t>(s)] != kNoOwner;
       image.emplace_back(glm::vec3(sum * share), static_cast<float>(covered * share));
     }
   }

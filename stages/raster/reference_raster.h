@@ -17,6 +17,7 @@
 #include "stages/cost/counters.h"
 #include "stages/data/setup_triangle.h"
 #include "stages/data/tile.h"
+#include "stages/surface/surface_shader.h"
 
 namespace beampipe {
 
@@ -38,9 +39,12 @@ struct ReferenceTile {
 void reference_raster(const SetupTriangles& triangles, const TriangleList& list, const Tile& tile,
                       StageCounters& counters, ReferenceTile& surface);
 
-// Returns the mean of each pixel's samples, summed in double precision: RGBA per pixel of the tile. `colors`: one per
-// triangle.
-std::vector<glm::vec4> resolve(const ReferenceTile& surface, const Tile& tile, const std::vector<glm::vec3>& colors,
+// Surfaces that vary are shaded 256 times per pixel: in each of 16x16 cells, each triangle once for its samples there,
+// at their mean position, with the part of its textures that the cell covers.
+inline constexpr std::int32_t kReferenceCells = 16;  // per pixel, in x and y
+
+// Returns the mean of each pixel's samples, summed in double precision: RGBA per pixel of the tile.
+std::vector<glm::vec4> resolve(const ReferenceTile& surface, const Tile& tile, const TileShader& shader,
                                const glm::vec3& background, StageCounters& counters);
 
 }  // namespace beampipe

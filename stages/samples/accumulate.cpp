@@ -65,10 +65,15 @@ void stencil_test(const Tile& tile, StageCounters& counters, Accumulator& accumu
   charge_stencil_test(tested, passed, counters);
 }
 
-void accumulate(const std::vector<SampleFragment>& fragments, const std::vector<glm::vec3>& colors, const Tile& tile,
-                StageCounters& counters, Accumulator& accumulator) {
-  for (const SampleFragment& fragment : fragments)
-    add(accumulator, pixel_of(fragment, tile), colors[fragment.triangle], fragment.mask);
+void accumulate(const std::vector<SampleFragment>& fragments, const TileShader& shader,
+                const std::vector<glm::vec2>& places, const Tile& tile, StageCounters& counters,
+                Accumulator& accumulator) {
+  for (std::size_t i = 0; i < fragments.size(); ++i) {
+    const std::size_t pixel = pixel_of(fragments[i], tile);
+    const glm::vec2 place = places.empty() ? glm::vec2(0.5f) : places[i];
+    const glm::vec3 color = shader.color(fragments[i].triangle, static_cast<std::uint32_t>(pixel), place.x, place.y);
+    add(accumulator, pixel, color, fragments[i].mask);
+  }
   charge_accumulate(fragments.size(), accumulator, counters);
 }
 

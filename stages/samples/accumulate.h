@@ -9,6 +9,7 @@
 #include "stages/cost/counters.h"
 #include "stages/data/accumulator.h"
 #include "stages/data/sample_tile.h"
+#include "stages/surface/surface_shader.h"
 
 namespace beampipe {
 
@@ -21,9 +22,10 @@ void accumulate_background(const SampleTile& depth, const glm::vec3& background,
 void stencil_test(const Tile& tile, StageCounters& counters, Accumulator& accumulator,
                   std::vector<SampleFragment>& fragments);
 
-// `colors`: one per triangle.
-void accumulate(const std::vector<SampleFragment>& fragments, const std::vector<glm::vec3>& colors, const Tile& tile,
-                StageCounters& counters, Accumulator& accumulator);
+// `places`: where each fragment is shaded, in its pixel; may be empty if all triangles are flat.
+void accumulate(const std::vector<SampleFragment>& fragments, const TileShader& shader,
+                const std::vector<glm::vec2>& places, const Tile& tile, StageCounters& counters,
+                Accumulator& accumulator);
 
 // Blends the accumulated colours over the background, which is weighted by 1 - alpha. Returns RGBA per pixel of the
 // tile.

@@ -20,15 +20,15 @@ struct Box {
 // The frame's shading samples, at the pixels where they are stored.
 class ShadedSamples {
  public:
-  ShadedSamples(const QuadFrame& quads, const std::vector<glm::vec3>& colors, const std::vector<std::uint32_t>& draws,
-                const glm::vec3& background)
-      : quads_(quads), colors_(colors), draws_(draws), background_(background, 0.0f) {}
+  ShadedSamples(const QuadFrame& quads, const std::vector<std::uint32_t>& draws, const glm::vec3& background)
+      : quads_(quads), draws_(draws), background_(background, 0.0f) {}
 
   Shaded at(std::int32_t x, std::int32_t y) const {
     const SampleQuad& quad = quads_.quads[static_cast<std::size_t>(y / 2 * quads_.columns + x / 2)];
-    const std::uint32_t triangle = quad.triangle[y % 2 * 2 + x % 2];
+    const int sample = y % 2 * 2 + x % 2;
+    const std::uint32_t triangle = quad.triangle[sample];
     if (triangle == kNoTriangle) return {kNoTriangle, background_};
-    return {draws_[triangle], glm::vec4(colors_[triangle], 1.0f)};
+    return {draws_[triangle], glm::vec4(quad.color[sample], 1.0f)};
   }
 
   // Only neighbours inside the frame count, because samples outside it are not shaded. Adds their number to
@@ -49,7 +49,6 @@ class ShadedSamples {
 
  private:
   const QuadFrame& quads_;
-  const std::vector<glm::vec3>& colors_;
   const std::vector<std::uint32_t>& draws_;
   glm::vec4 background_;
 };
@@ -65,9 +64,9 @@ glm::vec4 mean_color(const glm::vec4 colors[4], const float weights[4], float in
 
 }  // namespace
 
-void dilate(const QuadFrame& quads, const std::vector<glm::vec3>& colors, const std::vector<std::uint32_t>& draws,
-            const glm::vec3& background, const Tile& tile, StageCounters& counters, CurrentFrame& frame) {
-  const ShadedSamples samples(quads, colors, draws, background);
+void dilate(const QuadFrame& quads, const std::vector<std::uint32_t>& draws, const glm::vec3& background,
+            const Tile& tile, StageCounters& counters, CurrentFrame& frame) {
+  const ShadedSamples samples(quads, draws, background);
   std::uint64_t known = 0, neighbors = 0;
   for (std::int32_t top = tile.y0; top < tile.y1; top += 2) {
     for (std::int32_t left = tile.x0; left < tile.x1; left += 2) {

@@ -13,11 +13,11 @@
 
 namespace beampipe {
 
-// Sets color, low, high and known of the tile's pixels. `colors` and `draws`: one per triangle. The box of a shading
+// Sets color, low, high and known of the tile's pixels. `draws`: one per triangle. The box of a shading
 // sample spans those of the 3x3 shading samples around it that belong to the same draw. If none of a pixel's visibility
 // samples was given to a shading sample, the pixel takes the colour of its own shading sample, and `known` is 0.
-void dilate(const QuadFrame& quads, const std::vector<glm::vec3>& colors, const std::vector<std::uint32_t>& draws,
-            const glm::vec3& background, const Tile& tile, StageCounters& counters, CurrentFrame& frame);
+void dilate(const QuadFrame& quads, const std::vector<std::uint32_t>& draws, const glm::vec3& background,
+            const Tile& tile, StageCounters& counters, CurrentFrame& frame);
 
 // Per pixel, the part of it whose material has no shading sample in the quad, 0..1.
 std::vector<float> unknown_part(const CurrentFrame& frame);

@@ -5,10 +5,26 @@
 
 namespace beampipe {
 
+std::uint32_t covered_samples(const SetupTriangle& triangle, const SampleFragment& fragment, const Sampling& sampling) {
+  const std::int64_t left = std::int64_t{fragment.x} * sampling.grid.cell_width(),
+                     top = std::int64_t{fragment.y} * sampling.grid.cell_height();
+  std::uint32_t mask = (1u << sampling.pattern.count) - 1;
+  for (int k = 0; k < 3; ++k) {
+    const Edge edge = edge_of(triangle, k);
+    for (int s = 0; s < sampling.pattern.count; ++s)
+      if (!is_inside<std::int64_t>({edge.a, edge.b, edge.c}, left + sampling.pattern.x[s], top + sampling.pattern.y[s],
+                                   edge.owns ? 0 : 1))
+        mask &= ~(1u << s);
+  }
+  return mask;
+}
+
 ShadingPoint shading_point(const SetupTriangle& triangle, const SampleFragment& fragment, const Sampling& sampling,
                            ShadeAt at) {
   const std::int64_t left = std::int64_t{fragment.x} * sampling.grid.cell_width(),
                      top = std::int64_t{fragment.y} * sampling.grid.cell_height();
+  if (at == ShadeAt::sample)
+    return {glm::dvec2(left + sampling.pattern.x[0], top + sampling.pattern.y[0]) / double{kSubpixelUnits}, true};
   const std::int64_t x = left + sampling.grid.cell_width() / 2, y = top + sampling.grid.cell_height() / 2;
   bool covered = true;
   for (int k = 0; k < 3; ++k) {

@@ -14,7 +14,11 @@ namespace beampipe {
 enum class ShadeAt {
   centre,    // always at the centre; if that is outside the triangle, varying attributes are extrapolated
   centroid,  // at the centroid if the triangle does not cover the centre; the centroid lies inside the triangle
+  sample,    // at the pattern's first sample, as if the pixel's centre had been moved there
 };
+
+// The samples of the fragment's cell that the triangle covers, whatever the fragment's mask says.
+std::uint32_t covered_samples(const SetupTriangle& triangle, const SampleFragment& fragment, const Sampling& sampling);
 
 struct ShadingPoint {
   glm::dvec2 position;  // pixels, frame coordinates

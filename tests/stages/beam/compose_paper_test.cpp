@@ -189,7 +189,7 @@ TEST(Compose, PlainOver) {
   add_right_of(triangles, 192, -0.5f);
   Fragments fragments = beam_fragments(triangles, kPixel, MaskSource::table);
   StageCounters shading, counters;
-  shade({{1, 0, 0}, {0, 1, 0}, {0, 0, 1}}, fragments.list, shading);
+  shade(std::vector<glm::vec3>{{1, 0, 0}, {0, 1, 0}, {0, 0, 1}}, fragments.list, shading);
   const Aggregate found = compose_over(fragments.list, sorted(fragments, 1), counters).at(0);
   EXPECT_NEAR(found.color[1], 0.5, 1e-6);
   EXPECT_NEAR(found.color[2], 0.5 / 4, 1e-6);

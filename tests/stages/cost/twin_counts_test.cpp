@@ -254,7 +254,7 @@ TEST_P(TwinCounts, Accumulate) {
   for (const DoubleCounting counting : {DoubleCounting::none, DoubleCounting::saturate}) {
     StageCounters counters;
     Accumulator accumulator(tile_, 8, AccumulatorFormat::fp16, counting);
-    accumulate(fragments, colors, tile_, counters, accumulator);
+    accumulate(fragments, colors, {}, tile_, counters, accumulator);
     twin_ = {};
     for (const SampleFragment& fragment : fragments) {
       Float share = bit_count(Bits(fragment.mask, twin_)) * real(1.0f / 8);

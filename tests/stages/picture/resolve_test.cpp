@@ -27,7 +27,7 @@ TEST(Resolve, MeanOfTheSamples) {
   surface.triangle[0] = surface.triangle[2] = 0;
   surface.triangle[1] = 1;
   StageCounters counters;
-  const auto image = resolve(surface, tile.pixels(), {{1, 0, 0}, {0, 4, 0}}, {0, 0, 0.5f}, counters);
+  const auto image = resolve(surface, tile.pixels(), std::vector<glm::vec3>{{1, 0, 0}, {0, 4, 0}}, {0, 0, 0.5f}, counters);
   ASSERT_EQ(image.size(), 2u);
   EXPECT_EQ(image[0], glm::vec4(0.5f, 1.0f, 0.125f, 0.75f));
   EXPECT_EQ(image[1], glm::vec4(0, 0, 0.5f, 0));

@@ -20,7 +20,7 @@ SetupTriangles with_attributes(const FlatAttributes& flat) {
 TEST(Shade, LambertIsTheCosineTowardsTheLight) {
   const glm::vec3 kd(0.5f, 1.0f, 2.0f), down(0, -1, 0), slanted(0.6f, -0.8f, 0);
   const auto color = [&](const glm::vec3& normal, const glm::vec3& light) {
-    return shade_triangles(with_attributes({kd, normal, true}), light).at(0);
+    return shade_triangles(with_attributes({kd, normal, true}), {{{light}}, {}}).at(0);
   };
   EXPECT_EQ(color({0, 1, 0}, down), kd);
   EXPECT_EQ(color({0, -1, 0}, down), glm::vec3(0.0f));  // lit from behind
@@ -31,8 +31,8 @@ TEST(Shade, LambertIsTheCosineTowardsTheLight) {
 
 TEST(Shade, UnlitIsKd) {
   const glm::vec3 kd(0.5f, 1.0f, 2.0f);
-  EXPECT_EQ(shade_triangles(with_attributes({kd, {0, -1, 0}, false}), glm::vec3(0, -1, 0)).at(0), kd);
-  EXPECT_EQ(shade_triangles(with_attributes({kd, {0, 0, 0}, false}), std::nullopt).at(0), kd);
+  EXPECT_EQ(shade_triangles(with_attributes({kd, {0, -1, 0}, false}), {{{glm::vec3(0, -1, 0)}}, {}}).at(0), kd);
+  EXPECT_EQ(shade_triangles(with_attributes({kd, {0, 0, 0}, false}), {}).at(0), kd);
 }
 
 TEST(Shade, FragmentsGetTheirTrianglesColorTimesAlpha) {
@@ -40,7 +40,7 @@ TEST(Shade, FragmentsGetTheirTrianglesColorTimesAlpha) {
   add_triangle(triangles, {64, -5'000}, {64, 5'000}, {-5'000, 0});  // a quarter of the pixel
   Fragments fragments = beam_fragments(triangles, {0, 0, 1, 1}, MaskSource::table);
   StageCounters counters;
-  shade({{1, 2, 4}}, fragments.list, counters);
+  shade(std::vector<glm::vec3>{{1, 2, 4}}, fragments.list, counters);
   ASSERT_EQ(fragments.list.size(), 1u);
   EXPECT_NEAR(fragments.list[0].color[0], 0.25, 1e-6);
   EXPECT_NEAR(fragments.list[0].color[1], 0.5, 2e-6);
@@ -63,7 +63,7 @@ Lanes sample_lanes(const SetupTriangles& triangles) {
   std::vector<SampleFragment> fragments;
   StageCounters raster, counters;
   sample_raster(triangles, all_of(triangles), {0, 0, 8, 8}, {CellGrid{}, standard_pattern(8)}, raster, fragments);
-  shade(fragments, counters);
+  shade(std::vector<glm::vec3>(triangles.triangles.size()), fragments, counters);
   return {counters.lanes_used, counters.lanes_issued};
 }
 
@@ -98,13 +98,19 @@ TEST(Shade, CountsOperationsPerInvocation) {
   add_triangle(triangles, {20, 20}, {230, 30}, {20, 230});
   Fragments fragments = beam_fragments(triangles, {0, 0, 8, 8}, MaskSource::table);
   StageCounters counters;
-  shade({glm::vec3(1.0f)}, fragments.list, counters);
+  shade(std::vector<glm::vec3>(1, glm::vec3(1.0f)), fragments.list, counters);
   EXPECT_EQ(counters.ops, (OperationCounts{4 * 6, 4 * 4, 0, 0, 0, 0}));
 }
 
 // fp16 has 11 significant bits. 1 + 2^-11 lies half-way between 1 and the next number and is rounded to the even one.
 TEST(Shade, HalfRounding) {
-  const std::vector<glm::vec3> found = round_to_half({{1.0f + 0x1p-11f, 1.0f + 0x1.8p-11f, 1e9f}, {0.1f, 0, 0}});
+  SetupTriangles triangles = with_attributes({{1.0f + 0x1p-11f, 1.0f + 0x1.8p-11f, 1e9f}, {}, false});
+  add_triangle(triangles, {0, 0}, {256, 0}, {0, 256});
+  triangles.attributes[1] = {{0.1f, 0, 0}, {}, false};
+  const Trace trace;
+  const Frame frame;
+  const std::vector<glm::vec3> found =
+      SurfaceShader(triangles, trace, frame, nullptr, {.rounds_to_half = true}).flat_colors();
   EXPECT_EQ(found[0], glm::vec3(1.0f, 1.0f + 0x1p-10f, 65504.0f));
   EXPECT_NEAR(found[1].x, 0.1f, 0.1f * 0x1p-11f);
   EXPECT_NE(found[1].x, 0.1f);

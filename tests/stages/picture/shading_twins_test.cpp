@@ -17,8 +17,11 @@ class ShadingTwins : public SceneTwins {
  protected:
   void SetUp() override {
     SceneTwins::SetUp();
-    if (!trace_.frames[0].lighting.lights.empty()) light_ = trace_.frames[0].lighting.lights[0].direction;
-    colors_ = shade_triangles(triangles_, {{{light_}}, {}});
+    std::vector<Light>& lights = trace_.frames[0].lighting.lights;
+    if (lights.empty()) lights.push_back({glm::vec3(0, -1, 0)});
+    light_ = lights[0].direction;
+    surfaces_.emplace(triangles_, trace_, trace_.frames[0], nullptr, ShadingRules{});
+    colors_ = surfaces_->flat_colors();
   }
 
   std::array<Float, 3> vector(const glm::vec3& v) { return {real(v.x), real(v.y), real(v.z)}; }
@@ -65,14 +68,15 @@ class ShadingTwins : public SceneTwins {
     return fragments;
   }
 
-  glm::vec3 light_{0, -1, 0};
+  glm::vec3 light_;
+  std::optional<SurfaceShader> surfaces_;
   std::vector<glm::vec3> colors_;
 };
 
 TEST_P(ShadingTwins, ShadeFragmentsInQuads) {
   std::vector<Fragment> fragments = beam_fragments();
   StageCounters counters;
-  shade(colors_, fragments, counters, &triangles_.attributes);
+  shade({*surfaces_, tile_}, fragments, counters);
   EXPECT_EQ(counters.lanes_issued, shade_quads(fragments));
   EXPECT_EQ(counters.ops, twin_);
 }
@@ -80,7 +84,7 @@ TEST_P(ShadingTwins, ShadeFragmentsInQuads) {
 TEST_P(ShadingTwins, ShadeSampleFragmentsInQuads) {
   const std::vector<SampleFragment> fragments = sample_fragments({CellGrid{}, standard_pattern(8)});
   StageCounters counters;
-  shade(fragments, counters, &triangles_.attributes);
+  shade({*surfaces_, tile_}, fragments, counters);
   EXPECT_EQ(counters.lanes_issued, shade_quads(fragments));
   EXPECT_EQ(counters.ops, twin_);
 }
@@ -129,8 +133,8 @@ TEST_P(ShadingTwins, ResolveSamples) {
 // Per visible sample, one invocation converts Kd and the normal to integers, and a later one computes the cosine.
 TEST_P(ShadingTwins, GBufferAndLight) {
   StageCounters gbuffer, lighting;
-  write_gbuffer(list_.size(), gbuffer);
-  light(list_.size(), lighting);
+  write_gbuffer({*surfaces_, tile_}, list_, gbuffer);
+  light({*surfaces_, tile_}, list_, lighting);
   for (const std::uint32_t triangle : list_) {
     const FlatAttributes& flat = triangles_.attributes[triangle];
     for (const Float& kd : vector(flat.kd)) to_integer(kd * Float(255.0f) + Float(0.5f));

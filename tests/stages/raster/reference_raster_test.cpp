@@ -85,7 +85,7 @@ TEST(ReferenceRaster, ResolveIsTheMeanOfTheSamples) {
     for (std::size_t i = 0; i < 16; ++i)
       if (row < 128 || i < 8) surface.owner[row * surface.row_samples + i] = row < 128 ? 0 : 1;
   StageCounters counters;
-  const auto image = resolve(surface, tile, {{1, 0, 0}, {0, 1, 0}}, {0, 0, 0.5f}, counters);
+  const auto image = resolve(surface, tile, std::vector<glm::vec3>{{1, 0, 0}, {0, 1, 0}}, {0, 0, 0.5f}, counters);
   ASSERT_EQ(image.size(), 2u);
   EXPECT_EQ(image[0], glm::vec4(0.5f, 0.25f, 0.125f, 0.75f));
   EXPECT_EQ(image[1], glm::vec4(0, 0, 0.5f, 0));

@@ -10,11 +10,14 @@ const std::vector<glm::vec3> kColors = {glm::vec3(1.0f), glm::vec3(0.5f), glm::v
 const std::vector<std::uint32_t> kDraws = {0, 1, 0};
 const glm::vec3 kBackground(0.125f);
 
-CurrentFrame dilated(const QuadFrame& quads, std::uint32_t width, std::uint32_t height) {
+CurrentFrame dilated(QuadFrame quads, std::uint32_t width, std::uint32_t height) {
+  for (SampleQuad& quad : quads.quads)
+    for (int p = 0; p < 4; ++p)
+      if (quad.triangle[p] != kNoTriangle) quad.color[p] = kColors[quad.triangle[p]];
   CurrentFrame frame(width, height);
   StageCounters counters;
   const Tile all{0, 0, static_cast<std::int32_t>(width), static_cast<std::int32_t>(height)};
-  dilate(quads, kColors, kDraws, kBackground, all, counters, frame);
+  dilate(quads, kDraws, kBackground, all, counters, frame);
   return frame;
 }
 
@@ -22,7 +25,7 @@ TEST(Dilate, APixelIsTheMeanWeightedByItsBits) {
   QuadFrame quads(2, 2);
   // Pixel 0 has five samples of shading sample 0 and three of sample 3. Pixel 1 has only samples of sample 1. Pixel 2
   // has two of sample 2, the background. Pixel 3 has none.
-  quads.quads[0] = {{0, 1, kNoTriangle, 2}, {0x1fu, 0xff00u, 0x030000u, 0xe0u}, {0, 8, 16, 24}};
+  quads.quads[0] = {{0, 1, kNoTriangle, 2}, {0x1fu, 0xff00u, 0x030000u, 0xe0u}, {0, 8, 16, 24}, {}};
   const CurrentFrame frame = dilated(quads, 2, 2);
   EXPECT_FLOAT_EQ(frame.color[0].r, (5 * 1.0f + 3 * 0.25f) / 8);
   EXPECT_FLOAT_EQ(frame.color[0].a, 1);
@@ -37,8 +40,8 @@ TEST(Dilate, APixelIsTheMeanWeightedByItsBits) {
 TEST(Dilate, BoxesAreOfNeighborsOfTheSameDraw) {
   // Two quads next to each other: triangles 0 1 | 2 0 above, 1 1 | 1 1 below. Each sample has its own pixel.
   QuadFrame quads(4, 2);
-  quads.quads[0] = {{0, 1, 1, 1}, {0xffu, 0xff00u, 0xff0000u, 0xff000000u}, {0, 8, 16, 24}};
-  quads.quads[1] = {{2, 0, 1, 1}, {0xffu, 0xff00u, 0xff0000u, 0xff000000u}, {0, 8, 16, 24}};
+  quads.quads[0] = {{0, 1, 1, 1}, {0xffu, 0xff00u, 0xff0000u, 0xff000000u}, {0, 8, 16, 24}, {}};
+  quads.quads[1] = {{2, 0, 1, 1}, {0xffu, 0xff00u, 0xff0000u, 0xff000000u}, {0, 8, 16, 24}, {}};
   const CurrentFrame frame = dilated(quads, 4, 2);
   EXPECT_EQ(frame.low[0].r, 1.0f);  // no neighbour belongs to draw 0
   EXPECT_EQ(frame.high[0].r, 1.0f);
@@ -51,7 +54,7 @@ TEST(Dilate, BoxesAreOfNeighborsOfTheSameDraw) {
 TEST(Dilate, CountsWhatItLooksAt) {
   CurrentFrame frame(4, 4);
   StageCounters counters;
-  dilate(QuadFrame(4, 4), kColors, kDraws, kBackground, {0, 0, 4, 4}, counters, frame);
+  dilate(QuadFrame(4, 4), kDraws, kBackground, {0, 0, 4, 4}, counters, frame);
   const std::uint64_t neighbors = 4 * 3 + 8 * 5 + 4 * 8;  // corners, sides, inside
   EXPECT_EQ(counters.bytes_read, 16 * (6 + 4 + 4) + neighbors * (6 + 4));
   EXPECT_EQ(counters.bytes_written, 16u * (8 + 16 + 1));

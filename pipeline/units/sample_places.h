@@ -1,0 +1,28 @@
+// Where sample fragments are shaded, in a bin. A triangle and a cell say that, so nothing is kept with the samples.
+#pragma once
+
+#include "pipeline/bins/bin.h"
+#include "stages/data/sample_fragment.h"
+#include "stages/picture/resolve.h"
+#include "stages/samples/shading_point.h"
+
+namespace beampipe {
+
+class SamplePlaces {
+ public:
+  // The bin and the sampling must outlive it.
+  SamplePlaces(const Bin& bin, const Sampling& sampling, ShadeAt at) : bin_(bin), sampling_(sampling), at_(at) {}
+
+  // `cell`: in the tile, as in SampleAccess.
+  CellPlace of(std::uint32_t triangle, std::size_t cell) const;
+
+  // In the fragment's pixel.
+  glm::vec2 of(const SampleFragment& fragment) const;
+
+ private:
+  const Bin& bin_;
+  const Sampling& sampling_;
+  ShadeAt at_;
+};
+
+}  // namespace beampipe

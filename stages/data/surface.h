@@ -1,0 +1,86 @@
+// What vertex_setup hands on for triangles whose surface varies: the vertices' attributes, and where in its triangle a
+// point of the screen lies, in perspective.
+#pragma once
+
+#include <array>
+#include <cstdint>
+#include <glm/glm.hpp>
+
+#include "simd/scalar.h"
+
+namespace beampipe {
+
+// A vertex as the fragment shader sees it. Attributes that the mesh does not have are 0, and its colour is white.
+struct SurfaceVertex {
+  glm::vec3 to_eye{0.0f};   // world space, not normalised
+  glm::vec3 normal{0.0f};   // world space, not normalised
+  glm::vec4 tangent{0.0f};  // world space, not normalised; w: sign of the bitangent
+  glm::vec2 uvs[2]{};
+  glm::vec4 color{1.0f};
+};
+
+// A quantity that is linear on the screen: its value at the anchor, and its slopes per pixel.
+template <class Real>
+struct ScreenPlane {
+  Real value{}, dx{}, dy{};
+  Real at(Real x, Real y) const { return value + dx * x + dy * y; }  // pixels from the anchor
+};
+
+// Weights of a triangle's second and third vertex; the first one has the rest. `dx` and `dy`: per pixel.
+template <class Real>
+struct Barycentrics {
+  Real second{}, third{};
+};
+
+// Weights divided by w are linear on the screen; with 1 / w, which is linear too, they give the weights in perspective.
+// All three are multiplied by the smallest w.
+template <class Real>
+struct BarycentricPlanes {
+  ScreenPlane<Real> inverse_w, second, third;
+};
+
+// Outside of its triangle a weight grows without limit where the triangle's plane comes near the eye. This is as far as
+// it may go.
+inline constexpr float kMostWeight = 16.0f;
+
+template <class Real>
+Real limited_weight(Real weight) {
+  return lesser(greater(weight, Real(-kMostWeight)), Real(1.0f + kMostWeight));
+}
+
+// (x, y): pixels from the anchor.
+template <class Real>
+Barycentrics<Real> weights_at(const BarycentricPlanes<Real>& planes, Real x, Real y) {
+  const Real w = Real(1.0f) / planes.inverse_w.at(x, y);
+  return {limited_weight(planes.second.at(x, y) * w), limited_weight(planes.third.at(x, y) * w)};
+}
+
+// How the weights change per pixel, to the right and down, at a point where they are `weights`.
+template <class Real>
+std::array<Barycentrics<Real>, 2> weight_slopes(const BarycentricPlanes<Real>& planes, Real x, Real y,
+                                                const Barycentrics<Real>& weights) {
+  const Real w = Real(1.0f) / planes.inverse_w.at(x, y);
+  return {{{(planes.second.dx - weights.second * planes.inverse_w.dx) * w,
+            (planes.third.dx - weights.third * planes.inverse_w.dx) * w},
+           {(planes.second.dy - weights.second * planes.inverse_w.dy) * w,
+            (planes.third.dy - weights.third * planes.inverse_w.dy) * w}}};
+}
+
+inline constexpr std::uint32_t kFlatSurface = ~0u;
+
+// One for each setup triangle.
+struct SetupSurface {
+  std::uint32_t material = kFlatSurface;             // index into Trace::materials; kFlatSurface: the triangle is flat
+  std::array<std::uint32_t, 3> vertices{};  // of the trace's triangle: indices into SetupTriangles::vertices
+  bool turned = false;                      // the viewer sees its back: vertices' normals are turned around
+  bool has_own_normal = false;              // the mesh has no normals: FlatAttributes::normal is used
+  glm::vec4 tangent{0.0f};                  // of the triangle, as in SurfaceVertex; where a normal texture needs it
+  float anchor_x = 0, anchor_y = 0;         // pixels, frame coordinates
+  BarycentricPlanes<float> planes;
+};
+
+// Size in the modelled machine: three planes, which have the depth plane's anchor, the material, and the numbers of
+// three vertices.
+inline constexpr std::uint64_t kSurfaceBytes = 9 * 4 + 4 + 3 * 4;
+
+}  // namespace beampipe

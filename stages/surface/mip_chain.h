@@ -1,0 +1,50 @@
+// Textures as the texture units read them: each image at full size and at ever smaller ones, 8 bits per channel.
+#pragma once
+
+#include <array>
+#include <cstdint>
+#include <glm/glm.hpp>
+#include <vector>
+
+#include "traces/trace.h"
+
+namespace beampipe {
+
+enum class ColorSpace { linear, srgb };  // of RGB; alpha is always linear
+
+// Linear values 0..1 of the 256 codes of sRGB (IEC 61966-2-1), and the code nearest to a linear value.
+const std::array<float, 256>& srgb_values();
+std::uint8_t srgb_code(float linear);
+
+struct MipLevel {
+  std::uint32_t width = 0, height = 0;
+  std::vector<glm::u8vec4> texels;  // row by row
+};
+
+// Level 0 is the image; each further level has half the width and height, rounded down but at least 1, until both are
+// 1. A texel is the mean of what it covers, in linear light, rounded to 8 bits.
+struct MipChain {
+  ColorSpace space = ColorSpace::linear;
+  std::vector<MipLevel> levels;
+
+  // Linear RGBA.
+  glm::vec4 texel(std::size_t level, std::uint32_t x, std::uint32_t y) const;
+};
+
+MipChain make_mip_chain(const TextureImage& image, ColorSpace space);
+
+// The images of a trace in the colour spaces in which its materials read them.
+class TextureSet {
+ public:
+  explicit TextureSet(const Trace& trace);
+
+  // Of a texture that a material of the trace reads in this colour space.
+  const MipChain& chain(std::uint32_t image, ColorSpace space) const {
+    return chains_[2 * image + static_cast<std::size_t>(space)];
+  }
+
+ private:
+  std::vector<MipChain> chains_;  // two for each image; those without a use are empty
+};
+
+}  // namespace beampipe

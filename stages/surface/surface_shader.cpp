@@ -1,0 +1,296 @@
+#include "stages/surface/surface_shader.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include "stages/cost/counting.h"
+#include "stages/data/half_bits.h"
+#include "stages/surface/texture_filter.h"
+
+namespace beampipe {
+namespace {
+
+template <class Real>
+std::array<Real, 2> pair_of(const glm::vec2& v) {
+  return {Real(v.x), Real(v.y)};
+}
+
+glm::vec2 vector_of(const std::array<float, 2>& v) { return {v[0], v[1]}; }
+
+VertexInputs<float> inputs_of(const SurfaceVertex& vertex) {
+  return {triple<float>(vertex.to_eye),
+          triple<float>(vertex.normal),
+          triple<float>(vertex.tangent),
+          {pair_of<float>(vertex.uvs[0]), pair_of<float>(vertex.uvs[1])},
+          {vertex.color.r, vertex.color.g, vertex.color.b, vertex.color.a}};
+}
+
+std::array<float, 2> uv_at(const std::array<VertexInputs<float>, 3>& v, std::size_t set,
+                           const Barycentrics<float>& weights) {
+  std::array<float, 2> uv;
+  for (std::size_t c = 0; c < 2; ++c)
+    uv[c] = interpolated(v[0].uvs[set][c], v[1].uvs[set][c], v[2].uvs[set][c], weights);
+  return uv;
+}
+
+// Into the triangle.
+Barycentrics<float> clamped(const Barycentrics<float>& weights) {
+  const float second = std::clamp(weights.second, 0.0f, 1.0f);
+  return {second, std::clamp(weights.third, 0.0f, 1.0f - second)};
+}
+
+const Texture& texture_of(const Material& material, TextureSlot slot) {
+  switch (slot) {
+    case TextureSlot::base:
+      return *material.base_texture;
+    case TextureSlot::metallic_roughness:
+      return *material.metallic_roughness_texture;
+    case TextureSlot::normal:
+      return *material.normal_texture;
+    default:
+      return *material.emissive_texture;
+  }
+}
+
+ColorSpace space_of(TextureSlot slot) {
+  return slot == TextureSlot::base || slot == TextureSlot::emissive ? ColorSpace::srgb : ColorSpace::linear;
+}
+
+// Light that a flat triangle reflects, by Lambert's law.
+glm::vec3 flat_color(const FlatAttributes& flat, const Lighting& lighting) {
+  if (!flat.lit) return flat.kd;
+  glm::vec3 color(0.0f);
+  for (const Light& light : lighting.lights) {
+    glm::vec3 reflected;
+    lambert(&flat.kd.x, &flat.normal.x, &light.direction.x, &reflected.x);
+    color += light.color * reflected;
+  }
+  if (!lighting.ambient) return color;
+  const Triple<float> normal = triple<float>(flat.normal);
+  for (std::size_t c = 0; c < 3; ++c)
+    color[static_cast<int>(c)] += flat.kd[static_cast<int>(c)] * ambient_light(*lighting.ambient, normal, c);
+  return color;
+}
+
+// The operations of the shader's first half, with the weights and texture coordinates that it needs. A fetch is one
+// operation; filtering is done by the texture unit.
+OperationCounts material_cost(const ShaderInputs& shader, Derivatives derivatives) {
+  return count_operations([&](OperationCounts& counts) {
+    using Real = Counted<float>;
+    const Real one(1.0f, counts);
+    const Triple<Real> vector{one, one, one};
+    VertexInputs<Real> vertex{vector, vector, vector, {}, {one, one, one, one}};
+    for (auto& uv : vertex.uvs) uv = {one, one};
+    const std::array<VertexInputs<Real>, 3> v{vertex, vertex, vertex};
+    const ScreenPlane<Real> plane{one, one, one};
+    const BarycentricPlanes<Real> planes{plane, plane, plane};
+    const Barycentrics<Real> weights = weights_at(planes, one, one);
+    bool has_slopes[2] = {false, false};
+    std::array<TexturePlace<Real>, 2> places;
+    const auto place = [&](std::uint32_t set) {
+      TexturePlace<Real>& found = places[set];
+      if (has_slopes[set]) return found;
+      has_slopes[set] = true;
+      std::array<Barycentrics<Real>, 2> slopes;
+      if (derivatives == Derivatives::analytic) slopes = weight_slopes(planes, one, one, weights);
+      for (std::size_t c = 0; c < 2; ++c) {
+        const Real &a = v[0].uvs[set][c], &b = v[1].uvs[set][c], &d = v[2].uvs[set][c];
+        found.uv[c] = interpolated(a, b, d, weights);
+        if (derivatives == Derivatives::analytic) {
+          found.dx[c] = interpolated_slope(a, b, d, slopes[0]);
+          found.dy[c] = interpolated_slope(a, b, d, slopes[1]);
+        } else {
+          found.dx[c] = found.uv[c] - one, found.dy[c] = found.uv[c] - one;
+        }
+      }
+      return found;
+    };
+    const auto fetch = [&](TextureSlot, const TexturePlace<Real>&) -> std::array<Real, 4> {
+      ++counts.fetch;
+      return {one, one, one, one};
+    };
+    const SurfacePoint<Real> point{v, weights, vector, one, vector, one};
+    material_at(shader, point, place, fetch);
+  });
+}
+
+OperationCounts light_cost(const Material& material, const Lighting& lighting) {
+  return count_operations([&](OperationCounts& counts) {
+    using Real = Counted<float>;
+    const Real one(1.0f, counts);
+    const Triple<Real> vector{one, one, one};
+    lit_color(material, SurfaceMaterial<Real>{{vector, one, one, vector, vector}, vector, one}, lighting);
+  });
+}
+
+// Lambert's law for each light. White lights are not multiplied by their colour.
+OperationCounts flat_light_cost(const Lighting& lighting) {
+  return count_operations([&](OperationCounts& counts) {
+    using Real = Counted<float>;
+    const Real one(1.0f, counts), kd[3] = {one, one, one};
+    Real color[3];
+    if (lighting.lights.empty()) lambert(kd, kd, kd, color);
+    for (const Light& light : lighting.lights) {
+      lambert(kd, kd, kd, color);
+      if (light.color == glm::vec3(1.0f)) continue;
+      for (int c = 0; c < 3; ++c) static_cast<void>(one * one);
+    }
+    const std::size_t sums = lighting.lights.empty() ? 0 : lighting.lights.size() - 1 + lighting.ambient.has_value();
+    for (std::size_t i = 0; i < 3 * sums; ++i) static_cast<void>(one + one);
+    if (!lighting.ambient) return;
+    const Triple<Real> normal{one, one, one};
+    for (std::size_t c = 0; c < 3; ++c) static_cast<void>(one * ambient_light(*lighting.ambient, normal, c));
+  });
+}
+
+std::uint64_t shader_input_bytes(const ShaderInputs& shader) {
+  const Material& material = shader.material;
+  std::uint64_t floats = shader.has_vertex_colors ? 4 : 0;
+  if (!material.unlit) floats += 3 + (shader.has_own_normal ? 0 : 3);
+  if (material.normal_texture) floats += 4;
+  bool sets[2] = {false, false};
+  for (const auto* texture : {&material.base_texture, &material.metallic_roughness_texture, &material.normal_texture,
+                              &material.emissive_texture})
+    if (*texture) sets[(*texture)->uv_set] = true;
+  floats += 2u * (sets[0] + sets[1]);
+  return kSurfaceBytes + 3 * floats * sizeof(float);
+}
+
+// Where works_ has that of a material's shader.
+std::size_t work_index(std::uint32_t material, const ShaderInputs& shader) {
+  return std::size_t{material} * 8 + shader.has_vertex_colors * 4u + shader.has_own_normal * 2u +
+         shader.has_tangents * 1u;
+}
+
+float stored(float value, float largest_code) {
+  return std::floor(std::clamp(value, 0.0f, 1.0f) * largest_code + 0.5f) / largest_code;
+}
+
+// What is left of a surface after it was written to a G-buffer and read back: base colour as sRGB and roughness in
+// RGBA8, normal and metallic in RGB10A2. (Emission is written into the colour that light is added to.)
+Reflector<float> through_gbuffer(Reflector<float> surface) {
+  for (float& component : surface.base) component = srgb_values()[srgb_code(component)];
+  surface.roughness = stored(surface.roughness, 255);
+  surface.metallic = stored(surface.metallic, 3);
+  for (float& component : surface.normal) component = stored(0.5f + 0.5f * component, 1023) * 2 - 1;
+  surface.normal = unit(surface.normal);
+  return surface;
+}
+
+void round_to_half(glm::vec3& color) {
+  for (int c = 0; c < 3; ++c) color[c] = HalfBits(color[c]);
+}
+
+}  // namespace
+
+std::vector<glm::vec3> shade_triangles(const SetupTriangles& triangles, const Lighting& lighting) {
+  std::vector<glm::vec3> colors;
+  colors.reserve(triangles.attributes.size());
+  for (const FlatAttributes& flat : triangles.attributes) colors.push_back(flat_color(flat, lighting));
+  return colors;
+}
+
+SurfaceShader::SurfaceShader(const SetupTriangles& triangles, const Trace& trace, const Frame& frame,
+                             const TextureSet* textures, const ShadingRules& rules)
+    : triangles_(triangles),
+      trace_(trace),
+      frame_(frame),
+      textures_(textures),
+      rules_(rules),
+      flat_(shade_triangles(triangles, frame.lighting)) {
+  if (rules.rounds_to_half)
+    for (glm::vec3& color : flat_) round_to_half(color);
+  flat_unlit_.input_bytes = flat_lit_.input_bytes = sizeof(FlatAttributes);
+  flat_lit_.light = flat_light_cost(frame.lighting);
+  if (is_flat()) return;
+  works_.resize(trace.materials.size() * 8);
+  for (std::uint32_t i = 0; i < triangles.surfaces.size(); ++i) {
+    if (is_flat(i)) continue;
+    const ShaderInputs shader = inputs_of(i);
+    Work& work = works_[work_index(triangles.surfaces[i].material, shader)];
+    if (work.input_bytes == 0)
+      work = {material_cost(shader, rules.derivatives), light_cost(shader.material, frame.lighting),
+              shader_input_bytes(shader)};
+  }
+}
+
+ShaderInputs SurfaceShader::inputs_of(std::uint32_t triangle) const {
+  const SetupSurface& surface = triangles_.surfaces[triangle];
+  const Mesh& mesh = trace_.meshes[frame_.draws[triangles_.draws[triangle]].mesh];
+  return {trace_.materials[surface.material], !mesh.vertex_colors.empty(), surface.has_own_normal,
+          !mesh.tangents.empty()};
+}
+
+const SurfaceShader::Work& TileShader::lit_flat() const {
+  static const SurfaceShader::Work one_light{{}, flat_light_cost({{{}}, {}}), sizeof(FlatAttributes)};
+  return shader_ ? shader_->lit_flat() : one_light;
+}
+
+const SurfaceShader::Work& SurfaceShader::material_work(std::uint32_t triangle) const {
+  return works_[work_index(triangles_.surfaces[triangle].material, inputs_of(triangle))];
+}
+
+glm::vec4 SurfaceShader::shaded(std::uint32_t triangle, const ShadingPlace& place, float width,
+                                std::vector<TexelRead>* reads) const {
+  const SetupSurface& surface = triangles_.surfaces[triangle];
+  const ShaderInputs shader = inputs_of(triangle);
+  std::array<VertexInputs<float>, 3> v;
+  for (std::size_t k = 0; k < 3; ++k) v[k] = beampipe::inputs_of(triangles_.vertices[surface.vertices[k]]);
+
+  const bool by_pixel = rules_.colors == SurfaceColors::by_pixel;
+  const auto from_anchor = [&](float px, float py) { return std::array{px - surface.anchor_x, py - surface.anchor_y}; };
+  const auto left = static_cast<float>(place.x), top = static_cast<float>(place.y);
+  const auto [x, y] = from_anchor(left + (by_pixel ? 0.5f : place.u), top + (by_pixel ? 0.5f : place.v));
+  Barycentrics<float> weights = weights_at(surface.planes, x, y);
+  if (by_pixel) weights = clamped(weights);
+
+  const auto slopes_of_triangle = [&](std::uint32_t set, TexturePlace<float>& found) {
+    const std::array<Barycentrics<float>, 2> slopes = weight_slopes(surface.planes, x, y, weights);
+    for (std::size_t c = 0; c < 2; ++c) {
+      found.dx[c] = interpolated_slope(v[0].uvs[set][c], v[1].uvs[set][c], v[2].uvs[set][c], slopes[0]);
+      found.dy[c] = interpolated_slope(v[0].uvs[set][c], v[1].uvs[set][c], v[2].uvs[set][c], slopes[1]);
+    }
+  };
+  // From the centre of a pixel to the centre of the next one in its quad.
+  const auto slopes_of_quad = [&](std::uint32_t set, TexturePlace<float>& found) {
+    const auto at_centre = [&](std::int32_t px, std::int32_t py) {
+      const auto [cx, cy] = from_anchor(static_cast<float>(px) + 0.5f, static_cast<float>(py) + 0.5f);
+      return uv_at(v, set, weights_at(surface.planes, cx, cy));
+    };
+    const std::int32_t even_x = place.x & ~1, even_y = place.y & ~1;
+    const auto from_x = at_centre(even_x, place.y), to_x = at_centre(even_x + 1, place.y);
+    const auto from_y = at_centre(place.x, even_y), to_y = at_centre(place.x, even_y + 1);
+    for (std::size_t c = 0; c < 2; ++c) found.dx[c] = to_x[c] - from_x[c], found.dy[c] = to_y[c] - from_y[c];
+  };
+  const auto texture_place = [&](std::uint32_t set) {
+    TexturePlace<float> found;
+    found.uv = uv_at(v, set, weights);
+    by_pixel || rules_.derivatives == Derivatives::analytic ? slopes_of_triangle(set, found)
+                                                            : slopes_of_quad(set, found);
+    return found;
+  };
+  const auto fetch = [&](TextureSlot slot, const TexturePlace<float>& at) -> std::array<float, 4> {
+    const Texture& texture = texture_of(shader.material, slot);
+    const ColorSpace space = space_of(slot);
+    const TextureSlopes slopes{vector_of(at.dx) * width, vector_of(at.dy) * width};
+    const auto note = [&](std::size_t level, std::uint32_t column, std::uint32_t row) {
+      if (reads) reads->push_back({texture.image, space, static_cast<std::uint32_t>(level), column, row});
+    };
+    const glm::vec4 texel = filtered(textures_->chain(texture.image, space), texture, vector_of(at.uv), slopes, note);
+    return {texel.r, texel.g, texel.b, texel.a};
+  };
+  const SurfacePoint<float> point{v,
+                                  weights,
+                                  triple<float>(triangles_.attributes[triangle].normal),
+                                  surface.turned ? -1.0f : 1.0f,
+                                  triple<float>(glm::vec3(surface.tangent)),
+                                  surface.tangent.w};
+  SurfaceMaterial<float> found = material_at(shader, point, texture_place, fetch);
+  if (rules_.storage == MaterialStorage::gbuffer && !by_pixel) found.reflector = through_gbuffer(found.reflector);
+  const Triple<float> lit = lit_color(shader.material, found, frame_.lighting);
+  glm::vec3 color(lit[0], lit[1], lit[2]);
+  if (rules_.rounds_to_half) round_to_half(color);
+  return {color, shader.material.alpha_mode == AlphaMode::opaque ? 1.0f : found.alpha};
+}
+
+}  // namespace beampipe

@@ -1,0 +1,148 @@
+// What a triangle looks like at a point of a pixel: flat triangles everywhere the same, others by their material's
+// fragment shader (stages/surface/surface_formulas.h). Every technique asks here; techniques differ in where they ask.
+#pragma once
+
+#include <cstdint>
+#include <glm/glm.hpp>
+#include <vector>
+
+#include "stages/cost/counters.h"
+#include "stages/data/setup_triangle.h"
+#include "stages/data/tile.h"
+#include "stages/surface/mip_chain.h"
+#include "stages/surface/surface_formulas.h"
+#include "traces/trace.h"
+
+namespace beampipe {
+
+// A point in a pixel of the frame.
+struct ShadingPlace {
+  std::int32_t x = 0, y = 0;  // the pixel
+  float u = 0.5f, v = 0.5f;   // in it: from its upper left corner, 0..1
+};
+
+// How a shader knows what part of a texture a pixel covers: from the planes of its own triangle, or as the difference
+// between the pixels of its 2x2 quad, which helper invocations shade.
+enum class Derivatives { analytic, quad };
+
+// Between a material and its lighting: nothing is stored, or a G-buffer with few bits.
+enum class MaterialStorage { none, gbuffer };
+
+// Where surfaces are shaded that vary. by_pixel: at the pixel's centre, or at a point of the triangle near it, whatever
+// place is asked for. All techniques then agree on a triangle's colour in a pixel, and what is left of their errors is
+// visibility.
+enum class SurfaceColors { by_place, by_pixel };
+
+// How a technique shades.
+struct ShadingRules {
+  Derivatives derivatives = Derivatives::analytic;
+  MaterialStorage storage = MaterialStorage::none;
+  bool rounds_to_half = false;  // colours are stored as fp16
+  SurfaceColors colors = SurfaceColors::by_place;
+};
+
+// A texel that was read.
+struct TexelRead {
+  std::uint32_t image;
+  ColorSpace space;
+  std::uint32_t level, x, y;
+};
+
+class SurfaceShader {
+ public:
+  // All but the rules must outlive it. `textures`: of the trace; may be null if all triangles are flat.
+  SurfaceShader(const SetupTriangles& triangles, const Trace& trace, const Frame& frame, const TextureSet* textures,
+                const ShadingRules& rules);
+
+  // Are all triangles flat?
+  bool is_flat() const { return triangles_.surfaces.empty(); }
+  bool is_flat(std::uint32_t triangle) const {
+    return is_flat() || triangles_.surfaces[triangle].material == kFlatSurface;
+  }
+
+  // Linear RGB. `width`: of the area that the colour stands for, in pixels. Appends the texels that are read to
+  // `reads`, unless it is null.
+  glm::vec3 color(std::uint32_t triangle, const ShadingPlace& place, float width = 1.0f,
+                  std::vector<TexelRead>* reads = nullptr) const {
+    if (is_flat(triangle)) return flat_[triangle];
+    return glm::vec3(shaded(triangle, place, width, reads));
+  }
+
+  // The same with alpha, which is 1 for flat triangles.
+  glm::vec4 color_and_alpha(std::uint32_t triangle, const ShadingPlace& place, float width = 1.0f,
+                            std::vector<TexelRead>* reads = nullptr) const {
+    if (is_flat(triangle)) return glm::vec4(flat_[triangle], 1.0f);
+    return shaded(triangle, place, width, reads);
+  }
+
+  // Do the triangles have the same colour everywhere?
+  bool same_color(std::uint32_t a, std::uint32_t b) const {
+    return a == b || (is_flat(a) && is_flat(b) && flat_[a] == flat_[b]);
+  }
+
+  // What an invocation costs: its operations, for the material and for light, and bytes of what it reads of the
+  // triangle and its vertices.
+  struct Work {
+    OperationCounts material, light;
+    std::uint64_t input_bytes = 0;
+  };
+  const Work& work(std::uint32_t triangle) const {
+    return is_flat(triangle) ? triangles_.attributes[triangle].lit ? flat_lit_ : flat_unlit_ : material_work(triangle);
+  }
+
+  const Work& lit_flat() const { return flat_lit_; }  // of a flat triangle that is lit
+
+  const std::vector<glm::vec3>& flat_colors() const { return flat_; }  // one per triangle; others have any value
+
+ private:
+  glm::vec4 shaded(std::uint32_t triangle, const ShadingPlace& place, float width, std::vector<TexelRead>* reads) const;
+  ShaderInputs inputs_of(std::uint32_t triangle) const;
+  const Work& material_work(std::uint32_t triangle) const;
+
+  const SetupTriangles& triangles_;
+  const Trace& trace_;
+  const Frame& frame_;
+  const TextureSet* textures_;
+  ShadingRules rules_;
+  std::vector<glm::vec3> flat_;
+  Work flat_lit_, flat_unlit_;
+  std::vector<Work> works_;  // of materials, by what their meshes have
+};
+
+// The same for the pixels of a tile, which are numbered row by row.
+class TileShader {
+ public:
+  // Both must outlive it.
+  TileShader(const SurfaceShader& shader, const Tile& tile)
+      : flat_(shader.flat_colors()), shader_(&shader), tile_(tile) {}
+
+  // Of flat triangles, which are all lit by one light. The colours must outlive it.
+  TileShader(const std::vector<glm::vec3>& flat_colors) : flat_(flat_colors) {}
+
+  bool is_flat(std::uint32_t triangle) const { return !shader_ || shader_->is_flat(triangle); }
+  bool is_flat() const { return !shader_ || shader_->is_flat(); }
+
+  // (u, v): in the pixel, from its upper left corner, 0..1.
+  glm::vec3 color(std::uint32_t triangle, std::uint32_t pixel, float u, float v, float width = 1.0f) const {
+    if (is_flat(triangle)) return flat_[triangle];
+    return shader_->color(triangle, place(pixel, u, v), width);
+  }
+  ShadingPlace place(std::uint32_t pixel, float u, float v) const {
+    const std::uint32_t row = pixel / static_cast<std::uint32_t>(tile_.width());
+    return {tile_.x0 + static_cast<std::int32_t>(pixel - row * static_cast<std::uint32_t>(tile_.width())),
+            tile_.y0 + static_cast<std::int32_t>(row), u, v};
+  }
+
+  const SurfaceShader::Work& work(std::uint32_t triangle) const { return shader_ ? shader_->work(triangle) : lit_flat(); }
+  const SurfaceShader::Work& lit_flat() const;  // of a flat triangle that is lit
+
+ private:
+  const std::vector<glm::vec3>& flat_;
+  const SurfaceShader* shader_ = nullptr;
+  Tile tile_{};
+};
+
+// Colours of flat triangles: kd, times the light that is received if they are lit.
+std::vector<glm::vec3> shade_triangles(const SetupTriangles& triangles, const Lighting& lighting);
+
+}  // namespace beampipe

@@ -1,0 +1,101 @@
+// Texture filtering as glTF's samplers prescribe it: wrap modes, nearest and bilinear filters, and mip levels.
+//
+// Texture coordinates: (0, 0) is the upper left corner of the image and (1, 1) its lower right corner.
+#pragma once
+
+#include <algorithm>
+#include <bit>
+#include <cmath>
+#include <cstdint>
+#include <glm/glm.hpp>
+
+#include "stages/surface/mip_chain.h"
+#include "traces/material.h"
+
+namespace beampipe {
+
+// How texture coordinates change per pixel, to the right and down.
+struct TextureSlopes {
+  glm::vec2 dx{0.0f}, dy{0.0f};
+};
+
+// The logarithm to base 2 of a positive normal number, within 2e-6. The C library's has other bits on other machines.
+inline float logarithm_2(float x) {
+  const auto bits = std::bit_cast<std::uint32_t>(x);
+  const auto exponent = static_cast<float>(static_cast<std::int32_t>(bits >> 23) - 127);
+  const float mantissa = std::bit_cast<float>((bits & 0x7fffffu) | 0x3f800000u);  // 1..2
+  const float s = (mantissa - 1.0f) / (mantissa + 1.0f), s2 = s * s;
+  const float series = 1.0f + s2 * (1.0f / 3 + s2 * (1.0f / 5 + s2 * (1.0f / 7 + s2 * (1.0f / 9))));
+  return exponent + 2.885390082f * s * series;  // 2 / ln 2
+}
+
+// The level of detail: the logarithm of the longer side of a pixel's footprint, in texels of level 0.
+// Source: OpenGL 4.6 core specification, section 8.14.
+inline float level_of_detail(const TextureSlopes& slopes, const MipLevel& image) {
+  const glm::vec2 size(image.width, image.height);
+  const glm::vec2 dx = slopes.dx * size, dy = slopes.dy * size;
+  const float squared = std::max(dx.x * dx.x + dx.y * dx.y, dy.x * dy.x + dy.y * dy.y);
+  constexpr float kLeast = 1e-30f, kMost = 1e30f;
+  if (!(squared > kLeast)) return -50.0f;
+  return 0.5f * logarithm_2(std::min(squared, kMost));
+}
+
+// The number of a texel, which may lie outside of the image, as a number within it.
+inline std::uint32_t wrapped(std::int64_t texel, std::uint32_t size, Wrap wrap) {
+  const std::int64_t n = size;
+  if (wrap == Wrap::clamp) return static_cast<std::uint32_t>(std::clamp<std::int64_t>(texel, 0, n - 1));
+  if (wrap == Wrap::repeat) return static_cast<std::uint32_t>((texel % n + n) % n);
+  const std::int64_t in_period = (texel % (2 * n) + 2 * n) % (2 * n);
+  return static_cast<std::uint32_t>(in_period < n ? in_period : 2 * n - 1 - in_period);
+}
+
+// A texture coordinate in texels of a level. Coordinates that are not finite, or so large that texels cannot be told
+// apart, become 0.
+inline float in_texels(float coordinate, std::uint32_t size, Wrap wrap) {
+  constexpr float kMost = 1 << 24;
+  if (!(std::abs(coordinate) < kMost)) return 0.0f;
+  if (wrap != Wrap::clamp) coordinate -= 2.0f * std::floor(0.5f * coordinate);  // the period of `mirror`
+  return std::clamp(coordinate, -1.0f, 3.0f) * static_cast<float>(size);
+}
+
+// Calls read(level, x, y) with each texel that is read.
+template <class Read>
+glm::vec4 filtered_level(const MipChain& chain, const Texture& texture, std::size_t level, const glm::vec2& uv,
+                         Filter filter, Read&& read) {
+  const MipLevel& image = chain.levels[level];
+  const float u = in_texels(uv.x, image.width, texture.wrap_u), v = in_texels(uv.y, image.height, texture.wrap_v);
+  const auto texel = [&](float x, float y) {
+    const std::uint32_t column = wrapped(static_cast<std::int64_t>(x), image.width, texture.wrap_u);
+    const std::uint32_t row = wrapped(static_cast<std::int64_t>(y), image.height, texture.wrap_v);
+    read(level, column, row);
+    return chain.texel(level, column, row);
+  };
+  if (filter == Filter::nearest) return texel(std::floor(u), std::floor(v));
+  const float left = std::floor(u - 0.5f), top = std::floor(v - 0.5f);
+  const float right_share = u - 0.5f - left, lower_share = v - 0.5f - top;
+  const glm::vec4 upper = texel(left, top) * (1.0f - right_share) + texel(left + 1, top) * right_share;
+  const glm::vec4 lower = texel(left, top + 1) * (1.0f - right_share) + texel(left + 1, top + 1) * right_share;
+  return upper * (1.0f - lower_share) + lower * lower_share;
+}
+
+// Linear RGBA. Calls read(level, x, y) with each texel that is read.
+template <class Read>
+glm::vec4 filtered(const MipChain& chain, const Texture& texture, const glm::vec2& uv, const TextureSlopes& slopes,
+                   Read&& read) {
+  const float lod = level_of_detail(slopes, chain.levels[0]);
+  if (lod <= 0) return filtered_level(chain, texture, 0, uv, texture.magnify, read);
+  const auto last = static_cast<float>(chain.levels.size() - 1);
+  if (texture.mip == MipFilter::none) return filtered_level(chain, texture, 0, uv, texture.minify, read);
+  if (texture.mip == MipFilter::nearest) {
+    const float nearest = std::min(std::ceil(lod + 0.5f) - 1, last);
+    return filtered_level(chain, texture, static_cast<std::size_t>(nearest), uv, texture.minify, read);
+  }
+  const float finer = std::floor(std::min(lod, last));
+  const glm::vec4 color = filtered_level(chain, texture, static_cast<std::size_t>(finer), uv, texture.minify, read);
+  if (finer >= last) return color;
+  const float share = lod - finer;
+  return color * (1.0f - share) +
+         filtered_level(chain, texture, static_cast<std::size_t>(finer) + 1, uv, texture.minify, read) * share;
+}
+
+}  // namespace beampipe
