@@ -176,7 +176,8 @@ FrameResult render_layers(const Trace& trace, const Frame& frame, const PaperOpt
   const BeamFragmentOptions options = fragment_options(beam, pattern, table);
   const bool sorts = beam.order == PaperOrder::near_first;
   BinPlan plan{.stages = {"conservative_raster", "beam_fragment", "shade", "compose", "resolve"},
-               .keeps_tile_size = sorts};
+               .keeps_tile_size = sorts,
+               .sorts_lists = sorts};
   if (sorts) plan.stages.push_back("bin_sort");
   return render_bins(context, plan, [&](Bin& bin) {
     const TriangleList list = sorts ? sort_bin(bin).triangles : bin.list;

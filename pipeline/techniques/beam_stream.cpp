@@ -60,6 +60,7 @@ FrameResult render_one_pass(const Trace& trace, const Frame& frame, const Stream
     ConservativeRasterUnit raster(bin, "", PairDepths::bounds, ConservativeRasterUnit::Hidden::left_out);
     BeamFragmentUnit make_fragments(bin, options);
     ShadeUnit shade(bin);
+    bin.triangle_fetches().load_setup();
     ComposeOwnersUnit<Words, Slots> compose(bin, positions, bin.list, nullptr, OpenPixels::in_memory,
                                             stream_framebuffer(stream));
 

@@ -42,6 +42,7 @@ OrderedList sort_bin(Bin& bin) {
     stage.streams(bin.list.size() * kKeyBytes);
     stage.moves_in_l2(2 * kSortPasses * entries - bin.list.size() * kKeyBytes);
   }
+  bin.triangle_fetches().read_setup(ordered.triangles, bin.stage("conservative_raster").counters);
   return ordered;
 }
 

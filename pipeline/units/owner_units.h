@@ -16,7 +16,8 @@
 
 namespace beampipe {
 
-// Sorts the bin's list near to far, with its memory traffic.
+// Sorts the bin's list near to far, with the traffic of the keys, of the sort, and of the raster stage, which reads the
+// setup triangles in that order. For a plan that sorts_lists.
 OrderedList sort_bin(Bin& bin);
 
 // Where open pixels are kept: on chip while their bin is rendered, or in the framebuffer, through its caches.
@@ -43,7 +44,7 @@ template <std::size_t Words, std::size_t Slots>
 class ComposeOwnersUnit {
  public:
   // `list`: the triangles in the order in which they are taken. `watermarks` may be null. `framebuffer`: the surfaces
-  // of open pixels in memory. All but the framebuffer must outlive the unit.
+  // of open pixels in memory. All but the framebuffer must outlive the unit. L2 holds the setup of the triangles.
   ComposeOwnersUnit(Bin& bin, const PositionSet& positions, const TriangleList& list,
                     const std::vector<float>* watermarks, OpenPixels where, const std::vector<Surface>& framebuffer)
       : bin_(bin),
@@ -55,7 +56,6 @@ class ComposeOwnersUnit {
     if (list.size() > OwnerSlot::kMostTriangles)
       throw std::runtime_error("a bin has " + std::to_string(list.size()) + " triangles, more than the " +
                                std::to_string(OwnerSlot::kMostTriangles) + " that an owner can name");
-    bin.triangle_fetches().load_setup();
   }
 
   // `first`: as in compose_owners.

@@ -299,6 +299,7 @@ class OwnerComposer {
     for (const OwnerSlot& slot : pixel.slots) {
       if (slot.is_free()) continue;
       ++work.bounds_found;
+      work.vertices_bounded += !slot.is_merged();
       const DepthBounds<float> anywhere{kInFront, kNoDepth};
       const DepthBounds<float> vertices = slot.is_merged() ? anywhere : vertex_bounds(triangle_of(slot).vertex_z);
       farthest = std::max(farthest, pair_bounds(plane_of(slot), vertices).farthest);
