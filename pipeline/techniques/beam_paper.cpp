@@ -215,8 +215,10 @@ SpecOptions paper_options(PaperOptions& o) {
   return {
       choice("mask", o.mask, {{"table", MaskSource::table}, {"exact", MaskSource::exact}},
              "masks from a 64 x 64 table, or from edge tests"),
-      choice("sort", o.sort, {{"centroid", SortKey::centroid}, {"nearest", SortKey::nearest}},
-             "the fragment's depth that the A-buffer sorts by"),
+      beside(
+          "order=sorted", [&o] { return o.order == PaperOrder::sorted; },
+          choice("sort", o.sort, {{"centroid", SortKey::centroid}, {"nearest", SortKey::nearest}},
+                 "the fragment's depth that the A-buffer sorts by")),
       choice("tiny", o.tiny_positions, {{"1", 1}, {"3", 3}}, "most mask positions that a speck is given"),
       choice("overlap", o.merge.overlap,
              {{"tiny", R::Overlap::tiny},
@@ -244,8 +246,10 @@ SpecOptions paper_options(PaperOptions& o) {
       choice("order", o.order,
              {{"sorted", PaperOrder::sorted}, {"near-first", PaperOrder::near_first}, {"stream", PaperOrder::stream}},
              "fragments are sorted in an A-buffer, come from sorted bins, or come in primitive order"),
-      choice("layers", o.layers, {{"1", 1}, {"2", 2}, {"3", 3}, {"4", 4}, {"8", 8}},
-             "without an A-buffer: aggregates that a pixel keeps")};
+      beside(
+          "order=near-first or order=stream", [&o] { return o.order != PaperOrder::sorted; },
+          choice("layers", o.layers, {{"1", 1}, {"2", 2}, {"3", 3}, {"4", 4}, {"8", 8}},
+                 "without an A-buffer: aggregates that a pixel keeps"))};
 }
 
 }  // namespace
