@@ -76,7 +76,8 @@ TechniqueKind beam_kind() {
                     choice("bin", o.bin, {{"8", 8}, {"16", 16}, {"32", 32}}, "pixels on each side of a bin")};
               },
               [](const BeamOptions& o) {
-                return Technique{.framebuffer = beam_framebuffer(), .render = bind_options(render_beam, o)};
+                return Technique{
+                    .framebuffer = beam_framebuffer(), .render = bind_options(render_beam, o), .has_weights = true};
               })};
 }
 

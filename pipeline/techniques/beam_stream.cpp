@@ -147,7 +147,9 @@ TechniqueKind beam_stream_kind() {
                            "in several passes: surfaces that a pixel keeps at once"))};
           },
           [](const StreamOptions& o) {
-            return Technique{.framebuffer = stream_framebuffer(o), .render = bind_options(render_stream, o)};
+            return Technique{.framebuffer = stream_framebuffer(o),
+                             .render = bind_options(render_stream, o),
+                             .has_weights = o.passes == 1};
           })};
 }
 

@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "pipeline/bins/bin.h"
+#include "pipeline/bins/bin_weights.h"
 #include "pipeline/memory/aggregate_memory.h"
 #include "pipeline/units/fragment_units.h"
 #include "stages/beam/compose_owners.h"
@@ -40,6 +41,9 @@ class OpenPixelStore {
   std::optional<AggregateMemory> memory_;
 };
 
+// Hands what was recorded to the frame, if it was asked for.
+void record_weights(const OwnerWeights& recorded, const TriangleList& list, BinWeights& weights);
+
 template <std::size_t Words, std::size_t Slots>
 class ComposeOwnersUnit {
  public:
@@ -49,7 +53,12 @@ class ComposeOwnersUnit {
                     const std::vector<float>* watermarks, OpenPixels where, const std::vector<Surface>& framebuffer)
       : bin_(bin),
         stage_(bin.stage("compose")),
-        owners_{bin.triangles(), list, watermarks, bin.tile, positions, bin.context.colors, bin.models_memory()},
+        weights_(bin),
+        recorded_(weights_ ? bin.tile.pixels() : 0),
+        owners_{bin.triangles(),     list,
+                watermarks,          bin.tile,
+                positions,           bin.context.colors,
+                bin.models_memory(), weights_ ? &recorded_ : nullptr},
         maps_{bin.pixel_counter("fragments"), bin.pixel_counter("merges")},
         pixels_(bin.tile.pixels()),
         store_(bin, where, sizeof pixels_[0], framebuffer) {
@@ -73,6 +82,7 @@ class ComposeOwnersUnit {
     store_.finish();
     const std::vector<PixelColor> colors = finish_owners(owners_, stage_.timed(), pixels_, result);
     finish(result, shade);
+    record_weights(recorded_, owners_.list, weights_);
     bin_.triangle_fetches().flush(stage_.counters);
     return resolve(colors, bin_.background(), kColorBytes + sizeof(std::uint16_t), bin_.stage("resolve").timed());
   }
@@ -85,6 +95,8 @@ class ComposeOwnersUnit {
 
   Bin& bin_;
   BinStage stage_;
+  BinWeights weights_;
+  OwnerWeights recorded_;
   OwnersBin owners_;
   OwnersMaps maps_;
   std::vector<OpenPixel<Words, Slots>> pixels_;

@@ -17,6 +17,7 @@
 #include <cstdint>
 #include <vector>
 
+#include "stages/beam/owner_weights.h"
 #include "stages/cost/counters.h"
 #include "stages/data/closed_depth.h"
 #include "stages/data/fragment.h"
@@ -38,6 +39,7 @@ struct OwnersBin {
   const PositionSet& positions;
   const std::vector<glm::vec3>& colors;  // what the shader returns, one per triangle
   bool lists_fetches;                    // fill OwnersResult::fetched
+  OwnerWeights* weights = nullptr;       // where the triangles' weights are recorded; null: nowhere
 };
 
 // What was done, beside what is charged.
