@@ -227,6 +227,8 @@ SpecOptions paper_options(PaperOptions& o) {
               {"transition", R::Overlap::transition}},
              "how coverages combine where masks overlap: ADD for specks and OVER for others, OVER, ADD, or a "
              "transition from ADD to OVER"),
+      choice("regional", o.merge.regional, {{"local", R::Regional::local}, {"area", R::Regional::area}},
+             "the coverage of an overlapping region is normalized by the region's positions, or is its area"),
       choice("local", o.merge.local, {{"clamp", R::Local::clamp}, {"keep", R::Local::keep}},
              "a local coverage above 1 is clamped to 1, or kept"),
       choice("fuzzy", o.merge.fuzzy, {{"delta", R::Fuzzy::delta}, {"mix", R::Fuzzy::mix}},

@@ -354,8 +354,12 @@ class OwnerComposer {
     Estimate<float> analytic{pixel.area, {}}, counted{count / kPositions, {}};
     for (std::size_t c = 0; c < 3; ++c) analytic.color[c] = pixel.colors[c], counted.color[c] = pixel.colors[c + 3];
     const Estimate<float> result = limited_estimate(analytic, counted, kPositions);
-    if (bin_.weights) bin_.weights->finish(index_, analytic, counted, result);
-    return {result.area, {result.color[0], result.color[1], result.color[2]}};
+    if (bin_.weights) bin_.weights->finish(index_, color_of(analytic), color_of(counted), color_of(result));
+    return color_of(result);
+  }
+
+  static PixelColor color_of(const Estimate<float>& estimate) {
+    return {estimate.area, {estimate.color[0], estimate.color[1], estimate.color[2]}};
   }
 
   static constexpr float kLeastArea = 1e-3f;  // positions; keeps the weights of a mean positive

@@ -17,11 +17,11 @@
 #include <cstdint>
 #include <vector>
 
-#include "stages/beam/owner_weights.h"
 #include "stages/cost/counters.h"
 #include "stages/data/closed_depth.h"
 #include "stages/data/fragment.h"
 #include "stages/data/open_pixel.h"
+#include "stages/data/owner_weights.h"
 #include "stages/data/pixel_formats.h"
 #include "stages/data/position_set.h"
 #include "stages/data/setup_triangle.h"

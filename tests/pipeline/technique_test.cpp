@@ -63,7 +63,7 @@ TEST(Technique, WrongSpecsSayWhatWouldBeRight) {
   const std::string taa_rates = "N of taa:N must be 1, 2, 4, 8 or 16";
   const std::string of_beam = "; it has bits, slots, bin, order and rules";
   const std::string of_paper =
-      "; it has mask, sort, tiny, overlap, local, fuzzy, extents, slab, plane, thickness, storage, order, "
+      "; it has mask, sort, tiny, overlap, regional, local, fuzzy, extents, slab, plane, thickness, storage, order, "
       "layers and rules";
   const std::string of_dvm = "; it has blend, seed and material";
   for (const auto& [spec, error] : std::map<std::string, std::string>{
@@ -122,6 +122,7 @@ TEST(Technique, WrongSpecsSayWhatWouldBeRight) {
            {"beam:rules=paper,mask=fast", "mask must be table or exact"},
            {"beam:rules=paper,tiny=2", "tiny must be 1 or 3"},
            {"beam:rules=paper,overlap=none", "overlap must be tiny, over, add or transition"},
+           {"beam:rules=paper,regional=global", "regional must be local or area"},
            {"beam:rules=paper,slab=visible,slab=full", "'slab' is there twice"},
            {"z3:layers=3", "z3 has no option 'layers'; it has shape and merge"},
            {"z3:shape=64x3", "shape must be 32x2, 32x3 or 128x3"},

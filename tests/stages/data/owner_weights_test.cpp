@@ -1,5 +1,5 @@
 // The weights of triangles against the pixels that compose_owners returns.
-#include "stages/beam/owner_weights.h"
+#include "stages/data/owner_weights.h"
 
 #include <gtest/gtest.h>
 

@@ -7,8 +7,8 @@
 #include <cstdint>
 #include <vector>
 
-#include "stages/beam/owner_formulas.h"
 #include "stages/data/open_pixel.h"
+#include "stages/data/pixel_formats.h"
 
 namespace beampipe {
 
@@ -37,11 +37,10 @@ class OwnerWeights {
   // A speck adds this to the pixel's analytic area.
   void add_speck(std::size_t pixel, std::uint32_t number, float area);
 
-  // All owners of the pixel are final; `result` is limited_estimate of the other two. The weights add up to its area.
-  // They are a mixture of both estimates: the one whose colour is closest to that of the result. It is the same if the
-  // channels are limited by the same factor.
-  void finish(std::size_t pixel, const Estimate<float>& analytic, const Estimate<float>& counted,
-              const Estimate<float>& result);
+  // All owners of the pixel are final. `analytic`, `counted`: the two estimates of it; `result`: what became of them.
+  // The weights add up to the result's area. They are a mixture of both estimates: the one whose colour is closest to
+  // that of the result. It is the same if the channels are limited by the same factor.
+  void finish(std::size_t pixel, const PixelColor& analytic, const PixelColor& counted, const PixelColor& result);
 
   // The same for a pixel that one triangle has for itself.
   void finish_whole(std::size_t pixel, std::uint32_t number);

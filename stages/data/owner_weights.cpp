@@ -1,4 +1,4 @@
-#include "stages/beam/owner_weights.h"
+#include "stages/data/owner_weights.h"
 
 #include <algorithm>
 
@@ -29,22 +29,22 @@ void OwnerWeights::add_speck(std::size_t pixel, std::uint32_t number, float area
   pixels_[pixel].finals.push_back({number, area, 0, true, false});
 }
 
-void OwnerWeights::finish(std::size_t pixel, const Estimate<float>& analytic, const Estimate<float>& counted,
-                          const Estimate<float>& result) {
+void OwnerWeights::finish(std::size_t pixel, const PixelColor& analytic, const PixelColor& counted,
+                          const PixelColor& result) {
   Pixel& of = pixels_[pixel];
   double area = 0, count = 0;
   for (const Final& each : of.finals) area += each.area, count += each.counted;
   // How far from the mean colour of the analytic estimate to that of the counted one, by least squares.
   double along = 0, length = 0;
   for (int c = 0; c < 3 && count > 0; ++c) {
-    const double from = double{analytic.color[c]} / analytic.area, to = double{counted.color[c]} / counted.area;
-    along += (to - from) * (double{result.color[c]} / result.area - from);
+    const double from = double{analytic.color[c]} / analytic.alpha, to = double{counted.color[c]} / counted.alpha;
+    along += (to - from) * (double{result.color[c]} / result.alpha - from);
     length += (to - from) * (to - from);
   }
   const double part = length > 0 ? std::clamp(along / length, 0.0, 1.0) : 0.0;
   for (const Final& each : of.finals) {
     const double analytic_part = each.area / area, counted_part = count > 0 ? each.counted / count : 0.0;
-    const double weight = result.area * ((1 - part) * analytic_part + part * counted_part);
+    const double weight = result.alpha * ((1 - part) * analytic_part + part * counted_part);
     of.weights.push_back({each.number, static_cast<float>(weight), each.speck, each.merged});
   }
   of.owners.clear();
