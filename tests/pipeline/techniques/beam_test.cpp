@@ -159,6 +159,20 @@ TEST(Beam, PicturesAreNearTheReference) {
   EXPECT_LT(rmse(picture("beam:order=stream", trace), reference), rmse(picture("msaa:64", trace), reference));
 }
 
+// The raster stage reads setup triangles of 88 bytes in the order in which it takes them. Three triangles, of which the
+// last one in the trace comes second, are 11 sectors, as in GeometryMemory.SortedSetupIsReadInTheOrderInWhichItIsTaken;
+// in the order of the trace they are 9. The list of 12 bytes is written and read.
+TEST(Beam, SetupIsReadFromNearToFar) {
+  for (const bool in_order : {true, false}) {
+    std::vector<PixelSpaceTriangle> triangles;
+    for (const double z : {0.2, in_order ? 0.4 : 0.6, in_order ? 0.6 : 0.4})
+      triangles.push_back({{{1, 1, z}, {7, 1, z}, {1, 7, z}}, glm::vec3(1)});
+    const StageCounters raster = stage_of(render("beam", pixel_trace(8, 8, triangles)), "conservative_raster");
+    EXPECT_EQ(raster.sector_bytes, (in_order ? 9u : 11u) * 32 + 2 * 32);
+    EXPECT_EQ(raster.dram_bytes, 9u * 32 + 2 * 32);
+  }
+}
+
 // Every triangle is set up and binned once, and every pair makes at most one fragment, which is composed once. Nothing
 // reads the setup triangles of a frame twice.
 TEST(Beam, TakesOnePassOverTheGeometry) {
