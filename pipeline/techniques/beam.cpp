@@ -29,14 +29,15 @@ FrameResult render_shape(const Trace& trace, const Frame& frame, const BeamOptio
   const BeamFragmentOptions options = grid_options(grid, owners_fragment_bytes(Words));
   const BinPlan plan{.stages = {"conservative_raster", "bin_sort", "beam_fragment", "compose", "shade", "resolve"},
                      .tile_size = beam.bin,
-                     .keeps_tile_size = true};
+                     .keeps_tile_size = true,
+                     .sorts_lists = true};
   return render_bins(context, plan, [&](Bin& bin) {
     const OrderedList ordered = sort_bin(bin);
     ConservativeRasterUnit raster(bin, "", PairDepths::bounds, ConservativeRasterUnit::Hidden::left_out);
     BeamFragmentUnit make_fragments(bin, options);
     ShadeUnit shade(bin);
-    ComposeOwnersUnit<Words, Slots> compose(bin, positions, ordered.triangles, &ordered.watermarks,
-                                            OpenPixels::on_chip, {});
+    ComposeOwnersUnit<Words, Slots> compose(bin, positions, ordered.triangles, &ordered.watermarks, OpenPixels::on_chip,
+                                            {});
 
     raster.queued(ordered.triangles, [&](const std::vector<Pair>& pairs, std::size_t first) {
       compose(make_fragments.queued(pairs), first, raster.closed(), shade);
@@ -75,7 +76,8 @@ TechniqueKind beam_kind() {
                     choice("bin", o.bin, {{"8", 8}, {"16", 16}, {"32", 32}}, "pixels on each side of a bin")};
               },
               [](const BeamOptions& o) {
-                return Technique{.framebuffer = beam_framebuffer(), .render = bind_options(render_beam, o)};
+                return Technique{
+                    .framebuffer = beam_framebuffer(), .render = bind_options(render_beam, o), .has_weights = true};
               })};
 }
 

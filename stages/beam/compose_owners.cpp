@@ -33,7 +33,7 @@ class OwnerComposer {
     y_ = bin_.tile.y0 + static_cast<std::int32_t>(row);
     if (closed.is_hidden(x_, y_, fragment.z_min)) return Outcome::hidden;
     if (fragment.mask.none()) {
-      add_speck(fragment, pixel);
+      add_speck(fragment, number, pixel);
       return Outcome::composed;
     }
     ++work.masks;
@@ -69,11 +69,14 @@ class OwnerComposer {
     return merged ? Outcome::merged : Outcome::composed;
   }
 
-  // All owners are final. `index`: of the pixel in the tile. Returns the pixel's colour.
-  PixelColor finish(Pixel& pixel, std::uint32_t index) {
+  // All owners are final. `index`: of the pixel in the tile. Returns its colour.
+  PixelColor finish(std::uint32_t index, Pixel& pixel) {
     ++work.finished;
     pixel_ = index;
-    if (const OwnerSlot* slot = only_owner(pixel)) return {1.0f, color_of(*slot)};
+    if (const OwnerSlot* slot = only_owner(pixel)) {
+      if (bin_.weights) bin_.weights->finish_whole(pixel_, slot->triangle());
+      return {1.0f, color_of(*slot)};
+    }
     std::size_t count = 0;
     for (std::size_t k = 0; k < Slots; ++k)
       if (!pixel.slots[k].is_free()) list_owner(pixel, k, owners_[count++]);
@@ -241,6 +244,8 @@ class OwnerComposer {
     const float part = counted ? one.visible : std::max(one.visible + error_of_one, kLeastArea);
     const float other_part = counted ? other.visible : std::max(other.visible + error_of_other, kLeastArea);
     const glm::vec3 color = (part * color_of(one.slot) + other_part * color_of(other.slot)) * (1 / (part + other_part));
+    if (bin_.weights)
+      bin_.weights->merge(pixel_, {one.slot, one.index}, {other.slot, other.index}, part / (part + other_part));
     put(one.owned | other.owned, Pixel::owned_by(one.index), pixel);
     const std::uint32_t contents = one.slot.content() + 3 * other.slot.content();
     pixel.slots[one.index].set_merged(larger.slot.triangle(), error_of_one + error_of_other, color,
@@ -274,6 +279,7 @@ class OwnerComposer {
           visible_area(exact, owner->covered(), owner->visible, kPositions, Taken<float>{pixel.area, final_positions});
       const glm::vec3 color = color_of(owner->slot);
       const float counted = owner->visible / kPositions;
+      if (bin_.weights) bin_.weights->settle(pixel_, {owner->slot, owner->index}, area, counted);
       final_positions += owner->visible;
       const float threshold = rounding_threshold(owner->slot.content());
       pixel.area.add(area, threshold);
@@ -302,6 +308,7 @@ class OwnerComposer {
     for (const OwnerSlot& slot : pixel.slots) {
       if (slot.is_free()) continue;
       ++work.bounds_found;
+      work.vertices_bounded += !slot.is_merged();
       const DepthBounds<float> anywhere{kInFront, kNoDepth};
       const DepthBounds<float> vertices = slot.is_merged() ? anywhere : vertex_bounds(triangle_of(slot).vertex_z);
       farthest = std::max(farthest, pair_bounds(plane_of(slot), vertices).farthest);
@@ -312,7 +319,7 @@ class OwnerComposer {
   // Each of the three positions nearest to a speck votes for it, if it is free or its owner is not nearer. Of specks
   // that face towards the viewer and specks that face away, those with the smaller area are the hidden sides of thin
   // bodies.
-  void add_speck(const Fragment& fragment, Pixel& pixel) {
+  void add_speck(const Fragment& fragment, std::uint32_t number, Pixel& pixel) {
     ++work.specks;
     float votes = 0;
     for (const std::uint8_t position : bin_.positions.nearest_to(fragment.centroid_u, fragment.centroid_v)) {
@@ -329,6 +336,7 @@ class OwnerComposer {
     const float area = lesser(greater(same, opposite) - before, 1.0f - pixel.area);
     if (area <= 0) return;
     ++work.specks_added;
+    if (bin_.weights) bin_.weights->add_speck(pixel_, number, area);
     const glm::vec3 color = area * shade(fragment.triangle, fragment.centroid_u, fragment.centroid_v);
     pixel.area.add(area, threshold);
     pixel.colors.add({color[0], color[1], color[2], 0, 0, 0}, threshold);
@@ -347,7 +355,12 @@ class OwnerComposer {
     Estimate<float> analytic{pixel.area, {}}, counted{count / kPositions, {}};
     for (std::size_t c = 0; c < 3; ++c) analytic.color[c] = pixel.colors[c], counted.color[c] = pixel.colors[c + 3];
     const Estimate<float> result = limited_estimate(analytic, counted, kPositions);
-    return {result.area, {result.color[0], result.color[1], result.color[2]}};
+    if (bin_.weights) bin_.weights->finish(pixel_, color_of(analytic), color_of(counted), color_of(result));
+    return color_of(result);
+  }
+
+  static PixelColor color_of(const Estimate<float>& estimate) {
+    return {estimate.area, {estimate.color[0], estimate.color[1], estimate.color[2]}};
   }
 
   static constexpr float kLeastArea = 1e-3f;  // positions; keeps the weights of a mean positive
@@ -383,7 +396,7 @@ std::vector<PixelColor> finish_owners(const OwnersBin& bin, StageCounters& count
                                       std::vector<OpenPixel<Words, Slots>>& pixels, OwnersResult& result) {
   OwnerComposer<Words, Slots> composer(bin, result);
   std::vector<PixelColor> colors(pixels.size());
-  for (std::uint32_t i = 0; i < pixels.size(); ++i) colors[i] = composer.finish(pixels[i], i);
+  for (std::uint32_t i = 0; i < pixels.size(); ++i) colors[i] = composer.finish(i, pixels[i]);
   charge<Words, Slots>(composer.work, counters);
   return colors;
 }
