@@ -156,7 +156,8 @@ std::map<std::string, std::vector<float>> error_causes(const Trace& trace, const
     const Tile& tile = bin.tile;
     StageCounters unused;
     ReferenceTile truth(tile);
-    reference_raster(context.triangles, bin.list, tile, unused, truth);
+    const TileShader shader = bin.shader();
+    reference_raster(context.triangles, bin.list, tile, unused, truth, &shader);
     std::vector<Pair> pairs;
     std::vector<Fragment> fragments;
     conservative_raster(context.triangles, bin.list, tile, unused, pairs);

@@ -27,6 +27,19 @@ std::vector<OrderedTriangle> triangles_of(const Trace& trace, const Frame& frame
   return triangles;
 }
 
+template <class Value>
+void copy_value(const std::vector<Value>& from, std::size_t i, std::vector<Value>& to) {
+  if (!from.empty()) to.push_back(from[i]);
+}
+
+void copy_vertex(const Mesh& from, std::uint32_t i, Mesh& to) {
+  to.positions.push_back(from.positions[i]);
+  copy_value(from.normals, i, to.normals);
+  copy_value(from.tangents, i, to.tangents);
+  for (int set = 0; set < 2; ++set) copy_value(from.uvs[set], i, to.uvs[set]);
+  copy_value(from.vertex_colors, i, to.vertex_colors);
+}
+
 void put_in_order(std::vector<OrderedTriangle>& triangles, TriangleOrder order, std::uint64_t seed) {
   switch (order) {
     case TriangleOrder::given:
@@ -55,6 +68,8 @@ Trace with_triangle_order(const Trace& trace, std::size_t frame_index, TriangleO
   std::vector<OrderedTriangle> triangles = triangles_of(trace, frame);
   put_in_order(triangles, order, seed);
   Trace ordered;
+  ordered.images = trace.images;
+  ordered.materials = trace.materials;
   ordered.frames.push_back(frame);
   std::vector<Draw>& draws = ordered.frames.front().draws;
   draws.clear();
@@ -68,9 +83,11 @@ Trace with_triangle_order(const Trace& trace, std::size_t frame_index, TriangleO
     }
     Mesh& to = ordered.meshes.back();
     const auto first = static_cast<std::uint32_t>(to.positions.size());
-    for (int k = 0; k < 3; ++k) to.positions.push_back(from.positions[from.triangles[triangles[i].triangle][k]]);
+    const std::uint32_t triangle = triangles[i].triangle;
+    for (int k = 0; k < 3; ++k) copy_vertex(from, from.triangles[triangle][k], to);
     to.triangles.emplace_back(first, first + 1, first + 2);
-    to.colors.push_back(from.colors[triangles[i].triangle]);
+    to.colors.push_back(from.colors[triangle]);
+    copy_value(from.materials, triangle, to.materials);
   }
   return ordered;
 }

@@ -23,6 +23,11 @@ FrameContext::FrameContext(const Trace& trace, const Frame& rendered, const RunO
              run.textures   ? run.textures
              : own_textures ? &*own_textures
                             : nullptr,
-             with_colors(rules, run.colors)) {}
+             with_colors(rules, run.colors)) {
+  for (std::uint32_t i = 0; i < triangles.surfaces.size(); ++i) {
+    if (triangles.is_opaque(i)) continue;
+    (shader.is_cutout(i) ? has_cutouts_ : has_blending_) = true;
+  }
+}
 
 }  // namespace beampipe

@@ -23,6 +23,14 @@ struct FrameContext {
   FrameContext(const Trace& trace, const Frame& frame, const RunOptions& run, const ShadingRules& rules = {});
   FrameContext(const FrameContext&) = delete;
   FrameContext& operator=(const FrameContext&) = delete;
+
+  // Does a triangle let through what lies behind it, somewhere?
+  bool has_alpha() const { return has_cutouts_ || has_blending_; }
+  bool has_cutouts() const { return has_cutouts_; }
+  bool has_blending() const { return has_blending_; }
+
+ private:
+  bool has_cutouts_ = false, has_blending_ = false;
 };
 
 }  // namespace beampipe

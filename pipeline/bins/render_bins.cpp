@@ -17,6 +17,24 @@ TileGrid tile_grid(const FrameContext& context, int tile_size) {
   return {context.frame, context.run.tile_size > 0 ? context.run.tile_size : tile_size};
 }
 
+// Of planes and vertices of triangles with materials.
+std::uint64_t surface_bytes(const FrameContext& context) {
+  return context.setup.bytes_written -
+         context.triangles.triangles.size() * (sizeof(SetupTriangle) + sizeof(FlatAttributes));
+}
+
+// The stages of a bin. Frames with cutouts or translucent triangles have a few more.
+std::vector<std::string> stages_of(const FrameContext& context, const BinPlan& plan) {
+  std::vector<std::string> stages;
+  for (const std::string& stage : plan.stages) {
+    stages.push_back(stage);
+    if (stage == "beam_fragment" && context.has_alpha()) stages.push_back("alpha_mask");
+    if (stage == "sample_raster" && context.has_cutouts()) stages.push_back("alpha_test");
+    if (stage == "depth_test" && plan.blends && context.has_blending()) stages.push_back("blend");
+  }
+  return stages;
+}
+
 // What one pass over the geometry costs, whatever the technique.
 struct GeometryPass {
   StageCounters setup, raster;
@@ -24,6 +42,7 @@ struct GeometryPass {
   explicit GeometryPass(const FrameContext& context) : setup(context.setup) {
     const std::uint64_t triangles = context.setup.items_out;
     move_setup(context.run.memory, context.setup.bytes_read, context.triangles.triangles.size(), setup);
+    stream(context.run.memory, surface_bytes(context), setup);
     raster.items_in = triangles;
     raster.bytes_read = triangles * sizeof(SetupTriangle);
   }
@@ -42,11 +61,11 @@ struct GeometryPass {
 // Adds up what bins recorded. Only sums and the picture are kept, so that memory use stays that of the picture.
 class FrameRecorder {
  public:
-  FrameRecorder(const FrameContext& context, const BinPlan& plan) : context_(context) {
+  FrameRecorder(const FrameContext& context, const std::vector<std::string>& stages) : context_(context) {
     const Frame& frame = context.frame;
     result_.image = {frame.width, frame.height, std::vector<float>(4 * pixels())};
     result_.stages.push_back(StageCounters{context.setup.stage});
-    for (const std::string& name : plan.stages) result_.stages.push_back(StageCounters{name});
+    for (const std::string& name : stages) result_.stages.push_back(StageCounters{name});
   }
 
   // Thread-safe.
@@ -80,8 +99,9 @@ class FrameRecorder {
       raster += pass.raster;
     }
     const std::uint64_t triangles = context_.triangles.triangles.size();
-    result_.buffers = {{"setup_triangles", triangles * (sizeof(SetupTriangle) + sizeof(FlatAttributes))},
-                       {"bin_lists", list_bytes}};
+    result_.buffers = {
+        {"setup_triangles", triangles * (sizeof(SetupTriangle) + sizeof(FlatAttributes)) + surface_bytes(context_)},
+        {"bin_lists", list_bytes}};
     for (const auto& [name, bytes] : buffer_peaks_) result_.buffers.push_back({name, bytes, true});
     return std::move(result_);
   }
@@ -112,7 +132,8 @@ FrameResult render_bins(const FrameContext& context, const BinPlan& plan, const 
       plan.keeps_tile_size ? TileGrid{context.frame, plan.tile_size} : tile_grid(context, plan.tile_size);
   if (run.weights) run.weights->assign(std::size_t{context.frame.width} * context.frame.height, {});
   GeometryPass pass(context);
-  FrameRecorder recorder(context, plan);
+  const std::vector<std::string> stages = stages_of(context, plan);
+  FrameRecorder recorder(context, stages);
   const std::uint64_t entry_bytes = sizeof(std::uint32_t) + (plan.sorts_lists ? kKeyBytes : 0);
   std::uint64_t list_bytes = 0;
   const auto render_band = [&](const Band& band) {
@@ -122,7 +143,7 @@ FrameResult render_bins(const FrameContext& context, const BinPlan& plan, const 
       pass.add_list(run.memory, list, plan.sorts_lists);
     }
     tbb::parallel_for(std::size_t{0}, lists.size(), [&](std::size_t i) {
-      Bin bin(context, grid.tiles[band.first + i], lists[i], plan.stages);
+      Bin bin(context, grid.tiles[band.first + i], lists[i], stages);
       render(bin);
       recorder.add(bin);
     });

@@ -58,6 +58,15 @@ void SampleMemory::replay(const std::vector<SampleAccess>& accesses, bool write_
   }
 }
 
+void SampleMemory::blend(const std::vector<SampleAccess>& accesses, StageCounters& counters) {
+  if (!modelled_) return;
+  for (const SampleAccess& access : accesses) {
+    const std::uint32_t element = cell_place_[access.cell];
+    depth_.access(access.triangle, element, access.tested, 0, counters);
+    if (color_) color_->access(access.triangle, element, access.passed, access.passed, counters);
+  }
+}
+
 void SampleMemory::flush(StageCounters& counters) {
   depth_.flush(counters);
   if (color_) color_->flush(counters);

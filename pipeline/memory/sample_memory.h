@@ -31,6 +31,9 @@ class SampleMemory {
     replay(accesses, false, true, counters);
   }
 
+  // Reads the colours of samples that pass, and writes them again.
+  void blend(const std::vector<SampleAccess>& accesses, StageCounters& counters);
+
   SampleMemory(const SampleMemory&) = delete;
   SampleMemory& operator=(const SampleMemory&) = delete;
 

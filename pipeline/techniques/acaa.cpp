@@ -41,12 +41,12 @@ FrameResult render_acaa(const Trace& trace, const Frame& frame, const AcaaOption
 
     for (const Sampling& sampling : rounds) {
       DepthTestUnit depth_test(bin, sampling, 0);
-      raster.pass(sampling, [&](const auto& fragments) { depth_test.test(fragments); });
+      raster.pass(sampling, ShadeAt::centroid, [&](const auto& fragments) { depth_test.test(fragments); });
       depth_test.end_pass();
       if (accumulate.blends_background()) depth_test.read_depths(accumulate.stage);
       accumulate.start_round(sampling, depth_test.surface());
       shade.start_pass();
-      raster.pass(sampling, [&](std::vector<SampleFragment>& fragments) {
+      raster.pass(sampling, ShadeAt::centroid, [&](std::vector<SampleFragment>& fragments) {
         depth_test.test_equal(fragments);
         accumulate.test_stencil(fragments);
         shade(fragments);

@@ -19,9 +19,9 @@ FrameResult render_deferred(const Trace& trace, const Frame& frame, const RunOpt
     DepthTestUnit depth_test(bin, sampling, 0);
     GBufferUnit gbuffer(bin);
 
-    raster.pass(sampling, [&](const auto& fragments) { depth_test.test(fragments); });
+    raster.pass(sampling, ShadeAt::sample, [&](const auto& fragments) { depth_test.test(fragments); });
     depth_test.end_pass();
-    raster.pass(sampling, [&](std::vector<SampleFragment>& fragments) {
+    raster.pass(sampling, ShadeAt::sample, [&](std::vector<SampleFragment>& fragments) {
       depth_test.test_equal(fragments);
       gbuffer.write_fragments(fragments, depth_test.accesses());
     });

@@ -26,20 +26,22 @@ FrameResult render_msaa(const Trace& trace, const Frame& frame, const MsaaOption
       options.prepass ? DepthTestUnit::FirstPass::writes_depth_alone : DepthTestUnit::FirstPass::writes_color;
   const auto same_color = [&](std::uint32_t a, std::uint32_t b) { return context.shader.same_color(a, b); };
   const BinPlan plan{.stages = {"sample_raster", "shade", "depth_test", "resolve"},
+                     .blends = true,
                      .tile_size = bin_size(options.samples)};
   return render_bins(context, plan, [&](Bin& bin) {
-    SampleRasterUnit raster(bin);
+    SampleRasterUnit raster(bin, SampleRasterUnit::Translucent::drawn, options.alpha);
     SampleShadeUnit shade(bin, sampling, options.at);
     DepthTestUnit depth_test(bin, sampling, color_bytes(options), first_pass, same_color);
+    depth_test.shade_translucent_at(options.at);
 
-    raster.pass(sampling, [&](std::vector<SampleFragment>& fragments) {
+    raster.pass(sampling, options.at, [&](std::vector<SampleFragment>& fragments) {
       if (!options.prepass) shade(fragments);
       depth_test.test(fragments);
     });
     depth_test.end_pass();
     if (options.prepass) {  // shades and writes what is visible; the surface already knows which triangles are
       depth_test.add_color(color_bytes(options));
-      raster.pass(sampling, [&](std::vector<SampleFragment>& fragments) {
+      raster.pass(sampling, options.at, [&](std::vector<SampleFragment>& fragments) {
         depth_test.test_equal(fragments);
         shade(fragments);
       });
@@ -69,6 +71,8 @@ TechniqueKind msaa_kind() {
                 choice("at", o.at, {{"centre", ShadeAt::centre}, {"centroid", ShadeAt::centroid}},
                        "where a fragment is shaded that does not cover the pixel's centre: there all the same, or at "
                        "the centroid of its samples"),
+                choice("alpha", o.alpha, {{"test", AlphaCoverage::test}, {"coverage", AlphaCoverage::to_coverage}},
+                       "of cutouts: tested once per fragment, or the part of its samples that it takes"),
                 flag("prepass", o.prepass,
                      "depth first, so that only visible fragments are shaded; the picture is the same")};
           },

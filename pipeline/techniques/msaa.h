@@ -7,6 +7,7 @@
 
 #include "pipeline/sampling.h"
 #include "pipeline/technique.h"
+#include "stages/samples/alpha_test.h"
 #include "stages/samples/shading_point.h"
 
 namespace beampipe {
@@ -17,6 +18,7 @@ struct MsaaOptions {
   int samples = 1;
   bool rgba = false;  // fp16 RGBA samples instead of RGB: 12 bytes per sample with depth, as in the ACAA talk
   ShadeAt at = ShadeAt::centre;
+  AlphaCoverage alpha = AlphaCoverage::test;
   bool prepass = false;  // a depth pass first, so that only visible fragments are shaded. The picture is the same.
 };
 

@@ -25,9 +25,10 @@ FrameResult render_reference(const Trace& trace, const Frame& frame, const RunOp
       resolving.counters.bytes_written = bin.tile.pixels() * sizeof(glm::vec4);
       return bin.finish(std::vector(bin.tile.pixels(), glm::vec4(frame.background, 0)));
     }
+    const TileShader shader = bin.shader();
     ReferenceTile samples(bin.tile);
-    reference_raster(context.triangles, bin.list, bin.tile, bin.stage("reference_raster").timed(), samples);
-    bin.finish(resolve(samples, bin.tile, bin.shader(), frame.background, resolving.timed()));
+    reference_raster(context.triangles, bin.list, bin.tile, bin.stage("reference_raster").timed(), samples, &shader);
+    bin.finish(resolve(samples, bin.tile, shader, frame.background, resolving.timed()));
   });
 }
 

@@ -32,7 +32,7 @@ TechniqueKind visibility_kind() {
 }
 
 void draw_visibility(Bin& bin, const Sampling& sampling, DepthTestUnit& visibility) {
-  SampleRasterUnit(bin).pass(sampling, [&](const auto& fragments) { visibility.test(fragments); });
+  SampleRasterUnit(bin).pass(sampling, ShadeAt::sample, [&](const auto& fragments) { visibility.test(fragments); });
   visibility.end_pass();
   visibility.count_bytes();
 }

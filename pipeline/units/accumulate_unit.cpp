@@ -30,12 +30,9 @@ void AccumulateUnit::test_stencil(std::vector<SampleFragment>& fragments) {
 }
 
 void AccumulateUnit::operator()(const std::vector<SampleFragment>& fragments, const Sampling& sampling) {
-  std::vector<glm::vec2> at;
-  if (!bin_.context.shader.is_flat()) {
-    const SamplePlaces places(bin_, sampling, ShadeAt::centroid);
-    for (const SampleFragment& fragment : fragments) at.push_back(places.of(fragment));
-  }
-  accumulate(fragments, bin_.shader(), at, bin_.tile, stage.timed(), accumulator_);
+  std::vector<glm::vec2> places;
+  if (!bin_.context.shader.is_flat()) places = SamplePlaces(bin_, sampling, ShadeAt::centroid).of(fragments);
+  accumulate(fragments, bin_.shader(), places, bin_.tile, stage.timed(), accumulator_);
   for (const SampleFragment& fragment : fragments)
     blend(fragment.triangle, static_cast<std::uint32_t>(bin_.tile.index(fragment.x, fragment.y)));
 }

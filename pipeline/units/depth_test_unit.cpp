@@ -1,7 +1,11 @@
 #include "pipeline/units/depth_test_unit.h"
 
+#include <algorithm>
+#include <bit>
+
 #include "pipeline/units/sample_places.h"
 #include "stages/picture/resolve.h"
+#include "stages/samples/blend.h"
 
 namespace beampipe {
 
@@ -14,16 +18,62 @@ DepthTestUnit::DepthTestUnit(Bin& bin, const Sampling& sampling, std::uint32_t f
       memory_(bin.memory(), bin.tile, sampling, color_bytes, std::move(same_color)),
       fragments_(bin.pixel_counter("fragments")) {}
 
+void DepthTestUnit::shade_translucent_at(ShadeAt at) {
+  translucent_at_ = at;
+  if (bin_.context.has_blending()) surface_.over.assign(surface_.triangle.size(), glm::vec4(0.0f));
+}
+
+bool DepthTestUnit::hides(const SampleFragment& fragment) const {
+  return bin_.triangles().is_opaque(fragment.triangle) || bin_.context.shader.is_cutout(fragment.triangle);
+}
+
 void DepthTestUnit::test(const std::vector<SampleFragment>& fragments) {
+  if (surface_.over.empty()) return test_opaque(fragments);
+  for (auto first = fragments.begin(), end = first; first != fragments.end(); first = end) {
+    const bool opaque = hides(*first);
+    while (end != fragments.end() && hides(*end) == opaque) ++end;
+    const std::vector<SampleFragment> run(first, end);
+    if (opaque) {
+      test_opaque(run);
+    } else if (surface_.color_bytes > 0) {
+      blend_fragments(run);
+    }
+  }
+}
+
+void DepthTestUnit::blend_fragments(const std::vector<SampleFragment>& fragments) {
+  const BinStage blending = bin_.stage("blend");
+  const float width = 1.0f / static_cast<float>(std::min(sampling_.grid.columns, sampling_.grid.rows));
+  const SamplePlaces places(bin_, sampling_, translucent_at_);
+  blend(bin_.triangles(), bin_.shader(), fragments, places.of(fragments), width, bin_.tile, sampling_, blending.timed(),
+        surface_, accesses_);
+  memory_.blend(accesses_, blending.counters);
+  count_by_pixel(fragments, bin_.tile, sampling_.grid, fragments_);
+}
+
+void DepthTestUnit::test_opaque(const std::vector<SampleFragment>& fragments) {
   depth_test(bin_.triangles(), fragments, bin_.tile, sampling_, stage_.timed(), surface_, accesses_);
   surface_.color_bytes > 0 ? memory_.test_and_write(accesses_, stage_.counters)
                            : memory_.test_depth(accesses_, stage_.counters);
   count_by_pixel(fragments, bin_.tile, sampling_.grid, fragments_);
+  if (surface_.over.empty()) return;
+  for (const SampleAccess& access : accesses_)  // an opaque surface hides what was blended there
+    for (std::uint32_t left = access.passed; left != 0; left &= left - 1)
+      surface_.over[std::size_t{access.cell} * static_cast<std::size_t>(sampling_.pattern.count) +
+                    static_cast<std::size_t>(std::countr_zero(left))] = glm::vec4(0.0f);
 }
 
 void DepthTestUnit::test_equal(std::vector<SampleFragment>& fragments) {
+  std::vector<SampleFragment> translucent;  // depth is final, so they are blended over what is seen
+  if (!surface_.over.empty()) {
+    const auto rest = std::stable_partition(fragments.begin(), fragments.end(),
+                                            [&](const SampleFragment& fragment) { return hides(fragment); });
+    translucent.assign(rest, fragments.end());
+    fragments.erase(rest, fragments.end());
+  }
   depth_test_equal(bin_.triangles(), bin_.tile, sampling_, stage_.timed(), surface_, fragments, accesses_);
   memory_.test_equal(accesses_, stage_.counters);
+  if (!translucent.empty()) blend_fragments(translucent);
 }
 
 std::vector<glm::vec4> DepthTestUnit::resolve_samples(ShadeAt at, const BinStage& resolving) const {

@@ -24,7 +24,11 @@ class DepthTestUnit {
       : DepthTestUnit(bin, sampling, first == FirstPass::writes_color ? color_bytes : 0, color_bytes,
                       std::move(same_color)) {}
 
-  // Tests and writes what passes. Counts each pixel's fragments.
+  // Translucent fragments are blended from here on, shaded there.
+  void shade_translucent_at(ShadeAt at);
+
+  // Tests and writes what passes, and blends translucent fragments, in their order. A surface without colours leaves
+  // them out. Counts each pixel's fragments.
   void test(const std::vector<SampleFragment>& fragments);
 
   // Leaves of each fragment the samples that have the stored depth, and drops fragments without any.
@@ -52,9 +56,14 @@ class DepthTestUnit {
   DepthTestUnit(Bin& bin, const Sampling& sampling, std::uint32_t first_color_bytes, std::uint32_t color_bytes,
                 SampleMemory::SameValue same_color);
 
+  bool hides(const SampleFragment& fragment) const;  // what lies behind it
+  void test_opaque(const std::vector<SampleFragment>& fragments);
+  void blend_fragments(const std::vector<SampleFragment>& fragments);
+
   Bin& bin_;
   BinStage stage_;
   const Sampling& sampling_;
+  ShadeAt translucent_at_ = ShadeAt::centre;
   SampleTile surface_;
   SampleMemory memory_;
   std::vector<float>& fragments_;  // per pixel

@@ -8,6 +8,7 @@
 
 #include "pipeline/bins/bin.h"
 #include "pipeline/units/raster_units.h"
+#include "stages/beam/alpha_mask.h"
 #include "stages/beam/beam_fragment.h"
 #include "stages/picture/shade.h"
 #include "stages/samples/shading_point.h"
@@ -18,7 +19,9 @@ class BeamFragmentUnit {
  public:
   // `options` must outlive it.
   BeamFragmentUnit(Bin& bin, const BeamFragmentOptions& options)
-      : bin_(bin), stage_(bin.stage("beam_fragment")), options_(options) {}
+      : bin_(bin), stage_(bin.stage("beam_fragment")), options_(options) {
+    if (bin.context.has_alpha()) patterns_ = options.grid ? cell_patterns(options.grid->count()) : options.positions;
+  }
 
   // The fragments of pairs that follow each other in primitive order; `buffer` is the name of the on-chip buffer that
   // holds them. They are valid until the next call.
@@ -46,11 +49,13 @@ class BeamFragmentUnit {
   void make(const std::vector<Pair>& pairs) {
     fragments_.clear();
     beam_fragment(bin_.triangles(), pairs, bin_.tile, options_, stage_.timed(), fragments_);
+    if (bin_.context.has_alpha()) alpha_mask(bin_.shader(), patterns_, bin_.stage("alpha_mask").timed(), fragments_);
   }
 
   Bin& bin_;
   BinStage stage_;
   const BeamFragmentOptions& options_;
+  std::vector<SamplePattern> patterns_;  // for alpha
   std::vector<Fragment> fragments_;
 };
 

@@ -1,5 +1,8 @@
 #include "pipeline/units/raster_units.h"
 
+#include <algorithm>
+
+#include "pipeline/units/sample_places.h"
 #include "stages/cost/closed_depth_cost.h"
 
 namespace beampipe {
@@ -30,6 +33,18 @@ void ConservativeRasterUnit::start_next_pass() {
   stage_.counters.items_in += bin_.list.size();
   stage_.counters.bytes_read += bin_.list.size() * sizeof(SetupTriangle);
   read_bin(bin_.memory(), bin_.list, stage_.counters);
+}
+
+void SampleRasterUnit::test_alpha(const Sampling& sampling, ShadeAt at) {
+  const SurfaceShader& shader = bin_.context.shader;
+  if (translucent_ == Translucent::left_out)
+    std::erase_if(fragments_, [&](const SampleFragment& fragment) {
+      return !shader.is_opaque(fragment.triangle) && !shader.is_cutout(fragment.triangle);
+    });
+  if (!bin_.context.has_cutouts()) return;
+  const SamplePlaces places(bin_, sampling, at);
+  alpha_test(bin_.shader(), bin_.tile, sampling.grid, sampling.pattern.count, coverage_, places.of(fragments_),
+             bin_.stage("alpha_test").timed(), fragments_);
 }
 
 }  // namespace beampipe

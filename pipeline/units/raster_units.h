@@ -12,6 +12,8 @@
 #include "pipeline/bins/bin.h"
 #include "stages/raster/conservative_raster.h"
 #include "stages/raster/sample_raster.h"
+#include "stages/samples/alpha_test.h"
+#include "stages/samples/shading_point.h"
 
 namespace beampipe {
 
@@ -86,10 +88,16 @@ class SampleRasterUnit {
  public:
   explicit SampleRasterUnit(Bin& bin) : bin_(bin), stage_(bin.stage("sample_raster")) {}
 
+  // For a technique that draws translucent triangles.
+  enum class Translucent { left_out, drawn };
+  SampleRasterUnit(Bin& bin, Translucent translucent, AlphaCoverage coverage)
+      : bin_(bin), stage_(bin.stage("sample_raster")), translucent_(translucent), coverage_(coverage) {}
+
   // One geometry pass: calls body(fragments) for each batch of triangles. Leaves out what lies behind the cells that
-  // this pass has closed so far, as a hierarchical depth buffer does.
+  // this pass has closed so far, as a hierarchical depth buffer does. Fragments of cutouts pass the alpha test first.
+  // `at`: where fragments are shaded.
   template <class Body>
-  void pass(const Sampling& sampling, Body&& body) {
+  void pass(const Sampling& sampling, ShadeAt at, Body&& body) {
     ClosedDepth closed(cells_of(bin_.tile, sampling.grid));
     bin_.starts_geometry_pass();
     bin_.holds("closed_depth", closed.bytes());
@@ -97,14 +105,19 @@ class SampleRasterUnit {
       fragments_.clear();
       sample_raster(bin_.triangles(), batch, bin_.tile, sampling, stage_.timed(), fragments_, &closed);
       bin_.holds("batch_fragments", fragments_.size() * kSampleFragmentBytes);
+      if (bin_.context.has_alpha()) test_alpha(sampling, at);
       body(fragments_);
     });
   }
 
  private:
+  void test_alpha(const Sampling& sampling, ShadeAt at);
+
   Bin& bin_;
   BinStage stage_;
   std::vector<SampleFragment> fragments_;
+  Translucent translucent_ = Translucent::left_out;
+  AlphaCoverage coverage_ = AlphaCoverage::test;
 };
 
 }  // namespace beampipe

@@ -25,4 +25,12 @@ glm::vec2 SamplePlaces::of(const SampleFragment& fragment) const {
   return glm::vec2(point - glm::dvec2(sampling_.grid.pixel_x(fragment.x), sampling_.grid.pixel_y(fragment.y)));
 }
 
+std::vector<glm::vec2> SamplePlaces::of(const std::vector<SampleFragment>& fragments) const {
+  std::vector<glm::vec2> places;
+  places.reserve(fragments.size());
+  for (const SampleFragment& fragment : fragments)
+    places.push_back(bin_.context.shader.is_flat(fragment.triangle) ? glm::vec2(0.5f) : of(fragment));
+  return places;
+}
+
 }  // namespace beampipe

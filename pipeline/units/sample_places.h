@@ -1,6 +1,9 @@
 // Where sample fragments are shaded, in a bin. A triangle and a cell say that, so nothing is kept with the samples.
 #pragma once
 
+#include <glm/glm.hpp>
+#include <vector>
+
 #include "pipeline/bins/bin.h"
 #include "stages/data/sample_fragment.h"
 #include "stages/picture/resolve.h"
@@ -18,6 +21,9 @@ class SamplePlaces {
 
   // In the fragment's pixel.
   glm::vec2 of(const SampleFragment& fragment) const;
+
+  // Of each fragment whose triangle is not flat; others may have any place.
+  std::vector<glm::vec2> of(const std::vector<SampleFragment>& fragments) const;
 
  private:
   const Bin& bin_;

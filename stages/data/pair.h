@@ -12,7 +12,7 @@ struct Pair {
   std::uint32_t triangle;  // index into SetupTriangles
   std::uint32_t quad;      // the same number for all pixels of one triangle in one 2x2 quad
   std::int32_t x, y;       // pixel, frame coordinates
-  bool full;               // the triangle covers the whole pixel
+  bool full;               // the triangle covers and hides the whole pixel
   // Bounds of the triangle's depth in the pixel (pair_bounds in stages/data/pixel_depth.h).
   float nearest, farthest;
 };

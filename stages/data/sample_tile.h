@@ -2,6 +2,7 @@
 #pragma once
 
 #include <cstdint>
+#include <glm/glm.hpp>
 #include <vector>
 
 #include "stages/data/sample_fragment.h"
@@ -21,6 +22,8 @@ inline constexpr std::uint32_t kSampleColorBytes = 6;  // fp16 RGB
 struct SampleTile {
   std::vector<float> depth;
   std::vector<std::uint32_t> triangle;
+  // What was blended over the triangle: linear RGB, times alpha, and alpha. Empty if nothing is translucent.
+  std::vector<glm::vec4> over;
   std::size_t samples_per_pixel = 0;
   std::uint32_t color_bytes = kSampleColorBytes;
 

@@ -46,6 +46,8 @@ struct SetupTriangles {
   std::vector<SetupSurface> surfaces;      // one per triangle; empty if all triangles are flat
   std::vector<SurfaceVertex> vertices;     // of the draws with materials
 
+  bool is_opaque(std::uint32_t triangle) const { return surfaces.empty() || surfaces[triangle].is_opaque; }
+
   static constexpr std::uint64_t kTriangleBytes =
       sizeof(SetupTriangle) + sizeof(FlatAttributes) + sizeof(std::uint32_t);
 

@@ -70,8 +70,9 @@ inline constexpr std::uint32_t kFlatSurface = ~0u;
 
 // One for each setup triangle.
 struct SetupSurface {
-  std::uint32_t material = kFlatSurface;             // index into Trace::materials; kFlatSurface: the triangle is flat
+  std::uint32_t material = kFlatSurface;    // index into Trace::materials; kFlatSurface: the triangle is flat
   std::array<std::uint32_t, 3> vertices{};  // of the trace's triangle: indices into SetupTriangles::vertices
+  bool is_opaque = true;                    // it hides what lies behind it, wherever it covers
   bool turned = false;                      // the viewer sees its back: vertices' normals are turned around
   bool has_own_normal = false;              // the mesh has no normals: FlatAttributes::normal is used
   glm::vec4 tangent{0.0f};                  // of the triangle, as in SurfaceVertex; where a normal texture needs it

@@ -243,6 +243,7 @@ class TriangleSetup {
     ++work.surfaces;
     const glm::uvec3& index = mesh_.triangles[t];
     surface.material = material;
+    surface.is_opaque = materials_[material].alpha_mode == AlphaMode::opaque;
     for (int k = 0; k < 3; ++k) surface.vertices[static_cast<std::size_t>(k)] = first_vertex_ + index[k];
     surface.turned = shows_back(front);
     surface.has_own_normal = mesh_.normals.empty();

@@ -36,24 +36,33 @@ std::vector<glm::vec4> resolve(const SampleTile& surface, std::size_t pixels, co
     // Runs of equal samples are added at once. The sum is that of a box filter in double precision either way.
     const std::uint32_t* owner = surface.triangle.data() + pixel * samples;
     glm::dvec3 sum(0.0);
-    std::size_t covered = 0;
+    double covered = 0;
     for (std::size_t s = 0; s < samples;) {
       const std::uint32_t triangle = owner[s];
       const bool is_same_everywhere = triangle == kNoTriangle || shader.is_flat(triangle);
       const std::size_t most = is_same_everywhere ? samples : s - s % samples_per_cell + samples_per_cell;
+      const glm::vec4* const over = surface.over.empty() ? nullptr : &surface.over[pixel * samples];
       std::size_t end = s + 1;
-      while (end < most && owner[end] == triangle) ++end;
+      while (end < most && owner[end] == triangle && (!over || over[end] == over[s])) ++end;
       const auto run = static_cast<double>(end - s);
       CellPlace place{};
       if (!is_same_everywhere) place = place_of(triangle, pixel * cells + s / samples_per_cell);
-      sum += run * (triangle == kNoTriangle ? clear
-                                            : glm::dvec3(shader.color(triangle, static_cast<std::uint32_t>(pixel),
-                                                                      place.u, place.v, place.width)));
-      if (triangle != kNoTriangle) covered += end - s;
+      const double seen = over ? 1.0 - double{over[s].a} : 1.0;  // of the opaque surface
+      if (over) sum += run * glm::dvec3(over[s]);
+      sum +=
+          run * seen *
+          (triangle == kNoTriangle
+               ? clear
+               : glm::dvec3(shader.color(triangle, static_cast<std::uint32_t>(pixel), place.u, place.v, place.width)));
+      if (triangle != kNoTriangle) {
+        covered += run;
+      } else if (over) {
+        covered += run * double{over[s].a};
+      }
       s = end;
     }
     const double share = 1.0 / static_cast<double>(samples);
-    image.emplace_back(glm::vec3(sum * share), static_cast<float>(static_cast<double>(covered) * share));
+    image.emplace_back(glm::vec3(sum * share), static_cast<float>(covered * share));
   }
   charge_resolve(pixels * samples, surface.color_bytes, pixels, box_filter_cost(samples), counters);
   return image;

@@ -15,7 +15,9 @@ std::size_t conservative_raster(const SetupTriangles& triangles, const TriangleL
     const SetupTriangle& triangle = triangles.triangles[index];
     const DepthBounds<float> vertices = vertex_bounds(triangle.vertex_z);
     if (closed && closed->hides_everywhere(vertices.nearest)) continue;
-    traverse(triangle, EdgeSet(triangle), traversal, [&](std::int32_t x, std::int32_t y, std::uint32_t q, bool full) {
+    const bool is_opaque = triangles.is_opaque(index);
+    traverse(triangle, EdgeSet(triangle), traversal, [&](std::int32_t x, std::int32_t y, std::uint32_t q, bool covers) {
+      const bool full = covers && is_opaque;
       Pair pair{index, q, x, y, full, 0, 0};
       if (depths == PairDepths::bounds) set_depths(triangle, vertices, pair);
       if (closed && closed->hides(x, y, pair.nearest)) return;

@@ -2,6 +2,8 @@
 
 #include <algorithm>
 #include <limits>
+#include <map>
+#include <utility>
 
 #include "simd/depth_span.h"
 #include "simd/sample_pattern.h"
@@ -45,6 +47,44 @@ void cut(Span& span, std::int64_t a, std::int64_t offset, std::int64_t rest) {
   }
 }
 
+// Samples of one row: where the first one lies, in 1/8192 px, and its index in the tile.
+struct SampleRow {
+  const Tile& tile;
+  std::int64_t y, x;
+  std::uint32_t first;
+};
+
+// Takes the samples of a run at which a cutout is there, or lists those of a translucent triangle. Returns how many.
+std::uint64_t test_alpha(const DepthSpan& span, std::size_t count, std::uint32_t triangle, const SampleRow& row,
+                         const TileShader& shader, ReferenceTile& surface) {
+  constexpr float kUnit = 1.0f / kReferenceUnits, kSpacing = 1.0f / 64;  // of samples, if they were on a grid
+  const bool is_cutout = shader.is_cutout(triangle);
+  const std::int64_t pixel_y = floor_quotient(row.y, kReferenceUnits);
+  std::uint64_t found = 0;
+  for (std::size_t i = 0; i < count; ++i) {
+    const std::size_t at = row.first + i;
+    double depth = 0;
+    if (!depth_span_sample(span.z, span.dzdx, span.row, span.x, span.step, static_cast<double>(i), surface.depth[at],
+                           depth))
+      continue;
+    if (!is_cutout) {
+      ++found;
+      surface.layers.push_back({static_cast<std::uint32_t>(at), triangle, depth});
+      continue;
+    }
+    const std::int64_t x = row.x + kStep * static_cast<std::int64_t>(i), pixel_x = floor_quotient(x, kReferenceUnits);
+    const auto pixel = static_cast<std::uint32_t>(
+        row.tile.index(static_cast<std::int32_t>(pixel_x), static_cast<std::int32_t>(pixel_y)));
+    const float u = static_cast<float>(x - pixel_x * kReferenceUnits) * kUnit;
+    const float v = static_cast<float>(row.y - pixel_y * kReferenceUnits) * kUnit;
+    if (shader.alpha(triangle, pixel, u, v, kSpacing).alpha < shader.alpha_cutoff(triangle)) continue;
+    ++found;
+    surface.depth[at] = depth;
+    surface.owner[at] = triangle;
+  }
+  return found;
+}
+
 }  // namespace
 
 ReferenceTile::ReferenceTile(const Tile& tile)
@@ -55,7 +95,7 @@ ReferenceTile::ReferenceTile(const Tile& tile)
 }
 
 void reference_raster(const SetupTriangles& triangles, const TriangleList& list, const Tile& tile,
-                      StageCounters& counters, ReferenceTile& surface) {
+                      StageCounters& counters, ReferenceTile& surface, const TileShader* shader) {
   const std::int64_t left = std::int64_t{tile.x0} * kReferenceColumns,
                      right = std::int64_t{tile.x1} * kReferenceColumns;
   const std::int64_t top = std::int64_t{tile.y0} * kReferenceRows, bottom = std::int64_t{tile.y1} * kReferenceRows;
@@ -78,8 +118,13 @@ void reference_raster(const SetupTriangles& triangles, const TriangleList& list,
       const std::size_t at =
           static_cast<std::size_t>(row - top) * surface.row_samples + static_cast<std::size_t>(span.first - left);
       const auto count = static_cast<std::size_t>(span.end - span.first);
-      nearer += depth_span(depths, count, index, surface.depth.data() + at, surface.owner.data() + at);
       covered += count;
+      if (triangles.is_opaque(index)) {
+        nearer += depth_span(depths, count, index, surface.depth.data() + at, surface.owner.data() + at);
+        continue;
+      }
+      const SampleRow samples{tile, y, span.first * kStep + offset, static_cast<std::uint32_t>(at)};
+      nearer += test_alpha(depths, count, index, samples, *shader, surface);
     }
   }
   charge_reference(covered, nearer, counters);
@@ -104,6 +149,42 @@ class PixelSum {
     for (std::int32_t row = 0; row < kReferenceRows; row += kRowsPerCell)
       for (std::int32_t column = 0; column < kReferenceColumns; ++column)
         add_cell(owner + static_cast<std::size_t>(row) * row_samples_ + column, row, column, pixel, sum);
+  }
+
+  // As add_varying, under the translucent layers of the pixel, which are sorted by sample and then by depth. `first`:
+  // of the pixel's first sample. Returns how many of the background's samples the layers cover.
+  double add_layered(const std::vector<ReferenceTile::Layer>& layers, const std::uint64_t* owner, std::size_t first,
+                     std::uint32_t pixel, glm::dvec3& sum) const {
+    std::map<std::pair<std::uint64_t, std::int32_t>, glm::dvec4> colors;  // of triangles in cells
+    const auto color_at = [&](std::uint64_t triangle, std::int32_t row, std::int32_t column) -> const glm::dvec4& {
+      const std::int32_t cell = row / kRowsPerCell * kReferenceColumns + column;
+      const auto [found, is_new] = colors.try_emplace({triangle, cell});
+      if (is_new) {
+        const float u = (static_cast<float>(column) + 0.5f) / kReferenceCells;
+        const float v = (static_cast<float>(row / kRowsPerCell) + 0.5f) / kReferenceCells;
+        found->second =
+            triangle == kNoOwner
+                ? glm::dvec4(clear_, 1.0)
+                : glm::dvec4(shader_.color_and_alpha(triangle_of(triangle), pixel, u, v, 1.0f / kReferenceCells));
+      }
+      return found->second;
+    };
+    double covered = 0;
+    std::size_t next = 0;
+    for (std::int32_t row = 0; row < kReferenceRows; ++row) {
+      for (std::int32_t column = 0; column < kReferenceColumns; ++column) {
+        const std::size_t offset = static_cast<std::size_t>(row) * row_samples_ + static_cast<std::size_t>(column);
+        double light = 1;
+        for (; next < layers.size() && layers[next].sample == first + offset; ++next) {
+          const glm::dvec4& color = color_at(layers[next].triangle, row, column);
+          sum += light * color.a * glm::dvec3(color);
+          light *= 1 - color.a;
+        }
+        sum += light * glm::dvec3(color_at(owner[offset], row, column));
+        if (owner[offset] == kNoOwner) covered += 1 - light;
+      }
+    }
+    return covered;
   }
 
   // Do all samples show the background or flat triangles?
@@ -154,12 +235,29 @@ class PixelSum {
   std::size_t row_samples_;
 };
 
+// The layers of each pixel that lie in front of the samples' owners, by sample and from near to far. Layers of equal
+// depth stay in primitive order.
+std::vector<std::vector<ReferenceTile::Layer>> layers_of_pixels(const ReferenceTile& surface, const Tile& tile) {
+  std::vector<std::vector<ReferenceTile::Layer>> pixels(tile.pixels());
+  for (const ReferenceTile::Layer& layer : surface.layers) {
+    if (layer.depth >= surface.depth[layer.sample]) continue;
+    const std::size_t row = layer.sample / surface.row_samples, column = layer.sample % surface.row_samples;
+    pixels[row / kReferenceRows * static_cast<std::size_t>(tile.width()) + column / kReferenceColumns].push_back(layer);
+  }
+  for (std::vector<ReferenceTile::Layer>& layers : pixels)
+    std::stable_sort(layers.begin(), layers.end(), [](const auto& a, const auto& b) {
+      return std::pair(a.sample, a.depth) < std::pair(b.sample, b.depth);
+    });
+  return pixels;
+}
+
 }  // namespace
 
 std::vector<glm::vec4> resolve(const ReferenceTile& surface, const Tile& tile, const TileShader& shader,
                                const glm::vec3& background, StageCounters& counters) {
   const double share = 1.0 / kReferenceSamples;
   const PixelSum sum_of(shader, background, surface.row_samples);
+  const std::vector<std::vector<ReferenceTile::Layer>> layers = layers_of_pixels(surface, tile);
   std::vector<glm::vec4> image;
   image.reserve(tile.pixels());
   for (std::int32_t y = 0; y < tile.height(); ++y) {
@@ -168,12 +266,16 @@ std::vector<glm::vec4> resolve(const ReferenceTile& surface, const Tile& tile, c
                                          static_cast<std::size_t>(y * kReferenceRows) * surface.row_samples +
                                          static_cast<std::size_t>(x * kReferenceColumns);
       glm::dvec3 sum(0.0);
-      if (sum_of.is_flat(owner)) {
+      double covered = 0;
+      const std::vector<ReferenceTile::Layer>& layered = layers[static_cast<std::size_t>(tile.width() * y + x)];
+      if (!layered.empty()) {
+        covered = sum_of.add_layered(layered, owner, static_cast<std::size_t>(owner - surface.owner.data()),
+                                     static_cast<std::uint32_t>(tile.width() * y + x), sum);
+      } else if (sum_of.is_flat(owner)) {
         sum_of.add_flat(owner, sum);
       } else {
         sum_of.add_varying(owner, static_cast<std::uint32_t>(tile.width() * y + x), sum);
       }
-      std::uint32_t covered = 0;
       for (std::int32_t row = 0; row < kReferenceRows; ++row)
         for (std::int32_t s = 0; s < kReferenceColumns; ++s)
           covered +=

@@ -32,15 +32,25 @@ struct ReferenceTile {
   std::vector<std::uint64_t> owner;  // index into SetupTriangles, or kNoOwner
   std::size_t row_samples = 0;
 
+  // A translucent triangle at a sample.
+  struct Layer {
+    std::uint32_t sample;    // index into `owner`
+    std::uint32_t triangle;  // index into SetupTriangles
+    double depth;
+  };
+  std::vector<Layer> layers;  // in primitive order; some may lie behind the owner
+
   explicit ReferenceTile(const Tile& tile);
 };
 
 // Counts as items out the samples at which a triangle is nearer than all earlier ones.
+// Alpha is tested at every sample. `shader` may be null if all triangles are opaque.
 void reference_raster(const SetupTriangles& triangles, const TriangleList& list, const Tile& tile,
-                      StageCounters& counters, ReferenceTile& surface);
+                      StageCounters& counters, ReferenceTile& surface, const TileShader* shader = nullptr);
 
 // Surfaces that vary are shaded 256 times per pixel: in each of 16x16 cells, each triangle once for its samples there,
-// at their mean position, with the part of its textures that the cell covers.
+// at their mean position, with the part of its textures that the cell covers. Translucent layers are composed at every
+// sample, sorted by depth.
 inline constexpr std::int32_t kReferenceCells = 16;  // per pixel, in x and y
 
 // Returns the mean of each pixel's samples, summed in double precision: RGBA per pixel of the tile.

@@ -41,7 +41,7 @@ void sample_raster(const SetupTriangles& triangles, const TriangleList& list, co
     const EdgeSet set(triangle);
     traverse(triangle, set, traversal, [&](std::int32_t x, std::int32_t y, std::uint32_t q, bool full) {
       if (closed && closed->hides(x, y, depths.nearest)) return;
-      if (closed && full) closed->close(x, y, depths.farthest);
+      if (closed && full && triangles.is_opaque(index)) closed->close(x, y, depths.farthest);
       if (!full) {
         partial.push_back(cell_edges(set, std::int64_t{x} * sampling.grid.cell_width(),
                                      std::int64_t{y} * sampling.grid.cell_height()));

@@ -230,6 +230,35 @@ const SurfaceShader::Work& SurfaceShader::material_work(std::uint32_t triangle) 
   return works_[work_index(triangles_.surfaces[triangle].material, inputs_of(triangle))];
 }
 
+AlphaAt SurfaceShader::alpha(std::uint32_t triangle, const ShadingPlace& place, float width) const {
+  if (is_opaque(triangle)) return {1.0f, true};
+  const SetupSurface& surface = triangles_.surfaces[triangle];
+  const ShaderInputs shader = inputs_of(triangle);
+  const auto vertex = [&](std::size_t k) -> const SurfaceVertex& { return triangles_.vertices[surface.vertices[k]]; };
+  const float x = static_cast<float>(place.x) + place.u - surface.anchor_x,
+              y = static_cast<float>(place.y) + place.v - surface.anchor_y;
+  const Barycentrics<float> weights = weights_at(surface.planes, x, y);
+  AlphaAt found{shader.material.base_color.a, true};
+  if (shader.has_vertex_colors)
+    found.alpha *= interpolated(vertex(0).color.a, vertex(1).color.a, vertex(2).color.a, weights);
+  if (const auto& texture = shader.material.base_texture) {
+    const std::array<Barycentrics<float>, 2> change = weight_slopes(surface.planes, x, y, weights);
+    TextureSlopes slopes;
+    glm::vec2 uv;
+    for (int c = 0; c < 2; ++c) {
+      const float a = vertex(0).uvs[texture->uv_set][c], b = vertex(1).uvs[texture->uv_set][c],
+                  d = vertex(2).uvs[texture->uv_set][c];
+      uv[c] = interpolated(a, b, d, weights);
+      slopes.dx[c] = width * interpolated_slope(a, b, d, change[0]);
+      slopes.dy[c] = width * interpolated_slope(a, b, d, change[1]);
+    }
+    const MipChain& chain = textures_->chain(texture->image, ColorSpace::srgb);
+    found.alpha *= filtered(chain, *texture, uv, slopes, [](std::size_t, std::uint32_t, std::uint32_t) {}).a;
+    found.is_magnified = level_of_detail(slopes, chain.levels[0]) <= 0;
+  }
+  return found;
+}
+
 glm::vec4 SurfaceShader::shaded(std::uint32_t triangle, const ShadingPlace& place, float width,
                                 std::vector<TexelRead>* reads) const {
   const SetupSurface& surface = triangles_.surfaces[triangle];

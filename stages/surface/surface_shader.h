@@ -10,6 +10,7 @@
 #include "stages/data/setup_triangle.h"
 #include "stages/data/tile.h"
 #include "stages/surface/mip_chain.h"
+#include "stages/surface/opacity.h"
 #include "stages/surface/surface_formulas.h"
 #include "traces/trace.h"
 
@@ -48,6 +49,11 @@ struct TexelRead {
   std::uint32_t level, x, y;
 };
 
+struct AlphaAt {
+  float alpha;
+  bool is_magnified;  // texels are larger than the area, so alpha is that of a point; else it is a mean
+};
+
 class SurfaceShader {
  public:
   // All but the rules must outlive it. `textures`: of the trace; may be null if all triangles are flat.
@@ -75,6 +81,16 @@ class SurfaceShader {
     return shaded(triangle, place, width, reads);
   }
 
+  // Alpha at a place, whatever SurfaceColors says. `width`: as above. 1 for opaque triangles.
+  AlphaAt alpha(std::uint32_t triangle, const ShadingPlace& place, float width) const;
+
+  bool is_opaque(std::uint32_t triangle) const { return triangles_.is_opaque(triangle); }
+  bool is_cutout(std::uint32_t triangle) const {
+    return !is_opaque(triangle) && material(triangle).alpha_mode == AlphaMode::mask;
+  }
+  float alpha_cutoff(std::uint32_t triangle) const { return material(triangle).alpha_cutoff; }
+  std::uint32_t draw(std::uint32_t triangle) const { return triangles_.draws[triangle]; }
+
   // Do the triangles have the same colour everywhere?
   bool same_color(std::uint32_t a, std::uint32_t b) const {
     return a == b || (is_flat(a) && is_flat(b) && flat_[a] == flat_[b]);
@@ -97,6 +113,9 @@ class SurfaceShader {
  private:
   glm::vec4 shaded(std::uint32_t triangle, const ShadingPlace& place, float width, std::vector<TexelRead>* reads) const;
   ShaderInputs inputs_of(std::uint32_t triangle) const;
+  const Material& material(std::uint32_t triangle) const {
+    return trace_.materials[triangles_.surfaces[triangle].material];
+  }
   const Work& material_work(std::uint32_t triangle) const;
 
   const SetupTriangles& triangles_;
@@ -127,13 +146,31 @@ class TileShader {
     if (is_flat(triangle)) return flat_[triangle];
     return shader_->color(triangle, place(pixel, u, v), width);
   }
+  glm::vec4 color_and_alpha(std::uint32_t triangle, std::uint32_t pixel, float u, float v, float width = 1.0f) const {
+    if (is_flat(triangle)) return glm::vec4(flat_[triangle], 1.0f);
+    return shader_->color_and_alpha(triangle, place(pixel, u, v), width);
+  }
+
+  AlphaAt alpha(std::uint32_t triangle, std::uint32_t pixel, float u, float v, float width) const {
+    return shader_->alpha(triangle, place(pixel, u, v), width);
+  }
+  bool is_opaque(std::uint32_t triangle) const { return !shader_ || shader_->is_opaque(triangle); }
+  bool is_cutout(std::uint32_t triangle) const { return shader_ && shader_->is_cutout(triangle); }
+  float alpha_cutoff(std::uint32_t triangle) const { return shader_->alpha_cutoff(triangle); }
+  OpacityRanks opacity_ranks(std::uint32_t triangle, std::uint32_t pixel) const {
+    const ShadingPlace at = place(pixel, 0, 0);
+    return {shader_->draw(triangle), at.x, at.y};
+  }
+
   ShadingPlace place(std::uint32_t pixel, float u, float v) const {
     const std::uint32_t row = pixel / static_cast<std::uint32_t>(tile_.width());
     return {tile_.x0 + static_cast<std::int32_t>(pixel - row * static_cast<std::uint32_t>(tile_.width())),
             tile_.y0 + static_cast<std::int32_t>(row), u, v};
   }
 
-  const SurfaceShader::Work& work(std::uint32_t triangle) const { return shader_ ? shader_->work(triangle) : lit_flat(); }
+  const SurfaceShader::Work& work(std::uint32_t triangle) const {
+    return shader_ ? shader_->work(triangle) : lit_flat();
+  }
   const SurfaceShader::Work& lit_flat() const;  // of a flat triangle that is lit
 
  private:

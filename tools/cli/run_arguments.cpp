@@ -82,6 +82,8 @@ RunPlan make_plan(const RunArguments& arguments) {
   plan.options.memory_limit = arguments.memory_limit > 0 ? arguments.memory_limit : machine_memory() / 2;
   if (!arguments.simd.empty()) use_simd_target(arguments.simd);
   plan.trace = read_trace(arguments.trace, {.allow_outside = arguments.allow_outside});
+  plan.textures = std::make_shared<TextureSet>(plan.trace);
+  plan.options.textures = plan.textures.get();
   plan.frames = parse_frame_range(arguments.frames, plan.trace.frames.size());
   for (const std::size_t frame : plan.frames)
     for (const Technique& technique : plan.techniques)

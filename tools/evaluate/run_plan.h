@@ -2,6 +2,7 @@
 #pragma once
 
 #include <cstddef>
+#include <memory>
 #include <string>
 #include <vector>
 
@@ -18,7 +19,8 @@ struct RunPlan {
   std::vector<std::size_t> frames;  // indices into the trace, rising
   int repeat = 1;
   Hardware hardware = titan_v();
-  RunOptions options;  // `threads` is the actual number, never 0
+  std::shared_ptr<const TextureSet> textures;  // of the trace
+  RunOptions options;                          // `threads` is the actual number, never 0
 };
 
 inline std::vector<std::string> specs_of(const std::vector<Technique>& techniques) {

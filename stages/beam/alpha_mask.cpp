@@ -1,0 +1,82 @@
+#include "stages/beam/alpha_mask.h"
+
+#include <algorithm>
+#include <bit>
+#include <cmath>
+
+#include "stages/beam/alpha_mask_cost.h"
+#include "stages/surface/opacity.h"
+
+namespace beampipe {
+namespace {
+
+// Calls body(position, u, v) for each position of the mask; (u, v) lie in the pixel, 0..1.
+template <class Body>
+void for_each_position(const WideMask& mask, const std::vector<SamplePattern>& patterns, Body&& body) {
+  for (std::size_t word = 0; word < patterns.size(); ++word)
+    for (std::uint32_t bits = mask.words[word]; bits != 0; bits &= bits - 1) {
+      const auto s = static_cast<std::size_t>(std::countr_zero(bits));
+      body(32 * word + s, static_cast<float>(patterns[word].x[s]) / kSubpixelUnits,
+           static_cast<float>(patterns[word].y[s]) / kSubpixelUnits);
+    }
+}
+
+// The part of the fragment that is left, 0..1.
+float cut_out(const TileShader& shader, const std::vector<SamplePattern>& patterns, float spacing, Fragment& fragment,
+              AlphaMaskWork& work) {
+  if (fragment.mask.none()) {
+    ++work.footprints;
+    return shader.alpha(fragment.triangle, fragment.pixel, fragment.centroid_u, fragment.centroid_v, 1.0f).alpha;
+  }
+  const OpacityRanks ranks = shader.opacity_ranks(fragment.triangle, fragment.pixel);
+  const float cutoff = shader.alpha_cutoff(fragment.triangle), covered = static_cast<float>(fragment.mask.count());
+  WideMask left;
+  float sum = 0;
+  for_each_position(fragment.mask, patterns, [&](std::size_t position, float u, float v) {
+    ++work.positions;
+    const AlphaAt at = shader.alpha(fragment.triangle, fragment.pixel, u, v, spacing);
+    const float part = at.is_magnified ? (at.alpha >= cutoff ? 1.0f : 0.0f) : at.alpha;
+    sum += part;
+    if (ranks.takes(static_cast<std::uint32_t>(position), part)) left.set(position);
+  });
+  fragment.mask = left;
+  return sum / covered;
+}
+
+float let_through(const TileShader& shader, const std::vector<SamplePattern>& patterns, Fragment& fragment,
+                  AlphaMaskWork& work) {
+  ++work.footprints;
+  const float opacity =
+      std::clamp(shader.alpha(fragment.triangle, fragment.pixel, fragment.centroid_u, fragment.centroid_v, 1.0f).alpha,
+                 0.0f, 1.0f);
+  const OpacityRanks ranks = shader.opacity_ranks(fragment.triangle, fragment.pixel);
+  WideMask left;
+  for_each_position(fragment.mask, patterns, [&](std::size_t position, float, float) {
+    ++work.ranked;
+    if (ranks.takes(static_cast<std::uint32_t>(position), opacity)) left.set(position);
+  });
+  fragment.mask = left;
+  return opacity;
+}
+
+}  // namespace
+
+void alpha_mask(const TileShader& shader, const std::vector<SamplePattern>& patterns, StageCounters& counters,
+                std::vector<Fragment>& fragments) {
+  AlphaMaskWork work;
+  const float spacing = 1.0f / std::sqrt(static_cast<float>(kMaxMaskSamples * patterns.size()));
+  for (Fragment& fragment : fragments) {
+    if (shader.is_opaque(fragment.triangle)) continue;
+    ++work.fragments;
+    const float part = shader.is_cutout(fragment.triangle) ? cut_out(shader, patterns, spacing, fragment, work)
+                                                           : let_through(shader, patterns, fragment, work);
+    fragment.alpha *= part;
+    fragment.tiny |= fragment.mask.none();
+  }
+  const std::size_t before = fragments.size();
+  std::erase_if(fragments, [](const Fragment& fragment) { return fragment.alpha <= 0; });
+  work.dropped = before - fragments.size();
+  charge(work, patterns.size(), counters);
+}
+
+}  // namespace beampipe

@@ -1,0 +1,23 @@
+// alpha_mask: fragments -> fragments without what alpha leaves out of them.
+//
+// Of a cutout, a mask position belongs to the surface if the texture's alpha there is at least the cutoff. Where texels
+// are smaller than the distance of positions, alpha is the part of a position that the surface covers, and as many
+// positions are taken as fit. The fragment's area shrinks by the same share. A speck, which has no positions, shrinks
+// by the mean alpha. A translucent surface takes the part of its positions and of its area that is its opacity
+// (stages/surface/opacity.h).
+#pragma once
+
+#include <vector>
+
+#include "simd/sample_pattern.h"
+#include "stages/cost/counters.h"
+#include "stages/data/fragment.h"
+#include "stages/surface/surface_shader.h"
+
+namespace beampipe {
+
+// Drops fragments of which nothing is left. `patterns`: the mask positions.
+void alpha_mask(const TileShader& shader, const std::vector<SamplePattern>& patterns, StageCounters& counters,
+                std::vector<Fragment>& fragments);
+
+}  // namespace beampipe

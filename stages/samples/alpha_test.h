@@ -1,0 +1,25 @@
+// alpha_test: sample fragments -> sample fragments without cutouts.
+//
+// Alpha is tested once per fragment, where it is shaded, and decides about all of its samples. Alpha to coverage takes
+// that part of the samples instead.
+//
+// Source: OpenGL 4.6 core specification, section 17.3.1 (alpha to coverage).
+#pragma once
+
+#include <glm/glm.hpp>
+#include <vector>
+
+#include "stages/cost/counters.h"
+#include "stages/data/sample_fragment.h"
+#include "stages/surface/surface_shader.h"
+
+namespace beampipe {
+
+enum class AlphaCoverage { test, to_coverage };
+
+// Drops fragments of which nothing is left. `places`: where each fragment is shaded, in its pixel. `width`: of a cell,
+// in pixels. `samples`: of a cell.
+void alpha_test(const TileShader& shader, const Tile& tile, const CellGrid& grid, int samples, AlphaCoverage coverage,
+                const std::vector<glm::vec2>& places, StageCounters& counters, std::vector<SampleFragment>& fragments);
+
+}  // namespace beampipe
