@@ -87,13 +87,13 @@ Trace example() {
   frame.view = matrix();
   frame.projection = matrix();
   frame.view[2][1] = -0.0;
-  frame.draws = {{0, matrix(), color(), Cull::back, Shading::unlit},
-                 {1, glm::dmat4(1.0), {}, Cull::front, Shading::unlit}};
+  frame.draws = {{0, matrix(), color(), Cull::back, Shading::unlit, {}},
+                 {1, glm::dmat4(1.0), {}, Cull::front, Shading::unlit, {}}};
   trace.frames.push_back(frame);
 
   set_camera(frame, {{0.1, 0.2, 1.0 / 3}, {-5, 6, 7.7}, {0.01, 1, 0}, 35.9, 1e-3, 12345.678});
   frame.background = color();
-  frame.draws = {{0, glm::dmat4(1.0), {}, Cull::none, Shading::lambert}};
+  frame.draws = {{0, glm::dmat4(1.0), {}, Cull::none, Shading::lambert, {}}};
   for (int i = 0; i < 50; ++i) {  // reading must give back normalised directions bit by bit
     frame.lighting.lights = {
         {glm::normalize(glm::vec3(static_cast<float>(random() % 1000) - 499.5f, 1.0f, 2.0f + static_cast<float>(i)))}};
