@@ -32,9 +32,12 @@ TextureImage read_inline_image(const JsonCursor& at, std::uint64_t most_texels) 
 
 TextureImage read_image(const JsonCursor& at, const fs::path& trace_file, const ReadOptions& options,
                         std::uint64_t most_texels) {
-  at.expect_keys({"file", "data"});
-  if (at.has("file") == at.has("data")) at.fail("either \"file\" or \"data\"", at.has("file") ? "both" : "neither");
-  if (at.has("data")) return read_inline_image(at["data"], most_texels);
+  if (!at.has("file") && !at.has("data")) at.fail("the key \"file\" or \"data\"", "none");
+  if (at.has("data")) {
+    at.expect_keys({"data"});
+    return read_inline_image(at["data"], most_texels);
+  }
+  at.expect_keys({"file"});
   return read_image_file(at["file"], side_file(at["file"], trace_file, options.allow_outside), most_texels);
 }
 

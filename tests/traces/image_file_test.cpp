@@ -2,7 +2,6 @@
 
 #include <gtest/gtest.h>
 
-#include <boost/crc.hpp>
 #include <cstdlib>
 #include <random>
 
@@ -20,24 +19,6 @@ std::string error_in(const std::string& bytes, std::uint64_t most_texels = kMost
     return "expected " + bad.expected + ", found " + bad.found;
   }
   return "no error";
-}
-
-std::string big_endian(std::uint32_t value) {
-  std::string bytes;
-  for (int shift = 24; shift >= 0; shift -= 8) bytes += static_cast<char>(value >> shift & 255);
-  return bytes;
-}
-
-std::string chunk(const std::string& name_and_data) {
-  boost::crc_32_type crc;
-  crc.process_bytes(name_and_data.data(), name_and_data.size());
-  return big_endian(static_cast<std::uint32_t>(name_and_data.size() - 4)) + name_and_data + big_endian(crc.checksum());
-}
-
-// A file that claims a size in 8-bit RGBA, and goes on with `rest`.
-std::string png_that_claims(std::uint32_t width, std::uint32_t height, const std::string& rest = "") {
-  return "\x89PNG\r\n\x1a\n" +
-         chunk("IHDR" + big_endian(width) + big_endian(height) + std::string("\x08\x06\0\0\0", 5)) + rest;
 }
 
 TextureImage random_image(std::uint32_t width, std::uint32_t height) {
@@ -193,16 +174,17 @@ TEST(ImageFile, RefusesDamagedFiles) {
   png[png.find("IEND") - 5] ^= 1;  // the last byte before the length of IEND
   EXPECT_EQ(error_in(png), "expected a sound PNG file, found \"IDAT: CRC error\"");
   EXPECT_EQ(error_in(png_that_claims(0, 5)), "expected a sound PNG file, found \"Invalid IHDR data\"");
-  EXPECT_EQ(error_in(png_that_claims(1, 1, chunk("IEND"))), "expected a sound PNG file, found \"IEND: out of place\"");
+  EXPECT_EQ(error_in(png_that_claims(1, 1, png_chunk("IEND"))),
+            "expected a sound PNG file, found \"IEND: out of place\"");
 }
 
 TEST(ImageFile, RefusesSizesBeforeItTakesMemory) {
-  EXPECT_EQ(error_in(png_that_claims(16385, 1, chunk("IDAT"))),
+  EXPECT_EQ(error_in(png_that_claims(16385, 1, png_chunk("IDAT"))),
             "expected at most 16384 texels on a side, found 16385 x 1");
-  EXPECT_EQ(error_in(png_that_claims(1, 1'000'000, chunk("IDAT"))),
+  EXPECT_EQ(error_in(png_that_claims(1, 1'000'000, png_chunk("IDAT"))),
             "expected at most 16384 texels on a side, found 1 x 1000000");
   // 16384 x 16384 texels of 4 bytes are 2^30 bytes, which a file of 57 bytes does not hold.
-  EXPECT_EQ(error_in(png_that_claims(16384, 16384, chunk("IDAT"))),
+  EXPECT_EQ(error_in(png_that_claims(16384, 16384, png_chunk("IDAT"))),
             "expected at least 976128 bytes for 16384 x 16384 texels, found 45");
   EXPECT_EQ(error_in(encode_png(random_image(10, 10)), 99),
             "expected at most 268435456 texels in all images together, found 10 x 10 in this one");

@@ -4,6 +4,7 @@
 #include <png.h>
 #include <turbojpeg.h>
 
+#include <boost/crc.hpp>
 #include <cstdint>
 #include <string>
 #include <vector>
@@ -45,6 +46,24 @@ inline std::string png_bytes(const PngSample& sample) {
   png_write_png(png, info, PNG_TRANSFORM_IDENTITY, nullptr);
   png_destroy_write_struct(&png, &info);
   return bytes;
+}
+
+inline std::string png_number(std::uint32_t value) {
+  std::string bytes;
+  for (int shift = 24; shift >= 0; shift -= 8) bytes += static_cast<char>(value >> shift & 255);
+  return bytes;
+}
+
+inline std::string png_chunk(const std::string& name_and_data) {
+  boost::crc_32_type crc;
+  crc.process_bytes(name_and_data.data(), name_and_data.size());
+  return png_number(static_cast<std::uint32_t>(name_and_data.size() - 4)) + name_and_data + png_number(crc.checksum());
+}
+
+// A file that claims a size in 8-bit RGBA, and goes on with `rest`.
+inline std::string png_that_claims(std::uint32_t width, std::uint32_t height, const std::string& rest = "") {
+  return "\x89PNG\r\n\x1a\n" +
+         png_chunk("IHDR" + png_number(width) + png_number(height) + std::string("\x08\x06\0\0\0", 5)) + rest;
 }
 
 // `pixels` has width x height of the format, whose subsampling is a TJSAMP.
