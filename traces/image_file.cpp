@@ -13,6 +13,7 @@
 #include <stdexcept>
 #include <vector>
 
+#include "traces/input_file.h"
 #include "traces/json.h"
 
 namespace beampipe {
@@ -147,6 +148,14 @@ TextureImage decode_image(std::string_view bytes, std::uint64_t most_texels) {
   if (bytes.starts_with(kJpegStart)) return decode_jpeg(bytes, most_texels);
   throw BadImage{"a PNG or JPEG file",
                  bytes.empty() ? "no bytes" : "one that starts with " + in_quotes(bytes.substr(0, kPngStart.size()))};
+}
+
+TextureImage decode_image(std::string_view bytes, const std::string& where, std::uint64_t most_texels) {
+  try {
+    return decode_image(bytes, most_texels);
+  } catch (const BadImage& bad) {
+    fail_trace(where, bad.expected, bad.found);
+  }
 }
 
 std::string encode_png(const TextureImage& image) {

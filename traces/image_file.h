@@ -27,6 +27,9 @@ struct BadImage {
 // hold.
 TextureImage decode_image(std::string_view bytes, std::uint64_t most_texels = kMostTexels);
 
+// The same for an image whose place is known: throws TraceError, with one line that starts with `where`.
+TextureImage decode_image(std::string_view bytes, const std::string& where, std::uint64_t most_texels = kMostTexels);
+
 // The bytes of a PNG file, which decode_image() turns into the same texels. Throws std::runtime_error if the image has
 // no texels.
 std::string encode_png(const TextureImage& image);

@@ -111,16 +111,18 @@ Mesh read_inline_mesh(const JsonCursor& at, const std::string& name, const Reade
   return mesh;
 }
 
-Mesh read_mesh(const JsonCursor& at, const std::string& name, const Reader& reader) {
+void add_mesh(const JsonCursor& at, const std::string& name, Reader& reader) {
   if (!at.has("obj") && !at.has("positions") && !at.has("indices")) {
     at.fail("the key \"obj\", or \"positions\" and \"indices\"", "none");
   }
-  if (!at.has("obj")) return read_inline_mesh(at, name, reader);
-  at.expect_keys({"obj"});
-  const JsonCursor obj = at["obj"];
-  Mesh mesh = read_obj(side_file(obj, reader.file, reader.options.allow_outside), obj.where());
-  mesh.name = name;
-  return mesh;
+  if (at.has("obj")) {
+    at.expect_keys({"obj"});
+    const JsonCursor obj = at["obj"];
+    reader.trace.meshes.push_back(read_obj(side_file(obj, reader.file, reader.options.allow_outside), obj.where()));
+    reader.trace.meshes.back().name = name;
+  } else {
+    reader.trace.meshes.push_back(read_inline_mesh(at, name, reader));
+  }
 }
 
 Camera read_camera(const JsonCursor& at) {
@@ -260,7 +262,7 @@ Trace read_trace(const fs::path& file, const ReadOptions& options) {
     trace.materials = read_materials(*materials, index_of(trace.images));
     reader.materials = index_of(trace.materials);
   }
-  for (const auto& [name, mesh] : root["meshes"].members()) trace.meshes.push_back(read_mesh(mesh, name, reader));
+  for (const auto& [name, mesh] : root["meshes"].members()) add_mesh(mesh, name, reader);
   reader.meshes = index_of(trace.meshes);
   const std::vector<JsonCursor> frames = root["frames"].elements();
   if (frames.empty()) root["frames"].fail("at least one frame");

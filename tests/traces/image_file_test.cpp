@@ -6,6 +6,7 @@
 #include <random>
 
 #include "tests/traces/image_samples.h"
+#include "traces/trace_io.h"
 
 namespace beampipe {
 namespace {
@@ -154,6 +155,16 @@ TEST(ImageFile, RefusesOtherFiles) {
   EXPECT_EQ(error_in("\x89PNG"), "expected a PNG or JPEG file, found one that starts with \"\xef\xbf\xbdPNG\"");
   const std::vector<std::uint8_t> cmyk(4 * 64);
   EXPECT_EQ(error_in(jpeg_bytes(8, 8, cmyk, TJPF_CMYK, TJSAMP_444)), "expected a JPEG file in grey or RGB, found CMYK");
+}
+
+TEST(ImageFile, NamesThePlaceThatItIsGiven) {
+  EXPECT_EQ(decode_image(encode_png(random_image(2, 3)), "model.mtl: a.png").texels, random_image(2, 3).texels);
+  try {
+    decode_image("GIF", "model.mtl: a.png");
+    FAIL() << "no error";
+  } catch (const TraceError& error) {
+    EXPECT_STREQ(error.what(), "model.mtl: a.png: expected a PNG or JPEG file, found one that starts with \"GIF\"");
+  }
 }
 
 TEST(ImageFile, RefusesFilesThatEndEarly) {
