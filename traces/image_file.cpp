@@ -129,6 +129,8 @@ TextureImage decode_jpeg(std::string_view bytes, std::uint64_t most_texels) {
   const auto* const data = reinterpret_cast<const unsigned char*>(bytes.data());
   int width = 0, height = 0, subsampling = 0, colors = 0;
   if (tjDecompressHeader3(reader.get(), data, bytes.size(), &width, &height, &subsampling, &colors) != 0) fail();
+  // The library takes a file of tables alone for a sound one, and sets no size.
+  if (width < 1 || height < 1) throw BadImage{"a sound JPEG file", "one without a picture"};
   if (colors == TJCS_CMYK || colors == TJCS_YCCK) throw BadImage{"a JPEG file in grey or RGB", "CMYK"};
   const std::uint64_t texels = static_cast<std::uint64_t>(width) * static_cast<std::uint64_t>(height);
   TextureImage image = blank_image(static_cast<std::uint32_t>(width), static_cast<std::uint32_t>(height), most_texels,

@@ -185,6 +185,7 @@ TEST(ImageFile, RefusesDamagedFiles) {
   png[png.find("IEND") - 5] ^= 1;  // the last byte before the length of IEND
   EXPECT_EQ(error_in(png), "expected a sound PNG file, found \"IDAT: CRC error\"");
   EXPECT_EQ(error_in(png_that_claims(0, 5)), "expected a sound PNG file, found \"Invalid IHDR data\"");
+  EXPECT_EQ(error_in("\xff\xd8\xff\xd9"), "expected a sound JPEG file, found one without a picture");
   EXPECT_EQ(error_in(png_that_claims(1, 1, png_chunk("IEND"))),
             "expected a sound PNG file, found \"IEND: out of place\"");
 }
