@@ -6,7 +6,8 @@ set -euo pipefail
 
 build=(
   g++ cmake ninja-build
-  libglm-dev libopenexr-dev libimath-dev libhwy-dev libtbb-dev libpng-dev libtinyobjloader-dev
+  libglm-dev libopenexr-dev libimath-dev libhwy-dev libtbb-dev libpng-dev libjpeg62-turbo-dev libturbojpeg0-dev
+  libtinyobjloader-dev
   libcli11-dev nlohmann-json3-dev
   libboost-dev  # only headers: checksums and exact arithmetic
   node-d3       # D3, which becomes part of the report page

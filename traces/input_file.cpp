@@ -14,15 +14,16 @@ void fail_trace(const std::string& where, const std::string& expected, const std
   throw TraceError(message);
 }
 
-std::ifstream open_input_file(const std::filesystem::path& file, const std::string& where) {
-  constexpr std::uint64_t kMostBytes = std::uint64_t{16} << 30;
+std::ifstream open_input_file(const std::filesystem::path& file, const std::string& where, std::uint64_t most_bytes) {
   std::error_code error;
   const std::filesystem::file_status status = std::filesystem::status(file, error);
   if (!std::filesystem::exists(status)) fail_trace(where, "a readable file", "none");
   if (std::filesystem::is_directory(status)) fail_trace(where, "a readable file", "a folder");
   if (!std::filesystem::is_regular_file(status)) fail_trace(where, "a regular file", "a pipe or a device");
   const std::uint64_t size = std::filesystem::file_size(file, error);
-  if (!error && size > kMostBytes) fail_trace(where, "at most 16 GiB", std::to_string(size >> 30) + " GiB");
+  if (!error && size > most_bytes) {
+    fail_trace(where, "at most " + std::to_string(most_bytes >> 30) + " GiB", std::to_string(size) + " bytes");
+  }
   std::ifstream stream(file, std::ios::binary);
   stream.peek();  // some files of the kernel can be opened but not read
   if (stream.fail()) fail_trace(where, "a readable file", "none");
@@ -30,8 +31,8 @@ std::ifstream open_input_file(const std::filesystem::path& file, const std::stri
   return stream;
 }
 
-std::string read_input_file(const std::filesystem::path& file, const std::string& where) {
-  std::ifstream stream = open_input_file(file, where);
+std::string read_input_file(const std::filesystem::path& file, const std::string& where, std::uint64_t most_bytes) {
+  std::ifstream stream = open_input_file(file, where, most_bytes);
   std::string bytes;
   char part[1 << 16];
   while (stream.read(part, sizeof part) || stream.gcount() > 0)

@@ -1,6 +1,7 @@
 // Reading files that a user named, and errors about what is in them.
 #pragma once
 
+#include <cstdint>
 #include <filesystem>
 #include <fstream>
 #include <string>
@@ -11,11 +12,16 @@ namespace beampipe {
 // message is one line.
 [[noreturn]] void fail_trace(const std::string& where, const std::string& expected, const std::string& found);
 
-// Opens a regular file, or a link to one, of at most 16 GiB. Pipes and devices are refused, because they may have no
-// end. Throws TraceError for these and for a file that cannot be read; the message starts with `where`.
-std::ifstream open_input_file(const std::filesystem::path& file, const std::string& where);
+inline constexpr std::uint64_t kMostInputBytes = std::uint64_t{16} << 30;
+
+// Opens a regular file, or a link to one, of at most `most_bytes`, a multiple of 1 GiB. Pipes and devices are refused,
+// because they may have no end. Throws TraceError for these and for a file that cannot be read; the message starts with
+// `where`.
+std::ifstream open_input_file(const std::filesystem::path& file, const std::string& where,
+                              std::uint64_t most_bytes = kMostInputBytes);
 
 // Returns all bytes of a file that open_input_file() opens. Throws TraceError.
-std::string read_input_file(const std::filesystem::path& file, const std::string& where);
+std::string read_input_file(const std::filesystem::path& file, const std::string& where,
+                            std::uint64_t most_bytes = kMostInputBytes);
 
 }  // namespace beampipe

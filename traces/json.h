@@ -58,6 +58,7 @@ class Json {
   ~Json();
 
   bool is_null() const { return std::holds_alternative<std::nullptr_t>(value_); }
+  bool is_boolean() const { return std::holds_alternative<bool>(value_); }
   bool is_unsigned() const { return std::holds_alternative<std::uint64_t>(value_); }  // an integer, 0 and up
   bool is_integer() const { return is_unsigned() || std::holds_alternative<std::int64_t>(value_); }
   bool is_number() const { return is_integer() || std::holds_alternative<double>(value_); }

@@ -27,7 +27,11 @@ std::string number_text(double value) {
 
 double number_or_nan(const Json& value) { return value.is_number() ? value.get<double>() : kNan; }
 
+constexpr const char* kReal = "a number in a float's range";
+constexpr const char* kFraction = "a number 0..1";
+
 bool is_float(double value) { return std::isfinite(static_cast<float>(value)); }
+bool is_intensity(double value) { return is_float(value) && static_cast<float>(value) >= 0; }
 
 }  // namespace
 
@@ -109,6 +113,23 @@ double JsonCursor::number_between(double low, double high) const {
   return value;
 }
 
+float JsonCursor::real() const {
+  const double value = number_or_nan(*value_);
+  if (!is_float(value)) fail(kReal);
+  return static_cast<float>(value);
+}
+
+float JsonCursor::fraction() const {
+  const double value = number_or_nan(*value_);
+  if (!(value >= 0 && value <= 1)) fail(kFraction);
+  return static_cast<float>(value);
+}
+
+bool JsonCursor::boolean() const {
+  if (!value_->is_boolean()) fail("true or false");
+  return value_->get<bool>();
+}
+
 std::uint32_t JsonCursor::integer(std::uint32_t low, std::uint32_t high) const {
   const double value = number_or_nan(*value_);
   if (!(value >= low && value <= high && value == std::floor(value))) {
@@ -147,32 +168,45 @@ glm::vec3 JsonCursor::color() const {
   return colors()[0];
 }
 
+glm::vec4 JsonCursor::rgba() const {
+  expect_numbers(4);
+  return rgbas()[0];
+}
+
 glm::dmat4 JsonCursor::matrix() const { return glm::make_mat4(numbers(16).data()); }
 
 template <class Vector, class IsValid>
-std::vector<Vector> JsonCursor::triples_of(const std::string& expected, IsValid is_valid) const {
-  if (!value_->is_array() || value_->size() % 3 != 0) fail("an array of numbers, three for each item");
+std::vector<Vector> JsonCursor::vectors_of(const std::string& expected, IsValid is_valid) const {
+  constexpr std::size_t kLength = Vector::length();
+  constexpr const char* kCounts[] = {"two", "three", "four"};
+  if (!value_->is_array() || value_->size() % kLength != 0) {
+    fail(std::string("an array of numbers, ") + kCounts[kLength - 2] + " for each item");
+  }
   const Json::Array& array = value_->elements();
-  std::vector<Vector> result(array.size() / 3);
+  std::vector<Vector> result(array.size() / kLength);
   for (std::size_t i = 0; i < array.size(); ++i) {
     const double value = number_or_nan(array[i]);
     if (!is_valid(value)) at(array[i]).fail(expected);
-    result[i / 3][static_cast<int>(i % 3)] = static_cast<typename Vector::value_type>(value);
+    result[i / kLength][static_cast<int>(i % kLength)] = static_cast<typename Vector::value_type>(value);
   }
   return result;
 }
 
-std::vector<glm::vec3> JsonCursor::vec3s() const {
-  return triples_of<glm::vec3>("a number in a float's range", is_float);
-}
+std::vector<glm::vec2> JsonCursor::vec2s() const { return vectors_of<glm::vec2>(kReal, is_float); }
+std::vector<glm::vec3> JsonCursor::vec3s() const { return vectors_of<glm::vec3>(kReal, is_float); }
+std::vector<glm::vec4> JsonCursor::vec4s() const { return vectors_of<glm::vec4>(kReal, is_float); }
 
-std::vector<glm::vec3> JsonCursor::colors() const {
-  return triples_of<glm::vec3>("a number, 0 and up",
-                               [](double value) { return is_float(value) && static_cast<float>(value) >= 0; });
+std::vector<glm::vec3> JsonCursor::colors() const { return vectors_of<glm::vec3>("a number, 0 and up", is_intensity); }
+
+std::vector<glm::vec4> JsonCursor::rgbas() const {
+  std::vector<glm::vec4> result = vectors_of<glm::vec4>("a number, 0 and up", is_intensity);
+  for (std::size_t i = 0; i < result.size(); ++i)
+    if (result[i].a > 1) at(value_->elements()[4 * i + 3]).fail(kFraction);
+  return result;
 }
 
 std::vector<glm::uvec3> JsonCursor::triples(std::uint32_t count) const {
-  return triples_of<glm::uvec3>(
+  return vectors_of<glm::uvec3>(
       "an integer below the number of positions, " + std::to_string(count),
       [count](double value) { return value >= 0 && value < count && value == std::floor(value); });
 }

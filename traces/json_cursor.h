@@ -31,18 +31,28 @@ class JsonCursor {
   // Elements of an array.
   std::vector<JsonCursor> elements() const;
 
+  bool is_null() const { return value_->is_null(); }
   double number() const;
   double number_between(double low, double high) const;  // low < number < high
+  float real() const;                                    // finite as a float
+  float fraction() const;                                // 0..1
   std::uint32_t integer(std::uint32_t low, std::uint32_t high) const;
+  bool boolean() const;
   std::string string() const;
   std::size_t choice(std::initializer_list<std::string_view> names) const;  // index of the string in `names`
 
   glm::dvec3 vec3() const;
   glm::vec3 color() const;  // each 0 and up, finite as a float
+  glm::vec4 rgba() const;   // the same, and alpha 0..1
   glm::dmat4 matrix() const;
-  std::vector<glm::vec3> vec3s() const;                        // flat array of triples, finite as floats
-  std::vector<glm::vec3> colors() const;                       // the same, 0 and up
-  std::vector<glm::uvec3> triples(std::uint32_t count) const;  // flat array of triples of integers below `count`
+
+  // Flat arrays: the numbers of one vector after those of the other.
+  std::vector<glm::vec2> vec2s() const;  // finite as floats
+  std::vector<glm::vec3> vec3s() const;
+  std::vector<glm::vec4> vec4s() const;
+  std::vector<glm::vec3> colors() const;                       // 0 and up
+  std::vector<glm::vec4> rgbas() const;                        // 0 and up, and alpha 0..1
+  std::vector<glm::uvec3> triples(std::uint32_t count) const;  // integers below `count`
 
   std::string where() const;  // "FILE: POINTER"; takes time in proportion to the file
   std::string found() const;  // the value in a few words
@@ -55,7 +65,7 @@ class JsonCursor {
   void expect_numbers(std::size_t count) const;  // an array of this length
   std::vector<double> numbers(std::size_t count) const;
   template <class Vector, class IsValid>
-  std::vector<Vector> triples_of(const std::string& expected, IsValid is_valid) const;
+  std::vector<Vector> vectors_of(const std::string& expected, IsValid is_valid) const;
 
   const Json* value_;
   const Json* root_;

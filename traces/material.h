@@ -52,4 +52,16 @@ struct Material {
   bool unlit = false;         // the colour is the base colour, whatever the lights
 };
 
+// A material's textures, by their names in traces.
+struct TextureSlot {
+  const char* name;
+  std::optional<Texture> Material::*texture;
+};
+inline constexpr TextureSlot kTextureSlots[] = {
+    {"base_texture", &Material::base_texture},
+    {"metallic_roughness_texture", &Material::metallic_roughness_texture},
+    {"normal_texture", &Material::normal_texture},
+    {"emissive_texture", &Material::emissive_texture},
+};
+
 }  // namespace beampipe

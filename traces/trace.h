@@ -20,6 +20,7 @@ enum class Cull { none, back, front };  // front faces are counter-clockwise in 
 enum class Shading { unlit, lambert };
 
 inline constexpr std::uint32_t kNoMaterial = ~0u;
+inline constexpr glm::vec3 kDefaultColor{0.8f};  // of flat triangles to which nothing gives a colour
 
 // Indexed triangles. Each is either flat, with one colour, or has a material, whose inputs vary over the triangle.
 struct Mesh {

@@ -17,10 +17,10 @@ struct TraceError : std::runtime_error {
 };
 
 struct ReadOptions {
-  bool allow_outside = false;  // mesh paths may leave the trace's folder; they must still be regular files
+  bool allow_outside = false;  // paths may leave the trace's folder; what they name must still be regular files
 };
 
-// Reads and validates a trace with all its meshes. Throws TraceError.
+// Reads and validates a trace of version 1 or 2, with all its meshes and images. Throws TraceError.
 Trace read_trace(const std::filesystem::path& file, const ReadOptions& options = {});
 
 // Reads one OBJ with its .mtl (Kd per face; faces without a material are 0.8 grey; polygons are triangulated).
@@ -29,9 +29,10 @@ Trace read_trace(const std::filesystem::path& file, const ReadOptions& options =
 // TraceError.
 Mesh read_obj(const std::filesystem::path& file, const std::string& named_by);
 
-// Writes a trace with its meshes inline; read_trace() gives back the same bits. A frame with a camera is written with
-// it in place of its view and projection. The file appears under its name when it is complete. Throws
-// std::runtime_error, with one line, and leaves the file that was there as it is.
+// Writes a trace with its meshes and images inline; read_trace() gives back the same bits. The version is 1 if that can
+// express the trace, else 2. A frame with a camera is written with it in place of its view and projection. The file
+// appears under its name when it is complete. Throws std::runtime_error, with one line, and leaves the file that was
+// there as it is.
 void write_trace(const Trace& trace, const std::filesystem::path& file);
 
 }  // namespace beampipe

@@ -1,9 +1,13 @@
 #include <cmath>
 #include <limits>
-#include <map>
+#include <optional>
+#include <utility>
 
 #include "traces/json_cursor.h"
+#include "traces/side_file.h"
+#include "traces/surface_reader.h"
 #include "traces/trace_io.h"
+#include "traces/unit_vector.h"
 
 namespace beampipe {
 namespace {
@@ -12,55 +16,113 @@ namespace fs = std::filesystem;
 
 constexpr std::uint32_t kLargestSide = 16384;
 constexpr std::uint64_t kMostTriangles = 1'000'000'000;  // of a frame, whose triangles are numbered in 32 bits
-constexpr glm::vec3 kGrey{0.8f};
+constexpr const char* kMaterialName = "the name of a material in /materials";
 constexpr double kInfinity = std::numeric_limits<double>::infinity();
 
-using MeshIndex = std::map<std::string, std::uint32_t>;
+// What the parts of a trace refer to.
+struct Reader {
+  const fs::path& file;
+  const ReadOptions& options;
+  int version;
+  Trace trace;
+  NameIndex materials{}, meshes{};
+};
 
-bool is_inside(const fs::path& path, const fs::path& folder) {
-  const fs::path relative = path.lexically_relative(folder);
-  return !relative.empty() && *relative.begin() != "..";
-}
-
-// Returns the path of an OBJ. Whether it stays in the trace's folder is decided after following symbolic links.
-fs::path mesh_path(const JsonCursor& at, const fs::path& trace_file, const ReadOptions& options) {
-  const fs::path named = at.string();
-  if (named.native().find('\0') != std::string::npos) at.fail("a path without NUL characters");
-  const fs::path folder = trace_file.has_parent_path() ? trace_file.parent_path() : ".";
-  std::error_code error;
-  const fs::path path = fs::weakly_canonical(folder / named, error);
-  if (error) at.fail("a path that can be followed", in_quotes(named.string()) + ": " + error.message());
-  if (!options.allow_outside && (named.is_absolute() || !is_inside(path, fs::canonical(folder)))) {
-    at.fail("a path that stays in the trace's folder");
+template <class Vector>
+std::vector<Vector> per_position(const JsonCursor& at, std::vector<Vector> vectors, const Mesh& mesh) {
+  if (vectors.size() != mesh.positions.size()) {
+    at.fail("an array of " + std::to_string(Vector::length() * mesh.positions.size()) + " numbers, " +
+            std::to_string(Vector::length()) + " for each position");
   }
-  const fs::file_status status = fs::status(path, error);
-  if (!fs::exists(status)) at.fail("an existing file");
-  if (!fs::is_regular_file(status)) at.fail("a regular file");
-  return folder / named;
+  return vectors;
 }
 
-Mesh read_inline_mesh(const JsonCursor& at) {
-  at.expect_keys({"positions", "indices", "colors"});
+// Gives all vectors length 1, in the first three of their components.
+template <class Vector>
+void normalize_all(const JsonCursor& at, std::vector<Vector>& vectors) {
+  for (std::size_t i = 0; i < vectors.size(); ++i) {
+    const std::optional<glm::vec3> unit = unit_vector(glm::vec3(vectors[i]));
+    if (!unit) at.fail("vectors with a length", "none at position " + std::to_string(i));
+    for (int k = 0; k < 3; ++k) vectors[i][k] = (*unit)[k];
+  }
+}
+
+void read_attributes(const JsonCursor& at, Mesh& mesh) {
+  if (const auto normals = at.find("normals")) {
+    mesh.normals = per_position(*normals, normals->vec3s(), mesh);
+    normalize_all(*normals, mesh.normals);
+  }
+  if (const auto tangents = at.find("tangents")) {
+    mesh.tangents = per_position(*tangents, tangents->vec4s(), mesh);
+    normalize_all(*tangents, mesh.tangents);
+    for (std::size_t i = 0; i < mesh.tangents.size(); ++i) {
+      if (std::abs(mesh.tangents[i].w) != 1) tangents->fail("w of 1 or -1", "another at position " + std::to_string(i));
+    }
+  }
+  if (const auto uvs = at.find("uv0")) mesh.uvs[0] = per_position(*uvs, uvs->vec2s(), mesh);
+  if (const auto uvs = at.find("uv1")) mesh.uvs[1] = per_position(*uvs, uvs->vec2s(), mesh);
+  if (const auto colors = at.find("vertex_colors")) mesh.vertex_colors = per_position(*colors, colors->rgbas(), mesh);
+}
+
+// "materials" lists those that the mesh uses, and "material_of_triangle" says which of them each triangle has.
+void read_mesh_materials(const JsonCursor& at, const Reader& reader, Mesh& mesh) {
+  const auto names = at.find("materials");
+  const auto of_triangle = at.find("material_of_triangle");
+  if (!names && of_triangle) of_triangle->fail("\"materials\" beside it", "none");
+  if (!names) return;
+  std::vector<std::uint32_t> materials;
+  for (const JsonCursor& name : names->elements()) {
+    materials.push_back(name.is_null() ? kNoMaterial : read_name(name, reader.materials, kMaterialName));
+    if (!name.is_null()) expect_uvs(name, reader.trace.materials[materials.back()], mesh);
+  }
+  if (materials.empty() || (materials.size() > 1 && !of_triangle)) {
+    names->fail("one material, or \"material_of_triangle\" beside several");
+  }
+  mesh.materials.assign(mesh.triangles.size(), materials[0]);
+  if (!of_triangle) return;
+  const std::vector<JsonCursor> numbers = of_triangle->elements();
+  if (numbers.size() != mesh.triangles.size()) {
+    of_triangle->fail("an array of " + std::to_string(mesh.triangles.size()) + " numbers, one for each triangle");
+  }
+  const auto last = static_cast<std::uint32_t>(materials.size() - 1);
+  for (std::size_t i = 0; i < numbers.size(); ++i) mesh.materials[i] = materials[numbers[i].integer(0, last)];
+}
+
+Mesh read_inline_mesh(const JsonCursor& at, const std::string& name, const Reader& reader) {
+  if (reader.version == 1) {
+    at.expect_keys({"positions", "indices", "colors"});
+  } else {
+    at.expect_keys({"positions", "indices", "colors", "normals", "tangents", "uv0", "uv1", "vertex_colors", "materials",
+                    "material_of_triangle"});
+  }
   Mesh mesh;
+  mesh.name = name;
   mesh.positions = at["positions"].vec3s();
   mesh.triangles = at["indices"].triples(static_cast<std::uint32_t>(mesh.positions.size()));
-  mesh.colors.assign(mesh.triangles.size(), kGrey);
+  mesh.colors.assign(mesh.triangles.size(), kDefaultColor);
   if (const auto colors = at.find("colors")) {
     mesh.colors = colors->colors();
     if (mesh.colors.size() != mesh.triangles.size()) {
       colors->fail("an array of " + std::to_string(3 * mesh.triangles.size()) + " numbers, r, g, b for each triangle");
     }
   }
+  read_attributes(at, mesh);
+  read_mesh_materials(at, reader, mesh);
   return mesh;
 }
 
-Mesh read_mesh(const JsonCursor& at, const fs::path& trace_file, const ReadOptions& options) {
+void add_mesh(const JsonCursor& at, const std::string& name, Reader& reader) {
   if (!at.has("obj") && !at.has("positions") && !at.has("indices")) {
     at.fail("the key \"obj\", or \"positions\" and \"indices\"", "none");
   }
-  if (!at.has("obj")) return read_inline_mesh(at);
-  at.expect_keys({"obj"});
-  return read_obj(mesh_path(at["obj"], trace_file, options), at["obj"].where());
+  if (at.has("obj")) {
+    at.expect_keys({"obj"});
+    const JsonCursor obj = at["obj"];
+    reader.trace.meshes.push_back(read_obj(side_file(obj, reader.file, reader.options.allow_outside), obj.where()));
+    reader.trace.meshes.back().name = name;
+  } else {
+    reader.trace.meshes.push_back(read_inline_mesh(at, name, reader));
+  }
 }
 
 Camera read_camera(const JsonCursor& at) {
@@ -93,41 +155,82 @@ void read_view(const JsonCursor& at, Frame& frame) {
   }
 }
 
-glm::vec3 read_light(const JsonCursor& at) {
-  at.expect_keys({"direction"});
-  const glm::dvec3 direction = at["direction"].vec3();
-  const double length = glm::length(direction);
-  if (!(length > 0) || std::isinf(length)) at["direction"].fail("a vector with a length", "none or an infinite one");
-  // A vector that is normalised to a float's precision is kept, so that writing and reading change no bit.
-  return glm::vec3(std::abs(length - 1) < 1e-6 ? direction : direction / length);
+glm::vec3 read_direction(const JsonCursor& at) {
+  const std::optional<glm::vec3> direction = unit_vector(at.vec3());
+  if (!direction) at.fail("a vector with a length", "none or an infinite one");
+  return *direction;
 }
 
-Draw read_draw(const JsonCursor& at, const MeshIndex& meshes, bool has_light) {
-  at.expect_keys({"mesh", "transform", "kd", "cull", "shading"});
+Light read_light(const JsonCursor& at) {
+  at.expect_keys({"direction", "color"});
+  Light light{.direction = read_direction(at["direction"])};
+  if (const auto color = at.find("color")) light.color = color->color();
+  return light;
+}
+
+Ambient read_ambient(const JsonCursor& at) {
+  at.expect_keys({"sky", "ground", "up"});
+  Ambient ambient{.sky = at["sky"].color(), .ground = at["ground"].color()};
+  if (const auto up = at.find("up")) ambient.up = read_direction(*up);
+  return ambient;
+}
+
+// Version 1 has one light, which is white.
+Lighting read_lighting(const JsonCursor& at) {
+  Lighting lighting;
+  if (const auto light = at.find("light")) {
+    light->expect_keys({"direction"});
+    lighting.lights.push_back({.direction = read_direction((*light)["direction"])});
+  }
+  if (const auto lights = at.find("lights")) {
+    const std::vector<JsonCursor> elements = lights->elements();
+    if (elements.size() > kMostLights) lights->fail("at most " + std::to_string(kMostLights) + " lights");
+    for (const JsonCursor& light : elements) lighting.lights.push_back(read_light(light));
+  }
+  if (const auto ambient = at.find("ambient")) lighting.ambient = read_ambient(*ambient);
+  return lighting;
+}
+
+Draw read_draw(const JsonCursor& at, const Reader& reader, const Lighting& lighting) {
+  if (reader.version == 1) {
+    at.expect_keys({"mesh", "transform", "kd", "cull", "shading"});
+  } else {
+    at.expect_keys({"mesh", "transform", "kd", "cull", "shading", "material"});
+  }
   Draw draw;
-  const auto mesh = meshes.find(at["mesh"].string());
-  if (mesh == meshes.end()) at["mesh"].fail("the name of a mesh in /meshes");
-  draw.mesh = mesh->second;
+  draw.mesh = read_name(at["mesh"], reader.meshes, "the name of a mesh in /meshes");
   if (const auto transform = at.find("transform")) draw.transform = transform->matrix();
   if (const auto kd = at.find("kd")) draw.kd = kd->color();
   if (const auto cull = at.find("cull")) draw.cull = Cull(cull->choice({"none", "back", "front"}));
   if (const auto shading = at.find("shading")) draw.shading = Shading(shading->choice({"unlit", "lambert"}));
-  if (draw.shading == Shading::lambert && !has_light) at["shading"].fail("a \"light\" in the frame", "none");
+  if (draw.shading == Shading::lambert && lighting.lights.empty() && !lighting.ambient) {
+    at["shading"].fail(reader.version == 1 ? "a \"light\" in the frame" : "\"lights\" or \"ambient\" in the frame",
+                       "none");
+  }
+  if (const auto material = at.find("material")) {
+    if (draw.kd) at.fail("either \"kd\" or \"material\"", "both");
+    draw.material = read_name(*material, reader.materials, kMaterialName);
+    expect_uvs(*material, reader.trace.materials[*draw.material], reader.trace.meshes[draw.mesh]);
+  }
   return draw;
 }
 
-Frame read_frame(const JsonCursor& at, const MeshIndex& index, const std::vector<Mesh>& meshes) {
-  at.expect_keys({"width", "height", "background", "camera", "view", "projection", "light", "draws"});
+Frame read_frame(const JsonCursor& at, const Reader& reader) {
+  if (reader.version == 1) {
+    at.expect_keys({"width", "height", "background", "camera", "view", "projection", "light", "draws"});
+  } else {
+    at.expect_keys({"width", "height", "background", "camera", "view", "projection", "lights", "ambient", "draws"});
+  }
   Frame frame;
   frame.width = at["width"].integer(1, kLargestSide);
   frame.height = at["height"].integer(1, kLargestSide);
   if (const auto background = at.find("background")) frame.background = background->color();
   read_view(at, frame);
-  if (const auto light = at.find("light")) frame.lighting.lights.push_back({.direction = read_light(*light)});
+  frame.lighting = read_lighting(at);
   std::uint64_t triangles = 0;
   for (const JsonCursor& draw : at["draws"].elements()) {
-    frame.draws.push_back(read_draw(draw, index, !frame.lighting.lights.empty()));
-    triangles += meshes[frame.draws.back().mesh].triangles.size();
+    frame.draws.push_back(read_draw(draw, reader, frame.lighting));
+    triangles += reader.trace.meshes[frame.draws.back().mesh].triangles.size();
     if (triangles > kMostTriangles) {
       draw.fail("at most " + std::to_string(kMostTriangles) + " triangles in a frame", std::to_string(triangles));
     }
@@ -135,26 +238,36 @@ Frame read_frame(const JsonCursor& at, const MeshIndex& index, const std::vector
   return frame;
 }
 
+int read_version(const JsonCursor& at) {
+  const double version = at.number();
+  if (version != 1 && version != 2) at.fail("version 1 or 2");
+  return static_cast<int>(version);
+}
+
 }  // namespace
 
 Trace read_trace(const fs::path& file, const ReadOptions& options) {
-  const std::string name = file.string();
-  const Json json = parse_json(name);
-  const JsonCursor root(json, name);
-  root.expect_keys({"beampipe_trace", "meshes", "frames"});
-  if (root["beampipe_trace"].number() != 1) root["beampipe_trace"].fail("version 1");
-
-  Trace trace;
-  MeshIndex index;
-  for (const auto& [key, at] : root["meshes"].members()) {
-    index[key] = static_cast<std::uint32_t>(trace.meshes.size());
-    trace.meshes.push_back(read_mesh(at, file, options));
-    trace.meshes.back().name = key;
+  const std::string where = file.string();
+  const Json json = parse_json(where);
+  const JsonCursor root(json, where);
+  Reader reader{.file = file, .options = options, .version = read_version(root["beampipe_trace"]), .trace = {}};
+  if (reader.version == 1) {
+    root.expect_keys({"beampipe_trace", "meshes", "frames"});
+  } else {
+    root.expect_keys({"beampipe_trace", "images", "materials", "meshes", "frames"});
   }
+  Trace& trace = reader.trace;
+  if (const auto images = root.find("images")) trace.images = read_images(*images, file, options);
+  if (const auto materials = root.find("materials")) {
+    trace.materials = read_materials(*materials, index_of(trace.images));
+    reader.materials = index_of(trace.materials);
+  }
+  for (const auto& [name, mesh] : root["meshes"].members()) add_mesh(mesh, name, reader);
+  reader.meshes = index_of(trace.meshes);
   const std::vector<JsonCursor> frames = root["frames"].elements();
   if (frames.empty()) root["frames"].fail("at least one frame");
-  for (const JsonCursor& at : frames) trace.frames.push_back(read_frame(at, index, trace.meshes));
-  return trace;
+  for (const JsonCursor& frame : frames) trace.frames.push_back(read_frame(frame, reader));
+  return std::move(trace);
 }
 
 }  // namespace beampipe

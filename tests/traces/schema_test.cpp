@@ -1,8 +1,11 @@
 // The schema and the reader must not drift apart: both name, require and limit the same things.
 #include <nlohmann/json.hpp>
 #include <set>
+#include <tuple>
 
 #include "tests/traces/test_folder.h"
+#include "traces/base64.h"
+#include "traces/image_file.h"
 
 namespace beampipe {
 namespace {
@@ -10,8 +13,8 @@ namespace {
 using Json = nlohmann::ordered_json;
 using Pointer = Json::json_pointer;
 
-// Every key of the format, in two frames and two meshes.
-const char kComplete[] = R"({ "beampipe_trace": 1,
+// Every key of version 1, in two frames and two meshes.
+const char kVersion1[] = R"({ "beampipe_trace": 1,
   "meshes": { "file": {"obj": "mesh.obj"},
               "inline": {"positions": [0,0,0, 1,0,0, 0,1,0], "indices": [0,1,2], "colors": [1,0,0]} },
   "frames": [ { "width": 4, "height": 3, "background": [0,0,1],
@@ -23,24 +26,93 @@ const char kComplete[] = R"({ "beampipe_trace": 1,
                 "view": [1,0,0,0, 0,1,0,0, 0,0,1,0, 0,0,0,1],
                 "projection": [1,0,0,0, 0,1,0,0, 0,0,1,0, 0,0,0,1] } ] })";
 
-// Objects of the complete trace, and the part of the schema that describes each.
-const std::pair<const char*, const char*> kObjects[] = {
-    {"", ""},
-    {"/meshes/file", "/$defs/obj_mesh"},
-    {"/meshes/inline", "/$defs/inline_mesh"},
-    {"/frames/0", "/$defs/frame"},
-    {"/frames/1", "/$defs/frame"},
-    {"/frames/0/camera", "/$defs/camera"},
-    {"/frames/0/light", "/$defs/light"},
-    {"/frames/0/draws/0", "/$defs/draw"},
+// Every key of version 2. The image is one white texel.
+const char kVersion2[] = R"({ "beampipe_trace": 2,
+  "images": { "file": {"file": "white.png"}, "inline": {"data": "DATA"} },
+  "materials": { "m": { "base_color": [1,1,1,0.5],
+                        "base_texture": {"image": "inline", "uv_set": 1, "wrap_u": "clamp", "wrap_v": "mirror",
+                                         "magnify": "nearest", "minify": "nearest", "mip": "none"},
+                        "metallic": 0.1, "roughness": 0.2, "metallic_roughness_texture": {"image": "file"},
+                        "normal_texture": {"image": "file"}, "normal_scale": -2, "emissive": [0,1,2],
+                        "emissive_texture": {"image": "file"}, "alpha_mode": "mask", "alpha_cutoff": 0.3,
+                        "double_sided": true, "unlit": false } },
+  "meshes": { "file": {"obj": "mesh.obj"},
+              "inline": {"positions": [0,0,0, 1,0,0, 0,1,0], "indices": [0,1,2], "colors": [1,0,0],
+                         "normals": [0,0,1, 0,0,1, 0,0,1], "tangents": [1,0,0,1, 1,0,0,1, 1,0,0,-1],
+                         "uv0": [0,0, 1,0, 0,1], "uv1": [0,0, 2,0, 0,2],
+                         "vertex_colors": [1,0,0,1, 0,1,0,1, 0,0,1,0], "materials": ["m"],
+                         "material_of_triangle": [0]} },
+  "frames": [ { "width": 4, "height": 3, "background": [0,0,1],
+                "camera": {"eye": [0,0,3], "target": [0,0,0], "up": [0,1,0], "fovy_deg": 36, "near": 1, "far": 9},
+                "lights": [{"direction": [0,0,-1], "color": [1,2,3]}],
+                "ambient": {"sky": [1,1,1], "ground": [0,0,0], "up": [0,1,0]},
+                "draws": [ {"mesh": "inline", "transform": [1,0,0,0, 0,1,0,0, 0,0,1,0, 0,0,0,1], "kd": [1,1,1],
+                            "cull": "back", "shading": "unlit"},
+                           {"mesh": "inline", "material": "m"} ] },
+              { "width": 4, "height": 3, "draws": [],
+                "view": [1,0,0,0, 0,1,0,0, 0,0,1,0, 0,0,0,1],
+                "projection": [1,0,0,0, 0,1,0,0, 0,0,1,0, 0,0,0,1] } ] })";
+
+// An object of a complete trace, the part of the schema that describes it, and, in version 1, the part that lists its
+// keys.
+struct Object {
+  int version;
+  const char *at, *described_by, *keys = "";
 };
+const Object kObjects[] = {
+    {1, "", "", "/then/propertyNames"},
+    {1, "/meshes/file", "/$defs/obj_mesh"},
+    {1, "/meshes/inline", "/$defs/inline_mesh", "/then/properties/meshes/additionalProperties/propertyNames"},
+    {1, "/frames/0", "/$defs/frame", "/then/properties/frames/items/propertyNames"},
+    {1, "/frames/1", "/$defs/frame", "/then/properties/frames/items/propertyNames"},
+    {1, "/frames/0/camera", "/$defs/camera"},
+    {1, "/frames/0/light", "/$defs/frame/properties/light"},
+    {1, "/frames/0/draws/0", "/$defs/draw", "/then/properties/frames/items/properties/draws/items/propertyNames"},
+    {2, "", ""},
+    {2, "/images/file", "/$defs/image_file"},
+    {2, "/images/inline", "/$defs/inline_image"},
+    {2, "/materials/m", "/$defs/material"},
+    {2, "/materials/m/base_texture", "/$defs/texture"},
+    {2, "/meshes/file", "/$defs/obj_mesh"},
+    {2, "/meshes/inline", "/$defs/inline_mesh"},
+    {2, "/frames/0", "/$defs/frame"},
+    {2, "/frames/1", "/$defs/frame"},
+    {2, "/frames/0/camera", "/$defs/camera"},
+    {2, "/frames/0/lights/0", "/$defs/light"},
+    {2, "/frames/0/ambient", "/$defs/ambient"},
+    {2, "/frames/0/draws/0", "/$defs/draw"},
+    {2, "/frames/0/draws/1", "/$defs/draw"},
+};
+
+// Not required by the schema's `required`, but by its oneOf, by other keys, or by what is named elsewhere.
+const std::set<std::string> kNeededElsewhere = {"camera", "view",      "projection", "file", "data",
+                                                "images", "materials", "uv0",        "uv1"};
 
 class SchemaTest : public FolderTest {
  protected:
   SchemaTest() {
+    const TextureImage white{.name = "", .width = 1, .height = 1, .texels = {glm::u8vec4(255)}};
     write("mesh.obj", "v 0 0 0\nv 1 0 0\nv 0 1 0\nf 1 2 3\n");
+    write("white.png", encode_png(white));
+    complete_[0] = Json::parse(kVersion1);
+    complete_[1] = Json::parse(kVersion2);
+    complete_[1]["images"]["inline"]["data"] = to_base64(encode_png(white));
     std::ifstream file(std::filesystem::path(BEAMPIPE_SOURCE_FOLDER) / "traces/trace.schema.json");
     schema_ = Json::parse(file);
+  }
+
+  const Json& complete(int version) const { return complete_[version - 1]; }
+
+  // The keys that the version has, in the order of the schema.
+  std::vector<std::string> keys_of(const Object& object) const {
+    std::vector<std::string> keys;
+    const Json& properties = schema_.at(Pointer(object.described_by))["properties"];
+    for (const auto& [key, value] : properties.items())
+      if (object.version == 1 || key != "light") keys.push_back(key);
+    if (*object.keys == '\0') return keys;
+    const auto known = schema_.at(Pointer(object.keys))["enum"].get<std::set<std::string>>();
+    std::erase_if(keys, [&](const std::string& key) { return !known.contains(key); });
+    return keys;
   }
 
   std::string error_in(const Json& json) const {
@@ -61,43 +133,41 @@ class SchemaTest : public FolderTest {
   }
 
   Json schema_;
+
+ private:
+  Json complete_[2];
 };
 
-TEST_F(SchemaTest, TheCompleteTraceIsComplete) {
-  const Json complete = Json::parse(kComplete);
-  ASSERT_EQ(error_in(complete), "no error");
-  std::set<std::pair<std::string, std::string>> named, used;
-  for (const auto& [at, described_by] : kObjects) {
-    for (const auto& [key, value] : schema_.at(Pointer(described_by))["properties"].items())
-      named.emplace(described_by, key);
-    for (const auto& [key, value] : complete.at(Pointer(at)).items()) used.emplace(described_by, key);
+TEST_F(SchemaTest, TheCompleteTracesAreComplete) {
+  std::set<std::tuple<int, std::string, std::string>> named, used;
+  for (const Object& object : kObjects) {
+    ASSERT_EQ(error_in(complete(object.version)), "no error");
+    for (const std::string& key : keys_of(object)) named.emplace(object.version, object.described_by, key);
+    for (const auto& [key, value] : complete(object.version).at(Pointer(object.at)).items())
+      used.emplace(object.version, object.described_by, key);
   }
   EXPECT_EQ(named, used);
 }
 
 TEST_F(SchemaTest, TheReaderKnowsTheSameKeys) {
-  for (const auto& [at, described_by] : kObjects) {
-    const Json& object = schema_.at(Pointer(described_by));
-    EXPECT_EQ(object["additionalProperties"], false) << described_by;
+  for (const Object& object : kObjects) {
+    EXPECT_EQ(schema_.at(Pointer(object.described_by))["additionalProperties"], false) << object.described_by;
     std::string keys;
-    for (const auto& [key, value] : object["properties"].items()) keys += (keys.empty() ? "\"" : ", \"") + key + '"';
-    Json trace = Json::parse(kComplete);
-    trace.at(Pointer(at))["typo"] = 1;
+    for (const std::string& key : keys_of(object)) keys += (keys.empty() ? "\"" : ", \"") + key + '"';
+    Json trace = complete(object.version);
+    trace.at(Pointer(object.at))["typo"] = 1;
     EXPECT_EQ(error_in(trace),
-              std::string("scene.json: ") + at + "/typo: expected one of the keys " + keys + ", found \"typo\"");
+              std::string("scene.json: ") + object.at + "/typo: expected one of the keys " + keys + ", found \"typo\"");
   }
 }
 
 TEST_F(SchemaTest, TheReaderRequiresTheSameKeys) {
-  for (const auto& [at, described_by] : kObjects) {
-    const Json& object = schema_.at(Pointer(described_by));
-    const auto required = object["required"].get<std::set<std::string>>();
-    const Json complete = Json::parse(kComplete).at(Pointer(at));
-    for (const auto& [key, value] : complete.items()) {
-      Json trace = Json::parse(kComplete);
+  for (const auto& [version, at, described_by, keys] : kObjects) {
+    const auto required = schema_.at(Pointer(described_by))["required"].get<std::set<std::string>>();
+    for (const auto& [key, value] : complete(version).at(Pointer(at)).items()) {
+      Json trace = complete(version);
       trace.at(Pointer(at)).erase(key);
-      // The schema's oneOf says that a frame needs a camera or matrices; the meshes are needed by the draw.
-      const bool is_needed = required.contains(key) || key == "camera" || key == "view" || key == "projection";
+      const bool is_needed = required.contains(key) || kNeededElsewhere.contains(key);
       EXPECT_EQ(error_in(trace) != "no error", is_needed) << at << " without " << key;
     }
   }
@@ -107,13 +177,12 @@ TEST_F(SchemaTest, TheReaderRequiresTheSameTypes) {
   const std::pair<const char*, Json> values[] = {
       {"object", Json::object()}, {"string", "text"}, {"number", 1.5},
       {"boolean", true},          {"null", nullptr},  {"array", Json::parse("[[]]")}};
-  for (const auto& [at, described_by] : kObjects) {
-    const Json complete = Json::parse(kComplete).at(Pointer(at));
-    for (const auto& [key, value] : complete.items()) {
+  for (const auto& [version, at, described_by, keys] : kObjects) {
+    for (const auto& [key, value] : complete(version).at(Pointer(at)).items()) {
       const Json rule = property(described_by, key);
       for (const auto& [type, mistyped] : values) {
         if (rule.value("type", "") == type) continue;
-        Json trace = Json::parse(kComplete);
+        Json trace = complete(version);
         trace.at(Pointer(at))[key] = mistyped;
         const std::string start = std::string("scene.json: ") + at + '/' + key + ": expected ";
         EXPECT_EQ(error_in(trace).substr(0, start.size()), start) << type;
@@ -124,13 +193,12 @@ TEST_F(SchemaTest, TheReaderRequiresTheSameTypes) {
 
 TEST_F(SchemaTest, TheReaderHasTheSameLimits) {
   int limits = 0;
-  for (const auto& [at, described_by] : kObjects) {
-    const Json complete = Json::parse(kComplete).at(Pointer(at));
-    for (const auto& [key, value] : complete.items()) {
+  for (const auto& [version, at, described_by, keys] : kObjects) {
+    for (const auto& [key, value] : complete(version).at(Pointer(at)).items()) {
       const Json rule = property(described_by, key);
       const auto expect = [&](const char* word, bool accepted, const Json& replacement) {
         ++limits;
-        Json trace = Json::parse(kComplete);
+        Json trace = complete(version);
         trace.at(Pointer(at))[key] = replacement;
         EXPECT_EQ(error_in(trace) == "no error", accepted) << at << '/' << key << ' ' << word << ' ' << replacement;
       };
@@ -142,7 +210,7 @@ TEST_F(SchemaTest, TheReaderHasTheSameLimits) {
       if (rule.contains("exclusiveMinimum")) expect("exclusiveMinimum", false, number("exclusiveMinimum"));
       if (rule.contains("exclusiveMaximum")) expect("exclusiveMaximum", false, number("exclusiveMaximum"));
       if (rule.contains("exclusiveMaximum")) expect("exclusiveMaximum", true, number("exclusiveMaximum") - 1);
-      if (rule.contains("enum")) {
+      if (rule.contains("enum") && key != "beampipe_trace") {
         for (const Json& choice : rule["enum"]) expect("enum", true, choice);
       }
       if (rule.contains("minItems") && rule.contains("maxItems")) {
@@ -156,12 +224,15 @@ TEST_F(SchemaTest, TheReaderHasTheSameLimits) {
       }
     }
   }
-  EXPECT_GT(limits, 30);
+  EXPECT_GT(limits, 90);
   EXPECT_EQ(schema_["properties"]["frames"]["minItems"], 1);
+  EXPECT_EQ(schema_["properties"]["beampipe_trace"]["enum"], (std::vector<int>{1, 2}));
+  EXPECT_EQ(schema_["$defs"]["frame"]["properties"]["lights"]["maxItems"], kMostLights);
+  EXPECT_EQ(schema_["$defs"]["rgba"]["prefixItems"][3]["maximum"], 1);
 }
 
 TEST_F(SchemaTest, EveryKeyIsDescribed) {
-  for (const auto& [at, described_by] : kObjects) {
+  for (const auto& [version, at, described_by, keys] : kObjects) {
     for (const auto& [key, value] : schema_.at(Pointer(described_by))["properties"].items()) {
       EXPECT_GT(property(described_by, key).value("description", "").size(), 10u) << described_by << '/' << key;
     }

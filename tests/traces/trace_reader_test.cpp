@@ -117,7 +117,8 @@ struct Case {
 
 TEST_F(TraceReaderTest, SaysWhereAndWhatIsWrong) {
   const Case cases[] = {
-      {"/beampipe_trace", "2", "/beampipe_trace: expected version 1, found 2"},
+      {"/beampipe_trace", "3", "/beampipe_trace: expected version 1 or 2, found 3"},
+      {"/beampipe_trace", "1.5", "/beampipe_trace: expected version 1 or 2, found 1.5"},
       {"/beampipe_trace", "\"1\"", "/beampipe_trace: expected a number, found \"1\""},
       {"/meshes", "[]", "/meshes: expected an object, found an array of 0"},
       {"/meshes/b", "7", "/meshes/b: expected an object, found 7"},

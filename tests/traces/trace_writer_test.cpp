@@ -1,5 +1,7 @@
 #include <bit>
 #include <cmath>
+#include <cstring>
+#include <functional>
 #include <limits>
 #include <random>
 
@@ -7,6 +9,12 @@
 
 namespace beampipe {
 namespace {
+
+template <typename T>
+void expect_same_bits(const std::vector<T>& a, const std::vector<T>& b) {
+  ASSERT_EQ(a.size(), b.size());
+  EXPECT_TRUE(a.empty() || std::memcmp(a.data(), b.data(), a.size() * sizeof(T)) == 0);
+}
 
 template <typename T>
 void expect_same_bits(const T& a, const T& b) {
@@ -18,10 +26,38 @@ void expect_same_bits(const T& a, const T& b) {
 void expect_same(const Mesh& a, const Mesh& b) {
   EXPECT_EQ(a.name, b.name);
   EXPECT_EQ(a.triangles, b.triangles);
-  ASSERT_EQ(a.positions.size(), b.positions.size());
-  ASSERT_EQ(a.colors.size(), b.colors.size());
-  for (std::size_t i = 0; i < a.positions.size(); ++i) expect_same_bits(a.positions[i], b.positions[i]);
-  for (std::size_t i = 0; i < a.colors.size(); ++i) expect_same_bits(a.colors[i], b.colors[i]);
+  expect_same_bits(a.positions, b.positions);
+  expect_same_bits(a.colors, b.colors);
+  expect_same_bits(a.normals, b.normals);
+  expect_same_bits(a.tangents, b.tangents);
+  expect_same_bits(a.uvs[0], b.uvs[0]);
+  expect_same_bits(a.uvs[1], b.uvs[1]);
+  expect_same_bits(a.vertex_colors, b.vertex_colors);
+  EXPECT_EQ(a.materials, b.materials);
+}
+
+void expect_same(const TextureImage& a, const TextureImage& b) {
+  EXPECT_EQ(a.name, b.name);
+  EXPECT_EQ(a.width, b.width);
+  EXPECT_EQ(a.height, b.height);
+  EXPECT_EQ(a.texels, b.texels);
+}
+
+void expect_same(const Material& a, const Material& b) {
+  EXPECT_EQ(a.name, b.name);
+  expect_same_bits(a.base_color, b.base_color);
+  EXPECT_EQ(a.base_texture, b.base_texture);
+  expect_same_bits(a.metallic, b.metallic);
+  expect_same_bits(a.roughness, b.roughness);
+  EXPECT_EQ(a.metallic_roughness_texture, b.metallic_roughness_texture);
+  EXPECT_EQ(a.normal_texture, b.normal_texture);
+  expect_same_bits(a.normal_scale, b.normal_scale);
+  expect_same_bits(a.emissive, b.emissive);
+  EXPECT_EQ(a.emissive_texture, b.emissive_texture);
+  EXPECT_EQ(a.alpha_mode, b.alpha_mode);
+  expect_same_bits(a.alpha_cutoff, b.alpha_cutoff);
+  EXPECT_EQ(a.double_sided, b.double_sided);
+  EXPECT_EQ(a.unlit, b.unlit);
 }
 
 void expect_same(const Frame& a, const Frame& b) {
@@ -32,9 +68,9 @@ void expect_same(const Frame& a, const Frame& b) {
   if (a.camera && b.camera) expect_same_bits(*a.camera, *b.camera);
   expect_same_bits(a.view, b.view);
   expect_same_bits(a.projection, b.projection);
-  ASSERT_EQ(a.lighting.lights.size(), b.lighting.lights.size());
-  for (std::size_t i = 0; i < a.lighting.lights.size(); ++i)
-    expect_same_bits(a.lighting.lights[i].direction, b.lighting.lights[i].direction);
+  expect_same_bits(a.lighting.lights, b.lighting.lights);
+  EXPECT_EQ(a.lighting.ambient.has_value(), b.lighting.ambient.has_value());
+  if (a.lighting.ambient && b.lighting.ambient) expect_same_bits(*a.lighting.ambient, *b.lighting.ambient);
   ASSERT_EQ(a.draws.size(), b.draws.size());
   for (std::size_t i = 0; i < a.draws.size(); ++i) {
     EXPECT_EQ(a.draws[i].mesh, b.draws[i].mesh);
@@ -42,7 +78,19 @@ void expect_same(const Frame& a, const Frame& b) {
     EXPECT_EQ(a.draws[i].kd, b.draws[i].kd);
     EXPECT_EQ(a.draws[i].cull, b.draws[i].cull);
     EXPECT_EQ(a.draws[i].shading, b.draws[i].shading);
+    EXPECT_EQ(a.draws[i].material, b.draws[i].material);
   }
+}
+
+void expect_same(const Trace& a, const Trace& b) {
+  const auto all = [](const auto& of_a, const auto& of_b) {
+    ASSERT_EQ(of_a.size(), of_b.size());
+    for (std::size_t i = 0; i < of_a.size(); ++i) expect_same(of_a[i], of_b[i]);
+  };
+  all(a.images, b.images);
+  all(a.materials, b.materials);
+  all(a.meshes, b.meshes);
+  all(a.frames, b.frames);
 }
 
 // Any finite number, from the subnormal ones to the largest.
@@ -87,18 +135,112 @@ Trace example() {
   frame.view = matrix();
   frame.projection = matrix();
   frame.view[2][1] = -0.0;
-  frame.draws = {{0, matrix(), color(), Cull::back, Shading::unlit},
-                 {1, glm::dmat4(1.0), {}, Cull::front, Shading::unlit}};
+  frame.draws = {{0, matrix(), color(), Cull::back, Shading::unlit, {}},
+                 {1, glm::dmat4(1.0), {}, Cull::front, Shading::unlit, {}}};
   trace.frames.push_back(frame);
 
   set_camera(frame, {{0.1, 0.2, 1.0 / 3}, {-5, 6, 7.7}, {0.01, 1, 0}, 35.9, 1e-3, 12345.678});
   frame.background = color();
-  frame.draws = {{0, glm::dmat4(1.0), {}, Cull::none, Shading::lambert}};
+  frame.draws = {{0, glm::dmat4(1.0), {}, Cull::none, Shading::lambert, {}}};
   for (int i = 0; i < 50; ++i) {  // reading must give back normalised directions bit by bit
     frame.lighting.lights = {
         {glm::normalize(glm::vec3(static_cast<float>(random() % 1000) - 499.5f, 1.0f, 2.0f + static_cast<float>(i)))}};
     trace.frames.push_back(frame);
   }
+  return trace;
+}
+
+Material material_named(const std::string& name) {
+  Material material;
+  material.name = name;
+  return material;
+}
+
+// A trace of version 2 in which everything is drawn by lot, what is left out too.
+Trace random_surfaces(unsigned seed) {
+  std::mt19937_64 random(seed);
+  const auto below = [&](std::size_t count) { return static_cast<std::uint32_t>(random() % count); };
+  const auto chance = [&] { return random() % 2 == 0; };
+  const auto any_float = [&] { return any_finite<float, std::uint32_t>(random); };
+  const auto intensity = [&] { return std::abs(any_float()); };
+  const auto fraction = [&] { return static_cast<float>(random() >> 40) * 0x1p-24f; };
+  const auto color = [&] { return glm::vec3(intensity(), intensity(), intensity()); };
+  const auto rgba = [&] { return glm::vec4(color(), fraction()); };
+  const auto direction = [&] {
+    return glm::normalize(glm::vec3(fraction() - 0.5f, fraction() - 0.5f, fraction() - 0.51f));
+  };
+
+  Trace trace;
+  for (std::uint32_t i = 0; i < 1 + seed % 3; ++i) {
+    TextureImage image{
+        .name = "image/" + std::to_string(i), .width = 1 + below(9), .height = 1 + below(9), .texels = {}};
+    for (std::uint32_t k = 0; k < image.width * image.height; ++k)
+      image.texels.emplace_back(below(256), below(256), below(256), below(256));
+    trace.images.push_back(image);
+  }
+  for (int i = 0; i < 8; ++i) {
+    Material material = material_named("material " + std::to_string(i));
+    if (chance()) material.base_color = rgba();
+    if (chance()) material.metallic = chance() ? -0.0f : fraction();
+    if (chance()) material.roughness = fraction();
+    if (chance()) material.normal_scale = any_float();
+    if (chance()) material.emissive = chance() ? glm::vec3(-0.0f) : color();
+    material.alpha_mode = AlphaMode(below(3));
+    if (chance()) material.alpha_cutoff = fraction();
+    material.double_sided = chance();
+    material.unlit = chance();
+    for (const TextureSlot& slot : kTextureSlots) {
+      if (i == 0 || chance()) continue;  // one material needs no texture coordinates
+      material.*slot.texture = Texture{.image = below(trace.images.size()),
+                                       .uv_set = below(2),
+                                       .wrap_u = Wrap(below(3)),
+                                       .wrap_v = Wrap(below(3)),
+                                       .magnify = Filter(below(2)),
+                                       .minify = Filter(below(2)),
+                                       .mip = MipFilter(below(3))};
+    }
+    trace.materials.push_back(material);
+  }
+  for (int i = 0; i < 4; ++i) {
+    Mesh mesh;
+    mesh.name = "mesh " + std::to_string(i);
+    const std::size_t positions = 3 + below(20);
+    const bool has_uvs = chance(), has_normals = chance(), has_tangents = chance(), has_colors = chance();
+    for (std::size_t k = 0; k < positions; ++k) {
+      mesh.positions.emplace_back(any_float(), any_float(), any_float());
+      if (has_normals) mesh.normals.push_back(direction());
+      if (has_tangents) mesh.tangents.emplace_back(direction(), chance() ? 1.0f : -1.0f);
+      if (has_colors) mesh.vertex_colors.push_back(rgba());
+      for (auto& uvs : mesh.uvs)
+        if (has_uvs) uvs.emplace_back(any_float(), any_float());
+    }
+    const int kind = i;  // no material, one for all triangles, several, several among flat triangles
+    for (std::uint32_t k = 0; k < 1 + below(20); ++k) {
+      mesh.triangles.emplace_back(below(positions), below(positions), below(positions));
+      mesh.colors.push_back(seed % 2 == 0 ? kDefaultColor : color());
+      const std::uint32_t material = has_uvs ? below(trace.materials.size()) : 0;
+      if (kind > 0) mesh.materials.push_back(kind == 1 ? 0 : kind == 3 && chance() ? kNoMaterial : material);
+    }
+    trace.meshes.push_back(mesh);
+  }
+  Frame frame;
+  frame.width = frame.height = 1 + below(100);
+  for (std::uint32_t i = 0; i < seed % (kMostLights + 1); ++i) {
+    frame.lighting.lights.push_back({.direction = direction()});
+    if (chance()) frame.lighting.lights.back().color = color();
+  }
+  if (chance()) frame.lighting.ambient = {.sky = color(), .ground = color(), .up = direction()};
+  for (std::uint32_t i = 0; i < 6; ++i) {
+    Draw draw;
+    draw.mesh = below(trace.meshes.size());
+    if (chance()) {
+      draw.material = trace.meshes[draw.mesh].uvs[0].empty() ? 0 : below(trace.materials.size());
+    } else if (chance()) {
+      draw.kd = color();
+    }
+    frame.draws.push_back(draw);
+  }
+  trace.frames = {frame};
   return trace;
 }
 
@@ -122,14 +264,166 @@ TEST_F(TraceWriterTest, ReadsBackTheSameBits) {
   const Trace trace = example();
   write_trace(trace, path("trace.json"));
   const Trace back = read_trace(path("trace.json"));
-  ASSERT_EQ(back.meshes.size(), trace.meshes.size());
-  ASSERT_EQ(back.frames.size(), trace.frames.size());
-  for (std::size_t i = 0; i < trace.meshes.size(); ++i) expect_same(trace.meshes[i], back.meshes[i]);
-  for (std::size_t i = 0; i < trace.frames.size(); ++i) expect_same(trace.frames[i], back.frames[i]);
+  expect_same(trace, back);
+  EXPECT_EQ(read("trace.json").substr(0, 21), "{\"beampipe_trace\": 1,");
 
   write_trace(back, path("again.json"));
   EXPECT_EQ(read("trace.json"), read("again.json"));
   EXPECT_EQ(files(), 2u);
+}
+
+TEST_F(TraceWriterTest, ReadsBackTheSameSurfaces) {
+  for (unsigned seed = 0; seed < 100; ++seed) {
+    const Trace trace = random_surfaces(seed);
+    write_trace(trace, path("trace.json"));
+    EXPECT_EQ(read("trace.json").substr(0, 21), "{\"beampipe_trace\": 2,");
+    const Trace back = read_trace(path("trace.json"));
+    expect_same(trace, back);
+    write_trace(back, path("again.json"));
+    EXPECT_EQ(read("trace.json"), read("again.json"));
+    ASSERT_FALSE(HasFailure()) << "seed " << seed;
+  }
+}
+
+// A frame, a mesh with one triangle, and what `add` adds.
+template <class Add>
+Trace small_trace(Add add) {
+  Trace trace;
+  trace.meshes.resize(1);
+  trace.meshes[0].name = "m";
+  trace.meshes[0].positions.resize(1);
+  trace.meshes[0].triangles.resize(1);
+  trace.meshes[0].colors = {kDefaultColor};
+  trace.frames.resize(1);
+  trace.frames[0].width = trace.frames[0].height = 1;
+  trace.frames[0].draws.resize(1);
+  add(trace);
+  return trace;
+}
+
+const char kMatrices[] = R"(
+"view": [1,0,0,0,0,1,0,0,0,0,1,0,0,0,0,1],
+"projection": [1,0,0,0,0,1,0,0,0,0,1,0,0,0,0,1],)";
+
+TEST_F(TraceWriterTest, WritesVersion1WhereThatIsEnough) {
+  write_trace(small_trace([](Trace& trace) { trace.frames[0].lighting.lights.resize(1); }), path("trace.json"));
+  EXPECT_EQ(read("trace.json"), R"({"beampipe_trace": 1,
+"meshes": {
+"m": {"positions": [0,0,0],
+"indices": [0,0,0],
+"colors": [0.8,0.8,0.8]}},
+"frames": [
+{"width": 1, "height": 1, "background": [0,0,0],)" +
+                                    std::string(kMatrices) + R"(
+"light": {"direction": [0,0,-1]},
+"draws": [
+{"mesh": "m"}]}]}
+)");
+}
+
+TEST_F(TraceWriterTest, WritesVersion2WhereAnythingNeedsIt) {
+  const std::function<void(Trace&)> additions[] = {
+      [](Trace& trace) { trace.images.push_back({.name = "i", .width = 1, .height = 1, .texels = {glm::u8vec4(1)}}); },
+      [](Trace& trace) { trace.materials.resize(1); },
+      [](Trace& trace) { trace.meshes[0].materials = {kNoMaterial}; },
+      [](Trace& trace) {
+        trace.meshes[0].normals = {{0, 0, 1}};
+      },
+      [](Trace& trace) {
+        trace.meshes[0].tangents = {{0, 0, 1, 1}};
+      },
+      [](Trace& trace) {
+        trace.meshes[0].uvs[0] = {{0, 0}};
+      },
+      [](Trace& trace) {
+        trace.meshes[0].uvs[1] = {{0, 0}};
+      },
+      [](Trace& trace) {
+        trace.meshes[0].vertex_colors = {{0, 0, 0, 1}};
+      },
+      [](Trace& trace) { trace.frames[0].lighting.lights.resize(2); },
+      [](Trace& trace) {
+        trace.frames[0].lighting.lights = {{.direction = {0, 0, 1}, .color = {1, 1, 0}}};
+      },
+      [](Trace& trace) { trace.frames[0].lighting.ambient.emplace(); },
+  };
+  for (const auto& add : additions) {
+    write_trace(small_trace(add), path("trace.json"));
+    EXPECT_EQ(read("trace.json").substr(0, 21), "{\"beampipe_trace\": 2,");
+    expect_same(small_trace(add), read_trace(path("trace.json")));
+  }
+}
+
+TEST_F(TraceWriterTest, LeavesOutWhatReadersAssume) {
+  const Trace trace = small_trace([](Trace& t) {
+    t.materials = {material_named("plain"), material_named("flat")};
+    t.materials[1].metallic = 0.5f;
+    t.materials[1].unlit = true;
+    t.meshes[0].materials = {1};
+    t.frames[0].lighting.lights.resize(1);
+    t.frames[0].draws[0].material = 0;
+  });
+  write_trace(trace, path("trace.json"));
+  EXPECT_EQ(read("trace.json"), R"({"beampipe_trace": 2,
+"materials": {
+"plain": {},
+"flat": {"metallic": 0.5, "unlit": true}},
+"meshes": {
+"m": {"positions": [0,0,0],
+"indices": [0,0,0],
+"materials": ["flat"]}},
+"frames": [
+{"width": 1, "height": 1, "background": [0,0,0],)" +
+                                    std::string(kMatrices) + R"(
+"lights": [
+{"direction": [0,0,-1]}],
+"draws": [
+{"mesh": "m", "material": "plain"}]}]}
+)");
+}
+
+TEST_F(TraceWriterTest, RefusesSurfacesThatNoReaderWouldTake) {
+  const std::pair<std::function<void(Trace&)>, const char*> cases[] = {
+      {[](Trace& trace) { trace.images.resize(1); }, "image \"\" has not the texels of its size"},
+      {[](Trace& trace) { trace.images = {{.name = "i", .width = 2, .height = 2, .texels = {glm::u8vec4(0)}}}; },
+       "image \"i\" has not the texels of its size"},
+      {[](Trace& trace) { trace.materials.resize(2); }, "two materials are named \"\""},
+      {[](Trace& trace) { trace.materials = {material_named("\xff")}; }, "a material's name is not UTF-8"},
+      {[](Trace& trace) { trace.materials.resize(1), trace.materials[0].roughness = NAN; },
+       "a number in it is not finite"},
+      {[](Trace& trace) { trace.materials.resize(1), trace.materials[0].base_texture.emplace(); },
+       "a texture names no image"},
+      {[](Trace& trace) { trace.meshes[0].materials = {0}; }, "mesh \"m\" names no material"},
+      {[](Trace& trace) { trace.meshes[0].materials.assign(2, kNoMaterial); }, "mesh \"m\" lacks materials"},
+      {[](Trace& trace) { trace.meshes[0].uvs[1].resize(2); }, "mesh \"m\" lacks attributes of some positions"},
+      {[](Trace& trace) {
+         trace.meshes[0].normals = {{0, 0, 0.99f}};
+       },
+       "mesh \"m\" has a normal whose length is not 1"},
+      {[](Trace& trace) {
+         trace.meshes[0].normals = {{0, 0, NAN}};
+       },
+       "mesh \"m\" has a normal whose length is not 1"},
+      {[](Trace& trace) {
+         trace.meshes[0].tangents = {{0, 0, 2, 1}};
+       },
+       "mesh \"m\" has a tangent whose length is not 1"},
+      {[](Trace& trace) {
+         trace.meshes[0].tangents = {{0, 0, 1, 0}};
+       },
+       "mesh \"m\" has a tangent whose w is not 1 or -1"},
+      {[](Trace& trace) { trace.frames[0].draws[0].material = 0; }, "a draw names no material"},
+      {[](Trace& trace) {
+         trace.materials.resize(1);
+         trace.frames[0].draws[0].material = 0;
+         trace.frames[0].draws[0].kd = {1, 1, 1};
+       },
+       "a draw has both kd and a material"},
+  };
+  for (const auto& [add, message] : cases) {
+    EXPECT_EQ(failure(small_trace(add), "trace.json"), std::string("trace.json: cannot write the trace: ") + message);
+  }
+  EXPECT_EQ(files(), 0u);
 }
 
 TEST_F(TraceWriterTest, WritesNumbersShortly) {

@@ -62,8 +62,7 @@ void add_export_soup_command(CommandLine& line, InterruptGate& gate) {
   command.add("TRACE", arguments->trace, "the trace, a JSON file").required();
   command.add("-o,--output", arguments->output, "the file to write").required();
   command.add("--frame", arguments->frame, "the frame; the first one is 0 (default: 0)");
-  command.add_flag("--allow-outside", arguments->allow_outside,
-                   "allow the trace to name meshes outside its own folder");
+  command.add_flag("--allow-outside", arguments->allow_outside, "allow the trace to name files outside its own folder");
   command.footer(
       "Other rasterizers can draw exactly these triangles, for comparison. The file is little-endian: \"SOUP\"; "
       "uint32\n"

@@ -1,5 +1,6 @@
-// beampipe info: lists the frames and meshes of a trace.
+// beampipe info: lists the frames, meshes, images and materials of a trace.
 
+#include <algorithm>
 #include <cstdio>
 #include <glm/glm.hpp>
 #include <iostream>
@@ -56,6 +57,46 @@ Bounds bounds_of(const Mesh& mesh) {
   return bounds;
 }
 
+// What the mesh has beside positions, triangles and their colours, by its names in traces.
+std::vector<std::string> attributes_of(const Mesh& mesh) {
+  std::vector<std::string> names;
+  const auto add = [&](const auto& values, const char* name) {
+    if (!values.empty()) names.push_back(name);
+  };
+  add(mesh.normals, "normals");
+  add(mesh.tangents, "tangents");
+  add(mesh.uvs[0], "uv0");
+  add(mesh.uvs[1], "uv1");
+  add(mesh.vertex_colors, "vertex_colors");
+  add(mesh.materials, "materials");
+  return names;
+}
+
+struct MaterialInfo {
+  std::size_t opaque = 0, mask = 0, blend = 0;
+  std::size_t textured = 0;  // with one texture or more
+};
+
+MaterialInfo info_of(const std::vector<Material>& materials) {
+  MaterialInfo info;
+  for (const Material& material : materials) {
+    ++(material.alpha_mode == AlphaMode::opaque ? info.opaque
+       : material.alpha_mode == AlphaMode::mask ? info.mask
+                                                : info.blend);
+    info.textured += std::ranges::any_of(kTextureSlots,
+                                         [&](const TextureSlot& slot) { return (material.*slot.texture).has_value(); });
+  }
+  return info;
+}
+
+std::string text_of(const Lighting& lighting) {
+  return std::to_string(lighting.lights.size()) + (lighting.ambient ? " + ambient" : "");
+}
+
+std::string size_text(std::uint32_t width, std::uint32_t height) {
+  return std::to_string(width) + " x " + std::to_string(height);
+}
+
 Json to_json(const Bounds& bounds) {
   if (bounds.empty()) return nullptr;
   return {{"min", Json::array({bounds.min.x, bounds.min.y, bounds.min.z})},
@@ -71,7 +112,11 @@ std::string text_of(const Bounds& bounds) {
 }
 
 Json info_json(const Trace& trace, const std::string& file) {
-  Json json = {{"beampipe_info", 1}, {"trace", file}, {"frames", Json::array()}, {"meshes", Json::array()}};
+  Json json = {{"beampipe_info", 1},
+               {"trace", file},
+               {"frames", Json::array()},
+               {"meshes", Json::array()},
+               {"images", Json::array()}};
   for (std::size_t i = 0; i < trace.frames.size(); ++i) {
     const Frame& frame = trace.frames[i];
     const FrameInfo info = info_of(trace, frame);
@@ -80,42 +125,68 @@ Json info_json(const Trace& trace, const std::string& file) {
                               {"height", frame.height},
                               {"draws", frame.draws.size()},
                               {"triangles", info.triangles},
+                              {"lights", frame.lighting.lights.size()},
+                              {"ambient", frame.lighting.ambient.has_value()},
                               {"bounds", to_json(info.bounds)}});
   }
   for (const Mesh& mesh : trace.meshes) {
     json["meshes"].push_back({{"name", mesh.name},
                               {"positions", mesh.positions.size()},
                               {"triangles", mesh.triangles.size()},
+                              {"attributes", attributes_of(mesh)},
                               {"bounds", to_json(bounds_of(mesh))}});
   }
+  for (const TextureImage& image : trace.images)
+    json["images"].push_back({{"name", image.name}, {"width", image.width}, {"height", image.height}});
+  const MaterialInfo materials = info_of(trace.materials);
+  json["materials"] = {{"opaque", materials.opaque},
+                       {"mask", materials.mask},
+                       {"blend", materials.blend},
+                       {"textured", materials.textured}};
   return json;
 }
 
 std::string info_text(const Trace& trace) {
-  std::vector<std::vector<std::string>> frames = {{"frame", "size", "draws", "triangles", "bounds in the world"}};
+  std::vector<std::vector<std::string>> frames = {
+      {"frame", "size", "draws", "triangles", "lights", "bounds in the world"}};
   for (std::size_t i = 0; i < trace.frames.size(); ++i) {
     const Frame& frame = trace.frames[i];
     const FrameInfo info = info_of(trace, frame);
-    frames.push_back({std::to_string(i), std::to_string(frame.width) + " x " + std::to_string(frame.height),
-                      std::to_string(frame.draws.size()), std::to_string(info.triangles), text_of(info.bounds)});
+    frames.push_back({std::to_string(i), size_text(frame.width, frame.height), std::to_string(frame.draws.size()),
+                      std::to_string(info.triangles), text_of(frame.lighting), text_of(info.bounds)});
   }
-  std::vector<std::vector<std::string>> meshes = {{"mesh", "positions", "triangles", "bounds"}};
+  std::vector<std::vector<std::string>> meshes = {{"mesh", "positions", "triangles", "attributes", "bounds"}};
   for (const Mesh& mesh : trace.meshes) {
+    std::string attributes;
+    for (const std::string& name : attributes_of(mesh)) attributes += (attributes.empty() ? "" : " ") + name;
     meshes.push_back({mesh.name, std::to_string(mesh.positions.size()), std::to_string(mesh.triangles.size()),
-                      text_of(bounds_of(mesh))});
+                      attributes.empty() ? "-" : attributes, text_of(bounds_of(mesh))});
   }
-  return align_columns(frames, {4}) + "\n" + align_columns(meshes, {0, 3});
+  std::string text = align_columns(frames, {5}) + "\n" + align_columns(meshes, {0, 3, 4});
+  if (!trace.images.empty()) {
+    std::vector<std::vector<std::string>> images = {{"image", "size"}};
+    for (const TextureImage& image : trace.images) images.push_back({image.name, size_text(image.width, image.height)});
+    text += "\n" + align_columns(images, {0});
+  }
+  if (!trace.materials.empty()) {
+    const MaterialInfo info = info_of(trace.materials);
+    text +=
+        "\n" + align_columns({{"materials", "opaque", "mask", "blend", "with textures"},
+                              {std::to_string(trace.materials.size()), std::to_string(info.opaque),
+                               std::to_string(info.mask), std::to_string(info.blend), std::to_string(info.textured)}},
+                             {});
+  }
+  return text;
 }
 
 }  // namespace
 
 void add_info_command(CommandLine& line) {
   const auto arguments = std::make_shared<InfoArguments>();
-  Command command = line.add_command("info", "List the frames and meshes of a trace");
+  Command command = line.add_command("info", "List the frames, meshes, images and materials of a trace");
   command.add("TRACE", arguments->trace, "the trace, a JSON file").required();
   command.add_flag("--json", arguments->json, "print the list as JSON");
-  command.add_flag("--allow-outside", arguments->allow_outside,
-                   "allow the trace to name meshes outside its own folder");
+  command.add_flag("--allow-outside", arguments->allow_outside, "allow the trace to name files outside its own folder");
   command.set_work([arguments] {
     const Trace trace = read_trace(arguments->trace, {.allow_outside = arguments->allow_outside});
     std::cout << (arguments->json ? json_text(info_json(trace, arguments->trace)) : info_text(trace));

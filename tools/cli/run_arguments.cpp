@@ -66,7 +66,7 @@ void add_run_arguments(Command& command, RunArguments& arguments) {
       "--no-memory-model", arguments.no_memory_model,
       "do not model caches and DRAM: rendering is faster, and sector_bytes, l2_bytes and dram_bytes are 0");
   command.add_flag("--no-compression", arguments.no_compression, "model memory without the compression of blocks");
-  command.add_flag("--allow-outside", arguments.allow_outside, "allow the trace to name meshes outside its own folder");
+  command.add_flag("--allow-outside", arguments.allow_outside, "allow the trace to name files outside its own folder");
 }
 
 RunPlan make_plan(const RunArguments& arguments) {

@@ -8,23 +8,13 @@
 #include "stages/cost/counter_registry.h"
 #include "tools/files/image_io.h"
 #include "tools/report/tables.h"
+#include "traces/base64.h"
 #include "traces/input_file.h"
 
 namespace beampipe {
 namespace {
 
-std::string base64(const std::string& bytes) {
-  constexpr char kDigits[] = "ABCDEFGHIJKLMNOPQRSTUVWXYZabcdefghijklmnopqrstuvwxyz0123456789+/";
-  std::string text;
-  for (std::size_t i = 0; i < bytes.size(); i += 3) {
-    std::uint32_t group = 0;
-    for (std::size_t j = 0; j < 3; ++j) group = group << 8 | (i + j < bytes.size() ? std::uint8_t(bytes[i + j]) : 0u);
-    for (std::size_t j = 0; j < 4; ++j) text += i + j <= bytes.size() ? kDigits[group >> (18 - 6 * j) & 63] : '=';
-  }
-  return text;
-}
-
-std::string png_url(const std::string& png) { return "data:image/png;base64," + base64(png); }
+std::string png_url(const std::string& png) { return "data:image/png;base64," + to_base64(png); }
 
 Json map_of(const std::string& name, const Planes& planes, const std::vector<float>& values) {
   constexpr double kLevels = 65535;

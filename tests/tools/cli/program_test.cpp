@@ -6,6 +6,7 @@
 #include "tests/tools/cli/program_fixture.h"
 #include "tools/evaluate/metrics.h"
 #include "tools/files/image_io.h"
+#include "traces/trace_io.h"
 
 namespace beampipe {
 namespace {
@@ -209,6 +210,42 @@ TEST_F(ProgramTest, InfoTellsWhatIsInTheTrace) {
   ASSERT_EQ(json["meshes"].size(), 2u);
   EXPECT_EQ(json["meshes"][0]["triangles"], 1);
   EXPECT_NE(succeed({"info", path("trace.json")}).find("20 x 12"), std::string::npos);
+}
+
+TEST_F(ProgramTest, InfoTellsWhatSurfacesAreMadeOf) {
+  Trace trace;
+  trace.images.resize(1);
+  trace.images[0].name = "wood";
+  trace.images[0].width = 3;
+  trace.images[0].height = 2;
+  trace.images[0].texels.resize(6);
+  trace.materials.resize(3);
+  for (std::size_t i = 0; i < 3; ++i) trace.materials[i].name = std::to_string(i);
+  trace.materials[0].normal_texture.emplace();
+  trace.materials[0].alpha_mode = trace.materials[1].alpha_mode = AlphaMode::mask;
+  Mesh mesh;
+  mesh.name = "m";
+  mesh.positions.resize(1);
+  mesh.normals = {{0, 0, 1}};
+  mesh.uvs[0].resize(1);
+  trace.meshes = {mesh};
+  trace.frames.resize(1);
+  trace.frames[0].width = trace.frames[0].height = 4;
+  trace.frames[0].lighting.lights.resize(2);
+  trace.frames[0].lighting.ambient.emplace();
+  write_trace(trace, path("surfaces.json"));
+
+  const Parsed json = Parsed::parse(succeed({"info", path("surfaces.json"), "--json"}));
+  EXPECT_EQ(json["images"], Parsed::parse(R"([{"name": "wood", "width": 3, "height": 2}])"));
+  EXPECT_EQ(json["materials"], Parsed::parse(R"({"opaque": 1, "mask": 2, "blend": 0, "textured": 1})"));
+  EXPECT_EQ(json["meshes"][0]["attributes"], Parsed({"normals", "uv0"}));
+  EXPECT_EQ(json["frames"][0]["lights"], 2);
+  EXPECT_EQ(json["frames"][0]["ambient"], true);
+  const std::string text = succeed({"info", path("surfaces.json")});
+  for (const char* part : {"2 + ambient", "normals uv0", "wood   3 x 2",
+                           "materials  opaque  mask  blend  with textures\n        3       1     2      0"}) {
+    EXPECT_NE(text.find(part), std::string::npos) << part << " in\n" << text;
+  }
 }
 
 TEST_F(ProgramTest, ExportSoupWritesTheTrianglesThatAreSeen) {
