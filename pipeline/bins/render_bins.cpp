@@ -103,8 +103,8 @@ class FrameRecorder {
 
 FrameResult render_bins(const FrameContext& context, const BinPlan& plan, const BinRenderer& render) {
   const RunOptions& run = context.run;
-  const TileGrid grid =
-      plan.keeps_tile_size ? TileGrid{context.frame, plan.tile_size} : tile_grid(context, plan.tile_size);
+  const TileGrid grid = plan.keeps_tile_size ? TileGrid{context.frame, plan.framebuffer.bin_size}
+                                             : tile_grid(context, plan.framebuffer.bin_size);
   if (run.weights) run.weights->assign(std::size_t{context.frame.width} * context.frame.height, {});
   GeometryPass pass(context);
   FrameRecorder recorder(context, plan);
@@ -116,7 +116,7 @@ FrameResult render_bins(const FrameContext& context, const BinPlan& plan, const 
       pass.add_list(run.memory, list);
     }
     tbb::parallel_for(std::size_t{0}, lists.size(), [&](std::size_t i) {
-      Bin bin(context, grid.tiles[band.first + i], lists[i], plan.stages);
+      Bin bin(context, grid.tiles[band.first + i], lists[i], plan.stages, plan.framebuffer);
       render(bin);
       recorder.add(bin);
     });

@@ -12,7 +12,7 @@
 
 #include "pipeline/bins/bin.h"
 #include "pipeline/bins/frame_context.h"
-#include "pipeline/memory/parameters.h"
+#include "pipeline/framebuffer.h"
 #include "pipeline/technique.h"
 
 namespace beampipe {
@@ -20,7 +20,7 @@ namespace beampipe {
 // How a technique renders its bins.
 struct BinPlan {
   std::vector<std::string> stages;  // of a bin, in the order of the pipeline; the first one rasterizes
-  int tile_size = kBinSize;         // pixels on each side, even; RunOptions::tile_size overrides it
+  Framebuffer framebuffer;          // with the size of the bins, which RunOptions::tile_size overrides
   bool keeps_tile_size = false;     // it does not, because the picture depends on the bins
   // Bytes that this program keeps for each pair until the bin is finished (RunOptions::memory_limit). 0: the technique
   // works on a few triangles at a time.
