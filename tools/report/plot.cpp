@@ -8,6 +8,7 @@ namespace beampipe {
 namespace {
 
 constexpr const char* kMsaa = "msaa";
+constexpr const char* kEmrLabel = "equivalent MSAA rate (EMR), samples";
 
 // The family of "beam:bits=64" is "beam". Techniques of one family share a colour.
 std::string family_of(const std::string& spec) { return spec.substr(0, spec.find(':')); }
@@ -62,7 +63,7 @@ ScatterPlot frontier_plot(const std::vector<ReportFile>& reports) {
   ScatterPlot plot{"frontier",
                    "Memory and accuracy: " + scenes_text(reports),
                    "memory with the A-buffer, bytes per pixel",
-                   "equivalent MSAA rate (EMR), samples",
+                   kEmrLabel,
                    {{kMsaa, {}, true}},
                    {}};
   for (const LadderRung& rung : longest_ladder(reports)) {
@@ -80,6 +81,23 @@ ScatterPlot frontier_plot(const std::vector<ReportFile>& reports) {
               {summary.bytes_per_pixel, summary.emr->samples, summary.spec, bound_of(*summary.emr)});
   }
   if (!compared) throw_not_compared(reports);
+  return plot;
+}
+
+ScatterPlot storage_plot(const std::vector<ReportFile>& reports) {
+  ScatterPlot plot{"storage",
+                   "All memory and accuracy: " + scenes_text(reports),
+                   "memory on chip and off chip, with the A-buffer, bytes per pixel",
+                   kEmrLabel,
+                   {{kMsaa, {}, true}},
+                   {}};
+  for (const TechniqueSummary& summary : mean_summaries(reports))
+    if (summary.emr)
+      add_point(plot, summary.spec,
+                {summary.all_bytes_per_pixel, summary.emr->samples, summary.spec, bound_of(*summary.emr)});
+  std::vector<PlotPoint>& msaa = plot.series.front().points;
+  if (msaa.empty() && plot.series.size() == 1) throw_not_compared(reports);
+  std::sort(msaa.begin(), msaa.end(), [](const PlotPoint& a, const PlotPoint& b) { return a.x < b.x; });
   return plot;
 }
 

@@ -66,6 +66,21 @@ TEST_F(PlotTest, FrontierHasThePointsOfTheLadderAndOfEveryTechniqueButTheReferen
   EXPECT_EQ(plot.series[1].points[0].y_bound, PlotPoint::Bound::none);
 }
 
+TEST_F(PlotTest, StorageIsAllMemoryOnChipAndOffChip) {
+  const auto report = [&](const std::string& name, int bytes) {
+    return read_report(make_report(
+        name, report_text("beam", bytes, 100, 0.01, 50, R"(, "on_chip_bytes_per_pixel": )" + std::to_string(bytes))));
+  };
+  const ScatterPlot plot = storage_plot({report("a", 20), report("b", 80)});
+  ASSERT_EQ(plot.series.size(), 2u);
+  ASSERT_EQ(plot.series[0].points.size(), 2u);
+  EXPECT_EQ(plot.series[0].points[0].x, 10) << "a line by increasing memory";
+  EXPECT_EQ(plot.series[0].points[1].x, 80);
+  ASSERT_EQ(plot.series[1].points.size(), 1u);
+  EXPECT_NEAR(plot.series[1].points[0].x, 80, 1e-9) << "the mean of 20 + 20 and 80 + 80";
+  EXPECT_EQ(plot.series[1].points[0].y, 100);
+}
+
 TEST_F(PlotTest, SeveralReportsGiveGeometricMeansAndTheirBounds) {
   const std::vector<ReportFile> reports = {
       read_report(make_report("a", report_text("beam", 42, 4, 0.01, 50))),
