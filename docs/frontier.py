@@ -4,7 +4,8 @@
 usage: docs/frontier.py PROGRAM FOLDER [TRACE...]
 
 PROGRAM is for instance build/release/tools/beampipe. The script makes the nine procedural scenes, and measures them and
-the given traces. The results of `compare` go to FOLDER/<scene>. It prints EMR, RMSE and bias of each technique on each
+the given traces. The results of `compare` go to FOLDER/<scene> and, of techniques that the plot leaves out, to
+FOLDER/others/<scene>. It prints EMR, RMSE and bias of each technique on each
 scene, then EMR by all memory, on chip and off chip, also for other capacities of `beam`. It draws the geometric means
 over all scenes as FOLDER/frontier.svg and .png.
 """
@@ -19,7 +20,8 @@ SPECS = ["alpha", "beam:rules=paper", "beam:order=sorted", "z3:shape=32x2", "z3"
          "z3:shape=128x3,merge=color", "beam:order=stream,bits=32,passes=0,layers=1",
          "beam:order=stream,bits=64,passes=0,layers=1", "beam:order=stream,bits=128,passes=0,layers=1",
          "beam:order=stream,passes=0", "beam:order=stream,bits=256,passes=0,layers=1", "msaa:8", "msaa:32", "msaa:256"]
-CAPACITIES = [f"beam:bits={bits},slots={slots}" for bits in [32, 64, 128, 256] for slots in [2, 4, 8, 16, 32]]
+CAPACITIES = [f"beam:{bits}slots={slots}" for bits in ["bits=32,", "bits=64,", "bits=128,", ""]
+              for slots in [2, 4, 8, 16, 32]]
 STORAGE = (CAPACITIES + ["beam", "beam:order=stream", "beam:order=sorted", "beam:rules=paper", "z3", "z3:shape=128x3",
                          "msaa:8", "msaa:32", "msaa:256"])
 
@@ -73,11 +75,12 @@ def main():
         sys.exit(__doc__.strip())
     program, folder, found = sys.argv[1], sys.argv[2], {}
     pathlib.Path(folder).mkdir(parents=True, exist_ok=True)
-    specs = list(dict.fromkeys(SPECS + STORAGE))
     for scene in PROCEDURAL + sys.argv[3:]:
         trace = make(program, scene, f"{folder}/{scene}.json") if scene in PROCEDURAL else scene
         name = pathlib.Path(scene).stem
-        found[name] = results(program, "compare", trace, specs, f"{folder}/{name}")
+        found[name] = results(program, "compare", trace, STORAGE, f"{folder}/{name}")
+        others = [spec for spec in SPECS if spec not in STORAGE]
+        found[name] |= results(program, "compare", trace, others, f"{folder}/others/{name}")
     print_table("EMR", found, emr, mean_and_least)
     print_table("RMSE × 1000", found, lambda result: f"{1000 * result['error']['rmse']:.2f}")
     print_table("Bias × 1000", found, lambda result: f"{1000 * result['error']['bias']:+.2f}")

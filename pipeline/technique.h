@@ -11,7 +11,7 @@
 #include <string_view>
 #include <vector>
 
-#include "pipeline/framebuffer.h"
+#include "pipeline/memory/framebuffer.h"
 #include "pipeline/memory/parameters.h"
 #include "stages/cost/counters.h"
 #include "stages/data/frame_history.h"

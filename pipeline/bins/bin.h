@@ -13,7 +13,7 @@
 
 #include "pipeline/bins/frame_context.h"
 #include "pipeline/bins/timeline.h"
-#include "pipeline/framebuffer.h"
+#include "pipeline/memory/framebuffer.h"
 #include "pipeline/memory/geometry_memory.h"
 #include "pipeline/memory/linear_memory.h"
 #include "pipeline/memory/tile_surface.h"

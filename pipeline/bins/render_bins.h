@@ -12,7 +12,7 @@
 
 #include "pipeline/bins/bin.h"
 #include "pipeline/bins/frame_context.h"
-#include "pipeline/framebuffer.h"
+#include "pipeline/memory/framebuffer.h"
 #include "pipeline/technique.h"
 
 namespace beampipe {

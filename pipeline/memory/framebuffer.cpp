@@ -1,4 +1,4 @@
-#include "pipeline/framebuffer.h"
+#include "pipeline/memory/framebuffer.h"
 
 #include <algorithm>
 #include <iterator>
