@@ -47,8 +47,8 @@ def main():
             queues = sum(bytes for buffer, bytes in held.items() if buffer.endswith("_queue"))
             columns = [*parts_of(in_memory[name]["framebuffer"], pixels),
                        held["closed_depth"] * pixels / frame["bin_pixels"], queues]
-            print_row(f"`{spec}`", side, *(f"{column / 1024:.1f}" for column in columns), f"{sum(columns) / 1024:.1f}",
-                      f"{sum(columns) / pixels:.0f}")
+            cells = [f"{column / 1024:.1f}" if column > 0 else "" for column in columns]
+            print_row(f"`{spec}`", side, *cells, f"{sum(columns) / 1024:.1f}", f"{sum(columns) / pixels:.0f}")
 
 
 main()

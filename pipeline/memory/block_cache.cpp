@@ -104,8 +104,8 @@ BlockCache::Line& BlockCache::make_line(std::size_t block, bool overwritten, Sta
   Line& line = lines_[place];
   line = {static_cast<std::uint32_t>(block), 0, 0, 0};
   const State state = states_[block];
-  if (state != kRaw &&
-      !overwritten) {  // a cleared block needs no fetch; a compressed one is fetched and unpacked whole
+  // A cleared block needs no fetch; a compressed one is fetched and unpacked whole.
+  if (state != kRaw && !overwritten) {
     pass_on(state, counters);
     line.valid = all_sectors_;
   }

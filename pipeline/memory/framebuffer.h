@@ -22,7 +22,7 @@ struct Framebuffer {
   Place place = Place::in_memory;  // on the machine that the technique is made for
   int bin_size = kBinSize;         // pixels on each side of a bin, even
 
-  // Are the pixels of a bin on chip while it is drawn? Only if all that they store fits into the tile memory.
+  // Are the pixels of a bin on chip while it is drawn? Only if all that they store fits there.
   bool is_on_chip(const MemoryParameters& memory) const;
 
   // The surfaces that are in memory: all of them, or, where pixels are on chip, the picture and what outlives the bin.

@@ -64,9 +64,9 @@ struct MemoryParameters {
   // Where every technique keeps its pixels; nothing: each on the machine that it is made for (Framebuffer::place).
   std::optional<Place> framebuffer;
 
-  // The tile memory: pixels of a bin that do not fit into it are kept in memory. The default is what one class of
-  // surfaces has for its caches above, 24 units of 16 KiB, so that neither machine is given more storage than the
-  // other.
+  // The memory on chip for the pixels of a bin. If they do not fit, they are kept in memory. The default is what one
+  // class of surfaces has for its caches above, 24 units of 16 KiB, because the model draws one bin at a time with the
+  // caches of the whole chip.
   std::uint32_t on_chip_bytes = 24 * 16 * 1024;
 
   // Are there accesses to the framebuffer in memory to model?
