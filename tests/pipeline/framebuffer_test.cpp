@@ -1,6 +1,8 @@
 // Where the pixels of a bin are: on chip only if they fit, and what moves to and from DRAM in either place.
 #include <gtest/gtest.h>
 
+#include <algorithm>
+
 #include "tests/pipeline/test_pictures.h"
 #include "tests/pipeline/test_traces.h"
 
@@ -81,6 +83,23 @@ TEST(Framebuffer, OnChipOnlyThePictureGoesToMemory) {
       EXPECT_EQ(a, b) << a.stage;
     }
   }
+}
+
+// 1,025 closed depths fill 129 sectors. Every pass but the first one reads them, if they are in memory.
+TEST(Framebuffer, ClosedDepthsStayOnChipFromPassToPass) {
+  const char* const spec = "beam:order=stream,passes=0,layers=1";
+  const Trace trace = random_trace(32, 32, 60, 5);
+  MemoryParameters memory;
+  memory.framebuffer = Place::on_chip;
+  const FrameResult on_chip = render_with(spec, trace, memory);
+  memory.framebuffer = Place::in_memory;
+  const FrameResult in_memory = render_with(spec, trace, memory);
+  const std::vector<float>& passes = in_memory.pixel_counters.at("passes");
+  const auto most = static_cast<std::uint64_t>(*std::max_element(passes.begin(), passes.end()));
+  ASSERT_GT(most, 1u);
+  EXPECT_EQ(stage_of(in_memory, "conservative_raster").dram_bytes - stage_of(on_chip, "conservative_raster").dram_bytes,
+            (most - 1) * 129 * 32);
+  EXPECT_LT(stage_of(on_chip, "settle").dram_bytes, stage_of(in_memory, "settle").dram_bytes);
 }
 
 TEST(Framebuffer, AnABufferAndWhatLaterFramesReadStayInMemory) {
