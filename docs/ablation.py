@@ -15,7 +15,7 @@ import tempfile
 
 SCENES = ["hairball", "classroom", "boat", "pickets", "terrain", "sphere", "fence", "soup", "foliage"]
 POLICIES = ["", "mask=exact", "sort=nearest", "tiny=3", "overlap=over", "overlap=add", "overlap=transition",
-            "local=keep", "fuzzy=mix", "extents=slab", "slab=visible", "plane=visible", "thickness=containing",
+            "regional=area", "local=keep", "fuzzy=mix", "extents=slab", "slab=visible", "plane=visible", "thickness=containing",
             "tiny=3,overlap=transition",
             "mask=exact,local=keep,fuzzy=mix,slab=visible,plane=visible"]
 

@@ -16,7 +16,7 @@ import sys
 import tempfile
 
 SCENES = ["hairball", "classroom", "boat", "pickets", "terrain", "sphere", "fence", "soup", "foliage"]
-EXPLAINED = ["beam:order=sorted", "beam:rules=paper"]
+EXPLAINED = ["beam", "beam:order=sorted", "beam:rules=paper"]
 ORDERED = ["beam:order=sorted", "beam:rules=paper", "beam:order=stream,passes=0", "z3", "msaa:8", "reference"]
 MOVED = ["beam:order=sorted", "beam:rules=paper", "beam:order=stream,passes=0", "msaa:8", "msaa:32", "msaa:256"]
 

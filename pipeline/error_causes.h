@@ -11,7 +11,7 @@
 //   leak               the reference sees nothing of j
 //   mixed              a surface that was merged after both hides part of j, and i lost area instead of j
 //   mask               the outline between the two is in the wrong place, as far as mask positions tell
-// The part of the error that weights do not explain (fp16 colours) is `rounding`.
+// The part of the error that weights do not explain (formats of colours, and limits on their channels) is `rounding`.
 //
 // Depths are compared at 256 exact positions. At equal depth the earlier triangle counts as nearer.
 #pragma once

@@ -100,7 +100,14 @@ SpecOption samples(int& variable, int most, std::string help) {
 
 SpecOption flag(std::string key, bool& variable, std::string help) {
   const auto set = [&variable](std::string_view) { return variable = true; };
-  return {SpecOption::Form::flag, key, key, {}, "", "", std::move(help), set};
+  return {.form = SpecOption::Form::flag,
+          .key = key,
+          .usage = key,
+          .words = {},
+          .expected = "",
+          .fallback = "",
+          .help = std::move(help),
+          .set = set};
 }
 
 template <class Number>
@@ -127,6 +134,12 @@ template SpecOption number(std::string, int&, int, int, std::string);
 template SpecOption number(std::string, std::uint32_t&, std::uint32_t, std::uint32_t, std::string);
 template SpecOption number(std::string, float&, float, float, std::string);
 
+SpecOption beside(std::string needs, std::function<bool()> applies, SpecOption option) {
+  option.needs = std::move(needs);
+  option.applies = std::move(applies);
+  return option;
+}
+
 void set_options(const Spec& spec, const std::string& title, const SpecOptions& options) {
   auto item = spec.items().begin();
   const auto end = spec.items().end();
@@ -136,6 +149,10 @@ void set_options(const Spec& spec, const std::string& title, const SpecOptions& 
     ++item;
   }
   for (; item != end; ++item) set_item(spec, *item, title, options);
+  for (const Spec::Item& each : spec.items()) {
+    const SpecOption* const option = find_option(options, each.key);
+    if (option && option->applies && !option->applies()) spec.fail(option->key + " needs " + option->needs);
+  }
 }
 
 std::string list_of(const std::vector<std::string>& words, std::string_view last) {

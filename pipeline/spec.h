@@ -45,6 +45,10 @@ struct SpecOption {
   std::string fallback;            // the default, as a value; empty where there is none
   std::string help;
   std::function<bool(std::string_view)> set;  // sets the variable, or returns false if the value is not a valid one
+  // Where the option means something only beside certain values of another one: the items that it may stand beside,
+  // "order=near-first or order=stream", and whether it does, once all items are set.
+  std::string needs = {};
+  std::function<bool()> applies = {};
 };
 using SpecOptions = std::vector<SpecOption>;
 
@@ -76,6 +80,9 @@ SpecOption choice(std::string key, Value& variable, const std::vector<std::pair<
   return choice_of_words(std::move(key), std::move(names), std::move(fallback), std::move(help),
                          [&variable, words](std::size_t i) { variable = words[i].second; });
 }
+
+// The option, with SpecOption::needs and applies.
+SpecOption beside(std::string needs, std::function<bool()> applies, SpecOption option);
 
 // Sets the options from the spec's items. Throws SpecError, which names the first item that is wrong and says what
 // would have been right. `title` is the technique's name in messages.

@@ -69,7 +69,17 @@ AggregateOf<Float, Mask> merge_formula(const FragmentOf<Float, Mask>& fragment, 
   const Float local_a = old.alpha * bits / greater(bit_count(old.mask), one);
   const bool keep = rules.local == MergeRules::Local::keep;
   const Float cover_i = keep ? local_i : lesser(local_i, one), cover_a = keep ? local_a : lesser(local_a, one);
-  const Float open_i = greater(one - cover_i, zero), open_a = greater(one - cover_a, zero);
+  struct Cover {
+    Float i, a, open_i, open_a;
+  };
+  const auto cover_of = [&](Float i, Float a) { return Cover{i, a, greater(one - i, zero), greater(one - a, zero)}; };
+  const bool by_share = rules.regional == MergeRules::Regional::area;
+  const Cover local_cover = cover_of(cover_i, cover_a);
+  const auto cover_in = [&](Float count) {
+    if (!by_share) return local_cover;
+    const Float share = count / bits;
+    return cover_of(cover_i * share, cover_a * share);
+  };
   // The fuzziness of slide 12. The slide does not define sadp(A, B). Here it is the mean absolute difference of the two
   // depths over the overlap, divided by the depth range of both together. It is near 0 for neighbours in a mesh, which
   // lie beside each other. The other factor is the part of A's mask that A leaves open, 0 for a closed surface.
@@ -94,21 +104,28 @@ AggregateOf<Float, Mask> merge_formula(const FragmentOf<Float, Mask>& fragment, 
     }
     return select(tiny, added, independent);
   };
-  const BlendFactors<Float> over{cover_i, what_is_left(cover_a, open_i)};
-  const BlendFactors<Float> under{what_is_left(cover_i, open_a), cover_a};
+  const auto over_in = [&](const Cover& c) { return BlendFactors<Float>{c.i, what_is_left(c.a, c.open_i)}; };
+  const auto under_in = [&](const Cover& c) { return BlendFactors<Float>{what_is_left(c.i, c.open_a), c.a}; };
+  const BlendFactors<Float> over = over_in(cover_in(in_front)), under = under_in(cover_in(behind));
+  const Cover slab = cover_in(within);
+  const BlendFactors<Float> slab_over = by_share ? over_in(slab) : over, slab_under = by_share ? under_in(slab) : under;
   BlendFactors<Float> fuzzy;
   if (rules.fuzzy == MergeRules::Fuzzy::mix) {
-    fuzzy = {over.i + (under.i - over.i) * delta, over.a + (under.a - over.a) * delta};
+    fuzzy = {slab_over.i + (slab_under.i - slab_over.i) * delta, slab_over.a + (slab_under.a - slab_over.a) * delta};
   } else if (rules.overlap == MergeRules::Overlap::over) {
-    fuzzy = {cover_i * (one - delta), cover_a * delta};
+    fuzzy = {slab.i * (one - delta), slab.a * delta};
   } else {  // specks are anti-correlated "over the overlapping regions" (section 2.2.1), and this is one of them
-    fuzzy = {select(tiny, over.i, cover_i * (one - delta)), select(tiny, over.a, cover_a * delta)};
+    fuzzy = {select(tiny, slab_over.i, slab.i * (one - delta)), select(tiny, slab_over.a, slab.a * delta)};
   }
 
-  // (4) Combine: each region counts with its number of bits. Because masks have errors the sum may exceed 1; then it is
-  // scaled down to 1.
-  const Float weight_i = (only_i * local_i + in_front * over.i + behind * under.i + within * fuzzy.i) / bits;
-  const Float weight_a = (only_a * local_a + in_front * over.a + behind * under.a + within * fuzzy.a) / bits;
+  // (4) Combine: each region counts with its number of bits, unless its coverage is an area already. Because masks have
+  // errors the sum may exceed 1; then it is scaled down to 1.
+  const Float times_over = by_share ? bits : in_front, times_under = by_share ? bits : behind,
+              times_fuzzy = by_share ? bits : within;
+  const Float weight_i =
+      (only_i * local_i + times_over * over.i + times_under * under.i + times_fuzzy * fuzzy.i) / bits;
+  const Float weight_a =
+      (only_a * local_a + times_over * over.a + times_under * under.a + times_fuzzy * fuzzy.a) / bits;
   const Float scale = one / greater(weight_i + weight_a, one);
   const Float scale_i = weight_i * scale / greater(in.alpha, Float(1e-30f));
   const Float scale_a = weight_a * scale / greater(old.alpha, Float(1e-30f));

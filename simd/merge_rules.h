@@ -14,6 +14,15 @@ struct MergeRules {
     transition,  // slide 12: from ADD to OVER by a fuzziness of |M_A|, alpha_A and "sadp(A, B)", see merge-inl.h
   } overlap = Overlap::tiny;
 
+  // What alpha' is in a region where masks overlap. A surface with |M| positions has alpha_O = alpha |M_O| / |M| of its
+  // area in a region of |M_O| positions (slide 10).
+  enum class Regional {
+    local,  // normalized by the region's share of positions: alpha_O 32 / |M_O| = alpha 32 / |M|, section 2.2's local
+            // coverage, to be weighted by |M_O| / 32
+    area,   // not normalized: alpha_O itself, to be added up. So even an opaque region hides only a part of what is
+            // there.
+  } regional = Regional::local;
+
   // What to do with a local coverage alpha 32 / |M| above 1, which makes 1 - alpha' negative in the published formulas.
   enum class Local {
     clamp,  // clamp it to 1 where the surfaces overlap: a position cannot be more than fully covered

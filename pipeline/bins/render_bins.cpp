@@ -8,6 +8,7 @@
 #include "pipeline/bins/bands.h"
 #include "pipeline/bins/threads.h"
 #include "pipeline/memory/geometry_memory.h"
+#include "stages/raster/bin_sort_cost.h"
 
 namespace beampipe {
 namespace {
@@ -27,10 +28,14 @@ struct GeometryPass {
     raster.bytes_read = triangles * sizeof(SetupTriangle);
   }
 
-  void add_list(const MemoryParameters& memory, const TriangleList& list) {
+  void add_list(const MemoryParameters& memory, const TriangleList& list, bool is_sorted) {
     raster.empty_tiles += list.empty();
     write_list(memory, list, raster);
-    read_bin(memory, list, raster);
+    if (is_sorted) {
+      read_list(memory, list, raster);
+    } else {
+      read_bin(memory, list, raster);
+    }
   }
 };
 
@@ -108,12 +113,13 @@ FrameResult render_bins(const FrameContext& context, const BinPlan& plan, const 
   if (run.weights) run.weights->assign(std::size_t{context.frame.width} * context.frame.height, {});
   GeometryPass pass(context);
   FrameRecorder recorder(context, plan);
+  const std::uint64_t entry_bytes = sizeof(std::uint32_t) + (plan.sorts_lists ? kKeyBytes : 0);
   std::uint64_t list_bytes = 0;
   const auto render_band = [&](const Band& band) {
     const std::vector<TriangleList> lists = bin_triangles(context.triangles, grid, band);
     for (const TriangleList& list : lists) {
-      list_bytes += list.size() * sizeof list[0];
-      pass.add_list(run.memory, list);
+      list_bytes += list.size() * entry_bytes;
+      pass.add_list(run.memory, list, plan.sorts_lists);
     }
     tbb::parallel_for(std::size_t{0}, lists.size(), [&](std::size_t i) {
       Bin bin(context, grid.tiles[band.first + i], lists[i], plan.stages, plan.framebuffer);

@@ -22,6 +22,9 @@ struct BinPlan {
   std::vector<std::string> stages;  // of a bin, in the order of the pipeline; the first one rasterizes
   Framebuffer framebuffer;          // with the size of the bins, which RunOptions::tile_size overrides
   bool keeps_tile_size = false;     // it does not, because the picture depends on the bins
+  // Bins sort their lists by keys, which binning writes beside the entries. They charge themselves for the setup that
+  // the raster stage reads, because it reads it in sorted order.
+  bool sorts_lists = false;
   // Bytes that this program keeps for each pair until the bin is finished (RunOptions::memory_limit). 0: the technique
   // works on a few triangles at a time.
   std::size_t pair_bytes = 0;

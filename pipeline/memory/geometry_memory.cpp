@@ -32,8 +32,12 @@ void write_list(const MemoryParameters& memory, const TriangleList& list, StageC
   stream(memory, list.size() * sizeof list[0], counters);
 }
 
-void read_bin(const MemoryParameters& memory, const TriangleList& list, StageCounters& counters) {
+void read_list(const MemoryParameters& memory, const TriangleList& list, StageCounters& counters) {
   stream(memory, list.size() * sizeof list[0], counters);
+}
+
+void read_bin(const MemoryParameters& memory, const TriangleList& list, StageCounters& counters) {
+  read_list(memory, list, counters);
   RecordsInOrder setup(memory, sizeof(SetupTriangle));
   for (const std::uint32_t triangle : list) setup.read(triangle, counters);
 }
@@ -52,7 +56,15 @@ TriangleFetches::Places TriangleFetches::places_of(const TriangleList& list, std
 }
 
 void TriangleFetches::load_setup() {
-  for (const std::uint32_t place : places_.setup) lines_.load(place, sizeof(SetupTriangle));
+  StageCounters counted_there;
+  lines_.read_through_l2(places_.setup, sizeof(SetupTriangle), counted_there);
+}
+
+void TriangleFetches::read_setup(const TriangleList& sorted, StageCounters& counters) {
+  if (!modelled_) return;
+  std::vector<std::uint32_t> places;
+  for (const std::uint32_t triangle : sorted) places.push_back(places_.setup[rank(triangle)]);
+  lines_.read_through_l2(places, sizeof(SetupTriangle), counters);
 }
 
 std::size_t TriangleFetches::rank(std::uint32_t triangle) const {

@@ -1,5 +1,5 @@
-// Memory traffic of geometry. The frame is binned as a whole: vertex_setup writes setup triangles and their attributes as
-// two arrays in primitive order, and each bin reads those of its list.
+// Memory traffic of geometry. The frame is binned as a whole: vertex_setup writes setup triangles and their attributes
+// as two arrays in primitive order, and each bin reads those of its list.
 #pragma once
 
 #include <cstddef>
@@ -20,7 +20,10 @@ void move_setup(const MemoryParameters& memory, std::uint64_t vertex_bytes, std:
 // Binning writes a bin's list, 4 bytes per triangle.
 void write_list(const MemoryParameters& memory, const TriangleList& list, StageCounters& counters);
 
-// One pass of the raster stage over a bin reads the list and the setup of its triangles.
+// One pass of the raster stage over a bin reads the list.
+void read_list(const MemoryParameters& memory, const TriangleList& list, StageCounters& counters);
+
+// The same, and the setup of the list's triangles in primitive order.
 void read_bin(const MemoryParameters& memory, const TriangleList& list, StageCounters& counters);
 
 // Attributes read in primitive order, as forward shading does in one pass over a bin: each triangle's are read once.
@@ -68,8 +71,12 @@ class TriangleFetches {
     for (const Item& item : items) attributes(item.triangle, counters);
   }
 
-  // The raster stage of this pass has just read the setup of the bin's triangles, so L2 holds it.
+  // The raster stage of this pass has just read the setup of the bin's triangles, so L2 holds it. Charges nothing.
   void load_setup();
+
+  // The raster stage reads the setup of the bin's triangles through L2, in the order of this list. Neighbours in the
+  // list are not neighbours in memory, so L2 is asked for more sectors than in primitive order.
+  void read_setup(const TriangleList& sorted, StageCounters& counters);
 
   // The end of a pass over the frame.
   void flush(StageCounters& counters) { lines_.flush(counters); }

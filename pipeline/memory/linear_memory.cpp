@@ -30,11 +30,13 @@ void LinearMemory::read(std::uint32_t key, std::size_t begin, std::uint32_t byte
   });
 }
 
-void LinearMemory::load(std::size_t begin, std::uint32_t bytes) {
-  StageCounters counted_there;
-  each_line(begin, bytes, [&](std::size_t line, std::uint32_t first, std::uint32_t part) {
-    l2_.read(0, line, first, part, counted_there);
-  });
+void LinearMemory::read_through_l2(const std::vector<std::uint32_t>& begins, std::uint32_t bytes,
+                                   StageCounters& counters) {
+  for (const std::uint32_t begin : begins) {
+    each_line(begin, bytes, [&](std::size_t line, std::uint32_t first, std::uint32_t part) {
+      l2_.read(0, line, first, part, counters);
+    });
+  }
   l2_.finish_request();
 }
 

@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <cstdint>
+#include <vector>
 
 #include "pipeline/memory/block_cache.h"
 #include "pipeline/memory/parameters.h"
@@ -56,8 +57,9 @@ class LinearMemory {
   void write(std::uint32_t key, std::size_t begin, std::uint32_t bytes, StageCounters& counters);
   void read(std::uint32_t key, std::size_t begin, std::uint32_t bytes, StageCounters& counters);
 
-  // Another stage has just read this through L2, so L2 holds it. Charges nothing.
-  void load(std::size_t begin, std::uint32_t bytes);
+  // A stage that has no L1 reads records one after the other, so L2 holds them then. A line is asked for once while
+  // records that lie in it follow each other.
+  void read_through_l2(const std::vector<std::uint32_t>& begins, std::uint32_t bytes, StageCounters& counters);
 
   // The end of a pass over the frame.
   void flush(StageCounters& counters);

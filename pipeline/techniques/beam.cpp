@@ -37,7 +37,8 @@ FrameResult render_shape(const Trace& trace, const Frame& frame, const BeamOptio
   const BeamFragmentOptions options = grid_options(grid, owners_fragment_bytes(Words));
   const BinPlan plan{.stages = {"conservative_raster", "bin_sort", "beam_fragment", "compose", "shade", "resolve"},
                      .framebuffer = beam_framebuffer(beam),
-                     .keeps_tile_size = true};
+                     .keeps_tile_size = true,
+                     .sorts_lists = true};
   return render_bins(context, plan, [&](Bin& bin) {
     const OrderedList ordered = sort_bin(bin);
     ConservativeRasterUnit raster(bin, "", PairDepths::bounds, ConservativeRasterUnit::Hidden::left_out);
@@ -83,7 +84,8 @@ TechniqueKind beam_kind() {
                     choice("bin", o.bin, {{"8", 8}, {"16", 16}, {"32", 32}}, "pixels on each side of a bin")};
               },
               [](const BeamOptions& o) {
-                return Technique{.framebuffer = beam_framebuffer(o), .render = bind_options(render_beam, o)};
+                return Technique{
+                    .framebuffer = beam_framebuffer(o), .render = bind_options(render_beam, o), .has_weights = true};
               })};
 }
 

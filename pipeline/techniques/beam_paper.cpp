@@ -178,7 +178,8 @@ FrameResult render_layers(const Trace& trace, const Frame& frame, const PaperOpt
   const bool sorts = beam.order == PaperOrder::near_first;
   BinPlan plan{.stages = {"conservative_raster", "beam_fragment", "shade", "compose", "resolve"},
                .framebuffer = paper_framebuffer(beam),
-               .keeps_tile_size = sorts};
+               .keeps_tile_size = sorts,
+               .sorts_lists = sorts};
   if (sorts) plan.stages.push_back("bin_sort");
   return render_bins(context, plan, [&](Bin& bin) {
     const TriangleList list = sorts ? sort_bin(bin).triangles : bin.list;
@@ -217,8 +218,10 @@ SpecOptions paper_options(PaperOptions& o) {
   return {
       choice("mask", o.mask, {{"table", MaskSource::table}, {"exact", MaskSource::exact}},
              "masks from a 64 x 64 table, or from edge tests"),
-      choice("sort", o.sort, {{"centroid", SortKey::centroid}, {"nearest", SortKey::nearest}},
-             "the fragment's depth that the A-buffer sorts by"),
+      beside(
+          "order=sorted", [&o] { return o.order == PaperOrder::sorted; },
+          choice("sort", o.sort, {{"centroid", SortKey::centroid}, {"nearest", SortKey::nearest}},
+                 "the fragment's depth that the A-buffer sorts by")),
       choice("tiny", o.tiny_positions, {{"1", 1}, {"3", 3}}, "most mask positions that a speck is given"),
       choice("overlap", o.merge.overlap,
              {{"tiny", R::Overlap::tiny},
@@ -227,6 +230,8 @@ SpecOptions paper_options(PaperOptions& o) {
               {"transition", R::Overlap::transition}},
              "how coverages combine where masks overlap: ADD for specks and OVER for others, OVER, ADD, or a "
              "transition from ADD to OVER"),
+      choice("regional", o.merge.regional, {{"local", R::Regional::local}, {"area", R::Regional::area}},
+             "the coverage of an overlapping region is normalized by the region's positions, or is its area"),
       choice("local", o.merge.local, {{"clamp", R::Local::clamp}, {"keep", R::Local::keep}},
              "a local coverage above 1 is clamped to 1, or kept"),
       choice("fuzzy", o.merge.fuzzy, {{"delta", R::Fuzzy::delta}, {"mix", R::Fuzzy::mix}},
@@ -246,8 +251,10 @@ SpecOptions paper_options(PaperOptions& o) {
       choice("order", o.order,
              {{"sorted", PaperOrder::sorted}, {"near-first", PaperOrder::near_first}, {"stream", PaperOrder::stream}},
              "fragments are sorted in an A-buffer, come from sorted bins, or come in primitive order"),
-      choice("layers", o.layers, {{"1", 1}, {"2", 2}, {"3", 3}, {"4", 4}, {"8", 8}},
-             "without an A-buffer: aggregates that a pixel keeps")};
+      beside(
+          "order=near-first or order=stream", [&o] { return o.order != PaperOrder::sorted; },
+          choice("layers", o.layers, {{"1", 1}, {"2", 2}, {"3", 3}, {"4", 4}, {"8", 8}},
+                 "without an A-buffer: aggregates that a pixel keeps"))};
 }
 
 }  // namespace

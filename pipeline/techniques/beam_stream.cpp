@@ -51,6 +51,7 @@ FrameResult render_one_pass(const Trace& trace, const Frame& frame, const Stream
     ConservativeRasterUnit raster(bin, "", PairDepths::bounds, ConservativeRasterUnit::Hidden::left_out);
     BeamFragmentUnit make_fragments(bin, options);
     ShadeUnit shade(bin);
+    bin.triangle_fetches().load_setup();
     ComposeOwnersUnit<Words, Slots> compose(bin, positions, bin.list, nullptr, plan.framebuffer.surfaces);
 
     raster.queued(bin.list, [&](const std::vector<Pair>& pairs, std::size_t first) {
@@ -127,13 +128,19 @@ TechniqueKind beam_stream_kind() {
                 choice("bits", o.positions, {{"32", 32}, {"64", 64}, {"128", 128}, {"256", 256}},
                        "positions of the mask"),
                 number("passes", o.passes, 0, 1000, "most passes over the geometry; 0: until every pixel is settled"),
-                choice("slots", o.slots, {{"2", 2}, {"4", 4}, {"5", 5}, {"7", 7}, {"8", 8}, {"16", 16}, {"32", 32}},
-                       "in one pass: owners that a pixel keeps at once"),
-                choice("layers", o.layers, {{"1", 1}, {"5", 5}},
-                       "in several passes: surfaces that a pixel keeps at once")};
+                beside(
+                    "passes=1", [&o] { return o.passes == 1; },
+                    choice("slots", o.slots, {{"2", 2}, {"4", 4}, {"5", 5}, {"7", 7}, {"8", 8}, {"16", 16}, {"32", 32}},
+                           "in one pass: owners that a pixel keeps at once")),
+                beside(
+                    "passes=0 or more than one pass", [&o] { return o.passes != 1; },
+                    choice("layers", o.layers, {{"1", 1}, {"5", 5}},
+                           "in several passes: surfaces that a pixel keeps at once"))};
           },
           [](const StreamOptions& o) {
-            return Technique{.framebuffer = stream_framebuffer(o), .render = bind_options(render_stream, o)};
+            return Technique{.framebuffer = stream_framebuffer(o),
+                             .render = bind_options(render_stream, o),
+                             .has_weights = o.passes == 1};
           })};
 }
 

@@ -18,6 +18,17 @@ void OpenPixelStore::finish() {
   if (bin_.models_memory()) memory_.add_bytes(bin_.pixel_counter("bytes"));
 }
 
+// Depth is compared position by position, so the order of triangles matters only where owners became one.
+void record_weights(const OwnerWeights& recorded, const TriangleList& list, BinWeights& weights) {
+  for (std::size_t pixel = 0; pixel < weights.pixels(); ++pixel) {
+    const std::vector<OwnerWeights::Weight>& of_pixel = recorded.of_pixel(pixel);
+    const bool merged = std::any_of(of_pixel.begin(), of_pixel.end(), [](const auto& each) { return each.merged; });
+    for (const OwnerWeights::Weight& each : of_pixel)
+      weights.at(pixel).push_back({list[each.number], each.weight, merged ? each.number + 1 : 0, each.speck});
+  }
+  weights.finish();
+}
+
 OrderedList sort_bin(Bin& bin) {
   const BinStage stage = bin.stage("bin_sort");
   OrderedList ordered = bin_sort(bin.triangles(), bin.list, bin.tile, stage.timed());
@@ -30,6 +41,7 @@ OrderedList sort_bin(Bin& bin) {
     stage.streams(bin.list.size() * kKeyBytes);
     stage.moves_in_l2(2 * kSortPasses * entries - bin.list.size() * kKeyBytes);
   }
+  bin.triangle_fetches().read_setup(ordered.triangles, bin.stage("conservative_raster").counters);
   return ordered;
 }
 

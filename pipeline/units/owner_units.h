@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "pipeline/bins/bin.h"
+#include "pipeline/bins/bin_weights.h"
 #include "pipeline/memory/aggregate_memory.h"
 #include "pipeline/units/fragment_units.h"
 #include "stages/beam/compose_owners.h"
@@ -15,7 +16,8 @@
 
 namespace beampipe {
 
-// Sorts the bin's list near to far, with its memory traffic.
+// Sorts the bin's list near to far, with the traffic of the keys, of the sort, and of the raster stage, which reads the
+// setup triangles in that order. For a plan that sorts_lists.
 OrderedList sort_bin(Bin& bin);
 
 // What open pixels cost in memory. On chip they cost nothing there.
@@ -35,6 +37,9 @@ class OpenPixelStore {
   AggregateMemory memory_;
 };
 
+// Hands what was recorded to the frame, if it was asked for.
+void record_weights(const OwnerWeights& recorded, const TriangleList& list, BinWeights& weights);
+
 template <std::size_t Words, std::size_t Slots>
 std::vector<Surface> open_pixel_surfaces() {
   using Pixel = OpenPixel<Words, Slots>;
@@ -49,19 +54,23 @@ template <std::size_t Words, std::size_t Slots>
 class ComposeOwnersUnit {
  public:
   // `list`: the triangles in the order in which they are taken. `watermarks` may be null. `surfaces`: of open pixels.
-  // All but the surfaces must outlive the unit.
+  // All but the surfaces must outlive the unit. L2 holds the setup of the triangles.
   ComposeOwnersUnit(Bin& bin, const PositionSet& positions, const TriangleList& list,
                     const std::vector<float>* watermarks, const std::vector<Surface>& surfaces)
       : bin_(bin),
         stage_(bin.stage("compose")),
-        owners_{bin.triangles(), list, watermarks, bin.tile, positions, bin.context.colors, bin.models_memory()},
+        weights_(bin),
+        recorded_(weights_ ? bin.tile.pixels() : 0),
+        owners_{bin.triangles(),     list,
+                watermarks,          bin.tile,
+                positions,           bin.context.colors,
+                bin.models_memory(), weights_ ? &recorded_ : nullptr},
         maps_{bin.pixel_counter("fragments"), bin.pixel_counter("merges")},
         pixels_(bin.tile.pixels()),
         store_(bin, surfaces) {
     if (list.size() > OwnerSlot::kMostTriangles)
       throw std::runtime_error("a bin has " + std::to_string(list.size()) + " triangles, more than the " +
                                std::to_string(OwnerSlot::kMostTriangles) + " that an owner can name");
-    bin.triangle_fetches().load_setup();
   }
 
   // `first`: as in compose_owners.
@@ -79,6 +88,7 @@ class ComposeOwnersUnit {
     store_.finish();
     const std::vector<PixelColor> colors = finish_owners(owners_, stage_.timed(), pixels_, result);
     finish(result, shade);
+    record_weights(recorded_, owners_.list, weights_);
     bin_.triangle_fetches().flush(stage_.counters);
     return resolve(colors, bin_.background(), kColorBytes + sizeof(std::uint16_t), bin_.stage("resolve").timed());
   }
@@ -91,6 +101,8 @@ class ComposeOwnersUnit {
 
   Bin& bin_;
   BinStage stage_;
+  BinWeights weights_;
+  OwnerWeights recorded_;
   OwnersBin owners_;
   OwnersMaps maps_;
   std::vector<OpenPixel<Words, Slots>> pixels_;

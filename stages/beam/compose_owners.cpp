@@ -27,12 +27,13 @@ class OwnerComposer {
   // the raster has left out many already: so pictures do not depend on how far the raster is ahead.
   Outcome add(const Fragment& fragment, std::uint32_t number, Pixel& pixel, ClosedDepth& closed) {
     ++work.fragments;
+    index_ = fragment.pixel;
     const std::uint32_t row = fragment.pixel / width_;
     x_ = bin_.tile.x0 + static_cast<std::int32_t>(fragment.pixel - row * width_);
     y_ = bin_.tile.y0 + static_cast<std::int32_t>(row);
     if (closed.is_hidden(x_, y_, fragment.z_min)) return Outcome::hidden;
     if (fragment.mask.none()) {
-      add_speck(fragment, pixel);
+      add_speck(fragment, number, pixel);
       return Outcome::composed;
     }
     ++work.masks;
@@ -68,10 +69,14 @@ class OwnerComposer {
     return merged ? Outcome::merged : Outcome::composed;
   }
 
-  // All owners are final. Returns the pixel's colour.
-  PixelColor finish(Pixel& pixel) {
+  // All owners are final. `index`: of the pixel in the tile. Returns its colour.
+  PixelColor finish(std::size_t index, Pixel& pixel) {
     ++work.finished;
-    if (const OwnerSlot* slot = only_owner(pixel)) return {1.0f, color_of(*slot)};
+    index_ = index;
+    if (const OwnerSlot* slot = only_owner(pixel)) {
+      if (bin_.weights) bin_.weights->finish_whole(index_, slot->triangle());
+      return {1.0f, color_of(*slot)};
+    }
     std::size_t count = 0;
     for (std::size_t k = 0; k < Slots; ++k)
       if (!pixel.slots[k].is_free()) list_owner(pixel, k, owners_[count++]);
@@ -239,6 +244,8 @@ class OwnerComposer {
     const float part = counted ? one.visible : std::max(one.visible + error_of_one, kLeastArea);
     const float other_part = counted ? other.visible : std::max(other.visible + error_of_other, kLeastArea);
     const glm::vec3 color = (part * color_of(one.slot) + other_part * color_of(other.slot)) * (1 / (part + other_part));
+    if (bin_.weights)
+      bin_.weights->merge(index_, {one.slot, one.index}, {other.slot, other.index}, part / (part + other_part));
     put(one.owned | other.owned, Pixel::owned_by(one.index), pixel);
     const std::uint32_t contents = one.slot.content() + 3 * other.slot.content();
     pixel.slots[one.index].set_merged(larger.slot.triangle(), error_of_one + error_of_other, color,
@@ -271,6 +278,7 @@ class OwnerComposer {
           visible_area(exact, owner->covered(), owner->visible, kPositions, Taken<float>{pixel.area, final_positions});
       const glm::vec3 color = color_of(owner->slot);
       const float counted = owner->visible / kPositions;
+      if (bin_.weights) bin_.weights->settle(index_, {owner->slot, owner->index}, area, counted);
       final_positions += owner->visible;
       const float threshold = rounding_threshold(owner->slot.content());
       pixel.area.add(area, threshold);
@@ -299,6 +307,7 @@ class OwnerComposer {
     for (const OwnerSlot& slot : pixel.slots) {
       if (slot.is_free()) continue;
       ++work.bounds_found;
+      work.vertices_bounded += !slot.is_merged();
       const DepthBounds<float> anywhere{kInFront, kNoDepth};
       const DepthBounds<float> vertices = slot.is_merged() ? anywhere : vertex_bounds(triangle_of(slot).vertex_z);
       farthest = std::max(farthest, pair_bounds(plane_of(slot), vertices).farthest);
@@ -309,7 +318,7 @@ class OwnerComposer {
   // Each of the three positions nearest to a speck votes for it, if it is free or its owner is not nearer. Of specks
   // that face towards the viewer and specks that face away, those with the smaller area are the hidden sides of thin
   // bodies.
-  void add_speck(const Fragment& fragment, Pixel& pixel) {
+  void add_speck(const Fragment& fragment, std::uint32_t number, Pixel& pixel) {
     ++work.specks;
     float votes = 0;
     for (const std::uint8_t position : bin_.positions.nearest_to(fragment.centroid_u, fragment.centroid_v)) {
@@ -326,6 +335,7 @@ class OwnerComposer {
     const float area = lesser(greater(same, opposite) - before, 1.0f - pixel.area);
     if (area <= 0) return;
     ++work.specks_added;
+    if (bin_.weights) bin_.weights->add_speck(index_, number, area);
     const glm::vec3 color = area * shade(fragment.triangle);
     pixel.area.add(area, threshold);
     pixel.colors.add({color[0], color[1], color[2], 0, 0, 0}, threshold);
@@ -344,7 +354,12 @@ class OwnerComposer {
     Estimate<float> analytic{pixel.area, {}}, counted{count / kPositions, {}};
     for (std::size_t c = 0; c < 3; ++c) analytic.color[c] = pixel.colors[c], counted.color[c] = pixel.colors[c + 3];
     const Estimate<float> result = limited_estimate(analytic, counted, kPositions);
-    return {result.area, {result.color[0], result.color[1], result.color[2]}};
+    if (bin_.weights) bin_.weights->finish(index_, color_of(analytic), color_of(counted), color_of(result));
+    return color_of(result);
+  }
+
+  static PixelColor color_of(const Estimate<float>& estimate) {
+    return {estimate.area, {estimate.color[0], estimate.color[1], estimate.color[2]}};
   }
 
   static constexpr float kLeastArea = 1e-3f;  // positions; keeps the weights of a mean positive
@@ -353,6 +368,7 @@ class OwnerComposer {
   OwnersResult& result_;
   const std::uint32_t width_;            // of the tile
   std::int32_t x_ = 0, y_ = 0;           // the fragment's pixel, frame coordinates
+  std::size_t index_ = 0;                // of the pixel in the tile
   std::array<Owner, Slots + 1> owners_;  // of one pixel, and the fragment that needs a slot
 };
 
@@ -379,7 +395,7 @@ std::vector<PixelColor> finish_owners(const OwnersBin& bin, StageCounters& count
                                       std::vector<OpenPixel<Words, Slots>>& pixels, OwnersResult& result) {
   OwnerComposer<Words, Slots> composer(bin, result);
   std::vector<PixelColor> colors(pixels.size());
-  for (std::uint32_t i = 0; i < pixels.size(); ++i) colors[i] = composer.finish(pixels[i]);
+  for (std::uint32_t i = 0; i < pixels.size(); ++i) colors[i] = composer.finish(i, pixels[i]);
   charge<Words, Slots>(composer.work, counters);
   return colors;
 }

@@ -21,6 +21,7 @@
 #include "stages/data/closed_depth.h"
 #include "stages/data/fragment.h"
 #include "stages/data/open_pixel.h"
+#include "stages/data/owner_weights.h"
 #include "stages/data/pixel_formats.h"
 #include "stages/data/position_set.h"
 #include "stages/data/setup_triangle.h"
@@ -38,6 +39,7 @@ struct OwnersBin {
   const PositionSet& positions;
   const std::vector<glm::vec3>& colors;  // what the shader returns, one per triangle
   bool lists_fetches;                    // fill OwnersResult::fetched
+  OwnerWeights* weights = nullptr;       // where the triangles' weights are recorded; null: nowhere
 };
 
 // What was done, beside what is charged.

@@ -13,22 +13,23 @@ namespace beampipe {
 // How often each operation was done.
 struct OwnersWork {
   std::uint64_t fragments = 0;
-  std::uint64_t masks = 0;            // fragments that cover a position
-  std::uint64_t claims = 0;           // fragments that take a position
-  std::uint64_t puts = 0;             // masks of positions put into a state
-  std::uint64_t planes = 0;           // of owners, computed again
-  std::uint64_t contests = 0;         // owners of positions that a fragment covers
-  std::uint64_t planes_compared = 0;  // at all positions
-  std::uint64_t listed = 0;           // owners whose positions were counted
-  std::uint64_t finality_tests = 0;   // of owners, against the watermark
-  std::uint64_t farthest_found = 0;   // farthest depths over an owner's positions
-  std::uint64_t measured = 0;         // owners whose mean position was found
-  std::uint64_t pairs_compared = 0;   // of owners
-  std::uint64_t merges = 0;           // of two owners
-  std::uint64_t order_tests = 0;      // to sort owners that become final
-  std::uint64_t settlings = 0;        // of one owner or of several at once
-  std::uint64_t settled = 0;          // owners that became final
-  std::uint64_t bounds_found = 0;     // depth bounds of the owners of pixels without empty positions
+  std::uint64_t masks = 0;             // fragments that cover a position
+  std::uint64_t claims = 0;            // fragments that take a position
+  std::uint64_t puts = 0;              // masks of positions put into a state
+  std::uint64_t planes = 0;            // of owners, computed again
+  std::uint64_t contests = 0;          // owners of positions that a fragment covers
+  std::uint64_t planes_compared = 0;   // at all positions
+  std::uint64_t listed = 0;            // owners whose positions were counted
+  std::uint64_t finality_tests = 0;    // of owners, against the watermark
+  std::uint64_t farthest_found = 0;    // farthest depths over an owner's positions
+  std::uint64_t measured = 0;          // owners whose mean position was found
+  std::uint64_t pairs_compared = 0;    // of owners
+  std::uint64_t merges = 0;            // of two owners
+  std::uint64_t order_tests = 0;       // to sort owners that become final
+  std::uint64_t settlings = 0;         // of one owner or of several at once
+  std::uint64_t settled = 0;           // owners that became final
+  std::uint64_t bounds_found = 0;      // depth bounds of the owners of pixels without empty positions
+  std::uint64_t vertices_bounded = 0;  // owners whose vertices limit these bounds
   std::uint64_t specks = 0, speck_comparisons = 0, specks_added = 0;
   std::uint64_t finished = 0;  // pixels that were read at the end
   std::uint64_t limited = 0;   // of these, pixels whose estimates were compared
@@ -201,11 +202,12 @@ void charge(const OwnersWork& work, StageCounters& counters) {
                         of_gap = plane_gap_cost(), of_nearer = nearer_cost() * kPositions, of_count = count_cost(Words),
                         of_finality = finality_cost(), of_farthest = farthest_cost() * kPositions,
                         of_mean = mean_cost(), of_pair = pair_cost(), of_merge = merge_cost(),
-                        of_settled = settle_owner_cost(), of_bounds = pair_bounds_cost(),
-                        of_speck = speck_votes_cost(Pixel::kBits), of_speck_test = speck_test_cost(),
-                        of_speck_area = speck_area_cost(), of_limit = limit_cost();
+                        of_settled = settle_owner_cost(), of_bounds = plane_bounds_cost(),
+                        of_vertices = vertex_bounds_cost(), of_speck = speck_votes_cost(Pixel::kBits),
+                        of_speck_test = speck_test_cost(), of_speck_area = speck_area_cost(), of_limit = limit_cost();
   constexpr OperationCounts kOfOnlyOwner{.add = Slots},                        // does one owner have the whole pixel?
-      kOfHiddenTest{.add = 1}, kOfOrderTest{.add = 1}, kOfPosition{.add = 2};  // a position's x and y
+      kOfHiddenTest{.add = 1}, kOfOrderTest{.add = 1}, kOfPosition{.add = 2},  // a position's x and y
+      kOfFarther{.add = 1};                                                    // than the owners before it
   counters.items_in += work.fragments;
   counters.items_out += work.claims;
   counters.ops += kOfHiddenTest * work.fragments;
@@ -226,7 +228,9 @@ void charge(const OwnersWork& work, StageCounters& counters) {
   counters.ops += of_merge * work.merges;
   counters.ops += kOfOrderTest * work.order_tests;
   counters.ops += of_settled * work.settled;
-  counters.ops += of_bounds * work.bounds_found;
+  counters.ops += of_bounds * work.bounds_found;  // their planes are among work.planes
+  counters.ops += kOfFarther * work.bounds_found;
+  counters.ops += of_vertices * work.vertices_bounded;
   counters.ops += of_speck * work.specks;
   counters.ops += of_speck_test * work.speck_comparisons;
   counters.ops += of_speck_area * work.specks_added;

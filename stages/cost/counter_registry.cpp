@@ -90,8 +90,7 @@ const std::vector<PixelCounterInfo>& pixel_counters() {
 }
 
 const std::vector<PixelCounterInfo>& error_counters() {
-  constexpr const char *kUnit = "linear light, 0..1",
-                       *kCauses = "compare --causes: beam:order=sorted, beam:rules=paper, alpha";
+  constexpr const char *kUnit = "linear light, 0..1", *kCauses = "compare --causes: techniques that record weights";
   static const std::vector<PixelCounterInfo> counters = {
       {"error", kUnit, "root of the mean square error over R, G and B against the reference", "compare"},
       {"cause_leak", kUnit, "part of the pixel's error: a triangle shows that is completely hidden", kCauses},
@@ -105,7 +104,8 @@ const std::vector<PixelCounterInfo>& error_counters() {
       {"cause_mixed", kUnit,
        "part of the pixel's error: a triangle lost area to a later one that hides a different triangle", kCauses},
       {"cause_rounding", kUnit,
-       "part of the pixel's error: the rest, which comes from rounding and not from the triangles' weights", kCauses},
+       "part of the pixel's error: the rest, which comes from rounding and limits and not from the triangles' weights",
+       kCauses},
   };
   return counters;
 }

@@ -35,13 +35,18 @@ inline OperationCounts vertex_bounds_cost() {
   });
 }
 
-// The depth bounds of a pair, including its plane.
-inline OperationCounts pair_bounds_cost() {
-  OperationCounts cost = plane_cost();
-  cost += count_operations([](OperationCounts& counts) {
+// The depth bounds of a pair whose plane is known.
+inline OperationCounts plane_bounds_cost() {
+  return count_operations([](OperationCounts& counts) {
     const Counted<float> z(0.0f, counts);
     pair_bounds<Counted<float>>({z, z, z}, {z, z});
   });
+}
+
+// The depth bounds of a pair, including its plane.
+inline OperationCounts pair_bounds_cost() {
+  OperationCounts cost = plane_cost();
+  cost += plane_bounds_cost();
   return cost;
 }
 

@@ -75,6 +75,15 @@ TEST(Buffers, TheABufferGrowsByARecordForEveryPairThatIsNotHidden) {
   }
 }
 
+// Binning writes the keys of near-first order beside the entries of the lists.
+TEST(Buffers, SortedListsHaveAKeyForEachEntry) {
+  const Trace trace = halves(100);
+  for (const char* spec : {"beam", "beam:rules=paper,order=near-first"})
+    EXPECT_EQ(bytes_of(render(spec, trace), "bin_lists"), 100u * (4 + 4)) << spec;
+  for (const char* spec : {"beam:order=sorted", "beam:order=stream", "beam:rules=paper,order=stream", "msaa:8"})
+    EXPECT_EQ(bytes_of(render(spec, trace), "bin_lists"), 100u * 4) << spec;
+}
+
 // If all triangles but the nearest are hidden, the size of the sorted A-buffer is constant too.
 TEST(Buffers, HiddenPairsAreNotInTheABuffer) {
   for (const std::uint32_t layers : {10u, 1000u}) {

@@ -74,6 +74,15 @@ TEST(Counters, PixelsOfFourCornersAndASpeck) {
   EXPECT_EQ(at(parse_technique("beam:order=sorted").render(corners(0), 0, {1}), "largest_window"), 4);
   EXPECT_EQ(at(parse_technique("alpha").render(corners(0.1), 0, {1}), "merges"), 5);
   EXPECT_EQ(at(parse_technique("z3").render(corners(0.1), 0, {1}), "merges"), 1) << "four owners, three layers";
+  for (const char* spec : {"beam", "beam:order=stream"}) {
+    const FrameResult roomy = parse_technique(spec).render(corners(0.1), 0, {1});
+    EXPECT_EQ(at(roomy, "fragments"), 5) << spec;
+    EXPECT_EQ(at(roomy, "merges"), 0) << spec << ": a slot for each of four owners";
+  }
+  EXPECT_EQ(at(parse_technique("beam:slots=2").render(corners(0.1), 0, {1}), "merges"), 0)
+      << "the nearer owners are final when a farther one comes";
+  EXPECT_EQ(at(parse_technique("beam:slots=2").render(corners(0), 0, {1}), "merges"), 2) << "four owners, two slots";
+  EXPECT_EQ(at(parse_technique("beam:order=stream,slots=2").render(corners(0.1), 0, {1}), "merges"), 2);
   EXPECT_EQ(at(parse_technique("beam:order=stream,passes=0,layers=1").render(corners(0.1), 0, {1}), "passes"), 4);
   EXPECT_EQ(at(parse_technique("beam:order=stream,passes=0").render(corners(0.1), 0, {1}), "passes"), 1)
       << "room for five";
@@ -127,6 +136,23 @@ TEST(Counters, ResolveReadsEveryPixelOnce) {
   }
 }
 
+// Open pixels on chip are read without memory: only the picture is written. In memory, all of their 138 bytes are read.
+TEST(Counters, ResolveReadsOpenPixelsWhereTheyAreKept) {
+  const Trace trace = random_trace(64, 32, 400, 2);
+  RunOptions raw{2};
+  raw.memory.compression = false;
+  for (const auto& [spec, moved_bytes] : {std::tuple{"beam", 6u}, {"beam:order=stream", 138u + 6u}}) {
+    const StageCounters resolving = stage_of(parse_technique(spec).render(trace, 0, raw), "resolve");
+    EXPECT_EQ(resolving.items_in, 64u * 32) << spec;
+    EXPECT_EQ(resolving.items_out, 64u * 32) << spec;
+    EXPECT_EQ(resolving.bytes_read, 64u * 32 * 8) << spec << ": a colour and an area";
+    EXPECT_EQ(resolving.bytes_written, 64u * 32 * 6) << spec;
+    EXPECT_GE(resolving.sector_bytes, 64u * 32 * moved_bytes) << spec;
+    EXPECT_LE(resolving.sector_bytes, 64u * 32 * moved_bytes * 105 / 100) << spec << ": surfaces lie across sectors";
+    EXPECT_EQ(resolving.dram_bytes, resolving.sector_bytes) << spec;
+  }
+}
+
 // One triangle closes the first of four tiles of 32 x 32 pixels, and those pixels of the second where x + y < 64.
 // Behind it lie a triangle in the first tile alone, and one in a row of pixels of both tiles, 8 of them in the second.
 TEST(Counters, WhatIsHiddenIsCountedOnce) {
@@ -152,8 +178,8 @@ TEST(Counters, EveryStageWorks) {
   Trace trace = random_trace(40, 30, 50, 2);
   trace.frames[0].draws[0].shading = Shading::lambert;  // an unlit triangle needs no operations
   trace.frames[0].light_direction = glm::vec3(0, 0, 1);
-  for (const char* spec : {"beam:order=sorted", "alpha", "msaa:4", "msaa:4,prepass", "acaa:4,double=stencil", "acaa:32",
-                           "deferred", "visibility", "taa:8", "dvm", "reference"}) {
+  for (const char* spec : {"beam", "beam:order=sorted", "beam:order=stream", "alpha", "msaa:4", "msaa:4,prepass",
+                           "acaa:4,double=stencil", "acaa:32", "deferred", "visibility", "taa:8", "dvm", "reference"}) {
     for (const StageCounters& counters : parse_technique(spec).render(trace, 0, {2}).stages) {
       EXPECT_FALSE(counters.stage.empty()) << spec;
       EXPECT_GT(counters.items_in, 0u) << spec << ' ' << counters.stage;

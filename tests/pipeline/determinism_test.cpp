@@ -17,7 +17,7 @@ const char* const kSpecs[] = {
     "beam:order=sorted,storage=float32",
     "beam:rules=paper,mask=exact",
     "beam:rules=paper,storage=text",
-    "beam:rules=paper,sort=nearest,tiny=3,overlap=transition,local=keep,fuzzy=mix,extents=slab,"
+    "beam:rules=paper,sort=nearest,tiny=3,overlap=transition,regional=area,local=keep,fuzzy=mix,extents=slab,"
     "slab=visible,plane=visible,thickness=containing",
     "beam:order=stream,passes=0",
     "beam:order=stream,passes=0,bits=64,layers=1",

@@ -110,6 +110,38 @@ TEST(GeometryMemory, WhatTheRasterHasReadIsInL2) {
   EXPECT_EQ(counters.dram_bytes, 0u);
 }
 
+// Three records of 88 bytes are sectors 0 to 2, 2 to 5 and 5 to 8; a line has four sectors. Taken one after the other,
+// records 0 and 1 share a request to line 0, and records 1 and 2 one to line 1. In another order they do not.
+TEST(GeometryMemory, SortedSetupIsReadInTheOrderInWhichItIsTaken) {
+  const TriangleList list = {0, 1, 2};
+  StageCounters in_order, sorted;
+  TriangleFetches({}, list).read_setup({0, 1, 2}, in_order);
+  EXPECT_EQ(in_order.sector_bytes, 9 * 32u);
+  EXPECT_EQ(in_order.l2_bytes, 9 * 32u);
+  EXPECT_EQ(in_order.dram_bytes, 9 * 32u);
+  TriangleFetches({}, list).read_setup({0, 2, 1}, sorted);
+  EXPECT_EQ(sorted.sector_bytes, 11 * 32u) << "sectors 2 and 5 are asked for twice";
+  EXPECT_EQ(sorted.l2_bytes, 11 * 32u);
+  EXPECT_EQ(sorted.dram_bytes, 9 * 32u) << "L2 has them";
+}
+
+// A list of 5.6 MB in L2, which has 4.5 MiB. An order that returns to a line only after all others finds nothing there,
+// so every record fetches the sectors that it shares with others once more.
+TEST(GeometryMemory, SortedSetupOfALongListIsFetchedAgain) {
+  TriangleList list, strided;
+  for (std::uint32_t triangle = 0; triangle < 64'000; ++triangle) list.push_back(triangle);
+  for (std::uint32_t first = 0; first < 2; ++first)
+    for (std::uint32_t triangle = first; triangle < 64'000; triangle += 2) strided.push_back(triangle);
+  StageCounters in_order, sorted;
+  TriangleFetches({}, list).read_setup(list, in_order);
+  EXPECT_EQ(in_order.dram_bytes, 64'000u * 88);
+  TriangleFetches({}, list).read_setup(strided, sorted);
+  std::uint64_t sectors = 0;
+  for (const std::uint32_t triangle : strided) sectors += sectors_of_record(triangle, 88).size();
+  EXPECT_EQ(sorted.sector_bytes, 32 * sectors);
+  EXPECT_EQ(sorted.dram_bytes, 32 * sectors);
+}
+
 TEST(GeometryMemory, WhereNothingIsModelledNothingIsCounted) {
   MemoryParameters off;
   off.modelled = false;
@@ -120,6 +152,7 @@ TEST(GeometryMemory, WhereNothingIsModelledNothingIsCounted) {
   const TriangleList list = {0, 1};
   TriangleFetches fetches(off, list);
   fetches.setup(1, counters);
+  fetches.read_setup(list, counters);
   fetches.flush(counters);
   EXPECT_EQ(counters, StageCounters{});
 }

@@ -57,6 +57,24 @@ TEST(HandWorked, TriangleMsaaWithoutCompression) {
                false);
 }
 
+// Closed depths are read once for each pair, and read and written once where the triangle covers a whole pixel; there
+// its depth plane is fetched again. A fragment has 57 bytes, and the closed depth is 4 more. The sort reads and writes
+// the list's 8 bytes in each of three passes; keys make one trip to DRAM and back, and the rest stays in L2.
+TEST(HandWorked, TriangleNearFirst) {
+  constexpr std::uint64_t kPairs = 13, kFragments = 10, kFragment = 57, kPair = 16, kPixel = 154, kPlane = 4 + 40,
+                          kEntry = 4 + 4;
+  expect_bytes("paper_triangle.json", "beam",
+               {{"vertex_setup", 1, 1, 48, kSetup, kTriangleSetup, kTriangleSetup, kTriangleSetup},
+                {"conservative_raster", 1, kPairs, 88 + 4 * kPairs, kPairs * kPair, kTriangleRaster, kTriangleRaster,
+                 kTriangleRaster},
+                {"bin_sort", 1, 1, 3 * kEntry, 4 + 3 * kEntry, 32 + 32 + 64, 32 + 32 + 64, 32 + 32},
+                {"beam_fragment", kPairs, kFragments, kPairs * (kPair + 88), kFragments * kFragment, 0, 0, 0},
+                {"compose", kFragments, kFragments, kFragments * (kFragment + 4 + kPixel) + 4 + kPlane + 64 * kPixel,
+                 kFragments * kPixel + 4, 64, 64, 0},
+                {"shade", kFragments, kFragments, kFragments * (28 + 8), kFragments * 6, kFragments * 32, 32, 32},
+                {"resolve", 64, 64, 64 * 8, 384, 384, 384, 384}});
+}
+
 TEST(HandWorked, TriangleBeam) {
   constexpr std::uint64_t kPairs = 13, kFragments = 10, kWhole = 1, kPartial = kFragments - kWhole, kFragment = 62,
                           kPair = 16, kRecord = 12 + 4, kHead = 4;
@@ -127,6 +145,7 @@ TEST(HandWorked, BytesOfAPixel) {
   EXPECT_EQ(bytes("acaa:1", 2, 3), 4 + 4 + 4 + 2 * 8) << "depth again; the accumulator read and written";
   EXPECT_EQ(bytes("beam:order=sorted", 2, 3), 3 * 4 + 3 * 16 + 42)
       << "head exchanged, and read; record written, sorted, put into a window; aggregate";
+  for (const auto& [x, y] : {std::pair{2u, 3u}, {0u, 0u}}) EXPECT_EQ(bytes("beam", x, y), 6) << "the picture alone";
   EXPECT_EQ(bytes("visibility", 2, 3), 4 + 4 + 4 + 8 + 6) << "a number in place of colour; G-buffer, colour written";
   EXPECT_EQ(bytes("deferred", 2, 3), 4 + 4 + 4 + 8 + 6) << "depth again in place of the number";
   EXPECT_EQ(bytes("dvm", 2, 3), 8 * (4 + 4 + 4) + 9 + 8 + 6) << "8 samples, one of which is shaded";
@@ -134,7 +153,8 @@ TEST(HandWorked, BytesOfAPixel) {
   EXPECT_EQ(bytes("beam:order=sorted", 0, 0), 4) << "the head";
   RunOptions run{1};
   run.memory.modelled = false;
-  EXPECT_FALSE(parse_technique("beam:order=sorted").render(trace, 0, run).pixel_counters.contains("bytes"));
+  for (const char* spec : {"beam", "beam:order=sorted", "beam:order=stream"})
+    EXPECT_FALSE(parse_technique(spec).render(trace, 0, run).pixel_counters.contains("bytes")) << spec;
 }
 
 }  // namespace

@@ -12,7 +12,8 @@ const glm::vec3 kRed(1, 0, 0), kGreen(0, 1, 0), kBlue(0, 0, 1);
 
 TEST(Pictures, AnEmptyFrameIsTheBackground) {
   const Trace trace = pixel_trace(5, 3, {}, glm::vec3(0.25f, 0.5f, 0.75f));
-  for (const char* spec : {"beam:order=sorted", "alpha", "msaa:1", "msaa:64", "reference"}) {
+  for (const char* spec :
+       {"beam", "beam:order=sorted", "beam:order=stream", "alpha", "msaa:1", "msaa:64", "reference"}) {
     const Image image = picture(spec, trace);
     ASSERT_EQ(image.width, 5u);
     ASSERT_EQ(image.height, 3u);
@@ -23,7 +24,8 @@ TEST(Pictures, AnEmptyFrameIsTheBackground) {
 
 TEST(Pictures, RowZeroIsOnTop) {
   const Trace trace = pixel_trace(4, 4, quad(0, 0, 4, 1, 0.5, kRed), kBlue);
-  for (const char* spec : {"beam:rules=paper,mask=exact", "msaa:4", "reference"}) {
+  for (const char* spec :
+       {"beam", "beam:order=sorted", "beam:order=stream", "beam:rules=paper,mask=exact", "msaa:4", "reference"}) {
     const Image image = picture(spec, trace);
     EXPECT_EQ(pixel(image, 2, 0), kRed) << spec;
     EXPECT_EQ(pixel(image, 2, 1), kBlue) << spec;
@@ -34,8 +36,10 @@ TEST(Pictures, AnEdgeThroughAPixelCoversItsExactArea) {
   // A quad that covers the left 5/16 of pixel (1, 1).
   const Trace trace = pixel_trace(4, 4, quad(0, 0, 1.3125, 4, 0.5, kRed), kBlue);
   const glm::vec3 expected = 0.3125f * kRed + 0.6875f * kBlue;
-  // The coverage of beam is exact up to rounding to fp16. The reference is exact for vertical edges.
-  for (const char* spec : {"beam:order=sorted", "beam:rules=paper,mask=exact", "reference"}) {
+  // The coverage of beam is exact up to rounding: to fp16, or of the mask's error to 1/64 of a position. The reference
+  // is exact for vertical edges.
+  for (const char* spec :
+       {"beam", "beam:order=sorted", "beam:order=stream", "beam:rules=paper,mask=exact", "reference"}) {
     const glm::vec3 found = pixel(picture(spec, trace), 1, 1);
     for (int c = 0; c < 3; ++c) EXPECT_NEAR(found[c], expected[c], 2e-4) << spec;
   }
@@ -47,7 +51,7 @@ TEST(Pictures, FrontHidesBackInAnyOrder) {
         back_first ? quad(0, 0, 4, 4, 0.7, kGreen) : quad(0, 0, 4, 4, 0.3, kRed);
     append(triangles, back_first ? quad(0, 0, 4, 4, 0.3, kRed) : quad(0, 0, 4, 4, 0.7, kGreen));
     const Trace trace = pixel_trace(4, 4, triangles, kBlue);
-    for (const char* spec : {"beam:order=sorted", "msaa:8", "reference"})
+    for (const char* spec : {"beam", "beam:order=sorted", "beam:order=stream", "msaa:8", "reference"})
       EXPECT_EQ(pixel(picture(spec, trace), 1, 2), kRed) << spec << " " << back_first;
   }
 }
@@ -57,8 +61,8 @@ TEST(Pictures, OfTwoEqualTrianglesTheEarlierIsSeen) {
   // could make their depths differ.
   const glm::dvec3 a(-1, -1, 0.1), b(13, -2, 0.6), c(-2, 12, 0.9);
   const Trace trace = pixel_trace(4, 4, {{{a, b, c}, kRed}, {{c, b, a}, kGreen}});
-  for (const char* spec :
-       {"beam:order=sorted", "beam:rules=paper,mask=exact", "msaa:1", "msaa:8", "msaa:256", "reference"}) {
+  for (const char* spec : {"beam", "beam:order=sorted", "beam:order=stream", "beam:rules=paper,mask=exact", "msaa:1",
+                           "msaa:8", "msaa:256", "reference"}) {
     const Image image = picture(spec, trace);
     for (std::uint32_t y = 0; y < 4; ++y)
       for (std::uint32_t x = 0; x < 4; ++x) EXPECT_EQ(pixel(image, x, y), kRed) << spec << ' ' << x << ' ' << y;

@@ -63,7 +63,7 @@ TEST(Technique, WrongSpecsSayWhatWouldBeRight) {
   const std::string taa_rates = "N of taa:N must be 1, 2, 4, 8 or 16";
   const std::string of_beam = "; it has bits, slots, bin, order and rules";
   const std::string of_paper =
-      "; it has mask, sort, tiny, overlap, local, fuzzy, extents, slab, plane, thickness, storage, order, "
+      "; it has mask, sort, tiny, overlap, regional, local, fuzzy, extents, slab, plane, thickness, storage, order, "
       "layers and rules";
   const std::string of_dvm = "; it has blend, seed and material";
   for (const auto& [spec, error] : std::map<std::string, std::string>{
@@ -109,11 +109,20 @@ TEST(Technique, WrongSpecsSayWhatWouldBeRight) {
            {"beam:order=stream,passes=1.5", "passes must be a whole number from 0 to 1000"},
            {"beam:order=stream,passes=0,storage=packed",
             "beam:order=stream has no option 'storage'; it has bits, passes, slots, layers, order and rules"},
+           {"beam:order=stream,passes=0,slots=4", "slots needs passes=1"},
+           {"beam:order=stream,slots=7,passes=8", "slots needs passes=1"},
+           {"beam:order=stream,layers=5", "layers needs passes=0 or more than one pass"},
+           {"beam:order=stream,passes=1,layers=1", "layers needs passes=0 or more than one pass"},
+           {"beam:rules=paper,layers=3", "layers needs order=near-first or order=stream"},
+           {"beam:rules=paper,order=sorted,layers=1", "layers needs order=near-first or order=stream"},
+           {"beam:rules=paper,order=stream,sort=nearest", "sort needs order=sorted"},
+           {"beam:rules=paper,order=near-first,sort=centroid", "sort needs order=sorted"},
            {"beam:rules=paper,order=sort", "order must be sorted, near-first or stream"},
            {"beam:rules=paper,bits=64", "beam:rules=paper has no option 'bits'" + of_paper},
            {"beam:rules=paper,mask=fast", "mask must be table or exact"},
            {"beam:rules=paper,tiny=2", "tiny must be 1 or 3"},
            {"beam:rules=paper,overlap=none", "overlap must be tiny, over, add or transition"},
+           {"beam:rules=paper,regional=global", "regional must be local or area"},
            {"beam:rules=paper,slab=visible,slab=full", "'slab' is there twice"},
            {"z3:layers=3", "z3 has no option 'layers'; it has shape and merge"},
            {"z3:shape=64x3", "shape must be 32x2, 32x3 or 128x3"},
@@ -140,17 +149,20 @@ TEST(Technique, WrongSpecsSayWhatWouldBeRight) {
 }
 
 TEST(Technique, DefaultsMayBeWritten) {
-  for (const char* spec : {"beam:rules=conserve", "beam:order=sorted", "beam:order=sorted,rules=conserve,bits=64",
-                           "beam:rules=paper,order=sorted", "beam:rules=conserve,order=stream",
-                           "beam:layers=1,order=stream", "beam:tiny=3,rules=paper"})
+  for (const char* spec :
+       {"beam:rules=conserve", "beam:order=sorted", "beam:order=sorted,rules=conserve,bits=64",
+        "beam:rules=paper,order=sorted", "beam:rules=conserve,order=stream", "beam:layers=1,order=stream,passes=0",
+        "beam:slots=7,order=stream,passes=1", "beam:layers=3,order=stream,rules=paper", "beam:tiny=3,rules=paper"})
     EXPECT_EQ(parse_technique(spec).spec, spec);
 }
 
-// A spec with samples, where the technique needs them, and one option: "msaa:8,at=centroid".
-std::string spec_with(const TechniqueKind& kind, const std::string& item) {
+// A spec with samples, where the technique needs them, one option, and what the option needs: "msaa:8,at=centroid".
+std::string spec_with(const TechniqueKind& kind, const SpecOption& option, const std::string& word) {
   std::string spec = title_of(kind);
   if (spec.ends_with(":N")) spec.replace(spec.size() - 1, 1, "8");
-  return spec + (spec.find(':') == spec.npos ? ':' : ',') + item;
+  spec += (spec.find(':') == spec.npos ? ':' : ',') + option.key + '=' + word;
+  const std::string needed = option.needs.substr(0, option.needs.find(' '));
+  return needed.empty() ? spec : spec + ',' + needed;
 }
 
 TEST(TechniqueTable, EveryWordIsTakenAndNoOther) {
@@ -161,12 +173,12 @@ TEST(TechniqueTable, EveryWordIsTakenAndNoOther) {
     for (const SpecOption& option : options) {
       if (option.form != SpecOption::Form::value) continue;
       for (const std::string& word : option.words) {
-        const std::string spec = spec_with(kind, option.key + '=' + word);
+        const std::string spec = spec_with(kind, option, word);
         EXPECT_EQ(parse_technique(spec).spec, spec);
         EXPECT_NE(option.expected.find(word), std::string::npos) << option.expected;
         ++words;
       }
-      EXPECT_EQ(error_of(spec_with(kind, option.key + "=other")), option.key + " must be " + option.expected);
+      EXPECT_EQ(error_of(spec_with(kind, option, "other")), option.key + " must be " + option.expected);
     }
   }
   EXPECT_GT(words, 50u);

@@ -115,6 +115,29 @@ TEST(MergeRules, OverlappingHalvesAreIndependent) {
   }
 }
 
+// Two opaque halves at the same 16 positions. The coverage of their region is 1, so the one in front hides the other,
+// or it is their area of 1/2, and half of the other one shows. Where the region is the whole pixel, both are the same.
+// An opaque half in front of a whole pixel hides half of it, or half of that: 1/2 + 1/4 + 1/2 is scaled down to 1.
+TEST(MergeRules, RegionalCoverageIsNormalizedOrAnArea) {
+  MergeRules area;
+  area.regional = MergeRules::Regional::area;
+  const Aggregate back = flat_surface(0.5f, 0xffffu, -0.1f, 1, 0), front = flat_surface(0.5f, 0xffffu, -0.9f, 0, 1);
+  for (const bool is_front : {true, false}) {
+    const Aggregate &in = is_front ? front : back, &old = is_front ? back : front;
+    EXPECT_FLOAT_EQ(merged(in, old).alpha, 0.5f);
+    EXPECT_FLOAT_EQ(merged(in, old).color[0], 0.0f);
+    EXPECT_FLOAT_EQ(merged(in, old, area).alpha, 0.75f);
+    EXPECT_FLOAT_EQ(merged(in, old, area).color[0], 0.25f);
+    EXPECT_FLOAT_EQ(merged(in, old, area).color[1], 0.5f);
+  }
+  const Aggregate half = flat_surface(0.5f, kAllBits, -0.1f, 1, 0), nearer = flat_surface(0.5f, kAllBits, -0.9f, 0, 1);
+  EXPECT_FLOAT_EQ(merged(nearer, half, area).alpha, 0.75f);
+  const Aggregate whole = merged(front, flat_surface(1, kAllBits, -0.1f, 1, 0), area);
+  EXPECT_FLOAT_EQ(whole.alpha, 1.0f);
+  EXPECT_FLOAT_EQ(whole.color[0], 0.6f);
+  EXPECT_FLOAT_EQ(whole.color[1], 0.4f);
+}
+
 // A speck lies beside what is there as long as there is room: 1/2 + 1/4 in the one position that it was given.
 TEST(MergeRules, SpeckLiesBeside) {
   const Aggregate old = flat_surface(0.5f, kAllBits, -0.9f, 0, 1), tiny = flat_surface(0.25f / 32, 1u, -0.1f, 1, 0);

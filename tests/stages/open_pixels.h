@@ -22,10 +22,12 @@ struct OpenTile {
   const PositionSet& positions = cell_positions(kPositions);
   std::vector<Pixel> pixels;
   ClosedDepth closed;
-  std::vector<float> counts, merges;  // per pixel: fragments that no closed pixel hid, owners that became one
+  std::vector<float> counts, merges;       // per pixel: fragments that no closed pixel hid, owners that became one
   std::vector<Fragment> fragments;         // all that were composed
   StageCounters composing{}, finishing{};  // counted by compose_owners and finish_owners
   OwnersResult result{};
+  OwnerWeights* weights = nullptr;  // where they are recorded; null: nowhere
+  TriangleList taken{};             // the list that was composed
 
   OpenTile(const SetupTriangles& of, const std::vector<glm::vec3>& in_colors, const Tile& in = {0, 0, 1, 1})
       : triangles(of),
@@ -38,12 +40,13 @@ struct OpenTile {
 
   // Composes the triangles of the list, in its order. `watermarks` may be null.
   std::vector<PixelColor> compose(const TriangleList& list, const std::vector<float>* watermarks = nullptr) {
+    taken = list;
     const PositionGrid grid(kPositions);
     StageCounters ignored;
     std::vector<Pair> pairs;
     conservative_raster(triangles, list, tile, ignored, pairs);
     beam_fragment(triangles, pairs, tile, grid_options(grid, owners_fragment_bytes(Words)), ignored, fragments);
-    const OwnersBin bin{triangles, list, watermarks, tile, positions, colors, false};
+    const OwnersBin bin{triangles, list, watermarks, tile, positions, colors, false, weights};
     compose_owners(bin, fragments, 0, composing, pixels, closed, {counts, merges}, result);
     return finish_owners(bin, finishing, pixels, result);
   }

@@ -1,7 +1,9 @@
 // beampipe compare: what run does, and how wrong each picture is.
 
+#include <iostream>
 #include <memory>
 
+#include "pipeline/spec.h"
 #include "tools/cli/commands.h"
 #include "tools/cli/run_arguments.h"
 #include "tools/cli/run_report.h"
@@ -23,8 +25,18 @@ Example:
 Techniques:
 )";
 
+// Their errors are in no table of causes.
+void tell_unexplained(const std::vector<std::string>& specs) {
+  if (!specs.empty())
+    std::cout << "\nThese record no weights of triangles, so --causes cannot split their errors: "
+              << list_of(specs, "and") << "\n";
+}
+
 void compare(const RunArguments& arguments, const CompareOptions& options, InterruptGate& gate) {
   RunPlan plan = make_plan(arguments);
+  std::vector<std::string> unexplained;
+  for (const Technique& technique : plan.techniques)
+    if (!technique.has_weights) unexplained.push_back(technique.spec);
   const TraceEvents events(arguments, plan);
   OutputFolder output(arguments.output, gate);
   output.lock();
@@ -34,6 +46,7 @@ void compare(const RunArguments& arguments, const CompareOptions& options, Inter
     tell_resumption(comparison.plan(), comparison.resume());
   }
   finish_report(output, comparison.run());
+  if (options.causes) tell_unexplained(unexplained);
   events.write(gate);
 }
 
@@ -53,7 +66,7 @@ void add_compare_command(CommandLine& line, InterruptGate& gate) {
       .list("N,N,...");
   command.add_flag("--causes", options->causes,
                    "split each pixel's error by cause, as layers of the counters and as a table "
-                   "(beam:order=sorted, beam:rules=paper and alpha only)");
+                   "(beam in every order but not in several passes, beam:rules=paper in sorted order, and alpha)");
   command.add_flag("--orders", options->orders,
                    "also render with the triangles shuffled, from near to far and from far to near, and tell the error "
                    "of each order and how far the pictures differ");

@@ -12,9 +12,9 @@ constexpr std::size_t kWords = 4;
 using Five = OpenTile<kWords, 5>;
 using Two = OpenTile<kWords, 2>;
 
-// A fragment: pixel, triangle, centroid, area, mask, plane, depth; and the pixel's closed depth. A pixel: three bit planes,
-// five slots, and nine sums of two bytes. A plane of an owner: its number in the
-// list, and five doubles of a setup triangle.
+// A fragment: pixel, triangle, centroid, area, mask, plane, depth; and the pixel's closed depth. A pixel: three bit
+// planes, five slots, and nine sums of two bytes. A plane of an owner: its number in the list, and five doubles of a
+// setup triangle.
 constexpr std::uint64_t kFragment = 2 + 3 + 2 + 2 + 16 + 16 + 4, kPlane = 4 + 5 * 8;
 constexpr std::uint64_t kPixelOfFive = 3 * 16 + 5 * 8 + 9 * 2, kPixelOfTwo = 2 * 16 + 2 * 8 + 9 * 2;
 
@@ -52,6 +52,13 @@ OperationCounts measured() {
   return ops;
 }
 
+// To close a pixel, beside the planes of its owners, per owner that came from one triangle. The range of its plane: two
+// magnitudes, their sum, half of it, and the two ends. Its vertices: four comparisons. The range within them: four
+// more. The farthest so far: one.
+constexpr OperationCounts kClosingOwner{.mul_add = 1, .add = 1 + 2 + 4 + 4 + 1, .bit = 2};
+// An owner that came from several triangles has no vertices.
+constexpr OperationCounts kClosingMerged{.mul_add = 1, .add = 1 + 2 + 4 + 1, .bit = 2};
+
 OperationCounts sum(std::initializer_list<OperationCounts> parts) {
   OperationCounts ops;
   for (const OperationCounts& part : parts) ops += part;
@@ -88,7 +95,7 @@ TEST(OwnersTwins, AHiddenSurface) {
   EXPECT_EQ(tile.composing.items_in, 2u);
   EXPECT_EQ(tile.composing.items_out, 1u);
   EXPECT_EQ(tile.composing.ops,
-            sum({masks_of_five(), put(3), count(), plane_cost(), pair_bounds_cost(), {.add = kHiddenTest}}));
+            sum({masks_of_five(), put(3), count(), plane_cost(), kClosingOwner, {.add = kHiddenTest}}));
   EXPECT_EQ(tile.composing.bytes_read, 2 * (kFragment + kPixelOfFive) + kPlane);
   EXPECT_EQ(tile.composing.bytes_written, kPixelOfFive);
   EXPECT_EQ(tile.composing.lanes_issued, 2u);
@@ -103,8 +110,8 @@ TEST(OwnersTwins, SurfacesThatInterpenetrate) {
   Five tile(triangles, colors);
   tile.compose({0, 1});
   // As above, but the planes are compared at all positions, and the second one takes some.
-  EXPECT_EQ(tile.composing.ops, sum({masks_of_five(), put(3), count(), plane_cost(), pair_bounds_cost(),
-                                     masks_of_five(), plane_cost(), plane_gap_cost(), nearer(), put(3), count()}));
+  EXPECT_EQ(tile.composing.ops, sum({masks_of_five(), put(3), count(), plane_cost(), kClosingOwner, masks_of_five(),
+                                     plane_cost(), plane_gap_cost(), nearer(), put(3), count()}));
   EXPECT_EQ(tile.composing.bytes_read, 2 * (kFragment + kPixelOfFive + kPlane));
   EXPECT_EQ(tile.composing.bytes_written, 2 * kPixelOfFive);
   // Two owners take one comparison to sort.
@@ -159,6 +166,23 @@ TEST(OwnersTwins, ThreeSurfacesInTwoSlots) {
   ASSERT_EQ(partly.merges[0], 0);
   EXPECT_EQ(partly.composing.ops, sum({adding, put(2), plane_cost() * 2, finality_cost() * 2,
                                        farthest_cost() * (32 * kWords), listed(2) * 2, settle_owner_cost(), put(2)}));
+}
+
+TEST(OwnersTwins, AMergedOwnerClosesAPixelWithAnotherOne) {
+  SetupTriangles triangles;
+  add_left_of(triangles, 80, -0.90f);
+  add_right_of(triangles, 160, -0.89f);
+  add_everywhere(triangles, -0.2f);
+  const std::vector<glm::vec3> colors(3, glm::vec3(1.0f));
+  Two tile(triangles, colors);
+  tile.compose({0, 1, 2});
+  ASSERT_EQ(tile.merges[0], 1);
+  const OperationCounts adding = sum({masks_of_two() * 3, put(2) * 3, count() * 3}),
+                        contests = sum({plane_cost() * 2, plane_gap_cost() * 2}),
+                        merging = sum({put(2) * 2, plane_cost() * 2, listed(2) * 2, measured() * 3, pair_cost() * 3,
+                                       merge_cost()});
+  EXPECT_EQ(tile.composing.ops, sum({adding, contests, merging, plane_cost() * 2, kClosingOwner, kClosingMerged}));
+  EXPECT_EQ(tile.composing.bytes_read, 3 * (kFragment + kPixelOfTwo) + 6 * kPlane);
 }
 
 TEST(OwnersTwins, Specks) {

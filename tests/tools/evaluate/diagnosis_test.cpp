@@ -67,6 +67,8 @@ TEST_F(DiagnosisTest, CausesAddUpToTheErrorLayerAndToOne) {
   EXPECT_NEAR(parts, 1.0, 1e-4);
   EXPECT_FALSE(json["results"][1].contains("error_causes")) << "msaa reports no weights";
   EXPECT_NE(table.find("interpenetration"), std::string::npos);
+  EXPECT_NE(table.find("record no weights of triangles, so --causes cannot split their errors: msaa:2\n"),
+            std::string::npos);
 }
 
 TEST_F(DiagnosisTest, OrdersDifferWhereFacesCoincide) {

@@ -1,0 +1,126 @@
+// The weights of triangles against the pixels that compose_owners returns.
+#include "stages/data/owner_weights.h"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <set>
+
+#include "tests/stages/open_pixels.h"
+
+namespace beampipe {
+namespace {
+
+struct Explained {
+  double farthest = 0;       // from a pixel to the sum of its triangles' weights times colours, in any channel
+  double sum_of_errors = 0;  // over pixels and channels
+  int pixels = 0, merged = 0, specks = 0;
+};
+
+// Composes the triangles in every order and adds up what the weights of each pixel explain.
+template <std::size_t Words, std::size_t Slots>
+void explain(const SetupTriangles& triangles, const std::vector<glm::vec3>& colors, Explained& found) {
+  for (const bool sorted : {true, false}) {
+    OpenTile<Words, Slots> plain(triangles, colors, {0, 0, 12, 12}), weighed(triangles, colors, {0, 0, 12, 12});
+    OwnerWeights weights(weighed.tile.pixels());
+    weighed.weights = &weights;
+    const std::vector<PixelColor> expected = plain.compose_sorted(sorted), pixels = weighed.compose_sorted(sorted);
+    EXPECT_EQ(weighed.composing, plain.composing) << "recording is charged nothing";
+    EXPECT_EQ(weighed.finishing, plain.finishing);
+    for (std::size_t i = 0; i < pixels.size(); ++i) {
+      ASSERT_EQ(pixels[i].color, expected[i].color);
+      ASSERT_EQ(pixels[i].alpha, expected[i].alpha);
+      double area = 0;
+      glm::dvec3 sum(0.0);
+      std::set<std::uint32_t> numbers;
+      bool merged = false;
+      for (const OwnerWeights::Weight& each : weights.of_pixel(i)) {
+        EXPECT_TRUE(numbers.insert(each.number).second) << "a triangle has one weight";
+        ASSERT_GE(each.weight, 0);
+        area += each.weight;
+        sum += double{each.weight} * glm::dvec3(colors[weighed.taken[each.number]]);
+        merged |= each.merged;
+        found.specks += each.speck;
+      }
+      EXPECT_NEAR(area, pixels[i].alpha, 1e-5);
+      for (int c = 0; c < 3; ++c) {
+        const double error = std::abs(sum[c] - pixels[i].color[c]);
+        found.farthest = std::max(found.farthest, error);
+        found.sum_of_errors += error;
+      }
+      ++found.pixels;
+      found.merged += merged;
+    }
+  }
+}
+
+// What a pixel's colours are rounded to: sums of 15 bits, and means of merged owners with a shared exponent, whose
+// mantissas have 9 bits. A mean of colours up to 1 is off by up to 1/512, and it may be merged again.
+constexpr double kOfSums = 2e-4, kOfMerged = 2.0 / 512;
+
+template <class Color>
+Explained explain_random(std::uint64_t seed, int count, Color&& color) {
+  Random random(seed);
+  SCOPED_TRACE(random.name());
+  Explained found;
+  for (int round = 0; round < 4; ++round) {
+    const SetupTriangles triangles = random_triangles(random, count);
+    std::vector<glm::vec3> colors;
+    for (int i = 0; i < count; ++i) colors.push_back(color(random));
+    explain<8, 5>(triangles, colors, found);
+    explain<4, 7>(triangles, colors, found);
+    explain<2, 4>(triangles, colors, found);
+    explain<1, 2>(triangles, colors, found);
+  }
+  return found;
+}
+
+glm::vec3 gray(Random& random) { return glm::vec3(random.real32(0, 1)); }
+glm::vec3 colorful(Random& random) { return {random.real32(0, 1), random.real32(0, 1), random.real32(0, 1)}; }
+
+TEST(OwnerWeights, ExplainGrayPixels) {
+  const Explained few = explain_random(611, 6, gray);
+  EXPECT_LE(few.merged, 1);
+  EXPECT_LT(few.farthest, kOfSums);
+  const Explained many = explain_random(612, 60, gray);
+  EXPECT_GT(many.merged, 250);
+  EXPECT_GT(many.specks, 100);
+  EXPECT_LT(many.farthest, kOfMerged);
+  EXPECT_LT(many.sum_of_errors / (3 * many.pixels), kOfSums / 2);
+}
+
+// Where the limits of the two estimates move the channels of a colour by different factors, no weights explain all
+// three.
+TEST(OwnerWeights, ExplainColorsUpToTheirLimits) {
+  const Explained found = explain_random(613, 60, colorful);
+  EXPECT_GT(found.merged, 250);
+  EXPECT_LT(found.farthest, 2 * kOfMerged);
+  EXPECT_LT(found.sum_of_errors / (3 * found.pixels), kOfSums / 2);
+}
+
+// Three strips with two slots: the two left ones become one. A third of the pixel each, or what a surface in front of
+// the merged one leaves of it.
+TEST(OwnerWeights, WhatIsLeftOfAMergedOwnerIsSharedByItsTriangles) {
+  SetupTriangles triangles;
+  add_left_of(triangles, 64, -0.5f);
+  add_right_of(triangles, 192, -0.49f);
+  add_everywhere(triangles, -0.2f);
+  const std::vector<glm::vec3> colors{{1, 0, 0}, {0, 1, 0}, {0, 0, 1}};
+  OpenTile<8, 2> tile(triangles, colors);
+  OwnerWeights weights(1);
+  tile.weights = &weights;
+  tile.compose({0, 1, 2});
+  ASSERT_EQ(tile.merges[0], 1);
+  std::vector<double> found(3);
+  for (const OwnerWeights::Weight& each : weights.of_pixel(0)) {
+    found[each.number] = each.weight;
+    EXPECT_EQ(each.merged, each.number < 2);
+    EXPECT_FALSE(each.speck);
+  }
+  EXPECT_NEAR(found[0], 0.25, 1e-3);
+  EXPECT_NEAR(found[1], 0.25, 1e-3);
+  EXPECT_NEAR(found[2], 0.5, 1e-3);
+}
+
+}  // namespace
+}  // namespace beampipe
