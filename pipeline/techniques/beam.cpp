@@ -19,7 +19,15 @@ struct BeamOptions {
   int bin = kBinSize;   // pixels on each side
 };
 
-std::vector<Surface> beam_framebuffer() { return {{"color", "RGB16F", 6}}; }
+Framebuffer beam_framebuffer(const BeamOptions& beam) {
+  Framebuffer framebuffer{.place = Place::on_chip, .bin_size = beam.bin};
+#define BEAMPIPE_SURFACES(words, pixel_slots)                    \
+  if (beam.positions == 32 * words && beam.slots == pixel_slots) \
+    framebuffer.surfaces = open_pixel_surfaces<words, pixel_slots>();
+  BEAMPIPE_OPEN_PIXELS(BEAMPIPE_SURFACES)
+#undef BEAMPIPE_SURFACES
+  return framebuffer;
+}
 
 template <std::size_t Words, std::size_t Slots>
 FrameResult render_shape(const Trace& trace, const Frame& frame, const BeamOptions& beam, const RunOptions& run) {
@@ -28,7 +36,7 @@ FrameResult render_shape(const Trace& trace, const Frame& frame, const BeamOptio
   const PositionGrid grid(beam.positions);
   const BeamFragmentOptions options = grid_options(grid, owners_fragment_bytes(Words));
   const BinPlan plan{.stages = {"conservative_raster", "bin_sort", "beam_fragment", "compose", "shade", "resolve"},
-                     .tile_size = beam.bin,
+                     .framebuffer = beam_framebuffer(beam),
                      .keeps_tile_size = true,
                      .sorts_lists = true};
   return render_bins(context, plan, [&](Bin& bin) {
@@ -36,8 +44,8 @@ FrameResult render_shape(const Trace& trace, const Frame& frame, const BeamOptio
     ConservativeRasterUnit raster(bin, "", PairDepths::bounds, ConservativeRasterUnit::Hidden::left_out);
     BeamFragmentUnit make_fragments(bin, options);
     ShadeUnit shade(bin);
-    ComposeOwnersUnit<Words, Slots> compose(bin, positions, ordered.triangles, &ordered.watermarks, OpenPixels::on_chip,
-                                            {});
+    ComposeOwnersUnit<Words, Slots> compose(bin, positions, ordered.triangles, &ordered.watermarks,
+                                            plan.framebuffer.surfaces);
 
     raster.queued(ordered.triangles, [&](const std::vector<Pair>& pairs, std::size_t first) {
       compose(make_fragments.queued(pairs), first, raster.closed(), shade);
@@ -77,7 +85,7 @@ TechniqueKind beam_kind() {
               },
               [](const BeamOptions& o) {
                 return Technique{
-                    .framebuffer = beam_framebuffer(), .render = bind_options(render_beam, o), .has_weights = true};
+                    .framebuffer = beam_framebuffer(o), .render = bind_options(render_beam, o), .has_weights = true};
               })};
 }
 
