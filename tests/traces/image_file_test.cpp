@@ -1,6 +1,7 @@
 #include "traces/image_file.h"
 
 #include <gtest/gtest.h>
+#include <sys/resource.h>
 
 #include <cstdlib>
 #include <random>
@@ -211,6 +212,33 @@ TEST(ImageFile, RefusesSizesBeforeItTakesMemory) {
             "expected at least 524288 bytes for 16384 x 16384 texels, found " + std::to_string(jpeg.size()));
   jpeg.replace(size, 4, "\x40\x01\x00\x01", 4);
   EXPECT_EQ(error_in(jpeg), "expected at most 16384 texels on a side, found 1 x 16385");
+}
+
+// A text of a PNG that grows to 8 MB is no more than a line of the file. A hundred of them would take 800 MB.
+TEST(ImageFile, DoesNotReadTexts) {
+  // Deflated by libpng, as the rows of an image: a chunk IDAT of one row of zeros.
+  constexpr std::uint32_t kSide = 7'900'000;
+  PngSample sample{.width = kSide, .color_type = PNG_COLOR_TYPE_GRAY, .rows = {std::vector<std::uint8_t>(kSide)}};
+  std::string deflated;
+  const std::string rows = png_bytes(sample);
+  for (std::size_t at = rows.find("IDAT"); at != std::string::npos; at = rows.find("IDAT", at + 4)) {
+    const auto byte = [&](std::size_t i) { return static_cast<std::uint32_t>(static_cast<unsigned char>(rows[i])); };
+    deflated += rows.substr(at + 4, byte(at - 4) << 24 | byte(at - 3) << 16 | byte(at - 2) << 8 | byte(at - 1));
+  }
+  const std::string text = png_chunk("zTXt" + std::string("a\0\0", 3) + deflated);
+  std::string texts;
+  for (int i = 0; i < 100; ++i) texts += text;
+  const TextureImage image = random_image(3, 3);
+  std::string bytes = encode_png(image);
+  bytes.insert(8 + 25, texts);  // after the signature and IHDR
+  const auto peak = [] {
+    rusage usage{};
+    getrusage(RUSAGE_SELF, &usage);
+    return usage.ru_maxrss;  // KiB
+  };
+  const auto before = peak();
+  EXPECT_EQ(decode_image(bytes).texels, image.texels);
+  EXPECT_LT(peak() - before, 200 * 1024);
 }
 
 // What compresses best is still read: the limits above are no smaller than what the formats reach.
