@@ -26,7 +26,6 @@ inline std::string png_bytes(const PngSample& sample) {
   std::string bytes;
   png_structp png = png_create_write_struct(PNG_LIBPNG_VER_STRING, nullptr, nullptr, nullptr);
   png_infop info = png_create_info_struct(png);
-  png_set_user_limits(png, PNG_UINT_31_MAX, PNG_UINT_31_MAX);
   const auto append = [](png_structp to, png_bytep data, std::size_t size) {
     static_cast<std::string*>(png_get_io_ptr(to))->append(reinterpret_cast<const char*>(data), size);
   };
