@@ -3,6 +3,7 @@
 #include <map>
 
 #include "traces/json_cursor.h"
+#include "traces/model_import.h"
 #include "traces/trace_io.h"
 
 namespace beampipe {
@@ -54,13 +55,18 @@ Mesh read_inline_mesh(const JsonCursor& at) {
   return mesh;
 }
 
-Mesh read_mesh(const JsonCursor& at, const fs::path& trace_file, const ReadOptions& options) {
+void add_mesh(Trace& trace, const JsonCursor& at, const fs::path& trace_file, const ReadOptions& options) {
   if (!at.has("obj") && !at.has("positions") && !at.has("indices")) {
     at.fail("the key \"obj\", or \"positions\" and \"indices\"", "none");
   }
-  if (!at.has("obj")) return read_inline_mesh(at);
+  if (!at.has("obj")) {
+    trace.meshes.push_back(read_inline_mesh(at));
+    return;
+  }
   at.expect_keys({"obj"});
-  return read_obj(mesh_path(at["obj"], trace_file, options), at["obj"].where());
+  // Version 1 of the format knows only the colours of materials.
+  NotRead not_read;
+  read_obj(mesh_path(at["obj"], trace_file, options), at["obj"].where(), ObjMaterials::none, trace, not_read);
 }
 
 Camera read_camera(const JsonCursor& at) {
@@ -148,7 +154,7 @@ Trace read_trace(const fs::path& file, const ReadOptions& options) {
   MeshIndex index;
   for (const auto& [key, at] : root["meshes"].members()) {
     index[key] = static_cast<std::uint32_t>(trace.meshes.size());
-    trace.meshes.push_back(read_mesh(at, file, options));
+    add_mesh(trace, at, file, options);
     trace.meshes.back().name = key;
   }
   const std::vector<JsonCursor> frames = root["frames"].elements();

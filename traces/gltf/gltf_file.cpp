@@ -1,0 +1,162 @@
+#include "traces/gltf/gltf_file.h"
+
+#include <algorithm>
+#include <cstring>
+#include <limits>
+#include <set>
+
+#include "traces/input_file.h"
+#include "traces/json.h"
+#include "traces/trace_io.h"
+
+namespace beampipe {
+namespace {
+
+namespace fs = std::filesystem;
+
+const std::set<std::string_view> kExtensionsRead = {"KHR_lights_punctual", "KHR_materials_emissive_strength",
+                                                    "KHR_materials_unlit", "KHR_mesh_quantization"};
+
+std::uint32_t little_endian(std::string_view bytes, std::size_t at) {
+  std::uint32_t value = 0;
+  for (int i = 3; i >= 0; --i) value = value << 8 | static_cast<unsigned char>(bytes[at + static_cast<std::size_t>(i)]);
+  return value;
+}
+
+// The JSON of a binary glTF file. tinygltf reads past the end of files whose second chunk is too long, so all lengths
+// are checked here. Source: glTF 2.0 Specification, section 4.4.
+std::string_view json_chunk(std::string_view glb, const std::string& where) {
+  constexpr std::size_t kHeader = 12, kChunkHeader = 8;
+  constexpr std::uint32_t kJson = 0x4E4F534A;
+  if (glb.size() < kHeader + kChunkHeader) fail_trace(where, "a binary glTF file", "one that ends early");
+  if (little_endian(glb, 4) != 2)
+    fail_trace(where, "version 2 of binary glTF", "version " + std::to_string(little_endian(glb, 4)));
+  const std::size_t length = little_endian(glb, 8);
+  std::size_t at = kHeader;
+  for (int chunk = 0; at < length; ++chunk) {
+    const bool has_header = length <= glb.size() && length - at >= kChunkHeader;
+    if (!has_header || little_endian(glb, at) > length - at - kChunkHeader)
+      fail_trace(where, "chunks that fit into the file", "one that is longer");
+    if (chunk == 0 && little_endian(glb, at + 4) != kJson) fail_trace(where, "a chunk of JSON first", "another one");
+    at += kChunkHeader + little_endian(glb, at);
+  }
+  if (at == kHeader) fail_trace(where, "a chunk of JSON first", "none");
+  return glb.substr(kHeader + kChunkHeader, little_endian(glb, kHeader));
+}
+
+// tinygltf keeps the low 32 bits of most integers.
+void check_integers(const Json& json, const Json& root, const std::string& where) {
+  if (json.is_array()) {
+    for (const Json& element : json.elements()) check_integers(element, root, where);
+  } else if (json.is_object()) {
+    for (const Json::Member& member : json.members()) {
+      const bool may_be_large = member.key == "extras" || member.key.starts_with("byte") || member.key == "count" ||
+                                member.key == "min" || member.key == "max";
+      if (!may_be_large) check_integers(member.value, root, where);
+    }
+  } else if (json.is_integer()) {
+    const double value = json.get<double>();
+    if (!(std::abs(value) <= std::numeric_limits<int>::max()))
+      fail_trace(where + ": " + pointer_to(json, root), "an integer of 32 bits", json.dump());
+  }
+}
+
+// Reads what tinygltf asks for.
+struct NamedFiles {
+  const fs::path& model;
+  const std::string& where;
+  std::string error;  // why a file could not be read
+};
+
+bool read_named_file(std::vector<unsigned char>* out, std::string* error, const std::string& name, void* user_data) {
+  auto& files = *static_cast<NamedFiles*>(user_data);
+  try {
+    const std::string bytes = read_file_beside(files.model, name, files.where);
+    out->assign(bytes.begin(), bytes.end());
+    return true;
+  } catch (const TraceError& failure) {
+    *error = files.error = failure.what();
+    return false;
+  }
+}
+
+// Keeps an image's bytes, to be decoded when a material uses it. Those in buffers stay there: tinygltf does not check
+// where they are.
+bool keep_image(tinygltf::Image* image, const int, std::string*, std::string*, int, int, const unsigned char* bytes,
+                int size, void*) {
+  if (image->bufferView < 0 && size > 0) image->image.assign(bytes, bytes + size);
+  return true;
+}
+
+// tinygltf leaves out primitives that it cannot read.
+void check_primitives(const Json& root, const GltfFile& file) {
+  const Json* meshes = root.find("meshes");
+  if (!meshes || !meshes->is_array()) return;
+  for (std::size_t i = 0; i < std::min(meshes->size(), file.model.meshes.size()); ++i) {
+    const Json* primitives = meshes->at(i).find("primitives");
+    if (!primitives || primitives->size() != file.model.meshes[i].primitives.size())
+      fail_trace(file.place("meshes", i) + "/primitives", "objects with \"attributes\"", "others");
+  }
+}
+
+void check_extensions(const GltfFile& file, NotRead& not_read) {
+  for (const std::string& name : file.model.extensionsRequired) {
+    if (!kExtensionsRead.contains(name))
+      fail_trace(file.where + ": /extensionsRequired", "only extensions that beampipe reads", in_quotes(name));
+  }
+  for (const std::string& name : file.model.extensionsUsed)
+    if (!kExtensionsRead.contains(name)) not_read["extension " + name] = 1;
+}
+
+}  // namespace
+
+std::size_t checked_index(int index, std::size_t count, const std::string& where, const char* of_what) {
+  if (index < 0 || static_cast<std::size_t>(index) >= count)
+    fail_trace(where, "one of the " + std::to_string(count) + " " + of_what, std::to_string(index));
+  return static_cast<std::size_t>(index);
+}
+
+GltfFile read_gltf_file(const fs::path& path, NotRead& not_read) {
+  GltfFile file{path, path.string(), {}};
+  const std::string bytes = read_input_file(path, file.where);
+  if (bytes.size() > std::numeric_limits<std::uint32_t>::max())
+    fail_trace(file.where, "at most 4 GiB", std::to_string(bytes.size() >> 30) + " GiB");
+  const bool is_binary = bytes.starts_with("glTF");
+  const std::string_view text = is_binary ? json_chunk(bytes, file.where) : bytes;
+  // This limits the depth, which tinygltf does not, and says where broken JSON is broken.
+  const Json root = parse_json_text(std::string(text), file.where);
+  check_integers(root, root, file.where);
+  const Json* asset = root.find("asset");
+  const Json* version = asset ? asset->find("version") : nullptr;
+  if (!version || !version->is_string() || !version->get<std::string>().starts_with("2."))
+    fail_trace(file.where + ": /asset/version", "glTF of version 2", version ? version->dump() : "none");
+
+  NamedFiles files{file.path, file.where, ""};
+  tinygltf::TinyGLTF reader;
+  reader.SetFsCallbacks({.FileExists = [](const std::string&, void*) { return true; },
+                         .ExpandFilePath = [](const std::string& name, void*) { return name; },
+                         .ReadWholeFile = read_named_file,
+                         .WriteWholeFile = nullptr,
+                         .user_data = &files});
+  reader.SetImageLoader(keep_image, nullptr);
+  std::string error, warning;
+  const auto size = static_cast<unsigned>(bytes.size());
+  bool is_read = false;
+  try {
+    is_read = is_binary ? reader.LoadBinaryFromMemory(&file.model, &error, &warning,
+                                                      reinterpret_cast<const unsigned char*>(bytes.data()), size)
+                        : reader.LoadASCIIFromString(&file.model, &error, &warning, bytes.data(), size, "");
+  } catch (const std::exception& failure) {
+    error = failure.what();
+  }
+  if (!is_read) {
+    if (error.find("File read error") != std::string::npos) throw TraceError(files.error);
+    fail_trace(file.where, "a glTF 2.0 file",
+               "one that tinygltf refuses: " + in_quotes(error.substr(0, error.find('\n'))));
+  }
+  check_primitives(root, file);
+  check_extensions(file, not_read);
+  return file;
+}
+
+}  // namespace beampipe
