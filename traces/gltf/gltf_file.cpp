@@ -3,10 +3,12 @@
 #include <algorithm>
 #include <cstring>
 #include <limits>
+#include <optional>
 #include <set>
 
 #include "traces/input_file.h"
 #include "traces/json.h"
+#include "traces/json_cursor.h"
 #include "traces/trace_io.h"
 
 namespace beampipe {
@@ -44,20 +46,91 @@ std::string_view json_chunk(std::string_view glb, const std::string& where) {
   return glb.substr(kHeader + kChunkHeader, little_endian(glb, kHeader));
 }
 
-// tinygltf keeps the low 32 bits of most integers.
-void check_integers(const Json& json, const Json& root, const std::string& where) {
+enum class Type { integer, number, numbers, number_or_numbers, integers, boolean, string, array, object };
+
+// Members whose type is the same wherever glTF has them, apart from extensions. tinygltf takes most members of another
+// type as missing, and keeps the low 32 bits of integers.
+struct TypedMembers {
+  Type type;
+  std::string_view keys;  // with a blank before and after each
+};
+constexpr TypedMembers kTypes[] = {
+    {Type::integer,
+     " buffer bufferView byteLength byteOffset byteStride camera componentType count index"
+     " input inverseBindMatrices magFilter material mesh minFilter mode node output sampler"
+     " scene skin source texCoord wrapS wrapT "},
+    {Type::number, " alphaCutoff metallicFactor roughnessFactor xmag yfov ymag zfar znear "},
+    {Type::numbers, " baseColorFactor emissiveFactor matrix rotation translation weights "},
+    {Type::number_or_numbers, " scale "},
+    {Type::integers, " children joints "},
+    {Type::boolean, " doubleSided normalized "},
+    {Type::string, " alphaMode interpolation path type uri "},
+    {Type::array,
+     " accessors animations bufferViews buffers cameras channels extensionsRequired"
+     " extensionsUsed images materials meshes nodes primitives samplers scenes skins"
+     " targets textures "},
+    {Type::object,
+     " attributes baseColorTexture emissiveTexture metallicRoughnessTexture normalTexture"
+     " orthographic pbrMetallicRoughness perspective sparse "},
+};
+
+std::optional<Type> type_of(const std::string& key) {
+  for (const TypedMembers& members : kTypes)
+    if (members.keys.find(' ' + key + ' ') != members.keys.npos) return members.type;
+  return {};
+}
+
+bool is_number(const Json& json) { return json.is_number(); }
+bool is_index(const Json& json) {
+  return json.is_unsigned() && json.get<std::uint64_t>() <= std::uint64_t{std::numeric_limits<int>::max()};
+}
+
+template <class Is>
+bool all_are(const Json& json, Is is) {
+  return json.is_array() && std::all_of(json.elements().begin(), json.elements().end(), is);
+}
+
+// What a member must be; empty if it is that.
+std::string missing_in(const Json::Member& member) {
+  const std::optional<Type> type = type_of(member.key);
+  if (!type) return "";
+  const Json& value = member.value;
+  const bool is_size = member.key.starts_with("byte") || member.key == "count";
+  switch (*type) {
+    case Type::integer:
+      if (is_size) return value.is_unsigned() ? "" : "an integer of 0 and up";
+      return is_index(value) ? "" : "an integer from 0 to 2147483647";
+    case Type::number:
+      return value.is_number() ? "" : "a number";
+    case Type::numbers:
+      return all_are(value, is_number) ? "" : "an array of numbers";
+    case Type::number_or_numbers:
+      return value.is_number() || all_are(value, is_number) ? "" : "a number or an array of numbers";
+    case Type::integers:
+      return all_are(value, is_index) ? "" : "an array of integers from 0 to 2147483647";
+    case Type::boolean:
+      return value == Json(true) || value == Json(false) ? "" : "true or false";
+    case Type::string:
+      return value.is_string() ? "" : "a string";
+    case Type::array:
+      return value.is_array() ? "" : "an array";
+    case Type::object:
+      return value.is_object() ? "" : "an object";
+  }
+  return "";
+}
+
+void check_types(const Json& json, const Json& root, const std::string& where) {
   if (json.is_array()) {
-    for (const Json& element : json.elements()) check_integers(element, root, where);
+    for (const Json& element : json.elements()) check_types(element, root, where);
   } else if (json.is_object()) {
     for (const Json::Member& member : json.members()) {
-      const bool may_be_large = member.key == "extras" || member.key.starts_with("byte") || member.key == "count" ||
-                                member.key == "min" || member.key == "max";
-      if (!may_be_large) check_integers(member.value, root, where);
+      if (member.key == "extras" || member.key == "extensions") continue;
+      const std::string expected = missing_in(member);
+      if (!expected.empty())
+        fail_trace(where + ": " + pointer_to(member.value, root), expected, JsonCursor(member.value, where).found());
+      check_types(member.value, root, where);
     }
-  } else if (json.is_integer()) {
-    const double value = json.get<double>();
-    if (!(std::abs(value) <= std::numeric_limits<int>::max()))
-      fail_trace(where + ": " + pointer_to(json, root), "an integer of 32 bits", json.dump());
   }
 }
 
@@ -99,13 +172,20 @@ void check_primitives(const Json& root, const GltfFile& file) {
   }
 }
 
-void check_extensions(const GltfFile& file, NotRead& not_read) {
-  for (const std::string& name : file.model.extensionsRequired) {
-    if (!kExtensionsRead.contains(name))
-      fail_trace(file.where + ": /extensionsRequired", "only extensions that beampipe reads", in_quotes(name));
-  }
-  for (const std::string& name : file.model.extensionsUsed)
-    if (!kExtensionsRead.contains(name)) not_read["extension " + name] = 1;
+// Before tinygltf reads the file, which may refuse it because of an extension.
+void check_extensions(const Json& root, const std::string& where, NotRead& not_read) {
+  const auto unread = [&](const char* key) {
+    std::vector<std::string> names;
+    if (const Json* list = root.find(key)) {
+      for (const Json& name : list->elements())
+        if (name.is_string() && !kExtensionsRead.contains(name.get<std::string>()))
+          names.push_back(name.get<std::string>());
+    }
+    return names;
+  };
+  for (const std::string& name : unread("extensionsRequired"))
+    fail_trace(where + ": /extensionsRequired", "only extensions that beampipe reads", in_quotes(name));
+  for (const std::string& name : unread("extensionsUsed")) not_read["extension " + name] = 1;
 }
 
 }  // namespace
@@ -125,11 +205,13 @@ GltfFile read_gltf_file(const fs::path& path, NotRead& not_read) {
   const std::string_view text = is_binary ? json_chunk(bytes, file.where) : bytes;
   // This limits the depth, which tinygltf does not, and says where broken JSON is broken.
   const Json root = parse_json_text(std::string(text), file.where);
-  check_integers(root, root, file.where);
+  check_types(root, root, file.where);
   const Json* asset = root.find("asset");
   const Json* version = asset ? asset->find("version") : nullptr;
   if (!version || !version->is_string() || !version->get<std::string>().starts_with("2."))
     fail_trace(file.where + ": /asset/version", "glTF of version 2", version ? version->dump() : "none");
+
+  check_extensions(root, file.where, not_read);
 
   NamedFiles files{file.path, file.where, ""};
   tinygltf::TinyGLTF reader;
@@ -155,7 +237,6 @@ GltfFile read_gltf_file(const fs::path& path, NotRead& not_read) {
                "one that tinygltf refuses: " + in_quotes(error.substr(0, error.find('\n'))));
   }
   check_primitives(root, file);
-  check_extensions(file, not_read);
   return file;
 }
 

@@ -41,7 +41,11 @@ class GltfImport {
     for (std::uint32_t i = 0; i < frames; ++i)
       add_frame(animation ? animation->pose(nodes_, animation->length() * i / frames) : nodes_.pose());
     const std::vector<Mesh>& meshes = model_.trace.meshes;
-    if (meshes.empty()) fail_trace(file_.where, "at least one triangle in the scene", "none");
+    if (meshes.empty()) {
+      std::string others;
+      for (const auto& [name, count] : not_read()) others += (others.empty() ? ", but " : ", ") + name;
+      fail_trace(file_.where, "at least one triangle in the scene", "none" + others);
+    }
     return std::move(model_);
   }
 
