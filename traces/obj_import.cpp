@@ -298,7 +298,8 @@ class Vertices {
     if (!is_new) return found->second;
     const auto position = static_cast<std::size_t>(corner.position);
     mesh_.positions.push_back(from_.positions[position]);
-    mesh_.normals.push_back(corner.normal < 0 ? face_normal : from_.normals[static_cast<std::size_t>(corner.normal)]);
+    mesh_.normals.push_back(corner.normal < 0 ? face_normal
+                                              : unit_or_zero(from_.normals[static_cast<std::size_t>(corner.normal)]));
     mesh_.uvs[0].push_back(corner.uv < 0 ? glm::vec2(0.0f) : from_.uvs[static_cast<std::size_t>(corner.uv)]);
     if (!colors_.empty()) mesh_.vertex_colors.emplace_back(colors_[position], 1.0f);
     return found->second;
@@ -320,11 +321,9 @@ class Vertices {
   std::unordered_map<Key, std::uint32_t, Hash> numbers_;
 };
 
-// The normal of a triangle; +z if it has no area.
+// Zero if the triangle has no area.
 glm::vec3 flat_normal(const glm::dvec3& a, const glm::dvec3& b, const glm::dvec3& c) {
-  const glm::dvec3 normal = glm::cross(b - a, c - a);
-  const double length = glm::length(normal);
-  return length > 0 && std::isfinite(length) ? glm::vec3(normal / length) : glm::vec3(0, 0, 1);
+  return unit_or_zero(glm::cross(b - a, c - a));
 }
 
 // Adds the materials of polygons to a trace, each once.

@@ -35,6 +35,10 @@ void split(std::vector<Vector>& vertices, const std::vector<glm::uvec3>& triangl
 
 }  // namespace
 
+glm::vec3 unit_or_zero(const glm::dvec3& vector) {
+  return has_direction(vector) ? glm::vec3(glm::normalize(vector)) : glm::vec3(0.0f);
+}
+
 void add_flat_normals(Mesh& mesh) {
   std::vector<glm::vec3> normals;
   normals.reserve(3 * mesh.triangles.size());

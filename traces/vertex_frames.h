@@ -7,6 +7,9 @@
 
 namespace beampipe {
 
+// The vector's direction with a length of 1; zero if it has none, or an infinite length.
+glm::vec3 unit_or_zero(const glm::dvec3& vector);
+
 // Gives each triangle three vertices of its own, with the triangle's normal. Of a triangle without area, that is +z.
 void add_flat_normals(Mesh& mesh);
 

@@ -90,6 +90,13 @@ bool all_are(const Json& json, Is is) {
   return json.is_array() && std::all_of(json.elements().begin(), json.elements().end(), is);
 }
 
+// How many numbers a member must have; 0: any number.
+std::size_t length_of(const std::string& key) {
+  if (key == "matrix") return 16;
+  if (key == "rotation" || key == "baseColorFactor") return 4;
+  return key == "translation" || key == "emissiveFactor" ? 3 : 0;
+}
+
 // What a member must be; empty if it is that.
 std::string missing_in(const Json::Member& member) {
   const std::optional<Type> type = type_of(member.key);
@@ -103,6 +110,10 @@ std::string missing_in(const Json::Member& member) {
     case Type::number:
       return value.is_number() ? "" : "a number";
     case Type::numbers:
+      if (const std::size_t length = length_of(member.key)) {
+        const bool fits = all_are(value, is_number) && value.size() == length;
+        return fits ? "" : "an array of " + std::to_string(length) + " numbers";
+      }
       return all_are(value, is_number) ? "" : "an array of numbers";
     case Type::number_or_numbers:
       return value.is_number() || all_are(value, is_number) ? "" : "a number or an array of numbers";
@@ -120,12 +131,14 @@ std::string missing_in(const Json::Member& member) {
   return "";
 }
 
+// Of everything that glTF defines: other members of the file, extras and extensions may use the same names.
 void check_types(const Json& json, const Json& root, const std::string& where) {
   if (json.is_array()) {
     for (const Json& element : json.elements()) check_types(element, root, where);
   } else if (json.is_object()) {
     for (const Json::Member& member : json.members()) {
-      if (member.key == "extras" || member.key == "extensions") continue;
+      const bool is_other = &json == &root && !type_of(member.key);
+      if (is_other || member.key == "extras" || member.key == "extensions") continue;
       const std::string expected = missing_in(member);
       if (!expected.empty())
         fail_trace(where + ": " + pointer_to(member.value, root), expected, JsonCursor(member.value, where).found());

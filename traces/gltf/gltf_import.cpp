@@ -38,10 +38,12 @@ class GltfImport {
       animation.emplace(file_, nodes_, options_.animation, model_.not_read);
     find_camera();
     const std::uint32_t frames = animation ? options_.frames : 1;
-    for (std::uint32_t i = 0; i < frames; ++i)
+    for (std::uint32_t i = 0; i < frames; ++i) {
       add_frame(animation ? animation->pose(nodes_, animation->length() * i / frames) : nodes_.pose());
-    const std::vector<Mesh>& meshes = model_.trace.meshes;
-    if (meshes.empty()) {
+      if (model_.trace.frames[0].draws.size() > kMostDraws / frames)  // all frames have as many
+        fail_trace(file_.where, "at most " + std::to_string(kMostDraws) + " draws, over all frames", "more");
+    }
+    if (model_.trace.meshes.empty()) {
       std::string others;
       for (const auto& [name, count] : not_read()) others += (others.empty() ? ", but " : ", ") + name;
       fail_trace(file_.where, "at least one triangle in the scene", "none" + others);
@@ -100,8 +102,6 @@ class GltfImport {
       triangles += primitive.mesh.triangles.size();
       if (triangles > kMostTriangles)
         fail_trace(file_.where, "at most " + std::to_string(kMostTriangles) + " triangles in a frame", "more");
-      if (++draws_ > kMostDraws)
-        fail_trace(file_.where, "at most " + std::to_string(kMostDraws) + " draws, over all frames", "more");
     }
   }
 
@@ -283,7 +283,6 @@ class GltfImport {
   std::map<std::string, std::size_t> names_;                    // how many meshes were to have this name
   std::set<std::string> all_names_;
   std::optional<std::size_t> camera_node_;
-  std::size_t draws_ = 0;
 };
 
 }  // namespace

@@ -15,12 +15,6 @@ constexpr std::size_t kMostVertices = std::size_t{1} << 28;  // of a primitive
 
 bool is_finite(const glm::vec3& v) { return std::isfinite(v.x) && std::isfinite(v.y) && std::isfinite(v.z); }
 
-// A vector without a length stays as it is.
-glm::vec3 unit(const glm::dvec3& v) {
-  const double length = glm::length(v);
-  return length > 0 && std::isfinite(length) ? glm::vec3(v / length) : glm::vec3(0.0f);
-}
-
 class PrimitiveReader {
  public:
   PrimitiveReader(const GltfFile& file, const tinygltf::Primitive& from, const std::string& where, GltfBudget& budget,
@@ -68,12 +62,12 @@ class PrimitiveReader {
     Mesh& mesh = to.mesh;
     mesh.positions =
         vectors<glm::vec3>("POSITION", "VEC3", [](const GltfAccessor& a, std::size_t i) { return a.vec3(i); });
-    mesh.normals =
-        vectors<glm::vec3>("NORMAL", "VEC3", [](const GltfAccessor& a, std::size_t i) { return unit(a.vec3(i)); });
+    mesh.normals = vectors<glm::vec3>("NORMAL", "VEC3",
+                                      [](const GltfAccessor& a, std::size_t i) { return unit_or_zero(a.vec3(i)); });
     if (const std::size_t mended = mend_normals(mesh)) not_read_["normal without a length"] += mended;
     if (!mesh.normals.empty()) {  // otherwise glTF asks to ignore tangents
       mesh.tangents = vectors<glm::vec4>("TANGENT", "VEC4", [](const GltfAccessor& a, std::size_t i) {
-        return glm::vec4(unit(a.vec3(i)), a.number(i, 3) < 0 ? -1.0f : 1.0f);
+        return glm::vec4(unit_or_zero(a.vec3(i)), a.number(i, 3) < 0 ? -1.0f : 1.0f);
       });
       const bool broken = std::any_of(mesh.tangents.begin(), mesh.tangents.end(),
                                       [](const glm::vec4& t) { return glm::vec3(t) == glm::vec3(0.0f); });
@@ -188,11 +182,17 @@ class PrimitiveReader {
 
   // Vertices that no triangle uses are left out, because some files share one list of vertices among all primitives.
   void renumber(Mesh& mesh) {
-    std::vector<bool> is_used(count_, false);
-    for (const glm::uvec3& t : mesh.triangles)
-      for (int i = 0; i < 3; ++i) is_used[t[i]] = true;
-    for (std::size_t i = 0; i < count_; ++i)
-      if (is_used[i]) used_.push_back(static_cast<std::uint32_t>(i));
+    if (count_ > 3 * mesh.triangles.size()) {  // the list may be far longer than what is used of it
+      for (const glm::uvec3& t : mesh.triangles) used_.insert(used_.end(), {t.x, t.y, t.z});
+      std::sort(used_.begin(), used_.end());
+      used_.erase(std::unique(used_.begin(), used_.end()), used_.end());
+    } else {
+      std::vector<bool> is_used(count_, false);
+      for (const glm::uvec3& t : mesh.triangles)
+        for (int i = 0; i < 3; ++i) is_used[t[i]] = true;
+      for (std::size_t i = 0; i < count_; ++i)
+        if (is_used[i]) used_.push_back(static_cast<std::uint32_t>(i));
+    }
     if (used_.size() == count_) return;
     for (glm::uvec3& t : mesh.triangles) {
       for (int i = 0; i < 3; ++i)
@@ -268,17 +268,17 @@ Mesh GltfPrimitive::deformed(const GltfDeformation& deformation, const std::stri
       const glm::dmat3 m(matrix);
       const glm::dmat3 cofactors(glm::cross(m[1], m[2]), glm::cross(m[2], m[0]), glm::cross(m[0], m[1]));
       const double sign = glm::dot(m[0], cofactors[0]) < 0 ? -1 : 1;
-      if (!result.normals.empty()) result.normals[i] = unit(sign * (cofactors * glm::dvec3(result.normals[i])));
+      if (!result.normals.empty()) result.normals[i] = unit_or_zero(sign * (cofactors * glm::dvec3(result.normals[i])));
       if (!result.tangents.empty())
-        result.tangents[i] = glm::vec4(unit(m * glm::dvec3(result.tangents[i])), sign * result.tangents[i].w);
+        result.tangents[i] = glm::vec4(unit_or_zero(m * glm::dvec3(result.tangents[i])), sign * result.tangents[i].w);
     }
   }
   for (const glm::vec3& position : result.positions)
     if (!is_finite(position)) fail_trace(where, "finite positions after skinning and morphing", "others");
-  for (glm::vec3& normal : result.normals) normal = unit(normal);
+  for (glm::vec3& normal : result.normals) normal = unit_or_zero(normal);
   mend_normals(result);
   for (glm::vec4& tangent : result.tangents) {
-    const glm::vec3 direction = unit(glm::dvec3(tangent));
+    const glm::vec3 direction = unit_or_zero(glm::dvec3(tangent));
     tangent = glm::vec4(direction == glm::vec3(0.0f) ? glm::vec3(1, 0, 0) : direction, tangent.w);
   }
   return result;
