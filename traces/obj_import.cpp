@@ -321,9 +321,10 @@ class Vertices {
   std::unordered_map<Key, std::uint32_t, Hash> numbers_;
 };
 
-// Zero if the triangle has no area.
+// +z if the triangle has no area.
 glm::vec3 flat_normal(const glm::dvec3& a, const glm::dvec3& b, const glm::dvec3& c) {
-  return unit_or_zero(glm::cross(b - a, c - a));
+  const glm::vec3 normal = unit_or_zero(glm::cross(b - a, c - a));
+  return normal == glm::vec3(0.0f) ? glm::vec3(0, 0, 1) : normal;
 }
 
 // Adds the materials of polygons to a trace, each once.

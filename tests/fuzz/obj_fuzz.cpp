@@ -1,7 +1,8 @@
-// Reads any bytes as an OBJ file and, after the first NUL, its material library. They give an error of one line, or a
-// mesh of finite numbers whose parts fit together.
+// Reads any bytes as an OBJ file and, after the first NUL, its material library, which may name the image t.png. They
+// give an error of one line, or a mesh of finite numbers whose parts fit together.
 #include "tests/fuzz/fuzz_input.h"
 #include "tests/fuzz/trace_parts.h"
+#include "tests/traces/test_images.h"
 #include "traces/model_import.h"
 #include "traces/trace_io.h"
 
@@ -10,6 +11,7 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size
   static const FuzzFolder folder;
   const std::string_view text = text_of(data, size);
   const std::size_t end = std::min(text.find('\0'), text.size());
+  folder.write("t.png", kColors);
   folder.write("m.mtl", end < text.size() ? text.substr(end + 1) : "");
   const std::filesystem::path file = folder.write("mesh.obj", text.substr(0, end));
   for (ObjMaterials materials : {ObjMaterials::none, ObjMaterials::textured, ObjMaterials::all}) {
