@@ -7,6 +7,7 @@
 
 #include "traces/image_file.h"
 #include "traces/input_file.h"
+#include "traces/trace_images.h"
 
 namespace beampipe {
 namespace {
@@ -97,12 +98,11 @@ std::uint32_t ObjMaterialReader::image(const std::string& name) {
   std::replace(path.begin(), path.end(), '\\', '/');  // of Windows
   TextureImage image = decode_image(read_file_beside(obj_, path, where_), where_ + ": " + name);
   image.name = name;
-  return add_image(name, std::move(image));
+  return keep(name, std::move(image));
 }
 
-std::uint32_t ObjMaterialReader::add_image(const std::string& key, TextureImage image) {
-  trace_.images.push_back(std::move(image));
-  return images_[key] = static_cast<std::uint32_t>(trace_.images.size() - 1);
+std::uint32_t ObjMaterialReader::keep(const std::string& key, TextureImage image) {
+  return images_[key] = add_image(trace_, std::move(image), where_);
 }
 
 // The colours of one image (or white) with the alpha of another, whose nearest texels are taken if the sizes differ.
@@ -124,7 +124,7 @@ std::uint32_t ObjMaterialReader::with_alpha(const std::optional<Texture>& base, 
       to.a = has_alpha ? from.a : from.r;
     }
   }
-  return add_image(key, std::move(image));
+  return keep(key, std::move(image));
 }
 
 // Central differences; the image repeats or ends at its borders as its texture does.
@@ -154,7 +154,7 @@ std::uint32_t ObjMaterialReader::normals_from(std::uint32_t heights_index, float
           glm::u8vec4(to_byte(normal.x), to_byte(normal.y), to_byte(normal.z), 255);
     }
   }
-  return add_image(key, std::move(normals));
+  return keep(key, std::move(normals));
 }
 
 }  // namespace beampipe

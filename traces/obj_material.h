@@ -50,7 +50,7 @@ class ObjMaterialReader {
   std::uint32_t image(const std::string& name);
   std::uint32_t with_alpha(const std::optional<Texture>& base, std::uint32_t alpha);
   std::uint32_t normals_from(std::uint32_t heights, float scale, Wrap wrap);
-  std::uint32_t add_image(const std::string& key, TextureImage image);
+  std::uint32_t keep(const std::string& key, TextureImage image);
 
   std::filesystem::path obj_;
   std::string where_;

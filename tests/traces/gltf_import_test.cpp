@@ -4,6 +4,7 @@
 #include "tests/traces/test_folder.h"
 #include "tests/traces/test_images.h"
 #include "traces/model_import.h"
+#include "traces/trace_images.h"
 
 namespace beampipe {
 namespace {
@@ -685,6 +686,18 @@ TEST_F(GltfImportTest, SaysWhatIsWrong) {
   EXPECT_EQ(error(std::string(100000, '[')).find('\n'), std::string::npos);
   EXPECT_NE(error(R"({"asset": {"version": "2.0", "extras": )" + std::string(100000, '[') + "}}"), "no error");
   EXPECT_EQ(error("").find("model.gltf: byte 1: expected valid JSON"), 0u);
+}
+
+TEST_F(GltfImportTest, ImagesHaveALimitTogether) {
+  Trace trace;
+  TextureImage image;
+  image.width = 16384;
+  image.height = 8192;  // without its texels, which would take half a GiB
+  EXPECT_EQ(add_image(trace, image, "here"), 0u);
+  EXPECT_EQ(add_image(trace, image, "here"), 1u);
+  image.width = image.height = 1;
+  EXPECT_EQ(error_of([&] { add_image(trace, image, "here"); }),
+            "here: expected images of at most 268435456 texels together, found 268435457");
 }
 
 TEST_F(GltfImportTest, SmallFilesDoNotTakeLargeMemory) {

@@ -6,6 +6,7 @@
 #include "traces/image_file.h"
 #include "traces/input_file.h"
 #include "traces/json.h"
+#include "traces/trace_images.h"
 
 namespace beampipe {
 namespace {
@@ -175,8 +176,7 @@ std::uint32_t GltfMaterials::image(int index, const std::string& named_by) {
     image = decode_image(read_file_beside(file_.path, from.uri, place), place);
   }
   image.name = !from.name.empty() ? from.name : from.uri;
-  trace_.images.push_back(std::move(image));
-  return images_[index] = static_cast<std::uint32_t>(trace_.images.size() - 1);
+  return images_[index] = add_image(trace_, std::move(image), place);
 }
 
 std::vector<Texture> textures_of(const Material& material) {
