@@ -14,6 +14,7 @@
 #include "traces/model_import.h"
 #include "traces/obj_material.h"
 #include "traces/triangulate.h"
+#include "traces/unique_names.h"
 #include "traces/vertex_frames.h"
 
 namespace beampipe {
@@ -428,6 +429,8 @@ void read_obj(const fs::path& file, const std::string& named_by, ObjMaterials ma
     }
   }
   if (!is_flat) complete(mesh, trace, not_read);
+  make_names_unique(trace.images, "image");
+  make_names_unique(trace.materials, "material");
   trace.meshes.push_back(std::move(mesh));
 }
 

@@ -1,7 +1,6 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
-#include <set>
 
 #include "traces/gltf/gltf_file.h"
 #include "traces/gltf/gltf_material.h"
@@ -9,6 +8,7 @@
 #include "traces/gltf/gltf_nodes.h"
 #include "traces/input_file.h"
 #include "traces/model_import.h"
+#include "traces/unique_names.h"
 
 namespace beampipe {
 namespace {
@@ -48,6 +48,9 @@ class GltfImport {
       for (const auto& [name, count] : not_read()) others += (others.empty() ? ", but " : ", ") + name;
       fail_trace(file_.where, "at least one triangle in the scene", "none" + others);
     }
+    make_names_unique(model_.trace.images, "image");
+    make_names_unique(model_.trace.materials, "material");
+    make_names_unique(model_.trace.meshes, "mesh");
     return std::move(model_);
   }
 
@@ -131,15 +134,8 @@ class GltfImport {
     return shown.mesh;
   }
 
-  // Meshes of a trace have different names.
   std::uint32_t add_mesh(Mesh mesh, std::size_t node) {
-    const tinygltf::Node& from = file_.model.nodes[node];
-    const std::string& name = file_.model.meshes[static_cast<std::size_t>(from.mesh)].name;
-    mesh.name = name.empty() ? "mesh" : name;
-    std::size_t& used = names_[mesh.name];
-    const auto numbered = [&] { return used == 0 ? mesh.name : mesh.name + ' ' + std::to_string(used + 1); };
-    while (!all_names_.insert(numbered()).second) ++used;
-    mesh.name = numbered();
+    mesh.name = file_.model.meshes[static_cast<std::size_t>(file_.model.nodes[node].mesh)].name;
     model_.trace.meshes.push_back(std::move(mesh));
     return static_cast<std::uint32_t>(model_.trace.meshes.size() - 1);
   }
@@ -280,8 +276,6 @@ class GltfImport {
   GltfBudget budget_;
   std::map<std::pair<std::size_t, std::size_t>, Read> read_;    // by mesh and primitive
   std::map<std::pair<std::size_t, std::size_t>, Shown> shown_;  // by node and primitive
-  std::map<std::string, std::size_t> names_;                    // how many meshes were to have this name
-  std::set<std::string> all_names_;
   std::optional<std::size_t> camera_node_;
 };
 
