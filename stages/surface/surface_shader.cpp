@@ -39,8 +39,8 @@ Barycentrics<float> clamped(const Barycentrics<float>& weights) {
   return {second, std::clamp(weights.third, 0.0f, 1.0f - second)};
 }
 
-const Texture& texture_of(const Material& material, TextureRole slot) {
-  switch (slot) {
+const Texture& texture_of(const Material& material, TextureRole role) {
+  switch (role) {
     case TextureRole::base:
       return *material.base_texture;
     case TextureRole::metallic_roughness:
@@ -52,8 +52,8 @@ const Texture& texture_of(const Material& material, TextureRole slot) {
   }
 }
 
-ColorSpace space_of(TextureRole slot) {
-  return slot == TextureRole::base || slot == TextureRole::emissive ? ColorSpace::srgb : ColorSpace::linear;
+ColorSpace space_of(TextureRole role) {
+  return role == TextureRole::base || role == TextureRole::emissive ? ColorSpace::srgb : ColorSpace::linear;
 }
 
 // Light that a flat triangle reflects, by Lambert's law.
@@ -298,15 +298,17 @@ glm::vec4 SurfaceShader::shaded(std::uint32_t triangle, const ShadingPlace& plac
                                                             : slopes_of_quad(set, found);
     return found;
   };
-  const auto fetch = [&](TextureRole slot, const TexturePlace<float>& at) -> std::array<float, 4> {
-    const Texture& texture = texture_of(shader.material, slot);
-    const ColorSpace space = space_of(slot);
+  const auto fetch = [&](TextureRole role, const TexturePlace<float>& at) -> std::array<float, 4> {
+    const Texture& texture = texture_of(shader.material, role);
+    const ColorSpace space = space_of(role);
     const TextureSlopes slopes{vector_of(at.dx) * width, vector_of(at.dy) * width};
     const auto note = [&](std::size_t level, std::uint32_t column, std::uint32_t row) {
       if (reads) reads->push_back({texture.image, space, static_cast<std::uint32_t>(level), column, row});
     };
     const glm::vec4 texel = filtered(textures_->chain(texture.image, space), texture, vector_of(at.uv), slopes, note);
-    return {texel.r, texel.g, texel.b, texel.a};
+    if (role != TextureRole::normal) return {texel.r, texel.g, texel.b, texel.a};
+    const bool is_mean = level_of_detail(slopes, textures_->chain(texture.image, space).levels[0]) > 0;
+    return {texel.r, texel.g, texel.b, is_mean ? 1.0f : 0.0f};
   };
   const SurfacePoint<float> point{v,
                                   weights,
