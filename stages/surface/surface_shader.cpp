@@ -321,7 +321,8 @@ glm::vec4 SurfaceShader::shaded(std::uint32_t triangle, const ShadingPlace& plac
   const Triple<float> lit = lit_color(shader.material, found, frame_.lighting);
   glm::vec3 color(lit[0], lit[1], lit[2]);
   if (rules_.rounds_to_half) round_to_half(color);
-  return {color, shader.material.alpha_mode == AlphaMode::opaque ? 1.0f : found.alpha};
+  if (shader.material.alpha_mode == AlphaMode::opaque) return {color, 1.0f};
+  return {color, by_pixel ? alpha(triangle, place, width).alpha : found.alpha};
 }
 
 }  // namespace beampipe
