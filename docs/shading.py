@@ -13,7 +13,7 @@ import sys
 from measure import make, print_head, print_row, results
 
 SCENES = ["room", "rigging", "leaves", "bumps", "sheets", "tiles"]
-SPECS = ["beam", "beam:at=visible", "beam:at=quarters", "beam:order=sorted", "beam:order=stream", "beam:rules=paper",
+SPECS = ["beam", "beam:at=visible", "beam:at=quarters", "beam:at=sixteenths", "beam:order=sorted", "beam:order=stream", "beam:rules=paper",
          "z3", "msaa:8", "msaa:8,at=centroid", "msaa:8,alpha=coverage", "msaa:32", "msaa:128", "msaa:256", "acaa:8",
          "deferred", "visibility", "taa:8", "dvm"]
 

@@ -85,9 +85,10 @@ TechniqueKind beam_kind() {
                     choice("at", o.shade_at,
                            {{"covered", OwnerPlace::covered},
                             {"visible", OwnerPlace::visible},
-                            {"quarters", OwnerPlace::quarters}},
+                            {"quarters", OwnerPlace::quarters},
+                            {"sixteenths", OwnerPlace::sixteenths}},
                            "where an owner is shaded that is not flat: at the centroid of what its triangle covers, of "
-                           "its positions, or of its positions in each quarter of the pixel"),
+                           "its positions, or of its positions in each quarter or sixteenth of the pixel"),
                     choice("bin", o.bin, {{"8", 8}, {"16", 16}, {"32", 32}}, "pixels on each side of a bin")};
               },
               [](const BeamOptions& o) {

@@ -265,10 +265,17 @@ class OwnerComposer {
       return shade(triangle, centroid.x, centroid.y);
     }
     if (bin_.shade_at == OwnerPlace::visible) return shade_at_mean(triangle, owned, 1.0f);
+    if (bin_.shade_at == OwnerPlace::quarters) return shade_parts(triangle, owned, bin_.positions.quarters, 0.5f);
+    return shade_parts(triangle, owned, bin_.positions.sixteenths, 0.25f);
+  }
+
+  // The mean of what is owned in each part of the pixel. `width`: of a part, in pixels.
+  template <class Parts>
+  glm::vec3 shade_parts(std::uint32_t triangle, const WideMask& owned, const Parts& parts, float width) {
     glm::vec3 sum(0.0f);
-    for (const WideMask& quarter : bin_.positions.quarters)
-      if (const WideMask part = owned & quarter; !part.none())
-        sum += static_cast<float>(part.count()) * shade_at_mean(triangle, part, 0.5f);
+    for (const WideMask& part : parts)
+      if (const WideMask here = owned & part; !here.none())
+        sum += static_cast<float>(here.count()) * shade_at_mean(triangle, here, width);
     return sum / static_cast<float>(owned.count());
   }
 

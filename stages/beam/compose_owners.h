@@ -32,8 +32,8 @@
 namespace beampipe {
 
 // Where an owner is shaded that is not flat: at the centroid of what its triangle covers, at the mean of its positions,
-// or in each quarter of the pixel at the mean of its positions there.
-enum class OwnerPlace { covered, visible, quarters };
+// or in each quarter or sixteenth of the pixel at the mean of its positions there.
+enum class OwnerPlace { covered, visible, quarters, sixteenths };
 
 // What a bin has in common for all its fragments.
 struct OwnersBin {
