@@ -2,6 +2,7 @@
 """Makes the tables of docs/accounting.md about modelled DRAM bytes per frame, and about the peaks of buffers.
 
 dram_bytes.py BEAMPIPE TRACE...   the first frame of each trace, with block compression and without
+dram_bytes.py BEAMPIPE --places TRACE...  the same with the pixels of a bin in memory and on chip
 dram_bytes.py BEAMPIPE --stack    peak bytes of the buffers held for pixels, for a stack of 1 to 10,000 triangles that
                                   covers a 4 x 4 picture, and for the same stack from afar
 """
@@ -14,6 +15,8 @@ import tempfile
 
 TECHNIQUES = ["beam:order=sorted", "beam:order=stream,passes=0", "msaa:8", "msaa:32", "acaa:8"]
 PER_TRIANGLE = re.compile("setup_triangles|bin_lists|batch_")  # these grow with triangles or hold a batch of 512
+PLACED = ["beam", "msaa:8", "msaa:32", "beam:order=sorted", "beam:order=stream"]
+PLACES = ["in-memory", "on-chip"]
 GEOMETRY = ("vertex_setup", "sample_raster")  # write, bin and read the triangles of one pass
 STACK = ["beam:order=sorted", "beam:order=stream,passes=0", "beam:rules=paper", "msaa:8"]
 
@@ -41,6 +44,17 @@ def dram_table(program, traces):
         print(f"| {pathlib.Path(trace).stem} | {one_pass:.1f} | {numbers[0]} | `{least}` | {numbers[1]} |", flush=True)
 
 
+def places_table(program, traces):
+    print("| scene | " + " | ".join(f"{place}: `{t}`" for place in PLACES for t in PLACED) + " |")
+    print("|---" * (len(PLACES) * len(PLACED) + 1) + "|")
+    for trace in traces:
+        cells = []
+        for place in PLACES:
+            frames = run(program, trace, PLACED, "--framebuffer", place)
+            cells += [f"{frames[t]['dram_bytes'] / 1e6:.1f}" for t in PLACED]
+        print(f"| {pathlib.Path(trace).stem} | " + " | ".join(cells) + " |", flush=True)
+
+
 def stack_table(program, camera):
     print("| fragments per pixel | " + " | ".join(f"`{t}`" for t in STACK) + " |")
     print("|---" * (len(STACK) + 1) + "|")
@@ -63,6 +77,8 @@ if __name__ == "__main__":
         stack_table(sys.argv[1], {})
         print("\nFrom afar, where each covers parts of four pixels:\n")
         stack_table(sys.argv[1], {"eye": [0, 0, 300], "far": 400})
+    elif len(sys.argv) > 3 and sys.argv[2] == "--places":
+        places_table(sys.argv[1], sys.argv[3:])
     elif len(sys.argv) > 2:
         dram_table(sys.argv[1], sys.argv[2:])
     else:

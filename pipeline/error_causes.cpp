@@ -151,7 +151,8 @@ std::map<std::string, std::vector<float>> error_causes(const Trace& trace, const
   const FrameContext context(trace, frame, run);
   const Comparer comparer;
   const BeamFragmentOptions options{MaskSource::exact, comparer.patterns()};
-  const BinPlan plan{.stages = {"error_causes"}, .tile_size = kTileSize, .pair_bytes = kPairWorkingBytes};
+  const BinPlan plan{
+      .stages = {"error_causes"}, .framebuffer = {.bin_size = kTileSize}, .pair_bytes = kPairWorkingBytes};
   FrameResult result = render_bins(context, plan, [&](Bin& bin) {
     const Tile& tile = bin.tile;
     StageCounters unused;

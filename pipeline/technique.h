@@ -11,6 +11,7 @@
 #include <string_view>
 #include <vector>
 
+#include "pipeline/memory/framebuffer.h"
 #include "pipeline/memory/parameters.h"
 #include "stages/cost/counters.h"
 #include "stages/data/frame_history.h"
@@ -57,13 +58,6 @@ struct Image {
   std::vector<float> rgba;
 };
 
-// One surface of the modelled framebuffer. Its bytes per pixel are those of the named format.
-struct Surface {
-  std::string name;    // "depth", "color", "mask", ...
-  std::string format;  // "D32F x 8", "RGB16F", ...
-  std::uint32_t bytes_per_pixel = 0;
-};
-
 // A buffer beside the framebuffer: the most items that it held at once, in bytes of the modelled hardware.
 struct Buffer {
   std::string name;
@@ -84,7 +78,7 @@ struct FrameResult {
 
 struct Technique {
   std::string spec = {};  // as the user wrote it
-  std::vector<Surface> framebuffer;
+  Framebuffer framebuffer;
   std::uint32_t samples = 0;  // N of msaa:N, else 0
   std::function<FrameResult(const Trace&, std::size_t frame, const RunOptions&)> render;
   bool has_weights = false;    // `render` can fill RunOptions::weights
@@ -93,10 +87,9 @@ struct Technique {
   // each other.
   std::uint32_t working_bytes_per_pixel = sizeof(glm::vec4);
 
-  std::uint32_t framebuffer_bytes_per_pixel() const {
-    std::uint32_t bytes = 0;
-    for (const Surface& surface : framebuffer) bytes += surface.bytes_per_pixel;
-    return bytes;
+  // In memory.
+  std::uint32_t framebuffer_bytes_per_pixel(const MemoryParameters& memory = {}) const {
+    return bytes_per_pixel(framebuffer.in_memory(memory));
   }
 };
 

@@ -19,14 +19,11 @@ TechniqueKind reference_kind();
 
 const std::vector<TechniqueKind>& technique_kinds() {
   static const std::vector<TechniqueKind> kinds = {
-      beam_kind(), beam_sorted_kind(), beam_stream_kind(), beam_paper_kind(), alpha_kind(), z3_kind(),  msaa_kind(),
-      acaa_kind(), deferred_kind(),    visibility_kind(), taa_kind(),   dvm_kind(), reference_kind(),
+      beam_kind(), beam_sorted_kind(), beam_stream_kind(), beam_paper_kind(), alpha_kind(),
+      z3_kind(),   msaa_kind(),        acaa_kind(),        deferred_kind(),   visibility_kind(),
+      taa_kind(),  dvm_kind(),         reference_kind(),
   };
   return kinds;
-}
-
-std::string times(const char* format, std::uint32_t count) {
-  return std::string(format).append(" x ").append(std::to_string(count));
 }
 
 }  // namespace beampipe

@@ -39,9 +39,6 @@ std::string title_of(const TechniqueKind& kind);
 // Two tables in Markdown, for docs/techniques.md: all techniques, and all of their options.
 std::string technique_tables();
 
-// "D32F x 8": the format of a surface that has `count` values per pixel.
-std::string times(const char* format, std::uint32_t count);
-
 // TechniqueKind::make for a technique whose options are a struct. `bind(options)` returns the options that a spec can
 // set, and `build(options)` makes the technique.
 template <class Options, class Bind, class Build>

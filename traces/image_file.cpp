@@ -135,8 +135,8 @@ TextureImage decode_jpeg(std::string_view bytes, std::uint64_t most_texels) {
   const std::uint64_t texels = static_cast<std::uint64_t>(width) * static_cast<std::uint64_t>(height);
   TextureImage image = blank_image(static_cast<std::uint32_t>(width), static_cast<std::uint32_t>(height), most_texels,
                                    bytes.size(), texels / kMostJpegGrowth);
-  // The accurate transform gives the same bits with and without SIMD. The library mends damaged files and warns; here
-  // they are refused, and so are files with so many scans that reading them takes minutes.
+  // The accurate transform gives the same bits with and without SIMD. The library mends damaged files and warns,
+  // which counts as an error here. Files with so many scans that reading them takes minutes are refused too.
   constexpr int kFlags = TJFLAG_ACCURATEDCT | TJFLAG_STOPONWARNING | TJFLAG_LIMITSCANS;
   if (tjDecompress2(reader.get(), data, bytes.size(), &image.texels[0].r, width, 0, height, TJPF_RGBA, kFlags) != 0)
     fail();

@@ -29,6 +29,8 @@ struct Texture {
   Wrap wrap_u = Wrap::repeat, wrap_v = Wrap::repeat;
   Filter magnify = Filter::linear, minify = Filter::linear;
   MipFilter mip = MipFilter::linear;
+  // At most so many probes along the longer side of a pixel's footprint; 1..16. Only with MipFilter::linear.
+  std::uint32_t anisotropy = 1;
 
   bool operator==(const Texture&) const = default;
 };

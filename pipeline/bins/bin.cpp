@@ -4,8 +4,14 @@
 
 namespace beampipe {
 Bin::Bin(const FrameContext& frame_context, const Tile& bin_tile, const TriangleList& triangles,
-         const std::vector<std::string>& stages)
-    : context(frame_context), tile(bin_tile), list(triangles), timer_(context.run.timeline, tile) {
+         const std::vector<std::string>& stages, const Framebuffer& framebuffer)
+    : context(frame_context),
+      tile(bin_tile),
+      list(triangles),
+      timer_(context.run.timeline, tile),
+      memory_(context.run.memory) {
+  memory_.framebuffer = framebuffer.is_on_chip(memory_) ? Place::on_chip : Place::in_memory;
+  if (keeps_pixels_on_chip()) holds("open_pixels", tile.pixels() * framebuffer.on_chip_bytes_per_pixel());
   stages_.reserve(stages.size());
   for (const std::string& name : stages) stages_.push_back(StageCounters{name});
 }
@@ -24,6 +30,8 @@ std::vector<float>& Bin::pixel_counter(const std::string& name) {
 
 void Bin::finish(std::vector<glm::vec4> picture) {
   picture_ = std::move(picture);
+  if (models_memory() && keeps_pixels_on_chip())
+    for (float& bytes : pixel_counter("bytes")) bytes += static_cast<float>(kPictureBytes);
   stage("resolve").streams(tile.pixels() * kPictureBytes);
 }
 

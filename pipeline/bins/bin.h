@@ -13,14 +13,13 @@
 
 #include "pipeline/bins/frame_context.h"
 #include "pipeline/bins/timeline.h"
+#include "pipeline/memory/framebuffer.h"
 #include "pipeline/memory/geometry_memory.h"
 #include "pipeline/memory/linear_memory.h"
 #include "pipeline/memory/tile_surface.h"
 #include "stages/data/tile.h"
 
 namespace beampipe {
-
-inline constexpr std::uint64_t kPictureBytes = 6;  // per pixel of a finished picture: fp16 RGB
 
 // One stage of a bin: its counters, and the timer that records when it runs.
 class BinStage {
@@ -53,7 +52,7 @@ class Bin {
 
   // `stages`: the names of the stages, in the order of the pipeline. Everything that is passed must outlive the bin.
   Bin(const FrameContext& frame_context, const Tile& bin_tile, const TriangleList& triangles,
-      const std::vector<std::string>& stages);
+      const std::vector<std::string>& stages, const Framebuffer& framebuffer);
   Bin(const Bin&) = delete;
   Bin& operator=(const Bin&) = delete;
 
@@ -83,8 +82,9 @@ class Bin {
   void finish(std::vector<glm::vec4> picture);
 
   // ---- The modelled memory system ----
-  const MemoryParameters& memory() const { return context.run.memory; }
+  const MemoryParameters& memory() const { return memory_; }
   bool models_memory() const { return memory().modelled; }
+  bool keeps_pixels_on_chip() const { return memory().framebuffer == Place::on_chip; }
   const ZOrder& z_order();              // of the tile's pixels
   TriangleFetches& triangle_fetches();  // setup and attributes that shaders fetch by a triangle's number
 
@@ -98,6 +98,7 @@ class Bin {
 
  private:
   StageTimer timer_;
+  MemoryParameters memory_;            // with the place where this technique's pixels are
   std::vector<StageCounters> stages_;  // never grows: memory models tell stages apart by the address of their counters
   std::map<std::string, std::vector<float>> pixel_counters_;
   std::map<std::string, std::uint64_t> buffer_peaks_;

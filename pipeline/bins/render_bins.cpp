@@ -128,8 +128,8 @@ class FrameRecorder {
 
 FrameResult render_bins(const FrameContext& context, const BinPlan& plan, const BinRenderer& render) {
   const RunOptions& run = context.run;
-  const TileGrid grid =
-      plan.keeps_tile_size ? TileGrid{context.frame, plan.tile_size} : tile_grid(context, plan.tile_size);
+  const TileGrid grid = plan.keeps_tile_size ? TileGrid{context.frame, plan.framebuffer.bin_size}
+                                             : tile_grid(context, plan.framebuffer.bin_size);
   if (run.weights) run.weights->assign(std::size_t{context.frame.width} * context.frame.height, {});
   GeometryPass pass(context);
   const std::vector<std::string> stages = stages_of(context, plan);
@@ -143,7 +143,7 @@ FrameResult render_bins(const FrameContext& context, const BinPlan& plan, const 
       pass.add_list(run.memory, list, plan.sorts_lists);
     }
     tbb::parallel_for(std::size_t{0}, lists.size(), [&](std::size_t i) {
-      Bin bin(context, grid.tiles[band.first + i], lists[i], stages);
+      Bin bin(context, grid.tiles[band.first + i], lists[i], stages, plan.framebuffer);
       render(bin);
       recorder.add(bin);
     });

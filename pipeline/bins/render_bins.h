@@ -12,7 +12,7 @@
 
 #include "pipeline/bins/bin.h"
 #include "pipeline/bins/frame_context.h"
-#include "pipeline/memory/parameters.h"
+#include "pipeline/memory/framebuffer.h"
 #include "pipeline/technique.h"
 
 namespace beampipe {
@@ -20,8 +20,8 @@ namespace beampipe {
 // How a technique renders its bins.
 struct BinPlan {
   std::vector<std::string> stages;  // of a bin, in the order of the pipeline; the first one rasterizes
-  bool blends = false;              // it draws translucent triangles; else frames are drawn without them
-  int tile_size = kBinSize;         // pixels on each side, even; RunOptions::tile_size overrides it
+  bool blends = false;              // it draws translucent triangles; other techniques leave them out
+  Framebuffer framebuffer;          // with the size of the bins, which RunOptions::tile_size overrides
   bool keeps_tile_size = false;     // it does not, because the picture depends on the bins
   // Bins sort their lists by keys, which binning writes beside the entries. They charge themselves for the setup that
   // the raster stage reads, because it reads it in sorted order.

@@ -3,8 +3,8 @@
 
 #include <vector>
 
+#include "pipeline/memory/framebuffer.h"
 #include "pipeline/memory/tile_surface.h"
-#include "pipeline/technique.h"
 
 namespace beampipe {
 

@@ -17,7 +17,7 @@ constexpr std::array<std::uint8_t, 256> kBits = [] {
 
 BlockCache::BlockCache(const MemoryParameters& memory, const CacheParameters& cache, Level level, std::size_t blocks,
                        std::uint32_t block_bytes, bool cleared, CompressedBytes compressed_bytes)
-    : modelled_(memory.modelled), level_(level), block_bytes_(block_bytes), ways_(cache.ways) {
+    : modelled_(is_modelled(memory, level)), level_(level), block_bytes_(block_bytes), ways_(cache.ways) {
   const std::uint32_t sectors = (block_bytes + kSectorBytes - 1) / kSectorBytes;
   if (sectors == 0 || sectors > kMaxBlockSectors || block_bytes > cache.line_bytes)
     throw std::invalid_argument("a block must fill at least one sector and at most one cache line");
@@ -104,7 +104,8 @@ BlockCache::Line& BlockCache::make_line(std::size_t block, bool overwritten, Sta
   Line& line = lines_[place];
   line = {static_cast<std::uint32_t>(block), 0, 0, 0};
   const State state = states_[block];
-  if (state != kRaw && !overwritten) {  // a cleared block needs no fetch; a compressed one is fetched and unpacked whole
+  // A cleared block needs no fetch; a compressed one is fetched and unpacked whole.
+  if (state != kRaw && !overwritten) {
     pass_on(state, counters);
     line.valid = all_sectors_;
   }

@@ -37,8 +37,13 @@ class BlockCache {
   // l2:  requests count as L2 bytes, misses and evictions as DRAM bytes.
   enum class Level { rop, l2 };
 
+  // A framebuffer on chip has no cache.
+  static bool is_modelled(const MemoryParameters& memory, Level level) {
+    return level == Level::rop ? memory.models_framebuffer() : memory.modelled;
+  }
+
   // `block_bytes` <= cache.line_bytes, at most kMaxBlockSectors sectors. `cleared`: all blocks start out cleared, else
-  // raw. Without `compressed_bytes` nothing compresses. If memory is not modelled, all calls do nothing.
+  // raw. Without `compressed_bytes` nothing compresses. If it is not modelled, all calls do nothing.
   BlockCache(const MemoryParameters& memory, const CacheParameters& cache, Level level, std::size_t blocks,
              std::uint32_t block_bytes, bool cleared, CompressedBytes compressed_bytes);
 

@@ -1,14 +1,15 @@
 // Every parameter of the modelled memory system, with its source.
 //
-// The model follows a binning rasterizer, which draws all triangles of one bin in order and then goes on to the next bin.
-// Every class of surface has a cache, which is empty at the start of a bin. At the end of each pass over the frame dirty
-// lines are written back, because the next pass starts with another bin. Requests that hit their cache go no further;
-// misses and evictions go to L2, and those of L2 go to DRAM.
-// Data that passes from stage to stage stays in queues on chip: it counts as logical bytes only.
+// The model follows a binning rasterizer, which draws all triangles of one bin in order and then goes on to the next
+// bin. Every class of surface has a cache, which is empty at the start of a bin. At the end of each pass over the frame
+// dirty lines are written back, because the next pass starts with another bin. Requests that hit their cache go no
+// further; misses and evictions go to L2, and those of L2 go to DRAM. Data that passes from stage to stage stays in
+// queues on chip: it counts as logical bytes only.
 #pragma once
 
 #include <algorithm>
 #include <cstdint>
+#include <optional>
 
 namespace beampipe {
 
@@ -18,6 +19,18 @@ struct CacheParameters {
   std::uint32_t bytes, ways, line_bytes;
   bool operator==(const CacheParameters&) const = default;
 };
+
+// Where the pixels of a bin are kept while it is drawn: on chip, as in tile-based rendering, so that only the finished
+// picture goes to memory; or in the framebuffer in memory, behind caches.
+enum class Place { on_chip, in_memory };
+
+// As on the command line and in reports.
+inline constexpr const char* kByTechnique = "by-technique";
+inline constexpr const char* kOnChip = "on-chip";
+inline constexpr const char* kInMemory = "in-memory";
+constexpr const char* name_of(std::optional<Place> place) {
+  return !place ? kByTechnique : *place == Place::on_chip ? kOnChip : kInMemory;
+}
 
 struct MemoryParameters {
   bool modelled = true;  // false: sectors and DRAM bytes stay 0, and frames are faster to simulate
@@ -31,16 +44,16 @@ struct MemoryParameters {
   // which does a 2x2 quad per clock. A Titan V has 96 ROPs (TechPowerUp): 24 such units.
   CacheParameters rop{24 * 16 * 1024, 4, 256};
 
-  // Shaders read through the L1 of the multiprocessor that works on the bin; their writes bypass it. Source: GPGPU-Sim's
-  // Volta: 4 sets of 64 lines, write-through. (It can grow to 128 KiB where shared memory leaves room.)
+  // Shaders read through the L1 of the multiprocessor that works on the bin; their writes bypass it. Source:
+  // GPGPU-Sim's Volta: 4 sets of 64 lines, write-through. (It can grow to 128 KiB where shared memory leaves room.)
   CacheParameters l1{32 * 1024, 64, 128};
 
-  // The L2 for shader reads and writes, such as the A-buffer and setup triangles. Source: GPGPU-Sim's Volta: 32 sets of 24
-  // lines of 128 bytes in each slice, 96 KiB; 48 slices make a Titan V's 4.5 MiB (NVIDIA's figure).
+  // The L2 for shader reads and writes, such as the A-buffer and setup triangles. Source: GPGPU-Sim's Volta: 32 sets of
+  // 24 lines of 128 bytes in each slice, 96 KiB; 48 slices make a Titan V's 4.5 MiB (NVIDIA's figure).
   CacheParameters l2{48 * 96 * 1024, 24, 128};
 
-  // With compression a block is cleared, compressed or raw; without it, cleared or raw. Clearing a surface only sets the
-  // blocks' states, which are kept on chip (ATTILA: block state memory), and moves nothing.
+  // With compression a block is cleared, compressed or raw; without it, cleared or raw. Clearing a surface only sets
+  // the blocks' states, which are kept on chip (ATTILA: block state memory), and moves nothing.
   bool compression = true;
 
   // A compressed depth block has one plane of 3 x float32 per triangle in the block, and for each sample the number of
@@ -48,8 +61,21 @@ struct MemoryParameters {
   // Compression", plane encoding.
   std::uint32_t plane_bytes = 12;
 
+  // Where every technique keeps its pixels; nothing: each on the machine that it is made for (Framebuffer::place).
+  std::optional<Place> framebuffer;
+
+  // The memory on chip for the pixels of a bin. If they do not fit, they are kept in memory. The default is what one
+  // class of surfaces has for its caches above, 24 units of 16 KiB, because the model draws one bin at a time with the
+  // caches of the whole chip.
+  std::uint32_t on_chip_bytes = 24 * 16 * 1024;
+
+  // Are there accesses to the framebuffer in memory to model?
+  bool models_framebuffer() const { return modelled && framebuffer != Place::on_chip; }
+
   bool operator==(const MemoryParameters&) const = default;
 };
+
+inline constexpr std::uint32_t kPictureBytes = 6;  // per pixel of a finished picture: fp16 RGB
 
 // Pixels on each side of a bin: 32, or fewer so that a bin has at most 2^16 samples. Source: NVIDIA at GDC 2017, as
 // TechPowerUp reports: "16x16 and 32x32 pixels are the usual tile sizes", chosen by what a pixel takes.

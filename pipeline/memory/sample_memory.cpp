@@ -22,16 +22,16 @@ std::vector<std::uint32_t> cell_places(const Tile& tile, const CellGrid& grid) {
 
 SampleMemory::SampleMemory(const MemoryParameters& parameters, const Tile& tile, const Sampling& sampling,
                            std::uint32_t color_bytes, SameValue same_value)
-    : modelled_(parameters.modelled),
+    : modelled_(parameters.models_framebuffer()),
       plane_bytes_(parameters.plane_bytes),
       samples_(static_cast<std::size_t>(sampling.pattern.count)),
       cells_(static_cast<std::size_t>(sampling.grid.cells_per_pixel())),
-      cell_place_(parameters.modelled ? cell_places(tile, sampling.grid) : std::vector<std::uint32_t>{}),
-      order_(parameters.modelled ? ZOrder(tile.width() * sampling.grid.columns, tile.height() * sampling.grid.rows)
-                                 : ZOrder(1, 1)),
+      cell_place_(modelled_ ? cell_places(tile, sampling.grid) : std::vector<std::uint32_t>{}),
+      order_(modelled_ ? ZOrder(tile.width() * sampling.grid.columns, tile.height() * sampling.grid.rows)
+                       : ZOrder(1, 1)),
       same_value_(std::move(same_value)),
       color_sample_bytes_(color_bytes),
-      owner_(parameters.modelled ? order_.positions * samples_ : 0, kNoTriangle),
+      owner_(modelled_ ? order_.positions * samples_ : 0, kNoTriangle),
       depth_(parameters, order_, static_cast<std::uint32_t>(samples_), kSampleDepthBytes,
              [this](std::size_t first, std::size_t elements) { return depth_bytes(first, elements); }) {
   if (color_bytes > 0)

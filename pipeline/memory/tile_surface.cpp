@@ -58,7 +58,7 @@ TileSurface::TileSurface(const MemoryParameters& parameters, const ZOrder& order
       element_bytes_(parts * part_bytes),
       mask_bytes_((parts + 7) / 8),
       log2_elements_per_block_(log2_block_elements(cache_of(parameters, level), element_bytes_)),
-      touched_bytes_(parameters.modelled ? order.of.size() : 0),
+      touched_bytes_(BlockCache::is_modelled(parameters, level) ? order.of.size() : 0),
       cache_(parameters, cache_of(parameters, level), level, block_count(order, log2_elements_per_block_),
              element_bytes_ << log2_elements_per_block_, true,
              compressed_bytes
@@ -66,12 +66,12 @@ TileSurface::TileSurface(const MemoryParameters& parameters, const ZOrder& order
                      return compressed_bytes(block << log2, std::size_t{1} << log2);
                    })
                  : nullptr) {
-  if (parameters.modelled) part_sectors_ = part_sectors(1u << log2_elements_per_block_, parts, part_bytes);
+  if (!touched_bytes_.empty()) part_sectors_ = part_sectors(1u << log2_elements_per_block_, parts, part_bytes);
 }
 
 void TileSurface::access(std::uint32_t key, std::uint32_t element, std::uint32_t read, std::uint32_t write,
                          StageCounters& counters) {
-  if (touched_bytes_.empty()) return;  // there is no memory model
+  if (touched_bytes_.empty()) return;  // there are no accesses to model
   touched_bytes_[element] += static_cast<std::uint32_t>(std::popcount(read) + std::popcount(write)) * part_bytes_;
   const std::uint32_t position = order_.of[element], block = position >> log2_elements_per_block_;
   const std::uint32_t place = position - (block << log2_elements_per_block_);

@@ -1,5 +1,5 @@
-// One surface of a bin in memory, seen through a cache. Its elements are pixels, or cells of super-resolved pixels; blocks
-// of them follow a Z-order curve.
+// One surface of a bin in memory, seen through a cache. Its elements are pixels, or cells of super-resolved pixels;
+// blocks of them follow a Z-order curve.
 #pragma once
 
 #include <cstddef>
@@ -10,8 +10,8 @@
 
 namespace beampipe {
 
-// The Z order of a bin's elements. Element (x, y) is at position of[y * width + x]. Where width or height is not a power
-// of two, some positions are unused.
+// The Z order of a bin's elements. Element (x, y) is at position of[y * width + x]. Where width or height is not a
+// power of two, some positions are unused.
 struct ZOrder {
   std::vector<std::uint32_t> of;
   std::size_t positions = 0;  // one more than the largest position
@@ -45,7 +45,7 @@ class TileSurface {
   // A pass that reads every element of the bin once.
   void read_all(StageCounters& counters);
 
-  // Logical bytes read and written, one value per element; empty without a memory model.
+  // Logical bytes read and written, one value per element; empty if nothing is modelled.
   const std::vector<std::uint32_t>& touched_bytes() const { return touched_bytes_; }
 
   // Adds them to values of pixels, where elements are pixels.

@@ -12,7 +12,7 @@
 namespace beampipe {
 namespace {
 
-std::vector<Surface> acaa_framebuffer(const AcaaOptions& options) {
+Framebuffer acaa_framebuffer(const AcaaOptions& options) {
   const auto n = static_cast<std::uint32_t>(std::min(options.samples, 16));
   const char* const format = options.color == AccumulatorFormat::unorm8 ? "RGBA8"
                              : options.color == AccumulatorFormat::fp16 ? "RGBA16F"
@@ -20,7 +20,7 @@ std::vector<Surface> acaa_framebuffer(const AcaaOptions& options) {
   std::vector<Surface> surfaces = {{"depth", times("D32F", n), n * kSampleDepthBytes},
                                    {"color", format, accumulator_bytes(options.color)}};
   if (options.double_counting == DoubleCounting::stencil) surfaces.push_back({"stencil", times("S8UI", n), n});
-  return surfaces;
+  return {.surfaces = surfaces, .bin_size = bin_size(static_cast<int>(n))};
 }
 
 std::vector<std::string> stages_of(const AcaaOptions& options) {
@@ -32,7 +32,7 @@ std::vector<std::string> stages_of(const AcaaOptions& options) {
 FrameResult render_acaa(const Trace& trace, const Frame& frame, const AcaaOptions& options, const RunOptions& run) {
   const FrameContext context(trace, frame, run, {.derivatives = Derivatives::quad});
   const std::vector<Sampling> rounds = acaa_rounds(options.samples);
-  const BinPlan plan{.stages = stages_of(options), .tile_size = bin_size(rounds.front().pattern.count)};
+  const BinPlan plan{.stages = stages_of(options), .framebuffer = acaa_framebuffer(options)};
   return render_bins(context, plan, [&](Bin& bin) {
     SampleRasterUnit raster(bin);
     SampleShadeUnit shade(bin);

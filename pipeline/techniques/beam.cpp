@@ -17,9 +17,18 @@ struct BeamOptions {
   int positions = 256;  // of the mask: 32, 64, 128 or 256
   int slots = 5;        // owners of a pixel
   int bin = kBinSize;   // pixels on each side
+  OwnerPlace shade_at = OwnerPlace::covered;
 };
 
-std::vector<Surface> beam_framebuffer() { return {{"color", "RGB16F", 6}}; }
+Framebuffer beam_framebuffer(const BeamOptions& beam) {
+  Framebuffer framebuffer{.place = Place::on_chip, .bin_size = beam.bin};
+#define BEAMPIPE_SURFACES(words, pixel_slots)                    \
+  if (beam.positions == 32 * words && beam.slots == pixel_slots) \
+    framebuffer.surfaces = open_pixel_surfaces<words, pixel_slots>();
+  BEAMPIPE_OPEN_PIXELS(BEAMPIPE_SURFACES)
+#undef BEAMPIPE_SURFACES
+  return framebuffer;
+}
 
 template <std::size_t Words, std::size_t Slots>
 FrameResult render_shape(const Trace& trace, const Frame& frame, const BeamOptions& beam, const RunOptions& run) {
@@ -28,7 +37,7 @@ FrameResult render_shape(const Trace& trace, const Frame& frame, const BeamOptio
   const PositionGrid grid(beam.positions);
   const BeamFragmentOptions options = grid_options(grid, owners_fragment_bytes(Words));
   const BinPlan plan{.stages = {"conservative_raster", "bin_sort", "beam_fragment", "compose", "shade", "resolve"},
-                     .tile_size = beam.bin,
+                     .framebuffer = beam_framebuffer(beam),
                      .keeps_tile_size = true,
                      .sorts_lists = true};
   return render_bins(context, plan, [&](Bin& bin) {
@@ -36,8 +45,8 @@ FrameResult render_shape(const Trace& trace, const Frame& frame, const BeamOptio
     ConservativeRasterUnit raster(bin, "", PairDepths::bounds, ConservativeRasterUnit::Hidden::left_out);
     BeamFragmentUnit make_fragments(bin, options);
     ShadeUnit shade(bin);
-    ComposeOwnersUnit<Words, Slots> compose(bin, positions, ordered.triangles, &ordered.watermarks, OpenPixels::on_chip,
-                                            {});
+    ComposeOwnersUnit<Words, Slots> compose(bin, positions, ordered.triangles, &ordered.watermarks,
+                                            plan.framebuffer.surfaces, beam.shade_at);
 
     raster.queued(ordered.triangles, [&](const std::vector<Pair>& pairs, std::size_t first) {
       compose(make_fragments.queued(pairs), first, raster.closed(), shade);
@@ -73,11 +82,17 @@ TechniqueKind beam_kind() {
                            "positions of the mask"),
                     choice("slots", o.slots, {{"2", 2}, {"4", 4}, {"5", 5}, {"7", 7}, {"8", 8}, {"16", 16}, {"32", 32}},
                            "owners that a pixel keeps at once; if there are more, two become one"),
+                    choice("at", o.shade_at,
+                           {{"covered", OwnerPlace::covered},
+                            {"visible", OwnerPlace::visible},
+                            {"quarters", OwnerPlace::quarters}},
+                           "where an owner is shaded that is not flat: at the centroid of what its triangle covers, of "
+                           "its positions, or of its positions in each quarter of the pixel"),
                     choice("bin", o.bin, {{"8", 8}, {"16", 16}, {"32", 32}}, "pixels on each side of a bin")};
               },
               [](const BeamOptions& o) {
                 return Technique{
-                    .framebuffer = beam_framebuffer(), .render = bind_options(render_beam, o), .has_weights = true};
+                    .framebuffer = beam_framebuffer(o), .render = bind_options(render_beam, o), .has_weights = true};
               })};
 }
 

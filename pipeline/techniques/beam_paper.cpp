@@ -55,16 +55,15 @@ std::vector<Surface> aggregate_surfaces(const PaperOptions& beam) {
   return {coverage, mask, {"depth_plane", "RGB32F", 12}, thickness, range, {"color", "RGB32F", 12}};
 }
 
-std::vector<Surface> paper_framebuffer(const PaperOptions& beam) {
-  if (beam.order == PaperOrder::near_first) return {{"color", "RGB16F", kAggregateColorBytes}};
+Framebuffer paper_framebuffer(const PaperOptions& beam) {
   std::vector<Surface> surfaces = aggregate_surfaces(beam);
-  if (beam.order == PaperOrder::sorted) return surfaces;
+  if (beam.order == PaperOrder::sorted) return {.surfaces = surfaces};
   const auto layers = static_cast<std::uint32_t>(beam.layers);
   for (Surface& surface : surfaces) {
     surface.format = times(surface.format.c_str(), layers);
     surface.bytes_per_pixel *= layers;
   }
-  return surfaces;
+  return {.surfaces = surfaces, .place = beam.order == PaperOrder::near_first ? Place::on_chip : Place::in_memory};
 }
 
 struct RecordBytes {
@@ -144,23 +143,25 @@ FrameResult render_sorted(const Trace& trace, const Frame& frame, const PaperOpt
   const RecordBytes bytes = record_bytes(beam);
   const BeamFragmentOptions options = fragment_options(beam, pattern, table);
   const BinPlan plan{.stages = {"conservative_raster", "beam_fragment", "shade", "a_buffer", "compose", "resolve"},
+                     .framebuffer = paper_framebuffer(beam),
                      .pair_bytes = kPairWorkingBytes + kSortBytes};
   return render_bins(context, plan, [&](Bin& bin) {
-    ConservativeRasterUnit raster(bin, "bin_pairs", PairDepths::none, ConservativeRasterUnit::Hidden::kept);
+    ConservativeRasterUnit raster(bin, "pair_queue", PairDepths::none, ConservativeRasterUnit::Hidden::kept,
+                                  kQueueItems);
     BeamFragmentUnit make_fragments(bin, options);
     ShadeUnit shade(bin);
     ABufferUnit a_buffer(bin, bytes.fragment, bytes.fragment);
     const BinStage composition = bin.stage("compose");
     BinWeights weights(bin);
 
-    std::vector<Fragment>& fragments = make_fragments(raster(), "bin_fragments");
+    std::vector<Fragment>& fragments = make_fragments.queued(raster());
     shade(fragments);
     const ABuffer& lists = a_buffer(sort_records(fragments, beam.sort));
     const std::vector<PixelColor> aggregates =
         compose_lists(beam, beam.storage, pattern, fragments, lists, composition.timed());
     const std::vector<float>& merges = bin.pixel_counter("merges") = record_counts(lists);
     a_buffer.charge_memory(merges, composition);
-    charge_aggregates(bin, paper_framebuffer(beam), pixels_with(merges), full_pixels(aggregates));
+    charge_aggregates(bin, plan.framebuffer.surfaces, pixels_with(merges), full_pixels(aggregates));
     count_specks(fragments, bin.pixel_counter("tiny_triangles"));
     bin.finish(resolve(aggregates, bin.background(), bytes.aggregate, bin.stage("resolve").timed()));
     if (weights) add_weights(beam, pattern, fragments, lists, weights);
@@ -176,20 +177,22 @@ FrameResult render_layers(const Trace& trace, const Frame& frame, const PaperOpt
   const BeamFragmentOptions options = fragment_options(beam, pattern, table);
   const bool sorts = beam.order == PaperOrder::near_first;
   BinPlan plan{.stages = {"conservative_raster", "beam_fragment", "shade", "compose", "resolve"},
+               .framebuffer = paper_framebuffer(beam),
                .keeps_tile_size = sorts,
                .sorts_lists = sorts};
   if (sorts) plan.stages.push_back("bin_sort");
   return render_bins(context, plan, [&](Bin& bin) {
     const TriangleList list = sorts ? sort_bin(bin).triangles : bin.list;
-    ConservativeRasterUnit raster(bin, "batch_pairs", PairDepths::none, ConservativeRasterUnit::Hidden::kept);
+    ConservativeRasterUnit raster(bin, "pair_queue", PairDepths::none, ConservativeRasterUnit::Hidden::kept,
+                                  kQueueItems);
     BeamFragmentUnit make_fragments(bin, options);
     ShadeUnit shade(bin);
     ComposeLayersUnit compose(bin, pattern, beam.merge, static_cast<std::size_t>(beam.layers), beam.storage,
-                              sorts ? OpenPixels::on_chip : OpenPixels::in_memory, paper_framebuffer(beam));
+                              plan.framebuffer.surfaces);
     std::vector<float>& counts = bin.pixel_counter("fragments");
 
     for_each_batch(list, [&](const TriangleList& batch) {
-      std::vector<Fragment>& fragments = make_fragments(raster(batch, bin.tile), "batch_fragments");
+      std::vector<Fragment>& fragments = make_fragments.queued(raster(batch, bin.tile));
       count_by_pixel(fragments, counts);
       shade(fragments);
       compose(fragments);

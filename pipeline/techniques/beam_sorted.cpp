@@ -20,11 +20,12 @@ struct SortedOptions {
   Storage storage = Storage::packed;
 };
 
-std::vector<Surface> sorted_framebuffer(const SortedOptions& sorted) {
+Framebuffer sorted_framebuffer(const SortedOptions& sorted) {
   const auto mask_bytes = static_cast<std::uint32_t>(sorted.positions) / 8;
-  return {{"coverage", "R32F", 4},
-          {"mask", times("R32UI", mask_bytes / 4), mask_bytes},
-          sorted.storage == Storage::packed ? Surface{"color", "RGB16F", 6} : Surface{"color", "RGB32F", 12}};
+  return {
+      .surfaces = {{"coverage", "R32F", 4},
+                   {"mask", times("R32UI", mask_bytes / 4), mask_bytes},
+                   sorted.storage == Storage::packed ? Surface{"color", "RGB16F", 6} : Surface{"color", "RGB32F", 12}}};
 }
 
 // Depth is compared position by position, so merge order does not matter; 0 is recorded for every fragment.
@@ -54,6 +55,7 @@ FrameResult render_shape(const Trace& trace, const Frame& frame, const SortedOpt
   const BeamFragmentOptions fragment_options = grid_options(grid, conserving_fragment_bytes(sorted.positions));
   const BinPlan plan{
       .stages = {"conservative_raster", "a_buffer", "windows", "beam_fragment", "shade", "compose", "resolve"},
+      .framebuffer = sorted_framebuffer(sorted),
       .pair_bytes = kPairWorkingBytes + kSortBytes};
   return render_bins(context, plan, [&](Bin& bin) {
     ConservativeRasterUnit raster(bin, "waiting_pairs", PairDepths::bounds, ConservativeRasterUnit::Hidden::left_out);
@@ -76,7 +78,7 @@ FrameResult render_shape(const Trace& trace, const Frame& frame, const SortedOpt
     }
     shade.finish_fetches();
     a_buffer.charge_memory(windows.finish(), windows.stage);
-    bin.finish(compose.resolve_aggregates(sorted_framebuffer(sorted)));
+    bin.finish(compose.resolve_aggregates(plan.framebuffer.surfaces));
     if (weights) scale_closed(compose, weights);
     weights.finish();
   });

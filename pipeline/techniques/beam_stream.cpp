@@ -23,29 +23,19 @@ struct StreamOptions {
   int layers = 5;       // in several passes: 1 or 5
 };
 
-template <std::size_t Words, std::size_t Slots>
-std::vector<Surface> open_pixel_surfaces() {
-  using Pixel = OpenPixel<Words, Slots>;
-  constexpr std::uint32_t kMap = sizeof(Pixel::states), kOwners = sizeof(Pixel::slots),
-                          kSums = sizeof(Pixel) - kMap - kOwners;
-  return {{"owner_map", times("R32UI", kMap / 4), kMap},
-          {"owners", times("RG32UI", Slots), kOwners},
-          {"sums", times("R16", kSums / 2), kSums}};
-}
-
-std::vector<Surface> stream_framebuffer(const StreamOptions& stream) {
+Framebuffer stream_framebuffer(const StreamOptions& stream) {
 #define BEAMPIPE_SURFACES(words, pixel_slots)                                              \
   if (stream.passes == 1 && stream.positions == 32 * words && stream.slots == pixel_slots) \
-    return open_pixel_surfaces<words, pixel_slots>();
+    return {.surfaces = open_pixel_surfaces<words, pixel_slots>()};
   BEAMPIPE_OPEN_PIXELS(BEAMPIPE_SURFACES)
 #undef BEAMPIPE_SURFACES
   const auto words = static_cast<std::uint32_t>(stream.positions / 32),
              layers = static_cast<std::uint32_t>(stream.layers);
   const std::uint32_t state_bytes = 4 * words * (layers == 1 ? 2 : 3);
-  return {{"owner_map", times("R32UI", state_bytes / 4), state_bytes},
-          {"owners", times("R32UI", layers), 4 * layers},
-          {"dropped_depth", "R32F", 4},
-          {"color", "RGB16F + R16", 8}};
+  return {.surfaces = {{"owner_map", times("R32UI", state_bytes / 4), state_bytes},
+                       {"owners", times("R32UI", layers), 4 * layers},
+                       {"dropped_depth", "R32F", 4},
+                       {"color", "RGB16F + R16", 8}}};
 }
 
 template <std::size_t Words, std::size_t Slots>
@@ -55,14 +45,14 @@ FrameResult render_one_pass(const Trace& trace, const Frame& frame, const Stream
   const PositionSet& positions = cell_positions(stream.positions);
   const PositionGrid grid(stream.positions);
   const BeamFragmentOptions options = grid_options(grid, owners_fragment_bytes(Words));
-  const BinPlan plan{.stages = {"conservative_raster", "beam_fragment", "compose", "shade", "resolve"}};
+  const BinPlan plan{.stages = {"conservative_raster", "beam_fragment", "compose", "shade", "resolve"},
+                     .framebuffer = stream_framebuffer(stream)};
   return render_bins(context, plan, [&](Bin& bin) {
     ConservativeRasterUnit raster(bin, "", PairDepths::bounds, ConservativeRasterUnit::Hidden::left_out);
     BeamFragmentUnit make_fragments(bin, options);
     ShadeUnit shade(bin);
     bin.triangle_fetches().load_setup();
-    ComposeOwnersUnit<Words, Slots> compose(bin, positions, bin.list, nullptr, OpenPixels::in_memory,
-                                            stream_framebuffer(stream));
+    ComposeOwnersUnit<Words, Slots> compose(bin, positions, bin.list, nullptr, plan.framebuffer.surfaces);
 
     raster.queued(bin.list, [&](const std::vector<Pair>& pairs, std::size_t first) {
       compose(make_fragments.queued(pairs), first, raster.closed(), shade);
@@ -78,11 +68,12 @@ FrameResult render_passes(const Trace& trace, const Frame& frame, const StreamOp
   const PositionSet& positions = cell_positions(stream.positions);
   const PositionGrid grid(stream.positions);
   const BeamFragmentOptions options = grid_options(grid, streaming_fragment_bytes(Words));
-  const BinPlan plan{.stages = {"conservative_raster", "beam_fragment", "claim", "shade", "settle", "resolve"}};
+  const BinPlan plan{.stages = {"conservative_raster", "beam_fragment", "claim", "shade", "settle", "resolve"},
+                     .framebuffer = stream_framebuffer(stream)};
   return render_bins(context, plan, [&](Bin& bin) {
     ConservativeRasterUnit raster(bin, "batch_pairs", PairDepths::bounds, ConservativeRasterUnit::Hidden::left_out);
     BeamFragmentUnit make_fragments(bin, options);
-    OwnersUnit<Words, Layers> pixels(bin, positions, stream_framebuffer(stream));
+    OwnersUnit<Words, Layers> pixels(bin, positions, plan.framebuffer.surfaces);
     ShadeUnit shade(bin);
     std::vector<float>& counts = bin.pixel_counter("fragments");
 

@@ -13,7 +13,8 @@ FrameResult render_deferred(const Trace& trace, const Frame& frame, const RunOpt
   const FrameContext context(trace, frame, run,
                              {.derivatives = Derivatives::quad, .storage = MaterialStorage::gbuffer});
   const Sampling sampling{CellGrid{}, standard_pattern(1)};
-  const BinPlan plan{.stages = {"sample_raster", "depth_test", "shade", "light", "resolve"}};
+  const BinPlan plan{.stages = {"sample_raster", "depth_test", "shade", "light", "resolve"},
+                     .framebuffer = deferred_framebuffer()};
   return render_bins(context, plan, [&](Bin& bin) {
     SampleRasterUnit raster(bin);
     DepthTestUnit depth_test(bin, sampling, 0);
@@ -43,10 +44,10 @@ TechniqueKind deferred_kind() {
           })};
 }
 
-std::vector<Surface> deferred_framebuffer() {
-  return {{"depth", "D32F", kSampleDepthBytes},
-          {"gbuffer", "RGBA8 + RGB10A2", kGBufferBytes},
-          {"color", "RGB16F", kSampleColorBytes}};
+Framebuffer deferred_framebuffer() {
+  return {.surfaces = {{"depth", "D32F", kSampleDepthBytes},
+                       {"gbuffer", "RGBA8 + RGB10A2", kGBufferBytes},
+                       {"color", "RGB16F", kSampleColorBytes}}};
 }
 
 }  // namespace beampipe

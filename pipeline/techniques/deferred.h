@@ -5,6 +5,6 @@
 
 namespace beampipe {
 
-std::vector<Surface> deferred_framebuffer();
+Framebuffer deferred_framebuffer();
 
 }  // namespace beampipe

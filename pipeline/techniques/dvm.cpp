@@ -14,18 +14,20 @@
 namespace beampipe {
 namespace {
 
-std::vector<Surface> dvm_framebuffer() {
-  return {{"depth", "D32F x 8", 8 * kSampleDepthBytes},
-          {"visibility", "R32UI x 8", 8 * kVisibilityBytes},
-          {"shading_visibility", "R32UI", kVisibilityBytes},
-          {"mask", "R32UI", 4},
-          {"location", "R8UI", 1},
-          {"gbuffer", "RGBA8 + RGB10A2", kGBufferBytes},
-          {"color", "RGB16F", kSampleColorBytes},
-          {"motion", "RG16F", kMotionBytes},
-          {"speed", "R16F", kSpeedBytes},
-          {"look", "R32UI x 2", 2 * kLookBytes},
-          {"history", "RGBA16F x 2", 16}};
+// Shading samples go to memory, where the next pass reads them.
+Framebuffer dvm_framebuffer() {
+  constexpr bool kOutlivesBin = true;
+  return {.surfaces = {{"depth", "D32F x 8", 8 * kSampleDepthBytes},
+                       {"visibility", "R32UI x 8", 8 * kVisibilityBytes},
+                       {"shading_visibility", "R32UI", kVisibilityBytes, kOutlivesBin},
+                       {"mask", "R32UI", 4, kOutlivesBin},
+                       {"location", "R8UI", 1, kOutlivesBin},
+                       {"gbuffer", "RGBA8 + RGB10A2", kGBufferBytes, kOutlivesBin},
+                       {"color", "RGB16F", kSampleColorBytes, kOutlivesBin},
+                       {"motion", "RG16F", kMotionBytes, kOutlivesBin},
+                       {"speed", "R16F", kSpeedBytes, kOutlivesBin},
+                       {"look", "R32UI x 2", 2 * kLookBytes, kOutlivesBin},
+                       {"history", "RGBA16F x 2", 16, kOutlivesBin}}};
 }
 
 // Counts each shading sample, with its G-buffer and colour, at the pixel of the quad that stores it.
@@ -68,7 +70,8 @@ FrameResult render_dvm(const Trace& trace, const Frame& frame, const DvmOptions&
   const SelectOptions select{frames % 8, options.seed + frames};
   QuadFrame quads(frame.width, frame.height);
 
-  const BinPlan plan{.stages = {"sample_raster", "depth_test", "sample_select", "shade", "light", "motion"}};
+  const BinPlan plan{.stages = {"sample_raster", "depth_test", "sample_select", "shade", "light", "motion"},
+                     .framebuffer = dvm_framebuffer()};
   FrameResult result = render_bins(context, plan, [&](Bin& bin) {
     const BinStage selecting = bin.stage("sample_select"), moving = bin.stage("motion");
     DepthTestUnit visibility(bin, sampling, kVisibilityBytes);

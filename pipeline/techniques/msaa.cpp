@@ -13,10 +13,11 @@ namespace {
 
 std::uint32_t color_bytes(const MsaaOptions& options) { return options.rgba ? 8 : kSampleColorBytes; }
 
-std::vector<Surface> msaa_framebuffer(const MsaaOptions& options) {
+Framebuffer msaa_framebuffer(const MsaaOptions& options) {
   const auto n = static_cast<std::uint32_t>(options.samples);
-  return {{"depth", times("D32F", n), n * kSampleDepthBytes},
-          {"color", times(options.rgba ? "RGBA16F" : "RGB16F", n), n * color_bytes(options)}};
+  return {.surfaces = {{"depth", times("D32F", n), n * kSampleDepthBytes},
+                       {"color", times(options.rgba ? "RGBA16F" : "RGB16F", n), n * color_bytes(options)}},
+          .bin_size = bin_size(options.samples)};
 }
 
 FrameResult render_msaa(const Trace& trace, const Frame& frame, const MsaaOptions& options, const RunOptions& run) {
@@ -27,7 +28,7 @@ FrameResult render_msaa(const Trace& trace, const Frame& frame, const MsaaOption
   const auto same_color = [&](std::uint32_t a, std::uint32_t b) { return context.shader.same_color(a, b); };
   const BinPlan plan{.stages = {"sample_raster", "shade", "depth_test", "resolve"},
                      .blends = true,
-                     .tile_size = bin_size(options.samples)};
+                     .framebuffer = msaa_framebuffer(options)};
   return render_bins(context, plan, [&](Bin& bin) {
     SampleRasterUnit raster(bin, SampleRasterUnit::Translucent::drawn, options.alpha);
     SampleShadeUnit shade(bin, sampling, options.at);

@@ -6,18 +6,19 @@
 namespace beampipe {
 namespace {
 
-std::vector<Surface> reference_framebuffer() {
-  constexpr std::uint32_t kSamples = kReferenceSamples;
-  return {{"depth", "D64F x 4096", 8 * kSamples}, {"owner", "R64UI x 4096", 8 * kSamples}};
-}
-
 constexpr int kTileSize = 4;  // px: 65,536 samples, 1 MiB
+
+Framebuffer reference_framebuffer() {
+  constexpr std::uint32_t kSamples = kReferenceSamples;
+  return {.surfaces = {{"depth", "D64F x 4096", 8 * kSamples}, {"owner", "R64UI x 4096", 8 * kSamples}},
+          .bin_size = kTileSize};
+}
 
 FrameResult render_reference(const Trace& trace, const Frame& frame, const RunOptions& run) {
   RunOptions without_memory = run;
   without_memory.memory.modelled = false;  // no hardware is modelled for this
   const FrameContext context(trace, frame, without_memory);
-  const BinPlan plan{.stages = {"reference_raster", "resolve"}, .tile_size = kTileSize};
+  const BinPlan plan{.stages = {"reference_raster", "resolve"}, .framebuffer = reference_framebuffer()};
   return render_bins(context, plan, [&](Bin& bin) {
     const BinStage resolving = bin.stage("resolve");
     if (bin.list.empty()) {  // every sample shows the background, so no samples are set up

@@ -9,11 +9,11 @@
 namespace beampipe {
 namespace {
 
-std::vector<Surface> taa_framebuffer() {
-  std::vector<Surface> surfaces = visibility_framebuffer();
-  surfaces.push_back({"motion", "RG16F", kMotionBytes});
-  surfaces.push_back({"history", "RGBA16F x 2", 16});  // the last one, and the one being written
-  return surfaces;
+Framebuffer taa_framebuffer() {
+  Framebuffer framebuffer = visibility_framebuffer();
+  framebuffer.surfaces.push_back({"motion", "RG16F", kMotionBytes, true});
+  framebuffer.surfaces.push_back({"history", "RGBA16F x 2", 16, true});  // the last one, and the one being written
+  return framebuffer;
 }
 
 // Jittering the projection is the same as sampling at another position of the pixel.
@@ -30,7 +30,8 @@ FrameResult render_taa(const Trace& trace, const Frame& frame, const TaaOptions&
   const FrameContext context(trace, frame, run, {.storage = MaterialStorage::gbuffer});
   TemporalFrame over_time(context);
   const Sampling sampling{CellGrid{}, jittered(options, over_time.history().frames)};
-  const BinPlan plan{.stages = {"sample_raster", "depth_test", "shade", "light", "resolve", "motion"}};
+  const BinPlan plan{.stages = {"sample_raster", "depth_test", "shade", "light", "resolve", "motion"},
+                     .framebuffer = taa_framebuffer()};
   FrameResult result = render_bins(context, plan, [&](Bin& bin) {
     DepthTestUnit visibility(bin, sampling, kVisibilityBytes);
     draw_visibility(bin, sampling, visibility);

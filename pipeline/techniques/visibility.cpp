@@ -12,7 +12,8 @@ namespace {
 FrameResult render_visibility(const Trace& trace, const Frame& frame, const RunOptions& run) {
   const FrameContext context(trace, frame, run, {.storage = MaterialStorage::gbuffer});
   const Sampling sampling{CellGrid{}, standard_pattern(1)};
-  const BinPlan plan{.stages = {"sample_raster", "depth_test", "shade", "light", "resolve"}};
+  const BinPlan plan{.stages = {"sample_raster", "depth_test", "shade", "light", "resolve"},
+                     .framebuffer = visibility_framebuffer()};
   return render_bins(context, plan, [&](Bin& bin) {
     DepthTestUnit visibility(bin, sampling, kVisibilityBytes);
     draw_visibility(bin, sampling, visibility);
@@ -43,10 +44,10 @@ std::vector<glm::vec4> shade_visibility(Bin& bin, DepthTestUnit& visibility) {
   return gbuffer.light_and_resolve(visibility);
 }
 
-std::vector<Surface> visibility_framebuffer() {
-  std::vector<Surface> surfaces = deferred_framebuffer();
-  surfaces.insert(surfaces.begin() + 1, {"visibility", "R32UI", kVisibilityBytes});
-  return surfaces;
+Framebuffer visibility_framebuffer() {
+  Framebuffer framebuffer = deferred_framebuffer();
+  framebuffer.surfaces.insert(framebuffer.surfaces.begin() + 1, {"visibility", "R32UI", kVisibilityBytes});
+  return framebuffer;
 }
 
 }  // namespace beampipe

@@ -19,6 +19,6 @@ void draw_visibility(Bin& bin, const Sampling& sampling, DepthTestUnit& visibili
 // light, resolve.
 std::vector<glm::vec4> shade_visibility(Bin& bin, DepthTestUnit& visibility);
 
-std::vector<Surface> visibility_framebuffer();
+Framebuffer visibility_framebuffer();
 
 }  // namespace beampipe

@@ -19,12 +19,12 @@ struct Z3Options {
   LayerMerge merge = LayerMerge::depth;
 };
 
-std::vector<Surface> z3_framebuffer(const Z3Options& z3) {
+Framebuffer z3_framebuffer(const Z3Options& z3) {
   const auto words = static_cast<std::uint32_t>(z3.positions / 32), layers = static_cast<std::uint32_t>(z3.layers);
-  return {{"owner_map", times("R32UI", 2 * words), 8 * words},
-          {"depth", times("R32F", layers), 4 * layers},
-          {"slopes", times("RG16BF", layers), 4 * layers},
-          {"color", times("RGB16F", layers), 6 * layers}};
+  return {.surfaces = {{"owner_map", times("R32UI", 2 * words), 8 * words},
+                       {"depth", times("R32F", layers), 4 * layers},
+                       {"slopes", times("RG16BF", layers), 4 * layers},
+                       {"color", times("RGB16F", layers), 6 * layers}}};
 }
 
 template <std::size_t Words, std::size_t Layers>
@@ -33,16 +33,18 @@ FrameResult render_shape(const Trace& trace, const Frame& frame, const Z3Options
   const PositionSet& positions = cell_positions(z3.positions);
   const PositionGrid grid(z3.positions);
   const BeamFragmentOptions options = grid_options(grid, 4 + 4 * Words + 12);
-  const BinPlan plan{.stages = {"conservative_raster", "beam_fragment", "shade", "compose", "resolve"}};
+  const BinPlan plan{.stages = {"conservative_raster", "beam_fragment", "shade", "compose", "resolve"},
+                     .framebuffer = z3_framebuffer(z3)};
   return render_bins(context, plan, [&](Bin& bin) {
-    ConservativeRasterUnit raster(bin, "batch_pairs", PairDepths::bounds, ConservativeRasterUnit::Hidden::kept);
+    ConservativeRasterUnit raster(bin, "pair_queue", PairDepths::bounds, ConservativeRasterUnit::Hidden::kept,
+                                  kQueueItems);
     BeamFragmentUnit make_fragments(bin, options);
     ShadeUnit shade(bin);
-    ComposeZ3Unit<Words, Layers> compose(bin, positions, z3.merge, z3_framebuffer(z3));
+    ComposeZ3Unit<Words, Layers> compose(bin, positions, z3.merge, plan.framebuffer.surfaces);
     std::vector<float>& counts = bin.pixel_counter("fragments");
 
     for_each_batch(bin.list, [&](const TriangleList& batch) {
-      std::vector<Fragment>& fragments = make_fragments(raster(batch, bin.tile), "batch_fragments");
+      std::vector<Fragment>& fragments = make_fragments.queued(raster(batch, bin.tile));
       count_by_pixel(fragments, counts);
       shade(fragments);
       compose(fragments);

@@ -104,8 +104,10 @@ class OwnersUnit {
     charge(closed, settle_.counters);
   }
 
-  // The closed depths are kept in memory for the next pass.
-  void store_closed(const ClosedDepth& closed) { settle_.streams(closed.bytes()); }
+  // The closed depths are kept for the next pass, with the pixels.
+  void store_closed(const ClosedDepth& closed) {
+    if (!bin_.keeps_pixels_on_chip()) settle_.streams(closed.bytes());
+  }
 
   std::vector<glm::vec4> resolve_settled() {
     const BinStage resolving = bin_.stage("resolve");

@@ -6,28 +6,16 @@
 
 namespace beampipe {
 
-OpenPixelStore::OpenPixelStore(Bin& bin, OpenPixels where, std::size_t bytes_per_pixel,
-                               const std::vector<Surface>& framebuffer)
-    : bin_(bin) {
-  if (where == OpenPixels::in_memory) {
-    memory_.emplace(bin.memory(), bin.z_order(), framebuffer);
-    return;
-  }
-  bin.holds("open_pixels", bin.tile.pixels() * bytes_per_pixel);
-  if (bin.models_memory()) bin.pixel_counter("bytes").assign(bin.tile.pixels(), kPictureBytes);
-}
-
 void OpenPixelStore::merge(const std::vector<Fragment>& fragments) {
-  if (!memory_) return;
+  if (bin_.keeps_pixels_on_chip()) return;
   StageCounters& compose = bin_.stage("compose").counters;
-  for (const Fragment& fragment : fragments) memory_->merge(fragment.triangle, fragment.pixel, compose);
+  for (const Fragment& fragment : fragments) memory_.merge(fragment.triangle, fragment.pixel, compose);
 }
 
 void OpenPixelStore::finish() {
-  if (!memory_) return;
-  memory_->flush({}, bin_.stage("compose").counters);
-  memory_->read_all(bin_.stage("resolve").counters);
-  if (bin_.models_memory()) memory_->add_bytes(bin_.pixel_counter("bytes"));
+  memory_.flush({}, bin_.stage("compose").counters);
+  memory_.read_all(bin_.stage("resolve").counters);
+  if (bin_.models_memory()) memory_.add_bytes(bin_.pixel_counter("bytes"));
 }
 
 // Depth is compared position by position, so the order of triangles matters only where owners became one.

@@ -1,7 +1,6 @@
 // Composition in bounded memory: a bin's triangles near to far, and the open pixels that own mask positions.
 #pragma once
 
-#include <optional>
 #include <stdexcept>
 #include <string>
 #include <vector>
@@ -21,14 +20,11 @@ namespace beampipe {
 // setup triangles in that order. For a plan that sorts_lists.
 OrderedList sort_bin(Bin& bin);
 
-// Where open pixels are kept: on chip while their bin is rendered, or in the framebuffer, through its caches.
-enum class OpenPixels { on_chip, in_memory };
-
-// What open pixels cost where they are kept. On chip, only the picture goes to memory.
+// What open pixels cost in memory. On chip they cost nothing there.
 class OpenPixelStore {
  public:
-  // `framebuffer`: the surfaces of open pixels in memory.
-  OpenPixelStore(Bin& bin, OpenPixels where, std::size_t bytes_per_pixel, const std::vector<Surface>& framebuffer);
+  OpenPixelStore(Bin& bin, const std::vector<Surface>& surfaces)
+      : bin_(bin), memory_(bin.memory(), bin.z_order(), surfaces) {}
 
   // Stage `compose` reads and writes the pixel of each fragment.
   void merge(const std::vector<Fragment>& fragments);
@@ -38,28 +34,40 @@ class OpenPixelStore {
 
  private:
   Bin& bin_;
-  std::optional<AggregateMemory> memory_;
+  AggregateMemory memory_;
 };
 
 // Hands what was recorded to the frame, if it was asked for.
 void record_weights(const OwnerWeights& recorded, const TriangleList& list, BinWeights& weights);
 
 template <std::size_t Words, std::size_t Slots>
+std::vector<Surface> open_pixel_surfaces() {
+  using Pixel = OpenPixel<Words, Slots>;
+  constexpr std::uint32_t kMap = sizeof(Pixel::states), kOwners = sizeof(Pixel::slots),
+                          kSums = sizeof(Pixel) - kMap - kOwners;
+  return {{"owner_map", times("R32UI", kMap / 4), kMap},
+          {"owners", times("RG32UI", Slots), kOwners},
+          {"sums", times("R16", kSums / 2), kSums}};
+}
+
+template <std::size_t Words, std::size_t Slots>
 class ComposeOwnersUnit {
  public:
-  // `list`: the triangles in the order in which they are taken. `watermarks` may be null. `framebuffer`: the surfaces
-  // of open pixels in memory. All but the framebuffer must outlive the unit. L2 holds the setup of the triangles.
+  // `list`: the triangles in the order in which they are taken. `watermarks` may be null. `surfaces`: of open pixels.
+  // All but the surfaces must outlive the unit. L2 holds the setup of the triangles.
   ComposeOwnersUnit(Bin& bin, const PositionSet& positions, const TriangleList& list,
-                    const std::vector<float>* watermarks, OpenPixels where, const std::vector<Surface>& framebuffer)
+                    const std::vector<float>* watermarks, const std::vector<Surface>& surfaces,
+                    OwnerPlace shade_at = OwnerPlace::covered)
       : bin_(bin),
         stage_(bin.stage("compose")),
         weights_(bin),
         recorded_(weights_ ? bin.tile.pixels() : 0),
         owners_{bin.triangles(), list,         watermarks,          bin.tile,
-                positions,       bin.shader(), bin.models_memory(), weights_ ? &recorded_ : nullptr},
+                positions,       bin.shader(), bin.models_memory(), weights_ ? &recorded_ : nullptr,
+                shade_at},
         maps_{bin.pixel_counter("fragments"), bin.pixel_counter("merges")},
         pixels_(bin.tile.pixels()),
-        store_(bin, where, sizeof pixels_[0], framebuffer) {
+        store_(bin, surfaces) {
     if (list.size() > OwnerSlot::kMostTriangles)
       throw std::runtime_error("a bin has " + std::to_string(list.size()) + " triangles, more than the " +
                                std::to_string(OwnerSlot::kMostTriangles) + " that an owner can name");

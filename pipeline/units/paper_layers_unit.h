@@ -11,16 +11,16 @@ namespace beampipe {
 
 class ComposeLayersUnit {
  public:
-  // `framebuffer`: the surfaces of the aggregates in memory. The pattern must outlive the unit.
+  // `surfaces`: of the aggregates. The pattern must outlive the unit.
   ComposeLayersUnit(Bin& bin, const SamplePattern& pattern, const MergeRules& rules, std::size_t layers,
-                    PaperStorage storage, OpenPixels where, const std::vector<Surface>& framebuffer)
+                    PaperStorage storage, const std::vector<Surface>& surfaces)
       : bin_(bin),
         stage_(bin.stage("compose")),
         pattern_(pattern),
         rules_(rules),
         merges_(bin.pixel_counter("merges")),
         layers_(bin.tile.pixels(), layers, storage),
-        store_(bin, where, layers_.bytes_per_pixel(), framebuffer) {}
+        store_(bin, surfaces) {}
 
   void operator()(const std::vector<Fragment>& fragments) {
     layers_.add(fragments, pattern_, rules_, stage_.timed(), merges_);

@@ -7,8 +7,13 @@
 
 namespace beampipe {
 
-ConservativeRasterUnit::ConservativeRasterUnit(Bin& bin, std::string buffer, PairDepths depths, Hidden hidden)
-    : bin_(bin), stage_(bin.stage("conservative_raster")), buffer_(std::move(buffer)), depths_(depths) {
+ConservativeRasterUnit::ConservativeRasterUnit(Bin& bin, std::string buffer, PairDepths depths, Hidden hidden,
+                                               std::size_t capacity)
+    : bin_(bin),
+      stage_(bin.stage("conservative_raster")),
+      buffer_(std::move(buffer)),
+      depths_(depths),
+      capacity_(capacity) {
   if (hidden == Hidden::kept) return;
   closed_.emplace(bin.tile);
   bin_.holds("closed_depth", closed_->bytes());
@@ -18,7 +23,7 @@ std::vector<Pair>& ConservativeRasterUnit::operator()(const TriangleList& triang
   pairs_.clear();
   const std::size_t most = conservative_raster(bin_.triangles(), triangles, box, stage_.timed(), pairs_,
                                                closed_ ? &*closed_ : nullptr, depths_);
-  bin_.holds(buffer_, most * (depths_ == PairDepths::bounds ? kPairWithDepthBytes : kPairBytes));
+  bin_.holds(buffer_, std::min(most, capacity_) * (depths_ == PairDepths::bounds ? kPairWithDepthBytes : kPairBytes));
   return pairs_;
 }
 
@@ -29,7 +34,7 @@ void ConservativeRasterUnit::drop_hidden(std::vector<Pair>& pairs) {
 }
 
 void ConservativeRasterUnit::start_next_pass() {
-  stage_.streams(closed_->bytes());
+  if (!bin_.keeps_pixels_on_chip()) stage_.streams(closed_->bytes());
   stage_.counters.items_in += bin_.list.size();
   stage_.counters.bytes_read += bin_.list.size() * sizeof(SetupTriangle);
   read_bin(bin_.memory(), bin_.list, stage_.counters);

@@ -5,6 +5,8 @@
 // buffers.
 #pragma once
 
+#include <algorithm>
+#include <limits>
 #include <optional>
 #include <string>
 #include <vector>
@@ -27,7 +29,8 @@ void for_each_batch(const TriangleList& list, Body&& body) {
   }
 }
 
-// Entries of a queue between two stages on chip. A stage whose queue is full waits for the next stage.
+// Entries of a queue between two stages on chip. A stage whose queue is full waits for the next stage. The simulator
+// works on more items at a time.
 inline constexpr std::size_t kQueueItems = 24;
 
 // Size of a queued pair in the modelled machine: pixel (16 bits), the triangle's number in the bin's list (24), whether
@@ -36,9 +39,10 @@ inline constexpr std::uint64_t kQueuedPairBytes = 10;
 
 class ConservativeRasterUnit {
  public:
-  // `buffer`: the name of the on-chip buffer that holds the pairs.
+  // `buffer`: the name of the on-chip buffer that holds the pairs, at most `capacity` of them at once.
   enum class Hidden { kept, left_out };  // pairs that lie behind a triangle which covers their whole pixel
-  ConservativeRasterUnit(Bin& bin, std::string buffer, PairDepths depths, Hidden hidden);
+  ConservativeRasterUnit(Bin& bin, std::string buffer, PairDepths depths, Hidden hidden,
+                         std::size_t capacity = std::numeric_limits<std::size_t>::max());
 
   // The pairs of the triangles in the box. They are valid until the next call.
   std::vector<Pair>& operator()(const TriangleList& triangles, const Tile& box);
@@ -67,7 +71,8 @@ class ConservativeRasterUnit {
     }
   }
 
-  // Another pass over the bin reads the list, the setup triangles and the closed depths from memory again.
+  // Another pass over the bin reads the list, the setup triangles and, unless they stay on chip with the pixels, the
+  // closed depths from memory again.
   void start_next_pass();
 
   ClosedDepth& closed() { return *closed_; }  // with Hidden::left_out
@@ -80,6 +85,7 @@ class ConservativeRasterUnit {
   BinStage stage_;
   std::string buffer_;
   PairDepths depths_;
+  std::size_t capacity_;
   std::optional<ClosedDepth> closed_;
   std::vector<Pair> pairs_;
 };
@@ -104,7 +110,7 @@ class SampleRasterUnit {
     for_each_batch(bin_.list, [&](const TriangleList& batch) {
       fragments_.clear();
       sample_raster(bin_.triangles(), batch, bin_.tile, sampling, stage_.timed(), fragments_, &closed);
-      bin_.holds("batch_fragments", fragments_.size() * kSampleFragmentBytes);
+      bin_.holds("fragment_queue", std::min(fragments_.size(), kQueueItems) * kSampleFragmentBytes);
       if (bin_.context.has_alpha()) test_alpha(sampling, at);
       body(fragments_);
     });

@@ -10,6 +10,12 @@
 namespace beampipe {
 
 PositionSet::PositionSet(std::vector<SamplePattern> words) : patterns(std::move(words)) {
+  for (std::size_t i = 0; i < static_cast<std::size_t>(count()); ++i) {
+    const SamplePattern& pattern = patterns[i / kMaxMaskSamples];
+    const bool right = 2 * pattern.x[i % kMaxMaskSamples] >= kSubpixelUnits,
+               low = 2 * pattern.y[i % kMaxMaskSamples] >= kSubpixelUnits;
+    quarters[2 * std::size_t{low} + std::size_t{right}].set(i);
+  }
   for (int y = 0; y < kPlaces; ++y) {
     for (int x = 0; x < kPlaces; ++x) {
       // Squared distance in 1/256 px, then the position's number, so that the lower number wins a tie.

@@ -157,7 +157,7 @@ struct TexturePlace {
   std::array<Real, 2> uv, dx, dy;
 };
 
-enum class TextureSlot { base, metallic_roughness, normal, emissive };
+enum class TextureRole { base, metallic_roughness, normal, emissive };
 
 // A point of a triangle.
 template <class Real>
@@ -193,13 +193,13 @@ template <class Real, class Place, class Fetch>
 SurfaceMaterial<Real> material_at(const ShaderInputs& shader, const SurfacePoint<Real>& point, Place&& place,
                                   Fetch&& fetch) {
   const Material& material = shader.material;
-  const auto texel = [&](TextureSlot slot, const Texture& texture) -> std::array<Real, 4> {
+  const auto texel = [&](TextureRole slot, const Texture& texture) -> std::array<Real, 4> {
     return fetch(slot, place(texture.uv_set));
   };
   std::array<Real, 4> base;
   for (std::size_t c = 0; c < 4; ++c) base[c] = Real(material.base_color[static_cast<int>(c)]);
   if (material.base_texture) {
-    const std::array<Real, 4> color = texel(TextureSlot::base, *material.base_texture);
+    const std::array<Real, 4> color = texel(TextureRole::base, *material.base_texture);
     for (std::size_t c = 0; c < 4; ++c) base[c] = base[c] * color[c];
   }
   if (shader.has_vertex_colors)
@@ -217,12 +217,12 @@ SurfaceMaterial<Real> material_at(const ShaderInputs& shader, const SurfacePoint
   reflector.roughness = Real(material.roughness);
   reflector.metallic = Real(material.metallic);
   if (material.metallic_roughness_texture) {
-    const std::array<Real, 4> factors = texel(TextureSlot::metallic_roughness, *material.metallic_roughness_texture);
+    const std::array<Real, 4> factors = texel(TextureRole::metallic_roughness, *material.metallic_roughness_texture);
     reflector.roughness = reflector.roughness * factors[1];
     reflector.metallic = reflector.metallic * factors[2];
   }
   if (material.normal_texture) {
-    const std::array<Real, 4> code = texel(TextureSlot::normal, *material.normal_texture);
+    const std::array<Real, 4> code = texel(TextureRole::normal, *material.normal_texture);
     const Triple<Real> normal = reflector.normal;
     Triple<Real> tangent = shader.has_tangents ? point.vector(&VertexInputs<Real>::tangent) : point.tangent;
     const Real along = dot(tangent, normal);
@@ -238,7 +238,7 @@ SurfaceMaterial<Real> material_at(const ShaderInputs& shader, const SurfacePoint
   }
   surface.emissive = triple<Real>(material.emissive);
   if (material.emissive_texture) {
-    const std::array<Real, 4> color = texel(TextureSlot::emissive, *material.emissive_texture);
+    const std::array<Real, 4> color = texel(TextureRole::emissive, *material.emissive_texture);
     for (std::size_t c = 0; c < 3; ++c) surface.emissive[c] = surface.emissive[c] * color[c];
   }
   return surface;

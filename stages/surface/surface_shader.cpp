@@ -39,21 +39,21 @@ Barycentrics<float> clamped(const Barycentrics<float>& weights) {
   return {second, std::clamp(weights.third, 0.0f, 1.0f - second)};
 }
 
-const Texture& texture_of(const Material& material, TextureSlot slot) {
+const Texture& texture_of(const Material& material, TextureRole slot) {
   switch (slot) {
-    case TextureSlot::base:
+    case TextureRole::base:
       return *material.base_texture;
-    case TextureSlot::metallic_roughness:
+    case TextureRole::metallic_roughness:
       return *material.metallic_roughness_texture;
-    case TextureSlot::normal:
+    case TextureRole::normal:
       return *material.normal_texture;
     default:
       return *material.emissive_texture;
   }
 }
 
-ColorSpace space_of(TextureSlot slot) {
-  return slot == TextureSlot::base || slot == TextureSlot::emissive ? ColorSpace::srgb : ColorSpace::linear;
+ColorSpace space_of(TextureRole slot) {
+  return slot == TextureRole::base || slot == TextureRole::emissive ? ColorSpace::srgb : ColorSpace::linear;
 }
 
 // Light that a flat triangle reflects, by Lambert's law.
@@ -105,7 +105,7 @@ OperationCounts material_cost(const ShaderInputs& shader, Derivatives derivative
       }
       return found;
     };
-    const auto fetch = [&](TextureSlot, const TexturePlace<Real>&) -> std::array<Real, 4> {
+    const auto fetch = [&](TextureRole, const TexturePlace<Real>&) -> std::array<Real, 4> {
       ++counts.fetch;
       return {one, one, one, one};
     };
@@ -298,7 +298,7 @@ glm::vec4 SurfaceShader::shaded(std::uint32_t triangle, const ShadingPlace& plac
                                                             : slopes_of_quad(set, found);
     return found;
   };
-  const auto fetch = [&](TextureSlot slot, const TexturePlace<float>& at) -> std::array<float, 4> {
+  const auto fetch = [&](TextureRole slot, const TexturePlace<float>& at) -> std::array<float, 4> {
     const Texture& texture = texture_of(shader.material, slot);
     const ColorSpace space = space_of(slot);
     const TextureSlopes slopes{vector_of(at.dx) * width, vector_of(at.dy) * width};

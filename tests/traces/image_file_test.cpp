@@ -1,6 +1,8 @@
 #include "traces/image_file.h"
 
 #include <gtest/gtest.h>
+#include <sys/resource.h>
+#include <zlib.h>
 
 #include <cstdlib>
 #include <random>
@@ -211,6 +213,29 @@ TEST(ImageFile, RefusesSizesBeforeItTakesMemory) {
             "expected at least 524288 bytes for 16384 x 16384 texels, found " + std::to_string(jpeg.size()));
   jpeg.replace(size, 4, "\x40\x01\x00\x01", 4);
   EXPECT_EQ(error_in(jpeg), "expected at most 16384 texels on a side, found 1 x 16385");
+}
+
+// A text of a PNG that grows to 8 MB is no more than a line of the file. A hundred of them would take 800 MB.
+TEST(ImageFile, DoesNotReadTexts) {
+  const std::string long_text(7'900'000, 'a');
+  uLongf size = compressBound(long_text.size());
+  std::string deflated(size, '\0');
+  compress(reinterpret_cast<Bytef*>(deflated.data()), &size, reinterpret_cast<const Bytef*>(long_text.data()),
+           long_text.size());
+  const std::string text = png_chunk("zTXt" + std::string("a\0\0", 3) + deflated.substr(0, size));
+  std::string texts;
+  for (int i = 0; i < 100; ++i) texts += text;
+  const TextureImage image = random_image(3, 3);
+  std::string bytes = encode_png(image);
+  bytes.insert(8 + 25, texts);  // after the signature and IHDR
+  const auto peak = [] {
+    rusage usage{};
+    getrusage(RUSAGE_SELF, &usage);
+    return usage.ru_maxrss;  // KiB
+  };
+  const auto before = peak();
+  EXPECT_EQ(decode_image(bytes).texels, image.texels);
+  EXPECT_LT(peak() - before, 200 * 1024);
 }
 
 // What compresses best is still read: the limits above are no smaller than what the formats reach.

@@ -33,7 +33,7 @@ Ours constant(double value) {
 double bytes_of(const char* spec) { return parse_technique(spec).framebuffer_bytes_per_pixel(); }
 
 double bytes_of(const char* spec, const std::string& surface) {
-  for (const Surface& each : parse_technique(spec).framebuffer)
+  for (const Surface& each : parse_technique(spec).framebuffer.in_memory({}))
     if (each.name == surface) return each.bytes_per_pixel;
   return 0;
 }

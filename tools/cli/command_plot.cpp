@@ -27,7 +27,9 @@ void plot(const PlotArguments& arguments, InterruptGate& gate) {
   const PlotFormat format = format_of(file);
   std::vector<ReportFile> reports;
   for (const std::string& folder : arguments.folders) reports.push_back(read_report(folder));
-  const ScatterPlot plot = arguments.kind == "speed" ? speed_plot(reports) : frontier_plot(reports);
+  const ScatterPlot plot = arguments.kind == "speed"     ? speed_plot(reports)
+                           : arguments.kind == "storage" ? storage_plot(reports)
+                                                         : frontier_plot(reports);
   for (const std::string& note : plot.notes) std::cerr << "beampipe: note: " << note << "\n";
   OutputFolder output(std::filesystem::absolute(file).parent_path(), gate);
   output.write(file.filename(), draw(plot, format));
@@ -43,8 +45,9 @@ void add_plot_command(CommandLine& line, InterruptGate& gate) {
   command.add("-o,--output", arguments->output, "the picture: FILE.svg or FILE.png").required();
   command
       .add("--kind", arguments->kind,
-           "frontier: memory (bytes per pixel) and equivalent MSAA rate; speed: time (ms) and error (RMSE)")
-      .one_of({"frontier", "speed"})
+           "frontier: framebuffer and A-buffer (bytes per pixel) and equivalent MSAA rate; storage: the same with what "
+           "a bin has on chip; speed: time (ms) and error (RMSE)")
+      .one_of({"frontier", "storage", "speed"})
       .shows_default();
   command.footer(
       "Given several folders, it draws the geometric means of the techniques that are in all of them. A triangle marks "

@@ -28,7 +28,8 @@ void run(const RunArguments& arguments, InterruptGate& gate) {
   }
 
   Report report = new_report(plan, maker);
-  for (const Technique& technique : plan.techniques) report.results.push_back(new_technique_report(technique));
+  for (const Technique& technique : plan.techniques)
+    report.results.push_back(new_technique_report(technique, plan.options.memory));
   for (const FrameRecord& record : finished)
     for (std::size_t i = 0; i < record.reports.size(); ++i) report.results[i].frames.push_back(record.reports[i]);
   if (finished.size() < plan.frames.size()) {

@@ -66,6 +66,17 @@ void add_run_arguments(Command& command, RunArguments& arguments) {
       "--no-memory-model", arguments.no_memory_model,
       "do not model caches and DRAM: rendering is faster, and sector_bytes, l2_bytes and dram_bytes are 0");
   command.add_flag("--no-compression", arguments.no_compression, "model memory without the compression of blocks");
+  command
+      .add("--framebuffer", arguments.framebuffer,
+           "where the pixels of a bin are while it is drawn: on chip, as in tile-based rendering; in memory, behind "
+           "caches; or where each technique is made to keep them")
+      .one_of({kByTechnique, kOnChip, kInMemory})
+      .shows_default();
+  command
+      .add("--on-chip-memory", arguments.on_chip_bytes,
+           "the memory on chip for the pixels of a bin, such as 128KB; pixels that do not fit are kept in memory "
+           "(default: 384KB)")
+      .bytes(1, std::uint64_t{1} << 31);
   command.add_flag("--allow-outside", arguments.allow_outside, "allow the trace to name files outside its own folder");
 }
 
@@ -79,6 +90,9 @@ RunPlan make_plan(const RunArguments& arguments) {
   if (!arguments.hardware.empty()) plan.hardware = read_hardware(arguments.hardware);
   plan.options.memory.modelled = !arguments.no_memory_model;
   plan.options.memory.compression = !arguments.no_compression;
+  if (arguments.framebuffer != kByTechnique)
+    plan.options.memory.framebuffer = arguments.framebuffer == kOnChip ? Place::on_chip : Place::in_memory;
+  plan.options.memory.on_chip_bytes = static_cast<std::uint32_t>(arguments.on_chip_bytes);
   plan.options.memory_limit = arguments.memory_limit > 0 ? arguments.memory_limit : machine_memory() / 2;
   if (!arguments.simd.empty()) use_simd_target(arguments.simd);
   plan.trace = read_trace(arguments.trace, {.allow_outside = arguments.allow_outside});

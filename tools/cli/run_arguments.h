@@ -16,6 +16,8 @@ struct RunArguments {
   std::vector<std::string> specs;
   std::string simd;                // empty: the best one that this machine has
   std::uint64_t memory_limit = 0;  // bytes; 0: the default
+  std::string framebuffer = kByTechnique;
+  std::uint64_t on_chip_bytes = MemoryParameters{}.on_chip_bytes;
   int threads = 0, repeat = 1;
   bool allow_outside = false, no_memory_model = false, no_compression = false, resume = false;
 };

@@ -37,10 +37,10 @@ Comparison::Comparison(const CompareOptions& options, RunPlan plan, OutputFolder
   written.push_back(reference_);
   require_writable_folders(output_, written);
   for (const Technique& technique : plan_.techniques) {
-    results_.push_back(new_technique_report(technique));
+    results_.push_back(new_technique_report(technique, plan_.options.memory));
     errors_.push_back(new_errors());
   }
-  reference_result_ = new_technique_report(reference_);
+  reference_result_ = new_technique_report(reference_, {});
   histories_.resize(plan_.techniques.size());
   last_errors_.resize(plan_.techniques.size());
   causes_.resize(plan_.techniques.size());

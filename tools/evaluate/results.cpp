@@ -43,11 +43,12 @@ double TechniqueReport::on_chip_bytes_per_pixel() const {
   return most;
 }
 
-TechniqueReport new_technique_report(const Technique& technique) {
+TechniqueReport new_technique_report(const Technique& technique, const MemoryParameters& memory) {
   TechniqueReport report;
   report.technique = technique.spec;
-  report.framebuffer = technique.framebuffer;
-  report.framebuffer_bytes_per_pixel = technique.framebuffer_bytes_per_pixel();
+  report.framebuffer = technique.framebuffer.in_memory(memory);
+  report.pixels_on_chip = technique.framebuffer.is_on_chip(memory);
+  report.framebuffer_bytes_per_pixel = technique.framebuffer_bytes_per_pixel(memory);
   return report;
 }
 

@@ -60,7 +60,8 @@ struct OrderReport {
 
 struct TechniqueReport {
   std::string technique;
-  std::vector<Surface> framebuffer;
+  std::vector<Surface> framebuffer;  // in memory
+  bool pixels_on_chip = false;       // what else a pixel has is on chip while its bin is drawn
   std::uint32_t framebuffer_bytes_per_pixel = 0;
   std::optional<ErrorStats> error;  // pooled over the frames
   std::optional<EquivalentMsaa> equivalent_msaa;
@@ -91,8 +92,8 @@ struct Report {
 // Such as "0.1.0".
 std::string program_version();
 
-// The report of a technique of which no frame has been rendered yet.
-TechniqueReport new_technique_report(const Technique& technique);
+// The report of a technique of which no frame has been rendered yet. `memory`: the system that it runs on.
+TechniqueReport new_technique_report(const Technique& technique, const MemoryParameters& memory);
 
 // The name of a technique's folder: its spec, with _ for every character outside [A-Za-z0-9.=-].
 std::string spec_folder(std::string_view spec);

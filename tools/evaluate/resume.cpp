@@ -101,6 +101,8 @@ Json made_by(const std::string& command, const RunPlan& plan, const Json& more) 
                {"simd", simd_target()},
                {"memory_model", plan.options.memory.modelled},
                {"compression", plan.options.memory.compression},
+               {"framebuffer", name_of(plan.options.memory.framebuffer)},
+               {"on_chip_bytes", plan.options.memory.on_chip_bytes},
                {"hardware", digest_of(plan.hardware.json.dump())}};
   for (const auto& [name, value] : more.members()) json[name] = value;
   return json;

@@ -1,6 +1,8 @@
 #include "tools/report/plot.h"
 
 #include <algorithm>
+#include <string_view>
+#include <utility>
 
 #include "pipeline/technique.h"
 
@@ -8,6 +10,7 @@ namespace beampipe {
 namespace {
 
 constexpr const char* kMsaa = "msaa";
+constexpr const char* kEmrLabel = "equivalent MSAA rate (EMR), samples";
 
 // The family of "beam:bits=64" is "beam". Techniques of one family share a colour.
 std::string family_of(const std::string& spec) { return spec.substr(0, spec.find(':')); }
@@ -47,6 +50,29 @@ std::vector<LadderRung> longest_ladder(const std::vector<ReportFile>& reports) {
   return std::max_element(reports.begin(), reports.end(), is_shorter)->msaa_ladder;
 }
 
+// The spec without its option `slots`, and the value of that option: "beam:bits=64,slots=4" gives "beam:bits=64" and
+// "4".
+std::pair<std::string, std::string> split_slots(const std::string& spec) {
+  constexpr std::string_view kSlots = "slots=";
+  const std::size_t at = spec.find(kSlots);
+  if (at == spec.npos) return {spec, ""};
+  const std::size_t end = std::min(spec.find(',', at), spec.size()), value = at + kSlots.size();
+  const std::string before = spec.substr(0, at - 1), after = end < spec.size() ? spec.substr(end + 1) : "";
+  const std::string joined = after.empty() ? before : before + spec[at - 1] + after;
+  return {joined, spec.substr(value, end - value)};
+}
+
+// Makes a line of a series, by increasing memory. Where its points differ in slots, the first one alone has a full
+// label.
+void make_line(PlotSeries& series) {
+  series.line = true;
+  std::sort(series.points.begin(), series.points.end(),
+            [](const PlotPoint& a, const PlotPoint& b) { return a.x < b.x; });
+  for (std::size_t i = 1; i < series.points.size(); ++i)
+    if (const std::string slots = split_slots(series.points[i].label).second; !slots.empty())
+      series.points[i].label = slots;
+}
+
 [[noreturn]] void throw_not_compared(const std::vector<ReportFile>& reports) {
   throw ReportError((reports.front().folder / "report.json").string() +
                     ": it has no errors; expected a report of `beampipe compare`");
@@ -62,7 +88,7 @@ ScatterPlot frontier_plot(const std::vector<ReportFile>& reports) {
   ScatterPlot plot{"frontier",
                    "Memory and accuracy: " + scenes_text(reports),
                    "memory with the A-buffer, bytes per pixel",
-                   "equivalent MSAA rate (EMR), samples",
+                   kEmrLabel,
                    {{kMsaa, {}, true}},
                    {}};
   for (const LadderRung& rung : longest_ladder(reports)) {
@@ -80,6 +106,25 @@ ScatterPlot frontier_plot(const std::vector<ReportFile>& reports) {
               {summary.bytes_per_pixel, summary.emr->samples, summary.spec, bound_of(*summary.emr)});
   }
   if (!compared) throw_not_compared(reports);
+  return plot;
+}
+
+ScatterPlot storage_plot(const std::vector<ReportFile>& reports) {
+  ScatterPlot plot{"storage",
+                   "All memory and accuracy: " + scenes_text(reports),
+                   "memory on chip and off chip, with the A-buffer, bytes per pixel",
+                   kEmrLabel,
+                   {{kMsaa, {}, true}},
+                   {}};
+  for (const TechniqueSummary& summary : mean_summaries(reports)) {
+    if (!summary.emr) continue;
+    const std::string series = family_of(summary.spec) == kMsaa ? kMsaa : split_slots(summary.spec).first;
+    series_named(plot, series)
+        .points.push_back({summary.all_bytes_per_pixel, summary.emr->samples, summary.spec, bound_of(*summary.emr)});
+  }
+  if (plot.series.size() == 1 && plot.series.front().points.empty()) throw_not_compared(reports);
+  for (PlotSeries& series : plot.series)
+    if (series.points.size() > 1) make_line(series);
   return plot;
 }
 

@@ -50,6 +50,10 @@ extern const std::array<const char*, 20> kPlotColors;
 // rungs of its ladder. Throws ReportError if no technique has an EMR.
 ScatterPlot frontier_plot(const std::vector<ReportFile>& reports);
 
+// The same with all memory, on chip and off chip. MSAA is a line through those of its rates that were rendered, and
+// techniques that differ only in their option `slots` are a line as well.
+ScatterPlot storage_plot(const std::vector<ReportFile>& reports);
+
 // Milliseconds against RMSE. The times are modelled for the named implementation of the hardware, or, if it is "", the
 // wall times of the simulator. Throws ReportError if no technique has an error and such a time.
 ScatterPlot speed_plot(const std::vector<ReportFile>& reports, const std::string& implementation = "");

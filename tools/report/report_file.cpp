@@ -20,9 +20,10 @@ double geometric_mean(const std::vector<double>& values) {
 
 TechniqueSummary mean_summary(const std::vector<TechniqueSummary>& of_one_technique) {
   TechniqueSummary mean = of_one_technique.front();
-  std::vector<double> bytes, ms, rmse, emr;
+  std::vector<double> bytes, all_bytes, ms, rmse, emr;
   for (const TechniqueSummary& summary : of_one_technique) {
     bytes.push_back(summary.bytes_per_pixel);
+    all_bytes.push_back(summary.all_bytes_per_pixel);
     ms.push_back(summary.wall_ms);
     if (summary.rmse) rmse.push_back(*summary.rmse);
     if (!summary.emr) continue;
@@ -40,6 +41,7 @@ TechniqueSummary mean_summary(const std::vector<TechniqueSummary>& of_one_techni
     mean_ms = {geometric_mean(overlap), geometric_mean(sum)};
   }
   mean.bytes_per_pixel = geometric_mean(bytes);
+  mean.all_bytes_per_pixel = geometric_mean(all_bytes);
   mean.wall_ms = geometric_mean(ms);
   if (rmse.size() < of_one_technique.size()) {
     mean.rmse.reset();
@@ -85,6 +87,7 @@ TechniqueSummary read_summary(const Json& result) {
   TechniqueSummary summary;
   summary.spec = result.at("technique").get<std::string>();
   summary.bytes_per_pixel = result.at("peak_bytes_per_pixel").get<double>();
+  summary.all_bytes_per_pixel = summary.bytes_per_pixel + result.value("on_chip_bytes_per_pixel", 0.0);
   std::vector<double> medians;
   const std::vector<Json>& frames = result.at("frames").elements();
   for (const Json& frame : frames) medians.push_back(frame.at("wall_ms").at("median").get<double>());

@@ -26,8 +26,9 @@ struct ModelledMs {
 // Cost and error of one technique, over all frames of a report.
 struct TechniqueSummary {
   std::string spec;
-  double bytes_per_pixel = 0;  // framebuffer, and A-buffer at its peak
-  double wall_ms = 0;          // per frame: the median of the frames' medians
+  double bytes_per_pixel = 0;      // framebuffer, and A-buffer at its peak
+  double all_bytes_per_pixel = 0;  // and what a bin has on chip
+  double wall_ms = 0;              // per frame: the median of the frames' medians
   // By implementation of the modelled hardware. Empty if nothing was modelled.
   std::map<std::string, ModelledMs> modelled_ms;
   double dram_bytes = 0;              // per frame: the mean over the frames

@@ -10,6 +10,7 @@ namespace {
 
 Json to_json(const TechniqueReport& result, const Hardware& hardware) {
   Json json = {{"technique", result.technique},
+               {"pixels_on_chip", result.pixels_on_chip},
                {"framebuffer_bytes_per_pixel", result.framebuffer_bytes_per_pixel},
                {"peak_bytes_per_pixel", result.peak_bytes_per_pixel()},
                {"on_chip_bytes_per_pixel", result.on_chip_bytes_per_pixel()},
@@ -44,10 +45,16 @@ Json to_json(const CacheParameters& cache) {
 }
 
 Json to_json(const MemoryParameters& memory) {
-  return {{"modelled", memory.modelled},         {"compression", memory.compression},
-          {"sector_bytes", memory.sector_bytes}, {"rop_cache", to_json(memory.rop)},
-          {"l1_cache", to_json(memory.l1)},      {"l2_cache", to_json(memory.l2)},
-          {"plane_bytes", memory.plane_bytes},   {"bin_pixels", kBinSize}};
+  return {{"modelled", memory.modelled},
+          {"compression", memory.compression},
+          {"sector_bytes", memory.sector_bytes},
+          {"rop_cache", to_json(memory.rop)},
+          {"l1_cache", to_json(memory.l1)},
+          {"l2_cache", to_json(memory.l2)},
+          {"plane_bytes", memory.plane_bytes},
+          {"bin_pixels", kBinSize},
+          {"framebuffer", name_of(memory.framebuffer)},
+          {"on_chip_bytes", memory.on_chip_bytes}};
 }
 
 }  // namespace

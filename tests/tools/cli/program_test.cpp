@@ -371,5 +371,34 @@ TEST_F(ProgramTest, MemoryLimitBoundsThePeakAndChangesNothing) {
         << file;
 }
 
+TEST_F(ProgramTest, TheFramebufferIsWhereTheOptionsSay) {
+  const auto run = [&](const Names& options) {
+    Names command{"run", path("trace.json"), "-t", "beam", "msaa:4", "-o", path("out")};
+    command.insert(command.end(), options.begin(), options.end());
+    succeed(command);
+    return parsed(folder_ / "out/report.json");
+  };
+  const auto expect = [](const Parsed& result, bool on_chip, int off_chip) {
+    EXPECT_EQ(result["pixels_on_chip"], on_chip) << result["technique"];
+    EXPECT_EQ(result["off_chip_bytes_per_pixel"], off_chip) << result["technique"];
+    EXPECT_EQ(result["on_chip_bytes_per_pixel"].get<double>() > 40, on_chip) << result["technique"];
+  };
+  Parsed json = run({});
+  EXPECT_EQ(json["memory_system"]["framebuffer"], "by-technique");
+  expect(json["results"][0], true, 6);
+  expect(json["results"][1], false, 40);
+  json = run({"--framebuffer", "on-chip"});
+  EXPECT_EQ(json["memory_system"]["framebuffer"], "on-chip");
+  expect(json["results"][0], true, 6);
+  expect(json["results"][1], true, 6);
+  json = run({"--framebuffer", "in-memory"});
+  expect(json["results"][0], false, 154);
+  expect(json["results"][1], false, 40);
+  json = run({"--on-chip-memory", "153KB"});
+  EXPECT_EQ(json["memory_system"]["on_chip_bytes"], 153 * 1024);
+  expect(json["results"][0], false, 154);
+  expect(run({"--on-chip-memory", "154KB"})["results"][0], true, 6);
+}
+
 }  // namespace
 }  // namespace beampipe

@@ -66,6 +66,41 @@ TEST_F(PlotTest, FrontierHasThePointsOfTheLadderAndOfEveryTechniqueButTheReferen
   EXPECT_EQ(plot.series[1].points[0].y_bound, PlotPoint::Bound::none);
 }
 
+TEST_F(PlotTest, StorageIsAllMemoryOnChipAndOffChip) {
+  const auto report = [&](const std::string& name, int bytes) {
+    return read_report(make_report(
+        name, report_text("beam", bytes, 100, 0.01, 50, R"(, "on_chip_bytes_per_pixel": )" + std::to_string(bytes))));
+  };
+  const ScatterPlot plot = storage_plot({report("a", 20), report("b", 80)});
+  ASSERT_EQ(plot.series.size(), 2u);
+  ASSERT_EQ(plot.series[0].points.size(), 2u);
+  EXPECT_EQ(plot.series[0].points[0].x, 10) << "a line by increasing memory";
+  EXPECT_EQ(plot.series[0].points[1].x, 80);
+  ASSERT_EQ(plot.series[1].points.size(), 1u);
+  EXPECT_NEAR(plot.series[1].points[0].x, 80, 1e-9) << "the mean of 20 + 20 and 80 + 80";
+  EXPECT_EQ(plot.series[1].points[0].y, 100);
+}
+
+TEST_F(PlotTest, TechniquesThatDifferInSlotsAreALine) {
+  const auto result = [](const std::string& spec, int bytes) {
+    return R"({"technique": ")" + spec + R"(", "peak_bytes_per_pixel": )" + std::to_string(bytes) +
+           R"(, "error": {"rmse": 0.1}, "equivalent_msaa": 9, "frames": [{"wall_ms": {"median": 1}}]},)";
+  };
+  const ReportFile report = read_report(make_report(
+      "a", R"({"beampipe_report": 1, "trace": "rods.json", "results": [)" + result("beam:bits=64,slots=8", 90) +
+               result("beam:bits=64,slots=4", 70) + result("beam:slots=32,bin=8", 400) + result("beam", 150) +
+               result("beam:slots=8", 200) + result("beam:bin=8", 160) + R"({"technique": "z3",
+               "peak_bytes_per_pixel": 50, "frames": [{"wall_ms": {"median": 1}}]}]})"));
+  const ScatterPlot plot = storage_plot({report});
+  std::vector<std::string> found;
+  for (const PlotSeries& series : plot.series) {
+    found.push_back(series.name + (series.line ? " -" : ""));
+    for (const PlotPoint& point : series.points) found.push_back("  " + point.label);
+  }
+  EXPECT_EQ(found, (std::vector<std::string>{"msaa -", "beam:bits=64 -", "  beam:bits=64,slots=4", "  8",
+                                             "beam:bin=8 -", "  beam:bin=8", "  32", "beam -", "  beam", "  8"}));
+}
+
 TEST_F(PlotTest, SeveralReportsGiveGeometricMeansAndTheirBounds) {
   const std::vector<ReportFile> reports = {
       read_report(make_report("a", report_text("beam", 42, 4, 0.01, 50))),

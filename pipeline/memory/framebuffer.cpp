@@ -1,0 +1,41 @@
+#include "pipeline/memory/framebuffer.h"
+
+#include <algorithm>
+#include <iterator>
+
+namespace beampipe {
+
+std::uint32_t bytes_per_pixel(const std::vector<Surface>& surfaces) {
+  std::uint32_t bytes = 0;
+  for (const Surface& surface : surfaces) bytes += surface.bytes_per_pixel;
+  return bytes;
+}
+
+std::string times(const char* format, std::uint32_t count) {
+  return std::string(format).append(" x ").append(std::to_string(count));
+}
+
+std::uint32_t Framebuffer::on_chip_bytes_per_pixel() const {
+  std::uint32_t bytes = 0;
+  for (const Surface& surface : surfaces) bytes += surface.outlives_bin ? 0 : surface.bytes_per_pixel;
+  return bytes;
+}
+
+bool Framebuffer::is_on_chip(const MemoryParameters& memory) const {
+  const auto side = static_cast<std::uint64_t>(bin_size);
+  return memory.framebuffer.value_or(place) == Place::on_chip &&
+         on_chip_bytes_per_pixel() * side * side <= memory.on_chip_bytes;
+}
+
+std::vector<Surface> Framebuffer::in_memory(const MemoryParameters& memory) const {
+  if (!is_on_chip(memory)) return surfaces;
+  std::vector<Surface> kept;
+  std::copy_if(surfaces.begin(), surfaces.end(), std::back_inserter(kept),
+               [](const Surface& surface) { return surface.outlives_bin; });
+  const bool has_picture =
+      std::any_of(kept.begin(), kept.end(), [](const Surface& surface) { return surface.name == "color"; });
+  if (!has_picture) kept.push_back({"color", "RGB16F", kPictureBytes});
+  return kept;
+}
+
+}  // namespace beampipe

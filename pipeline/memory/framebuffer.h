@@ -1,0 +1,40 @@
+// What a technique stores for each pixel while its bin is drawn, and where: in memory, behind caches, or on chip.
+#pragma once
+
+#include <cstdint>
+#include <string>
+#include <vector>
+
+#include "pipeline/memory/parameters.h"
+
+namespace beampipe {
+
+// One surface of the modelled framebuffer. Its bytes per pixel are those of the named format.
+struct Surface {
+  std::string name;    // "depth", "color", "mask", ...
+  std::string format;  // "D32F x 8", "RGB16F", ...
+  std::uint32_t bytes_per_pixel = 0;
+  bool outlives_bin = false;  // in memory on every machine, because other bins or later frames read it
+};
+
+struct Framebuffer {
+  std::vector<Surface> surfaces = {};
+  Place place = Place::in_memory;  // on the machine that the technique is made for
+  int bin_size = kBinSize;         // pixels on each side of a bin, even
+
+  // Are the pixels of a bin on chip while it is drawn? Only if all that they store fits there.
+  bool is_on_chip(const MemoryParameters& memory) const;
+
+  // The surfaces that are in memory: all of them, or, where pixels are on chip, the picture and what outlives the bin.
+  std::vector<Surface> in_memory(const MemoryParameters& memory) const;
+
+  // What a pixel takes on chip where pixels are on chip.
+  std::uint32_t on_chip_bytes_per_pixel() const;
+};
+
+std::uint32_t bytes_per_pixel(const std::vector<Surface>& surfaces);
+
+// "D32F x 8": the format of a surface that has `count` values per pixel.
+std::string times(const char* format, std::uint32_t count);
+
+}  // namespace beampipe

@@ -1,0 +1,122 @@
+// Where the pixels of a bin are: on chip only if they fit, and what moves to and from DRAM in either place.
+#include <gtest/gtest.h>
+
+#include <algorithm>
+
+#include "tests/pipeline/test_pictures.h"
+#include "tests/pipeline/test_traces.h"
+
+namespace beampipe {
+namespace {
+
+constexpr std::uint64_t kBinPixels = 32 * 32;
+
+// One bin that a single triangle covers.
+Trace covered_bin() {
+  return pixel_trace(32, 32, {{{{-10, -10, 0.5}, {100, -10, 0.5}, {-10, 100, 0.5}}, glm::vec3(0.5f)}});
+}
+
+FrameResult render_with(const std::string& spec, const Trace& trace, const MemoryParameters& memory) {
+  RunOptions run{1};
+  run.memory = memory;
+  return parse_technique(spec).render(trace, 0, run);
+}
+
+std::uint64_t on_chip_bytes(const FrameResult& result) {
+  for (const Buffer& buffer : result.buffers)
+    if (buffer.name == "open_pixels") return buffer.peak_bytes;
+  return 0;
+}
+
+// A pixel's owner map of 96 bytes, its owners of 40 and its sums of 18 are in blocks of 2, 4 and 8 pixels, which have
+// 6, 5 and 5 sectors. `compose` writes each back once, and `resolve` reads it.
+TEST(Framebuffer, OpenPixelsThatExceedTheBudgetMoveThroughMemory) {
+  constexpr std::uint64_t kState = 154,
+                          kInSectors = kBinPixels * 32 * 6 / 2 + kBinPixels * 32 * 5 / 4 + kBinPixels * 32 * 5 / 8;
+  const Technique beam = parse_technique("beam");
+  const Trace trace = covered_bin();
+  MemoryParameters fits, too_small;
+  fits.on_chip_bytes = kBinPixels * kState;
+  too_small.on_chip_bytes = kBinPixels * kState - 1;
+
+  const FrameResult on_chip = render_with("beam", trace, fits);
+  EXPECT_EQ(stage_of(on_chip, "compose").dram_bytes, 0u);
+  EXPECT_EQ(stage_of(on_chip, "resolve").dram_bytes, kBinPixels * kPictureBytes);
+  EXPECT_EQ(on_chip_bytes(on_chip), kBinPixels * kState);
+  EXPECT_EQ(beam.framebuffer_bytes_per_pixel(fits), kPictureBytes);
+
+  const FrameResult in_memory = render_with("beam", trace, too_small);
+  EXPECT_EQ(stage_of(in_memory, "compose").dram_bytes, kInSectors);
+  EXPECT_EQ(stage_of(in_memory, "resolve").dram_bytes, kInSectors + kBinPixels * kPictureBytes);
+  EXPECT_EQ(on_chip_bytes(in_memory), 0u);
+  EXPECT_EQ(beam.framebuffer_bytes_per_pixel(too_small), kState);
+  EXPECT_EQ(on_chip.image.rgba, in_memory.image.rgba);
+}
+
+// The machine decides where pixels are, but not what is drawn or computed.
+TEST(Framebuffer, OnChipOnlyThePictureGoesToMemory) {
+  const Trace trace = random_trace(40, 36, 60, 5);
+  for (const char* spec : {"beam", "beam:order=stream", "beam:order=stream,passes=0",
+                           "beam:rules=paper,order=near-first", "beam:rules=paper,order=stream", "z3", "msaa:8",
+                           "msaa:8,prepass", "acaa:8", "acaa:8,double=stencil", "deferred", "visibility"}) {
+    SCOPED_TRACE(spec);
+    MemoryParameters memory;
+    memory.framebuffer = Place::on_chip;
+    const FrameResult on_chip = render_with(spec, trace, memory);
+    memory.framebuffer = Place::in_memory;
+    const FrameResult in_memory = render_with(spec, trace, memory);
+    EXPECT_EQ(on_chip.image.rgba, in_memory.image.rgba);
+    EXPECT_GT(on_chip_bytes(on_chip), 0u);
+    EXPECT_EQ(on_chip_bytes(in_memory), 0u);
+    EXPECT_EQ(stage_of(on_chip, "resolve").dram_bytes, 40u * 36 * kPictureBytes);
+    EXPECT_GT(stage_of(in_memory, "resolve").dram_bytes, 40u * 36 * kPictureBytes);
+    for (const char* stage : {"depth_test", "stencil_test", "accumulate"})
+      for (const StageCounters& counters : on_chip.stages)
+        if (counters.stage == stage) {
+          EXPECT_EQ(counters.sector_bytes, 0u) << stage;
+        }
+    ASSERT_EQ(on_chip.stages.size(), in_memory.stages.size());
+    for (std::size_t i = 0; i < on_chip.stages.size(); ++i) {
+      StageCounters a = on_chip.stages[i], b = in_memory.stages[i];
+      EXPECT_LE(a.dram_bytes, b.dram_bytes) << a.stage;
+      a.sector_bytes = b.sector_bytes, a.l2_bytes = b.l2_bytes, a.dram_bytes = b.dram_bytes;
+      EXPECT_EQ(a, b) << a.stage;
+    }
+  }
+}
+
+// 1,025 closed depths fill 129 sectors. Every pass but the first one reads them, if they are in memory.
+TEST(Framebuffer, ClosedDepthsStayOnChipFromPassToPass) {
+  const char* const spec = "beam:order=stream,passes=0,layers=1";
+  const Trace trace = random_trace(32, 32, 60, 5);
+  MemoryParameters memory;
+  memory.framebuffer = Place::on_chip;
+  const FrameResult on_chip = render_with(spec, trace, memory);
+  memory.framebuffer = Place::in_memory;
+  const FrameResult in_memory = render_with(spec, trace, memory);
+  const std::vector<float>& passes = in_memory.pixel_counters.at("passes");
+  const auto most = static_cast<std::uint64_t>(*std::max_element(passes.begin(), passes.end()));
+  ASSERT_GT(most, 1u);
+  EXPECT_EQ(stage_of(in_memory, "conservative_raster").dram_bytes - stage_of(on_chip, "conservative_raster").dram_bytes,
+            (most - 1) * 129 * 32);
+  EXPECT_LT(stage_of(on_chip, "settle").dram_bytes, stage_of(in_memory, "settle").dram_bytes);
+}
+
+TEST(Framebuffer, AnABufferAndWhatLaterFramesReadStayInMemory) {
+  const Trace trace = random_trace(40, 36, 60, 5);
+  MemoryParameters memory;
+  memory.framebuffer = Place::on_chip;
+  const FrameResult sorted = render_with("beam:order=sorted", trace, memory);
+  EXPECT_GT(stage_of(sorted, "a_buffer").dram_bytes, 0u);
+  EXPECT_EQ(stage_of(sorted, "resolve").dram_bytes, 40u * 36 * kPictureBytes);
+  EXPECT_EQ(parse_technique("taa:8").framebuffer_bytes_per_pixel(memory), 4u + 16 + kPictureBytes);
+  EXPECT_EQ(parse_technique("msaa:8").framebuffer_bytes_per_pixel(memory), kPictureBytes);
+  EXPECT_EQ(parse_technique("beam").framebuffer_bytes_per_pixel(memory), kPictureBytes);
+  memory.framebuffer = Place::in_memory;
+  EXPECT_EQ(parse_technique("taa:8").framebuffer_bytes_per_pixel(memory), 42u);
+  EXPECT_EQ(parse_technique("msaa:8").framebuffer_bytes_per_pixel(memory), 80u);
+  EXPECT_EQ(parse_technique("beam").framebuffer_bytes_per_pixel(memory), 154u);
+}
+
+}  // namespace
+}  // namespace beampipe
