@@ -16,8 +16,8 @@ struct Ball {
   glm::vec3 color;
 };
 const Ball kBalls[] = {{{0, 1, 0}, 1, {0.95f, 0.62f, 0.25f}},
-                       {{-1.75, 0.5, 0.6}, 0.5, {0.60f, 0.05f, 0.04f}},
-                       {{1.7, 0.42, 0.8}, 0.42, {0.06f, 0.20f, 0.45f}}};
+                       {{-1.5, 0.5, 0.5}, 0.5, {0.60f, 0.05f, 0.04f}},
+                       {{1.5, 0.42, 0.6}, 0.42, {0.06f, 0.20f, 0.45f}}};
 constexpr int kCells = 24;  // of a texture, in a row; each has a bump
 
 // Round bumps that touch each other, each of its own height.
@@ -79,7 +79,7 @@ Trace make_bumps(const SceneOptions& options) {
   };
   const std::array<Finish, 3> finishes{
       Finish{material("brass", 1, 0.3f)}, {material("red glaze", 0, 0.2f)}, {material("blue glaze", 0, 0.25f)}};
-  const Finish ground{surfaces.add(Material{.name = "concrete", .base_texture = concrete, .roughness = 0.9f}), 2};
+  const Finish ground{surfaces.add(Material{.name = "concrete", .base_texture = concrete, .roughness = 0.9f}), 0.8};
   const Camera camera{{0, 1.5, 5.2}, {0, 0.85, 0}, {0, 1, 0}, 30, 0.5, 80};
   const auto build_balls = [&](double budget, Random& random) { return build(finishes, ground, budget, random); };
   Trace trace = one_frame(options, camera, build_to_budget(options, 10000, build_balls));

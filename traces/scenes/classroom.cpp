@@ -142,7 +142,7 @@ void add_teacher_corner(MeshBuilder& mesh, const ClassroomLook& look, double bud
   add_bar(mesh, {1.6, 0.78, 1.35}, {1.6, 0.86, 1.35}, 0.05, 0.05 * budget);
 }
 
-// The view outside and the ceiling, which the light inside does not reach: they are unlit.
+// The view outside and the ceiling, which the light inside does not reach: they are unlit in the classroom.
 std::vector<Mesh> unlit_parts(const ClassroomLook& look) {
   MeshBuilder parts("outside and ceiling");
   parts.finish = look.outside;
@@ -150,7 +150,8 @@ std::vector<Mesh> unlit_parts(const ClassroomLook& look) {
   parts.quad({-3, 0.9, 14}, {-3, 0.9, -10}, {-3, 8, -10}, {-3, 8, 14});
   parts.color = {0.45f, 0.75f, 0.35f};
   parts.quad({-3, -4, 14}, {-3, -4, -10}, {-3, 0.9, -10}, {-3, 0.9, 14});
-  parts.color = {0.55f, 0.54f, 0.50f};
+  parts.finish = look.ceiling;
+  parts.color = look.is_plain() ? glm::vec3(0.55f, 0.54f, 0.50f) : glm::vec3(0.9f);
   parts.quad({0, kRoom.y, 0}, {kRoom.x, kRoom.y, 0}, {kRoom.x, kRoom.y, kRoom.z}, {0, kRoom.y, kRoom.z});
   return {parts.take()};
 }

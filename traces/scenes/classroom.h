@@ -7,7 +7,7 @@ namespace beampipe {
 
 // What things are made of: no materials in the classroom.
 struct ClassroomLook {
-  Finish wood, floor, plaster, paint, board, steel, plastic, paper, globe, slats, cord, outside;
+  Finish wood, floor, plaster, ceiling, paint, board, steel, plastic, paper, globe, slats, cord, outside;
   bool is_plain() const { return wood.material == kNoMaterial; }
 };
 

@@ -55,7 +55,7 @@ TextureImage paint_twig() {
 
 TextureImage paint_grass() {
   return paint_image("grass", {256, 256}, [](double x, double y) {
-    const double light = 0.55 + 0.45 * fractal_noise(x, y, 16, 16, 4, 62);
+    const double light = 0.35 + 0.65 * fractal_noise(x, y, 16, 16, 4, 62);
     return dvec4(light, light, 0.8 * light, 1);
   });
 }
@@ -113,7 +113,7 @@ Trace make_leaves(const SceneOptions& options) {
   Surfaces surfaces;
   const Texture twig = surfaces.add(paint_twig()), grass = surfaces.add(paint_grass());
   const Plants plants{
-      .ground = {surfaces.add(Material{.name = "grass", .base_texture = grass}), 2},
+      .ground = {surfaces.add(Material{.name = "grass", .base_texture = grass}), 1},
       .stem = {surfaces.add(Material{.name = "bark", .roughness = 0.8f})},
       .card = {surfaces.add(Material{.name = "twig",
                                      .base_texture = twig,

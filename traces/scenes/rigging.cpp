@@ -21,7 +21,8 @@ double plank_height(double x, double y) {
 dvec4 plank_tint(double x, double y) {
   const double plank = std::floor(y * kPlanks);
   const double shade = 0.82 + 0.18 * lattice_noise(0, (plank + 0.5) / kPlanks, 1, 2 * kPlanks, 51);
-  return (0.35 + 0.65 * plank_height(x, y)) * shade * wood_tint(wood_grain(x, y));
+  const double light = (0.35 + 0.65 * plank_height(x, y)) * shade;
+  return dvec4(light, light, light, 1) * wood_tint(wood_grain(x, y));
 }
 
 // Cloth in panels that are sewn together.

@@ -102,14 +102,14 @@ class Blackboard {
 
 TextureImage paint_blackboard() {
   Blackboard board;
-  board.write("area of a triangle", {0.25, 0.30}, 0.11);
+  board.write("area of a triangle", {0.22, 0.30}, 0.098);
   board.write("a=bc/2", {0.25, 0.66}, 0.15);
   board.write("a^2", {0.25, 1.02}, 0.15);
   board.write("+b^2", {0.52, 1.02}, 0.15);
   board.write("=c^2", {0.95, 1.02}, 0.15);
-  for (int i = 0; i <= 6; ++i) board.draw({2.4 + 0.25 * i, 0.18}, {2.4 + 0.25 * i, 1.18 - 0.15});  // pixels
-  for (int i = 0; i <= 3; ++i) board.draw({2.4, 0.18 + 0.2833 * i}, {3.9, 0.18 + 0.2833 * i});
-  const dvec2 corners[] = {{2.5, 0.95}, {3.75, 0.66}, {2.95, 0.24}};
+  for (int i = 0; i <= 6; ++i) board.draw({2.0 + 0.25 * i, 0.18}, {2.0 + 0.25 * i, 1.18 - 0.15});  // pixels
+  for (int i = 0; i <= 3; ++i) board.draw({2.0, 0.18 + 0.2833 * i}, {3.5, 0.18 + 0.2833 * i});
+  const dvec2 corners[] = {{2.1, 0.95}, {3.35, 0.66}, {2.55, 0.24}};
   for (int i = 0; i < 3; ++i) {
     board.draw(corners[i], corners[(i + 1) % 3]);
     board.draw(corners[i] + dvec2(0.008, 0.006), corners[(i + 1) % 3] + dvec2(0.006, 0.008));  // drawn twice: thick
@@ -152,7 +152,7 @@ Trace make_room(const SceneOptions& options) {
   const Texture plaster = surfaces.add(paint_normals(
       "plaster", {256, 256}, [](double x, double y) { return 0.02 * fractal_noise(x, y, 24, 24, 3, 22); }));
   const Texture cloth = surfaces.add(paint_image("lacquer", {64, 64}, [](double x, double y) {
-    const double light = 0.86 + 0.14 * lattice_noise(x, y, 4, 32, 23);
+    const double light = 0.80 + 0.14 * lattice_noise(x, y, 4, 32, 23);
     return dvec4(light, light, light, 1);
   }));
 
@@ -162,6 +162,7 @@ Trace make_room(const SceneOptions& options) {
   look.floor = {
       surfaces.add(Material{.name = "parquet", .base_texture = wood, .roughness = 0.5f, .normal_texture = grain}), 1.3};
   look.plaster = {surfaces.add(Material{.name = "plaster", .roughness = 0.9f, .normal_texture = plaster}), 0.6};
+  look.ceiling = {look.plaster.material, 1.2};
   look.paint = {surfaces.add(Material{.name = "paint", .roughness = 0.5f})};
   look.board = {surfaces.add(
       Material{.name = "blackboard", .base_texture = surfaces.add(paint_blackboard()), .roughness = 0.8f})};
@@ -173,11 +174,12 @@ Trace make_room(const SceneOptions& options) {
   look.slats = {
       surfaces.add(Material{.name = "slats", .base_texture = cloth, .roughness = 0.35f, .double_sided = true}), 0.3};
   look.cord = {surfaces.add(Material{.name = "cord", .roughness = 0.6f})};
-  look.outside = {surfaces.add(Material{.name = "outside", .double_sided = true, .unlit = true})};
+  look.outside = {surfaces.add(
+      Material{.name = "outside", .base_color = {0.55f, 0.70f, 0.90f, 1.0f}, .double_sided = true, .unlit = true})};
 
   Trace trace = classroom_trace(options, 40000, look);
   add_surfaces(trace, std::move(surfaces), {0.85f, 0.80f, 0.70f},
-               {.sky = {0.42f, 0.44f, 0.48f}, .ground = {0.24f, 0.20f, 0.16f}});
+               {.sky = {0.42f, 0.44f, 0.48f}, .ground = {0.34f, 0.30f, 0.25f}});
   return trace;
 }
 

@@ -19,15 +19,15 @@ struct Sheet {
 };
 constexpr std::size_t kSheets = 9;
 const std::array<Sheet, kSheets> kFromBackToFront = {{
-    {{-2.5, 0.4, -1.6}, 2.8, 0.1, 0.0, 0.0, {0.85f, 0.10f, 0.08f, 0.45f}},
-    {{2.6, -0.3, -1.3}, 2.9, -0.1, 0.1, 0.0, {0.08f, 0.20f, 0.80f, 0.45f}},
+    {{-2.5, 0.4, -1.6}, 2.8, 0.1, 0.0, 0.0, {0.85f, 0.10f, 0.08f, 0.5f}},
+    {{2.6, -0.3, -1.3}, 2.9, -0.1, 0.1, 0.0, {0.08f, 0.20f, 0.80f, 0.5f}},
     {{0.0, 0.3, -1.0}, 3.0, 0.0, 0.0, 0.0, {0.95f, 0.75f, 0.05f, 0.40f}},
-    {{-1.5, -0.5, 0.0}, 2.8, 0.55, 0.0, 0.0, {0.05f, 0.60f, 0.15f, 0.45f}},  // these two cut through each other
-    {{-1.5, -0.3, 0.0}, 2.8, -0.55, 0.0, 0.0, {0.55f, 0.10f, 0.60f, 0.45f}},
-    {{1.5, 0.3, 0.2}, 2.6, 0.1, 0.5, 0.0, {0.90f, 0.40f, 0.05f, 0.45f}},  // and these
-    {{1.5, 0.1, 0.2}, 2.6, -0.1, -0.5, 0.0, {0.05f, 0.55f, 0.60f, 0.45f}},
+    {{-1.5, -0.5, 0.0}, 2.8, 0.55, 0.0, 0.0, {0.05f, 0.60f, 0.15f, 0.5f}},  // these two cut through each other
+    {{-1.5, -0.3, 0.0}, 2.8, -0.55, 0.0, 0.0, {0.55f, 0.10f, 0.60f, 0.5f}},
+    {{1.5, 0.3, 0.2}, 2.6, 0.1, 0.5, 0.0, {0.90f, 0.40f, 0.05f, 0.5f}},  // and these
+    {{1.5, 0.1, 0.2}, 2.6, -0.1, -0.5, 0.0, {0.05f, 0.55f, 0.60f, 0.5f}},
     {{0.1, 0.2, 0.6}, 2.4, 0.0, 0.2, 0.25, {0.90f, 0.90f, 0.95f, 0.35f}},  // and this one through several
-    {{0.2, -1.1, 1.5}, 1.7, 0.2, -0.2, 0.0, {0.75f, 0.10f, 0.30f, 0.55f}},
+    {{0.3, -0.95, 1.2}, 1.6, 0.2, -0.2, 0.0, {0.75f, 0.10f, 0.30f, 0.55f}},
 }};
 constexpr std::array<std::size_t, kSheets> kDrawOrder = {4, 0, 8, 2, 6, 1, 7, 3, 5};
 
@@ -44,16 +44,16 @@ dvec4 brick_color(double x, double y) {
   const double course = std::floor(y * kCourses);
   const double along = std::floor(4 * x + 0.5 * (course - 2 * std::floor(course / 2)));
   const double shade = 0.75 + 0.25 * lattice_noise((along + 0.5) / 4, (course + 0.5) / kCourses, 4, kCourses, 81);
-  const double grain = 0.85 + 0.15 * fractal_noise(x, y, 32, 32, 2, 82), on_brick = brick_height(x, y);
-  return grain *
-         (dvec4(0.72, 0.70, 0.66, 1) + on_brick * (shade * dvec4(0.72, 0.42, 0.32, 1) - dvec4(0.72, 0.70, 0.66, 1)));
+  const double grain = 0.85 + 0.15 * fractal_noise(x, y, 32, 32, 2, 82);
+  const dvec4 mortar(0.72, 0.70, 0.66, 1), brick(0.72 * shade, 0.42 * shade, 0.32 * shade, 1);
+  return dvec4(grain, grain, grain, 1) * (mortar + brick_height(x, y) * (brick - mortar));
 }
 
 // White, more opaque in a printed grid of lines.
 dvec4 print_color(double x, double y) {
   const double line =
       std::max(smooth_step(0.88, 0.94, triangle_wave(6 * x)), smooth_step(0.88, 0.94, triangle_wave(6 * y)));
-  return {1, 1, 1, 0.65 + 0.35 * line};
+  return {1, 1, 1, 0.8 + 0.2 * line};
 }
 
 Mesh make_sheet(const Sheet& sheet, std::size_t number, const Finish& finish, double budget, Random& random) {

@@ -89,7 +89,7 @@ double wood_grain(double x, double y) {
 
 glm::dvec4 wood_tint(double grain) {
   const double dark = std::floor(32 * grain) / 32;  // few colours make a small PNG file
-  return {1 - 0.30 * dark, 1 - 0.38 * dark, 1 - 0.45 * dark, 1};
+  return {1 - 0.45 * dark, 1 - 0.53 * dark, 1 - 0.60 * dark, 1};
 }
 
 }  // namespace beampipe
