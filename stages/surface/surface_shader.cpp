@@ -198,7 +198,8 @@ SurfaceShader::SurfaceShader(const SetupTriangles& triangles, const Trace& trace
       textures_(textures),
       rules_(rules),
       flat_(shade_triangles(triangles, frame.lighting)) {
-  if (rules.rounds_to_half)
+  if (rules.colors == SurfaceColors::by_pixel) rules_.rounds_to_half = false;
+  if (rules_.rounds_to_half)
     for (glm::vec3& color : flat_) round_to_half(color);
   flat_unlit_.input_bytes = flat_lit_.input_bytes = sizeof(FlatAttributes);
   flat_lit_.light = flat_light_cost(frame.lighting);
@@ -267,6 +268,7 @@ glm::vec4 SurfaceShader::shaded(std::uint32_t triangle, const ShadingPlace& plac
   for (std::size_t k = 0; k < 3; ++k) v[k] = beampipe::inputs_of(triangles_.vertices[surface.vertices[k]]);
 
   const bool by_pixel = rules_.colors == SurfaceColors::by_pixel;
+  if (by_pixel) width = 1.0f;
   const auto from_anchor = [&](float px, float py) { return std::array{px - surface.anchor_x, py - surface.anchor_y}; };
   const auto left = static_cast<float>(place.x), top = static_cast<float>(place.y);
   const auto [x, y] = from_anchor(left + (by_pixel ? 0.5f : place.u), top + (by_pixel ? 0.5f : place.v));
