@@ -11,6 +11,9 @@
 //   leak               the reference sees nothing of j
 //   mixed              a surface that was merged after both hides part of j, and i lost area instead of j
 //   mask               the outline between the two is in the wrong place, as far as mask positions tell
+// If surfaces vary, all this holds for pictures and weights that are rendered with SurfaceColors::by_pixel: each triangle
+// has one colour in a pixel then, and the error is one of visibility.
+//
 // The part of the error that weights do not explain (formats of colours, and limits on their channels) is `rounding`.
 //
 // Depths are compared at 256 exact positions. At equal depth the earlier triangle counts as nearer.
@@ -28,7 +31,7 @@ inline constexpr std::array kErrorCauses = {"leak", "mask", "order", "interpenet
 // Returns one value per cause and pixel of the frame, row by row: the part of the cause's error that points in the
 // direction of the pixel's whole error, as a root mean square over R, G and B. A pixel's values add up to the length of
 // its error. A value is negative where the cause makes up for others. `weights`: RunOptions::weights of this frame.
-// `image` and `reference`: the frame's pictures.
+// `image` and `reference`: the frame's pictures. `run`: as they were rendered.
 std::map<std::string, std::vector<float>> error_causes(const Trace& trace, const Frame& frame,
                                                        const std::vector<PixelWeights>& weights, const Image& image,
                                                        const Image& reference, const RunOptions& run);

@@ -35,6 +35,13 @@ struct WideMask {
   bool operator==(const WideMask&) const = default;
 };
 
+// All bits of the first words.
+constexpr WideMask first_words(std::size_t words) {
+  WideMask mask;
+  for (std::size_t i = 0; i < words; ++i) mask.words[i] = ~0u;
+  return mask;
+}
+
 template <class Combine>
 WideMask combine(const WideMask& a, const WideMask& b, Combine&& word) {
   WideMask result;

@@ -7,7 +7,7 @@ set -euo pipefail
 build=(
   g++ cmake ninja-build
   libglm-dev libopenexr-dev libimath-dev libhwy-dev libtbb-dev libpng-dev libjpeg62-turbo-dev libturbojpeg0-dev
-  libtinyobjloader-dev
+  libtinyobjloader-dev libtinygltf-dev
   libcli11-dev nlohmann-json3-dev
   libboost-dev  # only headers: checksums and exact arithmetic
   node-d3       # D3, which becomes part of the report page
@@ -17,6 +17,7 @@ test=(
   chromium chromium-driver python3  # tests of the report page
   libgtest-dev libbenchmark-dev
   clang-14 libclang-rt-14-dev       # fuzz targets
+  assimp-testmodels                 # glTF models that other programs wrote, sound and broken ones
 )
 
 case ${1:-} in

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cstdint>
 
+#include "traces/json.h"
 #include "traces/trace_io.h"
 
 namespace beampipe {
@@ -39,6 +40,16 @@ std::string read_input_file(const std::filesystem::path& file, const std::string
     bytes.append(part, static_cast<std::size_t>(stream.gcount()));
   if (stream.bad()) fail_trace(where, "a file that can be read to its end", "one that cannot");
   return bytes;
+}
+
+std::string read_file_beside(const std::filesystem::path& model, const std::string& name, const std::string& where) {
+  const std::filesystem::path folder = std::filesystem::canonical(model).parent_path();
+  std::error_code error;
+  const std::filesystem::path path = std::filesystem::weakly_canonical(folder / name, error);
+  const std::filesystem::path relative = path.lexically_relative(folder);
+  if (error || relative.empty() || *relative.begin() == ".." || std::filesystem::path(name).is_absolute())
+    fail_trace(where, "a file in the model's folder", in_quotes(name));
+  return read_input_file(path, where + ": " + name);
 }
 
 }  // namespace beampipe

@@ -29,6 +29,8 @@ struct Texture {
   Wrap wrap_u = Wrap::repeat, wrap_v = Wrap::repeat;
   Filter magnify = Filter::linear, minify = Filter::linear;
   MipFilter mip = MipFilter::linear;
+  // At most so many probes along the longer side of a pixel's footprint; 1..16. Only with MipFilter::linear.
+  std::uint32_t anisotropy = 1;
 
   bool operator==(const Texture&) const = default;
 };
@@ -38,14 +40,14 @@ enum class AlphaMode { opaque, mask, blend };
 
 struct Material {
   std::string name;
-  glm::vec4 base_color{1.0f};           // linear RGBA; multiplied by the texture and by the vertices' colours
-  std::optional<Texture> base_texture;  // sRGB, with alpha
-  float metallic = 0, roughness = 1;    // 0..1
-  std::optional<Texture> metallic_roughness_texture;  // linear: roughness in G, metallic in B
-  std::optional<Texture> normal_texture;              // linear: tangent space, 0..255 for -1..1
+  glm::vec4 base_color{1.0f};             // linear RGBA; multiplied by the texture and by the vertices' colours
+  std::optional<Texture> base_texture{};  // sRGB, with alpha
+  float metallic = 0, roughness = 1;      // 0..1
+  std::optional<Texture> metallic_roughness_texture{};  // linear: roughness in G, metallic in B
+  std::optional<Texture> normal_texture{};              // linear: tangent space, 0..255 for -1..1
   float normal_scale = 1;
-  glm::vec3 emissive{0.0f};                 // linear RGB
-  std::optional<Texture> emissive_texture;  // sRGB
+  glm::vec3 emissive{0.0f};                   // linear RGB
+  std::optional<Texture> emissive_texture{};  // sRGB
   AlphaMode alpha_mode = AlphaMode::opaque;
   float alpha_cutoff = 0.5f;
   bool double_sided = false;  // false: back faces are culled

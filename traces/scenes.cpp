@@ -28,6 +28,14 @@ const std::vector<SceneKind>& scene_kinds() {
       {"density", "a wall that fills the picture once, with (width x height / triangles) pixels per triangle",
        make_density},
       {"stack", "triangles that each cover the whole picture, so that every pixel has a fragment of each", make_stack},
+      {"room", "the classroom with materials: wood, plaster, a blackboard with chalk, blinds", make_room, true},
+      {"rigging", "the boat with materials: glossy ropes, much thinner than a pixel, and planks", make_rigging, true},
+      {"leaves", "thousands of cards with several leaves each, which an alpha texture cuts out", make_leaves, true},
+      {"bumps", "glossy spheres with a fine normal map, whose highlights are smaller than a pixel", make_bumps, true},
+      {"sheets", "translucent sheets, not drawn from back to front, some of which cut through each other", make_sheets,
+       true},
+      {"tiles", "a checkered floor up to the horizon, with boxes whose textures are stripes and rings", make_tiles,
+       true},
   };
   return kinds;
 }

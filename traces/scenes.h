@@ -20,6 +20,7 @@ struct SceneKind {
   std::string_view name;         // "hairball", "classroom", ...
   std::string_view description;  // one line that says what makes it hard
   Trace (*make)(const SceneOptions&);
+  bool has_materials = false;  // of all triangles; otherwise each triangle has one colour
 };
 
 // All procedural scenes, in a fixed order.

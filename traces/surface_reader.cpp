@@ -42,7 +42,7 @@ TextureImage read_image(const JsonCursor& at, const fs::path& trace_file, const 
 }
 
 Texture read_texture(const JsonCursor& at, const NameIndex& images) {
-  at.expect_keys({"image", "uv_set", "wrap_u", "wrap_v", "magnify", "minify", "mip"});
+  at.expect_keys({"image", "uv_set", "wrap_u", "wrap_v", "magnify", "minify", "mip", "anisotropy"});
   const auto wrap = [&](const char* key, Wrap& result) {
     if (const auto found = at.find(key)) result = Wrap(found->choice({"repeat", "clamp", "mirror"}));
   };
@@ -57,6 +57,7 @@ Texture read_texture(const JsonCursor& at, const NameIndex& images) {
   filter("magnify", texture.magnify);
   filter("minify", texture.minify);
   if (const auto mip = at.find("mip")) texture.mip = MipFilter(mip->choice({"none", "nearest", "linear"}));
+  if (const auto probes = at.find("anisotropy")) texture.anisotropy = probes->integer(1, 16);
   return texture;
 }
 

@@ -42,10 +42,11 @@ struct Mesh {
 struct Draw {
   std::uint32_t mesh = 0;  // index into Trace::meshes
   glm::dmat4 transform{1.0};
-  std::optional<glm::vec3> kd;  // replaces the mesh's colours; its triangles are flat
+  std::optional<glm::vec3> kd = {};  // replaces the mesh's colours; its triangles are flat
   Cull cull = Cull::none;
-  Shading shading = Shading::unlit;       // of flat triangles
-  std::optional<std::uint32_t> material;  // replaces the mesh's materials: index into Trace::materials; not with kd
+  Shading shading = Shading::unlit;  // of flat triangles
+  std::optional<std::uint32_t> material =
+      {};  // replaces the mesh's materials: index into Trace::materials; not with kd
 };
 
 // A pinhole camera. Lengths in scene units, 0 < near < far; fovy is the full vertical angle, in degrees, 0 < fovy <

@@ -23,12 +23,6 @@ struct ReadOptions {
 // Reads and validates a trace of version 1 or 2, with all its meshes and images. Throws TraceError.
 Trace read_trace(const std::filesystem::path& file, const ReadOptions& options = {});
 
-// Reads one OBJ with its .mtl (Kd per face; faces without a material are 0.8 grey; polygons are triangulated).
-// A missing .mtl counts as no material; one outside the OBJ's folder is an error. The mesh gets the file's name without
-// ".obj". Errors start with `named_by`, the place in the trace that names the file, unless it is empty. Throws
-// TraceError.
-Mesh read_obj(const std::filesystem::path& file, const std::string& named_by);
-
 // Writes a trace with its meshes and images inline; read_trace() gives back the same bits. The version is 1 if that can
 // express the trace, else 2. A frame with a camera is written with it in place of its view and projection. The file
 // appears under its name when it is complete. Throws std::runtime_error, with one line, and leaves the file that was

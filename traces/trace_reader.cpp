@@ -4,6 +4,7 @@
 #include <utility>
 
 #include "traces/json_cursor.h"
+#include "traces/model_import.h"
 #include "traces/side_file.h"
 #include "traces/surface_reader.h"
 #include "traces/trace_io.h"
@@ -118,7 +119,9 @@ void add_mesh(const JsonCursor& at, const std::string& name, Reader& reader) {
   if (at.has("obj")) {
     at.expect_keys({"obj"});
     const JsonCursor obj = at["obj"];
-    reader.trace.meshes.push_back(read_obj(side_file(obj, reader.file, reader.options.allow_outside), obj.where()));
+    NotRead not_read;
+    const ObjMaterials wanted = reader.version == 1 ? ObjMaterials::none : ObjMaterials::textured;
+    read_obj(side_file(obj, reader.file, reader.options.allow_outside), obj.where(), wanted, reader.trace, not_read);
     reader.trace.meshes.back().name = name;
   } else {
     reader.trace.meshes.push_back(read_inline_mesh(at, name, reader));

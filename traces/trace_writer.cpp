@@ -260,6 +260,7 @@ class TraceWriter {
     put_choice("magnify", texture.magnify, defaults.magnify, kFilters);
     put_choice("minify", texture.minify, defaults.minify, kFilters);
     put_choice("mip", texture.mip, defaults.mip, kMipFilters);
+    put_member("anisotropy", texture.anisotropy, defaults.anisotropy);
     put("}");
     has_members_ = true;
   }

@@ -17,6 +17,7 @@ struct BeamOptions {
   int positions = 256;  // of the mask: 32, 64, 128 or 256
   int slots = 5;        // owners of a pixel
   int bin = kBinSize;   // pixels on each side
+  OwnerPlace shade_at = OwnerPlace::covered;
 };
 
 Framebuffer beam_framebuffer(const BeamOptions& beam) {
@@ -45,7 +46,7 @@ FrameResult render_shape(const Trace& trace, const Frame& frame, const BeamOptio
     BeamFragmentUnit make_fragments(bin, options);
     ShadeUnit shade(bin);
     ComposeOwnersUnit<Words, Slots> compose(bin, positions, ordered.triangles, &ordered.watermarks,
-                                            plan.framebuffer.surfaces);
+                                            plan.framebuffer.surfaces, beam.shade_at);
 
     raster.queued(ordered.triangles, [&](const std::vector<Pair>& pairs, std::size_t first) {
       compose(make_fragments.queued(pairs), first, raster.closed(), shade);
@@ -81,6 +82,13 @@ TechniqueKind beam_kind() {
                            "positions of the mask"),
                     choice("slots", o.slots, {{"2", 2}, {"4", 4}, {"5", 5}, {"7", 7}, {"8", 8}, {"16", 16}, {"32", 32}},
                            "owners that a pixel keeps at once; if there are more, two become one"),
+                    choice("at", o.shade_at,
+                           {{"covered", OwnerPlace::covered},
+                            {"visible", OwnerPlace::visible},
+                            {"quarters", OwnerPlace::quarters},
+                            {"sixteenths", OwnerPlace::sixteenths}},
+                           "where an owner is shaded that is not flat: at the centroid of what its triangle covers, of "
+                           "its positions, or of its positions in each quarter or sixteenth of the pixel"),
                     choice("bin", o.bin, {{"8", 8}, {"16", 16}, {"32", 32}}, "pixels on each side of a bin")};
               },
               [](const BeamOptions& o) {

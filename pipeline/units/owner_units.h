@@ -56,13 +56,15 @@ class ComposeOwnersUnit {
   // `list`: the triangles in the order in which they are taken. `watermarks` may be null. `surfaces`: of open pixels.
   // All but the surfaces must outlive the unit. L2 holds the setup of the triangles.
   ComposeOwnersUnit(Bin& bin, const PositionSet& positions, const TriangleList& list,
-                    const std::vector<float>* watermarks, const std::vector<Surface>& surfaces)
+                    const std::vector<float>* watermarks, const std::vector<Surface>& surfaces,
+                    OwnerPlace shade_at = OwnerPlace::covered)
       : bin_(bin),
         stage_(bin.stage("compose")),
         weights_(bin),
         recorded_(weights_ ? bin.tile.pixels() : 0),
         owners_{bin.triangles(), list,         watermarks,          bin.tile,
-                positions,       bin.shader(), bin.models_memory(), weights_ ? &recorded_ : nullptr},
+                positions,       bin.shader(), bin.models_memory(), weights_ ? &recorded_ : nullptr,
+                shade_at},
         maps_{bin.pixel_counter("fragments"), bin.pixel_counter("merges")},
         pixels_(bin.tile.pixels()),
         store_(bin, surfaces) {

@@ -75,7 +75,7 @@ class OwnerComposer {
     pixel_ = index;
     if (const OwnerSlot* slot = only_owner(pixel)) {
       if (bin_.weights) bin_.weights->finish_whole(pixel_, slot->triangle());
-      return {1.0f, color_of(*slot)};
+      return {1.0f, color_of(*slot, kEverywhere)};
     }
     std::size_t count = 0;
     for (std::size_t k = 0; k < Slots; ++k)
@@ -88,6 +88,7 @@ class OwnerComposer {
 
  private:
   static constexpr auto kPositions = static_cast<float>(32 * Words);
+  static constexpr WideMask kEverywhere = first_words(Words);
 
   struct Owner {
     OwnerSlot slot;
@@ -243,7 +244,8 @@ class OwnerComposer {
     const bool counted = one.slot.error_is_limited() || other.slot.error_is_limited();
     const float part = counted ? one.visible : std::max(one.visible + error_of_one, kLeastArea);
     const float other_part = counted ? other.visible : std::max(other.visible + error_of_other, kLeastArea);
-    const glm::vec3 color = (part * color_of(one.slot) + other_part * color_of(other.slot)) * (1 / (part + other_part));
+    const glm::vec3 color = (part * color_of(one.slot, one.owned) + other_part * color_of(other.slot, other.owned)) *
+                            (1 / (part + other_part));
     if (bin_.weights)
       bin_.weights->merge(pixel_, {one.slot, one.index}, {other.slot, other.index}, part / (part + other_part));
     put(one.owned | other.owned, Pixel::owned_by(one.index), pixel);
@@ -254,15 +256,40 @@ class OwnerComposer {
     return other.index;
   }
 
-  glm::vec3 color_of(const OwnerSlot& slot) {
+  // `owned`: positions of the pixel.
+  glm::vec3 color_of(const OwnerSlot& slot, const WideMask& owned) {
     if (slot.is_merged()) return slot.color();
-    const glm::vec2 centroid = slot.centroid();
-    return shade(bin_.list[slot.triangle()], centroid.x, centroid.y);
+    const std::uint32_t triangle = bin_.list[slot.triangle()];
+    if (bin_.shade_at == OwnerPlace::covered || bin_.shader.is_flat(triangle)) {
+      const glm::vec2 centroid = slot.centroid();
+      return shade(triangle, centroid.x, centroid.y);
+    }
+    if (bin_.shade_at == OwnerPlace::visible) return shade_at_mean(triangle, owned, 1.0f);
+    if (bin_.shade_at == OwnerPlace::quarters) return shade_parts(triangle, owned, bin_.positions.quarters, 0.5f);
+    return shade_parts(triangle, owned, bin_.positions.sixteenths, 0.25f);
   }
 
-  glm::vec3 shade(std::uint32_t triangle, float u, float v) {
+  // The mean of what is owned in each part of the pixel. `width`: of a part, in pixels.
+  template <class Parts>
+  glm::vec3 shade_parts(std::uint32_t triangle, const WideMask& owned, const Parts& parts, float width) {
+    glm::vec3 sum(0.0f);
+    for (const WideMask& part : parts)
+      if (const WideMask here = owned & part; !here.none())
+        sum += static_cast<float>(here.count()) * shade_at_mean(triangle, here, width);
+    return sum / static_cast<float>(owned.count());
+  }
+
+  glm::vec3 shade_at_mean(std::uint32_t triangle, const WideMask& positions, float width) {
+    ++work.measured;
+    const PositionSums sums = position_sums(bin_.positions.patterns.data(), Words, positions.words.data());
+    const float per_unit = 1.0f / (static_cast<float>(positions.count()) * kSubpixelUnits);
+    return shade(triangle, static_cast<float>(sums.x) * per_unit, static_cast<float>(sums.y) * per_unit, width);
+  }
+
+  // `width`: of the area that the colour stands for, in pixels.
+  glm::vec3 shade(std::uint32_t triangle, float u, float v, float width = 1.0f) {
     result_.shaded.push_back({triangle, pixel_, u, v});
-    return bin_.shader.color(triangle, pixel_, u, v);
+    return bin_.shader.color(triangle, pixel_, u, v, width);
   }
 
   // Adds owners_[0 .. count - 1] to what is final. Those that show the largest part of their positions come first: what
@@ -277,7 +304,7 @@ class OwnerComposer {
       const float exact = greater(owner->covered() + owner->slot.error(), 0.0f) / kPositions;
       const float area =
           visible_area(exact, owner->covered(), owner->visible, kPositions, Taken<float>{pixel.area, final_positions});
-      const glm::vec3 color = color_of(owner->slot);
+      const glm::vec3 color = color_of(owner->slot, owner->owned);
       const float counted = owner->visible / kPositions;
       if (bin_.weights) bin_.weights->settle(pixel_, {owner->slot, owner->index}, area, counted);
       final_positions += owner->visible;

@@ -31,6 +31,10 @@
 
 namespace beampipe {
 
+// Where an owner is shaded that is not flat: at the centroid of what its triangle covers, at the mean of its positions,
+// or in each quarter or sixteenth of the pixel at the mean of its positions there.
+enum class OwnerPlace { covered, visible, quarters, sixteenths };
+
 // What a bin has in common for all its fragments.
 struct OwnersBin {
   const SetupTriangles& triangles;
@@ -41,6 +45,7 @@ struct OwnersBin {
   TileShader shader;
   bool lists_fetches;               // fill OwnersResult::fetched
   OwnerWeights* weights = nullptr;  // where the triangles' weights are recorded; null: nowhere
+  OwnerPlace shade_at = OwnerPlace::covered;
 };
 
 // What was done, beside what is charged.

@@ -101,6 +101,13 @@ const std::vector<PixelCounterInfo>& error_counters() {
   constexpr const char *kUnit = "linear light, 0..1", *kCauses = "compare --causes: techniques that record weights";
   static const std::vector<PixelCounterInfo> counters = {
       {"error", kUnit, "root of the mean square error over R, G and B against the reference", "compare"},
+      {"visibility_error", kUnit,
+       "the same for visibility alone, where surfaces vary: each triangle has one colour in a pixel in both pictures",
+       "compare: traces with surfaces that vary"},
+      {"shading_error", kUnit,
+       "the same for what the error has beyond that in visibility, where surfaces vary: other colours than those of the "
+       "reference",
+       "compare: traces with surfaces that vary"},
       {"cause_leak", kUnit, "part of the pixel's error: a triangle shows that is completely hidden", kCauses},
       {"cause_mask", kUnit, "part of the pixel's error: an outline between mask positions is in the wrong place",
        kCauses},

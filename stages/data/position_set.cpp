@@ -10,6 +10,16 @@
 namespace beampipe {
 
 PositionSet::PositionSet(std::vector<SamplePattern> words) : patterns(std::move(words)) {
+  for (std::size_t i = 0; i < static_cast<std::size_t>(count()); ++i) {
+    const SamplePattern& pattern = patterns[i / kMaxMaskSamples];
+    const auto part = [&](int parts) {
+      const int column = pattern.x[i % kMaxMaskSamples] * parts / kSubpixelUnits;
+      const int row = pattern.y[i % kMaxMaskSamples] * parts / kSubpixelUnits;
+      return static_cast<std::size_t>(row * parts + column);
+    };
+    quarters[part(2)].set(i);
+    sixteenths[part(4)].set(i);
+  }
   for (int y = 0; y < kPlaces; ++y) {
     for (int x = 0; x < kPlaces; ++x) {
       // Squared distance in 1/256 px, then the position's number, so that the lower number wins a tie.

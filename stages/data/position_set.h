@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "simd/sample_pattern.h"
+#include "simd/wide_mask.h"
 
 namespace beampipe {
 
@@ -13,6 +14,9 @@ struct PositionSet {
   static constexpr int kPlaces = 64;  // places per axis in the table `nearest`
   std::vector<SamplePattern> patterns;
   std::vector<std::array<std::uint8_t, 3>> nearest;  // kPlaces x kPlaces, row by row
+  // The positions in each quarter and in each sixteenth of the pixel, row by row.
+  std::array<WideMask, 4> quarters;
+  std::array<WideMask, 16> sixteenths;
 
   explicit PositionSet(std::vector<SamplePattern> patterns);
   int count() const { return static_cast<int>(patterns.size()) * kMaxMaskSamples; }

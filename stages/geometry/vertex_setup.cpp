@@ -392,4 +392,15 @@ SetupTriangles vertex_setup(const Trace& trace, const Frame& frame, StageCounter
   return out;
 }
 
+bool has_varying_surfaces(const Trace& trace, const Frame& frame) {
+  return std::any_of(frame.draws.begin(), frame.draws.end(), [&](const Draw& draw) {
+    const Mesh& mesh = trace.meshes[draw.mesh];
+    for (std::size_t t = 0; has_material(draw, mesh) && t < mesh.triangles.size(); ++t) {
+      const std::uint32_t material = material_of(draw, mesh, t);
+      if (material != kNoMaterial && !is_flat(trace.materials[material], mesh)) return true;
+    }
+    return false;
+  });
+}
+
 }  // namespace beampipe

@@ -18,4 +18,7 @@ namespace beampipe {
 // counters' stage name.
 SetupTriangles vertex_setup(const Trace& trace, const Frame& frame, StageCounters& counters);
 
+// Does the frame draw a triangle that is not flat? One that is culled or out of view counts too.
+bool has_varying_surfaces(const Trace& trace, const Frame& frame);
+
 }  // namespace beampipe

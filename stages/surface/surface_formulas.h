@@ -187,14 +187,26 @@ struct SurfaceMaterial {
   Real alpha;
 };
 
-// The first half of the fragment shader. place(uv set) gives the texture place; fetch(texture slot, place) gives the
-// filtered texel, as linear RGBA.
+// Roughness with what normals differ within the texel: the mean of unit vectors is the shorter the more they differ.
+// `mean`: a mean of normals if `is_mean` is 1; if it is 0, roughness stays. The variance of their directions adds to
+// that of the microfacets, which is half of the squared alpha of GGX. Source: Toksvig 2005, "Mipmapping Normal Maps";
+// Kaplanyan et al. 2016, "Filtering Distributions of Normals for Shading Antialiasing".
+template <class Real>
+Real rougher(const Real& roughness, const Triple<Real>& mean, const Real& is_mean) {
+  const Real one(1.0f), squared = roughness * roughness;
+  const Real length = lesser(greater(square_root(dot(mean, mean)), Real(0.1f)), one);
+  const Real variance = is_mean * (one - length) / length;
+  return square_root(square_root(lesser(squared * squared + variance + variance, one)));
+}
+
+// The first half of the fragment shader. place(uv set) gives the texture place; fetch(texture role, place) gives the
+// filtered texel, as linear RGBA; of normals, A is 1 if the texel is a mean of several, else 0.
 template <class Real, class Place, class Fetch>
 SurfaceMaterial<Real> material_at(const ShaderInputs& shader, const SurfacePoint<Real>& point, Place&& place,
                                   Fetch&& fetch) {
   const Material& material = shader.material;
-  const auto texel = [&](TextureRole slot, const Texture& texture) -> std::array<Real, 4> {
-    return fetch(slot, place(texture.uv_set));
+  const auto texel = [&](TextureRole role, const Texture& texture) -> std::array<Real, 4> {
+    return fetch(role, place(texture.uv_set));
   };
   std::array<Real, 4> base;
   for (std::size_t c = 0; c < 4; ++c) base[c] = Real(material.base_color[static_cast<int>(c)]);
@@ -234,6 +246,7 @@ SurfaceMaterial<Real> material_at(const ShaderInputs& shader, const SurfacePoint
     const Real outward = code[2] * two - one;
     for (std::size_t axis = 0; axis < 3; ++axis)
       reflector.normal[axis] = tangent[axis] * to_u + bitangent[axis] * to_v + normal[axis] * outward;
+    reflector.roughness = rougher(reflector.roughness, reflector.normal, code[3]);
     reflector.normal = unit(reflector.normal);
   }
   surface.emissive = triple<Real>(material.emissive);

@@ -39,8 +39,8 @@ Barycentrics<float> clamped(const Barycentrics<float>& weights) {
   return {second, std::clamp(weights.third, 0.0f, 1.0f - second)};
 }
 
-const Texture& texture_of(const Material& material, TextureRole slot) {
-  switch (slot) {
+const Texture& texture_of(const Material& material, TextureRole role) {
+  switch (role) {
     case TextureRole::base:
       return *material.base_texture;
     case TextureRole::metallic_roughness:
@@ -52,8 +52,8 @@ const Texture& texture_of(const Material& material, TextureRole slot) {
   }
 }
 
-ColorSpace space_of(TextureRole slot) {
-  return slot == TextureRole::base || slot == TextureRole::emissive ? ColorSpace::srgb : ColorSpace::linear;
+ColorSpace space_of(TextureRole role) {
+  return role == TextureRole::base || role == TextureRole::emissive ? ColorSpace::srgb : ColorSpace::linear;
 }
 
 // Light that a flat triangle reflects, by Lambert's law.
@@ -198,7 +198,8 @@ SurfaceShader::SurfaceShader(const SetupTriangles& triangles, const Trace& trace
       textures_(textures),
       rules_(rules),
       flat_(shade_triangles(triangles, frame.lighting)) {
-  if (rules.rounds_to_half)
+  if (rules.colors == SurfaceColors::by_pixel) rules_.rounds_to_half = false;
+  if (rules_.rounds_to_half)
     for (glm::vec3& color : flat_) round_to_half(color);
   flat_unlit_.input_bytes = flat_lit_.input_bytes = sizeof(FlatAttributes);
   flat_lit_.light = flat_light_cost(frame.lighting);
@@ -267,6 +268,7 @@ glm::vec4 SurfaceShader::shaded(std::uint32_t triangle, const ShadingPlace& plac
   for (std::size_t k = 0; k < 3; ++k) v[k] = beampipe::inputs_of(triangles_.vertices[surface.vertices[k]]);
 
   const bool by_pixel = rules_.colors == SurfaceColors::by_pixel;
+  if (by_pixel) width = 1.0f;
   const auto from_anchor = [&](float px, float py) { return std::array{px - surface.anchor_x, py - surface.anchor_y}; };
   const auto left = static_cast<float>(place.x), top = static_cast<float>(place.y);
   const auto [x, y] = from_anchor(left + (by_pixel ? 0.5f : place.u), top + (by_pixel ? 0.5f : place.v));
@@ -298,15 +300,17 @@ glm::vec4 SurfaceShader::shaded(std::uint32_t triangle, const ShadingPlace& plac
                                                             : slopes_of_quad(set, found);
     return found;
   };
-  const auto fetch = [&](TextureRole slot, const TexturePlace<float>& at) -> std::array<float, 4> {
-    const Texture& texture = texture_of(shader.material, slot);
-    const ColorSpace space = space_of(slot);
+  const auto fetch = [&](TextureRole role, const TexturePlace<float>& at) -> std::array<float, 4> {
+    const Texture& texture = texture_of(shader.material, role);
+    const ColorSpace space = space_of(role);
     const TextureSlopes slopes{vector_of(at.dx) * width, vector_of(at.dy) * width};
     const auto note = [&](std::size_t level, std::uint32_t column, std::uint32_t row) {
       if (reads) reads->push_back({texture.image, space, static_cast<std::uint32_t>(level), column, row});
     };
     const glm::vec4 texel = filtered(textures_->chain(texture.image, space), texture, vector_of(at.uv), slopes, note);
-    return {texel.r, texel.g, texel.b, texel.a};
+    if (role != TextureRole::normal) return {texel.r, texel.g, texel.b, texel.a};
+    const bool is_mean = level_of_detail(slopes, textures_->chain(texture.image, space).levels[0]) > 0;
+    return {texel.r, texel.g, texel.b, is_mean ? 1.0f : 0.0f};
   };
   const SurfacePoint<float> point{v,
                                   weights,
@@ -319,7 +323,8 @@ glm::vec4 SurfaceShader::shaded(std::uint32_t triangle, const ShadingPlace& plac
   const Triple<float> lit = lit_color(shader.material, found, frame_.lighting);
   glm::vec3 color(lit[0], lit[1], lit[2]);
   if (rules_.rounds_to_half) round_to_half(color);
-  return {color, shader.material.alpha_mode == AlphaMode::opaque ? 1.0f : found.alpha};
+  if (shader.material.alpha_mode == AlphaMode::opaque) return {color, 1.0f};
+  return {color, by_pixel ? alpha(triangle, place, width).alpha : found.alpha};
 }
 
 }  // namespace beampipe

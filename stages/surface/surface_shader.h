@@ -29,9 +29,9 @@ enum class Derivatives { analytic, quad };
 // Between a material and its lighting: nothing is stored, or a G-buffer with few bits.
 enum class MaterialStorage { none, gbuffer };
 
-// Where surfaces are shaded that vary. by_pixel: at the pixel's centre, or at a point of the triangle near it, whatever
-// place is asked for. All techniques then agree on a triangle's colour in a pixel, and what is left of their errors is
-// visibility.
+// Where surfaces are shaded that vary. by_pixel: at the pixel's centre, or at a point of the triangle near it, for an
+// area of one pixel and without rounding, whatever is asked for. All techniques then agree on a triangle's colour in a
+// pixel, and what is left of their errors is visibility.
 enum class SurfaceColors { by_place, by_pixel };
 
 // How a technique shades.

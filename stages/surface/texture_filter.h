@@ -78,6 +78,41 @@ glm::vec4 filtered_level(const MipChain& chain, const Texture& texture, std::siz
   return upper * (1.0f - lower_share) + lower * lower_share;
 }
 
+// Trilinear filtering in the two levels around a level of detail above 0.
+template <class Read>
+glm::vec4 trilinear(const MipChain& chain, const Texture& texture, float lod, const glm::vec2& uv, Read&& read) {
+  const auto last = static_cast<float>(chain.levels.size() - 1);
+  const float finer = std::floor(std::min(lod, last));
+  const glm::vec4 color = filtered_level(chain, texture, static_cast<std::size_t>(finer), uv, texture.minify, read);
+  if (finer >= last) return color;
+  const float share = lod - finer;
+  return color * (1.0f - share) +
+         filtered_level(chain, texture, static_cast<std::size_t>(finer) + 1, uv, texture.minify, read) * share;
+}
+
+// Anisotropic filtering: several probes, evenly along the longer side of the footprint, in the level that fits the
+// shorter side, or the longer side divided by the number of probes.
+// Source: Khronos, EXT_texture_filter_anisotropic, "sample implementation".
+template <class Read>
+glm::vec4 filtered_along(const MipChain& chain, const Texture& texture, const glm::vec2& uv,
+                         const TextureSlopes& slopes, Read&& read) {
+  const glm::vec2 size(chain.levels[0].width, chain.levels[0].height);
+  const glm::vec2 dx = slopes.dx * size, dy = slopes.dy * size;
+  const float squared_x = dx.x * dx.x + dx.y * dx.y, squared_y = dy.x * dy.x + dy.y * dy.y;
+  const glm::vec2& along = squared_x >= squared_y ? slopes.dx : slopes.dy;
+  const float longer = std::sqrt(std::max(squared_x, squared_y)), shorter = std::sqrt(std::min(squared_x, squared_y));
+  const auto most = static_cast<float>(texture.anisotropy);
+  const float probes = longer < shorter * most ? std::max(std::ceil(longer / shorter), 1.0f) : most;
+  const float lod = logarithm_2(std::max(longer / probes, 1e-30f));
+  glm::vec4 sum(0.0f);
+  for (float i = 0; i < probes; ++i) {
+    const glm::vec2 at = uv + along * ((i + 0.5f) / probes - 0.5f);
+    sum += lod > 0 ? trilinear(chain, texture, lod, at, read)
+                   : filtered_level(chain, texture, 0, at, texture.magnify, read);
+  }
+  return sum / probes;
+}
+
 // Linear RGBA. Calls read(level, x, y) with each texel that is read.
 template <class Read>
 glm::vec4 filtered(const MipChain& chain, const Texture& texture, const glm::vec2& uv, const TextureSlopes& slopes,
@@ -85,17 +120,14 @@ glm::vec4 filtered(const MipChain& chain, const Texture& texture, const glm::vec
   const float lod = level_of_detail(slopes, chain.levels[0]);
   if (lod <= 0) return filtered_level(chain, texture, 0, uv, texture.magnify, read);
   const auto last = static_cast<float>(chain.levels.size() - 1);
+  if (texture.anisotropy > 1 && texture.mip == MipFilter::linear)
+    return filtered_along(chain, texture, uv, slopes, read);
   if (texture.mip == MipFilter::none) return filtered_level(chain, texture, 0, uv, texture.minify, read);
   if (texture.mip == MipFilter::nearest) {
     const float nearest = std::min(std::ceil(lod + 0.5f) - 1, last);
     return filtered_level(chain, texture, static_cast<std::size_t>(nearest), uv, texture.minify, read);
   }
-  const float finer = std::floor(std::min(lod, last));
-  const glm::vec4 color = filtered_level(chain, texture, static_cast<std::size_t>(finer), uv, texture.minify, read);
-  if (finer >= last) return color;
-  const float share = lod - finer;
-  return color * (1.0f - share) +
-         filtered_level(chain, texture, static_cast<std::size_t>(finer) + 1, uv, texture.minify, read) * share;
+  return trilinear(chain, texture, lod, uv, read);
 }
 
 }  // namespace beampipe

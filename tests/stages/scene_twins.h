@@ -1,4 +1,4 @@
-// Runs scalar twins on numbers that count, with the data of every procedural scene.
+// Runs scalar twins on numbers that count, with the data of every procedural scene of flat triangles.
 #pragma once
 
 #include <gtest/gtest.h>
@@ -41,7 +41,7 @@ class SceneTwins : public testing::TestWithParam<SceneKind> {
 
 // Instantiates a suite that is derived from SceneTwins.
 #define BEAMPIPE_ON_EVERY_SCENE(suite)                                      \
-  INSTANTIATE_TEST_SUITE_P(Scenes, suite, testing::ValuesIn(scene_kinds()), \
+  INSTANTIATE_TEST_SUITE_P(Scenes, suite, testing::ValuesIn(flat_scenes()), \
                            [](const auto& scene) { return std::string(scene.param.name); })
 
 }  // namespace beampipe

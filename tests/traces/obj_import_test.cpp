@@ -1,4 +1,5 @@
 #include "tests/traces/test_folder.h"
+#include "traces/model_import.h"
 
 namespace beampipe {
 namespace {
@@ -7,7 +8,17 @@ const std::string kSquare = "v 0 0 0\nv 1 0 0\nv 1 1 0\nv 0 1 0\n";
 
 class ObjImportTest : public FolderTest {
  protected:
-  Mesh load(const std::string& text) const { return read_obj(write("mesh.obj", text), "scene.json: /meshes/m/obj"); }
+  // Flat triangles, as a trace of version 1 has them.
+  Mesh load(const std::string& text) const { return flat(write("mesh.obj", text)); }
+  static Mesh flat(const std::filesystem::path& file, const std::string& named_by = "scene.json: /meshes/m/obj") {
+    Trace trace;
+    NotRead not_read;
+    read_obj(file, named_by, ObjMaterials::none, trace, not_read);
+    EXPECT_TRUE(not_read.empty());
+    EXPECT_TRUE(trace.materials.empty());
+    EXPECT_EQ(trace.meshes.size(), 1u);
+    return trace.meshes.at(0);
+  }
   std::string error(const std::string& text) const {
     return error_of([&] { load(text); });
   }
@@ -45,7 +56,7 @@ TEST_F(ObjImportTest, MaterialLibrariesStayInTheFolder) {
   const std::string start = "scene.json: /meshes/m/obj: sub/mesh.obj: expected an mtllib in the OBJ's folder, found ";
   const auto error_with = [&](const std::string& library) {
     write("sub/mesh.obj", "mtllib " + library + "\n" + kSquare + "f 1 2 3\n");
-    return error_of([&] { read_obj(path("sub/mesh.obj"), "scene.json: /meshes/m/obj"); });
+    return error_of([&] { flat(path("sub/mesh.obj")); });
   };
   EXPECT_EQ(error_with("../colors.mtl"), start + "\"../colors.mtl\"");
   EXPECT_EQ(error_with("/etc/colors.mtl"), start + "\"/etc/colors.mtl\"");
@@ -164,9 +175,9 @@ TEST_F(ObjImportTest, SaysWhatIsWrongWithMaterials) {
 }
 
 TEST_F(ObjImportTest, NamesFilesThatCannotBeRead) {
-  EXPECT_EQ(error_of([&] { read_obj(path("none.obj"), ""); }), "none.obj: expected a readable file, found none");
+  EXPECT_EQ(error_of([&] { flat(path("none.obj"), ""); }), "none.obj: expected a readable file, found none");
   std::filesystem::create_directory(path("folder"));
-  EXPECT_EQ(error_of([&] { read_obj(path("folder"), ""); }), "folder: expected a readable file, found a folder");
+  EXPECT_EQ(error_of([&] { flat(path("folder"), ""); }), "folder: expected a readable file, found a folder");
 }
 
 }  // namespace

@@ -2,7 +2,10 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
+#include <array>
 #include <cmath>
+#include <functional>
 #include <map>
 #include <set>
 #include <stdexcept>
@@ -51,10 +54,11 @@ TEST_P(ScenesTest, KeepsToItsTriangles) {
 }
 
 TEST_P(ScenesTest, HasADefaultSize) {
-  const std::map<std::string_view, double> defaults = {{"hairball", 150e3}, {"classroom", 100e3}, {"boat", 60e3},
-                                                       {"pickets", 5e3},    {"terrain", 150e3},   {"sphere", 100e3},
-                                                       {"fence", 60e3},     {"soup", 20e3},       {"foliage", 80e3},
-                                                       {"bars", 4e3},       {"density", 5760},    {"stack", 64}};
+  const std::map<std::string_view, double> defaults = {
+      {"hairball", 150e3}, {"classroom", 100e3}, {"boat", 60e3}, {"pickets", 5e3},  {"terrain", 150e3},
+      {"sphere", 100e3},   {"fence", 60e3},      {"soup", 20e3}, {"foliage", 80e3}, {"bars", 4e3},
+      {"density", 5760},   {"stack", 64},        {"room", 40e3}, {"rigging", 40e3}, {"leaves", 12e3},
+      {"bumps", 10e3},     {"sheets", 2e3},      {"tiles", 74}};
   const double wanted = defaults.at(GetParam().name);
   EXPECT_NEAR(static_cast<double>(count(make({}))) / wanted, 1, 0.25);
 }
@@ -118,11 +122,185 @@ TEST_P(ScenesTest, IsInThePictureAndLit) {
 INSTANTIATE_TEST_SUITE_P(All, ScenesTest, testing::ValuesIn(scene_kinds()),
                          [](const auto& scene) { return std::string(scene.param.name); });
 
+class MaterialScenesTest : public ScenesTest {};
+
+TEST_P(MaterialScenesTest, HaveMaterialsOnEveryTriangleAndUseEachOne) {
+  const Trace trace = make({});
+  std::set<std::uint32_t> materials, images;
+  for (const Mesh& mesh : trace.meshes) {
+    ASSERT_EQ(mesh.materials.size(), mesh.triangles.size()) << mesh.name;
+    for (const std::uint32_t material : mesh.materials) {
+      ASSERT_LT(material, trace.materials.size()) << mesh.name;
+      materials.insert(material);
+    }
+  }
+  EXPECT_EQ(materials.size(), trace.materials.size());
+  for (const Material& material : trace.materials) {
+    for (const TextureSlot& slot : kTextureSlots)
+      if (const auto& texture = material.*slot.texture) images.insert(texture->image);
+  }
+  EXPECT_EQ(images.size(), trace.images.size());
+  EXPECT_GE(images.size(), 2u);
+}
+
+TEST_P(MaterialScenesTest, HaveUnitNormalsThatAgreeWithTheirTriangles) {
+  const Trace trace = make({.triangles = 20000});
+  std::size_t all = 0, agree = 0;
+  for (const Mesh& mesh : trace.meshes) {
+    ASSERT_EQ(mesh.normals.size(), mesh.positions.size()) << mesh.name;
+    for (const glm::vec3& normal : mesh.normals) ASSERT_NEAR(glm::length(glm::dvec3(normal)), 1, 1e-6) << mesh.name;
+    for (const glm::uvec3& t : mesh.triangles) {
+      const glm::dvec3 a = mesh.positions[t.x];
+      const glm::dvec3 normal = glm::cross(glm::dvec3(mesh.positions[t.y]) - a, glm::dvec3(mesh.positions[t.z]) - a);
+      for (int corner = 0; corner < 3; ++corner, ++all)
+        agree += glm::dot(normal, glm::dvec3(mesh.normals[t[corner]])) > 0;
+    }
+  }
+  EXPECT_GT(static_cast<double>(agree), 0.999 * static_cast<double>(all));
+}
+
+// A texture stands upright and is not mirrored where its triangle is seen from outside: with v downwards, the triangle
+// is clockwise in the image's own axes.
+TEST_P(MaterialScenesTest, HaveTextureCoordinatesWhereTheyHaveTextures) {
+  const Trace trace = make({.triangles = 20000});
+  for (const Mesh& mesh : trace.meshes) {
+    bool textured = false;
+    for (std::size_t i = 0; i < mesh.triangles.size(); ++i) {
+      const Material& material = trace.materials[mesh.materials[i]];
+      if (std::ranges::none_of(kTextureSlots, [&](const TextureSlot& slot) { return bool(material.*slot.texture); })) {
+        continue;
+      }
+      textured = true;
+      ASSERT_EQ(mesh.uvs[0].size(), mesh.positions.size()) << mesh.name;
+      const glm::uvec3& t = mesh.triangles[i];
+      const glm::dvec2 a = mesh.uvs[0][t.x], right = glm::dvec2(mesh.uvs[0][t.y]) - a,
+                       up = glm::dvec2(mesh.uvs[0][t.z]) - a;
+      ASSERT_LE(right.x * up.y - right.y * up.x, 0) << mesh.name << " " << i;
+      for (int corner = 0; corner < 3; ++corner) {
+        const glm::vec2& uv = mesh.uvs[0][t[corner]];
+        ASSERT_TRUE(std::abs(uv.x) < 2000 && std::abs(uv.y) < 2000) << mesh.name;
+      }
+    }
+    EXPECT_EQ(textured, !mesh.uvs[0].empty()) << mesh.name;
+  }
+}
+
+TEST_P(MaterialScenesTest, ReadBackToTheSameBits) {
+  write_trace(make({.triangles = 3000}), path("trace.json"));
+  const Trace back = read_trace(path("trace.json"));
+  write_trace(back, path("again.json"));
+  EXPECT_EQ(read("trace.json"), read("again.json"));
+  const Trace trace = make({.triangles = 3000});
+  ASSERT_EQ(back.images.size(), trace.images.size());
+  for (std::size_t i = 0; i < trace.images.size(); ++i) EXPECT_EQ(back.images[i].texels, trace.images[i].texels);
+  ASSERT_EQ(back.meshes.size(), trace.meshes.size());
+  for (std::size_t i = 0; i < trace.meshes.size(); ++i) {
+    EXPECT_EQ(back.meshes[i].positions, trace.meshes[i].positions);
+    EXPECT_EQ(back.meshes[i].normals, trace.meshes[i].normals);
+    EXPECT_EQ(back.meshes[i].uvs[0], trace.meshes[i].uvs[0]);
+    EXPECT_EQ(back.meshes[i].vertex_colors, trace.meshes[i].vertex_colors);
+    EXPECT_EQ(back.meshes[i].materials, trace.meshes[i].materials);
+  }
+}
+
+TEST_P(MaterialScenesTest, AreFilesOfModerateSize) {
+  EXPECT_LT(bytes({}).size(), 5'000'000u);
+  for (const TextureImage& image : make({}).images) EXPECT_LE(std::max(image.width, image.height), 1024u) << image.name;
+}
+
+TEST_P(MaterialScenesTest, AreLitFromEverywhere) {
+  const Lighting lighting = make({}).frames[0].lighting;
+  EXPECT_EQ(lighting.lights.size(), 1u);
+  ASSERT_TRUE(lighting.ambient.has_value());
+  for (int channel = 0; channel < 3; ++channel) {
+    EXPECT_GT(lighting.ambient->sky[channel], 0.05);
+    EXPECT_GT(lighting.ambient->ground[channel], 0.05);
+  }
+}
+
+INSTANTIATE_TEST_SUITE_P(All, MaterialScenesTest, testing::ValuesIn(material_scenes()),
+                         [](const auto& scene) { return std::string(scene.param.name); });
+
+// The same meshes in both, apart from vertices that only texture coordinates and normals need.
+TEST(Scenes, ScenesWithMaterialsShareTheShapesOfFlatOnes) {
+  for (const auto& [plain, textured] : {std::pair{"classroom", "room"}, {"boat", "rigging"}}) {
+    const Trace a = make_scene(plain, {.triangles = 20000}), b = make_scene(textured, {.triangles = 20000});
+    EXPECT_EQ(a.frames[0].view, b.frames[0].view);
+    ASSERT_EQ(a.meshes.size(), b.meshes.size());
+    for (std::size_t i = 0; i < a.meshes.size(); ++i) {
+      const Mesh &flat = a.meshes[i], &with_materials = b.meshes[i];
+      EXPECT_TRUE(flat.materials.empty() && flat.normals.empty() && flat.uvs[0].empty());
+      ASSERT_EQ(flat.triangles.size(), with_materials.triangles.size()) << flat.name;
+      for (std::size_t k = 0; k < flat.triangles.size(); ++k) {
+        std::set<std::array<float, 3>> corners, others;
+        for (int corner = 0; corner < 3; ++corner) {
+          const glm::vec3 p = flat.positions[flat.triangles[k][corner]],
+                          q = with_materials.positions[with_materials.triangles[k][corner]];
+          corners.insert({p.x, p.y, p.z});
+          others.insert({q.x, q.y, q.z});
+        }
+        if (flat.name == "room") continue;  // the parquet's squares are halved along the other diagonal
+        ASSERT_EQ(corners, others) << flat.name << " " << k;
+      }
+    }
+  }
+}
+
+// Written in the middle of an image, from the first sheet that is drawn to the last.
+TEST(Scenes, SheetsAreNotDrawnFromBackToFront) {
+  const Trace trace = make_scene("sheets", {});
+  const Frame& frame = trace.frames[0];
+  std::vector<double> depths;  // of the sheets' middles
+  for (const Draw& draw : frame.draws) {
+    const Mesh& mesh = trace.meshes[draw.mesh];
+    const bool is_sheet = trace.materials[mesh.materials[0]].alpha_mode == AlphaMode::blend;
+    EXPECT_EQ(is_sheet, mesh.name != "wall");
+    if (!is_sheet) continue;
+    glm::dvec3 sum(0.0);
+    for (const glm::vec3& p : mesh.positions) sum += p;
+    depths.push_back((frame.view * glm::dvec4(sum / static_cast<double>(mesh.positions.size()), 1)).z);
+  }
+  EXPECT_EQ(depths.size(), 9u);
+  EXPECT_FALSE(std::ranges::is_sorted(depths));
+  EXPECT_FALSE(std::ranges::is_sorted(depths, std::greater<>()));
+}
+
+TEST(Scenes, LeavesAreCutOutOfCards) {
+  const Trace trace = make_scene("leaves", {});
+  std::size_t cards = 0;
+  for (const Mesh& mesh : trace.meshes) {
+    for (const std::uint32_t material : mesh.materials) {
+      const Material& made_of = trace.materials[material];
+      cards += made_of.alpha_mode == AlphaMode::mask && made_of.double_sided;
+    }
+  }
+  EXPECT_GT(cards / 2, 4000u);
+  std::size_t clear = 0, covered = 0;
+  for (const glm::u8vec4& texel : trace.images[0].texels) (texel.a < 128 ? clear : covered) += 1;
+  EXPECT_GT(clear, trace.images[0].texels.size() / 3);
+  EXPECT_GT(covered, trace.images[0].texels.size() / 4);
+}
+
+// The FNV-1a hash of all texels: they have the same bits on every machine.
+TEST(Scenes, TexelsAreTheSameEverywhere) {
+  std::map<std::string_view, std::uint64_t> hashes;
+  for (const SceneKind& kind : material_scenes()) {
+    std::uint64_t& hash = hashes[kind.name] = 0xcbf29ce484222325u;
+    for (const TextureImage& image : kind.make({}).images)
+      for (const glm::u8vec4& texel : image.texels)
+        for (int channel = 0; channel < 4; ++channel) hash = (hash ^ texel[channel]) * 0x100000001b3u;
+  }
+  const std::map<std::string_view, std::uint64_t> expected = {{"room", 0},  {"rigging", 0}, {"leaves", 0},
+                                                              {"bumps", 0}, {"sheets", 0},  {"tiles", 0}};
+  EXPECT_EQ(hashes, expected);
+}
+
 TEST(Scenes, AreTheKnownOnes) {
   std::set<std::string_view> names;
   for (const SceneKind& kind : scene_kinds()) names.insert(kind.name);
   EXPECT_EQ(names, (std::set<std::string_view>{"hairball", "classroom", "boat", "pickets", "terrain", "sphere", "fence",
-                                               "soup", "foliage", "bars", "density", "stack"}));
+                                               "soup", "foliage", "bars", "density", "stack", "room", "rigging",
+                                               "leaves", "bumps", "sheets", "tiles"}));
 }
 
 TEST(Scenes, DensityFillsThePictureWithItsPixelsPerTriangle) {
@@ -172,7 +350,7 @@ TEST(Scenes, RefusesWhatItCannotMake) {
   EXPECT_EQ(
       refusal("ball", {}),
       "expected one of the scenes hairball, classroom, boat, pickets, terrain, sphere, fence, soup, foliage, bars, "
-      "density, stack, found \"ball\"");
+      "density, stack, room, rigging, leaves, bumps, sheets, tiles, found \"ball\"");
   EXPECT_EQ(refusal("soup", {.triangles = 100000001}), "expected at most 100000000 triangles, found 100000001");
   EXPECT_EQ(refusal("soup", {.width = 0}), "expected a width and height of 1..16384, found 0 x 180");
   EXPECT_EQ(refusal("soup", {.height = 20000}), "expected a width and height of 1..16384, found 320 x 20000");

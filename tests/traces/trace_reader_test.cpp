@@ -3,6 +3,7 @@
 #include <nlohmann/json.hpp>
 
 #include "tests/traces/test_folder.h"
+#include "traces/model_import.h"
 
 namespace beampipe {
 namespace {
@@ -259,12 +260,17 @@ TEST_F(TraceReaderTest, NamesFilesThatCannotBeRead) {
 
 TEST_F(TraceReaderTest, RefusesPipesAndDevices) {
   const std::string expected = ": expected a regular file, found a pipe or a device";
+  const auto load_obj = [](const std::filesystem::path& file) {
+    Trace trace;
+    NotRead not_read;
+    read_obj(file, "", ObjMaterials::none, trace, not_read);
+  };
   ASSERT_EQ(mkfifo(path("pipe").c_str(), 0666), 0);
   EXPECT_EQ(error_of([&] { read_trace(path("pipe")); }), "pipe" + expected);
   EXPECT_EQ(error_of([&] { read_trace("/dev/zero"); }), "/dev/zero" + expected);
-  EXPECT_EQ(error_of([&] { read_obj(path("pipe"), ""); }), "pipe" + expected);
+  EXPECT_EQ(error_of([&] { load_obj(path("pipe")); }), "pipe" + expected);
   write("mesh.obj", "mtllib pipe\nv 0 0 0\nv 1 0 0\nv 0 1 0\nf 1 2 3\n");
-  EXPECT_EQ(error_of([&] { read_obj(path("mesh.obj"), ""); }), "mesh.obj: pipe" + expected);
+  EXPECT_EQ(error_of([&] { load_obj(path("mesh.obj")); }), "mesh.obj: pipe" + expected);
 }
 
 // A small file can ask for a lot of memory. It must be refused without taking that memory.

@@ -197,7 +197,8 @@ Trace random_surfaces(unsigned seed) {
                                        .wrap_v = Wrap(below(3)),
                                        .magnify = Filter(below(2)),
                                        .minify = Filter(below(2)),
-                                       .mip = MipFilter(below(3))};
+                                       .mip = MipFilter(below(3)),
+                                       .anisotropy = 1 + below(16)};
     }
     trace.materials.push_back(material);
   }

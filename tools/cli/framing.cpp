@@ -16,11 +16,23 @@ void require(bool condition, const char* message) {
   if (!condition) throw std::invalid_argument(message);
 }
 
-// The vertices of all triangles.
-std::vector<glm::dvec3> used_vertices(const Mesh& mesh) {
+// The vertices of all triangles that some frame shows, in world space. What stays as it was in the last frame counts
+// once.
+std::vector<glm::dvec3> shown_vertices(const Trace& trace) {
   std::vector<glm::dvec3> vertices;
-  for (const glm::uvec3& triangle : mesh.triangles) {
-    for (int corner = 0; corner < 3; ++corner) vertices.emplace_back(mesh.positions[triangle[corner]]);
+  std::vector<bool> is_used;
+  for (std::size_t i = 0; i < trace.frames.size(); ++i) {
+    const std::vector<Draw>& draws = trace.frames[i].draws;
+    for (std::size_t d = 0; d < draws.size(); ++d) {
+      const Draw* last = i > 0 && d < trace.frames[i - 1].draws.size() ? &trace.frames[i - 1].draws[d] : nullptr;
+      if (last && last->mesh == draws[d].mesh && last->transform == draws[d].transform) continue;
+      const Mesh& mesh = trace.meshes[draws[d].mesh];
+      is_used.assign(mesh.positions.size(), false);
+      for (const glm::uvec3& triangle : mesh.triangles)
+        for (int corner = 0; corner < 3; ++corner) is_used[triangle[corner]] = true;
+      for (std::size_t v = 0; v < mesh.positions.size(); ++v)
+        if (is_used[v]) vertices.emplace_back(draws[d].transform * glm::dvec4(mesh.positions[v], 1.0));
+    }
   }
   return vertices;
 }
@@ -49,8 +61,8 @@ Basis basis_of(const glm::dvec3& back, const glm::dvec3& up) {
 
 }  // namespace
 
-Camera frame_mesh(const Mesh& mesh, std::uint32_t width, std::uint32_t height, const CameraWishes& wishes) {
-  const std::vector<glm::dvec3> vertices = used_vertices(mesh);
+Camera frame_model(const Trace& trace, std::uint32_t width, std::uint32_t height, const CameraWishes& wishes) {
+  const std::vector<glm::dvec3> vertices = shown_vertices(trace);
   require(!vertices.empty(), "the model has no triangles");
   Camera camera;
   camera.up = wishes.up.value_or(glm::dvec3(0, 1, 0));

@@ -1,4 +1,4 @@
-// Chooses a camera and a light for a mesh that has none.
+// Chooses a camera and a light for a model that has none.
 #pragma once
 
 #include <glm/glm.hpp>
@@ -14,11 +14,11 @@ struct CameraWishes {
   std::optional<double> fovy_deg, near, far;
 };
 
-// A camera that looks at the middle of the mesh from the front right and a little above, with y up and a vertical angle
-// of 36 degrees. It is just far enough away to see the whole mesh, and its near and far planes enclose the mesh. Throws
-// std::invalid_argument, one line, if the mesh has no triangles, is a single point or lies behind the eye, or if there
-// is no camera with these wishes.
-Camera frame_mesh(const Mesh& mesh, std::uint32_t width, std::uint32_t height, const CameraWishes& wishes);
+// A camera that looks at the middle of what a trace shows in all its frames, from the front right and a little above,
+// with y up and a vertical angle of 36 degrees. It is just far enough away to see all of it, and its near and far
+// planes enclose it. Throws std::invalid_argument, one line, if the frames show no triangles, a single point or
+// something that lies behind the eye, or if there is no camera with these wishes.
+Camera frame_model(const Trace& trace, std::uint32_t width, std::uint32_t height, const CameraWishes& wishes);
 
 // The direction in which light travels that comes over the viewer's left shoulder, from above.
 glm::vec3 shoulder_light(const Camera& camera);

@@ -1,5 +1,6 @@
 #include "tools/evaluate/comparison.h"
 
+#include <algorithm>
 #include <cmath>
 
 #include "tools/evaluate/render.h"
@@ -44,21 +45,28 @@ Comparison::Comparison(const CompareOptions& options, RunPlan plan, OutputFolder
   histories_.resize(plan_.techniques.size());
   last_errors_.resize(plan_.techniques.size());
   causes_.resize(plan_.techniques.size());
+  if (has_varying_surfaces(plan_)) split_.emplace(plan_.techniques.size(), options.ladder);
   if (options.orders) orders_.emplace(std::move(written));
 }
 
 std::size_t Comparison::resume() {
   std::vector<std::string> specs = specs_of(plan_.techniques);
   specs.push_back(reference_.spec);
-  const std::vector<FrameRecord> finished = records_.read(plan_.frames, specs, sums());
-  for (const FrameRecord& record : finished) recall_frame(record);
-  return finished.size();
+  const auto fits = [&](const FrameReport& report) { return report.parts.has_value() == split_.has_value(); };
+  for (const FrameRecord& record : records_.read(plan_.frames, specs, sums())) {
+    if (!std::all_of(record.reports.begin(), record.reports.end(), fits)) break;
+    recall_frame(record);
+  }
+  return reference_result_.frames.size();
 }
 
 Report Comparison::run() {
   Progress progress;
   const std::size_t finished = reference_result_.frames.size();
-  if (finished < plan_.frames.size()) histories_ = rebuild_histories(plan_, finished, progress);
+  if (finished < plan_.frames.size()) {
+    histories_ = rebuild_histories(plan_, finished, progress);
+    if (split_) split_->go_on_after(finished, plan_, progress);
+  }
   for (std::size_t at = finished; at < plan_.frames.size(); ++at) compare_frame(plan_.frames[at], progress);
   return report(progress);
 }
@@ -77,11 +85,16 @@ void Comparison::compare_frame(std::size_t frame, Progress& progress) {
       reference_result_.frames.emplace_back(write_frame(output_, reference_.spec, frame, truth, nullptr));
   report.wall_ms = reference_time;
   report.error = ErrorStats{};
+  if (split_) {
+    report.parts = ErrorParts{};
+    split_->start_frame(plan_, frame, progress);
+  }
 
   const std::vector<WallTime> times =
       render_frame(plan_, frame, progress, histories_, [&](std::size_t i, FrameResult&& result) {
-        if (options_.causes) causes_[i].add(plan_.techniques[i], plan_, frame, truth.image, result);
+        const std::optional<ErrorParts> parts = explain(i, result, truth.image, frame, progress);
         results_[i].frames.push_back(write_frame(output_, plan_.techniques[i].spec, frame, result, &truth.image));
+        results_[i].frames.back().parts = parts;
         errors_[i].add(result.image, truth.image);
         std::vector<float> errors = signed_errors(result.image, truth.image);
         if (errors.size() == last_errors_[i].size())
@@ -91,9 +104,26 @@ void Comparison::compare_frame(std::size_t frame, Progress& progress) {
   for (std::size_t i = 0; i < times.size(); ++i) results_[i].frames.back().wall_ms = times[i];
 
   ladder_.add(plan_, frame, truth.image, progress);
+  if (split_) split_->add_rungs(plan_, progress);
   if (orders_) orders_->add(reference_, plan_, frame, progress);
   write_record();
   output_.keep();
+}
+
+// Adds the layers of the error's parts and causes to the result of technique i, and returns the parts. Where surfaces
+// vary, the causes are those of the error in visibility.
+std::optional<ErrorParts> Comparison::explain(std::size_t i, FrameResult& result, const Image& truth, std::size_t frame,
+                                              Progress& progress) {
+  const Technique& technique = plan_.techniques[i];
+  std::optional<ErrorParts> parts;
+  if (split_) parts = split_->split(plan_, i, result, truth, progress);
+  if (!options_.causes) return parts;
+  if (split_) {
+    causes_[i].add(technique, plan_, frame, SurfaceColors::by_pixel, split_->pictures(), result.pixel_counters);
+  } else {
+    causes_[i].add(technique, plan_, frame, SurfaceColors::by_place, {result.image, truth}, result.pixel_counters);
+  }
+  return parts;
 }
 
 // Of the last frame.
@@ -116,6 +146,7 @@ void Comparison::recall_frame(const FrameRecord& record) {
     last_errors_[i] = signed_errors(image, truth);
   }
   ladder_.set_sums(record.sums.at("ladder"));
+  if (split_) split_->set_sums(record.sums.at("visibility_ladder"));
   for (std::size_t i = 0; i < causes_.size(); ++i) causes_[i].set_sums(record.sums.at("causes").at(i));
   if (orders_) orders_->set_sums(record.sums.at("orders"));
 }
@@ -123,25 +154,48 @@ void Comparison::recall_frame(const FrameRecord& record) {
 Json Comparison::sums() const {
   Json sums = {{"ladder", ladder_.sums()}, {"causes", Json::array()}};
   for (const CauseShares& causes : causes_) sums["causes"].push_back(causes.sums());
+  if (split_) sums["visibility_ladder"] = split_->sums();
   if (orders_) sums["orders"] = orders_->sums();
   return sums;
 }
 
 Image Comparison::read_image(const FrameReport& frame) const { return read_exr(output_.path() / frame.image); }
 
+// The equivalent rate of technique i of the plan.
+EquivalentMsaa Comparison::equivalent_of(std::size_t i, double rmse, const std::vector<LadderRung>& rungs) const {
+  const std::uint32_t samples = plan_.techniques[i].samples;
+  return samples > 0 ? EquivalentMsaa{static_cast<double>(samples), false, false} : equivalent_msaa(rmse, rungs);
+}
+
+// Adds the parts of the errors. The reference comes last in the report.
+void Comparison::report_parts(Report& report, Progress& progress) {
+  std::vector<double> rmses;
+  for (TechniqueReport& result : report.results) {
+    result.parts = pooled_parts(result.frames);
+    rmses.push_back(result.parts->visibility);
+  }
+  rmses.pop_back();
+  report.visibility_ladder = split_->rungs(plan_, rmses, progress);
+  for (std::size_t i = 0; i < rmses.size(); ++i)
+    report.results[i].visibility_msaa = equivalent_of(i, rmses[i], report.visibility_ladder);
+  report.results.back().visibility_msaa = equivalent_msaa(0.0, report.visibility_ladder);
+}
+
 Report Comparison::report(Progress& progress) {
-  for (std::size_t i = 0; i < results_.size(); ++i) results_[i].error = errors_[i].stats();
+  std::vector<double> rmses;
+  for (std::size_t i = 0; i < results_.size(); ++i) {
+    results_[i].error = errors_[i].stats();
+    rmses.push_back(results_[i].error->rmse);
+  }
   const auto read_reference = [&](std::size_t frame) {
     for (const FrameReport& report : reference_result_.frames)
       if (report.index == frame) return read_image(report);
     throw std::logic_error("the reference was not rendered");
   };
-  const std::vector<LadderRung> rungs = ladder_.rungs(plan_, results_, read_reference, progress);
+  const std::vector<LadderRung> rungs = ladder_.rungs(plan_, rmses, read_reference, progress);
   for (std::size_t i = 0; i < results_.size(); ++i) {
     TechniqueReport& result = results_[i];
-    const std::uint32_t samples = plan_.techniques[i].samples;
-    result.equivalent_msaa = samples > 0 ? EquivalentMsaa{static_cast<double>(samples), false, false}
-                                         : equivalent_msaa(result.error->rmse, rungs);
+    result.equivalent_msaa = equivalent_of(i, rmses[i], rungs);
     result.causes = causes_[i].shares();
     result.flicker = pooled_flicker(result);
     if (orders_) orders_->report(i, result);
@@ -155,6 +209,7 @@ Report Comparison::report(Progress& progress) {
   report.msaa_ladder = rungs;
   report.results = results_;
   report.results.push_back(reference_result_);
+  if (split_) report_parts(report, progress);
   return report;
 }
 

@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "tools/evaluate/diagnosis.h"
+#include "tools/evaluate/error_split.h"
 #include "tools/evaluate/metrics.h"
 #include "tools/evaluate/msaa_ladder.h"
 #include "tools/evaluate/progress.h"
@@ -43,10 +44,14 @@ class Comparison {
  private:
   ErrorAccumulator new_errors() const;
   void compare_frame(std::size_t frame, Progress& progress);
+  std::optional<ErrorParts> explain(std::size_t i, FrameResult& result, const Image& truth, std::size_t frame,
+                                    Progress& progress);
   void write_record();
   void recall_frame(const FrameRecord& record);
   Json sums() const;
   Image read_image(const FrameReport& frame) const;
+  EquivalentMsaa equivalent_of(std::size_t i, double rmse, const std::vector<LadderRung>& rungs) const;
+  void report_parts(Report& report, Progress& progress);
   Report report(Progress& progress);
 
   CompareOptions options_;
@@ -63,6 +68,7 @@ class Comparison {
   std::vector<History> histories_;
   std::vector<std::vector<float>> last_errors_;
   std::vector<CauseShares> causes_;
+  std::optional<ErrorSplit> split_;        // only if surfaces vary
   std::optional<OrderComparison> orders_;  // only if options_.orders
 };
 

@@ -27,18 +27,21 @@ CauseShares::CauseShares() {
   for (const char* cause : kErrorCauses) squares_[cause] = 0;
 }
 
-void CauseShares::add(const Technique& technique, const RunPlan& plan, std::size_t frame, const Image& reference,
-                      FrameResult& result) {
+void CauseShares::add(const Technique& technique, const RunPlan& plan, std::size_t frame, SurfaceColors colors,
+                      const PicturePair& pictures, std::map<std::string, std::vector<float>>& pixel_counters) {
   if (!technique.has_weights) return;
   std::vector<PixelWeights> weights;
-  RunOptions weighed = plan.options;
-  weighed.weights = &weights;
-  technique.render(plan.trace, frame, weighed);
-  auto layers = error_causes(plan.trace, plan.trace.frames.at(frame), weights, result.image, reference, plan.options);
-  const std::vector<float> errors = pixel_errors(result.image, reference);
+  RunOptions run = plan.options;
+  run.colors = colors;
+  run.weights = &weights;
+  technique.render(plan.trace, frame, run);
+  run.weights = nullptr;
+  auto layers =
+      error_causes(plan.trace, plan.trace.frames.at(frame), weights, pictures.image, pictures.reference, run);
+  const std::vector<float> errors = pixel_errors(pictures.image, pictures.reference);
   for (auto& [cause, layer] : layers) {
     for (std::size_t i = 0; i < errors.size(); ++i) squares_[cause] += double{layer[i]} * errors[i];
-    result.pixel_counters["cause_" + cause] = std::move(layer);
+    pixel_counters["cause_" + cause] = std::move(layer);
   }
   for (const float error : errors) all_squares_ += double{error} * error;
 }

@@ -7,6 +7,7 @@
 #include <utility>
 #include <vector>
 
+#include "tools/evaluate/metrics.h"
 #include "tools/evaluate/progress.h"
 #include "tools/evaluate/results.h"
 #include "tools/evaluate/run_plan.h"
@@ -20,9 +21,10 @@ class CauseShares {
   CauseShares();
 
   // Splits the frame's error by cause (pipeline/error_causes.h) and adds one layer per cause ("cause_leak", ...) to the
-  // result's per-pixel counters. Does nothing if the technique does not report weights.
-  void add(const Technique& technique, const RunPlan& plan, std::size_t frame, const Image& reference,
-           FrameResult& result);
+  // per-pixel counters. `colors`: how both pictures were rendered; by_pixel if surfaces vary. Does nothing if the
+  // technique does not report weights.
+  void add(const Technique& technique, const RunPlan& plan, std::size_t frame, SurfaceColors colors,
+           const PicturePair& pictures, std::map<std::string, std::vector<float>>& pixel_counters);
 
   // The shares in the order of kErrorCauses; they add up to 1. Empty if nothing was added or there is no error.
   std::vector<std::pair<std::string, double>> shares() const;

@@ -83,6 +83,10 @@ Json to_json(const FrameReport& frame, const TechniqueReport& result, const Hard
   Json json = {{"index", frame.index}, {"image", frame.image}, {"picture", frame.picture}};
   if (!frame.counters.empty()) json["counters"] = frame.counters;
   if (frame.error) json["error"] = beampipe::to_json(*frame.error);
+  if (frame.parts) {
+    json["visibility"]["rmse"] = frame.parts->visibility;
+    json["shading"]["rmse"] = frame.parts->shading;
+  }
   if (frame.flicker) json["flicker"] = *frame.flicker;
   json["wall_ms"] = to_json(frame.wall_ms);
   json["a_buffer_peak_bytes"] = frame.a_buffer_peak_bytes;
@@ -117,6 +121,8 @@ FrameReport frame_of(const Json& json) {
   if (const Json* error = json.find("error"))
     frame.error = {error->at("rmse").get<double>(), error->at("bias").get<double>(), error->at("p99").get<double>(),
                    error->at("max").get<double>()};
+  if (const Json* visibility = json.find("visibility"))
+    frame.parts = {visibility->at("rmse").get<double>(), json.at("shading").at("rmse").get<double>()};
   if (const Json* flicker = json.find("flicker")) frame.flicker = flicker->get<double>();
   frame.wall_ms = wall_time_of(json.at("wall_ms"));
   frame.a_buffer_peak_bytes = json.at("a_buffer_peak_bytes").get<std::uint64_t>();

@@ -8,6 +8,11 @@
 
 namespace beampipe {
 
+// A picture and that of the reference.
+struct PicturePair {
+  const Image &image, &reference;
+};
+
 // Statistics of the differences image - reference, over R, G and B of all pixels, in linear light. Alpha is ignored.
 struct ErrorStats {
   double rmse = 0;  // root mean square

@@ -20,10 +20,12 @@ std::string frame_text(const RunPlan& plan, std::size_t frame) {
 
 // Renders a frame; `milliseconds` becomes the wall time.
 FrameResult render_timed(const Technique& technique, const RunPlan& plan, std::size_t frame, Progress& progress,
-                         bool model_memory, History* history, double& milliseconds) {
+                         bool model_memory, History* history, double& milliseconds,
+                         SurfaceColors colors = SurfaceColors::by_place) {
   RunOptions options = plan.options;
   options.history = history;
   options.memory.modelled = model_memory;
+  options.colors = colors;
   progress.show(frame_text(plan, frame) + technique.spec);
   const auto start = std::chrono::steady_clock::now();
   FrameResult result = technique.render(plan.trace, frame, options);
@@ -61,13 +63,13 @@ std::vector<WallTime> render_frame(const RunPlan& plan, std::size_t frame, Progr
   return times;
 }
 
-std::vector<History> rebuild_histories(const RunPlan& plan, std::size_t frames, Progress& progress) {
+std::vector<History> rebuild_histories(const RunPlan& plan, std::size_t frames, Progress& progress,
+                                       SurfaceColors colors) {
   std::vector<History> histories(plan.techniques.size());
-  double ignored_milliseconds = 0;
   for (std::size_t i = 0; i < plan.techniques.size(); ++i) {
     if (!plan.techniques[i].keeps_history) continue;
     for (std::size_t at = 0; at < frames; ++at)
-      render_timed(plan.techniques[i], plan, plan.frames[at], progress, false, &histories[i], ignored_milliseconds);
+      render_picture(plan.techniques[i], plan, plan.frames[at], progress, colors, &histories[i]);
   }
   return histories;
 }
@@ -84,9 +86,10 @@ FrameResult render_once(const Technique& technique, const RunPlan& plan, std::si
   return result;
 }
 
-Image render_picture(const Technique& technique, const RunPlan& plan, std::size_t frame, Progress& progress) {
-  double milliseconds = 0;
-  return render_timed(technique, plan, frame, progress, false, nullptr, milliseconds).image;
+Image render_picture(const Technique& technique, const RunPlan& plan, std::size_t frame, Progress& progress,
+                     SurfaceColors colors, History* history) {
+  double ignored_milliseconds = 0;
+  return render_timed(technique, plan, frame, progress, false, history, ignored_milliseconds, colors).image;
 }
 
 ErrorStats measure_named_error(const std::string& spec, std::size_t frame, const Image& image, const Image& reference) {
@@ -139,6 +142,7 @@ Report new_report(const RunPlan& plan, const Json& made_by) {
           plan.options.threads,
           plan.options.memory,
           plan.hardware,
+          {},
           {},
           {},
           made_by};

@@ -24,14 +24,16 @@ std::vector<WallTime> render_frame(const RunPlan& plan, std::size_t frame, Progr
                                    const std::function<void(std::size_t technique, FrameResult&&)>& use);
 
 // The histories after the plan's first `frames` frames. Renders those frames again with the techniques that keep one.
-std::vector<History> rebuild_histories(const RunPlan& plan, std::size_t frames, Progress& progress);
+std::vector<History> rebuild_histories(const RunPlan& plan, std::size_t frames, Progress& progress,
+                                       SurfaceColors colors = SurfaceColors::by_place);
 
 // Renders a frame once with one technique. If `time` is not null, it becomes the time that this took.
 FrameResult render_once(const Technique& technique, const RunPlan& plan, std::size_t frame, Progress& progress,
                         WallTime* time = nullptr);
 
-// Renders only a picture, without modelling memory.
-Image render_picture(const Technique& technique, const RunPlan& plan, std::size_t frame, Progress& progress);
+// Renders only a picture, without modelling memory. `history` is as in RunOptions.
+Image render_picture(const Technique& technique, const RunPlan& plan, std::size_t frame, Progress& progress,
+                     SurfaceColors colors = SurfaceColors::by_place, History* history = nullptr);
 
 // As measure_error, but what it throws says which technique and frame it is about.
 ErrorStats measure_named_error(const std::string& spec, std::size_t frame, const Image& image, const Image& reference);

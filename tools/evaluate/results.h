@@ -36,13 +36,20 @@ struct PixelCounterStats {
 
 PixelCounterStats measure_counter(const std::vector<float>& values);
 
+// The error of pictures whose surfaces vary, in two parts (tools/evaluate/error_split.h), each as RMSE.
+struct ErrorParts {
+  double visibility = 0;  // who covers how much of a pixel
+  double shading = 0;     // what colour it was taken to be
+};
+
 struct FrameReport {
   std::size_t index = 0;  // in the trace
   std::string image;      // paths are relative to the report's folder
   std::string picture;    // the image as PNG, for looking at
   std::string counters;   // per-pixel counters; empty if none were written
   std::optional<ErrorStats> error;
-  std::optional<double> flicker;  // change of the error since the previous frame
+  std::optional<ErrorParts> parts;  // none if all surfaces are flat
+  std::optional<double> flicker;    // change of the error since the previous frame
   WallTime wall_ms;
   std::uint64_t a_buffer_peak_bytes = 0;
   std::vector<Buffer> buffers;  // all except the A-buffer and the framebuffer
@@ -65,6 +72,8 @@ struct TechniqueReport {
   std::uint32_t framebuffer_bytes_per_pixel = 0;
   std::optional<ErrorStats> error;  // pooled over the frames
   std::optional<EquivalentMsaa> equivalent_msaa;
+  std::optional<ErrorParts> parts;                // pooled over the frames; none if all surfaces are flat
+  std::optional<EquivalentMsaa> visibility_msaa;  // equivalent rate for visibility alone
   std::vector<FrameReport> frames;
   std::optional<double> flicker;  // pooled over all frames except the first
   std::vector<std::pair<std::string, double>>
@@ -85,7 +94,8 @@ struct Report {
   MemoryParameters memory;
   Hardware hardware;  // whose times are modelled; nothing is modelled if it has no implementations
   std::vector<TechniqueReport> results;
-  std::vector<LadderRung> msaa_ladder;  // empty if not measured
+  std::vector<LadderRung> msaa_ladder;        // empty if not measured
+  std::vector<LadderRung> visibility_ladder;  // of visibility alone; empty if all surfaces are flat
   Json made_by = {};                    // what the results depend on: made_by() in tools/evaluate/resume.h
 };
 

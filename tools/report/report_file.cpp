@@ -83,6 +83,13 @@ void add_derived(Json& stage) {
 
 }  // namespace
 
+std::optional<EquivalentMsaa> read_emr(const Json& json) {
+  const Json* samples = json.find("equivalent_msaa");
+  if (!samples) return std::nullopt;
+  return EquivalentMsaa{samples->get<double>(), json.value("equivalent_msaa_is_lower_bound", false),
+                        json.value("equivalent_msaa_is_upper_bound", false)};
+}
+
 TechniqueSummary read_summary(const Json& result) {
   TechniqueSummary summary;
   summary.spec = result.at("technique").get<std::string>();
@@ -103,10 +110,7 @@ TechniqueSummary read_summary(const Json& result) {
     }
   }
   if (const Json* error = result.find("error")) summary.rmse = error->at("rmse").get<double>();
-  if (const Json* samples = result.find("equivalent_msaa")) {
-    summary.emr = {samples->get<double>(), result.value("equivalent_msaa_is_lower_bound", false),
-                   result.value("equivalent_msaa_is_upper_bound", false)};
-  }
+  summary.emr = read_emr(result);
   return summary;
 }
 

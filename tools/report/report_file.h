@@ -44,6 +44,10 @@ struct ReportFile {
   std::vector<LadderRung> msaa_ladder;       // empty in reports of `run`
 };
 
+// The equivalent rate of one element of the report's "results", or of its "visibility". None if it has none. Throws
+// JsonError if it is something else.
+std::optional<EquivalentMsaa> read_emr(const Json& json);
+
 // Summarises one element of the report's "results". Throws JsonError if it is something else.
 TechniqueSummary read_summary(const Json& result);
 

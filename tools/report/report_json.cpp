@@ -8,6 +8,18 @@
 namespace beampipe {
 namespace {
 
+void add(const EquivalentMsaa& emr, Json& json) {
+  json["equivalent_msaa"] = emr.samples;
+  json["equivalent_msaa_is_lower_bound"] = emr.is_lower_bound;
+  if (emr.is_upper_bound) json["equivalent_msaa_is_upper_bound"] = true;
+}
+
+Json to_json(const std::vector<LadderRung>& ladder) {
+  Json json = Json::array();
+  for (const LadderRung& rung : ladder) json.push_back({{"samples", rung.samples}, {"rmse", rung.rmse}});
+  return json;
+}
+
 Json to_json(const TechniqueReport& result, const Hardware& hardware) {
   Json json = {{"technique", result.technique},
                {"pixels_on_chip", result.pixels_on_chip},
@@ -24,10 +36,11 @@ Json to_json(const TechniqueReport& result, const Hardware& hardware) {
   for (const FrameReport& frame : result.frames) peak = std::max(peak, frame.a_buffer_peak_bytes);
   json["a_buffer_peak_bytes"] = peak;
   if (result.error) json["error"] = beampipe::to_json(*result.error);
-  if (result.equivalent_msaa) {
-    json["equivalent_msaa"] = result.equivalent_msaa->samples;
-    json["equivalent_msaa_is_lower_bound"] = result.equivalent_msaa->is_lower_bound;
-    if (result.equivalent_msaa->is_upper_bound) json["equivalent_msaa_is_upper_bound"] = true;
+  if (result.equivalent_msaa) add(*result.equivalent_msaa, json);
+  if (result.parts) {
+    json["visibility"]["rmse"] = result.parts->visibility;
+    add(result.visibility_msaa.value(), json["visibility"]);
+    json["shading"]["rmse"] = result.parts->shading;
   }
   if (result.flicker) json["flicker"] = *result.flicker;
   for (const auto& [cause, part] : result.causes) json["error_causes"][cause] = part;
@@ -64,12 +77,8 @@ Json to_json(const Report& report) {
                {"simd", report.simd},  {"threads", report.threads}, {"memory_system", to_json(report.memory)}};
   if (!report.made_by.is_null()) json["made_by"] = report.made_by;
   if (!report.hardware.implementations.empty()) json["hardware"] = report.hardware.json;
-  if (!report.msaa_ladder.empty()) {
-    json["msaa_ladder"] = Json::array();
-    for (const LadderRung& rung : report.msaa_ladder) {
-      json["msaa_ladder"].push_back({{"samples", rung.samples}, {"rmse", rung.rmse}});
-    }
-  }
+  if (!report.msaa_ladder.empty()) json["msaa_ladder"] = to_json(report.msaa_ladder);
+  if (!report.visibility_ladder.empty()) json["visibility_msaa_ladder"] = to_json(report.visibility_ladder);
   json["results"] = Json::array();
   for (const TechniqueReport& result : report.results) json["results"].push_back(to_json(result, report.hardware));
   json["claims"] = Json::array();

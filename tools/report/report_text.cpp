@@ -46,6 +46,8 @@ std::string table_text(const Report& report, const std::string& folder) {
   std::vector<std::vector<std::string>> rows(1);
   rows[0] = {"technique", "bytes/pixel", "with A-buffer"};
   if (compared) rows[0].insert(rows[0].end(), {"RMSE", "bias", "p99", "max", "EMR"});
+  const bool varies = compared && report.results.front().parts.has_value();
+  if (varies) rows[0].insert(rows[0].end(), {"visibility", "its EMR", "shading"});
   const bool moves = compared && report.results.front().flicker.has_value();
   if (moves) rows[0].push_back("flicker");
   const bool with_model = !report.results.empty() && report.results.front().frames.front().wall_ms.with_memory_model;
@@ -58,6 +60,11 @@ std::string table_text(const Report& report, const std::string& folder) {
       const ErrorStats& error = result.error.value();
       row.insert(row.end(), {format("%.6f", error.rmse), format("%+.6f", error.bias), format("%.5f", error.p99),
                              format("%.5f", error.max), emr_text(result.equivalent_msaa.value())});
+    }
+    if (varies) {
+      const ErrorParts& parts = result.parts.value();
+      row.insert(row.end(), {format("%.6f", parts.visibility), emr_text(result.visibility_msaa.value()),
+                             format("%.6f", parts.shading)});
     }
     if (moves) row.push_back(format("%.6f", result.flicker.value_or(0.0)));
     row.insert(row.end(), {format("%.1f", median_ms(result)), pictures(result, folder)});

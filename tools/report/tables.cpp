@@ -27,6 +27,18 @@ const std::vector<Source> kTechniqueColumns = {
       "Whether the EMR is exact or a bound: at least that of the best rung of the MSAA ladder, or at most that of the "
       "worst."},
      "/emr_bound"},
+    {{"visibility_rmse", "visibility", "linear light, 0..1",
+      "Root mean square error in visibility, where surfaces vary: against the reference, with one colour for a triangle "
+      "in a pixel in both pictures."},
+     "/visibility/rmse"},
+    {{"visibility_emr", "EMR of visibility", "samples per pixel",
+      "Equivalent MSAA rate for visibility alone: the number N at which msaa:N has the same error in visibility."},
+     "/visibility/equivalent_msaa"},
+    {{"visibility_emr_bound", "EMR of visibility is", "", "Whether this EMR is exact or a bound."},
+     "/visibility/emr_bound"},
+    {{"shading_rmse", "shading", "linear light, 0..1",
+      "Root mean square error in shading, where surfaces vary: what the error has beyond that in visibility."},
+     "/shading/rmse"},
     {{"framebuffer_bytes_per_pixel", "framebuffer", "bytes per pixel",
       "Size of the technique's framebuffer per pixel, all surfaces together."},
      "/framebuffer_bytes_per_pixel"},
@@ -107,6 +119,10 @@ const std::vector<Source> kFrameColumns = {
     {{"dram_bytes", "DRAM", "bytes", "Bytes that move between the modelled caches and DRAM, in either direction."},
      "/dram_bytes"},
     {{"rmse", "RMSE", "linear light, 0..1", "Root mean square error of this frame."}, "/error/rmse"},
+    {{"visibility_rmse", "visibility", "linear light, 0..1", "Root mean square error in visibility of this frame."},
+     "/visibility/rmse"},
+    {{"shading_rmse", "shading", "linear light, 0..1", "Root mean square error in shading of this frame."},
+     "/shading/rmse"},
     {{"bias", "bias", "linear light, 0..1", "Mean signed error of this frame."}, "/error/bias"},
     {{"flicker", "flicker", "linear light, 0..1", "Root mean square change of the error since the previous frame."},
      "/flicker"},
@@ -175,6 +191,10 @@ std::vector<Source> with_modelled_times(std::vector<Source> sources, const Repor
   return sources;
 }
 
+std::string bound_text(const EquivalentMsaa& emr) {
+  return emr.is_lower_bound ? "at least" : emr.is_upper_bound ? "at most" : "exact";
+}
+
 std::vector<Json> technique_records(const ReportFile& report) {
   const double msaa_bytes = parse_technique("msaa:1").framebuffer_bytes_per_pixel();
   std::vector<Json> records;
@@ -185,10 +205,10 @@ std::vector<Json> technique_records(const ReportFile& report) {
     if (summary.dram_bytes > 0) record["dram_bytes"] = summary.dram_bytes;  // otherwise no memory was modelled
     for (const auto& [implementation, ms] : summary.modelled_ms)
       record["modelled_ms"][implementation] = {{"overlap", ms.overlap}, {"sum", ms.sum}};
+    if (const Json* visibility = result.find("visibility"))
+      if (const auto emr = read_emr(*visibility)) record["visibility"]["emr_bound"] = bound_text(*emr);
     if (summary.emr) {
-      record["emr_bound"] = summary.emr->is_lower_bound   ? "at least"
-                            : summary.emr->is_upper_bound ? "at most"
-                                                          : "exact";
+      record["emr_bound"] = bound_text(*summary.emr);
       record["msaa_bytes_per_pixel"] = summary.emr->samples * msaa_bytes;
     }
     records.push_back(std::move(record));

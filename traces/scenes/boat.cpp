@@ -1,8 +1,8 @@
+#include "traces/scenes/boat.h"
+
 #include <algorithm>
 #include <cmath>
 #include <span>
-
-#include "traces/scenes/scene.h"
 
 namespace beampipe {
 namespace {
@@ -30,7 +30,8 @@ dvec3 at_rail(double x, double side) {
   return {x, rail_height(u) + 0.05, side * half_beam(u)};
 }
 
-void add_hull(MeshBuilder& hull, double budget) {
+void add_hull(MeshBuilder& hull, const BoatLook& look, double budget) {
+  hull.finish = look.hull;
   const auto band = [&](double v0, double v1, const glm::vec3& color, double share) {
     hull.color = color;
     const int n = divisions(share * budget, 8, 2);
@@ -41,11 +42,13 @@ void add_hull(MeshBuilder& hull, double budget) {
   band(-0.9, 0.0, paint, 0.25);
   band(0.0, 0.9, paint, 0.25);
   band(0.9, 1.0, stripe, 0.1);
+  hull.finish = look.deck;
   hull.color = {0.50f, 0.34f, 0.18f};
   const int n = divisions(0.2 * budget, 4, 2);
   hull.surface(2 * n, n, [&](double u, double v) {
     return dvec3(hull_point(u, 1).x, rail_height(u) - 0.25, half_beam(u) * (2 * v - 1) * -0.97);
   });
+  hull.finish = look.house;
   hull.color = {0.80f, 0.78f, 0.72f};
   hull.box({-6.0, 1.0, -0.9}, {-3.4, 2.1, 0.9});
   hull.box({-0.6, 1.0, -0.8}, {1.4, 1.8, 0.8});
@@ -56,7 +59,8 @@ void add_spar(MeshBuilder& spars, const dvec3& a, const dvec3& b, double radius,
   spars.tube(line(a, b, std::max(1, static_cast<int>(budget / (2 * sides)))), radius, 0.6 * radius, sides);
 }
 
-void add_spars(MeshBuilder& spars, double budget) {
+void add_spars(MeshBuilder& spars, const BoatLook& look, double budget) {
+  spars.finish = look.spar;
   spars.color = kSpar;
   for (const Mast& mast : kMasts) add_spar(spars, {mast.x, 0.8, 0}, {mast.x, mast.height, 0}, 0.17, 0.2 * budget);
   add_spar(spars, {7.2, 2.3, 0}, {11.2, 3.4, 0}, 0.14, 0.1 * budget);
@@ -68,7 +72,8 @@ void add_spars(MeshBuilder& spars, double budget) {
   add_spar(spars, {-2.4, 8.2, 0}, {-7.0, 10.2, 0}, 0.09, 0.1 * budget);
 }
 
-void add_sail(MeshBuilder& sail, double budget) {
+void add_sail(MeshBuilder& sail, const BoatLook& look, double budget) {
+  sail.finish = look.sail;
   sail.color = {0.80f, 0.62f, 0.42f};
   const int n = divisions(budget, 2, 2);
   sail.surface(n, n, [](double u, double v) {  // between boom and gaff, filled by the wind
@@ -78,7 +83,8 @@ void add_sail(MeshBuilder& sail, double budget) {
   });
 }
 
-void add_shrouds(MeshBuilder& rig, double budget) {
+void add_shrouds(MeshBuilder& rig, const BoatLook& look, double budget) {
+  rig.finish = look.line;
   constexpr int kShrouds = 5;
   const int ratlines = std::clamp(static_cast<int>(0.6 * budget / (4 * 26)), 1, 60);
   const int segments = std::max(1, static_cast<int>(0.4 * budget / (4 * kShrouds * 6)));
@@ -100,7 +106,8 @@ void add_shrouds(MeshBuilder& rig, double budget) {
 }
 
 // Single lines: stays, lifts, braces, and the lifelines along the rails.
-void add_lines(MeshBuilder& rig, double budget) {
+void add_lines(MeshBuilder& rig, const BoatLook& look, double budget) {
+  rig.finish = look.line;
   struct Line {
     dvec3 a, b;
     double sag;
@@ -127,7 +134,8 @@ void add_lines(MeshBuilder& rig, double budget) {
   for (const Line& l : lines) rig.tube(line(l.a, l.b, segments, l.sag), 0.014, 3);
 }
 
-void add_braids(MeshBuilder& ropes, double budget) {
+void add_braids(MeshBuilder& ropes, const BoatLook& look, double budget) {
+  ropes.finish = look.rope;
   const Path ends[] = {{{3.05, 10.8, 0.2}, {2.7, 1.6, 0.5}},  {{3.05, 9.0, -0.2}, {2.8, 1.6, -0.6}},
                        {{-2.4, 12.0, 0.2}, {-2.9, 1.6, 0.6}}, {{-2.4, 8.0, 0.25}, {-1.2, 1.7, 0.9}},
                        {{-8.6, 3.0, 0.0}, {-7.4, 1.9, 0.8}},  {{7.9, 2.4, 0.3}, {14.5, 0.6, 6.0}},
@@ -140,8 +148,10 @@ void add_braids(MeshBuilder& ropes, double budget) {
   }
 }
 
-std::vector<Mesh> build(double budget, Random& random) {
+std::vector<Mesh> build(const BoatLook& look, double budget, Random& random) {
   MeshBuilder sea("sea"), hull("hull"), spars("spars"), rig("rigging"), ropes("ropes");
+  sea.finish = look.sea;
+  sea.texture_place = [&](const dvec3& p) { return glm::dvec2(p.x, p.z) / std::max(look.sea.texture_size, 1.0); };
   sea.color = {0.05f, 0.25f, 0.32f};
   const double phase = random.uniform(0, 6.28);
   const int n = divisions(0.12 * budget, 2, 3);
@@ -149,20 +159,23 @@ std::vector<Mesh> build(double budget, Random& random) {
     const double z = 16 - 116 * v * v, x = (2 * u - 1) * (45 - 1.1 * z);
     return dvec3(x, 0.10 * std::sin(1.1 * x + 0.4 * z + phase) + 0.07 * std::sin(0.6 * x - 1.7 * z), z);
   });
-  add_hull(hull, 0.16 * budget);
-  add_spars(spars, 0.08 * budget);
-  add_sail(spars, 0.06 * budget);
-  add_shrouds(rig, 0.22 * budget);
-  add_lines(rig, 0.12 * budget);
-  add_braids(ropes, 0.24 * budget);
+  add_hull(hull, look, 0.16 * budget);
+  add_spars(spars, look, 0.08 * budget);
+  add_sail(spars, look, 0.06 * budget);
+  add_shrouds(rig, look, 0.22 * budget);
+  add_lines(rig, look, 0.12 * budget);
+  add_braids(ropes, look, 0.24 * budget);
   return {sea.take(), hull.take(), spars.take(), rig.take(), ropes.take()};
 }
 
 }  // namespace
 
-Trace make_boat(const SceneOptions& options) {
+Trace boat_trace(const SceneOptions& options, std::uint32_t default_triangles, const BoatLook& look) {
   const Camera camera{{9, 4.2, 19.5}, {0.6, 5.6, 0}, {0, 1, 0}, 36, 1, 200};
-  return one_frame(options, camera, build_to_budget(options, 60000, build));
+  const auto build_look = [&](double budget, Random& random) { return build(look, budget, random); };
+  return one_frame(options, camera, build_to_budget(options, default_triangles, build_look));
 }
+
+Trace make_boat(const SceneOptions& options) { return boat_trace(options, 60000, {}); }
 
 }  // namespace beampipe

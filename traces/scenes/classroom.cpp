@@ -1,7 +1,7 @@
+#include "traces/scenes/classroom.h"
+
 #include <algorithm>
 #include <cmath>
-
-#include "traces/scenes/scene.h"
 
 namespace beampipe {
 namespace {
@@ -26,18 +26,23 @@ void add_legs(MeshBuilder& mesh, double x, double z, double top, double radius, 
 }
 
 // A desk and the chair behind it. The middle of the desk is above `at` on the floor.
-void add_desk(MeshBuilder& mesh, const dvec3& at, double turn, double budget, Random& random) {
+void add_desk(MeshBuilder& mesh, const ClassroomLook& look, const dvec3& at, double turn, double budget,
+              Random& random) {
   const auto put = [=](const dvec3& p) {
     return at + dvec3(std::cos(turn) * p.x + std::sin(turn) * p.z, p.y, std::cos(turn) * p.z - std::sin(turn) * p.x);
   };
   mesh.place = put;
+  mesh.finish = look.wood;
   mesh.color = random.vary(kWood, 0.25);
   mesh.box({-0.6, 0.70, -0.3}, {0.6, 0.74, 0.3}, divisions(0.25 * budget, 4, 1));
+  mesh.finish = look.paper;
   mesh.color = glm::vec3(random.uniform(0.1, 0.8), random.uniform(0.1, 0.5), random.uniform(0.1, 0.5));
   mesh.box({-0.15, 0.74, -0.1}, {0.08, 0.79, 0.2});  // a book
+  mesh.finish = look.steel;
   mesh.color = kSteel;
   add_legs(mesh, 0.55, 0.25, 0.70, 0.018, 0.18 * budget);
 
+  mesh.finish = look.plastic;
   mesh.color = random.vary({0.15f, 0.35f, 0.60f}, 0.3);
   const int n = divisions(0.2 * budget, 4, 1);
   mesh.place = [=](const dvec3& p) { return put(p + dvec3(0, 0.4 * p.x * p.x, 0.65)); };  // hollow
@@ -45,13 +50,16 @@ void add_desk(MeshBuilder& mesh, const dvec3& at, double turn, double budget, Ra
   mesh.place = [=](const dvec3& p) { return put(p + dvec3(0, 0, 0.65 - 0.8 * p.x * p.x + 0.12 * (p.y - 0.4))); };
   mesh.box({-0.2, 0.62, 0.19}, {0.2, 0.90, 0.21}, n);
   mesh.place = [=](const dvec3& p) { return put(p + dvec3(0, 0, 0.65)); };
+  mesh.finish = look.steel;
   mesh.color = kSteel;
   add_legs(mesh, 0.18, 0.18, 0.43, 0.013, 0.17 * budget);
   for (double x : {-0.15, 0.15}) add_bar(mesh, {x, 0.43, 0.18}, {x, 0.65, 0.21}, 0.012, 0.02 * budget);
   mesh.place = nullptr;
 }
 
-void add_blinds(MeshBuilder& blinds, const double (&window)[2], double budget, Random& random) {
+void add_blinds(MeshBuilder& blinds, const ClassroomLook& look, const double (&window)[2], double budget,
+                Random& random) {
+  blinds.finish = look.slats;
   const int slats = std::clamp(static_cast<int>(budget / 60), 6, 33);
   const double pitch = (kLintel - kSill) / slats;
   const int length = std::max(1, static_cast<int>(budget / (slats * 8)));
@@ -65,7 +73,8 @@ void add_blinds(MeshBuilder& blinds, const double (&window)[2], double budget, R
   }
 }
 
-void add_strings(MeshBuilder& strings, const double (&window)[2], double budget) {
+void add_strings(MeshBuilder& strings, const ClassroomLook& look, const double (&window)[2], double budget) {
+  strings.finish = look.cord;
   constexpr double kThread = 0.004;  // radius
   const double width = window[1] - window[0];
   const int count = budget < 300 ? 2 : 4;
@@ -77,16 +86,20 @@ void add_strings(MeshBuilder& strings, const double (&window)[2], double budget)
   }
 }
 
-void add_room(MeshBuilder& room, double budget, Random& random) {
+void add_room(MeshBuilder& room, const ClassroomLook& look, double budget, Random& random) {
+  room.finish = look.floor;
   const auto [w, h, d] = std::tuple(kRoom.x, kRoom.y, kRoom.z);
   const int tiles = divisions(0.8 * budget, 2, 3);
   for (int i = 0; i < tiles; ++i) {
     for (int k = 0; k < tiles; ++k) {
       room.color = random.vary((i + k) % 2 == 0 ? glm::vec3(0.50f, 0.42f, 0.33f) : glm::vec3(0.36f, 0.29f, 0.22f), 0.1);
       const double x0 = w * i / tiles, x1 = w * (i + 1) / tiles, z0 = d * k / tiles, z1 = d * (k + 1) / tiles;
-      room.quad({x0, 0, z1}, {x1, 0, z1}, {x1, 0, z0}, {x0, 0, z0});
+      const dvec3 corners[] = {{x0, 0, z1}, {x1, 0, z1}, {x1, 0, z0}, {x0, 0, z0}};
+      const int first = look.is_plain() ? 0 : (i + k) % 2;  // parquet: the grain of neighbours runs across
+      room.quad(corners[first], corners[first + 1], corners[(first + 2) % 4], corners[(first + 3) % 4]);
     }
   }
+  room.finish = look.plaster;
   room.color = kWall;
   room.quad({0, 0, 0}, {w, 0, 0}, {w, h, 0}, {0, h, 0});
   const auto wall = [&](double y0, double y1, double z0, double z1) {
@@ -101,63 +114,76 @@ void add_room(MeshBuilder& room, double budget, Random& random) {
   }
   wall(kSill, kLintel, z, d);
 
+  room.finish = look.paint;
   room.color = {0.90f, 0.88f, 0.84f};
   for (const auto& window : kWindows) {
     const double middle = (window[0] + window[1]) / 2;
     for (double at : {window[0], middle, window[1]}) room.box({-0.08, kSill, at - 0.03}, {0.0, kLintel, at + 0.03});
     for (double y : {kSill, kLintel}) room.box({-0.08, y - 0.04, window[0]}, {0.03, y + 0.04, window[1]});
   }
+  room.finish = look.wood;
   room.color = kWood;
   room.box({2.0, 0.85, 0}, {6.4, 2.25, 0.04});
-  room.color = {0.04f, 0.16f, 0.09f};
+  room.finish = look.board;
+  room.color = look.is_plain() ? glm::vec3(0.04f, 0.16f, 0.09f) : glm::vec3(1.0f);  // the texture has the colour
   room.box({2.1, 0.95, 0.04}, {6.3, 2.15, 0.05});
 }
 
-void add_teacher_corner(MeshBuilder& mesh, double budget, Random& random) {
+void add_teacher_corner(MeshBuilder& mesh, const ClassroomLook& look, double budget, Random& random) {
+  mesh.finish = look.wood;
   mesh.color = random.vary(kWood, 0.1);
   mesh.box({1.2, 0.0, 1.0}, {2.9, 0.78, 1.7}, divisions(0.2 * budget, 12, 1));
-  mesh.color = {0.10f, 0.35f, 0.70f};
+  mesh.finish = look.globe;
+  mesh.color = look.is_plain() ? glm::vec3(0.10f, 0.35f, 0.70f) : glm::vec3(1.0f);
   const int rings = divisions(0.5 * budget, 4, 4);
   mesh.sphere({1.6, 1.06, 1.35}, 0.22, 2 * rings, rings);
+  mesh.finish = look.steel;
   mesh.color = kSteel;
   add_bar(mesh, {1.6, 0.78, 1.35}, {1.6, 0.86, 1.35}, 0.05, 0.05 * budget);
 }
 
-// The view outside and the ceiling, which the light inside does not reach: they are unlit.
-std::vector<Mesh> unlit_parts() {
+// The view outside and the ceiling, which the light inside does not reach: they are unlit in the classroom.
+std::vector<Mesh> unlit_parts(const ClassroomLook& look) {
   MeshBuilder parts("outside and ceiling");
+  parts.finish = look.outside;
   parts.color = {1.0f, 1.0f, 0.95f};
   parts.quad({-3, 0.9, 14}, {-3, 0.9, -10}, {-3, 8, -10}, {-3, 8, 14});
   parts.color = {0.45f, 0.75f, 0.35f};
   parts.quad({-3, -4, 14}, {-3, -4, -10}, {-3, 0.9, -10}, {-3, 0.9, 14});
-  parts.color = {0.55f, 0.54f, 0.50f};
+  parts.finish = look.ceiling;
+  parts.color = look.is_plain() ? glm::vec3(0.55f, 0.54f, 0.50f) : glm::vec3(0.9f);
   parts.quad({0, kRoom.y, 0}, {kRoom.x, kRoom.y, 0}, {kRoom.x, kRoom.y, kRoom.z}, {0, kRoom.y, kRoom.z});
   return {parts.take()};
 }
 
-std::vector<Mesh> build(double budget, Random& random) {
+std::vector<Mesh> build(const ClassroomLook& look, double budget, Random& random) {
   MeshBuilder room("room"), desks("desks"), blinds("blinds"), strings("strings");
-  add_room(room, 0.1 * budget, random);
-  add_teacher_corner(desks, 0.05 * budget, random);
+  add_room(room, look, 0.1 * budget, random);
+  add_teacher_corner(desks, look, 0.05 * budget, random);
   const int count = std::clamp(static_cast<int>(budget / 2000), 2, 12);
   for (int i = 0; i < count; ++i) {
     const dvec3 at(2.3 + 1.75 * (i % 3), 0, 2.9 + 1.5 * (i / 3));
-    add_desk(desks, at, random.uniform(-0.1, 0.1), 0.4 * budget / count, random);
+    add_desk(desks, look, at, random.uniform(-0.1, 0.1), 0.4 * budget / count, random);
   }
   for (const auto& window : kWindows) {
-    add_blinds(blinds, window, 0.075 * budget, random);
-    add_strings(strings, window, 0.15 * budget);
+    add_blinds(blinds, look, window, 0.075 * budget, random);
+    add_strings(strings, look, window, 0.15 * budget);
   }
-  std::vector<Mesh> meshes = unlit_parts();
+  std::vector<Mesh> meshes = unlit_parts(look);
   for (MeshBuilder* part : {&room, &desks, &blinds, &strings}) meshes.push_back(part->take());
   return meshes;
 }
 
 }  // namespace
 
-Trace make_classroom(const SceneOptions& options) {
+Trace classroom_trace(const SceneOptions& options, std::uint32_t default_triangles, const ClassroomLook& look) {
   const Camera camera{{6.9, 1.75, 8.3}, {1.9, 1.25, 2.6}, {0, 1, 0}, 42, 0.1, 40};
-  Trace trace = one_frame(options, camera, build_to_budget(options, 100000, build), Shoulder::right);
+  const auto build_look = [&](double budget, Random& random) { return build(look, budget, random); };
+  return one_frame(options, camera, build_to_budget(options, default_triangles, build_look), Shoulder::right);
+}
+
+Trace make_classroom(const SceneOptions& options) {
+  Trace trace = classroom_trace(options, 100000, {});
   trace.frames[0].draws[0].shading = Shading::unlit;
   return trace;
 }

@@ -15,12 +15,25 @@ using Path = std::vector<glm::dvec3>;
 // `segments` + 1 points from `a` to `b`, hanging down by `sag` in the middle.
 Path line(const glm::dvec3& a, const glm::dvec3& b, int segments = 1, double sag = 0);
 
+// What a shape is made of. A shape with a material has smooth normals, its colour at the vertices, and texture
+// coordinates: textures stand upright where the shape is seen from outside, and their u runs along tubes and along the
+// longer sides of boxes.
+struct Finish {
+  std::uint32_t material = kNoMaterial;  // index into Trace::materials
+  double texture_size = 0;  // width of one copy, in scene units; 0: one copy covers the shape, or each face of a box
+};
+
 class MeshBuilder {
  public:
   explicit MeshBuilder(std::string name) { mesh_.name = std::move(name); }
 
-  glm::vec3 color{0.8f};                               // of the shapes that follow
-  std::function<glm::dvec3(const glm::dvec3&)> place;  // moves or bends the shapes that follow; may be empty
+  // Of the shapes that follow.
+  glm::vec3 color{0.8f};
+  std::function<glm::dvec3(const glm::dvec3&)> place;  // moves or bends them; may be empty
+
+  Finish finish;  // either all shapes of a mesh have a material or none has
+  std::function<glm::dvec2(const glm::dvec3&)>
+      texture_place;  // gives the texture coordinates of positions; may be empty
 
   void triangle(const glm::dvec3& a, const glm::dvec3& b, const glm::dvec3& c);
   void quad(const glm::dvec3& a, const glm::dvec3& b, const glm::dvec3& c, const glm::dvec3& d);
@@ -44,10 +57,19 @@ class MeshBuilder {
   Mesh take() { return std::move(mesh_); }
 
  private:
-  std::uint32_t vertex(const glm::dvec3& position);
+  bool has_material() const { return finish.material != kNoMaterial; }
+  double copies(double length) const;  // of the texture
+  std::uint32_t vertex(const glm::dvec3& position, const glm::dvec2& uv);
+  std::uint32_t copy_vertices(std::uint32_t first, std::uint32_t count);
   void triangle(std::uint32_t a, std::uint32_t b, std::uint32_t c);
+  void patch(int nu, int nv, const std::function<glm::dvec3(double u, double v)>& point, bool closed, bool turned);
+  void start_shape();
+  void end_shape();
 
   Mesh mesh_;
+  std::size_t first_vertex_ = 0, first_triangle_ = 0;  // of the shape that is being made
+  glm::dvec2 shift_{0.0};                              // of its texture
+  int shapes_ = 0;
 };
 
 }  // namespace beampipe

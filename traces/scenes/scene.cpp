@@ -47,6 +47,32 @@ Trace one_frame(const SceneOptions& options, const Camera& camera, std::vector<M
   return trace;
 }
 
+Texture Surfaces::add(TextureImage image) {
+  images.push_back(std::move(image));
+  return {.image = static_cast<std::uint32_t>(images.size() - 1)};
+}
+
+std::uint32_t Surfaces::add(Material material) {
+  materials.push_back(std::move(material));
+  return static_cast<std::uint32_t>(materials.size() - 1);
+}
+
+void add_surfaces(Trace& trace, Surfaces surfaces, const glm::vec3& sun, const Ambient& ambient) {
+  const auto has_texture = [&](std::uint32_t material) {
+    return std::ranges::any_of(kTextureSlots, [&](const TextureSlot& slot) {
+      return (surfaces.materials[material].*slot.texture).has_value();
+    });
+  };
+  for (Mesh& mesh : trace.meshes)
+    if (std::ranges::none_of(mesh.materials, has_texture)) mesh.uvs[0].clear();
+  trace.images = std::move(surfaces.images);
+  trace.materials = std::move(surfaces.materials);
+  Frame& frame = trace.frames[0];
+  frame.lighting.lights[0].color = sun;
+  frame.lighting.ambient = ambient;
+  for (Draw& draw : frame.draws) draw.shading = Shading::unlit;  // of flat triangles, which there are none of
+}
+
 int divisions(double budget, double per_square, int least) {
   return std::max(least, static_cast<int>(std::lround(std::sqrt(std::max(budget, 0.0) / per_square))));
 }

@@ -25,6 +25,18 @@ enum class Shoulder { left, right };
 Trace one_frame(const SceneOptions& options, const Camera& camera, std::vector<Mesh> meshes,
                 Shoulder light_over = Shoulder::left);
 
+// The images and materials of a scene.
+struct Surfaces {
+  std::vector<TextureImage> images;
+  std::vector<Material> materials;
+
+  Texture add(TextureImage image);       // returns a texture that repeats it, with trilinear filtering
+  std::uint32_t add(Material material);  // returns its index
+};
+
+// Gives one_frame()'s trace its materials, sunlight of the colour `sun`, and ambient light, so that nothing is black.
+void add_surfaces(Trace& trace, Surfaces surfaces, const glm::vec3& sun, const Ambient& ambient);
+
 // The number of divisions, at least `least`, that gives a shape with `per_square` * divisions^2 triangles about
 // `budget` triangles.
 int divisions(double budget, double per_square, int least);
@@ -41,5 +53,11 @@ Trace make_foliage(const SceneOptions& options);
 Trace make_bars(const SceneOptions& options);
 Trace make_density(const SceneOptions& options);
 Trace make_stack(const SceneOptions& options);
+Trace make_room(const SceneOptions& options);
+Trace make_rigging(const SceneOptions& options);
+Trace make_leaves(const SceneOptions& options);
+Trace make_bumps(const SceneOptions& options);
+Trace make_sheets(const SceneOptions& options);
+Trace make_tiles(const SceneOptions& options);
 
 }  // namespace beampipe

@@ -234,7 +234,7 @@ TEST_P(WindowTwins, Windows) {
   EXPECT_EQ(whole_pixels.ops, halves);
 }
 
-INSTANTIATE_TEST_SUITE_P(Scenes, WindowTwins, testing::ValuesIn(scene_kinds()),
+INSTANTIATE_TEST_SUITE_P(Scenes, WindowTwins, testing::ValuesIn(flat_scenes()),
                          [](const auto& scene) { return std::string(scene.param.name); });
 
 }  // namespace

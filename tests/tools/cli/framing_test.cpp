@@ -16,6 +16,14 @@ Mesh box(glm::vec3 low, glm::vec3 high) {
   return mesh;
 }
 
+// The camera for one mesh that is drawn where it is.
+Camera frame_mesh(const Mesh& mesh, std::uint32_t width, std::uint32_t height, const CameraWishes& wishes) {
+  Trace trace;
+  trace.meshes = {mesh};
+  trace.frames.emplace_back().draws.emplace_back();
+  return frame_model(trace, width, height, wishes);
+}
+
 // Over all vertices: the smallest w in clip space, the largest |x| / w or |y| / w, and the largest |z| / w.
 struct Reach {
   double least_w = 1e300, across = 0, depth = 0;
@@ -96,6 +104,23 @@ TEST(FrameMesh, RefusesWhatMakesNoCamera) {
     EXPECT_THROW(frame(wishes), std::invalid_argument);
   EXPECT_THROW(frame_mesh(Mesh{}, 320, 180, {}), std::invalid_argument);
   EXPECT_THROW(frame_mesh(box({1, 1, 1}, {1, 1, 1}), 320, 180, {}), std::invalid_argument);
+}
+
+TEST(FrameModel, EnclosesAllDrawsOfAllFramesWhereTheyAre) {
+  Trace trace;
+  trace.meshes = {box({-1, -1, -1}, {1, 1, 1}), box({0, 0, 0}, {1, 1, 1})};
+  for (double x : {3.0, 8.0}) {
+    Draw draw;
+    draw.transform[3][0] = x;
+    trace.frames.emplace_back().draws = {Draw{}, draw};
+    trace.frames.back().draws[1].mesh = 1;
+  }
+  const Camera camera = frame_model(trace, 320, 180, {});
+  EXPECT_EQ(camera.target, glm::dvec3(4, 0, 0));  // from -1 to 9
+  const Reach reach = reach_of(box({-1, -1, -1}, {9, 1, 1}), camera, 320, 180);
+  EXPECT_LE(reach.across, 0.95 + 1e-9);
+  EXPECT_GT(reach.across, 0.8);
+  EXPECT_LT(reach.depth, 1.05);
 }
 
 TEST(ShoulderLight, TravelsWithTheViewAndDown) {

@@ -67,6 +67,12 @@ TEST_F(ProgramTest, EveryMistakeIsOneLineAndLeavesNothing) {
       {{"make", path("model.obj"), "--eye", "1,2", "-o", path("a.json")}, 2, "--eye"},
       {{"make", path("model.obj"), "--near", "3", "--far", "2", "-o", path("a.json")}, 2, "near"},
       {{"make", path("model.obj"), "--lambert", "--unlit", "-o", path("a.json")}, 2, "excludes"},
+      {{"make", path("missing.glb"), "-o", path("a.json")}, 1, "missing.glb"},
+      {{"make", path("model.obj"), "--materials", "some", "-o", path("a.json")}, 2, "--materials"},
+      {{"make", path("model.obj"), "--animation", "0", "-o", path("a.json")}, 2, "--animation"},
+      {{"make", path("model.glb"), "--materials", "all", "-o", path("a.json")}, 2, "--materials"},
+      {{"make", path("model.glb"), "--animation", "0", "--orbit", "9", "-o", path("a.json")}, 2, "excludes"},
+      {{"make", "fence", "--animation", "0", "-o", path("a.json")}, 2, "--animation"},
       {{"make", "soup", "-o", path("trace.json/a.json")}, 1, "trace.json"},
   };
   const Names before = folder_.list();

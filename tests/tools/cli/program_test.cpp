@@ -4,6 +4,7 @@
 
 #include "simd/target.h"
 #include "tests/tools/cli/program_fixture.h"
+#include "tests/traces/gltf_builder.h"
 #include "tools/evaluate/metrics.h"
 #include "tools/files/image_io.h"
 #include "traces/trace_io.h"
@@ -307,6 +308,40 @@ TEST_F(ProgramTest, MakeFramesAModel) {
                          {"far", 20.0}};
   EXPECT_EQ(chosen["camera"], camera);
   EXPECT_EQ(chosen["background"], Parsed({0.25, 0.5, 1.0}));
+}
+
+TEST_F(ProgramTest, MakePlaysAnAnimatedModel) {
+  GltfBuilder gltf;
+  const int times = gltf.floats("SCALAR", {0, 4}), places = gltf.floats("VEC3", {0, 0, 0, 8, 0, 0});
+  gltf.json["animations"] = {{{"channels", {{{"sampler", 0}, {"target", {{"node", 0}, {"path", "translation"}}}}}},
+                              {"samplers", {{{"input", times}, {"output", places}}}}}};
+  write_text(folder_ / "model.gltf", gltf.text());
+  succeed({"make", path("model.gltf"), "--frames", "4", "-o", path("moves.json")});
+  const Parsed moves = parsed(folder_ / "moves.json")["frames"];
+  ASSERT_EQ(moves.size(), 4u);
+  EXPECT_EQ(moves[3]["draws"][0]["transform"][12], 6.0);
+  EXPECT_EQ(moves[0]["camera"], moves[3]["camera"]);
+  EXPECT_EQ(moves[0]["camera"]["target"], Parsed({3.5, 0.5, 0.0}));  // of all frames
+  EXPECT_EQ(moves[0]["light"], moves[3]["light"]);
+  succeed({"make", path("model.gltf"), "--frames", "4", "--orbit", "90", "-o", path("turns.json")});
+  const Parsed turns = parsed(folder_ / "turns.json")["frames"];
+  ASSERT_EQ(turns.size(), 4u);
+  EXPECT_EQ(turns[3]["draws"], turns[0]["draws"]);
+  EXPECT_NE(turns[3]["camera"], turns[0]["camera"]);
+  EXPECT_EQ(turns[0]["camera"]["target"], Parsed({0.5, 0.5, 0.0}));
+  succeed({"run", path("moves.json"), "-t", "msaa:1", "-o", path("out")});
+}
+
+TEST_F(ProgramTest, MakeSaysOnceWhatItDoesNotRead) {
+  GltfBuilder gltf;
+  gltf.json["extensionsUsed"] = {"KHR_materials_clearcoat"};
+  gltf.json["meshes"][0]["primitives"].push_back({{"attributes", {{"POSITION", 0}}}, {"mode", 0}});
+  gltf.json["meshes"][0]["primitives"].push_back(gltf.json["meshes"][0]["primitives"][1]);
+  write_text(folder_ / "model.gltf", gltf.text());
+  const Outcome outcome = run_program({"make", path("model.gltf"), "--frames", "3", "-o", path("model.json")});
+  EXPECT_EQ(outcome.exit_code, 0);
+  EXPECT_EQ(outcome.err, "beampipe: " + path("model.gltf") +
+                             ": not read: extension KHR_materials_clearcoat, primitive of points (2)\n");
 }
 
 TEST_F(ProgramTest, EveryInstructionSetGivesTheSamePictures) {
