@@ -14,6 +14,7 @@
 
 #include "pipeline/technique.h"
 #include "tests/pipeline/counter_page.h"
+#include "tests/pipeline/surface_traces.h"
 #include "tests/pipeline/test_traces.h"
 
 namespace beampipe {
@@ -71,8 +72,9 @@ const std::map<std::string, StageCounters>& sums() {
         for (const StageCounters& stage : parse_technique(spec).render(trace, frame, run).stages)
           by_stage[stage.stage] += stage;
       }
-      for (const StageCounters& stage : parse_technique(spec).render(hidden_trace(), 0, {2}).stages)
-        by_stage[stage.stage] += stage;
+      for (const Trace& other : {hidden_trace(), random_surfaces(40, 30, 60, 2)})
+        for (const StageCounters& stage : parse_technique(spec).render(other, 0, {2}).stages)
+          by_stage[stage.stage] += stage;
     }
     return by_stage;
   }();

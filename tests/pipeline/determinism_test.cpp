@@ -2,7 +2,7 @@
 #include <gtest/gtest.h>
 
 #include "pipeline/technique.h"
-#include "tests/pipeline/test_traces.h"
+#include "tests/pipeline/surface_traces.h"
 #include "tests/simd/every_target.h"
 #include "tests/thorough.h"
 
@@ -51,8 +51,7 @@ void expect_same(const FrameResult& a, const FrameResult& b, const std::string& 
 
 // Compares every technique on every instruction set, with 1 to 16 threads in turn (with each of these numbers if
 // thorough), with one thread and the best instruction set.
-TEST(Determinism, AnyInstructionSetAndNumberOfThreads) {
-  const Trace trace = random_trace(150, 70, 400, 3);
+void expect_same_everywhere(const Trace& trace) {
   int threads = 0;
   for (const char* spec : kSpecs) {
     const Technique technique = parse_technique(spec);
@@ -66,6 +65,12 @@ TEST(Determinism, AnyInstructionSetAndNumberOfThreads) {
   }
 }
 
+TEST(Determinism, AnyInstructionSetAndNumberOfThreads) { expect_same_everywhere(random_trace(150, 70, 400, 3)); }
+
+TEST(Determinism, AnyInstructionSetAndNumberOfThreadsWithMaterials) {
+  expect_same_everywhere(random_surfaces(100, 70, 150, 3));
+}
+
 // In bounded memory and in one pass: pixels are closed while the raster goes on.
 bool is_one_pass(const std::string& spec) {
   return spec.find("passes=0") == spec.npos && spec.find("rules=") == spec.npos &&
@@ -73,8 +78,7 @@ bool is_one_pass(const std::string& spec) {
 }
 
 // Pictures and counters with tiles from a single quad to one that is larger than the frame.
-TEST(Determinism, AnyTileSize) {
-  const Trace trace = random_trace(90, 70, 200, 5);
+void expect_same_in_any_tile(const Trace& trace) {
   RunOptions options;
   options.memory.modelled = false;  // its caches depend on the tile
   for (const char* spec : kSpecs) {
@@ -104,6 +108,10 @@ TEST(Determinism, AnyTileSize) {
     }
   }
 }
+
+TEST(Determinism, AnyTileSize) { expect_same_in_any_tile(random_trace(90, 70, 200, 5)); }
+
+TEST(Determinism, AnyTileSizeWithMaterials) { expect_same_in_any_tile(random_surfaces(60, 50, 100, 5)); }
 
 TEST(Determinism, TheFrameIsTheSameWhereverTilesFallInIt) {
   // Rendered alone, the lower right quarter of a frame has the same pixels in other tiles.

@@ -25,7 +25,7 @@ TEST(MachineMemory, OfPixelsIsAskedForBeforeItIsTaken) {
   EXPECT_EQ(refusal(trace, "msaa:1", 4 * kGiB), "");
   EXPECT_EQ(refusal(trace, "dvm", 32 * kGiB), "");
   EXPECT_EQ(refusal(trace, "dvm", 16 * kGiB),
-            "dvm: 16384 x 16384 pixels and 0 triangles may need 27904 MiB, and this machine has 16384");
+            "dvm: 16384 x 16384 pixels and 0 triangles may need 30976 MiB, and this machine has 16384");
 }
 
 TEST(MachineMemory, OfTrianglesThatAreDrawnAgainAndAgainIsAskedForBeforeItIsTaken) {
