@@ -105,7 +105,8 @@ const std::vector<PixelCounterInfo>& error_counters() {
        "the same for visibility alone, where surfaces vary: each triangle has one colour in a pixel in both pictures",
        "compare: traces with surfaces that vary"},
       {"shading_error", kUnit,
-       "the same for what the error has beyond that in visibility, where surfaces vary: other colours than those of the "
+       "the same for what the error has beyond that in visibility, where surfaces vary: other colours than those of "
+       "the "
        "reference",
        "compare: traces with surfaces that vary"},
       {"cause_leak", kUnit, "part of the pixel's error: a triangle shows that is completely hidden", kCauses},
