@@ -6,6 +6,7 @@
 #include "pipeline/bins/frame_context.h"
 #include "pipeline/memory/geometry_memory.h"
 #include "pipeline/technique.h"
+#include "stages/data/sample_fragment.h"
 #include "tests/pipeline/test_traces.h"
 
 namespace beampipe {
