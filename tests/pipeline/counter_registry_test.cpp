@@ -72,7 +72,7 @@ const std::map<std::string, StageCounters>& sums() {
         for (const StageCounters& stage : parse_technique(spec).render(trace, frame, run).stages)
           by_stage[stage.stage] += stage;
       }
-      for (const Trace& other : {hidden_trace(), random_surfaces(40, 30, 60, 2)})
+      for (const Trace& other : {hidden_trace(), random_surfaces(128, 96, 150, 2)})
         for (const StageCounters& stage : parse_technique(spec).render(other, 0, {2}).stages)
           by_stage[stage.stage] += stage;
     }

@@ -328,6 +328,7 @@ TEST(SurfaceShader, AGBufferRounds) {
   expect_near(a, b, 0.02);
   // Without light only the base colour counts.
   material.unlit = true;
+  scene.mesh().vertex_colors.assign(4, glm::vec4(1));  // so that it is not flat
   const ShadedScene unlit(scene.trace, {.storage = MaterialStorage::gbuffer});
   for (int c = 0; c < 3; ++c)
     EXPECT_EQ(unlit.shader.color(0, {3, 4})[c], srgb_values()[srgb_code(material.base_color[c])]);
