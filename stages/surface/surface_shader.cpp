@@ -312,12 +312,13 @@ glm::vec4 SurfaceShader::shaded(std::uint32_t triangle, const ShadingPlace& plac
     const bool is_mean = level_of_detail(slopes, textures_->chain(texture.image, space).levels[0]) > 0;
     return {texel.r, texel.g, texel.b, is_mean ? 1.0f : 0.0f};
   };
-  const SurfacePoint<float> point{v,
-                                  weights,
-                                  triple<float>(triangles_.attributes[triangle].normal),
-                                  surface.turned ? -1.0f : 1.0f,
-                                  triple<float>(glm::vec3(surface.tangent)),
-                                  surface.tangent.w};
+  const SurfacePoint<float> point{
+      v,
+      weights,
+      triple<float>(triangles_.attributes[triangle].normal),
+      surface.turned ? -1.0f : 1.0f,
+      triple<float>(glm::vec3(surface.tangent)),
+      shader.has_tangents ? triangles_.vertices[surface.vertices[0]].tangent.w : surface.tangent.w};
   SurfaceMaterial<float> found = material_at(shader, point, texture_place, fetch);
   if (rules_.storage == MaterialStorage::gbuffer && !by_pixel) found.reflector = through_gbuffer(found.reflector);
   const Triple<float> lit = lit_color(shader.material, found, frame_.lighting);
