@@ -21,21 +21,27 @@ void for_each_position(const WideMask& mask, const std::vector<SamplePattern>& p
     }
 }
 
+// The part of the area of width `width` that a cutout covers.
+float covered_part(const TileShader& shader, const Fragment& fragment, float u, float v, float width,
+                   AlphaMaskWork& work) {
+  work.alphas += shader.work(fragment.triangle).alpha;
+  const AlphaAt at = shader.alpha(fragment.triangle, fragment.pixel, u, v, width);
+  if (!at.is_magnified) return at.alpha;
+  return at.alpha >= shader.alpha_cutoff(fragment.triangle) ? 1.0f : 0.0f;
+}
+
 // The part of the fragment that is left, 0..1.
 float cut_out(const TileShader& shader, const std::vector<SamplePattern>& patterns, float spacing, Fragment& fragment,
               AlphaMaskWork& work) {
-  if (fragment.mask.none()) {
-    ++work.footprints;
-    return shader.alpha(fragment.triangle, fragment.pixel, fragment.centroid_u, fragment.centroid_v, 1.0f).alpha;
-  }
+  if (fragment.mask.none()) return covered_part(shader, fragment, fragment.centroid_u, fragment.centroid_v, 1.0f, work);
+  ++work.masks, ++work.shares;
   const OpacityRanks ranks = shader.opacity_ranks(fragment.triangle, fragment.pixel);
-  const float cutoff = shader.alpha_cutoff(fragment.triangle), covered = static_cast<float>(fragment.mask.count());
+  const auto covered = static_cast<float>(fragment.mask.count());
   WideMask left;
   float sum = 0;
   for_each_position(fragment.mask, patterns, [&](std::size_t position, float u, float v) {
     ++work.positions;
-    const AlphaAt at = shader.alpha(fragment.triangle, fragment.pixel, u, v, spacing);
-    const float part = at.is_magnified ? (at.alpha >= cutoff ? 1.0f : 0.0f) : at.alpha;
+    const float part = covered_part(shader, fragment, u, v, spacing, work);
     sum += part;
     if (ranks.takes(static_cast<std::uint32_t>(position), part)) left.set(position);
   });
@@ -45,7 +51,8 @@ float cut_out(const TileShader& shader, const std::vector<SamplePattern>& patter
 
 float let_through(const TileShader& shader, const std::vector<SamplePattern>& patterns, Fragment& fragment,
                   AlphaMaskWork& work) {
-  ++work.footprints;
+  ++work.masks;
+  work.alphas += shader.work(fragment.triangle).alpha;
   const float opacity =
       std::clamp(shader.alpha(fragment.triangle, fragment.pixel, fragment.centroid_u, fragment.centroid_v, 1.0f).alpha,
                  0.0f, 1.0f);

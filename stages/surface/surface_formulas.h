@@ -257,6 +257,18 @@ SurfaceMaterial<Real> material_at(const ShaderInputs& shader, const SurfacePoint
   return surface;
 }
 
+// Alpha alone, as in SurfaceMaterial. place and fetch: as above; `vertex_alphas`: of the vertices' colours.
+template <class Real, class Place, class Fetch>
+Real alpha_at(const ShaderInputs& shader, const std::array<Real, 3>& vertex_alphas, const Barycentrics<Real>& weights,
+              Place&& place, Fetch&& fetch) {
+  Real alpha(shader.material.base_color.a);
+  if (const auto& texture = shader.material.base_texture)
+    alpha = alpha * fetch(TextureRole::base, place(texture->uv_set))[3];
+  if (shader.has_vertex_colors)
+    alpha = alpha * interpolated(vertex_alphas[0], vertex_alphas[1], vertex_alphas[2], weights);
+  return alpha;
+}
+
 // The second half: linear RGB towards the eye.
 template <class Real>
 Triple<Real> lit_color(const Material& material, const SurfaceMaterial<Real>& surface, const Lighting& lighting) {
