@@ -14,6 +14,8 @@ Bin::Bin(const FrameContext& frame_context, const Tile& bin_tile, const Triangle
   if (keeps_pixels_on_chip()) holds("open_pixels", tile.pixels() * framebuffer.on_chip_bytes_per_pixel());
   stages_.reserve(stages.size());
   for (const std::string& name : stages) stages_.push_back(StageCounters{name});
+  if (context.has_textures()) texels_.emplace(context.texture_layout ? &*context.texture_layout : nullptr);
+  if (context.texture_layout) texture_fetches_.emplace(memory_);
 }
 
 BinStage Bin::stage(std::string_view name) {
@@ -41,8 +43,27 @@ const ZOrder& Bin::z_order() {
 }
 
 TriangleFetches& Bin::triangle_fetches() {
-  if (!triangle_fetches_) triangle_fetches_.emplace(memory(), list);
+  if (!triangle_fetches_) triangle_fetches_.emplace(memory(), list, &context.shader);
   return *triangle_fetches_;
+}
+
+void Bin::charge_texels(const BinStage& stage) {
+  if (!texels_) return;
+  const std::uint64_t bytes = texels_->texels() * kTexelBytes;
+  stage.counters.bytes_read += bytes;
+  stage.counters.texture_bytes += bytes;
+  if (texture_fetches_)
+    texture_fetches_->read(*texels_, static_cast<std::size_t>(&stage.counters - stages_.data()), stage.counters);
+  texels_->clear();
+}
+
+void Bin::start_texture_pass() {
+  if (texture_fetches_) texture_fetches_->start_pass();
+}
+
+void Bin::finish_memory() {
+  StageCounters nothing_is_written;
+  if (triangle_fetches_ && !context.shader.is_flat()) triangle_fetches_->flush(nothing_is_written);
 }
 
 }  // namespace beampipe

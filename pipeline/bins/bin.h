@@ -16,6 +16,7 @@
 #include "pipeline/memory/framebuffer.h"
 #include "pipeline/memory/geometry_memory.h"
 #include "pipeline/memory/linear_memory.h"
+#include "pipeline/memory/texture_memory.h"
 #include "pipeline/memory/tile_surface.h"
 #include "stages/data/tile.h"
 
@@ -88,7 +89,21 @@ class Bin {
   const ZOrder& z_order();              // of the tile's pixels
   TriangleFetches& triangle_fetches();  // setup and attributes that shaders fetch by a triangle's number
 
+  // For AttributesInOrder: null if all triangles are flat.
+  TriangleFetches* surface_fetches() { return context.shader.is_flat() ? nullptr : &triangle_fetches(); }
+
+  // Collects the texels that a stage reads until they are charged; null if there are no textures.
+  TexelRequests* texels() { return texels_ ? &*texels_ : nullptr; }
+  void charge_texels(const BinStage& stage);
+
+  // Textures are read in another pass over the frame from here on.
+  void start_texture_pass();
+
+  // When the bin is rendered.
+  void finish_memory();
+
   // ---- What was recorded ----
+  TexturePasses take_texture_passes() { return texture_fetches_ ? texture_fetches_->take_passes() : TexturePasses{}; }
   const std::vector<glm::vec4>& picture() const { return picture_; }  // empty: a later stage makes the frame's
   const std::vector<StageCounters>& stages() const { return stages_; }
   const std::map<std::string, std::vector<float>>& pixel_counters() const { return pixel_counters_; }
@@ -107,6 +122,8 @@ class Bin {
   std::vector<glm::vec4> picture_;
   std::optional<ZOrder> z_order_;
   std::optional<TriangleFetches> triangle_fetches_;
+  std::optional<TexelRequests> texels_;
+  std::optional<TextureFetches> texture_fetches_;
 };
 
 // Adds one to a pixel's count for each of its fragments.

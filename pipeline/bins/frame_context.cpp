@@ -28,6 +28,8 @@ FrameContext::FrameContext(const Trace& trace, const Frame& rendered, const RunO
     if (triangles.is_opaque(i)) continue;
     (shader.is_cutout(i) ? has_cutouts_ : has_blending_) = true;
   }
+  has_textures_ = !shader.is_flat() && !trace.images.empty();
+  if (has_textures_ && run.memory.modelled) texture_layout.emplace(run.textures ? *run.textures : *own_textures);
 }
 
 }  // namespace beampipe

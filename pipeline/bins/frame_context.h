@@ -18,6 +18,7 @@ struct FrameContext {
   SetupTriangles triangles;  // in primitive order
   std::optional<TextureSet> own_textures;
   SurfaceShader shader;
+  std::optional<TextureLayout> texture_layout;  // if memory is modelled and triangles have textures
 
   // Runs vertex_setup and the flat triangles' shader. The trace, the frame and the options must outlive it.
   FrameContext(const Trace& trace, const Frame& frame, const RunOptions& run, const ShadingRules& rules = {});
@@ -28,9 +29,10 @@ struct FrameContext {
   bool has_alpha() const { return has_cutouts_ || has_blending_; }
   bool has_cutouts() const { return has_cutouts_; }
   bool has_blending() const { return has_blending_; }
+  bool has_textures() const { return has_textures_; }
 
  private:
-  bool has_cutouts_ = false, has_blending_ = false;
+  bool has_cutouts_ = false, has_blending_ = false, has_textures_ = false;
 };
 
 }  // namespace beampipe

@@ -61,15 +61,17 @@ struct GeometryPass {
 // Adds up what bins recorded. Only sums and the picture are kept, so that memory use stays that of the picture.
 class FrameRecorder {
  public:
-  FrameRecorder(const FrameContext& context, const std::vector<std::string>& stages) : context_(context) {
+  FrameRecorder(const FrameContext& context, const std::vector<std::string>& stages, std::size_t bins)
+      : context_(context), texture_passes_(context.texture_layout ? bins : 0) {
     const Frame& frame = context.frame;
     result_.image = {frame.width, frame.height, std::vector<float>(4 * pixels())};
     result_.stages.push_back(StageCounters{context.setup.stage});
     for (const std::string& name : stages) result_.stages.push_back(StageCounters{name});
   }
 
-  // Thread-safe.
-  void add(const Bin& bin) {
+  // Thread-safe. `index`: of the bin, in the order in which bins are drawn.
+  void add(Bin& bin, std::size_t index) {
+    if (!texture_passes_.empty()) texture_passes_[index] = bin.take_texture_passes();
     std::map<std::string, std::vector<float>*> counters;  // of the frame
     {
       const std::lock_guard lock(mutex_);
@@ -98,6 +100,7 @@ class FrameRecorder {
       setup += pass.setup;
       raster += pass.raster;
     }
+    charge_texture_dram();
     const std::uint64_t triangles = context_.triangles.triangles.size();
     result_.buffers = {
         {"setup_triangles", triangles * (sizeof(SetupTriangle) + sizeof(FlatAttributes)) + surface_bytes(context_)},
@@ -107,6 +110,16 @@ class FrameRecorder {
   }
 
  private:
+  void charge_texture_dram() {
+    if (texture_passes_.empty()) return;
+    const std::size_t stages = result_.stages.size() - 1;  // of a bin
+    const std::vector<std::uint64_t> bytes = texture_dram_bytes(context_.run.memory, texture_passes_, stages);
+    for (std::size_t s = 0; s < stages; ++s) {
+      result_.stages[s + 1].dram_bytes += bytes[s];
+      result_.stages[s + 1].texture_dram_bytes += bytes[s];
+    }
+  }
+
   std::size_t pixels() const { return std::size_t{context_.frame.width} * context_.frame.height; }
 
   void place(const std::vector<glm::vec4>& picture, const Tile& tile) {
@@ -121,6 +134,7 @@ class FrameRecorder {
   std::mutex mutex_;
   FrameResult result_;
   std::map<std::string, std::uint64_t> buffer_peaks_;
+  std::vector<TexturePasses> texture_passes_;  // by bin; empty without textures
   int geometry_passes_ = 1;
 };
 
@@ -133,7 +147,7 @@ FrameResult render_bins(const FrameContext& context, const BinPlan& plan, const 
   if (run.weights) run.weights->assign(std::size_t{context.frame.width} * context.frame.height, {});
   GeometryPass pass(context);
   const std::vector<std::string> stages = stages_of(context, plan);
-  FrameRecorder recorder(context, stages);
+  FrameRecorder recorder(context, stages, grid.tiles.size());
   const std::uint64_t entry_bytes = sizeof(std::uint32_t) + (plan.sorts_lists ? kKeyBytes : 0);
   std::uint64_t list_bytes = 0;
   const auto render_band = [&](const Band& band) {
@@ -145,7 +159,8 @@ FrameResult render_bins(const FrameContext& context, const BinPlan& plan, const 
     tbb::parallel_for(std::size_t{0}, lists.size(), [&](std::size_t i) {
       Bin bin(context, grid.tiles[band.first + i], lists[i], stages, plan.framebuffer);
       render(bin);
-      recorder.add(bin);
+      bin.finish_memory();
+      recorder.add(bin, band.first + i);
     });
   };
   for (const Band& band :

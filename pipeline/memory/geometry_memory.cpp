@@ -42,17 +42,52 @@ void read_bin(const MemoryParameters& memory, const TriangleList& list, StageCou
   for (const std::uint32_t triangle : list) setup.read(triangle, counters);
 }
 
-TriangleFetches::TriangleFetches(const MemoryParameters& memory, const TriangleList& list)
+TriangleFetches::TriangleFetches(const MemoryParameters& memory, const TriangleList& list, const SurfaceShader* shader)
     : modelled_(memory.modelled),
       list_(list),
+      shader_(shader && !shader->is_flat() ? shader : nullptr),
       places_(modelled_ ? places_of(list, memory.l2.line_bytes) : Places{}),
       lines_(memory, places_.end) {}
 
-TriangleFetches::Places TriangleFetches::places_of(const TriangleList& list, std::uint32_t line_bytes) {
+TriangleFetches::Places TriangleFetches::places_of(const TriangleList& list, std::uint32_t line_bytes) const {
   Places places;
   place_records(list, sizeof(SetupTriangle), line_bytes, places.setup, places.end);
   place_records(list, sizeof(FlatAttributes), line_bytes, places.attributes, places.end);
+  if (shader_) place_surfaces(list, line_bytes, places);
   return places;
+}
+
+// The vertices of a draw follow each other, and all of them have the same size.
+void TriangleFetches::place_surfaces(const TriangleList& list, std::uint32_t line_bytes, Places& places) const {
+  place_records(list, kSurfaceBytes, line_bytes, places.surfaces, places.end);
+  struct Vertex {
+    std::uint32_t number, bytes;
+    auto operator<=>(const Vertex&) const = default;
+  };
+  std::vector<Vertex> vertices;
+  for (const std::uint32_t triangle : list)
+    if (!is_flat(triangle))
+      for (const std::uint32_t vertex : shader_->vertices(triangle))
+        vertices.push_back({vertex, vertex_bytes(triangle)});
+  std::sort(vertices.begin(), vertices.end());
+  vertices.erase(std::unique(vertices.begin(), vertices.end()), vertices.end());
+  for (const Vertex& vertex : vertices) places.vertices.push_back(vertex.number);
+  for (std::size_t first = 0, end = 0; first < vertices.size(); first = end) {
+    while (end < vertices.size() && vertices[end].bytes == vertices[first].bytes) ++end;
+    const auto begin = places.vertices.begin();
+    place_records({begin + static_cast<std::ptrdiff_t>(first), begin + static_cast<std::ptrdiff_t>(end)},
+                  vertices[first].bytes, line_bytes, places.vertex_places, places.end);
+  }
+}
+
+void TriangleFetches::surface(std::uint32_t triangle, StageCounters& counters) {
+  lines_.read(request_, places_.surfaces[rank(triangle)], kSurfaceBytes, counters);
+  const std::uint32_t bytes = vertex_bytes(triangle);
+  for (const std::uint32_t vertex : shader_->vertices(triangle)) {
+    const auto found = std::lower_bound(places_.vertices.begin(), places_.vertices.end(), vertex);
+    lines_.read(request_, places_.vertex_places[static_cast<std::size_t>(found - places_.vertices.begin())], bytes,
+                counters);
+  }
 }
 
 void TriangleFetches::load_setup() {

@@ -1,5 +1,6 @@
 // Memory traffic of geometry. The frame is binned as a whole: vertex_setup writes setup triangles and their attributes
-// as two arrays in primitive order, and each bin reads those of its list.
+// as two arrays in primitive order, and each bin reads those of its list. Triangles that are not flat have, instead of
+// flat attributes, planes and three vertices: two more arrays.
 #pragma once
 
 #include <cstddef>
@@ -10,6 +11,7 @@
 #include "stages/cost/counters.h"
 #include "stages/data/setup_triangle.h"
 #include "stages/data/tile.h"
+#include "stages/surface/surface_shader.h"
 
 namespace beampipe {
 
@@ -26,33 +28,24 @@ void read_list(const MemoryParameters& memory, const TriangleList& list, StageCo
 // The same, and the setup of the list's triangles in primitive order.
 void read_bin(const MemoryParameters& memory, const TriangleList& list, StageCounters& counters);
 
-// Attributes read in primitive order, as forward shading does in one pass over a bin: each triangle's are read once.
-class AttributesInOrder {
- public:
-  explicit AttributesInOrder(const MemoryParameters& memory) : records_(memory, sizeof(FlatAttributes)) {}
-
-  template <class Fragment>
-  void read(const std::vector<Fragment>& fragments, StageCounters& counters) {
-    for (const Fragment& fragment : fragments) records_.read(fragment.triangle, counters);
-  }
-
- private:
-  RecordsInOrder records_;
-};
-
 // Setup and attributes that shaders fetch by triangle number, through the L1 of the multiprocessor that works on the
 // bin. Each fetch is a request of its own.
 class TriangleFetches {
  public:
-  // `list` must outlive it.
-  TriangleFetches(const MemoryParameters& memory, const TriangleList& list);
-  TriangleFetches(const MemoryParameters& memory, TriangleList&& list) = delete;
+  // Both must outlive it. Without a shader all triangles are flat.
+  TriangleFetches(const MemoryParameters& memory, const TriangleList& list, const SurfaceShader* shader = nullptr);
+  TriangleFetches(const MemoryParameters& memory, TriangleList&& list, const SurfaceShader* shader = nullptr) = delete;
+
+  bool is_flat(std::uint32_t triangle) const { return !shader_ || shader_->is_flat(triangle); }
 
   void setup(std::uint32_t triangle, StageCounters& counters) {
     if (modelled_) lines_.read(++request_, places_.setup[rank(triangle)], sizeof(SetupTriangle), counters);
   }
   void attributes(std::uint32_t triangle, StageCounters& counters) {
-    if (modelled_) lines_.read(++request_, places_.attributes[rank(triangle)], sizeof(FlatAttributes), counters);
+    if (!modelled_) return;
+    ++request_;
+    if (!is_flat(triangle)) return surface(triangle, counters);
+    lines_.read(request_, places_.attributes[rank(triangle)], sizeof(FlatAttributes), counters);
   }
 
   // The depth plane alone.
@@ -84,18 +77,56 @@ class TriangleFetches {
  private:
   std::size_t rank(std::uint32_t triangle) const;
 
+  // Planes and vertices of a triangle that is not flat.
+  void surface(std::uint32_t triangle, StageCounters& counters);
+
+  // What the shader of a triangle that is not flat reads of each vertex.
+  std::uint32_t vertex_bytes(std::uint32_t triangle) const {
+    return static_cast<std::uint32_t>((shader_->work(triangle).input_bytes - kSurfaceBytes) / 3);
+  }
+
   // Where the records of the list's triangles lie, in a memory of only those lines that hold a record of the bin.
   struct Places {
     std::vector<std::uint32_t> setup, attributes;
-    std::uint32_t end = 0;  // of that memory, in bytes
+    std::vector<std::uint32_t> surfaces;                 // empty if all triangles are flat
+    std::vector<std::uint32_t> vertices, vertex_places;  // in increasing order, and where they lie
+    std::uint32_t end = 0;                               // of that memory, in bytes
   };
-  static Places places_of(const TriangleList& list, std::uint32_t line_bytes);
+  Places places_of(const TriangleList& list, std::uint32_t line_bytes) const;
+  void place_surfaces(const TriangleList& list, std::uint32_t line_bytes, Places& places) const;
 
   bool modelled_;
   const TriangleList& list_;
+  const SurfaceShader* shader_;
   Places places_;
   LinearMemory lines_;
   std::uint32_t request_ = 0;
+};
+
+// Attributes read in primitive order, as forward shading does in one pass over a bin: each triangle's are read once.
+// The vertices of triangles that are not flat are in no order, so they are fetched.
+class AttributesInOrder {
+ public:
+  // `fetches` must outlive it. Null: all triangles are flat.
+  explicit AttributesInOrder(const MemoryParameters& memory, TriangleFetches* fetches = nullptr)
+      : records_(memory, sizeof(FlatAttributes)), fetches_(fetches) {}
+
+  template <class Fragment>
+  void read(const std::vector<Fragment>& fragments, StageCounters& counters) {
+    for (const Fragment& fragment : fragments) {
+      if (!fetches_ || fetches_->is_flat(fragment.triangle)) {
+        records_.read(fragment.triangle, counters);
+      } else if (fragment.triangle != last_) {
+        fetches_->attributes(fragment.triangle, counters);
+        last_ = fragment.triangle;
+      }
+    }
+  }
+
+ private:
+  RecordsInOrder records_;
+  TriangleFetches* fetches_;
+  std::uint32_t last_ = ~0u;  // triangle that was fetched
 };
 
 }  // namespace beampipe

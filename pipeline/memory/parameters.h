@@ -4,7 +4,7 @@
 // bin. Every class of surface has a cache, which is empty at the start of a bin. At the end of each pass over the frame
 // dirty lines are written back, because the next pass starts with another bin. Requests that hit their cache go no
 // further; misses and evictions go to L2, and those of L2 go to DRAM. Data that passes from stage to stage stays in
-// queues on chip: it counts as logical bytes only.
+// queues on chip: it counts as logical bytes only. Textures are what bins share, so L2 keeps texels from bin to bin.
 #pragma once
 
 #include <algorithm>
@@ -45,11 +45,12 @@ struct MemoryParameters {
   CacheParameters rop{24 * 16 * 1024, 4, 256};
 
   // Shaders read through the L1 of the multiprocessor that works on the bin; their writes bypass it. Source:
-  // GPGPU-Sim's Volta: 4 sets of 64 lines, write-through. (It can grow to 128 KiB where shared memory leaves room.)
+  // GPGPU-Sim's Volta: 4 sets of 64 lines, write-through. (It can grow to 128 KiB where shared memory leaves room.) It
+  // is the texture cache as well (Volta whitepaper: L1 data cache, texture cache and shared memory are one).
   CacheParameters l1{32 * 1024, 64, 128};
 
-  // The L2 for shader reads and writes, such as the A-buffer and setup triangles. Source: GPGPU-Sim's Volta: 32 sets of
-  // 24 lines of 128 bytes in each slice, 96 KiB; 48 slices make a Titan V's 4.5 MiB (NVIDIA's figure).
+  // The L2 for shader reads and writes, such as the A-buffer, setup triangles and texels. Source: GPGPU-Sim's Volta: 32
+  // sets of 24 lines of 128 bytes in each slice, 96 KiB; 48 slices make a Titan V's 4.5 MiB (NVIDIA's figure).
   CacheParameters l2{48 * 96 * 1024, 24, 128};
 
   // With compression a block is cleared, compressed or raw; without it, cleared or raw. Clearing a surface only sets

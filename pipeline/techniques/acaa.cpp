@@ -35,7 +35,7 @@ FrameResult render_acaa(const Trace& trace, const Frame& frame, const AcaaOption
   const BinPlan plan{.stages = stages_of(options), .framebuffer = acaa_framebuffer(options)};
   return render_bins(context, plan, [&](Bin& bin) {
     SampleRasterUnit raster(bin);
-    SampleShadeUnit shade(bin);
+    SampleShadeUnit shade(bin, rounds.front(), ShadeAt::centroid);
     AccumulateUnit accumulate(bin, options.samples, options.color, options.double_counting);
     std::vector<float>& visible = bin.pixel_counter("visible_fragments");
 
@@ -45,7 +45,7 @@ FrameResult render_acaa(const Trace& trace, const Frame& frame, const AcaaOption
       depth_test.end_pass();
       if (accumulate.blends_background()) depth_test.read_depths(accumulate.stage);
       accumulate.start_round(sampling, depth_test.surface());
-      shade.start_pass();
+      shade.start_pass(sampling);
       raster.pass(sampling, ShadeAt::centroid, [&](std::vector<SampleFragment>& fragments) {
         depth_test.test_equal(fragments);
         accumulate.test_stencil(fragments);

@@ -24,7 +24,7 @@ FrameResult render_deferred(const Trace& trace, const Frame& frame, const RunOpt
     depth_test.end_pass();
     raster.pass(sampling, ShadeAt::sample, [&](std::vector<SampleFragment>& fragments) {
       depth_test.test_equal(fragments);
-      gbuffer.write_fragments(fragments, depth_test.accesses());
+      gbuffer.write_fragments(fragments, depth_test);
     });
     depth_test.end_pass();
     depth_test.count_bytes();

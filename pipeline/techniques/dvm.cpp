@@ -51,7 +51,8 @@ void shade_samples(Bin& bin, const SamplePattern& pattern, std::vector<SampleQua
   for (const SampleQuad& quad : quads)
     for (const std::uint32_t triangle : quad.triangle)
       if (triangle != kNoTriangle) triangles.push_back(triangle);
-  color_samples(bin.shader(), bin.tile, pattern, quads);
+  color_samples(bin.shader(), bin.tile, pattern, quads, bin.texels());
+  bin.charge_texels(shading);
   write_gbuffer(bin.shader(), triangles, shading.timed());
   shading.streams(shaded * (kVisibilityBytes + kGBufferBytes));
   for (const std::uint32_t triangle : triangles) bin.triangle_fetches().attributes(triangle, shading.counters);

@@ -32,6 +32,7 @@ FrameResult render_msaa(const Trace& trace, const Frame& frame, const MsaaOption
   return render_bins(context, plan, [&](Bin& bin) {
     SampleRasterUnit raster(bin, SampleRasterUnit::Translucent::drawn, options.alpha);
     SampleShadeUnit shade(bin, sampling, options.at);
+    shade.counts_centroids();
     DepthTestUnit depth_test(bin, sampling, color_bytes(options), first_pass, same_color);
     depth_test.shade_translucent_at(options.at);
 

@@ -51,6 +51,7 @@ class DepthTestUnit {
   void count_bytes();
 
   const SampleTile& surface() const { return surface_; }
+  const Sampling& sampling() const { return sampling_; }
 
  private:
   DepthTestUnit(Bin& bin, const Sampling& sampling, std::uint32_t first_color_bytes, std::uint32_t color_bytes,

@@ -8,6 +8,7 @@
 
 #include "pipeline/bins/bin.h"
 #include "pipeline/units/raster_units.h"
+#include "pipeline/units/sample_places.h"
 #include "stages/beam/alpha_mask.h"
 #include "stages/beam/beam_fragment.h"
 #include "stages/picture/shade.h"
@@ -49,7 +50,10 @@ class BeamFragmentUnit {
   void make(const std::vector<Pair>& pairs) {
     fragments_.clear();
     beam_fragment(bin_.triangles(), pairs, bin_.tile, options_, stage_.timed(), fragments_);
-    if (bin_.context.has_alpha()) alpha_mask(bin_.shader(), patterns_, bin_.stage("alpha_mask").timed(), fragments_);
+    if (!bin_.context.has_alpha()) return;
+    const BinStage masking = bin_.stage("alpha_mask");
+    alpha_mask(bin_.shader(), patterns_, masking.timed(), fragments_, bin_.texels());
+    bin_.charge_texels(masking);
   }
 
   Bin& bin_;
@@ -67,31 +71,34 @@ inline void count_specks(const std::vector<Fragment>& fragments, std::vector<flo
 class ShadeUnit {
  public:
   explicit ShadeUnit(Bin& bin)
-      : bin_(bin), stage_(bin.stage("shade")), shader_(bin.shader()), in_order_(bin.memory()) {}
+      : bin_(bin), stage_(bin.stage("shade")), shader_(bin.shader()), in_order_(bin.memory(), bin.surface_fetches()) {}
 
   // Forward shading: fragments in primitive order, in 2x2 quads.
   void operator()(std::vector<Fragment>& fragments) {
-    shade(shader_, fragments, stage_.timed());
+    shade(shader_, fragments, stage_.timed(), bin_.texels());
+    bin_.charge_texels(stage_);
     in_order_.read(fragments, stage_.counters);
   }
   // Fragments that are known to be visible, in any order: one by one, attributes fetched by triangle number.
   void visible(std::vector<Fragment>& fragments) {
-    shade_visible(shader_, fragments, stage_.timed());
+    shade_visible(shader_, fragments, stage_.timed(), bin_.texels());
+    bin_.charge_texels(stage_);
     bin_.triangle_fetches().attributes(fragments, stage_.counters);
   }
-  void visible(const std::vector<Pair>& whole) {
-    shade_visible(shader_, whole, stage_.timed());
-    bin_.triangle_fetches().attributes(whole, stage_.counters);
-  }
-
-  void visible(const std::vector<ShadedTriangle>& shaded) {
-    shade_visible(shader_, shaded, stage_.timed());
-    bin_.triangle_fetches().attributes(shaded, stage_.counters);
-  }
+  // Composition shades these. Texels that it has read are charged here.
+  void visible(const std::vector<Pair>& whole) { charge_visible(whole); }
+  void visible(const std::vector<ShadedTriangle>& shaded) { charge_visible(shaded); }
 
   void finish_fetches() { bin_.triangle_fetches().flush(stage_.counters); }
 
  private:
+  template <class Item>
+  void charge_visible(const std::vector<Item>& shaded) {
+    shade_visible(shader_, shaded, stage_.timed());
+    bin_.charge_texels(stage_);
+    bin_.triangle_fetches().attributes(shaded, stage_.counters);
+  }
+
   Bin& bin_;
   BinStage stage_;
   TileShader shader_;
@@ -101,30 +108,41 @@ class ShadeUnit {
 // Forward shading of sample fragments in primitive order, in 2x2 quads.
 class SampleShadeUnit {
  public:
-  explicit SampleShadeUnit(Bin& bin) : bin_(bin), stage_(bin.stage("shade")), in_order_(bin.memory()) {}
+  // `sampling` must outlive the pass.
+  SampleShadeUnit(Bin& bin, const Sampling& sampling, ShadeAt at)
+      : bin_(bin),
+        stage_(bin.stage("shade")),
+        in_order_(bin.memory(), bin.surface_fetches()),
+        sampling_(&sampling),
+        at_(at) {}
 
-  // `sampling` must outlive it. Shading at centroids counts, per pixel, the fragments that are not shaded at the
-  // centre.
-  SampleShadeUnit(Bin& bin, const Sampling& sampling, ShadeAt at) : SampleShadeUnit(bin) {
-    if (at != ShadeAt::centroid) return;
-    sampling_ = &sampling;
-    centroids_ = &bin.pixel_counter("centroids");
+  // Counts, per pixel, the fragments that are shaded at the centroid and not at the centre.
+  void counts_centroids() {
+    if (at_ == ShadeAt::centroid) centroids_ = &bin_.pixel_counter("centroids");
   }
 
   void operator()(const std::vector<SampleFragment>& fragments) {
     shade(bin_.shader(), fragments, stage_.timed());
+    if (TexelRequests* const texels = bin_.texels())
+      SamplePlaces(bin_, *sampling_, at_).add_quad_texels(fragments, *texels);
+    bin_.charge_texels(stage_);
     in_order_.read(fragments, stage_.counters);
     if (centroids_) count_centroids(bin_.triangles(), fragments, bin_.tile, *sampling_, stage_.timed(), *centroids_);
   }
 
   // Attributes are read again from the start.
-  void start_pass() { in_order_ = AttributesInOrder(bin_.memory()); }
+  void start_pass(const Sampling& sampling) {
+    sampling_ = &sampling;
+    if (TriangleFetches* const fetches = bin_.surface_fetches()) fetches->flush(stage_.counters);
+    in_order_ = AttributesInOrder(bin_.memory(), bin_.surface_fetches());
+  }
 
  private:
   Bin& bin_;
   BinStage stage_;
   AttributesInOrder in_order_;
-  const Sampling* sampling_ = nullptr;
+  const Sampling* sampling_;
+  ShadeAt at_;
   std::vector<float>* centroids_ = nullptr;
 };
 

@@ -1,5 +1,7 @@
 #include "pipeline/units/gbuffer_unit.h"
 
+#include "pipeline/units/sample_places.h"
+
 namespace beampipe {
 namespace {
 
@@ -22,20 +24,27 @@ GBufferUnit::GBufferUnit(Bin& bin)
     : bin_(bin),
       shading_(bin.stage("shade")),
       lighting_(bin.stage("light")),
-      attributes_(bin.memory()),
+      attributes_(bin.memory(), bin.surface_fetches()),
       gbuffer_(bin.memory(), bin.z_order(), 1, kGBufferBytes) {}
 
-void GBufferUnit::write_fragments(const std::vector<SampleFragment>& fragments,
-                                  const std::vector<SampleAccess>& accesses) {
+void GBufferUnit::write_fragments(const std::vector<SampleFragment>& fragments, const DepthTestUnit& depth_test) {
   write_gbuffer(bin_.shader(), fragments, shading_.timed());
+  if (TexelRequests* const texels = bin_.texels())
+    SamplePlaces(bin_, depth_test.sampling(), ShadeAt::sample).add_quad_texels(fragments, *texels);
+  bin_.charge_texels(shading_);
   attributes_.read(fragments, shading_.counters);
-  for (const SampleAccess& access : accesses)
+  for (const SampleAccess& access : depth_test.accesses())
     gbuffer_.access(access.triangle, access.cell, 0, access.passed, shading_.counters);
 }
 
 void GBufferUnit::write_visible(DepthTestUnit& visibility) {
   const std::vector<std::uint32_t> shown = shown_pixels(visibility.surface(), bin_.tile);
   write_gbuffer(bin_.shader(), triangles_at(shown, visibility.surface()), shading_.timed());
+  if (TexelRequests* const texels = bin_.texels()) {
+    const SamplePlaces places(bin_, visibility.sampling(), ShadeAt::sample);
+    for (const std::uint32_t pixel : shown) places.add_texels(visibility.surface().triangle[pixel], pixel, *texels);
+  }
+  bin_.charge_texels(shading_);
   visibility.read_colors(shading_);
   for (const std::uint32_t pixel : shown)
     bin_.triangle_fetches().attributes(visibility.surface().triangle[pixel], shading_.counters);

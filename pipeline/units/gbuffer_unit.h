@@ -15,8 +15,8 @@ class GBufferUnit {
  public:
   explicit GBufferUnit(Bin& bin);
 
-  // Materials of fragments that have passed the equal-depth test, in 2x2 quads and in primitive order.
-  void write_fragments(const std::vector<SampleFragment>& fragments, const std::vector<SampleAccess>& accesses);
+  // Materials of fragments that have just passed the equal-depth test, in 2x2 quads and in primitive order.
+  void write_fragments(const std::vector<SampleFragment>& fragments, const DepthTestUnit& depth_test);
   void end_pass() { gbuffer_.flush(shading_.counters); }
 
   // Materials of the pixels that a visibility buffer shows, one by one. Reads the visibility buffer.

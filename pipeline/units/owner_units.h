@@ -76,6 +76,7 @@ class ComposeOwnersUnit {
   // `first`: as in compose_owners.
   void operator()(const std::vector<Fragment>& fragments, std::size_t first, ClosedDepth& closed, ShadeUnit& shade) {
     OwnersResult result;
+    result.texels = bin_.texels();
     compose_owners(owners_, fragments, first, stage_.timed(), pixels_, closed, maps_, result);
     charge(closed, stage_.counters);
     store_.merge(fragments);
@@ -85,6 +86,7 @@ class ComposeOwnersUnit {
   // The picture.
   std::vector<glm::vec4> resolve_owners(ShadeUnit& shade) {
     OwnersResult result;
+    result.texels = bin_.texels();
     store_.finish();
     const std::vector<PixelColor> colors = finish_owners(owners_, stage_.timed(), pixels_, result);
     finish(result, shade);

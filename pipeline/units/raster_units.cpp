@@ -34,6 +34,7 @@ void ConservativeRasterUnit::drop_hidden(std::vector<Pair>& pairs) {
 }
 
 void ConservativeRasterUnit::start_next_pass() {
+  bin_.start_texture_pass();
   if (!bin_.keeps_pixels_on_chip()) stage_.streams(closed_->bytes());
   stage_.counters.items_in += bin_.list.size();
   stage_.counters.bytes_read += bin_.list.size() * sizeof(SetupTriangle);
@@ -48,8 +49,10 @@ void SampleRasterUnit::test_alpha(const Sampling& sampling, ShadeAt at) {
     });
   if (!bin_.context.has_cutouts()) return;
   const SamplePlaces places(bin_, sampling, at);
+  const BinStage testing = bin_.stage("alpha_test");
   alpha_test(bin_.shader(), bin_.tile, sampling.grid, sampling.pattern.count, coverage_, places.of(fragments_),
-             bin_.stage("alpha_test").timed(), fragments_);
+             testing.timed(), fragments_, bin_.texels());
+  bin_.charge_texels(testing);
 }
 
 }  // namespace beampipe

@@ -106,6 +106,7 @@ class SampleRasterUnit {
   void pass(const Sampling& sampling, ShadeAt at, Body&& body) {
     ClosedDepth closed(cells_of(bin_.tile, sampling.grid));
     bin_.starts_geometry_pass();
+    bin_.start_texture_pass();
     bin_.holds("closed_depth", closed.bytes());
     for_each_batch(bin_.list, [&](const TriangleList& batch) {
       fragments_.clear();

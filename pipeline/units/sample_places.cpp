@@ -1,7 +1,5 @@
 #include "pipeline/units/sample_places.h"
 
-#include <algorithm>
-
 namespace beampipe {
 
 CellPlace SamplePlaces::of(std::uint32_t triangle, std::size_t cell) const {
@@ -16,7 +14,7 @@ CellPlace SamplePlaces::of(std::uint32_t triangle, std::size_t cell) const {
   if (at_ == ShadeAt::centroid)
     fragment.mask = covered_samples(bin_.triangles().triangles[triangle], fragment, sampling_);
   const glm::vec2 place = of(fragment);
-  return {place.x, place.y, 1.0f / static_cast<float>(std::min(grid.columns, grid.rows))};
+  return {place.x, place.y, cell_width()};
 }
 
 glm::vec2 SamplePlaces::of(const SampleFragment& fragment) const {
@@ -31,6 +29,38 @@ std::vector<glm::vec2> SamplePlaces::of(const std::vector<SampleFragment>& fragm
   for (const SampleFragment& fragment : fragments)
     places.push_back(bin_.context.shader.is_flat(fragment.triangle) ? glm::vec2(0.5f) : of(fragment));
   return places;
+}
+
+void SamplePlaces::add_texels(const SampleFragment& fragment, TexelRequests& texels) const {
+  const glm::vec2 place = of(fragment);
+  const CellGrid& grid = sampling_.grid;
+  bin_.context.shader.add_texels(
+      fragment.triangle, {grid.pixel_x(fragment.x), grid.pixel_y(fragment.y), place.x, place.y}, cell_width(), texels);
+}
+
+void SamplePlaces::add_texels(std::uint32_t triangle, std::size_t cell, TexelRequests& texels) const {
+  const auto cells = static_cast<std::size_t>(sampling_.grid.cells_per_pixel());
+  const CellPlace place = of(triangle, cell);
+  bin_.shader().add_texels(triangle, static_cast<std::uint32_t>(cell / cells), place.u, place.v, place.width, texels);
+  texels.end_request();
+}
+
+void SamplePlaces::add_quad_texels(const std::vector<SampleFragment>& fragments, TexelRequests& texels) const {
+  const SamplePlaces helpers(bin_, sampling_, at_ == ShadeAt::centroid ? ShadeAt::centre : at_);
+  for (std::size_t first = 0, end = 0; first < fragments.size(); first = end) {
+    std::uint32_t covered = 0;  // bit for each cell of the quad
+    for (; end < fragments.size() && fragments[end].quad == fragments[first].quad; ++end) {
+      covered |= 1u << ((fragments[end].y & 1) * 2 + (fragments[end].x & 1));
+      add_texels(fragments[end], texels);
+    }
+    SampleFragment helper = fragments[first];
+    for (std::int32_t cell = 0; cell < 4; ++cell) {
+      if (covered >> cell & 1) continue;
+      helper.x = (fragments[first].x & ~1) + cell % 2, helper.y = (fragments[first].y & ~1) + cell / 2;
+      helpers.add_texels(helper, texels);
+    }
+    texels.end_request();
+  }
 }
 
 }  // namespace beampipe

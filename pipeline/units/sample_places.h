@@ -1,6 +1,7 @@
 // Where sample fragments are shaded, in a bin. A triangle and a cell say that, so nothing is kept with the samples.
 #pragma once
 
+#include <algorithm>
 #include <glm/glm.hpp>
 #include <vector>
 
@@ -25,7 +26,17 @@ class SamplePlaces {
   // Of each fragment whose triangle is not flat; others may have any place.
   std::vector<glm::vec2> of(const std::vector<SampleFragment>& fragments) const;
 
+  // Adds the texels that shading the fragments in 2x2 quads reads, a request for each quad. Helper invocations read at
+  // the centres of their cells or, with ShadeAt::sample, at the samples there.
+  void add_quad_texels(const std::vector<SampleFragment>& fragments, TexelRequests& texels) const;
+
+  // Adds the texels that one invocation reads, as a request of its own.
+  void add_texels(std::uint32_t triangle, std::size_t cell, TexelRequests& texels) const;
+
  private:
+  float cell_width() const { return 1.0f / static_cast<float>(std::min(sampling_.grid.columns, sampling_.grid.rows)); }
+  void add_texels(const SampleFragment& fragment, TexelRequests& texels) const;
+
   const Bin& bin_;
   const Sampling& sampling_;
   ShadeAt at_;

@@ -10,58 +10,74 @@
 namespace beampipe {
 namespace {
 
-// Calls body(position, u, v) for each position of the mask; (u, v) lie in the pixel, 0..1.
-template <class Body>
-void for_each_position(const WideMask& mask, const std::vector<SamplePattern>& patterns, Body&& body) {
-  for (std::size_t word = 0; word < patterns.size(); ++word)
+// Calls body(position, u, v) for each position of the mask; (u, v) lie in the pixel, 0..1. Calls end_word() after each
+// word.
+template <class Body, class EndWord>
+void for_each_position(const WideMask& mask, const std::vector<SamplePattern>& patterns, Body&& body,
+                       EndWord&& end_word) {
+  for (std::size_t word = 0; word < patterns.size(); ++word) {
     for (std::uint32_t bits = mask.words[word]; bits != 0; bits &= bits - 1) {
       const auto s = static_cast<std::size_t>(std::countr_zero(bits));
       body(32 * word + s, static_cast<float>(patterns[word].x[s]) / kSubpixelUnits,
            static_cast<float>(patterns[word].y[s]) / kSubpixelUnits);
     }
+    end_word();
+  }
+}
+
+// Mean alpha of the pixel's part of the surface, by one fetch.
+float mean_alpha(const TileShader& shader, const Fragment& fragment, AlphaMaskWork& work, TexelRequests* texels) {
+  work.alphas += shader.work(fragment.triangle).alpha;
+  const float alpha =
+      shader.alpha(fragment.triangle, fragment.pixel, fragment.centroid_u, fragment.centroid_v, 1.0f, texels).alpha;
+  end_request(texels);
+  return alpha;
 }
 
 // The part of the area of width `width` that a cutout covers.
 float covered_part(const TileShader& shader, const Fragment& fragment, float u, float v, float width,
-                   AlphaMaskWork& work) {
+                   AlphaMaskWork& work, TexelRequests* texels) {
   work.alphas += shader.work(fragment.triangle).alpha;
-  const AlphaAt at = shader.alpha(fragment.triangle, fragment.pixel, u, v, width);
+  const AlphaAt at = shader.alpha(fragment.triangle, fragment.pixel, u, v, width, texels);
   if (!at.is_magnified) return at.alpha;
   return at.alpha >= shader.alpha_cutoff(fragment.triangle) ? 1.0f : 0.0f;
 }
 
 // The part of the fragment that is left, 0..1.
 float cut_out(const TileShader& shader, const std::vector<SamplePattern>& patterns, float spacing, Fragment& fragment,
-              AlphaMaskWork& work) {
-  if (fragment.mask.none()) return covered_part(shader, fragment, fragment.centroid_u, fragment.centroid_v, 1.0f, work);
+              AlphaMaskWork& work, TexelRequests* texels) {
+  if (fragment.mask.none()) {
+    const float part = covered_part(shader, fragment, fragment.centroid_u, fragment.centroid_v, 1.0f, work, texels);
+    end_request(texels);
+    return part;
+  }
   ++work.masks, ++work.shares;
   const OpacityRanks ranks = shader.opacity_ranks(fragment.triangle, fragment.pixel);
   const auto covered = static_cast<float>(fragment.mask.count());
   WideMask left;
   float sum = 0;
-  for_each_position(fragment.mask, patterns, [&](std::size_t position, float u, float v) {
+  const auto test = [&](std::size_t position, float u, float v) {
     ++work.positions;
-    const float part = covered_part(shader, fragment, u, v, spacing, work);
+    const float part = covered_part(shader, fragment, u, v, spacing, work, texels);
     sum += part;
     if (ranks.takes(static_cast<std::uint32_t>(position), part)) left.set(position);
-  });
+  };
+  for_each_position(fragment.mask, patterns, test, [&] { end_request(texels); });
   fragment.mask = left;
   return sum / covered;
 }
 
 float let_through(const TileShader& shader, const std::vector<SamplePattern>& patterns, Fragment& fragment,
-                  AlphaMaskWork& work) {
+                  AlphaMaskWork& work, TexelRequests* texels) {
   ++work.masks;
-  work.alphas += shader.work(fragment.triangle).alpha;
-  const float opacity =
-      std::clamp(shader.alpha(fragment.triangle, fragment.pixel, fragment.centroid_u, fragment.centroid_v, 1.0f).alpha,
-                 0.0f, 1.0f);
+  const float opacity = std::clamp(mean_alpha(shader, fragment, work, texels), 0.0f, 1.0f);
   const OpacityRanks ranks = shader.opacity_ranks(fragment.triangle, fragment.pixel);
   WideMask left;
-  for_each_position(fragment.mask, patterns, [&](std::size_t position, float, float) {
+  const auto rank = [&](std::size_t position, float, float) {
     ++work.ranked;
     if (ranks.takes(static_cast<std::uint32_t>(position), opacity)) left.set(position);
-  });
+  };
+  for_each_position(fragment.mask, patterns, rank, [] {});
   fragment.mask = left;
   return opacity;
 }
@@ -69,14 +85,14 @@ float let_through(const TileShader& shader, const std::vector<SamplePattern>& pa
 }  // namespace
 
 void alpha_mask(const TileShader& shader, const std::vector<SamplePattern>& patterns, StageCounters& counters,
-                std::vector<Fragment>& fragments) {
+                std::vector<Fragment>& fragments, TexelRequests* texels) {
   AlphaMaskWork work;
   const float spacing = 1.0f / std::sqrt(static_cast<float>(kMaxMaskSamples * patterns.size()));
   for (Fragment& fragment : fragments) {
     if (shader.is_opaque(fragment.triangle)) continue;
     ++work.fragments;
-    const float part = shader.is_cutout(fragment.triangle) ? cut_out(shader, patterns, spacing, fragment, work)
-                                                           : let_through(shader, patterns, fragment, work);
+    const float part = shader.is_cutout(fragment.triangle) ? cut_out(shader, patterns, spacing, fragment, work, texels)
+                                                           : let_through(shader, patterns, fragment, work, texels);
     fragment.alpha *= part;
     fragment.tiny |= fragment.mask.none();
   }

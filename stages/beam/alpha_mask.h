@@ -16,8 +16,9 @@
 
 namespace beampipe {
 
-// Drops fragments of which nothing is left. `patterns`: the mask positions.
+// Drops fragments of which nothing is left. `patterns`: the mask positions. Adds the texels that are read to `texels`,
+// unless it is null: a request for each word of a mask, whose positions are tested at once.
 void alpha_mask(const TileShader& shader, const std::vector<SamplePattern>& patterns, StageCounters& counters,
-                std::vector<Fragment>& fragments);
+                std::vector<Fragment>& fragments, TexelRequests* texels = nullptr);
 
 }  // namespace beampipe

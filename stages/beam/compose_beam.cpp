@@ -208,10 +208,11 @@ void compose_window(const std::vector<Fragment>& fragments, const PositionSet& p
 
 template <std::size_t Words, class Channel>
 void compose_whole(const std::vector<Pair>& whole, const Tile& tile, const TileShader& shader, StageCounters& counters,
-                   std::vector<StoredAggregate<Words, Channel>>& pixels) {
+                   std::vector<StoredAggregate<Words, Channel>>& pixels, TexelRequests* texels) {
   for (const Pair& pair : whole) {
     const std::size_t index = tile.index(pair.x, pair.y);
-    const glm::vec3 color = shader.color(pair.triangle, static_cast<std::uint32_t>(index), 0.5f, 0.5f);
+    const glm::vec3 color = shader.color(pair.triangle, static_cast<std::uint32_t>(index), 0.5f, 0.5f, 1.0f, texels);
+    end_request(texels);
     auto& pixel = pixels[index];
     std::memset(pixel.mask, 0xff, sizeof pixel.mask);
     pixel.area = 1.0f;
@@ -224,7 +225,7 @@ void compose_whole(const std::vector<Pair>& whole, const Tile& tile, const TileS
   template void compose_window(const std::vector<Fragment>&, const PositionSet&, StageCounters&,        \
                                std::vector<StoredAggregate<words, channel>>&, std::vector<float>&);     \
   template void compose_whole(const std::vector<Pair>&, const Tile&, const TileShader&, StageCounters&, \
-                              std::vector<StoredAggregate<words, channel>>&);
+                              std::vector<StoredAggregate<words, channel>>&, TexelRequests*);
 BEAMPIPE_STORED_AGGREGATES(BEAMPIPE_COMPOSE)
 #undef BEAMPIPE_COMPOSE
 

@@ -289,7 +289,9 @@ class OwnerComposer {
   // `width`: of the area that the colour stands for, in pixels.
   glm::vec3 shade(std::uint32_t triangle, float u, float v, float width = 1.0f) {
     result_.shaded.push_back({triangle, pixel_, u, v});
-    return bin_.shader.color(triangle, pixel_, u, v, width);
+    const glm::vec3 color = bin_.shader.color(triangle, pixel_, u, v, width, result_.texels);
+    end_request(result_.texels);
+    return color;
   }
 
   // Adds owners_[0 .. count - 1] to what is final. Those that show the largest part of their positions come first: what

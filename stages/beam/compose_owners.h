@@ -52,6 +52,7 @@ struct OwnersBin {
 struct OwnersResult {
   std::vector<ShadedTriangle> shaded;  // once for each time that one was shaded
   std::vector<std::uint32_t> fetched;  // triangles, once for each time that an owner's depth plane was computed again
+  TexelRequests* texels = nullptr;     // where shading adds a request of each invocation; null: nowhere
 };
 
 // Counts per pixel of the tile.

@@ -1,6 +1,7 @@
 #include "stages/cost/counter_registry.h"
 
 #include <string>
+#include <string_view>
 
 namespace beampipe {
 
@@ -15,8 +16,7 @@ const std::vector<StageInfo>& stage_list() {
       {"bin_sort", "triangles of the bins' lists", "the same triangles, near to far", "", "", " ops.special "},
       {"beam_fragment", "pairs", "fragments: pairs whose covered area is not 0", "fragments", "pairs", ""},
       {"alpha_mask", "fragments of cutouts and of translucent triangles", "those of which something is left",
-       "positions at which alpha is tested or ranked", "the same positions",
-       " sector_bytes l2_bytes dram_bytes "},
+       "positions at which alpha is tested or ranked", "the same positions", ""},
       {"shade", "fragments, or shading samples", "the same items, with a colour or a material", "the items",
        "the pixels of the items' 2x2 quads; the items alone if shading follows a visibility test", ""},
       {"light", "pixels with a material", "the same pixels, with a colour", "the pixels", "the pixels",
@@ -35,8 +35,7 @@ const std::vector<StageInfo>& stage_list() {
       {"settle", "fragments of owners, counted in each pass", "pixels that need another pass", "fragments of owners",
        "fragments of owners", " ops.fetch "},
       {"alpha_test", "fragments of cutouts, counted in each pass", "those of which a sample is left",
-       "fragments of cutouts", "four invocations for each of them",
-       " ops.bit ops.convert sector_bytes l2_bytes dram_bytes "},
+       "fragments of cutouts", "four invocations for each of them", " ops.bit ops.convert "},
       {"depth_test", "samples that are tested, counted in each pass", "samples that pass", "samples that are tested",
        "all samples of the fragments' cells", " ops.bit ops.fetch ops.special "},
       {"blend", "samples of translucent fragments", "samples that pass the depth test", "samples that are tested",
@@ -66,6 +65,8 @@ bool has_counter(const StageInfo& stage, const CounterInfo& counter) {
   if (name.starts_with("lanes_")) return *stage.lanes_used != '\0';
   const bool rasterizes = std::string(stage.name).ends_with("_raster");
   if ((name.starts_with("hidden_") || name == "empty_tiles") && !rasterizes) return false;
+  const std::string_view of = stage.name;
+  if (name.starts_with("texture_") && of != "shade" && of != "alpha_mask" && of != "alpha_test") return false;
   return std::string(stage.silent).find(" " + name + " ") == std::string::npos;
 }
 

@@ -66,6 +66,10 @@ struct StageCounters {
   Count sector_bytes = 0;
   Count l2_bytes = 0;
   Count dram_bytes = 0;
+  Count texture_bytes = 0;
+  Count texture_sector_bytes = 0;
+  Count texture_l2_bytes = 0;
+  Count texture_dram_bytes = 0;
   Count hidden_items = 0;
   Count hidden_triangles = 0;
   Count empty_tiles = 0;

@@ -6,21 +6,28 @@
 namespace beampipe {
 namespace {
 
-void shade_at_centroids(const TileShader& shader, std::vector<Fragment>& fragments) {
-  for (Fragment& fragment : fragments)
-    fragment.color =
-        fragment.alpha * shader.color(fragment.triangle, fragment.pixel, fragment.centroid_u, fragment.centroid_v);
+void shade_at_centroid(const TileShader& shader, TexelRequests* texels, Fragment& fragment) {
+  fragment.color = fragment.alpha * shader.color(fragment.triangle, fragment.pixel, fragment.centroid_u,
+                                                 fragment.centroid_v, 1.0f, texels);
 }
 
 }  // namespace
 
-void shade(const TileShader& shader, std::vector<Fragment>& fragments, StageCounters& counters) {
-  shade_at_centroids(shader, fragments);
+void shade(const TileShader& shader, std::vector<Fragment>& fragments, StageCounters& counters, TexelRequests* texels) {
+  for (std::size_t i = 0; i < fragments.size(); ++i) {
+    if (starts_quad(fragments, i)) end_request(texels);
+    shade_at_centroid(shader, texels, fragments[i]);
+  }
+  end_request(texels);
   charge(in_quads(shader, fragments, whole_shader), kPairBytes, kColorBytes, counters);
 }
 
-void shade_visible(const TileShader& shader, std::vector<Fragment>& fragments, StageCounters& counters) {
-  shade_at_centroids(shader, fragments);
+void shade_visible(const TileShader& shader, std::vector<Fragment>& fragments, StageCounters& counters,
+                   TexelRequests* texels) {
+  for (Fragment& fragment : fragments) {
+    shade_at_centroid(shader, texels, fragment);
+    end_request(texels);
+  }
   charge(one_by_one(shader, fragments, whole_shader), kPairBytes, kColorBytes, counters);
 }
 
@@ -37,7 +44,7 @@ void shade(const TileShader& shader, const std::vector<SampleFragment>& fragment
 }
 
 void color_samples(const TileShader& shader, const Tile& tile, const SamplePattern& pattern,
-                   std::vector<SampleQuad>& quads) {
+                   std::vector<SampleQuad>& quads, TexelRequests* texels) {
   const std::size_t columns = (static_cast<std::size_t>(tile.width()) + 1) / 2;
   for (std::size_t q = 0; q < quads.size(); ++q) {
     for (std::size_t p = 0; p < 4; ++p) {
@@ -47,7 +54,8 @@ void color_samples(const TileShader& shader, const Tile& tile, const SamplePatte
       const std::size_t x = q % columns * 2 + pixel % 2, y = q / columns * 2 + pixel / 2;
       const auto index = static_cast<std::uint32_t>(y * static_cast<std::size_t>(tile.width()) + x);
       quad.color[p] = shader.color(quad.triangle[p], index, static_cast<float>(pattern.x[sample]) / kSubpixelUnits,
-                                   static_cast<float>(pattern.y[sample]) / kSubpixelUnits);
+                                   static_cast<float>(pattern.y[sample]) / kSubpixelUnits, 1.0f, texels);
+      end_request(texels);
     }
   }
 }

@@ -3,6 +3,9 @@
 // A flat triangle's colour is the same everywhere, and is computed once, but charged once per invocation: one per
 // fragment, and helper invocations that fill up the 2x2 quads (lanes_used, lanes_issued). Others are shaded by their
 // material (stages/surface/surface_shader.h).
+//
+// The texels that invocations read are added to `texels`, which is null if all triangles are flat. A request is a 2x2
+// quad or, where fragments are shaded one by one, an invocation. The caller charges them.
 #pragma once
 
 #include <cstdint>
@@ -19,16 +22,19 @@
 
 namespace beampipe {
 
-// Shades at the centroid of what a fragment covers, in 2x2 quads: sets the fragments' colours (times alpha).
-void shade(const TileShader& shader, std::vector<Fragment>& fragments, StageCounters& counters);
+// Shades at the centroid of what a fragment covers, in 2x2 quads: sets the fragments' colours (times alpha). Helper
+// invocations read no texels, because derivatives do not come from them.
+void shade(const TileShader& shader, std::vector<Fragment>& fragments, StageCounters& counters,
+           TexelRequests* texels = nullptr);
 
 // The same for fragments that are known to be visible. They are shaded one by one, not in quads.
-void shade_visible(const TileShader& shader, std::vector<Fragment>& fragments, StageCounters& counters);
+void shade_visible(const TileShader& shader, std::vector<Fragment>& fragments, StageCounters& counters,
+                   TexelRequests* texels = nullptr);
 
-// Only charges the shading of pairs that cover their whole pixel; a later stage asks for their colours.
+// Only charges the shading of pairs that cover their whole pixel; compose_whole asks for their colours.
 void shade_visible(const TileShader& shader, const std::vector<Pair>& whole, StageCounters& counters);
 
-// Only charges the shading of triangles that a later stage shades where it needs their colours.
+// Only charges the shading of triangles that compose_owners shades where it needs their colours.
 void shade_visible(const TileShader& shader, const std::vector<ShadedTriangle>& shaded, StageCounters& counters);
 
 // Only charges the shading of sample fragments, in 2x2 quads. Samples keep their triangle's index instead of a colour,
@@ -38,7 +44,7 @@ void shade(const TileShader& shader, const std::vector<SampleFragment>& fragment
 // Sets the colours of quads of shading samples, which are the tile's, row by row. Charges nothing. `pattern`: of the
 // visibility samples.
 void color_samples(const TileShader& shader, const Tile& tile, const SamplePattern& pattern,
-                   std::vector<SampleQuad>& quads);
+                   std::vector<SampleQuad>& quads, TexelRequests* texels = nullptr);
 
 // Shading in two steps: writing the material to a G-buffer, and lighting. The functions only charge the work.
 // `triangles`: of each sample.

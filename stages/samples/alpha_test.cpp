@@ -8,7 +8,8 @@
 namespace beampipe {
 
 void alpha_test(const TileShader& shader, const Tile& tile, const CellGrid& grid, int samples, AlphaCoverage coverage,
-                const std::vector<glm::vec2>& places, StageCounters& counters, std::vector<SampleFragment>& fragments) {
+                const std::vector<glm::vec2>& places, StageCounters& counters, std::vector<SampleFragment>& fragments,
+                TexelRequests* texels) {
   const float width = 1.0f / static_cast<float>(std::min(grid.columns, grid.rows));
   std::uint64_t tested = 0, left = 0;
   OperationCounts alphas;
@@ -17,9 +18,10 @@ void alpha_test(const TileShader& shader, const Tile& tile, const CellGrid& grid
     if (!shader.is_cutout(fragment.triangle)) continue;
     ++tested;
     alphas += shader.work(fragment.triangle).alpha;
+    if (i > 0 && fragments[i - 1].quad != fragment.quad) end_request(texels);
     const std::int32_t x = grid.pixel_x(fragment.x), y = grid.pixel_y(fragment.y);
     const auto pixel = static_cast<std::uint32_t>(tile.index(x, y));
-    const float alpha = shader.alpha(fragment.triangle, pixel, places[i].x, places[i].y, width).alpha;
+    const float alpha = shader.alpha(fragment.triangle, pixel, places[i].x, places[i].y, width, texels).alpha;
     if (coverage == AlphaCoverage::test) {
       if (alpha < shader.alpha_cutoff(fragment.triangle)) fragment.mask = 0;
     } else {
@@ -29,6 +31,7 @@ void alpha_test(const TileShader& shader, const Tile& tile, const CellGrid& grid
     }
     left += fragment.mask != 0;
   }
+  end_request(texels);
   std::erase_if(fragments, [](const SampleFragment& fragment) { return fragment.mask == 0; });
   charge_alpha_test(tested, left, coverage == AlphaCoverage::test ? 0 : samples, alphas, counters);
 }

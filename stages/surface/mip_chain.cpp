@@ -115,7 +115,7 @@ MipChain make_mip_chain(const TextureImage& image, ColorSpace space) {
 TextureSet::TextureSet(const Trace& trace) : chains_(2 * trace.images.size()) {
   std::vector<bool> used(chains_.size());
   const auto use = [&](const std::optional<Texture>& texture, ColorSpace space) {
-    if (texture) used[2 * texture->image + static_cast<std::size_t>(space)] = true;
+    if (texture) used[index(texture->image, space)] = true;
   };
   for (const Material& material : trace.materials) {
     use(material.base_texture, ColorSpace::srgb);

@@ -39,12 +39,15 @@ class TextureSet {
   explicit TextureSet(const Trace& trace);
 
   // Of a texture that a material of the trace reads in this colour space.
-  const MipChain& chain(std::uint32_t image, ColorSpace space) const {
-    return chains_[2 * image + static_cast<std::size_t>(space)];
+  const MipChain& chain(std::uint32_t image, ColorSpace space) const { return chains_[index(image, space)]; }
+
+  static std::size_t index(std::uint32_t image, ColorSpace space) {
+    return 2 * std::size_t{image} + static_cast<std::size_t>(space);
   }
+  const std::vector<MipChain>& chains() const { return chains_; }  // by index; those without a use are empty
 
  private:
-  std::vector<MipChain> chains_;  // two for each image; those without a use are empty
+  std::vector<MipChain> chains_;
 };
 
 }  // namespace beampipe

@@ -261,7 +261,8 @@ const SurfaceShader::Work& SurfaceShader::material_work(std::uint32_t triangle) 
   return works_[work_index(triangles_.surfaces[triangle].material, inputs_of(triangle))];
 }
 
-AlphaAt SurfaceShader::alpha(std::uint32_t triangle, const ShadingPlace& place, float width) const {
+AlphaAt SurfaceShader::alpha(std::uint32_t triangle, const ShadingPlace& place, float width,
+                             TexelRequests* texels) const {
   if (is_opaque(triangle)) return {1.0f, true};
   const SetupSurface& surface = triangles_.surfaces[triangle];
   const ShaderInputs shader = inputs_of(triangle);
@@ -284,18 +285,21 @@ AlphaAt SurfaceShader::alpha(std::uint32_t triangle, const ShadingPlace& place, 
   };
   const auto fetch = [&](TextureRole, const TexturePlace<float>& at) {
     const TextureSlopes slopes{vector_of(at.dx) * width, vector_of(at.dy) * width};
-    const MipChain& chain = textures_->chain(shader.material.base_texture->image, ColorSpace::srgb);
+    const Texture& texture = *shader.material.base_texture;
+    const MipChain& chain = textures_->chain(texture.image, ColorSpace::srgb);
+    const auto note = [&](std::size_t level, std::uint32_t column, std::uint32_t row) {
+      if (texels) texels->read({texture.image, ColorSpace::srgb, static_cast<std::uint32_t>(level), column, row});
+    };
     found.is_magnified = level_of_detail(slopes, chain.levels[0]) <= 0;
-    return filtered(chain, *shader.material.base_texture, vector_of(at.uv), slopes,
-                    [](std::size_t, std::uint32_t, std::uint32_t) {});
+    return filtered(chain, texture, vector_of(at.uv), slopes, note);
   };
   found.alpha =
       alpha_at(shader, {vertex(0).color.a, vertex(1).color.a, vertex(2).color.a}, weights, texture_place, fetch);
   return found;
 }
 
-glm::vec4 SurfaceShader::shaded(std::uint32_t triangle, const ShadingPlace& place, float width,
-                                std::vector<TexelRead>* reads) const {
+SurfaceMaterial<float> SurfaceShader::material_there(std::uint32_t triangle, const ShadingPlace& place, float width,
+                                                     TexelRequests* texels) const {
   const SetupSurface& surface = triangles_.surfaces[triangle];
   const ShaderInputs shader = inputs_of(triangle);
   std::array<VertexInputs<float>, 3> v;
@@ -339,7 +343,7 @@ glm::vec4 SurfaceShader::shaded(std::uint32_t triangle, const ShadingPlace& plac
     const ColorSpace space = space_of(role);
     const TextureSlopes slopes{vector_of(at.dx) * width, vector_of(at.dy) * width};
     const auto note = [&](std::size_t level, std::uint32_t column, std::uint32_t row) {
-      if (reads) reads->push_back({texture.image, space, static_cast<std::uint32_t>(level), column, row});
+      if (texels) texels->read({texture.image, space, static_cast<std::uint32_t>(level), column, row});
     };
     const glm::vec4 texel = filtered(textures_->chain(texture.image, space), texture, vector_of(at.uv), slopes, note);
     if (role != TextureRole::normal) return {texel.r, texel.g, texel.b, texel.a};
@@ -353,13 +357,25 @@ glm::vec4 SurfaceShader::shaded(std::uint32_t triangle, const ShadingPlace& plac
       surface.turned ? -1.0f : 1.0f,
       triple<float>(glm::vec3(surface.tangent)),
       shader.has_tangents ? triangles_.vertices[surface.vertices[0]].tangent.w : surface.tangent.w};
-  SurfaceMaterial<float> found = material_at(shader, point, texture_place, fetch);
+  return material_at(shader, point, texture_place, fetch);
+}
+
+glm::vec4 SurfaceShader::shaded(std::uint32_t triangle, const ShadingPlace& place, float width,
+                                TexelRequests* texels) const {
+  SurfaceMaterial<float> found = material_there(triangle, place, width, texels);
+  const Material& material = this->material(triangle);
+  const bool by_pixel = rules_.colors == SurfaceColors::by_pixel;
   if (rules_.storage == MaterialStorage::gbuffer && !by_pixel) found.reflector = through_gbuffer(found.reflector);
-  const Triple<float> lit = lit_color(shader.material, found, frame_.lighting);
+  const Triple<float> lit = lit_color(material, found, frame_.lighting);
   glm::vec3 color(lit[0], lit[1], lit[2]);
   if (rules_.rounds_to_half) round_to_half(color);
-  if (shader.material.alpha_mode == AlphaMode::opaque) return {color, 1.0f};
+  if (material.alpha_mode == AlphaMode::opaque) return {color, 1.0f};
   return {color, by_pixel ? alpha(triangle, place, width).alpha : found.alpha};
+}
+
+void SurfaceShader::add_texels(std::uint32_t triangle, const ShadingPlace& place, float width,
+                               TexelRequests& texels) const {
+  if (!is_flat(triangle)) material_there(triangle, place, width, &texels);
 }
 
 }  // namespace beampipe

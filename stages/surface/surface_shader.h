@@ -12,6 +12,7 @@
 #include "stages/surface/mip_chain.h"
 #include "stages/surface/opacity.h"
 #include "stages/surface/surface_formulas.h"
+#include "stages/surface/texel_requests.h"
 #include "traces/trace.h"
 
 namespace beampipe {
@@ -42,13 +43,6 @@ struct ShadingRules {
   SurfaceColors colors = SurfaceColors::by_place;
 };
 
-// A texel that was read.
-struct TexelRead {
-  std::uint32_t image;
-  ColorSpace space;
-  std::uint32_t level, x, y;
-};
-
 struct AlphaAt {
   float alpha;
   bool is_magnified;  // texels are larger than the area, so alpha is that of a point; else it is a mean
@@ -66,23 +60,25 @@ class SurfaceShader {
     return is_flat() || triangles_.surfaces[triangle].material == kFlatSurface;
   }
 
-  // Linear RGB. `width`: of the area that the colour stands for, in pixels. Appends the texels that are read to
-  // `reads`, unless it is null.
+  // Linear RGB. `width`: of the area that the colour stands for, in pixels. Adds the texels that are read to the open
+  // request of `texels`, unless it is null.
   glm::vec3 color(std::uint32_t triangle, const ShadingPlace& place, float width = 1.0f,
-                  std::vector<TexelRead>* reads = nullptr) const {
+                  TexelRequests* texels = nullptr) const {
     if (is_flat(triangle)) return flat_[triangle];
-    return glm::vec3(shaded(triangle, place, width, reads));
+    return glm::vec3(shaded(triangle, place, width, texels));
   }
 
   // The same with alpha, which is 1 for flat triangles.
-  glm::vec4 color_and_alpha(std::uint32_t triangle, const ShadingPlace& place, float width = 1.0f,
-                            std::vector<TexelRead>* reads = nullptr) const {
+  glm::vec4 color_and_alpha(std::uint32_t triangle, const ShadingPlace& place, float width = 1.0f) const {
     if (is_flat(triangle)) return glm::vec4(flat_[triangle], 1.0f);
-    return shaded(triangle, place, width, reads);
+    return shaded(triangle, place, width, nullptr);
   }
 
-  // Alpha at a place, whatever SurfaceColors says. `width`: as above. 1 for opaque triangles.
-  AlphaAt alpha(std::uint32_t triangle, const ShadingPlace& place, float width) const;
+  // Adds the texels that color() reads, for invocations whose colours are computed elsewhere, or not at all.
+  void add_texels(std::uint32_t triangle, const ShadingPlace& place, float width, TexelRequests& texels) const;
+
+  // Alpha at a place, whatever SurfaceColors says. `width`, `texels`: as above. 1 for opaque triangles.
+  AlphaAt alpha(std::uint32_t triangle, const ShadingPlace& place, float width, TexelRequests* texels = nullptr) const;
 
   bool is_opaque(std::uint32_t triangle) const { return triangles_.is_opaque(triangle); }
   bool is_cutout(std::uint32_t triangle) const {
@@ -110,8 +106,17 @@ class SurfaceShader {
 
   const std::vector<glm::vec3>& flat_colors() const { return flat_; }  // one per triangle; others have any value
 
+  // Of a triangle that is not flat.
+  const std::array<std::uint32_t, 3>& vertices(std::uint32_t triangle) const {
+    return triangles_.surfaces[triangle].vertices;
+  }
+
  private:
-  glm::vec4 shaded(std::uint32_t triangle, const ShadingPlace& place, float width, std::vector<TexelRead>* reads) const;
+  glm::vec4 shaded(std::uint32_t triangle, const ShadingPlace& place, float width, TexelRequests* texels) const;
+
+  // What the triangle is made of there.
+  SurfaceMaterial<float> material_there(std::uint32_t triangle, const ShadingPlace& place, float width,
+                                        TexelRequests* texels) const;
   ShaderInputs inputs_of(std::uint32_t triangle) const;
   const Material& material(std::uint32_t triangle) const {
     return trace_.materials[triangles_.surfaces[triangle].material];
@@ -142,17 +147,24 @@ class TileShader {
   bool is_flat() const { return !shader_ || shader_->is_flat(); }
 
   // (u, v): in the pixel, from its upper left corner, 0..1.
-  glm::vec3 color(std::uint32_t triangle, std::uint32_t pixel, float u, float v, float width = 1.0f) const {
+  glm::vec3 color(std::uint32_t triangle, std::uint32_t pixel, float u, float v, float width = 1.0f,
+                  TexelRequests* texels = nullptr) const {
     if (is_flat(triangle)) return flat_[triangle];
-    return shader_->color(triangle, place(pixel, u, v), width);
+    return shader_->color(triangle, place(pixel, u, v), width, texels);
   }
   glm::vec4 color_and_alpha(std::uint32_t triangle, std::uint32_t pixel, float u, float v, float width = 1.0f) const {
     if (is_flat(triangle)) return glm::vec4(flat_[triangle], 1.0f);
     return shader_->color_and_alpha(triangle, place(pixel, u, v), width);
   }
 
-  AlphaAt alpha(std::uint32_t triangle, std::uint32_t pixel, float u, float v, float width) const {
-    return shader_->alpha(triangle, place(pixel, u, v), width);
+  void add_texels(std::uint32_t triangle, std::uint32_t pixel, float u, float v, float width,
+                  TexelRequests& texels) const {
+    if (!is_flat(triangle)) shader_->add_texels(triangle, place(pixel, u, v), width, texels);
+  }
+
+  AlphaAt alpha(std::uint32_t triangle, std::uint32_t pixel, float u, float v, float width,
+                TexelRequests* texels = nullptr) const {
+    return shader_->alpha(triangle, place(pixel, u, v), width, texels);
   }
   bool is_opaque(std::uint32_t triangle) const { return !shader_ || shader_->is_opaque(triangle); }
   bool is_cutout(std::uint32_t triangle) const { return shader_ && shader_->is_cutout(triangle); }

@@ -158,6 +158,11 @@ std::string tests_of(const StageInfo& stage, const CounterInfo& counter) {
   if (name.starts_with("ops.")) return tests.ops;
   if (name.starts_with("lanes_")) return tests.lanes;
   if (name.starts_with("hidden_") || name == "empty_tiles") return "Counters.WhatIsHiddenIsCountedOnce";
+  if (name.starts_with("texture_"))
+    return std::string("TextureMemory.") +
+           (std::string(stage.name) == "shade"
+                ? "CountsTheTexelsOfEachInvocation, TextureMemory.AQuadAsksForASectorOnce"
+                : "ReadingAlphaIsChargedToItsStage");
   if (name == "sector_bytes" || name == "l2_bytes" || name == "dram_bytes") return tests.memory;
   return name.find("bytes") == std::string::npos ? tests.items : tests.logical_bytes;
 }

@@ -42,11 +42,15 @@ TEST(StageCountersTable, ValuesAreThoseOfTheFields) {
   EXPECT_EQ(counters.sector_bytes, 11u);
   EXPECT_EQ(counters.l2_bytes, 12u);
   EXPECT_EQ(counters.dram_bytes, 13u);
-  EXPECT_EQ(counters.lanes_used, 14u);
-  EXPECT_EQ(counters.lanes_issued, 15u);
-  EXPECT_EQ(counters.hidden_items, 16u);
-  EXPECT_EQ(counters.hidden_triangles, 17u);
-  EXPECT_EQ(counters.empty_tiles, 18u);
+  EXPECT_EQ(counters.texture_bytes, 14u);
+  EXPECT_EQ(counters.texture_sector_bytes, 15u);
+  EXPECT_EQ(counters.texture_l2_bytes, 16u);
+  EXPECT_EQ(counters.texture_dram_bytes, 17u);
+  EXPECT_EQ(counters.lanes_used, 18u);
+  EXPECT_EQ(counters.lanes_issued, 19u);
+  EXPECT_EQ(counters.hidden_items, 20u);
+  EXPECT_EQ(counters.hidden_triangles, 21u);
+  EXPECT_EQ(counters.empty_tiles, 22u);
   std::uint64_t value = 0;
   for (const CounterInfo& counter : stage_counters()) {
     const std::string name = counter.name;

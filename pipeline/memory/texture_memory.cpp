@@ -1,0 +1,111 @@
+#include "pipeline/memory/texture_memory.h"
+
+#include <algorithm>
+#include <bit>
+
+namespace beampipe {
+namespace {
+
+constexpr std::uint32_t kPerLine = TextureLayout::kSectorsPerLine;
+
+std::uint64_t bytes_of(Sectors sectors) {
+  return static_cast<std::uint64_t>(std::popcount(sectors)) * MemoryParameters::sector_bytes;
+}
+
+}  // namespace
+
+ReadCache::ReadCache(const CacheParameters& parameters)
+    : sets_(std::max<std::size_t>(parameters.bytes / (parameters.line_bytes * parameters.ways), 1)),
+      ways_(parameters.ways),
+      lines_(sets_ * ways_) {}
+
+Sectors ReadCache::read(std::uint64_t line, Sectors sectors) {
+  Line* const set = &lines_[line % sets_ * ways_];
+  Line* found = set;  // or the one to replace
+  for (Line* way = set; way != set + ways_; ++way) {
+    if (way->number == line) {
+      found = way;
+      break;
+    }
+    if (way->used < found->used) found = way;
+  }
+  if (found->number != line) *found = {line, 0, 0};
+  const auto missing = static_cast<Sectors>(sectors & ~found->valid);
+  found->valid |= sectors;
+  found->used = ++now_;
+  return missing;
+}
+
+void ReadCache::clear() { std::fill(lines_.begin(), lines_.end(), Line{}); }
+
+void TextureFetches::read(const TexelRequests& texels, std::size_t stage, StageCounters& counters) {
+  std::uint64_t asked = 0, missed = 0;
+  std::vector<TextureRead>& reads = passes_.back();
+  texels.for_each([&](std::span<const std::uint64_t> sectors) {
+    asked += sectors.size() * MemoryParameters::sector_bytes;
+    for (std::size_t i = 0; i < sectors.size();) {
+      const std::uint64_t line = sectors[i] / kPerLine;
+      Sectors of_line = 0;
+      for (; i < sectors.size() && sectors[i] / kPerLine == line; ++i)
+        of_line |= static_cast<Sectors>(1u << sectors[i] % kPerLine);
+      const Sectors missing = l1_.read(line, of_line);
+      if (missing == 0) continue;
+      missed += bytes_of(missing);
+      reads.push_back({line, stage, missing});
+    }
+  });
+  counters.sector_bytes += asked;
+  counters.texture_sector_bytes += asked;
+  counters.l2_bytes += missed;
+  counters.texture_l2_bytes += missed;
+  constexpr std::size_t kMost = 1 << 14;  // keeps the list short where L1 misses often
+  if (reads.size() > 2 * summed_up_ + kMost) sum_up();
+}
+
+void TextureFetches::sum_up() {
+  std::vector<TextureRead>& reads = passes_.back();
+  std::sort(reads.begin(), reads.end(), [](const TextureRead& a, const TextureRead& b) {
+    return a.line != b.line ? a.line < b.line : a.stage < b.stage;
+  });
+  std::size_t kept = 0;
+  for (const TextureRead& read : reads) {
+    if (kept > 0 && reads[kept - 1].line == read.line && reads[kept - 1].stage == read.stage) {
+      reads[kept - 1].sectors |= read.sectors;
+    } else {
+      reads[kept++] = read;
+    }
+  }
+  reads.resize(kept);
+  summed_up_ = kept;
+}
+
+void TextureFetches::start_pass() {
+  sum_up();
+  passes_.emplace_back();
+  summed_up_ = 0;
+  l1_.clear();
+}
+
+TexturePasses TextureFetches::take_passes() {
+  sum_up();
+  passes_.back().shrink_to_fit();
+  return std::move(passes_);
+}
+
+std::vector<std::uint64_t> texture_dram_bytes(const MemoryParameters& memory, const std::vector<TexturePasses>& bins,
+                                              std::size_t stages) {
+  std::vector<std::uint64_t> bytes(stages);
+  std::size_t passes = 0;
+  for (const TexturePasses& bin : bins) passes = std::max(passes, bin.size());
+  ReadCache l2(memory.l2);
+  for (std::size_t pass = 0; pass < passes; ++pass) {
+    for (const TexturePasses& bin : bins) {
+      if (pass >= bin.size()) continue;
+      for (const TextureRead& read : bin[pass])
+        bytes[read.stage] += bytes_of(l2.read(read.line, static_cast<Sectors>(read.sectors)));
+    }
+  }
+  return bytes;
+}
+
+}  // namespace beampipe

@@ -1,0 +1,101 @@
+// Which texels shading reads: where they lie in the modelled memory, and which of them are asked for at once.
+#pragma once
+
+#include <algorithm>
+#include <cstddef>
+#include <cstdint>
+#include <span>
+#include <vector>
+
+#include "stages/surface/mip_chain.h"
+
+namespace beampipe {
+
+// A texel that was read.
+struct TexelRead {
+  std::uint32_t image;
+  ColorSpace space;
+  std::uint32_t level, x, y;
+};
+
+inline constexpr std::uint64_t kTexelBytes = 4;  // 8 bits per channel, not compressed
+
+// Images lie one after the other, once for each colour space that is read; of an image its levels, each from the start
+// of a line of 128 bytes. A sector of 32 bytes has 4 x 2 texels, and a line 2 x 2 sectors.
+//
+// Source: block-linear surfaces of NVIDIA GPUs, whose sectors are 16 bytes x 2 rows (minigbm, tegra.c: GENERIC_16Bx2).
+class TextureLayout {
+ public:
+  static constexpr std::uint32_t kSectorsPerLine = 4;
+
+  explicit TextureLayout(const TextureSet& textures);
+
+  // The number of a texel's sector: kSectorsPerLine times the line, and its place there.
+  std::uint64_t sector_of(const TexelRead& texel) const {
+    const Level& level = levels_[chains_[TextureSet::index(texel.image, texel.space)] + texel.level];
+    const std::uint64_t line = level.first_line + std::uint64_t{texel.y / 4} * level.lines_per_row + texel.x / 8;
+    return line * kSectorsPerLine + texel.y % 4 / 2 * 2 + texel.x % 8 / 4;
+  }
+
+ private:
+  struct Level {
+    std::uint64_t first_line;
+    std::uint32_t lines_per_row;
+  };
+  std::vector<std::size_t> chains_;  // by TextureSet::index: where its levels begin
+  std::vector<Level> levels_;
+};
+
+// What is read together is one request, which asks for each sector once.
+class TexelRequests {
+ public:
+  // `layout` must outlive it. Null: texels are only counted.
+  explicit TexelRequests(const TextureLayout* layout) : layout_(layout) {}
+
+  // Into the open request.
+  void read(const TexelRead& texel) {
+    ++texels_;
+    if (!layout_) return;
+    const std::uint64_t sector = layout_->sector_of(texel);
+    const auto open = sectors_.begin() + static_cast<std::ptrdiff_t>(begin_);
+    if (std::find(open, sectors_.end(), sector) == sectors_.end()) sectors_.push_back(sector);
+  }
+
+  // The next texel begins another request.
+  void end_request() {
+    if (begin_ == sectors_.size()) return;
+    std::sort(sectors_.begin() + static_cast<std::ptrdiff_t>(begin_), sectors_.end());
+    begin_ = sectors_.size();
+    ends_.push_back(begin_);
+  }
+
+  std::uint64_t texels() const { return texels_; }  // one for each time that one was read
+
+  // Calls visit(sectors) for each request that has ended; its sectors are in increasing order.
+  template <class Visit>
+  void for_each(Visit&& visit) const {
+    std::size_t begin = 0;
+    for (const std::size_t end : ends_) {
+      visit(std::span(sectors_).subspan(begin, end - begin));
+      begin = end;
+    }
+  }
+
+  void clear() {
+    texels_ = 0, begin_ = 0;
+    sectors_.clear(), ends_.clear();
+  }
+
+ private:
+  const TextureLayout* layout_;
+  std::uint64_t texels_ = 0;
+  std::size_t begin_ = 0;  // of the open request
+  std::vector<std::uint64_t> sectors_;
+  std::vector<std::size_t> ends_;
+};
+
+inline void end_request(TexelRequests* texels) {
+  if (texels) texels->end_request();
+}
+
+}  // namespace beampipe
