@@ -24,7 +24,7 @@ inline OperationCounts rank_cost() { return {.add = 2, .bit = 1, .fetch = 1}; }
 inline OperationCounts flip_cost() {
   return count_operations([](OperationCounts& counts) {
     Counted<std::uint32_t> random(1, counts);
-    for (int i = 0; i < 3; ++i) random = mix_bits(random + Counted<std::uint32_t>(1));
+    for (int i = 0; i < 4; ++i) random = mix_bits(random + Counted<std::uint32_t>(1));
     random = random >> 16;
     static_cast<void>(to_float(random) * Counted<float>(1.0f) * Counted<float>(1.0f));
   });

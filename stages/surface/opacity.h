@@ -2,7 +2,8 @@
 //
 // A surface of opacity a takes the part a of the positions that it covers. The positions of several surfaces must be
 // independent of each other: of those that the first leaves, the second must take its part. So each draw ranks the
-// positions by a dimension of a Sobol sequence: any two dimensions together are evenly distributed.
+// positions by a dimension of a Sobol sequence: any two dimensions together are evenly distributed. Within a draw,
+// triangles with the same first vertex, such as the halves of a rectangle, share a dimension.
 //
 // Source of the direction numbers: Joe and Kuo 2008, "Constructing Sobol sequences with better two-dimensional
 // projections", new-joe-kuo-6.
@@ -68,14 +69,15 @@ inline constexpr std::array<Columns, kOpacityDimensions> kColumns = make_columns
 
 }  // namespace sobol
 
-// The positions that the surfaces of a draw take in a pixel. Positions: at most 256.
+// The positions that a part of a draw takes in a pixel. Positions: at most 256.
 class OpacityRanks {
  public:
-  // (x, y): the pixel.
-  OpacityRanks(std::uint32_t draw, std::int32_t x, std::int32_t y)
-      : columns_(sobol::kColumns[draw % kOpacityDimensions]) {
+  // (x, y): the pixel. `part`: of the draw; SetupSurface::first_vertex.
+  OpacityRanks(std::uint32_t draw, std::int32_t x, std::int32_t y, std::uint32_t part = 0)
+      : columns_(sobol::kColumns[(draw + mix_bits(part)) % kOpacityDimensions]) {
+    const std::uint32_t of_part = mix_bits(draw + 1) + mix_bits(part);
     const std::uint32_t random =
-        mix_bits(mix_bits(mix_bits(draw + 1) + static_cast<std::uint32_t>(x)) + static_cast<std::uint32_t>(y));
+        mix_bits(mix_bits(of_part + static_cast<std::uint32_t>(x)) + static_cast<std::uint32_t>(y));
     flip_ = static_cast<std::uint8_t>(random);
     offset_ = static_cast<float>(random >> 16) * (1.0f / 65536.0f);
   }

@@ -86,6 +86,7 @@ class SurfaceShader {
   }
   float alpha_cutoff(std::uint32_t triangle) const { return material(triangle).alpha_cutoff; }
   std::uint32_t draw(std::uint32_t triangle) const { return triangles_.draws[triangle]; }
+  std::uint32_t first_vertex(std::uint32_t triangle) const { return triangles_.surfaces[triangle].first_vertex; }
 
   // Do the triangles have the same colour everywhere?
   bool same_color(std::uint32_t a, std::uint32_t b) const {
@@ -171,7 +172,7 @@ class TileShader {
   float alpha_cutoff(std::uint32_t triangle) const { return shader_->alpha_cutoff(triangle); }
   OpacityRanks opacity_ranks(std::uint32_t triangle, std::uint32_t pixel) const {
     const ShadingPlace at = place(pixel, 0, 0);
-    return {shader_->draw(triangle), at.x, at.y};
+    return {shader_->draw(triangle), at.x, at.y, shader_->first_vertex(triangle)};
   }
 
   ShadingPlace place(std::uint32_t pixel, float u, float v) const {

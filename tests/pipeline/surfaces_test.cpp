@@ -199,6 +199,19 @@ TEST(Surfaces, BeamComposesSheetsInAnyOrderOfDraws) {
   } while (std::next_permutation(stack.begin(), stack.end(), by_alpha));
 }
 
+// Sheets in front of each other in one draw are as independent as those of several draws.
+TEST(Surfaces, BeamComposesTheSheetsOfOneDraw) {
+  for (const double alpha : {0.25, 0.5, 0.75}) {
+    SurfaceTrace scene(32, 32);
+    scene.add_rectangle(-1, -1, 33, 33, 0.3, unlit_material({1, 1, 1, alpha}, AlphaMode::blend));
+    scene.add_to_draw(0.6);
+    scene.trace.frames[0].background = glm::vec3(0.0f);
+    const double expected = 1 - (1 - alpha) * (1 - alpha);
+    for (const char* spec : {"reference", "beam", "beam:order=sorted", "beam:order=stream"})
+      EXPECT_NEAR(mean_color(rendered(spec, scene.trace).image).r, expected, 0.01) << spec << ", " << alpha;
+  }
+}
+
 // MSAA blends in the order of draws: from far to near that is the truth, from near to far it is not.
 TEST(Surfaces, MsaaBlendsInTheOrderOfDraws) {
   const glm::dvec3 truth = composed(kStack);

@@ -186,10 +186,10 @@ TEST(AlphaMask, CountsItsWork) {
     EXPECT_EQ(found.counters.ops.fetch, alphas + 256);
     // An alpha: weights in perspective (8 products, 10 sums and comparisons, a division); their slopes (10, 6, 1); two
     // texture coordinates (2, 4 each) and four slopes of them (2, 3 each); the factor.
-    // Besides: six products and three sums that make the pixel's flip, and two products; the area's factor.
-    EXPECT_EQ(found.counters.ops.mul_add, alphas * (8 + 10 + 2 * 2 + 4 * 2 + 1) + 6 + 2 + 1);
+    // Besides: eight products and four sums that make the pixel's flip, and two products; the area's factor.
+    EXPECT_EQ(found.counters.ops.mul_add, alphas * (8 + 10 + 2 * 2 + 4 * 2 + 1) + 8 + 2 + 1);
     // A rank is moved and compared; in a cutout alpha is compared and selected, and added.
-    EXPECT_EQ(found.counters.ops.add, alphas * (10 + 6 + 2 * 4 + 4 * 3) + 3 + 256 * (mode == AlphaMode::mask ? 5 : 2));
+    EXPECT_EQ(found.counters.ops.add, alphas * (10 + 6 + 2 * 4 + 4 * 3) + 4 + 256 * (mode == AlphaMode::mask ? 5 : 2));
     EXPECT_EQ(found.counters.ops.special, alphas * 2 + (mode == AlphaMode::mask));
   }
 }
