@@ -11,8 +11,8 @@
 //   leak               the reference sees nothing of j
 //   mixed              a surface that was merged after both hides part of j, and i lost area instead of j
 //   mask               the outline between the two is in the wrong place, as far as mask positions tell
-// If surfaces vary, all this holds for pictures and weights that are rendered with SurfaceColors::by_pixel: each triangle
-// has one colour in a pixel then, and the error is one of visibility.
+// If surfaces vary, all this holds for pictures and weights that are rendered with SurfaceColors::by_pixel: each
+// triangle has one colour in a pixel then, and the error is one of visibility.
 //
 // The part of the error that weights do not explain (formats of colours, and limits on their channels) is `rounding`.
 //

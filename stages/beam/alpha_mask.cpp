@@ -25,27 +25,31 @@ void for_each_position(const WideMask& mask, const std::vector<SamplePattern>& p
   }
 }
 
-// Mean alpha of the pixel's part of the surface, by one fetch.
-float mean_alpha(const TileShader& shader, const Fragment& fragment, AlphaMaskWork& work, TexelRequests* texels) {
-  ++work.footprints;
-  const float alpha =
-      shader.alpha(fragment.triangle, fragment.pixel, fragment.centroid_u, fragment.centroid_v, 1.0f, texels).alpha;
-  end_request(texels);
-  return alpha;
+// The part of the area of width `width` that a cutout covers.
+float covered_part(const TileShader& shader, const Fragment& fragment, float u, float v, float width,
+                   AlphaMaskWork& work, TexelRequests* texels) {
+  work.alphas += shader.work(fragment.triangle).alpha;
+  const AlphaAt at = shader.alpha(fragment.triangle, fragment.pixel, u, v, width, texels);
+  if (!at.is_magnified) return at.alpha;
+  return at.alpha >= shader.alpha_cutoff(fragment.triangle) ? 1.0f : 0.0f;
 }
 
 // The part of the fragment that is left, 0..1.
 float cut_out(const TileShader& shader, const std::vector<SamplePattern>& patterns, float spacing, Fragment& fragment,
               AlphaMaskWork& work, TexelRequests* texels) {
-  if (fragment.mask.none()) return mean_alpha(shader, fragment, work, texels);
+  if (fragment.mask.none()) {
+    const float part = covered_part(shader, fragment, fragment.centroid_u, fragment.centroid_v, 1.0f, work, texels);
+    end_request(texels);
+    return part;
+  }
+  ++work.masks, ++work.shares;
   const OpacityRanks ranks = shader.opacity_ranks(fragment.triangle, fragment.pixel);
-  const float cutoff = shader.alpha_cutoff(fragment.triangle), covered = static_cast<float>(fragment.mask.count());
+  const auto covered = static_cast<float>(fragment.mask.count());
   WideMask left;
   float sum = 0;
   const auto test = [&](std::size_t position, float u, float v) {
     ++work.positions;
-    const AlphaAt at = shader.alpha(fragment.triangle, fragment.pixel, u, v, spacing, texels);
-    const float part = at.is_magnified ? (at.alpha >= cutoff ? 1.0f : 0.0f) : at.alpha;
+    const float part = covered_part(shader, fragment, u, v, spacing, work, texels);
     sum += part;
     if (ranks.takes(static_cast<std::uint32_t>(position), part)) left.set(position);
   };
@@ -56,7 +60,12 @@ float cut_out(const TileShader& shader, const std::vector<SamplePattern>& patter
 
 float let_through(const TileShader& shader, const std::vector<SamplePattern>& patterns, Fragment& fragment,
                   AlphaMaskWork& work, TexelRequests* texels) {
-  const float opacity = std::clamp(mean_alpha(shader, fragment, work, texels), 0.0f, 1.0f);
+  ++work.masks;
+  work.alphas += shader.work(fragment.triangle).alpha;
+  const float alpha =
+      shader.alpha(fragment.triangle, fragment.pixel, fragment.centroid_u, fragment.centroid_v, 1.0f, texels).alpha;
+  end_request(texels);
+  const float opacity = std::clamp(alpha, 0.0f, 1.0f);
   const OpacityRanks ranks = shader.opacity_ranks(fragment.triangle, fragment.pixel);
   WideMask left;
   const auto rank = [&](std::size_t position, float, float) {

@@ -16,7 +16,7 @@ const std::vector<StageInfo>& stage_list() {
       {"bin_sort", "triangles of the bins' lists", "the same triangles, near to far", "", "", " ops.special "},
       {"beam_fragment", "pairs", "fragments: pairs whose covered area is not 0", "fragments", "pairs", ""},
       {"alpha_mask", "fragments of cutouts and of translucent triangles", "those of which something is left",
-       "positions at which alpha is tested or ranked", "the same positions", " ops.convert "},
+       "positions at which alpha is tested or ranked", "the same positions", ""},
       {"shade", "fragments, or shading samples", "the same items, with a colour or a material", "the items",
        "the pixels of the items' 2x2 quads; the items alone if shading follows a visibility test", ""},
       {"light", "pixels with a material", "the same pixels, with a colour", "the pixels", "the pixels",

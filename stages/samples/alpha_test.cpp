@@ -12,11 +12,13 @@ void alpha_test(const TileShader& shader, const Tile& tile, const CellGrid& grid
                 TexelRequests* texels) {
   const float width = 1.0f / static_cast<float>(std::min(grid.columns, grid.rows));
   std::uint64_t tested = 0, left = 0;
+  OperationCounts alphas;
   for (std::size_t i = 0; i < fragments.size(); ++i) {
     SampleFragment& fragment = fragments[i];
     if (!shader.is_cutout(fragment.triangle)) continue;
     ++tested;
     if (i > 0 && fragments[i - 1].quad != fragment.quad) end_request(texels);
+    alphas += shader.work(fragment.triangle).alpha;
     const std::int32_t x = grid.pixel_x(fragment.x), y = grid.pixel_y(fragment.y);
     const auto pixel = static_cast<std::uint32_t>(tile.index(x, y));
     const float alpha = shader.alpha(fragment.triangle, pixel, places[i].x, places[i].y, width, texels).alpha;
@@ -31,7 +33,7 @@ void alpha_test(const TileShader& shader, const Tile& tile, const CellGrid& grid
   }
   end_request(texels);
   std::erase_if(fragments, [](const SampleFragment& fragment) { return fragment.mask == 0; });
-  charge_alpha_test(tested, left, coverage == AlphaCoverage::test ? 0 : samples, counters);
+  charge_alpha_test(tested, left, coverage == AlphaCoverage::test ? 0 : samples, alphas, counters);
 }
 
 }  // namespace beampipe

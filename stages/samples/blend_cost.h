@@ -1,9 +1,9 @@
 // What blend is charged.
 #pragma once
 
-#include "simd/depth_compare.h"
 #include "stages/cost/counting.h"
 #include "stages/data/sample_tile.h"
+#include "stages/samples/sample_depth_cost.h"
 
 namespace beampipe {
 
@@ -24,10 +24,10 @@ inline OperationCounts blend_cost() {
 // `color_bytes`: of a sample, which is read and written.
 inline void charge_blend(std::uint64_t fragments, const SampleCounts& samples, std::uint32_t color_bytes,
                          const SamplePattern& pattern, StageCounters& counters) {
-  const OperationCounts test{.mul_add = 2, .add = 1};
   counters.items_in += samples.tested;
   counters.items_out += samples.passed;
-  counters.ops += test * samples.tested;
+  counters.ops += cell_plane_cost() * fragments;
+  counters.ops += sample_depth_cost() * samples.tested;
   counters.ops += blend_cost() * samples.passed;
   counters.bytes_read += samples.tested * kSampleDepthBytes + fragments * kSampleFragmentBytes;
   counters.bytes_read += samples.passed * color_bytes;

@@ -1,8 +1,8 @@
 // The fragment shader of materials, for numbers and for numbers that count (stages/cost/counting.h).
 //
 // Source: Khronos Group, glTF 2.0 Specification, appendix B (BRDF implementation): Lambert's diffuse and GGX specular
-// reflection, Schlick's Fresnel term, Smith's visibility. Everything is multiplied by pi, as Light::color is what a
-// white diffuse surface reflects.
+// reflection, Schlick's Fresnel term, the separable form of Smith's visibility. Everything is multiplied by pi, as
+// Light::color is what a white diffuse surface reflects.
 #pragma once
 
 #include <array>
@@ -103,10 +103,10 @@ Triple<Real> reflected_light(const Reflector<Real>& surface, const Lighting& lig
     const Real normal_half = dot(surface.normal, half_way);
     const Real density_root = normal_half * normal_half * (alpha2 - one) + one;
     const Real density = alpha2 / (density_root * density_root);
-    const Real smith = normal_light * square_root(normal_eye * normal_eye * (one - alpha2) + alpha2) +
-                       normal_eye * square_root(normal_light * normal_light * (one - alpha2) + alpha2);
-    const Real specular = density * Real(0.5f) / smith;
-    const Real grazing = one - greater(dot(surface.to_eye, half_way), zero), grazing2 = grazing * grazing;
+    const Real smith = (normal_eye + square_root(normal_eye * normal_eye * (one - alpha2) + alpha2)) *
+                       (normal_light + square_root(normal_light * normal_light * (one - alpha2) + alpha2));
+    const Real specular = density / smith;
+    const Real grazing = one - lesser(greater(dot(surface.to_eye, half_way), zero), one), grazing2 = grazing * grazing;
     const Real fresnel = grazing2 * grazing2 * grazing;
     for (std::size_t c = 0; c < 3; ++c) {
       const Real reflectance = mirror[c] + (one - mirror[c]) * fresnel;
@@ -120,7 +120,7 @@ Triple<Real> reflected_light(const Reflector<Real>& surface, const Lighting& lig
   for (std::size_t axis = 0; axis < 3; ++axis)
     mirrored[axis] = mixed(surface.normal[axis] * twice - surface.to_eye[axis], surface.normal[axis], alpha);
   for (std::size_t c = 0; c < 3; ++c)
-    light[c] = light[c] + diffuse[c] * ambient_light(*lighting.ambient, surface.normal, c) +
+    light[c] = light[c] + (one - mirror[c]) * diffuse[c] * ambient_light(*lighting.ambient, surface.normal, c) +
                mirror[c] * ambient_light(*lighting.ambient, mirrored, c);
   return light;
 }
@@ -218,7 +218,7 @@ SurfaceMaterial<Real> material_at(const ShaderInputs& shader, const SurfacePoint
     for (std::size_t c = 0; c < 4; ++c)
       base[c] = base[c] * interpolated(point.vertices[0].color[c], point.vertices[1].color[c],
                                        point.vertices[2].color[c], point.weights);
-  SurfaceMaterial<Real> surface;
+  SurfaceMaterial<Real> surface{};
   Reflector<Real>& reflector = surface.reflector;
   reflector.base = {base[0], base[1], base[2]};
   surface.alpha = base[3];
@@ -255,6 +255,18 @@ SurfaceMaterial<Real> material_at(const ShaderInputs& shader, const SurfacePoint
     for (std::size_t c = 0; c < 3; ++c) surface.emissive[c] = surface.emissive[c] * color[c];
   }
   return surface;
+}
+
+// Alpha alone, as in SurfaceMaterial. place and fetch: as above; `vertex_alphas`: of the vertices' colours.
+template <class Real, class Place, class Fetch>
+Real alpha_at(const ShaderInputs& shader, const std::array<Real, 3>& vertex_alphas, const Barycentrics<Real>& weights,
+              Place&& place, Fetch&& fetch) {
+  Real alpha(shader.material.base_color.a);
+  if (const auto& texture = shader.material.base_texture)
+    alpha = alpha * fetch(TextureRole::base, place(texture->uv_set))[3];
+  if (shader.has_vertex_colors)
+    alpha = alpha * interpolated(vertex_alphas[0], vertex_alphas[1], vertex_alphas[2], weights);
+  return alpha;
 }
 
 // The second half: linear RGB towards the eye.

@@ -72,6 +72,29 @@ glm::vec3 flat_color(const FlatAttributes& flat, const Lighting& lighting) {
   return color;
 }
 
+// Texture coordinates and how they change, from the planes of a triangle, or as differences between the invocations of
+// a quad.
+template <class Real>
+TexturePlace<Real> counted_place(const std::array<VertexInputs<Real>, 3>& v, std::uint32_t set,
+                                 const BarycentricPlanes<Real>& planes, const Barycentrics<Real>& weights,
+                                 Derivatives derivatives) {
+  const Real one = v[0].color[0];
+  TexturePlace<Real> found;
+  std::array<Barycentrics<Real>, 2> slopes;
+  if (derivatives == Derivatives::analytic) slopes = weight_slopes(planes, one, one, weights);
+  for (std::size_t c = 0; c < 2; ++c) {
+    const Real &a = v[0].uvs[set][c], &b = v[1].uvs[set][c], &d = v[2].uvs[set][c];
+    found.uv[c] = interpolated(a, b, d, weights);
+    if (derivatives == Derivatives::analytic) {
+      found.dx[c] = interpolated_slope(a, b, d, slopes[0]);
+      found.dy[c] = interpolated_slope(a, b, d, slopes[1]);
+    } else {
+      found.dx[c] = found.uv[c] - one, found.dy[c] = found.uv[c] - one;
+    }
+  }
+  return found;
+}
+
 // The operations of the shader's first half, with the weights and texture coordinates that it needs. A fetch is one
 // operation; filtering is done by the texture unit.
 OperationCounts material_cost(const ShaderInputs& shader, Derivatives derivatives) {
@@ -85,25 +108,10 @@ OperationCounts material_cost(const ShaderInputs& shader, Derivatives derivative
     const ScreenPlane<Real> plane{one, one, one};
     const BarycentricPlanes<Real> planes{plane, plane, plane};
     const Barycentrics<Real> weights = weights_at(planes, one, one);
-    bool has_slopes[2] = {false, false};
-    std::array<TexturePlace<Real>, 2> places;
+    std::array<std::optional<TexturePlace<Real>>, 2> places;
     const auto place = [&](std::uint32_t set) {
-      TexturePlace<Real>& found = places[set];
-      if (has_slopes[set]) return found;
-      has_slopes[set] = true;
-      std::array<Barycentrics<Real>, 2> slopes;
-      if (derivatives == Derivatives::analytic) slopes = weight_slopes(planes, one, one, weights);
-      for (std::size_t c = 0; c < 2; ++c) {
-        const Real &a = v[0].uvs[set][c], &b = v[1].uvs[set][c], &d = v[2].uvs[set][c];
-        found.uv[c] = interpolated(a, b, d, weights);
-        if (derivatives == Derivatives::analytic) {
-          found.dx[c] = interpolated_slope(a, b, d, slopes[0]);
-          found.dy[c] = interpolated_slope(a, b, d, slopes[1]);
-        } else {
-          found.dx[c] = found.uv[c] - one, found.dy[c] = found.uv[c] - one;
-        }
-      }
-      return found;
+      if (!places[set]) places[set] = counted_place(v, set, planes, weights, derivatives);
+      return *places[set];
     };
     const auto fetch = [&](TextureRole, const TexturePlace<Real>&) -> std::array<Real, 4> {
       ++counts.fetch;
@@ -111,6 +119,28 @@ OperationCounts material_cost(const ShaderInputs& shader, Derivatives derivative
     };
     const SurfacePoint<Real> point{v, weights, vector, one, vector, one};
     material_at(shader, point, place, fetch);
+  });
+}
+
+// Of alpha alone. Its slopes come from the planes in every technique.
+OperationCounts alpha_cost(const ShaderInputs& shader) {
+  if (!shader.material.base_texture && !shader.has_vertex_colors) return {};
+  return count_operations([&](OperationCounts& counts) {
+    using Real = Counted<float>;
+    const Real one(1.0f, counts);
+    VertexInputs<Real> vertex{};
+    vertex.color.fill(one);
+    for (auto& uv : vertex.uvs) uv = {one, one};
+    const std::array<VertexInputs<Real>, 3> v{vertex, vertex, vertex};
+    const ScreenPlane<Real> plane{one, one, one};
+    const BarycentricPlanes<Real> planes{plane, plane, plane};
+    const Barycentrics<Real> weights = weights_at(planes, one, one);
+    const auto place = [&](std::uint32_t set) { return counted_place(v, set, planes, weights, Derivatives::analytic); };
+    const auto fetch = [&](TextureRole, const TexturePlace<Real>&) -> std::array<Real, 4> {
+      ++counts.fetch;
+      return {one, one, one, one};
+    };
+    alpha_at(shader, {one, one, one}, weights, place, fetch);
   });
 }
 
@@ -211,7 +241,7 @@ SurfaceShader::SurfaceShader(const SetupTriangles& triangles, const Trace& trace
     Work& work = works_[work_index(triangles.surfaces[i].material, shader)];
     if (work.input_bytes == 0)
       work = {material_cost(shader, rules.derivatives), light_cost(shader.material, frame.lighting),
-              shader_input_bytes(shader)};
+              triangles.is_opaque(i) ? OperationCounts{} : alpha_cost(shader), shader_input_bytes(shader)};
   }
 }
 
@@ -223,7 +253,7 @@ ShaderInputs SurfaceShader::inputs_of(std::uint32_t triangle) const {
 }
 
 const SurfaceShader::Work& TileShader::lit_flat() const {
-  static const SurfaceShader::Work one_light{{}, flat_light_cost({{{}}, {}}), sizeof(FlatAttributes)};
+  static const SurfaceShader::Work one_light{{}, flat_light_cost({{{}}, {}}), {}, sizeof(FlatAttributes)};
   return shader_ ? shader_->lit_flat() : one_light;
 }
 
@@ -237,30 +267,34 @@ AlphaAt SurfaceShader::alpha(std::uint32_t triangle, const ShadingPlace& place, 
   const SetupSurface& surface = triangles_.surfaces[triangle];
   const ShaderInputs shader = inputs_of(triangle);
   const auto vertex = [&](std::size_t k) -> const SurfaceVertex& { return triangles_.vertices[surface.vertices[k]]; };
+  AlphaAt found{1.0f, true};
+  Barycentrics<float> weights;
   const float x = static_cast<float>(place.x) + place.u - surface.anchor_x,
               y = static_cast<float>(place.y) + place.v - surface.anchor_y;
-  const Barycentrics<float> weights = weights_at(surface.planes, x, y);
-  AlphaAt found{shader.material.base_color.a, true};
-  if (shader.has_vertex_colors)
-    found.alpha *= interpolated(vertex(0).color.a, vertex(1).color.a, vertex(2).color.a, weights);
-  if (const auto& texture = shader.material.base_texture) {
+  if (shader.has_vertex_colors || shader.material.base_texture) weights = weights_at(surface.planes, x, y);
+  const auto texture_place = [&](std::uint32_t set) {
     const std::array<Barycentrics<float>, 2> change = weight_slopes(surface.planes, x, y, weights);
-    TextureSlopes slopes;
-    glm::vec2 uv;
-    for (int c = 0; c < 2; ++c) {
-      const float a = vertex(0).uvs[texture->uv_set][c], b = vertex(1).uvs[texture->uv_set][c],
-                  d = vertex(2).uvs[texture->uv_set][c];
-      uv[c] = interpolated(a, b, d, weights);
-      slopes.dx[c] = width * interpolated_slope(a, b, d, change[0]);
-      slopes.dy[c] = width * interpolated_slope(a, b, d, change[1]);
+    TexturePlace<float> at;
+    for (std::size_t c = 0; c < 2; ++c) {
+      const auto uv = [&](std::size_t k) { return vertex(k).uvs[set][static_cast<int>(c)]; };
+      at.uv[c] = interpolated(uv(0), uv(1), uv(2), weights);
+      at.dx[c] = interpolated_slope(uv(0), uv(1), uv(2), change[0]);
+      at.dy[c] = interpolated_slope(uv(0), uv(1), uv(2), change[1]);
     }
-    const MipChain& chain = textures_->chain(texture->image, ColorSpace::srgb);
+    return at;
+  };
+  const auto fetch = [&](TextureRole, const TexturePlace<float>& at) {
+    const TextureSlopes slopes{vector_of(at.dx) * width, vector_of(at.dy) * width};
+    const Texture& texture = *shader.material.base_texture;
+    const MipChain& chain = textures_->chain(texture.image, ColorSpace::srgb);
     const auto note = [&](std::size_t level, std::uint32_t column, std::uint32_t row) {
-      if (texels) texels->read({texture->image, ColorSpace::srgb, static_cast<std::uint32_t>(level), column, row});
+      if (texels) texels->read({texture.image, ColorSpace::srgb, static_cast<std::uint32_t>(level), column, row});
     };
-    found.alpha *= filtered(chain, *texture, uv, slopes, note).a;
     found.is_magnified = level_of_detail(slopes, chain.levels[0]) <= 0;
-  }
+    return filtered(chain, texture, vector_of(at.uv), slopes, note);
+  };
+  found.alpha =
+      alpha_at(shader, {vertex(0).color.a, vertex(1).color.a, vertex(2).color.a}, weights, texture_place, fetch);
   return found;
 }
 
@@ -316,12 +350,13 @@ SurfaceMaterial<float> SurfaceShader::material_there(std::uint32_t triangle, con
     const bool is_mean = level_of_detail(slopes, textures_->chain(texture.image, space).levels[0]) > 0;
     return {texel.r, texel.g, texel.b, is_mean ? 1.0f : 0.0f};
   };
-  const SurfacePoint<float> point{v,
-                                  weights,
-                                  triple<float>(triangles_.attributes[triangle].normal),
-                                  surface.turned ? -1.0f : 1.0f,
-                                  triple<float>(glm::vec3(surface.tangent)),
-                                  surface.tangent.w};
+  const SurfacePoint<float> point{
+      v,
+      weights,
+      triple<float>(triangles_.attributes[triangle].normal),
+      surface.turned ? -1.0f : 1.0f,
+      triple<float>(glm::vec3(surface.tangent)),
+      shader.has_tangents ? triangles_.vertices[surface.vertices[0]].tangent.w : surface.tangent.w};
   return material_at(shader, point, texture_place, fetch);
 }
 

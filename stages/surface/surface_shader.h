@@ -92,10 +92,10 @@ class SurfaceShader {
     return a == b || (is_flat(a) && is_flat(b) && flat_[a] == flat_[b]);
   }
 
-  // What an invocation costs: its operations, for the material and for light, and bytes of what it reads of the
-  // triangle and its vertices.
+  // What an invocation costs: its operations, for the material, for light and for alpha alone, and bytes of what it
+  // reads of the triangle and its vertices.
   struct Work {
-    OperationCounts material, light;
+    OperationCounts material, light, alpha;
     std::uint64_t input_bytes = 0;
   };
   const Work& work(std::uint32_t triangle) const {

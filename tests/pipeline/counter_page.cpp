@@ -97,6 +97,8 @@ const std::map<std::string, std::string>& tests_of_pixel_counters() {
       {"passes", corners},
       {"unknown", "CounterRegistry.EveryPixelCounterMovesSomewhere"},
       {"error", "PixelErrors.AreTheRootOfTheMeanSquareOfTheChannels"},
+      {"visibility_error", "SplitError.PartsOfEachValueAddUpToItsError"},
+      {"shading_error", "SplitError.PartsOfEachValueAddUpToItsError"},
       {"cause_leak", "ErrorCauses.TheBackgroundLeaksThroughTwoTrianglesThatOverTakesForIndependent"},
       {"cause_mask", "ErrorCauses.AnOutlineBetweenPositionsIsTheMasks"},
       {"cause_order", "ErrorCauses.WhatIsNearerButSortedBehindIsOutOfOrder"},

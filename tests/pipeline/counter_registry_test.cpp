@@ -30,6 +30,7 @@ constexpr const char* kSpecs[] = {"beam",
                                   "msaa:4,at=centroid",
                                   "msaa:4,prepass",
                                   "msaa:32",
+                                  "msaa:256",
                                   "acaa:4,double=stencil",
                                   "acaa:4,double=saturate",
                                   "deferred",
@@ -72,7 +73,7 @@ const std::map<std::string, StageCounters>& sums() {
         for (const StageCounters& stage : parse_technique(spec).render(trace, frame, run).stages)
           by_stage[stage.stage] += stage;
       }
-      for (const Trace& other : {hidden_trace(), random_surfaces(40, 30, 60, 2)})
+      for (const Trace& other : {hidden_trace(), random_surfaces(64, 48, 80, 2)})
         for (const StageCounters& stage : parse_technique(spec).render(other, 0, {2}).stages)
           by_stage[stage.stage] += stage;
     }

@@ -11,8 +11,8 @@ namespace {
 
 const char* const kSpecs[] = {
     "beam",
-    "beam:bits=64,slots=4",
-    "beam:bits=32,slots=2,bin=8",
+    "beam:bits=64,slots=4,at=visible",
+    "beam:bits=32,slots=2,bin=8,at=quarters",
     "beam:order=sorted",
     "beam:order=sorted,storage=float32",
     "beam:rules=paper,mask=exact",

@@ -61,7 +61,7 @@ TEST(Technique, WrongSpecsSayWhatWouldBeRight) {
   const std::string msaa_rates = "N of msaa:N must be 1, 2, 4, 8, 16, 32, 64, 128, 256, 512 or 1024";
   const std::string acaa_rates = "N of acaa:N must be 1, 2, 4, 8, 16, 32, 64, 128 or 256";
   const std::string taa_rates = "N of taa:N must be 1, 2, 4, 8 or 16";
-  const std::string of_beam = "; it has bits, slots, bin, order and rules";
+  const std::string of_beam = "; it has bits, slots, at, bin, order and rules";
   const std::string of_paper =
       "; it has mask, sort, tiny, overlap, regional, local, fuzzy, extents, slab, plane, thickness, storage, order, "
       "layers and rules";

@@ -36,8 +36,7 @@ void CauseShares::add(const Technique& technique, const RunPlan& plan, std::size
   run.weights = &weights;
   technique.render(plan.trace, frame, run);
   run.weights = nullptr;
-  auto layers =
-      error_causes(plan.trace, plan.trace.frames.at(frame), weights, pictures.image, pictures.reference, run);
+  auto layers = error_causes(plan.trace, plan.trace.frames.at(frame), weights, pictures.image, pictures.reference, run);
   const std::vector<float> errors = pixel_errors(pictures.image, pictures.reference);
   for (auto& [cause, layer] : layers) {
     for (std::size_t i = 0; i < errors.size(); ++i) squares_[cause] += double{layer[i]} * errors[i];

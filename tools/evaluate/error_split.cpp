@@ -30,9 +30,8 @@ std::vector<float> root_mean_squares(const std::vector<float>& values) {
 }  // namespace
 
 bool has_varying_surfaces(const RunPlan& plan) {
-  return std::any_of(plan.frames.begin(), plan.frames.end(), [&](std::size_t frame) {
-    return has_varying_surfaces(plan.trace, plan.trace.frames.at(frame));
-  });
+  return std::any_of(plan.frames.begin(), plan.frames.end(),
+                     [&](std::size_t frame) { return has_varying_surfaces(plan.trace, plan.trace.frames.at(frame)); });
 }
 
 ErrorParts split_error(const PicturePair& pictures, const PicturePair& by_pixel,
@@ -78,9 +77,7 @@ ErrorParts ErrorSplit::split(const RunPlan& plan, std::size_t i, FrameResult& re
   return split_error({result.image, reference}, pictures(), result.pixel_counters);
 }
 
-void ErrorSplit::add_rungs(const RunPlan& plan, Progress& progress) {
-  ladder_.add(plan, frame_, reference_, progress);
-}
+void ErrorSplit::add_rungs(const RunPlan& plan, Progress& progress) { ladder_.add(plan, frame_, reference_, progress); }
 
 std::vector<LadderRung> ErrorSplit::rungs(const RunPlan& plan, const std::vector<double>& rmses, Progress& progress) {
   const auto read_reference = [&](std::size_t frame) {

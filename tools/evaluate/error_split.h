@@ -45,8 +45,8 @@ class ErrorSplit {
   // Renders the frame's reference. The frame's techniques follow, then its rungs.
   void start_frame(const RunPlan& plan, std::size_t frame, Progress& progress);
 
-  // Renders the frame with technique i of the plan; `result` and `reference` are the pictures whose error is split. Adds
-  // the two layers to the result's per-pixel counters.
+  // Renders the frame with technique i of the plan; `result` and `reference` are the pictures whose error is split.
+  // Adds the two layers to the result's per-pixel counters.
   ErrorParts split(const RunPlan& plan, std::size_t i, FrameResult& result, const Image& reference, Progress& progress);
 
   // The pictures with SurfaceColors::by_pixel of the technique that was split last.

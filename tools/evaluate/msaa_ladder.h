@@ -14,9 +14,9 @@ namespace beampipe {
 
 class MsaaLadder {
  public:
-  // The rungs are msaa:N for each N in `samples`, in any order, rendered with these colours. If `samples` is empty, they
-  // are 1, 2, 4, ..., 256, and 512 and 1024 if a technique turns out to be better than these. Throws SpecError if there
-  // is no such rate.
+  // The rungs are msaa:N for each N in `samples`, in any order, rendered with these colours. If `samples` is empty,
+  // they are 1, 2, 4, ..., 256, and 512 and 1024 if a technique turns out to be better than these. Throws SpecError if
+  // there is no such rate.
   explicit MsaaLadder(std::vector<std::uint32_t> samples, SurfaceColors colors = SurfaceColors::by_place);
 
   // Renders the frame with the rungs that are not among the plan's techniques, and adds their errors.

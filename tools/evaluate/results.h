@@ -94,9 +94,9 @@ struct Report {
   MemoryParameters memory;
   Hardware hardware;  // whose times are modelled; nothing is modelled if it has no implementations
   std::vector<TechniqueReport> results;
-  std::vector<LadderRung> msaa_ladder;        // empty if not measured
-  std::vector<LadderRung> visibility_ladder;  // of visibility alone; empty if all surfaces are flat
-  Json made_by = {};                    // what the results depend on: made_by() in tools/evaluate/resume.h
+  std::vector<LadderRung> msaa_ladder;             // empty if not measured
+  std::vector<LadderRung> visibility_ladder = {};  // of visibility alone; empty if all surfaces are flat
+  Json made_by = {};                               // what the results depend on: made_by() in tools/evaluate/resume.h
 };
 
 // Such as "0.1.0".

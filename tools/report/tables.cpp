@@ -28,7 +28,8 @@ const std::vector<Source> kTechniqueColumns = {
       "worst."},
      "/emr_bound"},
     {{"visibility_rmse", "visibility", "linear light, 0..1",
-      "Root mean square error in visibility, where surfaces vary: against the reference, with one colour for a triangle "
+      "Root mean square error in visibility, where surfaces vary: against the reference, with one colour for a "
+      "triangle "
       "in a pixel in both pictures."},
      "/visibility/rmse"},
     {{"visibility_emr", "EMR of visibility", "samples per pixel",

@@ -67,7 +67,9 @@ void MeshBuilder::start_shape() {
   if (finish.texture_size == 0) shift_ = {0, 0};
 }
 
-// Smooth normals: vertices of a shape at the same place share the mean of their triangles' normals, by area.
+// Smooth normals: vertices of a shape at the same place share the mean of their triangles' normals. The weights make it
+// independent of the diagonal that halves a quad. Source: N. Max, Weights for Computing Vertex Normals from Facet
+// Normals, Journal of Graphics Tools 4(2), 1999.
 void MeshBuilder::end_shape() {
   if (!has_material()) return;
   const auto key = [&](std::uint32_t i) {
@@ -77,8 +79,13 @@ void MeshBuilder::end_shape() {
   std::map<std::array<float, 3>, dvec3> sums;
   for (std::size_t i = first_triangle_; i < mesh_.triangles.size(); ++i) {
     const glm::uvec3& t = mesh_.triangles[i];
-    const dvec3 a = mesh_.positions[t.x], b = mesh_.positions[t.y], c = mesh_.positions[t.z];
-    for (int corner = 0; corner < 3; ++corner) sums[key(t[corner])] += glm::cross(b - a, c - a);
+    for (int corner = 0; corner < 3; ++corner) {
+      const dvec3 at = mesh_.positions[t[corner]];
+      const dvec3 next = dvec3(mesh_.positions[t[(corner + 1) % 3]]) - at,
+                  last = dvec3(mesh_.positions[t[(corner + 2) % 3]]) - at;
+      const double squares = glm::dot(next, next) * glm::dot(last, last);
+      if (squares > 0) sums[key(t[corner])] += glm::cross(next, last) / squares;
+    }
   }
   for (auto i = static_cast<std::uint32_t>(first_vertex_); i < mesh_.positions.size(); ++i)
     mesh_.normals.push_back(unit_vector(sums[key(i)]).value_or(glm::vec3(0, 1, 0)));

@@ -15,6 +15,7 @@
 #include "tests/simd/random.h"
 #include "tests/thorough.h"
 #include "tests/tools/program.h"
+#include "tests/tools/varying_trace.h"
 #include "tools/files/digest.h"
 
 namespace beampipe {
@@ -260,6 +261,64 @@ TEST_F(ResumeTest, OrdersAndCausesGoOnToTheSameSums) {
   leave_unfinished("compare", "out", specs);
   succeed(resume("compare", "out", specs));
   EXPECT_EQ(differences("out", "whole"), std::set<std::string>{});
+}
+
+const std::vector<std::string> kVaryingFrames = {R"({"mesh": "wall"}, {"mesh": "flat"})",
+                                                 R"({"mesh": "left"}, {"mesh": "sliver"})",
+                                                 R"({"mesh": "sliver"}, {"mesh": "flat"}, {"mesh": "left"})"};
+
+// taa keeps two histories here, and the ladder for visibility grows, for which references are rendered again.
+TEST_F(ResumeTest, PartsOfTheErrorGoOnToTheSameSums) {
+  write_varying_trace(folder_, kVaryingFrames);
+  const Names specs = {"beam", "taa:4", "msaa:2", "--causes"};
+  succeed(command("compare", "whole", specs));
+  leave_unfinished("compare", "out", specs);
+  EXPECT_TRUE(fs::exists(folder_ / "out" / frame_record_name(0)));
+  succeed(resume("compare", "out", specs));
+  EXPECT_EQ(differences("out", "whole"), std::set<std::string>{});
+}
+
+TEST_F(ResumeTest, KilledWhileErrorsAreSplit) {
+  write_varying_trace(folder_, kVaryingFrames);
+  const Names specs = {"beam", "taa:4", "msaa:2", "--causes", "--ladder", "1,64"};
+  const auto start = std::chrono::steady_clock::now();
+  succeed(command("compare", "whole", specs));
+  const double whole_ms = std::chrono::duration<double, std::milli>(std::chrono::steady_clock::now() - start).count();
+  Random random(std::random_device{}());
+  SCOPED_TRACE(random.name());
+  for (int i = 0; i < 5 * thoroughness(); ++i) {
+    Program program(resume("compare", "killed", specs));
+    pause(random.real(0, 0.5 * whole_ms));
+    program.signal(SIGKILL);
+    program.wait();
+  }
+  succeed(resume("compare", "killed", specs));
+  EXPECT_EQ(differences("whole", "killed"), std::set<std::string>{});
+}
+
+TEST_F(ResumeTest, ARecordWithoutThePartsOfAnErrorIsNotBelieved) {
+  write_varying_trace(folder_, kVaryingFrames);
+  const Names specs = {"msaa:2", "--ladder", "1"};
+  succeed(command("compare", "whole", specs));
+  leave_unfinished("compare", "out", specs);
+  const fs::path record = folder_ / "out" / frame_record_name(0);
+  const std::vector<std::function<void(Json&)>> changes = {
+      [](Json& json) { json["techniques"][0].erase("visibility"); },
+      [](Json& json) { json["techniques"][0].erase("shading"); },
+      [](Json& json) { json["techniques"][0]["shading"]["rmse"] = "none"; },
+      [](Json& json) { json["sums"].erase("visibility_ladder"); }};
+  for (std::size_t i = 0; i < changes.size(); ++i) {
+    SCOPED_TRACE(i);
+    const std::string out = "out_" + std::to_string(i);
+    fs::copy(folder_ / "out", folder_ / out, fs::copy_options::recursive);
+    Json json = Json::parse(read_text(record));
+    json.erase("digest");
+    changes[i](json);
+    json["digest"] = digest_of(json.dump(2) + "\n");
+    write_text(folder_ / out / frame_record_name(0), json.dump(2) + "\n");
+    EXPECT_EQ(succeed(resume("compare", out, specs)).err, "") << "the run starts from the beginning";
+    EXPECT_EQ(differences(out, "whole"), std::set<std::string>{});
+  }
 }
 
 TEST_F(ResumeTest, WhatAnotherTraceOrOptionLeftIsRefused) {

@@ -96,6 +96,29 @@ TEST_F(ReportParts, TechniquesHaveTimesBoundsAndWhatMsaaWouldTake) {
   EXPECT_TRUE(cell(techniques, 1, "rmse").is_null());
 }
 
+TEST_F(ReportParts, PartsOfErrorsAreColumnsWhereSurfacesVary) {
+  const std::vector<Table> flat = report_tables(read());
+  for (const char* key : {"visibility_rmse", "visibility_emr", "visibility_emr_bound", "shading_rmse"})
+    EXPECT_EQ(cell(named(flat, "techniques"), 0, key), "no such column");
+  EXPECT_EQ(cell(named(flat, "frames"), 0, "shading_rmse"), "no such column");
+
+  std::string text = kReport;
+  text.insert(text.find("\"error\""), R"("shading": {"rmse": 0.5}, "visibility": {"rmse": 0.25, "equivalent_msaa": 1,
+    "equivalent_msaa_is_lower_bound": false, "equivalent_msaa_is_upper_bound": true}, )");
+  text.insert(text.find("\"picture\": \"beam/frame_0004.png\""),
+              R"("visibility": {"rmse": 0.125}, "shading": {"rmse": 0.75}, )");
+  const std::vector<Table> tables = report_tables(read(text));
+  const Table &techniques = named(tables, "techniques"), &frames = named(tables, "frames");
+  EXPECT_EQ(cell(techniques, 0, "visibility_rmse"), 0.25);
+  EXPECT_EQ(cell(techniques, 0, "visibility_emr"), 1);
+  EXPECT_EQ(cell(techniques, 0, "visibility_emr_bound"), "at most");
+  EXPECT_EQ(cell(techniques, 0, "shading_rmse"), 0.5);
+  EXPECT_EQ(cell(techniques, 0, "emr_bound"), "at least") << "of the whole error";
+  EXPECT_TRUE(cell(frames, 0, "visibility_rmse").is_null());
+  EXPECT_EQ(cell(frames, 1, "visibility_rmse"), 0.125);
+  EXPECT_EQ(cell(frames, 1, "shading_rmse"), 0.75);
+}
+
 TEST_F(ReportParts, CsvQuotesWhatNeedsIt) {
   EXPECT_EQ(csv_text(named(report_tables(read()), "claims")),
             "claim,unit,published_low,published_high,ours,difference,source,command\r\n"

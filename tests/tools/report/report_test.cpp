@@ -129,6 +129,26 @@ TEST(ReportJson, HasErrorsAndEquivalentRatesAfterCompare) {
   EXPECT_EQ(result["equivalent_msaa_is_upper_bound"], true);
 }
 
+TEST(ReportJson, HasThePartsOfErrorsWhereSurfacesVary) {
+  Report report = compared_report();
+  EXPECT_FALSE(to_json(report).contains("visibility_msaa_ladder"));
+  EXPECT_FALSE(to_json(report)["results"][0].contains("visibility"));
+  EXPECT_FALSE(to_json(report)["results"][0].contains("shading"));
+  report.visibility_ladder = {{1, 0.25}, {8, 0.0625}};
+  report.results[0].parts = ErrorParts{0.0625, 0.5};
+  report.results[0].visibility_msaa = EquivalentMsaa{256, true, false};
+  report.results[0].frames[1].parts = ErrorParts{0.125, 0.25};
+  const Json json = to_json(report);
+  EXPECT_EQ(json["visibility_msaa_ladder"].at(1), (Json{{"samples", 8}, {"rmse", 0.0625}}));
+  const Json& result = json["results"][0];
+  EXPECT_EQ(result["visibility"],
+            (Json{{"rmse", 0.0625}, {"equivalent_msaa", 256.0}, {"equivalent_msaa_is_lower_bound", true}}));
+  EXPECT_EQ(result["shading"], (Json{{"rmse", 0.5}}));
+  EXPECT_EQ(result["frames"].at(1)["visibility"], (Json{{"rmse", 0.125}}));
+  EXPECT_EQ(result["frames"].at(1)["shading"], (Json{{"rmse", 0.25}}));
+  EXPECT_FALSE(result["frames"].at(0).contains("visibility"));
+}
+
 TEST(ReportJson, KeysKeepTheirOrder) {
   EXPECT_EQ(keys_of(to_json(compared_report())),
             (std::vector<std::string>{"beampipe_report", "trace", "version", "simd", "threads", "memory_system",

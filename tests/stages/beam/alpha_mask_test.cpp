@@ -1,0 +1,198 @@
+// Cutouts and translucency of beams: how much area and which positions are left.
+#include "stages/beam/alpha_mask.h"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+
+#include "stages/beam/beam_fragment.h"
+#include "stages/raster/conservative_raster.h"
+#include "stages/surface/opacity.h"
+#include "tests/simd/random.h"
+#include "tests/stages/screen_triangles.h"
+#include "tests/stages/surface_scene.h"
+
+namespace beampipe {
+namespace {
+
+struct Masked {
+  std::vector<Fragment> before, after;
+  StageCounters counters;
+};
+
+Masked masked(const ShadedScene& scene, int positions = 256) {
+  const std::vector<SamplePattern> patterns = cell_patterns(positions);
+  const Tile tile = scene.frame_tile();
+  std::vector<Pair> pairs;
+  StageCounters ignored;
+  conservative_raster(scene.triangles, all_of(scene.triangles), tile, ignored, pairs);
+  Masked result;
+  BeamFragmentOptions options;
+  options.mask = MaskSource::exact, options.positions = patterns;
+  beam_fragment(scene.triangles, pairs, tile, options, ignored, result.before);
+  result.after = result.before;
+  alpha_mask({scene.shader, tile}, patterns, result.counters, result.after);
+  return result;
+}
+
+double area(const std::vector<Fragment>& fragments) {
+  double sum = 0;
+  for (const Fragment& fragment : fragments) sum += fragment.alpha;
+  return sum;
+}
+
+int positions(const std::vector<Fragment>& fragments) {
+  int sum = 0;
+  for (const Fragment& fragment : fragments) sum += fragment.mask.count();
+  return sum;
+}
+
+TEST(AlphaMask, OpaqueFragmentsAreUntouched) {
+  SurfaceTrace scene(4, 4);
+  scene.add_rectangle(0.3, 0.4, 3.7, 3.1, 0.5, textured_material(scene.add_image(filled_image(2, 2, {9, 9, 9, 0}))));
+  const Masked found = masked(ShadedScene(scene.trace));
+  ASSERT_EQ(found.after.size(), found.before.size());
+  for (std::size_t i = 0; i < found.after.size(); ++i) {
+    EXPECT_EQ(found.after[i].alpha, found.before[i].alpha);
+    EXPECT_EQ(found.after[i].mask, found.before[i].mask);
+  }
+  EXPECT_EQ(found.counters.items_in, 0u);
+  EXPECT_EQ(found.counters.ops, OperationCounts{});
+}
+
+// The left half of the texture is opaque, and the border lies on a pixel's border.
+TEST(AlphaMask, ACutoutLeavesWhereTheTextureIsOpaque) {
+  SurfaceTrace scene(8, 8);
+  const TextureImage image{"halves", 2, 1, {{255, 255, 255, 255}, {255, 255, 255, 0}}};
+  Material material = textured_material(scene.add_image(image), AlphaMode::mask);
+  material.base_texture->wrap_u = Wrap::clamp;
+  scene.add_rectangle(0, 0, 8, 8, 0.5, material);
+  for (const Filter filter : {Filter::nearest, Filter::linear}) {
+    scene.trace.materials[0].base_texture->magnify = filter;
+    const Masked found = masked(ShadedScene(scene.trace));
+    EXPECT_NEAR(area(found.after), 32, 1e-4);
+    EXPECT_EQ(positions(found.after), 32 * 256);
+    for (const Fragment& fragment : found.after) EXPECT_LT(fragment.pixel % 8, 4u);
+  }
+  // The cutoff moves the border of the linear filter: alpha falls from 1 at u = 1/4 to 0 at u = 3/4.
+  scene.trace.materials[0].alpha_cutoff = 0.75f;
+  EXPECT_NEAR(area(masked(ShadedScene(scene.trace)).after), 8 * 8 * 0.375, 1e-4);
+}
+
+// Texels far smaller than the distance of positions, every other one opaque: half of everything is left.
+TEST(AlphaMask, FineTexelsLeaveTheirMean) {
+  SurfaceTrace scene(8, 8);
+  TextureImage image = filled_image(1024, 1024, {255, 255, 255, 0});
+  for (std::size_t i = 0; i < image.texels.size(); ++i) image.texels[i].a = (i + i / 1024) % 2 ? 255 : 0;
+  scene.add_rectangle(0, 0, 8, 8, 0.5, textured_material(scene.add_image(image), AlphaMode::mask));
+  const Masked found = masked(ShadedScene(scene.trace));
+  EXPECT_NEAR(area(found.after), 32, 0.15);                // 128 of 255 codes, and filtered borders
+  EXPECT_NEAR(positions(found.after), 32 * 256, 64 + 32);  // one position per pixel, and the same
+  for (const Fragment& fragment : found.after) {
+    if (fragment.pixel % 9 != 0) {  // the triangle covers the whole pixel
+      EXPECT_NEAR(fragment.alpha, fragment.mask.count() / 256.0, 0.01);
+    }
+  }
+}
+
+// Of a cutout without mixed positions, the area shrinks by the positions' share.
+TEST(AlphaMask, AreaShrinksByThePositionsShare) {
+  SurfaceTrace scene(8, 8);
+  TextureImage image = filled_image(8, 8, {255, 255, 255, 255});
+  Random random(1);
+  for (glm::u8vec4& texel : image.texels) texel.a = random.one_in(2) ? 255 : 0;
+  Material material = textured_material(scene.add_image(image), AlphaMode::mask);
+  material.base_texture->magnify = Filter::nearest;
+  scene.add_rectangle(0.3, 0.6, 7.2, 7.9, 0.5, material);
+  const Masked found = masked(ShadedScene(scene.trace));
+  std::size_t next = 0;
+  double sum = 0;
+  for (const Fragment& before : found.before) {
+    if (before.mask.none()) continue;
+    while (next < found.after.size() && found.after[next].mask.none()) ++next;
+    if (next == found.after.size() || found.after[next].pixel != before.pixel ||
+        found.after[next].triangle != before.triangle)
+      continue;  // dropped
+    const Fragment& after = found.after[next++];
+    const double share = static_cast<double>(after.mask.count()) / before.mask.count();
+    EXPECT_NEAR(after.alpha, before.alpha * share, 1e-6);
+    EXPECT_EQ(without(after.mask, before.mask), WideMask{});
+    sum += share;
+  }
+  EXPECT_GT(sum, 5);
+}
+
+// Constant alpha decides for the whole surface, whatever the fragment's size. The rectangles: pixels, and slivers that
+// miss all positions.
+TEST(AlphaMask, ConstantAlphaOfACutoutIsAllOrNothing) {
+  for (const bool textured : {false, true})
+    for (const float alpha : {0.3f, 0.7f})
+      for (const double height : {3.0, 0.004}) {
+        SurfaceTrace scene(8, 8);
+        Material material = unlit_material({1, 1, 1, alpha}, AlphaMode::mask);
+        if (textured && height < 1) continue;  // the sliver's texels are smaller than its pixels
+        if (textured) {
+          const auto code = static_cast<std::uint8_t>(alpha * 255);
+          material = textured_material(scene.add_image(filled_image(2, 2, {255, 255, 255, code})), AlphaMode::mask);
+        }
+        scene.add_rectangle(0, 2.002, 8, 2.002 + height, 0.5, material);
+        const Masked found = masked(ShadedScene(scene.trace));
+        ASSERT_FALSE(found.before.empty());
+        EXPECT_NEAR(area(found.after), alpha > 0.5f ? area(found.before) : 0.0, 1e-6)
+            << alpha << ", " << height << (textured ? ", textured" : "");
+      }
+}
+
+TEST(AlphaMask, TranslucencyTakesItsPartOfAreaAndPositions) {
+  for (const int count : {32, 64, 128, 256})
+    for (const float opacity : {0.0f, 0.125f, 0.3f, 0.5f, 0.99f, 1.0f}) {
+      SurfaceTrace scene(6, 6);
+      scene.add_rectangle(0, 0, 6, 6, 0.5, unlit_material({1, 1, 1, opacity}, AlphaMode::blend));
+      const Masked found = masked(ShadedScene(scene.trace), count);
+      EXPECT_NEAR(area(found.after), 36 * opacity, 1e-4);
+      std::vector<int> of_pixel(36);
+      for (const Fragment& fragment : found.after) of_pixel[fragment.pixel] += fragment.mask.count();
+      for (const int taken : of_pixel) EXPECT_LE(std::abs(taken - opacity * static_cast<float>(count)), 1.0f);
+    }
+}
+
+TEST(AlphaMask, AFragmentWithoutPositionsIsASpeck) {
+  SurfaceTrace scene(64, 64);
+  scene.add_rectangle(0, 0, 64, 64, 0.5, unlit_material({1, 1, 1, 0.002f}, AlphaMode::blend));
+  std::size_t specks = 0;
+  for (const Fragment& fragment : masked(ShadedScene(scene.trace)).after) {
+    EXPECT_EQ(fragment.tiny, fragment.mask.none());
+    specks += fragment.tiny;
+  }
+  EXPECT_GT(specks, 1000u);
+}
+
+// One pixel of a translucent rectangle with a texture: an alpha and 256 ranks. One of a cutout: 256 alphas and ranks.
+TEST(AlphaMask, CountsItsWork) {
+  for (const AlphaMode mode : {AlphaMode::blend, AlphaMode::mask}) {
+    SurfaceTrace scene(1, 1);
+    scene.add_rectangle(-20, -1, 2, 2, 0.5,
+                        textured_material(scene.add_image(filled_image(2, 2, {9, 9, 9, 200})), mode));
+    const ShadedScene shaded(scene.trace);
+    const Masked found = masked(shaded);
+    ASSERT_EQ(found.before.size(), 1u);
+    const std::uint64_t alphas = mode == AlphaMode::mask ? 256 : 1;
+    EXPECT_EQ(found.counters.items_in, 1u);
+    EXPECT_EQ(found.counters.items_out, 1u);
+    EXPECT_EQ(found.counters.bytes_read, 4 * 8 + 2u);  // the mask and the area as fp16
+    EXPECT_EQ(found.counters.bytes_written, 4 * 8 + 2u);
+    EXPECT_EQ(found.counters.lanes_used, 256u);
+    EXPECT_EQ(found.counters.lanes_issued, 256u);
+    EXPECT_EQ(found.counters.ops.fetch, alphas + 256);
+    // An alpha: weights in perspective (8 products, 10 sums and comparisons, a division); their slopes (10, 6, 1); two
+    // texture coordinates (2, 4 each) and four slopes of them (2, 3 each); the factor.
+    // Besides: six products and three sums that make the pixel's flip, and two products; the area's factor.
+    EXPECT_EQ(found.counters.ops.mul_add, alphas * (8 + 10 + 2 * 2 + 4 * 2 + 1) + 6 + 2 + 1);
+    // A rank is moved and compared; in a cutout alpha is compared and selected, and added.
+    EXPECT_EQ(found.counters.ops.add, alphas * (10 + 6 + 2 * 4 + 4 * 3) + 3 + 256 * (mode == AlphaMode::mask ? 5 : 2));
+    EXPECT_EQ(found.counters.ops.special, alphas * 2 + (mode == AlphaMode::mask));
+  }
+}
+
+}  // namespace
+}  // namespace beampipe

@@ -1,0 +1,131 @@
+// Cutouts of sample fragments, by hand.
+#include "stages/samples/alpha_test.h"
+
+#include <gtest/gtest.h>
+
+#include <bit>
+
+#include "tests/stages/surface_scene.h"
+
+namespace beampipe {
+namespace {
+
+// A rectangle that fills the tile, with alpha 0 in the left half of the texture, 160 / 255 in the right half.
+struct Tested {
+  std::vector<SampleFragment> fragments;
+  StageCounters counters;
+};
+
+SurfaceTrace halves(AlphaMode mode) {
+  SurfaceTrace scene(8, 8);
+  const TextureImage image{"halves", 2, 1, {{255, 255, 255, 0}, {255, 255, 255, 160}}};
+  Material material = textured_material(scene.add_image(image), mode);
+  material.base_texture->magnify = Filter::nearest;
+  scene.add_rectangle(0, 0, 8, 8, 0.5, material);
+  return scene;
+}
+
+Tested tested(const ShadedScene& scene, AlphaCoverage coverage, const std::vector<SampleFragment>& fragments,
+              const std::vector<glm::vec2>& places, const CellGrid& grid = {}) {
+  Tested result{fragments, {}};
+  const Tile tile = scene.frame_tile();
+  alpha_test({scene.shader, tile}, tile, grid, 8, coverage, places, result.counters, result.fragments);
+  return result;
+}
+
+TEST(AlphaTest, OneTestDecidesForAllSamples) {
+  const ShadedScene scene(halves(AlphaMode::mask).trace);
+  // Pixels 2, 4 and 5, and pixel 3 at a place in pixel 4, where a centre lies outside of its fragment.
+  const Tested found = tested(scene, AlphaCoverage::test,
+                              {{0, 0, 2, 1, 0xffu}, {0, 0, 4, 1, 0x81u}, {0, 1, 5, 1, 0xffu}, {0, 1, 3, 1, 0x0fu}},
+                              {{0.5f, 0.5f}, {0.5f, 0.5f}, {0.1f, 0.5f}, {1.25f, 0.5f}});
+  ASSERT_EQ(found.fragments.size(), 3u);
+  EXPECT_EQ(found.fragments[0].x, 4);
+  EXPECT_EQ(found.fragments[0].mask, 0x81u);
+  EXPECT_EQ(found.fragments[1].x, 5);
+  EXPECT_EQ(found.fragments[1].mask, 0xffu);
+  EXPECT_EQ(found.fragments[2].x, 3);
+  EXPECT_EQ(found.counters.items_in, 4u);
+  EXPECT_EQ(found.counters.items_out, 3u);
+}
+
+TEST(AlphaTest, TheCutoffItselfPasses) {
+  SurfaceTrace trace = halves(AlphaMode::mask);
+  const float alpha = 160 / 255.0f;
+  for (const float cutoff : {std::nextafter(alpha, 0.0f), alpha, std::nextafter(alpha, 1.0f)}) {
+    trace.trace.materials[0].alpha_cutoff = cutoff;
+    const ShadedScene scene(trace.trace);
+    EXPECT_EQ(tested(scene, AlphaCoverage::test, {{0, 0, 6, 1, 0xffu}}, {glm::vec2(0.5f)}).fragments.size(),
+              cutoff > alpha ? 0u : 1u);
+  }
+}
+
+// Alpha to coverage: 160 / 255 of 8 samples is 5.02.
+TEST(AlphaTest, CoverageTakesThePartOfTheSamples) {
+  const ShadedScene scene(halves(AlphaMode::mask).trace);
+  int sum = 0;
+  for (std::int32_t y = 0; y < 8; ++y)
+    for (std::int32_t x = 4; x < 8; ++x) {
+      const Tested found = tested(scene, AlphaCoverage::to_coverage, {{0, 0, x, y, 0xffu}}, {glm::vec2(0.5f)});
+      ASSERT_EQ(found.fragments.size(), 1u);
+      const int taken = std::popcount(found.fragments[0].mask);
+      EXPECT_TRUE(taken == 5 || taken == 6) << taken;
+      sum += taken;
+    }
+  EXPECT_NEAR(sum / 32.0, 160 / 255.0 * 8, 0.2);
+  const Tested none = tested(scene, AlphaCoverage::to_coverage, {{0, 0, 1, 1, 0xffu}}, {glm::vec2(0.5f)});
+  EXPECT_TRUE(none.fragments.empty());
+}
+
+// Several surfaces take the same samples, so that a cutout in front of itself does not show through.
+TEST(AlphaTest, CoverageIsTheSameForAllSurfaces) {
+  SurfaceTrace trace = halves(AlphaMode::mask);
+  trace.add_rectangle(0, 0, 8, 8, 0.75, trace.trace.materials[0]);
+  const ShadedScene scene(trace.trace);
+  const Tested found = tested(scene, AlphaCoverage::to_coverage, {{0, 0, 6, 3, 0xffu}, {2, 0, 6, 3, 0xffu}},
+                              {glm::vec2(0.5f), glm::vec2(0.5f)});
+  ASSERT_EQ(found.fragments.size(), 2u);
+  EXPECT_EQ(found.fragments[0].mask, found.fragments[1].mask);
+}
+
+TEST(AlphaTest, OtherFragmentsPass) {
+  for (const AlphaMode mode : {AlphaMode::opaque, AlphaMode::blend}) {
+    const ShadedScene scene(halves(mode).trace);
+    const Tested found = tested(scene, AlphaCoverage::test, {{0, 0, 1, 1, 0xffu}}, {glm::vec2(0.5f)});
+    ASSERT_EQ(found.fragments.size(), 1u);
+    EXPECT_EQ(found.fragments[0].mask, 0xffu);
+    EXPECT_EQ(found.counters.items_in, 0u);
+  }
+}
+
+// Cells of super-resolved pixels: two columns of a pixel, which is pixel 3 or 4 of the texture's border.
+TEST(AlphaTest, CellsAreTestedOneByOne) {
+  const ShadedScene scene(halves(AlphaMode::mask).trace);
+  const CellGrid grid{2, 1};
+  const Tested found = tested(scene, AlphaCoverage::test, {{0, 0, 7, 1, 0xffu}, {0, 0, 8, 1, 0xffu}},
+                              {{0.75f, 0.5f}, {0.25f, 0.5f}}, grid);
+  ASSERT_EQ(found.fragments.size(), 1u);
+  EXPECT_EQ(found.fragments[0].x, 8);
+}
+
+// Per fragment: four invocations of a quad that find alpha, and a comparison, or one for each sample.
+TEST(AlphaTest, CountsItsWork) {
+  const ShadedScene scene(halves(AlphaMode::mask).trace);
+  for (const AlphaCoverage coverage : {AlphaCoverage::test, AlphaCoverage::to_coverage}) {
+    const Tested found =
+        tested(scene, coverage, {{0, 0, 6, 1, 0xffu}, {0, 0, 1, 1, 0xffu}}, {glm::vec2(0.5f), glm::vec2(0.5f)});
+    EXPECT_EQ(found.counters.items_in, 2u);
+    EXPECT_EQ(found.counters.items_out, 1u);
+    EXPECT_EQ(found.counters.bytes_read, 2 * kSampleFragmentBytes);
+    EXPECT_EQ(found.counters.bytes_written, kSampleFragmentBytes);
+    EXPECT_EQ(found.counters.lanes_used, 2u);
+    EXPECT_EQ(found.counters.lanes_issued, 8u);
+    // As AlphaMask.CountsItsWork works out.
+    OperationCounts expected = OperationCounts{.mul_add = 31, .add = 36, .fetch = 1, .special = 2} * 8;
+    expected.add += coverage == AlphaCoverage::test ? 2 : 16;
+    EXPECT_EQ(found.counters.ops, expected);
+  }
+}
+
+}  // namespace
+}  // namespace beampipe

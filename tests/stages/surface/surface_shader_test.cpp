@@ -1,0 +1,455 @@
+// The shader of surfaces: what it reads where, normal maps, back faces, G-buffers and what an invocation costs.
+#include "stages/surface/surface_shader.h"
+
+#include <gtest/gtest.h>
+
+#include <glm/gtc/matrix_transform.hpp>
+#include <set>
+
+#include "stages/cost/counting.h"
+#include "tests/simd/random.h"
+#include "tests/stages/surface_scene.h"
+
+namespace beampipe {
+namespace {
+
+// A rectangle of 8 x 8 pixels whose red is linear in u: a gradient of 8 texels, as seen at 1 texel per pixel.
+SurfaceTrace gradient() {
+  SurfaceTrace scene(8, 8);
+  TextureImage image{"gradient", 8, 1, {}};
+  for (int i = 0; i < 8; ++i) image.texels.emplace_back(0, 0, 0, 32 * i);
+  Material material = textured_material(scene.add_image(image));
+  material.base_texture->wrap_u = Wrap::clamp;
+  material.alpha_mode = AlphaMode::blend;  // alpha is stored as it is
+  scene.add_rectangle(0, 0, 8, 8, 0.5, material);
+  return scene;
+}
+
+TEST(SurfaceShader, ALinearTextureIsLinearOnTheScreen) {
+  const ShadedScene scene(gradient().trace);
+  for (std::int32_t x = 1; x < 7; ++x)
+    for (const float u : {0.0f, 0.25f, 0.5f, 0.875f}) {
+      const std::uint32_t triangle = x < 4 ? 1 : 0;  // of row 4: the lower left half, and the upper right one
+      EXPECT_NEAR(scene.shader.color_and_alpha(triangle, {x, 4, u, 0.5f}).a,
+                  32.0 / 255 * (static_cast<double>(x) + u - 0.5), 1e-6);
+      EXPECT_EQ(scene.shader.alpha(triangle, {x, 4, u, 0.5f}, 1).alpha,
+                scene.shader.color_and_alpha(triangle, {x, 4, u, 0.5f}).a);
+    }
+}
+
+TEST(SurfaceShader, ByPixelItIsTheCentresWhateverPlaceIsAsked) {
+  SurfaceTrace trace = gradient();
+  for (glm::u8vec4& texel : trace.trace.images[0].texels) texel.r = texel.a;
+  const ShadedScene by_place(trace.trace), by_pixel(trace.trace, {.colors = SurfaceColors::by_pixel});
+  const glm::vec3 centre = by_place.shader.color(0, {6, 2, 0.5f, 0.5f});
+  for (const float u : {0.0f, 0.5f, 0.9f}) {
+    EXPECT_EQ(by_pixel.shader.color(0, {6, 2, u, 1 - u}, 0.125f), centre);
+    // Opacity is a part of visibility, and stays that of the place.
+    EXPECT_EQ(by_pixel.shader.color_and_alpha(0, {6, 2, u, 1 - u}).a,
+              by_place.shader.color_and_alpha(0, {6, 2, u, 1 - u}).a);
+  }
+  EXPECT_NE(by_place.shader.color(0, {6, 2, 0.0f, 0.5f}), centre);
+}
+
+// On a plane that faces the camera, texture coordinates are linear, so analytic slopes and quad differences agree.
+TEST(SurfaceShader, DerivativesAgreeOnAPlaneThatFacesTheCamera) {
+  SurfaceTrace scene(16, 16);
+  TextureImage image = filled_image(64, 64, {0, 0, 0, 255});
+  Random random(1);
+  for (glm::u8vec4& texel : image.texels) texel = {random.word() & 255, random.word() & 255, 0, 255};
+  scene.add_rectangle(0, 0, 16, 16, 0.5, textured_material(scene.add_image(image)));
+  const ShadedScene analytic(scene.trace), quad(scene.trace, {.derivatives = Derivatives::quad});
+  for (std::int32_t y = 0; y < 16; ++y)
+    for (std::int32_t x = 0; x < 16; ++x) {
+      const glm::vec3 a = analytic.shader.color(0, {x, y}), b = quad.shader.color(0, {x, y});
+      for (int c = 0; c < 3; ++c) EXPECT_NEAR(a[c], b[c], 1e-5);
+    }
+}
+
+// A floor in perspective. The level that is read follows from the differences of texture coordinates between the
+// centres of a quad's pixels, which are computed here in double precision from the eye's rays.
+struct Floor {
+  static constexpr double kHeight = 1, kScale = 0.5;  // of the eye above the floor; texture coordinates per unit
+  static constexpr std::uint32_t kSize = 64;
+
+  Trace trace;
+
+  Floor() {
+    SurfaceTrace scene(kSize, kSize);
+    scene.add_rectangle(0, 0, 1, 1, 0, textured_material(scene.add_image(filled_image(256, 256, {9, 9, 9, 255}))));
+    scene.mesh().positions = {{-40, 0, -60}, {40, 0, -60}, {40, 0, 5}, {-40, 0, 5}};
+    for (std::size_t i = 0; i < 4; ++i)
+      scene.mesh().uvs[0][i] = {scene.mesh().positions[i].x * kScale, scene.mesh().positions[i].z * kScale};
+    set_camera(scene.frame(), {{0, kHeight, 0}, {0, kHeight, -1}, {0, 1, 0}, 90, 0.5, 100});
+    trace = scene.trace;
+  }
+
+  // Texture coordinates at a point of the screen: f is 1 at 90 degrees.
+  static glm::dvec2 uv(double x, double y) {
+    const double right = 2 * x / kSize - 1, up = 1 - 2 * y / kSize, z = kHeight / up;  // negative below the horizon
+    return glm::dvec2(-z * right, z) * kScale;
+  }
+
+  static double level(const glm::dvec2& dx, const glm::dvec2& dy) {
+    return std::log2(256 * std::max(glm::length(dx), glm::length(dy)));
+  }
+};
+
+struct Reads {
+  std::uint64_t texels;
+  std::set<std::uint32_t> levels;
+};
+
+// What shading at the centre of a pixel reads of the scene's only image.
+Reads reads_at(const ShadedScene& scene, std::uint32_t triangle, std::int32_t x, std::int32_t y, float width) {
+  const TextureLayout layout(scene.textures);
+  const auto first_sector = [&](std::uint32_t level) { return layout.sector_of({0, ColorSpace::srgb, level, 0, 0}); };
+  TexelRequests texels(&layout);
+  scene.shader.color(triangle, {x, y}, width, &texels);
+  texels.end_request();
+  Reads reads{texels.texels(), {}};
+  texels.for_each([&](std::span<const std::uint64_t> sectors) {
+    for (const std::uint64_t sector : sectors) {
+      std::uint32_t level = 0;
+      while (level < 8 && first_sector(level + 1) <= sector) ++level;
+      reads.levels.insert(level);
+    }
+  });
+  return reads;
+}
+
+TEST(SurfaceShader, ReadsTheLevelOfItsDerivatives) {
+  const Floor floor;
+  const ShadedScene analytic(floor.trace), quad(floor.trace, {.derivatives = Derivatives::quad});
+  std::size_t tested = 0;
+  for (std::uint32_t t = 0; t < analytic.triangles.triangles.size(); ++t)
+    for (std::int32_t y = 40; y < 64; ++y)
+      for (std::int32_t x = 0; x < 64; ++x) {
+        const auto at = [&](double px, double py) { return Floor::uv(px + 0.5, py + 0.5); };
+        const double h = 1e-4;
+        const double by_slope =
+            Floor::level((at(x + h, y) - at(x - h, y)) / (2 * h), (at(x, y + h) - at(x, y - h)) / (2 * h));
+        const int even_x = x & ~1, even_y = y & ~1;
+        const double by_quad = Floor::level(at(even_x + 1, y) - at(even_x, y), at(x, even_y + 1) - at(x, even_y));
+        const auto expect = [&](const ShadedScene& scene, double level) {
+          if (std::abs(level - std::round(level)) < 0.02 || level > 7.9) return;
+          const Reads reads = reads_at(scene, t, x, y, 1);
+          const auto finer = static_cast<std::uint32_t>(std::max(level, 0.0));
+          EXPECT_EQ(reads.texels, level < 0 ? 4u : 8u) << x << ", " << y;
+          EXPECT_EQ(reads.levels, level < 0 ? std::set{0u} : std::set({finer, finer + 1}))
+              << x << ", " << y << ": " << level;
+          ++tested;
+        };
+        expect(analytic, by_slope), expect(quad, by_quad);
+      }
+  EXPECT_GT(tested, 1000u);
+}
+
+TEST(SurfaceShader, AreaNarrowsTheFootprint) {
+  const Floor floor;
+  const ShadedScene scene(floor.trace);
+  const Reads whole = reads_at(scene, 0, 30, 42, 1), part = reads_at(scene, 0, 30, 42, 0.25f);
+  EXPECT_EQ(*part.levels.begin() + 2, *whole.levels.begin());
+}
+
+// ---- Normals
+
+// A rectangle in the plane z = 0 that a camera at (0, 0, 5) sees; v points down, u to the right.
+SurfaceTrace facing(const Material& material) {
+  SurfaceTrace scene(8, 8);
+  scene.add_rectangle(0, 0, 1, 1, 0, material);
+  scene.mesh().positions = {{-1, 1, 0}, {1, 1, 0}, {1, -1, 0}, {-1, -1, 0}};
+  scene.mesh().triangles = {{0, 2, 1}, {0, 3, 2}};  // counter-clockwise
+  scene.mesh().normals.assign(4, glm::vec3(0, 0, 1));
+  set_camera(scene.frame(), {{0, 0, 5}, {0, 0, 0}, {0, 1, 0}, 30, 1, 10});
+  scene.frame().lighting.ambient = Ambient{};
+  return scene;
+}
+
+// Ambient light shows the normal, if nothing is mirrored: `up` is bright as far as the normal points there.
+glm::vec3 normal_seen(SurfaceTrace scene, const ShadingRules& rules = {}) {
+  glm::vec3 normal;
+  for (int axis = 0; axis < 3; ++axis) {
+    Ambient& ambient = *scene.frame().lighting.ambient;
+    ambient = {glm::vec3(1), glm::vec3(0), glm::vec3(0)};
+    ambient.up[axis] = 1;
+    const ShadedScene shaded(scene.trace, rules);
+    // Roughness of 1 turns the mirrored direction to the normal: (diffuse + mirrored) x (1 + n) / 2. A metal mirrors.
+    normal[axis] = shaded.shader.color(0, {4, 4}).r * 2 - 1;
+  }
+  return normal;
+}
+
+Material white_metal() {
+  Material material;
+  material.metallic = 1;
+  return material;
+}
+
+void expect_near(const glm::vec3& found, const glm::vec3& expected, double bound) {
+  for (int c = 0; c < 3; ++c) EXPECT_NEAR(found[c], expected[c], bound) << found.x << ' ' << found.y << ' ' << found.z;
+}
+
+TEST(SurfaceShader, NormalsOfVerticesAndOfTriangles) {
+  SurfaceTrace scene = facing(white_metal());
+  expect_near(normal_seen(scene), {0, 0, 1}, 1e-5);
+  scene.mesh().normals.assign(4, glm::normalize(glm::vec3(3, 0, 4)));
+  expect_near(normal_seen(scene), {0.6f, 0, 0.8f}, 1e-5);
+  scene.mesh().normals.clear();
+  expect_near(normal_seen(scene), {0, 0, 1}, 1e-5);
+  // Seen from behind, both are turned to the eye.
+  set_camera(scene.frame(), {{0, 0, -5}, {0, 0, 0}, {0, 1, 0}, 30, 1, 10});
+  expect_near(normal_seen(scene), {0, 0, -1}, 1e-5);
+  scene.mesh().normals.assign(4, glm::normalize(glm::vec3(3, 0, 4)));
+  expect_near(normal_seen(scene), {-0.6f, 0, -0.8f}, 1e-5);
+}
+
+TEST(SurfaceShader, NormalsTurnWithATransformThatMirrorsOrStretches) {
+  SurfaceTrace scene = facing(white_metal());
+  scene.mesh().normals.assign(4, glm::normalize(glm::vec3(3, 0, 4)));
+  scene.frame().draws[0].transform = glm::scale(glm::dmat4(1.0), glm::dvec3(-1, 1, 1));
+  expect_near(normal_seen(scene), {-0.6f, 0, 0.8f}, 1e-5);
+  scene.frame().draws[0].transform = glm::scale(glm::dmat4(1.0), glm::dvec3(1, 1, 2));  // along z
+  expect_near(normal_seen(scene), glm::normalize(glm::vec3(0.6, 0, 0.4)), 1e-5);
+}
+
+Material bumpy(SurfaceTrace& scene, const glm::u8vec4& code) {
+  Material material = white_metal();
+  material.normal_texture = Texture{.image = scene.add_image(filled_image(2, 2, code))};
+  return material;
+}
+
+// The normal that a texture full of this code gives; `tangents`: the mesh has some.
+glm::vec3 bumped(
+    const glm::u8vec4& code, const std::function<void(SurfaceTrace&)>& change = [](SurfaceTrace&) {}) {
+  SurfaceTrace scene = facing(white_metal());
+  scene.trace.materials[0] = bumpy(scene, code);
+  scene.trace.materials[0].double_sided = true;
+  change(scene);
+  return normal_seen(scene);
+}
+
+// 128 stands for 1 / 255, not for 0.
+TEST(SurfaceShader, AFlatNormalMapLeavesTheNormal) {
+  expect_near(bumped({128, 128, 255, 255}), {0, 0, 1}, 0.006);
+  expect_near(bumped({128, 128, 255, 255},
+                     [](SurfaceTrace& s) { s.mesh().normals.assign(4, glm::normalize(glm::vec3(3, 0, 4))); }),
+              {0.6f, 0, 0.8f}, 0.006);
+}
+
+constexpr glm::u8vec4 kToU{255, 128, 128, 255}, kUp{128, 255, 128, 255};  // red points along u, green up in the image
+
+TEST(SurfaceShader, RedPointsAlongUAndGreenUp) {
+  expect_near(bumped(kToU), {1, 0, 0}, 0.012);
+  expect_near(bumped(kUp), {0, 1, 0}, 0.012);
+}
+
+TEST(SurfaceShader, TangentsOfVerticesGiveTheSame) {
+  const auto with_tangents = [](SurfaceTrace& s) { s.mesh().tangents.assign(4, glm::vec4(1, 0, 0, 1)); };
+  expect_near(bumped(kToU, with_tangents), {1, 0, 0}, 0.012);
+  expect_near(bumped(kUp, with_tangents), {0, 1, 0}, 0.012);
+  const auto mirrored = [](SurfaceTrace& s) { s.mesh().tangents.assign(4, glm::vec4(-1, 0, 0, -1)); };
+  expect_near(bumped(kToU, mirrored), {-1, 0, 0}, 0.012);
+  expect_near(bumped(kUp, mirrored), {0, 1, 0}, 0.012);
+}
+
+// Where u runs to the left, red points there, and green still up. Where v runs up, green points down.
+TEST(SurfaceShader, TangentsOfMirroredCoordinates) {
+  const auto left = [](SurfaceTrace& s) { s.mesh().uvs[0] = {{1, 0}, {0, 0}, {0, 1}, {1, 1}}; };
+  expect_near(bumped(kToU, left), {-1, 0, 0}, 0.012);
+  expect_near(bumped(kUp, left), {0, 1, 0}, 0.012);
+  const auto upside_down = [](SurfaceTrace& s) { s.mesh().uvs[0] = {{0, 1}, {1, 1}, {1, 0}, {0, 0}}; };
+  expect_near(bumped(kToU, upside_down), {1, 0, 0}, 0.012);
+  expect_near(bumped(kUp, upside_down), {0, -1, 0}, 0.012);
+  const auto turned = [](SurfaceTrace& s) { s.mesh().uvs[0] = {{0, 1}, {0, 0}, {1, 0}, {1, 1}}; };  // u down, v left
+  expect_near(bumped(kToU, turned), {0, -1, 0}, 0.012);
+  expect_near(bumped(kUp, turned), {1, 0, 0}, 0.012);
+}
+
+// A mirror in space does what mirrored coordinates do.
+TEST(SurfaceShader, TangentsOfAMirroredDraw) {
+  const auto mirrored = [](SurfaceTrace& s) {
+    s.frame().draws[0].transform = glm::scale(glm::dmat4(1.0), glm::dvec3(-1, 1, 1));
+  };
+  expect_near(bumped(kToU, mirrored), {-1, 0, 0}, 0.012);
+  expect_near(bumped(kUp, mirrored), {0, 1, 0}, 0.012);
+  const auto with_tangents = [&](SurfaceTrace& s) {
+    mirrored(s);
+    s.mesh().tangents.assign(4, glm::vec4(1, 0, 0, 1));
+  };
+  expect_near(bumped(kToU, with_tangents), {-1, 0, 0}, 0.012);
+  expect_near(bumped(kUp, with_tangents), {0, 1, 0}, 0.012);
+}
+
+// The bumps of a back face are those of the front face, seen from behind: a groove stays where it is in the image.
+TEST(SurfaceShader, TangentsOfABackFace) {
+  const auto from_behind = [](SurfaceTrace& s) {
+    set_camera(s.frame(), {{0, 0, -5}, {0, 0, 0}, {0, 1, 0}, 30, 1, 10});
+  };
+  expect_near(bumped(kToU, from_behind), {1, 0, 0}, 0.012);
+  expect_near(bumped(kUp, from_behind), {0, 1, 0}, 0.012);
+}
+
+TEST(SurfaceShader, ScaleOfNormalMaps) {
+  // (255, 128, 255): 45 degrees towards u. Half the scale: 1/2 to 1.
+  expect_near(bumped({255, 128, 255, 255}), glm::normalize(glm::vec3(1, 0, 1)), 0.006);
+  expect_near(bumped({255, 128, 255, 255}, [](SurfaceTrace& s) { s.trace.materials[0].normal_scale = 0.5f; }),
+              glm::normalize(glm::vec3(1, 0, 2)), 0.006);
+}
+
+TEST(SurfaceShader, CoordinatesWithoutAreaLeaveTheNormal) {
+  const auto degenerate = [](SurfaceTrace& s) { s.mesh().uvs[0].assign(4, glm::vec2(0.25f, 0.75f)); };
+  expect_near(bumped({128, 128, 255, 255}, degenerate), {0, 0, 1}, 0.006);
+}
+
+// ---- Materials
+
+TEST(SurfaceShader, VertexColorsAndTexturesMultiplyTheBaseColor) {
+  SurfaceTrace scene(8, 8);
+  const std::uint32_t image = scene.add_image(filled_image(4, 4, {255, 188, 0, 128}));
+  Material material = textured_material(image, AlphaMode::blend);
+  material.base_color = {0.5f, 0.25f, 1, 0.5f};
+  scene.add_rectangle(0, 0, 8, 8, 0.5, material);
+  scene.mesh().vertex_colors.assign(4, glm::vec4(0.25f, 1, 1, 0.5f));
+  const ShadedScene shaded(scene.trace);
+  const glm::vec4 found = shaded.shader.color_and_alpha(0, {5, 2});
+  EXPECT_NEAR(found.r, 0.5 * 0.25, 1e-6);
+  EXPECT_NEAR(found.g, 0.25 * srgb_values()[188], 1e-6);
+  EXPECT_NEAR(found.b, 0, 1e-6);
+  EXPECT_NEAR(found.a, 0.5 * 0.5 * 128 / 255, 1e-6);
+  EXPECT_NEAR(shaded.shader.alpha(0, {5, 2}, 1).alpha, found.a, 1e-6);
+}
+
+// Roughness and metallic of the texture: glTF has them in G and B.
+TEST(SurfaceShader, MetallicRoughnessTexture) {
+  SurfaceTrace textured = facing(white_metal()), plain = facing(white_metal());
+  for (SurfaceTrace* scene : {&textured, &plain}) {
+    scene->frame().lighting.ambient.reset();
+    scene->frame().lighting.lights = {{glm::normalize(glm::vec3(0.2f, 0.1f, -1))}};
+    scene->trace.materials[0].base_color = {0.5f, 0.25f, 1, 1};
+  }
+  Material& material = textured.trace.materials[0];
+  material.metallic_roughness_texture = Texture{.image = textured.add_image(filled_image(2, 2, {255, 204, 51, 255}))};
+  material.metallic = 0.5f, material.roughness = 0.5f;
+  plain.trace.materials[0].metallic = 0.5f * 0.2f, plain.trace.materials[0].roughness = 0.5f * 0.8f;
+  const ShadedScene a(textured.trace), b(plain.trace);
+  expect_near(a.shader.color(0, {3, 5}), b.shader.color(0, {3, 5}), 1e-6);
+}
+
+// Base colour in 8 bits of sRGB, roughness in 8 bits, metallic in 2, normals in 10: the colour is close, and not equal.
+TEST(SurfaceShader, AGBufferRounds) {
+  SurfaceTrace scene = facing(white_metal());
+  Material& material = scene.trace.materials[0];
+  material.base_color = {0.3f, 0.6f, 0.9f, 1}, material.roughness = 0.6f;
+  scene.frame().lighting.lights = {{glm::normalize(glm::vec3(0.3f, 0.4f, -1))}};
+  scene.mesh().normals.assign(4, glm::normalize(glm::vec3(0.3f, 0.1f, 1)));
+  const ShadedScene exact(scene.trace), stored(scene.trace, {.storage = MaterialStorage::gbuffer});
+  const glm::vec3 a = exact.shader.color(0, {3, 4}), b = stored.shader.color(0, {3, 4});
+  EXPECT_NE(a, b);
+  expect_near(a, b, 0.02);
+  // Without light only the base colour counts.
+  material.unlit = true;
+  scene.mesh().vertex_colors.assign(4, glm::vec4(1));  // so that it is not flat
+  const ShadedScene unlit(scene.trace, {.storage = MaterialStorage::gbuffer});
+  for (int c = 0; c < 3; ++c)
+    EXPECT_EQ(unlit.shader.color(0, {3, 4})[c], srgb_values()[srgb_code(material.base_color[c])]);
+}
+
+TEST(SurfaceShader, ColorsAreRoundedToHalf) {
+  SurfaceTrace scene(8, 8);
+  scene.add_rectangle(0, 0, 8, 8, 0.5, textured_material(scene.add_image(filled_image(2, 2, {100, 200, 30, 255}))));
+  const ShadedScene exact(scene.trace), half(scene.trace, {.rounds_to_half = true});
+  const glm::vec3 a = exact.shader.color(0, {3, 4}), b = half.shader.color(0, {3, 4});
+  for (int c = 0; c < 3; ++c) {
+    EXPECT_NEAR(a[c], b[c], a[c] * 0x1p-11f);
+    EXPECT_EQ(std::ldexp(b[c], 11 - std::ilogb(b[c])), std::round(std::ldexp(b[c], 11 - std::ilogb(b[c]))));
+  }
+}
+
+// ---- Costs
+
+using Real = Counted<float>;
+
+// Weights in perspective by hand: three planes of two products and two sums; a division; two products, which are
+// limited by two comparisons each.
+constexpr OperationCounts kWeights{.mul_add = 8, .add = 10, .special = 1};
+// An attribute: two products; two differences and two sums.
+constexpr OperationCounts kAttribute{.mul_add = 2, .add = 4};
+// Slopes of the weights: a plane and a division; four times two products and a difference.
+constexpr OperationCounts kWeightSlopes{.mul_add = 10, .add = 6, .special = 1};
+// The slope of an attribute: two products, two differences, a sum.
+constexpr OperationCounts kSlope{.mul_add = 2, .add = 3};
+
+OperationCounts sum_of(const std::vector<std::pair<OperationCounts, int>>& parts) {
+  OperationCounts sum;
+  for (const auto& [counts, times] : parts) sum += counts * static_cast<std::uint64_t>(times);
+  return sum;
+}
+
+TEST(SurfaceShaderCost, OfAnUnlitTexture) {
+  SurfaceTrace scene(8, 8);
+  scene.add_rectangle(0, 0, 8, 8, 0.5, textured_material(scene.add_image(filled_image(2, 2, {1, 2, 3, 255}))));
+  const ShadedScene analytic(scene.trace), quad(scene.trace, {.derivatives = Derivatives::quad});
+  const OperationCounts texel{.mul_add = 4, .fetch = 1};
+  EXPECT_EQ(analytic.shader.work(0).material,
+            sum_of({{kWeights, 1}, {kWeightSlopes, 1}, {kAttribute, 2}, {kSlope, 4}, {texel, 1}}));
+  EXPECT_EQ(quad.shader.work(0).material, sum_of({{kWeights, 1}, {kAttribute, 2}, {{.add = 1}, 4}, {texel, 1}}));
+  EXPECT_EQ(analytic.shader.work(0).light, OperationCounts{});
+  EXPECT_EQ(analytic.shader.work(0).input_bytes, kSurfaceBytes + 3 * 2 * 4);
+}
+
+TEST(SurfaceShaderCost, OfLitVertices) {
+  SurfaceTrace scene = facing(white_metal());
+  scene.mesh().vertex_colors.assign(4, glm::vec4(0.5f));
+  const ShadedScene shaded(scene.trace);
+  // A unit vector: a dot product, a limit, a root, a division and three products.
+  const OperationCounts unit{.mul_add = 6, .add = 3, .special = 2};
+  EXPECT_EQ(shaded.shader.work(0).material,
+            sum_of({{kWeights, 1}, {kAttribute, 4 + 3 + 3}, {{.mul_add = 4}, 1}, {unit, 2}, {{.mul_add = 3}, 1}}));
+  EXPECT_EQ(shaded.shader.work(0).input_bytes, kSurfaceBytes + 3 * (4 + 3 + 3) * 4);
+}
+
+TEST(SurfaceShaderCost, ASecondTextureOfTheSameSetSharesThePlace) {
+  SurfaceTrace scene(8, 8);
+  const Texture texture{.image = scene.add_image(filled_image(2, 2, {1, 2, 3, 255}))};
+  Material material;
+  material.base_texture = texture;
+  scene.add_rectangle(0, 0, 8, 8, 0.5, material);
+  const ShadedScene one(scene.trace);
+  scene.trace.materials[0].metallic_roughness_texture = texture;
+  const ShadedScene two(scene.trace);
+  OperationCounts more = one.shader.work(0).material;
+  more += OperationCounts{.mul_add = 2, .fetch = 1};
+  EXPECT_EQ(two.shader.work(0).material, more);
+  EXPECT_EQ(two.shader.work(0).input_bytes, one.shader.work(0).input_bytes);
+}
+
+// Counting numbers run the formulas of light: the counts are those of a run that shades.
+TEST(SurfaceShaderCost, OfLight) {
+  SurfaceTrace scene = facing(white_metal());
+  scene.frame().lighting = {{{glm::vec3(0, 0, -1)}, {glm::vec3(0, -1, 0)}}, Ambient{}};
+  scene.trace.materials[0].emissive = glm::vec3(1);
+  const ShadedScene shaded(scene.trace);
+  OperationCounts counted;
+  const Triple<Real> vector{Real(0.5f, counted), Real(0.25f, counted), Real(0.75f, counted)};
+  lit_color(scene.trace.materials[0],
+            SurfaceMaterial<Real>{{vector, vector[0], vector[1], vector, vector}, vector, vector[0]},
+            scene.frame().lighting);
+  EXPECT_EQ(shaded.shader.work(0).light, counted);
+  EXPECT_GT(counted.total(), 100u);
+}
+
+TEST(SurfaceShaderCost, FlatTrianglesCostWhatTheyDid) {
+  SurfaceTrace scene(8, 8);
+  scene.add_rectangle(0, 0, 8, 8, 0.5, unlit_material(glm::vec4(1)));
+  scene.add_rectangle(0, 0, 8, 8, 0.5, textured_material(scene.add_image(filled_image(2, 2, {1, 2, 3, 255}))));
+  const ShadedScene shaded(scene.trace);
+  EXPECT_TRUE(shaded.shader.is_flat(0));
+  EXPECT_FALSE(shaded.shader.is_flat(2));
+  EXPECT_EQ(shaded.shader.work(0).material, OperationCounts{});
+  EXPECT_EQ(shaded.shader.work(0).light, OperationCounts{});
+  EXPECT_EQ(shaded.shader.work(0).input_bytes, sizeof(FlatAttributes));
+}
+
+}  // namespace
+}  // namespace beampipe
