@@ -92,9 +92,9 @@ class PixelSurfaces {
     for (const Fragment& fragment : fragments) by_pixel_[fragment.pixel].push_back(&fragment);
   }
 
-  // `owners`: how many reference samples each triangle has.
+  // `truth`: the share of each triangle in the reference's samples.
   std::vector<PixelSurface> at(std::size_t pixel, const PixelWeights& weights,
-                               const std::map<std::uint64_t, std::uint32_t>& owners, const TileShader& shader,
+                               const std::map<std::uint64_t, double>& truth, const TileShader& shader,
                                const glm::vec3& background) const {
     std::map<std::uint32_t, PixelSurface> surfaces;
     for (const Fragment* fragment : by_pixel_[pixel]) {
@@ -110,10 +110,10 @@ class PixelSurfaces {
       surface.tiny = weight.tiny;
       rest_of_weights -= surface.weight;
     }
-    for (const auto& [triangle, samples] : owners) {
+    for (const auto& [triangle, share] : truth) {
       if (triangle == kNoOwner) continue;
       PixelSurface& surface = surfaces[static_cast<std::uint32_t>(triangle)];
-      surface.truth = static_cast<double>(samples) / kReferenceSamples;
+      surface.truth = share;
       if (!surface.fragment) surface.tiny = true;  // too little area for a fragment
       rest_of_truth -= surface.truth;
     }
@@ -130,12 +130,26 @@ class PixelSurfaces {
   std::vector<std::vector<const Fragment*>> by_pixel_;
 };
 
-std::map<std::uint64_t, std::uint32_t> count_owners(const ReferenceTile& surface, std::size_t x, std::size_t y) {
-  std::map<std::uint64_t, std::uint32_t> owners;
-  for (std::size_t row = 0; row < kReferenceRows; ++row)
-    for (std::size_t s = 0; s < kReferenceColumns; ++s)
-      ++owners[surface.owner[(y * kReferenceRows + row) * surface.row_samples + x * kReferenceColumns + s]];
-  return owners;
+// The share of each triangle in the samples of pixel (x, y) of the tile. Translucent `layers` (layers_of_pixels) take
+// their part of what the layers in front of them let through.
+std::map<std::uint64_t, double> shares_of_samples(const ReferenceTile& surface, std::size_t x, std::size_t y,
+                                                  std::size_t pixel, const std::vector<ReferenceTile::Layer>& layers,
+                                                  const TileShader& shader) {
+  std::map<std::uint64_t, double> shares;
+  auto layer = layers.begin();
+  for (std::size_t row = 0; row < kReferenceRows; ++row) {
+    for (std::size_t s = 0; s < kReferenceColumns; ++s) {
+      const std::size_t sample = (y * kReferenceRows + row) * surface.row_samples + x * kReferenceColumns + s;
+      double light = 1.0 / kReferenceSamples;
+      for (; layer != layers.end() && layer->sample == sample; ++layer) {
+        const double alpha = shader.color_and_alpha(layer->triangle, static_cast<std::uint32_t>(pixel), 0.5f, 0.5f).a;
+        shares[layer->triangle] += light * alpha;
+        light *= 1 - alpha;
+      }
+      shares[surface.owner[sample]] += light;
+    }
+  }
+  return shares;
 }
 
 glm::dvec3 rgb(const Image& image, std::size_t pixel) {
@@ -159,6 +173,7 @@ std::map<std::string, std::vector<float>> error_causes(const Trace& trace, const
     ReferenceTile truth(tile);
     const TileShader shader = bin.shader();
     reference_raster(context.triangles, bin.list, tile, unused, truth, &shader);
+    const std::vector<std::vector<ReferenceTile::Layer>> layers = layers_of_pixels(truth, tile);
     std::vector<Pair> pairs;
     std::vector<Fragment> fragments;
     conservative_raster(context.triangles, bin.list, tile, unused, pairs);
@@ -174,8 +189,8 @@ std::map<std::string, std::vector<float>> error_causes(const Trace& trace, const
       const glm::dvec3 error = rgb(image, pixel) - rgb(reference, pixel);
       const double length = std::sqrt(glm::dot(error, error) / 3);
       if (length == 0) continue;
-      std::vector<PixelSurface> seen =
-          surfaces.at(i, weights[pixel], count_owners(truth, x, y), bin.shader(), frame.background);
+      std::vector<PixelSurface> seen = surfaces.at(
+          i, weights[pixel], shares_of_samples(truth, x, y, i, layers[i], shader), shader, frame.background);
       std::array<glm::dvec3, kErrorCauses.size()> errors = transfers(seen, comparer);
       errors[rounding] = error;
       for (std::size_t cause = 0; cause < rounding; ++cause) errors[rounding] -= errors[cause];

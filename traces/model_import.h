@@ -34,7 +34,7 @@ void read_obj(const std::filesystem::path& file, const std::string& named_by, Ob
 struct GltfOptions {
   std::uint32_t width = 320, height = 180;  // of the frames, in pixels
   std::uint32_t frames = 1;                 // frame i shows the animation at i / frames of its length
-  std::string animation;                    // its name, or its number from 0; empty: the first one, or none
+  std::string animation = {};               // its name, or its number from 0; empty: the first one, or none
   bool animation_if_any = false;            // without a named animation: show the first one if there is any
 };
 

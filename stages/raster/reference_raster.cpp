@@ -235,8 +235,8 @@ class PixelSum {
   std::size_t row_samples_;
 };
 
-// The layers of each pixel that lie in front of the samples' owners, by sample and from near to far. Layers of equal
-// depth stay in primitive order.
+}  // namespace
+
 std::vector<std::vector<ReferenceTile::Layer>> layers_of_pixels(const ReferenceTile& surface, const Tile& tile) {
   std::vector<std::vector<ReferenceTile::Layer>> pixels(tile.pixels());
   for (const ReferenceTile::Layer& layer : surface.layers) {
@@ -250,8 +250,6 @@ std::vector<std::vector<ReferenceTile::Layer>> layers_of_pixels(const ReferenceT
     });
   return pixels;
 }
-
-}  // namespace
 
 std::vector<glm::vec4> resolve(const ReferenceTile& surface, const Tile& tile, const TileShader& shader,
                                const glm::vec3& background, StageCounters& counters) {

@@ -48,6 +48,10 @@ struct ReferenceTile {
 void reference_raster(const SetupTriangles& triangles, const TriangleList& list, const Tile& tile,
                       StageCounters& counters, ReferenceTile& surface, const TileShader* shader = nullptr);
 
+// For each pixel of the tile, the layers that lie in front of the owners of their samples: sorted by sample, and from
+// near to far. Layers of equal depth stay in primitive order.
+std::vector<std::vector<ReferenceTile::Layer>> layers_of_pixels(const ReferenceTile& surface, const Tile& tile);
+
 // Surfaces that vary are shaded 256 times per pixel: in each of 16x16 cells, each triangle once for its samples there,
 // at their mean position, with the part of its textures that the cell covers. Translucent layers are composed at every
 // sample, sorted by depth.

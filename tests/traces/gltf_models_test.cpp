@@ -34,7 +34,9 @@ void expect_sound(const Trace& trace, const std::string& name) {
     for (std::uint32_t material : mesh.materials) ASSERT_LT(material, trace.materials.size()) << name;
     for (std::uint32_t material : mesh.materials) {
       const auto& base = trace.materials[material].base_texture;
-      if (base) EXPECT_EQ(mesh.uvs[base->uv_set].size(), vertices) << name;
+      if (base) {
+        EXPECT_EQ(mesh.uvs[base->uv_set].size(), vertices) << name;
+      }
     }
   }
 }

@@ -18,6 +18,8 @@ constexpr const char* kFooter =
 Errors are differences of linear RGB values from it: RMSE (root mean square), bias (mean), p99 (99th percentile of the
 absolute values) and max. EMR, the equivalent MSAA rate, is the number of samples N at which msaa:N has the same RMSE
 on the same frames. So an EMR of 20 means: as good as MSAA with 20 samples per pixel.
+Where surfaces vary, errors are split: visibility (who covers how much of a pixel, with its own EMR) and shading (what
+colour it was taken to be). All pictures are then rendered twice.
 
 Example:
   beampipe compare fence.json -t beam alpha msaa:1,8,32 -o out
@@ -65,7 +67,8 @@ void add_compare_command(CommandLine& line, InterruptGate& gate) {
           "1024 if these are not enough)")
       .list("N,N,...");
   command.add_flag("--causes", options->causes,
-                   "split each pixel's error by cause, as layers of the counters and as a table "
+                   "split each pixel's error (where surfaces vary: its error in visibility) by cause, as layers of the "
+                   "counters and as a table "
                    "(beam in every order but not in several passes, beam:rules=paper in sorted order, and alpha)");
   command.add_flag("--orders", options->orders,
                    "also render with the triangles shuffled, from near to far and from far to near, and tell the error "

@@ -26,14 +26,14 @@ FrameResult render_timed(const Technique& technique, const RunPlan& plan, std::s
   options.history = history;
   options.memory.modelled = model_memory;
   options.colors = colors;
-  progress.show(frame_text(plan, frame) + technique.spec);
+  const std::string name = technique.spec + (colors == SurfaceColors::by_pixel ? ", for visibility" : "");
+  progress.show(frame_text(plan, frame) + name);
   const auto start = std::chrono::steady_clock::now();
   FrameResult result = technique.render(plan.trace, frame, options);
   const auto end = std::chrono::steady_clock::now();
   milliseconds = std::chrono::duration<double, std::milli>(end - start).count();
   if (options.timeline)
-    options.timeline->add(
-        {technique.spec + ", frame " + std::to_string(frame), std::this_thread::get_id(), {}, start, end});
+    options.timeline->add({name + ", frame " + std::to_string(frame), std::this_thread::get_id(), {}, start, end});
   return result;
 }
 

@@ -103,7 +103,8 @@ TEST_F(ErrorSplitTest, OneSurfaceAllOverThePictureHasErrorsOfShadingAlone) {
 }
 
 TEST_F(ErrorSplitTest, OneColourHasErrorsOfVisibilityAlone) {
-  write_varying_trace(folder_, {R"({"mesh": "sliver"})"});
+  const std::string sliver = R"({"mesh": "sliver"})";
+  write_varying_trace(folder_, {sliver, sliver});  // taa has a history in the second frame
   const Json json = compare({"msaa:2", "beam", "taa:4", "--ladder", "1,2,4"});
   EXPECT_EQ(json["msaa_ladder"], json["visibility_msaa_ladder"]);
   for (const Json& result : json["results"]) {
@@ -111,6 +112,7 @@ TEST_F(ErrorSplitTest, OneColourHasErrorsOfVisibilityAlone) {
     const double whole = result["error"]["rmse"];
     EXPECT_NEAR(result["visibility"]["rmse"], whole, 1e-9);
     EXPECT_EQ(result["shading"]["rmse"], 0.0) << "fp16 and sRGB of 8 bits hold these colours exactly";
+    for (const Json& frame : result["frames"]) EXPECT_NEAR(frame["visibility"]["rmse"], frame["error"]["rmse"], 1e-9);
     EXPECT_EQ(result["visibility"]["equivalent_msaa"], result["equivalent_msaa"]);
     EXPECT_EQ(result["visibility"]["equivalent_msaa_is_lower_bound"], result["equivalent_msaa_is_lower_bound"]);
     if (result["technique"] != "reference") {
@@ -185,6 +187,17 @@ TEST_F(ErrorSplitTest, CausesAddUpToTheErrorInVisibility) {
     EXPECT_NEAR(shares, 1.0, 1e-4);
     EXPECT_GT(result["visibility"]["rmse"], 1e-5);
   }
+}
+
+// Two sheets, one in front of the other, over a texture and over the background.
+TEST_F(ErrorSplitTest, CausesKnowWhatShowsThroughTranslucentSurfaces) {
+  write_varying_trace(folder_, {R"({"mesh": "left"}, {"mesh": "sheets"})"});
+  const Json result = compare({"beam", "--ladder", "1", "--causes"})["results"][0];
+  const auto found = layers("beam");
+  for (std::size_t pixel = 0; pixel < found.at("error").size(); ++pixel)
+    ASSERT_LT(std::abs(found.at("cause_rounding")[pixel]), 2e-3) << pixel;
+  EXPECT_NEAR(result["error_causes"]["leak"], 0.0, 0.01);
+  EXPECT_GT(result["error_causes"]["mask"], 0.8) << "a mask has 256 positions for parts of 0.3";
 }
 
 }  // namespace
