@@ -322,7 +322,8 @@ TEST_F(ProgramTest, MakePlaysAnAnimatedModel) {
   EXPECT_EQ(moves[3]["draws"][0]["transform"][12], 6.0);
   EXPECT_EQ(moves[0]["camera"], moves[3]["camera"]);
   EXPECT_EQ(moves[0]["camera"]["target"], Parsed({3.5, 0.5, 0.0}));  // of all frames
-  EXPECT_EQ(moves[0]["light"], moves[3]["light"]);
+  ASSERT_TRUE(moves[0].contains("lights"));
+  EXPECT_EQ(moves[0]["lights"], moves[3]["lights"]);
   succeed({"make", path("model.gltf"), "--frames", "4", "--orbit", "90", "-o", path("turns.json")});
   const Parsed turns = parsed(folder_ / "turns.json")["frames"];
   ASSERT_EQ(turns.size(), 4u);
