@@ -309,7 +309,9 @@ SurfaceMaterial<float> SurfaceShader::material_there(std::uint32_t triangle, con
   if (by_pixel) width = 1.0f;
   const auto from_anchor = [&](float px, float py) { return std::array{px - surface.anchor_x, py - surface.anchor_y}; };
   const auto left = static_cast<float>(place.x), top = static_cast<float>(place.y);
-  const auto [x, y] = from_anchor(left + (by_pixel ? 0.5f : place.u), top + (by_pixel ? 0.5f : place.v));
+  const std::array<float, 2> place_at =
+      from_anchor(left + (by_pixel ? 0.5f : place.u), top + (by_pixel ? 0.5f : place.v));
+  const float x = place_at[0], y = place_at[1];
   Barycentrics<float> weights = weights_at(surface.planes, x, y);
   if (by_pixel) weights = clamped(weights);
 
