@@ -5,7 +5,6 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
-#include <glm/gtc/matrix_inverse.hpp>
 
 #include "simd/vertex_transform.h"
 #include "stages/geometry/clip.h"
@@ -69,7 +68,7 @@ class VertexShader {
       : view_(view),
         mesh_(mesh),
         to_world_(draw.transform),
-        normal_to_world_(glm::inverseTranspose(glm::dmat3(draw.transform))),
+        normal_to_world_(normal_matrix(glm::dmat3(draw.transform))),
         handedness_(glm::determinant(glm::dmat3(draw.transform)) < 0 ? -1.0f : 1.0f) {}
 
   glm::dvec3 world(std::uint32_t vertex) const {
@@ -91,9 +90,16 @@ class VertexShader {
   }
 
  private:
+  // The inverse transpose times the determinant's magnitude, which transforms that flatten a mesh have too.
+  static glm::dmat3 normal_matrix(const glm::dmat3& m) {
+    const double sign = glm::determinant(m) < 0 ? -1.0 : 1.0;
+    return sign * glm::dmat3(glm::cross(m[1], m[2]), glm::cross(m[2], m[0]), glm::cross(m[0], m[1]));
+  }
+
+  // 0 stays 0, and what has no finite length becomes 0.
   static glm::dvec3 unit(const glm::dvec3& v) {
     const double length = glm::length(v);
-    return length > 0 ? v / length : glm::dvec3(0.0);
+    return length > 0 && std::isfinite(length) ? v / length : glm::dvec3(0.0);
   }
 
   const View& view_;

@@ -207,6 +207,9 @@ Reflector<float> through_gbuffer(Reflector<float> surface) {
   return surface;
 }
 
+// Alpha that is extrapolated beyond the triangle may leave 0..1. What is not a number becomes 1.
+float limited_alpha(float alpha) { return greater(lesser(alpha, 1.0f), 0.0f); }
+
 void round_to_half(glm::vec3& color) {
   for (int c = 0; c < 3; ++c) color[c] = HalfBits(color[c]);
 }
@@ -295,6 +298,7 @@ AlphaAt SurfaceShader::alpha(std::uint32_t triangle, const ShadingPlace& place, 
   };
   found.alpha =
       alpha_at(shader, {vertex(0).color.a, vertex(1).color.a, vertex(2).color.a}, weights, texture_place, fetch);
+  found.alpha = limited_alpha(found.alpha);
   return found;
 }
 
@@ -372,7 +376,7 @@ glm::vec4 SurfaceShader::shaded(std::uint32_t triangle, const ShadingPlace& plac
   glm::vec3 color(lit[0], lit[1], lit[2]);
   if (rules_.rounds_to_half) round_to_half(color);
   if (material.alpha_mode == AlphaMode::opaque) return {color, 1.0f};
-  return {color, by_pixel ? alpha(triangle, place, width).alpha : found.alpha};
+  return {color, by_pixel ? alpha(triangle, place, width).alpha : limited_alpha(found.alpha)};
 }
 
 void SurfaceShader::add_texels(std::uint32_t triangle, const ShadingPlace& place, float width,

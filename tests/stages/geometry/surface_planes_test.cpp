@@ -7,6 +7,7 @@
 
 #include "stages/geometry/vertex_setup.h"
 #include "tests/simd/random.h"
+#include "tests/stages/surface_scene.h"
 
 namespace beampipe {
 namespace {
@@ -361,6 +362,20 @@ TEST(SurfacePlanes, VerticesKnowTheWayToTheEye) {
   const SetupTriangles found = vertex_setup(trace, trace.frames[0], counters);
   for (std::size_t i = 0; i < 3; ++i)
     for (int c = 0; c < 3; ++c) EXPECT_NEAR(found.vertices[i].to_eye[c], -trace.meshes[0].positions[i][c], 1e-5);
+}
+
+// A planar shadow: the draw's transform is singular.
+TEST(SurfacePlanes, AFlattenedMeshHasFiniteNormals) {
+  SurfaceTrace scene(8, 8);
+  Material material;
+  material.double_sided = true;
+  scene.add_rectangle(0, 0, 8, 8, 0.5, material);
+  scene.mesh().normals.assign(scene.mesh().positions.size(), glm::normalize(glm::vec3(1, 2, 3)));
+  scene.frame().draws[0].transform =
+      glm::dmat4(glm::dvec4(1, 0, 0, 0), glm::dvec4(0, 1, 0, 0), glm::dvec4(0, 0, 0, 0), glm::dvec4(0, 0, 0.5, 1));
+  StageCounters counters;
+  for (const SurfaceVertex& vertex : vertex_setup(scene.trace, scene.trace.frames[0], counters).vertices)
+    for (int axis = 0; axis < 3; ++axis) EXPECT_TRUE(std::isfinite(vertex.normal[axis]));
 }
 
 }  // namespace
