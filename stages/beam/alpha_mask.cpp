@@ -1,6 +1,5 @@
 #include "stages/beam/alpha_mask.h"
 
-#include <algorithm>
 #include <bit>
 #include <cmath>
 
@@ -23,15 +22,6 @@ void for_each_position(const WideMask& mask, const std::vector<SamplePattern>& p
     }
     end_word();
   }
-}
-
-// Mean alpha of the pixel's part of the surface, by one fetch.
-float mean_alpha(const TileShader& shader, const Fragment& fragment, AlphaMaskWork& work, TexelRequests* texels) {
-  work.alphas += shader.work(fragment.triangle).alpha;
-  const float alpha =
-      shader.alpha(fragment.triangle, fragment.pixel, fragment.centroid_u, fragment.centroid_v, 1.0f, texels).alpha;
-  end_request(texels);
-  return alpha;
 }
 
 // The part of the area of width `width` that a cutout covers.
@@ -70,7 +60,10 @@ float cut_out(const TileShader& shader, const std::vector<SamplePattern>& patter
 float let_through(const TileShader& shader, const std::vector<SamplePattern>& patterns, Fragment& fragment,
                   AlphaMaskWork& work, TexelRequests* texels) {
   ++work.masks;
-  const float opacity = std::clamp(mean_alpha(shader, fragment, work, texels), 0.0f, 1.0f);
+  work.alphas += shader.work(fragment.triangle).alpha;
+  const float opacity =
+      shader.alpha(fragment.triangle, fragment.pixel, fragment.centroid_u, fragment.centroid_v, 1.0f, texels).alpha;
+  end_request(texels);
   const OpacityRanks ranks = shader.opacity_ranks(fragment.triangle, fragment.pixel);
   WideMask left;
   const auto rank = [&](std::size_t position, float, float) {

@@ -288,7 +288,7 @@ class OwnerComposer {
 
   // `width`: of the area that the colour stands for, in pixels.
   glm::vec3 shade(std::uint32_t triangle, float u, float v, float width = 1.0f) {
-    result_.shaded.push_back({triangle, pixel_, u, v});
+    result_.shaded.push_back({triangle});
     const glm::vec3 color = bin_.shader.color(triangle, pixel_, u, v, width, result_.texels);
     end_request(result_.texels);
     return color;

@@ -7,8 +7,6 @@ namespace beampipe {
 
 struct ShadedTriangle {
   std::uint32_t triangle;  // index into SetupTriangles
-  std::uint32_t pixel;     // index within the tile, row by row
-  float u, v;              // in the pixel, from its upper left corner, 0..1
 };
 
 }  // namespace beampipe

@@ -25,6 +25,21 @@ VertexInputs<float> inputs_of(const SurfaceVertex& vertex) {
           {vertex.color.r, vertex.color.g, vertex.color.b, vertex.color.a}};
 }
 
+// Texture coordinates at a point of a triangle and how they change, from the triangle's planes. `uvs`: of the vertices.
+template <class Real>
+TexturePlace<Real> place_on_triangle(const std::array<std::array<Real, 2>, 3>& uvs,
+                                     const BarycentricPlanes<Real>& planes, const Real& x, const Real& y,
+                                     const Barycentrics<Real>& weights) {
+  const std::array<Barycentrics<Real>, 2> slopes = weight_slopes(planes, x, y, weights);
+  TexturePlace<Real> found;
+  for (std::size_t c = 0; c < 2; ++c) {
+    found.uv[c] = interpolated(uvs[0][c], uvs[1][c], uvs[2][c], weights);
+    found.dx[c] = interpolated_slope(uvs[0][c], uvs[1][c], uvs[2][c], slopes[0]);
+    found.dy[c] = interpolated_slope(uvs[0][c], uvs[1][c], uvs[2][c], slopes[1]);
+  }
+  return found;
+}
+
 std::array<float, 2> uv_at(const std::array<VertexInputs<float>, 3>& v, std::size_t set,
                            const Barycentrics<float>& weights) {
   std::array<float, 2> uv;
@@ -79,18 +94,12 @@ TexturePlace<Real> counted_place(const std::array<VertexInputs<Real>, 3>& v, std
                                  const BarycentricPlanes<Real>& planes, const Barycentrics<Real>& weights,
                                  Derivatives derivatives) {
   const Real one = v[0].color[0];
+  const std::array<std::array<Real, 2>, 3> uvs{v[0].uvs[set], v[1].uvs[set], v[2].uvs[set]};
+  if (derivatives == Derivatives::analytic) return place_on_triangle(uvs, planes, one, one, weights);
   TexturePlace<Real> found;
-  std::array<Barycentrics<Real>, 2> slopes;
-  if (derivatives == Derivatives::analytic) slopes = weight_slopes(planes, one, one, weights);
   for (std::size_t c = 0; c < 2; ++c) {
-    const Real &a = v[0].uvs[set][c], &b = v[1].uvs[set][c], &d = v[2].uvs[set][c];
-    found.uv[c] = interpolated(a, b, d, weights);
-    if (derivatives == Derivatives::analytic) {
-      found.dx[c] = interpolated_slope(a, b, d, slopes[0]);
-      found.dy[c] = interpolated_slope(a, b, d, slopes[1]);
-    } else {
-      found.dx[c] = found.uv[c] - one, found.dy[c] = found.uv[c] - one;
-    }
+    found.uv[c] = interpolated(uvs[0][c], uvs[1][c], uvs[2][c], weights);
+    found.dx[c] = found.uv[c] - one, found.dy[c] = found.uv[c] - one;
   }
   return found;
 }
@@ -276,15 +285,8 @@ AlphaAt SurfaceShader::alpha(std::uint32_t triangle, const ShadingPlace& place, 
               y = static_cast<float>(place.y) + place.v - surface.anchor_y;
   if (shader.has_vertex_colors || shader.material.base_texture) weights = weights_at(surface.planes, x, y);
   const auto texture_place = [&](std::uint32_t set) {
-    const std::array<Barycentrics<float>, 2> change = weight_slopes(surface.planes, x, y, weights);
-    TexturePlace<float> at;
-    for (std::size_t c = 0; c < 2; ++c) {
-      const auto uv = [&](std::size_t k) { return vertex(k).uvs[set][static_cast<int>(c)]; };
-      at.uv[c] = interpolated(uv(0), uv(1), uv(2), weights);
-      at.dx[c] = interpolated_slope(uv(0), uv(1), uv(2), change[0]);
-      at.dy[c] = interpolated_slope(uv(0), uv(1), uv(2), change[1]);
-    }
-    return at;
+    const auto uv = [&](std::size_t k) { return pair_of<float>(vertex(k).uvs[set]); };
+    return place_on_triangle<float>({uv(0), uv(1), uv(2)}, surface.planes, x, y, weights);
   };
   const auto fetch = [&](TextureRole, const TexturePlace<float>& at) {
     const TextureSlopes slopes{vector_of(at.dx) * width, vector_of(at.dy) * width};
@@ -319,15 +321,10 @@ SurfaceMaterial<float> SurfaceShader::material_there(std::uint32_t triangle, con
   Barycentrics<float> weights = weights_at(surface.planes, x, y);
   if (by_pixel) weights = clamped(weights);
 
-  const auto slopes_of_triangle = [&](std::uint32_t set, TexturePlace<float>& found) {
-    const std::array<Barycentrics<float>, 2> slopes = weight_slopes(surface.planes, x, y, weights);
-    for (std::size_t c = 0; c < 2; ++c) {
-      found.dx[c] = interpolated_slope(v[0].uvs[set][c], v[1].uvs[set][c], v[2].uvs[set][c], slopes[0]);
-      found.dy[c] = interpolated_slope(v[0].uvs[set][c], v[1].uvs[set][c], v[2].uvs[set][c], slopes[1]);
-    }
-  };
-  // From the centre of a pixel to the centre of the next one in its quad.
-  const auto slopes_of_quad = [&](std::uint32_t set, TexturePlace<float>& found) {
+  // Slopes from the centre of a pixel to the centre of the next one in its quad.
+  const auto place_in_quad = [&](std::uint32_t set) {
+    TexturePlace<float> found;
+    found.uv = uv_at(v, set, weights);
     const auto at_centre = [&](std::int32_t px, std::int32_t py) {
       const auto [cx, cy] = from_anchor(static_cast<float>(px) + 0.5f, static_cast<float>(py) + 0.5f);
       return uv_at(v, set, weights_at(surface.planes, cx, cy));
@@ -336,13 +333,11 @@ SurfaceMaterial<float> SurfaceShader::material_there(std::uint32_t triangle, con
     const auto from_x = at_centre(even_x, place.y), to_x = at_centre(even_x + 1, place.y);
     const auto from_y = at_centre(place.x, even_y), to_y = at_centre(place.x, even_y + 1);
     for (std::size_t c = 0; c < 2; ++c) found.dx[c] = to_x[c] - from_x[c], found.dy[c] = to_y[c] - from_y[c];
+    return found;
   };
   const auto texture_place = [&](std::uint32_t set) {
-    TexturePlace<float> found;
-    found.uv = uv_at(v, set, weights);
-    by_pixel || rules_.derivatives == Derivatives::analytic ? slopes_of_triangle(set, found)
-                                                            : slopes_of_quad(set, found);
-    return found;
+    if (rules_.derivatives == Derivatives::quad && !by_pixel) return place_in_quad(set);
+    return place_on_triangle<float>({v[0].uvs[set], v[1].uvs[set], v[2].uvs[set]}, surface.planes, x, y, weights);
   };
   const auto fetch = [&](TextureRole role, const TexturePlace<float>& at) -> std::array<float, 4> {
     const Texture& texture = texture_of(shader.material, role);
