@@ -223,6 +223,13 @@ TEST_F(SchemaTest, TheReaderHasTheSameLimits) {
         negative[0] = -1;
         expect("items/minimum", false, negative);
       }
+      if (rule.contains("items") && rule["items"].contains("maximum")) {
+        Json large = value;
+        large[0] = rule["items"]["maximum"];
+        expect("items/maximum", true, large);
+        large[0] = rule["items"]["maximum"].get<double>() + 1;
+        expect("items/maximum", false, large);
+      }
     }
   }
   EXPECT_GT(limits, 90);
@@ -230,6 +237,9 @@ TEST_F(SchemaTest, TheReaderHasTheSameLimits) {
   EXPECT_EQ(schema_["properties"]["beampipe_trace"]["enum"], (std::vector<int>{1, 2}));
   EXPECT_EQ(schema_["$defs"]["frame"]["properties"]["lights"]["maxItems"], kMostLights);
   EXPECT_EQ(schema_["$defs"]["rgba"]["prefixItems"][3]["maximum"], 1);
+  EXPECT_EQ(schema_["$defs"]["rgba"]["prefixItems"][0]["maximum"], kMostColor);
+  EXPECT_EQ(schema_["$defs"]["color"]["items"]["maximum"], kMostColor);
+  EXPECT_EQ(schema_["$defs"]["material"]["properties"]["normal_scale"]["maximum"], kMostNormalScale);
 }
 
 TEST_F(SchemaTest, EveryKeyIsDescribed) {
