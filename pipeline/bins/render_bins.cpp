@@ -30,7 +30,7 @@ std::vector<std::string> stages_of(const FrameContext& context, const BinPlan& p
     stages.push_back(stage);
     if (stage == "beam_fragment" && context.has_alpha()) stages.push_back("alpha_mask");
     if (stage == "sample_raster" && context.has_cutouts()) stages.push_back("alpha_test");
-    if (stage == "depth_test" && plan.blends && context.has_blending()) stages.push_back("blend");
+    if (stage == "depth_test" && context.has_blending()) stages.push_back("blend");
   }
   return stages;
 }

@@ -20,7 +20,6 @@ namespace beampipe {
 // How a technique renders its bins.
 struct BinPlan {
   std::vector<std::string> stages;  // of a bin, in the order of the pipeline; the first one rasterizes
-  bool blends = false;              // it draws translucent triangles; other techniques leave them out
   Framebuffer framebuffer;          // with the size of the bins, which RunOptions::tile_size overrides
   bool keeps_tile_size = false;     // it does not, because the picture depends on the bins
   // Bins sort their lists by keys, which binning writes beside the entries. They charge themselves for the setup that

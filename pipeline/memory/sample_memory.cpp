@@ -58,6 +58,12 @@ void SampleMemory::replay(const std::vector<SampleAccess>& accesses, bool write_
   }
 }
 
+void SampleMemory::test(const std::vector<SampleAccess>& accesses, StageCounters& counters) {
+  if (!modelled_) return;
+  for (const SampleAccess& access : accesses)
+    depth_.access(access.triangle, cell_place_[access.cell], access.tested, 0, counters);
+}
+
 void SampleMemory::blend(const std::vector<SampleAccess>& accesses, StageCounters& counters) {
   if (!modelled_) return;
   for (const SampleAccess& access : accesses) {

@@ -31,6 +31,9 @@ class SampleMemory {
     replay(accesses, false, true, counters);
   }
 
+  // Reads depth alone.
+  void test(const std::vector<SampleAccess>& accesses, StageCounters& counters);
+
   // Reads the colours of samples that pass, and writes them again.
   void blend(const std::vector<SampleAccess>& accesses, StageCounters& counters);
 

@@ -8,6 +8,7 @@
 #include "pipeline/units/depth_test_unit.h"
 #include "pipeline/units/fragment_units.h"
 #include "pipeline/units/raster_units.h"
+#include "pipeline/units/translucent_layer.h"
 
 namespace beampipe {
 namespace {
@@ -39,6 +40,7 @@ FrameResult render_acaa(const Trace& trace, const Frame& frame, const AcaaOption
     AccumulateUnit accumulate(bin, options.samples, options.color, options.double_counting);
     std::vector<float>& visible = bin.pixel_counter("visible_fragments");
 
+    std::vector<glm::vec4> translucent;
     for (const Sampling& sampling : rounds) {
       DepthTestUnit depth_test(bin, sampling, 0);
       raster.pass(sampling, ShadeAt::centroid, [&](const auto& fragments) { depth_test.test(fragments); });
@@ -54,10 +56,15 @@ FrameResult render_acaa(const Trace& trace, const Frame& frame, const AcaaOption
         count_by_pixel(fragments, bin.tile, sampling.grid, visible);
       });
       depth_test.end_pass();
-      depth_test.count_bytes();
       accumulate.finish_round();
+      const std::vector<glm::vec4> layer = draw_translucent(bin, depth_test, ShadeAt::centroid);
+      translucent.resize(layer.size(), glm::vec4(0.0f));
+      for (std::size_t i = 0; i < layer.size(); ++i) translucent[i] += layer[i] / static_cast<float>(rounds.size());
+      depth_test.count_bytes();
     }
-    bin.finish(accumulate.resolve_accumulator());
+    std::vector<glm::vec4> picture = accumulate.resolve_accumulator();
+    put_over(translucent, picture);
+    bin.finish(picture);
   });
 }
 

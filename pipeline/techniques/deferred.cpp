@@ -5,6 +5,7 @@
 #include "pipeline/units/depth_test_unit.h"
 #include "pipeline/units/gbuffer_unit.h"
 #include "pipeline/units/raster_units.h"
+#include "pipeline/units/translucent_layer.h"
 
 namespace beampipe {
 namespace {
@@ -27,9 +28,11 @@ FrameResult render_deferred(const Trace& trace, const Frame& frame, const RunOpt
       gbuffer.write_fragments(fragments, depth_test);
     });
     depth_test.end_pass();
-    depth_test.count_bytes();
     gbuffer.end_pass();
-    bin.finish(gbuffer.light_and_resolve(depth_test));
+    std::vector<glm::vec4> picture = gbuffer.light_and_resolve(depth_test);
+    put_over(draw_translucent(bin, depth_test, ShadeAt::sample), picture);
+    depth_test.count_bytes();
+    bin.finish(picture);
   });
 }
 

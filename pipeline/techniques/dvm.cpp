@@ -6,6 +6,7 @@
 #include "pipeline/technique_table.h"
 #include "pipeline/techniques/visibility.h"
 #include "pipeline/units/temporal_units.h"
+#include "pipeline/units/translucent_layer.h"
 #include "stages/picture/shade.h"
 #include "stages/samples/dilate.h"
 #include "stages/samples/materials.h"
@@ -61,6 +62,16 @@ void shade_samples(Bin& bin, const SamplePattern& pattern, std::vector<SampleQua
   lighting.streams(shaded * (kGBufferBytes + kSampleColorBytes));
 }
 
+// Over a tile's colours, and over the range of colours that its history may have.
+void put_layer_over(const std::vector<glm::vec4>& layer, const Tile& tile, CurrentFrame& frame) {
+  for (std::int32_t y = tile.y0; y < tile.y1; ++y)
+    for (std::int32_t x = tile.x0; x < tile.x1; ++x) {
+      const auto i = static_cast<std::size_t>(y * frame.width + x);
+      for (std::vector<glm::vec4>* const colors : {&frame.color, &frame.low, &frame.high})
+        (*colors)[i] = put_over(layer[i], (*colors)[i]);
+    }
+}
+
 FrameResult render_dvm(const Trace& trace, const Frame& frame, const DvmOptions& options, const RunOptions& run) {
   const FrameContext context(trace, frame, run, {.storage = MaterialStorage::gbuffer});
   TemporalFrame over_time(context);
@@ -70,6 +81,7 @@ FrameResult render_dvm(const Trace& trace, const Frame& frame, const DvmOptions&
   const Sampling sampling{CellGrid{}, standard_pattern(8)};
   const SelectOptions select{frames % 8, options.seed + frames};
   QuadFrame quads(frame.width, frame.height);
+  std::vector<glm::vec4> translucent(context.has_blending() ? over_time.current.color.size() : 0);
 
   const BinPlan plan{.stages = {"sample_raster", "depth_test", "sample_select", "shade", "light", "motion"},
                      .framebuffer = dvm_framebuffer()};
@@ -89,11 +101,19 @@ FrameResult render_dvm(const Trace& trace, const Frame& frame, const DvmOptions&
     moving.streams(bin.tile.pixels() * (kLookBytes + kSpeedBytes));
     copy_to_frame(found.looks, bin.tile, frame, over_time.current.looks);
     copy_to_frame(found.speeds, bin.tile, frame, over_time.current.speeds);
+    if (context.has_blending()) {
+      copy_to_frame(draw_translucent(bin, visibility, ShadeAt::centroid), bin.tile, frame, translucent);
+      bin.stage("blend").streams(bin.tile.pixels() * kLayerBytes);
+    }
+    visibility.count_bytes();
     if (bin.models_memory()) add_sample_bytes(selected, bin.tile, bin.pixel_counter("bytes"));
   });
   run_on_tiles(context, "dilate", result, [&](const Tile& tile, const BinStage& stage) {
     dilate(quads, context.triangles.draws, frame.background, tile, stage.timed(), over_time.current);
     stage.streams(tile.pixels() * (kSampleColorBytes + kShadingSampleBytes));
+    if (!context.has_blending()) return;
+    put_layer_over(translucent, tile, over_time.current);
+    stage.streams(tile.pixels() * kLayerBytes);
   });
   run_on_tiles(context, "temporal", result, [&](const Tile& tile, const BinStage& stage) {
     over_time.accumulate(tile, {options.blend, kStillPixels}, stage);

@@ -27,7 +27,6 @@ FrameResult render_msaa(const Trace& trace, const Frame& frame, const MsaaOption
       options.prepass ? DepthTestUnit::FirstPass::writes_depth_alone : DepthTestUnit::FirstPass::writes_color;
   const auto same_color = [&](std::uint32_t a, std::uint32_t b) { return context.shader.same_color(a, b); };
   const BinPlan plan{.stages = {"sample_raster", "shade", "depth_test", "resolve"},
-                     .blends = true,
                      .framebuffer = msaa_framebuffer(options)};
   return render_bins(context, plan, [&](Bin& bin) {
     SampleRasterUnit raster(bin, SampleRasterUnit::Translucent::drawn, options.alpha);
@@ -76,7 +75,8 @@ TechniqueKind msaa_kind() {
                 choice("alpha", o.alpha, {{"test", AlphaCoverage::test}, {"coverage", AlphaCoverage::to_coverage}},
                        "of cutouts: tested once per fragment, or the part of its samples that it takes"),
                 flag("prepass", o.prepass,
-                     "depth first, so that only visible fragments are shaded; the picture is the same")};
+                     "depth first, so that only visible fragments are shaded; the picture is the same, but that "
+                     "translucent triangles are blended over what is opaque and visible in the end")};
           },
           [](const MsaaOptions& o) {
             return Technique{.framebuffer = msaa_framebuffer(o),

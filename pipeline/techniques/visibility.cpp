@@ -5,6 +5,7 @@
 #include "pipeline/techniques/deferred.h"
 #include "pipeline/units/gbuffer_unit.h"
 #include "pipeline/units/raster_units.h"
+#include "pipeline/units/translucent_layer.h"
 
 namespace beampipe {
 namespace {
@@ -35,13 +36,15 @@ TechniqueKind visibility_kind() {
 void draw_visibility(Bin& bin, const Sampling& sampling, DepthTestUnit& visibility) {
   SampleRasterUnit(bin).pass(sampling, ShadeAt::sample, [&](const auto& fragments) { visibility.test(fragments); });
   visibility.end_pass();
-  visibility.count_bytes();
 }
 
 std::vector<glm::vec4> shade_visibility(Bin& bin, DepthTestUnit& visibility) {
   GBufferUnit gbuffer(bin);
   gbuffer.write_visible(visibility);
-  return gbuffer.light_and_resolve(visibility);
+  std::vector<glm::vec4> picture = gbuffer.light_and_resolve(visibility);
+  put_over(draw_translucent(bin, visibility, ShadeAt::sample), picture);
+  visibility.count_bytes();
+  return picture;
 }
 
 Framebuffer visibility_framebuffer() {

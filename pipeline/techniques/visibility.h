@@ -15,8 +15,8 @@ namespace beampipe {
 // Draws triangle ids and depths at the samples. Stages: sample_raster, depth_test.
 void draw_visibility(Bin& bin, const Sampling& sampling, DepthTestUnit& visibility);
 
-// Materials, light and resolve of a visibility buffer of one sample per pixel. Returns the picture. Stages: shade,
-// light, resolve.
+// Materials, light and resolve of a visibility buffer of one sample per pixel, with translucent triangles over that.
+// Returns the picture. Stages: shade, light, resolve, and those of draw_translucent.
 std::vector<glm::vec4> shade_visibility(Bin& bin, DepthTestUnit& visibility);
 
 Framebuffer visibility_framebuffer();

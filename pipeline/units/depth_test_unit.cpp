@@ -24,7 +24,7 @@ void DepthTestUnit::shade_translucent_at(ShadeAt at) {
 }
 
 bool DepthTestUnit::hides(const SampleFragment& fragment) const {
-  return bin_.triangles().is_opaque(fragment.triangle) || bin_.context.shader.is_cutout(fragment.triangle);
+  return !bin_.context.shader.is_translucent(fragment.triangle);
 }
 
 void DepthTestUnit::test(const std::vector<SampleFragment>& fragments) {
@@ -41,13 +41,36 @@ void DepthTestUnit::test(const std::vector<SampleFragment>& fragments) {
   }
 }
 
+void DepthTestUnit::start_layer(ShadeAt at, std::uint32_t sample_bytes) {
+  shade_translucent_at(at);
+  add_color(sample_bytes);
+}
+
+void DepthTestUnit::blend_into(TileSurface& layer, std::vector<SampleFragment>& fragments) {
+  const BinStage blending = bin_.stage("blend");
+  blend_colors(fragments, blending);
+  memory_.test(accesses_, blending.counters);
+  std::size_t left = 0;
+  for (std::size_t i = 0; i < fragments.size(); ++i) {
+    const SampleAccess& access = accesses_[i];
+    if (access.passed == 0) continue;
+    layer.access(access.triangle, access.cell, access.passed, access.passed, blending.counters);
+    fragments[left++] = fragments[i];
+  }
+  fragments.resize(left);
+}
+
 void DepthTestUnit::blend_fragments(const std::vector<SampleFragment>& fragments) {
   const BinStage blending = bin_.stage("blend");
+  blend_colors(fragments, blending);
+  memory_.blend(accesses_, blending.counters);
+}
+
+void DepthTestUnit::blend_colors(const std::vector<SampleFragment>& fragments, const BinStage& blending) {
   const float width = 1.0f / static_cast<float>(std::min(sampling_.grid.columns, sampling_.grid.rows));
   const SamplePlaces places(bin_, sampling_, translucent_at_);
   blend(bin_.triangles(), bin_.shader(), fragments, places.of(fragments), width, bin_.tile, sampling_, blending.timed(),
         surface_, accesses_);
-  memory_.blend(accesses_, blending.counters);
   count_by_pixel(fragments, bin_.tile, sampling_.grid, fragments_);
 }
 

@@ -6,6 +6,7 @@
 
 #include "pipeline/bins/bin.h"
 #include "pipeline/memory/sample_memory.h"
+#include "pipeline/memory/tile_surface.h"
 #include "stages/samples/shading_point.h"
 #include "stages/samples/test_depth.h"
 
@@ -30,6 +31,13 @@ class DepthTestUnit {
   // Tests and writes what passes, and blends translucent fragments, in their order. A surface without colours leaves
   // them out. Counts each pixel's fragments.
   void test(const std::vector<SampleFragment>& fragments);
+
+  // Translucent fragments go into a layer of their own from here on, shaded there: SampleTile::over.
+  void start_layer(ShadeAt at, std::uint32_t sample_bytes);
+
+  // Blends translucent fragments in their order, and drops those of which no sample passes. `layer`: where it lies in
+  // memory.
+  void blend_into(TileSurface& layer, std::vector<SampleFragment>& fragments);
 
   // Leaves of each fragment the samples that have the stored depth, and drops fragments without any.
   void test_equal(std::vector<SampleFragment>& fragments);
@@ -59,6 +67,7 @@ class DepthTestUnit {
 
   bool hides(const SampleFragment& fragment) const;  // what lies behind it
   void test_opaque(const std::vector<SampleFragment>& fragments);
+  void blend_colors(const std::vector<SampleFragment>& fragments, const BinStage& blending);
   void blend_fragments(const std::vector<SampleFragment>& fragments);
 
   Bin& bin_;

@@ -41,13 +41,18 @@ void ConservativeRasterUnit::start_next_pass() {
   read_bin(bin_.memory(), bin_.list, stage_.counters);
 }
 
-void SampleRasterUnit::test_alpha(const Sampling& sampling, ShadeAt at) {
+TriangleList SampleRasterUnit::drawn_triangles() const {
+  TriangleList list = bin_.list;
+  if (!bin_.context.has_blending() || translucent_ == Translucent::drawn) return list;
   const SurfaceShader& shader = bin_.context.shader;
-  if (translucent_ == Translucent::left_out)
-    std::erase_if(fragments_, [&](const SampleFragment& fragment) {
-      return !shader.is_opaque(fragment.triangle) && !shader.is_cutout(fragment.triangle);
-    });
-  if (!bin_.context.has_cutouts()) return;
+  std::erase_if(list, [&](std::uint32_t triangle) {
+    return shader.is_translucent(triangle) != (translucent_ == Translucent::alone);
+  });
+  return list;
+}
+
+void SampleRasterUnit::test_alpha(const Sampling& sampling, ShadeAt at) {
+  if (!bin_.context.has_cutouts() || translucent_ == Translucent::alone) return;
   const SamplePlaces places(bin_, sampling, at);
   const BinStage testing = bin_.stage("alpha_test");
   alpha_test(bin_.shader(), bin_.tile, sampling.grid, sampling.pattern.count, coverage_, places.of(fragments_),

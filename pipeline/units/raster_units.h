@@ -94,8 +94,8 @@ class SampleRasterUnit {
  public:
   explicit SampleRasterUnit(Bin& bin) : bin_(bin), stage_(bin.stage("sample_raster")) {}
 
-  // For a technique that draws translucent triangles.
-  enum class Translucent { left_out, drawn };
+  // Translucent triangles: left out, drawn with all others, or drawn alone, in a pass that continues another one.
+  enum class Translucent { left_out, drawn, alone };
   SampleRasterUnit(Bin& bin, Translucent translucent, AlphaCoverage coverage)
       : bin_(bin), stage_(bin.stage("sample_raster")), translucent_(translucent), coverage_(coverage) {}
 
@@ -105,10 +105,10 @@ class SampleRasterUnit {
   template <class Body>
   void pass(const Sampling& sampling, ShadeAt at, Body&& body) {
     ClosedDepth closed(cells_of(bin_.tile, sampling.grid));
-    bin_.starts_geometry_pass();
+    if (translucent_ != Translucent::alone) bin_.starts_geometry_pass();
     bin_.start_texture_pass();
     bin_.holds("closed_depth", closed.bytes());
-    for_each_batch(bin_.list, [&](const TriangleList& batch) {
+    for_each_batch(drawn_triangles(), [&](const TriangleList& batch) {
       fragments_.clear();
       sample_raster(bin_.triangles(), batch, bin_.tile, sampling, stage_.timed(), fragments_, &closed);
       bin_.holds("fragment_queue", std::min(fragments_.size(), kQueueItems) * kSampleFragmentBytes);
@@ -118,6 +118,7 @@ class SampleRasterUnit {
   }
 
  private:
+  TriangleList drawn_triangles() const;
   void test_alpha(const Sampling& sampling, ShadeAt at);
 
   Bin& bin_;

@@ -28,9 +28,7 @@ void for_each_position(const WideMask& mask, const std::vector<SamplePattern>& p
 float covered_part(const TileShader& shader, const Fragment& fragment, float u, float v, float width,
                    AlphaMaskWork& work, TexelRequests* texels) {
   work.alphas += shader.work(fragment.triangle).alpha;
-  const AlphaAt at = shader.alpha(fragment.triangle, fragment.pixel, u, v, width, texels);
-  if (!at.is_magnified) return at.alpha;
-  return at.alpha >= shader.alpha_cutoff(fragment.triangle) ? 1.0f : 0.0f;
+  return shader.cutout_part(fragment.triangle, fragment.pixel, u, v, width, texels);
 }
 
 // The part of the fragment that is left, 0..1.
@@ -42,7 +40,7 @@ float cut_out(const TileShader& shader, const std::vector<SamplePattern>& patter
     return part;
   }
   ++work.masks, ++work.shares;
-  const OpacityRanks ranks = shader.opacity_ranks(fragment.triangle, fragment.pixel);
+  const OpacityRanks ranks = shader.opacity_ranks(fragment.triangle, fragment.pixel, kMaxMaskSamples * patterns.size());
   const auto covered = static_cast<float>(fragment.mask.count());
   WideMask left;
   float sum = 0;
@@ -62,9 +60,10 @@ float let_through(const TileShader& shader, const std::vector<SamplePattern>& pa
   ++work.masks;
   work.alphas += shader.work(fragment.triangle).alpha;
   const float opacity =
-      shader.alpha(fragment.triangle, fragment.pixel, fragment.centroid_u, fragment.centroid_v, 1.0f, texels).alpha;
+      shader.alpha(fragment.triangle, fragment.pixel, fragment.centroid_u, fragment.centroid_v, 1.0f, texels);
   end_request(texels);
-  const OpacityRanks ranks = shader.opacity_ranks(fragment.triangle, fragment.pixel);
+  if (fragment.mask.none()) return opacity;
+  const OpacityRanks ranks = shader.opacity_ranks(fragment.triangle, fragment.pixel, kMaxMaskSamples * patterns.size());
   WideMask left;
   const auto rank = [&](std::size_t position, float, float) {
     ++work.ranked;

@@ -1,10 +1,10 @@
 // alpha_mask: fragments -> fragments without what alpha leaves out of them.
 //
-// Of a cutout, a mask position belongs to the surface if the texture's alpha there is at least the cutoff. Where texels
-// are smaller than the distance of positions, alpha is the part of a position that the surface covers, and as many
-// positions are taken as fit. The fragment's area shrinks by the same share. A speck, which has no positions, is tested
-// or shrinks as a whole. A translucent surface takes the part of its positions and of its area that is its opacity
-// (stages/surface/opacity.h).
+// Of a cutout, a mask position belongs to the surface if alpha there is at least the cutoff. Where texels are smaller
+// than the distance of positions, a position is covered in part: by as much of it as passes the test
+// (stages/surface/tested_alpha.h), and as many positions are taken as fit. The fragment's area shrinks by the same
+// share. A speck, which has no positions, is tested or shrinks as a whole. A translucent surface takes the part of its
+// positions and of its area that is its opacity (stages/surface/opacity.h).
 #pragma once
 
 #include <vector>

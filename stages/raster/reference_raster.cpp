@@ -57,7 +57,7 @@ struct SampleRow {
 // Takes the samples of a run at which a cutout is there, or lists those of a translucent triangle. Returns how many.
 std::uint64_t test_alpha(const DepthSpan& span, std::size_t count, std::uint32_t triangle, const SampleRow& row,
                          const TileShader& shader, ReferenceTile& surface) {
-  constexpr float kUnit = 1.0f / kReferenceUnits, kSpacing = 1.0f / 64;  // of samples, if they were on a grid
+  constexpr float kUnit = 1.0f / kReferenceUnits;
   const bool is_cutout = shader.is_cutout(triangle);
   const std::int64_t pixel_y = floor_quotient(row.y, kReferenceUnits);
   std::uint64_t found = 0;
@@ -77,7 +77,7 @@ std::uint64_t test_alpha(const DepthSpan& span, std::size_t count, std::uint32_t
         row.tile.index(static_cast<std::int32_t>(pixel_x), static_cast<std::int32_t>(pixel_y)));
     const float u = static_cast<float>(x - pixel_x * kReferenceUnits) * kUnit;
     const float v = static_cast<float>(row.y - pixel_y * kReferenceUnits) * kUnit;
-    if (shader.alpha(triangle, pixel, u, v, kSpacing).alpha < shader.alpha_cutoff(triangle)) continue;
+    if (shader.alpha(triangle, pixel, u, v, 0.0f) < shader.alpha_cutoff(triangle)) continue;
     ++found;
     surface.depth[at] = depth;
     surface.owner[at] = triangle;

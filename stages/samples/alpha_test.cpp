@@ -21,11 +21,12 @@ void alpha_test(const TileShader& shader, const Tile& tile, const CellGrid& grid
     if (i > 0 && fragments[i - 1].quad != fragment.quad) end_request(texels);
     const std::int32_t x = grid.pixel_x(fragment.x), y = grid.pixel_y(fragment.y);
     const auto pixel = static_cast<std::uint32_t>(tile.index(x, y));
-    const float alpha = shader.alpha(fragment.triangle, pixel, places[i].x, places[i].y, width, texels).alpha;
+    const float alpha = shader.alpha(fragment.triangle, pixel, places[i].x, places[i].y, width, texels);
     if (coverage == AlphaCoverage::test) {
       if (alpha < shader.alpha_cutoff(fragment.triangle)) fragment.mask = 0;
     } else {
-      const OpacityRanks ranks(0, fragment.x, fragment.y);  // the same samples for all surfaces
+      const OpacityRanks ranks(0, fragment.x, fragment.y,
+                               static_cast<std::uint32_t>(samples));  // the same samples for all surfaces
       for (int s = 0; s < samples; ++s)
         if (!ranks.takes(static_cast<std::uint32_t>(s), alpha)) fragment.mask &= ~(1u << s);
     }

@@ -112,20 +112,4 @@ MipChain make_mip_chain(const TextureImage& image, ColorSpace space) {
   return chain;
 }
 
-TextureSet::TextureSet(const Trace& trace) : chains_(2 * trace.images.size()) {
-  std::vector<bool> used(chains_.size());
-  const auto use = [&](const std::optional<Texture>& texture, ColorSpace space) {
-    if (texture) used[index(texture->image, space)] = true;
-  };
-  for (const Material& material : trace.materials) {
-    use(material.base_texture, ColorSpace::srgb);
-    use(material.emissive_texture, ColorSpace::srgb);
-    use(material.metallic_roughness_texture, ColorSpace::linear);
-    use(material.normal_texture, ColorSpace::linear);
-  }
-  tbb::parallel_for(std::size_t{0}, chains_.size(), [&](std::size_t i) {
-    if (used[i]) chains_[i] = make_mip_chain(trace.images[i / 2], i % 2 ? ColorSpace::srgb : ColorSpace::linear);
-  });
-}
-
 }  // namespace beampipe

@@ -33,21 +33,4 @@ struct MipChain {
 
 MipChain make_mip_chain(const TextureImage& image, ColorSpace space);
 
-// The images of a trace in the colour spaces in which its materials read them.
-class TextureSet {
- public:
-  explicit TextureSet(const Trace& trace);
-
-  // Of a texture that a material of the trace reads in this colour space.
-  const MipChain& chain(std::uint32_t image, ColorSpace space) const { return chains_[index(image, space)]; }
-
-  static std::size_t index(std::uint32_t image, ColorSpace space) {
-    return 2 * std::size_t{image} + static_cast<std::size_t>(space);
-  }
-  const std::vector<MipChain>& chains() const { return chains_; }  // by index; those without a use are empty
-
- private:
-  std::vector<MipChain> chains_;
-};
-
 }  // namespace beampipe

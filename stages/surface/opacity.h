@@ -1,83 +1,122 @@
 // Which mask positions or samples a surface takes that lets part of the light through.
 //
 // A surface of opacity a takes the part a of the positions that it covers. The positions of several surfaces must be
-// independent of each other: of those that the first leaves, the second must take its part. So each draw ranks the
-// positions by a dimension of a Sobol sequence: any two dimensions together are evenly distributed. Within a draw,
-// triangles with the same first vertex, such as the halves of a rectangle, share a dimension.
+// independent of each other: of those that the first leaves, the second must take its part. So each sheet
+// (stages/surface/sheets.h) ranks the positions in an order of its own, and takes those of the lowest ranks.
 //
-// Source of the direction numbers: Joe and Kuo 2008, "Constructing Sobol sequences with better two-dimensional
-// projections", new-joe-kuo-6.
+// Of 2^m positions, a rank has m bits, and each bit is the parity of some bits of the position's number: of those that
+// are set in an element of the field GF(2^m). Bit by bit, order k uses the elements b0 g^k, b1 g^k, ..., where b0, b1,
+// ... is a basis of the field. Different orders have different leading bits, so that of two sheets of opacity 1/2 each
+// takes half of the other's positions. As m powers of g in a row are a basis, the leading bits of m orders k in a row do
+// not depend on each other. And where the field has subfields, their elements come first in the basis: with 256
+// positions, the two leading bits of one order depend on those of only two others, where the factor between them lies in
+// GF(4), and the four leading bits on those of 14 others, where it lies in GF(16).
+//
+// Source of the primitive polynomials: Lidl and Niederreiter, "Finite Fields", table C.
 #pragma once
 
 #include <array>
+#include <bit>
 #include <cstdint>
 
 #include "stages/data/mix_bits.h"
 
 namespace beampipe {
 
-inline constexpr std::size_t kOpacityDimensions = 16;
+namespace opacity {
 
-namespace sobol {
+constexpr int kMostBits = 8;  // of a position's number
 
-// A primitive polynomial by its degree and inner coefficients, and the first direction numbers.
-struct Direction {
-  std::uint32_t degree, coefficients;
-  std::array<std::uint32_t, 6> numbers;
+// Column b: what bit b of a position's number adds to its rank, whose leading bit is bit 7.
+using Columns = std::array<std::uint8_t, kMostBits>;
+
+struct Orders {
+  std::array<Columns, 1 << kMostBits> columns{};
+  std::uint32_t count = 0;
 };
-inline constexpr std::array<Direction, kOpacityDimensions - 1> kDirections = {{{1, 0, {1}},
-                                                                               {2, 1, {1, 3}},
-                                                                               {3, 1, {1, 3, 1}},
-                                                                               {3, 2, {1, 1, 1}},
-                                                                               {4, 1, {1, 1, 3, 3}},
-                                                                               {4, 4, {1, 3, 5, 13}},
-                                                                               {5, 2, {1, 1, 5, 5, 17}},
-                                                                               {5, 4, {1, 1, 5, 5, 5}},
-                                                                               {5, 7, {1, 1, 7, 11, 19}},
-                                                                               {5, 11, {1, 1, 5, 1, 1}},
-                                                                               {5, 13, {1, 1, 1, 3, 11}},
-                                                                               {5, 14, {1, 3, 5, 5, 31}},
-                                                                               {6, 1, {1, 3, 3, 9, 7, 49}},
-                                                                               {6, 13, {1, 1, 1, 15, 21, 21}},
-                                                                               {6, 16, {1, 3, 1, 13, 27, 49}}}};
 
-constexpr int kBits = 8;
+// In GF(2^bits).
+constexpr std::uint32_t product(std::uint32_t a, std::uint32_t b, int bits) {
+  constexpr std::array<std::uint32_t, kMostBits + 1> kPolynomials = {1, 3, 7, 11, 19, 37, 67, 131, 285};
+  std::uint32_t product = 0;
+  for (; b != 0; b >>= 1) {
+    if (b & 1) product ^= a;
+    a <<= 1;
+    if (a >> bits & 1) a ^= kPolynomials[static_cast<std::size_t>(bits)];
+  }
+  return product;
+}
 
-// Column b: what bit b of an index adds to its rank.
-using Columns = std::array<std::uint8_t, kBits>;
+constexpr std::uint32_t power(std::uint32_t base, std::uint32_t exponent, int bits) {
+  std::uint32_t result = 1;
+  for (std::uint32_t i = 0; i < exponent; ++i) result = product(result, base, bits);
+  return result;
+}
 
-constexpr std::array<Columns, kOpacityDimensions> make_columns() {
-  std::array<Columns, kOpacityDimensions> columns{};
-  for (int b = 0; b < kBits; ++b) columns[0][b] = static_cast<std::uint8_t>(1u << (kBits - 1 - b));
-  for (std::size_t d = 1; d < kOpacityDimensions; ++d) {
-    const Direction& direction = kDirections[d - 1];
-    std::array<std::uint32_t, kBits> m{};
-    for (std::uint32_t b = 0; b < kBits; ++b) {
-      if (b < direction.degree) {
-        m[b] = direction.numbers[b];
-      } else {
-        m[b] = m[b - direction.degree] ^ m[b - direction.degree] << direction.degree;
-        for (std::uint32_t k = 1; k < direction.degree; ++k)
-          if (direction.coefficients >> (direction.degree - 1 - k) & 1) m[b] ^= m[b - k] << k;
-      }
-      columns[d][b] = static_cast<std::uint8_t>(m[b] << (kBits - 1 - b));
+struct Basis {
+  std::array<std::uint32_t, kMostBits> elements{};
+  std::array<bool, 1 << kMostBits> spanned{true};
+  std::size_t count = 0;
+
+  constexpr void add(std::uint32_t element) {
+    if (spanned[element]) return;
+    elements[count++] = element;
+    const std::array<bool, 1 << kMostBits> before = spanned;
+    for (std::uint32_t i = 0; i < before.size(); ++i)
+      if (before[i]) spanned[i ^ element] = true;
+  }
+};
+
+// The small subfields first. 2 is a primitive element.
+constexpr Basis basis_of_field(int bits) {
+  Basis basis;
+  const std::uint32_t powers = (1u << bits) - 1;
+  for (const int of_subfield : {2, 3, 4}) {
+    if (bits % of_subfield != 0 || of_subfield >= bits) continue;
+    const std::uint32_t step = powers / ((1u << of_subfield) - 1);
+    for (std::uint32_t e = 0; e < powers; e += step) basis.add(power(2, e, bits));
+  }
+  for (std::uint32_t e = 0; e < powers; ++e) basis.add(power(2, e, bits));
+  return basis;
+}
+
+// g = 2^11: of all g that generate the fields of 32, 64, 128 and 256 elements, it leaves about the least errors where 2
+// to 16 sheets of the same or of random opacity lie on each other. Orders whose leading bit is the same for all 8
+// positions of a cell are left out (cell_patterns() in simd/sample_pattern.h): they would take whole cells.
+constexpr Orders make_orders(int bits) {
+  constexpr std::uint32_t kStep = 11, kInCell = 7;
+  Orders orders;
+  const std::uint32_t powers = (1u << bits) - 1, generator = power(2, kStep % (powers > 0 ? powers : 1), bits);
+  const Basis basis = basis_of_field(bits);
+  std::uint32_t factor = 1;
+  for (std::uint32_t k = 0; k < powers; ++k, factor = product(factor, generator, bits)) {
+    if ((product(basis.elements[0], factor, bits) & kInCell) == 0) continue;
+    Columns& columns = orders.columns[orders.count++];
+    for (int b = 0; b < bits; ++b) {
+      const std::uint32_t row = product(basis.elements[static_cast<std::size_t>(b)], factor, bits);
+      for (int p = 0; p < bits; ++p)
+        columns[static_cast<std::size_t>(p)] |= static_cast<std::uint8_t>((row >> p & 1) << (kMostBits - 1 - b));
     }
   }
-  return columns;
+  if (orders.count == 0) orders.count = 1;  // a single position has one order
+  return orders;
 }
-inline constexpr std::array<Columns, kOpacityDimensions> kColumns = make_columns();
 
-}  // namespace sobol
+// By the bits of a position's number.
+inline constexpr std::array<Orders, kMostBits + 1> kOrders = {make_orders(0), make_orders(1), make_orders(2),
+                                                              make_orders(3), make_orders(4), make_orders(5),
+                                                              make_orders(6), make_orders(7), make_orders(8)};
 
-// The positions that a part of a draw takes in a pixel. Positions: at most 256.
+}  // namespace opacity
+
+// The positions that a sheet takes in a pixel.
 class OpacityRanks {
  public:
-  // (x, y): the pixel. `part`: of the draw; SetupSurface::first_vertex.
-  OpacityRanks(std::uint32_t draw, std::int32_t x, std::int32_t y, std::uint32_t part = 0)
-      : columns_(sobol::kColumns[(draw + mix_bits(part)) % kOpacityDimensions]) {
-    const std::uint32_t of_part = mix_bits(draw + 1) + mix_bits(part);
+  // (x, y): the pixel. `positions`: a power of two, 1..256.
+  OpacityRanks(std::uint32_t sheet, std::int32_t x, std::int32_t y, std::uint32_t positions)
+      : columns_(columns_of(sheet, opacity::kOrders[static_cast<std::size_t>(std::countr_zero(positions))])) {
     const std::uint32_t random =
-        mix_bits(mix_bits(of_part + static_cast<std::uint32_t>(x)) + static_cast<std::uint32_t>(y));
+        mix_bits(mix_bits(mix_bits(sheet + 1) + static_cast<std::uint32_t>(x)) + static_cast<std::uint32_t>(y));
     flip_ = static_cast<std::uint8_t>(random);
     offset_ = static_cast<float>(random >> 16) * (1.0f / 65536.0f);
   }
@@ -85,14 +124,21 @@ class OpacityRanks {
   // 0..256, different for all positions.
   float rank(std::uint32_t position) const {
     std::uint32_t rank = flip_;
-    for (std::uint32_t b = 0; b < sobol::kBits; ++b) rank ^= (position >> b & 1) * columns_[b];
+    for (std::uint32_t b = 0; b < opacity::kMostBits; ++b) rank ^= (position >> b & 1) * columns_[b];
     return static_cast<float>(rank) + offset_;
   }
 
   bool takes(std::uint32_t position, float opacity) const { return rank(position) < opacity * 256.0f; }
 
  private:
-  const sobol::Columns& columns_;
+  // Sheets in a row have orders in a row. Which sheets share an order after that is random, so that no regular mesh has
+  // the same order in all of its layers.
+  static const opacity::Columns& columns_of(std::uint32_t sheet, const opacity::Orders& orders) {
+    const std::uint32_t rounds = sheet / orders.count;
+    return orders.columns[(sheet % orders.count + mix_bits(rounds) % orders.count) % orders.count];
+  }
+
+  const opacity::Columns& columns_;
   std::uint8_t flip_;  // both differ from pixel to pixel
   float offset_;
 };

@@ -5,6 +5,7 @@
 
 #include "stages/cost/counting.h"
 #include "stages/data/half_bits.h"
+#include "stages/surface/sheets.h"
 #include "stages/surface/texture_filter.h"
 
 namespace beampipe {
@@ -69,6 +70,19 @@ const Texture& texture_of(const Material& material, TextureRole role) {
 
 ColorSpace space_of(TextureRole role) {
   return role == TextureRole::base || role == TextureRole::emissive ? ColorSpace::srgb : ColorSpace::linear;
+}
+
+// Adds the texels that are read to `texels`, unless it is null.
+auto noting(TexelRequests* texels, std::uint32_t image, ColorSpace space) {
+  return [=](std::size_t level, std::uint32_t column, std::uint32_t row) {
+    if (texels) texels->read({image, space, static_cast<std::uint32_t>(level), column, row});
+  };
+}
+
+// The filter of a texture for means over areas, whatever it is for colours.
+Texture for_areas(Texture texture) {
+  texture.minify = texture.magnify = Filter::linear, texture.mip = MipFilter::linear;
+  return texture;
 }
 
 // Light that a flat triangle reflects, by Lambert's law.
@@ -239,7 +253,8 @@ SurfaceShader::SurfaceShader(const SetupTriangles& triangles, const Trace& trace
       frame_(frame),
       textures_(textures),
       rules_(rules),
-      flat_(shade_triangles(triangles, frame.lighting)) {
+      flat_(shade_triangles(triangles, frame.lighting)),
+      sheets_(number_sheets(triangles)) {
   if (rules.colors == SurfaceColors::by_pixel) rules_.rounds_to_half = false;
   if (rules_.rounds_to_half)
     for (glm::vec3& color : flat_) round_to_half(color);
@@ -273,13 +288,13 @@ const SurfaceShader::Work& SurfaceShader::material_work(std::uint32_t triangle) 
   return works_[work_index(triangles_.surfaces[triangle].material, inputs_of(triangle))];
 }
 
-AlphaAt SurfaceShader::alpha(std::uint32_t triangle, const ShadingPlace& place, float width,
-                             TexelRequests* texels) const {
-  if (is_opaque(triangle)) return {1.0f, true};
+template <class TextureAlpha>
+float SurfaceShader::alpha_there(std::uint32_t triangle, const ShadingPlace& place, float width,
+                                 TextureAlpha&& texture_alpha) const {
+  if (is_opaque(triangle)) return 1.0f;
   const SetupSurface& surface = triangles_.surfaces[triangle];
   const ShaderInputs shader = inputs_of(triangle);
   const auto vertex = [&](std::size_t k) -> const SurfaceVertex& { return triangles_.vertices[surface.vertices[k]]; };
-  AlphaAt found{1.0f, true};
   Barycentrics<float> weights;
   const float x = static_cast<float>(place.x) + place.u - surface.anchor_x,
               y = static_cast<float>(place.y) + place.v - surface.anchor_y;
@@ -290,18 +305,42 @@ AlphaAt SurfaceShader::alpha(std::uint32_t triangle, const ShadingPlace& place, 
   };
   const auto fetch = [&](TextureRole, const TexturePlace<float>& at) {
     const TextureSlopes slopes{vector_of(at.dx) * width, vector_of(at.dy) * width};
-    const Texture& texture = *shader.material.base_texture;
-    const MipChain& chain = textures_->chain(texture.image, ColorSpace::srgb);
-    const auto note = [&](std::size_t level, std::uint32_t column, std::uint32_t row) {
-      if (texels) texels->read({texture.image, ColorSpace::srgb, static_cast<std::uint32_t>(level), column, row});
-    };
-    found.is_magnified = level_of_detail(slopes, chain.levels[0]) <= 0;
-    return filtered(chain, texture, vector_of(at.uv), slopes, note);
+    return glm::vec4(texture_alpha(*shader.material.base_texture, vector_of(at.uv), slopes));
   };
-  found.alpha =
+  const float alpha =
       alpha_at(shader, {vertex(0).color.a, vertex(1).color.a, vertex(2).color.a}, weights, texture_place, fetch);
-  found.alpha = limited_alpha(found.alpha);
-  return found;
+  return limited_alpha(alpha);
+}
+
+float SurfaceShader::alpha(std::uint32_t triangle, const ShadingPlace& place, float width,
+                           TexelRequests* texels) const {
+  return alpha_there(triangle, place, width,
+                     [&](const Texture& texture, const glm::vec2& uv, const TextureSlopes& slopes) {
+                       return filtered(textures_->chain(texture.image, ColorSpace::srgb), texture, uv, slopes,
+                                       noting(texels, texture.image, ColorSpace::srgb))
+                           .a;
+                     });
+}
+
+float SurfaceShader::cutout_part(std::uint32_t triangle, const ShadingPlace& place, float width,
+                                 TexelRequests* texels) const {
+  const float cutoff = alpha_cutoff(triangle);
+  if (cutoff <= 0.0f) return 1.0f;
+  const TestedAlpha* tested = nullptr;
+  glm::vec4 shares;
+  // Of a point; or what the texture's alpha is multiplied by.
+  const float alpha = alpha_there(triangle, place, width,
+                                  [&](const Texture& texture, const glm::vec2& uv, const TextureSlopes& slopes) {
+                                    const MipChain& chain = textures_->chain(texture.image, ColorSpace::srgb);
+                                    const auto note = noting(texels, texture.image, ColorSpace::srgb);
+                                    if (level_of_detail(slopes, chain.levels[0]) <= 0)
+                                      return filtered(chain, texture, uv, slopes, note).a;
+                                    tested = &textures_->tested_alpha(triangles_.surfaces[triangle].material);
+                                    shares = filtered(tested->shares, for_areas(texture), uv, slopes, note);
+                                    return 1.0f;
+                                  });
+  if (!tested) return alpha >= cutoff ? 1.0f : 0.0f;
+  return tested->share(shares, cutoff / alpha);
 }
 
 SurfaceMaterial<float> SurfaceShader::material_there(std::uint32_t triangle, const ShadingPlace& place, float width,
@@ -343,10 +382,8 @@ SurfaceMaterial<float> SurfaceShader::material_there(std::uint32_t triangle, con
     const Texture& texture = texture_of(shader.material, role);
     const ColorSpace space = space_of(role);
     const TextureSlopes slopes{vector_of(at.dx) * width, vector_of(at.dy) * width};
-    const auto note = [&](std::size_t level, std::uint32_t column, std::uint32_t row) {
-      if (texels) texels->read({texture.image, space, static_cast<std::uint32_t>(level), column, row});
-    };
-    const glm::vec4 texel = filtered(textures_->chain(texture.image, space), texture, vector_of(at.uv), slopes, note);
+    const glm::vec4 texel = filtered(textures_->chain(texture.image, space), texture, vector_of(at.uv), slopes,
+                                     noting(texels, texture.image, space));
     if (role != TextureRole::normal) return {texel.r, texel.g, texel.b, texel.a};
     const bool is_mean = level_of_detail(slopes, textures_->chain(texture.image, space).levels[0]) > 0;
     return {texel.r, texel.g, texel.b, is_mean ? 1.0f : 0.0f};
@@ -366,12 +403,13 @@ glm::vec4 SurfaceShader::shaded(std::uint32_t triangle, const ShadingPlace& plac
   SurfaceMaterial<float> found = material_there(triangle, place, width, texels);
   const Material& material = this->material(triangle);
   const bool by_pixel = rules_.colors == SurfaceColors::by_pixel;
-  if (rules_.storage == MaterialStorage::gbuffer && !by_pixel) found.reflector = through_gbuffer(found.reflector);
+  const bool is_stored = rules_.storage == MaterialStorage::gbuffer && material.alpha_mode != AlphaMode::blend;
+  if (is_stored && !by_pixel) found.reflector = through_gbuffer(found.reflector);
   const Triple<float> lit = lit_color(material, found, frame_.lighting);
   glm::vec3 color(lit[0], lit[1], lit[2]);
   if (rules_.rounds_to_half) round_to_half(color);
   if (material.alpha_mode == AlphaMode::opaque) return {color, 1.0f};
-  return {color, by_pixel ? alpha(triangle, place, width).alpha : limited_alpha(found.alpha)};
+  return {color, by_pixel ? alpha(triangle, place, width) : limited_alpha(found.alpha)};
 }
 
 void SurfaceShader::add_texels(std::uint32_t triangle, const ShadingPlace& place, float width,

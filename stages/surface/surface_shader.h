@@ -9,10 +9,10 @@
 #include "stages/cost/counters.h"
 #include "stages/data/setup_triangle.h"
 #include "stages/data/tile.h"
-#include "stages/surface/mip_chain.h"
 #include "stages/surface/opacity.h"
 #include "stages/surface/surface_formulas.h"
 #include "stages/surface/texel_requests.h"
+#include "stages/surface/texture_set.h"
 #include "traces/trace.h"
 
 namespace beampipe {
@@ -41,11 +41,6 @@ struct ShadingRules {
   MaterialStorage storage = MaterialStorage::none;
   bool rounds_to_half = false;  // colours are stored as fp16
   SurfaceColors colors = SurfaceColors::by_place;
-};
-
-struct AlphaAt {
-  float alpha;
-  bool is_magnified;  // texels are larger than the area, so alpha is that of a point; else it is a mean
 };
 
 class SurfaceShader {
@@ -78,15 +73,20 @@ class SurfaceShader {
   void add_texels(std::uint32_t triangle, const ShadingPlace& place, float width, TexelRequests& texels) const;
 
   // Alpha at a place, whatever SurfaceColors says. `width`, `texels`: as above. 1 for opaque triangles.
-  AlphaAt alpha(std::uint32_t triangle, const ShadingPlace& place, float width, TexelRequests* texels = nullptr) const;
+  float alpha(std::uint32_t triangle, const ShadingPlace& place, float width, TexelRequests* texels = nullptr) const;
+
+  // The part of an area that a cutout covers, 0..1: of a point, 0 or 1, if its texels are larger than the area, and
+  // else the part that passes the alpha test (stages/surface/tested_alpha.h). `width`, `texels`: as above.
+  float cutout_part(std::uint32_t triangle, const ShadingPlace& place, float width,
+                    TexelRequests* texels = nullptr) const;
 
   bool is_opaque(std::uint32_t triangle) const { return triangles_.is_opaque(triangle); }
   bool is_cutout(std::uint32_t triangle) const {
     return !is_opaque(triangle) && material(triangle).alpha_mode == AlphaMode::mask;
   }
+  bool is_translucent(std::uint32_t triangle) const { return !is_opaque(triangle) && !is_cutout(triangle); }
   float alpha_cutoff(std::uint32_t triangle) const { return material(triangle).alpha_cutoff; }
-  std::uint32_t draw(std::uint32_t triangle) const { return triangles_.draws[triangle]; }
-  std::uint32_t first_vertex(std::uint32_t triangle) const { return triangles_.surfaces[triangle].first_vertex; }
+  std::uint32_t sheet(std::uint32_t triangle) const { return sheets_[triangle]; }  // stages/surface/sheets.h
 
   // Do the triangles have the same colour everywhere?
   bool same_color(std::uint32_t a, std::uint32_t b) const {
@@ -118,6 +118,9 @@ class SurfaceShader {
   // What the triangle is made of there.
   SurfaceMaterial<float> material_there(std::uint32_t triangle, const ShadingPlace& place, float width,
                                         TexelRequests* texels) const;
+  // Alpha, where texture_alpha(texture, uv, slopes) says that of the texture.
+  template <class TextureAlpha>
+  float alpha_there(std::uint32_t triangle, const ShadingPlace& place, float width, TextureAlpha&& texture_alpha) const;
   ShaderInputs inputs_of(std::uint32_t triangle) const;
   const Material& material(std::uint32_t triangle) const {
     return trace_.materials[triangles_.surfaces[triangle].material];
@@ -130,6 +133,7 @@ class SurfaceShader {
   const TextureSet* textures_;
   ShadingRules rules_;
   std::vector<glm::vec3> flat_;
+  std::vector<std::uint32_t> sheets_;  // of triangles
   Work flat_lit_, flat_unlit_;
   std::vector<Work> works_;  // of materials, by what their meshes have
 };
@@ -163,16 +167,21 @@ class TileShader {
     if (!is_flat(triangle)) shader_->add_texels(triangle, place(pixel, u, v), width, texels);
   }
 
-  AlphaAt alpha(std::uint32_t triangle, std::uint32_t pixel, float u, float v, float width,
-                TexelRequests* texels = nullptr) const {
+  float alpha(std::uint32_t triangle, std::uint32_t pixel, float u, float v, float width,
+              TexelRequests* texels = nullptr) const {
     return shader_->alpha(triangle, place(pixel, u, v), width, texels);
+  }
+  float cutout_part(std::uint32_t triangle, std::uint32_t pixel, float u, float v, float width,
+                    TexelRequests* texels = nullptr) const {
+    return shader_->cutout_part(triangle, place(pixel, u, v), width, texels);
   }
   bool is_opaque(std::uint32_t triangle) const { return !shader_ || shader_->is_opaque(triangle); }
   bool is_cutout(std::uint32_t triangle) const { return shader_ && shader_->is_cutout(triangle); }
   float alpha_cutoff(std::uint32_t triangle) const { return shader_->alpha_cutoff(triangle); }
-  OpacityRanks opacity_ranks(std::uint32_t triangle, std::uint32_t pixel) const {
+  // Of `positions` in the pixel.
+  OpacityRanks opacity_ranks(std::uint32_t triangle, std::uint32_t pixel, std::size_t positions) const {
     const ShadingPlace at = place(pixel, 0, 0);
-    return {shader_->draw(triangle), at.x, at.y, shader_->first_vertex(triangle)};
+    return {shader_->sheet(triangle), at.x, at.y, static_cast<std::uint32_t>(positions)};
   }
 
   ShadingPlace place(std::uint32_t pixel, float u, float v) const {

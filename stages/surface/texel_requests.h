@@ -7,7 +7,7 @@
 #include <span>
 #include <vector>
 
-#include "stages/surface/mip_chain.h"
+#include "stages/surface/texture_set.h"
 
 namespace beampipe {
 

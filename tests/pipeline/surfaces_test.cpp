@@ -212,11 +212,27 @@ TEST(Surfaces, BeamComposesTheSheetsOfOneDraw) {
   }
 }
 
-// MSAA blends in the order of draws: from far to near that is the truth, from near to far it is not.
-TEST(Surfaces, MsaaBlendsInTheOrderOfDraws) {
+// Layers of one mesh that meet in a vertex lie on each other like any others, in each pixel.
+TEST(Surfaces, LayersThatShareAVertexDoNotHideEachOther) {
+  SurfaceTrace scene(8, 8);
+  scene.add_rectangle(0, 0, 8, 8, 0, unlit_material({1, 1, 1, 0.5f}, AlphaMode::blend));
+  Mesh& mesh = scene.mesh();
+  mesh.positions = {{-1, -1, 0}, {20, -1, 0.25f}, {-1, 20, 0.25f}, {20, -1, 0.5f}, {-1, 20, 0.5f}};
+  mesh.uvs[0].resize(5);
+  mesh.triangles = {{0, 1, 2}, {0, 3, 4}};
+  scene.frame().background = glm::vec3(0.0f);
+  for (const char* spec : {"reference", "beam", "beam:order=sorted", "beam:order=stream", "z3", "msaa:8"}) {
+    const Image image = rendered(spec, scene.trace).image;
+    for (std::size_t i = 0; i < image.rgba.size(); i += 4) EXPECT_NEAR(image.rgba[i], 0.75, 0.01) << spec;
+  }
+}
+
+// All but beams blend in the order of draws: from far to near that is the truth, from near to far it is not.
+TEST(Surfaces, SamplesBlendInTheOrderOfDraws) {
   const glm::dvec3 truth = composed(kStack);
   std::vector<Sheet> far_to_near(kStack.rbegin(), kStack.rend());
-  for (const char* spec : {"msaa:8", "msaa:32", "msaa:8,prepass"}) {
+  for (const char* spec :
+       {"msaa:8", "msaa:32", "msaa:8,prepass", "acaa:8", "acaa:32", "deferred", "visibility", "taa:8", "dvm"}) {
     const glm::vec3 right = mean_color(rendered(spec, sheets(far_to_near)).image);
     const glm::vec3 wrong = mean_color(rendered(spec, sheets(kStack)).image);
     for (int c = 0; c < 3; ++c) EXPECT_NEAR(right[c], truth[c], 0.001) << spec;  // colours are fp16
@@ -249,13 +265,48 @@ TEST(Surfaces, WhatLiesBehindASheetShowsThrough) {
     if (sheet_first) add_sheet();
     scene.add_rectangle(-1, -1, 33, 33, 0.5, unlit_material({0, 1, 0, 1}));
     if (!sheet_first) add_sheet();
-    for (const char* spec : {"reference", "beam", "beam:order=sorted", "beam:order=stream", "msaa:8,prepass"}) {
+    for (const char* spec : {"reference", "beam", "beam:order=sorted", "beam:order=stream", "msaa:8,prepass", "acaa:8",
+                             "acaa:32", "deferred", "visibility", "taa:8", "dvm"}) {
       const glm::vec3 found = mean_color(rendered(spec, scene.trace).image);
       EXPECT_NEAR(found.r, 0.5, 0.005) << spec;
       EXPECT_NEAR(found.g, 0.5, 0.005) << spec;
     }
     const glm::vec3 found = mean_color(rendered("msaa:8", scene.trace).image);
     EXPECT_NEAR(found.r, sheet_first ? 0 : 0.5, 1e-3);  // no depth was written, so the later draw replaces it
+  }
+}
+
+// Two translucent triangles that meet, in front of a surface that covers the left half of a pixel column and hides what
+// lies behind it: no seam where they meet, and each sample's depth counts.
+TEST(Surfaces, TranslucentTrianglesBlendSampleBySample) {
+  SurfaceTrace scene(16, 16);
+  scene.frame().background = glm::vec3(0.0f);
+  scene.add_rectangle(-1, -1, 7.5, 17, 0.25, unlit_material({0, 1, 0, 1}));
+  scene.add_rectangle(-3, -2, 19, 18, 0.5, unlit_material({1, 0, 0, 0.5f}, AlphaMode::blend));
+  for (const char* spec : {"msaa:8", "acaa:8", "acaa:32", "dvm"}) {
+    const Image image = rendered(spec, scene.trace).image;
+    for (std::size_t y = 0; y < 16; ++y)
+      for (std::size_t x = 0; x < 16; ++x)
+        EXPECT_NEAR(image.rgba[4 * (16 * y + x)],
+                    x < 7   ? 0
+                    : x > 7 ? 0.5
+                            : 0.25,
+                    x == 7 ? 0.07 : 0.001)
+            << spec << ": " << x << ", " << y;
+  }
+}
+
+// Techniques that draw translucent triangles last do not draw them earlier too: each fragment is counted once.
+TEST(Surfaces, TranslucentTrianglesAreDrawnOnce) {
+  SurfaceTrace scene(8, 8);
+  scene.add_rectangle(0, 0, 8, 8, 0.5, unlit_material({1, 0, 0, 0.5f}, AlphaMode::blend));
+  for (const char* spec : {"acaa:8", "deferred", "visibility", "taa:8", "dvm"}) {
+    const FrameResult found = rendered(spec, scene.trace);
+    for (const StageCounters& stage : found.stages) {
+      if (stage.stage != "sample_raster") continue;
+      EXPECT_GE(stage.items_out, 64u) << spec;
+      EXPECT_LE(stage.items_out, 64u + 8u) << spec;  // pixels of the diagonal have a fragment of each half
+    }
   }
 }
 

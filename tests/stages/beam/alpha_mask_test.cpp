@@ -130,7 +130,6 @@ TEST(AlphaMask, ConstantAlphaOfACutoutIsAllOrNothing) {
       for (const double height : {3.0, 0.004}) {
         SurfaceTrace scene(8, 8);
         Material material = unlit_material({1, 1, 1, alpha}, AlphaMode::mask);
-        if (textured && height < 1) continue;  // the sliver's texels are smaller than its pixels
         if (textured) {
           const auto code = static_cast<std::uint8_t>(alpha * 255);
           material = textured_material(scene.add_image(filled_image(2, 2, {255, 255, 255, code})), AlphaMode::mask);
@@ -141,6 +140,47 @@ TEST(AlphaMask, ConstantAlphaOfACutoutIsAllOrNothing) {
         EXPECT_NEAR(area(found.after), alpha > 0.5f ? area(found.before) : 0.0, 1e-6)
             << alpha << ", " << height << (textured ? ", textured" : "");
       }
+}
+
+// The same where texels are far smaller than the distance of positions, with any mip filter.
+TEST(AlphaMask, ConstantAlphaOfFineTexelsIsAllOrNothing) {
+  for (const MipFilter mip : {MipFilter::none, MipFilter::nearest, MipFilter::linear})
+    for (const std::uint8_t code : {std::uint8_t{76}, std::uint8_t{179}}) {
+      SurfaceTrace scene(8, 8);
+      Material material =
+          textured_material(scene.add_image(filled_image(4, 4, {255, 255, 255, code})), AlphaMode::mask);
+      material.base_texture->mip = mip;
+      scene.add_rectangle(0, 0, 8, 8, 0.5, material);
+      for (glm::vec2& uv : scene.mesh().uvs[0]) uv *= 1000.0f;
+      const Masked found = masked(ShadedScene(scene.trace));
+      EXPECT_NEAR(area(found.after), code > 127 ? 64 : 0, 1e-4);
+      EXPECT_EQ(positions(found.after), code > 127 ? 64 * 256 : 0);
+    }
+}
+
+// Alpha rises evenly from 0 to 1 and falls again, many times in the distance of positions: what is left is the part of
+// it that reaches the cutoff, where alphas of the material and of vertices scale the texture's.
+TEST(AlphaMask, OfFineTexelsThePartThatPassesTheTestIsLeft) {
+  TextureImage image{"ramp", 64, 1, {}};
+  for (int i = 0; i < 64; ++i) image.texels.emplace_back(255, 255, 255, 4 * i + 2);
+  for (const Filter filter : {Filter::nearest, Filter::linear})
+    for (const MipFilter mip : {MipFilter::none, MipFilter::linear})
+      for (const float base : {1.0f, 0.75f})
+        for (const float of_vertices : {1.0f, 0.9f, 0.6f})
+          for (const float cutoff : {0.125f, 0.375f, 0.5f}) {
+            SurfaceTrace scene(8, 8);
+            Material material = textured_material(scene.add_image(image), AlphaMode::mask);
+            material.base_texture->wrap_u = Wrap::mirror, material.base_texture->mip = mip;
+            material.base_texture->magnify = filter;
+            material.base_color.a = base, material.alpha_cutoff = cutoff;
+            scene.add_rectangle(0, 0, 8, 8, 0.5, material);
+            for (glm::vec2& uv : scene.mesh().uvs[0]) uv *= glm::vec2(128, 1);
+            if (of_vertices < 1) scene.mesh().vertex_colors.assign(4, glm::vec4(1, 1, 1, of_vertices));
+            const double expected = std::max(0.0, 1 - double{cutoff} / (base * of_vertices));
+            const Masked found = masked(ShadedScene(scene.trace));
+            EXPECT_NEAR(area(found.after) / 64, expected, 0.02) << base << " x " << of_vertices << ", " << cutoff;
+            EXPECT_NEAR(positions(found.after) / (64 * 256.0), expected, 0.02);
+          }
 }
 
 TEST(AlphaMask, TranslucencyTakesItsPartOfAreaAndPositions) {

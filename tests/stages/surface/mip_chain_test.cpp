@@ -5,6 +5,7 @@
 
 #include <cmath>
 
+#include "stages/surface/texture_set.h"
 #include "tests/simd/random.h"
 
 namespace beampipe {

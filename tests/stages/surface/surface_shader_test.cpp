@@ -32,7 +32,7 @@ TEST(SurfaceShader, ALinearTextureIsLinearOnTheScreen) {
       const std::uint32_t triangle = x < 4 ? 1 : 0;  // of row 4: the lower left half, and the upper right one
       EXPECT_NEAR(scene.shader.color_and_alpha(triangle, {x, 4, u, 0.5f}).a,
                   32.0 / 255 * (static_cast<double>(x) + u - 0.5), 1e-6);
-      EXPECT_EQ(scene.shader.alpha(triangle, {x, 4, u, 0.5f}, 1).alpha,
+      EXPECT_EQ(scene.shader.alpha(triangle, {x, 4, u, 0.5f}, 1),
                 scene.shader.color_and_alpha(triangle, {x, 4, u, 0.5f}).a);
     }
 }
@@ -315,7 +315,7 @@ TEST(SurfaceShader, VertexColorsAndTexturesMultiplyTheBaseColor) {
   EXPECT_NEAR(found.g, 0.25 * srgb_values()[188], 1e-6);
   EXPECT_NEAR(found.b, 0, 1e-6);
   EXPECT_NEAR(found.a, 0.5 * 0.5 * 128 / 255, 1e-6);
-  EXPECT_NEAR(shaded.shader.alpha(0, {5, 2}, 1).alpha, found.a, 1e-6);
+  EXPECT_NEAR(shaded.shader.alpha(0, {5, 2}, 1), found.a, 1e-6);
 }
 
 // Roughness and metallic of the texture: glTF has them in G and B.

@@ -1,0 +1,41 @@
+#include "pipeline/units/translucent_layer.h"
+
+#include "pipeline/units/fragment_units.h"
+#include "pipeline/units/raster_units.h"
+#include "stages/picture/resolve_cost.h"
+
+namespace beampipe {
+
+std::vector<glm::vec4> draw_translucent(Bin& bin, DepthTestUnit& depth_test, ShadeAt at) {
+  if (!bin.context.has_blending()) return {};
+  const Sampling& sampling = depth_test.sampling();
+  const auto samples = static_cast<std::size_t>(sampling.pattern.count);
+  SampleRasterUnit raster(bin, SampleRasterUnit::Translucent::alone, AlphaCoverage::test);
+  SampleShadeUnit shade(bin, sampling, at);
+  TileSurface layer(bin.memory(), bin.z_order(), static_cast<std::uint32_t>(samples), kLayerBytes);
+  depth_test.start_layer(at, kLayerBytes);
+  raster.pass(sampling, at, [&](std::vector<SampleFragment>& fragments) {
+    depth_test.blend_into(layer, fragments);
+    shade(fragments);
+  });
+  const BinStage blending = bin.stage("blend");
+  depth_test.end_pass();
+  layer.flush(blending.counters);
+  layer.read_all(blending.counters);
+  if (bin.models_memory()) layer.add_bytes(bin.pixel_counter("bytes"));
+
+  std::vector<glm::vec4> means(bin.tile.pixels(), glm::vec4(0.0f));
+  for (std::size_t i = 0; i < means.size() * samples; ++i)
+    means[i / samples] += depth_test.surface().over[i] / static_cast<float>(samples);
+  blending.counters.ops += box_filter_cost(samples) * means.size();
+  blending.counters.ops += over_background_cost() * means.size();
+  return means;
+}
+
+glm::vec4 put_over(const glm::vec4& layer, const glm::vec4& pixel) { return layer + pixel * (1.0f - layer.a); }
+
+void put_over(const std::vector<glm::vec4>& layer, std::vector<glm::vec4>& picture) {
+  for (std::size_t i = 0; i < layer.size(); ++i) picture[i] = put_over(layer[i], picture[i]);
+}
+
+}  // namespace beampipe

@@ -1,0 +1,100 @@
+// The part of texels that passes the alpha test.
+#include "stages/surface/tested_alpha.h"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+
+#include "stages/surface/texture_filter.h"
+#include "stages/surface/texture_set.h"
+#include "tests/simd/random.h"
+#include "tests/stages/surface_scene.h"
+
+namespace beampipe {
+namespace {
+
+TextureImage noise(std::uint32_t width, std::uint32_t height) {
+  TextureImage image = filled_image(width, height, {255, 255, 255, 255});
+  Random random(7);
+  for (glm::u8vec4& texel : image.texels) texel.a = static_cast<std::uint8_t>(random.word());
+  return image;
+}
+
+// Against tests at many points with the filter that pictures use. 64 places in a texel are within 0.05 here.
+TEST(TestedAlpha, SharesAreThoseOfManyPoints) {
+  const TextureImage image = noise(5, 3);
+  const MipChain chain = make_mip_chain(image, ColorSpace::srgb);
+  for (const Filter filter : {Filter::nearest, Filter::linear})
+    for (const Wrap wrap : {Wrap::repeat, Wrap::clamp, Wrap::mirror}) {
+      Material material = textured_material(0, AlphaMode::mask);
+      Texture& texture = *material.base_texture;
+      texture.magnify = filter, texture.wrap_u = texture.wrap_v = wrap;
+      material.base_color.a = 0.8f, material.alpha_cutoff = 0.4f;
+      const TestedAlpha tested = test_alpha(material, image);
+      EXPECT_FLOAT_EQ(tested.first, 0.5f);
+      constexpr int kPoints = 50;  // along each side of a texel
+      for (std::uint32_t y = 0; y < image.height; ++y)
+        for (std::uint32_t x = 0; x < image.width; ++x)
+          for (const float needed : {0.5f, 2 / 3.0f, 5 / 6.0f}) {
+            int passed = 0;
+            for (int i = 0; i < kPoints * kPoints; ++i) {
+              const glm::vec2 uv((static_cast<float>(x) + (i % kPoints + 0.5f) / kPoints) / 5,
+                                 (static_cast<float>(y) + (i / kPoints + 0.5f) / kPoints) / 3);
+              passed += filtered_level(chain, texture, 0, uv, filter, [](std::size_t, auto, auto) {}).a >= needed;
+            }
+            EXPECT_NEAR(tested.share(tested.shares.texel(0, x, y), needed),
+                        passed / static_cast<double>(kPoints * kPoints), filter == Filter::nearest ? 1e-4 : 0.06)
+                << x << ", " << y << ": " << needed;
+          }
+    }
+}
+
+TEST(TestedAlpha, LevelsAreMeansOfShares) {
+  const TextureImage image = noise(8, 8);
+  Material material = textured_material(0, AlphaMode::mask);
+  material.base_texture->magnify = Filter::nearest;
+  const MipChain shares = test_alpha(material, image).shares;
+  double passed = 0;
+  for (const glm::u8vec4& texel : image.texels) passed += texel.a >= 128;
+  ASSERT_EQ(shares.levels.size(), 4u);
+  EXPECT_NEAR(shares.texel(3, 0, 0)[0], passed / 64, 1 / 255.0);
+}
+
+// Between its values a share is interpolated; above all of them there is nothing.
+TEST(TestedAlpha, SharesOfOtherAlphas) {
+  const TestedAlpha tested{0.25f, 0.25f, {}};
+  const glm::vec4 there(1.0f, 0.5f, 0.25f, 0.125f);
+  EXPECT_EQ(tested.share(there, 0.125f), 1.0f);
+  EXPECT_EQ(tested.share(there, 0.25f), 1.0f);
+  EXPECT_EQ(tested.share(there, 0.375f), 0.75f);
+  EXPECT_EQ(tested.share(there, 0.75f), 0.25f);
+  EXPECT_EQ(tested.share(there, 1.0f), 0.125f);
+  EXPECT_EQ(tested.share(there, 1.001f), 0.0f);
+  EXPECT_EQ(tested.share(there, INFINITY), 0.0f);
+}
+
+TEST(TestedAlpha, MaterialsWithTheSameTestShareIt) {
+  Trace trace;
+  trace.images = {noise(4, 4)};
+  trace.materials.assign(3, textured_material(0, AlphaMode::mask));
+  trace.materials[1].roughness = 0.5f;
+  trace.materials[2].alpha_cutoff = 0.75f;
+  const TextureSet set(trace);
+  EXPECT_EQ(&set.tested_alpha(0), &set.tested_alpha(1));
+  EXPECT_NE(&set.tested_alpha(0), &set.tested_alpha(2));
+  EXPECT_EQ(set.tested_alpha(2).first, 0.75f);
+}
+
+// 5.6 MB of results each, a thousand times: refused before memory is taken for them.
+TEST(TestedAlpha, RefusesTooManyCutoffs) {
+  Trace trace;
+  trace.images = {filled_image(1024, 1024, {1, 2, 3, 4})};
+  for (int i = 1; i <= 1000; ++i) {
+    trace.materials.push_back(textured_material(0, AlphaMode::mask));
+    trace.materials.back().alpha_cutoff = static_cast<float>(i) / 1000;
+  }
+  EXPECT_THROW(TextureSet{trace}, std::runtime_error);
+}
+
+}  // namespace
+}  // namespace beampipe
