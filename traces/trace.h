@@ -18,11 +18,8 @@
 
 namespace beampipe {
 
-enum class Cull {
-  none,
-  back,
-  front
-};  // front faces are counter-clockwise in the picture, unless a draw says otherwise
+// Front faces are counter-clockwise in the picture, unless a draw says otherwise.
+enum class Cull { none, back, front };
 enum class Shading { unlit, lambert };
 
 inline constexpr std::uint32_t kNoMaterial = ~0u;
