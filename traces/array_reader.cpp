@@ -101,7 +101,6 @@ struct ArrayReader::View {
 };
 
 ArrayReader::ArrayReader(const JsonCursor& at, const std::filesystem::path& trace_file, const ReadOptions& options) {
-  std::uint64_t bytes = 0;
   for (const auto& [name, buffer] : at.members()) {
     buffer.expect_keys({"file", "bytes"});
     const std::filesystem::path file = side_file(buffer["file"], trace_file, options.allow_outside);
@@ -109,10 +108,10 @@ ArrayReader::ArrayReader(const JsonCursor& at, const std::filesystem::path& trac
     if (buffer["bytes"].number() != static_cast<double>(size)) {
       buffer["bytes"].fail("the size of " + in_quotes(file.filename().string()) + ", " + std::to_string(size));
     }
-    bytes += size;
-    if (bytes > kMostViewedBytes) {
-      buffer["bytes"].fail("buffers of at most " + std::to_string(kMostViewedBytes) + " bytes together",
-                           std::to_string(bytes));
+    buffer_bytes_ += size;
+    if (buffer_bytes_ > kMostBufferBytes) {
+      buffer["bytes"].fail("buffers of at most " + std::to_string(kMostBufferBytes) + " bytes together",
+                           std::to_string(buffer_bytes_));
     }
     std::string content = read_input_file(file, buffer.where());
     if (content.size() != size) buffer["file"].fail("a file that does not change while it is read");
@@ -138,15 +137,16 @@ ArrayReader::View ArrayReader::view(const JsonCursor& at, std::uint64_t length) 
       whole(at["offset"], size, number_bytes, "a multiple of " + std::to_string(number_bytes) + in_buffer);
   const std::uint64_t count = whole(at["count"], (size - offset) / number_bytes, length,
                                     "numbers that end" + in_buffer + ", " + std::to_string(length) + " for each item");
-  viewed_ += count * number_bytes;
-  if (viewed_ > kMostViewedBytes) {
-    at.fail("views of at most " + std::to_string(kMostViewedBytes) + " bytes together", std::to_string(viewed_));
+  viewed_bytes_ += count * number_bytes;
+  if (viewed_bytes_ > kMostViews * buffer_bytes_) {
+    at.fail("views of at most " + std::to_string(kMostViews) + " times the bytes of all buffers together",
+            std::to_string(viewed_bytes_) + " bytes");
   }
   return {at, std::string_view(buffer->second).substr(offset, count * number_bytes), type, count};
 }
 
 std::vector<float> ArrayReader::numbers(const JsonCursor& at) const {
-  if (at.is_array()) {
+  if (!at.is_object()) {
     std::vector<float> result;
     for (const JsonCursor& number : at.elements()) result.push_back(number.real());
     return result;
@@ -155,27 +155,27 @@ std::vector<float> ArrayReader::numbers(const JsonCursor& at) const {
 }
 
 std::vector<glm::vec2> ArrayReader::vec2s(const JsonCursor& at) const {
-  if (at.is_array()) return at.vec2s();
+  if (!at.is_object()) return at.vec2s();
   return view(at, 2).floats<glm::vec2>(kReal, [](float value) { return std::isfinite(value); });
 }
 
 std::vector<glm::vec3> ArrayReader::vec3s(const JsonCursor& at) const {
-  if (at.is_array()) return at.vec3s();
+  if (!at.is_object()) return at.vec3s();
   return view(at, 3).floats<glm::vec3>(kReal, [](float value) { return std::isfinite(value); });
 }
 
 std::vector<glm::vec4> ArrayReader::vec4s(const JsonCursor& at) const {
-  if (at.is_array()) return at.vec4s();
+  if (!at.is_object()) return at.vec4s();
   return view(at, 4).floats<glm::vec4>(kReal, [](float value) { return std::isfinite(value); });
 }
 
 std::vector<glm::vec3> ArrayReader::colors(const JsonCursor& at) const {
-  if (at.is_array()) return at.colors();
+  if (!at.is_object()) return at.colors();
   return view(at, 3).colors<glm::vec3>();
 }
 
 std::vector<glm::vec4> ArrayReader::rgbas(const JsonCursor& at) const {
-  if (at.is_array()) return at.rgbas();
+  if (!at.is_object()) return at.rgbas();
   const View of_numbers = view(at, 4);
   std::vector<glm::vec4> result = of_numbers.colors<glm::vec4>();
   for (std::size_t i = 0; i < result.size(); ++i)
@@ -184,7 +184,7 @@ std::vector<glm::vec4> ArrayReader::rgbas(const JsonCursor& at) const {
 }
 
 std::vector<glm::uvec3> ArrayReader::triples(const JsonCursor& at, std::uint32_t below) const {
-  if (at.is_array()) return at.triples(below);
+  if (!at.is_object()) return at.triples(below);
   const std::vector<std::uint32_t> flat = view(at, 3).integers(below);
   std::vector<glm::uvec3> result(flat.size() / 3);
   std::memcpy(static_cast<void*>(result.data()), flat.data(), flat.size() * sizeof(std::uint32_t));
@@ -192,7 +192,7 @@ std::vector<glm::uvec3> ArrayReader::triples(const JsonCursor& at, std::uint32_t
 }
 
 std::vector<std::uint32_t> ArrayReader::integers(const JsonCursor& at, std::uint32_t below) const {
-  if (!at.is_array()) return view(at, 1).integers(below);
+  if (at.is_object()) return view(at, 1).integers(below);
   std::vector<std::uint32_t> result;
   for (const JsonCursor& number : at.elements()) result.push_back(number.integer(0, below - 1));
   return result;

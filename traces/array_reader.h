@@ -11,8 +11,8 @@
 
 namespace beampipe {
 
-// What a trace may view in all its buffers together, in bytes.
-inline constexpr std::uint64_t kMostViewedBytes = std::uint64_t{1} << 32;
+inline constexpr std::uint64_t kMostBufferBytes = std::uint64_t{1} << 32;  // of all buffers together
+inline constexpr std::uint64_t kMostViews = 4;  // of each byte, on average, so that a small file stays a small trace
 
 // Reads an array as a JSON array or as a view:
 //   {"buffer": NAME, "offset": BYTES, "count": NUMBERS, "type": "float32" | "uint32" | "uint16" | "srgb8"}
@@ -39,7 +39,8 @@ class ArrayReader {
   View view(const JsonCursor& at, std::uint64_t length) const;
 
   std::map<std::string, std::string> buffers_;  // the bytes of each
-  mutable std::uint64_t viewed_ = 0;            // bytes
+  std::uint64_t buffer_bytes_ = 0;
+  mutable std::uint64_t viewed_bytes_ = 0;
 };
 
 }  // namespace beampipe

@@ -33,7 +33,7 @@ class JsonCursor {
   std::vector<JsonCursor> elements() const;
 
   bool is_null() const { return value_->is_null(); }
-  bool is_array() const { return value_->is_array(); }
+  bool is_object() const { return value_->is_object(); }
   double number() const;
   double number_between(double low, double high) const;  // low < number < high
   float real() const;                                    // finite as a float

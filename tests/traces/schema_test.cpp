@@ -116,6 +116,9 @@ const Object kObjects[] = {
 const std::set<std::string> kNeededElsewhere = {"view",   "projection", "file", "data", "positions", "positions4",
                                                 "images", "materials",  "uv0",  "uv1",  "buffers"};
 
+// What other parts of the trace allow only some values of.
+const std::set<std::string> kGivenElsewhere = {"bytes", "count", "type"};
+
 class SchemaTest : public FolderTest {
  protected:
   SchemaTest() {
@@ -159,7 +162,7 @@ class SchemaTest : public FolderTest {
         if (!result.contains(name)) result[name] = value;
       }
     }
-    if (result.contains("oneOf")) result.update(result["oneOf"][0]);  // an array, or else a view
+    if (result.contains("oneOf")) result.update(Json(result["oneOf"][0]));  // an array, or else a view
     return result;
   }
 
@@ -229,9 +232,11 @@ TEST_F(SchemaTest, TheReaderHasTheSameLimits) {
     for (const auto& [key, value] : complete(version).at(Pointer(at)).items()) {
       const Json rule = property(described_by, key);
       const auto expect = [&](const char* word, bool accepted, const Json& replacement) {
+        if (kGivenElsewhere.contains(key) && accepted) return;
         ++limits;
         Json trace = complete(version);
         trace.at(Pointer(at))[key] = replacement;
+        if (key == "width" || key == "height") trace.at(Pointer(at)).erase("captured");  // pictures of the other size
         EXPECT_EQ(error_in(trace) == "no error", accepted) << at << '/' << key << ' ' << word << ' ' << replacement;
       };
       const auto number = [&](const char* word) { return rule[word].get<double>(); };
