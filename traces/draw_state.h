@@ -79,8 +79,7 @@ struct Stencil {
   bool operator==(const Stencil&) const = default;
 };
 
-// Bits of DrawState::color_mask.
-inline constexpr std::uint32_t kRed = 1, kGreen = 2, kBlue = 4, kAlpha = 8, kAllChannels = 15;
+inline constexpr std::uint32_t kAllChannels = 15;  // bits of red, green, blue and alpha, from the lowest on
 
 struct DrawState {
   std::optional<Viewport> viewport{};  // else the whole frame
