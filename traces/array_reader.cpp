@@ -4,9 +4,11 @@
 #include <bit>
 #include <cmath>
 #include <cstring>
+#include <limits>
 #include <string_view>
 
 #include "traces/input_file.h"
+#include "traces/material.h"
 #include "traces/side_file.h"
 #include "traces/srgb.h"
 
@@ -19,8 +21,10 @@ namespace {
 enum class NumberType { float32, uint32, uint16, srgb8 };
 constexpr std::uint64_t kTypeBytes[] = {4, 4, 2, 1};
 
+constexpr float kMostFloat = std::numeric_limits<float>::max();
 constexpr const char* kReal = "a number in a float's range";
-constexpr const char* kIntensity = "a number, 0 and up";
+constexpr const char* kColor = "a number from 0 to 65504";
+static_assert(kMostColor == 65504);
 
 const std::array<float, 256>& linear_of_codes() {
   static const std::array<float, 256> values = [] {
@@ -69,7 +73,7 @@ struct ArrayReader::View {
   std::vector<Vector> colors() const {
     if (type != NumberType::srgb8) {
       expect_type({NumberType::float32}, "\"float32\" or \"srgb8\"");
-      return floats<Vector>(kIntensity, [](float value) { return std::isfinite(value) && value >= 0; });
+      return floats<Vector>(kColor, [](float value) { return value >= 0 && value <= kMostColor; });
     }
     const std::array<float, 256>& linear = linear_of_codes();
     std::vector<Vector> result(count / static_cast<std::uint64_t>(Vector::length()));
@@ -148,7 +152,7 @@ ArrayReader::View ArrayReader::view(const JsonCursor& at, std::uint64_t length) 
 std::vector<float> ArrayReader::numbers(const JsonCursor& at) const {
   if (!at.is_object()) {
     std::vector<float> result;
-    for (const JsonCursor& number : at.elements()) result.push_back(number.real());
+    for (const JsonCursor& number : at.elements()) result.push_back(number.real(-kMostFloat, kMostFloat));
     return result;
   }
   return view(at, 1).floats<float>(kReal, [](float value) { return std::isfinite(value); });

@@ -31,9 +31,9 @@ struct Scissor {
 // What is added to a triangle's window depth: constant + slope * max(|dz/dx|, |dz/dy|) per pixel, at most `clamp` away
 // from 0 if that is not 0 (OpenGL 4.6 core, section 14.6.5).
 struct DepthBias {
-  float constant = 0;  // window depth, the format's resolution included
-  float slope = 0;
-  float clamp = 0;  // window depth; a negative one is a lower bound
+  float constant = 0;  // window depth, -1..1, the format's resolution included
+  float slope = 0;     // -2^20..2^20
+  float clamp = 0;     // window depth, -1..1; a negative one is a lower bound
   bool operator==(const DepthBias&) const = default;
 };
 

@@ -9,7 +9,8 @@
 namespace beampipe {
 namespace {
 
-constexpr double kLargestPlace = 1 << 20;  // of viewports and scissors, in pixels, on either side of 0
+constexpr float kMostPlace = 1 << 20;  // of viewports and scissors, in pixels, on either side of 0
+constexpr float kMostSlope = 1 << 20;  // factor of a depth bias
 
 template <class Enum>
 void read_choice(const JsonCursor& at, const char* key, std::span<const std::string_view> names, Enum& result) {
@@ -21,11 +22,7 @@ std::array<float, Count> read_places(const JsonCursor& at) {
   const std::vector<JsonCursor> elements = at.elements();
   if (elements.size() != Count) at.fail("an array of " + std::to_string(Count) + " numbers");
   std::array<float, Count> places{};
-  for (std::size_t i = 0; i < Count; ++i) {
-    const float place = elements[i].real();
-    if (!(std::abs(place) <= kLargestPlace)) elements[i].fail("a number of pixels of at most 2^20");
-    places[i] = place;
-  }
+  for (std::size_t i = 0; i < Count; ++i) places[i] = elements[i].real(-kMostPlace, kMostPlace);
   return places;
 }
 
@@ -57,9 +54,9 @@ DepthState read_depth(const JsonCursor& at) {
   }
   if (const auto bias = at.find("depth_bias")) {
     bias->expect_keys({"constant", "slope", "clamp"});
-    if (const auto constant = bias->find("constant")) depth.bias.constant = constant->real();
-    if (const auto slope = bias->find("slope")) depth.bias.slope = slope->real();
-    if (const auto clamp = bias->find("clamp")) depth.bias.clamp = clamp->real();
+    if (const auto constant = bias->find("constant")) depth.bias.constant = constant->real(-1, 1);
+    if (const auto slope = bias->find("slope")) depth.bias.slope = slope->real(-kMostSlope, kMostSlope);
+    if (const auto clamp = bias->find("clamp")) depth.bias.clamp = clamp->real(-1, 1);
   }
   if (const auto clip = at.find("depth_clip")) depth.clip = clip->boolean();
   if (const auto cleared = at.find("clears_depth")) depth.cleared_before = cleared->boolean();

@@ -7,6 +7,7 @@
 #include <sstream>
 
 #include "traces/input_file.h"
+#include "traces/material.h"
 
 namespace beampipe {
 namespace {
@@ -31,7 +32,11 @@ constexpr const char* kReal = "a number in a float's range";
 constexpr const char* kFraction = "a number 0..1";
 
 bool is_float(double value) { return std::isfinite(static_cast<float>(value)); }
-bool is_intensity(double value) { return is_float(value) && static_cast<float>(value) >= 0; }
+bool is_intensity(double value) { return value >= 0 && value <= kMostColor; }
+
+std::string range_text(double low, double high) {
+  return "a number from " + number_text(low) + " to " + number_text(high);
+}
 
 }  // namespace
 
@@ -113,9 +118,9 @@ double JsonCursor::number_between(double low, double high) const {
   return value;
 }
 
-float JsonCursor::real() const {
+float JsonCursor::real(float low, float high) const {
   const double value = number_or_nan(*value_);
-  if (!is_float(value)) fail(kReal);
+  if (!(value >= low && value <= high)) fail(range_text(low, high));
   return static_cast<float>(value);
 }
 
@@ -196,10 +201,12 @@ std::vector<glm::vec2> JsonCursor::vec2s() const { return vectors_of<glm::vec2>(
 std::vector<glm::vec3> JsonCursor::vec3s() const { return vectors_of<glm::vec3>(kReal, is_float); }
 std::vector<glm::vec4> JsonCursor::vec4s() const { return vectors_of<glm::vec4>(kReal, is_float); }
 
-std::vector<glm::vec3> JsonCursor::colors() const { return vectors_of<glm::vec3>("a number, 0 and up", is_intensity); }
+std::vector<glm::vec3> JsonCursor::colors() const {
+  return vectors_of<glm::vec3>(range_text(0, kMostColor), is_intensity);
+}
 
 std::vector<glm::vec4> JsonCursor::rgbas() const {
-  std::vector<glm::vec4> result = vectors_of<glm::vec4>("a number, 0 and up", is_intensity);
+  std::vector<glm::vec4> result = vectors_of<glm::vec4>(range_text(0, kMostColor), is_intensity);
   for (std::size_t i = 0; i < result.size(); ++i)
     if (result[i].a > 1) at(value_->elements()[4 * i + 3]).fail(kFraction);
   return result;

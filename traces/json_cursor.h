@@ -36,7 +36,7 @@ class JsonCursor {
   bool is_object() const { return value_->is_object(); }
   double number() const;
   double number_between(double low, double high) const;  // low < number < high
-  float real() const;                                    // finite as a float
+  float real(float low, float high) const;               // low..high
   float fraction() const;                                // 0..1
   std::uint32_t integer(std::uint32_t low, std::uint32_t high) const;
   bool boolean() const;
@@ -47,7 +47,7 @@ class JsonCursor {
   std::size_t choice(std::span<const std::string_view> names) const;
 
   glm::dvec3 vec3() const;
-  glm::vec3 color() const;  // each 0 and up, finite as a float
+  glm::vec3 color() const;  // each 0..kMostColor
   glm::vec4 rgba() const;   // the same, and alpha 0..1
   glm::dmat4 matrix() const;
 
@@ -55,8 +55,8 @@ class JsonCursor {
   std::vector<glm::vec2> vec2s() const;  // finite as floats
   std::vector<glm::vec3> vec3s() const;
   std::vector<glm::vec4> vec4s() const;
-  std::vector<glm::vec3> colors() const;                       // 0 and up
-  std::vector<glm::vec4> rgbas() const;                        // 0 and up, and alpha 0..1
+  std::vector<glm::vec3> colors() const;                       // 0..kMostColor
+  std::vector<glm::vec4> rgbas() const;                        // the same, and alpha 0..1
   std::vector<glm::uvec3> triples(std::uint32_t count) const;  // integers below `count`
 
   std::string where() const;  // "FILE: POINTER"; takes time in proportion to the file

@@ -11,6 +11,13 @@
 
 namespace beampipe {
 
+// The most that a colour or a light has in each channel: the largest fp16 number. Products of such numbers, which are
+// what shading adds up, stay far below the largest float.
+inline constexpr float kMostColor = 65504.0f;
+
+// Of the magnitude of Material::normal_scale. At this scale a normal that leans by one code of 8 bits lies flat.
+inline constexpr float kMostNormalScale = 1000.0f;
+
 // 8 bits per channel as stored: base colours and emission are encoded as sRGB, everything else is linear, and alpha is
 // always linear. Row 0 is on top. The texture coordinate (0, 0) is the upper left corner of the upper left texel.
 struct TextureImage {
@@ -40,16 +47,16 @@ enum class AlphaMode { opaque, mask, blend };
 
 struct Material {
   std::string name;
-  glm::vec4 base_color{1.0f};             // linear RGBA; multiplied by the texture and by the vertices' colours
-  std::optional<Texture> base_texture{};  // sRGB, with alpha
-  float metallic = 0, roughness = 1;      // 0..1
+  glm::vec4 base_color{1.0f};  // linear RGB 0..kMostColor and alpha 0..1; times the texture and the vertices'
+  std::optional<Texture> base_texture{};                // sRGB, with alpha
+  float metallic = 0, roughness = 1;                    // 0..1
   std::optional<Texture> metallic_roughness_texture{};  // linear: roughness in G, metallic in B
   std::optional<Texture> normal_texture{};              // linear: tangent space, 0..255 for -1..1
-  float normal_scale = 1;
-  glm::vec3 emissive{0.0f};                   // linear RGB
-  std::optional<Texture> emissive_texture{};  // sRGB
+  float normal_scale = 1;                               // -kMostNormalScale..kMostNormalScale
+  glm::vec3 emissive{0.0f};                             // linear RGB, 0..kMostColor
+  std::optional<Texture> emissive_texture{};            // sRGB
   AlphaMode alpha_mode = AlphaMode::opaque;
-  float alpha_cutoff = 0.5f;
+  float alpha_cutoff = 0.5f;  // 0..1
   bool double_sided = false;  // false: back faces are culled
   bool unlit = false;         // the colour is the base colour, whatever the lights
 };

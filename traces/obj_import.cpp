@@ -202,8 +202,8 @@ class Libraries : public tinyobj::MaterialReader {
     tinyobj::LoadMtl(&index, &materials, &text, &warning, &error);
     for (tinyobj::material_t& material : materials) {
       const glm::vec3 kd = kd_of(&material);
-      if (!is_finite(kd) || glm::any(glm::lessThan(kd, glm::vec3(0.0f)))) {
-        fail_trace(where, "finite Kd of 0 and up", "another one in material " + in_quotes(material.name));
+      if (!is_finite(kd) || glm::clamp(kd, 0.0f, kMostColor) != kd) {
+        fail_trace(where, "Kd from 0 to 65504", "another one in material " + in_quotes(material.name));
       }
       by_name_.emplace(trim(material.name), std::move(material));
     }

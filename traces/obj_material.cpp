@@ -42,7 +42,7 @@ std::uint32_t ObjMaterialReader::add(const tinyobj::material_t& from) {
   Material to;
   to.name = from.name;
   const float opacity = ranged(from.dissolve, 1, "d");
-  for (int i = 0; i < 3; ++i) to.base_color[i] = ranged(from.diffuse[i], kMost, "Kd");
+  for (int i = 0; i < 3; ++i) to.base_color[i] = ranged(from.diffuse[i], kMostColor, "Kd");
   to.base_color.a = opacity;
   if (opacity < 1) to.alpha_mode = AlphaMode::blend;
   to.base_texture = texture(from.diffuse_texname, from.diffuse_texopt, "map_Kd");
@@ -56,15 +56,15 @@ std::uint32_t ObjMaterialReader::add(const tinyobj::material_t& from) {
   if (highlight > 0) to.roughness = std::pow(2.0f / (ranged(from.shininess, kMost, "Ns") + 2.0f), 0.25f);
   if (from.roughness != 0) to.roughness = ranged(from.roughness, 1, "Pr");
   to.metallic = ranged(from.metallic, 1, "Pm");
-  for (int i = 0; i < 3; ++i) to.emissive[i] = ranged(from.emission[i], kMost, "Ke");
+  for (int i = 0; i < 3; ++i) to.emissive[i] = ranged(from.emission[i], kMostColor, "Ke");
   to.emissive_texture = texture(from.emissive_texname, from.emissive_texopt, "map_Ke");
   if (to.emissive_texture && to.emissive == glm::vec3(0.0f)) to.emissive = glm::vec3(1.0f);
 
   to.normal_texture = texture(from.normal_texname, from.normal_texopt, "norm");
   if (to.normal_texture) {
-    to.normal_scale = number(from.normal_texopt.bump_multiplier, -kMost, kMost, where, "-bm");
+    to.normal_scale = number(from.normal_texopt.bump_multiplier, -kMostNormalScale, kMostNormalScale, where, "-bm");
   } else if ((to.normal_texture = texture(from.bump_texname, from.bump_texopt, "map_Bump"))) {
-    const float scale = number(from.bump_texopt.bump_multiplier, -kMost, kMost, where, "-bm");
+    const float scale = number(from.bump_texopt.bump_multiplier, -kMostNormalScale, kMostNormalScale, where, "-bm");
     if (is_grey(trace_.images[to.normal_texture->image])) {
       to.normal_texture->image = normals_from(to.normal_texture->image, scale, to.normal_texture->wrap_u);
     } else {

@@ -69,7 +69,8 @@ Material read_material(const JsonCursor& at, const NameIndex& images) {
   if (const auto color = at.find("base_color")) material.base_color = color->rgba();
   if (const auto metallic = at.find("metallic")) material.metallic = metallic->fraction();
   if (const auto roughness = at.find("roughness")) material.roughness = roughness->fraction();
-  if (const auto scale = at.find("normal_scale")) material.normal_scale = scale->real();
+  if (const auto scale = at.find("normal_scale"))
+    material.normal_scale = scale->real(-kMostNormalScale, kMostNormalScale);
   if (const auto emissive = at.find("emissive")) material.emissive = emissive->color();
   if (const auto mode = at.find("alpha_mode")) {
     material.alpha_mode = AlphaMode(mode->choice({"opaque", "mask", "blend"}));

@@ -2,7 +2,7 @@
 //
 // Conventions, everywhere in beampipe:
 //   - matrices are column-major and multiply column vectors; clip space is OpenGL's (-w <= x, y, z <= w, y up);
-//   - colours are linear RGB, unbounded above, 0 and up;
+//   - colours and lights are linear RGB, each channel 0..kMostColor;
 //   - pictures and images have row 0 on top.
 #pragma once
 
@@ -40,7 +40,7 @@ struct Mesh {
   std::vector<glm::vec3> normals;        // unit length; empty: the triangles' own normals
   std::vector<glm::vec4> tangents;       // unit length, towards u; w is the sign of the bitangent, as in glTF
   std::vector<glm::vec2> uvs[2];         // texture coordinates
-  std::vector<glm::vec4> vertex_colors;  // linear RGBA; multiplied by the material's base colour
+  std::vector<glm::vec4> vertex_colors;  // linear RGB and alpha 0..1; times the material's base colour
 };
 
 struct Draw {

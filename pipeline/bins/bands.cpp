@@ -15,8 +15,8 @@ namespace {
 // Division that rounds down for negative values too; `by` > 0.
 std::int64_t floor_of(std::int64_t value, std::int64_t by) { return value / by - (value % by < 0); }
 
-// Narrows the columns [left, right] of a row of tiles between `top` and `bottom` (1/256 px) to those that no edge of the
-// triangle excludes. As for cells, each edge is tested at the corner of the tile that lies deepest inside
+// Narrows the columns [left, right] of a row of tiles between `top` and `bottom` (1/256 px) to those that no edge of
+// the triangle excludes. As for cells, each edge is tested at the corner of the tile that lies deepest inside
 // (stages/raster/traverse.h). Tiles and triangle are closed sets.
 void narrow(const EdgeSet& set, std::int64_t top, std::int64_t bottom, std::int64_t tile_size, std::int32_t& left,
             std::int32_t& right) {
@@ -84,27 +84,35 @@ std::uint64_t most_pixels(const SetupTriangle& triangle, std::uint64_t width, st
 }
 
 // An upper bound, found quickly from the triangles' bounds, of what the frame needs as one band.
-std::uint64_t most_bytes(const SetupTriangles& triangles, const TileGrid& grid, std::size_t pair_bytes) {
+std::uint64_t most_bytes(const SetupTriangles& triangles, const TileGrid& grid, const PairBytes& pair_bytes) {
   const Tile frame{0, 0, grid.tiles.back().x1, grid.tiles.back().y1};
   std::uint64_t bytes = 0;
-  for (const SetupTriangle& triangle : triangles.triangles) {
+  for (std::uint32_t i = 0; i < triangles.triangles.size(); ++i) {
+    const SetupTriangle& triangle = triangles.triangles[i];
     const CellRange range = touched_range(triangle, frame, CellGrid{});
     if (range.x0 >= range.x1 || range.y0 >= range.y1) continue;
     const auto width = static_cast<std::uint64_t>(range.x1 - range.x0),
                height = static_cast<std::uint64_t>(range.y1 - range.y0), size = static_cast<std::uint64_t>(grid.size);
-    bytes += most_pixels(triangle, width, height) * pair_bytes +
+    bytes += most_pixels(triangle, width, height) * pair_bytes.of(i) +
              (width / size + 2) * (height / size + 2) * sizeof(std::uint32_t);
   }
   return bytes;
 }
 
-std::uint64_t count_pairs(const SetupTriangles& triangles, const TriangleList& list, const Tile& tile) {
+// Of the pairs of a tile.
+std::uint64_t bytes_of_pairs(const SetupTriangles& triangles, const TriangleList& list, const Tile& tile,
+                             const PairBytes& pair_bytes) {
   Traversal traversal{tile};
+  std::uint64_t bytes = 0;
   for (const std::uint32_t index : list) {
+    const std::size_t each = pair_bytes.of(index);
+    if (each == 0) continue;
+    const std::uint64_t before = traversal.counts.cells_touched;
     const SetupTriangle& triangle = triangles.triangles[index];
     traverse(triangle, EdgeSet(triangle), traversal, [](std::int32_t, std::int32_t, std::uint32_t, bool) {});
+    bytes += (traversal.counts.cells_touched - before) * each;
   }
-  return traversal.counts.cells_touched;
+  return bytes;
 }
 
 std::string mebibytes(std::uint64_t bytes) { return std::to_string((bytes + (1u << 20) - 1) >> 20) + " MiB"; }
@@ -119,7 +127,7 @@ TileGrid::TileGrid(const Frame& frame, std::int32_t tile_size) : size(tile_size)
       tiles.push_back({x, y, std::min(x + size, width), std::min(y + size, height)});
 }
 
-std::vector<Band> split_into_bands(const SetupTriangles& triangles, const TileGrid& grid, std::size_t pair_bytes,
+std::vector<Band> split_into_bands(const SetupTriangles& triangles, const TileGrid& grid, const PairBytes& pair_bytes,
                                    int threads, std::uint64_t memory_limit) {
   const Band whole{0, grid.tiles.size()};
   if (memory_limit == 0 || most_bytes(triangles, grid, pair_bytes) <= memory_limit) return {whole};
@@ -132,7 +140,7 @@ std::vector<Band> split_into_bands(const SetupTriangles& triangles, const TileGr
     for (std::size_t i = 0; i < lists.size(); ++i) {
       const Tile& tile = grid.tiles[row + i];
       const std::uint64_t list = lists[i].size() * sizeof(std::uint32_t);
-      const std::uint64_t pairs = pair_bytes > 0 ? count_pairs(triangles, lists[i], tile) * pair_bytes : 0;
+      const std::uint64_t pairs = bytes_of_pairs(triangles, lists[i], tile, pair_bytes);
       if (list + pairs > memory_limit) {
         throw std::runtime_error("the memory limit of " + mebibytes(memory_limit) + " is too low: the " +
                                  std::to_string(lists[i].size()) + " triangles at pixels " + std::to_string(tile.x0) +

@@ -8,6 +8,7 @@
 
 #include "stages/data/setup_triangle.h"
 #include "stages/data/tile.h"
+#include "stages/surface/surface_shader.h"
 #include "traces/trace.h"
 
 namespace beampipe {
@@ -24,10 +25,22 @@ struct Band {
   std::size_t first, last;  // tiles [first, last)
 };
 
+// What a technique keeps for each pair until its tile is finished, in bytes.
+struct PairBytes {
+  std::size_t each = 0;                   // of every pair
+  std::size_t translucent = 0;            // of those of translucent triangles, in addition
+  const SurfaceShader* shader = nullptr;  // knows which triangles are; null: none is
+
+  std::size_t of(std::uint32_t triangle) const {
+    const bool is_translucent = shader && !shader->is_opaque(triangle) && !shader->is_cutout(triangle);
+    return each + (is_translucent ? translucent : 0);
+  }
+};
+
 // Splits all tiles, in order, into bands: a single one without a limit (0 bytes) or when the whole frame fits. A band
-// needs the triangle lists of all its tiles, and `pair_bytes` per pair for the tiles that are rendered at once, one per
+// needs the triangle lists of all its tiles, and memory for the pairs of the tiles that are rendered at once, one per
 // thread. Throws std::runtime_error, one line that says how much is needed, when a single tile does not fit.
-std::vector<Band> split_into_bands(const SetupTriangles& triangles, const TileGrid& grid, std::size_t pair_bytes,
+std::vector<Band> split_into_bands(const SetupTriangles& triangles, const TileGrid& grid, const PairBytes& pair_bytes,
                                    int threads, std::uint64_t memory_limit);
 
 // One list per tile of the band: the triangles whose closed bounds touch it.

@@ -164,7 +164,8 @@ FrameResult render_bins(const FrameContext& context, const BinPlan& plan, const 
     });
   };
   for (const Band& band :
-       split_into_bands(context.triangles, grid, plan.pair_bytes, thread_count(run.threads), run.memory_limit)) {
+       split_into_bands(context.triangles, grid, {plan.pair_bytes, plan.translucent_pair_bytes, &context.shader},
+                        thread_count(run.threads), run.memory_limit)) {
     if (band.first > 0) malloc_trim(0);  // glibc would keep the freed memory of a band in addition to the next one's
     on_threads(run.threads, [&] { render_band(band); });
   }

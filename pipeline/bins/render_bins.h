@@ -29,6 +29,7 @@ struct BinPlan {
   // Bytes that this program keeps for each pair until the bin is finished (RunOptions::memory_limit). 0: the technique
   // works on a few triangles at a time.
   std::size_t pair_bytes = 0;
+  std::size_t translucent_pair_bytes = 0;  // the same for pairs of translucent triangles, in addition
 };
 
 using BinRenderer = std::function<void(Bin&)>;

@@ -8,6 +8,10 @@ namespace {
 
 constexpr int kTileSize = 4;  // px: 65,536 samples, 1 MiB
 
+// Of a translucent triangle: a layer at each sample, once more where they are sorted by pixel, and half of that for the
+// sort.
+constexpr std::size_t kLayerBytes = std::size_t{kReferenceSamples} * sizeof(ReferenceTile::Layer) * 5 / 2;
+
 Framebuffer reference_framebuffer() {
   constexpr std::uint32_t kSamples = kReferenceSamples;
   return {.surfaces = {{"depth", "D64F x 4096", 8 * kSamples}, {"owner", "R64UI x 4096", 8 * kSamples}},
@@ -18,7 +22,9 @@ FrameResult render_reference(const Trace& trace, const Frame& frame, const RunOp
   RunOptions without_memory = run;
   without_memory.memory.modelled = false;  // no hardware is modelled for this
   const FrameContext context(trace, frame, without_memory);
-  const BinPlan plan{.stages = {"reference_raster", "resolve"}, .framebuffer = reference_framebuffer()};
+  const BinPlan plan{.stages = {"reference_raster", "resolve"},
+                     .framebuffer = reference_framebuffer(),
+                     .translucent_pair_bytes = kLayerBytes};
   return render_bins(context, plan, [&](Bin& bin) {
     const BinStage resolving = bin.stage("resolve");
     if (bin.list.empty()) {  // every sample shows the background, so no samples are set up

@@ -9,12 +9,13 @@
 
 namespace beampipe {
 
-// An fp16 number. Values above the largest fp16 number become that number.
+// An fp16 number. Values beyond the largest and the least fp16 number become these.
 struct HalfBits {
+  static constexpr float kMost = HALF_MAX;
   std::uint16_t bits = 0;
 
   HalfBits() = default;
-  explicit HalfBits(float value) : bits(half(std::min(value, static_cast<float>(HALF_MAX))).bits()) {}
+  explicit HalfBits(float value) : bits(half(std::clamp(value, -kMost, kMost)).bits()) {}
   operator float() const {
     half value;
     value.setBits(bits);

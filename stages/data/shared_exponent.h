@@ -13,9 +13,9 @@ struct SharedExponent {
 
   SharedExponent() = default;
 
-  // `color`: linear RGB, not negative. The error of a channel is at most 1/127 of the largest channel. `threshold`,
-  // above 0 and up to 1: the part of a step above it counts as a whole step. If it differs from case to case, a colour
-  // that is changed a little many times is right on average.
+  // `color`: linear RGB; negative channels become 0. The error of a channel is at most 1/127 of the largest channel.
+  // `threshold`, above 0 and up to 1: the part of a step above it counts as a whole step. If it differs from case to
+  // case, a colour that is changed a little many times is right on average.
   SharedExponent(const glm::vec3& color, float threshold) {
     const float largest = std::max({color[0], color[1], color[2]});
     if (!(largest > 0x1p-100f)) return;
@@ -23,7 +23,8 @@ struct SharedExponent {
     std::frexp(largest * (1 + 0x1p-8f), &power);  // what would be rounded up to 256 takes the next exponent
     power = std::min(power, 127);
     for (int c = 0; c < 3; ++c)
-      mantissa[c] = static_cast<std::uint8_t>(std::min(std::ldexp(color[c], 8 - power) + 1.0f - threshold, 255.0f));
+      mantissa[c] =
+          static_cast<std::uint8_t>(std::clamp(std::ldexp(color[c], 8 - power) + 1.0f - threshold, 0.0f, 255.0f));
     exponent = static_cast<std::uint8_t>(power + 128);
   }
 

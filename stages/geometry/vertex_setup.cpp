@@ -36,15 +36,32 @@ struct View {
         // Front faces are counter-clockwise on screen. A view or projection that mirrors reverses that in world space.
         // Clip space is left-handed, so a matrix that does not mirror has a negative determinant.
         mirrored(glm::determinant(to_clip) > 0),
-        eye(viewer(glm::inverse(to_clip))) {}
+        eye(viewer(to_clip)) {}
 
  private:
-  // The eye is where x, y and w are 0 in clip space.
-  static glm::dvec4 viewer(const glm::dmat4& to_world) {
-    const glm::dvec4 point = to_world * glm::dvec4(0, 0, -1, 0);
+  // The eye is where x, y and w are 0 in clip space. This needs no inverse, which a projection without depth has not.
+  static glm::dvec4 viewer(const glm::dmat4& to_clip) {
+    const glm::dvec4 x = scaled_row(to_clip, 0), y = scaled_row(to_clip, 1), w = scaled_row(to_clip, 3);
+    glm::dvec4 point;  // by Cramer's rule
+    for (int i = 0; i < 4; ++i) {
+      const int j = i == 0 ? 1 : 0, k = i <= 1 ? 2 : 1, l = i <= 2 ? 3 : 2;
+      const double minor =
+          x[j] * (y[k] * w[l] - y[l] * w[k]) - x[k] * (y[j] * w[l] - y[l] * w[j]) + x[l] * (y[j] * w[k] - y[k] * w[j]);
+      point[i] = i % 2 ? -minor : minor;
+    }
+    // A viewer at infinity is where depth falls.
+    if (glm::dot(scaled_row(to_clip, 2), point) > 0) point = -point;
     const double distance = glm::length(glm::dvec3(point));
     if (std::abs(point.w) > 1e-12 * distance) return point / point.w;
     return distance > 0 ? point / distance : glm::dvec4(0, 0, 1, 0);
+  }
+
+  // A row without its scale, so that products of several rows stay within the range of doubles.
+  static glm::dvec4 scaled_row(const glm::dmat4& matrix, int row) {
+    const glm::dvec4 values(matrix[0][row], matrix[1][row], matrix[2][row], matrix[3][row]);
+    const glm::dvec4 sizes = glm::abs(values);
+    const double largest = std::max({sizes.x, sizes.y, sizes.z, sizes.w});
+    return largest > 0 && std::isfinite(largest) ? values / largest : glm::dvec4(0.0);
   }
 };
 
@@ -77,7 +94,7 @@ class VertexShader {
 
   SurfaceVertex operator()(std::uint32_t i) const {
     SurfaceVertex vertex;
-    vertex.to_eye = glm::vec3(glm::dvec3(view_.eye) - view_.eye.w * world(i));
+    vertex.to_eye = glm::vec3(limited(glm::dvec3(view_.eye) - view_.eye.w * world(i)));
     if (!mesh_.normals.empty()) vertex.normal = glm::vec3(unit(normal_to_world_ * glm::dvec3(mesh_.normals[i])));
     if (!mesh_.tangents.empty()) {
       const glm::dvec3 tangent = glm::dmat3(to_world_) * glm::dvec3(mesh_.tangents[i]);
@@ -94,6 +111,13 @@ class VertexShader {
   static glm::dmat3 normal_matrix(const glm::dmat3& m) {
     const double sign = glm::determinant(m) < 0 ? -1.0 : 1.0;
     return sign * glm::dmat3(glm::cross(m[1], m[2]), glm::cross(m[2], m[0]), glm::cross(m[0], m[1]));
+  }
+
+  // No longer than floats can square.
+  static glm::dvec3 limited(const glm::dvec3& v) {
+    constexpr double kMost = 1e18;
+    const double length = glm::length(v);
+    return length > kMost ? kMost * unit(v) : v;
   }
 
   // 0 stays 0, and what has no finite length becomes 0.

@@ -27,6 +27,30 @@ SetupTriangles setup_of(const Trace& trace) {
   return vertex_setup(trace, trace.frames[0], unused);
 }
 
+// The reference keeps every translucent layer of a sample, which opaque triangles have none of.
+TEST(Bands, TranslucentLayersOfTheReferenceAreLimited) {
+  Trace trace = stack_trace(16, 8, 50);
+  RunOptions options;
+  options.threads = 2;
+  options.memory_limit = 16 << 20;
+  const Technique reference = parse_technique("reference");
+  EXPECT_NO_THROW(reference.render(trace, 0, options));
+  trace.materials.resize(1);
+  trace.materials[0].base_color.a = 0.5f, trace.materials[0].alpha_mode = AlphaMode::blend;
+  trace.materials[0].unlit = trace.materials[0].double_sided = true;
+  trace.meshes[0].materials.assign(trace.meshes[0].triangles.size(), 0);
+  try {  // 16 pixels of a tile, 4096 samples each, with 50 layers of 16 bytes, and those once and a half more
+    reference.render(trace, 0, options);
+    ADD_FAILURE() << "125 MiB of layers";
+  } catch (const std::runtime_error& error) {
+    EXPECT_STREQ(error.what(),
+                 "the memory limit of 16 MiB is too low: the 50 triangles at pixels 0,0 to 3,3 need 126 MiB at once");
+  }
+  const std::vector<float> whole = reference.render(trace, 0, {.threads = 2}).image.rgba;
+  options.memory_limit = 126 << 20;  // one tile at a time
+  EXPECT_EQ(reference.render(trace, 0, options).image.rgba, whole);
+}
+
 // 100 layers over tiles of 1024 pixels make 102,400 pairs of 10 bytes in a tile, and a list of 400 bytes.
 TEST(Bands, HoldAsManyTilesAsFit) {
   const Trace trace = stack_trace(96, 64, 100);
@@ -35,7 +59,7 @@ TEST(Bands, HoldAsManyTilesAsFit) {
   ASSERT_EQ(grid.tiles.size(), 6u);
   const auto sizes = [&](int threads, std::uint64_t limit) {
     std::vector<std::size_t> counts;
-    for (const Band& band : split_into_bands(triangles, grid, 10, threads, limit)) {
+    for (const Band& band : split_into_bands(triangles, grid, {10}, threads, limit)) {
       EXPECT_EQ(band.first, counts.empty() ? 0 : counts.back());
       counts.push_back(band.last);
     }
@@ -136,7 +160,7 @@ TEST(Bands, NoTriangleSlipsThroughTheLimit) {
     one.triangles.push_back(random_triangle(random, 64, 64));
     const std::size_t pairs = count_pairs(one, grid.tiles[0]);
     if (pairs == 0) continue;
-    ASSERT_THROW(split_into_bands(one, grid, kHuge, 1, pairs * kHuge - 1), std::runtime_error) << "triangle " << i;
+    ASSERT_THROW(split_into_bands(one, grid, {kHuge}, 1, pairs * kHuge - 1), std::runtime_error) << "triangle " << i;
   }
 }
 

@@ -243,6 +243,94 @@ TEST_F(GltfImportTest, ReadsMaterials) {
   EXPECT_EQ(read.tangents, std::vector<glm::vec4>(3, {1, 0, 0, -1}));
 }
 
+// Source of the first transform and of what it shows: the example of KHR_texture_transform.
+TEST_F(GltfImportTest, TransformsTextureCoordinates) {
+  GltfBuilder gltf;
+  gltf.attributes()["TEXCOORD_0"] = gltf.floats("VEC2", {0, 0, 1, 0, 0, 1});
+  gltf.attributes()["TEXCOORD_1"] = gltf.floats("VEC2", {0.5, 0.25, 0, 0, 0, 0});
+  gltf.json["images"] = {{{"uri", "data:image/png;base64," + base64(kColors)}}};
+  gltf.json["textures"] = {{{"source", 0}}};
+  gltf.json["extensionsUsed"] = gltf.json["extensionsRequired"] = {"KHR_texture_transform"};
+  const auto moved = [](const Json& transform, int set = 0) {
+    return Json{{"index", 0}, {"texCoord", set}, {"extensions", {{"KHR_texture_transform", transform}}}};
+  };
+  const Json quadrant = {{"offset", {0, 1}}, {"rotation", 1.57079632679}, {"scale", {0.5, 0.5}}};
+  gltf.primitive()["material"] = 0;
+  Json& material = gltf.json["materials"][0];
+  material["pbrMetallicRoughness"]["baseColorTexture"] = moved(quadrant);
+  material["emissiveTexture"] = moved(quadrant);
+  ImportedModel model = load(gltf);
+  EXPECT_EQ(model.not_read, NotRead{});
+  EXPECT_EQ(model.trace.materials[0].base_texture->uv_set, 0u);
+  EXPECT_EQ(model.trace.materials[0].emissive_texture->uv_set, 0u);
+  const auto expect_uvs = [&](std::size_t set, const std::vector<glm::dvec2>& expected) {
+    const std::vector<glm::vec2>& found = model.trace.meshes[0].uvs[set];
+    ASSERT_EQ(found.size(), expected.size());
+    for (std::size_t i = 0; i < found.size(); ++i)
+      for (int c = 0; c < 2; ++c) EXPECT_NEAR(found[i][c], expected[i][c], 1e-6) << set << ' ' << i << ' ' << c;
+  };
+  // The lower left quadrant of the image, turned clockwise: u runs up.
+  expect_uvs(0, {{0, 1}, {0, 0.5}, {0.5, 1}});
+  expect_uvs(1, {{0.5, 0.25}, {0, 0}, {0, 0}});
+
+  // A texture without a transform keeps the set; the transform moves to the other one, whose set it reads.
+  material["normalTexture"] = {{"index", 0}, {"texCoord", 0}};
+  material["pbrMetallicRoughness"]["baseColorTexture"] = moved({{"scale", {2, -4}}, {"texCoord", 1}});
+  material["emissiveTexture"] = moved({{"scale", {2, -4}}}, 1);
+  model = load(gltf);
+  EXPECT_EQ(model.not_read, NotRead{});
+  EXPECT_EQ(model.trace.materials[0].normal_texture->uv_set, 0u);
+  EXPECT_EQ(model.trace.materials[0].base_texture->uv_set, 1u);
+  expect_uvs(0, {{0, 0}, {1, 0}, {0, 1}});
+  expect_uvs(1, {{1, -1}, {0, 0}, {0, 0}});
+  material["pbrMetallicRoughness"]["baseColorTexture"] = moved({{"offset", {3, 5}}});
+  material.erase("emissiveTexture");
+  model = load(gltf);
+  EXPECT_EQ(model.trace.materials[0].base_texture->uv_set, 1u);
+  expect_uvs(1, {{3, 5}, {4, 5}, {3, 6}});
+
+  // There are no more than two sets.
+  material["emissiveTexture"] = moved(quadrant);
+  EXPECT_EQ(load(gltf).not_read, (NotRead{{"KHR_texture_transform beside two others", 1}}));
+  const std::string place = "model.gltf: /materials/0/emissiveTexture/extensions/KHR_texture_transform";
+  material["emissiveTexture"] = moved({{"scale", 2}});
+  EXPECT_EQ(error(gltf), place + "/scale: expected two numbers, found another value");
+  material["emissiveTexture"] = moved({{"rotation", 1e300}});
+  EXPECT_EQ(error(gltf), place + "/rotation: expected a number from -1e9 to 1e9, found another value");
+  material["emissiveTexture"] = moved({{"texCoord", 2}});
+  EXPECT_EQ(load(gltf).not_read, (NotRead{{"texture with texCoord above 1", 1}}));
+}
+
+// glTF sets no limit to some factors; a trace does.
+TEST_F(GltfImportTest, LimitsWhatATraceLimits) {
+  GltfBuilder gltf;
+  gltf.attributes()["TEXCOORD_0"] = gltf.floats("VEC2", {0, 0, 1, 0, 0, 1});
+  gltf.json["images"] = {{{"uri", "data:image/png;base64," + base64(kColors)}}};
+  gltf.json["textures"] = {{{"source", 0}}};
+  gltf.json["materials"] = {{{"emissiveFactor", {1, 0.5, 0}},
+                             {"normalTexture", {{"index", 0}, {"scale", -1e20}}},
+                             {"alphaMode", "MASK"},
+                             {"alphaCutoff", 1.5},
+                             {"extensions", {{"KHR_materials_emissive_strength", {{"emissiveStrength", 100000}}}}}}};
+  gltf.primitive()["material"] = 0;
+  gltf.json["extensionsUsed"] = {"KHR_lights_punctual"};
+  gltf.json["extensions"]["KHR_lights_punctual"]["lights"] = {
+      {{"type", "directional"}, {"color", {1, 0.5, 0}}, {"intensity", 1e6}}};
+  gltf.json["nodes"].push_back({{"extensions", {{"KHR_lights_punctual", {{"light", 0}}}}}});
+  gltf.json["scenes"][0]["nodes"] = {0, 1};
+  const ImportedModel model = load(gltf);
+  const Material& material = model.trace.materials[0];
+  EXPECT_EQ(material.emissive, glm::vec3(kMostColor, 50000, 0));
+  EXPECT_EQ(material.normal_scale, -kMostNormalScale);
+  EXPECT_EQ(material.alpha_cutoff, 1.0f);  // nothing is visible, as alpha is nowhere as high as the cutoff of 1.5
+  EXPECT_EQ(material.base_color.a, 0.0f);
+  EXPECT_EQ(model.trace.frames[0].lighting.lights.at(0).color, glm::vec3(kMostColor, kMostColor, 0));
+  EXPECT_EQ(model.not_read, (NotRead{{"light above 65504", 2}, {"normalTexture scale beyond 1000", 1}}));
+  // The trace can be written and read again.
+  write_trace(model.trace, path("limited.json"));
+  EXPECT_EQ(read_trace(path("limited.json")).materials[0].normal_scale, -kMostNormalScale);
+}
+
 TEST_F(GltfImportTest, ReadsTheNodeHierarchy) {
   GltfBuilder gltf;
   const double half = std::sqrt(0.5);
@@ -535,7 +623,8 @@ TEST_F(GltfImportTest, NamesImagesThatCannotBeRead) {
   gltf.json["textures"] = {{{"source", 1}}};
   EXPECT_EQ(error_with({{"uri", "none.png"}}), "model.gltf: /textures/0: expected one of the 1 images, found 1");
   gltf.json["textures"] = Json::array();
-  EXPECT_EQ(error_with({{"uri", "none.png"}}), "model.gltf: /materials/0: expected one of the 0 textures, found 0");
+  EXPECT_EQ(error_with({{"uri", "none.png"}}),
+            "model.gltf: /materials/0/pbrMetallicRoughness/baseColorTexture: expected one of the 0 textures, found 0");
 }
 
 // Each change to a sound file gives one line that names the place.

@@ -56,7 +56,7 @@ const char kVersion2[] = R"({ "beampipe_trace": 2,
                            {"mesh": "inline", "material": "m",
                             "state": {"viewport": [0,1,2.5,-3], "scissor": [0,0,4,3], "depth_test": true,
                                       "depth_write": false, "depth_function": "equal", "depth_range": [0.5,1],
-                                      "depth_bias": {"constant": 1, "slope": 2, "clamp": 3}, "depth_clip": false,
+                                      "depth_bias": {"constant": 1, "slope": 2, "clamp": 0.5}, "depth_clip": false,
                                       "clears_depth": true, "front_face": "clockwise",
                                       "blend": {"source": "one", "destination": "zero", "operation": "max"},
                                       "color_mask": "rg",
@@ -259,6 +259,13 @@ TEST_F(SchemaTest, TheReaderHasTheSameLimits) {
         negative[0] = -1;
         expect("items/minimum", false, negative);
       }
+      if (rule.contains("items") && rule["items"].contains("maximum")) {
+        Json large = value;
+        large[0] = rule["items"]["maximum"];
+        expect("items/maximum", true, large);
+        large[0] = rule["items"]["maximum"].get<double>() + 1;
+        expect("items/maximum", false, large);
+      }
     }
   }
   EXPECT_GT(limits, 90);
@@ -266,6 +273,9 @@ TEST_F(SchemaTest, TheReaderHasTheSameLimits) {
   EXPECT_EQ(schema_["properties"]["beampipe_trace"]["enum"], (std::vector<int>{1, 2}));
   EXPECT_EQ(schema_["$defs"]["frame"]["properties"]["lights"]["maxItems"], kMostLights);
   EXPECT_EQ(schema_["$defs"]["rgba"]["prefixItems"][3]["maximum"], 1);
+  EXPECT_EQ(schema_["$defs"]["rgba"]["prefixItems"][0]["maximum"], kMostColor);
+  EXPECT_EQ(schema_["$defs"]["color"]["items"]["maximum"], kMostColor);
+  EXPECT_EQ(schema_["$defs"]["material"]["properties"]["normal_scale"]["maximum"], kMostNormalScale);
 }
 
 TEST_F(SchemaTest, EveryKeyIsDescribed) {

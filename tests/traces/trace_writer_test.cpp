@@ -106,11 +106,21 @@ Float any_finite(std::mt19937_64& random) {
   }
 }
 
+// Any float from 0 to `most`.
+template <class Random>
+float any_up_to(float most, Random& random) {
+  while (true) {
+    const float value = std::abs(any_finite<float, std::uint32_t>(random));
+    if (value <= most) return value;
+  }
+}
+
 Trace example() {
   std::mt19937_64 random(7);
   const auto any_float = [&] { return any_finite<float, std::uint32_t>(random); };
   const auto any_double = [&] { return any_finite<double, std::uint64_t>(random); };
-  const auto color = [&] { return glm::vec3(std::abs(any_float()), std::abs(any_float()), std::abs(any_float())); };
+  const auto intensity = [&] { return any_up_to(kMostColor, random); };
+  const auto color = [&] { return glm::vec3(intensity(), intensity(), intensity()); };
   const auto matrix = [&] {
     glm::dmat4 m;
     for (int i = 0; i < 16; ++i) m[i / 4][i % 4] = any_double();
@@ -166,7 +176,7 @@ Trace random_surfaces(unsigned seed) {
   const auto below = [&](std::size_t count) { return static_cast<std::uint32_t>(random() % count); };
   const auto chance = [&] { return random() % 2 == 0; };
   const auto any_float = [&] { return any_finite<float, std::uint32_t>(random); };
-  const auto intensity = [&] { return std::abs(any_float()); };
+  const auto intensity = [&] { return any_up_to(kMostColor, random); };
   const auto fraction = [&] { return static_cast<float>(random() >> 40) * 0x1p-24f; };
   const auto color = [&] { return glm::vec3(intensity(), intensity(), intensity()); };
   const auto rgba = [&] { return glm::vec4(color(), fraction()); };
@@ -187,7 +197,7 @@ Trace random_surfaces(unsigned seed) {
     if (chance()) material.base_color = rgba();
     if (chance()) material.metallic = chance() ? -0.0f : fraction();
     if (chance()) material.roughness = fraction();
-    if (chance()) material.normal_scale = any_float();
+    if (chance()) material.normal_scale = (chance() ? 1.0f : -1.0f) * any_up_to(kMostNormalScale, random);
     if (chance()) material.emissive = chance() ? glm::vec3(-0.0f) : color();
     material.alpha_mode = AlphaMode(below(3));
     if (chance()) material.alpha_cutoff = fraction();

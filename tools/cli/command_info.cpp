@@ -6,8 +6,10 @@
 #include <iostream>
 #include <limits>
 #include <memory>
+#include <numeric>
 
 #include "tools/cli/commands.h"
+#include "tools/cli/trace_notes.h"
 #include "tools/report/report_text.h"
 #include "traces/json.h"
 #include "traces/trace_io.h"
@@ -303,6 +305,10 @@ void add_info_command(CommandLine& line) {
   command.add_flag("--allow-outside", arguments->allow_outside, "allow the trace to name files outside its own folder");
   command.set_work([arguments] {
     const Trace trace = read_trace(arguments->trace, {.allow_outside = arguments->allow_outside});
+    std::vector<std::size_t> frames(trace.frames.size());
+    std::iota(frames.begin(), frames.end(), std::size_t{0});
+    if (const std::string note = note_on_darkness(trace, frames, arguments->trace); !note.empty())
+      std::cerr << "beampipe: " << note << "\n";
     std::cout << (arguments->json ? json_text(info_json(trace, arguments->trace))
                                   : info_text(trace, arguments->meshes));
   });

@@ -127,6 +127,8 @@ Trace make_from_model(const MakeArguments& arguments, const Command& command) {
   }
   const glm::vec3 background =
       arguments.background.empty() ? glm::vec3(1.0f) : glm::vec3(vector_of(arguments.background));
+  if (glm::clamp(background, 0.0f, kMostColor) != background)
+    throw UsageError("--background: expected numbers from 0 to 65504");
   for (Frame& frame : trace.frames) frame.background = background;
   if (arguments.unlit) {
     for (Frame& frame : trace.frames) {

@@ -169,7 +169,8 @@ void add_stress_command(CommandLine& line, InterruptGate& gate) {
       "which takes 5 to 9 GB and a minute or two for each technique (taa and dvm need 30 GB: name others with -t)");
   command.footer(
       R"(Each cell of the table is the largest error over all pixels and R, G, B, A. Techniques that sample are compared with
-the exact values at their samples, all others with exact areas. A star (*) marks an error above the rounding of fp16
+the exact values at their samples, all others with exact areas. Where surfaces vary, pictures must hold nothing but what
+textures and lights can give, or equal another picture; "exact" means that they do. A star (*) marks an error above the rounding of fp16
 that has a stated reason, and an exclamation mark (!) one above the stated limit; then the exit code is 1.)");
   command.set_work([arguments, &gate] { stress(*arguments, gate); });
 }

@@ -3,11 +3,13 @@
 #include <algorithm>
 #include <charconv>
 #include <filesystem>
+#include <iostream>
 #include <map>
 #include <numeric>
 #include <thread>
 
 #include "simd/target.h"
+#include "tools/cli/trace_notes.h"
 #include "tools/evaluate/machine_memory.h"
 #include "tools/evaluate/results.h"
 #include "traces/trace_io.h"
@@ -96,13 +98,15 @@ RunPlan make_plan(const RunArguments& arguments) {
   plan.options.memory_limit = arguments.memory_limit > 0 ? arguments.memory_limit : machine_memory() / 2;
   if (!arguments.simd.empty()) use_simd_target(arguments.simd);
   plan.trace = read_trace(arguments.trace, {.allow_outside = arguments.allow_outside});
-  plan.textures = std::make_shared<TextureSet>(plan.trace);
-  plan.options.textures = plan.textures.get();
   plan.frames = parse_frame_range(arguments.frames, plan.trace.frames.size());
   for (const std::size_t frame : plan.frames)
     for (const Technique& technique : plan.techniques)
       require_memory(plan.trace, plan.trace.frames[frame], technique.working_bytes_per_pixel,
                      "frame " + std::to_string(frame) + " with " + technique.spec, machine_memory());
+  plan.textures = std::make_shared<TextureSet>(plan.trace);
+  plan.options.textures = plan.textures.get();
+  if (const std::string note = note_on_darkness(plan.trace, plan.frames, arguments.trace); !note.empty())
+    std::cerr << "beampipe: " << note << "\n";
   return plan;
 }
 

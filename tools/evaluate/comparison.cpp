@@ -161,10 +161,11 @@ Json Comparison::sums() const {
 
 Image Comparison::read_image(const FrameReport& frame) const { return read_exr(output_.path() / frame.image); }
 
-// The equivalent rate of technique i of the plan.
+// The equivalent rate of technique i of the plan. That of the ladder's own techniques, msaa:N without options, is N.
 EquivalentMsaa Comparison::equivalent_of(std::size_t i, double rmse, const std::vector<LadderRung>& rungs) const {
-  const std::uint32_t samples = plan_.techniques[i].samples;
-  return samples > 0 ? EquivalentMsaa{static_cast<double>(samples), false, false} : equivalent_msaa(rmse, rungs);
+  const Technique& technique = plan_.techniques[i];
+  if (!is_rung(technique)) return equivalent_msaa(rmse, rungs);
+  return {static_cast<double>(technique.samples), false, false};
 }
 
 // Adds the parts of the errors. The reference comes last in the report.

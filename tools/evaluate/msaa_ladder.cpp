@@ -20,6 +20,10 @@ std::size_t index_of(const std::string& spec, const RunPlan& plan) {
 
 }  // namespace
 
+bool is_rung(const Technique& technique) {
+  return technique.samples > 0 && technique.spec == "msaa:" + std::to_string(technique.samples);
+}
+
 MsaaLadder::Rung::Rung(std::uint32_t samples) : technique(parse_technique("msaa:" + std::to_string(samples))) {}
 
 void MsaaLadder::Rung::add(const RunPlan& plan, std::size_t frame, const Image& reference, SurfaceColors colors,
@@ -57,7 +61,7 @@ std::vector<LadderRung> MsaaLadder::rungs(const RunPlan& plan, const std::vector
   if (!may_grow_) return measured;
   const auto is_beaten = [&] {
     for (std::size_t i = 0; i < rmses.size(); ++i)
-      if (plan.techniques[i].samples == 0 && rmses[i] < best_rmse(measured)) return true;
+      if (!is_rung(plan.techniques[i]) && rmses[i] < best_rmse(measured)) return true;
     return false;
   };
   for (const std::uint32_t samples : kMoreSamples) {

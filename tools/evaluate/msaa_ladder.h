@@ -12,6 +12,9 @@
 
 namespace beampipe {
 
+// Is it msaa:N without options? Variants with options have other errors than a ladder's msaa:N.
+bool is_rung(const Technique& technique);
+
 class MsaaLadder {
  public:
   // The rungs are msaa:N for each N in `samples`, in any order, rendered with these colours. If `samples` is empty,

@@ -1,6 +1,7 @@
 // What hard cases are built from: colours, a builder of traces, and the reasons of stated limits.
 #pragma once
 
+#include <array>
 #include <glm/glm.hpp>
 #include <map>
 #include <string>
@@ -79,10 +80,15 @@ inline const std::string kStream = "beam:order=stream,passes=0", kSmallStream = 
 // The limits of techniques that treat a mask without a gap as full coverage, if so many edges cut a pixel.
 std::map<std::string, StatedLimit> full_masks(int edges = 1);
 
-// The cases, in three files.
+// A perspective camera at the origin that looks along -z: x and y are in units of the distance. The triangles are red,
+// green and blue in turn.
+Trace perspective(double near, double far, const std::vector<std::array<glm::vec3, 3>>& triangles);
+
+// The cases, in four files.
 std::vector<HardCase> coverage_cases();
 std::vector<HardCase> depth_cases();
 std::vector<HardCase> frame_cases();
+std::vector<HardCase> surface_cases();
 std::vector<HardCase> heavy_cases();
 
 }  // namespace beampipe

@@ -5,10 +5,7 @@
 #include "tools/stress/case_parts.h"
 
 namespace beampipe {
-namespace {
 
-// A perspective camera at the origin that looks along -z: x and y are in units of the distance. The triangles are red,
-// green and blue in turn.
 Trace perspective(double near, double far, const std::vector<std::array<glm::vec3, 3>>& triangles) {
   Trace trace;
   Mesh mesh;
@@ -28,6 +25,8 @@ Trace perspective(double near, double far, const std::vector<std::array<glm::vec
   frame.draws.emplace_back();
   return trace;
 }
+
+namespace {
 
 HardCase near_plane() {
   return {"near_plane",

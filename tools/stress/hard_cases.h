@@ -18,6 +18,11 @@ struct StatedLimit {
   std::string reason;
 };
 
+// Every pixel's RGBA is finite and between these.
+struct PictureBounds {
+  glm::dvec4 low, high;
+};
+
 struct HardCase {
   std::string name;
   std::string what;  // what makes the case hard: a short phrase
@@ -27,6 +32,10 @@ struct HardCase {
   // By spec, or by the start of specs up to a ":" or ","; the longest one that fits counts. All other techniques must
   // be correct to the last bit of their formats.
   std::map<std::string, StatedLimit> limits;
+  // Of surfaces that vary, for which there is no exact picture: either what it may hold, or a trace whose picture must
+  // be the same to the last bit.
+  std::optional<PictureBounds> between = {};
+  std::optional<Trace> equals = {};
 };
 
 // An upper bound of the part of a pixel, 0..1, that a straight edge can cut off without touching any of so many mask

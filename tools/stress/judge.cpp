@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 #include <cstdlib>
+#include <limits>
 
 #include "pipeline/techniques/msaa.h"
 #include "simd/sample_pattern.h"
@@ -78,6 +79,29 @@ StatedLimit one_pass_limit(const StatedLimit* several_passes, int positions) {
   return {several_passes->error * 256 / positions, several_passes->reason};
 }
 
+// The largest error(x, y, channel, value) over the picture; NaN if one is NaN.
+template <class Error>
+double largest(const Image& image, Error&& error_of) {
+  double largest = 0;
+  const float* found = image.rgba.data();
+  for (int y = 0; y < static_cast<int>(image.height); ++y) {
+    for (int x = 0; x < static_cast<int>(image.width); ++x, found += 4) {
+      for (int c = 0; c < 4; ++c) {
+        const double error = error_of(x, y, c, static_cast<double>(found[c]));
+        if (std::isnan(largest) || error <= largest) continue;
+        largest = error;  // also if it is NaN
+      }
+    }
+  }
+  return largest;
+}
+
+// How far a number is from [low, high]; NaN if it is not finite.
+double distance_from(double number, double low, double high) {
+  if (!std::isfinite(number)) return std::numeric_limits<double>::quiet_NaN();
+  return std::max({low - number, number - high, 0.0});
+}
+
 }  // namespace
 
 const ExactPicture& Judge::areas() {
@@ -88,23 +112,30 @@ const ExactPicture& Judge::areas() {
   return *areas_;
 }
 
-Verdict Judge::judge(const Technique& technique, const RunOptions& options) {
+double Judge::largest_error(const Technique& technique, const RunOptions& options) {
+  const Image image = technique.render(case_.trace, 0, options).image;
+  if (case_.between)
+    return largest(image, [&](int, int, int c, double found) {
+      return distance_from(found, case_.between->low[c], case_.between->high[c]);
+    });
+  if (case_.equals) {
+    const std::vector<float> same = technique.render(*case_.equals, 0, options).image.rgba;
+    return largest(image, [at = same.begin()](int, int, int, double found) mutable { return std::abs(found - *at++); });
+  }
   const SamplePlaces places = places_of(technique.spec);
   const bool sampled = !places.empty() && !case_.everywhere;
   const ExactPicture samples = sampled ? exact_samples(case_.trace, case_.trace.frames[0], places) : ExactPicture{};
   const ExactPicture& truth = sampled ? samples : areas();
-  const Image image = technique.render(case_.trace, 0, options).image;
+  return largest(image, [&](int x, int y, int c, double found) { return std::abs(found - truth.at(x, y)[c]); });
+}
 
+Verdict Judge::judge(const Technique& technique, const RunOptions& options) {
   Verdict verdict;
-  const float* found = image.rgba.data();
-  for (int y = 0; y < static_cast<int>(image.height); ++y) {
-    for (int x = 0; x < static_cast<int>(image.width); ++x, found += 4) {
-      for (int c = 0; c < 4; ++c) {
-        const double error = std::abs(static_cast<double>(found[c]) - truth.at(x, y)[c]);
-        if (std::isnan(verdict.error) || error <= verdict.error) continue;
-        verdict.error = error;  // also if it is NaN
-      }
-    }
+  verdict.error = largest_error(technique, options);
+  if (case_.equals) {
+    const StatedLimit* stated = stated_limit(case_, technique.spec);
+    if (stated) verdict.limit = stated->error, verdict.reason = stated->reason;
+    return verdict;
   }
   verdict.limit = format_limit(technique.spec);
   if (const int positions = one_pass_positions(technique.spec)) {

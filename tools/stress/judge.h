@@ -25,7 +25,8 @@ struct Verdict {
   bool passes() const { return error <= limit; }  // false for NaN
 };
 
-// Techniques that sample are compared with exact samples at the same places, all others with exact areas.
+// Techniques that sample are compared with exact samples at the same places, all others with exact areas. Pictures of
+// surfaces that vary are compared with what the case says about them.
 class Judge {
  public:
   explicit Judge(const HardCase& hard_case) : case_(hard_case) {}
@@ -34,6 +35,7 @@ class Judge {
 
  private:
   const ExactPicture& areas();
+  double largest_error(const Technique& technique, const RunOptions& options);
 
   const HardCase& case_;
   std::optional<ExactPicture> areas_;  // computed when it is first needed

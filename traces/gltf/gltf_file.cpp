@@ -17,7 +17,8 @@ namespace {
 namespace fs = std::filesystem;
 
 const std::set<std::string_view> kExtensionsRead = {"KHR_lights_punctual", "KHR_materials_emissive_strength",
-                                                    "KHR_materials_unlit", "KHR_mesh_quantization"};
+                                                    "KHR_materials_unlit", "KHR_mesh_quantization",
+                                                    "KHR_texture_transform"};
 
 std::uint32_t little_endian(std::string_view bytes, std::size_t at) {
   std::uint32_t value = 0;

@@ -185,8 +185,10 @@ class GltfImport {
       } else if (frame.lighting.lights.size() == kMostLights) {
         if (is_first) ++not_read()["light after the first " + std::to_string(kMostLights)];
       } else if (glm::length(back) > 0) {
-        frame.lighting.lights.push_back(
-            {.direction = glm::vec3(-glm::normalize(back)), .color = color_of(light, file_.place("lights", i))});
+        NotRead in_later_frames;
+        const glm::vec3 color =
+            limited_light(color_of(light, file_.place("lights", i)), is_first ? not_read() : in_later_frames);
+        frame.lighting.lights.push_back({.direction = glm::vec3(-glm::normalize(back)), .color = color});
       }
     }
   }

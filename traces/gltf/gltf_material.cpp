@@ -79,11 +79,41 @@ AlphaMode alpha_mode_of(const std::string& name, const std::string& where) {
   fail_trace(where + "/alphaMode", "OPAQUE, MASK or BLEND", in_quotes(name));
 }
 
+double number_of(const tinygltf::Value& value, const std::string& where) {
+  constexpr double kMost = 1e9;
+  const double number = value.IsNumber() ? value.GetNumberAsDouble() : 2 * kMost;
+  if (!(std::abs(number) <= kMost)) fail_trace(where, "a number from -1e9 to 1e9", "another value");
+  return number;
+}
+
+// An array of two numbers under a key.
+glm::dvec2 pair_of(const tinygltf::Value& object, const std::string& key, const glm::dvec2& otherwise,
+                   const std::string& where) {
+  if (!object.Has(key)) return otherwise;
+  const tinygltf::Value& value = object.Get(key);
+  if (!value.IsArray() || value.ArrayLen() != 2) fail_trace(where + "/" + key, "two numbers", "another value");
+  return {number_of(value.Get(0), where + "/" + key), number_of(value.Get(1), where + "/" + key)};
+}
+
 }  // namespace
+
+glm::vec2 GltfUvs::operator()(const glm::vec2& uv) const {
+  constexpr double kMost = 1e30;  // a float holds it
+  const glm::dvec2 scaled = scale * glm::dvec2(uv);
+  const double c = std::cos(rotation), s = std::sin(rotation);
+  const glm::dvec2 turned(c * scaled.x + s * scaled.y, c * scaled.y - s * scaled.x);
+  return glm::vec2(glm::clamp(turned + offset, -kMost, kMost));
+}
+
+glm::vec3 limited_light(const glm::vec3& light, NotRead& not_read) {
+  if (std::max({light.r, light.g, light.b}) > kMostColor) ++not_read["light above 65504"];
+  return glm::min(light, kMostColor);
+}
 
 std::uint32_t GltfMaterials::material(int index, const std::string& named_by) {
   if (const auto found = materials_.find(index); found != materials_.end()) return found->second;
   Material material;
+  uvs_.push_back({GltfUvs{.set = 0}, GltfUvs{.set = 1}});
   if (index < 0) {
     material.metallic = 1;  // glTF's default, as below
   } else {
@@ -101,33 +131,81 @@ Material GltfMaterials::read(const tinygltf::Material& from, const std::string& 
   const std::string base = where + "/pbrMetallicRoughness/baseColorFactor";
   if (pbr.baseColorFactor.size() != 4) fail_trace(base, "four numbers", std::to_string(pbr.baseColorFactor.size()));
   to.base_color = glm::vec4(color(pbr.baseColorFactor, 1, base), factor(pbr.baseColorFactor[3], 1, base));
-  to.base_texture = texture(pbr.baseColorTexture.index, pbr.baseColorTexture.texCoord, where);
+  std::vector<Wish> wishes;
+  read_texture(pbr.baseColorTexture, where + "/pbrMetallicRoughness/baseColorTexture", to.base_texture, wishes);
   to.metallic = factor(pbr.metallicFactor, 1, where + "/pbrMetallicRoughness/metallicFactor");
   to.roughness = factor(pbr.roughnessFactor, 1, where + "/pbrMetallicRoughness/roughnessFactor");
-  to.metallic_roughness_texture =
-      texture(pbr.metallicRoughnessTexture.index, pbr.metallicRoughnessTexture.texCoord, where);
-  to.normal_texture = texture(from.normalTexture.index, from.normalTexture.texCoord, where);
-  to.normal_scale = static_cast<float>(from.normalTexture.scale);
-  if (!std::isfinite(to.normal_scale)) fail_trace(where + "/normalTexture/scale", "a finite number", "another one");
+  read_texture(pbr.metallicRoughnessTexture, where + "/pbrMetallicRoughness/metallicRoughnessTexture",
+               to.metallic_roughness_texture, wishes);
+  read_texture(from.normalTexture, where + "/normalTexture", to.normal_texture, wishes);
+  if (!std::isfinite(from.normalTexture.scale))
+    fail_trace(where + "/normalTexture/scale", "a finite number", "another one");
+  if (std::abs(from.normalTexture.scale) > kMostNormalScale) ++not_read_["normalTexture scale beyond 1000"];
+  to.normal_scale = std::clamp(static_cast<float>(from.normalTexture.scale), -kMostNormalScale, kMostNormalScale);
   if (!from.emissiveFactor.empty()) to.emissive = color(from.emissiveFactor, kUnbounded, where + "/emissiveFactor");
-  to.emissive_texture = texture(from.emissiveTexture.index, from.emissiveTexture.texCoord, where);
+  read_texture(from.emissiveTexture, where + "/emissiveTexture", to.emissive_texture, wishes);
+  uvs_.back() = place_uvs(wishes);
   if (const auto strength = from.extensions.find("KHR_materials_emissive_strength");
       strength != from.extensions.end() && strength->second.Has("emissiveStrength")) {
     const tinygltf::Value& value = strength->second.Get("emissiveStrength");
     const std::string place = where + "/extensions/KHR_materials_emissive_strength/emissiveStrength";
     to.emissive *= factor(value.IsNumber() ? value.GetNumberAsDouble() : -1, kUnbounded, place);
   }
+  to.emissive = limited_light(to.emissive, not_read_);
   if (from.occlusionTexture.index >= 0) ++not_read_["occlusionTexture"];
   to.alpha_mode = alpha_mode_of(from.alphaMode, where);
-  to.alpha_cutoff = factor(from.alphaCutoff, kUnbounded, where + "/alphaCutoff");
+  const float cutoff = factor(from.alphaCutoff, kUnbounded, where + "/alphaCutoff");
+  to.alpha_cutoff = std::min(cutoff, 1.0f);
+  if (to.alpha_mode == AlphaMode::mask && cutoff > 1) to.base_color.a = 0;  // glTF: nothing of it is visible
   to.double_sided = from.doubleSided;
   to.unlit = from.extensions.contains("KHR_materials_unlit");
   return to;
 }
 
-// `index` is -1 where there is no texture.
-std::optional<Texture> GltfMaterials::texture(int index, int uv_set, const std::string& where) {
-  if (index < 0) return {};
+template <class TextureInfo>
+void GltfMaterials::read_texture(const TextureInfo& info, const std::string& where, std::optional<Texture>& to,
+                                 std::vector<Wish>& wishes) {
+  if (info.index < 0) return;  // there is no texture
+  int set = info.texCoord;
+  GltfUvs uvs;
+  if (const auto found = info.extensions.find("KHR_texture_transform"); found != info.extensions.end()) {
+    const std::string place = where + "/extensions/KHR_texture_transform";
+    const tinygltf::Value& transform = found->second;
+    uvs.offset = pair_of(transform, "offset", uvs.offset, place);
+    uvs.scale = pair_of(transform, "scale", uvs.scale, place);
+    if (transform.Has("rotation")) uvs.rotation = number_of(transform.Get("rotation"), place + "/rotation");
+    if (transform.Has("texCoord")) set = static_cast<int>(number_of(transform.Get("texCoord"), place + "/texCoord"));
+  }
+  if (set < 0 || set > 1) {
+    ++not_read_["texture with texCoord above 1"];
+    return;
+  }
+  uvs.set = static_cast<std::uint32_t>(set);
+  to = texture(info.index, where);
+  if (to) wishes.push_back({&to, uvs});
+}
+
+// Gives each texture one of a mesh's two sets. Coordinates that are not moved keep their number.
+std::array<GltfUvs, 2> GltfMaterials::place_uvs(const std::vector<Wish>& wishes) {
+  std::array<std::optional<GltfUvs>, 2> taken;
+  for (const bool moved : {false, true}) {
+    for (const Wish& wish : wishes) {
+      if (wish.uvs.is_moved() != moved) continue;
+      std::uint32_t set = wish.uvs.set;
+      if (taken[set] && *taken[set] != wish.uvs) set = 1 - set;
+      if (taken[set] && *taken[set] != wish.uvs) {
+        ++not_read_["KHR_texture_transform beside two others"];
+        set = wish.uvs.set;
+      } else {
+        taken[set] = wish.uvs;
+      }
+      (*wish.texture)->uv_set = set;
+    }
+  }
+  return {taken[0].value_or(GltfUvs{.set = 0}), taken[1].value_or(GltfUvs{.set = 1})};
+}
+
+std::optional<Texture> GltfMaterials::texture(int index, const std::string& where) {
   const tinygltf::Model& model = file_.model;
   const std::size_t i = checked_index(index, model.textures.size(), where, "textures");
   const tinygltf::Texture& from = model.textures[i];
@@ -136,12 +214,7 @@ std::optional<Texture> GltfMaterials::texture(int index, int uv_set, const std::
     ++not_read_["texture without a PNG or JPEG"];
     return {};
   }
-  if (uv_set < 0 || uv_set > 1) {
-    ++not_read_["texture with texCoord above 1"];
-    return {};
-  }
   Texture texture;
-  texture.uv_set = static_cast<std::uint32_t>(uv_set);
   if (from.sampler >= 0) {
     const std::size_t s = checked_index(from.sampler, model.samplers.size(), place, "samplers");
     texture.wrap_u = wrap_of(model.samplers[s].wrapS, file_.place("samplers", s));

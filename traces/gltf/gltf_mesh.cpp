@@ -209,6 +209,19 @@ class PrimitiveReader {
   std::vector<std::uint32_t> used_;  // those that triangles use
 };
 
+// Gives the mesh the coordinates that its material's textures read, each with its transform.
+void transform_uvs(Mesh& mesh, const std::array<GltfUvs, 2>& uvs, GltfBudget& budget) {
+  if (uvs == std::array{GltfUvs{.set = 0}, GltfUvs{.set = 1}}) return;
+  const std::vector<glm::vec2> read[2] = {std::move(mesh.uvs[0]), std::move(mesh.uvs[1])};
+  for (std::size_t set = 0; set < 2; ++set) {
+    const std::vector<glm::vec2>& from = read[uvs[set].set];
+    budget.take(from.size(), 2);
+    mesh.uvs[set] = from;
+    if (!uvs[set].is_moved()) continue;
+    for (glm::vec2& uv : mesh.uvs[set]) uv = uvs[set](uv);
+  }
+}
+
 // Gives the mesh what its material needs: texture coordinates, and tangents for a normal map.
 void complete(Mesh& mesh, const Material& material, NotRead& not_read) {
   bool lacks_uvs = false;
@@ -297,6 +310,7 @@ std::optional<GltfPrimitive> read_primitive(const GltfFile& file, std::size_t me
   const bool is_flat = !reader.has("NORMAL") && material.normal_texture;  // a normal map bends a normal of each vertex
   if (is_flat) reader.split_vertices(to.mesh);
   reader.read_vertices(to);
+  transform_uvs(to.mesh, materials.uvs(index), budget);
   if (is_flat) add_flat_normals(to.mesh);
   to.double_sided = material.double_sided;
   to.mesh.colors.assign(to.mesh.triangles.size(), glm::vec3(material.base_color));

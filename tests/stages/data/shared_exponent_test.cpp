@@ -35,6 +35,12 @@ TEST(SharedExponent, IsCloseToTheColor) {
   }
 }
 
+TEST(SharedExponent, NegativeChannelsBecomeBlack) {
+  const glm::vec3 kept = SharedExponent({1.0f, -0.5f, -1e30f}, 0.5f);
+  EXPECT_EQ(kept, glm::vec3(1, 0, 0));
+  EXPECT_EQ(glm::vec3(SharedExponent({-1.0f, -2.0f, -3.0f}, 0.5f)), glm::vec3(0.0f));
+}
+
 TEST(SharedExponent, BlackIsExact) {
   EXPECT_EQ(glm::vec3(SharedExponent(glm::vec3(0.0f), 0x1p-8f)), glm::vec3(0.0f));
   EXPECT_EQ(glm::vec3(SharedExponent()), glm::vec3(0.0f));

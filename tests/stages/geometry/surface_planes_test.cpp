@@ -364,6 +364,42 @@ TEST(SurfacePlanes, VerticesKnowTheWayToTheEye) {
     for (int c = 0; c < 3; ++c) EXPECT_NEAR(found.vertices[i].to_eye[c], -trace.meshes[0].positions[i][c], 1e-5);
 }
 
+// A projection without depth has no inverse, but it has an eye.
+TEST(SurfacePlanes, TheEyeOfAProjectionThatHasNoInverse) {
+  Trace trace = scene_of({{-1, -1, -3}, {1, -1, -3}, {0, 1, -3}}, 1, 10, kPlain);
+  trace.frames[0].view[3] = glm::dvec4(0.5, -0.25, 2, 1);
+  for (const double depth : {0.0, 0.5}) {  // everywhere, in parts of w
+    for (int column = 0; column < 4; ++column)
+      trace.frames[0].projection[column][2] = depth * trace.frames[0].projection[column][3];
+    StageCounters counters;
+    const SetupTriangles found = vertex_setup(trace, trace.frames[0], counters);
+    ASSERT_EQ(found.triangles.size(), 1u);
+    const glm::dvec3 eye(-0.5, 0.25, -2);
+    for (std::size_t i = 0; i < 3; ++i)
+      for (int c = 0; c < 3; ++c)
+        EXPECT_NEAR(found.vertices[i].to_eye[c], eye[c] - trace.meshes[0].positions[i][c], 1e-5);
+  }
+}
+
+// Its square must be finite, because shading normalises it.
+TEST(SurfacePlanes, TheWayToTheEyeIsAsLongAsFloatsCanSquare) {
+  Trace trace = scene_of({{-1, -1, -3}, {1, -1, -3}, {0, 1, -3}}, 1, 10, kPlain);
+  for (const double scale : {1e-30, 1e30, 1e60, 1e150}) {
+    Trace scaled = trace;
+    for (int i = 0; i < 3; ++i) scaled.frames[0].view[i] /= scale;
+    for (int i = 0; i < 3; ++i) scaled.frames[0].draws[0].transform[i] *= scale;
+    StageCounters counters;
+    const SetupTriangles found = vertex_setup(scaled, scaled.frames[0], counters);
+    ASSERT_EQ(found.triangles.size(), 1u) << scale;
+    for (std::size_t i = 0; i < 3; ++i) {
+      const glm::vec3 to_eye = found.vertices[i].to_eye;
+      EXPECT_TRUE(std::isfinite(glm::dot(to_eye, to_eye))) << scale;
+      const glm::vec3 straight = -trace.meshes[0].positions[i];
+      EXPECT_NEAR(glm::dot(glm::normalize(glm::dvec3(to_eye)), glm::normalize(glm::dvec3(straight))), 1, 1e-6) << scale;
+    }
+  }
+}
+
 // A planar shadow: the draw's transform is singular.
 TEST(SurfacePlanes, AFlattenedMeshHasFiniteNormals) {
   SurfaceTrace scene(8, 8);

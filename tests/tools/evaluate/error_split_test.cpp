@@ -121,6 +121,21 @@ TEST_F(ErrorSplitTest, OneColourHasErrorsOfVisibilityAlone) {
   }
 }
 
+// Only the ladder's own techniques have the rate of their name.
+TEST_F(ErrorSplitTest, VariantsOfMsaaGetTheirRatesByTheirErrors) {
+  // A textured triangle with slanted edges, whose fragments at its edges are shaded elsewhere at the centroid.
+  write_varying_trace(folder_, {R"({"mesh": "wall", "transform": [0.8,-0.2,0,0, 0.2,0.8,0,0, 0,0,1,0, 0.3,0.3,0,1]})"});
+  const Json json = compare({"msaa:8", "msaa:8,at=centroid", "msaa:8,prepass", "--ladder", "1,2,8,64"});
+  const auto rmse = [&](int i) { return json["results"][i]["error"]["rmse"].get<double>(); };
+  const auto rate = [&](int i) { return json["results"][i]["equivalent_msaa"].get<double>(); };
+  EXPECT_EQ(rate(0), 8.0);
+  ASSERT_NE(rmse(1), rmse(0));
+  EXPECT_EQ(rate(1) > 8.0, rmse(1) < rmse(0)) << rate(1);
+  EXPECT_NE(rate(1), 8.0);
+  EXPECT_EQ(rmse(2), rmse(0)) << "the picture is the same";
+  EXPECT_EQ(rate(2), 8.0);
+}
+
 // Texture on the left and an outline on the right: squares add up to the square.
 TEST_F(ErrorSplitTest, PartsInDifferentPixelsAreTheLegsOfTheError) {
   write_varying_trace(folder_, {R"({"mesh": "left"}, {"mesh": "sliver"})"});

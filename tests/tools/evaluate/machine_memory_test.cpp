@@ -38,6 +38,50 @@ TEST(MachineMemory, OfTrianglesThatAreDrawnAgainAndAgainIsAskedForBeforeItIsTake
   EXPECT_NE(refusal(trace, "beam", 64 * kGiB).find("900000000 triangles may need 102"), std::string::npos);
 }
 
+// A frame of one pixel and one triangle with a material.
+Trace varying_pixel() {
+  Trace trace;
+  trace.materials.resize(1);
+  trace.meshes.resize(1);
+  trace.meshes[0].positions.resize(3);
+  trace.meshes[0].triangles.resize(1);
+  trace.meshes[0].materials = {0};
+  trace.frames.resize(1);
+  trace.frames[0].width = trace.frames[0].height = 1;
+  trace.frames[0].draws.resize(1);
+  return trace;
+}
+
+// What the shader keeps for each material was not asked for.
+TEST(MachineMemory, OfMaterialsIsAskedForBeforeItIsTaken) {
+  Trace trace = varying_pixel();
+  EXPECT_EQ(refusal(trace, "beam", kGiB), "");
+  trace.materials.resize(1'000'000);
+  EXPECT_EQ(refusal(trace, "beam", 8 * kGiB), "");
+  const std::string refused = refusal(trace, "beam", kGiB / 2);
+  EXPECT_EQ(refused.find("beam: 1 x 1 pixels and 1 triangles, with 1000000 materials and 0 images, may need "), 0u)
+      << refused;
+  trace.materials[0].unlit = true;  // the triangle is flat, and no material is shaded
+  EXPECT_EQ(refusal(trace, "beam", kGiB / 2), "");
+}
+
+TEST(MachineMemory, OfTexturesAndVerticesIsAskedForBeforeItIsTaken) {
+  Trace trace = varying_pixel();
+  const std::uint64_t without = frame_memory(trace, trace.frames[0], 16);
+  trace.images.resize(2);  // of which one is used, in two colour spaces
+  for (TextureImage& image : trace.images) image = {"", 1024, 1024, std::vector<glm::u8vec4>(1 << 20)};
+  trace.materials[0].base_texture = trace.materials[0].emissive_texture = Texture{.image = 1};
+  const std::uint64_t srgb = frame_memory(trace, trace.frames[0], 16) - without;
+  EXPECT_GE(srgb, (1u << 20) * (4 * 4 / 3 + 16u));
+  EXPECT_LE(srgb, (1u << 20) * 32u);
+  trace.materials[0].normal_texture = Texture{.image = 1};
+  EXPECT_EQ(frame_memory(trace, trace.frames[0], 16) - without, 2 * srgb);
+
+  Trace vertices = varying_pixel();
+  vertices.meshes[0].positions.resize(1003);
+  EXPECT_EQ(frame_memory(vertices, vertices.frames[0], 16) - without, 1000 * sizeof(SurfaceVertex));
+}
+
 TEST(MachineMemory, IsKnown) { EXPECT_GT(machine_memory(), kGiB / 4); }
 
 }  // namespace

@@ -1,0 +1,16 @@
+// What a user should know about a trace before looking at its pictures.
+#pragma once
+
+#include <cstddef>
+#include <string>
+#include <vector>
+
+#include "traces/trace.h"
+
+namespace beampipe {
+
+// One line about the frames that draw surfaces which only light could show, and have neither lights nor ambient light:
+// such surfaces are black. Empty if no frame does. `file`: the trace's name for the line.
+std::string note_on_darkness(const Trace& trace, const std::vector<std::size_t>& frames, const std::string& file);
+
+}  // namespace beampipe
