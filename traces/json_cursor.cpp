@@ -14,7 +14,7 @@ namespace {
 
 constexpr double kNan = std::numeric_limits<double>::quiet_NaN();
 
-std::string names_of(std::initializer_list<std::string_view> names) {
+std::string names_of(std::span<const std::string_view> names) {
   std::string text;
   for (std::string_view name : names) text += (text.empty() ? "" : ", ") + in_quotes(name);
   return text;
@@ -70,7 +70,7 @@ void JsonCursor::expect_keys(std::initializer_list<std::string_view> known) cons
   expect_object();
   for (const auto& [key, value] : value_->members())
     if (std::find(known.begin(), known.end(), key) == known.end())
-      at(value).fail("one of the keys " + names_of(known), in_quotes(key));
+      at(value).fail("one of the keys " + names_of({known.begin(), known.size()}), in_quotes(key));
 }
 
 bool JsonCursor::has(std::string_view key) const {
@@ -148,7 +148,7 @@ std::string JsonCursor::string() const {
   return value_->get<std::string>();
 }
 
-std::size_t JsonCursor::choice(std::initializer_list<std::string_view> names) const {
+std::size_t JsonCursor::choice(std::span<const std::string_view> names) const {
   const auto name =
       value_->is_string() ? std::find(names.begin(), names.end(), value_->get<std::string>()) : names.end();
   if (name == names.end()) fail("one of " + names_of(names));

@@ -5,6 +5,7 @@
 #include <glm/glm.hpp>
 #include <initializer_list>
 #include <optional>
+#include <span>
 #include <string>
 #include <string_view>
 #include <utility>
@@ -32,6 +33,7 @@ class JsonCursor {
   std::vector<JsonCursor> elements() const;
 
   bool is_null() const { return value_->is_null(); }
+  bool is_object() const { return value_->is_object(); }
   double number() const;
   double number_between(double low, double high) const;  // low < number < high
   float real(float low, float high) const;               // low..high
@@ -39,7 +41,10 @@ class JsonCursor {
   std::uint32_t integer(std::uint32_t low, std::uint32_t high) const;
   bool boolean() const;
   std::string string() const;
-  std::size_t choice(std::initializer_list<std::string_view> names) const;  // index of the string in `names`
+  std::size_t choice(std::initializer_list<std::string_view> names) const {  // index of the string in `names`
+    return choice(std::span(names.begin(), names.size()));
+  }
+  std::size_t choice(std::span<const std::string_view> names) const;
 
   glm::dvec3 vec3() const;
   glm::vec3 color() const;  // each 0..kMostColor

@@ -12,11 +12,14 @@
 #include <string>
 #include <vector>
 
+#include "traces/capture_record.h"
+#include "traces/draw_state.h"
 #include "traces/material.h"
 
 namespace beampipe {
 
-enum class Cull { none, back, front };  // front faces are counter-clockwise in clip space (y up)
+// Front faces are counter-clockwise in the picture, unless a draw says otherwise.
+enum class Cull { none, back, front };
 enum class Shading { unlit, lambert };
 
 inline constexpr std::uint32_t kNoMaterial = ~0u;
@@ -26,6 +29,7 @@ inline constexpr glm::vec3 kDefaultColor{0.8f};  // of flat triangles to which n
 struct Mesh {
   std::string name;
   std::vector<glm::vec3> positions;
+  std::vector<float> ws;              // w of each position, which is homogeneous; empty: 1
   std::vector<glm::uvec3> triangles;  // indices into positions
   std::vector<glm::vec3> colors;      // one per triangle, linear RGB (the OBJ's Kd); of flat triangles
 
@@ -47,6 +51,7 @@ struct Draw {
   Shading shading = Shading::unlit;  // of flat triangles
   std::optional<std::uint32_t> material =
       {};  // replaces the mesh's materials: index into Trace::materials; not with kd
+  DrawState state{};
 };
 
 // A pinhole camera. Lengths in scene units, 0 < near < far; fovy is the full vertical angle, in degrees, 0 < fovy <
@@ -82,9 +87,11 @@ struct Frame {
   glm::dmat4 view{1.0}, projection{1.0};
   Lighting lighting;
   std::vector<Draw> draws;
+  CaptureRecord capture{};
 };
 
 struct Trace {
+  std::optional<Source> source{};  // of a trace that was captured
   std::vector<TextureImage> images;
   std::vector<Material> materials;
   std::vector<Mesh> meshes;

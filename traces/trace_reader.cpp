@@ -3,6 +3,9 @@
 #include <optional>
 #include <utility>
 
+#include "traces/array_reader.h"
+#include "traces/capture_reader.h"
+#include "traces/draw_state_reader.h"
 #include "traces/json_cursor.h"
 #include "traces/model_import.h"
 #include "traces/side_file.h"
@@ -26,7 +29,8 @@ struct Reader {
   const ReadOptions& options;
   int version;
   Trace trace;
-  NameIndex materials{}, meshes{};
+  ArrayReader arrays{};
+  NameIndex images{}, materials{}, meshes{};
 };
 
 template <class Vector>
@@ -48,21 +52,23 @@ void normalize_all(const JsonCursor& at, std::vector<Vector>& vectors) {
   }
 }
 
-void read_attributes(const JsonCursor& at, Mesh& mesh) {
+void read_attributes(const JsonCursor& at, const ArrayReader& arrays, Mesh& mesh) {
   if (const auto normals = at.find("normals")) {
-    mesh.normals = per_position(*normals, normals->vec3s(), mesh);
+    mesh.normals = per_position(*normals, arrays.vec3s(*normals), mesh);
     normalize_all(*normals, mesh.normals);
   }
   if (const auto tangents = at.find("tangents")) {
-    mesh.tangents = per_position(*tangents, tangents->vec4s(), mesh);
+    mesh.tangents = per_position(*tangents, arrays.vec4s(*tangents), mesh);
     normalize_all(*tangents, mesh.tangents);
     for (std::size_t i = 0; i < mesh.tangents.size(); ++i) {
       if (std::abs(mesh.tangents[i].w) != 1) tangents->fail("w of 1 or -1", "another at position " + std::to_string(i));
     }
   }
-  if (const auto uvs = at.find("uv0")) mesh.uvs[0] = per_position(*uvs, uvs->vec2s(), mesh);
-  if (const auto uvs = at.find("uv1")) mesh.uvs[1] = per_position(*uvs, uvs->vec2s(), mesh);
-  if (const auto colors = at.find("vertex_colors")) mesh.vertex_colors = per_position(*colors, colors->rgbas(), mesh);
+  if (const auto uvs = at.find("uv0")) mesh.uvs[0] = per_position(*uvs, arrays.vec2s(*uvs), mesh);
+  if (const auto uvs = at.find("uv1")) mesh.uvs[1] = per_position(*uvs, arrays.vec2s(*uvs), mesh);
+  if (const auto colors = at.find("vertex_colors")) {
+    mesh.vertex_colors = per_position(*colors, arrays.rgbas(*colors), mesh);
+  }
 }
 
 // "materials" lists those that the mesh uses, and "material_of_triangle" says which of them each triangle has.
@@ -81,39 +87,53 @@ void read_mesh_materials(const JsonCursor& at, const Reader& reader, Mesh& mesh)
   }
   mesh.materials.assign(mesh.triangles.size(), materials[0]);
   if (!of_triangle) return;
-  const std::vector<JsonCursor> numbers = of_triangle->elements();
+  const std::vector<std::uint32_t> numbers =
+      reader.arrays.integers(*of_triangle, static_cast<std::uint32_t>(materials.size()));
   if (numbers.size() != mesh.triangles.size()) {
     of_triangle->fail("an array of " + std::to_string(mesh.triangles.size()) + " numbers, one for each triangle");
   }
-  const auto last = static_cast<std::uint32_t>(materials.size() - 1);
-  for (std::size_t i = 0; i < numbers.size(); ++i) mesh.materials[i] = materials[numbers[i].integer(0, last)];
+  for (std::size_t i = 0; i < numbers.size(); ++i) mesh.materials[i] = materials[numbers[i]];
+}
+
+// "positions4" has the homogeneous ones.
+void read_positions(const JsonCursor& at, const ArrayReader& arrays, Mesh& mesh) {
+  const auto homogeneous = at.find("positions4");
+  if (!homogeneous) {
+    mesh.positions = arrays.vec3s(at["positions"]);
+    return;
+  }
+  if (at.has("positions")) homogeneous->fail("either \"positions\" or \"positions4\"", "both");
+  for (const glm::vec4& position : arrays.vec4s(*homogeneous)) {
+    mesh.positions.emplace_back(position);
+    mesh.ws.push_back(position.w);
+  }
 }
 
 Mesh read_inline_mesh(const JsonCursor& at, const std::string& name, const Reader& reader) {
   if (reader.version == 1) {
     at.expect_keys({"positions", "indices", "colors"});
   } else {
-    at.expect_keys({"positions", "indices", "colors", "normals", "tangents", "uv0", "uv1", "vertex_colors", "materials",
-                    "material_of_triangle"});
+    at.expect_keys({"positions", "positions4", "indices", "colors", "normals", "tangents", "uv0", "uv1",
+                    "vertex_colors", "materials", "material_of_triangle"});
   }
   Mesh mesh;
   mesh.name = name;
-  mesh.positions = at["positions"].vec3s();
-  mesh.triangles = at["indices"].triples(static_cast<std::uint32_t>(mesh.positions.size()));
+  read_positions(at, reader.arrays, mesh);
+  mesh.triangles = reader.arrays.triples(at["indices"], static_cast<std::uint32_t>(mesh.positions.size()));
   mesh.colors.assign(mesh.triangles.size(), kDefaultColor);
   if (const auto colors = at.find("colors")) {
-    mesh.colors = colors->colors();
+    mesh.colors = reader.arrays.colors(*colors);
     if (mesh.colors.size() != mesh.triangles.size()) {
       colors->fail("an array of " + std::to_string(3 * mesh.triangles.size()) + " numbers, r, g, b for each triangle");
     }
   }
-  read_attributes(at, mesh);
+  read_attributes(at, reader.arrays, mesh);
   read_mesh_materials(at, reader, mesh);
   return mesh;
 }
 
 void add_mesh(const JsonCursor& at, const std::string& name, Reader& reader) {
-  if (!at.has("obj") && !at.has("positions") && !at.has("indices")) {
+  if (!at.has("obj") && !at.has("positions") && !at.has("positions4") && !at.has("indices")) {
     at.fail("the key \"obj\", or \"positions\" and \"indices\"", "none");
   }
   if (at.has("obj")) {
@@ -145,8 +165,10 @@ Camera read_camera(const JsonCursor& at) {
   return camera;
 }
 
-void read_view(const JsonCursor& at, Frame& frame) {
+// Without any of these, the meshes are in clip space.
+void read_view(const JsonCursor& at, int version, Frame& frame) {
   const bool has_matrices = at.has("view") || at.has("projection");
+  if (version > 1 && !has_matrices && !at.has("camera")) return;
   if (at.has("camera") == has_matrices) {
     at.fail("either \"camera\", or \"view\" and \"projection\"", has_matrices ? "both" : "neither");
   }
@@ -198,7 +220,7 @@ Draw read_draw(const JsonCursor& at, const Reader& reader, const Lighting& light
   if (reader.version == 1) {
     at.expect_keys({"mesh", "transform", "kd", "cull", "shading"});
   } else {
-    at.expect_keys({"mesh", "transform", "kd", "cull", "shading", "material"});
+    at.expect_keys({"mesh", "transform", "kd", "cull", "shading", "material", "state"});
   }
   Draw draw;
   draw.mesh = read_name(at["mesh"], reader.meshes, "the name of a mesh in /meshes");
@@ -215,6 +237,7 @@ Draw read_draw(const JsonCursor& at, const Reader& reader, const Lighting& light
     draw.material = read_name(*material, reader.materials, kMaterialName);
     expect_uvs(*material, reader.trace.materials[*draw.material], reader.trace.meshes[draw.mesh]);
   }
+  if (const auto state = at.find("state")) draw.state = read_draw_state(*state);
   return draw;
 }
 
@@ -222,14 +245,18 @@ Frame read_frame(const JsonCursor& at, const Reader& reader) {
   if (reader.version == 1) {
     at.expect_keys({"width", "height", "background", "camera", "view", "projection", "light", "draws"});
   } else {
-    at.expect_keys({"width", "height", "background", "camera", "view", "projection", "lights", "ambient", "draws"});
+    at.expect_keys({"width", "height", "background", "camera", "view", "projection", "lights", "ambient", "draws",
+                    "passes", "left_out", "captured"});
   }
   Frame frame;
   frame.width = at["width"].integer(1, kLargestSide);
   frame.height = at["height"].integer(1, kLargestSide);
   if (const auto background = at.find("background")) frame.background = background->color();
-  read_view(at, frame);
+  read_view(at, reader.version, frame);
   frame.lighting = read_lighting(at);
+  if (reader.version > 1) {
+    frame.capture = read_capture_record(at, frame, reader.trace.images, reader.images, reader.arrays);
+  }
   std::uint64_t triangles = 0;
   for (const JsonCursor& draw : at["draws"].elements()) {
     frame.draws.push_back(read_draw(draw, reader, frame.lighting));
@@ -257,12 +284,17 @@ Trace read_trace(const fs::path& file, const ReadOptions& options) {
   if (reader.version == 1) {
     root.expect_keys({"beampipe_trace", "meshes", "frames"});
   } else {
-    root.expect_keys({"beampipe_trace", "images", "materials", "meshes", "frames"});
+    root.expect_keys({"beampipe_trace", "source", "buffers", "images", "materials", "meshes", "frames"});
   }
   Trace& trace = reader.trace;
-  if (const auto images = root.find("images")) trace.images = read_images(*images, file, options);
+  if (const auto source = root.find("source")) trace.source = read_source(*source);
+  if (const auto buffers = root.find("buffers")) reader.arrays = ArrayReader(*buffers, file, options);
+  if (const auto images = root.find("images")) {
+    trace.images = read_images(*images, file, options);
+    reader.images = index_of(trace.images);
+  }
   if (const auto materials = root.find("materials")) {
-    trace.materials = read_materials(*materials, index_of(trace.images));
+    trace.materials = read_materials(*materials, reader.images);
     reader.materials = index_of(trace.materials);
   }
   for (const auto& [name, mesh] : root["meshes"].members()) add_mesh(mesh, name, reader);

@@ -1,58 +1,58 @@
 #include <algorithm>
-#include <charconv>
 #include <cmath>
-#include <cstring>
 #include <map>
 #include <set>
+#include <span>
 #include <string_view>
-#include <type_traits>
 
-#include "traces/atomic_file.h"
 #include "traces/base64.h"
+#include "traces/capture_writer.h"
+#include "traces/draw_state_writer.h"
 #include "traces/image_file.h"
-#include "traces/json.h"
-#include "traces/trace_io.h"
+#include "traces/trace_text.h"
 #include "traces/unit_vector.h"
 
 namespace beampipe {
 namespace {
 
-constexpr std::size_t kChunk = 1 << 20;  // bytes that are written at once
-
-bool has_surfaces(const Mesh& mesh) {
-  return !mesh.materials.empty() || !mesh.normals.empty() || !mesh.tangents.empty() || !mesh.uvs[0].empty() ||
-         !mesh.uvs[1].empty() || !mesh.vertex_colors.empty();
+bool needs_version_2(const Mesh& mesh) {
+  return !mesh.ws.empty() || !mesh.materials.empty() || !mesh.normals.empty() || !mesh.tangents.empty() ||
+         !mesh.uvs[0].empty() || !mesh.uvs[1].empty() || !mesh.vertex_colors.empty();
 }
 
-bool has_surfaces(const Frame& frame) {
+bool needs_version_2(const Frame& frame) {
   const auto& [lights, ambient] = frame.lighting;
   return lights.size() > 1 || (lights.size() == 1 && lights[0].color != glm::vec3(1.0f)) || ambient ||
-         std::ranges::any_of(frame.draws, [](const Draw& draw) { return draw.material.has_value(); });
+         frame.capture != CaptureRecord{} || std::ranges::any_of(frame.draws, [](const Draw& draw) {
+           return draw.material.has_value() || draw.state != DrawState{};
+         });
 }
 
-// Version 1 of the format knows no images, materials and vertex attributes, and one white light.
-int version_of(const Trace& trace) {
-  const auto has = [](const auto& items) {
-    return std::ranges::any_of(items, [](const auto& item) { return has_surfaces(item); });
+// Version 1 of the format knows flat triangles with three coordinates, one white light and the default state of draws.
+int version_of(const Trace& trace, ArrayStorage storage) {
+  const auto any = [](const auto& items) {
+    return std::ranges::any_of(items, [](const auto& item) { return needs_version_2(item); });
   };
-  const bool needs_2 = !trace.images.empty() || !trace.materials.empty() || has(trace.meshes) || has(trace.frames);
+  const bool needs_2 = storage == ArrayStorage::binary || trace.source || !trace.images.empty() ||
+                       !trace.materials.empty() || any(trace.meshes) || any(trace.frames);
   return needs_2 ? 2 : 1;
 }
 
 // The names of enumerators, in their order.
-constexpr const char* kWraps[] = {"repeat", "clamp", "mirror"};
-constexpr const char* kFilters[] = {"nearest", "linear"};
-constexpr const char* kMipFilters[] = {"none", "nearest", "linear"};
-constexpr const char* kAlphaModes[] = {"opaque", "mask", "blend"};
+constexpr std::string_view kWraps[] = {"repeat", "clamp", "mirror"};
+constexpr std::string_view kFilters[] = {"nearest", "linear"};
+constexpr std::string_view kMipFilters[] = {"none", "nearest", "linear"};
+constexpr std::string_view kAlphaModes[] = {"opaque", "mask", "blend"};
 
-class TraceWriter {
+class TraceWriter : TraceText {
  public:
-  explicit TraceWriter(const std::filesystem::path& file) : name_(file.string()), file_(file) {}
+  using TraceText::TraceText;
 
   void write(const Trace& trace) {
     check(trace);
-    version_ = version_of(trace);
+    version_ = version_of(trace, storage());
     put("{\"beampipe_trace\": " + std::to_string(version_));
+    if (trace.source) write_source(*this, *trace.source);
     if (!trace.images.empty()) {
       put(",\n\"images\": {");
       list(trace.images, [&](const TextureImage& image) { write_image(image); });
@@ -67,16 +67,13 @@ class TraceWriter {
     list(trace.meshes, [&](const Mesh& mesh) { write_mesh(mesh, trace.materials); });
     put("},\n\"frames\": [");
     list(trace.frames, [&](const Frame& frame) { write_frame(frame, trace); });
-    put("]}\n");
-    file_.write(buffer_);
-    file_.commit();
+    put("]");
+    finish_arrays();
+    put("}\n");
+    finish();
   }
 
  private:
-  [[noreturn]] void fail(const std::string& what) const {
-    throw std::runtime_error(name_ + ": cannot write the trace: " + what);
-  }
-
   void check(const Trace& trace) const {
     if (trace.frames.empty()) fail("it has no frame");
     check_names(trace.images, "images");
@@ -93,6 +90,9 @@ class TraceWriter {
     }
     for (const Mesh& mesh : trace.meshes) check(mesh, trace.materials.size());
     for (const Frame& frame : trace.frames) {
+      if (frame.capture.pictures.color && *frame.capture.pictures.color >= trace.images.size()) {
+        fail("a captured picture names no image");
+      }
       for (const Draw& draw : frame.draws) {
         if (draw.mesh >= trace.meshes.size()) fail("a draw names no mesh");
         if (draw.material && *draw.material >= trace.materials.size()) fail("a draw names no material");
@@ -110,6 +110,7 @@ class TraceWriter {
 
   void check(const Mesh& mesh, std::size_t materials) const {
     const std::string name = "mesh " + in_quotes(mesh.name);
+    if (!mesh.ws.empty() && mesh.ws.size() != mesh.positions.size()) fail(name + " lacks w of some positions");
     if (mesh.colors.size() != mesh.triangles.size()) fail(name + " lacks colours");
     if (!mesh.materials.empty() && mesh.materials.size() != mesh.triangles.size()) fail(name + " lacks materials");
     for (const std::uint32_t material : mesh.materials)
@@ -127,87 +128,6 @@ class TraceWriter {
     }
   }
 
-  void put(std::string_view text) {
-    buffer_ += text;
-    if (buffer_.size() < kChunk) return;
-    file_.write(buffer_);
-    buffer_.clear();
-  }
-
-  // `whose` is "a mesh" or the like, for the message.
-  void put_name(const char* whose, const std::string& name) {
-    try {
-      put(json_string(name));
-    } catch (const JsonError&) {
-      fail(std::string(whose) + "'s name is not UTF-8");
-    }
-  }
-
-  // The shortest text that a reader turns into the same bits.
-  void put_number(double value) {
-    if (!std::isfinite(value)) fail("a number in it is not finite");
-    char text[32];
-    const auto end = std::to_chars(text, text + sizeof text, value).ptr;
-    put({text, end});
-    if (value == 0 && std::signbit(value)) put(".0");  // a reader takes "-0" for an integer, which loses the sign
-  }
-
-  void put_number(float value) {
-    char text[32];
-    const auto end = std::to_chars(text, text + sizeof text, value).ptr;
-    double read = 0;
-    std::from_chars(text, end, read);  // a reader rounds to double and then to float, which may give another float
-    const bool same = std::isfinite(value) && value != 0 && static_cast<float>(read) == value;
-    same ? put({text, end}) : put_number(static_cast<double>(value));
-  }
-
-  void put_number(std::uint32_t value) { put(std::to_string(value)); }
-
-  template <typename Items, typename PutItem>
-  void list(const Items& items, PutItem put_item) {
-    const char* separator = "\n";
-    for (const auto& item : items) {
-      put(separator);
-      put_item(item);
-      separator = ",\n";
-    }
-  }
-
-  template <typename Vector>
-  void put_components(const Vector& vector) {
-    for (int i = 0; i < Vector::length(); ++i) {
-      if (i > 0) put(",");
-      put_number(vector[i]);
-    }
-  }
-
-  template <typename Vector>
-  void put_array(const Vector& vector) {
-    put("[");
-    put_components(vector);
-    put("]");
-  }
-
-  template <typename Vector>
-  void put_array(const std::vector<Vector>& vectors) {
-    put("[");
-    for (std::size_t i = 0; i < vectors.size(); ++i) {
-      if (i > 0) put(",");
-      put_components(vectors[i]);
-    }
-    put("]");
-  }
-
-  void put_array(const glm::dmat4& matrix) {
-    put_array(std::vector<glm::dvec4>{matrix[0], matrix[1], matrix[2], matrix[3]});
-  }
-
-  template <typename Vector>
-  void put_array(std::string_view key, const Vector& vector) {
-    put(key);
-    put_array(vector);
-  }
-
   // An image is part of the trace's own file, so that a trace stays one file, which appears whole or not at all and can
   // be moved. PNG keeps that small.
   void write_image(const TextureImage& image) {
@@ -217,41 +137,9 @@ class TraceWriter {
     put("\"}");
   }
 
-  // Members of an object that differ from what a reader takes when they are left out.
-  template <class Value>
-  void put_member(const char* key, const Value& value, const Value& otherwise) {
-    if (std::memcmp(&value, &otherwise, sizeof value) == 0) return;  // -0 is not 0
-    put_key(key);
-    if constexpr (std::is_same_v<Value, bool>) {
-      put(value ? "true" : "false");
-    } else if constexpr (std::is_arithmetic_v<Value>) {
-      put_number(value);
-    } else {
-      put_array(value);
-    }
-  }
-
-  template <class Enum>
-  void put_choice(const char* key, Enum value, Enum otherwise, const char* const* names) {
-    if (value == otherwise) return;
-    put_key(key);
-    put("\"");
-    put(names[static_cast<std::size_t>(value)]);
-    put("\"");
-  }
-
-  // Starts the next member of an object that is open.
-  void put_key(const char* key) {
-    put(has_members_ ? ", \"" : "\"");
-    put(key);
-    put("\": ");
-    has_members_ = true;
-  }
-
   void write_texture(const Texture& texture, const std::vector<TextureImage>& images) {
     const Texture defaults;
-    put("{");
-    has_members_ = false;
+    open_object();
     put_key("image");
     put_name("an image", images[texture.image].name);
     put_member("uv_set", texture.uv_set, defaults.uv_set);
@@ -261,15 +149,14 @@ class TraceWriter {
     put_choice("minify", texture.minify, defaults.minify, kFilters);
     put_choice("mip", texture.mip, defaults.mip, kMipFilters);
     put_member("anisotropy", texture.anisotropy, defaults.anisotropy);
-    put("}");
-    has_members_ = true;
+    close_object();
   }
 
   void write_material(const Material& material, const std::vector<TextureImage>& images) {
     const Material defaults;
     put_name("a material", material.name);
-    put(": {");
-    has_members_ = false;
+    put(": ");
+    open_object();
     put_member("base_color", material.base_color, defaults.base_color);
     put_member("metallic", material.metallic, defaults.metallic);
     put_member("roughness", material.roughness, defaults.roughness);
@@ -289,15 +176,21 @@ class TraceWriter {
 
   void write_mesh(const Mesh& mesh, const std::vector<Material>& materials) {
     put_name("a mesh", mesh.name);
-    put_array(": {\"positions\": ", mesh.positions);
-    put_array(",\n\"indices\": ", mesh.triangles);
+    if (mesh.ws.empty()) {
+      put_numbers(": {\"positions\": ", mesh.positions);
+    } else {
+      std::vector<glm::vec4> positions;
+      for (std::size_t i = 0; i < mesh.ws.size(); ++i) positions.emplace_back(mesh.positions[i], mesh.ws[i]);
+      put_numbers(": {\"positions4\": ", positions);
+    }
+    put_numbers(",\n\"indices\": ", mesh.triangles);
     const auto is_default = [](const glm::vec3& color) { return color == kDefaultColor; };
-    if (version_ == 1 || !std::ranges::all_of(mesh.colors, is_default)) put_array(",\n\"colors\": ", mesh.colors);
-    if (!mesh.normals.empty()) put_array(",\n\"normals\": ", mesh.normals);
-    if (!mesh.tangents.empty()) put_array(",\n\"tangents\": ", mesh.tangents);
-    if (!mesh.uvs[0].empty()) put_array(",\n\"uv0\": ", mesh.uvs[0]);
-    if (!mesh.uvs[1].empty()) put_array(",\n\"uv1\": ", mesh.uvs[1]);
-    if (!mesh.vertex_colors.empty()) put_array(",\n\"vertex_colors\": ", mesh.vertex_colors);
+    if (version_ == 1 || !std::ranges::all_of(mesh.colors, is_default)) put_numbers(",\n\"colors\": ", mesh.colors);
+    if (!mesh.normals.empty()) put_numbers(",\n\"normals\": ", mesh.normals);
+    if (!mesh.tangents.empty()) put_numbers(",\n\"tangents\": ", mesh.tangents);
+    if (!mesh.uvs[0].empty()) put_numbers(",\n\"uv0\": ", mesh.uvs[0]);
+    if (!mesh.uvs[1].empty()) put_numbers(",\n\"uv1\": ", mesh.uvs[1]);
+    if (!mesh.vertex_colors.empty()) put_numbers(",\n\"vertex_colors\": ", mesh.vertex_colors);
     if (!mesh.materials.empty()) write_materials_of(mesh, materials);
     put("}");
   }
@@ -305,9 +198,9 @@ class TraceWriter {
   // Those that the mesh uses, in the order of their first triangles, and which of them each triangle has.
   void write_materials_of(const Mesh& mesh, const std::vector<Material>& materials) {
     std::vector<std::uint32_t> used;
-    std::map<std::uint32_t, std::size_t> place;
+    std::map<std::uint32_t, std::uint32_t> place;
     for (const std::uint32_t material : mesh.materials)
-      if (place.emplace(material, used.size()).second) used.push_back(material);
+      if (place.emplace(material, static_cast<std::uint32_t>(used.size())).second) used.push_back(material);
     put(",\n\"materials\": [");
     for (std::size_t i = 0; i < used.size(); ++i) {
       if (i > 0) put(",");
@@ -315,12 +208,9 @@ class TraceWriter {
     }
     put("]");
     if (used.size() == 1) return;
-    put(",\n\"material_of_triangle\": [");
-    for (std::size_t i = 0; i < mesh.materials.size(); ++i) {
-      if (i > 0) put(",");
-      put(std::to_string(place[mesh.materials[i]]));
-    }
-    put("]");
+    std::vector<std::uint32_t> places;
+    for (const std::uint32_t material : mesh.materials) places.push_back(place[material]);
+    put_numbers(",\n\"material_of_triangle\": ", places);
   }
 
   void write_frame(const Frame& frame, const Trace& trace) {
@@ -335,7 +225,9 @@ class TraceWriter {
     version_ == 1 ? write_light(frame.lighting) : write_lighting(frame.lighting);
     put(",\n\"draws\": [");
     list(frame.draws, [&](const Draw& draw) { write_draw(draw, trace); });
-    put("]}");
+    put("]");
+    write_capture_record(*this, frame.capture, trace);
+    put("}");
   }
 
   void write_light(const Lighting& lighting) {
@@ -385,18 +277,17 @@ class TraceWriter {
       put(", \"material\": ");
       put_name("a material", trace.materials[*draw.material].name);
     }
+    if (draw.state != DrawState{}) write_draw_state(*this, draw.state);
     put("}");
   }
 
-  std::string name_;
-  AtomicFile file_;
-  std::string buffer_;
   int version_ = 1;
-  bool has_members_ = false;  // the object that is open has a member already
 };
 
 }  // namespace
 
-void write_trace(const Trace& trace, const std::filesystem::path& file) { TraceWriter(file).write(trace); }
+void write_trace(const Trace& trace, const std::filesystem::path& file, ArrayStorage storage) {
+  TraceWriter(file, storage).write(trace);
+}
 
 }  // namespace beampipe

@@ -27,6 +27,7 @@ void expect_same(const Mesh& a, const Mesh& b) {
   EXPECT_EQ(a.name, b.name);
   EXPECT_EQ(a.triangles, b.triangles);
   expect_same_bits(a.positions, b.positions);
+  expect_same_bits(a.ws, b.ws);
   expect_same_bits(a.colors, b.colors);
   expect_same_bits(a.normals, b.normals);
   expect_same_bits(a.tangents, b.tangents);
@@ -79,7 +80,9 @@ void expect_same(const Frame& a, const Frame& b) {
     EXPECT_EQ(a.draws[i].cull, b.draws[i].cull);
     EXPECT_EQ(a.draws[i].shading, b.draws[i].shading);
     EXPECT_EQ(a.draws[i].material, b.draws[i].material);
+    EXPECT_TRUE(a.draws[i].state == b.draws[i].state) << "draw " << i;
   }
+  EXPECT_TRUE(a.capture == b.capture);
 }
 
 void expect_same(const Trace& a, const Trace& b) {
@@ -87,6 +90,7 @@ void expect_same(const Trace& a, const Trace& b) {
     ASSERT_EQ(of_a.size(), of_b.size());
     for (std::size_t i = 0; i < of_a.size(); ++i) expect_same(of_a[i], of_b[i]);
   };
+  EXPECT_TRUE(a.source == b.source);
   all(a.images, b.images);
   all(a.materials, b.materials);
   all(a.meshes, b.meshes);
@@ -255,6 +259,72 @@ Trace random_surfaces(unsigned seed) {
   return trace;
 }
 
+// State of a draw, of which each item is the default or not.
+DrawState random_state(std::mt19937& random) {
+  const auto chance = [&] { return random() % 2 == 0; };
+  const auto below = [&](std::uint32_t count) { return random() % count; };
+  const auto number = [&] { return static_cast<float>(random() % 2001) / 1000 - 1; };
+  const auto compare = [&] { return Compare(below(8)); };
+  const auto operation = [&] { return StencilOperation(below(8)); };
+  DrawState state;
+  if (chance()) state.viewport = {number(), number(), 1 + std::abs(number()), 1.5f + number()};
+  if (chance()) state.scissor = {static_cast<int>(below(100)) - 50, 3, below(9), below(9)};
+  state.depth = {.test = chance(), .write = chance(), .function = compare(), .clip = chance()};
+  if (chance()) state.depth.near = std::abs(number());
+  if (chance()) state.depth.far = std::abs(number());
+  if (chance()) state.depth.bias = {number(), chance() ? number() : 0.0f, number()};
+  state.depth.cleared_before = chance();
+  state.front_is_clockwise = chance();
+  if (chance()) state.blend = {BlendFactor(below(12)), BlendFactor(below(12)), BlendOperation(below(5))};
+  if (chance()) state.color_mask = below(16);
+  if (chance()) state.stencil = {compare(), below(256), below(256), below(256), operation(), operation(), operation()};
+  return state;
+}
+
+// A frame as it is captured from a program.
+Trace random_capture(unsigned seed) {
+  std::mt19937 random(seed);
+  Trace trace = random_surfaces(seed);
+  for (Mesh& mesh : trace.meshes)
+    if (random() % 2 == 0)
+      for (std::size_t i = 0; i < mesh.positions.size(); ++i)
+        mesh.ws.push_back(static_cast<float>(random() % 100) / 10 - 5);
+  trace.source = {.program = "a \"program\"",
+                  .api = "OpenGL",
+                  .driver = "",
+                  .date = "2026-01-02",
+                  .tool = "",
+                  .shading = "vertex colours"};
+  if (seed % 2 == 0) trace.source->frame = seed;
+  Frame& frame = trace.frames[0];
+  frame.width = 3;
+  frame.height = 2;
+  for (Draw& draw : frame.draws) draw.state = random_state(random);
+  frame.capture.passes = {{"shadow map", 512, 512, 3, 99, false, "not shown"}, {"main", 3, 2, 6, 12, true, ""}};
+  frame.capture.left_out = {{"lines", 2, 40}};
+  trace.images.push_back({.name = "captured", .width = 3, .height = 2, .texels = {6, glm::u8vec4(7)}});
+  if (random() % 2 == 0) frame.capture.pictures.color = static_cast<std::uint32_t>(trace.images.size() - 1);
+  if (random() % 2 == 0) frame.capture.pictures.depth = {0, 0.25f, 0.5f, 0.1f, 1, 1};
+  if (random() % 2 == 0) frame.capture.pictures.clear_depth = 0;
+  return trace;
+}
+
+// A frame, a mesh with one triangle, and what `add` adds.
+template <class Add>
+Trace small_trace(Add add) {
+  Trace trace;
+  trace.meshes.resize(1);
+  trace.meshes[0].name = "m";
+  trace.meshes[0].positions.resize(1);
+  trace.meshes[0].triangles.resize(1);
+  trace.meshes[0].colors = {kDefaultColor};
+  trace.frames.resize(1);
+  trace.frames[0].width = trace.frames[0].height = 1;
+  trace.frames[0].draws.resize(1);
+  add(trace);
+  return trace;
+}
+
 class TraceWriterTest : public FolderTest {
  protected:
   // The message of any runtime_error.
@@ -296,20 +366,47 @@ TEST_F(TraceWriterTest, ReadsBackTheSameSurfaces) {
   }
 }
 
-// A frame, a mesh with one triangle, and what `add` adds.
-template <class Add>
-Trace small_trace(Add add) {
-  Trace trace;
-  trace.meshes.resize(1);
-  trace.meshes[0].name = "m";
-  trace.meshes[0].positions.resize(1);
-  trace.meshes[0].triangles.resize(1);
-  trace.meshes[0].colors = {kDefaultColor};
-  trace.frames.resize(1);
-  trace.frames[0].width = trace.frames[0].height = 1;
-  trace.frames[0].draws.resize(1);
-  add(trace);
-  return trace;
+TEST_F(TraceWriterTest, ReadsBackTheSameCaptures) {
+  for (unsigned seed = 0; seed < 100; ++seed) {
+    const Trace trace = random_capture(seed);
+    for (const ArrayStorage storage : {ArrayStorage::text, ArrayStorage::binary}) {
+      write_trace(trace, path("trace.json"), storage);
+      const Trace back = read_trace(path("trace.json"));
+      expect_same(trace, back);
+      write_trace(back, path("again.json"), ArrayStorage::text);
+      expect_same(trace, read_trace(path("again.json")));
+    }
+    ASSERT_FALSE(HasFailure()) << "seed " << seed;
+  }
+}
+
+TEST_F(TraceWriterTest, BinaryArraysTakeFewBytes) {
+  Trace trace = small_trace([](Trace& t) {
+    t.meshes[0].positions.resize(1000);
+    t.meshes[0].triangles.resize(2000);
+    t.meshes[0].colors.assign(2000, glm::vec3(0.5f));
+  });
+  write_trace(trace, path("trace.json"), ArrayStorage::binary);
+  EXPECT_EQ(std::filesystem::file_size(path("trace.bin")), 1000 * 12 + 2000 * 6 + 2000 * 12);
+  trace.meshes[0].positions.resize(70000);
+  trace.meshes[0].triangles[7].y = 65536;
+  write_trace(trace, path("trace.json"), ArrayStorage::binary);
+  EXPECT_EQ(std::filesystem::file_size(path("trace.bin")), 70000 * 12 + 2000 * 12 + 2000 * 12);
+  expect_same(trace, read_trace(path("trace.json")));
+}
+
+TEST_F(TraceWriterTest, BinaryArraysNeedANameOfTheirOwn) {
+  write("trace.bin", "old");
+  try {
+    write_trace(example(), path("trace.bin"), ArrayStorage::binary);
+    FAIL();
+  } catch (const std::runtime_error& error) {
+    EXPECT_EQ(without_folder(error.what()),
+              "trace.bin: cannot write the trace: its name ends in .bin, as that of the "
+              "binary file beside it would");
+  }
+  EXPECT_EQ(read("trace.bin"), "old");
+  EXPECT_EQ(files(), 1u);
 }
 
 const char kMatrices[] = R"(
@@ -357,6 +454,12 @@ TEST_F(TraceWriterTest, WritesVersion2WhereAnythingNeedsIt) {
         trace.frames[0].lighting.lights = {{.direction = {0, 0, 1}, .color = {1, 1, 0}}};
       },
       [](Trace& trace) { trace.frames[0].lighting.ambient.emplace(); },
+      [](Trace& trace) { trace.meshes[0].ws = {2}; },
+      [](Trace& trace) { trace.frames[0].draws[0].state.depth.test = false; },
+      [](Trace& trace) {
+        trace.frames[0].capture.left_out = {{"points", 1, 1}};
+      },
+      [](Trace& trace) { trace.source.emplace(); },
   };
   for (const auto& add : additions) {
     write_trace(small_trace(add), path("trace.json"));
@@ -430,6 +533,12 @@ TEST_F(TraceWriterTest, RefusesSurfacesThatNoReaderWouldTake) {
          trace.frames[0].draws[0].kd = {1, 1, 1};
        },
        "a draw has both kd and a material"},
+      {[](Trace& trace) {
+         trace.meshes[0].ws = {1, 1};
+       },
+       "mesh \"m\" lacks w of some positions"},
+      {[](Trace& trace) { trace.frames[0].capture.pictures.color = 0; }, "a captured picture names no image"},
+      {[](Trace& trace) { trace.source = Source{.program = "\xff"}; }, "the program is not UTF-8"},
   };
   for (const auto& [add, message] : cases) {
     EXPECT_EQ(failure(small_trace(add), "trace.json"), std::string("trace.json: cannot write the trace: ") + message);

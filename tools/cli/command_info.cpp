@@ -1,4 +1,4 @@
-// beampipe info: lists the frames, meshes, images and materials of a trace.
+// beampipe info: what is in a trace.
 
 #include <algorithm>
 #include <cstdio>
@@ -19,7 +19,7 @@ namespace {
 
 struct InfoArguments {
   std::string trace;
-  bool json = false, allow_outside = false;
+  bool json = false, meshes = false, allow_outside = false;
 };
 
 struct Bounds {
@@ -31,9 +31,13 @@ struct Bounds {
   void add(const Mesh& mesh, const glm::dmat4& transform) {
     for (const glm::uvec3& triangle : mesh.triangles) {
       for (int corner = 0; corner < 3; ++corner) {
-        const glm::dvec3 point(transform * glm::dvec4(mesh.positions[triangle[corner]], 1.0));
-        min = glm::min(min, point);
-        max = glm::max(max, point);
+        const std::uint32_t vertex = triangle[corner];
+        const double w = mesh.ws.empty() ? 1.0 : mesh.ws[vertex];
+        const glm::dvec4 point = transform * glm::dvec4(glm::dvec3(mesh.positions[vertex]), w);
+        if (!mesh.ws.empty() && !(point.w > 0)) continue;  // at infinity, or behind the viewer
+        const glm::dvec3 place = glm::dvec3(point) / (mesh.ws.empty() ? 1.0 : point.w);
+        min = glm::min(min, place);
+        max = glm::max(max, place);
       }
     }
   }
@@ -72,6 +76,30 @@ std::vector<std::string> attributes_of(const Mesh& mesh) {
   add(mesh.vertex_colors, "vertex_colors");
   add(mesh.materials, "materials");
   return names;
+}
+
+// Items of draw state, and for how many draws of a frame they differ from the defaults.
+std::vector<std::pair<std::string, std::size_t>> state_of(const Frame& frame) {
+  const DrawState defaults;
+  std::vector<std::pair<std::string, std::size_t>> items;
+  const auto count = [&](const char* name, auto differs) {
+    const auto draws = static_cast<std::size_t>(
+        std::ranges::count_if(frame.draws, [&](const Draw& draw) { return differs(draw.state); }));
+    if (draws > 0) items.emplace_back(name, draws);
+  };
+  count("viewport", [&](const DrawState& state) { return state.viewport.has_value(); });
+  count("scissor", [&](const DrawState& state) { return state.scissor.has_value(); });
+  count("no depth test", [&](const DrawState& state) { return !state.depth.test; });
+  count("no depth write", [&](const DrawState& state) { return !state.depth.write; });
+  count("depth function", [&](const DrawState& state) { return state.depth.function != defaults.depth.function; });
+  count("depth range", [&](const DrawState& state) { return state.depth.near != 0 || state.depth.far != 1; });
+  count("depth bias", [&](const DrawState& state) { return state.depth.bias != defaults.depth.bias; });
+  count("depth clamp", [&](const DrawState& state) { return !state.depth.clip; });
+  count("depth clear", [&](const DrawState& state) { return state.depth.cleared_before; });
+  count("blend", [&](const DrawState& state) { return state.blend.has_value(); });
+  count("colour mask", [&](const DrawState& state) { return state.color_mask != defaults.color_mask; });
+  count("stencil", [&](const DrawState& state) { return state.stencil.has_value(); });
+  return items;
 }
 
 struct MaterialInfo {
@@ -113,12 +141,40 @@ std::string text_of(const Bounds& bounds) {
   return text;
 }
 
+Json to_json(const Source& source) {
+  Json json = {{"program", source.program}, {"api", source.api},   {"driver", source.driver},
+               {"date", source.date},       {"tool", source.tool}, {"shading", source.shading}};
+  if (source.frame) json["frame"] = *source.frame;
+  return json;
+}
+
+Json to_json(const CaptureRecord& record) {
+  Json json = {{"passes", Json::array()},
+               {"left_out", Json::array()},
+               {"color", record.pictures.color.has_value()},
+               {"depth", !record.pictures.depth.empty()}};
+  for (const RenderPass& pass : record.passes) {
+    json["passes"].push_back({{"name", pass.name},
+                              {"width", pass.width},
+                              {"height", pass.height},
+                              {"draws", pass.draws},
+                              {"triangles", pass.triangles},
+                              {"kept", pass.kept},
+                              {"reason", pass.reason}});
+  }
+  for (const LeftOut& item : record.left_out) {
+    json["left_out"].push_back({{"reason", item.reason}, {"draws", item.draws}, {"primitives", item.primitives}});
+  }
+  return json;
+}
+
 Json info_json(const Trace& trace, const std::string& file) {
   Json json = {{"beampipe_info", 1},
                {"trace", file},
                {"frames", Json::array()},
                {"meshes", Json::array()},
                {"images", Json::array()}};
+  if (trace.source) json["source"] = to_json(*trace.source);
   for (std::size_t i = 0; i < trace.frames.size(); ++i) {
     const Frame& frame = trace.frames[i];
     const FrameInfo info = info_of(trace, frame);
@@ -130,6 +186,10 @@ Json info_json(const Trace& trace, const std::string& file) {
                               {"lights", frame.lighting.lights.size()},
                               {"ambient", frame.lighting.ambient.has_value()},
                               {"bounds", to_json(info.bounds)}});
+    Json state = Json::object();
+    for (const auto& [name, draws] : state_of(frame)) state[name] = draws;
+    json["frames"].elements().back()["state"] = std::move(state);
+    if (frame.capture != CaptureRecord{}) json["frames"].elements().back()["capture"] = to_json(frame.capture);
   }
   for (const Mesh& mesh : trace.meshes) {
     json["meshes"].push_back({{"name", mesh.name},
@@ -148,36 +208,89 @@ Json info_json(const Trace& trace, const std::string& file) {
   return json;
 }
 
-std::string info_text(const Trace& trace) {
-  std::vector<std::vector<std::string>> frames = {
-      {"frame", "size", "draws", "triangles", "lights", "bounds in the world"}};
+using Rows = std::vector<std::vector<std::string>>;
+
+std::string source_text(const Source& source) {
+  std::string text = "captured from " + (source.program.empty() ? "a program" : source.program);
+  for (const std::string& part : {source.api, source.driver, source.date})
+    if (!part.empty()) text += ", " + part;
+  if (source.frame) text += ", frame " + std::to_string(*source.frame);
+  text += "\n";
+  if (!source.shading.empty()) text += "colours: " + source.shading + "\n";
+  return text;
+}
+
+std::string frames_text(const Trace& trace) {
+  Rows rows = {{"frame", "size", "draws", "triangles", "lights", "bounds in the world"}};
   for (std::size_t i = 0; i < trace.frames.size(); ++i) {
     const Frame& frame = trace.frames[i];
     const FrameInfo info = info_of(trace, frame);
-    frames.push_back({std::to_string(i), size_text(frame.width, frame.height), std::to_string(frame.draws.size()),
-                      std::to_string(info.triangles), text_of(frame.lighting), text_of(info.bounds)});
+    rows.push_back({std::to_string(i), size_text(frame.width, frame.height), std::to_string(frame.draws.size()),
+                    std::to_string(info.triangles), text_of(frame.lighting), text_of(info.bounds)});
   }
-  std::vector<std::vector<std::string>> meshes = {{"mesh", "positions", "triangles", "attributes", "bounds"}};
+  return align_columns(rows, {5});
+}
+
+std::string materials_text(const Trace& trace) {
+  const MaterialInfo info = info_of(trace.materials);
+  return align_columns({{"materials", "opaque", "mask", "blend", "with textures"},
+                        {std::to_string(trace.materials.size()), std::to_string(info.opaque), std::to_string(info.mask),
+                         std::to_string(info.blend), std::to_string(info.textured)}},
+                       {});
+}
+
+// What was captured with the first frame and how its draws differ from the defaults.
+std::string capture_text(const Frame& frame) {
+  std::string text;
+  if (const auto state = state_of(frame); !state.empty()) {
+    Rows rows = {{"state of draws", "draws"}};
+    for (const auto& [name, draws] : state) rows.push_back({name, std::to_string(draws)});
+    text += "\n" + align_columns(rows, {0});
+  }
+  if (!frame.capture.passes.empty()) {
+    Rows rows = {{"pass", "size", "draws", "triangles", "kept", "because"}};
+    for (const RenderPass& pass : frame.capture.passes) {
+      rows.push_back({pass.name, size_text(pass.width, pass.height), std::to_string(pass.draws),
+                      std::to_string(pass.triangles), pass.kept ? "yes" : "no", pass.reason});
+    }
+    text += "\n" + align_columns(rows, {0, 5});
+  }
+  if (!frame.capture.left_out.empty()) {
+    Rows rows = {{"left out", "draws", "primitives"}};
+    for (const LeftOut& item : frame.capture.left_out)
+      rows.push_back({item.reason, std::to_string(item.draws), std::to_string(item.primitives)});
+    text += "\n" + align_columns(rows, {0});
+  }
+  return text;
+}
+
+std::string meshes_text(const Trace& trace) {
+  Rows meshes = {{"mesh", "positions", "triangles", "attributes", "bounds"}};
   for (const Mesh& mesh : trace.meshes) {
     std::string attributes;
     for (const std::string& name : attributes_of(mesh)) attributes += (attributes.empty() ? "" : " ") + name;
     meshes.push_back({mesh.name, std::to_string(mesh.positions.size()), std::to_string(mesh.triangles.size()),
                       attributes.empty() ? "-" : attributes, text_of(bounds_of(mesh))});
   }
-  std::string text = align_columns(frames, {5}) + "\n" + align_columns(meshes, {0, 3, 4});
+  std::string text = "\n" + align_columns(meshes, {0, 3, 4});
   if (!trace.images.empty()) {
-    std::vector<std::vector<std::string>> images = {{"image", "size"}};
+    Rows images = {{"image", "size"}};
     for (const TextureImage& image : trace.images) images.push_back({image.name, size_text(image.width, image.height)});
     text += "\n" + align_columns(images, {0});
   }
-  if (!trace.materials.empty()) {
-    const MaterialInfo info = info_of(trace.materials);
-    text +=
-        "\n" + align_columns({{"materials", "opaque", "mask", "blend", "with textures"},
-                              {std::to_string(trace.materials.size()), std::to_string(info.opaque),
-                               std::to_string(info.mask), std::to_string(info.blend), std::to_string(info.textured)}},
-                             {});
-  }
+  return text;
+}
+
+std::string info_text(const Trace& trace, bool with_meshes) {
+  std::size_t triangles = 0;
+  for (const Mesh& mesh : trace.meshes) triangles += mesh.triangles.size();
+  std::string text = trace.source ? source_text(*trace.source) : "";
+  text += std::to_string(trace.meshes.size()) + " meshes of " + std::to_string(triangles) + " triangles, " +
+          std::to_string(trace.images.size()) + " images" + (with_meshes ? "" : " (--meshes lists them)") + "\n\n";
+  text += frames_text(trace);
+  if (!trace.materials.empty()) text += "\n" + materials_text(trace);
+  text += capture_text(trace.frames[0]);
+  if (with_meshes) text += meshes_text(trace);
   return text;
 }
 
@@ -185,9 +298,10 @@ std::string info_text(const Trace& trace) {
 
 void add_info_command(CommandLine& line) {
   const auto arguments = std::make_shared<InfoArguments>();
-  Command command = line.add_command("info", "List the frames, meshes, images and materials of a trace");
+  Command command = line.add_command("info", "Tell what is in a trace");
   command.add("TRACE", arguments->trace, "the trace, a JSON file").required();
-  command.add_flag("--json", arguments->json, "print the list as JSON");
+  command.add_flag("--meshes", arguments->meshes, "list the meshes and images too");
+  command.add_flag("--json", arguments->json, "print everything as JSON");
   command.add_flag("--allow-outside", arguments->allow_outside, "allow the trace to name files outside its own folder");
   command.set_work([arguments] {
     const Trace trace = read_trace(arguments->trace, {.allow_outside = arguments->allow_outside});
@@ -195,7 +309,8 @@ void add_info_command(CommandLine& line) {
     std::iota(frames.begin(), frames.end(), std::size_t{0});
     if (const std::string note = note_on_darkness(trace, frames, arguments->trace); !note.empty())
       std::cerr << "beampipe: " << note << "\n";
-    std::cout << (arguments->json ? json_text(info_json(trace, arguments->trace)) : info_text(trace));
+    std::cout << (arguments->json ? json_text(info_json(trace, arguments->trace))
+                                  : info_text(trace, arguments->meshes));
   });
 }
 

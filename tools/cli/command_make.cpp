@@ -26,7 +26,7 @@ struct MakeArguments {
   std::uint32_t frames = 1;
   double orbit = 0;
   std::vector<double> pan;
-  bool list = false;
+  bool list = false, binary = false;
   // For models only.
   std::vector<double> eye, target, up, background;
   double fovy = 0, near = 0, far = 0;
@@ -193,7 +193,7 @@ void make(const MakeArguments& arguments, const Command& command, InterruptGate&
     const auto held = gate.hold();
     gate.set_unfinished(AtomicFile::temporary_of(file));
   }
-  write_trace(trace, file);
+  write_trace(trace, file, arguments.binary ? ArrayStorage::binary : ArrayStorage::text);
   std::cout << arguments.output << ": " << triangles << " triangles, " << arguments.options.width << " x "
             << arguments.options.height << " pixels\n";
 }
@@ -207,6 +207,8 @@ void add_make_command(CommandLine& line, InterruptGate& gate) {
               "the name of a procedural scene (see --list), or a model: MODEL.obj, MODEL.gltf or MODEL.glb");
   command.add("-o,--output", arguments->output, "the trace to write, a JSON file");
   command.add_flag("--list", arguments->list, "list the procedural scenes");
+  command.add_flag("--binary", arguments->binary,
+                   "write the arrays to a binary file beside the trace, which is smaller and faster to read");
   command.add("--width", arguments->options.width, "width of the picture in pixels")
       .between(1, kMaxSide)
       .shows_default();

@@ -242,11 +242,60 @@ TEST_F(ProgramTest, InfoTellsWhatSurfacesAreMadeOf) {
   EXPECT_EQ(json["meshes"][0]["attributes"], Parsed({"normals", "uv0"}));
   EXPECT_EQ(json["frames"][0]["lights"], 2);
   EXPECT_EQ(json["frames"][0]["ambient"], true);
-  const std::string text = succeed({"info", path("surfaces.json")});
+  const std::string text = succeed({"info", path("surfaces.json"), "--meshes"});
   for (const char* part : {"2 + ambient", "normals uv0", "wood   3 x 2",
                            "materials  opaque  mask  blend  with textures\n        3       1     2      0"}) {
     EXPECT_NE(text.find(part), std::string::npos) << part << " in\n" << text;
   }
+}
+
+TEST_F(ProgramTest, InfoTellsWhatWasCaptured) {
+  Trace trace;
+  trace.source = {.program = "gears",
+                  .api = "OpenGL",
+                  .driver = "",
+                  .date = "2026-01-02",
+                  .tool = "",
+                  .shading = "own",
+                  .frame = 7};
+  Mesh mesh;
+  mesh.name = "clip";
+  mesh.positions = {{-2, 2, 0}, {0, 2, 2}, {2, 0, 0}};
+  mesh.ws = {2, 2, 1};
+  mesh.triangles = {{0, 1, 2}};
+  mesh.colors = {kDefaultColor};
+  trace.meshes = {mesh};
+  Frame& frame = trace.frames.emplace_back();
+  frame.width = frame.height = 4;
+  frame.draws.resize(2);
+  frame.draws[1].state.depth.test = false;
+  frame.capture.passes = {{"shadow map", 512, 512, 3, 99, false, "not shown"}};
+  frame.capture.left_out = {{"lines", 2, 40}};
+  write_trace(trace, path("captured.json"), ArrayStorage::binary);
+
+  const Parsed json = Parsed::parse(succeed({"info", path("captured.json"), "--json"}));
+  EXPECT_EQ(json["source"]["program"], "gears");
+  EXPECT_EQ(json["source"]["frame"], 7);
+  EXPECT_EQ(json["frames"][0]["state"], Parsed::parse(R"({"no depth test": 1})"));
+  EXPECT_EQ(json["frames"][0]["capture"]["left_out"][0]["primitives"], 40);
+  EXPECT_EQ(json["frames"][0]["bounds"]["max"], Parsed({2.0, 1.0, 1.0}));  // x / w
+  const std::string text = succeed({"info", path("captured.json")});
+  for (const char* part : {"captured from gears, OpenGL, 2026-01-02, frame 7", "colours: own", "no depth test       1",
+                           "shadow map  512 x 512      3         99    no  not shown", "lines         2          40",
+                           "1 meshes of 1 triangles, 0 images (--meshes lists them)"}) {
+    EXPECT_NE(text.find(part), std::string::npos) << part << " in\n" << text;
+  }
+}
+
+TEST_F(ProgramTest, MakeWritesBinaryArrays) {
+  succeed({"make", "soup", "--triangles", "500", "-o", path("text.json")});
+  succeed({"make", "soup", "--triangles", "500", "--binary", "-o", path("binary.json")});
+  EXPECT_EQ(std::filesystem::exists(path("binary.bin")), true);
+  EXPECT_EQ(std::filesystem::exists(path("text.bin")), false);
+  Parsed text = Parsed::parse(succeed({"info", path("text.json"), "--json"}));
+  Parsed binary = Parsed::parse(succeed({"info", path("binary.json"), "--json"}));
+  text.erase("trace"), binary.erase("trace");
+  EXPECT_EQ(text, binary);
 }
 
 TEST_F(ProgramTest, ExportSoupWritesTheTrianglesThatAreSeen) {

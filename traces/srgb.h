@@ -1,0 +1,13 @@
+// The encoding of colours in images (IEC 61966-2-1).
+#pragma once
+
+#include <cmath>
+
+namespace beampipe {
+
+// Linear light of an encoded value; both 0..1.
+inline double linear_of_srgb(double encoded) {
+  return encoded <= 0.04045 ? encoded / 12.92 : std::pow((encoded + 0.055) / 1.055, 2.4);
+}
+
+}  // namespace beampipe
