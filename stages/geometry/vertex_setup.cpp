@@ -275,7 +275,6 @@ class TriangleSetup {
     surface.material = material;
     surface.is_opaque = materials_[material].alpha_mode == AlphaMode::opaque;
     for (int k = 0; k < 3; ++k) surface.vertices[static_cast<std::size_t>(k)] = first_vertex_ + index[k];
-    surface.first_vertex = index.x;
     surface.turned = shows_back(front);
     surface.has_own_normal = mesh_.normals.empty();
     if (const auto& texture = materials_[material].normal_texture; texture && mesh_.tangents.empty()) {

@@ -5,6 +5,8 @@
 #include <algorithm>
 #include <cmath>
 
+#include "traces/srgb.h"
+
 namespace beampipe {
 namespace {
 
@@ -12,20 +14,16 @@ constexpr int kChannels = 4;
 
 std::array<float, 256> make_srgb_values() {
   std::array<float, 256> values;
-  for (std::size_t code = 0; code < values.size(); ++code) {
-    const double encoded = static_cast<double>(code) / 255;
-    values[code] = static_cast<float>(encoded <= 0.04045 ? encoded / 12.92 : std::pow((encoded + 0.055) / 1.055, 2.4));
-  }
+  for (std::size_t code = 0; code < values.size(); ++code)
+    values[code] = static_cast<float>(linear_of_srgb(static_cast<double>(code) / 255));
   return values;
 }
 
 // Halfway, as encoded, between a code and the next one.
 std::array<float, 255> make_srgb_limits() {
   std::array<float, 255> limits;
-  for (std::size_t code = 0; code < limits.size(); ++code) {
-    const double encoded = (static_cast<double>(code) + 0.5) / 255;
-    limits[code] = static_cast<float>(encoded <= 0.04045 ? encoded / 12.92 : std::pow((encoded + 0.055) / 1.055, 2.4));
-  }
+  for (std::size_t code = 0; code < limits.size(); ++code)
+    limits[code] = static_cast<float>(linear_of_srgb((static_cast<double>(code) + 0.5) / 255));
   return limits;
 }
 
