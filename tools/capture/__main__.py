@@ -70,11 +70,11 @@ def parse(words):
     arguments.is_file = len(arguments.program) == 1 and arguments.program[0].endswith(FILE_KINDS)
     if not arguments.program:
         raise WrongUsage("capture needs a program after --, or a file (see beampipe capture --help)")
+    if not arguments.output and not arguments.list:
+        raise WrongUsage("capture needs -o FRAME.json")
     if cut == len(words) and not arguments.is_file:
         raise WrongUsage("the program comes after --, and files end in .rdc, .trace or .gfxr "
                          "(see beampipe capture --help)")
-    if not arguments.output and not arguments.list:
-        raise WrongUsage("capture needs -o FRAME.json")
     if arguments.output and not arguments.output.endswith(".json"):
         raise WrongUsage(f"-o {arguments.output}: expected a name that ends in .json")
     return arguments

@@ -65,6 +65,8 @@ def weld(columns, triangles):
     Returns the columns without duplicates and without vertices that no triangle uses, in the order of their first
     use; the triangles without those that have two equal corners; and which triangles these are."""
     used = triangles.ravel()
+    if not len(used):
+        return [column[:0] for column in columns], triangles, np.zeros(0, np.int64)
     # -0 and 0 are the same number. Adding 0 makes them the same bits.
     rows = np.concatenate([np.ascontiguousarray(column[used] + column.dtype.type(0)).view(np.uint8).reshape(
         len(used), -1) for column in columns], 1)

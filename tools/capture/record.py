@@ -2,7 +2,6 @@
 
 There are two ways. `direct`: RenderDoc watches the program's OpenGL (core profile, ES) or Vulkan. `zink`: Mesa's zink
 turns the program's OpenGL, of any version and with fixed functions too, into Vulkan, which RenderDoc's layer watches."""
-import collections
 import os
 import subprocess
 import threading
@@ -35,23 +34,23 @@ class Recording:
 
 
 class _Output:
-    """The last lines that a program has printed; what comes earlier is thrown away."""
+    """The end of what a program prints. Some print so much that a program which looked at every line would hold them up;
+    this takes large pieces and forgets them."""
 
     def __init__(self, stream):
-        self.lines = collections.deque(maxlen=5)
-        threading.Thread(target=self._read, args=(stream,), daemon=True).start()
+        self.tail = b""
+        threading.Thread(target=self._read, args=(stream.fileno(), stream), daemon=True).start()
 
-    def _read(self, stream):
-        while True:
-            line = stream.readline(4096)
-            if not line:
-                return
-            text = line.decode(errors="replace").strip()
-            if text:
-                self.lines.append(text)
+    def _read(self, descriptor, stream):
+        try:
+            while piece := os.read(descriptor, 1 << 20):
+                self.tail = (self.tail + piece)[-1000:]
+        finally:
+            stream.close()
 
     def last(self):
-        return f' (it last said: "{self.lines[-1][:200]}")' if self.lines else ""
+        lines = [line.strip() for line in self.tail.decode(errors="replace").splitlines() if line.strip()]
+        return f' (it last said: "{lines[-1][:200]}")' if lines else ""
 
 
 def _attach(program):
