@@ -106,7 +106,7 @@ def main(job_path):
         job = json.load(file)
     result = os.path.splitext(job_path)[0]
     try:
-        replay = Replay(job["capture"])
+        replay = Replay(job["capture"], vertices_only=not job["pictures"])
         found, kept = kept_pass(replay, job["target"])
         if job["pictures"]:
             value = take_pictures(replay, found, kept)

@@ -17,7 +17,9 @@ class Mesh:
         look = draw.look
         uv = look.uv if look else draw.alpha_test.uv if draw.alpha_test else None
         self.uv = np.ascontiguousarray(draw.attributes[uv][:, :2]) if uv else None
-        self.vertex_colors = _color_codes(draw.attributes[look.color]) if look and look.color else None
+        self.lit = bool(look and look.light is not None)  # its vertices' colours are from the first frame's picture
+        self.vertex_colors = (_color_codes(look.light) if self.lit else
+                              _color_codes(draw.attributes[look.color]) if look and look.color else None)
         self.sums = np.zeros((len(draw.triangles), 3))
         self.counts = np.zeros(len(draw.triangles), np.int64)
         self.middle = np.zeros((len(draw.triangles), 3))
@@ -26,7 +28,8 @@ class Mesh:
         """The matrix that makes this mesh the other one, or None."""
         same = (self.material == other.material and self.topology == other.topology
                 and self.clip.shape == other.clip.shape and np.array_equal(self.triangles, other.triangles)
-                and _equal(self.uv, other.uv) and _equal(self.vertex_colors, other.vertex_colors))
+                and _equal(self.uv, other.uv) and self.lit == other.lit
+                and (self.lit or _equal(self.vertex_colors, other.vertex_colors)))
         return motion.find_matrix(self.clip, other.clip) if same else None
 
     def add_colors(self, sums, counts, middle):
@@ -85,7 +88,7 @@ class Collection:
             if not np.array_equal(matrix, np.eye(4)):
                 entry["transform"] = [float(value) for value in matrix.T.ravel()]
             state = dict(draw.state)
-            if mesh.bakes:
+            if mesh.bakes or mesh.lit:
                 state.pop("blend", None)  # the picture's colours are what blending has made
             if state:
                 entry["state"] = state
@@ -112,11 +115,12 @@ class Collection:
         if look is None and test is None:
             return None
         material = {"unlit": True, "double_sided": True}
+        blends = draw.blends and look is not None and look.light is None
         slot = look.slot if look else test.slot
         if slot is not None:
             binding = draw.textures[slot]
             texture = self.textures.get(binding)
-            channels = "a" if look is None else "rgba" if texture.has_alpha and (draw.blends or test) else "rgb"
+            channels = "a" if look is None else "rgba" if texture.has_alpha and (blends or test) else "rgb"
             found = {"image": self._image_of(binding, texture, channels)}
             for key, mode in zip(("wrap_u", "wrap_v"), texture.wrap):
                 if mode != "repeat":
@@ -128,7 +132,7 @@ class Collection:
             material["base_texture"] = found
         if test:
             material.update(alpha_mode="mask", alpha_cutoff=round(test.cutoff, 6))
-        if draw.blends and "alpha_mode" not in material:
+        if blends and "alpha_mode" not in material:
             material["alpha_mode"] = "blend"
         if look and look.constant is not None:
             material["base_color"] = [round(float(c), 6) for c in look.constant] + [1]

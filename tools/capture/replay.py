@@ -1,4 +1,6 @@
 """A RenderDoc capture that is opened for replay: its commands, pictures and textures."""
+import os
+
 import renderdoc as rd
 
 from passes import Action, clears_of
@@ -11,22 +13,32 @@ class ReplayError(Exception):
     """One line: why a capture cannot be replayed."""
 
 
-class Replay:
-    """Opens a capture. `color`, `depth` and textures are named by RenderDoc's numbers."""
+# What makes Mesa's software drivers fast where only vertices matter: shaders, each of which runs once, are compiled
+# without optimisation, and no pixels are drawn. OpenGL's textures are read by drawing them. Other drivers do not know
+# these variables.
+_VERTICES_ONLY = {"GALLIVM_PERF": "nopt", "LP_NUM_THREADS": "1"}
+_NO_PIXELS = {"LP_NO_RAST": "1"}
 
-    def __init__(self, path):
+
+class Replay:
+    """Opens a capture. `color`, `depth` and textures are named by RenderDoc's numbers. `vertices_only`: pictures that
+    the frame draws are not asked for."""
+
+    def __init__(self, path, vertices_only=False):
         rd.InitialiseReplay(rd.GlobalEnvironment(), [])
         self.file = rd.OpenCaptureFile()
         opened = self.file.OpenFile(path, "", None)
         if opened != rd.ResultCode.Succeeded:
             raise ReplayError(f"{path}: not a RenderDoc capture that can be read ({opened.Message().strip()})")
+        self.api = self.file.DriverName()
+        self.is_vulkan = self.api == "Vulkan"
+        if vertices_only:  # before the driver is loaded
+            os.environ.update(_VERTICES_ONLY | (_NO_PIXELS if self.is_vulkan else {}))
         opened, self.controller = self.file.OpenCapture(rd.ReplayOptions(), None)
         if opened != rd.ResultCode.Succeeded:
             raise ReplayError(f"{path}: this machine's driver cannot replay it ({opened.Message().strip()})")
-        self.api = self.file.DriverName()
         devices = self.file.GetAvailableGPUs()
         self.driver = devices[0].name if len(devices) else ""
-        self.is_vulkan = self.api == "Vulkan"
         self.textures = {int(t.resourceId): t for t in self.controller.GetTextures()}
         self.structure = self.controller.GetStructuredFile()
         self.commands = []

@@ -12,14 +12,17 @@ import srgb
 
 MOST_ERROR = 4 / 255  # what an explanation may typically differ by, in sRGB-encoded units
 PIXELS_PER_DRAW = 256  # that an explanation is tried on
+PIXELS_FOR_LIGHT = 50000  # of a draw, from which light at its vertices is found
 FEW = 8  # pixels that are too few to judge by
 
 
 class Look:
-    """A texture (binding), its coordinates and the vertices' colours, each by name or None; `constant`: RGBA factor."""
+    """A texture (binding), its coordinates and the vertices' colours, each by name or None. `constant`: a linear RGB
+    factor. `light`: colours of vertices that come from the picture, n x 3, sRGB-encoded, in place of `color`."""
 
-    def __init__(self, slot, uv, color, constant=None, verified=True):
+    def __init__(self, slot, uv, color, constant=None, verified=True, light=None):
         self.slot, self.uv, self.color, self.constant, self.verified = slot, uv, color, constant, verified
+        self.light = light
 
 
 class AlphaTest:
@@ -172,6 +175,50 @@ def _mixes(blend):
             and blend["operation"] == "add")
 
 
+def _same_vertices(draw):
+    """For each vertex, the number of the first one that equals it in all attributes."""
+    rows = np.concatenate([np.ascontiguousarray(column).view(np.uint8).reshape(len(draw.clip), -1)
+                           for column in [draw.clip, *draw.attributes.values()]], 1)
+    keys = np.ascontiguousarray(rows).view(np.dtype((np.void, rows.shape[1]))).ravel()
+    _, first, inverse = np.unique(keys, return_index=True, return_inverse=True)
+    return first[inverse]
+
+
+def find_light(draw, triangle, x, y, captured, textures, size):
+    """A Look whose texture is multiplied by light at the vertices, so that the product is what was captured (linear) at
+    n points; None if a colour per triangle is as good."""
+    shared = _same_vertices(draw)
+    corners = shared[draw.triangles[triangle]]
+    weights = np.clip(raster.weights_at(draw.clip, draw.triangles, triangle, x, y, raster.window_of(draw.state, *size)),
+                      0, 1)
+    encoded = srgb.from_linear(captured)
+    count = np.bincount(triangle, minlength=len(draw.triangles))
+    flat = np.stack([np.bincount(triangle, captured[:, c], minlength=len(draw.triangles)) for c in range(3)], 1)
+    flat /= np.maximum(1, count)[:, None]
+    best, best_error = None, _typical(np.abs(srgb.from_linear(flat[triangle]) - encoded).max(1))
+    for slot, binding in enumerate(draw.textures[:4]):
+        texture = textures.get(binding)
+        if texture is None:
+            continue
+        for uv in _uv_names(draw):
+            texel = srgb.to_linear(_look_up(draw, texture, uv, triangle, x, y, size)[:, :3].astype(np.float64))
+            at_vertices = lambda values: np.stack([np.bincount(
+                corners.ravel(), (weights * values[:, c, None]).ravel(), len(draw.clip)) for c in range(3)], 1)
+            above, below = at_vertices(captured * texel), at_vertices(texel * texel) + 1e-9
+            seen = below.max(1) > 1e-6
+            if not seen.any():
+                continue
+            light = np.where(seen[:, None], above / below, above[seen].sum(0) / below[seen].sum(0))[shared]
+            scale = 2.0 ** np.ceil(np.log2(max(1, np.quantile(light[seen], 0.95))))
+            light = np.clip(light / scale, 0, 1)
+            predicted = texel * scale * (weights[..., None] * light[draw.triangles[triangle]]).sum(1)
+            error = _typical(np.abs(srgb.from_linear(np.clip(predicted, 0, 1)) - encoded).max(1))
+            if error < 0.9 * best_error:
+                constant = np.full(3, scale) if scale > 1 else None
+                best, best_error = Look(slot, uv, None, constant, light=srgb.from_linear(light)), error
+    return best
+
+
 def _guess(draw, textures):
     """The likeliest texture, coordinates and colours of a blended draw, by their names and kinds."""
     known = [slot for slot, binding in enumerate(draw.textures) if textures.get(binding) is not None]
@@ -241,6 +288,13 @@ def find_looks(frame, owner, textures):
         judged = any((number, key) in own for key, _ in chosen.get(draw.shader, []))
         if draw.look is None and draw.blends and not test and not (judged and _mixes(draw.state["blend"])):
             draw.look = _guess(draw, textures)
+        if draw.look is None and not test:
+            low, high = np.searchsorted(sorted_owner, [draw.first, draw.first + len(draw.triangles)])
+            seen = pixels[low:high]
+            seen = seen[:: max(1, len(seen) // PIXELS_FOR_LIGHT)]
+            if len(seen) >= 4 * FEW and draw.textures:
+                draw.look = find_light(draw, owner[seen] - draw.first, seen % size[0] + 0.5, seen // size[0] + 0.5,
+                                       srgb.to_linear(picture[seen]), textures, size)
 
 
 def summary(frame, counts):
@@ -255,6 +309,7 @@ def summary(frame, counts):
                 kinds[name] = kinds.get(name, 0) + count
             continue
         parts = (["base texture"] if draw.look.slot is not None else []) + (["vertex colours"] if draw.look.color else [])
+        parts += ["light at vertices from the captured picture"] if draw.look.light is not None else []
         name = " and ".join(parts) + ("" if draw.look.verified else ", not compared")
         kinds[name] = kinds.get(name, 0) + len(draw.triangles)
     return "; ".join(f"{name}: {count} triangles" for name, count in sorted(kinds.items()) if count)

@@ -88,16 +88,21 @@ def write_trace(path, frames, draws_of_frames, collection, source):
         images[name] = {"file": file}
         files.append((os.path.join(folder, file), png.encode(pixels)))
 
-    triangles = 0
+    triangles, without_area = 0, {}
     for mesh in collection.meshes:
         entry = mesh_entry(mesh, arrays)
+        stored = entry["indices"]["count"] // 3 if entry else 0
+        without_area[mesh.name] = len(mesh.triangles) - stored
+        triangles += stored
         if entry:
             meshes[mesh.name] = entry
-            triangles += entry["indices"]["count"] // 3
     for name, pixels in collection.images.items():
         add_image(name, pixels)
     written = []
     for number, (frame, draws) in enumerate(zip(frames, draws_of_frames)):
+        thin = [without_area[draw["mesh"]] for draw in draws if without_area[draw["mesh"]]]
+        if thin:
+            frame.left_out["two corners of the triangle are one point"] = (len(thin), sum(thin))
         entry = {"width": frame.width, "height": frame.height, "background": frame.background,
                  "passes": [{"name": one["name"], "width": one["size"][0], "height": one["size"][1],
                              "draws": one["draws"], "triangles": one["triangles"], "kept": one["kept"],

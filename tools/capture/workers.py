@@ -8,11 +8,6 @@ import time
 
 from failure import Failure
 
-# What makes Mesa's software drivers fast where only vertices matter: no pixels are drawn, and shaders, each of which
-# runs once, are compiled without optimisation. Other drivers do not know these variables.
-_VERTICES_ONLY = {"LP_NO_RAST": "1", "LP_NUM_THREADS": "1", "GALLIVM_PERF": "nopt"}
-
-
 def _result(path):
     if not os.path.exists(path):
         return None
@@ -35,8 +30,7 @@ def extract(processes, capture, folder, display, target, jobs, progress, deadlin
         with open(stem + ".json", "w") as file:
             json.dump({"capture": capture, "folder": folder, "share": max(0, share), "shares": jobs,
                        "pictures": share < 0, "target": target}, file)
-        environment = {**os.environ, **({"DISPLAY": display} if display else {}),
-                       **({} if share < 0 else _VERTICES_ONLY)}
+        environment = {**os.environ, "DISPLAY": display}
         with open(stem + ".log", "wb") as log:
             process = processes.start([sys.executable, os.path.join(os.path.dirname(__file__), "extract.py"),
                                        stem + ".json"], env=environment, stdin=subprocess.DEVNULL, stdout=log,
