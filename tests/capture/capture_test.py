@@ -111,6 +111,11 @@ class Captures(unittest.TestCase):
         arrays = trace["buffers"]["arrays"]["bytes"]
         self.assertLessEqual(arrays, 40 * triangles)
 
+    def test_textures_are_read(self):
+        trace, printed = self.trace_of("glmark2-es2", "--frame", "30", "--", "glmark2-es2", "-b", "texture")
+        self.assertIn("base texture", printed)
+        self.assertEqual(sum("base_texture" in material for material in trace["materials"].values()), 1)
+
     def test_a_program_that_ends_is_one_line(self):
         done = capture("-o", os.path.join(self.folder, "a.json"), "--", "false")
         self.assertEqual((done.returncode, done.stdout), (1, ""))

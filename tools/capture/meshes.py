@@ -88,7 +88,7 @@ class Collection:
             if not np.array_equal(matrix, np.eye(4)):
                 entry["transform"] = [float(value) for value in matrix.T.ravel()]
             state = dict(draw.state)
-            if mesh.bakes or mesh.lit:
+            if draw.look is None or not draw.look.mixes:
                 state.pop("blend", None)  # the picture's colours are what blending has made
             if state:
                 entry["state"] = state
@@ -115,7 +115,7 @@ class Collection:
         if look is None and test is None:
             return None
         material = {"unlit": True, "double_sided": True}
-        blends = draw.blends and look is not None and look.light is None
+        blends = draw.blends and look is not None and look.mixes
         slot = look.slot if look else test.slot
         if slot is not None:
             binding = draw.textures[slot]

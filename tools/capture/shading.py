@@ -18,11 +18,12 @@ FEW = 8  # pixels that are too few to judge by
 
 class Look:
     """A texture (binding), its coordinates and the vertices' colours, each by name or None. `constant`: a linear RGB
-    factor. `light`: colours of vertices that come from the picture, n x 3, sRGB-encoded, in place of `color`."""
+    factor. `light`: colours of vertices that come from the picture, n x 3, sRGB-encoded, in place of `color`.
+    `mixes`: whether a draw that blends still does; not where its colours are what blending has made."""
 
-    def __init__(self, slot, uv, color, constant=None, verified=True, light=None):
+    def __init__(self, slot, uv, color, constant=None, verified=True, light=None, mixes=True):
         self.slot, self.uv, self.color, self.constant, self.verified = slot, uv, color, constant, verified
-        self.light = light
+        self.light, self.mixes = light, mixes
 
 
 class AlphaTest:
@@ -184,39 +185,56 @@ def _same_vertices(draw):
     return first[inverse]
 
 
+def _fit_light(draw, slot, uv, shared, triangle, x, y, captured, textures, size):
+    """(Look, error) of texture `slot` times light at the vertices, fitted to the captured colours (linear) at n points.
+    Each vertex's light is the least-squares factor of the points around it. Where the draw blends by the texture's
+    opacity, only opaque points count."""
+    texture = textures.get(draw.textures[slot])
+    texel = _look_up(draw, texture, uv, triangle, x, y, size)
+    mixes = draw.blends and texture.has_alpha
+    if mixes:
+        there = texel[:, 3] > 0.9
+        if there.sum() < 4 * FEW:
+            return None, np.inf
+        texel, triangle, x, y, captured = texel[there], triangle[there], x[there], y[there], captured[there]
+    texel = srgb.to_linear(texel[:, :3].astype(np.float64))
+    weights = np.clip(raster.weights_at(draw.clip, draw.triangles, triangle, x, y, raster.window_of(draw.state, *size)),
+                      0, 1)
+    corners = shared[draw.triangles[triangle]].ravel()
+    at_vertices = lambda values: np.stack([np.bincount(corners, (weights * values[:, c, None]).ravel(), len(draw.clip))
+                                           for c in range(3)], 1)
+    above, below = at_vertices(captured * texel), at_vertices(texel * texel) + 1e-9
+    seen = below.max(1) > 1e-6
+    if not seen.any():
+        return None, np.inf
+    light = np.where(seen[:, None], above / below, above[seen].sum(0) / below[seen].sum(0))[shared]
+    scale = 2.0 ** np.ceil(np.log2(max(1, np.quantile(light[seen], 0.95))))  # vertices' colours are at most 1
+    light = np.clip(light / scale, 0, 1)
+    predicted = texel * scale * (weights[..., None] * light[draw.triangles[triangle]]).sum(1)
+    error = np.abs(srgb.from_linear(np.clip(predicted, 0, 1)) - srgb.from_linear(captured)).max(1)
+    constant = np.full(3, scale) if scale > 1 else None
+    return Look(slot, uv, None, constant, light=srgb.from_linear(light), mixes=mixes), _typical(error)
+
+
 def find_light(draw, triangle, x, y, captured, textures, size):
     """A Look whose texture is multiplied by light at the vertices, so that the product is what was captured (linear) at
     n points; None if a colour per triangle is as good."""
     shared = _same_vertices(draw)
-    corners = shared[draw.triangles[triangle]]
-    weights = np.clip(raster.weights_at(draw.clip, draw.triangles, triangle, x, y, raster.window_of(draw.state, *size)),
-                      0, 1)
-    encoded = srgb.from_linear(captured)
+    few = slice(None, None, max(1, len(x) // 2000))
+    candidates = [(slot, uv) for slot, binding in enumerate(draw.textures[:4]) if textures.get(binding) is not None
+                  for uv in _uv_names(draw)]
+    fit = lambda slot, uv, some: _fit_light(draw, slot, uv, shared, triangle[some], x[some], y[some], captured[some],
+                                            textures, size)
+    if not candidates:
+        return None
+    look, error = fit(*min(candidates, key=lambda one: fit(*one, few)[1]), slice(None))
+    if look is None or look.mixes:  # a colour per triangle would lose the shape that the opacity gives
+        return look
     count = np.bincount(triangle, minlength=len(draw.triangles))
-    flat = np.stack([np.bincount(triangle, captured[:, c], minlength=len(draw.triangles)) for c in range(3)], 1)
+    flat = np.stack([np.bincount(triangle, captured[:, c], len(draw.triangles)) for c in range(3)], 1)
     flat /= np.maximum(1, count)[:, None]
-    best, best_error = None, _typical(np.abs(srgb.from_linear(flat[triangle]) - encoded).max(1))
-    for slot, binding in enumerate(draw.textures[:4]):
-        texture = textures.get(binding)
-        if texture is None:
-            continue
-        for uv in _uv_names(draw):
-            texel = srgb.to_linear(_look_up(draw, texture, uv, triangle, x, y, size)[:, :3].astype(np.float64))
-            at_vertices = lambda values: np.stack([np.bincount(
-                corners.ravel(), (weights * values[:, c, None]).ravel(), len(draw.clip)) for c in range(3)], 1)
-            above, below = at_vertices(captured * texel), at_vertices(texel * texel) + 1e-9
-            seen = below.max(1) > 1e-6
-            if not seen.any():
-                continue
-            light = np.where(seen[:, None], above / below, above[seen].sum(0) / below[seen].sum(0))[shared]
-            scale = 2.0 ** np.ceil(np.log2(max(1, np.quantile(light[seen], 0.95))))
-            light = np.clip(light / scale, 0, 1)
-            predicted = texel * scale * (weights[..., None] * light[draw.triangles[triangle]]).sum(1)
-            error = _typical(np.abs(srgb.from_linear(np.clip(predicted, 0, 1)) - encoded).max(1))
-            if error < 0.9 * best_error:
-                constant = np.full(3, scale) if scale > 1 else None
-                best, best_error = Look(slot, uv, None, constant, light=srgb.from_linear(light)), error
-    return best
+    flat_error = _typical(np.abs(srgb.from_linear(flat[triangle]) - srgb.from_linear(captured)).max(1))
+    return look if error < 0.9 * flat_error else None
 
 
 def _guess(draw, textures):
@@ -295,6 +313,9 @@ def find_looks(frame, owner, textures):
             if len(seen) >= 4 * FEW and draw.textures:
                 draw.look = find_light(draw, owner[seen] - draw.first, seen % size[0] + 0.5, seen // size[0] + 0.5,
                                        srgb.to_linear(picture[seen]), textures, size)
+            shaped = any(textures.get(one) is not None and textures.get(one).has_alpha for one in draw.textures)
+            if draw.look is None and draw.blends and shaped:
+                draw.look = _guess(draw, textures)
 
 
 def summary(frame, counts):
