@@ -263,6 +263,20 @@ class Rasters(unittest.TestCase):
         fragments = list(raster.fragments_of(self.QUAD, self.TWO, {}, "none", target))[0]
         self.assertEqual(sorted(fragments.pixel), list(range(48)))
 
+    def test_an_edge_through_pixel_centers_belongs_to_one_side(self):
+        for axis in (0, 1):  # the shared edge is at x = 4.5 of 8 pixels, and at y = 2.5 of 6
+            middle = [1 / 8, 1 / 6][axis]
+            low, high = self.QUAD.copy(), self.QUAD.copy()
+            low[low[:, axis] > 0, axis] = middle
+            high[high[:, axis] < 0, axis] = middle
+            target = raster.Target(8, 6, None)
+            found = [pixel for quad in (low, high) for fragments in
+                     raster.fragments_of(quad, self.TWO, {}, "none", target) for pixel in fragments.pixel]
+            self.assertEqual(sorted(found), list(range(48)))
+        target = raster.Target(8, 6, None)
+        below = next(raster.fragments_of(low, self.TWO, {}, "none", target)).pixel  # a top edge is part of a triangle
+        self.assertEqual(min(below) // 8, 2)
+
     def test_random_triangles_cover_the_pixels_whose_centers_they_contain(self):
         random = np.random.default_rng(6)
         for _ in range(50):
@@ -290,6 +304,13 @@ class Rasters(unittest.TestCase):
         triangles = np.concatenate([self.TWO, self.TWO + 4])
         self.assertLess(self.draw(clip, triangles).owner.max(), 2)
         self.assertGreater(self.draw(clip, triangles, {"depth_function": "less_equal"}).owner.min(), 1)
+
+    def test_what_blends_on_top_leaves_the_solid_owner(self):
+        target = self.draw(self.QUAD, self.TWO)
+        mix = {"source": "source_alpha", "destination": "one_minus_source_alpha", "operation": "add"}
+        self.draw(self.QUAD, self.TWO, {"depth_test": False, "blend": mix}, target=target, first=2)
+        self.assertTrue((target.owner >= 2).all())
+        self.assertTrue((target.solid < 2).all() and (target.solid >= 0).all())
 
     def test_culling_looks_at_the_picture(self):
         self.assertTrue(self.draw(self.QUAD, self.TWO, cull="back").touched.all())
@@ -379,6 +400,12 @@ class Pixels(unittest.TestCase):
         block = alpha + struct.pack("<HHI", 0xFFFF, 0, 0)
         found = pixels.decode_color(block, 4, 4, pixels.Format("BC3", 0, 4, "UNorm", False))
         np.testing.assert_allclose(found[0, :3, 3] * 255, [100, 185, 200], atol=1)
+
+    def test_a_bc3_block_with_rising_ends_has_0_and_1(self):
+        alpha = bytes([100, 200]) + (6 | 7 << 3 | 2 << 6).to_bytes(6, "little")
+        block = alpha + struct.pack("<HHI", 0xFFFF, 0, 0)
+        found = pixels.decode_color(block, 4, 4, pixels.Format("BC3", 0, 4, "UNorm", False))
+        np.testing.assert_allclose(found[0, :3, 3] * 255, [0, 255, 120], atol=1)
 
     def test_24_bits_of_depth_are_where_the_api_keeps_them(self):
         word = struct.pack("<I", 0xFFFFFF << 8 | 7)

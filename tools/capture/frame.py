@@ -63,6 +63,14 @@ class Frame:
             self.draws.append(Draw(one, state, first))
             first += len(one["triangles"])
         self.triangles = first
+        if self.depth is not None and not self._depth_was_read():
+            self.depth = self.depth_before = None
+
+    def _depth_was_read(self):
+        """RenderDoc reads some depth buffers, such as OpenGL's renderbuffers of 16 bits, as 0 everywhere. Nothing would
+        pass the usual tests against that."""
+        nearer_is_larger = any(draw.state.get("depth_function", "less").startswith("greater") for draw in self.draws)
+        return nearer_is_larger or bool(self.depth.any() or self.depth_before.any())
 
     @property
     def clear_depth(self):

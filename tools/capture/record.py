@@ -113,7 +113,7 @@ class _Session:
         if done is not None:
             how = f"was ended by signal {-done}" if done < 0 else f"ended with exit code {done}"
             when = "before the frame that was asked for" if self.presents else "without showing a picture"
-            if self.refused:
+            if self.refused and not self.presents:
                 raise NotSupported(self.refused)
             raise Failure(f"{self.name} {how} {when}{self.output.last()}")
         if self.refused and not self.presents:

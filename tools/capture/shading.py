@@ -336,16 +336,22 @@ def summary(frame, counts):
     return "; ".join(f"{name}: {count} triangles" for name, count in sorted(kinds.items()) if count)
 
 
-def picture_colors(frame, owner):
+def picture_colors(frame, target):
     """For each triangle of the frame: the sum of the linear colours of the pixels that it owns, their number, and the
-    colour of the pixel under its middle."""
+    colour of the pixel under its middle. A triangle whose pixels all belong to what blends on top of it gets those."""
     total = frame.triangles
     if frame.color is None:
         return np.zeros((total, 3)), np.zeros(total, np.int64), np.full((total, 3), 0.5)
     linear = srgb.to_linear(frame.color.reshape(-1, 3).astype(np.float64))
-    seen = owner >= 0
-    count = np.bincount(owner[seen], minlength=total)
-    sums = np.stack([np.bincount(owner[seen], linear[seen, c], minlength=total) for c in range(3)], 1)
+
+    def gathered(owner):
+        seen = owner >= 0
+        return (np.stack([np.bincount(owner[seen], linear[seen, c], total) for c in range(3)], 1),
+                np.bincount(owner[seen], minlength=total))
+
+    (sums, count), (solid_sums, solid_count) = gathered(target.owner), gathered(target.solid)
+    hidden = count == 0
+    sums[hidden], count[hidden] = solid_sums[hidden], solid_count[hidden]
     middle = np.zeros((total, 3))
     for draw in frame.draws:
         corners = draw.clip.astype(np.float64)[draw.triangles].mean(1)
@@ -364,4 +370,4 @@ def shade(frame, textures):
     target = frame.rasterize(lambda draw, fragments: opacity(draw, fragments, textures, size)
                              >= draw.alpha_test.cutoff)
     find_looks(frame, target.owner, textures)
-    return target, picture_colors(frame, target.owner)
+    return target, picture_colors(frame, target)
