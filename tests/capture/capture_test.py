@@ -181,8 +181,9 @@ class Captures(unittest.TestCase):
 
 
 if __name__ == "__main__":
-    missing = [name for name in ("renderdoc", "numpy") if importlib.util.find_spec(name) is None]
+    missing = [f"python3-{name}" for name in ("renderdoc", "numpy") if importlib.util.find_spec(name) is None]
+    missing += [] if shutil.which("Xvfb") else ["xvfb"]
     if missing:
-        print(f"Skipped: the Debian packages {', '.join('python3-' + name for name in missing)} are not installed")
+        print(f"Skipped: these Debian packages are not installed: {' '.join(missing)}")
         sys.exit(77)
     unittest.main()

@@ -56,7 +56,8 @@ class Triangles(unittest.TestCase):
 
 class Welding(unittest.TestCase):
     def test_identical_vertices_are_shared_in_the_order_of_first_use(self):
-        clip = np.array([[0, 0, 0, 1], [1, 0, 0, 1], [0, 1, 0, 1], [0, 1, 0, 1], [1, 0, 0, 1], [1, 1, 0, 1]], np.float32)
+        clip = np.array([[0, 0, 0, 1], [1, 0, 0, 1], [0, 1, 0, 1], [0, 1, 0, 1], [1, 0, 0, 1], [1, 1, 0, 1]],
+                        np.float32)
         (positions,), corners, kept = geometry.weld([clip], np.array([[3, 4, 5], [0, 1, 2]]))
         self.assertEqual(len(positions), 4)
         self.assertEqual(corners.tolist(), [[0, 1, 2], [3, 1, 0]])
@@ -285,7 +286,7 @@ class Rasters(unittest.TestCase):
             x, y = (1 + clip[:, 0]) * 4, (1 - clip[:, 1]) * 3
             for pixel in range(48):
                 px, py = pixel % 8 + 0.5, pixel // 8 + 0.5
-                sides = [(x[(k + 1) % 3] - x[k]) * (py - y[k]) - (y[(k + 1) % 3] - y[k]) * (px - x[k]) for k in range(3)]
+                sides = [(x[k - 2] - x[k]) * (py - y[k]) - (y[k - 2] - y[k]) * (px - x[k]) for k in range(3)]
                 if min(abs(side) for side in sides) > 0.1:  # far enough from an edge for snapping not to matter
                     self.assertEqual(bool(target.touched[pixel]), all(s > 0 for s in sides) or all(s < 0 for s in sides))
 

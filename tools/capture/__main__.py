@@ -14,9 +14,10 @@ from processes import Processes
 from progress import Progress
 
 DESCRIPTION = "Make a trace from frames of a real program that draws with OpenGL, OpenGL ES or Vulkan."
-EXAMPLES = """What is kept: all triangles of the main pass as they leave the vertex, tessellation or geometry shader, with the
-state of their draws (depth, blending, stencil, viewport, culling), textures where they explain the picture, and the
-program's own picture and depth buffer to compare with. The program's fragment shaders are not run by beampipe.
+EXAMPLES = """What is kept: all triangles of the main pass as they leave the vertex, tessellation or geometry shader,
+with the state of their draws (depth, blending, stencil, viewport, culling), textures where they explain the picture,
+and the program's own picture and depth buffer to compare with. The program's fragment shaders are not run by beampipe.
+docs/capture.md has more.
 
 Examples:
   beampipe capture -o gears.json -- glxgears

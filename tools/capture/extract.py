@@ -89,7 +89,8 @@ def take_pictures(replay, found, kept):
     replay.controller.SetFrameEvent(last, True)
     size = replay.size_of(kept.color or kept.depth)
     return {
-        "api": replay.api, "driver": replay.driver, "size": size, "samples": replay.samples_of(kept.color or kept.depth),
+        "api": replay.api, "driver": replay.driver, "size": size,
+        "samples": replay.samples_of(kept.color or kept.depth),
         "color_format": replay.format_name(kept.color), "depth_format": replay.format_name(kept.depth),
         "color_before": color, "depth_before": depth,
         "color": replay.color_picture(kept.color) if kept.color else None, "depth": replay.depth_picture(kept.depth),

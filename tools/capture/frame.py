@@ -117,4 +117,5 @@ class Agreement:
         elif frame.color is not None:
             changed = (np.abs(frame.color - frame.color_before) > 1e-6).any(-1)
             touched = target.touched.reshape(changed.shape)
-            self.covered = (changed & touched).sum() / max(1, changed.sum())  # what is drawn in the same colour is hidden
+            # What is drawn in the colour that is there already cannot be told from what is not drawn.
+            self.covered = (changed & touched).sum() / max(1, changed.sum())

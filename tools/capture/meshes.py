@@ -4,7 +4,6 @@ import numpy as np
 import geometry
 import motion
 import srgb
-from textures import key_of
 
 
 class Mesh:

@@ -1,7 +1,8 @@
 """Runs a program under RenderDoc and has it capture frames.
 
 There are two ways. `direct`: RenderDoc watches the program's OpenGL (core profile, ES) or Vulkan. `zink`: Mesa's zink
-turns the program's OpenGL, of any version and with fixed functions too, into Vulkan, which RenderDoc's layer watches."""
+turns the program's OpenGL, of any version and with fixed functions too, into Vulkan, which RenderDoc's layer
+watches."""
 import os
 import subprocess
 import threading
@@ -34,8 +35,8 @@ class Recording:
 
 
 class _Output:
-    """The end of what a program prints. Some print so much that a program which looked at every line would hold them up;
-    this takes large pieces and forgets them."""
+    """The end of what a program prints. Some print so much that looking at every line would hold them up; this takes
+    large pieces and forgets them."""
 
     def __init__(self, stream):
         self.tail = b""

@@ -329,7 +329,8 @@ def summary(frame, counts):
                                 ("captured picture, pixel under the middle", len(draw.triangles) - owned)):
                 kinds[name] = kinds.get(name, 0) + count
             continue
-        parts = (["base texture"] if draw.look.slot is not None else []) + (["vertex colours"] if draw.look.color else [])
+        parts = ["base texture"] if draw.look.slot is not None else []
+        parts += ["vertex colours"] if draw.look.color else []
         parts += ["light at vertices from the captured picture"] if draw.look.light is not None else []
         name = " and ".join(parts) + ("" if draw.look.verified else ", not compared")
         kinds[name] = kinds.get(name, 0) + len(draw.triangles)

@@ -36,8 +36,8 @@ def picture_scissor(x, y, width, height, target_width, target_height, y_up):
 
 def stencil_of(face):
     return {"function": COMPARE[face["function"]], "reference": face["reference"] & 255,
-            "mask": face["compare_mask"] & 255, "write_mask": face["write_mask"] & 255, "fail": STENCIL[face["fail"]], "depth_fail": STENCIL[face["depth_fail"]],
-            "pass": STENCIL[face["pass"]]}
+            "mask": face["compare_mask"] & 255, "write_mask": face["write_mask"] & 255,
+            "fail": STENCIL[face["fail"]], "depth_fail": STENCIL[face["depth_fail"]], "pass": STENCIL[face["pass"]]}
 
 
 def blend_of(blend):
