@@ -1,7 +1,8 @@
 #!/usr/bin/env bash
-# Installs the Debian packages of one set that are not installed yet: tools/install_packages.sh build|test
-#   build  what the program needs to be built and to run
-#   test   everything in `build`, and what the tests, the fuzz targets and the benchmarks need
+# Installs the Debian packages of one set that are not installed yet: tools/install_packages.sh build|capture|test
+#   build    what the program needs to be built and to run
+#   capture  what `beampipe capture` runs
+#   test     everything in `build` and `capture`, and what the tests, the fuzz targets and the benchmarks need
 set -euo pipefail
 
 build=(
@@ -12,19 +13,26 @@ build=(
   libboost-dev  # only headers: checksums and exact arithmetic
   node-d3       # D3, which becomes part of the report page
 )
+capture=(
+  renderdoc python3-renderdoc python3-numpy
+  mesa-vulkan-drivers libgl1-mesa-dri xvfb  # to capture without a GPU and a display
+)
 test=(
   gnuplot-nox                       # draws the files of `beampipe plot` and the plots of `beampipe report`
   chromium chromium-driver python3  # tests of the report page
   libgtest-dev libbenchmark-dev
   clang-14 libclang-rt-14-dev       # fuzz targets
   assimp-testmodels                 # glTF models that other programs wrote, sound and broken ones
+  "${capture[@]}"
+  vulkan-tools mesa-utils glmark2-es2-x11  # programs to capture
 )
 
 case ${1:-} in
   build) packages=("${build[@]}") ;;
+  capture) packages=("${capture[@]}") ;;
   test) packages=("${build[@]}" "${test[@]}") ;;
   *)
-    echo "usage: tools/install_packages.sh build|test" >&2
+    echo "usage: tools/install_packages.sh build|capture|test" >&2
     exit 2
     ;;
 esac

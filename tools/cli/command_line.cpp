@@ -100,7 +100,19 @@ bool Command::was_given(const std::string& option) const { return app_->count(op
 
 void Command::footer(const std::string& text) { app_->footer(text); }
 
-void Command::set_work(std::function<void()> work) { app_->callback(std::move(work)); }
+void Command::take_all_words(std::vector<std::string>& words) {
+  app_->prefix_command();
+  app_->allow_extras();
+  app_->set_help_flag();
+  all_words_ = &words;
+}
+
+void Command::set_work(std::function<void()> work) {
+  app_->callback([app = app_, words = all_words_, work = std::move(work)] {
+    if (words) *words = app->remaining();
+    work();
+  });
+}
 
 CommandLine::CommandLine(const std::string& program, const std::string& version, const std::string& description,
                          const std::string& footer)

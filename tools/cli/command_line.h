@@ -52,6 +52,10 @@ class Command {
   Option add_flag(const std::string& names, bool& variable, const std::string& help);
   Command add_group(const std::string& title);
 
+  // All words that follow the command go to `words`, options and --help too, for a program that understands them. Must
+  // come before set_work().
+  void take_all_words(std::vector<std::string>& words);
+
   bool was_given(const std::string& option) const;
 
   // What --help prints after the options.
@@ -62,6 +66,7 @@ class Command {
 
  private:
   CLI::App* app_;
+  std::vector<std::string>* all_words_ = nullptr;
 };
 
 class CommandLine {

@@ -17,5 +17,6 @@ void add_diff_command(CommandLine& line);
 void add_info_command(CommandLine& line);
 void add_export_soup_command(CommandLine& line, InterruptGate& gate);
 void add_make_command(CommandLine& line, InterruptGate& gate);
+void add_capture_command(CommandLine& line);
 
 }  // namespace beampipe

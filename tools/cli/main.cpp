@@ -26,6 +26,7 @@ constexpr const char* kExamples = R"(Examples:
   beampipe compare fence.json -t beam msaa:8 -o out
   beampipe make model.obj -o model.json        (your own model; the camera is chosen to show all of it)
   beampipe run model.json -t beam -o out
+  beampipe capture -o gears.json -- glxgears   (a frame of a program that runs)
   beampipe report out                          (makes out/report.html, to open in a browser)
   beampipe plot out -o frontier.svg
   beampipe diff out/beam/frame_0000.exr out/reference/frame_0000.exr
@@ -61,6 +62,7 @@ int run(int argc, char** argv, beampipe::InterruptGate& gate) {
   beampipe::add_info_command(line);
   beampipe::add_export_soup_command(line, gate);
   beampipe::add_make_command(line, gate);
+  beampipe::add_capture_command(line);
   line.run(argc, argv);
   std::cout.flush();
   if (!std::cout) return report_error("cannot write to standard output", kRuntimeError);

@@ -1,0 +1,189 @@
+"""Captures small programs and reads the traces: `python3 capture_test.py BEAMPIPE`.
+
+Programs and packages that are not installed are skipped. Exit code 77 if there was nothing to capture with."""
+import importlib.util
+import json
+import os
+import shutil
+import signal
+import struct
+import subprocess
+import sys
+import tempfile
+import time
+import unittest
+
+BEAMPIPE = sys.argv.pop(1) if len(sys.argv) > 1 else "beampipe"
+SECONDS = 120  # that any of these captures may take; they take a few
+TYPES = {"float32": "f", "uint32": "I", "uint16": "H", "srgb8": "B"}
+
+
+def environment():
+    """Without a display, so that each capture starts its own."""
+    return {key: value for key, value in os.environ.items() if key != "DISPLAY"}
+
+
+def capture(*words):
+    return subprocess.run([BEAMPIPE, "capture", "--timeout", str(SECONDS), *words], env=environment(), text=True,
+                          stdin=subprocess.DEVNULL, capture_output=True)
+
+
+def values_of(trace, folder, view):
+    """A view's numbers. Fails where it does not lie within its buffer."""
+    buffer = trace["buffers"][view["buffer"]]
+    path = os.path.join(folder, buffer["file"])
+    size = struct.calcsize(TYPES[view["type"]])
+    assert os.path.getsize(path) == buffer["bytes"], path
+    assert view["offset"] % size == 0 and view["offset"] + size * view["count"] <= buffer["bytes"], view
+    with open(path, "rb") as file:
+        file.seek(view["offset"])
+        return struct.unpack(f"<{view['count']}{TYPES[view['type']]}", file.read(size * view["count"]))
+
+
+class Captures(unittest.TestCase):
+    def setUp(self):
+        holder = tempfile.TemporaryDirectory()
+        self.addCleanup(holder.cleanup)
+        self.folder = holder.name
+
+    def trace_of(self, program, *words):
+        """The trace of a program and what the command printed."""
+        if shutil.which(program) is None:
+            self.skipTest(f"{program} is not installed")
+        path = os.path.join(self.folder, "frame.json")
+        done = capture("-o", path, *words)
+        self.assertEqual(done.returncode, 0, done.stderr)
+        self.assertEqual(done.stderr, "")  # progress is for terminals
+        with open(path) as file:
+            trace = json.load(file)
+        self.check(trace, done.stdout)
+        return trace, done.stdout
+
+    def check(self, trace, printed):
+        for name, mesh in trace["meshes"].items():
+            positions = values_of(trace, self.folder, mesh["positions4"])
+            indices = values_of(trace, self.folder, mesh["indices"])
+            self.assertLess(max(indices), len(positions) // 4, name)
+            self.assertEqual(len(indices) % 3, 0)
+            if "colors" in mesh:
+                self.assertEqual(mesh["colors"]["count"], len(indices))
+            else:
+                self.assertIn(mesh["materials"][0], trace["materials"])
+        for frame in trace["frames"]:
+            depth = values_of(trace, self.folder, frame["captured"]["depth"])
+            self.assertEqual(len(depth), frame["width"] * frame["height"])
+            self.assertTrue(0 <= min(depth) < max(depth) == frame["captured"]["clear_depth"])
+            for draw in frame["draws"]:
+                self.assertIn(draw["mesh"], trace["meshes"])
+            self.assertEqual(sum(one["kept"] for one in frame["passes"]), 1)
+        for image in trace["images"].values():
+            with open(os.path.join(self.folder, image["file"]), "rb") as file:
+                self.assertEqual(file.read(8), b"\x89PNG\r\n\x1a\n")
+        agreement = next(line for line in printed.splitlines() if line.startswith("check:"))
+        covered, depths = (float(word) for word in agreement.split() if word[0].isdigit() and "." in word)
+        self.assertGreater(covered, 99.9, agreement)
+        self.assertGreater(depths, 99.9, agreement)
+        left = [name for name in os.listdir(self.folder) if name.endswith(".part")]
+        self.assertEqual(left, [])
+
+    def test_vulkan(self):
+        trace, _ = self.trace_of("vkcube", "--frame", "30", "--", "vkcube")
+        self.assertEqual(trace["source"]["api"], "Vulkan")
+        self.assertEqual([len(mesh) > 0 for mesh in trace["meshes"].values()], [True])
+        self.assertEqual(sum(mesh["indices"]["count"] for mesh in trace["meshes"].values()), 36)
+
+    def test_fixed_functions_go_through_zink_and_moving_meshes_are_stored_once(self):
+        trace, _ = self.trace_of("glxgears", "--frame", "60", "--frames", "2", "--", "glxgears")
+        self.assertEqual(trace["source"]["api"], "OpenGL (zink)")
+        first, second = ([draw["mesh"] for draw in frame["draws"]] for frame in trace["frames"])
+        self.assertEqual(len(first), 12)
+        self.assertGreaterEqual(len(set(first) & set(second)), 6)
+        moved = [draw for draw in trace["frames"][1]["draws"] if "transform" in draw]
+        self.assertGreaterEqual(len(moved), 6)
+        self.assertTrue(all(len(draw["transform"]) == 16 for draw in moved))
+
+    def test_opengl_es(self):
+        trace, printed = self.trace_of("glmark2-es2", "--frame", "30", "--", "glmark2-es2", "-b", "build:model=horse")
+        self.assertEqual(trace["source"]["api"], "OpenGLES")
+        self.assertIn("vertex colours", printed)
+        triangles = sum(mesh["indices"]["count"] // 3 for mesh in trace["meshes"].values())
+        self.assertGreater(triangles, 1000)
+        arrays = trace["buffers"]["arrays"]["bytes"]
+        self.assertLessEqual(arrays, 40 * triangles)
+
+    def test_textures_are_read(self):
+        trace, printed = self.trace_of("glmark2-es2", "--frame", "30", "--", "glmark2-es2", "-b", "texture")
+        self.assertIn("base texture", printed)
+        self.assertEqual(sum("base_texture" in material for material in trace["materials"].values()), 1)
+
+    def test_a_program_that_ends_is_one_line(self):
+        done = capture("-o", os.path.join(self.folder, "a.json"), "--", "false")
+        self.assertEqual((done.returncode, done.stdout), (1, ""))
+        self.assertRegex(done.stderr, r"\Abeampipe: error: false ended with exit code 1[^\n]*\n\Z")
+        self.assertEqual(os.listdir(self.folder), [])
+
+    def test_a_program_that_draws_nothing_is_one_line(self):
+        start = time.monotonic()
+        done = capture("--timeout", "3", "-o", os.path.join(self.folder, "a.json"), "--", "sleep", "1000")
+        self.assertEqual(done.returncode, 1)
+        self.assertRegex(done.stderr, r"\Abeampipe: error: sleep: no picture shown within the time limit[^\n]*\n\Z")
+        self.assertLess(time.monotonic() - start, 60)
+
+    def test_wrong_usage_is_exit_code_2(self):
+        out = os.path.join(self.folder, "a.json")
+        for words in ([], ["--", "true"], ["-o", out], ["-o", out, "true"], ["-o", "a.txt", "--", "true"],
+                      ["-o", out, "--frame", "0", "--", "true"], ["-o", out, "--frame", "1", "--after", "1", "--", "x"],
+                      ["-o", out, "--nonsense", "--", "true"]):
+            done = capture(*words)
+            self.assertEqual(done.returncode, 2, words)
+            self.assertRegex(done.stderr, r"\Abeampipe: error: [^\n]*\n\Z")
+
+    def test_files_that_are_no_captures(self):
+        path = os.path.join(self.folder, "no.rdc")
+        with open(path, "wb") as file:
+            file.write(b"nonsense")
+        for name, part in ((path, "not a RenderDoc capture"), (os.path.join(self.folder, "none.rdc"), "no such file")):
+            done = capture("-o", os.path.join(self.folder, "a.json"), name)
+            self.assertEqual(done.returncode, 1)
+            self.assertIn(part, done.stderr)
+            self.assertEqual(done.stderr.count("\n"), 1)
+
+    def test_an_interrupt_ends_everything_that_was_started(self):
+        if shutil.which("glxgears") is None:
+            self.skipTest("glxgears is not installed")
+        running = subprocess.Popen([BEAMPIPE, "capture", "--after", "1000", "--timeout", "1000", "-o",
+                                    os.path.join(self.folder, "a.json"), "--", "glxgears"],
+                                   env=environment(), stdin=subprocess.DEVNULL, stdout=subprocess.DEVNULL,
+                                   stderr=subprocess.PIPE, text=True)
+        children = []
+        for _ in range(200):
+            time.sleep(0.05)
+            children = self.children_of(running.pid)
+            if len(children) >= 2 or running.poll() is not None:
+                break
+        running.send_signal(signal.SIGINT)
+        _, error = running.communicate(timeout=60)
+        self.assertEqual((running.returncode, error), (130, "beampipe: interrupted\n"))
+        for child in children:
+            self.assertFalse(os.path.exists(f"/proc/{child}"), child)
+        self.assertEqual(os.listdir(self.folder), [])
+
+    def children_of(self, parent):
+        found = []
+        for name in os.listdir("/proc"):
+            try:
+                with open(f"/proc/{name}/stat") as file:
+                    if int(file.read().rpartition(")")[2].split()[1]) == parent:
+                        found.append(int(name))
+            except (OSError, ValueError, IndexError):
+                pass
+        return found
+
+
+if __name__ == "__main__":
+    missing = [f"python3-{name}" for name in ("renderdoc", "numpy") if importlib.util.find_spec(name) is None]
+    missing += [] if shutil.which("Xvfb") else ["xvfb"]
+    if missing:
+        print(f"Skipped: these Debian packages are not installed: {' '.join(missing)}")
+        sys.exit(77)
+    unittest.main()

@@ -1,0 +1,192 @@
+"""Runs a program under RenderDoc and has it capture frames.
+
+There are two ways. `direct`: RenderDoc watches the program's OpenGL (core profile, ES) or Vulkan. `zink`: Mesa's zink
+turns the program's OpenGL, of any version and with fixed functions too, into Vulkan, which RenderDoc's layer
+watches."""
+import os
+import subprocess
+import threading
+import time
+
+import renderdoc as rd
+
+from failure import Failure
+from redraw import ask_for_redraw
+
+SETTLE = 10.0  # seconds that a program has to show its first picture with one way, before the other way is tried
+REDRAW_AFTER = 2.0  # seconds without a new picture before the program's windows are asked to draw again
+
+ENVIRONMENTS = {
+    "direct": {"LD_PRELOAD": "librenderdoc.so"},
+    "zink": {"MESA_LOADER_DRIVER_OVERRIDE": "zink", "LIBGL_ALWAYS_SOFTWARE": "1"},
+    "vulkan": {},  # the layer alone, for programs that replay Vulkan
+}
+
+
+class NotSupported(Exception):
+    """RenderDoc cannot capture what the program draws with; `reason` in its words."""
+
+
+class Recording:
+    """`paths` of the captures in the order of frames, the number of the first frame, the API, and the way."""
+
+    def __init__(self, way):
+        self.way, self.paths, self.frame, self.api = way, [], None, ""
+
+
+class _Output:
+    """The end of what a program prints. Some print so much that looking at every line would hold them up; this takes
+    large pieces and forgets them."""
+
+    def __init__(self, stream):
+        self.tail = b""
+        threading.Thread(target=self._read, args=(stream.fileno(), stream), daemon=True).start()
+
+    def _read(self, descriptor, stream):
+        try:
+            while piece := os.read(descriptor, 1 << 20):
+                self.tail = (self.tail + piece)[-1000:]
+        finally:
+            stream.close()
+
+    def last(self):
+        lines = [line.strip() for line in self.tail.decode(errors="replace").splitlines() if line.strip()]
+        return f' (it last said: "{lines[-1][:200]}")' if lines else ""
+
+
+def _attach(program):
+    """RenderDoc's control of the program or of a process that it has started, or None if there is none yet."""
+    ident = rd.EnumerateRemoteTargets("", 0)
+    while ident:
+        control = rd.CreateTargetControl("", ident, "beampipe", True)
+        if control is not None:
+            try:
+                if os.getpgid(control.GetPID()) == program.pid:
+                    return control
+            except ProcessLookupError:
+                pass
+            control.Shutdown()
+        ident = rd.EnumerateRemoteTargets("", ident)
+    return None
+
+
+class _Session:
+    """One run of the program."""
+
+    def __init__(self, processes, words, way, display, folder, wishes, progress, deadline):
+        self.wishes, self.progress, self.display = wishes, progress, display
+        self.start, self.deadline = time.monotonic(), deadline
+        environment = {**os.environ, "DISPLAY": display, "ENABLE_VULKAN_RENDERDOC_CAPTURE": "1",
+                       "RENDERDOC_CAPFILE": os.path.join(folder, f"{way}_capture"), **ENVIRONMENTS[way]}
+        try:
+            self.program = processes.start(words, env=environment, stdin=subprocess.DEVNULL,
+                                           stdout=subprocess.PIPE, stderr=subprocess.STDOUT)
+        except OSError as error:
+            raise Failure(f"{words[0]}: {error.strerror}")
+        self.output = _Output(self.program.stdout)
+        self.name = os.path.basename(words[0])
+        self.result = Recording(way)
+        self.control, self.triggered_at, self.windows, self.cycled = None, None, 0, False
+        self.presents, self.refused = False, ""
+
+    def run(self):
+        """Waits until all frames are captured. Raises Failure or NotSupported."""
+        try:
+            while len(self.result.paths) < self.wishes.frames:
+                self._check()
+                if self.control is None:
+                    self.control = _attach(self.program)
+                    if self.control is None:
+                        time.sleep(0.05)
+                        continue
+                    if self.wishes.frame is not None:
+                        self._trigger()
+                self._trigger_in_time()
+                self._receive()
+        finally:
+            if self.control is not None:
+                self.control.Shutdown()
+        return self.result
+
+    def _check(self):
+        now = time.monotonic()
+        done = self.program.poll()
+        if done is not None:
+            how = f"was ended by signal {-done}" if done < 0 else f"ended with exit code {done}"
+            when = "before the frame that was asked for" if self.presents else "without showing a picture"
+            if self.refused and not self.presents:
+                raise NotSupported(self.refused)
+            raise Failure(f"{self.name} {how} {when}{self.output.last()}")
+        if self.refused and not self.presents:
+            raise NotSupported(self.refused)
+        if now > self.deadline:
+            what = "frame captured" if self.presents else "picture shown"
+            raise Failure(f"{self.name}: no {what} within the time limit (see --timeout){self.output.last()}")
+        if not self.presents and self.result.way == "direct" and now - self.start > max(SETTLE, self.wishes.after):
+            raise NotSupported("RenderDoc sees no picture")
+        self.progress.show(f"{self.name} runs ({self.result.way})" + (", capturing" if self.triggered_at else ""))
+
+    def _trigger(self):
+        if self.wishes.frame is not None:
+            self.control.QueueCapture(self.wishes.frame, self.wishes.frames)
+        else:
+            self.control.TriggerCapture(self.wishes.frames)
+        self.triggered_at = time.monotonic()
+        self.asked_at = self.triggered_at
+
+    def _trigger_in_time(self):
+        now = time.monotonic()
+        if self.wishes.second_window and self.windows > 1 and not self.cycled:
+            self.control.CycleActiveWindow()
+            self.cycled = True
+        if self.triggered_at is None and now - self.start > self.wishes.after:
+            self._trigger()
+        if self.triggered_at and self.wishes.frame is None and now - self.asked_at > REDRAW_AFTER:
+            ask_for_redraw(self.display)  # a program that draws only when it must
+            self.asked_at = now
+
+    def _receive(self):
+        message = self.control.ReceiveMessage(None)
+        kind = rd.TargetControlMessageType
+        if message.type == kind.NewCapture:
+            capture = message.newCapture
+            self.result.paths.append(capture.path)
+            self.result.frame = capture.frameNumber if self.result.frame is None else self.result.frame
+            self.result.api = str(capture.api)
+        elif message.type == kind.RegisterAPI:
+            use = message.apiUse
+            if use.presenting and use.supported:
+                self.presents = True
+            elif use.presenting:
+                self.refused = " ".join(str(use.supportMessage).split()) or f"{use.name} of this kind"
+        elif message.type == kind.CapturableWindowCount:
+            self.windows = message.capturableWindowCount
+        elif message.type == kind.Disconnected:
+            # RenderDoc's Vulkan layer goes with an instance that only probes, and comes again with the next.
+            self.control.Shutdown()
+            self.control, self.triggered_at = None, None
+        elif message.type == kind.Noop:
+            time.sleep(0.01)
+
+
+class Wishes:
+    """`frame`: the number of the first frame, or None: `after` so many seconds. `frames`: how many in a row.
+    `second_window`: RenderDoc's next window shows the frames (apitrace's replayer has a first one that stays empty)."""
+
+    def __init__(self, after, frame, frames, second_window=False):
+        self.after, self.frame, self.frames, self.second_window = after, frame, frames, second_window
+
+
+def record(processes, words, ways, display, folder, wishes, progress, timeout):
+    """Captures frames of the program `words` by the first of `ways` that works."""
+    deadline = time.monotonic() + timeout
+    reasons = []
+    for way in ways:
+        session = _Session(processes, words, way, display, folder, wishes, progress, deadline)
+        try:
+            return session.run()
+        except NotSupported as error:
+            reasons.append(f"{way}: {error}")
+        finally:
+            processes.end(session.program)
+    raise Failure(f"RenderDoc cannot capture {os.path.basename(words[0])} ({'; '.join(reasons)})")
