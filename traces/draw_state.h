@@ -80,7 +80,8 @@ struct Stencil {
 };
 
 // Bits of DrawState::color_mask.
-inline constexpr std::uint32_t kRed = 1, kGreen = 2, kBlue = 4, kAlpha = 8, kAllChannels = 15;
+inline constexpr std::uint32_t kRedChannel = 1, kGreenChannel = 2, kBlueChannel = 4, kAlphaChannel = 8,
+                               kAllChannels = 15;
 
 struct DrawState {
   std::optional<Viewport> viewport{};  // else the whole frame

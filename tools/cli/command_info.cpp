@@ -6,8 +6,10 @@
 #include <iostream>
 #include <limits>
 #include <memory>
+#include <numeric>
 
 #include "tools/cli/commands.h"
+#include "tools/evaluate/draw_notes.h"
 #include "tools/report/report_text.h"
 #include "traces/json.h"
 #include "traces/trace_io.h"
@@ -189,6 +191,9 @@ void add_info_command(CommandLine& line) {
   command.add_flag("--allow-outside", arguments->allow_outside, "allow the trace to name files outside its own folder");
   command.set_work([arguments] {
     const Trace trace = read_trace(arguments->trace, {.allow_outside = arguments->allow_outside});
+    std::vector<std::size_t> frames(trace.frames.size());
+    std::iota(frames.begin(), frames.end(), std::size_t{0});
+    tell_notes(notes_of(trace, frames));
     std::cout << (arguments->json ? json_text(info_json(trace, arguments->trace)) : info_text(trace));
   });
 }

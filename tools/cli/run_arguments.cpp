@@ -8,6 +8,7 @@
 #include <thread>
 
 #include "simd/target.h"
+#include "tools/evaluate/draw_notes.h"
 #include "tools/evaluate/machine_memory.h"
 #include "tools/evaluate/results.h"
 #include "traces/trace_io.h"
@@ -103,6 +104,7 @@ RunPlan make_plan(const RunArguments& arguments) {
     for (const Technique& technique : plan.techniques)
       require_memory(plan.trace, plan.trace.frames[frame], technique.working_bytes_per_pixel,
                      "frame " + std::to_string(frame) + " with " + technique.spec, machine_memory());
+  plan.notes = notes_of(plan.trace, plan.frames);
   return plan;
 }
 
