@@ -82,7 +82,8 @@ TEST(DrawPlan, SkiesLieBehindAndDisplaysInFront) {
   const std::vector<DrawPlacement>& p = plan.placements;
   const Range sky = range_of(p[0], 3), sky2 = range_of(p[1]), world = range_of(p[2]), display = range_of(p[4], 2),
               display2 = range_of(p[5]);
-  EXPECT_EQ(world.near, -1), EXPECT_EQ(world.far, 0);
+  EXPECT_EQ(world.near, -1);
+  EXPECT_EQ(world.far, 0);
   EXPECT_EQ(p[2], p[3]);
   EXPECT_LT(sky.far, 1);
   EXPECT_LT(sky2.far, sky.near);
