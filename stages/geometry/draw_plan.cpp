@@ -82,10 +82,12 @@ class Planner {
       DrawPlacement& placement = plan.placements[i];
       placement.clips_depth = draw.state.depth.clip;
       place_on_screen(draw.state, frame_.width, frame_.height, placement);
-      if (placement.is_drawn) placement.is_drawn = can_draw(draw, placement);
+      if (!placement.is_drawn) continue;
+      placement.is_drawn = can_draw(draw, placement);
+      if (is_pre_pass(draw.state)) pre_passes_.push_back(i);
     }
-    for (std::uint32_t i = 0; i < frame_.draws.size(); ++i)
-      if (is_pre_pass(frame_.draws[i].state) && !is_drawn_again(i)) leave_out(frame_.draws[i], "depth without colour");
+    for (const std::uint32_t i : pre_passes_)
+      if (!is_drawn_again(i)) leave_out(frame_.draws[i], "depth without colour");
     order_depths(trace_, frame_, plan.placements, plan.notes);
   }
 
@@ -149,6 +151,7 @@ class Planner {
 
   const Trace& trace_;
   const Frame& frame_;
+  std::vector<std::uint32_t> pre_passes_;  // draws
 };
 
 }  // namespace

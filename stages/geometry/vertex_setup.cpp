@@ -54,13 +54,15 @@ struct View {
 struct DrawScreen {
   const DrawPlacement& placement;
   VertexTransform transform;
+  bool is_cut;  // to a rectangle, or to depths that are flattened
   ClipPlanes planes;
   bool mirrored;
 
   DrawScreen(const View& view, const Draw& draw, const DrawPlacement& of_draw)
       : placement(of_draw),
         transform{elements_of(placed(view.to_clip, of_draw) * draw.transform), view.width, view.height},
-        planes(has_limits(of_draw) ? clip_planes(view.width, view.height, limits_of(of_draw)) : view.planes),
+        is_cut(has_limits(of_draw) || !of_draw.clips_depth),
+        planes(is_cut ? clip_planes(view.width, view.height, limits_of(of_draw)) : view.planes),
         mirrored(view.mirrored != of_draw.mirrors()) {}
 
  private:
@@ -215,8 +217,8 @@ class TriangleSetup {
   void add(std::size_t t) {
     const glm::uvec3& index = mesh_.triangles[t];
     const std::array<const ProjectedVertex*, 3> v = {&vertices_[index.x], &vertices_[index.y], &vertices_[index.z]};
-    if (is_placed_) {
-      add_placed(t, v);
+    if (screen_.is_cut) {
+      add_cut(t, v);
     } else if (v[0]->in_view && v[1]->in_view && v[2]->in_view) {
       add_on_screen(t, {*v[0], 0, 0}, {*v[1], 1, 0}, {*v[2], 0, 1});
     } else if (v[0]->finite && v[1]->finite && v[2]->finite) {
@@ -230,9 +232,11 @@ class TriangleSetup {
   SetupWork work;
 
  private:
-  // A triangle of a draw that its state puts somewhere else: the view volume says nothing about where it is clipped.
-  void add_placed(std::size_t t, const std::array<const ProjectedVertex*, 3>& v) {
+  // A triangle of a draw whose state says where it is cut.
+  void add_cut(std::size_t t, const std::array<const ProjectedVertex*, 3>& v) {
     if (!(v[0]->finite && v[1]->finite && v[2]->finite)) return;
+    ++work.outside_tests;
+    if (screen_.placement.clips_depth && outside_view<double>({v[0]->clip, v[1]->clip, v[2]->clip})) return;
     bool is_inside = true;
     for (std::size_t i = 0; i < kPlanes; ++i) {
       int outside = 0;
@@ -274,7 +278,7 @@ class TriangleSetup {
       vertices[i] = {};
       vertices[i].clip = polygon[i];
       place_on_screen(screen_.transform, vertices[i]);
-      if (is_placed_) limit(vertices[i]);
+      if (screen_.is_cut) limit(vertices[i]);
       if (flat_z) vertices[i].screen.z = *flat_z;
       ++work.projected;
       return {vertices[i], polygon[i].second, polygon[i].third};

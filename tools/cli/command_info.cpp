@@ -31,7 +31,11 @@ struct Bounds {
   void add(const Mesh& mesh, const glm::dmat4& transform) {
     for (const glm::uvec3& triangle : mesh.triangles) {
       for (int corner = 0; corner < 3; ++corner) {
-        const glm::dvec3 point(transform * glm::dvec4(mesh.positions[triangle[corner]], 1.0));
+        const std::uint32_t vertex = triangle[corner];
+        const double w = mesh.ws.empty() ? 1.0 : mesh.ws[vertex];
+        const glm::dvec4 homogeneous = transform * glm::dvec4(mesh.positions[vertex], w);
+        if (!(homogeneous.w > 0)) continue;  // at infinity, or behind the eye of a captured frame
+        const glm::dvec3 point = glm::dvec3(homogeneous) / homogeneous.w;
         min = glm::min(min, point);
         max = glm::max(max, point);
       }
