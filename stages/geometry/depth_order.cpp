@@ -131,21 +131,23 @@ class DepthOrder {
       }
     }
     for (auto at = tested_end; at != draws.end(); ++at) put(*at, Part::in_front);
-    choose_direction(group);
+    choose_direction(group, first, end);
     note_functions(group, first);
     if (!draws.empty()) groups_.push_back(std::move(group));
   }
 
-  void choose_direction(Group& group) {
-    std::uint64_t less = 0, greater = 0, less_draws = 0, greater_draws = 0;  // triangles, draws
-    for (const std::uint32_t draw : group.parts[static_cast<std::size_t>(Part::tested)]) {
-      if (is_less(depth_of(draw).function)) less += triangles_of(draw), ++less_draws;
-      if (is_greater(depth_of(draw).function)) greater += triangles_of(draw), ++greater_draws;
+  // Of the draws [first, end), those that are not drawn count too: a pre-pass may say which way its draws compare.
+  void choose_direction(Group& group, std::uint32_t first, std::uint32_t end) {
+    std::uint64_t less = 0, greater = 0;  // triangles
+    for (std::uint32_t i = first; i < end; ++i) {
+      if (!depth_of(i).test) continue;
+      if (is_less(depth_of(i).function)) less += triangles_of(i);
+      if (is_greater(depth_of(i).function)) greater += triangles_of(i);
     }
     group.is_reversed = greater > less;
-    if (less_draws > 0 && greater_draws > 0)
-      add_note(notes_, "depth functions less and greater are mixed", false,
-               group.is_reversed ? less_draws : greater_draws, group.is_reversed ? less : greater);
+    for (const std::uint32_t draw : group.parts[static_cast<std::size_t>(Part::tested)])
+      if (group.is_reversed ? is_less(depth_of(draw).function) : is_greater(depth_of(draw).function))
+        note(draw, "depth functions less and greater are mixed");
   }
 
   void note_functions(const Group& group, std::uint32_t first) {

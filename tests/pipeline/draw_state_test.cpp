@@ -161,7 +161,7 @@ class Program {
       for (const glm::ivec2& corner : {glm::ivec2(quad.box.x0, quad.box.y0), glm::ivec2(quad.box.x1, quad.box.y0),
                                        glm::ivec2(quad.box.x1, quad.box.y1), glm::ivec2(quad.box.x0, quad.box.y1)}) {
         constexpr float kWs[] = {0.5f, 1.0f, 4.0f};
-        const float w = kWs[mesh.ws.size() % 3];
+        const float w = kWs[mesh.ws.size() / 4 % 3];  // the same for a quad, so that crossing points have its depth
         mesh.positions.emplace_back(w * (2 * (float(corner.x) - view.x) / view.width - 1),
                                     w * (1 - 2 * (float(corner.y) - view.y) / view.height),
                                     w * static_cast<float>(2 * quad.depth - 1));

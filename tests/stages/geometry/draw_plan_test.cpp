@@ -201,6 +201,16 @@ TEST(DrawPlan, GreaterReversesDepth) {
   EXPECT_EQ(draws.notes(), (std::vector<DrawNote>{{"depth functions less and greater are mixed", false, 1, 1}}));
 }
 
+// The pre-pass is dropped, and equal says nothing about which way is near.
+TEST(DrawPlan, APrePassSaysWhichWayIsNear) {
+  Draws draws;
+  draws.add(Compare::greater).state.color_mask = 0;
+  draws.add(Compare::equal).mesh = 0;
+  const DrawPlan plan = draws.plan();
+  EXPECT_TRUE(plan.notes.empty());
+  EXPECT_LT(plan.placements[1].depth_scale, 0);
+}
+
 TEST(DrawPlan, NotesWhatDepthsCannotExpress) {
   Draws draws;
   draws.add(Compare::less);
