@@ -22,6 +22,7 @@ inline float magnitude(float a) { return a < 0 ? -a : a; }
 inline double magnitude(double a) { return a < 0 ? -a : a; }
 inline std::uint32_t select(bool condition, std::uint32_t yes, std::uint32_t no) { return condition ? yes : no; }
 inline std::int32_t select(bool condition, std::int32_t yes, std::int32_t no) { return condition ? yes : no; }
+inline double select(bool condition, double yes, double no) { return condition ? yes : no; }
 inline double lesser(double a, double b) { return a < b ? a : b; }
 inline double greater(double a, double b) { return a > b ? a : b; }
 inline double square_root(double x) { return std::sqrt(x); }

@@ -1,9 +1,21 @@
 // The formulas of simd/vertex_transform.h. No include guard: see simd/scalar.h.
 
+// `last(r)`: what row r of the matrix adds for w.
+template <class Real, class Last>
+ClipVertex<Real> transform_rows(const std::array<Real, 16>& m, Real x, Real y, Real z, Last&& last) {
+  const auto row = [&](std::size_t r) { return m[r] * x + m[4 + r] * y + m[8 + r] * z + last(r); };
+  return {row(0), row(1), row(2), row(3)};
+}
+
 template <class Real>
 ClipVertex<Real> transform_vertex(const std::array<Real, 16>& m, Real x, Real y, Real z) {
-  const auto row = [&](std::size_t r) { return m[r] * x + m[4 + r] * y + m[8 + r] * z + m[12 + r]; };
-  return {row(0), row(1), row(2), row(3)};
+  return transform_rows(m, x, y, z, [&](std::size_t r) { return m[12 + r]; });
+}
+
+// The same for a homogeneous position.
+template <class Real>
+ClipVertex<Real> transform_vertex(const std::array<Real, 16>& m, Real x, Real y, Real z, Real w) {
+  return transform_rows(m, x, y, z, [&](std::size_t r) { return m[12 + r] * w; });
 }
 
 template <class Real>

@@ -1,5 +1,7 @@
 #include "simd/vertex_transform.h"
 
+#include <algorithm>
+
 #undef HWY_TARGET_INCLUDE
 #define HWY_TARGET_INCLUDE "simd/vertex_transform.cpp"
 #include "hwy/foreach_target.h"
@@ -23,7 +25,7 @@ struct Positions {
 };
 
 std::size_t transform_vertices_kernel(const float* positions, std::size_t count, const VertexTransform& transform,
-                                      ProjectedVertex* out) {
+                                      ProjectedVertex* out, const float* ws) {
   const D d;
   const hn::Rebind<float, D> df;
   const hn::Rebind<std::int32_t, D> di;
@@ -32,13 +34,17 @@ std::size_t transform_vertices_kernel(const float* positions, std::size_t count,
   const Reals zero(0.0), unit(1.0 / kSubpixelUnits), width(transform.width), height(transform.height);
   HWY_ALIGN double clip[4][kLanes], screen[3][kLanes];
   HWY_ALIGN std::int32_t snapped[2][kLanes];
+  HWY_ALIGN float w[kLanes] = {};
   std::size_t seen = 0;
   for (std::size_t first = 0; first < count; first += kLanes) {
     const std::size_t n = HWY_MIN(kLanes, count - first);
     HWY_ALIGN const auto columns =
         load_rows<Positions>(reinterpret_cast<const std::array<float, 3>*>(positions) + first, n);
     const auto load = [&](const float* column) { return Reals(hn::PromoteTo(d, hn::Load(df, column))); };
-    const ClipVertex<Reals> vertex = transform_vertex(to_clip, load(columns.x), load(columns.y), load(columns.z));
+    const Reals x = load(columns.x), y = load(columns.y), z = load(columns.z);
+    if (ws) std::copy_n(ws + first, n, w);
+    const ClipVertex<Reals> vertex =
+        ws ? transform_vertex(to_clip, x, y, z, load(w)) : transform_vertex(to_clip, x, y, z);
     const Reals sum = vertex.x + vertex.y + vertex.z + vertex.w;
     const auto finite = sum - sum == zero, visible = finite & in_view(vertex);
 
@@ -76,8 +82,8 @@ HWY_AFTER_NAMESPACE();
 namespace beampipe {
 HWY_EXPORT(transform_vertices_kernel);
 std::size_t transform_vertices(const float* positions, std::size_t count, const VertexTransform& transform,
-                               ProjectedVertex* out) {
-  return HWY_DYNAMIC_DISPATCH(transform_vertices_kernel)(positions, count, transform, out);
+                               ProjectedVertex* out, const float* ws) {
+  return HWY_DYNAMIC_DISPATCH(transform_vertices_kernel)(positions, count, transform, out, ws);
 }
 }  // namespace beampipe
 #endif

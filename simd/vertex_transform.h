@@ -38,10 +38,10 @@ struct VertexTransform {
   double width, height;            // pixels
 };
 
-// `positions` holds x, y, z of each vertex. Returns how many vertices are in view. Lanes are across vertices. The same
-// bits as the formulas on double, on every target.
+// `positions` holds x, y, z of each vertex; `ws` its w, or null if w is 1 everywhere. Returns how many vertices are in
+// view. Lanes are across vertices. The same bits as the formulas on double, on every target.
 std::size_t transform_vertices(const float* positions, std::size_t count, const VertexTransform& transform,
-                               ProjectedVertex* out);
+                               ProjectedVertex* out, const float* ws = nullptr);
 
 namespace scalar {
 #include "simd/vertex_transform-inl.h"
@@ -56,9 +56,11 @@ inline void place_on_screen(const VertexTransform& transform, ProjectedVertex& v
   vertex.screen.x = vertex.x * (1.0 / kSubpixelUnits), vertex.screen.y = vertex.y * (1.0 / kSubpixelUnits);
 }
 
-inline ProjectedVertex transform_vertex_scalar(const VertexTransform& transform, float x, float y, float z) {
+inline ProjectedVertex transform_vertex_scalar(const VertexTransform& transform, float x, float y, float z,
+                                               const float* w = nullptr) {
   ProjectedVertex vertex{};
-  vertex.clip = transform_vertex<double>(transform.to_clip, x, y, z);
+  vertex.clip = w ? transform_vertex<double>(transform.to_clip, x, y, z, *w)
+                  : transform_vertex<double>(transform.to_clip, x, y, z);
   vertex.finite = std::isfinite(vertex.clip.x + vertex.clip.y + vertex.clip.z + vertex.clip.w);
   vertex.in_view = vertex.finite && in_view(vertex.clip);
   if (vertex.in_view) place_on_screen(transform, vertex);

@@ -79,7 +79,9 @@ struct Stencil {
   bool operator==(const Stencil&) const = default;
 };
 
-inline constexpr std::uint32_t kAllChannels = 15;  // bits of red, green, blue and alpha, from the lowest on
+// Bits of DrawState::color_mask.
+inline constexpr std::uint32_t kRedChannel = 1, kGreenChannel = 2, kBlueChannel = 4, kAlphaChannel = 8,
+                               kAllChannels = 15;
 
 struct DrawState {
   std::optional<Viewport> viewport{};  // else the whole frame

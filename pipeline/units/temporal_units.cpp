@@ -8,7 +8,7 @@ TemporalFrame::TemporalFrame(const FrameContext& context)
     : current(context.frame.width, context.frame.height),
       context_(context),
       history_(context.run.history ? *context.run.history : first_),
-      poses_(poses_of(context.frame)),
+      poses_(poses_of(context.frame, context.triangles.placements)),
       to_last_(to_last_frame(poses_, history_.frames > 0 ? history_.poses : poses_)),
       picture_(current.color.size()) {}
 

@@ -5,6 +5,8 @@
 #include <glm/glm.hpp>
 #include <vector>
 
+#include "stages/data/draw_placement.h"
+
 namespace beampipe {
 
 // The transforms that place a frame's draws on its screen.
@@ -12,6 +14,7 @@ struct Poses {
   struct Pose {
     std::uint32_t mesh;
     glm::dmat4 transform;
+    DrawPlacement placement{};
   };
   glm::dmat4 view_projection{1.0};  // without jitter
   std::vector<Pose> draws;

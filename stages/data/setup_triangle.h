@@ -2,13 +2,15 @@
 //
 // Screen space: x points right and y points down. Pixel (0, 0) is the upper left one and covers [0, 1] x [0, 1].
 // Positions are integers in 1/256 px. Depth is linear in screen space, -1 at the near plane and 0 at the far plane:
-// (z / w - 1) / 2. As in reversed Z, float precision is highest near 0, i.e. far away.
+// (z / w - 1) / 2. As in reversed Z, float precision is highest near 0, i.e. far away. Depths of draws whose state puts
+// them elsewhere (stages/geometry/depth_order.h) lie between -2 and 1.
 #pragma once
 
 #include <cstdint>
 #include <glm/glm.hpp>
 #include <vector>
 
+#include "stages/data/draw_placement.h"
 #include "stages/data/surface.h"
 
 namespace beampipe {
@@ -40,11 +42,14 @@ struct FlatAttributes {
 };
 
 struct SetupTriangles {
-  std::vector<SetupTriangle> triangles;    // in primitive order; clipping may turn one triangle into several in a row
+  // In primitive order, except that opaque triangles that win against earlier ones at equal depth come first, the last
+  // one first. Clipping may turn one triangle into several in a row.
+  std::vector<SetupTriangle> triangles;
   std::vector<FlatAttributes> attributes;  // one per triangle
   std::vector<std::uint32_t> draws;        // one per triangle: index into Frame::draws
   std::vector<SetupSurface> surfaces;      // one per triangle; empty if all triangles are flat
   std::vector<SurfaceVertex> vertices;     // of the draws with materials
+  std::vector<DrawPlacement> placements;   // one per draw of the frame; empty if no draw has state
 
   bool is_opaque(std::uint32_t triangle) const { return surfaces.empty() || surfaces[triangle].is_opaque; }
 

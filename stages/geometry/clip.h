@@ -1,4 +1,4 @@
-// Clipping of triangles in clip space, to the near and far planes and to the guard band.
+// Clipping of triangles in clip space: to the near and far planes, and to a rectangle of the screen or the guard band.
 #pragma once
 
 #include <array>
@@ -6,18 +6,23 @@
 #include <vector>
 
 #include "simd/vertex_transform.h"
-#include "traces/trace.h"
 
 namespace beampipe {
 
 // How far from the viewport's origin a snapped vertex may lie, on every side, in pixels: 2^23 in 1/256 px.
 inline constexpr double kGuardBand = 32768.0;
 
-// Clip planes as inner products that are >= 0 inside: near, far, then the four sides of the guard band.
-inline constexpr int kPlanes = 6;
+// Sides of a rectangle of the screen, in pixels. A side at the guard band stands for none.
+struct ScreenLimits {
+  double left = -kGuardBand, top = -kGuardBand, right = kGuardBand, bottom = kGuardBand;
+};
+
+// Clip planes as inner products that are >= 0 inside: near, far, left, right, bottom and top.
+inline constexpr std::size_t kPlanes = 6, kDepthPlanes = 2;
 using ClipPlanes = std::array<std::array<double, 4>, kPlanes>;
 
-ClipPlanes clip_planes(const Frame& frame);
+// `width`, `height`: of the frame, in pixels.
+ClipPlanes clip_planes(double width, double height, const ScreenLimits& limits = {});
 
 template <class Real>
 Real plane_distance(const std::array<Real, 4>& plane, const ClipVertex<Real>& v) {
@@ -57,7 +62,9 @@ struct ClippedVertex : ClipVertex<double> {
 using Polygon = std::vector<ClippedVertex>;
 
 // Clips to one plane (Sutherland and Hodgman). A crossing is always computed from the inner to the outer vertex, so two
-// triangles that share the edge get the same point. Adds the number of crossings to `crossings`.
-Polygon clip_to_plane(const Polygon& polygon, const std::array<double, 4>& plane, std::uint64_t& crossings);
+// triangles that share the edge get the same point. Adds the number of crossings to `crossings`. The part outside goes
+// to `outside`, unless that is null.
+Polygon clip_to_plane(const Polygon& polygon, const std::array<double, 4>& plane, std::uint64_t& crossings,
+                      Polygon* outside = nullptr);
 
 }  // namespace beampipe

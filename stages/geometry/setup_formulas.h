@@ -22,6 +22,23 @@ Slopes<Real> depth_slopes(const ScreenVertex<Real>& p, const ScreenVertex<Real>&
   return {(qz * ry - rz * qy) * inverse, (rz * qx - qz * rx) * inverse};
 }
 
+// A draw's depth bias and window_scale, as in DrawPlacement.
+template <class Real>
+struct DepthBiasTerms {
+  Real constant, slope, clamp, window_scale;
+};
+
+// What the bias adds to a triangle's depth: glPolygonOffsetClamp's formula (OpenGL 4.6 core, section 14.6.5), whose
+// slopes are those of window depth.
+template <class Real>
+Real depth_bias(const DepthBiasTerms<Real>& terms, Real dzdx, Real dzdy) {
+  const Real zero(0.0);
+  const Real steepest = greater(magnitude(dzdx), magnitude(dzdy)) / magnitude(terms.window_scale);
+  const Real bias = terms.slope * steepest + terms.constant;
+  const Real above = select(terms.clamp > zero, lesser(bias, terms.clamp), bias);
+  return terms.window_scale * select(terms.clamp < zero, greater(above, terms.clamp), above);
+}
+
 // Twice the signed area; positive if the vertices are clockwise with y down.
 template <class Int>
 Int doubled_area(const std::array<Int, 3>& x, const std::array<Int, 3>& y) {

@@ -5,9 +5,11 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <optional>
 
 #include "simd/vertex_transform.h"
 #include "stages/geometry/clip.h"
+#include "stages/geometry/draw_plan.h"
 #include "stages/geometry/setup_formulas.h"
 #include "stages/geometry/vertex_setup_cost.h"
 
@@ -32,7 +34,7 @@ struct View {
       : width(frame.width),
         height(frame.height),
         to_clip(frame.projection * frame.view),
-        planes(clip_planes(frame)),
+        planes(clip_planes(width, height)),
         // Front faces are counter-clockwise on screen. A view or projection that mirrors reverses that in world space.
         // Clip space is left-handed, so a matrix that does not mirror has a negative determinant.
         mirrored(glm::determinant(to_clip) > 0),
@@ -65,6 +67,50 @@ struct View {
   }
 };
 
+// The screen of one draw.
+struct DrawScreen {
+  const DrawPlacement& placement;
+  VertexTransform transform;
+  bool is_cut;  // to a rectangle, or to depths that are flattened
+  ClipPlanes planes;
+  bool mirrored;
+
+  DrawScreen(const View& view, const Draw& draw, const DrawPlacement& of_draw)
+      : placement(of_draw),
+        transform{elements_of(placed(view.to_clip, of_draw) * draw.transform), view.width, view.height},
+        is_cut(has_limits(of_draw) || !of_draw.clips_depth),
+        planes(is_cut ? clip_planes(view.width, view.height, limits_of(of_draw)) : view.planes),
+        mirrored(view.mirrored != of_draw.mirrors()) {}
+
+ private:
+  static glm::dmat4 placed(const glm::dmat4& to_clip, const DrawPlacement& placement) {
+    const bool moves =
+        placement.x_scale != 1 || placement.x_offset != 0 || placement.y_scale != 1 || placement.y_offset != 0;
+    if (!moves) return to_clip;
+    glm::dmat4 to_frame(1.0);
+    to_frame[0][0] = placement.x_scale, to_frame[3][0] = placement.x_offset;
+    to_frame[1][1] = placement.y_scale, to_frame[3][1] = placement.y_offset;
+    return to_frame * to_clip;
+  }
+
+  static bool has_limits(const DrawPlacement& placement) {
+    constexpr std::int32_t kNone = DrawPlacement::kNoSide;
+    return placement.left > -kNone || placement.top > -kNone || placement.right < kNone || placement.bottom < kNone;
+  }
+
+  static ScreenLimits limits_of(const DrawPlacement& placement) {
+    constexpr double kUnit = 1.0 / kSubpixelUnits;
+    return {placement.left * kUnit, placement.top * kUnit, placement.right * kUnit, placement.bottom * kUnit};
+  }
+};
+
+// In object space. Homogeneous positions are divided by w, unless that is 0.
+glm::dvec3 position_of(const Mesh& mesh, std::size_t vertex) {
+  const glm::dvec3 position(mesh.positions[vertex]);
+  const double w = mesh.ws.empty() ? 1.0 : mesh.ws[vertex];
+  return w == 1 || w == 0 ? position : position / w;
+}
+
 // The material of a triangle; kNoMaterial: it is flat.
 std::uint32_t material_of(const Draw& draw, const Mesh& mesh, std::size_t triangle) {
   if (draw.kd) return kNoMaterial;
@@ -89,7 +135,7 @@ class VertexShader {
         handedness_(glm::determinant(glm::dmat3(draw.transform)) < 0 ? -1.0f : 1.0f) {}
 
   glm::dvec3 world(std::uint32_t vertex) const {
-    return glm::dvec3(to_world_ * glm::dvec4(glm::dvec3(mesh_.positions[vertex]), 1.0));
+    return glm::dvec3(to_world_ * glm::dvec4(position_of(mesh_, vertex), 1.0));
   }
 
   SurfaceVertex operator()(std::uint32_t i) const {
@@ -178,10 +224,11 @@ constexpr std::uint32_t kNoVertices = ~0u;  // of frames whose triangles are all
 class TriangleSetup {
  public:
   // `first_vertex`: where the draw's vertices start in SetupTriangles::vertices.
-  TriangleSetup(const View& view, const Trace& trace, const Draw& draw, std::uint32_t draw_index,
-                const VertexTransform& transform, const std::vector<ProjectedVertex>& vertices,
-                std::uint32_t first_vertex)
+  TriangleSetup(const View& view, const DrawScreen& screen, const Trace& trace, const Draw& draw,
+                std::uint32_t draw_index, const std::vector<ProjectedVertex>& vertices, std::uint32_t first_vertex)
       : view_(view),
+        screen_(screen),
+        is_placed_(screen.placement != DrawPlacement{}),
         materials_(trace.materials),
         mesh_(trace.meshes[draw.mesh]),
         draw_(draw),
@@ -189,13 +236,14 @@ class TriangleSetup {
         transform_mirrors_(glm::determinant(glm::dmat3(draw.transform)) < 0),
         to_world_(elements_of(draw.transform)),
         draw_index_(draw_index),
-        transform_(transform),
         vertices_(vertices) {}
 
   void add(std::size_t t) {
     const glm::uvec3& index = mesh_.triangles[t];
     const std::array<const ProjectedVertex*, 3> v = {&vertices_[index.x], &vertices_[index.y], &vertices_[index.z]};
-    if (v[0]->in_view && v[1]->in_view && v[2]->in_view) {
+    if (screen_.is_cut) {
+      add_cut(t, v);
+    } else if (v[0]->in_view && v[1]->in_view && v[2]->in_view) {
       add_on_screen(t, {*v[0], 0, 0}, {*v[1], 1, 0}, {*v[2], 0, 1});
     } else if (v[0]->finite && v[1]->finite && v[2]->finite) {
       ++work.outside_tests;
@@ -208,20 +256,54 @@ class TriangleSetup {
   SetupWork work;
 
  private:
+  // A triangle of a draw whose state says where it is cut.
+  void add_cut(std::size_t t, const std::array<const ProjectedVertex*, 3>& v) {
+    if (!(v[0]->finite && v[1]->finite && v[2]->finite)) return;
+    ++work.outside_tests;
+    if (screen_.placement.clips_depth && outside_view<double>({v[0]->clip, v[1]->clip, v[2]->clip})) return;
+    bool is_inside = true;
+    for (std::size_t i = 0; i < kPlanes; ++i) {
+      int outside = 0;
+      for (const ProjectedVertex* vertex : v) outside += plane_distance<double>(screen_.planes[i], vertex->clip) < 0;
+      work.plane_tests += v.size();
+      if (outside == 3 && (i >= kDepthPlanes || screen_.placement.clips_depth)) return;
+      is_inside &= outside == 0;
+    }
+    if (is_inside && v[0]->in_view && v[1]->in_view && v[2]->in_view) {
+      add_on_screen(t, {*v[0], 0, 0}, {*v[1], 1, 0}, {*v[2], 0, 1});
+      return;
+    }
+    Polygon polygon = {corner(*v[0], 0, 0), corner(*v[1], 1, 0), corner(*v[2], 0, 1)};
+    for (std::size_t i = 0; !is_inside && i < kDepthPlanes; ++i) {
+      work.plane_tests += polygon.size();
+      Polygon beyond;
+      polygon = clip_to_plane(polygon, screen_.planes[i], work.crossings, &beyond);
+      if (!screen_.placement.clips_depth) add_clipped_to(kDepthPlanes, t, std::move(beyond), i == 0 ? -1.0 : 0.0);
+    }
+    add_clipped_to(is_inside ? kPlanes : kDepthPlanes, t, std::move(polygon));
+  }
+
   void add_clipped(std::size_t t, Polygon polygon) {
     bool clipped = false;
-    for (const auto& plane : view_.planes)
+    for (const auto& plane : screen_.planes)
       for (const ClippedVertex& p : polygon) clipped |= plane_distance<double>(plane, p) < 0;
-    work.plane_tests += view_.planes.size() * polygon.size();
-    for (std::size_t i = 0; clipped && i < view_.planes.size(); ++i) {
+    work.plane_tests += screen_.planes.size() * polygon.size();
+    add_clipped_to(clipped ? 0 : kPlanes, t, std::move(polygon));
+  }
+
+  // Clips to the planes from number `first` on, and cuts what is left into triangles. `flat_z`: the depth of all of it.
+  void add_clipped_to(std::size_t first, std::size_t t, Polygon polygon, std::optional<double> flat_z = {}) {
+    for (std::size_t i = first; i < screen_.planes.size(); ++i) {
       work.plane_tests += polygon.size();
-      polygon = clip_to_plane(polygon, view_.planes[i], work.crossings);
+      polygon = clip_to_plane(polygon, screen_.planes[i], work.crossings);
     }
     std::vector<ProjectedVertex> vertices(polygon.size());
     const auto on_screen = [&](std::size_t i) -> ScreenCorner {
       vertices[i] = {};
       vertices[i].clip = polygon[i];
-      place_on_screen(transform_, vertices[i]);
+      place_on_screen(screen_.transform, vertices[i]);
+      if (screen_.is_cut) limit(vertices[i]);
+      if (flat_z) vertices[i].screen.z = *flat_z;
       ++work.projected;
       return {vertices[i], polygon[i].second, polygon[i].third};
     };
@@ -231,6 +313,13 @@ class TriangleSetup {
         add_on_screen(t, on_screen(0), on_screen(i - 1), on_screen(i));
   }
 
+  // A crossing point may be beyond its plane by a rounding error.
+  void limit(ProjectedVertex& vertex) const {
+    const DrawPlacement& to = screen_.placement;
+    vertex.x = std::clamp(vertex.x, to.left, to.right), vertex.y = std::clamp(vertex.y, to.top, to.bottom);
+    vertex.screen.x = vertex.x * (1.0 / kSubpixelUnits), vertex.screen.y = vertex.y * (1.0 / kSubpixelUnits);
+  }
+
   void add_on_screen(std::size_t t, const ScreenCorner& first, const ScreenCorner& second, const ScreenCorner& third) {
     const ProjectedVertex &a = first.vertex, &b = second.vertex, &c = third.vertex;
     const std::uint32_t material = material_of(draw_, mesh_, t);
@@ -238,16 +327,18 @@ class TriangleSetup {
     const std::int64_t area2 = doubled_area<std::int64_t>({a.x, b.x, c.x}, {a.y, b.y, c.y});
     if (area2 == 0) return;
     const bool front = area2 < 0;  // counter-clockwise with y up
-    if (draw_.cull == (front ? Cull::front : Cull::back)) return;
+    if (draw_.cull == (front != draw_.state.front_is_clockwise ? Cull::front : Cull::back)) return;
     if (material != kNoMaterial && !materials_[material].double_sided && shows_back(front)) return;
     SetupTriangle triangle;
-    const std::array<const ProjectedVertex*, 3> turned = {&a, front ? &c : &b, front ? &b : &c};
+    const std::array<const ProjectedVertex*, 3> corners = {&a, &b, &c};
+    std::array<ScreenVertex<double>, 3> p = {a.screen, b.screen, c.screen};
+    if (is_placed_) place_depths(t, p);
+    const std::array<std::size_t, 3> turned = {0, front ? 2u : 1u, front ? 1u : 2u};
     for (std::size_t k = 0; k < 3; ++k) {
-      triangle.x[k] = turned[k]->x, triangle.y[k] = turned[k]->y;
-      triangle.vertex_z[k] = static_cast<float>(turned[k]->screen.z);
+      triangle.x[k] = corners[turned[k]]->x, triangle.y[k] = corners[turned[k]]->y;
+      triangle.vertex_z[k] = static_cast<float>(p[turned[k]].z);
     }
     // Sorted, so that a triangle has the same depth whichever vertex comes first and whichever way it turns.
-    std::array<ScreenVertex<double>, 3> p = {a.screen, b.screen, c.screen};
     const auto put_in_order = [&p](std::size_t i) {
       const auto key = [](const ScreenVertex<double>& v) { return std::array{v.x, v.y, v.z}; };
       if (key(p[i + 1]) < key(p[i])) std::swap(p[i], p[i + 1]);
@@ -255,6 +346,7 @@ class TriangleSetup {
     put_in_order(0), put_in_order(1), put_in_order(0);
     const Slopes<double> slopes = depth_slopes(p[0], p[1], p[2]);
     triangle.depth = {p[0].z, slopes.dzdx, slopes.dzdy, p[0].x, p[0].y};
+    if (screen_.placement.has_bias()) add_bias(triangle);
     triangle.front = front;
     out.triangles.push_back(triangle);
     out.attributes.push_back(attributes(t, material, front));
@@ -262,8 +354,27 @@ class TriangleSetup {
     if (has_surfaces()) out.surfaces.push_back(surface(t, material, front, {first, second, third}));
   }
 
-  // Does the viewer see the triangle from the side from which the mesh's vertices are clockwise?
-  bool shows_back(bool front) const { return (front == view_.mirrored) != transform_mirrors_; }
+  // From the draw's own depth, -1..0, to the frame's.
+  void place_depths(std::size_t t, std::array<ScreenVertex<double>, 3>& p) {
+    const DrawPlacement& to = screen_.placement;
+    const double offset = to.depth_offset - to.layer_step * static_cast<double>(t);
+    for (ScreenVertex<double>& vertex : p) vertex.z = to.depth_scale * vertex.z + offset;
+    ++work.placed;
+  }
+
+  void add_bias(SetupTriangle& triangle) {
+    const DrawPlacement& to = screen_.placement;
+    const double bias = depth_bias<double>({to.bias_constant, to.bias_slope, to.bias_clamp, to.window_scale},
+                                           triangle.depth.dzdx, triangle.depth.dzdy);
+    triangle.depth.z += bias;
+    for (float& z : triangle.vertex_z) z = static_cast<float>(z + bias);
+    ++work.biased;
+  }
+
+  // Does the viewer see the back: the side from which the mesh's vertices are clockwise, or else the state's front is?
+  bool shows_back(bool front) const {
+    return ((front == screen_.mirrored) != transform_mirrors_) != draw_.state.front_is_clockwise;
+  }
 
   bool has_surfaces() const { return first_vertex_ != kNoVertices; }
 
@@ -273,7 +384,8 @@ class TriangleSetup {
     ++work.surfaces;
     const glm::uvec3& index = mesh_.triangles[t];
     surface.material = material;
-    surface.is_opaque = materials_[material].alpha_mode == AlphaMode::opaque;
+    const AlphaMode mode = materials_[material].alpha_mode;
+    surface.is_opaque = mode == AlphaMode::opaque || (mode == AlphaMode::blend && screen_.placement.is_opaque);
     for (int k = 0; k < 3; ++k) surface.vertices[static_cast<std::size_t>(k)] = first_vertex_ + index[k];
     surface.turned = shows_back(front);
     surface.has_own_normal = mesh_.normals.empty();
@@ -302,18 +414,20 @@ class TriangleSetup {
     if (!flat.lit) return flat;
     ++work.normals;
     const auto world = [&](std::uint32_t i) {
-      const glm::vec3& p = mesh_.positions[i];
+      const glm::dvec3 p = position_of(mesh_, i);
       return world_point<double>(to_world_, {p.x, p.y, p.z});
     };
     const glm::uvec3& index = mesh_.triangles[t];
     double length = 0;
     const Vector<double> normal = face_normal(world(index.x), world(index.y), world(index.z), length);
-    const double scale = (front != view_.mirrored ? 1.0 : -1.0) / length;
+    const double scale = (front != screen_.mirrored ? 1.0 : -1.0) / length;
     if (length > 0) flat.normal = glm::vec3(glm::dvec3(normal.x, normal.y, normal.z) * scale);
     return flat;
   }
 
   const View& view_;
+  const DrawScreen& screen_;
+  bool is_placed_;
   const std::vector<Material>& materials_;
   const Mesh& mesh_;
   const Draw& draw_;
@@ -321,7 +435,6 @@ class TriangleSetup {
   bool transform_mirrors_;
   std::array<double, 16> to_world_;
   std::uint32_t draw_index_;
-  const VertexTransform& transform_;
   const std::vector<ProjectedVertex>& vertices_;
 };
 
@@ -342,24 +455,25 @@ void for_each_chunk(std::size_t count, ChunkWork&& work) {
 }
 
 // Appends the draw's triangles to `out`, chunk by chunk.
-SetupWork add_draw(const View& view, const Trace& trace, const Draw& draw, std::uint32_t draw_index,
-                   std::uint32_t first_vertex, SetupTriangles& out) {
+SetupWork add_draw(const View& view, const Trace& trace, const Draw& draw, const DrawPlacement& placement,
+                   std::uint32_t draw_index, std::uint32_t first_vertex, SetupTriangles& out) {
   const Mesh& mesh = trace.meshes[draw.mesh];
-  const VertexTransform transform{elements_of(view.to_clip * draw.transform), view.width, view.height};
+  const DrawScreen screen(view, draw, placement);
   std::vector<ProjectedVertex> vertices(mesh.positions.size());
   std::vector<std::size_t> in_view((vertices.size() + kChunk - 1) / kChunk);
   for_each_chunk(vertices.size(), [&](std::size_t first, std::size_t end) {
     in_view[first / kChunk] =
-        transform_vertices(&mesh.positions[first].x, end - first, transform, vertices.data() + first);
+        transform_vertices(&mesh.positions[first].x, end - first, screen.transform, vertices.data() + first,
+                           mesh.ws.empty() ? nullptr : mesh.ws.data() + first);
   });
   std::vector<TriangleSetup> chunks((mesh.triangles.size() + kChunk - 1) / kChunk,
-                                    TriangleSetup(view, trace, draw, draw_index, transform, vertices, first_vertex));
+                                    TriangleSetup(view, screen, trace, draw, draw_index, vertices, first_vertex));
   for_each_chunk(mesh.triangles.size(), [&](std::size_t first, std::size_t end) {
     chunks[first / kChunk].out.reserve(end - first);
     for (std::size_t t = first; t < end; ++t) chunks[first / kChunk].add(t);
   });
   SetupWork work;
-  work.transformed = vertices.size();
+  (mesh.ws.empty() ? work.transformed : work.transformed_homogeneous) = vertices.size();
   for (const std::size_t of_chunk : in_view) work.projected += of_chunk;
   for (const TriangleSetup& chunk : chunks) {
     append(chunk.out, out);
@@ -389,6 +503,25 @@ void shade_vertices(const View& view, const Draw& draw, const Mesh& mesh, StageC
   counters.bytes_written += count * (sizeof(glm::vec3) + attributes);
 }
 
+// Puts the opaque triangles of draws that win at equal depth first, the last one first.
+void put_winners_first(SetupTriangles& all) {
+  const auto wins = [&](std::uint32_t i) { return all.placements[all.draws[i]].last_wins && all.is_opaque(i); };
+  std::vector<std::uint32_t> order;
+  order.reserve(all.triangles.size());
+  for (auto i = static_cast<std::uint32_t>(all.triangles.size()); i-- > 0;)
+    if (wins(i)) order.push_back(i);
+  if (order.empty()) return;
+  for (std::uint32_t i = 0; i < all.triangles.size(); ++i)
+    if (!wins(i)) order.push_back(i);
+  const auto reorder = [&](auto& values) {
+    if (values.empty()) return;
+    auto reordered = values;
+    for (std::size_t i = 0; i < order.size(); ++i) reordered[i] = values[order[i]];
+    values = std::move(reordered);
+  };
+  reorder(all.triangles), reorder(all.attributes), reorder(all.draws), reorder(all.surfaces);
+}
+
 }  // namespace
 
 SetupTriangles vertex_setup(const Trace& trace, const Frame& frame, StageCounters& counters) {
@@ -396,8 +529,14 @@ SetupTriangles vertex_setup(const Trace& trace, const Frame& frame, StageCounter
   const View view(frame);
   SetupWork work;
   counters.stage = "vertex_setup";
+  out.placements = plan_draws(trace, frame).placements;
+  constexpr DrawPlacement kDefault{};
+  const auto placement_of = [&](std::size_t i) -> const DrawPlacement& {
+    return out.placements.empty() ? kDefault : out.placements[i];
+  };
   std::size_t triangles = 0;
-  for (const Draw& draw : frame.draws) triangles += trace.meshes[draw.mesh].triangles.size();
+  for (std::size_t i = 0; i < frame.draws.size(); ++i)
+    if (placement_of(i).is_drawn) triangles += trace.meshes[frame.draws[i].mesh].triangles.size();
   out.reserve(triangles);  // once, for all triangles, culled or not: pages that are never written take no memory
   counters.items_in += triangles;
   const bool has_materials = std::any_of(frame.draws.begin(), frame.draws.end(),
@@ -405,15 +544,18 @@ SetupTriangles vertex_setup(const Trace& trace, const Frame& frame, StageCounter
   for (std::uint32_t i = 0; i < frame.draws.size(); ++i) {
     const Draw& draw = frame.draws[i];
     const Mesh& mesh = trace.meshes[draw.mesh];
+    if (!placement_of(i).is_drawn) continue;
     const auto first_vertex = static_cast<std::uint32_t>(out.vertices.size());
-    work += add_draw(view, trace, draw, i, has_materials ? first_vertex : kNoVertices, out);
+    work += add_draw(view, trace, draw, placement_of(i), i, has_materials ? first_vertex : kNoVertices, out);
     if (has_material(draw, mesh)) {
       work.shaded_vertices += mesh.positions.size();
       work.vertex_vectors += mesh.positions.size() * (std::size_t{!mesh.normals.empty()} + !mesh.tangents.empty());
       shade_vertices(view, draw, mesh, counters, out.vertices);
     }
-    counters.bytes_read += mesh.triangles.size() * sizeof(glm::uvec3) + mesh.positions.size() * sizeof(glm::vec3);
+    counters.bytes_read += mesh.triangles.size() * sizeof(glm::uvec3) + mesh.positions.size() * sizeof(glm::vec3) +
+                           mesh.ws.size() * sizeof(float);
   }
+  if (!out.placements.empty()) put_winners_first(out);
   work.triangles = out.triangles.size();
   counters.items_out = out.triangles.size();
   charge(work, counters);

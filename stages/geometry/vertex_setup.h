@@ -4,6 +4,10 @@
 // triangle extends beyond it), projects, snaps to 1/256 px and computes the depth plane. Triangles are dropped if they
 // lie outside the view volume, if their area is zero after snapping, or if a vertex is not finite.
 //
+// Draws with fixed-function state go where plan_draws (stages/geometry/draw_plan.h) puts them. Where they reach beyond
+// their viewport or scissor, they are clipped to it instead of the guard band: the crossing points then lie on its
+// sides, so no sample outside is covered.
+//
 // Double precision resolves a vertex that is 10^14 px away to 1/64 px. From 10^15 px on, edges are displaced, and from
 // 10^17 px on, parts of clipped triangles are missing.
 #pragma once

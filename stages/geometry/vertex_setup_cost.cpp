@@ -21,6 +21,26 @@ OperationCounts transform_cost() {
   });
 }
 
+OperationCounts transform_homogeneous_cost() {
+  return count_operations([](OperationCounts& counts) {
+    std::array<CountedReal, 16> matrix;
+    matrix.fill(CountedReal(1.0, counts));
+    const CountedReal x(1.0, counts);
+    static_cast<void>(in_view(transform_vertex(matrix, x, x, x, x)));
+  });
+}
+
+// The depths of three corners, and where a painted triangle's layer lies.
+OperationCounts placed_cost() { return {.mul_add = 3 + 1, .add = 3 + 1}; }
+
+OperationCounts bias_cost() {
+  return count_operations([](OperationCounts& counts) {
+    const CountedReal x(1.0, counts);
+    const CountedReal bias = depth_bias<CountedReal>({x, x, x, x}, x, x);
+    for (int corner = 0; corner < 3 + 1; ++corner) static_cast<void>(x + bias);
+  });
+}
+
 OperationCounts project_cost() {
   return count_operations([](OperationCounts& counts) {
     const CountedReal x(1.0, counts);
@@ -141,6 +161,9 @@ OperationCounts tangent_cost() {
 
 void charge(const SetupWork& work, StageCounters& counters) {
   counters.ops += transform_cost() * work.transformed;
+  counters.ops += transform_homogeneous_cost() * work.transformed_homogeneous;
+  counters.ops += placed_cost() * work.placed;
+  counters.ops += bias_cost() * work.biased;
   counters.ops += outside_cost() * work.outside_tests;
   counters.ops += plane_test_cost() * work.plane_tests;
   counters.ops += crossing_cost() * work.crossings;

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <bit>
+#include <cmath>
 
 #include "stages/data/pixel_depth.h"
 #include "stages/raster/bin_sort_cost.h"
@@ -9,8 +10,8 @@
 namespace beampipe {
 namespace {
 
-constexpr int kDroppedBits = 7;  // of a float's 31 bits without its sign
-constexpr std::uint32_t kFarthestKey = (1u << 24) - 1;
+constexpr int kDroppedBits = 7;                 // of a float's 31 bits without its sign
+constexpr std::uint32_t kKeyOfZero = 1u << 23;  // the far plane; magnitudes up to 2 have 23 bits
 
 // The nearest depth of the triangle in the tile, as pair_bounds for a pixel. Both round, so this one has a margin:
 // eight roundings of the largest sum that can occur. Without it, one triangle in a thousand is nearer by a rounding
@@ -27,15 +28,19 @@ float nearest_in(const SetupTriangle& triangle, const Tile& tile) {
 
 }  // namespace
 
-// Floats of one sign are in the order of their bits. Cutting off bits of a magnitude rounds it down, which is towards
-// the far plane at 0, so the key is taken from the magnitude rounded up.
+// Floats of one sign are in the order of their bits. Cutting off bits of a magnitude rounds it down. For depths below 0
+// that is away from the viewer, so their keys are taken from the magnitude rounded up.
 std::uint32_t sort_key(float depth) {
-  const std::uint32_t magnitude = std::bit_cast<std::uint32_t>(std::max(0.0f, -depth));  // not -0
+  const std::uint32_t magnitude = std::bit_cast<std::uint32_t>(std::abs(depth));  // not -0
+  if (depth > 0) return kKeyOfZero + std::min(magnitude >> kDroppedBits, kKeyOfZero - 1);
   const std::uint32_t kept = (magnitude + (1u << kDroppedBits) - 1) >> kDroppedBits;
-  return kFarthestKey - std::min(kept, kFarthestKey);
+  return kKeyOfZero - std::min(kept, kKeyOfZero);
 }
 
-float nearest_of(std::uint32_t key) { return -std::bit_cast<float>((kFarthestKey - key) << kDroppedBits); }
+float nearest_of(std::uint32_t key) {
+  if (key > kKeyOfZero) return std::bit_cast<float>((key - kKeyOfZero) << kDroppedBits);
+  return -std::bit_cast<float>((kKeyOfZero - key) << kDroppedBits);
+}
 
 OrderedList bin_sort(const SetupTriangles& triangles, const TriangleList& list, const Tile& tile,
                      StageCounters& counters) {

@@ -21,7 +21,7 @@ struct OrderedList {
   std::vector<float> watermarks;  // one per triangle: no later one is nearer; depths as in SetupTriangles
 };
 
-// A depth as a 24-bit key: a nearer depth has a smaller key. `depth`: -1..0.
+// A depth as a 24-bit key: a nearer depth has a smaller key. `depth`: -2..1.
 std::uint32_t sort_key(float depth);
 
 // The nearest depth that has this key.

@@ -37,11 +37,34 @@ glm::vec2 pixel_motion(const glm::dmat4& to_last, double center_x, double center
   return {half(static_cast<float>(moved.dx)), half(static_cast<float>(moved.dy))};
 }
 
+// From the draw's clip space to the frame's; z is not needed there.
+glm::dmat4 to_frame(const DrawPlacement& placement) {
+  glm::dmat4 matrix(1.0);
+  matrix[0][0] = placement.x_scale, matrix[3][0] = placement.x_offset;
+  matrix[1][1] = placement.y_scale, matrix[3][1] = placement.y_offset;
+  return matrix;
+}
+
+// From normalized device coordinates of the frame, where z is 2 depth + 1, to those of the draw.
+glm::dmat4 from_frame(const DrawPlacement& placement) {
+  glm::dmat4 matrix(1.0);
+  matrix[0][0] = 1 / placement.x_scale, matrix[3][0] = -placement.x_offset / placement.x_scale;
+  matrix[1][1] = 1 / placement.y_scale, matrix[3][1] = -placement.y_offset / placement.y_scale;
+  const bool is_flat = placement.depth_scale == 0;
+  matrix[2][2] = is_flat ? 0.0 : 1 / placement.depth_scale;
+  matrix[3][2] = is_flat ? (placement.depth_offset < -1 ? -1.0 : 1.0)
+                         : 1 - (1 + 2 * placement.depth_offset) / placement.depth_scale;
+  return matrix;
+}
+
 }  // namespace
 
-Poses poses_of(const Frame& frame) {
+Poses poses_of(const Frame& frame, const std::vector<DrawPlacement>& placements) {
   Poses poses{frame.projection * frame.view, {}};
-  for (const Draw& draw : frame.draws) poses.draws.push_back({draw.mesh, draw.transform});
+  for (std::size_t i = 0; i < frame.draws.size(); ++i) {
+    const Draw& draw = frame.draws[i];
+    poses.draws.push_back({draw.mesh, draw.transform, placements.empty() ? DrawPlacement{} : placements[i]});
+  }
   return poses;
 }
 
@@ -50,10 +73,13 @@ std::vector<glm::dmat4> to_last_frame(const Poses& now, const Poses& before) {
   std::vector<glm::dmat4> matrices;
   for (std::size_t i = 0; i < now.draws.size(); ++i) {
     const Poses::Pose& pose = now.draws[i];
-    const bool moved =
-        i < before.draws.size() && before.draws[i].mesh == pose.mesh && before.draws[i].transform != pose.transform;
+    const bool known = i < before.draws.size() && before.draws[i].mesh == pose.mesh;
+    const bool moved = known && before.draws[i].transform != pose.transform;
     matrices.push_back(
         moved ? before.view_projection * before.draws[i].transform * glm::inverse(pose.transform) * to_world : still);
+    const DrawPlacement& placement_before = known ? before.draws[i].placement : pose.placement;
+    if (pose.placement == DrawPlacement{} && placement_before == DrawPlacement{}) continue;
+    matrices.back() = to_frame(placement_before) * matrices.back() * from_frame(pose.placement);
   }
   matrices.push_back(still);
   return matrices;

@@ -3,7 +3,8 @@
 // contents() does the same for everything in a pixel: whether it still looks the same, and how fast it moves.
 //
 // Motion follows both frames' cameras and both transforms of the surface's draw, but not vertices that move within
-// their mesh. The background counts as the far plane of a world that stands still.
+// their mesh. The background counts as the far plane of a world that stands still. So does what a draw's state paints
+// behind the world; what it paints in front counts as the near plane.
 #pragma once
 
 #include <glm/glm.hpp>
@@ -16,7 +17,8 @@
 
 namespace beampipe {
 
-Poses poses_of(const Frame& frame);
+// `placements`: one per draw; empty if no draw has state.
+Poses poses_of(const Frame& frame, const std::vector<DrawPlacement>& placements = {});
 
 // Returns the matrices from this frame's clip space to that of the last frame: one for each draw, and then one for
 // everything that stands still. A draw is recognized by its index and its mesh. If the last frame does not have it, it

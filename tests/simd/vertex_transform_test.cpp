@@ -50,11 +50,15 @@ TEST(VertexTransform, EveryTargetEqualsTheFormulaOnDouble) {
       std::vector<float> positions(3 * static_cast<std::size_t>(random.integer(1, 60)));
       for (float& value : positions) value = coordinate(random);
       std::vector<ProjectedVertex> found(positions.size() / 3);
-      const std::size_t seen = transform_vertices(positions.data(), found.size(), transform, found.data());
+      std::vector<float> ws(random.one_in(2) ? found.size() : 0);
+      for (float& w : ws) w = coordinate(random);
+      const std::size_t seen =
+          transform_vertices(positions.data(), found.size(), transform, found.data(), ws.empty() ? nullptr : ws.data());
       std::size_t expected_seen = 0;
       for (std::size_t i = 0; i < found.size(); ++i) {
         const float* p = positions.data() + 3 * i;
-        const ProjectedVertex expected = transform_vertex_scalar(transform, p[0], p[1], p[2]);
+        const ProjectedVertex expected =
+            transform_vertex_scalar(transform, p[0], p[1], p[2], ws.empty() ? nullptr : &ws[i]);
         const ProjectedVertex& vertex = found[i];
         expected_seen += expected.in_view;
         ASSERT_EQ(vertex.finite, expected.finite) << i;
@@ -73,6 +77,24 @@ TEST(VertexTransform, EveryTargetEqualsTheFormulaOnDouble) {
     }
   });
   EXPECT_GT(seen_in_all, 1'000u);
+}
+
+// The columns of the matrix, each chosen by a position of its own.
+TEST(VertexTransform, HomogeneousPositionsPickColumns) {
+  Random random(93);
+  SCOPED_TRACE(random.name());
+  VertexTransform transform{{}, 64, 32};
+  for (double& element : transform.to_clip) element = random.real(-2, 2);
+  const std::vector<float> positions = {2, 0, 0, 0, 2, 0, 0, 0, 2, 0, 0, 0}, ws = {0, 0, 0, 2};
+  on_every_target([&] {
+    std::vector<ProjectedVertex> found(4);
+    transform_vertices(positions.data(), 4, transform, found.data(), ws.data());
+    for (std::size_t i = 0; i < 4; ++i) {
+      const ClipVertex<double>& clip = found[i].clip;
+      const double rows[] = {clip.x, clip.y, clip.z, clip.w};
+      for (std::size_t row = 0; row < 4; ++row) EXPECT_EQ(rows[row], 2 * transform.to_clip[4 * i + row]) << i;
+    }
+  });
 }
 
 // On small integers double arithmetic is exact, and so is integer arithmetic. The matrix is given by rows here.

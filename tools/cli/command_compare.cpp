@@ -9,6 +9,7 @@
 #include "tools/cli/run_report.h"
 #include "tools/cli/trace_events.h"
 #include "tools/evaluate/comparison.h"
+#include "tools/evaluate/draw_notes.h"
 
 namespace beampipe {
 namespace {
@@ -36,6 +37,7 @@ void tell_unexplained(const std::vector<std::string>& specs) {
 
 void compare(const RunArguments& arguments, const CompareOptions& options, InterruptGate& gate) {
   RunPlan plan = make_plan(arguments);
+  tell_notes(plan.notes);
   std::vector<std::string> unexplained;
   for (const Technique& technique : plan.techniques)
     if (!technique.has_weights) unexplained.push_back(technique.spec);

@@ -10,6 +10,7 @@
 
 #include "tools/cli/commands.h"
 #include "tools/cli/trace_notes.h"
+#include "tools/evaluate/draw_notes.h"
 #include "tools/report/report_text.h"
 #include "traces/json.h"
 #include "traces/trace_io.h"
@@ -33,11 +34,11 @@ struct Bounds {
       for (int corner = 0; corner < 3; ++corner) {
         const std::uint32_t vertex = triangle[corner];
         const double w = mesh.ws.empty() ? 1.0 : mesh.ws[vertex];
-        const glm::dvec4 point = transform * glm::dvec4(glm::dvec3(mesh.positions[vertex]), w);
-        if (!mesh.ws.empty() && !(point.w > 0)) continue;  // at infinity, or behind the viewer
-        const glm::dvec3 place = glm::dvec3(point) / (mesh.ws.empty() ? 1.0 : point.w);
-        min = glm::min(min, place);
-        max = glm::max(max, place);
+        const glm::dvec4 homogeneous = transform * glm::dvec4(mesh.positions[vertex], w);
+        if (!(homogeneous.w > 0)) continue;  // at infinity, or behind the eye of a captured frame
+        const glm::dvec3 point = glm::dvec3(homogeneous) / homogeneous.w;
+        min = glm::min(min, point);
+        max = glm::max(max, point);
       }
     }
   }
@@ -309,6 +310,7 @@ void add_info_command(CommandLine& line) {
     std::iota(frames.begin(), frames.end(), std::size_t{0});
     if (const std::string note = note_on_darkness(trace, frames, arguments->trace); !note.empty())
       std::cerr << "beampipe: " << note << "\n";
+    tell_notes(notes_of(trace, frames));
     std::cout << (arguments->json ? json_text(info_json(trace, arguments->trace))
                                   : info_text(trace, arguments->meshes));
   });

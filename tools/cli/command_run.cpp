@@ -6,6 +6,7 @@
 #include "tools/cli/run_arguments.h"
 #include "tools/cli/run_report.h"
 #include "tools/cli/trace_events.h"
+#include "tools/evaluate/draw_notes.h"
 #include "tools/evaluate/render.h"
 #include "tools/evaluate/resume.h"
 
@@ -14,6 +15,7 @@ namespace {
 
 void run(const RunArguments& arguments, InterruptGate& gate) {
   RunPlan plan = make_plan(arguments);
+  tell_notes(plan.notes);
   const TraceEvents events(arguments, plan);
   OutputFolder output(arguments.output, gate);
   output.lock();

@@ -15,6 +15,7 @@ void add_claims_command(CommandLine& line);
 void add_stress_command(CommandLine& line, InterruptGate& gate);
 void add_diff_command(CommandLine& line);
 void add_info_command(CommandLine& line);
+void add_check_capture_command(CommandLine& line, InterruptGate& gate);
 void add_export_soup_command(CommandLine& line, InterruptGate& gate);
 void add_make_command(CommandLine& line, InterruptGate& gate);
 void add_capture_command(CommandLine& line);

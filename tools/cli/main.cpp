@@ -60,6 +60,7 @@ int run(int argc, char** argv, beampipe::InterruptGate& gate) {
   beampipe::add_stress_command(line, gate);
   beampipe::add_diff_command(line);
   beampipe::add_info_command(line);
+  beampipe::add_check_capture_command(line, gate);
   beampipe::add_export_soup_command(line, gate);
   beampipe::add_make_command(line, gate);
   beampipe::add_capture_command(line);

@@ -10,6 +10,7 @@
 
 #include "simd/target.h"
 #include "tools/cli/trace_notes.h"
+#include "tools/evaluate/draw_notes.h"
 #include "tools/evaluate/machine_memory.h"
 #include "tools/evaluate/results.h"
 #include "traces/trace_io.h"
@@ -107,6 +108,7 @@ RunPlan make_plan(const RunArguments& arguments) {
   plan.options.textures = plan.textures.get();
   if (const std::string note = note_on_darkness(plan.trace, plan.frames, arguments.trace); !note.empty())
     std::cerr << "beampipe: " << note << "\n";
+  plan.notes = notes_of(plan.trace, plan.frames);
   return plan;
 }
 

@@ -145,6 +145,7 @@ Report new_report(const RunPlan& plan, const Json& made_by) {
           {},
           {},
           {},
+          plan.notes,
           made_by};
 }
 

@@ -9,6 +9,7 @@
 #include <vector>
 
 #include "pipeline/technique.h"
+#include "stages/geometry/draw_notes.h"
 #include "tools/evaluate/hardware.h"
 #include "tools/evaluate/metrics.h"
 #include "traces/json.h"
@@ -96,6 +97,7 @@ struct Report {
   std::vector<TechniqueReport> results;
   std::vector<LadderRung> msaa_ladder;             // empty if not measured
   std::vector<LadderRung> visibility_ladder = {};  // of visibility alone; empty if all surfaces are flat
+  std::vector<DrawNote> notes = {};                // what the frames ask for and no technique does
   Json made_by = {};                               // what the results depend on: made_by() in tools/evaluate/resume.h
 };
 

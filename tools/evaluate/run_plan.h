@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "pipeline/technique.h"
+#include "stages/geometry/draw_notes.h"
 #include "tools/evaluate/hardware.h"
 #include "traces/trace.h"
 
@@ -21,6 +22,7 @@ struct RunPlan {
   Hardware hardware = titan_v();
   std::shared_ptr<const TextureSet> textures;  // of the trace
   RunOptions options;                          // `threads` is the actual number, never 0
+  std::vector<DrawNote> notes;                 // of `frames`
 };
 
 inline std::vector<std::string> specs_of(const std::vector<Technique>& techniques) {

@@ -66,14 +66,21 @@ std::string digest_of(const Trace& trace) {
                    material.double_sided, material.unlit);
   }
   for (const Mesh& mesh : trace.meshes) {
-    digest.add_all(mesh.positions, mesh.triangles, mesh.colors, mesh.materials, mesh.normals, mesh.tangents,
+    digest.add_all(mesh.positions, mesh.ws, mesh.triangles, mesh.colors, mesh.materials, mesh.normals, mesh.tangents,
                    mesh.uvs[0], mesh.uvs[1], mesh.vertex_colors);
   }
   for (const Frame& frame : trace.frames) {
     digest.add_all(frame.width, frame.height, frame.background, frame.view, frame.projection, frame.lighting.lights,
                    frame.lighting.ambient, frame.draws.size());
-    for (const Draw& draw : frame.draws)
+    for (const Draw& draw : frame.draws) {
+      const DrawState& state = draw.state;
+      const DepthState& depth = state.depth;
       digest.add_all(draw.mesh, draw.transform, draw.kd, draw.material, draw.cull, draw.shading);
+      digest.add_all(state.viewport, state.scissor, state.front_is_clockwise, state.blend, state.color_mask,
+                     state.stencil);
+      digest.add_all(depth.test, depth.write, depth.function, depth.near, depth.far, depth.bias, depth.clip,
+                     depth.cleared_before);
+    }
   }
   return digest.text();
 }

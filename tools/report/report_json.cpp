@@ -3,6 +3,7 @@
 #include <algorithm>
 
 #include "tools/claims/claims.h"
+#include "tools/evaluate/draw_notes.h"
 #include "tools/evaluate/frame_json.h"
 
 namespace beampipe {
@@ -79,6 +80,7 @@ Json to_json(const Report& report) {
   if (!report.hardware.implementations.empty()) json["hardware"] = report.hardware.json;
   if (!report.msaa_ladder.empty()) json["msaa_ladder"] = to_json(report.msaa_ladder);
   if (!report.visibility_ladder.empty()) json["visibility_msaa_ladder"] = to_json(report.visibility_ladder);
+  if (!report.notes.empty()) json["notes"] = beampipe::to_json(report.notes);
   json["results"] = Json::array();
   for (const TechniqueReport& result : report.results) json["results"].push_back(to_json(result, report.hardware));
   json["claims"] = Json::array();

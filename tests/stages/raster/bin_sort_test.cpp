@@ -55,6 +55,26 @@ TEST(BinSort, KeysAreInTheOrderOfDepth) {
   EXPECT_LT(sort_key(-1e-30f), sort_key(0.0f));
 }
 
+// Depths of draws whose state puts them in front of the near plane or behind the far plane.
+TEST(BinSort, KeysReachBeyondTheNearAndFarPlanes) {
+  Random random(224);
+  SCOPED_TRACE(random.name());
+  const auto depth = [&] {
+    const float scale = std::ldexp(1.0f, static_cast<int>(random.integer(-12, 0)));
+    return random.one_in(2) ? random.real32(-2, -1) : random.real32(0, 1) * scale;
+  };
+  for (int i = 0; i < 100'000; ++i) {
+    const float a = depth(), b = random.one_in(3) ? std::nextafter(a, 0.0f) : depth();
+    ASSERT_LE(sort_key(std::min(a, b)), sort_key(std::max(a, b))) << a << " " << b;
+    ASSERT_LT(sort_key(a), 1u << 24);
+    ASSERT_LE(nearest_of(sort_key(a)), a);
+    ASSERT_LE(double{a} - nearest_of(sort_key(a)), std::abs(double{a}) * 0x1p-15) << a;
+    ASSERT_EQ(sort_key(nearest_of(sort_key(a))), sort_key(a)) << a;
+  }
+  EXPECT_LT(sort_key(-2.0f), sort_key(-1.999f));
+  EXPECT_LT(sort_key(0.0f), sort_key(1e-30f));
+}
+
 SetupTriangles flat_triangles(const std::vector<float>& depths) {
   SetupTriangles triangles;
   for (const float z : depths) add_everywhere(triangles, z);

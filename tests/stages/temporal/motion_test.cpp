@@ -88,6 +88,50 @@ TEST(Motion, FollowsTheCameraByDepth) {
   EXPECT_EQ(vectors(surface, now, before)[0].x, std::numeric_limits<float>::infinity());
 }
 
+std::vector<glm::vec2> placed_vectors(const SampleTile& surface, const Frame& now, const Frame& before,
+                                      const DrawPlacement& placement) {
+  StageCounters counters;
+  return motion(surface, kTile, now, {0}, to_last_frame(poses_of(now, {placement}), poses_of(before, {placement})),
+                counters);
+}
+
+TEST(Motion, FollowsTheViewport) {
+  const Frame before = flat_frame(kIdentity), now = flat_frame(glm::translate(kIdentity, glm::dvec3(2.5, 1, 0)));
+  // Half the frame's size, upside down.
+  const DrawPlacement placement{.x_scale = 0.5, .x_offset = 0.25, .y_scale = -0.5, .y_offset = -0.125};
+  for (const glm::vec2& v : placed_vectors(full_surface(-0.5f), now, before, placement))
+    EXPECT_EQ(v, glm::vec2(-1.25, -0.5));
+}
+
+// As FollowsTheCameraByDepth, with depths that the draw's state puts somewhere else.
+TEST(Motion, FollowsPlacedDepths) {
+  Frame now;
+  now.width = now.height = kSize;
+  now.projection = glm::perspectiveRH_NO(1.0, 1.0, 1.0, 100.0);
+  now.draws.emplace_back();
+  Frame before = now;
+  before.view = glm::translate(kIdentity, glm::dvec3(0, 0, -2));
+  const glm::dvec4 clip = now.projection * glm::dvec4(0, 0, -10, 1);
+  const double depth = (clip.z / clip.w - 1) / 2;
+  for (const DrawPlacement& placement :
+       {DrawPlacement{.depth_scale = 0.5, .depth_offset = -0.25}, DrawPlacement{.depth_scale = -1, .depth_offset = -1},
+        DrawPlacement{.depth_scale = 0.375, .depth_offset = -1.5}}) {
+    const auto placed = static_cast<float>(placement.depth_scale * depth + placement.depth_offset);
+    const std::vector<glm::vec2> found = placed_vectors(full_surface(placed), now, before, placement);
+    for (std::int32_t column = 0; column < kSize; ++column) {
+      const double x = column + 0.5 - kSize / 2;
+      EXPECT_NEAR(found[static_cast<std::size_t>(column)].x, x * 10 / 12 - x, kHalf * kSize) << column;
+    }
+  }
+  // Painted behind: at the far plane. In front: at the near plane, 1 in front of the camera, and 3 before.
+  for (const bool in_front : {false, true}) {
+    const DrawPlacement painted{.depth_scale = 0, .depth_offset = in_front ? -1.5 : 0.5, .layer_step = 0.25};
+    const std::vector<glm::vec2> found = placed_vectors(full_surface(in_front ? -1.5f : 0.5f), now, before, painted);
+    const double x = 0.5 - kSize / 2, scale = in_front ? 1.0 / 3 : 100.0 / 102;
+    EXPECT_NEAR(found[0].x, x * scale - x, kHalf * kSize) << in_front;
+  }
+}
+
 TEST(Motion, FollowsTheNearestSample) {
   const Frame before = flat_frame(kIdentity), now = flat_frame(glm::translate(kIdentity, glm::dvec3(1, 0, 0)));
   SampleTile surface(kTile, {CellGrid{}, standard_pattern(8)}, 0);  // background

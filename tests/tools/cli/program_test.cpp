@@ -320,6 +320,14 @@ TEST_F(ProgramTest, ExportSoupWritesTheTrianglesThatAreSeen) {
                         "--frame");
 }
 
+TEST_F(ProgramTest, CheckCaptureSaysWhereThereIsNoDepth) {
+  EXPECT_EQ(succeed({"check-capture", path("trace.json"), "--frames", "1", "-o", path("out")}),
+            "frame 1: the trace has no captured depth\n");
+  const Parsed json = Parsed::parse(succeed({"check-capture", path("trace.json"), "--json"}));
+  EXPECT_EQ(json["beampipe_check_capture"], 1);
+  EXPECT_TRUE(json["frames"].empty());
+}
+
 TEST_F(ProgramTest, MakeListsAndMakesScenes) {
   EXPECT_NE(succeed({"make", "--list"}).find("fence"), std::string::npos);
   succeed({"make", "soup", "--triangles", "200", "--seed", "7", "--width", "32", "--height", "24", "-o",

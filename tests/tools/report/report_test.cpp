@@ -104,6 +104,11 @@ TEST(ReportJson, WithoutMemoryThereAreNoModelledTimes) {
 TEST(ReportJson, SaysNothingOfErrorsThatWereNotMeasured) {
   const Json json = to_json(sample_report());
   EXPECT_FALSE(json.contains("msaa_ladder"));
+  EXPECT_FALSE(json.contains("notes"));
+  Report noted = sample_report();
+  noted.notes = {{"stencil test", true, 2, 34}};
+  EXPECT_EQ(to_json(noted)["notes"].at(0),
+            (Json{{"reason", "stencil test"}, {"left_out", true}, {"draws", 2}, {"triangles", 34}}));
   EXPECT_FALSE(json["results"][0].contains("error"));
   EXPECT_FALSE(json["results"][0].contains("equivalent_msaa"));
   EXPECT_FALSE(json["results"][0].contains("equivalent_msaa_is_lower_bound"));

@@ -1,0 +1,246 @@
+#include "stages/geometry/depth_order.h"
+
+#include <algorithm>
+#include <bit>
+#include <cmath>
+#include <cstdint>
+
+namespace beampipe {
+namespace {
+
+bool writes_depth(const DepthState& depth) { return depth.test && depth.write && depth.function != Compare::never; }
+bool passes_always(const DepthState& depth) { return !depth.test || depth.function == Compare::always; }
+bool is_less(Compare function) { return function == Compare::less || function == Compare::less_equal; }
+bool is_greater(Compare function) { return function == Compare::greater || function == Compare::greater_equal; }
+
+// At equal depth, does the draw hide earlier ones?
+bool wins_ties(Compare function) {
+  return function == Compare::less_equal || function == Compare::greater_equal || function == Compare::equal ||
+         function == Compare::always;
+}
+
+enum class Part { behind, tested, in_front };
+
+struct Group {
+  std::vector<std::uint32_t> parts[3];  // draws, by Part
+  std::uint64_t triangles[3] = {};
+  bool is_reversed = false;  // near is at window depth 1
+};
+
+class DepthOrder {
+ public:
+  DepthOrder(const Trace& trace, const Frame& frame, std::vector<DrawPlacement>& placements,
+             std::vector<DrawNote>& notes)
+      : trace_(trace), frame_(frame), placements_(placements), notes_(notes) {}
+
+  void find_groups() {
+    std::uint32_t first = 0;
+    for (std::uint32_t i = 1; i <= frame_.draws.size(); ++i) {
+      if (i < frame_.draws.size() && !depth_of(i).cleared_before) continue;
+      find_parts(first, i);
+      first = i;
+    }
+  }
+
+  void place() {
+    // The parts that are not empty, from far to near. The one that tests most triangles keeps its depths.
+    struct Slab {
+      Group* group;
+      std::size_t part;
+    };
+    std::vector<Slab> slabs;
+    std::size_t kept = 0;
+    std::uint64_t most = 0;
+    for (Group& group : groups_) {
+      for (std::size_t part = 0; part < 3; ++part) {
+        if (group.parts[part].empty()) continue;
+        if (part == static_cast<std::size_t>(Part::tested) && (kept == 0 || group.triangles[part] > most)) {
+          most = group.triangles[part];
+          kept = slabs.size() + 1;
+        }
+        slabs.push_back({&group, part});
+      }
+    }
+    const std::size_t behind = kept > 0 ? kept - 1 : 0, in_front = slabs.size() - kept;
+    for (std::size_t i = 0; i < slabs.size(); ++i) {
+      const auto& [group, part] = slabs[i];
+      Interval interval{-1, 1, true};
+      if (i < behind) {
+        interval = share_of(1, behind, i);
+      } else if (i >= kept) {
+        interval = share_of(-1, in_front, i - kept);
+      }
+      if (part == static_cast<std::size_t>(Part::tested)) {
+        place_tested(*group, interval);
+      } else {
+        paint(*group, part, interval);
+      }
+    }
+  }
+
+ private:
+  // nearest .. nearest + width
+  struct Interval {
+    double nearest, width;
+    bool is_kept = false;
+  };
+
+  static Interval share_of(double farthest, std::size_t shares, std::size_t index) {
+    const double width = 1.0 / static_cast<double>(std::bit_ceil(shares));
+    return {farthest - static_cast<double>(index + 1) * width, width};
+  }
+
+  const DepthState& depth_of(std::uint32_t draw) const { return frame_.draws[draw].state.depth; }
+  std::uint64_t triangles_of(std::uint32_t draw) const {
+    return trace_.meshes[frame_.draws[draw].mesh].triangles.size();
+  }
+  bool is_opaque(std::uint32_t draw) const {
+    return placements_[draw].is_opaque || !is_translucent(trace_, frame_.draws[draw]);
+  }
+
+  void note(std::uint32_t draw, const char* reason) { add_note(notes_, reason, false, 1, triangles_of(draw)); }
+
+  // Sorts the draws [first, end), which no depth clear divides, into parts.
+  void find_parts(std::uint32_t first, std::uint32_t end) {
+    std::vector<std::uint32_t> draws;
+    for (std::uint32_t i = first; i < end; ++i)
+      if (placements_[i].is_drawn) draws.push_back(i);
+    const auto writes = [&](std::uint32_t i) { return writes_depth(depth_of(i)); };
+    const auto needs_depth = [&](std::uint32_t i) { return writes(i) || !passes_always(depth_of(i)); };
+    const auto first_writer = std::find_if(draws.begin(), draws.end(), writes);
+    const auto tested_end =
+        first_writer == draws.end() ? draws.end() : std::find_if(draws.rbegin(), draws.rend(), needs_depth).base();
+    Group group;
+    const auto put = [&](std::uint32_t draw, Part part) {
+      group.parts[static_cast<std::size_t>(part)].push_back(draw);
+      group.triangles[static_cast<std::size_t>(part)] += triangles_of(draw);
+    };
+    const bool is_painted = first_writer == draws.end();
+    for (auto at = draws.begin(); at != first_writer; ++at) put(*at, is_painted ? Part::in_front : Part::behind);
+    const std::vector<std::uint32_t> tested(first_writer, tested_end);
+    std::uint64_t left = 0, done = 0;  // triangles that test depth after and before a draw
+    for (const std::uint32_t draw : tested)
+      if (needs_depth(draw)) left += triangles_of(draw);
+    for (const std::uint32_t draw : tested) {
+      if (needs_depth(draw)) {
+        put(draw, Part::tested);
+        done += triangles_of(draw), left -= triangles_of(draw);
+      } else {
+        put(draw, left > done ? Part::behind : Part::in_front);
+        note(draw, "no depth test, between draws that have one");
+      }
+    }
+    for (auto at = tested_end; at != draws.end(); ++at) put(*at, Part::in_front);
+    choose_direction(group, first, end);
+    note_functions(group, first);
+    if (!draws.empty()) groups_.push_back(std::move(group));
+  }
+
+  // Of the draws [first, end), those that are not drawn count too: a pre-pass may say which way its draws compare.
+  void choose_direction(Group& group, std::uint32_t first, std::uint32_t end) {
+    std::uint64_t less = 0, greater = 0;  // triangles
+    for (std::uint32_t i = first; i < end; ++i) {
+      if (!depth_of(i).test) continue;
+      if (is_less(depth_of(i).function)) less += triangles_of(i);
+      if (is_greater(depth_of(i).function)) greater += triangles_of(i);
+    }
+    group.is_reversed = greater > less;
+    for (const std::uint32_t draw : group.parts[static_cast<std::size_t>(Part::tested)])
+      if (group.is_reversed ? is_less(depth_of(draw).function) : is_greater(depth_of(draw).function))
+        note(draw, "depth functions less and greater are mixed");
+  }
+
+  void note_functions(const Group& group, std::uint32_t first) {
+    const std::vector<std::uint32_t>& tested = group.parts[static_cast<std::size_t>(Part::tested)];
+    std::size_t last_opaque = 0;  // the number of the last opaque draw, and 1
+    for (std::size_t i = 0; i < tested.size(); ++i)
+      if (is_opaque(tested[i])) last_opaque = i + 1;
+    for (std::size_t i = 0; i < tested.size(); ++i) {
+      const DepthState& depth = depth_of(tested[i]);
+      if (depth.function == Compare::always && i > 0) note(tested[i], "depth function always, after other draws");
+      if (depth.function == Compare::not_equal) note(tested[i], "depth function not_equal");
+      if (depth.function == Compare::equal && !repeats_earlier(first, tested[i]))
+        note(tested[i], "depth function equal, without an earlier draw of the same triangles");
+      if (!depth.write && is_opaque(tested[i]) && i + 1 < last_opaque)
+        note(tested[i], "depth is tested but not written, before other draws that test it");
+    }
+  }
+
+  // Has a draw of the same group, drawn or not, written the depths of the same triangles?
+  bool repeats_earlier(std::uint32_t first, std::uint32_t draw) const {
+    for (std::uint32_t i = first; i < draw; ++i)
+      if (writes_depth(depth_of(i)) && same_geometry(trace_, frame_.draws[i], frame_.draws[draw])) return true;
+    return false;
+  }
+
+  void place_tested(const Group& group, const Interval& interval) {
+    for (const std::uint32_t draw : group.parts[static_cast<std::size_t>(Part::tested)]) {
+      const DepthState& depth = depth_of(draw);
+      DrawPlacement& placement = placements_[draw];
+      // Near is at window depth 0, or at 1 in reversed groups. An eighth of the interval stays free at both ends, so
+      // that neighbours do not touch; nothing does if depths are kept.
+      const double width = interval.is_kept ? 1 : 0.75 * interval.width;
+      const double nearest = interval.nearest + (interval.is_kept ? 0 : 0.125 * interval.width);
+      placement.window_scale = group.is_reversed ? -width : width;
+      placement.window_offset = group.is_reversed ? nearest + width : nearest;
+      const double near = depth.near, far = depth.far;  // window depths at -1 and 0
+      placement.depth_scale = placement.window_scale * (far - near);
+      placement.depth_offset = placement.window_scale * far + placement.window_offset;
+      placement.bias_constant = depth.bias.constant, placement.bias_slope = depth.bias.slope;
+      placement.bias_clamp = depth.bias.clamp;
+      placement.last_wins = wins_ties(depth.function);
+    }
+  }
+
+  // Later triangles lie in front of earlier ones. If there are so many that floats cannot tell neighbours apart, the
+  // last one wins.
+  void paint(const Group& group, std::size_t part, const Interval& interval) {
+    const double steps = static_cast<double>(group.triangles[part] + 1);
+    const double step = std::exp2(std::floor(std::log2(interval.width / steps)));
+    std::uint64_t first = 1;
+    for (const std::uint32_t draw : group.parts[part]) {
+      DrawPlacement& placement = placements_[draw];
+      placement.depth_scale = 0;
+      placement.depth_offset = interval.nearest + interval.width - static_cast<double>(first) * step;
+      placement.layer_step = step;
+      placement.last_wins = true;
+      first += triangles_of(draw);
+    }
+  }
+
+  const Trace& trace_;
+  const Frame& frame_;
+  std::vector<DrawPlacement>& placements_;
+  std::vector<DrawNote>& notes_;
+  std::vector<Group> groups_;  // in the order of painting
+};
+
+bool same_positions(const Mesh& one, const Mesh& other) {
+  return one.positions == other.positions && one.ws == other.ws && one.triangles == other.triangles;
+}
+
+}  // namespace
+
+bool same_geometry(const Trace& trace, const Draw& one, const Draw& other) {
+  return one.transform == other.transform && one.state.viewport == other.state.viewport &&
+         one.state.depth.near == other.state.depth.near && one.state.depth.far == other.state.depth.far &&
+         (one.mesh == other.mesh || same_positions(trace.meshes[one.mesh], trace.meshes[other.mesh]));
+}
+
+bool is_translucent(const Trace& trace, const Draw& draw) {
+  const auto is_blended = [&](std::uint32_t material) {
+    return material != kNoMaterial && trace.materials[material].alpha_mode == AlphaMode::blend;
+  };
+  if (draw.kd) return false;
+  if (draw.material) return is_blended(*draw.material);
+  return std::ranges::any_of(trace.meshes[draw.mesh].materials, is_blended);
+}
+
+void order_depths(const Trace& trace, const Frame& frame, std::vector<DrawPlacement>& placements,
+                  std::vector<DrawNote>& notes) {
+  DepthOrder order(trace, frame, placements, notes);
+  order.find_groups();
+  order.place();
+}
+
+}  // namespace beampipe

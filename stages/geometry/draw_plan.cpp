@@ -1,0 +1,166 @@
+#include "stages/geometry/draw_plan.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include "simd/vertex_transform.h"
+#include "stages/geometry/depth_order.h"
+
+namespace beampipe {
+namespace {
+
+constexpr std::uint32_t kColorChannels = kRedChannel | kGreenChannel | kBlueChannel;
+
+bool is(const Blend& blend, BlendFactor source, BlendFactor destination) {
+  return blend == Blend{source, destination, BlendOperation::add};
+}
+
+bool replaces(const Blend& blend) { return is(blend, BlendFactor::one, BlendFactor::zero); }
+bool keeps_color(const Blend& blend) { return is(blend, BlendFactor::zero, BlendFactor::one); }
+bool is_alpha_blending(const Blend& blend) { return blend == Blend{}; }
+
+// The same where opacity is 1?
+bool replaces_where_opaque(const Blend& blend) {
+  return is_alpha_blending(blend) || replaces(blend) ||
+         is(blend, BlendFactor::one, BlendFactor::one_minus_source_alpha) ||
+         is(blend, BlendFactor::source_alpha, BlendFactor::zero);
+}
+
+bool writes_color(const DrawState& state) {
+  return (state.color_mask & kColorChannels) != 0 && !(state.blend && keeps_color(*state.blend));
+}
+
+bool writes_stencil(const std::optional<Stencil>& stencil) {
+  return stencil && stencil->write_mask != 0 &&
+         (stencil->fail != StencilOperation::keep || stencil->depth_fail != StencilOperation::keep ||
+          stencil->pass != StencilOperation::keep);
+}
+
+bool passes_equal(Compare function) {
+  return function == Compare::less_equal || function == Compare::equal || function == Compare::greater_equal;
+}
+
+// A side in 1/256 px, at most as far away as the frame's. `end`: of the frame, in pixels.
+std::int32_t on_grid(double pixels, double end) {
+  return static_cast<std::int32_t>(std::floor(to_grid(std::clamp(pixels, 0.0, end))));
+}
+
+// Sets the placement on the screen. Draws without pixels are not drawn.
+void place_on_screen(const DrawState& state, double width, double height, DrawPlacement& placement) {
+  double left = 0, top = 0, right = width, bottom = height;
+  if (state.viewport) {
+    const double x = state.viewport->x, y = state.viewport->y;
+    const double w = state.viewport->width, h = state.viewport->height;
+    placement.x_scale = w / width, placement.x_offset = 2 * x / width + w / width - 1;
+    placement.y_scale = h / height, placement.y_offset = 1 - 2 * y / height - h / height;
+    left = x, right = x + w;
+    top = std::min(y, y + h), bottom = std::max(y, y + h);
+  }
+  if (state.scissor) {
+    const double x = state.scissor->x, y = state.scissor->y;
+    left = std::max(left, x), right = std::min(right, x + state.scissor->width);
+    top = std::max(top, y), bottom = std::min(bottom, y + state.scissor->height);
+  }
+  const std::int32_t sides[4] = {on_grid(left, width), on_grid(top, height), on_grid(right, width),
+                                 on_grid(bottom, height)};
+  if (sides[0] >= sides[2] || sides[1] >= sides[3]) placement.is_drawn = false;
+  if (left > 0) placement.left = sides[0];
+  if (top > 0) placement.top = sides[1];
+  if (right < width) placement.right = sides[2];
+  if (bottom < height) placement.bottom = sides[3];
+}
+
+class Planner {
+ public:
+  Planner(const Trace& trace, const Frame& frame) : trace_(trace), frame_(frame) {
+    plan.placements.resize(frame.draws.size());
+  }
+
+  void run() {
+    for (std::uint32_t i = 0; i < frame_.draws.size(); ++i) {
+      const Draw& draw = frame_.draws[i];
+      DrawPlacement& placement = plan.placements[i];
+      placement.clips_depth = draw.state.depth.clip;
+      place_on_screen(draw.state, frame_.width, frame_.height, placement);
+      if (!placement.is_drawn) continue;
+      placement.is_drawn = can_draw(draw, placement);
+      if (is_pre_pass(draw.state)) pre_passes_.push_back(i);
+    }
+    for (const std::uint32_t i : pre_passes_)
+      if (!is_drawn_again(i)) leave_out(frame_.draws[i], "depth without colour");
+    order_depths(trace_, frame_, plan.placements, plan.notes);
+  }
+
+  DrawPlan plan;
+
+ private:
+  void leave_out(const Draw& draw, const char* reason) { note(draw, reason, true); }
+
+  void note(const Draw& draw, const char* reason, bool left_out) {
+    add_note(plan.notes, reason, left_out, 1, trace_.meshes[draw.mesh].triangles.size());
+  }
+
+  static bool is_pre_pass(const DrawState& state) {
+    return !writes_color(state) && state.depth.test && state.depth.write && state.depth.function != Compare::never &&
+           !has_stencil_test(state);
+  }
+
+  static bool has_stencil_test(const DrawState& state) {
+    return state.stencil && state.stencil->function != Compare::always;
+  }
+
+  // Notes what is left out, except for pre-passes.
+  bool can_draw(const Draw& draw, DrawPlacement& placement) {
+    const DrawState& state = draw.state;
+    if (state.depth.test && state.depth.function == Compare::never) return false;
+    if (has_stencil_test(state)) {
+      leave_out(draw, "stencil test");
+      return false;
+    }
+    if (!writes_color(state)) {
+      if (!is_pre_pass(state) && writes_stencil(state.stencil)) leave_out(draw, "stencil without colour");
+      return false;
+    }
+    if (state.blend) {
+      const bool translucent = is_translucent(trace_, draw);
+      if (!is_alpha_blending(*state.blend) && !replaces(*state.blend) &&
+          (translucent || !replaces_where_opaque(*state.blend))) {
+        leave_out(draw, is(*state.blend, BlendFactor::one, BlendFactor::one_minus_source_alpha)
+                            ? "blending of premultiplied colours"
+                            : "a blend function other than alpha blending");
+        return false;
+      }
+      placement.is_opaque = translucent && replaces(*state.blend);
+    }
+    if ((state.color_mask & kColorChannels) != kColorChannels)
+      note(draw, "only some colour channels are written", false);
+    return true;
+  }
+
+  // Does a later draw of the same group draw the pre-pass's triangles?
+  bool is_drawn_again(std::uint32_t pre_pass) const {
+    for (std::uint32_t i = pre_pass + 1; i < frame_.draws.size(); ++i) {
+      const Draw& draw = frame_.draws[i];
+      if (draw.state.depth.cleared_before) return false;
+      if (plan.placements[i].is_drawn && draw.state.depth.test && passes_equal(draw.state.depth.function) &&
+          same_geometry(trace_, frame_.draws[pre_pass], draw))
+        return true;
+    }
+    return false;
+  }
+
+  const Trace& trace_;
+  const Frame& frame_;
+  std::vector<std::uint32_t> pre_passes_;  // draws
+};
+
+}  // namespace
+
+DrawPlan plan_draws(const Trace& trace, const Frame& frame) {
+  if (std::ranges::all_of(frame.draws, [](const Draw& draw) { return draw.state == DrawState{}; })) return {};
+  Planner planner(trace, frame);
+  planner.run();
+  return std::move(planner.plan);
+}
+
+}  // namespace beampipe

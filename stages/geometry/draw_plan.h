@@ -1,0 +1,28 @@
+// Fixed-function state (traces/draw_state.h) -> where each draw of a frame goes, and what is left out.
+//
+// The techniques know one depth test, `less` against a depth that everything opaque writes, and one blend function. So
+// state is expressed by where triangles lie: viewports move them, viewports and scissors clip them, and the order of
+// painting becomes an order of depths (stages/geometry/depth_order.h). What cannot be expressed so is left out, or
+// drawn in the nearest way, and noted.
+//
+// Left out: stencil tests other than `always`; blending that is neither alpha blending nor replacing; draws that write
+// no colour. Of the latter, those are not noted that change nothing: a depth pre-pass whose triangles a later draw with
+// depth function less_equal, equal or greater_equal draws again.
+#pragma once
+
+#include <vector>
+
+#include "stages/data/draw_placement.h"
+#include "stages/geometry/draw_notes.h"
+#include "traces/trace.h"
+
+namespace beampipe {
+
+struct DrawPlan {
+  std::vector<DrawPlacement> placements;  // one per draw; empty: no draw of the frame has state
+  std::vector<DrawNote> notes;
+};
+
+DrawPlan plan_draws(const Trace& trace, const Frame& frame);
+
+}  // namespace beampipe

@@ -1,0 +1,306 @@
+// What plan_draws makes of state: which draws are left out, and which depths the others have.
+#include "stages/geometry/draw_plan.h"
+
+#include <gtest/gtest.h>
+
+#include "tests/simd/random.h"
+#include "tests/stages/vertex_scenes.h"
+
+namespace beampipe {
+namespace {
+
+// Frames of draws of one triangle each, each with a mesh of its own.
+struct Draws {
+  Trace trace;
+  Frame frame;
+
+  Draws() { frame.width = frame.height = 16; }
+
+  Draw& add(std::size_t triangles = 1) {
+    const float x = static_cast<float>(trace.meshes.size());
+    Mesh mesh;
+    mesh.positions = {{x, 0, 0}, {x + 1, 0, 0}, {x, 1, 0}};
+    mesh.triangles.assign(triangles, {0, 1, 2});
+    mesh.colors.assign(triangles, glm::vec3(1));
+    frame.draws.emplace_back().mesh = static_cast<std::uint32_t>(trace.meshes.size());
+    trace.meshes.push_back(mesh);
+    return frame.draws.back();
+  }
+  Draw& add(Compare function) {
+    Draw& draw = add();
+    draw.state.depth.function = function;
+    return draw;
+  }
+  Draw& add_untested(std::size_t triangles = 1) {
+    Draw& draw = add(triangles);
+    draw.state.depth.test = false;
+    return draw;
+  }
+  DrawPlan plan() const { return plan_draws(trace, frame); }
+  std::vector<DrawNote> notes() const { return plan().notes; }
+};
+
+// The depths between which a draw's triangles lie.
+struct Range {
+  double near, far;
+};
+Range range_of(const DrawPlacement& placement, std::size_t triangles = 1) {
+  if (placement.layer_step > 0)
+    return {placement.depth_offset - placement.layer_step * static_cast<double>(triangles - 1), placement.depth_offset};
+  const double a = placement.depth_offset, b = placement.depth_offset - placement.depth_scale;
+  return {std::min(a, b), std::max(a, b)};
+}
+
+TEST(DrawPlan, DrawsWithoutStateNeedNone) {
+  Draws draws;
+  draws.add(), draws.add();
+  EXPECT_TRUE(draws.plan().placements.empty());
+  EXPECT_TRUE(draws.notes().empty());
+}
+
+TEST(DrawPlan, StateThatSaysWhatHoldsAnywayChangesNothing) {
+  Draws draws;
+  Draw& draw = draws.add();
+  draw.state.viewport = Viewport{0, 0, 16, 16};
+  draw.state.scissor = Scissor{-3, 0, 40, 16};
+  draw.state.stencil = Stencil{};
+  draw.state.blend = Blend{BlendFactor::one, BlendFactor::zero};
+  const DrawPlan plan = draws.plan();
+  ASSERT_EQ(plan.placements.size(), 1u);
+  EXPECT_EQ(plan.placements[0], DrawPlacement{});
+  EXPECT_TRUE(plan.notes.empty());
+}
+
+TEST(DrawPlan, SkiesLieBehindAndDisplaysInFront) {
+  Draws draws;
+  draws.add_untested(3), draws.add_untested();
+  draws.frame.draws[0].mesh = 0;
+  draws.add(Compare::less), draws.add(Compare::less);
+  draws.add_untested(2), draws.add_untested();
+  const DrawPlan plan = draws.plan();
+  EXPECT_TRUE(plan.notes.empty());
+  const std::vector<DrawPlacement>& p = plan.placements;
+  const Range sky = range_of(p[0], 3), sky2 = range_of(p[1]), world = range_of(p[2]), display = range_of(p[4], 2),
+              display2 = range_of(p[5]);
+  EXPECT_EQ(world.near, -1);
+  EXPECT_EQ(world.far, 0);
+  EXPECT_EQ(p[2], p[3]);
+  EXPECT_LT(sky.far, 1);
+  EXPECT_LT(sky2.far, sky.near);
+  EXPECT_LT(world.far, sky2.near);
+  EXPECT_LT(display.far, world.near);
+  EXPECT_LT(display2.far, display.near);
+  EXPECT_LT(-2, display2.near);
+}
+
+// A sky may also test depth, before anything has written it.
+TEST(DrawPlan, WhatWritesNoDepthBeforeAnythingElseIsPaintedBehind) {
+  Draws draws;
+  draws.add(Compare::less).state.depth.write = false;
+  draws.add(Compare::less);
+  const DrawPlan plan = draws.plan();
+  EXPECT_GT(range_of(plan.placements[0]).near, range_of(plan.placements[1]).far);
+  EXPECT_TRUE(plan.notes.empty());
+}
+
+TEST(DrawPlan, EachDepthClearStartsAGroupInFront) {
+  Draws draws;
+  for (int group = 0; group < 5; ++group) {
+    draws.add(Compare::less).state.depth.cleared_before = true;
+    draws.add(Compare::less_equal);
+    draws.add_untested();
+  }
+  const DrawPlan plan = draws.plan();
+  EXPECT_TRUE(plan.notes.empty());
+  double nearest = 2;
+  for (std::size_t i = 0; i < plan.placements.size(); i += 3) {
+    const Range tested = range_of(plan.placements[i]), also = range_of(plan.placements[i + 1]),
+                display = range_of(plan.placements[i + 2]);
+    EXPECT_EQ(tested.near, also.near);
+    EXPECT_LT(tested.far, nearest) << i;
+    EXPECT_LT(display.far, tested.near);
+    nearest = display.near;
+  }
+  EXPECT_GT(nearest, -2);
+}
+
+// Random frames: each triangle of a later part lies in front of all of earlier parts, in floats too.
+TEST(DrawPlan, RandomGroupsAreInOrder) {
+  Random random(311);
+  SCOPED_TRACE(random.name());
+  for (int round = 0; round < 300; ++round) {
+    Draws draws;
+    const std::int64_t groups = random.integer(1, 9);
+    std::vector<std::pair<std::size_t, std::size_t>> parts;  // draws [first, end) of each part
+    const auto part = [&](std::size_t first) {
+      if (draws.frame.draws.size() > first) parts.emplace_back(first, draws.frame.draws.size());
+    };
+    for (std::int64_t g = 0; g < groups; ++g) {
+      const std::size_t skies = draws.frame.draws.size();
+      for (std::int64_t i = random.integer(0, 3); i-- > 0;)
+        draws.add_untested(static_cast<std::size_t>(random.integer(1, 500))),
+            parts.emplace_back(draws.frame.draws.size() - 1, draws.frame.draws.size());
+      const std::size_t world = draws.frame.draws.size();
+      draws.add(static_cast<std::size_t>(random.integer(1, 20)));
+      draws.add(Compare::less_equal);
+      part(world);
+      if (random.one_in(2)) {
+        draws.add_untested(static_cast<std::size_t>(random.integer(1, 500)));
+        parts.emplace_back(draws.frame.draws.size() - 1, draws.frame.draws.size());
+      }
+      draws.frame.draws[skies].state.depth.cleared_before = true;
+    }
+    const DrawPlan plan = draws.plan();
+    ASSERT_TRUE(plan.notes.empty());
+    float nearest = 1.0f;
+    int kept = 0;
+    for (const auto& [first, end] : parts) {
+      float next = nearest;
+      for (std::size_t i = first; i < end; ++i) {
+        const std::size_t triangles = draws.trace.meshes[draws.frame.draws[i].mesh].triangles.size();
+        const DrawPlacement& placement = plan.placements[i];
+        const Range range = range_of(placement, triangles);
+        ASSERT_LT(static_cast<float>(range.far), nearest) << "round " << round << ", draw " << i;
+        next = std::min(next, static_cast<float>(range.near));
+        if (placement.layer_step > 0)
+          for (std::size_t t = 1; t < triangles; ++t) {
+            const auto depth = [&](std::size_t at) {
+              return static_cast<float>(placement.depth_offset - placement.layer_step * static_cast<double>(at));
+            };
+            ASSERT_LT(depth(t), depth(t - 1));
+          }
+        kept += placement.layer_step == 0 && range.near == -1 && range.far == 0;
+      }
+      nearest = next;
+    }
+    EXPECT_GT(nearest, -2.0f);
+    EXPECT_EQ(kept, 2) << "the draws of one group keep their depths";
+  }
+}
+
+TEST(DrawPlan, DepthRangesBecomeWindowDepthMinusOne) {
+  Draws draws;
+  draws.add(Compare::less).state.depth.near = 0.25f;
+  draws.frame.draws[0].state.depth.far = 0.75f;
+  const Range range = range_of(draws.plan().placements[0]);
+  EXPECT_EQ(range.near, -0.75);
+  EXPECT_EQ(range.far, -0.25);
+}
+
+TEST(DrawPlan, GreaterReversesDepth) {
+  Draws draws;
+  draws.add(Compare::greater).state.depth.near = 0.25f;
+  draws.add(Compare::greater_equal);
+  const DrawPlan plan = draws.plan();
+  EXPECT_TRUE(plan.notes.empty());
+  EXPECT_EQ(plan.placements[0].depth_offset, -1);    // far plane, window depth 1
+  EXPECT_EQ(plan.placements[0].depth_scale, -0.75);  // near plane: -0.25
+  EXPECT_FALSE(plan.placements[0].last_wins);
+  EXPECT_TRUE(plan.placements[1].last_wins);
+  draws.add(Compare::less);
+  EXPECT_EQ(draws.notes(), (std::vector<DrawNote>{{"depth functions less and greater are mixed", false, 1, 1}}));
+}
+
+// The pre-pass is dropped, and equal says nothing about which way is near.
+TEST(DrawPlan, APrePassSaysWhichWayIsNear) {
+  Draws draws;
+  draws.add(Compare::greater).state.color_mask = 0;
+  draws.add(Compare::equal).mesh = 0;
+  const DrawPlan plan = draws.plan();
+  EXPECT_TRUE(plan.notes.empty());
+  EXPECT_LT(plan.placements[1].depth_scale, 0);
+}
+
+TEST(DrawPlan, NotesWhatDepthsCannotExpress) {
+  Draws draws;
+  draws.add(Compare::less);
+  draws.add_untested(7);
+  draws.add(Compare::less);
+  draws.add(Compare::not_equal);
+  draws.add(Compare::equal);
+  draws.add(Compare::always);
+  draws.add(Compare::less).state.depth.write = false;
+  draws.add(Compare::less);
+  const std::vector<DrawNote> expected = {
+      {"no depth test, between draws that have one", false, 1, 7},
+      {"depth function not_equal", false, 1, 1},
+      {"depth function equal, without an earlier draw of the same triangles", false, 1, 1},
+      {"depth function always, after other draws", false, 1, 1},
+      {"depth is tested but not written, before other draws that test it", false, 1, 1}};
+  EXPECT_EQ(draws.notes(), expected);
+}
+
+TEST(DrawPlan, NeverDrawsNothing) {
+  Draws draws;
+  draws.add(Compare::never);
+  EXPECT_FALSE(draws.plan().placements[0].is_drawn);
+  EXPECT_TRUE(draws.notes().empty());
+}
+
+TEST(DrawPlan, LeavesOutStencilTests) {
+  Draws draws;
+  draws.add().state.stencil = Stencil{.function = Compare::equal};
+  draws.add(4).state.stencil = Stencil{.function = Compare::never};
+  Draw& mark = draws.add();
+  mark.state.stencil = Stencil{.pass = StencilOperation::replace};
+  mark.state.color_mask = 0, mark.state.depth.write = false;
+  Draw& both = draws.add();
+  both.state.stencil = Stencil{.pass = StencilOperation::increment};
+  const DrawPlan plan = draws.plan();
+  EXPECT_EQ(plan.notes, (std::vector<DrawNote>{{"stencil test", true, 2, 5}, {"stencil without colour", true, 1, 1}}));
+  for (std::size_t i = 0; i < 4; ++i) EXPECT_EQ(plan.placements[i].is_drawn, i == 3) << i;
+}
+
+TEST(DrawPlan, LeavesOutOtherBlendFunctions) {
+  Draws draws;
+  draws.trace.materials.emplace_back().alpha_mode = AlphaMode::blend;
+  using enum BlendFactor;
+  const auto add = [&](bool translucent, const Blend& blend) {
+    Draw& draw = draws.add();
+    if (translucent) draw.material = 0;
+    draw.state.blend = blend;
+  };
+  add(true, {});
+  add(true, {one, zero});
+  add(true, {one, one_minus_source_alpha});
+  add(false, {one, one_minus_source_alpha});  // opaque: the same as no blending
+  add(false, {one, one});
+  add(true, {source_alpha, one});
+  add(false, {zero, one});  // changes nothing
+  const DrawPlan plan = draws.plan();
+  const bool drawn[] = {true, true, false, true, false, false, false};
+  for (std::size_t i = 0; i < std::size(drawn); ++i) EXPECT_EQ(plan.placements[i].is_drawn, drawn[i]) << i;
+  EXPECT_FALSE(plan.placements[0].is_opaque);
+  EXPECT_TRUE(plan.placements[1].is_opaque);
+  EXPECT_EQ(plan.notes, (std::vector<DrawNote>{{"blending of premultiplied colours", true, 1, 1},
+                                               {"a blend function other than alpha blending", true, 2, 2},
+                                               {"depth without colour", true, 1, 1}}));
+}
+
+TEST(DrawPlan, APrePassIsDroppedWhereItsTrianglesAreDrawnAgain) {
+  Draws draws;
+  draws.add().state.color_mask = 0;
+  draws.add(3).state.color_mask = kAlphaChannel;
+  Draw& again = draws.add(Compare::equal);
+  again.mesh = 0;
+  const DrawPlan plan = draws.plan();
+  EXPECT_EQ(plan.notes, (std::vector<DrawNote>{{"depth without colour", true, 1, 3}}));
+  EXPECT_FALSE(plan.placements[0].is_drawn);
+  EXPECT_TRUE(plan.placements[2].is_drawn);
+  draws.frame.draws[2].state.depth.cleared_before = true;  // the pre-pass counts no more
+  EXPECT_EQ(draws.notes()[0].draws, 2u);
+}
+
+TEST(DrawPlan, EmptyRectanglesDrawNothing) {
+  Draws draws;
+  draws.add().state.scissor = Scissor{4, 4, 0, 8};
+  draws.add().state.scissor = Scissor{16, 0, 8, 8};
+  Draw& both = draws.add();
+  both.state.viewport = Viewport{0, 0, 8, 16}, both.state.scissor = Scissor{8, 0, 8, 16};
+  const DrawPlan plan = draws.plan();
+  for (const DrawPlacement& placement : plan.placements) EXPECT_FALSE(placement.is_drawn);
+  EXPECT_TRUE(plan.notes.empty());
+}
+
+}  // namespace
+}  // namespace beampipe

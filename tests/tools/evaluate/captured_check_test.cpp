@@ -1,0 +1,137 @@
+// The check of captured depths, on traces whose captured depth is known.
+#include "tools/evaluate/captured_check.h"
+
+#include <gtest/gtest.h>
+
+#include <stdexcept>
+
+#include "tools/evaluate/draw_notes.h"
+
+namespace beampipe {
+namespace {
+
+constexpr std::uint32_t kSize = 8;
+
+// A quad of whole pixels at one window depth, for a frame without camera.
+void add_quad(Trace& trace, int x0, int y0, int x1, int y1, float depth, const DepthState& state = {}) {
+  const auto corner = [&](int x, int y) {
+    return glm::vec3(2.0f * static_cast<float>(x) / kSize - 1, 1 - 2.0f * static_cast<float>(y) / kSize, 2 * depth - 1);
+  };
+  Mesh mesh;
+  mesh.positions = {corner(x0, y0), corner(x1, y0), corner(x1, y1), corner(x0, y1)};
+  mesh.triangles = {{0, 1, 2}, {0, 2, 3}};
+  mesh.colors.assign(2, glm::vec3(1));
+  Draw& draw = trace.frames[0].draws.emplace_back();
+  draw.mesh = static_cast<std::uint32_t>(trace.meshes.size());
+  draw.state.depth = state;
+  trace.meshes.push_back(mesh);
+}
+
+Trace empty_trace() {
+  Trace trace;
+  Frame& frame = trace.frames.emplace_back();
+  frame.width = frame.height = kSize;
+  frame.capture.pictures.depth.assign(kSize * kSize, 1.0f);
+  return trace;
+}
+
+CapturedCheck check(const Trace& trace) {
+  return check_captured(trace.frames[0], centre_depths(trace, trace.frames[0], nullptr));
+}
+
+TEST(CapturedCheck, FindsWindowDepthsAndDraws) {
+  Trace trace = empty_trace();
+  add_quad(trace, 0, 0, 4, 4, 0.5f);
+  add_quad(trace, 2, 2, 8, 8, 0.25f, {.function = Compare::less_equal, .near = 0.5f, .far = 1.0f});
+  DepthState untested;
+  untested.test = false;
+  add_quad(trace, 0, 0, 8, 8, 0.125f, untested);  // writes no depth
+  const CentreDepths found = centre_depths(trace, trace.frames[0], nullptr);
+  for (std::uint32_t y = 0; y < kSize; ++y)
+    for (std::uint32_t x = 0; x < kSize; ++x) {
+      const std::size_t pixel = y * kSize + x;
+      const bool first = x < 4 && y < 4, second = x >= 2 && y >= 2;
+      EXPECT_EQ(found.draw[pixel], first ? 0u : second ? 1u : kNoDraw) << x << ", " << y;
+      if (first || second) EXPECT_NEAR(found.depth[pixel], first ? 0.5 : 0.625, 1e-12);
+    }
+}
+
+TEST(CapturedCheck, ReversedDepthIsWindowDepthToo) {
+  Trace trace = empty_trace();
+  add_quad(trace, 0, 0, 8, 8, 0.25f, {.function = Compare::greater});
+  add_quad(trace, 0, 0, 4, 8, 0.75f, {.function = Compare::greater});
+  const CentreDepths found = centre_depths(trace, trace.frames[0], nullptr);
+  EXPECT_NEAR(found.depth[0], 0.75, 1e-12);
+  EXPECT_NEAR(found.depth[kSize - 1], 0.25, 1e-12);
+}
+
+// Only what is drawn after the last clear is in the program's depth buffer at the end.
+TEST(CapturedCheck, ClearsForgetEarlierDepths) {
+  Trace trace = empty_trace();
+  add_quad(trace, 0, 0, 8, 8, 0.5f);
+  add_quad(trace, 0, 0, 4, 8, 0.75f, {.cleared_before = true});
+  const CentreDepths found = centre_depths(trace, trace.frames[0], nullptr);
+  EXPECT_EQ(found.draw[0], 1u);
+  EXPECT_NEAR(found.depth[0], 0.75, 1e-6);  // a group in front, or behind, keeps fewer bits
+  EXPECT_EQ(found.draw[kSize - 1], kNoDraw);
+}
+
+TEST(CapturedCheck, CountsPixelsThatDiffer) {
+  Trace trace = empty_trace();
+  add_quad(trace, 0, 0, 8, 4, 0.5f);
+  add_quad(trace, 0, 4, 8, 6, 0.25f);
+  std::vector<float>& depth = trace.frames[0].capture.pictures.depth;
+  for (std::size_t i = 0; i < 48; ++i) depth[i] = i < 32 ? 0.5f : 0.25f;
+  EXPECT_EQ(check(trace).coverage(), 1.0);
+  EXPECT_EQ(check(trace).equal_part(), 1.0);
+  EXPECT_TRUE(check(trace).draws.empty());
+  depth[0] = 0.5f + 0.5e-4f;                    // close
+  depth[1] = 0.6f;                              // not close
+  depth[40] = depth[41] = 0.5f, depth[42] = 1;  // the second draw's: two that differ, one not there
+  depth[63] = depth[62] = 0.9f;                 // only there
+  const CapturedCheck found = check(trace);
+  EXPECT_EQ(found.here, 48u);
+  EXPECT_EQ(found.there, 49u);
+  EXPECT_EQ(found.both, 47u);
+  EXPECT_EQ(found.coverage(), 47.0 / 50);
+  EXPECT_EQ(found.close, 44u);
+  EXPECT_EQ(found.equal, 43u);
+  EXPECT_EQ(found.largest, 0.25);
+  ASSERT_EQ(found.draws.size(), 3u);
+  EXPECT_EQ(found.draws[0].draw, 1u);
+  EXPECT_EQ(found.draws[0].differing, 3u);
+  EXPECT_EQ(found.draws[0].pixels, 16u);
+  EXPECT_EQ(found.draws[1].draw, kNoDraw);
+  EXPECT_EQ(found.draws[1].differing, 2u);
+  EXPECT_EQ(found.draws[2].draw, 0u);
+  EXPECT_EQ(found.draws[2].differing, 1u);
+  const std::vector<std::uint8_t> picture =
+      difference_picture(trace.frames[0], centre_depths(trace, trace.frames[0], nullptr));
+  ASSERT_EQ(picture.size(), 3 * 64u);
+  EXPECT_NE(picture[0], picture[3]);
+}
+
+TEST(CapturedCheck, NeedsACapturedDepth) {
+  Trace trace = empty_trace();
+  trace.frames[0].capture.pictures.depth.clear();
+  EXPECT_THROW(check(trace), std::invalid_argument);
+}
+
+TEST(DrawNotes, AreOneLineEach) {
+  EXPECT_EQ(text_of(DrawNote{"stencil test", true, 12, 340}), "12 draws (340 triangles) are left out: stencil test");
+  EXPECT_EQ(text_of(DrawNote{"stencil test", true, 1, 1}), "1 draw (1 triangle) is left out: stencil test");
+  EXPECT_EQ(text_of(DrawNote{"depth function not_equal", false, 2, 4}),
+            "2 draws (4 triangles) are drawn in the nearest way: depth function not_equal");
+}
+
+TEST(DrawNotes, OfSeveralFramesAreAddedUp) {
+  Trace trace = empty_trace();
+  add_quad(trace, 0, 0, 8, 8, 0.5f);
+  trace.frames[0].draws[0].state.stencil = Stencil{.function = Compare::equal};
+  trace.frames.push_back(trace.frames[0]);
+  EXPECT_EQ(notes_of(trace, {0, 1}), (std::vector<DrawNote>{{"stencil test", true, 2, 4}}));
+  EXPECT_EQ(notes_of(trace, {1}), (std::vector<DrawNote>{{"stencil test", true, 1, 2}}));
+}
+
+}  // namespace
+}  // namespace beampipe

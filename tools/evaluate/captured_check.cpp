@@ -1,0 +1,138 @@
+#include "tools/evaluate/captured_check.h"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <stdexcept>
+
+#include "simd/sample_pattern.h"
+#include "stages/data/sample_tile.h"
+#include "stages/geometry/vertex_setup.h"
+#include "stages/raster/sample_raster.h"
+#include "stages/samples/alpha_test.h"
+#include "stages/samples/test_depth.h"
+
+namespace beampipe {
+namespace {
+
+constexpr std::size_t kChunk = 4096;  // triangles that are rasterized at once
+
+// Of the frame's draws: do they write depth that is still there at the end?
+std::vector<bool> writers_of(const Frame& frame) {
+  std::vector<bool> writers;
+  for (const Draw& draw : frame.draws) {
+    const DepthState& depth = draw.state.depth;
+    if (depth.cleared_before) writers.assign(writers.size(), false);
+    writers.push_back(depth.test && depth.write);
+  }
+  return writers;
+}
+
+enum class Match { nothing, equal, close, far, only_here, only_there };
+
+struct PixelMatch {
+  Match match;
+  double difference = 0;
+};
+
+PixelMatch match_at(const CapturedPictures& captured, const CentreDepths& found, std::size_t pixel) {
+  const bool here = found.draw[pixel] != kNoDraw, there = captured.depth[pixel] != captured.clear_depth;
+  if (!here || !there) return {here ? Match::only_here : there ? Match::only_there : Match::nothing};
+  const double difference = std::abs(found.depth[pixel] - captured.depth[pixel]);
+  return {difference <= CapturedCheck::kEqual   ? Match::equal
+          : difference <= CapturedCheck::kClose ? Match::close
+                                                : Match::far,
+          difference};
+}
+
+double part_of(std::uint64_t part, std::uint64_t whole) {
+  return whole == 0 ? 1.0 : static_cast<double>(part) / static_cast<double>(whole);
+}
+
+}  // namespace
+
+CentreDepths centre_depths(const Trace& trace, const Frame& frame, const TextureSet* textures) {
+  StageCounters ignored;
+  const SetupTriangles triangles = vertex_setup(trace, frame, ignored);
+  const SurfaceShader shader(triangles, trace, frame, textures, {});
+  const Tile whole{0, 0, static_cast<std::int32_t>(frame.width), static_cast<std::int32_t>(frame.height)};
+  const TileShader whole_shader(shader, whole);
+  const Sampling centre{CellGrid{}, standard_pattern(1)};
+  const std::vector<bool> writers = writers_of(frame);
+  SampleTile surface(whole, centre);
+  std::vector<SampleFragment> fragments;
+  std::vector<SampleAccess> accesses;
+  TriangleList list;
+  const auto draw_list = [&] {
+    fragments.clear();
+    sample_raster(triangles, list, whole, centre, ignored, fragments);
+    if (!shader.is_flat()) {
+      const std::vector<glm::vec2> centres(fragments.size(), glm::vec2(0.5f));
+      alpha_test(whole_shader, whole, centre.grid, 1, AlphaCoverage::test, centres, ignored, fragments);
+    }
+    depth_test(triangles, fragments, whole, centre, ignored, surface, accesses);
+    list.clear();
+  };
+  for (std::uint32_t i = 0; i < triangles.triangles.size(); ++i) {
+    if (writers[triangles.draws[i]]) list.push_back(i);
+    if (list.size() == kChunk) draw_list();
+  }
+  draw_list();
+
+  CentreDepths found{std::vector<double>(whole.pixels()), std::vector<std::uint32_t>(whole.pixels(), kNoDraw)};
+  for (std::size_t pixel = 0; pixel < whole.pixels(); ++pixel) {
+    const std::uint32_t triangle = surface.triangle[pixel];
+    if (triangle == kNoTriangle) continue;
+    const std::uint32_t draw = found.draw[pixel] = triangles.draws[triangle];
+    const DrawPlacement placement = triangles.placements.empty() ? DrawPlacement{} : triangles.placements[draw];
+    const double x = static_cast<double>(pixel % frame.width) + 0.5, y = static_cast<double>(pixel / frame.width) + 0.5;
+    const double depth = triangles.triangles[triangle].depth.at(x, y);
+    found.depth[pixel] = std::clamp((depth - placement.window_offset) / placement.window_scale, 0.0, 1.0);
+  }
+  return found;
+}
+
+double CapturedCheck::coverage() const { return part_of(both, here + there - both); }
+double CapturedCheck::close_part() const { return part_of(close, both); }
+double CapturedCheck::equal_part() const { return part_of(equal, both); }
+
+CapturedCheck check_captured(const Frame& frame, const CentreDepths& found) {
+  const CapturedPictures& captured = frame.capture.pictures;
+  if (captured.depth.empty() || captured.depth.size() != found.draw.size())
+    throw std::invalid_argument("the frame has no captured depth");
+  CapturedCheck check;
+  std::vector<DrawDifference> draws(frame.draws.size() + 1);  // the last one: pixels without a draw
+  for (std::uint32_t i = 0; i < frame.draws.size(); ++i) draws[i].draw = i;
+  for (std::size_t pixel = 0; pixel < found.draw.size(); ++pixel) {
+    const auto [match, difference] = match_at(captured, found, pixel);
+    if (match == Match::nothing) continue;
+    const bool here = match != Match::only_there, there = match != Match::only_here;
+    check.here += here, check.there += there, check.both += here && there;
+    check.equal += match == Match::equal;
+    check.close += match == Match::equal || match == Match::close;
+    check.largest = std::max(check.largest, difference);
+    DrawDifference& draw = draws[here ? found.draw[pixel] : frame.draws.size()];
+    ++draw.pixels;
+    draw.differing += match != Match::equal && match != Match::close;
+    draw.largest = std::max(draw.largest, difference);
+  }
+  std::erase_if(draws, [](const DrawDifference& draw) { return draw.differing == 0; });
+  std::stable_sort(draws.begin(), draws.end(),
+                   [](const DrawDifference& a, const DrawDifference& b) { return a.differing > b.differing; });
+  check.draws = std::move(draws);
+  return check;
+}
+
+std::vector<std::uint8_t> difference_picture(const Frame& frame, const CentreDepths& found) {
+  using Rgb = std::array<std::uint8_t, 3>;
+  constexpr Rgb kColors[] = {{48, 48, 48}, {32, 128, 48}, {224, 200, 32}, {220, 40, 32}, {48, 96, 240}, {224, 48, 224}};
+  std::vector<std::uint8_t> picture;
+  picture.reserve(3 * found.draw.size());
+  for (std::size_t pixel = 0; pixel < found.draw.size(); ++pixel) {
+    const Rgb& color = kColors[static_cast<std::size_t>(match_at(frame.capture.pictures, found, pixel).match)];
+    picture.insert(picture.end(), color.begin(), color.end());
+  }
+  return picture;
+}
+
+}  // namespace beampipe

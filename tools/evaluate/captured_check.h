@@ -1,0 +1,56 @@
+// The depths that a frame's draws leave at the pixels' centres, compared with those that the captured program's depth
+// buffer held (Frame::capture.pictures.depth).
+//
+// A frame without errors of its own may differ from the program where draws were left out, and by the roundings of the
+// program's depth format.
+#pragma once
+
+#include <cstdint>
+#include <vector>
+
+#include "stages/surface/surface_shader.h"
+#include "traces/trace.h"
+
+namespace beampipe {
+
+inline constexpr std::uint32_t kNoDraw = ~0u;
+
+// One value per pixel, row by row.
+struct CentreDepths {
+  std::vector<double> depth;        // window depth, 0..1; where nothing was drawn: any
+  std::vector<std::uint32_t> draw;  // index into Frame::draws, or kNoDraw
+};
+
+// Draws what writes depth after the last depth clear, with one sample at each pixel's centre. Cutouts are tested there.
+// `textures`: of the trace; may be null if the frame's draws have none.
+CentreDepths centre_depths(const Trace& trace, const Frame& frame, const TextureSet* textures);
+
+// How the depths of one draw's pixels differ. kNoDraw: pixels where only the program drew something.
+struct DrawDifference {
+  std::uint32_t draw = kNoDraw;
+  std::uint64_t pixels = 0;     // that it covers here
+  std::uint64_t differing = 0;  // of these: farther than kClose from the program's depth
+  double largest = 0;           // difference
+};
+
+struct CapturedCheck {
+  static constexpr double kClose = 1e-4, kEqual = 1e-6;  // window depth
+
+  std::uint64_t here = 0, there = 0, both = 0;  // pixels that are covered here, in the program, and in both
+  std::uint64_t close = 0, equal = 0;           // of those in both
+  double largest = 0;                           // difference, of those in both
+  std::vector<DrawDifference> draws;            // those that differ, the one with most differing pixels first
+
+  double coverage() const;    // both / (here or there); 1 if nothing is covered
+  double close_part() const;  // of the pixels that are covered in both; 1 if there are none
+  double equal_part() const;
+};
+
+// Throws std::invalid_argument unless the frame has a captured depth for each pixel.
+CapturedCheck check_captured(const Frame& frame, const CentreDepths& found);
+
+// RGB, three bytes per pixel. Grey: nothing. Green: equal. Yellow: close. Red: farther. Blue: only here. Magenta: only
+// in the program.
+std::vector<std::uint8_t> difference_picture(const Frame& frame, const CentreDepths& found);
+
+}  // namespace beampipe

@@ -1,0 +1,24 @@
+// What frames ask for and no technique does: stages/geometry/draw_plan.h, for several frames together.
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include "stages/geometry/draw_notes.h"
+#include "traces/json.h"
+#include "traces/trace.h"
+
+namespace beampipe {
+
+// One note for each reason. A draw counts in each frame that has it. `frames`: indices into the trace.
+std::vector<DrawNote> notes_of(const Trace& trace, const std::vector<std::size_t>& frames);
+
+// "12 draws (340 triangles) are left out: stencil test"
+std::string text_of(const DrawNote& note);
+
+Json to_json(const std::vector<DrawNote>& notes);
+
+// Prints a line on stderr for each note.
+void tell_notes(const std::vector<DrawNote>& notes);
+
+}  // namespace beampipe
