@@ -57,7 +57,19 @@ class Captures(unittest.TestCase):
         with open(path) as file:
             trace = json.load(file)
         self.check(trace, done.stdout)
+        self.check_with_program(path)
         return trace, done.stdout
+
+    def check_with_program(self, path):
+        """The program reads the trace, and its own rasterizer gives the captured depths."""
+        info = subprocess.run([BEAMPIPE, "info", path], text=True, capture_output=True)
+        self.assertEqual(info.returncode, 0, info.stderr)
+        self.assertIn("captured from ", info.stdout)
+        checked = subprocess.run([BEAMPIPE, "check-capture", path, "--json"], text=True, capture_output=True)
+        self.assertEqual(checked.returncode, 0, checked.stderr)
+        for frame in json.loads(checked.stdout)["frames"]:
+            self.assertGreater(frame["coverage"], 0.999, frame)
+            self.assertGreater(frame["depths_within_1e-4"], 0.999, frame)
 
     def check(self, trace, printed):
         for name, mesh in trace["meshes"].items():
