@@ -262,7 +262,7 @@ Trace random_surfaces(unsigned seed) {
 // State of a draw, of which each item is the default or not.
 DrawState random_state(std::mt19937& random) {
   const auto chance = [&] { return random() % 2 == 0; };
-  const auto below = [&](std::uint32_t count) { return random() % count; };
+  const auto below = [&](std::uint32_t count) { return static_cast<std::uint32_t>(random() % count); };
   const auto number = [&] { return static_cast<float>(random() % 2001) / 1000 - 1; };
   const auto compare = [&] { return Compare(below(8)); };
   const auto operation = [&] { return StencilOperation(below(8)); };
@@ -538,7 +538,7 @@ TEST_F(TraceWriterTest, RefusesSurfacesThatNoReaderWouldTake) {
        },
        "mesh \"m\" lacks w of some positions"},
       {[](Trace& trace) { trace.frames[0].capture.pictures.color = 0; }, "a captured picture names no image"},
-      {[](Trace& trace) { trace.source = Source{.program = "\xff"}; }, "the program is not UTF-8"},
+      {[](Trace& trace) { trace.source.emplace().program = "\xff"; }, "the program is not UTF-8"},
   };
   for (const auto& [add, message] : cases) {
     EXPECT_EQ(failure(small_trace(add), "trace.json"), std::string("trace.json: cannot write the trace: ") + message);
