@@ -22,6 +22,7 @@ std::string names_of(std::span<const std::string_view> names) {
 
 std::string number_text(double value) {
   std::ostringstream text;
+  text.precision(9);
   text << value;
   return text.str();
 }
