@@ -95,12 +95,12 @@ bool overlap(const SetupTriangle& a, const SetupTriangle& b, SheetsWork& work) {
   return !is_beside(a, b, work) && !is_beside(b, a, work);
 }
 
-// The part of a triangle's box that lies in the frame.
+// The part of a triangle's box that lies in the frame, without the right and lower sides.
 Box in_frame(const SetupTriangle& triangle, const Frame& frame) {
   const Box box = box_of(triangle);
   return {std::max(box.x0, 0), std::max(box.y0, 0),
-          std::min(box.x1, static_cast<std::int32_t>(frame.width) * kSubpixelUnits - 1),
-          std::min(box.y1, static_cast<std::int32_t>(frame.height) * kSubpixelUnits - 1)};
+          std::min(box.x1, static_cast<std::int32_t>(frame.width) * kSubpixelUnits) - 1,
+          std::min(box.y1, static_cast<std::int32_t>(frame.height) * kSubpixelUnits) - 1};
 }
 
 // Cells that cover the frame.
@@ -115,15 +115,15 @@ class ScreenGrid {
       ++work.triangles;
       const Box box = in_frame(triangles.triangles[i], frame);
       if (box.is_empty()) continue;
-      const double width = box.x1 - box.x0, height = box.y1 - box.y0;
+      const double width = box.x1 - box.x0 + 1, height = box.y1 - box.y0 + 1;
       area += width * height, extent += width + height;
     }
     const double count = std::max<double>(static_cast<double>(work.triangles), 1), units = kSubpixelUnits;
     const double of_frame = frame.width * units * (frame.height * units);
     size_ = static_cast<std::int32_t>(
         std::ceil(std::max({std::sqrt(area / count), extent / (2 * count), std::sqrt(of_frame / count)})));
-    columns_ = cell(static_cast<std::int32_t>(frame.width) * kSubpixelUnits) + 1;
-    rows_ = cell(static_cast<std::int32_t>(frame.height) * kSubpixelUnits) + 1;
+    columns_ = cell(static_cast<std::int32_t>(frame.width) * kSubpixelUnits - 1) + 1;
+    rows_ = cell(static_cast<std::int32_t>(frame.height) * kSubpixelUnits - 1) + 1;
   }
 
   std::size_t cells() const { return static_cast<std::size_t>(columns_) * static_cast<std::size_t>(rows_); }

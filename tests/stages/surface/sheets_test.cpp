@@ -147,12 +147,13 @@ TEST(Sheets, WorkGrowsWithTheNumberOfTriangles) {
   }
 }
 
-// Two triangles with a common side, of which the second is tried once. The grid has one cell, or all of its cells.
+// Two triangles with a common side, of which the second is tried once. The grid has one cell,
+// as large as the picture and the triangles.
 TEST(Sheets, CountsItsWork) {
   StageCounters counters;
   sheets_of({{0, 0, 0.5f}, {8, 0, 0.5f}, {8, 8, 0.5f}, {0, 8, 0.5f}}, {{0, 1, 2}, {0, 2, 3}}, &counters);
-  // Cells are as large as the picture, and the last unit lies in the first one. Six sides are sorted in three steps.
-  // The second triangle is tested against the first: the boxes, and sides of the first up to the common one.
+  // Six sides are sorted. The second triangle is tested against the first: their boxes, and sides of both up to the
+  // common one.
   EXPECT_EQ(counters.bytes_written, 6u * 12 + 2 * (8 + 32) + 2 * 4);
   EXPECT_EQ(counters.bytes_read, 6u * 12 + 2 * (8 + 32) + 1 * 24);
   EXPECT_EQ(counters.ops.bit, 2u * 16);
