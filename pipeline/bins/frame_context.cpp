@@ -2,6 +2,8 @@
 
 #include "pipeline/bins/timeline.h"
 #include "stages/geometry/vertex_setup.h"
+#include "stages/surface/sheets.h"
+#include "stages/surface/sheets_cost.h"
 
 namespace beampipe {
 namespace {
@@ -18,6 +20,8 @@ FrameContext::FrameContext(const Trace& trace, const Frame& rendered, const RunO
     : frame(rendered),
       run(options),
       triangles(vertex_setup(trace, frame, StageTimer(run.timeline)(setup))),
+      surface_bytes(setup.bytes_written -
+                    triangles.triangles.size() * (sizeof(SetupTriangle) + sizeof(FlatAttributes))),
       own_textures(run.textures || triangles.surfaces.empty() ? std::nullopt : std::make_optional<TextureSet>(trace)),
       shader(triangles, trace, frame,
              run.textures   ? run.textures
@@ -28,8 +32,21 @@ FrameContext::FrameContext(const Trace& trace, const Frame& rendered, const RunO
     if (triangles.is_opaque(i)) continue;
     (shader.is_cutout(i) ? has_cutouts_ : has_blending_) = true;
   }
+  if (rules.takes_positions && has_alpha()) prepare_alpha_mask(trace);
   has_textures_ = !shader.is_flat() && !trace.images.empty();
   if (has_textures_ && run.memory.modelled) texture_layout.emplace(run.textures ? *run.textures : *own_textures);
+}
+
+void FrameContext::prepare_alpha_mask(const Trace& trace) {
+  const TextureSet& textures = run.textures ? *run.textures : *own_textures;
+  std::vector<bool> materials(trace.materials.size());
+  for (std::uint32_t i = 0; i < triangles.surfaces.size(); ++i) {
+    if (triangles.is_opaque(i)) continue;
+    surface_bytes += kSheetNumberBytes;
+    materials[triangles.surfaces[i].material] = true;
+  }
+  textures.test_alphas(trace, materials);
+  shader.set_sheets(number_sheets(triangles, frame, StageTimer(run.timeline)(setup)));
 }
 
 }  // namespace beampipe

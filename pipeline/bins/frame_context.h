@@ -14,13 +14,15 @@ namespace beampipe {
 struct FrameContext {
   const Frame& frame;
   const RunOptions& run;
-  StageCounters setup;       // of one run of vertex_setup over the whole frame
-  SetupTriangles triangles;  // in primitive order
+  StageCounters setup;          // of one run of vertex_setup over the whole frame
+  SetupTriangles triangles;     // in primitive order
+  std::uint64_t surface_bytes;  // of planes, vertices and sheets of triangles with materials, in the modelled machine
   std::optional<TextureSet> own_textures;
   SurfaceShader shader;
   std::optional<TextureLayout> texture_layout;  // if memory is modelled and triangles have textures
 
-  // Runs vertex_setup and the flat triangles' shader. The trace, the frame and the options must outlive it.
+  // Runs vertex_setup and the flat triangles' shader, and if the rules take positions, all that alpha_mask needs. The
+  // trace, the frame and the options must outlive it.
   FrameContext(const Trace& trace, const Frame& frame, const RunOptions& run, const ShadingRules& rules = {});
   FrameContext(const FrameContext&) = delete;
   FrameContext& operator=(const FrameContext&) = delete;
@@ -32,6 +34,9 @@ struct FrameContext {
   bool has_textures() const { return has_textures_; }
 
  private:
+  // Tests the alpha of cutouts and numbers sheets, for techniques whose fragments have mask positions.
+  void prepare_alpha_mask(const Trace& trace);
+
   bool has_cutouts_ = false, has_blending_ = false, has_textures_ = false;
 };
 

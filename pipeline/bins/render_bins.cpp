@@ -17,12 +17,6 @@ TileGrid tile_grid(const FrameContext& context, int tile_size) {
   return {context.frame, context.run.tile_size > 0 ? context.run.tile_size : tile_size};
 }
 
-// Of planes and vertices of triangles with materials.
-std::uint64_t surface_bytes(const FrameContext& context) {
-  return context.setup.bytes_written -
-         context.triangles.triangles.size() * (sizeof(SetupTriangle) + sizeof(FlatAttributes));
-}
-
 // The stages of a bin. Frames with cutouts or translucent triangles have a few more.
 std::vector<std::string> stages_of(const FrameContext& context, const BinPlan& plan) {
   std::vector<std::string> stages;
@@ -42,7 +36,7 @@ struct GeometryPass {
   explicit GeometryPass(const FrameContext& context) : setup(context.setup) {
     const std::uint64_t triangles = context.setup.items_out;
     move_setup(context.run.memory, context.setup.bytes_read, context.triangles.triangles.size(), setup);
-    stream(context.run.memory, surface_bytes(context), setup);
+    stream(context.run.memory, context.surface_bytes, setup);
     raster.items_in = triangles;
     raster.bytes_read = triangles * sizeof(SetupTriangle);
   }
@@ -103,7 +97,7 @@ class FrameRecorder {
     charge_texture_dram();
     const std::uint64_t triangles = context_.triangles.triangles.size();
     result_.buffers = {
-        {"setup_triangles", triangles * (sizeof(SetupTriangle) + sizeof(FlatAttributes)) + surface_bytes(context_)},
+        {"setup_triangles", triangles * (sizeof(SetupTriangle) + sizeof(FlatAttributes)) + context_.surface_bytes},
         {"bin_lists", list_bytes}};
     for (const auto& [name, bytes] : buffer_peaks_) result_.buffers.push_back({name, bytes, true});
     return std::move(result_);

@@ -32,7 +32,7 @@ Framebuffer beam_framebuffer(const BeamOptions& beam) {
 
 template <std::size_t Words, std::size_t Slots>
 FrameResult render_shape(const Trace& trace, const Frame& frame, const BeamOptions& beam, const RunOptions& run) {
-  const FrameContext context(trace, frame, run);
+  const FrameContext context(trace, frame, run, {.takes_positions = true});
   const PositionSet& positions = cell_positions(beam.positions);
   const PositionGrid grid(beam.positions);
   const BeamFragmentOptions options = grid_options(grid, owners_fragment_bytes(Words));

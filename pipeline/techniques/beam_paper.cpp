@@ -137,7 +137,7 @@ void add_weights(const PaperOptions& options, const SamplePattern& pattern, std:
 }
 
 FrameResult render_sorted(const Trace& trace, const Frame& frame, const PaperOptions& beam, const RunOptions& run) {
-  const FrameContext context(trace, frame, run);
+  const FrameContext context(trace, frame, run, {.takes_positions = true});
   const SamplePattern pattern = hammersley_pattern();
   const MaskTable table(pattern);
   const RecordBytes bytes = record_bytes(beam);
@@ -171,7 +171,7 @@ FrameResult render_sorted(const Trace& trace, const Frame& frame, const PaperOpt
 
 // Without an A-buffer.
 FrameResult render_layers(const Trace& trace, const Frame& frame, const PaperOptions& beam, const RunOptions& run) {
-  const FrameContext context(trace, frame, run);
+  const FrameContext context(trace, frame, run, {.takes_positions = true});
   const SamplePattern pattern = hammersley_pattern();
   const MaskTable table(pattern);
   const BeamFragmentOptions options = fragment_options(beam, pattern, table);

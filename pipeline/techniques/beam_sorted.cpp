@@ -49,7 +49,7 @@ void scale_closed(const Compose& compose, BinWeights& weights) {
 
 template <std::size_t Words, class Channel>
 FrameResult render_shape(const Trace& trace, const Frame& frame, const SortedOptions& sorted, const RunOptions& run) {
-  const FrameContext context(trace, frame, run);
+  const FrameContext context(trace, frame, run, {.takes_positions = true});
   const PositionSet& positions = cell_positions(sorted.positions);
   const PositionGrid grid(sorted.positions);
   const BeamFragmentOptions fragment_options = grid_options(grid, conserving_fragment_bytes(sorted.positions));

@@ -41,7 +41,7 @@ Framebuffer stream_framebuffer(const StreamOptions& stream) {
 template <std::size_t Words, std::size_t Slots>
 FrameResult render_one_pass(const Trace& trace, const Frame& frame, const StreamOptions& stream,
                             const RunOptions& run) {
-  const FrameContext context(trace, frame, run);
+  const FrameContext context(trace, frame, run, {.takes_positions = true});
   const PositionSet& positions = cell_positions(stream.positions);
   const PositionGrid grid(stream.positions);
   const BeamFragmentOptions options = grid_options(grid, owners_fragment_bytes(Words));
@@ -64,7 +64,7 @@ FrameResult render_one_pass(const Trace& trace, const Frame& frame, const Stream
 
 template <std::size_t Words, std::size_t Layers>
 FrameResult render_passes(const Trace& trace, const Frame& frame, const StreamOptions& stream, const RunOptions& run) {
-  const FrameContext context(trace, frame, run);
+  const FrameContext context(trace, frame, run, {.takes_positions = true});
   const PositionSet& positions = cell_positions(stream.positions);
   const PositionGrid grid(stream.positions);
   const BeamFragmentOptions options = grid_options(grid, streaming_fragment_bytes(Words));

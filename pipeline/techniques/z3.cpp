@@ -29,7 +29,7 @@ Framebuffer z3_framebuffer(const Z3Options& z3) {
 
 template <std::size_t Words, std::size_t Layers>
 FrameResult render_shape(const Trace& trace, const Frame& frame, const Z3Options& z3, const RunOptions& run) {
-  const FrameContext context(trace, frame, run);
+  const FrameContext context(trace, frame, run, {.takes_positions = true});
   const PositionSet& positions = cell_positions(z3.positions);
   const PositionGrid grid(z3.positions);
   const BeamFragmentOptions options = grid_options(grid, 4 + 4 * Words + 12);

@@ -28,7 +28,10 @@ void for_each_position(const WideMask& mask, const std::vector<SamplePattern>& p
 float covered_part(const TileShader& shader, const Fragment& fragment, float u, float v, float width,
                    AlphaMaskWork& work, TexelRequests* texels) {
   work.alphas += shader.work(fragment.triangle).alpha;
-  return shader.cutout_part(fragment.triangle, fragment.pixel, u, v, width, texels);
+  ++work.tests;
+  const SurfaceShader::CutoutPart found = shader.cutout_part(fragment.triangle, fragment.pixel, u, v, width, texels);
+  work.mixed += found.is_share;
+  return found.part;
 }
 
 // The part of the fragment that is left, 0..1.

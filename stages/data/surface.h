@@ -71,7 +71,8 @@ inline constexpr std::uint32_t kFlatSurface = ~0u;
 // One for each setup triangle.
 struct SetupSurface {
   std::uint32_t material = kFlatSurface;    // index into Trace::materials; kFlatSurface: the triangle is flat
-  std::array<std::uint32_t, 3> vertices{};  // of the trace's triangle: indices into SetupTriangles::vertices
+  std::uint32_t trace_triangle = 0;         // index into the triangles of its draw's mesh
+  std::array<std::uint32_t, 3> vertices{};  // of that triangle: indices into SetupTriangles::vertices
   bool is_opaque = true;                    // it hides what lies behind it, wherever it covers
   bool turned = false;                      // the viewer sees its back: vertices' normals are turned around
   bool has_own_normal = false;              // the mesh has no normals: FlatAttributes::normal is used

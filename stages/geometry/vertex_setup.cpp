@@ -384,6 +384,7 @@ class TriangleSetup {
     ++work.surfaces;
     const glm::uvec3& index = mesh_.triangles[t];
     surface.material = material;
+    surface.trace_triangle = static_cast<std::uint32_t>(t);
     const AlphaMode mode = materials_[material].alpha_mode;
     surface.is_opaque = mode == AlphaMode::opaque || (mode == AlphaMode::blend && screen_.placement.is_opaque);
     for (int k = 0; k < 3; ++k) surface.vertices[static_cast<std::size_t>(k)] = first_vertex_ + index[k];

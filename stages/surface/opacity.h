@@ -7,10 +7,10 @@
 // Of 2^m positions, a rank has m bits, and each bit is the parity of some bits of the position's number: of those that
 // are set in an element of the field GF(2^m). Bit by bit, order k uses the elements b0 g^k, b1 g^k, ..., where b0, b1,
 // ... is a basis of the field. Different orders have different leading bits, so that of two sheets of opacity 1/2 each
-// takes half of the other's positions. As m powers of g in a row are a basis, the leading bits of m orders k in a row do
-// not depend on each other. And where the field has subfields, their elements come first in the basis: with 256
-// positions, the two leading bits of one order depend on those of only two others, where the factor between them lies in
-// GF(4), and the four leading bits on those of 14 others, where it lies in GF(16).
+// takes half of the other's positions. As m powers of g in a row are a basis, the leading bits of m orders k in a row
+// do not depend on each other. And where the field has subfields, their elements come first in the basis: with 256
+// positions, the two leading bits of one order depend on those of only two others, where the factor between them lies
+// in GF(4), and the four leading bits on those of 14 others, where it lies in GF(16).
 //
 // Source of the primitive polynomials: Lidl and Niederreiter, "Finite Fields", table C.
 #pragma once
@@ -47,12 +47,6 @@ constexpr std::uint32_t product(std::uint32_t a, std::uint32_t b, int bits) {
   return product;
 }
 
-constexpr std::uint32_t power(std::uint32_t base, std::uint32_t exponent, int bits) {
-  std::uint32_t result = 1;
-  for (std::uint32_t i = 0; i < exponent; ++i) result = product(result, base, bits);
-  return result;
-}
-
 struct Basis {
   std::array<std::uint32_t, kMostBits> elements{};
   std::array<bool, 1 << kMostBits> spanned{true};
@@ -71,12 +65,14 @@ struct Basis {
 constexpr Basis basis_of_field(int bits) {
   Basis basis;
   const std::uint32_t powers = (1u << bits) - 1;
+  std::array<std::uint32_t, 1 << kMostBits> power_of_2{};
+  for (std::uint32_t e = 0, power = 1; e < powers; ++e, power = product(power, 2, bits)) power_of_2[e] = power;
   for (const int of_subfield : {2, 3, 4}) {
     if (bits % of_subfield != 0 || of_subfield >= bits) continue;
     const std::uint32_t step = powers / ((1u << of_subfield) - 1);
-    for (std::uint32_t e = 0; e < powers; e += step) basis.add(power(2, e, bits));
+    for (std::uint32_t e = 0; e < powers; e += step) basis.add(power_of_2[e]);
   }
-  for (std::uint32_t e = 0; e < powers; ++e) basis.add(power(2, e, bits));
+  for (std::uint32_t e = 0; e < powers; ++e) basis.add(power_of_2[e]);
   return basis;
 }
 
@@ -86,7 +82,9 @@ constexpr Basis basis_of_field(int bits) {
 constexpr Orders make_orders(int bits) {
   constexpr std::uint32_t kStep = 11, kInCell = 7;
   Orders orders;
-  const std::uint32_t powers = (1u << bits) - 1, generator = power(2, kStep % (powers > 0 ? powers : 1), bits);
+  const std::uint32_t powers = (1u << bits) - 1;
+  std::uint32_t generator = 1;
+  for (std::uint32_t e = 0; e < kStep; ++e) generator = product(generator, 2, bits);
   const Basis basis = basis_of_field(bits);
   std::uint32_t factor = 1;
   for (std::uint32_t k = 0; k < powers; ++k, factor = product(factor, generator, bits)) {

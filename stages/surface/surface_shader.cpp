@@ -5,7 +5,6 @@
 
 #include "stages/cost/counting.h"
 #include "stages/data/half_bits.h"
-#include "stages/surface/sheets.h"
 #include "stages/surface/texture_filter.h"
 
 namespace beampipe {
@@ -73,9 +72,9 @@ ColorSpace space_of(TextureRole role) {
 }
 
 // Adds the texels that are read to `texels`, unless it is null.
-auto noting(TexelRequests* texels, std::uint32_t image, ColorSpace space) {
+auto noting(TexelRequests* texels, std::uint32_t image, ColorSpace space, std::uint32_t test = kNoAlphaTest) {
   return [=](std::size_t level, std::uint32_t column, std::uint32_t row) {
-    if (texels) texels->read({image, space, static_cast<std::uint32_t>(level), column, row});
+    if (texels) texels->read({image, space, static_cast<std::uint32_t>(level), column, row, test});
   };
 }
 
@@ -253,8 +252,7 @@ SurfaceShader::SurfaceShader(const SetupTriangles& triangles, const Trace& trace
       frame_(frame),
       textures_(textures),
       rules_(rules),
-      flat_(shade_triangles(triangles, frame.lighting)),
-      sheets_(number_sheets(triangles)) {
+      flat_(shade_triangles(triangles, frame.lighting)) {
   if (rules.colors == SurfaceColors::by_pixel) rules_.rounds_to_half = false;
   if (rules_.rounds_to_half)
     for (glm::vec3& color : flat_) round_to_half(color);
@@ -322,25 +320,26 @@ float SurfaceShader::alpha(std::uint32_t triangle, const ShadingPlace& place, fl
                      });
 }
 
-float SurfaceShader::cutout_part(std::uint32_t triangle, const ShadingPlace& place, float width,
-                                 TexelRequests* texels) const {
+SurfaceShader::CutoutPart SurfaceShader::cutout_part(std::uint32_t triangle, const ShadingPlace& place, float width,
+                                                     TexelRequests* texels) const {
   const float cutoff = alpha_cutoff(triangle);
-  if (cutoff <= 0.0f) return 1.0f;
+  if (cutoff <= 0.0f) return {1.0f};
   const TestedAlpha* tested = nullptr;
   glm::vec4 shares;
   // Of a point; or what the texture's alpha is multiplied by.
-  const float alpha = alpha_there(triangle, place, width,
-                                  [&](const Texture& texture, const glm::vec2& uv, const TextureSlopes& slopes) {
-                                    const MipChain& chain = textures_->chain(texture.image, ColorSpace::srgb);
-                                    const auto note = noting(texels, texture.image, ColorSpace::srgb);
-                                    if (level_of_detail(slopes, chain.levels[0]) <= 0)
-                                      return filtered(chain, texture, uv, slopes, note).a;
-                                    tested = &textures_->tested_alpha(triangles_.surfaces[triangle].material);
-                                    shares = filtered(tested->shares, for_areas(texture), uv, slopes, note);
-                                    return 1.0f;
-                                  });
-  if (!tested) return alpha >= cutoff ? 1.0f : 0.0f;
-  return tested->share(shares, cutoff / alpha);
+  const float alpha = alpha_there(
+      triangle, place, width, [&](const Texture& texture, const glm::vec2& uv, const TextureSlopes& slopes) {
+        const MipChain& chain = textures_->chain(texture.image, ColorSpace::srgb);
+        if (level_of_detail(slopes, chain.levels[0]) <= 0)
+          return filtered(chain, texture, uv, slopes, noting(texels, texture.image, ColorSpace::srgb)).a;
+        const std::uint32_t material = triangles_.surfaces[triangle].material;
+        tested = &textures_->tested_alpha(material);
+        shares = filtered(tested->shares, for_areas(texture), uv, slopes,
+                          noting(texels, texture.image, ColorSpace::linear, textures_->alpha_test(material)));
+        return 1.0f;
+      });
+  if (!tested) return {alpha >= cutoff ? 1.0f : 0.0f};
+  return {tested->share(shares, cutoff / alpha), true};
 }
 
 SurfaceMaterial<float> SurfaceShader::material_there(std::uint32_t triangle, const ShadingPlace& place, float width,

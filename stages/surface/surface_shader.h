@@ -4,6 +4,7 @@
 
 #include <cstdint>
 #include <glm/glm.hpp>
+#include <utility>
 #include <vector>
 
 #include "stages/cost/counters.h"
@@ -41,6 +42,7 @@ struct ShadingRules {
   MaterialStorage storage = MaterialStorage::none;
   bool rounds_to_half = false;  // colours are stored as fp16
   SurfaceColors colors = SurfaceColors::by_place;
+  bool takes_positions = false;  // alpha takes mask positions away (stages/beam/alpha_mask.h)
 };
 
 class SurfaceShader {
@@ -76,9 +78,14 @@ class SurfaceShader {
   float alpha(std::uint32_t triangle, const ShadingPlace& place, float width, TexelRequests* texels = nullptr) const;
 
   // The part of an area that a cutout covers, 0..1: of a point, 0 or 1, if its texels are larger than the area, and
-  // else the part that passes the alpha test (stages/surface/tested_alpha.h). `width`, `texels`: as above.
-  float cutout_part(std::uint32_t triangle, const ShadingPlace& place, float width,
-                    TexelRequests* texels = nullptr) const;
+  // else the part that passes the alpha test (stages/surface/tested_alpha.h), which the textures must have. `width`,
+  // `texels`: as above.
+  struct CutoutPart {
+    float part = 0;
+    bool is_share = false;  // from tested alpha
+  };
+  CutoutPart cutout_part(std::uint32_t triangle, const ShadingPlace& place, float width,
+                         TexelRequests* texels = nullptr) const;
 
   bool is_opaque(std::uint32_t triangle) const { return triangles_.is_opaque(triangle); }
   bool is_cutout(std::uint32_t triangle) const {
@@ -86,7 +93,10 @@ class SurfaceShader {
   }
   bool is_translucent(std::uint32_t triangle) const { return !is_opaque(triangle) && !is_cutout(triangle); }
   float alpha_cutoff(std::uint32_t triangle) const { return material(triangle).alpha_cutoff; }
-  std::uint32_t sheet(std::uint32_t triangle) const { return sheets_[triangle]; }  // stages/surface/sheets.h
+
+  // One for each triangle (stages/surface/sheets.h). Only shaders whose fragments have mask positions need them.
+  void set_sheets(std::vector<std::uint32_t> sheets) { sheets_ = std::move(sheets); }
+  std::uint32_t sheet(std::uint32_t triangle) const { return sheets_[triangle]; }
 
   // Do the triangles have the same colour everywhere?
   bool same_color(std::uint32_t a, std::uint32_t b) const {
@@ -171,8 +181,8 @@ class TileShader {
               TexelRequests* texels = nullptr) const {
     return shader_->alpha(triangle, place(pixel, u, v), width, texels);
   }
-  float cutout_part(std::uint32_t triangle, std::uint32_t pixel, float u, float v, float width,
-                    TexelRequests* texels = nullptr) const {
+  SurfaceShader::CutoutPart cutout_part(std::uint32_t triangle, std::uint32_t pixel, float u, float v, float width,
+                                        TexelRequests* texels = nullptr) const {
     return shader_->cutout_part(triangle, place(pixel, u, v), width, texels);
   }
   bool is_opaque(std::uint32_t triangle) const { return !shader_ || shader_->is_opaque(triangle); }

@@ -1,8 +1,7 @@
 // Where a cutout is there, as a texture: which part of each texel passes the alpha test, at every mip level.
 //
 // Mean alpha does not say how much of an area passes the test. So alpha is tested first, as the magnification filter
-// shows it, and the results are averaged. The modelled machine keeps them in the alpha channel of the mip levels, which
-// tools that prepare textures of leaves and fences fill in that way too.
+// shows it, and the results are averaged. The modelled machine keeps them in a texture of their own.
 #pragma once
 
 #include <array>
@@ -28,6 +27,11 @@ struct TestedAlpha {
 
 // The alpha of its texture at which a material with opaque vertices just passes the test.
 float least_texture_alpha(const Material& material);
+
+// What the results take, with all levels.
+inline std::uint64_t tested_alpha_bytes(const TextureImage& image) {
+  return image.texels.size() * sizeof(glm::u8vec4) * 4 / 3;
+}
 
 // Of a material with a base texture. `image`: the texture's.
 TestedAlpha test_alpha(const Material& material, const TextureImage& image);

@@ -16,12 +16,14 @@ struct TexelRead {
   std::uint32_t image;
   ColorSpace space;
   std::uint32_t level, x, y;
+  std::uint32_t alpha_test = kNoAlphaTest;  // else it is one of the shares that pass this test, not of the image
 };
 
 inline constexpr std::uint64_t kTexelBytes = 4;  // 8 bits per channel, not compressed
 
-// Images lie one after the other, once for each colour space that is read; of an image its levels, each from the start
-// of a line of 128 bytes. A sector of 32 bytes has 4 x 2 texels, and a line 2 x 2 sectors.
+// Images lie one after the other, once for each colour space that is read, and then the shares of each alpha test; of
+// an image its levels, each from the start of a line of 128 bytes. A sector of 32 bytes has 4 x 2 texels, and a line 2
+// x 2 sectors.
 //
 // Source: block-linear surfaces of NVIDIA GPUs, whose sectors are 16 bytes x 2 rows (minigbm, tegra.c: GENERIC_16Bx2).
 class TextureLayout {
@@ -32,7 +34,9 @@ class TextureLayout {
 
   // The number of a texel's sector: kSectorsPerLine times the line, and its place there.
   std::uint64_t sector_of(const TexelRead& texel) const {
-    const Level& level = levels_[chains_[TextureSet::index(texel.image, texel.space)] + texel.level];
+    const std::size_t first = texel.alpha_test == kNoAlphaTest ? chains_[TextureSet::index(texel.image, texel.space)]
+                                                               : tests_[texel.alpha_test];
+    const Level& level = levels_[first + texel.level];
     const std::uint64_t line = level.first_line + std::uint64_t{texel.y / 4} * level.lines_per_row + texel.x / 8;
     return line * kSectorsPerLine + texel.y % 4 / 2 * 2 + texel.x % 8 / 4;
   }
@@ -42,7 +46,9 @@ class TextureLayout {
     std::uint64_t first_line;
     std::uint32_t lines_per_row;
   };
-  std::vector<std::size_t> chains_;  // by TextureSet::index: where its levels begin
+  void add(const MipChain& chain, std::uint64_t& lines);
+
+  std::vector<std::size_t> chains_, tests_;  // by TextureSet::index, by alpha test: where its levels begin
   std::vector<Level> levels_;
 };
 

@@ -212,6 +212,36 @@ TEST(Surfaces, BeamComposesTheSheetsOfOneDraw) {
   }
 }
 
+// The same triangle twice is two layers, not two parts of one.
+TEST(Surfaces, TheSameTriangleTwiceIsTwoLayers) {
+  SurfaceTrace scene(8, 8);
+  scene.add_rectangle(-1, -1, 20, 20, 0.5, unlit_material({1, 1, 1, 0.5f}, AlphaMode::blend));
+  scene.mesh().triangles = {{0, 1, 3}, {0, 1, 3}};
+  scene.frame().background = glm::vec3(0.0f);
+  for (const char* spec : {"beam", "beam:order=sorted", "beam:order=stream", "z3"}) {
+    const Image image = rendered(spec, scene.trace).image;
+    for (std::size_t i = 0; i < image.rgba.size(); i += 4) EXPECT_NEAR(image.rgba[i], 0.75, 0.01) << spec;
+  }
+}
+
+// Sheets are numbered only for techniques with mask positions: the setup of others costs what it does for triangles
+// that are opaque.
+TEST(Surfaces, TechniquesWithoutMaskPositionsDoNotNumberSheets) {
+  SurfaceTrace scene(8, 8);
+  scene.add_rectangle(-1, -1, 20, 20, 0.5, unlit_material({1, 1, 1, 0.5f}, AlphaMode::blend));
+  scene.mesh().vertex_colors.resize(4, glm::vec4(1.0f));  // so that the material is not flat when it is opaque
+  Trace opaque = scene.trace;
+  opaque.materials[0].alpha_mode = AlphaMode::opaque;
+  for (const char* spec : kSpecs) {
+    const StageCounters a = rendered(spec, scene.trace).stages[0], b = rendered(spec, opaque).stages[0];
+    const bool has_positions =
+        std::string(spec).starts_with("beam") || std::string(spec) == "z3" || std::string(spec) == "alpha";
+    if (std::string(spec) == "beam:order=stream,passes=0") continue;  // passes differ
+    EXPECT_EQ(a.ops.total() > b.ops.total(), has_positions) << spec;
+    EXPECT_EQ(a.bytes_written > b.bytes_written, has_positions) << spec;
+  }
+}
+
 // Layers of one mesh that meet in a vertex lie on each other like any others, in each pixel.
 TEST(Surfaces, LayersThatShareAVertexDoNotHideEachOther) {
   SurfaceTrace scene(8, 8);

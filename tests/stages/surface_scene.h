@@ -5,6 +5,7 @@
 #include <vector>
 
 #include "stages/geometry/vertex_setup.h"
+#include "stages/surface/sheets.h"
 #include "stages/surface/surface_shader.h"
 #include "tests/pipeline/test_traces.h"
 
@@ -85,7 +86,11 @@ struct ShadedScene {
       : trace(of),
         triangles(vertex_setup(trace, trace.frames[0], setup)),
         textures(trace),
-        shader(triangles, trace, trace.frames[0], &textures, rules) {}
+        shader(triangles, trace, trace.frames[0], &textures, rules) {
+    textures.test_alphas(trace, std::vector<bool>(trace.materials.size(), true));
+    StageCounters ignored;
+    shader.set_sheets(number_sheets(triangles, trace.frames[0], ignored));
+  }
   ShadedScene(const ShadedScene&) = delete;
   ShadedScene& operator=(const ShadedScene&) = delete;
 

@@ -104,7 +104,7 @@ RunPlan make_plan(const RunArguments& arguments) {
     for (const Technique& technique : plan.techniques)
       require_memory(plan.trace, plan.trace.frames[frame], technique.working_bytes_per_pixel,
                      "frame " + std::to_string(frame) + " with " + technique.spec, machine_memory());
-  plan.textures = std::make_shared<TextureSet>(plan.trace);
+  plan.textures = std::make_shared<TextureSet>(plan.trace, arguments.trace);
   plan.options.textures = plan.textures.get();
   if (const std::string note = note_on_darkness(plan.trace, plan.frames, arguments.trace); !note.empty())
     std::cerr << "beampipe: " << note << "\n";

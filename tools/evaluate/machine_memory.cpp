@@ -2,6 +2,7 @@
 
 #include <unistd.h>
 
+#include <algorithm>
 #include <stdexcept>
 
 #include "stages/data/setup_triangle.h"
@@ -17,9 +18,41 @@ std::uint64_t triangles_of(const Trace& trace, const Frame& frame) {
   return triangles;
 }
 
+// By material.
+std::vector<bool> drawn_materials(const Trace& trace, const Frame& frame) {
+  std::vector<bool> drawn(trace.materials.size());
+  for (const Draw& draw : frame.draws) {
+    if (draw.kd) continue;
+    if (draw.material) {
+      drawn[*draw.material] = true;
+      continue;
+    }
+    for (const std::uint32_t material : trace.meshes[draw.mesh].materials)
+      if (material != kNoMaterial) drawn[material] = true;
+  }
+  return drawn;
+}
+
+// Of the tested alpha of cutouts. They are made one after the other: while one is made there is also a copy of its
+// image, and two of its levels are linear numbers.
+std::uint64_t tested_alpha_memory(const Trace& trace, const Frame& frame) {
+  const std::vector<std::uint32_t> tests = number_alpha_tests(trace);
+  const std::vector<bool> drawn = drawn_materials(trace, frame);
+  std::vector<bool> counted(trace.materials.size());  // by test
+  std::uint64_t bytes = 0, most_texels = 0;
+  for (std::size_t i = 0; i < tests.size(); ++i) {
+    if (!drawn[i] || tests[i] == kNoAlphaTest || counted[tests[i]]) continue;
+    counted[tests[i]] = true;
+    const TextureImage& image = trace.images[trace.materials[i].base_texture->image];
+    bytes += tested_alpha_bytes(image);
+    most_texels = std::max<std::uint64_t>(most_texels, image.texels.size());
+  }
+  return bytes + most_texels * sizeof(glm::u8vec4) + most_texels * 5 / 4 * sizeof(glm::vec4);
+}
+
 // Of all textures while they are made, which happens at the same time. The levels have 4/3 as many texels as the image.
 // Those of one level and the next one are linear numbers until they are rounded.
-std::uint64_t texture_memory(const Trace& trace) {
+std::uint64_t texture_memory(const Trace& trace, const Frame& frame) {
   std::vector<bool> used(2 * trace.images.size());  // in linear light, as sRGB
   for (const Material& material : trace.materials) {
     for (const auto* srgb : {&material.base_texture, &material.emissive_texture})
@@ -30,7 +63,7 @@ std::uint64_t texture_memory(const Trace& trace) {
   std::uint64_t texels = 0;
   for (std::size_t i = 0; i < used.size(); ++i)
     if (used[i]) texels += trace.images[i / 2].texels.size();
-  return texels * 4 / 3 * sizeof(glm::u8vec4) + texels * 5 / 4 * sizeof(glm::vec4);
+  return texels * 4 / 3 * sizeof(glm::u8vec4) + texels * 5 / 4 * sizeof(glm::vec4) + tested_alpha_memory(trace, frame);
 }
 
 }  // namespace
@@ -45,7 +78,7 @@ std::uint64_t frame_memory(const Trace& trace, const Frame& frame, std::uint32_t
   if (!has_varying_surfaces(trace, frame)) return bytes;
   std::uint64_t vertices = 0;
   for (const Draw& draw : frame.draws) vertices += trace.meshes[draw.mesh].positions.size();
-  bytes += triangles * sizeof(SetupSurface) + vertices * sizeof(SurfaceVertex) + texture_memory(trace);
+  bytes += triangles * sizeof(SetupSurface) + vertices * sizeof(SurfaceVertex) + texture_memory(trace, frame);
   // A material is shaded in another way for each of 8 sets of what meshes may have.
   return bytes + std::uint64_t{trace.materials.size()} * 8 * sizeof(SurfaceShader::Work);
 }

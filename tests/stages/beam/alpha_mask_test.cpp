@@ -219,11 +219,11 @@ TEST(AlphaMask, CountsItsWork) {
     const std::uint64_t alphas = mode == AlphaMode::mask ? 256 : 1;
     EXPECT_EQ(found.counters.items_in, 1u);
     EXPECT_EQ(found.counters.items_out, 1u);
-    EXPECT_EQ(found.counters.bytes_read, 4 * 8 + 2u);  // the mask and the area as fp16
+    EXPECT_EQ(found.counters.bytes_read, 4 * 8 + 2u + 4);  // the mask, the area as fp16, and the number of the sheet
     EXPECT_EQ(found.counters.bytes_written, 4 * 8 + 2u);
     EXPECT_EQ(found.counters.lanes_used, 256u);
     EXPECT_EQ(found.counters.lanes_issued, 256u);
-    EXPECT_EQ(found.counters.ops.fetch, alphas + 256);
+    EXPECT_EQ(found.counters.ops.fetch, alphas + 256 + 1);  // alphas, ranks, and the sheet's order
     // An alpha: weights in perspective (8 products, 10 sums and comparisons, a division); their slopes (10, 6, 1); two
     // texture coordinates (2, 4 each) and four slopes of them (2, 3 each); the factor.
     // Besides: eight products and four sums that make the pixel's flip, and two products; the area's factor.
@@ -232,6 +232,26 @@ TEST(AlphaMask, CountsItsWork) {
     EXPECT_EQ(found.counters.ops.add, alphas * (10 + 6 + 2 * 4 + 4 * 3) + 4 + 256 * (mode == AlphaMode::mask ? 5 : 2));
     EXPECT_EQ(found.counters.ops.special, alphas * 2 + (mode == AlphaMode::mask));
   }
+}
+
+// Where texels are small, each position also takes the quotient of cutoff and alpha, and two of four shares.
+TEST(AlphaMask, CountsTheWorkOfSmallTexels) {
+  StageCounters of_size[2];
+  for (const bool is_small : {false, true}) {
+    SurfaceTrace scene(1, 1);
+    scene.add_rectangle(-20, -1, 2, 2, 0.5,
+                        textured_material(scene.add_image(filled_image(2, 2, {9, 9, 9, 200})), AlphaMode::mask));
+    if (is_small)
+      for (glm::vec2& uv : scene.mesh().uvs[0]) uv *= 1000.0f;
+    const Masked found = masked(ShadedScene(scene.trace));
+    ASSERT_EQ(found.after.size(), 1u);
+    of_size[is_small] = found.counters;
+  }
+  OperationCounts expected = of_size[0].ops;
+  // Two comparisons, a difference and a limit; a whole number and its limit; the rest, and one less it.
+  expected += OperationCounts{.mul_add = 2, .add = 7, .special = 2, .convert = 2} * 256;
+  EXPECT_EQ(of_size[1].ops, expected);
+  EXPECT_EQ(of_size[1].bytes_read, of_size[0].bytes_read);
 }
 
 }  // namespace

@@ -30,9 +30,10 @@ struct Blended {
 const Sampling kMsaa8{CellGrid{}, standard_pattern(8)};
 
 // In pixel (1, 2) only. `depth`: of the surface there, from 0 to 1.
-Blended blended_at(const std::vector<std::uint32_t>& triangles, std::uint32_t mask, float depth = 1.0f) {
+Blended blended_at(const std::vector<std::uint32_t>& triangles, std::uint32_t mask, float depth = 1.0f,
+                   std::uint32_t color_bytes = kSampleColorBytes) {
   const ShadedScene scene(sheets().trace);
-  Blended result{SampleTile(kTile, kMsaa8), {}, {}};
+  Blended result{SampleTile(kTile, kMsaa8, color_bytes), {}, {}};
   result.surface.over.assign(result.surface.triangle.size(), glm::vec4(0.0f));
   for (float& stored : result.surface.depth) stored = depth - 1;
   std::vector<SampleFragment> fragments;
@@ -92,6 +93,15 @@ TEST(Blend, CountsItsWork) {
   OperationCounts expected = depth.ops;
   expected += OperationCounts{.mul_add = 3, .add = 3 * 2, .convert = 6} * 8;
   EXPECT_EQ(found.counters.ops, expected);
+}
+
+// A layer has alpha: a product, a sum, and two conversions more for each of the eight samples that pass.
+TEST(Blend, CountsTheAlphaOfLayers) {
+  const Blended color = blended_at({0}, 0xffu), layer = blended_at({0}, 0xffu, 1.0f, 8);
+  OperationCounts expected = color.counters.ops;
+  expected += OperationCounts{.mul_add = 1, .add = 2, .convert = 2} * 8;
+  EXPECT_EQ(layer.counters.ops, expected);
+  EXPECT_EQ(layer.counters.bytes_written, 8u * 8);
 }
 
 }  // namespace

@@ -6,6 +6,7 @@
 #include <cmath>
 #include <set>
 
+#include "tests/simd/random.h"
 #include "tests/stages/surface_scene.h"
 
 namespace beampipe {
@@ -14,7 +15,8 @@ namespace {
 using Sheets = std::vector<std::uint32_t>;
 
 // Sheets of a mesh of translucent triangles in one draw.
-std::vector<std::uint32_t> sheets_of(const std::vector<glm::vec3>& positions, const std::vector<glm::uvec3>& corners) {
+std::vector<std::uint32_t> sheets_of(const std::vector<glm::vec3>& positions, const std::vector<glm::uvec3>& corners,
+                                     StageCounters* counters = nullptr) {
   SurfaceTrace scene(8, 8);
   scene.add_rectangle(0, 0, 1, 1, 0.5, unlit_material({1, 1, 1, 0.5f}, AlphaMode::blend));
   Mesh& mesh = scene.mesh();
@@ -23,7 +25,8 @@ std::vector<std::uint32_t> sheets_of(const std::vector<glm::vec3>& positions, co
   mesh.colors.resize(corners.size(), kDefaultColor);
   mesh.materials.resize(corners.size(), 0);
   StageCounters ignored;
-  return number_sheets(vertex_setup(scene.trace, scene.frame(), ignored));
+  const SetupTriangles triangles = vertex_setup(scene.trace, scene.frame(), ignored);
+  return number_sheets(triangles, scene.frame(), counters ? *counters : ignored);
 }
 
 TEST(Sheets, NeighborsThatFaceTheSameWayAreOne) {
@@ -72,12 +75,101 @@ TEST(Sheets, PartsOfAClippedTriangleAreOne) {
   EXPECT_EQ(sheets_of({{0, 0, -0.5f}, {8, 0, 0.5f}, {0, 8, 0.5f}}, {{0, 1, 2}}), (Sheets{0, 0}));
 }
 
+// They look like two parts of one, but are two of the mesh.
+TEST(Sheets, TheSameTriangleTwiceIsTwo) {
+  EXPECT_EQ(sheets_of({{0, 0, 0}, {8, 0, 0}, {0, 8, 0}}, {{0, 1, 2}, {0, 1, 2}}), (Sheets{0, 1}));
+}
+
+// A ramp that winds twice around the middle of the picture: without a fold, its second turn lies over the first.
+TEST(Sheets, ASpiralDoesNotLieOverItself) {
+  std::vector<glm::vec3> positions;
+  std::vector<glm::uvec3> corners;
+  constexpr std::uint32_t kSteps = 16;  // in a turn
+  for (std::uint32_t i = 0; i <= 2 * kSteps; ++i) {
+    const double angle = i * 6.283185307179586 / kSteps;
+    for (const double radius : {1.5, 3.5})
+      positions.emplace_back(4 + radius * std::cos(angle), 4 + radius * std::sin(angle), 0.01 * i);
+    if (i == 0) continue;
+    corners.emplace_back(2 * i - 2, 2 * i - 1, 2 * i);
+    corners.emplace_back(2 * i - 1, 2 * i + 1, 2 * i);
+  }
+  const Sheets found = sheets_of(positions, corners);
+  ASSERT_EQ(found.size(), 4 * kSteps);
+  for (std::uint32_t i = 0; i < 2 * kSteps; ++i) {
+    EXPECT_EQ(found[i], 0u);
+    EXPECT_EQ(found[i + 2 * kSteps], 1u);
+  }
+}
+
+// Leaves all over the picture: numbers are reused where leaves are far from each other, and two that overlap differ.
+TEST(Sheets, NumbersAreReusedAwayFromEachOther) {
+  SurfaceTrace scene(64, 64);
+  Random random(1);
+  constexpr int kLeaves = 400;
+  std::vector<glm::dvec2> corners;
+  for (int i = 0; i < kLeaves; ++i) {
+    corners.emplace_back(random.real32(0, 60), random.real32(0, 60));
+    scene.add_rectangle(corners[i].x, corners[i].y, corners[i].x + 4, corners[i].y + 4, 0.5,
+                        unlit_material({1, 1, 1, 0.5f}, AlphaMode::blend));
+  }
+  StageCounters counters, of_numbers;
+  const SetupTriangles triangles = vertex_setup(scene.trace, scene.frame(), counters);
+  const Sheets found = number_sheets(triangles, scene.frame(), of_numbers);
+  ASSERT_EQ(found.size(), 2u * kLeaves);
+  for (int i = 0; i < kLeaves; ++i) {
+    EXPECT_EQ(found[2 * i], found[2 * i + 1]);
+    EXPECT_LT(found[2 * i], 40u);
+    for (int j = 0; j < i; ++j) {
+      const glm::dvec2 apart = glm::abs(corners[i] - corners[j]);
+      EXPECT_FALSE(apart.x < 4 && apart.y < 4 && found[2 * i] == found[2 * j]) << i << ", " << j;
+    }
+  }
+}
+
+// What it costs grows with the number of triangles, however they lie: a fan and a strip of slivers.
+TEST(Sheets, WorkGrowsWithTheNumberOfTriangles) {
+  for (const bool is_fan : {true, false}) {
+    double of_triangle[2];
+    for (const int many : {0, 1}) {
+      const std::uint32_t count = many ? 1'400 : 140;
+      std::vector<glm::vec3> positions = {{1, 1, 0.5f}};
+      std::vector<glm::uvec3> corners;
+      for (std::uint32_t i = 0; i <= count; ++i) {
+        const float along = 6 * static_cast<float>(i) / static_cast<float>(count);
+        positions.emplace_back(is_fan ? glm::vec3(7, 1 + along, 0.5f) : glm::vec3(1 + along, i % 2 ? 1 : 7, 0.5f));
+        if (is_fan && i > 0) corners.emplace_back(0, i, i + 1);
+        if (!is_fan && i > 1) corners.emplace_back(i - 1, i % 2 ? i : i + 1, i % 2 ? i + 1 : i);
+      }
+      StageCounters counters;
+      ASSERT_GT(sheets_of(positions, corners, &counters).size(), count - 2);
+      of_triangle[many] = static_cast<double>(counters.ops.total()) / count;
+    }
+    EXPECT_LT(of_triangle[1], 2 * of_triangle[0]) << (is_fan ? "fan" : "strip");
+  }
+}
+
+// Two triangles with a common side, of which the second is tried once. The grid has one cell,
+// as large as the picture and the triangles.
+TEST(Sheets, CountsItsWork) {
+  StageCounters counters;
+  sheets_of({{0, 0, 0.5f}, {8, 0, 0.5f}, {8, 8, 0.5f}, {0, 8, 0.5f}}, {{0, 1, 2}, {0, 2, 3}}, &counters);
+  // Six sides are sorted. The second triangle is tested against the first: their boxes, and sides of both up to the
+  // common one.
+  EXPECT_EQ(counters.bytes_written, 6u * 12 + 2 * (8 + 32) + 2 * 4);
+  EXPECT_EQ(counters.bytes_read, 6u * 12 + 2 * (8 + 32) + 1 * 24);
+  EXPECT_EQ(counters.ops.bit, 2u * 16);
+  EXPECT_EQ(counters.ops.convert, 2u * 4);
+  EXPECT_EQ((counters.ops.mul_add - 2 * 4) % 8, 0u);
+  EXPECT_GT(counters.ops.mul_add, 2u * 4);
+  EXPECT_LE(counters.ops.mul_add, 2u * 4 + 6 * 8);
+}
+
 TEST(Sheets, DrawsAreSheetsOfTheirOwn) {
   SurfaceTrace scene(8, 8);
   for (const AlphaMode mode : {AlphaMode::blend, AlphaMode::mask, AlphaMode::opaque, AlphaMode::blend})
     scene.add_rectangle(0, 0, 8, 8, 0.5, unlit_material({1, 1, 1, 0.5f}, mode));
   StageCounters ignored;
-  const Sheets found = number_sheets(vertex_setup(scene.trace, scene.frame(), ignored));
+  const Sheets found = number_sheets(vertex_setup(scene.trace, scene.frame(), ignored), scene.frame(), ignored);
   ASSERT_EQ(found.size(), 8u);
   EXPECT_EQ(Sheets(found.begin(), found.begin() + 4), (Sheets{0, 0, 1, 1}));
   EXPECT_EQ(Sheets(found.begin() + 6, found.end()), (Sheets{2, 2}));

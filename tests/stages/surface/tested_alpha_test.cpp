@@ -4,6 +4,8 @@
 #include <gtest/gtest.h>
 
 #include <cmath>
+#include <stdexcept>
+#include <string>
 
 #include "stages/surface/texture_filter.h"
 #include "stages/surface/texture_set.h"
@@ -80,6 +82,7 @@ TEST(TestedAlpha, MaterialsWithTheSameTestShareIt) {
   trace.materials[1].roughness = 0.5f;
   trace.materials[2].alpha_cutoff = 0.75f;
   const TextureSet set(trace);
+  set.test_alphas(trace, {true, true, true});
   EXPECT_EQ(&set.tested_alpha(0), &set.tested_alpha(1));
   EXPECT_NE(&set.tested_alpha(0), &set.tested_alpha(2));
   EXPECT_EQ(set.tested_alpha(2).first, 0.75f);
@@ -92,8 +95,28 @@ TEST(TestedAlpha, RefusesTooManyCutoffs) {
   for (int i = 1; i <= 1000; ++i) {
     trace.materials.push_back(textured_material(0, AlphaMode::mask));
     trace.materials.back().alpha_cutoff = static_cast<float>(i) / 1000;
+    trace.materials.back().name = std::to_string(i);
   }
-  EXPECT_THROW(TextureSet{trace}, std::runtime_error);
+  const TextureSet set(trace, "leaves.json");
+  try {
+    set.test_alphas(trace, std::vector<bool>(1000, true));
+    FAIL() << "expected an error";
+  } catch (const std::runtime_error& error) {
+    EXPECT_EQ(std::string(error.what()),
+              "leaves.json: material \"769\": cutouts test their textures at too many cutoffs: expected at most 4096 "
+              "MiB of results");
+  }
+}
+
+TEST(TestedAlpha, OnlyMaterialsThatAreAskedForAreTested) {
+  Trace trace;
+  trace.images = {noise(4, 4)};
+  trace.materials.assign(2, textured_material(0, AlphaMode::mask));
+  trace.materials[1].alpha_cutoff = 0.75f;
+  const TextureSet set(trace);
+  set.test_alphas(trace, {false, true});
+  EXPECT_TRUE(set.tested_alpha(0).shares.levels.empty());
+  EXPECT_FALSE(set.tested_alpha(1).shares.levels.empty());
 }
 
 }  // namespace

@@ -57,6 +57,26 @@ TEST(TextureLayout, TexelsLieInSectorsAndLines) {
         << place.texel.y;
 }
 
+// Shares lie behind all images, with levels of the same sizes; two materials with the same test share them.
+TEST(TextureLayout, SharesOfAlphaTestsLieBehindTheImages) {
+  Trace trace;
+  trace.images.push_back({"image", 16, 8, std::vector<glm::u8vec4>(16 * 8)});
+  trace.materials.resize(3);
+  for (Material& material : trace.materials)
+    material.base_texture = Texture{.image = 0}, material.alpha_mode = AlphaMode::mask;
+  trace.materials[1].alpha_cutoff = 0.75f;
+  const TextureSet textures(trace);
+  const TextureLayout layout(textures);
+  const auto line = [&](std::uint32_t material, std::uint32_t level) {
+    return layout.sector_of({0, kLinear, level, 0, 0, textures.alpha_test(material)}) / 4;
+  };
+  EXPECT_EQ(layout.sector_of({0, kSrgb, 4, 0, 0}), 7u * 4);
+  EXPECT_EQ(line(0, 0), 8u);
+  EXPECT_EQ(line(0, 1), 12u);
+  EXPECT_EQ(line(1, 0), 16u);
+  EXPECT_EQ(line(2, 0), 8u);
+}
+
 TEST(TexelRequests, ARequestAsksForEachSectorOnce) {
   const TextureSet textures = two_images();
   const TextureLayout layout(textures);

@@ -82,6 +82,28 @@ TEST(MachineMemory, OfTexturesAndVerticesIsAskedForBeforeItIsTaken) {
   EXPECT_EQ(frame_memory(vertices, vertices.frames[0], 16) - without, 1000 * sizeof(SurfaceVertex));
 }
 
+// 1.3 texels of 4 bytes for each alpha test, and what one takes while it is made.
+TEST(MachineMemory, OfTestedAlphaIsAskedForBeforeItIsTaken) {
+  Trace trace = varying_pixel();
+  trace.images = {{"", 1024, 1024, std::vector<glm::u8vec4>(1 << 20)}};
+  trace.materials[0].base_texture = Texture{.image = 0};
+  const std::uint64_t without = frame_memory(trace, trace.frames[0], 16);
+  trace.materials[0].alpha_mode = AlphaMode::mask;
+  const std::uint64_t results = (1 << 20) * 4 * 4 / 3, working = (1 << 20) * (4 + 16 * 5 / 4);
+  EXPECT_EQ(frame_memory(trace, trace.frames[0], 16) - without, results + working);
+
+  trace.materials.resize(3, trace.materials[0]);
+  trace.materials[1].alpha_cutoff = 0.75f;
+  const std::uint64_t of_one = frame_memory(trace, trace.frames[0], 16);
+  trace.frames[0].draws.push_back(trace.frames[0].draws[0]);
+  const std::uint64_t twice = frame_memory(trace, trace.frames[0], 16);
+  EXPECT_LT(twice - of_one, 1u << 20) << "the others are not drawn";
+  trace.frames[0].draws[1].material = 2;
+  EXPECT_EQ(frame_memory(trace, trace.frames[0], 16), twice) << "the test is the same";
+  trace.frames[0].draws[1].material = 1;
+  EXPECT_EQ(frame_memory(trace, trace.frames[0], 16) - twice, results);
+}
+
 TEST(MachineMemory, IsKnown) { EXPECT_GT(machine_memory(), kGiB / 4); }
 
 }  // namespace
