@@ -170,12 +170,6 @@ def _explanations(draw, textures, triangle, x, y, captured, size):
                     yield slot, uv, "constant", linear * factor, alpha, factor
 
 
-def _mixes(blend):
-    """Whether blending is the usual mix, which shows the draw's own colour where it is opaque."""
-    return (blend["source"] in ("source_alpha", "one") and blend["destination"] == "one_minus_source_alpha"
-            and blend["operation"] == "add")
-
-
 def _same_vertices(draw):
     """For each vertex, the number of the first one that equals it in all attributes."""
     rows = np.concatenate([np.ascontiguousarray(column).view(np.uint8).reshape(len(draw.clip), -1)
@@ -304,7 +298,7 @@ def find_looks(frame, owner, textures):
         if test and look and (test.slot, test.uv) != (look.slot, look.uv):
             draw.look = None  # a material has one texture: that of the alpha test decides what is covered
         judged = any((number, key) in own for key, _ in chosen.get(draw.shader, []))
-        if draw.look is None and draw.blends and not test and not (judged and _mixes(draw.state["blend"])):
+        if draw.look is None and draw.blends and not test and not (judged and draw.mixes):
             draw.look = _guess(draw, textures)
         if draw.look is None and not test:
             low, high = np.searchsorted(sorted_owner, [draw.first, draw.first + len(draw.triangles)])
@@ -316,6 +310,25 @@ def find_looks(frame, owner, textures):
             shaped = any(textures.get(one) is not None and textures.get(one).has_alpha for one in draw.textures)
             if draw.look is None and draw.blends and shaped:
                 draw.look = _guess(draw, textures)
+
+
+def _layered(frame, target):
+    """Which pixels were last coloured by a draw that adds to the picture, or blends in another way than to mix."""
+    layers = np.zeros(frame.triangles + 1, bool)  # by triangle; the last one: none
+    for draw in frame.draws:
+        layers[draw.first: draw.first + len(draw.triangles)] = draw.blends and not draw.mixes
+    return layers[target.owner]
+
+
+def find_grounds(frame, target):
+    """Finds the draws that write depth alone and whose colours are the sum of what is added to the picture on top of
+    them, as terrain of several layers is. beampipe draws no such layers."""
+    front = target.front
+    owned = np.bincount(front[front >= 0], minlength=frame.triangles)
+    layered = np.bincount(front[(front >= 0) & _layered(frame, target)], minlength=frame.triangles)
+    for draw in frame.draws:
+        part = slice(draw.first, draw.first + len(draw.triangles))
+        draw.is_ground = bool(draw.writes_only_depth and 2 * layered[part].sum() > owned[part].sum())
 
 
 def summary(frame, counts):
@@ -351,8 +364,14 @@ def picture_colors(frame, target):
                 np.bincount(owner[seen], minlength=total))
 
     (sums, count), (solid_sums, solid_count) = gathered(target.owner), gathered(target.solid)
-    hidden = count == 0
-    sums[hidden], count[hidden] = solid_sums[hidden], solid_count[hidden]
+    ground = np.zeros(total + 1, bool)  # by triangle; the last one: none
+    for draw in frame.draws:
+        ground[draw.first: draw.first + len(draw.triangles)] = draw.is_ground
+    for pixels in (_layered(frame, target), True):  # what mixes on top of the layers counts if there is nothing else
+        ground_sums, ground_count = gathered(np.where(ground[target.front] & pixels, target.front, -1))
+        solid_sums, solid_count = solid_sums + ground_sums, solid_count + ground_count
+        hidden = count == 0
+        sums[hidden], count[hidden] = solid_sums[hidden], solid_count[hidden]
     middle = np.zeros((total, 3))
     for draw in frame.draws:
         corners = draw.clip.astype(np.float64)[draw.triangles].mean(1)
@@ -371,4 +390,5 @@ def shade(frame, textures):
     target = frame.rasterize(lambda draw, fragments: opacity(draw, fragments, textures, size)
                              >= draw.alpha_test.cutoff)
     find_looks(frame, target.owner, textures)
+    find_grounds(frame, target)
     return target, picture_colors(frame, target)

@@ -76,6 +76,25 @@ TEST(CapturedCheck, ClearsForgetEarlierDepths) {
   EXPECT_EQ(found.draw[kSize - 1], kNoDraw);
 }
 
+// The pipelines leave out depth without colour, and blending that they do not know.
+TEST(CapturedCheck, DepthCountsWhateverHappensToColors) {
+  Trace trace = empty_trace();
+  add_quad(trace, 0, 0, 4, 8, 0.5f);
+  add_quad(trace, 4, 0, 8, 8, 0.25f);
+  std::vector<Draw>& draws = trace.frames[0].draws;
+  draws[0].state.color_mask = 0;
+  draws[1].state.blend = Blend{BlendFactor::source_alpha, BlendFactor::one, BlendOperation::add};
+  trace.materials.emplace_back().alpha_mode = AlphaMode::blend;
+  draws[1].material = 0;
+  EXPECT_EQ(centre_depths(trace, trace.frames[0], nullptr).draw[0], kNoDraw);
+  ignore_blending(trace);
+  const CentreDepths found = centre_depths(trace, trace.frames[0], nullptr);
+  EXPECT_EQ(found.draw[0], 0u);
+  EXPECT_NEAR(found.depth[0], 0.5, 1e-12);
+  EXPECT_EQ(found.draw[kSize - 1], 1u);
+  EXPECT_NEAR(found.depth[kSize - 1], 0.25, 1e-12);
+}
+
 TEST(CapturedCheck, CountsPixelsThatDiffer) {
   Trace trace = empty_trace();
   add_quad(trace, 0, 0, 8, 4, 0.5f);
