@@ -380,6 +380,16 @@ class Colors(unittest.TestCase):
         self.assertAlmostEqual(cutoff, 0.705)
         self.assertAlmostEqual(wrong, 1 / 101)
 
+    def test_light_at_vertices_is_found_through_a_texture(self):
+        random = np.random.default_rng(11)
+        weights, texel = random.dirichlet([1, 1, 1], 2000), random.uniform(0.2, 1, (2000, 3))
+        corners = np.array([[0, 1, 2], [2, 1, 3]])[random.integers(0, 2, 2000)]
+        light = np.array([[1, 0, 0], [0, 1, 0.5], [0.2, 0.3, 1], [0.9, 0.9, 0]])
+        captured = texel * (weights[..., None] * light[corners]).sum(1)
+        found, seen = shading._least_squares(texel, weights, corners, captured, 5)
+        self.assertEqual(seen.tolist(), [True] * 4 + [False])
+        np.testing.assert_allclose(found[:4], light, atol=0.01)
+
 
 class Pixels(unittest.TestCase):
     def test_bgra_bytes(self):
