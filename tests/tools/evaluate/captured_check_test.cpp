@@ -3,9 +3,11 @@
 
 #include <gtest/gtest.h>
 
+#include <filesystem>
 #include <stdexcept>
 
 #include "tools/evaluate/draw_notes.h"
+#include "traces/trace_io.h"
 
 namespace beampipe {
 namespace {
@@ -128,6 +130,15 @@ TEST(CapturedCheck, CountsPixelsThatDiffer) {
       difference_picture(trace.frames[0], centre_depths(trace, trace.frames[0], nullptr));
   ASSERT_EQ(picture.size(), 3 * 64u);
   EXPECT_NE(picture[0], picture[3]);
+}
+
+// A program of six draws, with instances, a depth bias, a scissor and draws without depth test.
+TEST(CapturedCheck, AgreesWithTheCapturedSample) {
+  const Trace trace = read_trace(std::filesystem::path(BEAMPIPE_SOURCE_FOLDER) / "traces/samples/captured_quads.json");
+  const CapturedCheck found = check(trace);
+  EXPECT_GT(found.there, 3000u);
+  EXPECT_GE(found.coverage(), 0.999);
+  EXPECT_GE(found.close_part(), 0.999);
 }
 
 TEST(CapturedCheck, NeedsACapturedDepth) {
