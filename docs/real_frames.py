@@ -2,7 +2,8 @@
 """Makes the tables of docs/real_frames.md about frames of real programs.
 
 real_frames.py BEAMPIPE FOLDER TRACE...   the first frame of each trace that `beampipe capture` has made: what it has,
-                                          and what techniques make of it; results stay in FOLDER
+                                          and what techniques make of it; results stay in FOLDER,
+                                          where a second call finds what is finished
 real_frames.py BEAMPIPE --check TRACE...  all frames: their depths compared with the program's own
 """
 import json
@@ -35,7 +36,7 @@ def frame_row(program, name, path, found):
     drawn, pairs = beam["vertex_setup"]["items_out"], beam["conservative_raster"]["items_out"]
     fragments = beam["compose"]["items_in"]
     print_row(name, f"{frame['width']} × {frame['height']}", len(frame["draws"]), f"{triangles:,}", f"{drawn:,}",
-              f"{drawn / pixels:.4f}", f"{pairs / pixels:.2f}", f"{fragments / pixels:.2f}",
+              f"{drawn / pixels:.2g}", f"{pairs / pixels:.2f}", f"{fragments / pixels:.2f}",
               notes_of(program, path))
 
 
@@ -52,9 +53,9 @@ def measure_all(program, folder, traces):
     measured = {}
     for path in traces:
         name = pathlib.Path(path).stem
-        found = results(program, "compare", path, SPECS, f"{folder}/{name}", "--frames", "0")
-        on_chip = results(program, "run", path, SPECS, f"{folder}/{name}_on_chip", "--frames", "0", "--framebuffer",
-                          "on-chip")
+        found = results(program, "compare", path, SPECS, f"{folder}/{name}", "--frames", "0", "--resume")
+        on_chip = results(program, "run", path, SPECS, f"{folder}/{name}_on_chip", "--frames", "0", "--resume",
+                          "--framebuffer", "on-chip")
         measured[name] = path, found, on_chip
     print_head("frame", "size", "draws", "triangles", "after culling", "per pixel", "pairs per pixel",
                "fragments per pixel", "not drawn, or not exactly")
