@@ -128,6 +128,17 @@ class Captures(unittest.TestCase):
         self.assertIn("base texture", printed)
         self.assertEqual(sum("base_texture" in material for material in trace["materials"].values()), 1)
 
+    def test_the_program_of_the_sample(self):
+        """What traces/samples/captured_quads.json was made of."""
+        program = os.path.join(os.path.dirname(os.path.abspath(__file__)), "own_program.py")
+        trace, _ = self.trace_of(sys.executable, "--frame", "10", "--", sys.executable, program)
+        states = [draw["state"] for draw in trace["frames"][0]["draws"]]
+        self.assertEqual(len(states), 6)
+        self.assertEqual([number for number, state in enumerate(states) if "depth_bias" in state], [1])
+        self.assertEqual([number for number, state in enumerate(states) if "scissor" in state], [3])
+        self.assertEqual([number for number, state in enumerate(states) if not state.get("depth_test", True)], [4, 5])
+        self.assertEqual([number for number, state in enumerate(states) if "blend" in state], [5])
+
     def test_a_program_that_ends_is_one_line(self):
         done = capture("-o", os.path.join(self.folder, "a.json"), "--", "false")
         self.assertEqual((done.returncode, done.stdout), (1, ""))

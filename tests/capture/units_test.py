@@ -11,6 +11,7 @@ import numpy as np
 sys.path.insert(0, sys.argv.pop(1) if len(sys.argv) > 1 else
                 os.path.join(os.path.dirname(__file__), "../../tools/capture"))
 sys.dont_write_bytecode = True
+import frame
 import geometry
 import meshes
 import motion
@@ -379,6 +380,16 @@ class Colors(unittest.TestCase):
         self.assertAlmostEqual(cutoff, 0.705)
         self.assertAlmostEqual(wrong, 1 / 101)
 
+    def test_light_at_vertices_is_found_through_a_texture(self):
+        random = np.random.default_rng(11)
+        weights, texel = random.dirichlet([1, 1, 1], 2000), random.uniform(0.2, 1, (2000, 3))
+        corners = np.array([[0, 1, 2], [2, 1, 3]])[random.integers(0, 2, 2000)]
+        light = np.array([[1, 0, 0], [0, 1, 0.5], [0.2, 0.3, 1], [0.9, 0.9, 0]])
+        captured = texel * (weights[..., None] * light[corners]).sum(1)
+        found, seen = shading._least_squares(texel, weights, corners, captured, 5)
+        self.assertEqual(seen.tolist(), [True] * 4 + [False])
+        np.testing.assert_allclose(found[:4], light, atol=0.01)
+
 
 class Pixels(unittest.TestCase):
     def test_bgra_bytes(self):
@@ -448,7 +459,7 @@ class Meshes(unittest.TestCase):
         def __init__(self, clip):
             self.clip, self.triangles = clip.astype(np.float32), np.array([[0, 1, 2], [2, 1, 3]])
             self.topology, self.look, self.alpha_test, self.attributes = "TriangleList", None, None, {}
-            self.cull, self.state, self.first, self.blends = "none", {}, 0, False
+            self.cull, self.state, self.first, self.blends, self.is_ground = "none", {}, 0, False, False
 
     class FakeFrame:
         def __init__(self, *draws):
@@ -474,6 +485,51 @@ class Meshes(unittest.TestCase):
         collection = meshes.Collection(None)
         draws = collection.add_frame(self.FakeFrame(self.FakeDraw(clip), self.FakeDraw(clip)), self.COLORS)
         self.assertNotEqual(draws[0]["mesh"], draws[1]["mesh"])
+
+
+class Grounds(unittest.TestCase):
+    """A ground that writes depth alone, and layers on it."""
+    ADD = {"source": "source_alpha", "destination": "one", "operation": "add"}
+    MIX = {"source": "source_alpha", "destination": "one_minus_source_alpha", "operation": "add"}
+
+    def frame_of(self, *states):
+        """A frame of 8 x 6 pixels that is covered once by each draw, and its target."""
+        holder = frame.Frame.__new__(frame.Frame)
+        holder.width, holder.height, holder.samples, holder.levels, holder.depth_before = 8, 6, 1, None, None
+        holder.color = np.full((6, 8, 3), 0.5)
+        holder.draws = []
+        for state_of_draw in states:
+            draw = frame.Draw.__new__(frame.Draw)
+            draw.clip, draw.triangles, draw.state, draw.cull = Rasters.QUAD, Rasters.TWO, state_of_draw, "none"
+            draw.first, draw.alpha_test, draw.look, draw.attributes = 2 * len(holder.draws), None, None, {}
+            draw.topology, draw.is_ground = "TriangleList", False
+            holder.draws.append(draw)
+        holder.triangles = 2 * len(states)
+        target = holder.rasterize(None)
+        shading.find_grounds(holder, target)
+        return holder, target
+
+    def layers(self, blend):
+        return ({"color_mask": ""}, {"depth_write": False, "depth_function": "less_equal", "blend": blend})
+
+    def test_a_ground_gets_the_colours_that_are_added_on_it(self):
+        found, target = self.frame_of(*self.layers(self.ADD))
+        self.assertEqual([draw.is_ground for draw in found.draws], [True, False])
+        sums, count, _ = shading.picture_colors(found, target)
+        self.assertEqual(count[:2].sum(), 48)
+        np.testing.assert_allclose(sums[:2] / count[:2, None], srgb.to_linear(np.full((2, 3), 0.5)))
+        first = meshes.Collection(None).add_frame(found, (sums, count, sums))[0]
+        self.assertNotIn("color_mask", first.get("state", {}))
+
+    def test_depth_below_usual_draws_stays_without_colour(self):
+        for layers in (self.layers(self.MIX), ({"color_mask": ""}, {"depth_function": "less_equal"}),
+                       ({"color_mask": ""},)):
+            found, _ = self.frame_of(*layers)
+            self.assertFalse(any(draw.is_ground for draw in found.draws), layers)
+
+    def test_a_ground_that_is_hidden_is_none(self):
+        found, _ = self.frame_of(*self.layers(self.ADD), {"depth_function": "always"})
+        self.assertFalse(any(draw.is_ground for draw in found.draws))
 
 
 if __name__ == "__main__":

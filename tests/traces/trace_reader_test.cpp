@@ -298,6 +298,9 @@ TEST_F(TraceReaderTest, ReadsTheSamples) {
   EXPECT_EQ(hut.triangles.size(), 14u);
   EXPECT_EQ(hut.colors.front(), glm::vec3(0.8f, 0.7f, 0.5f));
   EXPECT_EQ(hut.colors.back(), glm::vec3(0.6f, 0.1f, 0.05f));
+  const Frame captured = read_trace(samples / "captured_quads.json").frames[0];
+  EXPECT_EQ(captured.draws.size(), 6u);
+  EXPECT_EQ(captured.capture.pictures.depth.size(), 96u * 72);
 }
 
 }  // namespace

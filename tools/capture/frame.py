@@ -19,10 +19,23 @@ class Draw:
         self.topology = found["api"]["topology"]
         self.look = None  # shading.Look: where its colours come from
         self.alpha_test = None  # shading.AlphaTest, if some of its fragments are discarded by opacity
+        self.is_ground = False  # writes depth alone, and gets the colours that other draws add up on it
 
     @property
     def blends(self):
         return "blend" in self.state
+
+    @property
+    def mixes(self):
+        """Whether it blends in the usual way, which shows the draw's own colour where it is opaque."""
+        blend = self.state.get("blend")
+        return blend is not None and (blend["source"] in ("source_alpha", "one") and blend["operation"] == "add"
+                                      and blend["destination"] == "one_minus_source_alpha")
+
+    @property
+    def writes_only_depth(self):
+        return (self.state.get("color_mask") == "" and self.state.get("depth_test", True)
+                and self.state.get("depth_write", True))
 
 
 class Frame:
@@ -94,7 +107,7 @@ class Frame:
         target = raster.Target(self.width, self.height, self.depth_before, self.levels, self.samples)
         for draw in self.draws:
             if draw.state.get("clears_depth"):
-                target.depth[:] = self.clear_depth
+                target.depth[:], target.front[:] = self.clear_depth, -1
             for fragments in raster.fragments_of(draw.clip, draw.triangles, draw.state, draw.cull, target):
                 if draw.alpha_test:
                     fragments = fragments.where(keep_fragment(draw, fragments))

@@ -89,6 +89,8 @@ class Collection:
             state = dict(draw.state)
             if draw.look is None or not draw.look.mixes:
                 state.pop("blend", None)  # the picture's colours are what blending has made
+            if draw.is_ground:
+                state.pop("color_mask")
             if state:
                 entry["state"] = state
             draws.append(entry)

@@ -18,7 +18,7 @@ _TESTS = {"never": lambda a, b: np.zeros(np.shape(a), bool), "always": lambda a,
 
 class Target:
     """What is drawn to: depth, stencil, and for each pixel the number of the last triangle that coloured it (-1: none);
-    `solid` is the last one that did not blend.
+    `solid` is the last one that did not blend, and `front` the last one that wrote depth.
 
     `levels`: the steps of an integer depth format, or None. `sample`: where in the pixel is looked."""
 
@@ -28,7 +28,7 @@ class Target:
         self.depth = (np.ones(width * height) if depth is None else depth.astype(np.float64).ravel().copy())
         self.stencil = np.zeros(width * height, np.int64)
         self.owner = np.full(width * height, -1, np.int64)
-        self.solid = self.owner.copy()
+        self.solid, self.front = self.owner.copy(), self.owner.copy()
         self.touched = np.zeros(width * height, bool)
 
 
@@ -228,6 +228,7 @@ def draw(target, fragments, state, first_number):
             target.stencil[p] = (old & ~mask) | (new & mask)
         if writes:
             target.depth[p[passed]] = z[passed]
+            target.front[p[passed]] = number[at][passed]
         if colors:
             target.owner[p[passed]] = number[at][passed]
             if "blend" not in state:

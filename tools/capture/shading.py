@@ -170,12 +170,6 @@ def _explanations(draw, textures, triangle, x, y, captured, size):
                     yield slot, uv, "constant", linear * factor, alpha, factor
 
 
-def _mixes(blend):
-    """Whether blending is the usual mix, which shows the draw's own colour where it is opaque."""
-    return (blend["source"] in ("source_alpha", "one") and blend["destination"] == "one_minus_source_alpha"
-            and blend["operation"] == "add")
-
-
 def _same_vertices(draw):
     """For each vertex, the number of the first one that equals it in all attributes."""
     rows = np.concatenate([np.ascontiguousarray(column).view(np.uint8).reshape(len(draw.clip), -1)
@@ -185,13 +179,37 @@ def _same_vertices(draw):
     return first[inverse]
 
 
+def _least_squares(texel, weights, corners, captured, vertices, steps=16):
+    """(RGB factors of the vertices, whether any of the n points sees them) so that texels (n x 3) times the factors,
+    interpolated with weights (n x 3) of corners (n x 3, vertex numbers), come close to what was captured. Vertices that
+    no point sees get the mean."""
+    at_points = lambda values: texel * (weights[..., None] * values[corners]).sum(1)
+    at_vertices = lambda values: np.stack([np.bincount(corners.ravel(), (weights * values[:, c, None]).ravel(), vertices)
+                                           for c in range(3)], 1)
+    below = at_vertices(texel * texel) + 1e-9
+    seen = below.max(1) > 1e-6
+    mean = lambda values: at_vertices(texel * values) / below
+    start = np.where(seen[:, None], mean(captured), (captured * texel).sum(0) / ((texel * texel).sum(0) + 1e-9))
+    # Conjugate gradients, scaled by `below`. A thousandth of that holds vertices with few points near their start.
+    change = np.zeros_like(start)
+    rest = np.where(seen[:, None], at_vertices(texel * (captured - at_points(start))), 0)
+    towards = rest / below
+    size = (rest * rest / below).sum(0)
+    for _ in range(steps):
+        moved = at_vertices(texel * at_points(towards)) + 0.001 * below * towards
+        length = size / ((towards * moved).sum(0) + 1e-30)
+        change, rest = change + length * towards, rest - length * moved
+        before, size = size, (rest * rest / below).sum(0)
+        towards = rest / below + size / (before + 1e-30) * towards
+    return start + change, seen
+
+
 def _fit_light(draw, slot, uv, shared, triangle, x, y, captured, textures, size):
-    """(Look, error) of texture `slot` times light at the vertices, fitted to the captured colours (linear) at n points.
-    Each vertex's light is the least-squares factor of the points around it. Where the draw blends by the texture's
-    opacity, only opaque points count."""
-    texture = textures.get(draw.textures[slot])
-    texel = _look_up(draw, texture, uv, triangle, x, y, size)
-    mixes = draw.blends and texture.has_alpha
+    """(Look, error) of texture `slot`, or white if None, times light at the vertices, fitted to the captured colours
+    (linear) at n points by least squares. Where the draw blends by the texture's opacity, only opaque points count."""
+    texture = None if slot is None else textures.get(draw.textures[slot])
+    texel = np.ones((len(x), 4)) if texture is None else _look_up(draw, texture, uv, triangle, x, y, size)
+    mixes = draw.blends and texture is not None and texture.has_alpha
     if mixes:
         there = texel[:, 3] > 0.9
         if there.sum() < 4 * FEW:
@@ -200,14 +218,11 @@ def _fit_light(draw, slot, uv, shared, triangle, x, y, captured, textures, size)
     texel = srgb.to_linear(texel[:, :3].astype(np.float64))
     weights = np.clip(raster.weights_at(draw.clip, draw.triangles, triangle, x, y, raster.window_of(draw.state, *size)),
                       0, 1)
-    corners = shared[draw.triangles[triangle]].ravel()
-    at_vertices = lambda values: np.stack([np.bincount(corners, (weights * values[:, c, None]).ravel(), len(draw.clip))
-                                           for c in range(3)], 1)
-    above, below = at_vertices(captured * texel), at_vertices(texel * texel) + 1e-9
-    seen = below.max(1) > 1e-6
+    corners = shared[draw.triangles[triangle]]
+    light, seen = _least_squares(texel, weights, corners, captured, len(draw.clip))
     if not seen.any():
         return None, np.inf
-    light = np.where(seen[:, None], above / below, above[seen].sum(0) / below[seen].sum(0))[shared]
+    light, seen = light[shared], seen[shared]
     scale = 2.0 ** np.ceil(np.log2(max(1, np.quantile(light[seen], 0.95))))  # vertices' colours are at most 1
     light = np.clip(light / scale, 0, 1)
     predicted = texel * scale * (weights[..., None] * light[draw.triangles[triangle]]).sum(1)
@@ -216,15 +231,22 @@ def _fit_light(draw, slot, uv, shared, triangle, x, y, captured, textures, size)
     return Look(slot, uv, None, constant, light=srgb.from_linear(light), mixes=mixes), _typical(error)
 
 
+def has_shape(draw, textures):
+    """Whether the opacity of a texture may give the draw its shape."""
+    return any(textures.get(one) is not None and textures.get(one).has_alpha for one in draw.textures)
+
+
 def find_light(draw, triangle, x, y, captured, textures, size):
-    """A Look whose texture is multiplied by light at the vertices, so that the product is what was captured (linear) at
-    n points; None if a colour per triangle is as good."""
+    """A Look of light at the vertices, alone or times a texture, that is what was captured (linear) at n points; None
+    if a colour per triangle is as good."""
     shared = _same_vertices(draw)
     few = slice(None, None, max(1, len(x) // 2000))
     candidates = [(slot, uv) for slot, binding in enumerate(draw.textures[:4]) if textures.get(binding) is not None
                   for uv in _uv_names(draw)]
     fit = lambda slot, uv, some: _fit_light(draw, slot, uv, shared, triangle[some], x[some], y[some], captured[some],
                                             textures, size)
+    if not (draw.blends and has_shape(draw, textures)):
+        candidates.append((None, None))
     if not candidates:
         return None
     look, error = fit(*min(candidates, key=lambda one: fit(*one, few)[1]), slice(None))
@@ -304,18 +326,36 @@ def find_looks(frame, owner, textures):
         if test and look and (test.slot, test.uv) != (look.slot, look.uv):
             draw.look = None  # a material has one texture: that of the alpha test decides what is covered
         judged = any((number, key) in own for key, _ in chosen.get(draw.shader, []))
-        if draw.look is None and draw.blends and not test and not (judged and _mixes(draw.state["blend"])):
+        if draw.look is None and draw.blends and not test and not (judged and draw.mixes):
             draw.look = _guess(draw, textures)
         if draw.look is None and not test:
             low, high = np.searchsorted(sorted_owner, [draw.first, draw.first + len(draw.triangles)])
             seen = pixels[low:high]
             seen = seen[:: max(1, len(seen) // PIXELS_FOR_LIGHT)]
-            if len(seen) >= 4 * FEW and draw.textures:
+            if len(seen) >= 4 * FEW:
                 draw.look = find_light(draw, owner[seen] - draw.first, seen % size[0] + 0.5, seen // size[0] + 0.5,
                                        srgb.to_linear(picture[seen]), textures, size)
-            shaped = any(textures.get(one) is not None and textures.get(one).has_alpha for one in draw.textures)
-            if draw.look is None and draw.blends and shaped:
+            if draw.look is None and draw.blends and has_shape(draw, textures):
                 draw.look = _guess(draw, textures)
+
+
+def _layered(frame, target):
+    """Which pixels were last coloured by a draw that adds to the picture, or blends in another way than to mix."""
+    layers = np.zeros(frame.triangles + 1, bool)  # by triangle; the last one: none
+    for draw in frame.draws:
+        layers[draw.first: draw.first + len(draw.triangles)] = draw.blends and not draw.mixes
+    return layers[target.owner]
+
+
+def find_grounds(frame, target):
+    """Finds the draws that write depth alone and whose colours are the sum of what is added to the picture on top of
+    them, as terrain of several layers is. beampipe draws no such layers."""
+    front = target.front
+    owned = np.bincount(front[front >= 0], minlength=frame.triangles)
+    layered = np.bincount(front[(front >= 0) & _layered(frame, target)], minlength=frame.triangles)
+    for draw in frame.draws:
+        part = slice(draw.first, draw.first + len(draw.triangles))
+        draw.is_ground = bool(draw.writes_only_depth and 2 * layered[part].sum() > owned[part].sum())
 
 
 def summary(frame, counts):
@@ -351,8 +391,14 @@ def picture_colors(frame, target):
                 np.bincount(owner[seen], minlength=total))
 
     (sums, count), (solid_sums, solid_count) = gathered(target.owner), gathered(target.solid)
-    hidden = count == 0
-    sums[hidden], count[hidden] = solid_sums[hidden], solid_count[hidden]
+    ground = np.zeros(total + 1, bool)  # by triangle; the last one: none
+    for draw in frame.draws:
+        ground[draw.first: draw.first + len(draw.triangles)] = draw.is_ground
+    for pixels in (_layered(frame, target), True):  # what mixes on top of the layers counts if there is nothing else
+        ground_sums, ground_count = gathered(np.where(ground[target.front] & pixels, target.front, -1))
+        solid_sums, solid_count = solid_sums + ground_sums, solid_count + ground_count
+        hidden = count == 0
+        sums[hidden], count[hidden] = solid_sums[hidden], solid_count[hidden]
     middle = np.zeros((total, 3))
     for draw in frame.draws:
         corners = draw.clip.astype(np.float64)[draw.triangles].mean(1)
@@ -371,4 +417,5 @@ def shade(frame, textures):
     target = frame.rasterize(lambda draw, fragments: opacity(draw, fragments, textures, size)
                              >= draw.alpha_test.cutoff)
     find_looks(frame, target.owner, textures)
+    find_grounds(frame, target)
     return target, picture_colors(frame, target)

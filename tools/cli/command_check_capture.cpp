@@ -67,7 +67,8 @@ std::string text_of(std::size_t frame, const CapturedCheck& check) {
 }
 
 void check_capture(const CheckArguments& arguments, InterruptGate& gate) {
-  const Trace trace = read_trace(arguments.trace, {.allow_outside = arguments.allow_outside});
+  Trace trace = read_trace(arguments.trace, {.allow_outside = arguments.allow_outside});
+  ignore_blending(trace);
   const std::vector<std::size_t> frames = parse_frame_range(arguments.frames, trace.frames.size());
   std::optional<OutputFolder> output;
   if (!arguments.output.empty()) {

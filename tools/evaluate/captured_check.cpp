@@ -51,6 +51,15 @@ double part_of(std::uint64_t part, std::uint64_t whole) {
 
 }  // namespace
 
+void ignore_blending(Trace& trace) {
+  for (Frame& frame : trace.frames) {
+    for (Draw& draw : frame.draws) {
+      draw.state.color_mask = kAllChannels;
+      draw.state.blend.reset();
+    }
+  }
+}
+
 CentreDepths centre_depths(const Trace& trace, const Frame& frame, const TextureSet* textures) {
   StageCounters ignored;
   const SetupTriangles triangles = vertex_setup(trace, frame, ignored);

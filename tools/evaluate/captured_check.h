@@ -21,6 +21,10 @@ struct CentreDepths {
   std::vector<std::uint32_t> draw;  // index into Frame::draws, or kNoDraw
 };
 
+// Makes every draw write its colours as they are, so that none is left out for what it does with colours, such as draws
+// that write only depth. Depths stay.
+void ignore_blending(Trace& trace);
+
 // Draws what writes depth after the last depth clear, with one sample at each pixel's centre. Cutouts are tested there.
 // `textures`: of the trace; may be null if the frame's draws have none.
 CentreDepths centre_depths(const Trace& trace, const Frame& frame, const TextureSet* textures);

@@ -3,9 +3,11 @@
 
 #include <gtest/gtest.h>
 
+#include <filesystem>
 #include <stdexcept>
 
 #include "tools/evaluate/draw_notes.h"
+#include "traces/trace_io.h"
 
 namespace beampipe {
 namespace {
@@ -77,6 +79,25 @@ TEST(CapturedCheck, ClearsForgetEarlierDepths) {
   EXPECT_EQ(found.draw[kSize - 1], kNoDraw);
 }
 
+// The pipelines leave out depth without colour, and blending that they do not know.
+TEST(CapturedCheck, DepthCountsWhateverHappensToColors) {
+  Trace trace = empty_trace();
+  add_quad(trace, 0, 0, 4, 8, 0.5f);
+  add_quad(trace, 4, 0, 8, 8, 0.25f);
+  std::vector<Draw>& draws = trace.frames[0].draws;
+  draws[0].state.color_mask = 0;
+  draws[1].state.blend = Blend{BlendFactor::source_alpha, BlendFactor::one, BlendOperation::add};
+  trace.materials.emplace_back().alpha_mode = AlphaMode::blend;
+  draws[1].material = 0;
+  EXPECT_EQ(centre_depths(trace, trace.frames[0], nullptr).draw[0], kNoDraw);
+  ignore_blending(trace);
+  const CentreDepths found = centre_depths(trace, trace.frames[0], nullptr);
+  EXPECT_EQ(found.draw[0], 0u);
+  EXPECT_NEAR(found.depth[0], 0.5, 1e-12);
+  EXPECT_EQ(found.draw[kSize - 1], 1u);
+  EXPECT_NEAR(found.depth[kSize - 1], 0.25, 1e-12);
+}
+
 TEST(CapturedCheck, CountsPixelsThatDiffer) {
   Trace trace = empty_trace();
   add_quad(trace, 0, 0, 8, 4, 0.5f);
@@ -110,6 +131,15 @@ TEST(CapturedCheck, CountsPixelsThatDiffer) {
       difference_picture(trace.frames[0], centre_depths(trace, trace.frames[0], nullptr));
   ASSERT_EQ(picture.size(), 3 * 64u);
   EXPECT_NE(picture[0], picture[3]);
+}
+
+// A program of six draws, with instances, a depth bias, a scissor and draws without depth test.
+TEST(CapturedCheck, AgreesWithTheCapturedSample) {
+  const Trace trace = read_trace(std::filesystem::path(BEAMPIPE_SOURCE_FOLDER) / "traces/samples/captured_quads.json");
+  const CapturedCheck found = check(trace);
+  EXPECT_GT(found.there, 3000u);
+  EXPECT_GE(found.coverage(), 0.999);
+  EXPECT_GE(found.close_part(), 0.999);
 }
 
 TEST(CapturedCheck, NeedsACapturedDepth) {
