@@ -1,7 +1,9 @@
 #!/usr/bin/env python3
 """Makes the table of docs/accounting.md about the texels of a frame, by level of the memory system.
 
-texture_bytes.py BEAMPIPE TRACE...   the first frame of each trace
+usage: docs/texture_bytes.py PROGRAM
+
+PROGRAM is for instance build/release/tools/beampipe. The scenes are those with materials, at 1280 x 720.
 """
 import pathlib
 import sys
@@ -9,23 +11,26 @@ import tempfile
 
 import measure
 
-SPECS = ["beam", "beam:order=stream", "beam:order=sorted", "msaa:8", "msaa:8,prepass", "msaa:32", "acaa:8", "deferred",
-         "visibility", "dvm"]
+SCENES = ["room", "rigging", "leaves", "bumps", "sheets", "tiles"]
+SPECS = ["beam", "msaa:8"]
 LEVELS = ["texture_bytes", "texture_sector_bytes", "texture_l2_bytes", "texture_dram_bytes"]
 
 
 def main():
-    if len(sys.argv) < 3:
+    if len(sys.argv) != 2:
         sys.exit(__doc__.strip())
+    program = sys.argv[1]
     measure.print_head("scene", "technique", "invocations, millions", "texels, MB", "sectors", "L2", "DRAM",
                        "DRAM, all data")
-    for trace in sys.argv[2:]:
+    for scene in SCENES:
         with tempfile.TemporaryDirectory() as folder:
-            results = measure.results(sys.argv[1], "run", trace, SPECS, folder, "--frames", "0")
+            trace = measure.make(program, scene, pathlib.Path(folder) / "trace.json", "--width", "1280", "--height",
+                                 "720")
+            results = measure.results(program, "run", trace, SPECS, pathlib.Path(folder) / "results")
         for spec in SPECS:
             stages = measure.stages(results[spec])
             sums = [sum(stage[level] for stage in stages.values()) / 1e6 for level in LEVELS]
-            measure.print_row(pathlib.Path(trace).stem, f"`{spec}`", f"{stages['shade']['lanes_issued'] / 1e6:.2f}",
+            measure.print_row(f"`{scene}`", f"`{spec}`", f"{stages['shade']['lanes_issued'] / 1e6:.2f}",
                               *[f"{value:.1f}" for value in sums],
                               f"{results[spec]['frames'][0]['dram_bytes'] / 1e6:.1f}")
 

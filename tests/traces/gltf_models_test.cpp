@@ -1,5 +1,6 @@
-// glTF models that other programs wrote: those of Debian's package assimp-testmodels, some of which are broken on
-// purpose. Prints a table of what came of them.
+// Reads glTF models that other programs wrote (tests/traces/gltf_models.h). Prints a table of what came of them.
+#include "tests/traces/gltf_models.h"
+
 #include <chrono>
 #include <cstdio>
 #include <iostream>
@@ -9,19 +10,6 @@
 
 namespace beampipe {
 namespace {
-
-const std::filesystem::path kModels = "/usr/share/assimp/models/glTF2";
-
-// All glTF files in a folder, in the order of their names.
-std::vector<std::filesystem::path> models_in(const std::filesystem::path& folder) {
-  std::vector<std::filesystem::path> models;
-  for (const auto& entry : std::filesystem::recursive_directory_iterator(folder)) {
-    const std::string extension = entry.path().extension();
-    if (extension == ".gltf" || extension == ".glb") models.push_back(entry.path());
-  }
-  std::sort(models.begin(), models.end());
-  return models;
-}
 
 void expect_sound(const Trace& trace, const std::string& name) {
   EXPECT_FALSE(trace.frames.empty()) << name;

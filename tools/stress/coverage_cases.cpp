@@ -111,7 +111,7 @@ Trace fan(std::uint32_t side, const glm::dvec2& hub, double reach, int rim) {
 HardCase shared_edges() {
   HardCase result{"shared_edges", "edges at 4,096 angles, each shared by two triangles", {}, {}, {}};
   result.trace = fan(16, {8.3, 7.6}, 3000, 4096);
-  result.everywhere = glm::dvec4(glm::dvec3(kRed), 1.0);
+  result.picture = ExactPicture{.elsewhere = glm::dvec4(glm::dvec3(kRed), 1.0)};
   result.limits = {{"alpha", {0.75, kOver}}, {"beam:rules=paper", {0.45, kPaper}}};
   return result;
 }
@@ -119,7 +119,7 @@ HardCase shared_edges() {
 HardCase fan_10000() {
   HardCase result{"fan", "10,000 triangles around one vertex", {}, {}, {}};
   result.trace = fan(4, {2.0, 2.0}, 30000, 10000);
-  result.everywhere = glm::dvec4(glm::dvec3(kRed), 1.0);
+  result.picture = ExactPicture{.elsewhere = glm::dvec4(glm::dvec3(kRed), 1.0)};
   result.limits = {{"alpha", {0.75, kOver}}, {"beam:rules=paper", {0.45, kPaper}}};
   return result;
 }
@@ -129,7 +129,7 @@ HardCase tiled_pixel() {
   for (int y = 0; y < 64; ++y)
     for (int x = 0; x < 128; ++x) screen.rectangle({x / 128.0, y / 64.0}, {(x + 1) / 128.0, (y + 1) / 64.0}, 0.5, kRed);
   HardCase result{"tiled_pixel", "16,384 triangles that tile one pixel, so that their areas add up to 1", {}, {}, {}};
-  result.everywhere = glm::dvec4(glm::dvec3(kRed), 1.0);
+  result.picture = ExactPicture{.elsewhere = glm::dvec4(glm::dvec3(kRed), 1.0)};
   result.trace = screen.trace();
   // Adding shares of 0.75 / 16,384 stops at 0.125: above it, half a unit in the last place of fp16 is 2^-14. This loses
   // 0.625 of the red.
@@ -145,7 +145,7 @@ HardCase fp16_sums() {
   for (int y = 0; y < 16; ++y)
     for (int x = 0; x < 16; ++x) screen.rectangle({x / 16.0, y / 16.0}, {(x + 1) / 16.0, (y + 1) / 16.0}, 0.5, color);
   HardCase result{"fp16_sums", "512 shares of a colour that fp16 cannot represent", {}, {}, {}};
-  result.everywhere = glm::dvec4(glm::dvec3(color), 1.0);
+  result.picture = ExactPicture{.elsewhere = glm::dvec4(glm::dvec3(color), 1.0)};
   result.trace = screen.trace();
   result.limits = {{"alpha", {0.5, kOver}},
                    {"beam:rules=paper", {0.45, kPaper}},

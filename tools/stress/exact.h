@@ -16,8 +16,8 @@ using SamplePlaces = std::vector<glm::ivec2>;
 // The RGBA of every pixel of a frame, row 0 on top: individual values in a rectangle around the triangles, and one
 // value for all other pixels.
 struct ExactPicture {
-  glm::ivec2 low{0}, high{0};    // pixels [low, high)
-  std::vector<glm::dvec4> rgba;  // of these pixels, row by row
+  glm::ivec2 low{0}, high{0};         // pixels [low, high)
+  std::vector<glm::dvec4> rgba = {};  // of these pixels, row by row
   glm::dvec4 elsewhere{0};
 
   const glm::dvec4& at(int x, int y) const {

@@ -25,7 +25,7 @@ HardCase empty_frame() {
   Screen screen(5, 3);
   HardCase result{"empty", "no triangles", {}, {}, {}};
   result.trace = screen.trace();
-  result.everywhere = glm::dvec4(glm::dvec3(kBackground), 0.0);
+  result.picture = ExactPicture{.elsewhere = glm::dvec4(glm::dvec3(kBackground), 0.0)};
   return result;
 }
 
@@ -58,7 +58,7 @@ HardCase deep_pixel(int layers) {
                   {},
                   {},
                   {}};
-  result.everywhere = glm::dvec4(glm::dvec3(kRed), 1.0);
+  result.picture = ExactPicture{.elsewhere = glm::dvec4(glm::dvec3(kRed), 1.0)};
   result.trace = screen.trace();
   return result;
 }

@@ -8,6 +8,7 @@
 #include <string>
 #include <vector>
 
+#include "tools/stress/exact.h"
 #include "traces/trace.h"
 
 namespace beampipe {
@@ -18,23 +19,24 @@ struct StatedLimit {
   std::string reason;
 };
 
-// Every pixel's RGBA is finite and between these.
-struct PictureBounds {
-  glm::dvec4 low, high;
+// What surfaces may look like: every colour of theirs is finite and between these. The rest of a pixel shows the
+// background.
+struct ColorBounds {
+  glm::dvec3 low, high;
 };
 
 struct HardCase {
   std::string name;
   std::string what;  // what makes the case hard: a short phrase
   Trace trace;       // one frame
-  // The RGBA of every pixel, if it follows from how the trace was made. Otherwise tools/stress/exact.h computes it.
-  std::optional<glm::dvec4> everywhere;
+  // The exact picture, if it follows from how the trace was made. Otherwise tools/stress/exact.h computes it.
+  std::optional<ExactPicture> picture;
   // By spec, or by the start of specs up to a ":" or ","; the longest one that fits counts. All other techniques must
   // be correct to the last bit of their formats.
   std::map<std::string, StatedLimit> limits;
-  // Of surfaces that vary, for which there is no exact picture: either what it may hold, or a trace whose picture must
-  // be the same to the last bit.
-  std::optional<PictureBounds> between = {};
+  // Of surfaces that vary, for which there is no exact picture: either which colours it may hold where exact arithmetic
+  // says that triangles cover a pixel, or a trace whose picture must be the same to the last bit.
+  std::optional<ColorBounds> between = {};
   std::optional<Trace> equals = {};
 };
 

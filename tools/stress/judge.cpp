@@ -96,6 +96,11 @@ double largest(const Image& image, Error&& error_of) {
   return largest;
 }
 
+// The part `covered` of a surface over the background. The surface may be infinite.
+double mixed(double surface, double background, double covered) {
+  return covered > 0 ? covered * surface + (1 - covered) * background : background;
+}
+
 // How far a number is from [low, high]; NaN if it is not finite.
 double distance_from(double number, double low, double high) {
   if (!std::isfinite(number)) return std::numeric_limits<double>::quiet_NaN();
@@ -105,27 +110,30 @@ double distance_from(double number, double low, double high) {
 }  // namespace
 
 const ExactPicture& Judge::areas() {
-  if (!areas_) {
-    areas_ = case_.everywhere ? ExactPicture{{}, {}, {}, *case_.everywhere}
-                              : exact_areas(case_.trace, case_.trace.frames[0]);
-  }
+  if (case_.picture) return *case_.picture;
+  if (!areas_) areas_ = exact_areas(case_.trace, case_.trace.frames[0]);
   return *areas_;
 }
 
 double Judge::largest_error(const Technique& technique, const RunOptions& options) {
   const Image image = technique.render(case_.trace, 0, options).image;
-  if (case_.between)
-    return largest(image, [&](int, int, int c, double found) {
-      return distance_from(found, case_.between->low[c], case_.between->high[c]);
-    });
   if (case_.equals) {
     const std::vector<float> same = technique.render(*case_.equals, 0, options).image.rgba;
     return largest(image, [at = same.begin()](int, int, int, double found) mutable { return std::abs(found - *at++); });
   }
   const SamplePlaces places = places_of(technique.spec);
-  const bool sampled = !places.empty() && !case_.everywhere;
+  const bool sampled = !places.empty() && !case_.picture;
   const ExactPicture samples = sampled ? exact_samples(case_.trace, case_.trace.frames[0], places) : ExactPicture{};
   const ExactPicture& truth = sampled ? samples : areas();
+  if (case_.between) {
+    const glm::dvec3 background(case_.trace.frames[0].background);
+    return largest(image, [&](int x, int y, int c, double found) {
+      const double covered = truth.at(x, y).a;
+      if (c == 3) return std::abs(found - covered);
+      return distance_from(found, mixed(case_.between->low[c], background[c], covered),
+                           mixed(case_.between->high[c], background[c], covered));
+    });
+  }
   return largest(image, [&](int x, int y, int c, double found) { return std::abs(found - truth.at(x, y)[c]); });
 }
 

@@ -26,7 +26,7 @@ struct Verdict {
 };
 
 // Techniques that sample are compared with exact samples at the same places, all others with exact areas. Pictures of
-// surfaces that vary are compared with what the case says about them.
+// surfaces that vary are compared with what the case says about them, and their A with exact arithmetic.
 class Judge {
  public:
   explicit Judge(const HardCase& hard_case) : case_(hard_case) {}

@@ -4,6 +4,7 @@
 #include <limits>
 
 #include "tools/stress/case_parts.h"
+#include "tools/stress/judge.h"
 
 namespace beampipe {
 namespace {
@@ -27,15 +28,12 @@ TextureImage noise(std::uint32_t width, std::uint32_t height) {
 
 double linear(std::uint8_t code) { return std::pow((code / 255.0 + 0.055) / 1.055, 2.4); }
 
-// Between the background and the colours of the texture: a surface that is unlit shows nothing else.
-PictureBounds bounds_of_noise() {
-  const double dark = linear(kDark), bright = linear(kBright);
-  const glm::dvec3 background(kBackground);
-  return {glm::dvec4(glm::min(background, dark), 0), glm::dvec4(glm::max(background, bright), 1)};
-}
+// A surface that is unlit shows the colours of its texture and nothing else.
+ColorBounds bounds_of_noise() { return {glm::dvec3(linear(kDark)), glm::dvec3(linear(kBright))}; }
 
 Material unlit_material() {
   Material material;
+  material.name = "surface";
   material.unlit = material.double_sided = true;
   return material;
 }
@@ -59,8 +57,10 @@ Trace with_texture(Trace trace, TextureImage image, Texture texture, Uv&& uv) {
 }
 
 HardCase within_noise(const std::string& name, const std::string& what, Trace trace) {
-  HardCase result{name, what, std::move(trace), {}, {}};
+  HardCase result{name, what, std::move(trace), {}, full_masks()};
   result.between = bounds_of_noise();
+  result.limits["beam:rules=paper"] = {0.04, kOver};
+  result.limits["alpha"] = {0.25, kOver};
   return result;
 }
 
@@ -91,16 +91,13 @@ HardCase uv_degenerate() {
   result.trace.frames[0].lighting.ambient = Ambient{glm::vec3(1.0f), glm::vec3(1.0f)};
   // All around, there is a light of 1. A dielectric mirrors the part 0.04 of it, and reflects the base colour's part of
   // the rest.
-  for (int c = 0; c < 3; ++c) {
-    const double dark = 0.04 + 0.96 * linear(kDark), bright = 0.04 + 0.96 * linear(kBright), behind = kBackground[c];
-    result.between->low[c] = std::min(dark, behind), result.between->high[c] = std::max(bright, behind);
-  }
+  result.between = ColorBounds{glm::dvec3(0.04 + 0.96 * linear(kDark)), glm::dvec3(0.04 + 0.96 * linear(kBright))};
   return result;
 }
 
 // A floor to the horizon, on which a pixel covers millions of texels.
 Trace floor_trace(float below) {
-  return perspective(0.01, 1e6, {{{{-1e6f, -below, 1.0f}, {1e6f, -below, 1.0f}, {0.0f, -below, -1e6f}}}});
+  return perspective(0.01 * below, 1e6, {{{{-1e6f, -below, 1.0f}, {1e6f, -below, 1.0f}, {0.0f, -below, -1e6f}}}});
 }
 
 HardCase minification() {
@@ -156,15 +153,12 @@ HardCase equal(const std::string& name, const std::string& what, Trace trace, Tr
 // Half of the largest step between two codes of sRGB, which is that to white.
 constexpr double kHalfCode = 2.4 / 1.055 / 255 / 2;
 
-constexpr const char* kLeftOut = "translucent triangles are left out";
-
-HardCase opacity(float alpha, const std::string& name, const std::string& what) {
+HardCase with_opacity(float alpha, const std::string& name, const std::string& what) {
   const bool is_there = alpha > 0;
   HardCase result = equal(name, what, front_with(front_material(AlphaMode::blend, alpha)),
                           front_with(is_there ? std::optional(front_material(AlphaMode::opaque, 1)) : std::nullopt));
-  if (is_there)
-    for (const char* technique : {"acaa", "deferred", "visibility", "taa", "dvm"})
-      result.limits[technique] = {1.0, kLeftOut};
+  // Two roundings where the triangle is opaque and counts as a share, and one below it where it is translucent.
+  if (is_there) result.limits["acaa:8,color=unorm8"] = {3 * kUnorm8Error, "sums are rounded to 8 bits"};
   return result;
 }
 
@@ -202,26 +196,41 @@ HardCase texture_at_cutoff(bool below) {
                trace(AlphaMode::mask), std::move(same));
 }
 
+constexpr const char* kPositions = "opacity is rounded to mask positions, of which deep layers have few left";
+
+glm::vec3 color_of_layer(int i) { return i % 2 ? kRed : kGreen; }
+
 HardCase layers() {
   constexpr int kLayers = 64;
   Screen screen(kLayers, 2);
-  for (int i = 0; i < kLayers; ++i)
-    screen.rectangle({i, 0}, {kLayers, 2}, 0.9 - 0.8 * i / kLayers, i % 2 ? kRed : kGreen);
+  for (int i = 0; i < kLayers; ++i)  // each covers everything to the right of x = i
+    screen.triangle({i, -kLayers}, {i, kLayers + 2}, {3 * kLayers, 1}, 0.9 - 0.8 * i / kLayers, color_of_layer(i));
   HardCase result{"layers", "1 to 64 translucent layers in a pixel, from far to near", {}, {}, {}};
   result.trace = screen.trace();
-  for (const glm::vec3& color : {kGreen, kRed}) {
+  for (int i = 0; i < 2; ++i) {
     Material& material = result.trace.materials.emplace_back(front_material(AlphaMode::blend, 0.5f));
-    material.base_color = glm::vec4(color, 0.5f);
+    material.name = i ? "red" : "green";
+    material.base_color = glm::vec4(color_of_layer(i), 0.5f);
   }
-  Mesh& mesh = result.trace.meshes[0];
-  for (std::uint32_t t = 0; t < mesh.triangles.size(); ++t) mesh.materials.push_back(t / 2 % 2);
-  const glm::dvec3 low = glm::min(glm::min(kRed, kGreen), kBackground),
-                   high = glm::max(glm::max(kRed, kGreen), kBackground);
-  result.between = PictureBounds{glm::dvec4(low, 0), glm::dvec4(high, 1)};
+  for (std::uint32_t i = 0; i < kLayers; ++i) result.trace.meshes[0].materials.push_back(i % 2);
+  // Eight layers in a row leave one of 256 positions, which may show any of the other colours.
+  result.limits["beam:order=sorted"] = {0.875 / 256 + kFormatError, kPositions};
+  result.limits["beam"] = {0.105 / 4,
+                           kPositions};  // of 256 positions, as with 64 and slots=4 an error of 0.104 is measured
+  for (const std::string& few : {kSmallStream, std::string("z3"), std::string("beam:rules=paper")})
+    result.limits[few] = {0.105, kPositions};
+  ExactPicture& picture = result.picture.emplace();
+  picture.high = {kLayers, 2};
+  picture.rgba.resize(2 * kLayers);
+  glm::dvec4 over(glm::dvec3(kBackground), 0);
+  for (std::size_t i = 0; i < kLayers; ++i) {
+    over = 0.5 * glm::dvec4(glm::dvec3(color_of_layer(static_cast<int>(i))), 1) + 0.5 * over;
+    picture.rgba[i] = picture.rgba[kLayers + i] = over;
+  }
   return result;
 }
 
-// Finite numbers are all that is asked for.
+// Colours must be finite. They may be negative, as a base colour above 1 reflects more light than there is.
 HardCase largest_numbers() {
   HardCase result{"largest_numbers", "light, colours and normals at the ends of their ranges", {}, {}, {}};
   result.trace =
@@ -239,8 +248,9 @@ HardCase largest_numbers() {
   Lighting& lighting = result.trace.frames[0].lighting;
   lighting.lights.assign(kMostLights, {glm::normalize(glm::vec3(0.1f, -1, -0.2f)), glm::vec3(kMostColor)});
   lighting.ambient = Ambient{glm::vec3(kMostColor), glm::vec3(0)};
+  for (const char* technique : {"beam:rules=paper", "alpha"}) result.limits[technique] = {0.04, kOver};
   const double infinity = std::numeric_limits<double>::infinity();
-  result.between = PictureBounds{glm::dvec4(-infinity), glm::dvec4(infinity)};
+  result.between = ColorBounds{glm::dvec3(-infinity), glm::dvec3(infinity)};
   return result;
 }
 
@@ -258,8 +268,8 @@ std::vector<HardCase> surface_cases() {
           cutoff(std::nextafter(half, 0.0f), half, "alpha_below_cutoff", "alpha just below the cutoff, which is not"),
           texture_at_cutoff(false),
           texture_at_cutoff(true),
-          opacity(0, "opacity_0", "a translucent triangle of opacity 0, which changes nothing"),
-          opacity(1, "opacity_1", "a translucent triangle of opacity 1, which is opaque"),
+          with_opacity(0, "opacity_0", "a translucent triangle of opacity 0, which changes nothing"),
+          with_opacity(1, "opacity_1", "a translucent triangle of opacity 1, which is opaque"),
           layers(),
           largest_numbers()};
 }

@@ -7,6 +7,7 @@
 
 #include "simd/sample_pattern.h"
 #include "tests/pipeline/test_traces.h"
+#include "tests/traces/test_folder.h"
 #include "tools/stress/exact.h"
 #include "tools/stress/judge.h"
 
@@ -86,6 +87,43 @@ TEST(LargestCut, IsWhatTheMaskPositionsAllow) {
   }
 }
 
+using SavedCases = FolderTest;
+
+// JSON has no NaN and no infinity, which not_finite is made of.
+TEST_F(SavedCases, CanBeReadAgain) {
+  for (const HardCase& hard_case : hard_cases(false)) {
+    if (hard_case.name == "not_finite") continue;
+    try {
+      write_trace(hard_case.trace, path("case.json"));
+      write_trace(read_trace(path("case.json")), path("again.json"));
+    } catch (const std::runtime_error& error) {
+      ADD_FAILURE() << hard_case.name << ": " << error.what();
+      continue;
+    }
+    EXPECT_EQ(read("case.json"), read("again.json")) << hard_case.name;
+  }
+}
+
+TEST(Judge, NoticesThatSurfacesWhichVaryAreMissing) {
+  Technique nothing = parse_technique("msaa:1");
+  nothing.render = [](const Trace& trace, std::size_t index, const RunOptions&) {
+    const Frame& frame = trace.frames[index];
+    FrameResult result;
+    result.image = {frame.width, frame.height, {}};
+    for (std::size_t i = 0; i < std::size_t{frame.width} * frame.height; ++i)
+      result.image.rgba.insert(result.image.rgba.end(),
+                               {frame.background.r, frame.background.g, frame.background.b, 0});
+    return result;
+  };
+  int judged = 0;
+  for (const HardCase& hard_case : hard_cases(false)) {
+    if (!hard_case.between && hard_case.name != "layers") continue;
+    EXPECT_FALSE(Judge(hard_case).judge(nothing, {}).passes()) << hard_case.name;
+    ++judged;
+  }
+  EXPECT_EQ(judged, 8);
+}
+
 class HardCases : public testing::TestWithParam<const char*> {};
 
 TEST_P(HardCases, AreWithinTheirLimits) {
@@ -100,10 +138,10 @@ TEST_P(HardCases, AreWithinTheirLimits) {
 }
 
 INSTANTIATE_TEST_SUITE_P(Techniques, HardCases,
-                         testing::Values("beam", "beam:bits=64,slots=4", "beam:order=sorted", "beam:order=stream", "beam:order=stream,passes=0",
-                                         "beam:order=stream,passes=0,bits=64,layers=1", "z3", "beam:rules=paper",
-                                         "alpha", "msaa:8", "acaa:8,double=stencil", "acaa:8", "visibility",
-                                         "reference"));
+                         testing::Values("beam", "beam:bits=64,slots=4", "beam:order=sorted", "beam:order=stream",
+                                         "beam:order=stream,passes=0", "beam:order=stream,passes=0,bits=64,layers=1",
+                                         "z3", "beam:rules=paper", "alpha", "msaa:8", "acaa:8,double=stencil", "acaa:8",
+                                         "visibility", "reference"));
 
 }  // namespace
 }  // namespace beampipe
