@@ -1,6 +1,7 @@
 #include "pipeline/units/raster_units.h"
 
 #include <algorithm>
+#include <iterator>
 
 #include "pipeline/units/sample_places.h"
 #include "stages/cost/closed_depth_cost.h"
@@ -41,14 +42,13 @@ void ConservativeRasterUnit::start_next_pass() {
   read_bin(bin_.memory(), bin_.list, stage_.counters);
 }
 
-TriangleList SampleRasterUnit::drawn_triangles() const {
-  TriangleList list = bin_.list;
-  if (!bin_.context.has_blending() || translucent_ == Translucent::drawn) return list;
-  const SurfaceShader& shader = bin_.context.shader;
-  std::erase_if(list, [&](std::uint32_t triangle) {
-    return shader.is_translucent(triangle) != (translucent_ == Translucent::alone);
+const TriangleList& SampleRasterUnit::drawn_triangles() {
+  if (!bin_.context.has_blending() || translucent_ == Translucent::drawn) return bin_.list;
+  drawn_.clear();
+  std::ranges::copy_if(bin_.list, std::back_inserter(drawn_), [&](std::uint32_t triangle) {
+    return bin_.context.shader.is_translucent(triangle) == (translucent_ == Translucent::alone);
   });
-  return list;
+  return drawn_;
 }
 
 void SampleRasterUnit::test_alpha(const Sampling& sampling, ShadeAt at) {

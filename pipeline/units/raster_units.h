@@ -118,12 +118,13 @@ class SampleRasterUnit {
   }
 
  private:
-  TriangleList drawn_triangles() const;
+  const TriangleList& drawn_triangles();
   void test_alpha(const Sampling& sampling, ShadeAt at);
 
   Bin& bin_;
   BinStage stage_;
   std::vector<SampleFragment> fragments_;
+  TriangleList drawn_;  // if not all of the bin's triangles are drawn
   Translucent translucent_ = Translucent::left_out;
   AlphaCoverage coverage_ = AlphaCoverage::test;
 };

@@ -93,7 +93,8 @@ Triple<Real> reflected_light(const Reflector<Real>& surface, const Lighting& lig
   Triple<Real> diffuse, mirror;  // mirror: reflectance straight on
   for (std::size_t c = 0; c < 3; ++c) {
     diffuse[c] = surface.base[c] * (one - surface.metallic);
-    mirror[c] = mixed(Real(kDielectricReflectance), surface.base[c], surface.metallic);
+    // A base colour may be above 1, but nothing reflects more light than it receives.
+    mirror[c] = lesser(mixed(Real(kDielectricReflectance), surface.base[c], surface.metallic), one);
   }
   Triple<Real> light{zero, zero, zero};
   for (const Light& source : lighting.lights) {
