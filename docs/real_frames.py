@@ -61,7 +61,7 @@ def measure_all(program, command, folder, traces):
         on_chip = results(program, "run", path, SPECS, f"{folder}/{name}_on_chip", "--frames", "0", "--resume",
                           "--framebuffer", "on-chip")
         measured[name] = path, found, on_chip
-    print_head("frame", "size", "draws", "triangles", "after culling", "per pixel", "pairs per pixel",
+    print_head("frame", "size", "draws", "triangles", "rasterized", "per pixel", "pairs per pixel",
                "fragments per pixel", "not drawn, or not exactly")
     for name, (path, found, _) in measured.items():
         frame_row(program, name, path, found)
