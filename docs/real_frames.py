@@ -4,6 +4,7 @@
 real_frames.py BEAMPIPE FOLDER TRACE...   the first frame of each trace that `beampipe capture` has made: what it has,
                                           and what techniques make of it; results stay in FOLDER,
                                           where a second call finds what is finished
+real_frames.py BEAMPIPE --run FOLDER TRACE...   the same without errors, which take most of the time
 real_frames.py BEAMPIPE --check TRACE...  all frames: their depths compared with the program's own
 """
 import json
@@ -43,21 +44,24 @@ def frame_row(program, name, path, found):
 def technique_rows(name, found, on_chip):
     for spec in SPECS:
         frame, times = found[spec]["frames"][0], found[spec]["frames"][0]["modelled_ms"]
-        print_row(name, f"`{spec}`", f"{1000 * found[spec]['error']['rmse']:.3f}", rate_of(found[spec]),
-                  rate_of(found[spec]["visibility"]) if "visibility" in found[spec] else "",
+        errors = ["", "", ""]
+        if "error" in found[spec]:
+            errors = [f"{1000 * found[spec]['error']['rmse']:.3f}", rate_of(found[spec]),
+                      rate_of(found[spec]["visibility"]) if "visibility" in found[spec] else ""]
+        print_row(name, f"`{spec}`", *errors,
                   f"{frame['dram_bytes'] / 1e6:.2f}", f"{on_chip[spec]['frames'][0]['dram_bytes'] / 1e6:.2f}",
                   f"{times['shaders']['overlap']:.4f}", f"{times['fixed_function']['overlap']:.4f}")
 
 
-def measure_all(program, folder, traces):
+def measure_all(program, command, folder, traces):
     measured = {}
     for path in traces:
         name = pathlib.Path(path).stem
-        found = results(program, "compare", path, SPECS, f"{folder}/{name}", "--frames", "0", "--resume")
+        found = results(program, command, path, SPECS, f"{folder}/{name}", "--frames", "0", "--resume")
         on_chip = results(program, "run", path, SPECS, f"{folder}/{name}_on_chip", "--frames", "0", "--resume",
                           "--framebuffer", "on-chip")
         measured[name] = path, found, on_chip
-    print_head("frame", "size", "draws", "triangles", "after culling", "per pixel", "pairs per pixel",
+    print_head("frame", "size", "draws", "triangles", "rasterized", "per pixel", "pairs per pixel",
                "fragments per pixel", "not drawn, or not exactly")
     for name, (path, found, _) in measured.items():
         frame_row(program, name, path, found)
@@ -88,5 +92,7 @@ if __name__ == "__main__":
         sys.exit(__doc__)
     if sys.argv[2] == "--check":
         check_all(sys.argv[1], sys.argv[3:])
+    elif sys.argv[2] == "--run":
+        measure_all(sys.argv[1], "run", sys.argv[3], sys.argv[4:])
     else:
-        measure_all(sys.argv[1], sys.argv[2], sys.argv[3:])
+        measure_all(sys.argv[1], "compare", sys.argv[2], sys.argv[3:])
