@@ -57,8 +57,7 @@ void write_draw_state(TraceText& text, const DrawState& state) {
   }
   if (state.scissor) {
     text.put_key("scissor");
-    text.put("[" + std::to_string(state.scissor->x) + "," + std::to_string(state.scissor->y) + "," +
-             std::to_string(state.scissor->width) + "," + std::to_string(state.scissor->height) + "]");
+    text.put_array(glm::dvec4(state.scissor->x, state.scissor->y, state.scissor->width, state.scissor->height));
   }
   text.put_member("depth_test", state.depth.test, defaults.depth.test);
   text.put_member("depth_write", state.depth.write, defaults.depth.write);
