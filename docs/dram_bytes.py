@@ -18,7 +18,7 @@ PER_TRIANGLE = re.compile("setup_triangles|bin_lists|batch_")  # these grow with
 PLACED = ["beam", "msaa:8", "msaa:32", "beam:order=sorted", "beam:order=stream"]
 PLACES = ["in-memory", "on-chip"]
 GEOMETRY = ("vertex_setup", "sample_raster")  # write, bin and read the triangles of one pass
-STACK = ["beam:order=sorted", "beam:order=stream,passes=0", "beam:rules=paper", "msaa:8"]
+STACK = ["beam", "beam:order=stream", "beam:order=sorted", "beam:rules=paper", "msaa:8"]
 
 
 def run(program, trace, techniques, *options):
