@@ -62,7 +62,7 @@ struct ArrayReader::View {
   std::vector<Vector> floats(const char* expected, IsValid is_valid) const {
     expect_type({NumberType::float32}, "\"float32\"");
     std::vector<Vector> result(count * sizeof(float) / sizeof(Vector));
-    std::memcpy(static_cast<void*>(result.data()), bytes.data(), bytes.size());
+    if (!bytes.empty()) std::memcpy(static_cast<void*>(result.data()), bytes.data(), bytes.size());
     const auto* numbers = reinterpret_cast<const float*>(result.data());
     for (std::uint64_t i = 0; i < count; ++i)
       if (!is_valid(numbers[i])) fail(expected, text_of(numbers[i]), i);
@@ -90,7 +90,7 @@ struct ArrayReader::View {
     expect_type({NumberType::uint32, NumberType::uint16}, "\"uint32\" or \"uint16\"");
     std::vector<std::uint32_t> result(count);
     if (type == NumberType::uint32) {
-      std::memcpy(result.data(), bytes.data(), bytes.size());
+      if (!bytes.empty()) std::memcpy(result.data(), bytes.data(), bytes.size());
     } else {
       for (std::uint64_t i = 0; i < count; ++i) {
         std::uint16_t value = 0;
@@ -191,7 +191,7 @@ std::vector<glm::uvec3> ArrayReader::triples(const JsonCursor& at, std::uint32_t
   if (!at.is_object()) return at.triples(below);
   const std::vector<std::uint32_t> flat = view(at, 3).integers(below);
   std::vector<glm::uvec3> result(flat.size() / 3);
-  std::memcpy(static_cast<void*>(result.data()), flat.data(), flat.size() * sizeof(std::uint32_t));
+  if (!flat.empty()) std::memcpy(static_cast<void*>(result.data()), flat.data(), flat.size() * sizeof(std::uint32_t));
   return result;
 }
 

@@ -31,7 +31,7 @@ class DepthOrder {
  public:
   DepthOrder(const Trace& trace, const Frame& frame, std::vector<DrawPlacement>& placements,
              std::vector<DrawNote>& notes)
-      : trace_(trace), frame_(frame), placements_(placements), notes_(notes) {}
+      : trace_(trace), frame_(frame), placements_(placements), notes_(notes), acts_as_writer_(frame.draws.size()) {}
 
   void find_groups() {
     std::uint32_t first = 0;
@@ -105,7 +105,8 @@ class DepthOrder {
     std::vector<std::uint32_t> draws;
     for (std::uint32_t i = first; i < end; ++i)
       if (placements_[i].is_drawn) draws.push_back(i);
-    const auto writes = [&](std::uint32_t i) { return writes_depth(depth_of(i)); };
+    for (const std::uint32_t i : draws) acts_as_writer_[i] = acts_as_writer(first, i);
+    const auto writes = [&](std::uint32_t i) { return acts_as_writer_[i]; };
     const auto needs_depth = [&](std::uint32_t i) { return writes(i) || !passes_always(depth_of(i)); };
     const auto first_writer = std::find_if(draws.begin(), draws.end(), writes);
     const auto tested_end =
@@ -161,9 +162,19 @@ class DepthOrder {
       if (depth.function == Compare::not_equal) note(tested[i], "depth function not_equal");
       if (depth.function == Compare::equal && !repeats_earlier(first, tested[i]))
         note(tested[i], "depth function equal, without an earlier draw of the same triangles");
-      if (!depth.write && is_opaque(tested[i]) && i + 1 < last_opaque)
+      if (i + 1 >= last_opaque) continue;
+      if (!is_opaque(tested[i])) {
+        note(tested[i], "translucent, before opaque draws");
+      } else if (!acts_as_writer_[tested[i]]) {
         note(tested[i], "depth is tested but not written, before other draws that test it");
+      }
     }
+  }
+
+  // Does the draw's depth count for later draws? It may have been written by a pre-pass of the same triangles.
+  bool acts_as_writer(std::uint32_t first, std::uint32_t draw) const {
+    const DepthState& depth = depth_of(draw);
+    return writes_depth(depth) || (depth.test && passes_equal(depth.function) && repeats_earlier(first, draw));
   }
 
   // Has a draw of the same group, drawn or not, written the depths of the same triangles?
@@ -212,7 +223,8 @@ class DepthOrder {
   const Frame& frame_;
   std::vector<DrawPlacement>& placements_;
   std::vector<DrawNote>& notes_;
-  std::vector<Group> groups_;  // in the order of painting
+  std::vector<bool> acts_as_writer_;  // by draw
+  std::vector<Group> groups_;         // in the order of painting
 };
 
 bool same_positions(const Mesh& one, const Mesh& other) {
@@ -220,6 +232,10 @@ bool same_positions(const Mesh& one, const Mesh& other) {
 }
 
 }  // namespace
+
+bool passes_equal(Compare function) {
+  return function == Compare::less_equal || function == Compare::equal || function == Compare::greater_equal;
+}
 
 bool same_geometry(const Trace& trace, const Draw& one, const Draw& other) {
   return one.transform == other.transform && one.state.viewport == other.state.viewport &&

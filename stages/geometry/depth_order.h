@@ -28,6 +28,9 @@ namespace beampipe {
 void order_depths(const Trace& trace, const Frame& frame, std::vector<DrawPlacement>& placements,
                   std::vector<DrawNote>& notes);
 
+// Does a depth pass that is equal to the stored one, but not every depth?
+bool passes_equal(Compare function);
+
 // Do both draws put the same triangles at the same places?
 bool same_geometry(const Trace& trace, const Draw& one, const Draw& other);
 

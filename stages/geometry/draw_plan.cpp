@@ -36,10 +36,6 @@ bool writes_stencil(const std::optional<Stencil>& stencil) {
           stencil->pass != StencilOperation::keep);
 }
 
-bool passes_equal(Compare function) {
-  return function == Compare::less_equal || function == Compare::equal || function == Compare::greater_equal;
-}
-
 // A side in 1/256 px, at most as far away as the frame's. `end`: of the frame, in pixels.
 std::int32_t on_grid(double pixels, double end) {
   return static_cast<std::int32_t>(std::floor(to_grid(std::clamp(pixels, 0.0, end))));

@@ -362,10 +362,16 @@ class TriangleSetup {
     ++work.placed;
   }
 
+  // No vertex leaves the window depths 0..1, so that draws stay in their interval of depths.
   void add_bias(SetupTriangle& triangle) {
     const DrawPlacement& to = screen_.placement;
-    const double bias = depth_bias<double>({to.bias_constant, to.bias_slope, to.bias_clamp, to.window_scale},
-                                           triangle.depth.dzdx, triangle.depth.dzdy);
+    const auto [nearest, farthest] = std::minmax({triangle.vertex_z[0], triangle.vertex_z[1], triangle.vertex_z[2]});
+    const double end = to.window_offset + to.window_scale;
+    const double towards_viewer = std::min(0.0, std::min(to.window_offset, end) - static_cast<double>(nearest));
+    const double away = std::max(0.0, std::max(to.window_offset, end) - static_cast<double>(farthest));
+    const double bias = std::clamp(depth_bias<double>({to.bias_constant, to.bias_slope, to.bias_clamp, to.window_scale},
+                                                      triangle.depth.dzdx, triangle.depth.dzdy),
+                                   towards_viewer, away);
     triangle.depth.z += bias;
     for (float& z : triangle.vertex_z) z = static_cast<float>(z + bias);
     ++work.biased;
@@ -505,8 +511,11 @@ void shade_vertices(const View& view, const Draw& draw, const Mesh& mesh, StageC
 }
 
 // Puts the opaque triangles of draws that win at equal depth first, the last one first.
-void put_winners_first(SetupTriangles& all) {
-  const auto wins = [&](std::uint32_t i) { return all.placements[all.draws[i]].last_wins && all.is_opaque(i); };
+void put_winners_first(const std::vector<Material>& materials, SetupTriangles& all) {
+  const auto is_blended = [&](std::uint32_t i) {
+    return !all.is_opaque(i) && materials[all.surfaces[i].material].alpha_mode == AlphaMode::blend;
+  };
+  const auto wins = [&](std::uint32_t i) { return all.placements[all.draws[i]].last_wins && !is_blended(i); };
   std::vector<std::uint32_t> order;
   order.reserve(all.triangles.size());
   for (auto i = static_cast<std::uint32_t>(all.triangles.size()); i-- > 0;)
@@ -556,7 +565,7 @@ SetupTriangles vertex_setup(const Trace& trace, const Frame& frame, StageCounter
     counters.bytes_read += mesh.triangles.size() * sizeof(glm::uvec3) + mesh.positions.size() * sizeof(glm::vec3) +
                            mesh.ws.size() * sizeof(float);
   }
-  if (!out.placements.empty()) put_winners_first(out);
+  if (!out.placements.empty()) put_winners_first(trace.materials, out);
   work.triangles = out.triangles.size();
   counters.items_out = out.triangles.size();
   charge(work, counters);

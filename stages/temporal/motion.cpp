@@ -29,10 +29,14 @@ std::size_t draw_at(const SampleTile& surface, std::size_t i, const std::vector<
   return triangle == kNoTriangle ? frame.draws.size() : draws[triangle];
 }
 
-glm::vec2 pixel_motion(const glm::dmat4& to_last, double center_x, double center_y, float depth, const Frame& frame) {
+// Of what `draw` shows. The background's depth is beyond the far plane, and it moves as the far plane does.
+glm::vec2 pixel_motion(const std::vector<glm::dmat4>& all_to_last, std::size_t draw, double center_x, double center_y,
+                       float depth, const Frame& frame) {
+  const glm::dmat4& to_last = all_to_last[draw];
+  const double farthest = draw == frame.draws.size() ? 0.0 : std::numeric_limits<double>::infinity();
   Reprojection<double> reprojection{{}, static_cast<double>(frame.width), static_cast<double>(frame.height)};
   for (int i = 0; i < 16; ++i) reprojection.m[i] = to_last[i / 4][i % 4];
-  const Movement<double> moved = movement<double>(reprojection, center_x, center_y, depth);
+  const Movement<double> moved = movement<double>(reprojection, center_x, center_y, depth, farthest);
   if (!moved.in_front) return glm::vec2(std::numeric_limits<float>::infinity());
   return {half(static_cast<float>(moved.dx)), half(static_cast<float>(moved.dy))};
 }
@@ -96,7 +100,7 @@ std::vector<glm::vec2> motion(const SampleTile& surface, const Tile& tile, const
       const auto first = surface.depth.begin() + static_cast<std::ptrdiff_t>(vectors.size() * samples);
       const auto nearest = std::min_element(first, first + static_cast<std::ptrdiff_t>(samples));
       const auto at = static_cast<std::size_t>(nearest - surface.depth.begin());
-      vectors.push_back(pixel_motion(to_last[draw_at(surface, at, draws, frame)], x + 0.5, y + 0.5, *nearest, frame));
+      vectors.push_back(pixel_motion(to_last, draw_at(surface, at, draws, frame), x + 0.5, y + 0.5, *nearest, frame));
     }
   }
   charge_motion(vectors.size(), samples, counters);
@@ -135,7 +139,7 @@ PixelContents contents(const SampleTile& surface, const Tile& tile, const Frame&
         if (std::find(here.begin(), here.end(), draw) != here.end()) continue;
         here.push_back(draw);
         look ^= looks[draw];
-        const glm::vec2 moves = pixel_motion(to_last[draw], x + 0.5, y + 0.5, surface.depth[i], frame);
+        const glm::vec2 moves = pixel_motion(to_last, draw, x + 0.5, y + 0.5, surface.depth[i], frame);
         fastest = greater(fastest, square_length(moves.x, moves.y));
       }
       found.looks.push_back(look);

@@ -14,7 +14,7 @@ inline Movement<Counted<double>> counted_movement(OperationCounts& counts) {
   const Counted<double> one(1.0, counts);
   Reprojection<Counted<double>> to_last{{}, one, one};
   for (Counted<double>& element : to_last.m) element = one;
-  return movement(to_last, one, one, one);
+  return movement(to_last, one, one, one, one);
 }
 
 // Per pixel: its nearest sample, that sample's draw and the draw's matrix, and the movement.

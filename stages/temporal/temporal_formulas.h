@@ -38,10 +38,10 @@ struct Movement {
 };
 
 template <class Real>
-Movement<Real> movement(const Reprojection<Real>& to_last, Real center_x, Real center_y, Real depth) {
+Movement<Real> movement(const Reprojection<Real>& to_last, Real center_x, Real center_y, Real depth, Real farthest) {
   const Real zero(0.0), one(1.0), two(2.0);
   const LastPosition<Real> last = reproject(to_last, two * center_x / to_last.width - one,
-                                            one - two * center_y / to_last.height, two * lesser(depth, zero) + one);
+                                            one - two * center_y / to_last.height, two * lesser(depth, farthest) + one);
   return {last.x - center_x, last.y - center_y, last.w > zero};
 }
 

@@ -2,9 +2,20 @@
 #include "tests/fuzz/fuzz_input.h"
 #include "traces/trace_io.h"
 
+namespace {
+
+// A buffer that traces may view: a triangle in four coordinates as floats, then three small integers.
+constexpr std::string_view kBuffer(
+    "\0\0\0\0\0\0\0\0\0\0\0\0\0\0\x80\x3f\0\0\x80\x3f\0\0\0\0\0\0\0\0\0\0\x80\x3f"
+    "\0\0\0\0\0\0\x80\x3f\0\0\0\0\0\0\x80\x3f\0\0\1\0\2\0\0\0\xff\xff\xff\xff\0\0\0\0",
+    64);
+
+}  // namespace
+
 extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
   using namespace beampipe;
   static const FuzzFolder folder;
+  static const std::filesystem::path buffer = folder.write("b.bin", kBuffer);
   const std::filesystem::path file = folder.write("trace.json", text_of(data, size));
   Trace trace;
   try {
@@ -14,7 +25,9 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size
     return 0;
   }
   const std::filesystem::path again = folder.write("again.json", "");
-  write_trace(trace, again);
-  if (read_trace(again).frames.size() != trace.frames.size()) std::abort();
+  for (const ArrayStorage storage : {ArrayStorage::text, ArrayStorage::binary}) {
+    write_trace(trace, again, storage);
+    if (read_trace(again).frames.size() != trace.frames.size()) std::abort();
+  }
   return 0;
 }

@@ -103,6 +103,43 @@ TEST(DrawPlan, WhatWritesNoDepthBeforeAnythingElseIsPaintedBehind) {
   EXPECT_TRUE(plan.notes.empty());
 }
 
+// The usual form of a pre-pass: what is drawn after it compares with equal and writes no depth.
+TEST(DrawPlan, ColorsAfterAPrePassKeepTheirDepths) {
+  for (const Compare function : {Compare::equal, Compare::less_equal}) {
+    Draws draws;
+    draws.add(Compare::less).state.color_mask = 0;
+    draws.add(Compare::less).state.color_mask = 0;
+    for (std::uint32_t mesh = 0; mesh < 2; ++mesh) {
+      Draw& draw = draws.frame.draws.emplace_back();
+      draw.mesh = mesh;
+      draw.state.depth.function = function;
+      draw.state.depth.write = false;
+    }
+    draws.add(Compare::less);
+    const DrawPlan plan = draws.plan();
+    EXPECT_TRUE(plan.notes.empty());
+    EXPECT_FALSE(plan.placements[0].is_drawn);
+    for (const std::size_t i : {2u, 3u, 4u}) {
+      EXPECT_EQ(range_of(plan.placements[i]).near, -1) << i;
+      EXPECT_EQ(range_of(plan.placements[i]).far, 0) << i;
+    }
+  }
+}
+
+TEST(DrawPlan, NotesWhatIsTranslucentBeforeOpaqueDraws) {
+  Draws draws;
+  draws.trace.materials.resize(1);
+  draws.trace.materials[0].alpha_mode = AlphaMode::blend;
+  draws.add(Compare::less);
+  Draw& sheet = draws.add(Compare::less_equal);
+  sheet.material = 0;
+  sheet.state.depth.write = false;
+  EXPECT_TRUE(draws.notes().empty());
+  draws.add(Compare::less);
+  ASSERT_EQ(draws.notes().size(), 1u);
+  EXPECT_EQ(draws.notes()[0].reason, "translucent, before opaque draws");
+}
+
 TEST(DrawPlan, EachDepthClearStartsAGroupInFront) {
   Draws draws;
   for (int group = 0; group < 5; ++group) {

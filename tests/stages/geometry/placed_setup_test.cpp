@@ -273,6 +273,34 @@ TEST(PlacedSetup, DepthBiasIsAddedToThePlane) {
   }
 }
 
+TEST(PlacedSetup, BiasedDepthsStayInTheWindow) {
+  Scene scene = clip_space_scene({{-0.5f, -0.5f, -0.5f}, {0.5f, -0.5f, 0}, {0, 0.5f, 0.5f}}, kWidth, kHeight);
+  for (const Compare function : {Compare::less, Compare::greater}) {
+    for (const float bias : {-1.0f, -0.3f, 0.3f, 1.0f}) {
+      state_of(scene).depth.function = function;
+      state_of(scene).depth.bias = {bias, 0, 0};
+      const SetupTriangle triangle = scene.setup().triangles.at(0);
+      const auto [nearest, farthest] = std::minmax({triangle.vertex_z[0], triangle.vertex_z[1], triangle.vertex_z[2]});
+      const bool goes_away = (bias > 0) == (function == Compare::less);
+      EXPECT_NEAR(goes_away ? farthest : nearest, goes_away ? 0 : -1, 1e-6) << bias;
+      EXPECT_NEAR(farthest - nearest, 0.5, 1e-6) << bias;
+    }
+  }
+}
+
+// At equal depth, cutouts win as opaque draws do; what is blended does not.
+TEST(PlacedSetup, CutoutsWinAndTranslucentDrawsDoNot) {
+  Scene scene = clip_space_scene({{0, 0, 0}, {0.5f, 0, 0}, {0, 0.5f, 0}});
+  scene.frame.draws.assign(3, scene.frame.draws[0]);
+  for (Draw& draw : scene.frame.draws) draw.state.depth.function = Compare::less_equal;
+  scene.trace.materials.resize(2);
+  scene.trace.materials[0].alpha_mode = AlphaMode::mask;
+  scene.trace.materials[1].alpha_mode = AlphaMode::blend;
+  scene.frame.draws[1].material = 0;
+  scene.frame.draws[2].material = 1;
+  EXPECT_EQ(scene.setup().draws, (std::vector<std::uint32_t>{1, 0, 2}));
+}
+
 // Where two draws are equally near, the later one wins if its depth function says so.
 TEST(PlacedSetup, WinnersComeFirst) {
   Scene scene = clip_space_scene({{0, 0, 0}, {0.5f, 0, 0}, {0, 0.5f, 0}, {0, 0, 0}, {0.5f, 0, 0}, {0, 0.25f, 0}});

@@ -115,7 +115,8 @@ TEST(Motion, FollowsPlacedDepths) {
   const double depth = (clip.z / clip.w - 1) / 2;
   for (const DrawPlacement& placement :
        {DrawPlacement{.depth_scale = 0.5, .depth_offset = -0.25}, DrawPlacement{.depth_scale = -1, .depth_offset = -1},
-        DrawPlacement{.depth_scale = 0.375, .depth_offset = -1.5}}) {
+        DrawPlacement{.depth_scale = 0.375, .depth_offset = -1.5},
+        DrawPlacement{.depth_scale = 0.375, .depth_offset = 0.9375}}) {
     const auto placed = static_cast<float>(placement.depth_scale * depth + placement.depth_offset);
     const std::vector<glm::vec2> found = placed_vectors(full_surface(placed), now, before, placement);
     for (std::int32_t column = 0; column < kSize; ++column) {
