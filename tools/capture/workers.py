@@ -53,7 +53,8 @@ def extract(processes, capture, folder, display, target, jobs, progress, deadlin
         if process.poll() is None and any(other.poll() not in (None, 0) for other, _ in workers):
             processes.end(process)
             continue
-        result = _result(stem + ".pickle") if process is not workers[0][0] or pictures is None else pictures
+        is_loaded = process is workers[0][0] and pictures is not None
+        result = pictures if is_loaded else _result(stem + ".pickle")
         if isinstance(result, str):
             raise Failure(result)
         if result is None:
