@@ -171,25 +171,52 @@ class Captures(unittest.TestCase):
             self.assertIn(part, done.stderr)
             self.assertEqual(done.stderr.count("\n"), 1)
 
-    def test_an_interrupt_ends_everything_that_was_started(self):
-        if shutil.which("glxgears") is None:
-            self.skipTest("glxgears is not installed")
-        running = subprocess.Popen([BEAMPIPE, "capture", "--after", "1000", "--timeout", "1000", "-o",
-                                    os.path.join(self.folder, "a.json"), "--", "glxgears"],
-                                   env=environment(), stdin=subprocess.DEVNULL, stdout=subprocess.DEVNULL,
-                                   stderr=subprocess.PIPE, text=True)
-        children = []
-        for _ in range(200):
-            time.sleep(0.05)
-            children = self.children_of(running.pid)
-            if len(children) >= 2 or running.poll() is not None:
-                break
-        running.send_signal(signal.SIGINT)
+    def start(self, *program):
+        return subprocess.Popen([BEAMPIPE, "capture", "--after", "1000", "--timeout", "1000", "-o",
+                                 os.path.join(self.folder, "a.json"), "--", *program],
+                                env=environment(), stdin=subprocess.DEVNULL, stdout=subprocess.DEVNULL,
+                                stderr=subprocess.PIPE, text=True)
+
+    def check_interrupted(self, running, children):
         _, error = running.communicate(timeout=60)
         self.assertEqual((running.returncode, error), (130, "beampipe: interrupted\n"))
         for child in children:
             self.assertFalse(os.path.exists(f"/proc/{child}"), child)
         self.assertEqual(os.listdir(self.folder), [])
+
+    def test_an_interrupt_ends_everything_that_was_started(self):
+        if shutil.which("glxgears") is None:
+            self.skipTest("glxgears is not installed")
+        for number in (signal.SIGINT, signal.SIGTERM, signal.SIGHUP):
+            with self.subTest(number.name):
+                running = self.start("glxgears")
+                children = []
+                for _ in range(200):
+                    time.sleep(0.05)
+                    children = self.children_of(running.pid)
+                    if len(children) >= 2 or running.poll() is not None:
+                        break
+                self.assertGreaterEqual(len(children), 2)
+                running.send_signal(number)
+                self.check_interrupted(running, children)
+
+    def test_more_interrupts_do_not_save_a_program_that_ignores_them(self):
+        """The program has also started one in a session of its own."""
+        with tempfile.TemporaryDirectory() as notes:
+            path = os.path.join(notes, "numbers")
+            script = f"trap '' TERM HUP INT; setsid sleep 1000 & echo $$ $! > {path}.part; mv {path}.part {path}; wait"
+            running = self.start("sh", "-c", script)
+            for _ in range(400):
+                time.sleep(0.05)
+                if os.path.exists(path) or running.poll() is not None:
+                    break
+            with open(path) as file:
+                children = [int(word) for word in file.read().split()] + self.children_of(running.pid)
+            time.sleep(0.2)  # setsid has run
+            for _ in range(3):  # the first during the wait for the program, the others during the clean-up
+                running.send_signal(signal.SIGINT)
+                time.sleep(0.5)
+            self.check_interrupted(running, children)
 
     def children_of(self, parent):
         found = []

@@ -1,10 +1,14 @@
 """Unit tests of tools/capture that need numpy and nothing else: `python3 units_test.py FOLDER_OF_TOOLS_CAPTURE`."""
+import contextlib
+import importlib.util
+import io
 import os
 import struct
 import sys
 import tempfile
 import unittest
 import zlib
+from unittest import mock
 
 import numpy as np
 
@@ -23,6 +27,24 @@ import shading
 import srgb
 import state
 import trace_file
+
+
+class Errors(unittest.TestCase):
+    def test_an_internal_error_is_one_line_unless_it_is_looked_for(self):
+        path = os.path.join(sys.path[0], "__main__.py")
+        spec = importlib.util.spec_from_file_location("capture_main", path)
+        program = importlib.util.module_from_spec(spec)
+        spec.loader.exec_module(program)
+
+        def fail(_):
+            raise ValueError("two\nlines")
+        program.run = fail
+        words = ["-o", "a.json", "--", "true"]
+        with contextlib.redirect_stderr(io.StringIO()) as error, mock.patch.dict(os.environ, {program.DEBUG: ""}):
+            self.assertEqual(program.main(words), 1)
+        self.assertRegex(error.getvalue(), r"\Abeampipe: error: internal error: ValueError: two lines \([^\n]*\n\Z")
+        with mock.patch.dict(os.environ, {program.DEBUG: "1"}), self.assertRaises(ValueError):
+            program.main(words)
 
 
 class Triangles(unittest.TestCase):

@@ -28,6 +28,7 @@ Examples:
   beampipe compare gears.json -t beam msaa:8 -o out
 
 Exit codes: 0 success, 1 failure, 2 wrong usage, 3 missing packages, 130 interrupted."""
+DEBUG = "BEAMPIPE_CAPTURE_DEBUG"  # an environment variable
 FILE_KINDS = (".rdc", ".trace", ".gfxr")
 
 
@@ -173,6 +174,8 @@ def run(arguments):
     from display import display_for
     from workers import extract
     with tempfile.TemporaryDirectory(prefix="beampipe-capture-") as folder, Processes() as processes:
+        # Of all that is started, and of RenderDoc in this process: it writes logs.
+        os.environ.update(TMPDIR=folder, RENDERDOC_TEMP=folder)
         progress.show("starting")
         display = display_for(processes)
         recording, captures = None, arguments.program
@@ -195,7 +198,9 @@ def run(arguments):
 
 
 def main(words):
-    signal.signal(signal.SIGTERM, signal.default_int_handler)  # ends what was started, as Ctrl-C does
+    for number in (signal.SIGTERM, signal.SIGHUP):  # end what was started, as Ctrl-C does
+        if signal.getsignal(number) != signal.SIG_IGN:  # nohup
+            signal.signal(number, signal.default_int_handler)
     try:
         run(parse(words))
         return 0
@@ -204,11 +209,18 @@ def main(words):
         print(f"beampipe: error: {' '.join(str(error).split())}", file=sys.stderr)
         return code
     except OSError as error:
-        print(f"beampipe: error: {error.filename or ''}: {error.strerror}", file=sys.stderr)
+        place = f"{error.filename}: " if error.filename else ""
+        print(f"beampipe: error: {place}{error.strerror or error}", file=sys.stderr)
         return 1
     except KeyboardInterrupt:
         print("beampipe: interrupted", file=sys.stderr)
         return 130
+    except Exception as error:
+        if os.environ.get(DEBUG):
+            raise
+        print(f"beampipe: error: internal error: {' '.join(f'{type(error).__name__}: {error}'.split())} "
+              f"(with {DEBUG}=1 in the environment, it says where)", file=sys.stderr)
+        return 1
 
 
 if __name__ == "__main__":

@@ -36,10 +36,12 @@ def extract(processes, capture, folder, display, target, jobs, progress, deadlin
                                        stem + ".json"], env=environment, stdin=subprocess.DEVNULL, stdout=log,
                                       stderr=log)
         workers.append((process, stem))
+    pictures, total = None, ""
     while any(process.poll() is None for process, _ in workers):
         done = sum(os.path.getsize(stem + ".count") for _, stem in workers if os.path.exists(stem + ".count"))
-        pictures = _result(workers[0][1] + ".pickle") if workers[0][0].poll() is not None else None
-        total = f" of {len(pictures['events'])}" if isinstance(pictures, dict) else ""
+        if pictures is None and workers[0][0].poll() is not None:
+            pictures = _result(workers[0][1] + ".pickle")
+            total = f" of {len(pictures['events'])}" if isinstance(pictures, dict) else ""
         progress.show(f"reading draw {done}{total}")
         if time.monotonic() > deadline:
             raise Failure("the capture was not read within the time limit (see --timeout)")
@@ -51,7 +53,8 @@ def extract(processes, capture, folder, display, target, jobs, progress, deadlin
         if process.poll() is None and any(other.poll() not in (None, 0) for other, _ in workers):
             processes.end(process)
             continue
-        result = _result(stem + ".pickle")
+        is_loaded = process is workers[0][0] and pictures is not None
+        result = pictures if is_loaded else _result(stem + ".pickle")
         if isinstance(result, str):
             raise Failure(result)
         if result is None:
