@@ -311,7 +311,8 @@ TEST(DrawPlan, LeavesOutOtherBlendFunctions) {
   EXPECT_TRUE(plan.placements[1].is_opaque);
   EXPECT_EQ(plan.notes, (std::vector<DrawNote>{{"blending of premultiplied colours", true, 1, 1},
                                                {"a blend function other than alpha blending", true, 2, 2},
-                                               {"depth without colour", true, 1, 1}}));
+                                               {"depth without colour", true, 1, 1},
+                                               {"translucent, before opaque draws", false, 1, 1}}));
 }
 
 TEST(DrawPlan, APrePassIsDroppedWhereItsTrianglesAreDrawnAgain) {

@@ -294,6 +294,7 @@ TEST(PlacedSetup, CutoutsWinAndTranslucentDrawsDoNot) {
   scene.frame.draws.assign(3, scene.frame.draws[0]);
   for (Draw& draw : scene.frame.draws) draw.state.depth.function = Compare::less_equal;
   scene.trace.materials.resize(2);
+  for (Material& material : scene.trace.materials) material.double_sided = true;
   scene.trace.materials[0].alpha_mode = AlphaMode::mask;
   scene.trace.materials[1].alpha_mode = AlphaMode::blend;
   scene.frame.draws[1].material = 0;
