@@ -24,6 +24,15 @@ Frame flat_frame(const glm::dmat4& transform) {
   return frame;
 }
 
+// The near plane is 1 in front of the camera, the far plane 100.
+Frame perspective_frame() {
+  Frame frame;
+  frame.width = frame.height = kSize;
+  frame.projection = glm::perspectiveRH_NO(1.0, 1.0, 1.0, 100.0);
+  frame.draws.emplace_back();
+  return frame;
+}
+
 // Every pixel shows triangle 0 of draw 0 at one depth.
 SampleTile full_surface(float depth, const Sampling& sampling = {CellGrid{}, standard_pattern(1)}) {
   SampleTile surface(kTile, sampling, 0);
@@ -68,10 +77,7 @@ TEST(Motion, PointsBackAlongADrawsRotation) {
 TEST(Motion, FollowsTheCameraByDepth) {
   // The camera moves forward by 2. A surface that is now 10 in front of it was 12 in front of it, and 10/12 as far from
   // the centre of the picture. The background, at the far plane, is 100 in front of it and was 102.
-  Frame now;
-  now.width = now.height = kSize;
-  now.projection = glm::perspectiveRH_NO(1.0, 1.0, 1.0, 100.0);
-  now.draws.emplace_back();
+  const Frame now = perspective_frame();
   Frame before = now;
   before.view = glm::translate(kIdentity, glm::dvec3(0, 0, -2));
   const glm::dvec4 clip = now.projection * glm::dvec4(0, 0, -10, 1);
@@ -105,10 +111,7 @@ TEST(Motion, FollowsTheViewport) {
 
 // As FollowsTheCameraByDepth, with depths that the draw's state puts somewhere else.
 TEST(Motion, FollowsPlacedDepths) {
-  Frame now;
-  now.width = now.height = kSize;
-  now.projection = glm::perspectiveRH_NO(1.0, 1.0, 1.0, 100.0);
-  now.draws.emplace_back();
+  const Frame now = perspective_frame();
   Frame before = now;
   before.view = glm::translate(kIdentity, glm::dvec3(0, 0, -2));
   const glm::dvec4 clip = now.projection * glm::dvec4(0, 0, -10, 1);
