@@ -4,6 +4,7 @@
 #include <bit>
 #include <cmath>
 #include <cstdint>
+#include <unordered_set>
 
 namespace beampipe {
 namespace {
@@ -29,9 +30,14 @@ struct Group {
 
 class DepthOrder {
  public:
-  DepthOrder(const Trace& trace, const Frame& frame, std::vector<DrawPlacement>& placements,
-             std::vector<DrawNote>& notes)
-      : trace_(trace), frame_(frame), placements_(placements), notes_(notes), acts_as_writer_(frame.draws.size()) {}
+  DepthOrder(const Trace& trace, const Frame& frame, const std::vector<std::uint32_t>& geometry,
+             std::vector<DrawPlacement>& placements, std::vector<DrawNote>& notes)
+      : trace_(trace),
+        frame_(frame),
+        geometry_(geometry),
+        placements_(placements),
+        notes_(notes),
+        repeats_earlier_(frame.draws.size()) {}
 
   void find_groups() {
     std::uint32_t first = 0;
@@ -105,8 +111,8 @@ class DepthOrder {
     std::vector<std::uint32_t> draws;
     for (std::uint32_t i = first; i < end; ++i)
       if (placements_[i].is_drawn) draws.push_back(i);
-    for (const std::uint32_t i : draws) acts_as_writer_[i] = acts_as_writer(first, i);
-    const auto writes = [&](std::uint32_t i) { return acts_as_writer_[i]; };
+    find_repetitions(first, end);
+    const auto writes = [&](std::uint32_t i) { return acts_as_writer(i); };
     const auto needs_depth = [&](std::uint32_t i) { return writes(i) || !passes_always(depth_of(i)); };
     const auto first_writer = std::find_if(draws.begin(), draws.end(), writes);
     const auto tested_end =
@@ -133,7 +139,7 @@ class DepthOrder {
     }
     for (auto at = tested_end; at != draws.end(); ++at) put(*at, Part::in_front);
     choose_direction(group, first, end);
-    note_functions(group, first);
+    note_functions(group);
     if (!draws.empty()) groups_.push_back(std::move(group));
   }
 
@@ -151,7 +157,7 @@ class DepthOrder {
         note(draw, "depth functions less and greater are mixed");
   }
 
-  void note_functions(const Group& group, std::uint32_t first) {
+  void note_functions(const Group& group) {
     const std::vector<std::uint32_t>& tested = group.parts[static_cast<std::size_t>(Part::tested)];
     std::size_t last_opaque = 0;  // the number of the last opaque draw, and 1
     for (std::size_t i = 0; i < tested.size(); ++i)
@@ -160,28 +166,30 @@ class DepthOrder {
       const DepthState& depth = depth_of(tested[i]);
       if (depth.function == Compare::always && i > 0) note(tested[i], "depth function always, after other draws");
       if (depth.function == Compare::not_equal) note(tested[i], "depth function not_equal");
-      if (depth.function == Compare::equal && !repeats_earlier(first, tested[i]))
+      if (depth.function == Compare::equal && !repeats_earlier_[tested[i]])
         note(tested[i], "depth function equal, without an earlier draw of the same triangles");
       if (i + 1 >= last_opaque) continue;
       if (!is_opaque(tested[i])) {
         note(tested[i], "translucent, before opaque draws");
-      } else if (!acts_as_writer_[tested[i]]) {
+      } else if (!acts_as_writer(tested[i])) {
         note(tested[i], "depth is tested but not written, before other draws that test it");
       }
     }
   }
 
   // Does the draw's depth count for later draws? It may have been written by a pre-pass of the same triangles.
-  bool acts_as_writer(std::uint32_t first, std::uint32_t draw) const {
+  bool acts_as_writer(std::uint32_t draw) const {
     const DepthState& depth = depth_of(draw);
-    return writes_depth(depth) || (depth.test && passes_equal(depth.function) && repeats_earlier(first, draw));
+    return writes_depth(depth) || (depth.test && passes_equal(depth.function) && repeats_earlier_[draw]);
   }
 
-  // Has a draw of the same group, drawn or not, written the depths of the same triangles?
-  bool repeats_earlier(std::uint32_t first, std::uint32_t draw) const {
-    for (std::uint32_t i = first; i < draw; ++i)
-      if (writes_depth(depth_of(i)) && same_geometry(trace_, frame_.draws[i], frame_.draws[draw])) return true;
-    return false;
+  // Finds the draws of the group [first, end) whose triangles' depths an earlier one, drawn or not, has written.
+  void find_repetitions(std::uint32_t first, std::uint32_t end) {
+    std::unordered_set<std::uint32_t> written;
+    for (std::uint32_t i = first; i < end; ++i) {
+      repeats_earlier_[i] = written.contains(geometry_[i]);
+      if (writes_depth(depth_of(i))) written.insert(geometry_[i]);
+    }
   }
 
   void place_tested(const Group& group, const Interval& interval) {
@@ -221,26 +229,17 @@ class DepthOrder {
 
   const Trace& trace_;
   const Frame& frame_;
+  const std::vector<std::uint32_t>& geometry_;
   std::vector<DrawPlacement>& placements_;
   std::vector<DrawNote>& notes_;
-  std::vector<bool> acts_as_writer_;  // by draw
-  std::vector<Group> groups_;         // in the order of painting
+  std::vector<bool> repeats_earlier_;  // by draw
+  std::vector<Group> groups_;          // in the order of painting
 };
-
-bool same_positions(const Mesh& one, const Mesh& other) {
-  return one.positions == other.positions && one.ws == other.ws && one.triangles == other.triangles;
-}
 
 }  // namespace
 
 bool passes_equal(Compare function) {
   return function == Compare::less_equal || function == Compare::equal || function == Compare::greater_equal;
-}
-
-bool same_geometry(const Trace& trace, const Draw& one, const Draw& other) {
-  return one.transform == other.transform && one.state.viewport == other.state.viewport &&
-         one.state.depth.near == other.state.depth.near && one.state.depth.far == other.state.depth.far &&
-         (one.mesh == other.mesh || same_positions(trace.meshes[one.mesh], trace.meshes[other.mesh]));
 }
 
 bool is_translucent(const Trace& trace, const Draw& draw) {
@@ -252,9 +251,9 @@ bool is_translucent(const Trace& trace, const Draw& draw) {
   return std::ranges::any_of(trace.meshes[draw.mesh].materials, is_blended);
 }
 
-void order_depths(const Trace& trace, const Frame& frame, std::vector<DrawPlacement>& placements,
-                  std::vector<DrawNote>& notes) {
-  DepthOrder order(trace, frame, placements, notes);
+void order_depths(const Trace& trace, const Frame& frame, const std::vector<std::uint32_t>& geometry,
+                  std::vector<DrawPlacement>& placements, std::vector<DrawNote>& notes) {
+  DepthOrder order(trace, frame, geometry, placements, notes);
   order.find_groups();
   order.place();
 }

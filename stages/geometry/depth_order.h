@@ -16,6 +16,7 @@
 // (DrawPlacement::last_wins) come first, in reverse order.
 #pragma once
 
+#include <cstdint>
 #include <vector>
 
 #include "stages/data/draw_placement.h"
@@ -25,14 +26,12 @@
 namespace beampipe {
 
 // Sets depths, bias and last_wins of the draws that are drawn. Notes what depths cannot express.
-void order_depths(const Trace& trace, const Frame& frame, std::vector<DrawPlacement>& placements,
-                  std::vector<DrawNote>& notes);
+// `geometry`: geometry_numbers of the frame.
+void order_depths(const Trace& trace, const Frame& frame, const std::vector<std::uint32_t>& geometry,
+                  std::vector<DrawPlacement>& placements, std::vector<DrawNote>& notes);
 
 // Does a depth pass that is equal to the stored one, but not every depth?
 bool passes_equal(Compare function);
-
-// Do both draws put the same triangles at the same places?
-bool same_geometry(const Trace& trace, const Draw& one, const Draw& other);
 
 // Does a triangle of the draw have a material that is blended?
 bool is_translucent(const Trace& trace, const Draw& draw);

@@ -2,9 +2,11 @@
 
 #include <algorithm>
 #include <cmath>
+#include <unordered_set>
 
 #include "simd/vertex_transform.h"
 #include "stages/geometry/depth_order.h"
+#include "stages/geometry/draw_geometry.h"
 
 namespace beampipe {
 namespace {
@@ -68,7 +70,7 @@ void place_on_screen(const DrawState& state, double width, double height, DrawPl
 
 class Planner {
  public:
-  Planner(const Trace& trace, const Frame& frame) : trace_(trace), frame_(frame) {
+  Planner(const Trace& trace, const Frame& frame) : trace_(trace), frame_(frame), is_pre_pass_(frame.draws.size()) {
     plan.placements.resize(frame.draws.size());
   }
 
@@ -80,11 +82,11 @@ class Planner {
       place_on_screen(draw.state, frame_.width, frame_.height, placement);
       if (!placement.is_drawn) continue;
       placement.is_drawn = can_draw(draw, placement);
-      if (is_pre_pass(draw.state)) pre_passes_.push_back(i);
+      is_pre_pass_[i] = is_pre_pass(draw.state);
     }
-    for (const std::uint32_t i : pre_passes_)
-      if (!is_drawn_again(i)) leave_out(frame_.draws[i], "depth without colour");
-    order_depths(trace_, frame_, plan.placements, plan.notes);
+    const std::vector<std::uint32_t> geometry = geometry_numbers(trace_, frame_);
+    note_lone_pre_passes(geometry);
+    order_depths(trace_, frame_, geometry, plan.placements, plan.notes);
   }
 
   DrawPlan plan;
@@ -133,21 +135,20 @@ class Planner {
     return true;
   }
 
-  // Does a later draw of the same group draw the pre-pass's triangles?
-  bool is_drawn_again(std::uint32_t pre_pass) const {
-    for (std::uint32_t i = pre_pass + 1; i < frame_.draws.size(); ++i) {
-      const Draw& draw = frame_.draws[i];
-      if (draw.state.depth.cleared_before) return false;
-      if (plan.placements[i].is_drawn && draw.state.depth.test && passes_equal(draw.state.depth.function) &&
-          same_geometry(trace_, frame_.draws[pre_pass], draw))
-        return true;
+  // Notes the pre-passes whose triangles no later draw of the same group draws.
+  void note_lone_pre_passes(const std::vector<std::uint32_t>& geometry) {
+    std::unordered_set<std::uint32_t> drawn_again;
+    for (std::size_t i = frame_.draws.size(); i-- > 0;) {
+      const DepthState& depth = frame_.draws[i].state.depth;
+      if (is_pre_pass_[i] && !drawn_again.contains(geometry[i])) leave_out(frame_.draws[i], "depth without colour");
+      if (plan.placements[i].is_drawn && depth.test && passes_equal(depth.function)) drawn_again.insert(geometry[i]);
+      if (depth.cleared_before) drawn_again.clear();
     }
-    return false;
   }
 
   const Trace& trace_;
   const Frame& frame_;
-  std::vector<std::uint32_t> pre_passes_;  // draws
+  std::vector<bool> is_pre_pass_;  // by draw; of those that have pixels
 };
 
 }  // namespace

@@ -39,6 +39,16 @@ Real depth_bias(const DepthBiasTerms<Real>& terms, Real dzdx, Real dzdy) {
   return terms.window_scale * select(terms.clamp < zero, greater(above, terms.clamp), above);
 }
 
+// The bias, limited so that no vertex leaves the window depths 0 (at `window_offset`) to 1. `nearest` and `farthest`
+// are those of the vertices, between these two depths.
+template <class Real>
+Real limited_bias(Real bias, Real nearest, Real farthest, Real window_offset, Real window_scale) {
+  const Real end = window_offset + window_scale;
+  const Real towards_viewer = lesser(Real(0.0), lesser(window_offset, end) - nearest);
+  const Real away = greater(Real(0.0), greater(window_offset, end) - farthest);
+  return lesser(greater(bias, towards_viewer), away);
+}
+
 // Twice the signed area; positive if the vertices are clockwise with y down.
 template <class Int>
 Int doubled_area(const std::array<Int, 3>& x, const std::array<Int, 3>& y) {

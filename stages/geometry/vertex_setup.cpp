@@ -362,16 +362,14 @@ class TriangleSetup {
     ++work.placed;
   }
 
-  // No vertex leaves the window depths 0..1, so that draws stay in their interval of depths.
+  // Limited, so that draws stay in their interval of depths.
   void add_bias(SetupTriangle& triangle) {
     const DrawPlacement& to = screen_.placement;
     const auto [nearest, farthest] = std::minmax({triangle.vertex_z[0], triangle.vertex_z[1], triangle.vertex_z[2]});
-    const double end = to.window_offset + to.window_scale;
-    const double towards_viewer = std::min(0.0, std::min(to.window_offset, end) - static_cast<double>(nearest));
-    const double away = std::max(0.0, std::max(to.window_offset, end) - static_cast<double>(farthest));
-    const double bias = std::clamp(depth_bias<double>({to.bias_constant, to.bias_slope, to.bias_clamp, to.window_scale},
-                                                      triangle.depth.dzdx, triangle.depth.dzdy),
-                                   towards_viewer, away);
+    const double bias =
+        limited_bias<double>(depth_bias<double>({to.bias_constant, to.bias_slope, to.bias_clamp, to.window_scale},
+                                                triangle.depth.dzdx, triangle.depth.dzdy),
+                             nearest, farthest, to.window_offset, to.window_scale);
     triangle.depth.z += bias;
     for (float& z : triangle.vertex_z) z = static_cast<float>(z + bias);
     ++work.biased;

@@ -36,7 +36,8 @@ OperationCounts placed_cost() { return {.mul_add = 3 + 1, .add = 3 + 1}; }
 OperationCounts bias_cost() {
   return count_operations([](OperationCounts& counts) {
     const CountedReal x(1.0, counts);
-    const CountedReal bias = depth_bias<CountedReal>({x, x, x, x}, x, x);
+    counts.add += 2 * 2;  // the nearest and the farthest corner
+    const CountedReal bias = limited_bias(depth_bias<CountedReal>({x, x, x, x}, x, x), x, x, x, x);
     for (int corner = 0; corner < 3 + 1; ++corner) static_cast<void>(x + bias);
   });
 }
