@@ -1,0 +1,164 @@
+#!/usr/bin/env python3
+"""Runs the DRAM requests of frames through DRAMsim3 and Ramulator 2 and prints their times beside the model's.
+
+  docs/dram_simulators.py PROGRAM --dramsim3 FOLDER --ramulator2 FOLDER -t SPEC... -- TRACE...
+
+The folders are checkouts that have been built: DRAMsim3's build/dramsim3main and configs/, Ramulator 2's python/ with
+its extension module, built for the Python that runs this script. docs/memory_trace.md says how.
+
+Both simulators take at most one request per clock from a file, which is what two of the 48 pseudo channels of the
+modelled GPU need. So the requests are dealt to channels here, 256 bytes at a time, and each channel is simulated by
+itself. The time of the frame is that of the slowest channel.
+"""
+
+import argparse
+import configparser
+import json
+import pathlib
+import subprocess
+import sys
+import tempfile
+
+SECTOR = 32
+INTERLEAVE = 256  # bytes in a row on one channel
+EPOCH = 500  # cycles: how exactly the end is known in DRAMsim3's statistics
+
+# Name, configuration, what it changes in it, nanoseconds per cycle, cycles that a burst of 32 bytes takes at least, and
+# the number of channels whose rates together are closest to the model's 652.8 GB/s. Only what makes bursts of 32 bytes
+# and channels of their width is changed, and HBM2's clock, which is that of a Titan V (850 MHz).
+DRAMSIM3 = [
+    ("HBM2", "HBM2_8Gb_x128.ini",
+     {"dram_structure": {"device_width": "64", "columns": "128"}, "system": {"bus_width": "64", "channel_size": "512"},
+      "timing": {"tCK": "1.17647"}}, 1.17647, 2, 48),
+    ("GDDR5", "GDDR5_8Gb_x32.ini", {"system": {"bus_width": "32", "channel_size": "1024"}}, 0.667, 2, 27),
+    ("GDDR6", "GDDR6_8Gb_x16.ini", {"system": {"bus_width": "16", "channel_size": "1024"}}, 0.66, 3, 40),
+]
+RAMULATOR_CHANNELS, RAMULATOR_NS, RAMULATOR_CYCLES = 24, 1.17647, 1  # of two pseudo channels each
+
+
+def deal(lines, channels):
+    """The requests of each channel, as (address within the channel, access, nanosecond)."""
+    dealt = [[] for _ in range(channels)]
+    for address, access, nanosecond in lines:
+        block, offset = divmod(address, INTERLEAVE)
+        dealt[block % channels].append((block // channels * INTERLEAVE + offset, access, nanosecond))
+    return dealt
+
+
+def run_dramsim3(folder, work, memory, dealt):
+    """Cycles of each channel, and row activations of all."""
+    name, file, changes, tck, burst, _ = memory
+    config = configparser.ConfigParser(inline_comment_prefixes=(";",), strict=False)
+    config.optionxform = str
+    text = (folder / "configs" / file).read_text()
+    config.read_string(text)
+    for section, values in changes.items():
+        config[section].update(values)
+    config["system"]["channels"] = "1"
+    config["other"].update({"epoch_period": str(EPOCH), "output_level": "1"})
+    with open(work / "memory.ini", "w") as out:
+        config.write(out)
+    cycles, activations = [], 0
+    for requests in dealt:
+        if not requests:
+            cycles.append(0)
+            continue
+        # Without a newline at its end, the file's last line is not read twice.
+        (work / "requests").write_text(
+            "\n".join(f"{address:#x} {access} {int(ns / tck)}" for address, access, ns in requests))
+        most = int(requests[-1][2] / tck) + 4 * burst * len(requests) + 20000
+        subprocess.run([folder / "build/dramsim3main", work / "memory.ini", "-c", str(most), "-t", work / "requests",
+                        "-o", work], check=True, stdout=subprocess.DEVNULL)
+        total = json.loads((work / "dramsim3.json").read_text())["0"]
+        moved = total["num_reads_done"] + total["num_writes_done"]
+        if moved != len(requests):
+            sys.exit(f"{name}: DRAMsim3 has served {moved} of {len(requests)} requests in {most} cycles")
+        epochs = json.loads((work / "dramsim3epoch.json").read_text())
+        last = max(i for i, epoch in enumerate(epochs)
+                   if any(c["num_reads_done"] + c["num_writes_done"] for c in epoch.values() if isinstance(c, dict)))
+        cycles.append((last + 1) * EPOCH)
+        activations += total["num_act_cmds"]
+    return cycles, activations
+
+
+def run_ramulator2(work, dealt):
+    """Cycles of each channel, and row misses and conflicts of all."""
+    import ramulator
+    cycles, activations = [], 0
+    for requests in dealt:
+        if not requests:
+            cycles.append(0)
+            continue
+        (work / "requests").write_text(
+            "".join(f"{'ST' if access == 'WRITE' else 'LD'} {address:#x}\n" for address, access, _ in requests))
+        controller = ramulator.controller.HBM12(
+            dram=ramulator.dram.HBM2(org_preset="HBM2_8Gb", timing_preset="HBM2_2000Mbps"),
+            scheduler=ramulator.scheduler.FRFCFSRowHit(), refresh_manager=ramulator.refresh_manager.AllBank(),
+            row_policy=ramulator.row_policy.Open(), addr_mapper=ramulator.addr_mapper.MOP4CLXOR(),
+            read_buffer_size=64, write_buffer_size=64)
+        memory = ramulator.memory_system.GenericDRAM(
+            clock_ratio=1, controllers=[controller],
+            channel_mapper=ramulator.channel_mapper.PassThroughChannelMapper())
+        frontend = ramulator.frontend.LoadStoreTrace(clock_ratio=4, path=str(work / "requests"))
+        simulation = ramulator.Simulation(frontend, memory)
+        simulation.run()
+        stats = simulation.stats["memory_system"]["controller"]
+        cycles.append(stats["cycles"])
+        activations += stats["row_misses"] + stats["row_conflicts"]
+    return cycles, activations
+
+
+def row(scene, spec, simulator, cycles, ns, burst, requests, activations, model_ms):
+    bytes_moved = requests * SECTOR
+    slowest, mean = max(cycles), sum(cycles) / len(cycles)
+    ms = slowest * ns / 1e6
+    busy = requests / len(cycles) * burst
+    print(f"| {scene} | `{spec}` | {simulator} | {slowest:,} | {ms:.3f} | {bytes_moved / ms / 1e6:.0f} | "
+          f"{busy / slowest * 100:.0f} % | {busy / mean * 100:.0f} % | {activations / requests * 100:.1f} % | "
+          f"{ms / model_ms:.2f} |", flush=True)
+
+
+def main():
+    parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
+    parser.add_argument("program")
+    parser.add_argument("--dramsim3", type=pathlib.Path, required=True)
+    parser.add_argument("--ramulator2", type=pathlib.Path, required=True)
+    parser.add_argument("-t", "--technique", nargs="+", required=True)
+    parser.add_argument("traces", nargs="+")
+    arguments = parser.parse_args()
+    sys.path.insert(0, str(arguments.ramulator2 / "python"))
+    print("| scene | technique | memory | cycles | ms | GB/s | of peak | with equal channels | rows opened per request | "
+          "time over model's |")
+    print("|---|---|---|---|---|---|---|---|---|---|")
+    for trace in arguments.traces:
+        for spec in arguments.technique:
+            with tempfile.TemporaryDirectory() as folder:
+                work = pathlib.Path(folder)
+                subprocess.run([arguments.program, "run", trace, "-t", spec, "-o", work / "out", "--frames", "0",
+                                "--memory-trace", work / "trace"], check=True, stderr=subprocess.DEVNULL,
+                               stdout=subprocess.DEVNULL)
+                report = json.loads((work / "out/report.json").read_text())
+                rate = report["hardware"]["rates"]["dram_bytes_per_clk"] * report["hardware"]["clock_mhz"] / 1e3
+                lines = []
+                with open(work / "trace") as text:
+                    for line in text:
+                        address, access, nanosecond = line.split()
+                        lines.append((int(address, 16), access, int(nanosecond)))
+                bytes_moved = sum(stage["dram_bytes"] for stage in report["results"][0]["frames"][0]["stages"])
+                if len(lines) * SECTOR != bytes_moved:
+                    sys.exit(f"{trace}, {spec}: {len(lines)} requests are not the report's {bytes_moved} bytes")
+                model_ms = bytes_moved / rate / 1e6
+                scene = pathlib.Path(trace).stem
+                print(f"| {scene} | `{spec}` | model | | {model_ms:.3f} | {rate:.0f} | 100 % | 100 % | | 1.00 |",
+                      flush=True)
+                for memory in DRAMSIM3:
+                    cycles, activations = run_dramsim3(arguments.dramsim3, work, memory, deal(lines, memory[5]))
+                    row(scene, spec, "DRAMsim3, " + memory[0], cycles, memory[3], memory[4], len(lines), activations,
+                        model_ms)
+                cycles, activations = run_ramulator2(work, deal(lines, RAMULATOR_CHANNELS))
+                row(scene, spec, "Ramulator 2, HBM2", cycles, RAMULATOR_NS, RAMULATOR_CYCLES, len(lines), activations,
+                    model_ms)
+
+
+if __name__ == "__main__":
+    main()
