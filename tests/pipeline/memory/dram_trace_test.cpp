@@ -136,8 +136,8 @@ TEST(DramTrace, DoesNotDependOnThreadsOrBands) {
       const std::vector<Recorded> expected = render(spec, trace, {1}).requests;
       EXPECT_EQ(render(spec, trace, {3}).requests, expected) << spec << ", " << scene;
     }
-  RunOptions banded{2};
-  banded.memory_limit = 40000;
+  RunOptions banded{4};
+  banded.memory_limit = 2 << 20;  // too little for the pairs of four bins at once
   const Trace trace = random_trace(52, 40, 150, 5);
   for (const char* spec : {"beam:order=sorted", "msaa:4"})
     EXPECT_EQ(render(spec, trace, banded).requests, render(spec, trace).requests) << spec;
@@ -149,7 +149,8 @@ TEST(DramTrace, ReadsWhatWasWrittenEarlier) {
   run.memory.framebuffer = Place::in_memory;
   const std::set<std::string> arrays = {"setup_triangles", "attributes", "bin_lists", "bin_keys",    "depth",
                                         "samples",         "coverage",   "mask",      "accumulator", "a_buffer_heads"};
-  for (const char* spec : kSpecs) {
+  for (const std::string spec : kSpecs) {
+    if (spec == "reference") continue;  // its samples are in no memory
     std::set<std::uint64_t> written;
     std::size_t early = 0, found = 0;
     for (const Recorded& request : render(spec, random_trace(52, 40, 150, 5), run).requests) {
@@ -178,7 +179,7 @@ TEST(DramTrace, ComesPassByPass) {
   EXPECT_LE(last(msaa, "depth_test"), first(msaa, "resolve"));
   const std::vector<Recorded> taa = render("taa:4", trace).requests;
   EXPECT_LE(last(taa, "motion"), first(taa, "temporal"));
-  const std::vector<Recorded> acaa = render("acaa:16", trace).requests;  // setup runs again for each round
+  const std::vector<Recorded> acaa = render("acaa:32", trace).requests;  // setup runs again in the second round
   EXPECT_LT(first(acaa, "accumulate"), last(acaa, "vertex_setup"));
   const std::vector<Recorded> beam = render("beam", trace).requests;
   EXPECT_LT(first(beam, "resolve"), last(beam, "conservative_raster")) << "pixels on chip: one bin after the other";
