@@ -35,7 +35,10 @@ DRAMSIM3 = [
 ]
 RAMULATOR_CHANNELS, RAMULATOR_NS, RAMULATOR_CYCLES = 24, 1.17647, 1  # of two pseudo channels each
 
-RAMULATOR_MAPPERS = ["RoBaRaCoCh", "MOP4CLXOR"]  # whole rows one after the other; 128 bytes to each bank in turn
+# Where addresses of a channel lie. Two mappings are Ramulator 2's own: rows of 1 KiB one after the other (RoBaRaCoCh),
+# and 128 bytes on each bank in turn (MOP4CLXOR). With the third one, 32 bytes go to each bank group of each pseudo
+# channel in turn, so that bursts in a row are in different bank groups and yet in rows that stay open.
+RAMULATOR_MAPPERS = ["RoBaRaCoCh", "MOP4CLXOR", "bank groups in turn"]
 
 
 def deal(lines, channels):
@@ -81,16 +84,26 @@ def run_dramsim3(folder, work, memory, dealt):
     return cycles, activations
 
 
+def bank_groups_in_turn(address):
+    """The address that RoBaRaCoCh maps to that place: from the lowest bit, it takes 5 bits of the burst in the row, 1 of
+    the pseudo channel and 2 of the bank group."""
+    burst = address // SECTOR
+    group, pseudo, column, rest = burst & 3, burst >> 2 & 1, burst >> 3 & 31, burst >> 8
+    return (column | pseudo << 5 | group << 6 | rest << 8) * SECTOR
+
+
 def run_ramulator2(work, mapper, dealt):
     """Cycles of each channel, and row misses and conflicts of all."""
     import ramulator
+    place = bank_groups_in_turn if mapper == RAMULATOR_MAPPERS[-1] else int
+    mapper = "RoBaRaCoCh" if mapper == RAMULATOR_MAPPERS[-1] else mapper
     cycles, activations = [], 0
     for requests in dealt:
         if not requests:
             cycles.append(0)
             continue
         (work / "requests").write_text(
-            "".join(f"{'ST' if access == 'WRITE' else 'LD'} {address:#x}\n" for address, access, _ in requests))
+            "".join(f"{'ST' if access == 'WRITE' else 'LD'} {place(address):#x}\n" for address, access, _ in requests))
         controller = ramulator.controller.HBM12(
             dram=ramulator.dram.HBM2(org_preset="HBM2_8Gb", timing_preset="HBM2_2000Mbps"),
             scheduler=ramulator.scheduler.FRFCFSRowHit(), refresh_manager=ramulator.refresh_manager.AllBank(),

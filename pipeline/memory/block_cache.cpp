@@ -142,12 +142,12 @@ void BlockCache::write_back(const Line& line, StageCounters& counters) {
 void BlockCache::pass_on(DramAccess access, std::size_t block, Sectors sectors, StageCounters& counters) {
   counters.dram_bytes += kBits[sectors] * kSectorBytes;
   if (level_ == Level::rop) counters.l2_bytes += kBits[sectors] * kSectorBytes;
-  if (places_.log) record(access, block, sectors, counters);
+  if (places_.log && sectors != 0) record(access, block, sectors, counters);
 }
 
 void BlockCache::record(DramAccess access, std::size_t block, Sectors sectors, const StageCounters& counters) {
   places_.log->reach_pass(next_pass_);
-  wrote_ |= access == DramAccess::write && sectors != 0;
+  wrote_ |= access == DramAccess::write;
   const BlockPlaces::Line line = places_.lines.empty() ? BlockPlaces::Line{places_.array, block} : places_.lines[block];
   for (std::uint32_t left = sectors; left != 0;) {
     const auto first = static_cast<std::uint32_t>(std::countr_zero(left));
