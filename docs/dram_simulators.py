@@ -35,10 +35,8 @@ DRAMSIM3 = [
 ]
 RAMULATOR_CHANNELS, RAMULATOR_NS, RAMULATOR_CYCLES = 24, 1.17647, 1  # of two pseudo channels each
 
-# Where addresses of a channel lie. Two mappings are Ramulator 2's own: rows of 1 KiB one after the other (RoBaRaCoCh),
-# and 128 bytes on each bank in turn (MOP4CLXOR). With the third one, 32 bytes go to each bank group of each pseudo
-# channel in turn, so that bursts in a row are in different bank groups and yet in rows that stay open.
-RAMULATOR_MAPPERS = ["RoBaRaCoCh", "MOP4CLXOR", "bank groups in turn"]
+# Rows of 1 KiB one after the other, or 128 bytes on each bank in turn.
+RAMULATOR_MAPPERS = ["RoBaRaCoCh", "MOP4CLXOR"]
 
 
 def deal(lines, channels):
@@ -84,26 +82,16 @@ def run_dramsim3(folder, work, memory, dealt):
     return cycles, activations
 
 
-def bank_groups_in_turn(address):
-    """The address that RoBaRaCoCh maps to that place: from the lowest bit, it takes 5 bits of the burst in the row, 1 of
-    the pseudo channel and 2 of the bank group."""
-    burst = address // SECTOR
-    group, pseudo, column, rest = burst & 3, burst >> 2 & 1, burst >> 3 & 31, burst >> 8
-    return (column | pseudo << 5 | group << 6 | rest << 8) * SECTOR
-
-
 def run_ramulator2(work, mapper, dealt):
     """Cycles of each channel, and row misses and conflicts of all."""
     import ramulator
-    place = bank_groups_in_turn if mapper == RAMULATOR_MAPPERS[-1] else int
-    mapper = "RoBaRaCoCh" if mapper == RAMULATOR_MAPPERS[-1] else mapper
     cycles, activations = [], 0
     for requests in dealt:
         if not requests:
             cycles.append(0)
             continue
         (work / "requests").write_text(
-            "".join(f"{'ST' if access == 'WRITE' else 'LD'} {place(address):#x}\n" for address, access, _ in requests))
+            "".join(f"{'ST' if access == 'WRITE' else 'LD'} {address:#x}\n" for address, access, _ in requests))
         controller = ramulator.controller.HBM12(
             dram=ramulator.dram.HBM2(org_preset="HBM2_8Gb", timing_preset="HBM2_2000Mbps"),
             scheduler=ramulator.scheduler.FRFCFSRowHit(), refresh_manager=ramulator.refresh_manager.AllBank(),
@@ -124,14 +112,37 @@ def run_ramulator2(work, mapper, dealt):
     return cycles, activations
 
 
-def row(scene, spec, simulator, cycles, ns, burst, requests, activations, model_ms):
+def turns(dealt):
+    """How often a channel goes over from reads to writes or back."""
+    return sum(a[1] != b[1] for requests in dealt for a, b in zip(requests, requests[1:]))
+
+
+def row(scene, spec, simulator, cycles, ns, burst, dealt, activations, model_ms):
+    requests = sum(map(len, dealt))
     bytes_moved = requests * SECTOR
     slowest, mean = max(cycles), sum(cycles) / len(cycles)
     ms = slowest * ns / 1e6
     busy = requests / len(cycles) * burst
     print(f"| {scene} | `{spec}` | {simulator} | {slowest:,} | {ms:.3f} | {bytes_moved / ms / 1e6:.0f} | "
           f"{busy / slowest * 100:.0f} % | {busy / mean * 100:.0f} % | {activations / requests * 100:.1f} % | "
-          f"{ms / model_ms:.2f} |", flush=True)
+          f"{turns(dealt) / requests * 100:.1f} % | {ms / model_ms:.2f} |", flush=True)
+
+
+def print_streams(dramsim3):
+    """The share of the peak that one channel of HBM2 reaches on a stream that turns every so many requests."""
+    print("| requests between turns | DRAMsim3 |" + "".join(f" Ramulator 2, {m} |" for m in RAMULATOR_MAPPERS))
+    print("|---|---|" + "---|" * len(RAMULATOR_MAPPERS))
+    count, far = 1 << 15, 1 << 26
+    for length in (count, 1024, 64, 32):
+        requests = [(i * SECTOR + i // length % 2 * far, "WRITE" if i // length % 2 else "READ", 0)
+                    for i in range(count)]
+        with tempfile.TemporaryDirectory() as folder:
+            work, memory = pathlib.Path(folder), DRAMSIM3[0]
+            shares = [count * memory[4] / run_dramsim3(dramsim3, work, memory, [requests])[0][0]]
+            shares += [count * RAMULATOR_CYCLES / run_ramulator2(work, mapper, [requests])[0][0]
+                       for mapper in RAMULATOR_MAPPERS]
+        name = "reads only" if length == count else length
+        print(f"| {name} |" + "".join(f" {share * 100:.0f} % |" for share in shares), flush=True)
 
 
 def main():
@@ -139,13 +150,16 @@ def main():
     parser.add_argument("program")
     parser.add_argument("--dramsim3", type=pathlib.Path, required=True)
     parser.add_argument("--ramulator2", type=pathlib.Path, required=True)
-    parser.add_argument("-t", "--technique", nargs="+", required=True)
-    parser.add_argument("traces", nargs="+")
+    parser.add_argument("-t", "--technique", nargs="+", default=[])
+    parser.add_argument("--streams", action="store_true", help="print what simple streams reach, and no frames")
+    parser.add_argument("traces", nargs="*")
     arguments = parser.parse_args()
     sys.path.insert(0, str(arguments.ramulator2 / "python"))
-    print("| scene | technique | memory | cycles | ms | GB/s | of peak | with equal channels | rows opened per request | "
-          "time over model's |")
-    print("|---|---|---|---|---|---|---|---|---|---|")
+    if arguments.streams:
+        return print_streams(arguments.dramsim3)
+    print("| scene | technique | memory | cycles | ms | GB/s | of peak | with equal channels | rows opened | turns | time over "
+          "model's |")
+    print("|---|---|---|---|---|---|---|---|---|---|---|")
     for trace in arguments.traces:
         for spec in arguments.technique:
             with tempfile.TemporaryDirectory() as folder:
@@ -165,15 +179,17 @@ def main():
                     sys.exit(f"{trace}, {spec}: {len(lines)} requests are not the report's {bytes_moved} bytes")
                 model_ms = bytes_moved / rate / 1e6
                 scene = pathlib.Path(trace).stem
-                print(f"| {scene} | `{spec}` | model | | {model_ms:.3f} | {rate:.0f} | 100 % | 100 % | | 1.00 |",
+                print(f"| {scene} | `{spec}` | model | | {model_ms:.3f} | {rate:.0f} | 100 % | 100 % | | | 1.00 |",
                       flush=True)
                 for memory in DRAMSIM3:
-                    cycles, activations = run_dramsim3(arguments.dramsim3, work, memory, deal(lines, memory[5]))
-                    row(scene, spec, "DRAMsim3, " + memory[0], cycles, memory[3], memory[4], len(lines), activations,
+                    dealt = deal(lines, memory[5])
+                    cycles, activations = run_dramsim3(arguments.dramsim3, work, memory, dealt)
+                    row(scene, spec, "DRAMsim3, " + memory[0], cycles, memory[3], memory[4], dealt, activations,
                         model_ms)
+                dealt = deal(lines, RAMULATOR_CHANNELS)
                 for mapper in RAMULATOR_MAPPERS:
-                    cycles, activations = run_ramulator2(work, mapper, deal(lines, RAMULATOR_CHANNELS))
-                    row(scene, spec, f"Ramulator 2, HBM2, {mapper}", cycles, RAMULATOR_NS, RAMULATOR_CYCLES, len(lines),
+                    cycles, activations = run_ramulator2(work, mapper, dealt)
+                    row(scene, spec, f"Ramulator 2, HBM2, {mapper}", cycles, RAMULATOR_NS, RAMULATOR_CYCLES, dealt,
                         activations, model_ms)
 
 
