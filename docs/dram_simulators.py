@@ -151,6 +151,7 @@ def main():
     parser.add_argument("--dramsim3", type=pathlib.Path, required=True)
     parser.add_argument("--ramulator2", type=pathlib.Path, required=True)
     parser.add_argument("-t", "--technique", nargs="+", default=[])
+    parser.add_argument("--reads", action="store_true", help="take writes for reads, to see what turns cost")
     parser.add_argument("--streams", action="store_true", help="print what simple streams reach, and no frames")
     parser.add_argument("traces", nargs="*")
     arguments = parser.parse_args()
@@ -173,7 +174,7 @@ def main():
                 with open(work / "trace") as text:
                     for line in text:
                         address, access, nanosecond = line.split()
-                        lines.append((int(address, 16), access, int(nanosecond)))
+                        lines.append((int(address, 16), "READ" if arguments.reads else access, int(nanosecond)))
                 bytes_moved = sum(stage["dram_bytes"] for stage in report["results"][0]["frames"][0]["stages"])
                 if len(lines) * SECTOR != bytes_moved:
                     sys.exit(f"{trace}, {spec}: {len(lines)} requests are not the report's {bytes_moved} bytes")

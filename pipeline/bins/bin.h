@@ -40,7 +40,7 @@ class BinStage {
     stream(memory_, DramAccess::write, {array}, bytes, counters);
   }
 
-  // The same for an array that has the stage's name.
+  // The same where a stage does not tell reads from writes: recorded as reads of an array with the stage's name.
   void streams(std::uint64_t bytes) const { reads(counters.stage, bytes); }
 
   // Charges reading `bytes` and writing a copy, and so on in turn, `times` times, counted in sectors as one stream.
