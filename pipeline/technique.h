@@ -20,6 +20,7 @@
 
 namespace beampipe {
 
+class DramTrace;
 class Timeline;
 
 // The weight of one triangle in one pixel. The pixel is the sum of weight times colour over its triangles; the
@@ -50,6 +51,8 @@ struct RunOptions {
   // Where a technique with has_weights records the weights of the triangles in each pixel of the frame, row by row;
   // null: nowhere. It changes nothing that is rendered or counted.
   std::vector<PixelWeights>* weights = nullptr;
+  // Where the DRAM requests of the frame are recorded, if memory is modelled; null: nowhere.
+  DramTrace* dram_trace = nullptr;
 };
 
 // Linear RGB and A, the part of the pixel that geometry covers (0..1). Row 0 is on top; 4 floats per pixel.

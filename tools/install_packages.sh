@@ -7,7 +7,7 @@ set -euo pipefail
 
 build=(
   g++ cmake ninja-build
-  libglm-dev libopenexr-dev libimath-dev libhwy-dev libtbb-dev libpng-dev libjpeg62-turbo-dev libturbojpeg0-dev
+  libglm-dev libopenexr-dev libimath-dev libhwy-dev libtbb-dev libpng-dev zlib1g-dev libjpeg62-turbo-dev libturbojpeg0-dev
   libtinyobjloader-dev libtinygltf-dev
   libcli11-dev nlohmann-json3-dev
   libboost-dev  # only headers: checksums and exact arithmetic

@@ -3,6 +3,16 @@
 #include <stdexcept>
 
 namespace beampipe {
+
+void BinStage::copies(std::string_view from, std::string_view to, int times, std::uint64_t bytes) const {
+  const auto sectors = [](std::uint64_t of) {
+    return (of + MemoryParameters::sector_bytes - 1) / MemoryParameters::sector_bytes;
+  };
+  for (std::uint64_t i = 0; i < 2 * static_cast<std::uint64_t>(times); ++i)
+    stream(memory_, i % 2 == 0 ? DramAccess::read : DramAccess::write, {i % 2 == 0 ? from : to},
+           (sectors((i + 1) * bytes) - sectors(i * bytes)) * MemoryParameters::sector_bytes, counters);
+}
+
 Bin::Bin(const FrameContext& frame_context, const Tile& bin_tile, const TriangleList& triangles,
          const std::vector<std::string>& stages, const Framebuffer& framebuffer)
     : context(frame_context),
@@ -10,6 +20,7 @@ Bin::Bin(const FrameContext& frame_context, const Tile& bin_tile, const Triangle
       list(triangles),
       timer_(context.run.timeline, tile),
       memory_(context.run.memory) {
+  if (context.run.dram_trace && memory_.modelled) memory_.log = &dram_log_.emplace();
   memory_.framebuffer = framebuffer.is_on_chip(memory_) ? Place::on_chip : Place::in_memory;
   if (keeps_pixels_on_chip()) holds("open_pixels", tile.pixels() * framebuffer.on_chip_bytes_per_pixel());
   stages_.reserve(stages.size());
@@ -34,7 +45,7 @@ void Bin::finish(std::vector<glm::vec4> picture) {
   picture_ = std::move(picture);
   if (models_memory() && keeps_pixels_on_chip())
     for (float& bytes : pixel_counter("bytes")) bytes += static_cast<float>(kPictureBytes);
-  stage("resolve").streams(tile.pixels() * kPictureBytes);
+  stage("resolve").writes("picture", tile.pixels() * kPictureBytes);
 }
 
 const ZOrder& Bin::z_order() {
@@ -52,6 +63,10 @@ void Bin::charge_texels(const BinStage& stage) {
   const std::uint64_t bytes = texels_->texels() * kTexelBytes;
   stage.counters.bytes_read += bytes;
   stage.counters.texture_bytes += bytes;
+  if (dram_log_ && texels_->texels() > 0 && !is_texture_pass_placed_) {
+    texture_pass_starts_.back() = dram_log_->pass();
+    is_texture_pass_placed_ = true;
+  }
   if (texture_fetches_)
     texture_fetches_->read(*texels_, static_cast<std::size_t>(&stage.counters - stages_.data()), stage.counters);
   texels_->clear();
@@ -59,6 +74,17 @@ void Bin::charge_texels(const BinStage& stage) {
 
 void Bin::start_texture_pass() {
   if (texture_fetches_) texture_fetches_->start_pass();
+  if (!dram_log_) return;
+  dram_log_->start_pass();
+  texture_pass_starts_.push_back(dram_log_->pass());
+  is_texture_pass_placed_ = false;
+}
+
+void Bin::starts_geometry_pass() {
+  ++geometry_passes_;
+  if (!dram_log_) return;
+  dram_log_->start_pass();
+  geometry_pass_starts_.push_back(dram_log_->pass());
 }
 
 void Bin::finish_memory() {

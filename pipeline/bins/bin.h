@@ -25,15 +25,26 @@ namespace beampipe {
 // One stage of a bin: its counters, and the timer that records when it runs.
 class BinStage {
  public:
-  BinStage(StageCounters& stage_counters, const StageTimer& timer, const MemoryParameters& memory)
+  BinStage(StageCounters& stage_counters, const StageTimer& timer, const MemorySystem& memory)
       : counters(stage_counters), timer_(timer), memory_(memory) {}
 
   // Stands for the counters in the call of the stage function, and times that call:
   //   conservative_raster(triangles, list, tile, stage.timed(), pairs);
   StageTimer::Span timed() const { return timer_(counters); }
 
-  // Charges reading or writing `bytes` in a row, which no cache helps with.
-  void streams(std::uint64_t bytes) const { stream(memory_, bytes, counters); }
+  // Charges reading or writing the first `bytes` of the bin's part of an array, which no cache helps with.
+  void reads(std::string_view array, std::uint64_t bytes) const {
+    stream(memory_, DramAccess::read, {array}, bytes, counters);
+  }
+  void writes(std::string_view array, std::uint64_t bytes) const {
+    stream(memory_, DramAccess::write, {array}, bytes, counters);
+  }
+
+  // The same where a stage does not tell reads from writes: recorded as reads of an array with the stage's name.
+  void streams(std::uint64_t bytes) const { reads(counters.stage, bytes); }
+
+  // Charges reading `bytes` and writing a copy, and so on in turn, `times` times, counted in sectors as one stream.
+  void copies(std::string_view from, std::string_view to, int times, std::uint64_t bytes) const;
 
   // Charges moving `bytes` in a row between a stage and L2, which holds them.
   void moves_in_l2(std::uint64_t bytes) const { stream_in_l2(memory_, bytes, counters); }
@@ -42,7 +53,7 @@ class BinStage {
 
  private:
   const StageTimer& timer_;
-  const MemoryParameters& memory_;
+  const MemorySystem& memory_;
 };
 
 class Bin {
@@ -77,13 +88,13 @@ class Bin {
   void keeps_a_buffer(std::uint64_t bytes) { a_buffer_bytes_ += bytes; }
 
   // Counts one more geometry pass for this bin.
-  void starts_geometry_pass() { ++geometry_passes_; }
+  void starts_geometry_pass();
 
   // The finished picture: RGBA, one per pixel of the tile. Charges `resolve` with writing it to memory.
   void finish(std::vector<glm::vec4> picture);
 
   // ---- The modelled memory system ----
-  const MemoryParameters& memory() const { return memory_; }
+  const MemorySystem& memory() const { return memory_; }
   bool models_memory() const { return memory().modelled; }
   bool keeps_pixels_on_chip() const { return memory().framebuffer == Place::on_chip; }
   const ZOrder& z_order();              // of the tile's pixels
@@ -103,6 +114,10 @@ class Bin {
   void finish_memory();
 
   // ---- What was recorded ----
+  const DramLog* dram_log() const { return dram_log_ ? &*dram_log_ : nullptr; }  // null: it is not asked for
+  // In which pass of the log each geometry pass begins, and in which one each pass of textures reads texels.
+  const std::vector<std::uint32_t>& geometry_pass_starts() const { return geometry_pass_starts_; }
+  const std::vector<std::uint32_t>& texture_pass_starts() const { return texture_pass_starts_; }
   TexturePasses take_texture_passes() { return texture_fetches_ ? texture_fetches_->take_passes() : TexturePasses{}; }
   const std::vector<glm::vec4>& picture() const { return picture_; }  // empty: a later stage makes the frame's
   const std::vector<StageCounters>& stages() const { return stages_; }
@@ -113,12 +128,15 @@ class Bin {
 
  private:
   StageTimer timer_;
-  MemoryParameters memory_;            // with the place where this technique's pixels are
+  std::optional<DramLog> dram_log_;
+  MemorySystem memory_;                // with the place where this technique's pixels are
   std::vector<StageCounters> stages_;  // never grows: memory models tell stages apart by the address of their counters
   std::map<std::string, std::vector<float>> pixel_counters_;
   std::map<std::string, std::uint64_t> buffer_peaks_;
   std::uint64_t a_buffer_bytes_ = 0;
   int geometry_passes_ = 0;
+  std::vector<std::uint32_t> geometry_pass_starts_, texture_pass_starts_ = {0};
+  bool is_texture_pass_placed_ = false;
   std::vector<glm::vec4> picture_;
   std::optional<ZOrder> z_order_;
   std::optional<TriangleFetches> triangle_fetches_;

@@ -7,6 +7,7 @@
 
 #include "pipeline/bins/bands.h"
 #include "pipeline/bins/threads.h"
+#include "pipeline/memory/dram_trace.h"
 #include "pipeline/memory/geometry_memory.h"
 #include "stages/raster/bin_sort_cost.h"
 
@@ -29,34 +30,63 @@ std::vector<std::string> stages_of(const FrameContext& context, const BinPlan& p
   return stages;
 }
 
+// Where DRAM requests are to be recorded; null: nowhere.
+DramTrace* dram_trace_of(const FrameContext& context) {
+  return context.run.memory.modelled ? context.run.dram_trace : nullptr;
+}
+
 // What one pass over the geometry costs, whatever the technique.
 struct GeometryPass {
   StageCounters setup, raster;
 
-  explicit GeometryPass(const FrameContext& context) : setup(context.setup) {
+  // `first_pass`: of the frame, for the record of DRAM requests.
+  GeometryPass(const FrameContext& context, const std::string& raster_stage, std::uint32_t first_pass)
+      : setup(context.setup), raster{raster_stage}, trace_(dram_trace_of(context)), first_pass_(first_pass) {
     const std::uint64_t triangles = context.setup.items_out;
-    move_setup(context.run.memory, context.setup.bytes_read, context.triangles.triangles.size(), setup);
-    stream(context.run.memory, context.surface_bytes, setup);
+    record(DramTrace::Step::setup, 0, [&](DramLog* log) {
+      move_setup({context.run.memory, log}, context.setup.bytes_read, context.triangles.triangles.size(),
+                 context.surface_bytes, setup);
+    });
     raster.items_in = triangles;
     raster.bytes_read = triangles * sizeof(SetupTriangle);
   }
 
-  void add_list(const MemoryParameters& memory, const TriangleList& list, bool is_sorted) {
+  void add_list(const MemoryParameters& memory, const TriangleList& list, bool is_sorted, std::size_t bin) {
     raster.empty_tiles += list.empty();
-    write_list(memory, list, raster);
-    if (is_sorted) {
-      read_list(memory, list, raster);
-    } else {
-      read_bin(memory, list, raster);
-    }
+    record(DramTrace::Step::binning, bin, [&](DramLog* log) { write_list({memory, log}, list, raster); });
+    record(DramTrace::Step::lists, bin, [&](DramLog* log) {
+      if (is_sorted) {
+        read_list({memory, log}, list, raster);
+      } else {
+        read_bin({memory, log}, list, raster);
+      }
+    });
   }
+
+ private:
+  // Calls move(log), and adds what it has recorded to the trace.
+  template <class Move>
+  void record(DramTrace::Step step, std::size_t bin, Move&& move) const {
+    if (!trace_) return move(nullptr);
+    DramLog log;
+    move(&log);
+    trace_->add(log, 0, first_pass_, step, bin);
+  }
+
+  DramTrace* trace_;
+  std::uint32_t first_pass_;
 };
 
 // Adds up what bins recorded. Only sums and the picture are kept, so that memory use stays that of the picture.
 class FrameRecorder {
  public:
-  FrameRecorder(const FrameContext& context, const std::vector<std::string>& stages, std::size_t bins)
-      : context_(context), texture_passes_(context.texture_layout ? bins : 0) {
+  FrameRecorder(const FrameContext& context, const std::vector<std::string>& stages, std::size_t bins,
+                std::uint32_t first_pass)
+      : context_(context),
+        texture_passes_(context.texture_layout ? bins : 0),
+        trace_(dram_trace_of(context)),
+        first_pass_(first_pass),
+        texture_pass_starts_(trace_ ? texture_passes_.size() : 0) {
     const Frame& frame = context.frame;
     result_.image = {frame.width, frame.height, std::vector<float>(4 * pixels())};
     result_.stages.push_back(StageCounters{context.setup.stage});
@@ -66,6 +96,8 @@ class FrameRecorder {
   // Thread-safe. `index`: of the bin, in the order in which bins are drawn.
   void add(Bin& bin, std::size_t index) {
     if (!texture_passes_.empty()) texture_passes_[index] = bin.take_texture_passes();
+    if (!texture_pass_starts_.empty()) texture_pass_starts_[index] = bin.texture_pass_starts();
+    if (trace_) trace_->add(*bin.dram_log(), first_pass_, index);
     std::map<std::string, std::vector<float>*> counters;  // of the frame
     {
       const std::lock_guard lock(mutex_);
@@ -76,6 +108,10 @@ class FrameRecorder {
       }
       result_.a_buffer_peak_bytes += bin.a_buffer_bytes();
       geometry_passes_ = std::max(geometry_passes_, bin.geometry_passes());
+      for (std::size_t i = 0; i < bin.geometry_pass_starts().size(); ++i) {
+        if (i == geometry_pass_starts_.size()) geometry_pass_starts_.push_back(~0u);
+        geometry_pass_starts_[i] = std::min(geometry_pass_starts_[i], bin.geometry_pass_starts()[i]);
+      }
       for (const auto& [name, values] : bin.pixel_counters()) {
         std::vector<float>& of_frame = result_.pixel_counters[name];
         of_frame.resize(pixels());
@@ -94,6 +130,9 @@ class FrameRecorder {
       setup += pass.setup;
       raster += pass.raster;
     }
+    for (std::size_t i = 1; trace_ && i < geometry_pass_starts_.size(); ++i)
+      trace_->repeat(first_pass_, first_pass_ + geometry_pass_starts_[i], DramTrace::Step::setup,
+                     DramTrace::Step::lists);
     charge_texture_dram();
     const std::uint64_t triangles = context_.triangles.triangles.size();
     result_.buffers = {
@@ -107,11 +146,26 @@ class FrameRecorder {
   void charge_texture_dram() {
     if (texture_passes_.empty()) return;
     const std::size_t stages = result_.stages.size() - 1;  // of a bin
-    const std::vector<std::uint64_t> bytes = texture_dram_bytes(context_.run.memory, texture_passes_, stages);
+    const std::vector<std::uint64_t> bytes =
+        texture_dram_bytes(context_.run.memory, texture_passes_, stages, trace_ ? record_texels() : nullptr);
     for (std::size_t s = 0; s < stages; ++s) {
       result_.stages[s + 1].dram_bytes += bytes[s];
       result_.stages[s + 1].texture_dram_bytes += bytes[s];
     }
+  }
+
+  // The texels that a bin fetches in a pass over the frame follow the bin's other requests in that pass.
+  TextureFetch record_texels() {
+    return [this](std::size_t bin, std::size_t pass, const std::vector<TextureRead>& reads) {
+      DramLog log;
+      const std::uint16_t texels = log.array("texels", false);
+      for (const TextureRead& read : reads)
+        for (std::uint32_t sector = 0; sector < TextureLayout::kSectorsPerLine; ++sector)
+          if (read.sectors >> sector & 1)
+            log.add(texels, DramAccess::read, std::uint64_t{read.line} * TextureLayout::kSectorsPerLine + sector, 1,
+                    result_.stages[read.stage + 1]);
+      trace_->add(log, 0, first_pass_ + texture_pass_starts_[bin][pass], DramTrace::Step::texels, bin);
+    };
   }
 
   std::size_t pixels() const { return std::size_t{context_.frame.width} * context_.frame.height; }
@@ -130,6 +184,10 @@ class FrameRecorder {
   std::map<std::string, std::uint64_t> buffer_peaks_;
   std::vector<TexturePasses> texture_passes_;  // by bin; empty without textures
   int geometry_passes_ = 1;
+  DramTrace* trace_;
+  std::uint32_t first_pass_;                                     // of the trace
+  std::vector<std::uint32_t> geometry_pass_starts_;              // of any bin
+  std::vector<std::vector<std::uint32_t>> texture_pass_starts_;  // by bin
 };
 
 }  // namespace
@@ -139,16 +197,17 @@ FrameResult render_bins(const FrameContext& context, const BinPlan& plan, const 
   const TileGrid grid = plan.keeps_tile_size ? TileGrid{context.frame, plan.framebuffer.bin_size}
                                              : tile_grid(context, plan.framebuffer.bin_size);
   if (run.weights) run.weights->assign(std::size_t{context.frame.width} * context.frame.height, {});
-  GeometryPass pass(context);
   const std::vector<std::string> stages = stages_of(context, plan);
-  FrameRecorder recorder(context, stages, grid.tiles.size());
+  const std::uint32_t first_pass = run.dram_trace ? run.dram_trace->passes() : 0;
+  GeometryPass pass(context, stages.front(), first_pass);
+  FrameRecorder recorder(context, stages, grid.tiles.size(), first_pass);
   const std::uint64_t entry_bytes = sizeof(std::uint32_t) + (plan.sorts_lists ? kKeyBytes : 0);
   std::uint64_t list_bytes = 0;
   const auto render_band = [&](const Band& band) {
     const std::vector<TriangleList> lists = bin_triangles(context.triangles, grid, band);
-    for (const TriangleList& list : lists) {
-      list_bytes += list.size() * entry_bytes;
-      pass.add_list(run.memory, list, plan.sorts_lists);
+    for (std::size_t i = 0; i < lists.size(); ++i) {
+      list_bytes += lists[i].size() * entry_bytes;
+      pass.add_list(run.memory, lists[i], plan.sorts_lists, band.first + i);
     }
     tbb::parallel_for(std::size_t{0}, lists.size(), [&](std::size_t i) {
       Bin bin(context, grid.tiles[band.first + i], lists[i], stages, plan.framebuffer);
@@ -173,10 +232,15 @@ void run_on_tiles(const FrameContext& context, const std::string& stage, FrameRe
                   const std::function<void(const Tile&, const BinStage&)>& work) {
   const std::vector<Tile> tiles = tile_grid(context, kBinSize).tiles;
   std::vector<StageCounters> of_tiles(tiles.size(), StageCounters{stage});
+  DramTrace* const trace = dram_trace_of(context);
+  const std::uint32_t pass = trace ? trace->passes() : 0;
   on_threads(context.run.threads, [&] {
     tbb::parallel_for(std::size_t{0}, tiles.size(), [&](std::size_t i) {
       const StageTimer timer(context.run.timeline, tiles[i]);
-      work(tiles[i], BinStage(of_tiles[i], timer, context.run.memory));
+      DramLog log;
+      const MemorySystem memory(context.run.memory, trace ? &log : nullptr);
+      work(tiles[i], BinStage(of_tiles[i], timer, memory));
+      if (trace) trace->add(log, pass, i);
     });
   });
   StageCounters& counters = result.stages.emplace_back(StageCounters{stage});

@@ -2,11 +2,11 @@
 
 namespace beampipe {
 
-ABufferMemory::ABufferMemory(const MemoryParameters& parameters, const ZOrder& order, std::size_t records,
+ABufferMemory::ABufferMemory(const MemorySystem& memory, const ZOrder& order, std::size_t records,
                              std::uint32_t record_bytes)
     : record_bytes_(record_bytes + kLinkBytes),
-      heads_(parameters, order, 1, kLinkBytes, nullptr, BlockCache::Level::l2),
-      records_(parameters, records * record_bytes_) {}
+      heads_(memory, "a_buffer_heads", order, 1, kLinkBytes, nullptr, BlockCache::Level::l2),
+      records_(memory, records * record_bytes_, BlockPlaces(memory, "a_buffer", true)) {}
 
 void ABufferMemory::insert(const std::vector<SortRecord>& records, StageCounters& counters) {
   for (std::uint32_t i = 0; i < records.size(); ++i) {

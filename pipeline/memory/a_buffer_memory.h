@@ -11,8 +11,7 @@ namespace beampipe {
 
 class ABufferMemory {
  public:
-  ABufferMemory(const MemoryParameters& parameters, const ZOrder& order, std::size_t records,
-                std::uint32_t record_bytes);
+  ABufferMemory(const MemorySystem& memory, const ZOrder& order, std::size_t records, std::uint32_t record_bytes);
 
   // The pass that fills it: each record exchanges its pixel's head link, and is written after the previous record.
   void insert(const std::vector<SortRecord>& records, StageCounters& counters);

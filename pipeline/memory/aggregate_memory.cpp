@@ -4,7 +4,7 @@
 
 namespace beampipe {
 
-AggregateMemory::AggregateMemory(const MemoryParameters& parameters, const ZOrder& order,
+AggregateMemory::AggregateMemory(const MemorySystem& memory, const ZOrder& order,
                                  const std::vector<Surface>& framebuffer)
     : order_(order), full_(order.positions) {
   surfaces_.reserve(framebuffer.size());
@@ -19,7 +19,7 @@ AggregateMemory::AggregateMemory(const MemoryParameters& parameters, const ZOrde
         return all ? bytes : bytes * static_cast<std::uint32_t>(elements);
       };
     }
-    surfaces_.emplace_back(parameters, order, 1, surface.bytes_per_pixel, compressed);
+    surfaces_.emplace_back(memory, surface.name, order, 1, surface.bytes_per_pixel, compressed);
   }
 }
 

@@ -11,7 +11,7 @@ namespace beampipe {
 class AggregateMemory {
  public:
   // `order` must outlive it.
-  AggregateMemory(const MemoryParameters& parameters, const ZOrder& order, const std::vector<Surface>& framebuffer);
+  AggregateMemory(const MemorySystem& memory, const ZOrder& order, const std::vector<Surface>& framebuffer);
 
   // Merging a fragment in place, as composition in primitive order does: the aggregate is read and written.
   void merge(std::uint32_t triangle, std::uint32_t pixel, StageCounters& counters);

@@ -13,11 +13,19 @@ constexpr std::array<std::uint8_t, 256> kBits = [] {
   return bits;
 }();
 
+// Where the bytes of a compressed block lie.
+Sectors first_sectors(std::uint32_t count) { return static_cast<Sectors>((1u << count) - 1); }
+
 }  // namespace
 
 BlockCache::BlockCache(const MemoryParameters& memory, const CacheParameters& cache, Level level, std::size_t blocks,
-                       std::uint32_t block_bytes, bool cleared, CompressedBytes compressed_bytes)
-    : modelled_(is_modelled(memory, level)), level_(level), block_bytes_(block_bytes), ways_(cache.ways) {
+                       std::uint32_t block_bytes, bool cleared, CompressedBytes compressed_bytes, BlockPlaces places)
+    : modelled_(is_modelled(memory, level)),
+      level_(level),
+      block_bytes_(block_bytes),
+      ways_(cache.ways),
+      places_(std::move(places)),
+      sectors_per_line_(cache.line_bytes / kSectorBytes) {
   const std::uint32_t sectors = (block_bytes + kSectorBytes - 1) / kSectorBytes;
   if (sectors == 0 || sectors > kMaxBlockSectors || block_bytes > cache.line_bytes)
     throw std::invalid_argument("a block must fill at least one sector and at most one cache line");
@@ -29,6 +37,8 @@ BlockCache::BlockCache(const MemoryParameters& memory, const CacheParameters& ca
   states_.assign(blocks, cleared ? State{0} : kRaw);
   lines_.resize(has_line_for_each_ ? blocks : sets_ * ways_);
   line_of_.assign(blocks, kNone);
+  if (places_.log && places_.lines.empty())
+    places_.log->reserve(places_.array, std::uint64_t{blocks} * cache.line_bytes);
 }
 
 BlockCache::BlockCache(const MemoryParameters& memory, const CacheParameters& cache, BlockCache& next)
@@ -81,7 +91,7 @@ void BlockCache::serve(std::size_t block, Sectors read, Sectors write, Sectors o
     counters.l2_bytes += kBits[missing] * kSectorBytes;
     next_->serve(block, missing, 0, 0, counters);
   } else {
-    pass_on(kBits[missing], counters);
+    pass_on(DramAccess::read, block, missing, counters);
   }
   line.valid |= missing | write;
   line.dirty |= write;
@@ -106,7 +116,7 @@ BlockCache::Line& BlockCache::make_line(std::size_t block, bool overwritten, Sta
   const State state = states_[block];
   // A cleared block needs no fetch; a compressed one is fetched and unpacked whole.
   if (state != kRaw && !overwritten) {
-    pass_on(state, counters);
+    pass_on(DramAccess::read, block, first_sectors(state), counters);
     line.valid = all_sectors_;
   }
   return line;
@@ -118,20 +128,33 @@ void BlockCache::write_back(const Line& line, StageCounters& counters) {
   if (compressed_bytes_ && line.valid == all_sectors_) {
     const std::uint32_t sectors = (compressed_bytes_(line.block) + kSectorBytes - 1) / kSectorBytes;
     if (sectors < kBits[all_sectors_]) {
-      pass_on(sectors, counters);
+      pass_on(DramAccess::write, line.block, first_sectors(sectors), counters);
       state = static_cast<State>(sectors);
       return;
     }
   }
   const Sectors written = state == kRaw ? line.dirty : all_sectors_;
-  pass_on(kBits[written], counters);
+  pass_on(DramAccess::write, line.block, written, counters);
   state = kRaw;
 }
 
 // To or from the next level.
-void BlockCache::pass_on(std::uint32_t sectors, StageCounters& counters) const {
-  counters.dram_bytes += sectors * kSectorBytes;
-  if (level_ == Level::rop) counters.l2_bytes += sectors * kSectorBytes;
+void BlockCache::pass_on(DramAccess access, std::size_t block, Sectors sectors, StageCounters& counters) {
+  counters.dram_bytes += kBits[sectors] * kSectorBytes;
+  if (level_ == Level::rop) counters.l2_bytes += kBits[sectors] * kSectorBytes;
+  if (places_.log && sectors != 0) record(access, block, sectors, counters);
+}
+
+void BlockCache::record(DramAccess access, std::size_t block, Sectors sectors, const StageCounters& counters) {
+  places_.log->reach_pass(next_pass_);
+  wrote_ |= access == DramAccess::write;
+  const BlockPlaces::Line line = places_.lines.empty() ? BlockPlaces::Line{places_.array, block} : places_.lines[block];
+  for (std::uint32_t left = sectors; left != 0;) {
+    const auto first = static_cast<std::uint32_t>(std::countr_zero(left));
+    const auto run = static_cast<std::uint32_t>(std::countr_one(left >> first));
+    places_.log->add(line.array, access, line.number * sectors_per_line_ + first, run, counters);
+    left &= ~(((1u << run) - 1) << first);
+  }
 }
 
 void BlockCache::flush(StageCounters& counters) {
@@ -142,16 +165,17 @@ void BlockCache::flush(StageCounters& counters) {
     line_of_[line.block] = kNone;
     line = {};
   }
+  if (wrote_) next_pass_ = places_.log->pass() + 1;
+  wrote_ = false;
 }
 
-void BlockCache::stream_read(std::size_t block, StageCounters& counters) const {
+void BlockCache::stream_read(std::size_t block, StageCounters& counters) {
   if (!modelled_) return;
   const std::uint32_t raw = kBits[all_sectors_] * kSectorBytes;
   const State state = states_[block];
-  const std::uint32_t moved = state == kRaw ? raw : state * kSectorBytes;
   counters.sector_bytes += raw;
-  counters.l2_bytes += level_ == Level::rop ? moved : raw;
-  counters.dram_bytes += moved;
+  if (level_ == Level::l2) counters.l2_bytes += raw;
+  pass_on(DramAccess::read, block, state == kRaw ? all_sectors_ : first_sectors(state), counters);
 }
 
 }  // namespace beampipe

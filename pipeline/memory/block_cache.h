@@ -11,12 +11,11 @@
 #include <functional>
 #include <vector>
 
+#include "pipeline/memory/dram_log.h"
 #include "pipeline/memory/parameters.h"
 #include "stages/cost/counters.h"
 
 namespace beampipe {
-
-inline constexpr std::uint32_t kMaxBlockSectors = 8;
 
 using Sectors = std::uint8_t;  // a bit for each sector of a block
 
@@ -43,9 +42,10 @@ class BlockCache {
   }
 
   // `block_bytes` <= cache.line_bytes, at most kMaxBlockSectors sectors. `cleared`: all blocks start out cleared, else
-  // raw. Without `compressed_bytes` nothing compresses. If it is not modelled, all calls do nothing.
+  // raw. Without `compressed_bytes` nothing compresses. If it is not modelled, all calls do nothing. `places`: where
+  // the blocks lie, for records of DRAM requests; a block begins with a line.
   BlockCache(const MemoryParameters& memory, const CacheParameters& cache, Level level, std::size_t blocks,
-             std::uint32_t block_bytes, bool cleared, CompressedBytes compressed_bytes);
+             std::uint32_t block_bytes, bool cleared, CompressedBytes compressed_bytes, BlockPlaces places = {});
 
   // A read-only cache in front of `next`, an L2, with the same blocks. It asks `next` for the sectors that it lacks.
   // `next` must outlive it.
@@ -84,7 +84,7 @@ class BlockCache {
   void flush(StageCounters& counters);
 
   // Reads a whole block without going through the cache, which must be empty.
-  void stream_read(std::size_t block, StageCounters& counters) const;
+  void stream_read(std::size_t block, StageCounters& counters);
 
   std::size_t blocks() const { return states_.size(); }
 
@@ -117,7 +117,8 @@ class BlockCache {
   void serve(std::size_t block, Sectors read, Sectors write, Sectors overwritten, StageCounters& counters);
   Line& make_line(std::size_t block, bool overwritten, StageCounters& counters);
   void write_back(const Line& line, StageCounters& counters);
-  void pass_on(std::uint32_t sectors, StageCounters& counters) const;
+  void pass_on(DramAccess access, std::size_t block, Sectors sectors, StageCounters& counters);
+  void record(DramAccess access, std::size_t block, Sectors sectors, const StageCounters& counters);
 
   bool modelled_;
   Level level_;
@@ -132,6 +133,11 @@ class BlockCache {
   CompressedBytes compressed_bytes_;
   Request request_;
   std::uint64_t now_ = 0;
+  BlockPlaces places_;
+  std::uint32_t sectors_per_line_;
+  // Of the recorded requests: has this cache written since it was last empty, and which pass can read that again?
+  bool wrote_ = false;
+  std::uint32_t next_pass_ = 0;
 };
 
 }  // namespace beampipe

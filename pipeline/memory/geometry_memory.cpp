@@ -1,65 +1,75 @@
 #include "pipeline/memory/geometry_memory.h"
 
 #include <algorithm>
+#include <string>
 
 namespace beampipe {
 namespace {
 
-// Adds the places of the triangles' records to `places`. `end`: bytes of the lines that are in use so far.
-void place_records(const TriangleList& list, std::uint32_t record_bytes, std::uint32_t line_bytes,
-                   std::vector<std::uint32_t>& places, std::uint32_t& end) {
+constexpr ArrayName kBinLists{"bin_lists"};
+
+}  // namespace
+
+void move_setup(const MemorySystem& memory, std::uint64_t vertex_bytes, std::size_t triangles,
+                std::uint64_t surface_bytes, StageCounters& counters) {
+  stream(memory, DramAccess::read, {"meshes", false}, vertex_bytes, counters);
+  stream(memory, DramAccess::write, {kSetupArray, false}, triangles * sizeof(SetupTriangle), counters);
+  stream(memory, DramAccess::write, {kAttributesArray, false}, triangles * sizeof(FlatAttributes), counters);
+  stream(memory, DramAccess::write, {"surfaces", false}, surface_bytes, counters);
+}
+
+void write_list(const MemorySystem& memory, const TriangleList& list, StageCounters& counters) {
+  stream(memory, DramAccess::write, kBinLists, list.size() * sizeof list[0], counters);
+}
+
+void read_list(const MemorySystem& memory, const TriangleList& list, StageCounters& counters) {
+  stream(memory, DramAccess::read, kBinLists, list.size() * sizeof list[0], counters);
+}
+
+void read_bin(const MemorySystem& memory, const TriangleList& list, StageCounters& counters) {
+  read_list(memory, list, counters);
+  RecordsInOrder setup(memory, kSetupArray, sizeof(SetupTriangle));
+  for (const std::uint32_t triangle : list) setup.read(triangle, counters);
+}
+
+TriangleFetches::TriangleFetches(const MemorySystem& memory, const TriangleList& list, const SurfaceShader* shader)
+    : modelled_(memory.modelled),
+      list_(list),
+      shader_(shader && !shader->is_flat() ? shader : nullptr),
+      places_(modelled_ ? places_of(memory, list) : Places{}),
+      lines_(memory, places_.end, std::move(places_.lines)) {}
+
+void TriangleFetches::place_records(const TriangleList& list, std::string_view array, std::uint32_t record_bytes,
+                                    std::uint32_t line_bytes, std::vector<std::uint32_t>& offsets, Places& places) {
+  DramLog* const log = places.lines.log;
+  const std::uint16_t number = log ? log->array(array, false) : 0;
   std::uint64_t last_line = ~std::uint64_t{0};
-  for (const std::uint32_t triangle : list) {
-    const std::uint64_t at = std::uint64_t{triangle} * record_bytes;
+  for (const std::uint32_t record : list) {
+    const std::uint64_t at = std::uint64_t{record} * record_bytes;
     const std::uint64_t first = at / line_bytes, last = (at + record_bytes - 1) / line_bytes;
-    if (first != last_line) end += line_bytes;
-    places.push_back(end - line_bytes + static_cast<std::uint32_t>(at % line_bytes));
-    end += static_cast<std::uint32_t>(last - first) * line_bytes;
+    if (log)
+      for (std::uint64_t line = first == last_line ? first + 1 : first; line <= last; ++line)
+        places.lines.lines.push_back({number, line});
+    if (first != last_line) places.end += line_bytes;
+    offsets.push_back(places.end - line_bytes + static_cast<std::uint32_t>(at % line_bytes));
+    places.end += static_cast<std::uint32_t>(last - first) * line_bytes;
     last_line = last;
   }
 }
 
-}  // namespace
-
-void move_setup(const MemoryParameters& memory, std::uint64_t vertex_bytes, std::size_t triangles,
-                StageCounters& counters) {
-  stream(memory, vertex_bytes, counters);
-  stream(memory, triangles * sizeof(SetupTriangle), counters);
-  stream(memory, triangles * sizeof(FlatAttributes), counters);
-}
-
-void write_list(const MemoryParameters& memory, const TriangleList& list, StageCounters& counters) {
-  stream(memory, list.size() * sizeof list[0], counters);
-}
-
-void read_list(const MemoryParameters& memory, const TriangleList& list, StageCounters& counters) {
-  stream(memory, list.size() * sizeof list[0], counters);
-}
-
-void read_bin(const MemoryParameters& memory, const TriangleList& list, StageCounters& counters) {
-  read_list(memory, list, counters);
-  RecordsInOrder setup(memory, sizeof(SetupTriangle));
-  for (const std::uint32_t triangle : list) setup.read(triangle, counters);
-}
-
-TriangleFetches::TriangleFetches(const MemoryParameters& memory, const TriangleList& list, const SurfaceShader* shader)
-    : modelled_(memory.modelled),
-      list_(list),
-      shader_(shader && !shader->is_flat() ? shader : nullptr),
-      places_(modelled_ ? places_of(list, memory.l2.line_bytes) : Places{}),
-      lines_(memory, places_.end) {}
-
-TriangleFetches::Places TriangleFetches::places_of(const TriangleList& list, std::uint32_t line_bytes) const {
+TriangleFetches::Places TriangleFetches::places_of(const MemorySystem& memory, const TriangleList& list) const {
   Places places;
-  place_records(list, sizeof(SetupTriangle), line_bytes, places.setup, places.end);
-  place_records(list, sizeof(FlatAttributes), line_bytes, places.attributes, places.end);
+  places.lines.log = memory.log;
+  const std::uint32_t line_bytes = memory.l2.line_bytes;
+  place_records(list, kSetupArray, sizeof(SetupTriangle), line_bytes, places.setup, places);
+  place_records(list, kAttributesArray, sizeof(FlatAttributes), line_bytes, places.attributes, places);
   if (shader_) place_surfaces(list, line_bytes, places);
   return places;
 }
 
 // The vertices of a draw follow each other, and all of them have the same size.
 void TriangleFetches::place_surfaces(const TriangleList& list, std::uint32_t line_bytes, Places& places) const {
-  place_records(list, kSurfaceBytes, line_bytes, places.surfaces, places.end);
+  place_records(list, "surface_planes", kSurfaceBytes, line_bytes, places.surfaces, places);
   struct Vertex {
     std::uint32_t number, bytes;
     auto operator<=>(const Vertex&) const = default;
@@ -76,7 +86,8 @@ void TriangleFetches::place_surfaces(const TriangleList& list, std::uint32_t lin
     while (end < vertices.size() && vertices[end].bytes == vertices[first].bytes) ++end;
     const auto begin = places.vertices.begin();
     place_records({begin + static_cast<std::ptrdiff_t>(first), begin + static_cast<std::ptrdiff_t>(end)},
-                  vertices[first].bytes, line_bytes, places.vertex_places, places.end);
+                  "surface_vertices_" + std::to_string(vertices[first].bytes), vertices[first].bytes, line_bytes,
+                  places.vertex_places, places);
   }
 }
 

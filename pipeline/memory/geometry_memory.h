@@ -15,26 +15,31 @@
 
 namespace beampipe {
 
-// One run of vertex_setup: it reads `vertex_bytes` of vertices and indices once, and writes so many triangles.
-void move_setup(const MemoryParameters& memory, std::uint64_t vertex_bytes, std::size_t triangles,
-                StageCounters& counters);
+// Arrays of the frame.
+inline constexpr const char* kSetupArray = "setup_triangles";
+inline constexpr const char* kAttributesArray = "attributes";
+
+// One run of vertex_setup: it reads `vertex_bytes` of vertices and indices once, and writes so many triangles and
+// `surface_bytes` of what triangles with materials have besides.
+void move_setup(const MemorySystem& memory, std::uint64_t vertex_bytes, std::size_t triangles,
+                std::uint64_t surface_bytes, StageCounters& counters);
 
 // Binning writes a bin's list, 4 bytes per triangle.
-void write_list(const MemoryParameters& memory, const TriangleList& list, StageCounters& counters);
+void write_list(const MemorySystem& memory, const TriangleList& list, StageCounters& counters);
 
 // One pass of the raster stage over a bin reads the list.
-void read_list(const MemoryParameters& memory, const TriangleList& list, StageCounters& counters);
+void read_list(const MemorySystem& memory, const TriangleList& list, StageCounters& counters);
 
 // The same, and the setup of the list's triangles in primitive order.
-void read_bin(const MemoryParameters& memory, const TriangleList& list, StageCounters& counters);
+void read_bin(const MemorySystem& memory, const TriangleList& list, StageCounters& counters);
 
 // Setup and attributes that shaders fetch by triangle number, through the L1 of the multiprocessor that works on the
 // bin. Each fetch is a request of its own.
 class TriangleFetches {
  public:
   // Both must outlive it. Without a shader all triangles are flat.
-  TriangleFetches(const MemoryParameters& memory, const TriangleList& list, const SurfaceShader* shader = nullptr);
-  TriangleFetches(const MemoryParameters& memory, TriangleList&& list, const SurfaceShader* shader = nullptr) = delete;
+  TriangleFetches(const MemorySystem& memory, const TriangleList& list, const SurfaceShader* shader = nullptr);
+  TriangleFetches(const MemorySystem& memory, TriangleList&& list, const SurfaceShader* shader = nullptr) = delete;
 
   bool is_flat(std::uint32_t triangle) const { return !shader_ || shader_->is_flat(triangle); }
 
@@ -91,9 +96,14 @@ class TriangleFetches {
     std::vector<std::uint32_t> surfaces;                 // empty if all triangles are flat
     std::vector<std::uint32_t> vertices, vertex_places;  // in increasing order, and where they lie
     std::uint32_t end = 0;                               // of that memory, in bytes
+    BlockPlaces lines;                                   // where each of its lines really lies
   };
-  Places places_of(const TriangleList& list, std::uint32_t line_bytes) const;
+  Places places_of(const MemorySystem& memory, const TriangleList& list) const;
   void place_surfaces(const TriangleList& list, std::uint32_t line_bytes, Places& places) const;
+
+  // Adds the places of the triangles' or vertices' records in an array to `places` and to its lines.
+  static void place_records(const TriangleList& list, std::string_view array, std::uint32_t record_bytes,
+                            std::uint32_t line_bytes, std::vector<std::uint32_t>& offsets, Places& places);
 
   bool modelled_;
   const TriangleList& list_;
@@ -108,8 +118,8 @@ class TriangleFetches {
 class AttributesInOrder {
  public:
   // `fetches` must outlive it. Null: all triangles are flat.
-  explicit AttributesInOrder(const MemoryParameters& memory, TriangleFetches* fetches = nullptr)
-      : records_(memory, sizeof(FlatAttributes)), fetches_(fetches) {}
+  explicit AttributesInOrder(const MemorySystem& memory, TriangleFetches* fetches = nullptr)
+      : records_(memory, kAttributesArray, sizeof(FlatAttributes)), fetches_(fetches) {}
 
   template <class Fragment>
   void read(const std::vector<Fragment>& fragments, StageCounters& counters) {

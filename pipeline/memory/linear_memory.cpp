@@ -2,10 +2,10 @@
 
 namespace beampipe {
 
-LinearMemory::LinearMemory(const MemoryParameters& memory, std::size_t size)
+LinearMemory::LinearMemory(const MemorySystem& memory, std::size_t size, BlockPlaces places)
     : line_bytes_(memory.l2.line_bytes),
-      l2_(memory, memory.l2, BlockCache::Level::l2, (size + line_bytes_ - 1) / line_bytes_, line_bytes_, false,
-          nullptr),
+      l2_(memory, memory.l2, BlockCache::Level::l2, (size + line_bytes_ - 1) / line_bytes_, line_bytes_, false, nullptr,
+          std::move(places)),
       l1_(memory, memory.l1, l2_) {}
 
 template <class Access>

@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <cstdint>
+#include <string_view>
 #include <vector>
 
 #include "pipeline/memory/block_cache.h"
@@ -12,13 +13,23 @@
 
 namespace beampipe {
 
-// Reads or writes `bytes` in a row: whole sectors, each moved once.
-inline void stream(const MemoryParameters& memory, std::uint64_t bytes, StageCounters& counters) {
+// An array of the frame, or of which each bin has a part.
+struct ArrayName {
+  std::string_view name;
+  bool of_bins = true;
+};
+
+// Reads or writes `bytes` in a row: whole sectors, each moved once, of an array from its sector `first` on.
+inline void stream(const MemorySystem& memory, DramAccess access, const ArrayName& array, std::uint64_t bytes,
+                   StageCounters& counters, std::uint64_t first = 0) {
   if (!memory.modelled) return;
-  const std::uint64_t whole = (bytes + memory.sector_bytes - 1) / memory.sector_bytes * memory.sector_bytes;
-  counters.sector_bytes += whole;
-  counters.l2_bytes += whole;
-  counters.dram_bytes += whole;
+  const std::uint64_t sectors = (bytes + memory.sector_bytes - 1) / memory.sector_bytes;
+  counters.sector_bytes += sectors * memory.sector_bytes;
+  counters.l2_bytes += sectors * memory.sector_bytes;
+  counters.dram_bytes += sectors * memory.sector_bytes;
+  if (memory.log)
+    memory.log->add(memory.log->array(array.name, array.of_bins), access, first, static_cast<std::uint32_t>(sectors),
+                    counters);
 }
 
 // The same, if L2 holds them all.
@@ -29,30 +40,33 @@ inline void stream_in_l2(const MemoryParameters& memory, std::uint64_t bytes, St
   counters.l2_bytes += whole;
 }
 
-// Some records of an array, read in increasing order. A sector that the previous record shares is not read again.
+// Some records of an array of the frame, read in increasing order. A sector that the previous record shares is not read
+// again.
 class RecordsInOrder {
  public:
-  RecordsInOrder(const MemoryParameters& memory, std::uint32_t record_bytes)
-      : memory_(memory), record_bytes_(record_bytes) {}
+  RecordsInOrder(const MemorySystem& memory, std::string_view array, std::uint32_t record_bytes)
+      : memory_(memory), array_{array, false}, record_bytes_(record_bytes) {}
 
   void read(std::uint32_t record, StageCounters& counters) {
     const std::uint64_t begin = std::uint64_t{record} * record_bytes_, end = begin + record_bytes_;
     const std::uint64_t first = std::max(begin / memory_.sector_bytes, read_to_);
     const std::uint64_t end_sector = (end + memory_.sector_bytes - 1) / memory_.sector_bytes;
     if (end_sector <= first) return;
-    stream(memory_, (end_sector - first) * memory_.sector_bytes, counters);
+    stream(memory_, DramAccess::read, array_, (end_sector - first) * memory_.sector_bytes, counters, first);
     read_to_ = end_sector;
   }
 
  private:
-  MemoryParameters memory_;
+  MemorySystem memory_;
+  ArrayName array_;
   std::uint64_t record_bytes_, read_to_ = 0;  // all sectors below it have been read or skipped
 };
 
 // Memory as shaders access it: writes go to L2, reads go through an L1. Accesses are bytes [begin, begin + bytes).
 class LinearMemory {
  public:
-  LinearMemory(const MemoryParameters& memory, std::size_t size);
+  // `places`: as for BlockCache.
+  LinearMemory(const MemorySystem& memory, std::size_t size, BlockPlaces places = {});
 
   void write(std::uint32_t key, std::size_t begin, std::uint32_t bytes, StageCounters& counters);
   void read(std::uint32_t key, std::size_t begin, std::uint32_t bytes, StageCounters& counters);

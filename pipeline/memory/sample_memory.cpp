@@ -20,10 +20,10 @@ std::vector<std::uint32_t> cell_places(const Tile& tile, const CellGrid& grid) {
 
 }  // namespace
 
-SampleMemory::SampleMemory(const MemoryParameters& parameters, const Tile& tile, const Sampling& sampling,
+SampleMemory::SampleMemory(const MemorySystem& memory, const Tile& tile, const Sampling& sampling,
                            std::uint32_t color_bytes, SameValue same_value)
-    : modelled_(parameters.models_framebuffer()),
-      plane_bytes_(parameters.plane_bytes),
+    : modelled_(memory.models_framebuffer()),
+      plane_bytes_(memory.plane_bytes),
       samples_(static_cast<std::size_t>(sampling.pattern.count)),
       cells_(static_cast<std::size_t>(sampling.grid.cells_per_pixel())),
       cell_place_(modelled_ ? cell_places(tile, sampling.grid) : std::vector<std::uint32_t>{}),
@@ -32,10 +32,10 @@ SampleMemory::SampleMemory(const MemoryParameters& parameters, const Tile& tile,
       same_value_(std::move(same_value)),
       color_sample_bytes_(color_bytes),
       owner_(modelled_ ? order_.positions * samples_ : 0, kNoTriangle),
-      depth_(parameters, order_, static_cast<std::uint32_t>(samples_), kSampleDepthBytes,
+      depth_(memory, "depth", order_, static_cast<std::uint32_t>(samples_), kSampleDepthBytes,
              [this](std::size_t first, std::size_t elements) { return depth_bytes(first, elements); }) {
   if (color_bytes > 0)
-    color_.emplace(parameters, order_, static_cast<std::uint32_t>(samples_), color_bytes,
+    color_.emplace(memory, "samples", order_, static_cast<std::uint32_t>(samples_), color_bytes,
                    [this](std::size_t first, std::size_t elements) { return this->color_bytes(first, elements); });
 }
 

@@ -16,8 +16,8 @@ class SampleMemory {
   using SameValue = std::function<bool(std::uint32_t triangle, std::uint32_t other)>;
 
   // `color_bytes`: of a sample of the second surface; 0 when there is only depth.
-  SampleMemory(const MemoryParameters& parameters, const Tile& tile, const Sampling& sampling,
-               std::uint32_t color_bytes, SameValue same_value = std::equal_to<std::uint32_t>());
+  SampleMemory(const MemorySystem& memory, const Tile& tile, const Sampling& sampling, std::uint32_t color_bytes,
+               SameValue same_value = std::equal_to<std::uint32_t>());
 
   // Every test reads depth. Samples that pass write both surfaces (test_and_write), depth (test_depth) or the second
   // surface (test_equal).

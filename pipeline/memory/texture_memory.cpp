@@ -93,16 +93,21 @@ TexturePasses TextureFetches::take_passes() {
 }
 
 std::vector<std::uint64_t> texture_dram_bytes(const MemoryParameters& memory, const std::vector<TexturePasses>& bins,
-                                              std::size_t stages) {
+                                              std::size_t stages, const TextureFetch& fetch) {
   std::vector<std::uint64_t> bytes(stages);
   std::size_t passes = 0;
   for (const TexturePasses& bin : bins) passes = std::max(passes, bin.size());
   ReadCache l2(memory.l2);
   for (std::size_t pass = 0; pass < passes; ++pass) {
-    for (const TexturePasses& bin : bins) {
-      if (pass >= bin.size()) continue;
-      for (const TextureRead& read : bin[pass])
-        bytes[read.stage] += bytes_of(l2.read(read.line, static_cast<Sectors>(read.sectors)));
+    for (std::size_t bin = 0; bin < bins.size(); ++bin) {
+      if (pass >= bins[bin].size()) continue;
+      std::vector<TextureRead> fetched;
+      for (const TextureRead& read : bins[bin][pass]) {
+        const Sectors missing = l2.read(read.line, static_cast<Sectors>(read.sectors));
+        bytes[read.stage] += bytes_of(missing);
+        if (fetch && missing != 0) fetched.push_back({read.line, read.stage, missing});
+      }
+      if (!fetched.empty()) fetch(bin, pass, fetched);
     }
   }
   return bytes;

@@ -6,6 +6,7 @@
 #pragma once
 
 #include <cstdint>
+#include <functional>
 #include <vector>
 
 #include "pipeline/memory/block_cache.h"
@@ -70,8 +71,9 @@ class TextureFetches {
 };
 
 // The bytes that DRAM is asked for when all passes over the frame have gone through L2: by stage. `bins`: in the order
-// in which they are drawn.
+// in which they are drawn. If there is such a function, calls fetch(bin, pass, reads) with what L2 lacks.
+using TextureFetch = std::function<void(std::size_t bin, std::size_t pass, const std::vector<TextureRead>& reads)>;
 std::vector<std::uint64_t> texture_dram_bytes(const MemoryParameters& memory, const std::vector<TexturePasses>& bins,
-                                              std::size_t stages);
+                                              std::size_t stages, const TextureFetch& fetch = nullptr);
 
 }  // namespace beampipe

@@ -51,21 +51,22 @@ ZOrder::ZOrder(std::int32_t width, std::int32_t height) {
   }
 }
 
-TileSurface::TileSurface(const MemoryParameters& parameters, const ZOrder& order, std::uint32_t parts,
+TileSurface::TileSurface(const MemorySystem& memory, std::string_view name, const ZOrder& order, std::uint32_t parts,
                          std::uint32_t part_bytes, CompressedBytes compressed_bytes, BlockCache::Level level)
     : order_(order),
       part_bytes_(part_bytes),
       element_bytes_(parts * part_bytes),
       mask_bytes_((parts + 7) / 8),
-      log2_elements_per_block_(log2_block_elements(cache_of(parameters, level), element_bytes_)),
-      touched_bytes_(BlockCache::is_modelled(parameters, level) ? order.of.size() : 0),
-      cache_(parameters, cache_of(parameters, level), level, block_count(order, log2_elements_per_block_),
+      log2_elements_per_block_(log2_block_elements(cache_of(memory, level), element_bytes_)),
+      touched_bytes_(BlockCache::is_modelled(memory, level) ? order.of.size() : 0),
+      cache_(memory, cache_of(memory, level), level, block_count(order, log2_elements_per_block_),
              element_bytes_ << log2_elements_per_block_, true,
              compressed_bytes
                  ? BlockCache::CompressedBytes([compressed_bytes, log2 = log2_elements_per_block_](std::size_t block) {
                      return compressed_bytes(block << log2, std::size_t{1} << log2);
                    })
-                 : nullptr) {
+                 : nullptr,
+             BlockPlaces(memory, name, true)) {
   if (!touched_bytes_.empty()) part_sectors_ = part_sectors(1u << log2_elements_per_block_, parts, part_bytes);
 }
 

@@ -4,6 +4,7 @@
 
 #include <cstddef>
 #include <cstdint>
+#include <string_view>
 #include <vector>
 
 #include "pipeline/memory/block_cache.h"
@@ -25,9 +26,11 @@ class TileSurface {
   using CompressedBytes = std::function<std::uint32_t(std::size_t first, std::size_t elements)>;
 
   // An element has `parts` (at most 16) of `part_bytes` each, together at most 256 bytes. A block has as many elements,
-  // a power of two, as fit into a line of the cache. The surface starts out cleared. `order` must outlive it.
-  TileSurface(const MemoryParameters& parameters, const ZOrder& order, std::uint32_t parts, std::uint32_t part_bytes,
-              CompressedBytes compressed_bytes = nullptr, BlockCache::Level level = BlockCache::Level::rop);
+  // a power of two, as fit into a line of the cache. The surface starts out cleared. `order` must outlive it. `name`:
+  // of the array that all bins' surfaces of this name are parts of.
+  TileSurface(const MemorySystem& memory, std::string_view name, const ZOrder& order, std::uint32_t parts,
+              std::uint32_t part_bytes, CompressedBytes compressed_bytes = nullptr,
+              BlockCache::Level level = BlockCache::Level::rop);
 
   // Reads and writes parts of an element; bit p of a mask is part p. `key`: the triangle, as in BlockCache.
   void access(std::uint32_t key, std::uint32_t element, std::uint32_t read, std::uint32_t write,

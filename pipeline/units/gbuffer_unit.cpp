@@ -25,7 +25,7 @@ GBufferUnit::GBufferUnit(Bin& bin)
       shading_(bin.stage("shade")),
       lighting_(bin.stage("light")),
       attributes_(bin.memory(), bin.surface_fetches()),
-      gbuffer_(bin.memory(), bin.z_order(), 1, kGBufferBytes) {}
+      gbuffer_(bin.memory(), "gbuffer", bin.z_order(), 1, kGBufferBytes) {}
 
 void GBufferUnit::write_fragments(const std::vector<SampleFragment>& fragments, const DepthTestUnit& depth_test) {
   write_gbuffer(bin_.shader(), fragments, shading_.timed());
@@ -56,7 +56,7 @@ std::vector<glm::vec4> GBufferUnit::light_and_resolve(DepthTestUnit& surface) {
   const BinStage resolving = bin_.stage("resolve");
   const std::vector<std::uint32_t> shown = shown_pixels(surface.surface(), bin_.tile);
   light(bin_.shader(), triangles_at(shown, surface.surface()), lighting_.timed());
-  TileSurface color(bin_.memory(), bin_.z_order(), 1, kSampleColorBytes);
+  TileSurface color(bin_.memory(), "color", bin_.z_order(), 1, kSampleColorBytes);
   gbuffer_.read_all(lighting_.counters);
   write_pixels(shown, color, lighting_.counters);
   color.read_all(resolving.counters);

@@ -106,7 +106,7 @@ class OwnersUnit {
 
   // The closed depths are kept for the next pass, with the pixels.
   void store_closed(const ClosedDepth& closed) {
-    if (!bin_.keeps_pixels_on_chip()) settle_.streams(closed.bytes());
+    if (!bin_.keeps_pixels_on_chip()) settle_.writes("closed_depth", closed.bytes());
   }
 
   std::vector<glm::vec4> resolve_settled() {

@@ -34,11 +34,11 @@ OrderedList sort_bin(Bin& bin) {
   OrderedList ordered = bin_sort(bin.triangles(), bin.list, bin.tile, stage.timed());
   // Binning writes the keys beside the list. The sort works in L2 if the list and its copy fit there.
   const std::uint64_t entries = bin.list.size() * (sizeof(std::uint32_t) + kKeyBytes);
-  stage.streams(bin.list.size() * kKeyBytes);
+  stage.writes("bin_keys", bin.list.size() * kKeyBytes);
   if (2 * entries > bin.memory().l2.bytes) {
-    stage.streams(2 * kSortPasses * entries);
+    stage.copies("bin_lists", "bin_list_copies", kSortPasses, entries);
   } else {
-    stage.streams(bin.list.size() * kKeyBytes);
+    stage.reads("bin_keys", bin.list.size() * kKeyBytes);
     stage.moves_in_l2(2 * kSortPasses * entries - bin.list.size() * kKeyBytes);
   }
   bin.triangle_fetches().read_setup(ordered.triangles, bin.stage("conservative_raster").counters);

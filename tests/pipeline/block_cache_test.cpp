@@ -168,7 +168,7 @@ TEST(BlockCache, ReadingThroughAnL1) {
 
 TEST(TileSurface, PartsOfAnElement) {
   const ZOrder order(2, 2);
-  TileSurface surface(memory(), order, 16, 6);  // 96 bytes, 2 to a block of 192
+  TileSurface surface(memory(), "surface", order, 16, 6);  // 96 bytes, 2 to a block of 192
   StageCounters counters;
   surface.access(1, 1, 1u << 15, 1u << 4 | 1u << 5, counters);  // bytes 186 to 191; 120 to 131: sectors 5; 3 and 4
   surface.access(1, 0, 0, 0x8001, counters);                    // bytes 0 to 5 and 90 to 95: sectors 0 and 2
@@ -185,7 +185,7 @@ TEST(TileSurface, AQuadOfPixelsIsOneSector) {
   EXPECT_EQ(order.of[5], 3u);
   EXPECT_EQ(order.of[2], 4u);
   EXPECT_EQ(order.positions, 16u);
-  TileSurface surface(memory(), order, 1, 8);
+  TileSurface surface(memory(), "surface", order, 1, 8);
   Meter meter;
   for (const std::uint32_t pixel : {0, 1, 4, 5}) surface.write(7, pixel, meter.counters);
   surface.flush(meter.counters);
@@ -197,7 +197,7 @@ TEST(TileSurface, AQuadOfPixelsIsOneSector) {
 TEST(TileSurface, BinsAtTheBorderOfTheFrame) {
   const ZOrder order(5, 1);  // positions 0, 1, 4, 5, 16
   EXPECT_EQ(order.positions, 17u);
-  TileSurface surface(memory(), order, 1, 64);  // 4 to a block
+  TileSurface surface(memory(), "surface", order, 1, 64);  // 4 to a block
   Meter meter;
   for (std::uint32_t pixel = 0; pixel < 5; ++pixel) surface.write(0, pixel, meter.counters);
   surface.flush(meter.counters);

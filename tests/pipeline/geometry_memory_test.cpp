@@ -26,7 +26,7 @@ TriangleList random_list(std::uint32_t seed) {
 
 TEST(GeometryMemory, SetupIsWrittenOnce) {
   StageCounters counters;
-  move_setup({}, 48, 4, counters);
+  move_setup({}, 48, 4, 0, counters);
   EXPECT_EQ(counters.dram_bytes, 64u + 4 * 88 + 128);
   EXPECT_EQ(counters.sector_bytes, counters.dram_bytes);
   EXPECT_EQ(counters.l2_bytes, counters.dram_bytes);
@@ -146,7 +146,7 @@ TEST(GeometryMemory, WhereNothingIsModelledNothingIsCounted) {
   MemoryParameters off;
   off.modelled = false;
   StageCounters counters;
-  move_setup(off, 48, 4, counters);
+  move_setup(off, 48, 4, 0, counters);
   write_list(off, {0, 1}, counters);
   read_bin(off, {0, 1}, counters);
   const TriangleList list = {0, 1};

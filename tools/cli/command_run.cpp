@@ -3,6 +3,7 @@
 #include <memory>
 
 #include "tools/cli/commands.h"
+#include "tools/cli/memory_trace.h"
 #include "tools/cli/run_arguments.h"
 #include "tools/cli/run_report.h"
 #include "tools/cli/trace_events.h"
@@ -13,10 +14,11 @@
 namespace beampipe {
 namespace {
 
-void run(const RunArguments& arguments, InterruptGate& gate) {
+void run(const RunArguments& arguments, const MemoryTraceArguments& trace_arguments, InterruptGate& gate) {
   RunPlan plan = make_plan(arguments);
   tell_notes(plan.notes);
   const TraceEvents events(arguments, plan);
+  const MemoryTrace memory_trace(trace_arguments, arguments, plan);
   OutputFolder output(arguments.output, gate);
   output.lock();
   require_writable_folders(output, plan.techniques);
@@ -54,20 +56,23 @@ void run(const RunArguments& arguments, InterruptGate& gate) {
   }
   finish_report(output, report);
   events.write(gate);
+  memory_trace.write(gate);
 }
 
 }  // namespace
 
 void add_run_command(CommandLine& line, InterruptGate& gate) {
   const auto arguments = std::make_shared<RunArguments>();
+  const auto trace_arguments = std::make_shared<MemoryTraceArguments>();
   Command command = line.add_command("run", "Render a trace: pictures, what every stage cost, times");
   add_run_arguments(command, *arguments);
+  add_memory_trace_arguments(command, *trace_arguments);
   command.footer(
       "Writes into the folder: a picture of each frame and technique (EXR and PNG), counters per pixel (EXR), and\n"
       "report.json with the cost of every stage. `beampipe report` makes a page of it.\n\nExample:\n  beampipe run "
       "fence.json -t beam msaa:1,8 --repeat 5 -o out\n\nTechniques:\n" +
       technique_help());
-  command.set_work([arguments, &gate] { run(*arguments, gate); });
+  command.set_work([arguments, trace_arguments, &gate] { run(*arguments, *trace_arguments, gate); });
 }
 
 }  // namespace beampipe

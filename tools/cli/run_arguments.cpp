@@ -13,6 +13,7 @@
 #include "tools/evaluate/draw_notes.h"
 #include "tools/evaluate/machine_memory.h"
 #include "tools/evaluate/results.h"
+#include "tools/files/output.h"
 #include "traces/trace_io.h"
 
 namespace beampipe {
@@ -110,6 +111,19 @@ RunPlan make_plan(const RunArguments& arguments) {
     std::cerr << "beampipe: " << note << "\n";
   plan.notes = notes_of(plan.trace, plan.frames);
   return plan;
+}
+
+std::filesystem::path file_beside_output(const std::string& option, const std::string& file,
+                                         const RunArguments& arguments) {
+  namespace fs = std::filesystem;
+  const fs::path absolute = fs::absolute(file);
+  require_writable_file(absolute);
+  const fs::path found = fs::weakly_canonical(absolute.parent_path()) / absolute.filename();
+  if (std::error_code none; fs::equivalent(found, arguments.trace, none))
+    throw UsageError(option + " is the trace itself");
+  const fs::path from_output = found.lexically_relative(fs::weakly_canonical(fs::current_path() / arguments.output));
+  if (*from_output.begin() != "..") throw UsageError(option + " is in the output folder: expected a file outside it");
+  return found;
 }
 
 std::vector<std::size_t> parse_frame_range(const std::string& text, std::size_t frames) {

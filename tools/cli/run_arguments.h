@@ -2,6 +2,7 @@
 #pragma once
 
 #include <cstdint>
+#include <filesystem>
 #include <string>
 #include <vector>
 
@@ -28,6 +29,11 @@ void add_run_arguments(Command& command, RunArguments& arguments);
 // Reads the trace and chooses the instruction set. Throws UsageError, SpecError, TraceError, or std::runtime_error if a
 // frame needs more memory than the machine has.
 RunPlan make_plan(const RunArguments& arguments);
+
+// The full name of a file that an option names, which must be neither the trace nor in the output folder. `option`:
+// with the file's name. Throws UsageError if it is, and std::runtime_error, one line, if it cannot be written.
+std::filesystem::path file_beside_output(const std::string& option, const std::string& file,
+                                         const RunArguments& arguments);
 
 // "A-B" or "A", counted from 0, both ends included. Throws UsageError unless A <= B < frames.
 std::vector<std::size_t> parse_frame_range(const std::string& text, std::size_t frames);

@@ -9,7 +9,6 @@
 namespace beampipe {
 namespace {
 
-namespace fs = std::filesystem;
 using Json = Json;
 using Time = Timeline::Clock::time_point;
 
@@ -55,14 +54,7 @@ std::string trace_events_json(const Timeline& timeline) {
 
 TraceEvents::TraceEvents(const RunArguments& arguments, RunPlan& plan) {
   if (arguments.trace_events.empty()) return;
-  const std::string option = "--trace-events " + arguments.trace_events;
-  const fs::path file = fs::absolute(arguments.trace_events);
-  require_writable_file(file);
-  file_ = fs::weakly_canonical(file.parent_path()) / file.filename();
-  if (std::error_code none; fs::equivalent(file_, arguments.trace, none))
-    throw UsageError(option + " is the trace itself");
-  const fs::path from_output = file_.lexically_relative(fs::weakly_canonical(fs::current_path() / arguments.output));
-  if (*from_output.begin() != "..") throw UsageError(option + " is in the output folder: expected a file outside it");
+  file_ = file_beside_output("--trace-events " + arguments.trace_events, arguments.trace_events, arguments);
   plan.options.timeline = &timeline_;
 }
 

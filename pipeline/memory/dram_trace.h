@@ -1,0 +1,102 @@
+// The DRAM requests of a frame, in one address space and in the order in which the modelled machine makes them: pass by
+// pass over the frame, in each pass bin by bin.
+//
+// Bins hand over their logs in any order, from any thread. Runs of sectors wait in a temporary file without a name, so
+// memory holds little more than the place of each bin's runs.
+//
+// Addresses: the arrays of the frame lie one after the other, then those of bins, each group in the order of their
+// names. In an array of bins, the parts follow one another in the order of bins. Arrays and parts begin at multiples of
+// 256 bytes, the largest block that a cache moves.
+#pragma once
+
+#include <cstdint>
+#include <cstdio>
+#include <filesystem>
+#include <functional>
+#include <map>
+#include <memory>
+#include <mutex>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include "pipeline/memory/dram_log.h"
+
+namespace beampipe {
+
+// One sector.
+struct DramRequest {
+  std::uint64_t address = 0;
+  DramAccess access = DramAccess::read;
+  const std::string& stage;
+  const std::string& array;
+};
+
+class DramTrace {
+ public:
+  // The temporary file is in `folder`. All functions that use it throw std::runtime_error, one line that names the
+  // folder, if it cannot be created, written or read.
+  explicit DramTrace(const std::filesystem::path& folder);
+
+  // What a part of the frame does in a pass comes in the order of these.
+  enum class Step : std::uint8_t { setup, binning, lists, bin, texels };
+
+  // Runs of the log's pass `log_pass` become part of the frame's pass `pass`. Thread-safe.
+  void add(const DramLog& log, std::uint32_t log_pass, std::uint32_t pass, Step step, std::size_t bin);
+
+  // Every pass of a log, from the frame's pass `first` on.
+  void add(const DramLog& log, std::uint32_t first, std::size_t bin);
+
+  // Makes what was added to `from` at the given steps part of pass `to` as well.
+  void repeat(std::uint32_t from, std::uint32_t to, Step first, Step last);
+
+  // One more than the last pass that holds anything.
+  std::uint32_t passes() const;
+
+  // Calls visit(request) for every sector. To be called when no thread adds any more.
+  void for_each(const std::function<void(const DramRequest&)>& visit) const;
+
+  // An array's name and its address range [begin, end), in increasing order.
+  struct Range {
+    std::string name;
+    std::uint64_t begin, end;
+  };
+  std::vector<Range> ranges() const;
+
+ private:
+  // Some runs in the file.
+  struct Chunk {
+    std::uint32_t pass;
+    Step step;
+    std::uint32_t bin;
+    std::uint64_t first_run, runs;
+    auto order() const {
+      return std::pair(std::pair(pass, step == Step::setup || step == Step::binning ? step : Step::lists),
+                       std::pair(bin, step));
+    }
+  };
+
+  // What the logs call an array, and how many sectors of it there are: of the frame, or by bin.
+  struct Array {
+    std::string name;
+    bool of_bins;
+    std::vector<std::uint64_t> sectors;
+  };
+
+  // The first sector of each array, by number, of the frame or by bin; and the end of all.
+  using Places = std::vector<std::vector<std::uint64_t>>;
+  Places place(std::vector<Range>* ranges) const;
+  std::uint16_t array_number(const DramArray& array, std::size_t bin);
+  std::uint8_t stage_number(const std::string& stage);
+  [[noreturn]] void fail(const std::string& what) const;
+
+  std::filesystem::path folder_;
+  std::unique_ptr<std::FILE, int (*)(std::FILE*)> file_;
+  std::mutex mutex_;
+  std::uint64_t runs_ = 0;  // in the file
+  std::vector<Chunk> chunks_;
+  std::vector<Array> arrays_;
+  std::vector<std::string> stages_;
+};
+
+}  // namespace beampipe

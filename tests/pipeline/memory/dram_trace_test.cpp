@@ -1,0 +1,205 @@
+// The record of DRAM requests: what the counters say, in one address space, in the order of passes and bins.
+#include "pipeline/memory/dram_trace.h"
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <map>
+#include <set>
+
+#include "pipeline/technique.h"
+#include "tests/pipeline/surface_traces.h"
+
+namespace beampipe {
+namespace {
+
+constexpr const char* kSpecs[] = {"beam",
+                                  "beam:order=sorted",
+                                  "beam:order=stream",
+                                  "beam:order=stream,passes=0",
+                                  "beam:rules=paper",
+                                  "beam:rules=paper,order=near-first",
+                                  "z3",
+                                  "alpha",
+                                  "msaa:4",
+                                  "msaa:4,prepass",
+                                  "msaa:32",
+                                  "acaa:8",
+                                  "acaa:4,double=stencil",
+                                  "acaa:4,double=saturate",
+                                  "deferred",
+                                  "visibility",
+                                  "taa:4",
+                                  "dvm",
+                                  "reference"};
+
+struct Recorded {
+  std::uint64_t address;
+  bool is_write;
+  std::string stage, array;
+  bool operator==(const Recorded&) const = default;
+};
+
+struct Frame0 {
+  std::vector<StageCounters> stages;
+  std::vector<Recorded> requests;
+  std::vector<DramTrace::Range> ranges;
+};
+
+Frame0 render(const std::string& spec, const Trace& trace, RunOptions run = {2}) {
+  DramTrace dram(testing::TempDir());
+  run.dram_trace = &dram;
+  Frame0 frame;
+  frame.stages = parse_technique(spec).render(trace, 0, run).stages;
+  dram.for_each([&](const DramRequest& request) {
+    frame.requests.push_back({request.address, request.access == DramAccess::write, request.stage, request.array});
+  });
+  frame.ranges = dram.ranges();
+  return frame;
+}
+
+void expect_bytes_of_counters(const Frame0& frame, const std::string& name) {
+  std::map<std::string, std::uint64_t> bytes, expected;
+  for (const Recorded& request : frame.requests) bytes[request.stage] += 32;
+  for (const StageCounters& stage : frame.stages)
+    if (stage.dram_bytes > 0) expected[stage.stage] += stage.dram_bytes;
+  EXPECT_EQ(bytes, expected) << name;
+}
+
+void expect_disjoint_arrays(const Frame0& frame, const std::string& name) {
+  std::map<std::string, DramTrace::Range> by_name;
+  std::uint64_t end = 0;
+  for (const DramTrace::Range& range : frame.ranges) {
+    EXPECT_GE(range.begin, end) << name << ", " << range.name;
+    EXPECT_LT(range.begin, range.end) << name << ", " << range.name;
+    EXPECT_EQ(range.begin % 256, 0u) << name << ", " << range.name;
+    EXPECT_TRUE(by_name.emplace(range.name, range).second) << name << ", " << range.name;
+    end = range.end;
+  }
+  for (const Recorded& request : frame.requests) {
+    const auto range = by_name.find(request.array);
+    ASSERT_NE(range, by_name.end()) << name << ", " << request.array;
+    EXPECT_EQ(request.address % 32, 0u);
+    ASSERT_GE(request.address, range->second.begin) << name << ", " << request.array;
+    ASSERT_LT(request.address, range->second.end) << name << ", " << request.array;
+  }
+}
+
+// Two bins by two, those at the border smaller.
+std::vector<std::pair<std::string, Trace>> scenes() {
+  return {{"flat", random_trace(52, 40, 150, 5)}, {"materials", random_surfaces(52, 40, 60, 2)}};
+}
+
+std::vector<std::pair<std::string, RunOptions>> machines() {
+  std::vector<std::pair<std::string, RunOptions>> machines = {
+      {"by technique", {2}}, {"on chip", {2}}, {"in memory", {2}}, {"raw", {2}}};
+  machines[1].second.memory.framebuffer = Place::on_chip;
+  machines[2].second.memory.framebuffer = Place::in_memory;
+  machines[3].second.memory.compression = false;
+  return machines;
+}
+
+TEST(DramTrace, HasTheBytesOfEveryStage) {
+  for (const auto& [scene, trace] : scenes())
+    for (const auto& [machine, run] : machines())
+      for (const char* spec : kSpecs) {
+        const Frame0 frame = render(spec, trace, run);
+        expect_bytes_of_counters(frame, std::string(spec) + ", " + scene + ", " + machine);
+        expect_disjoint_arrays(frame, std::string(spec) + ", " + scene + ", " + machine);
+      }
+}
+
+// A list and its copy larger than this L2 go through DRAM in every pass of the sort.
+TEST(DramTrace, HasTheBytesOfSmallCaches) {
+  RunOptions run{2};
+  run.memory.l2 = {2048, 2, 128}, run.memory.l1 = {1024, 2, 128}, run.memory.rop = {2048, 2, 256};
+  run.memory.framebuffer = Place::in_memory;
+  for (const auto& [scene, trace] : scenes())
+    for (const char* spec : kSpecs) expect_bytes_of_counters(render(spec, trace, run), spec + (", " + scene));
+}
+
+TEST(DramTrace, ContinuesAHistory) {
+  Trace trace = random_surfaces(52, 40, 60, 2);
+  trace.frames.push_back(trace.frames[0]);
+  for (const char* spec : {"taa:4", "dvm"}) {
+    History history;
+    RunOptions run{2};
+    run.history = &history;
+    parse_technique(spec).render(trace, 0, run);
+    expect_bytes_of_counters(render(spec, trace, run), spec);
+  }
+}
+
+TEST(DramTrace, DoesNotDependOnThreadsOrBands) {
+  for (const auto& [scene, trace] : scenes())
+    for (const char* spec : kSpecs) {
+      const std::vector<Recorded> expected = render(spec, trace, {1}).requests;
+      EXPECT_EQ(render(spec, trace, {3}).requests, expected) << spec << ", " << scene;
+    }
+  RunOptions banded{4};
+  banded.memory_limit = 2 << 20;  // too little for the pairs of four bins at once
+  const Trace trace = random_trace(52, 40, 150, 5);
+  for (const char* spec : {"beam:order=sorted", "msaa:4"})
+    EXPECT_EQ(render(spec, trace, banded).requests, render(spec, trace).requests) << spec;
+}
+
+// What is read has been written, where nothing else can have left it there.
+TEST(DramTrace, ReadsWhatWasWrittenEarlier) {
+  RunOptions run{2};
+  run.memory.framebuffer = Place::in_memory;
+  const std::set<std::string> arrays = {"setup_triangles", "attributes", "bin_lists", "bin_keys",    "depth",
+                                        "samples",         "coverage",   "mask",      "accumulator", "a_buffer_heads"};
+  for (const std::string spec : kSpecs) {
+    if (spec == "reference") continue;  // its samples are in no memory
+    std::set<std::uint64_t> written;
+    std::size_t early = 0, found = 0;
+    for (const Recorded& request : render(spec, random_trace(52, 40, 150, 5), run).requests) {
+      if (request.is_write) written.insert(request.address);
+      if (request.is_write || !arrays.contains(request.array)) continue;
+      ++found;
+      early += !written.contains(request.address);
+    }
+    EXPECT_GT(found, 0u) << spec;
+    EXPECT_EQ(early, 0u) << spec;
+  }
+}
+
+// A pass over the frame begins in its first bin when the earlier one is finished in the last.
+TEST(DramTrace, ComesPassByPass) {
+  const auto last = [](const std::vector<Recorded>& requests, const std::string& stage) {
+    return std::find_if(requests.rbegin(), requests.rend(), [&](const auto& r) { return r.stage == stage; }).base();
+  };
+  const auto first = [](const std::vector<Recorded>& requests, const std::string& stage) {
+    return std::find_if(requests.begin(), requests.end(), [&](const auto& r) { return r.stage == stage; });
+  };
+  const Trace trace = random_trace(52, 40, 150, 5);
+  const std::vector<Recorded> msaa = render("msaa:4", trace).requests;
+  EXPECT_LE(last(msaa, "vertex_setup"), first(msaa, "sample_raster"));
+  EXPECT_LT(first(msaa, "depth_test"), last(msaa, "sample_raster")) << "one bin after the other";
+  EXPECT_LE(last(msaa, "depth_test"), first(msaa, "resolve"));
+  const std::vector<Recorded> taa = render("taa:4", trace).requests;
+  EXPECT_LE(last(taa, "motion"), first(taa, "temporal"));
+  const std::vector<Recorded> acaa = render("acaa:32", trace).requests;  // setup runs again in the second round
+  EXPECT_LT(first(acaa, "accumulate"), last(acaa, "vertex_setup"));
+  const std::vector<Recorded> beam = render("beam", trace).requests;
+  EXPECT_LT(first(beam, "resolve"), last(beam, "conservative_raster")) << "pixels on chip: one bin after the other";
+}
+
+TEST(DramTrace, WithoutAModelNothingIsRecorded) {
+  RunOptions run{2};
+  run.memory.modelled = false;
+  EXPECT_TRUE(render("beam:order=sorted", random_trace(52, 40, 150, 5), run).requests.empty());
+}
+
+TEST(DramTrace, TheFolderOfItsFileMustBeThere) {
+  const std::string missing = testing::TempDir() + "no-such-folder";
+  try {
+    DramTrace trace(missing);
+    FAIL();
+  } catch (const std::runtime_error& error) {
+    EXPECT_EQ(error.what(), missing + ": cannot create a temporary file in this folder: No such file or directory");
+  }
+}
+
+}  // namespace
+}  // namespace beampipe
