@@ -2,6 +2,8 @@
 
 #include <stdexcept>
 
+#include "stages/cost/counter_registry.h"
+
 namespace beampipe {
 Bin::Bin(const FrameContext& frame_context, const Tile& bin_tile, const TriangleList& triangles,
          const std::vector<std::string>& stages, const Framebuffer& framebuffer)
@@ -18,10 +20,12 @@ Bin::Bin(const FrameContext& frame_context, const Tile& bin_tile, const Triangle
   if (context.texture_layout) texture_fetches_.emplace(memory_);
 }
 
-BinStage Bin::stage(std::string_view name) {
+BinStage Bin::stage(std::string_view name, Pass pass) {
+  const std::string_view prefix = pass == Pass::prepass ? kPrepass : "";
   for (StageCounters& counters : stages_)
-    if (counters.stage == name) return {counters, timer_, memory()};
-  throw std::logic_error("the technique has no stage " + std::string(name));
+    if (counters.stage.starts_with(prefix) && std::string_view(counters.stage).substr(prefix.size()) == name)
+      return {counters, timer_, memory()};
+  throw std::logic_error("the technique has no stage " + std::string(prefix).append(name));
 }
 
 std::vector<float>& Bin::pixel_counter(const std::string& name) {

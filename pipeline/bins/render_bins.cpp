@@ -8,6 +8,7 @@
 #include "pipeline/bins/bands.h"
 #include "pipeline/bins/threads.h"
 #include "pipeline/memory/geometry_memory.h"
+#include "stages/cost/counter_registry.h"
 #include "stages/raster/bin_sort_cost.h"
 
 namespace beampipe {
@@ -17,9 +18,16 @@ TileGrid tile_grid(const FrameContext& context, int tile_size) {
   return {context.frame, context.run.tile_size > 0 ? context.run.tile_size : tile_size};
 }
 
-// The stages of a bin. Frames with cutouts or translucent triangles have a few more.
+// All stages, in the order of the pipeline. Frames with cutouts or translucent triangles have a few more.
 std::vector<std::string> stages_of(const FrameContext& context, const BinPlan& plan) {
   std::vector<std::string> stages;
+  if (plan.has_prepass) {
+    const std::string prefix(kPrepass);
+    stages = {prefix + context.setup.stage, prefix + plan.stages.front()};
+    if (context.has_cutouts()) stages.push_back(prefix + "alpha_test");
+    stages.push_back(prefix + "depth_test");
+  }
+  stages.push_back(context.setup.stage);
   for (const std::string& stage : plan.stages) {
     stages.push_back(stage);
     if (stage == "beam_fragment" && context.has_alpha()) stages.push_back("alpha_mask");
@@ -59,7 +67,6 @@ class FrameRecorder {
       : context_(context), texture_passes_(context.texture_layout ? bins : 0) {
     const Frame& frame = context.frame;
     result_.image = {frame.width, frame.height, std::vector<float>(4 * pixels())};
-    result_.stages.push_back(StageCounters{context.setup.stage});
     for (const std::string& name : stages) result_.stages.push_back(StageCounters{name});
   }
 
@@ -69,13 +76,14 @@ class FrameRecorder {
     std::map<std::string, std::vector<float>*> counters;  // of the frame
     {
       const std::lock_guard lock(mutex_);
-      for (std::size_t s = 0; s < bin.stages().size(); ++s) result_.stages[s + 1] += bin.stages()[s];
+      for (std::size_t s = 0; s < bin.stages().size(); ++s) result_.stages[s] += bin.stages()[s];
       for (const auto& [name, bytes] : bin.buffer_peaks()) {
         std::uint64_t& peak = buffer_peaks_[name];
         peak = std::max(peak, bytes);
       }
       result_.a_buffer_peak_bytes += bin.a_buffer_bytes();
-      geometry_passes_ = std::max(geometry_passes_, bin.geometry_passes());
+      passes_ = std::max(passes_, bin.geometry_passes(Pass::main));
+      prepasses_ = std::max(prepasses_, bin.geometry_passes(Pass::prepass));
       for (const auto& [name, values] : bin.pixel_counters()) {
         std::vector<float>& of_frame = result_.pixel_counters[name];
         of_frame.resize(pixels());
@@ -87,13 +95,17 @@ class FrameRecorder {
     if (!bin.picture().empty()) place(bin.picture(), bin.tile);
   }
 
-  FrameResult finish(const GeometryPass& pass, std::uint64_t list_bytes) {
-    StageCounters& setup = result_.stages.at(0);   // vertex_setup, then the stages of the plan,
-    StageCounters& raster = result_.stages.at(1);  // whose first one rasterizes
-    for (int i = 0; i < geometry_passes_; ++i) {
-      setup += pass.setup;
-      raster += pass.raster;
-    }
+  // `rasterizes`: the name of the stage that does.
+  FrameResult finish(const GeometryPass& pass, const std::string& rasterizes, std::uint64_t list_bytes) {
+    const auto charge = [&](const std::string& prefix, int passes) {
+      for (StageCounters& stage : result_.stages)
+        for (int i = 0; i < passes; ++i) {
+          if (stage.stage == prefix + pass.setup.stage) stage += pass.setup;
+          if (stage.stage == prefix + rasterizes) stage += pass.raster;
+        }
+    };
+    charge(std::string(kPrepass), prepasses_);
+    charge("", passes_);
     charge_texture_dram();
     const std::uint64_t triangles = context_.triangles.triangles.size();
     result_.buffers = {
@@ -106,11 +118,11 @@ class FrameRecorder {
  private:
   void charge_texture_dram() {
     if (texture_passes_.empty()) return;
-    const std::size_t stages = result_.stages.size() - 1;  // of a bin
-    const std::vector<std::uint64_t> bytes = texture_dram_bytes(context_.run.memory, texture_passes_, stages);
-    for (std::size_t s = 0; s < stages; ++s) {
-      result_.stages[s + 1].dram_bytes += bytes[s];
-      result_.stages[s + 1].texture_dram_bytes += bytes[s];
+    const std::vector<std::uint64_t> bytes =
+        texture_dram_bytes(context_.run.memory, texture_passes_, result_.stages.size());
+    for (std::size_t s = 0; s < bytes.size(); ++s) {
+      result_.stages[s].dram_bytes += bytes[s];
+      result_.stages[s].texture_dram_bytes += bytes[s];
     }
   }
 
@@ -129,7 +141,7 @@ class FrameRecorder {
   FrameResult result_;
   std::map<std::string, std::uint64_t> buffer_peaks_;
   std::vector<TexturePasses> texture_passes_;  // by bin; empty without textures
-  int geometry_passes_ = 1;
+  int passes_ = 1, prepasses_ = 0;
 };
 
 }  // namespace
@@ -163,7 +175,7 @@ FrameResult render_bins(const FrameContext& context, const BinPlan& plan, const 
     if (band.first > 0) malloc_trim(0);  // glibc would keep the freed memory of a band in addition to the next one's
     on_threads(run.threads, [&] { render_band(band); });
   }
-  FrameResult result = recorder.finish(pass, list_bytes);
+  FrameResult result = recorder.finish(pass, plan.stages.front(), list_bytes);
   const auto side = static_cast<std::uint32_t>(grid.size);
   result.bin_pixels = std::min(side, context.frame.width) * std::min(side, context.frame.height);
   return result;

@@ -16,6 +16,8 @@ struct SampleQuad {
   std::uint32_t triangle[4];  // the triangle that is shaded; kNoTriangle: the background
   std::uint32_t mask[4];      // the visibility samples that take this colour
   std::uint8_t location[4];   // the sample where it is shaded: a bit number
+  std::uint8_t materials;     // that the quad shows, the background included
+  std::uint8_t pixels;        // inside the frame: fewer than 4 at the right and lower sides of a frame of odd size
   glm::vec3 color[4];         // linear RGB, once it is shaded; not of the background
 };
 
