@@ -123,11 +123,9 @@ void count_by_pixel(const std::vector<SampleFragment>& fragments, const Tile& ti
   }
 }
 
-std::vector<std::uint32_t> shown_samples(const SampleTile& surface) {
-  std::vector<std::uint32_t> samples;
-  for (std::uint32_t sample = 0; sample < surface.triangle.size(); ++sample)
-    if (surface.triangle[sample] != kNoTriangle) samples.push_back(sample);
-  return samples;
+std::vector<std::uint32_t> triangles_of(const SampleTile& surface, const Tile& tile) {
+  const auto samples = static_cast<std::ptrdiff_t>(tile.pixels() * surface.samples_per_pixel);
+  return {surface.triangle.begin(), surface.triangle.begin() + samples};
 }
 
 }  // namespace beampipe

@@ -92,7 +92,7 @@ class DepthTestUnit {
 void count_by_pixel(const std::vector<SampleFragment>& fragments, const Tile& tile, const CellGrid& grid,
                     std::vector<float>& counts);
 
-// The samples at which a surface shows a triangle, pixel by pixel.
-std::vector<std::uint32_t> shown_samples(const SampleTile& surface);
+// The triangles that the samples of a surface show, pixel by pixel.
+std::vector<std::uint32_t> triangles_of(const SampleTile& surface, const Tile& tile);
 
 }  // namespace beampipe

@@ -9,11 +9,19 @@
 namespace beampipe {
 namespace {
 
-std::vector<std::uint32_t> triangles_at(const std::vector<std::uint32_t>& samples, const SampleTile& surface) {
-  std::vector<std::uint32_t> triangles;
-  triangles.reserve(samples.size());
-  for (const std::uint32_t sample : samples) triangles.push_back(surface.triangle[sample]);
-  return triangles;
+std::vector<std::uint32_t> shown_samples(const std::vector<std::uint32_t>& triangles) {
+  std::vector<std::uint32_t> samples;
+  for (std::uint32_t sample = 0; sample < triangles.size(); ++sample)
+    if (triangles[sample] != kNoTriangle) samples.push_back(sample);
+  return samples;
+}
+
+std::vector<std::uint32_t> picked(const std::vector<std::uint32_t>& triangles,
+                                  const std::vector<std::uint32_t>& samples) {
+  std::vector<std::uint32_t> some;
+  some.reserve(samples.size());
+  for (const std::uint32_t sample : samples) some.push_back(triangles[sample]);
+  return some;
 }
 
 }  // namespace
@@ -65,28 +73,28 @@ void GBufferUnit::write_fragments(const std::vector<SampleFragment>& fragments, 
 }
 
 void GBufferUnit::write_visible(DepthTestUnit& visibility, const Materials& materials) {
-  const SampleTile& surface = visibility.surface();
+  const std::vector<std::uint32_t> triangles = triangles_of(visibility.surface(), bin_.tile);
   visibility.read_colors(bin_.stage("material_sort"));
-  const std::vector<std::uint32_t> shown = sort_materials(bin_, surface.triangle, materials);
-  write_gbuffer(bin_.shader(), triangles_at(shown, surface), shading_.timed());
+  const std::vector<std::uint32_t> shown = sort_materials(bin_, triangles, materials);
+  write_gbuffer(bin_.shader(), picked(triangles, shown), shading_.timed());
   if (TexelRequests* const texels = bin_.texels())
     for (const std::uint32_t sample : shown) {
       const CellPlace place = place_of(sample);
-      bin_.shader().add_texels(surface.triangle[sample], sample / samples_, place.u, place.v, place.width, *texels);
+      bin_.shader().add_texels(triangles[sample], sample / samples_, place.u, place.v, place.width, *texels);
       texels->end_request();
     }
   bin_.charge_texels(shading_);
   visibility.read_colors(shading_);
-  for (const std::uint32_t sample : shown)
-    bin_.triangle_fetches().attributes(surface.triangle[sample], shading_.counters);
+  for (const std::uint32_t sample : shown) bin_.triangle_fetches().attributes(triangles[sample], shading_.counters);
   bin_.triangle_fetches().flush(shading_.counters);
   write_samples(shown, gbuffer_, shading_.counters);
 }
 
 std::vector<glm::vec4> GBufferUnit::light_and_resolve(DepthTestUnit& surface) {
   const BinStage resolving = bin_.stage("resolve");
-  const std::vector<std::uint32_t> shown = shown_samples(surface.surface());
-  light(bin_.shader(), triangles_at(shown, surface.surface()), lighting_.timed());
+  const std::vector<std::uint32_t> triangles = triangles_of(surface.surface(), bin_.tile);
+  const std::vector<std::uint32_t> shown = shown_samples(triangles);
+  light(bin_.shader(), picked(triangles, shown), lighting_.timed());
   TileSurface color(bin_.memory(), bin_.z_order(), samples_, kSampleColorBytes);
   gbuffer_.read_all(lighting_.counters);
   write_samples(shown, color, lighting_.counters);

@@ -37,7 +37,11 @@ const char* const kSpecs[] = {
     "acaa:64,double=stencil,color=unorm8",
     "deferred",
     "visibility",
+    "visibility:8",
+    "msaa:4,motion,resolve=reinhard",
     "taa:8",
+    "taa:8,shading=forward",
+    "taa:8,shading=deferred",
     "dvm",
     "dvm:material=draw"};
 

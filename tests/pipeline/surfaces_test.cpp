@@ -34,7 +34,10 @@ constexpr const char* kSpecs[] = {"beam",
                                   "acaa:32,double=saturate",
                                   "deferred",
                                   "visibility",
+                                  "visibility:4",
                                   "taa:8",
+                                  "taa:8,shading=forward",
+                                  "taa:8,shading=deferred",
                                   "dvm",
                                   "reference"};
 
@@ -261,8 +264,8 @@ TEST(Surfaces, LayersThatShareAVertexDoNotHideEachOther) {
 TEST(Surfaces, SamplesBlendInTheOrderOfDraws) {
   const glm::dvec3 truth = composed(kStack);
   std::vector<Sheet> far_to_near(kStack.rbegin(), kStack.rend());
-  for (const char* spec :
-       {"msaa:8", "msaa:32", "msaa:8,prepass", "acaa:8", "acaa:32", "deferred", "visibility", "taa:8", "dvm"}) {
+  for (const char* spec : {"msaa:8", "msaa:32", "msaa:8,prepass", "acaa:8", "acaa:32", "deferred", "visibility",
+                           "visibility:4", "taa:8", "taa:8,shading=forward", "taa:8,shading=deferred", "dvm"}) {
     const glm::vec3 right = mean_color(rendered(spec, sheets(far_to_near)).image);
     const glm::vec3 wrong = mean_color(rendered(spec, sheets(kStack)).image);
     for (int c = 0; c < 3; ++c) EXPECT_NEAR(right[c], truth[c], 0.001) << spec;  // colours are fp16

@@ -31,7 +31,9 @@ TEST(TraceEvents, HoldEveryStageOfEveryTechnique) {
                                           "acaa:4",
                                           "deferred",
                                           "visibility",
+                                          "visibility:4",
                                           "taa:4",
+                                          "taa:4,shading=deferred",
                                           "dvm",
                                           "reference",
                                           "acaa:4,double=stencil"};
