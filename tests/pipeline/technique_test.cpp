@@ -128,7 +128,6 @@ TEST(Technique, WrongSpecsSayWhatWouldBeRight) {
            {"z3:shape=64x3", "shape must be 32x2, 32x3 or 128x3"},
            {"alpha:1", "alpha has no options"},
            {"reference:64", "reference has no options"},
-           {"visibility:8", "visibility has no options"},
            {"deferred:", "deferred has no options"},
            {"acaa", acaa_rates},
            {"acaa:512", acaa_rates},
