@@ -30,7 +30,7 @@ std::vector<std::uint32_t> sort_materials(Bin& bin, const std::vector<std::uint3
                                           const Materials& materials) {
   constexpr std::uint64_t kPlaceBytes = 4;  // of a sample, in the sorted list
   const BinStage sorting = bin.stage("material_sort"), shading = bin.stage("shade");
-  std::vector<std::uint32_t> order = material_sort(triangles, materials, sorting.timed());
+  std::vector<std::uint32_t> order = material_sort(triangles, materials.ids, materials.digits, sorting.timed());
   const auto passes = static_cast<std::uint64_t>(materials.digits);
   sorting.streams(sort_item_bytes(order.size(), passes));
   sorting.moves_in_l2(sort_count_bytes(passes));

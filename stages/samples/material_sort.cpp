@@ -29,16 +29,17 @@ std::vector<Item> sorted_by_digit(const std::vector<Item>& items, int shift) {
 
 }  // namespace
 
-std::vector<std::uint32_t> material_sort(const std::vector<std::uint32_t>& triangles, const Materials& materials,
+std::vector<std::uint32_t> material_sort(const std::vector<std::uint32_t>& triangles,
+                                         const std::vector<std::uint32_t>& materials, int digits,
                                          StageCounters& counters) {
   std::vector<Item> items;
   for (std::size_t i = 0; i < triangles.size(); ++i)
-    if (triangles[i] != kNoTriangle) items.push_back({materials.ids[triangles[i]], static_cast<std::uint32_t>(i)});
-  for (int digit = 0; digit < materials.digits; ++digit) items = sorted_by_digit(items, 8 * digit);
+    if (triangles[i] != kNoTriangle) items.push_back({materials[triangles[i]], static_cast<std::uint32_t>(i)});
+  for (int digit = 0; digit < digits; ++digit) items = sorted_by_digit(items, 8 * digit);
   std::vector<std::uint32_t> order;
   order.reserve(items.size());
   for (const Item& item : items) order.push_back(item.sample);
-  charge_material_sort(triangles.size(), items.size(), static_cast<std::uint64_t>(materials.digits), counters);
+  charge_material_sort(triangles.size(), items.size(), static_cast<std::uint64_t>(digits), counters);
   return order;
 }
 

@@ -10,13 +10,13 @@
 #include <vector>
 
 #include "stages/cost/counters.h"
-#include "stages/samples/materials.h"
 
 namespace beampipe {
 
 // Returns indices of `triangles`, ordered by material and, within a material, as they were. Samples of kNoTriangle are
-// left out.
-std::vector<std::uint32_t> material_sort(const std::vector<std::uint32_t>& triangles, const Materials& materials,
+// left out. `materials`: one per triangle, of at most `digits` digits of 8 bits.
+std::vector<std::uint32_t> material_sort(const std::vector<std::uint32_t>& triangles,
+                                         const std::vector<std::uint32_t>& materials, int digits,
                                          StageCounters& counters);
 
 }  // namespace beampipe

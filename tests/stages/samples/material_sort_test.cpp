@@ -6,17 +6,23 @@
 #include <random>
 
 #include "stages/data/sample_tile.h"
+#include "stages/samples/materials.h"
 
 namespace beampipe {
 namespace {
+
+std::vector<std::uint32_t> sorted(const std::vector<std::uint32_t>& triangles, const Materials& materials,
+                                  StageCounters& counters) {
+  return material_sort(triangles, materials.ids, materials.digits, counters);
+}
 
 TEST(MaterialSort, KeepsTheOrderWithinAMaterial) {
   // Triangles 0 to 3 have the materials 2, 0, 1 and 0.
   const Materials materials({2, 0, 1, 0});
   StageCounters counters;
-  EXPECT_EQ(material_sort({0, kNoTriangle, 1, 2, 0, 3, 1}, materials, counters),
+  EXPECT_EQ(sorted({0, kNoTriangle, 1, 2, 0, 3, 1}, materials, counters),
             (std::vector<std::uint32_t>{2, 5, 6, 3, 0, 4}));
-  EXPECT_TRUE(material_sort({}, materials, counters).empty());
+  EXPECT_TRUE(sorted({}, materials, counters).empty());
 }
 
 TEST(MaterialSort, HasAsManyDigitsAsTheLargestMaterial) {
@@ -40,7 +46,7 @@ TEST(MaterialSort, IsAStableSort) {
     std::stable_sort(expected.begin(), expected.end(),
                      [&](std::uint32_t a, std::uint32_t b) { return ids[triangles[a]] < ids[triangles[b]]; });
     StageCounters counters;
-    EXPECT_EQ(material_sort(triangles, Materials(ids), counters), expected) << most;
+    EXPECT_EQ(sorted(triangles, Materials(ids), counters), expected) << most;
   }
 }
 
@@ -50,8 +56,8 @@ TEST(MaterialSort, IsAStableSort) {
 TEST(MaterialSort, CountsItsWork) {
   const std::vector<std::uint32_t> triangles = {0, kNoTriangle, 1, kNoTriangle, 0};
   StageCounters one, two;
-  material_sort(triangles, Materials({7, 9}), one);
-  material_sort(triangles, Materials({7, 900}), two);
+  sorted(triangles, Materials({7, 9}), one);
+  sorted(triangles, Materials({7, 900}), two);
   const OperationCounts item{.add = 2, .bit = 4, .fetch = 2};
   OperationCounts once{.add = 5, .fetch = 3};
   once += OperationCounts{.add = 2} * 256;
