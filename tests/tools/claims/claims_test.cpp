@@ -343,8 +343,11 @@ TEST(Claims, BytesOfTheBeamWithItsABuffer) {
   result.technique = "beam:rules=paper";
   FrameReport& frame = result.frames.emplace_back();
   frame.pixels = 10, frame.a_buffer_peak_bytes = 4180;
-  for (const Claim& claim : all_claims(report))
-    if (claim.name == "classroom, beam with its A-buffer, bytes over those of MSAA 8x") EXPECT_EQ(claim.ours, 5.75);
+  for (const Claim& claim : all_claims(report)) {
+    if (claim.name == "classroom, beam with its A-buffer, bytes over those of MSAA 8x") {
+      EXPECT_EQ(claim.ours, 5.75);
+    }
+  }
 }
 
 TEST(Claims, MostFragmentsOfAPixelAreThoseOfTheClassroom) {
