@@ -21,8 +21,10 @@ SCENE, SAMPLES, FORMATS = "terrain", [8, 64, 256], ["unorm8", "fp16", "fp32"]  #
 def surface_bytes(result):
     """Logical bytes that a frame moves to and from its depth and colour surfaces, without fragments between stages."""
     stages = measure.stages(result)
-    test, resolve = stages["depth_test"], stages["resolve"]
-    moved = test["items_in"] * DEPTH_BYTES + test["bytes_written"] + resolve["bytes_read"] + resolve["bytes_written"]
+    resolve = stages["resolve"]
+    moved = resolve["bytes_read"] + resolve["bytes_written"]
+    for test in (stages["prepass_depth_test"], stages["depth_test"]):
+        moved += test["items_in"] * DEPTH_BYTES + test["bytes_written"]
     if "accumulate" in stages:  # adding reads the accumulator first
         moved += 2 * stages["accumulate"]["bytes_written"]
     return moved

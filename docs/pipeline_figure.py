@@ -2,7 +2,7 @@
 """Draws the figure of the pipeline: docs/pipeline_figure.py docs/pictures/pipeline.svg"""
 import sys
 
-WIDTH, HEIGHT = 800, 760
+WIDTH, HEIGHT = 828, 787
 MONO = "DejaVu Sans Mono, Menlo, Consolas, monospace"
 
 # Folders of stages, with the colours of their boxes: fill, border.
@@ -19,7 +19,7 @@ FOLDER_OF = {
     "bin_sort": "raster", "conservative_raster": "raster", "sample_raster": "raster", "reference_raster": "raster",
     "a_buffer": "beam", "windows": "beam", "beam_fragment": "beam", "compose": "beam", "claim": "beam", "settle": "beam",
     "depth_test": "samples", "stencil_test": "samples", "accumulate": "samples", "sample_select": "samples",
-    "dilate": "samples",
+    "material_sort": "samples", "dilate": "samples",
     "motion": "temporal", "temporal": "temporal",
     "shade": "picture", "light": "picture", "resolve": "picture",
 }
@@ -43,9 +43,10 @@ OTHERS = [
     ("z3", "conservative_raster beam_fragment shade compose resolve"),
     ("msaa:N", "sample_raster shade depth_test resolve"),
     ("acaa:N", "sample_raster depth_test stencil_test shade accumulate resolve"),
-    ("deferred, visibility", "sample_raster depth_test shade light resolve"),
-    ("taa:N", "sample_raster depth_test shade light resolve motion temporal"),
-    ("dvm", "sample_raster depth_test sample_select shade light motion dilate temporal"),
+    ("deferred", "sample_raster depth_test shade light resolve"),
+    ("visibility:N", "sample_raster depth_test material_sort shade light resolve"),
+    ("taa:N", "sample_raster depth_test material_sort shade light resolve motion temporal"),
+    ("dvm", "sample_raster depth_test sample_select material_sort shade light motion dilate temporal"),
     ("reference", "reference_raster resolve"),
 ]
 
@@ -128,7 +129,7 @@ def beam_part():
 def other_part():
     """The other techniques, one row each."""
     text(20, 402, "In each bin: the other techniques", 13, "start", weight="bold")
-    note = ("sorted order repeats windows to compose; passes=N repeats all its stages; acaa and deferred draw twice; "
+    note = ("sorted order repeats windows to compose; passes=N repeats all its stages; acaa and deferred draw twice (prepass_...); "
             "dilate and temporal work on whole frames.")
     text(20, 420, note, 9.5, "start", fill="#555")
     y, height, row = 434, 20, 27

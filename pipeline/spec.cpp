@@ -98,6 +98,12 @@ SpecOption samples(int& variable, int most, std::string help) {
   return option;
 }
 
+SpecOption optional_samples(int& variable, int most, std::string help) {
+  SpecOption option = samples(variable, most, std::move(help));
+  option.fallback = std::to_string(variable);
+  return option;
+}
+
 SpecOption flag(std::string key, bool& variable, std::string help) {
   const auto set = [&variable](std::string_view) { return variable = true; };
   return {.form = SpecOption::Form::flag,
@@ -145,8 +151,10 @@ void set_options(const Spec& spec, const std::string& title, const SpecOptions& 
   const auto end = spec.items().end();
   if (!options.empty() && options.front().form == SpecOption::Form::samples) {
     const SpecOption& count = options.front();
-    if (item == end || !count.set(item->text)) spec.fail("N of " + title + " must be " + count.expected);
-    ++item;
+    const bool is_set = item != end && count.set(item->text);
+    const bool may_be_left_out = !count.fallback.empty() && (item == end || find_option(options, item->key));
+    if (!is_set && !may_be_left_out) spec.fail("N of " + title + " must be " + count.expected);
+    if (is_set) ++item;
   }
   for (; item != end; ++item) set_item(spec, *item, title, options);
   for (const Spec::Item& each : spec.items()) {

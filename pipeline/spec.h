@@ -52,8 +52,11 @@ struct SpecOption {
 };
 using SpecOptions = std::vector<SpecOption>;
 
-// The number of samples, which a spec must have: 1, 2, 4, ... `most`, a power of two.
+// The number of samples: 1, 2, 4, ... `most`, a power of two. A spec must have it.
 SpecOption samples(int& variable, int most, std::string help);
+
+// The same, where a spec may leave it out. Then the variable keeps its value.
+SpecOption optional_samples(int& variable, int most, std::string help);
 
 // "key" alone sets the variable to true.
 SpecOption flag(std::string key, bool& variable, std::string help);

@@ -2,6 +2,8 @@
 
 #include <stdexcept>
 
+#include "stages/cost/counter_registry.h"
+
 namespace beampipe {
 
 void BinStage::copies(std::string_view from, std::string_view to, int times, std::uint64_t bytes) const {
@@ -29,10 +31,12 @@ Bin::Bin(const FrameContext& frame_context, const Tile& bin_tile, const Triangle
   if (context.texture_layout) texture_fetches_.emplace(memory_);
 }
 
-BinStage Bin::stage(std::string_view name) {
+BinStage Bin::stage(std::string_view name, Pass pass) {
+  const std::string_view prefix = pass == Pass::prepass ? kPrepass : "";
   for (StageCounters& counters : stages_)
-    if (counters.stage == name) return {counters, timer_, memory()};
-  throw std::logic_error("the technique has no stage " + std::string(name));
+    if (counters.stage.starts_with(prefix) && std::string_view(counters.stage).substr(prefix.size()) == name)
+      return {counters, timer_, memory()};
+  throw std::logic_error("the technique has no stage " + std::string(prefix).append(name));
 }
 
 std::vector<float>& Bin::pixel_counter(const std::string& name) {
@@ -80,8 +84,8 @@ void Bin::start_texture_pass() {
   is_texture_pass_placed_ = false;
 }
 
-void Bin::starts_geometry_pass() {
-  ++geometry_passes_;
+void Bin::starts_geometry_pass(Pass pass) {
+  ++(pass == Pass::main ? geometry_passes_ : prepasses_);
   if (!dram_log_) return;
   dram_log_->start_pass();
   geometry_pass_starts_.push_back(dram_log_->pass());

@@ -22,6 +22,9 @@
 
 namespace beampipe {
 
+// A pass over the geometry. The stages of a depth pre-pass are counted apart (BinPlan::has_prepass).
+enum class Pass { prepass, main };
+
 // One stage of a bin: its counters, and the timer that records when it runs.
 class BinStage {
  public:
@@ -69,7 +72,7 @@ class Bin {
   Bin& operator=(const Bin&) = delete;
 
   // The stage of that name. Throws std::logic_error when the technique has not listed it.
-  BinStage stage(std::string_view name);
+  BinStage stage(std::string_view name, Pass pass = Pass::main);
 
   const SetupTriangles& triangles() const { return context.triangles; }
   TileShader shader() const { return {context.shader, tile}; }
@@ -88,7 +91,7 @@ class Bin {
   void keeps_a_buffer(std::uint64_t bytes) { a_buffer_bytes_ += bytes; }
 
   // Counts one more geometry pass for this bin.
-  void starts_geometry_pass();
+  void starts_geometry_pass(Pass pass = Pass::main);
 
   // The finished picture: RGBA, one per pixel of the tile. Charges `resolve` with writing it to memory.
   void finish(std::vector<glm::vec4> picture);
@@ -124,7 +127,7 @@ class Bin {
   const std::map<std::string, std::vector<float>>& pixel_counters() const { return pixel_counters_; }
   const std::map<std::string, std::uint64_t>& buffer_peaks() const { return buffer_peaks_; }
   std::uint64_t a_buffer_bytes() const { return a_buffer_bytes_; }
-  int geometry_passes() const { return std::max(geometry_passes_, 1); }
+  int geometry_passes(Pass pass) const { return pass == Pass::main ? std::max(geometry_passes_, 1) : prepasses_; }
 
  private:
   StageTimer timer_;
@@ -134,7 +137,7 @@ class Bin {
   std::map<std::string, std::vector<float>> pixel_counters_;
   std::map<std::string, std::uint64_t> buffer_peaks_;
   std::uint64_t a_buffer_bytes_ = 0;
-  int geometry_passes_ = 0;
+  int geometry_passes_ = 0, prepasses_ = 0;
   std::vector<std::uint32_t> geometry_pass_starts_, texture_pass_starts_ = {0};
   bool is_texture_pass_placed_ = false;
   std::vector<glm::vec4> picture_;

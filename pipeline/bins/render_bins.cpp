@@ -9,6 +9,7 @@
 #include "pipeline/bins/threads.h"
 #include "pipeline/memory/dram_trace.h"
 #include "pipeline/memory/geometry_memory.h"
+#include "stages/cost/counter_registry.h"
 #include "stages/raster/bin_sort_cost.h"
 
 namespace beampipe {
@@ -18,9 +19,16 @@ TileGrid tile_grid(const FrameContext& context, int tile_size) {
   return {context.frame, context.run.tile_size > 0 ? context.run.tile_size : tile_size};
 }
 
-// The stages of a bin. Frames with cutouts or translucent triangles have a few more.
+// All stages, in the order of the pipeline. Frames with cutouts or translucent triangles have a few more.
 std::vector<std::string> stages_of(const FrameContext& context, const BinPlan& plan) {
   std::vector<std::string> stages;
+  if (plan.has_prepass) {
+    const std::string prefix(kPrepass);
+    stages = {prefix + context.setup.stage, prefix + plan.stages.front()};
+    if (context.has_cutouts()) stages.push_back(prefix + "alpha_test");
+    stages.push_back(prefix + "depth_test");
+  }
+  stages.push_back(context.setup.stage);
   for (const std::string& stage : plan.stages) {
     stages.push_back(stage);
     if (stage == "beam_fragment" && context.has_alpha()) stages.push_back("alpha_mask");
@@ -89,7 +97,6 @@ class FrameRecorder {
         texture_pass_starts_(trace_ ? texture_passes_.size() : 0) {
     const Frame& frame = context.frame;
     result_.image = {frame.width, frame.height, std::vector<float>(4 * pixels())};
-    result_.stages.push_back(StageCounters{context.setup.stage});
     for (const std::string& name : stages) result_.stages.push_back(StageCounters{name});
   }
 
@@ -101,13 +108,14 @@ class FrameRecorder {
     std::map<std::string, std::vector<float>*> counters;  // of the frame
     {
       const std::lock_guard lock(mutex_);
-      for (std::size_t s = 0; s < bin.stages().size(); ++s) result_.stages[s + 1] += bin.stages()[s];
+      for (std::size_t s = 0; s < bin.stages().size(); ++s) result_.stages[s] += bin.stages()[s];
       for (const auto& [name, bytes] : bin.buffer_peaks()) {
         std::uint64_t& peak = buffer_peaks_[name];
         peak = std::max(peak, bytes);
       }
       result_.a_buffer_peak_bytes += bin.a_buffer_bytes();
-      geometry_passes_ = std::max(geometry_passes_, bin.geometry_passes());
+      passes_ = std::max(passes_, bin.geometry_passes(Pass::main));
+      prepasses_ = std::max(prepasses_, bin.geometry_passes(Pass::prepass));
       for (std::size_t i = 0; i < bin.geometry_pass_starts().size(); ++i) {
         if (i == geometry_pass_starts_.size()) geometry_pass_starts_.push_back(~0u);
         geometry_pass_starts_[i] = std::min(geometry_pass_starts_[i], bin.geometry_pass_starts()[i]);
@@ -123,16 +131,18 @@ class FrameRecorder {
     if (!bin.picture().empty()) place(bin.picture(), bin.tile);
   }
 
-  FrameResult finish(const GeometryPass& pass, std::uint64_t list_bytes) {
-    StageCounters& setup = result_.stages.at(0);   // vertex_setup, then the stages of the plan,
-    StageCounters& raster = result_.stages.at(1);  // whose first one rasterizes
-    for (int i = 0; i < geometry_passes_; ++i) {
-      setup += pass.setup;
-      raster += pass.raster;
-    }
-    for (std::size_t i = 1; trace_ && i < geometry_pass_starts_.size(); ++i)
-      trace_->repeat(first_pass_, first_pass_ + geometry_pass_starts_[i], DramTrace::Step::setup,
-                     DramTrace::Step::lists);
+  // `rasterizes`: the name of the stage that does.
+  FrameResult finish(const GeometryPass& pass, const std::string& rasterizes, std::uint64_t list_bytes) {
+    const auto charge = [&](const std::string& prefix, int passes) {
+      for (StageCounters& stage : result_.stages)
+        for (int i = 0; i < passes; ++i) {
+          if (stage.stage == prefix + pass.setup.stage) stage += pass.setup;
+          if (stage.stage == prefix + rasterizes) stage += pass.raster;
+        }
+    };
+    charge(std::string(kPrepass), prepasses_);
+    charge("", passes_);
+    if (trace_) repeat_geometry();
     charge_texture_dram();
     const std::uint64_t triangles = context_.triangles.triangles.size();
     result_.buffers = {
@@ -143,14 +153,23 @@ class FrameRecorder {
   }
 
  private:
+  // What was recorded of the first pass over the geometry is part of the later ones too. Those of the depth pre-pass
+  // come first.
+  void repeat_geometry() {
+    constexpr auto kFirst = DramTrace::Step::setup, kLast = DramTrace::Step::lists;
+    for (std::size_t i = 1; i < geometry_pass_starts_.size(); ++i)
+      trace_->repeat(first_pass_, first_pass_ + geometry_pass_starts_[i], kFirst, kLast);
+    for (std::size_t i = 0; i < static_cast<std::size_t>(prepasses_); ++i)
+      trace_->count_to_prepass(first_pass_ + (i == 0 ? 0 : geometry_pass_starts_[i]), kFirst, kLast);
+  }
+
   void charge_texture_dram() {
     if (texture_passes_.empty()) return;
-    const std::size_t stages = result_.stages.size() - 1;  // of a bin
-    const std::vector<std::uint64_t> bytes =
-        texture_dram_bytes(context_.run.memory, texture_passes_, stages, trace_ ? record_texels() : nullptr);
-    for (std::size_t s = 0; s < stages; ++s) {
-      result_.stages[s + 1].dram_bytes += bytes[s];
-      result_.stages[s + 1].texture_dram_bytes += bytes[s];
+    const std::vector<std::uint64_t> bytes = texture_dram_bytes(
+        context_.run.memory, texture_passes_, result_.stages.size(), trace_ ? record_texels() : nullptr);
+    for (std::size_t s = 0; s < bytes.size(); ++s) {
+      result_.stages[s].dram_bytes += bytes[s];
+      result_.stages[s].texture_dram_bytes += bytes[s];
     }
   }
 
@@ -163,7 +182,7 @@ class FrameRecorder {
         for (std::uint32_t sector = 0; sector < TextureLayout::kSectorsPerLine; ++sector)
           if (read.sectors >> sector & 1)
             log.add(texels, DramAccess::read, std::uint64_t{read.line} * TextureLayout::kSectorsPerLine + sector, 1,
-                    result_.stages[read.stage + 1]);
+                    result_.stages[read.stage]);
       trace_->add(log, 0, first_pass_ + texture_pass_starts_[bin][pass], DramTrace::Step::texels, bin);
     };
   }
@@ -183,7 +202,7 @@ class FrameRecorder {
   FrameResult result_;
   std::map<std::string, std::uint64_t> buffer_peaks_;
   std::vector<TexturePasses> texture_passes_;  // by bin; empty without textures
-  int geometry_passes_ = 1;
+  int passes_ = 1, prepasses_ = 0;
   DramTrace* trace_;
   std::uint32_t first_pass_;                                     // of the trace
   std::vector<std::uint32_t> geometry_pass_starts_;              // of any bin
@@ -199,7 +218,7 @@ FrameResult render_bins(const FrameContext& context, const BinPlan& plan, const 
   if (run.weights) run.weights->assign(std::size_t{context.frame.width} * context.frame.height, {});
   const std::vector<std::string> stages = stages_of(context, plan);
   const std::uint32_t first_pass = run.dram_trace ? run.dram_trace->passes() : 0;
-  GeometryPass pass(context, stages.front(), first_pass);
+  GeometryPass pass(context, plan.stages.front(), first_pass);
   FrameRecorder recorder(context, stages, grid.tiles.size(), first_pass);
   const std::uint64_t entry_bytes = sizeof(std::uint32_t) + (plan.sorts_lists ? kKeyBytes : 0);
   std::uint64_t list_bytes = 0;
@@ -222,7 +241,7 @@ FrameResult render_bins(const FrameContext& context, const BinPlan& plan, const 
     if (band.first > 0) malloc_trim(0);  // glibc would keep the freed memory of a band in addition to the next one's
     on_threads(run.threads, [&] { render_band(band); });
   }
-  FrameResult result = recorder.finish(pass, list_bytes);
+  FrameResult result = recorder.finish(pass, plan.stages.front(), list_bytes);
   const auto side = static_cast<std::uint32_t>(grid.size);
   result.bin_pixels = std::min(side, context.frame.width) * std::min(side, context.frame.height);
   return result;

@@ -21,7 +21,10 @@ namespace beampipe {
 struct BinPlan {
   std::vector<std::string> stages;  // of a bin, in the order of the pipeline; the first one rasterizes
   Framebuffer framebuffer;          // with the size of the bins, which RunOptions::tile_size overrides
-  bool keeps_tile_size = false;     // it does not, because the picture depends on the bins
+  // The first pass over the geometry writes depth alone. Its stages (vertex_setup, sample_raster, alpha_test for
+  // cutouts, depth_test) are counted apart from those of the other pass, as "prepass_vertex_setup" and so on.
+  bool has_prepass = false;
+  bool keeps_tile_size = false;  // it does not, because the picture depends on the bins
   // Bins sort their lists by keys, which binning writes beside the entries. They charge themselves for the setup that
   // the raster stage reads, because it reads it in sorted order.
   bool sorts_lists = false;

@@ -10,6 +10,8 @@
 #include <numeric>
 #include <stdexcept>
 
+#include "stages/cost/counter_registry.h"
+
 namespace beampipe {
 namespace {
 
@@ -87,6 +89,11 @@ void DramTrace::repeat(std::uint32_t from, std::uint32_t to, Step first, Step la
   }
 }
 
+void DramTrace::count_to_prepass(std::uint32_t pass, Step first, Step last) {
+  for (Chunk& chunk : chunks_)
+    if (chunk.pass == pass && chunk.step >= first && chunk.step <= last) chunk.is_prepass = true;
+}
+
 std::uint32_t DramTrace::passes() const {
   std::uint32_t passes = 0;
   for (const Chunk& chunk : chunks_) passes = std::max(passes, chunk.pass + 1);
@@ -122,8 +129,11 @@ void DramTrace::for_each(const std::function<void(const DramRequest&)>& visit) c
   const Places places = place(nullptr);
   std::vector<Chunk> chunks = chunks_;
   std::stable_sort(chunks.begin(), chunks.end(), [](const Chunk& a, const Chunk& b) { return a.order() < b.order(); });
+  std::vector<std::string> prepass_stages;
+  for (const std::string& stage : stages_) prepass_stages.push_back(std::string(kPrepass) + stage);
   std::vector<DramRun> runs;
   for (const Chunk& chunk : chunks) {
+    const std::vector<std::string>& stages = chunk.is_prepass ? prepass_stages : stages_;
     runs.resize(chunk.runs);
     if (::fseeko(file_.get(), static_cast<off_t>(chunk.first_run * sizeof(DramRun)), SEEK_SET) != 0 ||
         std::fread(runs.data(), sizeof(DramRun), runs.size(), file_.get()) != runs.size())
@@ -132,7 +142,7 @@ void DramTrace::for_each(const std::function<void(const DramRequest&)>& visit) c
       const Array& array = arrays_[run.array];
       const std::uint64_t first = places[run.array][array.of_bins ? chunk.bin : 0] + run.first;
       for (std::uint64_t i = 0; i < run.sectors; ++i)
-        visit({(first + i) * kSectorBytes, run.access, stages_[run.stage], array.name});
+        visit({(first + i) * kSectorBytes, run.access, stages[run.stage], array.name});
     }
   }
 }

@@ -50,6 +50,9 @@ class DramTrace {
   // Makes what was added to `from` at the given steps part of pass `to` as well.
   void repeat(std::uint32_t from, std::uint32_t to, Step first, Step last);
 
+  // Counts what was added to a pass at the given steps to the stages of the depth pre-pass.
+  void count_to_prepass(std::uint32_t pass, Step first, Step last);
+
   // One more than the last pass that holds anything.
   std::uint32_t passes() const;
 
@@ -70,6 +73,7 @@ class DramTrace {
     Step step;
     std::uint32_t bin;
     std::uint64_t first_run, runs;
+    bool is_prepass = false;
     auto order() const {
       return std::pair(std::pair(pass, step == Step::setup || step == Step::binning ? step : Step::lists),
                        std::pair(bin, step));

@@ -33,9 +33,9 @@ std::vector<std::string> stages_of(const AcaaOptions& options) {
 FrameResult render_acaa(const Trace& trace, const Frame& frame, const AcaaOptions& options, const RunOptions& run) {
   const FrameContext context(trace, frame, run, {.derivatives = Derivatives::quad});
   const std::vector<Sampling> rounds = acaa_rounds(options.samples);
-  const BinPlan plan{.stages = stages_of(options), .framebuffer = acaa_framebuffer(options)};
+  const BinPlan plan{.stages = stages_of(options), .framebuffer = acaa_framebuffer(options), .has_prepass = true};
   return render_bins(context, plan, [&](Bin& bin) {
-    SampleRasterUnit raster(bin);
+    SampleRasterUnit prepass(bin, Pass::prepass), raster(bin);
     SampleShadeUnit shade(bin, rounds.front(), ShadeAt::centroid);
     AccumulateUnit accumulate(bin, options.samples, options.color, options.double_counting);
     std::vector<float>& visible = bin.pixel_counter("visible_fragments");
@@ -43,7 +43,7 @@ FrameResult render_acaa(const Trace& trace, const Frame& frame, const AcaaOption
     std::vector<glm::vec4> translucent;
     for (const Sampling& sampling : rounds) {
       DepthTestUnit depth_test(bin, sampling, 0);
-      raster.pass(sampling, ShadeAt::centroid, [&](const auto& fragments) { depth_test.test(fragments); });
+      prepass.pass(sampling, ShadeAt::centroid, [&](const auto& fragments) { depth_test.test(fragments); });
       depth_test.end_pass();
       if (accumulate.blends_background()) depth_test.read_depths(accumulate.stage);
       accumulate.start_round(sampling, depth_test.surface());

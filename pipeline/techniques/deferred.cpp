@@ -15,24 +15,11 @@ FrameResult render_deferred(const Trace& trace, const Frame& frame, const RunOpt
                              {.derivatives = Derivatives::quad, .storage = MaterialStorage::gbuffer});
   const Sampling sampling{CellGrid{}, standard_pattern(1)};
   const BinPlan plan{.stages = {"sample_raster", "depth_test", "shade", "light", "resolve"},
-                     .framebuffer = deferred_framebuffer()};
+                     .framebuffer = deferred_framebuffer(),
+                     .has_prepass = true};
   return render_bins(context, plan, [&](Bin& bin) {
-    SampleRasterUnit raster(bin);
     DepthTestUnit depth_test(bin, sampling, 0);
-    GBufferUnit gbuffer(bin);
-
-    raster.pass(sampling, ShadeAt::sample, [&](const auto& fragments) { depth_test.test(fragments); });
-    depth_test.end_pass();
-    raster.pass(sampling, ShadeAt::sample, [&](std::vector<SampleFragment>& fragments) {
-      depth_test.test_equal(fragments);
-      gbuffer.write_fragments(fragments, depth_test);
-    });
-    depth_test.end_pass();
-    gbuffer.end_pass();
-    std::vector<glm::vec4> picture = gbuffer.light_and_resolve(depth_test);
-    put_over(draw_translucent(bin, depth_test, ShadeAt::sample), picture);
-    depth_test.count_bytes();
-    bin.finish(picture);
+    bin.finish(draw_deferred(bin, depth_test));
   });
 }
 
@@ -45,6 +32,25 @@ TechniqueKind deferred_kind() {
           .make = make_plain([] {
             return Technique{.framebuffer = deferred_framebuffer(), .render = bind_options(render_deferred)};
           })};
+}
+
+std::vector<glm::vec4> draw_deferred(Bin& bin, DepthTestUnit& depth_test) {
+  const Sampling& sampling = depth_test.sampling();
+  GBufferUnit gbuffer(bin, sampling);
+  SampleRasterUnit(bin, Pass::prepass).pass(sampling, ShadeAt::sample, [&](const auto& fragments) {
+    depth_test.test(fragments);
+  });
+  depth_test.end_pass();
+  SampleRasterUnit(bin).pass(sampling, ShadeAt::sample, [&](std::vector<SampleFragment>& fragments) {
+    depth_test.test_equal(fragments);
+    gbuffer.write_fragments(fragments, depth_test);
+  });
+  depth_test.end_pass();
+  gbuffer.end_pass();
+  std::vector<glm::vec4> picture = gbuffer.light_and_resolve(depth_test);
+  put_over(draw_translucent(bin, depth_test, ShadeAt::sample), picture);
+  depth_test.count_bytes();
+  return picture;
 }
 
 Framebuffer deferred_framebuffer() {

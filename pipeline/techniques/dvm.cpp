@@ -1,10 +1,12 @@
 #include "pipeline/techniques/dvm.h"
 
+#include <algorithm>
 #include <limits>
 
 #include "pipeline/bins/render_bins.h"
 #include "pipeline/technique_table.h"
 #include "pipeline/techniques/visibility.h"
+#include "pipeline/units/gbuffer_unit.h"
 #include "pipeline/units/temporal_units.h"
 #include "pipeline/units/translucent_layer.h"
 #include "stages/picture/shade.h"
@@ -44,22 +46,36 @@ void add_sample_bytes(const std::vector<SampleQuad>& quads, const Tile& tile, st
     }
 }
 
-// Materials and light of the quads' shading samples, one by one.
-void shade_samples(Bin& bin, const SamplePattern& pattern, std::vector<SampleQuad>& quads) {
-  const BinStage shading = bin.stage("shade"), lighting = bin.stage("light");
-  const std::uint64_t shaded = shaded_samples(quads);
+// Sorts the quads' shading samples by material, and shades and lights them one by one.
+void shade_samples(Bin& bin, const SamplePattern& pattern, const Materials& materials, std::vector<SampleQuad>& quads) {
+  const BinStage sorting = bin.stage("material_sort"), shading = bin.stage("shade"), lighting = bin.stage("light");
+  const std::vector<std::uint32_t> of_quads = triangles_of(quads);
+  sorting.streams(of_quads.size() * kVisibilityBytes);
+  const std::vector<std::uint32_t> order = sort_materials(bin, of_quads, materials);
   std::vector<std::uint32_t> triangles;
-  for (const SampleQuad& quad : quads)
-    for (const std::uint32_t triangle : quad.triangle)
-      if (triangle != kNoTriangle) triangles.push_back(triangle);
-  color_samples(bin.shader(), bin.tile, pattern, quads, bin.texels());
+  for (const std::uint32_t sample : order) triangles.push_back(of_quads[sample]);
+  color_samples(bin.shader(), bin.tile, pattern, order, quads, bin.texels());
   bin.charge_texels(shading);
   write_gbuffer(bin.shader(), triangles, shading.timed());
-  shading.streams(shaded * (kVisibilityBytes + kGBufferBytes));
+  shading.streams(order.size() * (kVisibilityBytes + kGBufferBytes));
   for (const std::uint32_t triangle : triangles) bin.triangle_fetches().attributes(triangle, shading.counters);
   bin.triangle_fetches().flush(shading.counters);
   light(bin.shader(), triangles, lighting.timed());
-  lighting.streams(shaded * (kGBufferBytes + kSampleColorBytes));
+  lighting.streams(order.size() * (kGBufferBytes + kSampleColorBytes));
+}
+
+// Marks the pixels by the number of materials in their quads.
+void count_quads(Bin& bin, const std::vector<SampleQuad>& quads) {
+  std::vector<float>* const by_materials[5] = {&bin.pixel_counter("quads_of_1"), &bin.pixel_counter("quads_of_2"),
+                                               &bin.pixel_counter("quads_of_3"), &bin.pixel_counter("quads_of_4"),
+                                               &bin.pixel_counter("quads_of_5_or_more")};
+  std::vector<float>& partial = bin.pixel_counter("partial_quads");
+  const auto width = static_cast<std::size_t>(bin.tile.width()), columns = (width + 1) / 2;
+  for (std::size_t pixel = 0; pixel < bin.tile.pixels(); ++pixel) {
+    const SampleQuad& quad = quads[pixel / width / 2 * columns + pixel % width / 2];
+    (*by_materials[std::min<std::size_t>(quad.materials, 5) - 1])[pixel] = 1;
+    partial[pixel] = quad.pixels < 4;
+  }
 }
 
 // Over a tile's colours, and over the range of colours that its history may have.
@@ -76,24 +92,26 @@ FrameResult render_dvm(const Trace& trace, const Frame& frame, const DvmOptions&
   const FrameContext context(trace, frame, run, {.storage = MaterialStorage::gbuffer});
   TemporalFrame over_time(context);
   const std::uint32_t frames = over_time.history().frames;
-  const std::vector<std::uint32_t> materials = material_ids(context.triangles, options.material);
+  const Materials materials(material_ids(context.triangles, options.material));
   const std::vector<std::uint32_t> looks = looks_of(frame);
   const Sampling sampling{CellGrid{}, standard_pattern(8)};
   const SelectOptions select{frames % 8, options.seed + frames};
   QuadFrame quads(frame.width, frame.height);
   std::vector<glm::vec4> translucent(context.has_blending() ? over_time.current.color.size() : 0);
 
-  const BinPlan plan{.stages = {"sample_raster", "depth_test", "sample_select", "shade", "light", "motion"},
-                     .framebuffer = dvm_framebuffer()};
+  const BinPlan plan{
+      .stages = {"sample_raster", "depth_test", "sample_select", "material_sort", "shade", "light", "motion"},
+      .framebuffer = dvm_framebuffer()};
   FrameResult result = render_bins(context, plan, [&](Bin& bin) {
     const BinStage selecting = bin.stage("sample_select"), moving = bin.stage("motion");
     DepthTestUnit visibility(bin, sampling, kVisibilityBytes);
     draw_visibility(bin, sampling, visibility);
     std::vector<SampleQuad> selected =
-        sample_select(visibility.surface(), bin.tile, materials, select, selecting.timed());
+        sample_select(visibility.surface(), bin.tile, materials.ids, select, selecting.timed());
     visibility.read_colors(selecting);
     selecting.streams(shaded_samples(selected) * kShadingSampleBytes);
-    shade_samples(bin, sampling.pattern, selected);
+    count_quads(bin, selected);
+    shade_samples(bin, sampling.pattern, materials, selected);
     quads.insert(bin.tile, selected);
     over_time.find_motion(bin, visibility);
     const PixelContents found = contents(visibility.surface(), bin.tile, frame, context.triangles.draws,

@@ -19,7 +19,7 @@ struct DvmOptions {
   MaterialBy material = MaterialBy::color;
 };
 
-// Technique::working_bytes_per_pixel. A quad has four pixels.
-inline constexpr std::uint32_t kDvmWorkingBytes = kTemporalWorkingBytes + sizeof(SampleQuad) / 4;
+// Technique::working_bytes_per_pixel. A quad has four pixels, and six counters are about quads.
+inline constexpr std::uint32_t kDvmWorkingBytes = kTemporalWorkingBytes + sizeof(SampleQuad) / 4 + 6 * sizeof(float);
 
 }  // namespace beampipe

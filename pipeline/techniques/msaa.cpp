@@ -1,5 +1,7 @@
 #include "pipeline/techniques/msaa.h"
 
+#include <cmath>
+#include <optional>
 #include <string>
 
 #include "pipeline/bins/render_bins.h"
@@ -7,6 +9,7 @@
 #include "pipeline/units/depth_test_unit.h"
 #include "pipeline/units/fragment_units.h"
 #include "pipeline/units/raster_units.h"
+#include "pipeline/units/temporal_units.h"
 
 namespace beampipe {
 namespace {
@@ -15,46 +18,76 @@ std::uint32_t color_bytes(const MsaaOptions& options) { return options.rgba ? 8 
 
 Framebuffer msaa_framebuffer(const MsaaOptions& options) {
   const auto n = static_cast<std::uint32_t>(options.samples);
-  return {.surfaces = {{"depth", times("D32F", n), n * kSampleDepthBytes},
-                       {"color", times(options.rgba ? "RGBA16F" : "RGB16F", n), n * color_bytes(options)}},
-          .bin_size = bin_size(options.samples)};
+  std::vector<Surface> surfaces = {{"depth", times("D32F", n), n * kSampleDepthBytes},
+                                   {"color", times(options.rgba ? "RGBA16F" : "RGB16F", n), n * color_bytes(options)}};
+  if (options.motion) surfaces.push_back({"motion", "RG16F", kMotionBytes, true});
+  return {.surfaces = surfaces, .bin_size = bin_size(options.samples)};
+}
+
+// How far each pixel moved; 0 if its surface was behind the eye.
+void count_motion(const std::vector<glm::vec2>& vectors, std::vector<float>& lengths) {
+  for (std::size_t i = 0; i < vectors.size(); ++i) {
+    const float length = std::hypot(vectors[i].x, vectors[i].y);
+    lengths[i] = std::isfinite(length) ? length : 0.0f;
+  }
 }
 
 FrameResult render_msaa(const Trace& trace, const Frame& frame, const MsaaOptions& options, const RunOptions& run) {
   const FrameContext context(trace, frame, run, {.derivatives = Derivatives::quad, .rounds_to_half = true});
   const Sampling sampling = msaa_sampling(options.samples);
-  const auto first_pass =
-      options.prepass ? DepthTestUnit::FirstPass::writes_depth_alone : DepthTestUnit::FirstPass::writes_color;
-  const auto same_color = [&](std::uint32_t a, std::uint32_t b) { return context.shader.same_color(a, b); };
-  const BinPlan plan{.stages = {"sample_raster", "shade", "depth_test", "resolve"},
-                     .framebuffer = msaa_framebuffer(options)};
-  return render_bins(context, plan, [&](Bin& bin) {
-    SampleRasterUnit raster(bin, SampleRasterUnit::Translucent::drawn, options.alpha);
-    SampleShadeUnit shade(bin, sampling, options.at);
-    shade.counts_centroids();
-    DepthTestUnit depth_test(bin, sampling, color_bytes(options), first_pass, same_color);
-    depth_test.shade_translucent_at(options.at);
-
-    raster.pass(sampling, options.at, [&](std::vector<SampleFragment>& fragments) {
-      if (!options.prepass) shade(fragments);
-      depth_test.test(fragments);
-    });
-    depth_test.end_pass();
-    if (options.prepass) {  // shades and writes what is visible; the surface already knows which triangles are
-      depth_test.add_color(color_bytes(options));
-      raster.pass(sampling, options.at, [&](std::vector<SampleFragment>& fragments) {
-        depth_test.test_equal(fragments);
-        shade(fragments);
-      });
-      depth_test.end_pass();
-    }
-    depth_test.count_bytes();
-    depth_test.read_colors(bin.stage("resolve"));
-    bin.finish(depth_test.resolve_samples(options.at, bin.stage("resolve")));
+  History first;
+  History& history = run.history ? *run.history : first;
+  std::optional<FrameMotion> motion;
+  if (options.motion) motion.emplace(context, history);
+  BinPlan plan{.stages = {"sample_raster", "shade", "depth_test", "resolve"},
+               .framebuffer = msaa_framebuffer(options),
+               .has_prepass = options.prepass};
+  if (options.motion) plan.stages.push_back("motion");
+  FrameResult result = render_bins(context, plan, [&](Bin& bin) {
+    DepthTestUnit depth_test = forward_surface(bin, sampling, options);
+    bin.finish(draw_forward(bin, options, depth_test));
+    if (motion) count_motion(motion->find(bin, depth_test, MotionFrom::depth), bin.pixel_counter("motion"));
   });
+  if (motion) {
+    ++history.frames;
+    history.poses = motion->take_poses();
+  }
+  return result;
 }
 
 }  // namespace
+
+DepthTestUnit forward_surface(Bin& bin, const Sampling& sampling, const MsaaOptions& options) {
+  const auto first_pass =
+      options.prepass ? DepthTestUnit::FirstPass::writes_depth_alone : DepthTestUnit::FirstPass::writes_color;
+  return {bin, sampling, color_bytes(options), first_pass,
+          [&shader = bin.context.shader](std::uint32_t a, std::uint32_t b) { return shader.same_color(a, b); }};
+}
+
+std::vector<glm::vec4> draw_forward(Bin& bin, const MsaaOptions& options, DepthTestUnit& depth_test) {
+  constexpr auto kAll = SampleRasterUnit::Translucent::drawn;
+  const Sampling& sampling = depth_test.sampling();
+  SampleRasterUnit raster(bin, kAll, options.alpha);
+  SampleShadeUnit shade(bin, sampling, options.at);
+  shade.counts_centroids();
+  depth_test.shade_translucent_at(options.at);
+
+  if (options.prepass) {  // shades and writes what is visible; the surface already knows which triangles are
+    SampleRasterUnit(bin, kAll, options.alpha, Pass::prepass)
+        .pass(sampling, options.at, [&](std::vector<SampleFragment>& fragments) { depth_test.test(fragments); });
+    depth_test.end_pass();
+    depth_test.add_color(color_bytes(options));
+  }
+  raster.pass(sampling, options.at, [&](std::vector<SampleFragment>& fragments) {
+    if (options.prepass) depth_test.test_equal(fragments);
+    shade(fragments);
+    if (!options.prepass) depth_test.test(fragments);
+  });
+  depth_test.end_pass();
+  depth_test.count_bytes();
+  depth_test.read_colors(bin.stage("resolve"));
+  return depth_test.resolve_samples(options.at, bin.stage("resolve"), options.space);
+}
 
 TechniqueKind msaa_kind() {
   return {
@@ -76,12 +109,16 @@ TechniqueKind msaa_kind() {
                        "of cutouts: tested once per fragment, or the part of its samples that it takes"),
                 flag("prepass", o.prepass,
                      "depth first, so that only visible fragments are shaded; the picture is the same, but that "
-                     "translucent triangles are blended over what is opaque and visible in the end")};
+                     "translucent triangles are blended over what is opaque and visible in the end"),
+                flag("motion", o.motion, "makes motion vectors from the depths, for passes that need them"),
+                choice("resolve", o.space, {{"linear", ResolveSpace::linear}, {"reinhard", ResolveSpace::reinhard}},
+                       "the mean is that of linear colours, or of colours compressed by Reinhard's operator")};
           },
           [](const MsaaOptions& o) {
             return Technique{.framebuffer = msaa_framebuffer(o),
                              .samples = static_cast<std::uint32_t>(o.samples),
-                             .render = bind_options(render_msaa, o)};
+                             .render = bind_options(render_msaa, o),
+                             .keeps_history = o.motion};
           })};
 }
 

@@ -5,8 +5,13 @@
 // early.
 #pragma once
 
+#include <vector>
+
+#include "pipeline/bins/bin.h"
 #include "pipeline/sampling.h"
 #include "pipeline/technique.h"
+#include "pipeline/units/depth_test_unit.h"
+#include "stages/picture/resolve.h"
 #include "stages/samples/alpha_test.h"
 #include "stages/samples/shading_point.h"
 
@@ -20,6 +25,15 @@ struct MsaaOptions {
   ShadeAt at = ShadeAt::centre;
   AlphaCoverage alpha = AlphaCoverage::test;
   bool prepass = false;  // a depth pass first, so that only visible fragments are shaded. The picture is the same.
+  bool motion = false;   // motion vectors from the samples' depths, for passes that need them
+  ResolveSpace space = ResolveSpace::linear;
 };
+
+// The depth test of forward shading, with colours. `sampling` must outlive it.
+DepthTestUnit forward_surface(Bin& bin, const Sampling& sampling, const MsaaOptions& options);
+
+// Draws and shades all triangles, with a depth pre-pass if there is one, and resolves the samples. Returns the picture.
+// Stages: sample_raster, shade, depth_test, resolve.
+std::vector<glm::vec4> draw_forward(Bin& bin, const MsaaOptions& options, DepthTestUnit& depth_test);
 
 }  // namespace beampipe

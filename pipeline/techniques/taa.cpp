@@ -2,6 +2,8 @@
 
 #include "pipeline/bins/render_bins.h"
 #include "pipeline/technique_table.h"
+#include "pipeline/techniques/deferred.h"
+#include "pipeline/techniques/msaa.h"
 #include "pipeline/techniques/visibility.h"
 #include "pipeline/units/temporal_units.h"
 #include "stages/picture/shade.h"
@@ -9,8 +11,37 @@
 namespace beampipe {
 namespace {
 
-Framebuffer taa_framebuffer() {
+constexpr MsaaOptions kForward{.samples = 1, .at = ShadeAt::sample, .prepass = true};
+
+ShadingRules rules_of(TaaShading shading) {
+  switch (shading) {
+    case TaaShading::visibility:
+      return {.storage = MaterialStorage::gbuffer};
+    case TaaShading::deferred:
+      return {.derivatives = Derivatives::quad, .storage = MaterialStorage::gbuffer};
+    case TaaShading::forward:
+      return {.derivatives = Derivatives::quad, .rounds_to_half = true};
+  }
+  return {};
+}
+
+std::vector<std::string> stages_of(TaaShading shading) {
+  switch (shading) {
+    case TaaShading::visibility:
+      return {"sample_raster", "depth_test", "material_sort", "shade", "light", "resolve", "motion"};
+    case TaaShading::deferred:
+      return {"sample_raster", "depth_test", "shade", "light", "resolve", "motion"};
+    case TaaShading::forward:
+      return {"sample_raster", "shade", "depth_test", "resolve", "motion"};
+  }
+  return {};
+}
+
+Framebuffer taa_framebuffer(TaaShading shading) {
   Framebuffer framebuffer = visibility_framebuffer();
+  if (shading == TaaShading::deferred) framebuffer = deferred_framebuffer();
+  if (shading == TaaShading::forward)
+    framebuffer.surfaces = {{"depth", "D32F", kSampleDepthBytes}, {"color", "RGB16F", kSampleColorBytes}};
   framebuffer.surfaces.push_back({"motion", "RG16F", kMotionBytes, true});
   framebuffer.surfaces.push_back({"history", "RGBA16F x 2", 16, true});  // the last one, and the one being written
   return framebuffer;
@@ -26,18 +57,35 @@ SamplePattern jittered(const TaaOptions& options, std::uint32_t frame) {
   return one;
 }
 
-FrameResult render_taa(const Trace& trace, const Frame& frame, const TaaOptions& options, const RunOptions& run) {
-  const FrameContext context(trace, frame, run, {.storage = MaterialStorage::gbuffer});
-  TemporalFrame over_time(context);
-  const Sampling sampling{CellGrid{}, jittered(options, over_time.history().frames)};
-  const BinPlan plan{.stages = {"sample_raster", "depth_test", "shade", "light", "resolve", "motion"},
-                     .framebuffer = taa_framebuffer()};
-  FrameResult result = render_bins(context, plan, [&](Bin& bin) {
+// Draws and shades the bin's pixels, finds how they moved, and returns the picture.
+std::vector<glm::vec4> draw_bin(Bin& bin, TaaShading shading, const Sampling& sampling, const Materials& materials,
+                                TemporalFrame& over_time) {
+  std::vector<glm::vec4> picture;
+  if (shading == TaaShading::visibility) {
     DepthTestUnit visibility(bin, sampling, kVisibilityBytes);
     draw_visibility(bin, sampling, visibility);
-    bin.finish(shade_visibility(bin, visibility));
-    copy_to_frame(bin.picture(), bin.tile, frame, over_time.current.color);
+    picture = shade_visibility(bin, materials, visibility);
     over_time.find_motion(bin, visibility);
+  } else {
+    DepthTestUnit surface =
+        shading == TaaShading::forward ? forward_surface(bin, sampling, kForward) : DepthTestUnit(bin, sampling, 0);
+    picture = shading == TaaShading::forward ? draw_forward(bin, kForward, surface) : draw_deferred(bin, surface);
+    over_time.find_motion(bin, surface, MotionFrom::depth);
+  }
+  return picture;
+}
+
+FrameResult render_taa(const Trace& trace, const Frame& frame, const TaaOptions& options, const RunOptions& run) {
+  const FrameContext context(trace, frame, run, rules_of(options.shading));
+  TemporalFrame over_time(context);
+  const Sampling sampling{CellGrid{}, jittered(options, over_time.history().frames)};
+  const Materials materials(material_ids(context.triangles, MaterialBy::color));
+  const BinPlan plan{.stages = stages_of(options.shading),
+                     .framebuffer = taa_framebuffer(options.shading),
+                     .has_prepass = options.shading != TaaShading::visibility};
+  FrameResult result = render_bins(context, plan, [&](Bin& bin) {
+    bin.finish(draw_bin(bin, options.shading, sampling, materials, over_time));
+    copy_to_frame(bin.picture(), bin.tile, frame, over_time.current.color);
   });
   run_on_tiles(context, "temporal", result, [&](const Tile& tile, const BinStage& stage) {
     neighborhood_box(tile, stage.timed(), over_time.current);
@@ -52,16 +100,21 @@ FrameResult render_taa(const Trace& trace, const Frame& frame, const TaaOptions&
 
 TechniqueKind taa_kind() {
   return {.name = "taa",
-          .description = "temporal antialiasing of visibility at one sample per pixel, jittered over N positions",
+          .description = "temporal antialiasing of one sample per pixel, jittered over N positions",
           .source = "Lottes 2011, Karis 2014, Salvi 2016",
           .make = make_from(
               TaaOptions{},
               [](TaaOptions& o) -> SpecOptions {
                 return {samples(o.samples, kMaxTaaSamples, "positions of the jitter"),
-                        number("blend", o.blend, 0.001f, 1.0f, "weight of each new frame")};
+                        number("blend", o.blend, 0.001f, 1.0f, "weight of each new frame"),
+                        choice("shading", o.shading,
+                               {{"visibility", TaaShading::visibility},
+                                {"deferred", TaaShading::deferred},
+                                {"forward", TaaShading::forward}},
+                               "how a frame is shaded: as by visibility, deferred or msaa:1,prepass")};
               },
               [](const TaaOptions& o) {
-                return Technique{.framebuffer = taa_framebuffer(),
+                return Technique{.framebuffer = taa_framebuffer(o.shading),
                                  .render = bind_options(render_taa, o),
                                  .keeps_history = true,
                                  .working_bytes_per_pixel = kTemporalWorkingBytes};

@@ -2,7 +2,6 @@
 
 #include "pipeline/bins/render_bins.h"
 #include "pipeline/technique_table.h"
-#include "pipeline/techniques/deferred.h"
 #include "pipeline/units/gbuffer_unit.h"
 #include "pipeline/units/raster_units.h"
 #include "pipeline/units/translucent_layer.h"
@@ -10,15 +9,17 @@
 namespace beampipe {
 namespace {
 
-FrameResult render_visibility(const Trace& trace, const Frame& frame, const RunOptions& run) {
+FrameResult render_visibility(const Trace& trace, const Frame& frame, const VisibilityOptions& options,
+                              const RunOptions& run) {
   const FrameContext context(trace, frame, run, {.storage = MaterialStorage::gbuffer});
-  const Sampling sampling{CellGrid{}, standard_pattern(1)};
-  const BinPlan plan{.stages = {"sample_raster", "depth_test", "shade", "light", "resolve"},
-                     .framebuffer = visibility_framebuffer()};
+  const Sampling sampling{CellGrid{}, standard_pattern(options.samples)};
+  const Materials materials(material_ids(context.triangles, MaterialBy::color));
+  const BinPlan plan{.stages = {"sample_raster", "depth_test", "material_sort", "shade", "light", "resolve"},
+                     .framebuffer = visibility_framebuffer(options.samples)};
   return render_bins(context, plan, [&](Bin& bin) {
     DepthTestUnit visibility(bin, sampling, kVisibilityBytes);
     draw_visibility(bin, sampling, visibility);
-    bin.finish(shade_visibility(bin, visibility));
+    bin.finish(shade_visibility(bin, materials, visibility));
   });
 }
 
@@ -26,11 +27,17 @@ FrameResult render_visibility(const Trace& trace, const Frame& frame, const RunO
 
 TechniqueKind visibility_kind() {
   return {.name = "visibility",
-          .description = "one sample per pixel: triangle ids and depth, then shading per pixel",
+          .description = "triangle ids and depth at N samples per pixel, then shading of every sample",
           .source = "Burns and Hunt 2013, Hable 2021",
-          .make = make_plain([] {
-            return Technique{.framebuffer = visibility_framebuffer(), .render = bind_options(render_visibility)};
-          })};
+          .make = make_from(
+              VisibilityOptions{},
+              [](VisibilityOptions& o) -> SpecOptions {
+                return {optional_samples(o.samples, kMaxVisibilitySamples, "samples per pixel, all of them shaded")};
+              },
+              [](const VisibilityOptions& o) {
+                return Technique{.framebuffer = visibility_framebuffer(o.samples),
+                                 .render = bind_options(render_visibility, o)};
+              })};
 }
 
 void draw_visibility(Bin& bin, const Sampling& sampling, DepthTestUnit& visibility) {
@@ -38,19 +45,24 @@ void draw_visibility(Bin& bin, const Sampling& sampling, DepthTestUnit& visibili
   visibility.end_pass();
 }
 
-std::vector<glm::vec4> shade_visibility(Bin& bin, DepthTestUnit& visibility) {
-  GBufferUnit gbuffer(bin);
-  gbuffer.write_visible(visibility);
+std::vector<glm::vec4> shade_visibility(Bin& bin, const Materials& materials, DepthTestUnit& visibility) {
+  GBufferUnit gbuffer(bin, visibility.sampling());
+  gbuffer.write_visible(visibility, materials);
   std::vector<glm::vec4> picture = gbuffer.light_and_resolve(visibility);
-  put_over(draw_translucent(bin, visibility, ShadeAt::sample), picture);
+  const ShadeAt at = visibility.sampling().pattern.count == 1 ? ShadeAt::sample : ShadeAt::centroid;
+  put_over(draw_translucent(bin, visibility, at), picture);
   visibility.count_bytes();
   return picture;
 }
 
-Framebuffer visibility_framebuffer() {
-  Framebuffer framebuffer = deferred_framebuffer();
-  framebuffer.surfaces.insert(framebuffer.surfaces.begin() + 1, {"visibility", "R32UI", kVisibilityBytes});
-  return framebuffer;
+Framebuffer visibility_framebuffer(int samples) {
+  const auto n = static_cast<std::uint32_t>(samples);
+  const auto format = [n](const char* one) { return n == 1 ? one : times(one, n); };
+  return {.surfaces = {{"depth", format("D32F"), n * kSampleDepthBytes},
+                       {"visibility", format("R32UI"), n * kVisibilityBytes},
+                       {"gbuffer", n == 1 ? "RGBA8 + RGB10A2" : times("(RGBA8 + RGB10A2)", n), n * kGBufferBytes},
+                       {"color", format("RGB16F"), n * kSampleColorBytes}},
+          .bin_size = bin_size(samples)};
 }
 
 }  // namespace beampipe

@@ -4,7 +4,6 @@
 #include <bit>
 
 #include "pipeline/units/sample_places.h"
-#include "stages/picture/resolve.h"
 #include "stages/samples/blend.h"
 
 namespace beampipe {
@@ -12,7 +11,7 @@ namespace beampipe {
 DepthTestUnit::DepthTestUnit(Bin& bin, const Sampling& sampling, std::uint32_t first_color_bytes,
                              std::uint32_t color_bytes, SampleMemory::SameValue same_color)
     : bin_(bin),
-      stage_(bin.stage("depth_test")),
+      pass_(first_color_bytes == 0 ? Pass::prepass : Pass::main),
       sampling_(sampling),
       surface_(bin.tile, sampling, first_color_bytes),
       memory_(bin.memory(), bin.tile, sampling, color_bytes, std::move(same_color)),
@@ -75,9 +74,10 @@ void DepthTestUnit::blend_colors(const std::vector<SampleFragment>& fragments, c
 }
 
 void DepthTestUnit::test_opaque(const std::vector<SampleFragment>& fragments) {
-  depth_test(bin_.triangles(), fragments, bin_.tile, sampling_, stage_.timed(), surface_, accesses_);
-  surface_.color_bytes > 0 ? memory_.test_and_write(accesses_, stage_.counters)
-                           : memory_.test_depth(accesses_, stage_.counters);
+  const BinStage testing = stage();
+  depth_test(bin_.triangles(), fragments, bin_.tile, sampling_, testing.timed(), surface_, accesses_);
+  surface_.color_bytes > 0 ? memory_.test_and_write(accesses_, testing.counters)
+                           : memory_.test_depth(accesses_, testing.counters);
   count_by_pixel(fragments, bin_.tile, sampling_.grid, fragments_);
   if (surface_.over.empty()) return;
   for (const SampleAccess& access : accesses_)  // an opaque surface hides what was blended there
@@ -94,16 +94,18 @@ void DepthTestUnit::test_equal(std::vector<SampleFragment>& fragments) {
     translucent.assign(rest, fragments.end());
     fragments.erase(rest, fragments.end());
   }
-  depth_test_equal(bin_.triangles(), bin_.tile, sampling_, stage_.timed(), surface_, fragments, accesses_);
-  memory_.test_equal(accesses_, stage_.counters);
+  const BinStage testing = stage();
+  depth_test_equal(bin_.triangles(), bin_.tile, sampling_, testing.timed(), surface_, fragments, accesses_);
+  memory_.test_equal(accesses_, testing.counters);
   if (!translucent.empty()) blend_fragments(translucent);
 }
 
-std::vector<glm::vec4> DepthTestUnit::resolve_samples(ShadeAt at, const BinStage& resolving) const {
+std::vector<glm::vec4> DepthTestUnit::resolve_samples(ShadeAt at, const BinStage& resolving, ResolveSpace space) const {
   const SamplePlaces places(bin_, sampling_, at);
-  return resolve(surface_, bin_.tile.pixels(), bin_.shader(), bin_.background(), resolving.timed(),
-                 static_cast<std::size_t>(sampling_.grid.cells_per_pixel()),
-                 [&](std::uint32_t triangle, std::size_t cell) { return places.of(triangle, cell); });
+  return resolve(
+      surface_, bin_.tile.pixels(), bin_.shader(), bin_.background(), resolving.timed(),
+      static_cast<std::size_t>(sampling_.grid.cells_per_pixel()),
+      [&](std::uint32_t triangle, std::size_t cell) { return places.of(triangle, cell); }, space);
 }
 
 void DepthTestUnit::count_bytes() {
@@ -121,11 +123,9 @@ void count_by_pixel(const std::vector<SampleFragment>& fragments, const Tile& ti
   }
 }
 
-std::vector<std::uint32_t> shown_pixels(const SampleTile& surface, const Tile& tile) {
-  std::vector<std::uint32_t> pixels;
-  for (std::uint32_t pixel = 0; pixel < tile.pixels(); ++pixel)
-    if (surface.triangle[pixel] != kNoTriangle) pixels.push_back(pixel);
-  return pixels;
+std::vector<std::uint32_t> triangles_of(const SampleTile& surface, const Tile& tile) {
+  const auto samples = static_cast<std::ptrdiff_t>(tile.pixels() * surface.samples_per_pixel);
+  return {surface.triangle.begin(), surface.triangle.begin() + samples};
 }
 
 }  // namespace beampipe

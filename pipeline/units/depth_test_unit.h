@@ -7,6 +7,7 @@
 #include "pipeline/bins/bin.h"
 #include "pipeline/memory/sample_memory.h"
 #include "pipeline/memory/tile_surface.h"
+#include "stages/picture/resolve.h"
 #include "stages/samples/shading_point.h"
 #include "stages/samples/test_depth.h"
 
@@ -14,7 +15,8 @@ namespace beampipe {
 
 class DepthTestUnit {
  public:
-  // `sampling` must outlive it. `color_bytes` of a sample beside its depth; 0: there is depth alone.
+  // `sampling` must outlive it. `color_bytes` of a sample beside its depth; 0: there is depth alone, and the first pass
+  // is a depth pre-pass.
   DepthTestUnit(Bin& bin, const Sampling& sampling, std::uint32_t color_bytes)
       : DepthTestUnit(bin, sampling, color_bytes, color_bytes, std::equal_to<std::uint32_t>()) {}
 
@@ -43,7 +45,10 @@ class DepthTestUnit {
   void test_equal(std::vector<SampleFragment>& fragments);
   const std::vector<SampleAccess>& accesses() const { return accesses_; }  // of the last test
 
-  void end_pass() { memory_.flush(stage_.counters); }
+  void end_pass() {
+    memory_.flush(stage().counters);
+    pass_ = Pass::main;
+  }
 
   // From here on the surface's colours count: what is written and resolved.
   void add_color(std::uint32_t color_bytes) { surface_.color_bytes = color_bytes; }
@@ -53,7 +58,8 @@ class DepthTestUnit {
   void read_colors(const BinStage& by) { memory_.read_color(by.counters); }
 
   // The mean colour of each pixel's samples.
-  std::vector<glm::vec4> resolve_samples(ShadeAt at, const BinStage& resolving) const;
+  std::vector<glm::vec4> resolve_samples(ShadeAt at, const BinStage& resolving,
+                                         ResolveSpace space = ResolveSpace::linear) const;
 
   // Adds the bytes that tests and writes have moved to the bin's counter. Once, at the end.
   void count_bytes();
@@ -65,13 +71,14 @@ class DepthTestUnit {
   DepthTestUnit(Bin& bin, const Sampling& sampling, std::uint32_t first_color_bytes, std::uint32_t color_bytes,
                 SampleMemory::SameValue same_color);
 
+  BinStage stage() const { return bin_.stage("depth_test", pass_); }
   bool hides(const SampleFragment& fragment) const;  // what lies behind it
   void test_opaque(const std::vector<SampleFragment>& fragments);
   void blend_colors(const std::vector<SampleFragment>& fragments, const BinStage& blending);
   void blend_fragments(const std::vector<SampleFragment>& fragments);
 
   Bin& bin_;
-  BinStage stage_;
+  Pass pass_;
   const Sampling& sampling_;
   ShadeAt translucent_at_ = ShadeAt::centre;
   SampleTile surface_;
@@ -85,7 +92,7 @@ class DepthTestUnit {
 void count_by_pixel(const std::vector<SampleFragment>& fragments, const Tile& tile, const CellGrid& grid,
                     std::vector<float>& counts);
 
-// The pixels of the tile, row by row, at which a surface of one sample per pixel shows a triangle.
-std::vector<std::uint32_t> shown_pixels(const SampleTile& surface, const Tile& tile);
+// The triangles that the samples of a surface show, pixel by pixel.
+std::vector<std::uint32_t> triangles_of(const SampleTile& surface, const Tile& tile);
 
 }  // namespace beampipe

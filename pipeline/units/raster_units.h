@@ -92,12 +92,17 @@ class ConservativeRasterUnit {
 
 class SampleRasterUnit {
  public:
-  explicit SampleRasterUnit(Bin& bin) : bin_(bin), stage_(bin.stage("sample_raster")) {}
+  explicit SampleRasterUnit(Bin& bin, Pass pass = Pass::main)
+      : SampleRasterUnit(bin, Translucent::left_out, AlphaCoverage::test, pass) {}
 
   // Translucent triangles: left out, drawn with all others, or drawn alone, in a pass that continues another one.
   enum class Translucent { left_out, drawn, alone };
-  SampleRasterUnit(Bin& bin, Translucent translucent, AlphaCoverage coverage)
-      : bin_(bin), stage_(bin.stage("sample_raster")), translucent_(translucent), coverage_(coverage) {}
+  SampleRasterUnit(Bin& bin, Translucent translucent, AlphaCoverage coverage, Pass pass = Pass::main)
+      : bin_(bin),
+        pass_(pass),
+        stage_(bin.stage("sample_raster", pass)),
+        translucent_(translucent),
+        coverage_(coverage) {}
 
   // One geometry pass: calls body(fragments) for each batch of triangles. Leaves out what lies behind the cells that
   // this pass has closed so far, as a hierarchical depth buffer does. Fragments of cutouts pass the alpha test first.
@@ -105,7 +110,7 @@ class SampleRasterUnit {
   template <class Body>
   void pass(const Sampling& sampling, ShadeAt at, Body&& body) {
     ClosedDepth closed(cells_of(bin_.tile, sampling.grid));
-    if (translucent_ != Translucent::alone) bin_.starts_geometry_pass();
+    if (translucent_ != Translucent::alone) bin_.starts_geometry_pass(pass_);
     bin_.start_texture_pass();
     bin_.holds("closed_depth", closed.bytes());
     for_each_batch(drawn_triangles(), [&](const TriangleList& batch) {
@@ -122,11 +127,12 @@ class SampleRasterUnit {
   void test_alpha(const Sampling& sampling, ShadeAt at);
 
   Bin& bin_;
+  Pass pass_;
   BinStage stage_;
   std::vector<SampleFragment> fragments_;
   TriangleList drawn_;  // if not all of the bin's triangles are drawn
-  Translucent translucent_ = Translucent::left_out;
-  AlphaCoverage coverage_ = AlphaCoverage::test;
+  Translucent translucent_;
+  AlphaCoverage coverage_;
 };
 
 }  // namespace beampipe

@@ -4,21 +4,30 @@
 
 namespace beampipe {
 
+FrameMotion::FrameMotion(const FrameContext& context, const History& history)
+    : frame_(context.frame),
+      poses_(poses_of(context.frame, context.triangles.placements)),
+      to_last_(to_last_frame(poses_, history.frames > 0 ? history.poses : poses_)) {}
+
+std::vector<glm::vec2> FrameMotion::find(Bin& bin, DepthTestUnit& surface, MotionFrom from) const {
+  const BinStage stage = bin.stage("motion");
+  std::vector<glm::vec2> vectors =
+      motion(surface.surface(), bin.tile, frame_, bin.triangles().draws, to_last_, stage.timed(), from);
+  surface.read_depths(stage);
+  if (from == MotionFrom::ids) surface.read_colors(stage);
+  stage.streams(bin.tile.pixels() * kMotionBytes);
+  return vectors;
+}
+
 TemporalFrame::TemporalFrame(const FrameContext& context)
     : current(context.frame.width, context.frame.height),
       context_(context),
       history_(context.run.history ? *context.run.history : first_),
-      poses_(poses_of(context.frame, context.triangles.placements)),
-      to_last_(to_last_frame(poses_, history_.frames > 0 ? history_.poses : poses_)),
+      motion_(context, history_),
       picture_(current.color.size()) {}
 
-void TemporalFrame::find_motion(Bin& bin, DepthTestUnit& visibility) {
-  const BinStage stage = bin.stage("motion");
-  copy_to_frame(motion(visibility.surface(), bin.tile, context_.frame, bin.triangles().draws, to_last_, stage.timed()),
-                bin.tile, context_.frame, current.motion);
-  visibility.read_depths(stage);
-  visibility.read_colors(stage);
-  stage.streams(bin.tile.pixels() * kMotionBytes);
+void TemporalFrame::find_motion(Bin& bin, DepthTestUnit& surface, MotionFrom from) {
+  copy_to_frame(motion_.find(bin, surface, from), bin.tile, context_.frame, current.motion);
 }
 
 // What neighbouring pixels share comes from cache: each surface is moved once.
@@ -32,8 +41,8 @@ void TemporalFrame::accumulate(const Tile& tile, const TemporalOptions& options,
 
 void TemporalFrame::finish(FrameResult& result) {
   copy_to_image(picture_, result.image);
-  history_ = {history_.frames + 1,      current.width,    current.height, std::move(picture_),
-              std::move(current.looks), std::move(poses_)};
+  history_ = {history_.frames + 1,      current.width,       current.height, std::move(picture_),
+              std::move(current.looks), motion_.take_poses()};
 }
 
 }  // namespace beampipe

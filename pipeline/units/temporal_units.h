@@ -1,6 +1,7 @@
 // What techniques that accumulate over frames share: this frame by itself, the history, and how both meet.
 #pragma once
 
+#include <utility>
 #include <vector>
 
 #include "pipeline/bins/bin.h"
@@ -10,6 +11,26 @@
 
 namespace beampipe {
 
+// How a frame has moved since the last one.
+class FrameMotion {
+ public:
+  // `history`: what earlier frames left.
+  FrameMotion(const FrameContext& context, const History& history);
+
+  // Clip space of this frame to that of the last one, by draw.
+  const std::vector<glm::dmat4>& to_last() const { return to_last_; }
+
+  // Stage `motion` of a bin: how the nearest surface of each pixel moved, row by row.
+  std::vector<glm::vec2> find(Bin& bin, DepthTestUnit& surface, MotionFrom from) const;
+
+  Poses take_poses() { return std::move(poses_); }  // for the history
+
+ private:
+  const Frame& frame_;
+  Poses poses_;
+  std::vector<glm::dmat4> to_last_;
+};
+
 class TemporalFrame {
  public:
   explicit TemporalFrame(const FrameContext& context);
@@ -17,11 +38,10 @@ class TemporalFrame {
   // What earlier frames left.
   const History& history() const { return history_; }
 
-  // Clip space of this frame to that of the last one, by draw.
-  const std::vector<glm::dmat4>& to_last() const { return to_last_; }
+  const std::vector<glm::dmat4>& to_last() const { return motion_.to_last(); }
 
-  // Stage `motion` of a bin: how the nearest surface of each pixel moved.
-  void find_motion(Bin& bin, DepthTestUnit& visibility);
+  // FrameMotion::find, for `current`.
+  void find_motion(Bin& bin, DepthTestUnit& surface, MotionFrom from = MotionFrom::ids);
 
   // Stage `temporal` of a tile, on whole frames.
   void accumulate(const Tile& tile, const TemporalOptions& options, const BinStage& stage);
@@ -35,8 +55,7 @@ class TemporalFrame {
   const FrameContext& context_;
   History first_;  // of a frame that has no history
   History& history_;
-  Poses poses_;
-  std::vector<glm::dmat4> to_last_;
+  FrameMotion motion_;
   std::vector<glm::vec4> picture_;
 };
 

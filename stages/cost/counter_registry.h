@@ -2,6 +2,7 @@
 // lists, and the report takes its columns and definitions from them.
 #pragma once
 
+#include <string_view>
 #include <vector>
 
 #include "stages/cost/counters.h"
@@ -20,6 +21,15 @@ struct StageInfo {
 };
 
 const std::vector<StageInfo>& stage_list();
+
+// The stages of a depth pre-pass are counted apart, under their names with this before it. stage_list() does not list
+// them again.
+inline constexpr std::string_view kPrepass = "prepass_";
+
+// "depth_test" for "depth_test" and for "prepass_depth_test".
+constexpr std::string_view without_pass(std::string_view stage) {
+  return stage.starts_with(kPrepass) ? stage.substr(kPrepass.size()) : stage;
+}
 
 // Does the counter count anything in this stage?
 bool has_counter(const StageInfo& stage, const CounterInfo& counter);

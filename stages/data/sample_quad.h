@@ -13,10 +13,12 @@ namespace beampipe {
 // Pixel p = 0..3 of a quad is its pixel (p % 2, p / 2), and shading sample p is stored there. Bit 8 p + s of a mask is
 // sample s of pixel p. If the frame's size is odd, a quad's pixels outside the frame have no bits in any mask.
 struct SampleQuad {
-  std::uint32_t triangle[4];  // the triangle that is shaded; kNoTriangle: the background
-  std::uint32_t mask[4];      // the visibility samples that take this colour
-  std::uint8_t location[4];   // the sample where it is shaded: a bit number
-  glm::vec3 color[4];         // linear RGB, once it is shaded; not of the background
+  std::uint32_t triangle[4];   // the triangle that is shaded; kNoTriangle: the background
+  std::uint32_t mask[4];       // the visibility samples that take this colour
+  std::uint8_t location[4];    // the sample where it is shaded: a bit number
+  glm::vec3 color[4];          // linear RGB, once it is shaded; not of the background
+  std::uint8_t materials = 0;  // that the quad shows, the background included
+  std::uint8_t pixels = 0;     // inside the frame: fewer than 4 at the right and lower sides of a frame of odd size
 };
 
 // Size of a shading sample in the modelled machine: visibility id, mask and location.

@@ -27,7 +27,7 @@ std::vector<glm::vec4> resolve(const std::vector<PixelColor>& aggregates, const 
 
 std::vector<glm::vec4> resolve(const SampleTile& surface, std::size_t pixels, const TileShader& shader,
                                const glm::vec3& background, StageCounters& counters, std::size_t cells,
-                               const CellPlaces& place_of) {
+                               const CellPlaces& place_of, ResolveSpace space) {
   const std::size_t samples = surface.samples_per_pixel, samples_per_cell = samples / cells;
   const glm::dvec3 clear = background;
   std::vector<glm::vec4> image;
@@ -48,12 +48,19 @@ std::vector<glm::vec4> resolve(const SampleTile& surface, std::size_t pixels, co
       CellPlace place{};
       if (!is_same_everywhere) place = place_of(triangle, pixel * cells + s / samples_per_cell);
       const double seen = over ? 1.0 - double{over[s].a} : 1.0;  // of the opaque surface
-      if (over) sum += run * glm::dvec3(over[s]);
-      sum +=
-          run * seen *
-          (triangle == kNoTriangle
-               ? clear
-               : glm::dvec3(shader.color(triangle, static_cast<std::uint32_t>(pixel), place.u, place.v, place.width)));
+      const glm::dvec3 opaque =
+          triangle == kNoTriangle
+              ? clear
+              : glm::dvec3(shader.color(triangle, static_cast<std::uint32_t>(pixel), place.u, place.v, place.width));
+      if (space == ResolveSpace::reinhard) {
+        glm::dvec3 color = seen * opaque;
+        if (over) color += glm::dvec3(over[s]);
+        compress(&color.x);
+        sum += run * color;
+      } else {
+        if (over) sum += run * glm::dvec3(over[s]);
+        sum += run * seen * opaque;
+      }
       if (triangle != kNoTriangle) {
         covered += run;
       } else if (over) {
@@ -62,9 +69,13 @@ std::vector<glm::vec4> resolve(const SampleTile& surface, std::size_t pixels, co
       s = end;
     }
     const double share = 1.0 / static_cast<double>(samples);
-    image.emplace_back(glm::vec3(sum * share), static_cast<float>(covered * share));
+    glm::dvec3 mean = sum * share;
+    if (space == ResolveSpace::reinhard) expand(&mean.x);
+    image.emplace_back(glm::vec3(mean), static_cast<float>(covered * share));
   }
-  charge_resolve(pixels * samples, surface.color_bytes, pixels, box_filter_cost(samples), counters);
+  OperationCounts cost = box_filter_cost(samples);
+  if (space == ResolveSpace::reinhard) cost += reinhard_cost(samples);
+  charge_resolve(pixels * samples, surface.color_bytes, pixels, cost, counters);
   return image;
 }
 

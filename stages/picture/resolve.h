@@ -27,10 +27,15 @@ struct CellPlace {
 };
 using CellPlaces = std::function<CellPlace(std::uint32_t triangle, std::size_t cell)>;
 
+// What the mean of a pixel's samples is taken of: linear colours, or colours that Reinhard's operator has compressed.
+// In the second case the mean is expanded again. A sample much brighter than white then counts for little more than
+// white, which smooths the edges of highlights.
+enum class ResolveSpace { linear, reinhard };
+
 // Returns the mean of each pixel's samples (a box filter of one pixel). `cells`: per pixel. `place_of` is asked for
 // triangles that are not flat.
 std::vector<glm::vec4> resolve(const SampleTile& surface, std::size_t pixels, const TileShader& shader,
                                const glm::vec3& background, StageCounters& counters, std::size_t cells = 1,
-                               const CellPlaces& place_of = {});
+                               const CellPlaces& place_of = {}, ResolveSpace space = ResolveSpace::linear);
 
 }  // namespace beampipe

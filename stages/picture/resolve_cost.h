@@ -32,6 +32,16 @@ inline OperationCounts box_filter_cost(std::size_t samples) {
   });
 }
 
+// A pixel's samples are compressed, and their mean is expanded.
+inline OperationCounts reinhard_cost(std::size_t samples) {
+  return count_operations([&](OperationCounts& counts) {
+    const Counted<float> one(1.0f, counts);
+    Counted<float> color[3] = {one, one, one};
+    for (std::size_t s = 0; s < samples; ++s) compress(color);
+    expand(color);
+  });
+}
+
 // `items`: aggregates or samples; `item_bytes`: size of each; `cost`: per pixel.
 inline void charge_resolve(std::uint64_t items, std::uint32_t item_bytes, std::uint64_t pixels,
                            const OperationCounts& cost, StageCounters& counters) {

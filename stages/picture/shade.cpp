@@ -44,19 +44,17 @@ void shade(const TileShader& shader, const std::vector<SampleFragment>& fragment
 }
 
 void color_samples(const TileShader& shader, const Tile& tile, const SamplePattern& pattern,
-                   std::vector<SampleQuad>& quads, TexelRequests* texels) {
+                   const std::vector<std::uint32_t>& order, std::vector<SampleQuad>& quads, TexelRequests* texels) {
   const std::size_t columns = (static_cast<std::size_t>(tile.width()) + 1) / 2;
-  for (std::size_t q = 0; q < quads.size(); ++q) {
-    for (std::size_t p = 0; p < 4; ++p) {
-      SampleQuad& quad = quads[q];
-      if (quad.triangle[p] == kNoTriangle) continue;
-      const std::size_t pixel = quad.location[p] / 8u, sample = quad.location[p] % 8u;
-      const std::size_t x = q % columns * 2 + pixel % 2, y = q / columns * 2 + pixel / 2;
-      const auto index = static_cast<std::uint32_t>(y * static_cast<std::size_t>(tile.width()) + x);
-      quad.color[p] = shader.color(quad.triangle[p], index, static_cast<float>(pattern.x[sample]) / kSubpixelUnits,
-                                   static_cast<float>(pattern.y[sample]) / kSubpixelUnits, 1.0f, texels);
-      end_request(texels);
-    }
+  for (const std::size_t item : order) {
+    const std::size_t q = item / 4, p = item % 4;
+    SampleQuad& quad = quads[q];
+    const std::size_t pixel = quad.location[p] / 8u, sample = quad.location[p] % 8u;
+    const std::size_t x = q % columns * 2 + pixel % 2, y = q / columns * 2 + pixel / 2;
+    const auto index = static_cast<std::uint32_t>(y * static_cast<std::size_t>(tile.width()) + x);
+    quad.color[p] = shader.color(quad.triangle[p], index, static_cast<float>(pattern.x[sample]) / kSubpixelUnits,
+                                 static_cast<float>(pattern.y[sample]) / kSubpixelUnits, 1.0f, texels);
+    end_request(texels);
   }
 }
 

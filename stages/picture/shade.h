@@ -41,10 +41,11 @@ void shade_visible(const TileShader& shader, const std::vector<ShadedTriangle>& 
 // because it and the pixel say where the triangle is shaded.
 void shade(const TileShader& shader, const std::vector<SampleFragment>& fragments, StageCounters& counters);
 
-// Sets the colours of quads of shading samples, which are the tile's, row by row. Charges nothing. `pattern`: of the
-// visibility samples.
+// Sets the colours of shading samples of quads, which are the tile's, row by row, in the given order: 4 q + p is sample
+// p of quad q. Charges nothing. `pattern`: of the visibility samples.
 void color_samples(const TileShader& shader, const Tile& tile, const SamplePattern& pattern,
-                   std::vector<SampleQuad>& quads, TexelRequests* texels = nullptr);
+                   const std::vector<std::uint32_t>& order, std::vector<SampleQuad>& quads,
+                   TexelRequests* texels = nullptr);
 
 // Shading in two steps: writing the material to a G-buffer, and lighting. The functions only charge the work.
 // `triangles`: of each sample.

@@ -1,7 +1,9 @@
 #include "stages/samples/materials.h"
 
+#include <algorithm>
 #include <array>
 #include <map>
+#include <utility>
 
 namespace beampipe {
 
@@ -16,6 +18,11 @@ std::vector<std::uint32_t> material_ids(const SetupTriangles& triangles, Materia
     ids.push_back(numbers.emplace(key, static_cast<std::uint32_t>(numbers.size())).first->second);
   }
   return ids;
+}
+
+Materials::Materials(std::vector<std::uint32_t> numbers) : ids(std::move(numbers)) {
+  const std::uint32_t most = ids.empty() ? 0 : *std::max_element(ids.begin(), ids.end());
+  while (digits < 4 && most >> 8 * digits != 0) ++digits;
 }
 
 }  // namespace beampipe

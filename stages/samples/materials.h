@@ -17,4 +17,12 @@ enum class MaterialBy {
 // Returns the number of each triangle's material.
 std::vector<std::uint32_t> material_ids(const SetupTriangles& triangles, MaterialBy by);
 
+// A frame's materials, to sort samples by.
+struct Materials {
+  std::vector<std::uint32_t> ids;  // of each triangle
+  int digits = 1;                  // of 8 bits, that the largest number has; at least 1
+
+  explicit Materials(std::vector<std::uint32_t> numbers);
+};
+
 }  // namespace beampipe

@@ -64,6 +64,13 @@ struct QuadMaterials {
   std::uint32_t inside;
 };
 
+int materials_of(const QuadMaterials& quad) {
+  int materials = 0;
+  for (std::uint32_t left = quad.inside; left != 0; ++materials)
+    left &= ~match_mask_scalar(quad.ids, quad.ids[std::countr_zero(left)]);
+  return materials;
+}
+
 // Returns the shading samples whose material has another shading sample, as bits.
 std::uint32_t to_spare(const std::uint32_t masks[4]) {
   std::uint32_t slots = 0;
@@ -155,7 +162,10 @@ std::vector<SampleQuad> sample_select(const SampleTile& surface, const Tile& til
     QuadRandom random(options.seed, grid.x(q), grid.y(q), work);
     std::uint32_t* const masks = all.masks.data() + 4 * q;
     std::uint8_t* const locations = all.locations.data() + 4 * q;
-    switch_samples({all.ids.data() + kQuadSamples * q, all.inside[q]}, random, masks, locations, work);
+    const QuadMaterials quad{all.ids.data() + kQuadSamples * q, all.inside[q]};
+    quads[q].materials = static_cast<std::uint8_t>(materials_of(quad));
+    quads[q].pixels = static_cast<std::uint8_t>(std::popcount(quad.inside) / static_cast<int>(kSamples));
+    switch_samples(quad, random, masks, locations, work);
     share_out(random, masks, locations, quads[q], work);
     for (int p = 0; p < 4; ++p) {
       quads[q].location[p] = locations[p];
@@ -170,6 +180,13 @@ std::vector<SampleQuad> sample_select(const SampleTile& surface, const Tile& til
   work.shaded = shaded_samples(quads);
   charge(work, counters);
   return quads;
+}
+
+std::vector<std::uint32_t> triangles_of(const std::vector<SampleQuad>& quads) {
+  std::vector<std::uint32_t> triangles;
+  triangles.reserve(4 * quads.size());
+  for (const SampleQuad& quad : quads) triangles.insert(triangles.end(), quad.triangle, quad.triangle + 4);
+  return triangles;
 }
 
 std::uint64_t shaded_samples(const std::vector<SampleQuad>& quads) {

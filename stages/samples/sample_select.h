@@ -26,6 +26,9 @@ std::vector<SampleQuad> sample_select(const SampleTile& surface, const Tile& til
                                       const std::vector<std::uint32_t>& materials, const SelectOptions& options,
                                       StageCounters& counters);
 
+// The triangles of these quads' shading samples, four for each quad.
+std::vector<std::uint32_t> triangles_of(const std::vector<SampleQuad>& quads);
+
 // The number of shading samples in these quads that show a triangle.
 std::uint64_t shaded_samples(const std::vector<SampleQuad>& quads);
 

@@ -91,7 +91,7 @@ std::vector<glm::dmat4> to_last_frame(const Poses& now, const Poses& before) {
 
 std::vector<glm::vec2> motion(const SampleTile& surface, const Tile& tile, const Frame& frame,
                               const std::vector<std::uint32_t>& draws, const std::vector<glm::dmat4>& to_last,
-                              StageCounters& counters) {
+                              StageCounters& counters, MotionFrom from) {
   const std::size_t samples = surface.samples_per_pixel;
   std::vector<glm::vec2> vectors;
   vectors.reserve(tile.pixels());
@@ -103,7 +103,7 @@ std::vector<glm::vec2> motion(const SampleTile& surface, const Tile& tile, const
       vectors.push_back(pixel_motion(to_last, draw_at(surface, at, draws, frame), x + 0.5, y + 0.5, *nearest, frame));
     }
   }
-  charge_motion(vectors.size(), samples, counters);
+  charge_motion(vectors.size(), samples, from, counters);
   return vectors;
 }
 

@@ -25,11 +25,18 @@ Poses poses_of(const Frame& frame, const std::vector<DrawPlacement>& placements 
 // counts as having stood still.
 std::vector<glm::dmat4> to_last_frame(const Poses& now, const Poses& before);
 
+// What tells a surface's draw, and with it how it moves.
+enum class MotionFrom {
+  ids,    // visibility ids beside the depths
+  depth,  // nothing: what stands still is reprojected from its depth. The vectors of draws that move are right too, but
+          // drawing these a second time to find them, as renderers without visibility ids do, is not charged.
+};
+
 // Returns, for each pixel of a tile, row by row, the vector from a point of the nearest surface to where that was: in
 // pixels, rounded to fp16; infinity if it was behind the eye. `draws`: one per triangle.
 std::vector<glm::vec2> motion(const SampleTile& surface, const Tile& tile, const Frame& frame,
                               const std::vector<std::uint32_t>& draws, const std::vector<glm::dmat4>& to_last,
-                              StageCounters& counters);
+                              StageCounters& counters, MotionFrom from = MotionFrom::ids);
 
 // Returns, for each draw and then for the background, a hash of everything that its colours depend on: the index of the
 // draw and its mesh, its Kd, shading and light and, if it is lit, its orientation. Its position has no influence.

@@ -5,6 +5,7 @@
 #include "stages/data/frame_history.h"
 #include "stages/data/pixel_formats.h"
 #include "stages/data/sample_tile.h"
+#include "stages/temporal/motion.h"
 #include "stages/temporal/temporal_formulas.h"
 
 namespace beampipe {
@@ -17,14 +18,14 @@ inline Movement<Counted<double>> counted_movement(OperationCounts& counts) {
   return movement(to_last, one, one, one, one);
 }
 
-// Per pixel: its nearest sample, that sample's draw and the draw's matrix, and the movement.
-inline OperationCounts motion_cost(std::size_t samples) {
+// Per pixel: its nearest sample, that sample's draw and the draw's matrix if there are ids, and the movement.
+inline OperationCounts motion_cost(std::size_t samples, MotionFrom from) {
   return count_operations([&](OperationCounts& counts) {
     const Counted<double> one(1.0, counts);
     for (std::size_t s = 1; s < samples; ++s) select(one < one, one, one);
     const std::uint32_t table[1] = {};
     const Counted<std::int32_t> index(0, counts);
-    fetch(table, index), fetch(table, index);
+    if (from == MotionFrom::ids) fetch(table, index), fetch(table, index);
     const Movement<Counted<double>> moved = counted_movement(counts);
     converted(to_float(moved.dx)), converted(to_float(moved.dy));
   });
@@ -57,11 +58,11 @@ inline OperationCounts draw_cost() {
 }
 
 // `samples`: per pixel.
-inline void charge_motion(std::uint64_t pixels, std::size_t samples, StageCounters& counters) {
+inline void charge_motion(std::uint64_t pixels, std::size_t samples, MotionFrom from, StageCounters& counters) {
   counters.items_in += pixels * samples;
   counters.items_out += pixels;
-  counters.ops += motion_cost(samples) * pixels;
-  counters.bytes_read += pixels * (samples * kSampleDepthBytes + kVisibilityBytes);
+  counters.ops += motion_cost(samples, from) * pixels;
+  counters.bytes_read += pixels * (samples * kSampleDepthBytes + (from == MotionFrom::ids ? kVisibilityBytes : 0));
   counters.bytes_written += pixels * kMotionBytes;
   counters.lanes_used += pixels;
   counters.lanes_issued += pixels;

@@ -142,7 +142,7 @@ TEST(Buffers, WorkingBytesAreHeldPerPixel) {
   trace.frames[0].width = trace.frames[0].height = 512;
   for (const char* spec :
        {"beam", "beam:order=sorted", "beam:order=stream", "beam:order=stream,passes=0", "beam:rules=paper", "alpha",
-        "z3", "msaa:8", "acaa:8", "deferred", "visibility", "taa:8", "dvm"}) {
+        "z3", "msaa:8", "acaa:8", "deferred", "visibility", "visibility:4", "taa:8", "taa:8,shading=forward", "dvm"}) {
     const std::int64_t before = heap_bytes();
     restart_heap_peak();
     render(spec, trace);

@@ -67,6 +67,9 @@ const std::map<std::string, StageTests>& tests_of_stages() {
        {"Acaa.ReadsDepthTwiceAndOneColor", "TwinCounts.Accumulate", "Acaa.ReadsDepthTwiceAndOneColor", kMoves,
         "TwinCounts.Accumulate"}},
       {"sample_select", {kMoves, "SelectTwins.SampleSelect", kMoves, kMoves, "SelectTwins.SampleSelect"}},
+      {"material_sort",
+       {"MaterialSort.CountsItsWork", "MaterialSort.CountsItsWork", "MaterialSort.CountsItsWork", kMoves,
+        "MaterialSort.CountsItsWork"}},
       {"motion",
        {"Motion.CountsItsArithmetic", "TemporalTwins.Motion, TemporalTwins.Contents", "Motion.CountsItsArithmetic",
         kMoves, kMoves}},
@@ -75,8 +78,8 @@ const std::map<std::string, StageTests>& tests_of_stages() {
        {"Temporal.CountsWhatItLooksAt", "TemporalTwins.Temporal, TemporalTwins.NeighborhoodBox",
         "Temporal.CountsWhatItLooksAt", kMoves, kMoves}},
       {"resolve",
-       {"HandWorked.TriangleMsaa", "ShadingTwins.ResolveSamples", "HandWorked.TriangleMsaa", "HandWorked.TriangleMsaa",
-        "ShadingTwins.ResolveSamples"}},
+       {"HandWorked.TriangleMsaa", "ShadingTwins.ResolveSamples, Resolve.MeanInReinhardsSpace",
+        "HandWorked.TriangleMsaa", "HandWorked.TriangleMsaa", "ShadingTwins.ResolveSamples"}},
       {"reference_raster",
        {"HandWorked.TriangleReference", "ReferenceRaster.FansCoverEverySample", kMoves, kMoves,
         "ReferenceRaster.FansCoverEverySample"}},
@@ -95,6 +98,13 @@ const std::map<std::string, std::string>& tests_of_pixel_counters() {
       {"largest_window", corners},
       {"visible_fragments", corners},
       {"passes", corners},
+      {"quads_of_1", "Dvm.QuadsAreCountedByTheirMaterials"},
+      {"quads_of_2", "Dvm.QuadsAreCountedByTheirMaterials"},
+      {"quads_of_3", "Dvm.QuadsAreCountedByTheirMaterials"},
+      {"quads_of_4", "Dvm.QuadsAreCountedByTheirMaterials"},
+      {"quads_of_5_or_more", "Dvm.QuadsAreCountedByTheirMaterials"},
+      {"partial_quads", "Dvm.QuadsAreCountedByTheirMaterials"},
+      {"motion", "Msaa.MotionIsThatOfTheNearestSurface"},
       {"unknown", "CounterRegistry.EveryPixelCounterMovesSomewhere"},
       {"error", "PixelErrors.AreTheRootOfTheMeanSquareOfTheChannels"},
       {"visibility_error", "SplitError.PartsOfEachValueAddUpToItsError"},
@@ -181,6 +191,10 @@ std::string counters_page() {
       "the columns of bytes.\n\n"
       "The operations of a stage are those of its scalar formulas, which are run on numbers that count. "
       "`CounterRegistry.EveryCounterMovesWhereItIsListed`\nonly tests that a counter moves, not its value.\n\n"
+      "The stages of a depth pre-pass are counted apart, as `prepass_vertex_setup`, `prepass_sample_raster`,\n"
+      "`prepass_alpha_test` and `prepass_depth_test`. Their counters are those of the stages without `prepass_`. "
+      "`acaa`,\n"
+      "`deferred`, `msaa:N,prepass` and `taa:N` with deferred or forward shading have such a pass.\n\n"
       "## Of every stage\n\n";
   page += row({"counter", "unit", "what it counts"}) + "|---|---|---|\n";
   for (const CounterInfo& counter : stage_counters()) page += row({code(counter.name), counter.unit, counter.meaning});

@@ -43,7 +43,8 @@ TEST(Counters, EveryTechniqueCountsFragmentsAndBytesOfPixels) {
   const Trace trace = random_trace(40, 30, 400, 2);
   for (const char* spec : {"beam", "beam:order=sorted", "beam:order=stream", "beam:order=stream,passes=0",
                            "beam:rules=paper", "beam:rules=paper,order=near-first", "beam:rules=paper,order=stream",
-                           "alpha", "z3", "msaa:8", "msaa:32", "acaa:8", "deferred", "visibility", "taa:4", "dvm"}) {
+                           "alpha", "z3", "msaa:8", "msaa:32", "acaa:8", "deferred", "visibility", "visibility:4",
+                           "taa:4", "taa:4,shading=forward", "taa:4,shading=deferred", "dvm"}) {
     const FrameResult result = parse_technique(spec).render(trace, 0, {2});
     EXPECT_GT(sum_of(result, "fragments"), 400) << spec;
     EXPECT_GT(sum_of(result, "bytes"), 400) << spec;
@@ -95,16 +96,18 @@ TEST(Counters, PixelsOfFourCornersAndASpeck) {
 // shading samples, the G-buffer and the colour.
 TEST(Counters, PixelsAddUpToStages) {
   const Trace trace = random_trace(40, 30, 400, 2);
-  for (const char* spec : {"msaa:8", "visibility", "taa:4", "deferred", "dvm"}) {
+  for (const char* spec : {"msaa:8", "visibility", "visibility:4", "taa:4", "deferred", "dvm"}) {
     const FrameResult result = parse_technique(spec).render(trace, 0, {2});
-    const std::uint64_t fragments = stage_of(result, "sample_raster").items_out;
-    std::uint64_t bytes = stage_of(result, "depth_test").logical_bytes() - fragments * kSampleFragmentBytes;
+    const bool twice = std::string(spec) == "deferred";
+    const auto stage = [&](const char* name) { return twice ? both_passes(result, name) : stage_of(result, name); };
+    const std::uint64_t fragments = stage("sample_raster").items_out;
+    std::uint64_t bytes = stage("depth_test").logical_bytes() - fragments * kSampleFragmentBytes;
     for (const StageCounters& counters : result.stages) {
       if (counters.stage == "sample_select" || counters.stage == "light") bytes += counters.bytes_written;
       if (counters.stage == "shade" && std::string(spec) != "msaa:8") bytes += counters.bytes_written;
     }
     EXPECT_EQ(sum_of(result, "bytes"), bytes) << spec;
-    if (std::string(spec) == "deferred") continue;  // its fragments come twice, once for each pass
+    if (twice) continue;  // its fragments come twice, once for each pass
     EXPECT_EQ(sum_of(result, "fragments"), fragments) << spec;
   }
 }
@@ -122,7 +125,8 @@ TEST(Counters, ResolveReadsEveryPixelOnce) {
                                                   {"msaa:8", 8u, 48u},
                                                   {"msaa:32", 32u, 192u},
                                                   {"acaa:8", 1u, 8u},
-                                                  {"visibility", 1u, 6u}}) {
+                                                  {"visibility", 1u, 6u},
+                                                  {"visibility:4", 4u, 24u}}) {
     const StageCounters resolving = stage_of(parse_technique(spec).render(trace, 0, raw), "resolve");
     EXPECT_EQ(resolving.items_in, 64u * 32 * items) << spec;
     EXPECT_EQ(resolving.items_out, 64u * 32) << spec;
@@ -164,7 +168,8 @@ TEST(Counters, WhatIsHiddenIsCountedOnce) {
                                              {"beam:order=stream,passes=0", "conservative_raster", 1u},
                                              {"msaa:8", "sample_raster", 1u},
                                              {"deferred", "sample_raster", 2u}}) {
-    const StageCounters found = stage_of(parse_technique(spec).render(trace, 0, {2}), raster);
+    const FrameResult result = parse_technique(spec).render(trace, 0, {2});
+    const StageCounters found = passes == 2 ? both_passes(result, raster) : stage_of(result, raster);
     EXPECT_EQ(found.empty_tiles, passes) << spec;
     EXPECT_EQ(found.hidden_triangles, 2u * passes) << spec;
     EXPECT_EQ(found.hidden_items, 8u * passes) << spec << ": of the second tile";
@@ -179,7 +184,8 @@ TEST(Counters, EveryStageWorks) {
   trace.frames[0].draws[0].shading = Shading::lambert;  // an unlit triangle needs no operations
   trace.frames[0].lighting.lights = {{glm::vec3(0, 0, 1)}};
   for (const char* spec : {"beam", "beam:order=sorted", "beam:order=stream", "alpha", "msaa:4", "msaa:4,prepass",
-                           "acaa:4,double=stencil", "acaa:32", "deferred", "visibility", "taa:8", "dvm", "reference"}) {
+                           "acaa:4,double=stencil", "acaa:32", "deferred", "visibility", "visibility:4", "taa:8",
+                           "taa:8,shading=forward", "taa:8,shading=deferred", "msaa:4,motion", "dvm", "reference"}) {
     for (const StageCounters& counters : parse_technique(spec).render(trace, 0, {2}).stages) {
       EXPECT_FALSE(counters.stage.empty()) << spec;
       EXPECT_GT(counters.items_in, 0u) << spec << ' ' << counters.stage;

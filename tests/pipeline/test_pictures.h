@@ -46,6 +46,12 @@ inline StageCounters stage_of(FrameResult&& result, const std::string& name) {
   return stage_of(static_cast<const FrameResult&>(result), name);
 }
 
+// The stage in the depth pre-pass and in the other pass together.
+inline StageCounters both_passes(const FrameResult& result, const std::string& name) {
+  StageCounters sum = stage_of(result, name);
+  return sum += stage_of(result, "prepass_" + name);
+}
+
 // The sum of a counter over all pixels.
 inline double sum_of(const FrameResult& result, const std::string& counter) {
   const std::vector<float>& values = result.pixel_counters.at(counter);

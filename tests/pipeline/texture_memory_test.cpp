@@ -26,7 +26,9 @@ constexpr const char* kSpecs[] = {"beam",
                                   "acaa:32",
                                   "deferred",
                                   "visibility",
+                                  "visibility:4",
                                   "taa:8",
+                                  "taa:8,shading=forward",
                                   "dvm"};
 
 TextureImage square_image(std::uint32_t size) {

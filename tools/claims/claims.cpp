@@ -4,6 +4,7 @@
 #include <cmath>
 #include <cstdio>
 #include <filesystem>
+#include <sstream>
 
 #include "tools/claims/our_figures.h"
 #include "tools/claims/published_figures.h"
@@ -20,12 +21,30 @@ Claim make_claim(const PublishedFigure& figure, std::optional<double> ours, cons
   std::string name = figure.name;
   if (const auto at = name.find(kImplementation); at != name.npos)
     name.replace(at, kImplementation.size(), implementation);
-  return {name, figure.unit, figure.low, figure.high, ours, figure.source, figure.command, figure.remark};
+  return {name,          figure.unit,          figure.low,       figure.high,       ours, figure.source, figure.command,
+          figure.remark, figure.by_definition, figure.numerator, figure.denominator};
 }
 
 std::string number(double value, int digits = 4) {
   char text[32];
   std::snprintf(text, sizeof text, "%.*g", digits, value);
+  return text;
+}
+
+std::string table_of(const std::vector<Claim>& claims) {
+  std::string text =
+      "| claim | unit | published | ours | difference | what ours is | source | command "
+      "|\n|---|---|---|---|---|---|---|---|\n";
+  for (const Claim& claim : claims) {
+    std::string published = number(claim.published_low, 6);
+    if (!std::isfinite(claim.published_high))
+      published += " or more";
+    else if (claim.published_high != claim.published_low)
+      published += " to " + number(claim.published_high, 6);
+    text += "| " + claim.name + " | " + claim.unit + " | " + published + " | " +
+            (claim.ours ? number(*claim.ours) : "") + " | " + (claim.ours ? number(*claim.difference()) : "") + " | " +
+            claim.beside + " | " + claim.source + " | `" + claim.command + "` |\n";
+  }
   return text;
 }
 
@@ -54,7 +73,22 @@ std::vector<Claim> all_claims(const Report& report) {
     for (std::size_t i = 0; i < (for_each ? implementations.size() : 1); ++i)
       claims.push_back(make_claim(figure, ours(figure, implementations[i]), implementations[i].name));
   }
+  find_quotients(claims);
   return claims;
+}
+
+// A quotient may be made of others, which come before it.
+void find_quotients(std::vector<Claim>& claims) {
+  const auto ours = [&](const std::string& name) -> std::optional<double> {
+    for (const Claim& claim : claims)
+      if (claim.name == name) return claim.ours;
+    return {};
+  };
+  for (Claim& claim : claims) {
+    if (claim.ours || claim.numerator.empty()) continue;
+    const std::optional<double> numerator = ours(claim.numerator), denominator = ours(claim.denominator);
+    if (numerator && denominator && *denominator != 0) claim.ours = *numerator / *denominator;
+  }
 }
 
 std::vector<Claim> answered_claims(const Report& report) {
@@ -71,6 +105,7 @@ Json to_json(const Claim& claim) {
   json["published_high"] = or_null(claim.published_high);  // null: or more
   json["ours"] = or_null(claim.ours);
   json["difference"] = or_null(claim.difference());
+  json["kind"] = claim.by_definition ? "true by definition" : "rendered";
   json["source"] = claim.source;
   json["command"] = claim.command;
   json["beside"] = claim.beside;
@@ -78,20 +113,21 @@ Json to_json(const Claim& claim) {
 }
 
 std::string claims_text(const std::vector<Claim>& claims) {
-  std::string text =
-      "| claim | unit | published | ours | difference | what ours is | source | command "
-      "|\n|---|---|---|---|---|---|---|---|\n";
-  for (const Claim& claim : claims) {
-    std::string published = number(claim.published_low, 6);
-    if (!std::isfinite(claim.published_high))
-      published += " or more";
-    else if (claim.published_high != claim.published_low)
-      published += " to " + number(claim.published_high, 6);
-    text += "| " + claim.name + " | " + claim.unit + " | " + published + " | " +
-            (claim.ours ? number(*claim.ours) : "") + " | " + (claim.ours ? number(*claim.difference()) : "") + " | " +
-            claim.beside + " | " + claim.source + " | `" + claim.command + "` |\n";
-  }
-  return text;
+  std::vector<Claim> rendered, by_definition;
+  for (const Claim& claim : claims) (claim.by_definition ? by_definition : rendered).push_back(claim);
+  const auto numbers = std::count_if(rendered.begin(), rendered.end(), [](const Claim& each) { return each.ours; });
+  const auto without = std::count_if(rendered.begin(), rendered.end(),
+                                     [](const Claim& each) { return each.beside.starts_with("none: "); });
+  std::ostringstream text;
+  text << "## What was rendered\n\n"
+       << table_of(rendered) << "\n## True by definition\n\n"
+       << table_of(by_definition) << '\n'
+       << claims.size() << " rows: " << numbers << " with a number from rendering, " << by_definition.size()
+       << " true by definition, " << without << " without a number";
+  if (const auto left = static_cast<std::ptrdiff_t>(rendered.size()) - numbers - without; left > 0)
+    text << ", " << left << " whose reports were not given";
+  text << ".\n";
+  return text.str();
 }
 
 }  // namespace beampipe

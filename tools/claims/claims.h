@@ -16,21 +16,27 @@ struct Claim {
   std::optional<double> ours;                    // empty if the report does not have what our number is computed from
   std::string source, command;  // the place in the publication; the command whose report has our number
   std::string beside;  // how our number differs from the published quantity, or why there is none; empty: it does not
+  bool by_definition = false;  // our number is a format or a constant of the program, and not what rendering gave
+  std::string numerator = {},
+              denominator = {};  // our number is the quotient of these claims' numbers; empty: it is not
 
   // Our number minus the nearer end of the published range; 0 within the range, empty without a number of ours.
   std::optional<double> difference() const;
 };
 
-// All claims, with the numbers that the first frames of the report give. A claim about a scene has a number only if the
+// All claims, with the numbers that the last frames of the report give. A claim about a scene has a number only if the
 // report's trace has the name of that scene. A report without results gives only the numbers that need no rendering.
 std::vector<Claim> all_claims(const Report& report);
+
+// Divides where both numbers are known by now: a quotient may be that of claims from two reports.
+void find_quotients(std::vector<Claim>& claims);
 
 // The claims for which the report gives a number.
 std::vector<Claim> answered_claims(const Report& report);
 
 Json to_json(const Claim& claim);
 
-// As a Markdown table.
+// As two Markdown tables, of what was rendered and of what is true by definition, and the numbers of their rows.
 std::string claims_text(const std::vector<Claim>& claims);
 
 }  // namespace beampipe

@@ -11,6 +11,7 @@
 #include "pipeline/techniques/taa.h"
 #include "simd/mask_table.h"
 #include "simd/match.h"
+#include "stages/cost/counter_registry.h"
 #include "stages/data/paper_aggregate.h"
 #include "stages/samples/sample_select.h"
 #include "stages/temporal/temporal.h"
@@ -56,7 +57,7 @@ Ours history(double weight, int frames) { return constant(std::pow(1 - weight, f
 
 const FrameReport* frame_of(const Findings& found, const std::string& spec) {
   for (const TechniqueReport& result : found.report.results)
-    if (result.technique == spec && !result.frames.empty()) return &result.frames.front();
+    if (result.technique == spec && !result.frames.empty()) return &result.frames.back();
   return nullptr;
 }
 
@@ -91,15 +92,6 @@ Ours ms_over_beam(const std::string& spec) {
   };
 }
 
-// Material and lighting of dvm, as often as there are samples.
-Ours ms_supersampled(double samples) {
-  return [=](const Findings& found) -> Number {
-    const Number once = milliseconds(found, "dvm", {"shade", "light"});
-    if (!once) return {};
-    return samples * *once;
-  };
-}
-
 Number emr_of_beam(const Findings& found) {
   for (const TechniqueReport& result : found.report.results)
     if (result.technique == "beam:rules=paper" && result.equivalent_msaa) return result.equivalent_msaa->samples;
@@ -110,6 +102,13 @@ Number most_fragments_of_beam(const Findings& found) {
   const FrameReport* const frame = frame_of(found, "beam:rules=paper");
   if (!frame || !frame->pixel_counters.contains("fragments")) return {};
   return frame->pixel_counters.at("fragments").max;
+}
+
+Number bytes_with_a_buffer_over_msaa(const Findings& found) {
+  const FrameReport* const frame = frame_of(found, "beam:rules=paper");
+  if (!frame || frame->pixels == 0) return {};
+  const double a_buffer = static_cast<double>(frame->a_buffer_peak_bytes) / static_cast<double>(frame->pixels);
+  return (bytes_of("beam:rules=paper") + a_buffer) / bytes_of("msaa:8");
 }
 
 // ---- Accumulative antialiasing against multisampling ----
@@ -140,7 +139,7 @@ std::optional<AcaaNumbers> acaa_traffic(const Findings& found) {
   const auto bytes = [](const FrameReport& frame) {
     double sum = 0;
     for (const StageCounters& stage : frame.stages)
-      if (stage.stage == "depth_test" || stage.stage == "accumulate" || stage.stage == "resolve")
+      if (without_pass(stage.stage) == "depth_test" || stage.stage == "accumulate" || stage.stage == "resolve")
         sum += static_cast<double>(stage.dram_bytes);
     return sum;
   };
@@ -153,6 +152,44 @@ std::optional<AcaaNumbers> acaa_times(const Findings& found) {
   if (!one || !msaa || !acaa) return {};
   return AcaaNumbers{*one, *msaa, *acaa};
 }
+
+// ---- The passes of the DVM article ----
+
+struct ArticlePass {
+  std::string name;
+  std::vector<std::string> stages;
+};
+
+struct ArticlePath {
+  std::string name, spec;
+  std::vector<ArticlePass> passes;
+};
+
+// The article's names, our specs, and the stages that do a pass's work. Every stage belongs to one pass.
+std::vector<ArticlePath> article_paths() {
+  const ArticlePass prepass{"PrePass", {"prepass_vertex_setup", "prepass_sample_raster", "prepass_depth_test"}},
+      // What draws visibility first has all of its geometry in the first pass.
+      visibility{"PrePass", {"vertex_setup", "sample_raster", "depth_test"}},
+      drawn{"Material", {"vertex_setup", "sample_raster", "depth_test", "shade"}}, shaded{"Material", {"shade"}},
+      lighting{"Lighting", {"light"}}, motion{"Motion", {"motion"}}, resolve{"Resolve/TAA", {"resolve", "temporal"}};
+  const std::string msaa = ",prepass,motion,resolve=reinhard";
+  return {{"Forward", "taa:8,shading=forward", {prepass, drawn, motion, resolve}},
+          {"Msaa 2x", "msaa:2" + msaa, {prepass, drawn, motion, resolve}},
+          {"Msaa 4x", "msaa:4" + msaa, {prepass, drawn, motion, resolve}},
+          {"Msaa 8x", "msaa:8" + msaa, {prepass, drawn, motion, resolve}},
+          {"Deferred", "taa:8,shading=deferred", {prepass, drawn, lighting, motion, resolve}},
+          {"Visibility", "taa:8", {visibility, shaded, lighting, {"VisUtil", {"material_sort"}}, motion, resolve}},
+          {"DVM",
+           "dvm",
+           {visibility,
+            shaded,
+            lighting,
+            {"VisUtil", {"sample_select", "material_sort"}},
+            motion,
+            {"Resolve/TAA", {"dilate", "temporal"}}}}};
+}
+
+constexpr const char* kForward = "taa:8,shading=forward";
 
 // ---- Shader invocations ----
 
@@ -169,13 +206,13 @@ Ours invocations(const std::string& spec) {
 
 Ours invocations_over_forward(const std::string& spec) {
   return [=](const Findings& found) {
-    return quotient(invocations_per_pixel(found, spec), invocations_per_pixel(found, kOneSample));
+    return quotient(invocations_per_pixel(found, spec), invocations_per_pixel(found, kForward));
   };
 }
 
 // Invocations fill whole quads, and those outside the triangle are not needed.
 Number invocations_over_needed(const Findings& found) {
-  const StageCounters* const shade = stage_of(found, kOneSample, "shade");
+  const StageCounters* const shade = stage_of(found, kForward, "shade");
   if (!shade || shade->lanes_used == 0) return {};
   return static_cast<double>(shade->lanes_issued) / static_cast<double>(shade->lanes_used);
 }
@@ -191,16 +228,10 @@ Number dvm_less_visibility(const Findings& found) {
   return difference(milliseconds(found, "dvm"), milliseconds(found, "taa:8"));
 }
 
-Number visibility_over_deferred(const Findings& found) {
-  return quotient(milliseconds(found, "taa:8", {"shade"}), milliseconds(found, "deferred", {"shade"}));
-}
-
 }  // namespace
 
 std::vector<Formula> our_formulas() {
-  // If the article draws visibility first, its first pass is all of the geometry.
-  const std::vector<std::string> pre_pass = {"vertex_setup", "sample_raster", "depth_test"};
-  return {
+  std::vector<Formula> formulas = {
       {"beam.bytes.coverage", constant(bytes_of("beam:rules=paper", "coverage"))},
       {"beam.bytes.mask", constant(bytes_of("beam:rules=paper", "mask"))},
       {"beam.bytes.depth_plane", constant(bytes_of("beam:rules=paper", "depth_plane"))},
@@ -210,7 +241,6 @@ std::vector<Formula> our_formulas() {
       {"beam.bytes.without_color", constant(bytes_without_color("beam:rules=paper"))},
       {"beam.bytes", constant(bytes_of("beam:rules=paper"))},
       {"beam.bytes.three_coefficients", constant(kTextBytesWithoutColor)},
-      {"beam.bytes.area_conserving", constant(bytes_of("beam:order=sorted"))},
       {"beam.bytes_over_msaa_8", constant(bytes_of("beam:rules=paper") / bytes_of("msaa:8"))},
       {"msaa_8.bytes.without_color", constant(bytes_without_color("msaa:8"))},
       {"msaa_8.bytes", constant(bytes_of("msaa:8"))},
@@ -257,58 +287,36 @@ std::vector<Formula> our_formulas() {
       {"ms_over_beam.msaa:256", ms_over_beam("msaa:256")},
       {"beam.emr", emr_of_beam},
       {"beam.most_fragments", most_fragments_of_beam},
-      {"ms.msaa:1,prepass.Material", ms("msaa:1,prepass", {"shade"})},
-      {"ms.msaa:1,prepass.Resolve/TAA", ms("msaa:1,prepass", {"resolve"})},
-      {"ms.msaa:1,prepass", ms("msaa:1,prepass")},
-      {"ms.msaa:2,prepass.Material", ms("msaa:2,prepass", {"shade"})},
-      {"ms.msaa:2,prepass.Resolve/TAA", ms("msaa:2,prepass", {"resolve"})},
-      {"ms.msaa:2,prepass", ms("msaa:2,prepass")},
-      {"ms.msaa:4,prepass.Material", ms("msaa:4,prepass", {"shade"})},
-      {"ms.msaa:4,prepass.Resolve/TAA", ms("msaa:4,prepass", {"resolve"})},
-      {"ms.msaa:4,prepass", ms("msaa:4,prepass")},
-      {"ms.msaa:8,prepass.Material", ms("msaa:8,prepass", {"shade"})},
-      {"ms.msaa:8,prepass.Resolve/TAA", ms("msaa:8,prepass", {"resolve"})},
-      {"ms.msaa:8,prepass", ms("msaa:8,prepass")},
-      {"ms.deferred.Material", ms("deferred", {"shade"})},
-      {"ms.deferred.Lighting", ms("deferred", {"light"})},
-      {"ms.deferred.Resolve/TAA", ms("deferred", {"resolve"})},
-      {"ms.deferred", ms("deferred")},
-      {"ms.taa:8.PrePass", ms("taa:8", pre_pass)},
-      {"ms.taa:8.Material", ms("taa:8", {"shade"})},
-      {"ms.taa:8.Lighting", ms("taa:8", {"light"})},
-      {"ms.taa:8.Motion", ms("taa:8", {"motion"})},
-      {"ms.taa:8.Resolve/TAA", ms("taa:8", {"temporal", "resolve"})},
-      {"ms.taa:8", ms("taa:8")},
-      {"ms.dvm.PrePass", ms("dvm", pre_pass)},
-      {"ms.dvm.Material", ms("dvm", {"shade"})},
-      {"ms.dvm.Lighting", ms("dvm", {"light"})},
-      {"ms.dvm.VisUtil", ms("dvm", {"sample_select"})},
-      {"ms.dvm.Motion", ms("dvm", {"motion"})},
-      {"ms.dvm.Resolve/TAA", ms("dvm", {"dilate", "temporal"})},
-      {"ms.dvm", ms("dvm")},
       {"ms.dvm_less_visibility", dvm_less_visibility},
-      {"ms.visibility_over_deferred.Material", visibility_over_deferred},
-      {"ms.supersampled.1x", ms_supersampled(1)},
-      {"ms.supersampled.2x", ms_supersampled(2)},
-      {"ms.supersampled.4x", ms_supersampled(4)},
-      {"ms.supersampled.8x", ms_supersampled(8)},
+      {"ms.supersampled.1x", ms("visibility:1", {"shade", "light"})},
+      {"ms.supersampled.2x", ms("visibility:2", {"shade", "light"})},
+      {"ms.supersampled.4x", ms("visibility:4", {"shade", "light"})},
+      {"ms.supersampled.8x", ms("visibility:8", {"shade", "light"})},
       {"invocations.msaa:1,prepass", invocations("msaa:1,prepass")},
-      {"invocations.msaa:2,prepass", invocations("msaa:2,prepass")},
-      {"invocations.msaa:4,prepass", invocations("msaa:4,prepass")},
       {"invocations.msaa:8,prepass", invocations("msaa:8,prepass")},
-      {"invocations_over_forward.msaa:2,prepass", invocations_over_forward("msaa:2,prepass")},
-      {"invocations_over_forward.msaa:4,prepass", invocations_over_forward("msaa:4,prepass")},
-      {"invocations_over_forward.msaa:8,prepass", invocations_over_forward("msaa:8,prepass")},
       {"invocations_over_needed", invocations_over_needed},
       {"triangles_without_center", triangles_without_center},
+      {"beam.bytes_with_a_buffer_over_msaa_8", bytes_with_a_buffer_over_msaa},
   };
+  for (const ArticlePath& path : article_paths()) {
+    for (const ArticlePass& pass : path.passes)
+      formulas.push_back({"ms." + path.name + "." + pass.name, ms(path.spec, pass.stages)});
+    formulas.push_back({"ms." + path.name + ".Total", ms(path.spec)});
+    if (path.name.starts_with("Msaa"))
+      formulas.push_back({"invocations_over_forward." + path.name, invocations_over_forward(path.spec)});
+  }
+  return formulas;
 }
 
 void expect_formulas_match(const std::vector<PublishedFigure>& figures, const std::vector<Formula>& formulas) {
-  std::set<std::string> known, used;
+  std::set<std::string> known, used, names;
   for (const Formula& formula : formulas)
     if (!known.insert(formula.id).second) throw std::logic_error("claims: there are two formulas " + formula.id);
   for (const PublishedFigure& figure : figures) {
+    for (const std::string& name : {figure.numerator, figure.denominator})
+      if (!name.empty() && !names.contains(name))
+        throw std::logic_error("claims: \"" + figure.name + "\": there is no claim \"" + name + "\" before it");
+    names.insert(figure.name);
     if (figure.formula.empty()) continue;
     if (!known.contains(figure.formula))
       throw std::logic_error("claims: \"" + figure.name + "\": there is no formula " + figure.formula);

@@ -14,7 +14,7 @@ namespace beampipe {
 
 // What formulas get their numbers from.
 struct Findings {
-  const Report& report;                  // numbers are those of its first frame
+  const Report& report;                  // numbers are those of its last frame
   const Implementation& implementation;  // the way of building the pipeline whose times are modelled
 };
 
@@ -25,8 +25,8 @@ struct Formula {
 
 std::vector<Formula> our_formulas();
 
-// Throws std::logic_error, one line, if a figure names a formula that is not there, if no figure names a formula, or if
-// two formulas have the same id.
+// Throws std::logic_error, one line, if a figure names a formula that is not there or a claim that does not come before
+// it, if no figure names a formula, or if two formulas have the same id.
 void expect_formulas_match(const std::vector<PublishedFigure>& figures, const std::vector<Formula>& formulas);
 
 }  // namespace beampipe

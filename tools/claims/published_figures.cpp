@@ -28,7 +28,7 @@ void read_numbers(const JsonCursor& claim, PublishedFigure& figure) {
 
 PublishedFigure read_claim(const JsonCursor& claim, const JsonCursor& group) {
   claim.expect_keys({"name", "published", "published_low", "published_high", "derived_from", "unit", "source", "remark",
-                     "formula", "no_number"});
+                     "formula", "quotient_of", "no_number"});
   PublishedFigure figure;
   figure.name = claim["name"].string();
   read_numbers(claim, figure);
@@ -37,11 +37,17 @@ PublishedFigure read_claim(const JsonCursor& claim, const JsonCursor& group) {
   figure.remark = text_of(claim, group, "remark");
   figure.command = group["command"].string();
   if (const auto scene = group.find("scene")) figure.scene = scene->string();
-  if (const auto reason = claim.find("no_number"))
+  if (const auto reason = claim.find("no_number")) {
     figure.remark = "none: " + reason->string();
-  else
+  } else if (const auto quotient = claim.find("quotient_of")) {
+    const auto names = quotient->elements();
+    if (names.size() != 2) quotient->fail("the names of two claims", std::to_string(names.size()));
+    figure.numerator = names[0].string(), figure.denominator = names[1].string();
+  } else {
     figure.formula = claim["formula"].string();
-  if (claim.has("formula") && claim.has("no_number")) claim.fail("either \"formula\" or \"no_number\"", "both");
+  }
+  if (claim.has("formula") + claim.has("quotient_of") + claim.has("no_number") > 1)
+    claim.fail("one of \"formula\", \"quotient_of\" and \"no_number\"", "several");
   return figure;
 }
 
@@ -58,6 +64,7 @@ std::vector<PublishedFigure> parse_published_figures(const std::string& text, co
     for (const JsonCursor& claim : group["claims"].elements()) {
       figures.push_back(read_claim(claim, group));
       figures.back().topic = group["topic"].choice({"design", "traffic", "time", "quality", "passes"});
+      figures.back().by_definition = figures.back().topic == 0;
     }
   }
   return figures;

@@ -2,8 +2,10 @@
 // into the program.
 //
 // A file holds groups of claims with the same topic and command. A group also has the unit, the source and the remark
-// of those of its claims that do not have their own. A claim names either the formula of our number
-// (tools/claims/our_figures.h) or, as "no_number", the reason why there is none.
+// of those of its claims that do not have their own. A claim names the formula of our number
+// (tools/claims/our_figures.h), or two other claims whose numbers are divided ("quotient_of"), or, as "no_number", the
+// reason why there is none. Claims of the topic "design" are about formats and constants: our numbers are read from the
+// program and need no rendering.
 #pragma once
 
 #include <string>
@@ -19,8 +21,10 @@ struct PublishedFigure {
   std::string command;       // what to run to get our number
   std::string remark;        // what our number is if it is not the same quantity, or why there is none
   std::string scene;         // the name of the only trace that has our number; empty: any
-  std::string formula;       // empty: there is no number of ours
-  std::size_t topic = 0;     // claims are listed topic by topic, and within a topic in the order of the files
+  std::string formula;       // of our number; empty: it is a quotient, or there is none
+  std::string numerator, denominator;  // the names of the claims whose quotient is our number; empty: it is not one
+  bool by_definition = false;          // our number is a format or a constant of the program
+  std::size_t topic = 0;               // claims are listed topic by topic, and within a topic in the order of the files
 };
 
 // All that are built in, in the order in which they are listed.

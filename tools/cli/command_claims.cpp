@@ -20,6 +20,7 @@ void print_claims(const std::vector<std::string>& folders) {
         if (!claim.ours && found.at("name") == claim.name && !found.at("ours").is_null())
           claim.ours = found.at("ours").get<double>();
   }
+  find_quotients(claims);
   std::cout << claims_text(claims);
 }
 
@@ -31,7 +32,7 @@ void add_claims_command(CommandLine& line) {
   command.add("DIR", *folders,
               "folders that run or compare wrote; the numbers that need rendering come from their reports");
   command.footer(
-      "Prints a Markdown table. Each row names the command whose folder has our number, or says why there is none. If\n"
+      "Prints two Markdown tables, of what was rendered and of what is true by definition. Each row names the command whose folder has our number, or says why there is none. If\n"
       "several folders have the number, it comes from the first of them.\n\nExample:\n"
       "  beampipe make classroom -o classroom.json\n"
       "  beampipe run classroom.json -t msaa:1,prepass -t msaa:8,color=rgba16f,prepass -t acaa:8 -o out/acaa\n"

@@ -6,6 +6,7 @@
 #include <limits>
 #include <string_view>
 
+#include "stages/cost/counter_registry.h"
 #include "tools/evaluate/hardware_text.h"
 #include "traces/json_cursor.h"
 
@@ -107,7 +108,7 @@ std::map<std::string, double> unit_times(const Hardware& hardware, const Impleme
   const auto use = [&](const std::string& unit) {
     times[unit] = units().at(unit)(hardware.rates, stage) / clocks_per_ms;
   };
-  if (const auto found = implementation.units.find(stage.stage); found != implementation.units.end())
+  if (const auto found = implementation.units.find(std::string(without_pass(stage.stage))); found != implementation.units.end())
     for (const std::string& unit : found->second) use(unit);
   use("l2");
   use("dram");

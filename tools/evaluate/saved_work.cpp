@@ -12,7 +12,8 @@ std::vector<SavedWork> saved_work(const std::vector<StageCounters>& stages) {
              fragment = find("beam_fragment"), composition = find("compose");
   std::vector<SavedWork> saved;
   if (pairs == stages.end() && cells == stages.end()) return saved;
-  const StageCounters& raster = pairs != stages.end() ? *pairs : *cells;
+  StageCounters raster = pairs != stages.end() ? *pairs : *cells;
+  if (const auto prepass = find("prepass_sample_raster"); prepass != stages.end()) raster += *prepass;
   saved.push_back({"empty_tiles", "empty tiles", "tiles", "tiles that no triangle touches, counted in each pass",
                    raster.empty_tiles});
   saved.push_back({"hidden_triangles", "hidden triangles", "triangles",

@@ -141,6 +141,7 @@ const std::vector<Source> kClaimColumns = {
      "/ours"},
     {{"difference", "difference", "see unit", "Ours minus the nearer end of the published range; 0 within the range."},
      "/difference"},
+    {{"kind", "kind", "", "Rendered, or true by definition: a format or a constant of the program."}, "/kind"},
     {{"source", "source", "", "The place of the claim in the publication."}, "/source"},
     {{"beside", "what ours is", "", "What our number is, if it is not the same quantity."}, "/beside"},
     {{"command", "command", "", "The command that finds our number."}, "/command"},

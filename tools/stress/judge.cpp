@@ -34,8 +34,9 @@ std::string name_of(const std::string& spec) { return spec.substr(0, spec.find('
 // The places of a technique's samples in its first frame; none if it works with areas.
 SamplePlaces places_of(const std::string& spec) {
   const std::string name = name_of(spec);
-  if (name == "msaa" || name == "acaa") return places_of(msaa_sampling(std::atoi(spec.c_str() + name.size() + 1)));
-  if (name == "deferred" || name == "visibility") return places_of(msaa_sampling(1));
+  if (name == "msaa" || name == "acaa" || (name == "visibility" && spec != name))
+    return places_of(msaa_sampling(std::atoi(spec.c_str() + name.size() + 1)));
+  if (name == "deferred" || spec == "visibility") return places_of(msaa_sampling(1));
   if (name == "dvm") return places_of(msaa_sampling(8));
   if (name == "z3") return places_of(cell_patterns(spec.find("128x3") == spec.npos ? 32 : 128));
   if (name == "taa") return {places_of(msaa_sampling(std::atoi(spec.c_str() + name.size() + 1))).front()};

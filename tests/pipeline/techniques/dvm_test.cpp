@@ -36,6 +36,31 @@ void expect_no_ghost(const Trace& before, const Trace& after, const char* what) 
   EXPECT_LT(worst_difference(found, technique.render(after, 0, {1}).image), 2e-3) << what;
 }
 
+// 5 x 3 pixels have 3 x 2 quads. Columns 0 and 1 show the background alone, columns 2 and 3 six materials and the
+// background in row 0, and column 4, whose quads have one column, a material and the background in row 0.
+TEST(Dvm, QuadsAreCountedByTheirMaterials) {
+  std::vector<PixelSpaceTriangle> triangles;
+  for (int i = 0; i < 6; ++i) {
+    const double x = 2 + i / 3, y = 0.3 * (i % 3);
+    append(triangles, quad(x, y, x + 1, y + 0.3, 0.5, glm::vec3(0.1f * static_cast<float>(i + 1))));
+  }
+  append(triangles, quad(4, 0, 5, 0.5, 0.5, glm::vec3(1)));
+  const FrameResult found = render("dvm", pixel_trace(5, 3, triangles));
+  const auto at = [&](const std::string& counter) {
+    std::string pixels;
+    for (const float value : found.pixel_counters.at(counter)) pixels += value == 1 ? '1' : '0';
+    return pixels;
+  };
+  const std::string none(15, '0');
+  EXPECT_EQ(at("quads_of_1"), "110001100011111");
+  EXPECT_EQ(at("quads_of_2"), "000010000100000");
+  EXPECT_EQ(at("quads_of_3"), none);
+  EXPECT_EQ(at("quads_of_4"), none);
+  EXPECT_EQ(at("quads_of_5_or_more"), "001100011000000");
+  EXPECT_EQ(at("partial_quads"), "000010000111111");
+  EXPECT_EQ(stage_of(found, "material_sort").items_in, 4u * 6) << "four shading samples for each quad";
+}
+
 // A draw that stood still jumps or starts to move. Nothing of it is left in its old place.
 TEST(Dvm, WhatLeavesItsRestLeavesNoTrail) {
   for (const double step : {10.0, 2.0}) {

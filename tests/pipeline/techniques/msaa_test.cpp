@@ -46,6 +46,45 @@ TEST(Msaa, ADepthPassDoesNotChangeThePicture) {
               render(std::string("msaa:").append(n).append(",prepass"), trace).image.rgba);
 }
 
+// A square moves by 2.5 pixels to the right in front of a wall that stands still. In the first frame nothing is known
+// to have moved.
+TEST(Msaa, MotionIsThatOfTheNearestSurface) {
+  Trace trace = pixel_trace(16, 8, quad(-1, -1, 17, 9, 0.6, glm::vec3(0.5f)));
+  trace.meshes.push_back(pixel_trace(1, 1, quad(2, 2, 6, 6, 0.3, glm::vec3(1))).meshes[0]);
+  trace.frames[0].draws.emplace_back().mesh = 1;
+  trace.frames.push_back(trace.frames[0]);
+  trace.frames[1].draws[1].transform[3][0] = 2.5;
+  for (const std::string n : {"1", "4"}) {
+    for (const char* prepass : {"", ",prepass"}) {
+      const std::string spec = "msaa:" + n + prepass;
+      const Technique technique = parse_technique(spec + ",motion");
+      ASSERT_TRUE(technique.keeps_history);
+      History history;
+      EXPECT_EQ(sum_of(technique.render(trace, 0, {1, &history}), "motion"), 0) << spec;
+      const FrameResult second = technique.render(trace, 1, {1, &history});
+      const std::vector<float>& moved = second.pixel_counters.at("motion");
+      EXPECT_NEAR(moved[4 * 16 + 6], 2.5, 1e-3) << spec;
+      EXPECT_EQ(moved[4 * 16 + 3], 0) << spec << ": the square has left this pixel";
+      EXPECT_EQ(moved[4 * 16 + 12], 0) << spec;
+      EXPECT_EQ(second.image.rgba, parse_technique(spec).render(trace, 1, {1}).image.rgba) << spec;
+      const std::uint64_t samples = 16 * 8 * std::stoull(n);
+      EXPECT_EQ(stage_of(second, "motion").items_in, samples) << spec;
+      EXPECT_EQ(stage_of(second, "motion").bytes_read, 4 * samples) << spec << ": depths alone";
+    }
+  }
+}
+
+// Half of pixel (4, 4) shows a lamp of luminance 9, the other half white.
+TEST(Msaa, ResolvesInReinhardsSpace) {
+  std::vector<PixelSpaceTriangle> triangles = quad(-1, -1, 4.5, 9, 0.5, glm::vec3(9));
+  append(triangles, quad(4.5, -1, 9, 9, 0.5, glm::vec3(1)));
+  const Trace trace = pixel_trace(8, 8, triangles);
+  const auto red = [&](const char* spec, std::size_t x) { return picture(spec, trace).rgba[4 * (4 * 8 + x)]; };
+  EXPECT_NEAR(red("msaa:4,resolve=reinhard", 4), 7.0 / 3, 2e-3);
+  EXPECT_NEAR(red("msaa:4", 4), 5, 2e-3);
+  EXPECT_NEAR(red("msaa:4,resolve=reinhard", 2), 9, 2e-2) << "fp16";
+}
+
 TEST(Msaa, MoreSamplesComeNearerToTheReference) {
   const Trace trace = random_trace(48, 32, 400, 11);
   const Image reference = picture("reference", trace);

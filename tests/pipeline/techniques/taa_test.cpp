@@ -18,6 +18,31 @@ TEST(Taa, TheFirstFrameIsOneSample) {
   EXPECT_LT(worst_difference(render_frames("taa:1", trace, 1), render_frames("msaa:1", trace, 1)), 0x1p-11);
 }
 
+// In every frame; forward shading rounds a sample's colour to fp16.
+TEST(Taa, ThePictureIsTheSameHoweverAFrameIsShaded) {
+  const Trace trace = random_trace(40, 30, 100, 2);
+  for (const std::size_t frames : {1u, 5u}) {
+    const Image visibility = render_frames("taa:8", trace, frames);
+    EXPECT_EQ(render_frames("taa:8,shading=deferred", trace, frames).rgba, visibility.rgba);
+    EXPECT_LT(worst_difference(render_frames("taa:8,shading=forward", trace, frames), visibility), 0x1p-9);
+  }
+}
+
+// Forward shading runs in whole quads, and motion reads nothing but depth.
+TEST(Taa, CountsHowAFrameIsShaded) {
+  const FrameResult forward = render("taa:1,shading=forward", half_square());
+  EXPECT_EQ(stage_of(forward, "shade").lanes_issued, 4u * 4);
+  EXPECT_EQ(stage_of(forward, "motion").bytes_read, 64u * 4);
+  const FrameResult deferred = render("taa:1,shading=deferred", half_square());
+  EXPECT_EQ(stage_of(deferred, "shade").lanes_issued, 4u * 4);
+  EXPECT_EQ(stage_of(deferred, "light").items_in, 6u);
+  EXPECT_EQ(stage_of(deferred, "motion").bytes_read, 64u * 4);
+  const FrameResult visibility = render("taa:1", half_square());
+  EXPECT_EQ(stage_of(visibility, "shade").lanes_issued, 6u);
+  EXPECT_EQ(stage_of(visibility, "material_sort").items_out, 6u);
+  EXPECT_EQ(stage_of(visibility, "motion").bytes_read, 64u * (4 + 4));
+}
+
 TEST(Taa, AnEdgeAccumulatesToItsCoverage) {
   // The edge at x = 8.5 lies between wide areas, so the clamp's box contains the colours of both.
   const Trace trace = pixel_trace(16, 8, quad(-4, -4, 8.5, 20, 0.5, glm::vec3(1)));

@@ -27,12 +27,35 @@ TEST(Resolve, MeanOfTheSamples) {
   surface.triangle[0] = surface.triangle[2] = 0;
   surface.triangle[1] = 1;
   StageCounters counters;
-  const auto image = resolve(surface, tile.pixels(), std::vector<glm::vec3>{{1, 0, 0}, {0, 4, 0}}, {0, 0, 0.5f}, counters);
+  const auto image =
+      resolve(surface, tile.pixels(), std::vector<glm::vec3>{{1, 0, 0}, {0, 4, 0}}, {0, 0, 0.5f}, counters);
   ASSERT_EQ(image.size(), 2u);
   EXPECT_EQ(image[0], glm::vec4(0.5f, 1.0f, 0.125f, 0.75f));
   EXPECT_EQ(image[1], glm::vec4(0, 0, 0.5f, 0));
   EXPECT_EQ(counters.items_in, 8u);
   EXPECT_EQ(counters.items_out, 2u);
+}
+
+// White, of luminance 1, becomes 1/2, and white of luminance 9 becomes 9/10. Their mean of 0.7 stands for 7/3. The
+// linear mean is 5. A mean of equal samples is each of them.
+TEST(Resolve, MeanInReinhardsSpace) {
+  const Tile tile{0, 0, 2, 1};
+  const Sampling sampling{CellGrid{}, standard_pattern(2)};
+  SampleTile surface(tile, sampling);
+  surface.triangle = {0, 1, 2, 2};
+  const std::vector<glm::vec3> colors = {glm::vec3(1), glm::vec3(9), {4, 0.5f, 0.25f}};
+  StageCounters counters, linear;
+  const auto image = resolve(surface, tile.pixels(), colors, glm::vec3(0), counters, 1, {}, ResolveSpace::reinhard);
+  for (int c = 0; c < 3; ++c) EXPECT_NEAR(image[0][c], 7.0f / 3.0f, 1e-5f);
+  for (int c = 0; c < 3; ++c) EXPECT_NEAR(image[1][c], colors[2][c], 1e-5f);
+  EXPECT_EQ(image[0].a, 1.0f);
+  EXPECT_EQ(resolve(surface, tile.pixels(), colors, glm::vec3(0), linear)[0], glm::vec4(5, 5, 5, 1));
+  // To compress one of a pixel's two samples, or to expand their mean: three products and two sums make a luminance,
+  // 1 is added or subtracted, and the inverse scales three channels.
+  const OperationCounts once{.mul_add = 3 + 3, .add = 2 + 1, .special = 1};
+  OperationCounts expected = linear.ops;
+  EXPECT_EQ(counters.ops, expected += once * (2 * (2 + 1)));
+  EXPECT_EQ(counters.bytes_read, linear.bytes_read);
 }
 
 }  // namespace

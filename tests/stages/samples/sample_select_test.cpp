@@ -79,6 +79,23 @@ TEST(SampleSelect, EveryMaterialOfUpToFourGetsASample) {
   }
 }
 
+// A tile of 3 x 2 pixels has a whole quad and one of a single column.
+TEST(SampleSelect, QuadsKnowTheirMaterialsAndPixels) {
+  const Tile tile{0, 0, 3, 2};
+  std::vector<std::uint32_t> ids(6 * 8, 0);  // pixels row by row
+  for (std::size_t material = 1; material < 6; ++material) ids[material] = static_cast<std::uint32_t>(material);
+  ids[8 * 4 + 7] = kNoTriangle;
+  ids[8 * 5 + 3] = 7;
+  StageCounters counters;
+  const std::vector<SampleQuad> quads = sample_select(surface_of(ids, tile), tile, kOwnMaterials, {0, 1}, counters);
+  ASSERT_EQ(quads.size(), 2u);
+  EXPECT_EQ(quads[0].materials, 7) << "0 to 5, and the background";
+  EXPECT_EQ(quads[0].pixels, 4);
+  EXPECT_EQ(quads[1].materials, 2) << "0 and 7; outside the frame there is nothing";
+  EXPECT_EQ(quads[1].pixels, 2);
+  EXPECT_EQ(triangles_of(quads).size(), 8u);
+}
+
 TEST(SampleSelect, BackgroundIsAMaterial) {
   std::vector<std::uint32_t> ids(32, kNoTriangle);
   ids[17] = 2;

@@ -228,6 +228,14 @@ TEST(Motion, CountsItsArithmetic) {
   EXPECT_EQ(counters.items_out, kSize * kSize * 1u);
   EXPECT_EQ(counters.lanes_used, kSize * kSize * 1u);
   EXPECT_EQ(counters.lanes_issued, kSize * kSize * 1u);
+  // Without ids, neither the draw nor its matrix is fetched.
+  counters = {};
+  motion(full_surface(-0.5f, {CellGrid{}, standard_pattern(8)}), kTile, frame, {0},
+         to_last_frame(poses_of(frame), poses_of(frame)), counters, MotionFrom::depth);
+  OperationCounts without_ids = pixel;
+  without_ids.fetch = 0;
+  EXPECT_EQ(counters.ops, without_ids * (kSize * kSize));
+  EXPECT_EQ(counters.bytes_read, kSize * kSize * 8 * 4u);
   counters = {};
   contents(full_surface(-0.5f, {CellGrid{}, standard_pattern(8)}), kTile, frame, {0},
            to_last_frame(poses_of(frame), poses_of(frame)), looks_of(frame), counters);

@@ -40,9 +40,12 @@ class TemporalTwins : public SceneTwins {
     before.draws[0].transform[3][0] += 0.1;
     to_last_ = to_last_frame(poses_of(frame), before);
     looks_ = looks_of(frame);
-    std::vector<SampleQuad> quads =
-        sample_select(surface_, tile_, triangles_.draws, {.jitter = 5, .seed = 7}, ignored);
-    color_samples(colors_, tile_, sampling.pattern, quads);
+    std::vector<SampleQuad> quads = sample_select(surface_, tile_, triangles_.draws, {.jitter = 5, .seed = 7}, ignored);
+    std::vector<std::uint32_t> order;
+    const std::vector<std::uint32_t> triangles = triangles_of(quads);
+    for (std::uint32_t i = 0; i < triangles.size(); ++i)
+      if (triangles[i] != kNoTriangle) order.push_back(i);
+    color_samples(colors_, tile_, sampling.pattern, order, quads);
     quads_.insert(tile_, quads);
   }
 

@@ -231,7 +231,7 @@ class ReportPage(unittest.TestCase):
         self.assert_rows("framebuffer", members("framebuffer"),
                          {**plain("technique", "format", "bytes_per_pixel"), "surface": lambda record: record["name"]})
         self.assert_rows("claims", self.report["claims"],
-                         {**plain("unit", "published_low", "published_high", "ours", "difference", "source", "beside",
+                         {**plain("unit", "published_low", "published_high", "ours", "difference", "kind", "source", "beside",
                                   "command"), "claim": lambda record: record["name"]})
         of = lambda *path: lambda record: functools.reduce(lambda at, key: (at or {}).get(key), path, record)
         self.assert_rows("frames", members("frames"), {
