@@ -84,7 +84,8 @@ FrameResult render_dvm(const Trace& trace, const Frame& frame, const DvmOptions&
   std::vector<glm::vec4> translucent(context.has_blending() ? over_time.current.color.size() : 0);
 
   const BinPlan plan{.stages = {"sample_raster", "depth_test", "sample_select", "shade", "light", "motion"},
-                     .framebuffer = dvm_framebuffer()};
+                     .framebuffer = dvm_framebuffer(),
+                     .writes_frame = true};
   FrameResult result = render_bins(context, plan, [&](Bin& bin) {
     const BinStage selecting = bin.stage("sample_select"), moving = bin.stage("motion");
     DepthTestUnit visibility(bin, sampling, kVisibilityBytes);

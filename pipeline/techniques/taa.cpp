@@ -31,7 +31,8 @@ FrameResult render_taa(const Trace& trace, const Frame& frame, const TaaOptions&
   TemporalFrame over_time(context);
   const Sampling sampling{CellGrid{}, jittered(options, over_time.history().frames)};
   const BinPlan plan{.stages = {"sample_raster", "depth_test", "shade", "light", "resolve", "motion"},
-                     .framebuffer = taa_framebuffer()};
+                     .framebuffer = taa_framebuffer(),
+                     .writes_frame = true};
   FrameResult result = render_bins(context, plan, [&](Bin& bin) {
     DepthTestUnit visibility(bin, sampling, kVisibilityBytes);
     draw_visibility(bin, sampling, visibility);
