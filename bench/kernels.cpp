@@ -193,10 +193,10 @@ BENCHMARK(masks_of_pixels)->Arg(32)->Arg(128)->Arg(256);
 
 void rows_of_cells(benchmark::State& state) {
   const auto cells = static_cast<std::size_t>(state.range(0));
-  EdgeOverCells edges[3] = {{-4096, 512, 512, -512}, {60'000, -300, 200, -300}, {9'000, 77, 300, 0}};
+  EdgeOverCells edges[3] = {{-4096, 512, -100, 512, -612}, {60'000, -300, 200, 200, -300}, {9'000, 77, 223, 300, 0}};
   for (auto _ : state) {
     edges[0].start -= 1;
-    benchmark::DoNotOptimize(cell_row(edges, cells));
+    benchmark::DoNotOptimize(cell_rows(edges, cells));
   }
   count_items(state, 1);
 }

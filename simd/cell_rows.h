@@ -1,5 +1,5 @@
-// Conservative rasterization of a row of cells, which are pixels or parts of a pixel: which cells a triangle touches,
-// and which it covers completely. Exact.
+// Conservative rasterization of two rows of cells, which are pixels or parts of a pixel: which cells a triangle
+// touches, and which it covers completely. Exact.
 #pragma once
 
 #include <cstddef>
@@ -9,11 +9,11 @@ namespace beampipe {
 
 inline constexpr int kCellsPerRow = 32;  // bits of a row's masks
 
-// An edge over a row of cells. Its value at the upper left corner of cell i is start + step i. `deepest` and
-// `shallowest` are what the value gains from there to the corner of the cell where it is greatest and where it is
-// least. All values are integers below 2^52.
+// An edge over rows of cells. Its value at the upper left corner of cell i of row j is start + step i + down j.
+// `deepest` and `shallowest` are what the value gains from there to the corner of the cell where it is greatest and
+// where it is least. All values are integers below 2^52.
 struct EdgeOverCells {
-  double start, step;
+  double start, step, down;
   double deepest, shallowest;
 };
 
@@ -21,9 +21,14 @@ struct CellRow {
   std::uint32_t touched, full;  // bit i: cell i
 };
 
-// Tests the first `count` cells, 1..kCellsPerRow. A cell is touched if every edge is >= 0 at the cell's deepest corner,
-// and full if every edge is >= 0 at its shallowest corner. Lanes are across cells.
-CellRow cell_row(const EdgeOverCells (&edges)[3], std::size_t count);
+struct CellRows {
+  CellRow rows[2];
+};
+
+// Tests the first `count` cells of both rows, 1..kCellsPerRow. A cell is touched if every edge is >= 0 at the cell's
+// deepest corner, and full if every edge is >= 0 at its shallowest corner. Eight lanes are four cells of both rows,
+// because most triangles are small.
+CellRows cell_rows(const EdgeOverCells (&edges)[3], std::size_t count);
 
 // The scalar twin for one cell and one edge. `corner` is the edge's value at the upper left corner. Real is double or a
 // counting number.
@@ -33,16 +38,19 @@ void cell_against_edge(Real corner, Real deepest, Real shallowest, bool& touched
   full &= corner + shallowest >= Real(0.0);
 }
 
-inline CellRow cell_row_scalar(const EdgeOverCells (&edges)[3], std::size_t count) {
-  CellRow row{};
-  for (std::size_t i = 0; i < count; ++i) {
-    bool touched = true, full = true;
-    for (const EdgeOverCells& edge : edges)
-      cell_against_edge(edge.start + edge.step * static_cast<double>(i), edge.deepest, edge.shallowest, touched, full);
-    row.touched |= std::uint32_t{touched} << i;
-    row.full |= std::uint32_t{touched && full} << i;
+inline CellRows cell_rows_scalar(const EdgeOverCells (&edges)[3], std::size_t count) {
+  CellRows result{};
+  for (int j = 0; j < 2; ++j) {
+    for (std::size_t i = 0; i < count; ++i) {
+      bool touched = true, full = true;
+      for (const EdgeOverCells& edge : edges)
+        cell_against_edge(edge.start + edge.step * static_cast<double>(i) + edge.down * j, edge.deepest,
+                          edge.shallowest, touched, full);
+      result.rows[j].touched |= std::uint32_t{touched} << i;
+      result.rows[j].full |= std::uint32_t{touched && full} << i;
+    }
   }
-  return row;
+  return result;
 }
 
 }  // namespace beampipe

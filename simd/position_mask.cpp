@@ -18,9 +18,27 @@ namespace hn = hwy::HWY_NAMESPACE;
 constexpr std::int64_t kSmallSlope = 1 << 20;
 constexpr std::int64_t kDecided = 1 << 30;
 
-// A vector has at most 16 lanes: the positions of the first two cells.
-template <class Lane, std::size_t kColumns, std::size_t kRows>
-HWY_INLINE void set_mask(const EdgeInPixel<std::int64_t> (&edges)[3], const PositionGrid& grid, WideMask& mask) {
+// The cells of a pixel that a triangle's box touches, both ends included.
+struct TouchedCells {
+  std::size_t left, top, right, bottom;
+};
+
+template <int kColumns, int kRows>
+HWY_INLINE TouchedCells touched_cells(const TriangleInPixel& in) {
+  const auto cell = [](std::int32_t place, int count) {
+    const std::int32_t within = HWY_MAX(0, HWY_MIN(place, kSubpixelUnits - 1));
+    return static_cast<std::size_t>(within / (kSubpixelUnits / count));
+  };
+  const auto least = [](const std::int32_t(&v)[3]) { return HWY_MIN(HWY_MIN(v[0], v[1]), v[2]); };
+  const auto greatest = [](const std::int32_t(&v)[3]) { return HWY_MAX(HWY_MAX(v[0], v[1]), v[2]); };
+  return {cell(least(in.x), kColumns), cell(least(in.y), kRows), cell(greatest(in.x), kColumns),
+          cell(greatest(in.y), kRows)};
+}
+
+// A vector has at most 16 lanes: the positions of the first two cells. `touched`: no other cell has positions inside.
+template <class Lane, std::size_t kColumns>
+HWY_INLINE void set_mask(const EdgeInPixel<std::int64_t> (&edges)[3], const TouchedCells& touched,
+                         const PositionGrid& grid, WideMask& mask) {
   const hn::CappedTag<Lane, 16> d;
   using V = hn::Vec<decltype(d)>;
   const hn::Rebind<std::int32_t, decltype(d)> di;
@@ -53,11 +71,12 @@ HWY_INLINE void set_mask(const EdgeInPixel<std::int64_t> (&edges)[3], const Posi
       return hn::Add(hn::Add(hn::Mul(set(edges[k].a), x), hn::Mul(set(edges[k].b), y)), set(edges[k].c));
     };
     const V base0 = base(0), base1 = base(1), base2 = base(2);
-    for (std::size_t column = 0; column < kColumns; column += step) {
+    for (std::size_t column = touched.left / step * step; column <= touched.right; column += step) {
       const auto left = static_cast<std::int64_t>(column) * grid.cell_width;
-      V edge0 = hn::Add(base0, set(edges[0].a * left)), edge1 = hn::Add(base1, set(edges[1].a * left)),
-        edge2 = hn::Add(base2, set(edges[2].a * left));
-      for (std::size_t row = 0; row < kRows; ++row) {
+      const auto top = static_cast<std::int64_t>(touched.top) * grid.cell_height;
+      const auto first = [&](V of_edge, int k) { return hn::Add(of_edge, set(edges[k].a * left + edges[k].b * top)); };
+      V edge0 = first(base0, 0), edge1 = first(base1, 1), edge2 = first(base2, 2);
+      for (std::size_t row = touched.top; row <= touched.bottom; ++row) {
         const auto inside = hn::Not(hn::Lt(least(edge0, edge1, edge2), hn::Zero(d)));
         std::uint8_t* const cell = bytes + row * kColumns + column;
         if (lanes >= 8) {
@@ -73,11 +92,12 @@ HWY_INLINE void set_mask(const EdgeInPixel<std::int64_t> (&edges)[3], const Posi
   }
 }
 
-template <std::size_t kColumns, std::size_t kRows>
+template <int kColumns, int kRows>
 void set_masks(const TriangleInPixel* in, std::size_t count, const PositionGrid& grid, WideMask* masks) {
   for (std::size_t i = 0; i < count; ++i) {
     TriangleInPixelOf<std::int64_t> triangle;
     for (int k = 0; k < 3; ++k) triangle.x[k] = in[i].x[k], triangle.y[k] = in[i].y[k];
+    const TouchedCells touched = touched_cells<kColumns, kRows>(in[i]);
     EdgeInPixel<std::int64_t> edges[3];
     bool small = true;
     for (int k = 0; k < 3; ++k) {
@@ -87,9 +107,9 @@ void set_masks(const TriangleInPixel* in, std::size_t count, const PositionGrid&
     }
     if (small) {
       for (EdgeInPixel<std::int64_t>& edge : edges) edge.c = HWY_MAX(-kDecided, HWY_MIN(edge.c, kDecided));
-      set_mask<std::int32_t, kColumns, kRows>(edges, grid, masks[i]);
+      set_mask<std::int32_t, kColumns>(edges, touched, grid, masks[i]);
     } else {
-      set_mask<double, kColumns, kRows>(edges, grid, masks[i]);
+      set_mask<double, kColumns>(edges, touched, grid, masks[i]);
     }
   }
 }

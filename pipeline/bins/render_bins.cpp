@@ -3,7 +3,10 @@
 #include <malloc.h>
 #include <tbb/parallel_for.h>
 
+#include <map>
+#include <memory>
 #include <mutex>
+#include <utility>
 
 #include "pipeline/bins/bands.h"
 #include "pipeline/bins/threads.h"
@@ -85,6 +88,36 @@ struct GeometryPass {
   std::uint32_t first_pass_;
 };
 
+// Renders bins without triangles, one of each size.
+class EmptyBins {
+ public:
+  EmptyBins(const FrameContext& context, const BinPlan& plan, const std::vector<std::string>& stages,
+            const BinRenderer& render)
+      : context_(context), plan_(plan), stages_(stages), render_(render) {}
+
+  // Not thread-safe.
+  void prepare(const Tile& tile) {
+    std::unique_ptr<Bin>& bin = bins_[size_of(tile)];
+    if (bin) return;
+    bin = std::make_unique<Bin>(context_, tile, list_, stages_, plan_.framebuffer);
+    render_(*bin);
+    bin->finish_memory();
+  }
+
+  const Bin& like(const Tile& tile) const { return *bins_.at(size_of(tile)); }
+
+ private:
+  using Size = std::pair<std::size_t, std::size_t>;
+  static Size size_of(const Tile& tile) { return {tile.width(), tile.pixels()}; }
+
+  const FrameContext& context_;
+  const BinPlan& plan_;
+  const std::vector<std::string>& stages_;
+  const BinRenderer& render_;
+  const TriangleList list_;
+  std::map<Size, std::unique_ptr<Bin>> bins_;
+};
+
 // Adds up what bins recorded. Only sums and the picture are kept, so that memory use stays that of the picture.
 class FrameRecorder {
  public:
@@ -105,31 +138,11 @@ class FrameRecorder {
     if (!texture_passes_.empty()) texture_passes_[index] = bin.take_texture_passes();
     if (!texture_pass_starts_.empty()) texture_pass_starts_[index] = bin.texture_pass_starts();
     if (trace_) trace_->add(*bin.dram_log(), first_pass_, index);
-    std::map<std::string, std::vector<float>*> counters;  // of the frame
-    {
-      const std::lock_guard lock(mutex_);
-      for (std::size_t s = 0; s < bin.stages().size(); ++s) result_.stages[s] += bin.stages()[s];
-      for (const auto& [name, bytes] : bin.buffer_peaks()) {
-        std::uint64_t& peak = buffer_peaks_[name];
-        peak = std::max(peak, bytes);
-      }
-      result_.a_buffer_peak_bytes += bin.a_buffer_bytes();
-      passes_ = std::max(passes_, bin.geometry_passes(Pass::main));
-      prepasses_ = std::max(prepasses_, bin.geometry_passes(Pass::prepass));
-      for (std::size_t i = 0; i < bin.geometry_pass_starts().size(); ++i) {
-        if (i == geometry_pass_starts_.size()) geometry_pass_starts_.push_back(~0u);
-        geometry_pass_starts_[i] = std::min(geometry_pass_starts_[i], bin.geometry_pass_starts()[i]);
-      }
-      for (const auto& [name, values] : bin.pixel_counters()) {
-        std::vector<float>& of_frame = result_.pixel_counters[name];
-        of_frame.resize(pixels());
-        counters[name] = &of_frame;
-      }
-    }
-    for (const auto& [name, values] : bin.pixel_counters())
-      copy_to_frame(values, bin.tile, context_.frame, *counters.at(name));
-    if (!bin.picture().empty()) place(bin.picture(), bin.tile);
+    add(bin, bin.tile);
   }
+
+  // Thread-safe. Adds for `tile` what a bin of the same size recorded, which has no triangles either.
+  void add_empty(const Bin& bin, const Tile& tile) { add(bin, tile); }
 
   // `rasterizes`: the name of the stage that does.
   FrameResult finish(const GeometryPass& pass, const std::string& rasterizes, std::uint64_t list_bytes) {
@@ -153,6 +166,33 @@ class FrameRecorder {
   }
 
  private:
+  void add(const Bin& bin, const Tile& tile) {
+    std::map<std::string, std::vector<float>*> counters;  // of the frame
+    {
+      const std::lock_guard lock(mutex_);
+      for (std::size_t s = 0; s < bin.stages().size(); ++s) result_.stages[s] += bin.stages()[s];
+      for (const auto& [name, bytes] : bin.buffer_peaks()) {
+        std::uint64_t& peak = buffer_peaks_[name];
+        peak = std::max(peak, bytes);
+      }
+      result_.a_buffer_peak_bytes += bin.a_buffer_bytes();
+      passes_ = std::max(passes_, bin.geometry_passes(Pass::main));
+      prepasses_ = std::max(prepasses_, bin.geometry_passes(Pass::prepass));
+      for (std::size_t i = 0; i < bin.geometry_pass_starts().size(); ++i) {
+        if (i == geometry_pass_starts_.size()) geometry_pass_starts_.push_back(~0u);
+        geometry_pass_starts_[i] = std::min(geometry_pass_starts_[i], bin.geometry_pass_starts()[i]);
+      }
+      for (const auto& [name, values] : bin.pixel_counters()) {
+        std::vector<float>& of_frame = result_.pixel_counters[name];
+        of_frame.resize(pixels());
+        counters[name] = &of_frame;
+      }
+    }
+    for (const auto& [name, values] : bin.pixel_counters())
+      copy_to_frame(values, tile, context_.frame, *counters.at(name));
+    if (!bin.picture().empty()) place(bin.picture(), tile);
+  }
+
   // What was recorded of the first pass over the geometry is part of the later ones too. Those of the depth pre-pass
   // come first.
   void repeat_geometry() {
@@ -222,13 +262,23 @@ FrameResult render_bins(const FrameContext& context, const BinPlan& plan, const 
   FrameRecorder recorder(context, stages, grid.tiles.size(), first_pass);
   const std::uint64_t entry_bytes = sizeof(std::uint32_t) + (plan.sorts_lists ? kKeyBytes : 0);
   std::uint64_t list_bytes = 0;
+  EmptyBins empty_bins(context, plan, stages, render);
+  const bool shares_empty_bins = !plan.empty_bins_differ && !run.timeline && !run.dram_trace;
   const auto render_band = [&](const Band& band) {
     const std::vector<TriangleList> lists = bin_triangles(context.triangles, grid, band);
     for (std::size_t i = 0; i < lists.size(); ++i) {
       list_bytes += lists[i].size() * entry_bytes;
       pass.add_list(run.memory, lists[i], plan.sorts_lists, band.first + i);
     }
+    const auto is_shared = [&](std::size_t i) { return shares_empty_bins && lists[i].empty(); };
+    for (std::size_t i = 0; i < lists.size(); ++i)
+      if (is_shared(i)) empty_bins.prepare(grid.tiles[band.first + i]);
     tbb::parallel_for(std::size_t{0}, lists.size(), [&](std::size_t i) {
+      if (is_shared(i)) {
+        const Tile& tile = grid.tiles[band.first + i];
+        recorder.add_empty(empty_bins.like(tile), tile);
+        return;
+      }
       Bin bin(context, grid.tiles[band.first + i], lists[i], stages, plan.framebuffer);
       render(bin);
       bin.finish_memory();

@@ -32,12 +32,16 @@ struct BinPlan {
   // works on a few triangles at a time.
   std::size_t pair_bytes = 0;
   std::size_t translucent_pair_bytes = 0;  // the same for pairs of translucent triangles, in addition
+  // Bins without triangles are alike, and one of each size stands for all; unless they are not, because rendering one
+  // depends on its place in the frame or leaves something outside it.
+  bool empty_bins_differ = false;
 };
 
 using BinRenderer = std::function<void(Bin&)>;
 
-// `render` is called for every bin of the frame, on any thread. vertex_setup runs once in each geometry pass, and the
-// raster stage reads every setup triangle in each pass (from memory: each bin reads those of its list).
+// `render` is called for every bin of the frame (but see BinPlan::empty_bins_differ), on any thread. vertex_setup runs
+// once in each geometry pass, and the raster stage reads every setup triangle in each pass (from memory: each bin reads
+// those of its list).
 FrameResult render_bins(const FrameContext& context, const BinPlan& plan, const BinRenderer& render);
 
 // Runs a stage that reads whole frames and makes the pixels of one tile at a time, after all bins are finished. Adds

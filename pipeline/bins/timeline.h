@@ -22,7 +22,8 @@ class Timeline {
   struct Event {
     std::string stage;
     std::thread::id thread;
-    std::optional<std::pair<std::int32_t, std::int32_t>> tile;  // its first pixel; none when the stage works on the whole frame
+    std::optional<std::pair<std::int32_t, std::int32_t>>
+        tile;  // its first pixel; none when the stage works on the whole frame
     Clock::time_point start, end;
   };
 

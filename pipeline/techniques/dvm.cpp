@@ -101,7 +101,8 @@ FrameResult render_dvm(const Trace& trace, const Frame& frame, const DvmOptions&
 
   const BinPlan plan{
       .stages = {"sample_raster", "depth_test", "sample_select", "material_sort", "shade", "light", "motion"},
-      .framebuffer = dvm_framebuffer()};
+      .framebuffer = dvm_framebuffer(),
+      .empty_bins_differ = true};
   FrameResult result = render_bins(context, plan, [&](Bin& bin) {
     const BinStage selecting = bin.stage("sample_select"), moving = bin.stage("motion");
     DepthTestUnit visibility(bin, sampling, kVisibilityBytes);

@@ -41,7 +41,8 @@ FrameResult render_msaa(const Trace& trace, const Frame& frame, const MsaaOption
   if (options.motion) motion.emplace(context, history);
   BinPlan plan{.stages = {"sample_raster", "shade", "depth_test", "resolve"},
                .framebuffer = msaa_framebuffer(options),
-               .has_prepass = options.prepass};
+               .has_prepass = options.prepass,
+               .empty_bins_differ = options.motion};
   if (options.motion) plan.stages.push_back("motion");
   FrameResult result = render_bins(context, plan, [&](Bin& bin) {
     DepthTestUnit depth_test = forward_surface(bin, sampling, options);

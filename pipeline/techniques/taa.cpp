@@ -82,7 +82,8 @@ FrameResult render_taa(const Trace& trace, const Frame& frame, const TaaOptions&
   const Materials materials(material_ids(context.triangles, MaterialBy::color));
   const BinPlan plan{.stages = stages_of(options.shading),
                      .framebuffer = taa_framebuffer(options.shading),
-                     .has_prepass = options.shading != TaaShading::visibility};
+                     .has_prepass = options.shading != TaaShading::visibility,
+                     .empty_bins_differ = true};
   FrameResult result = render_bins(context, plan, [&](Bin& bin) {
     bin.finish(draw_bin(bin, options.shading, sampling, materials, over_time));
     copy_to_frame(bin.picture(), bin.tile, frame, over_time.current.color);

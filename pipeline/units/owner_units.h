@@ -107,7 +107,7 @@ class ComposeOwnersUnit {
   OwnerWeights recorded_;
   OwnersBin owners_;
   OwnersMaps maps_;
-  std::vector<OpenPixel<Words, Slots>> pixels_;
+  OpenPixels<Words, Slots> pixels_;
   OpenPixelStore store_;
 };
 

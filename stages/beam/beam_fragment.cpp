@@ -140,9 +140,8 @@ WideMask whole_mask(const BeamFragmentOptions& options) {
   return mask;
 }
 
-// The fragment of a pair, without what the kernels compute.
-Fragment new_fragment(const Pair& pair, const SetupTriangle& triangle, const Tile& tile) {
-  Fragment fragment;
+// Sets what the kernels do not compute.
+void start_fragment(const Pair& pair, const SetupTriangle& triangle, const Tile& tile, Fragment& fragment) {
   fragment.triangle = pair.triangle;
   fragment.quad = pair.quad;
   fragment.pixel = static_cast<std::uint32_t>(tile.index(pair.x, pair.y));
@@ -151,7 +150,6 @@ Fragment new_fragment(const Pair& pair, const SetupTriangle& triangle, const Til
   fragment.z_min = pair.nearest, fragment.z_max = pair.farthest;
   fragment.centroid_z = 0;
   fragment.color = glm::vec3(0.0f);
-  return fragment;
 }
 
 float depth_at_centroid(const Fragment& fragment) {
@@ -188,7 +186,8 @@ void beam_fragment(const SetupTriangles& triangles, const std::vector<Pair>& in,
     next += is_computed(pair, options);
     work.partial += !pair.full;
     if (!pair.full && computed.coverage[i].alpha <= kZeroArea) continue;
-    Fragment fragment = new_fragment(pair, triangles.triangles[pair.triangle], tile);
+    Fragment& fragment = out.emplace_back();  // filled in place: copying it would wait for all of its parts
+    start_fragment(pair, triangles.triangles[pair.triangle], tile, fragment);
     if (pair.full) {
       fragment.alpha = 1.0f, fragment.centroid_u = fragment.centroid_v = 0.5f;
       fragment.mask = whole;
@@ -204,7 +203,6 @@ void beam_fragment(const SetupTriangles& triangles, const std::vector<Pair>& in,
       ++work.centroid_depths;
     }
     if (fragment.tiny) locate(options, fragment, work);
-    out.push_back(fragment);
   }
   work.pairs = in.size();
   work.computed = computed.coverage.size();

@@ -17,6 +17,7 @@ template <std::size_t Words, std::size_t Slots>
 class OwnerComposer {
  public:
   using Pixel = OpenPixel<Words, Slots>;
+  using Pixels = OpenPixels<Words, Slots>;
 
   OwnerComposer(const OwnersBin& bin, OwnersResult& result)
       : bin_(bin), result_(result), width_(static_cast<std::uint32_t>(bin.tile.width())) {}
@@ -25,37 +26,41 @@ class OwnerComposer {
 
   // `number`: of the fragment's triangle in the list. Whether closed pixels hide the fragment is decided here, although
   // the raster has left out many already: so pictures do not depend on how far the raster is ahead.
-  Outcome add(const Fragment& fragment, std::uint32_t number, Pixel& pixel, ClosedDepth& closed) {
+  Outcome add(const Fragment& fragment, std::uint32_t number, Pixels& pixels, ClosedDepth& closed) {
     ++work.fragments;
     pixel_ = fragment.pixel;
     const std::uint32_t row = fragment.pixel / width_;
     x_ = bin_.tile.x0 + static_cast<std::int32_t>(fragment.pixel - row * width_);
     y_ = bin_.tile.y0 + static_cast<std::int32_t>(row);
     if (closed.is_hidden(x_, y_, fragment.z_min)) return Outcome::hidden;
+    Pixel& pixel = pixels.pixels[pixel_];
+    depths_ = &pixels.depths[pixel_];
     if (fragment.mask.none()) {
       add_speck(fragment, number, pixel);
       return Outcome::composed;
     }
     ++work.masks;
-    const WideMask empty = pixel.states.positions_in(Pixel::kEmpty);
-    WideMask claimed = fragment.mask & empty;
-    bool closes = !empty.none();  // may this fragment close the pixel, or close it nearer than before?
-    std::size_t room = Slots;
-    for (std::size_t k = 0; k < Slots; ++k) {
-      OwnerSlot& slot = pixel.slots[k];
-      if (!slot.is_free()) {
-        const WideMask owned = pixel.states.positions_in(Pixel::owned_by(k)), contested = owned & fragment.mask;
-        if (contested.none()) continue;
-        const WideMask won = positions_won(fragment, slot, contested);
-        claimed = claimed | won;
-        if (won != owned) continue;
-        slot.clear();
-        closes = true;
-      }
-      room = k;
+    const std::uint64_t met = pixel.states.states_among(fragment.mask);
+    WideMask claimed;
+    const bool meets_empty = met >> Pixel::kEmpty & 1;
+    if (meets_empty) claimed = fragment.mask & pixel.states.positions_in(Pixel::kEmpty);
+    bool lost = false;  // has a slot lost all of its positions?
+    for (std::uint64_t slots = met >> Pixel::kFirstSlot & kAllSlots; slots != 0; slots &= slots - 1) {
+      const auto k = static_cast<std::size_t>(std::countr_zero(slots));
+      const WideMask owned = pixel.states.positions_in(Pixel::owned_by(k));
+      const WideMask won = positions_won(fragment, k, pixel.slots[k], owned & fragment.mask);
+      claimed = claimed | won;
+      if (won != owned) continue;
+      pixel.slots[k].clear();
+      lost = true;
     }
     if (claimed.none()) return Outcome::composed;
     ++work.claims;
+    const WideMask empty = pixel.states.positions_in(Pixel::kEmpty);
+    const bool closes = lost || !empty.none();  // may this fragment close the pixel, or close it nearer than before?
+    std::size_t room = Slots;
+    for (std::size_t k = 0; k < Slots; ++k)
+      if (pixel.slots[k].is_free()) room = k;
     bool merged = false;
     if (room == Slots) {
       put(claimed, Pixel::kEmpty, pixel);
@@ -64,15 +69,18 @@ class OwnerComposer {
     if (room < Slots) {
       put(claimed, Pixel::owned_by(room), pixel);
       pixel.slots[room] = slot_of(fragment, number);
+      depths_->planes[room] = fragment.plane;
+      depths_->farthest[room] = fragment.z_max;
     }
     if (closes && without(empty, claimed).none()) close(pixel, closed);
     return merged ? Outcome::merged : Outcome::composed;
   }
 
   // All owners are final. `index`: of the pixel in the tile. Returns its colour.
-  PixelColor finish(std::uint32_t index, Pixel& pixel) {
+  PixelColor finish(std::uint32_t index, Pixels& pixels) {
     ++work.finished;
     pixel_ = index;
+    Pixel& pixel = pixels.pixels[index];
     if (const OwnerSlot* slot = only_owner(pixel)) {
       if (bin_.weights) bin_.weights->finish_whole(pixel_, slot->triangle());
       return {1.0f, color_of(*slot, kEverywhere)};
@@ -89,6 +97,7 @@ class OwnerComposer {
  private:
   static constexpr auto kPositions = static_cast<float>(32 * Words);
   static constexpr WideMask kEverywhere = first_words(Words);
+  static constexpr std::uint64_t kAllSlots = (std::uint64_t{1} << Slots) - 1;
 
   struct Owner {
     OwnerSlot slot;
@@ -115,22 +124,18 @@ class OwnerComposer {
     pixel.states.put(mask, state);
   }
 
-  const SetupTriangle& triangle_of(const OwnerSlot& slot) const {
-    return bin_.triangles.triangles[bin_.list[slot.triangle()]];
-  }
-
-  // In the fragment's pixel.
-  DepthPlane<float> plane_of(const OwnerSlot& slot) {
+  // Of the owner in slot k.
+  const DepthPlane<float>& plane_of(std::size_t k, const OwnerSlot& slot) {
     ++work.planes;
     if (bin_.lists_fetches) result_.fetched.push_back(bin_.list[slot.triangle()]);
-    return pixel_plane(triangle_of(slot), x_, y_);
+    return depths_->planes[k];
   }
 
   // The contested positions that the fragment takes from the owner. The difference of two planes is a plane: most
   // often it has one sign in the whole pixel.
-  WideMask positions_won(const Fragment& fragment, const OwnerSlot& slot, const WideMask& contested) {
+  WideMask positions_won(const Fragment& fragment, std::size_t k, const OwnerSlot& slot, const WideMask& contested) {
     ++work.contests;
-    const DepthPlane<float> owner = plane_of(slot);
+    const DepthPlane<float>& owner = plane_of(k, slot);
     const PlaneGap<float> gap = plane_gap(fragment.plane, owner);
     if (gap.middle < -gap.reach) return contested;
     if (gap.middle > gap.reach) return {};
@@ -147,7 +152,7 @@ class OwnerComposer {
   std::size_t make_room(const Fragment& fragment, const WideMask& claimed, std::uint32_t number, Pixel& pixel,
                         bool& merged) {
     DepthPlane<float> planes[Slots];
-    for (std::size_t k = 0; k < Slots; ++k) planes[k] = plane_of(pixel.slots[k]);
+    for (std::size_t k = 0; k < Slots; ++k) planes[k] = plane_of(k, pixel.slots[k]);
     if (bin_.watermarks) {
       std::size_t count = 0;
       for (std::size_t k = 0; k < Slots; ++k)
@@ -250,6 +255,8 @@ class OwnerComposer {
       bin_.weights->merge(pixel_, {one.slot, one.index}, {other.slot, other.index}, part / (part + other_part));
     put(one.owned | other.owned, Pixel::owned_by(one.index), pixel);
     const std::uint32_t contents = one.slot.content() + 3 * other.slot.content();
+    depths_->planes[one.index] = larger.plane;
+    depths_->farthest[one.index] = pair_bounds(larger.plane, {kInFront, kNoDepth}).farthest;
     pixel.slots[one.index].set_merged(larger.slot.triangle(), error_of_one + error_of_other, color,
                                       rounding_threshold(contents));
     if (other.index < Slots) pixel.slots[other.index].clear();
@@ -334,13 +341,13 @@ class OwnerComposer {
   // A pixel without empty positions hides what lies behind all of its owners.
   void close(const Pixel& pixel, ClosedDepth& closed) {
     float farthest = kInFront;
-    for (const OwnerSlot& slot : pixel.slots) {
+    for (std::size_t k = 0; k < Slots; ++k) {
+      const OwnerSlot& slot = pixel.slots[k];
       if (slot.is_free()) continue;
       ++work.bounds_found;
       work.vertices_bounded += !slot.is_merged();
-      const DepthBounds<float> anywhere{kInFront, kNoDepth};
-      const DepthBounds<float> vertices = slot.is_merged() ? anywhere : vertex_bounds(triangle_of(slot).vertex_z);
-      farthest = std::max(farthest, pair_bounds(plane_of(slot), vertices).farthest);
+      plane_of(k, slot);
+      farthest = std::max(farthest, depths_->farthest[k]);
     }
     closed.close(x_, y_, farthest);
   }
@@ -354,7 +361,7 @@ class OwnerComposer {
     for (const std::uint8_t position : bin_.positions.nearest_to(fragment.centroid_u, fragment.centroid_v)) {
       const std::uint32_t state = pixel.states.at(position);
       if (state == Pixel::kFinal) continue;
-      votes += state == Pixel::kEmpty || is_nearer(fragment, pixel.slots[state - Pixel::kFirstSlot]);
+      votes += state == Pixel::kEmpty || is_nearer(fragment, state - Pixel::kFirstSlot, pixel);
     }
     if (votes == 0) return;
     FixedSum &same = pixel.specks[fragment.front], &opposite = pixel.specks[!fragment.front];
@@ -371,9 +378,10 @@ class OwnerComposer {
     pixel.colors.add({color[0], color[1], color[2], 0, 0, 0}, threshold);
   }
 
-  bool is_nearer(const Fragment& speck, const OwnerSlot& slot) {
+  bool is_nearer(const Fragment& speck, std::size_t k, const Pixel& pixel) {
     ++work.speck_comparisons;
-    return is_on_or_before(speck.centroid_z, plane_of(slot), speck.centroid_u - 0.5f, speck.centroid_v - 0.5f);
+    return is_on_or_before(speck.centroid_z, plane_of(k, pixel.slots[k]), speck.centroid_u - 0.5f,
+                           speck.centroid_v - 0.5f);
   }
 
   // The analytic estimate, no farther from the counted one than the tolerances allow.
@@ -396,24 +404,25 @@ class OwnerComposer {
 
   const OwnersBin& bin_;
   OwnersResult& result_;
-  const std::uint32_t width_;            // of the tile
-  std::uint32_t pixel_ = 0;              // index within the tile
-  std::int32_t x_ = 0, y_ = 0;           // the fragment's pixel, frame coordinates
-  std::array<Owner, Slots + 1> owners_;  // of one pixel, and the fragment that needs a slot
+  const std::uint32_t width_;             // of the tile
+  std::uint32_t pixel_ = 0;               // index within the tile
+  std::int32_t x_ = 0, y_ = 0;            // the fragment's pixel, frame coordinates
+  OwnerDepths<Slots>* depths_ = nullptr;  // of this pixel
+  std::array<Owner, Slots + 1> owners_;   // of one pixel, and the fragment that needs a slot
 };
 
 }  // namespace
 
 template <std::size_t Words, std::size_t Slots>
 void compose_owners(const OwnersBin& bin, const std::vector<Fragment>& fragments, std::size_t first,
-                    StageCounters& counters, std::vector<OpenPixel<Words, Slots>>& pixels, ClosedDepth& closed,
+                    StageCounters& counters, OpenPixels<Words, Slots>& pixels, ClosedDepth& closed,
                     const OwnersMaps& maps, OwnersResult& result) {
   OwnerComposer<Words, Slots> composer(bin, result);
   auto number = static_cast<std::uint32_t>(first);
   for (const Fragment& fragment : fragments) {
     while (bin.list[number] != fragment.triangle) ++number;
     using Outcome = typename OwnerComposer<Words, Slots>::Outcome;
-    const Outcome outcome = composer.add(fragment, number, pixels[fragment.pixel], closed);
+    const Outcome outcome = composer.add(fragment, number, pixels, closed);
     maps.fragments[fragment.pixel] += outcome != Outcome::hidden;
     maps.merges[fragment.pixel] += outcome == Outcome::merged;
   }
@@ -421,21 +430,21 @@ void compose_owners(const OwnersBin& bin, const std::vector<Fragment>& fragments
 }
 
 template <std::size_t Words, std::size_t Slots>
-std::vector<PixelColor> finish_owners(const OwnersBin& bin, StageCounters& counters,
-                                      std::vector<OpenPixel<Words, Slots>>& pixels, OwnersResult& result) {
+std::vector<PixelColor> finish_owners(const OwnersBin& bin, StageCounters& counters, OpenPixels<Words, Slots>& pixels,
+                                      OwnersResult& result) {
   OwnerComposer<Words, Slots> composer(bin, result);
-  std::vector<PixelColor> colors(pixels.size());
-  for (std::uint32_t i = 0; i < pixels.size(); ++i) colors[i] = composer.finish(i, pixels[i]);
+  std::vector<PixelColor> colors(pixels.pixels.size());
+  for (std::uint32_t i = 0; i < colors.size(); ++i) colors[i] = composer.finish(i, pixels);
   charge<Words, Slots>(composer.work, counters);
   return colors;
 }
 
-#define BEAMPIPE_COMPOSE(words, slots)                                                                            \
-  template void compose_owners<words, slots>(const OwnersBin&, const std::vector<Fragment>&, std::size_t,         \
-                                             StageCounters&, std::vector<OpenPixel<words, slots>>&, ClosedDepth&, \
-                                             const OwnersMaps&, OwnersResult&);                                   \
-  template std::vector<PixelColor> finish_owners<words, slots>(const OwnersBin&, StageCounters&,                  \
-                                                               std::vector<OpenPixel<words, slots>>&, OwnersResult&);
+#define BEAMPIPE_COMPOSE(words, slots)                                                                    \
+  template void compose_owners<words, slots>(const OwnersBin&, const std::vector<Fragment>&, std::size_t, \
+                                             StageCounters&, OpenPixels<words, slots>&, ClosedDepth&,     \
+                                             const OwnersMaps&, OwnersResult&);                           \
+  template std::vector<PixelColor> finish_owners<words, slots>(const OwnersBin&, StageCounters&,          \
+                                                               OpenPixels<words, slots>&, OwnersResult&);
 BEAMPIPE_OPEN_PIXELS(BEAMPIPE_COMPOSE)
 #undef BEAMPIPE_COMPOSE
 

@@ -65,12 +65,12 @@ struct OwnersMaps {
 // pixels in `closed` whose positions all have owners. Counts as items out the fragments that take a position.
 template <std::size_t Words, std::size_t Slots>
 void compose_owners(const OwnersBin& bin, const std::vector<Fragment>& fragments, std::size_t first,
-                    StageCounters& counters, std::vector<OpenPixel<Words, Slots>>& pixels, ClosedDepth& closed,
+                    StageCounters& counters, OpenPixels<Words, Slots>& pixels, ClosedDepth& closed,
                     const OwnersMaps& maps, OwnersResult& result);
 
 // After the last fragment: all owners are final. Returns the pixels' colours.
 template <std::size_t Words, std::size_t Slots>
-std::vector<PixelColor> finish_owners(const OwnersBin& bin, StageCounters& counters,
-                                      std::vector<OpenPixel<Words, Slots>>& pixels, OwnersResult& result);
+std::vector<PixelColor> finish_owners(const OwnersBin& bin, StageCounters& counters, OpenPixels<Words, Slots>& pixels,
+                                      OwnersResult& result);
 
 }  // namespace beampipe

@@ -10,7 +10,9 @@
 #include <cstddef>
 #include <cstdint>
 #include <glm/glm.hpp>
+#include <vector>
 
+#include "simd/depth_plane.h"
 #include "simd/scalar.h"
 #include "stages/data/position_states.h"
 #include "stages/data/shared_exponent.h"
@@ -155,6 +157,23 @@ static_assert(sizeof(OpenPixel<8, 5>) == 154);
 static_assert(sizeof(OpenPixel<4, 7>) == 138);
 static_assert(sizeof(OpenPixel<2, 4>) == 74);
 static_assert(sizeof(OpenPixel<1, 2>) == 42);
+
+// Depths of a pixel's owners, which the modelled machine computes again whenever it needs them. This program keeps
+// them.
+template <std::size_t Slots>
+struct OwnerDepths {
+  DepthPlane<float> planes[Slots];
+  float farthest[Slots];  // upper bound of the depth in the pixel
+};
+
+// The open pixels of a tile, row by row.
+template <std::size_t Words, std::size_t Slots>
+struct OpenPixels {
+  explicit OpenPixels(std::size_t count) : pixels(count), depths(count) {}
+
+  std::vector<OpenPixel<Words, Slots>> pixels;
+  std::vector<OwnerDepths<Slots>> depths;
+};
 
 // Size of a fragment between beam_fragment and compose in the modelled machine: pixel and facing (16 bits), triangle
 // (24), centroid (16), area (16), mask, and depth plane and nearest depth as 4 x float32.

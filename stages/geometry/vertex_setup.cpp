@@ -329,7 +329,7 @@ class TriangleSetup {
     const bool front = area2 < 0;  // counter-clockwise with y up
     if (draw_.cull == (front != draw_.state.front_is_clockwise ? Cull::front : Cull::back)) return;
     if (material != kNoMaterial && !materials_[material].double_sided && shows_back(front)) return;
-    SetupTriangle triangle;
+    SetupTriangle& triangle = out.triangles.emplace_back();
     const std::array<const ProjectedVertex*, 3> corners = {&a, &b, &c};
     std::array<ScreenVertex<double>, 3> p = {a.screen, b.screen, c.screen};
     if (is_placed_) place_depths(t, p);
@@ -348,7 +348,6 @@ class TriangleSetup {
     triangle.depth = {p[0].z, slopes.dzdx, slopes.dzdy, p[0].x, p[0].y};
     if (screen_.placement.has_bias()) add_bias(triangle);
     triangle.front = front;
-    out.triangles.push_back(triangle);
     out.attributes.push_back(attributes(t, material, front));
     out.draws.push_back(draw_index_);
     if (has_surfaces()) out.surfaces.push_back(surface(t, material, front, {first, second, third}));

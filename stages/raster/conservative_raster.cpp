@@ -18,11 +18,12 @@ std::size_t conservative_raster(const SetupTriangles& triangles, const TriangleL
     const bool is_opaque = triangles.is_opaque(index);
     traverse(triangle, EdgeSet(triangle), traversal, [&](std::int32_t x, std::int32_t y, std::uint32_t q, bool covers) {
       const bool full = covers && is_opaque;
-      Pair pair{index, q, x, y, full, 0, 0};
-      if (depths == PairDepths::bounds) set_depths(triangle, vertices, pair);
-      if (closed && closed->hides(x, y, pair.nearest)) return;
-      if (closed && full && closing == Closing::by_raster) closed->close(x, y, pair.farthest);
-      out.push_back(pair);
+      DepthBounds<float> bounds{};
+      if (depths == PairDepths::bounds) bounds = pair_bounds(pixel_plane(triangle, x, y), vertices);
+      if (closed && closed->hides(x, y, bounds.nearest)) return;
+      if (closed && full && closing == Closing::by_raster) closed->close(x, y, bounds.farthest);
+      Pair& pair = out.emplace_back();
+      pair = {index, q, x, y, full, bounds.nearest, bounds.farthest};
     });
     if (closed) closed->refresh();
   }

@@ -63,12 +63,12 @@ struct Traversal {
   std::uint32_t quad = 0;  // number of the next 2x2 quad
 };
 
-// What cell_row needs of an edge, except for the value where the row starts.
+// What cell_rows needs of an edge, except for the value where the first row starts.
 inline EdgeOverCells edge_over_cells(const Edge& edge, const CellGrid& grid, FullMeans meaning) {
   const std::int64_t right = std::int64_t{edge.a} * grid.cell_width(), down = std::int64_t{edge.b} * grid.cell_height();
   const std::int64_t not_owned = meaning == FullMeans::samples && !edge.owns ? 1 : 0;
   EdgeOverCells over{};
-  over.step = static_cast<double>(right);
+  over.step = static_cast<double>(right), over.down = static_cast<double>(down);
   over.deepest = static_cast<double>(std::max<std::int64_t>(right, 0) + std::max<std::int64_t>(down, 0));
   over.shallowest = static_cast<double>(std::min<std::int64_t>(right, 0) + std::min<std::int64_t>(down, 0) - not_owned);
   return over;
@@ -92,13 +92,10 @@ void traverse(const SetupTriangle& triangle, const EdgeSet& set, Traversal& trav
   for (std::int32_t quad_y = range.y0 & ~1; quad_y < range.y1; quad_y += 2) {
     for (std::int32_t left = range.x0 & ~1; left < range.x1; left += kCellsPerRow) {
       const std::uint32_t inside = left < range.x0 ? ~1u : ~0u;  // the range may start inside a quad
-      CellRow rows[2] = {};
-      for (std::int32_t y = std::max(quad_y, range.y0); y < std::min(quad_y + 2, range.y1); ++y) {
-        for (std::size_t k = 0; k < 3; ++k) edges[k].start = static_cast<double>(set.edges[k].at(left * w, y * h));
-        CellRow& row = rows[y & 1];
-        row = cell_row(edges, static_cast<std::size_t>(std::min(range.x1 - left, kCellsPerRow)));
-        row.touched &= inside;
-      }
+      for (std::size_t k = 0; k < 3; ++k) edges[k].start = static_cast<double>(set.edges[k].at(left * w, quad_y * h));
+      auto [rows] = cell_rows(edges, static_cast<std::size_t>(std::min(range.x1 - left, kCellsPerRow)));
+      for (std::int32_t j = 0; j < 2; ++j)
+        rows[j].touched &= quad_y + j >= range.y0 && quad_y + j < range.y1 ? inside : 0;
       const std::uint32_t columns = rows[0].touched | rows[1].touched;
       constexpr std::uint32_t kEven = 0x55555555;
       for (std::uint32_t quads = (columns | columns >> 1) & kEven; quads != 0; quads &= quads - 1) {

@@ -1,6 +1,7 @@
 // Pictures and counters do not depend on the number of threads, the SIMD target or the order of work.
 #include <gtest/gtest.h>
 
+#include "pipeline/bins/timeline.h"
 #include "pipeline/technique.h"
 #include "tests/pipeline/surface_traces.h"
 #include "tests/simd/every_target.h"
@@ -73,6 +74,20 @@ TEST(Determinism, AnyInstructionSetAndNumberOfThreads) { expect_same_everywhere(
 
 TEST(Determinism, AnyInstructionSetAndNumberOfThreadsWithMaterials) {
   expect_same_everywhere(random_surfaces(100, 70, 150, 3));
+}
+
+// One bin without triangles stands for all of its size, but not where a timeline is recorded.
+TEST(Determinism, BinsWithoutTrianglesAreAlike) {
+  for (const Trace& trace :
+       {random_trace(290, 170, 2, 1), random_surfaces(290, 170, 2, 5), random_trace(70, 40, 0, 1)}) {
+    for (const char* spec : kSpecs) {
+      const Technique technique = parse_technique(spec);
+      Timeline timeline;
+      RunOptions every_bin;
+      every_bin.timeline = &timeline;
+      expect_same(technique.render(trace, 0, every_bin), technique.render(trace, 0, {}), spec);
+    }
+  }
 }
 
 // In bounded memory and in one pass: pixels are closed while the raster goes on.

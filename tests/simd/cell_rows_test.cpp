@@ -17,25 +17,28 @@ EdgeOverCells random_edge(Random& random) {
   };
   const std::int64_t right = slope(), down = slope();
   EdgeOverCells edge;
-  edge.step = static_cast<double>(right);
+  edge.step = static_cast<double>(right), edge.down = static_cast<double>(down);
   edge.deepest = static_cast<double>(std::max<std::int64_t>(right, 0) + std::max<std::int64_t>(down, 0));
   edge.shallowest = static_cast<double>(std::min<std::int64_t>(right, 0) + std::min<std::int64_t>(down, 0));
-  edge.start = static_cast<double>(-right * random.integer(-1, 33) + random.integer(-1, 1));
+  edge.start =
+      static_cast<double>(-right * random.integer(-1, 33) - down * random.integer(0, 1) + random.integer(-1, 1));
   if (random.one_in(4))
     edge.start = static_cast<double>(random.integer(-(std::int64_t{1} << 50), std::int64_t{1} << 50));
   return edge;
 }
 
-TEST(CellRow, KernelEqualsTwin) {
+TEST(CellRows, KernelEqualsTwin) {
   Random random(64);
   SCOPED_TRACE(random.name());
   on_every_target([&] {
     for (int i = 0; i < 20'000; ++i) {
       const EdgeOverCells edges[3] = {random_edge(random), random_edge(random), random_edge(random)};
       const auto count = static_cast<std::size_t>(random.integer(1, kCellsPerRow));
-      const CellRow found = cell_row(edges, count), expected = cell_row_scalar(edges, count);
-      ASSERT_EQ(found.touched, expected.touched) << "row " << i << ", " << count << " cells";
-      ASSERT_EQ(found.full, expected.full) << "row " << i << ", " << count << " cells";
+      const CellRows found = cell_rows(edges, count), expected = cell_rows_scalar(edges, count);
+      for (int j = 0; j < 2; ++j) {
+        ASSERT_EQ(found.rows[j].touched, expected.rows[j].touched) << "pair " << i << ", row " << j << ", " << count;
+        ASSERT_EQ(found.rows[j].full, expected.rows[j].full) << "pair " << i << ", row " << j << ", " << count;
+      }
     }
   });
 }

@@ -20,7 +20,8 @@ struct OpenTile {
   const std::vector<glm::vec3>& colors;
   Tile tile;
   const PositionSet& positions = cell_positions(kPositions);
-  std::vector<Pixel> pixels;
+  OpenPixels<Words, Slots> open;
+  std::vector<Pixel>& pixels = open.pixels;
   ClosedDepth closed;
   std::vector<float> counts, merges;       // per pixel: fragments that no closed pixel hid, owners that became one
   std::vector<Fragment> fragments;         // all that were composed
@@ -33,7 +34,7 @@ struct OpenTile {
       : triangles(of),
         colors(in_colors),
         tile(in),
-        pixels(in.pixels()),
+        open(in.pixels()),
         closed(in),
         counts(in.pixels()),
         merges(in.pixels()) {}
@@ -47,8 +48,8 @@ struct OpenTile {
     conservative_raster(triangles, list, tile, ignored, pairs);
     beam_fragment(triangles, pairs, tile, grid_options(grid, owners_fragment_bytes(Words)), ignored, fragments);
     const OwnersBin bin{triangles, list, watermarks, tile, positions, colors, false, weights};
-    compose_owners(bin, fragments, 0, composing, pixels, closed, {counts, merges}, result);
-    return finish_owners(bin, finishing, pixels, result);
+    compose_owners(bin, fragments, 0, composing, open, closed, {counts, merges}, result);
+    return finish_owners(bin, finishing, open, result);
   }
   std::vector<PixelColor> compose_sorted(bool with_watermarks = true) {
     StageCounters ignored;

@@ -189,6 +189,14 @@ void expect_states(std::uint64_t seed) {
       }
     }
     for (std::size_t p = 0; p < expected.size(); ++p) ASSERT_EQ(states.at(p), expected[p]);
+    WideMask some;
+    std::uint64_t among = 0;
+    for (std::size_t p = 0; p < expected.size(); ++p) {
+      if (!random.one_in(16)) continue;
+      some.set(p);
+      among |= std::uint64_t{1} << expected[p];
+    }
+    ASSERT_EQ(states.states_among(some), among);
   }
 }
 
