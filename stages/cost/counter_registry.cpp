@@ -67,6 +67,7 @@ bool has_counter(const StageInfo& stage, const CounterInfo& counter) {
   if ((name.starts_with("hidden_") || name == "empty_tiles") && !rasterizes) return false;
   const std::string_view of = stage.name;
   if (name.starts_with("texture_") && of != "shade" && of != "alpha_mask" && of != "alpha_test") return false;
+  if (name == "position_tests" && of != "beam_fragment" && of != "compose" && of != "claim") return false;
   return std::string(stage.silent).find(" " + name + " ") == std::string::npos;
 }
 

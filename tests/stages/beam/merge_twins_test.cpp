@@ -11,6 +11,7 @@
 #include "stages/beam/paper_fragment.h"
 #include "stages/picture/shade.h"
 #include "stages/raster/conservative_raster.h"
+#include "tests/simd/merge_cases.h"
 #include "tests/stages/scene_twins.h"
 
 namespace beampipe {
@@ -86,18 +87,18 @@ class MergeTwins : public SceneTwins {
   }
 
   template <class Stored>
-  void compose_into(PaperStorage storage) {
-    const SamplePattern pattern = hammersley_pattern();
-    const MergeRules rules;
+  void compose_into(PaperStorage storage, const MergeRules& rules = {}) {
+    const MergePositions positions(hammersley_pattern());
     const std::vector<Aggregate> expected = merge_all([&](const Fragment& fragment, const Aggregate& before) {
       AggregateOf<Float, Bits> old = counting(before);
       convert(old, storage);
-      AggregateOf<Float, Bits> merged = merge_formula(counting(fragment), old, pattern, rules);
+      MergeStepsOf<Bits> steps;
+      AggregateOf<Float, Bits> merged = merge_formula(counting(fragment), old, positions, rules, steps);
       convert(merged, storage);
       return Aggregate(Stored(value_of(merged)));
     });
     StageCounters counters;
-    expect_same(compose(fragments_, buffer_, pattern, rules, storage, counters), expected);
+    expect_same(compose(fragments_, buffer_, positions, rules, storage, counters), expected);
     EXPECT_EQ(counters.ops, twin_);
     EXPECT_EQ(counters.lanes_used, fragments_.size());
     EXPECT_EQ(counters.lanes_issued, fragments_.size());
@@ -111,7 +112,7 @@ TEST_P(MergeTwins, Compose) {
   make_paper_fragments();
   compose_into<SlidesAggregate>(PaperStorage::slides);
   compose_into<TextAggregate>(PaperStorage::text);
-  compose_into<Aggregate>(PaperStorage::float32);
+  for (const MergeRules& rules : every_merge_rule()) compose_into<Aggregate>(PaperStorage::float32, rules);
 }
 
 TEST_P(MergeTwins, Over) {
