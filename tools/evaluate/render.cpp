@@ -142,6 +142,7 @@ Report new_report(const RunPlan& plan, const Json& made_by) {
           plan.options.threads,
           plan.options.memory,
           plan.hardware,
+          plan.more_hardware,
           {},
           {},
           {},

@@ -58,6 +58,9 @@ struct FrameReport {
   std::map<std::string, PixelCounterStats> pixel_counters;  // by name
   std::uint64_t pixels = 0;
   std::uint64_t bin_pixels = 0;  // of the largest bin
+
+  // All buffers that a bin has on chip, at their peaks.
+  double bin_bytes() const;
 };
 
 // The same frames with their triangles in another order.
@@ -94,6 +97,7 @@ struct Report {
   int threads = 0;
   MemoryParameters memory;
   Hardware hardware;  // whose times are modelled; nothing is modelled if it has no implementations
+  std::vector<Hardware> more_hardware = {};  // whose times are modelled too, for comparison
   std::vector<TechniqueReport> results;
   std::vector<LadderRung> msaa_ladder;             // empty if not measured
   std::vector<LadderRung> visibility_ladder = {};  // of visibility alone; empty if all surfaces are flat
