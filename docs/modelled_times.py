@@ -12,10 +12,35 @@ PUBLISHED_MS = {"beam:rules=paper": 30.2, "msaa:32": 24.0, "msaa:128": 78.0, "ms
 BASE = "beam:rules=paper"
 
 
-def main(program, hardware, folders):
-    text = subprocess.run([program, "model", *folders, "--json", "--hardware", hardware],
+COSTS = (0, 100, 300, 1000, 3000, 10000)  # operations per invocation
+BEAM, MSAA = ("beam:bin=16",), ("msaa:8", "msaa:8,prepass", "msaa:32")
+
+
+def model(program, hardware, folders, cost=0):
+    text = subprocess.run([program, "model", *folders, "--json", "--hardware", hardware, "--material-cost", str(cost)],
                           check=True, capture_output=True, text=True).stdout
-    for found in json.loads(text):
+    return json.loads(text)
+
+
+def beam_over_msaa(program, hardware, folders):
+    """The ratio of times where each invocation of a fragment shader costs so much beside the trace's materials."""
+    by_cost = {cost: model(program, hardware, folders, cost) for cost in COSTS}
+    for k, folder in enumerate(folders):
+        sums = {cost: {(time["technique"], time["implementation"]): time["sum"] for time in found[k]["times"]}
+                for cost, found in by_cost.items()}
+        names = list(dict.fromkeys(name for _, name in sums[0]))
+        print(f"\n{folder}: time over that of MSAA, by operations per invocation:\n")
+        print("| ratio | part | " + " | ".join(map(str, COSTS)) + " |\n" + "|---" * (2 + len(COSTS)) + "|")
+        for beam in BEAM:
+            for msaa in MSAA:
+                if (beam, names[0]) in sums[0] and (msaa, names[0]) in sums[0]:
+                    for name in names:
+                        cells = [f"{sums[cost][beam, name] / sums[cost][msaa, name]:.2f}" for cost in COSTS]
+                        print(f"| `{beam}` / `{msaa}` | `{name}` | " + " | ".join(cells) + " |")
+
+
+def main(program, hardware, folders):
+    for found in model(program, hardware, folders):
         times = {}
         for time in found["times"]:
             times.setdefault(time["technique"], {})[time["implementation"]] = time
@@ -39,6 +64,7 @@ def main(program, hardware, folders):
                 error = f" ({100 * (ratio / published - 1):+.0f} %)" if published and technique != BASE else ""
                 cells.append(f"{ratio:.2f}{error}")
             print(f"| `{technique}` | {f'{published:.2f}' if published else ''} | " + " | ".join(cells) + " |")
+    beam_over_msaa(program, hardware, folders)
 
 
 if __name__ == "__main__":

@@ -80,7 +80,7 @@ def svg(effects, base, file):
             values = [middle, published] + [value for rate in order for value in found[rate]]
             low, high = math.log(min(values) / 1.05), math.log(max(values) * 1.05)
             x = lambda value: left + j * panel + 10 + (math.log(value) - low) / (high - low) * (panel - 30)
-            text(left + j * panel + 10, top + 4, f"{technique} / {BASE}: model {middle:.2f}, paper {published:.2f}")
+            text(left + j * panel + 10, top + 4, f"{technique}: model {middle:.2f}, paper {published:.2f}")
             for i, rate in enumerate(order):
                 for value, color in zip(found[rate], ("#2f6fab", "#d98a2b")):
                     a, b = sorted((x(middle), x(value)))
@@ -89,9 +89,9 @@ def svg(effects, base, file):
             for value, color in ((middle, "#222"), (published, "#c03030")):
                 out.append(f'<line x1="{x(value):.1f}" x2="{x(value):.1f}" y1="{top + 14}" '
                            f'y2="{top + 24 + rows * row}" stroke="{color}"/>')
-            for value, color in ((middle, "#222"), (published, "#c03030")):
-                text(x(value), top + 36 + rows * row, f"{value:.2f}", "middle", color)
-    text(left, height - 6, "blue: the rate halved; orange: doubled; black: the model; red: the paper")
+            for value, color, other in ((middle, "#222", published), (published, "#c03030", middle)):
+                text(x(value), top + 36 + rows * row, f"{value:.2f}", "end" if value < other else "start", color)
+    text(left, height - 6, f"time over that of {BASE}; blue: the rate halved; orange: doubled; black: the model; red: the paper")
     out.append("</svg>")
     pathlib.Path(file).write_text("\n".join(out) + "\n")
 

@@ -292,10 +292,10 @@ AggregateOf<Float, Mask> merge_formula(const FragmentOf<Float, Mask>& fragment, 
   const auto v_at = [&](int s) { return Float(position_v(positions.pattern, static_cast<std::size_t>(s))); };
 
   // (1) Partition xy by the masks. Surfaces that share no position lie beside each other.
-  const Mask overlap = in.mask & old.mask;
+  const Mask overlap = in.mask & old.mask, empty = overlap & none;  // a mask that counts, unlike a constant
   const auto meets = overlap != none;
   BlendFactors<Float> weight{in.alpha, old.alpha};
-  DepthRegions<Mask> regions{none, none};
+  DepthRegions<Mask> regions{empty, empty};
   if (any(meets)) {
     // (2) Partition the overlap by depth: in front of, behind and within the aggregate's slab. Equal depth counts as
     // behind, so that the earlier fragment wins.
@@ -318,23 +318,24 @@ AggregateOf<Float, Mask> merge_formula(const FragmentOf<Float, Mask>& fragment, 
         }
       }
     }
-    regions.front = choose(before, overlap, choose(after, none, regions.front & overlap));
-    regions.back = choose(after, overlap, choose(before, none, regions.back & overlap));
+    regions.front = choose(before, overlap, choose(after, empty, regions.front & overlap));
+    regions.back = choose(after, overlap, choose(before, empty, regions.back & overlap));
     const Mask fuzzy = overlap & ~regions.front & ~regions.back;
     const auto is_fuzzy = fuzzy != none;
     const Float within = bit_count(fuzzy);
-    Float delta = zero, fuzziness = zero;
+    const Float nothing = select(is_fuzzy, zero, within);
+    Float delta = nothing, fuzziness = nothing;
     steps.overlap = overlap;
     steps.fuzzy = fuzzy;
     if (any(is_fuzzy)) {
-      Float sum_u = select(is_fuzzy, zero, within), sum_v = sum_u;  // a zero that counts
+      Float sum_u = nothing, sum_v = nothing;
       for (int s = 0; s < 32; ++s) {
         const auto is_here = has_bit(fuzzy, s);
         if (!any(is_here)) continue;
         sum_u = choose(is_here, sum_u + u_at(s), sum_u);
         sum_v = choose(is_here, sum_v + v_at(s), sum_v);
       }
-      delta = choose(is_fuzzy, place_in_slab(in, old, sum_u, sum_v, within, rules), zero);
+      delta = choose(is_fuzzy, place_in_slab(in, old, sum_u, sum_v, within, rules), nothing);
     }
     if (rules.overlap == MergeRules::Overlap::transition) {
       Float apart = zero;
@@ -356,7 +357,7 @@ AggregateOf<Float, Mask> merge_formula(const FragmentOf<Float, Mask>& fragment, 
   const Mask reached = visible_only ? in.mask & ~regions.back : in.mask;
   steps.reached = choose(first, none, reached);
   if (containing) steps.moved = choose(first, none, old.mask);
-  Float farthest = zero, moved = zero;
+  Float farthest = lesser(old.thickness, zero), moved = farthest;  // 0
   for (int s = 0; s < 32; ++s) {
     const auto is_reached = has_bit(steps.reached, s);
     if (any(is_reached)) {

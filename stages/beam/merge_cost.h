@@ -50,7 +50,8 @@ inline OperationCounts merge_cost(const MergeWork& work, const MergeRules& rules
   const bool transition = rules.overlap == MergeRules::Overlap::transition;
   charge(work.merges, [](const auto&, const Float&, const Mask& mask) { static_cast<void>(mask == mask); });
   charge(work.merged, [&](const auto& in, const Float& one, const Mask& mask) {
-    static_cast<void>((mask & mask) != mask);
+    static_cast<void>((mask & mask & mask) != mask);
+    lesser(one, one);
     joined(in.surface, in.surface, BlendFactors<Float>{one, one}, rules);
     thick_enough(containing ? one + (one + one) : one, one);
     if (visible_only) static_cast<void>((mask & ~mask) == mask);
@@ -59,6 +60,7 @@ inline OperationCounts merge_cost(const MergeWork& work, const MergeRules& rules
     if (ranged)
       static_cast<void>(is_before(in.surface, in.surface)), static_cast<void>(is_after(in.surface, in.surface));
     static_cast<void>((mask & mask & ~mask & ~(mask & mask)) != mask);
+    select(true, one, one);
     visible_parts(in, in.surface, mask, mask, bit_count(mask), one, one, rules);
     if (transition) fuzziness_of(in.surface, in.surface, one, mask);
   });
@@ -73,11 +75,10 @@ inline OperationCounts merge_cost(const MergeWork& work, const MergeRules& rules
   });
   charge(work.directions, [](const auto&, const Float& one, const Mask&) { line_direction<Float, Mask>(one, one); });
   static const MergePositions positions(hammersley_pattern());  // whose entries cost the same as any other's
-  charge(work.look_ups, [](const auto&, const Float& one, const Mask& mask) {
-    half_plane(LineDirection<Float, Mask>{Counted<std::int32_t>(0, *one.tally), mask, one}, one, positions.table);
+  charge(work.look_ups, [](const auto&, const Float& one, const Mask&) {
+    half_plane(LineDirection<Float, Mask>{Counted<std::int32_t>(0, *one.tally), Mask(0u), one}, one, positions.table);
   });
   charge(work.fuzzy, [&](const auto& in, const Float& one, const Mask&) {
-    select(true, one, one);
     place_in_slab(in.surface, in.surface, one, one, one, rules);
   });
   charge(work.fuzzy_positions, [](const auto&, const Float& one, const Mask&) { one + one, one + one; });

@@ -68,6 +68,7 @@ bool has_counter(const StageInfo& stage, const CounterInfo& counter) {
   const std::string_view of = stage.name;
   if (name.starts_with("texture_") && of != "shade" && of != "alpha_mask" && of != "alpha_test") return false;
   if (name == "position_tests" && of != "beam_fragment" && of != "compose" && of != "claim") return false;
+  if (name == "ops.wide" && !rasterizes && of != "vertex_setup" && of != "beam_fragment" && of != "shade") return false;
   return std::string(stage.silent).find(" " + name + " ") == std::string::npos;
 }
 
