@@ -12,7 +12,7 @@ namespace beampipe {
 // How often each part of merge_formula had work.
 struct MergeWork {
   std::uint64_t merges = 0, merged = 0, overlaps = 0;
-  std::uint64_t lines = 0, directions = 0, look_ups = 0;
+  std::uint64_t lines = 0, directions = 0, front_lines = 0, back_lines = 0;
   std::uint64_t fuzzy = 0, fuzzy_positions = 0;
   std::uint64_t tested = 0, shared = 0, reached = 0, moved = 0;  // positions
 
@@ -23,7 +23,8 @@ struct MergeWork {
     overlaps += steps.overlap != 0;
     lines += steps.lines;
     directions += steps.front_line | steps.back_line;
-    look_ups += steps.front_line + steps.back_line;
+    front_lines += steps.front_line;
+    back_lines += steps.back_line;
     fuzzy += steps.fuzzy != 0;
     fuzzy_positions += positions(steps.fuzzy);
     tested += positions(steps.tested);
@@ -64,27 +65,27 @@ inline OperationCounts merge_cost(const MergeWork& work, const MergeRules& rules
     visible_parts(in, in.surface, mask, mask, bit_count(mask), one, one, rules);
     if (transition) fuzziness_of(in.surface, in.surface, one, mask);
   });
-  charge(work.lines, [](const auto& in, const Float& one, const Mask& mask) {
+  charge(work.lines, [](const auto& in, const Float& one, const Mask&) {
     const PlaneDifference<Float> gap = plane_difference(in.surface.plane, in.surface.plane);
     const Float half_thickness = Float(0.5f) * one;
     for (const Float& c : {gap.z + half_thickness, gap.z - half_thickness}) {
       static_cast<void>(cuts_pixel(c, gap.reach));
       side_of_pixel<Float, Mask>(c, gap.reach);
     }
-    ~mask;
   });
   charge(work.directions, [](const auto&, const Float& one, const Mask&) { line_direction<Float, Mask>(one, one); });
   static const MergePositions positions(hammersley_pattern());  // whose entries cost the same as any other's
-  charge(work.look_ups, [](const auto&, const Float& one, const Mask&) {
+  charge(work.front_lines + work.back_lines, [](const auto&, const Float& one, const Mask&) {
     half_plane(LineDirection<Float, Mask>{Counted<std::int32_t>(0, *one.tally), Mask(0u), one}, one, positions.table);
   });
+  charge(work.front_lines, [](const auto&, const Float&, const Mask& mask) { ~mask; });
   charge(work.fuzzy, [&](const auto& in, const Float& one, const Mask&) {
     place_in_slab(in.surface, in.surface, one, one, one, rules);
   });
   charge(work.fuzzy_positions, [](const auto&, const Float& one, const Mask&) { one + one, one + one; });
   charge(work.tested, [&](const auto& in, const Float&, const Mask& mask) {
     const Float u(0.0f);  // the positions are constants
-    const DepthRegions<Mask> at = region_of_position(in.surface, in.surface, u, u, mask, rules);
+    const DepthRegions<Mask> at = region_of_position(in.surface, in.surface, u, u, Mask(1u), rules);
     mask | at.front, mask | at.back;
   });
   if (transition)
@@ -105,7 +106,7 @@ inline OperationCounts merge_cost(const MergeWork& work, const MergeRules& rules
 }
 
 inline std::uint64_t position_tests(const MergeWork& work) {
-  return 32 * work.look_ups + work.tested + work.reached + work.moved;
+  return 32 * (work.front_lines + work.back_lines) + work.tested + work.reached + work.moved;
 }
 
 }  // namespace beampipe

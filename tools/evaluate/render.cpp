@@ -142,12 +142,12 @@ Report new_report(const RunPlan& plan, const Json& made_by) {
           plan.options.threads,
           plan.options.memory,
           plan.hardware,
-          plan.more_hardware,
           {},
           {},
           {},
           plan.notes,
-          made_by};
+          made_by,
+          plan.more_hardware};
 }
 
 }  // namespace beampipe
