@@ -54,7 +54,8 @@ const std::vector<StageInfo>& stage_list() {
        " ops.bit ops.fetch ops.special "},
       {"reference_raster", "setup triangles", "samples at which a triangle is nearer than all earlier ones",
        "samples that a triangle covers", "samples that a triangle covers",
-       " ops.bit ops.fetch ops.special ops.convert bytes_written sector_bytes l2_bytes dram_bytes hidden_items "
+       " ops.bit ops.fetch ops.special ops.convert ops.wide bytes_written sector_bytes l2_bytes dram_bytes "
+       "hidden_items "
        "hidden_triangles "},
   };
   return stages;
