@@ -69,8 +69,8 @@ TEST(ReportJson, HasTheKeysOfTheContract) {
       {"stage", "vertex_setup"}, {"items_in", 3},           {"items_out", 1},        {"ops", ops},
       {"bytes_read", 36},        {"bytes_written", 80},     {"logical_bytes", 116},  {"sector_bytes", 128},
       {"l2_bytes", 112},         {"dram_bytes", 96},        {"texture_bytes", 0},    {"texture_sector_bytes", 0},
-      {"texture_l2_bytes", 0},   {"texture_dram_bytes", 0}, {"lanes_used", 3},       {"lanes_issued", 4},
-      {"position_tests", 9},     {"hidden_items", 5},       {"hidden_triangles", 6}, {"empty_tiles", 7}};
+      {"texture_l2_bytes", 0},   {"texture_dram_bytes", 0}, {"position_tests", 9},   {"lanes_used", 3},
+      {"lanes_issued", 4},       {"hidden_items", 5},       {"hidden_triangles", 6}, {"empty_tiles", 7}};
   EXPECT_EQ(frame["stages"].at(0), stage);
   EXPECT_EQ(frame["logical_bytes"], 116) << "the sum over all stages";
   EXPECT_EQ(frame["sector_bytes"], 128);
