@@ -1,7 +1,7 @@
 // What compose_layers is charged.
 #pragma once
 
-#include "stages/beam/merge_cost.h"
+#include "stages/beam/paper_merges.h"
 #include "stages/cost/counting.h"
 #include "stages/data/paper_aggregate.h"
 

@@ -2,8 +2,8 @@
 #pragma once
 
 #include "stages/beam/compose_paper.h"
-#include "stages/beam/merge_cost.h"
 #include "stages/beam/paper_fragment.h"
+#include "stages/beam/paper_merges.h"
 #include "stages/cost/counting.h"
 
 namespace beampipe {
