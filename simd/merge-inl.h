@@ -34,12 +34,13 @@ template <class Float, class Mask>
 LineDirection<Float, Mask> line_direction(Float a, Float b) {
   using Int = decltype(to_integer(Float()));
   const Float zero(0.0f), one(1.0f), right_angle(kTableAngles / 4);
-  const auto flipped = (b < zero) | ((b == zero) & (a < zero));
+  const auto is_below = b < zero, is_level = b == zero, is_left = a < zero;
+  const auto flipped = is_below | (is_level & is_left);
   const Float size_a = magnitude(a), size_b = magnitude(b);
   const Float longer = greater(greater(size_a, size_b), Float(1e-30f)), t = lesser(size_a, size_b) / longer;
   const Float octant = t * (Float(kTableAngles / 8) + Float(2.781f) * (one - t));
   const Float acute = select(size_b > size_a, right_angle - octant, octant);
-  const Float angle = select((a < zero) != flipped, right_angle + right_angle - acute, acute);
+  const Float angle = select(is_left != flipped, right_angle + right_angle - acute, acute);
   const Int row = to_integer(lesser(greater(angle, zero), Float(kTableAngles / 2 - 1)));
   return {row * Int(kTableDistances), select(flipped, Mask(~0u), Mask(0u)), one / (longer * square_root(one + t * t))};
 }
@@ -71,7 +72,8 @@ PlaneDifference<Float> plane_difference(const DepthPlane<Float>& of, const Depth
 // Whether the line where the difference is 0 cuts the pixel, and if not, which side of it the pixel is on.
 template <class Float>
 auto cuts_pixel(Float c, Float reach) {
-  return (c < reach) & (Float(0.0f) - c < reach);
+  const auto from_below = c < reach, from_above = Float(0.0f) - c < reach;
+  return from_below & from_above;
 }
 template <class Float, class Mask>
 Mask side_of_pixel(Float c, Float reach) {
