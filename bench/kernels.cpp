@@ -107,7 +107,7 @@ BENCHMARK(masks_by_table);
 // With the default rules, and with those that do the most work.
 void merges_of_fragments(benchmark::State& state) {
   using R = MergeRules;
-  const SamplePattern pattern = hammersley_pattern();
+  const MergePositions positions(hammersley_pattern());
   MergeRules rules;
   if (state.range(0) != 0)
     rules = {R::Overlap::transition, R::Regional::local, R::Local::keep,    R::Fuzzy::mix,
@@ -120,10 +120,11 @@ void merges_of_fragments(benchmark::State& state) {
     fragment = {{random_real(random, 0, 1), mask, plane, 0, plane.z - 0.05f, plane.z + 0.05f, {0.1f, 0.2f, 0.3f}}, 0u};
   }
   std::vector<Aggregate> aggregates;
+  std::vector<MergeSteps> steps(fragments.size());
   for (const MergeFragment& fragment : fragments) aggregates.push_back(fragment.surface);
   for (auto _ : state) {
     std::rotate(fragments.begin(), fragments.begin() + 1, fragments.end());
-    merge(fragments.data(), fragments.size(), pattern, rules, aggregates.data());
+    merge(fragments.data(), fragments.size(), positions, rules, aggregates.data(), steps.data());
     benchmark::DoNotOptimize(aggregates.data());
   }
   count_items(state, fragments.size());

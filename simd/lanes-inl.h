@@ -88,6 +88,15 @@ template <class D>
 HWY_INLINE Lanes<D> select(LaneMask<hn::RebindToFloat<D>> condition, Lanes<D> yes, Lanes<D> no) {
   return Lanes<D>(hn::IfThenElse(hn::RebindMask(D(), condition.raw), yes.raw, no.raw));
 }
+// See simd/scalar.h.
+template <class D>
+HWY_INLINE bool any(LaneMask<D> condition) {
+  return !hn::AllFalse(D(), condition.raw);
+}
+template <class D>
+HWY_INLINE Lanes<D> choose(LaneMask<hn::RebindToFloat<D>> condition, Lanes<D> yes, Lanes<D> no) {
+  return select(condition, yes, no);
+}
 template <class D>
 HWY_INLINE Lanes<D> lesser(Lanes<D> a, Lanes<D> b) {
   return Lanes<D>(hn::Min(a.raw, b.raw));
@@ -99,6 +108,10 @@ HWY_INLINE Lanes<D> greater(Lanes<D> a, Lanes<D> b) {
 template <class D>
 HWY_INLINE Lanes<D> magnitude(Lanes<D> a) {
   return Lanes<D>(hn::Abs(a.raw));
+}
+template <class D>
+HWY_INLINE Lanes<D> square_root(Lanes<D> a) {
+  return Lanes<D>(hn::Sqrt(a.raw));
 }
 
 // A mask of at most 16 lanes as bits of a word, lane 0 first, and back: bits from `first` on.
@@ -126,6 +139,7 @@ using Words = Lanes<WordTag>;  // std::uint32_t
 HWY_INLINE Ints to_integer(Floats x) { return Ints(hn::ConvertTo(IntTag(), x.raw)); }  // towards 0
 HWY_INLINE Floats to_float(Ints x) { return Floats(hn::ConvertTo(FloatTag(), x.raw)); }
 HWY_INLINE Floats bit_count(Words x) { return to_float(Ints(hn::BitCast(IntTag(), hn::PopulationCount(x.raw)))); }
+HWY_INLINE LaneMask<FloatTag> has_bit(Words mask, int bit) { return (mask & Words(1u << bit)) != Words(0u); }
 HWY_INLINE Words fetch(const std::uint32_t* table, Ints index) {
   return Words(hn::GatherIndex(WordTag(), table, index.raw));
 }

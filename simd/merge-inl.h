@@ -1,70 +1,178 @@
-// The formulas of simd/merge.h. No include guard: see simd/scalar.h.
+// The formulas of simd/merge.h. No include guard: see simd/scalar.h. Unlike other formulas, merge_formula has
+// early-outs: any() tells whether a part has work, and choose() takes its result where it has.
 
-// How much of the fragment (i, for incoming) and of the aggregate (a) is visible in one region of mask positions.
+// How much of the fragment (i, for incoming) and of the aggregate (a) is visible in one region of mask positions, or in
+// the whole pixel.
 template <class Float>
 struct BlendFactors {
   Float i, a;
 };
 
+// The positions at which the fragment is in front of the aggregate's slab or behind it.
+template <class Mask>
+struct DepthRegions {
+  Mask front, back;
+};
+
+// The two ends of the aggregate's slab, in depth.
+template <class Float>
+struct SlabEnds {
+  Float front, back;
+};
+
+// A direction in the pixel, as the table of masks sees it: the inward normal of half-planes.
 template <class Float, class Mask>
-AggregateOf<Float, Mask> merge_formula(const FragmentOf<Float, Mask>& fragment, const AggregateOf<Float, Mask>& old,
-                                       const SamplePattern& pattern, const MergeRules& rules) {
-  const Float zero(0.0f), one(1.0f), half(0.5f), bits(32.0f);
-  const AggregateOf<Float, Mask>& in = fragment.surface;
-  const auto clamp = [&](Float value, Float low, Float high) { return lesser(greater(value, low), high); };
+struct LineDirection {
+  decltype(to_integer(Float())) row;  // where the table's row for this angle begins
+  Mask flip;                          // ~0 if the table has the opposite direction
+  Float per_length;                   // 1 / length of the normal
+};
 
-  // (1) Partition xy by the masks.
-  const Mask overlap = in.mask & old.mask;
-  const Float only_i = bit_count(in.mask & ~old.mask), only_a = bit_count(old.mask & ~in.mask);
+// The row is that of table_angle(), with an approximation of the arc tangent that is wrong by at most 0.04 rows:
+// atan(t) = t (pi / 4 + 0.273 (1 - t)) for 0 <= t <= 1.
+template <class Float, class Mask>
+LineDirection<Float, Mask> line_direction(Float a, Float b) {
+  using Int = decltype(to_integer(Float()));
+  const Float zero(0.0f), one(1.0f), right_angle(kTableAngles / 4);
+  const auto is_below = b < zero, is_level = b == zero, is_left = a < zero;
+  const auto flipped = is_below | (is_level & is_left);
+  const Float size_a = magnitude(a), size_b = magnitude(b);
+  const Float longer = greater(greater(size_a, size_b), Float(1e-30f)), t = lesser(size_a, size_b) / longer;
+  const Float octant = t * (Float(kTableAngles / 8) + Float(2.781f) * (one - t));
+  const Float acute = select(size_b > size_a, right_angle - octant, octant);
+  const Float angle = select(is_left != flipped, right_angle + right_angle - acute, acute);
+  const Int row = to_integer(lesser(greater(angle, zero), Float(kTableAngles / 2 - 1)));
+  return {row * Int(kTableDistances), select(flipped, Mask(~0u), Mask(0u)), one / (longer * square_root(one + t * t))};
+}
 
-  // (2) Partition the overlap by depth: in front of, behind and within the aggregate's slab, position by position.
-  // Equal depth counts as behind, so that the earlier fragment wins.
-  const Float half_thickness = half * old.thickness;
-  const bool cut_by_range = rules.extents == MergeRules::Extents::range;
-  const auto slab_front = [&](Float base) {
-    const Float front = base - half_thickness;
-    return cut_by_range ? clamp(front, old.z_min, old.z_max) : front;
-  };
-  const auto slab_back = [&](Float base, Float front) {
-    const Float back = base + half_thickness;
-    return cut_by_range ? greater(lesser(back, old.z_max), front) : back;
-  };
-  const bool transition = rules.overlap == MergeRules::Overlap::transition;
-  Mask front_mask(0u), back_mask(0u);
-  Float fuzzy_u = zero, fuzzy_v = zero, apart = zero;
-  for (int s = 0; s < 32; ++s) {
-    const auto k = static_cast<std::size_t>(s);
-    const Float u(static_cast<float>(pattern.x[k]) / kSubpixelUnits - 0.5f);
-    const Float v(static_cast<float>(pattern.y[k]) / kSubpixelUnits - 0.5f);
-    const Float depth = clamp(depth_at(in.plane, u, v), in.z_min, in.z_max);
-    const Float base = depth_at(old.plane, u, v);
-    const Float front = slab_front(base), back = slab_back(base, front);
-    const auto is_front = depth < front, is_back = depth >= back;
-    const Mask here = overlap & Mask(1u << s);
-    front_mask = front_mask | select(is_front, here, Mask(0u));
-    back_mask = back_mask | select(is_back, here, Mask(0u));
-    const auto fuzzy = (here != Mask(0u)) & !(is_front | is_back);
-    fuzzy_u = fuzzy_u + select(fuzzy, u, zero);
-    fuzzy_v = fuzzy_v + select(fuzzy, v, zero);
-    if (transition) {
-      const Float distance = magnitude(depth - clamp(base, old.z_min, old.z_max));
-      apart = apart + select(here != Mask(0u), distance, zero);
-    }
+// The positions where a u + b v + c is 0 or more; (a, b) is the direction.
+template <class Float, class Mask>
+Mask half_plane(const LineDirection<Float, Mask>& direction, Float c, const MaskTable& table) {
+  using Int = decltype(to_integer(Float()));
+  const Float zero(0.0f), one(1.0f);
+  const auto flipped = direction.flip != Mask(0u);
+  const Float distance = select(flipped, zero - c, c) * direction.per_length;
+  const Float scaled = (distance * Float(1.0f / kHalfDiagonal) + one) * Float(kTableDistances / 2);
+  const Int column = to_integer(lesser(greater(scaled, zero), Float(kTableDistances - 1)));
+  const Int reverse = direction.row + Int((kTableAngles / 2 + 1) * kTableDistances - 1) - column;
+  return fetch(table.words(), select(flipped, reverse, direction.row + column));
+}
+
+// The difference of two planes, and how far it may be from its value at the pixel's centre.
+template <class Float>
+struct PlaneDifference {
+  Float z, dzdu, dzdv, reach;
+};
+template <class Float>
+PlaneDifference<Float> plane_difference(const DepthPlane<Float>& of, const DepthPlane<Float>& from) {
+  const Float a = of.dzdu - from.dzdu, b = of.dzdv - from.dzdv;
+  return {of.z - from.z, a, b, Float(0.5f) * (magnitude(a) + magnitude(b))};
+}
+
+// Whether the line where the difference is 0 cuts the pixel, and if not, which side of it the pixel is on.
+template <class Float>
+auto cuts_pixel(Float c, Float reach) {
+  const auto from_below = c < reach, from_above = Float(0.0f) - c < reach;
+  return from_below & from_above;
+}
+template <class Float, class Mask>
+Mask side_of_pixel(Float c, Float reach) {
+  return select(c >= reach, Mask(~0u), Mask(0u));
+}
+
+template <class Float, class Mask>
+Float clamped_depth(const AggregateOf<Float, Mask>& surface, Float u, Float v) {
+  return lesser(greater(depth_at(surface.plane, u, v), surface.z_min), surface.z_max);
+}
+
+// `base`: the depth of the slab's plane.
+template <class Float, class Mask>
+SlabEnds<Float> slab_ends(const AggregateOf<Float, Mask>& old, Float base, const MergeRules& rules) {
+  const Float half_thickness = Float(0.5f) * old.thickness;
+  const Float front = base - half_thickness, back = base + half_thickness;
+  if (rules.extents == MergeRules::Extents::slab) return {front, back};
+  const Float limited = lesser(greater(front, old.z_min), old.z_max);
+  return {limited, greater(lesser(back, old.z_max), limited)};
+}
+
+// Whether all of the fragment is in front of the slab, or behind it, by the depth ranges alone.
+template <class Float, class Mask>
+auto is_before(const AggregateOf<Float, Mask>& in, const AggregateOf<Float, Mask>& old) {
+  return in.z_max < old.z_min;
+}
+template <class Float, class Mask>
+auto is_after(const AggregateOf<Float, Mask>& in, const AggregateOf<Float, Mask>& old) {
+  return in.z_min >= old.z_max;
+}
+
+// Partition::lines. The fragment's plane meets the front and the back of the slab in two parallel lines.
+template <class Float, class Mask, class Bool>
+DepthRegions<Mask> regions_by_lines(const AggregateOf<Float, Mask>& in, const AggregateOf<Float, Mask>& old,
+                                    Bool undecided, const MaskTable& table, MergeStepsOf<Mask>& steps) {
+  const PlaneDifference<Float> gap = plane_difference(in.plane, old.plane);
+  const Float half_thickness = Float(0.5f) * old.thickness;
+  const Float to_front = gap.z + half_thickness, to_back = gap.z - half_thickness;
+  const auto cuts_front = undecided & cuts_pixel(to_front, gap.reach);
+  const auto cuts_back = undecided & cuts_pixel(to_back, gap.reach);
+  Mask behind_front = side_of_pixel<Float, Mask>(to_front, gap.reach);
+  Mask behind_back = side_of_pixel<Float, Mask>(to_back, gap.reach);
+  if (any(cuts_front | cuts_back)) {
+    const auto direction = line_direction<Float, Mask>(gap.dzdu, gap.dzdv);
+    if (any(cuts_front)) behind_front = choose(cuts_front, half_plane(direction, to_front, table), behind_front);
+    if (any(cuts_back)) behind_back = choose(cuts_back, half_plane(direction, to_back, table), behind_back);
   }
+  steps.lines = choose(undecided, Mask(1u), Mask(0u));
+  steps.front_line = choose(cuts_front, Mask(1u), Mask(0u));
+  steps.back_line = choose(cuts_back, Mask(1u), Mask(0u));
+  return {~behind_front, behind_back};
+}
+
+// Partition::positions. Position by position, where the masks overlap.
+template <class Float, class Mask>
+DepthRegions<Mask> region_of_position(const AggregateOf<Float, Mask>& in, const AggregateOf<Float, Mask>& old, Float u,
+                                      Float v, Mask here, const MergeRules& rules) {
+  const Float depth = clamped_depth(in, u, v);
+  const SlabEnds<Float> ends = slab_ends(old, depth_at(old.plane, u, v), rules);
+  return {select(depth < ends.front, here, Mask(0u)), select(depth >= ends.back, here, Mask(0u))};
+}
+
+// Where the fragment lies in the slab, from 0 at its front to 1 at its back, at the mean of the positions within it.
+template <class Float, class Mask>
+Float place_in_slab(const AggregateOf<Float, Mask>& in, const AggregateOf<Float, Mask>& old, Float sum_u, Float sum_v,
+                    Float within, const MergeRules& rules) {
+  const Float zero(0.0f), one(1.0f), count = greater(within, one), u = sum_u / count, v = sum_v / count;
+  const SlabEnds<Float> ends = slab_ends(old, depth_at(old.plane, u, v), rules);
+  const Float extent = ends.back - ends.front;
+  const Float place = (clamped_depth(in, u, v) - ends.front) / select(extent > zero, extent, one);
+  return lesser(greater(place, zero), one);
+}
+
+// The fuzziness of slide 12. The slide does not define sadp(A, B). Here it is the mean absolute difference of the two
+// depths over the overlap, divided by the depth range of both together. It is near 0 for neighbours in a mesh, which
+// lie beside each other. The other factor is the part of A's mask that A leaves open, 0 for a closed surface.
+template <class Float, class Mask>
+Float distance_apart(const AggregateOf<Float, Mask>& in, const AggregateOf<Float, Mask>& old, Float u, Float v) {
+  return magnitude(clamped_depth(in, u, v) - clamped_depth(old, u, v));
+}
+template <class Float, class Mask>
+Float fuzziness_of(const AggregateOf<Float, Mask>& in, const AggregateOf<Float, Mask>& old, Float apart, Mask overlap) {
+  const Float zero(0.0f), one(1.0f);
+  const Float span = greater(in.z_max, old.z_max) - lesser(in.z_min, old.z_min);
+  const Float distance = apart / greater(bit_count(overlap), one) / select(span > zero, span, one);
+  return lesser(magnitude(bit_count(old.mask) / Float(32.0f) - old.alpha) * distance, one);
+}
+
+// (3) and (4): what is visible of both if their masks overlap. `fuzzy` is where positions lie within the slab: blended
+// there by `delta`. Each region counts with its number of positions, unless its coverage is an area already.
+template <class Float, class Mask>
+BlendFactors<Float> visible_parts(const FragmentOf<Float, Mask>& fragment, const AggregateOf<Float, Mask>& old,
+                                  Mask front_mask, Mask back_mask, Float within, Float delta, Float fuzziness,
+                                  const MergeRules& rules) {
+  const Float zero(0.0f), one(1.0f), bits(32.0f);
+  const AggregateOf<Float, Mask>& in = fragment.surface;
+  const Float only_i = bit_count(in.mask & ~old.mask), only_a = bit_count(old.mask & ~in.mask);
   const Float in_front = bit_count(front_mask), behind = bit_count(back_mask);
-  const Float within = bit_count(overlap & ~front_mask & ~back_mask);
-
-  // Delta: where the fragment lies in the slab, from 0 at its front to 1 at its back. It is taken at the mean of the
-  // positions within the slab.
-  const Float safe_within = greater(within, one);
-  const Float u = fuzzy_u / safe_within, v = fuzzy_v / safe_within;
-  const Float base = depth_at(old.plane, u, v);
-  const Float front = slab_front(base), back = slab_back(base, front);
-  const Float extent = back - front;
-  const Float depth = clamp(depth_at(in.plane, u, v), in.z_min, in.z_max);
-  const Float delta = clamp((depth - front) / select(extent > zero, extent, one), zero, one);
-
-  // (3) Blending factors per region. Local coverage is alpha divided by the part of the mask that is set.
+  // Local coverage is alpha divided by the part of the mask that is set.
   const Float local_i = in.alpha * bits / greater(bit_count(in.mask), one);
   const Float local_a = old.alpha * bits / greater(bit_count(old.mask), one);
   const bool keep = rules.local == MergeRules::Local::keep;
@@ -80,15 +188,6 @@ AggregateOf<Float, Mask> merge_formula(const FragmentOf<Float, Mask>& fragment, 
     const Float share = count / bits;
     return cover_of(cover_i * share, cover_a * share);
   };
-  // The fuzziness of slide 12. The slide does not define sadp(A, B). Here it is the mean absolute difference of the two
-  // depths over the overlap, divided by the depth range of both together. It is near 0 for neighbours in a mesh, which
-  // lie beside each other. The other factor is the part of A's mask that A leaves open, 0 for a closed surface.
-  Float fuzziness = zero;
-  if (transition) {
-    const Float span = greater(in.z_max, old.z_max) - lesser(in.z_min, old.z_min);
-    const Float distance = apart / greater(bit_count(overlap), one) / select(span > zero, span, one);
-    fuzziness = lesser(magnitude(bit_count(old.mask) / bits - old.alpha) * distance, one);
-  }
   const auto tiny = fragment.tiny != Mask(0u);
   const auto what_is_left = [&](Float cover, Float open) {
     const Float added = lesser(cover, open), independent = cover * open;
@@ -117,63 +216,166 @@ AggregateOf<Float, Mask> merge_formula(const FragmentOf<Float, Mask>& fragment, 
   } else {  // specks are anti-correlated "over the overlapping regions" (section 2.2.1), and this is one of them
     fuzzy = {select(tiny, slab_over.i, slab.i * (one - delta)), select(tiny, slab_over.a, slab.a * delta)};
   }
-
-  // (4) Combine: each region counts with its number of bits, unless its coverage is an area already. Because masks have
-  // errors the sum may exceed 1; then it is scaled down to 1.
   const Float times_over = by_share ? bits : in_front, times_under = by_share ? bits : behind,
               times_fuzzy = by_share ? bits : within;
-  const Float weight_i =
-      (only_i * local_i + times_over * over.i + times_under * under.i + times_fuzzy * fuzzy.i) / bits;
-  const Float weight_a =
-      (only_a * local_a + times_over * over.a + times_under * under.a + times_fuzzy * fuzzy.a) / bits;
-  const Float scale = one / greater(weight_i + weight_a, one);
-  const Float scale_i = weight_i * scale / greater(in.alpha, Float(1e-30f));
-  const Float scale_a = weight_a * scale / greater(old.alpha, Float(1e-30f));
+  return {(only_i * local_i + times_over * over.i + times_under * under.i + times_fuzzy * fuzzy.i) / bits,
+          (only_a * local_a + times_over * over.a + times_under * under.a + times_fuzzy * fuzzy.a) / bits};
+}
 
+// Both together, without the slab's thickness. Because masks have errors, the sum of the areas may exceed 1; then it is
+// scaled down to 1. The plane is the coverage-weighted mean of both.
+template <class Float, class Mask>
+AggregateOf<Float, Mask> joined(const AggregateOf<Float, Mask>& in, const AggregateOf<Float, Mask>& old,
+                                const BlendFactors<Float>& weight, const MergeRules& rules) {
+  const Float one(1.0f);
+  const Float scale = one / greater(weight.i + weight.a, one);
+  const Float scale_i = weight.i * scale / greater(in.alpha, Float(1e-30f));
+  const Float scale_a = weight.a * scale / greater(old.alpha, Float(1e-30f));
   AggregateOf<Float, Mask> merged;
-  merged.alpha = (weight_i + weight_a) * scale;
+  merged.alpha = (weight.i + weight.a) * scale;
   merged.mask = in.mask | old.mask;
   for (int c = 0; c < 3; ++c) merged.color[c] = in.color[c] * scale_i + old.color[c] * scale_a;
-
-  // The new slab: the coverage-weighted mean of both planes, thick enough to reach the fragment at all of its
-  // positions.
   const bool by_area = rules.plane == MergeRules::Plane::area;
-  const Float part_i = by_area ? in.alpha : weight_i, part_a = by_area ? old.alpha : weight_a;
+  const Float part_i = by_area ? in.alpha : weight.i, part_a = by_area ? old.alpha : weight.a;
   const Float share_i = part_i / (part_i + part_a), share_a = one - share_i;
-  const auto first = old.mask == Mask(0u);
-  const auto blend = [&](Float p_i, Float p_a) { return select(first, p_i, p_i * share_i + p_a * share_a); };
-  merged.plane = {blend(in.plane.z, old.plane.z), blend(in.plane.dzdu, old.plane.dzdu),
-                  blend(in.plane.dzdv, old.plane.dzdv)};
-  const bool visible_only = rules.slab == MergeRules::Slab::visible;
-  const bool containing = rules.thickness == MergeRules::Thickness::containing;
-  const Mask reached = visible_only ? in.mask & ~back_mask : in.mask;
-  Float farthest = zero, moved = zero;
-  for (int s = 0; s < 32; ++s) {
-    const auto k = static_cast<std::size_t>(s);
-    const Float at_u(static_cast<float>(pattern.x[k]) / kSubpixelUnits - 0.5f);
-    const Float at_v(static_cast<float>(pattern.y[k]) / kSubpixelUnits - 0.5f);
-    const Float at = clamp(depth_at(in.plane, at_u, at_v), in.z_min, in.z_max);
-    const Float middle = depth_at(merged.plane, at_u, at_v);
-    farthest = select((reached & Mask(1u << s)) != Mask(0u), greater(farthest, magnitude(at - middle)), farthest);
-    if (containing) {
-      const Float shift = magnitude(depth_at(old.plane, at_u, at_v) - middle);
-      moved = select((old.mask & Mask(1u << s)) != Mask(0u), greater(moved, shift), moved);
-    }
-  }
-  const Float kept = containing ? old.thickness + (moved + moved) : old.thickness;
-  merged.thickness = select(first, zero, greater(kept, farthest + farthest));
+  merged.plane = {in.plane.z * share_i + old.plane.z * share_a, in.plane.dzdu * share_i + old.plane.dzdu * share_a,
+                  in.plane.dzdv * share_i + old.plane.dzdv * share_a};
+  merged.thickness = old.thickness;
   merged.z_min = lesser(in.z_min, old.z_min);
   merged.z_max = greater(in.z_max, old.z_max);
-  if (visible_only) {
-    const auto hidden = reached == Mask(0u);
-    const auto unless_hidden = [&](Float now, Float earlier) { return select(hidden, earlier, now); };
-    merged.plane = {unless_hidden(merged.plane.z, old.plane.z), unless_hidden(merged.plane.dzdu, old.plane.dzdu),
-                    unless_hidden(merged.plane.dzdv, old.plane.dzdv)};
-    merged.thickness = unless_hidden(merged.thickness, old.thickness);
-    merged.z_min = unless_hidden(merged.z_min, old.z_min);
-    merged.z_max = unless_hidden(merged.z_max, old.z_max);
-  }
   return merged;
+}
+
+// The larger of `farthest` and the distance of a depth from a plane.
+template <class Float>
+Float farther_from(const DepthPlane<Float>& plane, Float depth, Float u, Float v, Float farthest) {
+  return greater(farthest, magnitude(depth - depth_at(plane, u, v)));
+}
+
+// A slab that is as thick as before, and reaches from its plane as far as the fragment.
+template <class Float>
+Float thick_enough(Float kept, Float farthest) {
+  return greater(kept, farthest + farthest);
+}
+
+// `yes` where the condition holds, else `no`: all of it, or what belongs to the slab.
+template <class Float, class Mask, class Bool>
+AggregateOf<Float, Mask> with_slab_of(Bool condition, const AggregateOf<Float, Mask>& yes,
+                                      AggregateOf<Float, Mask> no) {
+  no.plane = {choose(condition, yes.plane.z, no.plane.z), choose(condition, yes.plane.dzdu, no.plane.dzdu),
+              choose(condition, yes.plane.dzdv, no.plane.dzdv)};
+  no.thickness = choose(condition, yes.thickness, no.thickness);
+  no.z_min = choose(condition, yes.z_min, no.z_min);
+  no.z_max = choose(condition, yes.z_max, no.z_max);
+  return no;
+}
+template <class Float, class Mask, class Bool>
+AggregateOf<Float, Mask> choose_aggregate(Bool condition, const AggregateOf<Float, Mask>& yes,
+                                          const AggregateOf<Float, Mask>& no) {
+  AggregateOf<Float, Mask> chosen = with_slab_of(condition, yes, no);
+  chosen.alpha = choose(condition, yes.alpha, no.alpha);
+  chosen.mask = choose(condition, yes.mask, no.mask);
+  for (int c = 0; c < 3; ++c) chosen.color[c] = choose(condition, yes.color[c], no.color[c]);
+  return chosen;
+}
+
+template <class Float, class Mask>
+AggregateOf<Float, Mask> merge_formula(const FragmentOf<Float, Mask>& fragment, const AggregateOf<Float, Mask>& old,
+                                       const MergePositions& positions, const MergeRules& rules,
+                                       MergeStepsOf<Mask>& steps) {
+  const Float zero(0.0f);
+  const Mask none(0u);
+  const AggregateOf<Float, Mask>& in = fragment.surface;
+  steps = {none, none, none, none, none, none, none, none, none};
+  const auto first = old.mask == none;
+  if (!any(!first)) return in;
+  steps.merged = choose(first, none, Mask(1u));
+  const auto u_at = [&](int s) { return Float(position_u(positions.pattern, static_cast<std::size_t>(s))); };
+  const auto v_at = [&](int s) { return Float(position_v(positions.pattern, static_cast<std::size_t>(s))); };
+
+  // (1) Partition xy by the masks. Surfaces that share no position lie beside each other.
+  const Mask overlap = in.mask & old.mask, empty = overlap & none;  // a mask that counts, unlike a constant
+  const auto meets = overlap != none;
+  BlendFactors<Float> weight{in.alpha, old.alpha};
+  DepthRegions<Mask> regions{empty, empty};
+  if (any(meets)) {
+    // (2) Partition the overlap by depth: in front of, behind and within the aggregate's slab. Equal depth counts as
+    // behind, so that the earlier fragment wins.
+    const bool ranged = rules.extents == MergeRules::Extents::range;
+    const auto before = ranged ? meets & is_before(in, old) : meets & !meets;
+    const auto after = ranged ? meets & is_after(in, old) : meets & !meets;
+    const auto undecided = meets & !(before | after);
+    if (any(undecided)) {
+      if (rules.partition == MergeRules::Partition::lines) {
+        regions = regions_by_lines(in, old, undecided, positions.table, steps);
+      } else {
+        steps.tested = choose(undecided, overlap, none);
+        for (int s = 0; s < 32; ++s) {
+          const auto is_here = undecided & has_bit(overlap, s);
+          if (!any(is_here)) continue;
+          const Mask here = choose(is_here, Mask(1u << s), none);
+          const DepthRegions<Mask> at = region_of_position(in, old, u_at(s), v_at(s), here, rules);
+          regions.front = regions.front | at.front;
+          regions.back = regions.back | at.back;
+        }
+      }
+    }
+    regions.front = choose(before, overlap, choose(after, empty, regions.front & overlap));
+    regions.back = choose(after, overlap, choose(before, empty, regions.back & overlap));
+    const Mask fuzzy = overlap & ~regions.front & ~regions.back;
+    const auto is_fuzzy = fuzzy != none;
+    const Float within = bit_count(fuzzy);
+    const Float nothing = select(is_fuzzy, zero, within);
+    Float delta = nothing, fuzziness = nothing;
+    steps.overlap = overlap;
+    steps.fuzzy = fuzzy;
+    if (any(is_fuzzy)) {
+      Float sum_u = nothing, sum_v = nothing;
+      for (int s = 0; s < 32; ++s) {
+        const auto is_here = has_bit(fuzzy, s);
+        if (!any(is_here)) continue;
+        sum_u = choose(is_here, sum_u + u_at(s), sum_u);
+        sum_v = choose(is_here, sum_v + v_at(s), sum_v);
+      }
+      delta = choose(is_fuzzy, place_in_slab(in, old, sum_u, sum_v, within, rules), nothing);
+    }
+    if (rules.overlap == MergeRules::Overlap::transition) {
+      Float apart = zero;
+      for (int s = 0; s < 32; ++s) {
+        const auto is_here = has_bit(overlap, s);
+        if (any(is_here)) apart = choose(is_here, apart + distance_apart(in, old, u_at(s), v_at(s)), apart);
+      }
+      fuzziness = fuzziness_of(in, old, apart, overlap);
+    }
+    const BlendFactors<Float> blended =
+        visible_parts(fragment, old, regions.front, regions.back, within, delta, fuzziness, rules);
+    weight = {choose(meets, blended.i, weight.i), choose(meets, blended.a, weight.a)};
+  }
+  AggregateOf<Float, Mask> merged = joined(in, old, weight, rules);
+
+  // The new slab is thick enough to reach the fragment at all of its positions.
+  const bool visible_only = rules.slab == MergeRules::Slab::visible;
+  const bool containing = rules.thickness == MergeRules::Thickness::containing;
+  const Mask reached = visible_only ? in.mask & ~regions.back : in.mask;
+  steps.reached = choose(first, none, reached);
+  if (containing) steps.moved = choose(first, none, old.mask);
+  Float farthest = lesser(old.thickness, zero), moved = farthest;  // 0
+  for (int s = 0; s < 32; ++s) {
+    const auto is_reached = has_bit(steps.reached, s);
+    if (any(is_reached)) {
+      const Float depth = clamped_depth(in, u_at(s), v_at(s));
+      farthest = choose(is_reached, farther_from(merged.plane, depth, u_at(s), v_at(s), farthest), farthest);
+    }
+    if (!containing) continue;
+    const auto was_there = has_bit(steps.moved, s);
+    if (any(was_there)) {
+      const Float depth = depth_at(old.plane, u_at(s), v_at(s));
+      moved = choose(was_there, farther_from(merged.plane, depth, u_at(s), v_at(s), moved), moved);
+    }
+  }
+  merged.thickness = thick_enough(containing ? old.thickness + (moved + moved) : old.thickness, farthest);
+  if (visible_only) merged = with_slab_of(reached == none, old, merged);
+  return choose_aggregate(first, in, merged);
 }
 
 // Plain OVER of what is there on top of a fragment that lies behind it: alpha and colour alone, without masks.

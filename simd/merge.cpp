@@ -17,14 +17,16 @@ namespace HWY_NAMESPACE {
 //
 #include "simd/merge-inl.h"
 
-void merge_kernel(const MergeFragment* fragments, std::size_t count, const SamplePattern& pattern,
-                  const MergeRules& rules, Aggregate* aggregates) {
+void merge_kernel(const MergeFragment* fragments, std::size_t count, const MergePositions& positions,
+                  const MergeRules& rules, Aggregate* aggregates, MergeSteps* steps) {
   const std::size_t lanes = hn::Lanes(FloatTag());
   for (std::size_t first = 0; first < count; first += lanes) {
     const std::size_t n = HWY_MIN(lanes, count - first);
     const auto in = load_rows<FragmentOf<Floats, Words>>(fragments + first, n);
     const auto old = load_rows<AggregateOf<Floats, Words>>(aggregates + first, n);
-    store_rows(merge_formula(in, old, pattern, rules), n, aggregates + first);
+    MergeStepsOf<Words> done;
+    store_rows(merge_formula(in, old, positions, rules, done), n, aggregates + first);
+    store_rows(done, n, steps + first);
   }
 }
 
@@ -35,9 +37,9 @@ HWY_AFTER_NAMESPACE();
 #if HWY_ONCE
 namespace beampipe {
 HWY_EXPORT(merge_kernel);
-void merge(const MergeFragment* fragments, std::size_t count, const SamplePattern& pattern, const MergeRules& rules,
-           Aggregate* aggregates) {
-  HWY_DYNAMIC_DISPATCH(merge_kernel)(fragments, count, pattern, rules, aggregates);
+void merge(const MergeFragment* fragments, std::size_t count, const MergePositions& positions, const MergeRules& rules,
+           Aggregate* aggregates, MergeSteps* steps) {
+  HWY_DYNAMIC_DISPATCH(merge_kernel)(fragments, count, positions, rules, aggregates, steps);
 }
 }  // namespace beampipe
 #endif

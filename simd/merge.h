@@ -5,7 +5,9 @@
 #include <cstdint>
 
 #include "simd/depth_plane.h"
+#include "simd/mask_table.h"
 #include "simd/merge_rules.h"
+#include "simd/plane_order.h"
 #include "simd/sample_pattern.h"
 #include "simd/scalar.h"
 
@@ -34,14 +36,42 @@ struct FragmentOf {
 };
 using MergeFragment = FragmentOf<float, std::uint32_t>;
 
-// aggregates[i] = fragments[i] merged into aggregates[i]. Mask bit s belongs to position s of the pattern, which
-// has 32. Lanes are across pixels. The same bits as the formula on float, on every target.
-void merge(const MergeFragment* fragments, std::size_t count, const SamplePattern& pattern, const MergeRules& rules,
-           Aggregate* aggregates);
+// Where the bits of a mask lie in a pixel. The pattern has 32 positions.
+struct MergePositions {
+  SamplePattern pattern;
+  MaskTable table;
+
+  explicit MergePositions(const SamplePattern& of) : pattern(of), table(of) {}
+};
+
+// Which parts of a merge had work. Masks have a bit for each position that was looked at; the others are 0 or 1.
+template <class Mask>
+struct MergeStepsOf {
+  Mask merged;                 // the pixel was not empty
+  Mask overlap;                // mask: of both
+  Mask lines;                  // planes were compared (Partition::lines) ...
+  Mask front_line, back_line;  // ... and these lines cut the pixel
+  Mask tested;                 // mask: depths were compared there (Partition::positions)
+  Mask fuzzy;                  // mask: within the slab
+  Mask reached;                // mask: where the slab's thickness was measured ...
+  Mask moved;                  // ... and, mask, how far its plane moved (Thickness::containing)
+};
+using MergeSteps = MergeStepsOf<std::uint32_t>;
+
+// aggregates[i] = fragments[i] merged into aggregates[i], and steps[i] is how. Lanes are across pixels. The same bits
+// as the formula on float, on every target.
+void merge(const MergeFragment* fragments, std::size_t count, const MergePositions& positions, const MergeRules& rules,
+           Aggregate* aggregates, MergeSteps* steps);
 
 namespace scalar {
 #include "simd/merge-inl.h"
 }
 using namespace scalar;
+
+inline Aggregate merge_formula(const MergeFragment& fragment, const Aggregate& old, const MergePositions& positions,
+                               const MergeRules& rules) {
+  MergeSteps steps;
+  return merge_formula(fragment, old, positions, rules, steps);
+}
 
 }  // namespace beampipe

@@ -59,6 +59,12 @@ struct MergeRules {
     containing,  // and twice the distance that the plane moved: "bounds containing all merged primitives", figure 2
   } thickness = Thickness::larger;
 
+  // How to find the positions that lie in front of the slab and behind it.
+  enum class Partition {
+    lines,      // by the lines in which the planes meet, with the table of masks: figure 4
+    positions,  // exactly, position by position
+  } partition = Partition::lines;
+
   bool operator==(const MergeRules&) const = default;
 };
 

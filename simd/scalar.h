@@ -1,7 +1,8 @@
 // The functions that formulas use besides operators, for float and double. Formulas are templates: the same text is
 // compiled for float, for counting numbers (stages/cost/counting.h) and for vectors (simd/lanes-inl.h), each of which
-// has these functions too. A formula has no branch that depends on data: it selects, as a vector must, so that it
-// always costs the same number of operations.
+// has these functions too. A formula selects by data, as a vector must, so that it always costs the same number of
+// operations. Only a formula with early-outs branches: any() asks whether any lane has work, and choose() is what a
+// branch does, free of charge.
 //
 // Formulas stand in files simd/*-inl.h without include guards. A header includes them once in namespace `scalar`; a
 // kernel includes them again in the namespace of each instruction set, because a compiler generates a function for the
@@ -35,5 +36,14 @@ inline double to_double(std::int64_t x) { return static_cast<double>(x); }
 inline float converted(float x) { return x; }  // to another format of a surface; a counting number counts it
 inline std::uint32_t fetch(const std::uint32_t* table, std::int32_t index) { return table[index]; }
 inline float bit_count(std::uint32_t mask) { return static_cast<float>(std::popcount(mask)); }
+
+inline bool any(bool condition) { return condition; }
+inline bool has_bit(std::uint32_t mask, int bit) {
+  return (mask >> bit & 1u) != 0;
+}  // for a loop over the bits of a mask
+template <class Value>
+Value choose(bool condition, const Value& yes, const Value& no) {
+  return condition ? yes : no;
+}
 
 }  // namespace beampipe

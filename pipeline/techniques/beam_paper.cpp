@@ -75,12 +75,11 @@ RecordBytes record_bytes(const PaperOptions& options) {
   return {paper_aggregate_bytes(options.storage), paper_aggregate_bytes(options.storage)};
 }
 
-BeamFragmentOptions fragment_options(const PaperOptions& options, const SamplePattern& pattern,
-                                     const MaskTable& table) {
+BeamFragmentOptions fragment_options(const PaperOptions& options, const MergePositions& positions) {
   BeamFragmentOptions made;
   made.mask = options.mask;
-  if (options.mask != MaskSource::none) made.positions = {pattern};
-  made.table = &table;
+  if (options.mask != MaskSource::none) made.positions = {positions.pattern};
+  made.table = &positions.table;
   made.fragment_bytes = record_bytes(options).fragment;
   made.tiny_positions = options.tiny_positions;
   return made;
@@ -100,17 +99,17 @@ std::vector<bool> full_pixels(const std::vector<PixelColor>& aggregates) {
   return full;
 }
 
-std::vector<PixelColor> compose_lists(const PaperOptions& options, PaperStorage storage, const SamplePattern& pattern,
-                                      const std::vector<Fragment>& fragments, const ABuffer& lists,
-                                      StageCounters& counters) {
+std::vector<PixelColor> compose_lists(const PaperOptions& options, PaperStorage storage,
+                                      const MergePositions& positions, const std::vector<Fragment>& fragments,
+                                      const ABuffer& lists, StageCounters& counters) {
   return pixel_colors(options.rules == Rules::paper
-                          ? compose(fragments, lists, pattern, options.merge, storage, counters)
+                          ? compose(fragments, lists, positions, options.merge, storage, counters)
                           : compose_over(fragments, lists, counters));
 }
 
 // Composition is linear in colour. Set one fragment's channel to 1 and all others to 0: the composed channel is that
 // fragment's weight. RGB gives three weights per run. Weights are those of unpacked aggregates.
-void add_weights(const PaperOptions& options, const SamplePattern& pattern, std::vector<Fragment> fragments,
+void add_weights(const PaperOptions& options, const MergePositions& positions, std::vector<Fragment> fragments,
                  const ABuffer& lists, BinWeights& weights) {
   StageCounters unused;
   const std::size_t pixels = lists.first.size() - 1;
@@ -125,7 +124,7 @@ void add_weights(const PaperOptions& options, const SamplePattern& pattern, std:
       }
     }
     const std::vector<PixelColor> composed =
-        compose_lists(options, PaperStorage::float32, pattern, fragments, lists, unused);
+        compose_lists(options, PaperStorage::float32, positions, fragments, lists, unused);
     for (std::size_t pixel = 0; pixel < pixels; ++pixel) {
       for (std::uint32_t k = first; k < std::min(first + 3, lists.record_count(pixel)); ++k) {
         const Fragment& fragment = fragments[lists.records[lists.first[pixel] + k]];
@@ -138,10 +137,9 @@ void add_weights(const PaperOptions& options, const SamplePattern& pattern, std:
 
 FrameResult render_sorted(const Trace& trace, const Frame& frame, const PaperOptions& beam, const RunOptions& run) {
   const FrameContext context(trace, frame, run, {.takes_positions = true});
-  const SamplePattern pattern = hammersley_pattern();
-  const MaskTable table(pattern);
+  const MergePositions positions(hammersley_pattern());
   const RecordBytes bytes = record_bytes(beam);
-  const BeamFragmentOptions options = fragment_options(beam, pattern, table);
+  const BeamFragmentOptions options = fragment_options(beam, positions);
   const BinPlan plan{.stages = {"conservative_raster", "beam_fragment", "shade", "a_buffer", "compose", "resolve"},
                      .framebuffer = paper_framebuffer(beam),
                      .pair_bytes = kPairWorkingBytes + kSortBytes};
@@ -158,13 +156,13 @@ FrameResult render_sorted(const Trace& trace, const Frame& frame, const PaperOpt
     shade(fragments);
     const ABuffer& lists = a_buffer(sort_records(fragments, beam.sort));
     const std::vector<PixelColor> aggregates =
-        compose_lists(beam, beam.storage, pattern, fragments, lists, composition.timed());
+        compose_lists(beam, beam.storage, positions, fragments, lists, composition.timed());
     const std::vector<float>& merges = bin.pixel_counter("merges") = record_counts(lists);
     a_buffer.charge_memory(merges, composition);
     charge_aggregates(bin, plan.framebuffer.surfaces, pixels_with(merges), full_pixels(aggregates));
     count_specks(fragments, bin.pixel_counter("tiny_triangles"));
     bin.finish(resolve(aggregates, bin.background(), bytes.aggregate, bin.stage("resolve").timed()));
-    if (weights) add_weights(beam, pattern, fragments, lists, weights);
+    if (weights) add_weights(beam, positions, fragments, lists, weights);
     weights.finish();
   });
 }
@@ -172,9 +170,8 @@ FrameResult render_sorted(const Trace& trace, const Frame& frame, const PaperOpt
 // Without an A-buffer.
 FrameResult render_layers(const Trace& trace, const Frame& frame, const PaperOptions& beam, const RunOptions& run) {
   const FrameContext context(trace, frame, run, {.takes_positions = true});
-  const SamplePattern pattern = hammersley_pattern();
-  const MaskTable table(pattern);
-  const BeamFragmentOptions options = fragment_options(beam, pattern, table);
+  const MergePositions positions(hammersley_pattern());
+  const BeamFragmentOptions options = fragment_options(beam, positions);
   const bool sorts = beam.order == PaperOrder::near_first;
   BinPlan plan{.stages = {"conservative_raster", "beam_fragment", "shade", "compose", "resolve"},
                .framebuffer = paper_framebuffer(beam),
@@ -187,7 +184,7 @@ FrameResult render_layers(const Trace& trace, const Frame& frame, const PaperOpt
                                   kQueueItems);
     BeamFragmentUnit make_fragments(bin, options);
     ShadeUnit shade(bin);
-    ComposeLayersUnit compose(bin, pattern, beam.merge, static_cast<std::size_t>(beam.layers), beam.storage,
+    ComposeLayersUnit compose(bin, positions, beam.merge, static_cast<std::size_t>(beam.layers), beam.storage,
                               plan.framebuffer.surfaces);
     std::vector<float>& counts = bin.pixel_counter("fragments");
 
@@ -202,8 +199,11 @@ FrameResult render_layers(const Trace& trace, const Frame& frame, const PaperOpt
 }
 
 FrameResult render_paper(const Trace& trace, const Frame& frame, const PaperOptions& beam, const RunOptions& run) {
-  return beam.order == PaperOrder::sorted ? render_sorted(trace, frame, beam, run)
-                                          : render_layers(trace, frame, beam, run);
+  PaperOptions options = beam;
+  // Exact masks are compared exactly.
+  if (beam.mask == MaskSource::exact) options.merge.partition = MergeRules::Partition::positions;
+  return beam.order == PaperOrder::sorted ? render_sorted(trace, frame, options, run)
+                                          : render_layers(trace, frame, options, run);
 }
 
 Technique make_paper(const PaperOptions& options) {

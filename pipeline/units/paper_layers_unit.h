@@ -11,25 +11,25 @@ namespace beampipe {
 
 class ComposeLayersUnit {
  public:
-  // `surfaces`: of the aggregates. The pattern must outlive the unit.
-  ComposeLayersUnit(Bin& bin, const SamplePattern& pattern, const MergeRules& rules, std::size_t layers,
+  // `surfaces`: of the aggregates. The positions must outlive the unit.
+  ComposeLayersUnit(Bin& bin, const MergePositions& positions, const MergeRules& rules, std::size_t layers,
                     PaperStorage storage, const std::vector<Surface>& surfaces)
       : bin_(bin),
         stage_(bin.stage("compose")),
-        pattern_(pattern),
+        positions_(positions),
         rules_(rules),
         merges_(bin.pixel_counter("merges")),
         layers_(bin.tile.pixels(), layers, storage),
         store_(bin, surfaces) {}
 
   void operator()(const std::vector<Fragment>& fragments) {
-    layers_.add(fragments, pattern_, rules_, stage_.timed(), merges_);
+    layers_.add(fragments, positions_, rules_, stage_.timed(), merges_);
     store_.merge(fragments);
   }
 
   std::vector<glm::vec4> resolve_layers() {
     store_.finish();
-    const std::vector<PixelColor> colors = pixel_colors(layers_.finish(pattern_, rules_, stage_.timed()));
+    const std::vector<PixelColor> colors = pixel_colors(layers_.finish(positions_, rules_, stage_.timed()));
     return resolve(colors, bin_.background(), static_cast<std::uint32_t>(layers_.bytes_per_pixel()),
                    bin_.stage("resolve").timed());
   }
@@ -37,7 +37,7 @@ class ComposeLayersUnit {
  private:
   Bin& bin_;
   BinStage stage_;
-  const SamplePattern& pattern_;
+  const MergePositions& positions_;
   MergeRules rules_;
   std::vector<float>& merges_;
   AggregateLayers layers_;

@@ -148,6 +148,11 @@ void charge(const BeamFragmentWork& work, const BeamFragmentOptions& options, St
   if (options.mask == MaskSource::exact) counters.ops += of_exact_edges * work.triangles;
   counters.ops += nearest_position_cost() * (work.given * options.positions.size() * kMaxMaskSamples);
   counters.ops += {.mul_add = work.specks, .add = work.speck_comparisons, .bit = work.given};
+  std::uint64_t positions = 0;
+  if (options.mask == MaskSource::table) positions = kMaxMaskSamples;
+  if (options.mask == MaskSource::exact) positions = options.positions.size() * kMaxMaskSamples;
+  if (options.mask == MaskSource::grid) positions = static_cast<std::uint64_t>(options.grid->count());
+  counters.position_tests += 3 * positions * work.computed;
   const std::uint32_t pair_bytes = options.clipped_depth ? kPairBytes : kPairWithDepthBytes;
   counters.bytes_read += work.pairs * (pair_bytes + sizeof(SetupTriangle));
   counters.bytes_written += work.fragments * options.fragment_bytes;

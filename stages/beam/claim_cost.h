@@ -83,6 +83,7 @@ void charge(const ClaimWork<OwnerPixel<Words, Layers>::kSettled + 1>& work, Stag
   counters.bytes_read += work.fragments * (streaming_fragment_bytes(Words) + sizeof(Pixel));
   counters.bytes_read += work.planes_made * sizeof(ScreenDepth);
   counters.bytes_written += work.claims * sizeof(Pixel);
+  counters.position_tests += kPositions * (work.planes_compared + work.nearest_found);
   counters.lanes_used += work.claims;
   counters.lanes_issued += work.fragments;
 }

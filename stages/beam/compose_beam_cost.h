@@ -149,6 +149,7 @@ void charge(const ComposeWork& work, StageCounters& counters) {
   counters.bytes_read += work.fragments * conserving_fragment_bytes(32 * Words);
   counters.bytes_read += work.windows * sizeof(StoredAggregate<Words, Channel>);
   counters.bytes_written += work.windows * sizeof(StoredAggregate<Words, Channel>);
+  counters.position_tests += work.depth_tests;
   counters.lanes_used += work.depth_tests;
   counters.lanes_issued += work.fragments * 32 * Words;
 }

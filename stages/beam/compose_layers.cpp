@@ -11,10 +11,12 @@ namespace {
 bool is_empty(const Aggregate& aggregate) { return aggregate.mask == 0; }
 
 // Merges what lies farther away into what is nearer.
-Aggregate merged(const Aggregate& nearer, const MergeFragment& farther, const SamplePattern& pattern,
-                 const MergeRules& rules) {
+Aggregate merged(const Aggregate& nearer, const MergeFragment& farther, const MergePositions& positions,
+                 const MergeRules& rules, MergeWork& work) {
   Aggregate result = nearer;
-  merge(&farther, 1, pattern, rules, &result);
+  MergeSteps steps;
+  merge(&farther, 1, positions, rules, &result, &steps);
+  work.add(steps);
   result.thickness = std::max(result.thickness, farther.surface.thickness);  // a fragment has none, an aggregate may
   return result;
 }
@@ -36,8 +38,8 @@ Aggregate AggregateLayers::stored(const Aggregate& aggregate) const {
   return aggregate;
 }
 
-void AggregateLayers::add(const std::vector<Fragment>& fragments, const SamplePattern& pattern, const MergeRules& rules,
-                          StageCounters& counters, std::vector<float>& merges) {
+void AggregateLayers::add(const std::vector<Fragment>& fragments, const MergePositions& positions,
+                          const MergeRules& rules, StageCounters& counters, std::vector<float>& merges) {
   LayersWork work;
   std::vector<MergeFragment> all(layers_ + 1);  // of one pixel, near to far
   for (const Fragment& fragment : fragments) {
@@ -45,9 +47,8 @@ void AggregateLayers::add(const std::vector<Fragment>& fragments, const SamplePa
     const MergeFragment incoming = merge_fragment(fragment);
     ++work.fragments;
     if (layers_ == 1) {
-      ++work.merges;
       merges[fragment.pixel] += !is_empty(layers[0]);
-      layers[0] = stored(merged(layers[0], incoming, pattern, rules));
+      layers[0] = stored(merged(layers[0], incoming, positions, rules, work.merging));
       continue;
     }
     std::size_t count = 0, place = 0;
@@ -65,30 +66,29 @@ void AggregateLayers::add(const std::vector<Fragment>& fragments, const SamplePa
       float least = depth_between(all[0].surface, all[1].surface);
       for (std::size_t k = 1; k + 1 < count; ++k)
         if (const float gap = depth_between(all[k].surface, all[k + 1].surface); gap < least) least = gap, closest = k;
-      all[closest] = {merged(all[closest].surface, all[closest + 1], pattern, rules), 0u};
+      all[closest] = {merged(all[closest].surface, all[closest + 1], positions, rules, work.merging), 0u};
       all.erase(all.begin() + static_cast<std::ptrdiff_t>(closest) + 1);
       all.emplace_back();
       --count;
-      ++work.merges;
       ++merges[fragment.pixel];
     }
     for (std::size_t k = 0; k < count; ++k) layers[k] = stored(all[k].surface);
   }
-  charge(work, layers_, pattern, rules, storage_, counters);
+  charge(work, layers_, rules, storage_, counters);
 }
 
-std::vector<Aggregate> AggregateLayers::finish(const SamplePattern& pattern, const MergeRules& rules,
+std::vector<Aggregate> AggregateLayers::finish(const MergePositions& positions, const MergeRules& rules,
                                                StageCounters& counters) const {
   LayersWork work;
   std::vector<Aggregate> result;
   for (std::size_t first = 0; first < aggregates_.size(); first += layers_) {
     Aggregate pixel = aggregates_[first];
-    for (std::size_t k = 1; k < layers_ && !is_empty(aggregates_[first + k]); ++k, ++work.merges)
-      pixel = merged(pixel, {aggregates_[first + k], 0u}, pattern, rules);
+    for (std::size_t k = 1; k < layers_ && !is_empty(aggregates_[first + k]); ++k)
+      pixel = merged(pixel, {aggregates_[first + k], 0u}, positions, rules, work.merging);
     work.finished += !is_empty(pixel);
     result.push_back(pixel);
   }
-  charge(work, layers_, pattern, rules, storage_, counters);
+  charge(work, layers_, rules, storage_, counters);
   return result;
 }
 

@@ -24,11 +24,12 @@ class AggregateLayers {
 
   // Adds shaded fragments. Counts as items out the fragments. Adds one to merges[pixel] for each two aggregates that
   // become one.
-  void add(const std::vector<Fragment>& fragments, const SamplePattern& pattern, const MergeRules& rules,
+  void add(const std::vector<Fragment>& fragments, const MergePositions& positions, const MergeRules& rules,
            StageCounters& counters, std::vector<float>& merges);
 
   // Merges each pixel's aggregates.
-  std::vector<Aggregate> finish(const SamplePattern& pattern, const MergeRules& rules, StageCounters& counters) const;
+  std::vector<Aggregate> finish(const MergePositions& positions, const MergeRules& rules,
+                                StageCounters& counters) const;
 
   std::size_t bytes_per_pixel() const { return layers_ * paper_aggregate_bytes(storage_); }
 

@@ -1,8 +1,7 @@
 // What compose_layers is charged.
 #pragma once
 
-#include "simd/merge.h"
-#include "stages/beam/paper_fragment.h"
+#include "stages/beam/paper_merges.h"
 #include "stages/cost/counting.h"
 #include "stages/data/paper_aggregate.h"
 
@@ -10,7 +9,8 @@ namespace beampipe {
 
 // How often each operation was done.
 struct LayersWork {
-  std::uint64_t fragments = 0, merges = 0;
+  std::uint64_t fragments = 0;
+  MergeWork merging;
   std::uint64_t finished = 0;  // pixels whose aggregates were read and merged at the end
 };
 
@@ -25,12 +25,13 @@ inline OperationCounts layer_cost() {
   });
 }
 
-inline void charge(const LayersWork& work, std::size_t layers, const SamplePattern& pattern, const MergeRules& rules,
-                   PaperStorage storage, StageCounters& counters) {
+inline void charge(const LayersWork& work, std::size_t layers, const MergeRules& rules, PaperStorage storage,
+                   StageCounters& counters) {
   const std::uint64_t pixel_bytes = layers * paper_aggregate_bytes(storage);
   counters.items_in += work.fragments;
   counters.items_out += work.fragments;
-  counters.ops += merge_cost(pattern, rules, storage) * work.merges;
+  counters.ops += merge_cost(work.merging, rules, storage);
+  counters.position_tests += position_tests(work.merging);
   if (layers > 1) counters.ops += layer_cost() * (layers * work.fragments);
   counters.bytes_read += work.fragments * (paper_aggregate_bytes(storage) + pixel_bytes) + work.finished * pixel_bytes;
   counters.bytes_written += work.fragments * pixel_bytes;

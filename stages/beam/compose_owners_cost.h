@@ -239,6 +239,7 @@ void charge(const OwnersWork& work, StageCounters& counters) {
       work.fragments * (owners_fragment_bytes(Words) + sizeof(float) + sizeof(Pixel)) + work.finished * sizeof(Pixel);
   counters.bytes_read += work.planes * (sizeof(std::uint32_t) + sizeof(ScreenDepth));  // by its number in the list
   counters.bytes_written += (work.claims + work.specks_added) * sizeof(Pixel);
+  counters.position_tests += kPositions * (work.planes_compared + work.farthest_found);
   counters.lanes_used += work.claims;
   counters.lanes_issued += work.fragments;
 }

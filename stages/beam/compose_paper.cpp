@@ -17,7 +17,7 @@ Aggregate stored_over(Aggregate aggregate) {
 
 template <class Stored>
 std::vector<Aggregate> compose_stored(const std::vector<Fragment>& fragments, const ABuffer& buffer,
-                                      const SamplePattern& pattern, const MergeRules& rules) {
+                                      const MergePositions& positions, const MergeRules& rules, MergeWork& work) {
   const std::size_t pixels = buffer.first.size() - 1;
   // Round r merges the r-th fragment of every pixel that has one. These merges are independent, so each runs in a lane.
   // Pixels with the longest lists come first, so the pixels of a round are the first ones.
@@ -28,6 +28,7 @@ std::vector<Aggregate> compose_stored(const std::vector<Fragment>& fragments, co
   std::vector<Stored> stored(pixels, Stored(kEmptyAggregate));
   std::vector<Aggregate> merging(pixels);
   std::vector<MergeFragment> arriving(pixels);
+  std::vector<MergeSteps> steps(pixels);
   std::size_t active = pixels;
   for (std::uint32_t round = 0;; ++round) {
     while (active > 0 && buffer.record_count(order[active - 1]) <= round) --active;
@@ -36,8 +37,8 @@ std::vector<Aggregate> compose_stored(const std::vector<Fragment>& fragments, co
       arriving[i] = merge_fragment(fragments[buffer.records[buffer.first[order[i]] + round]]);
       merging[i] = stored[i];
     }
-    merge(arriving.data(), active, pattern, rules, merging.data());
-    for (std::size_t i = 0; i < active; ++i) stored[i] = Stored(merging[i]);
+    merge(arriving.data(), active, positions, rules, merging.data(), steps.data());
+    for (std::size_t i = 0; i < active; ++i) stored[i] = Stored(merging[i]), work.add(steps[i]);
   }
   std::vector<Aggregate> aggregates(pixels);
   for (std::size_t i = 0; i < pixels; ++i) aggregates[order[i]] = stored[i];
@@ -47,19 +48,25 @@ std::vector<Aggregate> compose_stored(const std::vector<Fragment>& fragments, co
 }  // namespace
 
 std::vector<Aggregate> compose(const std::vector<Fragment>& fragments, const ABuffer& buffer,
-                               const SamplePattern& pattern, const MergeRules& rules, PaperStorage storage,
+                               const MergePositions& positions, const MergeRules& rules, PaperStorage storage,
                                StageCounters& counters) {
+  MergeWork work;
+  const auto composed = [&] {
+    switch (storage) {
+      case PaperStorage::slides:
+        return compose_stored<SlidesAggregate>(fragments, buffer, positions, rules, work);
+      case PaperStorage::text:
+        return compose_stored<TextAggregate>(fragments, buffer, positions, rules, work);
+      case PaperStorage::float32:
+        break;
+    }
+    return compose_stored<Aggregate>(fragments, buffer, positions, rules, work);
+  };
+  std::vector<Aggregate> aggregates = composed();
   const std::uint32_t bytes = paper_aggregate_bytes(storage);
-  charge_merges(buffer, merge_cost(pattern, rules, storage), bytes, bytes, counters);
-  switch (storage) {
-    case PaperStorage::slides:
-      return compose_stored<SlidesAggregate>(fragments, buffer, pattern, rules);
-    case PaperStorage::text:
-      return compose_stored<TextAggregate>(fragments, buffer, pattern, rules);
-    case PaperStorage::float32:
-      break;
-  }
-  return compose_stored<Aggregate>(fragments, buffer, pattern, rules);
+  charge_merges(buffer, merge_cost(work, rules, storage), bytes, bytes, counters);
+  counters.position_tests += position_tests(work);
+  return aggregates;
 }
 
 std::vector<Aggregate> compose_over(const std::vector<Fragment>& fragments, const ABuffer& buffer,
@@ -69,7 +76,7 @@ std::vector<Aggregate> compose_over(const std::vector<Fragment>& fragments, cons
   for (std::size_t pixel = 0; pixel < pixels; ++pixel)
     for (std::uint32_t i = buffer.first[pixel]; i < buffer.first[pixel + 1]; ++i)
       aggregates[pixel] = stored_over(over_formula(merge_fragment(fragments[buffer.records[i]]), aggregates[pixel]));
-  charge_merges(buffer, over_cost(), kOverFragmentBytes, kOverBytes, counters);
+  charge_merges(buffer, over_cost() * buffer.records.size(), kOverFragmentBytes, kOverBytes, counters);
   return aggregates;
 }
 

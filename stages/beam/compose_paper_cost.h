@@ -1,9 +1,9 @@
 // What compose and compose_over are charged.
 #pragma once
 
-#include "simd/merge.h"
 #include "stages/beam/compose_paper.h"
 #include "stages/beam/paper_fragment.h"
+#include "stages/beam/paper_merges.h"
 #include "stages/cost/counting.h"
 
 namespace beampipe {
@@ -16,13 +16,13 @@ inline OperationCounts over_cost() {
   });
 }
 
-// `cost`: of one merge.
+// `cost`: of all merges.
 inline void charge_merges(const ABuffer& buffer, const OperationCounts& cost, std::uint32_t fragment_bytes,
                           std::uint32_t aggregate_bytes, StageCounters& counters) {
   const std::uint64_t merges = buffer.records.size(), pixels = buffer.first.size() - 1;
   counters.items_in += merges;
   counters.items_out += pixels;
-  counters.ops += cost * merges;
+  counters.ops += cost;
   counters.bytes_read += merges * fragment_bytes;
   counters.bytes_written += pixels * aggregate_bytes;
   counters.lanes_used += merges;

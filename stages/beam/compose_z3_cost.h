@@ -69,6 +69,7 @@ void charge(const Z3Work& work, LayerMerge merge, StageCounters& counters) {
   counters.ops += nearer_cost() * (32 * Words * work.planes_compared);
   counters.ops += layer_merge_cost(Layers + 1, Words, merge) * work.merges;
   for (std::uint32_t k = 0; k < Layers; ++k) counters.ops += put_cost<kBits>(k + 1) * (Words * work.taken);
+  counters.position_tests += 32 * Words * work.planes_compared;
   counters.bytes_read += work.fragments * (kFragmentBytes + sizeof(Z3Pixel<Words, Layers>));
   counters.bytes_written += work.taken * sizeof(Z3Pixel<Words, Layers>);
   counters.lanes_used += work.taken;

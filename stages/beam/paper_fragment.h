@@ -1,4 +1,4 @@
-// What the compositions by the published rules share: the form of a fragment, and the cost of a merge.
+// What the compositions by the published rules share: the form of a fragment, and numbers for counting.
 #pragma once
 
 #include "simd/merge.h"
@@ -44,15 +44,6 @@ constexpr std::uint64_t packed_numbers(PaperStorage storage) {
       break;
   }
   return 0;
-}
-
-// Per merge, with loading and storing the aggregate.
-inline OperationCounts merge_cost(const SamplePattern& pattern, const MergeRules& rules, PaperStorage storage) {
-  return count_operations([&](OperationCounts& counts) {
-    const auto fragment = counted_fragment(counts);
-    merge_formula(fragment, fragment.surface, pattern, rules);
-    counts.convert += 2 * packed_numbers(storage);
-  });
 }
 
 }  // namespace beampipe

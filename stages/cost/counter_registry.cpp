@@ -56,7 +56,8 @@ const std::vector<StageInfo>& stage_list() {
        " ops.bit ops.fetch "},
       {"reference_raster", "setup triangles", "samples at which a triangle is nearer than all earlier ones",
        "samples that a triangle covers", "samples that a triangle covers",
-       " ops.bit ops.fetch ops.special ops.convert bytes_written sector_bytes l2_bytes dram_bytes hidden_items "
+       " ops.bit ops.fetch ops.special ops.convert ops.wide bytes_written sector_bytes l2_bytes dram_bytes "
+       "hidden_items "
        "hidden_triangles "},
   };
   return stages;
@@ -69,6 +70,8 @@ bool has_counter(const StageInfo& stage, const CounterInfo& counter) {
   if ((name.starts_with("hidden_") || name == "empty_tiles") && !rasterizes) return false;
   const std::string_view of = stage.name;
   if (name.starts_with("texture_") && of != "shade" && of != "alpha_mask" && of != "alpha_test") return false;
+  if (name == "position_tests" && of != "beam_fragment" && of != "compose" && of != "claim") return false;
+  if (name == "ops.wide" && !rasterizes && of != "vertex_setup" && of != "beam_fragment" && of != "shade") return false;
   return std::string(stage.silent).find(" " + name + " ") == std::string::npos;
 }
 

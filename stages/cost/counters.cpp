@@ -37,6 +37,7 @@ constexpr CounterInfo kCounters[] = {
     operation("ops.convert", "convert",
               "conversions between integers and floats, and between float32 and fp16 or normalized formats",
               &Ops::convert),
+    operation("ops.wide", "64-bit", "the operations of all kinds that have integers of 64 bits", &Ops::wide),
     field("bytes_read", "read", "bytes",
           "logical bytes that the stage reads, counted at every read; queues between stages are included",
           &Stage::bytes_read),
@@ -60,6 +61,10 @@ constexpr CounterInfo kCounters[] = {
     field("texture_l2_bytes", "texel L2", "bytes", "the part of l2_bytes that is texels", &Stage::texture_l2_bytes),
     field("texture_dram_bytes", "texel DRAM", "bytes", "the part of dram_bytes that is texels",
           &Stage::texture_dram_bytes),
+    field("position_tests", "position tests", "positions",
+          "positions of masks that are tested against an edge, counted for each edge, or at which depths are "
+          "compared; a look-up in the table of masks counts as 32",
+          &Stage::position_tests),
     field("lanes_used", "lanes used", "lanes", "lanes that have work", &Stage::lanes_used),
     field("lanes_issued", "lanes issued", "lanes", "lanes that run, whether they have work or not",
           &Stage::lanes_issued),

@@ -29,6 +29,7 @@ struct OperationCounts {
   Count fetch = 0;
   Count special = 0;
   Count convert = 0;
+  Count wide = 0;  // the part of the others that has integers of 64 bits; not in the total
 
   Count total() const { return mul_add + add + bit + fetch + special + convert; }
 
@@ -39,6 +40,7 @@ struct OperationCounts {
     fetch += other.fetch;
     special += other.special;
     convert += other.convert;
+    wide += other.wide;
     return *this;
   }
   friend OperationCounts operator*(OperationCounts counts, std::uint64_t times) {
@@ -48,9 +50,14 @@ struct OperationCounts {
     counts.fetch *= times;
     counts.special *= times;
     counts.convert *= times;
+    counts.wide *= times;
     return counts;
   }
-  bool operator==(const OperationCounts&) const = default;
+  // By kind. Twins may use 64 bits for numbers that the stage knows to be small.
+  bool operator==(const OperationCounts& other) const {
+    return mul_add == other.mul_add && add == other.add && bit == other.bit && fetch == other.fetch &&
+           special == other.special && convert == other.convert;
+  }
 };
 
 // The table in counters.cpp says what each counter is.
@@ -61,6 +68,7 @@ struct StageCounters {
   OperationCounts ops{};
   Count bytes_read = 0;
   Count bytes_written = 0;
+  Count position_tests = 0;
   Count lanes_used = 0;
   Count lanes_issued = 0;
   Count sector_bytes = 0;

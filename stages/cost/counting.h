@@ -28,10 +28,17 @@ OperationCounts* tally_of(const Counted<Value>& x, const Counted<Value>& y) {
 }
 
 template <class Value>
+void count(OperationCounts* tally, Count OperationCounts::*kind) {
+  if (!tally) return;
+  tally->*kind += 1;
+  if constexpr (std::is_integral_v<Value> && sizeof(Value) == sizeof(std::uint64_t)) tally->wide += 1;
+}
+
+template <class Value>
 Counted<Value> counted(OperationCounts* tally, Count OperationCounts::*kind, Value value) {
+  count<Value>(tally, kind);
   Counted<Value> result(value);
   result.tally = tally;
-  if (tally) tally->*kind += 1;
   return result;
 }
 
@@ -63,7 +70,7 @@ Counted<Value> operator~(const Counted<Value>& x) {
 #define BEAMPIPE_COUNTED_COMPARISON(op)                                \
   template <class Value>                                               \
   bool operator op(const Counted<Value>& x, const Counted<Value>& y) { \
-    if (OperationCounts* tally = tally_of(x, y)) ++tally->add;         \
+    count<Value>(tally_of(x, y), &OperationCounts::add);               \
     return x.value op y.value;                                         \
   }
 BEAMPIPE_COUNTED_COMPARISON(<)
@@ -117,6 +124,9 @@ inline Counted<float> bit_count(const Counted<std::uint32_t>& mask) {
   if (mask.tally) ++mask.tally->convert;
   return counted(mask.tally, &OperationCounts::bit, static_cast<float>(std::popcount(mask.value)));
 }
+
+// A loop over the bits of a mask, which is control flow.
+inline bool has_bit(const Counted<std::uint32_t>& mask, int bit) { return (mask.value >> bit & 1u) != 0; }
 
 // Calls formula(counts), which runs a scalar formula on numbers that count there, and returns the counts.
 template <class Formula>

@@ -166,6 +166,7 @@ std::string tests_of(const StageInfo& stage, const CounterInfo& counter) {
   const StageTests& tests = tests_of_stages().at(stage.name);
   const std::string name = counter.name;
   if (name.starts_with("ops.")) return tests.ops;
+  if (name == "position_tests") return stage.name == std::string("compose") ? "MergeTwins.Compose" : kMoves;
   if (name.starts_with("lanes_")) return tests.lanes;
   if (name.starts_with("hidden_") || name == "empty_tiles") return "Counters.WhatIsHiddenIsCountedOnce";
   if (name.starts_with("texture_"))

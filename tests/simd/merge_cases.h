@@ -47,7 +47,7 @@ inline MergeFragment random_fragment(Random& random) {
 // The published rules; the rules that differ from them in one value; and the last value of every policy together.
 inline std::vector<MergeRules> every_merge_rule() {
   using R = MergeRules;
-  std::vector<MergeRules> rules(12);
+  std::vector<MergeRules> rules(14);
   rules[1].overlap = R::Overlap::over;
   rules[2].overlap = R::Overlap::add;
   rules[3].overlap = R::Overlap::transition;
@@ -58,6 +58,9 @@ inline std::vector<MergeRules> every_merge_rule() {
   rules[8].plane = R::Plane::visible;
   rules[9].thickness = R::Thickness::containing;
   rules[10].regional = R::Regional::area;
+  rules[12].partition = R::Partition::positions;
+  rules[13] = rules[3];
+  rules[13].partition = R::Partition::positions;
   rules[11] = {R::Overlap::transition, R::Regional::area, R::Local::keep,    R::Fuzzy::mix,
                R::Extents::slab,       R::Slab::visible,  R::Plane::visible, R::Thickness::containing};
   return rules;

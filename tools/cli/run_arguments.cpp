@@ -60,8 +60,7 @@ void add_run_arguments(Command& command, RunArguments& arguments) {
       .between(1, 1000000);
   command.add_flag("--resume", arguments.resume,
                    "continue a stopped run: keep the finished frames that the same command left in the folder");
-  command.add("--hardware", arguments.hardware,
-              "a file that describes the hardware whose times are modelled (default: a GPU of the class of Titan V)");
+  add_hardware_options(command, arguments.hardware);
   command.add(
       "--trace-events", arguments.trace_events,
       "write a timeline of the stages per tile and thread to this file, which must be outside the output folder; "
@@ -91,7 +90,9 @@ RunPlan make_plan(const RunArguments& arguments) {
   plan.techniques = parse_techniques(arguments.specs);
   plan.repeat = arguments.repeat;
   plan.options.threads = arguments.threads > 0 ? arguments.threads : std::max(1u, std::thread::hardware_concurrency());
-  if (!arguments.hardware.empty()) plan.hardware = read_hardware(arguments.hardware);
+  std::vector<Hardware> hardware = read_hardware(arguments.hardware);
+  plan.hardware = hardware.front();
+  plan.more_hardware.assign(hardware.begin() + 1, hardware.end());
   plan.options.memory.modelled = !arguments.no_memory_model;
   plan.options.memory.compression = !arguments.no_compression;
   if (arguments.framebuffer != kByTechnique)

@@ -7,13 +7,15 @@
 #include <vector>
 
 #include "tools/cli/command_line.h"
+#include "tools/cli/hardware_options.h"
 #include "tools/evaluate/run_plan.h"
 
 namespace beampipe {
 
 // The arguments as the user wrote them.
 struct RunArguments {
-  std::string trace, output, frames, hardware, trace_events;
+  std::string trace, output, frames, trace_events;
+  HardwareOptions hardware;
   std::vector<std::string> specs;
   std::string simd;                // empty: the best one that this machine has
   std::uint64_t memory_limit = 0;  // bytes; 0: the default

@@ -79,7 +79,8 @@ Json to_json(const ErrorStats& stats) {
   return {{"rmse", stats.rmse}, {"bias", stats.bias}, {"p99", stats.p99}, {"max", stats.max}};
 }
 
-Json to_json(const FrameReport& frame, const TechniqueReport& result, const Hardware& hardware) {
+Json to_json(const FrameReport& frame, const TechniqueReport& result, const Hardware& hardware,
+             const std::vector<Hardware>& more) {
   Json json = {{"index", frame.index}, {"image", frame.image}, {"picture", frame.picture}};
   if (!frame.counters.empty()) json["counters"] = frame.counters;
   if (frame.error) json["error"] = beampipe::to_json(*frame.error);
@@ -102,13 +103,16 @@ Json to_json(const FrameReport& frame, const TechniqueReport& result, const Hard
   json["stages"] = Json::array();
   for (const StageCounters& stage : frame.stages) json["stages"].push_back(to_json(stage));
   if (all.sector_bytes == 0) return json;  // the reference models no memory, and times without it would mean nothing
-  for (const Implementation& implementation : hardware.implementations) {
-    const ModelledTime time = modelled_time(hardware, implementation, frame.stages);
-    json["modelled_ms"][implementation.name] = {
-        {"overlap", time.overlap_ms}, {"sum", time.sum_ms}, {"busiest", time.busiest}};
-    for (std::size_t i = 0; i < time.stages.size(); ++i)
-      json["stages"][i]["modelled_ms"][implementation.name] = time.stages[i];
-  }
+  const auto add = [&](const Hardware& each, const std::string& prefix) {
+    for (const Implementation& implementation : each.implementations) {
+      const ModelledTime time = modelled_time(each, implementation, frame.stages, frame.bin_bytes());
+      const std::string name = prefix + implementation.name;
+      json["modelled_ms"][name] = {{"overlap", time.overlap_ms}, {"sum", time.sum_ms}, {"busiest", time.busiest}};
+      for (std::size_t i = 0; i < time.stages.size(); ++i) json["stages"][i]["modelled_ms"][name] = time.stages[i];
+    }
+  };
+  add(hardware, "");
+  for (const Hardware& each : more) add(each, each.label + ".");
   return json;
 }
 

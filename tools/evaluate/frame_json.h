@@ -12,7 +12,9 @@ Json to_json(const ErrorStats& stats);
 
 // A frame, as in report.json. The framebuffer of `technique` and times modelled for `hardware` are included; both may
 // be empty.
-Json to_json(const FrameReport& frame, const TechniqueReport& technique, const Hardware& hardware);
+// Times on `more` hardware have its label in their names: "rtx_4090.shaders".
+Json to_json(const FrameReport& frame, const TechniqueReport& technique, const Hardware& hardware,
+             const std::vector<Hardware>& more = {});
 
 // Reads back a frame that was written with an empty framebuffer, except for `pixels`, which is not in the JSON. Throws
 // JsonError if a key is missing or a value has the wrong type.

@@ -1,6 +1,7 @@
 #include "tools/evaluate/hardware.h"
 
 #include <algorithm>
+#include <cmath>
 #include <functional>
 #include <initializer_list>
 #include <limits>
@@ -13,13 +14,37 @@
 namespace beampipe {
 namespace {
 
-// The clocks that a unit needs for the work of a stage.
-using Clocks = std::function<double(const std::map<std::string, double>& rates, const StageCounters& stage)>;
+using Rates = std::map<std::string, double>;
 
-double over(std::uint64_t work, double rate) { return static_cast<double>(work) / rate; }
+// The clocks that a unit needs for the work of a stage.
+using Clocks = std::function<double(const Rates& rates, const StageCounters& stage)>;
+
+constexpr double kProbeBytes = 16;  // a bilinear probe: four texels of 4 bytes
+
+// Not a unit: it marks the stages that work on what a bin has on chip.
+constexpr const char* kOnChip = "on_chip";
+
+double over(double work, double rate) { return work / rate; }
+
+// Operations on 64-bit integers are in the integer lanes, and issued twice.
+double shader_clocks(const Rates& rates, const StageCounters& s) {
+  const auto& ops = s.ops;
+  const double wide = static_cast<double>(ops.wide), total = static_cast<double>(ops.total());
+  const double mul_add = static_cast<double>(ops.mul_add), add = static_cast<double>(ops.add);
+  const double narrow = mul_add + add > 0 ? std::max(1 - wide / (mul_add + add), 0.0) : 0;
+  return std::max({over(total + wide, rates.at("issue_per_clk")),
+                   narrow * (over(mul_add, rates.at("mul_add_per_clk")) + over(add, rates.at("add_per_clk"))),
+                   over(ops.bit, rates.at("bit_per_clk")) + over(wide, rates.at("wide_per_clk")),
+                   over(ops.fetch, rates.at("fetch_per_clk")), over(ops.special, rates.at("special_per_clk")),
+                   over(ops.convert, rates.at("convert_per_clk"))});
+}
+
+// What is read and written where pixels are: in the tile's memory or behind the ROP's caches, by bytes of the formats.
+double pixel_clocks(const Rates& rates, const StageCounters& s) {
+  return over(s.logical_bytes(), rates.at("rop_bytes_per_clk"));
+}
 
 const std::map<std::string, Clocks>& units() {
-  using Rates = std::map<std::string, double>;
   static const std::map<std::string, Clocks> all = {
       {"triangles",
        [](const Rates& rates, const StageCounters& s) { return over(s.items_in, rates.at("triangles_per_clk")); }},
@@ -31,18 +56,33 @@ const std::map<std::string, Clocks>& units() {
        }},
       {"quads",
        [](const Rates& rates, const StageCounters& s) { return over(s.lanes_issued, 4 * rates.at("quads_per_clk")); }},
-      {"shader",
+      {"shader", shader_clocks},
+      {"shading", shader_clocks},
+      {"texture", [](const Rates& rates,
+                     const StageCounters& s) { return over(s.texture_bytes, rates.at("texture_bytes_per_clk")); }},
+      {"mask_generator",
        [](const Rates& rates, const StageCounters& s) {
-         return std::max({over(s.ops.total(), rates.at("issue_per_clk")),
-                          over(s.ops.mul_add, rates.at("mul_add_per_clk")) + over(s.ops.add, rates.at("add_per_clk")),
-                          over(s.ops.bit, rates.at("bit_per_clk")), over(s.ops.fetch, rates.at("fetch_per_clk")),
-                          over(s.ops.special, rates.at("special_per_clk")),
-                          over(s.ops.convert, rates.at("convert_per_clk"))});
+         return std::max(over(s.items_in, rates.at("conservative_pixels_per_clk")),
+                         over(s.position_tests, rates.at("mask_positions_per_clk")));
+       }},
+      {"sorter",
+       [](const Rates& rates, const StageCounters& s) {
+         return std::max(over(s.items_in, rates.at("rop_fragments_per_clk")),
+                         over(s.ops.total(), rates.at("sort_operations_per_clk")));
+       }},
+      {"composer",
+       [](const Rates& rates, const StageCounters& s) {
+         return std::max({over(s.items_in, rates.at("rop_fragments_per_clk")),
+                          over(s.position_tests, rates.at("compose_positions_per_clk")), pixel_clocks(rates, s)});
        }},
       {"rop_samples",
-       [](const Rates& rates, const StageCounters& s) { return over(s.items_in, rates.at("rop_samples_per_clk")); }},
+       [](const Rates& rates, const StageCounters& s) {
+         return std::max(over(s.items_in, rates.at("rop_samples_per_clk")), pixel_clocks(rates, s));
+       }},
       {"rop_fragments",
-       [](const Rates& rates, const StageCounters& s) { return over(s.items_in, rates.at("rop_fragments_per_clk")); }},
+       [](const Rates& rates, const StageCounters& s) {
+         return std::max(over(s.items_in, rates.at("rop_fragments_per_clk")), pixel_clocks(rates, s));
+       }},
       {"l2", [](const Rates& rates, const StageCounters& s) { return over(s.l2_bytes, rates.at("l2_bytes_per_clk")); }},
       {"dram",
        [](const Rates& rates, const StageCounters& s) { return over(s.dram_bytes, rates.at("dram_bytes_per_clk")); }},
@@ -50,12 +90,31 @@ const std::map<std::string, Clocks>& units() {
   return all;
 }
 
-const std::initializer_list<std::string_view> kRates = {
-    "triangles_per_clk",     "raster_pixels_per_clk", "conservative_pixels_per_clk",
-    "quads_per_clk",         "issue_per_clk",         "mul_add_per_clk",
-    "add_per_clk",           "bit_per_clk",           "fetch_per_clk",
-    "special_per_clk",       "convert_per_clk",       "rop_samples_per_clk",
-    "rop_fragments_per_clk", "l2_bytes_per_clk",      "dram_bytes_per_clk"};
+const std::initializer_list<std::string_view> kRates = {"triangles_per_clk",
+                                                        "raster_pixels_per_clk",
+                                                        "conservative_pixels_per_clk",
+                                                        "quads_per_clk",
+                                                        "issue_per_clk",
+                                                        "mul_add_per_clk",
+                                                        "add_per_clk",
+                                                        "bit_per_clk",
+                                                        "wide_per_clk",
+                                                        "fetch_per_clk",
+                                                        "special_per_clk",
+                                                        "convert_per_clk",
+                                                        "texture_bytes_per_clk",
+                                                        "registers_at_full_rate",
+                                                        "mask_positions_per_clk",
+                                                        "sort_operations_per_clk",
+                                                        "compose_positions_per_clk",
+                                                        "rop_samples_per_clk",
+                                                        "rop_fragments_per_clk",
+                                                        "rop_bytes_per_clk",
+                                                        "l2_bytes_per_clk",
+                                                        "dram_bytes_per_clk",
+                                                        "cores",
+                                                        "on_chip_bytes_per_core",
+                                                        "bins_per_core"};
 
 double positive_number(const JsonCursor& at) { return at.number_between(0, std::numeric_limits<double>::infinity()); }
 
@@ -63,66 +122,162 @@ std::vector<std::string> read_units(const JsonCursor& stage) {
   std::vector<std::string> names;
   for (const JsonCursor& unit : stage.elements()) {
     names.push_back(unit.string());
-    if (units().contains(names.back())) continue;
-    std::string known;
-    for (const auto& [name, clocks] : units()) known += (known.empty() ? "" : ", ") + name;
+    if (names.back() == kOnChip || units().contains(names.back())) continue;
+    std::string known = kOnChip;
+    for (const auto& [name, clocks] : units()) known += ", " + name;
     unit.fail("one of the units " + known);
   }
   return names;
 }
 
-}  // namespace
-
-Hardware titan_v() {
-  const std::string file = "the built-in description";
-  return parse_hardware(parse_json_text(kTitanVText, file), file);
+// Every number has a source, or says that it is a choice.
+void expect_source(const JsonCursor& sources, std::string_view number) {
+  const JsonCursor source = sources[number];
+  if (source.string().empty()) source.fail("where the number is from, or that it is a choice", "nothing");
 }
 
-Hardware read_hardware(const std::filesystem::path& file) {
-  return parse_hardware(parse_json(file.string()), file.string());
+double cost_number(const JsonCursor& at) {
+  constexpr double kLargest = 1e9;
+  const double value = at.number();
+  if (value < 0 || value > kLargest) at.fail("a number from 0 to 1e9");
+  return value;
+}
+
+ShadingCost read_cost(const JsonCursor& at) {
+  at.expect_keys({"operations", "fetches", "registers"});
+  return {cost_number(at["operations"]), cost_number(at["fetches"]), cost_number(at["registers"])};
+}
+
+Json to_json(const ShadingCost& cost) {
+  return {{"operations", cost.operations}, {"fetches", cost.fetches}, {"registers", cost.registers}};
+}
+
+// The counters of a stage that shades, with the costs that come to its materials' own. Lighting is a stage of its own
+// in some techniques. `registers`: that an invocation takes.
+StageCounters with_costs(const Hardware& hardware, const StageCounters& stage, bool has_light, double& registers) {
+  StageCounters priced = stage;
+  const auto add = [&](const ShadingCost& cost) {
+    const double invocations = static_cast<double>(stage.lanes_issued);
+    priced.ops.mul_add += static_cast<std::uint64_t>(invocations * cost.operations / 2);
+    priced.ops.add += static_cast<std::uint64_t>(invocations * cost.operations / 2);
+    priced.texture_bytes += static_cast<std::uint64_t>(invocations * cost.fetches * kProbeBytes);
+    registers = std::max(registers, cost.registers);
+  };
+  if (stage.stage == "shade") add(hardware.material);
+  if (stage.stage == "light" || (stage.stage == "shade" && !has_light)) add(hardware.light);
+  return priced;
+}
+
+std::map<std::string, double> times_of(const Hardware& hardware, const Implementation& implementation,
+                                       const StageCounters& unpriced, bool has_light, double bin_bytes) {
+  double registers = 0;
+  const StageCounters stage = with_costs(hardware, unpriced, has_light, registers);
+  const Rates& rates = hardware.rates;
+  const double clocks_per_ms = hardware.clock_mhz * 1e3;
+  std::map<std::string, double> times;
+  const auto use = [&](const std::string& unit) { times[unit] = units().at(unit)(rates, stage) / clocks_per_ms; };
+  bool on_chip = false;
+  if (const auto found = implementation.units.find(std::string(without_pass(stage.stage)));
+      found != implementation.units.end())
+    for (const std::string& unit : found->second) unit == kOnChip ? static_cast<void>(on_chip = true) : use(unit);
+  if (const auto shading = times.find("shading"); shading != times.end())
+    shading->second *= std::max(1.0, registers / rates.at("registers_at_full_rate"));
+  const double room = rates.at("on_chip_bytes_per_core"), wanted = rates.at("bins_per_core");
+  if (on_chip && bin_bytes > 0) {
+    const double held = std::clamp(std::floor(room / bin_bytes), 1.0, std::max(wanted, 1.0));
+    for (auto& [unit, ms] : times) ms *= std::max(wanted / held, 1.0);
+  }
+  use("l2");
+  use("dram");
+  if (on_chip && bin_bytes > room)
+    times["l2"] += over(stage.logical_bytes(), rates.at("l2_bytes_per_clk")) * (1 - room / bin_bytes) / clocks_per_ms;
+  return times;
+}
+
+}  // namespace
+
+std::vector<std::string> hardware_names() {
+  std::vector<std::string> names;
+  for (const BuiltInHardware& each : kBuiltInHardware) names.push_back(each.name);
+  return names;
+}
+
+Hardware titan_v() { return read_hardware("titan_v"); }
+
+Hardware read_hardware(const std::string& name_or_file) {
+  for (const BuiltInHardware& each : kBuiltInHardware) {
+    if (name_or_file != each.name) continue;
+    const std::string file = std::string("the built-in description ") + each.name;
+    Hardware hardware = parse_hardware(parse_json_text(each.text, file), file);
+    hardware.label = each.name;
+    return hardware;
+  }
+  Hardware hardware = parse_hardware(parse_json(name_or_file), name_or_file);
+  hardware.label = std::filesystem::path(name_or_file).stem().string();
+  return hardware;
+}
+
+std::vector<Hardware> read_hardware_list(const std::string& list) {
+  std::vector<Hardware> all;
+  for (std::size_t at = 0, comma; at <= list.size(); at = comma + 1) {
+    comma = std::min(list.find(',', at), list.size());
+    Hardware hardware = read_hardware(list.substr(at, comma - at));
+    for (const Hardware& other : all)
+      if (other.label == hardware.label)
+        throw std::runtime_error("--hardware " + list + ": expected different names, found " + other.label + " twice");
+    all.push_back(std::move(hardware));
+  }
+  return all;
 }
 
 Hardware parse_hardware(const Json& json, const std::string& file) {
   const JsonCursor root(json, file);
-  root.expect_keys({"beampipe_hardware", "name", "clock_mhz", "rates", "sources", "implementations"});
-  root["beampipe_hardware"].integer(1, 1);
+  root.expect_keys({"beampipe_hardware", "name", "clock_mhz", "rates", "sources", "implementations", "shading"});
+  root["beampipe_hardware"].integer(2, 2);
   Hardware hardware;
   hardware.name = root["name"].string();
   hardware.clock_mhz = positive_number(root["clock_mhz"]);
-  const JsonCursor rates = root["rates"];
+  const JsonCursor rates = root["rates"], sources = root["sources"];
   rates.expect_keys(kRates);
   for (const std::string_view rate : kRates) hardware.rates[std::string(rate)] = positive_number(rates[rate]);
+  expect_source(sources, "clock_mhz");
+  for (const std::string_view rate : kRates) expect_source(sources, rate);
   for (const auto& [name, description] : root["implementations"].members()) {
     Implementation& implementation = hardware.implementations.emplace_back(Implementation{name, {}});
     for (const auto& [stage, names] : description["units"].members()) implementation.units[stage] = read_units(names);
   }
   if (hardware.implementations.empty()) root["implementations"].fail("at least one implementation", "none");
+  if (json.contains("shading")) {
+    root["shading"].expect_keys({"material", "light"});
+    hardware.material = read_cost(root["shading"]["material"]);
+    hardware.light = read_cost(root["shading"]["light"]);
+  }
   hardware.json = json;
   return hardware;
 }
 
+Hardware with_shading_costs(const Hardware& hardware, const ShadingCost& material, const ShadingCost& light) {
+  Hardware priced = hardware;
+  priced.material = material;
+  priced.light = light;
+  priced.json["shading"] = {{"material", to_json(material)}, {"light", to_json(light)}};
+  return priced;
+}
+
 std::map<std::string, double> unit_times(const Hardware& hardware, const Implementation& implementation,
-                                         const StageCounters& stage) {
-  const double clocks_per_ms = hardware.clock_mhz * 1e3;
-  std::map<std::string, double> times;
-  const auto use = [&](const std::string& unit) {
-    times[unit] = units().at(unit)(hardware.rates, stage) / clocks_per_ms;
-  };
-  if (const auto found = implementation.units.find(std::string(without_pass(stage.stage))); found != implementation.units.end())
-    for (const std::string& unit : found->second) use(unit);
-  use("l2");
-  use("dram");
-  return times;
+                                         const StageCounters& stage, double bin_bytes) {
+  return times_of(hardware, implementation, stage, false, bin_bytes);
 }
 
 ModelledTime modelled_time(const Hardware& hardware, const Implementation& implementation,
-                           const std::vector<StageCounters>& stages) {
+                           const std::vector<StageCounters>& stages, double bin_bytes) {
+  const bool has_light = std::any_of(stages.begin(), stages.end(), [](const auto& s) { return s.stage == "light"; });
   ModelledTime time;
   std::map<std::string, double> busy;
   for (const StageCounters& stage : stages) {
     double longest = 0;
-    for (const auto& [unit, ms] : unit_times(hardware, implementation, stage)) {
-      busy[unit] += ms;
+    for (const auto& [unit, ms] : times_of(hardware, implementation, stage, has_light, bin_bytes)) {
+      busy[unit == "shading" ? "shader" : unit] += ms;  // the same lanes
       longest = std::max(longest, ms);
     }
     time.stages.push_back(longest);

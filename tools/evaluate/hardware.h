@@ -1,10 +1,10 @@
 // Modelled time: the work of each stage, divided by the rates of described hardware.
 //
-// A description is a JSON file. It holds the rates of the hardware's units per clock, with their sources, and
-// implementations, which say on which units each stage runs; every stage uses L2 and DRAM too. The description
-// tools/evaluate/hardware/titan_v.json is built in. A stage takes as long as its busiest unit. The model assumes that
-// units are never idle: it knows no latency, no divergence within warps and no driver. Its times are therefore lower
-// bounds, and the ratios between them say more than the times themselves.
+// A description is a JSON file. It holds the rates of the hardware's units per clock, each with its source or marked as
+// a choice, and implementations, which say on which units each stage runs; every stage uses L2 and DRAM too. Those in
+// tools/evaluate/hardware/ are built in. A stage takes as long as its busiest unit. The model assumes that units are
+// never idle, except where bins do not fit on chip: it knows no latency, no divergence within warps and no driver. Its
+// times are therefore lower bounds, and the ratios between them say more than the times themselves.
 #pragma once
 
 #include <filesystem>
@@ -22,24 +22,45 @@ struct Implementation {
   std::map<std::string, std::vector<std::string>> units;  // by stage; a stage that is not listed uses only L2 and DRAM
 };
 
+// What each invocation of a fragment shader costs beside what the trace's materials cost.
+struct ShadingCost {
+  double operations = 0;
+  double fetches = 0;    // bilinear probes of a texture
+  double registers = 0;  // that an invocation takes; the fewer invocations fit, the slower they are
+};
+
 struct Hardware {
+  std::string label;  // its built-in name, or the name of its file
   std::string name;
   double clock_mhz = 0;
-  std::map<std::string, double> rates;  // per clock, under the names in the file
+  std::map<std::string, double> rates;  // under the names in the file
   std::vector<Implementation> implementations;
+  // `light` is what lighting costs: in `light` where a technique has this stage, else in `shade` beside `material`.
+  ShadingCost material, light;
   Json json;  // the whole file
 };
 
-// The built-in description.
+// The names of the built-in descriptions, the default one first.
+std::vector<std::string> hardware_names();
 Hardware titan_v();
 
-// Throws TraceError, one line that names the file, the key, what was expected and what was found.
-Hardware read_hardware(const std::filesystem::path& file);
+// A built-in name or a file. Throws TraceError, one line that names the file, the key, what was expected and what was
+// found.
+Hardware read_hardware(const std::string& name_or_file);
 Hardware parse_hardware(const Json& json, const std::string& file);
 
-// Milliseconds of each unit that the stage uses, by name ("triangles", "shader", "dram", ...).
+// Names or files, with commas between them. Throws std::runtime_error if two have the same label.
+std::vector<Hardware> read_hardware_list(const std::string& list);
+
+// The same hardware with these costs, in its `json` too.
+Hardware with_shading_costs(const Hardware& hardware, const ShadingCost& material, const ShadingCost& light);
+
+// Milliseconds of each unit that the stage uses, by name ("triangles", "shader", "dram", ...). `bin_bytes`: what a bin
+// has on chip. A core holds as many bins as its memory has room for. If these are fewer than it works on at a time, the
+// stages that work on bins wait as much longer (stall); if not even one has room, the part that has none is read and
+// written in L2 (spill).
 std::map<std::string, double> unit_times(const Hardware& hardware, const Implementation& implementation,
-                                         const StageCounters& stage);
+                                         const StageCounters& stage, double bin_bytes = 0);
 
 struct ModelledTime {
   double overlap_ms = 0;       // all stages at once: the time of the busiest unit, over all stages
@@ -49,6 +70,6 @@ struct ModelledTime {
 };
 
 ModelledTime modelled_time(const Hardware& hardware, const Implementation& implementation,
-                           const std::vector<StageCounters>& stages);
+                           const std::vector<StageCounters>& stages, double bin_bytes = 0);
 
 }  // namespace beampipe

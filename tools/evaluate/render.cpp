@@ -146,7 +146,8 @@ Report new_report(const RunPlan& plan, const Json& made_by) {
           {},
           {},
           plan.notes,
-          made_by};
+          made_by,
+          plan.more_hardware};
 }
 
 }  // namespace beampipe

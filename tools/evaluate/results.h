@@ -58,6 +58,9 @@ struct FrameReport {
   std::map<std::string, PixelCounterStats> pixel_counters;  // by name
   std::uint64_t pixels = 0;
   std::uint64_t bin_pixels = 0;  // of the largest bin
+
+  // All buffers that a bin has on chip, at their peaks.
+  double bin_bytes() const;
 };
 
 // The same frames with their triangles in another order.
@@ -99,6 +102,7 @@ struct Report {
   std::vector<LadderRung> visibility_ladder = {};  // of visibility alone; empty if all surfaces are flat
   std::vector<DrawNote> notes = {};                // what the frames ask for and no technique does
   Json made_by = {};                               // what the results depend on: made_by() in tools/evaluate/resume.h
+  std::vector<Hardware> more_hardware = {};        // whose times are modelled too, for comparison
 };
 
 // Such as "0.1.0".

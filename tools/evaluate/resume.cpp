@@ -87,6 +87,12 @@ std::string range_text(const std::vector<std::size_t>& frames) {
   return std::to_string(frames.front()) + "-" + std::to_string(frames.back());
 }
 
+std::string hardware_text(const RunPlan& plan) {
+  std::string text = plan.hardware.json.dump();
+  for (const Hardware& each : plan.more_hardware) text += each.label + each.json.dump();
+  return text;
+}
+
 }  // namespace
 
 Json made_by(const std::string& command, const RunPlan& plan, const Json& more) {
@@ -103,7 +109,7 @@ Json made_by(const std::string& command, const RunPlan& plan, const Json& more) 
                {"compression", plan.options.memory.compression},
                {"framebuffer", name_of(plan.options.memory.framebuffer)},
                {"on_chip_bytes", plan.options.memory.on_chip_bytes},
-               {"hardware", digest_of(plan.hardware.json.dump())}};
+               {"hardware", digest_of(hardware_text(plan))}};
   for (const auto& [name, value] : more.members()) json[name] = value;
   return json;
 }

@@ -21,7 +21,7 @@ Json to_json(const std::vector<LadderRung>& ladder) {
   return json;
 }
 
-Json to_json(const TechniqueReport& result, const Hardware& hardware) {
+Json to_json(const TechniqueReport& result, const Report& report) {
   Json json = {{"technique", result.technique},
                {"pixels_on_chip", result.pixels_on_chip},
                {"framebuffer_bytes_per_pixel", result.framebuffer_bytes_per_pixel},
@@ -50,7 +50,8 @@ Json to_json(const TechniqueReport& result, const Hardware& hardware) {
     json["orders"]["largest_difference"] = result.order_difference;
   }
   json["frames"] = Json::array();
-  for (const FrameReport& frame : result.frames) json["frames"].push_back(beampipe::to_json(frame, result, hardware));
+  for (const FrameReport& frame : result.frames)
+    json["frames"].push_back(beampipe::to_json(frame, result, report.hardware, report.more_hardware));
   return json;
 }
 
@@ -78,11 +79,12 @@ Json to_json(const Report& report) {
                {"simd", report.simd},  {"threads", report.threads}, {"memory_system", to_json(report.memory)}};
   if (!report.made_by.is_null()) json["made_by"] = report.made_by;
   if (!report.hardware.implementations.empty()) json["hardware"] = report.hardware.json;
+  for (const Hardware& each : report.more_hardware) json["more_hardware"][each.label] = each.json;
   if (!report.msaa_ladder.empty()) json["msaa_ladder"] = to_json(report.msaa_ladder);
   if (!report.visibility_ladder.empty()) json["visibility_msaa_ladder"] = to_json(report.visibility_ladder);
   if (!report.notes.empty()) json["notes"] = beampipe::to_json(report.notes);
   json["results"] = Json::array();
-  for (const TechniqueReport& result : report.results) json["results"].push_back(to_json(result, report.hardware));
+  for (const TechniqueReport& result : report.results) json["results"].push_back(to_json(result, report));
   json["claims"] = Json::array();
   for (const Claim& claim : answered_claims(report)) json["claims"].push_back(to_json(claim));
   return json;

@@ -72,6 +72,65 @@ std::string table_text(const Report& report, const std::string& folder) {
   return align_columns(rows, {0, rows[0].size() - 1});
 }
 
+namespace {
+
+struct MeanTime {
+  double sum = 0, overlap = 0;
+  std::string busiest;
+  std::vector<double> stages;  // those of the first frame
+};
+
+// Calls use(technique, "titan_v.shaders", time, first frame) for each technique and implementation.
+template <class Use>
+void for_each_time(const Report& report, const Use& use) {
+  std::vector<Hardware> all = {report.hardware};
+  all.insert(all.end(), report.more_hardware.begin(), report.more_hardware.end());
+  for (const TechniqueReport& result : report.results) {
+    if (result.technique == "reference" || result.frames.empty()) continue;
+    for (const Hardware& hardware : all) {
+      for (const Implementation& implementation : hardware.implementations) {
+        MeanTime mean;
+        for (const FrameReport& frame : result.frames) {
+          const ModelledTime time = modelled_time(hardware, implementation, frame.stages, frame.bin_bytes());
+          mean.sum += time.sum_ms / static_cast<double>(result.frames.size());
+          mean.overlap += time.overlap_ms / static_cast<double>(result.frames.size());
+          if (mean.busiest.empty()) mean.busiest = time.busiest, mean.stages = time.stages;
+        }
+        use(result, hardware.label + "." + implementation.name, mean);
+      }
+    }
+  }
+}
+
+}  // namespace
+
+std::string times_text(const Report& report) {
+  std::vector<std::vector<std::string>> rows = {{"technique"}};
+  for_each_time(report, [&](const TechniqueReport& result, const std::string& name, const MeanTime& time) {
+    if (rows.size() == 1 || rows.back().front() != result.technique) rows.push_back({result.technique});
+    if (rows.size() == 2) rows.front().push_back(name);
+    char text[64];
+    std::snprintf(text, sizeof text, "%.3f / %.3f ", time.sum, time.overlap);
+    rows.back().push_back(text + time.busiest);
+  });
+  return "\nmodelled ms: one stage after the other / all at once, and the busiest unit\n" + align_columns(rows, {0});
+}
+
+Json times_json(const Report& report) {
+  Json json = Json::array();
+  for_each_time(report, [&](const TechniqueReport& result, const std::string& name, const MeanTime& time) {
+    Json stages;
+    for (std::size_t i = 0; i < time.stages.size(); ++i) stages[result.frames.front().stages[i].stage] = time.stages[i];
+    json.push_back({{"technique", result.technique},
+                    {"implementation", name},
+                    {"sum", time.sum},
+                    {"overlap", time.overlap},
+                    {"busiest", time.busiest},
+                    {"stages", stages}});
+  });
+  return json;
+}
+
 std::string causes_text(const Report& report) {
   std::vector<std::vector<std::string>> rows(1);
   for (const TechniqueReport& result : report.results) {

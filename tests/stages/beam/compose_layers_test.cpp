@@ -16,6 +16,7 @@ namespace {
 
 constexpr Tile kTile{0, 0, 4, 4};
 const SamplePattern kPattern = hammersley_pattern();
+const MergePositions kPositions(kPattern);
 
 // Fragments of triangles in the tile, shaded in different colours, in primitive order.
 std::vector<Fragment> random_fragments(Random& random, int triangles) {
@@ -55,8 +56,8 @@ std::vector<Aggregate> composed(const std::vector<Fragment>& fragments, std::siz
                                 std::vector<float>& merges, PaperStorage storage = PaperStorage::float32) {
   AggregateLayers pixels(kTile.pixels(), layers, storage);
   merges.assign(kTile.pixels(), 0);
-  pixels.add(fragments, kPattern, {}, counters, merges);
-  return pixels.finish(kPattern, {}, counters);
+  pixels.add(fragments, kPositions, {}, counters, merges);
+  return pixels.finish(kPositions, {}, counters);
 }
 
 void expect_same(const std::vector<Aggregate>& found, const std::vector<Aggregate>& expected, float tolerance = 0) {
@@ -78,7 +79,7 @@ TEST(ComposeLayers, OneLayerNearToFarIsTheABuffer) {
     for (const PaperStorage storage : {PaperStorage::slides, PaperStorage::text, PaperStorage::float32}) {
       StageCounters counters;
       const ABuffer lists = a_buffer(sort_records(fragments, SortKey::nearest), kTile.pixels(), 42, 42, counters);
-      const std::vector<Aggregate> expected = compose(fragments, lists, kPattern, {}, storage, counters);
+      const std::vector<Aggregate> expected = compose(fragments, lists, kPositions, {}, storage, counters);
       std::vector<float> merges;
       expect_same(composed(near_to_far(fragments), 1, counters, merges, storage), expected);
     }
@@ -96,7 +97,7 @@ TEST(ComposeLayers, EnoughLayersAreTheABufferInAnyOrder) {
     std::erase_if(fragments, [](const Fragment& fragment) { return fragment.tiny; });
     StageCounters counters;
     const ABuffer lists = a_buffer(sort_records(fragments, SortKey::nearest), kTile.pixels(), 42, 42, counters);
-    const std::vector<Aggregate> expected = compose(fragments, lists, kPattern, {}, PaperStorage::float32, counters);
+    const std::vector<Aggregate> expected = compose(fragments, lists, kPositions, {}, PaperStorage::float32, counters);
     std::vector<float> merges;
     expect_same(composed(fragments, 8, counters, merges), expected, 1e-5f);
     EXPECT_EQ(*std::max_element(merges.begin(), merges.end()), 0);
@@ -140,7 +141,7 @@ TEST(ComposeLayers, CountsBytes) {
   StageCounters counters;
   AggregateLayers pixels(kTile.pixels(), 3, PaperStorage::slides);
   std::vector<float> merges(kTile.pixels());
-  pixels.add(fragments, kPattern, {}, counters, merges);
+  pixels.add(fragments, kPositions, {}, counters, merges);
   EXPECT_EQ(pixels.bytes_per_pixel(), 3u * 42);
   EXPECT_EQ(counters.bytes_read, fragments.size() * (42 + 3 * 42));
   EXPECT_EQ(counters.bytes_written, fragments.size() * 3 * 42);

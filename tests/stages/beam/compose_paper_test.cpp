@@ -168,12 +168,12 @@ TEST(Compose, PixelsDoNotMix) {
   StageCounters counters;
   shade(colors, fragments.list, counters);
   const ABuffer buffer = sorted(fragments, tile.pixels());
-  const SamplePattern pattern = hammersley_pattern();
-  const std::vector<Aggregate> found = compose(fragments.list, buffer, pattern, {}, PaperStorage::float32, counters);
+  const MergePositions positions(hammersley_pattern());
+  const std::vector<Aggregate> found = compose(fragments.list, buffer, positions, {}, PaperStorage::float32, counters);
   for (std::size_t i = 0; i < tile.pixels(); ++i) {
     Aggregate alone = kEmptyAggregate;
     for (std::uint32_t k = buffer.first[i]; k < buffer.first[i + 1]; ++k)
-      alone = merge_formula(merge_fragment(fragments.list[buffer.records[k]]), alone, pattern, {});
+      alone = merge_formula(merge_fragment(fragments.list[buffer.records[k]]), alone, positions, {});
     ASSERT_EQ(found[i].alpha, alone.alpha) << "pixel " << i;
     ASSERT_EQ(found[i].mask, alone.mask);
     for (int c = 0; c < 3; ++c) ASSERT_EQ(found[i].color[c], alone.color[c]);

@@ -1,6 +1,7 @@
 // The scalar twins of compose by the published rules and of compose_z3: one fragment after the other is added to its
 // pixel.
 #include <algorithm>
+#include <bit>
 #include <cmath>
 
 #include "simd/plane_order.h"
@@ -11,6 +12,7 @@
 #include "stages/beam/paper_fragment.h"
 #include "stages/picture/shade.h"
 #include "stages/raster/conservative_raster.h"
+#include "tests/simd/merge_cases.h"
 #include "tests/stages/scene_twins.h"
 
 namespace beampipe {
@@ -86,19 +88,25 @@ class MergeTwins : public SceneTwins {
   }
 
   template <class Stored>
-  void compose_into(PaperStorage storage) {
-    const SamplePattern pattern = hammersley_pattern();
-    const MergeRules rules;
+  void compose_into(PaperStorage storage, const MergeRules& rules = {}) {
+    const MergePositions positions(hammersley_pattern());
+    std::uint64_t position_tests = 0;
     const std::vector<Aggregate> expected = merge_all([&](const Fragment& fragment, const Aggregate& before) {
       AggregateOf<Float, Bits> old = counting(before);
       convert(old, storage);
-      AggregateOf<Float, Bits> merged = merge_formula(counting(fragment), old, pattern, rules);
+      MergeStepsOf<Bits> steps{};
+      AggregateOf<Float, Bits> merged = merge_formula(counting(fragment), old, positions, rules, steps);
       convert(merged, storage);
+      // A look-up is a word of 32 positions.
+      position_tests += 32 * (steps.front_line.value + steps.back_line.value);
+      for (const Bits& mask : {steps.tested, steps.reached, steps.moved})
+        position_tests += static_cast<std::uint64_t>(std::popcount(mask.value));
       return Aggregate(Stored(value_of(merged)));
     });
     StageCounters counters;
-    expect_same(compose(fragments_, buffer_, pattern, rules, storage, counters), expected);
+    expect_same(compose(fragments_, buffer_, positions, rules, storage, counters), expected);
     EXPECT_EQ(counters.ops, twin_);
+    EXPECT_EQ(counters.position_tests, position_tests);
     EXPECT_EQ(counters.lanes_used, fragments_.size());
     EXPECT_EQ(counters.lanes_issued, fragments_.size());
   }
@@ -111,7 +119,7 @@ TEST_P(MergeTwins, Compose) {
   make_paper_fragments();
   compose_into<SlidesAggregate>(PaperStorage::slides);
   compose_into<TextAggregate>(PaperStorage::text);
-  compose_into<Aggregate>(PaperStorage::float32);
+  for (const MergeRules& rules : every_merge_rule()) compose_into<Aggregate>(PaperStorage::float32, rules);
 }
 
 TEST_P(MergeTwins, Over) {

@@ -37,24 +37,26 @@ TEST(StageCountersTable, ValuesAreThoseOfTheFields) {
   EXPECT_EQ(counters.items_in, 1u);
   EXPECT_EQ(counters.items_out, 2u);
   EXPECT_EQ(counters.ops, (OperationCounts{3, 4, 5, 6, 7, 8}));
-  EXPECT_EQ(counters.bytes_read, 9u);
-  EXPECT_EQ(counters.bytes_written, 10u);
-  EXPECT_EQ(counters.sector_bytes, 11u);
-  EXPECT_EQ(counters.l2_bytes, 12u);
-  EXPECT_EQ(counters.dram_bytes, 13u);
-  EXPECT_EQ(counters.texture_bytes, 14u);
-  EXPECT_EQ(counters.texture_sector_bytes, 15u);
-  EXPECT_EQ(counters.texture_l2_bytes, 16u);
-  EXPECT_EQ(counters.texture_dram_bytes, 17u);
-  EXPECT_EQ(counters.lanes_used, 18u);
-  EXPECT_EQ(counters.lanes_issued, 19u);
-  EXPECT_EQ(counters.hidden_items, 20u);
-  EXPECT_EQ(counters.hidden_triangles, 21u);
-  EXPECT_EQ(counters.empty_tiles, 22u);
+  EXPECT_EQ(counters.ops.wide, 9u);
+  EXPECT_EQ(counters.bytes_read, 10u);
+  EXPECT_EQ(counters.bytes_written, 11u);
+  EXPECT_EQ(counters.sector_bytes, 12u);
+  EXPECT_EQ(counters.l2_bytes, 13u);
+  EXPECT_EQ(counters.dram_bytes, 14u);
+  EXPECT_EQ(counters.texture_bytes, 15u);
+  EXPECT_EQ(counters.texture_sector_bytes, 16u);
+  EXPECT_EQ(counters.texture_l2_bytes, 17u);
+  EXPECT_EQ(counters.texture_dram_bytes, 18u);
+  EXPECT_EQ(counters.position_tests, 19u);
+  EXPECT_EQ(counters.lanes_used, 20u);
+  EXPECT_EQ(counters.lanes_issued, 21u);
+  EXPECT_EQ(counters.hidden_items, 22u);
+  EXPECT_EQ(counters.hidden_triangles, 23u);
+  EXPECT_EQ(counters.empty_tiles, 24u);
   std::uint64_t value = 0;
   for (const CounterInfo& counter : stage_counters()) {
     const std::string name = counter.name;
-    const std::uint64_t expected = name == "ops.total" ? 3 + 4 + 5 + 6 + 7 + 8 : name == "logical_bytes" ? 19 : ++value;
+    const std::uint64_t expected = name == "ops.total" ? 3 + 4 + 5 + 6 + 7 + 8 : name == "logical_bytes" ? 21 : ++value;
     EXPECT_EQ(counter.value(counters), expected) << name;
   }
 }

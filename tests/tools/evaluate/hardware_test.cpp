@@ -53,9 +53,124 @@ TEST(Hardware, ShadersShareTheirUnitBetweenStages) {
 
 // A stage without units would cost nothing. The reference is not a pipeline of a GPU.
 TEST(Hardware, EveryStageHasUnits) {
-  for (const Implementation& implementation : titan_v().implementations)
-    for (const StageInfo& stage : stage_list())
-      EXPECT_EQ(implementation.units.contains(stage.name), stage.name != std::string("reference_raster")) << stage.name;
+  for (const std::string& name : hardware_names())
+    for (const Implementation& implementation : read_hardware(name).implementations)
+      for (const StageInfo& stage : stage_list())
+        EXPECT_EQ(implementation.units.contains(stage.name), stage.name != std::string("reference_raster"))
+            << name << ", " << stage.name;
+}
+
+TEST(Hardware, EveryNumberHasASource) {
+  EXPECT_GE(hardware_names().size(), 3u);
+  for (const std::string& name : hardware_names()) {
+    const Hardware hardware = read_hardware(name);
+    EXPECT_EQ(hardware.label, name);
+    const Json& sources = hardware.json.at("sources");
+    EXPECT_GE(sources.at("clock_mhz").get<std::string>().size(), 4u);
+    for (const auto& [rate, value] : hardware.rates)
+      EXPECT_GE(sources.at(rate).get<std::string>().size(), 4u) << name << ", " << rate;
+  }
+}
+
+// 9600 positions of masks at 9216 per clock, but 960 pairs at 96; 1000 comparisons at 96; 7680 contested positions at
+// 768; 30720 bytes at 3072.
+TEST(Hardware, FixedFunctionsFollowTheirWork) {
+  const Hardware titan = titan_v();
+  const Implementation& fixed = titan.implementations.at(1);
+  const auto of = [&](const char* name, const char* unit, const auto& set) {
+    StageCounters counters{name};
+    set(counters);
+    return clocks(titan, unit_times(titan, fixed, counters).at(unit));
+  };
+  const auto masks = [&](std::uint64_t tests) {
+    return of("beam_fragment", "mask_generator", [&](auto& s) { s.items_in = 960, s.position_tests = tests; });
+  };
+  EXPECT_NEAR(masks(960 * 32 * 3), 10, 1e-6);
+  EXPECT_NEAR(masks(960 * 256 * 3), 80, 1e-6);
+  const auto sorting = [&](std::uint64_t comparisons) {
+    return of("a_buffer", "sorter", [&](auto& s) { s.items_in = 960, s.ops.add = comparisons; });
+  };
+  EXPECT_NEAR(sorting(0), 10, 1e-6);
+  EXPECT_NEAR(sorting(9600), 100, 1e-6) << "long lists need more comparisons";
+  const auto composition = [&](std::uint64_t positions, std::uint64_t bytes) {
+    return of("compose", "composer",
+              [&](auto& s) { s.items_in = 96, s.position_tests = positions, s.bytes_read = bytes; });
+  };
+  EXPECT_NEAR(composition(0, 0), 1, 1e-6);
+  EXPECT_NEAR(composition(7680, 0), 10, 1e-6);
+  EXPECT_NEAR(composition(0, 30720), 10, 1e-6);
+  const auto rop = [&](std::uint64_t bytes) {
+    return of("depth_test", "rop_samples", [&](auto& s) { s.items_in = 768, s.bytes_written = bytes; });
+  };
+  EXPECT_NEAR(rop(3072), 1, 1e-6);
+  EXPECT_NEAR(rop(2 * 3072), 2, 1e-6) << "wider formats take longer";
+}
+
+// 5120 operations of 64 bits are issued twice and take two clocks of the integer lanes, which leaves nothing for the
+// float lanes.
+TEST(Hardware, WideIntegersHaveTheirOwnRate) {
+  const Hardware titan = titan_v();
+  StageCounters counters{"compose"};
+  counters.ops.add = 5120;
+  EXPECT_NEAR(clocks(titan, unit_times(titan, titan.implementations[0], counters).at("shader")), 1, 1e-6);
+  counters.ops.wide = 5120;
+  EXPECT_NEAR(clocks(titan, unit_times(titan, titan.implementations[0], counters).at("shader")), 2, 1e-6);
+}
+
+// A core of 96 KiB has room for two bins of 40 KiB, for one of 80, and for half of one of 192. The first work at full
+// rate, the others wait half of the time, and half of the last one's bytes go to L2. Geometry does not wait.
+TEST(Hardware, BinsThatDoNotFitStallAndSpill) {
+  const Hardware titan = titan_v();
+  const Implementation& shaders = titan.implementations.at(0);
+  StageCounters counters{"compose"};
+  counters.ops.bit = 51200;
+  counters.bytes_read = 1536 * 100;
+  const auto times = [&](double kib) { return unit_times(titan, shaders, counters, kib * 1024); };
+  EXPECT_NEAR(clocks(titan, times(40).at("shader")), 10, 1e-6);
+  EXPECT_NEAR(clocks(titan, times(40).at("l2")), 0, 1e-6);
+  EXPECT_NEAR(clocks(titan, times(80).at("shader")), 20, 1e-6);
+  EXPECT_NEAR(clocks(titan, times(80).at("l2")), 0, 1e-6);
+  EXPECT_NEAR(clocks(titan, times(192).at("shader")), 20, 1e-6);
+  EXPECT_NEAR(clocks(titan, times(192).at("l2")), 50, 1e-6);
+  counters.stage = "vertex_setup";
+  EXPECT_NEAR(clocks(titan, times(192).at("shader")), 10, 1e-6);
+}
+
+// 512 invocations, each with 100 operations and 5 probes of 16 bytes: 10 clocks of the float lanes, 8 of the texture
+// units. With 128 registers, half as many invocations fit as with 64.
+TEST(Hardware, ShadingCostsAreAddedToInvocations) {
+  const auto time_of = [](const ShadingCost& material, const ShadingCost& light,
+                          const std::vector<std::string>& stages) {
+    const Hardware titan = with_shading_costs(titan_v(), material, light);
+    std::vector<StageCounters> all;
+    for (const std::string& name : stages) all.emplace_back(StageCounters{name}).lanes_issued = 512;
+    return clocks(titan, modelled_time(titan, titan.implementations.at(1), all).sum_ms);
+  };
+  const double quads = 512 / 96.0;  // which `shade` takes without any cost
+  EXPECT_NEAR(time_of({}, {}, {"shade"}), quads, 1e-6);
+  EXPECT_NEAR(time_of({100, 0, 0}, {}, {"shade"}), 10, 1e-6);
+  EXPECT_NEAR(time_of({100, 0, 64}, {}, {"shade"}), 10, 1e-6);
+  EXPECT_NEAR(time_of({100, 0, 128}, {}, {"shade"}), 20, 1e-6);
+  EXPECT_NEAR(time_of({0, 5, 0}, {}, {"shade"}), 8, 1e-6);
+  EXPECT_NEAR(time_of({100, 0, 0}, {50, 0, 0}, {"shade"}), 15, 1e-6) << "lights are in the fragment shader";
+  EXPECT_NEAR(time_of({100, 0, 0}, {50, 0, 0}, {"shade", "light"}), 10 + 5, 1e-6);
+  EXPECT_NEAR(time_of({}, {50, 0, 0}, {"shade", "light"}), quads + 5, 1e-6);
+}
+
+TEST(Hardware, CostsStandInTheDescription) {
+  const Hardware priced = with_shading_costs(titan_v(), {1, 2, 3}, {4, 5, 6});
+  const Hardware again = parse_hardware(priced.json, "h.json");
+  EXPECT_EQ(again.material.fetches, 2);
+  EXPECT_EQ(again.light.operations, 4);
+  EXPECT_EQ(again.light.registers, 6);
+}
+
+TEST(Hardware, ListsNameEachOnce) {
+  const std::vector<Hardware> all = read_hardware_list("rtx_4090,titan_v");
+  ASSERT_EQ(all.size(), 2u);
+  EXPECT_EQ(all[0].label, "rtx_4090");
+  EXPECT_EQ(all[1].label, "titan_v");
+  EXPECT_THROW(read_hardware_list("titan_v,titan_v"), std::runtime_error);
 }
 
 std::string refusal(const std::string& from, const std::string& to) {
@@ -77,7 +192,11 @@ TEST(Hardware, ErrorsNameTheKey) {
             "h.json: /rates: expected the key \"triangles_per_clk\", found none");
   EXPECT_EQ(refusal("\"quads_per_clk\":24", "\"quads_per_clk\":24,\"x\":1").find("h.json: /rates/x: expected one of"),
             0u);
-  EXPECT_EQ(refusal("[\"rop_samples\"]", "[\"rop\"]")
+  EXPECT_EQ(refusal("\"clock_mhz\":\"boost clock, NVIDIA's product page\",", ""),
+            "h.json: /sources: expected the key \"clock_mhz\", found none");
+  EXPECT_EQ(refusal("\"boost clock, NVIDIA's product page\"", "\"\""),
+            "h.json: /sources/clock_mhz: expected where the number is from, or that it is a choice, found nothing");
+  EXPECT_EQ(refusal("[\"rop_samples\",", "[\"rop\",")
                 .find("h.json: /implementations/shaders/units/depth_test/0: expected one of the units"),
             0u);
 }

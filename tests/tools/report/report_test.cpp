@@ -27,7 +27,7 @@ Report sample_report() {
     frame.buffers = {{"pairs", 64, true}};
     frame.pixels = 50;
     frame.pixel_counters = {{"fragments", {1.5, 4}}};
-    frame.stages = {{"vertex_setup", 3, 1, {1, 2, 3, 4, 5, 6}, 36, 80, 3, 4, 128, 112, 96, 0, 0, 0, 0, 5, 6, 7}};
+    frame.stages = {{"vertex_setup", 3, 1, {1, 2, 3, 4, 5, 6, 8}, 36, 80, 9, 3, 4, 128, 112, 96, 0, 0, 0, 0, 5, 6, 7}};
   }
   return report;
 }
@@ -63,14 +63,14 @@ TEST(ReportJson, HasTheKeysOfTheContract) {
                                     {"runs", 3},
                                     {"with_memory_model", false},
                                     {"modelling_run", 44.0}}));
-  const Json ops = {{"total", 21}, {"mul_add", 1}, {"add", 2},    {"bit", 3},
-                    {"fetch", 4},  {"special", 5}, {"convert", 6}};
+  const Json ops = {{"total", 21}, {"mul_add", 1}, {"add", 2},     {"bit", 3},
+                    {"fetch", 4},  {"special", 5}, {"convert", 6}, {"wide", 8}};
   const Json stage = {
-      {"stage", "vertex_setup"}, {"items_in", 3},           {"items_out", 1},       {"ops", ops},
-      {"bytes_read", 36},        {"bytes_written", 80},     {"logical_bytes", 116}, {"sector_bytes", 128},
-      {"l2_bytes", 112},         {"dram_bytes", 96},        {"texture_bytes", 0},   {"texture_sector_bytes", 0},
-      {"texture_l2_bytes", 0},   {"texture_dram_bytes", 0}, {"lanes_used", 3},      {"lanes_issued", 4},
-      {"hidden_items", 5},       {"hidden_triangles", 6},   {"empty_tiles", 7}};
+      {"stage", "vertex_setup"}, {"items_in", 3},           {"items_out", 1},        {"ops", ops},
+      {"bytes_read", 36},        {"bytes_written", 80},     {"logical_bytes", 116},  {"sector_bytes", 128},
+      {"l2_bytes", 112},         {"dram_bytes", 96},        {"texture_bytes", 0},    {"texture_sector_bytes", 0},
+      {"texture_l2_bytes", 0},   {"texture_dram_bytes", 0}, {"position_tests", 9},   {"lanes_used", 3},
+      {"lanes_issued", 4},       {"hidden_items", 5},       {"hidden_triangles", 6}, {"empty_tiles", 7}};
   EXPECT_EQ(frame["stages"].at(0), stage);
   EXPECT_EQ(frame["logical_bytes"], 116) << "the sum over all stages";
   EXPECT_EQ(frame["sector_bytes"], 128);
