@@ -194,13 +194,13 @@ class FrameRecorder {
   }
 
   // What was recorded of the first pass over the geometry is part of the later ones too. Those of the depth pre-pass
-  // come first.
+  // come first of all.
   void repeat_geometry() {
-    constexpr auto kFirst = DramTrace::Step::setup, kLast = DramTrace::Step::lists;
-    for (std::size_t i = 1; i < geometry_pass_starts_.size(); ++i)
-      trace_->repeat(first_pass_, first_pass_ + geometry_pass_starts_[i], kFirst, kLast);
-    for (std::size_t i = 0; i < static_cast<std::size_t>(prepasses_); ++i)
-      trace_->count_to_prepass(first_pass_ + (i == 0 ? 0 : geometry_pass_starts_[i]), kFirst, kLast);
+    std::vector<DramTrace::GeometryPass> passes;
+    for (std::size_t i = 0; i < std::max(geometry_pass_starts_.size(), std::size_t{1}); ++i)
+      passes.push_back(
+          {first_pass_ + (i == 0 ? 0 : geometry_pass_starts_[i]), i < static_cast<std::size_t>(prepasses_)});
+    trace_->repeat(passes, DramTrace::Step::setup, DramTrace::Step::lists);
   }
 
   void charge_texture_dram() {

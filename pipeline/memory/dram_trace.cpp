@@ -79,19 +79,20 @@ void DramTrace::add(const DramLog& log, std::uint32_t first, std::size_t bin) {
   for (std::uint32_t pass = 0; pass < log.passes().size(); ++pass) add(log, pass, first + pass, Step::bin, bin);
 }
 
-void DramTrace::repeat(std::uint32_t from, std::uint32_t to, Step first, Step last) {
+void DramTrace::repeat(const std::vector<GeometryPass>& passes, Step first, Step last) {
   const std::size_t count = chunks_.size();
   for (std::size_t i = 0; i < count; ++i) {
-    Chunk chunk = chunks_[i];
-    if (chunk.pass != from || chunk.step < first || chunk.step > last) continue;
-    chunk.pass = to;
-    chunks_.push_back(chunk);
+    if (chunks_[i].pass != passes[0].pass || chunks_[i].step < first || chunks_[i].step > last) continue;
+    for (std::size_t p = passes.size(); p-- > 0;) {
+      Chunk chunk = chunks_[i];
+      chunk.pass = passes[p].pass, chunk.is_prepass = passes[p].is_prepass;
+      if (p > 0) {
+        chunks_.push_back(chunk);
+      } else {
+        chunks_[i] = chunk;
+      }
+    }
   }
-}
-
-void DramTrace::count_to_prepass(std::uint32_t pass, Step first, Step last) {
-  for (Chunk& chunk : chunks_)
-    if (chunk.pass == pass && chunk.step >= first && chunk.step <= last) chunk.is_prepass = true;
 }
 
 std::uint32_t DramTrace::passes() const {

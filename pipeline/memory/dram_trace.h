@@ -47,11 +47,15 @@ class DramTrace {
   // Every pass of a log, from the frame's pass `first` on.
   void add(const DramLog& log, std::uint32_t first, std::size_t bin);
 
-  // Makes what was added to `from` at the given steps part of pass `to` as well.
-  void repeat(std::uint32_t from, std::uint32_t to, Step first, Step last);
+  // A pass over the geometry: the frame's pass that it is part of, and whether it is the depth pre-pass's.
+  struct GeometryPass {
+    std::uint32_t pass;
+    bool is_prepass;
+  };
 
-  // Counts what was added to a pass at the given steps to the stages of the depth pre-pass.
-  void count_to_prepass(std::uint32_t pass, Step first, Step last);
+  // What was added at the given steps to the pass of passes[0] was recorded once, for all these passes over the
+  // geometry. The others get a copy.
+  void repeat(const std::vector<GeometryPass>& passes, Step first, Step last);
 
   // One more than the last pass that holds anything.
   std::uint32_t passes() const;

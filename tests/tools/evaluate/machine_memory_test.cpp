@@ -23,9 +23,9 @@ TEST(MachineMemory, OfPixelsIsAskedForBeforeItIsTaken) {
   trace.frames.resize(1);
   trace.frames[0].width = trace.frames[0].height = 16384;
   EXPECT_EQ(refusal(trace, "msaa:1", 4 * kGiB), "");
-  EXPECT_EQ(refusal(trace, "dvm", 32 * kGiB), "");
+  EXPECT_EQ(refusal(trace, "dvm", 40 * kGiB), "");
   EXPECT_EQ(refusal(trace, "dvm", 16 * kGiB),
-            "dvm: 16384 x 16384 pixels and 0 triangles may need 30976 MiB, and this machine has 16384");
+            "dvm: 16384 x 16384 pixels and 0 triangles may need 37376 MiB, and this machine has 16384");
 }
 
 TEST(MachineMemory, OfTrianglesThatAreDrawnAgainAndAgainIsAskedForBeforeItIsTaken) {
