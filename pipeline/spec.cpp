@@ -5,6 +5,7 @@
 #include <type_traits>
 
 #include "pipeline/technique.h"
+#include "traces/closest_name.h"
 
 namespace beampipe {
 namespace {
@@ -35,7 +36,8 @@ void set_item(const Spec& spec, const Spec::Item& item, const std::string& title
     for (const SpecOption& each : options)
       if (each.form != SpecOption::Form::samples) keys.push_back(each.key);
     if (keys.empty()) spec.fail(title + " has no options");
-    spec.fail(title + " has no option '" + std::string(item.key) + "'; it has " + list_of(keys, "and"));
+    spec.fail(title + " has no option '" + std::string(item.key) + "'" + did_you_mean(item.key, keys) + "; it has " +
+              list_of(keys, "and"));
   }
   const bool is_flag = option->form == SpecOption::Form::flag;
   if (is_flag && item.has_value) spec.fail(option->key + " must be without a value");

@@ -3,6 +3,7 @@
 #include <map>
 
 #include "pipeline/technique_table.h"
+#include "traces/closest_name.h"
 
 namespace beampipe {
 namespace {
@@ -20,7 +21,7 @@ std::vector<const TechniqueKind*> kinds_named(std::string_view name) {
   std::vector<std::string> names;
   for (const TechniqueKind& kind : technique_kinds())
     if (!is_variant(kind)) names.push_back(kind.name);
-  spec.fail("the name must be " + list_of(names));
+  spec.fail("the name must be " + list_of(names) + did_you_mean(spec.name(), names));
 }
 
 // The variant that the spec chooses, or else the technique of this name that is not a variant.

@@ -11,6 +11,10 @@
 
 namespace beampipe {
 
+// By the end of the file's name: .obj, or also .gltf or .glb, in small or capital letters.
+bool is_obj_file(const std::filesystem::path& file);
+bool is_model_file(const std::filesystem::path& file);
+
 // What a model has that beampipe does not read: a name for each kind of thing, and how many of them there are.
 using NotRead = std::map<std::string, std::size_t>;
 

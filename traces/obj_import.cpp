@@ -368,7 +368,21 @@ void complete(Mesh& mesh, const Trace& trace, NotRead& not_read) {
   if (has_normal_map) add_tangents(mesh, 0);
 }
 
+// In small letters, with its dot.
+std::string extension_of(const std::filesystem::path& file) {
+  std::string extension = file.extension().string();
+  std::transform(extension.begin(), extension.end(), extension.begin(),
+                 [](char c) { return c >= 'A' && c <= 'Z' ? static_cast<char>(c + 32) : c; });
+  return extension;
+}
+
 }  // namespace
+
+bool is_obj_file(const std::filesystem::path& file) { return extension_of(file) == ".obj"; }
+
+bool is_model_file(const std::filesystem::path& file) {
+  return is_obj_file(file) || extension_of(file) == ".gltf" || extension_of(file) == ".glb";
+}
 
 void read_obj(const fs::path& file, const std::string& named_by, ObjMaterials materials, Trace& trace,
               NotRead& not_read) {

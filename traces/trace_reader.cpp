@@ -278,6 +278,8 @@ int read_version(const JsonCursor& at) {
 
 Trace read_trace(const fs::path& file, const ReadOptions& options) {
   const std::string where = file.string();
+  if (is_model_file(file))
+    throw TraceError(where + ": expected a trace, found a model; beampipe make turns it into a trace");
   const Json json = parse_json(where);
   const JsonCursor root(json, where);
   Reader reader{.file = file, .options = options, .version = read_version(root["beampipe_trace"]), .trace = {}};

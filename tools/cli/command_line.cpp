@@ -4,6 +4,8 @@
 #include <optional>
 #include <type_traits>
 
+#include "traces/closest_name.h"
+
 namespace beampipe {
 namespace {
 
@@ -30,6 +32,25 @@ const char* type_name() {
     return "NUMBER";
   } else {
     return "TEXT";
+  }
+}
+
+template <class Part>
+std::vector<std::string> names_of(const std::vector<Part*>& parts) {
+  std::vector<std::string> names;
+  for (const Part* part : parts) names.push_back(part->get_name());
+  return names;
+}
+
+// An option that does not exist explains more than one that is missing, which may be the same, mistyped.
+void fail_unknown_option(const CLI::App& command, const std::string& program) {
+  for (const std::string& word : command.remaining()) {
+    if (!word.starts_with("--")) continue;
+    const std::string name = word.substr(0, word.find('='));
+    throw UsageError("there is no option " + name +
+                     did_you_mean(name, names_of(command.get_options(
+                                            [](const CLI::Option* option) { return option->nonpositional(); }))) +
+                     " (see " + program + " " + command.get_name() + " --help)");
   }
 }
 
@@ -73,6 +94,11 @@ Option& Option::shows_default() {
 
 Option& Option::excludes(const Option& other) {
   option_->excludes(other.option_);
+  return *this;
+}
+
+Option& Option::needs(const Option& other) {
+  option_->needs(other.option_);
   return *this;
 }
 
@@ -137,7 +163,10 @@ void CommandLine::run(int argc, char** argv) {
   } catch (const CLI::ParseError& error) {
     const std::vector<CLI::App*> named = app_->get_subcommands();
     if (named.empty() && argc > 1 && argv[1][0] != '-')
-      throw UsageError(std::string("there is no command ") + argv[1] + " (see " + program + " --help)");
+      throw UsageError(std::string("there is no command ") + argv[1] +
+                       did_you_mean(argv[1], names_of(app_->get_subcommands([](CLI::App*) { return true; }))) +
+                       " (see " + program + " --help)");
+    if (!named.empty()) fail_unknown_option(*named.front(), program);
     throw UsageError(std::string(error.what()) + " (see " + program +
                      (named.empty() ? "" : " " + named.front()->get_name()) + " --help)");
   }

@@ -34,6 +34,7 @@ class Option {
   Option& list(const std::string& form);                    // likewise, with any number of values
   Option& shows_default();                                  // --help prints the variable's value
   Option& excludes(const Option& other);
+  Option& needs(const Option& other);  // means nothing without the other one
 
  private:
   CLI::Option* option_;

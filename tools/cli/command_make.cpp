@@ -34,20 +34,6 @@ struct MakeArguments {
   std::string materials = "textured", animation;
 };
 
-// In small letters, with its dot.
-std::string extension_of(const std::string& scene) {
-  std::string extension = std::filesystem::path(scene).extension().string();
-  std::transform(extension.begin(), extension.end(), extension.begin(),
-                 [](char c) { return c >= 'A' && c <= 'Z' ? static_cast<char>(c + 32) : c; });
-  return extension;
-}
-
-bool names_an_obj(const std::string& scene) { return extension_of(scene) == ".obj"; }
-
-bool names_a_model(const std::string& scene) {
-  return names_an_obj(scene) || extension_of(scene) == ".gltf" || extension_of(scene) == ".glb";
-}
-
 glm::dvec3 vector_of(const std::vector<double>& values) { return {values.at(0), values.at(1), values.at(2)}; }
 
 CameraWishes wishes_of(const MakeArguments& arguments, const Command& command) {
@@ -110,7 +96,7 @@ void add_light(Trace& trace) {
 }
 
 Trace make_from_model(const MakeArguments& arguments, const Command& command) {
-  ImportedModel model = names_an_obj(arguments.scene) ? read_obj_model(arguments) : read_gltf_model(arguments, command);
+  ImportedModel model = is_obj_file(arguments.scene) ? read_obj_model(arguments) : read_gltf_model(arguments, command);
   say_not_read(arguments.scene, model.not_read);
   Trace& trace = model.trace;
   const std::vector<const char*> view = {"--eye", "--target", "--up", "--fovy", "--near", "--far"};
@@ -165,13 +151,13 @@ void make(const MakeArguments& arguments, const Command& command, InterruptGate&
   if (arguments.list) return list_scenes();
   if (arguments.scene.empty()) throw UsageError("make needs a SCENE or a model (see beampipe make --help)");
   if (arguments.output.empty()) throw UsageError("make needs -o FILE");
-  const bool is_model = names_a_model(arguments.scene);
+  const bool is_model = is_model_file(arguments.scene);
   if (is_model && (command.was_given("--triangles") || command.was_given("--seed"))) {
     throw UsageError("--triangles and --seed are for procedural scenes only");
   }
-  if (is_model && command.was_given("--materials") && !names_an_obj(arguments.scene))
+  if (is_model && command.was_given("--materials") && !is_obj_file(arguments.scene))
     throw UsageError("--materials is for .obj files only");
-  if (is_model && command.was_given("--animation") && names_an_obj(arguments.scene))
+  if (is_model && command.was_given("--animation") && is_obj_file(arguments.scene))
     throw UsageError("--animation is for .gltf and .glb files only");
   const std::filesystem::path file = arguments.output;
   if (std::error_code none; is_model && std::filesystem::equivalent(file, arguments.scene, none))

@@ -40,14 +40,16 @@ void append_line(std::string& text, const std::string& format, const DramRequest
 }  // namespace
 
 void add_memory_trace_arguments(Command& command, MemoryTraceArguments& arguments) {
-  command.add("--memory-trace", arguments.file,
-              "write the DRAM requests of the frame to this file, one a line, for simulators of DRAM; compressed with "
-              "gzip if the name ends in .gz. Only for one technique and one frame");
+  const Option file = command.add(
+      "--memory-trace", arguments.file,
+      "write the DRAM requests of the frame to this file, one a line, for simulators of DRAM; compressed with "
+      "gzip if the name ends in .gz. Only for one technique and one frame");
   command
       .add("--memory-trace-format", arguments.format,
            "what the lines are: those that DRAMsim3 reads, those that Ramulator 2 reads, or CSV with the stage")
       .one_of({kDramSim3, kRamulator2, kCsv})
-      .shows_default();
+      .shows_default()
+      .needs(file);
 }
 
 MemoryTrace::MemoryTrace(const MemoryTraceArguments& arguments, const RunArguments& run, RunPlan& plan) {

@@ -110,6 +110,9 @@ RunPlan make_plan(const RunArguments& arguments) {
   plan.options.textures = plan.textures.get();
   if (const std::string note = note_on_darkness(plan.trace, plan.frames, arguments.trace); !note.empty())
     std::cerr << "beampipe: " << note << "\n";
+  for (const Technique& technique : plan.techniques)
+    if (technique.keeps_history && plan.frames.size() == 1)
+      std::cerr << "beampipe: note: " << technique.spec << " works over several frames; the first one has no history\n";
   plan.notes = notes_of(plan.trace, plan.frames);
   return plan;
 }

@@ -24,6 +24,12 @@ TEST_F(ProgramTest, EveryMistakeIsOneLineAndLeavesNothing) {
   } mistakes[] = {
       {{}, 2, "subcommand"},
       {{"frobnicate"}, 2, "no command frobnicate"},
+      {{"comapre"}, 2, "did you mean 'compare'"},
+      {{"run", trace, "-t", "beam", "--outptu", out}, 2, "no option --outptu (did you mean '--output'?)"},
+      {{"run", trace, "-t", "mssa:8", "-o", out}, 2, "did you mean 'msaa'"},
+      {{"run", trace, "-t", "beam:ordr=sorted", "-o", out}, 2, "no option 'ordr' (did you mean 'order'?)"},
+      {{"run", path("model.OBJ"), "-t", "beam", "-o", out}, 1, "expected a trace, found a model"},
+      {{"run", trace, "-t", "beam", "-o", out, "--memory-trace-format", "csv"}, 2, "requires --memory-trace"},
       {{"run", trace, "-t", "beam"}, 2, "--output"},
       {{"run", trace, "-o", out}, 2, "--technique"},
       {{"run", trace, "-t", "nonsense", "-o", out}, 2, "nonsense"},
