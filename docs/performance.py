@@ -20,7 +20,8 @@ import tempfile
 
 import measure
 
-RATIOS = ["beam:order=sorted", "beam:order=stream,passes=0", "msaa:4", "msaa:8", "msaa:32", "msaa:256"]
+RATIOS = ["beam", "beam:order=sorted", "beam:order=stream", "msaa:4", "msaa:8", "msaa:32", "msaa:256"]
+SORTED = "beam:order=sorted"
 
 
 def frame_times(program, trace, specs, runs, threads):
@@ -33,7 +34,7 @@ def frame_times(program, trace, specs, runs, threads):
 
 
 def equivalent_rate(program, trace):
-    """EMR of sorted order on the same scene at 320 x 180."""
+    """EMR of `beam` on the same scene at 320 x 180."""
     with open(trace, encoding="utf-8") as file:
         small = json.load(file)
     for frame in small["frames"]:
@@ -63,7 +64,7 @@ def print_ratios(arguments):
 
 
 def print_threads(arguments):
-    specs = ["beam:order=sorted", "msaa:8", "msaa:256"]
+    specs = ["beam", "msaa:8", "msaa:256"]
     measure.print_head("scene", *(f"`{spec}`" for spec in specs))
     for trace in arguments.traces:
         rounds = {spec: [] for spec in specs}
@@ -76,12 +77,12 @@ def print_threads(arguments):
 
 
 def print_stages(arguments):
-    """Prints how much work each scene offers, and how much of it is done."""
+    """Prints how much work each scene offers to sorted order, and how much of it is done."""
     measure.print_head("scene", "pixels", "tested", "waiting pairs", "composed", "fragments with area", "depth tests")
     for trace in arguments.traces:
         with tempfile.TemporaryDirectory() as folder:
-            found = measure.results(arguments.program, "run", trace, RATIOS[:1], folder, "--no-memory-model")
-        stage = measure.stages(found[RATIOS[0]])
+            found = measure.results(arguments.program, "run", trace, [SORTED], folder, "--no-memory-model")
+        stage = measure.stages(found[SORTED])
         measure.print_row(name_of(trace), stage["resolve"]["items_out"], stage["conservative_raster"]["lanes_issued"],
                           stage["a_buffer"]["items_in"], stage["beam_fragment"]["items_in"],
                           stage["beam_fragment"]["items_out"], stage["compose"]["lanes_used"])
@@ -101,7 +102,7 @@ GROWTH = {
     "layers per pixel": [("stack", ["--triangles", str(n), "--width", "64", "--height", "36"], n)
                             for n in (1, 10, 100, 1000, 10_000)],
 }
-GROWING = ["beam:order=sorted", "beam:order=stream,passes=0", "msaa:8", "msaa:32"]
+GROWING = ["beam", "beam:order=sorted", "beam:order=stream", "msaa:8", "msaa:32"]
 
 
 def peak_memory(program, trace, spec, folder):

@@ -103,6 +103,7 @@ def take_pictures(replay, found, kept):
 
 
 def main(job_path):
+    """The exit code."""
     with open(job_path) as file:
         job = json.load(file)
     result = os.path.splitext(job_path)[0]
@@ -124,8 +125,12 @@ def main(job_path):
         write_pickle(result + ".pickle", str(error))
     except Exception:  # the supervisor prints it as one line
         write_pickle(result + ".pickle", traceback.format_exc(limit=-1).strip().splitlines()[-1])
-        raise
+        traceback.print_exc()
+        return 1
+    return 0
 
 
 if __name__ == "__main__":
-    main(sys.argv[1])
+    code = main(sys.argv[1])
+    sys.stderr.flush()
+    os._exit(code)  # where a capture could not be opened, RenderDoc's threads now and then never end

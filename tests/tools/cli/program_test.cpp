@@ -95,6 +95,14 @@ TEST_F(ProgramTest, RunRendersOnlyTheFramesAskedFor) {
   EXPECT_FALSE(std::filesystem::exists(folder_ / "out/msaa_1/frame_0000.exr"));
 }
 
+TEST_F(ProgramTest, ATechniqueWithAHistorySaysThatOneFrameHasNone) {
+  const Outcome outcome =
+      run_program({"run", path("trace.json"), "-t", "taa:8", "msaa:1", "--frames", "0", "-o", path("out")});
+  EXPECT_EQ(outcome.exit_code, 0);
+  EXPECT_EQ(outcome.err, "beampipe: note: taa:8 works over several frames; the first one has no history\n");
+  succeed({"run", path("trace.json"), "-t", "taa:8", "-o", path("out")});
+}
+
 TEST_F(ProgramTest, ASecondRunReplacesTheFirst) {
   succeed({"run", path("trace.json"), "-t", "msaa:1", "-o", path("out")});
   const std::string image = read_text(folder_ / "out/msaa_1/frame_0000.exr");
