@@ -68,9 +68,13 @@ TEST(Technique, WrongSpecsSayWhatWouldBeRight) {
   const std::string of_dvm = "; it has blend, seed and material";
   for (const auto& [spec, error] : std::map<std::string, std::string>{
            {"", names},
-           {"bean", names},
-           {"beam ", names},
-           {"bean:bits=64", names},
+           {"wireframe", names},
+           {"bean", names + " (did you mean 'beam'?)"},
+           {"beam ", names + " (did you mean 'beam'?)"},
+           {"bean:bits=64", names + " (did you mean 'beam'?)"},
+           {"msaa:8,prepas",
+            "msaa:N has no option 'prepas' (did you mean 'prepass'?); it has color, at, alpha, prepass, "
+            "motion and resolve"},
            {"msaa", msaa_rates},
            {"msaa:", msaa_rates},
            {"msaa:3", msaa_rates},
