@@ -44,6 +44,8 @@ TEST_F(ProgramTest, EveryMistakeIsOneLineAndLeavesNothing) {
       {{"run", "/dev/zero", "-t", "beam", "-o", out}, 1, "expected a regular file"},
       {{"run", trace, "-t", "beam", "-o", out, "--hardware", path("piped/report.json")}, 1, "expected a regular file"},
       {{"run", trace, "-t", "beam", "-o", out, "--hardware", "/dev/zero"}, 1, "expected a regular file"},
+      {{"run", trace, "-t", "beam", "-o", out, "--hardware", "titan"}, 1, "or one of titan_v"},
+      {{"run", trace, "-t", "beam", "-o", out, "--hardware", "mali_g720"}, 1, "did you mean 'mali_g710'"},
       {{"run", trace, "-t", "beam", "-o", out, "--hardware", "titan_v,titan_v"}, 1, "found titan_v twice"},
       {{"run", trace, "-t", "beam", "-o", out, "--material-cost", "1,2,3,4"}, 2, "expected OPERATIONS[,FETCHES"},
       {{"run", trace, "-t", "beam", "-o", out, "--light-cost", "x"}, 2, "expected OPERATIONS[,FETCHES"},
