@@ -20,9 +20,11 @@ def claims(program, folders, operations):
         [program, "claims", *folders, "--material-cost", str(operations), "--light-cost", str(operations / 2)],
         check=True, capture_output=True, text=True).stdout
     found = {}
-    for line in text.splitlines()[2:]:
+    for line in text.split("\n## ")[0].splitlines():  # what was rendered; formats and constants follow
+        if not line.startswith("|"):
+            continue
         name, _, published, ours = [cell.strip() for cell in line.strip("|").split("|")][:4]
-        if ours:
+        if re.fullmatch(r"[-+.e\d]+", ours) and re.search(r"\d", ours):
             found[name] = ([float(part) for part in published.replace(" or more", "").split(" to ")], float(ours))
     return found
 

@@ -50,6 +50,8 @@ void expect_same(const FrameResult& a, const FrameResult& b, const std::string& 
   EXPECT_EQ(a.image.rgba, b.image.rgba) << what;
   EXPECT_EQ(a.pixel_counters, b.pixel_counters) << what;
   EXPECT_EQ(a.stages, b.stages) << what;
+  for (std::size_t i = 0; i < a.stages.size() && i < b.stages.size(); ++i)
+    EXPECT_EQ(a.stages[i].ops.wide, b.stages[i].ops.wide) << what << ": " << a.stages[i].stage;
   EXPECT_EQ(a.a_buffer_peak_bytes, b.a_buffer_peak_bytes) << what;
   EXPECT_EQ(a.buffers, b.buffers) << what;
 }

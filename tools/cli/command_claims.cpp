@@ -36,6 +36,8 @@ void print_claims(const ClaimsArguments& arguments) {
     for (const Json& found : answered.elements()) take(found, claims);
   }
   find_quotients(claims);
+  if (!arguments.hardware.hardware.empty())
+    std::cout << "Times are modelled with " << all.front().name << ", also where a row names another GPU.\n\n";
   std::cout << claims_text(claims);
 }
 
@@ -46,10 +48,11 @@ void add_claims_command(CommandLine& line) {
   Command command = line.add_command("claims", "Compare the numbers that publications state with ours");
   command.add("DIR", arguments->folders,
               "folders that run or compare wrote; the numbers that need rendering come from their reports");
-  add_hardware_options(command, arguments->hardware);
+  add_hardware_options(command, arguments->hardware, HardwareCount::one);
   command.footer(
-      "Prints two Markdown tables, of what was rendered and of what is true by definition. Each row names the command whose folder has our number, or says why there is none. If\n"
-      "several folders have the number, it comes from the first of them.\n\nExample:\n"
+      "Prints two Markdown tables, of what was rendered and of what is true by definition. Each row\n"
+      "names the command whose folder has our number, or says why there is none. If several folders\n"
+      "have the number, it comes from the first of them. Folders are matched by the name of the trace.\n\nExample:\n"
       "  beampipe make classroom -o classroom.json\n"
       "  beampipe run classroom.json -t msaa:1,prepass -t msaa:8,color=rgba16f,prepass -t acaa:8 -o out/acaa\n"
       "  beampipe claims out/acaa");

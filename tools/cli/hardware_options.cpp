@@ -27,11 +27,12 @@ ShadingCost parse_cost(const std::string& option, const std::string& text) {
 
 }  // namespace
 
-void add_hardware_options(Command& command, HardwareOptions& options) {
+void add_hardware_options(Command& command, HardwareOptions& options, HardwareCount count) {
+  const std::string several =
+      count == HardwareCount::several ? "; several with commas between them are shown side by side" : "";
   command.add("--hardware", options.hardware,
               "the hardware whose times are modelled: " + list_of(hardware_names(), "or") +
-                  ", or a file that describes one; several with commas between them are shown side by side (default: " +
-                  hardware_names().front() + ")");
+                  ", or a file that describes one" + several + " (default: " + hardware_names().front() + ")");
   command.add("--material-cost", options.material_cost,
               "OPERATIONS[,FETCHES[,REGISTERS]]: what each invocation of a fragment shader costs beside the materials "
               "of the trace, in modelled times");

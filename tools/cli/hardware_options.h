@@ -16,8 +16,10 @@ struct HardwareOptions {
   bool operator==(const HardwareOptions&) const = default;
 };
 
+enum class HardwareCount { one, several };  // that the command can show
+
 // `options` must live until the command line is parsed.
-void add_hardware_options(Command& command, HardwareOptions& options);
+void add_hardware_options(Command& command, HardwareOptions& options, HardwareCount count = HardwareCount::several);
 
 // At least one. Throws UsageError, or what reading a description throws.
 std::vector<Hardware> read_hardware(const HardwareOptions& options);

@@ -60,8 +60,12 @@ MemoryTrace::MemoryTrace(const MemoryTraceArguments& arguments, const RunArgumen
                      std::to_string(plan.techniques.size()) + ", frames: " + std::to_string(plan.frames.size()));
   if (!plan.options.memory.modelled)
     throw UsageError(option + ": without a model of memory there are no requests; leave out --no-memory-model");
+  if (plan.techniques.front().spec == "reference")
+    throw UsageError(option + ": the reference makes no requests; name another technique");
   if (run.resume) throw UsageError(option + ": a resumed run does not draw its frames again; leave out --resume");
   file_ = file_beside_output(option, arguments.file, run);
+  if (!run.trace_events.empty() && file_ == file_beside_output("--trace-events", run.trace_events, run))
+    throw UsageError(option + " and --trace-events name the same file");
   format_ = arguments.format;
   constexpr double kCyclesPerSecond = 1e9;
   bytes_per_cycle_ = plan.hardware.rates.at("dram_bytes_per_clk") * plan.hardware.clock_mhz * 1e6 / kCyclesPerSecond;

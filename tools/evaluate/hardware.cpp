@@ -208,6 +208,7 @@ std::vector<std::string> hardware_names() {
 Hardware titan_v() { return read_hardware("titan_v"); }
 
 Hardware read_hardware(const std::string& name_or_file) {
+  if (name_or_file.empty()) throw std::runtime_error("--hardware: expected names or files, found an empty one");
   for (const BuiltInHardware& each : kBuiltInHardware) {
     if (name_or_file != each.name) continue;
     const std::string file = std::string("the built-in description ") + each.name;
