@@ -102,7 +102,7 @@ GROWTH = {
     "layers per pixel": [("stack", ["--triangles", str(n), "--width", "64", "--height", "36"], n)
                             for n in (1, 10, 100, 1000, 10_000)],
 }
-GROWING = ["beam", "beam:order=sorted", "beam:order=stream", "msaa:8", "msaa:32"]
+GROWING = ["beam:order=sorted", "beam:order=stream,passes=0", "msaa:8", "msaa:32"]
 
 
 def peak_memory(program, trace, spec, folder):
