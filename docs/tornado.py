@@ -17,7 +17,7 @@ import tempfile
 
 BASE = "beam:rules=paper"
 PUBLISHED = {"msaa:32": 24.0 / 30.2, "msaa:128": 78.0 / 30.2, "msaa:256": 198.0 / 30.2}
-DESCRIPTION = pathlib.Path(__file__).parent.parent / "tools/evaluate/hardware/titan_v.json"
+DESCRIPTION = pathlib.Path(__file__).resolve().parent.parent / "tools/evaluate/hardware/titan_v.json"
 DRAWS, SEED, TOLERANCE = 4000, 1, 0.2
 
 
