@@ -75,7 +75,7 @@ def stack_table(program, camera):
 if __name__ == "__main__":
     if len(sys.argv) == 3 and sys.argv[2] == "--stack":
         stack_table(sys.argv[1], {})
-        print("\nFrom afar, where each covers parts of four pixels:\n")
+        print("\nFrom afar:\n")
         stack_table(sys.argv[1], {"eye": [0, 0, 300], "far": 400})
     elif len(sys.argv) > 3 and sys.argv[2] == "--places":
         places_table(sys.argv[1], sys.argv[3:])
