@@ -6,11 +6,8 @@ usage: docs/scene_traces.py PROGRAM [MODELS] WIDTH HEIGHT -o FOLDER
 PROGRAM is for instance beampipe. MODELS has the models, each as NAME.obj or NAME.obj.xz, with NAME.mtl. Writes
 FOLDER/NAME.json for each scene, and for each model that is there.
 """
-import lzma
 import pathlib
-import shutil
 import sys
-import tempfile
 
 import measure
 
@@ -28,15 +25,8 @@ CAMERAS = {  # eye, target, fovy in degrees, near, far; up is y
 
 def make_model(program, models, name, trace, *options):
     eye, target, fovy, near, far = CAMERAS[name]
-    packed, model = models / f"{name}.obj.xz", models / f"{name}.obj"
-    with tempfile.TemporaryDirectory() as scratch:
-        if packed.exists() and not model.exists():
-            model = pathlib.Path(scratch) / model.name
-            with lzma.open(packed) as source, open(model, "wb") as to:
-                shutil.copyfileobj(source, to)
-            if (models / f"{name}.mtl").exists():
-                shutil.copy(models / f"{name}.mtl", scratch)
-        if model.exists():
+    with measure.unpacked(models / f"{name}.obj") as model:
+        if pathlib.Path(model).exists():
             measure.make(program, model, trace, "--materials", "none", f"--eye={eye}", f"--target={target}", "--fovy",
                          str(fovy), "--near", str(near), "--far", str(far), "--background", "0.25,0.45,0.8", *options)
 
