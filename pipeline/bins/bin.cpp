@@ -7,12 +7,9 @@
 namespace beampipe {
 
 void BinStage::copies(std::string_view from, std::string_view to, int times, std::uint64_t bytes) const {
-  const auto sectors = [](std::uint64_t of) {
-    return (of + MemoryParameters::sector_bytes - 1) / MemoryParameters::sector_bytes;
-  };
   for (std::uint64_t i = 0; i < 2 * static_cast<std::uint64_t>(times); ++i)
     stream(memory_, i % 2 == 0 ? DramAccess::read : DramAccess::write, {i % 2 == 0 ? from : to},
-           (sectors((i + 1) * bytes) - sectors(i * bytes)) * MemoryParameters::sector_bytes, counters);
+           (memory_.sectors((i + 1) * bytes) - memory_.sectors(i * bytes)) * memory_.sector_bytes, counters);
 }
 
 Bin::Bin(const FrameContext& frame_context, const Tile& bin_tile, const TriangleList& triangles,
