@@ -176,6 +176,7 @@ class FrameRecorder {
         peak = std::max(peak, bytes);
       }
       result_.a_buffer_peak_bytes += bin.a_buffer_bytes();
+      result_.cache_reach.add(bin.cache_reach());
       passes_ = std::max(passes_, bin.geometry_passes(Pass::main));
       prepasses_ = std::max(prepasses_, bin.geometry_passes(Pass::prepass));
       for (std::size_t i = 0; i < bin.geometry_pass_starts().size(); ++i) {

@@ -31,7 +31,7 @@ BlockCache::BlockCache(const MemoryParameters& memory, const CacheParameters& ca
   if (sectors == 0 || sectors > kMaxBlockSectors || block_bytes > cache.line_bytes)
     throw std::invalid_argument("a block must fill at least one sector and at most one cache line");
   all_sectors_ = static_cast<Sectors>((1u << sectors) - 1);
-  sets_ = std::max<std::size_t>(cache.bytes / (cache.line_bytes * cache.ways), 1);
+  sets_ = cache.sets();
   has_line_for_each_ = blocks <= sets_ * ways_;
   if (!modelled_) return;
   if (memory.compression) compressed_bytes_ = std::move(compressed_bytes);

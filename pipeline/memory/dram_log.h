@@ -66,9 +66,10 @@ class DramLog {
   std::uint8_t last_stage_ = 0;  // number of the stage that asked last
 };
 
-// The memory system as a bin uses it: the parameters, and where its DRAM requests are recorded.
+// The memory system as a bin uses it: the parameters, and where it records its DRAM requests and the reach of caches.
 struct MemorySystem : MemoryParameters {
-  DramLog* log = nullptr;  // null: nowhere
+  DramLog* log = nullptr;       // null: nowhere
+  CacheReach* reach = nullptr;  // likewise
 
   MemorySystem(const MemoryParameters& parameters = {}, DramLog* requests = nullptr)
       : MemoryParameters(parameters), log(requests) {}

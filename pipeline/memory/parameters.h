@@ -18,7 +18,21 @@ namespace beampipe {
 // sector by sector. It has as many sets as fit, and at least one.
 struct CacheParameters {
   std::uint32_t bytes, ways, line_bytes;
+
+  std::uint32_t sets() const { return std::max(bytes / (line_bytes * ways), 1u); }
+  std::uint64_t held_bytes() const { return std::uint64_t{sets()} * ways * line_bytes; }
   bool operator==(const CacheParameters&) const = default;
+};
+
+// The most bytes of memory that any one cache of each kind stands before. A cache that holds as many never evicts
+// anything, so that another one that holds as many moves the same bytes.
+struct CacheReach {
+  std::uint64_t rop = 0, l1 = 0, l2 = 0;
+
+  void add(const CacheReach& other) {
+    rop = std::max(rop, other.rop), l1 = std::max(l1, other.l1), l2 = std::max(l2, other.l2);
+  }
+  bool operator==(const CacheReach&) const = default;
 };
 
 // Where the pixels of a bin are kept while it is drawn: on chip, as in tile-based rendering, so that only the finished

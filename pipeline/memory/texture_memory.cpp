@@ -13,9 +13,7 @@ std::uint64_t bytes_of(Sectors sectors, std::uint32_t sector_bytes) {
 }  // namespace
 
 ReadCache::ReadCache(const CacheParameters& parameters)
-    : sets_(std::max<std::size_t>(parameters.bytes / (parameters.line_bytes * parameters.ways), 1)),
-      ways_(parameters.ways),
-      lines_(sets_ * ways_) {}
+    : sets_(parameters.sets()), ways_(parameters.ways), lines_(sets_ * ways_) {}
 
 Sectors ReadCache::read(std::uint64_t line, Sectors sectors) {
   Line* const set = &lines_[line % sets_ * ways_];

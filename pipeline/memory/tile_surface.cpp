@@ -68,6 +68,10 @@ TileSurface::TileSurface(const MemorySystem& memory, std::string_view name, cons
                    })
                  : nullptr,
              BlockPlaces(memory, name, true)) {
+  if (memory.reach) {
+    const std::uint64_t bytes = std::uint64_t{cache_.blocks()} * cache_of(memory, level).line_bytes;
+    memory.reach->add(level == BlockCache::Level::rop ? CacheReach{.rop = bytes} : CacheReach{.l2 = bytes});
+  }
   if (!touched_bytes_.empty())
     part_sectors_ =
         part_sectors(1u << log2_elements_per_block_, parts, part_bytes, std::countr_zero(memory.sector_bytes));

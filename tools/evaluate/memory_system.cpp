@@ -28,34 +28,6 @@ void set_place(MemoryParameters& memory, const JsonCursor& value) {
                                     : std::optional(Place::in_memory);
 }
 
-// What parameters require of each other.
-struct Conflict {
-  const char* name;
-  std::string expected;
-  std::uint32_t found;
-};
-
-std::optional<Conflict> find_conflict(const MemoryParameters& memory) {
-  const auto line = [&](const char* name, const CacheParameters& cache) -> std::optional<Conflict> {
-    const std::uint32_t most = kMaxBlockSectors * memory.sector_bytes;
-    if (cache.line_bytes >= memory.sector_bytes && cache.line_bytes <= most) return std::nullopt;
-    return Conflict{name, "1 to 8 sectors, " + std::to_string(memory.sector_bytes) + " to " + std::to_string(most),
-                    cache.line_bytes};
-  };
-  const auto room = [&](const char* name, const CacheParameters& cache) -> std::optional<Conflict> {
-    const std::uint32_t least = cache.ways * cache.line_bytes;
-    if (cache.bytes >= least) return std::nullopt;
-    return Conflict{name,
-                    "room for one set of " + std::to_string(cache.ways) + " ways x " +
-                        std::to_string(cache.line_bytes) + " bytes, at least " + std::to_string(least),
-                    cache.bytes};
-  };
-  for (const auto& conflict : {line("line_bytes", memory.l2), line("rop_line_bytes", memory.rop),
-                               room("l1_bytes", memory.l1), room("l2_bytes", memory.l2), room("rop_bytes", memory.rop)})
-    if (conflict) return conflict;
-  return std::nullopt;
-}
-
 }  // namespace
 
 const std::vector<MemoryParameter>& memory_parameters() {
@@ -111,13 +83,35 @@ Json parameters_json(const MemoryParameters& memory) {
   return json;
 }
 
+std::optional<MemoryConflict> find_conflict(const MemoryParameters& memory) {
+  const auto line = [&](const char* name, const CacheParameters& cache) -> std::optional<MemoryConflict> {
+    const std::uint32_t most = kMaxBlockSectors * memory.sector_bytes;
+    if (cache.line_bytes >= memory.sector_bytes && cache.line_bytes <= most) return std::nullopt;
+    return MemoryConflict{name,
+                          "1 to 8 sectors, " + std::to_string(memory.sector_bytes) + " to " + std::to_string(most),
+                          cache.line_bytes};
+  };
+  const auto room = [&](const char* name, const CacheParameters& cache) -> std::optional<MemoryConflict> {
+    const std::uint32_t least = cache.ways * cache.line_bytes;
+    if (cache.bytes >= least) return std::nullopt;
+    return MemoryConflict{name,
+                          "room for one set of " + std::to_string(cache.ways) + " ways x " +
+                              std::to_string(cache.line_bytes) + " bytes, at least " + std::to_string(least),
+                          cache.bytes};
+  };
+  for (const auto& conflict : {line("line_bytes", memory.l2), line("rop_line_bytes", memory.rop),
+                               room("l1_bytes", memory.l1), room("l2_bytes", memory.l2), room("rop_bytes", memory.rop)})
+    if (conflict) return conflict;
+  return std::nullopt;
+}
+
 void set_parameters(MemoryParameters& memory, const JsonCursor& values) {
   std::vector<std::string_view> names;
   for (const MemoryParameter& parameter : memory_parameters()) names.push_back(parameter.name);
   values.expect_keys(names);
   for (const MemoryParameter& parameter : memory_parameters())
     if (const auto value = values.find(parameter.name)) parameter.set(memory, *value);
-  if (const std::optional<Conflict> conflict = find_conflict(memory)) {
+  if (const std::optional<MemoryConflict> conflict = find_conflict(memory)) {
     const auto value = values.find(conflict->name);  // else what it conflicts with was set
     (value ? *value : values)
         .fail((value ? "" : std::string(conflict->name) + " of ") + conflict->expected,

@@ -4,6 +4,8 @@
 // system's, each with its source or marked as a choice.
 #pragma once
 
+#include <cstdint>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -26,6 +28,14 @@ const std::vector<MemoryParameter>& memory_parameters();
 
 // All parameters by name.
 Json parameters_json(const MemoryParameters& memory);
+
+// Where parameters do not fit together.
+struct MemoryConflict {
+  const char* name;  // of the parameter that would have to change
+  std::string expected;
+  std::uint32_t found;
+};
+std::optional<MemoryConflict> find_conflict(const MemoryParameters& memory);
 
 // Sets the parameters that are members of the object `values`, by name. Throws TraceError, one line that names the key,
 // if there is no such parameter, if a value is out of range, or if the values do not fit together.
