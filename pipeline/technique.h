@@ -77,6 +77,7 @@ struct FrameResult {
   std::uint64_t a_buffer_peak_bytes = 0;
   std::vector<Buffer> buffers;   // all but the A-buffer
   std::uint32_t bin_pixels = 0;  // of the largest bin
+  CacheReach cache_reach;
 };
 
 struct Technique {

@@ -228,6 +228,8 @@ std::vector<std::string> hardware_names() {
   return names;
 }
 
+std::span<const std::string_view> hardware_rates() { return {kRates.begin(), kRates.size()}; }
+
 Hardware titan_v() { return read_hardware("titan_v"); }
 
 Hardware read_hardware(const std::string& name_or_file) {

@@ -9,7 +9,9 @@
 
 #include <filesystem>
 #include <map>
+#include <span>
 #include <string>
+#include <string_view>
 #include <vector>
 
 #include "stages/cost/counters.h"
@@ -43,6 +45,9 @@ struct Hardware {
 // The names of the built-in descriptions, the default one first.
 std::vector<std::string> hardware_names();
 Hardware titan_v();
+
+// The names of the rates, in the order of the file.
+std::span<const std::string_view> hardware_rates();
 
 // A built-in name or a file. Throws TraceError, one line that names the file, the key, what was expected and what was
 // found.

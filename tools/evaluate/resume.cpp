@@ -6,6 +6,7 @@
 
 #include "simd/target.h"
 #include "tools/evaluate/frame_json.h"
+#include "tools/evaluate/memory_system.h"
 #include "tools/files/digest.h"
 #include "traces/trace_io.h"
 
@@ -17,8 +18,10 @@ namespace fs = std::filesystem;
 constexpr const char* kFolder = "unfinished";
 
 // How messages name what made_by holds only as a digest.
-const std::map<std::string, std::string> kDigested = {
-    {"program", "another build of beampipe"}, {"trace", "another trace"}, {"hardware", "another --hardware"}};
+const std::map<std::string, std::string> kDigested = {{"program", "another build of beampipe"},
+                                                      {"trace", "another trace"},
+                                                      {"hardware", "another --hardware"},
+                                                      {"memory_system", "another --memory-system"}};
 
 Json record_of(const FrameReport& frame) {
   Json json = to_json(frame, TechniqueReport{}, Hardware{});
@@ -109,6 +112,7 @@ Json made_by(const std::string& command, const RunPlan& plan, const Json& more) 
                {"compression", plan.options.memory.compression},
                {"framebuffer", name_of(plan.options.memory.framebuffer)},
                {"on_chip_bytes", plan.options.memory.on_chip_bytes},
+               {"memory_system", digest_of(parameters_json(plan.options.memory).dump())},
                {"hardware", digest_of(hardware_text(plan))}};
   for (const auto& [name, value] : more.members()) json[name] = value;
   return json;

@@ -67,7 +67,7 @@ Json to_json(const MemoryParameters& memory) {
           {"l1_cache", to_json(memory.l1)},
           {"l2_cache", to_json(memory.l2)},
           {"plane_bytes", memory.plane_bytes},
-          {"bin_pixels", kBinSize},
+          {"bin_pixels", memory.bin_pixels},
           {"framebuffer", name_of(memory.framebuffer)},
           {"on_chip_bytes", memory.on_chip_bytes}};
 }
