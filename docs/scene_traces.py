@@ -26,9 +26,10 @@ CAMERAS = {  # eye, target, fovy in degrees, near, far; up is y
 def make_model(program, models, name, trace, *options):
     eye, target, fovy, near, far = CAMERAS[name]
     with measure.unpacked(models / f"{name}.obj") as model:
-        if pathlib.Path(model).exists():
-            measure.make(program, model, trace, "--materials", "none", f"--eye={eye}", f"--target={target}", "--fovy",
-                         str(fovy), "--near", str(near), "--far", str(far), "--background", "0.25,0.45,0.8", *options)
+        if not pathlib.Path(model).exists():
+            sys.exit(f"{models}: expected {name}.obj or {name}.obj.xz, found neither")
+        measure.make(program, model, trace, "--materials", "none", f"--eye={eye}", f"--target={target}", "--fovy",
+                     str(fovy), "--near", str(near), "--far", str(far), "--background", "0.25,0.45,0.8", *options)
 
 
 def main(program, models, width, height, folder):

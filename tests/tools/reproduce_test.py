@@ -116,5 +116,65 @@ class Reproduce(unittest.TestCase):
         self.assertIn("| 5 |", self.page.read_text())
 
 
+    def test_measured_tables_are_measured_again(self):
+        self.page.write_text(block("", "beampipe make 7 -o t.json\nbeampipe show t.json", kind="measured"))
+        self.run_it()
+        self.run_it()
+        self.assertEqual(self.calls(), ["make 7 -o t.json", "show t.json", "show t.json"])
+
+    def test_other_models_make_another_table(self):
+        self.page.write_text(block("", "beampipe show $MODELS/m"))
+        for value in ("5", "6"):
+            models = self.folder / f"models{value}"
+            models.mkdir()
+            (models / "m").write_text(f"{value}\n")
+            self.run_it("--models", models)
+            self.assertIn(f"| {value} |", self.page.read_text())
+
+    def test_broken_markers_stop_the_page(self):
+        good = block("| 1 |\n", "beampipe make 7 -o t.json\nbeampipe show t.json")
+        for broken in (good.replace("<!-- end -->\n\n", "<!-- end -->\n\nProse.\n"), good.replace("<!-- end -->\n", ""),
+                       "<!-- end -->\n" + good):
+            text = broken + "\nImportant prose.\n\n" + good
+            self.page.write_text(text)
+            found = self.run_it()
+            self.assertEqual(found.returncode, 1, broken)
+            self.assertIn("expected each table between its two markers", found.stderr)
+            self.assertEqual(self.page.read_text(), text)
+
+    def test_edits_made_meanwhile_stay(self):
+        commands = f"beampipe make 7 -o t.json\necho 'Edited.' >> {self.page}; beampipe show t.json"
+        self.page.write_text(block("", commands))
+        self.assertEqual(self.run_it().returncode, 0)
+        self.assertIn("| 7 |", self.page.read_text())
+        self.assertTrue(self.page.read_text().endswith("Edited.\n"))
+
+    def test_a_command_without_output_does_not_empty_its_table(self):
+        for command in ("true", "false | cat"):
+            before = block("| old |\n", command)
+            self.page.write_text(before)
+            self.assertEqual(self.run_it().returncode, 1)
+            self.assertEqual(self.page.read_text(), before)
+
+    def test_a_page_without_tables_is_an_error_if_it_was_named(self):
+        self.page.write_text("Prose.\n")
+        self.assertEqual(self.run_it("--check").returncode, 1)
+
+    def test_a_linked_page_stays_a_link(self):
+        target = self.folder / "target.md"
+        target.write_text(block("", "beampipe make 7 -o t.json\nbeampipe show t.json"))
+        self.page.symlink_to(target)
+        self.run_it()
+        self.assertTrue(self.page.is_symlink())
+        self.assertIn("| 7 |", target.read_text())
+
+    def test_the_sources_are_no_working_folder(self):
+        self.page.write_text(block("", "true"))
+        found = subprocess.run([sys.executable, REPRODUCE, "--program", self.program, "--work", REPRODUCE.parent.parent,
+                                self.page], capture_output=True, text=True)
+        self.assertEqual(found.returncode, 2)
+        self.assertIn("expected a folder for work, found that of the sources", found.stderr)
+
+
 if __name__ == "__main__":
     unittest.main()

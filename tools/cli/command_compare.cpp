@@ -45,6 +45,7 @@ void compare(const RunArguments& arguments, const CompareOptions& options, Inter
   OutputFolder output(arguments.output, gate);
   output.lock();
   Comparison comparison(options, std::move(plan), output);
+  if (!arguments.force && !arguments.resume) comparison.require_own_folder();
   if (arguments.resume) {
     if (comparison.is_finished()) return tell_finished(output);
     tell_resumption(comparison.plan(), comparison.resume());

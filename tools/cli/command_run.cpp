@@ -24,6 +24,7 @@ void run(const RunArguments& arguments, const MemoryTraceArguments& trace_argume
   require_writable_folders(output, plan.techniques);
   const auto maker = made_by("run", plan, Json::object());
   FrameRecords records(output, maker);
+  if (!arguments.force && !arguments.resume) records.require_own_folder();
   std::vector<FrameRecord> finished;
   if (arguments.resume) {
     if (records.is_finished()) return tell_finished(output);

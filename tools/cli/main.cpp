@@ -66,6 +66,8 @@ int run(int argc, char** argv, beampipe::InterruptGate& gate) {
   beampipe::add_export_soup_command(line, gate);
   beampipe::add_make_command(line, gate);
   beampipe::add_capture_command(line);
+  beampipe::add_completion_command(line);
+  beampipe::add_man_command(line);
   line.run(argc, argv);
   std::cout.flush();
   if (!std::cout) return report_error("cannot write to standard output", kRuntimeError);

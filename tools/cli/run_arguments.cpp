@@ -73,6 +73,7 @@ void add_run_arguments(Command& command, RunArguments& arguments) {
       .between(1, 1000000);
   command.add_flag("--resume", arguments.resume,
                    "continue a stopped run: keep the finished frames that the same command left in the folder");
+  command.add_flag("--force", arguments.force, "write over the results of another trace or command in the folder");
   add_hardware_options(command, arguments.hardware);
   command.add(
       "--trace-events", arguments.trace_events,

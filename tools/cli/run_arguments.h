@@ -23,7 +23,7 @@ struct RunArguments {
   std::string framebuffer;          // empty: as the memory system says
   std::uint64_t on_chip_bytes = 0;  // 0: as the memory system says
   int threads = 0, repeat = 1;
-  bool allow_outside = false, no_memory_model = false, no_compression = false, resume = false;
+  bool allow_outside = false, no_memory_model = false, no_compression = false, resume = false, force = false;
 };
 
 // `arguments` must live until the command line is parsed.

@@ -28,7 +28,7 @@ using Clocks = std::function<double(const Rates& rates, const StageWork& stage)>
 
 constexpr double kProbeBytes = 16;  // a bilinear probe: four texels of 4 bytes
 
-// Not a unit: it marks the stages that work on what a bin has on chip.
+// Not a unit: it marks the stages that work on the pixels of a bin, which may be on chip.
 constexpr const char* kOnChip = "on_chip";
 
 double over(double work, double rate) { return work / rate; }
@@ -48,7 +48,7 @@ double shader_clocks(const Rates& rates, const StageWork& s) {
                    over(s.logical_bytes() - s.texture_bytes, rates.at("on_chip_bytes_per_clk"))});
 }
 
-// What is read and written where pixels are, by bytes of the formats: behind the ROP's caches, or in the memory of the
+// What is read and written where pixels are, by bytes of the formats: through the ROP's caches, or in the memory of the
 // cores.
 double pixel_clocks(const Rates& rates, const StageWork& s) {
   return over(s.logical_bytes(), rates.at(s.pixels_on_chip ? "on_chip_bytes_per_clk" : "rop_bytes_per_clk"));
@@ -143,6 +143,8 @@ std::vector<std::string> read_units(const JsonCursor& stage) {
     for (const auto& [name, clocks] : units()) known += ", " + name;
     unit.fail("one of the units " + known);
   }
+  const auto has = [&](const char* name) { return std::find(names.begin(), names.end(), name) != names.end(); };
+  if (has("shader") && has("shading")) stage.fail("shader or shading, which are the same lanes", "both");
   return names;
 }
 
@@ -181,7 +183,8 @@ Json to_json(const ShadingCost& cost) {
 StageCounters with_costs(const Hardware& hardware, const StageCounters& stage, bool has_light, double& registers) {
   StageCounters priced = stage;
   const auto add = [&](const ShadingCost& cost) {
-    const double invocations = static_cast<double>(stage.lanes_issued);
+    constexpr double kMostInvocations = 1e11;  // so that nothing overflows, whatever a damaged report says
+    const double invocations = std::min(static_cast<double>(stage.lanes_issued), kMostInvocations);
     priced.ops.mul_add += static_cast<std::uint64_t>(invocations * cost.operations / 2);
     priced.ops.add += static_cast<std::uint64_t>(invocations * cost.operations / 2);
     const auto texels = static_cast<std::uint64_t>(invocations * cost.fetches * kProbeBytes);
@@ -195,9 +198,9 @@ StageCounters with_costs(const Hardware& hardware, const StageCounters& stage, b
 }
 
 std::map<std::string, double> times_of(const Hardware& hardware, const Implementation& implementation,
-                                       const StageCounters& unpriced, bool has_light, const BinMemory& bin) {
+                                       const StageCounters& unpriced, bool has_light, double bin_bytes) {
   double registers = 0;
-  const StageWork stage{with_costs(hardware, unpriced, has_light, registers), bin.has_pixels};
+  const StageWork stage{with_costs(hardware, unpriced, has_light, registers), bin_bytes > 0};
   const Rates& rates = hardware.rates;
   const double clocks_per_ms = hardware.clock_mhz * 1e3;
   std::map<std::string, double> times;
@@ -209,14 +212,14 @@ std::map<std::string, double> times_of(const Hardware& hardware, const Implement
   if (const auto shading = times.find("shading"); shading != times.end())
     shading->second *= std::max(1.0, registers / rates.at("registers_at_full_rate"));
   const double room = rates.at("on_chip_bytes_per_core"), wanted = rates.at("bins_per_core");
-  if (on_chip && bin.bytes > 0) {
-    const double held = std::clamp(std::floor(room / bin.bytes), 1.0, std::max(wanted, 1.0));
+  if (on_chip && bin_bytes > 0) {
+    const double held = std::clamp(std::floor(room / bin_bytes), 1.0, std::max(wanted, 1.0));
     for (auto& [unit, ms] : times) ms *= std::max(wanted / held, 1.0);
   }
   use("l2");
   use("dram");
-  if (on_chip && bin.bytes > room)
-    times["l2"] += over(stage.logical_bytes(), rates.at("l2_bytes_per_clk")) * (1 - room / bin.bytes) / clocks_per_ms;
+  if (on_chip && bin_bytes > room)
+    times["l2"] += over(stage.logical_bytes(), rates.at("l2_bytes_per_clk")) * (1 - room / bin_bytes) / clocks_per_ms;
   return times;
 }
 
@@ -306,18 +309,18 @@ Hardware with_shading_costs(const Hardware& hardware, const ShadingCost& materia
 }
 
 std::map<std::string, double> unit_times(const Hardware& hardware, const Implementation& implementation,
-                                         const StageCounters& stage, const BinMemory& bin) {
-  return times_of(hardware, implementation, stage, false, bin);
+                                         const StageCounters& stage, double bin_bytes) {
+  return times_of(hardware, implementation, stage, false, bin_bytes);
 }
 
 ModelledTime modelled_time(const Hardware& hardware, const Implementation& implementation,
-                           const std::vector<StageCounters>& stages, const BinMemory& bin) {
+                           const std::vector<StageCounters>& stages, double bin_bytes) {
   const bool has_light = std::any_of(stages.begin(), stages.end(), [](const auto& s) { return s.stage == "light"; });
   ModelledTime time;
   std::map<std::string, double> busy;
   for (const StageCounters& stage : stages) {
     double longest = 0;
-    for (const auto& [unit, ms] : times_of(hardware, implementation, stage, has_light, bin)) {
+    for (const auto& [unit, ms] : times_of(hardware, implementation, stage, has_light, bin_bytes)) {
       busy[unit == "shading" ? "shader" : unit] += ms;  // the same lanes
       longest = std::max(longest, ms);
     }

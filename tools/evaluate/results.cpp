@@ -33,20 +33,20 @@ double TechniqueReport::peak_bytes_per_pixel() const {
   return framebuffer_bytes_per_pixel + most;
 }
 
-BinMemory FrameReport::bin_memory() const {
-  BinMemory bin;
-  for (const Buffer& buffer : buffers) {
-    if (!buffer.per_bin) continue;
-    bin.bytes += static_cast<double>(buffer.peak_bytes);
-    bin.has_pixels |= buffer.name == kOpenPixels;
-  }
-  return bin;
+double FrameReport::open_pixel_bytes() const {
+  double bytes = 0;
+  for (const Buffer& buffer : buffers)
+    if (buffer.name == kOpenPixels) bytes = static_cast<double>(buffer.peak_bytes);
+  return bytes;
 }
 
 double TechniqueReport::on_chip_bytes_per_pixel() const {
   double most = 0;
-  for (const FrameReport& frame : frames)
-    if (frame.bin_pixels > 0) most = std::max(most, frame.bin_memory().bytes / static_cast<double>(frame.bin_pixels));
+  for (const FrameReport& frame : frames) {
+    double bytes = 0;
+    for (const Buffer& buffer : frame.buffers) bytes += buffer.per_bin ? static_cast<double>(buffer.peak_bytes) : 0.0;
+    if (frame.bin_pixels > 0) most = std::max(most, bytes / static_cast<double>(frame.bin_pixels));
+  }
   return most;
 }
 

@@ -59,8 +59,8 @@ struct FrameReport {
   std::uint64_t pixels = 0;
   std::uint64_t bin_pixels = 0;  // of the largest bin
 
-  // All buffers that a bin has on chip, at their peaks.
-  BinMemory bin_memory() const;
+  // What the pixels of a bin take on chip; 0 if they are in memory.
+  double open_pixel_bytes() const;
 };
 
 // The same frames with their triangles in another order.

@@ -120,6 +120,21 @@ Json made_by(const std::string& command, const RunPlan& plan, const Json& more) 
 
 std::string frame_record_name(std::size_t frame) { return frame_stem(kFolder, frame) + ".json"; }
 
+void FrameRecords::require_own_folder() const {
+  std::vector<fs::path> files = list();
+  files.push_back(output_.path() / "report.json");
+  for (const fs::path& file : files) {
+    const Json other = maker_of(read_json(file));
+    if (!other.is_object()) continue;
+    for (const char* key : {"trace", "command"})
+      if (other.contains(key) && other.at(key) != maker_.at(key))
+        throw std::runtime_error(
+            output_.path().string() + ": expected a folder without results of another run, found those of " +
+            (key == std::string("trace") ? "another trace" : "beampipe " + other.at(key).get<std::string>()) +
+            "; --force writes over them");
+  }
+}
+
 bool FrameRecords::is_finished() {
   const Json report = read_json(output_.path() / "report.json");
   if (!report.is_object()) return false;

@@ -94,7 +94,7 @@ void for_each_time(const Report& report, const Use& use) {
       for (const Implementation& implementation : hardware.implementations) {
         MeanTime mean;
         for (const FrameReport& frame : result.frames) {
-          const ModelledTime time = modelled_time(hardware, implementation, frame.stages, frame.bin_memory());
+          const ModelledTime time = modelled_time(hardware, implementation, frame.stages, frame.open_pixel_bytes());
           mean.sum += time.sum_ms / static_cast<double>(result.frames.size());
           mean.overlap += time.overlap_ms / static_cast<double>(result.frames.size());
           if (mean.busiest.empty()) mean.busiest = time.busiest, mean.stages = time.stages;

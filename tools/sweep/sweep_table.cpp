@@ -110,7 +110,7 @@ void add_hardware(const SweepPlan& plan, const SweepRow& row, const TechniqueRep
   double overlap = 0, sum = 0, longest = -1;
   std::string busiest;
   for (const FrameReport& frame : report.frames) {
-    const ModelledTime time = modelled_time(hardware, implementation, frame.stages, frame.bin_memory());
+    const ModelledTime time = modelled_time(hardware, implementation, frame.stages, frame.open_pixel_bytes());
     overlap += time.overlap_ms, sum += time.sum_ms;
     if (time.overlap_ms > longest) longest = time.overlap_ms, busiest = time.busiest;
   }

@@ -2,7 +2,11 @@
 
 #include <gtest/gtest.h>
 
+#include <regex>
+
 #include "stages/cost/counter_registry.h"
+#include "tools/evaluate/results.h"
+#include "traces/scenes.h"
 
 namespace beampipe {
 namespace {
@@ -67,8 +71,12 @@ TEST(Hardware, EveryNumberHasASource) {
     EXPECT_EQ(hardware.label, name);
     const Json& sources = hardware.json.at("sources");
     EXPECT_GE(sources.at("clock_mhz").get<std::string>().size(), 4u);
-    for (const auto& [rate, value] : hardware.rates)
-      EXPECT_GE(sources.at(rate).get<std::string>().size(), 4u) << name << ", " << rate;
+    for (const auto& [rate, value] : hardware.rates) {
+      const std::string source = sources.at(rate).get<std::string>();
+      EXPECT_TRUE(
+          std::regex_search(source, std::regex("choice|see |\\(.*\\)|NVIDIA|Arm|AnandTech|MediaTek|Mesa|Volta|GB/s")))
+          << name << ", " << rate << ": " << source;
+    }
   }
 }
 
@@ -107,22 +115,41 @@ TEST(Hardware, FixedFunctionsFollowTheirWork) {
 }
 
 // 30720 bytes of pixels take 10 clocks of 96 ROPs, which move 32 each, and 3 of 80 cores, which move 128 each: those of
-// shaders, and of ROPs where the pixels are on chip. Texels have a rate of their own.
+// shaders, and of ROPs where the pixels are on chip. Texels, which have a rate of their own, do not count for shaders.
 TEST(Hardware, BytesOfPixelsMoveWhereThePixelsAre) {
   const Hardware titan = titan_v();
-  const auto of = [&](std::size_t implementation, const char* name, const char* unit, const BinMemory& bin) {
+  const auto of = [&](std::size_t implementation, const char* name, const char* unit, double bin_bytes) {
     StageCounters counters{name};
-    counters.bytes_read = 30720 + 1000, counters.texture_bytes = 1000;
-    return clocks(titan, unit_times(titan, titan.implementations.at(implementation), counters, bin).at(unit));
+    counters.bytes_read = 30720;
+    if (unit == std::string("shader")) counters.bytes_read += 1000, counters.texture_bytes = 1000;
+    return clocks(titan, unit_times(titan, titan.implementations.at(implementation), counters, bin_bytes).at(unit));
   };
-  const double in_rops = 31720.0 / 3072, on_chip = 31720.0 / 10240;
-  EXPECT_NEAR(of(1, "compose", "composer", {1024, false}), in_rops, 1e-6);
-  EXPECT_NEAR(of(1, "compose", "composer", {1024, true}), on_chip, 1e-6);
-  EXPECT_NEAR(of(0, "depth_test", "rop_samples", {1024, false}), in_rops, 1e-6);
-  EXPECT_NEAR(of(0, "depth_test", "rop_samples", {1024, true}), on_chip, 1e-6);
-  EXPECT_NEAR(of(0, "accumulate", "rop_fragments", {1024, true}), on_chip, 1e-6);
-  EXPECT_NEAR(of(0, "compose", "shader", {1024, true}), 3, 1e-6);
-  EXPECT_NEAR(of(0, "compose", "shader", {1024, false}), 3, 1e-6);
+  EXPECT_NEAR(of(1, "compose", "composer", 0), 10, 1e-6);
+  EXPECT_NEAR(of(1, "compose", "composer", 1024), 3, 1e-6);
+  EXPECT_NEAR(of(0, "depth_test", "rop_samples", 0), 10, 1e-6);
+  EXPECT_NEAR(of(0, "depth_test", "rop_samples", 1024), 3, 1e-6);
+  EXPECT_NEAR(of(0, "accumulate", "rop_fragments", 1024), 3, 1e-6);
+  EXPECT_NEAR(of(0, "compose", "shader", 0), 3, 1e-6);
+  EXPECT_NEAR(of(0, "compose", "shader", 1024), 3, 1e-6);
+}
+
+// What is on chip beside the pixels, such as closed depths, has memory of its own.
+TEST(Hardware, OnlyPixelsOnChipTakeRoomInCores) {
+  FrameReport frame;
+  frame.buffers = {{"closed_depth", 32 * 1024, true}, {"pair_queue", 500, true}};
+  EXPECT_EQ(frame.open_pixel_bytes(), 0);
+  frame.buffers.push_back({kOpenPixels, 160 * 1024, true});
+  EXPECT_EQ(frame.open_pixel_bytes(), 160 * 1024);
+  const Trace trace = make_scene("fence", {.triangles = 1000, .width = 40, .height = 40});
+  for (const auto& [spec, place, bytes] : {std::tuple{"msaa:8", Place::in_memory, 0},
+                                           {"msaa:8", Place::on_chip, 80 * 1024},
+                                           {"beam", Place::on_chip, 154 * 1024}}) {
+    RunOptions options;
+    options.memory.framebuffer = place;
+    FrameReport report;
+    report.buffers = parse_technique(spec).render(trace, 0, options).buffers;
+    EXPECT_EQ(report.open_pixel_bytes(), bytes) << spec;
+  }
 }
 
 // 5120 operations of 64 bits are issued twice and take two clocks of the integer lanes, which leaves nothing for the
@@ -144,7 +171,7 @@ TEST(Hardware, BinsThatDoNotFitStallAndSpill) {
   StageCounters counters{"compose"};
   counters.ops.bit = 102400;
   counters.bytes_read = 1536 * 100;
-  const auto times = [&](double kib) { return unit_times(titan, shaders, counters, {kib * 1024, true}); };
+  const auto times = [&](double kib) { return unit_times(titan, shaders, counters, kib * 1024); };
   EXPECT_NEAR(clocks(titan, times(40).at("shader")), 20, 1e-6);
   EXPECT_NEAR(clocks(titan, times(40).at("l2")), 0, 1e-6);
   EXPECT_NEAR(clocks(titan, times(80).at("shader")), 40, 1e-6);
