@@ -24,7 +24,10 @@ namespace {
 
 std::string escaped(const std::string& text) {
   std::string out;
-  for (const char c : text) out += c == '&' ? "&amp;" : c == '<' ? "&lt;" : c == '"' ? "&quot;" : std::string(1, c);
+  for (const char c : text) {
+    const bool is_control = c >= 0 && c < ' ' && c != '\n';  // XML has no such characters
+    out += c == '&' ? "&amp;" : c == '<' ? "&lt;" : c == '"' ? "&quot;" : std::string(1, is_control ? '?' : c);
+  }
   return out;
 }
 
@@ -140,8 +143,11 @@ std::string weight_bars(const std::vector<InspectedSurface>& surfaces, const Pix
     svg += rectangle(bars, y + 1, length_of(surface.weight), 12, format("fill=\"%s\"", color));
     svg += format("<line x1=\"%.1f\" x2=\"%.1f\" y1=\"%.1f\" y2=\"%.1f\" stroke=\"#000\" stroke-width=\"2\"/>\n", truth,
                   truth, y - 1, y + 15);
-    svg += text_at(bars + kBarWidth + 8, y + 12, format("%.4f", surface.weight)) +
-           text_at(bars + kBarWidth + 58, y + 12, format("%+.4f", surface.weight - surface.truth), "class=\"dim\"");
+    svg +=
+        text_at(bars + kBarWidth + 8, y + 12, format("%.4f", surface.weight)) +
+        text_at(bars + kBarWidth + 58, y + 12,
+                format("%+.4f", std::abs(surface.weight - surface.truth) < 5e-5 ? 0.0 : surface.weight - surface.truth),
+                "class=\"dim\"");
   }
   if (surfaces.size() > kMostSurfaces)
     svg += text_at(kRight + 38, top + 24 + kRow * kMostSurfaces,

@@ -21,8 +21,14 @@ constexpr std::size_t kColumns = 120;
   return text;
 }
 
-std::string cut(const std::string& text, std::size_t width) {
-  return text.size() <= width ? text : text.substr(0, width - 3) + "...";
+// A name from a trace, for a terminal: without control characters, and cut at a width, but not within a character.
+std::string cut(std::string text, std::size_t width) {
+  for (char& c : text)
+    if ((c >= 0 && c < ' ') || c == 0x7f) c = '?';
+  if (text.size() <= width) return text;
+  std::size_t end = width - 3;
+  while (end > 0 && (text[end] & 0xc0) == 0x80) --end;
+  return text.substr(0, end) + "...";
 }
 
 // Breaks a line at blanks; further lines are indented.
@@ -54,11 +60,6 @@ std::string names_of(const std::vector<std::uint32_t>& fragments) {
   return text.empty() ? "nothing" : text;
 }
 
-std::string surface_text(const HeldSurface& surface, const std::string& unit) {
-  return names_of(surface.fragments) + " (" + std::to_string(surface.positions) + " " + unit + ", colour " +
-         color_text(surface.color) + ")";
-}
-
 std::string unit_of(const PixelHistory& history) { return history.has_samples ? "samples" : "positions"; }
 
 std::string list_moves(const std::vector<PositionMove>& moves, const char* of_nobody) {
@@ -78,6 +79,14 @@ std::string list_moves(const std::vector<PositionMove>& moves, const char* of_no
   }
   return rest > 0 ? text + ", " + std::to_string(rest) + " others" : text;
 }
+
+std::string counted(std::uint32_t count, const PixelHistory& history) {
+  const std::string unit = unit_of(history);
+  return std::to_string(count) + " " + (count == 1 ? unit.substr(0, unit.size() - 1) : unit);
+}
+
+// Without the sign of what rounds to 0.
+double unsigned_zero(double x) { return std::abs(x) < 5e-6 ? 0.0 : x; }
 
 std::uint32_t count_of(const std::vector<PositionMove>& moves) {
   std::uint32_t count = 0;
@@ -275,8 +284,9 @@ std::string weights_text(const PixelInspection& inspection, bool unicode) {
   constexpr std::size_t kMost = 40;
   for (std::size_t i = 0; i < std::min(surfaces.size(), kMost); ++i) {
     const InspectedSurface& surface = surfaces[i];
-    text += format("  %-10s %9.5f %10.5f %+9.5f  %-22s ", name_of(surface.fragment).c_str(), surface.weight,
-                   surface.truth, surface.weight - surface.truth, color_text(surface.color).c_str()) +
+    text += format("  %-10s %9.5f %10.5f %+9.5f  %-22s ", name_of(surface.fragment).c_str(),
+                   unsigned_zero(surface.weight), unsigned_zero(surface.truth),
+                   unsigned_zero(surface.weight - surface.truth), color_text(surface.color).c_str()) +
             bar(surface.weight, unicode);
     text = text.substr(0, text.find_last_not_of(' ') + 1) + "\n";
   }
@@ -325,30 +335,31 @@ std::string moves_text(const HistoryFragment& fragment, const PixelHistory& hist
   if (fragment.lost.empty() && fragment.taken.size() == 1 && fragment.taken[0].fragment == kNobody) return "";
   std::string text;
   if (!fragment.taken.empty())
-    text += "took " + std::to_string(count_of(fragment.taken)) + " " + unit_of(history) + ": " +
-            list_moves(fragment.taken, "empty");
+    text += "took " + counted(count_of(fragment.taken), history) + ": " + list_moves(fragment.taken, "empty");
   if (fragment.lost.empty()) return text;
   if (!text.empty()) text += "; ";
   return text + "without " + std::to_string(count_of(fragment.lost)) + ": " + list_moves(fragment.lost, "empty");
 }
 
 std::string step_text(const HistoryStep& step, const PixelHistory& history) {
-  const std::string unit = unit_of(history);
+  const auto surface_text = [&](const HeldSurface& surface) {
+    return names_of(surface.fragments) + " (" + counted(surface.positions, history) + ", colour " +
+           color_text(surface.color) + ")";
+  };
   const std::string when = step.after_fragment == kNobody ? "at the end: " : name_of(step.after_fragment) + ": ";
   using enum HistoryStep::Kind;
   switch (step.kind) {
     case merged:
-      return when + surface_text(step.before[0], unit) + " and " + surface_text(step.before[1], unit) +
-             " became one: " + std::to_string(step.after->positions) + " " + unit + ", colour " +
-             color_text(step.after->color);
+      return when + surface_text(step.before[0]) + " and " + surface_text(step.before[1]) +
+             " became one: " + counted(step.after->positions, history) + ", colour " + color_text(step.after->color);
     case settled:
-      return when + "final: " + surface_text(step.before[0], unit) + format(", area %.5f", step.before[0].area);
+      return when + "final: " + surface_text(step.before[0]) + format(", area %.5f", step.before[0].area);
     case dropped:
-      return when + "dropped, left to another pass: " + surface_text(step.before[0], unit);
+      return when + "dropped, left to another pass: " + surface_text(step.before[0]);
     case composed:
       return when + format("aggregate of %zu (%u %s, area %.4f, colour %s) became %zu (%u, area %.4f, colour %s)",
-                           step.before[0].fragments.size(), step.before[0].positions, unit.c_str(), step.before[0].area,
-                           color_text(step.before[0].color).c_str(), step.after->fragments.size(),
+                           step.before[0].fragments.size(), step.before[0].positions, unit_of(history).c_str(),
+                           step.before[0].area, color_text(step.before[0].color).c_str(), step.after->fragments.size(),
                            step.after->positions, step.after->area, color_text(step.after->color).c_str());
     case pass:
       break;
