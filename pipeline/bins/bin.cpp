@@ -24,7 +24,7 @@ Bin::Bin(const FrameContext& frame_context, const Tile& bin_tile, const Triangle
       memory_(context.run.memory) {
   if (context.run.dram_trace && memory_.modelled) memory_.log = &dram_log_.emplace();
   memory_.framebuffer = framebuffer.is_on_chip(memory_) ? Place::on_chip : Place::in_memory;
-  if (keeps_pixels_on_chip()) holds("open_pixels", tile.pixels() * framebuffer.on_chip_bytes_per_pixel());
+  if (keeps_pixels_on_chip()) holds(kOpenPixels, tile.pixels() * framebuffer.on_chip_bytes_per_pixel());
   stages_.reserve(stages.size());
   for (const std::string& name : stages) stages_.push_back(StageCounters{name});
   if (context.has_textures()) texels_.emplace(context.texture_layout ? &*context.texture_layout : nullptr);

@@ -17,6 +17,9 @@ struct Surface {
   bool outlives_bin = false;  // in memory on every machine, because other bins or later frames read it
 };
 
+// The name of the buffer that holds the pixels of a bin where they are on chip.
+inline constexpr const char* kOpenPixels = "open_pixels";
+
 struct Framebuffer {
   std::vector<Surface> surfaces = {};
   Place place = Place::in_memory;  // on the machine that the technique is made for

@@ -55,12 +55,17 @@ std::vector<Hardware> read_hardware_list(const std::string& list);
 // The same hardware with these costs, in its `json` too.
 Hardware with_shading_costs(const Hardware& hardware, const ShadingCost& material, const ShadingCost& light);
 
-// Milliseconds of each unit that the stage uses, by name ("triangles", "shader", "dram", ...). `bin_bytes`: what a bin
-// has on chip. A core holds as many bins as its memory has room for. If these are fewer than it works on at a time, the
-// stages that work on bins wait as much longer (stall); if not even one has room, the part that has none is read and
-// written in L2 (spill).
+// What a bin has on chip.
+struct BinMemory {
+  double bytes = 0;
+  bool has_pixels = false;  // the state of its pixels is a part of it; otherwise they are in memory
+};
+
+// Milliseconds of each unit that the stage uses, by name ("triangles", "shader", "dram", ...). A core holds as many
+// bins as its memory has room for. If these are fewer than it works on at a time, the stages that work on bins wait as
+// much longer (stall); if not even one has room, the part that has none is read and written in L2 (spill).
 std::map<std::string, double> unit_times(const Hardware& hardware, const Implementation& implementation,
-                                         const StageCounters& stage, double bin_bytes = 0);
+                                         const StageCounters& stage, const BinMemory& bin = {});
 
 struct ModelledTime {
   double overlap_ms = 0;       // all stages at once: the time of the busiest unit, over all stages
@@ -70,6 +75,6 @@ struct ModelledTime {
 };
 
 ModelledTime modelled_time(const Hardware& hardware, const Implementation& implementation,
-                           const std::vector<StageCounters>& stages, double bin_bytes = 0);
+                           const std::vector<StageCounters>& stages, const BinMemory& bin = {});
 
 }  // namespace beampipe

@@ -33,16 +33,20 @@ double TechniqueReport::peak_bytes_per_pixel() const {
   return framebuffer_bytes_per_pixel + most;
 }
 
-double FrameReport::bin_bytes() const {
-  double bytes = 0;
-  for (const Buffer& buffer : buffers) bytes += buffer.per_bin ? static_cast<double>(buffer.peak_bytes) : 0.0;
-  return bytes;
+BinMemory FrameReport::bin_memory() const {
+  BinMemory bin;
+  for (const Buffer& buffer : buffers) {
+    if (!buffer.per_bin) continue;
+    bin.bytes += static_cast<double>(buffer.peak_bytes);
+    bin.has_pixels |= buffer.name == kOpenPixels;
+  }
+  return bin;
 }
 
 double TechniqueReport::on_chip_bytes_per_pixel() const {
   double most = 0;
   for (const FrameReport& frame : frames)
-    if (frame.bin_pixels > 0) most = std::max(most, frame.bin_bytes() / static_cast<double>(frame.bin_pixels));
+    if (frame.bin_pixels > 0) most = std::max(most, frame.bin_memory().bytes / static_cast<double>(frame.bin_pixels));
   return most;
 }
 

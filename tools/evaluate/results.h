@@ -60,7 +60,7 @@ struct FrameReport {
   std::uint64_t bin_pixels = 0;  // of the largest bin
 
   // All buffers that a bin has on chip, at their peaks.
-  double bin_bytes() const;
+  BinMemory bin_memory() const;
 };
 
 // The same frames with their triangles in another order.

@@ -106,6 +106,25 @@ TEST(Hardware, FixedFunctionsFollowTheirWork) {
   EXPECT_NEAR(rop(2 * 3072), 2, 1e-6) << "wider formats take longer";
 }
 
+// 30720 bytes of pixels take 10 clocks of 96 ROPs, which move 32 each, and 3 of 80 cores, which move 128 each: those of
+// shaders, and of ROPs where the pixels are on chip. Texels have a rate of their own.
+TEST(Hardware, BytesOfPixelsMoveWhereThePixelsAre) {
+  const Hardware titan = titan_v();
+  const auto of = [&](std::size_t implementation, const char* name, const char* unit, const BinMemory& bin) {
+    StageCounters counters{name};
+    counters.bytes_read = 30720 + 1000, counters.texture_bytes = 1000;
+    return clocks(titan, unit_times(titan, titan.implementations.at(implementation), counters, bin).at(unit));
+  };
+  const double in_rops = 31720.0 / 3072, on_chip = 31720.0 / 10240;
+  EXPECT_NEAR(of(1, "compose", "composer", {1024, false}), in_rops, 1e-6);
+  EXPECT_NEAR(of(1, "compose", "composer", {1024, true}), on_chip, 1e-6);
+  EXPECT_NEAR(of(0, "depth_test", "rop_samples", {1024, false}), in_rops, 1e-6);
+  EXPECT_NEAR(of(0, "depth_test", "rop_samples", {1024, true}), on_chip, 1e-6);
+  EXPECT_NEAR(of(0, "accumulate", "rop_fragments", {1024, true}), on_chip, 1e-6);
+  EXPECT_NEAR(of(0, "compose", "shader", {1024, true}), 3, 1e-6);
+  EXPECT_NEAR(of(0, "compose", "shader", {1024, false}), 3, 1e-6);
+}
+
 // 5120 operations of 64 bits are issued twice and take two clocks of the integer lanes, which leaves nothing for the
 // float lanes.
 TEST(Hardware, WideIntegersHaveTheirOwnRate) {
@@ -123,17 +142,17 @@ TEST(Hardware, BinsThatDoNotFitStallAndSpill) {
   const Hardware titan = titan_v();
   const Implementation& shaders = titan.implementations.at(0);
   StageCounters counters{"compose"};
-  counters.ops.bit = 51200;
+  counters.ops.bit = 102400;
   counters.bytes_read = 1536 * 100;
-  const auto times = [&](double kib) { return unit_times(titan, shaders, counters, kib * 1024); };
-  EXPECT_NEAR(clocks(titan, times(40).at("shader")), 10, 1e-6);
+  const auto times = [&](double kib) { return unit_times(titan, shaders, counters, {kib * 1024, true}); };
+  EXPECT_NEAR(clocks(titan, times(40).at("shader")), 20, 1e-6);
   EXPECT_NEAR(clocks(titan, times(40).at("l2")), 0, 1e-6);
-  EXPECT_NEAR(clocks(titan, times(80).at("shader")), 20, 1e-6);
+  EXPECT_NEAR(clocks(titan, times(80).at("shader")), 40, 1e-6);
   EXPECT_NEAR(clocks(titan, times(80).at("l2")), 0, 1e-6);
-  EXPECT_NEAR(clocks(titan, times(192).at("shader")), 20, 1e-6);
+  EXPECT_NEAR(clocks(titan, times(192).at("shader")), 40, 1e-6);
   EXPECT_NEAR(clocks(titan, times(192).at("l2")), 50, 1e-6);
   counters.stage = "vertex_setup";
-  EXPECT_NEAR(clocks(titan, times(192).at("shader")), 10, 1e-6);
+  EXPECT_NEAR(clocks(titan, times(192).at("shader")), 20, 1e-6);
 }
 
 // 512 invocations, each with 100 operations and 5 probes of 16 bytes: 10 clocks of the float lanes, 8 of the texture
@@ -187,7 +206,15 @@ std::string refusal(const std::string& from, const std::string& to) {
 
 TEST(Hardware, ErrorsNameTheKey) {
   EXPECT_EQ(refusal("\"clock_mhz\":1455", "\"clock_mhz\":-1"),
-            "h.json: /clock_mhz: expected a number above 0, found -1");
+            "h.json: /clock_mhz: expected a number from 1e-6 to 1e12, found -1");
+  EXPECT_EQ(refusal("\"dram_bytes_per_clk\":448.7", "\"dram_bytes_per_clk\":1e-300"),
+            "h.json: /rates/dram_bytes_per_clk: expected a number from 1e-6 to 1e12, found 1e-300");
+  EXPECT_EQ(
+      refusal("\"compose\":", "\"componse\":"),
+      "h.json: /implementations/shaders/units/componse: expected the name of a stage, found componse (did you mean "
+      "'compose'?)");
+  EXPECT_EQ(refusal("\"sources\":{", "\"sources\":{\"rops\":\"x\","),
+            "h.json: /sources/rops: expected the name of a rate as key, found rops");
   EXPECT_EQ(refusal("\"triangles_per_clk\":6,", ""),
             "h.json: /rates: expected the key \"triangles_per_clk\", found none");
   EXPECT_EQ(refusal("\"quads_per_clk\":24", "\"quads_per_clk\":24,\"x\":1").find("h.json: /rates/x: expected one of"),
