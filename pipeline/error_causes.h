@@ -20,9 +20,12 @@
 #pragma once
 
 #include <array>
+#include <glm/glm.hpp>
 #include <map>
+#include <vector>
 
 #include "pipeline/technique.h"
+#include "stages/data/sample_tile.h"
 
 namespace beampipe {
 
@@ -35,5 +38,30 @@ inline constexpr std::array kErrorCauses = {"leak", "mask", "order", "interpenet
 std::map<std::string, std::vector<float>> error_causes(const Trace& trace, const Frame& frame,
                                                        const std::vector<PixelWeights>& weights, const Image& image,
                                                        const Image& reference, const RunOptions& run);
+
+// A triangle in a pixel, or the background (kNoTriangle): its part of the pixel by the technique and by the reference.
+struct ExplainedSurface {
+  std::uint32_t triangle;
+  double weight, truth;
+  glm::dvec3 color;  // linear RGB
+};
+
+// An area that one surface lost and another gained.
+struct AreaTransfer {
+  std::size_t from, to;  // indices of surfaces
+  double area;
+  std::size_t cause;  // index into kErrorCauses
+};
+
+struct ExplainedPixel {
+  std::vector<ExplainedSurface> surfaces;  // by triangle; the background comes last
+  std::vector<AreaTransfer> transfers;
+  std::array<double, kErrorCauses.size()> causes{};  // as error_causes returns them
+};
+
+// The same for one pixel, with all that the split is made of. `weights`: of this pixel. `color` and `reference`: linear
+// RGB in the two pictures.
+ExplainedPixel explain_pixel(const Trace& trace, const Frame& frame, PixelAddress pixel, const PixelWeights& weights,
+                             const glm::dvec3& color, const glm::dvec3& reference, const RunOptions& run);
 
 }  // namespace beampipe

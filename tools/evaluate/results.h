@@ -84,6 +84,7 @@ struct TechniqueReport {
       causes;                       // share of the mean square error by cause; empty without --causes
   std::vector<OrderReport> orders;  // empty without --orders
   double order_difference = 0;      // RMS difference between the two orders whose pictures differ most
+  std::string inspections;          // file with the histories of some pixels; empty if there are none
 
   // Bytes of the framebuffer and of the A-buffer in the frame where it is largest.
   double peak_bytes_per_pixel() const;

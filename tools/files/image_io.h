@@ -35,6 +35,9 @@ std::string encode_exr(const Image& image, const Labels& labels = {});
 // The bytes of an EXR file with one channel per plane. Throws std::invalid_argument when a plane has the wrong size.
 std::string encode_exr(const Planes& planes, const Labels& labels = {});
 
+// A linear value for looking at: clamped to [0, 1] and encoded in sRGB, 0..255. NaN is 0.
+std::uint8_t srgb_byte(float linear);
+
 // The bytes of an 8-bit RGB PNG file for looking at: linear values are clamped to [0, 1] and encoded in sRGB. NaN is
 // black. Alpha is left out.
 std::string encode_png(const Image& image);

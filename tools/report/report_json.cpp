@@ -49,6 +49,7 @@ Json to_json(const TechniqueReport& result, const Report& report) {
     for (const OrderReport& order : result.orders) json["orders"][order.order] = {{"rmse", order.rmse}};
     json["orders"]["largest_difference"] = result.order_difference;
   }
+  if (!result.inspections.empty()) json["inspections"] = result.inspections;
   json["frames"] = Json::array();
   for (const FrameReport& frame : result.frames)
     json["frames"].push_back(beampipe::to_json(frame, result, report.hardware, report.more_hardware));
