@@ -285,6 +285,7 @@ Hardware parse_hardware(const Json& json, const std::string& file) {
   for (const auto& [name, description] : root["implementations"].members()) {
     Implementation& implementation = hardware.implementations.emplace_back(Implementation{name, {}});
     description.expect_keys({"description", "units"});
+    if (const auto text = description.find("description")) text->string();
     for (const auto& [stage, names] : description["units"].members()) {
       expect_stage(names, stage);
       implementation.units[stage] = read_units(names);

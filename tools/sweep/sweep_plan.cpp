@@ -20,6 +20,7 @@ constexpr const char *kTraces = "traces", *kTechniques = "techniques", *kSizes =
                      *kImplementations = "implementations", *kMemorySystem = "memory_system";
 constexpr const char* kDefault = "default";  // the name of the default memory system
 constexpr const char* kClock = "clock_mhz";  // is varied like a rate
+constexpr const char *kRows = "rows of the table", *kKinds = "kinds of hardware";
 constexpr std::uint32_t kMostPixels = 16384;
 
 // The values of one axis, where they stand in the file.
@@ -68,16 +69,19 @@ std::string beside(const std::string& plan, const std::string& name) {
   return (fs::path(plan).parent_path() / name).lexically_normal().string();
 }
 
-// How many combinations the axes have whose names start with a prefix. At most `most`, or it throws.
-std::uint64_t combinations(const Axes& axes, const std::string& prefix, std::uint64_t first, std::uint64_t most,
-                           const JsonCursor& grid, const char* what) {
-  std::uint64_t count = first;
+[[noreturn]] void fail_limit(const JsonCursor& grid, std::uint64_t most, const char* what) {
+  grid.fail("at most " + std::to_string(most) + " " + what, "more");
+}
+
+// Throws if the axes whose names start with a prefix have more combinations than that.
+void limit_combinations(const Axes& axes, const std::string& prefix, std::uint64_t most, const JsonCursor& grid,
+                        const char* what) {
+  std::uint64_t count = 1;
   for (const auto& [name, values] : axes) {
     if (!name.starts_with(prefix)) continue;
-    if (count > most / values.size()) grid.fail("at most " + std::to_string(most) + " " + what, "more");
+    if (count > most / values.size()) fail_limit(grid, most, what);
     count *= values.size();
   }
-  return count;
 }
 
 // Calls visit(values) for every combination of the axes with this prefix: one value for each name without the prefix.
@@ -132,8 +136,8 @@ class PlanReader {
     for (const char* required : {kTraces, kTechniques})
       if (!axes.contains(required)) grid.fail("the key " + in_quotes(required), "none");
     // Everything that is counted here is in the table's rows, so it is checked before any of it is made.
-    combinations(axes, "", 1, kMostRows, grid, "rows of the table");
-    combinations(axes, kHardware, 1, kMostHardware, grid, "kinds of hardware");
+    limit_combinations(axes, "", kMostRows, grid, kRows);
+    limit_combinations(axes, kHardware, kMostHardware, grid, kKinds);
 
     const std::vector<std::size_t> memory = read_memory(grid, axes);
     const std::vector<std::size_t> hardware = read_hardware_axes(axes);
@@ -154,7 +158,8 @@ class PlanReader {
             const std::size_t cell = add_cell({trace, size, technique, system});
             for (const std::size_t each : hardware) add_rows(cell, each, axes);
           }
-    if (plan_.rows.size() > kMostRows) grid.fail("at most " + std::to_string(kMostRows) + " rows of the table", "more");
+    if (plan_.rows.size() > kMostRows) fail_limit(grid, kMostRows, kRows);
+    if (plan_.hardware.size() > kMostHardware) fail_limit(grid, kMostHardware, kKinds);
   }
 
   std::size_t add_cell(const SweepCell& cell) {
@@ -194,9 +199,15 @@ class PlanReader {
     std::vector<std::size_t> numbers;
     for (const MemoryParameters& system : systems)
       each_combination(axes, std::string(kMemorySystem) + ".", [&](const auto& values) {
-        numbers.push_back(index_in(plan_.memory, with_parameters(system, values, grid)));
+        numbers.push_back(add_memory(with_parameters(system, values, grid)));
       });
     return numbers;
+  }
+
+  std::size_t add_memory(const MemoryParameters& memory) {
+    const auto [found, is_new] = memory_numbers_.emplace(parameters_json(memory).dump(), plan_.memory.size());
+    if (is_new) plan_.memory.push_back(memory);
+    return found->second;
   }
 
   static MemoryParameters with_parameters(MemoryParameters memory,
@@ -214,7 +225,10 @@ class PlanReader {
   std::vector<std::size_t> read_hardware_axes(const Axes& axes) {
     std::vector<Hardware> parts;
     if (axes.contains(kHardware)) {
-      for (const JsonCursor& name : axes.at(kHardware)) parts.push_back(named_hardware(name));
+      for (const JsonCursor& name : axes.at(kHardware)) {
+        parts.push_back(named_hardware(name));
+        parts.back().label = name.string();
+      }
     } else {
       parts.push_back(titan_v());
     }
@@ -222,13 +236,16 @@ class PlanReader {
     for (Hardware& part : parts) {
       part.json = nullptr;  // not needed any more, and large
       each_combination(axes, std::string(kHardware) + ".", [&](const auto& values) {
+        std::string key = part.label;
         for (const auto& [name, value] : values) {
           index_in(plan_.varied_rates, name);
           const double rate = value.number_between(0, std::numeric_limits<double>::infinity());
           (name == kClock ? part.clock_mhz : part.rates[name]) = rate;
+          key += "," + name + Json(rate).dump();
         }
-        numbers.push_back(plan_.hardware.size());
-        plan_.hardware.push_back(part);
+        const auto [found, is_new] = hardware_numbers_.emplace(key, plan_.hardware.size());
+        if (is_new) plan_.hardware.push_back(part);
+        numbers.push_back(found->second);
       });
     }
     return numbers;
@@ -244,6 +261,7 @@ class PlanReader {
   Json json_;
   SweepPlan plan_;
   std::map<SweepCell, std::size_t> cell_numbers_;
+  std::map<std::string, std::size_t> memory_numbers_, hardware_numbers_;
 };
 
 }  // namespace

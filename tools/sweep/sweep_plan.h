@@ -43,7 +43,7 @@ struct SweepPlan {
 };
 
 // The most rows of a table, and the most kinds of hardware.
-inline constexpr std::uint64_t kMostRows = 100'000, kMostHardware = 10'000;
+inline constexpr std::uint64_t kMostRows = 100'000, kMostHardware = 1'000;
 
 // The path of a file that the plan names, which is relative to the plan's folder.
 std::string file_beside_plan(const SweepPlan& plan, const std::string& name);

@@ -42,8 +42,8 @@ std::vector<Column> cell_columns() {
        [](const Cell& c) { return c.plan.traces[c.cell.trace]; }},
       {{"frames", "", "frames over which the counts are means"},
        [](const Cell& c) { return Json(c.report.frames.size()); }},
-      {{"width", "px", "of the first frame"}, [](const Cell& c) { return Json(c.trace.size.width); }},
-      {{"height", "px", "of the first frame"}, [](const Cell& c) { return Json(c.trace.size.height); }},
+      {{"width", "px", "of the first frame that is rendered"}, [](const Cell& c) { return Json(c.trace.size.width); }},
+      {{"height", "px", "of the first frame that is rendered"}, [](const Cell& c) { return Json(c.trace.size.height); }},
       {{"technique", "", "the spec", true}, [](const Cell& c) { return c.plan.techniques[c.cell.technique]; }},
   };
   for (const MemoryParameter& parameter : memory_parameters()) {

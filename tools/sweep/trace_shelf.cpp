@@ -44,9 +44,10 @@ std::vector<std::size_t> frames_of(const SweepPlan& plan, const Trace& trace, co
 
 }  // namespace
 
-void resize(Trace& trace, const PictureSize& size, const std::string& name) {
+void resize(Trace& trace, const std::vector<std::size_t>& frames, const PictureSize& size, const std::string& name) {
   if (size == PictureSize{}) return;
-  for (Frame& frame : trace.frames) {
+  for (const std::size_t index : frames) {
+    Frame& frame = trace.frames[index];
     const bool same_ratio = std::uint64_t{frame.width} * size.height == std::uint64_t{frame.height} * size.width;
     if (trace.source || has_viewport(frame) || (!frame.camera && !same_ratio))
       throw std::runtime_error(name + ": cannot be " + text_of(size) +
@@ -57,52 +58,59 @@ void resize(Trace& trace, const PictureSize& size, const std::string& name) {
   }
 }
 
-const TraceInfo& TraceShelf::info(std::size_t trace, std::size_t size) {
-  const std::lock_guard lock(mutex_);
-  if (const auto found = infos_.find({trace, size}); found != infos_.end()) return found->second;
-  const std::string name = file_beside_plan(plan_, plan_.traces[trace]);
-  Trace read = read_trace(name, {.allow_outside = allow_outside_});
-  const std::vector<Frame> frames = read.frames;
-  for (std::size_t each = 0; each < plan_.sizes.size(); ++each) {  // reading takes longer than all sizes do
-    read.frames = frames;
-    const bool is_wanted = each == size;
-    try {
-      resize(read, plan_.sizes[each], name);
-    } catch (const std::runtime_error&) {
-      if (is_wanted) throw;
-      continue;  // nobody may want this trace in this size
-    }
-    TraceInfo info{.digest = digest_of(read),
-                   .size = {read.frames.front().width, read.frames.front().height},
-                   .frames = frames_of(plan_, read, name),
-                   .bytes = bytes_of(read),
-                   .needs = {}};
+TraceShelf::Entry TraceShelf::look_at(Trace& trace, const PictureSize& size, const std::string& name) const {
+  Entry entry;
+  try {
+    TraceInfo& info = entry.info;
+    info.frames = frames_of(plan_, trace, name);
+    resize(trace, info.frames, size, name);
+    info.digest = digest_of(trace);
+    const Frame& first = trace.frames[info.frames.front()];
+    info.size = {first.width, first.height};
+    info.bytes = bytes_of(trace);
     for (const std::string& spec : plan_.techniques) {
       std::uint64_t& most = info.needs.emplace_back(0);
       const std::uint32_t bytes_per_pixel = parse_technique(spec).working_bytes_per_pixel;
       for (const std::size_t frame : info.frames) {
-        if (is_wanted)
-          require_memory(read, read.frames[frame], bytes_per_pixel,
-                         name + ", frame " + std::to_string(frame) + " with " + spec, machine_memory());
-        most = std::max(most, frame_memory(read, read.frames[frame], bytes_per_pixel));
+        require_memory(trace, trace.frames[frame], bytes_per_pixel,
+                       name + ", frame " + std::to_string(frame) + " with " + spec, machine_memory());
+        most = std::max(most, frame_memory(trace, trace.frames[frame], bytes_per_pixel));
       }
     }
-    infos_.emplace(Key{trace, each}, std::move(info));
+  } catch (const std::exception&) {
+    entry.error = std::current_exception();
   }
-  return infos_.at({trace, size});
+  return entry;
+}
+
+const TraceInfo& TraceShelf::info(std::size_t trace, std::size_t size) {
+  const std::lock_guard lock(mutex_);
+  if (!entries_.contains({trace, size})) {
+    const std::string name = file_beside_plan(plan_, plan_.traces[trace]);
+    Trace read = read_trace(name, {.allow_outside = allow_outside_});
+    const std::vector<Frame> frames = read.frames;
+    for (std::size_t each = 0; each < plan_.sizes.size(); ++each) {  // reading takes longer than all sizes do
+      read.frames = frames;
+      entries_[{trace, each}] = look_at(read, plan_.sizes[each], name);
+    }
+  }
+  const Entry& entry = entries_.at({trace, size});
+  if (entry.error) std::rethrow_exception(entry.error);
+  return entry.info;
 }
 
 std::shared_ptr<const LoadedTrace> TraceShelf::load(std::size_t trace, std::size_t size) {
   const std::lock_guard lock(mutex_);
   std::weak_ptr<const LoadedTrace>& kept = loaded_[{trace, size}];
-  if (auto loaded = kept.lock()) return loaded;
+  if (auto loaded = kept.lock()) return recent_ = loaded;
+  recent_.reset();
   const std::string name = file_beside_plan(plan_, plan_.traces[trace]);
   auto loaded = std::make_shared<LoadedTrace>();
   loaded->trace = read_trace(name, {.allow_outside = allow_outside_});
-  resize(loaded->trace, plan_.sizes[size], name);
+  resize(loaded->trace, frames_of(plan_, loaded->trace, name), plan_.sizes[size], name);
   loaded->textures = std::make_unique<const TextureSet>(loaded->trace, name);
   kept = loaded;
-  return loaded;
+  return recent_ = loaded;
 }
 
 }  // namespace beampipe

@@ -1,6 +1,7 @@
 // The traces of a sweep, in the sizes that it asks for.
 #pragma once
 
+#include <exception>
 #include <map>
 #include <memory>
 #include <mutex>
@@ -43,13 +44,21 @@ class TraceShelf {
 
   const SweepPlan& plan_;
   bool allow_outside_;
+  // What is wrong with a trace in a size is known with all else, but an error only if somebody asks for it.
+  struct Entry {
+    TraceInfo info;
+    std::exception_ptr error;
+  };
+  Entry look_at(Trace& trace, const PictureSize& size, const std::string& name) const;
+
   std::mutex mutex_;
-  std::map<Key, TraceInfo> infos_;
+  std::map<Key, Entry> entries_;
   std::map<Key, std::weak_ptr<const LoadedTrace>> loaded_;
+  std::shared_ptr<const LoadedTrace> recent_;  // the next job is likely to want it too
 };
 
-// Gives all frames this size. Throws std::runtime_error, one line that starts with `name`, if a frame neither names its
-// camera nor has the same ratio of width to height, or if it was captured.
-void resize(Trace& trace, const PictureSize& size, const std::string& name);
+// Gives these frames this size. Throws std::runtime_error, one line that starts with `name`, if a frame neither names
+// its camera nor has the same ratio of width to height, or if it was captured.
+void resize(Trace& trace, const std::vector<std::size_t>& frames, const PictureSize& size, const std::string& name);
 
 }  // namespace beampipe

@@ -104,7 +104,9 @@ TEST(MemoryParameters, EverySectorAndLineSizeCounts) {
       EXPECT_EQ(shade.texture_bytes, shade_32.texture_bytes);
       EXPECT_GE(shade.texture_dram_bytes, shade_32.texture_dram_bytes);
       EXPECT_LE(shade.texture_dram_bytes, shade_32.texture_dram_bytes * sector / 32);
-      if (sector == 32) EXPECT_EQ(shade.texture_dram_bytes, shade_32.texture_dram_bytes) << "every sector once";
+      if (sector == 32) {
+        EXPECT_EQ(shade.texture_dram_bytes, shade_32.texture_dram_bytes) << "every sector once";
+      }
     }
   }
 }
