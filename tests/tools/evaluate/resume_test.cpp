@@ -341,7 +341,7 @@ TEST_F(ResumeTest, WhatAnotherTraceOrOptionLeftIsRefused) {
 }
 
 TEST_F(ResumeTest, RunDoesNotWriteOverErrorsUnlessForced) {
-  make_trace(1);
+  make_trace(2);
   succeed(command("run", "out", {"msaa:2"}));
   succeed(command("run", "out", {"msaa:4"}));
   succeed(command("compare", "out", {"msaa:2", "--ladder", "1"}));
