@@ -83,9 +83,17 @@ TEST_F(SweepTest, TheTableEqualsSingleRuns) {
       write_text(folder_ / "m.json", R"({"beampipe_memory_system": 1, "parameters": {"l2_bytes": )" + l2 +
                                          R"(, "bin_pixels": )" + bin +
                                          R"(}, "sources": {"l2_bytes": "choice", "bin_pixels": "choice"}})");
-      std::vector<std::string> command = {
-          "run",        path("soup.json"),   "-t", row["technique"], "--memory-system", path("m.json"),
-          "--hardware", "titan_v,mali_g710", "-o", path("single")};
+      std::vector<std::string> command = {"run",
+                                          path("soup.json"),
+                                          "-t",
+                                          row["technique"],
+                                          "--memory-system",
+                                          path("m.json"),
+                                          "--hardware",
+                                          "titan_v,mali_g710",
+                                          "--force",
+                                          "-o",
+                                          path("single")};
       if (!compressed) command.push_back("--no-compression");
       succeed(command);
       runs[key] = Parsed::parse(read_text(folder_ / "single/report.json"));
@@ -140,7 +148,7 @@ TEST_F(SweepTest, SizesAreThoseOfTheTrace) {
     larger["frames"][0]["width"] = std::stoi(row["width"]);
     larger["frames"][0]["height"] = std::stoi(row["height"]);
     write_text(trace, larger.dump());
-    succeed({"run", trace, "-t", "beam", "--frames", "0", "-o", path("single")});
+    succeed({"run", trace, "-t", "beam", "--frames", "0", "--force", "-o", path("single")});
     const Parsed report = Parsed::parse(read_text(folder_ / "single/report.json"));
     EXPECT_EQ(row["dram_bytes"], report["results"][0]["frames"][0]["dram_bytes"].dump());
   }
