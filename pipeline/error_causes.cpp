@@ -243,21 +243,28 @@ std::map<std::string, std::vector<float>> error_causes(const Trace& trace, const
   return std::move(result.pixel_counters);
 }
 
-ExplainedPixel explain_pixel(const Trace& trace, const Frame& frame, PixelAddress pixel, const PixelWeights& weights,
-                             const glm::dvec3& color, const glm::dvec3& reference, const RunOptions& run) {
-  const std::vector<PixelAddress> one = {pixel};
+std::vector<ExplainedPixel> explain_pixels(const Trace& trace, const Frame& frame,
+                                           const std::vector<PixelColors>& pixels, const RunOptions& run) {
+  std::vector<PixelAddress> addresses;
+  for (const PixelColors& pixel : pixels) addresses.push_back(pixel.at);
   RunOptions options = run;
-  options.pixels = &one;
+  options.pixels = &addresses;
   options.weights = nullptr;
   options.memory.modelled = false;
   const FrameContext context(trace, frame, options);
   const Comparer comparer;
-  ExplainedPixel explained;
+  std::vector<ExplainedPixel> explained(pixels.size());
   BinPlan plan = plan_of_bins();
   plan.empty_bins_differ = true;
   render_bins(context, plan, [&](Bin& bin) {
-    const std::size_t index = bin.tile.index(static_cast<std::int32_t>(pixel.x), static_cast<std::int32_t>(pixel.y));
-    explained = TileExplainer(context, bin, comparer).explain(index, weights, color - reference);
+    const TileExplainer explainer(context, bin, comparer);
+    for (std::size_t i = 0; i < pixels.size(); ++i) {
+      const PixelColors& pixel = pixels[i];
+      if (!holds(bin.tile, pixel.at)) continue;
+      const std::size_t index =
+          bin.tile.index(static_cast<std::int32_t>(pixel.at.x), static_cast<std::int32_t>(pixel.at.y));
+      explained[i] = explainer.explain(index, pixel.weights, pixel.color - pixel.reference);
+    }
   });
   return explained;
 }

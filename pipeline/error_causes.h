@@ -59,9 +59,15 @@ struct ExplainedPixel {
   std::array<double, kErrorCauses.size()> causes{};  // as error_causes returns them
 };
 
-// The same for one pixel, with all that the split is made of. `weights`: of this pixel. `color` and `reference`: linear
-// RGB in the two pictures.
-ExplainedPixel explain_pixel(const Trace& trace, const Frame& frame, PixelAddress pixel, const PixelWeights& weights,
-                             const glm::dvec3& color, const glm::dvec3& reference, const RunOptions& run);
+// A pixel to explain: the technique's weights, and linear RGB in the two pictures.
+struct PixelColors {
+  PixelAddress at;
+  PixelWeights weights;
+  glm::dvec3 color, reference;
+};
+
+// The same for some pixels, with all that the split is made of.
+std::vector<ExplainedPixel> explain_pixels(const Trace& trace, const Frame& frame,
+                                           const std::vector<PixelColors>& pixels, const RunOptions& run);
 
 }  // namespace beampipe

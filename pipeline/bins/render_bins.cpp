@@ -88,13 +88,6 @@ struct GeometryPass {
   std::uint32_t first_pass_;
 };
 
-bool holds_any(const Tile& tile, const std::vector<PixelAddress>& pixels) {
-  return std::any_of(pixels.begin(), pixels.end(), [&](const PixelAddress& pixel) {
-    const auto x = static_cast<std::int32_t>(pixel.x), y = static_cast<std::int32_t>(pixel.y);
-    return x >= tile.x0 && x < tile.x1 && y >= tile.y0 && y < tile.y1;
-  });
-}
-
 // Renders bins without triangles, one of each size.
 class EmptyBins {
  public:
@@ -283,7 +276,8 @@ FrameResult render_bins(const FrameContext& context, const BinPlan& plan, const 
     for (std::size_t i = 0; i < lists.size(); ++i)
       if (is_shared(i)) empty_bins.prepare(grid.tiles[band.first + i]);
     tbb::parallel_for(std::size_t{0}, lists.size(), [&](std::size_t i) {
-      if (run.pixels && !holds_any(grid.tiles[band.first + i], *run.pixels)) return;
+      const auto is_here = [&](const PixelAddress& pixel) { return holds(grid.tiles[band.first + i], pixel); };
+      if (run.pixels && std::none_of(run.pixels->begin(), run.pixels->end(), is_here)) return;
       if (is_shared(i)) {
         const Tile& tile = grid.tiles[band.first + i];
         recorder.add_empty(empty_bins.like(tile), tile);

@@ -105,11 +105,11 @@ PixelHistory inspect_passes(const InspectedPixel& pixel, int passes) {
       return;
     }
     if (noted.fate == Fate::closed_off) noted.fate = Fate::hidden;
-    const std::vector<std::uint32_t> triangles = triangles_in(after);
+    const std::vector<std::uint32_t> triangles_before = triangles_in(before), triangles = triangles_in(after);
     std::map<std::uint32_t, std::uint32_t> dropped;  // positions by triangle
     WideMask taken;
     for (std::size_t i = 0; i < triangles.size(); ++i) {
-      const std::uint32_t earlier = triangles_in(before)[i];
+      const std::uint32_t earlier = triangles_before[i];
       if (triangles[i] == pair.triangle && earlier != pair.triangle) taken.set(i);
       if (earlier != kNobody && after.states.at(i) == Pixel::kDeferred) ++dropped[earlier];
     }
@@ -135,7 +135,11 @@ PixelHistory inspect_passes(const InspectedPixel& pixel, int passes) {
     }
   };
   const PixelColor color = replay.run(note_claim, note_settling);
-  for (std::uint32_t place = 0; place < history.fragments.size(); ++place) note_missed(place, history);
+  // A fragment comes again in each pass, so what counts is who has its positions in the end.
+  for (std::uint32_t place = 0; place < history.fragments.size(); ++place) {
+    history.fragments[place].lost.clear();
+    note_missed(place, history);
+  }
 
   // Colours decide nothing, and the pixel is linear in them, up to the rounding of its mean colour.
   const auto ignore_claim = [](int, const Pair&, const std::vector<Fragment>&, const Pixel&, const Pixel&) {};

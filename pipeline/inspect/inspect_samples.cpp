@@ -55,7 +55,7 @@ class SampleHistory {
   PixelHistory& history() { return history_; }
   std::size_t fragments() const { return fragments_.size(); }
   std::size_t own_pixel() const { return own_pixel_; }
-  const TileShader shader() const { return bin_.shader(); }
+  TileShader shader() const { return bin_.shader(); }
   bool is_translucent(std::size_t fragment) const { return pixel_.context.shader.is_translucent(fragments_[fragment]); }
 
   // The sample fragments of one triangle in the pixel, after the alpha test.
@@ -100,6 +100,7 @@ class SampleHistory {
     for (std::size_t s = 0; s < samples; ++s)
       taken[first + s] = surface.triangle[own_pixel_ * samples + s] == fragments_[fragment];
     take(taken, static_cast<std::uint32_t>(fragment));
+    note_missed(static_cast<std::uint32_t>(fragment), history_, first);
   }
 
   // Opaque triangles hide what was blended at these samples; others are blended there.
@@ -122,6 +123,8 @@ class SampleHistory {
         history_.fragments[fragment].fate = Fate::blended;
       }
     }
+    if (is_translucent(fragment) && history_.fragments[fragment].fate == Fate::hidden)
+      note_missed(static_cast<std::uint32_t>(fragment), history_, first);
   }
 
   // What blended triangles leave of sample s.
@@ -218,7 +221,6 @@ PixelHistory inspect_msaa(const InspectedPixel& pixel, const MsaaInspection& how
     draw(true, true);
   }
   PixelHistory& history = samples.history();
-  for (std::uint32_t i = 0; i < history.fragments.size(); ++i) note_missed(i, history);
 
   const SampleTile& surface = depth_test.surface();
   const TileShader shader = samples.shader();
@@ -308,7 +310,6 @@ PixelHistory inspect_acaa(const InspectedPixel& pixel, const AcaaInspection& how
     }
     first += static_cast<std::size_t>(sampling.pattern.count);
   }
-  for (std::uint32_t i = 0; i < history.fragments.size(); ++i) note_missed(i, history);
 
   glm::vec4 picture = accumulate.resolve_accumulator()[samples.own_pixel()];
   const float left = 1.0f - accumulate.accumulator().color[samples.own_pixel()].a;

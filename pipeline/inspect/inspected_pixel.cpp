@@ -111,9 +111,9 @@ void take_positions(const WideMask& mask, std::uint32_t fragment, PixelHistory& 
   }
 }
 
-void note_missed(std::uint32_t fragment, PixelHistory& history) {
+void note_missed(std::uint32_t fragment, PixelHistory& history, std::size_t first) {
   HistoryFragment& noted = history.fragments[fragment];
-  for (std::size_t i = 0; i < noted.mask.size(); ++i)
+  for (std::size_t i = first; i < noted.mask.size(); ++i)
     if (noted.mask[i] && history.owners[i] != fragment && history.owners[i] != kNobody)
       count_move(history.owners[i], noted.lost);
 }

@@ -66,7 +66,7 @@ std::vector<bool> bits_of(const WideMask& mask, std::size_t count);
 // positions.
 void take_positions(const WideMask& mask, std::uint32_t fragment, PixelHistory& history);
 
-// Notes who has the positions that the fragment covers and has not taken.
-void note_missed(std::uint32_t fragment, PixelHistory& history);
+// Notes who has the positions that the fragment covers and has not taken, from position `first` on.
+void note_missed(std::uint32_t fragment, PixelHistory& history, std::size_t first = 0);
 
 }  // namespace beampipe

@@ -45,7 +45,7 @@ struct HistoryFragment {
   std::vector<bool> mask = {};      // positions that it covers; empty if it has no mask
   Fate fate = Fate::hidden;
   std::vector<PositionMove> taken = {};  // positions that it took, and from whom
-  std::vector<PositionMove> lost = {};   // positions that it covers and does not own, and who has them
+  std::vector<PositionMove> lost = {};   // positions that it covers and does not own, and who had or took them
 };
 
 // What a pixel keeps of one or more fragments.

@@ -250,7 +250,7 @@ class OwnerComposer {
     const bool counted = one.slot.error_is_limited() || other.slot.error_is_limited();
     const float part = counted ? one.visible : std::max(one.visible + error_of_one, kLeastArea);
     const float other_part = counted ? other.visible : std::max(other.visible + error_of_other, kLeastArea);
-    const glm::vec3 color_of_one = color_of(one.slot, one.owned), color_of_other = color_of(other.slot, other.owned);
+    const glm::vec3 color_of_other = color_of(other.slot, other.owned), color_of_one = color_of(one.slot, one.owned);
     const glm::vec3 color = (part * color_of_one + other_part * color_of_other) * (1 / (part + other_part));
     if (bin_.weights)
       bin_.weights->merge(pixel_, {one.slot, one.index, one.owned, color_of_one},

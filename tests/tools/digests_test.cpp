@@ -50,7 +50,7 @@ std::map<std::string, std::string> found_lines() {
   return lines;
 }
 
-std::map<std::string, std::string> read_lines(const std::string& file) {
+std::map<std::string, std::string> read_lines(const std::filesystem::path& file) {
   std::map<std::string, std::string> lines;
   std::ifstream stream(file);
   for (std::string line; std::getline(stream, line);) {
@@ -70,7 +70,7 @@ std::string changes(const std::string& before, const std::string& now) {
 }
 
 TEST(Digests, PicturesAndCountersAreThoseOfTheFile) {
-  const std::string file = std::string(BEAMPIPE_SOURCE_FOLDER) + "/tests/tools/digests.txt";
+  const std::filesystem::path file = std::filesystem::path(BEAMPIPE_SOURCE_FOLDER) / "tests/tools/digests.txt";
   const std::map<std::string, std::string> before = read_lines(file), now = found_lines();
   std::string report;
   for (const auto& [name, line] : now)

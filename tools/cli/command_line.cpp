@@ -80,6 +80,13 @@ OptionHelp help_of(const CLI::Option& option) {
   return help;
 }
 
+// Those of its groups too, which are commands without a name.
+void add_options(const CLI::App& app, std::vector<OptionHelp>& options) {
+  for (const CLI::Option* option : app.get_options()) options.push_back(help_of(*option));
+  for (const CLI::App* group : app.get_subcommands([](const CLI::App* part) { return part->get_name().empty(); }))
+    add_options(*group, options);
+}
+
 }  // namespace
 
 Option& Option::required() {
@@ -190,8 +197,9 @@ std::vector<CommandHelp> CommandLine::help() const {
     CommandHelp& command = commands.emplace_back();
     command.name = app->get_name();
     command.description = app->get_description();
-    command.footer = app->get_footer();
-    for (const CLI::Option* option : app->get_options()) command.options.push_back(help_of(*option));
+    if (app->get_footer() != footer())
+      command.footer = app->get_footer();  // commands without one inherit the program's
+    add_options(*app, command.options);
   }
   return commands;
 }

@@ -74,7 +74,7 @@ void record_inspections(const RunPlan& plan, const RecordedPixels& pixels, Repor
         inspections.push_back(std::move(each));
     if (inspections.empty()) continue;
     result->inspections = spec_folder(technique.spec) + "/" + kInspectionsFile;
-    output.write(result->inspections, json_text(recorded_inspections(inspections, trace)));
+    output.write(result->inspections, recorded_inspections(inspections, trace).dump() + "\n");
   }
 }
 

@@ -73,7 +73,8 @@ void add_run_arguments(Command& command, RunArguments& arguments) {
       .between(1, 1000000);
   command.add_flag("--resume", arguments.resume,
                    "continue a stopped run: keep the finished frames that the same command left in the folder");
-  command.add_flag("--force", arguments.force, "write over the results of another trace or command in the folder");
+  command.add_flag("--force", arguments.force,
+                   "write over the results of another trace in the folder, and with `run` over those of `compare`");
   add_hardware_options(command, arguments.hardware);
   command.add(
       "--trace-events", arguments.trace_events,

@@ -143,8 +143,6 @@ std::vector<std::string> read_units(const JsonCursor& stage) {
     for (const auto& [name, clocks] : units()) known += ", " + name;
     unit.fail("one of the units " + known);
   }
-  const auto has = [&](const char* name) { return std::find(names.begin(), names.end(), name) != names.end(); };
-  if (has("shader") && has("shading")) stage.fail("shader or shading, which are the same lanes", "both");
   return names;
 }
 
@@ -321,8 +319,11 @@ ModelledTime modelled_time(const Hardware& hardware, const Implementation& imple
   std::map<std::string, double> busy;
   for (const StageCounters& stage : stages) {
     double longest = 0;
-    for (const auto& [unit, ms] : times_of(hardware, implementation, stage, has_light, bin_bytes)) {
-      busy[unit == "shading" ? "shader" : unit] += ms;  // the same lanes
+    std::map<std::string, double> of_stage = times_of(hardware, implementation, stage, has_light, bin_bytes);
+    if (const auto shading = of_stage.extract("shading"))  // the same lanes
+      of_stage["shader"] = std::max(of_stage["shader"], shading.mapped());
+    for (const auto& [unit, ms] : of_stage) {
+      busy[unit] += ms;
       longest = std::max(longest, ms);
     }
     time.stages.push_back(longest);

@@ -125,13 +125,13 @@ void FrameRecords::require_own_folder() const {
   files.push_back(output_.path() / "report.json");
   for (const fs::path& file : files) {
     const Json other = maker_of(read_json(file));
-    if (!other.is_object()) continue;
-    for (const char* key : {"trace", "command"})
-      if (other.contains(key) && other.at(key) != maker_.at(key))
-        throw std::runtime_error(
-            output_.path().string() + ": expected a folder without results of another run, found those of " +
-            (key == std::string("trace") ? "another trace" : "beampipe " + other.at(key).get<std::string>()) +
-            "; --force writes over them");
+    if (!other.is_object() || !other.contains("trace") || !other.contains("command")) continue;
+    std::string found;
+    if (other.at("trace") != maker_.at("trace")) found = "another trace";
+    if (other.at("command") == "compare" && maker_.at("command") == "run") found = "beampipe compare";
+    if (!found.empty())
+      throw std::runtime_error(output_.path().string() + ": expected a folder without other results, found those of " +
+                               found + "; --force writes over them");
   }
 }
 

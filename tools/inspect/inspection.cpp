@@ -65,6 +65,11 @@ void add_explanation(const ExplainedPixel& explained, PixelInspection& inspectio
   }
   for (const AreaTransfer& each : explained.transfers)
     inspection.transfers.push_back({place[each.from], place[each.to], each.area, each.cause});
+  const auto effect = [&](const AreaTransfer& each) {
+    return each.area * glm::length(inspection.surfaces[each.to].color - inspection.surfaces[each.from].color);
+  };
+  std::stable_sort(inspection.transfers.begin(), inspection.transfers.end(),
+                   [&](const AreaTransfer& a, const AreaTransfer& b) { return effect(a) > effect(b); });
   inspection.causes.assign(explained.causes.begin(), explained.causes.end());
 }
 
@@ -85,13 +90,14 @@ std::vector<PixelInspection> inspect(const Trace& trace, std::size_t frame, cons
   const bool varies = has_varying_surfaces(trace, of_trace);
   RunOptions by_pixel = only;
   by_pixel.colors = SurfaceColors::by_pixel;
-  std::vector<PixelHistory> visible = histories;
+  std::vector<PixelHistory> visible;
   Image visible_truth = truth;
   if (varies) {
     visible = technique.inspect(trace, frame, by_pixel, pixels);
     visible_truth = reference.render(trace, frame, by_pixel).image;
   }
   std::vector<PixelInspection> inspections;
+  std::vector<PixelColors> colors;
   for (std::size_t i = 0; i < pixels.size(); ++i) {
     PixelInspection& inspection = inspections.emplace_back();
     inspection.technique = technique.spec;
@@ -107,12 +113,13 @@ std::vector<PixelInspection> inspect(const Trace& trace, std::size_t frame, cons
                                       trace.meshes[of_trace.draws[each.draw].mesh].name + "'");
     inspection.reference = glm::vec3(color_at(truth, pixels[i]));
     inspection.error = root_mean_square(glm::dvec3(history.pixel) - glm::dvec3(inspection.reference));
-    const glm::dvec3 seen(visible[i].pixel), right(color_at(visible_truth, pixels[i]));
-    if (varies) inspection.visibility_error = root_mean_square(seen - right);
-    add_explanation(
-        explain_pixel(trace, of_trace, pixels[i], weights_of(visible[i]), seen, right, varies ? by_pixel : only),
-        inspection);
+    const PixelHistory& seen = varies ? visible[i] : history;
+    colors.push_back(
+        {pixels[i], weights_of(seen), glm::vec3(seen.pixel), glm::vec3(color_at(visible_truth, pixels[i]))});
+    if (varies) inspection.visibility_error = root_mean_square(colors.back().color - colors.back().reference);
   }
+  const std::vector<ExplainedPixel> explained = explain_pixels(trace, of_trace, colors, varies ? by_pixel : only);
+  for (std::size_t i = 0; i < pixels.size(); ++i) add_explanation(explained[i], inspections[i]);
   return inspections;
 }
 

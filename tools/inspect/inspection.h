@@ -30,7 +30,7 @@ struct PixelInspection {
   // Where surfaces vary, the part that is left when the technique and the reference give each triangle one colour.
   std::optional<double> visibility_error;
   std::vector<InspectedSurface> surfaces;  // those that have a part of the pixel; the background comes last
-  std::vector<AreaTransfer> transfers;     // between these
+  std::vector<AreaTransfer> transfers;     // between these, those with the most effect on the colour first
   std::vector<double> causes;              // of the error, or of the visibility error, in the order of kErrorCauses
 };
 

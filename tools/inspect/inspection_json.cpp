@@ -1,5 +1,8 @@
 #include "tools/inspect/inspection_json.h"
 
+#include <algorithm>
+#include <span>
+
 #include "tools/inspect/inspection_text.h"
 
 namespace beampipe {
@@ -107,12 +110,14 @@ Json to_json(const PixelInspection& inspection) {
                                 {"weight", surface.weight},
                                 {"reference_weight", surface.truth},
                                 {"color", numbers(surface.color)}});
+  constexpr std::size_t kMost = 1000;  // there are as many as losers times gainers
   json["transfers"] = Json::array();
-  for (const AreaTransfer& each : inspection.transfers)
+  for (const AreaTransfer& each : std::span(inspection.transfers).first(std::min(kMost, inspection.transfers.size())))
     json["transfers"].push_back({{"from_surface", each.from},
                                  {"to_surface", each.to},
                                  {"area", each.area},
                                  {"cause", kErrorCauses[each.cause]}});
+  json["all_transfers"] = inspection.transfers.size();
   json["causes"] = Json::object();
   for (std::size_t cause = 0; cause < inspection.causes.size(); ++cause)
     json["causes"][kErrorCauses[cause]] = inspection.causes[cause];

@@ -28,7 +28,8 @@ Technique overdraw() {
   Technique technique;
   technique.spec = "overdraw";
   technique.framebuffer = {.surfaces = {{"count", "R16UI", 2}}};
-  technique.render = [framebuffer = technique.framebuffer](const Trace& trace, std::size_t frame, const RunOptions& run) {
+  technique.render = [framebuffer = technique.framebuffer](const Trace& trace, std::size_t frame,
+                                                           const RunOptions& run) {
     const FrameContext context(trace, trace.frames[frame], run);
     const BinPlan plan{.stages = {"conservative_raster", "resolve"}, .framebuffer = framebuffer};
     return render_bins(context, plan, render_bin);

@@ -55,6 +55,15 @@ TEST(Hardware, ShadersShareTheirUnitBetweenStages) {
   EXPECT_EQ(time.busiest, "shader");
 }
 
+TEST(Hardware, LanesThatAStageNamesTwiceWorkOnce) {
+  Hardware titan = titan_v();
+  StageCounters busy{"shade"};
+  busy.ops.bit = 5120 * 100;
+  const double once = modelled_time(titan, titan.implementations.at(0), {busy}).overlap_ms;
+  titan.implementations.at(0).units.at("shade").push_back("shader");
+  EXPECT_EQ(modelled_time(titan, titan.implementations.at(0), {busy}).overlap_ms, once);
+}
+
 // A stage without units would cost nothing. The reference is not a pipeline of a GPU.
 TEST(Hardware, EveryStageHasUnits) {
   for (const std::string& name : hardware_names())
