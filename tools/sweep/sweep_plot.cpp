@@ -27,8 +27,25 @@ std::size_t index_of(const std::string& name, const SweepTable& table) {
   return column_of("--plot", name, table.columns, false);
 }
 
-std::string title_of(const SweepColumn& column) {
-  return column.unit.empty() ? column.name : column.name + " (" + column.unit + ")";
+// What numbers of a column are divided by, so that an axis shows few digits.
+struct AxisUnit {
+  double size = 1;
+  std::string name;
+};
+
+AxisUnit unit_of(const SweepTable& table, std::size_t column) {
+  const SweepColumn& info = table.columns[column];
+  double most = 0;
+  for (const std::vector<Json>& row : table.rows)
+    if (row[column].is_number()) most = std::max(most, row[column].get<double>());
+  const bool is_size = info.name.starts_with("memory_system.");
+  if (info.unit == "bytes" && is_size && most >= 1024) return {1024, "KiB"};
+  if (info.unit == "bytes" && !is_size && most >= 1e6) return {1e6, "MB"};
+  return {1, info.unit};
+}
+
+std::string title_of(const SweepColumn& column, const AxisUnit& unit) {
+  return unit.name.empty() ? column.name : column.name + " (" + unit.name + ")";
 }
 
 std::string text_of(const Json& value) { return value.is_string() ? value.get<std::string>() : value.dump(); }
@@ -49,6 +66,7 @@ PlotColumns parse_plot_columns(const std::string& text, const std::vector<SweepC
 
 ScatterPlot sweep_plot(const SweepTable& table, const PlotColumns& columns) {
   const std::size_t x = index_of(columns.x, table), y = index_of(columns.y, table), by = index_of(columns.by, table);
+  const AxisUnit x_unit = unit_of(table, x), y_unit = unit_of(table, y);
   struct Logarithms {
     double sum = 0;
     int count = 0;
@@ -65,15 +83,15 @@ ScatterPlot sweep_plot(const SweepTable& table, const PlotColumns& columns) {
     }
     const std::string name = text_of(row[by]);
     if (!lines.contains(name)) names.push_back(name);
-    Logarithms& at = lines[name][row[x].get<double>()];
-    at.sum += std::log(row[y].get<double>());
+    Logarithms& at = lines[name][row[x].get<double>() / x_unit.size];
+    at.sum += std::log(row[y].get<double>() / y_unit.size);
     most = std::max<std::size_t>(most, static_cast<std::size_t>(++at.count));
   }
   ScatterPlot plot{
       .name = columns.y + "_against_" + columns.x + "_by_" + columns.by,
       .title = columns.y + " against " + columns.x + ", by " + columns.by + (most > 1 ? " (geometric means)" : ""),
-      .x_label = title_of(table.columns[x]),
-      .y_label = title_of(table.columns[y]),
+      .x_label = title_of(table.columns[x], x_unit),
+      .y_label = title_of(table.columns[y], y_unit),
       .series = {},
       .notes = {}};
   for (const std::string& name : names) {

@@ -17,7 +17,8 @@ struct PlotColumns {
 PlotColumns parse_plot_columns(const std::string& text, const std::vector<SweepColumn>& columns);
 
 // A line for each value of `by`. Where several rows of a line have the same x, it goes through the geometric mean of
-// their y. Rows whose x or y is not above 0 are left out, with a note.
+// their y. Sizes of memory are drawn in KiB, and bytes that move in MB. Rows whose x or y is not above 0 are left out,
+// with a note.
 ScatterPlot sweep_plot(const SweepTable& table, const PlotColumns& columns);
 
 }  // namespace beampipe

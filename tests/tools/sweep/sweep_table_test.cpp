@@ -67,6 +67,17 @@ TEST(SweepPlot, LinesGoThroughGeometricMeans) {
   EXPECT_EQ(plot.notes[0], "1 rows are not drawn, because x or y is not above 0");
 }
 
+TEST(SweepPlot, LargeNumbersAreInLargerUnits) {
+  const SweepTable table{{{"memory_system.l2_bytes", "bytes", ""}, {"dram_bytes", "bytes", ""}, {"by", "", "", true}},
+                         {{4096, 2500000, "a"}},
+                         0};
+  const ScatterPlot plot = sweep_plot(table, {"memory_system.l2_bytes", "dram_bytes", "by"});
+  EXPECT_EQ(plot.x_label, "memory_system.l2_bytes (KiB)");
+  EXPECT_EQ(plot.y_label, "dram_bytes (MB)");
+  EXPECT_EQ(plot.series.at(0).points.at(0).x, 4);
+  EXPECT_NEAR(plot.series.at(0).points.at(0).y, 2.5, 1e-12);
+}
+
 TEST(SweepPlot, ColumnsMustExistAndHoldNumbers) {
   const std::vector<SweepColumn> columns = sample_table().columns;
   const auto refusal = [&](const std::string& text) -> std::string {
