@@ -13,7 +13,8 @@ import tornado
 
 RULES = [
     ("64-bit integers", ["wide_per_clk"]),
-    ("pixels by bytes of their formats", ["rop_bytes_per_clk"]),
+    ("pixels by bytes of their formats, in ROPs", ["rop_bytes_per_clk"]),
+    ("bytes of pixels on chip, in shaders too", ["on_chip_bytes_per_clk"]),
     ("masks by positions and edges", ["mask_positions_per_clk"]),
     ("sorting by comparisons", ["sort_operations_per_clk"]),
     ("composition by contested positions", ["compose_positions_per_clk"]),
@@ -26,7 +27,7 @@ def main(program, folder):
     variant = copy.deepcopy(description)
     for _, rates in RULES:
         for rate in rates:
-            variant["rates"][rate] = 1e15
+            variant["rates"][rate] = 1e12
     names, variants = ["counts with early-outs, none of the rules below"], [copy.deepcopy(variant)]
     for name, rates in RULES:
         for rate in rates:

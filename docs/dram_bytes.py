@@ -16,7 +16,7 @@ import tempfile
 TECHNIQUES = ["beam:order=sorted", "beam:order=stream,passes=0", "msaa:8", "msaa:32", "acaa:8"]
 PER_TRIANGLE = re.compile("setup_triangles|bin_lists|batch_")  # these grow with triangles or hold a batch of 512
 PLACED = ["beam", "msaa:8", "msaa:32", "beam:order=sorted", "beam:order=stream"]
-PLACES = ["in-memory", "on-chip"]
+PLACES = {"in-memory": "in memory", "on-chip": "on chip"}
 GEOMETRY = ("vertex_setup", "sample_raster")  # write, bin and read the triangles of one pass
 STACK = ["beam", "beam:order=stream", "beam:order=sorted", "beam:rules=paper", "msaa:8"]
 
@@ -45,7 +45,7 @@ def dram_table(program, traces):
 
 
 def places_table(program, traces):
-    print("| scene | " + " | ".join(f"{place}: `{t}`" for place in PLACES for t in PLACED) + " |")
+    print("| scene | " + " | ".join(f"{title}: `{t}`" for title in PLACES.values() for t in PLACED) + " |")
     print("|---" * (len(PLACES) * len(PLACED) + 1) + "|")
     for trace in traces:
         cells = []
@@ -75,7 +75,7 @@ def stack_table(program, camera):
 if __name__ == "__main__":
     if len(sys.argv) == 3 and sys.argv[2] == "--stack":
         stack_table(sys.argv[1], {})
-        print("\nFrom afar, where each covers parts of four pixels:\n")
+        print("\nFrom afar:\n")
         stack_table(sys.argv[1], {"eye": [0, 0, 300], "far": 400})
     elif len(sys.argv) > 3 and sys.argv[2] == "--places":
         places_table(sys.argv[1], sys.argv[3:])

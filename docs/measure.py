@@ -1,6 +1,11 @@
 """Functions that the scripts of this folder share: making traces, and running the program on them."""
+import contextlib
 import json
+import lzma
+import pathlib
+import shutil
 import subprocess
+import tempfile
 
 PROCEDURAL = ["hairball", "classroom", "boat", "pickets", "terrain", "sphere", "fence", "soup", "foliage"]
 
@@ -9,6 +14,23 @@ def make(program, what, trace, *options):
     """Makes a trace of a procedural scene or of a model, and returns its path."""
     subprocess.run([program, "make", what, *options, "-o", trace], check=True, stdout=subprocess.DEVNULL)
     return trace
+
+
+@contextlib.contextmanager
+def unpacked(model):
+    """The path of a model, or of its copy if there is only MODEL.xz, which is unpacked for as long."""
+    packed = pathlib.Path(f"{model}.xz")
+    if pathlib.Path(model).exists() or not packed.exists():
+        yield str(model)
+        return
+    with tempfile.TemporaryDirectory() as folder:
+        copy = pathlib.Path(folder) / pathlib.Path(model).name
+        with lzma.open(packed) as source, open(copy, "wb") as to:
+            shutil.copyfileobj(source, to)
+        materials = pathlib.Path(model).with_suffix(".mtl")
+        if materials.exists():
+            shutil.copy(materials, folder)
+        yield str(copy)
 
 
 def results(program, command, trace, specs, folder, *options):

@@ -1,75 +1,115 @@
 #!/usr/bin/env python3
-"""Modelled times on several parts, side by side, and their ratios beside the paper's, for docs/costs.md.
+"""Makes tables of docs/costs.md from finished runs: modelled times on several parts, and their ratios.
 
-modelled_times.py PROGRAM [--hardware A,B,...] DIR...
-    folders that `beampipe run TRACE -t beam:rules=paper ... msaa:32,128,256 ... -o DIR` wrote
+usage: docs/modelled_times.py times  PROGRAM [--hardware A,B,...] DIR...
+       docs/modelled_times.py bins   PROGRAM [--hardware A,B,...] DIR...
+       docs/modelled_times.py ratios PROGRAM [--hardware A,B,...] DIR...
+       docs/modelled_times.py beam   PROGRAM [--hardware A,B,...] DIR...
+
+PROGRAM is for instance beampipe; `beampipe run TRACE -t SPEC... -o DIR` wrote the folders. `times` prints milliseconds,
+and the equivalent MSAA rate where `beampipe compare` wrote the folder.
+`bins` adds what a bin has on chip. `ratios` divides by the time of the published pipeline, beside the paper's ratios.
+`beam` divides the times of beam by those of MSAA, for several prices of shading.
 """
 import argparse
 import json
 import subprocess
 
+from measure import print_head, print_row
+
 PUBLISHED_MS = {"beam:rules=paper": 30.2, "msaa:32": 24.0, "msaa:128": 78.0, "msaa:256": 198.0}  # Titan V, classroom
 BASE = "beam:rules=paper"
-
-
 COSTS = (0, 100, 300, 1000, 3000, 10000)  # operations per invocation
-BEAM, MSAA = ("beam:bin=16",), ("msaa:8", "msaa:8,prepass", "msaa:32")
+BEAM, MSAA = "beam:bin=16", ("msaa:8", "msaa:8,prepass", "msaa:32")
 
 
 def model(program, hardware, folders, cost=0):
+    """By folder: the times by technique, and by implementation within it."""
     text = subprocess.run([program, "model", *folders, "--json", "--hardware", hardware, "--material-cost", str(cost)],
                           check=True, capture_output=True, text=True).stdout
-    return json.loads(text)
-
-
-def beam_over_msaa(program, hardware, folders):
-    """The ratio of times where each invocation of a fragment shader costs so much beside the trace's materials."""
-    by_cost = {cost: model(program, hardware, folders, cost) for cost in COSTS}
-    for k, folder in enumerate(folders):
-        sums = {cost: {(time["technique"], time["implementation"]): time["sum"] for time in found[k]["times"]}
-                for cost, found in by_cost.items()}
-        names = list(dict.fromkeys(name for _, name in sums[0]))
-        print(f"\n{folder}: time over that of MSAA, by operations per invocation:\n")
-        print("| ratio | part | " + " | ".join(map(str, COSTS)) + " |\n" + "|---" * (2 + len(COSTS)) + "|")
-        for beam in BEAM:
-            for msaa in MSAA:
-                if (beam, names[0]) in sums[0] and (msaa, names[0]) in sums[0]:
-                    for name in names:
-                        cells = [f"{sums[cost][beam, name] / sums[cost][msaa, name]:.2f}" for cost in COSTS]
-                        print(f"| `{beam}` / `{msaa}` | `{name}` | " + " | ".join(cells) + " |")
-
-
-def main(program, hardware, folders):
-    for found in model(program, hardware, folders):
-        times = {}
-        for time in found["times"]:
+    found = {}
+    for report in json.loads(text):
+        times = found.setdefault(report["folder"], {})
+        for time in report["times"]:
             times.setdefault(time["technique"], {})[time["implementation"]] = time
-        names = list(next(iter(times.values())))
-        print(f"\n{found['folder']}, ms, one stage after the other (and the busiest unit if all run at once):\n")
-        print("| technique | " + " | ".join(f"`{name}`" for name in names) + " |")
-        print("|---" * (1 + len(names)) + "|")
-        for technique, of in times.items():
-            cells = [f"{of[name]['sum']:.3f} ({of[name]['busiest']})" for name in names]
-            print(f"| `{technique}` | " + " | ".join(cells) + " |")
-        if BASE not in times:
-            continue
-        print(f"\nOver `{BASE}`, and the error of that ratio where the paper has one:\n")
-        print("| technique | paper | " + " | ".join(f"`{name}`" for name in names) + " |")
-        print("|---" * (2 + len(names)) + "|")
-        for technique, of in times.items():
+    return found
+
+
+def cells_of(times):
+    return [f"{time['sum']:.3f} ({time['busiest']})" for time in times.values()]
+
+
+def names_of(times):
+    return [f"`{name}`" for name in next(iter(times.values()))]
+
+
+def scene_of(folder):
+    return folder.rstrip("/").rsplit("/", 1)[-1]
+
+
+def results_of(folder):
+    with open(f"{folder}/report.json", encoding="utf-8") as file:
+        return json.load(file)["results"]
+
+
+def emr_of(result):
+    if "equivalent_msaa" not in result:
+        return ""
+    bound = ("≥ " if result["equivalent_msaa_is_lower_bound"] else
+             "< " if result.get("equivalent_msaa_is_upper_bound") else "")
+    return f"{bound}{result['equivalent_msaa']:.3g}"
+
+
+def times(program, hardware, folders):
+    for folder, found in model(program, hardware, folders).items():
+        emr = {result["technique"]: emr_of(result) for result in results_of(folder)}
+        print_head("technique", "EMR", *names_of(found))
+        for technique, of in found.items():
+            print_row(f"`{technique}`", emr[technique], *cells_of(of))
+
+
+def bins(program, hardware, folders):
+    for folder, found in model(program, hardware, folders).items():
+        kib = {result["technique"]: sum(buffer["peak_bytes"] for buffer in result["frames"][0]["buffers"]
+                                        if buffer["held"] == "bin") / 1024 for result in results_of(folder)}
+        print_head("technique", "KiB per bin", *names_of(found))
+        for technique, of in found.items():
+            print_row(f"`{technique}`", f"{kib[technique]:.0f}", *cells_of(of))
+
+
+def ratios(program, hardware, folders):
+    for folder, found in model(program, hardware, folders).items():
+        print(f"\n*{scene_of(folder)}*\n")
+        print_head("technique", "paper", *names_of(found))
+        for technique, of in found.items():
             published = PUBLISHED_MS.get(technique, 0) / PUBLISHED_MS[BASE]
             cells = []
-            for name in names:
-                ratio = of[name]["sum"] / times[BASE][name]["sum"]
+            for name, time in of.items():
+                ratio = time["sum"] / found[BASE][name]["sum"]
                 error = f" ({100 * (ratio / published - 1):+.0f} %)" if published and technique != BASE else ""
                 cells.append(f"{ratio:.2f}{error}")
-            print(f"| `{technique}` | {f'{published:.2f}' if published else ''} | " + " | ".join(cells) + " |")
-    beam_over_msaa(program, hardware, folders)
+            print_row(f"`{technique}`", f"{published:.2f}" if published else "", *cells)
+
+
+def beam(program, hardware, folders):
+    by_cost = {cost: model(program, hardware, folders, cost) for cost in COSTS}
+    names = list(by_cost[0][folders[0]][BEAM])
+    print_head("ratio", "part", *COSTS)
+    for msaa in MSAA:
+        for name in names:
+            cells = []
+            for cost in COSTS:
+                of = [by_cost[cost][folder] for folder in folders]
+                each = [found[BEAM][name]["sum"] / found[msaa][name]["sum"] for found in of]
+                cells.append(f"{min(each):.2f} to {max(each):.2f}")
+            print_row(f"`{BEAM}` / `{msaa}`", f"`{name}`", *cells)
 
 
 if __name__ == "__main__":
     parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
+    parser.add_argument("table", choices=("times", "bins", "ratios", "beam"))
     parser.add_argument("program")
     parser.add_argument("--hardware", default="titan_v")
     parser.add_argument("folders", nargs="+")
-    main(**vars(parser.parse_args()))
+    options = parser.parse_args()
+    globals()[options.table](options.program, options.hardware, options.folders)

@@ -1,10 +1,10 @@
 #!/usr/bin/env python3
 """Compares the error and flicker of TAA and DVM with those of MSAA over 60 frames, for docs/techniques.md.
 
-usage: docs/over_time.py PROGRAM [MODEL.obj...]
+usage: docs/over_time.py PROGRAM SCENE... MODEL.obj...
 
-PROGRAM is for instance build/release/tools/beampipe. The script measures the scene `bars` under a still camera, and the
-given models under a camera that goes around them by 3 degrees.
+PROGRAM is for instance beampipe. Scenes are measured under a still camera, and models under one that goes around them by
+3 degrees. A model may be compressed with xz.
 """
 import math
 import pathlib
@@ -24,16 +24,17 @@ def flicker(frames, first, last):
 
 
 def main():
-    if len(sys.argv) < 2:
+    if len(sys.argv) < 3:
         sys.exit(__doc__.strip())
     program = sys.argv[1]
     measure.print_head("trace, 320 x 180", "technique", "first frame", "after 8", f"after {FRAMES}", "flicker, frames 2-8",
                        f"{FRAMES - 7}-{FRAMES}")
     with tempfile.TemporaryDirectory() as folder:
         trace = f"{folder}/trace.json"
-        for what in ["bars", *sys.argv[2:]]:
-            orbit = [] if what == "bars" else ["--orbit", str(DEGREES)]
-            measure.make(program, what, trace, "--frames", str(FRAMES), *orbit)
+        for what in sys.argv[2:]:
+            orbit = ["--orbit", str(DEGREES)] if what.endswith(".obj") else []
+            with measure.unpacked(what) as source:
+                measure.make(program, source, trace, "--frames", str(FRAMES), *orbit)
             results = measure.results(program, "compare", trace, TECHNIQUES, folder, "--ladder", "8")
             for spec in TECHNIQUES:
                 frames = results[spec]["frames"]

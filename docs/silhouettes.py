@@ -1,9 +1,9 @@
 #!/usr/bin/env python3
 """Measures where a technique should shade a triangle that does not cover the whole pixel.
 
-usage: docs/silhouettes.py PROGRAM FOLDER
+usage: docs/silhouettes.py PROGRAM -o FOLDER
 
-PROGRAM is for instance build/release/tools/beampipe. The scene is 60 slats, 4 pixels wide, that lie over each other at
+PROGRAM is for instance beampipe. The scene is 60 slats, 4 pixels wide, that lie over each other at
 all angles; across each, the colour rises from 0 to 1. The colour is linear over a slat, so that shading at the middle of
 what is visible is exact, and every error of shading comes from a silhouette. Prints the error of shading of each
 technique, as a multiple of that of the first. The trace and the results go to FOLDER.
@@ -37,9 +37,9 @@ def slats(seed):
 
 
 def main():
-    if len(sys.argv) != 3:
+    if len(sys.argv) != 4 or sys.argv[2] != "-o":
         sys.exit(__doc__.strip())
-    program, folder = sys.argv[1], pathlib.Path(sys.argv[2])
+    program, folder = sys.argv[1], pathlib.Path(sys.argv[3])
     folder.mkdir(parents=True, exist_ok=True)
     trace = folder / "slats.json"
     trace.write_text(json.dumps({

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <optional>
 
 #include "pipeline/bins/render_bins.h"
 #include "stages/beam/beam_fragment.h"
@@ -18,6 +19,7 @@ enum Cause : std::size_t { leak, mask, order, interpenetration, tiny, mixed, rou
 
 // A triangle in one pixel, or the background.
 struct PixelSurface {
+  std::uint32_t triangle = kNoTriangle;
   glm::dvec3 color;
   double weight = 0, truth = 0;        // parts of the pixel
   const Fragment* fragment = nullptr;  // with masks of those positions; null for the background
@@ -65,24 +67,25 @@ Cause cause_of(const PixelSurface& loser, const PixelSurface& gainer, const Comp
   return mask;
 }
 
-// The errors of one pixel by cause, without rounding.
-std::array<glm::dvec3, kErrorCauses.size()> transfers(std::vector<PixelSurface>& surfaces, const Comparer& comparer) {
+// Adds the pixel's transfers of area.
+void find_transfers(std::vector<PixelSurface>& surfaces, const Comparer& comparer,
+                    std::vector<AreaTransfer>& transfers) {
   for (PixelSurface& hidden : surfaces)
     for (const PixelSurface& hider : surfaces)
       if (hider.order > std::max(hidden.order, hidden.latest_hider) && comparer.compare(hider, hidden).first)
         hidden.latest_hider = hider.order;
   double gained = 0;
   for (const PixelSurface& surface : surfaces) gained += std::max(surface.weight - surface.truth, 0.0);
-  std::array<glm::dvec3, kErrorCauses.size()> errors{};
-  for (const PixelSurface& loser : surfaces) {
+  for (std::size_t from = 0; from < surfaces.size(); ++from) {
+    const PixelSurface& loser = surfaces[from];
     if (loser.weight >= loser.truth) continue;
-    for (const PixelSurface& gainer : surfaces) {
+    for (std::size_t to = 0; to < surfaces.size(); ++to) {
+      const PixelSurface& gainer = surfaces[to];
       if (gainer.weight <= gainer.truth) continue;
       const double area = (loser.truth - loser.weight) * (gainer.weight - gainer.truth) / gained;
-      errors[cause_of(loser, gainer, comparer)] += area * (gainer.color - loser.color);
+      transfers.push_back({from, to, area, cause_of(loser, gainer, comparer)});
     }
   }
-  return errors;
 }
 
 // Every triangle that the technique or the reference sees in a pixel, and last the background.
@@ -119,10 +122,11 @@ class PixelSurfaces {
     }
     std::vector<PixelSurface> all;
     for (auto& [triangle, surface] : surfaces) {
+      surface.triangle = triangle;
       surface.color = shader.color(triangle, static_cast<std::uint32_t>(pixel), 0.5f, 0.5f);
       all.push_back(surface);
     }
-    all.push_back({background, rest_of_weights, rest_of_truth, nullptr, ~0u, false, 0});
+    all.push_back({kNoTriangle, background, rest_of_weights, rest_of_truth, nullptr, ~0u, false, 0});
     return all;
   }
 
@@ -152,6 +156,62 @@ std::map<std::uint64_t, double> shares_of_samples(const ReferenceTile& surface, 
   return shares;
 }
 
+// The surfaces in the pixels of a tile, as the reference sees them.
+class TileExplainer {
+ public:
+  // Both, and the bin, must outlive it.
+  TileExplainer(const FrameContext& context, const Bin& bin, const Comparer& comparer)
+      : comparer_(comparer),
+        background_(context.frame.background),
+        tile_(bin.tile),
+        shader_(bin.shader()),
+        truth_(bin.tile) {
+    StageCounters unused;
+    reference_raster(context.triangles, bin.list, tile_, unused, truth_, &shader_);
+    layers_ = layers_of_pixels(truth_, tile_);
+    std::vector<Pair> pairs;
+    conservative_raster(context.triangles, bin.list, tile_, unused, pairs);
+    beam_fragment(context.triangles, pairs, tile_, {MaskSource::exact, comparer_.patterns()}, unused, fragments_);
+    surfaces_.emplace(fragments_, tile_.pixels());
+  }
+
+  // `pixel`: its number in the tile. `error`: of its colour.
+  ExplainedPixel explain(std::size_t pixel, const PixelWeights& weights, const glm::dvec3& error) const {
+    const auto columns = static_cast<std::size_t>(tile_.width());
+    std::vector<PixelSurface> seen = surfaces_->at(
+        pixel, weights, shares_of_samples(truth_, pixel % columns, pixel / columns, pixel, layers_[pixel], shader_),
+        shader_, background_);
+    ExplainedPixel explained;
+    for (const PixelSurface& each : seen)
+      explained.surfaces.push_back({each.triangle, each.weight, each.truth, each.color});
+    find_transfers(seen, comparer_, explained.transfers);
+    const double length = std::sqrt(glm::dot(error, error) / 3);
+    if (length == 0) return explained;
+    std::array<glm::dvec3, kErrorCauses.size()> errors{};
+    for (const AreaTransfer& each : explained.transfers)
+      errors[each.cause] += each.area * (seen[each.to].color - seen[each.from].color);
+    errors[rounding] = error;
+    for (std::size_t cause = 0; cause < rounding; ++cause) errors[rounding] -= errors[cause];
+    for (std::size_t cause = 0; cause < errors.size(); ++cause)
+      explained.causes[cause] = glm::dot(errors[cause], error) / (3 * length);
+    return explained;
+  }
+
+ private:
+  const Comparer& comparer_;
+  const glm::vec3 background_;
+  const Tile tile_;
+  const TileShader shader_;
+  ReferenceTile truth_;
+  std::vector<std::vector<ReferenceTile::Layer>> layers_;
+  std::vector<Fragment> fragments_;
+  std::optional<PixelSurfaces> surfaces_;
+};
+
+BinPlan plan_of_bins() {
+  return {.stages = {"error_causes"}, .framebuffer = {.bin_size = kTileSize}, .pair_bytes = kPairWorkingBytes};
+}
+
 glm::dvec3 rgb(const Image& image, std::size_t pixel) {
   const float* rgba = image.rgba.data() + 4 * pixel;
   return {rgba[0], rgba[1], rgba[2]};
@@ -164,41 +224,49 @@ std::map<std::string, std::vector<float>> error_causes(const Trace& trace, const
                                                        const Image& reference, const RunOptions& run) {
   const FrameContext context(trace, frame, run);
   const Comparer comparer;
-  const BeamFragmentOptions options{MaskSource::exact, comparer.patterns()};
-  const BinPlan plan{
-      .stages = {"error_causes"}, .framebuffer = {.bin_size = kTileSize}, .pair_bytes = kPairWorkingBytes};
-  FrameResult result = render_bins(context, plan, [&](Bin& bin) {
+  FrameResult result = render_bins(context, plan_of_bins(), [&](Bin& bin) {
     const Tile& tile = bin.tile;
-    StageCounters unused;
-    ReferenceTile truth(tile);
-    const TileShader shader = bin.shader();
-    reference_raster(context.triangles, bin.list, tile, unused, truth, &shader);
-    const std::vector<std::vector<ReferenceTile::Layer>> layers = layers_of_pixels(truth, tile);
-    std::vector<Pair> pairs;
-    std::vector<Fragment> fragments;
-    conservative_raster(context.triangles, bin.list, tile, unused, pairs);
-    beam_fragment(context.triangles, pairs, tile, options, unused, fragments);
-    const PixelSurfaces surfaces(fragments, tile.pixels());
+    const TileExplainer explainer(context, bin, comparer);
     std::array<std::vector<float>*, kErrorCauses.size()> found;
     for (std::size_t cause = 0; cause < found.size(); ++cause) found[cause] = &bin.pixel_counter(kErrorCauses[cause]);
     for (std::size_t i = 0; i < tile.pixels(); ++i) {
       const auto columns = static_cast<std::size_t>(tile.width());
-      const std::size_t x = i % columns, y = i / columns;
-      const std::size_t pixel =
-          (static_cast<std::size_t>(tile.y0) + y) * frame.width + static_cast<std::size_t>(tile.x0) + x;
+      const std::size_t pixel = (static_cast<std::size_t>(tile.y0) + i / columns) * frame.width +
+                                static_cast<std::size_t>(tile.x0) + i % columns;
       const glm::dvec3 error = rgb(image, pixel) - rgb(reference, pixel);
-      const double length = std::sqrt(glm::dot(error, error) / 3);
-      if (length == 0) continue;
-      std::vector<PixelSurface> seen = surfaces.at(
-          i, weights[pixel], shares_of_samples(truth, x, y, i, layers[i], shader), shader, frame.background);
-      std::array<glm::dvec3, kErrorCauses.size()> errors = transfers(seen, comparer);
-      errors[rounding] = error;
-      for (std::size_t cause = 0; cause < rounding; ++cause) errors[rounding] -= errors[cause];
-      for (std::size_t cause = 0; cause < errors.size(); ++cause)
-        (*found[cause])[i] = static_cast<float>(glm::dot(errors[cause], error) / (3 * length));
+      if (error == glm::dvec3(0.0)) continue;
+      const ExplainedPixel explained = explainer.explain(i, weights[pixel], error);
+      for (std::size_t cause = 0; cause < found.size(); ++cause)
+        (*found[cause])[i] = static_cast<float>(explained.causes[cause]);
     }
   });
   return std::move(result.pixel_counters);
+}
+
+std::vector<ExplainedPixel> explain_pixels(const Trace& trace, const Frame& frame,
+                                           const std::vector<PixelColors>& pixels, const RunOptions& run) {
+  std::vector<PixelAddress> addresses;
+  for (const PixelColors& pixel : pixels) addresses.push_back(pixel.at);
+  RunOptions options = run;
+  options.pixels = &addresses;
+  options.weights = nullptr;
+  options.memory.modelled = false;
+  const FrameContext context(trace, frame, options);
+  const Comparer comparer;
+  std::vector<ExplainedPixel> explained(pixels.size());
+  BinPlan plan = plan_of_bins();
+  plan.empty_bins_differ = true;
+  render_bins(context, plan, [&](Bin& bin) {
+    const TileExplainer explainer(context, bin, comparer);
+    for (std::size_t i = 0; i < pixels.size(); ++i) {
+      const PixelColors& pixel = pixels[i];
+      if (!holds(bin.tile, pixel.at)) continue;
+      const std::size_t index =
+          bin.tile.index(static_cast<std::int32_t>(pixel.at.x), static_cast<std::int32_t>(pixel.at.y));
+      explained[i] = explainer.explain(index, pixel.weights, pixel.color - pixel.reference);
+    }
+  });
+  return explained;
 }
 
 }  // namespace beampipe

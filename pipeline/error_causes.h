@@ -20,9 +20,12 @@
 #pragma once
 
 #include <array>
+#include <glm/glm.hpp>
 #include <map>
+#include <vector>
 
 #include "pipeline/technique.h"
+#include "stages/data/sample_tile.h"
 
 namespace beampipe {
 
@@ -35,5 +38,36 @@ inline constexpr std::array kErrorCauses = {"leak", "mask", "order", "interpenet
 std::map<std::string, std::vector<float>> error_causes(const Trace& trace, const Frame& frame,
                                                        const std::vector<PixelWeights>& weights, const Image& image,
                                                        const Image& reference, const RunOptions& run);
+
+// A triangle in a pixel, or the background (kNoTriangle): its part of the pixel by the technique and by the reference.
+struct ExplainedSurface {
+  std::uint32_t triangle;
+  double weight, truth;
+  glm::dvec3 color;  // linear RGB
+};
+
+// An area that one surface lost and another gained.
+struct AreaTransfer {
+  std::size_t from, to;  // indices of surfaces
+  double area;
+  std::size_t cause;  // index into kErrorCauses
+};
+
+struct ExplainedPixel {
+  std::vector<ExplainedSurface> surfaces;  // by triangle; the background comes last
+  std::vector<AreaTransfer> transfers;
+  std::array<double, kErrorCauses.size()> causes{};  // as error_causes returns them
+};
+
+// A pixel to explain: the technique's weights, and linear RGB in the two pictures.
+struct PixelColors {
+  PixelAddress at;
+  PixelWeights weights;
+  glm::dvec3 color, reference;
+};
+
+// The same for some pixels, with all that the split is made of.
+std::vector<ExplainedPixel> explain_pixels(const Trace& trace, const Frame& frame,
+                                           const std::vector<PixelColors>& pixels, const RunOptions& run);
 
 }  // namespace beampipe

@@ -22,6 +22,13 @@ namespace beampipe {
 
 class DramTrace;
 class Timeline;
+struct PixelHistory;
+
+// A pixel of the frame.
+struct PixelAddress {
+  std::uint32_t x, y;
+  bool operator==(const PixelAddress&) const = default;
+};
 
 // The weight of one triangle in one pixel. The pixel is the sum of weight times colour over its triangles; the
 // background has what is left to 1.
@@ -53,6 +60,8 @@ struct RunOptions {
   std::vector<PixelWeights>* weights = nullptr;
   // Where the DRAM requests of the frame are recorded, if memory is modelled; null: nowhere.
   DramTrace* dram_trace = nullptr;
+  // If not null, only the bins that hold one of these pixels are rendered; the rest of the picture is black.
+  const std::vector<PixelAddress>* pixels = nullptr;
 };
 
 // Linear RGB and A, the part of the pixel that geometry covers (0..1). Row 0 is on top; 4 floats per pixel.
@@ -77,6 +86,7 @@ struct FrameResult {
   std::uint64_t a_buffer_peak_bytes = 0;
   std::vector<Buffer> buffers;   // all but the A-buffer
   std::uint32_t bin_pixels = 0;  // of the largest bin
+  CacheReach cache_reach;
 };
 
 struct Technique {
@@ -84,6 +94,11 @@ struct Technique {
   Framebuffer framebuffer;
   std::uint32_t samples = 0;  // N of msaa:N, else 0
   std::function<FrameResult(const Trace&, std::size_t frame, const RunOptions&)> render;
+  // What happened in some pixels of the frame, a history each (pipeline/inspect/pixel_history.h). Empty if the
+  // technique cannot tell.
+  std::function<std::vector<PixelHistory>(const Trace&, std::size_t frame, const RunOptions&,
+                                          const std::vector<PixelAddress>&)>
+      inspect = {};
   bool has_weights = false;    // `render` can fill RunOptions::weights
   bool keeps_history = false;  // a frame's picture depends on earlier frames (RunOptions::history)
   // The least memory that this program needs for a frame, in bytes per pixel: the picture, and what its stages hand to

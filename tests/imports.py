@@ -9,9 +9,11 @@ The rules:
 1.  Paths. An include of our own files is in quotes and starts at the root of the repository, without "." or "..".
     Third-party headers are in angle brackets; only those of Highway (hwy/) may be in quotes. No include is a macro.
 2.  Folders. Imports run tools -> pipeline -> stages -> simd. All but simd may include traces, which stands alone.
-3.  Inside tools/: cli -> report -> claims -> evaluate -> files. Only cli includes stress, which includes none of them.
-4.  Inside pipeline/: techniques -> units -> bins -> memory. All of them may include technique.h, which may include only
-    memory. The other files at the root of pipeline/ may include bins and memory; only techniques may include them.
+3.  Inside tools/: cli -> sweep -> report -> claims -> evaluate -> files, where sweep leaves out claims. Only cli
+    includes stress, which includes none of them. cli and report may include inspect, which may include evaluate and
+    files.
+4.  Inside pipeline/: techniques -> inspect -> units -> bins -> memory. All of them may include technique.h, which may
+    include only memory. The other files at the root of pipeline/ may include bins and memory; only techniques may include them.
 5.  Inside stages/. Each subfolder is a group of stages, except for data/ (types that stages share), cost/ (counters
     and costs that stages share) and surface/ (what surfaces look like, wherever they are shaded): group -> surface ->
     cost -> data -> simd. Of these, only groups and surface/ may include traces. No group includes another.
@@ -30,11 +32,13 @@ FOLDERS = {
 # What each place in a folder may include of the same folder, besides itself. "root": the files in no subfolder.
 ORDER = {
     "tools": {
-        "cli": {"report", "stress", "claims", "evaluate", "files"}, "report": {"claims", "evaluate", "files"},
+        "cli": {"sweep", "report", "stress", "inspect", "claims", "evaluate", "files"},
+        "sweep": {"report", "evaluate", "files"}, "report": {"inspect", "claims", "evaluate", "files"},
+        "inspect": {"evaluate", "files"},
         "stress": set(), "claims": {"evaluate", "files"}, "evaluate": {"files"}, "files": set()},
     "pipeline": {
-        "techniques": {"root", "units", "bins", "memory", "technique.h"}, "root": {"bins", "memory", "technique.h"},
-        "units": {"bins", "memory", "technique.h"}, "bins": {"memory", "technique.h"},
+        "techniques": {"root", "inspect", "units", "bins", "memory", "technique.h"}, "root": {"bins", "memory", "technique.h"},
+        "inspect": {"units", "bins", "memory", "technique.h"}, "units": {"bins", "memory", "technique.h"}, "bins": {"memory", "technique.h"},
         "memory": {"technique.h"}, "technique.h": {"memory"}},
     "stages": {"data": set(), "cost": {"data"}, "surface": {"data", "cost"}}}
 STAGE_GROUP = {"data", "cost", "surface"}

@@ -10,6 +10,7 @@ build=(
   libglm-dev libopenexr-dev libimath-dev libhwy-dev libtbb-dev libpng-dev zlib1g-dev libjpeg62-turbo-dev libturbojpeg0-dev
   libtinyobjloader-dev libtinygltf-dev
   libcli11-dev nlohmann-json3-dev
+  libsqlite3-dev
   libboost-dev  # only headers: checksums and exact arithmetic
   node-d3       # D3, which becomes part of the report page
 )

@@ -6,6 +6,7 @@
 #include <limits>
 #include <sstream>
 
+#include "traces/closest_name.h"
 #include "traces/input_file.h"
 #include "traces/material.h"
 
@@ -67,11 +68,12 @@ void JsonCursor::expect_object() const {
   if (!value_->is_object()) fail("an object");
 }
 
-void JsonCursor::expect_keys(std::initializer_list<std::string_view> known) const {
+void JsonCursor::expect_keys(std::span<const std::string_view> known) const {
   expect_object();
   for (const auto& [key, value] : value_->members())
     if (std::find(known.begin(), known.end(), key) == known.end())
-      at(value).fail("one of the keys " + names_of({known.begin(), known.size()}), in_quotes(key));
+      at(value).fail("one of the keys " + names_of(known),
+                     in_quotes(key) + did_you_mean(key, {known.begin(), known.end()}));
 }
 
 bool JsonCursor::has(std::string_view key) const {

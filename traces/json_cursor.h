@@ -23,7 +23,10 @@ class JsonCursor {
   JsonCursor(const Json& json, const std::string& file) : value_(&json), root_(&json), file_(&file) {}
 
   // Members of an object.
-  void expect_keys(std::initializer_list<std::string_view> known) const;  // there are no other keys
+  void expect_keys(std::initializer_list<std::string_view> known) const {  // there are no other keys
+    expect_keys(std::span(known.begin(), known.size()));
+  }
+  void expect_keys(std::span<const std::string_view> known) const;
   bool has(std::string_view key) const;
   JsonCursor operator[](std::string_view key) const;           // required
   std::optional<JsonCursor> find(std::string_view key) const;  // optional

@@ -7,12 +7,9 @@
 namespace beampipe {
 
 void BinStage::copies(std::string_view from, std::string_view to, int times, std::uint64_t bytes) const {
-  const auto sectors = [](std::uint64_t of) {
-    return (of + MemoryParameters::sector_bytes - 1) / MemoryParameters::sector_bytes;
-  };
   for (std::uint64_t i = 0; i < 2 * static_cast<std::uint64_t>(times); ++i)
     stream(memory_, i % 2 == 0 ? DramAccess::read : DramAccess::write, {i % 2 == 0 ? from : to},
-           (sectors((i + 1) * bytes) - sectors(i * bytes)) * MemoryParameters::sector_bytes, counters);
+           (memory_.sectors((i + 1) * bytes) - memory_.sectors(i * bytes)) * memory_.sector_bytes, counters);
 }
 
 Bin::Bin(const FrameContext& frame_context, const Tile& bin_tile, const TriangleList& triangles,
@@ -22,13 +19,18 @@ Bin::Bin(const FrameContext& frame_context, const Tile& bin_tile, const Triangle
       list(triangles),
       timer_(context.run.timeline, tile),
       memory_(context.run.memory) {
+  memory_.reach = &cache_reach_;
   if (context.run.dram_trace && memory_.modelled) memory_.log = &dram_log_.emplace();
   memory_.framebuffer = framebuffer.is_on_chip(memory_) ? Place::on_chip : Place::in_memory;
-  if (keeps_pixels_on_chip()) holds("open_pixels", tile.pixels() * framebuffer.on_chip_bytes_per_pixel());
+  if (keeps_pixels_on_chip()) holds(kOpenPixels, tile.pixels() * framebuffer.on_chip_bytes_per_pixel());
   stages_.reserve(stages.size());
   for (const std::string& name : stages) stages_.push_back(StageCounters{name});
   if (context.has_textures()) texels_.emplace(context.texture_layout ? &*context.texture_layout : nullptr);
-  if (context.texture_layout) texture_fetches_.emplace(memory_);
+  if (context.texture_layout) {
+    const std::uint64_t bytes = context.texture_layout->bytes();
+    cache_reach_.add({.l1 = bytes, .l2 = bytes});
+    texture_fetches_.emplace(memory_);
+  }
 }
 
 BinStage Bin::stage(std::string_view name, Pass pass) {

@@ -127,11 +127,13 @@ class Bin {
   const std::map<std::string, std::vector<float>>& pixel_counters() const { return pixel_counters_; }
   const std::map<std::string, std::uint64_t>& buffer_peaks() const { return buffer_peaks_; }
   std::uint64_t a_buffer_bytes() const { return a_buffer_bytes_; }
+  const CacheReach& cache_reach() const { return cache_reach_; }
   int geometry_passes(Pass pass) const { return pass == Pass::main ? std::max(geometry_passes_, 1) : prepasses_; }
 
  private:
   StageTimer timer_;
   std::optional<DramLog> dram_log_;
+  CacheReach cache_reach_;
   MemorySystem memory_;                // with the place where this technique's pixels are
   std::vector<StageCounters> stages_;  // never grows: memory models tell stages apart by the address of their counters
   std::map<std::string, std::vector<float>> pixel_counters_;

@@ -176,6 +176,7 @@ class FrameRecorder {
         peak = std::max(peak, bytes);
       }
       result_.a_buffer_peak_bytes += bin.a_buffer_bytes();
+      result_.cache_reach.add(bin.cache_reach());
       passes_ = std::max(passes_, bin.geometry_passes(Pass::main));
       prepasses_ = std::max(prepasses_, bin.geometry_passes(Pass::prepass));
       for (std::size_t i = 0; i < bin.geometry_pass_starts().size(); ++i) {
@@ -218,10 +219,11 @@ class FrameRecorder {
     return [this](std::size_t bin, std::size_t pass, const std::vector<TextureRead>& reads) {
       DramLog log;
       const std::uint16_t texels = log.array("texels", false);
+      const std::uint32_t per_line = context_.run.memory.sectors_per_line();
       for (const TextureRead& read : reads)
-        for (std::uint32_t sector = 0; sector < TextureLayout::kSectorsPerLine; ++sector)
+        for (std::uint32_t sector = 0; sector < per_line; ++sector)
           if (read.sectors >> sector & 1)
-            log.add(texels, DramAccess::read, std::uint64_t{read.line} * TextureLayout::kSectorsPerLine + sector, 1,
+            log.add(texels, DramAccess::read, std::uint64_t{read.line} * per_line + sector, 1,
                     result_.stages[read.stage]);
       trace_->add(log, 0, first_pass_ + texture_pass_starts_[bin][pass], DramTrace::Step::texels, bin);
     };
@@ -253,8 +255,8 @@ class FrameRecorder {
 
 FrameResult render_bins(const FrameContext& context, const BinPlan& plan, const BinRenderer& render) {
   const RunOptions& run = context.run;
-  const TileGrid grid = plan.keeps_tile_size ? TileGrid{context.frame, plan.framebuffer.bin_size}
-                                             : tile_grid(context, plan.framebuffer.bin_size);
+  const int bin_size = plan.framebuffer.bin_size_on(run.memory);
+  const TileGrid grid = plan.keeps_tile_size ? TileGrid{context.frame, bin_size} : tile_grid(context, bin_size);
   if (run.weights) run.weights->assign(std::size_t{context.frame.width} * context.frame.height, {});
   const std::vector<std::string> stages = stages_of(context, plan);
   const std::uint32_t first_pass = run.dram_trace ? run.dram_trace->passes() : 0;
@@ -274,6 +276,8 @@ FrameResult render_bins(const FrameContext& context, const BinPlan& plan, const 
     for (std::size_t i = 0; i < lists.size(); ++i)
       if (is_shared(i)) empty_bins.prepare(grid.tiles[band.first + i]);
     tbb::parallel_for(std::size_t{0}, lists.size(), [&](std::size_t i) {
+      const auto is_here = [&](const PixelAddress& pixel) { return holds(grid.tiles[band.first + i], pixel); };
+      if (run.pixels && std::none_of(run.pixels->begin(), run.pixels->end(), is_here)) return;
       if (is_shared(i)) {
         const Tile& tile = grid.tiles[band.first + i];
         recorder.add_empty(empty_bins.like(tile), tile);
@@ -299,7 +303,7 @@ FrameResult render_bins(const FrameContext& context, const BinPlan& plan, const 
 
 void run_on_tiles(const FrameContext& context, const std::string& stage, FrameResult& result,
                   const std::function<void(const Tile&, const BinStage&)>& work) {
-  const std::vector<Tile> tiles = tile_grid(context, kBinSize).tiles;
+  const std::vector<Tile> tiles = tile_grid(context, static_cast<int>(context.run.memory.bin_pixels)).tiles;
   std::vector<StageCounters> of_tiles(tiles.size(), StageCounters{stage});
   DramTrace* const trace = dram_trace_of(context);
   const std::uint32_t pass = trace ? trace->passes() : 0;

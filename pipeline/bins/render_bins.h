@@ -37,6 +37,11 @@ struct BinPlan {
   bool empty_bins_differ = false;
 };
 
+inline bool holds(const Tile& tile, PixelAddress pixel) {
+  const auto x = static_cast<std::int32_t>(pixel.x), y = static_cast<std::int32_t>(pixel.y);
+  return x >= tile.x0 && x < tile.x1 && y >= tile.y0 && y < tile.y1;
+}
+
 using BinRenderer = std::function<void(Bin&)>;
 
 // `render` is called for every bin of the frame (but see BinPlan::empty_bins_differ), on any thread. vertex_setup runs

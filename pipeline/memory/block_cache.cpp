@@ -21,16 +21,17 @@ Sectors first_sectors(std::uint32_t count) { return static_cast<Sectors>((1u << 
 BlockCache::BlockCache(const MemoryParameters& memory, const CacheParameters& cache, Level level, std::size_t blocks,
                        std::uint32_t block_bytes, bool cleared, CompressedBytes compressed_bytes, BlockPlaces places)
     : modelled_(is_modelled(memory, level)),
+      log2_sector_(std::countr_zero(memory.sector_bytes)),
       level_(level),
       block_bytes_(block_bytes),
       ways_(cache.ways),
       places_(std::move(places)),
-      sectors_per_line_(cache.line_bytes / kSectorBytes) {
-  const std::uint32_t sectors = (block_bytes + kSectorBytes - 1) / kSectorBytes;
+      sectors_per_line_(cache.line_bytes >> log2_sector_) {
+  const std::uint32_t sectors = sectors_in(block_bytes);
   if (sectors == 0 || sectors > kMaxBlockSectors || block_bytes > cache.line_bytes)
     throw std::invalid_argument("a block must fill at least one sector and at most one cache line");
   all_sectors_ = static_cast<Sectors>((1u << sectors) - 1);
-  sets_ = std::max<std::size_t>(cache.bytes / (cache.line_bytes * cache.ways), 1);
+  sets_ = cache.sets();
   has_line_for_each_ = blocks <= sets_ * ways_;
   if (!modelled_) return;
   if (memory.compression) compressed_bytes_ = std::move(compressed_bytes);
@@ -38,13 +39,15 @@ BlockCache::BlockCache(const MemoryParameters& memory, const CacheParameters& ca
   lines_.resize(has_line_for_each_ ? blocks : sets_ * ways_);
   line_of_.assign(blocks, kNone);
   if (places_.log && places_.lines.empty())
-    places_.log->reserve(places_.array, std::uint64_t{blocks} * cache.line_bytes);
+    places_.log->reserve(places_.array, std::uint64_t{blocks} * sectors_per_line_);
 }
 
 BlockCache::BlockCache(const MemoryParameters& memory, const CacheParameters& cache, BlockCache& next)
     : BlockCache(memory, cache, Level::l2, next.blocks(), next.block_bytes_, false, nullptr) {
   next_ = &next;
 }
+
+std::uint64_t BlockCache::bytes_of(Sectors sectors) const { return std::uint64_t{kBits[sectors]} << log2_sector_; }
 
 void BlockCache::begin_request(std::uint32_t key, std::size_t block, StageCounters& counters) {
   finish_request();
@@ -58,7 +61,7 @@ void BlockCache::begin_request(std::uint32_t key, std::size_t block, StageCounte
 void BlockCache::count_written(std::uint32_t first, std::uint32_t bytes) {
   const std::uint32_t end = first + bytes;
   for (std::uint32_t at = first; at < end;) {
-    const std::uint32_t sector = at / kSectorBytes, stop = std::min(end, (sector + 1) * kSectorBytes);
+    const std::uint32_t sector = at >> log2_sector_, stop = std::min(end, (sector + 1) << log2_sector_);
     request_.written_bytes[sector] += stop - at;
     at = stop;
   }
@@ -71,11 +74,11 @@ void BlockCache::finish_request() {
   std::uint32_t overwritten = 0;
   for (std::uint32_t left = request.counts_bytes ? request.write : 0; left != 0; left &= left - 1) {
     const auto sector = static_cast<std::uint32_t>(std::countr_zero(left));
-    const std::uint32_t whole = std::min(kSectorBytes, block_bytes_ - sector * kSectorBytes);
+    const std::uint32_t whole = std::min(sector_bytes(), block_bytes_ - (sector << log2_sector_));
     if (request.written_bytes[sector] >= whole) overwritten |= 1u << sector;
     request.written_bytes[sector] = 0;
   }
-  const std::uint64_t bytes = (kBits[request.read] + kBits[request.write]) * kSectorBytes;
+  const std::uint64_t bytes = bytes_of(request.read) + bytes_of(request.write);
   counters.sector_bytes += bytes;
   if (level_ == Level::l2 && !next_) counters.l2_bytes += bytes;
   serve(request.block, request.read, request.write, static_cast<Sectors>(overwritten), counters);
@@ -88,7 +91,7 @@ void BlockCache::serve(std::size_t block, Sectors read, Sectors write, Sectors o
                                         : make_line(block, overwritten == all_sectors_ && read == 0, counters);
   const auto missing = static_cast<Sectors>((read | (write & ~overwritten)) & ~line.valid);
   if (missing != 0 && next_) {
-    counters.l2_bytes += kBits[missing] * kSectorBytes;
+    counters.l2_bytes += bytes_of(missing);
     next_->serve(block, missing, 0, 0, counters);
   } else {
     pass_on(DramAccess::read, block, missing, counters);
@@ -126,7 +129,7 @@ void BlockCache::write_back(const Line& line, StageCounters& counters) {
   if (line.dirty == 0) return;
   State& state = states_[line.block];
   if (compressed_bytes_ && line.valid == all_sectors_) {
-    const std::uint32_t sectors = (compressed_bytes_(line.block) + kSectorBytes - 1) / kSectorBytes;
+    const std::uint32_t sectors = sectors_in(compressed_bytes_(line.block));
     if (sectors < kBits[all_sectors_]) {
       pass_on(DramAccess::write, line.block, first_sectors(sectors), counters);
       state = static_cast<State>(sectors);
@@ -140,8 +143,8 @@ void BlockCache::write_back(const Line& line, StageCounters& counters) {
 
 // To or from the next level.
 void BlockCache::pass_on(DramAccess access, std::size_t block, Sectors sectors, StageCounters& counters) {
-  counters.dram_bytes += kBits[sectors] * kSectorBytes;
-  if (level_ == Level::rop) counters.l2_bytes += kBits[sectors] * kSectorBytes;
+  counters.dram_bytes += bytes_of(sectors);
+  if (level_ == Level::rop) counters.l2_bytes += bytes_of(sectors);
   if (places_.log && sectors != 0) record(access, block, sectors, counters);
 }
 
@@ -171,7 +174,7 @@ void BlockCache::flush(StageCounters& counters) {
 
 void BlockCache::stream_read(std::size_t block, StageCounters& counters) {
   if (!modelled_) return;
-  const std::uint32_t raw = kBits[all_sectors_] * kSectorBytes;
+  const std::uint64_t raw = bytes_of(all_sectors_);
   const State state = states_[block];
   counters.sector_bytes += raw;
   if (level_ == Level::l2) counters.l2_bytes += raw;

@@ -19,10 +19,9 @@ namespace beampipe {
 
 using Sectors = std::uint8_t;  // a bit for each sector of a block
 
-// Of bytes [first, first + bytes) of a block.
-inline Sectors sectors_of(std::uint32_t first, std::uint32_t bytes) {
-  constexpr std::uint32_t kSectorBytes = MemoryParameters::sector_bytes;
-  return static_cast<Sectors>((2u << (first + bytes - 1) / kSectorBytes) - (1u << first / kSectorBytes));
+// Of bytes [first, first + bytes) of a block, where a sector has 2^log2_sector bytes.
+inline Sectors sectors_of(std::uint32_t first, std::uint32_t bytes, int log2_sector) {
+  return static_cast<Sectors>((2u << ((first + bytes - 1) >> log2_sector)) - (1u << (first >> log2_sector)));
 }
 
 class BlockCache {
@@ -57,10 +56,10 @@ class BlockCache {
   // written back to counters.dram_bytes. A sector that is written only in part is fetched first. No byte is written
   // twice in one request.
   void read(std::uint32_t key, std::size_t block, std::uint32_t first, std::uint32_t bytes, StageCounters& counters) {
-    access(key, block, sectors_of(first, bytes), 0, counters, [](auto&&) {});
+    access(key, block, sectors_of(first, bytes, log2_sector_), 0, counters, [](auto&&) {});
   }
   void write(std::uint32_t key, std::size_t block, std::uint32_t first, std::uint32_t bytes, StageCounters& counters) {
-    access(key, block, 0, sectors_of(first, bytes), counters, [&](auto&& count) { count(first, bytes); });
+    access(key, block, 0, sectors_of(first, bytes, log2_sector_), counters, [&](auto&& count) { count(first, bytes); });
   }
 
   // Reads and writes, for a caller that already knows the sectors. each_write(count) calls count(first, bytes) for
@@ -89,7 +88,9 @@ class BlockCache {
   std::size_t blocks() const { return states_.size(); }
 
  private:
-  static constexpr std::uint32_t kSectorBytes = MemoryParameters::sector_bytes;
+  std::uint32_t sector_bytes() const { return 1u << log2_sector_; }
+  std::uint32_t sectors_in(std::uint32_t bytes) const { return (bytes + sector_bytes() - 1) >> log2_sector_; }
+  std::uint64_t bytes_of(Sectors sectors) const;
 
   // State of a block in memory: kRaw, or the number of sectors that it is compressed to; 0 means cleared.
   using State = std::uint8_t;
@@ -121,6 +122,7 @@ class BlockCache {
   void record(DramAccess access, std::size_t block, Sectors sectors, const StageCounters& counters);
 
   bool modelled_;
+  int log2_sector_;
   Level level_;
   BlockCache* next_ = nullptr;
   std::uint32_t block_bytes_;

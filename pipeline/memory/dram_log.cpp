@@ -12,9 +12,8 @@ std::uint16_t DramLog::array(std::string_view name, bool of_bins) {
   return number;
 }
 
-void DramLog::reserve(std::uint16_t array, std::uint64_t bytes) {
-  constexpr std::uint64_t kSectorBytes = MemoryParameters::sector_bytes;
-  arrays_[array].sectors = std::max(arrays_[array].sectors, (bytes + kSectorBytes - 1) / kSectorBytes);
+void DramLog::reserve(std::uint16_t array, std::uint64_t sectors) {
+  arrays_[array].sectors = std::max(arrays_[array].sectors, sectors);
 }
 
 void DramLog::add(std::uint16_t array, DramAccess access, std::uint64_t first, std::uint32_t sectors,

@@ -11,7 +11,7 @@
 
 namespace beampipe {
 
-inline constexpr std::uint32_t kMaxBlockSectors = 8;  // 256 bytes
+inline constexpr std::uint32_t kMaxBlockSectors = 8;
 
 enum class DramAccess : std::uint8_t { read, write };
 
@@ -36,8 +36,8 @@ class DramLog {
   // The number of the array of that name.
   std::uint16_t array(std::string_view name, bool of_bins);
 
-  // The array has at least so many bytes, which may never move.
-  void reserve(std::uint16_t array, std::uint64_t bytes);
+  // The array has at least so many sectors, which may never move.
+  void reserve(std::uint16_t array, std::uint64_t sectors);
 
   // `counters`: of the stage that asks. Requests of counters without a name are left out, because nobody adds those
   // counters up.
@@ -66,9 +66,10 @@ class DramLog {
   std::uint8_t last_stage_ = 0;  // number of the stage that asked last
 };
 
-// The memory system as a bin uses it: the parameters, and where its DRAM requests are recorded.
+// The memory system as a bin uses it: the parameters, and where it records its DRAM requests and the reach of caches.
 struct MemorySystem : MemoryParameters {
-  DramLog* log = nullptr;  // null: nowhere
+  DramLog* log = nullptr;       // null: nowhere
+  CacheReach* reach = nullptr;  // likewise
 
   MemorySystem(const MemoryParameters& parameters = {}, DramLog* requests = nullptr)
       : MemoryParameters(parameters), log(requests) {}

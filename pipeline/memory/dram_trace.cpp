@@ -15,7 +15,6 @@
 namespace beampipe {
 namespace {
 
-constexpr std::uint64_t kSectorBytes = MemoryParameters::sector_bytes;
 constexpr std::uint64_t kAlignedSectors = kMaxBlockSectors;
 
 std::uint64_t aligned(std::uint64_t sectors) {
@@ -24,7 +23,8 @@ std::uint64_t aligned(std::uint64_t sectors) {
 
 }  // namespace
 
-DramTrace::DramTrace(const std::filesystem::path& folder) : folder_(folder), file_(nullptr, std::fclose) {
+DramTrace::DramTrace(const std::filesystem::path& folder, std::uint32_t sector_bytes)
+    : folder_(folder), sector_bytes_(sector_bytes), file_(nullptr, std::fclose) {
   std::string name = folder / ".beampipe-XXXXXX";
   const int descriptor = ::mkostemp(name.data(), O_CLOEXEC);
   if (descriptor < 0) fail("create");
@@ -115,7 +115,7 @@ DramTrace::Places DramTrace::place(std::vector<Range>* ranges) const {
       places[i].push_back(end);
       end += aligned(sectors);
     }
-    if (ranges && end > begin) ranges->push_back({arrays_[i].name, begin * kSectorBytes, end * kSectorBytes});
+    if (ranges && end > begin) ranges->push_back({arrays_[i].name, begin * sector_bytes_, end * sector_bytes_});
   }
   return places;
 }
@@ -143,7 +143,7 @@ void DramTrace::for_each(const std::function<void(const DramRequest&)>& visit) c
       const Array& array = arrays_[run.array];
       const std::uint64_t first = places[run.array][array.of_bins ? chunk.bin : 0] + run.first;
       for (std::uint64_t i = 0; i < run.sectors; ++i)
-        visit({(first + i) * kSectorBytes, run.access, stages[run.stage], array.name});
+        visit({(first + i) * sector_bytes_, run.access, stages[run.stage], array.name});
     }
   }
 }

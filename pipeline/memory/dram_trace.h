@@ -34,9 +34,9 @@ struct DramRequest {
 
 class DramTrace {
  public:
-  // The temporary file is in `folder`. All functions that use it throw std::runtime_error, one line that names the
-  // folder, if it cannot be created, written or read.
-  explicit DramTrace(const std::filesystem::path& folder);
+  // `sector_bytes`: of the memory system whose requests these are. The temporary file is in `folder`. All functions
+  // that use it throw std::runtime_error, one line that names the folder, if it cannot be created, written or read.
+  explicit DramTrace(const std::filesystem::path& folder, std::uint32_t sector_bytes = MemoryParameters{}.sector_bytes);
 
   // What a part of the frame does in a pass comes in the order of these.
   enum class Step : std::uint8_t { setup, binning, lists, bin, texels };
@@ -99,6 +99,7 @@ class DramTrace {
   [[noreturn]] void fail(const std::string& what) const;
 
   std::filesystem::path folder_;
+  std::uint64_t sector_bytes_;
   std::unique_ptr<std::FILE, int (*)(std::FILE*)> file_;
   std::mutex mutex_;
   std::uint64_t runs_ = 0;  // in the file

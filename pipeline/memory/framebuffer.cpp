@@ -21,8 +21,12 @@ std::uint32_t Framebuffer::on_chip_bytes_per_pixel() const {
   return bytes;
 }
 
+int Framebuffer::bin_size_on(const MemoryParameters& memory) const {
+  return std::min(bin_size, static_cast<int>(memory.bin_pixels));
+}
+
 bool Framebuffer::is_on_chip(const MemoryParameters& memory) const {
-  const auto side = static_cast<std::uint64_t>(bin_size);
+  const auto side = static_cast<std::uint64_t>(bin_size_on(memory));
   return memory.framebuffer.value_or(place) == Place::on_chip &&
          on_chip_bytes_per_pixel() * side * side <= memory.on_chip_bytes;
 }

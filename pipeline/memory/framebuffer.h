@@ -17,10 +17,16 @@ struct Surface {
   bool outlives_bin = false;  // in memory on every machine, because other bins or later frames read it
 };
 
+// The name of the buffer that holds the pixels of a bin where they are on chip.
+inline constexpr const char* kOpenPixels = "open_pixels";
+
 struct Framebuffer {
   std::vector<Surface> surfaces = {};
   Place place = Place::in_memory;  // on the machine that the technique is made for
-  int bin_size = kBinSize;         // pixels on each side of a bin, even
+  int bin_size = kBinSize;         // the technique's pixels on each side of a bin, even
+
+  // That, or those of the memory system if they are smaller.
+  int bin_size_on(const MemoryParameters& memory) const;
 
   // Are the pixels of a bin on chip while it is drawn? Only if all that they store fits there.
   bool is_on_chip(const MemoryParameters& memory) const;

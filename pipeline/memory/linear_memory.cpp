@@ -6,7 +6,10 @@ LinearMemory::LinearMemory(const MemorySystem& memory, std::size_t size, BlockPl
     : line_bytes_(memory.l2.line_bytes),
       l2_(memory, memory.l2, BlockCache::Level::l2, (size + line_bytes_ - 1) / line_bytes_, line_bytes_, false, nullptr,
           std::move(places)),
-      l1_(memory, memory.l1, l2_) {}
+      l1_(memory, memory.l1, l2_) {
+  const std::uint64_t bytes = std::uint64_t{l2_.blocks()} * line_bytes_;
+  if (memory.reach) memory.reach->add({.l1 = bytes, .l2 = bytes});
+}
 
 template <class Access>
 void LinearMemory::each_line(std::size_t begin, std::uint32_t bytes, Access&& access) const {

@@ -23,7 +23,7 @@ struct ArrayName {
 inline void stream(const MemorySystem& memory, DramAccess access, const ArrayName& array, std::uint64_t bytes,
                    StageCounters& counters, std::uint64_t first = 0) {
   if (!memory.modelled) return;
-  const std::uint64_t sectors = (bytes + memory.sector_bytes - 1) / memory.sector_bytes;
+  const std::uint64_t sectors = memory.sectors(bytes);
   counters.sector_bytes += sectors * memory.sector_bytes;
   counters.l2_bytes += sectors * memory.sector_bytes;
   counters.dram_bytes += sectors * memory.sector_bytes;
@@ -35,7 +35,7 @@ inline void stream(const MemorySystem& memory, DramAccess access, const ArrayNam
 // The same, if L2 holds them all.
 inline void stream_in_l2(const MemoryParameters& memory, std::uint64_t bytes, StageCounters& counters) {
   if (!memory.modelled) return;
-  const std::uint64_t whole = (bytes + memory.sector_bytes - 1) / memory.sector_bytes * memory.sector_bytes;
+  const std::uint64_t whole = memory.sectors(bytes) * memory.sector_bytes;
   counters.sector_bytes += whole;
   counters.l2_bytes += whole;
 }
@@ -49,8 +49,8 @@ class RecordsInOrder {
 
   void read(std::uint32_t record, StageCounters& counters) {
     const std::uint64_t begin = std::uint64_t{record} * record_bytes_, end = begin + record_bytes_;
-    const std::uint64_t first = std::max(begin / memory_.sector_bytes, read_to_);
-    const std::uint64_t end_sector = (end + memory_.sector_bytes - 1) / memory_.sector_bytes;
+    const std::uint64_t first = std::max(begin >> std::countr_zero(memory_.sector_bytes), read_to_);
+    const std::uint64_t end_sector = memory_.sectors(end);
     if (end_sector <= first) return;
     stream(memory_, DramAccess::read, array_, (end_sector - first) * memory_.sector_bytes, counters, first);
     read_to_ = end_sector;

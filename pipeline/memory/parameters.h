@@ -8,16 +8,31 @@
 #pragma once
 
 #include <algorithm>
+#include <bit>
 #include <cstdint>
 #include <optional>
 
 namespace beampipe {
 
 // A set-associative write-back cache that replaces the least recently used line. A line holds one block of a surface,
-// sector by sector.
+// sector by sector. It has as many sets as fit, and at least one.
 struct CacheParameters {
   std::uint32_t bytes, ways, line_bytes;
+
+  std::uint32_t sets() const { return std::max(bytes / (line_bytes * ways), 1u); }
+  std::uint64_t held_bytes() const { return std::uint64_t{sets()} * ways * line_bytes; }
   bool operator==(const CacheParameters&) const = default;
+};
+
+// The most bytes of memory that any one cache of each kind stands before. A cache that holds as many never evicts
+// anything, so that another one that holds as many moves the same bytes.
+struct CacheReach {
+  std::uint64_t rop = 0, l1 = 0, l2 = 0;
+
+  void add(const CacheReach& other) {
+    rop = std::max(rop, other.rop), l1 = std::max(l1, other.l1), l2 = std::max(l2, other.l2);
+  }
+  bool operator==(const CacheReach&) const = default;
 };
 
 // Where the pixels of a bin are kept while it is drawn: on chip, as in tile-based rendering, so that only the finished
@@ -32,12 +47,22 @@ constexpr const char* name_of(std::optional<Place> place) {
   return !place ? kByTechnique : *place == Place::on_chip ? kOnChip : kInMemory;
 }
 
+inline constexpr std::uint32_t kPictureBytes = 6;  // per pixel of a finished picture: fp16 RGB
+
+// Pixels on each side of a bin: 32, or fewer so that a bin has at most 2^16 samples. Source: NVIDIA at GDC 2017, as
+// TechPowerUp reports: "16x16 and 32x32 pixels are the usual tile sizes", chosen by what a pixel takes.
+inline constexpr int kBinSize = 32;
+
+// The smallest sector, and that of the textures' layout.
+inline constexpr std::uint32_t kLeastSectorBytes = 32;
+
 struct MemoryParameters {
   bool modelled = true;  // false: sectors and DRAM bytes stay 0, and frames are faster to simulate
 
-  // The unit that moves, in every cache and to and from DRAM. Source: the L2 and DRAM granule of NVIDIA GPUs since
-  // Kepler, as GPGPU-Sim models it (configs/tested-cfgs: sector caches, 4 sectors of 32 bytes to a 128-byte line).
-  static constexpr std::uint32_t sector_bytes = 32;
+  // The unit that moves, in every cache and to and from DRAM: a power of two, at least kLeastSectorBytes. A line has 1
+  // to 8 sectors. Source: the L2 and DRAM granule of NVIDIA GPUs since Kepler, as GPGPU-Sim models it
+  // (configs/tested-cfgs: sector caches, 4 sectors of 32 bytes to a 128-byte line).
+  std::uint32_t sector_bytes = kLeastSectorBytes;
 
   // One cache each for depth, colour and every other framebuffer surface. Source: ATTILA (test/config/bGPU.ini):
   // 4 ways, 16 lines per way, 16 stamps of 4 pixels of 4 bytes to a line, which is 256 bytes: 16 KiB in each ROP unit,
@@ -50,7 +75,8 @@ struct MemoryParameters {
   CacheParameters l1{32 * 1024, 64, 128};
 
   // The L2 for shader reads and writes, such as the A-buffer, setup triangles and texels. Source: GPGPU-Sim's Volta: 32
-  // sets of 24 lines of 128 bytes in each slice, 96 KiB; 48 slices make a Titan V's 4.5 MiB (NVIDIA's figure).
+  // sets of 24 lines of 128 bytes in each slice, 96 KiB; 48 slices make a Titan V's 4.5 MiB (NVIDIA's figure). Its
+  // lines are as long as those of L1.
   CacheParameters l2{48 * 96 * 1024, 24, 128};
 
   // With compression a block is cleared, compressed or raw; without it, cleared or raw. Clearing a surface only sets
@@ -70,17 +96,20 @@ struct MemoryParameters {
   // caches of the whole chip.
   std::uint32_t on_chip_bytes = 24 * 16 * 1024;
 
+  // The most pixels on each side of a bin, at most kBinSize. Techniques whose bins are smaller keep them.
+  std::uint32_t bin_pixels = kBinSize;
+
+  // That hold so many bytes in a row.
+  std::uint64_t sectors(std::uint64_t bytes) const {
+    return (bytes + sector_bytes - 1) >> std::countr_zero(sector_bytes);
+  }
+  std::uint32_t sectors_per_line() const { return l2.line_bytes / sector_bytes; }  // of L1 and L2
+
   // Are there accesses to the framebuffer in memory to model?
   bool models_framebuffer() const { return modelled && framebuffer != Place::on_chip; }
 
   bool operator==(const MemoryParameters&) const = default;
 };
-
-inline constexpr std::uint32_t kPictureBytes = 6;  // per pixel of a finished picture: fp16 RGB
-
-// Pixels on each side of a bin: 32, or fewer so that a bin has at most 2^16 samples. Source: NVIDIA at GDC 2017, as
-// TechPowerUp reports: "16x16 and 32x32 pixels are the usual tile sizes", chosen by what a pixel takes.
-inline constexpr int kBinSize = 32;
 
 inline constexpr int bin_size(int samples_per_pixel) {
   int size = kBinSize;

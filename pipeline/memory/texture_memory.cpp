@@ -6,18 +6,14 @@
 namespace beampipe {
 namespace {
 
-constexpr std::uint32_t kPerLine = TextureLayout::kSectorsPerLine;
-
-std::uint64_t bytes_of(Sectors sectors) {
-  return static_cast<std::uint64_t>(std::popcount(sectors)) * MemoryParameters::sector_bytes;
+std::uint64_t bytes_of(Sectors sectors, std::uint32_t sector_bytes) {
+  return static_cast<std::uint64_t>(std::popcount(sectors)) * sector_bytes;
 }
 
 }  // namespace
 
 ReadCache::ReadCache(const CacheParameters& parameters)
-    : sets_(std::max<std::size_t>(parameters.bytes / (parameters.line_bytes * parameters.ways), 1)),
-      ways_(parameters.ways),
-      lines_(sets_ * ways_) {}
+    : sets_(parameters.sets()), ways_(parameters.ways), lines_(sets_ * ways_) {}
 
 Sectors ReadCache::read(std::uint64_t line, Sectors sectors) {
   Line* const set = &lines_[line % sets_ * ways_];
@@ -41,16 +37,18 @@ void ReadCache::clear() { std::fill(lines_.begin(), lines_.end(), Line{}); }
 void TextureFetches::read(const TexelRequests& texels, std::size_t stage, StageCounters& counters) {
   std::uint64_t asked = 0, missed = 0;
   std::vector<TextureRead>& reads = passes_.back();
-  texels.for_each([&](std::span<const std::uint64_t> sectors) {
-    asked += sectors.size() * MemoryParameters::sector_bytes;
-    for (std::size_t i = 0; i < sectors.size();) {
-      const std::uint64_t line = sectors[i] / kPerLine;
+  // The layout numbers sectors of the smallest size, in the order of their addresses.
+  const std::uint32_t parts = sector_bytes_ / kLeastSectorBytes, parts_per_line = parts * sectors_per_line_;
+  texels.for_each([&](std::span<const std::uint64_t> numbers) {
+    for (std::size_t i = 0; i < numbers.size();) {
+      const std::uint64_t line = numbers[i] / parts_per_line;
       Sectors of_line = 0;
-      for (; i < sectors.size() && sectors[i] / kPerLine == line; ++i)
-        of_line |= static_cast<Sectors>(1u << sectors[i] % kPerLine);
+      for (; i < numbers.size() && numbers[i] / parts_per_line == line; ++i)
+        of_line |= static_cast<Sectors>(1u << numbers[i] % parts_per_line / parts);
+      asked += bytes_of(of_line, sector_bytes_);
       const Sectors missing = l1_.read(line, of_line);
       if (missing == 0) continue;
-      missed += bytes_of(missing);
+      missed += bytes_of(missing, sector_bytes_);
       reads.push_back({line, stage, missing});
     }
   });
@@ -104,7 +102,7 @@ std::vector<std::uint64_t> texture_dram_bytes(const MemoryParameters& memory, co
       std::vector<TextureRead> fetched;
       for (const TextureRead& read : bins[bin][pass]) {
         const Sectors missing = l2.read(read.line, static_cast<Sectors>(read.sectors));
-        bytes[read.stage] += bytes_of(missing);
+        bytes[read.stage] += bytes_of(missing, memory.sector_bytes);
         if (fetch && missing != 0) fetched.push_back({read.line, read.stage, missing});
       }
       if (!fetched.empty()) fetch(bin, pass, fetched);

@@ -50,7 +50,8 @@ using TexturePasses = std::vector<std::vector<TextureRead>>;  // by pass of the 
 // The texels of a bin.
 class TextureFetches {
  public:
-  explicit TextureFetches(const MemoryParameters& memory) : l1_(memory.l1) {}
+  explicit TextureFetches(const MemoryParameters& memory)
+      : sector_bytes_(memory.sector_bytes), sectors_per_line_(memory.sectors_per_line()), l1_(memory.l1) {}
 
   // Puts what was asked for through L1, which it adds to counters.sector_bytes and l2_bytes. `stage`: number of the
   // stage in the bin, at most 255.
@@ -65,6 +66,7 @@ class TextureFetches {
  private:
   void sum_up();
 
+  std::uint32_t sector_bytes_, sectors_per_line_;
   ReadCache l1_;
   TexturePasses passes_ = {{}};
   std::size_t summed_up_ = 0;  // reads of this pass that name each line once

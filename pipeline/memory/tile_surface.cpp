@@ -23,14 +23,15 @@ int log2_block_elements(const CacheParameters& cache, std::uint32_t element_byte
 std::size_t block_count(const ZOrder& order, int log2_elements) { return ((order.positions - 1) >> log2_elements) + 1; }
 
 // Indexed by element of a block, byte of the mask of parts, and value of that byte.
-std::vector<Sectors> part_sectors(std::uint32_t elements, std::uint32_t parts, std::uint32_t part_bytes) {
+std::vector<Sectors> part_sectors(std::uint32_t elements, std::uint32_t parts, std::uint32_t part_bytes,
+                                  int log2_sector) {
   std::vector<Sectors> table;
   for (std::uint32_t element = 0; element < elements; ++element) {
     for (std::uint32_t first = 0; first < parts; first += 8) {
       const std::size_t begin = table.size();
       table.resize(begin + 256);
       for (std::uint32_t part = first; part < std::min(first + 8, parts); ++part) {
-        const Sectors sectors = sectors_of((element * parts + part) * part_bytes, part_bytes);
+        const Sectors sectors = sectors_of((element * parts + part) * part_bytes, part_bytes, log2_sector);
         const std::size_t masks = std::size_t{1} << (part - first);  // of the lower parts
         for (std::size_t mask = 0; mask < masks; ++mask) table[begin + masks + mask] = table[begin + mask] | sectors;
       }
@@ -67,7 +68,13 @@ TileSurface::TileSurface(const MemorySystem& memory, std::string_view name, cons
                    })
                  : nullptr,
              BlockPlaces(memory, name, true)) {
-  if (!touched_bytes_.empty()) part_sectors_ = part_sectors(1u << log2_elements_per_block_, parts, part_bytes);
+  if (memory.reach) {
+    const std::uint64_t bytes = std::uint64_t{cache_.blocks()} * cache_of(memory, level).line_bytes;
+    memory.reach->add(level == BlockCache::Level::rop ? CacheReach{.rop = bytes} : CacheReach{.l2 = bytes});
+  }
+  if (!touched_bytes_.empty())
+    part_sectors_ =
+        part_sectors(1u << log2_elements_per_block_, parts, part_bytes, std::countr_zero(memory.sector_bytes));
 }
 
 void TileSurface::access(std::uint32_t key, std::uint32_t element, std::uint32_t read, std::uint32_t write,

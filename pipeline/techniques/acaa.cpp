@@ -3,6 +3,7 @@
 #include <string>
 
 #include "pipeline/bins/render_bins.h"
+#include "pipeline/inspect/inspect_samples.h"
 #include "pipeline/technique_table.h"
 #include "pipeline/units/accumulate_unit.h"
 #include "pipeline/units/depth_test_unit.h"
@@ -68,6 +69,13 @@ FrameResult render_acaa(const Trace& trace, const Frame& frame, const AcaaOption
   });
 }
 
+std::vector<PixelHistory> inspect_accumulation(const Trace& trace, const Frame& frame, const AcaaOptions& options,
+                                               const RunOptions& run, const std::vector<PixelAddress>& pixels) {
+  const AcaaInspection how{options.samples, acaa_rounds(options.samples), options.double_counting, options.color};
+  return inspect_pixels(trace, frame, run, {.derivatives = Derivatives::quad}, bin_size(std::min(options.samples, 16)),
+                        false, pixels, [&](const InspectedPixel& pixel) { return inspect_acaa(pixel, how); });
+}
+
 }  // namespace
 
 TechniqueKind acaa_kind() {
@@ -88,7 +96,9 @@ TechniqueKind acaa_kind() {
                                "format of the accumulator")};
               },
               [](const AcaaOptions& o) {
-                return Technique{.framebuffer = acaa_framebuffer(o), .render = bind_options(render_acaa, o)};
+                return Technique{.framebuffer = acaa_framebuffer(o),
+                                 .render = bind_options(render_acaa, o),
+                                 .inspect = bind_inspection(inspect_accumulation, o)};
               })};
 }
 

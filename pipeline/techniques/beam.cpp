@@ -5,6 +5,7 @@
 #include <string>
 
 #include "pipeline/bins/render_bins.h"
+#include "pipeline/inspect/inspect_owners.h"
 #include "pipeline/technique_table.h"
 #include "pipeline/units/fragment_units.h"
 #include "pipeline/units/owner_units.h"
@@ -66,6 +67,19 @@ FrameResult render_beam(const Trace& trace, const Frame& frame, const BeamOption
                               std::to_string(beam.slots) + " slots");
 }
 
+std::vector<PixelHistory> inspect_beam(const Trace& trace, const Frame& frame, const BeamOptions& beam,
+                                       const RunOptions& run, const std::vector<PixelAddress>& pixels) {
+  return inspect_pixels(trace, frame, run, {.takes_positions = true}, beam.bin, true, pixels,
+                        [&](const InspectedPixel& pixel) {
+#define BEAMPIPE_INSPECT(words, pixel_slots)                     \
+  if (beam.positions == 32 * words && beam.slots == pixel_slots) \
+    return inspect_owners<words, pixel_slots>(pixel, OwnerOrder::near_first, beam.shade_at);
+                          BEAMPIPE_OPEN_PIXELS(BEAMPIPE_INSPECT)
+#undef BEAMPIPE_INSPECT
+                          throw std::invalid_argument("no pixel of this shape");
+                        });
+}
+
 }  // namespace
 
 TechniqueKind beam_kind() {
@@ -92,8 +106,10 @@ TechniqueKind beam_kind() {
                     choice("bin", o.bin, {{"8", 8}, {"16", 16}, {"32", 32}}, "pixels on each side of a bin")};
               },
               [](const BeamOptions& o) {
-                return Technique{
-                    .framebuffer = beam_framebuffer(o), .render = bind_options(render_beam, o), .has_weights = true};
+                return Technique{.framebuffer = beam_framebuffer(o),
+                                 .render = bind_options(render_beam, o),
+                                 .inspect = bind_inspection(inspect_beam, o),
+                                 .has_weights = true};
               })};
 }
 

@@ -7,6 +7,7 @@
 
 #include "pipeline/bins/bin_weights.h"
 #include "pipeline/bins/render_bins.h"
+#include "pipeline/inspect/inspect_paper.h"
 #include "pipeline/technique_table.h"
 #include "pipeline/units/a_buffer_unit.h"
 #include "pipeline/units/compose_units.h"
@@ -198,17 +199,42 @@ FrameResult render_layers(const Trace& trace, const Frame& frame, const PaperOpt
   });
 }
 
+// Exact masks are compared exactly.
+PaperOptions with_partition(PaperOptions options) {
+  if (options.mask == MaskSource::exact) options.merge.partition = MergeRules::Partition::positions;
+  return options;
+}
+
 FrameResult render_paper(const Trace& trace, const Frame& frame, const PaperOptions& beam, const RunOptions& run) {
-  PaperOptions options = beam;
-  // Exact masks are compared exactly.
-  if (beam.mask == MaskSource::exact) options.merge.partition = MergeRules::Partition::positions;
+  const PaperOptions options = with_partition(beam);
   return beam.order == PaperOrder::sorted ? render_sorted(trace, frame, options, run)
                                           : render_layers(trace, frame, options, run);
+}
+
+std::vector<PixelHistory> inspect_rules(const Trace& trace, const Frame& frame, const PaperOptions& beam,
+                                        const RunOptions& run, const std::vector<PixelAddress>& pixels) {
+  const PaperOptions options = with_partition(beam);
+  const MergePositions positions(hammersley_pattern());
+  const BeamFragmentOptions fragments = fragment_options(options, positions);
+  StageCounters unused;
+  const auto compose_pixel = [&](const std::vector<Fragment>& of_pixel, const ABuffer& lists, PaperStorage storage) {
+    return options.rules == Rules::paper ? compose(of_pixel, lists, positions, options.merge, storage, unused).front()
+                                         : compose_over(of_pixel, lists, unused).front();
+  };
+  const bool sorts = options.order == PaperOrder::near_first;
+  return inspect_pixels(
+      trace, frame, run, {.takes_positions = true}, kBinSize, sorts, pixels, [&](const InspectedPixel& pixel) {
+        if (options.order == PaperOrder::sorted)
+          return inspect_paper(pixel, {positions, fragments, options.sort, compose_pixel, options.storage});
+        return inspect_paper_layers(pixel, {positions, fragments, options.merge,
+                                            static_cast<std::size_t>(options.layers), options.storage, sorts});
+      });
 }
 
 Technique make_paper(const PaperOptions& options) {
   return {.framebuffer = paper_framebuffer(options),
           .render = bind_options(render_paper, options),
+          .inspect = bind_inspection(inspect_rules, options),
           .has_weights = options.order == PaperOrder::sorted};
 }
 

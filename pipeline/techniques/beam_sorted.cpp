@@ -5,6 +5,7 @@
 
 #include "pipeline/bins/bin_weights.h"
 #include "pipeline/bins/render_bins.h"
+#include "pipeline/inspect/inspect_sorted.h"
 #include "pipeline/technique_table.h"
 #include "pipeline/units/a_buffer_unit.h"
 #include "pipeline/units/compose_units.h"
@@ -93,6 +94,19 @@ FrameResult render_sorted(const Trace& trace, const Frame& frame, const SortedOp
   throw std::invalid_argument("no aggregate of " + std::to_string(sorted.positions) + " positions");
 }
 
+std::vector<PixelHistory> inspect_windows(const Trace& trace, const Frame& frame, const SortedOptions& sorted,
+                                          const RunOptions& run, const std::vector<PixelAddress>& pixels) {
+  return inspect_pixels(
+      trace, frame, run, {.takes_positions = true}, kBinSize, false, pixels, [&](const InspectedPixel& pixel) {
+#define BEAMPIPE_INSPECT(words, channel)                                                                          \
+  if (sorted.positions == 32 * words && (sorted.storage == Storage::packed) == std::is_same_v<channel, HalfBits>) \
+    return inspect_sorted<words, channel>(pixel);
+        BEAMPIPE_STORED_AGGREGATES(BEAMPIPE_INSPECT)
+#undef BEAMPIPE_INSPECT
+        throw std::invalid_argument("no aggregate of " + std::to_string(sorted.positions) + " positions");
+      });
+}
+
 }  // namespace
 
 TechniqueKind beam_sorted_kind() {
@@ -113,6 +127,7 @@ TechniqueKind beam_sorted_kind() {
               [](const SortedOptions& o) {
                 return Technique{.framebuffer = sorted_framebuffer(o),
                                  .render = bind_options(render_sorted, o),
+                                 .inspect = bind_inspection(inspect_windows, o),
                                  .has_weights = true};
               })};
 }

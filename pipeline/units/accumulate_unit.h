@@ -29,6 +29,8 @@ class AccumulateUnit {
 
   std::vector<glm::vec4> resolve_accumulator();
 
+  const Accumulator& accumulator() const { return accumulator_; }
+
   const BinStage stage;
 
  private:

@@ -35,6 +35,7 @@ OrderedList sort_bin(Bin& bin) {
   // Binning writes the keys beside the list. The sort works in L2 if the list and its copy fit there.
   const std::uint64_t entries = bin.list.size() * (sizeof(std::uint32_t) + kKeyBytes);
   stage.writes("bin_keys", bin.list.size() * kKeyBytes);
+  bin.memory().reach->add({.l2 = 2 * entries});
   if (2 * entries > bin.memory().l2.bytes) {
     stage.copies("bin_lists", "bin_list_copies", kSortPasses, entries);
   } else {

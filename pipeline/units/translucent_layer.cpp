@@ -24,12 +24,18 @@ std::vector<glm::vec4> draw_translucent(Bin& bin, DepthTestUnit& depth_test, Sha
   layer.read_all(blending.counters);
   if (bin.models_memory()) layer.add_bytes(bin.pixel_counter("bytes"));
 
-  std::vector<glm::vec4> means(bin.tile.pixels(), glm::vec4(0.0f));
-  for (std::size_t i = 0; i < means.size() * samples; ++i)
-    means[i / samples] += depth_test.surface().over[i] / static_cast<float>(samples);
+  std::vector<glm::vec4> means(bin.tile.pixels());
+  for (std::size_t i = 0; i < means.size(); ++i) means[i] = mean_of_layer(depth_test.surface(), i);
   blending.counters.ops += box_filter_cost(samples) * means.size();
   blending.counters.ops += over_background_cost() * means.size();
   return means;
+}
+
+glm::vec4 mean_of_layer(const SampleTile& surface, std::size_t pixel) {
+  const std::size_t samples = surface.samples_per_pixel;
+  glm::vec4 mean(0.0f);
+  for (std::size_t s = 0; s < samples; ++s) mean += surface.over[pixel * samples + s] / static_cast<float>(samples);
+  return mean;
 }
 
 glm::vec4 put_over(const glm::vec4& layer, const glm::vec4& pixel) { return layer + pixel * (1.0f - layer.a); }

@@ -166,8 +166,9 @@ class OwnerComposer {
     pixel_ = index;
     Pixel& pixel = pixels.pixels[index];
     if (const OwnerSlot* slot = only_owner(pixel)) {
-      if (bin_.weights) bin_.weights->finish_whole(pixel_, slot->triangle());
-      return {1.0f, color_of(*slot, Mask::filled(true))};
+      const glm::vec3 color = color_of(*slot, Mask::filled(true));
+      if (bin_.weights) bin_.weights->finish_whole(pixel_, slot->triangle(), color);
+      return {1.0f, color};
     }
     std::size_t count = 0;
     for (std::size_t k = 0; k < Slots; ++k)
@@ -377,10 +378,11 @@ class OwnerComposer {
     const bool counted = one.slot.error_is_limited() || other.slot.error_is_limited();
     const float part = counted ? one.visible : std::max(one.visible + error_of_one, kLeastArea);
     const float other_part = counted ? other.visible : std::max(other.visible + error_of_other, kLeastArea);
-    const glm::vec3 color = (part * color_of(one.slot, one.owned) + other_part * color_of(other.slot, other.owned)) *
-                            (1 / (part + other_part));
+    const glm::vec3 color_of_other = color_of(other.slot, other.owned), color_of_one = color_of(one.slot, one.owned);
+    const glm::vec3 color = (part * color_of_one + other_part * color_of_other) * (1 / (part + other_part));
     if (bin_.weights)
-      bin_.weights->merge(pixel_, {one.slot, one.index}, {other.slot, other.index}, part / (part + other_part));
+      bin_.weights->merge(pixel_, {one.slot, one.index, one.owned.wide(), color_of_one},
+                          {other.slot, other.index, other.owned.wide(), color_of_other}, part / (part + other_part));
     put(one.owned | other.owned, Pixel::owned_by(one.index), pixel);
     const std::uint32_t contents = one.slot.content() + 3 * other.slot.content();
     depths_->planes[one.index] = larger.plane;
@@ -445,7 +447,8 @@ class OwnerComposer {
           visible_area(exact, owner->covered(), owner->visible, kPositions, Taken<float>{pixel.area, final_positions});
       const glm::vec3 color = color_of(owner->slot, owner->owned);
       const float counted = owner->visible / kPositions;
-      if (bin_.weights) bin_.weights->settle(pixel_, {owner->slot, owner->index}, area, counted);
+      if (bin_.weights)
+        bin_.weights->settle(pixel_, {owner->slot, owner->index, owner->owned.wide(), color}, area, counted);
       final_positions += owner->visible;
       const float threshold = rounding_threshold(owner->slot.content());
       pixel.area.add(area, threshold);
@@ -506,10 +509,10 @@ class OwnerComposer {
     const float area = lesser(greater(same, opposite) - before, 1.0f - pixel.area);
     if (area <= 0) return;
     ++work.specks_added;
-    if (bin_.weights) bin_.weights->add_speck(pixel_, number, area);
-    const glm::vec3 color = area * shade(fragment.triangle, fragment.centroid_u, fragment.centroid_v);
+    const glm::vec3 color = shade(fragment.triangle, fragment.centroid_u, fragment.centroid_v);
+    if (bin_.weights) bin_.weights->add_speck(pixel_, number, area, color);
     pixel.area.add(area, threshold);
-    pixel.colors.add({color[0], color[1], color[2], 0, 0, 0}, threshold);
+    pixel.colors.add({area * color[0], area * color[1], area * color[2], 0, 0, 0}, threshold);
   }
 
   bool is_nearer(const Fragment& speck, std::size_t k, const Pixel& pixel) {

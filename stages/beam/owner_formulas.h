@@ -65,7 +65,7 @@ Estimate<Float> limited_estimate(const Estimate<Float>& analytic, const Estimate
   return result;
 }
 
-// Where sums round what a surface adds: a number above 0 and up to 1 that differs from surface to surface. It depends on
+// Where sums round what a surface adds: a number above 0 and up to 1 that differs between surfaces. It depends on
 // `content`, what the surface is, and not on the order of triangles. Its eight bits are exact in the sum of a float and
 // the largest addend.
 template <class Bits>

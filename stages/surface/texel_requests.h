@@ -28,9 +28,12 @@ inline constexpr std::uint64_t kTexelBytes = 4;  // 8 bits per channel, not comp
 // Source: block-linear surfaces of NVIDIA GPUs, whose sectors are 16 bytes x 2 rows (minigbm, tegra.c: GENERIC_16Bx2).
 class TextureLayout {
  public:
-  static constexpr std::uint32_t kSectorsPerLine = 4;
+  static constexpr std::uint32_t kSectorsPerLine = 4, kLineBytes = 128;
 
   explicit TextureLayout(const TextureSet& textures);
+
+  // Of all lines.
+  std::uint64_t bytes() const { return lines_ * kLineBytes; }
 
   // The number of a texel's sector: kSectorsPerLine times the line, and its place there.
   std::uint64_t sector_of(const TexelRead& texel) const {
@@ -46,10 +49,11 @@ class TextureLayout {
     std::uint64_t first_line;
     std::uint32_t lines_per_row;
   };
-  void add(const MipChain& chain, std::uint64_t& lines);
+  void add(const MipChain& chain);
 
   std::vector<std::size_t> chains_, tests_;  // by TextureSet::index, by alpha test: where its levels begin
   std::vector<Level> levels_;
+  std::uint64_t lines_ = 0;
 };
 
 // What is read together is one request, which asks for each sector once.

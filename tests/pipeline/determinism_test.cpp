@@ -3,48 +3,13 @@
 
 #include "pipeline/bins/timeline.h"
 #include "pipeline/technique.h"
+#include "tests/pipeline/many_specs.h"
 #include "tests/pipeline/surface_traces.h"
 #include "tests/simd/every_target.h"
 #include "tests/thorough.h"
 
 namespace beampipe {
 namespace {
-
-const char* const kSpecs[] = {
-    "beam",
-    "beam:bits=64,slots=4,at=visible",
-    "beam:bits=32,slots=2,bin=8,at=quarters",
-    "beam:order=sorted",
-    "beam:order=sorted,storage=float32",
-    "beam:rules=paper,mask=exact",
-    "beam:rules=paper,storage=text",
-    "beam:rules=paper,sort=nearest,tiny=3,overlap=transition,regional=area,local=keep,fuzzy=mix,extents=slab,"
-    "slab=visible,plane=visible,thickness=containing",
-    "beam:order=stream,passes=0",
-    "beam:order=stream,passes=0,bits=64,layers=1",
-    "beam:rules=paper,order=near-first",
-    "beam:rules=paper,order=stream,layers=2",
-    "beam:order=stream",
-    "beam:order=stream,bits=256,slots=4",
-    "z3",
-    "z3:shape=128x3,merge=color",
-    "alpha",
-    "msaa:1",
-    "msaa:8",
-    "msaa:64",
-    "reference",
-    "msaa:8,prepass",
-    "acaa:8",
-    "acaa:64,double=stencil,color=unorm8",
-    "deferred",
-    "visibility",
-    "visibility:8",
-    "msaa:4,motion,resolve=reinhard",
-    "taa:8",
-    "taa:8,shading=forward",
-    "taa:8,shading=deferred",
-    "dvm",
-    "dvm:material=draw"};
 
 void expect_same(const FrameResult& a, const FrameResult& b, const std::string& what) {
   EXPECT_EQ(a.image.rgba, b.image.rgba) << what;
@@ -60,7 +25,7 @@ void expect_same(const FrameResult& a, const FrameResult& b, const std::string& 
 // thorough), with one thread and the best instruction set.
 void expect_same_everywhere(const Trace& trace) {
   int threads = 0;
-  for (const char* spec : kSpecs) {
+  for (const char* spec : kManySpecs) {
     const Technique technique = parse_technique(spec);
     const FrameResult expected = technique.render(trace, 0, {1});
     on_every_target([&] {
@@ -82,7 +47,7 @@ TEST(Determinism, AnyInstructionSetAndNumberOfThreadsWithMaterials) {
 TEST(Determinism, BinsWithoutTrianglesAreAlike) {
   for (const Trace& trace :
        {random_trace(290, 170, 2, 1), random_surfaces(290, 170, 2, 5), random_trace(70, 40, 0, 1)}) {
-    for (const char* spec : kSpecs) {
+    for (const char* spec : kManySpecs) {
       const Technique technique = parse_technique(spec);
       Timeline timeline;
       RunOptions every_bin;
@@ -102,7 +67,7 @@ bool is_one_pass(const std::string& spec) {
 void expect_same_in_any_tile(const Trace& trace) {
   RunOptions options;
   options.memory.modelled = false;  // its caches depend on the tile
-  for (const char* spec : kSpecs) {
+  for (const char* spec : kManySpecs) {
     const Technique technique = parse_technique(spec);
     options.tile_size = 0;
     const FrameResult expected = technique.render(trace, 0, options);
@@ -145,7 +110,7 @@ TEST(Determinism, TheFrameIsTheSameWhereverTilesFallInIt) {
   half[0][0] = half[1][1] = 2.0;
   half[3] = glm::dvec4(-1.0, 1.0, 0.0, 1.0);
   frame.projection = half * frame.projection;
-  for (const std::string spec : kSpecs) {
+  for (const std::string spec : kManySpecs) {
     if (spec.starts_with("dvm")) continue;  // its random choices depend on the pixel's place in the frame
     if (is_one_pass(spec) || spec.find("near-first") != spec.npos)
       continue;  // bins are sorted as a whole, and sums are rounded by a triangle's number

@@ -189,9 +189,9 @@ TEST_F(SchemaTest, TheReaderKnowsTheSameKeys) {
     std::string keys;
     for (const std::string& key : keys_of(object)) keys += (keys.empty() ? "\"" : ", \"") + key + '"';
     Json trace = complete(object.version);
-    trace.at(Pointer(object.at))["typo"] = 1;
+    trace.at(Pointer(object.at))["unlisted"] = 1;
     EXPECT_EQ(error_in(trace),
-              std::string("scene.json: ") + object.at + "/typo: expected one of the keys " + keys + ", found \"typo\"");
+              std::string("scene.json: ") + object.at + "/unlisted: expected one of the keys " + keys + ", found \"unlisted\"");
   }
 }
 

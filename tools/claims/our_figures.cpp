@@ -74,7 +74,7 @@ Number milliseconds(const Findings& found, const std::string& spec, const std::v
   const FrameReport* const frame = frame_of(found, spec);
   if (!frame || !found.report.memory.modelled || found.report.hardware.implementations.empty()) return {};
   const ModelledTime time =
-      modelled_time(found.report.hardware, found.implementation, frame->stages, frame->bin_bytes());
+      modelled_time(found.report.hardware, found.implementation, frame->stages, frame->open_pixel_bytes());
   if (stages.empty()) return time.sum_ms;
   Number sum;
   for (std::size_t i = 0; i < frame->stages.size(); ++i)

@@ -5,6 +5,7 @@
 
 #include "pipeline/spec.h"
 #include "tools/cli/commands.h"
+#include "tools/cli/record_inspections.h"
 #include "tools/cli/run_arguments.h"
 #include "tools/cli/run_report.h"
 #include "tools/cli/trace_events.h"
@@ -35,21 +36,27 @@ void tell_unexplained(const std::vector<std::string>& specs) {
               << list_of(specs, "and") << "\n";
 }
 
-void compare(const RunArguments& arguments, const CompareOptions& options, InterruptGate& gate) {
+void compare(const RunArguments& arguments, const CompareOptions& options, const RecordedPixels& pixels,
+             InterruptGate& gate) {
   RunPlan plan = make_plan(arguments);
   tell_notes(plan.notes);
   std::vector<std::string> unexplained;
   for (const Technique& technique : plan.techniques)
     if (!technique.has_weights) unexplained.push_back(technique.spec);
+  for (const std::size_t frame : plan.frames)
+    for (const std::string& text : pixels.chosen) parse_pixel("--inspect", text, plan.trace.frames[frame]);
   const TraceEvents events(arguments, plan);
   OutputFolder output(arguments.output, gate);
   output.lock();
   Comparison comparison(options, std::move(plan), output);
+  if (!arguments.force && !arguments.resume) comparison.require_own_folder();
   if (arguments.resume) {
     if (comparison.is_finished()) return tell_finished(output);
     tell_resumption(comparison.plan(), comparison.resume());
   }
-  finish_report(output, comparison.run());
+  Report report = comparison.run();
+  record_inspections(comparison.plan(), pixels, report, output);
+  finish_report(output, report);
   if (options.causes) tell_unexplained(unexplained);
   events.write(gate);
 }
@@ -59,6 +66,7 @@ void compare(const RunArguments& arguments, const CompareOptions& options, Inter
 void add_compare_command(CommandLine& line, InterruptGate& gate) {
   const auto arguments = std::make_shared<RunArguments>();
   const auto options = std::make_shared<CompareOptions>();
+  const auto pixels = std::make_shared<RecordedPixels>();
   Command command =
       line.add_command("compare", "Render a trace and the reference: pictures, errors, equivalent MSAA rates");
   add_run_arguments(command, *arguments);
@@ -75,8 +83,14 @@ void add_compare_command(CommandLine& line, InterruptGate& gate) {
   command.add_flag("--orders", options->orders,
                    "also render with the triangles shuffled, from near to far and from far to near, and tell the error "
                    "of each order and how far the pictures differ");
+  command
+      .add("--inspect-worst", pixels->worst,
+           "how many pixels of each technique, those with the largest errors, to keep with their histories for the "
+           "report page (default: 3; techniques that `beampipe inspect` can tell of)")
+      .between(0, 1000);
+  command.add("--inspect", pixels->chosen, "X,Y of other pixels to keep with their histories, in every frame");
   command.footer(kFooter + technique_help());
-  command.set_work([arguments, options, &gate] { compare(*arguments, *options, gate); });
+  command.set_work([arguments, options, pixels, &gate] { compare(*arguments, *options, *pixels, gate); });
 }
 
 }  // namespace beampipe

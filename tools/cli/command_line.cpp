@@ -54,6 +54,39 @@ void fail_unknown_option(const CLI::App& command, const std::string& program) {
   }
 }
 
+// The choices in a description such as "TEXT:{all,none}".
+std::vector<std::string> choices_of(const std::string& type) {
+  std::vector<std::string> choices;
+  const std::size_t first = type.find('{'), last = type.find('}');
+  if (first == type.npos || last == type.npos) return choices;
+  for (std::size_t at = first + 1, end; at < last; at = end + 1) {
+    end = std::min(type.find(',', at), last);
+    choices.push_back(type.substr(at, end - at));
+  }
+  return choices;
+}
+
+OptionHelp help_of(const CLI::Option& option) {
+  OptionHelp help;
+  for (const std::string& name : option.get_snames()) help.names.push_back("-" + name);
+  for (const std::string& name : option.get_lnames()) help.names.push_back("--" + name);
+  help.is_argument = help.names.empty();
+  if (help.is_argument) help.names.push_back(option.get_name());
+  const std::string type = option.get_type_name();
+  if (option.get_items_expected_max() > 0) help.value = type.substr(0, type.find(':'));
+  help.choices = choices_of(type);
+  help.text = option.get_description();
+  std::replace(help.text.begin(), help.text.end(), '\n', ' ');
+  return help;
+}
+
+// Those of its groups too, which are commands without a name.
+void add_options(const CLI::App& app, std::vector<OptionHelp>& options) {
+  for (const CLI::Option* option : app.get_options()) options.push_back(help_of(*option));
+  for (const CLI::App* group : app.get_subcommands([](const CLI::App* part) { return part->get_name().empty(); }))
+    add_options(*group, options);
+}
+
 }  // namespace
 
 Option& Option::required() {
@@ -152,6 +185,23 @@ CommandLine::~CommandLine() = default;
 
 Command CommandLine::add_command(const std::string& name, const std::string& description) {
   return Command(app_->add_subcommand(name, description));
+}
+
+std::string CommandLine::description() const { return app_->get_description(); }
+
+std::string CommandLine::footer() const { return app_->get_footer(); }
+
+std::vector<CommandHelp> CommandLine::help() const {
+  std::vector<CommandHelp> commands;
+  for (const CLI::App* app : app_->get_subcommands([](const CLI::App*) { return true; })) {
+    CommandHelp& command = commands.emplace_back();
+    command.name = app->get_name();
+    command.description = app->get_description();
+    if (app->get_footer() != footer())
+      command.footer = app->get_footer();  // commands without one inherit the program's
+    add_options(*app, command.options);
+  }
+  return commands;
 }
 
 void CommandLine::run(int argc, char** argv) {

@@ -70,6 +70,20 @@ class Command {
   std::vector<std::string>* all_words_ = nullptr;
 };
 
+// What --help says, for man pages and for shells.
+struct OptionHelp {
+  std::vector<std::string> names;    // "-o", "--output"; of an argument, what stands for it: "TRACE"
+  bool is_argument = false;          // it has no name on the command line
+  std::string value;                 // "FILE", "N", ...; empty for a flag
+  std::vector<std::string> choices;  // all values; empty if there are others
+  std::string text;
+};
+
+struct CommandHelp {
+  std::string name, description, footer;
+  std::vector<OptionHelp> options;
+};
+
 class CommandLine {
  public:
   CommandLine(const std::string& program, const std::string& version, const std::string& description,
@@ -77,6 +91,12 @@ class CommandLine {
   ~CommandLine();
 
   Command add_command(const std::string& name, const std::string& description);
+
+  std::string description() const;
+  std::string footer() const;
+
+  // Of all commands that were added, in that order.
+  std::vector<CommandHelp> help() const;
 
   // Does the work of the command that the user named, or prints what --help or --version ask for. Throws UsageError,
   // and what the work throws.

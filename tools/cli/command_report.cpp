@@ -7,6 +7,7 @@
 #include "tools/files/output.h"
 #include "tools/report/figures.h"
 #include "tools/report/gnuplot.h"
+#include "tools/report/inspections.h"
 #include "tools/report/layers.h"
 #include "tools/report/page.h"
 #include "tools/report/tables.h"
@@ -39,7 +40,7 @@ void write_report(const ReportArguments& arguments, InterruptGate& gate) {
     const std::vector<Table> tables = report_tables(report);
     figures = report_figures(report);
     const auto layers = report_layers(report, position_of(report, arguments.frame));
-    output.write("report.html", page_html(report, tables, figures, layers));
+    output.write("report.html", page_html(report, tables, figures, layers, report_inspections(report)));
     for (const Table& table : tables) output.write("tables/" + table.name + ".csv", csv_text(table));
   } catch (const JsonError& error) {
     throw ReportError((report.folder / "report.json").string() + ": not a report of beampipe: " + error.what());

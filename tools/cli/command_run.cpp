@@ -24,6 +24,7 @@ void run(const RunArguments& arguments, const MemoryTraceArguments& trace_argume
   require_writable_folders(output, plan.techniques);
   const auto maker = made_by("run", plan, Json::object());
   FrameRecords records(output, maker);
+  if (!arguments.force && !arguments.resume) records.require_own_folder();
   std::vector<FrameRecord> finished;
   if (arguments.resume) {
     if (records.is_finished()) return tell_finished(output);
@@ -44,7 +45,7 @@ void run(const RunArguments& arguments, const MemoryTraceArguments& trace_argume
       FrameRecord record;
       const std::vector<WallTime> times =
           render_frame(plan, frame, progress, histories, [&](std::size_t i, FrameResult&& result) {
-            record.reports.push_back(write_frame(output, plan.techniques[i].spec, frame, result, nullptr));
+            record.reports.push_back(write_frame(output, plan, maker, plan.techniques[i].spec, frame, result, nullptr));
           });
       for (std::size_t i = 0; i < times.size(); ++i) {
         record.reports[i].wall_ms = times[i];

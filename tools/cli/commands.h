@@ -13,12 +13,16 @@ void add_report_command(CommandLine& line, InterruptGate& gate);
 void add_plot_command(CommandLine& line, InterruptGate& gate);
 void add_claims_command(CommandLine& line);
 void add_model_command(CommandLine& line);
+void add_sweep_command(CommandLine& line, InterruptGate& gate);
 void add_stress_command(CommandLine& line, InterruptGate& gate);
+void add_inspect_command(CommandLine& line, InterruptGate& gate);
 void add_diff_command(CommandLine& line);
 void add_info_command(CommandLine& line);
 void add_check_capture_command(CommandLine& line, InterruptGate& gate);
 void add_export_soup_command(CommandLine& line, InterruptGate& gate);
 void add_make_command(CommandLine& line, InterruptGate& gate);
 void add_capture_command(CommandLine& line);
+void add_completion_command(CommandLine& line);  // after all others, which it completes
+void add_man_command(CommandLine& line);
 
 }  // namespace beampipe

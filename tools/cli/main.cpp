@@ -28,6 +28,7 @@ constexpr const char* kExamples = R"(Examples:
   beampipe run model.json -t beam -o out
   beampipe capture -o gears.json -- glxgears   (a frame of a program that runs)
   beampipe report out                          (makes out/report.html, to open in a browser)
+  beampipe inspect model.json --worst 1 -t beam   (why is the worst pixel wrong?)
   beampipe plot out -o frontier.svg
   beampipe diff out/beam/frame_0000.exr out/reference/frame_0000.exr
 `beampipe COMMAND --help` explains a command. Exit codes: 0 success, 1 failure, 2 wrong usage, 130 interrupted.)";
@@ -58,13 +59,17 @@ int run(int argc, char** argv, beampipe::InterruptGate& gate) {
   beampipe::add_plot_command(line, gate);
   beampipe::add_claims_command(line);
   beampipe::add_model_command(line);
+  beampipe::add_sweep_command(line, gate);
   beampipe::add_stress_command(line, gate);
+  beampipe::add_inspect_command(line, gate);
   beampipe::add_diff_command(line);
   beampipe::add_info_command(line);
   beampipe::add_check_capture_command(line, gate);
   beampipe::add_export_soup_command(line, gate);
   beampipe::add_make_command(line, gate);
   beampipe::add_capture_command(line);
+  beampipe::add_completion_command(line);
+  beampipe::add_man_command(line);
   line.run(argc, argv);
   std::cout.flush();
   if (!std::cout) return report_error("cannot write to standard output", kRuntimeError);

@@ -69,7 +69,8 @@ MemoryTrace::MemoryTrace(const MemoryTraceArguments& arguments, const RunArgumen
   format_ = arguments.format;
   constexpr double kCyclesPerSecond = 1e9;
   bytes_per_cycle_ = plan.hardware.rates.at("dram_bytes_per_clk") * plan.hardware.clock_mhz * 1e6 / kCyclesPerSecond;
-  trace_.emplace(file_.parent_path());
+  sector_bytes_ = plan.options.memory.sector_bytes;
+  trace_.emplace(file_.parent_path(), sector_bytes_);
   plan.options.dram_trace = &*trace_;
 }
 
@@ -83,7 +84,7 @@ void MemoryTrace::write(InterruptGate& gate) const {
     text.clear();
     append_line(text, format_, request, static_cast<std::uint64_t>(static_cast<double>(moved) / bytes_per_cycle_));
     out.write(text);
-    moved += MemoryParameters::sector_bytes;
+    moved += sector_bytes_;
   });
   out.commit();
 }

@@ -11,7 +11,7 @@
 
 namespace beampipe {
 
-// Of each request of 32 bytes, the format has:
+// Of each request, which is a sector (32 bytes by default), the format has:
 //   dramsim3    0x1f20 READ 12           address, READ or WRITE, cycle
 //   ramulator2  LD 0x1f20                LD or ST, address (its LoadStoreTrace)
 //   csv         12,0x1f20,READ,shade,attributes   cycle, address, READ or WRITE, stage, array; below a line of titles
@@ -44,6 +44,7 @@ class MemoryTrace {
   std::filesystem::path file_;
   std::string format_;
   double bytes_per_cycle_ = 0;
+  std::uint32_t sector_bytes_ = 0;
   std::optional<DramTrace> trace_;
 };
 

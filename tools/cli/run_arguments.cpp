@@ -12,6 +12,7 @@
 #include "tools/cli/trace_notes.h"
 #include "tools/evaluate/draw_notes.h"
 #include "tools/evaluate/machine_memory.h"
+#include "tools/evaluate/memory_system.h"
 #include "tools/evaluate/results.h"
 #include "tools/files/output.h"
 #include "traces/trace_io.h"
@@ -27,6 +28,18 @@ void require_trace(const RunArguments& arguments) {
   if (std::error_code ignored; !arguments.specs.empty() && std::filesystem::exists(arguments.specs.back(), ignored))
     hint = ": " + arguments.specs.back() + " was taken for a technique; write the trace before -t";
   throw UsageError("TRACE is missing" + hint);
+}
+
+MemoryParameters memory_of(const RunArguments& arguments) {
+  MemoryParameters memory =
+      arguments.memory_system.empty() ? MemoryParameters{} : read_memory_system(arguments.memory_system);
+  memory.modelled = !arguments.no_memory_model;
+  if (arguments.no_compression) memory.compression = false;
+  if (arguments.framebuffer == kByTechnique) memory.framebuffer.reset();
+  if (arguments.framebuffer == kOnChip) memory.framebuffer = Place::on_chip;
+  if (arguments.framebuffer == kInMemory) memory.framebuffer = Place::in_memory;
+  if (arguments.on_chip_bytes > 0) memory.on_chip_bytes = static_cast<std::uint32_t>(arguments.on_chip_bytes);
+  return memory;
 }
 
 }  // namespace
@@ -60,6 +73,8 @@ void add_run_arguments(Command& command, RunArguments& arguments) {
       .between(1, 1000000);
   command.add_flag("--resume", arguments.resume,
                    "continue a stopped run: keep the finished frames that the same command left in the folder");
+  command.add_flag("--force", arguments.force,
+                   "write over the results of another trace in the folder, and with `run` over those of `compare`");
   add_hardware_options(command, arguments.hardware);
   command.add(
       "--trace-events", arguments.trace_events,
@@ -68,13 +83,15 @@ void add_run_arguments(Command& command, RunArguments& arguments) {
   command.add_flag(
       "--no-memory-model", arguments.no_memory_model,
       "do not model caches and DRAM: rendering is faster, and sector_bytes, l2_bytes and dram_bytes are 0");
+  command.add("--memory-system", arguments.memory_system,
+              "a file that describes the modelled memory system: caches, sectors, compression, bins "
+              "(docs/manual.md; default: that of a Titan V). The next three options change what it says");
   command.add_flag("--no-compression", arguments.no_compression, "model memory without the compression of blocks");
   command
       .add("--framebuffer", arguments.framebuffer,
            "where the pixels of a bin are while it is drawn: on chip, as in tile-based rendering; in memory, behind "
-           "caches; or where each technique is made to keep them")
-      .one_of({kByTechnique, kOnChip, kInMemory})
-      .shows_default();
+           "caches; or where each technique is made to keep them (default: by-technique)")
+      .one_of({kByTechnique, kOnChip, kInMemory});
   command
       .add("--on-chip-memory", arguments.on_chip_bytes,
            "the memory on chip for the pixels of a bin, such as 128KB; pixels that do not fit are kept in memory "
@@ -93,11 +110,7 @@ RunPlan make_plan(const RunArguments& arguments) {
   std::vector<Hardware> hardware = read_hardware(arguments.hardware);
   plan.hardware = hardware.front();
   plan.more_hardware.assign(hardware.begin() + 1, hardware.end());
-  plan.options.memory.modelled = !arguments.no_memory_model;
-  plan.options.memory.compression = !arguments.no_compression;
-  if (arguments.framebuffer != kByTechnique)
-    plan.options.memory.framebuffer = arguments.framebuffer == kOnChip ? Place::on_chip : Place::in_memory;
-  plan.options.memory.on_chip_bytes = static_cast<std::uint32_t>(arguments.on_chip_bytes);
+  plan.options.memory = memory_of(arguments);
   plan.options.memory_limit = arguments.memory_limit > 0 ? arguments.memory_limit : machine_memory() / 2;
   if (!arguments.simd.empty()) use_simd_target(arguments.simd);
   plan.trace = read_trace(arguments.trace, {.allow_outside = arguments.allow_outside});

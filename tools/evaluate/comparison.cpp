@@ -81,8 +81,8 @@ ErrorAccumulator Comparison::new_errors() const {
 void Comparison::compare_frame(std::size_t frame, Progress& progress) {
   WallTime reference_time;
   const FrameResult truth = render_once(reference_, plan_, frame, progress, &reference_time);
-  FrameReport& report =
-      reference_result_.frames.emplace_back(write_frame(output_, reference_.spec, frame, truth, nullptr));
+  FrameReport& report = reference_result_.frames.emplace_back(
+      write_frame(output_, plan_, maker_, reference_.spec, frame, truth, nullptr));
   report.wall_ms = reference_time;
   report.error = ErrorStats{};
   if (split_) {
@@ -93,7 +93,8 @@ void Comparison::compare_frame(std::size_t frame, Progress& progress) {
   const std::vector<WallTime> times =
       render_frame(plan_, frame, progress, histories_, [&](std::size_t i, FrameResult&& result) {
         const std::optional<ErrorParts> parts = explain(i, result, truth.image, frame, progress);
-        results_[i].frames.push_back(write_frame(output_, plan_.techniques[i].spec, frame, result, &truth.image));
+        results_[i].frames.push_back(
+            write_frame(output_, plan_, maker_, plan_.techniques[i].spec, frame, result, &truth.image));
         results_[i].frames.back().parts = parts;
         errors_[i].add(result.image, truth.image);
         std::vector<float> errors = signed_errors(result.image, truth.image);

@@ -30,6 +30,9 @@ class Comparison {
 
   const RunPlan& plan() const { return plan_; }
 
+  // Throws std::runtime_error, one line, if the folder has results of another trace.
+  void require_own_folder() const { records_.require_own_folder(); }
+
   // Whether report.json is already the result of this comparison. Throws std::runtime_error, one line, if it is that of
   // another run.
   bool is_finished() { return records_.is_finished(); }

@@ -105,7 +105,7 @@ Json to_json(const FrameReport& frame, const TechniqueReport& result, const Hard
   if (all.sector_bytes == 0) return json;  // the reference models no memory, and times without it would mean nothing
   const auto add = [&](const Hardware& each, const std::string& prefix) {
     for (const Implementation& implementation : each.implementations) {
-      const ModelledTime time = modelled_time(each, implementation, frame.stages, frame.bin_bytes());
+      const ModelledTime time = modelled_time(each, implementation, frame.stages, frame.open_pixel_bytes());
       const std::string name = prefix + implementation.name;
       json["modelled_ms"][name] = {{"overlap", time.overlap_ms}, {"sum", time.sum_ms}, {"busiest", time.busiest}};
       for (std::size_t i = 0; i < time.stages.size(); ++i) json["stages"][i]["modelled_ms"][name] = time.stages[i];

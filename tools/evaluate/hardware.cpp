@@ -19,18 +19,23 @@ namespace {
 
 using Rates = std::map<std::string, double>;
 
+struct StageWork : StageCounters {
+  bool pixels_on_chip = false;  // the state of pixels that it reads and writes; otherwise it is in memory
+};
+
 // The clocks that a unit needs for the work of a stage.
-using Clocks = std::function<double(const Rates& rates, const StageCounters& stage)>;
+using Clocks = std::function<double(const Rates& rates, const StageWork& stage)>;
 
 constexpr double kProbeBytes = 16;  // a bilinear probe: four texels of 4 bytes
 
-// Not a unit: it marks the stages that work on what a bin has on chip.
+// Not a unit: it marks the stages that work on the pixels of a bin, which may be on chip.
 constexpr const char* kOnChip = "on_chip";
 
 double over(double work, double rate) { return work / rate; }
 
-// Operations on 64-bit integers are in the integer lanes, and issued twice.
-double shader_clocks(const Rates& rates, const StageCounters& s) {
+// Operations on 64-bit integers are in the integer lanes, and issued twice. All that a shader reads and writes, except
+// for texels, passes its core's L1 or shared memory.
+double shader_clocks(const Rates& rates, const StageWork& s) {
   const auto& ops = s.ops;
   const double wide = static_cast<double>(ops.wide), total = static_cast<double>(ops.total());
   const double mul_add = static_cast<double>(ops.mul_add), add = static_cast<double>(ops.add);
@@ -39,56 +44,58 @@ double shader_clocks(const Rates& rates, const StageCounters& s) {
                    narrow * (over(mul_add, rates.at("mul_add_per_clk")) + over(add, rates.at("add_per_clk"))),
                    over(ops.bit, rates.at("bit_per_clk")) + over(wide, rates.at("wide_per_clk")),
                    over(ops.fetch, rates.at("fetch_per_clk")), over(ops.special, rates.at("special_per_clk")),
-                   over(ops.convert, rates.at("convert_per_clk"))});
+                   over(ops.convert, rates.at("convert_per_clk")),
+                   over(s.logical_bytes() - s.texture_bytes, rates.at("on_chip_bytes_per_clk"))});
 }
 
-// What is read and written where pixels are: in the tile's memory or behind the ROP's caches, by bytes of the formats.
-double pixel_clocks(const Rates& rates, const StageCounters& s) {
-  return over(s.logical_bytes(), rates.at("rop_bytes_per_clk"));
+// What is read and written where pixels are, by bytes of the formats: through the ROP's caches, or in the memory of the
+// cores.
+double pixel_clocks(const Rates& rates, const StageWork& s) {
+  return over(s.logical_bytes(), rates.at(s.pixels_on_chip ? "on_chip_bytes_per_clk" : "rop_bytes_per_clk"));
 }
 
 const std::map<std::string, Clocks>& units() {
   static const std::map<std::string, Clocks> all = {
       {"triangles",
-       [](const Rates& rates, const StageCounters& s) { return over(s.items_in, rates.at("triangles_per_clk")); }},
+       [](const Rates& rates, const StageWork& s) { return over(s.items_in, rates.at("triangles_per_clk")); }},
       {"raster",
-       [](const Rates& rates, const StageCounters& s) { return over(s.items_out, rates.at("raster_pixels_per_clk")); }},
+       [](const Rates& rates, const StageWork& s) { return over(s.items_out, rates.at("raster_pixels_per_clk")); }},
       {"conservative_raster",
-       [](const Rates& rates, const StageCounters& s) {
+       [](const Rates& rates, const StageWork& s) {
          return over(s.lanes_used, rates.at("conservative_pixels_per_clk"));  // touched pixels, hidden ones included
        }},
       {"quads",
-       [](const Rates& rates, const StageCounters& s) { return over(s.lanes_issued, 4 * rates.at("quads_per_clk")); }},
+       [](const Rates& rates, const StageWork& s) { return over(s.lanes_issued, 4 * rates.at("quads_per_clk")); }},
       {"shader", shader_clocks},
       {"shading", shader_clocks},
-      {"texture", [](const Rates& rates,
-                     const StageCounters& s) { return over(s.texture_bytes, rates.at("texture_bytes_per_clk")); }},
+      {"texture",
+       [](const Rates& rates, const StageWork& s) { return over(s.texture_bytes, rates.at("texture_bytes_per_clk")); }},
       {"mask_generator",
-       [](const Rates& rates, const StageCounters& s) {
+       [](const Rates& rates, const StageWork& s) {
          return std::max(over(s.items_in, rates.at("conservative_pixels_per_clk")),
                          over(s.position_tests, rates.at("mask_positions_per_clk")));
        }},
       {"sorter",
-       [](const Rates& rates, const StageCounters& s) {
+       [](const Rates& rates, const StageWork& s) {
          return std::max(over(s.items_in, rates.at("rop_fragments_per_clk")),
                          over(s.ops.total(), rates.at("sort_operations_per_clk")));
        }},
       {"composer",
-       [](const Rates& rates, const StageCounters& s) {
+       [](const Rates& rates, const StageWork& s) {
          return std::max({over(s.items_in, rates.at("rop_fragments_per_clk")),
                           over(s.position_tests, rates.at("compose_positions_per_clk")), pixel_clocks(rates, s)});
        }},
       {"rop_samples",
-       [](const Rates& rates, const StageCounters& s) {
+       [](const Rates& rates, const StageWork& s) {
          return std::max(over(s.items_in, rates.at("rop_samples_per_clk")), pixel_clocks(rates, s));
        }},
       {"rop_fragments",
-       [](const Rates& rates, const StageCounters& s) {
+       [](const Rates& rates, const StageWork& s) {
          return std::max(over(s.items_in, rates.at("rop_fragments_per_clk")), pixel_clocks(rates, s));
        }},
-      {"l2", [](const Rates& rates, const StageCounters& s) { return over(s.l2_bytes, rates.at("l2_bytes_per_clk")); }},
+      {"l2", [](const Rates& rates, const StageWork& s) { return over(s.l2_bytes, rates.at("l2_bytes_per_clk")); }},
       {"dram",
-       [](const Rates& rates, const StageCounters& s) { return over(s.dram_bytes, rates.at("dram_bytes_per_clk")); }},
+       [](const Rates& rates, const StageWork& s) { return over(s.dram_bytes, rates.at("dram_bytes_per_clk")); }},
   };
   return all;
 }
@@ -113,13 +120,19 @@ const std::initializer_list<std::string_view> kRates = {"triangles_per_clk",
                                                         "rop_samples_per_clk",
                                                         "rop_fragments_per_clk",
                                                         "rop_bytes_per_clk",
+                                                        "on_chip_bytes_per_clk",
                                                         "l2_bytes_per_clk",
                                                         "dram_bytes_per_clk",
-                                                        "cores",
                                                         "on_chip_bytes_per_core",
                                                         "bins_per_core"};
 
-double positive_number(const JsonCursor& at) { return at.number_between(0, std::numeric_limits<double>::infinity()); }
+// Far beyond any rate, and near enough that no time becomes infinite.
+double positive_number(const JsonCursor& at) {
+  constexpr double kLeast = 1e-6, kLargest = 1e12;
+  const double value = at.number();
+  if (value < kLeast || value > kLargest) at.fail("a number from 1e-6 to 1e12");
+  return value;
+}
 
 std::vector<std::string> read_units(const JsonCursor& stage) {
   std::vector<std::string> names;
@@ -133,6 +146,14 @@ std::vector<std::string> read_units(const JsonCursor& stage) {
   return names;
 }
 
+// Work of a stage with a mistyped name would cost nothing.
+void expect_stage(const JsonCursor& at, const std::string& name) {
+  std::vector<std::string> known;
+  for (const StageInfo& stage : stage_list()) known.emplace_back(stage.name);
+  if (std::find(known.begin(), known.end(), name) == known.end())
+    at.fail("the name of a stage", name + did_you_mean(name, known));
+}
+
 // Every number has a source, or says that it is a choice.
 void expect_source(const JsonCursor& sources, std::string_view number) {
   const JsonCursor source = sources[number];
@@ -140,9 +161,9 @@ void expect_source(const JsonCursor& sources, std::string_view number) {
 }
 
 double cost_number(const JsonCursor& at) {
-  constexpr double kLargest = 1e9;
+  constexpr double kLargest = 1e6;
   const double value = at.number();
-  if (value < 0 || value > kLargest) at.fail("a number from 0 to 1e9");
+  if (value < 0 || value > kLargest) at.fail("a number from 0 to 1e6");
   return value;
 }
 
@@ -160,10 +181,13 @@ Json to_json(const ShadingCost& cost) {
 StageCounters with_costs(const Hardware& hardware, const StageCounters& stage, bool has_light, double& registers) {
   StageCounters priced = stage;
   const auto add = [&](const ShadingCost& cost) {
-    const double invocations = static_cast<double>(stage.lanes_issued);
+    constexpr double kMostInvocations = 1e11;  // so that nothing overflows, whatever a damaged report says
+    const double invocations = std::min(static_cast<double>(stage.lanes_issued), kMostInvocations);
     priced.ops.mul_add += static_cast<std::uint64_t>(invocations * cost.operations / 2);
     priced.ops.add += static_cast<std::uint64_t>(invocations * cost.operations / 2);
-    priced.texture_bytes += static_cast<std::uint64_t>(invocations * cost.fetches * kProbeBytes);
+    const auto texels = static_cast<std::uint64_t>(invocations * cost.fetches * kProbeBytes);
+    priced.bytes_read += texels;
+    priced.texture_bytes += texels;
     registers = std::max(registers, cost.registers);
   };
   if (stage.stage == "shade") add(hardware.material);
@@ -174,7 +198,7 @@ StageCounters with_costs(const Hardware& hardware, const StageCounters& stage, b
 std::map<std::string, double> times_of(const Hardware& hardware, const Implementation& implementation,
                                        const StageCounters& unpriced, bool has_light, double bin_bytes) {
   double registers = 0;
-  const StageCounters stage = with_costs(hardware, unpriced, has_light, registers);
+  const StageWork stage{with_costs(hardware, unpriced, has_light, registers), bin_bytes > 0};
   const Rates& rates = hardware.rates;
   const double clocks_per_ms = hardware.clock_mhz * 1e3;
   std::map<std::string, double> times;
@@ -204,6 +228,8 @@ std::vector<std::string> hardware_names() {
   for (const BuiltInHardware& each : kBuiltInHardware) names.push_back(each.name);
   return names;
 }
+
+std::span<const std::string_view> hardware_rates() { return {kRates.begin(), kRates.size()}; }
 
 Hardware titan_v() { return read_hardware("titan_v"); }
 
@@ -243,18 +269,25 @@ std::vector<Hardware> read_hardware_list(const std::string& list) {
 Hardware parse_hardware(const Json& json, const std::string& file) {
   const JsonCursor root(json, file);
   root.expect_keys({"beampipe_hardware", "name", "clock_mhz", "rates", "sources", "implementations", "shading"});
-  root["beampipe_hardware"].integer(2, 2);
+  root["beampipe_hardware"].integer(3, 3);
   Hardware hardware;
   hardware.name = root["name"].string();
   hardware.clock_mhz = positive_number(root["clock_mhz"]);
   const JsonCursor rates = root["rates"], sources = root["sources"];
   rates.expect_keys(kRates);
   for (const std::string_view rate : kRates) hardware.rates[std::string(rate)] = positive_number(rates[rate]);
+  for (const auto& [name, source] : sources.members())
+    if (name != "clock_mhz" && !hardware.rates.contains(name)) source.fail("the name of a rate as key", name);
   expect_source(sources, "clock_mhz");
   for (const std::string_view rate : kRates) expect_source(sources, rate);
   for (const auto& [name, description] : root["implementations"].members()) {
     Implementation& implementation = hardware.implementations.emplace_back(Implementation{name, {}});
-    for (const auto& [stage, names] : description["units"].members()) implementation.units[stage] = read_units(names);
+    description.expect_keys({"description", "units"});
+    if (const auto text = description.find("description")) text->string();
+    for (const auto& [stage, names] : description["units"].members()) {
+      expect_stage(names, stage);
+      implementation.units[stage] = read_units(names);
+    }
   }
   if (hardware.implementations.empty()) root["implementations"].fail("at least one implementation", "none");
   if (json.contains("shading")) {
@@ -286,8 +319,11 @@ ModelledTime modelled_time(const Hardware& hardware, const Implementation& imple
   std::map<std::string, double> busy;
   for (const StageCounters& stage : stages) {
     double longest = 0;
-    for (const auto& [unit, ms] : times_of(hardware, implementation, stage, has_light, bin_bytes)) {
-      busy[unit == "shading" ? "shader" : unit] += ms;  // the same lanes
+    std::map<std::string, double> of_stage = times_of(hardware, implementation, stage, has_light, bin_bytes);
+    if (const auto shading = of_stage.extract("shading"))  // the same lanes
+      of_stage["shader"] = std::max(of_stage["shader"], shading.mapped());
+    for (const auto& [unit, ms] : of_stage) {
+      busy[unit] += ms;
       longest = std::max(longest, ms);
     }
     time.stages.push_back(longest);

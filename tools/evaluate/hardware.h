@@ -9,7 +9,9 @@
 
 #include <filesystem>
 #include <map>
+#include <span>
 #include <string>
+#include <string_view>
 #include <vector>
 
 #include "stages/cost/counters.h"
@@ -44,6 +46,9 @@ struct Hardware {
 std::vector<std::string> hardware_names();
 Hardware titan_v();
 
+// The names of the rates, in the order of the file.
+std::span<const std::string_view> hardware_rates();
+
 // A built-in name or a file. Throws TraceError, one line that names the file, the key, what was expected and what was
 // found.
 Hardware read_hardware(const std::string& name_or_file);
@@ -55,10 +60,10 @@ std::vector<Hardware> read_hardware_list(const std::string& list);
 // The same hardware with these costs, in its `json` too.
 Hardware with_shading_costs(const Hardware& hardware, const ShadingCost& material, const ShadingCost& light);
 
-// Milliseconds of each unit that the stage uses, by name ("triangles", "shader", "dram", ...). `bin_bytes`: what a bin
-// has on chip. A core holds as many bins as its memory has room for. If these are fewer than it works on at a time, the
-// stages that work on bins wait as much longer (stall); if not even one has room, the part that has none is read and
-// written in L2 (spill).
+// Milliseconds of each unit that the stage uses, by name ("triangles", "shader", "dram", ...). `bin_bytes`: what the
+// pixels of a bin take on chip; 0 if they are in memory. A core holds as many bins as its memory has room for. If these
+// are fewer than it works on at a time, the stages that work on pixels wait as much longer (stall); if not even one has
+// room, the part that has none is read and written in L2 (spill).
 std::map<std::string, double> unit_times(const Hardware& hardware, const Implementation& implementation,
                                          const StageCounters& stage, double bin_bytes = 0);
 

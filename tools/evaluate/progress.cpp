@@ -7,8 +7,10 @@
 
 namespace beampipe {
 
-Progress::Progress() {
-  if (isatty(STDERR_FILENO)) ticker_ = std::thread([this] { tick(); });
+Progress::Progress() : Progress(isatty(STDERR_FILENO) != 0) {}
+
+Progress::Progress(bool is_shown) {
+  if (is_shown) ticker_ = std::thread([this] { tick(); });
 }
 
 Progress::~Progress() {

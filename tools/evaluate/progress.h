@@ -13,6 +13,7 @@ namespace beampipe {
 class Progress {
  public:
   Progress();
+  explicit Progress(bool is_shown);
   ~Progress();
   Progress(const Progress&) = delete;
   Progress& operator=(const Progress&) = delete;

@@ -100,8 +100,13 @@ ErrorStats measure_named_error(const std::string& spec, std::size_t frame, const
   }
 }
 
-FrameReport write_frame(OutputFolder& output, const std::string& spec, std::size_t frame, const FrameResult& result,
-                        const Image* reference) {
+FrameReport write_frame(OutputFolder& output, const RunPlan& plan, const Json& made_by, const std::string& spec,
+                        std::size_t frame, const FrameResult& result, const Image* reference) {
+  const Labels labels = {{"beampipe.trace", std::filesystem::path(plan.trace_file).filename().string()},
+                         {"beampipe.trace_digest", made_by.at("trace").get<std::string>()},
+                         {"beampipe.technique", spec},
+                         {"beampipe.frame", std::to_string(frame)},
+                         {"beampipe.version", made_by.at("version").get<std::string>()}};
   const std::string stem = frame_stem(spec, frame);
   FrameReport report;
   report.index = frame;
@@ -119,11 +124,11 @@ FrameReport write_frame(OutputFolder& output, const std::string& spec, std::size
   }
   for (const auto& [name, values] : counters.channels) report.pixel_counters[name] = measure_counter(values);
   // An older report or record would describe pictures that no longer exist.
-  output.write(report.image, encode_exr(result.image), {"report.json", frame_record_name(frame)});
+  output.write(report.image, encode_exr(result.image, labels), {"report.json", frame_record_name(frame)});
   output.write(report.picture, encode_png(result.image));
   if (!counters.channels.empty()) {
     report.counters = stem + "_counters.exr";
-    output.write(report.counters, encode_exr(counters));
+    output.write(report.counters, encode_exr(counters, labels));
   }
   return report;
 }

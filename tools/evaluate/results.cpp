@@ -33,16 +33,20 @@ double TechniqueReport::peak_bytes_per_pixel() const {
   return framebuffer_bytes_per_pixel + most;
 }
 
-double FrameReport::bin_bytes() const {
+double FrameReport::open_pixel_bytes() const {
   double bytes = 0;
-  for (const Buffer& buffer : buffers) bytes += buffer.per_bin ? static_cast<double>(buffer.peak_bytes) : 0.0;
+  for (const Buffer& buffer : buffers)
+    if (buffer.name == kOpenPixels) bytes = static_cast<double>(buffer.peak_bytes);
   return bytes;
 }
 
 double TechniqueReport::on_chip_bytes_per_pixel() const {
   double most = 0;
-  for (const FrameReport& frame : frames)
-    if (frame.bin_pixels > 0) most = std::max(most, frame.bin_bytes() / static_cast<double>(frame.bin_pixels));
+  for (const FrameReport& frame : frames) {
+    double bytes = 0;
+    for (const Buffer& buffer : frame.buffers) bytes += buffer.per_bin ? static_cast<double>(buffer.peak_bytes) : 0.0;
+    if (frame.bin_pixels > 0) most = std::max(most, bytes / static_cast<double>(frame.bin_pixels));
+  }
   return most;
 }
 

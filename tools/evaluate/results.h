@@ -59,8 +59,8 @@ struct FrameReport {
   std::uint64_t pixels = 0;
   std::uint64_t bin_pixels = 0;  // of the largest bin
 
-  // All buffers that a bin has on chip, at their peaks.
-  double bin_bytes() const;
+  // What the pixels of a bin take on chip; 0 if they are in memory.
+  double open_pixel_bytes() const;
 };
 
 // The same frames with their triangles in another order.
@@ -84,6 +84,7 @@ struct TechniqueReport {
       causes;                       // share of the mean square error by cause; empty without --causes
   std::vector<OrderReport> orders;  // empty without --orders
   double order_difference = 0;      // RMS difference between the two orders whose pictures differ most
+  std::string inspections;          // file with the histories of some pixels; empty if there are none
 
   // Bytes of the framebuffer and of the A-buffer in the frame where it is largest.
   double peak_bytes_per_pixel() const;

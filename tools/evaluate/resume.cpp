@@ -6,6 +6,7 @@
 
 #include "simd/target.h"
 #include "tools/evaluate/frame_json.h"
+#include "tools/evaluate/memory_system.h"
 #include "tools/files/digest.h"
 #include "traces/trace_io.h"
 
@@ -17,8 +18,10 @@ namespace fs = std::filesystem;
 constexpr const char* kFolder = "unfinished";
 
 // How messages name what made_by holds only as a digest.
-const std::map<std::string, std::string> kDigested = {
-    {"program", "another build of beampipe"}, {"trace", "another trace"}, {"hardware", "another --hardware"}};
+const std::map<std::string, std::string> kDigested = {{"program", "another build of beampipe"},
+                                                      {"trace", "another trace"},
+                                                      {"hardware", "another --hardware"},
+                                                      {"memory_system", "another --memory-system"}};
 
 Json record_of(const FrameReport& frame) {
   Json json = to_json(frame, TechniqueReport{}, Hardware{});
@@ -109,12 +112,28 @@ Json made_by(const std::string& command, const RunPlan& plan, const Json& more) 
                {"compression", plan.options.memory.compression},
                {"framebuffer", name_of(plan.options.memory.framebuffer)},
                {"on_chip_bytes", plan.options.memory.on_chip_bytes},
+               {"memory_system", digest_of(parameters_json(plan.options.memory).dump())},
                {"hardware", digest_of(hardware_text(plan))}};
   for (const auto& [name, value] : more.members()) json[name] = value;
   return json;
 }
 
 std::string frame_record_name(std::size_t frame) { return frame_stem(kFolder, frame) + ".json"; }
+
+void FrameRecords::require_own_folder() const {
+  std::vector<fs::path> files = list();
+  files.push_back(output_.path() / "report.json");
+  for (const fs::path& file : files) {
+    const Json other = maker_of(read_json(file));
+    if (!other.is_object() || !other.contains("trace") || !other.contains("command")) continue;
+    std::string found;
+    if (other.at("trace") != maker_.at("trace")) found = "another trace";
+    if (other.at("command") == "compare" && maker_.at("command") == "run") found = "beampipe compare";
+    if (!found.empty())
+      throw std::runtime_error(output_.path().string() + ": expected a folder without other results, found those of " +
+                               found + "; --force writes over them");
+  }
+}
 
 bool FrameRecords::is_finished() {
   const Json report = read_json(output_.path() / "report.json");

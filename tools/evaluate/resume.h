@@ -29,6 +29,10 @@ class FrameRecords {
  public:
   FrameRecords(OutputFolder& output, Json maker) : output_(output), maker_(std::move(maker)) {}
 
+  // Throws std::runtime_error, one line, if the folder has results of another trace, or of `compare` while this is `run`,
+  // which has no errors.
+  void require_own_folder() const;
+
   // Whether report.json exists and was made by the same run. If so, this removes records that were left when the
   // program was killed. Throws std::runtime_error, one line, if report.json was made by another run.
   bool is_finished();

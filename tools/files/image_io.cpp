@@ -7,6 +7,7 @@
 #include <ImfIO.h>
 #include <ImfInputFile.h>
 #include <ImfOutputFile.h>
+#include <ImfStringAttribute.h>
 #include <openexr.h>
 #include <png.h>
 
@@ -46,10 +47,12 @@ Imf::Slice slice_of(const float* first, std::uint32_t width, std::size_t stride,
   return Imf::Slice(Imf::FLOAT, base, stride * sizeof(float), stride * sizeof(float) * width, 1, 1, fill);
 }
 
-std::string encode_channels(std::uint32_t width, std::uint32_t height, const Imf::FrameBuffer& channels) {
+std::string encode_channels(std::uint32_t width, std::uint32_t height, const Imf::FrameBuffer& channels,
+                            const Labels& labels) {
   MemoryStream stream;
   Imf::Header header(static_cast<int>(width), static_cast<int>(height));
   header.compression() = Imf::ZIP_COMPRESSION;
+  for (const auto& [name, text] : labels) header.insert(name, Imf::StringAttribute(text));
   for (auto channel = channels.begin(); channel != channels.end(); ++channel) {
     header.channels().insert(channel.name(), Imf::Channel(Imf::FLOAT));
   }
@@ -167,23 +170,23 @@ void read_all(Imf::InputFile& input, const Imf::FrameBuffer& channels, Size size
   input.readPixels(0, static_cast<int>(size.height) - 1);
 }
 
+}  // namespace
+
 std::uint8_t srgb_byte(float linear) {
   const double clamped = linear > 0.0f ? std::min(static_cast<double>(linear), 1.0) : 0.0;  // NaN becomes 0
   const double encoded = clamped <= 0.0031308 ? 12.92 * clamped : 1.055 * std::pow(clamped, 1.0 / 2.4) - 0.055;
   return static_cast<std::uint8_t>(std::lround(255.0 * encoded));
 }
 
-}  // namespace
-
-std::string encode_exr(const Image& image) {
+std::string encode_exr(const Image& image, const Labels& labels) {
   Imf::FrameBuffer channels;
   for (std::size_t i = 0; i < 4; ++i) {
     channels.insert(kColorChannels[i], slice_of(image.rgba.data() + i, image.width, 4));
   }
-  return encode_channels(image.width, image.height, channels);
+  return encode_channels(image.width, image.height, channels, labels);
 }
 
-std::string encode_exr(const Planes& planes) {
+std::string encode_exr(const Planes& planes, const Labels& labels) {
   Imf::FrameBuffer channels;
   for (const auto& [name, values] : planes.channels) {
     if (values.size() != std::size_t{planes.width} * planes.height) {
@@ -191,7 +194,7 @@ std::string encode_exr(const Planes& planes) {
     }
     channels.insert(name, slice_of(values.data(), planes.width, 1));
   }
-  return encode_channels(planes.width, planes.height, channels);
+  return encode_channels(planes.width, planes.height, channels, labels);
 }
 
 std::string encode_png(const Image& image) {

@@ -26,11 +26,17 @@ struct Planes {
   std::map<std::string, std::vector<float>> channels;
 };
 
+// Text by name, for attributes of an EXR file's header.
+using Labels = std::map<std::string, std::string>;
+
 // The bytes of an EXR file with channels R, G, B, A.
-std::string encode_exr(const Image& image);
+std::string encode_exr(const Image& image, const Labels& labels = {});
 
 // The bytes of an EXR file with one channel per plane. Throws std::invalid_argument when a plane has the wrong size.
-std::string encode_exr(const Planes& planes);
+std::string encode_exr(const Planes& planes, const Labels& labels = {});
+
+// A linear value for looking at: clamped to [0, 1] and encoded in sRGB, 0..255. NaN is 0.
+std::uint8_t srgb_byte(float linear);
 
 // The bytes of an 8-bit RGB PNG file for looking at: linear values are clamped to [0, 1] and encoded in sRGB. NaN is
 // black. Alpha is left out.

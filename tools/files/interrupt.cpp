@@ -26,6 +26,9 @@ void InterruptGate::wait_for_signal() {
   if (closing_) return;
   mutex_.lock();  // never unlocked, so that no new file is started
   if (!unfinished_.empty()) ::unlink(unfinished_.c_str());
+  // A terminal may show a line of progress, which the text takes the place of.
+  const std::string text = farewell_.empty() || !isatty(STDERR_FILENO) ? farewell_ : "\r\033[K" + farewell_;
+  if (::write(STDERR_FILENO, text.data(), text.size()) < 0) unfinished_.clear();
   _exit(128 + signal);  // runs no destructors, because other threads are still rendering
 }
 

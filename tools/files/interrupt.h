@@ -5,6 +5,7 @@
 #include <csignal>
 #include <filesystem>
 #include <mutex>
+#include <string>
 #include <thread>
 
 namespace beampipe {
@@ -26,11 +27,15 @@ class InterruptGate {
   // program. The caller must hold the gate.
   void set_unfinished(std::filesystem::path file) { unfinished_ = std::move(file); }
 
+  // What an interrupt prints on standard error before it ends the program. The caller must hold the gate.
+  void set_farewell(std::string text) { farewell_ = std::move(text); }
+
  private:
   void wait_for_signal();
 
   std::mutex mutex_;
   std::filesystem::path unfinished_;
+  std::string farewell_;
   std::atomic<bool> closing_ = false;
   sigset_t signals_, previous_mask_;
   std::thread waiter_;

@@ -38,10 +38,12 @@ std::string script_json(const Json& json) {
 }  // namespace
 
 std::string page_html(const ReportFile& report, const std::vector<Table>& tables, const std::vector<Figure>& figures,
-                      const Json& layers) {
+                      const Json& layers, const Json& inspections) {
   const Json& results = report.json.at("results");
-  Json data = {
-      {"scene", report.scene}, {"layers", layers}, {"colors", std::vector(kPlotColors.begin(), kPlotColors.end())}};
+  Json data = {{"scene", report.scene},
+               {"layers", layers},
+               {"inspections", inspections},
+               {"colors", std::vector(kPlotColors.begin(), kPlotColors.end())}};
   data["facts"] = {{"trace", report.json.at("trace")},
                    {"frames", std::to_string(results.at(0).at("frames").size())},
                    {"techniques", std::to_string(results.size())},

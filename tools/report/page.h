@@ -11,8 +11,8 @@
 namespace beampipe {
 
 // HTML that contains its styles, scripts, numbers and pictures and needs no other file and no network. `layers` comes
-// from report_layers.
+// from report_layers, `inspections` from report_inspections.
 std::string page_html(const ReportFile& report, const std::vector<Table>& tables, const std::vector<Figure>& figures,
-                      const Json& layers);
+                      const Json& layers, const Json& inspections);
 
 }  // namespace beampipe

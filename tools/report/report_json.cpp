@@ -49,6 +49,7 @@ Json to_json(const TechniqueReport& result, const Report& report) {
     for (const OrderReport& order : result.orders) json["orders"][order.order] = {{"rmse", order.rmse}};
     json["orders"]["largest_difference"] = result.order_difference;
   }
+  if (!result.inspections.empty()) json["inspections"] = result.inspections;
   json["frames"] = Json::array();
   for (const FrameReport& frame : result.frames)
     json["frames"].push_back(beampipe::to_json(frame, result, report.hardware, report.more_hardware));
@@ -67,7 +68,7 @@ Json to_json(const MemoryParameters& memory) {
           {"l1_cache", to_json(memory.l1)},
           {"l2_cache", to_json(memory.l2)},
           {"plane_bytes", memory.plane_bytes},
-          {"bin_pixels", kBinSize},
+          {"bin_pixels", memory.bin_pixels},
           {"framebuffer", name_of(memory.framebuffer)},
           {"on_chip_bytes", memory.on_chip_bytes}};
 }

@@ -16,6 +16,9 @@ namespace {
   return text;
 }
 
+// Milliseconds with three decimals, or two significant digits if that is more.
+std::string ms_text(double ms) { return format(ms < 0.01 ? "%.2g" : "%.3f", ms); }
+
 // The median of the frames' medians.
 double median_ms(const TechniqueReport& result) {
   std::vector<double> medians;
@@ -91,7 +94,7 @@ void for_each_time(const Report& report, const Use& use) {
       for (const Implementation& implementation : hardware.implementations) {
         MeanTime mean;
         for (const FrameReport& frame : result.frames) {
-          const ModelledTime time = modelled_time(hardware, implementation, frame.stages, frame.bin_bytes());
+          const ModelledTime time = modelled_time(hardware, implementation, frame.stages, frame.open_pixel_bytes());
           mean.sum += time.sum_ms / static_cast<double>(result.frames.size());
           mean.overlap += time.overlap_ms / static_cast<double>(result.frames.size());
           if (mean.busiest.empty()) mean.busiest = time.busiest, mean.stages = time.stages;
@@ -109,9 +112,7 @@ std::string times_text(const Report& report) {
   for_each_time(report, [&](const TechniqueReport& result, const std::string& name, const MeanTime& time) {
     if (rows.size() == 1 || rows.back().front() != result.technique) rows.push_back({result.technique});
     if (rows.size() == 2) rows.front().push_back(name);
-    char text[64];
-    std::snprintf(text, sizeof text, "%.3f / %.3f ", time.sum, time.overlap);
-    rows.back().push_back(text + time.busiest);
+    rows.back().push_back(ms_text(time.sum) + " / " + ms_text(time.overlap) + " " + time.busiest);
   });
   return "\nmodelled ms: one stage after the other / all at once, and the busiest unit\n" + align_columns(rows, {0});
 }

@@ -2,7 +2,11 @@
 
 #include <gtest/gtest.h>
 
+#include <regex>
+
 #include "stages/cost/counter_registry.h"
+#include "tools/evaluate/results.h"
+#include "traces/scenes.h"
 
 namespace beampipe {
 namespace {
@@ -51,6 +55,15 @@ TEST(Hardware, ShadersShareTheirUnitBetweenStages) {
   EXPECT_EQ(time.busiest, "shader");
 }
 
+TEST(Hardware, LanesThatAStageNamesTwiceWorkOnce) {
+  Hardware titan = titan_v();
+  StageCounters busy{"shade"};
+  busy.ops.bit = 5120 * 100;
+  const double once = modelled_time(titan, titan.implementations.at(0), {busy}).overlap_ms;
+  titan.implementations.at(0).units.at("shade").push_back("shader");
+  EXPECT_EQ(modelled_time(titan, titan.implementations.at(0), {busy}).overlap_ms, once);
+}
+
 // A stage without units would cost nothing. The reference is not a pipeline of a GPU.
 TEST(Hardware, EveryStageHasUnits) {
   for (const std::string& name : hardware_names())
@@ -67,8 +80,12 @@ TEST(Hardware, EveryNumberHasASource) {
     EXPECT_EQ(hardware.label, name);
     const Json& sources = hardware.json.at("sources");
     EXPECT_GE(sources.at("clock_mhz").get<std::string>().size(), 4u);
-    for (const auto& [rate, value] : hardware.rates)
-      EXPECT_GE(sources.at(rate).get<std::string>().size(), 4u) << name << ", " << rate;
+    for (const auto& [rate, value] : hardware.rates) {
+      const std::string source = sources.at(rate).get<std::string>();
+      EXPECT_TRUE(
+          std::regex_search(source, std::regex("choice|see |\\(.*\\)|NVIDIA|Arm|AnandTech|MediaTek|Mesa|Volta|GB/s")))
+          << name << ", " << rate << ": " << source;
+    }
   }
 }
 
@@ -106,6 +123,44 @@ TEST(Hardware, FixedFunctionsFollowTheirWork) {
   EXPECT_NEAR(rop(2 * 3072), 2, 1e-6) << "wider formats take longer";
 }
 
+// 30720 bytes of pixels take 10 clocks of 96 ROPs, which move 32 each, and 3 of 80 cores, which move 128 each: those of
+// shaders, and of ROPs where the pixels are on chip. Texels, which have a rate of their own, do not count for shaders.
+TEST(Hardware, BytesOfPixelsMoveWhereThePixelsAre) {
+  const Hardware titan = titan_v();
+  const auto of = [&](std::size_t implementation, const char* name, const char* unit, double bin_bytes) {
+    StageCounters counters{name};
+    counters.bytes_read = 30720;
+    if (unit == std::string("shader")) counters.bytes_read += 1000, counters.texture_bytes = 1000;
+    return clocks(titan, unit_times(titan, titan.implementations.at(implementation), counters, bin_bytes).at(unit));
+  };
+  EXPECT_NEAR(of(1, "compose", "composer", 0), 10, 1e-6);
+  EXPECT_NEAR(of(1, "compose", "composer", 1024), 3, 1e-6);
+  EXPECT_NEAR(of(0, "depth_test", "rop_samples", 0), 10, 1e-6);
+  EXPECT_NEAR(of(0, "depth_test", "rop_samples", 1024), 3, 1e-6);
+  EXPECT_NEAR(of(0, "accumulate", "rop_fragments", 1024), 3, 1e-6);
+  EXPECT_NEAR(of(0, "compose", "shader", 0), 3, 1e-6);
+  EXPECT_NEAR(of(0, "compose", "shader", 1024), 3, 1e-6);
+}
+
+// What is on chip beside the pixels, such as closed depths, has memory of its own.
+TEST(Hardware, OnlyPixelsOnChipTakeRoomInCores) {
+  FrameReport frame;
+  frame.buffers = {{"closed_depth", 32 * 1024, true}, {"pair_queue", 500, true}};
+  EXPECT_EQ(frame.open_pixel_bytes(), 0);
+  frame.buffers.push_back({kOpenPixels, 160 * 1024, true});
+  EXPECT_EQ(frame.open_pixel_bytes(), 160 * 1024);
+  const Trace trace = make_scene("fence", {.triangles = 1000, .width = 40, .height = 40});
+  for (const auto& [spec, place, bytes] : {std::tuple{"msaa:8", Place::in_memory, 0},
+                                           {"msaa:8", Place::on_chip, 80 * 1024},
+                                           {"beam", Place::on_chip, 154 * 1024}}) {
+    RunOptions options;
+    options.memory.framebuffer = place;
+    FrameReport report;
+    report.buffers = parse_technique(spec).render(trace, 0, options).buffers;
+    EXPECT_EQ(report.open_pixel_bytes(), bytes) << spec;
+  }
+}
+
 // 5120 operations of 64 bits are issued twice and take two clocks of the integer lanes, which leaves nothing for the
 // float lanes.
 TEST(Hardware, WideIntegersHaveTheirOwnRate) {
@@ -123,17 +178,17 @@ TEST(Hardware, BinsThatDoNotFitStallAndSpill) {
   const Hardware titan = titan_v();
   const Implementation& shaders = titan.implementations.at(0);
   StageCounters counters{"compose"};
-  counters.ops.bit = 51200;
+  counters.ops.bit = 102400;
   counters.bytes_read = 1536 * 100;
   const auto times = [&](double kib) { return unit_times(titan, shaders, counters, kib * 1024); };
-  EXPECT_NEAR(clocks(titan, times(40).at("shader")), 10, 1e-6);
+  EXPECT_NEAR(clocks(titan, times(40).at("shader")), 20, 1e-6);
   EXPECT_NEAR(clocks(titan, times(40).at("l2")), 0, 1e-6);
-  EXPECT_NEAR(clocks(titan, times(80).at("shader")), 20, 1e-6);
+  EXPECT_NEAR(clocks(titan, times(80).at("shader")), 40, 1e-6);
   EXPECT_NEAR(clocks(titan, times(80).at("l2")), 0, 1e-6);
-  EXPECT_NEAR(clocks(titan, times(192).at("shader")), 20, 1e-6);
+  EXPECT_NEAR(clocks(titan, times(192).at("shader")), 40, 1e-6);
   EXPECT_NEAR(clocks(titan, times(192).at("l2")), 50, 1e-6);
   counters.stage = "vertex_setup";
-  EXPECT_NEAR(clocks(titan, times(192).at("shader")), 10, 1e-6);
+  EXPECT_NEAR(clocks(titan, times(192).at("shader")), 20, 1e-6);
 }
 
 // 512 invocations, each with 100 operations and 5 probes of 16 bytes: 10 clocks of the float lanes, 8 of the texture
@@ -187,7 +242,15 @@ std::string refusal(const std::string& from, const std::string& to) {
 
 TEST(Hardware, ErrorsNameTheKey) {
   EXPECT_EQ(refusal("\"clock_mhz\":1455", "\"clock_mhz\":-1"),
-            "h.json: /clock_mhz: expected a number above 0, found -1");
+            "h.json: /clock_mhz: expected a number from 1e-6 to 1e12, found -1");
+  EXPECT_EQ(refusal("\"dram_bytes_per_clk\":448.7", "\"dram_bytes_per_clk\":1e-300"),
+            "h.json: /rates/dram_bytes_per_clk: expected a number from 1e-6 to 1e12, found 1e-300");
+  EXPECT_EQ(
+      refusal("\"compose\":", "\"componse\":"),
+      "h.json: /implementations/shaders/units/componse: expected the name of a stage, found componse (did you mean "
+      "'compose'?)");
+  EXPECT_EQ(refusal("\"sources\":{", "\"sources\":{\"rops\":\"x\","),
+            "h.json: /sources/rops: expected the name of a rate as key, found rops");
   EXPECT_EQ(refusal("\"triangles_per_clk\":6,", ""),
             "h.json: /rates: expected the key \"triangles_per_clk\", found none");
   EXPECT_EQ(refusal("\"quads_per_clk\":24", "\"quads_per_clk\":24,\"x\":1").find("h.json: /rates/x: expected one of"),

@@ -91,11 +91,11 @@ class ResumeTest : public testing::Test {
     EXPECT_EQ(outcome.exit_code, 0) << outcome.err;
     return outcome;
   }
-  static std::string refused(const Names& arguments) {
+  static std::string refused(const Names& arguments, const std::string& why = "cannot resume") {
     const Outcome outcome = run_program(arguments);
     EXPECT_EQ(outcome.exit_code, 1);
     EXPECT_EQ(std::count(outcome.err.begin(), outcome.err.end(), '\n'), 1) << outcome.err;
-    EXPECT_NE(outcome.err.find("cannot resume"), std::string::npos) << outcome.err;
+    EXPECT_NE(outcome.err.find(why), std::string::npos) << outcome.err;
     return outcome.err;
   }
   // Leaves a run that stopped after its first frame, because a picture of the second could not be written.
@@ -333,9 +333,22 @@ TEST_F(ResumeTest, WhatAnotherTraceOrOptionLeftIsRefused) {
   make_trace(2, 201);
   EXPECT_NE(refused(resume("run", "out", {"msaa:2"})).find("another trace"), std::string::npos);
   EXPECT_EQ(contents(folder_ / "out"), before);
-  succeed(command("run", "out", {"msaa:2"}));  // without --resume, a run starts from the beginning
+  refused(command("run", "out", {"msaa:2"}), "found those of another trace; --force writes over them");
+  EXPECT_EQ(contents(folder_ / "out"), before);
+  succeed(command("run", "out", {"msaa:2", "--force"}));  // it starts from the beginning
   succeed(command("run", "fresh", {"msaa:2"}));
   EXPECT_EQ(differences("out", "fresh"), std::set<std::string>{});
+}
+
+TEST_F(ResumeTest, RunDoesNotWriteOverErrorsUnlessForced) {
+  make_trace(2);
+  succeed(command("run", "out", {"msaa:2"}));
+  succeed(command("run", "out", {"msaa:4"}));
+  succeed(command("compare", "out", {"msaa:2", "--ladder", "1"}));
+  const auto before = contents(folder_ / "out");
+  refused(command("run", "out", {"msaa:2"}), "found those of beampipe compare; --force writes over them");
+  EXPECT_EQ(contents(folder_ / "out"), before);
+  succeed(command("run", "out", {"msaa:2", "--force"}));
 }
 
 TEST_F(ResumeTest, WhatIsFinishedStaysAsItIs) {

@@ -4,7 +4,9 @@
 #include <ImfChannelList.h>
 #include <ImfFrameBuffer.h>
 #include <ImfHeader.h>
+#include <ImfInputFile.h>
 #include <ImfOutputFile.h>
+#include <ImfStringAttribute.h>
 #include <png.h>
 
 #include <cmath>
@@ -94,6 +96,15 @@ TEST(Exr, PlanesComeBackUnderTheirNames) {
   EXPECT_EQ(back.width, 2u);
   EXPECT_EQ(back.height, 2u);
   EXPECT_EQ(back.channels, planes.channels);
+}
+
+TEST(Exr, HeadersHaveLabels) {
+  TemporaryFolder folder;
+  write_text(folder / "a.exr", encode_exr(speaking_image(2, 2), {{"beampipe.technique", "msaa:8"}}));
+  const Imf::InputFile file((folder / "a.exr").c_str());
+  const auto* label = file.header().findTypedAttribute<Imf::StringAttribute>("beampipe.technique");
+  ASSERT_NE(label, nullptr);
+  EXPECT_EQ(label->value(), "msaa:8");
 }
 
 TEST(Exr, APlaneOfTheWrongSizeIsAnError) {

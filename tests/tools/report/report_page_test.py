@@ -148,7 +148,8 @@ class ReportPage(unittest.TestCase):
         cls.folder = pathlib.Path(cls.scratch.name) / "out"
         trace = str(cls.folder.parent / "fence.json")
         for arguments in [["make", "fence", "--width", "96", "--height", "54", "--frames", "2", "--orbit", "3", "-o", trace],
-                          ["compare", trace, "-o", str(cls.folder), "--ladder", "1,8", "-t", *TECHNIQUES],
+                          ["compare", trace, "-o", str(cls.folder), "--ladder", "1,8", "--inspect", "48,27",
+                           "--inspect-worst", "2", "-t", *TECHNIQUES],
                           ["report", str(cls.folder)]]:
             subprocess.run([BEAMPIPE, *arguments], check=True, stdout=subprocess.DEVNULL)
         cls.report = json.loads((cls.folder / "report.json").read_text())
@@ -421,6 +422,25 @@ class ReportPage(unittest.TestCase):
                                          result["technique"], name)
                 for found, expected in zip(layer, [stats["mean"], stats["max"]]):
                     self.assertAlmostEqual(found, expected, delta=stats["max"] / 65535, msg=f"{result['technique']} {name}")
+
+    def test_worst_pixels_open_their_histories(self):
+        recorded = [pixel for result in self.report["results"] if "inspections" in result
+                    for pixel in json.loads((self.folder / result["inspections"]).read_text())["pixels"]]
+        self.assertEqual([pixel["technique"] for pixel in recorded], [spec for spec in TECHNIQUES for _ in range(4)],
+                         "the two worst pixels, and the one that was asked for in both frames")
+        rows = self.browser.run("""return [...document.querySelectorAll("#inspections tbody tr")]
+                                       .map((row) => [...row.children].map((cell) => cell.textContent))""")
+        self.assertEqual([row[:3] for row in rows],
+                         [[f"{pixel['x']}, {pixel['y']}", pixel["technique"], str(pixel["frame"])] for pixel in recorded])
+        for i in [0, len(rows) - 1]:
+            self.browser.run("document.querySelectorAll('#inspections tbody button')[arguments[0]].click()", i)
+            self.browser.wait_until("return document.querySelector('#inspection img').naturalWidth > 500")
+            text = self.browser.run("return document.querySelector('#inspection pre').textContent")
+            self.assertIn(f"pixel {recorded[i]['x']},{recorded[i]['y']} of fence.json", text)
+            self.assertIn(f"with {recorded[i]['technique']}\n", text)
+            self.assertEqual(self.browser.run("return document.querySelectorAll('#inspections [aria-pressed=true]').length"), 1)
+        self.assertLessEqual(max(pixel["error"] for pixel in recorded),
+                             max(frame["error"]["max"] for result in self.report["results"] for frame in result["frames"]))
 
     def test_tables_sort(self):
         values = lambda: [float(row["rmse"][0]) for row in table_rows(self.browser, "techniques")]

@@ -3,6 +3,7 @@
 #include "tests/tools/fixtures.h"
 #include "tools/files/image_io.h"
 #include "tools/report/figures.h"
+#include "tools/report/inspections.h"
 #include "tools/report/layers.h"
 #include "tools/report/page.h"
 #include "tools/report/tables.h"
@@ -192,7 +193,8 @@ TEST_F(ReportParts, LayersHoldThePicturesAndTheCounters) {
   std::string text = kReport;
   text.replace(text.find("dots.json"), 9, "</script>");
   const ReportFile hostile = read(text);
-  const std::string page = page_html(hostile, report_tables(hostile), report_figures(hostile), layers);
+  const std::string page =
+      page_html(hostile, report_tables(hostile), report_figures(hostile), layers, report_inspections(hostile));
   std::size_t ends = 0;
   for (std::size_t at = page.find("</script>"); at != page.npos; at = page.find("</script>", at + 1)) ++ends;
   EXPECT_EQ(ends, 3u) << "text from the report cannot end a script";

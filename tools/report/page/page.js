@@ -52,6 +52,7 @@ byId("facts").append(...Object.entries(data.facts).map(([name, value]) =>
 byId("summary").append(...makeCards(data.tables[0]));
 byId("figures").append(...data.figures.map(makeFigure));
 byId("tables").append(...data.tables.map(makeTable));
+startInspections(data.inspections);
 startTheme();
 startTips();
 Promise.all([startCompare(), startMaps()]).then(() => { document.documentElement.dataset.ready = "yes"; });

@@ -1,0 +1,103 @@
+// What happened in one pixel: every triangle that reached it, in the order in which the technique takes them, what
+// became of each, and what each is worth in the end. Techniques fill it (Technique::inspect) by sending the pixel's
+// fragments through their own stages one at a time, so that no stage knows of it.
+#pragma once
+
+#include <cstdint>
+#include <glm/glm.hpp>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "pipeline/technique.h"
+
+namespace beampipe {
+
+inline constexpr std::uint32_t kNobody = ~0u;  // no fragment: the background, or an empty position
+
+// What became of a triangle that touches the pixel.
+enum class Fate {
+  no_area,       // it touches the pixel with an area of 0
+  cut_out,       // alpha left nothing of it
+  no_sample,     // it covers no sample
+  closed_off,    // it lies behind a closed pixel
+  hidden,        // nearer surfaces have all of its positions
+  speck,         // it covers no mask position; its area was added
+  speck_hidden,  // it covers no mask position and was not added
+  owner,         // it took positions
+  composed,      // it was merged into the pixel's aggregate, which has no owners
+  blended,       // it is translucent and was blended with what lay behind it
+};
+
+// Positions that went from one fragment to another. kNobody: they were empty.
+struct PositionMove {
+  std::uint32_t fragment, positions;
+};
+
+// A triangle in the pixel. Positions are mask positions, or the samples of a technique that has them.
+struct HistoryFragment {
+  std::uint32_t triangle, draw;     // indices into SetupTriangles and Frame::draws
+  glm::dvec2 corners[3];            // pixels, frame coordinates
+  double area = 0;                  // exact, of the triangle in the pixel, 0..1; after alpha
+  float nearest = 0, farthest = 0;  // bounds of its depth in the pixel, -1 near to 0 far
+  bool is_front = false;            // as in SetupTriangle
+  bool is_tiny = false;             // it covers no position of the technique's, whatever it was given
+  std::vector<bool> mask = {};      // positions that it covers; empty if it has no mask
+  Fate fate = Fate::hidden;
+  std::vector<PositionMove> taken = {};  // positions that it took, and from whom
+  std::vector<PositionMove> lost = {};   // positions that it covers and does not own, and who had or took them
+};
+
+// What a pixel keeps of one or more fragments.
+struct HeldSurface {
+  std::vector<std::uint32_t> fragments;  // indices into PixelHistory::fragments
+  std::uint32_t positions = 0;
+  double area = 0;     // part of the pixel, 0..1, where it is known
+  glm::vec3 color{0};  // linear RGB
+};
+
+struct HistoryStep {
+  enum class Kind {
+    merged,    // two surfaces became one: before[0] and before[1] became after
+    settled,   // a surface is final and was added to the pixel: before[0], with its area
+    dropped,   // a surface left the pixel, to be found again in a later pass: before[0]
+    composed,  // the pixel's aggregate before and after a fragment or a window of fragments
+    pass,      // another pass over the geometry begins
+  };
+  Kind kind;
+  std::uint32_t after_fragment = kNobody;  // it happened when this fragment came; kNobody: after the last one
+  std::vector<HeldSurface> before = {};
+  std::optional<HeldSurface> after = {};
+};
+
+// A part of the sum that makes the pixel: weight times colour.
+struct HistoryTerm {
+  std::uint32_t fragment;  // kNobody: the background
+  double weight;
+  glm::dvec3 color;  // linear RGB
+};
+
+// Of a pixel whose area and colour are known in two ways: what each says, and the result.
+struct PixelEstimates {
+  glm::dvec4 analytic, counted, result;  // linear RGB times area, and area
+};
+
+struct PixelHistory {
+  PixelAddress at{};
+  std::string order = {};                 // in which fragments come, as words
+  bool has_samples = false;               // `positions` are samples
+  std::vector<glm::vec2> positions = {};  // in the pixel, from its upper left corner, 0..1
+  std::vector<HistoryFragment> fragments = {};
+  std::vector<HistoryStep> steps = {};
+  std::vector<std::uint32_t> owners = {};  // of each position at the end: a fragment or kNobody; may be empty
+  std::vector<HistoryTerm> terms = {};
+  std::optional<PixelEstimates> estimates = {};
+  glm::vec4 pixel{0};  // as in the technique's picture, to the bit
+
+  // The terms' sum and, to the bit, what it lacks of `pixel`: 0 where the sum rounds to it. That is what formats of
+  // colours and limits have changed.
+  glm::dvec3 sum() const;
+  glm::dvec3 rest() const;
+};
+
+}  // namespace beampipe

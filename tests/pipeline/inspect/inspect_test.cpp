@@ -1,0 +1,165 @@
+// The history of a pixel is the pixel: the stages, fed one fragment at a time, give the picture's bits, and so do the
+// weights times the colours.
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <cmath>
+#include <map>
+#include <numeric>
+#include <random>
+
+#include "pipeline/inspect/pixel_history.h"
+#include "pipeline/technique.h"
+#include "tests/pipeline/surface_traces.h"
+#include "traces/scenes.h"
+
+namespace beampipe {
+namespace {
+
+struct InspectedSpec {
+  const char* spec;
+  double most_rest;     // of a channel: what formats and limits may change; colours are about 1
+  double weight_error;  // of the sum of all weights
+};
+
+// fp16 has 11 bits, and alpha rounds to it after each fragment. Owners that become one keep 9 bits of their colour, and
+// z3 rounds it at each merge. The limits of beam move a channel by up to 3 positions. The samples of msaa are added up
+// in double precision, so opaque triangles leave no rest.
+constexpr InspectedSpec kSpecs[] = {
+    {"beam", 0.02, 1e-4},
+    {"beam:bits=64,slots=4,at=visible", 0.06, 1e-4},
+    {"beam:bits=32,slots=2,bin=8,at=quarters", 0.1, 1e-4},
+    {"beam:order=stream", 0.03, 1e-4},
+    {"beam:order=stream,bits=256,slots=4", 0.02, 1e-4},
+    {"beam:order=stream,passes=0", 2e-3, 2e-3},
+    {"beam:order=stream,passes=2,bits=64,layers=1", 2e-3, 2e-3},
+    {"beam:order=sorted", 2e-3, 1e-4},
+    {"beam:order=sorted,bits=64,storage=float32", 1e-5, 1e-4},
+    {"beam:rules=paper", 4e-3, 1e-4},
+    {"beam:rules=paper,mask=exact,storage=float32", 1e-5, 1e-4},
+    {"beam:rules=paper,order=near-first", 4e-3, 1e-4},
+    {"beam:rules=paper,order=stream,layers=2", 4e-3, 1e-4},
+    {"alpha", 4e-3, 2e-3},
+    {"z3", 4e-3, 1e-6},
+    {"z3:shape=128x3,merge=color", 4e-3, 1e-6},
+    {"msaa:1", 0, 1e-12},
+    {"msaa:8", 0, 1e-12},
+    {"msaa:64,at=centroid", 0, 1e-12},
+    {"msaa:8,prepass", 0, 1e-12},
+    {"msaa:4,alpha=coverage", 0, 1e-12},
+    {"msaa:8,resolve=reinhard", 1e-6, 10},
+    {"acaa:8", 4e-3, 10},
+    {"acaa:8,double=saturate", 4e-3, 1e-4},
+    {"acaa:64,double=stencil,color=fp32", 1e-5, 1e-4},
+};
+
+float error_at(const Image& image, const Image& reference, std::size_t pixel) {
+  float error = 0;
+  for (std::size_t c = 0; c < 3; ++c) error += std::abs(image.rgba[4 * pixel + c] - reference.rgba[4 * pixel + c]);
+  return error;
+}
+
+// The ten pixels that are farthest from the reference, and ten others.
+std::vector<PixelAddress> chosen_pixels(const Image& image, const Image& reference, unsigned seed) {
+  std::vector<std::size_t> pixels(std::size_t{image.width} * image.height);
+  std::iota(pixels.begin(), pixels.end(), 0);
+  std::stable_sort(pixels.begin(), pixels.end(), [&](std::size_t a, std::size_t b) {
+    return error_at(image, reference, a) > error_at(image, reference, b);
+  });
+  std::mt19937 random(seed);
+  std::shuffle(pixels.begin() + 10, pixels.end(), random);
+  std::vector<PixelAddress> chosen;
+  for (std::size_t i = 0; i < 20; ++i)
+    chosen.push_back(
+        {static_cast<std::uint32_t>(pixels[i] % image.width), static_cast<std::uint32_t>(pixels[i] / image.width)});
+  return chosen;
+}
+
+void expect_the_picture(const PixelHistory& history, const Image& image, const InspectedSpec& spec) {
+  const float* rgba = image.rgba.data() + 4 * (std::size_t{history.at.y} * image.width + history.at.x);
+  for (int c = 0; c < 4; ++c) EXPECT_EQ(history.pixel[c], rgba[c]) << "channel " << c;
+  const glm::dvec3 sum = history.sum(), rest = history.rest();
+  double weights = 0;
+  for (const HistoryTerm& term : history.terms) weights += term.weight;
+  EXPECT_NEAR(weights, 1.0, spec.weight_error);
+  for (int c = 0; c < 3; ++c) {
+    EXPECT_EQ(static_cast<float>(sum[c] + rest[c]), rgba[c]) << "channel " << c;
+    EXPECT_LE(std::abs(rest[c]), spec.most_rest * std::max(1.0, sum[c])) << "channel " << c << " of " << sum[c];
+  }
+}
+
+// What `--causes` is told of the pixel is what its history says.
+void expect_the_weights(const PixelHistory& history, const PixelWeights& weights) {
+  std::map<std::uint32_t, double> told, found;
+  for (const SurfaceWeight& each : weights) told[each.triangle] += each.weight;
+  for (const HistoryTerm& term : history.terms)
+    if (term.fragment != kNobody) found[history.fragments[term.fragment].triangle] += term.weight;
+  for (const auto& [triangle, weight] : told) EXPECT_NEAR(found[triangle], weight, 1e-6) << triangle;
+  for (const auto& [triangle, weight] : found) EXPECT_NEAR(told[triangle], weight, 1e-6) << triangle;
+}
+
+// What a fragment covers, it owns in the end, or someone else has it. In several passes, positions may be left to
+// nobody.
+void expect_consistent(const PixelHistory& history, bool has_passes) {
+  std::vector<std::uint32_t> owned(history.fragments.size());
+  for (const std::uint32_t owner : history.owners)
+    if (owner != kNobody) ++owned[owner];
+  for (std::size_t i = 0; i < history.fragments.size(); ++i) {
+    const HistoryFragment& each = history.fragments[i];
+    if (each.fate != Fate::owner && each.fate != Fate::hidden && each.fate != Fate::closed_off) continue;
+    const bool is_composed = std::any_of(history.fragments.begin(), history.fragments.end(),
+                                         [](const auto& other) { return other.fate == Fate::composed; });
+    if (is_composed) continue;  // without owners
+    const auto covered = static_cast<std::uint32_t>(std::count(each.mask.begin(), each.mask.end(), true));
+    std::uint32_t lost = 0;
+    for (const PositionMove& move : each.lost) lost += move.positions;
+    EXPECT_LE(owned[i] + lost, covered) << "fragment " << i;
+    if (!has_passes) {
+      EXPECT_EQ(owned[i] + lost, covered) << "fragment " << i;
+    }
+  }
+}
+
+constexpr double kBlending = 2e-7;  // what blending in single precision may leave
+
+// `most_more`: rest beyond that of the spec.
+void inspect(const Trace& trace, const std::string& name, unsigned seed, double most_more = 0) {
+  const TextureSet textures(trace, name);
+  RunOptions run;
+  run.memory.modelled = false;
+  run.textures = &textures;
+  const Image reference = parse_technique("reference").render(trace, 0, run).image;
+  for (const InspectedSpec& spec : kSpecs) {
+    const Technique technique = parse_technique(spec.spec);
+    std::vector<PixelWeights> weights;
+    run.weights = technique.has_weights ? &weights : nullptr;
+    const Image image = technique.render(trace, 0, run).image;
+    const std::vector<PixelAddress> pixels = chosen_pixels(image, reference, seed);
+    const std::vector<PixelHistory> histories = technique.inspect(trace, 0, run, pixels);
+    ASSERT_EQ(histories.size(), pixels.size());
+    for (std::size_t i = 0; i < pixels.size(); ++i) {
+      SCOPED_TRACE(name + ", " + spec.spec + ", pixel " + std::to_string(pixels[i].x) + "," +
+                   std::to_string(pixels[i].y));
+      EXPECT_EQ(histories[i].at, pixels[i]);
+      expect_the_picture(histories[i], image, {spec.spec, spec.most_rest + most_more, spec.weight_error});
+      expect_consistent(histories[i], std::string_view(spec.spec).find("passes") != std::string_view::npos);
+      if (technique.has_weights)
+        expect_the_weights(histories[i], weights[std::size_t{pixels[i].y} * image.width + pixels[i].x]);
+    }
+  }
+}
+
+Trace scene(const std::string& name, std::uint32_t triangles) {
+  return make_scene(name, {.triangles = triangles, .width = 41, .height = 23});
+}
+
+TEST(Inspect, AFenceIsItsPictureToTheBit) { inspect(scene("fence", 20000), "fence", 1); }
+TEST(Inspect, ASoupIsItsPictureToTheBit) { inspect(scene("soup", 5000), "soup", 2); }
+TEST(Inspect, CutoutsAreTheirPictureToTheBit) { inspect(scene("leaves", 2000), "leaves", 3); }
+TEST(Inspect, SheetsAreTheirPictureToTheBit) { inspect(scene("sheets", 200), "sheets", 4, kBlending); }
+TEST(Inspect, RandomSurfacesAreTheirPictureToTheBit) {
+  inspect(random_surfaces(45, 31, 150, 3), "surfaces", 5, kBlending);
+}
+
+}  // namespace
+}  // namespace beampipe

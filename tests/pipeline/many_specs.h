@@ -1,0 +1,42 @@
+// Every technique, with options that take other ways through its stages.
+#pragma once
+
+namespace beampipe {
+
+inline constexpr const char* kManySpecs[] = {
+    "beam",
+    "beam:bits=64,slots=4,at=visible",
+    "beam:bits=32,slots=2,bin=8,at=quarters",
+    "beam:order=sorted",
+    "beam:order=sorted,storage=float32",
+    "beam:rules=paper,mask=exact",
+    "beam:rules=paper,storage=text",
+    "beam:rules=paper,sort=nearest,tiny=3,overlap=transition,regional=area,local=keep,fuzzy=mix,extents=slab,"
+    "slab=visible,plane=visible,thickness=containing",
+    "beam:order=stream,passes=0",
+    "beam:order=stream,passes=0,bits=64,layers=1",
+    "beam:rules=paper,order=near-first",
+    "beam:rules=paper,order=stream,layers=2",
+    "beam:order=stream",
+    "beam:order=stream,bits=256,slots=4",
+    "z3",
+    "z3:shape=128x3,merge=color",
+    "alpha",
+    "msaa:1",
+    "msaa:8",
+    "msaa:64",
+    "reference",
+    "msaa:8,prepass",
+    "acaa:8",
+    "acaa:64,double=stencil,color=unorm8",
+    "deferred",
+    "visibility",
+    "visibility:8",
+    "msaa:4,motion,resolve=reinhard",
+    "taa:8",
+    "taa:8,shading=forward",
+    "taa:8,shading=deferred",
+    "dvm",
+    "dvm:material=draw"};
+
+}  // namespace beampipe

@@ -1,0 +1,235 @@
+// beampipe inspect, as a user runs it.
+
+#include <algorithm>
+#include <cstring>
+#include <nlohmann/json.hpp>
+
+#include "tests/tools/cli/program_fixture.h"
+#include "tests/tools/varying_trace.h"
+#include "tools/evaluate/metrics.h"
+#include "tools/files/image_io.h"
+
+namespace beampipe {
+namespace {
+
+using Parsed = nlohmann::json;  // independent of the program's own Json
+
+const Names kSpecs = {"beam",
+                      "beam:order=stream",
+                      "beam:order=stream,passes=0",
+                      "beam:order=sorted",
+                      "beam:rules=paper",
+                      "beam:rules=paper,order=stream",
+                      "alpha",
+                      "z3",
+                      "msaa:4",
+                      "msaa:8,prepass",
+                      "acaa:8"};
+
+class InspectTest : public ProgramTest {
+ protected:
+  // The inspections of the pixels as JSON.
+  Parsed inspected(const std::vector<std::string>& specs, const std::vector<std::string>& pixels,
+                   const std::string& frame = "0", const std::string& threads = "2") {
+    std::vector<std::string> arguments = {"inspect", path("trace.json"), "--json", "--frame",
+                                          frame,     "--threads",        threads,  "--pixel"};
+    arguments.insert(arguments.end(), pixels.begin(), pixels.end());
+    arguments.push_back("-t");
+    arguments.insert(arguments.end(), specs.begin(), specs.end());
+    return Parsed::parse(succeed(arguments))["pixels"];
+  }
+
+  // Expects that weights times colours, as the JSON says them, are the pixels of the pictures that `run` writes.
+  void expect_pictures(const Parsed& pixels, const std::string& frame) {
+    std::vector<std::string> arguments = {"run", path("trace.json"), "--frames", frame, "-o", path("out"), "-t"};
+    arguments.insert(arguments.end(), kSpecs.begin(), kSpecs.end());
+    succeed(arguments);
+    for (const Parsed& pixel : pixels) {
+      std::string folder = pixel["technique"];
+      for (char& c : folder)
+        if (c == ':' || c == ',') c = '_';
+      const Image image = read_exr(folder_ / "out" / folder / ("frame_000" + frame + ".exr"));
+      const std::size_t at = 4 * (pixel["y"].get<std::size_t>() * image.width + pixel["x"].get<std::size_t>());
+      SCOPED_TRACE(pixel["technique"].get<std::string>() + " at " + pixel["x"].dump() + "," + pixel["y"].dump());
+      for (std::size_t c = 0; c < 3; ++c) {
+        double sum = 0;
+        for (const Parsed& term : pixel["terms"]) sum += term["weight"].get<double>() * term["color"][c].get<double>();
+        sum += pixel["rest"][c].get<double>();
+        EXPECT_EQ(static_cast<float>(sum), image.rgba[at + c]) << "channel " << c;
+        EXPECT_EQ(pixel["color"][c].get<float>(), image.rgba[at + c]);
+      }
+      EXPECT_EQ(pixel["color"][3].get<float>(), image.rgba[at + 3]) << "alpha";
+      double weight = 0, truth = 0;
+      for (const Parsed& surface : pixel["surfaces"])
+        weight += surface["weight"].get<double>(), truth += surface["reference_weight"].get<double>();
+      EXPECT_NEAR(weight, 1, 1e-5);
+      EXPECT_NEAR(truth, 1, 1e-9);
+      double causes = 0;
+      for (const Parsed& cause : pixel["causes"]) causes += cause.get<double>();
+      EXPECT_NEAR(causes, pixel.value("visibility_error", pixel["error"].get<double>()), 1e-6);
+    }
+  }
+};
+
+void expect_readable(const std::string& text) {
+  for (std::size_t start = 0, end; start < text.size(); start = end + 1) {
+    end = text.find('\n', start);
+    ASSERT_NE(end, text.npos);
+    EXPECT_LE(end - start, 120u) << text.substr(start, end - start);
+  }
+  EXPECT_TRUE(std::all_of(text.begin(), text.end(), [](char c) { return c == '\n' || (c >= ' ' && c <= '~'); }))
+      << "not all ASCII, although no terminal shows it";
+}
+
+TEST_F(InspectTest, TextTellsWhoOwnsThePixel) {
+  const std::string text = succeed({"inspect", path("trace.json"), "--pixel", "10,9", "-t", "beam", "msaa:4"});
+  expect_readable(text);
+  for (const char* part : {"pixel 10,9 of ", "with beam\n", "with msaa:4\n", "1 'green'", "owners",
+                           "picture, to the bit", "Weights", "reference"})
+    EXPECT_NE(text.find(part), text.npos) << part << " is missing in\n" << text;
+}
+
+TEST_F(InspectTest, WeightsTimesColoursAreThePicture) {
+  expect_pictures(inspected(kSpecs, {"10,9", "3,3", "12,8", "0,0"}), "0");
+}
+
+TEST_F(InspectTest, WeightsTimesColoursAreThePictureOfTextures) {
+  write_varying_trace(folder_, {R"({"mesh": "left"}, {"mesh": "sliver"})"});
+  expect_pictures(inspected(kSpecs, {"15,9", "16,9", "22,10", "24,9"}), "0");
+}
+
+TEST_F(InspectTest, WeightsTimesColoursAreThePictureOfTranslucentSheets) {
+  write_varying_trace(folder_, {R"({"mesh": "wall"}, {"mesh": "flat"}, {"mesh": "sheets"})"});
+  const Parsed pixels = inspected(kSpecs, {"16,9", "20,8", "12,6", "9,12"});
+  expect_pictures(pixels, "0");
+  for (const Parsed& pixel : pixels) EXPECT_TRUE(pixel.contains("visibility_error"));
+}
+
+TEST_F(InspectTest, CutoutsSayWhatAlphaLeavesOut) {
+  succeed({"make", "leaves", "--triangles", "1000", "--width", "24", "--height", "14", "-o", path("trace.json")});
+  Parsed pixels = inspected(kSpecs, {"12,7", "8,9", "15,5", "11,10", "4,11"});
+  expect_pictures(pixels, "0");
+  int cut_out = 0;
+  for (const Parsed& pixel : pixels)
+    for (const Parsed& fragment : pixel["fragments"]) cut_out += fragment["fate"] == "below alpha cutoff";
+  EXPECT_GT(cut_out, 0);
+}
+
+TEST_F(InspectTest, ThePixelOfTheBackgroundIsTheBackground) {
+  for (const Parsed& pixel : inspected(kSpecs, {"7,0"}, "1")) {
+    EXPECT_TRUE(pixel["fragments"].empty()) << pixel["technique"];
+    EXPECT_EQ(pixel["error"], 0);
+    ASSERT_EQ(pixel["terms"].size(), 1u);
+    EXPECT_EQ(pixel["terms"][0]["fragment"], nullptr);
+    EXPECT_EQ(pixel["terms"][0]["weight"], 1);
+    EXPECT_EQ(pixel["rest"], (Parsed{0.0, 0.0, 0.0}));
+  }
+  const std::string text = succeed({"inspect", path("trace.json"), "--frame", "1", "--pixel", "7,0", "-t", "beam"});
+  expect_readable(text);
+  EXPECT_NE(text.find("0 triangles touch it"), text.npos) << text;
+}
+
+// Of two triangles that fill the pixel, the technique and the reference see the nearer one, and the other one says who
+// hides it.
+TEST_F(InspectTest, AHiddenTriangleSaysWhoHidesIt) {
+  write_text(folder_ / "trace.json", R"({"beampipe_trace": 1,
+    "meshes": {"near": {"positions": [-9,-9,-0.5, 9,-9,-0.5, 0,9,-0.5], "indices": [0,1,2], "colors": [1,0,0]},
+               "far": {"positions": [-9,-9,0.5, 9,-9,0.5, 0,9,0.5], "indices": [0,1,2], "colors": [0,1,0]}},
+    "frames": [{"width": 4, "height": 4, "background": [0,0,1], "view": [1,0,0,0, 0,1,0,0, 0,0,1,0, 0,0,0,1],
+                "projection": [1,0,0,0, 0,1,0,0, 0,0,1,0, 0,0,0,1], "draws": [{"mesh": "far"}, {"mesh": "near"}]}]})");
+  for (const Parsed& pixel : inspected(kSpecs, {"1,1"})) {
+    SCOPED_TRACE(pixel["technique"].get<std::string>());
+    ASSERT_EQ(pixel["fragments"].size(), 2u);
+    const std::size_t near = pixel["fragments"][0]["draw"] == 1 ? 0 : 1;
+    EXPECT_EQ(pixel["fragments"][near]["draw_name"], "1 'near'");
+    for (const Parsed& surface : pixel["surfaces"]) EXPECT_EQ(surface["weight"], surface["fragment"] == near ? 1 : 0);
+    if (pixel["technique"] == "alpha" || pixel["technique"].get<std::string>().starts_with("beam:rules")) continue;
+    for (const Parsed& owner : pixel["owners"]) EXPECT_EQ(owner, near);
+    const Parsed& far = pixel["fragments"][1 - near];
+    ASSERT_EQ(far["lost"].size(), 1u);
+    EXPECT_EQ(far["lost"][0]["fragment"], near);
+    EXPECT_EQ(far["lost"][0]["positions"], pixel["positions"].size());
+  }
+}
+
+TEST_F(InspectTest, TheWorstPixelsAreThoseFarthestFromTheReference) {
+  succeed({"compare", path("trace.json"), "-t", "msaa:1", "--frames", "0", "-o", path("out"), "--ladder", "1"});
+  const std::vector<float> errors =
+      pixel_errors(read_exr(folder_ / "out/msaa_1/frame_0000.exr"), read_exr(folder_ / "out/reference/frame_0000.exr"));
+  const Parsed worst =
+      Parsed::parse(succeed({"inspect", path("trace.json"), "--worst", "3", "-t", "msaa:1", "--json"}))["pixels"];
+  ASSERT_EQ(worst.size(), 3u);
+  std::vector<float> sorted = errors;
+  std::sort(sorted.rbegin(), sorted.rend());
+  for (std::size_t i = 0; i < 3; ++i) {
+    const std::size_t at = worst[i]["y"].get<std::size_t>() * 20 + worst[i]["x"].get<std::size_t>();
+    EXPECT_EQ(errors[at], sorted[i]);
+    EXPECT_NEAR(worst[i]["error"].get<double>(), errors[at], 1e-7);
+  }
+}
+
+TEST_F(InspectTest, ResultsDoNotDependOnThreads) {
+  EXPECT_EQ(inspected(kSpecs, {"10,9", "4,8"}, "0", "1"), inspected(kSpecs, {"10,9", "4,8"}, "0", "7"));
+}
+
+TEST_F(InspectTest, WritesAPictureAndAPage) {
+  const std::vector<std::string> command = {"inspect", path("trace.json"), "--pixel", "10,9", "3,3", "-t", "beam", "z3",
+                                            "-o"};
+  auto with = [&](const std::string& file) {
+    std::vector<std::string> arguments = command;
+    arguments.push_back(path(file));
+    succeed(arguments);
+    return read_text(folder_ / file);
+  };
+  const std::string svg = with("pixel.svg"), page = with("pixel.html");
+  const auto count = [](const std::string& text, const std::string& part) {
+    std::size_t found = 0;
+    for (std::size_t at = text.find(part); at != text.npos; at = text.find(part, at + 1)) ++found;
+    return found;
+  };
+  EXPECT_EQ(count(svg, "class=\"title\""), 4u) << "a panel for each pixel and technique";
+  EXPECT_EQ(count(svg, "<circle"), 2u * 256 + 2u * 32) << "every position is drawn";
+  EXPECT_EQ(count(svg, "<text"), count(svg, "</text>"));
+  EXPECT_EQ(count(svg, "<svg"), 1u);
+  EXPECT_EQ(count(page, "<svg"), 4u);
+  EXPECT_EQ(count(page, "<pre>"), 4u);
+  EXPECT_EQ(count(page, "src="), 0u) << "the page opens offline";
+  EXPECT_EQ(folder_.list(), (Names{"pixel.html", "pixel.svg", "trace.json"}));
+}
+
+TEST_F(InspectTest, MistakesAreOneLineAndLeaveNothing) {
+  const std::string trace = path("trace.json");
+  struct Mistake {
+    std::vector<std::string> arguments;
+    int exit_code;
+    std::string part;
+  };
+  const std::vector<Mistake> mistakes = {
+      {{"inspect", trace, "-t", "beam"}, 2, "expected --pixel X,Y or --worst N"},
+      {{"inspect", trace, "-t", "beam", "--pixel", "1,1", "--worst", "1"}, 2, "expected --pixel X,Y or --worst N"},
+      {{"inspect", trace, "--pixel", "1,1"}, 2, "--technique"},
+      {{"inspect", trace, "-t", "beam", "--pixel", "20,0"}, 2, "X from 0 to 19 and Y from 0 to 11"},
+      {{"inspect", trace, "-t", "beam", "--pixel", "0,12"}, 2, "--pixel 0,12"},
+      {{"inspect", trace, "-t", "beam", "--pixel", "3"}, 2, "--pixel 3: expected X,Y"},
+      {{"inspect", trace, "-t", "beam", "--pixel", "3,4,5"}, 2, "expected X,Y"},
+      {{"inspect", trace, "-t", "beam", "--pixel", "3;4"}, 2, "expected X,Y"},
+      {{"inspect", trace, "-t", "beam", "--pixel", "-1,4"}, 2, ""},
+      {{"inspect", trace, "-t", "baem", "--pixel", "3,4"}, 2, "did you mean 'beam'?"},
+      {{"inspect", trace, "-t", "taa:8", "--pixel", "3,4"}, 2, "'taa:8' cannot be inspected: expected beam"},
+      {{"inspect", trace, "-t", "reference", "--pixel", "3,4"}, 2, "cannot be inspected"},
+      {{"inspect", trace, "-t", "beam", "--pixel", "3,4", "--frame", "2"}, 2, "--frame: expected 0 to 1, found 2"},
+      {{"inspect", trace, "-t", "beam", "--worst", "0"}, 2, "--worst"},
+      {{"inspect", trace, "-t", "beam", "--pixel", "3,4", "-o", path("a.png")}, 2, ".svg or .html"},
+      {{"inspect", trace, "-t", "beam", "--pixel", "3,4", "-o", path("trace.json/a.svg")}, 1, "trace.json"},
+      {{"inspect", path("missing.json"), "-t", "beam", "--pixel", "3,4"}, 1, "missing.json"},
+      {{"inspct", trace}, 2, "did you mean 'inspect'?"},
+  };
+  for (const Mistake& mistake : mistakes) {
+    SCOPED_TRACE(mistake.part);
+    expect_one_error_line(run_program(mistake.arguments), mistake.exit_code, mistake.part);
+    EXPECT_EQ(folder_.list(), Names{"trace.json"});
+  }
+}
+
+}  // namespace
+}  // namespace beampipe

@@ -1,0 +1,114 @@
+#include "tools/evaluate/memory_system.h"
+
+#include "tests/tools/schema_agreement.h"
+#include "tools/evaluate/hardware.h"
+#include "traces/trace_io.h"
+
+namespace beampipe {
+namespace {
+
+const std::filesystem::path kSource = BEAMPIPE_SOURCE_FOLDER;
+
+MemoryParameters parse(const std::string& parameters, const std::string& sources) {
+  return parse_memory_system(parse_json_text(R"({"beampipe_memory_system": 1, "parameters": {)" + parameters +
+                                                 R"(}, "sources": {)" + sources + "}}",
+                                             "m.json"),
+                             "m.json");
+}
+
+std::string refusal(const std::string& parameters, const std::string& sources = "") {
+  try {
+    parse(parameters, sources);
+  } catch (const TraceError& error) {
+    return error.what();
+  }
+  return "";
+}
+
+TEST(MemorySystem, WhatIsLeftOutIsTheDefault) {
+  EXPECT_EQ(parse("", ""), MemoryParameters{});
+  MemoryParameters expected;
+  expected.l2.bytes = 65536;
+  EXPECT_EQ(parse("\"l2_bytes\": 65536", "\"l2_bytes\": \"choice\""), expected);
+}
+
+TEST(MemorySystem, EveryParameterOfTheExampleArrives) {
+  const MemoryParameters memory = read_memory_system(kSource / "docs/examples/memory_system.json");
+  MemoryParameters expected;
+  expected.sector_bytes = 64;
+  expected.l1 = {16384, 4, 64}, expected.l2 = {1048576, 16, 64}, expected.rop = {65536, 4, 256};
+  expected.framebuffer = Place::on_chip;
+  expected.on_chip_bytes = 131072;
+  expected.bin_pixels = 16;
+  EXPECT_EQ(memory, expected);
+  EXPECT_EQ(parameters_json(memory), parse_json(kSource / "docs/examples/memory_system.json").at("parameters"));
+}
+
+TEST(MemorySystem, ErrorsNameTheKey) {
+  EXPECT_EQ(refusal("\"l2_byte\": 65536").find("m.json: /parameters/l2_byte: expected one of the keys"), 0u);
+  EXPECT_NE(refusal("\"l2_byte\": 65536").find("(did you mean 'l2_bytes'?)"), std::string::npos);
+  EXPECT_EQ(refusal("\"sector_bytes\": 48"),
+            "m.json: /parameters/sector_bytes: expected a power of two from 32 to 128, found 48");
+  EXPECT_EQ(refusal("\"l2_bytes\": 65536"), "m.json: /sources: expected the key \"l2_bytes\", found none");
+  EXPECT_EQ(refusal("\"l2_bytes\": 65536", "\"l2_bytes\": \"\""),
+            "m.json: /sources/l2_bytes: expected where the value is from, or that it is a choice, found nothing");
+  EXPECT_EQ(refusal("", "\"l2_bytes\": \"choice\"").find("m.json: /sources/l2_bytes: expected one of the keys"), 0u);
+  EXPECT_EQ(refusal("\"framebuffer\": \"chip\"").find("m.json: /parameters/framebuffer: expected"), 0u);
+}
+
+TEST(MemorySystem, ValuesMustFitTogether) {
+  EXPECT_EQ(refusal("\"line_bytes\": 512"),
+            "m.json: /parameters/line_bytes: expected 1 to 8 sectors, 32 to 256, found 512");
+  EXPECT_EQ(
+      refusal("\"l2_bytes\": 3071"),
+      "m.json: /parameters/l2_bytes: expected room for one set of 24 ways x 128 bytes, at least 3072, found 3071");
+  EXPECT_EQ(refusal("\"l2_ways\": 1024, \"line_bytes\": 256, \"l2_bytes\": 262143")
+                .find("m.json: /parameters/l2_bytes: expected room for one set of 1024 ways x 256 bytes"),
+            0u);
+  EXPECT_EQ(refusal("\"rop_ways\": 1024, \"rop_bytes\": 262144", "\"rop_ways\": \"c\", \"rop_bytes\": \"c\""), "");
+  EXPECT_EQ(refusal("\"l1_ways\": 512").find("m.json: /parameters: expected l1_bytes of room for one set"), 0u);
+}
+
+TEST(MemorySystem, SchemaAndReaderAgree) {
+  SchemaAgreement(kSource / "tools/evaluate/memory_system.schema.json", kSource / "docs/examples/memory_system.json",
+                  [](const std::string& text) { parse_memory_system(parse_json_text(text, "m.json"), "m.json"); },
+                  {"/parameters", "/sources"})
+      .check();
+}
+
+// Each parameter alone, over the default: the limits that the schema names are those of the reader.
+TEST(MemorySystem, SchemaAndReaderHaveTheSameLimits) {
+  const auto schema = nlohmann::json::parse(read_text(kSource / "tools/evaluate/memory_system.schema.json"));
+  const auto& described = schema["properties"]["parameters"]["properties"];
+  EXPECT_EQ(described.size(), memory_parameters().size());
+  const auto accepts = [&](const std::string& name, const nlohmann::json& value) {
+    return refusal('"' + name + "\": " + value.dump(), '"' + name + "\": \"choice\"").empty();
+  };
+  for (const MemoryParameter& parameter : memory_parameters()) {
+    const auto& rule = described[parameter.name];
+    const bool is_size = std::string_view(parameter.name).ends_with("_bytes");  // must hold one set, or 1 to 8 sectors
+    const std::string value = parameter.get({}).dump();
+    EXPECT_NE(rule["description"].get<std::string>().find(
+                  "Default: " + value.substr(value[0] == '"', value.size() - 2 * (value[0] == '"')) + "."),
+              std::string::npos)
+        << parameter.name;
+    if (rule.contains("maximum")) {
+      EXPECT_EQ(accepts(parameter.name, rule["maximum"]), std::string_view(parameter.name) != "l1_ways")
+          << parameter.name << ": 1024 lines do not fit into the default's L1";
+    }
+    if (rule.contains("minimum") && !is_size) {
+      EXPECT_TRUE(accepts(parameter.name, rule["minimum"])) << parameter.name;
+    }
+    if (!rule.contains("enum") || is_size) continue;
+    for (const auto& each : rule["enum"]) EXPECT_TRUE(accepts(parameter.name, each)) << parameter.name << each;
+  }
+}
+
+TEST(Hardware, SchemaAndReaderAgree) {
+  SchemaAgreement(kSource / "tools/evaluate/hardware.schema.json", kSource / "docs/examples/hardware.json",
+                  [](const std::string& text) { parse_hardware(parse_json_text(text, "h.json"), "h.json"); })
+      .check();
+}
+
+}  // namespace
+}  // namespace beampipe

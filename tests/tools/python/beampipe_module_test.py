@@ -1,0 +1,103 @@
+#!/usr/bin/env python3
+"""Tests of tools/python/beampipe.py with what the built program writes: beampipe_module_test.py PROGRAM MODULE_FOLDER"""
+import pathlib
+import subprocess
+import sys
+import tempfile
+import unittest
+
+PROGRAM, MODULES = sys.argv[1:3]
+sys.path.insert(0, MODULES)
+
+import numpy
+
+import beampipe
+
+
+class Module(unittest.TestCase):
+    @classmethod
+    def setUpClass(cls):
+        cls.scratch = tempfile.TemporaryDirectory()
+        cls.folder = pathlib.Path(cls.scratch.name)
+        cls.run_program("make", "fence", "--triangles", "3000", "--width", "61", "--height", "37", "--frames", "2", "--pan",
+                        "0.3,0.1", "-o", "fence.json")
+        cls.run_program("compare", "fence.json", "-t", "beam", "msaa:8", "-o", "out")
+        cls.report = beampipe.Report(cls.folder / "out")
+
+    @classmethod
+    def tearDownClass(cls):
+        cls.scratch.cleanup()
+
+    @classmethod
+    def run_program(cls, *arguments):
+        subprocess.run([PROGRAM, *arguments], cwd=cls.folder, check=True, capture_output=True)
+
+    def test_techniques_in_the_order_of_the_report(self):
+        self.assertEqual(self.report.techniques, ["beam", "msaa:8", "reference"])
+
+    def test_pictures_have_the_errors_that_the_report_states(self):
+        for technique in ("beam", "msaa:8"):
+            for frame in range(2):
+                difference = (self.report.picture(technique, frame).astype(float) -
+                              self.report.picture("reference", frame))[..., :3]
+                rmse = numpy.sqrt(numpy.mean(difference ** 2))
+                stated = self.report.frames(technique)[frame]["error"]["rmse"]
+                self.assertAlmostEqual(rmse, stated, delta=1e-9 + 1e-6 * stated)
+                self.assertGreater(rmse, 0)
+
+    def test_counters_have_the_means_that_the_report_states(self):
+        counters, frame = self.report.counters("beam"), self.report.frames("beam")[0]
+        self.assertGreater(len(counters), 2)
+        for name, layer in counters.items():
+            self.assertEqual(layer.shape, (37, 61))
+            self.assertAlmostEqual(layer.mean(dtype=float), frame["pixel_counters"][name]["mean"], places=5)
+
+    def test_stages_are_summed_over_frames(self):
+        stages = self.report.stages("msaa:8")
+        frames = self.report.frames("msaa:8")
+        self.assertEqual(sum(stage["dram_bytes"] for stage in stages.values()), sum(f["dram_bytes"] for f in frames))
+        self.assertGreater(stages["depth_test"]["ops.add"], 0)
+
+    def test_headers_name_what_the_picture_is(self):
+        attributes = beampipe.read_exr(self.folder / "out/msaa_8/frame_0001.exr").attributes
+        self.assertEqual(attributes["beampipe.technique"], "msaa:8")
+        self.assertEqual(attributes["beampipe.trace"], "fence.json")
+        self.assertEqual(attributes["beampipe.frame"], "1")
+        self.assertRegex(attributes["beampipe.trace_digest"], "^[0-9a-f]{16}$")
+        self.assertEqual(attributes["beampipe.version"], self.report.json["version"])
+
+    def test_tables_of_the_report(self):
+        self.run_program("report", "out")
+        table = beampipe.read_table(self.folder / "out/tables/techniques.csv")
+        rows = table["technique"] == "beam"
+        self.assertEqual(rows.sum(), 1)
+        self.assertAlmostEqual(table["rmse"][rows][0], self.report["beam"]["error"]["rmse"])
+
+    def test_broken_files_are_one_line(self):
+        good = (self.folder / "out/beam/frame_0000.exr").read_bytes()
+        for name, data in (("empty", b""), ("short", good[:200]), ("half", good[:len(good) // 2]), ("text", b"x" * 500)):
+            file = self.folder / f"{name}.exr"
+            file.write_bytes(data)
+            with self.assertRaises(beampipe.Error) as error:
+                beampipe.read_exr(file)
+            self.assertIn(f"{name}.exr: expected an EXR file", str(error.exception))
+            self.assertNotIn("\n", str(error.exception))
+
+    def test_what_is_missing_is_named(self):
+        with self.assertRaisesRegex(beampipe.Error, "expected the report of a finished run, found none"):
+            beampipe.Report(self.folder / "nothing")
+        with self.assertRaisesRegex(beampipe.Error, "expected one of the techniques .*msaa:8.*, found msaa:9"):
+            self.report["msaa:9"]
+        with self.assertRaisesRegex(beampipe.Error, "found no file"):
+            beampipe.read_table(self.folder / "no.csv")
+
+    def test_the_example_runs(self):
+        example = pathlib.Path(MODULES) / "example.py"
+        found = subprocess.run([sys.executable, example, "out"], cwd=self.folder, capture_output=True, text=True)
+        self.assertEqual(found.returncode, 0, found.stderr)
+        self.assertIn("modelled, ms", found.stdout)
+        self.assertRegex(found.stdout, r"beam: pixel \d+,\d+: .*error")
+
+
+if __name__ == "__main__":
+    unittest.main(argv=sys.argv[:1])

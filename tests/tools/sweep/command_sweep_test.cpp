@@ -1,0 +1,330 @@
+// beampipe sweep as a user runs it: its table against single runs, after a kill, and on a Slurm that is a script.
+#include <chrono>
+#include <csignal>
+#include <cstdlib>
+#include <map>
+#include <nlohmann/json.hpp>
+#include <sstream>
+#include <thread>
+
+#include "tests/tools/cli/program_fixture.h"
+
+namespace beampipe {
+namespace {
+
+using Parsed = nlohmann::json;  // independent of the program's own Json
+
+void pause(int milliseconds) { std::this_thread::sleep_for(std::chrono::milliseconds(milliseconds)); }
+
+// Rows by column name. No field of these tables has a comma or a quote in it.
+std::vector<std::map<std::string, std::string>> read_table(const std::filesystem::path& file) {
+  std::istringstream text(read_text(file));
+  std::vector<std::vector<std::string>> lines;
+  for (std::string line; std::getline(text, line);) {
+    EXPECT_EQ(line.back(), '\r');
+    line.back() = ',';
+    lines.emplace_back();
+    for (std::size_t at = 0; at < line.size(); at = line.find(',', at) + 1)
+      lines.back().push_back(line.substr(at, line.find(',', at) - at));
+  }
+  std::vector<std::map<std::string, std::string>> rows(lines.size() - 1);
+  for (std::size_t i = 1; i < lines.size(); ++i)
+    for (std::size_t column = 0; column < lines[0].size(); ++column) rows[i - 1][lines[0][column]] = lines[i][column];
+  return rows;
+}
+
+class SweepTest : public ProgramTest {
+ protected:
+  void SetUp() override {
+    ProgramTest::SetUp();
+    succeed({"make", "soup", "--triangles", "300", "--width", "64", "--height", "48", "-o", path("soup.json")});
+  }
+
+  std::vector<std::string> sweep(const std::vector<std::string>& options = {}) {
+    std::vector<std::string> command = {"sweep", path("plan.json"), "-o", path("out")};
+    command.insert(command.end(), options.begin(), options.end());
+    return command;
+  }
+
+  std::size_t stored() const {
+    std::size_t count = 0;
+    std::error_code none;
+    for (const auto& entry : std::filesystem::directory_iterator(folder_ / "out/cells", none))
+      count += entry.path().extension() == ".json";
+    return count;
+  }
+};
+
+// A plan whose cells take a while: about 0.1 s each.
+constexpr const char* kLongPlan = R"({"beampipe_sweep": 1, "traces": ["soup.json"], "sizes": ["480x360"],
+  "techniques": ["msaa:64", "msaa:128", "acaa:64", "msaa:32"], "memory_system.rop_bytes": [4096, 8192, 16384],
+  "memory_system.compression": [true, false]})";
+
+// One row after the other is made by a run of its own, with options and files in place of the plan. The values are the
+// same to the last digit, whether the sweep rendered a cell or knew the counts from another one.
+TEST_F(SweepTest, TheTableEqualsSingleRuns) {
+  write_text(folder_ / "plan.json", R"({"beampipe_sweep": 1, "traces": ["soup.json"],
+    "techniques": ["beam", "beam:order=sorted", "msaa:8", "acaa:8"],
+    "memory_system.l2_bytes": [8192, 1048576, 2097152], "memory_system.compression": [true, false],
+    "memory_system.bin_pixels": [16, 32],
+    "hardware": ["titan_v", "mali_g710"], "errors": true})");
+  const std::string printed = succeed(sweep());
+  EXPECT_NE(printed.find(" rendered, "), std::string::npos);
+  EXPECT_EQ(printed.find(" 0 the same as one of these"), std::string::npos) << "nothing was shared: " << printed;
+
+  std::map<std::string, Parsed> runs, comparisons;
+  const auto rows = read_table(folder_ / "out/table.csv");
+  ASSERT_EQ(rows.size(), 4u * 3 * 2 * 2 * 2 * 2);
+  for (auto row : rows) {
+    const std::string l2 = row["memory_system.l2_bytes"], bin = row["memory_system.bin_pixels"];
+    const bool compressed = row["memory_system.compression"] == "1";
+    const std::string key = row["technique"] + l2 + bin + row["memory_system.compression"];
+    if (!runs.contains(key)) {
+      write_text(folder_ / "m.json", R"({"beampipe_memory_system": 1, "parameters": {"l2_bytes": )" + l2 +
+                                         R"(, "bin_pixels": )" + bin +
+                                         R"(}, "sources": {"l2_bytes": "choice", "bin_pixels": "choice"}})");
+      std::vector<std::string> command = {"run",
+                                          path("soup.json"),
+                                          "-t",
+                                          row["technique"],
+                                          "--memory-system",
+                                          path("m.json"),
+                                          "--hardware",
+                                          "titan_v,mali_g710",
+                                          "--force",
+                                          "-o",
+                                          path("single")};
+      if (!compressed) command.push_back("--no-compression");
+      succeed(command);
+      runs[key] = Parsed::parse(read_text(folder_ / "single/report.json"));
+      if (!comparisons.contains(row["technique"] + bin)) {
+        command[0] = "compare";
+        succeed(command);
+        comparisons[row["technique"] + bin] = Parsed::parse(read_text(folder_ / "single/report.json"));
+      }
+    }
+    const Parsed& result = runs[key]["results"][0];
+    const Parsed& frame = result["frames"][0];
+    std::uint64_t operations = 0;
+    for (const Parsed& stage : frame["stages"]) operations += stage["ops"]["total"].get<std::uint64_t>();
+    EXPECT_EQ(row["operations"], std::to_string(operations)) << key;
+    for (const char* column : {"logical_bytes", "sector_bytes", "l2_bytes", "dram_bytes"})
+      EXPECT_EQ(row[column], frame[column].dump()) << key << column;
+    for (const char* column : {"on_chip_bytes_per_pixel", "off_chip_bytes_per_pixel"})
+      EXPECT_EQ(row[column], result[column].dump()) << key << column;
+    std::uint64_t dram = 0;
+    for (const auto& [column, value] : row)
+      if (column.starts_with("dram_bytes.")) dram += std::stoull(value);
+    EXPECT_EQ(row["dram_bytes"], std::to_string(dram)) << key;
+    const Parsed& geometry = frame["stages"][0];
+    ASSERT_TRUE(geometry["stage"] == "vertex_setup" || geometry["stage"] == "prepass_vertex_setup");
+    if (geometry["stage"] == "vertex_setup") {
+      EXPECT_EQ(row["dram_bytes.geometry"], geometry["dram_bytes"].dump());
+    }
+
+    const std::string prefix = row["hardware"] == "titan_v" ? "" : "mali_g710.";
+    const Parsed& time = frame["modelled_ms"][prefix + row["implementation"]];
+    EXPECT_EQ(row["modelled_ms"], time["overlap"].dump()) << key;
+    EXPECT_EQ(row["modelled_sum_ms"], time["sum"].dump()) << key;
+    EXPECT_EQ(row["bottleneck"], time["busiest"].get<std::string>()) << key;
+
+    const Parsed& compared = comparisons[row["technique"] + bin]["results"][0];
+    EXPECT_EQ(row["rmse"], compared["error"]["rmse"].dump()) << key;
+    EXPECT_EQ(row["emr"], compared["equivalent_msaa"].dump()) << key;
+  }
+}
+
+// A trace in another size is the trace that says so.
+TEST_F(SweepTest, SizesAreThoseOfTheTrace) {
+  write_text(folder_ / "plan.json", R"({"beampipe_sweep": 1, "traces": ["soup.json", "trace.json"],
+    "techniques": ["beam"], "sizes": ["96x72", "160x96"], "implementations": ["shaders"], "frames": [0],
+    "points": [{"traces": ["soup.json"]}, {"traces": ["trace.json"], "sizes": ["160x96"]}]})");
+  succeed(sweep());
+  const auto rows = read_table(folder_ / "out/table.csv");
+  ASSERT_EQ(rows.size(), 3u);
+  for (auto row : rows) {
+    std::string trace = path("larger.json");
+    Parsed larger = Parsed::parse(read_text(folder_ / row["trace"]));
+    larger["frames"][0]["width"] = std::stoi(row["width"]);
+    larger["frames"][0]["height"] = std::stoi(row["height"]);
+    write_text(trace, larger.dump());
+    succeed({"run", trace, "-t", "beam", "--frames", "0", "--force", "-o", path("single")});
+    const Parsed report = Parsed::parse(read_text(folder_ / "single/report.json"));
+    EXPECT_EQ(row["dram_bytes"], report["results"][0]["frames"][0]["dram_bytes"].dump());
+  }
+}
+
+TEST_F(SweepTest, CountsAreMeansOverFrames) {
+  write_text(folder_ / "plan.json", R"({"beampipe_sweep": 1, "traces": ["trace.json"], "techniques": ["taa:4", "beam"],
+    "implementations": ["shaders"]})");
+  succeed(sweep());
+  succeed({"run", path("trace.json"), "-t", "taa:4", "beam", "--force", "-o", path("single")});
+  const Parsed report = Parsed::parse(read_text(folder_ / "single/report.json"));
+  const auto rows = read_table(folder_ / "out/table.csv");
+  ASSERT_EQ(rows.size(), 2u);
+  for (std::size_t i = 0; i < 2; ++i) {
+    const Parsed& frames = report["results"][i]["frames"];
+    EXPECT_EQ(rows[i].at("frames"), "2");
+    const double mean = (frames[0]["dram_bytes"].get<double>() + frames[1]["dram_bytes"].get<double>()) / 2;
+    EXPECT_EQ(std::stod(rows[i].at("dram_bytes")), mean);
+    const double ms = frames[0]["modelled_ms"]["shaders"]["overlap"].get<double>() +
+                      frames[1]["modelled_ms"]["shaders"]["overlap"].get<double>();
+    EXPECT_EQ(std::stod(rows[i].at("modelled_ms")), ms / 2);
+  }
+}
+
+TEST_F(SweepTest, AKilledSweepGoesOn) {
+  write_text(folder_ / "plan.json", kLongPlan);
+  succeed({"sweep", path("plan.json"), "-o", path("whole"), "--jobs", "1"});
+  {
+    Program program(sweep({"--jobs", "1"}));
+    for (int i = 0; i < 3000 && stored() < 3; ++i) pause(10);
+    program.signal(SIGKILL);
+    EXPECT_EQ(program.wait().exit_code, -1);
+  }
+  const std::size_t kept = stored();
+  EXPECT_GE(kept, 3u);
+  ASSERT_LT(kept, 24u) << "it was finished before it could be killed";
+  EXPECT_FALSE(std::filesystem::exists(folder_ / "out/table.csv"));
+
+  const Outcome merged = run_program(sweep({"--merge"}));
+  EXPECT_EQ(merged.exit_code, 1);
+  EXPECT_NE(merged.err.find(std::to_string(2 * (24 - kept)) + " of 48 rows are missing"), std::string::npos)
+      << merged.err;
+  EXPECT_EQ(read_table(folder_ / "out/table.csv").size(), 2 * kept);
+
+  // A damaged result, and one of another build, are no results.
+  const auto first = *std::filesystem::directory_iterator(folder_ / "out/cells");
+  write_text(first.path(), "{\"key\": ");
+  const std::string printed = succeed(sweep({"--jobs", "2"}));
+  EXPECT_NE(printed.find(std::to_string(kept - 1) + " kept from earlier"), std::string::npos) << printed;
+  EXPECT_EQ(read_text(folder_ / "out/table.csv"), read_text(folder_ / "whole/table.csv"));
+  EXPECT_EQ(read_text(folder_ / "out/table.sqlite"), read_text(folder_ / "whole/table.sqlite"));
+  EXPECT_EQ(stored(), 24u);
+}
+
+TEST_F(SweepTest, CtrlCSaysWhatIsKept) {
+  write_text(folder_ / "plan.json", kLongPlan);
+  Program program(sweep({"--jobs", "1"}));
+  for (int i = 0; i < 3000 && stored() < 2; ++i) pause(10);
+  program.signal(SIGINT);
+  const Outcome outcome = program.wait();
+  EXPECT_EQ(outcome.exit_code, 130);
+  EXPECT_NE(outcome.err.find(" of 24 results are kept, and the same command goes on from there\n"), std::string::npos)
+      << outcome.err;
+  EXPECT_EQ(outcome.err.find('\n'), outcome.err.size() - 1);
+  for (const std::string& name : folder_.list()) EXPECT_FALSE(name.ends_with(".tmp")) << name;
+}
+
+// Another trace, or another technique, leaves what is known of the others.
+TEST_F(SweepTest, OnlyWhatChangesIsRenderedAgain) {
+  const std::string plan = R"({"beampipe_sweep": 1, "traces": ["soup.json"], "techniques": ["beam", "msaa:8"])";
+  write_text(folder_ / "plan.json", plan + "}");
+  EXPECT_EQ(succeed(sweep()).find("results: 2 rendered, 0 the same as one of these, 0 kept from earlier"), 0u);
+  write_text(folder_ / "plan.json", plan + R"(, "hardware": ["mali_g710"], "hardware.l2_bytes_per_clk": [5]})");
+  EXPECT_EQ(succeed(sweep()).find("results: 0 rendered, 0 the same as one of these, 2 kept from earlier"), 0u);
+  write_text(folder_ / "plan.json",
+             R"({"beampipe_sweep": 1, "traces": ["soup.json"], "techniques": ["beam", "msaa:4"]})");
+  EXPECT_EQ(succeed(sweep()).find("results: 1 rendered, 0 the same as one of these, 1 kept from earlier"), 0u);
+  succeed({"make", "soup", "--triangles", "301", "--width", "64", "--height", "48", "-o", path("soup.json")});
+  EXPECT_EQ(succeed(sweep()).find("results: 2 rendered"), 0u);
+}
+
+TEST_F(SweepTest, PartsTogetherAreTheWhole) {
+  write_text(folder_ / "plan.json", R"({"beampipe_sweep": 1, "traces": ["soup.json", "trace.json"],
+    "techniques": ["beam", "msaa:8", "acaa:8"], "errors": true})");
+  succeed({"sweep", path("plan.json"), "-o", path("whole")});
+  for (const char* part : {"2/3", "0/3", "1/3"}) succeed(sweep({"--part", part}));
+  EXPECT_EQ(succeed(sweep({"--merge"})).find("table: "), 0u);
+  EXPECT_EQ(read_text(folder_ / "out/table.csv"), read_text(folder_ / "whole/table.csv"));
+}
+
+TEST_F(SweepTest, MistakesAreOneLineAndLeaveNothing) {
+  write_text(folder_ / "plan.json",
+             R"({"beampipe_sweep": 1, "traces": ["soup.json", "missing.json"], "techniques": ["beam"]})");
+  write_text(folder_ / "sized.json",
+             R"({"beampipe_sweep": 1, "traces": ["trace.json"], "techniques": ["beam"], "sizes": ["5x5"]})");
+  write_text(folder_ / "frames.json",
+             R"({"beampipe_sweep": 1, "traces": ["trace.json"], "techniques": ["beam"], "frames": [2]})");
+  const Names before = folder_.list();
+  expect_one_error_line(run_program(sweep()), 1, "missing.json");
+  expect_one_error_line(run_program({"sweep", path("sized.json"), "-o", path("out")}), 1, "cannot be 5 x 5 pixels");
+  expect_one_error_line(run_program({"sweep", path("frames.json"), "-o", path("out")}), 1, "0 to 1, found 2");
+  expect_one_error_line(run_program(sweep({"--part", "3/3"})), 2, "expected I/N");
+  expect_one_error_line(run_program(sweep({"--merge", "--slurm"})), 2, "exclude each other");
+  expect_one_error_line(run_program(sweep({"--plot", "x,y,z"})), 1, "the table has no column 'x'");
+  expect_one_error_line(run_program(sweep({"--slurm", "--sbatch", "array=1"})), 2, "is set by the sweep");
+  expect_one_error_line(run_program(sweep({"--slurm", "--sbatch", "--time=1"})), 2, "--time");
+  EXPECT_EQ(folder_.list(), before);
+}
+
+TEST_F(SweepTest, PlotsAreDrawn) {
+  write_text(folder_ / "plan.json", R"({"beampipe_sweep": 1, "traces": ["soup.json"], "techniques": ["beam", "msaa:8"],
+    "memory_system.l2_bytes": [8192, 1048576]})");
+  succeed(sweep({"--plot", "memory_system.l2_bytes,dram_bytes,technique"}));
+  const std::string svg = read_text(folder_ / "out/dram_bytes_against_memory_system.l2_bytes_by_technique.svg");
+  EXPECT_NE(svg.find("<svg"), std::string::npos);
+  EXPECT_NE(svg.find("msaa:8"), std::string::npos);
+}
+
+// An sbatch that notes what it is given, and runs the job at once. The second task of the first array is killed.
+constexpr const char* kSbatch = R"sh(#!/bin/sh
+cd "$(dirname "$0")"
+echo "$@" >> submitted
+number=$(wc -l < submitted)
+case "$2" in
+  --array=*)
+    for range in $(echo "${2#--array=}" | tr , ' '); do
+      for task in $(seq "${range%-*}" "${range#*-}"); do
+        [ "$number/$task" = 1/1 ] && continue
+        SLURM_ARRAY_TASK_ID=$task SLURM_CPUS_PER_TASK=2 sh "$3" >> log 2>&1
+      done
+    done ;;
+  *) sh "$3" >> log 2>&1 ;;
+esac
+echo $number
+)sh";
+
+TEST_F(SweepTest, SlurmGetsAnArrayAndAMerge) {
+  write_text(folder_ / "plan.json", R"({"beampipe_sweep": 1, "traces": ["soup.json"],
+    "techniques": ["beam", "msaa:8", "acaa:8"], "memory_system.l2_bytes": [8192, 1048576]})");
+  std::filesystem::create_directory(folder_ / "bin");
+  write_text(folder_ / "bin/sbatch", kSbatch);
+  std::filesystem::permissions(folder_ / "bin/sbatch", std::filesystem::perms::owner_all);
+  const std::string search = std::getenv("PATH");
+  ASSERT_EQ(setenv("PATH", (path("bin") + ":" + search).c_str(), 1), 0);
+  const std::string plot = "memory_system.l2_bytes,dram_bytes,technique";
+  const auto submit = [&] {
+    return succeed(sweep({"--slurm", "--sbatch", "time=0:10:00", "exclusive", "--plot", plot}));
+  };
+
+  EXPECT_EQ(submit().find("submitted: job 1, 3 of 3 tasks, and job 2, which then makes the table\n"), 0u);
+  EXPECT_EQ(read_text(folder_ / "bin/submitted"), "--parsable --array=0-2 " + path("out/slurm/array.sh") +
+                                                      "\n--parsable --dependency=afterany:1 " +
+                                                      path("out/slurm/merge.sh") + "\n");
+  const std::string script = read_text(folder_ / "out/slurm/array.sh");
+  EXPECT_EQ(script.find("#!/bin/sh\n#SBATCH --job-name=beampipe\n#SBATCH --output=" + path("out/slurm") +
+                        "/%A_%a.txt\n#SBATCH --time=0:10:00\n#SBATCH --exclusive\nexec '"),
+            0u)
+      << script;
+  EXPECT_NE(script.find("'sweep' '" + path("plan.json") + "' '-o' '" + path("out") +
+                        "' --part \"$SLURM_ARRAY_TASK_ID/3\" --jobs \"${SLURM_CPUS_PER_TASK:-1}\" --threads 1\n"),
+            std::string::npos)
+      << script;
+  EXPECT_NE(read_text(folder_ / "bin/log").find("4 of 12 rows are missing"), std::string::npos) << "a task was killed";
+  EXPECT_EQ(read_table(folder_ / "out/table.csv").size(), 8u) << "what is there is merged";
+
+  EXPECT_EQ(submit().find("submitted: job 3, 1 of 3 tasks, and job 4"), 0u);
+  EXPECT_NE(read_text(folder_ / "bin/submitted").find("\n--parsable --array=1 "), std::string::npos);
+  EXPECT_EQ(read_table(folder_ / "out/table.csv").size(), 12u);
+  EXPECT_TRUE(std::filesystem::exists(folder_ / ("out/dram_bytes_against_memory_system.l2_bytes_by_technique.svg")));
+
+  EXPECT_EQ(submit().find("table: "), 0u) << "nothing is missing, so nothing is submitted";
+  write_text(folder_ / "bin/sbatch", "#!/bin/sh\necho 'sbatch: error: no partition' >&2\nexit 1\n");
+  write_text(folder_ / "plan.json", R"({"beampipe_sweep": 1, "traces": ["soup.json"], "techniques": ["msaa:4"]})");
+  expect_one_error_line(run_program(sweep({"--slurm"})), 1, "sbatch refused the job: sbatch: error: no partition");
+  setenv("PATH", search.c_str(), 1);
+}
+
+}  // namespace
+}  // namespace beampipe

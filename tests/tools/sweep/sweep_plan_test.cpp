@@ -1,0 +1,203 @@
+#include "tools/sweep/sweep_plan.h"
+
+#include <algorithm>
+
+#include "tests/tools/schema_agreement.h"
+#include "tools/evaluate/memory_system.h"
+#include "tools/sweep/sweep_jobs.h"
+#include "tools/sweep/trace_shelf.h"
+#include "traces/trace_io.h"
+
+namespace beampipe {
+namespace {
+
+const std::filesystem::path kSource = BEAMPIPE_SOURCE_FOLDER;
+
+class SweepPlanTest : public testing::Test {
+ protected:
+  SweepPlan read(const std::string& text) {
+    write_text(folder_ / "plan.json", text);
+    return read_sweep_plan((folder_ / "plan.json").string());
+  }
+
+  // What follows the name of the file.
+  std::string refusal(const std::string& text) {
+    try {
+      read(R"({"beampipe_sweep": 1, "traces": ["a.json"], "techniques": ["beam"])" + text + "}");
+    } catch (const std::exception& error) {
+      const std::string what = error.what(), name = (folder_ / "plan.json").string() + ": ";
+      return what.starts_with(name) ? what.substr(name.size()) : what;
+    }
+    return "";
+  }
+
+  TemporaryFolder folder_;
+};
+
+TEST_F(SweepPlanTest, AGridHasEveryCombinationInOrder) {
+  const SweepPlan plan = read(R"({"beampipe_sweep": 1, "traces": ["a.json", "b.json"], "techniques": ["beam", "msaa:8"],
+    "sizes": ["320x180", "64x36"], "memory_system.l2_bytes": [65536, 131072], "memory_system.compression": [true, false],
+    "hardware": ["titan_v", "mali_g710"], "hardware.dram_bytes_per_clk": [100, 200]})");
+  EXPECT_EQ(plan.cells.size(), 2u * 2 * 2 * 4);
+  EXPECT_EQ(plan.rows.size(), plan.cells.size() * 4 * 2) << "two implementations";
+  EXPECT_EQ(plan.traces, (std::vector<std::string>{"a.json", "b.json"}));
+  EXPECT_EQ(file_beside_plan(plan, "a.json"), (folder_ / "a.json").string());
+  EXPECT_EQ(plan.sizes.back(), (PictureSize{64, 36}));
+  EXPECT_TRUE(std::is_sorted(plan.cells.begin(), plan.cells.end()));
+  EXPECT_FALSE(plan.memory[1].l2.bytes == 65536 && plan.memory[1].compression);
+  EXPECT_EQ(plan.hardware[3].label, "mali_g710");
+  EXPECT_EQ(plan.hardware[2].rates.at("dram_bytes_per_clk"), 100);
+  EXPECT_EQ(plan.varied_rates, std::vector<std::string>{"dram_bytes_per_clk"});
+}
+
+TEST_F(SweepPlanTest, PointsInheritAxes) {
+  const SweepPlan plan = read(R"({"beampipe_sweep": 1, "traces": ["a.json"], "techniques": ["beam"],
+    "implementations": ["shaders"],
+    "points": [{}, {"techniques": ["msaa:4", "msaa:8"], "memory_system.bin_pixels": [16]}, {"techniques": ["beam"]}]})");
+  ASSERT_EQ(plan.cells.size(), 3u) << "the last point is the first one again";
+  ASSERT_EQ(plan.rows.size(), 4u);
+  EXPECT_EQ(plan.rows[3].cell, plan.rows[0].cell);
+  EXPECT_EQ(plan.memory[plan.cells[2].memory].bin_pixels, 16u);
+  EXPECT_EQ(plan.techniques[plan.cells[2].technique], "msaa:8");
+}
+
+// Whoever renders the largest caches may answer for the smaller ones.
+TEST_F(SweepPlanTest, JobsShareWhatOnlyCachesTellApart) {
+  const SweepPlan plan = read(R"({"beampipe_sweep": 1, "traces": ["a.json"], "techniques": ["beam", "msaa:8"],
+    "memory_system.l2_bytes": [65536, 1048576], "memory_system.l2_ways": [8, 16],
+    "memory_system.compression": [true, false], "hardware": ["titan_v", "rtx_4090"], "errors": true})");
+  const std::vector<SweepJob> jobs = jobs_of(plan);
+  ASSERT_EQ(jobs.size(), 1u + 2 * 2);
+  EXPECT_FALSE(jobs[0].technique.has_value()) << "the errors of all pictures";
+  for (std::size_t i = 1; i < jobs.size(); ++i) {
+    ASSERT_EQ(jobs[i].cells.size(), 4u);
+    EXPECT_EQ(plan.memory[plan.cells[jobs[i].cells.front()].memory].l2.bytes, 1048576u);
+    EXPECT_EQ(plan.memory[plan.cells[jobs[i].cells.back()].memory].l2.bytes, 65536u);
+  }
+}
+
+TEST_F(SweepPlanTest, CachesThatHoldEverythingCountTheSame) {
+  const CacheReach reach{.rop = 1000, .l1 = 1 << 20, .l2 = 1 << 20};
+  MemoryParameters a, b;
+  EXPECT_TRUE(counts_the_same(a, b, reach));
+  a.l2.bytes = 1 << 24, a.l2.ways = 4;
+  EXPECT_TRUE(counts_the_same(a, b, reach));
+  a.l2.bytes = 1 << 19;
+  EXPECT_FALSE(counts_the_same(a, b, reach)) << "does not hold everything";
+  EXPECT_FALSE(counts_the_same(b, a, reach)) << "what was rendered did not";
+  a = b;
+  a.l1.ways = 32;
+  EXPECT_FALSE(counts_the_same(a, b, reach));
+  a = b;
+  a.rop.bytes = 1 << 20;
+  EXPECT_TRUE(counts_the_same(a, b, reach));
+  a.compression = false;
+  EXPECT_FALSE(counts_the_same(a, b, reach));
+  a = b;
+  a.l2.line_bytes = a.l1.line_bytes = 64;
+  EXPECT_FALSE(counts_the_same(a, b, reach));
+}
+
+TEST_F(SweepPlanTest, MistakesNameTheKey) {
+  EXPECT_EQ(refusal(""), "");
+  EXPECT_EQ(refusal(R"(, "memory_system.l2_byte": [65536])"),
+            "/memory_system.l2_byte: expected one of the keys of a grid (beampipe sweep --help), found "
+            "\"memory_system.l2_byte\" (did you mean 'memory_system.l2_bytes'?)");
+  EXPECT_EQ(refusal(R"(, "memory_system.l2_bytes": [65536, 7])"),
+            "/memory_system.l2_bytes/1: expected an integer 32..268435456, found 7");
+  EXPECT_EQ(refusal(R"(, "memory_system.l2_bytes": [])"),
+            "/memory_system.l2_bytes: expected at least one value, found none");
+  EXPECT_EQ(refusal(R"(, "memory_system.l2_bytes": [65536], "memory_system.l2_ways": [1024])"),
+            "/: expected memory_system.l2_bytes of room for one set of 1024 ways x 128 bytes, at least 131072, found "
+            "65536");
+  EXPECT_EQ(refusal(R"(, "sizes": ["320*180"])"),
+            "/sizes/0: expected WIDTHxHEIGHT, each from 1 to 16384, such as \"320x180\", found \"320*180\"");
+  EXPECT_EQ(refusal(R"(, "frames": [2, 1])"), "/frames/1: expected a larger number than the one before it, found 1");
+  EXPECT_EQ(refusal(R"(, "hardware.dram_bytes_per_clk": [0])"),
+            "/hardware.dram_bytes_per_clk/0: expected a number above 0, found 0");
+  EXPECT_EQ(refusal(R"(, "implementations": ["shader"])").find("/implementations/0: expected"), 0u);
+  EXPECT_NE(refusal(R"(, "points": [{"techniques": ["mssa:8"]}])").find("did you mean 'msaa'"), std::string::npos);
+  EXPECT_EQ(refusal(R"(, "points": [{"techniques": ["reference"]}])").find("/points/0/techniques/0: expected"), 0u);
+  EXPECT_NE(refusal(R"(, "memory_system": ["missing.json"])").find("missing.json"), std::string::npos);
+}
+
+// A thousand million combinations in a few lines: nothing is made of them.
+TEST_F(SweepPlanTest, HugeGridsAreRefusedAtOnce) {
+  const auto list = [](const std::string& name, int first, int count) {
+    std::string text = ", \"" + name + "\": [" + std::to_string(first);
+    for (int i = 1; i < count; ++i) text += "," + std::to_string(first + i);
+    return text + "]";
+  };
+  const std::string l2 = list("memory_system.l2_bytes", 100000, 1000),
+                    l1 = list("memory_system.l1_bytes", 100000, 1000),
+                    dram = list("hardware.dram_bytes_per_clk", 1, 1000), clock = list("hardware.clock_mhz", 1, 1000);
+  const std::string most = "/: expected at most 100000 rows of the table, found more";
+  EXPECT_EQ(refusal(l2 + l1 + dram), most);
+  EXPECT_EQ(refusal(l2 + dram), most);
+  EXPECT_EQ(refusal(dram + list("hardware.clock_mhz", 1, 11)),
+            "/: expected at most 1000 kinds of hardware, found more");
+  EXPECT_EQ(refusal(list("memory_system.l2_bytes", 100000, 100)), "");
+  std::string points = R"(, "points": [{})";
+  for (int i = 0; i < 99; ++i) points += ", {}";
+  EXPECT_EQ(refusal(l2 + points + "]").find("/points/"), 0u) << "each alone is allowed";
+}
+
+TEST_F(SweepPlanTest, TheExampleOfTheDocsIsRead) {
+  const SweepPlan plan = read_sweep_plan((kSource / "docs/examples/sweep.json").string());
+  EXPECT_EQ(plan.cells.size(), 2u * 3 * 2 * 4);
+  EXPECT_EQ(plan.rows.size(), plan.cells.size() * 4);
+}
+
+TEST_F(SweepPlanTest, SchemaAndReaderAgree) {
+  nlohmann::ordered_json plan = {
+      {"beampipe_sweep", 1},          {"errors", true},          {"frames", {3}},
+      {"traces", {"a.json"}},         {"techniques", {"beam"}},  {"sizes", {"4x3"}},
+      {"memory_system", {"default"}}, {"hardware", {"titan_v"}}, {"implementations", {"shaders"}}};
+  std::set<std::string> bound = {"/traces", "/techniques"};  // they are needed here, or in every point
+  for (const std::string& axis : sweep_axes())
+    if (axis.starts_with("hardware.")) plan[axis] = {2.5};
+  for (const MemoryParameter& parameter : memory_parameters()) {
+    const std::string axis = std::string("memory_system.") + parameter.name;
+    plan[axis] = nlohmann::ordered_json::array({nlohmann::ordered_json::parse(parameter.get({}).dump())});
+    bound.insert("/" + axis);  // must fit to the others
+  }
+  plan["points"] = nlohmann::ordered_json::array({nlohmann::ordered_json::object(), {{"techniques", {"msaa:8"}}}});
+  write_text(folder_ / "complete.json", plan.dump());
+  SchemaAgreement(kSource / "tools/sweep/sweep_plan.schema.json", folder_ / "complete.json",
+                  [&](const std::string& text) { read(text); }, bound, {"/points/0"})
+      .check();
+}
+
+TEST_F(SweepPlanTest, SchemaNamesEveryAxis) {
+  const auto schema = nlohmann::json::parse(read_text(kSource / "tools/sweep/sweep_plan.schema.json"));
+  std::vector<std::string> axes = sweep_axes(), described, of_points;
+  for (const auto& [name, rule] : schema["$defs"].items()) described.push_back(name);
+  for (const auto& [name, rule] : schema["properties"]["points"]["items"]["properties"].items())
+    of_points.push_back(name);
+  std::sort(axes.begin(), axes.end());
+  EXPECT_EQ(described, axes);
+  EXPECT_EQ(of_points, axes);
+}
+
+TEST_F(SweepPlanTest, OnlyFramesThatCanBeResizedAre) {
+  const std::filesystem::path samples = kSource / "traces/samples";
+  Trace hut = read_trace(samples / "hut.json");
+  resize(hut, {0}, {100, 80}, "hut");
+  EXPECT_EQ(hut.frames[0].width, 100u);
+  Trace other = read_trace(samples / "hut.json");
+  other.frames[0].width = 100, other.frames[0].height = 80;
+  set_camera(other.frames[0], *read_trace(samples / "hut.json").frames[0].camera);
+  EXPECT_EQ(hut.frames[0].projection, other.frames[0].projection);
+
+  Trace matrices = read_trace(samples / "two_quads.json");
+  ASSERT_FALSE(matrices.frames[0].camera.has_value());
+  const std::uint32_t width = matrices.frames[0].width, height = matrices.frames[0].height;
+  resize(matrices, {0}, {2 * width, 2 * height}, "quads");
+  EXPECT_EQ(matrices.frames[0].width, 2 * width);
+  EXPECT_THROW(resize(matrices, {0}, {2 * width + 1, 2 * height}, "quads"), std::runtime_error);
+  Trace captured = read_trace(samples / "captured_quads.json");
+  EXPECT_THROW(resize(captured, {0}, {48, 36}, "captured"), std::runtime_error);
+}
+
+}  // namespace
+}  // namespace beampipe

@@ -1,0 +1,106 @@
+#include "tools/sweep/sweep_table.h"
+
+#include <sqlite3.h>
+
+#include "stages/cost/counter_registry.h"
+#include "tests/tools/fixtures.h"
+#include "tools/sweep/slurm.h"
+#include "tools/sweep/sqlite_table.h"
+#include "tools/sweep/sweep_plot.h"
+
+namespace beampipe {
+namespace {
+
+SweepTable sample_table() {
+  return {{{"name", "", "a text", true}, {"x", "bytes", "a number"}, {"y", "ms", "another one"}},
+          {{"plain", 1, 2.5},
+           {"with, comma and \"quotes\"", 10, 0.1},
+           {"plain", 10, 40},
+           {"plain", 10, 10},
+           {"two\nlines", 3, nullptr}},
+          0};
+}
+
+TEST(SweepTable, CsvIsRfc4180) {
+  EXPECT_EQ(csv_text(sample_table()),
+            "name,x,y\r\nplain,1,2.5\r\n\"with, comma and \"\"quotes\"\"\",10,0.1\r\nplain,10,40\r\nplain,10,10\r\n"
+            "\"two\nlines\",3,\r\n");
+}
+
+TEST(SweepTable, EveryStageHasAClass) {
+  for (const StageInfo& stage : stage_list())
+    EXPECT_EQ(stage_class(stage.name).empty(), stage.name == std::string("reference_raster")) << stage.name;
+  EXPECT_EQ(stage_class("prepass_depth_test"), "visibility");
+}
+
+TEST(SweepTable, SqliteHasRowsAndTheMeaningOfColumns) {
+  TemporaryFolder folder;
+  write_text(folder / "t.sqlite", sqlite_bytes(sample_table()));
+  sqlite3* database = nullptr;
+  ASSERT_EQ(sqlite3_open_v2((folder / "t.sqlite").c_str(), &database, SQLITE_OPEN_READONLY, nullptr), SQLITE_OK);
+  std::string found;
+  const auto add = [](void* text, int count, char** values, char**) {
+    for (int i = 0; i < count; ++i)
+      *static_cast<std::string*>(text) += std::string(values[i] ? values[i] : "NULL") + "|";
+    return 0;
+  };
+  ASSERT_EQ(sqlite3_exec(database, "SELECT name, x, y, typeof(x), typeof(y) FROM cells; SELECT * FROM columns", add,
+                         &found, nullptr),
+            SQLITE_OK);
+  sqlite3_close(database);
+  EXPECT_EQ(found,
+            "plain|1|2.5|integer|real|with, comma and \"quotes\"|10|0.1|integer|real|plain|10|40|integer|integer|"
+            "plain|10|10|integer|integer|two\nlines|3|NULL|integer|null|"
+            "name||a text|x|bytes|a number|y|ms|another one|");
+}
+
+TEST(SweepPlot, LinesGoThroughGeometricMeans) {
+  const ScatterPlot plot = sweep_plot(sample_table(), {"x", "y", "name"});
+  ASSERT_EQ(plot.series.size(), 2u);
+  EXPECT_EQ(plot.series[0].name, "plain");
+  ASSERT_EQ(plot.series[0].points.size(), 2u);
+  EXPECT_EQ(plot.series[0].points[0].x, 1);
+  EXPECT_NEAR(plot.series[0].points[1].y, 20, 1e-9) << "of 40 and 10";
+  EXPECT_EQ(plot.series[0].points[1].label, "plain");
+  EXPECT_EQ(plot.x_label, "x (bytes)");
+  ASSERT_EQ(plot.notes.size(), 1u);
+  EXPECT_EQ(plot.notes[0], "1 rows are not drawn, because x or y is not above 0");
+}
+
+TEST(SweepPlot, LargeNumbersAreInLargerUnits) {
+  const SweepTable table{{{"memory_system.l2_bytes", "bytes", ""}, {"dram_bytes", "bytes", ""}, {"by", "", "", true}},
+                         {{4096, 2500000, "a"}},
+                         0};
+  const ScatterPlot plot = sweep_plot(table, {"memory_system.l2_bytes", "dram_bytes", "by"});
+  EXPECT_EQ(plot.x_label, "memory_system.l2_bytes (KiB)");
+  EXPECT_EQ(plot.y_label, "dram_bytes (MB)");
+  EXPECT_EQ(plot.series.at(0).points.at(0).x, 4);
+  EXPECT_NEAR(plot.series.at(0).points.at(0).y, 2.5, 1e-12);
+}
+
+TEST(SweepPlot, ColumnsMustExistAndHoldNumbers) {
+  const std::vector<SweepColumn> columns = sample_table().columns;
+  const auto refusal = [&](const std::string& text) -> std::string {
+    try {
+      parse_plot_columns(text, columns);
+    } catch (const std::runtime_error& error) {
+      return error.what();
+    }
+    return "";
+  };
+  EXPECT_EQ(refusal("x,y,name"), "");
+  EXPECT_EQ(refusal("x,y"), "--plot x,y: expected X,Y,BY, three columns of the table");
+  EXPECT_EQ(refusal("x,y,nam"), "--plot x,y,nam: the table has no column 'nam' (did you mean 'name'?)");
+  EXPECT_EQ(refusal("name,y,x"), "--plot name,y,x: expected a column of numbers, found 'name', which holds text");
+}
+
+TEST(Slurm, WordsAndArrays) {
+  EXPECT_EQ(shell_word("a b"), "'a b'");
+  EXPECT_EQ(shell_word("it's"), "'it'\\''s'");
+  EXPECT_EQ(array_text({0, 1, 2, 7}), "0-2,7");
+  EXPECT_EQ(array_text({4}), "4");
+  EXPECT_EQ(array_text({1, 3, 4}), "1,3-4");
+}
+
+}  // namespace
+}  // namespace beampipe

@@ -1,0 +1,141 @@
+#include "tools/inspect/inspection.h"
+
+#include <algorithm>
+#include <cmath>
+#include <cstring>
+#include <map>
+#include <numeric>
+#include <stdexcept>
+
+#include "stages/geometry/vertex_setup.h"
+#include "tools/evaluate/metrics.h"
+
+namespace beampipe {
+namespace {
+
+glm::vec4 color_at(const Image& image, PixelAddress at) {
+  const float* rgba = image.rgba.data() + 4 * (std::size_t{at.y} * image.width + at.x);
+  return {rgba[0], rgba[1], rgba[2], rgba[3]};
+}
+
+double root_mean_square(const glm::dvec3& error) { return std::sqrt(glm::dot(error, error) / 3); }
+
+// When each fragment was merged, where that decides about depth; as SurfaceWeight::order.
+std::uint32_t merge_order(const PixelHistory& history, std::uint32_t fragment) {
+  if (history.fragments[fragment].fate == Fate::composed) return fragment;
+  const bool merges = std::any_of(history.steps.begin(), history.steps.end(),
+                                  [](const HistoryStep& step) { return step.kind == HistoryStep::Kind::merged; });
+  return merges ? fragment + 1 : 0;
+}
+
+PixelWeights weights_of(const PixelHistory& history) {
+  std::map<std::uint32_t, double> weights;
+  for (const HistoryTerm& term : history.terms)
+    if (term.fragment != kNobody) weights[term.fragment] += term.weight;
+  PixelWeights found;
+  for (const auto& [fragment, weight] : weights) {
+    const HistoryFragment& noted = history.fragments[fragment];
+    found.push_back({noted.triangle, static_cast<float>(weight), merge_order(history, fragment), noted.is_tiny});
+  }
+  return found;
+}
+
+glm::dvec3 mean_color(const PixelHistory& history, std::uint32_t fragment, const glm::dvec3& otherwise) {
+  glm::dvec3 sum(0.0);
+  double weight = 0;
+  for (const HistoryTerm& term : history.terms)
+    if (term.fragment == fragment) sum += term.weight * term.color, weight += term.weight;
+  return weight > 0 ? sum / weight : otherwise;
+}
+
+// The surfaces that matter, and the transfers between them.
+void add_explanation(const ExplainedPixel& explained, PixelInspection& inspection) {
+  const PixelHistory& history = inspection.history;
+  std::vector<std::size_t> place(explained.surfaces.size());
+  for (std::size_t i = 0; i < explained.surfaces.size(); ++i) {
+    const ExplainedSurface& surface = explained.surfaces[i];
+    std::uint32_t fragment = kNobody;
+    for (std::uint32_t k = 0; k < history.fragments.size(); ++k)
+      if (history.fragments[k].triangle == surface.triangle) fragment = k;
+    place[i] = inspection.surfaces.size();
+    const bool is_background = surface.triangle == kNoTriangle;
+    if (surface.weight == 0 && surface.truth == 0 && !is_background) continue;
+    inspection.surfaces.push_back(
+        {fragment, surface.weight, surface.truth, mean_color(history, fragment, surface.color)});
+  }
+  for (const AreaTransfer& each : explained.transfers)
+    inspection.transfers.push_back({place[each.from], place[each.to], each.area, each.cause});
+  const auto effect = [&](const AreaTransfer& each) {
+    return each.area * glm::length(inspection.surfaces[each.to].color - inspection.surfaces[each.from].color);
+  };
+  std::stable_sort(inspection.transfers.begin(), inspection.transfers.end(),
+                   [&](const AreaTransfer& a, const AreaTransfer& b) { return effect(a) > effect(b); });
+  inspection.causes.assign(explained.causes.begin(), explained.causes.end());
+}
+
+}  // namespace
+
+std::vector<PixelInspection> inspect(const Trace& trace, std::size_t frame, const Technique& technique,
+                                     const std::vector<PixelAddress>& pixels, const RunOptions& run) {
+  RunOptions only = run;
+  only.memory.modelled = false;
+  only.pixels = &pixels;
+  const Technique reference = parse_technique("reference");
+  const Frame& of_trace = trace.frames.at(frame);
+  const Image image = technique.render(trace, frame, only).image;
+  const Image truth = reference.render(trace, frame, only).image;
+  std::vector<PixelHistory> histories = technique.inspect(trace, frame, only, pixels);
+
+  // If surfaces vary, causes are those of the error in visibility.
+  const bool varies = has_varying_surfaces(trace, of_trace);
+  RunOptions by_pixel = only;
+  by_pixel.colors = SurfaceColors::by_pixel;
+  std::vector<PixelHistory> visible;
+  Image visible_truth = truth;
+  if (varies) {
+    visible = technique.inspect(trace, frame, by_pixel, pixels);
+    visible_truth = reference.render(trace, frame, by_pixel).image;
+  }
+  std::vector<PixelInspection> inspections;
+  std::vector<PixelColors> colors;
+  for (std::size_t i = 0; i < pixels.size(); ++i) {
+    PixelInspection& inspection = inspections.emplace_back();
+    inspection.technique = technique.spec;
+    inspection.frame = frame;
+    inspection.history = std::move(histories[i]);
+    const PixelHistory& history = inspection.history;
+    const glm::vec4 picture = color_at(image, pixels[i]);
+    if (std::memcmp(&picture, &history.pixel, sizeof picture) != 0)
+      throw std::logic_error("the history of pixel " + std::to_string(pixels[i].x) + "," + std::to_string(pixels[i].y) +
+                             " with " + technique.spec + " does not have the picture's bits");
+    for (const HistoryFragment& each : history.fragments)
+      inspection.draw_names.push_back(std::to_string(each.draw) + " '" +
+                                      trace.meshes[of_trace.draws[each.draw].mesh].name + "'");
+    inspection.reference = glm::vec3(color_at(truth, pixels[i]));
+    inspection.error = root_mean_square(glm::dvec3(history.pixel) - glm::dvec3(inspection.reference));
+    const PixelHistory& seen = varies ? visible[i] : history;
+    colors.push_back(
+        {pixels[i], weights_of(seen), glm::vec3(seen.pixel), glm::vec3(color_at(visible_truth, pixels[i]))});
+    if (varies) inspection.visibility_error = root_mean_square(colors.back().color - colors.back().reference);
+  }
+  const std::vector<ExplainedPixel> explained = explain_pixels(trace, of_trace, colors, varies ? by_pixel : only);
+  for (std::size_t i = 0; i < pixels.size(); ++i) add_explanation(explained[i], inspections[i]);
+  return inspections;
+}
+
+std::vector<PixelAddress> worst_pixels(const Image& image, const Image& reference, std::size_t count) {
+  const std::vector<float> errors = pixel_errors(image, reference);
+  std::vector<std::size_t> pixels(errors.size());
+  std::iota(pixels.begin(), pixels.end(), 0);
+  count = std::min(count, pixels.size());
+  std::partial_sort(
+      pixels.begin(), pixels.begin() + static_cast<std::ptrdiff_t>(count), pixels.end(),
+      [&](std::size_t a, std::size_t b) { return errors[a] > errors[b] || (errors[a] == errors[b] && a < b); });
+  std::vector<PixelAddress> worst;
+  for (std::size_t i = 0; i < count; ++i)
+    worst.push_back(
+        {static_cast<std::uint32_t>(pixels[i] % image.width), static_cast<std::uint32_t>(pixels[i] / image.width)});
+  return worst;
+}
+
+}  // namespace beampipe

@@ -1,0 +1,44 @@
+// A pixel explained: its history (pipeline/inspect/pixel_history.h), how wrong it is, and why.
+#pragma once
+
+#include <cstdint>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "pipeline/error_causes.h"
+#include "pipeline/inspect/pixel_history.h"
+#include "pipeline/technique.h"
+#include "traces/trace.h"
+
+namespace beampipe {
+
+// A triangle, or the background, that the technique or the reference sees in the pixel.
+struct InspectedSurface {
+  std::uint32_t fragment;  // index into the history's fragments; kNobody: the background
+  double weight, truth;    // part of the pixel by the technique and by the reference
+  glm::dvec3 color;        // linear RGB: the mean of the terms' or, without terms, of the explanation's
+};
+
+struct PixelInspection {
+  std::string technique;
+  std::size_t frame = 0;
+  PixelHistory history;
+  std::vector<std::string> draw_names;  // one per fragment of the history: "0 'fence'"
+  glm::vec3 reference{0};               // of the same pixel
+  double error = 0;                     // root mean square over R, G and B
+  // Where surfaces vary, the part that is left when the technique and the reference give each triangle one colour.
+  std::optional<double> visibility_error;
+  std::vector<InspectedSurface> surfaces;  // those that have a part of the pixel; the background comes last
+  std::vector<AreaTransfer> transfers;     // between these, those with the most effect on the colour first
+  std::vector<double> causes;              // of the error, or of the visibility error, in the order of kErrorCauses
+};
+
+// The technique must have Technique::inspect. Throws std::logic_error if a history does not have the picture's bits.
+std::vector<PixelInspection> inspect(const Trace& trace, std::size_t frame, const Technique& technique,
+                                     const std::vector<PixelAddress>& pixels, const RunOptions& run);
+
+// The pixels whose error is largest, the worst first; of equal ones, the first one in the picture.
+std::vector<PixelAddress> worst_pixels(const Image& image, const Image& reference, std::size_t count);
+
+}  // namespace beampipe

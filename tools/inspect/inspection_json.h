@@ -1,0 +1,12 @@
+// Inspections as JSON: `beampipe inspect --json` and the report page.
+#pragma once
+
+#include "tools/inspect/inspection.h"
+#include "traces/json.h"
+
+namespace beampipe {
+
+// Indices of fragments are those of its list "fragments"; null stands for the background or an empty position.
+Json to_json(const PixelInspection& inspection);
+
+}  // namespace beampipe

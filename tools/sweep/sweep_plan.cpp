@@ -1,0 +1,283 @@
+#include "tools/sweep/sweep_plan.h"
+
+#include <algorithm>
+#include <charconv>
+#include <filesystem>
+#include <limits>
+#include <map>
+
+#include "pipeline/technique.h"
+#include "tools/evaluate/memory_system.h"
+#include "traces/closest_name.h"
+#include "traces/json_cursor.h"
+
+namespace beampipe {
+namespace {
+
+namespace fs = std::filesystem;
+
+constexpr const char *kTraces = "traces", *kTechniques = "techniques", *kSizes = "sizes", *kHardware = "hardware",
+                     *kImplementations = "implementations", *kMemorySystem = "memory_system";
+constexpr const char* kDefault = "default";  // the name of the default memory system
+constexpr const char* kClock = "clock_mhz";  // is varied like a rate
+constexpr const char *kRows = "rows of the table", *kKinds = "kinds of hardware";
+constexpr std::uint32_t kMostPixels = 16384;
+
+// The values of one axis, where they stand in the file.
+using Axes = std::map<std::string, std::vector<JsonCursor>>;
+
+void expect_axis(const std::string& name, const JsonCursor& values) {
+  const std::vector<std::string> known = sweep_axes();
+  if (std::find(known.begin(), known.end(), name) == known.end()) {
+    values.fail("one of the keys of a grid (beampipe sweep --help)", in_quotes(name) + did_you_mean(name, known));
+  }
+}
+
+Axes read_axes(const JsonCursor& grid, std::initializer_list<std::string_view> others, Axes axes = {}) {
+  for (const auto& [name, values] : grid.members()) {
+    if (std::find(others.begin(), others.end(), name) != others.end()) continue;
+    expect_axis(name, values);
+    axes[name] = values.elements();
+    if (axes[name].empty()) values.fail("at least one value", "none");
+  }
+  return axes;
+}
+
+// The index of a value in a list to which it is added if it is new.
+template <class Value>
+std::size_t index_in(std::vector<Value>& list, const Value& value) {
+  const auto found = std::find(list.begin(), list.end(), value);
+  if (found != list.end()) return static_cast<std::size_t>(found - list.begin());
+  list.push_back(value);
+  return list.size() - 1;
+}
+
+PictureSize read_size(const JsonCursor& at) {
+  const std::string text = at.string();
+  PictureSize size;
+  const char* const end = text.data() + text.size();
+  auto parsed = std::from_chars(text.data(), end, size.width);
+  const bool has_times = parsed.ec == std::errc() && parsed.ptr != end && *parsed.ptr == 'x';
+  if (has_times) parsed = std::from_chars(parsed.ptr + 1, end, size.height);
+  const auto is_side = [](std::uint32_t side) { return side > 0 && side <= kMostPixels; };
+  if (!has_times || parsed.ec != std::errc() || parsed.ptr != end || !is_side(size.width) || !is_side(size.height))
+    at.fail("WIDTHxHEIGHT, each from 1 to 16384, such as \"320x180\"");
+  return size;
+}
+
+std::string beside(const std::string& plan, const std::string& name) {
+  return (fs::path(plan).parent_path() / name).lexically_normal().string();
+}
+
+[[noreturn]] void fail_limit(const JsonCursor& grid, std::uint64_t most, const char* what) {
+  grid.fail("at most " + std::to_string(most) + " " + what, "more");
+}
+
+// Throws if the axes whose names start with a prefix have more combinations than that.
+void limit_combinations(const Axes& axes, const std::string& prefix, std::uint64_t most, const JsonCursor& grid,
+                        const char* what) {
+  std::uint64_t count = 1;
+  for (const auto& [name, values] : axes) {
+    if (!name.starts_with(prefix)) continue;
+    if (count > most / values.size()) fail_limit(grid, most, what);
+    count *= values.size();
+  }
+}
+
+// Calls visit(values) for every combination of the axes with this prefix: one value for each name without the prefix.
+// The last axis changes fastest.
+template <class Visit>
+void each_combination(const Axes& axes, const std::string& prefix, Visit&& visit) {
+  std::vector<const Axes::value_type*> varied;
+  for (const Axes::value_type& axis : axes)
+    if (axis.first.starts_with(prefix)) varied.push_back(&axis);
+  std::vector<std::size_t> at(varied.size());
+  for (;;) {
+    std::vector<std::pair<std::string, JsonCursor>> values;
+    for (std::size_t i = 0; i < varied.size(); ++i)
+      values.emplace_back(varied[i]->first.substr(prefix.size()), varied[i]->second[at[i]]);
+    visit(values);
+    std::size_t i = varied.size();
+    while (i > 0 && ++at[i - 1] == varied[i - 1]->second.size()) at[--i] = 0;
+    if (i == 0) return;
+  }
+}
+
+class PlanReader {
+ public:
+  explicit PlanReader(const std::string& file) : json_(parse_json(file)) { plan_.file = file; }
+
+  SweepPlan read() {
+    const JsonCursor root(json_, plan_.file);
+    root["beampipe_sweep"].integer(1, 1);
+    if (const auto errors = root.find("errors")) plan_.errors = errors->boolean();
+    if (const auto frames = root.find("frames")) read_frames(*frames);
+    const Axes axes = read_axes(root, {"beampipe_sweep", "errors", "frames", "points"});
+    if (const auto points = root.find("points")) {
+      if (points->elements().empty()) points->fail("at least one point", "none");
+      for (const JsonCursor& point : points->elements()) add_grid(point, read_axes(point, {}, axes));
+    } else {
+      add_grid(root, axes);
+    }
+    return std::move(plan_);
+  }
+
+ private:
+  void read_frames(const JsonCursor& frames) {
+    for (const JsonCursor& frame : frames.elements()) {
+      plan_.frames.push_back(frame.integer(0, std::numeric_limits<std::int32_t>::max()));
+      if (plan_.frames.size() > 1 && plan_.frames.back() <= plan_.frames[plan_.frames.size() - 2])
+        frame.fail("a larger number than the one before it");
+    }
+    if (plan_.frames.empty()) frames.fail("at least one frame", "none");
+  }
+
+  void add_grid(const JsonCursor& grid, const Axes& axes) {
+    for (const char* required : {kTraces, kTechniques})
+      if (!axes.contains(required)) grid.fail("the key " + in_quotes(required), "none");
+    // Everything that is counted here is in the table's rows, so it is checked before any of it is made.
+    limit_combinations(axes, "", kMostRows, grid, kRows);
+    limit_combinations(axes, kHardware, kMostHardware, grid, kKinds);
+
+    const std::vector<std::size_t> memory = read_memory(grid, axes);
+    const std::vector<std::size_t> hardware = read_hardware_axes(axes);
+    std::vector<std::size_t> sizes = {0};
+    if (plan_.sizes.empty()) plan_.sizes.push_back({});
+    if (axes.contains(kSizes)) {
+      sizes.clear();
+      for (const JsonCursor& size : axes.at(kSizes)) sizes.push_back(index_in(plan_.sizes, read_size(size)));
+    }
+    std::vector<std::size_t> traces, techniques;
+    for (const JsonCursor& trace : axes.at(kTraces)) traces.push_back(index_in(plan_.traces, trace.string()));
+    for (const JsonCursor& technique : axes.at(kTechniques)) techniques.push_back(read_technique(technique));
+
+    for (const std::size_t trace : traces)
+      for (const std::size_t size : sizes)
+        for (const std::size_t technique : techniques)
+          for (const std::size_t system : memory) {
+            const std::size_t cell = add_cell({trace, size, technique, system});
+            for (const std::size_t each : hardware) add_rows(cell, each, axes);
+          }
+    if (plan_.rows.size() > kMostRows) fail_limit(grid, kMostRows, kRows);
+    if (plan_.hardware.size() > kMostHardware) fail_limit(grid, kMostHardware, kKinds);
+  }
+
+  std::size_t add_cell(const SweepCell& cell) {
+    const auto [found, is_new] = cell_numbers_.emplace(cell, plan_.cells.size());
+    if (is_new) plan_.cells.push_back(cell);
+    return found->second;
+  }
+
+  void add_rows(std::size_t cell, std::size_t hardware, const Axes& axes) {
+    const std::vector<Implementation>& known = plan_.hardware[hardware].implementations;
+    if (!axes.contains(kImplementations)) {
+      for (std::size_t i = 0; i < known.size(); ++i) plan_.rows.push_back({cell, hardware, i});
+      return;
+    }
+    for (const JsonCursor& wanted : axes.at(kImplementations)) {
+      std::vector<std::string_view> names;
+      for (const Implementation& each : known) names.push_back(each.name);
+      plan_.rows.push_back({cell, hardware, wanted.choice(names)});
+    }
+  }
+
+  std::size_t read_technique(const JsonCursor& at) {
+    const std::string spec = at.string();
+    if (parse_technique(spec).spec == "reference")
+      at.fail("a technique other than the reference, which costs nothing on hardware");
+    return index_in(plan_.techniques, spec);
+  }
+
+  std::vector<std::size_t> read_memory(const JsonCursor& grid, const Axes& axes) {
+    std::vector<MemoryParameters> systems = {{}};
+    if (axes.contains(kMemorySystem)) {
+      systems.clear();
+      for (const JsonCursor& name : axes.at(kMemorySystem))
+        systems.push_back(name.string() == kDefault ? MemoryParameters{}
+                                                    : read_memory_system(beside(plan_.file, name.string())));
+    }
+    std::vector<std::size_t> numbers;
+    for (const MemoryParameters& system : systems)
+      each_combination(axes, std::string(kMemorySystem) + ".", [&](const auto& values) {
+        numbers.push_back(add_memory(with_parameters(system, values, grid)));
+      });
+    return numbers;
+  }
+
+  std::size_t add_memory(const MemoryParameters& memory) {
+    const auto [found, is_new] = memory_numbers_.emplace(parameters_json(memory).dump(), plan_.memory.size());
+    if (is_new) plan_.memory.push_back(memory);
+    return found->second;
+  }
+
+  static MemoryParameters with_parameters(MemoryParameters memory,
+                                          const std::vector<std::pair<std::string, JsonCursor>>& values,
+                                          const JsonCursor& grid) {
+    for (const auto& [name, value] : values)
+      for (const MemoryParameter& parameter : memory_parameters())
+        if (name == parameter.name) parameter.set(memory, value);
+    if (const auto conflict = find_conflict(memory))
+      grid.fail(std::string(kMemorySystem) + "." + conflict->name + " of " + conflict->expected,
+                std::to_string(conflict->found));
+    return memory;
+  }
+
+  std::vector<std::size_t> read_hardware_axes(const Axes& axes) {
+    std::vector<Hardware> parts;
+    if (axes.contains(kHardware)) {
+      for (const JsonCursor& name : axes.at(kHardware)) {
+        parts.push_back(named_hardware(name));
+        parts.back().label = name.string();
+      }
+    } else {
+      parts.push_back(titan_v());
+    }
+    std::vector<std::size_t> numbers;
+    for (Hardware& part : parts) {
+      part.json = nullptr;  // not needed any more, and large
+      each_combination(axes, std::string(kHardware) + ".", [&](const auto& values) {
+        std::string key = part.label;
+        for (const auto& [name, value] : values) {
+          index_in(plan_.varied_rates, name);
+          const double rate = value.number_between(0, std::numeric_limits<double>::infinity());
+          (name == kClock ? part.clock_mhz : part.rates[name]) = rate;
+          key += "," + name + Json(rate).dump();
+        }
+        const auto [found, is_new] = hardware_numbers_.emplace(key, plan_.hardware.size());
+        if (is_new) plan_.hardware.push_back(part);
+        numbers.push_back(found->second);
+      });
+    }
+    return numbers;
+  }
+
+  Hardware named_hardware(const JsonCursor& at) const {
+    const std::string name = at.string();
+    const std::vector<std::string> built_in = hardware_names();
+    return read_hardware(
+        std::find(built_in.begin(), built_in.end(), name) != built_in.end() ? name : beside(plan_.file, name));
+  }
+
+  Json json_;
+  SweepPlan plan_;
+  std::map<SweepCell, std::size_t> cell_numbers_;
+  std::map<std::string, std::size_t> memory_numbers_, hardware_numbers_;
+};
+
+}  // namespace
+
+SweepPlan read_sweep_plan(const std::string& file) { return PlanReader(file).read(); }
+
+std::string file_beside_plan(const SweepPlan& plan, const std::string& name) { return beside(plan.file, name); }
+
+std::vector<std::string> sweep_axes() {
+  std::vector<std::string> names = {kTraces, kTechniques, kSizes, kHardware, kImplementations, kMemorySystem};
+  names.push_back(std::string(kHardware) + "." + kClock);
+  for (const std::string_view rate : hardware_rates())
+    names.push_back(std::string(kHardware) + "." + std::string(rate));
+  for (const MemoryParameter& parameter : memory_parameters())
+    names.push_back(std::string(kMemorySystem) + "." + parameter.name);
+  return names;
+}
+
+}  // namespace beampipe

@@ -1,0 +1,228 @@
+#include "tools/sweep/sweep_table.h"
+
+#include <algorithm>
+#include <map>
+#include <optional>
+
+#include "stages/cost/counter_registry.h"
+#include "tools/evaluate/memory_system.h"
+
+namespace beampipe {
+namespace {
+
+constexpr const char* kClasses[] = {"geometry", "raster", "fragments", "visibility", "shading", "picture"};
+
+// What all rows of a cell have in common.
+struct Cell {
+  const SweepPlan& plan;
+  const SweepCell& cell;
+  const TraceInfo& trace;
+  const TechniqueReport& report;
+  const PictureErrors* errors;  // null: not asked for, or not stored
+};
+
+// The mean over the frames: an integer if it is one.
+template <class Count>
+Json mean_of(const Cell& cell, Count&& count) {
+  std::uint64_t sum = 0;
+  for (const FrameReport& frame : cell.report.frames)
+    for (const StageCounters& stage : frame.stages) sum += count(stage);
+  const std::size_t frames = std::max<std::size_t>(cell.report.frames.size(), 1);
+  return sum % frames == 0 ? Json(sum / frames) : Json(static_cast<double>(sum) / static_cast<double>(frames));
+}
+
+struct Column {
+  SweepColumn info;
+  std::function<Json(const Cell&)> value;
+};
+
+std::vector<Column> cell_columns() {
+  std::vector<Column> columns = {
+      {{"trace", "", "the trace, as the plan names it", true},
+       [](const Cell& c) { return c.plan.traces[c.cell.trace]; }},
+      {{"frames", "", "frames over which the counts are means"},
+       [](const Cell& c) { return Json(c.report.frames.size()); }},
+      {{"width", "px", "of the first frame that is rendered"}, [](const Cell& c) { return Json(c.trace.size.width); }},
+      {{"height", "px", "of the first frame that is rendered"}, [](const Cell& c) { return Json(c.trace.size.height); }},
+      {{"technique", "", "the spec", true}, [](const Cell& c) { return c.plan.techniques[c.cell.technique]; }},
+  };
+  for (const MemoryParameter& parameter : memory_parameters()) {
+    const bool is_text = parameter.get({}).is_string();
+    columns.push_back({{std::string("memory_system.") + parameter.name, parameter.unit, parameter.meaning, is_text},
+                       [&parameter](const Cell& c) {
+                         const Json value = parameter.get(c.plan.memory[c.cell.memory]);
+                         return value.is_boolean() ? Json(value.get<bool>() ? 1 : 0) : value;
+                       }});
+  }
+  columns.push_back({{"pixels_on_chip", "", "1 if the pixels of a bin are on chip, else 0"},
+                     [](const Cell& c) { return Json(c.report.pixels_on_chip ? 1 : 0); }});
+  columns.push_back({{"on_chip_bytes_per_pixel", "bytes", "all that a bin has on chip, at its peak, over its pixels"},
+                     [](const Cell& c) { return Json(c.report.on_chip_bytes_per_pixel()); }});
+  columns.push_back({{"off_chip_bytes_per_pixel", "bytes", "the framebuffer, and the A-buffer at its peak"},
+                     [](const Cell& c) { return Json(c.report.peak_bytes_per_pixel()); }});
+  columns.push_back({{"operations", "", "operations of all stages"},
+                     [](const Cell& c) { return mean_of(c, [](const auto& s) { return s.ops.total(); }); }});
+  columns.push_back({{"logical_bytes", "bytes", "read and written by all stages, queues included"},
+                     [](const Cell& c) { return mean_of(c, [](const auto& s) { return s.logical_bytes(); }); }});
+  columns.push_back({{"sector_bytes", "bytes", "asked of the memory system"},
+                     [](const Cell& c) { return mean_of(c, [](const auto& s) { return s.sector_bytes; }); }});
+  columns.push_back({{"l2_bytes", "bytes", "asked of L2"},
+                     [](const Cell& c) { return mean_of(c, [](const auto& s) { return s.l2_bytes; }); }});
+  columns.push_back({{"dram_bytes", "bytes", "moved to and from DRAM"},
+                     [](const Cell& c) { return mean_of(c, [](const auto& s) { return s.dram_bytes; }); }});
+  for (const char* name : kClasses)
+    columns.push_back({{std::string("dram_bytes.") + name, "bytes", std::string("those of the stages of ") + name},
+                       [name](const Cell& c) {
+                         return mean_of(c, [&](const auto& s) -> std::uint64_t {
+                           return stage_class(s.stage) == name ? std::uint64_t{s.dram_bytes} : 0;
+                         });
+                       }});
+  columns.push_back({{"rmse", "", "error against the reference: root mean square of linear RGB; only with errors"},
+                     [](const Cell& c) { return c.errors ? Json(c.errors->error.rmse) : Json(); }});
+  columns.push_back({{"emr", "samples", "equivalent MSAA rate; only with errors"},
+                     [](const Cell& c) { return c.errors ? Json(c.errors->equivalent_msaa.samples) : Json(); }});
+  columns.push_back({{"emr_bound", "", "lower or upper if that rate is only a bound", true}, [](const Cell& c) {
+                       if (!c.errors) return Json();
+                       const EquivalentMsaa& emr = c.errors->equivalent_msaa;
+                       return Json(emr.is_lower_bound ? "lower" : emr.is_upper_bound ? "upper" : "");
+                     }});
+  return columns;
+}
+
+std::vector<SweepColumn> hardware_columns(const SweepPlan& plan) {
+  std::vector<SweepColumn> columns = {{"hardware", "", "the described hardware", true}};
+  for (const std::string& rate : plan.varied_rates) columns.push_back({"hardware." + rate, "", "as the plan sets it"});
+  columns.push_back({"implementation", "", "which units do the work of a stage", true});
+  columns.push_back({"modelled_ms", "ms", "modelled time if all stages overlap; the mean over the frames"});
+  columns.push_back({"modelled_sum_ms", "ms", "the same, one stage after the other"});
+  columns.push_back({"bottleneck", "", "the busiest unit, of the frame that takes longest", true});
+  return columns;
+}
+
+void add_hardware(const SweepPlan& plan, const SweepRow& row, const TechniqueReport& report,
+                  std::vector<Json>& values) {
+  const Hardware& hardware = plan.hardware[row.hardware];
+  const Implementation& implementation = hardware.implementations[row.implementation];
+  values.emplace_back(hardware.label);
+  for (const std::string& rate : plan.varied_rates)
+    values.emplace_back(rate == "clock_mhz" ? hardware.clock_mhz : hardware.rates.at(rate));
+  values.emplace_back(implementation.name);
+  double overlap = 0, sum = 0, longest = -1;
+  std::string busiest;
+  for (const FrameReport& frame : report.frames) {
+    const ModelledTime time = modelled_time(hardware, implementation, frame.stages, frame.open_pixel_bytes());
+    overlap += time.overlap_ms, sum += time.sum_ms;
+    if (time.overlap_ms > longest) longest = time.overlap_ms, busiest = time.busiest;
+  }
+  const auto frames = static_cast<double>(std::max<std::size_t>(report.frames.size(), 1));
+  values.emplace_back(overlap / frames);
+  values.emplace_back(sum / frames);
+  values.emplace_back(busiest);
+}
+
+// The errors of all pictures of the plan, each read once.
+class ErrorTable {
+ public:
+  ErrorTable(const SweepPlan& plan, const SweepResults& results) : plan_(plan), results_(results) {}
+
+  const PictureErrors* of(const SweepCell& cell) {
+    const std::pair key(cell.trace, cell.size);
+    auto found = known_.find(key);
+    if (found == known_.end()) {
+      std::map<PictureVariant, PictureErrors> errors;
+      if (const auto stored = results_.errors(cell.trace, cell.size)) {
+        const std::vector<PictureVariant> variants = results_.variants(cell.trace, cell.size);
+        for (std::size_t i = 0; i < variants.size(); ++i) errors[variants[i]] = (*stored)[i];
+      }
+      found = known_.emplace(key, std::move(errors)).first;
+    }
+    const auto errors = found->second.find({cell.technique, plan_.memory[cell.memory].bin_pixels});
+    return errors == found->second.end() ? nullptr : &errors->second;
+  }
+
+ private:
+  const SweepPlan& plan_;
+  const SweepResults& results_;
+  std::map<std::pair<std::size_t, std::size_t>, std::map<PictureVariant, PictureErrors>> known_;
+};
+
+std::string csv_field(const Json& value) {
+  if (value.is_null()) return "";
+  if (!value.is_string()) return value.dump();
+  const std::string text = value.get<std::string>();
+  if (text.find_first_of(",\"\r\n") == text.npos) return text;
+  std::string quoted = "\"";
+  for (const char c : text) quoted += c == '"' ? std::string("\"\"") : std::string(1, c);
+  return quoted + "\"";
+}
+
+}  // namespace
+
+std::string stage_class(std::string_view stage) {
+  static const std::map<std::string_view, const char*> classes = {
+      {"vertex_setup", "geometry"},   {"conservative_raster", "raster"},
+      {"sample_raster", "raster"},    {"bin_sort", "raster"},
+      {"beam_fragment", "fragments"}, {"alpha_mask", "fragments"},
+      {"alpha_test", "fragments"},    {"a_buffer", "fragments"},
+      {"windows", "fragments"},       {"compose", "visibility"},
+      {"claim", "visibility"},        {"settle", "visibility"},
+      {"depth_test", "visibility"},   {"blend", "visibility"},
+      {"stencil_test", "visibility"}, {"accumulate", "visibility"},
+      {"shade", "shading"},           {"light", "shading"},
+      {"sample_select", "shading"},   {"material_sort", "shading"},
+      {"motion", "picture"},          {"dilate", "picture"},
+      {"temporal", "picture"},        {"resolve", "picture"},
+  };
+  const auto found = classes.find(without_pass(stage));
+  return found == classes.end() ? "" : found->second;
+}
+
+std::vector<SweepColumn> columns_of(const SweepPlan& plan) {
+  std::vector<SweepColumn> columns;
+  for (const Column& column : cell_columns()) columns.push_back(column.info);
+  for (const SweepColumn& column : hardware_columns(plan)) columns.push_back(column);
+  return columns;
+}
+
+SweepTable make_table(const SweepPlan& plan, TraceShelf& shelf, const SweepResults& results) {
+  SweepTable table;
+  table.columns = columns_of(plan);
+  const std::vector<Column> columns = cell_columns();
+  ErrorTable errors(plan, results);
+  std::optional<std::size_t> last;  // the cell whose counts and values these are: rows of a cell follow each other
+  std::optional<CellCounts> counts;
+  std::vector<Json> values;
+  for (const SweepRow& row : plan.rows) {
+    const SweepCell& cell = plan.cells[row.cell];
+    if (last != row.cell) {
+      last = row.cell;
+      counts = results.counts(cell);
+      const PictureErrors* const of_pictures = plan.errors ? errors.of(cell) : nullptr;
+      if (plan.errors && !of_pictures) counts.reset();
+      values.clear();
+      if (counts) {
+        const Cell all{plan, cell, shelf.info(cell.trace, cell.size), counts->report, of_pictures};
+        for (const Column& column : columns) values.push_back(column.value(all));
+      }
+    }
+    if (!counts) {
+      ++table.missing;
+      continue;
+    }
+    add_hardware(plan, row, counts->report, table.rows.emplace_back(values));
+  }
+  return table;
+}
+
+std::string csv_text(const SweepTable& table) {
+  std::string text;
+  const auto add_line = [&](const auto& items, auto&& field) {
+    for (std::size_t i = 0; i < items.size(); ++i) text += (i > 0 ? "," : "") + field(items[i]);
+    text += "\r\n";
+  };
+  add_line(table.columns, [](const SweepColumn& column) { return csv_field(column.name); });
+  for (const std::vector<Json>& row : table.rows) add_line(row, csv_field);
+  return text;
+}
+
+}  // namespace beampipe
