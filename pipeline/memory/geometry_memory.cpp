@@ -1,6 +1,7 @@
 #include "pipeline/memory/geometry_memory.h"
 
 #include <algorithm>
+#include <bit>
 #include <string>
 
 namespace beampipe {
@@ -32,10 +33,19 @@ void read_bin(const MemorySystem& memory, const TriangleList& list, StageCounter
   for (const std::uint32_t triangle : list) setup.read(triangle, counters);
 }
 
+ListRanks::ListRanks(const TriangleList& list)
+    : entries_(std::bit_ceil(2 * list.size() + 2)), shift_(32 - std::countr_zero(entries_.size())) {
+  for (std::uint32_t rank = 0; rank < list.size(); ++rank) {
+    std::size_t place = hash(list[rank]);
+    while (entries_[place].rank != ~0u) place = (place + 1) & (entries_.size() - 1);
+    entries_[place] = {list[rank], rank};
+  }
+}
+
 TriangleFetches::TriangleFetches(const MemorySystem& memory, const TriangleList& list, const SurfaceShader* shader)
     : modelled_(memory.modelled),
-      list_(list),
       shader_(shader && !shader->is_flat() ? shader : nullptr),
+      ranks_(modelled_ ? list : TriangleList{}),
       places_(modelled_ ? places_of(memory, list) : Places{}),
       lines_(memory, places_.end, std::move(places_.lines)) {}
 
@@ -111,10 +121,6 @@ void TriangleFetches::read_setup(const TriangleList& sorted, StageCounters& coun
   std::vector<std::uint32_t> places;
   for (const std::uint32_t triangle : sorted) places.push_back(places_.setup[rank(triangle)]);
   lines_.read_through_l2(places, sizeof(SetupTriangle), counters);
-}
-
-std::size_t TriangleFetches::rank(std::uint32_t triangle) const {
-  return static_cast<std::size_t>(std::lower_bound(list_.begin(), list_.end(), triangle) - list_.begin());
 }
 
 }  // namespace beampipe

@@ -33,13 +33,35 @@ void read_list(const MemorySystem& memory, const TriangleList& list, StageCounte
 // The same, and the setup of the list's triangles in primitive order.
 void read_bin(const MemorySystem& memory, const TriangleList& list, StageCounters& counters);
 
+// Where each triangle stands in a list. A hash table, because fetches ask for it once each.
+class ListRanks {
+ public:
+  // The list has no triangle twice.
+  explicit ListRanks(const TriangleList& list);
+
+  // The triangle is in the list.
+  std::uint32_t of(std::uint32_t triangle) const {
+    std::size_t place = hash(triangle);
+    while (entries_[place].triangle != triangle) place = (place + 1) & (entries_.size() - 1);
+    return entries_[place].rank;
+  }
+
+ private:
+  struct Entry {
+    std::uint32_t triangle = ~0u, rank = ~0u;  // ~0: no triangle
+  };
+  std::size_t hash(std::uint32_t triangle) const { return triangle * 0x9e3779b1u >> shift_; }
+
+  std::vector<Entry> entries_;  // a power of two, of which at most half are used
+  int shift_;
+};
+
 // Setup and attributes that shaders fetch by triangle number, through the L1 of the multiprocessor that works on the
 // bin. Each fetch is a request of its own.
 class TriangleFetches {
  public:
-  // Both must outlive it. Without a shader all triangles are flat.
+  // The shader must outlive it. Without a shader all triangles are flat.
   TriangleFetches(const MemorySystem& memory, const TriangleList& list, const SurfaceShader* shader = nullptr);
-  TriangleFetches(const MemorySystem& memory, TriangleList&& list, const SurfaceShader* shader = nullptr) = delete;
 
   bool is_flat(std::uint32_t triangle) const { return !shader_ || shader_->is_flat(triangle); }
 
@@ -80,7 +102,7 @@ class TriangleFetches {
   void flush(StageCounters& counters) { lines_.flush(counters); }
 
  private:
-  std::size_t rank(std::uint32_t triangle) const;
+  std::size_t rank(std::uint32_t triangle) const { return ranks_.of(triangle); }
 
   // Planes and vertices of a triangle that is not flat.
   void surface(std::uint32_t triangle, StageCounters& counters);
@@ -106,8 +128,8 @@ class TriangleFetches {
                             std::uint32_t line_bytes, std::vector<std::uint32_t>& offsets, Places& places);
 
   bool modelled_;
-  const TriangleList& list_;
   const SurfaceShader* shader_;
+  ListRanks ranks_;
   Places places_;
   LinearMemory lines_;
   std::uint32_t request_ = 0;

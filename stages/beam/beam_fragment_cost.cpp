@@ -132,7 +132,7 @@ OperationCounts nearest_position_cost() {
 void charge(const BeamFragmentWork& work, const BeamFragmentOptions& options, StageCounters& counters) {
   static const UnitCost of_area = coverage_cost(), of_range = clipped_depth_cost(), of_plane = plane_cost(),
                         of_centroid = centroid_depth_cost(), of_exact_edges = exact_edges_cost(),
-                        of_table_edges = table_edges_cost();
+                        of_table_edges = table_edges_cost(), of_nearest = nearest_position_cost();
   OperationCounts of_pair = of_area;
   if (options.clipped_depth) of_pair += of_range;
   if (options.mask == MaskSource::table) of_pair += table_mask_cost(*options.table);
@@ -146,7 +146,7 @@ void charge(const BeamFragmentWork& work, const BeamFragmentOptions& options, St
   counters.ops += of_centroid * work.centroid_depths;
   if (options.mask == MaskSource::table) counters.ops += of_table_edges * work.triangles;
   if (options.mask == MaskSource::exact) counters.ops += of_exact_edges * work.triangles;
-  counters.ops += nearest_position_cost() * (work.given * options.positions.size() * kMaxMaskSamples);
+  counters.ops += of_nearest * (work.given * options.positions.size() * kMaxMaskSamples);
   counters.ops += {.mul_add = work.specks, .add = work.speck_comparisons, .bit = work.given};
   std::uint64_t positions = 0;
   if (options.mask == MaskSource::table) positions = kMaxMaskSamples;

@@ -3,24 +3,111 @@
 #include <algorithm>
 #include <array>
 #include <bit>
+#include <cstring>
 
 #include "simd/conserve.h"
 #include "simd/plane_order.h"
+#include "simd/prefetch.h"
 #include "stages/beam/compose_owners_cost.h"
 #include "stages/beam/owner_formulas.h"
 #include "stages/data/pixel_depth.h"
 
+// One version for vectors of 256 bits, which hold a whole mask, and one without vectors: each takes a minute to
+// compile.
+#define HWY_DISABLED_TARGETS (HWY_SSSE3 | HWY_SSE4 | HWY_AVX3 | HWY_AVX3_DL)
+#undef HWY_TARGET_INCLUDE
+#define HWY_TARGET_INCLUDE "stages/beam/compose_owners.cpp"
+#include "hwy/foreach_target.h"
+// foreach_target comes first
+#include "hwy/highway.h"
+
+HWY_BEFORE_NAMESPACE();
 namespace beampipe {
+namespace HWY_NAMESPACE {
 namespace {
+namespace hn = hwy::HWY_NAMESPACE;
+
+// A mask in registers. It is loaded and stored in whole vectors, because a load waits for the parts of a vector that
+// were stored one by one just before. Compilers copy a WideMask in smaller parts.
+template <std::size_t Words>
+class Mask {
+ public:
+  HWY_INLINE Mask() = default;
+  HWY_INLINE explicit Mask(const std::uint32_t* words) {
+    for (std::size_t i = 0; i < kParts; ++i) part_[i] = hn::LoadU(D(), words + i * kLanes);
+  }
+  HWY_INLINE explicit Mask(const WideMask& mask) : Mask(mask.words.data()) {}
+  // All positions, or none.
+  HWY_INLINE static Mask filled(bool all) {
+    Mask mask;
+    for (auto& part : mask.part_) part = hn::Set(D(), all ? ~0u : 0);
+    return mask;
+  }
+
+  HWY_INLINE void store(std::uint32_t* words) const {
+    for (std::size_t i = 0; i < kParts; ++i) hn::StoreU(part_[i], D(), words + i * kLanes);
+  }
+  HWY_INLINE WideMask wide() const {
+    WideMask mask;
+    store(mask.words.data());
+    return mask;
+  }
+
+  HWY_INLINE bool none() const { return *this == filled(false); }
+  HWY_INLINE int count() const {
+    std::uint32_t words[Words];
+    store(words);
+    int count = 0;
+    if constexpr (Words == 1) return std::popcount(words[0]);
+    for (std::size_t i = 0; i < Words / 2; ++i) {
+      std::uint64_t pair;
+      std::memcpy(&pair, words + 2 * i, sizeof pair);
+      count += std::popcount(pair);
+    }
+    return count;
+  }
+
+  HWY_INLINE friend Mask operator&(const Mask& a, const Mask& b) {
+    return combine(a, b, [](V x, V y) { return hn::And(x, y); });
+  }
+  HWY_INLINE friend Mask operator|(const Mask& a, const Mask& b) {
+    return combine(a, b, [](V x, V y) { return hn::Or(x, y); });
+  }
+  HWY_INLINE friend Mask operator^(const Mask& a, const Mask& b) {
+    return combine(a, b, [](V x, V y) { return hn::Xor(x, y); });
+  }
+  HWY_INLINE friend Mask without(const Mask& a, const Mask& b) {  // a & ~b
+    return combine(a, b, [](V x, V y) { return hn::AndNot(y, x); });
+  }
+  HWY_INLINE friend bool operator==(const Mask& a, const Mask& b) {
+    bool equal = true;
+    for (std::size_t i = 0; i < kParts; ++i) equal &= hn::AllTrue(D(), hn::Eq(a.part_[i], b.part_[i]));
+    return equal;
+  }
+
+ private:
+  using D = hn::CappedTag<std::uint32_t, Words>;
+  using V = hn::Vec<D>;
+  static constexpr std::size_t kLanes = hn::MaxLanes(D()), kParts = Words / kLanes;
+
+  template <class Combine>
+  HWY_INLINE static Mask combine(const Mask& a, const Mask& b, const Combine& parts) {
+    Mask result;
+    for (std::size_t i = 0; i < kParts; ++i) result.part_[i] = parts(a.part_[i], b.part_[i]);
+    return result;
+  }
+
+  V part_[kParts];
+};
 
 template <std::size_t Words, std::size_t Slots>
 class OwnerComposer {
  public:
   using Pixel = OpenPixel<Words, Slots>;
   using Pixels = OpenPixels<Words, Slots>;
+  using Mask = HWY_NAMESPACE::Mask<Words>;
 
-  OwnerComposer(const OwnersBin& bin, OwnersResult& result)
-      : bin_(bin), result_(result), width_(static_cast<std::uint32_t>(bin.tile.width())) {}
+  OwnerComposer(const OwnersBin& bin, OwnersResult& result) : bin_(bin), result_(result) {}
 
   enum class Outcome { hidden, composed, merged };  // merged: two owners became one
 
@@ -29,50 +116,47 @@ class OwnerComposer {
   Outcome add(const Fragment& fragment, std::uint32_t number, Pixels& pixels, ClosedDepth& closed) {
     ++work.fragments;
     pixel_ = fragment.pixel;
-    const std::uint32_t row = fragment.pixel / width_;
-    x_ = bin_.tile.x0 + static_cast<std::int32_t>(fragment.pixel - row * width_);
-    y_ = bin_.tile.y0 + static_cast<std::int32_t>(row);
-    if (closed.is_hidden(x_, y_, fragment.z_min)) return Outcome::hidden;
+    if (closed.is_hidden(pixel_, fragment.z_min)) return Outcome::hidden;
     Pixel& pixel = pixels.pixels[pixel_];
     depths_ = &pixels.depths[pixel_];
-    if (fragment.mask.none()) {
+    const Mask mask(fragment.mask);
+    if (mask.none()) {
       add_speck(fragment, number, pixel);
       return Outcome::composed;
     }
     ++work.masks;
-    const std::uint64_t met = pixel.states.states_among(fragment.mask);
-    WideMask claimed;
-    const bool meets_empty = met >> Pixel::kEmpty & 1;
-    if (meets_empty) claimed = fragment.mask & pixel.states.positions_in(Pixel::kEmpty);
+    const ByState met = by_state(mask, pixel);
+    const bool meets_empty = met.found >> Pixel::kEmpty & 1;
+    Mask claimed = met.positions[Pixel::kEmpty];
     bool lost = false;  // has a slot lost all of its positions?
-    for (std::uint64_t slots = met >> Pixel::kFirstSlot & kAllSlots; slots != 0; slots &= slots - 1) {
+    for (std::uint64_t slots = met.found >> Pixel::kFirstSlot & kAllSlots; slots != 0; slots &= slots - 1) {
       const auto k = static_cast<std::size_t>(std::countr_zero(slots));
-      const WideMask owned = pixel.states.positions_in(Pixel::owned_by(k));
-      const WideMask won = positions_won(fragment, k, pixel.slots[k], owned & fragment.mask);
+      const Mask& contested = met.positions[Pixel::owned_by(k)];
+      const Mask won = positions_won(fragment, k, pixel.slots[k], contested);
       claimed = claimed | won;
-      if (won != owned) continue;
+      if (!(won == contested) || !(won == positions_in(Pixel::owned_by(k), pixel))) continue;
       pixel.slots[k].clear();
       lost = true;
     }
     if (claimed.none()) return Outcome::composed;
     ++work.claims;
-    const WideMask empty = pixel.states.positions_in(Pixel::kEmpty);
-    const bool closes = lost || !empty.none();  // may this fragment close the pixel, or close it nearer than before?
+    // Does this fragment close the pixel, or may it close it nearer than before?
+    const bool closes = (meets_empty || lost) && positions_in(Pixel::kEmpty, pixel) == met.positions[Pixel::kEmpty];
     std::size_t room = Slots;
     for (std::size_t k = 0; k < Slots; ++k)
       if (pixel.slots[k].is_free()) room = k;
     bool merged = false;
     if (room == Slots) {
       put(claimed, Pixel::kEmpty, pixel);
-      room = make_room(fragment, claimed, number, pixel, merged);
+      room = make_room(fragment, mask, claimed, number, pixel, merged);
     }
     if (room < Slots) {
       put(claimed, Pixel::owned_by(room), pixel);
-      pixel.slots[room] = slot_of(fragment, number);
+      pixel.slots[room] = slot_of(fragment, mask, number);
       depths_->planes[room] = fragment.plane;
       depths_->farthest[room] = fragment.z_max;
     }
-    if (closes && without(empty, claimed).none()) close(pixel, closed);
+    if (closes) close(pixel, closed);
     return merged ? Outcome::merged : Outcome::composed;
   }
 
@@ -82,28 +166,30 @@ class OwnerComposer {
     pixel_ = index;
     Pixel& pixel = pixels.pixels[index];
     if (const OwnerSlot* slot = only_owner(pixel)) {
-      const glm::vec3 color = color_of(*slot, kEverywhere);
+      const glm::vec3 color = color_of(*slot, Mask::filled(true));
       if (bin_.weights) bin_.weights->finish_whole(pixel_, slot->triangle(), color);
       return {1.0f, color};
     }
     std::size_t count = 0;
     for (std::size_t k = 0; k < Slots; ++k)
       if (!pixel.slots[k].is_free()) list_owner(pixel, k, owners_[count++]);
-    settle(count, pixel);
-    return limited(pixel);
+    if (count == 0 && pixel.area <= 0) {  // nothing is seen
+      ++work.settlings;
+      return {0.0f, glm::vec3(0.0f)};
+    }
+    return limited(pixel, settle(count, pixel));
   }
 
   OwnersWork work;
 
  private:
   static constexpr auto kPositions = static_cast<float>(32 * Words);
-  static constexpr WideMask kEverywhere = first_words(Words);
   static constexpr std::uint64_t kAllSlots = (std::uint64_t{1} << Slots) - 1;
 
   struct Owner {
     OwnerSlot slot;
     std::size_t index = 0;  // of the slot; Slots: it has none yet
-    WideMask owned;
+    Mask owned{};
     float visible = 0;  // positions that it owns
     DepthPlane<float> plane{};
     float mean_u = 0, mean_v = 0;  // of these positions, in pixels from the pixel's centre
@@ -112,17 +198,55 @@ class OwnerComposer {
     float fraction() const { return visible / covered(); }
   };
 
-  static OwnerSlot slot_of(const Fragment& fragment, std::uint32_t number) {
-    const auto covered = static_cast<std::uint32_t>(fragment.mask.count());
+  // An owner's place in the order in which owners become final.
+  struct Place {
+    std::size_t owner;  // index into owners_
+    float fraction;
+  };
+
+  // Positions by their state. Bit s of `found`: is any of them in state s?
+  struct ByState {
+    Mask positions[std::size_t{1} << Pixel::kBits];
+    std::uint64_t found;
+  };
+  HWY_INLINE static ByState by_state(const Mask& positions, const Pixel& pixel) {
+    ByState result;
+    result.positions[0] = positions;
+    for (std::size_t b = 0; b < Pixel::kBits; ++b) {
+      const Mask plane(pixel.states.planes[b]);
+      for (std::size_t state = 0; state < std::size_t{1} << b; ++state) {
+        Mask& here = result.positions[state];
+        result.positions[state | std::size_t{1} << b] = here & plane;
+        here = without(here, plane);
+      }
+    }
+    result.found = 0;
+    for (std::size_t state = 0; state < Pixel::kFinal; ++state)
+      result.found |= std::uint64_t{!result.positions[state].none()} << state;
+    return result;
+  }
+
+  // As in PositionStates. No branch depends on the state, because it is hard to predict.
+  HWY_INLINE static Mask positions_in(std::uint32_t state, const Pixel& pixel) {
+    Mask positions = Mask::filled(true);
+    for (std::size_t b = 0; b < Pixel::kBits; ++b)
+      positions = without(positions, Mask(pixel.states.planes[b]) ^ Mask::filled(state >> b & 1));
+    return positions;
+  }
+  HWY_INLINE void put(const Mask& positions, std::uint32_t state, Pixel& pixel) {
+    ++work.puts;
+    for (std::size_t b = 0; b < Pixel::kBits; ++b) {
+      const Mask plane(pixel.states.planes[b]);
+      (without(plane, positions) | (positions & Mask::filled(state >> b & 1))).store(pixel.states.planes[b]);
+    }
+  }
+
+  static OwnerSlot slot_of(const Fragment& fragment, const Mask& mask, std::uint32_t number) {
+    const auto covered = static_cast<std::uint32_t>(mask.count());
     OwnerSlot slot;
     slot.set(number, fragment.alpha * kPositions - static_cast<float>(covered), covered, fragment.centroid_u,
              fragment.centroid_v);
     return slot;
-  }
-
-  void put(const WideMask& mask, std::uint32_t state, Pixel& pixel) {
-    ++work.puts;
-    pixel.states.put(mask, state);
   }
 
   // Of the owner in slot k.
@@ -134,24 +258,25 @@ class OwnerComposer {
 
   // The contested positions that the fragment takes from the owner. The difference of two planes is a plane: most
   // often it has one sign in the whole pixel.
-  WideMask positions_won(const Fragment& fragment, std::size_t k, const OwnerSlot& slot, const WideMask& contested) {
+  Mask positions_won(const Fragment& fragment, std::size_t k, const OwnerSlot& slot, const Mask& contested) {
     ++work.contests;
     const DepthPlane<float>& owner = plane_of(k, slot);
     const PlaneGap<float> gap = plane_gap(fragment.plane, owner);
     if (gap.middle < -gap.reach) return contested;
-    if (gap.middle > gap.reach) return {};
+    if (gap.middle > gap.reach) return Mask::filled(false);
     ++work.planes_compared;
     const bool is_earlier = fragment.triangle < bin_.list[slot.triangle()];
     const DepthPlane<float>&one = is_earlier ? owner : fragment.plane, &other = is_earlier ? fragment.plane : owner;
+    const WideMask where = contested.wide();
     WideMask nearer;
-    nearer_positions(one, other, bin_.positions.patterns.data(), Words, nearer.words.data(), contested.words.data());
-    return is_earlier ? without(contested, nearer) : nearer;
+    nearer_positions(one, other, bin_.positions.patterns.data(), Words, nearer.words.data(), where.words.data());
+    return is_earlier ? without(contested, Mask(nearer)) : Mask(nearer);
   }
 
   // Settles the owners that are final or, if there are none, makes one owner of two. Returns the slot that became free;
   // Slots if the fragment is one of the two, because then its positions already have an owner.
-  std::size_t make_room(const Fragment& fragment, const WideMask& claimed, std::uint32_t number, Pixel& pixel,
-                        bool& merged) {
+  std::size_t make_room(const Fragment& fragment, const Mask& mask, const Mask& claimed, std::uint32_t number,
+                        Pixel& pixel, bool& merged) {
     DepthPlane<float> planes[Slots];
     for (std::size_t k = 0; k < Slots; ++k) planes[k] = plane_of(k, pixel.slots[k]);
     if (bin_.watermarks) {
@@ -160,14 +285,15 @@ class OwnerComposer {
         if (is_final(pixel, k, planes[k], (*bin_.watermarks)[number])) list_owner(pixel, k, owners_[count++]);
       if (count > 0) {
         settle(count, pixel);
-        return owners_.front().index;
+        return owners_[order_.front().owner].index;
       }
     }
     for (std::size_t k = 0; k < Slots; ++k) {
       list_owner(pixel, k, owners_[k]);
       owners_[k].plane = planes[k];
     }
-    owners_.back() = {slot_of(fragment, number), Slots, claimed, static_cast<float>(claimed.count()), fragment.plane};
+    owners_.back() = {slot_of(fragment, mask, number), Slots, claimed, static_cast<float>(claimed.count()),
+                      fragment.plane};
     for (Owner& owner : owners_) measure(owner);
     merged = true;
     return merge_closest(pixel);
@@ -181,7 +307,7 @@ class OwnerComposer {
     if (plane.z - reach > watermark) return false;
     if (plane.z + reach <= watermark) return true;
     ++work.farthest_found;
-    const WideMask owned = pixel.states.positions_in(Pixel::owned_by(k));
+    const WideMask owned = positions_in(Pixel::owned_by(k), pixel).wide();
     return farthest_depth(plane, bin_.positions.patterns.data(), Words, owned.words.data()) <= watermark;
   }
 
@@ -194,8 +320,9 @@ class OwnerComposer {
       if (only || slot.is_merged()) return nullptr;
       only = &slot;
     }
-    if (!only || !pixel.states.all_in(Pixel::owned_by(static_cast<std::size_t>(only - pixel.slots)))) return nullptr;
-    return only->covered() == kPositions ? only : nullptr;
+    if (!only || only->covered() != kPositions) return nullptr;
+    const Mask owned = positions_in(Pixel::owned_by(static_cast<std::size_t>(only - pixel.slots)), pixel);
+    return owned == Mask::filled(true) ? only : nullptr;
   }
 
   // All but the plane and the mean.
@@ -203,14 +330,15 @@ class OwnerComposer {
     ++work.listed;
     owner.slot = pixel.slots[k];
     owner.index = k;
-    owner.owned = pixel.states.positions_in(Pixel::owned_by(k));
+    owner.owned = positions_in(Pixel::owned_by(k), pixel);
     owner.visible = static_cast<float>(owner.owned.count());
   }
 
   // Finds the mean of the positions that it owns.
   void measure(Owner& owner) {
     ++work.measured;
-    const PositionSums sums = position_sums(bin_.positions.patterns.data(), Words, owner.owned.words.data());
+    const WideMask owned = owner.owned.wide();
+    const PositionSums sums = position_sums(bin_.positions.patterns.data(), Words, owned.words.data());
     const float per_unit = 1.0f / (owner.visible * kSubpixelUnits);
     owner.mean_u = static_cast<float>(sums.x) * per_unit - 0.5f;
     owner.mean_v = static_cast<float>(sums.y) * per_unit - 0.5f;
@@ -253,8 +381,8 @@ class OwnerComposer {
     const glm::vec3 color_of_other = color_of(other.slot, other.owned), color_of_one = color_of(one.slot, one.owned);
     const glm::vec3 color = (part * color_of_one + other_part * color_of_other) * (1 / (part + other_part));
     if (bin_.weights)
-      bin_.weights->merge(pixel_, {one.slot, one.index, one.owned, color_of_one},
-                          {other.slot, other.index, other.owned, color_of_other}, part / (part + other_part));
+      bin_.weights->merge(pixel_, {one.slot, one.index, one.owned.wide(), color_of_one},
+                          {other.slot, other.index, other.owned.wide(), color_of_other}, part / (part + other_part));
     put(one.owned | other.owned, Pixel::owned_by(one.index), pixel);
     const std::uint32_t contents = one.slot.content() + 3 * other.slot.content();
     depths_->planes[one.index] = larger.plane;
@@ -266,7 +394,7 @@ class OwnerComposer {
   }
 
   // `owned`: positions of the pixel.
-  glm::vec3 color_of(const OwnerSlot& slot, const WideMask& owned) {
+  glm::vec3 color_of(const OwnerSlot& slot, const Mask& owned) {
     if (slot.is_merged()) return slot.color();
     const std::uint32_t triangle = bin_.list[slot.triangle()];
     if (bin_.shade_at == OwnerPlace::covered || bin_.shader.is_flat(triangle)) {
@@ -280,17 +408,18 @@ class OwnerComposer {
 
   // The mean of what is owned in each part of the pixel. `width`: of a part, in pixels.
   template <class Parts>
-  glm::vec3 shade_parts(std::uint32_t triangle, const WideMask& owned, const Parts& parts, float width) {
+  glm::vec3 shade_parts(std::uint32_t triangle, const Mask& owned, const Parts& parts, float width) {
     glm::vec3 sum(0.0f);
     for (const WideMask& part : parts)
-      if (const WideMask here = owned & part; !here.none())
+      if (const Mask here = owned & Mask(part); !here.none())
         sum += static_cast<float>(here.count()) * shade_at_mean(triangle, here, width);
     return sum / static_cast<float>(owned.count());
   }
 
-  glm::vec3 shade_at_mean(std::uint32_t triangle, const WideMask& positions, float width) {
+  glm::vec3 shade_at_mean(std::uint32_t triangle, const Mask& positions, float width) {
     ++work.measured;
-    const PositionSums sums = position_sums(bin_.positions.patterns.data(), Words, positions.words.data());
+    const WideMask words = positions.wide();
+    const PositionSums sums = position_sums(bin_.positions.patterns.data(), Words, words.words.data());
     const float per_unit = 1.0f / (static_cast<float>(positions.count()) * kSubpixelUnits);
     return shade(triangle, static_cast<float>(sums.x) * per_unit, static_cast<float>(sums.y) * per_unit, width);
   }
@@ -304,12 +433,13 @@ class OwnerComposer {
   }
 
   // Adds owners_[0 .. count - 1] to what is final. Those that show the largest part of their positions come first: what
-  // they take beyond their positions is then known when the others are added.
-  void settle(std::size_t count, Pixel& pixel) {
+  // they take beyond their positions is then known when the others are added. Returns how many positions are final.
+  float settle(std::size_t count, Pixel& pixel) {
     ++work.settlings;
     sort_by_fraction(count);
-    auto final_positions = static_cast<float>(pixel.states.positions_in(Pixel::kFinal).count());
-    for (const Owner* owner = owners_.data(); owner != owners_.data() + count; ++owner) {
+    auto final_positions = static_cast<float>(positions_in(Pixel::kFinal, pixel).count());
+    for (std::size_t i = 0; i < count; ++i) {
+      const Owner* const owner = &owners_[order_[i].owner];
       ++work.settled;
       // What is left of a merged surface may be less than the error of its mask.
       const float exact = greater(owner->covered() + owner->slot.error(), 0.0f) / kPositions;
@@ -317,7 +447,8 @@ class OwnerComposer {
           visible_area(exact, owner->covered(), owner->visible, kPositions, Taken<float>{pixel.area, final_positions});
       const glm::vec3 color = color_of(owner->slot, owner->owned);
       const float counted = owner->visible / kPositions;
-      if (bin_.weights) bin_.weights->settle(pixel_, {owner->slot, owner->index, owner->owned, color}, area, counted);
+      if (bin_.weights)
+        bin_.weights->settle(pixel_, {owner->slot, owner->index, owner->owned.wide(), color}, area, counted);
       final_positions += owner->visible;
       const float threshold = rounding_threshold(owner->slot.content());
       pixel.area.add(area, threshold);
@@ -327,16 +458,20 @@ class OwnerComposer {
       put(owner->owned, Pixel::kFinal, pixel);
       pixel.slots[owner->index].clear();
     }
+    return final_positions;
   }
 
-  // Equal ones keep their order.
+  // Sets order_. Equal ones keep their order.
   void sort_by_fraction(std::size_t count) {
-    for (std::size_t i = 1; i < count; ++i) {
-      for (std::size_t j = i; j > 0; --j) {
+    for (std::size_t i = 0; i < count; ++i) {
+      const Place place{i, owners_[i].fraction()};
+      std::size_t j = i;
+      for (; j > 0; --j) {
         ++work.order_tests;
-        if (owners_[j].fraction() <= owners_[j - 1].fraction()) break;
-        std::swap(owners_[j], owners_[j - 1]);
+        if (place.fraction <= order_[j - 1].fraction) break;
+        order_[j] = order_[j - 1];
       }
+      order_[j] = place;
     }
   }
 
@@ -351,7 +486,7 @@ class OwnerComposer {
       plane_of(k, slot);
       farthest = std::max(farthest, depths_->farthest[k]);
     }
-    closed.close(x_, y_, farthest);
+    closed.close(pixel_, farthest);
   }
 
   // Each of the three positions nearest to a speck votes for it, if it is free or its owner is not nearer. Of specks
@@ -386,9 +521,9 @@ class OwnerComposer {
                            speck.centroid_v - 0.5f);
   }
 
-  // The analytic estimate, no farther from the counted one than the tolerances allow.
-  PixelColor limited(const Pixel& pixel) {
-    const auto count = static_cast<float>(pixel.states.positions_in(Pixel::kFinal).count());
+  // `count`: of positions, all of which are final. The analytic estimate, no farther from the counted one than the
+  // tolerances allow.
+  PixelColor limited(const Pixel& pixel, float count) {
     if (pixel.area <= 0) return {0.0f, glm::vec3(0.0f)};
     ++work.limited;
     Estimate<float> analytic{pixel.area, {}}, counted{count / kPositions, {}};
@@ -406,22 +541,24 @@ class OwnerComposer {
 
   const OwnersBin& bin_;
   OwnersResult& result_;
-  const std::uint32_t width_;             // of the tile
   std::uint32_t pixel_ = 0;               // index within the tile
-  std::int32_t x_ = 0, y_ = 0;            // the fragment's pixel, frame coordinates
   OwnerDepths<Slots>* depths_ = nullptr;  // of this pixel
   std::array<Owner, Slots + 1> owners_;   // of one pixel, and the fragment that needs a slot
+  std::array<Place, Slots> order_;
 };
 
-}  // namespace
-
 template <std::size_t Words, std::size_t Slots>
-void compose_owners(const OwnersBin& bin, const std::vector<Fragment>& fragments, std::size_t first,
-                    StageCounters& counters, OpenPixels<Words, Slots>& pixels, ClosedDepth& closed,
-                    const OwnersMaps& maps, OwnersResult& result) {
+void compose(const OwnersBin& bin, const std::vector<Fragment>& fragments, std::size_t first, StageCounters& counters,
+             OpenPixels<Words, Slots>& pixels, ClosedDepth& closed, const OwnersMaps& maps, OwnersResult& result) {
   OwnerComposer<Words, Slots> composer(bin, result);
   auto number = static_cast<std::uint32_t>(first);
-  for (const Fragment& fragment : fragments) {
+  constexpr std::size_t kAhead = 4;  // fragments
+  for (std::size_t i = 0; i < fragments.size(); ++i) {
+    if (i + kAhead < fragments.size()) {
+      prefetch(pixels.pixels[fragments[i + kAhead].pixel]);
+      prefetch(pixels.depths[fragments[i + kAhead].pixel]);
+    }
+    const Fragment& fragment = fragments[i];
     while (bin.list[number] != fragment.triangle) ++number;
     using Outcome = typename OwnerComposer<Words, Slots>::Outcome;
     const Outcome outcome = composer.add(fragment, number, pixels, closed);
@@ -432,8 +569,8 @@ void compose_owners(const OwnersBin& bin, const std::vector<Fragment>& fragments
 }
 
 template <std::size_t Words, std::size_t Slots>
-std::vector<PixelColor> finish_owners(const OwnersBin& bin, StageCounters& counters, OpenPixels<Words, Slots>& pixels,
-                                      OwnersResult& result) {
+std::vector<PixelColor> finish(const OwnersBin& bin, StageCounters& counters, OpenPixels<Words, Slots>& pixels,
+                               OwnersResult& result) {
   OwnerComposer<Words, Slots> composer(bin, result);
   std::vector<PixelColor> colors(pixels.pixels.size());
   for (std::uint32_t i = 0; i < colors.size(); ++i) colors[i] = composer.finish(i, pixels);
@@ -441,13 +578,44 @@ std::vector<PixelColor> finish_owners(const OwnersBin& bin, StageCounters& count
   return colors;
 }
 
-#define BEAMPIPE_COMPOSE(words, slots)                                                                    \
-  template void compose_owners<words, slots>(const OwnersBin&, const std::vector<Fragment>&, std::size_t, \
-                                             StageCounters&, OpenPixels<words, slots>&, ClosedDepth&,     \
-                                             const OwnersMaps&, OwnersResult&);                           \
-  template std::vector<PixelColor> finish_owners<words, slots>(const OwnersBin&, StageCounters&,          \
-                                                               OpenPixels<words, slots>&, OwnersResult&);
+}  // namespace
+
+// Highway's tables hold functions, not templates.
+#define BEAMPIPE_KERNELS(words, slots)                                                                            \
+  void compose_##words##_##slots(const OwnersBin& bin, const std::vector<Fragment>& fragments, std::size_t first, \
+                                 StageCounters& counters, OpenPixels<words, slots>& pixels, ClosedDepth& closed,  \
+                                 const OwnersMaps& maps, OwnersResult& result) {                                  \
+    compose<words, slots>(bin, fragments, first, counters, pixels, closed, maps, result);                         \
+  }                                                                                                               \
+  std::vector<PixelColor> finish_##words##_##slots(const OwnersBin& bin, StageCounters& counters,                 \
+                                                   OpenPixels<words, slots>& pixels, OwnersResult& result) {      \
+    return finish<words, slots>(bin, counters, pixels, result);                                                   \
+  }
+BEAMPIPE_OPEN_PIXELS(BEAMPIPE_KERNELS)
+#undef BEAMPIPE_KERNELS
+
+}  // namespace HWY_NAMESPACE
+}  // namespace beampipe
+HWY_AFTER_NAMESPACE();
+
+#if HWY_ONCE
+namespace beampipe {
+#define BEAMPIPE_COMPOSE(words, slots)                                                                 \
+  HWY_EXPORT(compose_##words##_##slots);                                                               \
+  template <>                                                                                          \
+  void compose_owners(const OwnersBin& bin, const std::vector<Fragment>& fragments, std::size_t first, \
+                      StageCounters& counters, OpenPixels<words, slots>& pixels, ClosedDepth& closed,  \
+                      const OwnersMaps& maps, OwnersResult& result) {                                  \
+    HWY_DYNAMIC_DISPATCH(compose_##words##_##slots)                                                    \
+    (bin, fragments, first, counters, pixels, closed, maps, result);                                   \
+  }                                                                                                    \
+  HWY_EXPORT(finish_##words##_##slots);                                                                \
+  template <>                                                                                          \
+  std::vector<PixelColor> finish_owners(const OwnersBin& bin, StageCounters& counters,                 \
+                                        OpenPixels<words, slots>& pixels, OwnersResult& result) {      \
+    return HWY_DYNAMIC_DISPATCH(finish_##words##_##slots)(bin, counters, pixels, result);              \
+  }
 BEAMPIPE_OPEN_PIXELS(BEAMPIPE_COMPOSE)
 #undef BEAMPIPE_COMPOSE
-
 }  // namespace beampipe
+#endif

@@ -31,8 +31,8 @@ class ClosedDepth {
     return hidden;
   }
 
-  // The same, for a stage that charges the test itself.
-  bool is_hidden(std::int32_t x, std::int32_t y, float nearest) const { return nearest > depth_[tile_.index(x, y)]; }
+  // The same, for a stage that charges the test itself. `pixel`: index within the tile.
+  bool is_hidden(std::size_t pixel, float nearest) const { return nearest > depth_[pixel]; }
 
   // Is it hidden in every pixel of the tile?
   bool hides_everywhere(float nearest) {
@@ -43,8 +43,8 @@ class ClosedDepth {
   }
 
   // A triangle covers the whole pixel and is nowhere in it farther than this.
-  void close(std::int32_t x, std::int32_t y, float farthest) {
-    const std::size_t pixel = tile_.index(x, y);
+  void close(std::int32_t x, std::int32_t y, float farthest) { close(tile_.index(x, y), farthest); }
+  void close(std::size_t pixel, float farthest) {
     ++work_.closings;
     if (farthest >= depth_[pixel]) return;
     ++work_.changes;

@@ -9,7 +9,9 @@
 #include <bit>
 #include <cstddef>
 #include <cstdint>
+#include <cstring>
 #include <glm/glm.hpp>
+#include <memory>
 #include <vector>
 
 #include "simd/depth_plane.h"
@@ -40,43 +42,72 @@ class ColorSums {
  public:
   static constexpr std::size_t kCount = 6;
 
-  float operator[](std::size_t i) const { return static_cast<float>(words_[i] & kLargest) * unit(exponent()); }
+  float operator[](std::size_t i) const {
+    const Words words = load();
+    return static_cast<float>(words[i] & kLargest) * unit(exponent(words));
+  }
 
   // `addends` are not negative. `threshold`: as in FixedSum.
   void add(const float (&addends)[kCount], float threshold) {
-    int power = exponent();
-    std::uint32_t sums[kCount];
-    for (std::size_t i = 0; i < kCount; ++i) sums[i] = words_[i] & kLargest;
-    while (power < kMostExponent && !fits(sums, addends, per_unit(power))) {
-      for (std::uint32_t& sum : sums) sum = (sum + 1) / 2;
-      ++power;
-    }
+    Words words = load();
+    const int before = exponent(words);
+    for (std::uint32_t& word : words) word &= kLargest;
+    int power = std::max(before, least_exponent(addends));
+    for (std::uint32_t& sum : words) sum = halved(sum, power - before);
+    for (; power < kMostExponent && !fits(words, addends, per_unit(power)); ++power)
+      for (std::uint32_t& sum : words) sum = halved(sum, 1);
     const float scale = per_unit(power);
     for (std::size_t i = 0; i < kCount; ++i) {
       const float units = std::min(addends[i] * scale, static_cast<float>(kLargest));
-      const std::uint32_t sum = sums[i] + static_cast<std::uint32_t>(units + 1.0f - threshold);
-      words_[i] = static_cast<std::uint16_t>(std::min(sum, kLargest) | (power >> i & 1) << 15);
+      const std::uint32_t sum = words[i] + static_cast<std::uint32_t>(units + 1.0f - threshold);
+      words[i] = std::min(sum, kLargest) | (static_cast<std::uint32_t>(power) >> i & 1) << 15;
     }
+    store(words);
   }
 
  private:
   static constexpr std::uint32_t kLargest = 0x7fff;
   static constexpr int kMostExponent = 63;
+  using Words = std::array<std::uint32_t, kCount>;  // of 16 bits
 
   // Units from 2^-40, so that sums up to 2^-25 are exact to that, to 2^23.
   static float unit(int power) { return std::bit_cast<float>(static_cast<std::uint32_t>(power - 40 + 127) << 23); }
   static float per_unit(int power) { return std::bit_cast<float>(static_cast<std::uint32_t>(40 - power + 127) << 23); }
 
-  static bool fits(const std::uint32_t (&sums)[kCount], const float (&addends)[kCount], float per_unit) {
+  // The largest addend does not fit with any smaller exponent, whatever the sums are: it would be 2^15 units or more.
+  static int least_exponent(const float (&addends)[kCount]) {
+    std::uint32_t largest = 0;  // floats that are not negative are in the order of their bits
+    for (const float addend : addends) largest = std::max(largest, std::bit_cast<std::uint32_t>(addend) & 0x7fffffff);
+    return std::min(static_cast<int>(largest >> 23) - 127 + 40 - 14, kMostExponent);
+  }
+
+  // Rounded up, as if it were halved again and again.
+  static std::uint32_t halved(std::uint32_t sum, int times) {
+    const int shift = std::min(times, 15);
+    return (sum + (1u << shift) - 1) >> shift;
+  }
+
+  static bool fits(const Words& sums, const float (&addends)[kCount], float per_unit) {
     for (std::size_t i = 0; i < kCount; ++i)
       if (!(static_cast<float>(sums[i]) + addends[i] * per_unit + 1.0f < static_cast<float>(kLargest))) return false;
     return true;
   }
 
-  int exponent() const {
-    int power = 0;
-    for (std::size_t i = 0; i < kCount; ++i) power |= words_[i] >> 15 << i;
-    return power;
+  static int exponent(const Words& words) {
+    std::uint32_t power = 0;
+    for (std::size_t i = 0; i < kCount; ++i) power |= words[i] >> 15 << i;
+    return static_cast<int>(power);
+  }
+
+  // The words are loaded and stored together: a load of several waits if they were stored one by one just before.
+  Words load() const {
+    std::uint32_t pairs[kCount / 2];
+    std::memcpy(pairs, words_, sizeof pairs);
+    return {pairs[0] & 0xffff, pairs[0] >> 16, pairs[1] & 0xffff, pairs[1] >> 16, pairs[2] & 0xffff, pairs[2] >> 16};
+  }
+  void store(const Words& words) {
+    const std::uint32_t pairs[] = {words[0] | words[1] << 16, words[2] | words[3] << 16, words[4] | words[5] << 16};
+    std::memcpy(words_, pairs, sizeof pairs);
   }
 
   std::uint16_t words_[kCount] = {};
@@ -169,10 +200,11 @@ struct OwnerDepths {
 // The open pixels of a tile, row by row.
 template <std::size_t Words, std::size_t Slots>
 struct OpenPixels {
-  explicit OpenPixels(std::size_t count) : pixels(count), depths(count) {}
+  explicit OpenPixels(std::size_t count)
+      : pixels(count), depths(std::make_unique_for_overwrite<OwnerDepths<Slots>[]>(count)) {}
 
   std::vector<OpenPixel<Words, Slots>> pixels;
-  std::vector<OwnerDepths<Slots>> depths;
+  std::unique_ptr<OwnerDepths<Slots>[]> depths;  // not set before a slot has an owner
 };
 
 // Size of a fragment between beam_fragment and compose in the modelled machine: pixel and facing (16 bits), triangle

@@ -1,26 +1,13 @@
-// The formulas of vertex_setup for one triangle, for numbers and for numbers that count (stages/cost/counting.h).
+// The formulas of vertex_setup for one triangle, for numbers and for numbers that count (stages/cost/counting.h). Those
+// that run on several triangles at once are in simd/triangle_setup.h.
 #pragma once
 
 #include <array>
 
 #include "simd/scalar.h"
-#include "simd/vertex_transform.h"
+#include "simd/triangle_setup.h"
 
 namespace beampipe {
-
-// Slopes of the depth plane through three snapped vertices, per pixel.
-template <class Real>
-struct Slopes {
-  Real dzdx, dzdy;
-};
-
-template <class Real>
-Slopes<Real> depth_slopes(const ScreenVertex<Real>& p, const ScreenVertex<Real>& q, const ScreenVertex<Real>& r) {
-  const Real qx = q.x - p.x, qy = q.y - p.y, qz = q.z - p.z;
-  const Real rx = r.x - p.x, ry = r.y - p.y, rz = r.z - p.z;
-  const Real inverse = Real(1.0) / (qx * ry - rx * qy);
-  return {(qz * ry - rz * qy) * inverse, (rz * qx - qz * rx) * inverse};
-}
 
 // A draw's depth bias and window_scale, as in DrawPlacement.
 template <class Real>
@@ -53,28 +40,6 @@ Real limited_bias(Real bias, Real nearest, Real farthest, Real window_offset, Re
 template <class Int>
 Int doubled_area(const std::array<Int, 3>& x, const std::array<Int, 3>& y) {
   return (x[1] - x[0]) * (y[2] - y[0]) - (x[2] - x[0]) * (y[1] - y[0]);
-}
-
-template <class Real>
-struct Vector {
-  Real x, y, z;
-};
-
-// `m`: column-major. The sums are grouped as in glm.
-template <class Real>
-Vector<Real> world_point(const std::array<Real, 16>& m, const Vector<Real>& p) {
-  const auto row = [&](std::size_t r) { return (m[r] * p.x + m[4 + r] * p.y) + (m[8 + r] * p.z + m[12 + r]); };
-  return {row(0), row(1), row(2)};
-}
-
-// The normal of a triangle, not normalized, and its length.
-template <class Real>
-Vector<Real> face_normal(const Vector<Real>& p, const Vector<Real>& q, const Vector<Real>& r, Real& length) {
-  const Real ax = q.x - p.x, ay = q.y - p.y, az = q.z - p.z;
-  const Real bx = r.x - p.x, by = r.y - p.y, bz = r.z - p.z;
-  const Vector<Real> normal{ay * bz - by * az, az * bx - bz * ax, ax * by - bx * ay};
-  length = square_root(normal.x * normal.x + normal.y * normal.y + normal.z * normal.z);
-  return normal;
 }
 
 }  // namespace beampipe

@@ -220,7 +220,8 @@ BarycentricPlanes<float> barycentric_planes(const std::array<ScreenCorner, 3>& c
 
 constexpr std::uint32_t kNoVertices = ~0u;  // of frames whose triangles are all flat
 
-// Sets up triangles of one draw, one after the other, and appends them to `out`.
+// Sets up triangles of one draw and appends them to `out`. Depth planes and normals are found for a block of triangles
+// at once.
 class TriangleSetup {
  public:
   // `first_vertex`: where the draw's vertices start in SetupTriangles::vertices.
@@ -252,10 +253,41 @@ class TriangleSetup {
     }
   }
 
+  // After the last triangle, or when a block is full.
+  void finish_block() {
+    const std::size_t count = block_.count, first = out.triangles.size() - count;
+    depth_planes(block_.screen, count, block_.planes);
+    for (std::size_t i = 0; i < count; ++i) {
+      SetupTriangle& triangle = out.triangles[first + i];
+      triangle.depth = {block_.planes.z[i], block_.planes.dzdx[i], block_.planes.dzdy[i], block_.planes.anchor_x[i],
+                        block_.planes.anchor_y[i]};
+      if (screen_.placement.has_bias()) add_bias(triangle);
+    }
+    if (block_.is_lit) {
+      unit_normals(to_world_, block_.mesh, count, block_.normals);
+      for (std::size_t i = 0; i < count; ++i) {
+        FlatAttributes& flat = out.attributes[first + i];
+        if (flat.lit) flat.normal = {block_.normals.x[i], block_.normals.y[i], block_.normals.z[i]};
+      }
+    }
+    block_.count = 0;
+    block_.is_lit = false;
+  }
+
   SetupTriangles out;
   SetupWork work;
 
  private:
+  // The last triangles of `out`, whose depth planes and normals are missing.
+  struct Block {
+    std::size_t count = 0;
+    bool is_lit = false;  // has one of them a normal?
+    ScreenCorners screen{};
+    MeshCorners mesh{};
+    DepthPlaneColumns planes;
+    NormalColumns normals;
+  };
+
   // A triangle of a draw whose state says where it is cut.
   void add_cut(std::size_t t, const std::array<const ProjectedVertex*, 3>& v) {
     if (!(v[0]->finite && v[1]->finite && v[2]->finite)) return;
@@ -329,28 +361,22 @@ class TriangleSetup {
     const bool front = area2 < 0;  // counter-clockwise with y up
     if (draw_.cull == (front != draw_.state.front_is_clockwise ? Cull::front : Cull::back)) return;
     if (material != kNoMaterial && !materials_[material].double_sided && shows_back(front)) return;
-    SetupTriangle& triangle = out.triangles.emplace_back();
-    const std::array<const ProjectedVertex*, 3> corners = {&a, &b, &c};
     std::array<ScreenVertex<double>, 3> p = {a.screen, b.screen, c.screen};
     if (is_placed_) place_depths(t, p);
+    SetupTriangle& triangle = out.triangles.emplace_back();
+    const std::array<const ProjectedVertex*, 3> corners = {&a, &b, &c};
     const std::array<std::size_t, 3> turned = {0, front ? 2u : 1u, front ? 1u : 2u};
     for (std::size_t k = 0; k < 3; ++k) {
       triangle.x[k] = corners[turned[k]]->x, triangle.y[k] = corners[turned[k]]->y;
       triangle.vertex_z[k] = static_cast<float>(p[turned[k]].z);
+      block_.screen.x[k][block_.count] = p[k].x, block_.screen.y[k][block_.count] = p[k].y;
+      block_.screen.z[k][block_.count] = p[k].z;
     }
-    // Sorted, so that a triangle has the same depth whichever vertex comes first and whichever way it turns.
-    const auto put_in_order = [&p](std::size_t i) {
-      const auto key = [](const ScreenVertex<double>& v) { return std::array{v.x, v.y, v.z}; };
-      if (key(p[i + 1]) < key(p[i])) std::swap(p[i], p[i + 1]);
-    };
-    put_in_order(0), put_in_order(1), put_in_order(0);
-    const Slopes<double> slopes = depth_slopes(p[0], p[1], p[2]);
-    triangle.depth = {p[0].z, slopes.dzdx, slopes.dzdy, p[0].x, p[0].y};
-    if (screen_.placement.has_bias()) add_bias(triangle);
     triangle.front = front;
-    out.attributes.push_back(attributes(t, material, front));
+    add_attributes(t, material, front);
     out.draws.push_back(draw_index_);
     if (has_surfaces()) out.surfaces.push_back(surface(t, material, front, {first, second, third}));
+    if (++block_.count == kSetupBlock) finish_block();
   }
 
   // From the draw's own depth, -1..0, to the frame's.
@@ -407,26 +433,27 @@ class TriangleSetup {
     return surface;
   }
 
-  FlatAttributes attributes(std::size_t t, std::uint32_t material, bool front) {
-    FlatAttributes flat{glm::vec3(0), glm::vec3(0), draw_.shading == Shading::lambert};
+  // All but the normal.
+  void add_attributes(std::size_t t, std::uint32_t material, bool front) {
+    FlatAttributes& flat = out.attributes.emplace_back();
+    flat.lit = draw_.shading == Shading::lambert;
+    flat.normal = glm::vec3(0);
     if (material == kNoMaterial) {
       flat.kd = draw_.kd.value_or(mesh_.colors[t]);
     } else {
       flat.kd = glm::vec3(materials_[material].base_color);
       flat.lit = !materials_[material].unlit && mesh_.normals.empty();
     }
-    if (!flat.lit) return flat;
+    if (!flat.lit) return;
     ++work.normals;
-    const auto world = [&](std::uint32_t i) {
-      const glm::dvec3 p = position_of(mesh_, i);
-      return world_point<double>(to_world_, {p.x, p.y, p.z});
-    };
+    block_.is_lit = true;
     const glm::uvec3& index = mesh_.triangles[t];
-    double length = 0;
-    const Vector<double> normal = face_normal(world(index.x), world(index.y), world(index.z), length);
-    const double scale = (front != screen_.mirrored ? 1.0 : -1.0) / length;
-    if (length > 0) flat.normal = glm::vec3(glm::dvec3(normal.x, normal.y, normal.z) * scale);
-    return flat;
+    for (int k = 0; k < 3; ++k) {
+      const glm::dvec3 p = position_of(mesh_, index[k]);
+      block_.mesh.x[k][block_.count] = p.x, block_.mesh.y[k][block_.count] = p.y;
+      block_.mesh.z[k][block_.count] = p.z;
+    }
+    block_.mesh.side[block_.count] = front != screen_.mirrored ? 1.0 : -1.0;
   }
 
   const View& view_;
@@ -440,6 +467,7 @@ class TriangleSetup {
   std::array<double, 16> to_world_;
   std::uint32_t draw_index_;
   const std::vector<ProjectedVertex>& vertices_;
+  Block block_;
 };
 
 void append(const SetupTriangles& part, SetupTriangles& whole) {
@@ -475,6 +503,7 @@ SetupWork add_draw(const View& view, const Trace& trace, const Draw& draw, const
   for_each_chunk(mesh.triangles.size(), [&](std::size_t first, std::size_t end) {
     chunks[first / kChunk].out.reserve(end - first);
     for (std::size_t t = first; t < end; ++t) chunks[first / kChunk].add(t);
+    chunks[first / kChunk].finish_block();
   });
   SetupWork work;
   (mesh.ws.empty() ? work.transformed : work.transformed_homogeneous) = vertices.size();

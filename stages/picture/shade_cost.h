@@ -55,13 +55,14 @@ std::uint32_t triangle_of(const Item& item) {
   return item.triangle;
 }
 
-// Consecutive items of one triangle are charged at once.
+// Consecutive items whose triangles cost the same are charged at once.
 template <class Items, class WorkOf>
 Invocations one_by_one(const TileShader& shader, const Items& items, WorkOf&& work_of) {
   Invocations result{items.size(), items.size()};
   for (std::size_t first = 0, end = 0; first < items.size(); first = end) {
     const std::uint32_t triangle = triangle_of(items[first]);
-    while (end < items.size() && triangle_of(items[end]) == triangle) ++end;
+    const SurfaceShader::Work* const of_first = &shader.work(triangle);
+    while (end < items.size() && &shader.work(triangle_of(items[end])) == of_first) ++end;
     const InvocationWork work = work_of(shader, triangle);
     result.ops += work.ops * (end - first);
     result.input_bytes += work.input_bytes * (end - first);

@@ -4,6 +4,7 @@
 #include <bit>
 #include <cmath>
 
+#include "simd/prefetch.h"
 #include "stages/data/pixel_depth.h"
 #include "stages/raster/bin_sort_cost.h"
 
@@ -48,8 +49,11 @@ OrderedList bin_sort(const SetupTriangles& triangles, const TriangleList& list, 
     std::uint32_t key, place;
   };
   std::vector<Entry> entries(list.size()), sorted(list.size());
-  for (std::uint32_t i = 0; i < list.size(); ++i)
+  constexpr std::size_t kAhead = 12;  // triangles
+  for (std::uint32_t i = 0; i < list.size(); ++i) {
+    if (i + kAhead < list.size()) prefetch(triangles.triangles[list[i + kAhead]]);
     entries[i] = {sort_key(nearest_in(triangles.triangles[list[i]], tile)), i};
+  }
   for (int shift = 0; shift < 24; shift += 8) {
     std::uint32_t first[257] = {};
     for (const Entry& entry : entries) ++first[(entry.key >> shift & 0xff) + 1];

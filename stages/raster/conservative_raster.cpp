@@ -1,5 +1,6 @@
 #include "stages/raster/conservative_raster.h"
 
+#include "simd/prefetch.h"
 #include "stages/raster/conservative_raster_cost.h"
 #include "stages/raster/traverse.h"
 
@@ -11,7 +12,10 @@ std::size_t conservative_raster(const SetupTriangles& triangles, const TriangleL
   const std::size_t before = out.size();
   Traversal traversal{tile};
   ConservativeRasterWork work;
-  for (const std::uint32_t index : list) {
+  constexpr std::size_t kAhead = 6;  // triangles
+  for (std::size_t i = 0; i < list.size(); ++i) {
+    if (i + kAhead < list.size()) prefetch(triangles.triangles[list[i + kAhead]]);
+    const std::uint32_t index = list[i];
     const SetupTriangle& triangle = triangles.triangles[index];
     const DepthBounds<float> vertices = vertex_bounds(triangle.vertex_z);
     if (closed && closed->hides_everywhere(vertices.nearest)) continue;

@@ -50,10 +50,12 @@ inline OperationCounts cell_test_cost() {
 }
 
 inline OperationCounts traversal_cost(const TraversalCounts& counts, FullMeans meaning) {
-  OperationCounts cost = box_cost() * counts.boxes;
-  cost += start_cost(meaning) * counts.traversals;
+  static const UnitCost of_box = box_cost(), of_area_start = start_cost(FullMeans::area),
+                        of_sample_start = start_cost(FullMeans::samples), of_cell = cell_test_cost();
+  OperationCounts cost = of_box * counts.boxes;
+  cost += (meaning == FullMeans::area ? of_area_start : of_sample_start) * counts.traversals;
   cost += step_cost() * (counts.cells_tested - counts.traversals);
-  cost += cell_test_cost() * counts.cells_tested;
+  cost += of_cell * counts.cells_tested;
   return cost;
 }
 
