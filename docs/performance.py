@@ -3,12 +3,14 @@
 
 usage: docs/performance.py ratios  PROGRAM [--runs N] [--threads N] TRACE...
        docs/performance.py threads PROGRAM [--runs N] TRACE...
-       docs/performance.py stages  PROGRAM TRACE...
+       docs/performance.py items   PROGRAM [--runs N] TRACE...
+       docs/performance.py memory  PROGRAM [--runs N] TRACE...
        docs/performance.py growth  PROGRAM PLOT.svg
 
 PROGRAM is for instance build/release/tools/beampipe. Techniques take turns in one process, so that other work of the
-machine affects all of them alike. A time is the median of the runs, with the memory model off. `growth` makes its own
-traces, and draws the plot with gnuplot.
+machine affects all of them alike. A time is the least of the runs, in `growth` their median, with the memory model off.
+`growth` makes its own traces, and draws the plot with gnuplot. `items` prints nanoseconds per item of each stage of
+`beam`, on one thread. `memory` prints what modelling memory costs: a frame's time with the model ÷ that without.
 """
 import argparse
 import json
@@ -21,7 +23,6 @@ import tempfile
 import measure
 
 RATIOS = ["beam", "beam:order=sorted", "beam:order=stream", "msaa:4", "msaa:8", "msaa:32", "msaa:256"]
-SORTED = "beam:order=sorted"
 
 
 def frame_times(program, trace, specs, runs, threads):
@@ -56,9 +57,9 @@ def print_ratios(arguments):
     measure.print_head("scene", f"`{RATIOS[0]}` ms", "spread", *(f"`{spec}`" for spec in RATIOS[1:]), "EMR")
     for trace in arguments.traces:
         times = frame_times(arguments.program, trace, RATIOS, arguments.runs, arguments.threads)
-        median, least, most = times[RATIOS[0]]
-        others = [f"{times[spec][0] / median:.2f}" for spec in RATIOS[1:]]
-        measure.print_row(name_of(trace), f"{median:.0f}", f"{least:.0f} to {most:.0f}", *others,
+        _, least, most = times[RATIOS[0]]
+        others = [f"{times[spec][1] / least:.2f}" for spec in RATIOS[1:]]
+        measure.print_row(name_of(trace), f"{least:.0f}", f"{least:.0f} to {most:.0f}", *others,
                           equivalent_rate(arguments.program, trace))
         sys.stdout.flush()
 
@@ -76,16 +77,50 @@ def print_threads(arguments):
         sys.stdout.flush()
 
 
-def print_stages(arguments):
-    """Prints how much work each scene offers to sorted order, and how much of it is done."""
-    measure.print_head("scene", "pixels", "tested", "waiting pairs", "composed", "fragments with area", "depth tests")
+def stage_times(program, trace, folder):
+    """Milliseconds and items of each stage of `beam`, in the order of the pipeline."""
+    events = f"{folder}/events.json"
+    result = measure.results(program, "run", trace, ["beam"], f"{folder}/out", "--trace-events", events, "--repeat", "3",
+                             "--threads", "1", "--no-memory-model")["beam"]
+    spans = {}
+    with open(events, encoding="utf-8") as file:
+        for event in json.load(file)["traceEvents"]:
+            if event.get("ph") == "X":
+                spans.setdefault(event["name"], []).append(event["dur"])
+    frames = len(spans["vertex_setup"])
+    return {name: (sum(spans[name]) / frames / 1000, max(stage["items_in"], stage["items_out"]))
+            for name, stage in measure.stages(result).items() if name in spans}
+
+
+def print_items(arguments):
+    measure.print_head("stage", *(f"{name_of(trace)} ns" for trace in arguments.traces), "ms of a frame", "items")
+    found = []
     for trace in arguments.traces:
-        with tempfile.TemporaryDirectory() as folder:
-            found = measure.results(arguments.program, "run", trace, [SORTED], folder, "--no-memory-model")
-        stage = measure.stages(found[SORTED])
-        measure.print_row(name_of(trace), stage["resolve"]["items_out"], stage["conservative_raster"]["lanes_issued"],
-                          stage["a_buffer"]["items_in"], stage["beam_fragment"]["items_in"],
-                          stage["beam_fragment"]["items_out"], stage["compose"]["lanes_used"])
+        runs = []
+        for _ in range(arguments.runs):
+            with tempfile.TemporaryDirectory() as folder:
+                runs.append(stage_times(arguments.program, trace, folder))
+        found.append({stage: (min(run[stage][0] for run in runs), runs[0][stage][1]) for stage in runs[0]})
+    for stage in found[0]:
+        measure.print_row(f"`{stage}`", *(f"{1e6 * ms[stage][0] / max(ms[stage][1], 1):.1f}" for ms in found),
+                          ", ".join(f"{ms[stage][0]:.1f}" for ms in found), ", ".join(str(ms[stage][1]) for ms in found))
+
+
+def print_memory(arguments):
+    specs = ["beam", "msaa:8"]
+    measure.print_head("scene", *(f"`{spec}`" for spec in specs))
+    for trace in arguments.traces:
+        least = {}
+        for _ in range(arguments.runs):
+            for options in ((), ("--no-memory-model",)):
+                with tempfile.TemporaryDirectory() as folder:
+                    found = measure.results(arguments.program, "run", trace, specs, folder, "--threads", "1", *options)
+                for spec in specs:
+                    time = found[spec]["frames"][0]["wall_ms"]["min"]
+                    least[spec, options] = min(least.get((spec, options), time), time)
+        measure.print_row(name_of(trace), *(f"{least[spec, ()] / least[spec, ('--no-memory-model',)]:.2f}"
+                                            for spec in specs))
+        sys.stdout.flush()
 
 
 def name_of(trace):
@@ -147,12 +182,12 @@ def draw(data, plot):
 def main():
     parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
     commands = parser.add_subparsers(required=True)
-    for name, action in (("ratios", print_ratios), ("threads", print_threads), ("stages", print_stages)):
+    for name, action in (("ratios", print_ratios), ("threads", print_threads), ("items", print_items),
+                         ("memory", print_memory)):
         command = commands.add_parser(name)
         command.add_argument("program")
         command.add_argument("traces", nargs="+")
-        if name != "stages":
-            command.add_argument("--runs", type=int, default=5)
+        command.add_argument("--runs", type=int, default=5)
         if name == "ratios":
             command.add_argument("--threads", type=int, default=1)
         command.set_defaults(action=action)
