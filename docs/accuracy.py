@@ -134,9 +134,9 @@ def print_with_bytes(table, specs):
 def print_passes(table):
     def extra(spec):
         work = [a / b for a, b in zip(table.values("operations", spec), table.values("operations", "beam:order=sorted"))]
-        return f"{bytes_of(table, spec)[2]:.0f}", f"{mean(work):.2f}", f"{max(work):.2f}"
+        return *(f"{value:.0f}" for value in bytes_of(table, spec)[:2]), f"{mean(work):.2f}", f"{max(work):.2f}"
 
-    print_groups(table, PASSES, ["bytes", "operations ÷ those of sorted order", "most"], extra)
+    print_groups(table, PASSES, ["bytes on chip", "bytes off chip", "operations ÷ those of sorted order", "most"], extra)
 
 
 def print_formats(table):
