@@ -54,6 +54,7 @@ void add_run_arguments(Command& command, RunArguments& arguments) {
       .required();
   command.add("--frames", arguments.frames,
               "render only frames A-B of the trace, or frame A; the first frame is 0 (default: all)");
+  add_trace_view_options(command, arguments.view);
   command.add("--threads", arguments.threads, "the number of threads (default: one per processor core)")
       .between(1, 1024);
   command
@@ -74,7 +75,8 @@ void add_run_arguments(Command& command, RunArguments& arguments) {
   command.add_flag("--resume", arguments.resume,
                    "continue a stopped run: keep the finished frames that the same command left in the folder");
   command.add_flag("--force", arguments.force,
-                   "write over the results of another trace in the folder, and with `run` over those of `compare`");
+                   "write over the results of another trace, or of this one in another size or from another camera, "
+                   "and with `run` over those of `compare`");
   add_hardware_options(command, arguments.hardware);
   command.add(
       "--trace-events", arguments.trace_events,
@@ -115,6 +117,7 @@ RunPlan make_plan(const RunArguments& arguments) {
   if (!arguments.simd.empty()) use_simd_target(arguments.simd);
   plan.trace = read_trace(arguments.trace, {.allow_outside = arguments.allow_outside});
   plan.frames = parse_frame_range(arguments.frames, plan.trace.frames.size());
+  apply(arguments.view, plan.frames, arguments.trace, plan.trace);
   for (const std::size_t frame : plan.frames)
     for (const Technique& technique : plan.techniques)
       require_memory(plan.trace, plan.trace.frames[frame], technique.working_bytes_per_pixel,
