@@ -4,6 +4,7 @@
 usage: docs/accuracy.py plan TRACES -o PLAN            every spec below, on the traces of a folder
        docs/accuracy.py density-plan TRACES -o PLAN    two specs in four sizes
        docs/accuracy.py scenes|density|results|steps|storage|order|passes|policies|formats TABLE
+       docs/accuracy.py overview PROGRAM TRACES TABLE DENSITY_TABLE
        docs/accuracy.py frontier TABLE -o SVG          needs gnuplot
 
 TABLE is table.csv of `beampipe sweep`. Means over scenes are geometric; bounds of an EMR are taken for the EMR.
@@ -28,10 +29,14 @@ OTHERS = ["beam", "beam:order=stream", "beam:order=sorted", "beam:rules=paper", 
           "dvm", "msaa:8", "msaa:32", "msaa:256"]
 STORAGE = sum(CAPACITIES.values(), []) + OTHERS
 BEST_READING = "beam:rules=paper,mask=exact,local=keep,fuzzy=mix,slab=visible,plane=visible"
-STEPS = ["beam:rules=paper", BEST_READING, "beam:rules=paper,order=near-first,layers=8", "beam:order=sorted,bits=32",
-         "beam:order=sorted", "beam:bits=32,slots=2", "beam:bits=64,slots=4", "beam", "beam:slots=16", "beam:order=stream"]
-RESULTS = ["beam", "beam:bits=64,slots=4", "beam:order=stream", "beam:order=sorted", "beam:rules=paper", "z3:shape=128x3",
-           "z3", "acaa:8", "dvm", "alpha", "msaa:8", "msaa:32", "msaa:256"]
+STEPS = {"1. our reading of the published rules": "beam:rules=paper", "2. the best reading": BEST_READING,
+         "3. without an A-buffer, from sorted bins": "beam:rules=paper,order=near-first,layers=8",
+         "4a. areas conserved, with an A-buffer, 32 positions": "beam:order=sorted,bits=32",
+         "4b. the same, 256 positions": "beam:order=sorted", "5a. one pass, 32 positions, 2 slots": "beam:bits=32,slots=2",
+         "5b. 64 positions, 4 slots": "beam:bits=64,slots=4", "5c. 256 positions, 5 slots": "beam",
+         "5d. 256 positions, 16 slots": "beam:slots=16"}
+RESULTS = ["beam", "beam:bin=16", "beam:bits=64,slots=4", "beam:order=stream", "beam:order=sorted", "beam:rules=paper",
+           "z3:shape=128x3", "z3", "acaa:8", "alpha", "msaa:8", "msaa:32", "msaa:256"]
 ORDER = ["beam:rules=paper", *(f"beam:rules=paper,order={order},layers={layers}" for order in ("near-first", "stream")
                                for layers in (1, 3, 8))]
 PASSES = ["beam", "beam:order=sorted", "beam:order=stream", "beam:order=stream,passes=0",
@@ -43,7 +48,7 @@ POLICIES = ["beam:rules=paper", *(f"beam:rules=paper,{policy}" for policy in (
     "tiny=3,overlap=transition")), BEST_READING]
 FORMATS = ["beam:order=sorted", "beam:order=sorted,storage=float32", "beam:rules=paper", "beam:rules=paper,storage=text",
            "beam:rules=paper,storage=float32"]
-ALL = list(dict.fromkeys(SCENES + STEPS + RESULTS + STORAGE + ORDER + PASSES + POLICIES + FORMATS))
+ALL = list(dict.fromkeys(SCENES + list(STEPS.values()) + RESULTS + STORAGE + ORDER + PASSES + POLICIES + FORMATS))
 
 
 def write_plan(folder, techniques, sizes, path):
@@ -126,9 +131,35 @@ def print_groups(table, specs, titles=(), extra=lambda spec: ()):
                   rate(min(table.values("emr", spec))))
 
 
-def print_with_bytes(table, specs):
-    print_groups(table, specs, ["bytes on chip", "bytes off chip"],
-                 lambda spec: [f"{value:.0f}" for value in bytes_of(table, spec)[:2]])
+def print_steps(table):
+    print_head("step", "spec", "on chip", "off chip", "EMR: mean", "least", "RMSE ÷ that of `msaa:256`")
+    for step, spec in STEPS.items():
+        rates = table.values("emr", spec)
+        print_row(step, f"`{spec}`", *(f"{value:.0f}" for value in bytes_of(table, spec)[:2]), rate(mean(rates)),
+                  rate(min(rates)), f"{rmse_ratio(table, spec):.2f}")
+
+
+def rmse_ratio(table, spec):
+    return mean(table.values("rmse", spec)) / mean(table.values("rmse", "msaa:256"))
+
+
+def print_results(table):
+    print_groups(table, RESULTS, ["on chip", "off chip", "RMSE ÷ that of `msaa:256`"], lambda spec: [
+        *(f"{value:.0f}" for value in bytes_of(table, spec)[:2]), f"{rmse_ratio(table, spec):.2f}"])
+
+
+def print_overview(program, folder, table, density):
+    print_head("scene", "triangles", "per pixel", "`beam:rules=paper`", "`beam`", "`beam` at 1280 × 720")
+    rates = []
+    for scene in table.scenes:
+        answer = subprocess.run([program, "info", folder / f"{scene}.json", "--json"], check=True, capture_output=True)
+        frame = json.loads(answer.stdout)["frames"][0]
+        rows = table.row(scene, "beam:rules=paper"), table.row(scene, "beam"), density.row(scene, "beam", "1280x720")
+        rates.append([float(row["emr"]) for row in rows])
+        print_row(scene, f"{frame['triangles']:,}", f"{frame['triangles'] / frame['width'] / frame['height']:.2g}",
+                  *map(emr, rows))
+    for title, summary in (("geometric mean", mean), ("least", min)):
+        print_row(title, "", "", *(rate(summary(column)) for column in zip(*rates)))
 
 
 def print_passes(table):
@@ -172,8 +203,7 @@ plot {', '.join(plots)}
     subprocess.run(["gnuplot"], input=script, text=True, check=True)
 
 
-TABLES = {"results": lambda table: print_with_bytes(table, RESULTS), "steps": lambda table: print_with_bytes(table, STEPS),
-          "scenes": print_scenes, "density": print_density, "storage": print_storage, "passes": print_passes,
+TABLES = {"results": print_results, "steps": print_steps, "scenes": print_scenes, "density": print_density, "storage": print_storage, "passes": print_passes,
           "order": lambda table: print_groups(table, ORDER), "policies": lambda table: print_groups(table, POLICIES),
           "formats": print_formats}
 
@@ -184,6 +214,8 @@ def main(arguments):
             write_plan(pathlib.Path(folder), ALL, None, pathlib.Path(path))
         case ["density-plan", folder, "-o", path]:
             write_plan(pathlib.Path(folder), DENSITY, SIZES, pathlib.Path(path))
+        case ["overview", program, folder, table, density]:
+            print_overview(program, pathlib.Path(folder), Table(table), Table(density))
         case ["frontier", table, "-o", path]:
             draw_frontier(Table(table), path)
         case [kind, table] if kind in TABLES:
