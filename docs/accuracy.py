@@ -1,22 +1,23 @@
 #!/usr/bin/env python3
 """Makes the tables and the plot of docs/accuracy.md from the table of a sweep.
 
-usage: docs/accuracy.py plan TRACES -o PLAN            every spec below, on the traces of a folder
-       docs/accuracy.py density-plan TRACES -o PLAN    two specs in four sizes
+usage: docs/accuracy.py sweep PROGRAM MODELS -o DIR    every spec below, on the 17 scenes of docs/scene_traces.py
+       docs/accuracy.py sizes PROGRAM MODELS -o DIR    two specs in four sizes
        docs/accuracy.py scenes|density|results|steps|storage|order|passes|policies|formats TABLE
-       docs/accuracy.py overview PROGRAM TRACES TABLE DENSITY_TABLE
+       docs/accuracy.py overview PROGRAM DIR TABLE SIZES_TABLE
        docs/accuracy.py frontier TABLE -o SVG          needs gnuplot
 
-TABLE is table.csv of `beampipe sweep`. Means over scenes are geometric; bounds of an EMR are taken for the EMR.
+DIR is then a folder of `beampipe sweep`, with the plan and the traces. TABLE is its table.csv. Means over scenes are
+geometric; bounds of an EMR are taken for the EMR.
 """
 import csv
 import json
 import math
-import os
 import pathlib
 import subprocess
 import sys
 
+import scene_traces
 from measure import PROCEDURAL, print_head, print_row
 
 SCENES = ["beam", "beam:bits=64,slots=4", "beam:bits=32,slots=2", "beam:order=stream", "beam:order=sorted",
@@ -51,11 +52,14 @@ FORMATS = ["beam:order=sorted", "beam:order=sorted,storage=float32", "beam:rules
 ALL = list(dict.fromkeys(SCENES + list(STEPS.values()) + RESULTS + STORAGE + ORDER + PASSES + POLICIES + FORMATS))
 
 
-def write_plan(folder, techniques, sizes, path):
-    traces = [os.path.relpath(trace, path.parent) for trace in sorted(folder.glob("*.json"))]
-    plan = {"beampipe_sweep": 1, "traces": traces, "techniques": techniques, "implementations": ["shaders"],
-            "errors": True}
-    path.write_text(json.dumps(plan | ({"sizes": sizes} if sizes else {}), indent=1) + "\n")
+def sweep(program, models, folder, plan):
+    """Makes the scenes and the plan in the folder, and sweeps. What is finished there is not done again."""
+    folder = pathlib.Path(folder)
+    scene_traces.main(program, models, "320", "180", folder / "scenes")
+    traces = [f"scenes/{trace.name}" for trace in sorted((folder / "scenes").glob("*.json"))]
+    plan = {"beampipe_sweep": 1, "traces": traces, "implementations": ["shaders"], "errors": True} | plan
+    (folder / "plan.json").write_text(json.dumps(plan, indent=1) + "\n")
+    subprocess.run([program, "sweep", folder / "plan.json", "-o", folder], check=True, stdout=subprocess.DEVNULL)
 
 
 class Table:
@@ -210,12 +214,12 @@ TABLES = {"results": print_results, "steps": print_steps, "scenes": print_scenes
 
 def main(arguments):
     match arguments:
-        case ["plan", folder, "-o", path]:
-            write_plan(pathlib.Path(folder), ALL, None, pathlib.Path(path))
-        case ["density-plan", folder, "-o", path]:
-            write_plan(pathlib.Path(folder), DENSITY, SIZES, pathlib.Path(path))
+        case ["sweep", program, models, "-o", folder]:
+            sweep(program, models, folder, {"techniques": ALL})
+        case ["sizes", program, models, "-o", folder]:
+            sweep(program, models, folder, {"techniques": DENSITY, "sizes": SIZES})
         case ["overview", program, folder, table, density]:
-            print_overview(program, pathlib.Path(folder), Table(table), Table(density))
+            print_overview(program, pathlib.Path(folder) / "scenes", Table(table), Table(density))
         case ["frontier", table, "-o", path]:
             draw_frontier(Table(table), path)
         case [kind, table] if kind in TABLES:
