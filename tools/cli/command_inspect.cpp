@@ -66,9 +66,12 @@ bool shows_unicode() {
 }
 
 void require_inspectable(const Technique& technique) {
-  if (!technique.inspect)
-    throw UsageError("technique '" + technique.spec +
-                     "' cannot be inspected: expected beam in any order, alpha, z3, msaa:N or acaa:N");
+  if (technique.inspect) return;
+  const std::string why = technique.keeps_history ? "its pixels depend on earlier frames and on their neighbours"
+                          : technique.spec == "reference" ? "it is what the others are compared with"
+                                                          : "its picture is that of msaa with as many samples";
+  throw UsageError("technique '" + technique.spec +
+                   "' cannot be inspected: expected beam in any order, alpha, z3, msaa:N or acaa:N; " + why);
 }
 
 std::vector<PixelInspection> inspect_all(const InspectArguments& arguments, const Trace& trace,

@@ -12,6 +12,7 @@
 #include "tools/files/output.h"
 #include "tools/report/report_text.h"
 #include "traces/atomic_file.h"
+#include "traces/closest_name.h"
 #include "traces/model_import.h"
 #include "traces/scenes.h"
 #include "traces/trace_io.h"
@@ -35,7 +36,9 @@ Trace make_from_scene(const MakeArguments& arguments, const Command& command) {
   require_no_model_options(command);
   const std::vector<SceneKind>& kinds = scene_kinds();
   if (std::none_of(kinds.begin(), kinds.end(), [&](const SceneKind& kind) { return kind.name == arguments.scene; })) {
-    throw UsageError("there is no scene named " + arguments.scene +
+    std::vector<std::string> names;
+    for (const SceneKind& kind : kinds) names.emplace_back(kind.name);
+    throw UsageError("there is no scene named " + arguments.scene + did_you_mean(arguments.scene, names) +
                      " (see beampipe make --list), and it is not an .obj, .gltf or .glb file");
   }
   Trace trace = make_scene(arguments.scene, arguments.options);

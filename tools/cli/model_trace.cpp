@@ -66,7 +66,6 @@ Viewpoint viewpoint_of(const Trace& trace, const ModelOptions& options, const Co
   const CameraWishes wishes = wishes_of(options, command);
   const std::uint32_t width = trace.frames.at(0).width, height = trace.frames[0].height;
   if (wishes.eye) {
-    if (!options.view.empty()) throw std::invalid_argument("--view is for cameras without --eye");
     return {Standpoint::outside, frame_model(trace, width, height, wishes)};
   }
   std::optional<Standpoint> asked;

@@ -15,14 +15,20 @@
 #include "tools/evaluate/memory_system.h"
 #include "tools/evaluate/results.h"
 #include "tools/files/output.h"
+#include "traces/scenes.h"
 #include "traces/trace_io.h"
 
 namespace beampipe {
 
 namespace {
 
-// If the trace follows -t, it is taken for a technique; the message then says so.
+// A scene's name is not its trace. If the trace follows -t, it is taken for a technique; the message then says so.
 void require_trace(const RunArguments& arguments) {
+  const auto is_it = [&](const SceneKind& kind) { return kind.name == arguments.trace; };
+  const bool is_scene = std::any_of(scene_kinds().begin(), scene_kinds().end(), is_it);
+  if (std::error_code ignored; is_scene && !std::filesystem::exists(arguments.trace, ignored))
+    throw UsageError(arguments.trace + " is a scene: expected its trace, which `beampipe make " + arguments.trace +
+                     " -o " + arguments.trace + ".json` makes");
   if (!arguments.trace.empty()) return;
   std::string hint;
   if (std::error_code ignored; !arguments.specs.empty() && std::filesystem::exists(arguments.specs.back(), ignored))
@@ -126,9 +132,14 @@ RunPlan make_plan(const RunArguments& arguments) {
   plan.options.textures = plan.textures.get();
   if (const std::string note = note_on_darkness(plan.trace, plan.frames, arguments.trace); !note.empty())
     std::cerr << "beampipe: " << note << "\n";
+  std::vector<std::string> with_history;
   for (const Technique& technique : plan.techniques)
-    if (technique.keeps_history && plan.frames.size() == 1)
-      std::cerr << "beampipe: note: " << technique.spec << " works over several frames; the first one has no history\n";
+    if (technique.keeps_history) with_history.push_back(technique.spec);
+  if (plan.frames.size() == 1)
+    for (const std::string& spec : with_history)
+      std::cerr << "beampipe: note: " << spec << " works over several frames; the first one has no history\n";
+  if (const std::string note = note_on_motion(plan.trace, plan.frames, with_history, arguments.trace); !note.empty())
+    std::cerr << "beampipe: note: " << note << "\n";
   plan.notes = notes_of(plan.trace, plan.frames);
   return plan;
 }
