@@ -2,17 +2,27 @@
 
 #include <algorithm>
 #include <cstdint>
+#include <utility>
 
 #include "traces/json.h"
 #include "traces/trace_io.h"
 
 namespace beampipe {
 
-void fail_trace(const std::string& where, const std::string& expected, const std::string& found) {
-  std::string message = where + ": expected " + expected + ", found " + found;
+namespace {
+
+std::string one_line(std::string message) {
   std::replace_if(
       message.begin(), message.end(), [](unsigned char c) { return c < 0x20 || c == 0x7f; }, '?');
-  throw TraceError(message);
+  return message;
+}
+
+}  // namespace
+
+TraceError::TraceError(std::string message) : std::runtime_error(one_line(std::move(message))) {}
+
+void fail_trace(const std::string& where, const std::string& expected, const std::string& found) {
+  throw TraceError(where + ": expected " + expected + ", found " + found);
 }
 
 std::ifstream open_input_file(const std::filesystem::path& file, const std::string& where, std::uint64_t most_bytes) {

@@ -1,6 +1,9 @@
 #include "traces/json.h"
 
 #include <algorithm>
+#include <cmath>
+#include <limits>
+#include <type_traits>
 #include <utility>
 
 namespace beampipe {
@@ -14,6 +17,24 @@ namespace {
                      : found.is_object() ? "an object"
                                          : "true or false";
   throw JsonError(std::string("expected ") + expected + ", found " + kind);
+}
+
+// Without the fraction of a number. What does not fit is refused.
+template <class Integer, class Number>
+Integer to_integer(Number number, const Json& json) {
+  using Limits = std::numeric_limits<Integer>;
+  bool is_less = false, is_more = false;
+  if constexpr (std::is_floating_point_v<Number>) {
+    constexpr double kEnd = 2.0 * static_cast<double>(Limits::max() / 2 + 1);
+    is_less = !(std::trunc(number) >= static_cast<double>(Limits::min()));
+    is_more = number >= kEnd;
+  } else {
+    is_less = std::cmp_less(number, Limits::min());
+    is_more = std::cmp_greater(number, Limits::max());
+  }
+  if (is_less || is_more)
+    throw JsonError(std::string("expected a ") + (is_less ? "larger" : "smaller") + " number, found " + json.dump());
+  return static_cast<Integer>(number);
 }
 
 }  // namespace
@@ -64,9 +85,16 @@ Value Json::get() const {
     if (is_string()) return *std::get<std::unique_ptr<std::string>>(value_);
     fail("a string", *this);
   } else {
-    if (const auto* value = std::get_if<double>(&value_)) return static_cast<Value>(*value);
-    if (const auto* value = std::get_if<std::uint64_t>(&value_)) return static_cast<Value>(*value);
-    if (const auto* value = std::get_if<std::int64_t>(&value_)) return static_cast<Value>(*value);
+    const auto converted = [this](auto number) {
+      if constexpr (std::same_as<Value, double>) {
+        return static_cast<double>(number);
+      } else {
+        return to_integer<Value>(number, *this);
+      }
+    };
+    if (const auto* value = std::get_if<double>(&value_)) return converted(*value);
+    if (const auto* value = std::get_if<std::uint64_t>(&value_)) return converted(*value);
+    if (const auto* value = std::get_if<std::int64_t>(&value_)) return converted(*value);
     fail("a number", *this);
   }
 }

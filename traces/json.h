@@ -67,8 +67,7 @@ class Json {
   bool is_object() const { return std::holds_alternative<std::unique_ptr<Object>>(value_); }
 
   // The value as bool, double, int, std::int64_t, std::uint32_t, std::uint64_t or std::string. A fraction is cut off
-  // where an integer is asked for.
-  // Throws JsonError when it is of another kind.
+  // where an integer is asked for. Throws JsonError when it is of another kind, or does not fit.
   template <class Value>
   Value get() const;
 

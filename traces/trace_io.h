@@ -13,7 +13,8 @@ namespace beampipe {
 // where the JSON is broken. An error in an OBJ starts with the place in the trace that names the OBJ: "scene.json:
 // /meshes/ship/obj: ship.obj: line 12: expected ...".
 struct TraceError : std::runtime_error {
-  using std::runtime_error::runtime_error;
+  // Control characters, which names in a file may hold, become question marks.
+  explicit TraceError(std::string message);
 };
 
 struct ReadOptions {

@@ -9,11 +9,10 @@
 extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
   using namespace beampipe;
   static const FuzzFolder folder;
-  const std::string_view text = text_of(data, size);
-  const std::size_t end = std::min(text.find('\0'), text.size());
+  const std::vector<std::string_view> parts = parts_of(text_of(data, size), 2);
   folder.write("t.png", kColors);
-  folder.write("m.mtl", end < text.size() ? text.substr(end + 1) : "");
-  const std::filesystem::path file = folder.write("mesh.obj", text.substr(0, end));
+  folder.write("m.mtl", parts[1]);
+  const std::filesystem::path file = folder.write("mesh.obj", parts[0]);
   for (ObjMaterials materials : {ObjMaterials::none, ObjMaterials::textured, ObjMaterials::all}) {
     try {
       Trace trace;

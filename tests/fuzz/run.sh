@@ -7,7 +7,7 @@ cd "$(dirname "${BASH_SOURCE[0]}")/../.."
 
 seconds=${1:-20}
 targets=("${@:2}")
-((${#targets[@]} > 0)) || targets=(trace obj gltf image exr spec)
+((${#targets[@]} > 0)) || targets=(trace obj gltf image exr spec config results)
 TMPDIR=$(mktemp --directory /dev/shm/beampipe-fuzz-XXXXXX)  # in memory
 export TMPDIR
 trap 'rm -r "$TMPDIR"' EXIT

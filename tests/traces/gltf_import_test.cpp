@@ -575,6 +575,14 @@ TEST_F(GltfImportTest, NamesExtensionsThatAreNotRead) {
             "\"KHR_materials_clearcoat\"");
 }
 
+// tinygltf repeats texts of the file in its messages, and this one looks like its own about a file.
+TEST_F(GltfImportTest, TextsInTheFileAreNotTakenForErrors) {
+  GltfBuilder gltf;
+  gltf.json["accessors"][0]["type"] = "File read error";
+  EXPECT_EQ(error(gltf).find("model.gltf: expected a glTF 2.0 file, found one that tinygltf refuses: "), 0u)
+      << error(gltf);
+}
+
 TEST_F(GltfImportTest, FilesStayInTheFolder) {
   GltfBuilder gltf;
   const std::string bytes(36, '\0');

@@ -102,6 +102,21 @@ TEST(Json, ErrorsSayWhatIsExpectedAndFound) {
   EXPECT_EQ(error_of([&] { Json(7).push_back(1); }), "expected an array, found a number");
 }
 
+// Casting them would have no defined result.
+TEST(Json, IntegersThatDoNotFitAreRefused) {
+  EXPECT_EQ(Json(2.75).get<int>(), 2) << "a fraction is cut off";
+  EXPECT_EQ(Json(-2147483648.0).get<int>(), std::numeric_limits<int>::min());
+  EXPECT_EQ(error_of([] { Json(2147483648.0).get<int>(); }), "expected a smaller number, found 2147483648.0");
+  EXPECT_EQ(error_of([] { Json(1e300).get<std::uint64_t>(); }), "expected a smaller number, found 1e+300");
+  EXPECT_EQ(error_of([] { Json(18446744073709551616.0).get<std::uint64_t>(); }),
+            "expected a smaller number, found 1.8446744073709552e+19");
+  EXPECT_EQ(error_of([] { Json(-1.0).get<std::uint32_t>(); }), "expected a larger number, found -1.0");
+  EXPECT_EQ(error_of([] { Json(-1).get<std::uint64_t>(); }), "expected a larger number, found -1");
+  EXPECT_EQ(error_of([] { Json(std::uint64_t{1} << 32).get<std::uint32_t>(); }),
+            "expected a smaller number, found 4294967296");
+  EXPECT_EQ(error_of([] { Json(std::nan("")).get<int>(); }), "expected a larger number, found null");
+}
+
 TEST(Json, BytesThatAreNotUtf8AreReplacedOrRefused) {
   EXPECT_EQ(Json("caf\xE9").dump(), "\"caf\xEF\xBF\xBD\"");
   EXPECT_EQ(json_string("\"\n\xC3\xA9"), "\"\\\"\\n\xC3\xA9\"");

@@ -376,5 +376,13 @@ TEST_F(SurfaceReaderTest, ReadsAMillionMaterials) {
   EXPECT_EQ(trace.meshes[0].materials, (std::vector<std::uint32_t>{999'999}));
 }
 
+// The error is one line, whatever stands in the file.
+TEST_F(SurfaceReaderTest, ErrorsHaveNoControlCharacters) {
+  Json json = valid_;
+  json["images"]["two\nlines"] = {{"file", "art/none.png"}};
+  EXPECT_NE(error_in(json).find("two?lines"), std::string::npos) << error_in(json);
+  EXPECT_EQ(error_in(json).find('\n'), std::string::npos);
+}
+
 }  // namespace
 }  // namespace beampipe

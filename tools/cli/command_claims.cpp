@@ -30,10 +30,12 @@ void print_claims(const ClaimsArguments& arguments) {
   std::vector<Claim> claims = all_claims({});
   for (const std::string& folder : arguments.folders) {
     const ReportFile report = read_report(folder);
-    if (arguments.hardware != HardwareOptions{})
-      for (const Claim& claim : answered_claims(remodelled(report.json, all))) take(to_json(claim), claims);
-    const Json answered = report.json.value("claims", Json::array());
-    for (const Json& found : answered.elements()) take(found, claims);
+    read_from_report(report.folder, [&] {
+      if (arguments.hardware != HardwareOptions{})
+        for (const Claim& claim : answered_claims(remodelled(report.json, all))) take(to_json(claim), claims);
+      const Json answered = report.json.value("claims", Json::array());
+      for (const Json& found : answered.elements()) take(found, claims);
+    });
   }
   find_quotients(claims);
   if (!arguments.hardware.hardware.empty())

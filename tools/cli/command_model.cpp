@@ -23,7 +23,7 @@ void model(const ModelArguments& arguments) {
   Json json = Json::array();
   for (const std::string& folder : arguments.folders) {
     const ReportFile file = read_report(folder);
-    const Report report = remodelled(file.json, all);
+    const Report report = read_from_report(file.folder, [&] { return remodelled(file.json, all); });
     if (!report.memory.modelled)
       throw ReportError(folder + "/report.json: expected a run that modelled memory, found one with --no-memory-model");
     if (arguments.json)

@@ -36,7 +36,7 @@ void write_report(const ReportArguments& arguments, InterruptGate& gate) {
   output.lock();
   const ReportFile report = read_report(arguments.folder);
   std::vector<Figure> figures;
-  try {
+  read_from_report(report.folder, [&] {
     const std::vector<Table> tables = report_tables(report);
     figures = report_figures(report);
     const std::size_t shown = position_of(report, arguments.frame);
@@ -44,14 +44,11 @@ void write_report(const ReportArguments& arguments, InterruptGate& gate) {
     const auto index = report.json.at("results").at(0).at("frames").at(shown).at("index").get<std::size_t>();
     output.write("report.html", page_html(report, tables, figures, layers, index, report_inspections(report)));
     for (const Table& table : tables) output.write("tables/" + table.name + ".csv", csv_text(table));
-  } catch (const JsonError& error) {
-    throw ReportError((report.folder / "report.json").string() + ": not a report of beampipe: " + error.what());
-  }
+  });
   output.keep();
   for (const Figure& figure : figures) {
     for (const auto& choice : figure.choices) {
-      std::visit([&](const auto& plot) { output.write("plots/" + plot.name + ".svg", draw(plot, PlotFormat::svg)); },
-                 choice.second);
+      std::visit([&](const auto& plot) { output.write(plot_file(plot), draw(plot, PlotFormat::svg)); }, choice.second);
     }
   }
   output.keep();

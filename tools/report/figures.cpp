@@ -1,5 +1,7 @@
 #include "tools/report/figures.h"
 
+#include "tools/evaluate/results.h"
+
 namespace beampipe {
 namespace {
 
@@ -41,6 +43,10 @@ Json to_json(const BarPlot& plot) {
 }
 
 }  // namespace
+
+std::string plot_file(const Plot& plot) {
+  return "plots/" + spec_folder(std::visit([](const auto& each) { return each.name; }, plot)) + ".svg";
+}
 
 std::vector<Figure> report_figures(const ReportFile& report) {
   std::vector<Figure> figures;

@@ -20,6 +20,10 @@ struct Figure {
   std::vector<std::pair<std::string, Plot>> choices;  // the label of a choice, and its plot
 };
 
+// The plot's file in the report's folder: "plots/NAME.svg". Names may come from report.json, so only letters, digits
+// and . = - _ of them are kept.
+std::string plot_file(const Plot& plot);
+
 // The figures for which the report has numbers. Throws ReportError.
 std::vector<Figure> report_figures(const ReportFile& report);
 

@@ -45,7 +45,9 @@ std::string quoted_word(const std::string& text) {
 struct LogRange {
   double low = 1, high = 10;
 
-  double place(double value) const { return std::log(value / low) / std::log(high / low); }  // 0..1
+  double place(double value) const {  // 0..1
+    return std::clamp(std::log(value / low) / std::log(high / low), 0.0, 1.0);
+  }
 };
 
 LogRange range_of(const ScatterPlot& plot, double PlotPoint::*value) {
@@ -57,8 +59,10 @@ LogRange range_of(const ScatterPlot& plot, double PlotPoint::*value) {
     }
   }
   if (low > high) return {};
+  // Far beyond what anything here measures, and near enough that tics can be counted.
+  constexpr double kLeast = 1e-30, kMost = 1e30;
   const double room = std::max(1.15, std::pow(high / low, 0.06));
-  return {low / room, high * room};
+  return {std::clamp(low / room, kLeast, kMost / 10), std::clamp(high * room, kLeast * 10, kMost)};
 }
 
 // The powers of ten, and on short axes also two and five times these: "1, 2, 5, 10".
@@ -226,7 +230,7 @@ std::string terminal(PlotFormat format) {
 
 }  // namespace
 
-std::string draw(const ScatterPlot& plot, PlotFormat format) {
+std::string gnuplot_script(const ScatterPlot& plot, PlotFormat format) {
   const LogRange x = range_of(plot, &PlotPoint::x), y = range_of(plot, &PlotPoint::y);
   std::ostringstream script;
   script.precision(9);
@@ -234,10 +238,10 @@ std::string draw(const ScatterPlot& plot, PlotFormat format) {
   write_axes(script, plot, x, y);
   write_labels(script, plot, x, y);
   write_series(script, plot);
-  return run_gnuplot(script.str());
+  return script.str();
 }
 
-std::string draw(const BarPlot& plot, PlotFormat format) {
+std::string gnuplot_script(const BarPlot& plot, PlotFormat format) {
   constexpr double kBarsRight = 0.76, kBarsBottom = 0.25;  // room for the key and for slanted names
   std::ostringstream script;
   script.precision(9);
@@ -263,7 +267,10 @@ std::string draw(const BarPlot& plot, PlotFormat format) {
     script << ", $bars using 0:" << plot.parts.size() + 2 << " with points pointtype 2 linecolor '#000000' title "
            << quoted(plot.mark_name);
   script << "\n";
-  return run_gnuplot(script.str());
+  return script.str();
 }
+
+std::string draw(const ScatterPlot& plot, PlotFormat format) { return run_gnuplot(gnuplot_script(plot, format)); }
+std::string draw(const BarPlot& plot, PlotFormat format) { return run_gnuplot(gnuplot_script(plot, format)); }
 
 }  // namespace beampipe

@@ -12,8 +12,9 @@ Json report_inspections(const ReportFile& report) {
     const std::string spec = result.at("technique").get<std::string>();
     const std::filesystem::path file = result.at("inspections").get<std::string>();
     if (file != std::filesystem::path(spec_folder(spec)) / kInspectionsFile)
-      throw ReportError((report.folder / "report.json").string() + ": expected the inspections of " + spec + " in " +
-                        spec_folder(spec) + "/" + kInspectionsFile + ", found " + in_quotes(file.string()));
+      throw ReportError((report.folder / "report.json").string() + ": expected the inspections of " + in_quotes(spec) +
+                        " in " + in_quotes(spec_folder(spec) + "/" + kInspectionsFile) + ", found " +
+                        in_quotes(file.string()));
     const Json recorded = parse_json((report.folder / file).string());
     for (const Json& pixel : recorded.at("pixels").elements())
       list.push_back({{"technique", pixel.at("technique").get<std::string>()},

@@ -81,10 +81,11 @@ Json kinds_of(const std::set<std::string>& names) {
 // else cannot show other files.
 std::filesystem::path file_of(const ReportFile& report, const std::string& name) {
   // Symbolic links are followed first.
+  std::error_code error;
   const std::filesystem::path folder = std::filesystem::weakly_canonical(report.folder),
-                              path = std::filesystem::weakly_canonical(folder / name).lexically_relative(folder);
-  if (name.empty() || path.empty() || *path.begin() == "..") {
-    throw ReportError((report.folder / "report.json").string() + ": it names " + name +
+                              path = std::filesystem::weakly_canonical(folder / name, error).lexically_relative(folder);
+  if (error || name.empty() || path.empty() || *path.begin() == "..") {
+    throw ReportError((report.folder / "report.json").string() + ": it names " + in_quotes(name) +
                       "; expected a file in its own folder");
   }
   return report.folder / path;

@@ -88,7 +88,7 @@ void make_line(PlotSeries& series) {
 
 [[noreturn]] void throw_not_compared(const std::vector<ReportFile>& reports) {
   throw ReportError((reports.front().folder / "report.json").string() +
-                    ": it has no errors; expected a report of `beampipe compare`");
+                    ": it has no errors; expected a report of `beampipe compare`, or --kind traffic for one of `run`");
 }
 
 }  // namespace

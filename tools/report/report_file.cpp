@@ -32,6 +32,10 @@ TechniqueSummary mean_summary(const std::vector<TechniqueSummary>& of_one_techni
     mean.emr->is_lower_bound |= summary.emr->is_lower_bound;
     mean.emr->is_upper_bound |= summary.emr->is_upper_bound;
   }
+  std::erase_if(mean.modelled_ms, [&](const auto& modelled) {
+    return std::any_of(of_one_technique.begin(), of_one_technique.end(),
+                       [&](const TechniqueSummary& summary) { return !summary.modelled_ms.contains(modelled.first); });
+  });
   for (auto& [implementation, mean_ms] : mean.modelled_ms) {
     std::vector<double> overlap, sum;
     for (const TechniqueSummary& summary : of_one_technique) {
@@ -117,6 +121,8 @@ TechniqueSummary read_summary(const Json& result) {
   summary.all_bytes_per_pixel = summary.bytes_per_pixel + summary.on_chip_bytes_per_pixel;
   std::vector<double> medians;
   const std::vector<Json>& frames = result.at("frames").elements();
+  if (frames.empty())
+    throw JsonError("expected a technique with at least one frame, found none of " + in_quotes(summary.spec));
   for (const Json& frame : frames) medians.push_back(frame.at("wall_ms").at("median").get<double>());
   summary.wall_ms = wall_time(std::move(medians)).median;
   for (const Json& frame : frames) {
@@ -152,7 +158,7 @@ std::vector<Json> stage_records(const ReportFile& report) {
   std::vector<Json> records;
   for (const Json& result : report.json.at("results").elements()) {
     const std::vector<Json>& frames = result.at("frames").elements();
-    std::vector<Json> stages(frames.at(0).at("stages").size());
+    std::vector<Json> stages(frames.front().at("stages").size());
     for (const Json& frame : frames) {
       for (std::size_t i = 0; i < stages.size(); ++i) add_numbers(stages[i], frame.at("stages").at(i));
     }
@@ -176,19 +182,18 @@ ReportFile read_report(const std::filesystem::path& folder) {
   }
   ReportFile report{folder, {}, {}, {}, {}};
   report.json = parse_json(file.string());
-  try {
-    if (report.json.at("beampipe_report") != 1) throw std::runtime_error("its beampipe_report is not 1");
+  read_from_report(folder, [&] {
+    if (report.json.at("beampipe_report") != 1) throw JsonError("its beampipe_report is not 1");
     report.scene = std::filesystem::path(report.json.at("trace").get<std::string>()).stem().string();
     for (const Json& result : report.json.at("results").elements()) {
-      if (result.at("technique") != "reference") report.techniques.push_back(read_summary(result));
+      TechniqueSummary summary = read_summary(result);
+      if (summary.spec != "reference") report.techniques.push_back(std::move(summary));
     }
     const Json ladder = report.json.value("msaa_ladder", Json::array());
     for (const Json& rung : ladder.elements()) {
       report.msaa_ladder.push_back({rung.at("samples").get<std::uint32_t>(), rung.at("rmse").get<double>()});
     }
-  } catch (const std::exception& error) {
-    throw ReportError(file.string() + ": not a report of beampipe: " + error.what());
-  }
+  });
   if (report.techniques.empty()) throw ReportError(file.string() + ": it has no technique except the reference");
   return report;
 }

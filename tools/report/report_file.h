@@ -18,6 +18,16 @@ struct ReportError : std::runtime_error {
   using std::runtime_error::runtime_error;
 };
 
+// What read() returns. A JsonError of it becomes a ReportError that names the folder's report.json.
+template <class Read>
+auto read_from_report(const std::filesystem::path& folder, const Read& read) {
+  try {
+    return read();
+  } catch (const JsonError& error) {
+    throw ReportError((folder / "report.json").string() + ": not a report of beampipe: " + error.what());
+  }
+}
+
 // Modelled milliseconds per frame (the mean over the frames): with all stages at once, and one after the other.
 struct ModelledMs {
   double overlap = 0, sum = 0;
@@ -77,7 +87,8 @@ void divide_numbers(Json& sum, std::uint64_t count);
 ReportFile read_report(const std::filesystem::path& folder);
 
 // The geometric means over several reports of RMSE, EMR, times and bytes, for the techniques that are in all reports,
-// in the order of the first report. A mean is a lower (upper) bound if one of its values is. If it would be both, it is
+// in the order of the first report, and for the implementations of hardware that all reports of a technique have. A
+// mean is a lower (upper) bound if one of its values is. If it would be both, it is
 // marked as both and is neither. Throws ReportError if the reports have no technique in common, and
 // std::invalid_argument if there is no report.
 std::vector<TechniqueSummary> mean_summaries(const std::vector<ReportFile>& reports);

@@ -53,7 +53,9 @@ std::optional<Roof> roof_of(const ReportFile& report) {
   const Json& hardware = report.json.at("hardware");
   const Json& rates = hardware.at("rates");
   const double gigahertz = hardware.at("clock_mhz").get<double>() / 1000;
-  return Roof{hardware.at("implementations").members().at(0).key, gigahertz * rates.at("issue_per_clk").get<double>(),
+  const Json::Object& implementations = hardware.at("implementations").members();
+  if (implementations.empty()) throw JsonError("expected hardware with an implementation, found none");
+  return Roof{implementations.front().key, gigahertz * rates.at("issue_per_clk").get<double>(),
               gigahertz * rates.at("dram_bytes_per_clk").get<double>()};
 }
 

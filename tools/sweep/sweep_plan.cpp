@@ -135,7 +135,8 @@ class PlanReader {
   void add_grid(const JsonCursor& grid, const Axes& axes) {
     for (const char* required : {kTraces, kTechniques})
       if (!axes.contains(required)) grid.fail("the key " + in_quotes(required), "none");
-    // Everything that is counted here is in the table's rows, so it is checked before any of it is made.
+    // Everything that is counted here is in the table's rows, so it is checked before any of it is made. Points that
+    // came before and implementations that are not named count too, and are checked while rows are added.
     limit_combinations(axes, "", kMostRows, grid, kRows);
     limit_combinations(axes, kHardware, kMostHardware, grid, kKinds);
 
@@ -156,9 +157,11 @@ class PlanReader {
         for (const std::size_t technique : techniques)
           for (const std::size_t system : memory) {
             const std::size_t cell = add_cell({trace, size, technique, system});
-            for (const std::size_t each : hardware) add_rows(cell, each, axes);
+            for (const std::size_t each : hardware) {
+              add_rows(cell, each, axes);
+              if (plan_.rows.size() > kMostRows) fail_limit(grid, kMostRows, kRows);
+            }
           }
-    if (plan_.rows.size() > kMostRows) fail_limit(grid, kMostRows, kRows);
     if (plan_.hardware.size() > kMostHardware) fail_limit(grid, kMostHardware, kKinds);
   }
 

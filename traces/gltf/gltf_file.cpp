@@ -246,7 +246,7 @@ GltfFile read_gltf_file(const fs::path& path, NotRead& not_read) {
     error = failure.what();
   }
   if (!is_read) {
-    if (error.find("File read error") != std::string::npos) throw TraceError(files.error);
+    if (!files.error.empty()) throw TraceError(files.error);
     fail_trace(file.where, "a glTF 2.0 file",
                "one that tinygltf refuses: " + in_quotes(error.substr(0, error.find('\n'))));
   }

@@ -50,6 +50,21 @@ TEST_F(SweepPlanTest, AGridHasEveryCombinationInOrder) {
   EXPECT_EQ(plan.varied_rates, std::vector<std::string>{"dram_bytes_per_clk"});
 }
 
+// Where no implementations are named, the hardware's count.
+TEST_F(SweepPlanTest, ImplementationsCountAsRows) {
+  Json hardware = parse_json((kSource / "tools/evaluate/hardware/titan_v.json").string());
+  Json implementations = Json::object();
+  for (int i = 0; i < 20; ++i)
+    implementations["units" + std::to_string(i)] = hardware.at("implementations").members()[0].value;
+  hardware["implementations"] = implementations;
+  write_text(folder_ / "h.json", hardware.dump());
+  std::string rates = "1";
+  for (int i = 2; i <= 900; ++i) rates += "," + std::to_string(i);
+  EXPECT_EQ(refusal(R"(, "hardware": ["h.json"], "hardware.dram_bytes_per_clk": [)" + rates + R"(],
+                     "memory_system.l2_ways": [1, 2, 3, 4, 5, 6])"),
+            "/: expected at most 100000 rows of the table, found more");
+}
+
 TEST_F(SweepPlanTest, PointsInheritAxes) {
   const SweepPlan plan = read(R"({"beampipe_sweep": 1, "traces": ["a.json"], "techniques": ["beam"],
     "implementations": ["shaders"],

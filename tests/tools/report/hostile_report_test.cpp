@@ -1,0 +1,126 @@
+// Reports that someone else wrote: every mistake in them is one line that names the file, and no name in them becomes a
+// path, a command or a number that a plot cannot show.
+
+#include "tests/tools/program.h"
+#include "tools/report/figures.h"
+#include "tools/report/gnuplot.h"
+#include "tools/report/inspections.h"
+#include "tools/report/layers.h"
+#include "tools/report/tables.h"
+
+namespace beampipe {
+namespace {
+
+std::string with(std::string text, const std::string& whole, const std::string& broken) {
+  return text.replace(text.find(whole), whole.size(), broken);
+}
+
+// Compared, with modelled times.
+const std::string kReport =
+    R"({"beampipe_report": 1, "trace": "dots.json", "msaa_ladder": [{"samples": 1, "rmse": 0.1}],
+  "hardware": {"clock_mhz": 1000, "rates": {"issue_per_clk": 100, "dram_bytes_per_clk": 10},
+               "implementations": {"shaders": {}}},
+  "results": [{"technique": "beam", "framebuffer_bytes_per_pixel": 6, "peak_bytes_per_pixel": 6, "framebuffer": [],
+    "error": {"rmse": 0.02, "bias": 0, "p99": 0.1, "max": 0.2}, "equivalent_msaa": 8,
+    "inspections": "beam/inspections.json",
+    "frames": [{"index": 0, "picture": "beam/frame_0000.png",
+      "wall_ms": {"median": 4, "min": 4, "max": 4, "runs": 1}, "modelled_ms": {"shaders": {"overlap": 2, "sum": 3}},
+      "dram_bytes": 800, "stages": [{"stage": "compose", "ops": {"total": 3}, "bytes_read": 5, "bytes_written": 2,
+        "dram_bytes": 10, "modelled_ms": {"shaders": 0.5}}]}]}]})";
+
+class HostileReport : public testing::Test {
+ protected:
+  ReportFile read(const std::string& text) const {
+    write_text(folder_ / "report.json", text);
+    return read_report(folder_.string());
+  }
+
+  // What follows the name of report.json. "" if reading, tables, figures, layers and inspections have no error.
+  std::string refusal(const std::string& text) const {
+    try {
+      const ReportFile report = read(text);
+      report_tables(report);
+      report_figures(report);
+      if (report.json.at("results").at(0).at("inspections") != "beam/inspections.json") report_inspections(report);
+      report_layers(report, 0);
+    } catch (const JsonError& error) {  // where commands call read_from_report()
+      return error.what();
+    } catch (const std::exception& error) {
+      const std::string what = error.what(), name = (folder_ / "report.json").string() + ": ";
+      EXPECT_EQ(what.find('\n'), what.npos);
+      EXPECT_TRUE(what.starts_with(name)) << what;
+      return what.substr(what.starts_with(name) ? name.size() : 0);
+    }
+    return "";
+  }
+
+  TemporaryFolder folder_;
+};
+
+TEST_F(HostileReport, TechniquesAndFramesMustBeThere) {
+  EXPECT_EQ(refusal(R"({"beampipe_report": 1, "trace": "a", "results": [{"technique": "beam", "frames": [],
+                       "peak_bytes_per_pixel": 6}]})"),
+            "not a report of beampipe: expected a technique with at least one frame, found none of \"beam\"");
+  EXPECT_EQ(refusal(with(kReport, R"("implementations": {"shaders": {}})", R"("implementations": {})")),
+            "expected hardware with an implementation, found none");
+}
+
+TEST_F(HostileReport, NamesInMessagesAreOneLine) {
+  EXPECT_EQ(refusal(with(kReport, R"("beam/frame_0000.png")", R"("../\n")")),
+            R"(it names "../\n"; expected a file in its own folder)");
+  EXPECT_EQ(refusal(with(kReport, R"("beam/inspections.json")", R"("a\n")")),
+            R"(expected the inspections of "beam" in "beam/inspections.json", found "a\n")");
+  const std::string long_name(5000, 'x');
+  EXPECT_TRUE(refusal(with(kReport, "beam/frame_0000.png", long_name)).starts_with("it names \"xxx"));
+}
+
+// The names of plots are names of files.
+TEST_F(HostileReport, NamesOfImplementationsCannotLeaveTheFolder) {
+  std::string text = kReport;
+  for (std::size_t at = text.find("shaders"); at != text.npos; at = text.find("shaders", at + 20))
+    text.replace(at, 7, "/../../../shaders");
+  const std::vector<Figure> figures = report_figures(read(text));
+  int plots = 0;
+  for (const Figure& figure : figures)
+    for (const auto& choice : figure.choices) {
+      const std::string file = plot_file(choice.second);
+      EXPECT_EQ(file.rfind('/'), file.find('/')) << file;
+      ++plots;
+    }
+  EXPECT_GE(plots, 4);
+}
+
+TEST_F(HostileReport, AxesShowNumbersOfAnySize) {
+  for (const char* number : {"1.7e308", "1e-308", "1e300"}) {
+    const ReportFile report =
+        read(with(kReport, R"("equivalent_msaa": 8)", std::string(R"("equivalent_msaa": )") + number));
+    EXPECT_LT(gnuplot_script(frontier_plot({report}), PlotFormat::svg).size(), 10000u) << number;
+  }
+}
+
+TEST_F(HostileReport, MeansNeedTheSameHardware) {
+  const ReportFile one = read(kReport);
+  std::string text = kReport;
+  for (std::size_t at = text.find("shaders"); at != text.npos; at = text.find("shaders", at + 1))
+    text.replace(at, 7, "units");
+  const ReportFile other = read(text);
+  const std::vector<TechniqueSummary> means = mean_summaries({one, other});
+  ASSERT_EQ(means.size(), 1u);
+  EXPECT_TRUE(means[0].modelled_ms.empty()) << "neither is in both";
+  EXPECT_EQ(mean_summaries({one, one})[0].modelled_ms.size(), 1u);
+}
+
+// `model` and `claims` say which file is wrong.
+TEST_F(HostileReport, CommandsNameTheFile) {
+  write_text(folder_ / "report.json", kReport);
+  const std::string file = (folder_ / "report.json").string();
+  EXPECT_EQ(
+      run_program({"model", folder_.string()}).err,
+      "beampipe: error: " + file + ": not a report of beampipe: expected the key \"memory_system\", found none\n");
+  write_text(folder_ / "report.json", with(kReport, R"("trace")", R"("claims": [{}], "trace")"));
+  EXPECT_EQ(run_program({"claims", folder_.string()}).err,
+            "beampipe: error: " + file + ": not a report of beampipe: expected the key \"name\", found none\n");
+}
+
+}  // namespace
+}  // namespace beampipe
