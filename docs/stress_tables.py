@@ -3,15 +3,15 @@
 
 usage: docs/stress_tables.py STRESS_JSON SPEC...
 
-STRESS_JSON comes from `beampipe stress -o FOLDER`. Prints a row for each case in which a technique has an error above
-the rounding of fp16, and then how many cases have no row. A star marks such an error, an exclamation mark one above the
-limit.
+STRESS_JSON comes from `beampipe stress -o FOLDER`. Prints a row for each case in which one of the techniques has an error
+above the rounding of its format, and then how many cases have no row. A star marks such an error, an exclamation mark one
+above the stated limit.
 """
 import json
 import math
 import sys
 
-FORMAT_ERROR = 2 ** -11
+FP16_ERROR = 2 ** -11  # of colours up to 1, rounded twice
 
 
 def cell(result):
@@ -19,7 +19,8 @@ def cell(result):
     if error is None:
         return "nan!"
     text = f"2^{math.log2(error):.1f}" if error > 0 else "exact"
-    return text + ("!" if not result["passes"] else "*" if error > FORMAT_ERROR else "")
+    rounding = FP16_ERROR if result["reason"] else result["limit"]
+    return text + ("!" if not result["passes"] else "*" if error > rounding else "")
 
 
 def main(file, *specs):
@@ -34,7 +35,7 @@ def main(file, *specs):
     print("|---" * (len(specs) + 1) + "|")
     for case, cells in starred.items():
         print(f"| {case} |" + "".join(f" {text} |" for text in cells))
-    print(f"\nThe other {len(rows) - len(starred)} of {len(rows)} cases are exact up to the rounding of fp16.")
+    print(f"\nThe other {len(rows) - len(starred)} of {len(rows)} cases are exact up to the rounding of the formats.")
 
 
 if __name__ == "__main__":
