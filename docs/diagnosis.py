@@ -1,88 +1,65 @@
 #!/usr/bin/env python3
 """Makes the tables of docs/accuracy.md about causes of error, order of triangles, and flicker.
 
-usage: docs/diagnosis.py causes PROGRAM [TRACE...]
-       docs/diagnosis.py orders PROGRAM [SCENE or TRACE...]
-       docs/diagnosis.py motion PROGRAM [SCENE...]
+usage: docs/diagnosis.py causes SPEC RESULTS...
+       docs/diagnosis.py orders RESULTS...
+       docs/diagnosis.py motion RESULTS...
 
-PROGRAM is for instance build/release/tools/beampipe. `causes` measures the nine procedural scenes, which it makes, and
-the given traces. `orders` and `motion` measure the given scenes and traces, or all procedural scenes if none is given.
-`motion` renders eight frames whose pictures move by 0.19 and 0.07 pixels per frame.
+RESULTS are folders of `beampipe compare`, one for each scene: with --causes, with --orders, or of several frames.
 """
 import json
 import pathlib
-import subprocess
 import sys
-import tempfile
 
-SCENES = ["hairball", "classroom", "boat", "pickets", "terrain", "sphere", "fence", "soup", "foliage"]
-EXPLAINED = ["beam", "beam:order=sorted", "beam:rules=paper"]
-ORDERED = ["beam:order=sorted", "beam:rules=paper", "beam:order=stream,passes=0", "z3", "msaa:8", "reference"]
-MOVED = ["beam:order=sorted", "beam:rules=paper", "beam:order=stream,passes=0", "msaa:8", "msaa:32", "msaa:256"]
+from measure import PROCEDURAL, print_head, print_row
 
 
-def compare(program, trace, folder, *arguments):
-    """Results by technique."""
-    subprocess.run([program, "compare", trace, *arguments, "--ladder", "8", "-o", folder], check=True,
-                   stdout=subprocess.DEVNULL)
-    with open(f"{folder}/report.json", encoding="utf-8") as file:
-        return {result["technique"]: result for result in json.load(file)["results"]}
-
-
-def make(program, scene, folder, *arguments):
-    trace = f"{folder}/{scene}.json"
-    subprocess.run([program, "make", scene, *arguments, "-o", trace], check=True, stdout=subprocess.DEVNULL)
-    return trace
-
-
-def print_table(titles, rows):
-    print("| " + " | ".join(titles) + " |")
-    print("|---" * len(titles) + "|")
-    for row in rows:
-        print("| " + " | ".join(row) + " |", flush=True)
-    print()
-
-
-def causes(program, traces, folder):
+def results(folders):
+    """Results by technique, by scene: procedural ones first."""
     found = {}
-    for trace in [*(make(program, scene, folder) for scene in SCENES), *traces]:
-        found[pathlib.Path(trace).stem] = compare(program, trace, f"{folder}/out", "-t", *EXPLAINED, "msaa:8", "--causes")
-    for spec in EXPLAINED:
-        names = list(next(iter(found.values()))[spec]["error_causes"])
-        print_table([f"`{spec}`", "RMSE × 1000", *names],
-                    [[scene, f"{1000 * results[spec]['error']['rmse']:.2f}",
-                      *(f"{100 * results[spec]['error_causes'][name]:.0f} %" for name in names)]
-                     for scene, results in found.items()])
+    for folder in map(pathlib.Path, folders):
+        report = json.loads((folder / "report.json").read_text(encoding="utf-8"))
+        found[folder.name] = {result["technique"]: result for result in report["results"]}
+    names = [*(name for name in PROCEDURAL if name in found), *sorted(set(found) - set(PROCEDURAL))]
+    return {name: found[name] for name in names}
 
 
-def orders(program, what, folder):
-    """`what`: procedural scenes or traces."""
+def print_causes(spec, found):
+    names = list(next(iter(found.values()))[spec]["error_causes"])
+    print_head(f"`{spec}`", "RMSE × 1000", *names)
+    for scene, by_spec in found.items():
+        print_row(scene, f"{1000 * by_spec[spec]['error']['rmse']:.2f}",
+                  *(f"{100 * by_spec[spec]['error_causes'][name]:.0f} %" for name in names))
+
+
+def print_orders(found):
     names = ["given", "shuffled", "near_to_far", "far_to_near", "largest_difference"]
-    rows = []
-    for scene in what or SCENES:
-        trace = make(program, scene, folder) if scene in SCENES else scene
-        results = compare(program, trace, f"{folder}/out", "-t", *ORDERED[:-1], "--orders")
-        for spec in ORDERED:
-            values = [results[spec]["orders"][name] for name in names]
-            rows.append([pathlib.Path(scene).stem, f"`{spec}`",
-                         *(f"{1000 * (v['rmse'] if isinstance(v, dict) else v):.3f}" for v in values)])
-    print_table(["scene", "RMSE × 1000", *(name.replace("_", " ") for name in names)], rows)
+    print_head("scene", "RMSE × 1000", *(name.replace("_", " ") for name in names))
+    for scene, by_spec in found.items():
+        for spec, result in by_spec.items():
+            if spec == "reference":
+                continue
+            values = [result["orders"][name] for name in names]
+            print_row(scene, f"`{spec}`", *(f"{1000 * (v['rmse'] if isinstance(v, dict) else v):.3f}" for v in values))
 
 
-def motion(program, scenes, folder):
-    rows = []
-    for scene in scenes or SCENES:
-        trace = make(program, scene, folder, "--frames", "8", "--pan", "0.19,0.07")
-        results = compare(program, trace, f"{folder}/out", "-t", *MOVED)
-        rows.append([scene, *(f"{1000 * results[spec]['flicker']:.2f}" for spec in MOVED)])
-    print_table(["flicker × 1000", *(f"`{spec}`" for spec in MOVED)], rows)
+def print_motion(found):
+    specs = [spec for spec in next(iter(found.values())) if spec != "reference"]
+    print_head("flicker × 1000", *(f"`{spec}`" for spec in specs))
+    for scene, by_spec in found.items():
+        print_row(scene, *(f"{1000 * by_spec[spec]['flicker']:.2f}" for spec in specs))
 
 
-def main():
-    if len(sys.argv) < 3 or sys.argv[1] not in ("causes", "orders", "motion"):
-        sys.exit(__doc__.strip())
-    with tempfile.TemporaryDirectory() as folder:
-        {"causes": causes, "orders": orders, "motion": motion}[sys.argv[1]](sys.argv[2], sys.argv[3:], folder)
+def main(arguments):
+    match arguments:
+        case ["causes", spec, *folders] if folders:
+            print_causes(spec, results(folders))
+        case ["orders", *folders] if folders:
+            print_orders(results(folders))
+        case ["motion", *folders] if folders:
+            print_motion(results(folders))
+        case _:
+            sys.exit(__doc__.strip())
 
 
-main()
+main(sys.argv[1:])

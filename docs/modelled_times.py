@@ -4,11 +4,13 @@
 usage: docs/modelled_times.py times  PROGRAM [--hardware A,B,...] DIR...
        docs/modelled_times.py bins   PROGRAM [--hardware A,B,...] DIR...
        docs/modelled_times.py ratios PROGRAM [--hardware A,B,...] DIR...
+       docs/modelled_times.py errors PROGRAM [--hardware A,B,...] DIR...
        docs/modelled_times.py beam   PROGRAM [--hardware A,B,...] DIR...
 
 PROGRAM is for instance beampipe; `beampipe run TRACE -t SPEC... -o DIR` wrote the folders. `times` prints milliseconds,
 and the equivalent MSAA rate where `beampipe compare` wrote the folder.
-`bins` adds what a bin has on chip. `ratios` divides by the time of the published pipeline, beside the paper's ratios.
+`bins` adds what a bin has on chip. `ratios` divides by the time of the published pipeline, beside the paper's ratios;
+`errors` prints those ratios alone.
 `beam` divides the times of beam by those of MSAA, for several prices of shading.
 """
 import argparse
@@ -91,6 +93,19 @@ def ratios(program, hardware, folders):
             print_row(f"`{technique}`", f"{published:.2f}" if published else "", *cells)
 
 
+def errors(program, hardware, folders):
+    rates = [technique for technique in PUBLISHED_MS if technique != BASE]
+    print_head("", *(f"`{technique}`" for technique in rates))
+    print_row("published", *(f"{PUBLISHED_MS[technique] / PUBLISHED_MS[BASE]:.2f}" for technique in rates))
+    for folder, found in model(program, hardware, folders).items():
+        for name in found[BASE]:
+            cells = []
+            for technique in rates:
+                ratio = found[technique][name]["sum"] / found[BASE][name]["sum"]
+                cells.append(f"{ratio:.2f} ({100 * (ratio * PUBLISHED_MS[BASE] / PUBLISHED_MS[technique] - 1):+.0f} %)")
+            print_row(f"{scene_of(folder)}, `{name}`", *cells)
+
+
 def beam(program, hardware, folders):
     by_cost = {cost: model(program, hardware, folders, cost) for cost in COSTS}
     names = list(by_cost[0][folders[0]][BEAM])
@@ -107,7 +122,7 @@ def beam(program, hardware, folders):
 
 if __name__ == "__main__":
     parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
-    parser.add_argument("table", choices=("times", "bins", "ratios", "beam"))
+    parser.add_argument("table", choices=("times", "bins", "ratios", "errors", "beam"))
     parser.add_argument("program")
     parser.add_argument("--hardware", default="titan_v")
     parser.add_argument("folders", nargs="+")

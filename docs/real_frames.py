@@ -1,11 +1,12 @@
 #!/usr/bin/env python3
 """Makes the tables of docs/real_frames.md about frames of real programs.
 
-real_frames.py BEAMPIPE FOLDER TRACE...   the first frame of each trace that `beampipe capture` has made: what it has,
-                                          and what techniques make of it; results stay in FOLDER,
-                                          where a second call finds what is finished
-real_frames.py BEAMPIPE --run FOLDER TRACE...   the same without errors, which take most of the time
-real_frames.py BEAMPIPE --check TRACE...  all frames: their depths compared with the program's own
+usage: docs/real_frames.py frames PROGRAM FOLDER TRACE...    what the first frame of each trace has
+       docs/real_frames.py errors PROGRAM FOLDER TRACE...    what techniques make of it
+       docs/real_frames.py depths PROGRAM TRACE...           depths of all frames, beside those of the captured program
+
+PROGRAM is for instance beampipe, and `beampipe capture` made the traces. The results of `compare` stay in FOLDER, where
+another call finds what is finished.
 """
 import json
 import pathlib
@@ -18,7 +19,8 @@ SPECS = ["beam", "msaa:4", "msaa:8", "acaa:8", "dvm"]
 
 
 def rate_of(result):
-    return ("≥ " if result["equivalent_msaa_is_lower_bound"] else "") + f"{result['equivalent_msaa']:.{0 if result['equivalent_msaa'] >= 10 else 1}f}"
+    rate = result["equivalent_msaa"]
+    return ("≥ " if result["equivalent_msaa_is_lower_bound"] else "") + f"{rate:.{0 if rate >= 10 else 1}f}"
 
 
 def notes_of(program, trace):
@@ -44,35 +46,40 @@ def frame_row(program, name, path, found):
 def technique_rows(name, found, on_chip):
     for spec in SPECS:
         frame, times = found[spec]["frames"][0], found[spec]["frames"][0]["modelled_ms"]
-        errors = ["", "", ""]
-        if "error" in found[spec]:
-            errors = [f"{1000 * found[spec]['error']['rmse']:.3f}", rate_of(found[spec]),
-                      rate_of(found[spec]["visibility"]) if "visibility" in found[spec] else ""]
+        errors = [f"{1000 * found[spec]['error']['rmse']:.3f}", rate_of(found[spec]),
+                  rate_of(found[spec]["visibility"]) if "visibility" in found[spec] else ""]
         print_row(name, f"`{spec}`", *errors,
                   f"{frame['dram_bytes'] / 1e6:.2f}", f"{on_chip[spec]['frames'][0]['dram_bytes'] / 1e6:.2f}",
                   f"{times['shaders']['overlap']:.4f}", f"{times['fixed_function']['overlap']:.4f}")
 
 
-def measure_all(program, command, folder, traces):
+def measure_all(program, folder, traces):
+    """By name: the trace, its results, and those with all pixels on chip."""
     measured = {}
     for path in traces:
         name = pathlib.Path(path).stem
-        found = results(program, command, path, SPECS, f"{folder}/{name}", "--frames", "0", "--resume")
+        found = results(program, "compare", path, SPECS, f"{folder}/{name}", "--frames", "0", "--resume")
         on_chip = results(program, "run", path, SPECS, f"{folder}/{name}_on_chip", "--frames", "0", "--resume",
                           "--framebuffer", "on-chip")
         measured[name] = path, found, on_chip
+    return measured
+
+
+def print_frames(program, measured):
     print_head("frame", "size", "draws", "triangles", "rasterized", "per pixel", "pairs per pixel",
                "fragments per pixel", "not drawn, or not exactly")
     for name, (path, found, _) in measured.items():
         frame_row(program, name, path, found)
-    print()
+
+
+def print_errors(measured):
     print_head("frame", "technique", "RMSE × 1000", "EMR", "EMR of visibility", "DRAM MB", "DRAM MB, all on chip",
                "ms, shaders", "ms, fixed function")
     for name, (_, found, on_chip) in measured.items():
         technique_rows(name, found, on_chip)
 
 
-def check_all(program, traces):
+def print_depths(program, traces):
     print_head("trace", "frame", "covered pixels", "in both", "depth within 10⁻⁶", "within 10⁻⁴",
                "largest difference", "draws that differ: pixels")
     for path in traces:
@@ -87,12 +94,16 @@ def check_all(program, traces):
                       f"{frame['largest_difference']:.1e}", differing)
 
 
-if __name__ == "__main__":
-    if len(sys.argv) < 4:
-        sys.exit(__doc__)
-    if sys.argv[2] == "--check":
-        check_all(sys.argv[1], sys.argv[3:])
-    elif sys.argv[2] == "--run":
-        measure_all(sys.argv[1], "run", sys.argv[3], sys.argv[4:])
-    else:
-        measure_all(sys.argv[1], "compare", sys.argv[2], sys.argv[3:])
+def main(arguments):
+    match arguments:
+        case ["frames", program, folder, *traces] if traces:
+            print_frames(program, measure_all(program, folder, traces))
+        case ["errors", program, folder, *traces] if traces:
+            print_errors(measure_all(program, folder, traces))
+        case ["depths", program, *traces] if traces:
+            print_depths(program, traces)
+        case _:
+            sys.exit(__doc__.strip())
+
+
+main(sys.argv[1:])

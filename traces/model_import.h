@@ -25,8 +25,9 @@ using NotRead = std::map<std::string, std::size_t>;
 enum class ObjMaterials { none, textured, all };
 
 // Adds an OBJ with its .mtl to a trace: one mesh, the materials that its triangles use, and their images. Polygons are
-// triangulated; faces without a material are 0.8 grey. A missing .mtl counts as no material; one outside the OBJ's
-// folder is an error, and so is an image that is missing or outside the folder. The mesh gets the file's name without
+// triangulated; faces without a material, and materials without Kd, are 0.8 grey. A missing .mtl counts as no material
+// and as not read, and so does an unknown usemtl; a .mtl outside the OBJ's folder is an error, and so is an image that
+// is missing or outside the folder. The mesh gets the file's name without
 // ".obj". Errors start with `named_by`, the place in the trace that names the file, unless it is empty. Throws
 // TraceError.
 //

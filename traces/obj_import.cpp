@@ -5,6 +5,7 @@
 #include <charconv>
 #include <cmath>
 #include <map>
+#include <set>
 #include <sstream>
 #include <string_view>
 #include <unordered_map>
@@ -22,7 +23,7 @@ namespace {
 
 namespace fs = std::filesystem;
 
-constexpr glm::vec3 kGrey{0.8f};              // of faces without a material
+constexpr glm::vec3 kGrey = kDefaultColor;    // of faces without a material, and of materials without Kd
 constexpr std::uint32_t kMostCorners = 4096;  // of a face: triangulating takes the cube of this in the worst case
 constexpr std::string_view kBlanks = " \t";
 
@@ -160,42 +161,92 @@ std::string read_text(const fs::path& file, const std::string& where, ObjMateria
   return text;
 }
 
-// Reads the material libraries that an OBJ names, which must be in the OBJ's own folder.
-class Libraries : public tinyobj::MaterialReader {
+// The loader gives a material without Kd black or 0.6 grey, depending on its maps and on the materials before it. So
+// each starts with the Kd that the trace format has where there is none.
+std::string with_default_kd(std::string_view text) {
+  std::ostringstream with;
+  while (!text.empty()) {
+    std::string_view line = take_line(text);
+    with << line << "\n";
+    if (take_word(line) == "newmtl") with << "Kd " << kGrey.r << " " << kGrey.g << " " << kGrey.b << "\n";
+  }
+  return with.str();
+}
+
+// "my\ room.mtl", as some programs write names with blanks, is "my room.mtl".
+std::string without_escapes(std::string_view name) {
+  std::string plain;
+  for (std::size_t i = 0; i < name.size(); ++i)
+    if (!name.substr(i).starts_with("\\ ")) plain += name[i];
+  return plain;
+}
+
+// The material libraries that an OBJ names, which must be in the OBJ's own folder.
+class Libraries {
  public:
   Libraries(const fs::path& obj, const std::string& where, ObjMaterials materials, NotRead& not_read)
-      : obj_(obj), where_(where), materials_(materials), not_read_(not_read) {}
+      : folder_(fs::canonical(obj).parent_path()), where_(where), materials_(materials), not_read_(not_read) {}
 
-  bool operator()(const std::string& name, std::vector<tinyobj::material_t>*, std::map<std::string, int>*, std::string*,
-                  std::string*) override {
-    const fs::path folder = fs::canonical(obj_).parent_path();
-    std::error_code error;
-    const fs::path file = fs::weakly_canonical(folder / name, error);
-    const fs::path relative = file.lexically_relative(folder);
-    if (error || relative.empty() || *relative.begin() == ".." || fs::path(name).is_absolute()) {
-      fail_trace(where_, "an mtllib in the OBJ's folder", in_quotes(name));
+  // Reads those of all mtllib lines. Such a line has one name, in which blanks may be, or several names.
+  void read_all(std::string_view obj_text) {
+    while (!obj_text.empty()) {
+      std::string_view line = take_line(obj_text);
+      if (take_word(line) != "mtllib") continue;
+      if (const std::string name = without_escapes(trim(line)); is_there(name)) {
+        read(name);
+        continue;
+      }
+      for (std::string_view name = take_word(line); !name.empty(); name = take_word(line)) read(std::string(name));
     }
-    if (!fs::exists(file, error)) return false;
-    read(file, where_ + ": " + name);
-    return true;
   }
 
   // Null if no library has it.
-  const tinyobj::material_t* find(std::string_view material) const {
-    const auto found = by_name_.find(trim(material));
-    return found == by_name_.end() ? nullptr : &found->second;
+  const tinyobj::material_t* find(std::string_view material) {
+    const std::string_view name = trim(material);
+    const auto found = by_name_.find(name);
+    if (found != by_name_.end()) return &found->second;
+    if (!name.empty()) unknown_.emplace(name);
+    return nullptr;
+  }
+
+  // Counts the libraries that are missing, and the materials that were asked for and are in none.
+  void count_missing() {
+    for (const std::string& name : missing_) ++not_read_["mtllib " + name + " (missing)"];
+    if (unknown_.empty()) return;
+    std::string names = *unknown_.begin();
+    if (unknown_.size() > 1) names += " and " + std::to_string(unknown_.size() - 1) + " more";
+    ++not_read_["usemtl " + names + " (in no mtllib)"];
   }
 
  private:
+  bool is_there(const std::string& name) const {
+    std::error_code ignored;
+    return !name.empty() && fs::is_regular_file(folder_ / name, ignored);
+  }
+
+  void read(const std::string& name) {
+    std::error_code error;
+    const fs::path file = fs::weakly_canonical(folder_ / name, error);
+    const fs::path relative = file.lexically_relative(folder_);
+    if (error || relative.empty() || *relative.begin() == ".." || fs::path(name).is_absolute()) {
+      fail_trace(where_, "an mtllib in the OBJ's folder", in_quotes(name));
+    }
+    if (!fs::exists(file, error)) {
+      missing_.insert(name);
+    } else if (files_.insert(file).second) {
+      read(file, where_ + ": " + name);
+    }
+  }
+
   void read(const fs::path& file, const std::string& where) {
-    std::string bytes = read_text(file, where, materials_);
+    const std::string bytes = read_text(file, where, materials_);
     if (materials_ != ObjMaterials::none) {
       count_not_read(bytes,
                      {"newmtl", "Kd", "Ks", "Ns", "Ke", "d", "Tr", "Pr", "Pm", "map_Kd", "map_Ke", "map_d", "map_Bump",
                       "map_bump", "bump", "norm"},
                      not_read_);
     }
-    std::stringstream text(std::move(bytes));
+    std::stringstream text(with_default_kd(bytes));
     std::map<std::string, int> index;
     std::vector<tinyobj::material_t> materials;
     std::string warning, error;
@@ -209,10 +260,12 @@ class Libraries : public tinyobj::MaterialReader {
     }
   }
 
-  fs::path obj_;
+  fs::path folder_;
   std::string where_;
   ObjMaterials materials_;
   NotRead& not_read_;
+  std::set<fs::path> files_;
+  std::set<std::string> missing_, unknown_;  // names of libraries and of materials
   std::map<std::string, tinyobj::material_t, std::less<>> by_name_;
 };
 
@@ -268,7 +321,7 @@ Polygons load(std::istream& text, Libraries& libraries, ObjMaterials materials) 
     callback.texcoord_cb = [](void* out, real_t u, real_t v, real_t) { polygons(out).uvs.emplace_back(u, 1 - v); };
   }
   Polygons out(libraries);
-  tinyobj::LoadObjWithCallback(text, callback, &out, &libraries);
+  tinyobj::LoadObjWithCallback(text, callback, &out);
   return out;
 }
 
@@ -393,9 +446,11 @@ void read_obj(const fs::path& file, const std::string& named_by, ObjMaterials ma
     colors = vertex_colors(bytes);
     count_not_read(bytes, {"v", "vt", "vn", "f", "usemtl", "mtllib", "o", "g", "s"}, not_read);
   }
-  std::stringstream text(std::move(bytes));
   Libraries libraries(file, where, materials, not_read);
+  libraries.read_all(bytes);
+  std::stringstream text(std::move(bytes));
   const Polygons polygons = load(text, libraries, materials);
+  if (materials != ObjMaterials::none) libraries.count_missing();
   if (polygons.sizes.empty()) fail_trace(where, "at least one face", "none");
 
   // The loader computes 0e500 as 0 times infinity, which is not a number.

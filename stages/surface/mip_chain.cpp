@@ -64,10 +64,11 @@ std::vector<glm::vec4> halved(const std::vector<glm::vec4>& larger, std::uint32_
   return smaller;
 }
 
-glm::vec4 decoded(const glm::u8vec4& texel, ColorSpace space) {
-  if (space == ColorSpace::linear) return glm::vec4(texel) / 255.0f;
-  const std::array<float, 256>& values = srgb_values();
-  return {values[texel.r], values[texel.g], values[texel.b], static_cast<float>(texel.a) / 255.0f};
+TexelValues make_texel_values(ColorSpace space) {
+  TexelValues values;
+  for (std::size_t code = 0; code < values.alpha.size(); ++code) values.alpha[code] = static_cast<float>(code) / 255.0f;
+  values.color = space == ColorSpace::srgb ? srgb_values() : values.alpha;
+  return values;
 }
 
 glm::u8vec4 encoded(const glm::vec4& linear, ColorSpace space) {
@@ -84,20 +85,25 @@ const std::array<float, 256>& srgb_values() {
   return values;
 }
 
+const TexelValues& texel_values(ColorSpace space) {
+  static const TexelValues linear = make_texel_values(ColorSpace::linear), srgb = make_texel_values(ColorSpace::srgb);
+  return space == ColorSpace::srgb ? srgb : linear;
+}
+
 std::uint8_t srgb_code(float linear) {
   static const std::array<float, 255> limits = make_srgb_limits();
   return static_cast<std::uint8_t>(std::upper_bound(limits.begin(), limits.end(), linear) - limits.begin());
 }
 
 glm::vec4 MipChain::texel(std::size_t level, std::uint32_t x, std::uint32_t y) const {
-  return decoded(levels[level].texels[std::size_t{y} * levels[level].width + x], space);
+  return texel_values(space)(levels[level].texel(x, y));
 }
 
 MipChain make_mip_chain(const TextureImage& image, ColorSpace space) {
   MipChain chain{space, {{image.width, image.height, image.texels}}};
   std::vector<glm::vec4> values;
   values.reserve(image.texels.size());
-  for (const glm::u8vec4& texel : image.texels) values.push_back(decoded(texel, space));
+  for (const glm::u8vec4& texel : image.texels) values.push_back(texel_values(space)(texel));
   std::uint32_t width = image.width, height = image.height;
   while (width > 1 || height > 1) {
     const std::uint32_t half_width = std::max(width / 2, 1u), half_height = std::max(height / 2, 1u);

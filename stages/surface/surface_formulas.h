@@ -138,10 +138,11 @@ Real interpolated_slope(const Real& first, const Real& second, const Real& third
   return slopes.second * (second - first) + slopes.third * (third - first);
 }
 
-// A vertex's attributes, as in SurfaceVertex.
+// A vertex's attributes, as in SurfaceVertex and in that order.
 template <class Real>
 struct VertexInputs {
-  Triple<Real> to_eye, normal, tangent;
+  Triple<Real> to_eye, normal;
+  std::array<Real, 4> tangent;
   std::array<std::array<Real, 2>, 2> uvs;
   std::array<Real, 4> color;
 };

@@ -1,7 +1,9 @@
 #include "stages/surface/surface_shader.h"
 
 #include <algorithm>
+#include <bit>
 #include <cmath>
+#include <optional>
 
 #include "stages/cost/counting.h"
 #include "stages/data/half_bits.h"
@@ -17,13 +19,7 @@ std::array<Real, 2> pair_of(const glm::vec2& v) {
 
 glm::vec2 vector_of(const std::array<float, 2>& v) { return {v[0], v[1]}; }
 
-VertexInputs<float> inputs_of(const SurfaceVertex& vertex) {
-  return {triple<float>(vertex.to_eye),
-          triple<float>(vertex.normal),
-          triple<float>(vertex.tangent),
-          {pair_of<float>(vertex.uvs[0]), pair_of<float>(vertex.uvs[1])},
-          {vertex.color.r, vertex.color.g, vertex.color.b, vertex.color.a}};
-}
+VertexInputs<float> inputs_of(const SurfaceVertex& vertex) { return std::bit_cast<VertexInputs<float>>(vertex); }
 
 // Texture coordinates at a point of a triangle and how they change, from the triangle's planes. `uvs`: of the vertices.
 template <class Real>
@@ -124,7 +120,7 @@ OperationCounts material_cost(const ShaderInputs& shader, Derivatives derivative
     using Real = Counted<float>;
     const Real one(1.0f, counts);
     const Triple<Real> vector{one, one, one};
-    VertexInputs<Real> vertex{vector, vector, vector, {}, {one, one, one, one}};
+    VertexInputs<Real> vertex{vector, vector, {one, one, one, one}, {}, {one, one, one, one}};
     for (auto& uv : vertex.uvs) uv = {one, one};
     const std::array<VertexInputs<Real>, 3> v{vertex, vertex, vertex};
     const ScreenPlane<Real> plane{one, one, one};
@@ -373,9 +369,14 @@ SurfaceMaterial<float> SurfaceShader::material_there(std::uint32_t triangle, con
     for (std::size_t c = 0; c < 2; ++c) found.dx[c] = to_x[c] - from_x[c], found.dy[c] = to_y[c] - from_y[c];
     return found;
   };
-  const auto texture_place = [&](std::uint32_t set) {
-    if (rules_.derivatives == Derivatives::quad && !by_pixel) return place_in_quad(set);
-    return place_on_triangle<float>({v[0].uvs[set], v[1].uvs[set], v[2].uvs[set]}, surface.planes, x, y, weights);
+  std::array<std::optional<TexturePlace<float>>, 2> places;
+  const auto texture_place = [&](std::uint32_t set) -> const TexturePlace<float>& {
+    if (!places[set])
+      places[set] =
+          rules_.derivatives == Derivatives::quad && !by_pixel
+              ? place_in_quad(set)
+              : place_on_triangle<float>({v[0].uvs[set], v[1].uvs[set], v[2].uvs[set]}, surface.planes, x, y, weights);
+    return *places[set];
   };
   const auto fetch = [&](TextureRole role, const TexturePlace<float>& at) -> std::array<float, 4> {
     const Texture& texture = texture_of(shader.material, role);

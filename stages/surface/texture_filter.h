@@ -40,13 +40,22 @@ inline float level_of_detail(const TextureSlopes& slopes, const MipLevel& image)
   return 0.5f * logarithm_2(std::min(squared, kMost));
 }
 
-// The number of a texel, which may lie outside of the image, as a number within it.
+// The largest whole number that is not above x, which is less than 2^31 away from 0. std::floor is a function call on
+// machines that may lack the instruction.
+inline std::int32_t floor_of(float x) {
+  const auto whole = static_cast<std::int32_t>(x);
+  return whole - (static_cast<float>(whole) > x);
+}
+
+// The number of a texel, which may lie outside of the image, as a number within it. Most lie within it or in the next
+// period, so there is no division.
 inline std::uint32_t wrapped(std::int64_t texel, std::uint32_t size, Wrap wrap) {
   const std::int64_t n = size;
   if (wrap == Wrap::clamp) return static_cast<std::uint32_t>(std::clamp<std::int64_t>(texel, 0, n - 1));
-  if (wrap == Wrap::repeat) return static_cast<std::uint32_t>((texel % n + n) % n);
-  const std::int64_t in_period = (texel % (2 * n) + 2 * n) % (2 * n);
-  return static_cast<std::uint32_t>(in_period < n ? in_period : 2 * n - 1 - in_period);
+  const std::int64_t period = wrap == Wrap::repeat ? n : 2 * n;
+  while (texel < 0) texel += period;
+  while (texel >= period) texel -= period;
+  return static_cast<std::uint32_t>(texel < n ? texel : 2 * n - 1 - texel);
 }
 
 // A texture coordinate in texels of a level. Coordinates that are not finite, or so large that texels cannot be told
@@ -54,40 +63,62 @@ inline std::uint32_t wrapped(std::int64_t texel, std::uint32_t size, Wrap wrap) 
 inline float in_texels(float coordinate, std::uint32_t size, Wrap wrap) {
   constexpr float kMost = 1 << 24;
   if (!(std::abs(coordinate) < kMost)) return 0.0f;
-  if (wrap != Wrap::clamp) coordinate -= 2.0f * std::floor(0.5f * coordinate);  // the period of `mirror`
+  // the period of `mirror`
+  if (wrap != Wrap::clamp) coordinate -= 2.0f * static_cast<float>(floor_of(0.5f * coordinate));
   return std::clamp(coordinate, -1.0f, 3.0f) * static_cast<float>(size);
 }
 
-// Calls read(level, x, y) with each texel that is read.
+// The two texels, in a row or column of this size, around a place in texels, and the share of the second one.
+struct TexelPair {
+  std::uint32_t first, second;
+  float share;
+};
+inline TexelPair texels_around(float place, std::uint32_t size, Wrap wrap) {
+  const std::int32_t first = floor_of(place - 0.5f);
+  return {wrapped(first, size, wrap), wrapped(std::int64_t{first} + 1, size, wrap),
+          place - 0.5f - static_cast<float>(first)};
+}
+
+// Calls read(level, x, y) with each texel that is read. Inlined, because a vector that comes back from a call in parts
+// and is then used as a whole makes the processor wait.
 template <class Read>
-glm::vec4 filtered_level(const MipChain& chain, const Texture& texture, std::size_t level, const glm::vec2& uv,
-                         Filter filter, Read&& read) {
+[[gnu::always_inline]] inline glm::vec4 filtered_level(const MipChain& chain, const Texture& texture, std::size_t level,
+                                                       const glm::vec2& uv, Filter filter, Read&& read) {
   const MipLevel& image = chain.levels[level];
+  const TexelValues& values = texel_values(chain.space);
   const float u = in_texels(uv.x, image.width, texture.wrap_u), v = in_texels(uv.y, image.height, texture.wrap_v);
-  const auto texel = [&](float x, float y) {
-    const std::uint32_t column = wrapped(static_cast<std::int64_t>(x), image.width, texture.wrap_u);
-    const std::uint32_t row = wrapped(static_cast<std::int64_t>(y), image.height, texture.wrap_v);
+  if (filter == Filter::nearest) {
+    const std::uint32_t column = wrapped(floor_of(u), image.width, texture.wrap_u);
+    const std::uint32_t row = wrapped(floor_of(v), image.height, texture.wrap_v);
     read(level, column, row);
-    return chain.texel(level, column, row);
+    return values(image.texel(column, row));
+  }
+  const TexelPair columns = texels_around(u, image.width, texture.wrap_u);
+  const TexelPair rows = texels_around(v, image.height, texture.wrap_v);
+  for (const std::uint32_t row : {rows.first, rows.second})
+    for (const std::uint32_t column : {columns.first, columns.second}) read(level, column, row);
+  const glm::u8vec4& upper_left = image.texel(columns.first, rows.first);
+  const glm::u8vec4& upper_right = image.texel(columns.second, rows.first);
+  const glm::u8vec4& lower_left = image.texel(columns.first, rows.second);
+  const glm::u8vec4& lower_right = image.texel(columns.second, rows.second);
+  const float left_share = 1.0f - columns.share, upper_share = 1.0f - rows.share;
+  const auto mixed = [&](const std::array<float, 256>& value, int channel) {
+    const float upper = value[upper_left[channel]] * left_share + value[upper_right[channel]] * columns.share;
+    const float lower = value[lower_left[channel]] * left_share + value[lower_right[channel]] * columns.share;
+    return upper * upper_share + lower * rows.share;
   };
-  if (filter == Filter::nearest) return texel(std::floor(u), std::floor(v));
-  const float left = std::floor(u - 0.5f), top = std::floor(v - 0.5f);
-  const float right_share = u - 0.5f - left, lower_share = v - 0.5f - top;
-  const glm::vec4 upper = texel(left, top) * (1.0f - right_share) + texel(left + 1, top) * right_share;
-  const glm::vec4 lower = texel(left, top + 1) * (1.0f - right_share) + texel(left + 1, top + 1) * right_share;
-  return upper * (1.0f - lower_share) + lower * lower_share;
+  return {mixed(values.color, 0), mixed(values.color, 1), mixed(values.color, 2), mixed(values.alpha, 3)};
 }
 
 // Trilinear filtering in the two levels around a level of detail above 0.
 template <class Read>
 glm::vec4 trilinear(const MipChain& chain, const Texture& texture, float lod, const glm::vec2& uv, Read&& read) {
-  const auto last = static_cast<float>(chain.levels.size() - 1);
-  const float finer = std::floor(std::min(lod, last));
-  const glm::vec4 color = filtered_level(chain, texture, static_cast<std::size_t>(finer), uv, texture.minify, read);
+  const std::size_t last = chain.levels.size() - 1;
+  const auto finer = static_cast<std::size_t>(floor_of(std::min(lod, static_cast<float>(last))));
+  const glm::vec4 color = filtered_level(chain, texture, finer, uv, texture.minify, read);
   if (finer >= last) return color;
-  const float share = lod - finer;
-  return color * (1.0f - share) +
-         filtered_level(chain, texture, static_cast<std::size_t>(finer) + 1, uv, texture.minify, read) * share;
+  const float share = lod - static_cast<float>(finer);
+  return color * (1.0f - share) + filtered_level(chain, texture, finer + 1, uv, texture.minify, read) * share;
 }
 
 // Anisotropic filtering: several probes, evenly along the longer side of the footprint, in the level that fits the

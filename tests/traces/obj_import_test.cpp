@@ -42,6 +42,27 @@ TEST_F(ObjImportTest, TakesKdForEachFace) {
   EXPECT_EQ(mesh.colors, (std::vector<glm::vec3>{kGrey, {1, 0, 0}, {0, 0.25f, 0}, {0, 0.25f, 0}, kGrey}));
 }
 
+// The library that is used here gives black or 0.6 grey, and 0.6 never after a material with Kd.
+TEST_F(ObjImportTest, MaterialsWithoutKdAreGrey) {
+  const std::string faces = "usemtl a\nf 1 2 3\nusemtl b\nf 1 2 3\nusemtl c\nf 1 2 3\n";
+  write("m.mtl", "newmtl a\nKs 1 1 1\nnewmtl b\r\nKd 1 0 0\r\nmap_Kd none.png\rnewmtl c\nmap_Kd none.png\n");
+  EXPECT_EQ(load("mtllib m.mtl\n" + kSquare + faces).colors, (std::vector<glm::vec3>{kGrey, {1, 0, 0}, kGrey}));
+  write("m.mtl", "newmtl a\nmap_Kd none.png\nnewmtl b\nKd 1 0 0\nnewmtl c");
+  EXPECT_EQ(load("mtllib m.mtl\n" + kSquare + faces).colors, (std::vector<glm::vec3>{kGrey, {1, 0, 0}, kGrey}));
+}
+
+TEST_F(ObjImportTest, NamesOfMaterialLibrariesMayHaveBlanks) {
+  write("my room.mtl", "newmtl red\nKd 1 0 0\n");
+  write("b.mtl", "newmtl red\nKd 0 0 1\nnewmtl blue\nKd 0 0 1\n");
+  const std::string faces = kSquare + "usemtl red\nf 1 2 3\nusemtl blue\nf 1 2 3\n";
+  const glm::vec3 red(1, 0, 0), blue(0, 0, 1);
+  const auto colors = [&](const std::string& lines) { return load(lines + faces).colors; };
+  EXPECT_EQ(colors("mtllib my room.mtl\n"), (std::vector<glm::vec3>{red, kGrey}));
+  EXPECT_EQ(colors("mtllib  my room.mtl \r\nmtllib b.mtl\n"), (std::vector<glm::vec3>{red, blue}));
+  EXPECT_EQ(colors("mtllib my\\ room.mtl\n"), (std::vector<glm::vec3>{red, kGrey}));
+  EXPECT_EQ(colors("mtllib none.mtl b.mtl\n"), (std::vector<glm::vec3>{blue, blue})) << "or there are several";
+}
+
 TEST_F(ObjImportTest, BlanksAroundMaterialNamesDoNotCount) {
   write("colors.mtl", "newmtl red \r\nKd 1 0 0\r\n");
   EXPECT_EQ(load("mtllib colors.mtl\r\n" + kSquare + "usemtl  red \r\nf 1 2 3\r\n").colors[0], glm::vec3(1, 0, 0));

@@ -163,6 +163,20 @@ TEST_F(ObjMaterialTest, NamesWhatIsNotRead) {
   EXPECT_TRUE(load("newmtl m\nKa 1 1 1\n", "l 1 2\nf 1 2 3\n", ObjMaterials::none).not_read.empty());
 }
 
+TEST_F(ObjMaterialTest, NamesWhatIsMissing) {
+  EXPECT_EQ(load("newmtl m\nKd 1 1 1\n", "usemtl m\nf 1 2 3\nusemtl n\nf 1 2 3\nusemtl n\nf 1 2 3\n").not_read,
+            (NotRead{{"usemtl n (in no mtllib)", 1}}));
+  EXPECT_EQ(
+      load("", "mtllib none.mtl\nmtllib none.mtl\nusemtl c\nf 1 2 3\nusemtl a\nf 1 2 3\nusemtl b\nf 1 2 3\n").not_read,
+      (NotRead{{"mtllib none.mtl (missing)", 1}, {"usemtl a and 2 more (in no mtllib)", 1}}));
+  EXPECT_TRUE(load("", "usemtl\nf 1 2 3\n").not_read.empty());
+}
+
+TEST_F(ObjMaterialTest, MaterialsWithoutKdAreGrey) {
+  EXPECT_EQ(material("map_Kd colors.png\n").base_color, glm::vec4(0.8f, 0.8f, 0.8f, 1));
+  EXPECT_EQ(material("Pr 0.5\n").base_color, glm::vec4(0.8f, 0.8f, 0.8f, 1));
+}
+
 TEST_F(ObjMaterialTest, SharesImages) {
   const ImportedModel model = load("newmtl a\nmap_Kd colors.png\nnewmtl b\nmap_Kd colors.png\nmap_Ke colors.png\n",
                                    "usemtl a\nf 1 2 3\nusemtl b\nf 1 2 3\nusemtl a\nf 1 3 4\n");

@@ -3,7 +3,6 @@
 #include <algorithm>
 #include <cmath>
 #include <cstdio>
-#include <filesystem>
 #include <sstream>
 
 #include "tools/claims/our_figures.h"
@@ -14,8 +13,10 @@ namespace {
 
 constexpr std::string_view kImplementation = "{implementation}";
 
-// The name of "some/where/fence.json" is "fence".
-std::string scene_of(const Report& report) { return std::filesystem::path(report.trace).stem().string(); }
+// The digest of the trace's content; empty if the report does not have it.
+std::string trace_of(const Report& report) {
+  return report.made_by.is_object() ? report.made_by.value("trace", std::string()) : std::string();
+}
 
 Claim make_claim(const PublishedFigure& figure, std::optional<double> ours, const std::string& implementation) {
   std::string name = figure.name;
@@ -60,7 +61,7 @@ std::vector<Claim> all_claims(const Report& report) {
   const std::vector<Formula> formulas = our_formulas();
   expect_formulas_match(figures, formulas);
   const auto ours = [&](const PublishedFigure& figure, const Implementation& implementation) -> std::optional<double> {
-    if (figure.formula.empty() || (!figure.scene.empty() && figure.scene != scene_of(report))) return {};
+    if (figure.formula.empty() || (!figure.by_definition && figure.trace != trace_of(report))) return {};
     const auto formula =
         std::find_if(formulas.begin(), formulas.end(), [&](const Formula& each) { return each.id == figure.formula; });
     return formula->ours({report, implementation});

@@ -24,8 +24,9 @@ struct Claim {
   std::optional<double> difference() const;
 };
 
-// All claims, with the numbers that the last frames of the report give. A claim about a scene has a number only if the
-// report's trace has the name of that scene. A report without results gives only the numbers that need no rendering.
+// All claims, with the numbers that the last frames of the report give. A claim that needs rendering has a number only
+// if the report is about the trace that the claim's command makes: what counts is the digest of the trace's content in
+// Report::made_by, and not the name of a file. A report without results gives only the numbers that need no rendering.
 std::vector<Claim> all_claims(const Report& report);
 
 // Divides where both numbers are known by now: a quotient may be that of claims from two reports.

@@ -36,7 +36,6 @@ PublishedFigure read_claim(const JsonCursor& claim, const JsonCursor& group) {
   figure.source = text_of(claim, group, "source");
   figure.remark = text_of(claim, group, "remark");
   figure.command = group["command"].string();
-  if (const auto scene = group.find("scene")) figure.scene = scene->string();
   if (const auto reason = claim.find("no_number")) {
     figure.remark = "none: " + reason->string();
   } else if (const auto quotient = claim.find("quotient_of")) {
@@ -60,11 +59,12 @@ std::vector<PublishedFigure> parse_published_figures(const std::string& text, co
   publication["beampipe_claims"].integer(1, 1);
   std::vector<PublishedFigure> figures;
   for (const JsonCursor& group : publication["groups"].elements()) {
-    group.expect_keys({"topic", "source", "scene", "unit", "command", "remark", "claims"});
+    group.expect_keys({"topic", "source", "trace", "unit", "command", "remark", "claims"});
     for (const JsonCursor& claim : group["claims"].elements()) {
       figures.push_back(read_claim(claim, group));
       figures.back().topic = group["topic"].choice({"design", "traffic", "time", "quality", "passes"});
       figures.back().by_definition = figures.back().topic == 0;
+      if (!figures.back().by_definition) figures.back().trace = group["trace"].string();
     }
   }
   return figures;

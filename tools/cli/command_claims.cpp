@@ -54,7 +54,8 @@ void add_claims_command(CommandLine& line) {
   command.footer(
       "Prints two Markdown tables, of what was rendered and of what is true by definition. Each row\n"
       "names the command whose folder has our number, or says why there is none. If several folders\n"
-      "have the number, it comes from the first of them. Folders are matched by the name of the trace.\n\nExample:\n"
+      "have the number, it comes from the first of them. A folder counts if its trace has the content that\n"
+      "the command makes; names of files do not matter.\n\nExample:\n"
       "  beampipe make classroom -o classroom.json\n"
       "  beampipe run classroom.json -t msaa:1,prepass -t msaa:8,color=rgba16f,prepass -t acaa:8 -o out/acaa\n"
       "  beampipe claims out/acaa");

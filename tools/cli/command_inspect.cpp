@@ -13,6 +13,7 @@
 #include "tools/cli/commands.h"
 #include "tools/cli/record_inspections.h"
 #include "tools/cli/run_arguments.h"
+#include "tools/cli/trace_view.h"
 #include "tools/evaluate/machine_memory.h"
 #include "tools/evaluate/results.h"
 #include "tools/files/output.h"
@@ -44,6 +45,7 @@ Techniques: beam in every order, alpha, z3, msaa and acaa can be inspected.
 
 struct InspectArguments {
   std::string trace, output;
+  TraceView view;
   std::vector<std::string> pixels, specs;
   std::uint32_t worst = 0;
   std::size_t frame = 0;
@@ -64,9 +66,12 @@ bool shows_unicode() {
 }
 
 void require_inspectable(const Technique& technique) {
-  if (!technique.inspect)
-    throw UsageError("technique '" + technique.spec +
-                     "' cannot be inspected: expected beam in any order, alpha, z3, msaa:N or acaa:N");
+  if (technique.inspect) return;
+  const std::string why = technique.keeps_history ? "its pixels depend on earlier frames and on their neighbours"
+                          : technique.spec == "reference" ? "it is what the others are compared with"
+                                                          : "its picture is that of msaa with as many samples";
+  throw UsageError("technique '" + technique.spec +
+                   "' cannot be inspected: expected beam in any order, alpha, z3, msaa:N or acaa:N; " + why);
 }
 
 std::vector<PixelInspection> inspect_all(const InspectArguments& arguments, const Trace& trace,
@@ -115,10 +120,11 @@ void run_inspection(const InspectArguments& arguments, InterruptGate& gate) {
     file = std::filesystem::absolute(arguments.output);
     require_writable_file(file);
   }
-  const Trace trace = read_trace(arguments.trace, {.allow_outside = arguments.allow_outside});
+  Trace trace = read_trace(arguments.trace, {.allow_outside = arguments.allow_outside});
   if (arguments.frame >= trace.frames.size())
     throw UsageError("--frame: expected 0 to " + std::to_string(trace.frames.size() - 1) + ", found " +
                      std::to_string(arguments.frame));
+  apply(arguments.view, {arguments.frame}, arguments.trace, trace);
   for (const Technique& technique : techniques)
     require_memory(trace, trace.frames[arguments.frame], technique.working_bytes_per_pixel,
                    "frame " + std::to_string(arguments.frame) + " with " + technique.spec, machine_memory());
@@ -148,6 +154,7 @@ void add_inspect_command(CommandLine& line, InterruptGate& gate) {
   command.add("--worst", arguments->worst, "in place of --pixel: the N pixels that are farthest from the reference")
       .between(1, 1000);
   command.add("--frame", arguments->frame, "the frame; the first one is 0 (default: 0)");
+  add_trace_view_options(command, arguments->view);
   command.add("-o,--output", arguments->output,
               "also write one picture (.svg), or one page with the text as well (.html)");
   command.add_flag("--json", arguments->json, "print the result as JSON");

@@ -42,15 +42,24 @@ std::vector<std::string> names_of(const std::vector<Part*>& parts) {
   return names;
 }
 
-// An option that does not exist explains more than one that is missing, which may be the same, mistyped.
-void fail_unknown_option(const CLI::App& command, const std::string& program) {
+// The groups of a command's options, which are commands without a name.
+std::vector<const CLI::App*> groups_of(const CLI::App& command) {
+  return command.get_subcommands([](const CLI::App* part) { return part->get_name().empty(); });
+}
+
+// An option that does not exist explains more than one that is missing, which may be the same, mistyped. `help`: the
+// command line that lists the options.
+void fail_unknown_option(const CLI::App& command, const std::string& help) {
+  const auto is_named = [](const CLI::Option* option) { return option->nonpositional(); };
+  std::vector<std::string> names = names_of(command.get_options(is_named));
+  for (const CLI::App* group : groups_of(command)) {
+    const std::vector<std::string> more = names_of(group->get_options(is_named));
+    names.insert(names.end(), more.begin(), more.end());
+  }
   for (const std::string& word : command.remaining()) {
     if (!word.starts_with("--")) continue;
     const std::string name = word.substr(0, word.find('='));
-    throw UsageError("there is no option " + name +
-                     did_you_mean(name, names_of(command.get_options(
-                                            [](const CLI::Option* option) { return option->nonpositional(); }))) +
-                     " (see " + program + " " + command.get_name() + " --help)");
+    throw UsageError("there is no option " + name + did_you_mean(name, names) + " (see " + help + ")");
   }
 }
 
@@ -83,8 +92,7 @@ OptionHelp help_of(const CLI::Option& option) {
 // Those of its groups too, which are commands without a name.
 void add_options(const CLI::App& app, std::vector<OptionHelp>& options) {
   for (const CLI::Option* option : app.get_options()) options.push_back(help_of(*option));
-  for (const CLI::App* group : app.get_subcommands([](const CLI::App* part) { return part->get_name().empty(); }))
-    add_options(*group, options);
+  for (const CLI::App* group : groups_of(app)) add_options(*group, options);
 }
 
 }  // namespace
@@ -100,7 +108,13 @@ Option& Option::between(std::uint64_t low, std::uint64_t high) {
 }
 
 Option& Option::one_of(const std::vector<std::string>& choices) {
-  option_->transform(CLI::IsMember(choices, CLI::ignore_case));
+  CLI::Validator member = CLI::IsMember(choices, CLI::ignore_case);
+  CLI::Validator with_hint = member;  // keeps its description, which --help prints
+  with_hint.operation([member, choices](std::string& text) {
+    const std::string wrong = member(text);
+    return wrong.empty() ? wrong : wrong + did_you_mean(text, choices);
+  });
+  option_->transform(with_hint);
   return *this;
 }
 
@@ -216,9 +230,9 @@ void CommandLine::run(int argc, char** argv) {
       throw UsageError(std::string("there is no command ") + argv[1] +
                        did_you_mean(argv[1], names_of(app_->get_subcommands([](CLI::App*) { return true; }))) +
                        " (see " + program + " --help)");
-    if (!named.empty()) fail_unknown_option(*named.front(), program);
-    throw UsageError(std::string(error.what()) + " (see " + program +
-                     (named.empty() ? "" : " " + named.front()->get_name()) + " --help)");
+    const std::string help = program + (named.empty() ? "" : " " + named.front()->get_name()) + " --help";
+    fail_unknown_option(named.empty() ? *app_ : *named.front(), help);
+    throw UsageError(std::string(error.what()) + " (see " + help + ")");
   }
 }
 

@@ -4,12 +4,15 @@
 #include <filesystem>
 #include <iostream>
 #include <memory>
+#include <optional>
 
 #include "tools/cli/commands.h"
-#include "tools/cli/framing.h"
+#include "tools/cli/model_trace.h"
+#include "tools/cli/trace_view.h"
 #include "tools/files/output.h"
 #include "tools/report/report_text.h"
 #include "traces/atomic_file.h"
+#include "traces/closest_name.h"
 #include "traces/model_import.h"
 #include "traces/scenes.h"
 #include "traces/trace_io.h"
@@ -18,7 +21,6 @@ namespace beampipe {
 namespace {
 
 constexpr std::uint32_t kMaxSide = 16384;  // as in a trace
-constexpr glm::vec3 kSky{0.35f}, kGround{0.15f};
 
 struct MakeArguments {
   std::string scene, output;
@@ -27,118 +29,21 @@ struct MakeArguments {
   double orbit = 0;
   std::vector<double> pan;
   bool list = false, binary = false;
-  // For models only.
-  std::vector<double> eye, target, up, background;
-  double fovy = 0, near = 0, far = 0;
-  bool unlit = false, lambert = false;
-  std::string materials = "textured", animation;
+  ModelOptions model;
 };
 
-glm::dvec3 vector_of(const std::vector<double>& values) { return {values.at(0), values.at(1), values.at(2)}; }
-
-CameraWishes wishes_of(const MakeArguments& arguments, const Command& command) {
-  CameraWishes wishes;
-  if (!arguments.eye.empty()) wishes.eye = vector_of(arguments.eye);
-  if (!arguments.target.empty()) wishes.target = vector_of(arguments.target);
-  if (!arguments.up.empty()) wishes.up = vector_of(arguments.up);
-  if (command.was_given("--fovy")) wishes.fovy_deg = arguments.fovy;
-  if (command.was_given("--near")) wishes.near = arguments.near;
-  if (command.was_given("--far")) wishes.far = arguments.far;
-  return wishes;
-}
-
-// Names on standard error, once, what the model has and the trace has not.
-void say_not_read(const std::string& model, const NotRead& not_read) {
-  std::string list;
-  for (const auto& [name, count] : not_read)
-    list += (list.empty() ? "" : ", ") + name + (count > 1 ? " (" + std::to_string(count) + ")" : "");
-  if (!list.empty()) std::cerr << "beampipe: " << model << ": not read: " << list << "\n";
-}
-
-ImportedModel read_obj_model(const MakeArguments& arguments) {
-  const ObjMaterials materials = arguments.materials == "all"        ? ObjMaterials::all
-                                 : arguments.materials == "textured" ? ObjMaterials::textured
-                                                                     : ObjMaterials::none;
-  ImportedModel model;
-  read_obj(arguments.scene, "", materials, model.trace, model.not_read);
-  Frame& frame = model.trace.frames.emplace_back();
-  frame.width = arguments.options.width;
-  frame.height = arguments.options.height;
-  frame.draws.emplace_back().shading = Shading::lambert;
-  return model;
-}
-
-ImportedModel read_gltf_model(const MakeArguments& arguments, const Command& command) {
-  const bool moves_otherwise = command.was_given("--orbit") || command.was_given("--pan");
-  GltfOptions options;
-  options.width = arguments.options.width;
-  options.height = arguments.options.height;
-  options.frames = arguments.frames;
-  options.animation = arguments.animation;
-  options.animation_if_any = arguments.frames > 1 && !moves_otherwise;
-  return read_gltf(arguments.scene, options);
-}
-
-// Lights a model that has no lights: with a light over the shoulder of the first frame's camera, and from all around,
-// so that no real material is black.
-void add_light(Trace& trace) {
-  const Frame& first = trace.frames[0];
-  Light light;
-  if (first.camera) {
-    light.direction = shoulder_light(*first.camera);
-  } else {  // an orthographic camera
-    light.direction = glm::normalize(glm::vec3(glm::inverse(first.view) * glm::dvec4(0.4, -0.7, -1.0, 0.0)));
-  }
-  for (Frame& frame : trace.frames) {
-    if (frame.lighting.lights.empty()) frame.lighting.lights.push_back(light);
-    if (!trace.materials.empty()) frame.lighting.ambient = {.sky = kSky, .ground = kGround};
-  }
-}
-
-Trace make_from_model(const MakeArguments& arguments, const Command& command) {
-  ImportedModel model = is_obj_file(arguments.scene) ? read_obj_model(arguments) : read_gltf_model(arguments, command);
-  say_not_read(arguments.scene, model.not_read);
-  Trace& trace = model.trace;
-  const std::vector<const char*> view = {"--eye", "--target", "--up", "--fovy", "--near", "--far"};
-  const bool has_wishes =
-      std::any_of(view.begin(), view.end(), [&](const char* option) { return command.was_given(option); });
-  if (!model.has_camera || has_wishes) {
-    try {
-      const Camera camera =
-          frame_model(trace, arguments.options.width, arguments.options.height, wishes_of(arguments, command));
-      for (Frame& frame : trace.frames) set_camera(frame, camera);
-    } catch (const std::invalid_argument& error) {
-      throw UsageError(arguments.scene + ": " + error.what());
-    }
-  }
-  const glm::vec3 background =
-      arguments.background.empty() ? glm::vec3(1.0f) : glm::vec3(vector_of(arguments.background));
-  if (glm::clamp(background, 0.0f, kMostColor) != background)
-    throw UsageError("--background: expected numbers from 0 to 65504");
-  for (Frame& frame : trace.frames) frame.background = background;
-  if (arguments.unlit) {
-    for (Frame& frame : trace.frames) {
-      frame.lighting = {};
-      for (Draw& draw : frame.draws) draw.shading = Shading::unlit;
-    }
-    for (Material& material : trace.materials) material.unlit = true;
-  } else {
-    add_light(trace);
-  }
-  return std::move(trace);
-}
-
 Trace make_from_scene(const MakeArguments& arguments, const Command& command) {
-  for (const char* option : {"--eye", "--target", "--up", "--fovy", "--near", "--far", "--background", "--lambert",
-                             "--unlit", "--materials", "--animation"}) {
-    if (command.was_given(option)) throw UsageError(std::string(option) + " is for models (.obj, .gltf, .glb) only");
-  }
+  require_no_model_options(command);
   const std::vector<SceneKind>& kinds = scene_kinds();
   if (std::none_of(kinds.begin(), kinds.end(), [&](const SceneKind& kind) { return kind.name == arguments.scene; })) {
-    throw UsageError("there is no scene named " + arguments.scene +
+    std::vector<std::string> names;
+    for (const SceneKind& kind : kinds) names.emplace_back(kind.name);
+    throw UsageError("there is no scene named " + arguments.scene + did_you_mean(arguments.scene, names) +
                      " (see beampipe make --list), and it is not an .obj, .gltf or .glb file");
   }
-  return make_scene(arguments.scene, arguments.options);
+  Trace trace = make_scene(arguments.scene, arguments.options);
+  apply({.camera = arguments.model.camera}, {0}, arguments.scene, trace);
+  return trace;
 }
 
 void list_scenes() {
@@ -155,17 +60,18 @@ void make(const MakeArguments& arguments, const Command& command, InterruptGate&
   if (is_model && (command.was_given("--triangles") || command.was_given("--seed"))) {
     throw UsageError("--triangles and --seed are for procedural scenes only");
   }
-  if (is_model && command.was_given("--materials") && !is_obj_file(arguments.scene))
-    throw UsageError("--materials is for .obj files only");
-  if (is_model && command.was_given("--animation") && is_obj_file(arguments.scene))
-    throw UsageError("--animation is for .gltf and .glb files only");
+  if (is_model) require_options_of(arguments.scene, command);
   const std::filesystem::path file = arguments.output;
   if (std::error_code none; is_model && std::filesystem::equivalent(file, arguments.scene, none))
     throw UsageError("-o " + arguments.output + " is the model itself");
   require_writable_folder(file.has_parent_path() ? file.parent_path() : ".");
   if (command.was_given("--orbit") && arguments.frames < 2) throw UsageError("--orbit needs --frames N with N > 1");
   if (command.was_given("--pan") && arguments.frames < 2) throw UsageError("--pan needs --frames N with N > 1");
-  Trace trace = is_model ? make_from_model(arguments, command) : make_from_scene(arguments, command);
+  const bool moves = command.was_given("--orbit") || command.was_given("--pan");
+  Trace trace = is_model ? trace_of_model(arguments.scene, arguments.model, command, arguments.options.width,
+                                          arguments.options.height, arguments.frames, moves)
+                         : make_from_scene(arguments, command);
+  const std::optional<Camera> camera = trace.frames.at(0).camera;
   if (!arguments.pan.empty()) {
     pan_picture(trace, arguments.frames, arguments.pan.at(0), arguments.pan.at(1));
   } else if (arguments.frames > 1 && trace.frames.size() == 1) {  // otherwise the model itself moves
@@ -182,6 +88,7 @@ void make(const MakeArguments& arguments, const Command& command, InterruptGate&
   write_trace(trace, file, arguments.binary ? ArrayStorage::binary : ArrayStorage::text);
   std::cout << arguments.output << ": " << triangles << " triangles, " << arguments.options.width << " x "
             << arguments.options.height << " pixels\n";
+  if (is_model && camera) std::cout << "camera: " << text_of(*camera) << "\n";
 }
 
 }  // namespace
@@ -225,35 +132,12 @@ void add_make_command(CommandLine& line, InterruptGate& gate) {
            "the seed of the scene's random numbers; the same seed makes the same scene")
       .shows_default();
 
-  Command model = command.add_group("Models");
-  model.add("--eye", arguments->eye, "the position of the camera (default: far enough away to see the whole model)")
-      .exactly(3, "X,Y,Z");
-  model.add("--target", arguments->target, "the point that the camera looks at (default: the middle of the model)")
-      .exactly(3, "X,Y,Z");
-  model.add("--up", arguments->up, "the direction that is up (default: 0,1,0)").exactly(3, "X,Y,Z");
-  model.add("--fovy", arguments->fovy, "the full vertical angle of view in degrees (default: 36)");
-  model.add("--near", arguments->near, "the distance of the near plane (default: just in front of the model)");
-  model.add("--far", arguments->far, "the distance of the far plane (default: just behind the model)");
-  model.add("--background", arguments->background, "the colour of the background, linear (default: 1,1,1)")
-      .exactly(3, "R,G,B");
-  const Option lambert = model.add_flag("--lambert", arguments->lambert,
-                                        "shade the model with a light over the camera's shoulder (the default)");
-  model.add_flag("--unlit", arguments->unlit, "draw the plain colours of the materials").excludes(lambert);
-  model
-      .add("--materials", arguments->materials,
-           "of an .obj: which triangles are shaded as real materials, with normals and textures, instead of in the "
-           "colour Kd: all, those that have textures, or none")
-      .one_of({"all", "textured", "none"})
-      .shows_default();
-  model
-      .add("--animation", arguments->animation,
-           "of a glTF model: the name of the animation to show, or its number from 0 (default: 0)")
-      .excludes(orbit)
-      .excludes(pan);
+  Command model = command.add_group("Models; --camera is for scenes too");
+  add_model_options(model, arguments->model).excludes(orbit).excludes(pan);
   command.footer(
       "Examples:\n  beampipe make hairball --triangles 100000 --seed 7 -o hairball.json\n"
       "  beampipe make model.obj -o model.json\n  beampipe make model.obj --eye 3,2,5 --fovy 45 --unlit -o model.json\n"
-      "  beampipe make model.glb --frames 60 -o model.json");
+      "  beampipe make model.glb --frames 60 -o model.json\n  beampipe make room.obj --view inside -o room.json");
   command.set_work([arguments, command, &gate] { make(*arguments, command, gate); });
 }
 

@@ -1,7 +1,9 @@
 // beampipe plot: draws the results of comparisons into a picture file.
 
+#include <algorithm>
 #include <iostream>
 #include <memory>
+#include <optional>
 
 #include "tools/cli/commands.h"
 #include "tools/files/output.h"
@@ -22,17 +24,37 @@ PlotFormat format_of(const std::filesystem::path& file) {
   throw UsageError("--output " + file.string() + ": expected a name that ends in .svg or .png");
 }
 
+// What needs no errors, and so can be drawn of the folders of `run` as well.
+std::string traffic_picture(const std::vector<ReportFile>& reports, PlotFormat format) {
+  if (reports.size() > 1)
+    throw UsageError("--kind traffic: expected one folder, found " + std::to_string(reports.size()));
+  const std::optional<BarPlot> dram = bytes_plot(reports.front(), "dram_bytes");
+  const auto is_zero = [](const BarPlot::Part& part) {
+    return std::all_of(part.values.begin(), part.values.end(), [](double value) { return value == 0; });
+  };
+  if (!dram || std::all_of(dram->parts.begin(), dram->parts.end(), is_zero))
+    throw ReportError((reports.front().folder / "report.json").string() +
+                      ": it has no DRAM bytes; expected a report made without --no-memory-model");
+  return draw(*dram, format);
+}
+
+std::string error_picture(const std::string& kind, const std::vector<ReportFile>& reports, PlotFormat format) {
+  const ScatterPlot plot = kind == "speed"     ? speed_plot(reports)
+                           : kind == "storage" ? storage_plot(reports)
+                                               : frontier_plot(reports);
+  for (const std::string& note : plot.notes) std::cerr << "beampipe: note: " << note << "\n";
+  return draw(plot, format);
+}
+
 void plot(const PlotArguments& arguments, InterruptGate& gate) {
   const std::filesystem::path file = arguments.output;
   const PlotFormat format = format_of(file);
   std::vector<ReportFile> reports;
   for (const std::string& folder : arguments.folders) reports.push_back(read_report(folder));
-  const ScatterPlot plot = arguments.kind == "speed"     ? speed_plot(reports)
-                           : arguments.kind == "storage" ? storage_plot(reports)
-                                                         : frontier_plot(reports);
-  for (const std::string& note : plot.notes) std::cerr << "beampipe: note: " << note << "\n";
+  const std::string picture =
+      arguments.kind == "traffic" ? traffic_picture(reports, format) : error_picture(arguments.kind, reports, format);
   OutputFolder output(std::filesystem::absolute(file).parent_path(), gate);
-  output.write(file.filename(), draw(plot, format));
+  output.write(file.filename(), picture);
   output.keep();
 }
 
@@ -40,14 +62,17 @@ void plot(const PlotArguments& arguments, InterruptGate& gate) {
 
 void add_plot_command(CommandLine& line, InterruptGate& gate) {
   const auto arguments = std::make_shared<PlotArguments>();
-  Command command = line.add_command("plot", "Draw what compare found: memory or time against error");
+  Command command = line.add_command(
+      "plot", "Draw what compare found: memory or time against error; or the memory traffic of stages");
   command.add("DIR", arguments->folders, "one or more folders that compare has written").required();
   command.add("-o,--output", arguments->output, "the picture: FILE.svg or FILE.png").required();
   command
       .add("--kind", arguments->kind,
            "frontier: framebuffer and A-buffer (bytes per pixel) and equivalent MSAA rate; storage: the same with what "
-           "a bin has on chip; speed: time (ms) and error (RMSE)")
-      .one_of({"frontier", "storage", "speed"})
+           "a bin has on chip; speed: time (ms) and error (RMSE); traffic: DRAM bytes of each stage, of one folder, "
+           "which "
+           "run may have written too")
+      .one_of({"frontier", "storage", "speed", "traffic"})
       .shows_default();
   command.footer(
       "Given several folders, it draws the geometric means of the techniques that are in all of them. A triangle marks "

@@ -39,8 +39,10 @@ void write_report(const ReportArguments& arguments, InterruptGate& gate) {
   read_from_report(report.folder, [&] {
     const std::vector<Table> tables = report_tables(report);
     figures = report_figures(report);
-    const auto layers = report_layers(report, position_of(report, arguments.frame));
-    output.write("report.html", page_html(report, tables, figures, layers, report_inspections(report)));
+    const std::size_t shown = position_of(report, arguments.frame);
+    const Json layers = page_layers(report, shown);
+    const auto index = report.json.at("results").at(0).at("frames").at(shown).at("index").get<std::size_t>();
+    output.write("report.html", page_html(report, tables, figures, layers, index, report_inspections(report)));
     for (const Table& table : tables) output.write("tables/" + table.name + ".csv", csv_text(table));
   });
   output.keep();
@@ -62,7 +64,10 @@ void add_report_command(CommandLine& line, InterruptGate& gate) {
   Command command =
       line.add_command("report", "Make a page to read, with tables and plots, from the results of run or compare");
   command.add("DIR", arguments->folder, "the folder that run or compare has written").required();
-  command.add("--frame", arguments->frame, "the frame whose pictures the page shows (default: the first one)");
+  command.add(
+      "--frame", arguments->frame,
+      "the frame that the page shows first (default: the first one); a page with many large pictures has only some of "
+      "the frames, and always this one");
   command.footer(
       "Writes into DIR: report.html, a single file to open in a browser; tables/*.csv, the tables of the page; and\n"
       "plots/*.svg, its plots (needs the program gnuplot).\n\nExample:\n  beampipe compare fence.json -t beam msaa:8 "

@@ -51,7 +51,7 @@ void run(const RunArguments& arguments, const MemoryTraceArguments& trace_argume
         record.reports[i].wall_ms = times[i];
         report.results[i].frames.push_back(record.reports[i]);
       }
-      records.write(record);
+      records.write(record, at + 1, plan.frames.size());
       output.keep();
     }
   }

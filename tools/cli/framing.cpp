@@ -37,19 +37,16 @@ std::vector<glm::dvec3> shown_vertices(const Trace& trace) {
   return vertices;
 }
 
-glm::dvec3 middle_of_bounds(const std::vector<glm::dvec3>& vertices) {
-  glm::dvec3 low = vertices.front(), high = low;
+Bounds bounds_of(const std::vector<glm::dvec3>& vertices) {
+  require(!vertices.empty(), "the model has no triangles");
+  Bounds bounds{vertices.front(), vertices.front()};
   for (const glm::dvec3& vertex : vertices) {
-    low = glm::min(low, vertex);
-    high = glm::max(high, vertex);
+    bounds.low = glm::min(bounds.low, vertex);
+    bounds.high = glm::max(bounds.high, vertex);
   }
-  require(low != high, "the model is a single point");
-  return (low + high) * 0.5;
+  require(bounds.low != bounds.high, "the model is a single point");
+  return bounds;
 }
-
-struct Basis {
-  glm::dvec3 right, up, back;  // of unit length; `back` points from the target to the eye
-};
 
 Basis basis_of(const glm::dvec3& back, const glm::dvec3& up) {
   require(glm::length(back) > 0, "--eye and --target are the same point");
@@ -61,16 +58,26 @@ Basis basis_of(const glm::dvec3& back, const glm::dvec3& up) {
 
 }  // namespace
 
+Bounds shown_bounds(const Trace& trace) { return bounds_of(shown_vertices(trace)); }
+
+Basis upright_basis(const glm::dvec3& up) {
+  require(glm::length(up) > 0, "--up is zero");
+  const glm::dvec3 z(0, 0, 1), across = glm::cross(up, z);
+  const bool is_along_z = glm::length(across) <= 1e-9 * glm::length(up);
+  const glm::dvec3 right = is_along_z ? glm::dvec3(1, 0, 0) : glm::normalize(across), unit_up = glm::normalize(up);
+  return {right, unit_up, glm::cross(right, unit_up)};
+}
+
 Camera frame_model(const Trace& trace, std::uint32_t width, std::uint32_t height, const CameraWishes& wishes) {
   const std::vector<glm::dvec3> vertices = shown_vertices(trace);
-  require(!vertices.empty(), "the model has no triangles");
+  const Bounds bounds = bounds_of(vertices);
   Camera camera;
   camera.up = wishes.up.value_or(glm::dvec3(0, 1, 0));
-  camera.target = wishes.target.value_or(middle_of_bounds(vertices));
+  camera.target = wishes.target.value_or(bounds.middle());
   camera.fovy_deg = wishes.fovy_deg.value_or(36.0);
   require(camera.fovy_deg > 0 && camera.fovy_deg < 180, "--fovy must lie between 0 and 180 degrees");
 
-  const glm::dvec3 back = wishes.eye ? *wishes.eye - camera.target : glm::dvec3(0.5, 0.3, 1.0);
+  const glm::dvec3 back = wishes.eye ? *wishes.eye - camera.target : upright_basis(camera.up) * wishes.from;
   const Basis basis = basis_of(back, camera.up);
   const double slope_y = kFill * std::tan(glm::radians(camera.fovy_deg) / 2);
   const double slope_x = slope_y * width / height;

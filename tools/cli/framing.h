@@ -8,10 +8,31 @@
 
 namespace beampipe {
 
+// Of unit length and at right angles: a vector (x, y, z) in this basis is x right + y up + z back.
+struct Basis {
+  glm::dvec3 right, up, back;
+
+  glm::dvec3 operator*(const glm::dvec3& vector) const { return vector.x * right + vector.y * up + vector.z * back; }
+};
+
+// The basis in which a model stands upright: x, y and z themselves if y is up, and x, z and -y if z is up. Throws
+// std::invalid_argument, one line, if `up` is zero.
+Basis upright_basis(const glm::dvec3& up);
+
+struct Bounds {
+  glm::dvec3 low, high;  // world space
+
+  glm::dvec3 middle() const { return (low + high) * 0.5; }
+};
+
+// What encloses all that a trace shows in all its frames. Throws as frame_model() does.
+Bounds shown_bounds(const Trace& trace);
+
 // What the user has asked for; everything else is chosen.
 struct CameraWishes {
   std::optional<glm::dvec3> eye, target, up;
   std::optional<double> fovy_deg, near, far;
+  glm::dvec3 from{0.5, 0.3, 1.0};  // without an eye: the direction from the target to it, in the upright basis
 };
 
 // A camera that looks at the middle of what a trace shows in all its frames, from the front right and a little above,

@@ -67,6 +67,7 @@ int run(int argc, char** argv, beampipe::InterruptGate& gate) {
   beampipe::add_check_capture_command(line, gate);
   beampipe::add_export_soup_command(line, gate);
   beampipe::add_make_command(line, gate);
+  beampipe::add_preview_command(line, gate);
   beampipe::add_capture_command(line);
   beampipe::add_completion_command(line);
   beampipe::add_man_command(line);

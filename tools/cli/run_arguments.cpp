@@ -15,14 +15,20 @@
 #include "tools/evaluate/memory_system.h"
 #include "tools/evaluate/results.h"
 #include "tools/files/output.h"
+#include "traces/scenes.h"
 #include "traces/trace_io.h"
 
 namespace beampipe {
 
 namespace {
 
-// If the trace follows -t, it is taken for a technique; the message then says so.
+// A scene's name is not its trace. If the trace follows -t, it is taken for a technique; the message then says so.
 void require_trace(const RunArguments& arguments) {
+  const auto is_it = [&](const SceneKind& kind) { return kind.name == arguments.trace; };
+  const bool is_scene = std::any_of(scene_kinds().begin(), scene_kinds().end(), is_it);
+  if (std::error_code ignored; is_scene && !std::filesystem::exists(arguments.trace, ignored))
+    throw UsageError(arguments.trace + " is a scene: expected its trace, which `beampipe make " + arguments.trace +
+                     " -o " + arguments.trace + ".json` makes");
   if (!arguments.trace.empty()) return;
   std::string hint;
   if (std::error_code ignored; !arguments.specs.empty() && std::filesystem::exists(arguments.specs.back(), ignored))
@@ -54,6 +60,7 @@ void add_run_arguments(Command& command, RunArguments& arguments) {
       .required();
   command.add("--frames", arguments.frames,
               "render only frames A-B of the trace, or frame A; the first frame is 0 (default: all)");
+  add_trace_view_options(command, arguments.view);
   command.add("--threads", arguments.threads, "the number of threads (default: one per processor core)")
       .between(1, 1024);
   command
@@ -74,7 +81,8 @@ void add_run_arguments(Command& command, RunArguments& arguments) {
   command.add_flag("--resume", arguments.resume,
                    "continue a stopped run: keep the finished frames that the same command left in the folder");
   command.add_flag("--force", arguments.force,
-                   "write over the results of another trace in the folder, and with `run` over those of `compare`");
+                   "write over the results of another trace, or of this one in another size or from another camera, "
+                   "and with `run` over those of `compare`");
   add_hardware_options(command, arguments.hardware);
   command.add(
       "--trace-events", arguments.trace_events,
@@ -115,6 +123,7 @@ RunPlan make_plan(const RunArguments& arguments) {
   if (!arguments.simd.empty()) use_simd_target(arguments.simd);
   plan.trace = read_trace(arguments.trace, {.allow_outside = arguments.allow_outside});
   plan.frames = parse_frame_range(arguments.frames, plan.trace.frames.size());
+  apply(arguments.view, plan.frames, arguments.trace, plan.trace);
   for (const std::size_t frame : plan.frames)
     for (const Technique& technique : plan.techniques)
       require_memory(plan.trace, plan.trace.frames[frame], technique.working_bytes_per_pixel,
@@ -123,9 +132,14 @@ RunPlan make_plan(const RunArguments& arguments) {
   plan.options.textures = plan.textures.get();
   if (const std::string note = note_on_darkness(plan.trace, plan.frames, arguments.trace); !note.empty())
     std::cerr << "beampipe: " << note << "\n";
+  std::vector<std::string> with_history;
   for (const Technique& technique : plan.techniques)
-    if (technique.keeps_history && plan.frames.size() == 1)
-      std::cerr << "beampipe: note: " << technique.spec << " works over several frames; the first one has no history\n";
+    if (technique.keeps_history) with_history.push_back(technique.spec);
+  if (plan.frames.size() == 1)
+    for (const std::string& spec : with_history)
+      std::cerr << "beampipe: note: " << spec << " works over several frames; the first one has no history\n";
+  if (const std::string note = note_on_motion(plan.trace, plan.frames, with_history, arguments.trace); !note.empty())
+    std::cerr << "beampipe: note: " << note << "\n";
   plan.notes = notes_of(plan.trace, plan.frames);
   return plan;
 }

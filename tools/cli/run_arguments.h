@@ -8,6 +8,7 @@
 
 #include "tools/cli/command_line.h"
 #include "tools/cli/hardware_options.h"
+#include "tools/cli/trace_view.h"
 #include "tools/evaluate/run_plan.h"
 
 namespace beampipe {
@@ -16,6 +17,7 @@ namespace beampipe {
 struct RunArguments {
   std::string trace, output, frames, trace_events;
   HardwareOptions hardware;
+  TraceView view;
   std::vector<std::string> specs;
   std::string simd;                 // empty: the best one that this machine has
   std::uint64_t memory_limit = 0;   // bytes; 0: the default

@@ -4,6 +4,7 @@
 #include <map>
 #include <optional>
 
+#include "pipeline/spec.h"
 #include "traces/json.h"
 
 namespace beampipe {
@@ -61,6 +62,20 @@ std::string note_on_darkness(const Trace& trace, const std::vector<std::size_t>&
   return file + ": frame " + std::to_string(*first) +
          (others > 0 ? " and " + std::to_string(others) + (others > 1 ? " others have" : " other have") : " has") +
          " neither lights nor ambient light, so surfaces of material " + in_quotes(black->name) + " are black";
+}
+
+std::string note_on_motion(const Trace& trace, const std::vector<std::size_t>& frames,
+                           const std::vector<std::string>& specs, const std::string& file) {
+  std::size_t draws = 0, changed = 0;
+  for (std::size_t i = 1; i < frames.size(); ++i) {
+    const std::vector<Draw>&before = trace.frames[frames[i - 1]].draws, &now = trace.frames[frames[i]].draws;
+    draws += now.size();
+    if (now.size() != before.size()) continue;
+    for (std::size_t d = 0; d < now.size(); ++d) changed += before[d].mesh != now[d].mesh;
+  }
+  if (changed == 0 || specs.empty()) return "";
+  return file + ": " + std::to_string(changed) + " of " + std::to_string(draws) +
+         " draws show another mesh than in the frame before, whose motion is unknown to " + list_of(specs, "and");
 }
 
 }  // namespace beampipe

@@ -133,7 +133,7 @@ void Comparison::write_record() {
   for (const TechniqueReport& result : results_) record.reports.push_back(result.frames.back());
   record.reports.push_back(reference_result_.frames.back());
   record.sums = sums();
-  records_.write(record);
+  records_.write(record, reference_result_.frames.size(), plan_.frames.size());
 }
 
 // The EXR files hold the pictures to the last bit, so that the errors come out the same.

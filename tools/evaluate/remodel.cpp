@@ -7,6 +7,7 @@ namespace beampipe {
 Report remodelled(const Json& json, const std::vector<Hardware>& all) {
   Report report;
   report.trace = json.at("trace").get<std::string>();
+  report.made_by = json.value("made_by", Json());
   report.memory.modelled = json.at("memory_system").at("modelled").get<bool>();
   report.hardware = all.front();
   report.more_hardware.assign(all.begin() + 1, all.end());

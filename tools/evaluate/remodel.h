@@ -8,8 +8,8 @@
 
 namespace beampipe {
 
-// Of report.json: trace, whether memory was modelled, and the stages and buffers of every technique's frames. `all`: at
-// least one. Throws JsonError if it is something else.
+// Of report.json: trace, what made it, whether memory was modelled, and the stages and buffers of every technique's
+// frames. `all`: at least one. Throws JsonError if it is something else.
 Report remodelled(const Json& report, const std::vector<Hardware>& all);
 
 }  // namespace beampipe

@@ -37,6 +37,13 @@ FrameResult render_timed(const Technique& technique, const RunPlan& plan, std::s
   return result;
 }
 
+FrameContent content_of(const Trace& trace, std::size_t index) {
+  const Frame& frame = trace.frames[index];
+  FrameContent content{index, frame.width, frame.height, 0, frame.draws.size(), frame.lighting.lights.size()};
+  for (const Draw& draw : frame.draws) content.triangles += trace.meshes[draw.mesh].triangles.size();
+  return content;
+}
+
 }  // namespace
 
 std::vector<WallTime> render_frame(const RunPlan& plan, std::size_t frame, Progress& progress,
@@ -141,18 +148,21 @@ void require_writable_folders(const OutputFolder& output, const std::vector<Tech
 }
 
 Report new_report(const RunPlan& plan, const Json& made_by) {
-  return {plan.trace_file,
-          program_version(),
-          simd_target(),
-          plan.options.threads,
-          plan.options.memory,
-          plan.hardware,
-          {},
-          {},
-          {},
-          plan.notes,
-          made_by,
-          plan.more_hardware};
+  Report report{plan.trace_file,
+                program_version(),
+                simd_target(),
+                plan.options.threads,
+                plan.options.memory,
+                plan.hardware,
+                {},
+                {},
+                {},
+                plan.notes,
+                made_by,
+                plan.more_hardware,
+                plan.trace.frames.size()};
+  for (const std::size_t frame : plan.frames) report.frames.push_back(content_of(plan.trace, frame));
+  return report;
 }
 
 }  // namespace beampipe

@@ -93,6 +93,14 @@ struct TechniqueReport {
   double on_chip_bytes_per_pixel() const;
 };
 
+// What a frame of the trace asks to be drawn.
+struct FrameContent {
+  std::size_t index = 0;                // in the trace
+  std::uint32_t width = 0, height = 0;  // pixels
+  std::uint64_t triangles = 0;          // of all draws, before clipping and culling
+  std::size_t draws = 0, lights = 0;
+};
+
 struct Report {
   std::string trace, version, simd;
   int threads = 0;
@@ -104,6 +112,8 @@ struct Report {
   std::vector<DrawNote> notes = {};                // what the frames ask for and no technique does
   Json made_by = {};                               // what the results depend on: made_by() in tools/evaluate/resume.h
   std::vector<Hardware> more_hardware = {};        // whose times are modelled too, for comparison
+  std::size_t trace_frames = 0;                    // of the whole trace; 0: unknown
+  std::vector<FrameContent> frames = {};           // those that were rendered
 };
 
 // Such as "0.1.0".

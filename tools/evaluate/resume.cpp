@@ -160,6 +160,7 @@ std::vector<FrameRecord> FrameRecords::read(const std::vector<std::size_t>& fram
     if (!record) break;
     records.push_back(std::move(*record));
   }
+  if (!records.empty()) set_farewell(records.size(), frames.size());
   return records;
 }
 
@@ -182,16 +183,23 @@ std::optional<FrameRecord> FrameRecords::read(std::size_t frame, const std::vect
   }
 }
 
-void FrameRecords::write(const FrameRecord& record) {
+void FrameRecords::write(const FrameRecord& record, std::size_t finished, std::size_t all) {
   Json json = {{"beampipe_frame", 1}, {"made_by", maker_}, {"sums", record.sums}, {"techniques", Json::array()}};
   for (const FrameReport& report : record.reports) json["techniques"].push_back(record_of(report));
   json["files"] = digests_of_files(output_.path(), record);
   output_.write(frame_record_name(record.reports.front().index), json_text(sealed(std::move(json))));
+  set_farewell(finished, all);
 }
 
 void FrameRecords::remove() {
+  output_.set_farewell("");
   for (const fs::path& path : list()) output_.remove(path.lexically_relative(output_.path()));
   output_.remove(kFolder);  // stays if something else is in it
+}
+
+void FrameRecords::set_farewell(std::size_t finished, std::size_t all) const {
+  output_.set_farewell("beampipe: stopped; " + std::to_string(finished) + " of " + std::to_string(all) +
+                       " frames are kept, and the same command with --resume goes on from there\n");
 }
 
 std::vector<fs::path> FrameRecords::list() const {

@@ -29,8 +29,8 @@ class FrameRecords {
  public:
   FrameRecords(OutputFolder& output, Json maker) : output_(output), maker_(std::move(maker)) {}
 
-  // Throws std::runtime_error, one line, if the folder has results of another trace, or of `compare` while this is `run`,
-  // which has no errors.
+  // Throws std::runtime_error, one line, if the folder has results of another trace, or of `compare` while this is
+  // `run`, which has no errors.
   void require_own_folder() const;
 
   // Whether report.json exists and was made by the same run. If so, this removes records that were left when the
@@ -43,13 +43,15 @@ class FrameRecords {
   std::vector<FrameRecord> read(const std::vector<std::size_t>& frames, const std::vector<std::string>& specs,
                                 const Json& no_sums) const;
 
-  void write(const FrameRecord& record);
+  // `finished`: with this frame. An interrupt then says so, and how to go on.
+  void write(const FrameRecord& record, std::size_t finished, std::size_t all);
 
-  // Removes all records.
+  // Removes all records. An interrupt then says nothing.
   void remove();
 
  private:
   std::optional<FrameRecord> read(std::size_t frame, const std::vector<std::string>& specs, const Json& no_sums) const;
+  void set_farewell(std::size_t finished, std::size_t all) const;
   std::vector<std::filesystem::path> list() const;
   [[noreturn]] void refuse(const Json& other_maker) const;
 

@@ -116,4 +116,9 @@ void OutputFolder::remove(const fs::path& name) {
   fs::remove(folder_ / name, ignored);
 }
 
+void OutputFolder::set_farewell(std::string text) {
+  const auto held = gate_.hold();
+  gate_.set_farewell(std::move(text));
+}
+
 }  // namespace beampipe

@@ -43,6 +43,9 @@ class OutputFolder {
   // Removes folder/name if it exists.
   void remove(const std::filesystem::path& name);
 
+  // What an interrupt prints from now on, before it ends the program.
+  void set_farewell(std::string text);
+
   // Everything written so far stays when this object is destroyed.
   void keep() { new_.clear(); }
 

@@ -19,8 +19,11 @@ Json to_json(const ScatterPlot& plot) {
                         {"label", point.label},
                         {"bound", kBounds[static_cast<int>(point.y_bound)]}});
     }
-    json["series"].push_back(
-        {{"name", series.name}, {"line", series.line}, {"marks", series.marks}, {"points", points}});
+    json["series"].push_back({{"name", series.name},
+                              {"color", series.color},
+                              {"line", series.line},
+                              {"marks", series.marks},
+                              {"points", points}});
   }
   return json;
 }
@@ -33,8 +36,9 @@ Json to_json(const BarPlot& plot) {
                {"categories", plot.categories}};
   json["parts"] = Json::array();
   for (const BarPlot::Part& part : plot.parts) {
-    json["parts"].push_back({{"name", part.name}, {"values", part.values}});
+    json["parts"].push_back({{"name", part.name}, {"color", part.color}, {"values", part.values}});
   }
+  if (!plot.marks.empty()) json["marks"] = {{"name", plot.mark_name}, {"values", plot.marks}};
   return json;
 }
 
@@ -46,39 +50,54 @@ std::string plot_file(const Plot& plot) {
 
 std::vector<Figure> report_figures(const ReportFile& report) {
   std::vector<Figure> figures;
+  const std::vector<std::string> implementations = implementations_of(report);
   if (!report.msaa_ladder.empty()) {
     figures.push_back(
-        {"Memory and accuracy",
+        {"cost",
+         "Memory and accuracy",
          "Up and to the left is better. Above the line a technique needs less memory than MSAA with the same "
          "error. The memory includes the A-buffer at its peak. Triangles mark bounds.",
          {{"frontier", frontier_plot({report})}}});
-    Figure speed{"Time and error", "Down and to the left is better.", {{"wall time", speed_plot({report})}}};
-    for (const auto& [implementation, ms] : report.techniques.front().modelled_ms) {
+    Figure speed{"cost", "Time and error", "Down and to the left is better.", {}};
+    for (const std::string& implementation : implementations)
       speed.choices.emplace_back("modelled time: " + implementation, speed_plot({report}, implementation));
-    }
+    speed.choices.emplace_back("wall time of the simulator", speed_plot({report}));
     figures.push_back(std::move(speed));
   }
-  Figure bytes{"Bytes per stage", "What each technique reads and writes in a frame, by stage.", {}};
-  for (const auto& [label, key] : {std::pair{"logical: what the stage reads and writes", "logical_bytes"},
-                                   std::pair{"sectors of 32 bytes", "sector_bytes"},
-                                   std::pair{"DRAM: beyond the modelled caches", "dram_bytes"}}) {
+  Figure time{"stages",
+              "Time per stage",
+              "Modelled time, one stage after the other. The black mark is where all stages at once would end.",
+              {}};
+  for (const std::string& implementation : implementations)
+    time.choices.emplace_back("modelled time: " + implementation, time_plot(report, implementation));
+  if (!time.choices.empty()) figures.push_back(std::move(time));
+  Figure bytes{"stages", "Bytes per stage", "What each technique reads and writes in a frame.", {}};
+  for (const auto& [label, key] : {std::pair{"DRAM: beyond the modelled caches", "dram_bytes"},
+                                   std::pair{"L2", "l2_bytes"}, std::pair{"sectors of 32 bytes", "sector_bytes"},
+                                   std::pair{"logical: what the stage reads and writes", "logical_bytes"}}) {
     if (auto plot = bytes_plot(report, key)) bytes.choices.emplace_back(label, std::move(*plot));
   }
   if (!bytes.choices.empty()) figures.push_back(std::move(bytes));
-  Figure roofline{"Roofline",
+  Figure roofline{"stages",
+                  "Roofline",
                   "How many operations a stage performs, and how many per byte. Stages far to the left are limited by "
-                  "memory, stages "
-                  "far to the right by arithmetic.",
+                  "memory, stages far to the right by arithmetic.",
                   {}};
   for (const TechniqueSummary& summary : report.techniques) {
     roofline.choices.emplace_back(summary.spec, roofline_plot(report, summary.spec));
   }
   figures.push_back(std::move(roofline));
+  if (auto causes = causes_plot(report))
+    figures.push_back(
+        {"causes",
+         "Split of the error",
+         "The mean square error of all frames by cause. A cause is negative where it makes up for others.",
+         {{"causes", std::move(*causes)}}});
   return figures;
 }
 
 Json to_json(const Figure& figure) {
-  Json json = {{"title", figure.title}, {"caption", figure.caption}};
+  Json json = {{"section", figure.section}, {"title", figure.title}, {"caption", figure.caption}};
   json["choices"] = Json::array();
   for (const auto& [label, plot] : figure.choices) {
     json["choices"].push_back({{"label", label}, {"plot", std::visit([](const auto& p) { return to_json(p); }, plot)}});

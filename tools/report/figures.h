@@ -15,6 +15,7 @@ using Plot = std::variant<ScatterPlot, BarPlot>;
 
 // A place on the page that shows one of several plots of the same kind.
 struct Figure {
+  std::string section;  // of the page: "cost", "stages" or "causes"
   std::string title, caption;
   std::vector<std::pair<std::string, Plot>> choices;  // the label of a choice, and its plot
 };

@@ -148,9 +148,8 @@ void write_series(std::ostream& script, const ScatterPlot& plot) {
     plots << (block > 0 ? ", " : "plot ") << "$block" << block << " with " << style;
     ++block;
   };
-  for (std::size_t i = 0; i < plot.series.size(); ++i) {
-    const PlotSeries& series = plot.series[i];
-    const std::string color = " linecolor " + quoted(kPlotColors[i % kPlotColors.size()]);
+  for (const PlotSeries& series : plot.series) {
+    const std::string color = " linecolor " + quoted(series.color);
     if (series.line) add(series.points, "lines linewidth 2" + color);
     if (!series.marks) continue;
     for (const auto bound : {PlotPoint::Bound::none, PlotPoint::Bound::lower, PlotPoint::Bound::upper}) {
@@ -209,6 +208,13 @@ std::string run_gnuplot(const std::string& script) {
   return bytes;
 }
 
+bool has_negative(const BarPlot& plot) {
+  for (const BarPlot::Part& part : plot.parts)
+    for (const double value : part.values)
+      if (value < 0) return true;
+  return false;
+}
+
 std::string terminal(PlotFormat format) {
   std::ostringstream text;
   if (format == PlotFormat::svg) {
@@ -243,18 +249,23 @@ std::string gnuplot_script(const BarPlot& plot, PlotFormat format) {
   write_frame(script, plot.title, plot.y_label, kBarsRight);
   script << "set bmargin at screen " << kBarsBottom << "\nset style data histograms\nset style histogram rowstacked\n"
          << "set style fill solid border linecolor '#ffffff'\nset boxwidth 0.75\nset key at screen 0.99, " << kTop
-         << " right top Left reverse invert samplen 1 width -2\nset yrange [0:*]\nset ytics nomirror\n"
+         << " right top Left reverse invert samplen 1 width -2\nset yrange [" << (has_negative(plot) ? "*" : "0")
+         << ":*]\nset ytics nomirror\n"
          << "set xtics nomirror rotate by 40 right scale 0\nset grid noxtics ytics\n$bars << END\n";
   for (std::size_t i = 0; i < plot.categories.size(); ++i) {
     script << quoted_word(plot.categories[i]);
     for (const BarPlot::Part& part : plot.parts) script << " " << part.values[i];
+    if (!plot.marks.empty()) script << " " << plot.marks[i];
     script << "\n";
   }
   script << "END\n";
   for (std::size_t i = 0; i < plot.parts.size(); ++i) {
     script << (i > 0 ? ", " : "plot ") << "$bars using " << i + 2 << ":xtic(1) title " << quoted(plot.parts[i].name)
-           << " linecolor " << quoted(kPlotColors[i % kPlotColors.size()]);
+           << " linecolor " << quoted(plot.parts[i].color);
   }
+  if (!plot.marks.empty())
+    script << ", $bars using 0:" << plot.parts.size() + 2 << " with points pointtype 2 linecolor '#000000' title "
+           << quoted(plot.mark_name);
   script << "\n";
   return script.str();
 }

@@ -9,12 +9,33 @@
 #include "tools/files/image_io.h"
 #include "tools/report/tables.h"
 #include "traces/base64.h"
-#include "traces/input_file.h"
 
 namespace beampipe {
 namespace {
 
 std::string png_url(const std::string& png) { return "data:image/png;base64," + to_base64(png); }
+
+// Linear values need more than the 256 levels of a PNG, or differences of good pictures would show nothing but
+// rounding.
+Json picture_of(const Image& image) {
+  constexpr double kLevels = 65535;
+  const auto value_of = [](float value) {
+    return std::isfinite(value) && value > 0 ? static_cast<double>(value) : 0.0;
+  };
+  const std::size_t pixels = std::size_t{image.width} * image.height;
+  double high = 1;
+  for (std::size_t i = 0; i < 4 * pixels; ++i)
+    if (i % 4 < 3) high = std::max(high, value_of(image.rgba[i]));
+  std::vector<std::uint8_t> rgb(6 * pixels);
+  for (std::size_t i = 0; i < pixels; ++i)
+    for (std::size_t c = 0; c < 3; ++c) {
+      const auto q =
+          static_cast<std::uint32_t>(std::lround(kLevels * std::sqrt(value_of(image.rgba[4 * i + c]) / high)));
+      rgb[3 * i + c] = static_cast<std::uint8_t>(q >> 8);
+      rgb[3 * (pixels + i) + c] = static_cast<std::uint8_t>(q & 255);
+    }
+  return {{"high", high}, {"png", png_url(encode_png(image.width, 2 * image.height, rgb))}};
+}
 
 Json map_of(const std::string& name, const Planes& planes, const std::vector<float>& values) {
   constexpr double kLevels = 65535;
@@ -72,16 +93,28 @@ std::filesystem::path file_of(const ReportFile& report, const std::string& name)
 
 }  // namespace
 
+std::vector<std::size_t> frames_of_page(std::size_t frames, std::uint64_t pixels_of_a_frame, std::size_t shown) {
+  const std::size_t room = std::max<std::uint64_t>(1, kMostPagePixels / std::max<std::uint64_t>(1, pixels_of_a_frame));
+  std::set<std::size_t> positions = {shown};
+  if (room >= frames) {
+    for (std::size_t i = 0; i < frames; ++i) positions.insert(i);
+  } else {
+    for (std::size_t i = 0; room > 1 && i < room - 1; ++i)
+      positions.insert(room == 2 ? frames - 1 : i * (frames - 1) / (room - 2));
+  }
+  return {positions.begin(), positions.end()};
+}
+
 Json report_layers(const ReportFile& report, std::size_t position) {
-  Json layers = {{"frame", 0}, {"techniques", Json::array()}};
+  Json layers = {{"frame", 0}, {"width", 0}, {"height", 0}, {"techniques", Json::array()}};
   std::set<std::string> names;
   for (const Json& result : report.json.at("results").elements()) {
     const Json& frame = result.at("frames").at(position);
     layers["frame"] = frame.at("index");
-    const std::filesystem::path picture = file_of(report, frame.at("picture").get<std::string>());
-    Json technique = {{"technique", result.at("technique")},
-                      {"picture", png_url(read_input_file(picture, picture.string()))},
-                      {"maps", Json::array()}};
+    const Image image = read_exr(file_of(report, frame.at("image").get<std::string>()));
+    layers["width"] = image.width;
+    layers["height"] = image.height;
+    Json technique = {{"technique", result.at("technique")}, {"picture", picture_of(image)}, {"maps", Json::array()}};
     if (const Json* counters = frame.find("counters")) {
       const Planes planes = read_exr_planes(file_of(report, counters->get<std::string>()));
       for (const auto& [name, values] : planes.channels) {
@@ -93,6 +126,17 @@ Json report_layers(const ReportFile& report, std::size_t position) {
   }
   layers["kinds"] = kinds_of(names);
   return layers;
+}
+
+Json page_layers(const ReportFile& report, std::size_t shown) {
+  const std::vector<Json>& results = report.json.at("results").elements();
+  const Json first = report_layers(report, shown);
+  const std::uint64_t pixels =
+      first.at("width").get<std::uint64_t>() * first.at("height").get<std::uint64_t>() * results.size();
+  Json frames = Json::array();
+  for (const std::size_t position : frames_of_page(results.front().at("frames").size(), pixels, shown))
+    frames.push_back(position == shown ? first : report_layers(report, position));
+  return frames;
 }
 
 }  // namespace beampipe

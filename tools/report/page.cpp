@@ -1,17 +1,38 @@
 #include "tools/report/page.h"
 
+#include "pipeline/technique.h"
+#include "tools/files/shell_word.h"
+#include "tools/report/cards.h"
+#include "tools/report/conditions.h"
 #include "tools/report/page_files.h"
 
 namespace beampipe {
 namespace {
 
 Json to_json(const Table& table) {
-  Json json = {{"name", table.name}, {"title", table.title}, {"columns", Json::array()}, {"rows", table.rows}};
+  Json json = {{"name", table.name},
+               {"title", table.title},
+               {"note", table.note},
+               {"columns", Json::array()},
+               {"rows", table.rows}};
   for (const Column& column : table.columns) {
-    json["columns"].push_back(
-        {{"key", column.key}, {"title", column.title}, {"unit", column.unit}, {"definition", column.definition}});
+    json["columns"].push_back({{"key", column.key},
+                               {"title", column.title},
+                               {"unit", column.unit},
+                               {"definition", column.definition},
+                               {"view", column.view}});
   }
   return json;
+}
+
+// The techniques whose pixels `beampipe inspect` can explain. Those of another version may be unknown.
+Json inspectable(const ReportFile& report) {
+  Json specs = Json::array();
+  for (const TechniqueSummary& summary : report.techniques) try {
+      if (parse_technique(summary.spec).inspect) specs.push_back(summary.spec);
+    } catch (const SpecError&) {
+    }
+  return specs;
 }
 
 // Replaces {{name}}, which stands in the page once, by the text.
@@ -38,18 +59,16 @@ std::string script_json(const Json& json) {
 }  // namespace
 
 std::string page_html(const ReportFile& report, const std::vector<Table>& tables, const std::vector<Figure>& figures,
-                      const Json& layers, const Json& inspections) {
-  const Json& results = report.json.at("results");
+                      const Json& layers, std::size_t shown, const Json& inspections) {
   Json data = {{"scene", report.scene},
+               {"trace", short_shell_word(report.json.at("trace").get<std::string>())},
+               {"frames", report.json.at("results").at(0).at("frames").size()},
+               {"shown", shown},
+               {"conditions", report_conditions(report)},
+               {"summary", report_cards(report)},
                {"layers", layers},
                {"inspections", inspections},
-               {"colors", std::vector(kPlotColors.begin(), kPlotColors.end())}};
-  data["facts"] = {{"trace", report.json.at("trace")},
-                   {"frames", std::to_string(results.at(0).at("frames").size())},
-                   {"techniques", std::to_string(results.size())},
-                   {"program", "beampipe " + report.json.value("version", std::string())},
-                   {"threads", std::to_string(report.json.value("threads", 1))},
-                   {"SIMD target", report.json.value("simd", std::string())}};
+               {"inspectable", inspectable(report)}};
   data["tables"] = Json::array();
   for (const Table& table : tables) data["tables"].push_back(to_json(table));
   data["figures"] = Json::array();

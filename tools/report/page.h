@@ -11,8 +11,8 @@
 namespace beampipe {
 
 // HTML that contains its styles, scripts, numbers and pictures and needs no other file and no network. `layers` comes
-// from report_layers, `inspections` from report_inspections.
+// from page_layers, `inspections` from report_inspections. `shown`: the index of the frame that is shown first.
 std::string page_html(const ReportFile& report, const std::vector<Table>& tables, const std::vector<Figure>& figures,
-                      const Json& layers, const Json& inspections);
+                      const Json& layers, std::size_t shown, const Json& inspections);
 
 }  // namespace beampipe

@@ -5,6 +5,7 @@
 #include <utility>
 
 #include "pipeline/technique.h"
+#include "tools/report/colors.h"
 
 namespace beampipe {
 namespace {
@@ -12,25 +13,37 @@ namespace {
 constexpr const char* kMsaa = "msaa";
 constexpr const char* kEmrLabel = "equivalent MSAA rate (EMR), samples";
 
-// The family of "beam:bits=64" is "beam". Techniques of one family share a colour.
+// The family of "beam:bits=64" is "beam".
 std::string family_of(const std::string& spec) { return spec.substr(0, spec.find(':')); }
 
-PlotSeries& series_named(ScatterPlot& plot, const std::string& name) {
+std::vector<std::string> specs_of(const std::vector<ReportFile>& reports) {
+  std::vector<std::string> specs;
+  for (const TechniqueSummary& summary : reports.front().techniques) specs.push_back(summary.spec);
+  return specs;
+}
+
+// The series of that name; if there is none, adds one in the colour of `spec`.
+PlotSeries& series_named(ScatterPlot& plot, const std::vector<ReportFile>& reports, const std::string& name,
+                         const std::string& spec) {
   const auto is_it = [&](const PlotSeries& series) { return series.name == name; };
   const auto found = std::find_if(plot.series.begin(), plot.series.end(), is_it);
   if (found != plot.series.end()) return *found;
-  plot.series.push_back({name, {}, name == kMsaa});
+  plot.series.push_back({name, technique_color(specs_of(reports), spec), {}, name == kMsaa});
   return plot.series.back();
 }
 
-void add_point(ScatterPlot& plot, const std::string& spec, PlotPoint point) {
+// All of msaa are one series, and each other technique is one of its own.
+void add_point(ScatterPlot& plot, const std::vector<ReportFile>& reports, const std::string& spec, PlotPoint point) {
   if (point.x > 0 && point.y > 0) {
-    series_named(plot, family_of(spec)).points.push_back(std::move(point));
+    const std::string name = family_of(spec) == kMsaa ? kMsaa : spec;
+    series_named(plot, reports, name, spec).points.push_back(std::move(point));
   } else {
     plot.notes.push_back(spec + " is not drawn: " + (point.x > 0 ? plot.y_label : plot.x_label) +
                          " is 0, which a logarithmic axis cannot show");
   }
 }
+
+PlotSeries msaa_line() { return {kMsaa, technique_color({}, kMsaa), {}, true}; }
 
 PlotPoint::Bound bound_of(const EquivalentMsaa& emr) {
   if (emr.is_lower_bound == emr.is_upper_bound) return PlotPoint::Bound::none;
@@ -75,26 +88,22 @@ void make_line(PlotSeries& series) {
 
 [[noreturn]] void throw_not_compared(const std::vector<ReportFile>& reports) {
   throw ReportError((reports.front().folder / "report.json").string() +
-                    ": it has no errors; expected a report of `beampipe compare`");
+                    ": it has no errors; expected a report of `beampipe compare`, or --kind traffic for one of `run`");
 }
 
 }  // namespace
-
-const std::array<const char*, 20> kPlotColors = {
-    "#4e79a7", "#f28e2b", "#e15759", "#76b7b2", "#59a14f", "#edc948", "#b07aa1", "#9c755f", "#ff9da7", "#79706e",
-    "#a0cbe8", "#ffbe7d", "#ffb6b4", "#a8dcd9", "#8cd17d", "#f7e5a1", "#d4a6c8", "#d7b5a6", "#fcd9de", "#bab0ac"};
 
 ScatterPlot frontier_plot(const std::vector<ReportFile>& reports) {
   ScatterPlot plot{"frontier",
                    "Memory and accuracy: " + scenes_text(reports),
                    "memory with the A-buffer, bytes per pixel",
                    kEmrLabel,
-                   {{kMsaa, {}, true}},
+                   {msaa_line()},
                    {}};
   for (const LadderRung& rung : longest_ladder(reports)) {
     const std::string spec = "msaa:" + std::to_string(rung.samples);
     const double bytes = parse_technique(spec).framebuffer_bytes_per_pixel();
-    add_point(plot, spec, {bytes, static_cast<double>(rung.samples), spec});
+    add_point(plot, reports, spec, {bytes, static_cast<double>(rung.samples), spec});
   }
   bool compared = false;
   for (const TechniqueSummary& summary : mean_summaries(reports)) {
@@ -102,7 +111,7 @@ ScatterPlot frontier_plot(const std::vector<ReportFile>& reports) {
     compared = true;
     const bool is_on_the_line = family_of(summary.spec) == kMsaa;
     if (is_on_the_line) continue;
-    add_point(plot, summary.spec,
+    add_point(plot, reports, summary.spec,
               {summary.bytes_per_pixel, summary.emr->samples, summary.spec, bound_of(*summary.emr)});
   }
   if (!compared) throw_not_compared(reports);
@@ -114,12 +123,12 @@ ScatterPlot storage_plot(const std::vector<ReportFile>& reports) {
                    "All memory and accuracy: " + scenes_text(reports),
                    "memory on chip and off chip, with the A-buffer, bytes per pixel",
                    kEmrLabel,
-                   {{kMsaa, {}, true}},
+                   {msaa_line()},
                    {}};
   for (const TechniqueSummary& summary : mean_summaries(reports)) {
     if (!summary.emr) continue;
     const std::string series = family_of(summary.spec) == kMsaa ? kMsaa : split_slots(summary.spec).first;
-    series_named(plot, series)
+    series_named(plot, reports, series, summary.spec)
         .points.push_back({summary.all_bytes_per_pixel, summary.emr->samples, summary.spec, bound_of(*summary.emr)});
   }
   if (plot.series.size() == 1 && plot.series.front().points.empty()) throw_not_compared(reports);
@@ -135,14 +144,14 @@ ScatterPlot speed_plot(const std::vector<ReportFile>& reports, const std::string
                    modelled ? "modelled time (" + implementation + ", stages overlap), ms per frame"
                             : "wall time of the simulator, ms per frame",
                    "RMSE, linear light (lower is better)",
-                   {{kMsaa, {}, true}},
+                   {msaa_line()},
                    {}};
   bool compared = false;
   for (const TechniqueSummary& summary : mean_summaries(reports)) {
     if (!summary.rmse || (modelled && !summary.modelled_ms.contains(implementation))) continue;
     compared = true;
     const double ms = modelled ? summary.modelled_ms.at(implementation).overlap : summary.wall_ms;
-    add_point(plot, summary.spec, {ms, *summary.rmse, summary.spec});
+    add_point(plot, reports, summary.spec, {ms, *summary.rmse, summary.spec});
   }
   if (!compared) throw_not_compared(reports);
   std::vector<PlotPoint>& msaa = plot.series.front().points;

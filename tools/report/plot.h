@@ -1,7 +1,6 @@
 // Plots as data. gnuplot draws them into files, and JavaScript draws them on the report page.
 #pragma once
 
-#include <array>
 #include <optional>
 #include <string>
 #include <vector>
@@ -18,7 +17,8 @@ struct PlotPoint {
 
 struct PlotSeries {
   std::string name;
-  std::vector<PlotPoint> points;
+  std::string color;  // "#rrggbb"
+  std::vector<PlotPoint> points = {};
   bool line = false;  // draw a line through the points, in their order
   bool marks = true;  // draw a mark at each point
 };
@@ -31,20 +31,19 @@ struct ScatterPlot {
   std::vector<std::string> notes;  // what could not be drawn, one line for each
 };
 
-// Bars of stacked parts, one bar per category.
+// Bars of stacked parts, one bar per category. Negative values are stacked on the other side of zero.
 struct BarPlot {
   struct Part {
     std::string name;
+    std::string color;           // "#rrggbb"
     std::vector<double> values;  // one per category
   };
   std::string name, title, y_label;
-  std::vector<std::string> categories;
-  std::vector<Part> parts;
+  std::vector<std::string> categories = {};
+  std::vector<Part> parts = {};
+  std::string mark_name = {};      // what `marks` are
+  std::vector<double> marks = {};  // a mark on each bar; empty: none
 };
-
-// The colours of series and parts, in this order: Tableau's ten colours, which most people can tell apart, then lighter
-// versions of them.
-extern const std::array<const char*, 20> kPlotColors;
 
 // Memory (bytes of the framebuffer and of the A-buffer at its peak, per pixel) against EMR. MSAA is a line through the
 // rungs of its ladder. Throws ReportError if no technique has an EMR.
@@ -58,9 +57,16 @@ ScatterPlot storage_plot(const std::vector<ReportFile>& reports);
 // wall times of the simulator. Throws ReportError if no technique has an error and such a time.
 ScatterPlot speed_plot(const std::vector<ReportFile>& reports, const std::string& implementation = "");
 
-// Megabytes per frame by stage, one bar per technique. `key` is "logical_bytes", "sector_bytes" or "dram_bytes".
-// Nothing if the report's stages do not have this key.
+// Modelled milliseconds per frame by stage, one bar per technique, with a mark where all stages at once would end.
+// `implementation`: one of the report's.
+BarPlot time_plot(const ReportFile& report, const std::string& implementation);
+
+// Megabytes per frame by stage, one bar per technique. `key` is "logical_bytes", "sector_bytes", "l2_bytes" or
+// "dram_bytes". Nothing if the report's stages do not have this key.
 std::optional<BarPlot> bytes_plot(const ReportFile& report, const std::string& key);
+
+// The mean square error of each technique by cause, in percent, one bar per technique. Nothing if the report has none.
+std::optional<BarPlot> causes_plot(const ReportFile& report);
 
 // One point per stage of a technique. If the report has modelled hardware: operations per DRAM byte against operations
 // per second, under a roof that the hardware's issue rate and DRAM rate form. Otherwise operations per logical byte

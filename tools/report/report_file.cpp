@@ -42,7 +42,8 @@ TechniqueSummary mean_summary(const std::vector<TechniqueSummary>& of_one_techni
       overlap.push_back(summary.modelled_ms.at(implementation).overlap);
       sum.push_back(summary.modelled_ms.at(implementation).sum);
     }
-    mean_ms = {geometric_mean(overlap), geometric_mean(sum)};
+    mean_ms.overlap = geometric_mean(overlap);
+    mean_ms.sum = geometric_mean(sum);
   }
   mean.bytes_per_pixel = geometric_mean(bytes);
   mean.all_bytes_per_pixel = geometric_mean(all_bytes);
@@ -60,7 +61,20 @@ TechniqueSummary mean_summary(const std::vector<TechniqueSummary>& of_one_techni
   return mean;
 }
 
-// Adds the numbers in `other` to those under the same keys in `sum`.
+void add_ratios(Json& stage) {
+  const double bytes = stage.at("logical_bytes").get<double>();
+  const double issued = stage.value("lanes_issued", 0.0);
+  if (bytes > 0) stage["ops_per_byte"] = stage.at("ops").at("total").get<double>() / bytes;
+  if (issued > 0) stage["lane_use"] = stage.value("lanes_used", 0.0) / issued;
+}
+
+// Adds a unit to a list with commas, unless it is in it.
+void add_unit(std::string& units, const std::string& unit) {
+  if ((", " + units + ",").find(", " + unit + ",") == units.npos) units += (units.empty() ? "" : ", ") + unit;
+}
+
+}  // namespace
+
 void add_numbers(Json& sum, const Json& other) {
   if (sum.is_null()) sum = Json::object();
   for (const auto& [key, value] : other.members()) {
@@ -76,16 +90,17 @@ void add_numbers(Json& sum, const Json& other) {
   }
 }
 
-void add_derived(Json& stage) {
-  const std::uint64_t bytes =
-      stage.at("bytes_read").get<std::uint64_t>() + stage.at("bytes_written").get<std::uint64_t>();
-  const double issued = stage.value("lanes_issued", 0.0);
-  stage["logical_bytes"] = bytes;
-  if (bytes > 0) stage["ops_per_byte"] = stage.at("ops").at("total").get<double>() / static_cast<double>(bytes);
-  if (issued > 0) stage["lane_use"] = stage.value("lanes_used", 0.0) / issued;
+void divide_numbers(Json& sum, std::uint64_t count) {
+  for (auto& [key, value] : sum.members()) {
+    if (value.is_object()) {
+      divide_numbers(value, count);
+    } else if (value.is_unsigned() && value.get<std::uint64_t>() % count == 0) {
+      value = value.get<std::uint64_t>() / count;
+    } else if (value.is_number()) {
+      value = value.get<double>() / static_cast<double>(count);
+    }
+  }
 }
-
-}  // namespace
 
 std::optional<EquivalentMsaa> read_emr(const Json& json) {
   const Json* samples = json.find("equivalent_msaa");
@@ -94,11 +109,16 @@ std::optional<EquivalentMsaa> read_emr(const Json& json) {
                         json.value("equivalent_msaa_is_upper_bound", false)};
 }
 
+std::string bound_text(const EquivalentMsaa& emr) {
+  return emr.is_lower_bound ? "at least" : emr.is_upper_bound ? "at most" : "exact";
+}
+
 TechniqueSummary read_summary(const Json& result) {
   TechniqueSummary summary;
   summary.spec = result.at("technique").get<std::string>();
   summary.bytes_per_pixel = result.at("peak_bytes_per_pixel").get<double>();
-  summary.all_bytes_per_pixel = summary.bytes_per_pixel + result.value("on_chip_bytes_per_pixel", 0.0);
+  summary.on_chip_bytes_per_pixel = result.value("on_chip_bytes_per_pixel", 0.0);
+  summary.all_bytes_per_pixel = summary.bytes_per_pixel + summary.on_chip_bytes_per_pixel;
   std::vector<double> medians;
   const std::vector<Json>& frames = result.at("frames").elements();
   if (frames.empty())
@@ -107,17 +127,31 @@ TechniqueSummary read_summary(const Json& result) {
   summary.wall_ms = wall_time(std::move(medians)).median;
   for (const Json& frame : frames) {
     const auto count = static_cast<double>(frames.size());
+    summary.bin_pixels = std::max(summary.bin_pixels, frame.value("bin_pixels", std::uint64_t{0}));
     summary.dram_bytes += frame.value("dram_bytes", 0.0) / count;
     const Json times = frame.value("modelled_ms", Json::object());
     for (const auto& [implementation, time] : times.members()) {
       ModelledMs& mean = summary.modelled_ms[implementation];
       mean.overlap += time.at("overlap").get<double>() / count;
       mean.sum += time.at("sum").get<double>() / count;
+      add_unit(mean.busiest, time.value("busiest", std::string()));
     }
   }
   if (const Json* error = result.find("error")) summary.rmse = error->at("rmse").get<double>();
   summary.emr = read_emr(result);
   return summary;
+}
+
+std::vector<std::string> implementations_of(const ReportFile& report) {
+  std::vector<std::string> names;
+  const auto& modelled = report.techniques.front().modelled_ms;
+  const auto add = [&](const std::string& name) {
+    if (modelled.contains(name) && std::find(names.begin(), names.end(), name) == names.end()) names.push_back(name);
+  };
+  if (const Json* const hardware = report.json.find("hardware"))
+    for (const auto& [name, units] : hardware->at("implementations").members()) add(name);
+  for (const auto& [name, ms] : modelled) add(name);
+  return names;
 }
 
 std::vector<Json> stage_records(const ReportFile& report) {
@@ -129,9 +163,11 @@ std::vector<Json> stage_records(const ReportFile& report) {
       for (std::size_t i = 0; i < stages.size(); ++i) add_numbers(stages[i], frame.at("stages").at(i));
     }
     for (Json& stage : stages) {
-      add_derived(stage);
+      stage["logical_bytes"] =
+          stage.at("bytes_read").get<std::uint64_t>() + stage.at("bytes_written").get<std::uint64_t>();
+      divide_numbers(stage, frames.size());
+      add_ratios(stage);
       stage["technique"] = result.at("technique");
-      stage["frames"] = frames.size();
       records.push_back(std::move(stage));
     }
   }

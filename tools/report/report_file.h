@@ -31,14 +31,17 @@ auto read_from_report(const std::filesystem::path& folder, const Read& read) {
 // Modelled milliseconds per frame (the mean over the frames): with all stages at once, and one after the other.
 struct ModelledMs {
   double overlap = 0, sum = 0;
+  std::string busiest;  // the unit that limits `overlap`; several, with commas, if they differ from frame to frame
 };
 
 // Cost and error of one technique, over all frames of a report.
 struct TechniqueSummary {
   std::string spec;
-  double bytes_per_pixel = 0;      // framebuffer, and A-buffer at its peak
-  double all_bytes_per_pixel = 0;  // and what a bin has on chip
-  double wall_ms = 0;              // per frame: the median of the frames' medians
+  double bytes_per_pixel = 0;          // framebuffer, and A-buffer at its peak
+  double on_chip_bytes_per_pixel = 0;  // all buffers that a bin has on chip, at their peaks
+  double all_bytes_per_pixel = 0;      // both
+  std::uint64_t bin_pixels = 0;        // of the largest bin
+  double wall_ms = 0;                  // per frame: the median of the frames' medians
   // By implementation of the modelled hardware. Empty if nothing was modelled.
   std::map<std::string, ModelledMs> modelled_ms;
   double dram_bytes = 0;              // per frame: the mean over the frames
@@ -58,13 +61,27 @@ struct ReportFile {
 // JsonError if it is something else.
 std::optional<EquivalentMsaa> read_emr(const Json& json);
 
+// "exact", "at least" or "at most".
+std::string bound_text(const EquivalentMsaa& emr);
+
 // Summarises one element of the report's "results". Throws JsonError if it is something else.
 TechniqueSummary read_summary(const Json& result);
 
-// One object for each technique and stage, in their order: the numbers in "stages" summed over the frames, and these
-// keys: "technique", "frames" (their number), "logical_bytes" (read and written), "ops_per_byte" (operations per
-// logical byte) and "lane_use". The last two are missing if they would divide by zero.
+// The ways of building the pipeline whose times are modelled, in the order of the hardware's description, and then
+// those of further hardware. Empty if nothing was modelled.
+std::vector<std::string> implementations_of(const ReportFile& report);
+
+// One object for each technique and stage, in their order: the means over the frames of the numbers in "stages", and
+// these keys: "technique", "logical_bytes" (read and written), "ops_per_byte" (operations per logical byte) and
+// "lane_use". The last two are missing if they would divide by zero. The sums over a technique's stages are the means
+// over its frames.
 std::vector<Json> stage_records(const ReportFile& report);
+
+// Adds the numbers in the object `other`, and in the objects in it, to those under the same keys in `sum`.
+void add_numbers(Json& sum, const Json& other);
+
+// Divides the numbers in the object by `count`. Whole numbers stay whole if they can.
+void divide_numbers(Json& sum, std::uint64_t count);
 
 // Reads FOLDER/report.json. Throws ReportError, or TraceError if the file is not JSON.
 ReportFile read_report(const std::filesystem::path& folder);

@@ -56,6 +56,11 @@ Json to_json(const TechniqueReport& result, const Report& report) {
   return json;
 }
 
+Json to_json(const FrameContent& frame) {
+  return {{"index", frame.index},         {"width", frame.width}, {"height", frame.height},
+          {"triangles", frame.triangles}, {"draws", frame.draws}, {"lights", frame.lights}};
+}
+
 Json to_json(const CacheParameters& cache) {
   return {{"bytes", cache.bytes}, {"ways", cache.ways}, {"line_bytes", cache.line_bytes}};
 }
@@ -81,6 +86,11 @@ Json to_json(const Report& report) {
   if (!report.made_by.is_null()) json["made_by"] = report.made_by;
   if (!report.hardware.implementations.empty()) json["hardware"] = report.hardware.json;
   for (const Hardware& each : report.more_hardware) json["more_hardware"][each.label] = each.json;
+  if (!report.frames.empty()) {
+    json["trace_frames"] = report.trace_frames;
+    json["frames"] = Json::array();
+    for (const FrameContent& frame : report.frames) json["frames"].push_back(to_json(frame));
+  }
   if (!report.msaa_ladder.empty()) json["msaa_ladder"] = to_json(report.msaa_ladder);
   if (!report.visibility_ladder.empty()) json["visibility_msaa_ladder"] = to_json(report.visibility_ladder);
   if (!report.notes.empty()) json["notes"] = beampipe::to_json(report.notes);

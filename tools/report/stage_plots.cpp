@@ -1,8 +1,10 @@
 // The plots of the cost of stages.
 
 #include <algorithm>
+#include <functional>
 
 #include "tools/evaluate/results.h"
+#include "tools/report/colors.h"
 #include "tools/report/plot.h"
 
 namespace beampipe {
@@ -10,13 +12,29 @@ namespace {
 
 constexpr double kMega = 1e6;
 
-// The part of that name. If there is none, adds one that is 0 everywhere.
-BarPlot::Part& part_named(BarPlot& plot, const std::string& name) {
+// The part of that name. If there is none, adds one in this colour that is 0 everywhere.
+BarPlot::Part& part_named(BarPlot& plot, const std::string& name, const std::string& color) {
   const auto is_it = [&](const BarPlot::Part& part) { return part.name == name; };
   const auto found = std::find_if(plot.parts.begin(), plot.parts.end(), is_it);
   if (found != plot.parts.end()) return *found;
-  plot.parts.push_back({name, std::vector<double>(plot.categories.size())});
+  plot.parts.push_back({name, color, std::vector<double>(plot.categories.size())});
   return plot.parts.back();
+}
+
+// A bar for each technique, with a part for each stage for which `value` has one.
+BarPlot bars_of_stages(const ReportFile& report, BarPlot plot,
+                       const std::function<std::optional<double>(const Json& stage)>& value) {
+  for (const TechniqueSummary& summary : report.techniques) plot.categories.push_back(summary.spec);
+  for (const Json& stage : stage_records(report)) {
+    const auto bar =
+        std::find(plot.categories.begin(), plot.categories.end(), stage.at("technique").get<std::string>());
+    const std::optional<double> amount = value(stage);
+    if (!amount || bar == plot.categories.end()) continue;
+    const std::string name = stage.at("stage").get<std::string>();
+    part_named(plot, name, stage_color(name)).values[static_cast<std::size_t>(bar - plot.categories.begin())] +=
+        *amount;
+  }
+  return plot;
 }
 
 // The highest rates of the modelled hardware.
@@ -46,7 +64,7 @@ PlotSeries roof_line(const Roof& roof, const ScatterPlot& plot) {
     left = std::min(left, series.points.front().x);
     right = std::max(right, series.points.front().x);
   }
-  PlotSeries line{"roof: DRAM, then issue", {}, true, false};
+  PlotSeries line{"roof: DRAM, then issue", "#888888", {}, true, false};
   for (const double x : {left / 2, ridge, right * 2}) {
     line.points.push_back({x, std::min(roof.operations, x * roof.dram_bytes), ""});
   }
@@ -55,18 +73,44 @@ PlotSeries roof_line(const Roof& roof, const ScatterPlot& plot) {
 
 }  // namespace
 
+BarPlot time_plot(const ReportFile& report, const std::string& implementation) {
+  BarPlot plot = bars_of_stages(report,
+                                {"time_" + implementation, "Modelled time by stage: " + report.scene,
+                                 "modelled time (" + implementation + "), one stage after the other, ms per frame"},
+                                [&](const Json& stage) -> std::optional<double> {
+                                  const Json* const times = stage.find("modelled_ms");
+                                  return times ? std::optional(times->at(implementation).get<double>()) : std::nullopt;
+                                });
+  plot.mark_name = "all stages at once";
+  for (const TechniqueSummary& summary : report.techniques)
+    plot.marks.push_back(summary.modelled_ms.at(implementation).overlap);
+  return plot;
+}
+
 std::optional<BarPlot> bytes_plot(const ReportFile& report, const std::string& key) {
-  const std::string kind = key.substr(0, key.find('_'));
-  BarPlot plot{kind + "_bytes", "Memory traffic by stage: " + report.scene, kind + " bytes, MB per frame", {}, {}};
-  for (const TechniqueSummary& summary : report.techniques) plot.categories.push_back(summary.spec);
-  for (const Json& stage : stage_records(report)) {
-    const auto bar =
-        std::find(plot.categories.begin(), plot.categories.end(), stage.at("technique").get<std::string>());
-    if (!stage.contains(key) || bar == plot.categories.end()) continue;
-    part_named(plot, stage.at("stage").get<std::string>())
-        .values[static_cast<std::size_t>(bar - plot.categories.begin())] +=
-        stage.at(key).get<double>() / stage.at("frames").get<double>() / kMega;
+  const std::string kind = key.substr(0, key.find('_')), label = kind == "dram" ? "DRAM" : kind == "l2" ? "L2" : kind;
+  BarPlot plot = bars_of_stages(
+      report, {kind + "_bytes", "Memory traffic by stage: " + report.scene, label + " bytes, MB per frame"},
+      [&](const Json& stage) -> std::optional<double> {
+        const Json* const bytes = stage.find(key);
+        return bytes ? std::optional(bytes->get<double>() / kMega) : std::nullopt;
+      });
+  if (plot.parts.empty()) return std::nullopt;
+  return plot;
+}
+
+std::optional<BarPlot> causes_plot(const ReportFile& report) {
+  BarPlot plot{"causes", "Error by cause: " + report.scene, "part of the mean square error, percent"};
+  std::vector<const Json*> found;
+  for (const Json& result : report.json.at("results").elements()) {
+    const Json* const causes = result.find("error_causes");
+    if (!causes) continue;
+    plot.categories.push_back(result.at("technique").get<std::string>());
+    found.push_back(causes);
   }
+  for (std::size_t i = 0; i < found.size(); ++i)
+    for (const auto& [cause, part] : found[i]->members())
+      part_named(plot, cause, cause_color(cause)).values[i] = 100 * part.get<double>();
   if (plot.parts.empty()) return std::nullopt;
   return plot;
 }
@@ -88,8 +132,8 @@ ScatterPlot roofline_plot(const ReportFile& report, const std::string& technique
                  bytes = stage.at(roof ? "dram_bytes" : "logical_bytes").get<double>();
     const double ms = roof ? stage.at("modelled_ms").at(roof->implementation).get<double>() : 1;
     if (ops > 0 && bytes > 0 && ms > 0) {
-      const double height = roof ? ops / ms / 1e6 : ops / stage.at("frames").get<double>() / kMega;
-      plot.series.push_back({name, {{ops / bytes, height, name}}});
+      const double height = roof ? ops / ms / 1e6 : ops / kMega;
+      plot.series.push_back({name, stage_color(name), {{ops / bytes, height, name}}});
     } else {
       left_out += (left_out.empty() ? "" : ", ") + name;
     }

@@ -15,57 +15,80 @@ struct Source {
   std::string pointer;  // the keys to the value in a row's record, each after a "/"
 };
 
+// Views of the tables of techniques and frames, stages, and claims.
+constexpr const char *kAccuracy = "accuracy", *kMemory = "memory", *kTime = "time";
+constexpr const char *kItems = "items", *kOperations = "operations", *kBytes = "bytes", *kTexels = "texels";
+constexpr const char *kNumbers = "numbers", *kSources = "sources";
+
 const std::vector<Source> kTechniqueColumns = {
     {{"technique", "technique", "", "The technique's spec, as `beampipe run -t` takes it."}, "/technique"},
     {{"rmse", "RMSE", "linear light, 0..1",
-      "Root mean square error against the reference, over R, G and B of all pixels."},
+      "Root mean square error against the reference, over R, G and B of all pixels.", kAccuracy},
      "/error/rmse"},
     {{"emr", "EMR", "samples per pixel",
-      "Equivalent MSAA rate: the number N at which msaa:N has the same RMSE on the same frames."},
+      "Equivalent MSAA rate: the number N at which msaa:N has the same RMSE on the same frames.", kAccuracy},
      "/equivalent_msaa"},
     {{"emr_bound", "EMR is", "",
       "Whether the EMR is exact or a bound: at least that of the best rung of the MSAA ladder, or at most that of the "
-      "worst."},
+      "worst.",
+      kAccuracy},
      "/emr_bound"},
     {{"visibility_rmse", "visibility", "linear light, 0..1",
       "Root mean square error in visibility, where surfaces vary: against the reference, with one colour for a "
       "triangle "
-      "in a pixel in both pictures."},
+      "in a pixel in both pictures.",
+      kAccuracy},
      "/visibility/rmse"},
     {{"visibility_emr", "EMR of visibility", "samples per pixel",
-      "Equivalent MSAA rate for visibility alone: the number N at which msaa:N has the same error in visibility."},
+      "Equivalent MSAA rate for visibility alone: the number N at which msaa:N has the same error in visibility.",
+      kAccuracy},
      "/visibility/equivalent_msaa"},
-    {{"visibility_emr_bound", "EMR of visibility is", "", "Whether this EMR is exact or a bound."},
+    {{"visibility_emr_bound", "EMR of visibility is", "", "Whether this EMR is exact or a bound.", kAccuracy},
      "/visibility/emr_bound"},
     {{"shading_rmse", "shading", "linear light, 0..1",
-      "Root mean square error in shading, where surfaces vary: what the error has beyond that in visibility."},
+      "Root mean square error in shading, where surfaces vary: what the error has beyond that in visibility.",
+      kAccuracy},
      "/shading/rmse"},
     {{"framebuffer_bytes_per_pixel", "framebuffer", "bytes per pixel",
-      "Size of the technique's framebuffer per pixel, all surfaces together."},
+      "Size of the technique's framebuffer per pixel, all surfaces together.", kMemory},
      "/framebuffer_bytes_per_pixel"},
     {{"peak_bytes_per_pixel", "with A-buffer", "bytes per pixel",
-      "Size of framebuffer and A-buffer per pixel, in the frame where the A-buffer is largest."},
+      "Size of framebuffer and A-buffer per pixel, in the frame where the A-buffer is largest.", kMemory},
      "/peak_bytes_per_pixel"},
     {{"msaa_bytes_per_pixel", "as MSAA", "bytes per pixel",
-      "Size per pixel of MSAA with the same error: EMR times the bytes of msaa:1."},
+      "Size per pixel of MSAA with the same error: EMR times the bytes of msaa:1.", kMemory},
      "/msaa_bytes_per_pixel"},
     {{"a_buffer_peak_bytes", "A-buffer", "bytes",
-      "The largest size of the A-buffer at any time of a frame; 0 if there is none."},
+      "The largest size of the A-buffer at any time of a frame; 0 if there is none.", kMemory},
      "/a_buffer_peak_bytes"},
+    {{"on_chip_bytes_per_pixel", "on chip", "bytes per pixel",
+      "All buffers that a bin has on chip, at their peaks, over the pixels of the largest bin.", kMemory},
+     "/on_chip_bytes_per_pixel"},
+    {{"logical_bytes", "logical", "bytes per frame",
+      "Bytes that all stages read and write, counted at every access: the mean over the frames.", kMemory},
+     "/logical_bytes"},
+    {{"sector_bytes", "sectors", "bytes per frame",
+      "Bytes that all stages request from the memory system, in sectors: the mean over the frames.", kMemory},
+     "/sector_bytes"},
+    {{"l2_bytes", "L2", "bytes per frame", "Bytes requested from L2: the mean over the frames.", kMemory}, "/l2_bytes"},
     {{"dram_bytes", "DRAM", "bytes per frame",
-      "Bytes that move between the modelled caches and DRAM, in either direction: the mean over the frames."},
+      "Bytes that move between the modelled caches and DRAM, in either direction: the mean over the frames.", kMemory},
      "/dram_bytes"},
     {{"wall_ms", "wall time", "ms per frame",
       "The time of the simulator on the machine that ran it, which says nothing about hardware: the median over the "
-      "frames. If each frame was run only once, this includes the time for modelling memory."},
+      "frames. If each frame was run only once, this includes the time for modelling memory.",
+      kTime},
      "/wall_ms"},
     {{"flicker", "flicker", "linear light, 0..1",
       "Root mean square, over pixels, of the change of the error from one frame to the next, pooled over all frames "
-      "except the first."},
+      "except the first.",
+      kAccuracy},
      "/flicker"},
-    {{"bias", "bias", "linear light, 0..1", "Mean signed error over R, G and B of all pixels."}, "/error/bias"},
-    {{"p99", "p99", "linear light, 0..1", "The absolute error that 99 % of all values do not exceed."}, "/error/p99"},
-    {{"max", "max", "linear light, 0..1", "The largest absolute error."}, "/error/max"},
+    {{"bias", "bias", "linear light, 0..1", "Mean signed error over R, G and B of all pixels.", kAccuracy},
+     "/error/bias"},
+    {{"p99", "p99", "linear light, 0..1", "The absolute error that 99 % of all values do not exceed.", kAccuracy},
+     "/error/p99"},
+    {{"max", "max", "linear light, 0..1", "The largest absolute error.", kAccuracy}, "/error/max"},
 };
 
 const std::vector<Source> kSurfaceColumns = {
@@ -74,6 +97,13 @@ const std::vector<Source> kSurfaceColumns = {
     {{"format", "format", "", "What is stored per pixel; \"x N\" means N times."}, "/format"},
     {{"bytes_per_pixel", "bytes/pixel", "bytes", "Size of this surface per pixel."}, "/bytes_per_pixel"},
 };
+
+const char* view_of(const CounterInfo& counter) {
+  const std::string_view name = counter.name;
+  if (name.starts_with("ops.")) return kOperations;
+  if (name.starts_with("texture_")) return kTexels;
+  return std::string_view(counter.unit) == "bytes" ? kBytes : kItems;
+}
 
 // The counters of the registry, two ratios, and modelled times.
 std::vector<Source> stage_columns(const ReportFile& report) {
@@ -85,66 +115,80 @@ std::vector<Source> stage_columns(const ReportFile& report) {
     std::replace(pointer.begin(), pointer.end(), '.', '/');
     if (const std::size_t dot = key.find('.'); dot != key.npos) key.erase(0, dot + 1);
     columns.push_back(
-        {{key == "total" ? "ops" : key, counter.title, counter.unit, sentence(counter.meaning)}, pointer});
+        {{key == "total" ? "ops" : key, counter.title, counter.unit, sentence(counter.meaning), view_of(counter)},
+         pointer});
   }
-  columns.push_back({{"ops_per_byte", "op/byte", "operations per byte", "Operations per logical byte read or written."},
-                     "/ops_per_byte"});
-  columns.push_back({{"lane_use", "lane use", "part, 0..1", "Lanes with work, divided by lanes issued."}, "/lane_use"});
+  columns.push_back(
+      {{"ops_per_byte", "op/byte", "operations per byte", "Operations per logical byte read or written.", kOperations},
+       "/ops_per_byte"});
+  columns.push_back(
+      {{"lane_use", "lane use", "part, 0..1", "Lanes with work, divided by lanes issued.", kItems}, "/lane_use"});
   for (const auto& [implementation, ms] : report.techniques.front().modelled_ms)
-    columns.push_back({{"modelled_ms_" + implementation, "modelled, " + implementation, "ms",
-                        "Time that the modelled hardware takes for this stage, which is that of its busiest unit."},
-                       "/modelled_ms/" + implementation});
+    columns.push_back(
+        {{"modelled_ms_" + implementation, "modelled, " + implementation, "ms",
+          "Time that the modelled hardware takes for this stage, which is that of its busiest unit.", kTime},
+         "/modelled_ms/" + implementation});
   return columns;
 }
 
 const std::vector<Source> kFrameColumns = {
     {{"technique", "technique", "", "The technique's spec."}, "/technique"},
     {{"frame", "frame", "index", "The frame's index in the trace; the first is 0."}, "/index"},
-    {{"wall_ms", "wall time", "ms", "Median time of the runs of this frame."}, "/wall_ms/median"},
-    {{"wall_ms_min", "fastest", "ms", "Time of the fastest run of this frame."}, "/wall_ms/min"},
-    {{"wall_ms_max", "slowest", "ms", "Time of the slowest run of this frame."}, "/wall_ms/max"},
-    {{"runs", "runs", "runs", "Number of timed runs of this frame."}, "/wall_ms/runs"},
+    {{"wall_ms", "wall time", "ms", "Median time of the runs of this frame.", kTime}, "/wall_ms/median"},
+    {{"wall_ms_min", "fastest", "ms", "Time of the fastest run of this frame.", kTime}, "/wall_ms/min"},
+    {{"wall_ms_max", "slowest", "ms", "Time of the slowest run of this frame.", kTime}, "/wall_ms/max"},
+    {{"runs", "runs", "runs", "Number of timed runs of this frame.", kTime}, "/wall_ms/runs"},
     {{"modelling_ms", "with memory model", "ms",
       "Time of the additional run that modelled caches and DRAM and gave the counts. If there is none, the wall time "
-      "includes the modelling."},
+      "includes the modelling.",
+      kTime},
      "/wall_ms/modelling_run"},
-    {{"a_buffer_peak_bytes", "A-buffer", "bytes", "The largest size of the A-buffer."}, "/a_buffer_peak_bytes"},
-    {{"logical_bytes", "logical", "bytes", "Bytes that all stages read and write, counted at every access."},
+    {{"a_buffer_peak_bytes", "A-buffer", "bytes", "The largest size of the A-buffer.", kMemory},
+     "/a_buffer_peak_bytes"},
+    {{"logical_bytes", "logical", "bytes", "Bytes that all stages read and write, counted at every access.", kMemory},
      "/logical_bytes"},
     {{"sector_bytes", "sectors", "bytes",
-      "Bytes that all stages request from the memory system, in sectors of 32 bytes."},
+      "Bytes that all stages request from the memory system, in sectors of 32 bytes.", kMemory},
      "/sector_bytes"},
     {{"l2_bytes", "L2", "bytes",
-      "Bytes requested from L2, in sectors: what the caches closer to the stages miss or write back."},
+      "Bytes requested from L2, in sectors: what the caches closer to the stages miss or write back.", kMemory},
      "/l2_bytes"},
-    {{"dram_bytes", "DRAM", "bytes", "Bytes that move between the modelled caches and DRAM, in either direction."},
+    {{"dram_bytes", "DRAM", "bytes", "Bytes that move between the modelled caches and DRAM, in either direction.",
+      kMemory},
      "/dram_bytes"},
-    {{"rmse", "RMSE", "linear light, 0..1", "Root mean square error of this frame."}, "/error/rmse"},
-    {{"visibility_rmse", "visibility", "linear light, 0..1", "Root mean square error in visibility of this frame."},
+    {{"rmse", "RMSE", "linear light, 0..1", "Root mean square error of this frame.", kAccuracy}, "/error/rmse"},
+    {{"visibility_rmse", "visibility", "linear light, 0..1", "Root mean square error in visibility of this frame.",
+      kAccuracy},
      "/visibility/rmse"},
-    {{"shading_rmse", "shading", "linear light, 0..1", "Root mean square error in shading of this frame."},
+    {{"shading_rmse", "shading", "linear light, 0..1", "Root mean square error in shading of this frame.", kAccuracy},
      "/shading/rmse"},
-    {{"bias", "bias", "linear light, 0..1", "Mean signed error of this frame."}, "/error/bias"},
-    {{"flicker", "flicker", "linear light, 0..1", "Root mean square change of the error since the previous frame."},
+    {{"bias", "bias", "linear light, 0..1", "Mean signed error of this frame.", kAccuracy}, "/error/bias"},
+    {{"flicker", "flicker", "linear light, 0..1", "Root mean square change of the error since the previous frame.",
+      kAccuracy},
      "/flicker"},
 };
 
 const std::vector<Source> kClaimColumns = {
     {{"claim", "claim", "", "What a publication says about a technique."}, "/name"},
-    {{"unit", "unit", "", "The unit of the claim's numbers."}, "/unit"},
-    {{"published_low", "published", "see unit", "The published number, or the lower end of the published range."},
+    {{"unit", "unit", "", "The unit of the claim's numbers.", kNumbers}, "/unit"},
+    {{"published_low", "published", "see unit", "The published number, or the lower end of the published range.",
+      kNumbers},
      "/published_low"},
-    {{"published_high", "up to", "see unit", "The upper end of the published range; a dash means \"or more\"."},
+    {{"published_high", "up to", "see unit", "The upper end of the published range; a dash means \"or more\".",
+      kNumbers},
      "/published_high"},
     {{"ours", "ours", "see unit",
-      "The number in this report. `beampipe claims` also lists the claims that this report has no number for."},
+      "The number in this report. `beampipe claims` also lists the claims that this report has no number for.",
+      kNumbers},
      "/ours"},
-    {{"difference", "difference", "see unit", "Ours minus the nearer end of the published range; 0 within the range."},
+    {{"difference", "difference", "see unit", "Ours minus the nearer end of the published range; 0 within the range.",
+      kNumbers},
      "/difference"},
-    {{"kind", "kind", "", "Rendered, or true by definition: a format or a constant of the program."}, "/kind"},
-    {{"source", "source", "", "The place of the claim in the publication."}, "/source"},
-    {{"beside", "what ours is", "", "What our number is, if it is not the same quantity."}, "/beside"},
-    {{"command", "command", "", "The command that finds our number."}, "/command"},
+    {{"kind", "kind", "", "Rendered, or true by definition: a format or a constant of the program.", kSources},
+     "/kind"},
+    {{"source", "source", "", "The place of the claim in the publication.", kSources}, "/source"},
+    {{"beside", "what ours is", "", "What our number is, if it is not the same quantity.", kNumbers}, "/beside"},
+    {{"command", "command", "", "The command that finds our number.", kSources}, "/command"},
 };
 
 // The value at a path of keys, each after a "/". Null if one of them is missing.
@@ -159,9 +203,9 @@ const Json* value_at(const Json& record, std::string_view pointer) {
 }
 
 // One row per record, one column per source that any record has.
-Table make_table(const std::string& name, const std::string& title, const std::vector<Source>& sources,
-                 const std::vector<Json>& records) {
-  Table table{name, title, {}, std::vector<std::vector<Json>>(records.size())};
+Table make_table(const std::string& name, const std::string& title, const std::string& note,
+                 const std::vector<Source>& sources, const std::vector<Json>& records) {
+  Table table{name, title, note, {}, std::vector<std::vector<Json>>(records.size())};
   for (const Source& source : sources) {
     const auto has_it = [&](const Json& record) { return value_at(record, source.pointer) != nullptr; };
     if (std::none_of(records.begin(), records.end(), has_it)) continue;
@@ -183,18 +227,26 @@ std::vector<Source> with_modelled_times(std::vector<Source> sources, const Repor
     const std::string key = "modelled_ms_" + implementation, pointer = "/modelled_ms/" + implementation;
     const std::string title = "modelled, " + implementation + ", ";
     const Source overlap = {{key + "_overlap", title + "overlap", unit,
-                             "Modelled time if all stages run at once: the time of the busiest unit."},
+                             "Modelled time if all stages run at once: the time of the busiest unit.", kTime},
                             pointer + "/overlap"};
     const Source sum = {{key + "_sum", title + "sum", unit,
-                         "Modelled time if the stages run one after the other: the sum of their times."},
+                         "Modelled time if the stages run one after the other: the sum of their times.", kTime},
                         pointer + "/sum"};
     place = std::next(sources.insert(std::next(place), {overlap, sum}));
   }
   return sources;
 }
 
-std::string bound_text(const EquivalentMsaa& emr) {
-  return emr.is_lower_bound ? "at least" : emr.is_upper_bound ? "at most" : "exact";
+// Nothing if a frame does not have the number.
+std::optional<double> mean_of_frames(const Json& result, std::string_view key) {
+  double sum = 0;
+  const std::vector<Json>& frames = result.at("frames").elements();
+  for (const Json& frame : frames) {
+    const Json* const number = frame.find(key);
+    if (!number) return std::nullopt;
+    sum += number->get<double>();
+  }
+  return sum / static_cast<double>(frames.size());
 }
 
 std::vector<Json> technique_records(const ReportFile& report) {
@@ -204,7 +256,10 @@ std::vector<Json> technique_records(const ReportFile& report) {
     Json record = result;
     const TechniqueSummary summary = read_summary(result);
     record["wall_ms"] = summary.wall_ms;
-    if (summary.dram_bytes > 0) record["dram_bytes"] = summary.dram_bytes;  // otherwise no memory was modelled
+    if (summary.dram_bytes > 0) {  // otherwise no memory was modelled
+      for (const char* key : {"logical_bytes", "sector_bytes", "l2_bytes", "dram_bytes"})
+        if (const std::optional<double> mean = mean_of_frames(result, key)) record[key] = *mean;
+    }
     for (const auto& [implementation, ms] : summary.modelled_ms)
       record["modelled_ms"][implementation] = {{"overlap", ms.overlap}, {"sum", ms.sum}};
     if (const Json* visibility = result.find("visibility"))
@@ -230,18 +285,26 @@ std::vector<Json> members(const Json& results, const std::string& key) {
   return records;
 }
 
-// The work that each technique saved, over all frames.
+// The work that each technique saved in a frame.
 std::vector<Json> saved_records(const Json& results) {
   std::vector<Json> records;
   for (const Json& result : results.elements()) {
-    Json record = {{"technique", result.at("technique")}};
-    for (const Json& frame : result.at("frames").elements()) {
-      const Json saved = frame.value("saved", Json::object());
-      for (const auto& [name, amount] : saved.members())
-        record[name] = record.value(name, std::uint64_t{0}) + amount.get<std::uint64_t>();
-    }
-    if (record.size() > 1) records.push_back(std::move(record));
+    Json record = Json::object();
+    for (const Json& frame : result.at("frames").elements()) add_numbers(record, frame.value("saved", Json::object()));
+    if (record.size() == 0) continue;
+    divide_numbers(record, result.at("frames").size());
+    record["technique"] = result.at("technique");
+    records.push_back(std::move(record));
   }
+  return records;
+}
+
+// The published figures about this trace. Those that are true by definition are about the program.
+std::vector<Json> claim_records(const Json& report) {
+  std::vector<Json> records;
+  const Json claims = report.value("claims", Json::array());
+  for (const Json& claim : claims.elements())
+    if (claim.value("kind", std::string()) != "true by definition") records.push_back(claim);
   return records;
 }
 
@@ -269,21 +332,28 @@ std::string csv_field(const Json& value) {
 
 std::vector<Table> report_tables(const ReportFile& report) {
   const Json& results = report.json.at("results");
+  const std::vector<Json> frames = members(results, "frames");
+  const bool is_sequence = frames.size() > results.size();
+  const std::string mean = is_sequence ? "Means over the frames. " : "";
   std::vector<Table> tables;
-  tables.push_back(make_table("techniques", "Techniques",
+  tables.push_back(make_table("techniques", "Techniques", mean,
                               with_modelled_times(kTechniqueColumns, report, "ms per frame"),
                               technique_records(report)));
-  tables.push_back(make_table("framebuffer", "Framebuffers", kSurfaceColumns, members(results, "framebuffer")));
-  tables.push_back(make_table("stages", "Stages, all frames together", stage_columns(report), stage_records(report)));
+  tables.push_back(make_table("stages", "Stages",
+                              mean +
+                                  "Bytes and times add up to those of the technique, times to the sum and not to the "
+                                  "overlap.",
+                              stage_columns(report), stage_records(report)));
+  if (is_sequence)
+    tables.push_back(make_table("frames", "Frames", "", with_modelled_times(kFrameColumns, report, "ms"), frames));
   const std::vector<Json> saved = saved_records(results);
-  if (!saved.empty()) tables.push_back(make_table("saved", "Saved work, all frames together", saved_columns(), saved));
-  const std::vector<Json> frames = members(results, "frames");
-  if (frames.size() > results.size())
-    tables.push_back(make_table("frames", "Frames", with_modelled_times(kFrameColumns, report, "ms"), frames));
-  const Json* claims = report.json.find("claims");
-  if (claims && claims->size() > 0) {
-    tables.push_back(make_table("claims", "Claims of the publications", kClaimColumns, claims->elements()));
-  }
+  if (!saved.empty()) tables.push_back(make_table("saved", "Saved work", mean, saved_columns(), saved));
+  tables.push_back(make_table("framebuffer", "Framebuffers", "", kSurfaceColumns, members(results, "framebuffer")));
+  const std::vector<Json> claims = claim_records(report.json);
+  if (!claims.empty())
+    tables.push_back(make_table("claims", "Published figures about this trace",
+                                "`beampipe claims` lists all published figures, of other scenes too.", kClaimColumns,
+                                claims));
   return tables;
 }
 

@@ -14,17 +14,22 @@ struct Column {
   std::string title;       // on the page: "RMSE"
   std::string unit;        // "bytes"; empty for names
   std::string definition;  // one or two sentences
+  std::string view = {};   // the page shows the columns of one view at a time; empty: those that are always shown
 };
 
 struct Table {
   std::string name;   // for files: "techniques"
   std::string title;  // on the page
+  std::string note;   // what its numbers are
   std::vector<Column> columns;
   std::vector<std::vector<Json>> rows;  // one value per column: a number, a string or null
 };
 
 // The tables of techniques, of their framebuffers' surfaces, of stages, of saved work, of frames (if there are several)
-// and of claims (if there are any). A column for which the report has no value is left out. Throws JsonError.
+// and of the published figures about this trace (if there are any). All numbers are means over the frames, except those
+// of a single frame. So the sums of bytes and modelled times over a technique's stages are the numbers of the
+// technique, and its numbers are the means over its frames. A column for which the report has no value is left out.
+// Throws JsonError.
 std::vector<Table> report_tables(const ReportFile& report);
 
 // Makes a sentence of a definition of the registry of counters: a capital letter and a full stop.

@@ -4,6 +4,8 @@
 #include <memory>
 #include <stdexcept>
 
+#include "tools/files/shell_word.h"
+
 namespace beampipe {
 namespace {
 
@@ -36,12 +38,6 @@ std::string sbatch(const std::string& arguments) {
 }
 
 }  // namespace
-
-std::string shell_word(const std::string& text) {
-  std::string word = "'";
-  for (const char c : text) word += c == '\'' ? std::string("'\\''") : std::string(1, c);
-  return word + "'";
-}
 
 std::string array_text(const std::vector<std::size_t>& parts) {
   std::string text;

@@ -31,7 +31,4 @@ SlurmJobs submit(const SlurmRequest& request, OutputFolder& output);
 // "0-3,7": such as sbatch takes them.
 std::string array_text(const std::vector<std::size_t>& parts);
 
-// A word of a shell command that stands for this text.
-std::string shell_word(const std::string& text);
-
 }  // namespace beampipe

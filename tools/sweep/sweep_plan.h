@@ -8,14 +8,9 @@
 
 #include "pipeline/memory/parameters.h"
 #include "tools/evaluate/hardware.h"
+#include "tools/evaluate/picture_size.h"
 
 namespace beampipe {
-
-// In pixels; 0 x 0 stands for the size that each frame has.
-struct PictureSize {
-  std::uint32_t width = 0, height = 0;
-  bool operator==(const PictureSize&) const = default;
-};
 
 // What is rendered: one technique, one trace, one memory system. Indices into the plan's lists.
 struct SweepCell {

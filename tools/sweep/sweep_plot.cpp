@@ -5,6 +5,7 @@
 #include <map>
 #include <stdexcept>
 
+#include "tools/report/colors.h"
 #include "traces/closest_name.h"
 
 namespace beampipe {
@@ -95,7 +96,8 @@ ScatterPlot sweep_plot(const SweepTable& table, const PlotColumns& columns) {
       .series = {},
       .notes = {}};
   for (const std::string& name : names) {
-    PlotSeries& series = plot.series.emplace_back(PlotSeries{.name = name, .points = {}, .line = true});
+    PlotSeries& series =
+        plot.series.emplace_back(PlotSeries{.name = name, .color = color_at(plot.series.size()), .line = true});
     for (const auto& [at, logarithms] : lines[name])
       series.points.push_back({.x = at, .y = std::exp(logarithms.sum / logarithms.count), .label = ""});
     series.points.back().label = name;

@@ -79,6 +79,8 @@ std::vector<Column> cell_columns() {
                        }});
   columns.push_back({{"rmse", "", "error against the reference: root mean square of linear RGB; only with errors"},
                      [](const Cell& c) { return c.errors ? Json(c.errors->error.rmse) : Json(); }});
+  columns.push_back({{"bias", "", "mean of the picture minus that of the reference; only with errors"},
+                     [](const Cell& c) { return c.errors ? Json(c.errors->error.bias) : Json(); }});
   columns.push_back({{"emr", "samples", "equivalent MSAA rate; only with errors"},
                      [](const Cell& c) { return c.errors ? Json(c.errors->equivalent_msaa.samples) : Json(); }});
   columns.push_back({{"emr_bound", "", "lower or upper if that rate is only a bound", true}, [](const Cell& c) {

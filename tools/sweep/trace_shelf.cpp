@@ -12,10 +12,6 @@
 namespace beampipe {
 namespace {
 
-std::string text_of(const PictureSize& size) {
-  return std::to_string(size.width) + " x " + std::to_string(size.height);
-}
-
 std::uint64_t bytes_of(const Trace& trace) {
   std::uint64_t bytes = 0;
   for (const TextureImage& image : trace.images) bytes += image.texels.size() * sizeof image.texels[0];
@@ -23,11 +19,6 @@ std::uint64_t bytes_of(const Trace& trace) {
     bytes += mesh.positions.size() * (sizeof(glm::vec3) * 2 + sizeof(glm::vec4) * 2 + sizeof(glm::vec2) * 2) +
              mesh.triangles.size() * (sizeof(glm::uvec3) + sizeof(glm::vec3) + sizeof(std::uint32_t));
   return bytes;
-}
-
-bool has_viewport(const Frame& frame) {
-  return std::any_of(frame.draws.begin(), frame.draws.end(),
-                     [](const Draw& draw) { return draw.state.viewport || draw.state.scissor; });
 }
 
 std::vector<std::size_t> frames_of(const SweepPlan& plan, const Trace& trace, const std::string& name) {
@@ -43,20 +34,6 @@ std::vector<std::size_t> frames_of(const SweepPlan& plan, const Trace& trace, co
 }
 
 }  // namespace
-
-void resize(Trace& trace, const std::vector<std::size_t>& frames, const PictureSize& size, const std::string& name) {
-  if (size == PictureSize{}) return;
-  for (const std::size_t index : frames) {
-    Frame& frame = trace.frames[index];
-    const bool same_ratio = std::uint64_t{frame.width} * size.height == std::uint64_t{frame.height} * size.width;
-    if (trace.source || has_viewport(frame) || (!frame.camera && !same_ratio))
-      throw std::runtime_error(name + ": cannot be " + text_of(size) +
-                               " pixels: expected frames that name a camera, or have this ratio of width to height, "
-                               "without viewports and not captured");
-    frame.width = size.width, frame.height = size.height;
-    if (frame.camera) set_camera(frame, Camera(*frame.camera));
-  }
-}
 
 TraceShelf::Entry TraceShelf::look_at(Trace& trace, const PictureSize& size, const std::string& name) const {
   Entry entry;

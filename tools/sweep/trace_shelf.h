@@ -57,8 +57,4 @@ class TraceShelf {
   std::shared_ptr<const LoadedTrace> recent_;  // the next job is likely to want it too
 };
 
-// Gives these frames this size. Throws std::runtime_error, one line that starts with `name`, if a frame neither names
-// its camera nor has the same ratio of width to height, or if it was captured.
-void resize(Trace& trace, const std::vector<std::size_t>& frames, const PictureSize& size, const std::string& name);
-
 }  // namespace beampipe

@@ -6,6 +6,7 @@
 #include <algorithm>
 #include <filesystem>
 #include <fstream>
+#include <iterator>
 #include <limits>
 #include <map>
 #include <set>
@@ -15,6 +16,8 @@
 #include "tests/pipeline/test_traces.h"
 #include "tools/claims/our_figures.h"
 #include "tools/claims/published_figures.h"
+#include "tools/files/digest.h"
+#include "traces/scenes.h"
 
 namespace beampipe {
 namespace {
@@ -24,7 +27,7 @@ namespace {
 // A file with one group of one claim; `fields` are those of the claim, beside its name.
 std::string file_with(const std::string& fields, const std::string& topic = "design") {
   return R"({"beampipe_claims": 1, "publication": "A book", "groups": [{"topic": ")" + topic +
-         R"(", "source": "page 1", "unit": "ms", "command": "beampipe claims",
+         R"(", "source": "page 1", "unit": "ms", "trace": "0123456789abcdef", "command": "beampipe claims",
              "claims": [{"name": "a claim", )" +
          fields + "}]}]}";
 }
@@ -95,7 +98,67 @@ TEST(PublishedFigures, ErrorsNameThePlace) {
                   .starts_with("book.json: /groups/0/topic: expected one of"));
 }
 
+TEST(PublishedFigures, ThatNeedRenderingNameTheirTrace) {
+  EXPECT_EQ(parse_published_figures(file_with(R"("published": 4, "formula": "f")", "time"), "book.json").front().trace,
+            "0123456789abcdef");
+  std::string text = file_with(R"("published": 4, "formula": "f")", "time");
+  text.replace(text.find("\"trace\""), 7, "\"remark\"");
+  EXPECT_EQ(refusal(text), "book.json: /groups/0: expected the key \"trace\", found none");
+}
+
+// Splits at blanks.
+std::vector<std::string> words_of(const std::string& text) {
+  std::istringstream stream(text);
+  return {std::istream_iterator<std::string>(stream), {}};
+}
+
+// What the command `beampipe make SCENE OPTIONS -o FILE` makes.
+Trace trace_of_command(const std::string& command) {
+  const std::vector<std::string> words = words_of(command);
+  SceneOptions options;
+  std::uint32_t frames = 1;
+  for (std::size_t i = 3; words.at(i) != "-o"; i += 2) {
+    const auto value = static_cast<std::uint32_t>(std::stoul(words.at(i + 1)));
+    if (words[i] == "--width")
+      options.width = value;
+    else if (words[i] == "--height")
+      options.height = value;
+    else if (words[i] == "--triangles")
+      options.triangles = value;
+    else if (words[i] == "--frames")
+      frames = value;
+    else
+      throw std::runtime_error("what is " + words[i] + "?");
+  }
+  Trace trace = make_scene(words.at(2), options);
+  if (frames > 1) orbit_camera(trace, frames, 0);
+  return trace;
+}
+
+TEST(PublishedFigures, NameTheTracesThatTheirCommandsMake) {
+  std::map<std::string, std::string> made;  // digests, by the part of a command that makes the trace
+  for (const PublishedFigure& figure : published_figures()) {
+    if (figure.by_definition) {
+      EXPECT_EQ(figure.trace, "") << figure.name;
+      continue;
+    }
+    const std::string make = figure.command.substr(0, figure.command.find(" && "));
+    if (!made.contains(make)) made[make] = digest_of(trace_of_command(make));
+    EXPECT_EQ(figure.trace, made[make]) << figure.name;
+  }
+  EXPECT_EQ(made.size(), 8u);
+}
+
 // ---- Figures and formulas ----
+
+// Whose trace is that of the claim with this name.
+Report report_for(const std::string& claim) {
+  Report report;
+  for (const PublishedFigure& figure : published_figures())
+    if (figure.name == claim) report.made_by = {{"trace", figure.trace}};
+  EXPECT_TRUE(report.made_by.is_object()) << "there is no claim " << claim;
+  return report;
+}
 
 std::string mismatch(const std::vector<PublishedFigure>& figures, const std::vector<Formula>& formulas) {
   try {
@@ -126,8 +189,7 @@ TEST(Formulas, EachIsNamedByAFigureAndEachFigureNamesOneThatIsThere) {
 }
 
 TEST(Formulas, OfEveryPassAreModelledTimesOfItsStages) {
-  Report report;
-  report.trace = "density_low.json";
+  Report report = report_for("low density, DVM, Material");
   report.hardware = titan_v();
   TechniqueReport& result = report.results.emplace_back();
   result.technique = "dvm";
@@ -147,7 +209,7 @@ TEST(Formulas, OfEveryPassAreModelledTimesOfItsStages) {
   EXPECT_FALSE(ours("low density, DVM, Motion"));
   EXPECT_FALSE(ours("low density, Deferred, Material"));
   EXPECT_FALSE(ours("high density, DVM, Material"));
-  report.trace = "density_high.json";
+  report.made_by = report_for("high density, DVM, Material").made_by;
   EXPECT_DOUBLE_EQ(ours("high density, DVM, Material").value(), megabyte);
   EXPECT_FALSE(ours("high density, brute-force supersampling of visibility, 8x, Material and Lighting"));
   result.technique = "visibility:8";
@@ -170,8 +232,7 @@ TEST(Formulas, ThePassesAddUpToTheTotal) {
                                           {"Deferred", "taa:8,shading=deferred"},
                                           {"Visibility", "taa:8"},
                                           {"DVM", "dvm"}}) {
-    Report report;
-    report.trace = "density_low.json";
+    Report report = report_for("low density, DVM, Total");
     report.hardware = titan;
     TechniqueReport& result = report.results.emplace_back();
     result.technique = spec;
@@ -313,7 +374,7 @@ TEST(Claims, AreThoseOfThePage) {
 
 // MSAA adds 30 bytes to those of one sample per pixel, and ACAA saves half of them.
 TEST(Claims, AcaaGivesBack) {
-  Report report;
+  Report report = report_for("ACAA, part of what MSAA adds to 1x in framebuffer traffic that is saved");
   const auto add = [&](const char* spec, std::uint64_t dram) {
     TechniqueReport& result = report.results.emplace_back();
     result.technique = spec;
@@ -337,8 +398,7 @@ TEST(Claims, AcaaGivesBack) {
 
 // 42 bytes of framebuffer and 418 of A-buffer, over 80.
 TEST(Claims, BytesOfTheBeamWithItsABuffer) {
-  Report report;
-  report.trace = "classroom.json";
+  Report report = report_for("classroom, beam with its A-buffer, bytes over those of MSAA 8x");
   TechniqueReport& result = report.results.emplace_back();
   result.technique = "beam:rules=paper";
   FrameReport& frame = result.frames.emplace_back();
@@ -350,7 +410,7 @@ TEST(Claims, BytesOfTheBeamWithItsABuffer) {
   }
 }
 
-TEST(Claims, MostFragmentsOfAPixelAreThoseOfTheClassroom) {
+TEST(Claims, MostFragmentsOfAPixelAreThoseOfTheClassroomWhateverItsFileIsCalled) {
   Report report;
   TechniqueReport& result = report.results.emplace_back();
   result.technique = "beam:rules=paper";
@@ -360,9 +420,12 @@ TEST(Claims, MostFragmentsOfAPixelAreThoseOfTheClassroom) {
       if (claim.unit == "fragments") return claim.ours;
     return {};
   };
-  report.trace = "fence.json";
-  EXPECT_FALSE(most());
   report.trace = "some/classroom.json";
+  EXPECT_FALSE(most()) << "the name of a file is not enough";
+  report.made_by = {{"trace", "0123456789abcdef"}};
+  EXPECT_FALSE(most()) << "another trace";
+  report.trace = "some/room_7.json";
+  report.made_by = report_for("classroom, most fragments of a pixel").made_by;
   EXPECT_EQ(most(), 61);
 }
 

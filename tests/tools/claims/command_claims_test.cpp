@@ -25,9 +25,10 @@ class ClaimsCommandTest : public ProgramTest {
 
 TEST_F(ClaimsCommandTest, TakesEachNumberFromTheFirstReportThatHasIt) {
   const std::string name = "ACAA, part of MSAA's off-chip traffic that is saved (abstract)";
+  succeed({"make", "classroom", "-o", path("room.json")});
   const auto run = [&](std::vector<std::string> options) {
     std::vector<std::string> arguments = {
-        "run", path("trace.json"), "-t", "msaa:1,prepass", "-t", "msaa:8,color=rgba16f,prepass", "-t", "acaa:8"};
+        "run", path("room.json"), "-t", "msaa:1,prepass", "-t", "msaa:8,color=rgba16f,prepass", "-t", "acaa:8"};
     arguments.insert(arguments.end(), options.begin(), options.end());
     succeed(arguments);
   };
@@ -36,6 +37,10 @@ TEST_F(ClaimsCommandTest, TakesEachNumberFromTheFirstReportThatHasIt) {
   EXPECT_EQ(ours(succeed({"claims"}), name), "");
   EXPECT_EQ(ours(succeed({"claims"}), "beam, mask"), "4");
   EXPECT_EQ(ours(succeed({"claims", path("no_model")}), name), "");
+  succeed({"run", path("trace.json"), "-t", "msaa:1,prepass", "-t", "msaa:8,color=rgba16f,prepass", "-t", "acaa:8",
+           "-o", path("other")});
+  EXPECT_EQ(ours(succeed({"claims", path("other")}), name), "") << "the claim is about another trace";
+  EXPECT_EQ(ours(succeed({"claims", path("other"), "--hardware", "rtx_4090"}), name), "");
   double saved = 0;
   const Json report = parse_json(path("out/report.json"));
   for (const Json& claim : report.at("claims").elements())
@@ -44,6 +49,8 @@ TEST_F(ClaimsCommandTest, TakesEachNumberFromTheFirstReportThatHasIt) {
   const std::string found = ours(succeed({"claims", path("no_model"), path("out")}), name);
   ASSERT_NE(found, "");
   EXPECT_NEAR(std::stod(found), saved, 1e-3 * saved);
+  const std::string remodelled = ours(succeed({"claims", path("out"), "--hardware", "rtx_4090"}), name);
+  EXPECT_EQ(remodelled, found) << "bytes do not depend on the hardware";
 }
 
 }  // namespace

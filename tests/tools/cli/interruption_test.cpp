@@ -39,6 +39,27 @@ TEST_F(ProgramTest, CtrlCKeepsFinishedImagesAndLeavesNothingElse) {
   EXPECT_EQ(read_exr(folder_ / "out/msaa_1/frame_0000.exr").width, 20u);
 }
 
+TEST_F(ProgramTest, CtrlCSaysWhatIsKeptAndHowToGoOn) {
+  succeed({"make", "soup", "--triangles", "50", "--width", "64", "--height", "64", "--frames", "10000", "--orbit", "1",
+           "-o", path("long.json")});
+  for (const std::string command : {"run", "compare"}) {
+    Program program({command, path("long.json"), "-t", "msaa:1", "-o", path(command), "--threads", "1"});
+    for (int i = 0; i < 3000 && !std::filesystem::exists(path(command) + "/unfinished/frame_0001.json"); ++i) pause(10);
+    program.signal(SIGINT);
+    const Outcome outcome = program.wait();
+    EXPECT_EQ(outcome.exit_code, 130);
+    std::size_t kept = 0;
+    for (const auto& entry : std::filesystem::directory_iterator(path(command) + "/unfinished"))
+      kept += entry.is_regular_file();
+    EXPECT_GE(kept, 2u);
+    const std::string rest = " of 10000 frames are kept, and the same command with --resume goes on from there\n";
+    // The last record may have been written after the text was set.
+    EXPECT_TRUE(outcome.err == "beampipe: stopped; " + std::to_string(kept) + rest ||
+                outcome.err == "beampipe: stopped; " + std::to_string(kept - 1) + rest)
+        << outcome.err << kept;
+  }
+}
+
 // Ctrl-C waits neither for a long frame nor for a large file.
 TEST_F(ProgramTest, CtrlCEndsALongFrameAndALongFileAtOnce) {
   Program file({"make", "hairball", "--triangles", "5000000", "-o", path("big.json")});

@@ -184,6 +184,16 @@ TEST_F(ProgramTest, CompareExtendsItsLadderForTechniquesThatAreBetter) {
   EXPECT_EQ(parsed(folder_ / "out/report.json")["msaa_ladder"].size(), 9u) << "a good MSAA does not extend the ladder";
 }
 
+TEST_F(ProgramTest, PlotDrawsTheTrafficOfARun) {
+  succeed({"run", path("trace.json"), "-t", "beam", "msaa:4", "-o", path("out")});
+  succeed({"plot", path("out"), "--kind", "traffic", "-o", path("traffic.svg")});
+  const std::string svg = read_text(folder_ / "traffic.svg");
+  for (const char* label : {">beam<", ">msaa:4<", ">resolve<"}) EXPECT_NE(svg.find(label), std::string::npos) << label;
+  succeed({"run", path("trace.json"), "-t", "beam", "-o", path("other"), "--no-memory-model"});
+  expect_one_error_line(run_program({"plot", path("other"), "--kind", "traffic", "-o", path("x.svg")}), 1,
+                        "other/report.json: it has no DRAM bytes; expected a report made without --no-memory-model");
+}
+
 TEST_F(ProgramTest, DiffTellsTheError) {
   write_text(folder_ / "a.exr", encode_exr(flat_image(4, 2, 0.75f)));
   write_text(folder_ / "b.exr", encode_exr(flat_image(4, 2, 0.5f)));

@@ -33,6 +33,20 @@ TEST(NoteOnDarkness, NamesTheFirstFrameAndAMaterial) {
   EXPECT_EQ(note_on_darkness(trace, {0, 1}, "a.json"), "");
 }
 
+TEST(NoteOnMotion, CountsDrawsWhoseMeshChanges) {
+  Trace trace = three_frames();
+  trace.meshes.resize(2);
+  EXPECT_EQ(note_on_motion(trace, {0, 1, 2}, {"taa:8"}, "a.json"), "");
+  trace.frames[1].draws[0].mesh = 1;
+  const std::string another = " draws show another mesh than in the frame before, whose motion is unknown to ";
+  EXPECT_EQ(note_on_motion(trace, {0, 1}, {"taa:8"}, "a.json"), "a.json: 1 of 1" + another + "taa:8");
+  EXPECT_EQ(note_on_motion(trace, {0, 1, 2}, {"taa:8", "dvm"}, "a.json"), "a.json: 2 of 2" + another + "taa:8 and dvm");
+  EXPECT_EQ(note_on_motion(trace, {0, 2}, {"taa:8"}, "a.json"), "");
+  EXPECT_EQ(note_on_motion(trace, {0, 1, 2}, {}, "a.json"), "");
+  trace.frames[1].draws.resize(3);
+  EXPECT_EQ(note_on_motion(trace, {0, 1, 2}, {"taa:8"}, "a.json"), "");
+}
+
 TEST(NoteOnDarkness, IsNotAboutSurfacesThatNeedNoLight) {
   const auto note = [](const Trace& trace) { return note_on_darkness(trace, {0}, "a.json"); };
   Trace trace = three_frames();

@@ -204,6 +204,8 @@ TEST_F(PlotTest, ErrorsAreOneLine) {
   expect_error({"plot", path("broken"), "-o", path("p.svg")}, 1, "broken/report.json: byte 24: expected valid JSON");
   expect_error({"plot", path("other"), "-o", path("p.svg")}, 1, "not a report of beampipe");
   expect_error({"plot", path("run"), "-o", path("p.svg")}, 1, "expected a report of `beampipe compare`");
+  expect_error({"plot", path("run"), "-o", path("p.svg")}, 1, "--kind traffic for one of `run`");
+  expect_error({"plot", path("run"), path("good"), "--kind", "traffic", "-o", path("p.svg")}, 2, "expected one folder");
   expect_error({"plot", path("good"), "--kind", "pie", "-o", path("p.svg")}, 2, "pie");
 
   const std::string search_path = getenv("PATH");

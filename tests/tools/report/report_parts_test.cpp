@@ -1,7 +1,14 @@
 // The parts of the report page, for a report whose numbers can be computed by hand.
 
+#include <map>
+#include <set>
+
+#include "stages/cost/counter_registry.h"
 #include "tests/tools/fixtures.h"
 #include "tools/files/image_io.h"
+#include "tools/report/cards.h"
+#include "tools/report/colors.h"
+#include "tools/report/conditions.h"
 #include "tools/report/figures.h"
 #include "tools/report/inspections.h"
 #include "tools/report/layers.h"
@@ -13,7 +20,7 @@ namespace {
 
 // A report with two frames of one technique, which has one stage, and of the reference.
 constexpr const char* kReport = R"({"beampipe_report": 1, "trace": "dots.json", "threads": 1, "simd": "AVX2",
-  "hardware": {"clock_mhz": 1000, "rates": {"issue_per_clk": 100, "dram_bytes_per_clk": 10},
+  "hardware": {"name": "Some GPU", "clock_mhz": 1000, "rates": {"issue_per_clk": 100, "dram_bytes_per_clk": 10},
                "implementations": {"shaders": {}}},
   "claims": [{"name": "beam, \"RGB16F\"", "unit": "bytes", "published_low": 36, "published_high": 42, "ours": 42,
               "difference": 0, "source": "slide 30", "command": "beampipe report DIR"}],
@@ -24,21 +31,21 @@ constexpr const char* kReport = R"({"beampipe_report": 1, "trace": "dots.json", 
     "error": {"rmse": 0.02, "bias": 0, "p99": 0.1, "max": 0.2},
     "equivalent_msaa": 8, "equivalent_msaa_is_lower_bound": true,
     "frames": [
-     {"index": 3, "picture": "beam/frame_0003.png", "counters": "beam/frame_0003_counters.exr",
+     {"index": 3, "image": "beam/frame_0003.exr", "picture": "beam/frame_0003.png", "counters": "beam/frame_0003_counters.exr",
       "wall_ms": {"median": 4, "min": 4, "max": 4, "runs": 1}, "modelled_ms": {"shaders": {"overlap": 2, "sum": 3}},
       "dram_bytes": 800,
       "stages": [{"stage": "compose", "ops": {"total": 3000000, "bit": 2}, "bytes_read": 500000,
                   "bytes_written": 250000, "dram_bytes": 1000000, "lanes_used": 3, "lanes_issued": 8,
                   "modelled_ms": {"shaders": 0.5}}]},
-     {"index": 4, "picture": "beam/frame_0004.png", "wall_ms": {"median": 8, "min": 8, "max": 8, "runs": 1},
+     {"index": 4, "image": "beam/frame_0004.exr", "picture": "beam/frame_0004.png", "wall_ms": {"median": 8, "min": 8, "max": 8, "runs": 1},
       "modelled_ms": {"shaders": {"overlap": 4, "sum": 5}}, "dram_bytes": 1200,
       "stages": [{"stage": "compose", "ops": {"total": 1000000, "bit": 3}, "bytes_read": 200000,
                   "bytes_written": 50000, "dram_bytes": 1000000, "lanes_used": 1, "lanes_issued": 8,
                   "modelled_ms": {"shaders": 0.3}}]}]},
    {"technique": "reference", "framebuffer_bytes_per_pixel": 65536, "peak_bytes_per_pixel": 65536, "a_buffer_peak_bytes": 0,
     "framebuffer": [],
-    "frames": [{"index": 3, "picture": "reference/frame_0003.png", "wall_ms": {"median": 1}, "stages": []},
-               {"index": 4, "picture": "reference/frame_0004.png", "wall_ms": {"median": 1}, "stages": []}]}]})";
+    "frames": [{"index": 3, "image": "reference/frame_0003.exr", "picture": "reference/frame_0003.png", "wall_ms": {"median": 1}, "stages": []},
+               {"index": 4, "image": "reference/frame_0004.exr", "picture": "reference/frame_0004.png", "wall_ms": {"median": 1}, "stages": []}]}]})";
 
 class ReportParts : public testing::Test {
  protected:
@@ -64,16 +71,16 @@ Json cell(const Table& table, std::size_t row, const std::string& key) {
   return "no such column";
 }
 
-TEST_F(ReportParts, StagesAreSummedOverFrames) {
+TEST_F(ReportParts, StagesAreMeansOverFrames) {
   const std::vector<Table> tables = report_tables(read());
   const Table& stages = named(tables, "stages");
   ASSERT_EQ(stages.rows.size(), 1u);
-  EXPECT_EQ(cell(stages, 0, "ops"), 4000000);
-  EXPECT_EQ(cell(stages, 0, "bit"), 5);
-  EXPECT_EQ(cell(stages, 0, "logical_bytes"), 1000000);
+  EXPECT_EQ(cell(stages, 0, "ops"), 2000000);
+  EXPECT_EQ(cell(stages, 0, "bit"), 2.5);
+  EXPECT_EQ(cell(stages, 0, "logical_bytes"), 500000);
   EXPECT_EQ(cell(stages, 0, "ops_per_byte"), 4.0);
   EXPECT_EQ(cell(stages, 0, "lane_use"), 0.25);
-  EXPECT_EQ(cell(stages, 0, "modelled_ms_shaders"), 0.8);
+  EXPECT_EQ(cell(stages, 0, "modelled_ms_shaders"), 0.4);
   EXPECT_EQ(cell(stages, 0, "sector_bytes"), "no such column") << "columns without values are left out";
   const Table& frames = named(tables, "frames");
   ASSERT_EQ(frames.rows.size(), 4u);
@@ -106,7 +113,7 @@ TEST_F(ReportParts, PartsOfErrorsAreColumnsWhereSurfacesVary) {
   std::string text = kReport;
   text.insert(text.find("\"error\""), R"("shading": {"rmse": 0.5}, "visibility": {"rmse": 0.25, "equivalent_msaa": 1,
     "equivalent_msaa_is_lower_bound": false, "equivalent_msaa_is_upper_bound": true}, )");
-  text.insert(text.find("\"picture\": \"beam/frame_0004.png\""),
+  text.insert(text.find("\"image\": \"beam/frame_0004.exr\""),
               R"("visibility": {"rmse": 0.125}, "shading": {"rmse": 0.75}, )");
   const std::vector<Table> tables = report_tables(read(text));
   const Table &techniques = named(tables, "techniques"), &frames = named(tables, "frames");
@@ -153,19 +160,136 @@ TEST_F(ReportParts, BytesArePerFrameAndOnlyThoseThatAreThere) {
   EXPECT_EQ(bytes_plot(report, "dram_bytes")->parts.at(0).values, std::vector<double>{1});
   EXPECT_FALSE(bytes_plot(report, "sector_bytes").has_value());
   const std::vector<Figure> figures = report_figures(report);
-  ASSERT_EQ(figures.size(), 4u);
-  EXPECT_EQ(figures[1].choices.size(), 2u) << "wall time and modelled time";
-  EXPECT_EQ(figures[2].choices.size(), 2u) << "logical and DRAM bytes";
+  ASSERT_EQ(figures.size(), 5u);
+  ASSERT_EQ(figures[1].choices.size(), 2u) << "modelled time and wall time";
+  EXPECT_EQ(figures[1].choices[0].first, "modelled time: shaders") << "shown first";
+  ASSERT_EQ(figures[2].choices.size(), 1u);
+  EXPECT_EQ(figures[2].choices[0].first, "modelled time: shaders");
+  ASSERT_EQ(figures[3].choices.size(), 2u) << "DRAM and logical bytes";
+  EXPECT_TRUE(figures[3].choices[0].first.starts_with("DRAM")) << "shown first";
+}
+
+TEST_F(ReportParts, TimesOfStagesHaveAMarkWhereAllWouldEndAtOnce) {
+  const BarPlot plot = time_plot(read(), "shaders");
+  EXPECT_EQ(plot.categories, std::vector<std::string>{"beam"});
+  ASSERT_EQ(plot.parts.size(), 1u);
+  EXPECT_EQ(plot.parts[0].values, std::vector<double>{0.4}) << "the mean over the frames";
+  EXPECT_EQ(plot.marks, std::vector<double>{3});
+}
+
+TEST_F(ReportParts, CausesAreBarsInPercent) {
+  EXPECT_FALSE(causes_plot(read()).has_value());
+  std::string text = kReport;
+  text.insert(text.find("\"error\""), R"("error_causes": {"leak": 1.25, "mask": -0.25}, )");
+  const ReportFile report = read(text);
+  const BarPlot plot = causes_plot(report).value();
+  EXPECT_EQ(plot.categories, std::vector<std::string>{"beam"});
+  ASSERT_EQ(plot.parts.size(), 2u);
+  EXPECT_EQ(plot.parts[0].values, std::vector<double>{125});
+  EXPECT_EQ(plot.parts[1].values, std::vector<double>{-25});
+  EXPECT_EQ(report_figures(report).back().section, "causes");
+}
+
+TEST(ReportColors, EachTechniqueAndStageHasItsOwn) {
+  const std::vector<std::string> specs = {"beam", "msaa:8", "beam:order=sorted", "acaa:8"};
+  std::set<std::string> colors;
+  for (const std::string& spec : specs) EXPECT_TRUE(colors.insert(technique_color(specs, spec)).second) << spec;
+  EXPECT_EQ(technique_color(specs, "msaa:32"), technique_color(specs, "msaa:8")) << "a line of plots";
+  EXPECT_EQ(technique_color({"msaa:1", "beam"}, "beam"), technique_color({"beam", "msaa:1"}, "beam"));
+
+  colors.clear();
+  for (const StageInfo& stage : stage_list()) EXPECT_TRUE(colors.insert(stage_color(stage.name)).second) << stage.name;
+  EXPECT_FALSE(colors.contains(stage_color("no such stage"))) << "a stage of the registry has no colour";
+  EXPECT_FALSE(colors.contains(stage_color("prepass_depth_test"))) << "lighter";
+}
+
+// ---- Cards and conditions ----
+
+// A report with these techniques; `more`: further members of each.
+std::string report_of(const std::vector<std::string>& specs, const std::string& more = "") {
+  std::string results;
+  for (const std::string& spec : specs)
+    results += (results.empty() ? "" : ",") + (R"({"technique": ")" + spec + R"(", "peak_bytes_per_pixel": 80)" + more +
+                                               R"(, "frames": [{"wall_ms": {"median": 1}}]})");
+  return R"({"beampipe_report": 1, "trace": "dots.json", "results": [)" + results + "]}";
+}
+
+TEST_F(ReportParts, TheBaselineIsMsaa8OrElseAnotherMsaaOrElseTheFirst) {
+  EXPECT_EQ(baseline_of(read(report_of({"beam", "msaa:4", "msaa:8"}))), "msaa:8");
+  EXPECT_EQ(baseline_of(read(report_of({"beam", "acaa:8", "msaa:4,prepass", "msaa:2"}))), "msaa:4,prepass");
+  EXPECT_EQ(baseline_of(read(report_of({"beam", "alpha"}))), "beam");
+  const Json cards = report_cards(read(report_of({"beam", "msaa:8"})));
+  EXPECT_EQ(cards.at("cards").at(0).at("technique"), "msaa:8") << "the baseline comes first";
+  EXPECT_EQ(cards.at("cards").at(1).at("technique"), "beam");
+}
+
+TEST_F(ReportParts, CardsHoldCostsAndErrors) {
+  std::string text = kReport;
+  text.insert(text.find("\"peak_bytes_per_pixel\""), R"("on_chip_bytes_per_pixel": 2.5, )");
+  text.insert(text.find("\"dram_bytes\": 800"), R"("bin_pixels": 1024, )");
+  text.replace(text.find("\"sum\": 3"), 8, R"("sum": 3, "busiest": "dram")");
+  text.replace(text.find("\"sum\": 5"), 8, R"("sum": 5, "busiest": "shader")");
+  const Json cards = report_cards(read(text));
+  EXPECT_EQ(cards.at("implementations"), Json::array({"shaders"}));
+  ASSERT_EQ(cards.at("cards").size(), 1u) << "the reference has none";
+  const Json& card = cards.at("cards").at(0);
+  EXPECT_EQ(card.at("dram_bytes"), 1000.0) << "the mean over the frames";
+  EXPECT_EQ(card.at("on_chip_bytes_per_pixel"), 2.5);
+  EXPECT_EQ(card.at("on_chip_bytes"), 2560.0);
+  EXPECT_EQ(card.at("bytes_per_pixel"), 49.0);
+  EXPECT_EQ(card.at("modelled_ms").at("shaders"), (Json{{"overlap", 3.0}, {"sum", 4.0}, {"busiest", "dram, shader"}}));
+  EXPECT_EQ(card.at("rmse"), 0.02);
+  EXPECT_EQ(card.at("emr"), 8.0);
+  EXPECT_EQ(card.at("emr_bound"), "at least");
+  const Json run = report_cards(read(report_of({"beam"}))).at("cards").at(0);
+  for (const char* key : {"rmse", "emr", "dram_bytes", "modelled_ms"}) EXPECT_FALSE(run.contains(key)) << key;
+}
+
+TEST_F(ReportParts, ConditionsTellHowTheNumbersWereFound) {
+  std::string text = kReport;
+  text.insert(text.find("\"claims\""), R"("version": "1.2.3", "trace_frames": 9,
+    "frames": [{"index": 3, "width": 320, "height": 180, "triangles": 1234567, "draws": 2, "lights": 1},
+               {"index": 4, "width": 320, "height": 180, "triangles": 7, "draws": 3, "lights": 1}],
+    "notes": [{"reason": "stencil test", "left_out": true, "draws": 1, "triangles": 34}],
+    "made_by": {"command": "compare", "techniques": ["beam", "msaa:8"], "frames": "3-4", "repeat": 5, "memory_model": false,
+                "compression": true, "framebuffer": "on-chip", "memory_system": "of some file", "ladder": [1, 8],
+                "causes": true, "orders": false}, )");
+  text.replace(text.find("dots.json"), 9, "my dots.json");
+  const ReportFile report = read(text);
+  EXPECT_EQ(command_of(report),
+            "beampipe compare 'my dots.json' -t beam msaa:8 --frames 3-4 --repeat 5 --framebuffer on-chip "
+            "--no-memory-model --memory-system FILE --hardware FILE --ladder 1,8 --causes");
+  std::map<std::string, std::string> found;
+  const Json conditions = report_conditions(report);
+  for (const Json& each : conditions.elements()) found[each.at(0).get<std::string>()] = each.at(1).get<std::string>();
+  EXPECT_EQ(found["picture"], "320 × 180 pixels, 2 frames of 9");
+  EXPECT_EQ(found["scene"], "7 to 1\u202f234\u202f567 triangles, 2 to 3 draws, 1 light");
+  EXPECT_EQ(found["hardware"], "Some GPU, 1000 MHz");
+  EXPECT_EQ(found["program"], "beampipe 1.2.3, 1 thread, AVX2");
+  EXPECT_EQ(found["left out"], "stencil test: 1 draw, 34 triangles");
+  EXPECT_EQ(command_of(read()), "") << "an older report does not say what made it";
+}
+
+// ---- Layers ----
+
+TEST(PageFrames, AreAllOrEvenlySpacedWithTheOneThatIsShown) {
+  using Frames = std::vector<std::size_t>;
+  EXPECT_EQ(frames_of_page(3, 1000, 1), (Frames{0, 1, 2}));
+  EXPECT_EQ(frames_of_page(3, 2 * kMostPagePixels, 1), (Frames{1})) << "one is always shown";
+  EXPECT_EQ(frames_of_page(100, kMostPagePixels / 2, 0), (Frames{0, 99}));
+  EXPECT_EQ(frames_of_page(101, kMostPagePixels / 4, 0), (Frames{0, 50, 100}));
+  EXPECT_EQ(frames_of_page(101, kMostPagePixels / 4, 7), (Frames{0, 7, 50, 100}));
+  EXPECT_EQ(frames_of_page(1, 0, 0), (Frames{0}));
 }
 
 TEST_F(ReportParts, LayersTakeOnlyFilesOfTheFolder) {
   std::string text = kReport;
-  text.replace(text.find("beam/frame_0003.png"), 19, "../frame_00000003.png");
+  text.replace(text.find("beam/frame_0003.exr"), 19, "../frame_00000003.exr");
   EXPECT_THROW(report_layers(read(text), 0), ReportError);
   const TemporaryFolder other;
-  write_text(other / "secret.png", "secret");
+  write_text(other / "secret.exr", encode_exr(flat_image(2, 1, 0.5f)));
   std::filesystem::create_directory(folder_ / "beam");
-  std::filesystem::create_symlink(other / "secret.png", folder_ / "beam/frame_0003.png");
+  std::filesystem::create_symlink(other / "secret.exr", folder_ / "beam/frame_0003.exr");
   EXPECT_THROW(report_layers(read(), 0), ReportError) << "by way of a link";
 }
 
@@ -173,12 +297,14 @@ TEST_F(ReportParts, LayersHoldThePicturesAndTheCounters) {
   std::filesystem::create_directory(folder_ / "beam");
   std::filesystem::create_directory(folder_ / "reference");
   for (const std::string name : {"beam", "reference"}) {
-    write_text(folder_ / (name + "/frame_0003.png"), encode_png(flat_image(2, 1, 0.5f)));
+    write_text(folder_ / (name + "/frame_0003.exr"), encode_exr(flat_image(2, 1, name == "beam" ? 4.0f : 0.25f)));
   }
   write_text(folder_ / "beam/frame_0003_counters.exr",
              encode_exr(Planes{2, 1, {{"fragments", {0, 300}}, {"leak", {-0.25f, 0.5f}}}}));
   const auto layers = report_layers(read(), 0);
   EXPECT_EQ(layers.at("frame"), 3);
+  EXPECT_EQ(layers.at("width"), 2);
+  EXPECT_EQ(layers.at("height"), 1);
   ASSERT_EQ(layers.at("techniques").size(), 2u);
   const auto& maps = layers["techniques"][0].at("maps");
   ASSERT_EQ(maps.size(), 2u);
@@ -187,14 +313,16 @@ TEST_F(ReportParts, LayersHoldThePicturesAndTheCounters) {
   EXPECT_EQ(maps[1].at("low"), -0.25);
   EXPECT_EQ(maps[1].at("step"), 0.75 / 65535);
   EXPECT_EQ(layers.at("kinds")[0].at("name"), "fragments");
-  EXPECT_EQ(layers.at("techniques")[0].at("picture").get<std::string>().rfind("data:image/png;base64,iVBORw0KGgo", 0),
-            0u);
+  EXPECT_EQ(layers.at("techniques")[0].at("picture").at("high"), 4.0) << "brighter than white";
+  EXPECT_EQ(layers.at("techniques")[1].at("picture").at("high"), 1.0);
+  EXPECT_TRUE(layers.at("techniques")[0].at("picture").at("png").get<std::string>().starts_with(
+      "data:image/png;base64,iVBORw0KGgo"));
 
   std::string text = kReport;
   text.replace(text.find("dots.json"), 9, "</script>");
   const ReportFile hostile = read(text);
-  const std::string page =
-      page_html(hostile, report_tables(hostile), report_figures(hostile), layers, report_inspections(hostile));
+  const std::string page = page_html(hostile, report_tables(hostile), report_figures(hostile), Json::array({layers}), 3,
+                                     report_inspections(hostile));
   std::size_t ends = 0;
   for (std::size_t at = page.find("</script>"); at != page.npos; at = page.find("</script>", at + 1)) ++ends;
   EXPECT_EQ(ends, 3u) << "text from the report cannot end a script";

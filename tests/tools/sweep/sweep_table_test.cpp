@@ -4,6 +4,7 @@
 
 #include "stages/cost/counter_registry.h"
 #include "tests/tools/fixtures.h"
+#include "tools/files/shell_word.h"
 #include "tools/sweep/slurm.h"
 #include "tools/sweep/sqlite_table.h"
 #include "tools/sweep/sweep_plot.h"
@@ -97,6 +98,10 @@ TEST(SweepPlot, ColumnsMustExistAndHoldNumbers) {
 TEST(Slurm, WordsAndArrays) {
   EXPECT_EQ(shell_word("a b"), "'a b'");
   EXPECT_EQ(shell_word("it's"), "'it'\\''s'");
+  EXPECT_EQ(shell_word("beam"), "'beam'");
+  EXPECT_EQ(short_shell_word("msaa:8,prepass"), "msaa:8,prepass");
+  EXPECT_EQ(short_shell_word("a b"), "'a b'");
+  EXPECT_EQ(short_shell_word(""), "''");
   EXPECT_EQ(array_text({0, 1, 2, 7}), "0-2,7");
   EXPECT_EQ(array_text({4}), "4");
   EXPECT_EQ(array_text({1, 3, 4}), "1,3-4");

@@ -1,5 +1,5 @@
 "use strict";
-// Elements, numbers as text, and the tooltip.
+// Elements and the tooltip.
 
 // Makes an element with attributes and children. Children that are no elements become text.
 function make(tag, attributes = {}, ...children) {
@@ -11,17 +11,17 @@ function make(tag, attributes = {}, ...children) {
 
 const byId = (id) => document.getElementById(id);
 
-// A number as text for reading: whole numbers with groups of three digits, others with four digits, a dash for nothing.
-function numberText(value) {
-  if (value === null || value === undefined) return "–";
-  if (typeof value === "string") return value;
-  const rounded = Number.isInteger(value) ? value : Number(value.toPrecision(4));
-  return Number.isInteger(rounded) ? rounded.toLocaleString("en").replaceAll(",", "\u202f") : String(rounded);
+// Options are texts, or pairs of a value and a text.
+function fillSelect(select, options, chosen) {
+  const pairs = options.map((option) => Array.isArray(option) ? option : [option, option]);
+  select.replaceChildren(...pairs.map(([value, text]) => make("option", { value }, text)));
+  if (pairs.some(([value]) => value === chosen)) select.value = chosen;
 }
 
-function fillSelect(select, options, chosen) {
-  select.replaceChildren(...options.map((text) => make("option", { value: text }, text)));
-  if (options.includes(chosen)) select.value = chosen;
+// Removes a section and its link.
+function dropSection(id) {
+  byId(id).remove();
+  document.querySelector(`nav a[href="#${id}"]`)?.remove();
 }
 
 // Shows an element's data-tip while the pointer is over it or it has the focus.

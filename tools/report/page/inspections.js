@@ -4,21 +4,46 @@ function inspectionLabel(pixel) {
   return `pixel ${pixel.x},${pixel.y} of ${pixel.technique}, frame ${pixel.frame}`;
 }
 
+// The recorded pixels of these techniques in the frame that is shown.
+const recordedPixels = (techniques) =>
+  data.inspections.filter((pixel) => pixel.frame === currentFrame().frame && techniques.includes(pixel.technique));
+
 // The picture is an image, so nothing in it can run.
 function makeInspection(pixel) {
   return make("figure", { id: "inspection" },
+    make("figcaption", {}, make("b", {}, `The ${inspectionLabel(pixel)}`)),
     make("img", { src: `data:image/svg+xml,${encodeURIComponent(pixel.svg)}`, alt: `The ${inspectionLabel(pixel)}, enlarged` }),
     make("details", {}, make("summary", {}, "The history as text"), make("pre", { tabindex: "0" }, pixel.text)));
 }
 
-function makeInspections(pixels) {
-  const shown = make("div", { "aria-live": "polite" });
+// Shows a history below what was clicked, and marks its line of the list.
+function showInspection(place, pixel) {
+  byId("inspection")?.remove();
+  for (const other of document.querySelectorAll(".record")) other.replaceChildren();
+  byId(place).replaceChildren(makeInspection(pixel));
+  document.querySelectorAll("#inspection-list button").forEach((button, i) =>
+    button.setAttribute("aria-pressed", String(data.inspections[i] === pixel)));
+}
+
+// Shows the history of a pixel of the frame that is shown, or says how to get it.
+function showPixel(place, technique, { x, y }) {
+  const { frame } = currentFrame();
+  const found = recordedPixels([technique]).find((pixel) => pixel.x === x && pixel.y === y);
+  if (found) {
+    showInspection(place, found);
+    return;
+  }
+  const what = `Pixel ${x},${y} of ${technique}, frame ${frame}, was not recorded. `;
+  const command = `beampipe inspect ${data.trace}${frame > 0 ? ` --frame ${frame}` : ""} --pixel ${x},${y} -t ${technique}`;
+  byId(place).replaceChildren(data.inspectable.includes(technique)
+    ? make("p", {}, `${what}This shows it: `, make("code", {}, command))
+    : make("p", {}, `${what}\`beampipe inspect\` has no histories of ${technique}.`));
+}
+
+function makeInspectionList(pixels) {
   const rows = pixels.map((pixel) => {
     const button = make("button", { type: "button", "aria-pressed": "false" }, `${pixel.x}, ${pixel.y}`);
-    button.addEventListener("click", () => {
-      for (const other of rows) other.querySelector("button").setAttribute("aria-pressed", String(other.contains(button)));
-      shown.replaceChildren(makeInspection(pixel));
-    });
+    button.addEventListener("click", () => showInspection("list-record", pixel));
     return make("tr", {}, make("th", { scope: "row" }, button), make("td", { class: "word" }, pixel.technique),
       make("td", { class: "number" }, String(pixel.frame)), make("td", { class: "number" }, numberText(pixel.error)),
       make("td", { class: "word" }, pixel.causes || "–"));
@@ -26,15 +51,11 @@ function makeInspections(pixels) {
   const heads = [["pixel", "word"], ["technique", "word"], ["frame", "number"], ["error (RMS)", "number"],
     ["causes", "word"]].map(([title, kind]) => make("th", { scope: "col", class: kind }, title));
   const table = make("table", {}, make("thead", {}, make("tr", {}, ...heads)), make("tbody", {}, ...rows));
-  return [make("div", { class: "scroll", tabindex: "0", role: "region", "aria-label": "Inspected pixels" }, table), shown];
+  return make("div", { class: "scroll", tabindex: "0", role: "region", "aria-label": "Inspected pixels" }, table);
 }
 
 // Pages without recorded pixels have no such section.
 function startInspections(pixels) {
-  if (pixels.length > 0) {
-    byId("inspections").append(...makeInspections(pixels));
-    return;
-  }
-  byId("inspections").remove();
-  document.querySelector('nav a[href="#inspections"]').remove();
+  if (pixels.length > 0) byId("inspection-list").append(makeInspectionList(pixels));
+  else dropSection("inspections");
 }

@@ -1,36 +1,5 @@
 // The page as a whole.
 
-function cell(table, row, key) {
-  return row[table.columns.findIndex((column) => column.key === key)];
-}
-
-function makeCard(title, technique, text) {
-  return make("div", { class: "card" }, title, make("strong", {}, technique), text);
-}
-
-// The techniques with the smallest error: of all, and of those that need no more memory than msaa:8.
-function makeCards(table) {
-  const kBudget = 80;  // bytes per pixel
-  const of = (row, key) => cell(table, row, key);
-  const rivals = table.rows.filter((row) => of(row, "technique") !== "reference" && of(row, "rmse") !== undefined);
-  const best = (rows) => rows.slice().sort((a, b) => of(a, "rmse") - of(b, "rmse"))[0];
-  const winner = best(rivals), frugal = best(rivals.filter((row) => of(row, "peak_bytes_per_pixel") <= kBudget));
-  const makeup = (row) => of(row, "a_buffer_peak_bytes") === 0 ? ""
-    : ` (${numberText(of(row, "framebuffer_bytes_per_pixel"))} in the framebuffer, the rest in the A-buffer at its peak)`;
-  const budget = `with at most ${kBudget} bytes per pixel, as many as 8× MSAA takes`;
-  const cards = [];
-  for (const [title, row] of winner === frugal ? [[`Most accurate of all, and ${budget}`, winner]]
-    : [["Most accurate", winner], [`Most accurate ${budget}`, frugal]]) {
-    if (!row) continue;
-    const bound = { exact: "", "at least": "at least ", "at most": "at most " }[of(row, "emr_bound")];
-    cards.push(makeCard(title, of(row, "technique"),
-      `RMSE ${numberText(of(row, "rmse"))}, as good as MSAA with ${bound}${numberText(Math.round(of(row, "emr")))} samples. ` +
-      `Takes ${numberText(of(row, "peak_bytes_per_pixel"))} bytes per pixel${makeup(row)}; such MSAA takes ` +
-      `${bound}${numberText(Math.round(of(row, "msaa_bytes_per_pixel")))}.`));
-  }
-  return cards;
-}
-
 function startTheme() {
   const themes = ["auto", "light", "dark"], button = byId("theme");
   let chosen = 0;
@@ -45,14 +14,44 @@ function startTheme() {
   apply();
 }
 
+function startFigures(figures) {
+  for (const place of document.querySelectorAll("[data-section]")) {
+    const here = figures.filter((figure) => figure.section === place.dataset.section);
+    place.append(...here.map(makeFigure));
+    if (here.length === 0) place.remove();
+  }
+}
+
+// The frame's number in the trace, and which frames the page has. `reload` shows the chosen frame.
+function startFrames(reload) {
+  const slider = byId("frame"), { layers } = data;
+  const tell = () => {
+    const some = layers.length < data.frames ? `; this page has ${layers.length} of ${data.frames} frames` : "";
+    byId("frame-text").textContent = `${currentFrame().frame}${some}`;
+  };
+  slider.max = layers.length - 1;
+  slider.value = layers.findIndex((frame) => frame.frame === data.shown);
+  byId("frames").hidden = data.frames === 1;
+  slider.disabled = layers.length === 1;
+  slider.addEventListener("input", () => {
+    tell();
+    reload();
+  });
+  tell();
+}
+
 const data = JSON.parse(byId("data").textContent);
 document.querySelector("h1").append(data.scene, make("small", {}, " beampipe report"));
-byId("facts").append(...Object.entries(data.facts).map(([name, value]) =>
-  make("div", {}, make("dt", {}, name), make("dd", {}, value))));
-byId("summary").append(...makeCards(data.tables[0]));
-byId("figures").append(...data.figures.map(makeFigure));
+byId("conditions").append(...data.conditions.map(([name, text]) =>
+  make("div", {}, make("dt", {}, name), make("dd", {}, name === "command" ? make("code", {}, text) : text))));
+startCards(data.summary);
+startFigures(data.figures);
 byId("tables").append(...data.tables.map(makeTable));
 startInspections(data.inspections);
 startTheme();
 startTips();
-Promise.all([startCompare(), startMaps()]).then(() => { document.documentElement.dataset.ready = "yes"; });
+const loaders = [];
+const reload = () => Promise.all(loaders.map((load) => load()));
+startFrames(reload);
+loaders.push(startPictures(), startMaps());
+reload().then(() => { document.documentElement.dataset.ready = "yes"; });

@@ -1,4 +1,4 @@
-// Plots, drawn by D3 in the width of the page.
+// Plots, drawn by D3 in the width of the page. The choice of what is modelled, on top of the page, holds for all of them.
 
 const boundText = { none: "", lower: "≥ ", upper: "≤ " };
 
@@ -52,8 +52,8 @@ function logScale(values, range) {
 function drawScatter(svg, plot, width) {
   const margin = { left: 74, right: 14, top: 8, bottom: 44 }, height = Math.max(320, Math.min(440, width * 0.7));
   const inner = { width: width - margin.left - margin.right, height: height - margin.top - margin.bottom };
-  const points = plot.series.flatMap((series, i) =>
-    series.points.map((point) => ({ ...point, color: data.colors[i], mark: series.marks })));
+  const points = plot.series.flatMap((series) =>
+    series.points.map((point) => ({ ...point, color: series.color, mark: series.marks })));
   const x = logScale(points.map((p) => p.x), [0, inner.width]), y = logScale(points.map((p) => p.y), [inner.height, 0]);
   svg.attr("viewBox", `0 0 ${width} ${height}`);
   const area = svg.append("g").attr("transform", `translate(${margin.left},${margin.top})`);
@@ -65,9 +65,9 @@ function drawScatter(svg, plot, width) {
     .text(plot.x_label);
   area.append("text").attr("transform", `translate(-60,${inner.height / 2}) rotate(-90)`).attr("text-anchor", "middle")
     .text(plot.y_label);
-  plot.series.forEach((series, i) => {
+  plot.series.forEach((series) => {
     if (!series.line) return;
-    area.append("path").attr("fill", "none").attr("stroke", data.colors[i]).attr("stroke-width", 2)
+    area.append("path").attr("fill", "none").attr("stroke", series.color).attr("stroke-width", 2)
       .attr("d", d3.line().x((p) => x(p.x)).y((p) => y(p.y))(series.points));
   });
   const symbol = (p) => d3.symbol().size(75).type(p.bound === "none" ? d3.symbolCircle : d3.symbolTriangle)();
@@ -91,30 +91,35 @@ function drawBars(svg, plot, width) {
   const height = margin.top + step * plot.categories.length + margin.bottom;
   const inner = { width: width - margin.left - margin.right, height: height - margin.top - margin.bottom };
   const totals = plot.categories.map((_, i) => d3.sum(plot.parts, (part) => part.values[i]));
-  const x = d3.scaleLinear().domain([0, d3.max(totals)]).nice().range([0, inner.width]);
+  const side = (sign) => plot.categories.map((_, i) => d3.sum(plot.parts, (part) => Math.max(0, sign * part.values[i])));
+  const x = d3.scaleLinear().domain([-d3.max(side(-1)), d3.max(side(1))]).nice().range([0, inner.width]);
   svg.attr("viewBox", `0 0 ${width} ${height}`);
   const area = svg.append("g").attr("transform", `translate(${margin.left},${margin.top})`);
   area.append("g").attr("class", "axis").attr("transform", `translate(0,${inner.height})`)
     .call(d3.axisBottom(x).ticks(inner.width / 80).tickSizeInner(-inner.height).tickPadding(8));
-  area.append("text").attr("x", inner.width / 2).attr("y", inner.height + 38).attr("text-anchor", "middle")
+  area.append("text").attr("x", width / 2 - margin.left).attr("y", inner.height + 38).attr("text-anchor", "middle")
     .text(plot.y_label);
   plot.categories.forEach((name, i) => {
-    const inUse = plot.parts.map((part, color) => ({ name: part.name, value: part.values[i], color: data.colors[color] }))
-      .filter((part) => part.value > 0);
-    const list = inUse.map((part) => `${part.name}: ${numberText(part.value)}`).join("\n");
+    const inUse = plot.parts.map((part) => ({ ...part, value: part.values[i] })).filter((part) => part.value !== 0);
+    const list = inUse.map((part) => `${part.name}: ${numberText(part.value)}`);
+    if (plot.marks) list.push(`${plot.marks.name}: ${numberText(plot.marks.values[i])}`);
     const bar = area.append("g").attr("class", "bar").attr("tabindex", 0).attr("role", "img")
       .attr("transform", `translate(0,${i * step})`)
-      .attr("data-tip", `${name}: ${numberText(totals[i])}, ${plot.y_label}\n${list}`)
+      .attr("data-tip", `${name}: ${numberText(totals[i])}, ${plot.y_label}\n${list.join("\n")}`)
       .attr("aria-label", function () { return this.dataset.tip; });
     bar.append("text").attr("x", -8).attr("y", step / 2).attr("text-anchor", "end").attr("dominant-baseline", "central")
       .text(name);
-    let start = 0;
+    const ends = { 1: 0, [-1]: 0 };  // of the parts on each side of zero
     for (const part of inUse) {
-      bar.append("rect").attr("class", "part").attr("x", x(start)).attr("y", 3).attr("height", step - 6)
-        .attr("width", Math.max(0, x(part.value) - 0.5)).attr("fill", part.color)
+      const sign = Math.sign(part.value), from = ends[sign], to = from + part.value;
+      ends[sign] = to;
+      bar.append("rect").attr("class", "part").attr("x", x(Math.min(from, to))).attr("y", 3).attr("height", step - 6)
+        .attr("width", Math.max(0, Math.abs(x(to) - x(from)) - 0.5)).attr("fill", part.color)
         .attr("data-tip", `${name}, ${part.name}: ${numberText(part.value)}, ${plot.y_label}`);
-      start += part.value;
     }
+    if (plot.marks)
+      bar.append("line").attr("class", "mark").attr("x1", x(plot.marks.values[i])).attr("x2", x(plot.marks.values[i]))
+        .attr("y1", 0).attr("y2", step);
   });
 }
 
@@ -132,11 +137,16 @@ function makeFigure(figure) {
     svg.selectAll("*").remove();
     svg.attr("aria-label", plot.title).attr("data-plot", plot.name);
     (plot.kind === "bars" ? drawBars : drawScatter)(svg, plot, width);
-    key.replaceChildren(...(plot.parts ?? plot.series).map((item, i) =>
-      make("span", { style: `--swatch: ${data.colors[i]}` }, item.name)));
+    key.replaceChildren(...(plot.parts ?? plot.series).map(({ name, color }) => make("span", { style: `--swatch: ${color}` }, name)));
     note.textContent = (plot.notes ?? []).join(" ");
   };
   select.addEventListener("change", draw);
+  byId("implementation").addEventListener("change", ({ target }) => {
+    const at = figure.choices.findIndex((choice) => choice.label === `modelled time: ${target.value}`);
+    if (at < 0) return;
+    select.value = at;
+    draw();
+  });
   let drawnWidth = 0;
   new ResizeObserver(() => requestAnimationFrame(() => {
     if (element.clientWidth !== drawnWidth) draw();

@@ -1,11 +1,12 @@
-// Tables. A click on a column's title sorts by it, and hovering over it shows what the column means.
+// Tables. A click on a column's title sorts by it, and pointing at it shows what the column means. If a table has views,
+// only the columns of one view are shown at a time, so that it fits the page.
 
 function compareCells(a, b) {
   if (a === null || b === null) return (a === null) - (b === null);  // empty cells come last
   return typeof a === "number" ? a - b : a.localeCompare(b);
 }
 
-function sortTable(table, heads, body, rows, column) {
+function sortTable(heads, body, rows, column) {
   const head = heads[column];
   const descending = head.getAttribute("aria-sort") === "ascending";
   for (const other of heads) other.removeAttribute("aria-sort");
@@ -15,35 +16,66 @@ function sortTable(table, heads, body, rows, column) {
   body.replaceChildren(...sorted.map((row) => row.element));
 }
 
-function makeRow(table, cells) {
+// How the numbers of each column are read: { size, unit }. `isWord`: some of its cells are texts.
+function columnFormats(table) {
+  return table.columns.map((column, i) => {
+    const cells = table.rows.map((row) => row[i]), isWord = cells.some((cell) => typeof cell === "string");
+    const unit = column.unit || (isWord ? "" : "number");
+    return { isWord, ...readableUnit(unit, d3.max(cells.filter((cell) => typeof cell === "number"), Math.abs) ?? 0) };
+  });
+}
+
+function makeRow(table, formats, cells) {
   const element = make("tr");
   cells.forEach((cell, i) => {
+    const column = table.columns[i], { size } = formats[i];
     const shown = make(i === 0 ? "th" : "td", {
       class: typeof cell === "string" ? "word" : "number",
-      "data-key": table.columns[i].key,
+      "data-key": column.key,
       "data-value": cell ?? "",
-    }, numberText(cell));
+      "data-title": column.title,
+      "data-view": column.view,
+    }, numberText(typeof cell === "number" ? cell / size : cell));
     if (i === 0) shown.scope = "row";
     element.append(shown);
   });
   return { element, cells };
 }
 
+// Buttons that choose the view.
+function makeViews(table, show) {
+  const views = [...new Set(table.columns.map((column) => column.view).filter((view) => view))];
+  if (views.length < 2) return [];
+  const buttons = views.map((view) => {
+    const button = make("button", { type: "button" }, view);
+    button.addEventListener("click", () => choose(view));
+    return button;
+  });
+  const choose = (view) => {
+    buttons.forEach((button) => button.setAttribute("aria-pressed", String(button.textContent === view)));
+    show(view);
+  };
+  choose(views[0]);
+  return [make("div", { class: "views", role: "group", "aria-label": `${table.title}: columns` }, ...buttons)];
+}
+
 function makeTable(table) {
-  const rows = table.rows.map((cells) => makeRow(table, cells));
+  const formats = columnFormats(table);
+  const rows = table.rows.map((cells) => makeRow(table, formats, cells));
   const body = make("tbody", {}, ...rows.map((row) => row.element));
   const heads = table.columns.map((column, i) => {
-    const isWord = table.rows.some((cells) => typeof cells[i] === "string");
-    const unit = column.unit || (isWord ? "" : "number");
+    const { unit, isWord, size } = formats[i];
     const button = make("button", { type: "button", "data-tip": `${column.definition}${unit && `\nUnit: ${unit}`}` },
       column.title, make("span", { class: "unit" }, unit || "\u00a0"));
-    return make("th", { scope: "col", class: isWord ? "word" : "number" }, button);
+    return make("th", { scope: "col", class: isWord ? "word" : "number", "data-size": size, "data-view": column.view }, button);
   });
   heads.forEach((head, i) => {
-    head.firstChild.addEventListener("click", () => sortTable(table, heads, body, rows, i));
+    head.firstChild.addEventListener("click", () => sortTable(heads, body, rows, i));
   });
+  const all = make("table", {}, make("thead", {}, make("tr", {}, ...heads)), body);
+  const cells = [...heads, ...rows.flatMap((row) => [...row.element.children])];
+  const show = (view) => cells.forEach((cell) => { cell.hidden = Boolean(cell.dataset.view) && cell.dataset.view !== view; });
   return make("div", { class: "table", id: `table-${table.name}` },
-    make("h3", {}, table.title),
-    make("div", { class: "scroll", tabindex: "0", role: "region", "aria-label": table.title },
-      make("table", {}, make("thead", {}, make("tr", {}, ...heads)), body)));
+    make("h3", {}, table.title), make("p", { class: "note" }, table.note), ...makeViews(table, show),
+    make("div", { class: "scroll", tabindex: "0", role: "region", "aria-label": table.title }, all));
 }

@@ -1,0 +1,37 @@
+#!/usr/bin/env python3
+"""Prints the errors of finished comparisons, with the memory that each technique takes.
+
+usage: docs/errors.py DIR...
+
+`beampipe compare TRACE -t SPEC... -o DIR` wrote the folders. Bytes are per pixel, each at its peak: on chip, a bin's buffers
+over its pixels; off chip, the framebuffer and the A-buffer.
+"""
+import json
+import pathlib
+import sys
+
+from measure import print_head, print_row
+
+
+def emr(result):
+    bound = ("≥ " if result.get("equivalent_msaa_is_lower_bound") else
+             "< " if result.get("equivalent_msaa_is_upper_bound") else "")
+    rate = result["equivalent_msaa"]
+    return bound + (f"{rate:.0f}" if rate >= 100 else f"{rate:.3g}")
+
+
+def main(folders):
+    if not folders:
+        sys.exit(__doc__.strip())
+    for folder in folders:
+        report = json.loads((pathlib.Path(folder) / "report.json").read_text(encoding="utf-8"))
+        print_head("technique", "bytes on chip", "bytes off chip", "RMSE × 1000", "bias × 1000", "EMR")
+        for result in report["results"]:
+            if result["technique"] == "reference":
+                continue
+            print_row(f"`{result['technique']}`",
+                      *(f"{result[f'{place}_chip_bytes_per_pixel']:.0f}" for place in ("on", "off")),
+                      f"{1000 * result['error']['rmse']:.2f}", f"{1000 * result['error']['bias']:+.2f}", emr(result))
+
+
+main(sys.argv[1:])

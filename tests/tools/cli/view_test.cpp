@@ -1,0 +1,201 @@
+// Where the camera stands, and in which size: `make`, `preview`, --camera, --width and --height, with the built
+// program.
+
+#include <nlohmann/json.hpp>
+
+#include "tests/tools/cli/program_fixture.h"
+#include "tools/files/image_io.h"
+
+namespace beampipe {
+namespace {
+
+using Parsed = nlohmann::json;
+
+// A box of 4 x 3 x 5 whose faces face inwards.
+constexpr const char* kRoom = R"(v 0 0 0
+v 4 0 0
+v 4 3 0
+v 0 3 0
+v 0 0 5
+v 4 0 5
+v 4 3 5
+v 0 3 5
+f 1 2 3 4
+f 6 5 8 7
+f 5 1 4 8
+f 2 6 7 3
+f 5 6 2 1
+f 4 3 7 8
+)";
+constexpr const char* kTriangle = "v 0 0 0\nv 4 0 0\nv 0 3 0\nf 1 2 3\n";
+
+class ViewTest : public ProgramTest {
+ protected:
+  void SetUp() override {
+    ProgramTest::SetUp();
+    write_text(folder_ / "room.obj", kRoom);
+    write_text(folder_ / "model.obj", kTriangle);
+    write_text(folder_ / "camera.json", R"({"eye": [1, 2, 9], "target": [1, 1, 0], "fovy_deg": 50})");
+  }
+  Parsed frame_of(const std::string& trace) const {
+    return Parsed::parse(read_text(folder_ / trace)).at("frames").at(0);
+  }
+  Image picture(const std::string& folder) const { return read_exr(folder_ / folder / "msaa_4/frame_0000.exr"); }
+};
+
+// The size that a PNG file names.
+std::pair<int, int> size_of_png(const std::string& bytes) {
+  const auto number = [&bytes](std::size_t at) {
+    int value = 0;
+    for (std::size_t i = 0; i < 4; ++i) value = value * 256 + static_cast<unsigned char>(bytes.at(at + i));
+    return value;
+  };
+  return {number(16), number(20)};
+}
+
+TEST_F(ViewTest, MakeStandsInsideOfARoomAndSaysSo) {
+  const Outcome made = run_program({"make", path("room.obj"), "-o", path("room.json")});
+  EXPECT_EQ(made.exit_code, 0);
+  EXPECT_EQ(made.err, "beampipe: note: " + path("room.obj") +
+                          ": the walls show their backs outside, so the camera stands inside; move it with --eye and "
+                          "--target, or with --view outside\n");
+  const Parsed frame = frame_of("room.json");
+  const std::vector<double> eye = frame["camera"]["eye"];
+  EXPECT_TRUE(eye[0] > 0 && eye[0] < 4 && eye[1] > 0 && eye[1] < 3 && eye[2] > 0 && eye[2] < 5);
+  EXPECT_TRUE(frame.contains("ambient"));
+  succeed({"run", path("room.json"), "-t", "msaa:4", "-o", path("out")});
+  const Image image = picture("out");
+  for (std::size_t i = 3; i < image.rgba.size(); i += 4) ASSERT_EQ(image.rgba[i], 1.0f) << "a wall everywhere";
+
+  const std::string outside = succeed({"make", path("room.obj"), "--view", "outside", "-o", path("room.json")});
+  EXPECT_GT(frame_of("room.json")["camera"]["eye"][2], 5.0);
+  // What it prints are options that make the same camera.
+  const std::string options = outside.substr(outside.find("camera: ") + 8);
+  std::istringstream words(options);
+  std::vector<std::string> again = {"make", path("room.obj"), "-o", path("again.json")};
+  for (std::string word; words >> word;) again.push_back(word);
+  ASSERT_EQ(again.size(), 10u) << options;
+  succeed(again);
+  for (int i = 0; i < 3; ++i)
+    EXPECT_NEAR(frame_of("again.json")["camera"]["eye"][i].get<double>(),
+                frame_of("room.json")["camera"]["eye"][i].get<double>(), 1e-4);
+}
+
+TEST_F(ViewTest, MakeTakesACameraFromAFile) {
+  succeed({"make", path("model.obj"), "--camera", path("camera.json"), "--fovy", "40", "-o", path("model.json")});
+  const Parsed camera = frame_of("model.json")["camera"];
+  EXPECT_EQ(camera["eye"], Parsed({1.0, 2.0, 9.0}));
+  EXPECT_EQ(camera["target"], Parsed({1.0, 1.0, 0.0}));
+  EXPECT_EQ(camera["up"], Parsed({0.0, 1.0, 0.0}));
+  EXPECT_EQ(camera["fovy_deg"], 40.0) << "options win over the file";
+  EXPECT_GT(camera["far"].get<double>(), 9.0);
+}
+
+TEST_F(ViewTest, MakeTakesLight) {
+  succeed({"make", path("model.obj"), "--light", "0,0,-2", "--ambient", "0.5", "-o", path("model.json")});
+  const Parsed frame = frame_of("model.json");
+  EXPECT_EQ(frame["lights"][0]["direction"], Parsed({0.0, 0.0, -1.0}));
+  EXPECT_EQ(frame["ambient"]["sky"], Parsed({0.5, 0.5, 0.5}));
+  succeed({"run", path("model.json"), "-t", "msaa:4", "-o", path("out")});
+  const Image image = picture("out");  // the triangle faces the light and is upright
+  const float color = image.rgba[4 * (std::size_t{90} * image.width + 150)];
+  EXPECT_NEAR(color, 0.8 * (1 + 0.5 * (0.5 + 0.5 * 0.15 / 0.35)), 2e-3);
+}
+
+TEST_F(ViewTest, RunAndCompareTakeASizeAndACamera) {
+  const auto make = [this](const std::string& trace, const Names& options) {
+    Names command{"make", path("model.obj"), "--light", "0,0,-1", "-o", path(trace)};
+    command.insert(command.end(), options.begin(), options.end());
+    succeed(command);
+  };
+  make("small.json", {"--width", "32", "--height", "16"});
+  make("large.json", {"--width", "64", "--height", "40"});
+  make("moved.json", {"--width", "32", "--height", "16", "--camera", path("camera.json")});
+  const auto run = [this](const std::string& trace, const Names& options) {
+    Names command{"run", path(trace), "-t", "msaa:4", "-o", path("out"), "--force"};
+    command.insert(command.end(), options.begin(), options.end());
+    succeed(command);
+    return picture("out");
+  };
+  // The camera of the large trace is at another distance, so that it is given here.
+  const Names camera = {"--camera", path("camera.json")};
+  Names resized = camera;
+  resized.insert(resized.end(), {"--width", "64", "--height", "40"});
+  EXPECT_EQ(run("small.json", resized).rgba, run("large.json", camera).rgba);
+  EXPECT_EQ(run("small.json", camera).rgba, run("moved.json", {}).rgba);
+  EXPECT_NE(run("small.json", camera).rgba, run("small.json", {}).rgba);
+  const Image tall = run("small.json", {"--height", "24"});
+  EXPECT_EQ(tall.width, 48u) << "in proportion";
+  EXPECT_EQ(tall.height, 24u);
+
+  succeed({"compare", path("small.json"), "-t", "msaa:4", "--ladder", "1", "-o", path("compared"), "--width", "48"});
+  EXPECT_EQ(picture("compared").width, 48u);
+  EXPECT_EQ(picture("compared").height, 24u);
+  const std::string told =
+      succeed({"inspect", path("small.json"), "--pixel", "40,20", "-t", "msaa:4", "--width", "48"});
+  EXPECT_NE(told.find("40,20"), std::string::npos) << told;
+}
+
+TEST_F(ViewTest, ResultsOfAnotherSizeAreThoseOfAnotherTrace) {
+  succeed({"make", path("model.obj"), "--width", "32", "--height", "16", "-o", path("small.json")});
+  const Names run = {"run", path("small.json"), "-t", "msaa:4", "-o", path("out"), "--width", "48"};
+  const auto with = [&run](const Names& options) {
+    Names command = run;
+    command.insert(command.end(), options.begin(), options.end());
+    return command;
+  };
+  succeed(run);
+  EXPECT_NE(succeed(with({"--resume"})).find("already finished"), std::string::npos);
+  expect_one_error_line(run_program(with({"--height", "20"})), 1,
+                        "found those of another trace; --force writes over them");
+  expect_one_error_line(run_program(with({"--height", "20", "--resume"})), 1, "another trace");
+  expect_one_error_line(run_program(with({"--camera", path("camera.json")})), 1, "another trace");
+  EXPECT_EQ(picture("out").height, 24u);
+  succeed(with({"--height", "20", "--force"}));
+  EXPECT_EQ(picture("out").height, 20u);
+}
+
+TEST_F(ViewTest, FramesWithoutACameraRefuse) {
+  const Names run = {"run", path("trace.json"), "-t", "msaa:4", "-o", path("out")};
+  const auto with = [&run](const Names& options) {
+    Names command = run;
+    command.insert(command.end(), options.begin(), options.end());
+    return run_program(command);
+  };
+  expect_one_error_line(with({"--width", "33", "--height", "100"}), 1,
+                        "trace.json: cannot be 33 x 100 pixels: expected frames that name a camera");
+  expect_one_error_line(with({"--camera", path("camera.json")}), 1,
+                        "frame 0 cannot have another camera: expected a frame that names one, found matrices");
+  write_text(folder_ / "odd.json", R"({"eye": [1, 2, 9], "traget": [1, 1, 0]})");
+  expect_one_error_line(with({"--camera", path("odd.json")}), 1, "did you mean 'target'");
+  write_text(folder_ / "odd.json", R"({"eye": [1, 2, 9]})");
+  expect_one_error_line(with({"--camera", path("odd.json")}), 1, "odd.json: /: expected the key \"target\"");
+  write_text(folder_ / "odd.json", R"({"eye": [1, 2, 9], "target": [1, 2, 9]})");
+  expect_one_error_line(run_program({"make", path("model.obj"), "--camera", path("odd.json"), "-o", path("x.json")}), 2,
+                        "--eye and --target are the same point");
+  EXPECT_FALSE(std::filesystem::exists(folder_ / "out"));
+}
+
+TEST_F(ViewTest, PreviewShowsModelsAndTraces) {
+  const std::string told = succeed({"preview", path("model.obj"), "-o", path("model.png")});
+  EXPECT_NE(told.find("480 x 270 pixels\ncamera: --eye "), std::string::npos) << told;
+  EXPECT_EQ(size_of_png(read_text(folder_ / "model.png")), std::pair(480, 270));
+  succeed({"make", path("model.obj"), "--width", "1920", "--height", "1080", "-o", path("model.json")});
+  succeed({"preview", path("model.json"), "-o", path("trace.png")});
+  EXPECT_EQ(read_text(folder_ / "trace.png"), read_text(folder_ / "model.png")) << "the same view";
+  succeed({"preview", path("model.json"), "--height", "54", "-o", path("trace.png")});
+  EXPECT_EQ(size_of_png(read_text(folder_ / "trace.png")), std::pair(96, 54));
+  succeed({"preview", path("trace.json"), "--frame", "1", "-o", path("trace.png")});
+  EXPECT_EQ(size_of_png(read_text(folder_ / "trace.png")), std::pair(8, 16)) << "it has matrices";
+  const Names before = folder_.list();
+  expect_one_error_line(run_program({"preview", path("trace.json"), "--frame", "2", "-o", path("x.png")}), 2,
+                        "--frame: expected 0 to 1, found 2");
+  expect_one_error_line(run_program({"preview", path("model.obj"), "-o", path("x.exr")}), 2, "ends in .png");
+  expect_one_error_line(run_program({"preview", path("model.obj"), "--frame", "1", "-o", path("x.png")}), 2, "--frame");
+  expect_one_error_line(run_program({"preview", path("trace.json"), "--unlit", "-o", path("x.png")}), 2,
+                        "--unlit is for models");
+  EXPECT_EQ(folder_.list(), before);
+}
+
+}  // namespace
+}  // namespace beampipe

@@ -1,0 +1,226 @@
+#include "tools/cli/model_trace.h"
+
+#include <algorithm>
+#include <iostream>
+#include <optional>
+#include <sstream>
+
+#include "tools/cli/camera_file.h"
+#include "tools/cli/framing.h"
+#include "tools/cli/viewpoint.h"
+#include "traces/model_import.h"
+
+namespace beampipe {
+namespace {
+
+constexpr float kSky = 0.35f;             // of white light over the shoulder
+constexpr float kGround = 0.15f / 0.35f;  // of what the sky gives
+constexpr const char* kViewOptions[] = {"--view", "--eye", "--target", "--up", "--fovy", "--near", "--far"};
+constexpr const char* kOtherOptions[] = {"--light", "--ambient",   "--background", "--lambert",
+                                         "--unlit", "--materials", "--animation"};
+
+glm::dvec3 vector_of(const std::vector<double>& values) { return {values.at(0), values.at(1), values.at(2)}; }
+
+CameraWishes wishes_of(const ModelOptions& options, const Command& command) {
+  CameraWishes wishes = options.camera.empty() ? CameraWishes{} : read_camera_file(options.camera);
+  if (!options.eye.empty()) wishes.eye = vector_of(options.eye);
+  if (!options.target.empty()) wishes.target = vector_of(options.target);
+  if (!options.up.empty()) wishes.up = vector_of(options.up);
+  if (command.was_given("--fovy")) wishes.fovy_deg = options.fovy;
+  if (command.was_given("--near")) wishes.near = options.near;
+  if (command.was_given("--far")) wishes.far = options.far;
+  return wishes;
+}
+
+// Names on standard error, once, what the model has and the trace has not.
+void say_not_read(const std::string& model, const NotRead& not_read) {
+  std::string list;
+  for (const auto& [name, count] : not_read)
+    list += (list.empty() ? "" : ", ") + name + (count > 1 ? " (" + std::to_string(count) + ")" : "");
+  if (!list.empty()) std::cerr << "beampipe: " << model << ": not read: " << list << "\n";
+}
+
+void say_standpoint(const std::string& model, Standpoint standpoint, bool was_asked) {
+  if (standpoint == Standpoint::outside || was_asked) return;
+  const bool is_inside = standpoint == Standpoint::inside;
+  std::cerr << "beampipe: note: " << model << ": the walls show their backs outside, so the camera "
+            << (is_inside ? "stands inside" : "looks in through an open side")
+            << "; move it with --eye and --target, or with --view " << (is_inside ? "outside" : "inside") << "\n";
+}
+
+ImportedModel read_obj_model(const std::string& file, const ModelOptions& options, std::uint32_t width,
+                             std::uint32_t height) {
+  const ObjMaterials materials = options.materials == "all"        ? ObjMaterials::all
+                                 : options.materials == "textured" ? ObjMaterials::textured
+                                                                   : ObjMaterials::none;
+  ImportedModel model;
+  read_obj(file, "", materials, model.trace, model.not_read);
+  Frame& frame = model.trace.frames.emplace_back();
+  frame.width = width;
+  frame.height = height;
+  frame.draws.emplace_back().shading = Shading::lambert;
+  return model;
+}
+
+Viewpoint viewpoint_of(const Trace& trace, const ModelOptions& options, const Command& command) {
+  const CameraWishes wishes = wishes_of(options, command);
+  const std::uint32_t width = trace.frames.at(0).width, height = trace.frames[0].height;
+  if (wishes.eye) {
+    return {Standpoint::outside, frame_model(trace, width, height, wishes)};
+  }
+  std::optional<Standpoint> asked;
+  if (options.view == "outside") asked = Standpoint::outside;
+  if (options.view == "inside") asked = Standpoint::inside;
+  return choose_viewpoint(trace, width, height, wishes, asked);
+}
+
+// Where the user says; else over the shoulder of the first frame's camera. In rooms it leaves room for the light from
+// all around, so that white walls are not too bright to show anything.
+Light light_of(const Trace& trace, const ModelOptions& options, Standpoint standpoint) {
+  const Frame& first = trace.frames[0];
+  Light light;
+  if (standpoint != Standpoint::outside) light.color = glm::vec3(1.0f - kSky);
+  if (!options.light.empty()) {
+    const glm::dvec3 direction = vector_of(options.light);
+    if (!(glm::length(direction) > 0)) throw UsageError("--light: expected a vector with a length");
+    light.direction = glm::normalize(direction);
+  } else if (first.camera) {
+    light.direction = shoulder_light(*first.camera);
+  } else {  // an orthographic camera
+    light.direction = glm::normalize(glm::vec3(glm::inverse(first.view) * glm::dvec4(0.4, -0.7, -1.0, 0.0)));
+  }
+  return light;
+}
+
+// Lights a model that has no lights or is to have another one. Without light from all around, real materials are black
+// where the light does not reach, and so are half the walls of a room.
+void add_light(Trace& trace, const ModelOptions& options, const Command& command, Standpoint standpoint) {
+  const Light light = light_of(trace, options, standpoint);
+  const bool has_ambient = !trace.materials.empty() || standpoint != Standpoint::outside;
+  const float sky = command.was_given("--ambient") ? static_cast<float>(options.ambient) : has_ambient ? kSky : 0.0f;
+  if (!(sky >= 0 && sky <= kMostColor)) throw UsageError("--ambient: expected a number from 0 to 65504");
+  for (Frame& frame : trace.frames) {
+    if (frame.lighting.lights.empty() || !options.light.empty()) frame.lighting.lights = {light};
+    if (sky == 0) continue;
+    frame.lighting.ambient = {.sky = glm::vec3(sky), .ground = glm::vec3(sky * kGround)};
+    if (frame.camera) frame.lighting.ambient->up = glm::normalize(frame.camera->up);
+  }
+}
+
+void remove_light(Trace& trace) {
+  for (Frame& frame : trace.frames) {
+    frame.lighting = {};
+    for (Draw& draw : frame.draws) draw.shading = Shading::unlit;
+  }
+  for (Material& material : trace.materials) material.unlit = true;
+}
+
+}  // namespace
+
+Option add_model_options(Command& command, ModelOptions& options) {
+  const Option view =
+      command
+          .add("--view", options.view,
+               "where the camera stands: outside, so that all of the model is seen, or inside, as in a room (default: "
+               "outside, unless its walls show their backs there)")
+          .one_of({"outside", "inside"});
+  command.add("--camera", options.camera, kCameraHelp).excludes(view);
+  command
+      .add("--eye", options.eye,
+           "the position of the camera, in place of the one in the file of --camera, like the options that follow "
+           "(default: chosen as --view says)")
+      .exactly(3, "X,Y,Z")
+      .excludes(view);
+  command.add("--target", options.target, "the point that the camera looks at (default: the middle of the model)")
+      .exactly(3, "X,Y,Z");
+  command.add("--up", options.up, "the direction that is up (default: 0,1,0)").exactly(3, "X,Y,Z");
+  command.add("--fovy", options.fovy,
+              "the full vertical angle of view in degrees (default: 36; inside, 75 across the longer side)");
+  command.add("--near", options.near, "the distance of the near plane (default: just in front of the model)");
+  command.add("--far", options.far, "the distance of the far plane (default: just behind the model)");
+  command.add("--background", options.background, "the colour of the background, linear (default: 1,1,1)")
+      .exactly(3, "R,G,B");
+  const Option light = command
+                           .add("--light", options.light,
+                                "the direction in which the light travels, in place of the model's own lights "
+                                "(default: over the camera's left shoulder)")
+                           .exactly(3, "X,Y,Z");
+  const Option ambient = command.add("--ambient", options.ambient,
+                                     "light from all around, where the other light is 1; from below it is less than "
+                                     "half (default: 0.35 for real materials and inside, else 0)");
+  const Option lambert = command.add_flag("--lambert", options.lambert,
+                                          "shade the model with a light over the camera's shoulder (the default)");
+  command.add_flag("--unlit", options.unlit, "draw the plain colours of the materials")
+      .excludes(lambert)
+      .excludes(light)
+      .excludes(ambient);
+  command
+      .add("--materials", options.materials,
+           "of an .obj: which triangles are shaded as real materials, with normals and textures, instead of in the "
+           "colour Kd: all, those that have textures, or none")
+      .one_of({"all", "textured", "none"})
+      .shows_default();
+  return command.add("--animation", options.animation,
+                     "of a glTF model: the name of the animation to show, or its number from 0 (default: 0)");
+}
+
+void require_no_model_options(const Command& command) {
+  const auto require_none = [&command](const auto& names) {
+    for (const char* option : names)
+      if (command.was_given(option)) throw UsageError(std::string(option) + " is for models (.obj, .gltf, .glb) only");
+  };
+  require_none(kViewOptions);
+  require_none(kOtherOptions);
+}
+
+void require_options_of(const std::string& model, const Command& command) {
+  if (command.was_given("--materials") && !is_obj_file(model)) throw UsageError("--materials is for .obj files only");
+  if (command.was_given("--animation") && is_obj_file(model))
+    throw UsageError("--animation is for .gltf and .glb files only");
+}
+
+Trace trace_of_model(const std::string& file, const ModelOptions& options, const Command& command, std::uint32_t width,
+                     std::uint32_t height, std::uint32_t frames, bool moves) {
+  ImportedModel model = is_obj_file(file) ? read_obj_model(file, options, width, height)
+                                          : read_gltf(file, {.width = width,
+                                                             .height = height,
+                                                             .frames = frames,
+                                                             .animation = options.animation,
+                                                             .animation_if_any = frames > 1 && !moves});
+  say_not_read(file, model.not_read);
+  Trace& trace = model.trace;
+  Standpoint standpoint = Standpoint::outside;
+  const bool has_wishes =
+      !options.camera.empty() || std::any_of(std::begin(kViewOptions), std::end(kViewOptions),
+                                             [&](const char* option) { return command.was_given(option); });
+  if (!model.has_camera || has_wishes) {
+    try {
+      const Viewpoint viewpoint = viewpoint_of(trace, options, command);
+      for (Frame& frame : trace.frames) set_camera(frame, viewpoint.camera);
+      standpoint = viewpoint.standpoint;
+    } catch (const std::invalid_argument& error) {
+      throw UsageError(file + ": " + error.what());
+    }
+    say_standpoint(file, standpoint, !options.view.empty());
+  }
+  const glm::vec3 background = options.background.empty() ? glm::vec3(1.0f) : glm::vec3(vector_of(options.background));
+  if (glm::clamp(background, 0.0f, kMostColor) != background)
+    throw UsageError("--background: expected numbers from 0 to 65504");
+  for (Frame& frame : trace.frames) frame.background = background;
+  options.unlit ? remove_light(trace) : add_light(trace, options, command, standpoint);
+  return std::move(trace);
+}
+
+std::string text_of(const Camera& camera) {
+  std::ostringstream text;
+  const auto put = [&text](const char* option, const glm::dvec3& v) {
+    text << option << v.x << "," << v.y << "," << v.z;
+  };
+  put("--eye ", camera.eye);
+  put(" --target ", camera.target);
+  if (camera.up != glm::dvec3(0, 1, 0)) put(" --up ", camera.up);
+  text << " --fovy " << camera.fovy_deg;
+  return text.str();
+}
+
+}  // namespace beampipe

@@ -1,0 +1,51 @@
+#include "tools/report/cards.h"
+
+#include <algorithm>
+
+#include "tools/report/colors.h"
+
+namespace beampipe {
+namespace {
+
+Json card_of(const TechniqueSummary& summary, const std::string& color) {
+  Json card = {{"technique", summary.spec},
+               {"color", color},
+               {"on_chip_bytes_per_pixel", summary.on_chip_bytes_per_pixel},
+               {"on_chip_bytes", summary.on_chip_bytes_per_pixel * static_cast<double>(summary.bin_pixels)},
+               {"bytes_per_pixel", summary.bytes_per_pixel}};
+  if (summary.dram_bytes > 0) card["dram_bytes"] = summary.dram_bytes;  // otherwise no memory was modelled
+  for (const auto& [implementation, ms] : summary.modelled_ms)
+    card["modelled_ms"][implementation] = {{"overlap", ms.overlap}, {"sum", ms.sum}, {"busiest", ms.busiest}};
+  if (summary.rmse) card["rmse"] = *summary.rmse;
+  if (summary.emr) {
+    card["emr"] = summary.emr->samples;
+    card["emr_bound"] = bound_text(*summary.emr);
+  }
+  return card;
+}
+
+}  // namespace
+
+std::string baseline_of(const ReportFile& report) {
+  const auto find = [&](const auto& is_it) {
+    return std::find_if(report.techniques.begin(), report.techniques.end(), is_it);
+  };
+  const auto eight = find([](const TechniqueSummary& each) { return each.spec == "msaa:8"; });
+  if (eight != report.techniques.end()) return eight->spec;
+  const auto first = find([](const TechniqueSummary& each) { return each.spec.starts_with("msaa:"); });
+  return first != report.techniques.end() ? first->spec : report.techniques.front().spec;
+}
+
+Json report_cards(const ReportFile& report) {
+  const std::string baseline = baseline_of(report);
+  Json json = {{"baseline", baseline}, {"implementations", implementations_of(report)}, {"cards", Json::array()}};
+  std::vector<std::string> specs;
+  for (const TechniqueSummary& summary : report.techniques) specs.push_back(summary.spec);
+  for (const bool is_baseline : {true, false})
+    for (const TechniqueSummary& summary : report.techniques)
+      if ((summary.spec == baseline) == is_baseline)
+        json["cards"].push_back(card_of(summary, technique_color(specs, summary.spec)));
+  return json;
+}
+
+}  // namespace beampipe

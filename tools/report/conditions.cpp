@@ -1,0 +1,152 @@
+#include "tools/report/conditions.h"
+
+#include <algorithm>
+#include <cstdio>
+#include <set>
+
+#include "tools/evaluate/hardware.h"
+#include "tools/evaluate/memory_system.h"
+#include "tools/files/digest.h"
+#include "tools/files/shell_word.h"
+
+namespace beampipe {
+namespace {
+
+// "12 345": groups of three digits with narrow blanks between them.
+std::string grouped(std::uint64_t number) {
+  std::string text = std::to_string(number);
+  for (std::size_t at = text.size(); at > 3;) text.insert(at -= 3, "\u202f");
+  return text;
+}
+
+std::string counted(std::uint64_t number, const std::string& one) {
+  return grouped(number) + " " + one + (number == 1 ? "" : "s");
+}
+
+std::string size_text(std::uint64_t bytes) {
+  char text[32];
+  if (bytes >= 1 << 20)
+    std::snprintf(text, sizeof text, "%.4g MiB", static_cast<double>(bytes) / (1 << 20));
+  else
+    std::snprintf(text, sizeof text, "%.4g KiB", static_cast<double>(bytes) / (1 << 10));
+  return text;
+}
+
+// The frames' numbers under a key: "3 draws", or "3 to 5 draws".
+std::string range_of(const std::vector<Json>& frames, const char* key, const std::string& one) {
+  std::set<std::uint64_t> values;
+  for (const Json& frame : frames) values.insert(frame.at(key).get<std::uint64_t>());
+  if (values.size() == 1) return counted(*values.begin(), one);
+  return grouped(*values.begin()) + " to " + grouped(*values.rbegin()) + " " + one + "s";
+}
+
+std::string picture_text(const std::vector<Json>& frames, std::uint64_t all) {
+  std::vector<std::string> sizes;
+  for (const Json& frame : frames) {
+    const std::string size = frame.at("width").dump() + " × " + frame.at("height").dump();
+    if (std::find(sizes.begin(), sizes.end(), size) == sizes.end()) sizes.push_back(size);
+  }
+  std::string text;
+  for (const std::string& size : sizes) text += (text.empty() ? "" : ", ") + size;
+  text += " pixels, " + counted(frames.size(), "frame");
+  return all > frames.size() ? text + " of " + grouped(all) : text;
+}
+
+std::string hardware_text(const Json& report) {
+  const auto text_of = [](const Json& hardware) {
+    return hardware.at("name").get<std::string>() + ", " + hardware.at("clock_mhz").dump() + " MHz";
+  };
+  std::string text = text_of(report.at("hardware"));
+  const Json more = report.value("more_hardware", Json::object());
+  for (const auto& [label, hardware] : more.members()) text += "; " + text_of(hardware);
+  return text;
+}
+
+std::string memory_text(const Json& memory) {
+  if (!memory.at("modelled").get<bool>()) return "not modelled";
+  const auto cache = [&](const std::string& title, const char* key) {
+    return title + " " + size_text(memory.at(key).at("bytes").get<std::uint64_t>());
+  };
+  const std::string side = memory.at("bin_pixels").dump();
+  return cache("L2", "l2_cache") + ", " + cache("L1", "l1_cache") + ", " + cache("ROP caches", "rop_cache") +
+         ", sectors of " + memory.at("sector_bytes").dump() + " bytes, compression " +
+         (memory.at("compression").get<bool>() ? "on" : "off") + ", bins of at most " + side + " × " + side +
+         " pixels, " + size_text(memory.at("on_chip_bytes").get<std::uint64_t>()) + " on chip for a bin's pixels";
+}
+
+// The option that names the hardware, or nothing for the default one.
+std::string hardware_option(const Json& report) {
+  const Json* const hardware = report.find("hardware");
+  if (!hardware) return "";
+  std::string names = "FILE";
+  for (const std::string& name : hardware_names())
+    if (read_hardware(name).json == *hardware) names = name;
+  const Json more = report.value("more_hardware", Json::object());
+  for (const auto& [label, each] : more.members()) names += "," + label;
+  return names == hardware_names().front() ? "" : " --hardware " + names;
+}
+
+std::string memory_options(const Json& maker) {
+  MemoryParameters memory;
+  std::string options;
+  const std::string usual = name_of(memory.framebuffer), place = maker.value("framebuffer", usual);
+  if (place != usual) options += " --framebuffer " + place;
+  const std::uint32_t on_chip = maker.value("on_chip_bytes", memory.on_chip_bytes);
+  if (on_chip != memory.on_chip_bytes) options += " --on-chip-memory " + std::to_string(on_chip);
+  const Json named = {{"framebuffer", place}, {"on_chip_bytes", on_chip}};
+  set_parameters(memory, JsonCursor(named, "report.json"));
+  if (!maker.at("memory_model").get<bool>()) options += " --no-memory-model", memory.modelled = false;
+  if (!maker.at("compression").get<bool>()) options += " --no-compression", memory.compression = false;
+  return maker.at("memory_system") == digest_of(parameters_json(memory).dump()) ? options
+                                                                                : options + " --memory-system FILE";
+}
+
+}  // namespace
+
+std::string command_of(const ReportFile& report) {
+  const Json maker = report.json.value("made_by", Json::object());
+  if (!maker.contains("command")) return "";
+  std::string text = "beampipe " + maker.at("command").get<std::string>() + " " +
+                     short_shell_word(report.json.at("trace").get<std::string>()) + " -t";
+  for (const Json& spec : maker.at("techniques").elements()) text += " " + short_shell_word(spec.get<std::string>());
+  const std::size_t rendered = report.json.at("results").at(0).at("frames").size();
+  if (report.json.value("trace_frames", rendered) > rendered)
+    text += " --frames " + maker.at("frames").get<std::string>();
+  if (maker.at("repeat") != 1) text += " --repeat " + maker.at("repeat").dump();
+  text += memory_options(maker) + hardware_option(report.json);
+  std::string rungs;
+  const Json ladder = maker.value("ladder", Json::array());
+  for (const Json& rung : ladder.elements()) rungs += (rungs.empty() ? "" : ",") + rung.dump();
+  if (!rungs.empty()) text += " --ladder " + rungs;
+  for (const char* flag : {"causes", "orders"})
+    if (maker.value(flag, false)) text += std::string(" --") + flag;
+  return text;
+}
+
+Json report_conditions(const ReportFile& report) {
+  Json conditions = Json::array();
+  const auto add = [&](const std::string& name, const std::string& text) {
+    if (!text.empty()) conditions.push_back(Json::array({name, text}));
+  };
+  if (const Json* const frames = report.json.find("frames")) {
+    const std::vector<Json>& all = frames->elements();
+    add("picture", picture_text(all, report.json.at("trace_frames").get<std::uint64_t>()));
+    add("scene", range_of(all, "triangles", "triangle") + ", " + range_of(all, "draws", "draw") + ", " +
+                     range_of(all, "lights", "light"));
+  }
+  add("trace", report.json.at("trace").get<std::string>());
+  add("command", command_of(report));
+  if (report.json.contains("hardware")) add("hardware", hardware_text(report.json));
+  if (const Json* const memory = report.json.find("memory_system")) add("memory system", memory_text(*memory));
+  add("program", "beampipe " + report.json.value("version", std::string()) + ", " +
+                     counted(report.json.value("threads", std::uint64_t{1}), "thread") + ", " +
+                     report.json.value("simd", std::string()));
+  const Json notes = report.json.value("notes", Json::array());
+  for (const Json& note : notes.elements())
+    add(note.at("left_out").get<bool>() ? "left out" : "drawn otherwise",
+        note.at("reason").get<std::string>() + ": " + counted(note.at("draws").get<std::uint64_t>(), "draw") + ", " +
+            counted(note.at("triangles").get<std::uint64_t>(), "triangle"));
+  return conditions;
+}
+
+}  // namespace beampipe

@@ -1,0 +1,19 @@
+// Under which conditions the numbers of a report were found.
+#pragma once
+
+#include <string>
+
+#include "tools/report/report_file.h"
+#include "traces/json.h"
+
+namespace beampipe {
+
+// [[NAME, TEXT], ...]: the picture, the scene, the command, the hardware, the memory system, the program, and what the
+// trace asks for and no technique does. What an older report does not have is left out. Throws JsonError.
+Json report_conditions(const ReportFile& report);
+
+// The command that makes such a report, without the output folder: "beampipe run fence.json -t beam msaa:8". A file
+// whose name the report does not have is FILE. Empty if the report does not say what made it.
+std::string command_of(const ReportFile& report);
+
+}  // namespace beampipe

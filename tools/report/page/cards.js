@@ -1,0 +1,45 @@
+// A card for each technique: its costs and its error, and each as a multiple of the baseline's.
+
+// What a card lists: a name, the number, its text, and more lines that explain it.
+function cardRows(card, implementation) {
+  const time = card.modelled_ms?.[implementation], bound = { exact: "", "at least": "≥ ", "at most": "≤ " };
+  const rows = [
+    ["DRAM", card.dram_bytes, bytesText, []],
+    ["on chip", card.on_chip_bytes_per_pixel, (value) => `${shortText(value)} B/pixel`, [`${bytesText(card.on_chip_bytes)} per bin`]],
+    ["off chip", card.bytes_per_pixel, (value) => `${shortText(value)} B/pixel`, ["framebuffer, A-buffer"]],
+    ["time", time?.overlap, (value) => `${shortText(value)} ms`,
+      [`bottleneck: ${time?.busiest}`, `in turn: ${shortText(time?.sum ?? 0)} ms`]],
+    ["RMSE", card.rmse, shortText, []],
+    ["EMR", card.emr, (value) => bound[card.emr_bound] + shortText(value), []],
+  ];
+  return rows.filter(([, value]) => value !== undefined);
+}
+
+function ratioText(value, baseline) {
+  if (!(baseline > 0)) return "–";
+  const ratio = value / baseline;
+  return `${ratio >= 100 ? numberText(Math.round(ratio)) : ratio.toPrecision(ratio < 0.995 ? 2 : 3)}×`;
+}
+
+function makeCard(card, baseline, implementation) {
+  const usual = new Map(cardRows(baseline, implementation).map(([name, value]) => [name, value]));
+  const rows = cardRows(card, implementation).map(([name, value, text, more]) => make("div", { "data-name": name },
+    make("dt", {}, name), make("dd", { class: "value" }, text(value)),
+    make("dd", { class: "ratio" }, card === baseline || !usual.has(name) ? "" : ratioText(value, usual.get(name))),
+    ...more.map((line) => make("dd", { class: "more" }, line))));
+  const title = make("h3", {}, card.technique);
+  if (card === baseline) title.append(make("small", {}, " baseline"));
+  return make("article", { class: "card", style: `--color: ${card.color}`, "data-technique": card.technique }, title,
+    make("dl", {}, ...rows));
+}
+
+function startCards(summary) {
+  const select = byId("implementation"), [baseline] = summary.cards;
+  fillSelect(select, summary.implementations);
+  byId("implementations").hidden = summary.implementations.length === 0;
+  byId("cost-note").textContent = summary.cards.length === 1 ? "Costs are per frame. Times: all stages at once, and in turn, one stage after the other."
+    : `Costs are per frame; multiples are of ${summary.baseline}. Times: all stages at once, and in turn, one stage after the other.`;
+  const show = () => byId("cards").replaceChildren(...summary.cards.map((card) => makeCard(card, baseline, select.value)));
+  select.addEventListener("change", show);
+  show();
+}
