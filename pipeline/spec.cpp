@@ -69,7 +69,12 @@ bool Spec::has(std::string_view key, std::string_view value) const {
                      [&](const Item& item) { return item.has_value && item.key == key && item.value == value; });
 }
 
-void Spec::fail(const std::string& what) const { throw SpecError("technique '" + std::string(text_) + "': " + what); }
+void Spec::fail(const std::string& what) const {
+  std::string message = "technique '" + std::string(text_) + "': " + what;
+  std::replace_if(
+      message.begin(), message.end(), [](unsigned char c) { return c < 0x20; }, '?');
+  throw SpecError(message);
+}
 
 SpecOption choice_of_words(std::string key, std::vector<std::string> words, std::string fallback, std::string help,
                            std::function<void(std::size_t)> set_word) {

@@ -7,4 +7,4 @@ tools/install_packages.sh test
 cmake --preset release -DBEAMPIPE_BENCH=ON "$@"
 cmake --build --preset release --parallel "$(nproc)"
 ctest --preset release --parallel "$(nproc)"
-tests/fuzz/run.sh 20
+tests/fuzz/run.sh 12

@@ -5,7 +5,7 @@
 
 #include "tests/fuzz/fuzz_input.h"
 #include "tests/traces/test_images.h"
-#include "tools/claims/claims.h"
+#include "tools/claims/our_figures.h"
 #include "tools/evaluate/remodel.h"
 #include "tools/evaluate/resume.h"
 #include "tools/files/digest.h"
@@ -15,7 +15,6 @@
 #include "tools/report/inspections.h"
 #include "tools/report/layers.h"
 #include "tools/report/page.h"
-#include "tools/report/report_json.h"
 #include "tools/report/report_text.h"
 #include "traces/trace_io.h"
 
@@ -66,8 +65,8 @@ void model(const ReportFile& report) {
   const Report again = remodelled(report.json, all);
   times_text(again);
   times_json(again).dump();
-  to_json(again).dump();
-  claims_text(all_claims(again));
+  static const std::vector<Formula> formulas = our_formulas();
+  for (const Formula& formula : formulas) formula.ours({again, again.hardware.implementations.front()});
 }
 
 // A record of this run, whatever it says about itself, is read as it was written or not at all.
@@ -75,11 +74,13 @@ void resume(const FuzzFolder& folder, std::string_view text) {
   static InterruptGate gate;
   static OutputFolder output(folder.path(), gate);
   const Json maker = {{"command", "compare"}, {"trace", "digest of a trace"}}, sums = {{"squares", {{"rgb", 0}}}};
+  const std::vector<std::size_t> frames = {0};
+  const std::vector<std::string> specs = {"msaa:1"};
   FrameRecords records(output, maker);
   const std::string name = frame_record_name(0);
   folder.write(name, text);
   expect_value_or_line([&] { records.require_own_folder(); });
-  expect_value_or_line([&] { records.read({0}, {"msaa:1"}, sums); });
+  expect_value_or_line([&] { records.read(frames, specs, sums); });
   expect_value_or_line([&] {
     Json json = parse_json((folder.path() / name).string());
     if (!json.is_object()) return;
@@ -88,11 +89,11 @@ void resume(const FuzzFolder& folder, std::string_view text) {
     const std::string digest = digest_of(json_text(json));
     json["digest"] = digest;
     folder.write(name, json_text(json));
-    const std::vector<FrameRecord> found = records.read({0}, {"msaa:1"}, sums);
+    const std::vector<FrameRecord> found = records.read(frames, specs, sums);
     if (found.empty()) return;
     require(found.size() == 1 && found[0].reports.size() == 1 && found[0].reports[0].index == 0);
     records.write(found[0]);
-    const std::vector<FrameRecord> again = records.read({0}, {"msaa:1"}, sums);
+    const std::vector<FrameRecord> again = records.read(frames, specs, sums);
     require(again.size() == 1 && again[0].sums == found[0].sums &&
             again[0].reports[0].stages == found[0].reports[0].stages);
   });

@@ -1,4 +1,4 @@
-// Parses any words as specs of techniques. Each gives an error or a technique with a framebuffer.
+// Parses any words as specs of techniques. Each gives an error of one line, or a technique with a framebuffer.
 #include "pipeline/technique.h"
 #include "tests/fuzz/fuzz_input.h"
 
@@ -9,7 +9,8 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size
     try {
       const Technique technique = parse_technique(rest.substr(0, end));
       if (technique.framebuffer_bytes_per_pixel() == 0 || !technique.render) std::abort();
-    } catch (const SpecError&) {
+    } catch (const SpecError& error) {
+      require_one_line(error.what());
     }
     rest.remove_prefix(std::min(end + 1, rest.size()));
   }

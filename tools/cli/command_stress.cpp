@@ -21,8 +21,10 @@ namespace {
 
 struct StressArguments {
   std::vector<std::string> specs = {"beam",
-                                    "beam:order=sorted",
+                                    "beam:bits=64,slots=4",
+                                    "beam:bits=32,slots=2",
                                     "beam:order=stream",
+                                    "beam:order=sorted",
                                     "beam:order=sorted,storage=float32",
                                     "beam:order=sorted,bits=32",
                                     "beam:order=stream,passes=0",

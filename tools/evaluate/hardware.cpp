@@ -12,6 +12,7 @@
 #include "stages/cost/counter_registry.h"
 #include "tools/evaluate/hardware_text.h"
 #include "traces/closest_name.h"
+#include "traces/input_file.h"
 #include "traces/json_cursor.h"
 
 namespace beampipe {
@@ -245,8 +246,8 @@ Hardware read_hardware(const std::string& name_or_file) {
   if (std::error_code error; !std::filesystem::exists(name_or_file, error)) {
     std::string names;
     for (const std::string& name : hardware_names()) names += (names.empty() ? "" : ", ") + name;
-    throw std::runtime_error(name_or_file + ": expected a readable file or one of " + names + ", found neither" +
-                             did_you_mean(name_or_file, hardware_names()));
+    fail_trace(name_or_file, "a readable file or one of " + names,
+               "neither" + did_you_mean(name_or_file, hardware_names()));
   }
   Hardware hardware = parse_hardware(parse_json(name_or_file), name_or_file);
   hardware.label = std::filesystem::path(name_or_file).stem().string();

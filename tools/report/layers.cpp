@@ -84,7 +84,8 @@ std::filesystem::path file_of(const ReportFile& report, const std::string& name)
   std::error_code error;
   const std::filesystem::path folder = std::filesystem::weakly_canonical(report.folder),
                               path = std::filesystem::weakly_canonical(folder / name, error).lexically_relative(folder);
-  if (error || name.empty() || path.empty() || *path.begin() == "..") {
+  const bool has_controls = std::any_of(name.begin(), name.end(), [](unsigned char c) { return c < 0x20; });
+  if (error || has_controls || name.empty() || path.empty() || *path.begin() == "..") {
     throw ReportError((report.folder / "report.json").string() + ": it names " + in_quotes(name) +
                       "; expected a file in its own folder");
   }

@@ -20,6 +20,7 @@ inline constexpr glm::vec3 kBackground{0.5f, 0.5f, 1.0f};
 class Screen {
  public:
   Screen(std::uint32_t width, std::uint32_t height) {
+    add_draw();
     frame_.width = width, frame_.height = height;
     frame_.background = kBackground;
     frame_.projection[0][0] = 2.0 / width;
@@ -29,10 +30,11 @@ class Screen {
   }
 
   Screen& triangle(const glm::dvec3& a, const glm::dvec3& b, const glm::dvec3& c, const glm::vec3& color) {
-    const auto first = static_cast<std::uint32_t>(mesh_.positions.size());
-    for (const glm::dvec3& corner : {a, b, c}) mesh_.positions.emplace_back(corner);
-    mesh_.triangles.emplace_back(first, first + 1, first + 2);
-    mesh_.colors.push_back(color);
+    Mesh& mesh = meshes_.back();
+    const auto first = static_cast<std::uint32_t>(mesh.positions.size());
+    for (const glm::dvec3& corner : {a, b, c}) mesh.positions.emplace_back(corner);
+    mesh.triangles.emplace_back(first, first + 1, first + 2);
+    mesh.colors.push_back(color);
     return *this;
   }
   Screen& triangle(const glm::dvec2& a, const glm::dvec2& b, const glm::dvec2& c, double z, const glm::vec3& color) {
@@ -42,19 +44,30 @@ class Screen {
     triangle(low, {high.x, low.y}, high, z, color);
     return triangle(low, high, {low.x, high.y}, z, color);
   }
+  // What is added from now on is in a draw of its own.
+  Screen& draw(const DrawState& state, Cull cull = Cull::none) {
+    if (!meshes_.back().triangles.empty()) add_draw();
+    frame_.draws.back().state = state;
+    frame_.draws.back().cull = cull;
+    return *this;
+  }
   Frame& frame() { return frame_; }
 
   Trace trace() {
     Trace trace;
-    mesh_.name = "triangles";
-    trace.meshes.push_back(std::move(mesh_));
-    frame_.draws.emplace_back();
+    trace.meshes = std::move(meshes_);
     trace.frames.push_back(std::move(frame_));
     return trace;
   }
 
  private:
-  Mesh mesh_;
+  void add_draw() {
+    frame_.draws.emplace_back().mesh = static_cast<std::uint32_t>(meshes_.size());
+    const std::string number = std::to_string(meshes_.size() + 1);
+    meshes_.emplace_back().name = number == "1" ? "triangles" : "triangles " + number;
+  }
+
+  std::vector<Mesh> meshes_;
   Frame frame_;
 };
 
@@ -84,11 +97,14 @@ std::map<std::string, StatedLimit> full_masks(int edges = 1);
 // green and blue in turn.
 Trace perspective(double near, double far, const std::vector<std::array<glm::vec3, 3>>& triangles);
 
-// The cases, in four files.
+// The cases, by file.
 std::vector<HardCase> coverage_cases();
 std::vector<HardCase> depth_cases();
 std::vector<HardCase> frame_cases();
 std::vector<HardCase> surface_cases();
+std::vector<HardCase> owner_cases();
+std::vector<HardCase> state_cases();
 std::vector<HardCase> heavy_cases();
+HardCase crowded_bin();  // 131,072 triangles in one bin
 
 }  // namespace beampipe

@@ -72,7 +72,7 @@ std::vector<HardCase> frame_cases() {
 
 std::vector<HardCase> heavy_cases() {
   // In the last case the sides are so steep that in many rows both lie near the borders of one column of pixels.
-  return {deep_pixel(1'000'000), widest(16384, 16384, "widest_and_highest", 2)};
+  return {deep_pixel(1'000'000), crowded_bin(), widest(16384, 16384, "widest_and_highest", 2)};
 }
 
 }  // namespace beampipe

@@ -26,7 +26,8 @@ double largest_cut(int positions) {
 
 std::vector<HardCase> hard_cases(bool with_heavy) {
   std::vector<HardCase> cases;
-  for (const auto& some : {coverage_cases(), depth_cases(), frame_cases(), surface_cases()})
+  for (const auto& some :
+       {coverage_cases(), depth_cases(), frame_cases(), owner_cases(), state_cases(), surface_cases()})
     cases.insert(cases.end(), some.begin(), some.end());
   for (HardCase& hard_case : cases)
     hard_case.limits["dvm:material=draw"] = {0.75, "triangles of a draw share the colours of a quad's four samples"};

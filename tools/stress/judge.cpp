@@ -6,7 +6,6 @@
 #include <limits>
 
 #include "pipeline/techniques/msaa.h"
-#include "simd/sample_pattern.h"
 
 namespace beampipe {
 namespace {
@@ -18,14 +17,6 @@ SamplePlaces places_of(const Sampling& sampling) {
     for (std::size_t s = 0; s < static_cast<std::size_t>(sampling.pattern.count); ++s)
       places.emplace_back(cell % grid.columns * grid.cell_width() + sampling.pattern.x[s],
                           cell / grid.columns * grid.cell_height() + sampling.pattern.y[s]);
-  return places;
-}
-
-SamplePlaces places_of(const std::vector<SamplePattern>& patterns) {
-  SamplePlaces places;
-  for (const SamplePattern& pattern : patterns)
-    for (std::size_t s = 0; s < static_cast<std::size_t>(pattern.count); ++s)
-      places.emplace_back(pattern.x[s], pattern.y[s]);
   return places;
 }
 
@@ -50,11 +41,13 @@ double format_limit(const std::string& spec) {
   return kFormatError;
 }
 
+using NamedLimit = std::map<std::string, StatedLimit>::value_type;
+
 // The limit for the spec. If there is none, the last option is dropped, then the one before it, and so on.
-const StatedLimit* stated_limit(const HardCase& hard_case, std::string spec) {
+const NamedLimit* stated_limit(const HardCase& hard_case, std::string spec) {
   while (true) {
     const auto stated = hard_case.limits.find(spec);
-    if (stated != hard_case.limits.end()) return &stated->second;
+    if (stated != hard_case.limits.end()) return &*stated;
     const std::size_t end = spec.find_last_of(":,");
     if (end == spec.npos) return nullptr;
     spec.resize(end);
@@ -72,12 +65,14 @@ int one_pass_positions(const std::string& spec) {
 }
 
 // In one pass, a result is within three positions of what counting them gives, and counting is wrong by one more at an
-// edge. Other limits are those of 256 positions.
-StatedLimit one_pass_limit(const StatedLimit* several_passes, int positions) {
+// edge. A limit of all of `beam` is that of 256 positions.
+StatedLimit one_pass_limit(const NamedLimit* stated, int positions) {
   constexpr double kPositions = 4;
-  const StatedLimit counted{kPositions / positions, "areas and colours are limited to what mask positions say"};
-  if (!several_passes || counted.error >= several_passes->error * 256 / positions) return counted;
-  return {several_passes->error * 256 / positions, several_passes->reason};
+  StatedLimit limit{kPositions / positions, "areas and colours are limited to what mask positions say"};
+  if (!stated) return limit;
+  const double error = stated->second.error * (stated->first == "beam" ? 256.0 / positions : 1.0);
+  if (limit.error < error) limit = {error, stated->second.reason};
+  return limit;
 }
 
 // The largest error(x, y, channel, value) over the picture; NaN if one is NaN.
@@ -109,6 +104,14 @@ double distance_from(double number, double low, double high) {
 }
 
 }  // namespace
+
+SamplePlaces places_of(const std::vector<SamplePattern>& patterns) {
+  SamplePlaces places;
+  for (const SamplePattern& pattern : patterns)
+    for (std::size_t s = 0; s < static_cast<std::size_t>(pattern.count); ++s)
+      places.emplace_back(pattern.x[s], pattern.y[s]);
+  return places;
+}
 
 const ExactPicture& Judge::areas() {
   if (case_.picture) return *case_.picture;
@@ -142,17 +145,17 @@ Verdict Judge::judge(const Technique& technique, const RunOptions& options) {
   Verdict verdict;
   verdict.error = largest_error(technique, options);
   if (case_.equals) {
-    const StatedLimit* stated = stated_limit(case_, technique.spec);
-    if (stated) verdict.limit = stated->error, verdict.reason = stated->reason;
+    const NamedLimit* stated = stated_limit(case_, technique.spec);
+    if (stated) verdict.limit = stated->second.error, verdict.reason = stated->second.reason;
     return verdict;
   }
   verdict.limit = format_limit(technique.spec);
   if (const int positions = one_pass_positions(technique.spec)) {
-    const StatedLimit limit = one_pass_limit(stated_limit(case_, "beam"), positions);
+    const StatedLimit limit = one_pass_limit(stated_limit(case_, technique.spec), positions);
     verdict.limit = limit.error, verdict.reason = limit.reason;
-  } else if (const StatedLimit* stated = stated_limit(case_, technique.spec)) {
-    verdict.limit = stated->error;
-    verdict.reason = stated->reason;
+  } else if (const NamedLimit* stated = stated_limit(case_, technique.spec)) {
+    verdict.limit = stated->second.error;
+    verdict.reason = stated->second.reason;
   }
   return verdict;
 }

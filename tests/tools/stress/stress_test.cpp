@@ -137,11 +137,26 @@ TEST_P(HardCases, AreWithinTheirLimits) {
   }
 }
 
+// 131,072 triangles, so that files of it would be large: one of the heavy cases.
+TEST(CrowdedBin, IsExact) {
+  for (const HardCase& hard_case : hard_cases(true)) {
+    if (hard_case.name != "crowded_bin") continue;
+    for (const char* spec : {"beam", "beam:bits=64,slots=4", "beam:order=stream", "msaa:8"}) {
+      RunOptions options;
+      options.memory.modelled = false;
+      EXPECT_TRUE(Judge(hard_case).judge(parse_technique(spec), options).passes()) << spec;
+    }
+    return;
+  }
+  FAIL() << "there is no such case";
+}
+
 INSTANTIATE_TEST_SUITE_P(Techniques, HardCases,
-                         testing::Values("beam", "beam:bits=64,slots=4", "beam:order=sorted", "beam:order=stream",
-                                         "beam:order=stream,passes=0", "beam:order=stream,passes=0,bits=64,layers=1",
-                                         "z3", "beam:rules=paper", "alpha", "msaa:8", "acaa:8,double=stencil", "acaa:8",
-                                         "visibility", "reference"));
+                         testing::Values("beam", "beam:bits=64,slots=4", "beam:bits=32,slots=2", "beam:order=sorted",
+                                         "beam:order=stream", "beam:order=stream,passes=0",
+                                         "beam:order=stream,passes=0,bits=64,layers=1", "z3", "beam:rules=paper",
+                                         "alpha", "msaa:8", "acaa:8,double=stencil", "acaa:8", "visibility",
+                                         "reference"));
 
 }  // namespace
 }  // namespace beampipe

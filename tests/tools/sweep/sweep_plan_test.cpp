@@ -50,6 +50,18 @@ TEST_F(SweepPlanTest, AGridHasEveryCombinationInOrder) {
   EXPECT_EQ(plan.varied_rates, std::vector<std::string>{"dram_bytes_per_clk"});
 }
 
+// Whatever the plan says.
+TEST_F(SweepPlanTest, MessagesAreOneLine) {
+  for (const char* more : {R"(, "hardware": ["no\nfile"])", R"(, "memory_system": ["no\nfile"])",
+                           R"(, "points": [{"techniques": ["be\nam"]}])", R"(, "si\nzes": [])"}) {
+    const std::string what = refusal(more);
+    EXPECT_NE(what, "") << more;
+    EXPECT_EQ(what.find('\n'), what.npos) << what;
+  }
+  EXPECT_THROW(read(R"({"beampipe_sweep": 1, "traces": ["a"], "techniques": ["beam"], "hardware": ["none"]})"),
+               TraceError);
+}
+
 // Where no implementations are named, the hardware's count.
 TEST_F(SweepPlanTest, ImplementationsCountAsRows) {
   Json hardware = parse_json((kSource / "tools/evaluate/hardware/titan_v.json").string());
