@@ -23,7 +23,7 @@ const std::string kReport =
   "results": [{"technique": "beam", "framebuffer_bytes_per_pixel": 6, "peak_bytes_per_pixel": 6, "framebuffer": [],
     "error": {"rmse": 0.02, "bias": 0, "p99": 0.1, "max": 0.2}, "equivalent_msaa": 8,
     "inspections": "beam/inspections.json",
-    "frames": [{"index": 0, "picture": "beam/frame_0000.png",
+    "frames": [{"index": 0, "image": "beam/frame_0000.exr", "picture": "beam/frame_0000.png",
       "wall_ms": {"median": 4, "min": 4, "max": 4, "runs": 1}, "modelled_ms": {"shaders": {"overlap": 2, "sum": 3}},
       "dram_bytes": 800, "stages": [{"stage": "compose", "ops": {"total": 3}, "bytes_read": 5, "bytes_written": 2,
         "dram_bytes": 10, "modelled_ms": {"shaders": 0.5}}]}]}]})";
@@ -66,14 +66,14 @@ TEST_F(HostileReport, TechniquesAndFramesMustBeThere) {
 }
 
 TEST_F(HostileReport, NamesInMessagesAreOneLine) {
-  EXPECT_EQ(refusal(with(kReport, R"("beam/frame_0000.png")", R"("../\n")")),
+  EXPECT_EQ(refusal(with(kReport, R"("beam/frame_0000.exr")", R"("../\n")")),
             R"(it names "../\n"; expected a file in its own folder)");
   EXPECT_EQ(refusal(with(kReport, R"("beam/inspections.json")", R"("a\n")")),
             R"(expected the inspections of "beam" in "beam/inspections.json", found "a\n")");
-  EXPECT_EQ(refusal(with(kReport, R"("beam/frame_0000.png")", R"("a\n.png")")),
-            R"(it names "a\n.png"; expected a file in its own folder)");
+  EXPECT_EQ(refusal(with(kReport, R"("beam/frame_0000.exr")", R"("a\n.exr")")),
+            R"(it names "a\n.exr"; expected a file in its own folder)");
   const std::string long_name(5000, 'x');
-  EXPECT_TRUE(refusal(with(kReport, "beam/frame_0000.png", long_name)).starts_with("it names \"xxx"));
+  EXPECT_TRUE(refusal(with(kReport, "beam/frame_0000.exr", long_name)).starts_with("it names \"xxx"));
 }
 
 // The names of plots are names of files.
