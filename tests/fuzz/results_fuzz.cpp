@@ -55,7 +55,7 @@ void make_page(const ReportFile& report) {
             gnuplot_script(plot, PlotFormat::svg);
           },
           choice.second);
-  const std::string page = page_html(report, tables, figures, report_layers(report, 0), report_inspections(report));
+  const std::string page = page_html(report, tables, figures, page_layers(report, 0), 0, report_inspections(report));
   static const std::ptrdiff_t tags = std::count(page.begin(), page.end(), '<');
   require(std::count(page.begin(), page.end(), '<') == tags);
 }
@@ -92,7 +92,7 @@ void resume(const FuzzFolder& folder, std::string_view text) {
     const std::vector<FrameRecord> found = records.read(frames, specs, sums);
     if (found.empty()) return;
     require(found.size() == 1 && found[0].reports.size() == 1 && found[0].reports[0].index == 0);
-    records.write(found[0]);
+    records.write(found[0], 1, 1);
     const std::vector<FrameRecord> again = records.read(frames, specs, sums);
     require(again.size() == 1 && again[0].sums == found[0].sums &&
             again[0].reports[0].stages == found[0].reports[0].stages);
@@ -108,6 +108,7 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size
   static const FuzzFolder folder;
   static const bool pictures_are_there = [] {
     folder.write("beam/frame_0000.png", kColors);
+    folder.write("beam/frame_0000.exr", encode_exr(Image{2, 1, {0, 0.5f, 1, 1, INFINITY, NAN, -1, 0}}));
     folder.write("beam/frame_0000_counters.exr", encode_exr({2, 1, {{"fragments", {1, NAN}}}}));
     return true;
   }();

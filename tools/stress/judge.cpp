@@ -65,12 +65,12 @@ int one_pass_positions(const std::string& spec) {
 }
 
 // In one pass, a result is within three positions of what counting them gives, and counting is wrong by one more at an
-// edge. A limit of all of `beam` is that of 256 positions.
+// edge. Stated limits are those of the positions that their specs have.
 StatedLimit one_pass_limit(const NamedLimit* stated, int positions) {
   constexpr double kPositions = 4;
   StatedLimit limit{kPositions / positions, "areas and colours are limited to what mask positions say"};
   if (!stated) return limit;
-  const double error = stated->second.error * (stated->first == "beam" ? 256.0 / positions : 1.0);
+  const double error = stated->second.error * one_pass_positions(stated->first) / positions;
   if (limit.error < error) limit = {error, stated->second.reason};
   return limit;
 }

@@ -13,6 +13,9 @@ namespace {
 constexpr const char* kMerged = "if there are more surfaces than slots, two share a mean colour and one depth plane";
 constexpr const char* kCounted = "each surface's count of positions is wrong at its edges, and counts limit the areas";
 
+// Parts that add up to 1 cover at least 1 - 1/e of a pixel if they are independent.
+constexpr double kLostByOver = 1 / std::numbers::e;
+
 constexpr glm::vec3 kColors[] = {kRed, kGreen, kBlue};
 constexpr double kColorGap = 0.625;  // the largest difference of a channel between these colours
 
@@ -103,8 +106,7 @@ void add_limits_of_strips(const Trace& trace, std::map<std::string, StatedLimit>
   limits["beam:order=sorted,bits=32"] = full(32);
   limits[kStream] = full(128);
   limits[kSmallStream] = full(64);
-  // Many small parts cover 1 - 1/e together if they are independent.
-  limits["alpha"] = {std::exp(-1.0), kOver};
+  limits["alpha"] = {kLostByOver, kOver};
   limits["beam:rules=paper"] = {0.45, kPaper};
 }
 
@@ -196,6 +198,7 @@ HardCase crowded_bin() {
       screen.triangle(at(x, y), at(x + 1, y + 1), at(x, y + 1), kRed);
     }
   HardCase result{"crowded_bin", "131,072 triangles in one bin, which cover it without a gap", {}, {}, {}};
+  result.limits = {{"alpha", {kLostByOver, kOver}}, {"beam:rules=paper", {0.45, kPaper}}};
   result.picture = ExactPicture{.elsewhere = glm::dvec4(glm::dvec3(kRed), 1.0)};
   result.trace = screen.trace();
   return result;

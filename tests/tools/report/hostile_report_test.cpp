@@ -71,8 +71,8 @@ TEST_F(HostileReport, NamesInMessagesAreOneLine) {
             R"(it names "../\n"; expected a file in its own folder)");
   EXPECT_EQ(refusal(with(kReport, R"("beam/inspections.json")", R"("a\n")")),
             R"(expected the inspections of "beam" in "beam/inspections.json", found "a\n")");
-  EXPECT_EQ(refusal(with(kReport, R"("beam/frame_0000.png")", R"("a\n.png")")),
-            R"(it names "a\n.png"; expected a file in its own folder)");
+  EXPECT_EQ(refusal(with(kReport, R"("beam/frame_0000.exr")", R"("a\n.exr")")),
+            R"(it names "a\n.exr"; expected a file in its own folder)");
   const std::string long_name(5000, 'x');
   EXPECT_TRUE(refusal(with(kReport, "beam/frame_0000.exr", long_name)).starts_with("it names \"xxx"));
 }
