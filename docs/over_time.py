@@ -15,6 +15,7 @@ import measure
 
 TECHNIQUES = ["msaa:8", "taa:8", "dvm", "dvm:material=draw"]
 FRAMES, DEGREES = 60, 3
+EYE = "26.6493,29.5936,50.1809"  # of models: shows all of the schooner from the front right
 
 
 def flicker(frames, first, last):
@@ -32,7 +33,7 @@ def main():
     with tempfile.TemporaryDirectory() as folder:
         trace = f"{folder}/trace.json"
         for what in sys.argv[2:]:
-            orbit = ["--orbit", str(DEGREES)] if what.endswith(".obj") else []
+            orbit = ["--orbit", str(DEGREES), f"--eye={EYE}"] if what.endswith(".obj") else []
             with measure.unpacked(what) as source:
                 measure.make(program, source, trace, "--frames", str(FRAMES), *orbit)
             results = measure.results(program, "compare", trace, TECHNIQUES, folder, "--ladder", "8")

@@ -21,6 +21,7 @@ capture=(
 test=(
   gnuplot-nox                       # draws the files of `beampipe plot` and the plots of `beampipe report`
   chromium chromium-driver python3  # tests of the report page
+  python3-jsonschema                # holds results to their JSON Schemas
   libgtest-dev libbenchmark-dev
   clang-14 libclang-rt-14-dev       # fuzz targets
   assimp-testmodels                 # glTF models that other programs wrote, sound and broken ones

@@ -192,11 +192,20 @@ class Libraries {
     while (!obj_text.empty()) {
       std::string_view line = take_line(obj_text);
       if (take_word(line) != "mtllib") continue;
-      if (const std::string name = without_escapes(trim(line)); is_there(name)) {
-        read(name);
+      const std::string whole = without_escapes(trim(line));
+      if (is_there(whole)) {
+        read(whole);
         continue;
       }
-      for (std::string_view name = take_word(line); !name.empty(); name = take_word(line)) read(std::string(name));
+      std::vector<std::string> missing;
+      bool has_any = false;
+      for (std::string_view name = take_word(line); !name.empty(); name = take_word(line)) {
+        const bool was_read = read(std::string(name));
+        has_any |= was_read;
+        if (!was_read) missing.emplace_back(name);
+      }
+      if (!has_any && !missing.empty()) missing = {whole};  // whether it is one name or several
+      missing_.insert(missing.begin(), missing.end());
     }
   }
 
@@ -224,18 +233,17 @@ class Libraries {
     return !name.empty() && fs::is_regular_file(folder_ / name, ignored);
   }
 
-  void read(const std::string& name) {
+  // False if there is no such file.
+  bool read(const std::string& name) {
     std::error_code error;
     const fs::path file = fs::weakly_canonical(folder_ / name, error);
     const fs::path relative = file.lexically_relative(folder_);
     if (error || relative.empty() || *relative.begin() == ".." || fs::path(name).is_absolute()) {
       fail_trace(where_, "an mtllib in the OBJ's folder", in_quotes(name));
     }
-    if (!fs::exists(file, error)) {
-      missing_.insert(name);
-    } else if (files_.insert(file).second) {
-      read(file, where_ + ": " + name);
-    }
+    if (!fs::exists(file, error)) return false;
+    if (files_.insert(file).second) read(file, where_ + ": " + name);
+    return true;
   }
 
   void read(const fs::path& file, const std::string& where) {

@@ -169,6 +169,8 @@ TEST_F(ObjMaterialTest, NamesWhatIsMissing) {
   EXPECT_EQ(
       load("", "mtllib none.mtl\nmtllib none.mtl\nusemtl c\nf 1 2 3\nusemtl a\nf 1 2 3\nusemtl b\nf 1 2 3\n").not_read,
       (NotRead{{"mtllib none.mtl (missing)", 1}, {"usemtl a and 2 more (in no mtllib)", 1}}));
+  EXPECT_EQ(load("", "mtllib no such.mtl\nmtllib m.mtl none.mtl\nf 1 2 3\n").not_read,
+            (NotRead{{"mtllib no such.mtl (missing)", 1}, {"mtllib none.mtl (missing)", 1}}));
   EXPECT_TRUE(load("", "usemtl\nf 1 2 3\n").not_read.empty());
 }
 

@@ -32,10 +32,12 @@ Bounds shown_bounds(const Trace& trace);
 struct CameraWishes {
   std::optional<glm::dvec3> eye, target, up;
   std::optional<double> fovy_deg, near, far;
-  glm::dvec3 from{0.5, 0.3, 1.0};  // without an eye: the direction from the target to it, in the upright basis
+  // Without an eye: the direction from the target to it, in the upright basis. Light over the left shoulder then falls
+  // on all sides of a box that are seen.
+  glm::dvec3 from{-0.5, 0.3, 1.0};
 };
 
-// A camera that looks at the middle of what a trace shows in all its frames, from the front right and a little above,
+// A camera that looks at the middle of what a trace shows in all its frames, from the front left and a little above,
 // with y up and a vertical angle of 36 degrees. It is just far enough away to see all of it, and its near and far
 // planes enclose it. Throws std::invalid_argument, one line, if the frames show no triangles, a single point or
 // something that lies behind the eye, or if there is no camera with these wishes.

@@ -24,7 +24,8 @@ constexpr const char* kDescription =
 constexpr const char* kExamples = R"(Examples:
   beampipe make fence -o fence.json
   beampipe compare fence.json -t beam msaa:8 -o out
-  beampipe make model.obj -o model.json        (your own model; the camera is chosen to show all of it)
+  beampipe preview model.obj                   (your own model, as the next command will show it)
+  beampipe make model.obj -o model.json        (the camera is chosen to show all of it, or to stand in a room)
   beampipe run model.json -t beam -o out
   beampipe capture -o gears.json -- glxgears   (a frame of a program that runs)
   beampipe report out                          (makes out/report.html, to open in a browser)

@@ -1,6 +1,7 @@
 #include "tools/cli/model_trace.h"
 
 #include <algorithm>
+#include <cmath>
 #include <iostream>
 #include <optional>
 #include <sstream>
@@ -40,11 +41,12 @@ void say_not_read(const std::string& model, const NotRead& not_read) {
   if (!list.empty()) std::cerr << "beampipe: " << model << ": not read: " << list << "\n";
 }
 
-void say_standpoint(const std::string& model, Standpoint standpoint, bool was_asked) {
-  if (standpoint == Standpoint::outside || was_asked) return;
+// `lit`: the light was chosen for it.
+void say_standpoint(const std::string& model, Standpoint standpoint, bool lit) {
+  if (standpoint == Standpoint::outside) return;
   const bool is_inside = standpoint == Standpoint::inside;
   std::cerr << "beampipe: note: " << model << ": the walls show their backs outside, so the camera "
-            << (is_inside ? "stands inside" : "looks in through an open side")
+            << (is_inside ? "stands inside" : "looks in through an open side") << (lit ? ", with --ambient 0.35" : "")
             << "; move it with --eye and --target, or with --view " << (is_inside ? "outside" : "inside") << "\n";
 }
 
@@ -65,45 +67,41 @@ ImportedModel read_obj_model(const std::string& file, const ModelOptions& option
 Viewpoint viewpoint_of(const Trace& trace, const ModelOptions& options, const Command& command) {
   const CameraWishes wishes = wishes_of(options, command);
   const std::uint32_t width = trace.frames.at(0).width, height = trace.frames[0].height;
-  if (wishes.eye) {
-    return {Standpoint::outside, frame_model(trace, width, height, wishes)};
-  }
+  if (wishes.eye) return {Standpoint::outside, frame_model(trace, width, height, wishes)};
   std::optional<Standpoint> asked;
   if (options.view == "outside") asked = Standpoint::outside;
   if (options.view == "inside") asked = Standpoint::inside;
   return choose_viewpoint(trace, width, height, wishes, asked);
 }
 
-// Where the user says; else over the shoulder of the first frame's camera. In rooms it leaves room for the light from
-// all around, so that white walls are not too bright to show anything.
-Light light_of(const Trace& trace, const ModelOptions& options, Standpoint standpoint) {
+// Where the user says; else over the shoulder of the first frame's camera.
+glm::vec3 light_direction(const Trace& trace, const ModelOptions& options) {
   const Frame& first = trace.frames[0];
-  Light light;
-  if (standpoint != Standpoint::outside) light.color = glm::vec3(1.0f - kSky);
   if (!options.light.empty()) {
-    const glm::dvec3 direction = vector_of(options.light);
-    if (!(glm::length(direction) > 0)) throw UsageError("--light: expected a vector with a length");
-    light.direction = glm::normalize(direction);
-  } else if (first.camera) {
-    light.direction = shoulder_light(*first.camera);
-  } else {  // an orthographic camera
-    light.direction = glm::normalize(glm::vec3(glm::inverse(first.view) * glm::dvec4(0.4, -0.7, -1.0, 0.0)));
+    const double length = glm::length(vector_of(options.light));
+    if (!(length > 0 && std::isfinite(length))) throw UsageError("--light: expected a vector with a length");
+    return vector_of(options.light) / length;
   }
-  return light;
+  if (first.camera) return shoulder_light(*first.camera);
+  // An orthographic camera.
+  return glm::normalize(glm::vec3(glm::inverse(first.view) * glm::dvec4(0.4, -0.7, -1.0, 0.0)));
 }
 
 // Lights a model that has no lights or is to have another one. Without light from all around, real materials are black
-// where the light does not reach, and so are half the walls of a room.
-void add_light(Trace& trace, const ModelOptions& options, const Command& command, Standpoint standpoint) {
-  const Light light = light_of(trace, options, standpoint);
-  const bool has_ambient = !trace.materials.empty() || standpoint != Standpoint::outside;
-  const float sky = command.was_given("--ambient") ? static_cast<float>(options.ambient) : has_ambient ? kSky : 0.0f;
-  if (!(sky >= 0 && sky <= kMostColor)) throw UsageError("--ambient: expected a number from 0 to 65504");
+// where the light does not reach, and so are half the walls of a room. There, and where the user asks for it, it is a
+// part of all light, so that white walls are not too bright to show anything.
+void add_light(Trace& trace, const ModelOptions& options, const Command& command, const Viewpoint& viewpoint) {
+  const bool is_part = command.was_given("--ambient") || viewpoint.standpoint != Standpoint::outside;
+  const float sky = command.was_given("--ambient")        ? static_cast<float>(options.ambient)
+                    : is_part || !trace.materials.empty() ? kSky
+                                                          : 0.0f;
+  if (!(sky >= 0 && sky <= 1)) throw UsageError("--ambient: expected a number from 0 to 1");
+  const Light light{.direction = light_direction(trace, options), .color = glm::vec3(is_part ? 1.0f - sky : 1.0f)};
   for (Frame& frame : trace.frames) {
     if (frame.lighting.lights.empty() || !options.light.empty()) frame.lighting.lights = {light};
-    if (sky == 0) continue;
-    frame.lighting.ambient = {.sky = glm::vec3(sky), .ground = glm::vec3(sky * kGround)};
-    if (frame.camera) frame.lighting.ambient->up = glm::normalize(frame.camera->up);
+    if (sky > 0)
+      frame.lighting.ambient = {
+          .sky = glm::vec3(sky), .ground = glm::vec3(sky * kGround), .up = glm::normalize(viewpoint.camera.up)};
   }
 }
 
@@ -145,9 +143,11 @@ Option add_model_options(Command& command, ModelOptions& options) {
                                 "the direction in which the light travels, in place of the model's own lights "
                                 "(default: over the camera's left shoulder)")
                            .exactly(3, "X,Y,Z");
-  const Option ambient = command.add("--ambient", options.ambient,
-                                     "light from all around, where the other light is 1; from below it is less than "
-                                     "half (default: 0.35 for real materials and inside, else 0)");
+  const Option ambient =
+      command.add("--ambient", options.ambient,
+                  "the part of the light that comes from all around, 0 to 1; half of it or less from below "
+                  "(default: 0.35 where the camera chose to stand inside, else 0; beside real "
+                  "materials' full light, 0.35)");
   const Option lambert = command.add_flag("--lambert", options.lambert,
                                           "shade the model with a light over the camera's shoulder (the default)");
   command.add_flag("--unlit", options.unlit, "draw the plain colours of the materials")
@@ -189,25 +189,26 @@ Trace trace_of_model(const std::string& file, const ModelOptions& options, const
                                                              .animation_if_any = frames > 1 && !moves});
   say_not_read(file, model.not_read);
   Trace& trace = model.trace;
-  Standpoint standpoint = Standpoint::outside;
+  Viewpoint viewpoint;
+  viewpoint.camera.up = {0, 1, 0};
   const bool has_wishes =
       !options.camera.empty() || std::any_of(std::begin(kViewOptions), std::end(kViewOptions),
                                              [&](const char* option) { return command.was_given(option); });
   if (!model.has_camera || has_wishes) {
     try {
-      const Viewpoint viewpoint = viewpoint_of(trace, options, command);
+      viewpoint = viewpoint_of(trace, options, command);
       for (Frame& frame : trace.frames) set_camera(frame, viewpoint.camera);
-      standpoint = viewpoint.standpoint;
     } catch (const std::invalid_argument& error) {
       throw UsageError(file + ": " + error.what());
     }
-    say_standpoint(file, standpoint, !options.view.empty());
+    const bool lit = !options.unlit && !command.was_given("--ambient");
+    if (options.view.empty()) say_standpoint(file, viewpoint.standpoint, lit);
   }
   const glm::vec3 background = options.background.empty() ? glm::vec3(1.0f) : glm::vec3(vector_of(options.background));
   if (glm::clamp(background, 0.0f, kMostColor) != background)
     throw UsageError("--background: expected numbers from 0 to 65504");
   for (Frame& frame : trace.frames) frame.background = background;
-  options.unlit ? remove_light(trace) : add_light(trace, options, command, standpoint);
+  options.unlit ? remove_light(trace) : add_light(trace, options, command, viewpoint);
   return std::move(trace);
 }
 

@@ -10,7 +10,7 @@
 namespace beampipe {
 
 enum class Standpoint {
-  outside,    // at the front right and a little above, as frame_model() stands
+  outside,    // at the front left and a little above, as frame_model() stands
   open_side,  // outside, looking straight into the model through a side that is open
   inside,     // in a room, looking at its middle from where most of it is in sight
 };

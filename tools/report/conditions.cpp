@@ -128,7 +128,7 @@ Json report_conditions(const ReportFile& report) {
   const auto add = [&](const std::string& name, const std::string& text) {
     if (!text.empty()) conditions.push_back(Json::array({name, text}));
   };
-  if (const Json* const frames = report.json.find("frames")) {
+  if (const Json* const frames = report.json.find("frames"); frames && frames->size() > 0) {
     const std::vector<Json>& all = frames->elements();
     add("picture", picture_text(all, report.json.at("trace_frames").get<std::uint64_t>()));
     add("scene", range_of(all, "triangles", "triangle") + ", " + range_of(all, "draws", "draw") + ", " +

@@ -88,11 +88,11 @@ std::vector<Figure> report_figures(const ReportFile& report) {
   }
   figures.push_back(std::move(roofline));
   if (auto causes = causes_plot(report))
-    figures.push_back(
-        {"causes",
-         "Split of the error",
-         "The mean square error of all frames by cause. A cause is negative where it makes up for others.",
-         {{"causes", std::move(*causes)}}});
+    figures.push_back({"causes",
+                       "Split of the error",
+                       "The mean square error of all frames by cause; where surfaces vary, that in visibility. A cause "
+                       "is negative where it makes up for others.",
+                       {{"causes", std::move(*causes)}}});
   return figures;
 }
 

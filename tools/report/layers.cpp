@@ -13,35 +13,36 @@
 namespace beampipe {
 namespace {
 
+double value_of(float value) { return std::isfinite(value) ? static_cast<double>(value) : 0.0; }
+
 std::string png_url(const std::string& png) { return "data:image/png;base64," + to_base64(png); }
 
 // Linear values need more than the 256 levels of a PNG, or differences of good pictures would show nothing but
 // rounding.
 Json picture_of(const Image& image) {
   constexpr double kLevels = 65535;
-  const auto value_of = [](float value) {
-    return std::isfinite(value) && value > 0 ? static_cast<double>(value) : 0.0;
-  };
   const std::size_t pixels = std::size_t{image.width} * image.height;
-  double high = 1;
-  for (std::size_t i = 0; i < 4 * pixels; ++i)
-    if (i % 4 < 3) high = std::max(high, value_of(image.rgba[i]));
+  double low = 0, high = 1;
+  for (std::size_t i = 0; i < 4 * pixels; ++i) {
+    if (i % 4 == 3) continue;
+    low = std::min(low, value_of(image.rgba[i]));
+    high = std::max(high, value_of(image.rgba[i]));
+  }
   std::vector<std::uint8_t> rgb(6 * pixels);
   for (std::size_t i = 0; i < pixels; ++i)
     for (std::size_t c = 0; c < 3; ++c) {
-      const auto q =
-          static_cast<std::uint32_t>(std::lround(kLevels * std::sqrt(value_of(image.rgba[4 * i + c]) / high)));
+      const double part = (value_of(image.rgba[4 * i + c]) - low) / (high - low);
+      const auto q = static_cast<std::uint32_t>(std::lround(kLevels * std::sqrt(part)));
       rgb[3 * i + c] = static_cast<std::uint8_t>(q >> 8);
       rgb[3 * (pixels + i) + c] = static_cast<std::uint8_t>(q & 255);
     }
-  return {{"high", high}, {"png", png_url(encode_png(image.width, 2 * image.height, rgb))}};
+  return {{"low", low}, {"high", high}, {"png", png_url(encode_png(image.width, 2 * image.height, rgb))}};
 }
 
 Json map_of(const std::string& name, const Planes& planes, const std::vector<float>& values) {
   constexpr double kLevels = 65535;
   double low = 0, high = 0;
   bool whole = true;
-  const auto value_of = [](float value) { return std::isfinite(value) ? static_cast<double>(value) : 0.0; };
   for (const float value : values) {
     low = std::min(low, value_of(value));
     high = std::max(high, value_of(value));

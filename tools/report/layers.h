@@ -18,11 +18,11 @@ std::vector<std::size_t> frames_of_page(std::size_t frames, std::uint64_t pixels
 
 // The layers of one frame, which is at `position` in the report:
 //   {"frame": 0, "width": 320, "height": 180,
-//    "techniques": [{"technique": "beam", "picture": {"high", "png"}, "maps": [MAP, ...]}, ...],
+//    "techniques": [{"technique": "beam", "picture": {"low", "high", "png"}, "maps": [MAP, ...]}, ...],
 //    "kinds": [{"name": "fragments", "unit": "...", "definition": "..."}, ...]}
 // Each "png" is a data: URL. That of a picture is twice as high as the picture: its upper half has the high and its
-// lower half the low bytes of q, 0..65535, in red, green and blue; q stands for the linear value high * (q / 65535)^2.
-// A MAP
+// lower half the low bytes of q, 0..65535, in red, green and blue; q stands for the linear value low + (high - low) *
+// (q / 65535)^2. A MAP
 // {"name", "low", "step", "high", "png"} encodes one value per pixel: its red and green bytes form q = 256 red + green,
 // which stands for the value low + q * step. For whole numbers that span at most 65535, step is 1 and the values are
 // exact. low is 0 unless some values are negative. Values that are not finite become 0. Throws ReportError, ImageError,

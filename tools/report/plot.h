@@ -62,7 +62,7 @@ ScatterPlot speed_plot(const std::vector<ReportFile>& reports, const std::string
 BarPlot time_plot(const ReportFile& report, const std::string& implementation);
 
 // Megabytes per frame by stage, one bar per technique. `key` is "logical_bytes", "sector_bytes", "l2_bytes" or
-// "dram_bytes". Nothing if the report's stages do not have this key.
+// "dram_bytes". Nothing if there are no such bytes.
 std::optional<BarPlot> bytes_plot(const ReportFile& report, const std::string& key);
 
 // The mean square error of each technique by cause, in percent, one bar per technique. Nothing if the report has none.

@@ -37,6 +37,10 @@ BarPlot bars_of_stages(const ReportFile& report, BarPlot plot,
   return plot;
 }
 
+bool is_zero(const BarPlot::Part& part) {
+  return std::all_of(part.values.begin(), part.values.end(), [](double value) { return value == 0; });
+}
+
 // The highest rates of the modelled hardware.
 struct Roof {
   std::string implementation;             // the first in the description
@@ -76,7 +80,7 @@ PlotSeries roof_line(const Roof& roof, const ScatterPlot& plot) {
 BarPlot time_plot(const ReportFile& report, const std::string& implementation) {
   BarPlot plot = bars_of_stages(report,
                                 {"time_" + implementation, "Modelled time by stage: " + report.scene,
-                                 "modelled time (" + implementation + "), one stage after the other, ms per frame"},
+                                 "modelled time (" + implementation + "), ms per frame"},
                                 [&](const Json& stage) -> std::optional<double> {
                                   const Json* const times = stage.find("modelled_ms");
                                   return times ? std::optional(times->at(implementation).get<double>()) : std::nullopt;
@@ -95,6 +99,7 @@ std::optional<BarPlot> bytes_plot(const ReportFile& report, const std::string& k
         const Json* const bytes = stage.find(key);
         return bytes ? std::optional(bytes->get<double>() / kMega) : std::nullopt;
       });
+  std::erase_if(plot.parts, is_zero);
   if (plot.parts.empty()) return std::nullopt;
   return plot;
 }

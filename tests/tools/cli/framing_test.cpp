@@ -115,7 +115,9 @@ TEST(FrameModel, EnclosesAllDrawsOfAllFramesWhereTheyAre) {
     trace.frames.emplace_back().draws = {Draw{}, draw};
     trace.frames.back().draws[1].mesh = 1;
   }
-  const Camera camera = frame_model(trace, 320, 180, {});
+  CameraWishes wishes;
+  wishes.from = {0.5, 0.3, 1.0};  // then the farthest corners of the bounds below are corners of the first box
+  const Camera camera = frame_model(trace, 320, 180, wishes);
   EXPECT_EQ(camera.target, glm::dvec3(4, 0, 0));  // from -1 to 9
   const Reach reach = reach_of(box({-1, -1, -1}, {9, 1, 1}), camera, 320, 180);
   EXPECT_LE(reach.across, 0.95 + 1e-9);
@@ -129,6 +131,11 @@ TEST(ShoulderLight, TravelsWithTheViewAndDown) {
   EXPECT_NEAR(glm::length(light), 1.0, 1e-6);
   EXPECT_GT(glm::dot(light, glm::normalize(camera.target - camera.eye)), 0.5);
   EXPECT_LT(light.y, 0.0);
+  // The sides of a box that face the camera are lit.
+  for (int axis = 0; axis < 3; ++axis) {
+    const double towards = camera.eye[axis] - camera.target[axis];
+    EXPECT_LT(light[axis] * (towards > 0 ? 1 : -1), -0.3) << axis;
+  }
 }
 
 }  // namespace

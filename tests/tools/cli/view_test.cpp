@@ -57,7 +57,8 @@ TEST_F(ViewTest, MakeStandsInsideOfARoomAndSaysSo) {
   const Outcome made = run_program({"make", path("room.obj"), "-o", path("room.json")});
   EXPECT_EQ(made.exit_code, 0);
   EXPECT_EQ(made.err, "beampipe: note: " + path("room.obj") +
-                          ": the walls show their backs outside, so the camera stands inside; move it with --eye and "
+                          ": the walls show their backs outside, so the camera stands inside, with --ambient 0.35; "
+                          "move it with --eye and "
                           "--target, or with --view outside\n");
   const Parsed frame = frame_of("room.json");
   const std::vector<double> eye = frame["camera"]["eye"];
@@ -92,6 +93,10 @@ TEST_F(ViewTest, MakeTakesACameraFromAFile) {
 }
 
 TEST_F(ViewTest, MakeTakesLight) {
+  expect_one_error_line(run_program({"make", path("model.obj"), "--ambient", "1.1", "-o", path("x.json")}), 2,
+                        "--ambient: expected a number from 0 to 1");
+  expect_one_error_line(run_program({"make", path("model.obj"), "--light", "0,0,0", "-o", path("x.json")}), 2,
+                        "--light: expected a vector with a length");
   succeed({"make", path("model.obj"), "--light", "0,0,-2", "--ambient", "0.5", "-o", path("model.json")});
   const Parsed frame = frame_of("model.json");
   EXPECT_EQ(frame["lights"][0]["direction"], Parsed({0.0, 0.0, -1.0}));
@@ -99,7 +104,7 @@ TEST_F(ViewTest, MakeTakesLight) {
   succeed({"run", path("model.json"), "-t", "msaa:4", "-o", path("out")});
   const Image image = picture("out");  // the triangle faces the light and is upright
   const float color = image.rgba[4 * (std::size_t{90} * image.width + 150)];
-  EXPECT_NEAR(color, 0.8 * (1 + 0.5 * (0.5 + 0.5 * 0.15 / 0.35)), 2e-3);
+  EXPECT_NEAR(color, 0.8 * 0.5 * (1 + 0.5 + 0.5 * 0.15 / 0.35), 2e-3);
 }
 
 TEST_F(ViewTest, RunAndCompareTakeASizeAndACamera) {

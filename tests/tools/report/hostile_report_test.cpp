@@ -2,6 +2,7 @@
 // path, a command or a number that a plot cannot show.
 
 #include "tests/tools/program.h"
+#include "tools/report/conditions.h"
 #include "tools/report/figures.h"
 #include "tools/report/gnuplot.h"
 #include "tools/report/inspections.h"
@@ -23,7 +24,7 @@ const std::string kReport =
   "results": [{"technique": "beam", "framebuffer_bytes_per_pixel": 6, "peak_bytes_per_pixel": 6, "framebuffer": [],
     "error": {"rmse": 0.02, "bias": 0, "p99": 0.1, "max": 0.2}, "equivalent_msaa": 8,
     "inspections": "beam/inspections.json",
-    "frames": [{"index": 0, "image": "beam/frame_0000.exr", "picture": "beam/frame_0000.png",
+    "frames": [{"index": 0, "image": "beam/frame_0000.exr",
       "wall_ms": {"median": 4, "min": 4, "max": 4, "runs": 1}, "modelled_ms": {"shaders": {"overlap": 2, "sum": 3}},
       "dram_bytes": 800, "stages": [{"stage": "compose", "ops": {"total": 3}, "bytes_read": 5, "bytes_written": 2,
         "dram_bytes": 10, "modelled_ms": {"shaders": 0.5}}]}]}]})";
@@ -74,6 +75,16 @@ TEST_F(HostileReport, NamesInMessagesAreOneLine) {
             R"(it names "a\n.exr"; expected a file in its own folder)");
   const std::string long_name(5000, 'x');
   EXPECT_TRUE(refusal(with(kReport, "beam/frame_0000.exr", long_name)).starts_with("it names \"xxx"));
+}
+
+TEST_F(HostileReport, ConditionsAreThoseThatMakeSense) {
+  const auto conditions = [&](const std::string& members) {
+    return report_conditions(
+        read(with(kReport, R"("clock_mhz")", R"("name": "GPU", "clock_mhz")").insert(1, members + ",")));
+  };
+  EXPECT_GT(conditions(R"("frames": [], "trace_frames": 0)").size(), 0u);
+  EXPECT_THROW(conditions(R"("frames": [{"index": 0}], "trace_frames": 1)"), JsonError);
+  EXPECT_THROW(conditions(R"("made_by": {"command": 7})"), JsonError);
 }
 
 // The names of plots are names of files.

@@ -7,6 +7,7 @@ Chromedriver, and then Chromium, may each take SECONDS to start (60 by default).
 one line that says why.
 """
 
+import base64
 import csv
 import functools
 import http.client
@@ -140,16 +141,25 @@ def table_rows(browser, name):
     return [{key: (value, text) for key, value, text in row} for row in rows]
 
 
-class ReportPage(unittest.TestCase):
+def column_sizes(browser, name):
+    """How much 1 stands for in each column of a table, and the unit in its head: {column: (size, unit)}."""
+    return {key: (float(size), unit) for key, size, unit in browser.run("""
+        const table = document.querySelector(`#table-${arguments[0]}`), row = table.querySelector("tbody tr");
+        return [...table.querySelectorAll("thead th")].map((head, i) =>
+            [row.children[i].dataset.key, head.dataset.size, head.querySelector(".unit").textContent])""", name)}
+
+
+class PageTest(unittest.TestCase):
+    """A page of a scene: `scene` and `command` are arguments of beampipe; `command` lacks the trace and the folder."""
+
     @classmethod
     def setUpClass(cls):
         cls.scratch = tempfile.TemporaryDirectory()
         cls.addClassCleanup(cls.scratch.cleanup)
         cls.folder = pathlib.Path(cls.scratch.name) / "out"
-        trace = str(cls.folder.parent / "fence.json")
-        for arguments in [["make", "fence", "--width", "96", "--height", "54", "--frames", "2", "--orbit", "3", "-o", trace],
-                          ["compare", trace, "-o", str(cls.folder), "--ladder", "1,8", "--inspect", "48,27",
-                           "--inspect-worst", "2", "-t", *TECHNIQUES],
+        cls.trace = str(cls.folder.parent / f"{cls.scene[0]}.json")
+        verb, *options = cls.command
+        for arguments in [["make", *cls.scene, "-o", cls.trace], [verb, cls.trace, "-o", str(cls.folder), *options],
                           ["report", str(cls.folder)]]:
             subprocess.run([BEAMPIPE, *arguments], check=True, stdout=subprocess.DEVNULL)
         cls.report = json.loads((cls.folder / "report.json").read_text())
@@ -162,6 +172,36 @@ class ReportPage(unittest.TestCase):
     def tearDown(self):
         self.assertEqual(self.browser.console(), [], "messages in the browser's console")
 
+    def texts(self, selector):
+        return self.browser.run("return [...document.querySelectorAll(arguments[0])].map((one) => one.textContent)", selector)
+
+    def card(self, technique):
+        """{name: [value, multiple of the baseline's, more...]}"""
+        return dict(self.browser.run("""return [...document.querySelectorAll(`.card[data-technique="${arguments[0]}"] dl div`)]
+            .map((row) => [row.dataset.name, [...row.querySelectorAll("dd")].map((each) => each.textContent)])""", technique))
+
+    def short(self, value):
+        return self.browser.run("return shortText(arguments[0])", value)
+
+    def set_value(self, selector, value, event="change"):
+        """Sets a control, as a user would, and waits until the pictures are loaded."""
+        self.browser.send("POST", "/execute/async", {"args": [selector, value, event], "script": """
+            const [selector, value, event, done] = arguments, control = document.querySelector(selector);
+            control.value = value;
+            control.dispatchEvent(new Event(event, { bubbles: true }));
+            setTimeout(() => reload().then(() => requestAnimationFrame(() => requestAnimationFrame(() => done()))), 50);"""})
+
+    def click_pixel(self, x, y):
+        """Clicks the middle of a pixel of the large picture."""
+        px, py = self.browser.run("""
+            const canvas = document.getElementById("compare"), layer = view.panes[0].layer();
+            canvas.scrollIntoView({ block: "center" });
+            const box = canvas.getBoundingClientRect(), size = box.width / layer.width;
+            return [box.left + (arguments[0] + 0.5) * size, box.top + (arguments[1] + 0.5) * size]""", x, y)
+        self.browser.send("POST", "/actions", {"actions": [{"type": "pointer", "id": "mouse", "actions": [
+            {"type": "pointerMove", "x": round(px), "y": round(py), "duration": 0}, {"type": "pointerDown", "button": 0},
+            {"type": "pointerUp", "button": 0}]}]})
+
     def pixel(self, x, y):
         """The colour of a place on the canvas; x and y are parts of its width and height."""
         return self.browser.run("""
@@ -173,6 +213,28 @@ class ReportPage(unittest.TestCase):
         self.browser.send("POST", "/execute/async", {"args": [], "script": """
             const done = arguments[0]; requestAnimationFrame(() => requestAnimationFrame(() => done()))"""})
 
+    def assert_fits(self, width):
+        """Neither the page nor a view of a table is wider than the window."""
+        self.browser.resize(width, 900)
+        self.wait_for_frame()
+        self.assertLessEqual(self.browser.run("return document.documentElement.scrollWidth"), width)
+        for wide in self.browser.run("""
+                const tables = [...document.querySelectorAll(".table")], wide = [];
+                for (const table of tables)
+                  for (const button of [...table.querySelectorAll(".views button"), null]) {
+                    button?.click();
+                    const box = table.querySelector(".scroll");
+                    if (box.scrollWidth > box.clientWidth)
+                      wide.push([table.id, button?.textContent ?? "", box.scrollWidth, box.clientWidth]);
+                  }
+                return wide"""):
+            self.fail(f"at {width} px: {wide}")
+
+
+class ReportPage(PageTest):
+    scene = ["fence", "--width", "96", "--height", "54", "--frames", "2", "--orbit", "3"]
+    command = ["compare", "--causes", "--ladder", "1,8", "--inspect", "48,27", "--inspect-worst", "2", "-t", *TECHNIQUES]
+
     def test_needs_no_network(self):
         page = (self.folder / "report.html").read_text()
         self.assertEqual(re.findall(r"""(?:src|href)\s*=\s*["'](?!#|data:)[^"']*""", page[:page.index("<script>")]), [])
@@ -181,7 +243,11 @@ class ReportPage(unittest.TestCase):
 
     def test_technique_numbers_equal_the_report(self):
         rows = {row["technique"][0]: row for row in table_rows(self.browser, "techniques")}
+        sizes = column_sizes(self.browser, "techniques")
         self.assertEqual(list(rows), TECHNIQUES + ["reference"])
+        self.assertEqual(sizes["dram_bytes"], (1e6, "MB per frame"))
+        self.assertEqual(sizes["a_buffer_peak_bytes"], (1e6, "MB"))
+        self.assertEqual(sizes["peak_bytes_per_pixel"], (1, "bytes per pixel"))
         for result in self.report["results"]:
             row = rows[result["technique"]]
             for key, expected in [("rmse", result["error"]["rmse"]), ("bias", result["error"]["bias"]),
@@ -192,7 +258,7 @@ class ReportPage(unittest.TestCase):
                                   ("a_buffer_peak_bytes", result["a_buffer_peak_bytes"])]:
                 value, text = row[key]
                 self.assertEqual(float(value), expected, key)
-                shown = float(text.replace("\u202f", ""))
+                shown = float(text.replace("\u202f", "")) * sizes[key][0]
                 self.assertLessEqual(abs(shown - expected), 0.0005 * abs(expected), f"{key} is shown as {text}")
             bound = "at least" if result["equivalent_msaa_is_lower_bound"] else "exact"
             self.assertEqual(row["emr_bound"][0], bound)
@@ -225,15 +291,13 @@ class ReportPage(unittest.TestCase):
                     self.assertEqual(float(shown), expected, f"{table} {key}")
             self.assertLessEqual(set(row), set(keys), f"{table}: columns that are not compared")
 
-    def test_frames_framebuffers_and_claims_equal_the_report(self):
+    def test_frames_and_framebuffers_equal_the_report(self):
         members = lambda key: [{**member, "technique": result["technique"]}
                                for result in self.report["results"] for member in result[key]]
         plain = lambda *keys: {key: lambda record, key=key: record.get(key) for key in keys}
         self.assert_rows("framebuffer", members("framebuffer"),
                          {**plain("technique", "format", "bytes_per_pixel"), "surface": lambda record: record["name"]})
-        self.assert_rows("claims", self.report["claims"],
-                         {**plain("unit", "published_low", "published_high", "ours", "difference", "kind", "source", "beside",
-                                  "command"), "claim": lambda record: record["name"]})
+        self.assertEqual(self.texts("#table-claims"), [], "no published figure is about this trace")
         of = lambda *path: lambda record: functools.reduce(lambda at, key: (at or {}).get(key), path, record)
         self.assert_rows("frames", members("frames"), {
             **plain("technique", "a_buffer_peak_bytes", "logical_bytes", "sector_bytes", "l2_bytes", "dram_bytes", "flicker"),
@@ -243,7 +307,7 @@ class ReportPage(unittest.TestCase):
             **{f"modelled_ms_{way}_{kind}": of("modelled_ms", way, kind)
                for way in ["shaders", "fixed_function"] for kind in ["overlap", "sum"]}})
 
-    def test_memory_of_headline_and_frontier_has_the_a_buffer_in_it(self):
+    def test_memory_of_cards_and_frontier_has_the_a_buffer_in_it(self):
         results = {result["technique"]: result for result in self.report["results"] if result["technique"] != "reference"}
         for result in results.values():
             pixels = 96 * 54
@@ -252,19 +316,72 @@ class ReportPage(unittest.TestCase):
             self.assertAlmostEqual(result["peak_bytes_per_pixel"], surfaces + most / pixels, 9)
         self.assertGreater(results["beam:order=sorted"]["a_buffer_peak_bytes"], 0)
 
-        cards = self.browser.run("return [...document.querySelectorAll('#summary .card')].map((card) => card.textContent)")
-        number = lambda value: self.browser.run("return numberText(arguments[0])", value)
-        best = lambda of: min(of, key=lambda result: result["error"]["rmse"])
-        frugal = best([result for result in results.values() if result["peak_bytes_per_pixel"] <= 80])
-        for card, result in [(cards[0], best(results.values())), (cards[-1], frugal)]:
-            self.assertIn(result["technique"], card)
-            self.assertIn(f"Takes {number(result['peak_bytes_per_pixel'])} bytes per pixel", card)
+        for spec, result in results.items():
+            self.assertEqual(self.card(spec)["off chip"][0], f"{self.short(result['peak_bytes_per_pixel'])} B/pixel")
 
         points = dict(self.browser.run("""return [...document.querySelectorAll("[data-plot=frontier] .point")]
                                               .map((point) => [point.dataset.tip.split("\\n")[0], point.__data__.x])"""))
         self.assertEqual(points, {spec: result["peak_bytes_per_pixel"] for spec, result in results.items()})
 
-    def test_stage_numbers_equal_the_sums_of_the_report(self):
+    def test_cards_hold_each_technique_against_msaa_8(self):
+        results = {result["technique"]: result for result in self.report["results"] if result["technique"] != "reference"}
+        mean = lambda result, value: sum(value(frame) for frame in result["frames"]) / len(result["frames"])
+        self.assertEqual([title.split()[0] for title in self.texts(".card h3")], ["msaa:8", *[s for s in TECHNIQUES if s != "msaa:8"]])
+        self.assertEqual(self.card("msaa:8")["DRAM"][1], "", "the baseline has no multiples")
+        self.assertIn("multiples are of msaa:8", self.texts("#cost-note")[0])
+        for way in ["shaders", "fixed_function"]:
+            self.browser.run("const s = document.getElementById('implementation'); s.value = arguments[0];"
+                             "s.dispatchEvent(new Event('change'))", way)
+            for spec, result in results.items():
+                card = self.card(spec)
+                for name, unit, value in [
+                        ("DRAM", " MB", lambda result: mean(result, lambda frame: frame["dram_bytes"]) / 1e6),
+                        ("on chip", " B/pixel", lambda result: result["on_chip_bytes_per_pixel"]),
+                        ("time", " ms", lambda result: mean(result, lambda frame: frame["modelled_ms"][way]["overlap"])),
+                        ("RMSE", "", lambda result: result["error"]["rmse"]),
+                        ("EMR", "", lambda result: result["equivalent_msaa"])]:
+                    bound = "≥ " if name == "EMR" and result["equivalent_msaa_is_lower_bound"] else ""
+                    self.assertEqual(card[name][0], bound + self.short(value(result)) + unit, f"{spec} {name}")
+                    if spec != "msaa:8":
+                        ratio = float(card[name][1].rstrip("×").replace("\u202f", ""))
+                        self.assertLessEqual(abs(ratio * value(results["msaa:8"]) / value(result) - 1), 0.06, f"{spec} {name}")
+                units = [frame["modelled_ms"][way]["busiest"] for frame in result["frames"]]
+                self.assertEqual(card["time"][2], "bottleneck: " + ", ".join(dict.fromkeys(units)))
+            plots = self.browser.run("return [...document.querySelectorAll('svg[data-plot]')].map((svg) => svg.dataset.plot)")
+            self.assertIn(f"time_{way}", plots, "the choice holds for the plots as well")
+            self.assertIn(f"speed_{way}", plots)
+
+    def test_conditions_tell_what_was_drawn_and_how(self):
+        found = dict(self.browser.run("return [...document.querySelectorAll('#conditions div')]"
+                                      ".map((row) => [...row.children].map((each) => each.textContent))"))
+        self.assertEqual(found["picture"], "96 × 54 pixels, 2 frames")
+        [triangles] = {frame["triangles"] for frame in self.report["frames"]}
+        self.assertEqual(found["scene"].replace("\u202f", ""), f"{triangles} triangles, 2 draws, 1 light")
+        self.assertEqual(found["command"], f"beampipe compare {self.trace} -t {' '.join(TECHNIQUES)} --ladder 1,8 --causes")
+        self.assertEqual(found["hardware"], "Titan V class, 1455 MHz")
+        self.assertRegex(found["memory system"], r"^L2 4\.5 MiB, .*compression on")
+
+    def test_stages_add_up_to_techniques_and_these_are_means_of_frames(self):
+        def read(name):
+            with open(self.folder / "tables" / f"{name}.csv", newline="") as file:
+                return list(csv.DictReader(file))
+        number = lambda text: float(text or "0")
+        for technique in read("techniques"):
+            of = lambda rows: [row for row in rows if row["technique"] == technique["technique"]]
+            stages, frames = of(read("stages")), of(read("frames"))
+            if technique["technique"] == "reference":
+                continue
+            for key in ["logical_bytes", "sector_bytes", "l2_bytes", "dram_bytes"]:
+                self.assertAlmostEqual(sum(number(stage[key]) for stage in stages) / number(technique[key]), 1, 12, key)
+            for way in ["shaders", "fixed_function"]:
+                total = sum(number(stage[f"modelled_ms_{way}"]) for stage in stages)
+                self.assertAlmostEqual(total / number(technique[f"modelled_ms_{way}_sum"]), 1, 12, way)
+            for key in ["logical_bytes", "sector_bytes", "l2_bytes", "dram_bytes", "modelled_ms_shaders_sum",
+                        "modelled_ms_fixed_function_overlap"]:
+                mean = sum(number(frame[key]) for frame in frames) / len(frames)
+                self.assertAlmostEqual(mean / number(technique[key]), 1, 12, key)
+
+    def test_stage_numbers_equal_the_means_of_the_report(self):
         def add(sums, record, prefix=""):
             for key, value in record.items():
                 if isinstance(value, dict):
@@ -278,6 +395,9 @@ class ReportPage(unittest.TestCase):
             for frame in result["frames"]:
                 for stage in frame["stages"]:
                     add(expected.setdefault((result["technique"], stage["stage"]), {}), stage)
+        for sums in expected.values():
+            for key in sums:
+                sums[key] /= 2  # frames
         quotient = lambda a, b: a / b if b else None
         for sums in expected.values():
             sums["ops_per_byte"] = quotient(sums["ops"], sums["logical_bytes"])
@@ -302,11 +422,11 @@ class ReportPage(unittest.TestCase):
         whole = stages["compose"]["items_in"] - fragment["items_out"]
         expected = {"hidden_pairs": raster["lanes_used"] - raster["items_out"], "whole_pixels": whole,
                     "pairs_behind_closed": stages["a_buffer"]["items_out"] - fragment["items_in"] - whole}
-        self.assertEqual({key: int(rows["beam:order=sorted"][key][0]) for key in expected}, expected)
+        self.assertEqual({key: 2 * float(rows["beam:order=sorted"][key][0]) for key in expected}, expected, "two frames")
         self.assertGreater(min(expected.values()), 0)
 
     def test_csv_files_hold_the_same(self):
-        for name in ["techniques", "framebuffer", "stages", "saved", "frames", "claims"]:
+        for name in ["techniques", "framebuffer", "stages", "saved", "frames"]:
             with open(self.folder / "tables" / f"{name}.csv", newline="") as file:
                 lines = list(csv.DictReader(file))
             rows = table_rows(self.browser, name)
@@ -318,15 +438,15 @@ class ReportPage(unittest.TestCase):
                     self.assertTrue(text == value or float(text) == float(value), f"{name} {key}: {text} and {value}")
 
     def test_plots_hold_every_technique(self):
-        for name in ["frontier", "speed"]:
+        for name in ["frontier", "speed_shaders"]:
             tips = self.browser.run("""return [...document.querySelectorAll(`[data-plot=${arguments[0]}] .point`)]
                                            .map((point) => point.dataset.tip.split("\\n")[0])""", name)
             self.assertEqual(sorted(tips), sorted(TECHNIQUES))
-        self.assertEqual(self.browser.run("""return [...document.querySelectorAll("[data-plot=logical_bytes] .bar")]
+        self.assertEqual(self.browser.run("""return [...document.querySelectorAll("[data-plot=dram_bytes] .bar")]
                                                  .map((bar) => bar.dataset.tip.split(":").slice(0, -1).length)""").__len__(),
                          len(TECHNIQUES))
         plots = {path.stem for path in (self.folder / "plots").iterdir()}
-        self.assertLessEqual({"frontier", "speed", "logical_bytes", "roofline_beam_order=sorted", "roofline_msaa_8"}, plots)
+        self.assertLessEqual({"frontier", "speed", "time_shaders", "causes", "logical_bytes", "roofline_beam_order=sorted", "roofline_msaa_8"}, plots)
         self.assertIn(">msaa:8<", (self.folder / "plots" / "frontier.svg").read_text())
 
     def test_plots_hold_the_numbers_of_the_report(self):
@@ -351,6 +471,18 @@ class ReportPage(unittest.TestCase):
             for i, result in enumerate(results.values()):
                 self.assertAlmostEqual(sum(part["values"][i] for part in plot["parts"]),
                                        mean(result, lambda frame: frame[name + "_bytes"]) / 1e6, 9, f"{name} {i}")
+        for way in ["shaders", "fixed_function"]:
+            plot = figures["time_" + way]
+            self.assertEqual(plot["categories"], list(results))
+            for i, result in enumerate(results.values()):
+                self.assertAlmostEqual(sum(part["values"][i] for part in plot["parts"]),
+                                       mean(result, lambda frame: frame["modelled_ms"][way]["sum"]), 12)
+                self.assertAlmostEqual(plot["marks"]["values"][i],
+                                       mean(result, lambda frame: frame["modelled_ms"][way]["overlap"]), 12)
+        split = figures["causes"]
+        for i, spec in enumerate(split["categories"]):
+            self.assertEqual({part["name"]: part["values"][i] for part in split["parts"]},
+                             {cause: 100 * part for cause, part in results[spec]["error_causes"].items()})
         for technique, result in results.items():
             found = points("roofline_" + technique.replace(":", "_"))
             for at, stage in enumerate(result["frames"][0]["stages"]):
@@ -362,6 +494,25 @@ class ReportPage(unittest.TestCase):
                     self.assertAlmostEqual(found[stage["stage"]][1] / (ops / ms / 1e6), 1, 9)
                 else:
                     self.assertNotIn(stage["stage"], found)
+
+    def test_each_stage_and_technique_has_one_colour(self):
+        stages, techniques = {}, {}
+        for card in self.browser.run("return data.summary.cards"):
+            techniques.setdefault(card["technique"], set()).add(card["color"])
+        for plot in self.browser.run("return data.figures.flatMap((figure) => figure.choices.map((choice) => choice.plot))"):
+            is_stage = plot["kind"] == "bars" and plot["name"] != "causes" or plot["name"].startswith("roofline")
+            if plot["name"] == "causes":
+                continue
+            for item in plot.get("parts", plot.get("series")):
+                if item["name"].startswith("roof:"):
+                    continue
+                name = item["name"] if item["name"] != "msaa" else "msaa:8"
+                (stages if is_stage else techniques).setdefault(name, set()).add(item["color"])
+        self.assertGreater(len(stages), 8)
+        for found in [stages, techniques]:
+            for name, colors in found.items():
+                self.assertEqual(len(colors), 1, name)
+        self.assertEqual(len({color for colors in stages.values() for color in colors}), len(stages))
 
     def test_divider_moves_by_keyboard_and_pointer(self):
         left, right = [self.pixel(x, 0.5) for x in (0.48, 0.52)]
@@ -400,9 +551,108 @@ class ReportPage(unittest.TestCase):
         self.browser.press("#compare", "0")
         self.assertEqual(self.browser.run("return view.k"), 1)
 
+    def test_pictures_are_those_of_the_files_and_have_more_levels(self):
+        for result in self.report["results"]:
+            png = base64.b64encode((self.folder / result["frames"][0]["picture"]).read_bytes()).decode()
+            off, levels = self.browser.send("POST", "/execute/async", {"args": [result["technique"], png], "script": """
+                const [technique, png, done] = arguments;
+                Promise.all([loadPicture(technique, 0), decode("data:image/png;base64," + png)]).then(([layer, file]) => {
+                  const shown = layer.canvas.getContext("2d").getImageData(0, 0, layer.width, layer.height).data, levels = new Set();
+                  let off = 0;
+                  for (let i = 0; i < shown.length; ++i) off = Math.max(off, Math.abs(shown[i] - file.rgba[i]));
+                  for (let i = 0; i < layer.width * layer.height; ++i) levels.add(layer.linearAt(i, 0));
+                  done([off, levels.size]);
+                })"""})
+            self.assertLessEqual(off, 1, result["technique"])
+            if result["technique"] == "reference":
+                self.assertGreater(levels, 256)
+
+    def test_exposure_makes_pictures_brighter(self):
+        before = self.pixel(0.25, 0.1)
+        self.set_value("#exposure", 1, "input")
+        self.assertEqual(self.texts("#exposure-text"), ["+1 EV"])
+        linear = lambda byte: byte / 255 / 12.92 if byte <= 10 else ((byte / 255 + 0.055) / 1.055) ** 2.4
+        for was, now in zip(before, self.pixel(0.25, 0.1)):
+            self.assertAlmostEqual(linear(now), min(1, 2 * linear(was)), delta=0.02)
+        self.browser.press("#compare", "EEEE")
+        self.assertEqual(self.browser.run("return document.getElementById('exposure').value"), "-1")
+
+    def test_difference_shows_the_error(self):
+        self.set_value("#left-technique", "msaa:8")
+        self.set_value("#mode", "absolute")
+        mean = self.browser.run("""
+            const [left, right] = ["msaa:8", "reference"];
+            return Promise.all([loadPicture(left, 0), loadPicture(right, 0)]).then(([a, b]) => {
+              let squares = 0;
+              for (let i = 0; i < a.width * a.height; ++i)
+                for (let c = 0; c < 3; ++c) squares += (a.linearAt(i, c) - b.linearAt(i, c)) ** 2;
+              return squares / (3 * a.width * a.height);
+            })""")
+        frame = self.report["results"][TECHNIQUES.index("msaa:8")]["frames"][0]
+        self.assertAlmostEqual(mean ** 0.5, frame["error"]["rmse"], delta=1e-4 * frame["error"]["rmse"] + 1e-5)
+        self.assertTrue(self.browser.run("return document.getElementById('divider').disabled"))
+        self.set_value("#exposure", 10, "input")
+        bright = [self.pixel((x + 0.5) / 96, 27.5 / 54) for x in range(96)]
+        self.assertIn([255, 255, 255], bright, "edges are wrong")
+        self.set_value("#mode", "signed")
+        self.assertRegex(self.texts("#side-legends")[0], r"^left − right.*Red: the left picture is brighter\.")
+        self.browser.press("#compare", KEYS["left"])
+        self.assertRegex(self.texts("#readout")[0], r"left − right: -?\d\.\d{5} -?\d\.\d{5} -?\d\.\d{5}$")
+
+    def test_frames_are_chosen_by_a_slider(self):
+        self.assertEqual(self.browser.run("return [document.getElementById('frame').max, currentFrame().frame]"), ["1", 0])
+        first = [self.pixel(x / 20, 0.5) for x in range(1, 20)]
+        self.set_value("#frame", 1, "input")
+        self.assertEqual(self.texts("#frame-text"), ["1"])
+        self.assertNotEqual([self.pixel(x / 20, 0.5) for x in range(1, 20)], first)
+        frame = self.report["results"][0]["frames"][1]
+        mean = self.browser.run("return loadLayer(arguments[0], 'fragments').then((layer) => layer.mean)", TECHNIQUES[0])
+        self.assertAlmostEqual(mean, frame["pixel_counters"]["fragments"]["mean"], 6)
+
+    def test_a_click_opens_the_record_of_a_pixel_or_says_how_to_get_it(self):
+        self.click_pixel(48 - 20, 27)
+        command = f"beampipe inspect {self.trace} --pixel 28,27 -t {TECHNIQUES[0]}"
+        self.assertIn("was not recorded", self.texts("#picture-record")[0])
+        self.assertEqual(self.texts("#picture-record code"), [command])
+        output = subprocess.run([BEAMPIPE, *command.split()[1:]], check=True, stdout=subprocess.PIPE, text=True).stdout
+        self.assertIn("pixel 28,27", output)
+
+        self.set_value("#divider", 1000, "input")
+        self.click_pixel(48, 27)
+        self.browser.wait_until("return document.querySelector('#picture-record #inspection img')?.naturalWidth > 500")
+        self.assertIn(f"pixel 48,27 of {TECHNIQUES[0]}, frame 0", self.texts("#inspection figcaption")[0])
+        self.set_value("#divider", 0, "input")
+        self.click_pixel(48, 27)
+        self.assertIn("has no histories of reference", self.texts("#picture-record")[0])
+
+        self.set_value("#frame", 1, "input")
+        self.set_value("#divider", 1000, "input")
+        self.click_pixel(10, 10)
+        self.assertEqual(self.texts("#picture-record code"),
+                         [f"beampipe inspect {self.trace} --frame 1 --pixel 10,10 -t {TECHNIQUES[0]}"])
+
+    def test_maps_of_causes_have_two_sides_and_one_scale(self):
+        causes = [kind for kind in self.browser.run("return currentFrame().kinds.map((kind) => kind.name)") if kind.startswith("cause_")]
+        self.assertEqual(len(causes), 7)
+        most = max(abs(end) for frame in self.browser.run("return data.layers") for technique in frame["techniques"]
+                   for each in technique["maps"] if each["name"] in causes for end in [each["low"], each["high"]])
+        for log in [True, False]:
+            self.browser.run("document.getElementById('map-log').checked = arguments[0]", log)
+            for kind in causes:
+                ends = self.browser.run("const s = scaleOf(arguments[0]); return [0, 0.5, 1].map((part) => s.value(part))", kind)
+                for found, expected in zip(ends, [-most, 0, most]):
+                    self.assertAlmostEqual(found, expected, delta=1e-9 * most)
+        parts = self.browser.run("const s = (document.getElementById('map-log').checked = true, scaleOf('cause_mask'));"
+                                 "return [0.01, 0.1, 1].map((part) => s.part(part * arguments[0]))", most)
+        self.assertGreater(parts[1] - parts[0], 0.1, "logarithmic")
+        self.set_value("#map-kind", "cause_mask")
+        self.assertEqual(self.texts("#map-grid figcaption b"), ["beam:order=sorted", "alpha"])
+        self.assertEqual(self.browser.run("return document.querySelectorAll('#maps [data-plot=causes] .bar').length"), 2,
+                         "the split is beside the maps")
+
     def test_heatmap_values_are_those_of_the_counters(self):
         kinds = self.browser.run("return [...document.getElementById('map-kind').options].map((option) => option.value)")
-        self.assertEqual(kinds[:4], ["error", "fragments", "bytes", "merges"])
+        self.assertEqual([kind for kind in kinds if not kind.startswith("cause_")][:4], ["error", "fragments", "bytes", "merges"])
         mean, high = self.browser.run("""
             return loadLayer("msaa:8", "error").then((layer) => {
               let squares = 0, high = 0;
@@ -460,6 +710,18 @@ class ReportPage(unittest.TestCase):
         self.assertEqual(self.browser.run("const tip = document.getElementById('tip');"
                                           "return [tip.hidden, tip.textContent]"), [False, tips[1]])
 
+    def test_tables_fit_the_window(self):
+        for width in [1440, 390]:
+            self.assert_fits(width)
+
+    def test_tables_show_one_view_at_a_time(self):
+        shown = lambda: self.browser.run("""return [...document.querySelectorAll("#table-techniques thead th")]
+                                                .filter((head) => head.checkVisibility()).map((head) => head.dataset.view)""")
+        self.assertEqual(set(shown()), {"", "accuracy"})
+        self.browser.run("document.querySelectorAll('#table-techniques .views button')[1].click()")
+        self.assertEqual(set(shown()), {"", "memory"})
+        self.assertEqual(self.browser.run("return document.querySelectorAll('#table-techniques .views [aria-pressed=true]').length"), 1)
+
     def test_fits_a_phone(self):
         self.browser.resize(360, 740)
         self.wait_for_frame()
@@ -487,15 +749,77 @@ class ReportPage(unittest.TestCase):
         self.assertEqual(paper(), "rgb(255, 255, 255)", "light by choice")
 
 
+class RunPage(PageTest):
+    """A run without errors, of a trace that published figures are about."""
+    scene = ["classroom"]
+    command = ["run", "-t", "msaa:1,prepass", "-t", "msaa:8,color=rgba16f,prepass", "-t", "acaa:8"]
+
+    def test_has_costs_stages_pictures_and_counters(self):
+        self.assertEqual(self.texts(".card h3"), ["msaa:1,prepass baseline", "msaa:8,color=rgba16f,prepass", "acaa:8"])
+        self.assertEqual(list(self.card("acaa:8")), ["DRAM", "on chip", "off chip", "time"])
+        plots = self.browser.run("return [...document.querySelectorAll('svg[data-plot]')].map((svg) => svg.dataset.plot)")
+        self.assertEqual(plots, ["time_shaders", "dram_bytes", "roofline_msaa_1_prepass"])
+        self.assertEqual(self.browser.run("return document.getElementById('right-technique').value"), "msaa:8,color=rgba16f,prepass")
+        self.assertEqual(self.texts("#maps h2"), ["What happens in each pixel?"])
+        self.assertEqual(self.texts("#inspections"), [])
+        self.assertEqual(self.texts("nav a"), ["Cost", "Time", "Pictures", "Maps", "Tables"])
+        self.assertFalse(self.browser.run("return document.getElementById('frames').checkVisibility()"), "there is one frame")
+        self.click_pixel(20, 20)
+        self.assertEqual(self.texts("#picture-record code"),
+                         [f"beampipe inspect {self.trace} --pixel 20,20 -t msaa:1,prepass"])
+
+    def test_claims_are_those_about_this_trace(self):
+        rows = [{key: value for key, (value, _) in row.items()} for row in table_rows(self.browser, "claims")]
+        rendered = [claim for claim in self.report["claims"] if claim["kind"] == "rendered"]
+        self.assertEqual(len(rows), 5)
+        self.assertEqual([row["claim"] for row in rows], [claim["name"] for claim in rendered])
+        for row, claim in zip(rows, rendered):
+            self.assertIn("ACAA", row["claim"])
+            self.assertEqual(float(row["ours"]), claim["ours"])
+            for key in ["unit", "published_low", "published_high", "difference", "source", "beside", "command"]:
+                self.assertEqual(row[key], str(claim[key]) if isinstance(claim[key], str) else row[key])
+                if not isinstance(claim[key], str):
+                    self.assertEqual(float(row[key]), claim[key])
+        with open(self.folder / "tables" / "claims.csv", newline="") as file:
+            self.assertEqual([line["claim"] for line in csv.DictReader(file)], [row["claim"] for row in rows])
+
+    def test_tables_fit_the_window(self):
+        for width in [1440, 390]:
+            self.assert_fits(width)
+
+
+class ComparisonWithoutMsaa(PageTest):
+    scene = ["fence", "--width", "64", "--height", "36"]
+    command = ["compare", "--ladder", "1,8", "-t", "alpha", "beam"]
+
+    def test_the_first_technique_is_the_baseline(self):
+        self.assertEqual(self.texts(".card h3"), ["alpha baseline", "beam"])
+        self.assertIn("multiples are of alpha", self.texts("#cost-note")[0])
+        self.assertEqual(self.browser.run("return document.getElementById('right-technique').value"), "reference")
+
+
+class ComparisonOfOneTechnique(PageTest):
+    scene = ["fence", "--width", "64", "--height", "36"]
+    command = ["compare", "--ladder", "1,8", "--no-memory-model", "-t", "beam"]
+
+    def test_has_neither_multiples_nor_modelled_times(self):
+        self.assertEqual(self.texts(".card h3"), ["beam baseline"])
+        self.assertEqual(list(self.card("beam")), ["on chip", "off chip", "RMSE", "EMR"])
+        self.assertNotIn("multiples", self.texts("#cost-note")[0])
+        self.assertFalse(self.browser.run("return document.getElementById('implementations').checkVisibility()"))
+        plots = self.browser.run("return [...document.querySelectorAll('svg[data-plot]')].map((svg) => svg.dataset.plot)")
+        self.assertEqual(plots, ["frontier", "speed", "logical_bytes", "roofline_beam"])
+
+
 def main():
     try:
-        ReportPage.browser = Browser()
+        PageTest.browser = Browser()
     except CannotStart as error:
         sys.exit(f"report_page_test.py: {error}")
     try:
         unittest.main(argv=sys.argv[:1])
     finally:
-        ReportPage.browser.close()
+        PageTest.browser.close()
 
 
 if __name__ == "__main__":

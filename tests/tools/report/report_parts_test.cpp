@@ -314,6 +314,7 @@ TEST_F(ReportParts, LayersHoldThePicturesAndTheCounters) {
   EXPECT_EQ(maps[1].at("step"), 0.75 / 65535);
   EXPECT_EQ(layers.at("kinds")[0].at("name"), "fragments");
   EXPECT_EQ(layers.at("techniques")[0].at("picture").at("high"), 4.0) << "brighter than white";
+  EXPECT_EQ(layers.at("techniques")[0].at("picture").at("low"), 0.0);
   EXPECT_EQ(layers.at("techniques")[1].at("picture").at("high"), 1.0);
   EXPECT_TRUE(layers.at("techniques")[0].at("picture").at("png").get<std::string>().starts_with(
       "data:image/png;base64,iVBORw0KGgo"));

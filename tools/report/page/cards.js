@@ -1,5 +1,8 @@
 // A card for each technique: its costs and its error, and each as a multiple of the baseline's.
 
+// The technique's colour in cards, plots and maps.
+const colorOf = (technique) => data.summary.cards.find((card) => card.technique === technique)?.color ?? "transparent";
+
 // What a card lists: a name, the number, its text, and more lines that explain it.
 function cardRows(card, implementation) {
   const time = card.modelled_ms?.[implementation], bound = { exact: "", "at least": "≥ ", "at most": "≤ " };

@@ -37,21 +37,22 @@ function showPixel(place, technique, { x, y }) {
   const command = `beampipe inspect ${data.trace}${frame > 0 ? ` --frame ${frame}` : ""} --pixel ${x},${y} -t ${technique}`;
   byId(place).replaceChildren(data.inspectable.includes(technique)
     ? make("p", {}, `${what}This shows it: `, make("code", {}, command))
-    : make("p", {}, `${what}\`beampipe inspect\` has no histories of ${technique}.`));
+    : make("p", {}, what, make("code", {}, "beampipe inspect"), ` has no histories of ${technique}.`));
 }
 
 function makeInspectionList(pixels) {
+  const columns = [["pixel", "word"], ["technique", "word"], ["frame", "number"], ["error (RMS)", "number"], ["causes", "word"]];
   const rows = pixels.map((pixel) => {
     const button = make("button", { type: "button", "aria-pressed": "false" }, `${pixel.x}, ${pixel.y}`);
     button.addEventListener("click", () => showInspection("list-record", pixel));
-    return make("tr", {}, make("th", { scope: "row" }, button), make("td", { class: "word" }, pixel.technique),
-      make("td", { class: "number" }, String(pixel.frame)), make("td", { class: "number" }, numberText(pixel.error)),
-      make("td", { class: "word" }, pixel.causes || "–"));
+    const cells = [pixel.technique, String(pixel.frame), numberText(pixel.error), pixel.causes || "–"];
+    return make("tr", {}, make("th", { scope: "row" }, button), ...cells.map((text, i) =>
+      make("td", { class: columns[i + 1][1], "data-title": columns[i + 1][0] }, text)));
   });
-  const heads = [["pixel", "word"], ["technique", "word"], ["frame", "number"], ["error (RMS)", "number"],
-    ["causes", "word"]].map(([title, kind]) => make("th", { scope: "col", class: kind }, title));
+  const heads = columns.map(([title, kind]) => make("th", { scope: "col", class: kind }, title));
   const table = make("table", {}, make("thead", {}, make("tr", {}, ...heads)), make("tbody", {}, ...rows));
-  return make("div", { class: "scroll", tabindex: "0", role: "region", "aria-label": "Inspected pixels" }, table);
+  return make("div", { class: "table" },
+    make("div", { class: "scroll", tabindex: "0", role: "region", "aria-label": "Inspected pixels" }, table));
 }
 
 // Pages without recorded pixels have no such section.

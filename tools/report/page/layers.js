@@ -45,10 +45,10 @@ function paintedCanvas(width, height, colorAt) {
 // A technique's picture: { width, height, linearAt(i, c), canvas, valueAt(x, y) }, i the number of a pixel and c a
 // channel, and the canvas at an exposure: values are multiplied by 2^exposure.
 async function loadPicture(technique, exposure) {
-  const { high, png } = techniqueNamed(technique).picture, { width, height: twice, rgba } = await decodeOnce(png);
+  const { low, high, png } = techniqueNamed(technique).picture, { width, height: twice, rgba } = await decodeOnce(png);
   const height = twice / 2, below = 4 * width * height;
   const levelAt = (i, c) => 256 * rgba[4 * i + c] + rgba[below + 4 * i + c];
-  const linear = Float32Array.from({ length: 65536 }, (_, q) => high * (q / 65535) ** 2);
+  const linear = Float32Array.from({ length: 65536 }, (_, q) => low + (high - low) * (q / 65535) ** 2);
   const shown = Uint8Array.from(linear, (value) => srgbByte(value * 2 ** exposure));
   const linearAt = (i, c) => linear[levelAt(i, c)];
   const canvas = paintedCanvas(width, height, (i, bytes) => {
@@ -110,7 +110,7 @@ function scaleOf(kind) {
   return { ramp: isSigned ? (t) => d3.interpolateRdBu(1 - t) : d3.interpolateInferno, part: scale, value: scale.invert };
 }
 
-// A technique's map: { width, height, canvas, valueAt(x, y), mean, high }.
+// A technique's map: { width, height, canvas, valueAt(x, y), mean, low, high }.
 async function loadMap(technique, kind) {
   const map = mapNamed(technique, kind), { width, height, rgba } = await decodeOnce(map.png);
   const numberAt = (i) => map.low + map.step * (256 * rgba[4 * i] + rgba[4 * i + 1]);
@@ -123,7 +123,8 @@ async function loadMap(technique, kind) {
     const { r, g, b } = colors.get(value);
     bytes.set([r, g, b], 4 * i);
   });
-  return { width, height, canvas, valueAt: (x, y) => numberText(numberAt(y * width + x)), mean: sum / (width * height), high: map.high };
+  return { width, height, canvas, valueAt: (x, y) => numberText(numberAt(y * width + x)),
+           mean: sum / (width * height), low: map.low, high: map.high };
 }
 
 const loadLayer = (technique, name, exposure = 0) =>

@@ -19,9 +19,9 @@ function startMaps() {
       if (!pane.loaded) return;
       const at = view.cursor, isInside = at && at.x < pane.loaded.width && at.y < pane.loaded.height;
       value.textContent = isInside ? pane.loaded.valueAt(at.x, at.y)
-        : `mean ${shortText(pane.loaded.mean)}, max ${shortText(pane.loaded.high)}`;
+        : `mean ${shortText(pane.loaded.mean)}, ${pane.loaded.low < 0 ? `${shortText(pane.loaded.low)} to` : "max"} ${shortText(pane.loaded.high)}`;
     };
-    pane.element = make("figure", {}, make("figcaption", {}, make("b", {}, technique), value), canvas);
+    pane.element = make("figure", {}, make("figcaption", {}, make("b", { style: `--color: ${colorOf(technique)}` }, technique), value), canvas);
     return addPane(pane);
   };
   let panes = [];

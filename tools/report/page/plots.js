@@ -34,9 +34,10 @@ function lineObstacles(points) {
   });
 }
 
-// The powers of ten, and on short axes also two and five times these.
+// The powers of ten, on short axes also two and five times these, and on very short ones round numbers.
 function logTicks(scale) {
   const [low, high] = scale.domain(), decades = Math.log10(high / low);
+  if (decades < 0.7) return d3.ticks(low, high, 5);
   const values = d3.range(Math.floor(Math.log10(low)), Math.ceil(Math.log10(high)) + 1)
     .flatMap((power) => (decades < 2.5 ? [1, 2, 5] : [1]).map((times) => Number(`${times}e${power}`)));
   return values.filter((value) => value >= low && value <= high);
@@ -49,8 +50,17 @@ function logScale(values, range) {
   return d3.scaleLog().domain([low / room, high * room]).range(range);
 }
 
+// A label below an area that starts at `left` in a plot of this width: in the middle of the plot, on two lines if it is
+// long.
+function addAxisLabel(area, label, width, left, y) {
+  const kCharacter = 6.4, at = label.lastIndexOf(", ") + 1;
+  const lines = label.length * kCharacter < width || at === 0 ? [label] : [label.slice(0, at), label.slice(at + 1)];
+  lines.forEach((line, i) => area.append("text").attr("x", width / 2 - left).attr("y", y + 15 * (i + 1 - lines.length))
+    .attr("text-anchor", "middle").text(line));
+}
+
 function drawScatter(svg, plot, width) {
-  const margin = { left: 74, right: 14, top: 8, bottom: 44 }, height = Math.max(320, Math.min(440, width * 0.7));
+  const margin = { left: 74, right: 14, top: 8, bottom: 52 }, height = Math.max(320, Math.min(440, width * 0.7));
   const inner = { width: width - margin.left - margin.right, height: height - margin.top - margin.bottom };
   const points = plot.series.flatMap((series) =>
     series.points.map((point) => ({ ...point, color: series.color, mark: series.marks })));
@@ -61,8 +71,7 @@ function drawScatter(svg, plot, width) {
     .call(d3.axisBottom(x).tickValues(logTicks(x)).tickFormat(numberText).tickSizeInner(-inner.height).tickPadding(8));
   area.append("g").attr("class", "axis")
     .call(d3.axisLeft(y).tickValues(logTicks(y)).tickFormat(numberText).tickSizeInner(-inner.width).tickPadding(8));
-  area.append("text").attr("x", inner.width / 2).attr("y", inner.height + 38).attr("text-anchor", "middle")
-    .text(plot.x_label);
+  addAxisLabel(area, plot.x_label, width, margin.left, inner.height + 46);
   area.append("text").attr("transform", `translate(-60,${inner.height / 2}) rotate(-90)`).attr("text-anchor", "middle")
     .text(plot.y_label);
   plot.series.forEach((series) => {
@@ -87,7 +96,7 @@ function drawScatter(svg, plot, width) {
 
 function drawBars(svg, plot, width) {
   const step = 26, longest = d3.max(plot.categories, (name) => name.length);
-  const margin = { left: Math.min(width * 0.4, 7 * longest + 12), right: 12, top: 6, bottom: 44 };
+  const margin = { left: Math.min(width * 0.45, 6.6 * longest + 16), right: 12, top: 6, bottom: 52 };
   const height = margin.top + step * plot.categories.length + margin.bottom;
   const inner = { width: width - margin.left - margin.right, height: height - margin.top - margin.bottom };
   const totals = plot.categories.map((_, i) => d3.sum(plot.parts, (part) => part.values[i]));
@@ -97,8 +106,7 @@ function drawBars(svg, plot, width) {
   const area = svg.append("g").attr("transform", `translate(${margin.left},${margin.top})`);
   area.append("g").attr("class", "axis").attr("transform", `translate(0,${inner.height})`)
     .call(d3.axisBottom(x).ticks(inner.width / 80).tickSizeInner(-inner.height).tickPadding(8));
-  area.append("text").attr("x", width / 2 - margin.left).attr("y", inner.height + 38).attr("text-anchor", "middle")
-    .text(plot.y_label);
+  addAxisLabel(area, plot.y_label, width, margin.left, inner.height + 46);
   plot.categories.forEach((name, i) => {
     const inUse = plot.parts.map((part) => ({ ...part, value: part.values[i] })).filter((part) => part.value !== 0);
     const list = inUse.map((part) => `${part.name}: ${numberText(part.value)}`);
@@ -107,8 +115,10 @@ function drawBars(svg, plot, width) {
       .attr("transform", `translate(0,${i * step})`)
       .attr("data-tip", `${name}: ${numberText(totals[i])}, ${plot.y_label}\n${list.join("\n")}`)
       .attr("aria-label", function () { return this.dataset.tip; });
-    bar.append("text").attr("x", -8).attr("y", step / 2).attr("text-anchor", "end").attr("dominant-baseline", "central")
-      .text(name);
+    const room = Math.floor((margin.left - 12) / 6.4);  // in characters
+    bar.append("text").attr("x", -12).attr("y", step / 2).attr("text-anchor", "end").attr("dominant-baseline", "central")
+      .text(name.length > room ? `${name.slice(0, room - 1)}…` : name);
+    bar.append("rect").attr("x", -8).attr("y", 3).attr("width", 4).attr("height", step - 6).attr("fill", colorOf(name));
     const ends = { 1: 0, [-1]: 0 };  // of the parts on each side of zero
     for (const part of inUse) {
       const sign = Math.sign(part.value), from = ends[sign], to = from + part.value;

@@ -16,10 +16,12 @@ function sortTable(heads, body, rows, column) {
   body.replaceChildren(...sorted.map((row) => row.element));
 }
 
-// How the numbers of each column are read: { size, unit }. `isWord`: some of its cells are texts.
+// How the numbers of each column are read: { size, unit }. `isWord`: some of its cells are texts. The reference, whose
+// counts are much larger, has no say in it.
 function columnFormats(table) {
+  const rows = table.rows.filter((row) => row[0] !== "reference");
   return table.columns.map((column, i) => {
-    const cells = table.rows.map((row) => row[i]), isWord = cells.some((cell) => typeof cell === "string");
+    const cells = rows.map((row) => row[i]), isWord = cells.some((cell) => typeof cell === "string");
     const unit = column.unit || (isWord ? "" : "number");
     return { isWord, ...readableUnit(unit, d3.max(cells.filter((cell) => typeof cell === "number"), Math.abs) ?? 0) };
   });
@@ -28,13 +30,14 @@ function columnFormats(table) {
 function makeRow(table, formats, cells) {
   const element = make("tr");
   cells.forEach((cell, i) => {
-    const column = table.columns[i], { size } = formats[i];
+    const column = table.columns[i], { size, unit } = formats[i];
     const shown = make(i === 0 ? "th" : "td", {
       class: typeof cell === "string" ? "word" : "number",
       "data-key": column.key,
       "data-value": cell ?? "",
       "data-title": column.title,
       "data-view": column.view,
+      "data-unit": typeof cell === "number" && (size !== 1 || /^(ms|bytes)\b/.test(unit)) ? unit.split(" ")[0] : "",
     }, numberText(typeof cell === "number" ? cell / size : cell));
     if (i === 0) shown.scope = "row";
     element.append(shown);
