@@ -29,7 +29,7 @@ def print_causes(spec, found):
     print_head(f"`{spec}`", "RMSE × 1000", *names)
     for scene, by_spec in found.items():
         print_row(scene, f"{1000 * by_spec[spec]['error']['rmse']:.2f}",
-                  *(f"{100 * by_spec[spec]['error_causes'][name]:.0f} %" for name in names))
+                  *(f"{round(100 * by_spec[spec]['error_causes'][name])} %" for name in names))
 
 
 def print_orders(found):
