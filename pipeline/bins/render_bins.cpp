@@ -3,9 +3,11 @@
 #include <malloc.h>
 #include <tbb/parallel_for.h>
 
+#include <algorithm>
 #include <map>
 #include <memory>
 #include <mutex>
+#include <optional>
 #include <utility>
 
 #include "pipeline/bins/bands.h"
@@ -88,6 +90,23 @@ struct GeometryPass {
   std::uint32_t first_pass_;
 };
 
+// A bin without triangles.
+struct EmptyBin {
+  Bin bin;
+  std::optional<glm::vec4> color{};  // that all pixels have
+  bool has_counts = false;           // is any pixel counter not 0?
+
+  // To call when the bin is rendered.
+  void finish() {
+    bin.finish_memory();
+    const std::vector<glm::vec4>& picture = bin.picture();
+    const auto differs = [&](const glm::vec4& pixel) { return pixel != picture.front(); };
+    if (!picture.empty() && std::none_of(picture.begin(), picture.end(), differs)) color = picture.front();
+    for (const auto& [name, values] : bin.pixel_counters())
+      has_counts |= std::any_of(values.begin(), values.end(), [](float value) { return value != 0; });
+  }
+};
+
 // Renders bins without triangles, one of each size.
 class EmptyBins {
  public:
@@ -97,14 +116,21 @@ class EmptyBins {
 
   // Not thread-safe.
   void prepare(const Tile& tile) {
-    std::unique_ptr<Bin>& bin = bins_[size_of(tile)];
-    if (bin) return;
-    bin = std::make_unique<Bin>(context_, tile, list_, stages_, plan_.framebuffer);
-    render_(*bin);
-    bin->finish_memory();
+    std::unique_ptr<EmptyBin>& empty = bins_[size_of(tile)];
+    if (empty) return;
+    empty.reset(new EmptyBin{.bin = {context_, tile, list_, stages_, plan_.framebuffer}});
+    render_(empty->bin);
+    empty->finish();
   }
 
-  const Bin& like(const Tile& tile) const { return *bins_.at(size_of(tile)); }
+  const EmptyBin& like(const Tile& tile) const { return *bins_.at(size_of(tile)); }
+
+  // The colour of some of them; 0 if there is none.
+  glm::vec4 color() const {
+    for (const auto& [size, empty] : bins_)
+      if (empty->color) return *empty->color;
+    return glm::vec4(0.0f);
+  }
 
  private:
   using Size = std::pair<std::size_t, std::size_t>;
@@ -115,7 +141,7 @@ class EmptyBins {
   const std::vector<std::string>& stages_;
   const BinRenderer& render_;
   const TriangleList list_;
-  std::map<Size, std::unique_ptr<Bin>> bins_;
+  std::map<Size, std::unique_ptr<EmptyBin>> bins_;
 };
 
 // Adds up what bins recorded. Only sums and the picture are kept, so that memory use stays that of the picture.
@@ -129,8 +155,19 @@ class FrameRecorder {
         first_pass_(first_pass),
         texture_pass_starts_(trace_ ? texture_passes_.size() : 0) {
     const Frame& frame = context.frame;
-    result_.image = {frame.width, frame.height, std::vector<float>(4 * pixels())};
+    result_.image = {frame.width, frame.height, {}};
     for (const std::string& name : stages) result_.stages.push_back(StageCounters{name});
+  }
+
+  // Before bins are added: the picture starts with this colour, and bins without triangles that have it need not write
+  // theirs.
+  void start(const glm::vec4& color) {
+    color_ = color;
+    std::vector<glm::vec4> row(context_.frame.width, color);
+    std::vector<float>& rgba = result_.image.rgba;
+    rgba.reserve(4 * pixels());
+    for (std::uint32_t y = 0; y < context_.frame.height; ++y)
+      rgba.insert(rgba.end(), &row.front().x, &row.front().x + 4 * row.size());
   }
 
   // Thread-safe. `index`: of the bin, in the order in which bins are drawn.
@@ -138,11 +175,13 @@ class FrameRecorder {
     if (!texture_passes_.empty()) texture_passes_[index] = bin.take_texture_passes();
     if (!texture_pass_starts_.empty()) texture_pass_starts_[index] = bin.texture_pass_starts();
     if (trace_) trace_->add(*bin.dram_log(), first_pass_, index);
-    add(bin, bin.tile);
+    add(bin, bin.tile, true, true);
   }
 
   // Thread-safe. Adds for `tile` what a bin of the same size recorded, which has no triangles either.
-  void add_empty(const Bin& bin, const Tile& tile) { add(bin, tile); }
+  void add_empty(const EmptyBin& empty, const Tile& tile) {
+    add(empty.bin, tile, empty.has_counts, empty.color != color_);
+  }
 
   // `rasterizes`: the name of the stage that does.
   FrameResult finish(const GeometryPass& pass, const std::string& rasterizes, std::uint64_t list_bytes) {
@@ -166,7 +205,8 @@ class FrameRecorder {
   }
 
  private:
-  void add(const Bin& bin, const Tile& tile) {
+  // `has_counts`, `has_picture`: are the pixel counters and the picture other than what the frame starts with?
+  void add(const Bin& bin, const Tile& tile, bool has_counts, bool has_picture) {
     std::map<std::string, std::vector<float>*> counters;  // of the frame
     {
       const std::lock_guard lock(mutex_);
@@ -189,9 +229,10 @@ class FrameRecorder {
         counters[name] = &of_frame;
       }
     }
-    for (const auto& [name, values] : bin.pixel_counters())
-      copy_to_frame(values, tile, context_.frame, *counters.at(name));
-    if (!bin.picture().empty()) place(bin.picture(), tile);
+    if (has_counts)
+      for (const auto& [name, values] : bin.pixel_counters())
+        copy_to_frame(values, tile, context_.frame, *counters.at(name));
+    if (has_picture && !bin.picture().empty()) place(bin.picture(), tile);
   }
 
   // What was recorded of the first pass over the geometry is part of the later ones too. Those of the depth pre-pass
@@ -242,6 +283,7 @@ class FrameRecorder {
   const FrameContext& context_;
   std::mutex mutex_;
   FrameResult result_;
+  glm::vec4 color_{0.0f};  // that the picture starts with
   std::map<std::string, std::uint64_t> buffer_peaks_;
   std::vector<TexturePasses> texture_passes_;  // by bin; empty without textures
   int passes_ = 1, prepasses_ = 0;
@@ -275,6 +317,7 @@ FrameResult render_bins(const FrameContext& context, const BinPlan& plan, const 
     const auto is_shared = [&](std::size_t i) { return shares_empty_bins && lists[i].empty(); };
     for (std::size_t i = 0; i < lists.size(); ++i)
       if (is_shared(i)) empty_bins.prepare(grid.tiles[band.first + i]);
+    if (band.first == 0) recorder.start(empty_bins.color());
     tbb::parallel_for(std::size_t{0}, lists.size(), [&](std::size_t i) {
       const auto is_here = [&](const PixelAddress& pixel) { return holds(grid.tiles[band.first + i], pixel); };
       if (run.pixels && std::none_of(run.pixels->begin(), run.pixels->end(), is_here)) return;

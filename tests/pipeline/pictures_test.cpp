@@ -22,6 +22,19 @@ TEST(Pictures, AnEmptyFrameIsTheBackground) {
   }
 }
 
+// Bins of four sizes, one of which has triangles.
+TEST(Pictures, BinsWithoutTrianglesAreTheBackground) {
+  const glm::vec3 background(0.25f, 0.5f, 0.75f);
+  const Trace trace = pixel_trace(70, 38, quad(40, 4, 42, 7, 0.5, kRed), background);
+  for (const char* spec : {"beam", "beam:order=sorted", "msaa:4", "taa:4", "reference"}) {
+    const Image image = picture(spec, trace);
+    for (std::uint32_t y = 0; y < 38; ++y)
+      for (std::uint32_t x = 0; x < 70; ++x)
+        ASSERT_EQ(pixel(image, x, y), x >= 40 && x < 42 && y >= 4 && y < 7 ? kRed : background)
+            << spec << ", pixel " << x << ", " << y;
+  }
+}
+
 TEST(Pictures, RowZeroIsOnTop) {
   const Trace trace = pixel_trace(4, 4, quad(0, 0, 4, 1, 0.5, kRed), kBlue);
   for (const char* spec :
