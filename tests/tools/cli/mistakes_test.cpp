@@ -48,7 +48,7 @@ TEST_F(ProgramTest, EveryMistakeIsOneLineAndLeavesNothing) {
       {{"run", trace, "-t", "beam"}, 2, "--output"},
       {{"run", trace, "-o", out}, 2, "--technique"},
       {{"run", trace, "-t", "nonsense", "-o", out}, 2, "nonsense"},
-      {{"run", trace, "-t", "beam\nbeam", "-o", out}, 2, "beam beam"},
+      {{"run", trace, "-t", "beam\nbeam", "-o", out}, 2, "beam?beam"},
       {{"run", trace, "-t", "msaa:3", "-o", out}, 2, "msaa:3"},
       {{"run", trace, "-t", "beam", "beam", "-o", out}, 2, "twice"},
       {{"run", "-t", "beam", trace, "-o", out}, 2, "was taken for a technique; write the trace before -t"},
