@@ -43,6 +43,10 @@ TEST(Determinism, AnyInstructionSetAndNumberOfThreadsWithMaterials) {
   expect_same_everywhere(random_surfaces(100, 70, 150, 3));
 }
 
+TEST(Determinism, AnyInstructionSetAndNumberOfThreadsWithDrawState) {
+  expect_same_everywhere(random_states(60, 50, 40, 3));
+}
+
 // One bin without triangles stands for all of its size, but not where a timeline is recorded.
 TEST(Determinism, BinsWithoutTrianglesAreAlike) {
   for (const Trace& trace :
@@ -99,6 +103,8 @@ void expect_same_in_any_tile(const Trace& trace) {
 TEST(Determinism, AnyTileSize) { expect_same_in_any_tile(random_trace(90, 70, 200, 5)); }
 
 TEST(Determinism, AnyTileSizeWithMaterials) { expect_same_in_any_tile(random_surfaces(60, 50, 100, 5)); }
+
+TEST(Determinism, AnyTileSizeWithDrawState) { expect_same_in_any_tile(random_states(60, 50, 30, 5)); }
 
 TEST(Determinism, TheFrameIsTheSameWhereverTilesFallInIt) {
   // Rendered alone, the lower right quarter of a frame has the same pixels in other tiles.

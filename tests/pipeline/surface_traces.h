@@ -48,4 +48,25 @@ inline Trace random_surfaces(std::uint32_t width, std::uint32_t height, int coun
   return trace;
 }
 
+// Random triangles with materials in four draws, whose fixed-function state varies as in a captured frame: viewports,
+// a scissor, depth range, bias, function and clear, culling.
+inline Trace random_states(std::uint32_t width, std::uint32_t height, int count, std::uint32_t seed) {
+  Trace trace = random_surfaces(width, height, count, seed);
+  std::vector<Draw>& draws = trace.frames[0].draws;
+  draws.assign(4, draws[0]);
+  draws[1].state.viewport =
+      Viewport{0, static_cast<float>(height), static_cast<float>(width) * 0.75f, -static_cast<float>(height)};
+  draws[1].state.depth.bias = {0.0625f, 0.5f, 0.125f};
+  draws[1].cull = Cull::back;
+  draws[2].state.scissor = Scissor{static_cast<std::int32_t>(width / 4), 3, width / 2, height / 2};
+  draws[2].state.depth.cleared_before = true;
+  draws[2].state.depth.far = 0.5f;
+  draws[3].state.front_is_clockwise = true;
+  draws[3].cull = Cull::front;
+  draws[3].state.depth.function = Compare::less_equal;
+  draws[3].state.depth.near = 0.25f;
+  draws[3].state.depth.clip = false;
+  return trace;
+}
+
 }  // namespace beampipe
