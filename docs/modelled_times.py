@@ -6,22 +6,26 @@ usage: docs/modelled_times.py times  PROGRAM [--hardware A,B,...] DIR...
        docs/modelled_times.py ratios PROGRAM [--hardware A,B,...] DIR...
        docs/modelled_times.py errors PROGRAM [--hardware A,B,...] DIR...
        docs/modelled_times.py beam   PROGRAM [--hardware A,B,...] DIR...
+       docs/modelled_times.py traffic PROGRAM [--hardware A,B,...] DIR...
 
 PROGRAM is for instance beampipe; `beampipe run TRACE -t SPEC... -o DIR` wrote the folders. `times` prints milliseconds,
 and the equivalent MSAA rate where `beampipe compare` wrote the folder.
 `bins` adds what a bin has on chip. `ratios` divides by the time of the published pipeline, beside the paper's ratios;
 `errors` prints those ratios alone.
-`beam` divides the times of beam by those of MSAA, for several prices of shading.
+`beam` divides the times of beam by those of MSAA, for several prices of shading. `traffic` prints what a bin has on chip,
+DRAM bytes of geometry and of the rest, and milliseconds.
 """
 import argparse
 import json
 import subprocess
 
+import measure
 from measure import print_head, print_row
 
 PUBLISHED_MS = {"beam:rules=paper": 30.2, "msaa:32": 24.0, "msaa:128": 78.0, "msaa:256": 198.0}  # Titan V, classroom
 BASE = "beam:rules=paper"
 COSTS = (0, 100, 300, 1000, 3000, 10000)  # operations per invocation
+GEOMETRY = {"vertex_setup", "bin_sort", "conservative_raster", "sample_raster", "beam_fragment", "shade"}
 BEAM, MSAA = "beam:bin=16", ("msaa:8", "msaa:8,prepass", "msaa:32")
 
 
@@ -70,10 +74,13 @@ def times(program, hardware, folders):
             print_row(f"`{technique}`", emr[technique], *cells_of(of))
 
 
+def kib_per_bin(result):
+    return sum(buffer["peak_bytes"] for buffer in result["frames"][0]["buffers"] if buffer["held"] == "bin") / 1024
+
+
 def bins(program, hardware, folders):
     for folder, found in model(program, hardware, folders).items():
-        kib = {result["technique"]: sum(buffer["peak_bytes"] for buffer in result["frames"][0]["buffers"]
-                                        if buffer["held"] == "bin") / 1024 for result in results_of(folder)}
+        kib = {result["technique"]: kib_per_bin(result) for result in results_of(folder)}
         print_head("technique", "KiB per bin", *names_of(found))
         for technique, of in found.items():
             print_row(f"`{technique}`", f"{kib[technique]:.0f}", *cells_of(of))
@@ -120,9 +127,31 @@ def beam(program, hardware, folders):
             print_row(f"`{BEAM}` / `{msaa}`", f"`{name}`", *cells)
 
 
+def dram_megabytes(result):
+    """Of geometry (setup triangles, bin lists, attributes of triangles), and of pixels and the picture."""
+    geometry = rest = 0
+    for name, stage in measure.stages(result).items():
+        if name.removeprefix("prepass_") in GEOMETRY:
+            geometry += stage["dram_bytes"]
+        else:
+            rest += stage["dram_bytes"]
+    return geometry / 1e6, rest / 1e6
+
+
+def traffic(program, hardware, folders):
+    found = model(program, hardware, folders)
+    print_head("scene", "technique", "KiB per bin", "DRAM MB: geometry", "pixels", *names_of(found[folders[0]]))
+    for folder, times in found.items():
+        for result in results_of(folder):
+            name = result["technique"]
+            geometry, pixels = dram_megabytes(result)
+            print_row(scene_of(folder), f"`{name}`", f"{kib_per_bin(result):.0f}", f"{geometry:.1f}", f"{pixels:.1f}",
+                      *(f"{time['sum']:.2f}" for time in times[name].values()))
+
+
 if __name__ == "__main__":
     parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
-    parser.add_argument("table", choices=("times", "bins", "ratios", "errors", "beam"))
+    parser.add_argument("table", choices=("times", "bins", "ratios", "errors", "beam", "traffic"))
     parser.add_argument("program")
     parser.add_argument("--hardware", default="titan_v")
     parser.add_argument("folders", nargs="+")

@@ -1,20 +1,20 @@
 #!/usr/bin/env python3
 """Compares the error and flicker of TAA and DVM with those of MSAA over 60 frames, for docs/techniques.md.
 
-usage: docs/over_time.py PROGRAM SCENE... MODEL.obj...
+usage: docs/over_time.py [--degrees N] PROGRAM SCENE... MODEL.obj...
 
 PROGRAM is for instance beampipe. Scenes are measured under a still camera, and models under one that goes around them by
-3 degrees. A model may be compressed with xz.
+N degrees (default: 3). A model may be compressed with xz.
 """
+import argparse
 import math
 import pathlib
-import sys
 import tempfile
 
 import measure
 
 TECHNIQUES = ["msaa:8", "taa:8", "dvm", "dvm:material=draw"]
-FRAMES, DEGREES = 60, 3
+FRAMES = 60
 EYE = "26.6493,29.5936,50.1809"  # of models: shows all of the schooner from the front right
 
 
@@ -25,15 +25,18 @@ def flicker(frames, first, last):
 
 
 def main():
-    if len(sys.argv) < 3:
-        sys.exit(__doc__.strip())
-    program = sys.argv[1]
+    parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
+    parser.add_argument("--degrees", type=float, default=3)
+    parser.add_argument("program")
+    parser.add_argument("scenes", nargs="+")
+    options = parser.parse_args()
+    program = options.program
     measure.print_head("trace, 320 x 180", "technique", "first frame", "after 8", f"after {FRAMES}", "flicker, frames 2-8",
                        f"{FRAMES - 7}-{FRAMES}")
     with tempfile.TemporaryDirectory() as folder:
         trace = f"{folder}/trace.json"
-        for what in sys.argv[2:]:
-            orbit = ["--orbit", str(DEGREES), f"--eye={EYE}"] if what.endswith(".obj") else []
+        for what in options.scenes:
+            orbit = ["--orbit", f"{options.degrees:g}", f"--eye={EYE}"] if what.endswith(".obj") else []
             with measure.unpacked(what) as source:
                 measure.make(program, source, trace, "--frames", str(FRAMES), *orbit)
             results = measure.results(program, "compare", trace, TECHNIQUES, folder, "--ladder", "8")

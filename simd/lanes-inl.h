@@ -97,13 +97,23 @@ template <class D>
 HWY_INLINE Lanes<D> choose(LaneMask<hn::RebindToFloat<D>> condition, Lanes<D> yes, Lanes<D> no) {
   return select(condition, yes, no);
 }
+// Min and Max of x86 give their second operand where the two compare equal (0 and -0) or not at all. Other processors
+// order zeros and pass on what is not a number, so there the rule is written out.
 template <class D>
 HWY_INLINE Lanes<D> lesser(Lanes<D> a, Lanes<D> b) {
+#if HWY_ARCH_X86
   return Lanes<D>(hn::Min(a.raw, b.raw));
+#else
+  return select(a < b, a, b);
+#endif
 }
 template <class D>
 HWY_INLINE Lanes<D> greater(Lanes<D> a, Lanes<D> b) {
+#if HWY_ARCH_X86
   return Lanes<D>(hn::Max(a.raw, b.raw));
+#else
+  return select(a > b, a, b);
+#endif
 }
 template <class D>
 HWY_INLINE Lanes<D> magnitude(Lanes<D> a) {

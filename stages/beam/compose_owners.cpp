@@ -14,7 +14,9 @@
 
 // One version for vectors of 256 bits, which hold a whole mask, and one without vectors: each takes a minute to
 // compile.
-#define HWY_DISABLED_TARGETS (HWY_SSSE3 | HWY_SSE4 | HWY_AVX3 | HWY_AVX3_DL)
+#undef HWY_DISABLED_TARGETS
+#define HWY_DISABLED_TARGETS \
+  (HWY_SSSE3 | HWY_SSE4 | HWY_AVX3 | HWY_AVX3_DL | HWY_SVE | HWY_SVE2 | HWY_SVE_256 | HWY_SVE2_128)
 #undef HWY_TARGET_INCLUDE
 #define HWY_TARGET_INCLUDE "stages/beam/compose_owners.cpp"
 #include "hwy/foreach_target.h"
@@ -32,7 +34,7 @@ namespace hn = hwy::HWY_NAMESPACE;
 template <std::size_t Words>
 class Mask {
  public:
-  HWY_INLINE Mask() = default;
+  Mask() = default;
   HWY_INLINE explicit Mask(const std::uint32_t* words) {
     for (std::size_t i = 0; i < kParts; ++i) part_[i] = hn::LoadU(D(), words + i * kLanes);
   }

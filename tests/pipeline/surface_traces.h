@@ -1,8 +1,6 @@
 // Small traces with materials for the pipeline tests, in pixel coordinates.
 #pragma once
 
-#include <random>
-
 #include "tests/pipeline/test_traces.h"
 
 namespace beampipe {
@@ -33,15 +31,15 @@ inline Trace random_surfaces(std::uint32_t width, std::uint32_t height, int coun
   trace.materials[4].alpha_mode = AlphaMode::blend;
   for (Material& material : trace.materials) material.double_sided = true;
 
-  std::mt19937 bits(seed + 1);
-  const auto uniform = [&](double low, double high) { return low + (high - low) * (bits() / 4294967296.0); };
+  RandomNumbers random(seed + 1);
   Mesh& mesh = trace.meshes[0];
   for (std::size_t t = 0; t < mesh.triangles.size(); ++t)
     mesh.materials.push_back(t % 6 == 5 ? kNoMaterial : static_cast<std::uint32_t>(t % 6));
   for (std::size_t i = 0; i < mesh.positions.size(); ++i) {
-    mesh.uvs[0].emplace_back(uniform(-1, 2), uniform(-1, 2));
-    mesh.normals.push_back(glm::normalize(glm::vec3(uniform(-0.5, 0.5), uniform(-0.5, 0.5), -1)));
-    mesh.vertex_colors.emplace_back(uniform(0.5, 1), uniform(0.5, 1), uniform(0.5, 1), 1.0f);
+    mesh.uvs[0].emplace_back(random.vector(glm::dvec2(-1), glm::dvec2(2)));
+    mesh.normals.push_back(
+        glm::normalize(glm::vec3(glm::vec2(random.vector(glm::dvec2(-0.5), glm::dvec2(0.5))), -1)));
+    mesh.vertex_colors.emplace_back(glm::vec3(random.vector(glm::dvec3(0.5), glm::dvec3(1))), 1.0f);
   }
   trace.frames[0].lighting.lights = {{glm::normalize(glm::vec3(0.25f, 0.5f, 1)), glm::vec3(1, 0.75f, 0.5f)}};
   trace.frames[0].lighting.ambient = Ambient{glm::vec3(0.25f), glm::vec3(0.125f, 0.0625f, 0)};

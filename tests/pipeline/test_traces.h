@@ -56,18 +56,37 @@ inline void append(std::vector<PixelSpaceTriangle>& to, const std::vector<PixelS
   to.insert(to.end(), from.begin(), from.end());
 }
 
+// Random numbers that are the same on every machine. A vector's last coordinate is drawn first. (The arguments of a
+// call are evaluated in an order that each compiler chooses.)
+class RandomNumbers {
+ public:
+  explicit RandomNumbers(std::uint32_t seed) : bits_(seed) {}
+
+  double number(double low, double high) { return low + (high - low) * (bits_() / 4294967296.0); }
+  glm::dvec2 vector(const glm::dvec2& low, const glm::dvec2& high) {
+    const double y = number(low.y, high.y);
+    return {number(low.x, high.x), y};
+  }
+  glm::dvec3 vector(const glm::dvec3& low, const glm::dvec3& high) {
+    const double z = number(low.z, high.z);
+    return {vector(glm::dvec2(low), glm::dvec2(high)), z};
+  }
+
+ private:
+  std::mt19937 bits_;
+};
+
 // Random triangles of mixed sizes that interpenetrate. The same seed gives the same triangles on every machine.
 inline Trace random_trace(std::uint32_t width, std::uint32_t height, int count, std::uint32_t seed) {
-  std::mt19937 bits(seed);
-  const auto uniform = [&](double low, double high) { return low + (high - low) * (bits() / 4294967296.0); };
+  RandomNumbers random(seed);
   std::vector<PixelSpaceTriangle> triangles;
   for (int i = 0; i < count; ++i) {
-    const glm::dvec3 center(uniform(0, width), uniform(0, height), uniform(0.2, 0.8));
+    const glm::dvec3 center = random.vector({0, 0, 0.2}, {width, height, 0.8});
     const double size = i % 3 == 0 ? 0.4 * width : i % 3 == 1 ? 4.0 : 0.7;
     PixelSpaceTriangle triangle;
     for (glm::dvec3& corner : triangle.corners)
-      corner = center + glm::dvec3(uniform(-size, size), uniform(-size, size), uniform(-0.1, 0.1));
-    triangle.color = glm::vec3(uniform(0, 1), uniform(0, 1), uniform(0, 1));
+      corner = center + random.vector({-size, -size, -0.1}, {size, size, 0.1});
+    triangle.color = random.vector(glm::dvec3(0), glm::dvec3(1));
     triangles.push_back(triangle);
   }
   return pixel_trace(width, height, triangles, glm::vec3(0.25f, 0.5f, 0.75f));

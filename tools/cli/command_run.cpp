@@ -34,7 +34,7 @@ void run(const RunArguments& arguments, const MemoryTraceArguments& trace_argume
 
   Report report = new_report(plan, maker);
   for (const Technique& technique : plan.techniques)
-    report.results.push_back(new_technique_report(technique, plan.options.memory));
+    report.results.push_back(new_technique_report(technique, plan.options.memory, kFramesInMemory));
   for (const FrameRecord& record : finished)
     for (std::size_t i = 0; i < record.reports.size(); ++i) report.results[i].frames.push_back(record.reports[i]);
   if (finished.size() < plan.frames.size()) {

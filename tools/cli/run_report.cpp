@@ -25,7 +25,7 @@ void tell_finished(const OutputFolder& output) {
 }
 
 void finish_report(OutputFolder& output, const Report& report) {
-  output.write("report.json", json_text(to_json(report)));
+  output.write("report.json", [&](const OutputFolder::WriteBytes& write) { write_json(report, write); });
   output.keep();
   FrameRecords(output, report.made_by).remove();
   std::cout << table_text(report, output.path().string()) << causes_text(report) << orders_text(report)

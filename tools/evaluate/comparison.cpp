@@ -38,10 +38,10 @@ Comparison::Comparison(const CompareOptions& options, RunPlan plan, OutputFolder
   written.push_back(reference_);
   require_writable_folders(output_, written);
   for (const Technique& technique : plan_.techniques) {
-    results_.push_back(new_technique_report(technique, plan_.options.memory));
+    results_.push_back(new_technique_report(technique, plan_.options.memory, kFramesInMemory));
     errors_.push_back(new_errors());
   }
-  reference_result_ = new_technique_report(reference_, {});
+  reference_result_ = new_technique_report(reference_, {}, kFramesInMemory);
   histories_.resize(plan_.techniques.size());
   last_errors_.resize(plan_.techniques.size());
   causes_.resize(plan_.techniques.size());
@@ -81,33 +81,38 @@ ErrorAccumulator Comparison::new_errors() const {
 void Comparison::compare_frame(std::size_t frame, Progress& progress) {
   WallTime reference_time;
   const FrameResult truth = render_once(reference_, plan_, frame, progress, &reference_time);
-  FrameReport& report = reference_result_.frames.emplace_back(
-      write_frame(output_, plan_, maker_, reference_.spec, frame, truth, nullptr));
-  report.wall_ms = reference_time;
-  report.error = ErrorStats{};
+  FrameReport reference = write_frame(output_, plan_, maker_, reference_.spec, frame, truth, nullptr);
+  reference.wall_ms = reference_time;
+  reference.error = ErrorStats{};
   if (split_) {
-    report.parts = ErrorParts{};
+    reference.parts = ErrorParts{};
     split_->start_frame(plan_, frame, progress);
   }
 
+  FrameRecord record;
   const std::vector<WallTime> times =
       render_frame(plan_, frame, progress, histories_, [&](std::size_t i, FrameResult&& result) {
         const std::optional<ErrorParts> parts = explain(i, result, truth.image, frame, progress);
-        results_[i].frames.push_back(
+        FrameReport& report = record.reports.emplace_back(
             write_frame(output_, plan_, maker_, plan_.techniques[i].spec, frame, result, &truth.image));
-        results_[i].frames.back().parts = parts;
+        report.parts = parts;
         errors_[i].add(result.image, truth.image);
         std::vector<float> errors = signed_errors(result.image, truth.image);
-        if (errors.size() == last_errors_[i].size())
-          results_[i].frames.back().flicker = flicker(last_errors_[i], errors);
+        if (errors.size() == last_errors_[i].size()) report.flicker = flicker(last_errors_[i], errors);
         last_errors_[i] = std::move(errors);
       });
-  for (std::size_t i = 0; i < times.size(); ++i) results_[i].frames.back().wall_ms = times[i];
+  for (std::size_t i = 0; i < times.size(); ++i) {
+    record.reports[i].wall_ms = times[i];
+    results_[i].frames.push_back(record.reports[i]);
+  }
+  record.reports.push_back(reference);
+  reference_result_.frames.push_back(std::move(reference));
 
   ladder_.add(plan_, frame, truth.image, progress);
   if (split_) split_->add_rungs(plan_, progress);
   if (orders_) orders_->add(reference_, plan_, frame, progress);
-  write_record();
+  record.sums = sums();
+  records_.write(record, reference_result_.frames.size(), plan_.frames.size());
   output_.keep();
 }
 
@@ -125,15 +130,6 @@ std::optional<ErrorParts> Comparison::explain(std::size_t i, FrameResult& result
     causes_[i].add(technique, plan_, frame, SurfaceColors::by_place, {result.image, truth}, result.pixel_counters);
   }
   return parts;
-}
-
-// Of the last frame.
-void Comparison::write_record() {
-  FrameRecord record;
-  for (const TechniqueReport& result : results_) record.reports.push_back(result.frames.back());
-  record.reports.push_back(reference_result_.frames.back());
-  record.sums = sums();
-  records_.write(record, reference_result_.frames.size(), plan_.frames.size());
 }
 
 // The EXR files hold the pictures to the last bit, so that the errors come out the same.
@@ -189,10 +185,8 @@ Report Comparison::report(Progress& progress) {
     results_[i].error = errors_[i].stats();
     rmses.push_back(results_[i].error->rmse);
   }
-  const auto read_reference = [&](std::size_t frame) {
-    for (const FrameReport& report : reference_result_.frames)
-      if (report.index == frame) return read_image(report);
-    throw std::logic_error("the reference was not rendered");
+  const auto read_reference = [&](std::size_t frame) {  // frames of a plan follow each other
+    return read_image(reference_result_.frames[frame - plan_.frames.front()]);
   };
   const std::vector<LadderRung> rungs = ladder_.rungs(plan_, rmses, read_reference, progress);
   for (std::size_t i = 0; i < results_.size(); ++i) {

@@ -49,7 +49,6 @@ class Comparison {
   void compare_frame(std::size_t frame, Progress& progress);
   std::optional<ErrorParts> explain(std::size_t i, FrameResult& result, const Image& truth, std::size_t frame,
                                     Progress& progress);
-  void write_record();
   void recall_frame(const FrameRecord& record);
   Json sums() const;
   Image read_image(const FrameReport& frame) const;

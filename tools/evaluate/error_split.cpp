@@ -44,7 +44,7 @@ ErrorParts split_error(const PicturePair& pictures, const PicturePair& by_pixel,
   return {root_mean_square(visibility), root_mean_square(errors)};
 }
 
-ErrorParts pooled_parts(const std::vector<FrameReport>& frames) {
+ErrorParts pooled_parts(const FrameReports& frames) {
   ErrorParts squares;
   double pixels = 0;
   for (const FrameReport& frame : frames) {

@@ -31,7 +31,7 @@ ErrorParts split_error(const PicturePair& pictures, const PicturePair& by_pixel,
                        std::map<std::string, std::vector<float>>& pixel_counters);
 
 // Pools the parts of several frames as if they were one picture. All frames must have them.
-ErrorParts pooled_parts(const std::vector<FrameReport>& frames);
+ErrorParts pooled_parts(const FrameReports& frames);
 
 // Splits the errors of a plan's techniques, frame by frame.
 class ErrorSplit {

@@ -142,4 +142,16 @@ FrameReport frame_of(const Json& json) {
   return frame;
 }
 
+Json stored_json(const FrameReport& frame) {
+  Json json = to_json(frame, TechniqueReport{}, Hardware{});
+  json["pixels"] = frame.pixels;
+  return json;
+}
+
+FrameReport stored_frame(const Json& json) {
+  FrameReport frame = frame_of(json);
+  frame.pixels = json.at("pixels").get<std::uint64_t>();
+  return frame;
+}
+
 }  // namespace beampipe

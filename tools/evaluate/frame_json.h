@@ -20,4 +20,8 @@ Json to_json(const FrameReport& frame, const TechniqueReport& technique, const H
 // JsonError if a key is missing or a value has the wrong type.
 FrameReport frame_of(const Json& json);
 
+// All of a frame, to be read back.
+Json stored_json(const FrameReport& frame);
+FrameReport stored_frame(const Json& json);  // throws as above
+
 }  // namespace beampipe

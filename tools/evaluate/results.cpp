@@ -50,8 +50,10 @@ double TechniqueReport::on_chip_bytes_per_pixel() const {
   return most;
 }
 
-TechniqueReport new_technique_report(const Technique& technique, const MemoryParameters& memory) {
+TechniqueReport new_technique_report(const Technique& technique, const MemoryParameters& memory,
+                                     std::size_t frames_in_memory) {
   TechniqueReport report;
+  report.frames = FrameReports(frames_in_memory);
   report.technique = technique.spec;
   report.framebuffer = technique.framebuffer.in_memory(memory);
   report.pixels_on_chip = technique.framebuffer.is_on_chip(memory);

@@ -23,18 +23,6 @@ const std::map<std::string, std::string> kDigested = {{"program", "another build
                                                       {"hardware", "another --hardware"},
                                                       {"memory_system", "another --memory-system"}};
 
-Json record_of(const FrameReport& frame) {
-  Json json = to_json(frame, TechniqueReport{}, Hardware{});
-  json["pixels"] = frame.pixels;
-  return json;
-}
-
-FrameReport report_of(const Json& json) {
-  FrameReport frame = frame_of(json);
-  frame.pixels = json.at("pixels").get<std::uint64_t>();
-  return frame;
-}
-
 // Null if there is no such file, or if it holds no JSON object.
 Json read_json(const fs::path& path) {
   try {
@@ -170,7 +158,7 @@ std::optional<FrameRecord> FrameRecords::read(std::size_t frame, const std::vect
     const Json json = unsealed(read_json(output_.path() / frame_record_name(frame)));
     if (maker_of(json) != maker_) return std::nullopt;
     FrameRecord record;
-    for (const Json& technique : json.at("techniques").elements()) record.reports.push_back(report_of(technique));
+    for (const Json& technique : json.at("techniques").elements()) record.reports.push_back(stored_frame(technique));
     record.sums = json.at("sums");
     const bool is_ours = std::equal(record.reports.begin(), record.reports.end(), specs.begin(), specs.end(),
                                     [&](const auto& report, const auto& spec) { return is_of(report, frame, spec); });
@@ -185,7 +173,7 @@ std::optional<FrameRecord> FrameRecords::read(std::size_t frame, const std::vect
 
 void FrameRecords::write(const FrameRecord& record, std::size_t finished, std::size_t all) {
   Json json = {{"beampipe_frame", 1}, {"made_by", maker_}, {"sums", record.sums}, {"techniques", Json::array()}};
-  for (const FrameReport& report : record.reports) json["techniques"].push_back(record_of(report));
+  for (const FrameReport& report : record.reports) json["techniques"].push_back(stored_json(report));
   json["files"] = digests_of_files(output_.path(), record);
   output_.write(frame_record_name(record.reports.front().index), json_text(sealed(std::move(json))));
   set_farewell(finished, all);

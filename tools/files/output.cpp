@@ -92,6 +92,11 @@ void OutputFolder::make(const fs::path& folder) {
 }
 
 void OutputFolder::write(const fs::path& name, std::string_view bytes, const std::vector<fs::path>& outdated) {
+  write(name, [&](const WriteBytes& write_bytes) { write_bytes(bytes); }, outdated);
+}
+
+void OutputFolder::write(const fs::path& name, const std::function<void(const WriteBytes&)>& content,
+                         const std::vector<fs::path>& outdated) {
   auto held = gate_.hold();
   const fs::path target = folder_ / name;
   make(folder_);
@@ -101,7 +106,7 @@ void OutputFolder::write(const fs::path& name, std::string_view bytes, const std
   AtomicFile file(target);
   gate_.set_unfinished(AtomicFile::temporary_of(target));
   held.unlock();  // writing a large file takes longer than Ctrl-C may wait
-  file.write(bytes);
+  content([&](std::string_view bytes) { file.write(bytes); });
   file.flush();
   held.lock();
   for (const fs::path& old : outdated) fs::remove(folder_ / old);

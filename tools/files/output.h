@@ -2,6 +2,7 @@
 #pragma once
 
 #include <filesystem>
+#include <functional>
 #include <string_view>
 #include <vector>
 
@@ -38,6 +39,11 @@ class OutputFolder {
   // Writes folder/name and creates the subfolders in `name`. Removes the `outdated` files once the new bytes are on the
   // disk, before the new file appears under its name. Throws std::runtime_error, one line that names the file.
   void write(const std::filesystem::path& name, std::string_view bytes,
+             const std::vector<std::filesystem::path>& outdated = {});
+
+  // The same for a file that is too large for memory: `content` passes its bytes on, part after part.
+  using WriteBytes = std::function<void(std::string_view)>;
+  void write(const std::filesystem::path& name, const std::function<void(const WriteBytes&)>& content,
              const std::vector<std::filesystem::path>& outdated = {});
 
   // Removes folder/name if it exists.

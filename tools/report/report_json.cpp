@@ -21,7 +21,8 @@ Json to_json(const std::vector<LadderRung>& ladder) {
   return json;
 }
 
-Json to_json(const TechniqueReport& result, const Report& report) {
+// All but the frames.
+Json to_json(const TechniqueReport& result) {
   Json json = {{"technique", result.technique},
                {"pixels_on_chip", result.pixels_on_chip},
                {"framebuffer_bytes_per_pixel", result.framebuffer_bytes_per_pixel},
@@ -50,9 +51,6 @@ Json to_json(const TechniqueReport& result, const Report& report) {
     json["orders"]["largest_difference"] = result.order_difference;
   }
   if (!result.inspections.empty()) json["inspections"] = result.inspections;
-  json["frames"] = Json::array();
-  for (const FrameReport& frame : result.frames)
-    json["frames"].push_back(beampipe::to_json(frame, result, report.hardware, report.more_hardware));
   return json;
 }
 
@@ -78,9 +76,8 @@ Json to_json(const MemoryParameters& memory) {
           {"on_chip_bytes", memory.on_chip_bytes}};
 }
 
-}  // namespace
-
-Json to_json(const Report& report) {
+// All but the results and the claims.
+Json head_json(const Report& report) {
   Json json = {{"beampipe_report", 1}, {"trace", report.trace},     {"version", report.version},
                {"simd", report.simd},  {"threads", report.threads}, {"memory_system", to_json(report.memory)}};
   if (!report.made_by.is_null()) json["made_by"] = report.made_by;
@@ -94,11 +91,75 @@ Json to_json(const Report& report) {
   if (!report.msaa_ladder.empty()) json["msaa_ladder"] = to_json(report.msaa_ladder);
   if (!report.visibility_ladder.empty()) json["visibility_msaa_ladder"] = to_json(report.visibility_ladder);
   if (!report.notes.empty()) json["notes"] = beampipe::to_json(report.notes);
-  json["results"] = Json::array();
-  for (const TechniqueReport& result : report.results) json["results"].push_back(to_json(result, report));
-  json["claims"] = Json::array();
-  for (const Claim& claim : answered_claims(report)) json["claims"].push_back(to_json(claim));
   return json;
+}
+
+// The lines of a value that stands `level` levels deep, as in json_text. Line ends within strings are escaped.
+std::string indented(const Json& json, std::size_t level) {
+  std::string text;
+  for (const char c : json.dump(2)) {
+    text += c;
+    if (c == '\n') text.append(2 * level, ' ');
+  }
+  return text;
+}
+
+// The text of a non-empty object without its last brace, for more members to follow.
+std::string opened(const Json& json, std::size_t level) {
+  std::string text = indented(json, level);
+  text.resize(text.find_last_not_of(" \n", text.size() - 2) + 1);
+  return text;
+}
+
+// Writes an array as the member `key` of an object that stands `level` levels deep.
+class ArrayText {
+ public:
+  ArrayText(const char* key, std::size_t level, const WriteText& write) : level_(level), write_(write) {
+    write_(",\n" + blanks(level_ + 1) + '"' + key + "\": [");
+  }
+  // What comes next is an element.
+  void next() {
+    write_((is_empty_ ? "\n" : ",\n") + blanks(level_ + 2));
+    is_empty_ = false;
+  }
+  void end() const { write_(is_empty_ ? "]" : "\n" + blanks(level_ + 1) + "]"); }
+
+ private:
+  static std::string blanks(std::size_t level) { return std::string(2 * level, ' '); }
+
+  std::size_t level_;
+  const WriteText& write_;
+  bool is_empty_ = true;
+};
+
+void write_result(const TechniqueReport& result, const Report& report, const WriteText& write) {
+  write(opened(to_json(result), 2));
+  ArrayText frames("frames", 2, write);
+  for (const FrameReport& frame : result.frames) {
+    frames.next();
+    write(indented(beampipe::to_json(frame, result, report.hardware, report.more_hardware), 4));
+  }
+  frames.end();
+  write("\n    }");
+}
+
+}  // namespace
+
+void write_json(const Report& report, const WriteText& write) {
+  write(opened(head_json(report), 0));
+  ArrayText results("results", 0, write);
+  for (const TechniqueReport& result : report.results) {
+    results.next();
+    write_result(result, report, write);
+  }
+  results.end();
+  ArrayText claims("claims", 0, write);
+  for (const Claim& claim : answered_claims(report)) {
+    claims.next();
+    write(indented(to_json(claim), 2));
+  }
+  claims.end();
+  write("\n}\n");
 }
 
 }  // namespace beampipe

@@ -1,11 +1,15 @@
 // Writes report.json. Its keys are a contract: new ones may be added, but none may be renamed or removed.
 #pragma once
 
+#include <functional>
+#include <string_view>
+
 #include "tools/evaluate/results.h"
-#include "traces/json.h"
 
 namespace beampipe {
 
-Json to_json(const Report& report);
+// Passes the text on, frame after frame: a report of many frames is too large for memory.
+using WriteText = std::function<void(std::string_view)>;
+void write_json(const Report& report, const WriteText& write);
 
 }  // namespace beampipe

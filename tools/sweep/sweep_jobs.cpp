@@ -38,13 +38,14 @@ CellCounts render_cell(const SweepPlan& plan, const SweepCell& cell, const Loade
   for (const std::size_t frame : frames) {
     FrameResult result = technique.render(loaded.trace, frame, options);
     counts.reach.add(result.cache_reach);
-    FrameReport& report = counts.report.frames.emplace_back();
+    FrameReport report;
     report.index = frame;
     report.a_buffer_peak_bytes = result.a_buffer_peak_bytes;
     report.buffers = std::move(result.buffers);
     report.stages = std::move(result.stages);
     report.pixels = std::uint64_t{result.image.width} * result.image.height;
     report.bin_pixels = result.bin_pixels;
+    counts.report.frames.push_back(std::move(report));
   }
   return counts;
 }

@@ -14,11 +14,7 @@ constexpr const char *kCells = "cells", *kErrors = "errors";
 
 Json to_json(const CellCounts& counts) {
   Json frames = Json::array();
-  for (const FrameReport& frame : counts.report.frames) {
-    Json json = to_json(frame, TechniqueReport{}, Hardware{});
-    json["pixels"] = frame.pixels;
-    frames.push_back(std::move(json));
-  }
+  for (const FrameReport& frame : counts.report.frames) frames.push_back(stored_json(frame));
   const CacheReach& reach = counts.reach;
   return {{"frames", frames}, {"cache_reach", {{"rop", reach.rop}, {"l1", reach.l1}, {"l2", reach.l2}}}};
 }
@@ -26,10 +22,7 @@ Json to_json(const CellCounts& counts) {
 CellCounts counts_of(const Json& json, const Technique& technique, const MemoryParameters& memory) {
   CellCounts counts;
   counts.report = new_technique_report(technique, memory);
-  for (const Json& each : json.at("frames").elements()) {
-    FrameReport& frame = counts.report.frames.emplace_back(frame_of(each));
-    frame.pixels = each.at("pixels").get<std::uint64_t>();
-  }
+  for (const Json& each : json.at("frames").elements()) counts.report.frames.push_back(stored_frame(each));
   const Json& reach = json.at("cache_reach");
   counts.reach = {reach.at("rop").get<std::uint64_t>(), reach.at("l1").get<std::uint64_t>(),
                   reach.at("l2").get<std::uint64_t>()};

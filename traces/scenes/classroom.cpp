@@ -36,7 +36,7 @@ void add_desk(MeshBuilder& mesh, const ClassroomLook& look, const dvec3& at, dou
   mesh.color = random.vary(kWood, 0.25);
   mesh.box({-0.6, 0.70, -0.3}, {0.6, 0.74, 0.3}, divisions(0.25 * budget, 4, 1));
   mesh.finish = look.paper;
-  mesh.color = glm::vec3(random.uniform(0.1, 0.8), random.uniform(0.1, 0.5), random.uniform(0.1, 0.5));
+  mesh.color = random.uniform(dvec3(0.1), {0.8, 0.5, 0.5});
   mesh.box({-0.15, 0.74, -0.1}, {0.08, 0.79, 0.2});  // a book
   mesh.finish = look.steel;
   mesh.color = kSteel;

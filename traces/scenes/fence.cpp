@@ -54,7 +54,7 @@ std::vector<Mesh> build(double budget, Random& random) {
   const int rings = divisions(0.005 * budget, 4, 3);
   for (int i = 0; i < 7; ++i) {
     const double x = -5.4 + 1.8 * i, size = random.uniform(0.4, 0.9), z = random.uniform(-9, -7);
-    backdrop.color = glm::vec3(random.uniform(0.2, 0.9), random.uniform(0.05, 0.7), random.uniform(0.05, 0.6));
+    backdrop.color = random.uniform({0.2, 0.05, 0.05}, {0.9, 0.7, 0.6});
     if (i % 2 == 0) backdrop.sphere({x, size, z}, size, 2 * rings, rings);
     if (i % 2 == 1) backdrop.box({x - size, 0, z - size}, {x + size, 3 * size, z + size});
   }

@@ -83,7 +83,9 @@ std::vector<Mesh> build(double budget, Random& random) {
       const Twig& twig = trees[i][random.bits() % trees[i].size()];
       const dvec3 stem = twig.start + random.uniform(-0.2, 1.15) * (twig.end - twig.start);
       leaves.color = random.vary(kGreens[i], 0.35);
-      add_leaf(leaves, stem + 0.25 * random.uniform() * random.direction(), size * random.uniform(0.6, 1.2), random);
+      const double leaf_size = size * random.uniform(0.6, 1.2);
+      const dvec3 direction = random.direction();
+      add_leaf(leaves, stem + 0.25 * random.uniform() * direction, leaf_size, random);
     }
   }
   return {ground.take(), wood.take(), leaves.take()};

@@ -85,8 +85,9 @@ std::vector<Mesh> build(const Plants& plants, double budget, Random& random) {
   stems.finish = plants.stem;
   cards.finish = plants.card;
   for (int i = 0; i < count; ++i) {
-    const dvec3 foot(3.3 * (2 * (i + random.uniform()) / count - 1), 0, random.uniform(-1.6, 1.0));
-    const dvec3 lean(random.uniform(-0.5, 0.5), random.uniform(1.7, 2.7), random.uniform(-0.3, 0.5));
+    const double depth = random.uniform(-1.6, 1.0);
+    const dvec3 foot(3.3 * (2 * (i + random.uniform()) / count - 1), 0, depth);
+    const dvec3 lean = random.uniform({-0.5, 1.7, -0.3}, {0.5, 2.7, 0.5});
     Path path;  // bends over towards its end
     for (int k = 0; k <= segments; ++k) {
       const double t = static_cast<double>(k) / segments;
@@ -96,12 +97,15 @@ std::vector<Mesh> build(const Plants& plants, double budget, Random& random) {
     stems.tube(path, 0.035, 0.008, sides);
     const glm::vec3 green = random.vary({0.55f, 0.62f, 0.25f}, 0.3);
     for (int k = 0; k < per_stem; ++k) {
-      const double t = 1 - 0.95 * random.uniform() * random.uniform();
+      const double part = 0.95 * random.uniform();
+      const double t = 1 - part * random.uniform();
       const auto at = static_cast<std::size_t>(std::min(t * segments, segments - 1.0));
       const dvec3 root = path[at] + (t * segments - static_cast<double>(at)) * (path[at + 1] - path[at]);
       const dvec3 outward = random.direction() * dvec3(1, 0.5, 1);
       cards.color = random.vary(green, 0.2);
-      add_card(cards, root + 0.15 * random.direction(), outward, size * random.uniform(0.7, 1.1), random);
+      const double card_size = size * random.uniform(0.7, 1.1);
+      const dvec3 middle = root + 0.15 * random.direction();
+      add_card(cards, middle, outward, card_size, random);
     }
   }
   return {ground.take(), stems.take(), cards.take()};

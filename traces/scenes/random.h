@@ -1,4 +1,5 @@
-// Random numbers that are the same on every machine. Those of the standard library's distributions are not.
+// Random numbers that are the same on every machine. Those of the standard library's distributions are not. Use one call
+// of these functions in an expression: compilers choose the order in which they evaluate arguments and operands.
 #pragma once
 
 #include <cmath>
@@ -21,6 +22,13 @@ class Random {
   std::uint64_t bits() { return mix_bits(state_ += 0x9e3779b97f4a7c15u); }
   double uniform() { return static_cast<double>(bits() >> 11) * 0x1p-53; }  // 0 <= x < 1
   double uniform(double low, double high) { return low + (high - low) * uniform(); }
+
+  // A point in a box. Its last coordinate is drawn first.
+  glm::dvec3 uniform(const glm::dvec3& low, const glm::dvec3& high) {
+    glm::dvec3 result;
+    for (int i = 2; i >= 0; --i) result[i] = uniform(low[i], high[i]);
+    return result;
+  }
 
   glm::dvec3 direction() {
     const double z = uniform(-1, 1), angle = uniform(0, 6.283185307179586), r = std::sqrt(1 - z * z);

@@ -15,10 +15,13 @@ std::vector<Mesh> build(double budget, Random& random) {
   for (int i = 0; i < count; ++i) {
     const double octave = 9 * (1 - std::sqrt(1 - random.uniform()));  // most often near 0, which is the smallest size
     const double size = 0.004 * std::exp2(octave);
-    const dvec3 center(random.uniform(-3.6, 3.6), random.uniform(-2.1, 2.1), random.uniform(-3, 1));
+    const dvec3 center = random.uniform({-3.6, -2.1, -3}, {3.6, 2.1, 1});
     dvec3 corners[3];
-    for (dvec3& corner : corners) corner = center + size * random.uniform(0.3, 1) * random.direction();
-    soup.color = glm::vec3(random.uniform(0.05, 0.95), random.uniform(0.05, 0.95), random.uniform(0.05, 0.95));
+    for (dvec3& corner : corners) {
+      const dvec3 direction = random.direction();
+      corner = center + size * random.uniform(0.3, 1) * direction;
+    }
+    soup.color = random.uniform(dvec3(0.05), dvec3(0.95));
     soup.triangle(corners[0], corners[1], corners[2]);
   }
   return {soup.take()};

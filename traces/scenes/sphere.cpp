@@ -26,7 +26,7 @@ std::vector<Mesh> build(double budget, Random& random) {
   const int count = budget < 5000 ? 4 : 16;
   for (int i = 0; i < count; ++i) {
     const double angle = 6.283185307179586 * (i + 0.3) / count, radius = random.uniform(0.06, 0.22);
-    small.color = glm::vec3(random.uniform(0.3, 0.9), random.uniform(0.05, 0.3), random.uniform(0.4, 0.95));
+    small.color = random.uniform({0.3, 0.05, 0.4}, {0.9, 0.3, 0.95});
     add_sphere(small, {2.1 * std::cos(angle), 0.9 * std::sin(angle), 1.3 * std::sin(angle)}, radius,
                0.28 * budget / count);
   }

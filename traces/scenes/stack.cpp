@@ -29,7 +29,7 @@ std::vector<Mesh> build(double budget, const SceneOptions& options, Random& rand
                                    distance * (y + 2 * circle * std::sin(angle)), z);
     }
     stack.triangles.emplace_back(first, first + 1, first + 2);
-    stack.colors.emplace_back(random.uniform(0.2, 0.9), random.uniform(0.2, 0.9), random.uniform(0.2, 0.9));
+    stack.colors.emplace_back(random.uniform(glm::dvec3(0.2), glm::dvec3(0.9)));
   }
   return {std::move(stack)};
 }

@@ -65,16 +65,15 @@ TEST(Beam, BuffersHaveTheSameSizeHoweverDeepAPixelIs) {
 }
 
 TEST(Beam, AHundredThousandTrianglesInOneBin) {
-  std::mt19937 bits(7);
-  const auto uniform = [&](double low, double high) { return low + (high - low) * (bits() / 4294967296.0); };
+  RandomNumbers random(7);
   std::vector<PixelSpaceTriangle> triangles;
   for (int i = 0; i < 100'000; ++i) {
-    const glm::dvec3 center(uniform(0, 16), uniform(0, 16), uniform(0.2, 0.8));
+    const glm::dvec3 center = random.vector({0, 0, 0.2}, {16, 16, 0.8});
     const double size = i % 2 ? 0.3 : 2;
     PixelSpaceTriangle triangle;
     for (glm::dvec3& corner : triangle.corners)
-      corner = center + glm::dvec3(uniform(-size, size), uniform(-size, size), uniform(-0.05, 0.05));
-    triangle.color = glm::vec3(uniform(0, 1), uniform(0, 1), uniform(0, 1));
+      corner = center + random.vector({-size, -size, -0.05}, {size, size, 0.05});
+    triangle.color = random.vector(glm::dvec3(0), glm::dvec3(1));
     triangles.push_back(triangle);
   }
   const Trace trace = pixel_trace(16, 16, triangles, glm::vec3(1));

@@ -14,6 +14,7 @@
 #include <stdexcept>
 
 #include "tests/pipeline/test_traces.h"
+#include "tests/tools/report_frames.h"
 #include "tools/claims/our_figures.h"
 #include "tools/claims/published_figures.h"
 #include "tools/files/digest.h"
@@ -160,6 +161,12 @@ Report report_for(const std::string& claim) {
   return report;
 }
 
+FrameReport frame_with(const std::vector<StageCounters>& stages) {
+  FrameReport frame;
+  frame.stages = stages;
+  return frame;
+}
+
 std::string mismatch(const std::vector<PublishedFigure>& figures, const std::vector<Formula>& formulas) {
   try {
     expect_formulas_match(figures, formulas);
@@ -195,7 +202,7 @@ TEST(Formulas, OfEveryPassAreModelledTimesOfItsStages) {
   result.technique = "dvm";
   StageCounters shade{"shade"}, light{"light"};
   shade.dram_bytes = 1'000'000, light.dram_bytes = 3'000'000;
-  result.frames.emplace_back().stages = {shade, light};
+  result.frames.push_back(frame_with({shade, light}));
   const auto ours = [&](const std::string& name) -> std::optional<double> {
     for (const Claim& claim : all_claims(report))
       if (claim.name == name) return claim.ours;
@@ -236,11 +243,12 @@ TEST(Formulas, ThePassesAddUpToTheTotal) {
     report.hardware = titan;
     TechniqueReport& result = report.results.emplace_back();
     result.technique = spec;
-    std::vector<StageCounters>& stages = result.frames.emplace_back().stages;
+    std::vector<StageCounters> stages;
     for (const StageCounters& stage : parse_technique(spec).render(trace, 0, {1}).stages) {
       stages.push_back(StageCounters{stage.stage});
       stages.back().dram_bytes = 1'000'000ull << stages.size();
     }
+    result.frames.push_back(frame_with(stages));
     double passes = 0, total = 0;
     for (const Claim& claim : all_claims(report)) {
       if (!claim.ours || !claim.name.starts_with("low density, " + name + ", ") || claim.unit != "ms") continue;
@@ -380,7 +388,7 @@ TEST(Claims, AcaaGivesBack) {
     result.technique = spec;
     StageCounters setup{"vertex_setup"}, raster{"sample_raster"}, testing{"depth_test"}, resolving{"resolve"};
     setup.dram_bytes = 1000, raster.dram_bytes = 2000, testing.dram_bytes = dram - 5, resolving.dram_bytes = 5;
-    result.frames.emplace_back().stages = {setup, raster, testing, resolving};
+    result.frames.push_back(frame_with({setup, raster, testing, resolving}));
   };
   add("msaa:1,prepass", 10);
   const auto given_back = [&]() -> std::optional<double> {
@@ -389,7 +397,9 @@ TEST(Claims, AcaaGivesBack) {
     return {};
   };
   EXPECT_FALSE(given_back());
-  report.results[0].frames[0].stages.push_back(StageCounters{"prepass_depth_test"});
+  change_frames(report.results[0], [](FrameReport& frame, std::size_t) {
+    frame.stages.push_back(StageCounters{"prepass_depth_test"});
+  });
   EXPECT_FALSE(given_back());
   add("msaa:8,color=rgba16f,prepass", 40);
   add("acaa:8", 25);
@@ -401,8 +411,9 @@ TEST(Claims, BytesOfTheBeamWithItsABuffer) {
   Report report = report_for("classroom, beam with its A-buffer, bytes over those of MSAA 8x");
   TechniqueReport& result = report.results.emplace_back();
   result.technique = "beam:rules=paper";
-  FrameReport& frame = result.frames.emplace_back();
+  FrameReport frame;
   frame.pixels = 10, frame.a_buffer_peak_bytes = 4180;
+  result.frames.push_back(frame);
   for (const Claim& claim : all_claims(report)) {
     if (claim.name == "classroom, beam with its A-buffer, bytes over those of MSAA 8x") {
       EXPECT_EQ(claim.ours, 5.75);
@@ -414,7 +425,9 @@ TEST(Claims, MostFragmentsOfAPixelAreThoseOfTheClassroomWhateverItsFileIsCalled)
   Report report;
   TechniqueReport& result = report.results.emplace_back();
   result.technique = "beam:rules=paper";
-  result.frames.emplace_back().pixel_counters["fragments"] = {2.5, 61};
+  FrameReport frame;
+  frame.pixel_counters["fragments"] = {2.5, 61};
+  result.frames.push_back(frame);
   const auto most = [&]() -> std::optional<double> {
     for (const Claim& claim : all_claims(report))
       if (claim.unit == "fragments") return claim.ours;

@@ -482,6 +482,25 @@ TEST_F(ProgramTest, MemoryLimitBoundsThePeakAndChangesNothing) {
         << file;
 }
 
+// A frame's results take tens of KiB as JSON, and more as values in memory.
+TEST_F(ProgramTest, MemoryDoesNotGrowWithTheNumberOfFrames) {
+  const auto peak = [&](const std::string& frames) {
+    const std::string trace = path(frames + ".json"), out = path(frames);
+    succeed({"make", "soup", "--triangles", "9", "--width", "4", "--height", "2", "--frames", frames, "--pan", "0.5,0",
+             "-o", trace});
+    const Outcome outcome = run_program({"run", trace, "-t", "beam", "--threads", "1", "-o", out});
+    EXPECT_EQ(outcome.exit_code, 0) << outcome.err;
+    EXPECT_EQ(parsed(std::filesystem::path(out) / "report.json")["results"][0]["frames"].size(), std::stoul(frames));
+    return outcome.peak_bytes;
+  };
+  const std::uint64_t few = peak("80"), many = peak("240");
+  std::printf("%llu KiB for 80 frames, %llu KiB for 240\n", static_cast<unsigned long long>(few >> 10),
+              static_cast<unsigned long long>(many >> 10));
+#if !defined(__SANITIZE_ADDRESS__) && !defined(__SANITIZE_THREAD__)  // sanitizers keep freed memory
+  EXPECT_LT(many, few + (2 << 20));
+#endif
+}
+
 TEST_F(ProgramTest, TheFramebufferIsWhereTheOptionsSay) {
   const auto run = [&](const Names& options) {
     Names command{"run", path("trace.json"), "-t", "beam", "msaa:4", "-o", path("out")};

@@ -36,9 +36,11 @@ TEST(SplitError, PartsOfEachValueAddUpToItsError) {
 }
 
 TEST(SplitError, LargeFramesCountForMore) {
-  std::vector<FrameReport> frames(2);
-  frames[0].pixels = 100, frames[0].parts = {0.3, 0};
-  frames[1].pixels = 300, frames[1].parts = {0.1, 0.2};
+  FrameReport small, large;
+  small.pixels = 100, small.parts = {0.3, 0};
+  large.pixels = 300, large.parts = {0.1, 0.2};
+  FrameReports frames;
+  for (const FrameReport& frame : {small, large}) frames.push_back(frame);
   EXPECT_NEAR(pooled_parts(frames).visibility, std::sqrt((9.0 + 3 * 1.0) / 400), 1e-12);
   EXPECT_NEAR(pooled_parts(frames).shading, std::sqrt(3 * 4.0 / 400), 1e-12);
 }

@@ -1,0 +1,62 @@
+// What run and compare find out about one frame.
+#pragma once
+
+#include <cstdint>
+#include <map>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "pipeline/technique.h"
+#include "tools/evaluate/metrics.h"
+
+namespace beampipe {
+
+// How long one technique takes for one frame, in milliseconds, over several runs. If the number of runs is even, the
+// median is the mean of the two in the middle.
+struct WallTime {
+  double median = 0, min = 0, max = 0;
+  int runs = 0;
+  bool with_memory_model = false;  // the timed runs also modelled caches and DRAM
+  // The time of one additional run, which modelled memory and gave all counts. None if the timed runs model memory
+  // themselves, or if memory is not modelled.
+  std::optional<double> modelling_run = {};
+};
+
+// Throws std::invalid_argument if there is no run.
+WallTime wall_time(std::vector<double> milliseconds);
+
+// Statistics of one counter over the pixels of a frame.
+struct PixelCounterStats {
+  double mean = 0, max = 0;
+};
+
+PixelCounterStats measure_counter(const std::vector<float>& values);
+
+// The error of pictures whose surfaces vary, in two parts (tools/evaluate/error_split.h), each as RMSE.
+struct ErrorParts {
+  double visibility = 0;  // who covers how much of a pixel
+  double shading = 0;     // what colour it was taken to be
+};
+
+struct FrameReport {
+  std::size_t index = 0;  // in the trace
+  std::string image;      // paths are relative to the report's folder
+  std::string picture;    // the image as PNG, for looking at
+  std::string counters;   // per-pixel counters; empty if none were written
+  std::optional<ErrorStats> error;
+  std::optional<ErrorParts> parts;  // none if all surfaces are flat
+  std::optional<double> flicker;    // change of the error since the previous frame
+  WallTime wall_ms;
+  std::uint64_t a_buffer_peak_bytes = 0;
+  std::vector<Buffer> buffers;  // all except the A-buffer and the framebuffer
+  std::vector<StageCounters> stages;
+  std::map<std::string, PixelCounterStats> pixel_counters;  // by name
+  std::uint64_t pixels = 0;
+  std::uint64_t bin_pixels = 0;  // of the largest bin
+
+  // What the pixels of a bin take on chip; 0 if they are in memory.
+  double open_pixel_bytes() const;
+};
+
+}  // namespace beampipe
