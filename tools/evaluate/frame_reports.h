@@ -17,7 +17,8 @@ class FrameReports {
  public:
   // As many frames as this stay in memory.
   static constexpr std::size_t kAll = std::numeric_limits<std::size_t>::max();
-  explicit FrameReports(std::size_t in_memory = kAll) : most_in_memory_(in_memory) {}
+  FrameReports() = default;
+  explicit FrameReports(std::size_t in_memory) : most_in_memory_(in_memory) {}
 
   void push_back(FrameReport frame);
 
@@ -46,7 +47,7 @@ class FrameReports {
   Iterator end() const { return {*this, size()}; }
 
  private:
-  std::size_t most_in_memory_;
+  std::size_t most_in_memory_ = kAll;
   std::vector<FrameReport> in_memory_;  // the first ones
   FrameReport last_;
   // The others, one JSON text after the other, and where each starts. Copies of the list share the file: it only grows,
