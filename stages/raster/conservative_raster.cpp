@@ -21,11 +21,13 @@ std::size_t conservative_raster(const SetupTriangles& triangles, const TriangleL
     if (closed && closed->hides_everywhere(vertices.nearest)) continue;
     const bool is_opaque = triangles.is_opaque(index);
     traverse(triangle, EdgeSet(triangle), traversal, [&](std::int32_t x, std::int32_t y, std::uint32_t q, bool covers) {
-      Pair pair = {index, q, x, y, covers && is_opaque, 0, 0};
-      if (depths == PairDepths::bounds) set_depths(triangle, vertices, pair);
-      if (closed && closed->hides(x, y, pair.nearest)) return;
-      if (closed && pair.full && closing == Closing::by_raster) closed->close(x, y, pair.farthest);
-      out.emplace_back() = pair;
+      const bool full = covers && is_opaque;
+      DepthBounds<float> bounds{};
+      if (depths == PairDepths::bounds) bounds = pair_bounds(pixel_plane(triangle, x, y), vertices);
+      if (closed && closed->hides(x, y, bounds.nearest)) return;
+      if (closed && full && closing == Closing::by_raster) closed->close(x, y, bounds.farthest);
+      Pair& pair = out.emplace_back();
+      pair = {index, q, x, y, full, bounds.nearest, bounds.farthest};
     });
     if (closed) closed->refresh();
   }
