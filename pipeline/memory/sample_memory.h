@@ -63,7 +63,7 @@ class SampleMemory {
   ZOrder order_;
   SameValue same_value_;
   std::uint32_t color_sample_bytes_;
-  std::vector<std::uint32_t> owner_;  // triangle of each sample that this pass has written, in Z order
+  std::vector<std::uint32_t> owner_;   // triangle of each sample that this pass has written, in Z order
   std::vector<std::uint32_t> planes_;  // of the block that is compressed; kept so that it is allocated once
   TileSurface depth_;
   std::optional<TileSurface> color_;

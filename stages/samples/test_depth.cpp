@@ -57,12 +57,11 @@ SampleCounts test_blocks(const SetupTriangles& triangles, const std::vector<Samp
 void depth_test(const SetupTriangles& triangles, const std::vector<SampleFragment>& fragments, const Tile& tile,
                 const Sampling& sampling, StageCounters& counters, SampleTile& surface,
                 std::vector<SampleAccess>& accesses) {
-  const SampleCounts samples =
-      test_blocks(triangles, fragments, tile, sampling.grid, accesses,
-                  [&](const CellDepth* items, std::size_t count, std::uint32_t* masks) {
-                    return depth_test(items, count, sampling.pattern, {surface.depth.data(), surface.triangle.data()},
-                                      masks);
-                  });
+  const SampleCounts samples = test_blocks(
+      triangles, fragments, tile, sampling.grid, accesses,
+      [&](const CellDepth* items, std::size_t count, std::uint32_t* masks) {
+        return depth_test(items, count, sampling.pattern, {surface.depth.data(), surface.triangle.data()}, masks);
+      });
   charge_depth_test(fragments.size(), samples, kSampleDepthBytes + surface.color_bytes, sampling.pattern, counters);
 }
 

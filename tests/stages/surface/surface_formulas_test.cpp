@@ -201,7 +201,8 @@ TEST(SurfaceFormulas, TangentsAreMadePerpendicular) {
   const auto place = [](std::uint32_t) { return TexturePlace<float>{}; };
   const auto normal_of = [&](const std::array<float, 4>& texel) {
     const auto fetch = [&](TextureRole, const TexturePlace<float>&) { return texel; };
-    const Triple<float> normal = material_at<float>({material, false, false, true}, point, place, fetch).reflector.normal;
+    const Triple<float> normal =
+        material_at<float>({material, false, false, true}, point, place, fetch).reflector.normal;
     return glm::vec3(normal[0], normal[1], normal[2]);
   };
   EXPECT_LT(glm::length(normal_of({1, 0.5f, 0.5f, 0}) - glm::vec3(1, 0, 0)), 1e-6f);
