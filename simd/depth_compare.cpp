@@ -1,6 +1,6 @@
 #include "simd/depth_compare.h"
 
-#include <bit>
+#include "simd/population_count.h"
 
 #undef HWY_TARGET_INCLUDE
 #define HWY_TARGET_INCLUDE "simd/depth_compare.cpp"
@@ -54,8 +54,8 @@ SampleCounts depth_test_kernel(const CellDepth* items, std::size_t count, const 
                        surface.triangle + item.cell * samples + s);
       mask |= mask_bits(d, pass) << s;
     }
-    counts.tested += static_cast<std::uint64_t>(std::popcount(item.mask));
-    counts.passed += static_cast<std::uint64_t>(std::popcount(mask));
+    counts.tested += population_count(item.mask);
+    counts.passed += population_count(mask);
     if (passed_masks) passed_masks[i] = mask;
   }
   return counts;
@@ -74,8 +74,8 @@ SampleCounts depth_equal_kernel(const CellDepth* items, std::size_t count, const
       mask |= mask_bits(d, equal) << s;
     }
     masks[i] = mask & item.mask;
-    counts.tested += static_cast<std::uint64_t>(std::popcount(item.mask));
-    counts.passed += static_cast<std::uint64_t>(std::popcount(masks[i]));
+    counts.tested += population_count(item.mask);
+    counts.passed += population_count(masks[i]);
   }
   return counts;
 }

@@ -19,8 +19,8 @@ namespace beampipe {
 inline float select(bool condition, float yes, float no) { return condition ? yes : no; }
 inline float lesser(float a, float b) { return a < b ? a : b; }
 inline float greater(float a, float b) { return a > b ? a : b; }
-inline float magnitude(float a) { return a < 0 ? -a : a; }
-inline double magnitude(double a) { return a < 0 ? -a : a; }
+inline float magnitude(float a) { return std::fabs(a); }  // without a branch, which would be hard to predict
+inline double magnitude(double a) { return std::fabs(a); }
 inline std::uint32_t select(bool condition, std::uint32_t yes, std::uint32_t no) { return condition ? yes : no; }
 inline std::int32_t select(bool condition, std::int32_t yes, std::int32_t no) { return condition ? yes : no; }
 inline double select(bool condition, double yes, double no) { return condition ? yes : no; }

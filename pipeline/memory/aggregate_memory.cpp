@@ -24,10 +24,7 @@ AggregateMemory::AggregateMemory(const MemorySystem& memory, const ZOrder& order
 }
 
 void AggregateMemory::merge(std::uint32_t triangle, std::uint32_t pixel, StageCounters& counters) {
-  for (TileSurface& surface : surfaces_) {
-    surface.read(triangle, pixel, counters);
-    surface.write(triangle, pixel, counters);
-  }
+  for (TileSurface& surface : surfaces_) surface.access(triangle, pixel, 1, 1, counters);
 }
 
 void AggregateMemory::write(std::uint32_t pixel, StageCounters& counters) {

@@ -3,15 +3,10 @@
 #include <bit>
 #include <stdexcept>
 
+#include "simd/population_count.h"
+
 namespace beampipe {
 namespace {
-
-// The base instruction set has no population count.
-constexpr std::array<std::uint8_t, 256> kBits = [] {
-  std::array<std::uint8_t, 256> bits{};
-  for (std::uint32_t i = 0; i < bits.size(); ++i) bits[i] = static_cast<std::uint8_t>(std::popcount(i));
-  return bits;
-}();
 
 // Where the bytes of a compressed block lie.
 Sectors first_sectors(std::uint32_t count) { return static_cast<Sectors>((1u << count) - 1); }
@@ -47,7 +42,9 @@ BlockCache::BlockCache(const MemoryParameters& memory, const CacheParameters& ca
   next_ = &next;
 }
 
-std::uint64_t BlockCache::bytes_of(Sectors sectors) const { return std::uint64_t{kBits[sectors]} << log2_sector_; }
+std::uint64_t BlockCache::bytes_of(Sectors sectors) const {
+  return std::uint64_t{population_count(sectors)} << log2_sector_;
+}
 
 void BlockCache::begin_request(std::uint32_t key, std::size_t block, StageCounters& counters) {
   finish_request();
@@ -130,7 +127,7 @@ void BlockCache::write_back(const Line& line, StageCounters& counters) {
   State& state = states_[line.block];
   if (compressed_bytes_ && line.valid == all_sectors_) {
     const std::uint32_t sectors = sectors_in(compressed_bytes_(line.block));
-    if (sectors < kBits[all_sectors_]) {
+    if (sectors < population_count(all_sectors_)) {
       pass_on(DramAccess::write, line.block, first_sectors(sectors), counters);
       state = static_cast<State>(sectors);
       return;

@@ -89,10 +89,11 @@ void SampleMemory::add_bytes(std::vector<float>& pixels) const {
 }
 
 // The planes of the block, and for each sample the number of its plane. "Cleared" counts as a plane of its own.
-std::uint32_t SampleMemory::depth_bytes(std::size_t first, std::size_t elements) const {
+std::uint32_t SampleMemory::depth_bytes(std::size_t first, std::size_t elements) {
   const std::size_t begin = first * samples_, end = std::min((first + elements) * samples_, owner_.size());
   const std::size_t samples = elements * samples_, raw = samples * kSampleDepthBytes;
-  std::vector<std::uint32_t> planes;
+  std::vector<std::uint32_t>& planes = planes_;
+  planes.clear();
   bool cleared = end - begin < samples;
   for (std::size_t i = begin; i < end; ++i) {
     const std::uint32_t owner = owner_[i];

@@ -52,7 +52,7 @@ class SampleMemory {
 
  private:
   void replay(const std::vector<SampleAccess>& accesses, bool write_depth, bool write_color, StageCounters& counters);
-  std::uint32_t depth_bytes(std::size_t first, std::size_t elements) const;
+  std::uint32_t depth_bytes(std::size_t first, std::size_t elements);
   std::uint32_t color_bytes(std::size_t first, std::size_t elements) const;
 
   bool modelled_;
@@ -63,7 +63,8 @@ class SampleMemory {
   ZOrder order_;
   SameValue same_value_;
   std::uint32_t color_sample_bytes_;
-  std::vector<std::uint32_t> owner_;  // triangle of each sample that this pass has written, in Z order
+  std::vector<std::uint32_t> owner_;   // triangle of each sample that this pass has written, in Z order
+  std::vector<std::uint32_t> planes_;  // of the block that is compressed; kept so that it is allocated once
   TileSurface depth_;
   std::optional<TileSurface> color_;
 };

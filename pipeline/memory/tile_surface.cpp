@@ -2,6 +2,8 @@
 
 #include <bit>
 
+#include "simd/population_count.h"
+
 namespace beampipe {
 namespace {
 
@@ -80,7 +82,7 @@ TileSurface::TileSurface(const MemorySystem& memory, std::string_view name, cons
 void TileSurface::access(std::uint32_t key, std::uint32_t element, std::uint32_t read, std::uint32_t write,
                          StageCounters& counters) {
   if (touched_bytes_.empty()) return;  // there are no accesses to model
-  touched_bytes_[element] += static_cast<std::uint32_t>(std::popcount(read) + std::popcount(write)) * part_bytes_;
+  touched_bytes_[element] += (population_count(read) + population_count(write)) * part_bytes_;
   const std::uint32_t position = order_.of[element], block = position >> log2_elements_per_block_;
   const std::uint32_t place = position - (block << log2_elements_per_block_);
   cache_.access(key, block, sectors_of_parts(place, read), sectors_of_parts(place, write), counters, [&](auto&& count) {

@@ -22,12 +22,15 @@
 #include "hwy/foreach_target.h"
 // foreach_target comes first
 #include "hwy/highway.h"
+#include "simd/plane_sides-inl.h"
 
 HWY_BEFORE_NAMESPACE();
 namespace beampipe {
 namespace HWY_NAMESPACE {
 namespace {
-namespace hn = hwy::HWY_NAMESPACE;
+
+// Of numbers, beside those of vectors.
+using beampipe::greater, beampipe::lesser, beampipe::magnitude;
 
 // A mask in registers. It is loaded and stored in whole vectors, because a load waits for the parts of a vector that
 // were stored one by one just before. Compilers copy a WideMask in smaller parts.
@@ -40,9 +43,10 @@ class Mask {
   }
   HWY_INLINE explicit Mask(const WideMask& mask) : Mask(mask.words.data()) {}
   // All positions, or none.
-  HWY_INLINE static Mask filled(bool all) {
+  HWY_INLINE static Mask filled(bool all) { return repeated(all ? ~0u : 0); }
+  HWY_INLINE static Mask repeated(std::uint32_t word) {
     Mask mask;
-    for (auto& part : mask.part_) part = hn::Set(D(), all ? ~0u : 0);
+    for (auto& part : mask.part_) part = hn::Set(D(), word);
     return mask;
   }
 
@@ -129,24 +133,18 @@ class OwnerComposer {
     ++work.masks;
     const ByState met = by_state(mask, pixel);
     const bool meets_empty = met.found >> Pixel::kEmpty & 1;
-    Mask claimed = met.positions[Pixel::kEmpty];
-    bool lost = false;  // has a slot lost all of its positions?
-    for (std::uint64_t slots = met.found >> Pixel::kFirstSlot & kAllSlots; slots != 0; slots &= slots - 1) {
-      const auto k = static_cast<std::size_t>(std::countr_zero(slots));
-      const Mask& contested = met.positions[Pixel::owned_by(k)];
-      const Mask won = positions_won(fragment, k, pixel.slots[k], contested);
-      claimed = claimed | won;
-      if (!(won == contested) || !(won == positions_in(Pixel::owned_by(k), pixel))) continue;
-      pixel.slots[k].clear();
-      lost = true;
-    }
+    const std::uint64_t contested = met.found >> Pixel::kFirstSlot & kAllSlots;  // bit k: slot k
+    const Mask claimed = met.positions[Pixel::kEmpty] | positions_won(fragment, met, contested, pixel);
     if (claimed.none()) return Outcome::composed;
     ++work.claims;
+    // An owner that has no position left has lost its slot.
+    const std::uint64_t left = by_state(without(Mask::filled(true), claimed), pixel).found;
+    const std::uint64_t owners = left >> Pixel::kFirstSlot & kAllSlots, losers = contested & ~owners;
+    for (std::uint64_t slots = losers; slots != 0; slots &= slots - 1)
+      pixel.slots[static_cast<std::size_t>(std::countr_zero(slots))].clear();
     // Does this fragment close the pixel, or may it close it nearer than before?
-    const bool closes = (meets_empty || lost) && positions_in(Pixel::kEmpty, pixel) == met.positions[Pixel::kEmpty];
-    std::size_t room = Slots;
-    for (std::size_t k = 0; k < Slots; ++k)
-      if (pixel.slots[k].is_free()) room = k;
+    const bool closes = (meets_empty || losers != 0) && !(left >> Pixel::kEmpty & 1);
+    std::size_t room = owners == kAllSlots ? Slots : static_cast<std::size_t>(std::bit_width(kAllSlots & ~owners)) - 1;
     bool merged = false;
     if (room == Slots) {
       put(claimed, Pixel::kEmpty, pixel);
@@ -155,8 +153,7 @@ class OwnerComposer {
     if (room < Slots) {
       put(claimed, Pixel::owned_by(room), pixel);
       pixel.slots[room] = slot_of(fragment, mask, number);
-      depths_->planes[room] = fragment.plane;
-      depths_->farthest[room] = fragment.z_max;
+      depths_->set(room, fragment.plane, fragment.z_max);
     }
     if (closes) close(pixel, closed);
     return merged ? Outcome::merged : Outcome::composed;
@@ -243,7 +240,7 @@ class OwnerComposer {
     }
   }
 
-  static OwnerSlot slot_of(const Fragment& fragment, const Mask& mask, std::uint32_t number) {
+  HWY_INLINE static OwnerSlot slot_of(const Fragment& fragment, const Mask& mask, std::uint32_t number) {
     const auto covered = static_cast<std::uint32_t>(mask.count());
     OwnerSlot slot;
     slot.set(number, fragment.alpha * kPositions - static_cast<float>(covered), covered, fragment.centroid_u,
@@ -252,21 +249,37 @@ class OwnerComposer {
   }
 
   // Of the owner in slot k.
-  const DepthPlane<float>& plane_of(std::size_t k, const OwnerSlot& slot) {
+  DepthPlane<float> plane_of(std::size_t k, const OwnerSlot& slot) {
     ++work.planes;
     if (bin_.lists_fetches) result_.fetched.push_back(bin_.list[slot.triangle()]);
-    return depths_->planes[k];
+    return depths_->plane(k);
   }
 
-  // The contested positions that the fragment takes from the owner. The difference of two planes is a plane: most
-  // often it has one sign in the whole pixel.
-  Mask positions_won(const Fragment& fragment, std::size_t k, const OwnerSlot& slot, const Mask& contested) {
-    ++work.contests;
-    const DepthPlane<float>& owner = plane_of(k, slot);
-    const PlaneGap<float> gap = plane_gap(fragment.plane, owner);
-    if (gap.middle < -gap.reach) return contested;
-    if (gap.middle > gap.reach) return Mask::filled(false);
+  // The positions that the fragment takes from owners. `contested`: the slots of these owners.
+  HWY_INLINE Mask positions_won(const Fragment& fragment, const ByState& met, std::uint64_t contested,
+                                const Pixel& pixel) {
+    Mask won = Mask::filled(false);
+    if (contested == 0) return won;
+    const auto contests = static_cast<std::uint64_t>(std::popcount(contested));
+    work.contests += contests, work.planes += contests;
+    if (bin_.lists_fetches)
+      for (std::uint64_t slots = contested; slots != 0; slots &= slots - 1)
+        result_.fetched.push_back(bin_.list[pixel.slots[std::countr_zero(slots)].triangle()]);
+    const PlaneSides<Slots> sides = plane_sides<Slots>(fragment.plane, depths_->planes());
+    for (std::size_t k = 0; k < Slots; ++k)
+      won = won | (met.positions[Pixel::owned_by(k)] & Mask::repeated(sides.nearer[k]));
+    for (std::uint64_t slots = contested & sides.crossing; slots != 0; slots &= slots - 1) {
+      const auto k = static_cast<std::size_t>(std::countr_zero(slots));
+      won = won | positions_won_from(k, pixel.slots[k], fragment,
+                                     Mask(fragment.mask) & positions_in(Pixel::owned_by(k), pixel));
+    }
+    return won;
+  }
+
+  // The contested positions that the fragment takes from the owner of slot k.
+  Mask positions_won_from(std::size_t k, const OwnerSlot& slot, const Fragment& fragment, const Mask& contested) {
     ++work.planes_compared;
+    const DepthPlane<float> owner = depths_->plane(k);
     const bool is_earlier = fragment.triangle < bin_.list[slot.triangle()];
     const DepthPlane<float>&one = is_earlier ? owner : fragment.plane, &other = is_earlier ? fragment.plane : owner;
     const WideMask where = contested.wide();
@@ -387,8 +400,7 @@ class OwnerComposer {
                           {other.slot, other.index, other.owned.wide(), color_of_other}, part / (part + other_part));
     put(one.owned | other.owned, Pixel::owned_by(one.index), pixel);
     const std::uint32_t contents = one.slot.content() + 3 * other.slot.content();
-    depths_->planes[one.index] = larger.plane;
-    depths_->farthest[one.index] = pair_bounds(larger.plane, {kInFront, kNoDepth}).farthest;
+    depths_->set(one.index, larger.plane, pair_bounds(larger.plane, {kInFront, kNoDepth}).farthest);
     pixel.slots[one.index].set_merged(larger.slot.triangle(), error_of_one + error_of_other, color,
                                       rounding_threshold(contents));
     if (other.index < Slots) pixel.slots[other.index].clear();
@@ -486,7 +498,7 @@ class OwnerComposer {
       ++work.bounds_found;
       work.vertices_bounded += !slot.is_merged();
       plane_of(k, slot);
-      farthest = std::max(farthest, depths_->farthest[k]);
+      farthest = std::max(farthest, depths_->farthest(k));
     }
     closed.close(pixel_, farthest);
   }

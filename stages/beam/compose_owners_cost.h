@@ -81,8 +81,8 @@ inline OperationCounts plane_gap_cost() {
     const Counted<float> one(1.0f, counts);
     const DepthPlane<Counted<float>> plane{one, one, one};
     const PlaneGap<Counted<float>> gap = plane_gap(plane, plane);
-    static_cast<void>(gap.middle < Counted<float>(0.0f) - gap.reach);
-    static_cast<void>(gap.middle > gap.reach);
+    static_cast<void>(is_nearer(gap));
+    static_cast<void>(is_farther(gap));
   });
 }
 

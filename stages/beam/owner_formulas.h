@@ -2,23 +2,13 @@
 #pragma once
 
 #include "simd/depth_plane.h"
+#include "simd/plane_gap.h"
 #include "simd/plane_order.h"
 #include "simd/scalar.h"
 #include "stages/beam/specks.h"
 #include "stages/data/mix_bits.h"
 
 namespace beampipe {
-
-// The difference of two planes over a pixel: at its centre, and how far it may be from that at its corners. It is below
-// 0 where the first plane is nearer.
-template <class Float>
-struct PlaneGap {
-  Float middle, reach;
-};
-template <class Float>
-PlaneGap<Float> plane_gap(const DepthPlane<Float>& plane, const DepthPlane<Float>& other) {
-  return {plane.z - other.z, Float(0.5f) * (magnitude(plane.dzdu - other.dzdu) + magnitude(plane.dzdv - other.dzdv))};
-}
 
 // The distance in depth of two planes at (u, v), in pixels from the pixel's centre.
 template <class Float>

@@ -192,16 +192,28 @@ static_assert(sizeof(OpenPixel<1, 2>) == 42);
 // Depths of a pixel's owners, which the modelled machine computes again whenever it needs them. This program keeps
 // them.
 template <std::size_t Slots>
-struct OwnerDepths {
-  DepthPlane<float> planes[Slots];
-  float farthest[Slots];  // upper bound of the depth in the pixel
+class OwnerDepths {
+ public:
+  DepthPlane<float> plane(std::size_t k) const { return {rows_[0][k], rows_[1][k], rows_[2][k]}; }
+  float farthest(std::size_t k) const { return rows_[3][k]; }
+  void set(std::size_t k, const DepthPlane<float>& plane, float farthest) {
+    rows_[0][k] = plane.z, rows_[1][k] = plane.dzdu, rows_[2][k] = plane.dzdv, rows_[3][k] = farthest;
+  }
+
+  // Rows of all slots, from each of which a vector of std::bit_ceil(Slots) may be read.
+  DepthPlane<const float*> planes() const { return {rows_[0], rows_[1], rows_[2]}; }
+
+ private:
+  float rows_[4][Slots];  // z, dzdu, dzdv, and the upper bound of the depth in the pixel
 };
 
 // The open pixels of a tile, row by row.
 template <std::size_t Words, std::size_t Slots>
 struct OpenPixels {
+  // All are copies of one: g++ clears a pixel with `rep stos`, which takes longer to start than to clear so few bytes.
   explicit OpenPixels(std::size_t count)
-      : pixels(count), depths(std::make_unique_for_overwrite<OwnerDepths<Slots>[]>(count)) {}
+      : pixels(count, OpenPixel<Words, Slots>()),
+        depths(std::make_unique_for_overwrite<OwnerDepths<Slots>[]>(count)) {}
 
   std::vector<OpenPixel<Words, Slots>> pixels;
   std::unique_ptr<OwnerDepths<Slots>[]> depths;  // not set before a slot has an owner

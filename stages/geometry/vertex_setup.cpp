@@ -1,10 +1,12 @@
 #include "stages/geometry/vertex_setup.h"
 
 #include <tbb/parallel_for.h>
+#include <tbb/task_arena.h>
 
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <memory>
 #include <optional>
 
 #include "simd/vertex_transform.h"
@@ -226,7 +228,8 @@ class TriangleSetup {
  public:
   // `first_vertex`: where the draw's vertices start in SetupTriangles::vertices.
   TriangleSetup(const View& view, const DrawScreen& screen, const Trace& trace, const Draw& draw,
-                std::uint32_t draw_index, const std::vector<ProjectedVertex>& vertices, std::uint32_t first_vertex)
+                std::uint32_t draw_index, const ProjectedVertex* vertices, std::uint32_t first_vertex,
+                SetupTriangles& out)
       : view_(view),
         screen_(screen),
         is_placed_(screen.placement != DrawPlacement{}),
@@ -237,7 +240,8 @@ class TriangleSetup {
         transform_mirrors_(glm::determinant(glm::dmat3(draw.transform)) < 0),
         to_world_(elements_of(draw.transform)),
         draw_index_(draw_index),
-        vertices_(vertices) {}
+        vertices_(vertices),
+        out_(out) {}
 
   void add(std::size_t t) {
     const glm::uvec3& index = mesh_.triangles[t];
@@ -255,10 +259,10 @@ class TriangleSetup {
 
   // After the last triangle, or when a block is full.
   void finish_block() {
-    const std::size_t count = block_.count, first = out.triangles.size() - count;
+    const std::size_t count = block_.count, first = out_.triangles.size() - count;
     depth_planes(block_.screen, count, block_.planes);
     for (std::size_t i = 0; i < count; ++i) {
-      SetupTriangle& triangle = out.triangles[first + i];
+      SetupTriangle& triangle = out_.triangles[first + i];
       triangle.depth = {block_.planes.z[i], block_.planes.dzdx[i], block_.planes.dzdy[i], block_.planes.anchor_x[i],
                         block_.planes.anchor_y[i]};
       if (screen_.placement.has_bias()) add_bias(triangle);
@@ -266,7 +270,7 @@ class TriangleSetup {
     if (block_.is_lit) {
       unit_normals(to_world_, block_.mesh, count, block_.normals);
       for (std::size_t i = 0; i < count; ++i) {
-        FlatAttributes& flat = out.attributes[first + i];
+        FlatAttributes& flat = out_.attributes[first + i];
         if (flat.lit) flat.normal = {block_.normals.x[i], block_.normals.y[i], block_.normals.z[i]};
       }
     }
@@ -274,11 +278,10 @@ class TriangleSetup {
     block_.is_lit = false;
   }
 
-  SetupTriangles out;
   SetupWork work;
 
  private:
-  // The last triangles of `out`, whose depth planes and normals are missing.
+  // The last triangles of `out_`, whose depth planes and normals are missing.
   struct Block {
     std::size_t count = 0;
     bool is_lit = false;  // has one of them a normal?
@@ -363,7 +366,7 @@ class TriangleSetup {
     if (material != kNoMaterial && !materials_[material].double_sided && shows_back(front)) return;
     std::array<ScreenVertex<double>, 3> p = {a.screen, b.screen, c.screen};
     if (is_placed_) place_depths(t, p);
-    SetupTriangle& triangle = out.triangles.emplace_back();
+    SetupTriangle& triangle = out_.triangles.emplace_back();
     const std::array<const ProjectedVertex*, 3> corners = {&a, &b, &c};
     const std::array<std::size_t, 3> turned = {0, front ? 2u : 1u, front ? 1u : 2u};
     for (std::size_t k = 0; k < 3; ++k) {
@@ -374,8 +377,8 @@ class TriangleSetup {
     }
     triangle.front = front;
     add_attributes(t, material, front);
-    out.draws.push_back(draw_index_);
-    if (has_surfaces()) out.surfaces.push_back(surface(t, material, front, {first, second, third}));
+    out_.draws.push_back(draw_index_);
+    if (has_surfaces()) out_.surfaces.push_back(surface(t, material, front, {first, second, third}));
     if (++block_.count == kSetupBlock) finish_block();
   }
 
@@ -435,7 +438,7 @@ class TriangleSetup {
 
   // All but the normal.
   void add_attributes(std::size_t t, std::uint32_t material, bool front) {
-    FlatAttributes& flat = out.attributes.emplace_back();
+    FlatAttributes& flat = out_.attributes.emplace_back();
     flat.lit = draw_.shading == Shading::lambert;
     flat.normal = glm::vec3(0);
     if (material == kNoMaterial) {
@@ -466,7 +469,8 @@ class TriangleSetup {
   bool transform_mirrors_;
   std::array<double, 16> to_world_;
   std::uint32_t draw_index_;
-  const std::vector<ProjectedVertex>& vertices_;
+  const ProjectedVertex* vertices_;
+  SetupTriangles& out_;
   Block block_;
 };
 
@@ -479,39 +483,49 @@ void append(const SetupTriangles& part, SetupTriangles& whole) {
 
 constexpr std::size_t kChunk = 4096;  // vertices or triangles per task
 
+std::size_t chunks_of(std::size_t count) { return (count + kChunk - 1) / kChunk; }
+
 // Calls work(first, end) for chunks of [0, count), in parallel.
 template <class ChunkWork>
 void for_each_chunk(std::size_t count, ChunkWork&& work) {
-  tbb::parallel_for(std::size_t{0}, (count + kChunk - 1) / kChunk,
+  tbb::parallel_for(std::size_t{0}, chunks_of(count),
                     [&](std::size_t chunk) { work(chunk * kChunk, std::min(count, (chunk + 1) * kChunk)); });
 }
 
-// Appends the draw's triangles to `out`, chunk by chunk.
+// Appends the draw's triangles to `out`.
 SetupWork add_draw(const View& view, const Trace& trace, const Draw& draw, const DrawPlacement& placement,
                    std::uint32_t draw_index, std::uint32_t first_vertex, SetupTriangles& out) {
   const Mesh& mesh = trace.meshes[draw.mesh];
   const DrawScreen screen(view, draw, placement);
-  std::vector<ProjectedVertex> vertices(mesh.positions.size());
-  std::vector<std::size_t> in_view((vertices.size() + kChunk - 1) / kChunk);
-  for_each_chunk(vertices.size(), [&](std::size_t first, std::size_t end) {
+  const std::size_t vertex_count = mesh.positions.size();
+  const auto vertices = std::make_unique_for_overwrite<ProjectedVertex[]>(vertex_count);
+  std::vector<std::size_t> in_view(chunks_of(vertex_count));
+  for_each_chunk(vertex_count, [&](std::size_t first, std::size_t end) {
     in_view[first / kChunk] =
-        transform_vertices(&mesh.positions[first].x, end - first, screen.transform, vertices.data() + first,
+        transform_vertices(&mesh.positions[first].x, end - first, screen.transform, vertices.get() + first,
                            mesh.ws.empty() ? nullptr : mesh.ws.data() + first);
   });
-  std::vector<TriangleSetup> chunks((mesh.triangles.size() + kChunk - 1) / kChunk,
-                                    TriangleSetup(view, screen, trace, draw, draw_index, vertices, first_vertex));
-  for_each_chunk(mesh.triangles.size(), [&](std::size_t first, std::size_t end) {
-    chunks[first / kChunk].out.reserve(end - first);
-    for (std::size_t t = first; t < end; ++t) chunks[first / kChunk].add(t);
-    chunks[first / kChunk].finish_block();
-  });
   SetupWork work;
-  (mesh.ws.empty() ? work.transformed : work.transformed_homogeneous) = vertices.size();
+  (mesh.ws.empty() ? work.transformed : work.transformed_homogeneous) = vertex_count;
   for (const std::size_t of_chunk : in_view) work.projected += of_chunk;
-  for (const TriangleSetup& chunk : chunks) {
-    append(chunk.out, out);
-    work += chunk.work;
+  const auto set_up = [&](std::size_t first, std::size_t end, SetupTriangles& to) {
+    TriangleSetup setup(view, screen, trace, draw, draw_index, vertices.get(), first_vertex, to);
+    for (std::size_t t = first; t < end; ++t) setup.add(t);
+    setup.finish_block();
+    return setup.work;
+  };
+  if (tbb::this_task_arena::max_concurrency() == 1) {  // nothing to put together
+    work += set_up(0, mesh.triangles.size(), out);
+    return work;
   }
+  std::vector<SetupTriangles> parts(chunks_of(mesh.triangles.size()));
+  std::vector<SetupWork> part_work(parts.size());
+  for_each_chunk(mesh.triangles.size(), [&](std::size_t first, std::size_t end) {
+    parts[first / kChunk].reserve(end - first);
+    part_work[first / kChunk] = set_up(first, end, parts[first / kChunk]);
+  });
+  for (const SetupTriangles& part : parts) append(part, out);
+  for (const SetupWork& of_part : part_work) work += of_part;
   return work;
 }
 

@@ -1,5 +1,8 @@
 #include "stages/raster/sample_raster.h"
 
+#include <array>
+
+#include "simd/population_count.h"
 #include "simd/sample_mask.h"
 #include "stages/data/pixel_depth.h"
 #include "stages/raster/sample_raster_cost.h"
@@ -19,6 +22,42 @@ CellEdges cell_edges(const EdgeSet& set, std::int64_t x, std::int64_t y) {
   return cell;
 }
 
+// Cells that need the sample test. Blocks of them are tested at once, while they are in the nearest cache.
+class PartialCells {
+ public:
+  PartialCells(const SamplePattern& pattern, std::vector<SampleFragment>& fragments, SampleRasterWork& work)
+      : pattern_(pattern), fragments_(fragments), work_(work) {}
+
+  // The cell of the next fragment.
+  void add(const CellEdges& cell) {
+    if (count_ == kBlock) test();
+    cells_[count_] = cell;
+    fragment_[count_++] = fragments_.size();
+  }
+
+  // Sets the masks of the fragments whose cells were added.
+  void test() {
+    std::array<std::uint32_t, kBlock> masks;
+    sample_masks(cells_.data(), count_, pattern_, masks.data());
+    for (std::size_t i = 0; i < count_; ++i) {
+      fragments_[fragment_[i]].mask = masks[i];
+      work_.covered_samples += population_count(masks[i]);
+    }
+    work_.partial_cells += count_;
+    count_ = 0;
+  }
+
+ private:
+  static constexpr std::size_t kBlock = 256;
+
+  const SamplePattern& pattern_;
+  std::vector<SampleFragment>& fragments_;
+  SampleRasterWork& work_;
+  std::size_t count_ = 0;
+  std::array<CellEdges, kBlock> cells_;
+  std::array<std::size_t, kBlock> fragment_;
+};
+
 DepthBounds<float> sample_bounds(const SetupTriangle& triangle) {
   return sample_bounds(vertex_bounds(triangle.vertex_z), triangle.depth.dzdx, triangle.depth.dzdy);
 }
@@ -32,8 +71,7 @@ void sample_raster(const SetupTriangles& triangles, const TriangleList& list, co
   const std::size_t before = out.size();
   Traversal traversal{tile, sampling.grid, FullMeans::samples};
   SampleRasterWork work;
-  std::vector<CellEdges> partial;        // cells that need the sample test,
-  std::vector<std::size_t> destination;  // and where their masks go in `out`
+  PartialCells partial(sampling.pattern, out, work);
   for (const std::uint32_t index : list) {
     const SetupTriangle& triangle = triangles.triangles[index];
     const DepthBounds<float> depths = sample_bounds(triangle);
@@ -43,25 +81,18 @@ void sample_raster(const SetupTriangles& triangles, const TriangleList& list, co
       if (closed && closed->hides(x, y, depths.nearest)) return;
       if (closed && full && triangles.is_opaque(index)) closed->close(x, y, depths.farthest);
       if (!full) {
-        partial.push_back(cell_edges(set, std::int64_t{x} * sampling.grid.cell_width(),
-                                     std::int64_t{y} * sampling.grid.cell_height()));
-        destination.push_back(out.size());
+        partial.add(cell_edges(set, std::int64_t{x} * sampling.grid.cell_width(),
+                               std::int64_t{y} * sampling.grid.cell_height()));
       }
       out.push_back({index, q, x, y, every_sample});
     });
     if (closed) closed->refresh();
   }
-  std::vector<std::uint32_t> masks(partial.size());
-  sample_masks(partial.data(), partial.size(), sampling.pattern, masks.data());
-  for (std::size_t i = 0; i < masks.size(); ++i) {
-    out[destination[i]].mask = masks[i];
-    work.covered_samples += static_cast<std::uint64_t>(std::popcount(masks[i]));
-  }
+  partial.test();
   const auto start = out.begin() + static_cast<std::ptrdiff_t>(before);
   out.erase(std::remove_if(start, out.end(), [](const SampleFragment& f) { return f.mask == 0; }), out.end());
 
   work.traversal = traversal.counts;
-  work.partial_cells = partial.size();
   work.fragments = out.size() - before;
   charge(work, sampling.pattern, counters);
   if (closed) {

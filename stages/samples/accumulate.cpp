@@ -1,9 +1,9 @@
 #include "stages/samples/accumulate.h"
 
 #include <algorithm>
-#include <bit>
 #include <cmath>
 
+#include "simd/population_count.h"
 #include "stages/data/half_bits.h"
 #include "stages/samples/accumulate_cost.h"
 #include "stages/samples/sample_formulas.h"
@@ -56,10 +56,10 @@ void stencil_test(const Tile& tile, StageCounters& counters, Accumulator& accumu
   std::uint64_t tested = 0, passed = 0;  // samples
   for (SampleFragment& fragment : fragments) {
     std::uint32_t& taken = accumulator.taken[pixel_of(fragment, tile)];
-    tested += static_cast<std::uint64_t>(std::popcount(fragment.mask));
+    tested += population_count(fragment.mask);
     fragment.mask &= ~taken;
     taken |= fragment.mask;
-    passed += static_cast<std::uint64_t>(std::popcount(fragment.mask));
+    passed += population_count(fragment.mask);
   }
   std::erase_if(fragments, [](const SampleFragment& fragment) { return fragment.mask == 0; });
   charge_stencil_test(tested, passed, counters);

@@ -1,5 +1,8 @@
 #include "stages/samples/test_depth.h"
 
+#include <algorithm>
+#include <array>
+
 #include "simd/depth_compare.h"
 #include "stages/data/pixel_depth.h"
 #include "stages/samples/test_depth_cost.h"
@@ -7,30 +10,46 @@
 namespace beampipe {
 namespace {
 
-// The input of the kernels.
-std::vector<CellDepth> cell_depths(const SetupTriangles& triangles, const std::vector<SampleFragment>& fragments,
-                                   const Tile& tile, const CellGrid& grid) {
+constexpr std::size_t kBlock = 256;  // fragments; what the kernels read of them stays in the nearest cache
+
+// The input of a kernel, and its output.
+struct Block {
+  std::array<CellDepth, kBlock> items;
+  std::array<std::uint32_t, kBlock> masks;
+};
+
+void set_items(const SetupTriangles& triangles, const SampleFragment* fragments, std::size_t count, const Tile& tile,
+               const CellGrid& grid, Block& block) {
   const double cell_width = 1.0 / grid.columns, cell_height = 1.0 / grid.rows;  // pixels; exact
-  std::vector<CellDepth> items;
-  items.reserve(fragments.size());
-  for (const SampleFragment& fragment : fragments) {
+  for (std::size_t i = 0; i < count; ++i) {
+    const SampleFragment& fragment = fragments[i];
     const auto pixel = static_cast<std::int32_t>(tile.index(grid.pixel_x(fragment.x), grid.pixel_y(fragment.y)));
     const CellPlane<float> plane =
         cell_plane(triangles.triangles[fragment.triangle].depth, fragment.x * cell_width, fragment.y * cell_height);
-    CellDepth& item = items.emplace_back();
+    CellDepth& item = block.items[i];
     item.cell = static_cast<std::uint32_t>(pixel * grid.cells_per_pixel() + grid.in_pixel(fragment.x, fragment.y));
     item.mask = fragment.mask;
     item.triangle = fragment.triangle;
     item.z = plane.z, item.dzdx = plane.dzdx, item.dzdy = plane.dzdy;
   }
-  return items;
 }
 
-void list_accesses(const std::vector<CellDepth>& items, const std::vector<std::uint32_t>& passed,
-                   std::vector<SampleAccess>& accesses) {
-  accesses.resize(items.size());
-  for (std::size_t i = 0; i < items.size(); ++i)
-    accesses[i] = {items[i].cell, items[i].triangle, items[i].mask, passed[i]};
+// Calls test(items, count, masks) for one block of fragments after the other and lists which of their samples pass.
+template <class Test>
+SampleCounts test_blocks(const SetupTriangles& triangles, const std::vector<SampleFragment>& fragments,
+                         const Tile& tile, const CellGrid& grid, std::vector<SampleAccess>& accesses, Test&& test) {
+  SampleCounts samples{0, 0};
+  Block block;
+  accesses.resize(fragments.size());
+  for (std::size_t first = 0; first < fragments.size(); first += kBlock) {
+    const std::size_t count = std::min(kBlock, fragments.size() - first);
+    set_items(triangles, &fragments[first], count, tile, grid, block);
+    const SampleCounts of_block = test(block.items.data(), count, block.masks.data());
+    samples.tested += of_block.tested, samples.passed += of_block.passed;
+    for (std::size_t i = 0; i < count; ++i)
+      accesses[first + i] = {block.items[i].cell, block.items[i].triangle, block.items[i].mask, block.masks[i]};
+  }
+  return samples;
 }
 
 }  // namespace
@@ -38,25 +57,26 @@ void list_accesses(const std::vector<CellDepth>& items, const std::vector<std::u
 void depth_test(const SetupTriangles& triangles, const std::vector<SampleFragment>& fragments, const Tile& tile,
                 const Sampling& sampling, StageCounters& counters, SampleTile& surface,
                 std::vector<SampleAccess>& accesses) {
-  const std::vector<CellDepth> items = cell_depths(triangles, fragments, tile, sampling.grid);
-  std::vector<std::uint32_t> masks(items.size());
-  const SampleCounts samples = depth_test(items.data(), items.size(), sampling.pattern,
-                                          {surface.depth.data(), surface.triangle.data()}, masks.data());
-  list_accesses(items, masks, accesses);
-  charge_depth_test(items.size(), samples, kSampleDepthBytes + surface.color_bytes, sampling.pattern, counters);
+  const SampleCounts samples = test_blocks(
+      triangles, fragments, tile, sampling.grid, accesses,
+      [&](const CellDepth* items, std::size_t count, std::uint32_t* masks) {
+        return depth_test(items, count, sampling.pattern, {surface.depth.data(), surface.triangle.data()}, masks);
+      });
+  charge_depth_test(fragments.size(), samples, kSampleDepthBytes + surface.color_bytes, sampling.pattern, counters);
 }
 
 void depth_test_equal(const SetupTriangles& triangles, const Tile& tile, const Sampling& sampling,
                       StageCounters& counters, const SampleTile& surface, std::vector<SampleFragment>& fragments,
                       std::vector<SampleAccess>& accesses) {
-  const std::vector<CellDepth> items = cell_depths(triangles, fragments, tile, sampling.grid);
-  std::vector<std::uint32_t> masks(items.size());
+  const std::size_t tested = fragments.size();
   const SampleCounts samples =
-      depth_equal(items.data(), items.size(), sampling.pattern, surface.depth.data(), masks.data());
-  list_accesses(items, masks, accesses);
-  for (std::size_t i = 0; i < masks.size(); ++i) fragments[i].mask = masks[i];
+      test_blocks(triangles, fragments, tile, sampling.grid, accesses,
+                  [&](const CellDepth* items, std::size_t count, std::uint32_t* masks) {
+                    return depth_equal(items, count, sampling.pattern, surface.depth.data(), masks);
+                  });
+  for (std::size_t i = 0; i < tested; ++i) fragments[i].mask = accesses[i].passed;
   std::erase_if(fragments, [](const SampleFragment& fragment) { return fragment.mask == 0; });
-  charge_depth_test(items.size(), samples, surface.color_bytes, sampling.pattern, counters);
+  charge_depth_test(tested, samples, surface.color_bytes, sampling.pattern, counters);
 }
 
 }  // namespace beampipe

@@ -37,8 +37,7 @@ inline Trace random_surfaces(std::uint32_t width, std::uint32_t height, int coun
     mesh.materials.push_back(t % 6 == 5 ? kNoMaterial : static_cast<std::uint32_t>(t % 6));
   for (std::size_t i = 0; i < mesh.positions.size(); ++i) {
     mesh.uvs[0].emplace_back(random.vector(glm::dvec2(-1), glm::dvec2(2)));
-    mesh.normals.push_back(
-        glm::normalize(glm::vec3(glm::vec2(random.vector(glm::dvec2(-0.5), glm::dvec2(0.5))), -1)));
+    mesh.normals.push_back(glm::normalize(glm::vec3(glm::vec2(random.vector(glm::dvec2(-0.5), glm::dvec2(0.5))), -1)));
     mesh.vertex_colors.emplace_back(glm::vec3(random.vector(glm::dvec3(0.5), glm::dvec3(1))), 1.0f);
   }
   trace.frames[0].lighting.lights = {{glm::normalize(glm::vec3(0.25f, 0.5f, 1)), glm::vec3(1, 0.75f, 0.5f)}};

@@ -92,7 +92,8 @@ void OutputFolder::make(const fs::path& folder) {
 }
 
 void OutputFolder::write(const fs::path& name, std::string_view bytes, const std::vector<fs::path>& outdated) {
-  write(name, [&](const WriteBytes& write_bytes) { write_bytes(bytes); }, outdated);
+  write(
+      name, [&](const WriteBytes& write_bytes) { write_bytes(bytes); }, outdated);
 }
 
 void OutputFolder::write(const fs::path& name, const std::function<void(const WriteBytes&)>& content,

@@ -207,6 +207,30 @@ TEST(Claim, SpecksMakeAreasCountByPositions) {
   EXPECT_NEAR(settled_colors(beside.pixels).at(0).alpha, 1.0 / 32, 1e-5);
 }
 
+TEST(Claim, ASpeckShowsUnlessWhatLiesThereIsSettledOrNearer) {
+  SetupTriangles triangles;
+  add_everywhere(triangles, -0.5f);
+  const PositionSet positions(cell_patterns(32));
+  using Pixel = OwnerPixel<1, 5>;
+  const auto shows = [&](std::uint32_t state, float z) {
+    std::vector<Pixel> pixels = {cleared_pixel<1, 5>()};
+    WideMask all;
+    all.words[0] = ~0u;
+    pixels[0].put(all, state);
+    if (state == Pixel::kFirstLayer) pixels[0].set_triangle(0, 0);
+    Fragment speck{};
+    speck.centroid_u = 0.3f, speck.centroid_v = 0.6f, speck.centroid_z = z;
+    StageCounters counters;
+    claim(triangles, {speck}, kPixel, positions, counters, pixels);
+    return (pixels[0].owner[0] & Pixel::kSpeck) != 0;
+  };
+  EXPECT_TRUE(shows(Pixel::kEmpty, -0.25f));
+  EXPECT_TRUE(shows(Pixel::kDeferred, -0.25f));
+  EXPECT_FALSE(shows(Pixel::kSettled, -0.75f));
+  EXPECT_TRUE(shows(Pixel::kFirstLayer, -0.75f));
+  EXPECT_FALSE(shows(Pixel::kFirstLayer, -0.25f));
+}
+
 TEST(Claim, CountsWhatItReadsAndWrites) {
   SetupTriangles triangles;
   add_everywhere(triangles, -0.5f);

@@ -135,6 +135,51 @@ TEST(ComposeLayers, FewerLayersMergeTheClosest) {
   }
 }
 
+// At equal depth the fragment that comes first lies in front, as in the A-buffer.
+TEST(ComposeLayers, EqualDepthsKeepTheirOrder) {
+  Random random(75);
+  SCOPED_TRACE(random.name());
+  for (int i = 0; i < 20; ++i) {
+    std::vector<Fragment> fragments = random_fragments(random, 3);
+    std::erase_if(fragments, [](const Fragment& fragment) { return fragment.tiny; });
+    const std::size_t count = fragments.size();
+    for (std::size_t k = 0; k < count; ++k) {
+      fragments.push_back(fragments[k]);
+      fragments.back().color = fragments[k].alpha * glm::vec3(random.real32(0, 1), random.real32(0, 1), 0);
+    }
+    StageCounters counters;
+    const ABuffer lists = a_buffer(sort_records(fragments, SortKey::nearest), kTile.pixels(), 42, 42, counters);
+    const std::vector<Aggregate> expected = compose(fragments, lists, kPositions, {}, PaperStorage::float32, counters);
+    std::vector<float> merges;
+    expect_same(composed(fragments, 8, counters, merges), expected, 1e-5f);
+  }
+}
+
+// Of three surfaces in two layers, the two that are close become one: so the fourth, just in front of the last, hides
+// it. If the last two were one, the fourth would lie within their slab, and be mixed with them.
+TEST(ComposeLayers, TheClosestTwoBecomeOne) {
+  const auto flat = [](float z, std::uint32_t mask, float alpha, const glm::vec3& color) {
+    Fragment fragment{};
+    fragment.alpha = alpha;
+    fragment.mask.words[0] = mask;
+    fragment.plane = {z, 0, 0};
+    fragment.z_min = fragment.z_max = z;
+    fragment.color = alpha * color;
+    return fragment;
+  };
+  const Fragment red = flat(-0.9f, 0x000000ff, 0.25f, {1, 0, 0}), green = flat(-0.89f, 0x0000ff00, 0.25f, {0, 1, 0}),
+                 blue = flat(-0.2f, 0xffff0000, 0.5f, {0, 0, 1}), white = flat(-0.25f, 0xffff0000, 0.5f, {1, 1, 1});
+  for (const std::vector<Fragment>& order : {std::vector{red, green, blue, white}, {blue, green, red, white}}) {
+    StageCounters counters;
+    std::vector<float> merges;
+    const Aggregate pixel = composed(order, 2, counters, merges).at(0);
+    EXPECT_EQ(merges[0], 2);
+    EXPECT_NEAR(pixel.color[0], 0.75f, 1e-5f);
+    EXPECT_NEAR(pixel.color[1], 0.75f, 1e-5f);
+    EXPECT_NEAR(pixel.color[2], 0.5f, 1e-5f);
+  }
+}
+
 TEST(ComposeLayers, CountsBytes) {
   Random random(74);
   const std::vector<Fragment> fragments = random_fragments(random, 10);

@@ -161,6 +161,22 @@ TEST(DrawPlan, EachDepthClearStartsAGroupInFront) {
   EXPECT_GT(nearest, -2);
 }
 
+// The group with most tested triangles keeps its depths; of several, the first.
+TEST(DrawPlan, TheLargestGroupKeepsItsDepths) {
+  const auto scales = [](std::initializer_list<std::size_t> triangles) {
+    Draws draws;
+    for (const std::size_t count : triangles) draws.add(count).state.depth.cleared_before = true;
+    std::vector<double> found;
+    for (const DrawPlacement& placement : draws.plan().placements) found.push_back(placement.depth_scale);
+    return found;
+  };
+  const std::vector<double> second = scales({1, 3, 2}), first = scales({2, 2, 2});
+  EXPECT_EQ(second.at(1), 1);
+  EXPECT_LT(std::max(second.at(0), second.at(2)), 1);
+  EXPECT_EQ(first.at(0), 1);
+  EXPECT_LT(std::max(first.at(1), first.at(2)), 1);
+}
+
 // Random frames: each triangle of a later part lies in front of all of earlier parts, in floats too.
 TEST(DrawPlan, RandomGroupsAreInOrder) {
   Random random(311);

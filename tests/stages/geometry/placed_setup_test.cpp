@@ -7,6 +7,7 @@
 #include <glm/gtc/matrix_transform.hpp>
 #include <vector>
 
+#include "stages/geometry/setup_formulas.h"
 #include "stages/raster/sample_raster.h"
 #include "tests/simd/random.h"
 #include "tests/stages/screen_triangles.h"
@@ -271,6 +272,15 @@ TEST(PlacedSetup, DepthBiasIsAddedToThePlane) {
     EXPECT_NEAR(shift({-0.125f, -2, -0.0625f}, function), -0.0625, 1e-12);
     EXPECT_NEAR(shift({-0.125f, -2, 0.0625f}, function), -0.125 - 2 * slope, 1e-12);
   }
+}
+
+// A draw whose depths are moved into half of the interval, or turned around: its slopes there are halved too, and the
+// bias is that of the whole window, halved.
+TEST(PlacedSetup, DepthBiasIsThatOfTheWindow) {
+  EXPECT_EQ(depth_bias<double>({0, 2, 0, 1}, 0.25, -0.125), 0.5);
+  EXPECT_EQ(depth_bias<double>({0, 2, 0, 0.5}, 0.125, -0.0625), 0.25);
+  EXPECT_EQ(depth_bias<double>({0.125, 2, 0, -0.5}, 0.125, -0.25), -0.5 * (0.125 + 2 * 0.5));
+  EXPECT_EQ(depth_bias<double>({0.125, 2, 0.25, 0.5}, 0.125, 0), 0.125);
 }
 
 TEST(PlacedSetup, BiasedDepthsStayInTheWindow) {

@@ -1,6 +1,7 @@
 #include "stages/geometry/vertex_setup.h"
 
 #include <gtest/gtest.h>
+#include <tbb/task_arena.h>
 
 #include <algorithm>
 #include <array>
@@ -171,6 +172,39 @@ TEST(VertexSetup, KdOfTheDrawReplacesTheMeshs) {
 // - its depth plane: 3 comparisons to sort its corners, 6 differences, an area (2 products, 1 difference), its
 //   reciprocal, and twice 3 products and a difference;
 // - for each edge 2 products and 4 sums, and for each corner its depth in 32 bits.
+// One thread writes straight to the frame's triangles; several put their parts together.
+TEST(VertexSetup, TheNumberOfThreadsDoesNotMatter) {
+  Random random(1);
+  std::vector<glm::vec3> positions;
+  for (int i = 0; i < 3 * 10'000; ++i)  // some beyond the near plane, the far plane or the border
+    positions.emplace_back(random.real32(-1.1, 1.1), random.real32(-1.1, 1.1), random.real32(-1.1, 1.1));
+  const Scene scene = clip_space_scene(positions);
+  StageCounters counters[2];
+  SetupTriangles found[2];
+  for (int i = 0; i < 2; ++i)
+    tbb::task_arena(i + 1).execute([&] { found[i] = vertex_setup_of(scene, counters[i]); });
+  const auto& [one, two] = found;
+  ASSERT_EQ(one.triangles.size(), two.triangles.size());
+  EXPECT_GT(one.triangles.size(), 8'192u);  // more than two parts
+  EXPECT_EQ(one.draws, two.draws);
+  for (std::size_t i = 0; i < one.triangles.size(); ++i) {
+    const SetupTriangle &a = one.triangles[i], &b = two.triangles[i];
+    for (int k = 0; k < 3; ++k) {
+      ASSERT_EQ(a.x[k], b.x[k]) << i;
+      ASSERT_EQ(a.y[k], b.y[k]) << i;
+      ASSERT_EQ(a.vertex_z[k], b.vertex_z[k]) << i;
+    }
+    ASSERT_EQ(a.front, b.front) << i;
+    ASSERT_EQ(a.depth.z, b.depth.z) << i;
+    ASSERT_EQ(a.depth.dzdx, b.depth.dzdx) << i;
+    ASSERT_EQ(a.depth.dzdy, b.depth.dzdy) << i;
+    ASSERT_EQ(one.attributes[i].normal, two.attributes[i].normal) << i;
+    ASSERT_EQ(one.attributes[i].kd, two.attributes[i].kd) << i;
+  }
+  EXPECT_EQ(counters[0].items_out, counters[1].items_out);
+  EXPECT_EQ(counters[0].bytes_written, counters[1].bytes_written);
+}
+
 TEST(VertexSetup, CountsOperations) {
   StageCounters outside, inside;
   vertex_setup_of(clip_space_scene({{2, 0, 0}, {3, 0, 0}, {2, 0.5f, 0}}), outside);

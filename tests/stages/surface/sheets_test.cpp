@@ -43,6 +43,15 @@ TEST(Sheets, LayersThatMeetInAVertexAreTwo) {
             (Sheets{0, 1}));
 }
 
+// The first triangle points at the longest side of the last one. Nothing but that side lies between the two: each side
+// of the first one, made longer, cuts the last one. The two between them connect all.
+TEST(Sheets, OneSideIsEnoughToLieBeside) {
+  const std::vector<glm::vec3> positions = {{3, 0, 0}, {5, 0, 0}, {4, 3.5f, 0}, {0, 2, 0}, {8, 6, 0}, {0, 8, 0}};
+  const std::vector<glm::uvec3> corners = {{0, 1, 2}, {2, 1, 4}, {2, 4, 3}, {3, 4, 5}};
+  EXPECT_EQ(sheets_of(positions, corners), (Sheets{0, 0, 0, 0}));
+  EXPECT_EQ(sheets_of(positions, {corners.rbegin(), corners.rend()}), (Sheets{0, 0, 0, 0}));
+}
+
 // The second triangle lies on the same side of the common edge, by its winding or by its other side facing the viewer.
 TEST(Sheets, AFoldSeparates) {
   EXPECT_EQ(sheets_of({{0, 0, 0}, {8, 0, 0}, {0, 8, 0}, {0, 8, 0.5f}}, {{0, 1, 2}, {0, 1, 3}}), (Sheets{0, 1}));

@@ -180,6 +180,35 @@ TEST(SurfaceFormulas, AmbientLightOfAMetalIsMirrored) {
   EXPECT_NEAR(reflected(smooth, sky).r, 0.5 + 0.5 * -0.6 * 0.99, 1e-6);  // alpha of 0.01 turns it to the normal
 }
 
+// Normals whose mean has the length 0.8 have the variance 0.2 / 0.8, which adds to half of alpha squared.
+TEST(SurfaceFormulas, NormalsThatDifferMakeASurfaceRough) {
+  EXPECT_NEAR(rougher(0.2f, {0, 0, 0.8f}, 1.0f), std::pow(0.0016 + 2 * 0.25, 0.25), 1e-6);
+  EXPECT_NEAR(rougher(0.7f, {0.6f, 0, 0}, 1.0f), 1, 1e-6) << "no more than all directions";
+  EXPECT_NEAR(rougher(0.2f, {0, 1, 0}, 1.0f), 0.2, 1e-6) << "one direction";
+  EXPECT_NEAR(rougher(0.2f, {0, 0, 0.8f}, 0.0f), 0.2, 1e-6) << "one texel, whose length is a rounding error";
+}
+
+// A normal map that leans all the way along the tangent gives the part of it that lies in the surface.
+TEST(SurfaceFormulas, TangentsAreMadePerpendicular) {
+  Material material;
+  material.normal_texture = Texture{};
+  std::array<VertexInputs<float>, 3> vertices{};
+  for (VertexInputs<float>& vertex : vertices) {
+    vertex.to_eye = vertex.normal = {0, 0, 1};
+    vertex.tangent = {2, 0, 1, 1};
+  }
+  const SurfacePoint<float> point{vertices, {}, {0, 0, 1}, 1, {}, 1};
+  const auto place = [](std::uint32_t) { return TexturePlace<float>{}; };
+  const auto normal_of = [&](const std::array<float, 4>& texel) {
+    const auto fetch = [&](TextureRole, const TexturePlace<float>&) { return texel; };
+    const Triple<float> normal =
+        material_at<float>({material, false, false, true}, point, place, fetch).reflector.normal;
+    return glm::vec3(normal[0], normal[1], normal[2]);
+  };
+  EXPECT_LT(glm::length(normal_of({1, 0.5f, 0.5f, 0}) - glm::vec3(1, 0, 0)), 1e-6f);
+  EXPECT_LT(glm::length(normal_of({0.5f, 1, 0.5f, 0}) - glm::vec3(0, 1, 0)), 1e-6f);
+}
+
 TEST(SurfaceFormulas, UnlitAndEmissive) {
   SurfaceMaterial<float> surface{{{0.5f, 0.25f, 1}, 0, 1, {0, 0, 1}, {0, 0, 1}}, {2, 0, 0.5f}, 1};
   Material material;

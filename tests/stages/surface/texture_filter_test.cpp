@@ -147,6 +147,41 @@ TEST(TextureFilter, AgreesWithADoubleTwin) {
   }
 }
 
+// The footprint is 8 texels long, along u, and `shorter` texels wide.
+TEST(TextureFilter, ProbesLieEvenlyAlongTheLongerSide) {
+  Random random(4);
+  const MipChain chain = make_mip_chain(random_image(random, 256, 256), ColorSpace::linear);
+  Texture texture;
+  texture.minify = Filter::nearest, texture.mip = MipFilter::linear;
+  const auto columns_read = [&](float shorter, std::uint32_t anisotropy, std::size_t of_level, float column) {
+    texture.anisotropy = anisotropy;
+    const glm::vec2 uv(column / static_cast<float>(chain.levels[of_level].width), 0.3f);
+    std::vector<std::uint32_t> columns;
+    for (const bool along_x : {true, false}) {
+      const glm::vec2 along(8.0f / 256, 0), across(0, shorter / 256);
+      const TextureSlopes slopes = along_x ? TextureSlopes{along, across} : TextureSlopes{across, along};
+      std::vector<std::uint32_t> found;
+      filtered(chain, texture, uv, slopes, [&](std::size_t level, std::uint32_t x, std::uint32_t) {
+        if (level == of_level) found.push_back(x);
+      });
+      if (!along_x) {
+        EXPECT_EQ(found, columns);
+      }
+      columns = found;
+    }
+    return columns;
+  };
+  using Columns = std::vector<std::uint32_t>;
+  // 8 / 2 probes, in the level where 2 texels are one. They are one texel of that level apart.
+  EXPECT_EQ(columns_read(2, 16, 1, 64.25f), (Columns{62, 63, 64, 65}));
+  // 8 / 3 is rounded up to 3. The level is that of 8 / 3 texels, between 1 and 2.
+  EXPECT_EQ(columns_read(3, 16, 1, 64.5f), (Columns{63, 64, 65}));
+  // No more than the texture allows: two, in the level where 4 texels are one.
+  EXPECT_EQ(columns_read(2, 2, 2, 32.125f), (Columns{31, 32}));
+  // A footprint as wide as it is long.
+  EXPECT_EQ(columns_read(8, 16, 3, 16.5f), (Columns{16}));
+}
+
 TEST(TextureFilter, MagnificationWithNearestHasTheTexelsColors) {
   Random random(4);
   const MipChain chain = make_mip_chain(random_image(random, 4, 4), ColorSpace::srgb);
