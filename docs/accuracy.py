@@ -3,7 +3,7 @@
 
 usage: docs/accuracy.py sweep PROGRAM MODELS -o DIR    every spec below, on the 17 scenes of docs/scene_traces.py
        docs/accuracy.py sizes PROGRAM MODELS -o DIR    two specs in four sizes
-       docs/accuracy.py scenes|density|results|steps|storage|order|passes|policies|formats TABLE
+       docs/accuracy.py scenes|density|results|steps|bins|storage|order|passes|policies|formats TABLE
        docs/accuracy.py overview PROGRAM DIR TABLE SIZES_TABLE
        docs/accuracy.py frontier TABLE -o SVG          needs gnuplot
 
@@ -47,9 +47,12 @@ POLICIES = ["beam:rules=paper", *(f"beam:rules=paper,{policy}" for policy in (
     "mask=exact", "sort=nearest", "tiny=3", "overlap=over", "overlap=add", "overlap=transition", "regional=area",
     "local=keep", "fuzzy=mix", "extents=slab", "slab=visible", "plane=visible", "thickness=containing",
     "tiny=3,overlap=transition")), BEST_READING]
+BINS = {spec: [spec, *(f"{spec}{',' if ':' in spec else ':'}bin={bin}" for bin in (16, 8))]
+        for spec in ("beam", "beam:bits=64,slots=4", "beam:bits=32,slots=2")}
 FORMATS = ["beam:order=sorted", "beam:order=sorted,storage=float32", "beam:rules=paper", "beam:rules=paper,storage=text",
            "beam:rules=paper,storage=float32"]
-ALL = list(dict.fromkeys(SCENES + list(STEPS.values()) + RESULTS + STORAGE + ORDER + PASSES + POLICIES + FORMATS))
+ALL = list(dict.fromkeys(SCENES + list(STEPS.values()) + RESULTS + STORAGE + ORDER + PASSES + POLICIES + FORMATS +
+                         sum(BINS.values(), [])))
 
 
 def sweep(program, models, folder, plan):
@@ -152,6 +155,14 @@ def print_results(table):
         *(f"{value:.0f}" for value in bytes_of(table, spec)[:2]), f"{rmse_ratio(table, spec):.2f}"])
 
 
+def print_bins(table):
+    """The specs have bins of 32 pixels, and those of 16 and 8 that follow."""
+    print_head("technique", *(f"`bin={bin}`: {title}" for bin in (32, 16, 8) for title in ("geometric mean", "least")))
+    for spec, specs in BINS.items():
+        rates = [table.values("emr", each) for each in specs]
+        print_row(f"`{spec}`", *(rate(summary(of_spec)) for of_spec in rates for summary in (mean, min)))
+
+
 def print_overview(program, folder, table, density):
     print_head("scene", "triangles", "per pixel", "`beam:rules=paper`", "`beam`", "`beam` at 1280 × 720")
     rates = []
@@ -207,7 +218,8 @@ plot {', '.join(plots)}
     subprocess.run(["gnuplot"], input=script, text=True, check=True)
 
 
-TABLES = {"results": print_results, "steps": print_steps, "scenes": print_scenes, "density": print_density, "storage": print_storage, "passes": print_passes,
+TABLES = {"results": print_results, "steps": print_steps, "scenes": print_scenes, "density": print_density,
+          "bins": print_bins, "storage": print_storage, "passes": print_passes,
           "order": lambda table: print_groups(table, ORDER), "policies": lambda table: print_groups(table, POLICIES),
           "formats": print_formats}
 
