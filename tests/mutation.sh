@@ -77,7 +77,6 @@ mutants=(  # file | text as it is | broken
   'stages/surface/opacity.h|>> 16) * (1.0f / 65536.0f)|>> 16) * (1.0f / 32768.0f)'
   'stages/surface/sheets.cpp|!is_beside(a, b, work) && !is_beside(b, a, work)|!is_beside(a, b, work)'
   'stages/surface/sheets.cpp|!is_beside(a, b, work) && !is_beside(b, a, work)|!is_beside(b, a, work)'
-  'stages/surface/sheets.cpp|sides[first].from != sides[first + 1].to|false'
   'stages/surface/sheets.cpp|end != first + 2|end < first + 2'
   'stages/surface/surface_formulas.h|tangent[axis] - along * normal[axis]|tangent[axis]'
   'stages/surface/surface_formulas.h|cross(normal, tangent), point.facing|cross(normal, tangent), Real(1.0f)'

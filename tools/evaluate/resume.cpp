@@ -8,6 +8,7 @@
 #include "tools/evaluate/frame_json.h"
 #include "tools/evaluate/memory_system.h"
 #include "tools/files/digest.h"
+#include "tools/files/sealed_json.h"
 #include "traces/trace_io.h"
 
 namespace beampipe {
@@ -43,19 +44,6 @@ Json digests_of_files(const fs::path& folder, const FrameRecord& record) {
     for (const std::string& name : {report.image, report.picture, report.counters})
       if (fs::is_regular_file(folder / name, ignored)) digests[name] = digest_of_file(folder / name);
   return digests;
-}
-
-Json sealed(Json record) {
-  record["digest"] = digest_of(json_text(record));
-  return record;
-}
-
-// Null if the record has changed since it was sealed.
-Json unsealed(Json record) {
-  if (!record.is_object()) return nullptr;
-  const Json digest = record["digest"];
-  record.erase("digest");
-  return digest == digest_of(json_text(record)) ? record : Json();
 }
 
 // Whether the report is about this frame and technique.

@@ -2,6 +2,7 @@
 
 #include "tools/evaluate/results.h"
 #include "tools/files/digest.h"
+#include "tools/files/sealed_json.h"
 #include "traces/trace_io.h"
 
 namespace beampipe {
@@ -21,7 +22,7 @@ std::optional<Json> SweepStore::read(const std::string& kind, const Json& key) c
   const std::filesystem::path file = output_.path() / name_of(kind, full_key);
   if (std::error_code ignored; !std::filesystem::is_regular_file(file, ignored)) return std::nullopt;
   try {
-    const Json json = parse_json(file.string());
+    const Json json = unsealed(parse_json(file.string()));
     const Json* result = json.find("result");
     if (!result || !json.contains("key") || json.at("key") != full_key) return std::nullopt;
     return *result;
@@ -34,7 +35,7 @@ void SweepStore::write(const std::string& kind, const Json& key, const Json& res
   const Json full_key = full(key);
   const Json json = {{"beampipe_sweep_result", 1}, {"key", full_key}, {"result", result}};
   const std::lock_guard lock(mutex_);
-  output_.write(name_of(kind, full_key), json.dump() + "\n");
+  output_.write(name_of(kind, full_key), sealed(json).dump() + "\n");
   output_.keep();
 }
 

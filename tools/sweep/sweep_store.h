@@ -19,7 +19,7 @@ class SweepStore {
   explicit SweepStore(OutputFolder& output);
 
   // `kind`: the name of a subfolder. `key`: everything that the result depends on, besides the program. A file that is
-  // missing or damaged, or holds another key, is no result.
+  // missing, damaged in any byte, or holds another key, is no result.
   std::optional<Json> read(const std::string& kind, const Json& key) const;
 
   // Thread-safe. Throws std::runtime_error, one line.
