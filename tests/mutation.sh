@@ -107,7 +107,7 @@ mutants=(  # file | text as it is | broken
   'stages/beam/compose_owners.cpp|one.visible >= other.visible ? one : other|one.visible >= other.visible ? other : one'
   'stages/beam/compose_owners.cpp|fragment.triangle < bin_.list[slot.triangle()]|fragment.triangle > bin_.list[slot.triangle()]'
   'stages/beam/owner_formulas.h|Float(kAreaTolerance) / positions|Float(2 * kAreaTolerance) / positions'
-  'stages/beam/owner_formulas.h|Float(0.5f) * (magnitude|Float(0.25f) * (magnitude'
+  'simd/plane_gap-inl.h|Float(0.5f) * (magnitude|Float(0.25f) * (magnitude'
   'stages/beam/compose_z3.cpp|a.count() * b.count() / (a.count() + b.count())|a.count() / (a.count() + b.count())'
   'stages/beam/compose_z3.cpp|share * a.color + rest * b.color|rest * a.color + share * b.color'
   'stages/beam/alpha_mask.cpp|return sum / covered;|return sum / static_cast<float>(left.count());'
