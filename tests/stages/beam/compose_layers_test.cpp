@@ -77,11 +77,12 @@ TEST(ComposeLayers, OneLayerNearToFarIsTheABuffer) {
   for (int i = 0; i < 20; ++i) {
     const std::vector<Fragment> fragments = random_fragments(random, 12);
     for (const PaperStorage storage : {PaperStorage::slides, PaperStorage::text, PaperStorage::float32}) {
-      StageCounters counters;
-      const ABuffer lists = a_buffer(sort_records(fragments, SortKey::nearest), kTile.pixels(), 42, 42, counters);
-      const std::vector<Aggregate> expected = compose(fragments, lists, kPositions, {}, storage, counters);
+      StageCounters sorting, of_lists, of_layer;
+      const ABuffer lists = a_buffer(sort_records(fragments, SortKey::nearest), kTile.pixels(), 42, 42, sorting);
+      const std::vector<Aggregate> expected = compose(fragments, lists, kPositions, {}, storage, of_lists);
       std::vector<float> merges;
-      expect_same(composed(near_to_far(fragments), 1, counters, merges, storage), expected);
+      expect_same(composed(near_to_far(fragments), 1, of_layer, merges, storage), expected);
+      EXPECT_EQ(of_layer.ops, of_lists.ops) << "a single layer needs no search";
     }
   }
 }

@@ -3,6 +3,8 @@
 
 #include <gtest/gtest.h>
 
+#include <array>
+
 #include "tests/simd/random.h"
 #include "tests/stages/vertex_scenes.h"
 
@@ -255,6 +257,24 @@ TEST(DrawPlan, GreaterReversesDepth) {
 }
 
 // The pre-pass is dropped, and equal says nothing about which way is near.
+// As many triangles compare one way as the other.
+TEST(DrawPlan, DepthIsNotReversedOnATie) {
+  Draws draws;
+  draws.add(Compare::greater), draws.add(Compare::less);
+  const DrawPlan plan = draws.plan();
+  for (const DrawPlacement& placement : plan.placements) EXPECT_GT(placement.window_scale, 0);
+  EXPECT_EQ(plan.notes, (std::vector<DrawNote>{{"depth functions less and greater are mixed", false, 1, 1}}));
+}
+
+// As many triangles test depth before it as after it.
+TEST(DrawPlan, UntestedDrawsInTheMiddleLieInFront) {
+  Draws draws;
+  draws.add(), draws.add_untested(), draws.add();
+  const DrawPlan plan = draws.plan();
+  for (const std::size_t tested : {0u, 2u})
+    EXPECT_LT(range_of(plan.placements[1]).far, range_of(plan.placements[tested]).near) << tested;
+}
+
 TEST(DrawPlan, APrePassSaysWhichWayIsNear) {
   Draws draws;
   draws.add(Compare::greater).state.color_mask = 0;
@@ -304,6 +324,19 @@ TEST(DrawPlan, LeavesOutStencilTests) {
   for (std::size_t i = 0; i < 4; ++i) EXPECT_EQ(plan.placements[i].is_drawn, i == 3) << i;
 }
 
+// Each of the three operations changes the stencil values that later draws find.
+TEST(DrawPlan, NotesEveryStencilOperationOfDrawsWithoutColor) {
+  Draws draws;
+  for (const Stencil& stencil :
+       {Stencil{.fail = StencilOperation::replace}, Stencil{.depth_fail = StencilOperation::replace},
+        Stencil{.pass = StencilOperation::replace}, Stencil{}}) {
+    DrawState& state = draws.add().state;
+    state.stencil = stencil;
+    state.color_mask = 0, state.depth.write = false;
+  }
+  EXPECT_EQ(draws.notes(), (std::vector<DrawNote>{{"stencil without colour", true, 3, 3}}));
+}
+
 TEST(DrawPlan, LeavesOutOtherBlendFunctions) {
   Draws draws;
   draws.trace.materials.emplace_back().alpha_mode = AlphaMode::blend;
@@ -320,8 +353,9 @@ TEST(DrawPlan, LeavesOutOtherBlendFunctions) {
   add(false, {one, one});
   add(true, {source_alpha, one});
   add(false, {zero, one});  // changes nothing
+  add(false, {source_alpha, zero});
   const DrawPlan plan = draws.plan();
-  const bool drawn[] = {true, true, false, true, false, false, false};
+  const bool drawn[] = {true, true, false, true, false, false, false, true};
   for (std::size_t i = 0; i < std::size(drawn); ++i) EXPECT_EQ(plan.placements[i].is_drawn, drawn[i]) << i;
   EXPECT_FALSE(plan.placements[0].is_opaque);
   EXPECT_TRUE(plan.placements[1].is_opaque);
@@ -348,12 +382,31 @@ TEST(DrawPlan, APrePassIsDroppedWhereItsTrianglesAreDrawnAgain) {
 TEST(DrawPlan, EmptyRectanglesDrawNothing) {
   Draws draws;
   draws.add().state.scissor = Scissor{4, 4, 0, 8};
+  draws.add().state.scissor = Scissor{4, 4, 8, 0};
   draws.add().state.scissor = Scissor{16, 0, 8, 8};
   Draw& both = draws.add();
   both.state.viewport = Viewport{0, 0, 8, 16}, both.state.scissor = Scissor{8, 0, 8, 16};
   const DrawPlan plan = draws.plan();
   for (const DrawPlacement& placement : plan.placements) EXPECT_FALSE(placement.is_drawn);
   EXPECT_TRUE(plan.notes.empty());
+}
+
+// In 1/256 px. The scissor lies within the viewport on two sides and outside it on the others.
+TEST(DrawPlan, DrawsStayWithinTheViewportAndTheScissor) {
+  Draws draws;
+  draws.add().state.viewport = Viewport{2, 12, 8, -6};  // upside down
+  Draw& both = draws.add();
+  both.state.viewport = Viewport{4, 4, 8, 8}, both.state.scissor = Scissor{2, 6, 7, 10};
+  Draw& other = draws.add();
+  other.state.viewport = Viewport{4, 4, 8, 8}, other.state.scissor = Scissor{6, 2, 10, 7};
+  const DrawPlan plan = draws.plan();
+  const std::array<std::int32_t, 4> expected[] = {{2, 6, 10, 12}, {4, 6, 9, 12}, {6, 4, 12, 9}};
+  for (std::size_t i = 0; i < std::size(expected); ++i) {
+    const DrawPlacement& placement = plan.placements[i];
+    const std::array<std::int32_t, 4> sides = {placement.left / 256, placement.top / 256, placement.right / 256,
+                                               placement.bottom / 256};
+    EXPECT_EQ(sides, expected[i]) << i;
+  }
 }
 
 }  // namespace

@@ -173,6 +173,16 @@ TEST(Sheets, CountsItsWork) {
   EXPECT_LE(counters.ops.mul_add, 2u * 4 + 6 * 8);
 }
 
+// Two triangles on either side of a vertical line: their boxes only touch, so no sides are compared. The grid has four
+// cells of six pixels. The left triangle lies in two of them and the right one in all four, so two hold both. Six sides
+// are sorted in three steps.
+TEST(Sheets, TouchingBoxesTakeNoEdgeTests) {
+  StageCounters counters;
+  EXPECT_EQ(sheets_of({{4, 0, 0}, {4, 8, 0}, {8, 4, 0}, {0, 4, 0}}, {{0, 1, 2}, {1, 0, 3}}, &counters), (Sheets{0, 0}));
+  EXPECT_EQ(counters.ops,
+            (OperationCounts{.mul_add = 2 * 4, .add = 2 * 12 + 2 * 4 + 6 * 3 * 2, .bit = 6 * 16, .convert = 2 * 4}));
+}
+
 TEST(Sheets, DrawsAreSheetsOfTheirOwn) {
   SurfaceTrace scene(8, 8);
   for (const AlphaMode mode : {AlphaMode::blend, AlphaMode::mask, AlphaMode::opaque, AlphaMode::blend})
