@@ -62,6 +62,9 @@ TEST(Sheets, AFoldSeparates) {
 TEST(Sheets, ThreeTrianglesAtAnEdgeAreThree) {
   EXPECT_EQ(sheets_of({{4, 0, 0}, {4, 8, 0}, {8, 4, 0}, {8, 4, 0.5f}, {0, 4, 0}}, {{0, 1, 2}, {0, 1, 3}, {1, 0, 4}}),
             (Sheets{0, 1, 2}));
+  // The page on the left comes second.
+  EXPECT_EQ(sheets_of({{4, 0, 0}, {4, 8, 0}, {8, 4, 0}, {8, 4, 0.5f}, {0, 4, 0}}, {{0, 1, 2}, {1, 0, 4}, {0, 1, 3}}),
+            (Sheets{0, 1, 2}));
 }
 
 // Eight sides around the tip. Some face the viewer; the others lie behind them.
