@@ -208,6 +208,7 @@ for mutant in "${mutants[@]}"; do
     cmake --build "$build" --target "${folder}_tests" >/dev/null
     log=$("$build/tests/${folder}_tests" --gtest_fail_fast --gtest_brief=1 2>&1) && continue
     noticed=$(sed -n 's/^\[  FAILED  \] \([^ ,]*\).*/\1/p' <<<"$log" | head -1)
+    noticed=${noticed:-a crash of ${folder}_tests}
     break
   done
   cp "$original" "$file"
