@@ -3,8 +3,6 @@
 #include <bit>
 #include <stdexcept>
 
-#include "simd/population_count.h"
-
 namespace beampipe {
 namespace {
 
@@ -32,6 +30,7 @@ BlockCache::BlockCache(const MemoryParameters& memory, const CacheParameters& ca
   if (memory.compression) compressed_bytes_ = std::move(compressed_bytes);
   states_.assign(blocks, cleared ? State{0} : kRaw);
   lines_.resize(has_line_for_each_ ? blocks : sets_ * ways_);
+  if (!has_line_for_each_) link_lines();
   line_of_.assign(blocks, kNone);
   if (places_.log && places_.lines.empty())
     places_.log->reserve(places_.array, std::uint64_t{blocks} * sectors_per_line_);
@@ -42,8 +41,13 @@ BlockCache::BlockCache(const MemoryParameters& memory, const CacheParameters& ca
   next_ = &next;
 }
 
-std::uint64_t BlockCache::bytes_of(Sectors sectors) const {
-  return std::uint64_t{population_count(sectors)} << log2_sector_;
+void BlockCache::link_lines() {
+  for (std::uint32_t place = 0; place < lines_.size(); ++place) {
+    const bool first = place % ways_ == 0, last = (place + 1) % ways_ == 0;
+    lines_[place].newer = first ? kNone : place - 1;
+    lines_[place].older = last ? kNone : place + 1;
+    if (first) lru_.push_back({place, static_cast<std::uint32_t>(place + ways_ - 1)});
+  }
 }
 
 void BlockCache::begin_request(std::uint32_t key, std::size_t block, StageCounters& counters) {
@@ -64,9 +68,8 @@ void BlockCache::count_written(std::uint32_t first, std::uint32_t bytes) {
   }
 }
 
-void BlockCache::finish_request() {
+void BlockCache::serve_request() {
   Request& request = request_;
-  if ((request.read | request.write) == 0) return;
   StageCounters& counters = *request.counters;
   std::uint32_t overwritten = 0;
   for (std::uint32_t left = request.counts_bytes ? request.write : 0; left != 0; left &= left - 1) {
@@ -75,36 +78,34 @@ void BlockCache::finish_request() {
     if (request.written_bytes[sector] >= whole) overwritten |= 1u << sector;
     request.written_bytes[sector] = 0;
   }
-  const std::uint64_t bytes = bytes_of(request.read) + bytes_of(request.write);
-  counters.sector_bytes += bytes;
-  if (level_ == Level::l2 && !next_) counters.l2_bytes += bytes;
+  count_request(bytes_of(request.read) + bytes_of(request.write), counters);
   serve(request.block, request.read, request.write, static_cast<Sectors>(overwritten), counters);
   request.block = ~std::size_t{0};
   request.read = request.write = 0;
 }
 
-void BlockCache::serve(std::size_t block, Sectors read, Sectors write, Sectors overwritten, StageCounters& counters) {
-  Line& line = line_of_[block] != kNone ? lines_[line_of_[block]]
-                                        : make_line(block, overwritten == all_sectors_ && read == 0, counters);
-  const auto missing = static_cast<Sectors>((read | (write & ~overwritten)) & ~line.valid);
-  if (missing != 0 && next_) {
-    counters.l2_bytes += bytes_of(missing);
-    next_->serve(block, missing, 0, 0, counters);
-  } else {
-    pass_on(DramAccess::read, block, missing, counters);
-  }
-  line.valid |= missing | write;
-  line.dirty |= write;
-  line.used = ++now_;
+void BlockCache::load(std::size_t block, Sectors missing, StageCounters& counters) {
+  if (!next_) return pass_on(DramAccess::read, block, missing, counters);
+  counters.l2_bytes += bytes_of(missing);
+  next_->serve(block, missing, 0, 0, counters);
+}
+
+// Moves a line to the newest end of its set.
+void BlockCache::use(Line& line) {
+  Set& set = lru_[line.block % sets_];
+  const auto place = static_cast<std::uint32_t>(&line - lines_.data());
+  lines_[line.newer].older = line.older;
+  (line.older == kNone ? set.oldest : lines_[line.older].newer) = line.newer;
+  line.newer = kNone;
+  line.older = set.newest;
+  lines_[set.newest].newer = place;
+  set.newest = place;
 }
 
 BlockCache::Line& BlockCache::make_line(std::size_t block, bool overwritten, StageCounters& counters) {
   std::size_t place = block;
   if (!has_line_for_each_) {
-    const std::size_t set = block % sets_ * ways_;
-    place = set;
-    for (std::size_t line = set; line < set + ways_; ++line)
-      if (lines_[line].used < lines_[place].used) place = line;
+    place = lru_[block % sets_].oldest;
     if (lines_[place].block != kNone) {
       write_back(lines_[place], counters);
       line_of_[lines_[place].block] = kNone;
@@ -112,7 +113,8 @@ BlockCache::Line& BlockCache::make_line(std::size_t block, bool overwritten, Sta
   }
   line_of_[block] = static_cast<std::uint32_t>(place);
   Line& line = lines_[place];
-  line = {static_cast<std::uint32_t>(block), 0, 0, 0};
+  line.block = static_cast<std::uint32_t>(block);
+  line.valid = line.dirty = 0;
   const State state = states_[block];
   // A cleared block needs no fetch; a compressed one is fetched and unpacked whole.
   if (state != kRaw && !overwritten) {
@@ -163,7 +165,7 @@ void BlockCache::flush(StageCounters& counters) {
     if (line.block == kNone) continue;
     write_back(line, counters);
     line_of_[line.block] = kNone;
-    line = {};
+    line.block = kNone;
   }
   if (wrote_) next_pass_ = places_.log->pass() + 1;
   wrote_ = false;

@@ -13,6 +13,7 @@
 
 #include "pipeline/memory/dram_log.h"
 #include "pipeline/memory/parameters.h"
+#include "simd/population_count.h"
 #include "stages/cost/counters.h"
 
 namespace beampipe {
@@ -76,8 +77,22 @@ class BlockCache {
       each_write([this](std::uint32_t first, std::uint32_t bytes) { count_written(first, bytes); });
   }
 
+  // `times` reads that are a request each, whatever was asked for last. Between them the caller may have read other
+  // blocks, at most ways() in all, so that only the first read can miss.
+  void fetch(std::size_t block, std::uint32_t first, std::uint32_t bytes, std::uint64_t times,
+             StageCounters& counters) {
+    if (!modelled_) return;
+    finish_request();
+    const Sectors sectors = sectors_of(first, bytes, log2_sector_);
+    const std::uint32_t count = ((first + bytes - 1) >> log2_sector_) - (first >> log2_sector_) + 1;
+    count_request(times * count << log2_sector_, counters);
+    serve(block, sectors, 0, 0, counters);
+  }
+
   // Serves the request that is still open.
-  void finish_request();
+  void finish_request() {
+    if ((request_.read | request_.write) != 0) serve_request();
+  }
 
   // Writes back every dirty line and empties the cache.
   void flush(StageCounters& counters);
@@ -86,11 +101,12 @@ class BlockCache {
   void stream_read(std::size_t block, StageCounters& counters);
 
   std::size_t blocks() const { return states_.size(); }
+  std::size_t ways() const { return ways_; }
 
  private:
   std::uint32_t sector_bytes() const { return 1u << log2_sector_; }
   std::uint32_t sectors_in(std::uint32_t bytes) const { return (bytes + sector_bytes() - 1) >> log2_sector_; }
-  std::uint64_t bytes_of(Sectors sectors) const;
+  std::uint64_t bytes_of(Sectors sectors) const { return std::uint64_t{population_count(sectors)} << log2_sector_; }
 
   // State of a block in memory: kRaw, or the number of sectors that it is compressed to; 0 means cleared.
   using State = std::uint8_t;
@@ -100,7 +116,12 @@ class BlockCache {
   struct Line {
     std::uint32_t block = kNone;
     Sectors valid = 0, dirty = 0;
-    std::uint64_t used = 0;  // when, for least recently used
+    std::uint32_t newer = kNone, older = kNone;  // lines of its set, by their last use; the set's ends have kNone
+  };
+
+  // The lines of a set that were used last and longest ago.
+  struct Set {
+    std::uint32_t newest, oldest;
   };
 
   // The open request: what has been asked of one block so far.
@@ -113,10 +134,26 @@ class BlockCache {
     std::array<std::uint32_t, kMaxBlockSectors> written_bytes{};
   };
 
+  void count_request(std::uint64_t bytes, StageCounters& counters) const {
+    counters.sector_bytes += bytes;
+    if (level_ == Level::l2 && !next_) counters.l2_bytes += bytes;
+  }
   void begin_request(std::uint32_t key, std::size_t block, StageCounters& counters);
   void count_written(std::uint32_t first, std::uint32_t bytes);
-  void serve(std::size_t block, Sectors read, Sectors write, Sectors overwritten, StageCounters& counters);
+  void serve_request();
+  void serve(std::size_t block, Sectors read, Sectors write, Sectors overwritten, StageCounters& counters) {
+    const std::uint32_t place = line_of_[block];
+    Line& line = place != kNone ? lines_[place] : make_line(block, overwritten == all_sectors_ && read == 0, counters);
+    const auto missing = static_cast<Sectors>((read | (write & ~overwritten)) & ~line.valid);
+    if (missing != 0) load(block, missing, counters);
+    line.valid |= missing | write;
+    line.dirty |= write;
+    if (line.newer != kNone) use(line);
+  }
+  void load(std::size_t block, Sectors missing, StageCounters& counters);
   Line& make_line(std::size_t block, bool overwritten, StageCounters& counters);
+  void link_lines();
+  void use(Line& line);
   void write_back(const Line& line, StageCounters& counters);
   void pass_on(DramAccess access, std::size_t block, Sectors sectors, StageCounters& counters);
   void record(DramAccess access, std::size_t block, Sectors sectors, const StageCounters& counters);
@@ -130,11 +167,11 @@ class BlockCache {
   std::size_t sets_, ways_;
   bool has_line_for_each_;  // one line per block: line i holds block i and nothing is evicted
   std::vector<Line> lines_;
+  std::vector<Set> lru_;                // by set; empty if nothing is evicted
   std::vector<std::uint32_t> line_of_;  // by block: which line holds it, or kNone
   std::vector<State> states_;
   CompressedBytes compressed_bytes_;
   Request request_;
-  std::uint64_t now_ = 0;
   BlockPlaces places_;
   std::uint32_t sectors_per_line_;
   // Of the recorded requests: has this cache written since it was last empty, and which pass can read that again?

@@ -102,12 +102,13 @@ void TriangleFetches::place_surfaces(const TriangleList& list, std::uint32_t lin
 }
 
 void TriangleFetches::surface(std::uint32_t triangle, StageCounters& counters) {
-  lines_.read(request_, places_.surfaces[rank(triangle)], kSurfaceBytes, counters);
+  ++surface_fetches_;
+  lines_.read(surface_fetches_, places_.surfaces[rank(triangle)], kSurfaceBytes, counters);
   const std::uint32_t bytes = vertex_bytes(triangle);
   for (const std::uint32_t vertex : shader_->vertices(triangle)) {
     const auto found = std::lower_bound(places_.vertices.begin(), places_.vertices.end(), vertex);
-    lines_.read(request_, places_.vertex_places[static_cast<std::size_t>(found - places_.vertices.begin())], bytes,
-                counters);
+    lines_.read(surface_fetches_, places_.vertex_places[static_cast<std::size_t>(found - places_.vertices.begin())],
+                bytes, counters);
   }
 }
 
@@ -119,6 +120,7 @@ void TriangleFetches::load_setup() {
 void TriangleFetches::read_setup(const TriangleList& sorted, StageCounters& counters) {
   if (!modelled_) return;
   std::vector<std::uint32_t> places;
+  places.reserve(sorted.size());
   for (const std::uint32_t triangle : sorted) places.push_back(places_.setup[rank(triangle)]);
   lines_.read_through_l2(places, sizeof(SetupTriangle), counters);
 }

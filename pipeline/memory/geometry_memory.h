@@ -65,30 +65,33 @@ class TriangleFetches {
 
   bool is_flat(std::uint32_t triangle) const { return !shader_ || shader_->is_flat(triangle); }
 
-  void setup(std::uint32_t triangle, StageCounters& counters) {
-    if (modelled_) lines_.read(++request_, places_.setup[rank(triangle)], sizeof(SetupTriangle), counters);
+  // `times` fetches, one after the other.
+  void setup(std::uint32_t triangle, StageCounters& counters, std::uint64_t times = 1) {
+    if (modelled_) lines_.fetch(places_.setup[rank(triangle)], sizeof(SetupTriangle), times, counters);
   }
-  void attributes(std::uint32_t triangle, StageCounters& counters) {
+  void attributes(std::uint32_t triangle, StageCounters& counters, std::uint64_t times = 1) {
     if (!modelled_) return;
-    ++request_;
-    if (!is_flat(triangle)) return surface(triangle, counters);
-    lines_.read(request_, places_.attributes[rank(triangle)], sizeof(FlatAttributes), counters);
+    if (is_flat(triangle)) {
+      lines_.fetch(places_.attributes[rank(triangle)], sizeof(FlatAttributes), times, counters);
+    } else {
+      for (std::uint64_t i = 0; i < times; ++i) surface(triangle, counters);
+    }
   }
 
   // The depth plane alone.
   void depth(std::uint32_t triangle, StageCounters& counters) {
     constexpr std::size_t kBegin = offsetof(SetupTriangle, depth);
-    if (modelled_) lines_.read(++request_, places_.setup[rank(triangle)] + kBegin, sizeof(ScreenDepth), counters);
+    if (modelled_) lines_.fetch(places_.setup[rank(triangle)] + kBegin, sizeof(ScreenDepth), 1, counters);
   }
 
   // For the triangles of all pairs or fragments.
   template <class Item>
   void setup(const std::vector<Item>& items, StageCounters& counters) {
-    for (const Item& item : items) setup(item.triangle, counters);
+    each_run(items, [&](std::uint32_t triangle, std::uint64_t times) { setup(triangle, counters, times); });
   }
   template <class Item>
   void attributes(const std::vector<Item>& items, StageCounters& counters) {
-    for (const Item& item : items) attributes(item.triangle, counters);
+    each_run(items, [&](std::uint32_t triangle, std::uint64_t times) { attributes(triangle, counters, times); });
   }
 
   // The raster stage of this pass has just read the setup of the bin's triangles, so L2 holds it. Charges nothing.
@@ -104,7 +107,17 @@ class TriangleFetches {
  private:
   std::size_t rank(std::uint32_t triangle) const { return ranks_.of(triangle); }
 
-  // Planes and vertices of a triangle that is not flat.
+  // Calls fetch(triangle, times) for each run of items of one triangle.
+  template <class Item, class Fetch>
+  void each_run(const std::vector<Item>& items, Fetch&& fetch) const {
+    if (!modelled_) return;
+    for (std::size_t first = 0, end = 0; first < items.size(); first = end) {
+      while (end < items.size() && items[end].triangle == items[first].triangle) ++end;
+      fetch(items[first].triangle, end - first);
+    }
+  }
+
+  // One fetch of the planes and vertices of a triangle that is not flat.
   void surface(std::uint32_t triangle, StageCounters& counters);
 
   // What the shader of a triangle that is not flat reads of each vertex.
@@ -132,7 +145,7 @@ class TriangleFetches {
   ListRanks ranks_;
   Places places_;
   LinearMemory lines_;
-  std::uint32_t request_ = 0;
+  std::uint32_t surface_fetches_ = 0;
 };
 
 // Attributes read in primitive order, as forward shading does in one pass over a bin: each triangle's are read once.

@@ -1,9 +1,12 @@
 #include "pipeline/memory/linear_memory.h"
 
+#include <bit>
+
 namespace beampipe {
 
 LinearMemory::LinearMemory(const MemorySystem& memory, std::size_t size, BlockPlaces places)
     : line_bytes_(memory.l2.line_bytes),
+      log2_line_(std::countr_zero(line_bytes_)),
       l2_(memory, memory.l2, BlockCache::Level::l2, (size + line_bytes_ - 1) / line_bytes_, line_bytes_, false, nullptr,
           std::move(places)),
       l1_(memory, memory.l1, l2_) {
@@ -15,8 +18,8 @@ template <class Access>
 void LinearMemory::each_line(std::size_t begin, std::uint32_t bytes, Access&& access) const {
   const std::size_t end = begin + bytes;
   for (std::size_t at = begin; at < end;) {
-    const std::size_t line = at / line_bytes_, stop = std::min(end, (line + 1) * line_bytes_);
-    access(line, static_cast<std::uint32_t>(at % line_bytes_), static_cast<std::uint32_t>(stop - at));
+    const std::size_t line = at >> log2_line_, stop = std::min(end, (line + 1) << log2_line_);
+    access(line, static_cast<std::uint32_t>(at - (line << log2_line_)), static_cast<std::uint32_t>(stop - at));
     at = stop;
   }
 }
@@ -31,6 +34,15 @@ void LinearMemory::read(std::uint32_t key, std::size_t begin, std::uint32_t byte
   each_line(begin, bytes, [&](std::size_t line, std::uint32_t first, std::uint32_t part) {
     l1_.read(key, line, first, part, counters);
   });
+}
+
+void LinearMemory::fetch(std::size_t begin, std::uint32_t bytes, std::uint64_t times, StageCounters& counters) {
+  const std::size_t lines = ((begin + bytes - 1) >> log2_line_) - (begin >> log2_line_) + 1;
+  const std::uint64_t at_once = lines <= l1_.ways() ? times : 1;  // else the last line may have evicted the first
+  for (std::uint64_t done = 0; done < times; done += at_once)
+    each_line(begin, bytes, [&](std::size_t line, std::uint32_t first, std::uint32_t part) {
+      l1_.fetch(line, first, part, at_once, counters);
+    });
 }
 
 void LinearMemory::read_through_l2(const std::vector<std::uint32_t>& begins, std::uint32_t bytes,

@@ -71,6 +71,9 @@ class LinearMemory {
   void write(std::uint32_t key, std::size_t begin, std::uint32_t bytes, StageCounters& counters);
   void read(std::uint32_t key, std::size_t begin, std::uint32_t bytes, StageCounters& counters);
 
+  // Reads that are a request each: `times` for the same bytes, one after the other.
+  void fetch(std::size_t begin, std::uint32_t bytes, std::uint64_t times, StageCounters& counters);
+
   // A stage that has no L1 reads records one after the other, so L2 holds them then. A line is asked for once while
   // records that lie in it follow each other.
   void read_through_l2(const std::vector<std::uint32_t>& begins, std::uint32_t bytes, StageCounters& counters);
@@ -83,6 +86,7 @@ class LinearMemory {
   void each_line(std::size_t begin, std::uint32_t bytes, Access&& access) const;
 
   std::uint32_t line_bytes_;
+  int log2_line_;
   BlockCache l2_, l1_;
 };
 

@@ -5,17 +5,23 @@
 namespace beampipe {
 namespace {
 
-// Cells are numbered pixel by pixel. This is where each lies in the grid of cells, row by row.
-std::vector<std::uint32_t> cell_places(const Tile& tile, const CellGrid& grid) {
-  std::vector<std::uint32_t> places;
-  places.reserve(tile.pixels() * static_cast<std::size_t>(grid.cells_per_pixel()));
+// Cells are numbered pixel by pixel, and the elements of the Z order row by row.
+std::vector<std::uint32_t> cell_positions(const Tile& tile, const CellGrid& grid, const ZOrder& order) {
+  std::vector<std::uint32_t> positions;
+  positions.reserve(tile.pixels() * static_cast<std::size_t>(grid.cells_per_pixel()));
   for (std::int32_t y = 0; y < tile.height(); ++y)
     for (std::int32_t x = 0; x < tile.width(); ++x)
       for (std::int32_t cell = 0; cell < grid.cells_per_pixel(); ++cell)
-        places.push_back(
-            static_cast<std::uint32_t>((y * grid.rows + cell / grid.columns) * tile.width() * grid.columns +
-                                       x * grid.columns + cell % grid.columns));
-  return places;
+        positions.push_back(
+            order.of[static_cast<std::size_t>((y * grid.rows + cell / grid.columns) * tile.width() * grid.columns +
+                                              x * grid.columns + cell % grid.columns)]);
+  return positions;
+}
+
+bool all_equal(const std::uint32_t* values, std::size_t count) {
+  std::uint32_t differences = 0;
+  for (std::size_t i = 1; i < count; ++i) differences |= values[i] ^ values[0];
+  return differences == 0;
 }
 
 }  // namespace
@@ -26,9 +32,9 @@ SampleMemory::SampleMemory(const MemorySystem& memory, const Tile& tile, const S
       plane_bytes_(memory.plane_bytes),
       samples_(static_cast<std::size_t>(sampling.pattern.count)),
       cells_(static_cast<std::size_t>(sampling.grid.cells_per_pixel())),
-      cell_place_(modelled_ ? cell_places(tile, sampling.grid) : std::vector<std::uint32_t>{}),
       order_(modelled_ ? ZOrder(tile.width() * sampling.grid.columns, tile.height() * sampling.grid.rows)
                        : ZOrder(1, 1)),
+      cell_position_(modelled_ ? cell_positions(tile, sampling.grid, order_) : std::vector<std::uint32_t>{}),
       same_value_(std::move(same_value)),
       color_sample_bytes_(color_bytes),
       owner_(modelled_ ? order_.positions * samples_ : 0, kNoTriangle),
@@ -45,10 +51,10 @@ void SampleMemory::replay(const std::vector<SampleAccess>& accesses, bool write_
   write_color = write_color && color_;
   const auto all = static_cast<std::uint32_t>((std::uint64_t{1} << samples_) - 1);
   for (const SampleAccess& access : accesses) {
-    const std::uint32_t element = cell_place_[access.cell];
-    const std::size_t first = std::size_t{order_.of[element]} * samples_;
-    depth_.access(access.triangle, element, access.tested, write_depth ? access.passed : 0, counters);
-    if (write_color) color_->access(access.triangle, element, 0, access.passed, counters);
+    const std::uint32_t position = cell_position_[access.cell];
+    const std::size_t first = std::size_t{position} * samples_;
+    depth_.access_at(access.triangle, position, access.tested, write_depth ? access.passed : 0, counters);
+    if (write_color) color_->access_at(access.triangle, position, 0, access.passed, counters);
     if (access.passed == all) {
       std::fill_n(owner_.begin() + static_cast<std::ptrdiff_t>(first), samples_, access.triangle);
       continue;
@@ -61,15 +67,15 @@ void SampleMemory::replay(const std::vector<SampleAccess>& accesses, bool write_
 void SampleMemory::test(const std::vector<SampleAccess>& accesses, StageCounters& counters) {
   if (!modelled_) return;
   for (const SampleAccess& access : accesses)
-    depth_.access(access.triangle, cell_place_[access.cell], access.tested, 0, counters);
+    depth_.access_at(access.triangle, cell_position_[access.cell], access.tested, 0, counters);
 }
 
 void SampleMemory::blend(const std::vector<SampleAccess>& accesses, StageCounters& counters) {
   if (!modelled_) return;
   for (const SampleAccess& access : accesses) {
-    const std::uint32_t element = cell_place_[access.cell];
-    depth_.access(access.triangle, element, access.tested, 0, counters);
-    if (color_) color_->access(access.triangle, element, access.passed, access.passed, counters);
+    const std::uint32_t position = cell_position_[access.cell];
+    depth_.access_at(access.triangle, position, access.tested, 0, counters);
+    if (color_) color_->access_at(access.triangle, position, access.passed, access.passed, counters);
   }
 }
 
@@ -81,10 +87,10 @@ void SampleMemory::flush(StageCounters& counters) {
 
 void SampleMemory::add_bytes(std::vector<float>& pixels) const {
   if (!modelled_) return;
-  for (std::size_t cell = 0; cell < cell_place_.size(); ++cell) {
-    const std::uint32_t element = cell_place_[cell];
-    const std::uint32_t color = color_ ? color_->touched_bytes()[element] : 0;
-    pixels[cell / cells_] += static_cast<float>(depth_.touched_bytes()[element] + color);
+  for (std::size_t cell = 0; cell < cell_position_.size(); ++cell) {
+    const std::uint32_t position = cell_position_[cell];
+    const std::uint32_t color = color_ ? color_->touched_bytes(position) : 0;
+    pixels[cell / cells_] += static_cast<float>(depth_.touched_bytes(position) + color);
   }
 }
 
@@ -95,19 +101,21 @@ std::uint32_t SampleMemory::depth_bytes(std::size_t first, std::size_t elements)
   std::vector<std::uint32_t>& planes = planes_;
   planes.clear();
   bool cleared = end - begin < samples;
-  for (std::size_t i = begin; i < end; ++i) {
-    const std::uint32_t owner = owner_[i];
+  const auto add_plane = [&](std::uint32_t owner) {
     if (owner == kNoTriangle) {
       cleared = true;
     } else if (planes.empty() || planes.back() != owner) {
       const auto found = std::find(planes.begin(), planes.end(), owner);
       if (found == planes.end()) {
         planes.push_back(owner);
-        if (planes.size() * plane_bytes_ >= raw) return static_cast<std::uint32_t>(raw);
       } else {
         std::swap(*found, planes.back());
       }
     }
+  };
+  for (const std::uint32_t* owners = owner_.data() + begin; owners != owner_.data() + end; owners += samples_) {
+    std::for_each(owners, owners + (all_equal(owners, samples_) ? 1 : samples_), add_plane);
+    if (planes.size() * plane_bytes_ >= raw) return static_cast<std::uint32_t>(raw);
   }
   const auto index_bits = static_cast<std::size_t>(std::bit_width(planes.size() + cleared - 1));
   return static_cast<std::uint32_t>(planes.size() * plane_bytes_ + (samples * index_bits + 7) / 8);
@@ -118,6 +126,7 @@ std::uint32_t SampleMemory::color_bytes(std::size_t first, std::size_t elements)
   const auto compressed = static_cast<std::uint32_t>(elements) * color_sample_bytes_;
   for (std::size_t element = first; element < std::min(first + elements, order_.positions); ++element) {
     const std::uint32_t* const owners = &owner_[element * samples_];
+    if (all_equal(owners, samples_)) continue;
     for (std::size_t sample = 1; sample < samples_; ++sample) {
       if (owners[sample] == owners[sample - 1]) continue;
       if (owners[sample] == kNoTriangle || owners[sample - 1] == kNoTriangle ||

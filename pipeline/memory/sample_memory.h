@@ -57,10 +57,10 @@ class SampleMemory {
 
   bool modelled_;
   std::uint32_t plane_bytes_;
-  std::size_t samples_;                    // per cell
-  std::size_t cells_;                      // per pixel
-  std::vector<std::uint32_t> cell_place_;  // where each cell lies in the grid of cells, row by row
+  std::size_t samples_;  // per cell
+  std::size_t cells_;    // per pixel
   ZOrder order_;
+  std::vector<std::uint32_t> cell_position_;  // of each cell in the Z order
   SameValue same_value_;
   std::uint32_t color_sample_bytes_;
   std::vector<std::uint32_t> owner_;   // triangle of each sample that this pass has written, in Z order

@@ -2,6 +2,7 @@
 // blocks of them follow a Z-order curve.
 #pragma once
 
+#include <bit>
 #include <cstddef>
 #include <cstdint>
 #include <string_view>
@@ -34,7 +35,23 @@ class TileSurface {
 
   // Reads and writes parts of an element; bit p of a mask is part p. `key`: the triangle, as in BlockCache.
   void access(std::uint32_t key, std::uint32_t element, std::uint32_t read, std::uint32_t write,
-              StageCounters& counters);
+              StageCounters& counters) {
+    access_at(key, order_.of[element], read, write, counters);
+  }
+
+  // The same for the element at a position of the Z order.
+  void access_at(std::uint32_t key, std::uint32_t position, std::uint32_t read, std::uint32_t write,
+                 StageCounters& counters) {
+    if (touched_parts_.empty()) return;  // there are no accesses to model
+    const std::uint32_t block = position >> log2_elements_per_block_;
+    const std::uint32_t place = position - (block << log2_elements_per_block_);
+    const Parts reads = parts_of(place, read), writes = parts_of(place, write);
+    touched_parts_[position] += std::uint32_t{reads.count} + writes.count;
+    cache_.access(key, block, reads.sectors, writes.sectors, counters, [&](auto&& count) {
+      for (std::uint32_t left = write; left != 0; left &= left - 1)
+        count(place * element_bytes_ + static_cast<std::uint32_t>(std::countr_zero(left)) * part_bytes_, part_bytes_);
+    });
+  }
 
   // The same for elements of a single part.
   void read(std::uint32_t key, std::uint32_t element, StageCounters& counters) { access(key, element, 1, 0, counters); }
@@ -48,28 +65,44 @@ class TileSurface {
   // A pass that reads every element of the bin once.
   void read_all(StageCounters& counters);
 
-  // Logical bytes read and written, one value per element; empty if nothing is modelled.
-  const std::vector<std::uint32_t>& touched_bytes() const { return touched_bytes_; }
+  // Logical bytes that were read and written at a position of the Z order.
+  std::uint32_t touched_bytes(std::uint32_t position) const {
+    return touched_parts_.empty() ? 0 : touched_parts_[position] * part_bytes_;
+  }
 
   // Adds them to values of pixels, where elements are pixels.
   void add_bytes(std::vector<float>& pixels) const {
-    for (std::size_t i = 0; i < touched_bytes_.size(); ++i) pixels[i] += static_cast<float>(touched_bytes_[i]);
+    for (std::size_t i = 0; i < pixels.size(); ++i) pixels[i] += static_cast<float>(touched_bytes(order_.of[i]));
   }
 
  private:
-  // The sectors of some parts of the n-th element of a block. The table is looked up by bytes of the mask of parts.
-  Sectors sectors_of_parts(std::uint32_t n, std::uint32_t parts) const {
-    const Sectors* const table = &part_sectors_[n * mask_bytes_ << kMaskBits];
-    return mask_bytes_ == 1 ? table[parts] : table[parts & 0xff] | table[1 << kMaskBits | parts >> kMaskBits];
+  // How many parts of an element, and the sectors that they lie in.
+  struct Parts {
+    Sectors sectors = 0;
+    std::uint8_t count = 0;
+
+    Parts operator+(const Parts& others) const {
+      return {static_cast<Sectors>(sectors | others.sectors), static_cast<std::uint8_t>(count + others.count)};
+    }
+  };
+
+  // Of the n-th element of a block. The table is looked up by bytes of the mask of parts.
+  Parts parts_of(std::uint32_t n, std::uint32_t mask) const {
+    const Parts* const table = &part_table_[n * mask_bytes_ << kMaskBits];
+    return mask_bytes_ == 1 ? table[mask] : table[mask & 0xff] + table[1 << kMaskBits | mask >> kMaskBits];
   }
 
-  static constexpr int kMaskBits = 8;
+  // Indexed by element of a block, byte of the mask of parts, and value of that byte.
+  static std::vector<Parts> part_table(std::uint32_t elements, std::uint32_t parts, std::uint32_t part_bytes,
+                                       int log2_sector);
+
+  static constexpr std::uint32_t kMaskBits = 8;  // that a table is looked up by
 
   const ZOrder& order_;
   std::uint32_t part_bytes_, element_bytes_, mask_bytes_;
   int log2_elements_per_block_;
-  std::vector<Sectors> part_sectors_;
-  std::vector<std::uint32_t> touched_bytes_;
+  std::vector<Parts> part_table_;
+  std::vector<std::uint32_t> touched_parts_;  // by position: how many were read and written; empty if not modelled
   BlockCache cache_;
 };
 

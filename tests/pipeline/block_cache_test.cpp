@@ -3,6 +3,7 @@
 
 #include <gtest/gtest.h>
 
+#include "pipeline/memory/linear_memory.h"
 #include "pipeline/memory/tile_surface.h"
 
 namespace beampipe {
@@ -166,6 +167,23 @@ TEST(BlockCache, ReadingThroughAnL1) {
   EXPECT_EQ(counters.dram_bytes, 64u + 32 + 32);
 }
 
+// Three fetches of bytes that lie in two lines: an L1 of two lines misses once, an L1 of one line each time.
+TEST(LinearMemory, FetchesAtOnceAreFetchesOneByOne) {
+  for (const std::uint32_t lines : {1, 2}) {
+    MemorySystem system;
+    system.l1 = {lines * 128, lines, 128};
+    StageCounters at_once, one_by_one;
+    LinearMemory(system, 1024).fetch(100, 61, 3, at_once);  // sector 3 of the first line, 0 and 1 of the second
+    LinearMemory memory(system, 1024);
+    for (int i = 0; i < 3; ++i) memory.fetch(100, 61, 1, one_by_one);
+    for (const StageCounters& counters : {at_once, one_by_one}) {
+      EXPECT_EQ(counters.sector_bytes, 3u * 96);
+      EXPECT_EQ(counters.l2_bytes, lines == 1 ? 3u * 96 : 96u);
+      EXPECT_EQ(counters.dram_bytes, 96u);
+    }
+  }
+}
+
 TEST(TileSurface, PartsOfAnElement) {
   const ZOrder order(2, 2);
   TileSurface surface(memory(), "surface", order, 16, 6);  // 96 bytes, 2 to a block of 192
@@ -175,7 +193,9 @@ TEST(TileSurface, PartsOfAnElement) {
   surface.flush(counters);
   EXPECT_EQ(counters.sector_bytes, 5u * 32);
   EXPECT_EQ(counters.dram_bytes, 192u);
-  EXPECT_EQ(surface.touched_bytes(), (std::vector<std::uint32_t>{12, 18, 0, 0}));
+  EXPECT_EQ(surface.touched_bytes(0), 12u);
+  EXPECT_EQ(surface.touched_bytes(1), 18u);
+  EXPECT_EQ(surface.touched_bytes(2), 0u);
 }
 
 TEST(TileSurface, AQuadOfPixelsIsOneSector) {

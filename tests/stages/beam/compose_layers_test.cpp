@@ -53,11 +53,12 @@ std::vector<Fragment> near_to_far(std::vector<Fragment> fragments) {
 }
 
 std::vector<Aggregate> composed(const std::vector<Fragment>& fragments, std::size_t layers, StageCounters& counters,
-                                std::vector<float>& merges, PaperStorage storage = PaperStorage::float32) {
+                                std::vector<float>& merges, PaperStorage storage = PaperStorage::float32,
+                                const MergeRules& rules = {}) {
   AggregateLayers pixels(kTile.pixels(), layers, storage);
   merges.assign(kTile.pixels(), 0);
-  pixels.add(fragments, kPositions, {}, counters, merges);
-  return pixels.finish(kPositions, {}, counters);
+  pixels.add(fragments, kPositions, rules, counters, merges);
+  return pixels.finish(kPositions, rules, counters);
 }
 
 void expect_same(const std::vector<Aggregate>& found, const std::vector<Aggregate>& expected, float tolerance = 0) {
@@ -156,18 +157,20 @@ TEST(ComposeLayers, EqualDepthsKeepTheirOrder) {
   }
 }
 
+// A surface at one depth, of which all that is seen is `color`.
+Fragment flat(float z, std::uint32_t mask, float alpha, const glm::vec3& color) {
+  Fragment fragment{};
+  fragment.alpha = alpha;
+  fragment.mask.words[0] = mask;
+  fragment.plane = {z, 0, 0};
+  fragment.z_min = fragment.z_max = z;
+  fragment.color = alpha * color;
+  return fragment;
+}
+
 // Of three surfaces in two layers, the two that are close become one: so the fourth, just in front of the last, hides
 // it. If the last two were one, the fourth would lie within their slab, and be mixed with them.
 TEST(ComposeLayers, TheClosestTwoBecomeOne) {
-  const auto flat = [](float z, std::uint32_t mask, float alpha, const glm::vec3& color) {
-    Fragment fragment{};
-    fragment.alpha = alpha;
-    fragment.mask.words[0] = mask;
-    fragment.plane = {z, 0, 0};
-    fragment.z_min = fragment.z_max = z;
-    fragment.color = alpha * color;
-    return fragment;
-  };
   const Fragment red = flat(-0.9f, 0x000000ff, 0.25f, {1, 0, 0}), green = flat(-0.89f, 0x0000ff00, 0.25f, {0, 1, 0}),
                  blue = flat(-0.2f, 0xffff0000, 0.5f, {0, 0, 1}), white = flat(-0.25f, 0xffff0000, 0.5f, {1, 1, 1});
   for (const std::vector<Fragment>& order : {std::vector{red, green, blue, white}, {blue, green, red, white}}) {
@@ -179,6 +182,35 @@ TEST(ComposeLayers, TheClosestTwoBecomeOne) {
     EXPECT_NEAR(pixel.color[1], 0.75f, 1e-5f);
     EXPECT_NEAR(pixel.color[2], 0.5f, 1e-5f);
   }
+}
+
+// The same where the last two are close: the first hides the fourth, which lies just behind it. If the first two were
+// one, the fourth would lie within their slab.
+TEST(ComposeLayers, TheClosestTwoMayBeTheLast) {
+  const Fragment red = flat(-0.9f, 0x000000ff, 0.25f, {1, 0, 0}), green = flat(-0.21f, 0x0000ff00, 0.25f, {0, 1, 0}),
+                 blue = flat(-0.2f, 0xffff0000, 0.5f, {0, 0, 1}), white = flat(-0.85f, 0x000000ff, 0.25f, {1, 1, 1});
+  StageCounters counters;
+  std::vector<float> merges;
+  const Aggregate pixel = composed({red, green, blue, white}, 2, counters, merges).at(0);
+  EXPECT_EQ(merges[0], 2);
+  EXPECT_NEAR(pixel.color[0], 0.25f, 1e-5f);
+  EXPECT_NEAR(pixel.color[1], 0.25f, 1e-5f);
+  EXPECT_NEAR(pixel.color[2], 0.5f, 1e-5f);
+}
+
+// Green and blue become a slab because white is far behind them; then red, in front, is merged with the slab, whose
+// plane is near but which reaches far. White is hidden and changes nothing, because only what is visible makes slabs
+// thicker here.
+TEST(ComposeLayers, ASurfaceBeforeASlabKeepsTheSlabsThickness) {
+  const Fragment green = flat(-0.8f, 0x0000ffff, 0.5f, {0, 1, 0}), blue = flat(-0.2f, 0x00010000, 1 / 32.0f, {0, 0, 1}),
+                 white = flat(0.9f, 0x000000ff, 0.25f, {1, 1, 1}), red = flat(-0.81f, 0xff000000, 0.25f, {1, 0, 0});
+  StageCounters counters;
+  std::vector<float> merges;
+  MergeRules rules;
+  rules.slab = MergeRules::Slab::visible;
+  const Aggregate pixel = composed({green, blue, white, red}, 2, counters, merges, PaperStorage::float32, rules).at(0);
+  EXPECT_EQ(merges[0], 2);
+  EXPECT_NEAR(pixel.thickness, 2 * 0.6f, 0.1f);
 }
 
 TEST(ComposeLayers, CountsBytes) {
