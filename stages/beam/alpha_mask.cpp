@@ -60,12 +60,12 @@ float cut_out(const TileShader& shader, const std::vector<SamplePattern>& patter
 
 float let_through(const TileShader& shader, const std::vector<SamplePattern>& patterns, Fragment& fragment,
                   AlphaMaskWork& work, TexelRequests* texels) {
-  ++work.masks;
   work.alphas += shader.work(fragment.triangle).alpha;
   const float opacity =
       shader.alpha(fragment.triangle, fragment.pixel, fragment.centroid_u, fragment.centroid_v, 1.0f, texels);
   end_request(texels);
   if (fragment.mask.none()) return opacity;
+  ++work.masks;
   const OpacityRanks ranks = shader.opacity_ranks(fragment.triangle, fragment.pixel, kMaxMaskSamples * patterns.size());
   WideMask left;
   const auto rank = [&](std::size_t position, float, float) {

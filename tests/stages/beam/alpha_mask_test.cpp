@@ -235,14 +235,16 @@ TEST(AlphaMask, CountsItsWork) {
 }
 
 // No position is ranked, so the number of the sheet is not read.
-TEST(AlphaMask, CutoutSpecksReadNoSheet) {
-  SurfaceTrace scene(1, 1);
-  scene.add_rectangle(0.5, 0.5, 0.51, 0.51, 0.5,
-                      textured_material(scene.add_image(filled_image(2, 2, {9, 9, 9, 200})), AlphaMode::mask));
-  const Masked found = masked(ShadedScene(scene.trace));
-  ASSERT_FALSE(found.before.empty());
-  ASSERT_EQ(positions(found.before), 0);
-  EXPECT_EQ(found.counters.bytes_read, found.before.size() * (4 * 8 + 2));
+TEST(AlphaMask, SpecksReadNoSheet) {
+  for (const AlphaMode mode : {AlphaMode::blend, AlphaMode::mask}) {
+    SurfaceTrace scene(1, 1);
+    scene.add_rectangle(0.5, 0.5, 0.51, 0.51, 0.5,
+                        textured_material(scene.add_image(filled_image(2, 2, {9, 9, 9, 200})), mode));
+    const Masked found = masked(ShadedScene(scene.trace));
+    ASSERT_FALSE(found.before.empty());
+    ASSERT_EQ(positions(found.before), 0);
+    EXPECT_EQ(found.counters.bytes_read, found.before.size() * (4 * 8 + 2));
+  }
 }
 
 // Where texels are small, each position also takes the quotient of cutoff and alpha, and two of four shares.
