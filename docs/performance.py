@@ -3,16 +3,19 @@
 
 usage: docs/performance.py ratios  PROGRAM [--runs N] [--threads N] TRACE...
        docs/performance.py threads PROGRAM [--runs N] TRACE...
-       docs/performance.py items   PROGRAM [--runs N] TRACE...
-       docs/performance.py memory  PROGRAM [--runs N] TRACE...
-       docs/performance.py growth  PROGRAM PLOT.svg
+       docs/performance.py items PROGRAM [--runs N] TRACE...
+       docs/performance.py memory PROGRAM [--runs N] TRACE...
+       docs/performance.py textures PROGRAM [--runs N] TRACE...
+       docs/performance.py growth PROGRAM PLOT.svg
 
 PROGRAM is for instance build/release/tools/beampipe. Techniques take turns in one process, so that other work of the
 machine affects all of them alike. A time is the least of the runs, in `growth` their median, with the memory model off.
 `growth` makes its own traces, and draws the plot with gnuplot. `items` prints nanoseconds per item of each stage of
 `beam`, on one thread. `memory` prints what modelling memory costs: a frame's time with the model ÷ that without.
+`textures` prints what materials cost: a frame's time ÷ that of the same frame with one flat colour for each draw.
 """
 import argparse
+import contextlib
 import json
 import os
 import statistics
@@ -34,23 +37,31 @@ def frame_times(program, trace, specs, runs, threads):
         return {spec: (time["median"], time["min"], time["max"]) for spec, time in times.items()}
 
 
-def equivalent_rate(program, trace):
-    """EMR of `beam` on the same scene at 320 x 180."""
+@contextlib.contextmanager
+def changed_trace(trace, change):
+    """A copy beside the trace, because traces name their files relative to their own place. change(json) changes it."""
     with open(trace, encoding="utf-8") as file:
-        small = json.load(file)
-    for frame in small["frames"]:
-        frame["width"], frame["height"] = 320, 180
+        copy = json.load(file)
+    change(copy)
     path = os.path.join(os.path.dirname(os.path.abspath(trace)), f".{os.getpid()}.json")
     try:
         with open(path, "w", encoding="utf-8") as file:
-            json.dump(small, file)
-        with tempfile.TemporaryDirectory() as folder:
-            found = measure.results(program, "compare", path, RATIOS[:1], folder, "--no-memory-model")
-            result = found[RATIOS[0]]
-            rate = f"{result['equivalent_msaa']:.0f}"
-            return "≥ " + rate if result.get("equivalent_msaa_is_lower_bound") else rate
+            json.dump(copy, file)
+        yield path
     finally:
         os.remove(path)
+
+
+def equivalent_rate(program, trace):
+    """EMR of `beam` on the same scene at 320 x 180."""
+    def make_small(copy):
+        for frame in copy["frames"]:
+            frame["width"], frame["height"] = 320, 180
+
+    with changed_trace(trace, make_small) as small, tempfile.TemporaryDirectory() as folder:
+        result = measure.results(program, "compare", small, RATIOS[:1], folder, "--no-memory-model")[RATIOS[0]]
+        rate = f"{result['equivalent_msaa']:.0f}"
+        return "≥ " + rate if result.get("equivalent_msaa_is_lower_bound") else rate
 
 
 def print_ratios(arguments):
@@ -123,6 +134,27 @@ def print_memory(arguments):
         sys.stdout.flush()
 
 
+def print_textures(arguments):
+    def make_flat(copy):
+        for frame in copy["frames"]:
+            for draw in frame["draws"]:
+                draw["kd"] = [0.5, 0.5, 0.5]
+
+    specs = ["beam", "msaa:8"]
+    measure.print_head("scene", *(column for spec in specs for column in (f"`{spec}` ms", "flat ms", "ratio")))
+    for trace in arguments.traces:
+        least = {}
+        with changed_trace(trace, make_flat) as flat:
+            for _ in range(arguments.runs):  # in turn
+                for path in (trace, flat):
+                    for spec, times in frame_times(arguments.program, path, specs, 1, 1).items():
+                        least[path, spec] = min(least.get((path, spec), times[1]), times[1])
+            cells = [f"{least[path, spec]:.0f}" if path else f"{least[trace, spec] / least[flat, spec]:.2f}"
+                     for spec in specs for path in (trace, flat, None)]
+        measure.print_row(name_of(trace), *cells)
+        sys.stdout.flush()
+
+
 def name_of(trace):
     return os.path.basename(trace).removesuffix(".json")
 
@@ -137,7 +169,7 @@ GROWTH = {
     "layers per pixel": [("stack", ["--triangles", str(n), "--width", "64", "--height", "36"], n)
                             for n in (1, 10, 100, 1000, 10_000)],
 }
-GROWING = ["beam:order=sorted", "beam:order=stream,passes=0", "msaa:8", "msaa:32"]
+GROWING = ["beam", "beam:order=stream", "msaa:8", "msaa:32"]
 
 
 def peak_memory(program, trace, spec, folder):
@@ -145,7 +177,8 @@ def peak_memory(program, trace, spec, folder):
     code = ("import resource, subprocess, sys; subprocess.run(sys.argv[1:], check=True, stdout=subprocess.DEVNULL); "
             "print(resource.getrusage(resource.RUSAGE_CHILDREN).ru_maxrss // 1024)")
     answer = subprocess.run([sys.executable, "-c", code, program, "run", trace, "-t", spec, "--threads", "1",
-                             "--no-memory-model", "-o", folder], check=True, stdout=subprocess.PIPE, text=True)
+                             "--no-memory-model", "--force", "-o", folder], check=True, stdout=subprocess.PIPE,
+                            text=True)
     return int(answer.stdout)
 
 
@@ -183,7 +216,7 @@ def main():
     parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
     commands = parser.add_subparsers(required=True)
     for name, action in (("ratios", print_ratios), ("threads", print_threads), ("items", print_items),
-                         ("memory", print_memory)):
+                         ("memory", print_memory), ("textures", print_textures)):
         command = commands.add_parser(name)
         command.add_argument("program")
         command.add_argument("traces", nargs="+")

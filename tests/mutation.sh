@@ -181,6 +181,9 @@ mutants=(  # file | text as it is | broken
   'tools/evaluate/hardware.cpp|s.logical_bytes() - s.texture_bytes|s.logical_bytes()'
   'tools/evaluate/hardware.cpp|s.pixels_on_chip ? "on_chip_bytes_per_clk" : "rop_bytes_per_clk"|s.pixels_on_chip ? "rop_bytes_per_clk" : "on_chip_bytes_per_clk"'
   'tools/evaluate/hardware.cpp|over(mul_add, rates.at("mul_add_per_clk"))|0'
+  'tools/evaluate/hardware.cpp|over(total + wide,|over(total,'
+  'tools/evaluate/hardware.cpp|std::max(1 - wide / (mul_add + add), 0.0)|1.0'
+  'tools/evaluate/hardware.cpp|over(s.lanes_used, rates|over(s.items_out, rates'
   'pipeline/bins/bands.cpp|edge.b > 0 ? bottom : top|edge.b > 0 ? top : bottom'
   'pipeline/bins/bands.cpp|floor_of(-at_zero - 1,|floor_of(-at_zero,'
 )

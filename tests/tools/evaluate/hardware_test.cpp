@@ -172,6 +172,29 @@ TEST(Hardware, WideIntegersHaveTheirOwnRate) {
   EXPECT_NEAR(clocks(titan, unit_times(titan, titan.implementations[0], counters).at("shader")), 2, 1e-6);
 }
 
+// Where integer lanes take no time, issuing is what is left: twice for each operation. Where that takes none either,
+// nothing is: float lanes do none of this work.
+TEST(Hardware, WideIntegersAreIssuedTwiceAndTakeNoFloatLanes) {
+  Hardware titan = titan_v();
+  titan.rates.at("wide_per_clk") = 1e12;
+  StageCounters counters{"compose"};
+  counters.ops.add = counters.ops.wide = 5120;
+  const auto shader = [&] { return clocks(titan, unit_times(titan, titan.implementations[0], counters).at("shader")); };
+  titan.rates.at("issue_per_clk") = 512;
+  EXPECT_NEAR(shader(), 20, 1e-6);
+  titan.rates.at("issue_per_clk") = 1e12;
+  EXPECT_NEAR(shader(), 0, 1e-6);
+}
+
+// 960 pixels at 96 per clock, of which 96 are visible.
+TEST(Hardware, ConservativeRastersTakeHiddenPixelsToo) {
+  const Hardware titan = titan_v();
+  StageCounters counters{"conservative_raster"};
+  counters.lanes_used = 960, counters.items_out = 96;
+  const auto times = unit_times(titan, titan.implementations.at(1), counters);
+  EXPECT_NEAR(clocks(titan, times.at("conservative_raster")), 10, 1e-6);
+}
+
 // A core of 96 KiB has room for two bins of 40 KiB, for one of 80, and for half of one of 192. The first work at full
 // rate, the others wait half of the time, and half of the last one's bytes go to L2. Geometry does not wait.
 TEST(Hardware, BinsThatDoNotFitStallAndSpill) {
