@@ -247,24 +247,28 @@ TEST(AlphaMask, SpecksReadNoSheet) {
   }
 }
 
-// Where texels are small, each position also takes the quotient of cutoff and alpha, and two of four shares.
+// Where texels are smaller than the part of a pixel that a position stands for, a side of 1/16, each position also takes
+// the quotient of cutoff and alpha, and two of four shares. The rectangle has 2/3 of a texel to a pixel, times `scale`.
 TEST(AlphaMask, CountsTheWorkOfSmallTexels) {
-  StageCounters of_size[2];
-  for (const bool is_small : {false, true}) {
+  const auto counters = [](float scale) {
     SurfaceTrace scene(1, 1);
     scene.add_rectangle(-20, -1, 2, 2, 0.5,
                         textured_material(scene.add_image(filled_image(2, 2, {9, 9, 9, 200})), AlphaMode::mask));
-    if (is_small)
-      for (glm::vec2& uv : scene.mesh().uvs[0]) uv *= 1000.0f;
+    for (glm::vec2& uv : scene.mesh().uvs[0]) uv *= scale;
     const Masked found = masked(ShadedScene(scene.trace));
-    ASSERT_EQ(found.after.size(), 1u);
-    of_size[is_small] = found.counters;
-  }
-  OperationCounts expected = of_size[0].ops;
+    EXPECT_EQ(found.after.size(), 1u);
+    return found.counters;
+  };
+  const StageCounters large = counters(1.0f);
+  EXPECT_EQ(counters(18.0f).ops, large.ops) << "12 texels to a pixel";
+  OperationCounts expected = large.ops;
   // Two comparisons, a difference and a limit; a whole number and its limit; the rest, and one less it.
   expected += OperationCounts{.mul_add = 2, .add = 7, .special = 2, .convert = 2} * 256;
-  EXPECT_EQ(of_size[1].ops, expected);
-  EXPECT_EQ(of_size[1].bytes_read, of_size[0].bytes_read);
+  for (const float scale : {30.0f, 1000.0f}) {  // 20 texels to a pixel, and more
+    const StageCounters small = counters(scale);
+    EXPECT_EQ(small.ops, expected);
+    EXPECT_EQ(small.bytes_read, large.bytes_read);
+  }
 }
 
 }  // namespace
