@@ -1,6 +1,6 @@
-// Reads any bytes as what runs and comparisons leave: report.json and, after NULs, the inspections that it may name and
-// the record of a frame of a stopped run. Each gives an error of one line, or what the page, the tables, `beampipe
-// model` and `beampipe claims` make of it.
+// Reads any bytes as what runs, comparisons and sweeps leave: report.json and, after NULs, the inspections that it may
+// name, the record of a frame of a stopped run, and a stored result of a sweep. Each gives an error of one line, or
+// what the page, the tables, `beampipe model` and `beampipe claims` make of it.
 #include <cmath>
 
 #include "tests/fuzz/fuzz_input.h"
@@ -10,6 +10,7 @@
 #include "tools/evaluate/resume.h"
 #include "tools/files/digest.h"
 #include "tools/files/image_io.h"
+#include "tools/files/sealed_json.h"
 #include "tools/inspect/recorded.h"
 #include "tools/report/gnuplot.h"
 #include "tools/report/inspections.h"
@@ -100,6 +101,19 @@ void resume(const FuzzFolder& folder, std::string_view text) {
   expect_value_or_line([&] { records.is_finished(); });
 }
 
+// What was sealed is what comes back, and what was not sealed is nothing.
+void unseal(const FuzzFolder& folder, std::string_view text) {
+  const std::filesystem::path file = folder.write("result.json", text);
+  expect_value_or_line([&] {
+    Json json = parse_json(file.string());
+    const Json result = unsealed(json);
+    if (!json.is_object()) return require(result.is_null());
+    json.erase("digest");
+    require(result.is_null() || result == json);
+    require(unsealed(sealed(json)) == json);
+  });
+}
+
 }  // namespace
 }  // namespace beampipe
 
@@ -113,7 +127,7 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size
     return true;
   }();
   require(pictures_are_there);
-  const std::vector<std::string_view> parts = parts_of(text_of(data, size), 3);
+  const std::vector<std::string_view> parts = parts_of(text_of(data, size), 4);
   folder.write("report.json", parts[0]);
   folder.write(std::string("beam/") + kInspectionsFile, parts[1]);
   expect_value_or_line([&] {
@@ -123,5 +137,6 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size
     expect_value_or_line([&] { storage_plot({report, report}); });
   });
   resume(folder, parts[2]);
+  unseal(folder, parts[3]);
   return 0;
 }
