@@ -30,7 +30,7 @@ BlockCache::BlockCache(const MemoryParameters& memory, const CacheParameters& ca
   if (memory.compression) compressed_bytes_ = std::move(compressed_bytes);
   states_.assign(blocks, cleared ? State{0} : kRaw);
   lines_.resize(has_line_for_each_ ? blocks : sets_ * ways_);
-  if (!has_line_for_each_) link_lines();
+  link_lines();
   line_of_.assign(blocks, kNone);
   if (places_.log && places_.lines.empty())
     places_.log->reserve(places_.array, std::uint64_t{blocks} * sectors_per_line_);
@@ -41,12 +41,15 @@ BlockCache::BlockCache(const MemoryParameters& memory, const CacheParameters& ca
   next_ = &next;
 }
 
+// The first line of each set becomes the one to fill first.
 void BlockCache::link_lines() {
+  if (has_line_for_each_) return;
+  lru_.clear();
   for (std::uint32_t place = 0; place < lines_.size(); ++place) {
     const bool first = place % ways_ == 0, last = (place + 1) % ways_ == 0;
-    lines_[place].newer = first ? kNone : place - 1;
-    lines_[place].older = last ? kNone : place + 1;
-    if (first) lru_.push_back({place, static_cast<std::uint32_t>(place + ways_ - 1)});
+    lines_[place].older = first ? kNone : place - 1;
+    lines_[place].newer = last ? kNone : place + 1;
+    if (last) lru_.push_back({place, static_cast<std::uint32_t>(place + 1 - ways_)});
   }
 }
 
@@ -167,6 +170,7 @@ void BlockCache::flush(StageCounters& counters) {
     line_of_[line.block] = kNone;
     line.block = kNone;
   }
+  link_lines();
   if (wrote_) next_pass_ = places_.log->pass() + 1;
   wrote_ = false;
 }
