@@ -25,32 +25,32 @@ void run(const RunArguments& arguments, const MemoryTraceArguments& trace_argume
   const auto maker = made_by("run", plan, Json::object());
   FrameRecords records(output, maker);
   if (!arguments.force && !arguments.resume) records.require_own_folder();
-  std::vector<FrameRecord> finished;
-  if (arguments.resume) {
-    if (records.is_finished()) return tell_finished(output);
-    finished = records.read(plan.frames, specs_of(plan.techniques), nullptr);
-    tell_resumption(plan, finished.size());
-  }
 
   Report report = new_report(plan, maker);
   for (const Technique& technique : plan.techniques)
     report.results.push_back(new_technique_report(technique, plan.options.memory, kFramesInMemory));
-  for (const FrameRecord& record : finished)
+  const auto add = [&](const FrameRecord& record) {
     for (std::size_t i = 0; i < record.reports.size(); ++i) report.results[i].frames.push_back(record.reports[i]);
-  if (finished.size() < plan.frames.size()) {
+    return true;
+  };
+  std::size_t finished = 0;
+  if (arguments.resume) {
+    if (records.is_finished()) return tell_finished(output);
+    finished = records.read(plan.frames, specs_of(plan.techniques), nullptr, add);
+    tell_resumption(plan, finished);
+  }
+  if (finished < plan.frames.size()) {
     Progress progress;
-    std::vector<History> histories = rebuild_histories(plan, finished.size(), progress);
-    for (std::size_t at = finished.size(); at < plan.frames.size(); ++at) {
+    std::vector<History> histories = rebuild_histories(plan, finished, progress);
+    for (std::size_t at = finished; at < plan.frames.size(); ++at) {
       const std::size_t frame = plan.frames[at];
       FrameRecord record;
       const std::vector<WallTime> times =
           render_frame(plan, frame, progress, histories, [&](std::size_t i, FrameResult&& result) {
             record.reports.push_back(write_frame(output, plan, maker, plan.techniques[i].spec, frame, result, nullptr));
           });
-      for (std::size_t i = 0; i < times.size(); ++i) {
-        record.reports[i].wall_ms = times[i];
-        report.results[i].frames.push_back(record.reports[i]);
-      }
+      for (std::size_t i = 0; i < times.size(); ++i) record.reports[i].wall_ms = times[i];
+      add(record);
       records.write(record, at + 1, plan.frames.size());
       output.keep();
     }

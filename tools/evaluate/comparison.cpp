@@ -53,11 +53,11 @@ std::size_t Comparison::resume() {
   std::vector<std::string> specs = specs_of(plan_.techniques);
   specs.push_back(reference_.spec);
   const auto fits = [&](const FrameReport& report) { return report.parts.has_value() == split_.has_value(); };
-  for (const FrameRecord& record : records_.read(plan_.frames, specs, sums())) {
-    if (!std::all_of(record.reports.begin(), record.reports.end(), fits)) break;
+  return records_.read(plan_.frames, specs, sums(), [&](const FrameRecord& record) {
+    if (!std::all_of(record.reports.begin(), record.reports.end(), fits)) return false;
     recall_frame(record);
-  }
-  return reference_result_.frames.size();
+    return true;
+  });
 }
 
 Report Comparison::run() {

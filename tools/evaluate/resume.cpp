@@ -119,8 +119,8 @@ bool FrameRecords::is_finished() {
   return true;
 }
 
-std::vector<FrameRecord> FrameRecords::read(const std::vector<std::size_t>& frames,
-                                            const std::vector<std::string>& specs, const Json& no_sums) const {
+std::size_t FrameRecords::read(const std::vector<std::size_t>& frames, const std::vector<std::string>& specs,
+                               const Json& no_sums, const std::function<bool(const FrameRecord&)>& take) const {
   bool some_are_ours = false;
   Json other;
   for (const fs::path& path : list()) {
@@ -130,14 +130,13 @@ std::vector<FrameRecord> FrameRecords::read(const std::vector<std::size_t>& fram
   }
   if (!some_are_ours && other.is_object()) refuse(other);
 
-  std::vector<FrameRecord> records;
-  for (const std::size_t frame : frames) {
-    std::optional<FrameRecord> record = read(frame, specs, no_sums);
-    if (!record) break;
-    records.push_back(std::move(*record));
+  std::size_t taken = 0;
+  for (; taken < frames.size(); ++taken) {
+    const std::optional<FrameRecord> record = read(frames[taken], specs, no_sums);
+    if (!record || !take(*record)) break;
   }
-  if (!records.empty()) set_farewell(records.size(), frames.size());
-  return records;
+  if (taken > 0) set_farewell(taken, frames.size());
+  return taken;
 }
 
 std::optional<FrameRecord> FrameRecords::read(std::size_t frame, const std::vector<std::string>& specs,

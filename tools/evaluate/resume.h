@@ -5,6 +5,7 @@
 // after the frame's files. Once report.json is written, the records are removed.
 #pragma once
 
+#include <functional>
 #include <optional>
 #include <string>
 #include <vector>
@@ -37,11 +38,12 @@ class FrameRecords {
   // program was killed. Throws std::runtime_error, one line, if report.json was made by another run.
   bool is_finished();
 
-  // The records of `frames`, up to the first frame whose record or files are missing or damaged. A record must have one
-  // report per spec, and sums that differ from `no_sums` only in their numbers; otherwise it counts as damaged. Throws
-  // std::runtime_error, one line that says what has changed, if all records were made by another run.
-  std::vector<FrameRecord> read(const std::vector<std::size_t>& frames, const std::vector<std::string>& specs,
-                                const Json& no_sums) const;
+  // Reads the records of `frames`, one after the other, up to the first frame whose record or files are missing or
+  // damaged, or whose record take() refuses. Returns how many were taken. A record must have one report per spec, and
+  // sums that differ from `no_sums` only in their numbers; otherwise it counts as damaged. Throws std::runtime_error,
+  // one line that says what has changed, if all records were made by another run.
+  std::size_t read(const std::vector<std::size_t>& frames, const std::vector<std::string>& specs, const Json& no_sums,
+                   const std::function<bool(const FrameRecord&)>& take) const;
 
   // `finished`: with this frame. An interrupt then says so, and how to go on.
   void write(const FrameRecord& record, std::size_t finished, std::size_t all);
