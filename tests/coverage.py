@@ -23,7 +23,9 @@ def main(build, *tests):
     for old in build.rglob("*.gcda"):
         old.unlink()
     for folder in tests or ("simd", "stages", "pipeline"):
-        subprocess.run([build / "tests" / f"{folder}_tests", "--gtest_brief=1"], check=True)
+        # The test left out looks for tests of other programs, which need not be built.
+        subprocess.run([build / "tests" / f"{folder}_tests", "--gtest_brief=1",
+                        "--gtest_filter=-CounterRegistry.NamesTests*"], check=True)
 
     lines = collections.defaultdict(lambda: collections.Counter())
     branches = collections.defaultdict(lambda: collections.Counter())
