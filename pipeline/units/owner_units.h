@@ -44,7 +44,7 @@ template <std::size_t Words, std::size_t Slots>
 std::vector<Surface> open_pixel_surfaces() {
   using Pixel = OpenPixel<Words, Slots>;
   constexpr std::uint32_t kMap = sizeof(Pixel::states), kOwners = sizeof(Pixel::slots),
-                          kSums = sizeof(Pixel) - kMap - kOwners;
+                          kSums = Pixel::kBytes - kMap - kOwners;
   return {{"owner_map", times("R32UI", kMap / 4), kMap},
           {"owners", times("RG32UI", Slots), kOwners},
           {"sums", times("R16", kSums / 2), kSums}};

@@ -236,9 +236,9 @@ void charge(const OwnersWork& work, StageCounters& counters) {
   counters.ops += of_speck_area * work.specks_added;
   counters.ops += of_limit * work.limited;
   counters.bytes_read +=
-      work.fragments * (owners_fragment_bytes(Words) + sizeof(float) + sizeof(Pixel)) + work.finished * sizeof(Pixel);
+      work.fragments * (owners_fragment_bytes(Words) + sizeof(float) + Pixel::kBytes) + work.finished * Pixel::kBytes;
   counters.bytes_read += work.planes * (sizeof(std::uint32_t) + sizeof(ScreenDepth));  // by its number in the list
-  counters.bytes_written += (work.claims + work.specks_added) * sizeof(Pixel);
+  counters.bytes_written += (work.claims + work.specks_added) * Pixel::kBytes;
   counters.position_tests += kPositions * (work.planes_compared + work.farthest_found);
   counters.lanes_used += work.claims;
   counters.lanes_issued += work.fragments;

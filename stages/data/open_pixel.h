@@ -1,5 +1,5 @@
-// All that a pixel keeps while its bin is open, in exactly these bytes: which surface owns which mask position, and the
-// sums of what is final. It is loaded and stored for every fragment, as an aggregate is.
+// All that a pixel keeps while its bin is open: which surface owns which mask position, and the sums of what is final.
+// It is loaded and stored for every fragment, as an aggregate is.
 //
 // Owners are surfaces that later fragments may still hide. Their number is fixed; if there is one more, two of them
 // become one (stages/beam/compose_owners.h).
@@ -165,7 +165,6 @@ class OwnerSlot {
 };
 static_assert(sizeof(OwnerSlot) == 8);
 
-#pragma pack(push, 2)
 template <std::size_t Words, std::size_t Slots>  // 32 positions a word
 struct OpenPixel {
   // States of a position.
@@ -180,14 +179,17 @@ struct OpenPixel {
   FixedSum area;       // of what is final, by analytic area; the number of its positions is the counted area
   FixedSum specks[2];  // the areas of visible specks that face away from the viewer, and towards the viewer
 
+  // Size in the modelled machine. Here a pixel has two bytes more, so that the words of the next pixel are aligned.
+  static constexpr std::uint32_t kBytes =
+      sizeof(states) + sizeof(slots) + sizeof(colors) + sizeof(area) + sizeof(specks);
+
   static constexpr std::uint32_t owned_by(std::size_t slot) { return kFirstSlot + static_cast<std::uint32_t>(slot); }
 };
-#pragma pack(pop)
 
-static_assert(sizeof(OpenPixel<8, 5>) == 154);
-static_assert(sizeof(OpenPixel<4, 7>) == 138);
-static_assert(sizeof(OpenPixel<2, 4>) == 74);
-static_assert(sizeof(OpenPixel<1, 2>) == 42);
+static_assert(OpenPixel<8, 5>::kBytes == 154);
+static_assert(OpenPixel<4, 7>::kBytes == 138);
+static_assert(OpenPixel<2, 4>::kBytes == 74);
+static_assert(OpenPixel<1, 2>::kBytes == 42);
 
 // Depths of a pixel's owners, which the modelled machine computes again whenever it needs them. This program keeps
 // them.
@@ -212,8 +214,7 @@ template <std::size_t Words, std::size_t Slots>
 struct OpenPixels {
   // All are copies of one: g++ clears a pixel with `rep stos`, which takes longer to start than to clear so few bytes.
   explicit OpenPixels(std::size_t count)
-      : pixels(count, OpenPixel<Words, Slots>()),
-        depths(std::make_unique_for_overwrite<OwnerDepths<Slots>[]>(count)) {}
+      : pixels(count, OpenPixel<Words, Slots>()), depths(std::make_unique_for_overwrite<OwnerDepths<Slots>[]>(count)) {}
 
   std::vector<OpenPixel<Words, Slots>> pixels;
   std::unique_ptr<OwnerDepths<Slots>[]> depths;  // not set before a slot has an owner
