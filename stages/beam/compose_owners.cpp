@@ -159,13 +159,35 @@ class OwnerComposer {
     return merged ? Outcome::merged : Outcome::composed;
   }
 
+  // Computes the colours of all owners that are left, for finish(). The modelled machine shades owners as they become
+  // final, so this leaves them alone if their requests for texels are kept.
+  void shade_all(const Pixels& pixels) {
+    if (bin_.shader.is_flat() || bin_.shade_at != OwnerPlace::covered) return;
+    if (result_.texels && result_.texels->are_kept()) return;
+    std::vector<Invocation> invocations;
+    shaded_at_.assign(pixels.pixels.size() * Slots, kNotShaded);
+    for (std::uint32_t i = 0; i < pixels.pixels.size(); ++i) {
+      for (std::size_t k = 0; k < Slots; ++k) {
+        const OwnerSlot& slot = pixels.pixels[i].slots[k];
+        if (slot.is_free() || slot.is_merged()) continue;
+        const std::uint32_t triangle = bin_.list[slot.triangle()];
+        if (bin_.shader.is_flat(triangle)) continue;
+        const glm::vec2 centroid = slot.centroid();
+        shaded_at_[i * Slots + k] = static_cast<std::uint32_t>(invocations.size());
+        invocations.push_back({triangle, bin_.shader.place(i, centroid.x, centroid.y)});
+      }
+    }
+    colors_ = bin_.shader.colors(invocations, result_.texels);
+  }
+
   // All owners are final. `index`: of the pixel in the tile. Returns its colour.
   PixelColor finish(std::uint32_t index, Pixels& pixels) {
     ++work.finished;
     pixel_ = index;
     Pixel& pixel = pixels.pixels[index];
     if (const OwnerSlot* slot = only_owner(pixel)) {
-      const glm::vec3 color = color_of(*slot, Mask::filled(true));
+      const auto k = static_cast<std::size_t>(slot - pixel.slots);
+      const glm::vec3 color = final_color(*slot, k, Mask::filled(true));
       if (bin_.weights) bin_.weights->finish_whole(pixel_, slot->triangle(), color);
       return {1.0f, color};
     }
@@ -407,6 +429,14 @@ class OwnerComposer {
     return other.index;
   }
 
+  // Of the owner in slot k, which shade_all() may have shaded.
+  glm::vec3 final_color(const OwnerSlot& slot, std::size_t k, const Mask& owned) {
+    const std::uint32_t at = shaded_at_.empty() ? kNotShaded : shaded_at_[pixel_ * Slots + k];
+    if (at == kNotShaded) return color_of(slot, owned);
+    result_.shaded.push_back({bin_.list[slot.triangle()]});
+    return colors_[at];
+  }
+
   // `owned`: positions of the pixel.
   glm::vec3 color_of(const OwnerSlot& slot, const Mask& owned) {
     if (slot.is_merged()) return slot.color();
@@ -459,7 +489,7 @@ class OwnerComposer {
       const float exact = greater(owner->covered() + owner->slot.error(), 0.0f) / kPositions;
       const float area =
           visible_area(exact, owner->covered(), owner->visible, kPositions, Taken<float>{pixel.area, final_positions});
-      const glm::vec3 color = color_of(owner->slot, owner->owned);
+      const glm::vec3 color = final_color(owner->slot, owner->index, owner->owned);
       const float counted = owner->visible / kPositions;
       if (bin_.weights)
         bin_.weights->settle(pixel_, {owner->slot, owner->index, owner->owned.wide(), color}, area, counted);
@@ -559,6 +589,10 @@ class OwnerComposer {
   OwnerDepths<Slots>* depths_ = nullptr;  // of this pixel
   std::array<Owner, Slots + 1> owners_;   // of one pixel, and the fragment that needs a slot
   std::array<Place, Slots> order_;
+  // What shade_all() has shaded: the colours, and where that of each pixel's slots is.
+  static constexpr std::uint32_t kNotShaded = ~0u;
+  std::vector<glm::vec3> colors_;
+  std::vector<std::uint32_t> shaded_at_;
 };
 
 template <std::size_t Words, std::size_t Slots>
@@ -587,6 +621,7 @@ std::vector<PixelColor> finish(const OwnersBin& bin, StageCounters& counters, Op
                                OwnersResult& result) {
   OwnerComposer<Words, Slots> composer(bin, result);
   std::vector<PixelColor> colors(pixels.pixels.size());
+  composer.shade_all(pixels);
   for (std::uint32_t i = 0; i < colors.size(); ++i) colors[i] = composer.finish(i, pixels);
   charge<Words, Slots>(composer.work, counters);
   return colors;

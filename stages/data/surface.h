@@ -11,13 +11,15 @@
 namespace beampipe {
 
 // A vertex as the fragment shader sees it. Attributes that the mesh does not have are 0, and its colour is white.
-struct SurfaceVertex {
-  glm::vec3 to_eye{0.0f};   // world space, not normalised
-  glm::vec3 normal{0.0f};   // world space, not normalised
-  glm::vec4 tangent{0.0f};  // world space, not normalised; w: sign of the bitangent
-  glm::vec2 uvs[2]{};
-  glm::vec4 color{1.0f};
+template <class Real>
+struct SurfaceVertexOf {
+  std::array<Real, 3> to_eye{};   // world space, not normalised
+  std::array<Real, 3> normal{};   // world space, not normalised
+  std::array<Real, 4> tangent{};  // world space, not normalised; w: sign of the bitangent
+  std::array<std::array<Real, 2>, 2> uvs{};
+  std::array<Real, 4> color{Real(1.0f), Real(1.0f), Real(1.0f), Real(1.0f)};
 };
+using SurfaceVertex = SurfaceVertexOf<float>;
 
 // A quantity that is linear on the screen: its value at the anchor, and its slopes per pixel.
 template <class Real>

@@ -5,6 +5,7 @@
 
 #include <algorithm>
 #include <array>
+#include <bit>
 #include <cmath>
 #include <memory>
 #include <optional>
@@ -142,15 +143,15 @@ class VertexShader {
 
   SurfaceVertex operator()(std::uint32_t i) const {
     SurfaceVertex vertex;
-    vertex.to_eye = glm::vec3(limited(glm::dvec3(view_.eye) - view_.eye.w * world(i)));
-    if (!mesh_.normals.empty()) vertex.normal = glm::vec3(unit(normal_to_world_ * glm::dvec3(mesh_.normals[i])));
+    vertex.to_eye = numbers_of<3>(limited(glm::dvec3(view_.eye) - view_.eye.w * world(i)));
+    if (!mesh_.normals.empty()) vertex.normal = numbers_of<3>(unit(normal_to_world_ * glm::dvec3(mesh_.normals[i])));
     if (!mesh_.tangents.empty()) {
       const glm::dvec3 tangent = glm::dmat3(to_world_) * glm::dvec3(mesh_.tangents[i]);
-      vertex.tangent = glm::vec4(glm::vec3(unit(tangent)), mesh_.tangents[i].w * handedness_);
+      vertex.tangent = numbers_of<4>(glm::vec4(unit(tangent), mesh_.tangents[i].w * handedness_));
     }
-    for (int set = 0; set < 2; ++set)
-      if (!mesh_.uvs[set].empty()) vertex.uvs[set] = mesh_.uvs[set][i];
-    if (!mesh_.vertex_colors.empty()) vertex.color = mesh_.vertex_colors[i];
+    for (std::size_t set = 0; set < 2; ++set)
+      if (!mesh_.uvs[set].empty()) vertex.uvs[set] = numbers_of<2>(mesh_.uvs[set][i]);
+    if (!mesh_.vertex_colors.empty()) vertex.color = numbers_of<4>(mesh_.vertex_colors[i]);
     return vertex;
   }
 
@@ -159,6 +160,11 @@ class VertexShader {
   static glm::dmat3 normal_matrix(const glm::dmat3& m) {
     const double sign = glm::determinant(m) < 0 ? -1.0 : 1.0;
     return sign * glm::dmat3(glm::cross(m[1], m[2]), glm::cross(m[2], m[0]), glm::cross(m[0], m[1]));
+  }
+
+  template <int Size, class Vector>
+  static std::array<float, Size> numbers_of(const Vector& vector) {
+    return std::bit_cast<std::array<float, Size>>(glm::vec<Size, float>(vector));
   }
 
   // No longer than floats can square.

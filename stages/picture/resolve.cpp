@@ -25,49 +25,82 @@ std::vector<glm::vec4> resolve(const std::vector<PixelColor>& aggregates, const 
   return image;
 }
 
+namespace {
+
+// Samples of a pixel, one after the other, that show the same.
+struct SampleRun {
+  std::size_t begin, end;
+  std::uint32_t triangle;  // kNoTriangle: the background
+  bool varies;             // its colour depends on the cell that it lies in
+};
+
+// Calls visit(run) for the runs of a pixel, in order.
+template <class Visit>
+void for_each_run(const SampleTile& surface, std::size_t pixel, std::size_t samples_per_cell, const TileShader& shader,
+                  Visit&& visit) {
+  const std::size_t samples = surface.samples_per_pixel;
+  const std::uint32_t* const owner = surface.triangle.data() + pixel * samples;
+  const glm::vec4* const over = surface.over.empty() ? nullptr : &surface.over[pixel * samples];
+  for (std::size_t s = 0; s < samples;) {
+    const std::uint32_t triangle = owner[s];
+    const bool varies = triangle != kNoTriangle && !shader.is_flat(triangle);
+    const std::size_t most = varies ? s - s % samples_per_cell + samples_per_cell : samples;
+    std::size_t end = s + 1;
+    while (end < most && owner[end] == triangle && (!over || over[end] == over[s])) ++end;
+    visit(SampleRun{s, end, triangle, varies});
+    s = end;
+  }
+}
+
+}  // namespace
+
 std::vector<glm::vec4> resolve(const SampleTile& surface, std::size_t pixels, const TileShader& shader,
                                const glm::vec3& background, StageCounters& counters, std::size_t cells,
                                const CellPlaces& place_of, ResolveSpace space) {
   const std::size_t samples = surface.samples_per_pixel, samples_per_cell = samples / cells;
+  std::vector<glm::vec3> varying;  // colours, one for each run that varies
+  if (!shader.is_flat()) {
+    std::vector<Invocation> invocations;
+    for (std::size_t pixel = 0; pixel < pixels; ++pixel) {
+      for_each_run(surface, pixel, samples_per_cell, shader, [&](const SampleRun& run) {
+        if (!run.varies) return;
+        const CellPlace place = place_of(run.triangle, pixel * cells + run.begin / samples_per_cell);
+        invocations.push_back(
+            {run.triangle, shader.place(static_cast<std::uint32_t>(pixel), place.u, place.v), place.width});
+      });
+    }
+    varying = shader.colors(invocations);
+  }
+  auto next = varying.begin();
   const glm::dvec3 clear = background;
   std::vector<glm::vec4> image;
   image.reserve(pixels);
   for (std::size_t pixel = 0; pixel < pixels; ++pixel) {
+    const glm::vec4* const over = surface.over.empty() ? nullptr : &surface.over[pixel * samples];
     // Runs of equal samples are added at once. The sum is that of a box filter in double precision either way.
-    const std::uint32_t* owner = surface.triangle.data() + pixel * samples;
     glm::dvec3 sum(0.0);
     double covered = 0;
-    for (std::size_t s = 0; s < samples;) {
-      const std::uint32_t triangle = owner[s];
-      const bool is_same_everywhere = triangle == kNoTriangle || shader.is_flat(triangle);
-      const std::size_t most = is_same_everywhere ? samples : s - s % samples_per_cell + samples_per_cell;
-      const glm::vec4* const over = surface.over.empty() ? nullptr : &surface.over[pixel * samples];
-      std::size_t end = s + 1;
-      while (end < most && owner[end] == triangle && (!over || over[end] == over[s])) ++end;
-      const auto run = static_cast<double>(end - s);
-      CellPlace place{};
-      if (!is_same_everywhere) place = place_of(triangle, pixel * cells + s / samples_per_cell);
-      const double seen = over ? 1.0 - double{over[s].a} : 1.0;  // of the opaque surface
-      const glm::dvec3 opaque =
-          triangle == kNoTriangle
-              ? clear
-              : glm::dvec3(shader.color(triangle, static_cast<std::uint32_t>(pixel), place.u, place.v, place.width));
+    for_each_run(surface, pixel, samples_per_cell, shader, [&](const SampleRun& run) {
+      const auto count = static_cast<double>(run.end - run.begin);
+      const double seen = over ? 1.0 - double{over[run.begin].a} : 1.0;  // of the opaque surface
+      const glm::dvec3 opaque = run.triangle == kNoTriangle ? clear
+                                : run.varies                ? glm::dvec3(*next++)
+                                                            : glm::dvec3(shader.color(run.triangle, 0, 0, 0));
       if (space == ResolveSpace::reinhard) {
         glm::dvec3 color = seen * opaque;
-        if (over) color += glm::dvec3(over[s]);
+        if (over) color += glm::dvec3(over[run.begin]);
         compress(&color.x);
-        sum += run * color;
+        sum += count * color;
       } else {
-        if (over) sum += run * glm::dvec3(over[s]);
-        sum += run * seen * opaque;
+        if (over) sum += count * glm::dvec3(over[run.begin]);
+        sum += count * seen * opaque;
       }
-      if (triangle != kNoTriangle) {
-        covered += run;
+      if (run.triangle != kNoTriangle) {
+        covered += count;
       } else if (over) {
-        covered += run * double{over[s].a};
+        covered += count * double{over[run.begin].a};
       }
-      s = end;
-    }
+    });
     const double share = 1.0 / static_cast<double>(samples);
     glm::dvec3 mean = sum * share;
     if (space == ResolveSpace::reinhard) expand(&mean.x);

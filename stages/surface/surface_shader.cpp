@@ -7,19 +7,13 @@
 
 #include "stages/cost/counting.h"
 #include "stages/data/half_bits.h"
+#include "stages/surface/lit_colors.h"
 #include "stages/surface/texture_filter.h"
 
 namespace beampipe {
 namespace {
 
-template <class Real>
-std::array<Real, 2> pair_of(const glm::vec2& v) {
-  return {Real(v.x), Real(v.y)};
-}
-
 glm::vec2 vector_of(const std::array<float, 2>& v) { return {v[0], v[1]}; }
-
-VertexInputs<float> inputs_of(const SurfaceVertex& vertex) { return std::bit_cast<VertexInputs<float>>(vertex); }
 
 // Texture coordinates at a point of a triangle and how they change, from the triangle's planes. `uvs`: of the vertices.
 template <class Real>
@@ -36,11 +30,11 @@ TexturePlace<Real> place_on_triangle(const std::array<std::array<Real, 2>, 3>& u
   return found;
 }
 
-std::array<float, 2> uv_at(const std::array<VertexInputs<float>, 3>& v, std::size_t set,
+std::array<float, 2> uv_at(const std::array<const SurfaceVertex*, 3>& v, std::size_t set,
                            const Barycentrics<float>& weights) {
   std::array<float, 2> uv;
   for (std::size_t c = 0; c < 2; ++c)
-    uv[c] = interpolated(v[0].uvs[set][c], v[1].uvs[set][c], v[2].uvs[set][c], weights);
+    uv[c] = interpolated(v[0]->uvs[set][c], v[1]->uvs[set][c], v[2]->uvs[set][c], weights);
   return uv;
 }
 
@@ -99,11 +93,11 @@ glm::vec3 flat_color(const FlatAttributes& flat, const Lighting& lighting) {
 // Texture coordinates and how they change, from the planes of a triangle, or as differences between the invocations of
 // a quad.
 template <class Real>
-TexturePlace<Real> counted_place(const std::array<VertexInputs<Real>, 3>& v, std::uint32_t set,
+TexturePlace<Real> counted_place(const SurfaceVertexOf<Real>& vertex, std::uint32_t set,
                                  const BarycentricPlanes<Real>& planes, const Barycentrics<Real>& weights,
                                  Derivatives derivatives) {
-  const Real one = v[0].color[0];
-  const std::array<std::array<Real, 2>, 3> uvs{v[0].uvs[set], v[1].uvs[set], v[2].uvs[set]};
+  const Real one = vertex.color[0];
+  const std::array<std::array<Real, 2>, 3> uvs{vertex.uvs[set], vertex.uvs[set], vertex.uvs[set]};
   if (derivatives == Derivatives::analytic) return place_on_triangle(uvs, planes, one, one, weights);
   TexturePlace<Real> found;
   for (std::size_t c = 0; c < 2; ++c) {
@@ -113,30 +107,31 @@ TexturePlace<Real> counted_place(const std::array<VertexInputs<Real>, 3>& v, std
   return found;
 }
 
-// The operations of the shader's first half, with the weights and texture coordinates that it needs. A fetch is one
-// operation; filtering is done by the texture unit.
+// The operations up to what the surface is made of, with the weights and texture coordinates that it needs. A fetch is
+// one operation; filtering is done by the texture unit.
 OperationCounts material_cost(const ShaderInputs& shader, Derivatives derivatives) {
   return count_operations([&](OperationCounts& counts) {
     using Real = Counted<float>;
     const Real one(1.0f, counts);
     const Triple<Real> vector{one, one, one};
-    VertexInputs<Real> vertex{vector, vector, {one, one, one, one}, {}, {one, one, one, one}};
+    SurfaceVertexOf<Real> vertex{vector, vector, {one, one, one, one}, {}, {one, one, one, one}};
     for (auto& uv : vertex.uvs) uv = {one, one};
-    const std::array<VertexInputs<Real>, 3> v{vertex, vertex, vertex};
     const ScreenPlane<Real> plane{one, one, one};
     const BarycentricPlanes<Real> planes{plane, plane, plane};
     const Barycentrics<Real> weights = weights_at(planes, one, one);
     std::array<std::optional<TexturePlace<Real>>, 2> places;
     const auto place = [&](std::uint32_t set) {
-      if (!places[set]) places[set] = counted_place(v, set, planes, weights, derivatives);
+      if (!places[set]) places[set] = counted_place(vertex, set, planes, weights, derivatives);
       return *places[set];
     };
     const auto fetch = [&](TextureRole, const TexturePlace<Real>&) -> std::array<Real, 4> {
       ++counts.fetch;
       return {one, one, one, one};
     };
-    const SurfacePoint<Real> point{v, weights, vector, one, vector, one};
-    material_at(shader, point, place, fetch);
+    const SurfacePoint<Real> point{{&vertex, &vertex, &vertex}, weights, vector, one, vector, one};
+    PointInputs<Real> inputs;
+    inputs_at(shader, point, place, fetch, inputs);
+    material_of(shader, inputs);
   });
 }
 
@@ -146,14 +141,15 @@ OperationCounts alpha_cost(const ShaderInputs& shader) {
   return count_operations([&](OperationCounts& counts) {
     using Real = Counted<float>;
     const Real one(1.0f, counts);
-    VertexInputs<Real> vertex{};
+    SurfaceVertexOf<Real> vertex{};
     vertex.color.fill(one);
     for (auto& uv : vertex.uvs) uv = {one, one};
-    const std::array<VertexInputs<Real>, 3> v{vertex, vertex, vertex};
     const ScreenPlane<Real> plane{one, one, one};
     const BarycentricPlanes<Real> planes{plane, plane, plane};
     const Barycentrics<Real> weights = weights_at(planes, one, one);
-    const auto place = [&](std::uint32_t set) { return counted_place(v, set, planes, weights, Derivatives::analytic); };
+    const auto place = [&](std::uint32_t set) {
+      return counted_place(vertex, set, planes, weights, Derivatives::analytic);
+    };
     const auto fetch = [&](TextureRole, const TexturePlace<Real>&) -> std::array<Real, 4> {
       ++counts.fetch;
       return {one, one, one, one};
@@ -294,15 +290,15 @@ float SurfaceShader::alpha_there(std::uint32_t triangle, const ShadingPlace& pla
               y = static_cast<float>(place.y) + place.v - surface.anchor_y;
   if (shader.has_vertex_colors || shader.material.base_texture) weights = weights_at(surface.planes, x, y);
   const auto texture_place = [&](std::uint32_t set) {
-    const auto uv = [&](std::size_t k) { return pair_of<float>(vertex(k).uvs[set]); };
-    return place_on_triangle<float>({uv(0), uv(1), uv(2)}, surface.planes, x, y, weights);
+    return place_on_triangle<float>({vertex(0).uvs[set], vertex(1).uvs[set], vertex(2).uvs[set]}, surface.planes, x, y,
+                                    weights);
   };
   const auto fetch = [&](TextureRole, const TexturePlace<float>& at) {
     const TextureSlopes slopes{vector_of(at.dx) * width, vector_of(at.dy) * width};
     return glm::vec4(texture_alpha(*shader.material.base_texture, vector_of(at.uv), slopes));
   };
   const float alpha =
-      alpha_at(shader, {vertex(0).color.a, vertex(1).color.a, vertex(2).color.a}, weights, texture_place, fetch);
+      alpha_at(shader, {vertex(0).color[3], vertex(1).color[3], vertex(2).color[3]}, weights, texture_place, fetch);
   return limited_alpha(alpha);
 }
 
@@ -326,8 +322,9 @@ SurfaceShader::CutoutPart SurfaceShader::cutout_part(std::uint32_t triangle, con
   const float alpha = alpha_there(
       triangle, place, width, [&](const Texture& texture, const glm::vec2& uv, const TextureSlopes& slopes) {
         const MipChain& chain = textures_->chain(texture.image, ColorSpace::srgb);
-        if (level_of_detail(slopes, chain.levels[0]) <= 0)
-          return filtered(chain, texture, uv, slopes, noting(texels, texture.image, ColorSpace::srgb)).a;
+        const FilterPlan plan = filter_plan(chain, texture, slopes);
+        if (!plan.is_minified)
+          return filtered(chain, texture, uv, plan, noting(texels, texture.image, ColorSpace::srgb)).a;
         const std::uint32_t material = triangles_.surfaces[triangle].material;
         tested = &textures_->tested_alpha(material);
         shares = filtered(tested->shares, for_areas(texture), uv, slopes,
@@ -338,12 +335,12 @@ SurfaceShader::CutoutPart SurfaceShader::cutout_part(std::uint32_t triangle, con
   return {tested->share(shares, cutoff / alpha), true};
 }
 
-SurfaceMaterial<float> SurfaceShader::material_there(std::uint32_t triangle, const ShadingPlace& place, float width,
-                                                     TexelRequests* texels) const {
+void SurfaceShader::find_inputs(std::uint32_t triangle, const ShadingPlace& place, float width, TexelRequests* texels,
+                                PointInputs<float>& inputs, bool only_texels) const {
   const SetupSurface& surface = triangles_.surfaces[triangle];
   const ShaderInputs shader = inputs_of(triangle);
-  std::array<VertexInputs<float>, 3> v;
-  for (std::size_t k = 0; k < 3; ++k) v[k] = beampipe::inputs_of(triangles_.vertices[surface.vertices[k]]);
+  std::array<const SurfaceVertex*, 3> v;
+  for (std::size_t k = 0; k < 3; ++k) v[k] = &triangles_.vertices[surface.vertices[k]];
 
   const bool by_pixel = rules_.colors == SurfaceColors::by_pixel;
   if (by_pixel) width = 1.0f;
@@ -372,39 +369,43 @@ SurfaceMaterial<float> SurfaceShader::material_there(std::uint32_t triangle, con
   std::array<std::optional<TexturePlace<float>>, 2> places;
   const auto texture_place = [&](std::uint32_t set) -> const TexturePlace<float>& {
     if (!places[set])
-      places[set] =
-          rules_.derivatives == Derivatives::quad && !by_pixel
-              ? place_in_quad(set)
-              : place_on_triangle<float>({v[0].uvs[set], v[1].uvs[set], v[2].uvs[set]}, surface.planes, x, y, weights);
+      places[set] = rules_.derivatives == Derivatives::quad && !by_pixel
+                        ? place_in_quad(set)
+                        : place_on_triangle<float>({v[0]->uvs[set], v[1]->uvs[set], v[2]->uvs[set]}, surface.planes, x,
+                                                   y, weights);
     return *places[set];
   };
+  const bool is_kept = texels && texels->are_kept();
   const auto fetch = [&](TextureRole role, const TexturePlace<float>& at) -> std::array<float, 4> {
     const Texture& texture = texture_of(shader.material, role);
     const ColorSpace space = space_of(role);
     const TextureSlopes slopes{vector_of(at.dx) * width, vector_of(at.dy) * width};
-    const glm::vec4 texel = filtered(textures_->chain(texture.image, space), texture, vector_of(at.uv), slopes,
-                                     noting(texels, texture.image, space));
+    const MipChain& chain = textures_->chain(texture.image, space);
+    const FilterPlan plan = filter_plan(chain, texture, slopes);
+    if (texels && !is_kept) texels->count(plan.texels());
+    if (only_texels && !is_kept) return {};
+    const glm::vec4 texel =
+        filtered(chain, texture, vector_of(at.uv), plan, noting(is_kept ? texels : nullptr, texture.image, space));
     if (role != TextureRole::normal) return {texel.r, texel.g, texel.b, texel.a};
-    const bool is_mean = level_of_detail(slopes, textures_->chain(texture.image, space).levels[0]) > 0;
-    return {texel.r, texel.g, texel.b, is_mean ? 1.0f : 0.0f};
+    return {texel.r, texel.g, texel.b, plan.is_minified ? 1.0f : 0.0f};
   };
-  const SurfacePoint<float> point{
-      v,
-      weights,
-      triple<float>(triangles_.attributes[triangle].normal),
-      surface.turned ? -1.0f : 1.0f,
-      triple<float>(glm::vec3(surface.tangent)),
-      shader.has_tangents ? triangles_.vertices[surface.vertices[0]].tangent.w : surface.tangent.w};
-  return material_at(shader, point, texture_place, fetch);
+  const SurfacePoint<float> point{v,
+                                  weights,
+                                  triple<float>(triangles_.attributes[triangle].normal),
+                                  surface.turned ? -1.0f : 1.0f,
+                                  triple<float>(glm::vec3(surface.tangent)),
+                                  shader.has_tangents ? v[0]->tangent[3] : surface.tangent.w};
+  inputs_at(shader, point, texture_place, fetch, inputs);
 }
 
 glm::vec4 SurfaceShader::shaded(std::uint32_t triangle, const ShadingPlace& place, float width,
                                 TexelRequests* texels) const {
-  SurfaceMaterial<float> found = material_there(triangle, place, width, texels);
+  PointInputs<float> inputs;
+  find_inputs(triangle, place, width, texels, inputs);
+  SurfaceMaterial<float> found = material_of(inputs_of(triangle), inputs);
   const Material& material = this->material(triangle);
   const bool by_pixel = rules_.colors == SurfaceColors::by_pixel;
-  const bool is_stored = rules_.storage == MaterialStorage::gbuffer && material.alpha_mode != AlphaMode::blend;
-  if (is_stored && !by_pixel) found.reflector = through_gbuffer(found.reflector);
+  if (is_stored(material)) found.reflector = through_gbuffer(found.reflector);
   const Triple<float> lit = lit_color(material, found, frame_.lighting);
   glm::vec3 color(lit[0], lit[1], lit[2]);
   if (rules_.rounds_to_half) round_to_half(color);
@@ -412,9 +413,56 @@ glm::vec4 SurfaceShader::shaded(std::uint32_t triangle, const ShadingPlace& plac
   return {color, by_pixel ? alpha(triangle, place, width) : limited_alpha(found.alpha)};
 }
 
+std::vector<glm::vec3> SurfaceShader::colors(const std::vector<Invocation>& invocations, TexelRequests* texels) const {
+  // Invocations of one shader, of which so many wait that lanes are full and inputs stay in the nearest cache.
+  struct Batch {
+    std::size_t work;        // index into works_
+    std::uint32_t triangle;  // of one of them
+    std::vector<PointInputs<float>> inputs;
+    std::vector<std::size_t> places;  // of their colours
+  };
+  constexpr std::size_t kMost = 64;
+  std::vector<glm::vec3> colors(invocations.size()), lit(kMost);
+  const auto finish = [&](Batch& batch) {
+    lit_colors(inputs_of(batch.triangle), frame_.lighting, batch.inputs.data(), batch.inputs.size(), lit.data());
+    for (std::size_t i = 0; i < batch.places.size(); ++i) {
+      glm::vec3& color = colors[batch.places[i]];
+      color = lit[i];
+      if (rules_.rounds_to_half) round_to_half(color);
+    }
+    batch.inputs.clear();
+    batch.places.clear();
+  };
+  std::vector<Batch> batches;
+  std::size_t current = 0;  // most invocations have the shader of the one before
+  for (std::size_t i = 0; i < invocations.size(); ++i) {
+    const Invocation& invocation = invocations[i];
+    const std::uint32_t triangle = invocation.triangle;
+    if (is_flat(triangle) || is_stored(material(triangle))) {
+      colors[i] = color(triangle, invocation.place, invocation.width, texels);
+      end_request(texels);
+      continue;
+    }
+    const std::size_t work = work_index(triangles_.surfaces[triangle].material, inputs_of(triangle));
+    if (current >= batches.size() || batches[current].work != work) {
+      current = 0;
+      while (current < batches.size() && batches[current].work != work) ++current;
+      if (current == batches.size()) batches.push_back({work, triangle, {}, {}});
+    }
+    Batch& batch = batches[current];
+    find_inputs(triangle, invocation.place, invocation.width, texels, batch.inputs.emplace_back());
+    end_request(texels);
+    batch.places.push_back(i);
+    if (batch.places.size() == kMost) finish(batch);
+  }
+  for (Batch& batch : batches) finish(batch);
+  return colors;
+}
+
 void SurfaceShader::add_texels(std::uint32_t triangle, const ShadingPlace& place, float width,
                                TexelRequests& texels) const {
-  if (!is_flat(triangle)) material_there(triangle, place, width, &texels);
+  PointInputs<float> ignored;
+  if (!is_flat(triangle)) find_inputs(triangle, place, width, &texels, ignored, true);
 }
 
 }  // namespace beampipe

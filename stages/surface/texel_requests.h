@@ -62,6 +62,12 @@ class TexelRequests {
   // `layout` must outlive it. Null: texels are only counted.
   explicit TexelRequests(const TextureLayout* layout) : layout_(layout) {}
 
+  // Are the requests kept, and not only the number of texels?
+  bool are_kept() const { return layout_ != nullptr; }
+
+  // Texels of which no more than their number is asked for.
+  void count(std::uint64_t texels) { texels_ += texels; }
+
   // Into the open request.
   void read(const TexelRead& texel) {
     ++texels_;

@@ -110,55 +110,73 @@ template <class Read>
   return {mixed(values.color, 0), mixed(values.color, 1), mixed(values.color, 2), mixed(values.alpha, 3)};
 }
 
-// Trilinear filtering in the two levels around a level of detail above 0.
-template <class Read>
-glm::vec4 trilinear(const MipChain& chain, const Texture& texture, float lod, const glm::vec2& uv, Read&& read) {
-  const std::size_t last = chain.levels.size() - 1;
-  const auto finer = static_cast<std::size_t>(floor_of(std::min(lod, static_cast<float>(last))));
-  const glm::vec4 color = filtered_level(chain, texture, finer, uv, texture.minify, read);
-  if (finer >= last) return color;
-  const float share = lod - static_cast<float>(finer);
-  return color * (1.0f - share) + filtered_level(chain, texture, finer + 1, uv, texture.minify, read) * share;
-}
+// How a texture is filtered somewhere: in which levels, and at how many points.
+struct FilterPlan {
+  bool is_minified = false;        // a texel is smaller than the area
+  Filter filter = Filter::linear;  // in a level
+  std::size_t level = 0;           // the finer one
+  bool has_next = false;           // the next level is read as well
+  float share = 0;                 // of the next level
+  float probes = 1;                // a whole number
+  glm::vec2 along{0.0f};           // texture coordinates along which the probes lie
 
-// Anisotropic filtering: several probes, evenly along the longer side of the footprint, in the level that fits the
+  std::uint64_t texels() const {
+    return static_cast<std::uint64_t>(probes) * (filter == Filter::nearest ? 1u : 4u) * (has_next ? 2u : 1u);
+  }
+};
+
+// Anisotropic filtering takes several probes, evenly along the longer side of the footprint, in the level that fits the
 // shorter side, or the longer side divided by the number of probes.
 // Source: Khronos, EXT_texture_filter_anisotropic, "sample implementation".
-template <class Read>
-glm::vec4 filtered_along(const MipChain& chain, const Texture& texture, const glm::vec2& uv,
-                         const TextureSlopes& slopes, Read&& read) {
-  const glm::vec2 size(chain.levels[0].width, chain.levels[0].height);
-  const glm::vec2 dx = slopes.dx * size, dy = slopes.dy * size;
-  const float squared_x = dx.x * dx.x + dx.y * dx.y, squared_y = dy.x * dy.x + dy.y * dy.y;
-  const glm::vec2& along = squared_x >= squared_y ? slopes.dx : slopes.dy;
-  const float longer = std::sqrt(std::max(squared_x, squared_y)), shorter = std::sqrt(std::min(squared_x, squared_y));
-  const auto most = static_cast<float>(texture.anisotropy);
-  const float probes = longer < shorter * most ? std::max(std::ceil(longer / shorter), 1.0f) : most;
-  const float lod = logarithm_2(std::max(longer / probes, 1e-30f));
-  glm::vec4 sum(0.0f);
-  for (float i = 0; i < probes; ++i) {
-    const glm::vec2 at = uv + along * ((i + 0.5f) / probes - 0.5f);
-    sum += lod > 0 ? trilinear(chain, texture, lod, at, read)
-                   : filtered_level(chain, texture, 0, at, texture.magnify, read);
+inline FilterPlan filter_plan(const MipChain& chain, const Texture& texture, const TextureSlopes& slopes) {
+  FilterPlan plan{.filter = texture.magnify};
+  float lod = level_of_detail(slopes, chain.levels[0]);
+  if (lod <= 0) return plan;
+  plan.is_minified = true, plan.filter = texture.minify;
+  if (texture.mip == MipFilter::none) return plan;
+  const auto last = static_cast<float>(chain.levels.size() - 1);
+  if (texture.mip == MipFilter::nearest) {
+    plan.level = static_cast<std::size_t>(std::min(std::ceil(lod + 0.5f) - 1, last));
+    return plan;
   }
-  return sum / probes;
+  if (texture.anisotropy > 1) {
+    const glm::vec2 size(chain.levels[0].width, chain.levels[0].height);
+    const glm::vec2 dx = slopes.dx * size, dy = slopes.dy * size;
+    const float squared_x = dx.x * dx.x + dx.y * dx.y, squared_y = dy.x * dy.x + dy.y * dy.y;
+    const float longer = std::sqrt(std::max(squared_x, squared_y)), shorter = std::sqrt(std::min(squared_x, squared_y));
+    const auto most = static_cast<float>(texture.anisotropy);
+    plan.along = squared_x >= squared_y ? slopes.dx : slopes.dy;
+    plan.probes = longer < shorter * most ? std::max(std::ceil(longer / shorter), 1.0f) : most;
+    lod = logarithm_2(std::max(longer / plan.probes, 1e-30f));
+    if (!(lod > 0)) {
+      plan.filter = texture.magnify;
+      return plan;
+    }
+  }
+  plan.level = static_cast<std::size_t>(floor_of(std::min(lod, last)));
+  plan.has_next = plan.level + 1 < chain.levels.size();
+  plan.share = lod - static_cast<float>(plan.level);
+  return plan;
 }
 
 // Linear RGBA. Calls read(level, x, y) with each texel that is read.
 template <class Read>
+glm::vec4 filtered(const MipChain& chain, const Texture& texture, const glm::vec2& uv, const FilterPlan& plan,
+                   Read&& read) {
+  glm::vec4 sum(0.0f);
+  for (float i = 0; i < plan.probes; ++i) {
+    const glm::vec2 at = plan.probes == 1 ? uv : uv + plan.along * ((i + 0.5f) / plan.probes - 0.5f);
+    const glm::vec4 color = filtered_level(chain, texture, plan.level, at, plan.filter, read);
+    sum += plan.has_next ? color * (1.0f - plan.share) +
+                               filtered_level(chain, texture, plan.level + 1, at, plan.filter, read) * plan.share
+                         : color;
+  }
+  return plan.probes == 1 ? sum : sum / plan.probes;
+}
+template <class Read>
 glm::vec4 filtered(const MipChain& chain, const Texture& texture, const glm::vec2& uv, const TextureSlopes& slopes,
                    Read&& read) {
-  const float lod = level_of_detail(slopes, chain.levels[0]);
-  if (lod <= 0) return filtered_level(chain, texture, 0, uv, texture.magnify, read);
-  const auto last = static_cast<float>(chain.levels.size() - 1);
-  if (texture.anisotropy > 1 && texture.mip == MipFilter::linear)
-    return filtered_along(chain, texture, uv, slopes, read);
-  if (texture.mip == MipFilter::none) return filtered_level(chain, texture, 0, uv, texture.minify, read);
-  if (texture.mip == MipFilter::nearest) {
-    const float nearest = std::min(std::ceil(lod + 0.5f) - 1, last);
-    return filtered_level(chain, texture, static_cast<std::size_t>(nearest), uv, texture.minify, read);
-  }
-  return trilinear(chain, texture, lod, uv, read);
+  return filtered(chain, texture, uv, filter_plan(chain, texture, slopes), read);
 }
 
 }  // namespace beampipe

@@ -1,6 +1,7 @@
 // Perspective: the weights of a triangle's vertices on the screen, against exact rational arithmetic, and their slopes.
 #include <gtest/gtest.h>
 
+#include <bit>
 #include <boost/multiprecision/cpp_int.hpp>
 #include <cmath>
 #include <glm/gtc/matrix_transform.hpp>
@@ -392,7 +393,7 @@ TEST(SurfacePlanes, TheWayToTheEyeIsAsLongAsFloatsCanSquare) {
     const SetupTriangles found = vertex_setup(scaled, scaled.frames[0], counters);
     ASSERT_EQ(found.triangles.size(), 1u) << scale;
     for (std::size_t i = 0; i < 3; ++i) {
-      const glm::vec3 to_eye = found.vertices[i].to_eye;
+      const auto to_eye = std::bit_cast<glm::vec3>(found.vertices[i].to_eye);
       EXPECT_TRUE(std::isfinite(glm::dot(to_eye, to_eye))) << scale;
       const glm::vec3 straight = -trace.meshes[0].positions[i];
       EXPECT_NEAR(glm::dot(glm::normalize(glm::dvec3(to_eye)), glm::normalize(glm::dvec3(straight))), 1, 1e-6) << scale;

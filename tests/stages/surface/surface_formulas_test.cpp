@@ -192,17 +192,17 @@ TEST(SurfaceFormulas, NormalsThatDifferMakeASurfaceRough) {
 TEST(SurfaceFormulas, TangentsAreMadePerpendicular) {
   Material material;
   material.normal_texture = Texture{};
-  std::array<VertexInputs<float>, 3> vertices{};
-  for (VertexInputs<float>& vertex : vertices) {
-    vertex.to_eye = vertex.normal = {0, 0, 1};
-    vertex.tangent = {2, 0, 1, 1};
-  }
-  const SurfacePoint<float> point{vertices, {}, {0, 0, 1}, 1, {}, 1};
+  SurfaceVertex vertex;
+  vertex.to_eye = vertex.normal = {0, 0, 1};
+  vertex.tangent = {2, 0, 1, 1};
+  const SurfacePoint<float> point{{&vertex, &vertex, &vertex}, {}, {0, 0, 1}, 1, {}, 1};
   const auto place = [](std::uint32_t) { return TexturePlace<float>{}; };
   const auto normal_of = [&](const std::array<float, 4>& texel) {
     const auto fetch = [&](TextureRole, const TexturePlace<float>&) { return texel; };
-    const Triple<float> normal =
-        material_at<float>({material, false, false, true}, point, place, fetch).reflector.normal;
+    const ShaderInputs shader{material, false, false, true};
+    PointInputs<float> inputs;
+    inputs_at(shader, point, place, fetch, inputs);
+    const Triple<float> normal = material_of(shader, inputs).reflector.normal;
     return glm::vec3(normal[0], normal[1], normal[2]);
   };
   EXPECT_LT(glm::length(normal_of({1, 0.5f, 0.5f, 0}) - glm::vec3(1, 0, 0)), 1e-6f);

@@ -7,6 +7,7 @@
 
 #include "stages/cost/counting.h"
 #include "stages/surface/texel_requests.h"
+#include "tests/simd/every_target.h"
 #include "tests/simd/random.h"
 #include "tests/stages/surface_scene.h"
 
@@ -361,6 +362,70 @@ TEST(SurfaceShader, ColorsAreRoundedToHalf) {
   for (int c = 0; c < 3; ++c) {
     EXPECT_NEAR(a[c], b[c], a[c] * 0x1p-11f);
     EXPECT_EQ(std::ldexp(b[c], 11 - std::ilogb(b[c])), std::round(std::ldexp(b[c], 11 - std::ilogb(b[c]))));
+  }
+}
+
+// Materials with and without each of their parts, lit by two lights and from all around.
+SurfaceTrace all_kinds_of_materials(Random& random) {
+  SurfaceTrace scene(64, 64);
+  TextureImage image = filled_image(16, 16, {});
+  for (glm::u8vec4& texel : image.texels)
+    texel = {random.word() & 255, random.word() & 255, random.word() & 255, random.word() & 255};
+  const Texture texture{.image = scene.add_image(image)};
+  const auto real = [&](float most) { return static_cast<float>(random.real(0, most)); };
+  const auto vector = [&] { return glm::vec3(real(2) - 1, real(2) - 1, real(2) - 1); };
+  constexpr int kParts = 9;
+  for (unsigned parts = 0; parts < 1u << kParts; ++parts) {
+    const auto has = [&](unsigned part) { return (parts >> part & 1) != 0; };
+    Material material;
+    material.base_color = {real(1), real(1), real(1), 1};
+    material.metallic = real(1), material.roughness = real(1), material.emissive = glm::vec3(real(1));
+    if (has(0)) material.base_texture = texture;
+    if (has(1)) material.metallic_roughness_texture = texture;
+    if (has(2)) material.normal_texture = texture;
+    if (has(3)) material.emissive_texture = texture;
+    material.unlit = has(4);
+    material.alpha_mode = has(5) ? AlphaMode::blend : AlphaMode::opaque;
+    const double x = 2 * (parts % 32), y = 4 * (parts / 32);
+    scene.add_rectangle(x, y, x + 2, y + 4, 0.5, material);
+    if (has(6)) scene.mesh().vertex_colors.assign(4, {real(1), real(1), real(1), real(1)});
+    if (has(7)) {
+      scene.mesh().normals.assign(4, vector());
+      if (has(8)) scene.mesh().tangents.assign(4, {vector(), 1});
+    }
+  }
+  const auto direction = [&] { return glm::normalize(vector()); };
+  scene.frame().lighting = {{{direction(), vector() + 1.0f}, {direction()}},
+                            Ambient{vector() + 1.0f, vector() + 1.0f, direction()}};
+  return scene;
+}
+
+TEST(SurfaceShader, SideBySideColorsAreTheSame) {
+  Random random(2);
+  const SurfaceTrace materials = all_kinds_of_materials(random);
+  for (const ShadingRules& rules :
+       {ShadingRules{}, ShadingRules{.derivatives = Derivatives::quad}, ShadingRules{.rounds_to_half = true},
+        ShadingRules{.storage = MaterialStorage::gbuffer}, ShadingRules{.colors = SurfaceColors::by_pixel}}) {
+    const ShadedScene scene(materials.trace, rules);
+    // Runs of a few invocations of one triangle, at places that need not be in it.
+    std::vector<Invocation> invocations;
+    for (std::uint64_t triangle = 0; invocations.size() < 20'000; triangle = random.word())
+      for (std::uint64_t left = random.word() % 8; left > 0; --left)
+        invocations.push_back(
+            {static_cast<std::uint32_t>(triangle % scene.triangles.surfaces.size()),
+             {static_cast<std::int32_t>(random.word() % 64), static_cast<std::int32_t>(random.word() % 64),
+              static_cast<float>(random.real(0, 1)), static_cast<float>(random.real(0, 1))}});
+    on_every_target([&] {
+      const std::vector<glm::vec3> colors = scene.shader.colors(invocations);
+      ASSERT_EQ(colors.size(), invocations.size());
+      for (std::size_t i = 0; i < colors.size(); ++i) {
+        const glm::vec3 expected = scene.shader.color(invocations[i].triangle, invocations[i].place);
+        for (int c = 0; c < 3; ++c)
+          ASSERT_EQ(std::bit_cast<std::uint32_t>(colors[i][c]), std::bit_cast<std::uint32_t>(expected[c]))
+              << i << ", triangle " << invocations[i].triangle << ": " << colors[i][c] << " and " << expected[c];
+      }
+    });
+    EXPECT_TRUE(scene.shader.colors({}).empty());
   }
 }
 

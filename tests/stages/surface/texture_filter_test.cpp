@@ -238,9 +238,9 @@ TEST(TextureFilter, ThePeriodHasNoSeam) {
   Texture texture;
   texture.magnify = Filter::nearest;
   for (const float u : {-1e-4f, -1e-6f, 1 - 1e-4f, -3 - 1e-4f})
-    EXPECT_EQ(filtered(chain, texture, {u, 0.5f}, {}, kIgnored).r, 1) << u;
+    EXPECT_EQ(filtered(chain, texture, {u, 0.5f}, TextureSlopes{}, kIgnored).r, 1) << u;
   for (const float u : {1e-6f, 0.0f, 1.0f, -1.0f, 7.0f})
-    EXPECT_EQ(filtered(chain, texture, {u, 0.5f}, {}, kIgnored).r, 0);
+    EXPECT_EQ(filtered(chain, texture, {u, 0.5f}, TextureSlopes{}, kIgnored).r, 0);
 }
 
 }  // namespace

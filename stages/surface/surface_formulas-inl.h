@@ -1,0 +1,155 @@
+// The formulas of stages/surface/surface_formulas.h that are computed for several points at once. No include guard: see
+// simd/scalar.h.
+
+template <class Real>
+Real dot(const Triple<Real>& a, const Triple<Real>& b) {
+  return a[0] * b[0] + a[1] * b[1] + a[2] * b[2];
+}
+
+template <class Real>
+Triple<Real> cross(const Triple<Real>& a, const Triple<Real>& b) {
+  return {a[1] * b[2] - a[2] * b[1], a[2] * b[0] - a[0] * b[2], a[0] * b[1] - a[1] * b[0]};
+}
+
+template <class Real>
+Triple<Real> scaled(const Triple<Real>& a, const Real& by) {
+  return {a[0] * by, a[1] * by, a[2] * by};
+}
+
+template <class Real>
+Triple<Real> sum(const Triple<Real>& a, const Triple<Real>& b) {
+  return {a[0] + b[0], a[1] + b[1], a[2] + b[2]};
+}
+
+// 0 stays 0.
+template <class Real>
+Triple<Real> unit(const Triple<Real>& a) {
+  return scaled(a, Real(1.0f) / square_root(greater(dot(a, a), Real(1e-30f))));
+}
+
+template <class Real>
+Triple<Real> triple(const glm::vec3& v) {
+  return {Real(v.x), Real(v.y), Real(v.z)};
+}
+
+template <class Real>
+Real mixed(const Real& a, const Real& b, const Real& share) {
+  return a + share * (b - a);
+}
+
+// Light from all around, from a direction of any length up to 1.
+template <class Real>
+Real ambient_light(const Ambient& ambient, const Triple<Real>& direction, std::size_t channel) {
+  const Real share = Real(0.5f) + Real(0.5f) * dot(direction, triple<Real>(ambient.up));
+  const int c = static_cast<int>(channel);
+  return mixed(Real(ambient.ground[c]), Real(ambient.sky[c]), share);
+}
+
+// Linear RGB towards the eye. Ambient light is reflected diffusely, and from the mirrored direction, which roughness
+// turns towards the normal.
+template <class Real>
+Triple<Real> reflected_light(const Reflector<Real>& surface, const Lighting& lighting) {
+  const Real zero(0.0f), one(1.0f);
+  const Real roughness = greater(surface.roughness, Real(kLeastRoughness));
+  const Real alpha = roughness * roughness, alpha2 = alpha * alpha;
+  const Real normal_eye = greater(dot(surface.normal, surface.to_eye), Real(1e-3f));
+  Triple<Real> diffuse, mirror;  // mirror: reflectance straight on
+  for (std::size_t c = 0; c < 3; ++c) {
+    diffuse[c] = surface.base[c] * (one - surface.metallic);
+    // A base colour may be above 1, but nothing reflects more light than it receives.
+    mirror[c] = lesser(mixed(Real(kDielectricReflectance), surface.base[c], surface.metallic), one);
+  }
+  Triple<Real> light{zero, zero, zero};
+  for (const Light& source : lighting.lights) {
+    const Triple<Real> to_light = triple<Real>(-source.direction);
+    const Triple<Real> half_way = unit(sum(to_light, surface.to_eye));
+    const Real normal_light = greater(dot(surface.normal, to_light), zero);
+    const Real normal_half = dot(surface.normal, half_way);
+    const Real density_root = normal_half * normal_half * (alpha2 - one) + one;
+    const Real density = alpha2 / (density_root * density_root);
+    const Real smith = (normal_eye + square_root(normal_eye * normal_eye * (one - alpha2) + alpha2)) *
+                       (normal_light + square_root(normal_light * normal_light * (one - alpha2) + alpha2));
+    const Real specular = density / smith;
+    const Real grazing = one - lesser(greater(dot(surface.to_eye, half_way), zero), one), grazing2 = grazing * grazing;
+    const Real fresnel = grazing2 * grazing2 * grazing;
+    for (std::size_t c = 0; c < 3; ++c) {
+      const Real reflectance = mirror[c] + (one - mirror[c]) * fresnel;
+      const Real reflected = (one - reflectance) * diffuse[c] + reflectance * specular;
+      light[c] = light[c] + Real(source.color[static_cast<int>(c)]) * normal_light * reflected;
+    }
+  }
+  if (!lighting.ambient) return light;
+  const Real twice = dot(surface.normal, surface.to_eye) * Real(2.0f);
+  Triple<Real> mirrored;
+  for (std::size_t axis = 0; axis < 3; ++axis)
+    mirrored[axis] = mixed(surface.normal[axis] * twice - surface.to_eye[axis], surface.normal[axis], alpha);
+  for (std::size_t c = 0; c < 3; ++c)
+    light[c] = light[c] + (one - mirror[c]) * diffuse[c] * ambient_light(*lighting.ambient, surface.normal, c) +
+               mirror[c] * ambient_light(*lighting.ambient, mirrored, c);
+  return light;
+}
+
+// Roughness with what normals differ within the texel: the mean of unit vectors is the shorter the more they differ.
+// `mean`: a mean of normals if `is_mean` is 1; if it is 0, roughness stays. The variance of their directions adds to
+// that of the microfacets, which is half of the squared alpha of GGX. Source: Toksvig 2005, "Mipmapping Normal Maps";
+// Kaplanyan et al. 2016, "Filtering Distributions of Normals for Shading Antialiasing".
+template <class Real>
+Real rougher(const Real& roughness, const Triple<Real>& mean, const Real& is_mean) {
+  const Real one(1.0f), squared = roughness * roughness;
+  const Real length = lesser(greater(square_root(dot(mean, mean)), Real(0.1f)), one);
+  const Real variance = is_mean * (one - length) / length;
+  return square_root(square_root(lesser(squared * squared + variance + variance, one)));
+}
+
+// The surface at a point.
+template <class Real>
+SurfaceMaterial<Real> material_of(const ShaderInputs& shader, const PointInputs<Real>& point) {
+  const Material& material = shader.material;
+  std::array<Real, 4> base;
+  for (std::size_t c = 0; c < 4; ++c) base[c] = Real(material.base_color[static_cast<int>(c)]);
+  if (material.base_texture)
+    for (std::size_t c = 0; c < 4; ++c) base[c] = base[c] * point.base_texel[c];
+  if (shader.has_vertex_colors)
+    for (std::size_t c = 0; c < 4; ++c) base[c] = base[c] * point.color[c];
+  SurfaceMaterial<Real> surface{};
+  Reflector<Real>& reflector = surface.reflector;
+  reflector.base = {base[0], base[1], base[2]};
+  surface.alpha = base[3];
+  if (material.unlit) return surface;
+  reflector.to_eye = unit(point.to_eye);
+  reflector.normal = shader.has_own_normal ? point.normal : scaled(unit(point.normal), point.facing);
+  reflector.roughness = Real(material.roughness);
+  reflector.metallic = Real(material.metallic);
+  if (material.metallic_roughness_texture) {
+    reflector.roughness = reflector.roughness * point.metallic_roughness_texel[1];
+    reflector.metallic = reflector.metallic * point.metallic_roughness_texel[2];
+  }
+  if (material.normal_texture) {
+    const std::array<Real, 4>& code = point.normal_texel;
+    const Triple<Real> normal = reflector.normal;
+    Triple<Real> tangent = point.tangent;
+    const Real along = dot(tangent, normal);
+    for (std::size_t axis = 0; axis < 3; ++axis) tangent[axis] = tangent[axis] - along * normal[axis];
+    tangent = unit(tangent);
+    const Triple<Real> bitangent = scaled(cross(normal, tangent), point.facing * point.tangent_sign);
+    const Real two(2.0f), one(1.0f), scale(material.normal_scale);
+    const Real to_u = (code[0] * two - one) * scale, to_v = (code[1] * two - one) * scale;
+    const Real outward = code[2] * two - one;
+    for (std::size_t axis = 0; axis < 3; ++axis)
+      reflector.normal[axis] = tangent[axis] * to_u + bitangent[axis] * to_v + normal[axis] * outward;
+    reflector.roughness = rougher(reflector.roughness, reflector.normal, code[3]);
+    reflector.normal = unit(reflector.normal);
+  }
+  surface.emissive = triple<Real>(material.emissive);
+  if (material.emissive_texture)
+    for (std::size_t c = 0; c < 3; ++c) surface.emissive[c] = surface.emissive[c] * point.emissive_texel[c];
+  return surface;
+}
+
+// Linear RGB towards the eye.
+template <class Real>
+Triple<Real> lit_color(const Material& material, const SurfaceMaterial<Real>& surface, const Lighting& lighting) {
+  if (material.unlit) return surface.reflector.base;
+  const Triple<Real> light = reflected_light(surface.reflector, lighting);
+  return material.emissive == glm::vec3(0.0f) ? light : sum(light, surface.emissive);
+}
