@@ -4,12 +4,14 @@
     cmake --preset coverage && cmake --build --preset coverage --target simd_tests stages_tests pipeline_tests
     tests/coverage.py build/coverage [simd stages pipeline]
 
-runs those tests (all three, or the named ones) and prints a table with the lines that no test reaches. A kernel is
-compiled for several instruction sets; a line or branch of it counts as reached if it is reached with one of them.
-Branches that are taken only for exceptions do not count.
+runs those tests (all three, or the named ones) and prints a table. Clang counts how often each condition of the source
+is true and false. A kernel is compiled for several instruction sets, and a template for several types; a line or branch
+counts as reached if it is reached in one of them. For each branch that no test takes, the table names its line and
+column and which way is open, T or F. Conditions that are known to the compiler do not count.
 """
 import collections
 import json
+import os
 import pathlib
 import subprocess
 import sys
@@ -20,39 +22,38 @@ FOLDERS = ("simd", "stages")
 def main(build, *tests):
     build = pathlib.Path(build).resolve()
     source = build.parent.parent
-    for old in build.rglob("*.gcda"):
-        old.unlink()
-    for folder in tests or ("simd", "stages", "pipeline"):
+    programs = [build / "tests" / f"{folder}_tests" for folder in tests or ("simd", "stages", "pipeline")]
+    profiles = []
+    for program in programs:
+        profiles.append(build / f"{program.name}.profraw")
         # The test left out looks for tests of other programs, which need not be built.
-        subprocess.run([build / "tests" / f"{folder}_tests", "--gtest_brief=1",
-                        "--gtest_filter=-CounterRegistry.NamesTests*"], check=True)
+        subprocess.run([program, "--gtest_brief=1", "--gtest_filter=-CounterRegistry.NamesTests*"], check=True,
+                       stdout=subprocess.DEVNULL, env=dict(os.environ, LLVM_PROFILE_FILE=str(profiles[-1])))
+    merged = build / "tests.profdata"
+    subprocess.run(["llvm-profdata-14", "merge", "-o", merged, *profiles], check=True)
+    objects = [option for program in programs[1:] for option in ("-object", program)]
+    text = subprocess.run(["llvm-cov-14", "export", "-instr-profile", merged, programs[0], *objects], check=True,
+                          capture_output=True, text=True).stdout
 
-    lines = collections.defaultdict(lambda: collections.Counter())
-    branches = collections.defaultdict(lambda: collections.Counter())
-    for notes in sorted(build.rglob("*.gcda")):
-        text = subprocess.run(["gcov", "--json-format", "--stdout", "--branch-probabilities", notes], cwd=build,
-                              check=True, capture_output=True, text=True).stdout
-        for report in text.splitlines():
-            for file in json.loads(report)["files"]:
-                path = (build / file["file"]).resolve()
-                if not path.is_relative_to(source) or path.relative_to(source).parts[0] not in FOLDERS:
-                    continue
-                name = str(path.relative_to(source))
-                for line in file["lines"]:
-                    lines[name][line["line_number"]] += line["count"]
-                    for i, branch in enumerate(line["branches"]):
-                        if not branch["throw"]:
-                            branches[name][line["line_number"], i] += branch["count"]
-
-    print(f"{'file':36} {'lines':>12} {'branches':>12}  not reached")
+    print(f"{'file':40} {'lines':>12} {'branches':>12}  not reached")
     totals = collections.Counter()
-    for name in sorted(lines):
-        hit = sum(count > 0 for count in lines[name].values())
-        taken = sum(count > 0 for count in branches[name].values())
-        totals.update(hit=hit, lines=len(lines[name]), taken=taken, branches=len(branches[name]))
-        missed = " ".join(str(line) for line, count in sorted(lines[name].items()) if count == 0)
-        print(f"{name:36} {hit:5} / {len(lines[name]):4} {taken:5} / {len(branches[name]):4}  {missed}")
-    print(f"{'all':36} {totals['hit']:5} / {totals['lines']:4} {totals['taken']:5} / {totals['branches']:4}")
+    for file in json.loads(text)["data"][0]["files"]:
+        path = pathlib.Path(file["filename"])
+        if not path.is_relative_to(source) or path.relative_to(source).parts[0] not in FOLDERS:
+            continue
+        branches = collections.defaultdict(lambda: [0, 0])
+        for line, column, _, _, true, false, *_ in file["branches"]:
+            branches[line, column][0] += true
+            branches[line, column][1] += false
+        open_ways = [f"{line}:{column}{way}" for (line, column), counts in sorted(branches.items()) if any(counts)
+                     for way, count in zip("TF", counts) if count == 0]
+        never = [f"{line}:{column}" for (line, column), counts in sorted(branches.items()) if not any(counts)]
+        lines = file["summary"]["lines"]
+        ways = 2 * (len(branches) - len(never))
+        totals.update(hit=lines["covered"], lines=lines["count"], taken=ways - len(open_ways), branches=ways)
+        print(f"{path.relative_to(source)!s:40} {lines['covered']:5} / {lines['count']:4} "
+              f"{ways - len(open_ways):5} / {ways:4}  {' '.join(open_ways)}{' never: ' if never else ''}{' '.join(never)}")
+    print(f"{'all':40} {totals['hit']:5} / {totals['lines']:4} {totals['taken']:5} / {totals['branches']:4}")
 
 
 if __name__ == "__main__":

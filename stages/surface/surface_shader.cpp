@@ -447,7 +447,7 @@ std::vector<glm::vec3> SurfaceShader::colors(const std::vector<Invocation>& invo
     if (current >= batches.size() || batches[current].work != work) {
       current = 0;
       while (current < batches.size() && batches[current].work != work) ++current;
-      if (current == batches.size()) batches.push_back({work, triangle, {}, {}});
+      if (current == batches.size()) batches.push_back({work, triangle, {}, {}}), batches.back().inputs.reserve(kMost);
     }
     Batch& batch = batches[current];
     find_inputs(triangle, invocation.place, invocation.width, texels, batch.inputs.emplace_back());

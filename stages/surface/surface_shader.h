@@ -64,8 +64,8 @@ class SurfaceShader {
     return is_flat() || triangles_.surfaces[triangle].material == kFlatSurface;
   }
 
-  // Linear RGB. `width`: as in Invocation. Adds the texels that are read to the open
-  // request of `texels`, unless it is null.
+  // Linear RGB. `width`: as in Invocation. Adds the texels that are read to the open request of `texels`, unless it is
+  // null.
   glm::vec3 color(std::uint32_t triangle, const ShadingPlace& place, float width = 1.0f,
                   TexelRequests* texels = nullptr) const {
     if (is_flat(triangle)) return flat_[triangle];

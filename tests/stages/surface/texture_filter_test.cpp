@@ -161,9 +161,12 @@ TEST(TextureFilter, ProbesLieEvenlyAlongTheLongerSide) {
       const glm::vec2 along(8.0f / 256, 0), across(0, shorter / 256);
       const TextureSlopes slopes = along_x ? TextureSlopes{along, across} : TextureSlopes{across, along};
       std::vector<std::uint32_t> found;
+      std::size_t reads = 0;
       filtered(chain, texture, uv, slopes, [&](std::size_t level, std::uint32_t x, std::uint32_t) {
         if (level == of_level) found.push_back(x);
+        ++reads;
       });
+      EXPECT_EQ(reads, filter_plan(chain, texture, slopes).texels());
       if (!along_x) {
         EXPECT_EQ(found, columns);
       }
@@ -227,6 +230,7 @@ TEST(TextureFilter, WhateverTheCoordinatesTheColorIsFiniteAndWithinTheImages) {
                                                  ASSERT_LT(y, chain.levels[level].height);
                                                });
               ASSERT_TRUE(reads > 0 && reads <= 8);
+              ASSERT_EQ(reads, filter_plan(chain, texture, {{slope, v}, {u, slope}}).texels());
               for (int c = 0; c < 4; ++c) ASSERT_TRUE(found[c] >= 0 && found[c] <= 1.000001f) << u << ", " << v;
             }
 }
