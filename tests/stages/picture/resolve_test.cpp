@@ -2,6 +2,11 @@
 
 #include <gtest/gtest.h>
 
+#include <utility>
+#include <vector>
+
+#include "tests/stages/surface_scene.h"
+
 namespace beampipe {
 namespace {
 
@@ -34,6 +39,32 @@ TEST(Resolve, MeanOfTheSamples) {
   EXPECT_EQ(image[1], glm::vec4(0, 0, 0.5f, 0));
   EXPECT_EQ(counters.items_in, 8u);
   EXPECT_EQ(counters.items_out, 2u);
+}
+
+// A triangle that varies is shaded once in each cell where it has samples, and takes part with that many of them.
+TEST(Resolve, VaryingTrianglesAreShadedInEachCell) {
+  SurfaceTrace trace(2, 1);
+  TextureImage image = filled_image(2, 1, {0, 0, 0, 255});
+  image.texels[1] = {255, 255, 255, 255};
+  Material material = textured_material(trace.add_image(image));
+  material.base_texture->magnify = Filter::nearest;
+  trace.add_rectangle(0, 0, 2, 1, 0.5, material);
+  const ShadedScene scene(trace.trace);
+  const TileShader shader(scene.shader, scene.frame_tile());
+  SampleTile surface(scene.frame_tile(), {CellGrid{}, standard_pattern(8)});
+  surface.triangle.assign(16, 0);
+  surface.triangle[5] = kNoTriangle;
+  std::vector<std::pair<std::uint32_t, std::size_t>> asked;
+  StageCounters counters;
+  const auto pixels = resolve(
+      surface, 2, shader, glm::vec3(0), counters, 2, [&](std::uint32_t triangle, std::size_t cell) -> CellPlace {
+        asked.emplace_back(triangle, cell);
+        return {cell < 3 ? 0.5f : -0.5f, 0.5f, 0.25f};  // the left pixel is black and the right one is white
+      });
+  // Of the left pixel's second cell, one run ends where the background is.
+  EXPECT_EQ(asked, (std::vector<std::pair<std::uint32_t, std::size_t>>{{0, 0}, {0, 1}, {0, 1}, {0, 2}, {0, 3}}));
+  EXPECT_EQ(pixels[0], glm::vec4(0, 0, 0, 7.0f / 8));
+  EXPECT_EQ(pixels[1], glm::vec4(0.5f, 0.5f, 0.5f, 1));
 }
 
 // White, of luminance 1, becomes 1/2, and white of luminance 9 becomes 9/10. Their mean of 0.7 stands for 7/3. The
