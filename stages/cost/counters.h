@@ -13,6 +13,7 @@ struct Count {
   constexpr Count(std::uint64_t = 0) {}
   constexpr operator std::uint64_t() const { return 0; }
   constexpr Count& operator+=(std::uint64_t) { return *this; }
+  constexpr Count& operator-=(std::uint64_t) { return *this; }
   constexpr Count& operator*=(std::uint64_t) { return *this; }
   constexpr Count& operator++() { return *this; }
 };
