@@ -6,6 +6,7 @@
 #include <tbb/task_arena.h>
 
 #include <cstddef>
+#include <optional>
 #include <utility>
 
 namespace beampipe {
@@ -16,7 +17,11 @@ inline int thread_count(int threads) { return threads > 0 ? threads : tbb::info:
 template <class Work>
 auto on_threads(int threads, Work&& work) {
   const int allowed = thread_count(threads);
-  const tbb::global_control control(tbb::global_control::max_allowed_parallelism, static_cast<std::size_t>(allowed));
+  // oneTBB starts more threads than the machine has only if it is told to. It is not told otherwise, because it reads
+  // such a limit without a lock while another thread, such as one that renders another frame, sets it.
+  std::optional<tbb::global_control> limit;
+  if (allowed > tbb::info::default_concurrency())
+    limit.emplace(tbb::global_control::max_allowed_parallelism, static_cast<std::size_t>(allowed));
   tbb::task_arena arena(allowed);
   return arena.execute(std::forward<Work>(work));
 }
