@@ -15,7 +15,8 @@ template <class Real>
 struct SurfaceVertexOf {
   std::array<Real, 3> to_eye{};   // world space, not normalised
   std::array<Real, 3> normal{};   // world space, not normalised
-  std::array<Real, 4> tangent{};  // world space, not normalised; w: sign of the bitangent
+  std::array<Real, 3> tangent{};  // world space, not normalised
+  Real tangent_sign{};            // of the bitangent
   std::array<std::array<Real, 2>, 2> uvs{};
   std::array<Real, 4> color{Real(1.0f), Real(1.0f), Real(1.0f), Real(1.0f)};
 };
@@ -78,7 +79,7 @@ struct SetupSurface {
   bool is_opaque = true;                    // it hides what lies behind it, wherever it covers
   bool turned = false;                      // the viewer sees its back: vertices' normals are turned around
   bool has_own_normal = false;              // the mesh has no normals: FlatAttributes::normal is used
-  glm::vec4 tangent{0.0f};                  // of the triangle, as in SurfaceVertex; where a normal texture needs it
+  glm::vec4 tangent{0.0f};                  // of the triangle, w: sign of the bitangent; where a normal texture needs it
   float anchor_x = 0, anchor_y = 0;         // pixels, frame coordinates
   BarycentricPlanes<float> planes;
 };

@@ -147,7 +147,8 @@ class VertexShader {
     if (!mesh_.normals.empty()) vertex.normal = numbers_of<3>(unit(normal_to_world_ * glm::dvec3(mesh_.normals[i])));
     if (!mesh_.tangents.empty()) {
       const glm::dvec3 tangent = glm::dmat3(to_world_) * glm::dvec3(mesh_.tangents[i]);
-      vertex.tangent = numbers_of<4>(glm::vec4(unit(tangent), mesh_.tangents[i].w * handedness_));
+      vertex.tangent = numbers_of<3>(unit(tangent));
+      vertex.tangent_sign = mesh_.tangents[i].w * handedness_;
     }
     for (std::size_t set = 0; set < 2; ++set)
       if (!mesh_.uvs[set].empty()) vertex.uvs[set] = numbers_of<2>(mesh_.uvs[set][i]);

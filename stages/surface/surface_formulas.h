@@ -7,6 +7,7 @@
 #pragma once
 
 #include <array>
+#include <bit>
 #include <glm/glm.hpp>
 #include <optional>
 
@@ -37,7 +38,19 @@ Real interpolated(const Real& first, const Real& second, const Real& third, cons
   return first + weights.second * (second - first) + weights.third * (third - first);
 }
 
-// How it changes.
+// All attributes.
+template <class Real>
+SurfaceVertexOf<Real> interpolated(const std::array<const SurfaceVertexOf<Real>*, 3>& vertices,
+                                   const Barycentrics<Real>& weights) {
+  using Numbers = std::array<Real, sizeof(SurfaceVertexOf<Real>) / sizeof(Real)>;
+  const auto first = std::bit_cast<Numbers>(*vertices[0]), second = std::bit_cast<Numbers>(*vertices[1]),
+             third = std::bit_cast<Numbers>(*vertices[2]);
+  Numbers result;
+  for (std::size_t i = 0; i < result.size(); ++i) result[i] = interpolated(first[i], second[i], third[i], weights);
+  return std::bit_cast<SurfaceVertexOf<Real>>(result);
+}
+
+// How an attribute changes.
 template <class Real>
 Real interpolated_slope(const Real& first, const Real& second, const Real& third, const Barycentrics<Real>& slopes) {
   return slopes.second * (second - first) + slopes.third * (third - first);
@@ -57,24 +70,13 @@ struct TexturePlace {
 
 enum class TextureRole { base, metallic_roughness, normal, emissive };
 
-// A point of a triangle.
+// What a triangle has in addition to its vertices.
 template <class Real>
-struct SurfacePoint {
-  std::array<const SurfaceVertexOf<Real>*, 3> vertices;
-  Barycentrics<Real> weights;
-  Triple<Real> own_normal;  // of the triangle, towards the viewer
+struct TriangleInputs {
+  Triple<Real> own_normal;  // towards the viewer
   Real facing;              // -1: the viewer sees the back, else 1
-  Triple<Real> tangent;     // of the triangle, unless its vertices have tangents
+  Triple<Real> tangent;     // unless its vertices have tangents
   Real tangent_sign;        // of the bitangent
-
-  template <std::size_t Size>
-  Triple<Real> vector(std::array<Real, Size> SurfaceVertexOf<Real>::*attribute) const {
-    Triple<Real> result;
-    for (std::size_t axis = 0; axis < 3; ++axis)
-      result[axis] = interpolated((vertices[0]->*attribute)[axis], (vertices[1]->*attribute)[axis],
-                                  (vertices[2]->*attribute)[axis], weights);
-    return result;
-  }
 };
 
 // What the surface is made of at a point.
@@ -92,7 +94,7 @@ struct PointInputs {
   Triple<Real> to_eye;        // not normalised
   Triple<Real> normal;        // not normalised, unless it is the triangle's own
   Triple<Real> tangent;       // not normalised
-  Real facing, tangent_sign;  // as in SurfacePoint
+  Real facing, tangent_sign;  // as in TriangleInputs
   std::array<Real, 4> color;  // of the vertices
   // Filtered, linear RGBA. Of normals, A is 1 if the texel is a mean of several, else 0.
   std::array<Real, 4> base_texel, metallic_roughness_texel, normal_texel, emissive_texel;
@@ -111,31 +113,36 @@ void lambert(const Real kd[3], const Real normal[3], const Real light[3], Real c
   for (int c = 0; c < 3; ++c) color[c] = kd[c] * cosine;
 }
 
-// The first part of the fragment shader. place(uv set) gives the texture place; fetch(texture role, place) gives the
-// filtered texel, as in PointInputs. Sets what the material needs.
-template <class Real, class Place, class Fetch>
-void inputs_at(const ShaderInputs& shader, const SurfacePoint<Real>& point, Place&& place, Fetch&& fetch,
-               PointInputs<Real>& found) {
-  const Material& material = shader.material;
-  const auto read = [&](TextureRole role, const std::optional<Texture>& texture, std::array<Real, 4>& texel) {
-    if (texture) texel = fetch(role, place(texture->uv_set));
+// Calls visit(role, texture, texel) for each texture that the material's shader reads; `texel` points to the member of
+// PointInputs that its texel belongs to.
+template <class Real, class Visit>
+void for_each_texture(const Material& material, Visit&& visit) {
+  const auto visit_one = [&](TextureRole role, const std::optional<Texture>& texture,
+                             std::array<Real, 4> PointInputs<Real>::*texel) {
+    if (texture) visit(role, *texture, texel);
   };
-  read(TextureRole::base, material.base_texture, found.base_texel);
-  if (shader.has_vertex_colors)
-    for (std::size_t c = 0; c < 4; ++c)
-      found.color[c] = interpolated(point.vertices[0]->color[c], point.vertices[1]->color[c],
-                                    point.vertices[2]->color[c], point.weights);
+  visit_one(TextureRole::base, material.base_texture, &PointInputs<Real>::base_texel);
   if (material.unlit) return;
-  found.to_eye = point.vector(&SurfaceVertexOf<Real>::to_eye);
-  found.normal = shader.has_own_normal ? point.own_normal : point.vector(&SurfaceVertexOf<Real>::normal);
-  found.facing = point.facing;
-  read(TextureRole::metallic_roughness, material.metallic_roughness_texture, found.metallic_roughness_texel);
-  if (material.normal_texture) {
-    read(TextureRole::normal, material.normal_texture, found.normal_texel);
-    found.tangent = shader.has_tangents ? point.vector(&SurfaceVertexOf<Real>::tangent) : point.tangent;
-    found.tangent_sign = point.tangent_sign;
-  }
-  read(TextureRole::emissive, material.emissive_texture, found.emissive_texel);
+  visit_one(TextureRole::metallic_roughness, material.metallic_roughness_texture,
+            &PointInputs<Real>::metallic_roughness_texel);
+  visit_one(TextureRole::normal, material.normal_texture, &PointInputs<Real>::normal_texel);
+  visit_one(TextureRole::emissive, material.emissive_texture, &PointInputs<Real>::emissive_texel);
+}
+
+// Sets what the material needs of the triangle and its vertices. attribute(member) gives that member of
+// SurfaceVertexOf, interpolated.
+template <class Real, class Attribute>
+void set_attributes(const ShaderInputs& shader, const TriangleInputs<Real>& triangle, Attribute&& attribute,
+                    PointInputs<Real>& found) {
+  using Vertex = SurfaceVertexOf<Real>;
+  if (shader.has_vertex_colors) found.color = attribute(&Vertex::color);
+  if (shader.material.unlit) return;
+  found.to_eye = attribute(&Vertex::to_eye);
+  found.normal = shader.has_own_normal ? triangle.own_normal : attribute(&Vertex::normal);
+  found.facing = triangle.facing;
+  if (!shader.material.normal_texture) return;
+  found.tangent = shader.has_tangents ? attribute(&Vertex::tangent) : triangle.tangent;
+  found.tangent_sign = triangle.tangent_sign;
 }
 
 // Alpha alone, as in SurfaceMaterial. place and fetch: as above; `vertex_alphas`: of the vertices' colours.

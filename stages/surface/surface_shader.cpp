@@ -44,19 +44,6 @@ Barycentrics<float> clamped(const Barycentrics<float>& weights) {
   return {second, std::clamp(weights.third, 0.0f, 1.0f - second)};
 }
 
-const Texture& texture_of(const Material& material, TextureRole role) {
-  switch (role) {
-    case TextureRole::base:
-      return *material.base_texture;
-    case TextureRole::metallic_roughness:
-      return *material.metallic_roughness_texture;
-    case TextureRole::normal:
-      return *material.normal_texture;
-    default:
-      return *material.emissive_texture;
-  }
-}
-
 ColorSpace space_of(TextureRole role) {
   return role == TextureRole::base || role == TextureRole::emissive ? ColorSpace::srgb : ColorSpace::linear;
 }
@@ -114,7 +101,7 @@ OperationCounts material_cost(const ShaderInputs& shader, Derivatives derivative
     using Real = Counted<float>;
     const Real one(1.0f, counts);
     const Triple<Real> vector{one, one, one};
-    SurfaceVertexOf<Real> vertex{vector, vector, {one, one, one, one}, {}, {one, one, one, one}};
+    SurfaceVertexOf<Real> vertex{vector, vector, vector, one, {}, {one, one, one, one}};
     for (auto& uv : vertex.uvs) uv = {one, one};
     const ScreenPlane<Real> plane{one, one, one};
     const BarycentricPlanes<Real> planes{plane, plane, plane};
@@ -122,15 +109,19 @@ OperationCounts material_cost(const ShaderInputs& shader, Derivatives derivative
     std::array<std::optional<TexturePlace<Real>>, 2> places;
     const auto place = [&](std::uint32_t set) {
       if (!places[set]) places[set] = counted_place(vertex, set, planes, weights, derivatives);
-      return *places[set];
     };
-    const auto fetch = [&](TextureRole, const TexturePlace<Real>&) -> std::array<Real, 4> {
-      ++counts.fetch;
-      return {one, one, one, one};
+    const auto attribute = [&](auto member) {
+      auto result = vertex.*member;
+      for (Real& number : result) number = interpolated(number, number, number, weights);
+      return result;
     };
-    const SurfacePoint<Real> point{{&vertex, &vertex, &vertex}, weights, vector, one, vector, one};
     PointInputs<Real> inputs;
-    inputs_at(shader, point, place, fetch, inputs);
+    for_each_texture<Real>(shader.material, [&](TextureRole, const Texture& texture, auto texel) {
+      place(texture.uv_set);
+      ++counts.fetch;
+      inputs.*texel = {one, one, one, one};
+    });
+    set_attributes(shader, TriangleInputs<Real>{vector, one, vector, one}, attribute, inputs);
     material_of(shader, inputs);
   });
 }
@@ -335,22 +326,29 @@ SurfaceShader::CutoutPart SurfaceShader::cutout_part(std::uint32_t triangle, con
   return {tested->share(shares, cutoff / alpha), true};
 }
 
-void SurfaceShader::find_inputs(std::uint32_t triangle, const ShadingPlace& place, float width, TexelRequests* texels,
-                                PointInputs<float>& inputs, bool only_texels) const {
-  const SetupSurface& surface = triangles_.surfaces[triangle];
-  const ShaderInputs shader = inputs_of(triangle);
+void SurfaceShader::set_point(const Invocation& invocation, const ShaderInputs& shader, PointInputs<float>* inputs,
+                              const std::array<TexturePoint*, 2>& texture_points) const {
+  const SetupSurface& surface = triangles_.surfaces[invocation.triangle];
   std::array<const SurfaceVertex*, 3> v;
   for (std::size_t k = 0; k < 3; ++k) v[k] = &triangles_.vertices[surface.vertices[k]];
 
   const bool by_pixel = rules_.colors == SurfaceColors::by_pixel;
-  if (by_pixel) width = 1.0f;
+  const ShadingPlace& place = invocation.place;
+  const float width = by_pixel ? 1.0f : invocation.width;
   const auto from_anchor = [&](float px, float py) { return std::array{px - surface.anchor_x, py - surface.anchor_y}; };
-  const auto left = static_cast<float>(place.x), top = static_cast<float>(place.y);
-  const std::array<float, 2> place_at =
-      from_anchor(left + (by_pixel ? 0.5f : place.u), top + (by_pixel ? 0.5f : place.v));
-  const float x = place_at[0], y = place_at[1];
+  const auto [x, y] = from_anchor(static_cast<float>(place.x) + (by_pixel ? 0.5f : place.u),
+                                  static_cast<float>(place.y) + (by_pixel ? 0.5f : place.v));
   Barycentrics<float> weights = weights_at(surface.planes, x, y);
   if (by_pixel) weights = clamped(weights);
+
+  if (inputs) {
+    const SurfaceVertex attributes = interpolated(v, weights);
+    const TriangleInputs<float> triangle{triple<float>(triangles_.attributes[invocation.triangle].normal),
+                                         surface.turned ? -1.0f : 1.0f, triple<float>(glm::vec3(surface.tangent)),
+                                         shader.has_tangents ? v[0]->tangent_sign : surface.tangent.w};
+    const auto attribute = [&](auto member) { return attributes.*member; };
+    set_attributes(shader, triangle, attribute, *inputs);
+  }
 
   // Slopes from the centre of a pixel to the centre of the next one in its quad.
   const auto place_in_quad = [&](std::uint32_t set) {
@@ -366,42 +364,54 @@ void SurfaceShader::find_inputs(std::uint32_t triangle, const ShadingPlace& plac
     for (std::size_t c = 0; c < 2; ++c) found.dx[c] = to_x[c] - from_x[c], found.dy[c] = to_y[c] - from_y[c];
     return found;
   };
-  std::array<std::optional<TexturePlace<float>>, 2> places;
-  const auto texture_place = [&](std::uint32_t set) -> const TexturePlace<float>& {
-    if (!places[set])
-      places[set] = rules_.derivatives == Derivatives::quad && !by_pixel
-                        ? place_in_quad(set)
-                        : place_on_triangle<float>({v[0]->uvs[set], v[1]->uvs[set], v[2]->uvs[set]}, surface.planes, x,
-                                                   y, weights);
-    return *places[set];
-  };
+  for (std::uint32_t set = 0; set < 2; ++set) {
+    if (!texture_points[set]) continue;
+    const TexturePlace<float> at =
+        rules_.derivatives == Derivatives::quad && !by_pixel
+            ? place_in_quad(set)
+            : place_on_triangle<float>({v[0]->uvs[set], v[1]->uvs[set], v[2]->uvs[set]}, surface.planes, x, y, weights);
+    *texture_points[set] = {vector_of(at.uv), vector_of(at.dx) * width, vector_of(at.dy) * width};
+  }
+}
+
+void SurfaceShader::find_inputs(std::span<const Invocation> invocations, TexelRequests* texels,
+                                PointInputs<float>* inputs) const {
+  const ShaderInputs shader = inputs_of(invocations[0].triangle);
+  std::array<std::array<TexturePoint, kMostInvocations>, 2> points;  // by uv set
+  std::array<bool, 2> reads_set{};
+  for_each_texture<float>(shader.material,
+                          [&](TextureRole, const Texture& texture, auto) { reads_set[texture.uv_set] = true; });
+  for (std::size_t i = 0; i < invocations.size(); ++i)
+    set_point(invocations[i], shader, inputs ? &inputs[i] : nullptr,
+              {reads_set[0] ? &points[0][i] : nullptr, reads_set[1] ? &points[1][i] : nullptr});
   const bool is_kept = texels && texels->are_kept();
-  const auto fetch = [&](TextureRole role, const TexturePlace<float>& at) -> std::array<float, 4> {
-    const Texture& texture = texture_of(shader.material, role);
+  for_each_texture<float>(shader.material, [&](TextureRole role, const Texture& texture, auto texel) {
     const ColorSpace space = space_of(role);
-    const TextureSlopes slopes{vector_of(at.dx) * width, vector_of(at.dy) * width};
     const MipChain& chain = textures_->chain(texture.image, space);
-    const FilterPlan plan = filter_plan(chain, texture, slopes);
-    if (texels && !is_kept) texels->count(plan.texels());
-    if (only_texels && !is_kept) return {};
-    const glm::vec4 texel =
-        filtered(chain, texture, vector_of(at.uv), plan, noting(is_kept ? texels : nullptr, texture.image, space));
-    if (role != TextureRole::normal) return {texel.r, texel.g, texel.b, texel.a};
-    return {texel.r, texel.g, texel.b, plan.is_minified ? 1.0f : 0.0f};
-  };
-  const SurfacePoint<float> point{v,
-                                  weights,
-                                  triple<float>(triangles_.attributes[triangle].normal),
-                                  surface.turned ? -1.0f : 1.0f,
-                                  triple<float>(glm::vec3(surface.tangent)),
-                                  shader.has_tangents ? v[0]->tangent[3] : surface.tangent.w};
-  inputs_at(shader, point, texture_place, fetch, inputs);
+    const auto& at = points[texture.uv_set];
+    std::array<float, kMostInvocations> lods;
+    for (std::size_t i = 0; i < invocations.size(); ++i)
+      lods[i] = squared_footprint({at[i].dx, at[i].dy}, chain.levels[0]);
+    for (std::size_t i = 0; i < invocations.size(); ++i) lods[i] = level_of_detail(lods[i]);
+    for (std::size_t i = 0; i < invocations.size(); ++i) {
+      const FilterPlan plan = filter_plan(chain, texture, {at[i].dx, at[i].dy}, lods[i]);
+      if (texels && !is_kept) texels->count(plan.texels());
+      if (!inputs && !is_kept) continue;
+      const glm::vec4 value =
+          is_kept ? filtered(chain, texture, at[i].uv, plan, noting(texels, texture.image, space))
+                  : filtered(chain, texture, at[i].uv, plan, [](std::size_t, std::uint32_t, std::uint32_t) {});
+      if (!inputs) continue;
+      const float last = role != TextureRole::normal ? value.a : plan.is_minified ? 1.0f : 0.0f;
+      inputs[i].*texel = {value.r, value.g, value.b, last};
+    }
+  });
 }
 
 glm::vec4 SurfaceShader::shaded(std::uint32_t triangle, const ShadingPlace& place, float width,
                                 TexelRequests* texels) const {
+  const Invocation invocation{triangle, place, width};
   PointInputs<float> inputs;
-  find_inputs(triangle, place, width, texels, inputs);
+  find_inputs({&invocation, 1}, texels, &inputs);
   SurfaceMaterial<float> found = material_of(inputs_of(triangle), inputs);
   const Material& material = this->material(triangle);
   const bool by_pixel = rules_.colors == SurfaceColors::by_pixel;
@@ -414,31 +424,35 @@ glm::vec4 SurfaceShader::shaded(std::uint32_t triangle, const ShadingPlace& plac
 }
 
 std::vector<glm::vec3> SurfaceShader::colors(const std::vector<Invocation>& invocations, TexelRequests* texels) const {
-  // Invocations of one shader, of which so many wait that lanes are full and inputs stay in the nearest cache.
+  // Invocations of one shader, which wait until there are enough of them.
   struct Batch {
-    std::size_t work;        // index into works_
-    std::uint32_t triangle;  // of one of them
-    std::vector<PointInputs<float>> inputs;
+    std::size_t work;  // index into works_
+    std::vector<Invocation> invocations;
     std::vector<std::size_t> places;  // of their colours
   };
-  constexpr std::size_t kMost = 64;
-  std::vector<glm::vec3> colors(invocations.size()), lit(kMost);
+  std::vector<glm::vec3> colors(invocations.size());
+  std::array<PointInputs<float>, kMostInvocations> inputs;
+  std::array<glm::vec3, kMostInvocations> lit;
   const auto finish = [&](Batch& batch) {
-    lit_colors(inputs_of(batch.triangle), frame_.lighting, batch.inputs.data(), batch.inputs.size(), lit.data());
+    if (batch.invocations.empty()) return;
+    find_inputs(batch.invocations, texels, inputs.data());
+    lit_colors(inputs_of(batch.invocations[0].triangle), frame_.lighting, inputs.data(), batch.places.size(),
+               lit.data());
     for (std::size_t i = 0; i < batch.places.size(); ++i) {
       glm::vec3& color = colors[batch.places[i]];
       color = lit[i];
       if (rules_.rounds_to_half) round_to_half(color);
     }
-    batch.inputs.clear();
+    batch.invocations.clear();
     batch.places.clear();
   };
+  const bool is_kept = texels && texels->are_kept();  // requests are kept in order
   std::vector<Batch> batches;
   std::size_t current = 0;  // most invocations have the shader of the one before
   for (std::size_t i = 0; i < invocations.size(); ++i) {
     const Invocation& invocation = invocations[i];
     const std::uint32_t triangle = invocation.triangle;
-    if (is_flat(triangle) || is_stored(material(triangle))) {
+    if (is_kept || is_flat(triangle) || is_stored(material(triangle))) {
       colors[i] = color(triangle, invocation.place, invocation.width, texels);
       end_request(texels);
       continue;
@@ -447,13 +461,12 @@ std::vector<glm::vec3> SurfaceShader::colors(const std::vector<Invocation>& invo
     if (current >= batches.size() || batches[current].work != work) {
       current = 0;
       while (current < batches.size() && batches[current].work != work) ++current;
-      if (current == batches.size()) batches.push_back({work, triangle, {}, {}}), batches.back().inputs.reserve(kMost);
+      if (current == batches.size()) batches.push_back({work, {}, {}});
     }
     Batch& batch = batches[current];
-    find_inputs(triangle, invocation.place, invocation.width, texels, batch.inputs.emplace_back());
-    end_request(texels);
+    batch.invocations.push_back(invocation);
     batch.places.push_back(i);
-    if (batch.places.size() == kMost) finish(batch);
+    if (batch.places.size() == kMostInvocations) finish(batch);
   }
   for (Batch& batch : batches) finish(batch);
   return colors;
@@ -461,8 +474,9 @@ std::vector<glm::vec3> SurfaceShader::colors(const std::vector<Invocation>& invo
 
 void SurfaceShader::add_texels(std::uint32_t triangle, const ShadingPlace& place, float width,
                                TexelRequests& texels) const {
-  PointInputs<float> ignored;
-  if (!is_flat(triangle)) find_inputs(triangle, place, width, &texels, ignored, true);
+  if (is_flat(triangle)) return;
+  const Invocation invocation{triangle, place, width};
+  find_inputs({&invocation, 1}, &texels, nullptr);
 }
 
 }  // namespace beampipe

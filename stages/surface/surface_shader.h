@@ -4,6 +4,7 @@
 
 #include <cstdint>
 #include <glm/glm.hpp>
+#include <span>
 #include <utility>
 #include <vector>
 
@@ -133,11 +134,21 @@ class SurfaceShader {
   }
 
  private:
+  // Where an invocation reads a texture, and how that changes over the area that its colour stands for. Not set at
+  // first.
+  struct TexturePoint {
+    glm::vec2 uv, dx, dy;
+  };
+
   glm::vec4 shaded(std::uint32_t triangle, const ShadingPlace& place, float width, TexelRequests* texels) const;
 
-  // What the shader knows of a point, and the texels that it reads. `only_texels`: nobody wants to know their values.
-  void find_inputs(std::uint32_t triangle, const ShadingPlace& place, float width, TexelRequests* texels,
-                   PointInputs<float>& inputs, bool only_texels = false) const;
+  // Sets what the shader knows of a point without its textures, and where it reads them, by set of texture coordinates.
+  // Null: nobody wants to know.
+  void set_point(const Invocation& invocation, const ShaderInputs& shader, PointInputs<float>* inputs,
+                 const std::array<TexturePoint*, 2>& texture_points) const;
+  // The same for several points, with textures. `invocations`: of one shader, at least one and at most
+  // kMostInvocations; a single one if texel requests are kept. `inputs`: one each, or null: only texels are noted.
+  void find_inputs(std::span<const Invocation> invocations, TexelRequests* texels, PointInputs<float>* inputs) const;
   // Alpha, where texture_alpha(texture, uv, slopes) says that of the texture.
   template <class TextureAlpha>
   float alpha_there(std::uint32_t triangle, const ShadingPlace& place, float width, TextureAlpha&& texture_alpha) const;
@@ -151,6 +162,9 @@ class SurfaceShader {
     return trace_.materials[triangles_.surfaces[triangle].material];
   }
   const Work& material_work(std::uint32_t triangle) const;
+
+  // So many that lanes are full, and so few that all about them stays in the nearest cache.
+  static constexpr std::size_t kMostInvocations = 64;
 
   const SetupTriangles& triangles_;
   const Trace& trace_;

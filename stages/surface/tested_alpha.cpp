@@ -19,8 +19,8 @@ Neighbors neighbors_of(const TextureImage& image, const Texture& texture, std::u
   Neighbors found;
   for (int j = 0; j < 3; ++j)
     for (int i = 0; i < 3; ++i) {
-      const std::uint32_t column = wrapped(std::int64_t{x} + i - 1, image.width, texture.wrap_u);
-      const std::uint32_t row = wrapped(std::int64_t{y} + j - 1, image.height, texture.wrap_v);
+      const std::uint32_t column = wrapped(static_cast<std::int32_t>(x) + i - 1, image.width, texture.wrap_u);
+      const std::uint32_t row = wrapped(static_cast<std::int32_t>(y) + j - 1, image.height, texture.wrap_v);
       found[static_cast<std::size_t>(j)][static_cast<std::size_t>(i)] =
           image.texels[std::size_t{row} * image.width + column].a;
     }

@@ -29,15 +29,23 @@ inline float logarithm_2(float x) {
   return exponent + 2.885390082f * s * series;  // 2 / ln 2
 }
 
-// The level of detail: the logarithm of the longer side of a pixel's footprint, in texels of level 0.
-// Source: OpenGL 4.6 core specification, section 8.14.
-inline float level_of_detail(const TextureSlopes& slopes, const MipLevel& image) {
+// The square of the longer side of a pixel's footprint, in texels of the image. It may be any number, and NaN.
+inline float squared_footprint(const TextureSlopes& slopes, const MipLevel& image) {
   const glm::vec2 size(image.width, image.height);
   const glm::vec2 dx = slopes.dx * size, dy = slopes.dy * size;
-  const float squared = std::max(dx.x * dx.x + dx.y * dx.y, dy.x * dy.x + dy.y * dy.y);
+  return std::max(dx.x * dx.x + dx.y * dx.y, dy.x * dy.x + dy.y * dy.y);
+}
+
+// The level of detail: the logarithm of that side; always finite. There are no branches, so that the compiler can
+// compute several at once. Source: OpenGL 4.6 core specification, section 8.14.
+inline float level_of_detail(float squared_footprint) {
   constexpr float kLeast = 1e-30f, kMost = 1e30f;
-  if (!(squared > kLeast)) return -50.0f;
-  return 0.5f * logarithm_2(std::min(squared, kMost));
+  const float lod = 0.5f * logarithm_2(squared_footprint < kMost ? squared_footprint : kMost);
+  return squared_footprint > kLeast ? lod : -50.0f;
+}
+
+inline float level_of_detail(const TextureSlopes& slopes, const MipLevel& image) {
+  return level_of_detail(squared_footprint(slopes, image));
 }
 
 // The largest whole number that is not above x, which is less than 2^31 away from 0. std::floor is a function call on
@@ -47,14 +55,14 @@ inline std::int32_t floor_of(float x) {
   return whole - (static_cast<float>(whole) > x);
 }
 
-// The number of a texel, which may lie outside of the image, as a number within it. Most lie within it or in the next
-// period, so there is no division.
-inline std::uint32_t wrapped(std::int64_t texel, std::uint32_t size, Wrap wrap) {
-  const std::int64_t n = size;
-  if (wrap == Wrap::clamp) return static_cast<std::uint32_t>(std::clamp<std::int64_t>(texel, 0, n - 1));
-  const std::int64_t period = wrap == Wrap::repeat ? n : 2 * n;
-  while (texel < 0) texel += period;
-  while (texel >= period) texel -= period;
+// The number of a texel as a number within the image. It lies between -1 and 2 * size, as in_texels() sees to, or
+// anywhere with Wrap::clamp. There is no division.
+inline std::uint32_t wrapped(std::int32_t texel, std::uint32_t size, Wrap wrap) {
+  const auto n = static_cast<std::int32_t>(size);
+  if (wrap == Wrap::clamp) return static_cast<std::uint32_t>(std::clamp(texel, 0, n - 1));
+  const std::int32_t period = wrap == Wrap::repeat ? n : 2 * n;
+  texel += texel < 0 ? period : 0;
+  for (int i = 0; i < 2; ++i) texel -= texel >= period ? period : 0;
   return static_cast<std::uint32_t>(texel < n ? texel : 2 * n - 1 - texel);
 }
 
@@ -75,8 +83,7 @@ struct TexelPair {
 };
 inline TexelPair texels_around(float place, std::uint32_t size, Wrap wrap) {
   const std::int32_t first = floor_of(place - 0.5f);
-  return {wrapped(first, size, wrap), wrapped(std::int64_t{first} + 1, size, wrap),
-          place - 0.5f - static_cast<float>(first)};
+  return {wrapped(first, size, wrap), wrapped(first + 1, size, wrap), place - 0.5f - static_cast<float>(first)};
 }
 
 // Calls read(level, x, y) with each texel that is read. Inlined, because a vector that comes back from a call in parts
@@ -128,9 +135,9 @@ struct FilterPlan {
 // Anisotropic filtering takes several probes, evenly along the longer side of the footprint, in the level that fits the
 // shorter side, or the longer side divided by the number of probes.
 // Source: Khronos, EXT_texture_filter_anisotropic, "sample implementation".
-inline FilterPlan filter_plan(const MipChain& chain, const Texture& texture, const TextureSlopes& slopes) {
+// `lod`: the level of detail of these slopes in the image.
+inline FilterPlan filter_plan(const MipChain& chain, const Texture& texture, const TextureSlopes& slopes, float lod) {
   FilterPlan plan{.filter = texture.magnify};
-  float lod = level_of_detail(slopes, chain.levels[0]);
   if (lod <= 0) return plan;
   plan.is_minified = true, plan.filter = texture.minify;
   if (texture.mip == MipFilter::none) return plan;
@@ -157,6 +164,9 @@ inline FilterPlan filter_plan(const MipChain& chain, const Texture& texture, con
   plan.has_next = plan.level + 1 < chain.levels.size();
   plan.share = lod - static_cast<float>(plan.level);
   return plan;
+}
+inline FilterPlan filter_plan(const MipChain& chain, const Texture& texture, const TextureSlopes& slopes) {
+  return filter_plan(chain, texture, slopes, level_of_detail(slopes, chain.levels[0]));
 }
 
 // Linear RGBA. Calls read(level, x, y) with each texel that is read.

@@ -3,6 +3,8 @@
 
 #include <gtest/gtest.h>
 
+#include <array>
+#include <bit>
 #include <cmath>
 #include <numbers>
 
@@ -194,19 +196,35 @@ TEST(SurfaceFormulas, TangentsAreMadePerpendicular) {
   material.normal_texture = Texture{};
   SurfaceVertex vertex;
   vertex.to_eye = vertex.normal = {0, 0, 1};
-  vertex.tangent = {2, 0, 1, 1};
-  const SurfacePoint<float> point{{&vertex, &vertex, &vertex}, {}, {0, 0, 1}, 1, {}, 1};
-  const auto place = [](std::uint32_t) { return TexturePlace<float>{}; };
+  vertex.tangent = {2, 0, 1};
+  const ShaderInputs shader{material, false, false, true};
+  PointInputs<float> inputs;
+  set_attributes(
+      shader, TriangleInputs<float>{{0, 0, 1}, 1, {}, 1}, [&](auto member) { return vertex.*member; }, inputs);
   const auto normal_of = [&](const std::array<float, 4>& texel) {
-    const auto fetch = [&](TextureRole, const TexturePlace<float>&) { return texel; };
-    const ShaderInputs shader{material, false, false, true};
-    PointInputs<float> inputs;
-    inputs_at(shader, point, place, fetch, inputs);
+    inputs.normal_texel = texel;
     const Triple<float> normal = material_of(shader, inputs).reflector.normal;
     return glm::vec3(normal[0], normal[1], normal[2]);
   };
   EXPECT_LT(glm::length(normal_of({1, 0.5f, 0.5f, 0}) - glm::vec3(1, 0, 0)), 1e-6f);
   EXPECT_LT(glm::length(normal_of({0.5f, 1, 0.5f, 0}) - glm::vec3(0, 1, 0)), 1e-6f);
+}
+
+// All attributes at once, number by number as one is.
+TEST(SurfaceFormulas, AttributesAreInterpolatedTogether) {
+  Random random(5);
+  constexpr std::size_t kNumbers = sizeof(SurfaceVertex) / sizeof(float);
+  std::array<std::array<float, kNumbers>, 3> numbers;
+  std::array<SurfaceVertex, 3> vertices;
+  for (std::size_t k = 0; k < 3; ++k) {
+    for (float& number : numbers[k]) number = random.real32(-10, 10);
+    vertices[k] = std::bit_cast<SurfaceVertex>(numbers[k]);
+  }
+  const Barycentrics<float> weights{random.real32(-1, 2), random.real32(-1, 2)};
+  const SurfaceVertex found = interpolated<float>({&vertices[0], &vertices[1], &vertices[2]}, weights);
+  const auto found_numbers = std::bit_cast<std::array<float, kNumbers>>(found);
+  for (std::size_t i = 0; i < kNumbers; ++i)
+    EXPECT_EQ(found_numbers[i], interpolated(numbers[0][i], numbers[1][i], numbers[2][i], weights)) << i;
 }
 
 TEST(SurfaceFormulas, UnlitAndEmissive) {

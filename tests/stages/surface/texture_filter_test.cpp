@@ -65,16 +65,18 @@ TEST(TextureFilter, TheLevelOfDetailIsTheLogarithmOfTheLongerSide) {
 }
 
 TEST(TextureFilter, WrapModesAreEnumerated) {
-  const auto line = [](std::uint32_t size, Wrap wrap) {
+  const auto line = [](std::int32_t size, Wrap wrap) {
     std::vector<std::uint32_t> texels;
-    for (std::int64_t i = -7; i <= 7; ++i) texels.push_back(wrapped(i, size, wrap));
+    for (std::int32_t i = -1; i <= 2 * size; ++i) texels.push_back(wrapped(i, static_cast<std::uint32_t>(size), wrap));
     return texels;
   };
   using Texels = std::vector<std::uint32_t>;
-  EXPECT_EQ(line(3, Wrap::repeat), (Texels{2, 0, 1, 2, 0, 1, 2, 0, 1, 2, 0, 1, 2, 0, 1}));
-  EXPECT_EQ(line(3, Wrap::clamp), (Texels{0, 0, 0, 0, 0, 0, 0, 0, 1, 2, 2, 2, 2, 2, 2}));
-  EXPECT_EQ(line(3, Wrap::mirror), (Texels{0, 0, 1, 2, 2, 1, 0, 0, 1, 2, 2, 1, 0, 0, 1}));
-  for (const Wrap wrap : {Wrap::repeat, Wrap::clamp, Wrap::mirror}) EXPECT_EQ(line(1, wrap), Texels(15, 0));
+  EXPECT_EQ(line(3, Wrap::repeat), (Texels{2, 0, 1, 2, 0, 1, 2, 0}));
+  EXPECT_EQ(line(3, Wrap::clamp), (Texels{0, 0, 1, 2, 2, 2, 2, 2}));
+  EXPECT_EQ(line(3, Wrap::mirror), (Texels{0, 0, 1, 2, 2, 1, 0, 0}));
+  for (const Wrap wrap : {Wrap::repeat, Wrap::clamp, Wrap::mirror}) EXPECT_EQ(line(1, wrap), Texels(4, 0));
+  EXPECT_EQ(wrapped(-7, 3, Wrap::clamp), 0u);
+  EXPECT_EQ(wrapped(9, 3, Wrap::clamp), 2u);
 }
 
 // The texel that a coordinate in texels falls on, in double precision.
