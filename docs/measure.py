@@ -5,6 +5,7 @@ import lzma
 import pathlib
 import shutil
 import subprocess
+import sys
 import tempfile
 
 PROCEDURAL = ["hairball", "classroom", "boat", "pickets", "terrain", "sphere", "fence", "soup", "foliage"]
@@ -34,9 +35,14 @@ def unpacked(model):
 
 
 def results(program, command, trace, specs, folder, *options):
-    """Returns the results of `run` or `compare` by technique; the pictures stay in the folder."""
-    subprocess.run([program, command, trace, "-t", *specs, *options, "-o", folder], check=True,
-                   stdout=subprocess.DEVNULL)
+    """Returns the results of `run` or `compare` by technique; the pictures stay in the folder, in place of earlier ones.
+
+    Exits if the program fails, which says why.
+    """
+    finished = subprocess.run([program, command, trace, "-t", *specs, *options, "--force", "-o", folder],
+                              stdout=subprocess.DEVNULL)
+    if finished.returncode:
+        sys.exit(finished.returncode)
     with open(f"{folder}/report.json", encoding="utf-8") as file:
         return {result["technique"]: result for result in json.load(file)["results"]}
 

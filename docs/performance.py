@@ -162,13 +162,14 @@ def name_of(trace):
 # ---- Growth ----
 
 GROWTH = {
-    "triangles": [("sphere", ["--triangles", str(n), "--width", "1280", "--height", "720"], n)
-                  for n in (1000, 10_000, 100_000, 1_000_000)],
+    "triangles": [("sphere", ["--triangles", str(n), "--width", "1280", "--height", "720", "--binary"], n)
+                  for n in (1000, 10_000, 100_000, 1_000_000, 10_000_000)],
     "pixels": [("hairball", ["--triangles", "100000", "--width", str(16 * h // 9), "--height", str(h)], 16 * h * h // 9)
-               for h in (180, 360, 720, 1440, 2160)],
-    "layers per pixel": [("stack", ["--triangles", str(n), "--width", "64", "--height", "36"], n)
-                            for n in (1, 10, 100, 1000, 10_000)],
+               for h in (180, 360, 720, 1440, 2160, 4320)],
+    "opaque layers per pixel": [("stack", ["--triangles", str(n), "--width", "64", "--height", "36"], n)
+                                for n in (1, 10, 100, 1000, 10_000)],
 }
+GROWTH["translucent layers per pixel"] = GROWTH["opaque layers per pixel"]
 GROWING = ["beam", "beam:order=stream", "msaa:8", "msaa:32"]
 
 
@@ -182,6 +183,19 @@ def peak_memory(program, trace, spec, folder):
     return int(answer.stdout)
 
 
+def make_translucent(copy):
+    """Gives all triangles one material that hides a thousandth of what is behind it."""
+    copy["beampipe_trace"] = 2
+    copy["materials"] = {"film": {"base_color": [0.5, 0.4, 0.3, 0.001], "alpha_mode": "blend", "double_sided": True,
+                                  "unlit": True}}
+    for mesh in copy["meshes"].values():
+        mesh["materials"] = ["film"]
+    for frame in copy["frames"]:
+        del frame["light"]
+        for draw in frame["draws"]:
+            del draw["shading"]
+
+
 def print_growth(arguments):
     data = {}
     with tempfile.TemporaryDirectory() as folder:
@@ -191,9 +205,11 @@ def print_growth(arguments):
             data[axis] = []
             for scene, options, value in rows:
                 trace = measure.make(arguments.program, scene, f"{folder}/{scene}.json", *options)
-                times = frame_times(arguments.program, trace, GROWING, 3, 1)
-                cells = [f"{times[spec][0]:.1f}, {peak_memory(arguments.program, trace, spec, folder)}"
-                         for spec in GROWING]
+                change = make_translucent if axis.startswith("translucent") else lambda copy: None
+                with changed_trace(trace, change) as drawn:
+                    times = frame_times(arguments.program, drawn, GROWING, 3, 1)
+                    cells = [f"{times[spec][0]:.1f}, {peak_memory(arguments.program, drawn, spec, folder)}"
+                             for spec in GROWING]
                 measure.print_row(value, *cells)
                 sys.stdout.flush()
                 data[axis].append((value, *(times[spec][0] for spec in GROWING)))
@@ -201,8 +217,8 @@ def print_growth(arguments):
 
 
 def draw(data, plot):
-    script = [f"set terminal svg size 1200,420 font 'sans,12'; set output '{plot}'",
-              "set multiplot layout 1,3; set logscale xy; set grid; set key left top; set ylabel 'ms'",
+    script = [f"set terminal svg size 1200,840 font 'sans,12'; set output '{plot}'",
+              "set multiplot layout 2,2; set logscale xy; set grid; set key left top; set ylabel 'ms'",
               "set format x '10^{%L}'; set format y '10^{%L}'"]
     for index, (axis, rows) in enumerate(data.items()):
         block = f"$data{index}"
