@@ -52,6 +52,37 @@ TEST(SurfaceShader, ByPixelItIsTheCentresWhateverPlaceIsAsked) {
   EXPECT_NE(by_place.shader.color(0, {6, 2, 0.0f, 0.5f}), centre);
 }
 
+// Two textures with coordinates of their own; which set has which does not matter.
+TEST(SurfaceShader, EachTextureIsReadAtItsOwnCoordinates) {
+  SurfaceTrace scene(16, 16);
+  Random random(6);
+  TextureImage image = filled_image(16, 16, {0, 0, 0, 255});
+  for (glm::u8vec4& texel : image.texels) texel = {random.word() & 255, random.word() & 255, 0, 255};
+  Material material = textured_material(scene.add_image(image));
+  material.unlit = false;
+  material.emissive = glm::vec3(1.0f);
+  material.emissive_texture = material.base_texture;
+  material.emissive_texture->uv_set = 1;
+  scene.add_rectangle(0, 0, 16, 16, 0.5, material);
+  scene.trace.frames[0].lighting.ambient = Ambient{glm::vec3(1.0f), glm::vec3(1.0f)};
+  Mesh& mesh = scene.trace.meshes[0];
+  for (const glm::vec2& uv : mesh.uvs[0]) mesh.uvs[1].push_back(0.5f * uv + 0.3f);
+  Trace turned = scene.trace;
+  std::swap(turned.meshes[0].uvs[0], turned.meshes[0].uvs[1]);
+  turned.materials[0].base_texture->uv_set = 1;
+  turned.materials[0].emissive_texture->uv_set = 0;
+  const ShadedScene one(scene.trace), other(turned);
+  const glm::vec3 color = one.shader.color(0, {9, 4});
+  EXPECT_EQ(other.shader.color(0, {9, 4}), color);
+  for (const TextureRole role : {TextureRole::base, TextureRole::emissive}) {
+    Trace same = scene.trace;
+    Material& changed = same.materials[0];
+    (role == TextureRole::base ? changed.base_texture : changed.emissive_texture)->uv_set ^= 1;
+    const ShadedScene at_one_place(same);
+    EXPECT_NE(at_one_place.shader.color(0, {9, 4}), color);
+  }
+}
+
 // On a plane that faces the camera, texture coordinates are linear, so analytic slopes and quad differences agree.
 TEST(SurfaceShader, DerivativesAgreeOnAPlaneThatFacesTheCamera) {
   SurfaceTrace scene(16, 16);
