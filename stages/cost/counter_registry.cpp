@@ -30,10 +30,6 @@ const std::vector<StageInfo>& stage_list() {
        "positions whose depths are compared (beam); merged fragments (published rules, alpha); fragments that take a "
        "position (z3)",
        "positions of all fragments (beam); all fragments (others)", ""},
-      {"claim", "fragments, counted in each pass", "fragments that take a position", "fragments that take a position",
-       "all fragments", " ops.special "},
-      {"settle", "fragments of owners, counted in each pass", "pixels that need another pass", "fragments of owners",
-       "fragments of owners", " ops.fetch "},
       {"alpha_test", "fragments of cutouts, counted in each pass", "those of which a sample is left",
        "fragments of cutouts", "four invocations for each of them", " ops.bit ops.convert "},
       {"depth_test", "samples that are tested, counted in each pass", "samples that pass", "samples that are tested",
@@ -70,7 +66,7 @@ bool has_counter(const StageInfo& stage, const CounterInfo& counter) {
   if ((name.starts_with("hidden_") || name == "empty_tiles") && !rasterizes) return false;
   const std::string_view of = stage.name;
   if (name.starts_with("texture_") && of != "shade" && of != "alpha_mask" && of != "alpha_test") return false;
-  if (name == "position_tests" && of != "beam_fragment" && of != "compose" && of != "claim") return false;
+  if (name == "position_tests" && of != "beam_fragment" && of != "compose") return false;
   if (name == "ops.wide" && !rasterizes && of != "vertex_setup" && of != "beam_fragment" && of != "shade") return false;
   return std::string(stage.silent).find(" " + name + " ") == std::string::npos;
 }
@@ -96,8 +92,6 @@ const std::vector<PixelCounterInfo>& pixel_counters() {
        "beam:order=sorted, beam:rules=paper, alpha"},
       {"largest_window", "fragments", "fragments of the largest window", "beam:order=sorted"},
       {"visible_fragments", "fragments", "triangles that have a visible sample in the pixel", "acaa"},
-      {"passes", "passes", "passes over the triangles until the pixel was settled",
-       "beam:order=stream in several passes"},
       {"quads_of_1", "0 or 1", "the pixel's 2x2 quad shows one material, the background included", "dvm"},
       {"quads_of_2", "0 or 1", "the pixel's quad shows two materials", "dvm"},
       {"quads_of_3", "0 or 1", "the pixel's quad shows three materials", "dvm"},

@@ -10,16 +10,16 @@ using Stage = StageCounters;
 using Ops = OperationCounts;
 
 constexpr CounterInfo field(const char* name, const char* title, const char* unit, const char* meaning,
-                            Count Stage::*counter) {
+                            std::uint64_t Stage::*counter) {
   return {name, title, unit, meaning, counter, nullptr, nullptr};
 }
 
-constexpr CounterInfo operation(const char* name, const char* title, const char* meaning, Count Ops::*kind) {
+constexpr CounterInfo operation(const char* name, const char* title, const char* meaning, std::uint64_t Ops::*kind) {
   return {name, title, "operations", meaning, nullptr, kind, nullptr};
 }
 
 constexpr CounterInfo sum(const char* name, const char* title, const char* unit, const char* meaning,
-                          Count (*value)(const Stage&)) {
+                          std::uint64_t (*value)(const Stage&)) {
   return {name, title, unit, meaning, nullptr, nullptr, value};
 }
 
@@ -80,17 +80,16 @@ constexpr CounterInfo kCounters[] = {
           &Stage::empty_tiles),
 };
 
-#ifndef BEAMPIPE_COUNT_NOTHING
 constexpr auto kStored = std::count_if(std::begin(kCounters), std::end(kCounters),
                                        [](const CounterInfo& counter) { return counter.sum == nullptr; });
-static_assert(sizeof(StageCounters) == sizeof(std::string) + kStored * sizeof(Count), "the table misses a counter");
-#endif
+static_assert(sizeof(StageCounters) == sizeof(std::string) + kStored * sizeof(std::uint64_t),
+              "the table misses a counter");
 
 }  // namespace
 
 StageCounters& StageCounters::operator+=(const StageCounters& other) {
   for (const CounterInfo& counter : kCounters)
-    if (Count* const stored = counter.stored(*this)) *stored += counter.value(other);
+    if (std::uint64_t* const stored = counter.stored(*this)) *stored += counter.value(other);
   return *this;
 }
 

@@ -21,15 +21,14 @@ constexpr const char* kUnknown = "#888888";
 // Stages that do similar work have similar hues: blue for geometry and bins, teal for rasters, orange for fragments,
 // yellow for shading, brown for the A-buffer, red for composition, green for samples, purple for sample selection.
 constexpr std::pair<std::string_view, const char*> kStages[] = {
-    {"vertex_setup", "#4e79a7"},    {"bin_sort", "#a0cbe8"},      {"conservative_raster", "#76b7b2"},
-    {"sample_raster", "#2c8c83"},   {"beam_fragment", "#f28e2b"}, {"alpha_mask", "#ffbe7d"},
-    {"shade", "#edc948"},           {"light", "#b8970b"},         {"a_buffer", "#9c755f"},
-    {"windows", "#d7b5a6"},         {"compose", "#e15759"},       {"claim", "#ffb6b4"},
-    {"settle", "#a83238"},          {"alpha_test", "#c3d56b"},    {"depth_test", "#59a14f"},
-    {"blend", "#8cd17d"},           {"stencil_test", "#2e6b2a"},  {"accumulate", "#b07aa1"},
-    {"sample_select", "#d4a6c8"},   {"material_sort", "#6b4c86"}, {"motion", "#ff9da7"},
-    {"dilate", "#d37295"},          {"temporal", "#5f6fd0"},      {"resolve", "#79706e"},
-    {"reference_raster", "#bab0ac"}};
+    {"vertex_setup", "#4e79a7"},  {"bin_sort", "#a0cbe8"},        {"conservative_raster", "#76b7b2"},
+    {"sample_raster", "#2c8c83"}, {"beam_fragment", "#f28e2b"},   {"alpha_mask", "#ffbe7d"},
+    {"shade", "#edc948"},         {"light", "#b8970b"},           {"a_buffer", "#9c755f"},
+    {"windows", "#d7b5a6"},       {"compose", "#e15759"},         {"alpha_test", "#c3d56b"},
+    {"depth_test", "#59a14f"},    {"blend", "#8cd17d"},           {"stencil_test", "#2e6b2a"},
+    {"accumulate", "#b07aa1"},    {"sample_select", "#d4a6c8"},   {"material_sort", "#6b4c86"},
+    {"motion", "#ff9da7"},        {"dilate", "#d37295"},          {"temporal", "#5f6fd0"},
+    {"resolve", "#79706e"},       {"reference_raster", "#bab0ac"}};
 
 // Half way to white. `color`: "#rrggbb".
 std::string lighter(const std::string& color) {

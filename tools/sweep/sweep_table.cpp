@@ -43,7 +43,8 @@ std::vector<Column> cell_columns() {
       {{"frames", "", "frames over which the counts are means"},
        [](const Cell& c) { return Json(c.report.frames.size()); }},
       {{"width", "px", "of the first frame that is rendered"}, [](const Cell& c) { return Json(c.trace.size.width); }},
-      {{"height", "px", "of the first frame that is rendered"}, [](const Cell& c) { return Json(c.trace.size.height); }},
+      {{"height", "px", "of the first frame that is rendered"},
+       [](const Cell& c) { return Json(c.trace.size.height); }},
       {{"technique", "", "the spec", true}, [](const Cell& c) { return c.plan.techniques[c.cell.technique]; }},
   };
   for (const MemoryParameter& parameter : memory_parameters()) {
@@ -167,7 +168,6 @@ std::string stage_class(std::string_view stage) {
       {"beam_fragment", "fragments"}, {"alpha_mask", "fragments"},
       {"alpha_test", "fragments"},    {"a_buffer", "fragments"},
       {"windows", "fragments"},       {"compose", "visibility"},
-      {"claim", "visibility"},        {"settle", "visibility"},
       {"depth_test", "visibility"},   {"blend", "visibility"},
       {"stencil_test", "visibility"}, {"accumulate", "visibility"},
       {"shade", "shading"},           {"light", "shading"},
