@@ -17,7 +17,7 @@ PER_TRIANGLE = ("setup_triangles", "bin_lists")
 PLACED = ["beam", "msaa:8", "msaa:32", "beam:order=sorted", "beam:order=stream"]
 PLACES = {"in-memory": "in memory", "on-chip": "on chip"}
 GEOMETRY = ("vertex_setup", "sample_raster")  # write, bin and read the triangles of one pass
-STACK = ["beam", "beam:order=stream", "beam:order=sorted", "beam:rules=paper", "msaa:8"]
+STACK = ["beam", "beam:order=stream", "beam:order=sorted", "casav", "msaa:8"]
 
 
 def run(program, trace, techniques, *options):

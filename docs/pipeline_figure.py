@@ -38,7 +38,7 @@ BEAM = [
 OTHERS = [
     ("beam:order=sorted", "conservative_raster a_buffer windows beam_fragment shade compose resolve"),
     ("beam:order=stream", "conservative_raster beam_fragment compose shade resolve"),
-    ("beam:rules=paper, alpha", "conservative_raster beam_fragment shade a_buffer compose resolve"),
+    ("casav, alpha", "conservative_raster beam_fragment shade a_buffer compose resolve"),
     ("z3", "conservative_raster beam_fragment shade compose resolve"),
     ("msaa:N", "sample_raster shade depth_test resolve"),
     ("acaa:N", "sample_raster depth_test stencil_test shade accumulate resolve"),

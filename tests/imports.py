@@ -45,8 +45,8 @@ STAGE_GROUP = {"data", "cost", "surface"}
 WITHOUT_TRACES = {"data", "cost"}
 # Headers in stage groups that are no stage's own: formulas of stages and costs, and algorithms in files of their own.
 SHARED_IN_GROUP = {
-    "stages/beam/merge_sort.h", "stages/beam/owner_formulas.h", "stages/beam/paper_fragment.h",
-    "stages/beam/paper_merges.h", "stages/beam/specks.h", "stages/geometry/clip.h", "stages/geometry/depth_order.h",
+    "stages/beam/merge_sort.h", "stages/beam/owner_formulas.h", "stages/beam/casav_fragment.h",
+    "stages/beam/casav_merges.h", "stages/beam/specks.h", "stages/geometry/clip.h", "stages/geometry/depth_order.h",
     "stages/geometry/draw_geometry.h", "stages/geometry/draw_notes.h", "stages/geometry/draw_plan.h",
     "stages/geometry/setup_formulas.h", "stages/picture/picture_formulas.h", "stages/raster/traverse.h",
     "stages/raster/traverse_cost.h", "stages/samples/sample_depth_cost.h", "stages/samples/sample_formulas.h",

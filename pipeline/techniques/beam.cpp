@@ -70,6 +70,7 @@ std::vector<PixelHistory> inspect_beam(const Trace& trace, const Frame& frame, c
 TechniqueKind beam_kind() {
   return {
       .name = "beam",
+      .variant = {"order", "near-first"},
       .description =
           "each bin's triangles, sorted near to far, become fragments with analytic coverage and a mask; a pixel "
           "keeps the owners of its mask positions until nothing nearer can come, in a state of fixed size",

@@ -103,7 +103,7 @@ std::vector<PixelHistory> inspect_windows(const Trace& trace, const Frame& frame
 
 TechniqueKind beam_sorted_kind() {
   return {.name = "beam",
-          .variant = {"order", "sorted", "near-first"},
+          .variant = {"order", "sorted"},
           .description =
               "the triangles of a pixel, sorted by depth, become fragments with analytic coverage and a mask, "
               "composed near to far into one area-conserving aggregate until the pixel is closed",

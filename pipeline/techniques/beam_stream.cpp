@@ -50,7 +50,7 @@ std::vector<PixelHistory> inspect_stream(const Trace& trace, const Frame& frame,
 
 TechniqueKind beam_stream_kind() {
   return {.name = "beam",
-          .variant = {"order", "stream", "near-first"},
+          .variant = {"order", "stream"},
           .description =
               "fragments in primitive order, without an A-buffer, bins or a sort; of more owners than a pixel has "
               "slots for, two become one",

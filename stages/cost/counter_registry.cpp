@@ -89,7 +89,7 @@ const std::vector<PixelCounterInfo>& pixel_counters() {
        "closed; others: how often two owners, aggregates or layers became one",
        "beam, alpha, z3"},
       {"tiny_triangles", "fragments", "fragments that cover no mask position (specks)",
-       "beam:order=sorted, beam:rules=paper, alpha"},
+       "beam:order=sorted, casav, alpha"},
       {"largest_window", "fragments", "fragments of the largest window", "beam:order=sorted"},
       {"visible_fragments", "fragments", "triangles that have a visible sample in the pixel", "acaa"},
       {"quads_of_1", "0 or 1", "the pixel's 2x2 quad shows one material, the background included", "dvm"},

@@ -174,7 +174,7 @@ void expect_same(const FrameResult& a, const FrameResult& b, const std::string& 
 
 TEST(Bands, ResultsAreThoseOfTheWholeFrame) {
   const Trace trace = random_trace(150, 70, 2000, 3);
-  for (const char* spec : {"beam:order=sorted", "beam:rules=paper", "alpha"}) {
+  for (const char* spec : {"beam:order=sorted", "casav", "alpha"}) {
     const Technique technique = parse_technique(spec);
     RunOptions options{2};
     const FrameResult whole = technique.render(trace, 0, options);

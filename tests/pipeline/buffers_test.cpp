@@ -52,8 +52,7 @@ TEST(Buffers, StreamingOrderHoldsTheSameForEachPixelHoweverDeepItIs) {
 
 TEST(Buffers, TheABufferGrowsByARecordForEveryPairThatIsNotHidden) {
   for (const int layers : {1, 10, 100, 1000, 10000}) {
-    const FrameResult sorted = render("beam:order=sorted", halves(layers)),
-                      published = render("beam:rules=paper", halves(layers));
+    const FrameResult sorted = render("beam:order=sorted", halves(layers)), published = render("casav", halves(layers));
     const auto count = static_cast<std::uint64_t>(layers);
     // The pixel that a triangle covers, and those that it touches without covering any area.
     const std::uint64_t touched = sorted.stages.at(1).items_out / count;
@@ -69,9 +68,9 @@ TEST(Buffers, TheABufferGrowsByARecordForEveryPairThatIsNotHidden) {
 // Binning writes the keys of near-first order beside the entries of the lists.
 TEST(Buffers, SortedListsHaveAKeyForEachEntry) {
   const Trace trace = halves(100);
-  for (const char* spec : {"beam", "beam:rules=paper,order=near-first"})
+  for (const char* spec : {"beam", "casav:order=near-first"})
     EXPECT_EQ(bytes_of(render(spec, trace), "bin_lists"), 100u * (4 + 4)) << spec;
-  for (const char* spec : {"beam:order=sorted", "beam:order=stream", "beam:rules=paper,order=stream", "msaa:8"})
+  for (const char* spec : {"beam:order=sorted", "beam:order=stream", "casav:order=stream", "msaa:8"})
     EXPECT_EQ(bytes_of(render(spec, trace), "bin_lists"), 100u * 4) << spec;
 }
 
@@ -101,9 +100,8 @@ TEST(Buffers, AreWhatIsAllocated) {
     for (const Buffer& buffer : result.buffers) measured.listed += static_cast<double>(buffer.peak_bytes);
     return measured;
   };
-  for (const char* spec :
-       {"beam", "beam:order=sorted", "beam:order=stream", "beam:rules=paper", "beam:rules=paper,order=near-first",
-        "beam:rules=paper,order=stream", "alpha", "z3", "msaa:8", "acaa:8"}) {
+  for (const char* spec : {"beam", "beam:order=sorted", "beam:order=stream", "casav", "casav:order=near-first",
+                           "casav:order=stream", "alpha", "z3", "msaa:8", "acaa:8"}) {
     const Measured few = measure(spec, 4000), many = measure(spec, 16000);
     const double heap = many.heap - few.heap, listed = many.listed - few.listed;
     EXPECT_GE(heap, listed) << spec << ": something is listed that is not held";
@@ -131,9 +129,8 @@ TEST(Buffers, DrawsAreNotCopiedAgainForEachThatFollows) {
 TEST(Buffers, WorkingBytesAreHeldPerPixel) {
   Trace trace = halves(1);
   trace.frames[0].width = trace.frames[0].height = 512;
-  for (const char* spec :
-       {"beam", "beam:order=sorted", "beam:order=stream", "beam:rules=paper", "alpha", "z3", "msaa:8", "acaa:8",
-        "deferred", "visibility", "visibility:4", "taa:8", "taa:8,shading=forward", "dvm"}) {
+  for (const char* spec : {"beam", "beam:order=sorted", "beam:order=stream", "casav", "alpha", "z3", "msaa:8", "acaa:8",
+                           "deferred", "visibility", "visibility:4", "taa:8", "taa:8,shading=forward", "dvm"}) {
     const std::int64_t before = heap_bytes();
     restart_heap_peak();
     render(spec, trace);

@@ -23,7 +23,7 @@ namespace {
 constexpr const char* kSpecs[] = {"beam",
                                   "beam:order=sorted",
                                   "beam:order=stream",
-                                  "beam:rules=paper",
+                                  "casav",
                                   "z3",
                                   "alpha",
                                   "msaa:4,at=centroid",

@@ -41,10 +41,9 @@ TEST(Counters, ShadingRunsInWholeQuads) {
 
 TEST(Counters, EveryTechniqueCountsFragmentsAndBytesOfPixels) {
   const Trace trace = random_trace(40, 30, 400, 2);
-  for (const char* spec :
-       {"beam", "beam:order=sorted", "beam:order=stream", "beam:rules=paper", "beam:rules=paper,order=near-first",
-        "beam:rules=paper,order=stream", "alpha", "z3", "msaa:8", "msaa:32", "acaa:8", "deferred", "visibility",
-        "visibility:4", "taa:4", "taa:4,shading=forward", "taa:4,shading=deferred", "dvm"}) {
+  for (const char* spec : {"beam", "beam:order=sorted", "beam:order=stream", "casav", "casav:order=near-first",
+                           "casav:order=stream", "alpha", "z3", "msaa:8", "msaa:32", "acaa:8", "deferred", "visibility",
+                           "visibility:4", "taa:4", "taa:4,shading=forward", "taa:4,shading=deferred", "dvm"}) {
     const FrameResult result = parse_technique(spec).render(trace, 0, {2});
     EXPECT_GT(sum_of(result, "fragments"), 400) << spec;
     EXPECT_GT(sum_of(result, "bytes"), 400) << spec;
@@ -114,7 +113,7 @@ TEST(Counters, ResolveReadsEveryPixelOnce) {
   RunOptions raw{2};
   raw.memory.compression = false;
   for (const auto& [spec, items, stored_bytes] : {std::tuple{"beam:order=sorted", 1u, 42u},
-                                                  {"beam:rules=paper", 1u, 42u},
+                                                  {"casav", 1u, 42u},
                                                   {"alpha", 1u, 10u},
                                                   {"z3", 1u, 50u},
                                                   {"msaa:8", 8u, 48u},

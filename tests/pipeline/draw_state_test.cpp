@@ -26,8 +26,8 @@ struct Case {
 };
 const Case kCases[] = {{"beam"},
                        {"beam:order=sorted"},
-                       {"beam:order=stream", 0.016},             // makes one owner of two before it has seen all
-                       {"beam:rules=paper,mask=exact", 0.0625},  // merges fragments that lie close in depth
+                       {"beam:order=stream", 0.016},  // makes one owner of two before it has seen all
+                       {"casav:mask=exact", 0.0625},  // merges fragments that lie close in depth
                        {"z3"},
                        {"msaa:1"},
                        {"msaa:8"},

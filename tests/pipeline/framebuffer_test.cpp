@@ -56,9 +56,8 @@ TEST(Framebuffer, OpenPixelsThatExceedTheBudgetMoveThroughMemory) {
 // The machine decides where pixels are, but not what is drawn or computed.
 TEST(Framebuffer, OnChipOnlyThePictureGoesToMemory) {
   const Trace trace = random_trace(40, 36, 60, 5);
-  for (const char* spec :
-       {"beam", "beam:order=stream", "beam:rules=paper,order=near-first", "beam:rules=paper,order=stream", "z3",
-        "msaa:8", "msaa:8,prepass", "acaa:8", "acaa:8,double=stencil", "deferred", "visibility"}) {
+  for (const char* spec : {"beam", "beam:order=stream", "casav:order=near-first", "casav:order=stream", "z3", "msaa:8",
+                           "msaa:8,prepass", "acaa:8", "acaa:8,double=stencil", "deferred", "visibility"}) {
     SCOPED_TRACE(spec);
     MemoryParameters memory;
     memory.framebuffer = Place::on_chip;

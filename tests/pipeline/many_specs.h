@@ -9,12 +9,12 @@ inline constexpr const char* kManySpecs[] = {
     "beam:bits=32,slots=2,bin=8,at=quarters",
     "beam:order=sorted",
     "beam:order=sorted,storage=float32",
-    "beam:rules=paper,mask=exact",
-    "beam:rules=paper,storage=text",
-    "beam:rules=paper,sort=nearest,tiny=3,overlap=transition,regional=area,local=keep,fuzzy=mix,extents=slab,"
+    "casav:mask=exact",
+    "casav:storage=text",
+    "casav:sort=nearest,tiny=3,overlap=transition,regional=area,local=keep,fuzzy=mix,extents=slab,"
     "slab=visible,plane=visible,thickness=containing",
-    "beam:rules=paper,order=near-first",
-    "beam:rules=paper,order=stream,layers=2",
+    "casav:order=near-first",
+    "casav:order=stream,layers=2",
     "beam:order=stream",
     "z3",
     "z3:shape=128x3",

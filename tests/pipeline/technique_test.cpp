@@ -18,8 +18,8 @@ TEST(Technique, FramebufferBytesAreThePublishedOnes) {
   // Slide 23 of Crassin et al. 2018: beam takes 42 bytes with colour. MSAA 8x and 32x with 4-byte depth and fp16 RGB
   // take 80 and 320.
   EXPECT_EQ(parse_technique("beam:order=sorted").framebuffer_bytes_per_pixel(), 42u);
-  EXPECT_EQ(parse_technique("beam:rules=paper").framebuffer_bytes_per_pixel(), 42u);
-  EXPECT_EQ(parse_technique("beam:rules=paper,storage=text").framebuffer_bytes_per_pixel(), 32u);
+  EXPECT_EQ(parse_technique("casav").framebuffer_bytes_per_pixel(), 42u);
+  EXPECT_EQ(parse_technique("casav:storage=text").framebuffer_bytes_per_pixel(), 32u);
   EXPECT_EQ(parse_technique("msaa:8").framebuffer_bytes_per_pixel(), 80u);
   EXPECT_EQ(parse_technique("msaa:32").framebuffer_bytes_per_pixel(), 320u);
   EXPECT_EQ(parse_technique("alpha").framebuffer_bytes_per_pixel(), 10u);
@@ -59,10 +59,10 @@ TEST(Technique, WrongSpecsSayWhatWouldBeRight) {
   const std::string msaa_rates = "N of msaa:N must be 1, 2, 4, 8, 16, 32, 64, 128, 256, 512 or 1024";
   const std::string acaa_rates = "N of acaa:N must be 1, 2, 4, 8, 16, 32, 64, 128 or 256";
   const std::string taa_rates = "N of taa:N must be 1, 2, 4, 8 or 16";
-  const std::string of_beam = "; it has bits, slots, at, bin, order and rules";
-  const std::string of_paper =
-      "; it has mask, sort, tiny, overlap, regional, local, fuzzy, extents, slab, plane, thickness, storage, order, "
-      "layers and rules";
+  const std::string of_beam = "; it has bits, slots, at, bin and order";
+  const std::string of_casav =
+      "; it has mask, sort, tiny, overlap, regional, local, fuzzy, extents, slab, plane, thickness, storage, order "
+      "and layers";
   const std::string of_dvm = "; it has blend, seed and material";
   for (const auto& [spec, error] : std::map<std::string, std::string>{
            {"", names},
@@ -98,7 +98,7 @@ TEST(Technique, WrongSpecsSayWhatWouldBeRight) {
            {"beam:mask=fast", "beam has no option 'mask'" + of_beam},
            {"beam:fuzzy=mix", "beam has no option 'fuzzy'" + of_beam},
            {"beam:order=sorted,bits=32,mask=exact",
-            "beam:order=sorted has no option 'mask'; it has bits, storage, order and rules"},
+            "beam:order=sorted has no option 'mask'; it has bits, storage and order"},
            {"beam:order=sorted,bits=64", "bits must be 32 or 256"},
            {"beam:order=sorted,bits=", "bits must be 32 or 256"},
            {"beam:order=sorted,storage=text", "storage must be packed or float32"},
@@ -109,20 +109,20 @@ TEST(Technique, WrongSpecsSayWhatWouldBeRight) {
            {"beam:slots=5,bits=128", "bits needs slots=2, 4, 8, 16 or 32, unless it is 256"},
            {"beam:mask=table,mask=table", "'mask' is there twice"},
            {"beam:order=primitive", "order must be near-first, sorted or stream"},
-           {"beam:rules=slides", "rules must be conserve or paper"},
-           {"beam:rules=conserve,rules=paper", "'rules' is there twice"},
-           {"beam:order=stream,slots=7", "beam:order=stream has no option 'slots'; it has order and rules"},
-           {"beam:rules=paper,layers=3", "layers needs order=near-first or order=stream"},
-           {"beam:rules=paper,order=sorted,layers=1", "layers needs order=near-first or order=stream"},
-           {"beam:rules=paper,order=stream,sort=nearest", "sort needs order=sorted"},
-           {"beam:rules=paper,order=near-first,sort=centroid", "sort needs order=sorted"},
-           {"beam:rules=paper,order=sort", "order must be sorted, near-first or stream"},
-           {"beam:rules=paper,bits=64", "beam:rules=paper has no option 'bits'" + of_paper},
-           {"beam:rules=paper,mask=fast", "mask must be table or exact"},
-           {"beam:rules=paper,tiny=2", "tiny must be 1 or 3"},
-           {"beam:rules=paper,overlap=none", "overlap must be tiny, over, add or transition"},
-           {"beam:rules=paper,regional=global", "regional must be local or area"},
-           {"beam:rules=paper,slab=visible,slab=full", "'slab' is there twice"},
+           {"beam:rules=paper", "beam has no option 'rules'" + of_beam},
+           {"beam:order=stream,order=sorted", "'order' is there twice"},
+           {"beam:order=stream,slots=7", "beam:order=stream has no option 'slots'; it has order"},
+           {"casav:layers=3", "layers needs order=near-first or order=stream"},
+           {"casav:order=sorted,layers=1", "layers needs order=near-first or order=stream"},
+           {"casav:order=stream,sort=nearest", "sort needs order=sorted"},
+           {"casav:order=near-first,sort=centroid", "sort needs order=sorted"},
+           {"casav:order=sort", "order must be sorted, near-first or stream"},
+           {"casav:bits=64", "casav has no option 'bits'" + of_casav},
+           {"casav:mask=fast", "mask must be table or exact"},
+           {"casav:tiny=2", "tiny must be 1 or 3"},
+           {"casav:overlap=none", "overlap must be tiny, over, add or transition"},
+           {"casav:regional=global", "regional must be local or area"},
+           {"casav:slab=visible,slab=full", "'slab' is there twice"},
            {"z3:layers=3", "z3 has no option 'layers'; it has shape"},
            {"z3:shape=64x3", "shape must be 32x2, 32x3 or 128x3"},
            {"alpha:1", "alpha has no options"},
@@ -152,9 +152,9 @@ TEST(Technique, WrongSpecsSayWhatWouldBeRight) {
 }
 
 TEST(Technique, DefaultsMayBeWritten) {
-  for (const char* spec : {"beam:rules=conserve", "beam:order=sorted", "beam:order=sorted,rules=conserve,bits=32",
-                           "beam:bits=256,slots=5", "beam:rules=paper,order=sorted", "beam:rules=conserve,order=stream",
-                           "beam:layers=3,order=stream,rules=paper", "beam:tiny=3,rules=paper"})
+  for (const char* spec :
+       {"beam:order=near-first", "beam:order=sorted", "beam:bits=32,order=sorted", "beam:bits=256,slots=5",
+        "casav:order=sorted", "beam:order=stream", "casav:layers=3,order=stream", "casav:tiny=3"})
     EXPECT_EQ(parse_technique(spec).spec, spec);
 }
 

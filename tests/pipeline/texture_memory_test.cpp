@@ -14,7 +14,7 @@ namespace {
 
 // Every way to shade, with the ways that read alpha.
 constexpr const char* kSpecs[] = {
-    "beam",     "beam:order=sorted",  "beam:order=stream", "alpha",          "beam:rules=paper",
+    "beam",     "beam:order=sorted",  "beam:order=stream", "alpha",          "casav",
     "z3",       "msaa:4,at=centroid", "msaa:32",           "msaa:4,prepass", "acaa:32",
     "deferred", "visibility",         "visibility:4",      "taa:8",          "taa:8,shading=forward",
     "dvm"};

@@ -12,7 +12,7 @@
 #include "simd/mask_table.h"
 #include "simd/match.h"
 #include "stages/cost/counter_registry.h"
-#include "stages/data/paper_aggregate.h"
+#include "stages/data/casav_aggregate.h"
 #include "stages/samples/sample_select.h"
 #include "stages/temporal/temporal.h"
 
@@ -88,28 +88,26 @@ Ours ms(const std::string& spec, const std::vector<std::string>& stages = {}) {
 }
 
 Ours ms_over_beam(const std::string& spec) {
-  return [=](const Findings& found) {
-    return quotient(milliseconds(found, spec), milliseconds(found, "beam:rules=paper"));
-  };
+  return [=](const Findings& found) { return quotient(milliseconds(found, spec), milliseconds(found, "casav")); };
 }
 
 Number emr_of_beam(const Findings& found) {
   for (const TechniqueReport& result : found.report.results)
-    if (result.technique == "beam:rules=paper" && result.equivalent_msaa) return result.equivalent_msaa->samples;
+    if (result.technique == "casav" && result.equivalent_msaa) return result.equivalent_msaa->samples;
   return {};
 }
 
 Number most_fragments_of_beam(const Findings& found) {
-  const FrameReport* const frame = frame_of(found, "beam:rules=paper");
+  const FrameReport* const frame = frame_of(found, "casav");
   if (!frame || !frame->pixel_counters.contains("fragments")) return {};
   return frame->pixel_counters.at("fragments").max;
 }
 
 Number bytes_with_a_buffer_over_msaa(const Findings& found) {
-  const FrameReport* const frame = frame_of(found, "beam:rules=paper");
+  const FrameReport* const frame = frame_of(found, "casav");
   if (!frame || frame->pixels == 0) return {};
   const double a_buffer = static_cast<double>(frame->a_buffer_peak_bytes) / static_cast<double>(frame->pixels);
-  return (bytes_of("beam:rules=paper") + a_buffer) / bytes_of("msaa:8");
+  return (bytes_of("casav") + a_buffer) / bytes_of("msaa:8");
 }
 
 // ---- Accumulative antialiasing against multisampling ----
@@ -233,22 +231,22 @@ Number dvm_less_visibility(const Findings& found) {
 
 std::vector<Formula> our_formulas() {
   std::vector<Formula> formulas = {
-      {"beam.bytes.coverage", constant(bytes_of("beam:rules=paper", "coverage"))},
-      {"beam.bytes.mask", constant(bytes_of("beam:rules=paper", "mask"))},
-      {"beam.bytes.depth_plane", constant(bytes_of("beam:rules=paper", "depth_plane"))},
-      {"beam.bytes.thickness", constant(bytes_of("beam:rules=paper", "thickness"))},
-      {"beam.bytes.depth_range", constant(bytes_of("beam:rules=paper", "depth_range"))},
-      {"beam.bytes.color", constant(bytes_of("beam:rules=paper", "color"))},
-      {"beam.bytes.without_color", constant(bytes_without_color("beam:rules=paper"))},
-      {"beam.bytes", constant(bytes_of("beam:rules=paper"))},
+      {"beam.bytes.coverage", constant(bytes_of("casav", "coverage"))},
+      {"beam.bytes.mask", constant(bytes_of("casav", "mask"))},
+      {"beam.bytes.depth_plane", constant(bytes_of("casav", "depth_plane"))},
+      {"beam.bytes.thickness", constant(bytes_of("casav", "thickness"))},
+      {"beam.bytes.depth_range", constant(bytes_of("casav", "depth_range"))},
+      {"beam.bytes.color", constant(bytes_of("casav", "color"))},
+      {"beam.bytes.without_color", constant(bytes_without_color("casav"))},
+      {"beam.bytes", constant(bytes_of("casav"))},
       {"beam.bytes.three_coefficients", constant(kTextBytesWithoutColor)},
-      {"beam.bytes_over_msaa_8", constant(bytes_of("beam:rules=paper") / bytes_of("msaa:8"))},
+      {"beam.bytes_over_msaa_8", constant(bytes_of("casav") / bytes_of("msaa:8"))},
       {"msaa_8.bytes.without_color", constant(bytes_without_color("msaa:8"))},
       {"msaa_8.bytes", constant(bytes_of("msaa:8"))},
       {"msaa_32.bytes.without_color", constant(bytes_without_color("msaa:32"))},
       {"msaa_32.bytes", constant(bytes_of("msaa:32"))},
       {"msaa.samples_of_super_resolved_pixel", constant(msaa_sampling(32).pattern.count)},
-      {"beam.mask_bits", constant(8 * bytes_of("beam:rules=paper", "mask"))},
+      {"beam.mask_bits", constant(8 * bytes_of("casav", "mask"))},
       {"beam.mask_table_kib", constant(kTableAngles * kTableDistances * 4 / 1024.0)},
       {"msaa_8.mib_at_4k", constant(mebibytes_at_4k("msaa:8,color=rgba16f"))},
       {"acaa_8.mib_at_4k", constant(mebibytes_at_4k("acaa:8"))},
@@ -278,7 +276,7 @@ std::vector<Formula> our_formulas() {
       {"acaa.traffic_saved", [](const Findings& found) { return part_of_all(acaa_traffic(found)); }},
       {"acaa.added_ms_saved", [](const Findings& found) { return part_of_added(acaa_times(found)); }},
       {"acaa.ms_saved", [](const Findings& found) { return part_of_all(acaa_times(found)); }},
-      {"ms.beam:rules=paper", ms("beam:rules=paper")},
+      {"ms.casav", ms("casav")},
       {"ms.msaa:32", ms("msaa:32")},
       {"ms.msaa:128", ms("msaa:128")},
       {"ms.msaa:256", ms("msaa:256")},

@@ -57,7 +57,7 @@ const NamedLimit* stated_limit(const HardCase& hard_case, std::string spec) {
 // The positions of the mask, if open pixels compose the spec; else 0.
 int open_pixel_positions(const std::string& spec) {
   const auto has = [&](const char* text) { return spec.find(text) != spec.npos; };
-  if (!spec.starts_with("beam") || has("rules=paper") || has("order=sorted")) return 0;
+  if (!spec.starts_with("beam") || has("order=sorted")) return 0;
   if (const std::size_t bits = spec.find("bits="); bits != spec.npos) return std::atoi(spec.c_str() + bits + 5);
   return has("order=stream") ? 128 : 256;
 }

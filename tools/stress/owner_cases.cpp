@@ -103,7 +103,7 @@ void add_limits_of_strips(const Trace& trace, std::map<std::string, StatedLimit>
   limits["beam:order=sorted"] = full(256);
   limits["beam:order=sorted,bits=32"] = full(32);
   limits["alpha"] = {kLostByOver, kOver};
-  limits["beam:rules=paper"] = {0.45, kPaper};
+  limits["casav"] = {0.45, kCasav};
 }
 
 HardCase full_lists() {
@@ -134,7 +134,7 @@ HardCase full_lists_hidden() {
 std::map<std::string, StatedLimit> limits_of_stack(int count) {
   std::map<std::string, StatedLimit> limits = estimated(kMask);
   limits["alpha"] = {0.75, kOver};
-  limits["beam:rules=paper"] = {0.45, kPaper};
+  limits["casav"] = {0.45, kCasav};
   if (count > 1) limits["acaa"] = {0.75 * count, kTwice};
   if (count > 1) limits["acaa:8,double=stencil"] = {kFormatError, "fp16"};
   return limits;
@@ -194,7 +194,7 @@ HardCase crowded_bin() {
       screen.triangle(at(x, y), at(x + 1, y + 1), at(x, y + 1), kRed);
     }
   HardCase result{"crowded_bin", "131,072 triangles in one bin, which cover it without a gap", {}, {}, {}};
-  result.limits = {{"alpha", {kLostByOver, kOver}}, {"beam:rules=paper", {0.45, kPaper}}};
+  result.limits = {{"alpha", {kLostByOver, kOver}}, {"casav", {0.45, kCasav}}};
   result.picture = ExactPicture{.elsewhere = glm::dvec4(glm::dvec3(kRed), 1.0)};
   result.trace = screen.trace();
   return result;

@@ -7,9 +7,9 @@
 #include "simd/plane_order.h"
 #include "stages/beam/a_buffer.h"
 #include "stages/beam/beam_fragment.h"
-#include "stages/beam/compose_paper.h"
+#include "stages/beam/casav_fragment.h"
+#include "stages/beam/compose_casav.h"
 #include "stages/beam/compose_z3.h"
-#include "stages/beam/paper_fragment.h"
 #include "stages/picture/shade.h"
 #include "stages/raster/conservative_raster.h"
 #include "tests/simd/merge_cases.h"
@@ -27,7 +27,7 @@ class MergeTwins : public SceneTwins {
     beam_fragment(triangles_, pairs, tile_, options, ignored, fragments_);
     shade(shade_triangles(triangles_, trace_.frames[0].lighting), fragments_, ignored);
   }
-  void make_paper_fragments() {
+  void make_casav_fragments() {
     const SamplePattern pattern = hammersley_pattern();
     const MaskTable table(pattern);
     BeamFragmentOptions options;
@@ -53,10 +53,10 @@ class MergeTwins : public SceneTwins {
   }
 
   // The numbers of an aggregate that each merge converts from the stored formats and back.
-  static void convert(AggregateOf<Float, Bits>& a, PaperStorage storage) {
-    if (storage == PaperStorage::float32) return;
+  static void convert(AggregateOf<Float, Bits>& a, CasavStorage storage) {
+    if (storage == CasavStorage::float32) return;
     for (Float& channel : a.color) channel = converted(channel);
-    if (storage == PaperStorage::text)
+    if (storage == CasavStorage::text)
       for (Float* const number : {&a.plane.dzdu, &a.plane.dzdv, &a.thickness}) *number = converted(*number);
   }
 
@@ -88,7 +88,7 @@ class MergeTwins : public SceneTwins {
   }
 
   template <class Stored>
-  void compose_into(PaperStorage storage, const MergeRules& rules = {}) {
+  void compose_into(CasavStorage storage, const MergeRules& rules = {}) {
     const MergePositions positions(hammersley_pattern());
     std::uint64_t position_tests = 0;
     const std::vector<Aggregate> expected = merge_all([&](const Fragment& fragment, const Aggregate& before) {
@@ -116,19 +116,19 @@ class MergeTwins : public SceneTwins {
 };
 
 TEST_P(MergeTwins, Compose) {
-  make_paper_fragments();
-  compose_into<SlidesAggregate>(PaperStorage::slides);
-  compose_into<TextAggregate>(PaperStorage::text);
-  for (const MergeRules& rules : every_merge_rule()) compose_into<Aggregate>(PaperStorage::float32, rules);
+  make_casav_fragments();
+  compose_into<SlidesAggregate>(CasavStorage::slides);
+  compose_into<TextAggregate>(CasavStorage::text);
+  for (const MergeRules& rules : every_merge_rule()) compose_into<Aggregate>(CasavStorage::float32, rules);
 }
 
 TEST_P(MergeTwins, Over) {
-  make_paper_fragments();
+  make_casav_fragments();
   const std::vector<Aggregate> expected = merge_all([&](const Fragment& fragment, const Aggregate& before) {
     AggregateOf<Float, Bits> old = counting(before);
-    convert(old, PaperStorage::slides);
+    convert(old, CasavStorage::slides);
     AggregateOf<Float, Bits> merged = over_formula(counting(fragment), old);
-    convert(merged, PaperStorage::slides);
+    convert(merged, CasavStorage::slides);
     return Aggregate(SlidesAggregate(value_of(merged)));
   });
   StageCounters counters;

@@ -397,9 +397,8 @@ TEST(Claims, AcaaGivesBack) {
     return {};
   };
   EXPECT_FALSE(given_back());
-  change_frames(report.results[0], [](FrameReport& frame, std::size_t) {
-    frame.stages.push_back(StageCounters{"prepass_depth_test"});
-  });
+  change_frames(report.results[0],
+                [](FrameReport& frame, std::size_t) { frame.stages.push_back(StageCounters{"prepass_depth_test"}); });
   EXPECT_FALSE(given_back());
   add("msaa:8,color=rgba16f,prepass", 40);
   add("acaa:8", 25);
@@ -410,7 +409,7 @@ TEST(Claims, AcaaGivesBack) {
 TEST(Claims, BytesOfTheBeamWithItsABuffer) {
   Report report = report_for("classroom, beam with its A-buffer, bytes over those of MSAA 8x");
   TechniqueReport& result = report.results.emplace_back();
-  result.technique = "beam:rules=paper";
+  result.technique = "casav";
   FrameReport frame;
   frame.pixels = 10, frame.a_buffer_peak_bytes = 4180;
   result.frames.push_back(frame);
@@ -424,7 +423,7 @@ TEST(Claims, BytesOfTheBeamWithItsABuffer) {
 TEST(Claims, MostFragmentsOfAPixelAreThoseOfTheClassroomWhateverItsFileIsCalled) {
   Report report;
   TechniqueReport& result = report.results.emplace_back();
-  result.technique = "beam:rules=paper";
+  result.technique = "casav";
   FrameReport frame;
   frame.pixel_counters["fragments"] = {2.5, 61};
   result.frames.push_back(frame);

@@ -460,7 +460,7 @@ TEST_F(ProgramTest, StressWritesWhatItFoundAndItsTraces) {
 TEST_F(ProgramTest, MemoryLimitBoundsThePeakAndChangesNothing) {
   succeed({"make", "stack", "--triangles", "200", "--width", "128", "--height", "96", "-o", path("deep.json")});
   const auto run = [&](const std::string& limit, const std::string& out) {
-    return run_program({"run", path("deep.json"), "-t", "beam:rules=paper", "--no-memory-model", "--threads", "4",
+    return run_program({"run", path("deep.json"), "-t", "casav", "--no-memory-model", "--threads", "4",
                         "--memory-limit", limit, "-o", path(out)});
   };
   const Outcome refused = run("1MB", "refused");
@@ -477,9 +477,7 @@ TEST_F(ProgramTest, MemoryLimitBoundsThePeakAndChangesNothing) {
   EXPECT_GT(whole.peak_bytes >> 20, needed + kProgram) << "otherwise this test shows nothing";
 #endif
   for (const char* file : {"frame_0000.exr", "frame_0000_counters.exr"})
-    EXPECT_EQ(read_text(folder_ / "banded/beam_rules=paper" / file),
-              read_text(folder_ / "whole/beam_rules=paper" / file))
-        << file;
+    EXPECT_EQ(read_text(folder_ / "banded/casav" / file), read_text(folder_ / "whole/casav" / file)) << file;
 }
 
 // A frame's results take tens of KiB as JSON, and more as values in memory.

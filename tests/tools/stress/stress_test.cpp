@@ -153,8 +153,8 @@ TEST(CrowdedBin, IsExact) {
 
 INSTANTIATE_TEST_SUITE_P(Techniques, HardCases,
                          testing::Values("beam", "beam:bits=64,slots=4", "beam:bits=32,slots=2", "beam:order=sorted",
-                                         "beam:order=stream", "z3", "beam:rules=paper", "alpha", "msaa:8",
-                                         "acaa:8,double=stencil", "acaa:8", "visibility", "reference"));
+                                         "beam:order=stream", "z3", "casav", "alpha", "msaa:8", "acaa:8,double=stencil",
+                                         "acaa:8", "visibility", "reference"));
 
 }  // namespace
 }  // namespace beampipe

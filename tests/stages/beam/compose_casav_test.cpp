@@ -1,11 +1,11 @@
-#include "stages/beam/compose_paper.h"
+#include "stages/beam/compose_casav.h"
 
 #include <gtest/gtest.h>
 
 #include <algorithm>
 #include <cmath>
 
-#include "stages/beam/paper_fragment.h"
+#include "stages/beam/casav_fragment.h"
 #include "tests/stages/beam_pixels.h"
 
 namespace beampipe {
@@ -169,7 +169,7 @@ TEST(Compose, PixelsDoNotMix) {
   shade(colors, fragments.list, counters);
   const ABuffer buffer = sorted(fragments, tile.pixels());
   const MergePositions positions(hammersley_pattern());
-  const std::vector<Aggregate> found = compose(fragments.list, buffer, positions, {}, PaperStorage::float32, counters);
+  const std::vector<Aggregate> found = compose(fragments.list, buffer, positions, {}, CasavStorage::float32, counters);
   for (std::size_t i = 0; i < tile.pixels(); ++i) {
     Aggregate alone = kEmptyAggregate;
     for (std::uint32_t k = buffer.first[i]; k < buffer.first[i + 1]; ++k)

@@ -1,9 +1,9 @@
 // What compose and compose_over are charged.
 #pragma once
 
-#include "stages/beam/compose_paper.h"
-#include "stages/beam/paper_fragment.h"
-#include "stages/beam/paper_merges.h"
+#include "stages/beam/casav_fragment.h"
+#include "stages/beam/casav_merges.h"
+#include "stages/beam/compose_casav.h"
 #include "stages/cost/counting.h"
 
 namespace beampipe {

@@ -7,8 +7,8 @@
 
 #include "simd/merge.h"
 #include "stages/cost/counters.h"
+#include "stages/data/casav_aggregate.h"
 #include "stages/data/fragment.h"
-#include "stages/data/paper_aggregate.h"
 #include "stages/data/sorted_lists.h"
 
 namespace beampipe {
@@ -16,7 +16,7 @@ namespace beampipe {
 // Merges by the published rules (simd/merge.h). `buffer`: the lists of `fragments`. Returns one aggregate per pixel of
 // the tile, kEmptyAggregate where nothing is.
 std::vector<Aggregate> compose(const std::vector<Fragment>& fragments, const ABuffer& buffer,
-                               const MergePositions& positions, const MergeRules& rules, PaperStorage storage,
+                               const MergePositions& positions, const MergeRules& rules, CasavStorage storage,
                                StageCounters& counters);
 
 // Sizes in the modelled machine of an aggregate and of a fragment for compose_over, which needs neither masks nor

@@ -1,10 +1,10 @@
-// What a merge by the published rules is charged, in compose_paper and compose_layers.
+// What a merge by the published rules is charged, in compose_casav and compose_layers.
 #pragma once
 
 #include <bit>
 
 #include "simd/merge.h"
-#include "stages/beam/paper_fragment.h"
+#include "stages/beam/casav_fragment.h"
 #include "stages/cost/counting.h"
 
 namespace beampipe {
@@ -34,7 +34,7 @@ struct MergeWork {
   }
 };
 
-inline OperationCounts merge_cost(const MergeWork& work, const MergeRules& rules, PaperStorage storage) {
+inline OperationCounts merge_cost(const MergeWork& work, const MergeRules& rules, CasavStorage storage) {
   using Float = Counted<float>;
   using Mask = Counted<std::uint32_t>;
   OperationCounts total;

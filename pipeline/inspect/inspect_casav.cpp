@@ -1,4 +1,4 @@
-#include "pipeline/inspect/inspect_paper.h"
+#include "pipeline/inspect/inspect_casav.h"
 
 #include "pipeline/inspect/linear_weights.h"
 #include "stages/beam/compose_layers.h"
@@ -27,7 +27,7 @@ WideMask mask_of(std::uint32_t word) {
 }
 
 // The fragments in the order in which they are composed, shaded, and their places in the history.
-struct PaperFragments {
+struct CasavFragments {
   std::vector<Fragment> fragments;
   std::vector<std::uint32_t> places;
 
@@ -40,7 +40,7 @@ struct PaperFragments {
 };
 
 // Adds the terms, what became of each fragment, and the picture's pixel.
-void finish(const InspectedPixel& pixel, const PaperFragments& of, const std::vector<double>& weights,
+void finish(const InspectedPixel& pixel, const CasavFragments& of, const std::vector<double>& weights,
             const Aggregate& aggregate, PixelHistory& history) {
   for (std::size_t k = 0; k < of.fragments.size(); ++k) {
     const Fragment& fragment = of.fragments[k];
@@ -57,12 +57,12 @@ void finish(const InspectedPixel& pixel, const PaperFragments& of, const std::ve
 
 }  // namespace
 
-PixelHistory inspect_paper(const InspectedPixel& pixel, const PaperInspection& how) {
+PixelHistory inspect_casav(const InspectedPixel& pixel, const CasavInspection& how) {
   PixelHistory history = pixel.history(
       how.sort == SortKey::centroid ? "near to far, by the depth at the centroid" : "near to far, by the nearest depth",
       how.fragments.positions);
   StageCounters unused;
-  PaperFragments arrived;
+  CasavFragments arrived;
   for (const Pair& pair : pixel.pairs(pixel.list)) arrived.add(pixel, pair, how.fragments, history);
   shade(pixel.shader(), arrived.fragments, unused);
   // The history has them from near to far, and before them what is no fragment.
@@ -70,7 +70,7 @@ PixelHistory inspect_paper(const InspectedPixel& pixel, const PaperInspection& h
   std::vector<HistoryFragment> noted;
   for (const HistoryFragment& each : history.fragments)
     if (each.fate == Fate::no_area || each.fate == Fate::cut_out) noted.push_back(each);
-  PaperFragments of;
+  CasavFragments of;
   for (const std::uint32_t record : sorted.records) {
     of.fragments.push_back(arrived.fragments[record]);
     of.places.push_back(static_cast<std::uint32_t>(noted.size()));
@@ -93,19 +93,19 @@ PixelHistory inspect_paper(const InspectedPixel& pixel, const PaperInspection& h
     note_missed(of.places[k], history);
   }
   const std::vector<double> weights = linear_weights(of.fragments, [&](const std::vector<Fragment>& fragments) {
-    return color_of(how.compose(fragments, first, PaperStorage::float32));
+    return color_of(how.compose(fragments, first, CasavStorage::float32));
   });
   finish(pixel, of, weights, aggregate, history);
   return history;
 }
 
-PixelHistory inspect_paper_layers(const InspectedPixel& pixel, const PaperLayersInspection& how) {
+PixelHistory inspect_casav_layers(const InspectedPixel& pixel, const CasavLayersInspection& how) {
   PixelHistory history = pixel.history(
       how.sorts ? "near to far, by the nearest depth in the bin" : "order of the trace", how.fragments.positions);
   StageCounters unused;
   const TriangleList list =
       how.sorts ? bin_sort(pixel.context.triangles, pixel.list, pixel.bin, unused).triangles : pixel.list;
-  PaperFragments of;
+  CasavFragments of;
   for (const Pair& pair : pixel.pairs(list)) of.add(pixel, pair, how.fragments, history);
   shade(pixel.shader(), of.fragments, unused);
   const auto composed = [&](AggregateLayers& layers) {
@@ -126,7 +126,7 @@ PixelHistory inspect_paper_layers(const InspectedPixel& pixel, const PaperLayers
     note_missed(of.places[k], history);
   }
   const std::vector<double> weights = linear_weights(of.fragments, [&](const std::vector<Fragment>& fragments) {
-    AggregateLayers unpacked(1, how.layers, PaperStorage::float32);
+    AggregateLayers unpacked(1, how.layers, CasavStorage::float32);
     unpacked.add(fragments, how.positions, how.rules, unused, merges);
     return color_of(composed(unpacked));
   });

@@ -3,8 +3,8 @@
 
 #include "simd/merge.h"
 #include "stages/cost/counting.h"
+#include "stages/data/casav_aggregate.h"
 #include "stages/data/fragment.h"
-#include "stages/data/paper_aggregate.h"
 
 namespace beampipe {
 
@@ -34,13 +34,13 @@ inline FragmentOf<Counted<float>, Counted<std::uint32_t>> counted_fragment(Opera
 }
 
 // How many numbers of a stored aggregate must be converted to float32.
-constexpr std::uint64_t packed_numbers(PaperStorage storage) {
+constexpr std::uint64_t packed_numbers(CasavStorage storage) {
   switch (storage) {
-    case PaperStorage::slides:
+    case CasavStorage::slides:
       return 3;  // colour
-    case PaperStorage::text:
+    case CasavStorage::text:
       return 6;  // colour, slopes, thickness
-    case PaperStorage::float32:
+    case CasavStorage::float32:
       break;
   }
   return 0;

@@ -1,4 +1,4 @@
-#include "stages/data/paper_aggregate.h"
+#include "stages/data/casav_aggregate.h"
 
 #include <gtest/gtest.h>
 
@@ -9,7 +9,7 @@
 namespace beampipe {
 namespace {
 
-TEST(PaperStorage, SlidesKeepAllButTheColour) {
+TEST(CasavStorage, SlidesKeepAllButTheColour) {
   const Aggregate a{0.3f, 0x1234u, {-0.5f, 1e-9f, -2e-3f}, 0.001f, -0.6f, -0.4f, {0.1f, 0.2f, 0.3f}};
   const Aggregate b = SlidesAggregate(a);
   EXPECT_EQ(b.alpha, a.alpha);
@@ -23,7 +23,7 @@ TEST(PaperStorage, SlidesKeepAllButTheColour) {
   for (int c = 0; c < 3; ++c) EXPECT_NEAR(b.color[c], a.color[c], a.color[c] / 2048);
 }
 
-TEST(PaperStorage, TheTextsSizeRoundsSlopesAndThicknessToEightBits) {
+TEST(CasavStorage, TheTextsSizeRoundsSlopesAndThicknessToEightBits) {
   Random random(64);
   SCOPED_TRACE(random.name());
   for (int i = 0; i < 10000; ++i) {
@@ -41,7 +41,7 @@ TEST(PaperStorage, TheTextsSizeRoundsSlopesAndThicknessToEightBits) {
   }
 }
 
-TEST(PaperStorage, EmptyStaysEmpty) {
+TEST(CasavStorage, EmptyStaysEmpty) {
   for (const Aggregate& empty :
        {Aggregate(SlidesAggregate(kEmptyAggregate)), Aggregate(TextAggregate(kEmptyAggregate))}) {
     EXPECT_EQ(empty.alpha, 0.0f);

@@ -14,7 +14,7 @@
 
 namespace beampipe {
 
-enum class PaperStorage {
+enum class CasavStorage {
   slides,   // 42 bytes: slide 23 of the talk
   text,     // 32 bytes with colour: the size that section 3 states, in a layout of our own
   float32,  // every number as float32: shows what packing costs
@@ -73,13 +73,13 @@ struct TextAggregate {
 static_assert(sizeof(TextAggregate) == 32);
 #pragma pack(pop)
 
-constexpr std::uint32_t paper_aggregate_bytes(PaperStorage storage) {
+constexpr std::uint32_t casav_aggregate_bytes(CasavStorage storage) {
   switch (storage) {
-    case PaperStorage::slides:
+    case CasavStorage::slides:
       return sizeof(SlidesAggregate);
-    case PaperStorage::text:
+    case CasavStorage::text:
       return sizeof(TextAggregate);
-    case PaperStorage::float32:
+    case CasavStorage::float32:
       break;
   }
   return sizeof(Aggregate);

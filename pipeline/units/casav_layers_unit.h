@@ -13,7 +13,7 @@ class ComposeLayersUnit {
  public:
   // `surfaces`: of the aggregates. The positions must outlive the unit.
   ComposeLayersUnit(Bin& bin, const MergePositions& positions, const MergeRules& rules, std::size_t layers,
-                    PaperStorage storage, const std::vector<Surface>& surfaces)
+                    CasavStorage storage, const std::vector<Surface>& surfaces)
       : bin_(bin),
         stage_(bin.stage("compose")),
         positions_(positions),

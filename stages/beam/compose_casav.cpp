@@ -1,10 +1,10 @@
-#include "stages/beam/compose_paper.h"
+#include "stages/beam/compose_casav.h"
 
 #include <algorithm>
 #include <numeric>
 
-#include "stages/beam/compose_paper_cost.h"
-#include "stages/beam/paper_fragment.h"
+#include "stages/beam/casav_fragment.h"
+#include "stages/beam/compose_casav_cost.h"
 
 namespace beampipe {
 namespace {
@@ -48,22 +48,22 @@ std::vector<Aggregate> compose_stored(const std::vector<Fragment>& fragments, co
 }  // namespace
 
 std::vector<Aggregate> compose(const std::vector<Fragment>& fragments, const ABuffer& buffer,
-                               const MergePositions& positions, const MergeRules& rules, PaperStorage storage,
+                               const MergePositions& positions, const MergeRules& rules, CasavStorage storage,
                                StageCounters& counters) {
   MergeWork work;
   const auto composed = [&] {
     switch (storage) {
-      case PaperStorage::slides:
+      case CasavStorage::slides:
         return compose_stored<SlidesAggregate>(fragments, buffer, positions, rules, work);
-      case PaperStorage::text:
+      case CasavStorage::text:
         return compose_stored<TextAggregate>(fragments, buffer, positions, rules, work);
-      case PaperStorage::float32:
+      case CasavStorage::float32:
         break;
     }
     return compose_stored<Aggregate>(fragments, buffer, positions, rules, work);
   };
   std::vector<Aggregate> aggregates = composed();
-  const std::uint32_t bytes = paper_aggregate_bytes(storage);
+  const std::uint32_t bytes = casav_aggregate_bytes(storage);
   charge_merges(buffer, merge_cost(work, rules, storage), bytes, bytes, counters);
   counters.position_tests += position_tests(work);
   return aggregates;

@@ -1,82 +1,83 @@
-// The beam pipeline as published (Crassin et al. 2018). Conservative raster makes pairs; they become fragments with
-// analytic coverage and a localization mask, are shaded, sorted in an A-buffer, and merged near to far into one
-// aggregate per pixel. Without the A-buffer, each pixel keeps a few aggregates, into which fragments are merged as they
-// come: near to far, roughly, in sorted bins, or in primitive order.
+// CASAV, correlation-aware semi-analytic visibility: the beam pipeline as published (Crassin et al. 2018). Conservative
+// raster makes pairs; they become fragments with analytic coverage and a localization mask, are shaded, sorted in an
+// A-buffer, and merged near to far into one aggregate per pixel. Without the A-buffer, each pixel keeps a few
+// aggregates, into which fragments are merged as they come: near to far, roughly, in sorted bins, or in primitive
+// order.
 #include <algorithm>
 #include <string>
 
 #include "pipeline/bins/bin_weights.h"
 #include "pipeline/bins/render_bins.h"
-#include "pipeline/inspect/inspect_paper.h"
+#include "pipeline/inspect/inspect_casav.h"
 #include "pipeline/technique_table.h"
 #include "pipeline/units/a_buffer_unit.h"
+#include "pipeline/units/casav_layers_unit.h"
 #include "pipeline/units/compose_units.h"
 #include "pipeline/units/fragment_units.h"
 #include "pipeline/units/owner_units.h"
-#include "pipeline/units/paper_layers_unit.h"
 #include "pipeline/units/raster_units.h"
 #include "stages/beam/a_buffer.h"
 #include "stages/beam/beam_fragment.h"
-#include "stages/beam/compose_paper.h"
-#include "stages/data/paper_aggregate.h"
+#include "stages/beam/compose_casav.h"
+#include "stages/data/casav_aggregate.h"
 
 namespace beampipe {
 namespace {
 
 enum class Rules {
-  paper,  // simd/merge.h: the published rules
-  over,   // alpha OVER without masks and slabs, to show what those are worth
+  published,  // simd/merge.h
+  over,       // alpha OVER without masks and slabs, to show what those are worth
 };
 
-enum class PaperOrder { sorted, near_first, stream };
+enum class CasavOrder { sorted, near_first, stream };
 
-struct PaperOptions {
-  Rules rules = Rules::paper;
+struct CasavOptions {
+  Rules rules = Rules::published;
   MaskSource mask = MaskSource::table;  // MaskSource::none with Rules::over
   SortKey sort = SortKey::centroid;
   int tiny_positions = 0;  // BeamFragmentOptions::tiny_positions
   MergeRules merge{};
-  PaperStorage storage = PaperStorage::slides;
-  PaperOrder order = PaperOrder::sorted;
+  CasavStorage storage = CasavStorage::slides;
+  CasavOrder order = CasavOrder::sorted;
   int layers = 3;  // aggregates of a pixel, without an A-buffer
 };
 
-std::vector<Surface> aggregate_surfaces(const PaperOptions& beam) {
+std::vector<Surface> aggregate_surfaces(const CasavOptions& beam) {
   const Surface color{"color", "RGB16F", kAggregateColorBytes}, coverage{"coverage", "R32F", 4};
   if (beam.rules == Rules::over) return {coverage, color};
   const Surface mask{"mask", "R32UI", 4}, thickness{"thickness", "R32F", 4}, range{"depth_range", "RG32F", 8};
   switch (beam.storage) {
-    case PaperStorage::slides:
+    case CasavStorage::slides:
       return {coverage, mask, {"depth_plane", "RGBA32F", 16}, thickness, range, color};
-    case PaperStorage::text:
+    case CasavStorage::text:
       return {coverage, mask, {"depth_plane", "R32F + RG16", 8}, {"thickness", "R16", 2}, range, color};
-    case PaperStorage::float32:
+    case CasavStorage::float32:
       break;
   }
   return {coverage, mask, {"depth_plane", "RGB32F", 12}, thickness, range, {"color", "RGB32F", 12}};
 }
 
-Framebuffer paper_framebuffer(const PaperOptions& beam) {
+Framebuffer casav_framebuffer(const CasavOptions& beam) {
   std::vector<Surface> surfaces = aggregate_surfaces(beam);
-  if (beam.order == PaperOrder::sorted) return {.surfaces = surfaces};
+  if (beam.order == CasavOrder::sorted) return {.surfaces = surfaces};
   const auto layers = static_cast<std::uint32_t>(beam.layers);
   for (Surface& surface : surfaces) {
     surface.format = times(surface.format.c_str(), layers);
     surface.bytes_per_pixel *= layers;
   }
-  return {.surfaces = surfaces, .place = beam.order == PaperOrder::near_first ? Place::on_chip : Place::in_memory};
+  return {.surfaces = surfaces, .place = beam.order == CasavOrder::near_first ? Place::on_chip : Place::in_memory};
 }
 
 struct RecordBytes {
   std::uint32_t fragment, aggregate;
 };
 
-RecordBytes record_bytes(const PaperOptions& options) {
+RecordBytes record_bytes(const CasavOptions& options) {
   if (options.rules == Rules::over) return {kOverFragmentBytes, kOverBytes};
-  return {paper_aggregate_bytes(options.storage), paper_aggregate_bytes(options.storage)};
+  return {casav_aggregate_bytes(options.storage), casav_aggregate_bytes(options.storage)};
 }
 
-BeamFragmentOptions fragment_options(const PaperOptions& options, const MergePositions& positions) {
+BeamFragmentOptions fragment_options(const CasavOptions& options, const MergePositions& positions) {
   BeamFragmentOptions made;
   made.mask = options.mask;
   if (options.mask != MaskSource::none) made.positions = {positions.pattern};
@@ -100,17 +101,17 @@ std::vector<bool> full_pixels(const std::vector<PixelColor>& aggregates) {
   return full;
 }
 
-std::vector<PixelColor> compose_lists(const PaperOptions& options, PaperStorage storage,
+std::vector<PixelColor> compose_lists(const CasavOptions& options, CasavStorage storage,
                                       const MergePositions& positions, const std::vector<Fragment>& fragments,
                                       const ABuffer& lists, StageCounters& counters) {
-  return pixel_colors(options.rules == Rules::paper
+  return pixel_colors(options.rules == Rules::published
                           ? compose(fragments, lists, positions, options.merge, storage, counters)
                           : compose_over(fragments, lists, counters));
 }
 
 // Composition is linear in colour. Set one fragment's channel to 1 and all others to 0: the composed channel is that
 // fragment's weight. RGB gives three weights per run. Weights are those of unpacked aggregates.
-void add_weights(const PaperOptions& options, const MergePositions& positions, std::vector<Fragment> fragments,
+void add_weights(const CasavOptions& options, const MergePositions& positions, std::vector<Fragment> fragments,
                  const ABuffer& lists, BinWeights& weights) {
   StageCounters unused;
   const std::size_t pixels = lists.first.size() - 1;
@@ -125,7 +126,7 @@ void add_weights(const PaperOptions& options, const MergePositions& positions, s
       }
     }
     const std::vector<PixelColor> composed =
-        compose_lists(options, PaperStorage::float32, positions, fragments, lists, unused);
+        compose_lists(options, CasavStorage::float32, positions, fragments, lists, unused);
     for (std::size_t pixel = 0; pixel < pixels; ++pixel) {
       for (std::uint32_t k = first; k < std::min(first + 3, lists.record_count(pixel)); ++k) {
         const Fragment& fragment = fragments[lists.records[lists.first[pixel] + k]];
@@ -136,13 +137,13 @@ void add_weights(const PaperOptions& options, const MergePositions& positions, s
   }
 }
 
-FrameResult render_sorted(const Trace& trace, const Frame& frame, const PaperOptions& beam, const RunOptions& run) {
+FrameResult render_sorted(const Trace& trace, const Frame& frame, const CasavOptions& beam, const RunOptions& run) {
   const FrameContext context(trace, frame, run, {.takes_positions = true});
   const MergePositions positions(hammersley_pattern());
   const RecordBytes bytes = record_bytes(beam);
   const BeamFragmentOptions options = fragment_options(beam, positions);
   const BinPlan plan{.stages = {"conservative_raster", "beam_fragment", "shade", "a_buffer", "compose", "resolve"},
-                     .framebuffer = paper_framebuffer(beam),
+                     .framebuffer = casav_framebuffer(beam),
                      .pair_bytes = kPairWorkingBytes + kSortBytes};
   return render_bins(context, plan, [&](Bin& bin) {
     ConservativeRasterUnit raster(bin, "pair_queue", PairDepths::none, ConservativeRasterUnit::Hidden::kept,
@@ -169,13 +170,13 @@ FrameResult render_sorted(const Trace& trace, const Frame& frame, const PaperOpt
 }
 
 // Without an A-buffer.
-FrameResult render_layers(const Trace& trace, const Frame& frame, const PaperOptions& beam, const RunOptions& run) {
+FrameResult render_layers(const Trace& trace, const Frame& frame, const CasavOptions& beam, const RunOptions& run) {
   const FrameContext context(trace, frame, run, {.takes_positions = true});
   const MergePositions positions(hammersley_pattern());
   const BeamFragmentOptions options = fragment_options(beam, positions);
-  const bool sorts = beam.order == PaperOrder::near_first;
+  const bool sorts = beam.order == CasavOrder::near_first;
   BinPlan plan{.stages = {"conservative_raster", "beam_fragment", "shade", "compose", "resolve"},
-               .framebuffer = paper_framebuffer(beam),
+               .framebuffer = casav_framebuffer(beam),
                .keeps_tile_size = sorts,
                .sorts_lists = sorts};
   if (sorts) plan.stages.push_back("bin_sort");
@@ -200,52 +201,53 @@ FrameResult render_layers(const Trace& trace, const Frame& frame, const PaperOpt
 }
 
 // Exact masks are compared exactly.
-PaperOptions with_partition(PaperOptions options) {
+CasavOptions with_partition(CasavOptions options) {
   if (options.mask == MaskSource::exact) options.merge.partition = MergeRules::Partition::positions;
   return options;
 }
 
-FrameResult render_paper(const Trace& trace, const Frame& frame, const PaperOptions& beam, const RunOptions& run) {
-  const PaperOptions options = with_partition(beam);
-  return beam.order == PaperOrder::sorted ? render_sorted(trace, frame, options, run)
+FrameResult render_casav(const Trace& trace, const Frame& frame, const CasavOptions& beam, const RunOptions& run) {
+  const CasavOptions options = with_partition(beam);
+  return beam.order == CasavOrder::sorted ? render_sorted(trace, frame, options, run)
                                           : render_layers(trace, frame, options, run);
 }
 
-std::vector<PixelHistory> inspect_rules(const Trace& trace, const Frame& frame, const PaperOptions& beam,
+std::vector<PixelHistory> inspect_rules(const Trace& trace, const Frame& frame, const CasavOptions& beam,
                                         const RunOptions& run, const std::vector<PixelAddress>& pixels) {
-  const PaperOptions options = with_partition(beam);
+  const CasavOptions options = with_partition(beam);
   const MergePositions positions(hammersley_pattern());
   const BeamFragmentOptions fragments = fragment_options(options, positions);
   StageCounters unused;
-  const auto compose_pixel = [&](const std::vector<Fragment>& of_pixel, const ABuffer& lists, PaperStorage storage) {
-    return options.rules == Rules::paper ? compose(of_pixel, lists, positions, options.merge, storage, unused).front()
-                                         : compose_over(of_pixel, lists, unused).front();
+  const auto compose_pixel = [&](const std::vector<Fragment>& of_pixel, const ABuffer& lists, CasavStorage storage) {
+    return options.rules == Rules::published
+               ? compose(of_pixel, lists, positions, options.merge, storage, unused).front()
+               : compose_over(of_pixel, lists, unused).front();
   };
-  const bool sorts = options.order == PaperOrder::near_first;
+  const bool sorts = options.order == CasavOrder::near_first;
   return inspect_pixels(
       trace, frame, run, {.takes_positions = true}, kBinSize, sorts, pixels, [&](const InspectedPixel& pixel) {
-        if (options.order == PaperOrder::sorted)
-          return inspect_paper(pixel, {positions, fragments, options.sort, compose_pixel, options.storage});
-        return inspect_paper_layers(pixel, {positions, fragments, options.merge,
+        if (options.order == CasavOrder::sorted)
+          return inspect_casav(pixel, {positions, fragments, options.sort, compose_pixel, options.storage});
+        return inspect_casav_layers(pixel, {positions, fragments, options.merge,
                                             static_cast<std::size_t>(options.layers), options.storage, sorts});
       });
 }
 
-Technique make_paper(const PaperOptions& options) {
-  return {.framebuffer = paper_framebuffer(options),
-          .render = bind_options(render_paper, options),
+Technique make_casav(const CasavOptions& options) {
+  return {.framebuffer = casav_framebuffer(options),
+          .render = bind_options(render_casav, options),
           .inspect = bind_inspection(inspect_rules, options),
-          .has_weights = options.order == PaperOrder::sorted};
+          .has_weights = options.order == CasavOrder::sorted};
 }
 
 // simd/merge_rules.h explains the policies, and docs/accuracy.md says where they come from.
-SpecOptions paper_options(PaperOptions& o) {
+SpecOptions casav_options(CasavOptions& o) {
   using R = MergeRules;
   return {
       choice("mask", o.mask, {{"table", MaskSource::table}, {"exact", MaskSource::exact}},
              "masks from a 64 x 64 table, or from edge tests"),
       beside(
-          "order=sorted", [&o] { return o.order == PaperOrder::sorted; },
+          "order=sorted", [&o] { return o.order == CasavOrder::sorted; },
           choice("sort", o.sort, {{"centroid", SortKey::centroid}, {"nearest", SortKey::nearest}},
                  "the fragment's depth that the A-buffer sorts by")),
       choice("tiny", o.tiny_positions, {{"1", 1}, {"3", 3}}, "most mask positions that a speck is given"),
@@ -272,34 +274,34 @@ SpecOptions paper_options(PaperOptions& o) {
              {{"larger", R::Thickness::larger}, {"containing", R::Thickness::containing}},
              "the slab keeps the larger thickness, or contains all merged fragments"),
       choice("storage", o.storage,
-             {{"slides", PaperStorage::slides}, {"text", PaperStorage::text}, {"float32", PaperStorage::float32}},
+             {{"slides", CasavStorage::slides}, {"text", CasavStorage::text}, {"float32", CasavStorage::float32}},
              "formats of the aggregate: as in the talk's slides, as in the paper's text, or float32"),
       choice("order", o.order,
-             {{"sorted", PaperOrder::sorted}, {"near-first", PaperOrder::near_first}, {"stream", PaperOrder::stream}},
+             {{"sorted", CasavOrder::sorted}, {"near-first", CasavOrder::near_first}, {"stream", CasavOrder::stream}},
              "fragments are sorted in an A-buffer, come from sorted bins, or come in primitive order"),
       beside(
-          "order=near-first or order=stream", [&o] { return o.order != PaperOrder::sorted; },
+          "order=near-first or order=stream", [&o] { return o.order != CasavOrder::sorted; },
           choice("layers", o.layers, {{"1", 1}, {"2", 2}, {"3", 3}, {"4", 4}, {"8", 8}},
                  "without an A-buffer: aggregates that a pixel keeps"))};
 }
 
 }  // namespace
 
-TechniqueKind beam_paper_kind() {
-  return {.name = "beam",
-          .variant = {"rules", "paper", "conserve", "order"},
+TechniqueKind casav_kind() {
+  return {.name = "casav",
           .description =
-              "the published rules: a 32-bit mask from a table, a depth slab, one aggregate per pixel; the "
+              "correlation-aware semi-analytic visibility, the published beam pipeline: a 32-bit mask from a table, a "
+              "depth slab, one aggregate per pixel; the "
               "options are other readings of these rules, see docs/accuracy.md",
           .source = "Crassin et al. 2018",
-          .make = make_from(PaperOptions{.tiny_positions = 1}, paper_options, make_paper)};
+          .make = make_from(CasavOptions{.tiny_positions = 1}, casav_options, make_casav)};
 }
 
 TechniqueKind alpha_kind() {
   return {.name = "alpha",
           .description = "the fragments of the published rules, blended by plain OVER, without masks",
           .source = "Porter and Duff 1984",
-          .make = make_plain([] { return make_paper(PaperOptions{.rules = Rules::over, .mask = MaskSource::none}); })};
+          .make = make_plain([] { return make_casav(CasavOptions{.rules = Rules::over, .mask = MaskSource::none}); })};
 }
 
 }  // namespace beampipe
