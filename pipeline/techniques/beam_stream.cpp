@@ -47,7 +47,8 @@ FrameResult render_one_pass(const Trace& trace, const Frame& frame, const Stream
   const PositionSet& positions = cell_positions(stream.positions);
   const PositionGrid grid(stream.positions);
   const BeamFragmentOptions options = grid_options(grid, owners_fragment_bytes(Words));
-  const BinPlan plan{.stages = {"conservative_raster", "beam_fragment", "compose", "shade", "resolve"},
+  const BinPlan plan{.stages = {StageId::conservative_raster, StageId::beam_fragment, StageId::compose, StageId::shade,
+                                StageId::resolve},
                      .framebuffer = stream_framebuffer(stream)};
   return render_bins(context, plan, [&](Bin& bin) {
     ConservativeRasterUnit raster(bin, "", PairDepths::bounds, ConservativeRasterUnit::Hidden::left_out);
@@ -70,7 +71,8 @@ FrameResult render_passes(const Trace& trace, const Frame& frame, const StreamOp
   const PositionSet& positions = cell_positions(stream.positions);
   const PositionGrid grid(stream.positions);
   const BeamFragmentOptions options = grid_options(grid, streaming_fragment_bytes(Words));
-  const BinPlan plan{.stages = {"conservative_raster", "beam_fragment", "claim", "shade", "settle", "resolve"},
+  const BinPlan plan{.stages = {StageId::conservative_raster, StageId::beam_fragment, StageId::claim, StageId::shade,
+                                StageId::settle, StageId::resolve},
                      .framebuffer = stream_framebuffer(stream)};
   return render_bins(context, plan, [&](Bin& bin) {
     ConservativeRasterUnit raster(bin, "batch_pairs", PairDepths::bounds, ConservativeRasterUnit::Hidden::left_out);

@@ -20,7 +20,7 @@ class ComposeZ3Unit {
  public:
   ComposeZ3Unit(Bin& bin, const PositionSet& positions, LayerMerge merge, const std::vector<Surface>& framebuffer)
       : bin_(bin),
-        stage_(bin.stage("compose")),
+        stage_(bin.stage(StageId::compose)),
         positions_(positions),
         merge_(merge),
         merges_(bin.pixel_counter("merges")),
@@ -33,7 +33,7 @@ class ComposeZ3Unit {
   }
 
   std::vector<glm::vec4> resolve_layers() {
-    const BinStage resolving = bin_.stage("resolve");
+    const BinStage resolving = bin_.stage(StageId::resolve);
     memory_.flush({}, stage_.counters);
     memory_.read_all(resolving.counters);
     if (bin_.models_memory()) memory_.add_bytes(bin_.pixel_counter("bytes"));
@@ -58,8 +58,8 @@ class OwnersUnit {
   // `framebuffer`: the state's surfaces, then the colour.
   OwnersUnit(Bin& bin, const PositionSet& positions, const std::vector<Surface>& framebuffer)
       : bin_(bin),
-        claim_(bin.stage("claim")),
-        settle_(bin.stage("settle")),
+        claim_(bin.stage(StageId::claim)),
+        settle_(bin.stage(StageId::settle)),
         positions_(positions),
         color_bytes_(framebuffer.back().bytes_per_pixel),
         pixels_(bin.tile.pixels(), cleared_pixel<Words, Layers>()),
@@ -110,7 +110,7 @@ class OwnersUnit {
   }
 
   std::vector<glm::vec4> resolve_settled() {
-    const BinStage resolving = bin_.stage("resolve");
+    const BinStage resolving = bin_.stage(StageId::resolve);
     if (bin_.models_memory()) {
       state_.add_bytes(bin_.pixel_counter("bytes"));
       color_.add_bytes(bin_.pixel_counter("bytes"));
