@@ -3,7 +3,7 @@
 
 usage: docs/accuracy.py sweep PROGRAM MODELS -o DIR    every spec below, on the 17 scenes of docs/scene_traces.py
        docs/accuracy.py sizes PROGRAM MODELS -o DIR    two specs in four sizes
-       docs/accuracy.py scenes|density|results|steps|bins|storage|order|passes|policies|formats TABLE
+       docs/accuracy.py scenes|density|results|steps|bins|storage|order|unsorted|policies|formats TABLE
        docs/accuracy.py overview PROGRAM DIR TABLE SIZES_TABLE
        docs/accuracy.py frontier TABLE -o SVG          needs gnuplot
 
@@ -40,9 +40,7 @@ RESULTS = ["beam", "beam:bin=16", "beam:bits=64,slots=4", "beam:order=stream", "
            "z3:shape=128x3", "z3", "acaa:8", "alpha", "msaa:8", "msaa:32", "msaa:256"]
 ORDER = ["beam:rules=paper", *(f"beam:rules=paper,order={order},layers={layers}" for order in ("near-first", "stream")
                                for layers in (1, 3, 8))]
-PASSES = ["beam", "beam:order=sorted", "beam:order=stream", "beam:order=stream,passes=0",
-          *(f"beam:order=stream,bits={bits},passes=0,layers=1" for bits in POSITIONS), "z3:shape=32x2", "z3",
-          "z3:shape=128x3", "z3:shape=128x3,merge=color"]
+UNSORTED = ["beam", "beam:order=sorted", "beam:order=stream", "z3:shape=32x2", "z3", "z3:shape=128x3"]
 POLICIES = ["beam:rules=paper", *(f"beam:rules=paper,{policy}" for policy in (
     "mask=exact", "sort=nearest", "tiny=3", "overlap=over", "overlap=add", "overlap=transition", "regional=area",
     "local=keep", "fuzzy=mix", "extents=slab", "slab=visible", "plane=visible", "thickness=containing",
@@ -51,7 +49,7 @@ BINS = {spec: [spec, *(f"{spec}{',' if ':' in spec else ':'}bin={bin}" for bin i
         for spec in ("beam", "beam:bits=64,slots=4", "beam:bits=32,slots=2")}
 FORMATS = ["beam:order=sorted", "beam:order=sorted,storage=float32", "beam:rules=paper", "beam:rules=paper,storage=text",
            "beam:rules=paper,storage=float32"]
-ALL = list(dict.fromkeys(SCENES + list(STEPS.values()) + RESULTS + STORAGE + ORDER + PASSES + POLICIES + FORMATS +
+ALL = list(dict.fromkeys(SCENES + list(STEPS.values()) + RESULTS + STORAGE + ORDER + UNSORTED + POLICIES + FORMATS +
                          sum(BINS.values(), [])))
 
 
@@ -177,12 +175,12 @@ def print_overview(program, folder, table, density):
         print_row(title, "", "", *(rate(summary(column)) for column in zip(*rates)))
 
 
-def print_passes(table):
+def print_unsorted(table):
     def extra(spec):
         work = [a / b for a, b in zip(table.values("operations", spec), table.values("operations", "beam:order=sorted"))]
         return *(f"{value:.0f}" for value in bytes_of(table, spec)[:2]), f"{mean(work):.2f}", f"{max(work):.2f}"
 
-    print_groups(table, PASSES, ["bytes on chip", "bytes off chip", "operations ÷ those of sorted order", "most"], extra)
+    print_groups(table, UNSORTED, ["bytes on chip", "bytes off chip", "operations ÷ those of sorted order", "most"], extra)
 
 
 def print_formats(table):
@@ -219,7 +217,7 @@ plot {', '.join(plots)}
 
 
 TABLES = {"results": print_results, "steps": print_steps, "scenes": print_scenes, "density": print_density,
-          "bins": print_bins, "storage": print_storage, "passes": print_passes,
+          "bins": print_bins, "storage": print_storage, "unsorted": print_unsorted,
           "order": lambda table: print_groups(table, ORDER), "policies": lambda table: print_groups(table, POLICIES),
           "formats": print_formats}
 

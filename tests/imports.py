@@ -55,16 +55,16 @@ SHARED_IN_GROUP = {
 CASES = r"""
 our own files are included in quotes|tools/cli/main.cpp|#include <pipeline/technique.h>
 without . or ..|pipeline/bins/bin.cpp|#include "../pipeline/technique.h"
-without . or ..|stages/beam/claim.cpp|#include <stages/../pipeline/technique.h>
-starts at the root|stages/beam/claim.cpp|#include "settle.h"
-not written out|stages/beam/claim.cpp|#include SETTLE
+without . or ..|stages/beam/windows.cpp|#include <stages/../pipeline/technique.h>
+starts at the root|stages/beam/windows.cpp|#include "a_buffer.h"
+not written out|stages/beam/windows.cpp|#include A_BUFFER
 simd/ may not include traces/|simd/match.cpp|/* " */ # /**/ include /**/ "traces/trace.h" // a comment
 tools/ may not include tests/|tools/claims/text.h.in|auto a = R"(")";\n#include "tests/x.h"
 stages/data may not include traces/|stages/data/pair.h|#include "traces/trace.h"
 data may not include cost|stages/data/pair.h|#include "stages/cost/counters.h"
-beam may not include picture|stages/beam/claim.cpp|#include "stages/picture/picture_formulas.h"
-file of the stage settle|stages/beam/claim.cpp|#include "stages/beam/settle_cost.h"
-file of the stage claim|stages/beam/specks.h|#include "stages/beam/claim.h"
+beam may not include picture|stages/beam/windows.cpp|#include "stages/picture/picture_formulas.h"
+file of the stage a_buffer|stages/beam/windows.cpp|#include "stages/beam/a_buffer_cost.h"
+file of the stage windows|stages/beam/specks.h|#include "stages/beam/windows.h"
 file of the stage shading_point|stages/samples/accumulate.cpp|#include "stages/samples/shading_point.h"
 file of the stage materials|stages/samples/dilate_cost.h|#include "stages/samples/materials.h"
 units may not include techniques|pipeline/units/gbuffer_unit.h|#include "pipeline/techniques/msaa.h"
@@ -74,9 +74,9 @@ memory may not include root|pipeline/memory/parameters.h|#include "pipeline/tech
 technique.h may not include root|pipeline/technique.h|#include "pipeline/spec.h"
 evaluate may not include report|tools/evaluate/render.cpp|#include "tools/report/plot.h"
 report may not include stress|tools/report/plot.cpp|#include "tools/stress/judge.h"
--|stages/beam/claim_cost.h|#include "stages/beam/claim.h"\n#include "stages/beam/specks.h"\n#include <map>
--|tools/cli/main.cpp|// /*\n#include "pipeline/technique.h"\n/* #include "settle.h"\n#include "settle.h" */"/*"
--|simd/match.cpp|#include "hwy/highway.h"\nauto text = R"x(\n#include "settle.h"\n)x";"""
+-|stages/beam/windows_cost.h|#include "stages/beam/windows.h"\n#include "stages/beam/specks.h"\n#include <map>
+-|tools/cli/main.cpp|// /*\n#include "pipeline/technique.h"\n/* #include "a_buffer.h"\n#include "a_buffer.h" */"/*"
+-|simd/match.cpp|#include "hwy/highway.h"\nauto text = R"x(\n#include "a_buffer.h"\n)x";"""
 SOURCE = re.compile(r".*\.(h|hpp|c|cc|cpp|inc|inl)(\.in)?")
 # Strings are matched so that "/*" in one does not begin a comment. A raw string may contain whole lines of code.
 COMMENT_OR_STRING = re.compile(

@@ -1,6 +1,7 @@
 #include "pipeline/units/owner_units.h"
 
 #include <algorithm>
+#include <bit>
 
 #include "stages/raster/bin_sort_cost.h"
 
@@ -16,6 +17,15 @@ void OpenPixelStore::finish() {
   memory_.flush({}, bin_.stage(StageId::compose).counters);
   memory_.read_all(bin_.stage(StageId::resolve).counters);
   if (bin_.models_memory()) memory_.add_bytes(bin_.pixel_counter("bytes"));
+}
+
+std::vector<Surface> open_pixel_surfaces(int positions, int slots) {
+  const auto count = static_cast<std::uint32_t>(slots), words = static_cast<std::uint32_t>(positions) / 32;
+  const std::uint32_t map_words = words * static_cast<std::uint32_t>(std::bit_width(count + 1));
+  constexpr std::uint32_t kSums = sizeof(ColorSums) + 3 * sizeof(FixedSum);
+  return {{"owner_map", times("R32UI", map_words), 4 * map_words},
+          {"owners", times("RG32UI", count), count * static_cast<std::uint32_t>(sizeof(OwnerSlot))},
+          {"sums", times("R16", kSums / 2), kSums}};
 }
 
 // Depth is compared position by position, so the order of triangles matters only where owners became one.

@@ -34,14 +34,6 @@ void ConservativeRasterUnit::drop_hidden(std::vector<Pair>& pairs) {
   charge(*closed_, stage_.counters);
 }
 
-void ConservativeRasterUnit::start_next_pass() {
-  bin_.start_texture_pass();
-  if (!bin_.keeps_pixels_on_chip()) stage_.reads("closed_depth", closed_->bytes());
-  stage_.counters.items_in += bin_.list.size();
-  stage_.counters.bytes_read += bin_.list.size() * sizeof(SetupTriangle);
-  read_bin(bin_.memory(), bin_.list, stage_.counters);
-}
-
 const TriangleList& SampleRasterUnit::drawn_triangles() {
   if (!bin_.context.has_blending() || translucent_ == Translucent::drawn) return bin_.list;
   drawn_.clear();

@@ -71,10 +71,6 @@ class ConservativeRasterUnit {
     }
   }
 
-  // Another pass over the bin reads the list, the setup triangles and, unless they stay on chip with the pixels, the
-  // closed depths from memory again.
-  void start_next_pass();
-
   ClosedDepth& closed() { return *closed_; }  // with Hidden::left_out
 
  private:

@@ -23,8 +23,6 @@ const std::vector<PixelCounterInfo>& pixel_counters() {
        "beam:order=sorted, beam:rules=paper, alpha"},
       {"largest_window", "fragments", "fragments of the largest window", "beam:order=sorted"},
       {"visible_fragments", "fragments", "triangles that have a visible sample in the pixel", "acaa"},
-      {"passes", "passes", "passes over the triangles until the pixel was settled",
-       "beam:order=stream in several passes"},
       {"quads_of_1", "0 or 1", "the pixel's 2x2 quad shows one material, the background included", "dvm"},
       {"quads_of_2", "0 or 1", "the pixel's quad shows two materials", "dvm"},
       {"quads_of_3", "0 or 1", "the pixel's quad shows three materials", "dvm"},

@@ -10,17 +10,17 @@ using Ops = OperationCounts;
 using enum CounterGroup::Bit;
 
 constexpr CounterInfo field(CounterGroups group, const char* name, const char* title, const char* unit,
-                            const char* meaning, Count StageCounters::*counter) {
+                            const char* meaning, std::uint64_t StageCounters::*counter) {
   return {name, title, unit, meaning, group, counter, nullptr, nullptr};
 }
 
 constexpr CounterInfo operation(CounterGroups group, const char* name, const char* title, const char* meaning,
-                                Count Ops::*kind) {
+                                std::uint64_t Ops::*kind) {
   return {name, title, "operations", meaning, group, nullptr, kind, nullptr};
 }
 
 constexpr CounterInfo sum(const char* name, const char* title, const char* unit, const char* meaning,
-                          Count (*value)(const StageCounters&)) {
+                          std::uint64_t (*value)(const StageCounters&)) {
   return {name, title, unit, meaning, items, nullptr, nullptr, value};
 }
 
@@ -83,17 +83,15 @@ constexpr CounterInfo kCounters[] = {
           &StageCounters::empty_tiles),
 };
 
-#ifndef BEAMPIPE_COUNT_NOTHING
 constexpr auto kStored = std::count_if(std::begin(kCounters), std::end(kCounters),
                                        [](const CounterInfo& counter) { return counter.sum == nullptr; });
-static_assert(sizeof(StageCounters) == alignof(Count) + kStored * sizeof(Count), "the table misses a counter");
-#endif
+static_assert(sizeof(StageCounters) == alignof(std::uint64_t) + kStored * sizeof(std::uint64_t), "the table misses a counter");
 
 }  // namespace
 
 StageCounters& StageCounters::operator+=(const StageCounters& other) {
   for (const CounterInfo& counter : kCounters)
-    if (Count* const stored = counter.stored(*this)) *stored += counter.value(other);
+    if (std::uint64_t* const stored = counter.stored(*this)) *stored += counter.value(other);
   return *this;
 }
 

@@ -42,7 +42,7 @@ void check(const Hardware& hardware) {
   for (const StageInfo& info : stage_list()) {
     StageCounters& stage = stages.emplace_back(StageCounters{info.id});
     for (const CounterInfo& counter : stage_counters())
-      if (Count* stored = counter.stored(stage)) *stored = std::uint64_t{1} << 40;
+      if (std::uint64_t* stored = counter.stored(stage)) *stored = std::uint64_t{1} << 40;
   }
   require(!hardware.implementations.empty());
   for (const Implementation& implementation : hardware.implementations)

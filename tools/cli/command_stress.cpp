@@ -27,8 +27,6 @@ struct StressArguments {
                                     "beam:order=sorted",
                                     "beam:order=sorted,storage=float32",
                                     "beam:order=sorted,bits=32",
-                                    "beam:order=stream,passes=0",
-                                    "beam:order=stream,passes=0,bits=64,layers=1",
                                     "z3",
                                     "z3:shape=128x3",
                                     "beam:rules=paper",

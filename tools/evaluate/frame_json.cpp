@@ -40,7 +40,7 @@ StageCounters stage_of(const Json& json) {
   for (const CounterInfo& counter : stage_counters()) {
     const auto [group, key] = keys_of(counter);
     const Json& object = group.empty() ? json : json.at(group);
-    if (Count* stored = counter.stored(stage)) *stored = object.at(key).get<std::uint64_t>();
+    if (std::uint64_t* stored = counter.stored(stage)) *stored = object.at(key).get<std::uint64_t>();
   }
   return stage;
 }

@@ -14,13 +14,7 @@ HardCase slivers() {
     const auto at = [&](double x, double above) { return glm::dvec2(x, y + slope * (x - 8) + above); };
     screen.triangle(at(-32000, 0), at(32000, 0), at(32000, 1.0 / 256), 0.5, i % 2 ? kRed : kGreen);
   }
-  // In the middle each is half as thick, and in a pixel it is at most hypot(1, 0.039) long.
-  const double lost = 1.001 / 512;
-  return {"slivers",
-          "length over thickness 1.7 x 10^7",
-          screen.trace(),
-          {},
-          {{kStream, {lost, kUnseen}}, {kSmallStream, {lost, kUnseen}}}};
+  return {"slivers", "length over thickness 1.7 x 10^7", screen.trace(), {}, {}};
 }
 
 HardCase specks() {
@@ -34,12 +28,7 @@ HardCase specks() {
     const glm::dvec2 below = corner + glm::dvec2(0.25 / 256, 0.5);
     screen.triangle(below, below + glm::dvec2(0.2 / 256, 0), below + glm::dvec2(0, 0.2 / 256), 0.4, kGreen);
   }
-  // A speck of 1/8 x 1/8 px covers none of 128 positions, and one of 1/8 x 1/4 px none of 64. Larger ones cover some.
-  return {"specks",
-          "areas of 10^-6 px (which snapping removes), and from 7.6 x 10^-6 px up",
-          screen.trace(),
-          {},
-          {{kStream, {0x1p-7, kUnseen}}, {kSmallStream, {0x1p-6, kUnseen}}, {kCoarseStream, {0x1p-6, kUnseen}}}};
+  return {"specks", "areas of 10^-6 px (which snapping removes), and from 7.6 x 10^-6 px up", screen.trace(), {}, {}};
 }
 
 HardCase large() {
@@ -63,11 +52,7 @@ HardCase through_samples() {
     screen.triangle({u, 0}, {u, 2}, {i + 1, 2}, 0.5, kRed);
     screen.triangle({i, 2 + i / 16.0}, {i + 1, 2 + i / 16.0}, {i, 4}, 0.5, kGreen);
   }
-  return {"through_samples",
-          "edges that pass exactly through sample positions",
-          screen.trace(),
-          {},
-          {{kCoarseStream, {0x1p-6, kUnseen}}}};
+  return {"through_samples", "edges that pass exactly through sample positions", screen.trace(), {}, {}};
 }
 
 HardCase edge_on() {
@@ -81,11 +66,7 @@ HardCase edge_on() {
           "triangles seen almost edge-on, with depth slopes of 250 per pixel, that cut through others",
           screen.trace(),
           {},
-          {{"beam", {0.02, kMask}},
-           {kSmallStream, {0.05, kMask}},
-           {kCoarseStream, {0.06, kMask}},
-           {"beam:rules=paper", {0.03, kPaper}},
-           {"alpha", {0.01, kOver}}}};
+          {{"beam", {0.02, kMask}}, {"beam:rules=paper", {0.03, kPaper}}, {"alpha", {0.01, kOver}}}};
 }
 
 // A fan of triangles from a hub to `rim` points on a square around it.

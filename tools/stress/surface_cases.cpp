@@ -215,12 +215,10 @@ HardCase layers() {
   for (std::uint32_t i = 0; i < kLayers; ++i) result.trace.meshes[0].materials.push_back(i % 2);
   // Eight layers in a row leave one of 256 positions, which may show any of the other colours.
   result.limits["beam:order=sorted"] = {0.875 / 256 + kFormatError, kPositions};
-  // The others are measured: with 32 or 64 positions up to 0.104, and with four times as many a quarter of that.
+  // The others are measured: with 32 positions up to 0.104, and with four times as many a quarter of that.
   result.limits["beam"] = {0.105 / 4, kPositions};
-  for (const std::string& few :
-       {kSmallStream, std::string("z3"), std::string("beam:rules=paper"), std::string("beam:order=sorted,bits=32")}) {
+  for (const char* few : {"z3", "beam:rules=paper", "beam:order=sorted,bits=32"})
     result.limits[few] = {0.105, kPositions};
-  }
   ExactPicture& picture = result.picture.emplace();
   picture.high = {kLayers, 2};
   picture.rgba.resize(2 * kLayers);

@@ -16,7 +16,6 @@ namespace {
 constexpr const char* kSpecs[] = {"beam",
                                   "beam:order=sorted",
                                   "beam:order=stream",
-                                  "beam:order=stream,passes=0",
                                   "beam:rules=paper",
                                   "beam:rules=paper,order=near-first",
                                   "z3",

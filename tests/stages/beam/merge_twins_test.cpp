@@ -153,8 +153,7 @@ class Z3Twin {
  public:
   using Pixel = Z3Pixel<Words, Layers>;
 
-  Z3Twin(const PositionSet& positions, LayerMerge merge, OperationCounts& counts)
-      : positions_(positions), merge_(merge), counts_(counts) {}
+  Z3Twin(const PositionSet& positions, OperationCounts& counts) : positions_(positions), counts_(counts) {}
 
   // Returns whether two layers were merged.
   bool add(const Fragment& fragment, Pixel& pixel) {
@@ -237,25 +236,16 @@ class Z3Twin {
   }
 
   void merge_two(std::vector<CountedLayer>& layers) {
-    std::vector<Float> sizes;
-    if (merge_ == LayerMerge::color)
-      for (const CountedLayer& layer : layers) sizes.push_back(count(layer));
     std::size_t first = 0, second = 1;
     float least = INFINITY;
     for (std::size_t i = 0; i < layers.size(); ++i) {
       for (std::size_t j = i + 1; j < layers.size(); ++j) {
-        const CountedLayer &a = layers[i], &b = layers[j];
-        Float loss = magnitude(a.z - b.z);
-        if (merge_ == LayerMerge::color) {
-          counts_.add -= 1, counts_.bit -= 1;  // depths are not compared
-          const Float red = a.color[0] - b.color[0], green = a.color[1] - b.color[1], blue = a.color[2] - b.color[2];
-          loss = (red * red + green * green + blue * blue) * sizes[i] * sizes[j] / (sizes[i] + sizes[j]);
-        }
-        if (loss < real(least)) least = loss.value, first = i, second = j;
+        const Float distance = magnitude(layers[i].z - layers[j].z);
+        if (distance < real(least)) least = distance.value, first = i, second = j;
       }
     }
     CountedLayer &a = layers[first], &b = layers[second];
-    const Float in_a = sizes.empty() ? count(a) : sizes[first], in_b = sizes.empty() ? count(b) : sizes[second];
+    const Float in_a = count(a), in_b = count(b);
     const Float share = in_a / (in_a + in_b), rest = Float(1.0f) - share;
     const auto mean = [&](const Float& x, const Float& y) { return share * x + rest * y; };
     a.z = mean(a.z, b.z), a.dzdu = mean(a.dzdu, b.dzdu), a.dzdv = mean(a.dzdv, b.dzdv);
@@ -266,12 +256,11 @@ class Z3Twin {
   }
 
   const PositionSet& positions_;
-  LayerMerge merge_;
   OperationCounts& counts_;
 };
 
 TEST_P(MergeTwins, ComposeZ3) {
-  const auto compare = [&]<std::size_t Words, std::size_t Layers>(Z3Pixel<Words, Layers>, LayerMerge merge) {
+  const auto compare = [&]<std::size_t Words, std::size_t Layers>(Z3Pixel<Words, Layers>) {
     const PositionGrid grid(32 * Words);
     const PositionSet positions(cell_patterns(32 * Words));
     fragments_.clear();
@@ -279,9 +268,9 @@ TEST_P(MergeTwins, ComposeZ3) {
     std::vector<Z3Pixel<Words, Layers>> pixels(tile_.pixels()), twins = pixels;
     std::vector<float> merges(tile_.pixels()), twin_merges = merges;
     StageCounters counters;
-    compose_z3(fragments_, positions, merge, counters, pixels, merges);
+    compose_z3(fragments_, positions, counters, pixels, merges);
     twin_ = {};
-    Z3Twin<Words, Layers> twin(positions, merge, twin_);
+    Z3Twin<Words, Layers> twin(positions, twin_);
     for (const Fragment& fragment : fragments_)
       twin_merges[fragment.pixel] += twin.add(fragment, twins[fragment.pixel]) ? 1.0f : 0.0f;
     EXPECT_EQ(counters.ops, twin_);
@@ -293,9 +282,8 @@ TEST_P(MergeTwins, ComposeZ3) {
       for (std::size_t k = 0; k < Layers; ++k) ASSERT_EQ(+pixels[i].layers[k].z, +twins[i].layers[k].z) << i;  // packed
     }
   };
-  compare(Z3Pixel<1, 3>(), LayerMerge::depth);
-  compare(Z3Pixel<1, 3>(), LayerMerge::color);
-  compare(Z3Pixel<4, 3>(), LayerMerge::depth);
+  compare(Z3Pixel<1, 3>());
+  compare(Z3Pixel<4, 3>());
 }
 
 BEAMPIPE_ON_EVERY_SCENE(MergeTwins);

@@ -16,7 +16,6 @@ using Parsed = nlohmann::json;  // independent of the program's own Json
 
 const Names kSpecs = {"beam",
                       "beam:order=stream",
-                      "beam:order=stream,passes=0",
                       "beam:order=sorted",
                       "beam:rules=paper",
                       "beam:rules=paper,order=stream",

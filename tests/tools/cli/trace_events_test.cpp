@@ -23,7 +23,6 @@ TEST(TraceEvents, HoldEveryStageOfEveryTechnique) {
                                           "beam:rules=paper",
                                           "beam:rules=paper,order=near-first",
                                           "beam:order=stream",
-                                          "beam:order=stream,passes=0",
                                           "z3",
                                           "alpha",
                                           "msaa:4",
