@@ -29,7 +29,8 @@ FrameResult render_shape(const Trace& trace, const Frame& frame, const BeamOptio
   const PositionSet& positions = cell_positions(beam.positions);
   const PositionGrid grid(beam.positions);
   const BeamFragmentOptions options = grid_options(grid, owners_fragment_bytes(Words));
-  const BinPlan plan{.stages = {"conservative_raster", "bin_sort", "beam_fragment", "compose", "shade", "resolve"},
+  const BinPlan plan{.stages = {StageId::bin_sort, StageId::conservative_raster, StageId::beam_fragment,
+                                StageId::compose, StageId::shade, StageId::resolve},
                      .framebuffer = beam_framebuffer(beam),
                      .keeps_tile_size = true,
                      .sorts_lists = true};

@@ -52,10 +52,10 @@ FrameResult render_shape(const Trace& trace, const Frame& frame, const SortedOpt
   const PositionSet& positions = cell_positions(sorted.positions);
   const PositionGrid grid(sorted.positions);
   const BeamFragmentOptions fragment_options = grid_options(grid, conserving_fragment_bytes(sorted.positions));
-  const BinPlan plan{
-      .stages = {"conservative_raster", "a_buffer", "windows", "beam_fragment", "shade", "compose", "resolve"},
-      .framebuffer = sorted_framebuffer(sorted),
-      .pair_bytes = kPairWorkingBytes + kSortBytes};
+  const BinPlan plan{.stages = {StageId::conservative_raster, StageId::a_buffer, StageId::windows,
+                                StageId::beam_fragment, StageId::shade, StageId::compose, StageId::resolve},
+                     .framebuffer = sorted_framebuffer(sorted),
+                     .pair_bytes = kPairWorkingBytes + kSortBytes};
   return render_bins(context, plan, [&](Bin& bin) {
     ConservativeRasterUnit raster(bin, "waiting_pairs", PairDepths::bounds, ConservativeRasterUnit::Hidden::left_out);
     ABufferUnit a_buffer(bin, kPairWithDepthBytes, kStoredPairBytes);

@@ -21,7 +21,8 @@ FrameResult render_stream(const Trace& trace, const Frame& frame, const RunOptio
   const PositionSet& positions = cell_positions(kPositions);
   const PositionGrid grid(kPositions);
   const BeamFragmentOptions options = grid_options(grid, owners_fragment_bytes(kWords));
-  const BinPlan plan{.stages = {"conservative_raster", "beam_fragment", "compose", "shade", "resolve"},
+  const BinPlan plan{.stages = {StageId::conservative_raster, StageId::beam_fragment, StageId::compose, StageId::shade,
+                                StageId::resolve},
                      .framebuffer = stream_framebuffer()};
   return render_bins(context, plan, [&](Bin& bin) {
     ConservativeRasterUnit raster(bin, "", PairDepths::bounds, ConservativeRasterUnit::Hidden::left_out);

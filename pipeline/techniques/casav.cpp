@@ -142,7 +142,8 @@ FrameResult render_sorted(const Trace& trace, const Frame& frame, const CasavOpt
   const MergePositions positions(hammersley_pattern());
   const RecordBytes bytes = record_bytes(beam);
   const BeamFragmentOptions options = fragment_options(beam, positions);
-  const BinPlan plan{.stages = {"conservative_raster", "beam_fragment", "shade", "a_buffer", "compose", "resolve"},
+  const BinPlan plan{.stages = {StageId::conservative_raster, StageId::beam_fragment, StageId::shade, StageId::a_buffer,
+                                StageId::compose, StageId::resolve},
                      .framebuffer = casav_framebuffer(beam),
                      .pair_bytes = kPairWorkingBytes + kSortBytes};
   return render_bins(context, plan, [&](Bin& bin) {
@@ -151,7 +152,7 @@ FrameResult render_sorted(const Trace& trace, const Frame& frame, const CasavOpt
     BeamFragmentUnit make_fragments(bin, options);
     ShadeUnit shade(bin);
     ABufferUnit a_buffer(bin, bytes.fragment, bytes.fragment);
-    const BinStage composition = bin.stage("compose");
+    const BinStage composition = bin.stage(StageId::compose);
     BinWeights weights(bin);
 
     std::vector<Fragment>& fragments = make_fragments.queued(raster());
@@ -163,7 +164,7 @@ FrameResult render_sorted(const Trace& trace, const Frame& frame, const CasavOpt
     a_buffer.charge_memory(merges, composition);
     charge_aggregates(bin, plan.framebuffer.surfaces, pixels_with(merges), full_pixels(aggregates));
     count_specks(fragments, bin.pixel_counter("tiny_triangles"));
-    bin.finish(resolve(aggregates, bin.background(), bytes.aggregate, bin.stage("resolve").timed()));
+    bin.finish(resolve(aggregates, bin.background(), bytes.aggregate, bin.stage(StageId::resolve).timed()));
     if (weights) add_weights(beam, positions, fragments, lists, weights);
     weights.finish();
   });
@@ -175,11 +176,12 @@ FrameResult render_layers(const Trace& trace, const Frame& frame, const CasavOpt
   const MergePositions positions(hammersley_pattern());
   const BeamFragmentOptions options = fragment_options(beam, positions);
   const bool sorts = beam.order == CasavOrder::near_first;
-  BinPlan plan{.stages = {"conservative_raster", "beam_fragment", "shade", "compose", "resolve"},
+  BinPlan plan{.stages = {StageId::conservative_raster, StageId::beam_fragment, StageId::shade, StageId::compose,
+                          StageId::resolve},
                .framebuffer = casav_framebuffer(beam),
                .keeps_tile_size = sorts,
                .sorts_lists = sorts};
-  if (sorts) plan.stages.push_back("bin_sort");
+  if (sorts) plan.stages.insert(plan.stages.begin(), StageId::bin_sort);
   return render_bins(context, plan, [&](Bin& bin) {
     const TriangleList list = sorts ? sort_bin(bin).triangles : bin.list;
     ConservativeRasterUnit raster(bin, "pair_queue", PairDepths::none, ConservativeRasterUnit::Hidden::kept,

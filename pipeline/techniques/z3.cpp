@@ -32,7 +32,8 @@ FrameResult render_shape(const Trace& trace, const Frame& frame, const Z3Options
   const PositionSet& positions = cell_positions(z3.positions);
   const PositionGrid grid(z3.positions);
   const BeamFragmentOptions options = grid_options(grid, 4 + 4 * Words + 12);
-  const BinPlan plan{.stages = {"conservative_raster", "beam_fragment", "shade", "compose", "resolve"},
+  const BinPlan plan{.stages = {StageId::conservative_raster, StageId::beam_fragment, StageId::shade, StageId::compose,
+                                StageId::resolve},
                      .framebuffer = z3_framebuffer(z3)};
   return render_bins(context, plan, [&](Bin& bin) {
     ConservativeRasterUnit raster(bin, "pair_queue", PairDepths::bounds, ConservativeRasterUnit::Hidden::kept,

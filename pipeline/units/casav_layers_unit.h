@@ -15,7 +15,7 @@ class ComposeLayersUnit {
   ComposeLayersUnit(Bin& bin, const MergePositions& positions, const MergeRules& rules, std::size_t layers,
                     CasavStorage storage, const std::vector<Surface>& surfaces)
       : bin_(bin),
-        stage_(bin.stage("compose")),
+        stage_(bin.stage(StageId::compose)),
         positions_(positions),
         rules_(rules),
         merges_(bin.pixel_counter("merges")),
@@ -31,7 +31,7 @@ class ComposeLayersUnit {
     store_.finish();
     const std::vector<PixelColor> colors = pixel_colors(layers_.finish(positions_, rules_, stage_.timed()));
     return resolve(colors, bin_.background(), static_cast<std::uint32_t>(layers_.bytes_per_pixel()),
-                   bin_.stage("resolve").timed());
+                   bin_.stage(StageId::resolve).timed());
   }
 
  private:

@@ -9,13 +9,13 @@ namespace beampipe {
 
 void OpenPixelStore::merge(const std::vector<Fragment>& fragments) {
   if (bin_.keeps_pixels_on_chip()) return;
-  StageCounters& compose = bin_.stage("compose").counters;
+  StageCounters& compose = bin_.stage(StageId::compose).counters;
   for (const Fragment& fragment : fragments) memory_.merge(fragment.triangle, fragment.pixel, compose);
 }
 
 void OpenPixelStore::finish() {
-  memory_.flush({}, bin_.stage("compose").counters);
-  memory_.read_all(bin_.stage("resolve").counters);
+  memory_.flush({}, bin_.stage(StageId::compose).counters);
+  memory_.read_all(bin_.stage(StageId::resolve).counters);
   if (bin_.models_memory()) memory_.add_bytes(bin_.pixel_counter("bytes"));
 }
 
@@ -40,7 +40,7 @@ void record_weights(const OwnerWeights& recorded, const TriangleList& list, BinW
 }
 
 OrderedList sort_bin(Bin& bin) {
-  const BinStage stage = bin.stage("bin_sort");
+  const BinStage stage = bin.stage(StageId::bin_sort);
   OrderedList ordered = bin_sort(bin.triangles(), bin.list, bin.tile, stage.timed());
   // Binning writes the keys beside the list. The sort works in L2 if the list and its copy fit there.
   const std::uint64_t entries = bin.list.size() * (sizeof(std::uint32_t) + kKeyBytes);
@@ -52,7 +52,7 @@ OrderedList sort_bin(Bin& bin) {
     stage.reads("bin_keys", bin.list.size() * kKeyBytes);
     stage.moves_in_l2(2 * kSortPasses * entries - bin.list.size() * kKeyBytes);
   }
-  bin.triangle_fetches().read_setup(ordered.triangles, bin.stage("conservative_raster").counters);
+  bin.triangle_fetches().read_setup(ordered.triangles, bin.stage(StageId::conservative_raster).counters);
   return ordered;
 }
 

@@ -52,7 +52,7 @@ class ComposeOwnersUnit {
                     const std::vector<float>* watermarks, const std::vector<Surface>& surfaces,
                     OwnerPlace shade_at = OwnerPlace::covered)
       : bin_(bin),
-        stage_(bin.stage("compose")),
+        stage_(bin.stage(StageId::compose)),
         weights_(bin),
         recorded_(weights_ ? bin.tile.pixels() : 0),
         owners_{bin.triangles(), list,         watermarks,          bin.tile,
@@ -85,7 +85,8 @@ class ComposeOwnersUnit {
     finish(result, shade);
     record_weights(recorded_, owners_.list, weights_);
     bin_.triangle_fetches().flush(stage_.counters);
-    return resolve(colors, bin_.background(), kColorBytes + sizeof(std::uint16_t), bin_.stage("resolve").timed());
+    return resolve(colors, bin_.background(), kColorBytes + sizeof(std::uint16_t),
+                   bin_.stage(StageId::resolve).timed());
   }
 
  private:

@@ -11,7 +11,7 @@ namespace beampipe {
 ConservativeRasterUnit::ConservativeRasterUnit(Bin& bin, std::string buffer, PairDepths depths, Hidden hidden,
                                                std::size_t capacity)
     : bin_(bin),
-      stage_(bin.stage("conservative_raster")),
+      stage_(bin.stage(StageId::conservative_raster)),
       buffer_(std::move(buffer)),
       depths_(depths),
       capacity_(capacity) {
@@ -46,7 +46,7 @@ const TriangleList& SampleRasterUnit::drawn_triangles() {
 void SampleRasterUnit::test_alpha(const Sampling& sampling, ShadeAt at) {
   if (!bin_.context.has_cutouts() || translucent_ == Translucent::alone) return;
   const SamplePlaces places(bin_, sampling, at);
-  const BinStage testing = bin_.stage("alpha_test", pass_);
+  const BinStage testing = bin_.stage(StageId::alpha_test, pass_);
   alpha_test(bin_.shader(), bin_.tile, sampling.grid, sampling.pattern.count, coverage_, places.of(fragments_),
              testing.timed(), fragments_, bin_.texels());
   bin_.charge_texels(testing);

@@ -96,7 +96,7 @@ class SampleRasterUnit {
   SampleRasterUnit(Bin& bin, Translucent translucent, AlphaCoverage coverage, Pass pass = Pass::main)
       : bin_(bin),
         pass_(pass),
-        stage_(bin.stage("sample_raster", pass)),
+        stage_(bin.stage(StageId::sample_raster, pass)),
         translucent_(translucent),
         coverage_(coverage) {}
 

@@ -15,7 +15,7 @@ class ComposeZ3Unit {
  public:
   ComposeZ3Unit(Bin& bin, const PositionSet& positions, const std::vector<Surface>& framebuffer)
       : bin_(bin),
-        stage_(bin.stage("compose")),
+        stage_(bin.stage(StageId::compose)),
         positions_(positions),
         merges_(bin.pixel_counter("merges")),
         pixels_(bin.tile.pixels()),
@@ -27,7 +27,7 @@ class ComposeZ3Unit {
   }
 
   std::vector<glm::vec4> resolve_layers() {
-    const BinStage resolving = bin_.stage("resolve");
+    const BinStage resolving = bin_.stage(StageId::resolve);
     memory_.flush({}, stage_.counters);
     memory_.read_all(resolving.counters);
     if (bin_.models_memory()) memory_.add_bytes(bin_.pixel_counter("bytes"));

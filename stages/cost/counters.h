@@ -3,7 +3,8 @@
 
 #include <cstdint>
 #include <span>
-#include <string>
+
+#include "stages/cost/stage.h"
 
 namespace beampipe {
 
@@ -49,7 +50,7 @@ struct OperationCounts {
 
 // The table in counters.cpp says what each counter is.
 struct StageCounters {
-  std::string stage;  // the stage's name, for instance "conservative_raster"
+  Stage stage;  // none: nobody adds these counters up
   std::uint64_t items_in = 0;
   std::uint64_t items_out = 0;
   OperationCounts ops{};
@@ -82,6 +83,7 @@ struct CounterInfo {
   const char* title;  // heading of a table's column
   const char* unit;
   const char* meaning;
+  CounterGroups group;  // a stage has the counter if it has one of these groups
   std::uint64_t StageCounters::*field = nullptr;
   std::uint64_t OperationCounts::*operation = nullptr;
   std::uint64_t (*sum)(const StageCounters&) = nullptr;
@@ -97,5 +99,10 @@ struct CounterInfo {
 
 // All counters of a stage, in the order in which report.json lists them.
 std::span<const CounterInfo> stage_counters();
+
+// Does the counter count anything in this stage?
+inline bool has_counter(const StageInfo& stage, const CounterInfo& counter) {
+  return (stage.counts & counter.group) != 0;
+}
 
 }  // namespace beampipe

@@ -4,7 +4,6 @@
 #include <functional>
 
 #include "pipeline/technique.h"
-#include "stages/cost/counter_registry.h"
 #include "tests/fuzz/fuzz_input.h"
 #include "tools/evaluate/memory_system.h"
 #include "tools/sweep/sweep_plan.h"
@@ -41,7 +40,7 @@ void check(const MemoryParameters& memory) {
 void check(const Hardware& hardware) {
   std::vector<StageCounters> stages;
   for (const StageInfo& info : stage_list()) {
-    StageCounters& stage = stages.emplace_back(StageCounters{info.name});
+    StageCounters& stage = stages.emplace_back(StageCounters{info.id});
     for (const CounterInfo& counter : stage_counters())
       if (std::uint64_t* stored = counter.stored(stage)) *stored = std::uint64_t{1} << 40;
   }

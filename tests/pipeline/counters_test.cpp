@@ -98,8 +98,8 @@ TEST(Counters, PixelsAddUpToStages) {
     const std::uint64_t fragments = stage("sample_raster").items_out;
     std::uint64_t bytes = stage("depth_test").logical_bytes() - fragments * kSampleFragmentBytes;
     for (const StageCounters& counters : result.stages) {
-      if (counters.stage == "sample_select" || counters.stage == "light") bytes += counters.bytes_written;
-      if (counters.stage == "shade" && std::string(spec) != "msaa:8") bytes += counters.bytes_written;
+      if (counters.stage == StageId::sample_select || counters.stage == StageId::light) bytes += counters.bytes_written;
+      if (counters.stage == StageId::shade && std::string(spec) != "msaa:8") bytes += counters.bytes_written;
     }
     EXPECT_EQ(sum_of(result, "bytes"), bytes) << spec;
     if (twice) continue;  // its fragments come twice, once for each pass
@@ -180,7 +180,7 @@ TEST(Counters, EveryStageWorks) {
                            "acaa:4,double=stencil", "acaa:32", "deferred", "visibility", "visibility:4", "taa:8",
                            "taa:8,shading=forward", "taa:8,shading=deferred", "msaa:4,motion", "dvm", "reference"}) {
     for (const StageCounters& counters : parse_technique(spec).render(trace, 0, {2}).stages) {
-      EXPECT_FALSE(counters.stage.empty()) << spec;
+      EXPECT_NE(counters.stage.id, StageId::none) << spec;
       EXPECT_GT(counters.items_in, 0u) << spec << ' ' << counters.stage;
       EXPECT_GT(counters.items_out, 0u) << spec << ' ' << counters.stage;
       EXPECT_GT(counters.ops.total(), 0u) << spec << ' ' << counters.stage;

@@ -69,7 +69,7 @@ TEST(Framebuffer, OnChipOnlyThePictureGoesToMemory) {
     EXPECT_EQ(on_chip_bytes(in_memory), 0u);
     EXPECT_EQ(stage_of(on_chip, "resolve").dram_bytes, 40u * 36 * kPictureBytes);
     EXPECT_GT(stage_of(in_memory, "resolve").dram_bytes, 40u * 36 * kPictureBytes);
-    for (const char* stage : {"depth_test", "stencil_test", "accumulate"})
+    for (const Stage stage : {StageId::depth_test, StageId::stencil_test, StageId::accumulate})
       for (const StageCounters& counters : on_chip.stages)
         if (counters.stage == stage) {
           EXPECT_EQ(counters.sector_bytes, 0u) << stage;

@@ -7,7 +7,6 @@
 #include <numeric>
 
 #include "pipeline/technique.h"
-#include "stages/cost/counter_registry.h"
 #include "stages/surface/mip_chain.h"
 #include "tests/pipeline/surface_traces.h"
 #include "tests/stages/surface_scene.h"
@@ -116,7 +115,7 @@ TEST(Surfaces, FramesWithoutMaterialsPayNothing) {
       const auto same =
           std::find_if(b.stages.begin(), b.stages.end(), [&](const auto& s) { return s.stage == stage.stage; });
       ASSERT_NE(same, b.stages.end());
-      if (without_pass(stage.stage) != "vertex_setup") {
+      if (stage.stage.id != StageId::vertex_setup) {
         EXPECT_EQ(*same, stage) << spec << ", " << stage.stage;
       }
     }
@@ -335,7 +334,7 @@ TEST(Surfaces, TranslucentTrianglesAreDrawnOnce) {
   for (const char* spec : {"acaa:8", "deferred", "visibility", "taa:8", "dvm"}) {
     const FrameResult found = rendered(spec, scene.trace);
     for (const StageCounters& stage : found.stages) {
-      if (stage.stage != "sample_raster") continue;
+      if (stage.stage != StageId::sample_raster) continue;
       EXPECT_GE(stage.items_out, 64u) << spec;
       EXPECT_LE(stage.items_out, 64u + 8u) << spec;  // pixels of the diagonal have a fragment of each half
     }

@@ -66,7 +66,7 @@ std::vector<StageCounters> stages_of(const char* spec, const Trace& trace, const
 
 StageCounters stage_of(const char* spec, const Trace& trace, const std::string& name, const RunOptions& run = {}) {
   for (const StageCounters& stage : stages_of(spec, trace, run))
-    if (stage.stage == name) return stage;
+    if (name_of(stage.stage) == name) return stage;
   ADD_FAILURE() << spec << " has no stage " << name;
   return {};
 }
@@ -92,10 +92,14 @@ TEST(TextureMemory, L2ServesBinsPassByPass) {
   memory.l2 = {128, 1, 128};  // one line
   const TextureRead a{.line = 7, .stage = 0, .sectors = 0b0001}, b{.line = 7, .stage = 1, .sectors = 0b0011};
   const TextureRead c{.line = 8, .stage = 1, .sectors = 0b1111};
-  EXPECT_EQ(texture_dram_bytes(memory, {{{a, b}}, {{b}}}, 2), (std::vector<std::uint64_t>{32, 32}));
-  EXPECT_EQ(texture_dram_bytes(memory, {{{b}}, {{a, b}}}, 2), (std::vector<std::uint64_t>{0, 64}));
-  EXPECT_EQ(texture_dram_bytes(memory, {{{a}, {c}}, {{a}, {c}}}, 2), (std::vector<std::uint64_t>{32, 128}));
-  EXPECT_EQ(texture_dram_bytes(memory, {{{a, c}}, {{a, c}}}, 2), (std::vector<std::uint64_t>{64, 256}));
+  const auto by_stage = [&](const std::vector<TexturePasses>& bins) {
+    const auto bytes = texture_dram_bytes(memory, bins);
+    return std::vector<std::uint64_t>{bytes[0], bytes[1]};
+  };
+  EXPECT_EQ(by_stage({{{a, b}}, {{b}}}), (std::vector<std::uint64_t>{32, 32}));
+  EXPECT_EQ(by_stage({{{b}}, {{a, b}}}), (std::vector<std::uint64_t>{0, 64}));
+  EXPECT_EQ(by_stage({{{a}, {c}}, {{a}, {c}}}), (std::vector<std::uint64_t>{32, 128}));
+  EXPECT_EQ(by_stage({{{a, c}}, {{a, c}}}), (std::vector<std::uint64_t>{64, 256}));
 }
 
 // Half a texel per pixel: one bilinear probe. 1.5 texels: two levels of four texels each.

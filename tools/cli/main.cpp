@@ -59,6 +59,7 @@ int run(int argc, char** argv, beampipe::InterruptGate& gate) {
   beampipe::add_report_command(line, gate);
   beampipe::add_plot_command(line, gate);
   beampipe::add_claims_command(line);
+  beampipe::add_counters_command(line);
   beampipe::add_model_command(line);
   beampipe::add_sweep_command(line, gate);
   beampipe::add_stress_command(line, gate);

@@ -194,6 +194,18 @@ TEST_F(ProgramTest, PlotDrawsTheTrafficOfARun) {
                         "other/report.json: it has no DRAM bytes; expected a report made without --no-memory-model");
 }
 
+TEST_F(ProgramTest, CountersListsWhatIsCounted) {
+  const Parsed json = Parsed::parse(succeed({"counters", "depth_test", "--json"}));
+  ASSERT_EQ(json["stages"].size(), 1u);
+  EXPECT_EQ(json["stages"][0]["stage"], "depth_test");
+  EXPECT_EQ(json["stages"][0]["group"], "visibility");
+  EXPECT_EQ(json["stages"][0]["shader"], false);
+  EXPECT_EQ(json["stages"][0]["counters"][0], "items_in");
+  const std::string all = succeed({"counters"});
+  for (const char* const part : {"depth_test (visibility; fixed function)\n", "  counters ", "\nCounters of pixels\n"})
+    EXPECT_NE(all.find(part), all.npos) << part;
+}
+
 TEST_F(ProgramTest, DiffTellsTheError) {
   write_text(folder_ / "a.exr", encode_exr(flat_image(4, 2, 0.75f)));
   write_text(folder_ / "b.exr", encode_exr(flat_image(4, 2, 0.5f)));
