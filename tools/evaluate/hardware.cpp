@@ -12,8 +12,8 @@
 #include "stages/cost/counter_registry.h"
 #include "tools/evaluate/hardware_text.h"
 #include "traces/closest_name.h"
-#include "traces/input_file.h"
-#include "traces/json_cursor.h"
+#include "traces/files/input_file.h"
+#include "traces/files/json_cursor.h"
 
 namespace beampipe {
 namespace {
