@@ -44,7 +44,7 @@ FrameResult render_msaa(const Trace& trace, const Frame& frame, const MsaaOption
                .framebuffer = msaa_framebuffer(options),
                .has_prepass = options.prepass,
                .empty_bins_differ = options.motion};
-  if (options.motion) plan.stages.push_back("motion");
+  if (options.motion) plan.stages.push_back(StageId::motion);
   FrameResult result = render_bins(context, plan, [&](Bin& bin) {
     DepthTestUnit depth_test = forward_surface(bin, sampling, options);
     bin.finish(draw_forward(bin, options, depth_test));
