@@ -76,6 +76,8 @@ TechniqueKind beam_kind() {
           "each bin's triangles, sorted near to far, become fragments with analytic coverage and a mask; a pixel "
           "keeps the owners of its mask positions until nothing nearer can come, in a state of fixed size",
       .source = "ours, after Crassin et al. 2018",
+      .examples = {"beam", "beam:bits=64,slots=4,at=visible", "beam:bits=32,slots=2,bin=8,at=quarters"},
+      .stressed = {"beam", "beam:bits=64,slots=4", "beam:bits=32,slots=2"},
       .make = make_from(
           BeamOptions{},
           [](BeamOptions& o) -> SpecOptions {
@@ -97,6 +99,8 @@ TechniqueKind beam_kind() {
           },
           [](const BeamOptions& o) {
             return Technique{.framebuffer = beam_framebuffer(o),
+                             .positions = o.positions,
+                             .counted_positions = o.positions,
                              .render = bind_options(render_beam, o),
                              .inspect = bind_inspection(inspect_beam, o),
                              .has_weights = true};

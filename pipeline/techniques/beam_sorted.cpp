@@ -108,6 +108,8 @@ TechniqueKind beam_sorted_kind() {
               "the triangles of a pixel, sorted by depth, become fragments with analytic coverage and a mask, "
               "composed near to far into one area-conserving aggregate until the pixel is closed",
           .source = "ours, after Crassin et al. 2018",
+          .examples = {"beam:order=sorted", "beam:order=sorted,storage=float32"},
+          .stressed = {"beam:order=sorted", "beam:order=sorted,storage=float32", "beam:order=sorted,bits=32"},
           .make = make_from(
               SortedOptions{},
               [](SortedOptions& o) -> SpecOptions {
@@ -119,6 +121,7 @@ TechniqueKind beam_sorted_kind() {
               },
               [](const SortedOptions& o) {
                 return Technique{.framebuffer = sorted_framebuffer(o),
+                                 .positions = o.positions,
                                  .render = bind_options(render_sorted, o),
                                  .inspect = bind_inspection(inspect_windows, o),
                                  .has_weights = true};

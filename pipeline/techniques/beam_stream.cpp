@@ -56,8 +56,12 @@ TechniqueKind beam_stream_kind() {
               "fragments in primitive order, without an A-buffer, bins or a sort; of more owners than a pixel has "
               "slots for, two become one",
           .source = "ours",
+          .examples = {"beam:order=stream"},
+          .stressed = {"beam:order=stream"},
           .make = make_plain([] {
             return Technique{.framebuffer = stream_framebuffer(),
+                             .positions = kPositions,
+                             .counted_positions = kPositions,
                              .render = bind_options(render_stream),
                              .inspect = bind_inspection(inspect_stream),
                              .has_weights = true};

@@ -237,6 +237,7 @@ std::vector<PixelHistory> inspect_rules(const Trace& trace, const Frame& frame, 
 
 Technique make_casav(const CasavOptions& options) {
   return {.framebuffer = casav_framebuffer(options),
+          .positions = hammersley_pattern().count,
           .render = bind_options(render_casav, options),
           .inspect = bind_inspection(inspect_rules, options),
           .has_weights = options.order == CasavOrder::sorted};
@@ -296,6 +297,11 @@ TechniqueKind casav_kind() {
               "depth slab, one aggregate per pixel; the "
               "options are other readings of these rules, see docs/accuracy.md",
           .source = "Crassin et al. 2018",
+          .examples = {"casav", "casav:mask=exact", "casav:storage=text",
+                       "casav:sort=nearest,tiny=3,overlap=transition,regional=area,local=keep,fuzzy=mix,extents=slab,"
+                       "slab=visible,plane=visible,thickness=containing",
+                       "casav:order=near-first", "casav:order=stream,layers=2"},
+          .stressed = {"casav", "casav:storage=text", "casav:storage=float32"},
           .make = make_from(CasavOptions{.tiny_positions = 1}, casav_options, make_casav)};
 }
 
@@ -303,6 +309,8 @@ TechniqueKind alpha_kind() {
   return {.name = "alpha",
           .description = "the fragments of the published rules, blended by plain OVER, without masks",
           .source = "Porter and Duff 1984",
+          .examples = {"alpha"},
+          .stressed = {"alpha"},
           .make = make_plain([] { return make_casav(CasavOptions{.rules = Rules::over, .mask = MaskSource::none}); })};
 }
 

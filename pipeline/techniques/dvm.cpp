@@ -4,6 +4,7 @@
 #include <limits>
 
 #include "pipeline/bins/render_bins.h"
+#include "pipeline/sampling.h"
 #include "pipeline/technique_table.h"
 #include "pipeline/techniques/visibility.h"
 #include "pipeline/units/gbuffer_unit.h"
@@ -153,6 +154,8 @@ TechniqueKind dvm_kind() {
               "decoupled visibility multisampling: 8 triangle ids per pixel, four shaded samples per 2x2 quad "
               "spread by their masks, accumulated over time",
           .source = "Hable 2021",
+          .examples = {"dvm", "dvm:material=draw"},
+          .stressed = {"dvm"},
           .make = make_from(
               DvmOptions{},
               [](DvmOptions& o) -> SpecOptions {
@@ -163,6 +166,7 @@ TechniqueKind dvm_kind() {
               },
               [](const DvmOptions& o) {
                 return Technique{.framebuffer = dvm_framebuffer(),
+                                 .sampled_at = places_of(msaa_sampling(8)),
                                  .render = bind_options(render_dvm, o),
                                  .keeps_history = true,
                                  .working_bytes_per_pixel = kDvmWorkingBytes};

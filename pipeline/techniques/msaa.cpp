@@ -106,6 +106,9 @@ TechniqueKind msaa_kind() {
           "multisampling: depth and colour at N samples, one shader invocation per triangle and pixel; above "
           "16 samples, super-resolution of 8x",
       .source = "Direct3D, Vulkan",
+      .examples = {"msaa:1", "msaa:8", "msaa:64", "msaa:8,prepass", "msaa:4,motion,resolve=reinhard",
+                   "msaa:4,at=centroid,alpha=coverage"},
+      .stressed = {"msaa:1", "msaa:8", "msaa:16", "msaa:256"},
       .make = make_from(
           MsaaOptions{},
           [](MsaaOptions& o) -> SpecOptions {
@@ -127,6 +130,7 @@ TechniqueKind msaa_kind() {
           [](const MsaaOptions& o) {
             return Technique{.framebuffer = msaa_framebuffer(o),
                              .samples = static_cast<std::uint32_t>(o.samples),
+                             .sampled_at = places_of(msaa_sampling(o.samples)),
                              .render = bind_options(render_msaa, o),
                              .inspect = bind_inspection(inspect_samples, o),
                              .keeps_history = o.motion};

@@ -1,6 +1,7 @@
 #include "pipeline/techniques/visibility.h"
 
 #include "pipeline/bins/render_bins.h"
+#include "pipeline/sampling.h"
 #include "pipeline/technique_table.h"
 #include "pipeline/units/gbuffer_unit.h"
 #include "pipeline/units/raster_units.h"
@@ -30,6 +31,8 @@ TechniqueKind visibility_kind() {
   return {.name = "visibility",
           .description = "triangle ids and depth at N samples per pixel, then shading of every sample",
           .source = "Burns and Hunt 2013, Hable 2021",
+          .examples = {"visibility", "visibility:8"},
+          .stressed = {"visibility"},
           .make = make_from(
               VisibilityOptions{},
               [](VisibilityOptions& o) -> SpecOptions {
@@ -37,6 +40,8 @@ TechniqueKind visibility_kind() {
               },
               [](const VisibilityOptions& o) {
                 return Technique{.framebuffer = visibility_framebuffer(o.samples),
+                                 .sampled_at = places_of(msaa_sampling(o.samples)),
+                                 .errs_like = "msaa",
                                  .render = bind_options(render_visibility, o)};
               })};
 }

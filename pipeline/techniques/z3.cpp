@@ -3,6 +3,7 @@
 
 #include "pipeline/bins/render_bins.h"
 #include "pipeline/inspect/inspect_z3.h"
+#include "pipeline/sampling.h"
 #include "pipeline/technique_table.h"
 #include "pipeline/units/fragment_units.h"
 #include "pipeline/units/raster_units.h"
@@ -75,6 +76,8 @@ TechniqueKind z3_kind() {
           .description =
               "fragments in primitive order, kept in a few layers per pixel; when there is no room, two layers merge",
           .source = "Jouppi and Chang 1999",
+          .examples = {"z3", "z3:shape=128x3"},
+          .stressed = {"z3", "z3:shape=128x3"},
           .make = make_from(
               Z3Options{},
               [](Z3Options& o) -> SpecOptions {
@@ -83,6 +86,8 @@ TechniqueKind z3_kind() {
               },
               [](const Z3Options& o) {
                 return Technique{.framebuffer = z3_framebuffer(o),
+                                 .sampled_at = places_of(cell_patterns(o.positions)),
+                                 .positions = o.positions,
                                  .render = bind_options(render_z3, o),
                                  .inspect = bind_inspection(inspect_layers, o)};
               })};

@@ -55,7 +55,10 @@ std::string error_of(const std::string& spec) {
 }
 
 TEST(Technique, WrongSpecsSayWhatWouldBeRight) {
-  const std::string names = "the name must be beam, alpha, z3, msaa, acaa, deferred, visibility, taa, dvm or reference";
+  std::vector<std::string> all;
+  for (const TechniqueKind& kind : technique_kinds())
+    if (all.empty() || all.back() != kind.name) all.push_back(kind.name);
+  const std::string names = "the name must be " + list_of(all);
   const std::string msaa_rates = "N of msaa:N must be 1, 2, 4, 8, 16, 32, 64, 128, 256, 512 or 1024";
   const std::string acaa_rates = "N of acaa:N must be 1, 2, 4, 8, 16, 32, 64, 128 or 256";
   const std::string taa_rates = "N of taa:N must be 1, 2, 4, 8 or 16";
@@ -184,6 +187,17 @@ TEST(TechniqueTable, EveryWordIsTakenAndNoOther) {
     }
   }
   EXPECT_GT(words, 50u);
+}
+
+TEST(TechniqueTable, ExamplesAreSpecsOfTheirTechnique) {
+  for (const TechniqueKind& kind : technique_kinds()) {
+    ASSERT_FALSE(kind.examples.empty()) << title_of(kind);
+    for (const std::vector<std::string>* const specs : {&kind.examples, &kind.stressed})
+      for (const std::string& spec : *specs) {
+        EXPECT_EQ(parse_technique(spec).spec, spec);
+        EXPECT_EQ(spec.substr(0, spec.find(':')), kind.name);
+      }
+  }
 }
 
 TEST(TechniqueTable, DefaultsAreAmongTheValues) {
