@@ -13,7 +13,7 @@ namespace {
 void render(benchmark::State& state, const std::string& spec, bool model_memory) {
   static const Trace trace = make_scene("classroom", {.width = 320, .height = 180});
   const Technique technique = parse_technique(spec);
-  RunOptions options{.threads = 1};
+  FrameInput options{.threads = 1};
   options.memory.modelled = model_memory;
   for (auto _ : state) benchmark::DoNotOptimize(technique.render(trace, 0, options));
 }

@@ -31,8 +31,8 @@ std::vector<std::string> stages_of(const AcaaOptions& options) {
   return {"sample_raster", "depth_test", "shade", "accumulate", "resolve"};
 }
 
-FrameResult render_acaa(const Trace& trace, const Frame& frame, const AcaaOptions& options, const RunOptions& run) {
-  const FrameContext context(trace, frame, run, {.derivatives = Derivatives::quad});
+FrameResult render_acaa(const FrameJob& job, const AcaaOptions& options) {
+  const FrameContext context(job, {.derivatives = Derivatives::quad});
   const std::vector<Sampling> rounds = acaa_rounds(options.samples);
   const BinPlan plan{.stages = stages_of(options), .framebuffer = acaa_framebuffer(options), .has_prepass = true};
   return render_bins(context, plan, [&](Bin& bin) {
@@ -70,7 +70,7 @@ FrameResult render_acaa(const Trace& trace, const Frame& frame, const AcaaOption
 }
 
 std::vector<PixelHistory> inspect_accumulation(const Trace& trace, const Frame& frame, const AcaaOptions& options,
-                                               const RunOptions& run, const std::vector<PixelAddress>& pixels) {
+                                               const FrameInput& run, const std::vector<PixelAddress>& pixels) {
   const AcaaInspection how{options.samples, acaa_rounds(options.samples), options.double_counting, options.color};
   return inspect_pixels(trace, frame, run, {.derivatives = Derivatives::quad}, bin_size(std::min(options.samples, 16)),
                         false, pixels, [&](const InspectedPixel& pixel) { return inspect_acaa(pixel, how); });
@@ -97,7 +97,7 @@ TechniqueKind acaa_kind() {
               },
               [](const AcaaOptions& o) {
                 return Technique{.framebuffer = acaa_framebuffer(o),
-                                 .render = bind_options(render_acaa, o),
+                                 .renderer = bind_options(render_acaa, o),
                                  .inspect = bind_inspection(inspect_accumulation, o)};
               })};
 }

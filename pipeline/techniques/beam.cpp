@@ -32,8 +32,8 @@ Framebuffer beam_framebuffer(const BeamOptions& beam) {
 }
 
 template <std::size_t Words, std::size_t Slots>
-FrameResult render_shape(const Trace& trace, const Frame& frame, const BeamOptions& beam, const RunOptions& run) {
-  const FrameContext context(trace, frame, run, {.takes_positions = true});
+FrameResult render_shape(const FrameJob& job, const BeamOptions& beam) {
+  const FrameContext context(job, {.takes_positions = true});
   const PositionSet& positions = cell_positions(beam.positions);
   const PositionGrid grid(beam.positions);
   const BeamFragmentOptions options = grid_options(grid, owners_fragment_bytes(Words));
@@ -57,10 +57,9 @@ FrameResult render_shape(const Trace& trace, const Frame& frame, const BeamOptio
   });
 }
 
-FrameResult render_beam(const Trace& trace, const Frame& frame, const BeamOptions& beam, const RunOptions& run) {
-#define BEAMPIPE_RENDER(words, pixel_slots)                      \
-  if (beam.positions == 32 * words && beam.slots == pixel_slots) \
-    return render_shape<words, pixel_slots>(trace, frame, beam, run);
+FrameResult render_beam(const FrameJob& job, const BeamOptions& beam) {
+#define BEAMPIPE_RENDER(words, pixel_slots) \
+  if (beam.positions == 32 * words && beam.slots == pixel_slots) return render_shape<words, pixel_slots>(job, beam);
   BEAMPIPE_OPEN_PIXELS(BEAMPIPE_RENDER)
 #undef BEAMPIPE_RENDER
   throw std::invalid_argument("no pixel of this shape: " + std::to_string(beam.positions) + " positions, " +
@@ -68,7 +67,7 @@ FrameResult render_beam(const Trace& trace, const Frame& frame, const BeamOption
 }
 
 std::vector<PixelHistory> inspect_beam(const Trace& trace, const Frame& frame, const BeamOptions& beam,
-                                       const RunOptions& run, const std::vector<PixelAddress>& pixels) {
+                                       const FrameInput& run, const std::vector<PixelAddress>& pixels) {
   return inspect_pixels(trace, frame, run, {.takes_positions = true}, beam.bin, true, pixels,
                         [&](const InspectedPixel& pixel) {
 #define BEAMPIPE_INSPECT(words, pixel_slots)                     \
@@ -107,7 +106,7 @@ TechniqueKind beam_kind() {
               },
               [](const BeamOptions& o) {
                 return Technique{.framebuffer = beam_framebuffer(o),
-                                 .render = bind_options(render_beam, o),
+                                 .renderer = bind_options(render_beam, o),
                                  .inspect = bind_inspection(inspect_beam, o),
                                  .has_weights = true};
               })};

@@ -136,8 +136,8 @@ void add_weights(const PaperOptions& options, const MergePositions& positions, s
   }
 }
 
-FrameResult render_sorted(const Trace& trace, const Frame& frame, const PaperOptions& beam, const RunOptions& run) {
-  const FrameContext context(trace, frame, run, {.takes_positions = true});
+FrameResult render_sorted(const FrameJob& job, const PaperOptions& beam) {
+  const FrameContext context(job, {.takes_positions = true});
   const MergePositions positions(hammersley_pattern());
   const RecordBytes bytes = record_bytes(beam);
   const BeamFragmentOptions options = fragment_options(beam, positions);
@@ -169,8 +169,8 @@ FrameResult render_sorted(const Trace& trace, const Frame& frame, const PaperOpt
 }
 
 // Without an A-buffer.
-FrameResult render_layers(const Trace& trace, const Frame& frame, const PaperOptions& beam, const RunOptions& run) {
-  const FrameContext context(trace, frame, run, {.takes_positions = true});
+FrameResult render_layers(const FrameJob& job, const PaperOptions& beam) {
+  const FrameContext context(job, {.takes_positions = true});
   const MergePositions positions(hammersley_pattern());
   const BeamFragmentOptions options = fragment_options(beam, positions);
   const bool sorts = beam.order == PaperOrder::near_first;
@@ -205,14 +205,13 @@ PaperOptions with_partition(PaperOptions options) {
   return options;
 }
 
-FrameResult render_paper(const Trace& trace, const Frame& frame, const PaperOptions& beam, const RunOptions& run) {
+FrameResult render_paper(const FrameJob& job, const PaperOptions& beam) {
   const PaperOptions options = with_partition(beam);
-  return beam.order == PaperOrder::sorted ? render_sorted(trace, frame, options, run)
-                                          : render_layers(trace, frame, options, run);
+  return beam.order == PaperOrder::sorted ? render_sorted(job, options) : render_layers(job, options);
 }
 
 std::vector<PixelHistory> inspect_rules(const Trace& trace, const Frame& frame, const PaperOptions& beam,
-                                        const RunOptions& run, const std::vector<PixelAddress>& pixels) {
+                                        const FrameInput& run, const std::vector<PixelAddress>& pixels) {
   const PaperOptions options = with_partition(beam);
   const MergePositions positions(hammersley_pattern());
   const BeamFragmentOptions fragments = fragment_options(options, positions);
@@ -233,7 +232,7 @@ std::vector<PixelHistory> inspect_rules(const Trace& trace, const Frame& frame, 
 
 Technique make_paper(const PaperOptions& options) {
   return {.framebuffer = paper_framebuffer(options),
-          .render = bind_options(render_paper, options),
+          .renderer = bind_options(render_paper, options),
           .inspect = bind_inspection(inspect_rules, options),
           .has_weights = options.order == PaperOrder::sorted};
 }

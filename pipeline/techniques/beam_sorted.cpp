@@ -49,8 +49,8 @@ void scale_closed(const Compose& compose, BinWeights& weights) {
 }
 
 template <std::size_t Words, class Channel>
-FrameResult render_shape(const Trace& trace, const Frame& frame, const SortedOptions& sorted, const RunOptions& run) {
-  const FrameContext context(trace, frame, run, {.takes_positions = true});
+FrameResult render_shape(const FrameJob& job, const SortedOptions& sorted) {
+  const FrameContext context(job, {.takes_positions = true});
   const PositionSet& positions = cell_positions(sorted.positions);
   const PositionGrid grid(sorted.positions);
   const BeamFragmentOptions fragment_options = grid_options(grid, conserving_fragment_bytes(sorted.positions));
@@ -85,17 +85,17 @@ FrameResult render_shape(const Trace& trace, const Frame& frame, const SortedOpt
   });
 }
 
-FrameResult render_sorted(const Trace& trace, const Frame& frame, const SortedOptions& sorted, const RunOptions& run) {
+FrameResult render_sorted(const FrameJob& job, const SortedOptions& sorted) {
 #define BEAMPIPE_RENDER(words, channel)                                                                           \
   if (sorted.positions == 32 * words && (sorted.storage == Storage::packed) == std::is_same_v<channel, HalfBits>) \
-    return render_shape<words, channel>(trace, frame, sorted, run);
+    return render_shape<words, channel>(job, sorted);
   BEAMPIPE_STORED_AGGREGATES(BEAMPIPE_RENDER)
 #undef BEAMPIPE_RENDER
   throw std::invalid_argument("no aggregate of " + std::to_string(sorted.positions) + " positions");
 }
 
 std::vector<PixelHistory> inspect_windows(const Trace& trace, const Frame& frame, const SortedOptions& sorted,
-                                          const RunOptions& run, const std::vector<PixelAddress>& pixels) {
+                                          const FrameInput& run, const std::vector<PixelAddress>& pixels) {
   return inspect_pixels(
       trace, frame, run, {.takes_positions = true}, kBinSize, false, pixels, [&](const InspectedPixel& pixel) {
 #define BEAMPIPE_INSPECT(words, channel)                                                                          \
@@ -126,7 +126,7 @@ TechniqueKind beam_sorted_kind() {
               },
               [](const SortedOptions& o) {
                 return Technique{.framebuffer = sorted_framebuffer(o),
-                                 .render = bind_options(render_sorted, o),
+                                 .renderer = bind_options(render_sorted, o),
                                  .inspect = bind_inspection(inspect_windows, o),
                                  .has_weights = true};
               })};

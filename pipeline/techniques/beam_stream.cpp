@@ -41,9 +41,8 @@ Framebuffer stream_framebuffer(const StreamOptions& stream) {
 }
 
 template <std::size_t Words, std::size_t Slots>
-FrameResult render_one_pass(const Trace& trace, const Frame& frame, const StreamOptions& stream,
-                            const RunOptions& run) {
-  const FrameContext context(trace, frame, run, {.takes_positions = true});
+FrameResult render_one_pass(const FrameJob& job, const StreamOptions& stream) {
+  const FrameContext context(job, {.takes_positions = true});
   const PositionSet& positions = cell_positions(stream.positions);
   const PositionGrid grid(stream.positions);
   const BeamFragmentOptions options = grid_options(grid, owners_fragment_bytes(Words));
@@ -65,8 +64,8 @@ FrameResult render_one_pass(const Trace& trace, const Frame& frame, const Stream
 }
 
 template <std::size_t Words, std::size_t Layers>
-FrameResult render_passes(const Trace& trace, const Frame& frame, const StreamOptions& stream, const RunOptions& run) {
-  const FrameContext context(trace, frame, run, {.takes_positions = true});
+FrameResult render_passes(const FrameJob& job, const StreamOptions& stream) {
+  const FrameContext context(job, {.takes_positions = true});
   const PositionSet& positions = cell_positions(stream.positions);
   const PositionGrid grid(stream.positions);
   const BeamFragmentOptions options = grid_options(grid, streaming_fragment_bytes(Words));
@@ -99,22 +98,22 @@ FrameResult render_passes(const Trace& trace, const Frame& frame, const StreamOp
   });
 }
 
-FrameResult render_stream(const Trace& trace, const Frame& frame, const StreamOptions& stream, const RunOptions& run) {
+FrameResult render_stream(const FrameJob& job, const StreamOptions& stream) {
 #define BEAMPIPE_RENDER(words, pixel_slots)                                                \
   if (stream.passes == 1 && stream.positions == 32 * words && stream.slots == pixel_slots) \
-    return render_one_pass<words, pixel_slots>(trace, frame, stream, run);
+    return render_one_pass<words, pixel_slots>(job, stream);
   BEAMPIPE_OPEN_PIXELS(BEAMPIPE_RENDER)
 #undef BEAMPIPE_RENDER
 #define BEAMPIPE_RENDER(words, pixel_layers)                                                 \
   if (stream.passes != 1 && stream.positions == 32 * words && stream.layers == pixel_layers) \
-    return render_passes<words, pixel_layers>(trace, frame, stream, run);
+    return render_passes<words, pixel_layers>(job, stream);
   BEAMPIPE_OWNER_PIXELS(BEAMPIPE_RENDER)
 #undef BEAMPIPE_RENDER
   throw std::invalid_argument("no pixel of this shape");
 }
 
 std::vector<PixelHistory> inspect_stream(const Trace& trace, const Frame& frame, const StreamOptions& stream,
-                                         const RunOptions& run, const std::vector<PixelAddress>& pixels) {
+                                         const FrameInput& run, const std::vector<PixelAddress>& pixels) {
   return inspect_pixels(trace, frame, run, {.takes_positions = true}, kBinSize, false, pixels,
                         [&](const InspectedPixel& pixel) {
 #define BEAMPIPE_INSPECT(words, pixel_slots)                                               \
@@ -159,7 +158,7 @@ TechniqueKind beam_stream_kind() {
           },
           [](const StreamOptions& o) {
             return Technique{.framebuffer = stream_framebuffer(o),
-                             .render = bind_options(render_stream, o),
+                             .renderer = bind_options(render_stream, o),
                              .inspect = bind_inspection(inspect_stream, o),
                              .has_weights = o.passes == 1};
           })};

@@ -10,9 +10,8 @@
 namespace beampipe {
 namespace {
 
-FrameResult render_deferred(const Trace& trace, const Frame& frame, const RunOptions& run) {
-  const FrameContext context(trace, frame, run,
-                             {.derivatives = Derivatives::quad, .storage = MaterialStorage::gbuffer});
+FrameResult render_deferred(const FrameJob& job) {
+  const FrameContext context(job, {.derivatives = Derivatives::quad, .storage = MaterialStorage::gbuffer});
   const Sampling sampling{CellGrid{}, standard_pattern(1)};
   const BinPlan plan{.stages = {"sample_raster", "depth_test", "shade", "light", "resolve"},
                      .framebuffer = deferred_framebuffer(),
@@ -30,7 +29,7 @@ TechniqueKind deferred_kind() {
           .description = "one sample per pixel: depth, then a G-buffer from 2x2 quads, then lighting per pixel",
           .source = "Burns and Hunt 2013, Hable 2021",
           .make = make_plain([] {
-            return Technique{.framebuffer = deferred_framebuffer(), .render = bind_options(render_deferred)};
+            return Technique{.framebuffer = deferred_framebuffer(), .renderer = bind_options(render_deferred)};
           })};
 }
 

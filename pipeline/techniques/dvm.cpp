@@ -88,8 +88,9 @@ void put_layer_over(const std::vector<glm::vec4>& layer, const Tile& tile, Curre
     }
 }
 
-FrameResult render_dvm(const Trace& trace, const Frame& frame, const DvmOptions& options, const RunOptions& run) {
-  const FrameContext context(trace, frame, run, {.storage = MaterialStorage::gbuffer});
+FrameResult render_dvm(const FrameJob& job, const DvmOptions& options) {
+  const FrameContext context(job, {.storage = MaterialStorage::gbuffer});
+  const Frame& frame = job.frame;
   TemporalFrame over_time(context);
   const std::uint32_t frames = over_time.history().frames;
   const Materials materials(material_ids(context.triangles, options.material));
@@ -162,7 +163,7 @@ TechniqueKind dvm_kind() {
               },
               [](const DvmOptions& o) {
                 return Technique{.framebuffer = dvm_framebuffer(),
-                                 .render = bind_options(render_dvm, o),
+                                 .renderer = bind_options(render_dvm, o),
                                  .keeps_history = true,
                                  .working_bytes_per_pixel = kDvmWorkingBytes};
               })};

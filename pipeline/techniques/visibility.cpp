@@ -9,9 +9,8 @@
 namespace beampipe {
 namespace {
 
-FrameResult render_visibility(const Trace& trace, const Frame& frame, const VisibilityOptions& options,
-                              const RunOptions& run) {
-  const FrameContext context(trace, frame, run, {.storage = MaterialStorage::gbuffer});
+FrameResult render_visibility(const FrameJob& job, const VisibilityOptions& options) {
+  const FrameContext context(job, {.storage = MaterialStorage::gbuffer});
   const Sampling sampling{CellGrid{}, standard_pattern(options.samples)};
   const Materials materials(material_ids(context.triangles, MaterialBy::color));
   const BinPlan plan{.stages = {"sample_raster", "depth_test", "material_sort", "shade", "light", "resolve"},
@@ -36,7 +35,7 @@ TechniqueKind visibility_kind() {
               },
               [](const VisibilityOptions& o) {
                 return Technique{.framebuffer = visibility_framebuffer(o.samples),
-                                 .render = bind_options(render_visibility, o)};
+                                 .renderer = bind_options(render_visibility, o)};
               })};
 }
 

@@ -29,8 +29,8 @@ Framebuffer z3_framebuffer(const Z3Options& z3) {
 }
 
 template <std::size_t Words, std::size_t Layers>
-FrameResult render_shape(const Trace& trace, const Frame& frame, const Z3Options& z3, const RunOptions& run) {
-  const FrameContext context(trace, frame, run, {.takes_positions = true});
+FrameResult render_shape(const FrameJob& job, const Z3Options& z3) {
+  const FrameContext context(job, {.takes_positions = true});
   const PositionSet& positions = cell_positions(z3.positions);
   const PositionGrid grid(z3.positions);
   const BeamFragmentOptions options = grid_options(grid, 4 + 4 * Words + 12);
@@ -54,10 +54,9 @@ FrameResult render_shape(const Trace& trace, const Frame& frame, const Z3Options
   });
 }
 
-FrameResult render_z3(const Trace& trace, const Frame& frame, const Z3Options& z3, const RunOptions& run) {
-#define BEAMPIPE_RENDER(words, shape_layers)                   \
-  if (z3.positions == 32 * words && z3.layers == shape_layers) \
-    return render_shape<words, shape_layers>(trace, frame, z3, run);
+FrameResult render_z3(const FrameJob& job, const Z3Options& z3) {
+#define BEAMPIPE_RENDER(words, shape_layers) \
+  if (z3.positions == 32 * words && z3.layers == shape_layers) return render_shape<words, shape_layers>(job, z3);
   BEAMPIPE_Z3_PIXELS(BEAMPIPE_RENDER)
 #undef BEAMPIPE_RENDER
   throw std::invalid_argument("no pixel of this shape: " + std::to_string(z3.positions) + " positions, " +
@@ -65,7 +64,7 @@ FrameResult render_z3(const Trace& trace, const Frame& frame, const Z3Options& z
 }
 
 std::vector<PixelHistory> inspect_layers(const Trace& trace, const Frame& frame, const Z3Options& z3,
-                                         const RunOptions& run, const std::vector<PixelAddress>& pixels) {
+                                         const FrameInput& run, const std::vector<PixelAddress>& pixels) {
   return inspect_pixels(trace, frame, run, {.takes_positions = true}, kBinSize, false, pixels,
                         [&](const InspectedPixel& pixel) {
 #define BEAMPIPE_INSPECT(words, shape_layers) \
@@ -102,7 +101,7 @@ TechniqueKind z3_kind() {
               [](const Z3Spec& o) {
                 const Z3Options options{o.shape.positions, o.shape.layers, o.merge};
                 return Technique{.framebuffer = z3_framebuffer(options),
-                                 .render = bind_options(render_z3, options),
+                                 .renderer = bind_options(render_z3, options),
                                  .inspect = bind_inspection(inspect_layers, options)};
               })};
 }

@@ -74,7 +74,7 @@ const std::map<std::string, StageCounters>& sums() {
     for (const char* spec : kSpecs) {
       History history;
       for (std::size_t frame = 0; frame < trace.frames.size(); ++frame) {
-        RunOptions run{2};
+        FrameInput run{2};
         run.history = &history;
         for (const StageCounters& stage : parse_technique(spec).render(trace, frame, run).stages)
           by_stage[std::string(without_pass(stage.stage))] += stage;
