@@ -46,7 +46,7 @@ DepthBounds<Float> vertex_bounds(const Float z[3]) {
 // Bounds within a pixel: the range of the plane over the whole pixel, limited to the depths of the vertices.
 template <class Float>
 DepthBounds<Float> pair_bounds(const DepthPlane<Float>& plane, const DepthBounds<Float>& vertices) {
-  const Float reach = Float(0.5f) * (magnitude(plane.dzdu) + magnitude(plane.dzdv));
+  const Float reach = reach_in_pixel(plane.dzdu, plane.dzdv);
   return {lesser(greater(plane.z - reach, vertices.nearest), vertices.farthest),
           greater(lesser(plane.z + reach, vertices.farthest), vertices.nearest)};
 }
