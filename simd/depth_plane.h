@@ -12,6 +12,13 @@ struct DepthPlane {
   Float z, dzdu, dzdv;
 };
 
+// The same from the upper left corner of a pixel, or of a cell of it, in the units of samples and positions: depth is
+// z + dzdx x + dzdy y, x and y in 1/256 px.
+template <class Float>
+struct CellPlane {
+  Float z, dzdx, dzdy;
+};
+
 namespace scalar {
 #include "simd/depth_plane-inl.h"
 }

@@ -18,13 +18,7 @@ inline DepthPlane<float> pixel_plane(const SetupTriangle& triangle, std::int32_t
           static_cast<float>(triangle.depth.dzdy)};
 }
 
-// The same for the samples of a cell: the depth at the cell's upper left corner (x, y), in pixels, and slopes per
-// 1/256 px.
-template <class Float>
-struct CellPlane {
-  Float z, dzdx, dzdy;
-};
-
+// The same for the samples of a cell, whose upper left corner is (x, y), in pixels.
 template <class Real>
 auto cell_plane(const ScreenDepthOf<Real>& depth, Real x, Real y) {
   const Real unit(1.0 / kSubpixelUnits);

@@ -30,7 +30,7 @@ void blend(const SetupTriangles& triangles, const TileShader& shader, const std:
       ++counts.tested;
       const std::size_t at = cell * samples + s;
       float depth;
-      if (!depth_test_scalar(plane.z, plane.dzdx, plane.dzdy, static_cast<float>(sampling.pattern.x[s]),
+      if (!depth_test_scalar(plane, static_cast<float>(sampling.pattern.x[s]),
                              static_cast<float>(sampling.pattern.y[s]), surface.depth[at], depth))
         continue;
       access.passed |= 1u << s;

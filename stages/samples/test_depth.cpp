@@ -24,13 +24,12 @@ void set_items(const SetupTriangles& triangles, const SampleFragment* fragments,
   for (std::size_t i = 0; i < count; ++i) {
     const SampleFragment& fragment = fragments[i];
     const auto pixel = static_cast<std::int32_t>(tile.index(grid.pixel_x(fragment.x), grid.pixel_y(fragment.y)));
-    const CellPlane<float> plane =
-        cell_plane(triangles.triangles[fragment.triangle].depth, fragment.x * cell_width, fragment.y * cell_height);
     CellDepth& item = block.items[i];
     item.cell = static_cast<std::uint32_t>(pixel * grid.cells_per_pixel() + grid.in_pixel(fragment.x, fragment.y));
     item.mask = fragment.mask;
     item.triangle = fragment.triangle;
-    item.z = plane.z, item.dzdx = plane.dzdx, item.dzdy = plane.dzdy;
+    item.plane =
+        cell_plane(triangles.triangles[fragment.triangle].depth, fragment.x * cell_width, fragment.y * cell_height);
   }
 }
 

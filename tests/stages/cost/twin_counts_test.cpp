@@ -60,14 +60,14 @@ TEST_P(TwinCounts, DepthTest) {
     const ScreenDepth& plane = triangles_.triangles[fragment.triangle].depth;
     const ScreenDepthOf<Real> counted = {real(plane.z), real(plane.dzdx), real(plane.dzdy), real(plane.anchor_x),
                                          real(plane.anchor_y)};
-    const auto [z, dzdx, dzdy] =
+    const auto in_cell =
         cell_plane(counted, real(static_cast<double>(fragment.x)), real(static_cast<double>(fragment.y)));
     const auto first = static_cast<std::size_t>(fragment.y * tile_.width() + fragment.x) * 8;
     for (std::size_t s = 0; s < 8; ++s) {
       if (!(fragment.mask >> s & 1)) continue;
       Float depth;
       const bool passes =
-          depth_test_scalar(z, dzdx, dzdy, real(static_cast<float>(sampling.pattern.x[s])),
+          depth_test_scalar(in_cell, real(static_cast<float>(sampling.pattern.x[s])),
                             real(static_cast<float>(sampling.pattern.y[s])), real(stored.depth[first + s]), depth);
       if (passes) stored.depth[first + s] = depth.value;
     }
