@@ -116,8 +116,8 @@ FrameResult render_dvm(const FrameJob& job, const DvmOptions& options) {
     shade_samples(bin, sampling.pattern, materials, selected);
     quads.insert(bin.tile, selected);
     over_time.find_motion(bin, visibility);
-    const PixelContents found = contents(visibility.surface(), bin.tile, frame, context.triangles.draws,
-                                         over_time.to_last(), looks, moving.timed());
+    const PixelContents found = contents(
+        visibility.surface(), {bin.tile, frame, context.triangles.draws, over_time.to_last()}, looks, moving.timed());
     moving.streams(bin.tile.pixels() * (kLookBytes + kSpeedBytes));
     copy_to_frame(found.looks, bin.tile, frame, over_time.current.looks);
     copy_to_frame(found.speeds, bin.tile, frame, over_time.current.speeds);

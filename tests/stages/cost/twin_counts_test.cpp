@@ -53,9 +53,9 @@ TEST_P(TwinCounts, DepthTest) {
   StageCounters raster, counters;
   std::vector<SampleFragment> fragments;
   std::vector<SampleAccess> accesses;
-  sample_raster(triangles_, list_, tile_, sampling, raster, fragments);
+  sample_raster({triangles_, tile_, sampling}, list_, raster, fragments);
   SampleTile surface(tile_, sampling), stored(tile_, sampling);
-  depth_test(triangles_, fragments, tile_, sampling, counters, surface, accesses);
+  depth_test({triangles_, tile_, sampling}, fragments, counters, surface, accesses);
   for (const SampleFragment& fragment : fragments) {
     const ScreenDepth& plane = triangles_.triangles[fragment.triangle].depth;
     const ScreenDepthOf<Real> counted = {real(plane.z), real(plane.dzdx), real(plane.dzdy), real(plane.anchor_x),
@@ -249,7 +249,7 @@ TEST_P(TwinCounts, Accumulate) {
   const Sampling sampling{CellGrid{}, standard_pattern(8)};
   StageCounters raster;
   std::vector<SampleFragment> fragments;
-  sample_raster(triangles_, list_, tile_, sampling, raster, fragments);
+  sample_raster({triangles_, tile_, sampling}, list_, raster, fragments);
   const std::vector<glm::vec3> colors(triangles_.triangles.size(), glm::vec3(0.5f));
   for (const DoubleCounting counting : {DoubleCounting::none, DoubleCounting::saturate}) {
     StageCounters counters;
