@@ -2,7 +2,7 @@
 """Draws the figure of the pipeline: docs/pipeline_figure.py docs/pictures/pipeline.svg"""
 import sys
 
-WIDTH, HEIGHT = 828, 787
+WIDTH, HEIGHT = 828, 760
 MONO = "DejaVu Sans Mono, Menlo, Consolas, monospace"
 
 # Folders of stages, with the colours of their boxes: fill, border.
@@ -17,7 +17,7 @@ COLORS = {
 FOLDER_OF = {
     "vertex_setup": "geometry",
     "bin_sort": "raster", "conservative_raster": "raster", "sample_raster": "raster", "reference_raster": "raster",
-    "a_buffer": "beam", "windows": "beam", "beam_fragment": "beam", "compose": "beam", "claim": "beam", "settle": "beam",
+    "a_buffer": "beam", "windows": "beam", "beam_fragment": "beam", "compose": "beam",
     "depth_test": "samples", "stencil_test": "samples", "accumulate": "samples", "sample_select": "samples",
     "material_sort": "samples", "dilate": "samples",
     "motion": "temporal", "temporal": "temporal",
@@ -38,8 +38,7 @@ BEAM = [
 OTHERS = [
     ("beam:order=sorted", "conservative_raster a_buffer windows beam_fragment shade compose resolve"),
     ("beam:order=stream", "conservative_raster beam_fragment compose shade resolve"),
-    ("\u2026,passes=N", "conservative_raster beam_fragment claim beam_fragment shade settle resolve"),
-    ("beam:rules=paper, alpha", "conservative_raster beam_fragment shade a_buffer compose resolve"),
+    ("casav, alpha", "conservative_raster beam_fragment shade a_buffer compose resolve"),
     ("z3", "conservative_raster beam_fragment shade compose resolve"),
     ("msaa:N", "sample_raster shade depth_test resolve"),
     ("acaa:N", "sample_raster depth_test stencil_test shade accumulate resolve"),
@@ -129,7 +128,7 @@ def beam_part():
 def other_part():
     """The other techniques, one row each."""
     text(20, 402, "In each bin: the other techniques", 13, "start", weight="bold")
-    note = ("sorted order repeats windows to compose; passes=N repeats all its stages; acaa and deferred draw twice (prepass_...); "
+    note = ("sorted order repeats windows to compose; acaa and deferred draw twice (prepass_...); "
             "dilate and temporal work on whole frames.")
     text(20, 420, note, 9.5, "start", fill="#555")
     y, height, row = 434, 20, 27

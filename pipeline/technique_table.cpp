@@ -6,8 +6,8 @@ namespace beampipe {
 TechniqueKind beam_kind();
 TechniqueKind beam_sorted_kind();
 TechniqueKind beam_stream_kind();
-TechniqueKind beam_paper_kind();
-TechniqueKind alpha_kind();  // in beam_paper.cpp
+TechniqueKind casav_kind();
+TechniqueKind alpha_kind();  // in casav.cpp
 TechniqueKind z3_kind();
 TechniqueKind msaa_kind();
 TechniqueKind acaa_kind();
@@ -17,13 +17,15 @@ TechniqueKind taa_kind();
 TechniqueKind dvm_kind();
 TechniqueKind reference_kind();
 
-const std::vector<TechniqueKind>& technique_kinds() {
+const std::vector<TechniqueKind>& built_in_kinds() {
   static const std::vector<TechniqueKind> kinds = {
-      beam_kind(), beam_sorted_kind(), beam_stream_kind(), beam_paper_kind(), alpha_kind(),
-      z3_kind(),   msaa_kind(),        acaa_kind(),        deferred_kind(),   visibility_kind(),
-      taa_kind(),  dvm_kind(),         reference_kind(),
+      beam_kind(), beam_sorted_kind(), beam_stream_kind(), casav_kind(), alpha_kind(), z3_kind(),        msaa_kind(),
+      acaa_kind(), deferred_kind(),    visibility_kind(),  taa_kind(),   dvm_kind(),   reference_kind(),
   };
   return kinds;
 }
+
+// Weak, so that the linker prefers a program's own.
+[[gnu::weak]] const std::vector<TechniqueKind>& technique_kinds() { return built_in_kinds(); }
 
 }  // namespace beampipe

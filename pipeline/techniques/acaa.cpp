@@ -25,10 +25,11 @@ Framebuffer acaa_framebuffer(const AcaaOptions& options) {
   return {.surfaces = surfaces, .bin_size = bin_size(static_cast<int>(n))};
 }
 
-std::vector<std::string> stages_of(const AcaaOptions& options) {
+std::vector<StageId> stages_of(const AcaaOptions& options) {
   if (options.double_counting == DoubleCounting::stencil)
-    return {"sample_raster", "depth_test", "stencil_test", "shade", "accumulate", "resolve"};
-  return {"sample_raster", "depth_test", "shade", "accumulate", "resolve"};
+    return {StageId::sample_raster, StageId::depth_test, StageId::stencil_test,
+            StageId::shade,         StageId::accumulate, StageId::resolve};
+  return {StageId::sample_raster, StageId::depth_test, StageId::shade, StageId::accumulate, StageId::resolve};
 }
 
 FrameResult render_acaa(const FrameJob& job, const AcaaOptions& options) {

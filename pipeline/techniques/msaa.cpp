@@ -40,7 +40,7 @@ FrameResult render_msaa(const FrameJob& job, const MsaaOptions& options) {
   History& history = job.run.history ? *job.run.history : first;
   std::optional<FrameMotion> motion;
   if (options.motion) motion.emplace(context, history);
-  BinPlan plan{.stages = {"sample_raster", "shade", "depth_test", "resolve"},
+  BinPlan plan{.stages = {StageId::sample_raster, StageId::shade, StageId::depth_test, StageId::resolve},
                .framebuffer = msaa_framebuffer(options),
                .has_prepass = options.prepass,
                .empty_bins_differ = options.motion};
@@ -95,8 +95,8 @@ std::vector<glm::vec4> draw_forward(Bin& bin, const MsaaOptions& options, DepthT
   });
   depth_test.end_pass();
   depth_test.count_bytes();
-  depth_test.read_colors(bin.stage("resolve"));
-  return depth_test.resolve_samples(options.at, bin.stage("resolve"), options.space);
+  depth_test.read_colors(bin.stage(StageId::resolve));
+  return depth_test.resolve_samples(options.at, bin.stage(StageId::resolve), options.space);
 }
 
 TechniqueKind msaa_kind() {

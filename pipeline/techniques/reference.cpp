@@ -22,11 +22,11 @@ FrameResult render_reference(const FrameJob& job) {
   FrameInput without_memory = job.run;
   without_memory.memory.modelled = false;  // no hardware is modelled for this
   const FrameContext context({job.trace, job.frame, without_memory, job.sinks});
-  const BinPlan plan{.stages = {"reference_raster", "resolve"},
+  const BinPlan plan{.stages = {StageId::reference_raster, StageId::resolve},
                      .framebuffer = reference_framebuffer(),
                      .translucent_pair_bytes = kLayerBytes};
   return render_bins(context, plan, [&](Bin& bin) {
-    const BinStage resolving = bin.stage("resolve");
+    const BinStage resolving = bin.stage(StageId::resolve);
     if (bin.list.empty()) {  // every sample shows the background, so no samples are set up
       resolving.counters.items_out = bin.tile.pixels();
       resolving.counters.bytes_written = bin.tile.pixels() * sizeof(glm::vec4);
@@ -34,7 +34,8 @@ FrameResult render_reference(const FrameJob& job) {
     }
     const TileShader shader = bin.shader();
     ReferenceTile samples(bin.tile);
-    reference_raster(context.triangles, bin.list, bin.tile, bin.stage("reference_raster").timed(), samples, &shader);
+    reference_raster(context.triangles, bin.list, bin.tile, bin.stage(StageId::reference_raster).timed(), samples,
+                     &shader);
     bin.finish(resolve(samples, bin.tile, shader, job.frame.background, resolving.timed()));
   });
 }

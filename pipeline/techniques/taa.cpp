@@ -25,14 +25,16 @@ ShadingRules rules_of(TaaShading shading) {
   return {};
 }
 
-std::vector<std::string> stages_of(TaaShading shading) {
+std::vector<StageId> stages_of(TaaShading shading) {
   switch (shading) {
     case TaaShading::visibility:
-      return {"sample_raster", "depth_test", "material_sort", "shade", "light", "resolve", "motion"};
+      return {StageId::sample_raster, StageId::depth_test, StageId::material_sort, StageId::shade,
+              StageId::light,         StageId::resolve,    StageId::motion};
     case TaaShading::deferred:
-      return {"sample_raster", "depth_test", "shade", "light", "resolve", "motion"};
+      return {StageId::sample_raster, StageId::depth_test, StageId::shade,
+              StageId::light,         StageId::resolve,    StageId::motion};
     case TaaShading::forward:
-      return {"sample_raster", "shade", "depth_test", "resolve", "motion"};
+      return {StageId::sample_raster, StageId::shade, StageId::depth_test, StageId::resolve, StageId::motion};
   }
   return {};
 }
@@ -88,7 +90,7 @@ FrameResult render_taa(const FrameJob& job, const TaaOptions& options) {
     bin.finish(draw_bin(bin, options.shading, sampling, materials, over_time));
     copy_to_frame(bin.picture(), bin.tile, job.frame, over_time.current.color);
   });
-  run_on_tiles(context, "temporal", result, [&](const Tile& tile, const BinStage& stage) {
+  run_on_tiles(context, StageId::temporal, result, [&](const Tile& tile, const BinStage& stage) {
     neighborhood_box(tile, stage.timed(), over_time.current);
     stage.streams(tile.pixels() * kPictureBytes);
     over_time.accumulate(tile, {options.blend}, stage);

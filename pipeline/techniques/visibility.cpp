@@ -13,7 +13,8 @@ FrameResult render_visibility(const FrameJob& job, const VisibilityOptions& opti
   const FrameContext context(job, {.storage = MaterialStorage::gbuffer});
   const Sampling sampling{CellGrid{}, standard_pattern(options.samples)};
   const Materials materials(material_ids(context.triangles, MaterialBy::color));
-  const BinPlan plan{.stages = {"sample_raster", "depth_test", "material_sort", "shade", "light", "resolve"},
+  const BinPlan plan{.stages = {StageId::sample_raster, StageId::depth_test, StageId::material_sort, StageId::shade,
+                                StageId::light, StageId::resolve},
                      .framebuffer = visibility_framebuffer(options.samples)};
   return render_bins(context, plan, [&](Bin& bin) {
     DepthTestUnit visibility(bin, sampling, kVisibilityBytes);

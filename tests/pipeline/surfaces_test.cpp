@@ -7,7 +7,6 @@
 #include <numeric>
 
 #include "pipeline/technique.h"
-#include "stages/cost/counter_registry.h"
 #include "stages/surface/mip_chain.h"
 #include "tests/pipeline/surface_traces.h"
 #include "tests/stages/surface_scene.h"
@@ -22,8 +21,7 @@ constexpr const char* kSpecs[] = {"beam",
                                   "beam:slots=2,bits=32",
                                   "beam:order=sorted",
                                   "beam:order=stream",
-                                  "beam:order=stream,passes=0",
-                                  "beam:rules=paper",
+                                  "casav",
                                   "z3",
                                   "alpha",
                                   "msaa:1",
@@ -117,7 +115,7 @@ TEST(Surfaces, FramesWithoutMaterialsPayNothing) {
       const auto same =
           std::find_if(b.stages.begin(), b.stages.end(), [&](const auto& s) { return s.stage == stage.stage; });
       ASSERT_NE(same, b.stages.end());
-      if (without_pass(stage.stage) != "vertex_setup") {
+      if (stage.stage.id != StageId::vertex_setup) {
         EXPECT_EQ(*same, stage) << spec << ", " << stage.stage;
       }
     }
@@ -240,7 +238,6 @@ TEST(Surfaces, TechniquesWithoutMaskPositionsDoNotNumberSheets) {
     const StageCounters a = rendered(spec, scene.trace).stages[0], b = rendered(spec, opaque).stages[0];
     const bool has_positions =
         std::string(spec).starts_with("beam") || std::string(spec) == "z3" || std::string(spec) == "alpha";
-    if (std::string(spec) == "beam:order=stream,passes=0") continue;  // passes differ
     EXPECT_EQ(a.ops.total() > b.ops.total(), has_positions) << spec;
     EXPECT_EQ(a.bytes_written > b.bytes_written, has_positions) << spec;
   }
@@ -283,7 +280,7 @@ TEST(Surfaces, WhatIsDrawnLaterInFrontHidesSheets) {
   scene.add_rectangle(-1, -1, 9, 9, 0.5, unlit_material({1, 0, 0, 0.5f}, AlphaMode::blend));
   scene.add_rectangle(-1, -1, 9, 9, 0.25, unlit_material({0, 1, 0, 1}));
   for (const char* spec : kSpecs) {
-    if (std::string(spec) == "beam:rules=paper" || std::string(spec) == "alpha") continue;  // approximate order, over
+    if (std::string(spec) == "casav" || std::string(spec) == "alpha") continue;  // approximate order, over
     const glm::vec3 found = mean_color(rendered(spec, scene.trace).image);
     EXPECT_NEAR(found.r, 0, 0.01) << spec;
     EXPECT_NEAR(found.g, 1, 0.01) << spec;
@@ -337,7 +334,7 @@ TEST(Surfaces, TranslucentTrianglesAreDrawnOnce) {
   for (const char* spec : {"acaa:8", "deferred", "visibility", "taa:8", "dvm"}) {
     const FrameResult found = rendered(spec, scene.trace);
     for (const StageCounters& stage : found.stages) {
-      if (stage.stage != "sample_raster") continue;
+      if (stage.stage != StageId::sample_raster) continue;
       EXPECT_GE(stage.items_out, 64u) << spec;
       EXPECT_LE(stage.items_out, 64u + 8u) << spec;  // pixels of the diagonal have a fragment of each half
     }

@@ -13,8 +13,8 @@
 #include "tools/files/output.h"
 #include "tools/report/report_text.h"
 #include "tools/stress/judge.h"
-#include "traces/atomic_file.h"
-#include "traces/trace_io.h"
+#include "traces/files/atomic_file.h"
+#include "traces/files/trace_io.h"
 
 namespace beampipe {
 namespace {
@@ -27,13 +27,11 @@ struct StressArguments {
                                     "beam:order=sorted",
                                     "beam:order=sorted,storage=float32",
                                     "beam:order=sorted,bits=32",
-                                    "beam:order=stream,passes=0",
-                                    "beam:order=stream,passes=0,bits=64,layers=1",
                                     "z3",
                                     "z3:shape=128x3",
-                                    "beam:rules=paper",
-                                    "beam:rules=paper,storage=text",
-                                    "beam:rules=paper,storage=float32",
+                                    "casav",
+                                    "casav:storage=text",
+                                    "casav:storage=float32",
                                     "alpha",
                                     "msaa:1,8,16,256",
                                     "acaa:8",

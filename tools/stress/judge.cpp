@@ -54,23 +54,21 @@ const NamedLimit* stated_limit(const HardCase& hard_case, std::string spec) {
   }
 }
 
-// The positions of the mask, if the spec is of the beam in one pass; else 0.
-int one_pass_positions(const std::string& spec) {
+// The positions of the mask, if open pixels compose the spec; else 0.
+int open_pixel_positions(const std::string& spec) {
   const auto has = [&](const char* text) { return spec.find(text) != spec.npos; };
-  if (!spec.starts_with("beam") || has("rules=paper") || has("order=sorted")) return 0;
-  if (const std::size_t passes = spec.find("passes="); passes != spec.npos)
-    if (std::atoi(spec.c_str() + passes + 7) != 1) return 0;
+  if (!spec.starts_with("beam") || has("order=sorted")) return 0;
   if (const std::size_t bits = spec.find("bits="); bits != spec.npos) return std::atoi(spec.c_str() + bits + 5);
   return has("order=stream") ? 128 : 256;
 }
 
-// In one pass, a result is within three positions of what counting them gives, and counting is wrong by one more at an
-// edge. Stated limits are those of the positions that their specs have.
-StatedLimit one_pass_limit(const NamedLimit* stated, int positions) {
+// With open pixels, a result is within three positions of what counting them gives, and counting is wrong by one more
+// at an edge. Stated limits are those of the positions that their specs have.
+StatedLimit open_pixel_limit(const NamedLimit* stated, int positions) {
   constexpr double kPositions = 4;
   StatedLimit limit{kPositions / positions, "areas and colours are limited to what mask positions say"};
   if (!stated) return limit;
-  const double error = stated->second.error * one_pass_positions(stated->first) / positions;
+  const double error = stated->second.error * open_pixel_positions(stated->first) / positions;
   if (limit.error < error) limit = {error, stated->second.reason};
   return limit;
 }
@@ -150,8 +148,8 @@ Verdict Judge::judge(const Technique& technique, const FrameInput& options) {
     return verdict;
   }
   verdict.limit = format_limit(technique.spec);
-  if (const int positions = one_pass_positions(technique.spec)) {
-    const StatedLimit limit = one_pass_limit(stated_limit(case_, technique.spec), positions);
+  if (const int positions = open_pixel_positions(technique.spec)) {
+    const StatedLimit limit = open_pixel_limit(stated_limit(case_, technique.spec), positions);
     verdict.limit = limit.error, verdict.reason = limit.reason;
   } else if (const NamedLimit* stated = stated_limit(case_, technique.spec)) {
     verdict.limit = stated->second.error;

@@ -16,9 +16,8 @@ namespace {
 constexpr const char* kSpecs[] = {"beam",
                                   "beam:order=sorted",
                                   "beam:order=stream",
-                                  "beam:order=stream,passes=0",
-                                  "beam:rules=paper",
-                                  "beam:rules=paper,order=near-first",
+                                  "casav",
+                                  "casav:order=near-first",
                                   "z3",
                                   "alpha",
                                   "msaa:4",
@@ -51,7 +50,8 @@ Frame0 render(const std::string& spec, const Trace& trace, const FrameInput& run
   Frame0 frame;
   frame.stages = parse_technique(spec).render(trace, 0, run, {.dram_trace = &dram}).stages;
   dram.for_each([&](const DramRequest& request) {
-    frame.requests.push_back({request.address, request.access == DramAccess::write, request.stage, request.array});
+    frame.requests.push_back(
+        {request.address, request.access == DramAccess::write, std::string(request.stage), request.array});
   });
   frame.ranges = dram.ranges();
   return frame;
@@ -61,7 +61,7 @@ void expect_bytes_of_counters(const Frame0& frame, const std::string& name) {
   std::map<std::string, std::uint64_t> bytes, expected;
   for (const Recorded& request : frame.requests) bytes[request.stage] += 32;
   for (const StageCounters& stage : frame.stages)
-    if (stage.dram_bytes > 0) expected[stage.stage] += stage.dram_bytes;
+    if (stage.dram_bytes > 0) expected[std::string(name_of(stage.stage))] += stage.dram_bytes;
   EXPECT_EQ(bytes, expected) << name;
 }
 

@@ -16,10 +16,9 @@ using Parsed = nlohmann::json;  // independent of the program's own Json
 
 const Names kSpecs = {"beam",
                       "beam:order=stream",
-                      "beam:order=stream,passes=0",
                       "beam:order=sorted",
-                      "beam:rules=paper",
-                      "beam:rules=paper,order=stream",
+                      "casav",
+                      "casav:order=stream",
                       "alpha",
                       "z3",
                       "msaa:4",

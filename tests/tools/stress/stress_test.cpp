@@ -153,10 +153,8 @@ TEST(CrowdedBin, IsExact) {
 
 INSTANTIATE_TEST_SUITE_P(Techniques, HardCases,
                          testing::Values("beam", "beam:bits=64,slots=4", "beam:bits=32,slots=2", "beam:order=sorted",
-                                         "beam:order=stream", "beam:order=stream,passes=0",
-                                         "beam:order=stream,passes=0,bits=64,layers=1", "z3", "beam:rules=paper",
-                                         "alpha", "msaa:8", "acaa:8,double=stencil", "acaa:8", "visibility",
-                                         "reference"));
+                                         "beam:order=stream", "z3", "casav", "alpha", "msaa:8", "acaa:8,double=stencil",
+                                         "acaa:8", "visibility", "reference"));
 
 }  // namespace
 }  // namespace beampipe
