@@ -41,7 +41,7 @@ class Timeline {
 };
 
 // Takes the place of a stage's counters in the call of the stage, and records how long that call took:
-//   const StageTimer timed(run.timeline, tile);
+//   const StageTimer timed(sinks.timeline, tile);
 //   conservative_raster(triangles, list, tile, timed(raster), pairs);
 class StageTimer {
  public:

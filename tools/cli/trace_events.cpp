@@ -55,7 +55,7 @@ std::string trace_events_json(const Timeline& timeline) {
 TraceEvents::TraceEvents(const RunArguments& arguments, RunPlan& plan) {
   if (arguments.trace_events.empty()) return;
   file_ = file_beside_output("--trace-events " + arguments.trace_events, arguments.trace_events, arguments);
-  plan.options.timeline = &timeline_;
+  plan.sinks.timeline = &timeline_;
 }
 
 void TraceEvents::write(InterruptGate& gate) const {
