@@ -13,7 +13,7 @@ namespace {
 
 template <std::size_t Words, std::size_t Layers>
 std::vector<Z3Pixel<Words, Layers>> composed(const SetupTriangles& triangles, const std::vector<glm::vec3>& colors,
-                                             const Tile& tile, LayerMerge merge = LayerMerge::depth) {
+                                             const Tile& tile) {
   const PositionSet positions(cell_patterns(32 * Words));
   StageCounters counters;
   std::vector<Pair> pairs;
@@ -24,7 +24,7 @@ std::vector<Z3Pixel<Words, Layers>> composed(const SetupTriangles& triangles, co
   shade(colors, fragments, counters);
   std::vector<Z3Pixel<Words, Layers>> pixels(tile.pixels());
   std::vector<float> merges(tile.pixels());
-  compose_z3(fragments, positions, merge, counters, pixels, merges);
+  compose_z3(fragments, positions, counters, pixels, merges);
   return pixels;
 }
 
@@ -74,12 +74,11 @@ TEST(ComposeZ3, WeightsNeverPassOne) {
   SCOPED_TRACE(random.name());
   const SetupTriangles triangles = random_triangles(random, 80);
   const std::vector<glm::vec3> white(triangles.triangles.size(), glm::vec3(1.0f));
-  for (const LayerMerge merge : {LayerMerge::depth, LayerMerge::color})
-    for (const PixelColor& pixel : z3_colors(composed<1, 3>(triangles, white, {0, 0, 12, 12}, merge))) {
-      EXPECT_GE(pixel.alpha, 0.0f);
-      EXPECT_LE(pixel.alpha, 1.0f);
-      EXPECT_NEAR(pixel.color.r, pixel.alpha, 2e-3);  // fp16
-    }
+  for (const PixelColor& pixel : z3_colors(composed<1, 3>(triangles, white, {0, 0, 12, 12}))) {
+    EXPECT_GE(pixel.alpha, 0.0f);
+    EXPECT_LE(pixel.alpha, 1.0f);
+    EXPECT_NEAR(pixel.color.r, pixel.alpha, 2e-3);  // fp16
+  }
 }
 
 }  // namespace
