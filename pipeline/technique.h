@@ -15,6 +15,7 @@
 #include "pipeline/memory/parameters.h"
 #include "stages/cost/counters.h"
 #include "stages/data/frame_history.h"
+#include "stages/data/pixel_history.h"
 #include "stages/surface/surface_shader.h"
 #include "traces/trace.h"
 
@@ -22,23 +23,6 @@ namespace beampipe {
 
 class DramTrace;
 class Timeline;
-struct PixelHistory;
-
-// A pixel of the frame.
-struct PixelAddress {
-  std::uint32_t x, y;
-  bool operator==(const PixelAddress&) const = default;
-};
-
-// The weight of one triangle in one pixel. The pixel is the sum of weight times colour over its triangles; the
-// background has what is left to 1.
-struct SurfaceWeight {
-  std::uint32_t triangle;  // index into SetupTriangles
-  float weight;
-  std::uint32_t order;  // when it was merged, where that decides about depth; else 0
-  bool tiny;            // covers no position of the technique's mask
-};
-using PixelWeights = std::vector<SurfaceWeight>;
 
 struct RunOptions {
   int threads = 0;  // 0: all that the machine has. Results do not depend on it.
@@ -62,6 +46,9 @@ struct RunOptions {
   DramTrace* dram_trace = nullptr;
   // If not null, only the bins that hold one of these pixels are rendered; the rest of the picture is black.
   const std::vector<PixelAddress>* pixels = nullptr;
+  // Where a technique that can be observed records what happened in each of `pixels`; null: nowhere. It changes nothing
+  // that is rendered or counted.
+  std::vector<PixelHistory>* histories = nullptr;
 };
 
 // Linear RGB and A, the part of the pixel that geometry covers (0..1). Row 0 is on top; 4 floats per pixel.
@@ -94,11 +81,7 @@ struct Technique {
   Framebuffer framebuffer;
   std::uint32_t samples = 0;  // N of msaa:N, else 0
   std::function<FrameResult(const Trace&, std::size_t frame, const RunOptions&)> render;
-  // What happened in some pixels of the frame, a history each (pipeline/inspect/pixel_history.h). Empty if the
-  // technique cannot tell.
-  std::function<std::vector<PixelHistory>(const Trace&, std::size_t frame, const RunOptions&,
-                                          const std::vector<PixelAddress>&)>
-      inspect = {};
+  bool is_observable = false;  // `render` can fill RunOptions::histories
   bool has_weights = false;    // `render` can fill RunOptions::weights
   bool keeps_history = false;  // a frame's picture depends on earlier frames (RunOptions::history)
   // The least memory that this program needs for a frame, in bytes per pixel: the picture, and what its stages hand to

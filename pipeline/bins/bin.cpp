@@ -19,6 +19,7 @@ Bin::Bin(const FrameContext& frame_context, const Tile& bin_tile, const Triangle
       list(triangles),
       timer_(context.run.timeline, tile),
       memory_(context.run.memory) {
+  if (context.run.weights || context.run.histories) observer_.emplace(context, tile);
   memory_.reach = &cache_reach_;
   if (context.run.dram_trace && memory_.modelled) memory_.log = &dram_log_.emplace();
   memory_.framebuffer = framebuffer.is_on_chip(memory_) ? Place::on_chip : Place::in_memory;

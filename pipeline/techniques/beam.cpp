@@ -5,7 +5,6 @@
 #include <string>
 
 #include "pipeline/bins/render_bins.h"
-#include "pipeline/inspect/inspect_owners.h"
 #include "pipeline/technique_table.h"
 #include "pipeline/units/fragment_units.h"
 #include "pipeline/units/owner_units.h"
@@ -40,7 +39,8 @@ FrameResult render_shape(const Trace& trace, const Frame& frame, const BeamOptio
   const BinPlan plan{.stages = {"conservative_raster", "bin_sort", "beam_fragment", "compose", "shade", "resolve"},
                      .framebuffer = beam_framebuffer(beam),
                      .keeps_tile_size = true,
-                     .sorts_lists = true};
+                     .sorts_lists = true,
+                     .order = kNearFirstOrder};
   return render_bins(context, plan, [&](Bin& bin) {
     const OrderedList ordered = sort_bin(bin);
     ConservativeRasterUnit raster(bin, "", PairDepths::bounds, ConservativeRasterUnit::Hidden::left_out);
@@ -65,19 +65,6 @@ FrameResult render_beam(const Trace& trace, const Frame& frame, const BeamOption
 #undef BEAMPIPE_RENDER
   throw std::invalid_argument("no pixel of this shape: " + std::to_string(beam.positions) + " positions, " +
                               std::to_string(beam.slots) + " slots");
-}
-
-std::vector<PixelHistory> inspect_beam(const Trace& trace, const Frame& frame, const BeamOptions& beam,
-                                       const RunOptions& run, const std::vector<PixelAddress>& pixels) {
-  return inspect_pixels(trace, frame, run, {.takes_positions = true}, beam.bin, true, pixels,
-                        [&](const InspectedPixel& pixel) {
-#define BEAMPIPE_INSPECT(words, pixel_slots)                     \
-  if (beam.positions == 32 * words && beam.slots == pixel_slots) \
-    return inspect_owners<words, pixel_slots>(pixel, OwnerOrder::near_first, beam.shade_at);
-                          BEAMPIPE_OPEN_PIXELS(BEAMPIPE_INSPECT)
-#undef BEAMPIPE_INSPECT
-                          throw std::invalid_argument("no pixel of this shape");
-                        });
 }
 
 }  // namespace
@@ -108,7 +95,7 @@ TechniqueKind beam_kind() {
               [](const BeamOptions& o) {
                 return Technique{.framebuffer = beam_framebuffer(o),
                                  .render = bind_options(render_beam, o),
-                                 .inspect = bind_inspection(inspect_beam, o),
+                                 .is_observable = true,
                                  .has_weights = true};
               })};
 }

@@ -7,8 +7,6 @@
 #include <stdexcept>
 
 #include "pipeline/bins/render_bins.h"
-#include "pipeline/inspect/inspect_owners.h"
-#include "pipeline/inspect/inspect_passes.h"
 #include "pipeline/technique_table.h"
 #include "pipeline/units/fragment_units.h"
 #include "pipeline/units/layer_units.h"
@@ -113,24 +111,6 @@ FrameResult render_stream(const Trace& trace, const Frame& frame, const StreamOp
   throw std::invalid_argument("no pixel of this shape");
 }
 
-std::vector<PixelHistory> inspect_stream(const Trace& trace, const Frame& frame, const StreamOptions& stream,
-                                         const RunOptions& run, const std::vector<PixelAddress>& pixels) {
-  return inspect_pixels(trace, frame, run, {.takes_positions = true}, kBinSize, false, pixels,
-                        [&](const InspectedPixel& pixel) {
-#define BEAMPIPE_INSPECT(words, pixel_slots)                                               \
-  if (stream.passes == 1 && stream.positions == 32 * words && stream.slots == pixel_slots) \
-    return inspect_owners<words, pixel_slots>(pixel, OwnerOrder::stream, OwnerPlace::covered);
-                          BEAMPIPE_OPEN_PIXELS(BEAMPIPE_INSPECT)
-#undef BEAMPIPE_INSPECT
-#define BEAMPIPE_INSPECT(words, pixel_layers)                                                \
-  if (stream.passes != 1 && stream.positions == 32 * words && stream.layers == pixel_layers) \
-    return inspect_passes<words, pixel_layers>(pixel, stream.passes);
-                          BEAMPIPE_OWNER_PIXELS(BEAMPIPE_INSPECT)
-#undef BEAMPIPE_INSPECT
-                          throw std::invalid_argument("no pixel of this shape");
-                        });
-}
-
 }  // namespace
 
 TechniqueKind beam_stream_kind() {
@@ -160,7 +140,7 @@ TechniqueKind beam_stream_kind() {
           [](const StreamOptions& o) {
             return Technique{.framebuffer = stream_framebuffer(o),
                              .render = bind_options(render_stream, o),
-                             .inspect = bind_inspection(inspect_stream, o),
+                             .is_observable = o.passes == 1,
                              .has_weights = o.passes == 1};
           })};
 }

@@ -30,7 +30,7 @@ TechniqueKind deferred_kind() {
           .description = "one sample per pixel: depth, then a G-buffer from 2x2 quads, then lighting per pixel",
           .source = "Burns and Hunt 2013, Hable 2021",
           .make = make_plain([] {
-            return Technique{.framebuffer = deferred_framebuffer(), .render = bind_options(render_deferred)};
+            return Technique{.framebuffer = deferred_framebuffer(), .render = bind_options(render_deferred), .is_observable = true};
           })};
 }
 
@@ -48,7 +48,7 @@ std::vector<glm::vec4> draw_deferred(Bin& bin, DepthTestUnit& depth_test) {
   depth_test.end_pass();
   gbuffer.end_pass();
   std::vector<glm::vec4> picture = gbuffer.light_and_resolve(depth_test);
-  put_over(draw_translucent(bin, depth_test, ShadeAt::sample), picture);
+  put_over(draw_translucent(bin, depth_test, ShadeAt::sample), bin.observers(), picture);
   depth_test.count_bytes();
   return picture;
 }

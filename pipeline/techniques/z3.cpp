@@ -4,7 +4,6 @@
 #include <string>
 
 #include "pipeline/bins/render_bins.h"
-#include "pipeline/inspect/inspect_z3.h"
 #include "pipeline/technique_table.h"
 #include "pipeline/units/fragment_units.h"
 #include "pipeline/units/layer_units.h"
@@ -64,18 +63,6 @@ FrameResult render_z3(const Trace& trace, const Frame& frame, const Z3Options& z
                               std::to_string(z3.layers) + " layers");
 }
 
-std::vector<PixelHistory> inspect_layers(const Trace& trace, const Frame& frame, const Z3Options& z3,
-                                         const RunOptions& run, const std::vector<PixelAddress>& pixels) {
-  return inspect_pixels(trace, frame, run, {.takes_positions = true}, kBinSize, false, pixels,
-                        [&](const InspectedPixel& pixel) {
-#define BEAMPIPE_INSPECT(words, shape_layers) \
-  if (z3.positions == 32 * words && z3.layers == shape_layers) return inspect_z3<words, shape_layers>(pixel, z3.merge);
-                          BEAMPIPE_Z3_PIXELS(BEAMPIPE_INSPECT)
-#undef BEAMPIPE_INSPECT
-                          throw std::invalid_argument("no pixel of this shape");
-                        });
-}
-
 }  // namespace
 
 TechniqueKind z3_kind() {
@@ -103,7 +90,7 @@ TechniqueKind z3_kind() {
                 const Z3Options options{o.shape.positions, o.shape.layers, o.merge};
                 return Technique{.framebuffer = z3_framebuffer(options),
                                  .render = bind_options(render_z3, options),
-                                 .inspect = bind_inspection(inspect_layers, options)};
+                                 .is_observable = true};
               })};
 }
 

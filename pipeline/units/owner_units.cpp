@@ -1,7 +1,5 @@
 #include "pipeline/units/owner_units.h"
 
-#include <algorithm>
-
 #include "stages/raster/bin_sort_cost.h"
 
 namespace beampipe {
@@ -16,17 +14,6 @@ void OpenPixelStore::finish() {
   memory_.flush({}, bin_.stage("compose").counters);
   memory_.read_all(bin_.stage("resolve").counters);
   if (bin_.models_memory()) memory_.add_bytes(bin_.pixel_counter("bytes"));
-}
-
-// Depth is compared position by position, so the order of triangles matters only where owners became one.
-void record_weights(const OwnerWeights& recorded, const TriangleList& list, BinWeights& weights) {
-  for (std::size_t pixel = 0; pixel < weights.pixels(); ++pixel) {
-    const std::vector<OwnerWeights::Weight>& of_pixel = recorded.of_pixel(pixel);
-    const bool merged = std::any_of(of_pixel.begin(), of_pixel.end(), [](const auto& each) { return each.merged; });
-    for (const OwnerWeights::Weight& each : of_pixel)
-      weights.at(pixel).push_back({list[each.number], each.weight, merged ? each.number + 1 : 0, each.speck});
-  }
-  weights.finish();
 }
 
 OrderedList sort_bin(Bin& bin) {

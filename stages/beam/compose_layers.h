@@ -14,13 +14,16 @@
 #include "stages/cost/counters.h"
 #include "stages/data/fragment.h"
 #include "stages/data/paper_aggregate.h"
+#include "stages/data/pixel_observer.h"
 
 namespace beampipe {
 
 // The aggregates of the pixels of a tile as they are stored, `layers` for each pixel, empty ones last.
 class AggregateLayers {
  public:
-  AggregateLayers(std::size_t pixels, std::size_t layers, PaperStorage storage);
+  // `observers` may be null.
+  AggregateLayers(std::size_t pixels, std::size_t layers, PaperStorage storage,
+                  const PixelObservers* observers = nullptr);
 
   // Adds shaded fragments. Counts as items out the fragments. Adds one to merges[pixel] for each two aggregates that
   // become one.
@@ -38,6 +41,7 @@ class AggregateLayers {
 
   std::size_t layers_;
   PaperStorage storage_;
+  const PixelObservers* observers_;
   std::vector<Aggregate> aggregates_;  // rounded as they are stored
 };
 

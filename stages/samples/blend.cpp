@@ -25,6 +25,8 @@ void blend(const SetupTriangles& triangles, const TileShader& shader, const std:
         shader.color_and_alpha(fragment.triangle, static_cast<std::uint32_t>(pixel), places[i].x, places[i].y, width);
     const glm::vec4 source(glm::vec3(color) * color.a, color.a);
     SampleAccess access{cell, fragment.triangle, fragment.mask, 0};
+    PixelObserver* const observer = observer_at(surface.observers, pixel);
+    const std::size_t first = surface.first_observed + cell * samples - pixel * surface.samples_per_pixel;
     for (std::size_t s = 0; s < samples; ++s) {
       if (!(fragment.mask >> s & 1)) continue;
       ++counts.tested;
@@ -35,9 +37,11 @@ void blend(const SetupTriangles& triangles, const TileShader& shader, const std:
         continue;
       access.passed |= 1u << s;
       ++counts.passed;
+      if (observer) observer->blends(fragment.triangle, first + s, color.a, glm::vec3(color));
       glm::vec4& over = surface.over[at];
       for (int c = 0; c < 4; ++c) over[c] = blended(source[c], over[c], source.a);
     }
+    if (observer) observer->contends(fragment.triangle, first, access.tested & ~access.passed, 0);
     accesses.push_back(access);
   }
   charge_blend(fragments.size(), counts, surface.color_bytes, sampling.pattern, counters);

@@ -52,6 +52,15 @@ SampleCounts test_blocks(const SetupTriangles& triangles, const std::vector<Samp
   return samples;
 }
 
+void tell(const std::vector<SampleAccess>& accesses, const Sampling& sampling, const SampleTile& surface) {
+  const auto cells = static_cast<std::size_t>(sampling.grid.cells_per_pixel());
+  const auto samples = static_cast<std::size_t>(sampling.pattern.count);
+  for (const SampleAccess& access : accesses)
+    if (PixelObserver* const observer = observer_at(surface.observers, access.cell / cells))
+      observer->contends(access.triangle, surface.first_observed + access.cell % cells * samples, access.tested,
+                         access.passed);
+}
+
 }  // namespace
 
 void depth_test(const SetupTriangles& triangles, const std::vector<SampleFragment>& fragments, const Tile& tile,
@@ -63,6 +72,7 @@ void depth_test(const SetupTriangles& triangles, const std::vector<SampleFragmen
         return depth_test(items, count, sampling.pattern, {surface.depth.data(), surface.triangle.data()}, masks);
       });
   charge_depth_test(fragments.size(), samples, kSampleDepthBytes + surface.color_bytes, sampling.pattern, counters);
+  if (surface.observers) tell(accesses, sampling, surface);
 }
 
 void depth_test_equal(const SetupTriangles& triangles, const Tile& tile, const Sampling& sampling,

@@ -38,14 +38,10 @@ const char* name_of(HistoryStep::Kind kind) {
       return "merged";
     case settled:
       return "settled";
-    case dropped:
-      return "dropped";
     case composed:
-      return "composed";
-    case pass:
       break;
   }
-  return "pass";
+  return "composed";
 }
 
 Json to_json(const HistoryStep& step) {
