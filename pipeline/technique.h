@@ -5,6 +5,7 @@
 #include <cstddef>
 #include <cstdint>
 #include <functional>
+#include <glm/glm.hpp>
 #include <map>
 #include <stdexcept>
 #include <string>
@@ -79,7 +80,11 @@ struct FrameResult {
 struct Technique {
   std::string spec = {};  // as the user wrote it
   Framebuffer framebuffer;
-  std::uint32_t samples = 0;  // N of msaa:N, else 0
+  std::uint32_t samples = 0;                // N of msaa:N, else 0
+  std::vector<glm::ivec2> sampled_at = {};  // in a pixel's first frame, as in pipeline/sampling.h; empty: areas count
+  int positions = 0;                        // of a mask that says where in the pixel an area is; 0: there is none
+  int counted_positions = 0;                // of a mask that limits areas to what counting its positions gives; or 0
+  std::string errs_like = {};               // the technique whose limits in hard cases (tools/stress) hold here as well
   std::function<FrameResult(const Trace&, std::size_t frame, const RunOptions&)> render;
   bool is_observable = false;  // `render` can fill RunOptions::histories
   bool has_weights = false;    // `render` can fill RunOptions::weights

@@ -3,6 +3,7 @@
 #include <string>
 
 #include "pipeline/bins/render_bins.h"
+#include "pipeline/sampling.h"
 #include "pipeline/technique_table.h"
 #include "pipeline/units/accumulate_unit.h"
 #include "pipeline/units/depth_test_unit.h"
@@ -24,10 +25,11 @@ Framebuffer acaa_framebuffer(const AcaaOptions& options) {
   return {.surfaces = surfaces, .bin_size = bin_size(static_cast<int>(n))};
 }
 
-std::vector<std::string> stages_of(const AcaaOptions& options) {
+std::vector<StageId> stages_of(const AcaaOptions& options) {
   if (options.double_counting == DoubleCounting::stencil)
-    return {"sample_raster", "depth_test", "stencil_test", "shade", "accumulate", "resolve"};
-  return {"sample_raster", "depth_test", "shade", "accumulate", "resolve"};
+    return {StageId::sample_raster, StageId::depth_test, StageId::stencil_test,
+            StageId::shade,         StageId::accumulate, StageId::resolve};
+  return {StageId::sample_raster, StageId::depth_test, StageId::shade, StageId::accumulate, StageId::resolve};
 }
 
 FrameResult render_acaa(const Trace& trace, const Frame& frame, const AcaaOptions& options, const RunOptions& run) {
@@ -75,6 +77,8 @@ TechniqueKind acaa_kind() {
   return {.name = "acaa",
           .description = "accumulative antialiasing: N depth samples and one colour accumulator per pixel",
           .source = "Enderton et al. 2015",
+          .examples = {"acaa:8", "acaa:64,double=stencil,color=unorm8", "acaa:4,double=saturate"},
+          .stressed = {"acaa:8", "acaa:8,double=stencil", "acaa:8,color=unorm8", "acaa:8,color=fp32", "acaa:256"},
           .make = make_from(
               AcaaOptions{},
               [](AcaaOptions& o) -> SpecOptions {
@@ -89,6 +93,7 @@ TechniqueKind acaa_kind() {
               },
               [](const AcaaOptions& o) {
                 return Technique{.framebuffer = acaa_framebuffer(o),
+                                 .sampled_at = places_of(msaa_sampling(o.samples)),
                                  .render = bind_options(render_acaa, o),
                                  .is_observable = true};
               })};

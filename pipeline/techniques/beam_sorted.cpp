@@ -1,7 +1,5 @@
 // The beam in sorted order. An A-buffer sorts the pairs of each pixel by depth. Window by window, near to far, pairs
 // become shaded fragments and are composed, until the pixel is closed.
-#include <stdexcept>
-#include <string>
 
 #include "pipeline/bins/render_bins.h"
 #include "pipeline/technique_table.h"
@@ -15,7 +13,7 @@ namespace beampipe {
 namespace {
 
 struct SortedOptions {
-  int positions = 256;  // of the mask: 32, 64, 128 or 256
+  int positions = 256;  // of the mask; together with `storage` one of BEAMPIPE_STORED_AGGREGATES
   Storage storage = Storage::packed;
 };
 
@@ -33,11 +31,11 @@ FrameResult render_shape(const Trace& trace, const Frame& frame, const SortedOpt
   const PositionSet& positions = cell_positions(sorted.positions);
   const PositionGrid grid(sorted.positions);
   const BeamFragmentOptions fragment_options = grid_options(grid, conserving_fragment_bytes(sorted.positions));
-  const BinPlan plan{
-      .stages = {"conservative_raster", "a_buffer", "windows", "beam_fragment", "shade", "compose", "resolve"},
-      .framebuffer = sorted_framebuffer(sorted),
-      .pair_bytes = kPairWorkingBytes + kSortBytes,
-      .order = "near to far, in windows whose depths overlap"};
+  const BinPlan plan{.stages = {StageId::conservative_raster, StageId::a_buffer, StageId::windows,
+                                StageId::beam_fragment, StageId::shade, StageId::compose, StageId::resolve},
+                     .framebuffer = sorted_framebuffer(sorted),
+                     .pair_bytes = kPairWorkingBytes + kSortBytes,
+                     .order = "near to far, in windows whose depths overlap"};
   return render_bins(context, plan, [&](Bin& bin) {
     ConservativeRasterUnit raster(bin, "waiting_pairs", PairDepths::bounds, ConservativeRasterUnit::Hidden::left_out);
     ABufferUnit a_buffer(bin, kPairWithDepthBytes, kStoredPairBytes);
@@ -62,33 +60,34 @@ FrameResult render_shape(const Trace& trace, const Frame& frame, const SortedOpt
 }
 
 FrameResult render_sorted(const Trace& trace, const Frame& frame, const SortedOptions& sorted, const RunOptions& run) {
-#define BEAMPIPE_RENDER(words, channel)                                                                           \
-  if (sorted.positions == 32 * words && (sorted.storage == Storage::packed) == std::is_same_v<channel, HalfBits>) \
-    return render_shape<words, channel>(trace, frame, sorted, run);
-  BEAMPIPE_STORED_AGGREGATES(BEAMPIPE_RENDER)
-#undef BEAMPIPE_RENDER
-  throw std::invalid_argument("no aggregate of " + std::to_string(sorted.positions) + " positions");
+  return with_aggregate(sorted.positions, sorted.storage, [&]<std::size_t Words, class Channel>() {
+    return render_shape<Words, Channel>(trace, frame, sorted, run);
+  });
 }
 
 }  // namespace
 
 TechniqueKind beam_sorted_kind() {
   return {.name = "beam",
-          .variant = {"order", "sorted", "near-first"},
+          .variant = {"order", "sorted"},
           .description =
               "the triangles of a pixel, sorted by depth, become fragments with analytic coverage and a mask, "
               "composed near to far into one area-conserving aggregate until the pixel is closed",
           .source = "ours, after Crassin et al. 2018",
+          .examples = {"beam:order=sorted", "beam:order=sorted,storage=float32"},
+          .stressed = {"beam:order=sorted", "beam:order=sorted,storage=float32", "beam:order=sorted,bits=32"},
           .make = make_from(
               SortedOptions{},
               [](SortedOptions& o) -> SpecOptions {
-                return {choice("bits", o.positions, {{"32", 32}, {"64", 64}, {"128", 128}, {"256", 256}},
-                               "positions of the mask"),
-                        choice("storage", o.storage, {{"packed", Storage::packed}, {"float32", Storage::float32}},
-                               "format of the aggregate's colour: fp16, or float32")};
+                return {choice("bits", o.positions, {{"32", 32}, {"256", 256}}, "positions of the mask"),
+                        beside(
+                            "bits=256", [&o] { return o.positions == 256; },
+                            choice("storage", o.storage, {{"packed", Storage::packed}, {"float32", Storage::float32}},
+                                   "format of the aggregate's colour: fp16, or float32"))};
               },
               [](const SortedOptions& o) {
                 return Technique{.framebuffer = sorted_framebuffer(o),
+                                 .positions = o.positions,
                                  .render = bind_options(render_sorted, o),
                                  .is_observable = true,
                                  .has_weights = true};

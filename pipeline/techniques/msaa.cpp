@@ -39,11 +39,11 @@ FrameResult render_msaa(const Trace& trace, const Frame& frame, const MsaaOption
   History& history = run.history ? *run.history : first;
   std::optional<FrameMotion> motion;
   if (options.motion) motion.emplace(context, history);
-  BinPlan plan{.stages = {"sample_raster", "shade", "depth_test", "resolve"},
+  BinPlan plan{.stages = {StageId::sample_raster, StageId::shade, StageId::depth_test, StageId::resolve},
                .framebuffer = msaa_framebuffer(options),
                .has_prepass = options.prepass,
                .empty_bins_differ = options.motion};
-  if (options.motion) plan.stages.push_back("motion");
+  if (options.motion) plan.stages.push_back(StageId::motion);
   FrameResult result = render_bins(context, plan, [&](Bin& bin) {
     DepthTestUnit depth_test = forward_surface(bin, sampling, options);
     bin.finish(draw_forward(bin, options, depth_test));
@@ -86,8 +86,8 @@ std::vector<glm::vec4> draw_forward(Bin& bin, const MsaaOptions& options, DepthT
   });
   depth_test.end_pass();
   depth_test.count_bytes();
-  depth_test.read_colors(bin.stage("resolve"));
-  return depth_test.resolve_samples(options.at, bin.stage("resolve"), options.space);
+  depth_test.read_colors(bin.stage(StageId::resolve));
+  return depth_test.resolve_samples(options.at, bin.stage(StageId::resolve), options.space);
 }
 
 TechniqueKind msaa_kind() {
@@ -97,6 +97,9 @@ TechniqueKind msaa_kind() {
           "multisampling: depth and colour at N samples, one shader invocation per triangle and pixel; above "
           "16 samples, super-resolution of 8x",
       .source = "Direct3D, Vulkan",
+      .examples = {"msaa:1", "msaa:8", "msaa:64", "msaa:8,prepass", "msaa:4,motion,resolve=reinhard",
+                   "msaa:4,at=centroid,alpha=coverage"},
+      .stressed = {"msaa:1", "msaa:8", "msaa:16", "msaa:256"},
       .make = make_from(
           MsaaOptions{},
           [](MsaaOptions& o) -> SpecOptions {
@@ -118,6 +121,7 @@ TechniqueKind msaa_kind() {
           [](const MsaaOptions& o) {
             return Technique{.framebuffer = msaa_framebuffer(o),
                              .samples = static_cast<std::uint32_t>(o.samples),
+                             .sampled_at = places_of(msaa_sampling(o.samples)),
                              .render = bind_options(render_msaa, o),
                              .is_observable = true,
                              .keeps_history = o.motion};

@@ -22,11 +22,11 @@ FrameResult render_reference(const Trace& trace, const Frame& frame, const RunOp
   RunOptions without_memory = run;
   without_memory.memory.modelled = false;  // no hardware is modelled for this
   const FrameContext context(trace, frame, without_memory);
-  const BinPlan plan{.stages = {"reference_raster", "resolve"},
+  const BinPlan plan{.stages = {StageId::reference_raster, StageId::resolve},
                      .framebuffer = reference_framebuffer(),
                      .translucent_pair_bytes = kLayerBytes};
   return render_bins(context, plan, [&](Bin& bin) {
-    const BinStage resolving = bin.stage("resolve");
+    const BinStage resolving = bin.stage(StageId::resolve);
     if (bin.list.empty()) {  // every sample shows the background, so no samples are set up
       resolving.counters.items_out = bin.tile.pixels();
       resolving.counters.bytes_written = bin.tile.pixels() * sizeof(glm::vec4);
@@ -34,7 +34,8 @@ FrameResult render_reference(const Trace& trace, const Frame& frame, const RunOp
     }
     const TileShader shader = bin.shader();
     ReferenceTile samples(bin.tile);
-    reference_raster(context.triangles, bin.list, bin.tile, bin.stage("reference_raster").timed(), samples, &shader);
+    reference_raster(context.triangles, bin.list, bin.tile, bin.stage(StageId::reference_raster).timed(), samples,
+                     &shader);
     bin.finish(resolve(samples, bin.tile, shader, frame.background, resolving.timed()));
   });
 }
@@ -45,6 +46,8 @@ TechniqueKind reference_kind() {
   return {.name = "reference",
           .description = "4096 samples per pixel in double precision: the truth that errors are measured against",
           .source = "ours",
+          .examples = {"reference"},
+          .stressed = {"reference"},
           .make = make_plain([] {
             return Technique{.framebuffer = reference_framebuffer(), .render = bind_options(render_reference)};
           })};

@@ -50,7 +50,7 @@ void DepthTestUnit::start_layer(ShadeAt at, std::uint32_t sample_bytes) {
 }
 
 void DepthTestUnit::blend_into(TileSurface& layer, std::vector<SampleFragment>& fragments) {
-  const BinStage blending = bin_.stage("blend");
+  const BinStage blending = bin_.stage(StageId::blend);
   blend_colors(fragments, blending);
   memory_.test(accesses_, blending.counters);
   std::size_t left = 0;
@@ -64,7 +64,7 @@ void DepthTestUnit::blend_into(TileSurface& layer, std::vector<SampleFragment>& 
 }
 
 void DepthTestUnit::blend_fragments(const std::vector<SampleFragment>& fragments) {
-  const BinStage blending = bin_.stage("blend");
+  const BinStage blending = bin_.stage(StageId::blend);
   blend_colors(fragments, blending);
   memory_.blend(accesses_, blending.counters);
 }

@@ -37,15 +37,8 @@ class OpenPixelStore {
   AggregateMemory memory_;
 };
 
-template <std::size_t Words, std::size_t Slots>
-std::vector<Surface> open_pixel_surfaces() {
-  using Pixel = OpenPixel<Words, Slots>;
-  constexpr std::uint32_t kMap = sizeof(Pixel::states), kOwners = sizeof(Pixel::slots),
-                          kSums = Pixel::kBytes - kMap - kOwners;
-  return {{"owner_map", times("R32UI", kMap / 4), kMap},
-          {"owners", times("RG32UI", Slots), kOwners},
-          {"sums", times("R16", kSums / 2), kSums}};
-}
+// Of an OpenPixel with so many positions and slots.
+std::vector<Surface> open_pixel_surfaces(int positions, int slots);
 
 template <std::size_t Words, std::size_t Slots>
 class ComposeOwnersUnit {
@@ -56,9 +49,16 @@ class ComposeOwnersUnit {
                     const std::vector<float>* watermarks, const std::vector<Surface>& surfaces,
                     OwnerPlace shade_at = OwnerPlace::covered)
       : bin_(bin),
-        stage_(bin.stage("compose")),
-        owners_{bin.triangles(), list,         watermarks,          bin.tile, positions,
-                bin.shader(),    bin.models_memory(), shade_at,     bin.observers()},
+        stage_(bin.stage(StageId::compose)),
+        owners_{.triangles = bin.triangles(),
+                .list = list,
+                .watermarks = watermarks,
+                .tile = bin.tile,
+                .positions = positions,
+                .shader = bin.shader(),
+                .lists_fetches = bin.models_memory(),
+                .shade_at = shade_at,
+                .observers = bin.observers()},
         maps_{bin.pixel_counter("fragments"), bin.pixel_counter("merges")},
         pixels_(bin.tile.pixels()),
         store_(bin, surfaces) {
@@ -85,8 +85,8 @@ class ComposeOwnersUnit {
     const std::vector<PixelColor> colors = finish_owners(owners_, stage_.timed(), pixels_, result);
     finish(result, shade);
     bin_.triangle_fetches().flush(stage_.counters);
-    return resolve(colors, bin_.background(), kColorBytes + sizeof(std::uint16_t), bin_.stage("resolve").timed(),
-                   bin_.observers());
+    return resolve(colors, bin_.background(), kColorBytes + sizeof(std::uint16_t),
+                   bin_.stage(StageId::resolve).timed(), bin_.observers());
   }
 
  private:

@@ -11,7 +11,7 @@ namespace beampipe {
 ConservativeRasterUnit::ConservativeRasterUnit(Bin& bin, std::string buffer, PairDepths depths, Hidden hidden,
                                                std::size_t capacity)
     : bin_(bin),
-      stage_(bin.stage("conservative_raster")),
+      stage_(bin.stage(StageId::conservative_raster)),
       buffer_(std::move(buffer)),
       depths_(depths),
       capacity_(capacity) {
@@ -34,14 +34,6 @@ void ConservativeRasterUnit::drop_hidden(std::vector<Pair>& pairs) {
   charge(*closed_, stage_.counters);
 }
 
-void ConservativeRasterUnit::start_next_pass() {
-  bin_.start_texture_pass();
-  if (!bin_.keeps_pixels_on_chip()) stage_.reads("closed_depth", closed_->bytes());
-  stage_.counters.items_in += bin_.list.size();
-  stage_.counters.bytes_read += bin_.list.size() * sizeof(SetupTriangle);
-  read_bin(bin_.memory(), bin_.list, stage_.counters);
-}
-
 const TriangleList& SampleRasterUnit::drawn_triangles() {
   if (!bin_.context.has_blending() || translucent_ == Translucent::drawn) return bin_.list;
   drawn_.clear();
@@ -52,7 +44,7 @@ const TriangleList& SampleRasterUnit::drawn_triangles() {
 }
 
 void SampleRasterUnit::test_alpha(const Sampling& sampling, ShadeAt at) {
-  const BinStage testing = bin_.stage("alpha_test", pass_);
+  const BinStage testing = bin_.stage(StageId::alpha_test, pass_);
   test_alpha(sampling, at, testing.timed(), bin_.texels(), fragments_);
   bin_.charge_texels(testing);
 }

@@ -71,10 +71,6 @@ class ConservativeRasterUnit {
     }
   }
 
-  // Another pass over the bin reads the list, the setup triangles and, unless they stay on chip with the pixels, the
-  // closed depths from memory again.
-  void start_next_pass();
-
   ClosedDepth& closed() { return *closed_; }  // with Hidden::left_out
 
  private:
@@ -100,7 +96,7 @@ class SampleRasterUnit {
   SampleRasterUnit(Bin& bin, Translucent translucent, AlphaCoverage coverage, Pass pass = Pass::main)
       : bin_(bin),
         pass_(pass),
-        stage_(bin.stage("sample_raster", pass)),
+        stage_(bin.stage(StageId::sample_raster, pass)),
         translucent_(translucent),
         coverage_(coverage) {}
 

@@ -12,9 +12,9 @@
 
 #include "simd/merge.h"
 #include "stages/cost/counters.h"
-#include "stages/data/fragment.h"
-#include "stages/data/paper_aggregate.h"
+#include "stages/data/casav_aggregate.h"
 #include "stages/data/pixel_observer.h"
+#include "stages/data/fragment.h"
 
 namespace beampipe {
 
@@ -22,7 +22,7 @@ namespace beampipe {
 class AggregateLayers {
  public:
   // `observers` may be null.
-  AggregateLayers(std::size_t pixels, std::size_t layers, PaperStorage storage,
+  AggregateLayers(std::size_t pixels, std::size_t layers, CasavStorage storage,
                   const PixelObservers* observers = nullptr);
 
   // Adds shaded fragments. Counts as items out the fragments. Adds one to merges[pixel] for each two aggregates that
@@ -34,13 +34,13 @@ class AggregateLayers {
   std::vector<Aggregate> finish(const MergePositions& positions, const MergeRules& rules,
                                 StageCounters& counters) const;
 
-  std::size_t bytes_per_pixel() const { return layers_ * paper_aggregate_bytes(storage_); }
+  std::size_t bytes_per_pixel() const { return layers_ * casav_aggregate_bytes(storage_); }
 
  private:
   Aggregate stored(const Aggregate& aggregate) const;
 
   std::size_t layers_;
-  PaperStorage storage_;
+  CasavStorage storage_;
   const PixelObservers* observers_;
   std::vector<Aggregate> aggregates_;  // rounded as they are stored
 };

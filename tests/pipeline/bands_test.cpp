@@ -174,7 +174,7 @@ void expect_same(const FrameResult& a, const FrameResult& b, const std::string& 
 
 TEST(Bands, ResultsAreThoseOfTheWholeFrame) {
   const Trace trace = random_trace(150, 70, 2000, 3);
-  for (const char* spec : {"beam:order=sorted", "beam:rules=paper", "alpha"}) {
+  for (const char* spec : {"beam:order=sorted", "casav", "alpha"}) {
     const Technique technique = parse_technique(spec);
     RunOptions options{2};
     const FrameResult whole = technique.render(trace, 0, options);
@@ -199,8 +199,7 @@ TEST(Bands, ResultsAreThoseOfTheWholeFrame) {
 // Techniques that work on a few triangles at a time keep no pairs, but their lists alone can exceed the limit.
 TEST(Bands, ListsAloneMakeBandsToo) {
   const Trace trace = random_trace(150, 70, 2000, 3);
-  for (const char* spec :
-       {"beam", "beam:order=stream", "beam:order=stream,passes=0", "z3", "msaa:8", "dvm", "reference"}) {
+  for (const char* spec : {"beam", "beam:order=stream", "z3", "msaa:8", "dvm", "reference"}) {
     const Technique technique = parse_technique(spec);
     RunOptions options{2};
     const FrameResult whole = technique.render(trace, 0, options);

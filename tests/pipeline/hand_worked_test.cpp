@@ -4,7 +4,7 @@
 #include <filesystem>
 
 #include "pipeline/technique.h"
-#include "traces/trace_io.h"
+#include "traces/files/trace_io.h"
 
 namespace beampipe {
 namespace {
@@ -23,7 +23,7 @@ void expect_bytes(const char* sample, const char* spec, const std::vector<Bytes>
   for (std::size_t i = 0; i < expected.size(); ++i) {
     const StageCounters& found = result.stages[i];
     const Bytes& stage = expected[i];
-    EXPECT_EQ(found.stage, stage.stage);
+    EXPECT_EQ(name_of(found.stage), stage.stage);
     EXPECT_EQ(found.items_in, stage.items_in) << stage.stage;
     EXPECT_EQ(found.items_out, stage.items_out) << stage.stage;
     EXPECT_EQ(found.bytes_read, stage.read) << stage.stage;

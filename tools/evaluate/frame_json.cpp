@@ -1,5 +1,8 @@
 #include "tools/evaluate/frame_json.h"
 
+#include <optional>
+#include <stdexcept>
+#include <string>
 #include <string_view>
 #include <utility>
 
@@ -20,7 +23,7 @@ std::pair<std::string_view, std::string_view> keys_of(const CounterInfo& counter
 }
 
 Json to_json(const StageCounters& stage) {
-  Json json = {{"stage", stage.stage}};
+  Json json = {{"stage", name_of(stage.stage)}};
   for (const CounterInfo& counter : stage_counters()) {
     const auto [group, key] = keys_of(counter);
     Json& object = group.empty() ? json : json[group];
@@ -30,11 +33,14 @@ Json to_json(const StageCounters& stage) {
 }
 
 StageCounters stage_of(const Json& json) {
-  StageCounters stage{json.at("stage").get<std::string>()};
+  const std::string name = json.at("stage").get<std::string>();
+  const std::optional<Stage> known = find_stage(name);
+  if (!known) throw std::runtime_error("\"stage\": expected the name of a stage, found \"" + name + '"');
+  StageCounters stage{*known};
   for (const CounterInfo& counter : stage_counters()) {
     const auto [group, key] = keys_of(counter);
     const Json& object = group.empty() ? json : json.at(group);
-    if (Count* stored = counter.stored(stage)) *stored = object.at(key).get<std::uint64_t>();
+    if (std::uint64_t* stored = counter.stored(stage)) *stored = object.at(key).get<std::uint64_t>();
   }
   return stage;
 }

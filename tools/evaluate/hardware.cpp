@@ -9,11 +9,10 @@
 #include <string_view>
 #include <system_error>
 
-#include "stages/cost/counter_registry.h"
 #include "tools/evaluate/hardware_text.h"
 #include "traces/closest_name.h"
-#include "traces/input_file.h"
-#include "traces/json_cursor.h"
+#include "traces/files/input_file.h"
+#include "traces/files/json_cursor.h"
 
 namespace beampipe {
 namespace {
@@ -135,24 +134,38 @@ double positive_number(const JsonCursor& at) {
   return value;
 }
 
-std::vector<std::string> read_units(const JsonCursor& stage) {
+// Can the unit do the stage's work? The counters of other stages would say nothing to it. Textures and the rate of
+// triangles and quads serve both kinds of stages.
+bool can_do(const std::string& unit, const StageInfo& stage) {
+  if (unit == "shader" || unit == "shading") return stage.can_be_shader;
+  for (const char* const each :
+       {"raster", "conservative_raster", "mask_generator", "sorter", "composer", "rop_samples", "rop_fragments"})
+    if (unit == each) return stage.can_be_fixed_function;
+  return true;
+}
+
+std::vector<std::string> read_units(const JsonCursor& at, const StageInfo& stage) {
   std::vector<std::string> names;
-  for (const JsonCursor& unit : stage.elements()) {
+  for (const JsonCursor& unit : at.elements()) {
     names.push_back(unit.string());
-    if (names.back() == kOnChip || units().contains(names.back())) continue;
+    const bool is_known = names.back() == kOnChip || units().contains(names.back());
+    if (is_known && can_do(names.back(), stage)) continue;
     std::string known = kOnChip;
-    for (const auto& [name, clocks] : units()) known += ", " + name;
+    for (const auto& [name, clocks] : units())
+      if (can_do(name, stage)) known += ", " + name;
     unit.fail("one of the units " + known);
   }
   return names;
 }
 
-// Work of a stage with a mistyped name would cost nothing.
-void expect_stage(const JsonCursor& at, const std::string& name) {
+// Work of a stage with a mistyped name would cost nothing. `at`: the member of that name. A depth pre-pass runs on the
+// units of the other pass.
+const StageInfo& read_stage(const JsonCursor& at, const std::string& name) {
+  const std::optional<Stage> stage = find_stage(name);
+  if (stage && stage->pass == Pass::main) return info_of(stage->id);
   std::vector<std::string> known;
-  for (const StageInfo& stage : stage_list()) known.emplace_back(stage.name);
-  if (std::find(known.begin(), known.end(), name) == known.end())
-    at.fail("the name of a stage", name + did_you_mean(name, known));
+  for (const StageInfo& info : stage_list()) known.emplace_back(info.name);
+  at.fail("the name of a stage", name + did_you_mean(name, known));
 }
 
 // Every number has a source, or says that it is a choice.
@@ -191,8 +204,8 @@ StageCounters with_costs(const Hardware& hardware, const StageCounters& stage, b
     priced.texture_bytes += texels;
     registers = std::max(registers, cost.registers);
   };
-  if (stage.stage == "shade") add(hardware.material);
-  if (stage.stage == "light" || (stage.stage == "shade" && !has_light)) add(hardware.light);
+  if (stage.stage.id == StageId::shade) add(hardware.material);
+  if (stage.stage.id == StageId::light || (stage.stage.id == StageId::shade && !has_light)) add(hardware.light);
   return priced;
 }
 
@@ -205,8 +218,7 @@ std::map<std::string, double> times_of(const Hardware& hardware, const Implement
   std::map<std::string, double> times;
   const auto use = [&](const std::string& unit) { times[unit] = units().at(unit)(rates, stage) / clocks_per_ms; };
   bool on_chip = false;
-  if (const auto found = implementation.units.find(std::string(without_pass(stage.stage)));
-      found != implementation.units.end())
+  if (const auto found = implementation.units.find(stage.stage.id); found != implementation.units.end())
     for (const std::string& unit : found->second) unit == kOnChip ? static_cast<void>(on_chip = true) : use(unit);
   if (const auto shading = times.find("shading"); shading != times.end())
     shading->second *= std::max(1.0, registers / rates.at("registers_at_full_rate"));
@@ -286,8 +298,8 @@ Hardware parse_hardware(const Json& json, const std::string& file) {
     description.expect_keys({"description", "units"});
     if (const auto text = description.find("description")) text->string();
     for (const auto& [stage, names] : description["units"].members()) {
-      expect_stage(names, stage);
-      implementation.units[stage] = read_units(names);
+      const StageInfo& info = read_stage(names, stage);
+      implementation.units[info.id] = read_units(names, info);
     }
   }
   if (hardware.implementations.empty()) root["implementations"].fail("at least one implementation", "none");
@@ -315,7 +327,8 @@ std::map<std::string, double> unit_times(const Hardware& hardware, const Impleme
 
 ModelledTime modelled_time(const Hardware& hardware, const Implementation& implementation,
                            const std::vector<StageCounters>& stages, double bin_bytes) {
-  const bool has_light = std::any_of(stages.begin(), stages.end(), [](const auto& s) { return s.stage == "light"; });
+  const bool has_light =
+      std::any_of(stages.begin(), stages.end(), [](const auto& s) { return s.stage.id == StageId::light; });
   ModelledTime time;
   std::map<std::string, double> busy;
   for (const StageCounters& stage : stages) {

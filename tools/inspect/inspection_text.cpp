@@ -358,9 +358,9 @@ std::string step_text(const HistoryStep& step, const PixelHistory& history) {
       break;
   }
   return when + format("aggregate of %zu (%u %s, area %.4f, colour %s) became %zu (%u, area %.4f, colour %s)",
-                           step.before[0].fragments.size(), step.before[0].positions, unit_of(history).c_str(),
-                           step.before[0].area, color_text(step.before[0].color).c_str(), step.after->fragments.size(),
-                           step.after->positions, step.after->area, color_text(step.after->color).c_str());
+                       step.before[0].fragments.size(), step.before[0].positions, unit_of(history).c_str(),
+                       step.before[0].area, color_text(step.before[0].color).c_str(), step.after->fragments.size(),
+                       step.after->positions, step.after->area, color_text(step.after->color).c_str());
 }
 
 std::string cause_shares_text(const PixelInspection& inspection) {

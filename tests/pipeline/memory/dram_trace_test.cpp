@@ -7,31 +7,11 @@
 #include <map>
 #include <set>
 
-#include "pipeline/technique.h"
+#include "pipeline/technique_table.h"
 #include "tests/pipeline/surface_traces.h"
 
 namespace beampipe {
 namespace {
-
-constexpr const char* kSpecs[] = {"beam",
-                                  "beam:order=sorted",
-                                  "beam:order=stream",
-                                  "beam:order=stream,passes=0",
-                                  "beam:rules=paper",
-                                  "beam:rules=paper,order=near-first",
-                                  "z3",
-                                  "alpha",
-                                  "msaa:4",
-                                  "msaa:4,prepass",
-                                  "msaa:32",
-                                  "acaa:8",
-                                  "acaa:4,double=stencil",
-                                  "acaa:4,double=saturate",
-                                  "deferred",
-                                  "visibility",
-                                  "taa:4",
-                                  "dvm",
-                                  "reference"};
 
 struct Recorded {
   std::uint64_t address;
@@ -52,7 +32,8 @@ Frame0 render(const std::string& spec, const Trace& trace, RunOptions run = {2})
   Frame0 frame;
   frame.stages = parse_technique(spec).render(trace, 0, run).stages;
   dram.for_each([&](const DramRequest& request) {
-    frame.requests.push_back({request.address, request.access == DramAccess::write, request.stage, request.array});
+    frame.requests.push_back(
+        {request.address, request.access == DramAccess::write, std::string(request.stage), request.array});
   });
   frame.ranges = dram.ranges();
   return frame;
@@ -62,7 +43,7 @@ void expect_bytes_of_counters(const Frame0& frame, const std::string& name) {
   std::map<std::string, std::uint64_t> bytes, expected;
   for (const Recorded& request : frame.requests) bytes[request.stage] += 32;
   for (const StageCounters& stage : frame.stages)
-    if (stage.dram_bytes > 0) expected[stage.stage] += stage.dram_bytes;
+    if (stage.dram_bytes > 0) expected[std::string(name_of(stage.stage))] += stage.dram_bytes;
   EXPECT_EQ(bytes, expected) << name;
 }
 
@@ -102,10 +83,10 @@ std::vector<std::pair<std::string, RunOptions>> machines() {
 TEST(DramTrace, HasTheBytesOfEveryStage) {
   for (const auto& [scene, trace] : scenes())
     for (const auto& [machine, run] : machines())
-      for (const char* spec : kSpecs) {
+      for (const std::string& spec : example_specs()) {
         const Frame0 frame = render(spec, trace, run);
-        expect_bytes_of_counters(frame, std::string(spec) + ", " + scene + ", " + machine);
-        expect_disjoint_arrays(frame, std::string(spec) + ", " + scene + ", " + machine);
+        expect_bytes_of_counters(frame, spec + ", " + scene + ", " + machine);
+        expect_disjoint_arrays(frame, spec + ", " + scene + ", " + machine);
       }
 }
 
@@ -115,7 +96,8 @@ TEST(DramTrace, HasTheBytesOfSmallCaches) {
   run.memory.l2 = {2048, 2, 128}, run.memory.l1 = {1024, 2, 128}, run.memory.rop = {2048, 2, 256};
   run.memory.framebuffer = Place::in_memory;
   for (const auto& [scene, trace] : scenes())
-    for (const char* spec : kSpecs) expect_bytes_of_counters(render(spec, trace, run), spec + (", " + scene));
+    for (const std::string& spec : example_specs())
+      expect_bytes_of_counters(render(spec, trace, run), spec + (", " + scene));
 }
 
 TEST(DramTrace, ContinuesAHistory) {
@@ -132,7 +114,7 @@ TEST(DramTrace, ContinuesAHistory) {
 
 TEST(DramTrace, DoesNotDependOnThreadsOrBands) {
   for (const auto& [scene, trace] : scenes())
-    for (const char* spec : kSpecs) {
+    for (const std::string& spec : example_specs()) {
       const std::vector<Recorded> expected = render(spec, trace, {1}).requests;
       EXPECT_EQ(render(spec, trace, {3}).requests, expected) << spec << ", " << scene;
     }
@@ -149,7 +131,7 @@ TEST(DramTrace, ReadsWhatWasWrittenEarlier) {
   run.memory.framebuffer = Place::in_memory;
   const std::set<std::string> arrays = {"setup_triangles", "attributes", "bin_lists", "bin_keys",    "depth",
                                         "samples",         "coverage",   "mask",      "accumulator", "a_buffer_heads"};
-  for (const std::string spec : kSpecs) {
+  for (const std::string& spec : example_specs()) {
     if (spec == "reference") continue;  // its samples are in no memory
     std::set<std::uint64_t> written;
     std::size_t early = 0, found = 0;
