@@ -142,17 +142,17 @@ void PixelObserver::would_cover(std::uint32_t triangle, std::size_t first, std::
   });
 }
 
-// A surface of one fragment learns its colour here.
-PixelObserver::Surface& PixelObserver::surface_at(const WideMask& positions, const glm::vec3& color) {
+// An index into surfaces_. A surface of one fragment is listed, with its colour, when it is first asked for.
+std::size_t PixelObserver::surface_at(const WideMask& positions, const glm::vec3& color) {
   std::size_t position = 0;
   while (!positions.test(position)) ++position;
   const std::uint32_t fragment = history.owners[position];
   const auto has_it = [&](const HistoryTerm& part) { return part.fragment == fragment; };
-  auto surface = std::find_if(surfaces_.begin(), surfaces_.end(), [&](const Surface& each) {
-    return std::any_of(each.begin(), each.end(), has_it);
-  });
-  if (surface == surfaces_.end()) surface = surfaces_.insert(surfaces_.end(), {{fragment, 1.0, color}});
-  return *surface;
+  const auto surface = std::find_if(surfaces_.begin(), surfaces_.end(),
+                                    [&](const Surface& each) { return std::ranges::any_of(each, has_it); });
+  const auto index = static_cast<std::size_t>(surface - surfaces_.begin());
+  if (index == surfaces_.size()) surfaces_.push_back({{fragment, 1.0, color}});
+  return index;
 }
 
 HeldSurface PixelObserver::held(const Surface& surface, const WideMask& positions, const glm::vec3& color) const {
@@ -169,8 +169,7 @@ void PixelObserver::join(std::size_t one, std::size_t other, double factor_of_on
 }
 
 void PixelObserver::merges(const Owned& one, const Owned& other) {
-  const auto index_of = [&](const Owned& of) { return &surface_at(of.positions, of.color) - surfaces_.data(); };
-  const auto i = static_cast<std::size_t>(index_of(one)), j = static_cast<std::size_t>(index_of(other));
+  const std::size_t i = surface_at(one.positions, one.color), j = surface_at(other.positions, other.color);
   HistoryStep step{HistoryStep::Kind::merged, current_};
   step.before = {held(surfaces_[i], one.positions, one.color), held(surfaces_[j], other.positions, other.color)};
   join(i, j, one.part, other.part);
@@ -180,13 +179,13 @@ void PixelObserver::merges(const Owned& one, const Owned& other) {
 }
 
 void PixelObserver::settles(const WideMask& positions, const glm::vec3& color, double area, double counted) {
-  Surface& surface = surface_at(positions, color);
+  const std::size_t index = surface_at(positions, color);
   HistoryStep step{HistoryStep::Kind::settled, current_};
-  step.before = {held(surface, positions, color)};
+  step.before = {held(surfaces_[index], positions, color)};
   step.before[0].area = area;
   history.steps.push_back(step);
-  finals_.push_back({surface, area, counted});
-  surfaces_.erase(surfaces_.begin() + (&surface - surfaces_.data()));
+  finals_.push_back({surfaces_[index], area, counted});
+  surfaces_.erase(surfaces_.begin() + static_cast<std::ptrdiff_t>(index));
 }
 
 void PixelObserver::adds_speck(std::uint32_t triangle, double area, const glm::vec3& color) {

@@ -121,7 +121,7 @@ class PixelObserver {
 
   void take(std::size_t position, std::uint32_t fragment);
   void misses(std::size_t position, std::uint32_t fragment);
-  Surface& surface_at(const WideMask& positions, const glm::vec3& color);
+  std::size_t surface_at(const WideMask& positions, const glm::vec3& color);
   HeldSurface held(const Surface& surface, const WideMask& positions, const glm::vec3& color) const;
   void join(std::size_t one, std::size_t other, double factor_of_one, double factor_of_other);
   void add_term(std::uint32_t fragment, double weight, const glm::dvec3& color);
