@@ -21,8 +21,8 @@
 #include "stages/data/closed_depth.h"
 #include "stages/data/fragment.h"
 #include "stages/data/open_pixel.h"
-#include "stages/data/owner_weights.h"
 #include "stages/data/pixel_formats.h"
+#include "stages/data/pixel_observer.h"
 #include "stages/data/position_set.h"
 #include "stages/data/setup_triangle.h"
 #include "stages/data/shaded_triangle.h"
@@ -43,9 +43,9 @@ struct OwnersBin {
   const Tile& tile;
   const PositionSet& positions;
   TileShader shader;
-  bool lists_fetches;               // fill OwnersResult::fetched
-  OwnerWeights* weights = nullptr;  // where the triangles' weights are recorded; null: nowhere
+  bool lists_fetches;  // fill OwnersResult::fetched
   OwnerPlace shade_at = OwnerPlace::covered;
+  const PixelObservers* observers = nullptr;  // who looks at the pixels; null: nobody
 };
 
 // What was done, beside what is charged.

@@ -8,7 +8,7 @@
 namespace beampipe {
 namespace {
 
-constexpr std::size_t kWords = 4;
+constexpr std::size_t kWords = 8;
 using Five = OpenTile<kWords, 5>;
 using Two = OpenTile<kWords, 2>;
 
