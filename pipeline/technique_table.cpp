@@ -1,6 +1,7 @@
 #include "pipeline/technique_table.h"
 
-// The techniques, in the order of --help and the docs. Each is NAME_kind() in a file of pipeline/techniques/.
+// The techniques of beampipe, in the order of --help and the docs. Each is NAME_kind() in a file of
+// pipeline/techniques/.
 #define BEAMPIPE_TECHNIQUES(X) \
   X(beam)                      \
   X(beam_sorted)               \
@@ -32,12 +33,15 @@ std::vector<std::string> specs_of_all(std::vector<std::string> TechniqueKind::*s
 
 }  // namespace
 
-const std::vector<TechniqueKind>& technique_kinds() {
+const std::vector<TechniqueKind>& built_in_kinds() {
 #define BEAMPIPE_CALL(name) name##_kind(),
   static const std::vector<TechniqueKind> kinds = {BEAMPIPE_TECHNIQUES(BEAMPIPE_CALL)};
 #undef BEAMPIPE_CALL
   return kinds;
 }
+
+// Weak, so that the linker prefers a program's own.
+[[gnu::weak]] const std::vector<TechniqueKind>& technique_kinds() { return built_in_kinds(); }
 
 std::vector<std::string> example_specs() { return specs_of_all(&TechniqueKind::examples); }
 

@@ -32,7 +32,11 @@ struct TechniqueKind {
   std::function<Technique(const std::function<void(const SpecOptions&)>& read)> make;
 };
 
-// In the order of --help and the docs.
+// Those of beampipe, in the order of --help and the docs.
+const std::vector<TechniqueKind>& built_in_kinds();
+
+// Those that specs can name: the built-in ones, unless a program that has techniques of its own defines this function
+// itself (docs/library.md).
 const std::vector<TechniqueKind>& technique_kinds();
 
 // The specs of all techniques.

@@ -9,6 +9,8 @@ The rules:
 1.  Paths. An include of our own files is in quotes and starts at the root of the repository, without "." or "..".
     Third-party headers are in angle brackets; only those of Highway (hwy/) may be in quotes. No include is a macro.
 2.  Folders. Imports run tools -> pipeline -> stages -> simd. All but simd may include traces, which stands alone.
+    Inside traces/, files/ and scenes/ include the root, which may include scenes/. Only tools may include files/. What
+    is left includes no third-party headers but those of GLM, Highway and oneTBB.
 3.  Inside tools/: cli -> sweep -> report -> claims -> evaluate -> files, where sweep leaves out claims. Only cli
     includes stress, which includes none of them. cli and report may include inspect, which may include evaluate and
     files.
@@ -40,9 +42,12 @@ ORDER = {
         "techniques": {"root", "inspect", "units", "bins", "memory", "technique.h"}, "root": {"bins", "memory", "technique.h"},
         "inspect": {"units", "bins", "memory", "technique.h"}, "units": {"bins", "memory", "technique.h"}, "bins": {"memory", "technique.h"},
         "memory": {"technique.h"}, "technique.h": {"memory"}},
-    "stages": {"data": set(), "cost": {"data"}, "surface": {"data", "cost"}}}
+    "stages": {"data": set(), "cost": {"data"}, "surface": {"data", "cost"}},
+    "traces": {"root": {"scenes"}, "scenes": {"root"}, "files": {"root"}}}
 STAGE_GROUP = {"data", "cost", "surface"}
 WITHOUT_TRACES = {"data", "cost"}
+# Of the packages that all may use, the standard library and the system.
+LIGHT_HEADER = re.compile(r"(glm|hwy|tbb)/.*|\w+|(fcntl|malloc|unistd)\.h")
 # Headers in stage groups that are no stage's own: formulas of stages and costs, and algorithms in files of their own.
 SHARED_IN_GROUP = {
     "stages/beam/merge_sort.h", "stages/beam/owner_formulas.h", "stages/beam/casav_fragment.h",
@@ -74,6 +79,11 @@ memory may not include root|pipeline/memory/parameters.h|#include "pipeline/tech
 technique.h may not include root|pipeline/technique.h|#include "pipeline/spec.h"
 evaluate may not include report|tools/evaluate/render.cpp|#include "tools/report/plot.h"
 report may not include stress|tools/report/plot.cpp|#include "tools/stress/judge.h"
+in traces/, root may not include files|traces/camera.cpp|#include "traces/files/json.h"
+pipeline/ may not include traces/files/|pipeline/spec.cpp|#include "traces/files/json.h"
+may include this library|stages/data/half_bits.h|#include <half.h>
+may include this library|traces/scenes/room.cpp|#include <nlohmann/json.hpp>
+-|traces/files/image_file.cpp|#include <png.h>\n#include "traces/material.h"
 -|stages/beam/windows_cost.h|#include "stages/beam/windows.h"\n#include "stages/beam/specks.h"\n#include <map>
 -|tools/cli/main.cpp|// /*\n#include "pipeline/technique.h"\n/* #include "a_buffer.h"\n#include "a_buffer.h" */"/*"
 -|simd/match.cpp|#include "hwy/highway.h"\nauto text = R"x(\n#include "a_buffer.h"\n)x";"""
@@ -100,8 +110,11 @@ def broken_rule(source, include):
     folder, other = source.parts[0], target.parts[0]
     if {"", ".", ".."} & set((match[1] or match[2]).split("/")):
         return "a path starts at the root of the repository, without . or .."
+    if match[2] and other in {*FOLDERS, "bench", "tests"}:
+        return "our own files are included in quotes"
     if match[2]:
-        return "our own files are included in quotes" if other in {*FOLDERS, "bench", "tests"} else None
+        is_light = folder == "tools" or place(source) == "files" or LIGHT_HEADER.fullmatch(match[2])
+        return None if is_light else "only tools/ and traces/files/ may include this library"
     if other == "hwy":
         return None
     if other in {"bench", "tests"} or other in FOLDERS and other != folder and other not in FOLDERS[folder]:
@@ -111,6 +124,8 @@ def broken_rule(source, include):
     here, there = place(source), place(target)
     if folder == "stages" and here in WITHOUT_TRACES and other == "traces":
         return f"stages/{here} may not include traces/"
+    if folder not in {"tools", "traces"} and target.parts[:2] == ("traces", "files"):
+        return f"{folder}/ may not include traces/files/"
     if folder == other and folder in ORDER and here != there:
         allowed = ORDER[folder].get(here, STAGE_GROUP if folder == "stages" else set())
         return None if there in allowed else f"in {folder}/, {here} may not include {there}"

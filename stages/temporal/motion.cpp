@@ -1,13 +1,12 @@
 #include "stages/temporal/motion.h"
 
-#include <half.h>
-
 #include <algorithm>
 #include <bit>
 #include <cmath>
 #include <limits>
 
 #include "simd/scalar.h"
+#include "stages/data/half_bits.h"
 #include "stages/data/mix_bits.h"
 #include "stages/temporal/motion_cost.h"
 #include "stages/temporal/temporal_formulas.h"
@@ -38,7 +37,7 @@ glm::vec2 pixel_motion(const std::vector<glm::dmat4>& all_to_last, std::size_t d
   for (int i = 0; i < 16; ++i) reprojection.m[i] = to_last[i / 4][i % 4];
   const Movement<double> moved = movement<double>(reprojection, center_x, center_y, depth, farthest);
   if (!moved.in_front) return glm::vec2(std::numeric_limits<float>::infinity());
-  return {half(static_cast<float>(moved.dx)), half(static_cast<float>(moved.dy))};
+  return {nearest_half(static_cast<float>(moved.dx)), nearest_half(static_cast<float>(moved.dy))};
 }
 
 // From the draw's clip space to the frame's; z is not needed there.
@@ -143,7 +142,7 @@ PixelContents contents(const SampleTile& surface, const Tile& tile, const Frame&
         fastest = greater(fastest, square_length(moves.x, moves.y));
       }
       found.looks.push_back(look);
-      found.speeds.push_back(half(std::sqrt(fastest)));
+      found.speeds.push_back(nearest_half(std::sqrt(fastest)));
       shown += here.size();
     }
   }

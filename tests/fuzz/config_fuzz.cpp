@@ -7,7 +7,7 @@
 #include "tests/fuzz/fuzz_input.h"
 #include "tools/evaluate/memory_system.h"
 #include "tools/sweep/sweep_plan.h"
-#include "traces/trace_io.h"
+#include "traces/files/trace_io.h"
 
 namespace beampipe {
 namespace {

@@ -4,7 +4,7 @@
 #include <filesystem>
 
 #include "pipeline/technique.h"
-#include "traces/trace_io.h"
+#include "traces/files/trace_io.h"
 
 namespace beampipe {
 namespace {

@@ -4,8 +4,8 @@
 #include <tuple>
 
 #include "tests/traces/test_folder.h"
-#include "traces/base64.h"
-#include "traces/image_file.h"
+#include "traces/files/base64.h"
+#include "traces/files/image_file.h"
 
 namespace beampipe {
 namespace {
@@ -190,8 +190,8 @@ TEST_F(SchemaTest, TheReaderKnowsTheSameKeys) {
     for (const std::string& key : keys_of(object)) keys += (keys.empty() ? "\"" : ", \"") + key + '"';
     Json trace = complete(object.version);
     trace.at(Pointer(object.at))["unlisted"] = 1;
-    EXPECT_EQ(error_in(trace),
-              std::string("scene.json: ") + object.at + "/unlisted: expected one of the keys " + keys + ", found \"unlisted\"");
+    EXPECT_EQ(error_in(trace), std::string("scene.json: ") + object.at + "/unlisted: expected one of the keys " + keys +
+                                   ", found \"unlisted\"");
   }
 }
 

@@ -8,7 +8,7 @@
 #include "tools/cli/commands.h"
 #include "tools/report/report_text.h"
 #include "traces/closest_name.h"
-#include "traces/json.h"
+#include "traces/files/json.h"
 
 namespace beampipe {
 namespace {

@@ -21,7 +21,7 @@
 #include "tools/inspect/inspection_json.h"
 #include "tools/inspect/inspection_picture.h"
 #include "tools/inspect/inspection_text.h"
-#include "traces/trace_io.h"
+#include "traces/files/trace_io.h"
 
 namespace beampipe {
 namespace {

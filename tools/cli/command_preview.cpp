@@ -12,8 +12,8 @@
 #include "tools/evaluate/machine_memory.h"
 #include "tools/files/image_io.h"
 #include "tools/files/output.h"
-#include "traces/model_import.h"
-#include "traces/trace_io.h"
+#include "traces/files/model_import.h"
+#include "traces/files/trace_io.h"
 
 namespace beampipe {
 namespace {

@@ -14,8 +14,8 @@
 #include "tools/files/output.h"
 #include "tools/report/report_text.h"
 #include "tools/stress/judge.h"
-#include "traces/atomic_file.h"
-#include "traces/trace_io.h"
+#include "traces/files/atomic_file.h"
+#include "traces/files/trace_io.h"
 
 namespace beampipe {
 namespace {

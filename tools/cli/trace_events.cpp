@@ -4,7 +4,7 @@
 #include <map>
 
 #include "tools/files/output.h"
-#include "traces/json.h"
+#include "traces/files/json.h"
 
 namespace beampipe {
 namespace {

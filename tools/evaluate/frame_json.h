@@ -4,7 +4,7 @@
 #include "tools/evaluate/hardware.h"
 #include "tools/evaluate/metrics.h"
 #include "tools/evaluate/results.h"
-#include "traces/json.h"
+#include "traces/files/json.h"
 
 namespace beampipe {
 

@@ -11,8 +11,8 @@
 
 #include "tools/evaluate/hardware_text.h"
 #include "traces/closest_name.h"
-#include "traces/input_file.h"
-#include "traces/json_cursor.h"
+#include "traces/files/input_file.h"
+#include "traces/files/json_cursor.h"
 
 namespace beampipe {
 namespace {

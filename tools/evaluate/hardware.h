@@ -15,7 +15,7 @@
 #include <vector>
 
 #include "stages/cost/counters.h"
-#include "traces/json.h"
+#include "traces/files/json.h"
 
 namespace beampipe {
 

@@ -10,8 +10,8 @@
 #include <vector>
 
 #include "pipeline/memory/parameters.h"
-#include "traces/json.h"
-#include "traces/json_cursor.h"
+#include "traces/files/json.h"
+#include "traces/files/json_cursor.h"
 
 namespace beampipe {
 

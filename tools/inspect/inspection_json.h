@@ -2,7 +2,7 @@
 #pragma once
 
 #include "tools/inspect/inspection.h"
-#include "traces/json.h"
+#include "traces/files/json.h"
 
 namespace beampipe {
 

@@ -9,7 +9,7 @@
 #include "pipeline/technique.h"
 #include "tools/evaluate/memory_system.h"
 #include "traces/closest_name.h"
-#include "traces/json_cursor.h"
+#include "traces/files/json_cursor.h"
 
 namespace beampipe {
 namespace {

@@ -7,7 +7,7 @@
 
 #include "pipeline/bins/render_bins.h"
 #include "stages/raster/conservative_raster.h"
-#include "traces/trace_io.h"
+#include "traces/files/trace_io.h"
 
 namespace {
 

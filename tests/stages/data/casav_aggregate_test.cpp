@@ -50,10 +50,5 @@ TEST(CasavStorage, EmptyStaysEmpty) {
   }
 }
 
-TEST(HalfBits, IsTheNearestHalf) {
-  EXPECT_EQ(HalfBits(1.0f + 1.0f / 4096), 1.0f);
-  EXPECT_EQ(HalfBits(1e9f), 65504.0f);
-}
-
 }  // namespace
 }  // namespace beampipe

@@ -1,7 +1,5 @@
 // The scalar twins of the stages that carry pixels from one frame to the next: motion, contents, dilate, temporal. They
 // process each pixel alone. In the last frame, the camera and the first draw were elsewhere.
-#include <half.h>
-
 #include <algorithm>
 #include <cmath>
 #include <glm/gtc/matrix_transform.hpp>
@@ -76,7 +74,7 @@ class TemporalTwins : public SceneTwins {
     const bool in_front = w > Real(0.0);
     const auto stored = [&](const Real& distance) {
       const float value = converted(to_float(distance)).value;
-      return real(in_front ? static_cast<float>(::half(value)) : std::numeric_limits<float>::infinity());
+      return real(in_front ? nearest_half(value) : std::numeric_limits<float>::infinity());
     };
     return {stored(dx), stored(dy)};
   }
@@ -153,7 +151,7 @@ TEST_P(TemporalTwins, Contents) {
       fastest = greater(fastest, moves.x * moves.x + moves.y * moves.y);
     }
     ASSERT_EQ(found.looks[i], look.value) << i;
-    ASSERT_EQ(found.speeds[i], static_cast<float>(::half(converted(square_root(fastest)).value))) << i;
+    ASSERT_EQ(found.speeds[i], nearest_half(converted(square_root(fastest)).value)) << i;
   }
   EXPECT_EQ(counters.ops, twin_);
 }

@@ -5,8 +5,8 @@
 #include "pipeline/technique.h"
 #include "tests/traces/gltf_models.h"
 #include "tools/cli/framing.h"
-#include "traces/model_import.h"
-#include "traces/trace_io.h"
+#include "traces/files/model_import.h"
+#include "traces/files/trace_io.h"
 
 namespace beampipe {
 namespace {

@@ -2,7 +2,7 @@
 
 #include "tests/tools/schema_agreement.h"
 #include "tools/evaluate/hardware.h"
-#include "traces/trace_io.h"
+#include "traces/files/trace_io.h"
 
 namespace beampipe {
 namespace {
