@@ -85,7 +85,7 @@ class SampleHistory {
     HistoryFragment& noted = history_.fragments[fragment];
     std::vector<SampleFragment> covered;
     StageCounters unused;
-    sample_raster(pixel_.context.triangles, {fragments_[fragment]}, pixel_.quad, sampling, unused, covered);
+    sample_raster({pixel_.context.triangles, pixel_.quad, sampling}, {fragments_[fragment]}, unused, covered);
     const bool covers = std::any_of(covered.begin(), covered.end(), [&](const SampleFragment& each) {
       return sampling.grid.pixel_x(each.x) == pixel_.tile.x0 && sampling.grid.pixel_y(each.y) == pixel_.tile.y0;
     });

@@ -33,8 +33,8 @@ std::vector<StageId> stages_of(const AcaaOptions& options) {
   return {StageId::sample_raster, StageId::depth_test, StageId::shade, StageId::accumulate, StageId::resolve};
 }
 
-FrameResult render_acaa(const Trace& trace, const Frame& frame, const AcaaOptions& options, const RunOptions& run) {
-  const FrameContext context(trace, frame, run, {.derivatives = Derivatives::quad});
+FrameResult render_acaa(const FrameJob& job, const AcaaOptions& options) {
+  const FrameContext context(job, {.derivatives = Derivatives::quad});
   const std::vector<Sampling> rounds = acaa_rounds(options.samples);
   const BinPlan plan{.stages = stages_of(options), .framebuffer = acaa_framebuffer(options), .has_prepass = true};
   return render_bins(context, plan, [&](Bin& bin) {
@@ -72,7 +72,7 @@ FrameResult render_acaa(const Trace& trace, const Frame& frame, const AcaaOption
 }
 
 std::vector<PixelHistory> inspect_accumulation(const Trace& trace, const Frame& frame, const AcaaOptions& options,
-                                               const RunOptions& run, const std::vector<PixelAddress>& pixels) {
+                                               const FrameInput& run, const std::vector<PixelAddress>& pixels) {
   const AcaaInspection how{options.samples, acaa_rounds(options.samples), options.double_counting, options.color};
   return inspect_pixels(trace, frame, run, {.derivatives = Derivatives::quad}, bin_size(std::min(options.samples, 16)),
                         false, pixels, [&](const InspectedPixel& pixel) { return inspect_acaa(pixel, how); });
@@ -102,7 +102,7 @@ TechniqueKind acaa_kind() {
               [](const AcaaOptions& o) {
                 return Technique{.framebuffer = acaa_framebuffer(o),
                                  .sampled_at = places_of(msaa_sampling(o.samples)),
-                                 .render = bind_options(render_acaa, o),
+                                 .renderer = bind_options(render_acaa, o),
                                  .inspect = bind_inspection(inspect_accumulation, o)};
               })};
 }

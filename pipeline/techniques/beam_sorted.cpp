@@ -47,8 +47,8 @@ void scale_closed(const Compose& compose, BinWeights& weights) {
 }
 
 template <std::size_t Words, class Channel>
-FrameResult render_shape(const Trace& trace, const Frame& frame, const SortedOptions& sorted, const RunOptions& run) {
-  const FrameContext context(trace, frame, run, {.takes_positions = true});
+FrameResult render_shape(const FrameJob& job, const SortedOptions& sorted) {
+  const FrameContext context(job, {.takes_positions = true});
   const PositionSet& positions = cell_positions(sorted.positions);
   const PositionGrid grid(sorted.positions);
   const BeamFragmentOptions fragment_options = grid_options(grid, conserving_fragment_bytes(sorted.positions));
@@ -83,14 +83,13 @@ FrameResult render_shape(const Trace& trace, const Frame& frame, const SortedOpt
   });
 }
 
-FrameResult render_sorted(const Trace& trace, const Frame& frame, const SortedOptions& sorted, const RunOptions& run) {
-  return with_aggregate(sorted.positions, sorted.storage, [&]<std::size_t Words, class Channel>() {
-    return render_shape<Words, Channel>(trace, frame, sorted, run);
-  });
+FrameResult render_sorted(const FrameJob& job, const SortedOptions& sorted) {
+  return with_aggregate(sorted.positions, sorted.storage,
+                        [&]<std::size_t Words, class Channel>() { return render_shape<Words, Channel>(job, sorted); });
 }
 
 std::vector<PixelHistory> inspect_windows(const Trace& trace, const Frame& frame, const SortedOptions& sorted,
-                                          const RunOptions& run, const std::vector<PixelAddress>& pixels) {
+                                          const FrameInput& run, const std::vector<PixelAddress>& pixels) {
   return inspect_pixels(
       trace, frame, run, {.takes_positions = true}, kBinSize, false, pixels, [&](const InspectedPixel& pixel) {
         return with_aggregate(sorted.positions, sorted.storage, [&]<std::size_t Words, class Channel>() {
@@ -122,7 +121,7 @@ TechniqueKind beam_sorted_kind() {
               [](const SortedOptions& o) {
                 return Technique{.framebuffer = sorted_framebuffer(o),
                                  .positions = o.positions,
-                                 .render = bind_options(render_sorted, o),
+                                 .renderer = bind_options(render_sorted, o),
                                  .inspect = bind_inspection(inspect_windows, o),
                                  .has_weights = true};
               })};

@@ -16,8 +16,8 @@ constexpr std::size_t kWords = kPositions / 32, kSlots = 7;
 
 Framebuffer stream_framebuffer() { return {.surfaces = open_pixel_surfaces(kPositions, kSlots)}; }
 
-FrameResult render_stream(const Trace& trace, const Frame& frame, const RunOptions& run) {
-  const FrameContext context(trace, frame, run, {.takes_positions = true});
+FrameResult render_stream(const FrameJob& job) {
+  const FrameContext context(job, {.takes_positions = true});
   const PositionSet& positions = cell_positions(kPositions);
   const PositionGrid grid(kPositions);
   const BeamFragmentOptions options = grid_options(grid, owners_fragment_bytes(kWords));
@@ -39,7 +39,7 @@ FrameResult render_stream(const Trace& trace, const Frame& frame, const RunOptio
   });
 }
 
-std::vector<PixelHistory> inspect_stream(const Trace& trace, const Frame& frame, const RunOptions& run,
+std::vector<PixelHistory> inspect_stream(const Trace& trace, const Frame& frame, const FrameInput& run,
                                          const std::vector<PixelAddress>& pixels) {
   return inspect_pixels(trace, frame, run, {.takes_positions = true}, kBinSize, false, pixels,
                         [&](const InspectedPixel& pixel) {
@@ -62,7 +62,7 @@ TechniqueKind beam_stream_kind() {
             return Technique{.framebuffer = stream_framebuffer(),
                              .positions = kPositions,
                              .counted_positions = kPositions,
-                             .render = bind_options(render_stream),
+                             .renderer = bind_options(render_stream),
                              .inspect = bind_inspection(inspect_stream),
                              .has_weights = true};
           })};

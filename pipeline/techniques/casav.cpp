@@ -137,8 +137,8 @@ void add_weights(const CasavOptions& options, const MergePositions& positions, s
   }
 }
 
-FrameResult render_sorted(const Trace& trace, const Frame& frame, const CasavOptions& beam, const RunOptions& run) {
-  const FrameContext context(trace, frame, run, {.takes_positions = true});
+FrameResult render_sorted(const FrameJob& job, const CasavOptions& beam) {
+  const FrameContext context(job, {.takes_positions = true});
   const MergePositions positions(hammersley_pattern());
   const RecordBytes bytes = record_bytes(beam);
   const BeamFragmentOptions options = fragment_options(beam, positions);
@@ -171,8 +171,8 @@ FrameResult render_sorted(const Trace& trace, const Frame& frame, const CasavOpt
 }
 
 // Without an A-buffer.
-FrameResult render_layers(const Trace& trace, const Frame& frame, const CasavOptions& beam, const RunOptions& run) {
-  const FrameContext context(trace, frame, run, {.takes_positions = true});
+FrameResult render_layers(const FrameJob& job, const CasavOptions& beam) {
+  const FrameContext context(job, {.takes_positions = true});
   const MergePositions positions(hammersley_pattern());
   const BeamFragmentOptions options = fragment_options(beam, positions);
   const bool sorts = beam.order == CasavOrder::near_first;
@@ -208,14 +208,13 @@ CasavOptions with_partition(CasavOptions options) {
   return options;
 }
 
-FrameResult render_casav(const Trace& trace, const Frame& frame, const CasavOptions& beam, const RunOptions& run) {
+FrameResult render_casav(const FrameJob& job, const CasavOptions& beam) {
   const CasavOptions options = with_partition(beam);
-  return beam.order == CasavOrder::sorted ? render_sorted(trace, frame, options, run)
-                                          : render_layers(trace, frame, options, run);
+  return beam.order == CasavOrder::sorted ? render_sorted(job, options) : render_layers(job, options);
 }
 
 std::vector<PixelHistory> inspect_rules(const Trace& trace, const Frame& frame, const CasavOptions& beam,
-                                        const RunOptions& run, const std::vector<PixelAddress>& pixels) {
+                                        const FrameInput& run, const std::vector<PixelAddress>& pixels) {
   const CasavOptions options = with_partition(beam);
   const MergePositions positions(hammersley_pattern());
   const BeamFragmentOptions fragments = fragment_options(options, positions);
@@ -238,7 +237,7 @@ std::vector<PixelHistory> inspect_rules(const Trace& trace, const Frame& frame, 
 Technique make_casav(const CasavOptions& options) {
   return {.framebuffer = casav_framebuffer(options),
           .positions = hammersley_pattern().count,
-          .render = bind_options(render_casav, options),
+          .renderer = bind_options(render_casav, options),
           .inspect = bind_inspection(inspect_rules, options),
           .has_weights = options.order == CasavOrder::sorted};
 }

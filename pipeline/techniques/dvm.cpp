@@ -90,8 +90,9 @@ void put_layer_over(const std::vector<glm::vec4>& layer, const Tile& tile, Curre
     }
 }
 
-FrameResult render_dvm(const Trace& trace, const Frame& frame, const DvmOptions& options, const RunOptions& run) {
-  const FrameContext context(trace, frame, run, {.storage = MaterialStorage::gbuffer});
+FrameResult render_dvm(const FrameJob& job, const DvmOptions& options) {
+  const FrameContext context(job, {.storage = MaterialStorage::gbuffer});
+  const Frame& frame = job.frame;
   TemporalFrame over_time(context);
   const std::uint32_t frames = over_time.history().frames;
   const Materials materials(material_ids(context.triangles, options.material));
@@ -117,8 +118,8 @@ FrameResult render_dvm(const Trace& trace, const Frame& frame, const DvmOptions&
     shade_samples(bin, sampling.pattern, materials, selected);
     quads.insert(bin.tile, selected);
     over_time.find_motion(bin, visibility);
-    const PixelContents found = contents(visibility.surface(), bin.tile, frame, context.triangles.draws,
-                                         over_time.to_last(), looks, moving.timed());
+    const PixelContents found = contents(
+        visibility.surface(), {bin.tile, frame, context.triangles.draws, over_time.to_last()}, looks, moving.timed());
     moving.streams(bin.tile.pixels() * (kLookBytes + kSpeedBytes));
     copy_to_frame(found.looks, bin.tile, frame, over_time.current.looks);
     copy_to_frame(found.speeds, bin.tile, frame, over_time.current.speeds);
@@ -167,7 +168,7 @@ TechniqueKind dvm_kind() {
               [](const DvmOptions& o) {
                 return Technique{.framebuffer = dvm_framebuffer(),
                                  .sampled_at = places_of(msaa_sampling(8)),
-                                 .render = bind_options(render_dvm, o),
+                                 .renderer = bind_options(render_dvm, o),
                                  .keeps_history = true,
                                  .working_bytes_per_pixel = kDvmWorkingBytes};
               })};

@@ -23,7 +23,7 @@ ConservativeRasterUnit::ConservativeRasterUnit(Bin& bin, std::string buffer, Pai
 std::vector<Pair>& ConservativeRasterUnit::operator()(const TriangleList& triangles, const Tile& box) {
   pairs_.clear();
   const std::size_t most = conservative_raster(bin_.triangles(), triangles, box, stage_.timed(), pairs_,
-                                               closed_ ? &*closed_ : nullptr, depths_);
+                                               {closed_ ? &*closed_ : nullptr, depths_});
   bin_.holds(buffer_, std::min(most, capacity_) * (depths_ == PairDepths::bounds ? kPairWithDepthBytes : kPairBytes));
   return pairs_;
 }
@@ -47,8 +47,8 @@ void SampleRasterUnit::test_alpha(const Sampling& sampling, ShadeAt at) {
   if (!bin_.context.has_cutouts() || translucent_ == Translucent::alone) return;
   const SamplePlaces places(bin_, sampling, at);
   const BinStage testing = bin_.stage(StageId::alpha_test, pass_);
-  alpha_test(bin_.shader(), bin_.tile, sampling.grid, sampling.pattern.count, coverage_, places.of(fragments_),
-             testing.timed(), fragments_, bin_.texels());
+  alpha_test(bin_.shader(), {bin_.tile, sampling, coverage_, places.of(fragments_)}, testing.timed(), fragments_,
+             bin_.texels());
   bin_.charge_texels(testing);
 }
 

@@ -21,7 +21,7 @@ std::uint64_t bytes_of(const FrameResult& result, const std::string& name) {
 }
 
 FrameResult render(const std::string& spec, const Trace& trace) {
-  RunOptions run{1};
+  FrameInput run{1};
   run.memory.modelled = false;
   return parse_technique(spec).render(trace, 0, run);
 }

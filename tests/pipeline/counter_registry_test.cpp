@@ -45,7 +45,7 @@ const std::map<StageId, StageCounters>& sums() {
     for (const std::string& spec : example_specs()) {
       History history;
       for (std::size_t frame = 0; frame < trace.frames.size(); ++frame) {
-        RunOptions run{2};
+        FrameInput run{2};
         run.history = &history;
         for (const StageCounters& stage : parse_technique(spec).render(trace, frame, run).stages)
           by_stage[stage.stage.id] += stage;

@@ -53,9 +53,8 @@ TEST(Determinism, BinsWithoutTrianglesAreAlike) {
     for (const std::string& spec : example_specs()) {
       const Technique technique = parse_technique(spec);
       Timeline timeline;
-      RunOptions every_bin;
-      every_bin.timeline = &timeline;
-      expect_same(technique.render(trace, 0, every_bin), technique.render(trace, 0, {}), spec);
+      const FrameSinks every_bin{.timeline = &timeline};
+      expect_same(technique.render(trace, 0, {}, every_bin), technique.render(trace, 0, {}), spec);
     }
   }
 }
@@ -67,7 +66,7 @@ bool has_open_pixels(const std::string& spec) {
 
 // Pictures and counters with tiles from a single quad to one that is larger than the frame.
 void expect_same_in_any_tile(const Trace& trace) {
-  RunOptions options;
+  FrameInput options;
   options.memory.modelled = false;  // its caches depend on the tile
   for (const std::string& spec : example_specs()) {
     const Technique technique = parse_technique(spec);

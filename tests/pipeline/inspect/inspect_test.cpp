@@ -118,15 +118,15 @@ constexpr double kBlending = 2e-7;  // what blending in single precision may lea
 // `most_more`: rest beyond that of the spec.
 void inspect(const Trace& trace, const std::string& name, unsigned seed, double most_more = 0) {
   const TextureSet textures(trace, name);
-  RunOptions run;
+  FrameInput run;
   run.memory.modelled = false;
   run.textures = &textures;
   const Image reference = parse_technique("reference").render(trace, 0, run).image;
   for (const InspectedSpec& spec : kSpecs) {
     const Technique technique = parse_technique(spec.spec);
     std::vector<PixelWeights> weights;
-    run.weights = technique.has_weights ? &weights : nullptr;
-    const Image image = technique.render(trace, 0, run).image;
+    const FrameSinks sinks{.weights = technique.has_weights ? &weights : nullptr};
+    const Image image = technique.render(trace, 0, run, sinks).image;
     const std::vector<PixelAddress> pixels = chosen_pixels(image, reference, seed);
     const std::vector<PixelHistory> histories = technique.inspect(trace, 0, run, pixels);
     ASSERT_EQ(histories.size(), pixels.size());

@@ -47,6 +47,7 @@ TEST(Shade, FragmentsGetTheirTrianglesColorTimesAlpha) {
   EXPECT_NEAR(fragments.list[0].color[2], 1.0, 4e-6);
 }
 
+<<<<<<< HEAD
 struct Lanes {
   std::uint64_t used, issued;
   bool operator==(const Lanes&) const = default;
@@ -62,7 +63,7 @@ Lanes beam_lanes(const SetupTriangles& triangles) {
 Lanes sample_lanes(const SetupTriangles& triangles) {
   std::vector<SampleFragment> fragments;
   StageCounters raster, counters;
-  sample_raster(triangles, all_of(triangles), {0, 0, 8, 8}, {CellGrid{}, standard_pattern(8)}, raster, fragments);
+  sample_raster({triangles, {0, 0, 8, 8}, {CellGrid{}, standard_pattern(8)}}, all_of(triangles), raster, fragments);
   shade(std::vector<glm::vec3>(triangles.triangles.size()), fragments, counters);
   return {counters.lanes_used, counters.lanes_issued};
 }
@@ -100,6 +101,34 @@ TEST(Shade, CountsOperationsPerInvocation) {
   StageCounters counters;
   shade(std::vector<glm::vec3>(1, glm::vec3(1.0f)), fragments.list, counters);
   EXPECT_EQ(counters.ops, (OperationCounts{4 * 6, 4 * 4, 0, 0, 0, 0}));
+=======
+// A triangle in one pixel; two in the same pixel, which share no quad; and one that covers all of 8 x 8 pixels, 16 whole
+// quads.
+TEST(Shade, QuadsOfEachTriangleHaveFourLanes) {
+  SetupTriangles in_a_pixel, two, everywhere;
+  add_triangle(in_a_pixel, {3 * 256 + 20, 20}, {4 * 256 - 20, 30}, {3 * 256 + 30, 230});
+  add_triangle(two, {20, 20}, {230, 30}, {20, 230});
+  add_triangle(two, {240, 240}, {30, 240}, {240, 40});
+  add_everywhere(everywhere, -0.5f);
+  struct Case {
+    const SetupTriangles& triangles;
+    std::uint64_t used, issued;
+  };
+  for (const auto& [triangles, used, issued] : {Case{in_a_pixel, 1, 4}, {two, 2, 8}, {everywhere, 64, 64}}) {
+    const std::vector<glm::vec3> colors(triangles.triangles.size(), glm::vec3(1.0f));
+    const Tile tile{0, 0, 8, 8};
+    Fragments fragments = beam_fragments(triangles, tile, MaskSource::table);
+    std::vector<SampleFragment> samples;
+    StageCounters raster, of_fragments, of_samples;
+    sample_raster(triangles, all_of(triangles), tile, {CellGrid{}, standard_pattern(8)}, raster, samples);
+    shade(colors, fragments.list, of_fragments);
+    shade(colors, samples, of_samples);
+    for (const StageCounters& counters : {of_fragments, of_samples}) {
+      EXPECT_EQ(counters.lanes_used, used);
+      EXPECT_EQ(counters.lanes_issued, issued);
+    }
+  }
+>>>>>>> 9ac6de47237e3be29587d0a63f19ed5bd0a659ec
 }
 
 // fp16 has 11 significant bits. 1 + 2^-11 lies half-way between 1 and the next number and is rounded to the even one.

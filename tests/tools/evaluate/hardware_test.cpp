@@ -153,7 +153,7 @@ TEST(Hardware, OnlyPixelsOnChipTakeRoomInCores) {
   for (const auto& [spec, place, bytes] : {std::tuple{"msaa:8", Place::in_memory, 0},
                                            {"msaa:8", Place::on_chip, 80 * 1024},
                                            {"beam", Place::on_chip, 154 * 1024}}) {
-    RunOptions options;
+    FrameInput options;
     options.memory.framebuffer = place;
     FrameReport report;
     report.buffers = parse_technique(spec).render(trace, 0, options).buffers;

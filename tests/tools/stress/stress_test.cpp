@@ -107,7 +107,7 @@ TEST_F(SavedCases, CanBeReadAgain) {
 
 TEST(Judge, NoticesThatSurfacesWhichVaryAreMissing) {
   Technique nothing = parse_technique("msaa:1");
-  nothing.render = [](const Trace& trace, std::size_t index, const RunOptions&) {
+  nothing.renderer = [](const Trace& trace, std::size_t index, const FrameInput&, const FrameSinks&) {
     const Frame& frame = trace.frames[index];
     FrameResult result;
     result.image = {frame.width, frame.height, {}};
@@ -129,7 +129,7 @@ class HardCases : public testing::TestWithParam<std::string> {};
 
 TEST_P(HardCases, AreWithinTheirLimits) {
   const Technique technique = parse_technique(GetParam());
-  RunOptions options;
+  FrameInput options;
   options.memory.modelled = false;
   for (const HardCase& hard_case : hard_cases(false)) {
     if (hard_case.name == "large" && technique.spec == "reference") continue;  // 800 million samples
@@ -143,7 +143,7 @@ TEST(CrowdedBin, IsExact) {
   for (const HardCase& hard_case : hard_cases(true)) {
     if (hard_case.name != "crowded_bin") continue;
     for (const char* spec : {"beam", "beam:bits=64,slots=4", "beam:order=stream", "msaa:8"}) {
-      RunOptions options;
+      FrameInput options;
       options.memory.modelled = false;
       EXPECT_TRUE(Judge(hard_case).judge(parse_technique(spec), options).passes()) << spec;
     }
