@@ -243,8 +243,7 @@ TechniqueKind casav_kind() {
   return {.name = "casav",
           .description =
               "correlation-aware semi-analytic visibility, the published beam pipeline: a 32-bit mask from a table, a "
-              "depth slab, one aggregate per pixel; the "
-              "options are other readings of these rules, see docs/accuracy.md",
+              "depth slab, one aggregate per pixel; the options are other readings of its rules, see docs/accuracy.md",
           .source = "Crassin et al. 2018",
           .examples = {"casav", "casav:mask=exact", "casav:storage=text",
                        "casav:sort=nearest,tiny=3,overlap=transition,regional=area,local=keep,fuzzy=mix,extents=slab,"
