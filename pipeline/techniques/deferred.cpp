@@ -37,7 +37,8 @@ TechniqueKind deferred_kind() {
             return Technique{.framebuffer = deferred_framebuffer(),
                              .sampled_at = places_of(msaa_sampling(1)),
                              .errs_like = "msaa",
-                             .render = bind_options(render_deferred), .is_observable = true};
+                             .render = bind_options(render_deferred),
+                             .is_observable = true};
           })};
 }
 

@@ -52,8 +52,8 @@ void SampleRasterUnit::test_alpha(const Sampling& sampling, ShadeAt at) {
 void SampleRasterUnit::test_alpha(const Sampling& sampling, ShadeAt at, StageCounters& counters, TexelRequests* texels,
                                   std::vector<SampleFragment>& fragments) const {
   const SamplePlaces places(bin_, sampling, at);
-  alpha_test(bin_.shader(), bin_.tile, sampling.grid, sampling.pattern.count, coverage_, places.of(fragments),
-             counters, fragments, texels);
+  alpha_test(bin_.shader(), bin_.tile, sampling.grid, sampling.pattern.count, coverage_, places.of(fragments), counters,
+             fragments, texels);
 }
 
 void SampleRasterUnit::tell_all(const TriangleList& drawn, const Sampling& sampling, ShadeAt at) const {
