@@ -208,7 +208,9 @@ class TileExplainer {
   std::optional<PixelSurfaces> surfaces_;
 };
 
-BinPlan plan_of_bins() { return {.stages = {}, .framebuffer = {.bin_size = kTileSize}, .pair_bytes = kPairWorkingBytes}; }
+BinPlan plan_of_bins() {
+  return {.stages = {}, .framebuffer = {.bin_size = kTileSize}, .pair_bytes = kPairWorkingBytes};
+}
 
 glm::dvec3 rgb(const Image& image, std::size_t pixel) {
   const float* rgba = image.rgba.data() + 4 * pixel;

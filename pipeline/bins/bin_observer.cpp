@@ -108,9 +108,8 @@ void BinObserver::complete(const TriangleList& list, const Tile& pixel, PixelObs
     const auto samples = static_cast<std::size_t>(round.sampling->pattern.count);
     for (const SampleFragment& each : round.fragments)
       if (is_in(pixel, each, grid))
-        observer.would_cover(each.triangle,
-                             round.first + static_cast<std::size_t>(grid.in_pixel(each.x, each.y)) * samples,
-                             each.mask);
+        observer.would_cover(
+            each.triangle, round.first + static_cast<std::size_t>(grid.in_pixel(each.x, each.y)) * samples, each.mask);
   }
   for (const Round& round : rounds_)
     for (const SampleFragment& each : round.before_alpha)

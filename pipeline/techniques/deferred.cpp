@@ -36,7 +36,8 @@ TechniqueKind deferred_kind() {
             return Technique{.framebuffer = deferred_framebuffer(),
                              .sampled_at = places_of(msaa_sampling(1)),
                              .errs_like = "msaa",
-                             .renderer = bind_options(render_deferred), .is_observable = true};
+                             .renderer = bind_options(render_deferred),
+                             .is_observable = true};
           })};
 }
 

@@ -64,8 +64,8 @@ class ComposeBeamUnit {
   // The picture. `framebuffer`: the surfaces that hold an aggregate.
   std::vector<glm::vec4> resolve_aggregates(const std::vector<Surface>& framebuffer) {
     charge_aggregates(bin_, framebuffer, covered_pixels(pixels_), closed_pixels(pixels_));
-    return resolve(composed_colors(pixels_), bin_.background(), sizeof pixels_[0],
-                   bin_.stage(StageId::resolve).timed(), bin_.observers());
+    return resolve(composed_colors(pixels_), bin_.background(), sizeof pixels_[0], bin_.stage(StageId::resolve).timed(),
+                   bin_.observers());
   }
 
  private:

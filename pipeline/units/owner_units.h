@@ -67,11 +67,12 @@ class ComposeOwnersUnit {
                                std::to_string(OwnerSlot::kMostTriangles) + " that an owner can name");
   }
 
-  // `first`: as in compose_owners.
+  // `first`: as in OwnersBatch.
   void operator()(const std::vector<Fragment>& fragments, std::size_t first, ClosedDepth& closed, ShadeUnit& shade) {
     OwnersResult result;
     result.texels = bin_.texels();
-    compose_owners(owners_, fragments, first, stage_.timed(), pixels_, closed, maps_, result);
+    compose_owners(owners_, {fragments, first}, stage_.timed(),
+                   OwnersTile<Words, Slots>{pixels_, closed, maps_, result});
     charge(closed, stage_.counters);
     store_.merge(fragments);
     finish(result, shade);
@@ -85,8 +86,8 @@ class ComposeOwnersUnit {
     const std::vector<PixelColor> colors = finish_owners(owners_, stage_.timed(), pixels_, result);
     finish(result, shade);
     bin_.triangle_fetches().flush(stage_.counters);
-    return resolve(colors, bin_.background(), kColorBytes + sizeof(std::uint16_t),
-                   bin_.stage(StageId::resolve).timed(), bin_.observers());
+    return resolve(colors, bin_.background(), kColorBytes + sizeof(std::uint16_t), bin_.stage(StageId::resolve).timed(),
+                   bin_.observers());
   }
 
  private:

@@ -4,8 +4,8 @@
 #include "simd/merge.h"
 #include "stages/cost/counting.h"
 #include "stages/data/casav_aggregate.h"
-#include "stages/data/pixel_observer.h"
 #include "stages/data/fragment.h"
+#include "stages/data/pixel_observer.h"
 
 namespace beampipe {
 

@@ -254,8 +254,7 @@ void compose_whole(const std::vector<Pair>& whole, const Tile& tile, const TileS
                                std::vector<StoredAggregate<words, channel>>&, std::vector<float>&,      \
                                const PixelObservers*);                                                  \
   template void compose_whole(const std::vector<Pair>&, const Tile&, const TileShader&, StageCounters&, \
-                              std::vector<StoredAggregate<words, channel>>&, TexelRequests*,            \
-                              const PixelObservers*);
+                              std::vector<StoredAggregate<words, channel>>&, TexelRequests*, const PixelObservers*);
 BEAMPIPE_STORED_AGGREGATES(BEAMPIPE_COMPOSE)
 #undef BEAMPIPE_COMPOSE
 

@@ -8,8 +8,8 @@
 #include "simd/merge.h"
 #include "stages/cost/counters.h"
 #include "stages/data/casav_aggregate.h"
-#include "stages/data/pixel_observer.h"
 #include "stages/data/fragment.h"
+#include "stages/data/pixel_observer.h"
 #include "stages/data/sorted_lists.h"
 
 namespace beampipe {

@@ -13,8 +13,8 @@
 #include "simd/merge.h"
 #include "stages/cost/counters.h"
 #include "stages/data/casav_aggregate.h"
-#include "stages/data/pixel_observer.h"
 #include "stages/data/fragment.h"
+#include "stages/data/pixel_observer.h"
 
 namespace beampipe {
 

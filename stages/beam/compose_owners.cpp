@@ -602,10 +602,12 @@ class OwnerComposer {
 };
 
 template <std::size_t Words, std::size_t Slots>
-void compose(const OwnersBin& bin, const std::vector<Fragment>& fragments, std::size_t first, StageCounters& counters,
-             OpenPixels<Words, Slots>& pixels, ClosedDepth& closed, const OwnersMaps& maps, OwnersResult& result) {
-  OwnerComposer<Words, Slots> composer(bin, result);
-  auto number = static_cast<std::uint32_t>(first);
+void compose(const OwnersBin& bin, const OwnersBatch& batch, StageCounters& counters,
+             const OwnersTile<Words, Slots>& tile) {
+  const std::vector<Fragment>& fragments = batch.fragments;
+  OpenPixels<Words, Slots>& pixels = tile.pixels;
+  OwnerComposer<Words, Slots> composer(bin, tile.result);
+  auto number = static_cast<std::uint32_t>(batch.first);
   constexpr std::size_t kAhead = 4;  // fragments
   for (std::size_t i = 0; i < fragments.size(); ++i) {
     if (i + kAhead < fragments.size()) {
@@ -615,9 +617,9 @@ void compose(const OwnersBin& bin, const std::vector<Fragment>& fragments, std::
     const Fragment& fragment = fragments[i];
     while (bin.list[number] != fragment.triangle) ++number;
     using Outcome = typename OwnerComposer<Words, Slots>::Outcome;
-    const Outcome outcome = composer.add(fragment, number, pixels, closed);
-    maps.fragments[fragment.pixel] += outcome != Outcome::hidden;
-    maps.merges[fragment.pixel] += outcome == Outcome::merged;
+    const Outcome outcome = composer.add(fragment, number, pixels, tile.closed);
+    tile.maps.fragments[fragment.pixel] += outcome != Outcome::hidden;
+    tile.maps.merges[fragment.pixel] += outcome == Outcome::merged;
   }
   charge<Words, Slots>(composer.work, counters);
 }
@@ -636,15 +638,14 @@ std::vector<PixelColor> finish(const OwnersBin& bin, StageCounters& counters, Op
 }  // namespace
 
 // Highway's tables hold functions, not templates.
-#define BEAMPIPE_KERNELS(words, slots)                                                                            \
-  void compose_##words##_##slots(const OwnersBin& bin, const std::vector<Fragment>& fragments, std::size_t first, \
-                                 StageCounters& counters, OpenPixels<words, slots>& pixels, ClosedDepth& closed,  \
-                                 const OwnersMaps& maps, OwnersResult& result) {                                  \
-    compose<words, slots>(bin, fragments, first, counters, pixels, closed, maps, result);                         \
-  }                                                                                                               \
-  std::vector<PixelColor> finish_##words##_##slots(const OwnersBin& bin, StageCounters& counters,                 \
-                                                   OpenPixels<words, slots>& pixels, OwnersResult& result) {      \
-    return finish<words, slots>(bin, counters, pixels, result);                                                   \
+#define BEAMPIPE_KERNELS(words, slots)                                                                       \
+  void compose_##words##_##slots(const OwnersBin& bin, const OwnersBatch& batch, StageCounters& counters,    \
+                                 const OwnersTile<words, slots>& tile) {                                     \
+    compose<words, slots>(bin, batch, counters, tile);                                                       \
+  }                                                                                                          \
+  std::vector<PixelColor> finish_##words##_##slots(const OwnersBin& bin, StageCounters& counters,            \
+                                                   OpenPixels<words, slots>& pixels, OwnersResult& result) { \
+    return finish<words, slots>(bin, counters, pixels, result);                                              \
   }
 BEAMPIPE_OPEN_PIXELS(BEAMPIPE_KERNELS)
 #undef BEAMPIPE_KERNELS
@@ -655,20 +656,18 @@ HWY_AFTER_NAMESPACE();
 
 #if HWY_ONCE
 namespace beampipe {
-#define BEAMPIPE_COMPOSE(words, slots)                                                                 \
-  HWY_EXPORT(compose_##words##_##slots);                                                               \
-  template <>                                                                                          \
-  void compose_owners(const OwnersBin& bin, const std::vector<Fragment>& fragments, std::size_t first, \
-                      StageCounters& counters, OpenPixels<words, slots>& pixels, ClosedDepth& closed,  \
-                      const OwnersMaps& maps, OwnersResult& result) {                                  \
-    HWY_DYNAMIC_DISPATCH(compose_##words##_##slots)                                                    \
-    (bin, fragments, first, counters, pixels, closed, maps, result);                                   \
-  }                                                                                                    \
-  HWY_EXPORT(finish_##words##_##slots);                                                                \
-  template <>                                                                                          \
-  std::vector<PixelColor> finish_owners(const OwnersBin& bin, StageCounters& counters,                 \
-                                        OpenPixels<words, slots>& pixels, OwnersResult& result) {      \
-    return HWY_DYNAMIC_DISPATCH(finish_##words##_##slots)(bin, counters, pixels, result);              \
+#define BEAMPIPE_COMPOSE(words, slots)                                                            \
+  HWY_EXPORT(compose_##words##_##slots);                                                          \
+  template <>                                                                                     \
+  void compose_owners(const OwnersBin& bin, const OwnersBatch& batch, StageCounters& counters,    \
+                      const OwnersTile<words, slots>& tile) {                                     \
+    HWY_DYNAMIC_DISPATCH(compose_##words##_##slots)(bin, batch, counters, tile);                  \
+  }                                                                                               \
+  HWY_EXPORT(finish_##words##_##slots);                                                           \
+  template <>                                                                                     \
+  std::vector<PixelColor> finish_owners(const OwnersBin& bin, StageCounters& counters,            \
+                                        OpenPixels<words, slots>& pixels, OwnersResult& result) { \
+    return HWY_DYNAMIC_DISPATCH(finish_##words##_##slots)(bin, counters, pixels, result);         \
   }
 BEAMPIPE_OPEN_PIXELS(BEAMPIPE_COMPOSE)
 #undef BEAMPIPE_COMPOSE

@@ -134,10 +134,9 @@ std::vector<PixelColor> z3_colors(const std::vector<Z3Pixel<Words, Layers>>& pix
   return colors;
 }
 
-#define BEAMPIPE_Z3(words, layers)                                                           \
-  template void compose_z3(const std::vector<Fragment>&, const PositionSet&, StageCounters&, \
-                           std::vector<Z3Pixel<words, layers>>&, std::vector<float>&,        \
-                           const PixelObservers*);                                           \
+#define BEAMPIPE_Z3(words, layers)                                                                            \
+  template void compose_z3(const std::vector<Fragment>&, const PositionSet&, StageCounters&,                  \
+                           std::vector<Z3Pixel<words, layers>>&, std::vector<float>&, const PixelObservers*); \
   template std::vector<PixelColor> z3_colors(const std::vector<Z3Pixel<words, layers>>&, const PixelObservers*);
 BEAMPIPE_Z3_PIXELS(BEAMPIPE_Z3)
 #undef BEAMPIPE_Z3

@@ -215,9 +215,8 @@ void PixelObserver::enters(std::size_t place, const Fragment& fragment) {
   for (std::size_t position = 0; position < history.owners.size(); ++position)
     if (fragment.mask.test(position) && history.owners[position] == kNobody) won.set(position);
   arrives(fragment, won);
-  surfaces_.insert(
-      surfaces_.begin() + static_cast<std::ptrdiff_t>(place),
-      {{current_, fragment.alpha, glm::dvec3(fragment.color) / double{fragment.alpha}}});
+  surfaces_.insert(surfaces_.begin() + static_cast<std::ptrdiff_t>(place),
+                   {{current_, fragment.alpha, glm::dvec3(fragment.color) / double{fragment.alpha}}});
 }
 
 void PixelObserver::overwrites(std::size_t place) {

@@ -85,7 +85,7 @@ std::vector<glm::vec4> resolve(const SampleTile& surface, std::size_t pixels, co
     double covered = 0;
     for_each_run(surface, pixel, samples_per_cell, shader, [&](const SampleRun& run) {
       const auto count = static_cast<double>(run.end - run.begin);
-      double weight = share;  // of a sample
+      double weight = share;                                             // of a sample
       const double seen = over ? 1.0 - double{over[run.begin].a} : 1.0;  // of the opaque surface
       const glm::dvec3 opaque = run.triangle == kNoTriangle ? clear
                                 : run.varies                ? glm::dvec3(*next++)

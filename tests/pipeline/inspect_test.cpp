@@ -1,4 +1,5 @@
-// The history of a pixel is the pixel: its weights times its colours are the picture's bits, but for what formats change.
+// The history of a pixel is the pixel: its weights times its colours are the bits of the picture, but for what formats
+// change.
 #include <gtest/gtest.h>
 
 #include <algorithm>

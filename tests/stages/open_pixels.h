@@ -46,7 +46,7 @@ struct OpenTile {
     conservative_raster(triangles, list, tile, ignored, pairs);
     beam_fragment(triangles, pairs, tile, grid_options(grid, owners_fragment_bytes(Words)), ignored, fragments);
     const OwnersBin bin{triangles, list, watermarks, tile, positions, colors, false, OwnerPlace::covered, observers};
-    compose_owners(bin, fragments, 0, composing, open, closed, {counts, merges}, result);
+    compose_owners(bin, {fragments, 0}, composing, OwnersTile<Words, Slots>{open, closed, {counts, merges}, result});
     return finish_owners(bin, finishing, open, result);
   }
   std::vector<PixelColor> compose_sorted(bool with_watermarks = true) {

@@ -93,8 +93,7 @@ std::vector<PixelInspection> inspect(const Trace& trace, std::size_t frame, cons
     inspection.reference = glm::vec3(color_at(truth, pixels[i]));
     inspection.error = root_mean_square(glm::dvec3(history.pixel) - glm::dvec3(inspection.reference));
     const PixelHistory& seen = varies ? visible[i] : history;
-    colors.push_back(
-        {pixels[i], seen.weights(), glm::vec3(seen.pixel), glm::vec3(color_at(visible_truth, pixels[i]))});
+    colors.push_back({pixels[i], seen.weights(), glm::vec3(seen.pixel), glm::vec3(color_at(visible_truth, pixels[i]))});
     if (varies) inspection.visibility_error = root_mean_square(colors.back().color - colors.back().reference);
   }
   const std::vector<ExplainedPixel> explained = explain_pixels(trace, of_trace, colors, varies ? by_pixel : only);
