@@ -70,6 +70,7 @@ int run(int argc, char** argv, beampipe::InterruptGate& gate) {
   beampipe::add_make_command(line, gate);
   beampipe::add_preview_command(line, gate);
   beampipe::add_capture_command(line);
+  beampipe::add_schema_command(line);
   beampipe::add_completion_command(line);
   beampipe::add_man_command(line);
   line.run(argc, argv);
