@@ -3,7 +3,7 @@
 
 usage: docs/accuracy.py sweep PROGRAM MODELS -o DIR    every spec below, on the 17 scenes of docs/scene_traces.py
        docs/accuracy.py sizes PROGRAM MODELS -o DIR    two specs in four sizes
-       docs/accuracy.py scenes|density|results|steps|bins|storage|order|passes|policies|formats TABLE
+       docs/accuracy.py scenes|density|results|steps|bins|storage|order|unsorted|policies|formats TABLE
        docs/accuracy.py overview PROGRAM DIR TABLE SIZES_TABLE
        docs/accuracy.py frontier TABLE -o SVG          needs gnuplot
 
@@ -21,37 +21,35 @@ import scene_traces
 from measure import PROCEDURAL, print_head, print_row
 
 SCENES = ["beam", "beam:bits=64,slots=4", "beam:bits=32,slots=2", "beam:order=stream", "beam:order=sorted",
-          "beam:rules=paper", "z3:shape=128x3", "alpha"]
+          "casav", "z3:shape=128x3", "alpha"]
 SIZES = ["1280x720", "320x180", "96x54", "32x18"]
 DENSITY = ["beam", "beam:order=sorted"]
 POSITIONS = {32: "bits=32,", 64: "bits=64,", 128: "bits=128,", 256: ""}
 CAPACITIES = {bits: [f"beam:{text}slots={slots}" for slots in (2, 4, 8, 16, 32)] for bits, text in POSITIONS.items()}
-OTHERS = ["beam", "beam:order=stream", "beam:order=sorted", "beam:rules=paper", "z3", "z3:shape=128x3", "acaa:8",
+OTHERS = ["beam", "beam:order=stream", "beam:order=sorted", "casav", "z3", "z3:shape=128x3", "acaa:8",
           "dvm", "msaa:8", "msaa:32", "msaa:256"]
 STORAGE = sum(CAPACITIES.values(), []) + OTHERS
-BEST_READING = "beam:rules=paper,mask=exact,local=keep,fuzzy=mix,slab=visible,plane=visible"
-STEPS = {"1. our reading of the published rules": "beam:rules=paper", "2. the best reading": BEST_READING,
-         "3. without an A-buffer, from sorted bins": "beam:rules=paper,order=near-first,layers=8",
+BEST_READING = "casav:mask=exact,local=keep,fuzzy=mix,slab=visible,plane=visible"
+STEPS = {"1. our reading of the published rules": "casav", "2. the best reading": BEST_READING,
+         "3. without an A-buffer, from sorted bins": "casav:order=near-first,layers=8",
          "4a. areas conserved, with an A-buffer, 32 positions": "beam:order=sorted,bits=32",
          "4b. the same, 256 positions": "beam:order=sorted", "5a. one pass, 32 positions, 2 slots": "beam:bits=32,slots=2",
          "5b. 64 positions, 4 slots": "beam:bits=64,slots=4", "5c. 256 positions, 5 slots": "beam",
          "5d. 256 positions, 16 slots": "beam:slots=16"}
-RESULTS = ["beam", "beam:bin=16", "beam:bits=64,slots=4", "beam:order=stream", "beam:order=sorted", "beam:rules=paper",
+RESULTS = ["beam", "beam:bin=16", "beam:bits=64,slots=4", "beam:order=stream", "beam:order=sorted", "casav",
            "z3:shape=128x3", "z3", "acaa:8", "alpha", "msaa:8", "msaa:32", "msaa:256"]
-ORDER = ["beam:rules=paper", *(f"beam:rules=paper,order={order},layers={layers}" for order in ("near-first", "stream")
+ORDER = ["casav", *(f"casav:order={order},layers={layers}" for order in ("near-first", "stream")
                                for layers in (1, 3, 8))]
-PASSES = ["beam", "beam:order=sorted", "beam:order=stream", "beam:order=stream,passes=0",
-          *(f"beam:order=stream,bits={bits},passes=0,layers=1" for bits in POSITIONS), "z3:shape=32x2", "z3",
-          "z3:shape=128x3", "z3:shape=128x3,merge=color"]
-POLICIES = ["beam:rules=paper", *(f"beam:rules=paper,{policy}" for policy in (
+UNSORTED = ["beam", "beam:order=sorted", "beam:order=stream", "z3:shape=32x2", "z3", "z3:shape=128x3"]
+POLICIES = ["casav", *(f"casav:{policy}" for policy in (
     "mask=exact", "sort=nearest", "tiny=3", "overlap=over", "overlap=add", "overlap=transition", "regional=area",
     "local=keep", "fuzzy=mix", "extents=slab", "slab=visible", "plane=visible", "thickness=containing",
     "tiny=3,overlap=transition")), BEST_READING]
 BINS = {spec: [spec, *(f"{spec}{',' if ':' in spec else ':'}bin={bin}" for bin in (16, 8))]
         for spec in ("beam", "beam:bits=64,slots=4", "beam:bits=32,slots=2")}
-FORMATS = ["beam:order=sorted", "beam:order=sorted,storage=float32", "beam:rules=paper", "beam:rules=paper,storage=text",
-           "beam:rules=paper,storage=float32"]
-ALL = list(dict.fromkeys(SCENES + list(STEPS.values()) + RESULTS + STORAGE + ORDER + PASSES + POLICIES + FORMATS +
+FORMATS = ["beam:order=sorted", "beam:order=sorted,storage=float32", "casav", "casav:storage=text",
+           "casav:storage=float32"]
+ALL = list(dict.fromkeys(SCENES + list(STEPS.values()) + RESULTS + STORAGE + ORDER + UNSORTED + POLICIES + FORMATS +
                          sum(BINS.values(), [])))
 
 
@@ -164,12 +162,12 @@ def print_bins(table):
 
 
 def print_overview(program, folder, table, density):
-    print_head("scene", "triangles", "per pixel", "`beam:rules=paper`", "`beam`", "`beam` at 1280 × 720")
+    print_head("scene", "triangles", "per pixel", "`casav`", "`beam`", "`beam` at 1280 × 720")
     rates = []
     for scene in table.scenes:
         answer = subprocess.run([program, "info", folder / f"{scene}.json", "--json"], check=True, capture_output=True)
         frame = json.loads(answer.stdout)["frames"][0]
-        rows = table.row(scene, "beam:rules=paper"), table.row(scene, "beam"), density.row(scene, "beam", "1280x720")
+        rows = table.row(scene, "casav"), table.row(scene, "beam"), density.row(scene, "beam", "1280x720")
         rates.append([float(row["emr"]) for row in rows])
         print_row(scene, f"{frame['triangles']:,}", f"{frame['triangles'] / frame['width'] / frame['height']:.2g}",
                   *map(emr, rows))
@@ -177,12 +175,12 @@ def print_overview(program, folder, table, density):
         print_row(title, "", "", *(rate(summary(column)) for column in zip(*rates)))
 
 
-def print_passes(table):
+def print_unsorted(table):
     def extra(spec):
         work = [a / b for a, b in zip(table.values("operations", spec), table.values("operations", "beam:order=sorted"))]
         return *(f"{value:.0f}" for value in bytes_of(table, spec)[:2]), f"{mean(work):.2f}", f"{max(work):.2f}"
 
-    print_groups(table, PASSES, ["bytes on chip", "bytes off chip", "operations ÷ those of sorted order", "most"], extra)
+    print_groups(table, UNSORTED, ["bytes on chip", "bytes off chip", "operations ÷ those of sorted order", "most"], extra)
 
 
 def print_formats(table):
@@ -219,7 +217,7 @@ plot {', '.join(plots)}
 
 
 TABLES = {"results": print_results, "steps": print_steps, "scenes": print_scenes, "density": print_density,
-          "bins": print_bins, "storage": print_storage, "passes": print_passes,
+          "bins": print_bins, "storage": print_storage, "unsorted": print_unsorted,
           "order": lambda table: print_groups(table, ORDER), "policies": lambda table: print_groups(table, POLICIES),
           "formats": print_formats}
 

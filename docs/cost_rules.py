@@ -1,7 +1,7 @@
 #!/usr/bin/env python3
 """Which rule of the model of costs changes the published ratios, and how far, for docs/costs.md.
 
-cost_rules.py PROGRAM DIR   DIR: of `beampipe run TRACE -t beam:rules=paper msaa:32,128,256 -o DIR`
+cost_rules.py PROGRAM DIR   DIR: of `beampipe run TRACE -t casav msaa:32,128,256 -o DIR`
 
 A rule is off when its rate has no limit. Prints the ratios with all rules off, then with one after the other on.
 """

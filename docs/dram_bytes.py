@@ -8,17 +8,16 @@ dram_bytes.py BEAMPIPE --stack    peak bytes of the buffers held for pixels, for
 """
 import json
 import pathlib
-import re
 import subprocess
 import sys
 import tempfile
 
-TECHNIQUES = ["beam:order=sorted", "beam:order=stream,passes=0", "msaa:8", "msaa:32", "acaa:8"]
-PER_TRIANGLE = re.compile("setup_triangles|bin_lists|batch_")  # these grow with triangles or hold a batch of 512
+TECHNIQUES = ["beam:order=sorted", "msaa:8", "msaa:32", "acaa:8"]
+PER_TRIANGLE = ("setup_triangles", "bin_lists")
 PLACED = ["beam", "msaa:8", "msaa:32", "beam:order=sorted", "beam:order=stream"]
 PLACES = {"in-memory": "in memory", "on-chip": "on chip"}
 GEOMETRY = ("vertex_setup", "sample_raster")  # write, bin and read the triangles of one pass
-STACK = ["beam", "beam:order=stream", "beam:order=sorted", "beam:rules=paper", "msaa:8"]
+STACK = ["beam", "beam:order=stream", "beam:order=sorted", "casav", "msaa:8"]
 
 
 def run(program, trace, techniques, *options):
@@ -67,7 +66,7 @@ def stack_table(program, camera):
             trace["frames"][0]["camera"].update(camera)
             path.write_text(json.dumps(trace))
             frames = run(program, path, STACK)
-            peaks = [sum(buffer["peak_bytes"] for buffer in frames[t]["buffers"] if not PER_TRIANGLE.match(buffer["name"]))
+            peaks = [sum(buffer["peak_bytes"] for buffer in frames[t]["buffers"] if buffer["name"] not in PER_TRIANGLE)
                      / 1024 for t in STACK]
             print(f"| {layers} | " + " | ".join(f"{peak:.1f}" for peak in peaks) + " |", flush=True)
 

@@ -22,8 +22,8 @@ import subprocess
 import measure
 from measure import print_head, print_row
 
-PUBLISHED_MS = {"beam:rules=paper": 30.2, "msaa:32": 24.0, "msaa:128": 78.0, "msaa:256": 198.0}  # Titan V, classroom
-BASE = "beam:rules=paper"
+PUBLISHED_MS = {"casav": 30.2, "msaa:32": 24.0, "msaa:128": 78.0, "msaa:256": 198.0}  # Titan V, classroom
+BASE = "casav"
 COSTS = (0, 100, 300, 1000, 3000, 10000)  # operations per invocation
 GEOMETRY = {"vertex_setup", "bin_sort", "conservative_raster", "sample_raster", "beam_fragment", "shade"}
 BEAM, MSAA = "beam:bin=16", ("msaa:8", "msaa:8,prepass", "msaa:32")

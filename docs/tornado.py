@@ -1,7 +1,7 @@
 #!/usr/bin/env python3
 """Which rates move the published ratios of times, and how far: a table, a tornado plot, and where the paper's numbers hold.
 
-tornado.py PROGRAM DIR -o FILE.svg   DIR: of `beampipe run TRACE -t beam:rules=paper msaa:32,128,256 -o DIR`
+tornado.py PROGRAM DIR -o FILE.svg   DIR: of `beampipe run TRACE -t casav msaa:32,128,256 -o DIR`
 
 Each number of the description titan_v is halved and doubled, one at a time, and the times of the finished run are
 modelled again. Then all numbers that move a ratio are drawn at random, each from a quarter to four times.
@@ -15,7 +15,7 @@ import subprocess
 import sys
 import tempfile
 
-BASE = "beam:rules=paper"
+BASE = "casav"
 PUBLISHED = {"msaa:32": 24.0 / 30.2, "msaa:128": 78.0 / 30.2, "msaa:256": 198.0 / 30.2}
 DESCRIPTION = pathlib.Path(__file__).resolve().parent.parent / "tools/evaluate/hardware/titan_v.json"
 DRAWS, SEED, TOLERANCE = 4000, 1, 0.2

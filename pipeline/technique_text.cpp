@@ -82,8 +82,9 @@ std::string as_code(const std::string& text) {
 }  // namespace
 
 std::string title_of(const TechniqueKind& kind) {
-  const auto& [key, word, otherwise, owns] = kind.variant;
-  if (!key.empty()) return kind.name + ':' + key + '=' + word;
+  const std::vector<TechniqueKind>& kinds = technique_kinds();
+  const auto first = std::ranges::find(kinds, kind.name, &TechniqueKind::name);
+  if (first->variant.word != kind.variant.word) return kind.name + ':' + kind.variant.key + '=' + kind.variant.word;
   return kind.name + (has_samples(options_of(kind)) ? ":N" : "");
 }
 

@@ -7,11 +7,6 @@ auto nearer_formula(const DepthPlane<Float>& plane, const DepthPlane<Float>& oth
 }
 
 template <class Float, class Bool>
-Float nearest_formula(const DepthPlane<Float>& plane, Float u, Float v, Bool in_mask, Float nearest) {
-  return select(in_mask, lesser(nearest, depth_at(plane, u, v)), nearest);
-}
-
-template <class Float, class Bool>
 Float farthest_formula(const DepthPlane<Float>& plane, Float u, Float v, Bool in_mask, Float farthest) {
   return select(in_mask, greater(farthest, depth_at(plane, u, v)), farthest);
 }

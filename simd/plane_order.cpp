@@ -45,19 +45,6 @@ void nearer_positions_kernel(const DepthPlane<float>& plane, const DepthPlane<fl
   }
 }
 
-float nearest_depth_kernel(const DepthPlane<float>& plane, const SamplePattern* patterns, std::size_t words,
-                           const std::uint32_t* masks) {
-  const DepthPlane<Reals> of_plane = in_every_lane(plane);
-  Reals nearest(kNoDepth);
-  for (std::size_t w = 0; w < words; ++w) {
-    for (std::size_t s = 0; s < kMaxMaskSamples; s += hn::Lanes(D())) {
-      const Reals u = offsets(patterns[w].x.data() + s), v = offsets(patterns[w].y.data() + s);
-      nearest = nearest_formula(of_plane, u, v, mask_of_bits<D>(masks[w], s), nearest);
-    }
-  }
-  return hn::GetLane(hn::MinOfLanes(D(), nearest.raw));
-}
-
 float farthest_depth_kernel(const DepthPlane<float>& plane, const SamplePattern* patterns, std::size_t words,
                             const std::uint32_t* masks) {
   const DepthPlane<Reals> of_plane = in_every_lane(plane);
@@ -96,11 +83,6 @@ HWY_EXPORT(nearer_positions_kernel);
 void nearer_positions(const DepthPlane<float>& plane, const DepthPlane<float>& other, const SamplePattern* patterns,
                       std::size_t words, std::uint32_t* masks, const std::uint32_t* where) {
   HWY_DYNAMIC_DISPATCH(nearer_positions_kernel)(plane, other, patterns, words, masks, where);
-}
-HWY_EXPORT(nearest_depth_kernel);
-float nearest_depth(const DepthPlane<float>& plane, const SamplePattern* patterns, std::size_t words,
-                    const std::uint32_t* masks) {
-  return HWY_DYNAMIC_DISPATCH(nearest_depth_kernel)(plane, patterns, words, masks);
 }
 HWY_EXPORT(farthest_depth_kernel);
 float farthest_depth(const DepthPlane<float>& plane, const SamplePattern* patterns, std::size_t words,

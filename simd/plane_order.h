@@ -1,4 +1,4 @@
-// Depth planes at mask positions: where one is nearer than another, and the least and the greatest depth of one.
+// Depth planes at mask positions: where one is nearer than another, and the greatest depth of one.
 #pragma once
 
 #include <cstddef>
@@ -16,10 +16,7 @@ namespace beampipe {
 void nearer_positions(const DepthPlane<float>& plane, const DepthPlane<float>& other, const SamplePattern* patterns,
                       std::size_t words, std::uint32_t* masks, const std::uint32_t* where = nullptr);
 
-// The least depth of `plane` over the positions in `masks`, as above. kNoDepth when there are none.
 inline constexpr float kNoDepth = 1.0f;  // beyond the far plane, which is at 0
-float nearest_depth(const DepthPlane<float>& plane, const SamplePattern* patterns, std::size_t words,
-                    const std::uint32_t* masks);
 
 // The greatest depth of `plane` over the positions in `masks`. kInFront when there are none.
 inline constexpr float kInFront = -2.0f;  // nearer than every depth

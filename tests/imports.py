@@ -9,6 +9,8 @@ The rules:
 1.  Paths. An include of our own files is in quotes and starts at the root of the repository, without "." or "..".
     Third-party headers are in angle brackets; only those of Highway (hwy/) may be in quotes. No include is a macro.
 2.  Folders. Imports run tools -> pipeline -> stages -> simd. All but simd may include traces, which stands alone.
+    Inside traces/, files/ and scenes/ include the root, which may include scenes/. Only tools may include files/. What
+    is left includes no third-party headers but those of GLM, Highway and oneTBB.
 3.  Inside tools/: cli -> sweep -> report -> claims -> evaluate -> files, where sweep leaves out claims. Only cli
     includes stress, which includes none of them. cli and report may include inspect, which may include evaluate and
     files.
@@ -40,13 +42,16 @@ ORDER = {
         "techniques": {"root", "inspect", "units", "bins", "memory", "technique.h"}, "root": {"bins", "memory", "technique.h"},
         "inspect": {"units", "bins", "memory", "technique.h"}, "units": {"bins", "memory", "technique.h"}, "bins": {"memory", "technique.h"},
         "memory": {"technique.h"}, "technique.h": {"memory"}},
-    "stages": {"data": set(), "cost": {"data"}, "surface": {"data", "cost"}}}
+    "stages": {"data": set(), "cost": {"data"}, "surface": {"data", "cost"}},
+    "traces": {"root": {"scenes"}, "scenes": {"root"}, "files": {"root"}}}
 STAGE_GROUP = {"data", "cost", "surface"}
 WITHOUT_TRACES = {"data", "cost"}
+# Of the packages that all may use, the standard library and the system.
+LIGHT_HEADER = re.compile(r"(glm|hwy|tbb)/.*|\w+|(fcntl|malloc|unistd)\.h")
 # Headers in stage groups that are no stage's own: formulas of stages and costs, and algorithms in files of their own.
 SHARED_IN_GROUP = {
-    "stages/beam/merge_sort.h", "stages/beam/owner_formulas.h", "stages/beam/paper_fragment.h",
-    "stages/beam/paper_merges.h", "stages/beam/specks.h", "stages/geometry/clip.h", "stages/geometry/depth_order.h",
+    "stages/beam/merge_sort.h", "stages/beam/owner_formulas.h", "stages/beam/casav_fragment.h",
+    "stages/beam/casav_merges.h", "stages/beam/specks.h", "stages/geometry/clip.h", "stages/geometry/depth_order.h",
     "stages/geometry/draw_geometry.h", "stages/geometry/draw_notes.h", "stages/geometry/draw_plan.h",
     "stages/geometry/setup_formulas.h", "stages/picture/picture_formulas.h", "stages/raster/traverse.h",
     "stages/raster/traverse_cost.h", "stages/samples/sample_depth_cost.h", "stages/samples/sample_formulas.h",
@@ -55,16 +60,16 @@ SHARED_IN_GROUP = {
 CASES = r"""
 our own files are included in quotes|tools/cli/main.cpp|#include <pipeline/technique.h>
 without . or ..|pipeline/bins/bin.cpp|#include "../pipeline/technique.h"
-without . or ..|stages/beam/claim.cpp|#include <stages/../pipeline/technique.h>
-starts at the root|stages/beam/claim.cpp|#include "settle.h"
-not written out|stages/beam/claim.cpp|#include SETTLE
+without . or ..|stages/beam/windows.cpp|#include <stages/../pipeline/technique.h>
+starts at the root|stages/beam/windows.cpp|#include "a_buffer.h"
+not written out|stages/beam/windows.cpp|#include A_BUFFER
 simd/ may not include traces/|simd/match.cpp|/* " */ # /**/ include /**/ "traces/trace.h" // a comment
 tools/ may not include tests/|tools/claims/text.h.in|auto a = R"(")";\n#include "tests/x.h"
 stages/data may not include traces/|stages/data/pair.h|#include "traces/trace.h"
 data may not include cost|stages/data/pair.h|#include "stages/cost/counters.h"
-beam may not include picture|stages/beam/claim.cpp|#include "stages/picture/picture_formulas.h"
-file of the stage settle|stages/beam/claim.cpp|#include "stages/beam/settle_cost.h"
-file of the stage claim|stages/beam/specks.h|#include "stages/beam/claim.h"
+beam may not include picture|stages/beam/windows.cpp|#include "stages/picture/picture_formulas.h"
+file of the stage a_buffer|stages/beam/windows.cpp|#include "stages/beam/a_buffer_cost.h"
+file of the stage windows|stages/beam/specks.h|#include "stages/beam/windows.h"
 file of the stage shading_point|stages/samples/accumulate.cpp|#include "stages/samples/shading_point.h"
 file of the stage materials|stages/samples/dilate_cost.h|#include "stages/samples/materials.h"
 units may not include techniques|pipeline/units/gbuffer_unit.h|#include "pipeline/techniques/msaa.h"
@@ -74,9 +79,14 @@ memory may not include root|pipeline/memory/parameters.h|#include "pipeline/tech
 technique.h may not include root|pipeline/technique.h|#include "pipeline/spec.h"
 evaluate may not include report|tools/evaluate/render.cpp|#include "tools/report/plot.h"
 report may not include stress|tools/report/plot.cpp|#include "tools/stress/judge.h"
--|stages/beam/claim_cost.h|#include "stages/beam/claim.h"\n#include "stages/beam/specks.h"\n#include <map>
--|tools/cli/main.cpp|// /*\n#include "pipeline/technique.h"\n/* #include "settle.h"\n#include "settle.h" */"/*"
--|simd/match.cpp|#include "hwy/highway.h"\nauto text = R"x(\n#include "settle.h"\n)x";"""
+in traces/, root may not include files|traces/camera.cpp|#include "traces/files/json.h"
+pipeline/ may not include traces/files/|pipeline/spec.cpp|#include "traces/files/json.h"
+may include this library|stages/data/half_bits.h|#include <half.h>
+may include this library|traces/scenes/room.cpp|#include <nlohmann/json.hpp>
+-|traces/files/image_file.cpp|#include <png.h>\n#include "traces/material.h"
+-|stages/beam/windows_cost.h|#include "stages/beam/windows.h"\n#include "stages/beam/specks.h"\n#include <map>
+-|tools/cli/main.cpp|// /*\n#include "pipeline/technique.h"\n/* #include "a_buffer.h"\n#include "a_buffer.h" */"/*"
+-|simd/match.cpp|#include "hwy/highway.h"\nauto text = R"x(\n#include "a_buffer.h"\n)x";"""
 SOURCE = re.compile(r".*\.(h|hpp|c|cc|cpp|inc|inl)(\.in)?")
 # Strings are matched so that "/*" in one does not begin a comment. A raw string may contain whole lines of code.
 COMMENT_OR_STRING = re.compile(
@@ -100,8 +110,11 @@ def broken_rule(source, include):
     folder, other = source.parts[0], target.parts[0]
     if {"", ".", ".."} & set((match[1] or match[2]).split("/")):
         return "a path starts at the root of the repository, without . or .."
+    if match[2] and other in {*FOLDERS, "bench", "tests"}:
+        return "our own files are included in quotes"
     if match[2]:
-        return "our own files are included in quotes" if other in {*FOLDERS, "bench", "tests"} else None
+        is_light = folder == "tools" or place(source) == "files" or LIGHT_HEADER.fullmatch(match[2])
+        return None if is_light else "only tools/ and traces/files/ may include this library"
     if other == "hwy":
         return None
     if other in {"bench", "tests"} or other in FOLDERS and other != folder and other not in FOLDERS[folder]:
@@ -111,6 +124,8 @@ def broken_rule(source, include):
     here, there = place(source), place(target)
     if folder == "stages" and here in WITHOUT_TRACES and other == "traces":
         return f"stages/{here} may not include traces/"
+    if folder not in {"tools", "traces"} and target.parts[:2] == ("traces", "files"):
+        return f"{folder}/ may not include traces/files/"
     if folder == other and folder in ORDER and here != there:
         allowed = ORDER[folder].get(here, STAGE_GROUP if folder == "stages" else set())
         return None if there in allowed else f"in {folder}/, {here} may not include {there}"

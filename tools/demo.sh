@@ -11,4 +11,4 @@ cmake --preset release -DBEAMPIPE_TESTS=OFF
 cmake --build --preset release --target beampipe --parallel "$(nproc)"
 
 build/release/tools/beampipe make fence -o "$output/fence.json"
-build/release/tools/beampipe compare "$output/fence.json" -t beam beam:rules=paper alpha msaa:1,8,32,256 -o "$output"
+build/release/tools/beampipe compare "$output/fence.json" -t beam casav alpha msaa:1,8,32,256 -o "$output"

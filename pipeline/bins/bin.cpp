@@ -2,8 +2,6 @@
 
 #include <stdexcept>
 
-#include "stages/cost/counter_registry.h"
-
 namespace beampipe {
 
 void BinStage::copies(std::string_view from, std::string_view to, int times, std::uint64_t bytes) const {
@@ -13,18 +11,18 @@ void BinStage::copies(std::string_view from, std::string_view to, int times, std
 }
 
 Bin::Bin(const FrameContext& frame_context, const Tile& bin_tile, const TriangleList& triangles,
-         const std::vector<std::string>& stages, const Framebuffer& framebuffer)
+         const std::vector<Stage>& stages, const Framebuffer& framebuffer)
     : context(frame_context),
       tile(bin_tile),
       list(triangles),
-      timer_(context.run.timeline, tile),
+      timer_(context.sinks.timeline, tile),
       memory_(context.run.memory) {
   memory_.reach = &cache_reach_;
-  if (context.run.dram_trace && memory_.modelled) memory_.log = &dram_log_.emplace();
+  if (context.sinks.dram_trace && memory_.modelled) memory_.log = &dram_log_.emplace();
   memory_.framebuffer = framebuffer.is_on_chip(memory_) ? Place::on_chip : Place::in_memory;
   if (keeps_pixels_on_chip()) holds(kOpenPixels, tile.pixels() * framebuffer.on_chip_bytes_per_pixel());
   stages_.reserve(stages.size());
-  for (const std::string& name : stages) stages_.push_back(StageCounters{name});
+  for (const Stage stage : stages) stages_.push_back(StageCounters{stage});
   if (context.has_textures()) texels_.emplace(context.texture_layout ? &*context.texture_layout : nullptr);
   if (context.texture_layout) {
     const std::uint64_t bytes = context.texture_layout->bytes();
@@ -33,12 +31,10 @@ Bin::Bin(const FrameContext& frame_context, const Tile& bin_tile, const Triangle
   }
 }
 
-BinStage Bin::stage(std::string_view name, Pass pass) {
-  const std::string_view prefix = pass == Pass::prepass ? kPrepass : "";
+BinStage Bin::stage(StageId id, Pass pass) {
   for (StageCounters& counters : stages_)
-    if (counters.stage.starts_with(prefix) && std::string_view(counters.stage).substr(prefix.size()) == name)
-      return {counters, timer_, memory()};
-  throw std::logic_error("the technique has no stage " + std::string(prefix).append(name));
+    if (counters.stage == Stage(id, pass)) return {counters, timer_, memory()};
+  throw std::logic_error("the technique has no stage " + std::string(name_of({id, pass})));
 }
 
 std::vector<float>& Bin::pixel_counter(const std::string& name) {
@@ -51,7 +47,7 @@ void Bin::finish(std::vector<glm::vec4> picture) {
   picture_ = std::move(picture);
   if (models_memory() && keeps_pixels_on_chip())
     for (float& bytes : pixel_counter("bytes")) bytes += static_cast<float>(kPictureBytes);
-  stage("resolve").writes("picture", tile.pixels() * kPictureBytes);
+  stage(StageId::resolve).writes("picture", tile.pixels() * kPictureBytes);
 }
 
 const ZOrder& Bin::z_order() {
@@ -73,8 +69,7 @@ void Bin::charge_texels(const BinStage& stage) {
     texture_pass_starts_.back() = dram_log_->pass();
     is_texture_pass_placed_ = true;
   }
-  if (texture_fetches_)
-    texture_fetches_->read(*texels_, static_cast<std::size_t>(&stage.counters - stages_.data()), stage.counters);
+  if (texture_fetches_) texture_fetches_->read(*texels_, stage.counters);
   texels_->clear();
 }
 

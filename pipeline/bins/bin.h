@@ -22,9 +22,6 @@
 
 namespace beampipe {
 
-// A pass over the geometry. The stages of a depth pre-pass are counted apart (BinPlan::has_prepass).
-enum class Pass { prepass, main };
-
 // One stage of a bin: its counters, and the timer that records when it runs.
 class BinStage {
  public:
@@ -44,7 +41,7 @@ class BinStage {
   }
 
   // The same where a stage does not tell reads from writes: recorded as reads of an array with the stage's name.
-  void streams(std::uint64_t bytes) const { reads(counters.stage, bytes); }
+  void streams(std::uint64_t bytes) const { reads(name_of(counters.stage), bytes); }
 
   // Charges reading `bytes` and writing a copy, and so on in turn, `times` times, counted in sectors as one stream.
   void copies(std::string_view from, std::string_view to, int times, std::uint64_t bytes) const;
@@ -65,14 +62,14 @@ class Bin {
   const Tile& tile;
   const TriangleList& list;
 
-  // `stages`: the names of the stages, in the order of the pipeline. Everything that is passed must outlive the bin.
+  // `stages`: in the order of the pipeline. Everything that is passed must outlive the bin.
   Bin(const FrameContext& frame_context, const Tile& bin_tile, const TriangleList& triangles,
-      const std::vector<std::string>& stages, const Framebuffer& framebuffer);
+      const std::vector<Stage>& stages, const Framebuffer& framebuffer);
   Bin(const Bin&) = delete;
   Bin& operator=(const Bin&) = delete;
 
-  // The stage of that name. Throws std::logic_error when the technique has not listed it.
-  BinStage stage(std::string_view name, Pass pass = Pass::main);
+  // Throws std::logic_error when the technique has not listed the stage.
+  BinStage stage(StageId id, Pass pass = Pass::main);
 
   const SetupTriangles& triangles() const { return context.triangles; }
   TileShader shader() const { return {context.shader, tile}; }
@@ -135,7 +132,7 @@ class Bin {
   std::optional<DramLog> dram_log_;
   CacheReach cache_reach_;
   MemorySystem memory_;                // with the place where this technique's pixels are
-  std::vector<StageCounters> stages_;  // never grows: memory models tell stages apart by the address of their counters
+  std::vector<StageCounters> stages_;  // never grows, because stages hold references to their counters
   std::map<std::string, std::vector<float>> pixel_counters_;
   std::map<std::string, std::uint64_t> buffer_peaks_;
   std::uint64_t a_buffer_bytes_ = 0;

@@ -1,4 +1,4 @@
-// What each triangle is worth in the pixels of a bin, recorded while the bin is composed when RunOptions::weights asks
+// What each triangle is worth in the pixels of a bin, recorded while the bin is composed when FrameSinks::weights asks
 // for it. It observes; what is rendered and counted stays the same.
 #pragma once
 
@@ -9,7 +9,7 @@ namespace beampipe {
 
 class BinWeights {
  public:
-  explicit BinWeights(const Bin& bin) : bin_(bin), weights_(bin.context.run.weights ? bin.tile.pixels() : 0) {}
+  explicit BinWeights(const Bin& bin) : bin_(bin), weights_(bin.context.sinks.weights ? bin.tile.pixels() : 0) {}
 
   // Are they asked for?
   explicit operator bool() const { return !weights_.empty(); }
@@ -19,7 +19,7 @@ class BinWeights {
 
   // Hands them to the frame.
   void finish() const {
-    if (*this) copy_to_frame(weights_, bin_.tile, bin_.context.frame, *bin_.context.run.weights);
+    if (*this) copy_to_frame(weights_, bin_.tile, bin_.context.frame, *bin_.context.sinks.weights);
   }
 
  private:

@@ -14,7 +14,6 @@
 #include "pipeline/bins/threads.h"
 #include "pipeline/memory/dram_trace.h"
 #include "pipeline/memory/geometry_memory.h"
-#include "stages/cost/counter_registry.h"
 #include "stages/raster/bin_sort_cost.h"
 
 namespace beampipe {
@@ -25,27 +24,32 @@ TileGrid tile_grid(const FrameContext& context, int tile_size) {
 }
 
 // All stages, in the order of the pipeline. Frames with cutouts or translucent triangles have a few more.
-std::vector<std::string> stages_of(const FrameContext& context, const BinPlan& plan) {
-  std::vector<std::string> stages;
+std::vector<Stage> stages_of(const FrameContext& context, const BinPlan& plan) {
+  std::vector<Stage> stages;
   if (plan.has_prepass) {
-    const std::string prefix(kPrepass);
-    stages = {prefix + context.setup.stage, prefix + plan.stages.front()};
-    if (context.has_cutouts()) stages.push_back(prefix + "alpha_test");
-    stages.push_back(prefix + "depth_test");
+    stages = {{StageId::vertex_setup, Pass::prepass}, {StageId::sample_raster, Pass::prepass}};
+    if (context.has_cutouts()) stages.emplace_back(StageId::alpha_test, Pass::prepass);
+    stages.emplace_back(StageId::depth_test, Pass::prepass);
   }
-  stages.push_back(context.setup.stage);
-  for (const std::string& stage : plan.stages) {
-    stages.push_back(stage);
-    if (stage == "beam_fragment" && context.has_alpha()) stages.push_back("alpha_mask");
-    if (stage == "sample_raster" && context.has_cutouts()) stages.push_back("alpha_test");
-    if (stage == "depth_test" && context.has_blending()) stages.push_back("blend");
+  stages.emplace_back(StageId::vertex_setup);
+  for (const StageId stage : plan.stages) {
+    stages.emplace_back(stage);
+    if (stage == StageId::beam_fragment && context.has_alpha()) stages.emplace_back(StageId::alpha_mask);
+    if (stage == StageId::sample_raster && context.has_cutouts()) stages.emplace_back(StageId::alpha_test);
+    if (stage == StageId::depth_test && context.has_blending()) stages.emplace_back(StageId::blend);
   }
   return stages;
 }
 
+// The plan's stage that does; none if the plan only looks at its bins.
+StageId rasterizing_stage(const BinPlan& plan) {
+  const auto found = std::find_if(plan.stages.begin(), plan.stages.end(), rasterizes);
+  return found == plan.stages.end() ? StageId::none : *found;
+}
+
 // Where DRAM requests are to be recorded; null: nowhere.
 DramTrace* dram_trace_of(const FrameContext& context) {
-  return context.run.memory.modelled ? context.run.dram_trace : nullptr;
+  return context.run.memory.modelled ? context.sinks.dram_trace : nullptr;
 }
 
 // What one pass over the geometry costs, whatever the technique.
@@ -53,7 +57,7 @@ struct GeometryPass {
   StageCounters setup, raster;
 
   // `first_pass`: of the frame, for the record of DRAM requests.
-  GeometryPass(const FrameContext& context, const std::string& raster_stage, std::uint32_t first_pass)
+  GeometryPass(const FrameContext& context, StageId raster_stage, std::uint32_t first_pass)
       : setup(context.setup), raster{raster_stage}, trace_(dram_trace_of(context)), first_pass_(first_pass) {
     const std::uint64_t triangles = context.setup.items_out;
     record(DramTrace::Step::setup, 0, [&](DramLog* log) {
@@ -110,7 +114,7 @@ struct EmptyBin {
 // Renders bins without triangles, one of each size.
 class EmptyBins {
  public:
-  EmptyBins(const FrameContext& context, const BinPlan& plan, const std::vector<std::string>& stages,
+  EmptyBins(const FrameContext& context, const BinPlan& plan, const std::vector<Stage>& stages,
             const BinRenderer& render)
       : context_(context), plan_(plan), stages_(stages), render_(render) {}
 
@@ -138,7 +142,7 @@ class EmptyBins {
 
   const FrameContext& context_;
   const BinPlan& plan_;
-  const std::vector<std::string>& stages_;
+  const std::vector<Stage>& stages_;
   const BinRenderer& render_;
   const TriangleList list_;
   std::map<Size, std::unique_ptr<EmptyBin>> bins_;
@@ -147,7 +151,7 @@ class EmptyBins {
 // Adds up what bins recorded. Only sums and the picture are kept, so that memory use stays that of the picture.
 class FrameRecorder {
  public:
-  FrameRecorder(const FrameContext& context, const std::vector<std::string>& stages, std::size_t bins,
+  FrameRecorder(const FrameContext& context, const std::vector<Stage>& stages, std::size_t bins,
                 std::uint32_t first_pass)
       : context_(context),
         texture_passes_(context.texture_layout ? bins : 0),
@@ -156,7 +160,7 @@ class FrameRecorder {
         texture_pass_starts_(trace_ ? texture_passes_.size() : 0) {
     const Frame& frame = context.frame;
     result_.image = {frame.width, frame.height, {}};
-    for (const std::string& name : stages) result_.stages.push_back(StageCounters{name});
+    for (const Stage stage : stages) result_.stages.push_back(StageCounters{stage});
   }
 
   // Before bins are added: the picture starts with this colour, and bins without triangles that have it need not write
@@ -183,17 +187,10 @@ class FrameRecorder {
     add(empty.bin, tile, empty.has_counts, empty.color != color_);
   }
 
-  // `rasterizes`: the name of the stage that does.
-  FrameResult finish(const GeometryPass& pass, const std::string& rasterizes, std::uint64_t list_bytes) {
-    const auto charge = [&](const std::string& prefix, int passes) {
-      for (StageCounters& stage : result_.stages)
-        for (int i = 0; i < passes; ++i) {
-          if (stage.stage == prefix + pass.setup.stage) stage += pass.setup;
-          if (stage.stage == prefix + rasterizes) stage += pass.raster;
-        }
-    };
-    charge(std::string(kPrepass), prepasses_);
-    charge("", passes_);
+  FrameResult finish(const GeometryPass& pass, std::uint64_t list_bytes) {
+    for (StageCounters& stage : result_.stages)
+      for (const StageCounters* const of_pass : {&pass.setup, &pass.raster})
+        for (int i = 0; stage.stage.id == of_pass->stage.id && i < passes(stage.stage.pass); ++i) stage += *of_pass;
     if (trace_) repeat_geometry();
     charge_texture_dram();
     const std::uint64_t triangles = context_.triangles.triangles.size();
@@ -247,11 +244,10 @@ class FrameRecorder {
 
   void charge_texture_dram() {
     if (texture_passes_.empty()) return;
-    const std::vector<std::uint64_t> bytes = texture_dram_bytes(
-        context_.run.memory, texture_passes_, result_.stages.size(), trace_ ? record_texels() : nullptr);
-    for (std::size_t s = 0; s < bytes.size(); ++s) {
-      result_.stages[s].dram_bytes += bytes[s];
-      result_.stages[s].texture_dram_bytes += bytes[s];
+    const auto bytes = texture_dram_bytes(context_.run.memory, texture_passes_, trace_ ? record_texels() : nullptr);
+    for (StageCounters& stage : result_.stages) {
+      stage.dram_bytes += bytes[stage.stage.number()];
+      stage.texture_dram_bytes += bytes[stage.stage.number()];
     }
   }
 
@@ -265,10 +261,12 @@ class FrameRecorder {
         for (std::uint32_t sector = 0; sector < per_line; ++sector)
           if (read.sectors >> sector & 1)
             log.add(texels, DramAccess::read, std::uint64_t{read.line} * per_line + sector, 1,
-                    result_.stages[read.stage]);
+                    Stage::of_number(read.stage));
       trace_->add(log, 0, first_pass_ + texture_pass_starts_[bin][pass], DramTrace::Step::texels, bin);
     };
   }
+
+  int passes(Pass pass) const { return pass == Pass::main ? passes_ : prepasses_; }
 
   std::size_t pixels() const { return std::size_t{context_.frame.width} * context_.frame.height; }
 
@@ -296,18 +294,19 @@ class FrameRecorder {
 }  // namespace
 
 FrameResult render_bins(const FrameContext& context, const BinPlan& plan, const BinRenderer& render) {
-  const RunOptions& run = context.run;
+  const FrameInput& run = context.run;
   const int bin_size = plan.framebuffer.bin_size_on(run.memory);
   const TileGrid grid = plan.keeps_tile_size ? TileGrid{context.frame, bin_size} : tile_grid(context, bin_size);
-  if (run.weights) run.weights->assign(std::size_t{context.frame.width} * context.frame.height, {});
-  const std::vector<std::string> stages = stages_of(context, plan);
-  const std::uint32_t first_pass = run.dram_trace ? run.dram_trace->passes() : 0;
-  GeometryPass pass(context, plan.stages.front(), first_pass);
+  const FrameSinks& sinks = context.sinks;
+  if (sinks.weights) sinks.weights->assign(std::size_t{context.frame.width} * context.frame.height, {});
+  const std::vector<Stage> stages = stages_of(context, plan);
+  const std::uint32_t first_pass = sinks.dram_trace ? sinks.dram_trace->passes() : 0;
+  GeometryPass pass(context, rasterizing_stage(plan), first_pass);
   FrameRecorder recorder(context, stages, grid.tiles.size(), first_pass);
   const std::uint64_t entry_bytes = sizeof(std::uint32_t) + (plan.sorts_lists ? kKeyBytes : 0);
   std::uint64_t list_bytes = 0;
   EmptyBins empty_bins(context, plan, stages, render);
-  const bool shares_empty_bins = !plan.empty_bins_differ && !run.timeline && !run.dram_trace;
+  const bool shares_empty_bins = !plan.empty_bins_differ && !sinks.timeline && !sinks.dram_trace;
   const auto render_band = [&](const Band& band) {
     const std::vector<TriangleList> lists = bin_triangles(context.triangles, grid, band);
     for (std::size_t i = 0; i < lists.size(); ++i) {
@@ -338,13 +337,13 @@ FrameResult render_bins(const FrameContext& context, const BinPlan& plan, const 
     if (band.first > 0) malloc_trim(0);  // glibc would keep the freed memory of a band in addition to the next one's
     on_threads(run.threads, [&] { render_band(band); });
   }
-  FrameResult result = recorder.finish(pass, plan.stages.front(), list_bytes);
+  FrameResult result = recorder.finish(pass, list_bytes);
   const auto side = static_cast<std::uint32_t>(grid.size);
   result.bin_pixels = std::min(side, context.frame.width) * std::min(side, context.frame.height);
   return result;
 }
 
-void run_on_tiles(const FrameContext& context, const std::string& stage, FrameResult& result,
+void run_on_tiles(const FrameContext& context, StageId stage, FrameResult& result,
                   const std::function<void(const Tile&, const BinStage&)>& work) {
   const std::vector<Tile> tiles = tile_grid(context, static_cast<int>(context.run.memory.bin_pixels)).tiles;
   std::vector<StageCounters> of_tiles(tiles.size(), StageCounters{stage});
@@ -352,7 +351,7 @@ void run_on_tiles(const FrameContext& context, const std::string& stage, FrameRe
   const std::uint32_t pass = trace ? trace->passes() : 0;
   on_threads(context.run.threads, [&] {
     tbb::parallel_for(std::size_t{0}, tiles.size(), [&](std::size_t i) {
-      const StageTimer timer(context.run.timeline, tiles[i]);
+      const StageTimer timer(context.sinks.timeline, tiles[i]);
       DramLog log;
       const MemorySystem memory(context.run.memory, trace ? &log : nullptr);
       work(tiles[i], BinStage(of_tiles[i], timer, memory));

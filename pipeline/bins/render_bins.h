@@ -19,8 +19,8 @@ namespace beampipe {
 
 // How a technique renders its bins.
 struct BinPlan {
-  std::vector<std::string> stages;  // of a bin, in the order of the pipeline; the first one rasterizes
-  Framebuffer framebuffer;          // with the size of the bins, which RunOptions::tile_size overrides
+  std::vector<StageId> stages;  // of a bin, in the order of the pipeline; those for alpha are added where they belong
+  Framebuffer framebuffer;      // with the size of the bins, which FrameInput::tile_size overrides
   // The first pass over the geometry writes depth alone. Its stages (vertex_setup, sample_raster, alpha_test for
   // cutouts, depth_test) are counted apart from those of the other pass, as "prepass_vertex_setup" and so on.
   bool has_prepass = false;
@@ -28,7 +28,7 @@ struct BinPlan {
   // Bins sort their lists by keys, which binning writes beside the entries. They charge themselves for the setup that
   // the raster stage reads, because it reads it in sorted order.
   bool sorts_lists = false;
-  // Bytes that this program keeps for each pair until the bin is finished (RunOptions::memory_limit). 0: the technique
+  // Bytes that this program keeps for each pair until the bin is finished (FrameInput::memory_limit). 0: the technique
   // works on a few triangles at a time.
   std::size_t pair_bytes = 0;
   std::size_t translucent_pair_bytes = 0;  // the same for pairs of translucent triangles, in addition
@@ -51,7 +51,7 @@ FrameResult render_bins(const FrameContext& context, const BinPlan& plan, const 
 
 // Runs a stage that reads whole frames and makes the pixels of one tile at a time, after all bins are finished. Adds
 // its counters to the end of result.stages.
-void run_on_tiles(const FrameContext& context, const std::string& stage, FrameResult& result,
+void run_on_tiles(const FrameContext& context, StageId stage, FrameResult& result,
                   const std::function<void(const Tile&, const BinStage&)>& work);
 
 // Copies a tile's values, one per pixel, to their places in the frame's. Several tiles may do so at the same time.

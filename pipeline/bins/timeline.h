@@ -5,7 +5,6 @@
 #include <cstdint>
 #include <mutex>
 #include <optional>
-#include <string>
 #include <thread>
 #include <utility>
 #include <vector>
@@ -20,7 +19,7 @@ class Timeline {
   using Clock = std::chrono::steady_clock;
 
   struct Event {
-    std::string stage;
+    Stage stage;
     std::thread::id thread;
     std::optional<std::pair<std::int32_t, std::int32_t>>
         tile;  // its first pixel; none when the stage works on the whole frame
@@ -42,7 +41,7 @@ class Timeline {
 };
 
 // Takes the place of a stage's counters in the call of the stage, and records how long that call took:
-//   const StageTimer timed(run.timeline, tile);
+//   const StageTimer timed(sinks.timeline, tile);
 //   conservative_raster(triangles, list, tile, timed(raster), pairs);
 class StageTimer {
  public:

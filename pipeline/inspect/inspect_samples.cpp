@@ -16,12 +16,18 @@ namespace beampipe {
 namespace {
 
 // All stages that units of samples may ask for.
-std::vector<std::string> sample_stages() {
-  std::vector<std::string> stages = {"sample_raster", "alpha_test", "shade",      "depth_test",
-                                     "blend",         "resolve",    "accumulate", "stencil_test"};
-  for (const char* stage : {"sample_raster", "alpha_test", "depth_test"})
-    stages.push_back(std::string(kPrepass) + stage);
-  return stages;
+std::vector<Stage> sample_stages() {
+  return {StageId::sample_raster,
+          StageId::alpha_test,
+          StageId::shade,
+          StageId::depth_test,
+          StageId::blend,
+          StageId::resolve,
+          StageId::accumulate,
+          StageId::stencil_test,
+          {StageId::sample_raster, Pass::prepass},
+          {StageId::alpha_test, Pass::prepass},
+          {StageId::depth_test, Pass::prepass}};
 }
 
 // The part of a sample that blended triangles have.
@@ -79,7 +85,7 @@ class SampleHistory {
     HistoryFragment& noted = history_.fragments[fragment];
     std::vector<SampleFragment> covered;
     StageCounters unused;
-    sample_raster(pixel_.context.triangles, {fragments_[fragment]}, pixel_.quad, sampling, unused, covered);
+    sample_raster({pixel_.context.triangles, pixel_.quad, sampling}, {fragments_[fragment]}, unused, covered);
     const bool covers = std::any_of(covered.begin(), covered.end(), [&](const SampleFragment& each) {
       return sampling.grid.pixel_x(each.x) == pixel_.tile.x0 && sampling.grid.pixel_y(each.y) == pixel_.tile.y0;
     });
@@ -183,7 +189,7 @@ class SampleHistory {
   }
 
   const InspectedPixel& pixel_;
-  const std::vector<std::string> stages_ = sample_stages();
+  const std::vector<Stage> stages_ = sample_stages();
   const Framebuffer framebuffer_;
   PixelHistory history_;
   std::vector<std::uint32_t> fragments_;    // their triangles
@@ -249,7 +255,8 @@ PixelHistory inspect_msaa(const InspectedPixel& pixel, const MsaaInspection& how
     const glm::dvec3 mean = history.sum();
     for (HistoryTerm& term : history.terms) term.weight /= 1.0 - luminance(&mean.x);
   }
-  history.pixel = depth_test.resolve_samples(how.at, samples.bin().stage("resolve"), how.space)[samples.own_pixel()];
+  history.pixel =
+      depth_test.resolve_samples(how.at, samples.bin().stage(StageId::resolve), how.space)[samples.own_pixel()];
   return history;
 }
 

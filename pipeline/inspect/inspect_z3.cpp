@@ -20,9 +20,8 @@ template <std::size_t Words, std::size_t Layers>
 class LayerHistory {
  public:
   // `colors`: of the fragments in the history, as layers store them.
-  LayerHistory(const PositionSet& positions, LayerMerge merge, const std::vector<glm::vec3>& colors,
-               PixelHistory& history)
-      : positions_(positions), merge_(merge), colors_(colors), history_(history), pixels_(1) {}
+  LayerHistory(const PositionSet& positions, const std::vector<glm::vec3>& colors, PixelHistory& history)
+      : positions_(positions), colors_(colors), history_(history), pixels_(1) {}
 
   void add(const Fragment& fragment, std::uint32_t place) {
     WideMask claimed = fragment.mask;
@@ -58,7 +57,7 @@ class LayerHistory {
   bool compose(const Fragment& fragment, std::vector<Z3Pixel<Words, Layers>>& pixels) const {
     StageCounters unused;
     std::vector<float> merges(1);
-    compose_z3({fragment}, positions_, merge_, unused, pixels, merges);
+    compose_z3({fragment}, positions_, unused, pixels, merges);
     return merges[0] > 0;
   }
 
@@ -127,7 +126,6 @@ class LayerHistory {
   }
 
   const PositionSet& positions_;
-  LayerMerge merge_;
   const std::vector<glm::vec3>& colors_;
   PixelHistory& history_;
   std::vector<Z3Pixel<Words, Layers>> pixels_;
@@ -137,7 +135,7 @@ class LayerHistory {
 }  // namespace
 
 template <std::size_t Words, std::size_t Layers>
-PixelHistory inspect_z3(const InspectedPixel& pixel, LayerMerge merge) {
+PixelHistory inspect_z3(const InspectedPixel& pixel) {
   constexpr int kPositions = 32 * Words;
   const PositionSet& positions = cell_positions(kPositions);
   const PositionGrid grid(kPositions);
@@ -156,7 +154,7 @@ PixelHistory inspect_z3(const InspectedPixel& pixel, LayerMerge merge) {
   std::vector<glm::vec3> colors(history.fragments.size());
   for (std::size_t i = 0; i < fragments.size(); ++i)
     for (int c = 0; c < 3; ++c) colors[places[i]][c] = HalfBits(fragments[i].color[c] / fragments[i].alpha);
-  LayerHistory<Words, Layers> layers(positions, merge, colors, history);
+  LayerHistory<Words, Layers> layers(positions, colors, history);
   for (std::size_t i = 0; i < fragments.size(); ++i) layers.add(fragments[i], places[i]);
   layers.add_terms();
   const PixelColor color = z3_colors(layers.pixels()).front();
@@ -166,8 +164,7 @@ PixelHistory inspect_z3(const InspectedPixel& pixel, LayerMerge merge) {
   return history;
 }
 
-#define BEAMPIPE_INSPECT(words, layers) \
-  template PixelHistory inspect_z3<words, layers>(const InspectedPixel&, LayerMerge);
+#define BEAMPIPE_INSPECT(words, layers) template PixelHistory inspect_z3<words, layers>(const InspectedPixel&);
 BEAMPIPE_Z3_PIXELS(BEAMPIPE_INSPECT)
 #undef BEAMPIPE_INSPECT
 

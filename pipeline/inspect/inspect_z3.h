@@ -9,6 +9,6 @@
 namespace beampipe {
 
 template <std::size_t Words, std::size_t Layers>
-PixelHistory inspect_z3(const InspectedPixel& pixel, LayerMerge merge);
+PixelHistory inspect_z3(const InspectedPixel& pixel);
 
 }  // namespace beampipe

@@ -34,7 +34,7 @@ InspectedPixel::InspectedPixel(const FrameContext& frame_context, PixelAddress p
 std::vector<Pair> InspectedPixel::pairs(const TriangleList& triangles, ClosedDepth* closed, Closing closing) const {
   std::vector<Pair> pairs;
   StageCounters unused;
-  conservative_raster(context.triangles, triangles, quad, unused, pairs, closed, PairDepths::bounds, closing);
+  conservative_raster(context.triangles, triangles, quad, unused, pairs, {closed, PairDepths::bounds, closing});
   std::erase_if(pairs, [&](const Pair& pair) { return pair.x != tile.x0 || pair.y != tile.y0; });
   return pairs;
 }

@@ -44,15 +44,15 @@ struct InspectedPixel {
 HistoryFragment history_fragment(const FrameContext& context, const Pair& pair);
 
 // A frame's history at some pixels: inspect(InspectedPixel) for each. Nothing is modelled, recorded or timed.
-// `bin_size`: as above; `keeps_bin_size`: RunOptions::tile_size does not replace it.
+// `bin_size`: as above; `keeps_bin_size`: FrameInput::tile_size does not replace it.
 template <class Inspect>
-std::vector<PixelHistory> inspect_pixels(const Trace& trace, const Frame& frame, const RunOptions& run,
+std::vector<PixelHistory> inspect_pixels(const Trace& trace, const Frame& frame, const FrameInput& run,
                                          const ShadingRules& rules, std::int32_t bin_size, bool keeps_bin_size,
                                          const std::vector<PixelAddress>& pixels, Inspect&& inspect) {
-  RunOptions plain;
+  FrameInput plain;
   plain.threads = run.threads, plain.textures = run.textures, plain.colors = run.colors;
   plain.memory.modelled = false;
-  const FrameContext context(trace, frame, plain, rules);
+  const FrameContext context({trace, frame, plain, {}}, rules);
   const std::int32_t size = !keeps_bin_size && run.tile_size > 0 ? run.tile_size : bin_size;
   std::vector<PixelHistory> histories;
   for (const PixelAddress& pixel : pixels) histories.push_back(inspect(InspectedPixel(context, pixel, size)));

@@ -60,9 +60,7 @@ struct HistoryStep {
   enum class Kind {
     merged,    // two surfaces became one: before[0] and before[1] became after
     settled,   // a surface is final and was added to the pixel: before[0], with its area
-    dropped,   // a surface left the pixel, to be found again in a later pass: before[0]
     composed,  // the pixel's aggregate before and after a fragment or a window of fragments
-    pass,      // another pass over the geometry begins
   };
   Kind kind;
   std::uint32_t after_fragment = kNobody;  // it happened when this fragment came; kNobody: after the last one

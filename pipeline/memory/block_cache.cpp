@@ -157,7 +157,7 @@ void BlockCache::record(DramAccess access, std::size_t block, Sectors sectors, c
   for (std::uint32_t left = sectors; left != 0;) {
     const auto first = static_cast<std::uint32_t>(std::countr_zero(left));
     const auto run = static_cast<std::uint32_t>(std::countr_one(left >> first));
-    places_.log->add(line.array, access, line.number * sectors_per_line_ + first, run, counters);
+    places_.log->add(line.array, access, line.number * sectors_per_line_ + first, run, counters.stage);
     left &= ~(((1u << run) - 1) << first);
   }
 }

@@ -16,25 +16,19 @@ void DramLog::reserve(std::uint16_t array, std::uint64_t sectors) {
   arrays_[array].sectors = std::max(arrays_[array].sectors, sectors);
 }
 
-void DramLog::add(std::uint16_t array, DramAccess access, std::uint64_t first, std::uint32_t sectors,
-                  const StageCounters& counters) {
-  if (sectors == 0 || counters.stage.empty()) return;
-  if (stages_.empty() || stages_[last_stage_] != counters.stage) {
-    const auto found = std::find(stages_.begin(), stages_.end(), counters.stage);
-    last_stage_ = static_cast<std::uint8_t>(found - stages_.begin());
-    if (found == stages_.end()) stages_.push_back(counters.stage);
-  }
+void DramLog::add(std::uint16_t array, DramAccess access, std::uint64_t first, std::uint32_t sectors, Stage stage) {
+  if (sectors == 0 || stage.id == StageId::none) return;
   arrays_[array].sectors = std::max(arrays_[array].sectors, first + sectors);
   std::vector<DramRun>& runs = passes_.back();
   if (!runs.empty()) {
     DramRun& last = runs.back();
-    if (last.array == array && last.access == access && last.stage == last_stage_ &&
+    if (last.array == array && last.access == access && last.stage == stage.number() &&
         last.first + last.sectors == first && last.sectors <= ~std::uint32_t{0} - sectors) {
       last.sectors += sectors;
       return;
     }
   }
-  runs.push_back({first, sectors, array, last_stage_, access});
+  runs.push_back({first, sectors, array, stage.number(), access});
 }
 
 }  // namespace beampipe

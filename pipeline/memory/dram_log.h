@@ -20,7 +20,7 @@ struct DramRun {
   std::uint64_t first = 0;  // of an array of bins: from the start of the bin's part
   std::uint32_t sectors = 0;
   std::uint16_t array = 0;
-  std::uint8_t stage = 0;
+  std::uint8_t stage = 0;  // Stage::number()
   DramAccess access = DramAccess::read;
 };
 
@@ -39,10 +39,8 @@ class DramLog {
   // The array has at least so many sectors, which may never move.
   void reserve(std::uint16_t array, std::uint64_t sectors);
 
-  // `counters`: of the stage that asks. Requests of counters without a name are left out, because nobody adds those
-  // counters up.
-  void add(std::uint16_t array, DramAccess access, std::uint64_t first, std::uint32_t sectors,
-           const StageCounters& counters);
+  // `stage`: that asks. Requests of StageId::none are left out, because nobody adds its counters up.
+  void add(std::uint16_t array, DramAccess access, std::uint64_t first, std::uint32_t sectors, Stage stage);
 
   // Passes over the frame, counted from 0: what a bin does in a pass comes after everything that any bin does in an
   // earlier pass.
@@ -57,13 +55,10 @@ class DramLog {
 
   const std::vector<std::vector<DramRun>>& passes() const { return passes_; }
   const std::vector<DramArray>& arrays() const { return arrays_; }
-  const std::vector<std::string>& stages() const { return stages_; }
 
  private:
   std::vector<std::vector<DramRun>> passes_ = {{}};
   std::vector<DramArray> arrays_;
-  std::vector<std::string> stages_;
-  std::uint8_t last_stage_ = 0;  // number of the stage that asked last
 };
 
 // The memory system as a bin uses it: the parameters, and where it records its DRAM requests and the reach of caches.

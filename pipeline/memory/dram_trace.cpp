@@ -10,8 +10,6 @@
 #include <numeric>
 #include <stdexcept>
 
-#include "stages/cost/counter_registry.h"
-
 namespace beampipe {
 namespace {
 
@@ -51,25 +49,13 @@ std::uint16_t DramTrace::array_number(const DramArray& array, std::size_t bin) {
   return number;
 }
 
-std::uint8_t DramTrace::stage_number(const std::string& stage) {
-  const auto found = std::find(stages_.begin(), stages_.end(), stage);
-  const auto number = static_cast<std::uint8_t>(found - stages_.begin());
-  if (found == stages_.end()) stages_.push_back(stage);
-  return number;
-}
-
 void DramTrace::add(const DramLog& log, std::uint32_t log_pass, std::uint32_t pass, Step step, std::size_t bin) {
   std::vector<DramRun> runs = log.passes()[log_pass];
   const std::lock_guard lock(mutex_);
   std::vector<std::uint16_t> arrays;
   for (const DramArray& array : log.arrays()) arrays.push_back(array_number(array, bin));
-  std::vector<std::uint8_t> stages;
-  for (const std::string& stage : log.stages()) stages.push_back(stage_number(stage));
   if (runs.empty()) return;
-  for (DramRun& run : runs) {
-    run.array = arrays[run.array];
-    run.stage = stages[run.stage];
-  }
+  for (DramRun& run : runs) run.array = arrays[run.array];
   if (std::fwrite(runs.data(), sizeof runs[0], runs.size(), file_.get()) != runs.size()) fail("write");
   chunks_.push_back({pass, step, static_cast<std::uint32_t>(bin), runs_, runs.size()});
   runs_ += runs.size();
@@ -130,20 +116,19 @@ void DramTrace::for_each(const std::function<void(const DramRequest&)>& visit) c
   const Places places = place(nullptr);
   std::vector<Chunk> chunks = chunks_;
   std::stable_sort(chunks.begin(), chunks.end(), [](const Chunk& a, const Chunk& b) { return a.order() < b.order(); });
-  std::vector<std::string> prepass_stages;
-  for (const std::string& stage : stages_) prepass_stages.push_back(std::string(kPrepass) + stage);
   std::vector<DramRun> runs;
   for (const Chunk& chunk : chunks) {
-    const std::vector<std::string>& stages = chunk.is_prepass ? prepass_stages : stages_;
     runs.resize(chunk.runs);
     if (::fseeko(file_.get(), static_cast<off_t>(chunk.first_run * sizeof(DramRun)), SEEK_SET) != 0 ||
         std::fread(runs.data(), sizeof(DramRun), runs.size(), file_.get()) != runs.size())
       fail("read");
     for (const DramRun& run : runs) {
       const Array& array = arrays_[run.array];
+      Stage stage = Stage::of_number(run.stage);
+      if (chunk.is_prepass) stage.pass = Pass::prepass;
       const std::uint64_t first = places[run.array][array.of_bins ? chunk.bin : 0] + run.first;
       for (std::uint64_t i = 0; i < run.sectors; ++i)
-        visit({(first + i) * sector_bytes_, run.access, stages[run.stage], array.name});
+        visit({(first + i) * sector_bytes_, run.access, name_of(stage), array.name});
     }
   }
 }

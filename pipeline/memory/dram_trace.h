@@ -17,6 +17,7 @@
 #include <memory>
 #include <mutex>
 #include <string>
+#include <string_view>
 #include <utility>
 #include <vector>
 
@@ -28,7 +29,7 @@ namespace beampipe {
 struct DramRequest {
   std::uint64_t address = 0;
   DramAccess access = DramAccess::read;
-  const std::string& stage;
+  std::string_view stage;
   const std::string& array;
 };
 
@@ -95,7 +96,6 @@ class DramTrace {
   using Places = std::vector<std::vector<std::uint64_t>>;
   Places place(std::vector<Range>* ranges) const;
   std::uint16_t array_number(const DramArray& array, std::size_t bin);
-  std::uint8_t stage_number(const std::string& stage);
   [[noreturn]] void fail(const std::string& what) const;
 
   std::filesystem::path folder_;
@@ -105,7 +105,6 @@ class DramTrace {
   std::uint64_t runs_ = 0;  // in the file
   std::vector<Chunk> chunks_;
   std::vector<Array> arrays_;
-  std::vector<std::string> stages_;
 };
 
 }  // namespace beampipe

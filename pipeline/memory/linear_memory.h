@@ -29,7 +29,7 @@ inline void stream(const MemorySystem& memory, DramAccess access, const ArrayNam
   counters.dram_bytes += sectors * memory.sector_bytes;
   if (memory.log)
     memory.log->add(memory.log->array(array.name, array.of_bins), access, first, static_cast<std::uint32_t>(sectors),
-                    counters);
+                    counters.stage);
 }
 
 // The same, if L2 holds them all.

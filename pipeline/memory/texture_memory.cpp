@@ -34,7 +34,7 @@ Sectors ReadCache::read(std::uint64_t line, Sectors sectors) {
 
 void ReadCache::clear() { std::fill(lines_.begin(), lines_.end(), Line{}); }
 
-void TextureFetches::read(const TexelRequests& texels, std::size_t stage, StageCounters& counters) {
+void TextureFetches::read(const TexelRequests& texels, StageCounters& counters) {
   std::uint64_t asked = 0, missed = 0;
   std::vector<TextureRead>& reads = passes_.back();
   // The layout numbers sectors of the smallest size, in the order of their addresses.
@@ -49,7 +49,7 @@ void TextureFetches::read(const TexelRequests& texels, std::size_t stage, StageC
       const Sectors missing = l1_.read(line, of_line);
       if (missing == 0) continue;
       missed += bytes_of(missing, sector_bytes_);
-      reads.push_back({line, stage, missing});
+      reads.push_back({line, counters.stage.number(), missing});
     }
   });
   counters.sector_bytes += asked;
@@ -90,9 +90,10 @@ TexturePasses TextureFetches::take_passes() {
   return std::move(passes_);
 }
 
-std::vector<std::uint64_t> texture_dram_bytes(const MemoryParameters& memory, const std::vector<TexturePasses>& bins,
-                                              std::size_t stages, const TextureFetch& fetch) {
-  std::vector<std::uint64_t> bytes(stages);
+std::array<std::uint64_t, kStageNumbers> texture_dram_bytes(const MemoryParameters& memory,
+                                                            const std::vector<TexturePasses>& bins,
+                                                            const TextureFetch& fetch) {
+  std::array<std::uint64_t, kStageNumbers> bytes{};
   std::size_t passes = 0;
   for (const TexturePasses& bin : bins) passes = std::max(passes, bin.size());
   ReadCache l2(memory.l2);

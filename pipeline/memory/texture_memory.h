@@ -5,6 +5,7 @@
 // the bins, whatever thread made them.
 #pragma once
 
+#include <array>
 #include <cstdint>
 #include <functional>
 #include <vector>
@@ -42,7 +43,7 @@ class ReadCache {
 // Sectors of a line that a stage of a bin asks L2 for.
 struct TextureRead {
   std::uint64_t line : 48;
-  std::uint64_t stage : 8;  // its number in the bin
+  std::uint64_t stage : 8;  // Stage::number()
   std::uint64_t sectors : 8;
 };
 using TexturePasses = std::vector<std::vector<TextureRead>>;  // by pass of the bin over the frame; each line once
@@ -53,9 +54,8 @@ class TextureFetches {
   explicit TextureFetches(const MemoryParameters& memory)
       : sector_bytes_(memory.sector_bytes), sectors_per_line_(memory.sectors_per_line()), l1_(memory.l1) {}
 
-  // Puts what was asked for through L1, which it adds to counters.sector_bytes and l2_bytes. `stage`: number of the
-  // stage in the bin, at most 255.
-  void read(const TexelRequests& texels, std::size_t stage, StageCounters& counters);
+  // Puts what was asked for through L1, which it adds to counters.sector_bytes and l2_bytes.
+  void read(const TexelRequests& texels, StageCounters& counters);
 
   // The next pass over the frame comes to this bin after all others.
   void start_pass();
@@ -72,10 +72,12 @@ class TextureFetches {
   std::size_t summed_up_ = 0;  // reads of this pass that name each line once
 };
 
-// The bytes that DRAM is asked for when all passes over the frame have gone through L2: by stage. `bins`: in the order
-// in which they are drawn. If there is such a function, calls fetch(bin, pass, reads) with what L2 lacks.
+// The bytes that DRAM is asked for when all passes over the frame have gone through L2: by
+// Stage::number(). `bins`: in the order in which they are drawn. If there is such a function, calls fetch(bin, pass,
+// reads) with what L2 lacks.
 using TextureFetch = std::function<void(std::size_t bin, std::size_t pass, const std::vector<TextureRead>& reads)>;
-std::vector<std::uint64_t> texture_dram_bytes(const MemoryParameters& memory, const std::vector<TexturePasses>& bins,
-                                              std::size_t stages, const TextureFetch& fetch = nullptr);
+std::array<std::uint64_t, kStageNumbers> texture_dram_bytes(const MemoryParameters& memory,
+                                                            const std::vector<TexturePasses>& bins,
+                                                            const TextureFetch& fetch = nullptr);
 
 }  // namespace beampipe

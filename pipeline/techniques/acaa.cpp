@@ -4,6 +4,7 @@
 
 #include "pipeline/bins/render_bins.h"
 #include "pipeline/inspect/inspect_samples.h"
+#include "pipeline/sampling.h"
 #include "pipeline/technique_table.h"
 #include "pipeline/units/accumulate_unit.h"
 #include "pipeline/units/depth_test_unit.h"
@@ -25,14 +26,15 @@ Framebuffer acaa_framebuffer(const AcaaOptions& options) {
   return {.surfaces = surfaces, .bin_size = bin_size(static_cast<int>(n))};
 }
 
-std::vector<std::string> stages_of(const AcaaOptions& options) {
+std::vector<StageId> stages_of(const AcaaOptions& options) {
   if (options.double_counting == DoubleCounting::stencil)
-    return {"sample_raster", "depth_test", "stencil_test", "shade", "accumulate", "resolve"};
-  return {"sample_raster", "depth_test", "shade", "accumulate", "resolve"};
+    return {StageId::sample_raster, StageId::depth_test, StageId::stencil_test,
+            StageId::shade,         StageId::accumulate, StageId::resolve};
+  return {StageId::sample_raster, StageId::depth_test, StageId::shade, StageId::accumulate, StageId::resolve};
 }
 
-FrameResult render_acaa(const Trace& trace, const Frame& frame, const AcaaOptions& options, const RunOptions& run) {
-  const FrameContext context(trace, frame, run, {.derivatives = Derivatives::quad});
+FrameResult render_acaa(const FrameJob& job, const AcaaOptions& options) {
+  const FrameContext context(job, {.derivatives = Derivatives::quad});
   const std::vector<Sampling> rounds = acaa_rounds(options.samples);
   const BinPlan plan{.stages = stages_of(options), .framebuffer = acaa_framebuffer(options), .has_prepass = true};
   return render_bins(context, plan, [&](Bin& bin) {
@@ -70,7 +72,7 @@ FrameResult render_acaa(const Trace& trace, const Frame& frame, const AcaaOption
 }
 
 std::vector<PixelHistory> inspect_accumulation(const Trace& trace, const Frame& frame, const AcaaOptions& options,
-                                               const RunOptions& run, const std::vector<PixelAddress>& pixels) {
+                                               const FrameInput& run, const std::vector<PixelAddress>& pixels) {
   const AcaaInspection how{options.samples, acaa_rounds(options.samples), options.double_counting, options.color};
   return inspect_pixels(trace, frame, run, {.derivatives = Derivatives::quad}, bin_size(std::min(options.samples, 16)),
                         false, pixels, [&](const InspectedPixel& pixel) { return inspect_acaa(pixel, how); });
@@ -83,6 +85,8 @@ TechniqueKind acaa_kind() {
   return {.name = "acaa",
           .description = "accumulative antialiasing: N depth samples and one colour accumulator per pixel",
           .source = "Enderton et al. 2015",
+          .examples = {"acaa:8", "acaa:64,double=stencil,color=unorm8", "acaa:4,double=saturate"},
+          .stressed = {"acaa:8", "acaa:8,double=stencil", "acaa:8,color=unorm8", "acaa:8,color=fp32", "acaa:256"},
           .make = make_from(
               AcaaOptions{},
               [](AcaaOptions& o) -> SpecOptions {
@@ -97,7 +101,8 @@ TechniqueKind acaa_kind() {
               },
               [](const AcaaOptions& o) {
                 return Technique{.framebuffer = acaa_framebuffer(o),
-                                 .render = bind_options(render_acaa, o),
+                                 .sampled_at = places_of(msaa_sampling(o.samples)),
+                                 .renderer = bind_options(render_acaa, o),
                                  .inspect = bind_inspection(inspect_accumulation, o)};
               })};
 }

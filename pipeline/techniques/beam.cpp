@@ -1,8 +1,6 @@
 // The beam in near-first order: each bin's triangles are sorted near to far, roughly; then one pass over them composes
 // each pixel in a state of fixed size. Nothing waits, and nothing is kept per fragment.
 #include <algorithm>
-#include <stdexcept>
-#include <string>
 
 #include "pipeline/bins/render_bins.h"
 #include "pipeline/inspect/inspect_owners.h"
@@ -15,29 +13,24 @@ namespace beampipe {
 namespace {
 
 struct BeamOptions {
-  int positions = 256;  // of the mask: 32, 64, 128 or 256
+  int positions = 256;  // of the mask; together with `slots` one of BEAMPIPE_OPEN_PIXELS
   int slots = 5;        // owners of a pixel
   int bin = kBinSize;   // pixels on each side
   OwnerPlace shade_at = OwnerPlace::covered;
 };
 
 Framebuffer beam_framebuffer(const BeamOptions& beam) {
-  Framebuffer framebuffer{.place = Place::on_chip, .bin_size = beam.bin};
-#define BEAMPIPE_SURFACES(words, pixel_slots)                    \
-  if (beam.positions == 32 * words && beam.slots == pixel_slots) \
-    framebuffer.surfaces = open_pixel_surfaces<words, pixel_slots>();
-  BEAMPIPE_OPEN_PIXELS(BEAMPIPE_SURFACES)
-#undef BEAMPIPE_SURFACES
-  return framebuffer;
+  return {.surfaces = open_pixel_surfaces(beam.positions, beam.slots), .place = Place::on_chip, .bin_size = beam.bin};
 }
 
 template <std::size_t Words, std::size_t Slots>
-FrameResult render_shape(const Trace& trace, const Frame& frame, const BeamOptions& beam, const RunOptions& run) {
-  const FrameContext context(trace, frame, run, {.takes_positions = true});
+FrameResult render_shape(const FrameJob& job, const BeamOptions& beam) {
+  const FrameContext context(job, {.takes_positions = true});
   const PositionSet& positions = cell_positions(beam.positions);
   const PositionGrid grid(beam.positions);
   const BeamFragmentOptions options = grid_options(grid, owners_fragment_bytes(Words));
-  const BinPlan plan{.stages = {"conservative_raster", "bin_sort", "beam_fragment", "compose", "shade", "resolve"},
+  const BinPlan plan{.stages = {StageId::bin_sort, StageId::conservative_raster, StageId::beam_fragment,
+                                StageId::compose, StageId::shade, StageId::resolve},
                      .framebuffer = beam_framebuffer(beam),
                      .keeps_tile_size = true,
                      .sorts_lists = true};
@@ -57,60 +50,60 @@ FrameResult render_shape(const Trace& trace, const Frame& frame, const BeamOptio
   });
 }
 
-FrameResult render_beam(const Trace& trace, const Frame& frame, const BeamOptions& beam, const RunOptions& run) {
-#define BEAMPIPE_RENDER(words, pixel_slots)                      \
-  if (beam.positions == 32 * words && beam.slots == pixel_slots) \
-    return render_shape<words, pixel_slots>(trace, frame, beam, run);
-  BEAMPIPE_OPEN_PIXELS(BEAMPIPE_RENDER)
-#undef BEAMPIPE_RENDER
-  throw std::invalid_argument("no pixel of this shape: " + std::to_string(beam.positions) + " positions, " +
-                              std::to_string(beam.slots) + " slots");
+FrameResult render_beam(const FrameJob& job, const BeamOptions& beam) {
+  return with_shape(beam.positions, beam.slots,
+                    [&]<std::size_t Words, std::size_t Slots>() { return render_shape<Words, Slots>(job, beam); });
 }
 
 std::vector<PixelHistory> inspect_beam(const Trace& trace, const Frame& frame, const BeamOptions& beam,
-                                       const RunOptions& run, const std::vector<PixelAddress>& pixels) {
+                                       const FrameInput& run, const std::vector<PixelAddress>& pixels) {
   return inspect_pixels(trace, frame, run, {.takes_positions = true}, beam.bin, true, pixels,
                         [&](const InspectedPixel& pixel) {
-#define BEAMPIPE_INSPECT(words, pixel_slots)                     \
-  if (beam.positions == 32 * words && beam.slots == pixel_slots) \
-    return inspect_owners<words, pixel_slots>(pixel, OwnerOrder::near_first, beam.shade_at);
-                          BEAMPIPE_OPEN_PIXELS(BEAMPIPE_INSPECT)
-#undef BEAMPIPE_INSPECT
-                          throw std::invalid_argument("no pixel of this shape");
+                          return with_shape(beam.positions, beam.slots, [&]<std::size_t Words, std::size_t Slots>() {
+                            return inspect_owners<Words, Slots>(pixel, OwnerOrder::near_first, beam.shade_at);
+                          });
                         });
 }
 
 }  // namespace
 
 TechniqueKind beam_kind() {
-  return {.name = "beam",
-          .description =
-              "each bin's triangles, sorted near to far, become fragments with analytic coverage and a mask; a pixel "
-              "keeps the owners of its mask positions until nothing nearer can come, in a state of fixed size",
-          .source = "ours, after Crassin et al. 2018",
-          .make = make_from(
-              BeamOptions{},
-              [](BeamOptions& o) -> SpecOptions {
-                return {
+  return {
+      .name = "beam",
+      .variant = {"order", "near-first"},
+      .description =
+          "each bin's triangles, sorted near to far, become fragments with analytic coverage and a mask; a pixel "
+          "keeps the owners of its mask positions until nothing nearer can come, in a state of fixed size",
+      .source = "ours, after Crassin et al. 2018",
+      .examples = {"beam", "beam:bits=64,slots=4,at=visible", "beam:bits=32,slots=2,bin=8,at=quarters"},
+      .stressed = {"beam", "beam:bits=64,slots=4", "beam:bits=32,slots=2"},
+      .make = make_from(
+          BeamOptions{},
+          [](BeamOptions& o) -> SpecOptions {
+            return {
+                beside(
+                    "slots=2, 4, 8, 16 or 32, unless it is 256", [&o] { return o.positions == 256 || o.slots != 5; },
                     choice("bits", o.positions, {{"32", 32}, {"64", 64}, {"128", 128}, {"256", 256}},
-                           "positions of the mask"),
-                    choice("slots", o.slots, {{"2", 2}, {"4", 4}, {"5", 5}, {"7", 7}, {"8", 8}, {"16", 16}, {"32", 32}},
-                           "owners that a pixel keeps at once; if there are more, two become one"),
-                    choice("at", o.shade_at,
-                           {{"covered", OwnerPlace::covered},
-                            {"visible", OwnerPlace::visible},
-                            {"quarters", OwnerPlace::quarters},
-                            {"sixteenths", OwnerPlace::sixteenths}},
-                           "where an owner is shaded that is not flat: at the centroid of what its triangle covers, of "
-                           "its positions, or of its positions in each quarter or sixteenth of the pixel"),
-                    choice("bin", o.bin, {{"8", 8}, {"16", 16}, {"32", 32}}, "pixels on each side of a bin")};
-              },
-              [](const BeamOptions& o) {
-                return Technique{.framebuffer = beam_framebuffer(o),
-                                 .render = bind_options(render_beam, o),
-                                 .inspect = bind_inspection(inspect_beam, o),
-                                 .has_weights = true};
-              })};
+                           "positions of the mask; fewer than 256 need other slots than 5")),
+                choice("slots", o.slots, {{"2", 2}, {"4", 4}, {"5", 5}, {"8", 8}, {"16", 16}, {"32", 32}},
+                       "owners that a pixel keeps at once; if there are more, two become one"),
+                choice("at", o.shade_at,
+                       {{"covered", OwnerPlace::covered},
+                        {"visible", OwnerPlace::visible},
+                        {"quarters", OwnerPlace::quarters},
+                        {"sixteenths", OwnerPlace::sixteenths}},
+                       "where an owner is shaded that is not flat: at the centroid of what its triangle covers, of "
+                       "its positions, or of its positions in each quarter or sixteenth of the pixel"),
+                choice("bin", o.bin, {{"8", 8}, {"16", 16}, {"32", 32}}, "pixels on each side of a bin")};
+          },
+          [](const BeamOptions& o) {
+            return Technique{.framebuffer = beam_framebuffer(o),
+                             .positions = o.positions,
+                             .counted_positions = o.positions,
+                             .renderer = bind_options(render_beam, o),
+                             .inspect = bind_inspection(inspect_beam, o),
+                             .has_weights = true};
+          })};
 }
 
 }  // namespace beampipe

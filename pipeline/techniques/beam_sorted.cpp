@@ -1,7 +1,5 @@
 // The beam in sorted order. An A-buffer sorts the pairs of each pixel by depth. Window by window, near to far, pairs
 // become shaded fragments and are composed, until the pixel is closed.
-#include <stdexcept>
-#include <string>
 
 #include "pipeline/bins/bin_weights.h"
 #include "pipeline/bins/render_bins.h"
@@ -17,7 +15,7 @@ namespace beampipe {
 namespace {
 
 struct SortedOptions {
-  int positions = 256;  // of the mask: 32, 64, 128 or 256
+  int positions = 256;  // of the mask; together with `storage` one of BEAMPIPE_STORED_AGGREGATES
   Storage storage = Storage::packed;
 };
 
@@ -49,15 +47,15 @@ void scale_closed(const Compose& compose, BinWeights& weights) {
 }
 
 template <std::size_t Words, class Channel>
-FrameResult render_shape(const Trace& trace, const Frame& frame, const SortedOptions& sorted, const RunOptions& run) {
-  const FrameContext context(trace, frame, run, {.takes_positions = true});
+FrameResult render_shape(const FrameJob& job, const SortedOptions& sorted) {
+  const FrameContext context(job, {.takes_positions = true});
   const PositionSet& positions = cell_positions(sorted.positions);
   const PositionGrid grid(sorted.positions);
   const BeamFragmentOptions fragment_options = grid_options(grid, conserving_fragment_bytes(sorted.positions));
-  const BinPlan plan{
-      .stages = {"conservative_raster", "a_buffer", "windows", "beam_fragment", "shade", "compose", "resolve"},
-      .framebuffer = sorted_framebuffer(sorted),
-      .pair_bytes = kPairWorkingBytes + kSortBytes};
+  const BinPlan plan{.stages = {StageId::conservative_raster, StageId::a_buffer, StageId::windows,
+                                StageId::beam_fragment, StageId::shade, StageId::compose, StageId::resolve},
+                     .framebuffer = sorted_framebuffer(sorted),
+                     .pair_bytes = kPairWorkingBytes + kSortBytes};
   return render_bins(context, plan, [&](Bin& bin) {
     ConservativeRasterUnit raster(bin, "waiting_pairs", PairDepths::bounds, ConservativeRasterUnit::Hidden::left_out);
     ABufferUnit a_buffer(bin, kPairWithDepthBytes, kStoredPairBytes);
@@ -85,25 +83,18 @@ FrameResult render_shape(const Trace& trace, const Frame& frame, const SortedOpt
   });
 }
 
-FrameResult render_sorted(const Trace& trace, const Frame& frame, const SortedOptions& sorted, const RunOptions& run) {
-#define BEAMPIPE_RENDER(words, channel)                                                                           \
-  if (sorted.positions == 32 * words && (sorted.storage == Storage::packed) == std::is_same_v<channel, HalfBits>) \
-    return render_shape<words, channel>(trace, frame, sorted, run);
-  BEAMPIPE_STORED_AGGREGATES(BEAMPIPE_RENDER)
-#undef BEAMPIPE_RENDER
-  throw std::invalid_argument("no aggregate of " + std::to_string(sorted.positions) + " positions");
+FrameResult render_sorted(const FrameJob& job, const SortedOptions& sorted) {
+  return with_aggregate(sorted.positions, sorted.storage,
+                        [&]<std::size_t Words, class Channel>() { return render_shape<Words, Channel>(job, sorted); });
 }
 
 std::vector<PixelHistory> inspect_windows(const Trace& trace, const Frame& frame, const SortedOptions& sorted,
-                                          const RunOptions& run, const std::vector<PixelAddress>& pixels) {
+                                          const FrameInput& run, const std::vector<PixelAddress>& pixels) {
   return inspect_pixels(
       trace, frame, run, {.takes_positions = true}, kBinSize, false, pixels, [&](const InspectedPixel& pixel) {
-#define BEAMPIPE_INSPECT(words, channel)                                                                          \
-  if (sorted.positions == 32 * words && (sorted.storage == Storage::packed) == std::is_same_v<channel, HalfBits>) \
-    return inspect_sorted<words, channel>(pixel);
-        BEAMPIPE_STORED_AGGREGATES(BEAMPIPE_INSPECT)
-#undef BEAMPIPE_INSPECT
-        throw std::invalid_argument("no aggregate of " + std::to_string(sorted.positions) + " positions");
+        return with_aggregate(sorted.positions, sorted.storage, [&]<std::size_t Words, class Channel>() {
+          return inspect_sorted<Words, Channel>(pixel);
+        });
       });
 }
 
@@ -111,22 +102,26 @@ std::vector<PixelHistory> inspect_windows(const Trace& trace, const Frame& frame
 
 TechniqueKind beam_sorted_kind() {
   return {.name = "beam",
-          .variant = {"order", "sorted", "near-first"},
+          .variant = {"order", "sorted"},
           .description =
               "the triangles of a pixel, sorted by depth, become fragments with analytic coverage and a mask, "
               "composed near to far into one area-conserving aggregate until the pixel is closed",
           .source = "ours, after Crassin et al. 2018",
+          .examples = {"beam:order=sorted", "beam:order=sorted,storage=float32"},
+          .stressed = {"beam:order=sorted", "beam:order=sorted,storage=float32", "beam:order=sorted,bits=32"},
           .make = make_from(
               SortedOptions{},
               [](SortedOptions& o) -> SpecOptions {
-                return {choice("bits", o.positions, {{"32", 32}, {"64", 64}, {"128", 128}, {"256", 256}},
-                               "positions of the mask"),
-                        choice("storage", o.storage, {{"packed", Storage::packed}, {"float32", Storage::float32}},
-                               "format of the aggregate's colour: fp16, or float32")};
+                return {choice("bits", o.positions, {{"32", 32}, {"256", 256}}, "positions of the mask"),
+                        beside(
+                            "bits=256", [&o] { return o.positions == 256; },
+                            choice("storage", o.storage, {{"packed", Storage::packed}, {"float32", Storage::float32}},
+                                   "format of the aggregate's colour: fp16, or float32"))};
               },
               [](const SortedOptions& o) {
                 return Technique{.framebuffer = sorted_framebuffer(o),
-                                 .render = bind_options(render_sorted, o),
+                                 .positions = o.positions,
+                                 .renderer = bind_options(render_sorted, o),
                                  .inspect = bind_inspection(inspect_windows, o),
                                  .has_weights = true};
               })};

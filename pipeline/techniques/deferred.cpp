@@ -1,6 +1,7 @@
 #include "pipeline/techniques/deferred.h"
 
 #include "pipeline/bins/render_bins.h"
+#include "pipeline/sampling.h"
 #include "pipeline/technique_table.h"
 #include "pipeline/units/depth_test_unit.h"
 #include "pipeline/units/gbuffer_unit.h"
@@ -10,13 +11,13 @@
 namespace beampipe {
 namespace {
 
-FrameResult render_deferred(const Trace& trace, const Frame& frame, const RunOptions& run) {
-  const FrameContext context(trace, frame, run,
-                             {.derivatives = Derivatives::quad, .storage = MaterialStorage::gbuffer});
+FrameResult render_deferred(const FrameJob& job) {
+  const FrameContext context(job, {.derivatives = Derivatives::quad, .storage = MaterialStorage::gbuffer});
   const Sampling sampling{CellGrid{}, standard_pattern(1)};
-  const BinPlan plan{.stages = {"sample_raster", "depth_test", "shade", "light", "resolve"},
-                     .framebuffer = deferred_framebuffer(),
-                     .has_prepass = true};
+  const BinPlan plan{
+      .stages = {StageId::sample_raster, StageId::depth_test, StageId::shade, StageId::light, StageId::resolve},
+      .framebuffer = deferred_framebuffer(),
+      .has_prepass = true};
   return render_bins(context, plan, [&](Bin& bin) {
     DepthTestUnit depth_test(bin, sampling, 0);
     bin.finish(draw_deferred(bin, depth_test));
@@ -29,8 +30,13 @@ TechniqueKind deferred_kind() {
   return {.name = "deferred",
           .description = "one sample per pixel: depth, then a G-buffer from 2x2 quads, then lighting per pixel",
           .source = "Burns and Hunt 2013, Hable 2021",
+          .examples = {"deferred"},
+          .stressed = {"deferred"},
           .make = make_plain([] {
-            return Technique{.framebuffer = deferred_framebuffer(), .render = bind_options(render_deferred)};
+            return Technique{.framebuffer = deferred_framebuffer(),
+                             .sampled_at = places_of(msaa_sampling(1)),
+                             .errs_like = "msaa",
+                             .renderer = bind_options(render_deferred)};
           })};
 }
 

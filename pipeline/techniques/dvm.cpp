@@ -4,6 +4,7 @@
 #include <limits>
 
 #include "pipeline/bins/render_bins.h"
+#include "pipeline/sampling.h"
 #include "pipeline/technique_table.h"
 #include "pipeline/techniques/visibility.h"
 #include "pipeline/units/gbuffer_unit.h"
@@ -48,7 +49,8 @@ void add_sample_bytes(const std::vector<SampleQuad>& quads, const Tile& tile, st
 
 // Sorts the quads' shading samples by material, and shades and lights them one by one.
 void shade_samples(Bin& bin, const SamplePattern& pattern, const Materials& materials, std::vector<SampleQuad>& quads) {
-  const BinStage sorting = bin.stage("material_sort"), shading = bin.stage("shade"), lighting = bin.stage("light");
+  const BinStage sorting = bin.stage(StageId::material_sort), shading = bin.stage(StageId::shade),
+                 lighting = bin.stage(StageId::light);
   const std::vector<std::uint32_t> of_quads = triangles_of(quads);
   sorting.streams(of_quads.size() * kVisibilityBytes);
   const std::vector<std::uint32_t> order = sort_materials(bin, of_quads, materials);
@@ -88,8 +90,9 @@ void put_layer_over(const std::vector<glm::vec4>& layer, const Tile& tile, Curre
     }
 }
 
-FrameResult render_dvm(const Trace& trace, const Frame& frame, const DvmOptions& options, const RunOptions& run) {
-  const FrameContext context(trace, frame, run, {.storage = MaterialStorage::gbuffer});
+FrameResult render_dvm(const FrameJob& job, const DvmOptions& options) {
+  const FrameContext context(job, {.storage = MaterialStorage::gbuffer});
+  const Frame& frame = job.frame;
   TemporalFrame over_time(context);
   const std::uint32_t frames = over_time.history().frames;
   const Materials materials(material_ids(context.triangles, options.material));
@@ -99,12 +102,12 @@ FrameResult render_dvm(const Trace& trace, const Frame& frame, const DvmOptions&
   QuadFrame quads(frame.width, frame.height);
   std::vector<glm::vec4> translucent(context.has_blending() ? over_time.current.color.size() : 0);
 
-  const BinPlan plan{
-      .stages = {"sample_raster", "depth_test", "sample_select", "material_sort", "shade", "light", "motion"},
-      .framebuffer = dvm_framebuffer(),
-      .empty_bins_differ = true};
+  const BinPlan plan{.stages = {StageId::sample_raster, StageId::depth_test, StageId::sample_select,
+                                StageId::material_sort, StageId::shade, StageId::light, StageId::motion},
+                     .framebuffer = dvm_framebuffer(),
+                     .empty_bins_differ = true};
   FrameResult result = render_bins(context, plan, [&](Bin& bin) {
-    const BinStage selecting = bin.stage("sample_select"), moving = bin.stage("motion");
+    const BinStage selecting = bin.stage(StageId::sample_select), moving = bin.stage(StageId::motion);
     DepthTestUnit visibility(bin, sampling, kVisibilityBytes);
     draw_visibility(bin, sampling, visibility);
     std::vector<SampleQuad> selected =
@@ -115,26 +118,26 @@ FrameResult render_dvm(const Trace& trace, const Frame& frame, const DvmOptions&
     shade_samples(bin, sampling.pattern, materials, selected);
     quads.insert(bin.tile, selected);
     over_time.find_motion(bin, visibility);
-    const PixelContents found = contents(visibility.surface(), bin.tile, frame, context.triangles.draws,
-                                         over_time.to_last(), looks, moving.timed());
+    const PixelContents found = contents(
+        visibility.surface(), {bin.tile, frame, context.triangles.draws, over_time.to_last()}, looks, moving.timed());
     moving.streams(bin.tile.pixels() * (kLookBytes + kSpeedBytes));
     copy_to_frame(found.looks, bin.tile, frame, over_time.current.looks);
     copy_to_frame(found.speeds, bin.tile, frame, over_time.current.speeds);
     if (context.has_blending()) {
       copy_to_frame(draw_translucent(bin, visibility, ShadeAt::centroid), bin.tile, frame, translucent);
-      bin.stage("blend").streams(bin.tile.pixels() * kLayerBytes);
+      bin.stage(StageId::blend).streams(bin.tile.pixels() * kLayerBytes);
     }
     visibility.count_bytes();
     if (bin.models_memory()) add_sample_bytes(selected, bin.tile, bin.pixel_counter("bytes"));
   });
-  run_on_tiles(context, "dilate", result, [&](const Tile& tile, const BinStage& stage) {
+  run_on_tiles(context, StageId::dilate, result, [&](const Tile& tile, const BinStage& stage) {
     dilate(quads, context.triangles.draws, frame.background, tile, stage.timed(), over_time.current);
     stage.streams(tile.pixels() * (kSampleColorBytes + kShadingSampleBytes));
     if (!context.has_blending()) return;
     put_layer_over(translucent, tile, over_time.current);
     stage.streams(tile.pixels() * kLayerBytes);
   });
-  run_on_tiles(context, "temporal", result, [&](const Tile& tile, const BinStage& stage) {
+  run_on_tiles(context, StageId::temporal, result, [&](const Tile& tile, const BinStage& stage) {
     over_time.accumulate(tile, {options.blend, kStillPixels}, stage);
     stage.streams(tile.pixels() * (kSpeedBytes + kLookBytes * (frames > 0 ? 2 : 1)));
   });
@@ -152,6 +155,8 @@ TechniqueKind dvm_kind() {
               "decoupled visibility multisampling: 8 triangle ids per pixel, four shaded samples per 2x2 quad "
               "spread by their masks, accumulated over time",
           .source = "Hable 2021",
+          .examples = {"dvm", "dvm:material=draw"},
+          .stressed = {"dvm"},
           .make = make_from(
               DvmOptions{},
               [](DvmOptions& o) -> SpecOptions {
@@ -162,7 +167,8 @@ TechniqueKind dvm_kind() {
               },
               [](const DvmOptions& o) {
                 return Technique{.framebuffer = dvm_framebuffer(),
-                                 .render = bind_options(render_dvm, o),
+                                 .sampled_at = places_of(msaa_sampling(8)),
+                                 .renderer = bind_options(render_dvm, o),
                                  .keeps_history = true,
                                  .working_bytes_per_pixel = kDvmWorkingBytes};
               })};

@@ -33,18 +33,18 @@ void count_motion(const std::vector<glm::vec2>& vectors, std::vector<float>& len
   }
 }
 
-FrameResult render_msaa(const Trace& trace, const Frame& frame, const MsaaOptions& options, const RunOptions& run) {
-  const FrameContext context(trace, frame, run, {.derivatives = Derivatives::quad, .rounds_to_half = true});
+FrameResult render_msaa(const FrameJob& job, const MsaaOptions& options) {
+  const FrameContext context(job, {.derivatives = Derivatives::quad, .rounds_to_half = true});
   const Sampling sampling = msaa_sampling(options.samples);
   History first;
-  History& history = run.history ? *run.history : first;
+  History& history = job.run.history ? *job.run.history : first;
   std::optional<FrameMotion> motion;
   if (options.motion) motion.emplace(context, history);
-  BinPlan plan{.stages = {"sample_raster", "shade", "depth_test", "resolve"},
+  BinPlan plan{.stages = {StageId::sample_raster, StageId::shade, StageId::depth_test, StageId::resolve},
                .framebuffer = msaa_framebuffer(options),
                .has_prepass = options.prepass,
                .empty_bins_differ = options.motion};
-  if (options.motion) plan.stages.push_back("motion");
+  if (options.motion) plan.stages.push_back(StageId::motion);
   FrameResult result = render_bins(context, plan, [&](Bin& bin) {
     DepthTestUnit depth_test = forward_surface(bin, sampling, options);
     bin.finish(draw_forward(bin, options, depth_test));
@@ -58,7 +58,7 @@ FrameResult render_msaa(const Trace& trace, const Frame& frame, const MsaaOption
 }
 
 std::vector<PixelHistory> inspect_samples(const Trace& trace, const Frame& frame, const MsaaOptions& options,
-                                          const RunOptions& run, const std::vector<PixelAddress>& pixels) {
+                                          const FrameInput& run, const std::vector<PixelAddress>& pixels) {
   const MsaaInspection how{msaa_sampling(options.samples), options.at, options.alpha, options.prepass, options.space};
   return inspect_pixels(trace, frame, run, {.derivatives = Derivatives::quad, .rounds_to_half = true},
                         bin_size(options.samples), false, pixels,
@@ -95,8 +95,8 @@ std::vector<glm::vec4> draw_forward(Bin& bin, const MsaaOptions& options, DepthT
   });
   depth_test.end_pass();
   depth_test.count_bytes();
-  depth_test.read_colors(bin.stage("resolve"));
-  return depth_test.resolve_samples(options.at, bin.stage("resolve"), options.space);
+  depth_test.read_colors(bin.stage(StageId::resolve));
+  return depth_test.resolve_samples(options.at, bin.stage(StageId::resolve), options.space);
 }
 
 TechniqueKind msaa_kind() {
@@ -106,6 +106,9 @@ TechniqueKind msaa_kind() {
           "multisampling: depth and colour at N samples, one shader invocation per triangle and pixel; above "
           "16 samples, super-resolution of 8x",
       .source = "Direct3D, Vulkan",
+      .examples = {"msaa:1", "msaa:8", "msaa:64", "msaa:8,prepass", "msaa:4,motion,resolve=reinhard",
+                   "msaa:4,at=centroid,alpha=coverage"},
+      .stressed = {"msaa:1", "msaa:8", "msaa:16", "msaa:256"},
       .make = make_from(
           MsaaOptions{},
           [](MsaaOptions& o) -> SpecOptions {
@@ -127,7 +130,8 @@ TechniqueKind msaa_kind() {
           [](const MsaaOptions& o) {
             return Technique{.framebuffer = msaa_framebuffer(o),
                              .samples = static_cast<std::uint32_t>(o.samples),
-                             .render = bind_options(render_msaa, o),
+                             .sampled_at = places_of(msaa_sampling(o.samples)),
+                             .renderer = bind_options(render_msaa, o),
                              .inspect = bind_inspection(inspect_samples, o),
                              .keeps_history = o.motion};
           })};

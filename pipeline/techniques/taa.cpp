@@ -1,6 +1,7 @@
 #include "pipeline/techniques/taa.h"
 
 #include "pipeline/bins/render_bins.h"
+#include "pipeline/sampling.h"
 #include "pipeline/technique_table.h"
 #include "pipeline/techniques/deferred.h"
 #include "pipeline/techniques/msaa.h"
@@ -25,14 +26,16 @@ ShadingRules rules_of(TaaShading shading) {
   return {};
 }
 
-std::vector<std::string> stages_of(TaaShading shading) {
+std::vector<StageId> stages_of(TaaShading shading) {
   switch (shading) {
     case TaaShading::visibility:
-      return {"sample_raster", "depth_test", "material_sort", "shade", "light", "resolve", "motion"};
+      return {StageId::sample_raster, StageId::depth_test, StageId::material_sort, StageId::shade,
+              StageId::light,         StageId::resolve,    StageId::motion};
     case TaaShading::deferred:
-      return {"sample_raster", "depth_test", "shade", "light", "resolve", "motion"};
+      return {StageId::sample_raster, StageId::depth_test, StageId::shade,
+              StageId::light,         StageId::resolve,    StageId::motion};
     case TaaShading::forward:
-      return {"sample_raster", "shade", "depth_test", "resolve", "motion"};
+      return {StageId::sample_raster, StageId::shade, StageId::depth_test, StageId::resolve, StageId::motion};
   }
   return {};
 }
@@ -75,8 +78,8 @@ std::vector<glm::vec4> draw_bin(Bin& bin, TaaShading shading, const Sampling& sa
   return picture;
 }
 
-FrameResult render_taa(const Trace& trace, const Frame& frame, const TaaOptions& options, const RunOptions& run) {
-  const FrameContext context(trace, frame, run, rules_of(options.shading));
+FrameResult render_taa(const FrameJob& job, const TaaOptions& options) {
+  const FrameContext context(job, rules_of(options.shading));
   TemporalFrame over_time(context);
   const Sampling sampling{CellGrid{}, jittered(options, over_time.history().frames)};
   const Materials materials(material_ids(context.triangles, MaterialBy::color));
@@ -86,9 +89,9 @@ FrameResult render_taa(const Trace& trace, const Frame& frame, const TaaOptions&
                      .empty_bins_differ = true};
   FrameResult result = render_bins(context, plan, [&](Bin& bin) {
     bin.finish(draw_bin(bin, options.shading, sampling, materials, over_time));
-    copy_to_frame(bin.picture(), bin.tile, frame, over_time.current.color);
+    copy_to_frame(bin.picture(), bin.tile, job.frame, over_time.current.color);
   });
-  run_on_tiles(context, "temporal", result, [&](const Tile& tile, const BinStage& stage) {
+  run_on_tiles(context, StageId::temporal, result, [&](const Tile& tile, const BinStage& stage) {
     neighborhood_box(tile, stage.timed(), over_time.current);
     stage.streams(tile.pixels() * kPictureBytes);
     over_time.accumulate(tile, {options.blend}, stage);
@@ -103,6 +106,8 @@ TechniqueKind taa_kind() {
   return {.name = "taa",
           .description = "temporal antialiasing of one sample per pixel, jittered over N positions",
           .source = "Lottes 2011, Karis 2014, Salvi 2016",
+          .examples = {"taa:8", "taa:8,shading=forward", "taa:8,shading=deferred"},
+          .stressed = {"taa:8"},
           .make = make_from(
               TaaOptions{},
               [](TaaOptions& o) -> SpecOptions {
@@ -116,7 +121,9 @@ TechniqueKind taa_kind() {
               },
               [](const TaaOptions& o) {
                 return Technique{.framebuffer = taa_framebuffer(o.shading),
-                                 .render = bind_options(render_taa, o),
+                                 .sampled_at = {places_of(msaa_sampling(o.samples)).front()},
+                                 .errs_like = "msaa",
+                                 .renderer = bind_options(render_taa, o),
                                  .keeps_history = true,
                                  .working_bytes_per_pixel = kTemporalWorkingBytes};
               })};

@@ -1,6 +1,7 @@
 #include "pipeline/techniques/visibility.h"
 
 #include "pipeline/bins/render_bins.h"
+#include "pipeline/sampling.h"
 #include "pipeline/technique_table.h"
 #include "pipeline/units/gbuffer_unit.h"
 #include "pipeline/units/raster_units.h"
@@ -9,12 +10,12 @@
 namespace beampipe {
 namespace {
 
-FrameResult render_visibility(const Trace& trace, const Frame& frame, const VisibilityOptions& options,
-                              const RunOptions& run) {
-  const FrameContext context(trace, frame, run, {.storage = MaterialStorage::gbuffer});
+FrameResult render_visibility(const FrameJob& job, const VisibilityOptions& options) {
+  const FrameContext context(job, {.storage = MaterialStorage::gbuffer});
   const Sampling sampling{CellGrid{}, standard_pattern(options.samples)};
   const Materials materials(material_ids(context.triangles, MaterialBy::color));
-  const BinPlan plan{.stages = {"sample_raster", "depth_test", "material_sort", "shade", "light", "resolve"},
+  const BinPlan plan{.stages = {StageId::sample_raster, StageId::depth_test, StageId::material_sort, StageId::shade,
+                                StageId::light, StageId::resolve},
                      .framebuffer = visibility_framebuffer(options.samples)};
   return render_bins(context, plan, [&](Bin& bin) {
     DepthTestUnit visibility(bin, sampling, kVisibilityBytes);
@@ -29,6 +30,8 @@ TechniqueKind visibility_kind() {
   return {.name = "visibility",
           .description = "triangle ids and depth at N samples per pixel, then shading of every sample",
           .source = "Burns and Hunt 2013, Hable 2021",
+          .examples = {"visibility", "visibility:8"},
+          .stressed = {"visibility"},
           .make = make_from(
               VisibilityOptions{},
               [](VisibilityOptions& o) -> SpecOptions {
@@ -36,7 +39,9 @@ TechniqueKind visibility_kind() {
               },
               [](const VisibilityOptions& o) {
                 return Technique{.framebuffer = visibility_framebuffer(o.samples),
-                                 .render = bind_options(render_visibility, o)};
+                                 .sampled_at = places_of(msaa_sampling(o.samples)),
+                                 .errs_like = "msaa",
+                                 .renderer = bind_options(render_visibility, o)};
               })};
 }
 

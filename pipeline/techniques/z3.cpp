@@ -1,14 +1,13 @@
 // Z3 (Jouppi and Chang 1999), an earlier way to do without an A-buffer. Fragments go in primitive order into a few
 // layers per pixel; when there are too many, two layers are merged (stages/beam/compose_z3.h).
-#include <stdexcept>
-#include <string>
 
 #include "pipeline/bins/render_bins.h"
 #include "pipeline/inspect/inspect_z3.h"
+#include "pipeline/sampling.h"
 #include "pipeline/technique_table.h"
 #include "pipeline/units/fragment_units.h"
-#include "pipeline/units/layer_units.h"
 #include "pipeline/units/raster_units.h"
+#include "pipeline/units/z3_unit.h"
 #include "stages/beam/compose_z3.h"
 
 namespace beampipe {
@@ -17,7 +16,7 @@ namespace {
 struct Z3Options {
   int positions = 32;  // together with `layers` one of BEAMPIPE_Z3_PIXELS
   int layers = 3;
-  LayerMerge merge = LayerMerge::depth;
+  bool operator==(const Z3Options&) const = default;
 };
 
 Framebuffer z3_framebuffer(const Z3Options& z3) {
@@ -29,19 +28,20 @@ Framebuffer z3_framebuffer(const Z3Options& z3) {
 }
 
 template <std::size_t Words, std::size_t Layers>
-FrameResult render_shape(const Trace& trace, const Frame& frame, const Z3Options& z3, const RunOptions& run) {
-  const FrameContext context(trace, frame, run, {.takes_positions = true});
+FrameResult render_shape(const FrameJob& job, const Z3Options& z3) {
+  const FrameContext context(job, {.takes_positions = true});
   const PositionSet& positions = cell_positions(z3.positions);
   const PositionGrid grid(z3.positions);
   const BeamFragmentOptions options = grid_options(grid, 4 + 4 * Words + 12);
-  const BinPlan plan{.stages = {"conservative_raster", "beam_fragment", "shade", "compose", "resolve"},
+  const BinPlan plan{.stages = {StageId::conservative_raster, StageId::beam_fragment, StageId::shade, StageId::compose,
+                                StageId::resolve},
                      .framebuffer = z3_framebuffer(z3)};
   return render_bins(context, plan, [&](Bin& bin) {
     ConservativeRasterUnit raster(bin, "pair_queue", PairDepths::bounds, ConservativeRasterUnit::Hidden::kept,
                                   kQueueItems);
     BeamFragmentUnit make_fragments(bin, options);
     ShadeUnit shade(bin);
-    ComposeZ3Unit<Words, Layers> compose(bin, positions, z3.merge, plan.framebuffer.surfaces);
+    ComposeZ3Unit<Words, Layers> compose(bin, positions, plan.framebuffer.surfaces);
     std::vector<float>& counts = bin.pixel_counter("fragments");
 
     for_each_batch(bin.list, [&](const TriangleList& batch) {
@@ -54,56 +54,41 @@ FrameResult render_shape(const Trace& trace, const Frame& frame, const Z3Options
   });
 }
 
-FrameResult render_z3(const Trace& trace, const Frame& frame, const Z3Options& z3, const RunOptions& run) {
-#define BEAMPIPE_RENDER(words, shape_layers)                   \
-  if (z3.positions == 32 * words && z3.layers == shape_layers) \
-    return render_shape<words, shape_layers>(trace, frame, z3, run);
-  BEAMPIPE_Z3_PIXELS(BEAMPIPE_RENDER)
-#undef BEAMPIPE_RENDER
-  throw std::invalid_argument("no pixel of this shape: " + std::to_string(z3.positions) + " positions, " +
-                              std::to_string(z3.layers) + " layers");
+FrameResult render_z3(const FrameJob& job, const Z3Options& z3) {
+  return with_z3_shape(z3.positions, z3.layers,
+                       [&]<std::size_t Words, std::size_t Layers>() { return render_shape<Words, Layers>(job, z3); });
 }
 
 std::vector<PixelHistory> inspect_layers(const Trace& trace, const Frame& frame, const Z3Options& z3,
-                                         const RunOptions& run, const std::vector<PixelAddress>& pixels) {
-  return inspect_pixels(trace, frame, run, {.takes_positions = true}, kBinSize, false, pixels,
-                        [&](const InspectedPixel& pixel) {
-#define BEAMPIPE_INSPECT(words, shape_layers) \
-  if (z3.positions == 32 * words && z3.layers == shape_layers) return inspect_z3<words, shape_layers>(pixel, z3.merge);
-                          BEAMPIPE_Z3_PIXELS(BEAMPIPE_INSPECT)
-#undef BEAMPIPE_INSPECT
-                          throw std::invalid_argument("no pixel of this shape");
-                        });
+                                         const FrameInput& run, const std::vector<PixelAddress>& pixels) {
+  return inspect_pixels(
+      trace, frame, run, {.takes_positions = true}, kBinSize, false, pixels, [&](const InspectedPixel& pixel) {
+        return with_z3_shape(z3.positions, z3.layers,
+                             [&]<std::size_t Words, std::size_t Layers>() { return inspect_z3<Words, Layers>(pixel); });
+      });
 }
 
 }  // namespace
 
 TechniqueKind z3_kind() {
-  struct Shape {
-    int positions, layers;
-    bool operator==(const Shape&) const = default;
-  };
-  struct Z3Spec {
-    Shape shape{Z3Options{}.positions, Z3Options{}.layers};
-    LayerMerge merge = Z3Options{}.merge;
-  };
   return {.name = "z3",
           .description =
               "fragments in primitive order, kept in a few layers per pixel; when there is no room, two layers merge",
           .source = "Jouppi and Chang 1999",
+          .examples = {"z3", "z3:shape=128x3"},
+          .stressed = {"z3", "z3:shape=128x3"},
           .make = make_from(
-              Z3Spec{},
-              [](Z3Spec& o) -> SpecOptions {
-                return {choice("shape", o.shape, {{"32x2", {32, 2}}, {"32x3", {32, 3}}, {"128x3", {128, 3}}},
-                               "positions of the mask x layers"),
-                        choice("merge", o.merge, {{"depth", LayerMerge::depth}, {"color", LayerMerge::color}},
-                               "the two layers that merge are the closest in depth (as published), or in colour")};
+              Z3Options{},
+              [](Z3Options& o) -> SpecOptions {
+                return {choice("shape", o, {{"32x2", {32, 2}}, {"32x3", {32, 3}}, {"128x3", {128, 3}}},
+                               "positions of the mask x layers")};
               },
-              [](const Z3Spec& o) {
-                const Z3Options options{o.shape.positions, o.shape.layers, o.merge};
-                return Technique{.framebuffer = z3_framebuffer(options),
-                                 .render = bind_options(render_z3, options),
-                                 .inspect = bind_inspection(inspect_layers, options)};
+              [](const Z3Options& o) {
+                return Technique{.framebuffer = z3_framebuffer(o),
+                                 .sampled_at = places_of(cell_patterns(o.positions)),
+                                 .positions = o.positions,
+                                 .renderer = bind_options(render_z3, o),
+                                 .inspect = bind_inspection(inspect_layers, o)};
               })};
 }
 

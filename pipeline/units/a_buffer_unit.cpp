@@ -5,7 +5,7 @@
 namespace beampipe {
 
 ABufferUnit::ABufferUnit(Bin& bin, std::uint32_t item_bytes, std::uint32_t record_bytes)
-    : bin_(bin), stage_(bin.stage("a_buffer")), item_bytes_(item_bytes), record_bytes_(record_bytes) {}
+    : bin_(bin), stage_(bin.stage(StageId::a_buffer)), item_bytes_(item_bytes), record_bytes_(record_bytes) {}
 
 const ABuffer& ABufferUnit::operator()(std::vector<SortRecord> records) {
   records_ = std::move(records);

@@ -5,7 +5,7 @@
 namespace beampipe {
 
 AccumulateUnit::AccumulateUnit(Bin& bin, int samples, AccumulatorFormat format, DoubleCounting double_counting)
-    : stage(bin.stage("accumulate")),
+    : stage(bin.stage(StageId::accumulate)),
       bin_(bin),
       accumulator_(bin.tile, samples, format, double_counting),
       color_(bin.memory(), "accumulator", bin.z_order(), 1, accumulator_bytes(format)) {
@@ -25,7 +25,7 @@ void AccumulateUnit::start_round(const Sampling& sampling, const SampleTile& dep
 void AccumulateUnit::test_stencil(std::vector<SampleFragment>& fragments) {
   if (!stencil_) return;
   access_stencil(fragments, false);
-  stencil_test(bin_.tile, bin_.stage("stencil_test").timed(), accumulator_, fragments);
+  stencil_test(bin_.tile, bin_.stage(StageId::stencil_test).timed(), accumulator_, fragments);
   access_stencil(fragments, true);
 }
 
@@ -40,13 +40,13 @@ void AccumulateUnit::operator()(const std::vector<SampleFragment>& fragments, co
 void AccumulateUnit::finish_round() {
   if (stencil_) {
     if (bin_.models_memory()) stencil_->add_bytes(bin_.pixel_counter("bytes"));
-    stencil_->flush(bin_.stage("stencil_test").counters);
+    stencil_->flush(bin_.stage(StageId::stencil_test).counters);
   }
   color_.flush(stage.counters);
 }
 
 std::vector<glm::vec4> AccumulateUnit::resolve_accumulator() {
-  const BinStage resolving = bin_.stage("resolve");
+  const BinStage resolving = bin_.stage(StageId::resolve);
   if (bin_.models_memory()) color_.add_bytes(bin_.pixel_counter("bytes"));
   color_.read_all(resolving.counters);
   return resolve(accumulator_, bin_.background(), resolving.timed());
@@ -67,7 +67,7 @@ void AccumulateUnit::blend_background(const SampleTile& depth) {
 }
 
 void AccumulateUnit::access_stencil(const std::vector<SampleFragment>& fragments, bool write) {
-  StageCounters& counters = bin_.stage("stencil_test").counters;
+  StageCounters& counters = bin_.stage(StageId::stencil_test).counters;
   for (const SampleFragment& fragment : fragments)
     stencil_->access(fragment.triangle, static_cast<std::uint32_t>(bin_.tile.index(fragment.x, fragment.y)),
                      write ? 0 : fragment.mask, write ? fragment.mask : 0, counters);

@@ -15,7 +15,7 @@ class WindowsUnit {
  public:
   // `sorted`: the pairs that `lists` sorts by nearest depth. Both must outlive the unit.
   WindowsUnit(Bin& bin, const std::vector<Pair>& sorted, const ABuffer& lists)
-      : stage(bin.stage("windows")), bin_(bin), windows_(sorted, lists, kStoredPairBytes) {}
+      : stage(bin.stage(StageId::windows)), bin_(bin), windows_(sorted, lists, kStoredPairBytes) {}
 
   // The next window of every pixel that is open; false when there is none.
   template <class IsOpen>
@@ -50,7 +50,7 @@ template <std::size_t Words, class Channel>
 class ComposeBeamUnit {
  public:
   ComposeBeamUnit(Bin& bin, const PositionSet& positions)
-      : bin_(bin), stage_(bin.stage("compose")), positions_(positions), pixels_(bin.tile.pixels()) {}
+      : bin_(bin), stage_(bin.stage(StageId::compose)), positions_(positions), pixels_(bin.tile.pixels()) {}
 
   bool is_open(std::size_t pixel) const { return !is_closed(pixels_[pixel]); }
 
@@ -58,7 +58,7 @@ class ComposeBeamUnit {
   void operator()(const std::vector<Fragment>& fragments, const std::vector<Pair>& whole) {
     compose_window(fragments, positions_, stage_.timed(), pixels_, areas_);
     compose_whole(whole, bin_.tile, bin_.shader(), stage_.timed(), pixels_, bin_.texels());
-    bin_.charge_texels(bin_.stage("shade"));
+    bin_.charge_texels(bin_.stage(StageId::shade));
   }
 
   // What each of the last fragments added to its pixel's area.
@@ -67,7 +67,8 @@ class ComposeBeamUnit {
   // The picture. `framebuffer`: the surfaces that hold an aggregate.
   std::vector<glm::vec4> resolve_aggregates(const std::vector<Surface>& framebuffer) {
     charge_aggregates(bin_, framebuffer, covered_pixels(pixels_), closed_pixels(pixels_));
-    return resolve(composed_colors(pixels_), bin_.background(), sizeof pixels_[0], bin_.stage("resolve").timed());
+    return resolve(composed_colors(pixels_), bin_.background(), sizeof pixels_[0],
+                   bin_.stage(StageId::resolve).timed());
   }
 
  private:

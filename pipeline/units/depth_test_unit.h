@@ -71,7 +71,8 @@ class DepthTestUnit {
   DepthTestUnit(Bin& bin, const Sampling& sampling, std::uint32_t first_color_bytes, std::uint32_t color_bytes,
                 SampleMemory::SameValue same_color);
 
-  BinStage stage() const { return bin_.stage("depth_test", pass_); }
+  BinStage stage() const { return bin_.stage(StageId::depth_test, pass_); }
+  SampledTriangles samples() const { return {bin_.triangles(), bin_.tile, sampling_}; }
   bool hides(const SampleFragment& fragment) const;  // what lies behind it
   void test_opaque(const std::vector<SampleFragment>& fragments);
   void blend_colors(const std::vector<SampleFragment>& fragments, const BinStage& blending);

@@ -20,7 +20,7 @@ class BeamFragmentUnit {
  public:
   // `options` must outlive it.
   BeamFragmentUnit(Bin& bin, const BeamFragmentOptions& options)
-      : bin_(bin), stage_(bin.stage("beam_fragment")), options_(options) {
+      : bin_(bin), stage_(bin.stage(StageId::beam_fragment)), options_(options) {
     if (bin.context.has_alpha()) patterns_ = options.grid ? cell_patterns(options.grid->count()) : options.positions;
   }
 
@@ -51,7 +51,7 @@ class BeamFragmentUnit {
     fragments_.clear();
     beam_fragment(bin_.triangles(), pairs, bin_.tile, options_, stage_.timed(), fragments_);
     if (!bin_.context.has_alpha()) return;
-    const BinStage masking = bin_.stage("alpha_mask");
+    const BinStage masking = bin_.stage(StageId::alpha_mask);
     alpha_mask(bin_.shader(), patterns_, masking.timed(), fragments_, bin_.texels());
     bin_.charge_texels(masking);
   }
@@ -71,7 +71,10 @@ inline void count_specks(const std::vector<Fragment>& fragments, std::vector<flo
 class ShadeUnit {
  public:
   explicit ShadeUnit(Bin& bin)
-      : bin_(bin), stage_(bin.stage("shade")), shader_(bin.shader()), in_order_(bin.memory(), bin.surface_fetches()) {}
+      : bin_(bin),
+        stage_(bin.stage(StageId::shade)),
+        shader_(bin.shader()),
+        in_order_(bin.memory(), bin.surface_fetches()) {}
 
   // Forward shading: fragments in primitive order, in 2x2 quads.
   void operator()(std::vector<Fragment>& fragments) {
@@ -111,7 +114,7 @@ class SampleShadeUnit {
   // `sampling` must outlive the pass.
   SampleShadeUnit(Bin& bin, const Sampling& sampling, ShadeAt at)
       : bin_(bin),
-        stage_(bin.stage("shade")),
+        stage_(bin.stage(StageId::shade)),
         in_order_(bin.memory(), bin.surface_fetches()),
         sampling_(&sampling),
         at_(at) {}

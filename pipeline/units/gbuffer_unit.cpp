@@ -29,7 +29,7 @@ std::vector<std::uint32_t> picked(const std::vector<std::uint32_t>& triangles,
 std::vector<std::uint32_t> sort_materials(Bin& bin, const std::vector<std::uint32_t>& triangles,
                                           const Materials& materials) {
   constexpr std::uint64_t kPlaceBytes = 4;  // of a sample, in the sorted list
-  const BinStage sorting = bin.stage("material_sort"), shading = bin.stage("shade");
+  const BinStage sorting = bin.stage(StageId::material_sort), shading = bin.stage(StageId::shade);
   std::vector<std::uint32_t> order = material_sort(triangles, materials.ids, materials.digits, sorting.timed());
   const auto passes = static_cast<std::uint64_t>(materials.digits);
   sorting.streams(sort_item_bytes(order.size(), passes));
@@ -43,8 +43,8 @@ GBufferUnit::GBufferUnit(Bin& bin, const Sampling& sampling)
     : bin_(bin),
       pattern_(sampling.pattern),
       samples_(static_cast<std::uint32_t>(sampling.pattern.count)),
-      shading_(bin.stage("shade")),
-      lighting_(bin.stage("light")),
+      shading_(bin.stage(StageId::shade)),
+      lighting_(bin.stage(StageId::light)),
       attributes_(bin.memory(), bin.surface_fetches()),
       gbuffer_(bin.memory(), "gbuffer", bin.z_order(), samples_, kGBufferBytes) {}
 
@@ -74,7 +74,7 @@ void GBufferUnit::write_fragments(const std::vector<SampleFragment>& fragments, 
 
 void GBufferUnit::write_visible(DepthTestUnit& visibility, const Materials& materials) {
   const std::vector<std::uint32_t> triangles = triangles_of(visibility.surface(), bin_.tile);
-  visibility.read_colors(bin_.stage("material_sort"));
+  visibility.read_colors(bin_.stage(StageId::material_sort));
   const std::vector<std::uint32_t> shown = sort_materials(bin_, triangles, materials);
   write_gbuffer(bin_.shader(), picked(triangles, shown), shading_.timed());
   if (TexelRequests* const texels = bin_.texels())
@@ -91,7 +91,7 @@ void GBufferUnit::write_visible(DepthTestUnit& visibility, const Materials& mate
 }
 
 std::vector<glm::vec4> GBufferUnit::light_and_resolve(DepthTestUnit& surface) {
-  const BinStage resolving = bin_.stage("resolve");
+  const BinStage resolving = bin_.stage(StageId::resolve);
   const std::vector<std::uint32_t> triangles = triangles_of(surface.surface(), bin_.tile);
   const std::vector<std::uint32_t> shown = shown_samples(triangles);
   light(bin_.shader(), picked(triangles, shown), lighting_.timed());

@@ -1,6 +1,7 @@
 #include "pipeline/units/owner_units.h"
 
 #include <algorithm>
+#include <bit>
 
 #include "stages/raster/bin_sort_cost.h"
 
@@ -8,14 +9,23 @@ namespace beampipe {
 
 void OpenPixelStore::merge(const std::vector<Fragment>& fragments) {
   if (bin_.keeps_pixels_on_chip()) return;
-  StageCounters& compose = bin_.stage("compose").counters;
+  StageCounters& compose = bin_.stage(StageId::compose).counters;
   for (const Fragment& fragment : fragments) memory_.merge(fragment.triangle, fragment.pixel, compose);
 }
 
 void OpenPixelStore::finish() {
-  memory_.flush({}, bin_.stage("compose").counters);
-  memory_.read_all(bin_.stage("resolve").counters);
+  memory_.flush({}, bin_.stage(StageId::compose).counters);
+  memory_.read_all(bin_.stage(StageId::resolve).counters);
   if (bin_.models_memory()) memory_.add_bytes(bin_.pixel_counter("bytes"));
+}
+
+std::vector<Surface> open_pixel_surfaces(int positions, int slots) {
+  const auto count = static_cast<std::uint32_t>(slots), words = static_cast<std::uint32_t>(positions) / 32;
+  const std::uint32_t map_words = words * static_cast<std::uint32_t>(std::bit_width(count + 1));
+  constexpr std::uint32_t kSums = sizeof(ColorSums) + 3 * sizeof(FixedSum);
+  return {{"owner_map", times("R32UI", map_words), 4 * map_words},
+          {"owners", times("RG32UI", count), count * static_cast<std::uint32_t>(sizeof(OwnerSlot))},
+          {"sums", times("R16", kSums / 2), kSums}};
 }
 
 // Depth is compared position by position, so the order of triangles matters only where owners became one.
@@ -30,7 +40,7 @@ void record_weights(const OwnerWeights& recorded, const TriangleList& list, BinW
 }
 
 OrderedList sort_bin(Bin& bin) {
-  const BinStage stage = bin.stage("bin_sort");
+  const BinStage stage = bin.stage(StageId::bin_sort);
   OrderedList ordered = bin_sort(bin.triangles(), bin.list, bin.tile, stage.timed());
   // Binning writes the keys beside the list. The sort works in L2 if the list and its copy fit there.
   const std::uint64_t entries = bin.list.size() * (sizeof(std::uint32_t) + kKeyBytes);
@@ -42,7 +52,7 @@ OrderedList sort_bin(Bin& bin) {
     stage.reads("bin_keys", bin.list.size() * kKeyBytes);
     stage.moves_in_l2(2 * kSortPasses * entries - bin.list.size() * kKeyBytes);
   }
-  bin.triangle_fetches().read_setup(ordered.triangles, bin.stage("conservative_raster").counters);
+  bin.triangle_fetches().read_setup(ordered.triangles, bin.stage(StageId::conservative_raster).counters);
   return ordered;
 }
 

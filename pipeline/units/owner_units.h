@@ -40,15 +40,8 @@ class OpenPixelStore {
 // Hands what was recorded to the frame, if it was asked for.
 void record_weights(const OwnerWeights& recorded, const TriangleList& list, BinWeights& weights);
 
-template <std::size_t Words, std::size_t Slots>
-std::vector<Surface> open_pixel_surfaces() {
-  using Pixel = OpenPixel<Words, Slots>;
-  constexpr std::uint32_t kMap = sizeof(Pixel::states), kOwners = sizeof(Pixel::slots),
-                          kSums = Pixel::kBytes - kMap - kOwners;
-  return {{"owner_map", times("R32UI", kMap / 4), kMap},
-          {"owners", times("RG32UI", Slots), kOwners},
-          {"sums", times("R16", kSums / 2), kSums}};
-}
+// Of an OpenPixel with so many positions and slots.
+std::vector<Surface> open_pixel_surfaces(int positions, int slots);
 
 template <std::size_t Words, std::size_t Slots>
 class ComposeOwnersUnit {
@@ -59,7 +52,7 @@ class ComposeOwnersUnit {
                     const std::vector<float>* watermarks, const std::vector<Surface>& surfaces,
                     OwnerPlace shade_at = OwnerPlace::covered)
       : bin_(bin),
-        stage_(bin.stage("compose")),
+        stage_(bin.stage(StageId::compose)),
         weights_(bin),
         recorded_(weights_ ? bin.tile.pixels() : 0),
         owners_{bin.triangles(), list,         watermarks,          bin.tile,
@@ -92,7 +85,8 @@ class ComposeOwnersUnit {
     finish(result, shade);
     record_weights(recorded_, owners_.list, weights_);
     bin_.triangle_fetches().flush(stage_.counters);
-    return resolve(colors, bin_.background(), kColorBytes + sizeof(std::uint16_t), bin_.stage("resolve").timed());
+    return resolve(colors, bin_.background(), kColorBytes + sizeof(std::uint16_t),
+                   bin_.stage(StageId::resolve).timed());
   }
 
  private:

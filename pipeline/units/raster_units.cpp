@@ -11,7 +11,7 @@ namespace beampipe {
 ConservativeRasterUnit::ConservativeRasterUnit(Bin& bin, std::string buffer, PairDepths depths, Hidden hidden,
                                                std::size_t capacity)
     : bin_(bin),
-      stage_(bin.stage("conservative_raster")),
+      stage_(bin.stage(StageId::conservative_raster)),
       buffer_(std::move(buffer)),
       depths_(depths),
       capacity_(capacity) {
@@ -23,7 +23,7 @@ ConservativeRasterUnit::ConservativeRasterUnit(Bin& bin, std::string buffer, Pai
 std::vector<Pair>& ConservativeRasterUnit::operator()(const TriangleList& triangles, const Tile& box) {
   pairs_.clear();
   const std::size_t most = conservative_raster(bin_.triangles(), triangles, box, stage_.timed(), pairs_,
-                                               closed_ ? &*closed_ : nullptr, depths_);
+                                               {closed_ ? &*closed_ : nullptr, depths_});
   bin_.holds(buffer_, std::min(most, capacity_) * (depths_ == PairDepths::bounds ? kPairWithDepthBytes : kPairBytes));
   return pairs_;
 }
@@ -32,14 +32,6 @@ void ConservativeRasterUnit::drop_hidden(std::vector<Pair>& pairs) {
   stage_.counters.items_out -=
       std::erase_if(pairs, [this](const Pair& pair) { return closed_->hides(pair.x, pair.y, pair.nearest); });
   charge(*closed_, stage_.counters);
-}
-
-void ConservativeRasterUnit::start_next_pass() {
-  bin_.start_texture_pass();
-  if (!bin_.keeps_pixels_on_chip()) stage_.reads("closed_depth", closed_->bytes());
-  stage_.counters.items_in += bin_.list.size();
-  stage_.counters.bytes_read += bin_.list.size() * sizeof(SetupTriangle);
-  read_bin(bin_.memory(), bin_.list, stage_.counters);
 }
 
 const TriangleList& SampleRasterUnit::drawn_triangles() {
@@ -54,9 +46,9 @@ const TriangleList& SampleRasterUnit::drawn_triangles() {
 void SampleRasterUnit::test_alpha(const Sampling& sampling, ShadeAt at) {
   if (!bin_.context.has_cutouts() || translucent_ == Translucent::alone) return;
   const SamplePlaces places(bin_, sampling, at);
-  const BinStage testing = bin_.stage("alpha_test", pass_);
-  alpha_test(bin_.shader(), bin_.tile, sampling.grid, sampling.pattern.count, coverage_, places.of(fragments_),
-             testing.timed(), fragments_, bin_.texels());
+  const BinStage testing = bin_.stage(StageId::alpha_test, pass_);
+  alpha_test(bin_.shader(), {bin_.tile, sampling, coverage_, places.of(fragments_)}, testing.timed(), fragments_,
+             bin_.texels());
   bin_.charge_texels(testing);
 }
 

@@ -59,8 +59,8 @@ class ConservativeRasterUnit {
       const auto begin = list.begin() + static_cast<std::ptrdiff_t>(first);
       const TriangleList batch(begin, begin + static_cast<std::ptrdiff_t>(std::min(kTriangles, list.size() - first)));
       pairs_.clear();
-      conservative_raster(bin_.triangles(), batch, bin_.tile, stage_.timed(), pairs_, &*closed_, depths_,
-                          Closing::by_later_stage);
+      conservative_raster(bin_.triangles(), batch, bin_.tile, stage_.timed(), pairs_,
+                          {&*closed_, depths_, Closing::by_later_stage});
       bin_.holds("pair_queue", std::min(pairs_.size(), kQueueItems) * kQueuedPairBytes);
       for (std::size_t at = 0; at < pairs_.size(); at += kPairs) {
         const auto from = pairs_.begin() + static_cast<std::ptrdiff_t>(at);
@@ -70,10 +70,6 @@ class ConservativeRasterUnit {
       }
     }
   }
-
-  // Another pass over the bin reads the list, the setup triangles and, unless they stay on chip with the pixels, the
-  // closed depths from memory again.
-  void start_next_pass();
 
   ClosedDepth& closed() { return *closed_; }  // with Hidden::left_out
 
@@ -100,7 +96,7 @@ class SampleRasterUnit {
   SampleRasterUnit(Bin& bin, Translucent translucent, AlphaCoverage coverage, Pass pass = Pass::main)
       : bin_(bin),
         pass_(pass),
-        stage_(bin.stage("sample_raster", pass)),
+        stage_(bin.stage(StageId::sample_raster, pass)),
         translucent_(translucent),
         coverage_(coverage) {}
 
@@ -115,7 +111,7 @@ class SampleRasterUnit {
     bin_.holds("closed_depth", closed.bytes());
     for_each_batch(drawn_triangles(), [&](const TriangleList& batch) {
       fragments_.clear();
-      sample_raster(bin_.triangles(), batch, bin_.tile, sampling, stage_.timed(), fragments_, &closed);
+      sample_raster({bin_.triangles(), bin_.tile, sampling}, batch, stage_.timed(), fragments_, &closed);
       bin_.holds("fragment_queue", std::min(fragments_.size(), kQueueItems) * kSampleFragmentBytes);
       if (bin_.context.has_alpha()) test_alpha(sampling, at);
       body(fragments_);

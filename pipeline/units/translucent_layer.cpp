@@ -18,7 +18,7 @@ std::vector<glm::vec4> draw_translucent(Bin& bin, DepthTestUnit& depth_test, Sha
     depth_test.blend_into(layer, fragments);
     shade(fragments);
   });
-  const BinStage blending = bin.stage("blend");
+  const BinStage blending = bin.stage(StageId::blend);
   depth_test.end_pass();
   layer.flush(blending.counters);
   layer.read_all(blending.counters);

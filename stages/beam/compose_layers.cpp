@@ -2,8 +2,8 @@
 
 #include <algorithm>
 
+#include "stages/beam/casav_fragment.h"
 #include "stages/beam/compose_layers_cost.h"
-#include "stages/beam/paper_fragment.h"
 
 namespace beampipe {
 namespace {
@@ -23,16 +23,16 @@ Aggregate merged(const Aggregate& nearer, const MergeFragment& farther, const Me
 
 }  // namespace
 
-AggregateLayers::AggregateLayers(std::size_t pixels, std::size_t layers, PaperStorage storage)
+AggregateLayers::AggregateLayers(std::size_t pixels, std::size_t layers, CasavStorage storage)
     : layers_(layers), storage_(storage), aggregates_(pixels * layers, kEmptyAggregate) {}
 
 Aggregate AggregateLayers::stored(const Aggregate& aggregate) const {
   switch (storage_) {
-    case PaperStorage::slides:
+    case CasavStorage::slides:
       return SlidesAggregate(aggregate);
-    case PaperStorage::text:
+    case CasavStorage::text:
       return TextAggregate(aggregate);
-    case PaperStorage::float32:
+    case CasavStorage::float32:
       break;
   }
   return aggregate;

@@ -12,15 +12,15 @@
 
 #include "simd/merge.h"
 #include "stages/cost/counters.h"
+#include "stages/data/casav_aggregate.h"
 #include "stages/data/fragment.h"
-#include "stages/data/paper_aggregate.h"
 
 namespace beampipe {
 
 // The aggregates of the pixels of a tile as they are stored, `layers` for each pixel, empty ones last.
 class AggregateLayers {
  public:
-  AggregateLayers(std::size_t pixels, std::size_t layers, PaperStorage storage);
+  AggregateLayers(std::size_t pixels, std::size_t layers, CasavStorage storage);
 
   // Adds shaded fragments. Counts as items out the fragments. Adds one to merges[pixel] for each two aggregates that
   // become one.
@@ -31,13 +31,13 @@ class AggregateLayers {
   std::vector<Aggregate> finish(const MergePositions& positions, const MergeRules& rules,
                                 StageCounters& counters) const;
 
-  std::size_t bytes_per_pixel() const { return layers_ * paper_aggregate_bytes(storage_); }
+  std::size_t bytes_per_pixel() const { return layers_ * casav_aggregate_bytes(storage_); }
 
  private:
   Aggregate stored(const Aggregate& aggregate) const;
 
   std::size_t layers_;
-  PaperStorage storage_;
+  CasavStorage storage_;
   std::vector<Aggregate> aggregates_;  // rounded as they are stored
 };
 

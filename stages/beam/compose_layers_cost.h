@@ -1,9 +1,9 @@
 // What compose_layers is charged.
 #pragma once
 
-#include "stages/beam/paper_merges.h"
+#include "stages/beam/casav_merges.h"
 #include "stages/cost/counting.h"
-#include "stages/data/paper_aggregate.h"
+#include "stages/data/casav_aggregate.h"
 
 namespace beampipe {
 
@@ -25,15 +25,15 @@ inline OperationCounts layer_cost() {
   });
 }
 
-inline void charge(const LayersWork& work, std::size_t layers, const MergeRules& rules, PaperStorage storage,
+inline void charge(const LayersWork& work, std::size_t layers, const MergeRules& rules, CasavStorage storage,
                    StageCounters& counters) {
-  const std::uint64_t pixel_bytes = layers * paper_aggregate_bytes(storage);
+  const std::uint64_t pixel_bytes = layers * casav_aggregate_bytes(storage);
   counters.items_in += work.fragments;
   counters.items_out += work.fragments;
   counters.ops += merge_cost(work.merging, rules, storage);
   counters.position_tests += position_tests(work.merging);
   if (layers > 1) counters.ops += layer_cost() * (layers * work.fragments);
-  counters.bytes_read += work.fragments * (paper_aggregate_bytes(storage) + pixel_bytes) + work.finished * pixel_bytes;
+  counters.bytes_read += work.fragments * (casav_aggregate_bytes(storage) + pixel_bytes) + work.finished * pixel_bytes;
   counters.bytes_written += work.fragments * pixel_bytes;
   counters.lanes_used += work.fragments;
   counters.lanes_issued += work.fragments;

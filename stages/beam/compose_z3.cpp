@@ -29,13 +29,6 @@ Layer unpacked(const Z3Layer& layer, const WideMask& positions) {
   return {{layer.z, layer.slopes[0], layer.slopes[1]}, {layer.color[0], layer.color[1], layer.color[2]}, positions};
 }
 
-// What merging the two layers would lose.
-float merge_loss(const Layer& a, const Layer& b, LayerMerge merge) {
-  if (merge == LayerMerge::depth) return std::abs(a.plane.z - b.plane.z);
-  const glm::vec3 difference = a.color - b.color;
-  return glm::dot(difference, difference) * a.count() * b.count() / (a.count() + b.count());
-}
-
 Layer merged(const Layer& a, const Layer& b) {
   const float share = a.count() / (a.count() + b.count()), rest = 1 - share;
   return {{share * a.plane.z + rest * b.plane.z, share * a.plane.dzdu + rest * b.plane.dzdu,
@@ -47,7 +40,7 @@ Layer merged(const Layer& a, const Layer& b) {
 template <std::size_t Words, std::size_t Layers>
 class PixelLayers {
  public:
-  PixelLayers(const PositionSet& positions, LayerMerge merge) : patterns_(positions.patterns), merge_(merge) {}
+  explicit PixelLayers(const PositionSet& positions) : patterns_(positions.patterns) {}
 
   void add(const Fragment& fragment, Z3Pixel<Words, Layers>& pixel) {
     std::array<Layer, Layers + 1> layers;
@@ -86,8 +79,8 @@ class PixelLayers {
     float least = std::numeric_limits<float>::infinity();
     for (std::size_t i = 0; i < layers.size(); ++i)
       for (std::size_t j = i + 1; j < layers.size(); ++j)
-        if (const float loss = merge_loss(layers[i], layers[j], merge_); loss < least) {
-          least = loss;
+        if (const float distance = std::abs(layers[i].plane.z - layers[j].plane.z); distance < least) {
+          least = distance;
           first = i, second = j;
         }
     layers[first] = merged(layers[first], layers[second]);
@@ -95,22 +88,21 @@ class PixelLayers {
   }
 
   const std::vector<SamplePattern>& patterns_;
-  LayerMerge merge_;
 };
 
 }  // namespace
 
 template <std::size_t Words, std::size_t Layers>
-void compose_z3(const std::vector<Fragment>& fragments, const PositionSet& positions, LayerMerge merge,
-                StageCounters& counters, std::vector<Z3Pixel<Words, Layers>>& pixels, std::vector<float>& merges) {
-  PixelLayers<Words, Layers> layers(positions, merge);
+void compose_z3(const std::vector<Fragment>& fragments, const PositionSet& positions, StageCounters& counters,
+                std::vector<Z3Pixel<Words, Layers>>& pixels, std::vector<float>& merges) {
+  PixelLayers<Words, Layers> layers(positions);
   for (const Fragment& fragment : fragments) {
     const std::uint64_t before = layers.work.merges;
     layers.add(fragment, pixels[fragment.pixel]);
     merges[fragment.pixel] += static_cast<float>(layers.work.merges - before);
   }
   layers.work.fragments = fragments.size();
-  charge<Words, Layers>(layers.work, merge, counters);
+  charge<Words, Layers>(layers.work, counters);
 }
 
 template <std::size_t Words, std::size_t Layers>
@@ -130,9 +122,9 @@ std::vector<PixelColor> z3_colors(const std::vector<Z3Pixel<Words, Layers>>& pix
   return colors;
 }
 
-#define BEAMPIPE_Z3(words, layers)                                                                       \
-  template void compose_z3(const std::vector<Fragment>&, const PositionSet&, LayerMerge, StageCounters&, \
-                           std::vector<Z3Pixel<words, layers>>&, std::vector<float>&);                   \
+#define BEAMPIPE_Z3(words, layers)                                                           \
+  template void compose_z3(const std::vector<Fragment>&, const PositionSet&, StageCounters&, \
+                           std::vector<Z3Pixel<words, layers>>&, std::vector<float>&);       \
   template std::vector<PixelColor> z3_colors(const std::vector<Z3Pixel<words, layers>>&);
 BEAMPIPE_Z3_PIXELS(BEAMPIPE_Z3)
 #undef BEAMPIPE_Z3

@@ -1,8 +1,8 @@
 // compose_z3: fragments in primitive order -> a few layers per pixel, in one pass (Z3, Jouppi and Chang 1999).
 //
 // A fragment takes the positions where it is nearer than their owners; at equal depth the earlier fragment keeps them.
-// If a pixel gets one layer too many, two layers are merged: the closest in depth, as in Z3, or those whose colours
-// lose least. A layer's weight is its share of the positions. Specks are lost.
+// If a pixel gets one layer too many, the two layers whose depths at the pixel's centre are closest are merged. A
+// layer's weight is its share of the positions. Specks are lost.
 #pragma once
 
 #include <vector>
@@ -15,19 +15,12 @@
 
 namespace beampipe {
 
-// Which two layers are merged.
-enum class LayerMerge {
-  depth,  // those with the least difference of depth at the pixel's centre
-  color,  // those with the least squared distance of colours, times n m / (n + m) for n and m positions: the error of
-          // the mean
-};
-
 // `pixels`: one per pixel of the tile, kept from batch to batch; zero at first. Adds to `merges`, one per pixel of the
 // tile as well, the number of times that two layers were merged. Counts as items out the fragments that take a
 // position.
 template <std::size_t Words, std::size_t Layers>
-void compose_z3(const std::vector<Fragment>& fragments, const PositionSet& positions, LayerMerge merge,
-                StageCounters& counters, std::vector<Z3Pixel<Words, Layers>>& pixels, std::vector<float>& merges);
+void compose_z3(const std::vector<Fragment>& fragments, const PositionSet& positions, StageCounters& counters,
+                std::vector<Z3Pixel<Words, Layers>>& pixels, std::vector<float>& merges);
 
 template <std::size_t Words, std::size_t Layers>
 std::vector<PixelColor> z3_colors(const std::vector<Z3Pixel<Words, Layers>>& pixels);

@@ -33,24 +33,18 @@ OperationCounts z3_contest_cost() {
   return counts;
 }
 
-// To merge two of `layers` layers: to find the two that lose least, and to compute their mean.
-inline OperationCounts layer_merge_cost(std::size_t layers, std::size_t words, LayerMerge merge) {
+// To merge two of `layers` layers: to find the two that are closest, and to compute their mean.
+inline OperationCounts layer_merge_cost(std::size_t layers, std::size_t words) {
   return count_operations([&](OperationCounts& counts) {
     using Real = Counted<float>;
     const Real one(1.0f, counts);
     const std::size_t pairs = layers * (layers - 1) / 2;
     for (std::size_t pair = 0; pair < pairs; ++pair) {
-      if (merge == LayerMerge::depth) {
-        magnitude(one - one);
-      } else {
-        const Real difference = one - one;
-        (difference * difference + difference * difference + (one - one) * (one - one)) * one* one / (one + one);
-      }
+      magnitude(one - one);
       static_cast<void>(one < one);
     }
-    const std::size_t counted = merge == LayerMerge::depth ? 2 : layers;
-    for (std::size_t w = 0; w < counted * words; ++w) bit_count(Counted<std::uint32_t>(0, counts));
-    counts.add += counted * (words - 1);
+    for (std::size_t w = 0; w < 2 * words; ++w) bit_count(Counted<std::uint32_t>(0, counts));
+    counts.add += 2 * (words - 1);
     const Real share = one / (one + one), rest = one - share;
     for (int value = 0; value < 3 + 3; ++value) share* one + rest* one;  // plane and colour
     counts.bit += words;
@@ -58,7 +52,7 @@ inline OperationCounts layer_merge_cost(std::size_t layers, std::size_t words, L
 }
 
 template <std::size_t Words, std::size_t Layers>
-void charge(const Z3Work& work, LayerMerge merge, StageCounters& counters) {
+void charge(const Z3Work& work, StageCounters& counters) {
   constexpr std::size_t kBits = std::bit_width(Layers);
   constexpr std::uint64_t kFragmentBytes = 4 + 4 * Words + 12 + 6;  // pixel, mask, depth plane, colour
   counters.items_in += work.fragments;
@@ -67,7 +61,7 @@ void charge(const Z3Work& work, LayerMerge merge, StageCounters& counters) {
   counters.ops += layer_format_cost() * ((work.fragments + work.taken) * Layers);
   counters.ops += z3_contest_cost<Layers, kBits>() * (Words * work.fragments);
   counters.ops += nearer_cost() * (32 * Words * work.planes_compared);
-  counters.ops += layer_merge_cost(Layers + 1, Words, merge) * work.merges;
+  counters.ops += layer_merge_cost(Layers + 1, Words) * work.merges;
   for (std::uint32_t k = 0; k < Layers; ++k) counters.ops += put_cost<kBits>(k + 1) * (Words * work.taken);
   counters.position_tests += 32 * Words * work.planes_compared;
   counters.bytes_read += work.fragments * (kFragmentBytes + sizeof(Z3Pixel<Words, Layers>));

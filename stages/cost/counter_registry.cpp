@@ -1,79 +1,6 @@
 #include "stages/cost/counter_registry.h"
 
-#include <string>
-#include <string_view>
-
 namespace beampipe {
-
-const std::vector<StageInfo>& stage_list() {
-  static const std::vector<StageInfo> stages = {
-      {"vertex_setup", "triangles of the draws, counted in each pass", "setup triangles, counted in each pass", "", "",
-       " ops.fetch "},
-      {"conservative_raster", "setup triangles", "pairs that may be visible", "pixels that a triangle touches",
-       "pixels that are tested", " ops.fetch ops.special "},
-      {"sample_raster", "setup triangles, counted in each pass", "cells in which a triangle covers a sample",
-       "covered samples of partly covered cells", "all samples of partly covered cells", " ops.fetch ops.special "},
-      {"bin_sort", "triangles of the bins' lists", "the same triangles, near to far", "", "", " ops.special "},
-      {"beam_fragment", "pairs", "fragments: pairs whose covered area is not 0", "fragments", "pairs", ""},
-      {"alpha_mask", "fragments of cutouts and of translucent triangles", "those of which something is left",
-       "positions at which alpha is tested or ranked", "the same positions", ""},
-      {"shade", "fragments, or shading samples", "the same items, with a colour or a material", "the items",
-       "the pixels of the items' 2x2 quads; the items alone if shading follows a visibility test", ""},
-      {"light", "pixels with a material", "the same pixels, with a colour", "the pixels", "the pixels",
-       " ops.bit ops.fetch ops.convert "},
-      {"a_buffer", "pairs (beam) or fragments (published rules)", "the same items, sorted within each pixel", "", "",
-       " ops.mul_add ops.bit ops.fetch ops.special ops.convert "},
-      {"windows", "pairs, from near to far", "windows", "", "",
-       " ops.mul_add ops.bit ops.fetch ops.special ops.convert l2_bytes dram_bytes "},
-      {"compose", "fragments",
-       "aggregates: one per window (beam) or pixel (published rules, alpha); fragments that take a position (z3)",
-       "positions whose depths are compared (beam); merged fragments (published rules, alpha); fragments that take a "
-       "position (z3)",
-       "positions of all fragments (beam); all fragments (others)", ""},
-      {"claim", "fragments, counted in each pass", "fragments that take a position", "fragments that take a position",
-       "all fragments", " ops.special "},
-      {"settle", "fragments of owners, counted in each pass", "pixels that need another pass", "fragments of owners",
-       "fragments of owners", " ops.fetch "},
-      {"alpha_test", "fragments of cutouts, counted in each pass", "those of which a sample is left",
-       "fragments of cutouts", "four invocations for each of them", " ops.bit ops.convert "},
-      {"depth_test", "samples that are tested, counted in each pass", "samples that pass", "samples that are tested",
-       "all samples of the fragments' cells", " ops.bit ops.fetch ops.special "},
-      {"blend", "samples of translucent fragments", "samples that pass the depth test", "samples that are tested",
-       "all samples of the fragments' cells", " ops.bit ops.fetch ops.special "},
-      {"stencil_test", "samples that are tested", "samples that pass", "samples that are tested",
-       "samples that are tested", " ops.mul_add ops.bit ops.fetch ops.special ops.convert "},
-      {"accumulate", "fragments with visible samples", "the same fragments, added to their pixels", "the fragments",
-       "the fragments", " ops.fetch ops.special "},
-      {"sample_select", "visibility samples", "shading samples", "shading samples that show a triangle",
-       "four shading samples per quad", " ops.fetch ops.convert "},
-      {"material_sort", "shading samples", "those that show a triangle, material by material",
-       "samples that show a triangle", "samples", " ops.mul_add ops.special ops.convert "},
-      {"motion", "samples", "motion vectors, one per pixel", "pixels", "pixels", ""},
-      {"dilate", "pixels", "pixels with a colour", "pixels with at least one visibility sample that has a colour",
-       "pixels", " ops.fetch "},
-      {"temporal", "pixels", "pixels", "pixels with a history", "pixels", " ops.bit ops.fetch "},
-      {"resolve", "samples, aggregates or accumulators", "pixels of the picture", "what comes in", "what comes in",
-       " ops.bit ops.fetch "},
-      {"reference_raster", "setup triangles", "samples at which a triangle is nearer than all earlier ones",
-       "samples that a triangle covers", "samples that a triangle covers",
-       " ops.bit ops.fetch ops.special ops.convert ops.wide bytes_written sector_bytes l2_bytes dram_bytes "
-       "hidden_items "
-       "hidden_triangles "},
-  };
-  return stages;
-}
-
-bool has_counter(const StageInfo& stage, const CounterInfo& counter) {
-  const std::string name = counter.name;
-  if (name.starts_with("lanes_")) return *stage.lanes_used != '\0';
-  const bool rasterizes = std::string(stage.name).ends_with("_raster");
-  if ((name.starts_with("hidden_") || name == "empty_tiles") && !rasterizes) return false;
-  const std::string_view of = stage.name;
-  if (name.starts_with("texture_") && of != "shade" && of != "alpha_mask" && of != "alpha_test") return false;
-  if (name == "position_tests" && of != "beam_fragment" && of != "compose" && of != "claim") return false;
-  if (name == "ops.wide" && !rasterizes && of != "vertex_setup" && of != "beam_fragment" && of != "shade") return false;
-  return std::string(stage.silent).find(" " + name + " ") == std::string::npos;
-}
 
 const std::vector<PixelCounterInfo>& pixel_counters() {
   static const std::vector<PixelCounterInfo> counters = {
@@ -93,11 +20,9 @@ const std::vector<PixelCounterInfo>& pixel_counters() {
        "closed; others: how often two owners, aggregates or layers became one",
        "beam, alpha, z3"},
       {"tiny_triangles", "fragments", "fragments that cover no mask position (specks)",
-       "beam:order=sorted, beam:rules=paper, alpha"},
+       "beam:order=sorted, casav, alpha"},
       {"largest_window", "fragments", "fragments of the largest window", "beam:order=sorted"},
       {"visible_fragments", "fragments", "triangles that have a visible sample in the pixel", "acaa"},
-      {"passes", "passes", "passes over the triangles until the pixel was settled",
-       "beam:order=stream in several passes"},
       {"quads_of_1", "0 or 1", "the pixel's 2x2 quad shows one material, the background included", "dvm"},
       {"quads_of_2", "0 or 1", "the pixel's quad shows two materials", "dvm"},
       {"quads_of_3", "0 or 1", "the pixel's quad shows three materials", "dvm"},

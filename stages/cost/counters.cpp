@@ -6,91 +6,92 @@
 namespace beampipe {
 namespace {
 
-using Stage = StageCounters;
 using Ops = OperationCounts;
+using enum CounterGroup::Bit;
 
-constexpr CounterInfo field(const char* name, const char* title, const char* unit, const char* meaning,
-                            Count Stage::*counter) {
-  return {name, title, unit, meaning, counter, nullptr, nullptr};
+constexpr CounterInfo field(CounterGroups group, const char* name, const char* title, const char* unit,
+                            const char* meaning, std::uint64_t StageCounters::*counter) {
+  return {name, title, unit, meaning, group, counter, nullptr, nullptr};
 }
 
-constexpr CounterInfo operation(const char* name, const char* title, const char* meaning, Count Ops::*kind) {
-  return {name, title, "operations", meaning, nullptr, kind, nullptr};
+constexpr CounterInfo operation(CounterGroups group, const char* name, const char* title, const char* meaning,
+                                std::uint64_t Ops::*kind) {
+  return {name, title, "operations", meaning, group, nullptr, kind, nullptr};
 }
 
 constexpr CounterInfo sum(const char* name, const char* title, const char* unit, const char* meaning,
-                          Count (*value)(const Stage&)) {
-  return {name, title, unit, meaning, nullptr, nullptr, value};
+                          std::uint64_t (*value)(const StageCounters&)) {
+  return {name, title, unit, meaning, items, nullptr, nullptr, value};
 }
 
 constexpr CounterInfo kCounters[] = {
-    field("items_in", "items in", "items", "items that enter the stage", &Stage::items_in),
-    field("items_out", "items out", "items", "items that leave the stage", &Stage::items_out),
+    field(items, "items_in", "items in", "items", "items that enter the stage", &StageCounters::items_in),
+    field(items, "items_out", "items out", "items", "items that leave the stage", &StageCounters::items_out),
     sum("ops.total", "operations", "operations", "operations of all kinds",
-        [](const Stage& stage) { return stage.ops.total(); }),
-    operation("ops.mul_add", "mul-add", "multiplications; the addition of a multiply-add counts as an `ops.add`",
-              &Ops::mul_add),
-    operation("ops.add", "add", "additions, subtractions, comparisons, minima, maxima and selections", &Ops::add),
-    operation("ops.bit", "bit", "bitwise operations, shifts, absolute values and population counts", &Ops::bit),
-    operation("ops.fetch", "fetch", "table look-ups", &Ops::fetch),
-    operation("ops.special", "special", "divisions, remainders, square roots and arc tangents", &Ops::special),
-    operation("ops.convert", "convert",
+        [](const StageCounters& stage) { return stage.ops.total(); }),
+    operation(mul_add, "ops.mul_add", "mul-add",
+              "multiplications; the addition of a multiply-add counts as an `ops.add`", &Ops::mul_add),
+    operation(add, "ops.add", "add", "additions, subtractions, comparisons, minima, maxima and selections", &Ops::add),
+    operation(bit, "ops.bit", "bit", "bitwise operations, shifts, absolute values and population counts", &Ops::bit),
+    operation(fetch, "ops.fetch", "fetch", "table look-ups", &Ops::fetch),
+    operation(special, "ops.special", "special", "divisions, remainders, square roots and arc tangents", &Ops::special),
+    operation(convert, "ops.convert", "convert",
               "conversions between integers and floats, and between float32 and fp16 or normalized formats",
               &Ops::convert),
-    operation("ops.wide", "64-bit", "the operations of all kinds that have integers of 64 bits", &Ops::wide),
-    field("bytes_read", "read", "bytes",
+    operation(wide, "ops.wide", "64-bit", "the operations of all kinds that have integers of 64 bits", &Ops::wide),
+    field(reads, "bytes_read", "read", "bytes",
           "logical bytes that the stage reads, counted at every read; queues between stages are included",
-          &Stage::bytes_read),
-    field("bytes_written", "written", "bytes", "logical bytes that the stage writes", &Stage::bytes_written),
+          &StageCounters::bytes_read),
+    field(writes, "bytes_written", "written", "bytes", "logical bytes that the stage writes",
+          &StageCounters::bytes_written),
     sum("logical_bytes", "logical", "bytes", "bytes_read + bytes_written",
-        [](const Stage& stage) { return stage.logical_bytes(); }),
-    field("sector_bytes", "sectors", "bytes",
+        [](const StageCounters& stage) { return stage.logical_bytes(); }),
+    field(sectors, "sector_bytes", "sectors", "bytes",
           "bytes that the stage requests from the memory system to read or write, in whole sectors of 32 bytes; a "
           "queue that stays on chip requests nothing",
-          &Stage::sector_bytes),
-    field("l2_bytes", "L2", "bytes",
+          &StageCounters::sector_bytes),
+    field(outer_memory, "l2_bytes", "L2", "bytes",
           "bytes requested from L2, in whole sectors: what the ROP caches and L1 miss, write back or write through",
-          &Stage::l2_bytes),
-    field("dram_bytes", "DRAM", "bytes",
+          &StageCounters::l2_bytes),
+    field(outer_memory, "dram_bytes", "DRAM", "bytes",
           "bytes that move between the modelled caches and DRAM because of the stage, in either direction",
-          &Stage::dram_bytes),
-    field("texture_bytes", "texels", "bytes", "the part of bytes_read that is texels, counted at every read",
-          &Stage::texture_bytes),
-    field("texture_sector_bytes", "texel sectors", "bytes", "the part of sector_bytes that is texels",
-          &Stage::texture_sector_bytes),
-    field("texture_l2_bytes", "texel L2", "bytes", "the part of l2_bytes that is texels", &Stage::texture_l2_bytes),
-    field("texture_dram_bytes", "texel DRAM", "bytes", "the part of dram_bytes that is texels",
-          &Stage::texture_dram_bytes),
-    field("position_tests", "position tests", "positions",
+          &StageCounters::dram_bytes),
+    field(texels, "texture_bytes", "texels", "bytes", "the part of bytes_read that is texels, counted at every read",
+          &StageCounters::texture_bytes),
+    field(texels, "texture_sector_bytes", "texel sectors", "bytes", "the part of sector_bytes that is texels",
+          &StageCounters::texture_sector_bytes),
+    field(texels, "texture_l2_bytes", "texel L2", "bytes", "the part of l2_bytes that is texels",
+          &StageCounters::texture_l2_bytes),
+    field(texels, "texture_dram_bytes", "texel DRAM", "bytes", "the part of dram_bytes that is texels",
+          &StageCounters::texture_dram_bytes),
+    field(positions, "position_tests", "position tests", "positions",
           "positions of masks that are tested against an edge, counted for each edge, or at which depths are "
           "compared; a look-up in the table of masks counts as 32",
-          &Stage::position_tests),
-    field("lanes_used", "lanes used", "lanes", "lanes that have work", &Stage::lanes_used),
-    field("lanes_issued", "lanes issued", "lanes", "lanes that run, whether they have work or not",
-          &Stage::lanes_issued),
-    field("hidden_items", "hidden", "items",
+          &StageCounters::position_tests),
+    field(lanes, "lanes_used", "lanes used", "lanes", "lanes that have work", &StageCounters::lanes_used),
+    field(lanes, "lanes_issued", "lanes issued", "lanes", "lanes that run, whether they have work or not",
+          &StageCounters::lanes_issued),
+    field(hidden, "hidden_items", "hidden", "items",
           "pairs (cells, in techniques that test samples) that a triangle touches and that are left out because "
           "another triangle in front covers the whole pixel (cell)",
-          &Stage::hidden_items),
-    field("hidden_triangles", "hidden triangles", "triangles",
+          &StageCounters::hidden_items),
+    field(hidden, "hidden_triangles", "hidden triangles", "triangles",
           "triangles left out of a tile because other triangles in front cover each of its pixels (cells) completely; "
           "counted once per tile and pass",
-          &Stage::hidden_triangles),
-    field("empty_tiles", "empty tiles", "tiles", "tiles that no triangle touches, counted in each pass",
-          &Stage::empty_tiles),
+          &StageCounters::hidden_triangles),
+    field(empties, "empty_tiles", "empty tiles", "tiles", "tiles that no triangle touches, counted in each pass",
+          &StageCounters::empty_tiles),
 };
 
-#ifndef BEAMPIPE_COUNT_NOTHING
 constexpr auto kStored = std::count_if(std::begin(kCounters), std::end(kCounters),
                                        [](const CounterInfo& counter) { return counter.sum == nullptr; });
-static_assert(sizeof(StageCounters) == sizeof(std::string) + kStored * sizeof(Count), "the table misses a counter");
-#endif
+static_assert(sizeof(StageCounters) == alignof(std::uint64_t) + kStored * sizeof(std::uint64_t), "the table misses a counter");
 
 }  // namespace
 
 StageCounters& StageCounters::operator+=(const StageCounters& other) {
   for (const CounterInfo& counter : kCounters)
-    if (Count* const stored = counter.stored(*this)) *stored += counter.value(other);
+    if (std::uint64_t* const stored = counter.stored(*this)) *stored += counter.value(other);
   return *this;
 }
 

@@ -3,36 +3,23 @@
 
 #include <cstdint>
 #include <span>
-#include <string>
+
+#include "stages/cost/stage.h"
 
 namespace beampipe {
-
-#ifdef BEAMPIPE_COUNT_NOTHING
-// Drops whatever is added to it. A program built this way has no counters, which shows what counting costs.
-struct Count {
-  constexpr Count(std::uint64_t = 0) {}
-  constexpr operator std::uint64_t() const { return 0; }
-  constexpr Count& operator+=(std::uint64_t) { return *this; }
-  constexpr Count& operator-=(std::uint64_t) { return *this; }
-  constexpr Count& operator*=(std::uint64_t) { return *this; }
-  constexpr Count& operator++() { return *this; }
-};
-#else
-using Count = std::uint64_t;
-#endif
 
 // Scalar operations by kind, as the stage's scalar formulas perform them. The table in counters.cpp says what each
 // kind contains.
 struct OperationCounts {
-  Count mul_add = 0;
-  Count add = 0;
-  Count bit = 0;
-  Count fetch = 0;
-  Count special = 0;
-  Count convert = 0;
-  Count wide = 0;  // the part of the others that has integers of 64 bits; not in the total
+  std::uint64_t mul_add = 0;
+  std::uint64_t add = 0;
+  std::uint64_t bit = 0;
+  std::uint64_t fetch = 0;
+  std::uint64_t special = 0;
+  std::uint64_t convert = 0;
+  std::uint64_t wide = 0;  // the part of the others that has integers of 64 bits; not in the total
 
-  Count total() const { return mul_add + add + bit + fetch + special + convert; }
+  std::uint64_t total() const { return mul_add + add + bit + fetch + special + convert; }
 
   OperationCounts& operator+=(const OperationCounts& other) {
     mul_add += other.mul_add;
@@ -63,27 +50,27 @@ struct OperationCounts {
 
 // The table in counters.cpp says what each counter is.
 struct StageCounters {
-  std::string stage;  // the stage's name, for instance "conservative_raster"
-  Count items_in = 0;
-  Count items_out = 0;
+  Stage stage;  // none: nobody adds these counters up
+  std::uint64_t items_in = 0;
+  std::uint64_t items_out = 0;
   OperationCounts ops{};
-  Count bytes_read = 0;
-  Count bytes_written = 0;
-  Count position_tests = 0;
-  Count lanes_used = 0;
-  Count lanes_issued = 0;
-  Count sector_bytes = 0;
-  Count l2_bytes = 0;
-  Count dram_bytes = 0;
-  Count texture_bytes = 0;
-  Count texture_sector_bytes = 0;
-  Count texture_l2_bytes = 0;
-  Count texture_dram_bytes = 0;
-  Count hidden_items = 0;
-  Count hidden_triangles = 0;
-  Count empty_tiles = 0;
+  std::uint64_t bytes_read = 0;
+  std::uint64_t bytes_written = 0;
+  std::uint64_t position_tests = 0;
+  std::uint64_t lanes_used = 0;
+  std::uint64_t lanes_issued = 0;
+  std::uint64_t sector_bytes = 0;
+  std::uint64_t l2_bytes = 0;
+  std::uint64_t dram_bytes = 0;
+  std::uint64_t texture_bytes = 0;
+  std::uint64_t texture_sector_bytes = 0;
+  std::uint64_t texture_l2_bytes = 0;
+  std::uint64_t texture_dram_bytes = 0;
+  std::uint64_t hidden_items = 0;
+  std::uint64_t hidden_triangles = 0;
+  std::uint64_t empty_tiles = 0;
 
-  Count logical_bytes() const { return bytes_read + bytes_written; }
+  std::uint64_t logical_bytes() const { return bytes_read + bytes_written; }
 
   StageCounters& operator+=(const StageCounters& other);  // leaves `stage` as it is
   bool operator==(const StageCounters&) const = default;
@@ -96,20 +83,26 @@ struct CounterInfo {
   const char* title;  // heading of a table's column
   const char* unit;
   const char* meaning;
-  Count StageCounters::*field = nullptr;
-  Count OperationCounts::*operation = nullptr;
-  Count (*sum)(const StageCounters&) = nullptr;
+  CounterGroups group;  // a stage has the counter if it has one of these groups
+  std::uint64_t StageCounters::*field = nullptr;
+  std::uint64_t OperationCounts::*operation = nullptr;
+  std::uint64_t (*sum)(const StageCounters&) = nullptr;
 
-  Count value(const StageCounters& counters) const {
+  std::uint64_t value(const StageCounters& counters) const {
     return sum ? sum(counters) : field ? counters.*field : counters.ops.*operation;
   }
   // Where the counter is stored; null for a sum. Saving and restoring every stored counter restores the stage.
-  Count* stored(StageCounters& counters) const {
+  std::uint64_t* stored(StageCounters& counters) const {
     return sum ? nullptr : field ? &(counters.*field) : &(counters.ops.*operation);
   }
 };
 
 // All counters of a stage, in the order in which report.json lists them.
 std::span<const CounterInfo> stage_counters();
+
+// Does the counter count anything in this stage?
+inline bool has_counter(const StageInfo& stage, const CounterInfo& counter) {
+  return (stage.counts & counter.group) != 0;
+}
 
 }  // namespace beampipe

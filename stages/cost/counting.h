@@ -28,14 +28,14 @@ OperationCounts* tally_of(const Counted<Value>& x, const Counted<Value>& y) {
 }
 
 template <class Value>
-void count(OperationCounts* tally, Count OperationCounts::*kind) {
+void count(OperationCounts* tally, std::uint64_t OperationCounts::*kind) {
   if (!tally) return;
   tally->*kind += 1;
   if constexpr (std::is_integral_v<Value> && sizeof(Value) == sizeof(std::uint64_t)) tally->wide += 1;
 }
 
 template <class Value>
-Counted<Value> counted(OperationCounts* tally, Count OperationCounts::*kind, Value value) {
+Counted<Value> counted(OperationCounts* tally, std::uint64_t OperationCounts::*kind, Value value) {
   count<Value>(tally, kind);
   Counted<Value> result(value);
   result.tally = tally;

@@ -4,6 +4,8 @@
 
 #include <cstddef>
 #include <cstdint>
+#include <stdexcept>
+#include <string>
 
 #include "simd/wide_mask.h"
 #include "stages/data/half_bits.h"
@@ -41,7 +43,18 @@ constexpr std::uint32_t conserving_fragment_bytes(int positions) {
 }
 
 // The instances that exist: X(words, channel).
-#define BEAMPIPE_STORED_AGGREGATES(X) \
-  X(1, HalfBits) X(2, HalfBits) X(4, HalfBits) X(8, HalfBits) X(1, float) X(2, float) X(4, float) X(8, float)
+#define BEAMPIPE_STORED_AGGREGATES(X) X(1, HalfBits) X(8, HalfBits) X(8, float)
+
+// Calls shape.operator()<Words, Channel>() with the types of the instance. Throws std::invalid_argument if there is no
+// such instance.
+template <class Shape>
+auto with_aggregate(int positions, Storage storage, Shape&& shape) {
+#define BEAMPIPE_SHAPE(words, channel)                                                                   \
+  if (positions == 32 * words && storage == (sizeof(channel) == 2 ? Storage::packed : Storage::float32)) \
+    return shape.template operator()<words, channel>();
+  BEAMPIPE_STORED_AGGREGATES(BEAMPIPE_SHAPE)
+#undef BEAMPIPE_SHAPE
+  throw std::invalid_argument("no aggregate has " + std::to_string(positions) + " positions in this storage");
+}
 
 }  // namespace beampipe

@@ -12,6 +12,8 @@
 #include <cstring>
 #include <glm/glm.hpp>
 #include <memory>
+#include <stdexcept>
+#include <string>
 #include <vector>
 
 #include "simd/depth_plane.h"
@@ -226,10 +228,23 @@ constexpr std::uint32_t owners_fragment_bytes(std::size_t words) {
   return 2 + 3 + 2 + 2 + static_cast<std::uint32_t>(words) * 4 + 16;
 }
 
-// The instances that exist: X(words, slots).
-#define BEAMPIPE_SLOT_COUNTS(X, words) \
-  X(words, 2) X(words, 4) X(words, 5) X(words, 7) X(words, 8) X(words, 16) X(words, 32)
+// The instances that exist: X(words, slots). 4 words with 7 slots are for streaming order, the others for near-first
+// order: its default, and those of docs/accuracy.md.
+#define BEAMPIPE_SLOT_COUNTS(X, words) X(words, 2) X(words, 4) X(words, 8) X(words, 16) X(words, 32)
 #define BEAMPIPE_OPEN_PIXELS(X) \
-  BEAMPIPE_SLOT_COUNTS(X, 1) BEAMPIPE_SLOT_COUNTS(X, 2) BEAMPIPE_SLOT_COUNTS(X, 4) BEAMPIPE_SLOT_COUNTS(X, 8)
+  BEAMPIPE_SLOT_COUNTS(X, 1)    \
+  BEAMPIPE_SLOT_COUNTS(X, 2) BEAMPIPE_SLOT_COUNTS(X, 4) BEAMPIPE_SLOT_COUNTS(X, 8) X(8, 5) X(4, 7)
+
+// Calls shape.operator()<Words, Slots>() with the numbers of the instance. Throws std::invalid_argument if there is no
+// such instance.
+template <class Shape>
+auto with_shape(int positions, int slots, Shape&& shape) {
+#define BEAMPIPE_SHAPE(words, pixel_slots) \
+  if (positions == 32 * words && slots == pixel_slots) return shape.template operator()<words, pixel_slots>();
+  BEAMPIPE_OPEN_PIXELS(BEAMPIPE_SHAPE)
+#undef BEAMPIPE_SHAPE
+  throw std::invalid_argument("no pixel has " + std::to_string(positions) + " positions and " + std::to_string(slots) +
+                              " slots");
+}
 
 }  // namespace beampipe

@@ -37,14 +37,6 @@ struct PositionStates {
     return state;
   }
 
-  // Are all positions in this state?
-  bool all_in(std::uint32_t state) const {
-    std::uint32_t all = ~0u;
-    for (std::size_t w = 0; w < Words; ++w)
-      for (std::size_t b = 0; b < Bits; ++b) all &= state >> b & 1 ? planes[b][w] : ~planes[b][w];
-    return all == ~0u;
-  }
-
   // The loops over words have no branches, so that compilers use vectors.
   WideMask positions_in(std::uint32_t state) const {
     WideMask mask;

@@ -3,6 +3,8 @@
 
 #include <bit>
 #include <cstddef>
+#include <stdexcept>
+#include <string>
 
 #include "stages/data/half_bits.h"
 #include "stages/data/position_states.h"
@@ -31,5 +33,17 @@ static_assert(sizeof(Z3Pixel<4, 3>) == 74);
 
 // The instances that exist: X(words, layers).
 #define BEAMPIPE_Z3_PIXELS(X) X(1, 2) X(1, 3) X(4, 3)
+
+// Calls shape.operator()<Words, Layers>() with the numbers of the instance. Throws std::invalid_argument if there is no
+// such instance.
+template <class Shape>
+auto with_z3_shape(int positions, int layers, Shape&& shape) {
+#define BEAMPIPE_SHAPE(words, shape_layers) \
+  if (positions == 32 * words && layers == shape_layers) return shape.template operator()<words, shape_layers>();
+  BEAMPIPE_Z3_PIXELS(BEAMPIPE_SHAPE)
+#undef BEAMPIPE_SHAPE
+  throw std::invalid_argument("no pixel has " + std::to_string(positions) + " positions and " + std::to_string(layers) +
+                              " layers");
+}
 
 }  // namespace beampipe

@@ -585,7 +585,7 @@ SetupTriangles vertex_setup(const Trace& trace, const Frame& frame, StageCounter
   SetupTriangles out;
   const View view(frame);
   SetupWork work;
-  counters.stage = "vertex_setup";
+  counters.stage = StageId::vertex_setup;
   out.placements = plan_draws(trace, frame).placements;
   constexpr DrawPlacement kDefault{};
   const auto placement_of = [&](std::size_t i) -> const DrawPlacement& {

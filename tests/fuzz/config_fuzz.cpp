@@ -4,11 +4,10 @@
 #include <functional>
 
 #include "pipeline/technique.h"
-#include "stages/cost/counter_registry.h"
 #include "tests/fuzz/fuzz_input.h"
 #include "tools/evaluate/memory_system.h"
 #include "tools/sweep/sweep_plan.h"
-#include "traces/trace_io.h"
+#include "traces/files/trace_io.h"
 
 namespace beampipe {
 namespace {
@@ -41,9 +40,9 @@ void check(const MemoryParameters& memory) {
 void check(const Hardware& hardware) {
   std::vector<StageCounters> stages;
   for (const StageInfo& info : stage_list()) {
-    StageCounters& stage = stages.emplace_back(StageCounters{info.name});
+    StageCounters& stage = stages.emplace_back(StageCounters{info.id});
     for (const CounterInfo& counter : stage_counters())
-      if (Count* stored = counter.stored(stage)) *stored = std::uint64_t{1} << 40;
+      if (std::uint64_t* stored = counter.stored(stage)) *stored = std::uint64_t{1} << 40;
   }
   require(!hardware.implementations.empty());
   for (const Implementation& implementation : hardware.implementations)

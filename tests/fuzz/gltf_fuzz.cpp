@@ -2,8 +2,8 @@
 // of finite numbers whose parts fit together.
 #include "tests/fuzz/fuzz_input.h"
 #include "tests/fuzz/trace_parts.h"
-#include "traces/model_import.h"
-#include "traces/trace_io.h"
+#include "traces/files/model_import.h"
+#include "traces/files/trace_io.h"
 
 extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
   using namespace beampipe;

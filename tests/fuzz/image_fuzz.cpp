@@ -1,6 +1,6 @@
 // Decodes any bytes as an image. They give an error of one line, or an image that can be encoded and decoded again.
 #include "tests/fuzz/fuzz_input.h"
-#include "traces/image_file.h"
+#include "traces/files/image_file.h"
 
 extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
   using namespace beampipe;

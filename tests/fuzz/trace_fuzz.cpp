@@ -1,7 +1,7 @@
 // Reads any bytes as a trace and, after a NUL, the buffer that it may view. They give an error of one line, or a trace
 // that can be written and read again.
 #include "tests/fuzz/fuzz_input.h"
-#include "traces/trace_io.h"
+#include "traces/files/trace_io.h"
 
 namespace {
 

@@ -2,8 +2,7 @@
 #include <gtest/gtest.h>
 
 #include "pipeline/bins/timeline.h"
-#include "pipeline/technique.h"
-#include "tests/pipeline/many_specs.h"
+#include "pipeline/technique_table.h"
 #include "tests/pipeline/surface_traces.h"
 #include "tests/simd/every_target.h"
 #include "tests/thorough.h"
@@ -25,7 +24,7 @@ void expect_same(const FrameResult& a, const FrameResult& b, const std::string& 
 // thorough), with one thread and the best instruction set.
 void expect_same_everywhere(const Trace& trace) {
   int threads = 0;
-  for (const char* spec : kManySpecs) {
+  for (const std::string& spec : example_specs()) {
     const Technique technique = parse_technique(spec);
     const FrameResult expected = technique.render(trace, 0, {1});
     on_every_target([&] {
@@ -51,27 +50,25 @@ TEST(Determinism, AnyInstructionSetAndNumberOfThreadsWithDrawState) {
 TEST(Determinism, BinsWithoutTrianglesAreAlike) {
   for (const Trace& trace :
        {random_trace(290, 170, 2, 1), random_surfaces(290, 170, 2, 5), random_trace(70, 40, 0, 1)}) {
-    for (const char* spec : kManySpecs) {
+    for (const std::string& spec : example_specs()) {
       const Technique technique = parse_technique(spec);
       Timeline timeline;
-      RunOptions every_bin;
-      every_bin.timeline = &timeline;
-      expect_same(technique.render(trace, 0, every_bin), technique.render(trace, 0, {}), spec);
+      const FrameSinks every_bin{.timeline = &timeline};
+      expect_same(technique.render(trace, 0, {}, every_bin), technique.render(trace, 0, {}), spec);
     }
   }
 }
 
-// In bounded memory and in one pass: pixels are closed while the raster goes on.
-bool is_one_pass(const std::string& spec) {
-  return spec.find("passes=0") == spec.npos && spec.find("rules=") == spec.npos &&
-         (spec.starts_with("beam:order=stream") || (spec.starts_with("beam") && spec.find("order=") == spec.npos));
+// In bounded memory: pixels are closed while the raster goes on.
+bool has_open_pixels(const std::string& spec) {
+  return spec.starts_with("beam") && !spec.starts_with("beam:order=sorted");
 }
 
 // Pictures and counters with tiles from a single quad to one that is larger than the frame.
 void expect_same_in_any_tile(const Trace& trace) {
-  RunOptions options;
+  FrameInput options;
   options.memory.modelled = false;  // its caches depend on the tile
-  for (const char* spec : kManySpecs) {
+  for (const std::string& spec : example_specs()) {
     const Technique technique = parse_technique(spec);
     options.tile_size = 0;
     const FrameResult expected = technique.render(trace, 0, options);
@@ -82,17 +79,16 @@ void expect_same_in_any_tile(const Trace& trace) {
       EXPECT_EQ(found.image.rgba, expected.image.rgba);
       EXPECT_EQ(found.pixel_counters, expected.pixel_counters);
       ASSERT_EQ(found.stages.size(), expected.stages.size());
-      // In one pass, a closed pixel hides what the raster has not found yet, and that depends on the tile.
-      if (is_one_pass(spec)) continue;
+      // A closed pixel hides what the raster has not found yet, and that depends on the tile.
+      if (has_open_pixels(spec)) continue;
       for (std::size_t i = 0; i < found.stages.size(); ++i) {
         StageCounters a = found.stages[i], b = expected.stages[i];
         EXPECT_EQ(a.items_out, b.items_out) << a.stage;
-        if (std::string(spec).starts_with("beam:rules=paper") && a.stage == "beam_fragment")
+        if (spec.starts_with("casav") && a.stage == StageId::beam_fragment)
           a.ops = b.ops = {};  // the edges of a triangle are prepared for masks once per tile
-        if (spec == std::string("reference") && a.stage == "resolve") continue;  // it skips tiles without triangles
-        // Rasters count their setup once per tile, `settle` counts its passes per tile, and `material_sort` has the
-        // sums of 256 digits in each tile.
-        if (!a.stage.ends_with("_raster") && a.stage != "settle" && a.stage != "material_sort") {
+        if (spec == "reference" && a.stage == StageId::resolve) continue;  // it skips tiles without triangles
+        // Rasters count their setup once per tile, and `material_sort` has the sums of 256 digits in each tile.
+        if (!rasterizes(a.stage.id) && a.stage != StageId::material_sort) {
           EXPECT_EQ(a, b) << a.stage;
         }
       }
@@ -116,7 +112,7 @@ TEST(Determinism, TheFrameIsTheSameWhereverTilesFallInIt) {
   half[0][0] = half[1][1] = 2.0;
   half[3] = glm::dvec4(-1.0, 1.0, 0.0, 1.0);
   frame.projection = half * frame.projection;
-  for (const std::string spec : kManySpecs) {
+  for (const std::string& spec : example_specs()) {
     if (spec.starts_with("dvm")) continue;  // its random choices depend on the pixel's place in the frame
     if (is_one_pass(spec) || spec.find("near-first") != spec.npos)
       continue;  // bins are sorted as a whole, and sums are rounded by a triangle's number

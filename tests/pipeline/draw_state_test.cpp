@@ -27,8 +27,7 @@ struct Case {
 const Case kCases[] = {{"beam"},
                        {"beam:order=sorted"},
                        {"beam:order=stream", 0.016},  // makes one owner of two before it has seen all
-                       {"beam:order=stream,passes=0", 0.016},
-                       {"beam:rules=paper,mask=exact", 0.0625},  // merges fragments that lie close in depth
+                       {"casav:mask=exact", 0.0625},  // merges fragments that lie close in depth
                        {"z3"},
                        {"msaa:1"},
                        {"msaa:8"},

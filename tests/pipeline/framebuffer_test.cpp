@@ -17,7 +17,7 @@ Trace covered_bin() {
 }
 
 FrameResult render_with(const std::string& spec, const Trace& trace, const MemoryParameters& memory) {
-  RunOptions run{1};
+  FrameInput run{1};
   run.memory = memory;
   return parse_technique(spec).render(trace, 0, run);
 }
@@ -56,8 +56,7 @@ TEST(Framebuffer, OpenPixelsThatExceedTheBudgetMoveThroughMemory) {
 // The machine decides where pixels are, but not what is drawn or computed.
 TEST(Framebuffer, OnChipOnlyThePictureGoesToMemory) {
   const Trace trace = random_trace(40, 36, 60, 5);
-  for (const char* spec : {"beam", "beam:order=stream", "beam:order=stream,passes=0",
-                           "beam:rules=paper,order=near-first", "beam:rules=paper,order=stream", "z3", "msaa:8",
+  for (const char* spec : {"beam", "beam:order=stream", "casav:order=near-first", "casav:order=stream", "z3", "msaa:8",
                            "msaa:8,prepass", "acaa:8", "acaa:8,double=stencil", "deferred", "visibility"}) {
     SCOPED_TRACE(spec);
     MemoryParameters memory;
@@ -70,7 +69,7 @@ TEST(Framebuffer, OnChipOnlyThePictureGoesToMemory) {
     EXPECT_EQ(on_chip_bytes(in_memory), 0u);
     EXPECT_EQ(stage_of(on_chip, "resolve").dram_bytes, 40u * 36 * kPictureBytes);
     EXPECT_GT(stage_of(in_memory, "resolve").dram_bytes, 40u * 36 * kPictureBytes);
-    for (const char* stage : {"depth_test", "stencil_test", "accumulate"})
+    for (const Stage stage : {StageId::depth_test, StageId::stencil_test, StageId::accumulate})
       for (const StageCounters& counters : on_chip.stages)
         if (counters.stage == stage) {
           EXPECT_EQ(counters.sector_bytes, 0u) << stage;
@@ -83,23 +82,6 @@ TEST(Framebuffer, OnChipOnlyThePictureGoesToMemory) {
       EXPECT_EQ(a, b) << a.stage;
     }
   }
-}
-
-// 1,025 closed depths fill 129 sectors. Every pass but the first one reads them, if they are in memory.
-TEST(Framebuffer, ClosedDepthsStayOnChipFromPassToPass) {
-  const char* const spec = "beam:order=stream,passes=0,layers=1";
-  const Trace trace = random_trace(32, 32, 60, 5);
-  MemoryParameters memory;
-  memory.framebuffer = Place::on_chip;
-  const FrameResult on_chip = render_with(spec, trace, memory);
-  memory.framebuffer = Place::in_memory;
-  const FrameResult in_memory = render_with(spec, trace, memory);
-  const std::vector<float>& passes = in_memory.pixel_counters.at("passes");
-  const auto most = static_cast<std::uint64_t>(*std::max_element(passes.begin(), passes.end()));
-  ASSERT_GT(most, 1u);
-  EXPECT_EQ(stage_of(in_memory, "conservative_raster").dram_bytes - stage_of(on_chip, "conservative_raster").dram_bytes,
-            (most - 1) * 129 * 32);
-  EXPECT_LT(stage_of(on_chip, "settle").dram_bytes, stage_of(in_memory, "settle").dram_bytes);
 }
 
 TEST(Framebuffer, AnABufferAndWhatLaterFramesReadStayInMemory) {

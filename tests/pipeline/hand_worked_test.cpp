@@ -4,7 +4,7 @@
 #include <filesystem>
 
 #include "pipeline/technique.h"
-#include "traces/trace_io.h"
+#include "traces/files/trace_io.h"
 
 namespace beampipe {
 namespace {
@@ -16,14 +16,14 @@ struct Bytes {
 
 void expect_bytes(const char* sample, const char* spec, const std::vector<Bytes>& expected, bool compression = true) {
   const Trace trace = read_trace(std::filesystem::path(BEAMPIPE_SOURCE_FOLDER) / "traces/samples" / sample);
-  RunOptions run{1};
+  FrameInput run{1};
   run.memory.compression = compression;
   const FrameResult result = parse_technique(spec).render(trace, 0, run);
   ASSERT_EQ(result.stages.size(), expected.size());
   for (std::size_t i = 0; i < expected.size(); ++i) {
     const StageCounters& found = result.stages[i];
     const Bytes& stage = expected[i];
-    EXPECT_EQ(found.stage, stage.stage);
+    EXPECT_EQ(name_of(found.stage), stage.stage);
     EXPECT_EQ(found.items_in, stage.items_in) << stage.stage;
     EXPECT_EQ(found.items_out, stage.items_out) << stage.stage;
     EXPECT_EQ(found.bytes_read, stage.read) << stage.stage;
@@ -151,7 +151,7 @@ TEST(HandWorked, BytesOfAPixel) {
   EXPECT_EQ(bytes("dvm", 2, 3), 8 * (4 + 4 + 4) + 9 + 8 + 6) << "8 samples, one of which is shaded";
   for (const char* spec : {"msaa:1", "acaa:1", "deferred"}) EXPECT_EQ(bytes(spec, 0, 0), 0) << spec;
   EXPECT_EQ(bytes("beam:order=sorted", 0, 0), 4) << "the head";
-  RunOptions run{1};
+  FrameInput run{1};
   run.memory.modelled = false;
   for (const char* spec : {"beam", "beam:order=sorted", "beam:order=stream"})
     EXPECT_FALSE(parse_technique(spec).render(trace, 0, run).pixel_counters.contains("bytes")) << spec;

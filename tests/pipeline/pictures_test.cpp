@@ -38,7 +38,7 @@ TEST(Pictures, BinsWithoutTrianglesAreTheBackground) {
 TEST(Pictures, RowZeroIsOnTop) {
   const Trace trace = pixel_trace(4, 4, quad(0, 0, 4, 1, 0.5, kRed), kBlue);
   for (const char* spec :
-       {"beam", "beam:order=sorted", "beam:order=stream", "beam:rules=paper,mask=exact", "msaa:4", "reference"}) {
+       {"beam", "beam:order=sorted", "beam:order=stream", "casav:mask=exact", "msaa:4", "reference"}) {
     const Image image = picture(spec, trace);
     EXPECT_EQ(pixel(image, 2, 0), kRed) << spec;
     EXPECT_EQ(pixel(image, 2, 1), kBlue) << spec;
@@ -51,8 +51,7 @@ TEST(Pictures, AnEdgeThroughAPixelCoversItsExactArea) {
   const glm::vec3 expected = 0.3125f * kRed + 0.6875f * kBlue;
   // The coverage of beam is exact up to rounding: to fp16, or of the mask's error to 1/64 of a position. The reference
   // is exact for vertical edges.
-  for (const char* spec :
-       {"beam", "beam:order=sorted", "beam:order=stream", "beam:rules=paper,mask=exact", "reference"}) {
+  for (const char* spec : {"beam", "beam:order=sorted", "beam:order=stream", "casav:mask=exact", "reference"}) {
     const glm::vec3 found = pixel(picture(spec, trace), 1, 1);
     for (int c = 0; c < 3; ++c) EXPECT_NEAR(found[c], expected[c], 2e-4) << spec;
   }
@@ -74,8 +73,8 @@ TEST(Pictures, OfTwoEqualTrianglesTheEarlierIsSeen) {
   // could make their depths differ.
   const glm::dvec3 a(-1, -1, 0.1), b(13, -2, 0.6), c(-2, 12, 0.9);
   const Trace trace = pixel_trace(4, 4, {{{a, b, c}, kRed}, {{c, b, a}, kGreen}});
-  for (const char* spec : {"beam", "beam:order=sorted", "beam:order=stream", "beam:rules=paper,mask=exact", "msaa:1",
-                           "msaa:8", "msaa:256", "reference"}) {
+  for (const char* spec : {"beam", "beam:order=sorted", "beam:order=stream", "casav:mask=exact", "msaa:1", "msaa:8",
+                           "msaa:256", "reference"}) {
     const Image image = picture(spec, trace);
     for (std::uint32_t y = 0; y < 4; ++y)
       for (std::uint32_t x = 0; x < 4; ++x) EXPECT_EQ(pixel(image, x, y), kRed) << spec << ' ' << x << ' ' << y;

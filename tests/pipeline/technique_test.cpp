@@ -18,18 +18,16 @@ TEST(Technique, FramebufferBytesAreThePublishedOnes) {
   // Slide 23 of Crassin et al. 2018: beam takes 42 bytes with colour. MSAA 8x and 32x with 4-byte depth and fp16 RGB
   // take 80 and 320.
   EXPECT_EQ(parse_technique("beam:order=sorted").framebuffer_bytes_per_pixel(), 42u);
-  EXPECT_EQ(parse_technique("beam:rules=paper").framebuffer_bytes_per_pixel(), 42u);
-  EXPECT_EQ(parse_technique("beam:rules=paper,storage=text").framebuffer_bytes_per_pixel(), 32u);
+  EXPECT_EQ(parse_technique("casav").framebuffer_bytes_per_pixel(), 42u);
+  EXPECT_EQ(parse_technique("casav:storage=text").framebuffer_bytes_per_pixel(), 32u);
   EXPECT_EQ(parse_technique("msaa:8").framebuffer_bytes_per_pixel(), 80u);
   EXPECT_EQ(parse_technique("msaa:32").framebuffer_bytes_per_pixel(), 320u);
   EXPECT_EQ(parse_technique("alpha").framebuffer_bytes_per_pixel(), 10u);
 }
 
 TEST(Technique, StreamingStatesFitTheirBudgets) {
-  EXPECT_EQ(parse_technique("beam:order=stream,passes=0").framebuffer_bytes_per_pixel(),
-            80u);  // as many as an MSAA 8x buffer
-  EXPECT_EQ(parse_technique("beam:order=stream,passes=0,bits=64,layers=1").framebuffer_bytes_per_pixel(), 32u);
-  EXPECT_EQ(parse_technique("beam:order=stream,passes=0,bits=256,layers=1").framebuffer_bytes_per_pixel(), 80u);
+  EXPECT_EQ(parse_technique("beam").framebuffer_bytes_per_pixel({.framebuffer = Place::in_memory}), 154u);
+  EXPECT_EQ(parse_technique("beam:order=stream").framebuffer_bytes_per_pixel(), 138u);
   EXPECT_EQ(parse_technique("z3").framebuffer_bytes_per_pixel(), 50u);
   EXPECT_EQ(parse_technique("z3:shape=32x2").framebuffer_bytes_per_pixel(), 36u);
   EXPECT_EQ(parse_technique("z3:shape=128x3").framebuffer_bytes_per_pixel(), 74u);
@@ -57,14 +55,17 @@ std::string error_of(const std::string& spec) {
 }
 
 TEST(Technique, WrongSpecsSayWhatWouldBeRight) {
-  const std::string names = "the name must be beam, alpha, z3, msaa, acaa, deferred, visibility, taa, dvm or reference";
+  std::vector<std::string> all;
+  for (const TechniqueKind& kind : technique_kinds())
+    if (all.empty() || all.back() != kind.name) all.push_back(kind.name);
+  const std::string names = "the name must be " + list_of(all);
   const std::string msaa_rates = "N of msaa:N must be 1, 2, 4, 8, 16, 32, 64, 128, 256, 512 or 1024";
   const std::string acaa_rates = "N of acaa:N must be 1, 2, 4, 8, 16, 32, 64, 128 or 256";
   const std::string taa_rates = "N of taa:N must be 1, 2, 4, 8 or 16";
-  const std::string of_beam = "; it has bits, slots, at, bin, order and rules";
-  const std::string of_paper =
-      "; it has mask, sort, tiny, overlap, regional, local, fuzzy, extents, slab, plane, thickness, storage, order, "
-      "layers and rules";
+  const std::string of_beam = "; it has bits, slots, at, bin and order";
+  const std::string of_casav =
+      "; it has mask, sort, tiny, overlap, regional, local, fuzzy, extents, slab, plane, thickness, storage, order "
+      "and layers";
   const std::string of_dvm = "; it has blend, seed and material";
   for (const auto& [spec, error] : std::map<std::string, std::string>{
            {"", names},
@@ -99,36 +100,33 @@ TEST(Technique, WrongSpecsSayWhatWouldBeRight) {
            {"beam:64", "beam has no option '64'" + of_beam},
            {"beam:mask=fast", "beam has no option 'mask'" + of_beam},
            {"beam:fuzzy=mix", "beam has no option 'fuzzy'" + of_beam},
-           {"beam:order=sorted,bits=64,mask=exact",
-            "beam:order=sorted has no option 'mask'; it has bits, storage, order and rules"},
-           {"beam:order=sorted,bits=48", "bits must be 32, 64, 128 or 256"},
-           {"beam:order=sorted,bits=", "bits must be 32, 64, 128 or 256"},
+           {"beam:order=sorted,bits=32,mask=exact",
+            "beam:order=sorted has no option 'mask'; it has bits, storage and order"},
+           {"beam:order=sorted,bits=64", "bits must be 32 or 256"},
+           {"beam:order=sorted,bits=", "bits must be 32 or 256"},
            {"beam:order=sorted,storage=text", "storage must be packed or float32"},
+           {"beam:order=sorted,bits=32,storage=float32", "storage needs bits=256"},
+           {"beam:slots=7", "slots must be 2, 4, 5, 8, 16 or 32"},
+           {"beam:bits=48,slots=4", "bits must be 32, 64, 128 or 256"},
+           {"beam:bits=64", "bits needs slots=2, 4, 8, 16 or 32, unless it is 256"},
+           {"beam:slots=5,bits=128", "bits needs slots=2, 4, 8, 16 or 32, unless it is 256"},
            {"beam:mask=table,mask=table", "'mask' is there twice"},
            {"beam:order=primitive", "order must be near-first, sorted or stream"},
-           {"beam:rules=slides", "rules must be conserve or paper"},
-           {"beam:rules=conserve,rules=paper", "'rules' is there twice"},
-           {"beam:order=stream,passes=0,layers=2", "layers must be 1 or 5"},
-           {"beam:order=stream,passes=-1", "passes must be a whole number from 0 to 1000"},
-           {"beam:order=stream,passes=1.5", "passes must be a whole number from 0 to 1000"},
-           {"beam:order=stream,passes=0,storage=packed",
-            "beam:order=stream has no option 'storage'; it has bits, passes, slots, layers, order and rules"},
-           {"beam:order=stream,passes=0,slots=4", "slots needs passes=1"},
-           {"beam:order=stream,slots=7,passes=8", "slots needs passes=1"},
-           {"beam:order=stream,layers=5", "layers needs passes=0 or more than one pass"},
-           {"beam:order=stream,passes=1,layers=1", "layers needs passes=0 or more than one pass"},
-           {"beam:rules=paper,layers=3", "layers needs order=near-first or order=stream"},
-           {"beam:rules=paper,order=sorted,layers=1", "layers needs order=near-first or order=stream"},
-           {"beam:rules=paper,order=stream,sort=nearest", "sort needs order=sorted"},
-           {"beam:rules=paper,order=near-first,sort=centroid", "sort needs order=sorted"},
-           {"beam:rules=paper,order=sort", "order must be sorted, near-first or stream"},
-           {"beam:rules=paper,bits=64", "beam:rules=paper has no option 'bits'" + of_paper},
-           {"beam:rules=paper,mask=fast", "mask must be table or exact"},
-           {"beam:rules=paper,tiny=2", "tiny must be 1 or 3"},
-           {"beam:rules=paper,overlap=none", "overlap must be tiny, over, add or transition"},
-           {"beam:rules=paper,regional=global", "regional must be local or area"},
-           {"beam:rules=paper,slab=visible,slab=full", "'slab' is there twice"},
-           {"z3:layers=3", "z3 has no option 'layers'; it has shape and merge"},
+           {"casav", "beam has no option 'rules'" + of_beam},
+           {"beam:order=stream,order=sorted", "'order' is there twice"},
+           {"beam:order=stream,slots=7", "beam:order=stream has no option 'slots'; it has order"},
+           {"casav:layers=3", "layers needs order=near-first or order=stream"},
+           {"casav:order=sorted,layers=1", "layers needs order=near-first or order=stream"},
+           {"casav:order=stream,sort=nearest", "sort needs order=sorted"},
+           {"casav:order=near-first,sort=centroid", "sort needs order=sorted"},
+           {"casav:order=sort", "order must be sorted, near-first or stream"},
+           {"casav:bits=64", "casav has no option 'bits'" + of_casav},
+           {"casav:mask=fast", "mask must be table or exact"},
+           {"casav:tiny=2", "tiny must be 1 or 3"},
+           {"casav:overlap=none", "overlap must be tiny, over, add or transition"},
+           {"casav:regional=global", "regional must be local or area"},
+           {"casav:slab=visible,slab=full", "'slab' is there twice"},
+           {"z3:layers=3", "z3 has no option 'layers'; it has shape"},
            {"z3:shape=64x3", "shape must be 32x2, 32x3 or 128x3"},
            {"alpha:1", "alpha has no options"},
            {"reference:64", "reference has no options"},
@@ -158,9 +156,8 @@ TEST(Technique, WrongSpecsSayWhatWouldBeRight) {
 
 TEST(Technique, DefaultsMayBeWritten) {
   for (const char* spec :
-       {"beam:rules=conserve", "beam:order=sorted", "beam:order=sorted,rules=conserve,bits=64",
-        "beam:rules=paper,order=sorted", "beam:rules=conserve,order=stream", "beam:layers=1,order=stream,passes=0",
-        "beam:slots=7,order=stream,passes=1", "beam:layers=3,order=stream,rules=paper", "beam:tiny=3,rules=paper"})
+       {"beam:order=near-first", "beam:order=sorted", "beam:bits=32,order=sorted", "beam:bits=256,slots=5",
+        "casav:order=sorted", "beam:order=stream", "casav:layers=3,order=stream", "casav:tiny=3"})
     EXPECT_EQ(parse_technique(spec).spec, spec);
 }
 
@@ -169,7 +166,7 @@ std::string spec_with(const TechniqueKind& kind, const SpecOption& option, const
   std::string spec = title_of(kind);
   if (spec.ends_with(":N")) spec.replace(spec.size() - 1, 1, "8");
   spec += (spec.find(':') == spec.npos ? ':' : ',') + option.key + '=' + word;
-  const std::string needed = option.needs.substr(0, option.needs.find(' '));
+  const std::string needed = option.needs.substr(0, option.needs.find_first_of(" ,"));
   return needed.empty() ? spec : spec + ',' + needed;
 }
 
@@ -190,6 +187,17 @@ TEST(TechniqueTable, EveryWordIsTakenAndNoOther) {
     }
   }
   EXPECT_GT(words, 50u);
+}
+
+TEST(TechniqueTable, ExamplesAreSpecsOfTheirTechnique) {
+  for (const TechniqueKind& kind : technique_kinds()) {
+    ASSERT_FALSE(kind.examples.empty()) << title_of(kind);
+    for (const std::vector<std::string>* const specs : {&kind.examples, &kind.stressed})
+      for (const std::string& spec : *specs) {
+        EXPECT_EQ(parse_technique(spec).spec, spec);
+        EXPECT_EQ(spec.substr(0, spec.find(':')), kind.name);
+      }
+  }
 }
 
 TEST(TechniqueTable, DefaultsAreAmongTheValues) {

@@ -39,7 +39,7 @@ inline double worst_difference(const Image& a, const Image& b) {
 // Throws std::runtime_error when the frame has no such stage.
 inline const StageCounters& stage_of(const FrameResult& result, const std::string& name) {
   for (const StageCounters& counters : result.stages)
-    if (counters.stage == name) return counters;
+    if (name_of(counters.stage) == name) return counters;
   throw std::runtime_error("no stage " + name);
 }
 inline StageCounters stage_of(FrameResult&& result, const std::string& name) {

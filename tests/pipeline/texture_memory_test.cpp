@@ -5,7 +5,7 @@
 
 #include "pipeline/bins/frame_context.h"
 #include "pipeline/memory/geometry_memory.h"
-#include "pipeline/technique.h"
+#include "pipeline/technique_table.h"
 #include "stages/data/sample_fragment.h"
 #include "tests/pipeline/test_traces.h"
 
@@ -13,24 +13,6 @@ namespace beampipe {
 namespace {
 
 // Every way to shade, with the ways that read alpha.
-constexpr const char* kSpecs[] = {"beam",
-                                  "beam:order=sorted",
-                                  "beam:order=stream",
-                                  "beam:order=stream,passes=0",
-                                  "alpha",
-                                  "beam:rules=paper",
-                                  "z3",
-                                  "msaa:4,at=centroid",
-                                  "msaa:32",
-                                  "msaa:4,prepass",
-                                  "acaa:32",
-                                  "deferred",
-                                  "visibility",
-                                  "visibility:4",
-                                  "taa:8",
-                                  "taa:8,shading=forward",
-                                  "dvm"};
-
 TextureImage square_image(std::uint32_t size) {
   TextureImage image{"image", size, size, {}};
   for (std::uint32_t y = 0; y < size; ++y)
@@ -72,13 +54,13 @@ Trace mixed_trace() {
   return trace;
 }
 
-std::vector<StageCounters> stages_of(const char* spec, const Trace& trace, const RunOptions& run = {}) {
+std::vector<StageCounters> stages_of(const std::string& spec, const Trace& trace, const FrameInput& run = {}) {
   return parse_technique(spec).render(trace, 0, run).stages;
 }
 
-StageCounters stage_of(const char* spec, const Trace& trace, const std::string& name, const RunOptions& run = {}) {
+StageCounters stage_of(const char* spec, const Trace& trace, const std::string& name, const FrameInput& run = {}) {
   for (const StageCounters& stage : stages_of(spec, trace, run))
-    if (stage.stage == name) return stage;
+    if (name_of(stage.stage) == name) return stage;
   ADD_FAILURE() << spec << " has no stage " << name;
   return {};
 }
@@ -104,10 +86,14 @@ TEST(TextureMemory, L2ServesBinsPassByPass) {
   memory.l2 = {128, 1, 128};  // one line
   const TextureRead a{.line = 7, .stage = 0, .sectors = 0b0001}, b{.line = 7, .stage = 1, .sectors = 0b0011};
   const TextureRead c{.line = 8, .stage = 1, .sectors = 0b1111};
-  EXPECT_EQ(texture_dram_bytes(memory, {{{a, b}}, {{b}}}, 2), (std::vector<std::uint64_t>{32, 32}));
-  EXPECT_EQ(texture_dram_bytes(memory, {{{b}}, {{a, b}}}, 2), (std::vector<std::uint64_t>{0, 64}));
-  EXPECT_EQ(texture_dram_bytes(memory, {{{a}, {c}}, {{a}, {c}}}, 2), (std::vector<std::uint64_t>{32, 128}));
-  EXPECT_EQ(texture_dram_bytes(memory, {{{a, c}}, {{a, c}}}, 2), (std::vector<std::uint64_t>{64, 256}));
+  const auto by_stage = [&](const std::vector<TexturePasses>& bins) {
+    const auto bytes = texture_dram_bytes(memory, bins);
+    return std::vector<std::uint64_t>{bytes[0], bytes[1]};
+  };
+  EXPECT_EQ(by_stage({{{a, b}}, {{b}}}), (std::vector<std::uint64_t>{32, 32}));
+  EXPECT_EQ(by_stage({{{b}}, {{a, b}}}), (std::vector<std::uint64_t>{0, 64}));
+  EXPECT_EQ(by_stage({{{a}, {c}}, {{a}, {c}}}), (std::vector<std::uint64_t>{32, 128}));
+  EXPECT_EQ(by_stage({{{a, c}}, {{a, c}}}), (std::vector<std::uint64_t>{64, 256}));
 }
 
 // Half a texel per pixel: one bilinear probe. 1.5 texels: two levels of four texels each.
@@ -118,7 +104,7 @@ TEST(TextureMemory, CountsTheTexelsOfEachInvocation) {
   Trace nearest = textured_frame(16, 8, 0.5);
   nearest.materials[0].base_texture->magnify = Filter::nearest;
   EXPECT_EQ(shade_of("visibility", nearest).texture_bytes, 256u * 4);
-  for (const char* const spec : {"beam", "beam:order=sorted", "beam:order=stream,passes=0"})
+  for (const char* const spec : {"beam", "beam:order=sorted", "beam:order=stream"})
     EXPECT_EQ(shade_of(spec, textured_frame(64, 8, 0.5)).texture_bytes, 64 * 64 * 4 * 4 + 64u * 4 * 4)
         << spec << ": two triangles meet in the pixels of the diagonal";
 }
@@ -173,7 +159,7 @@ TEST(TextureMemory, ReadingAlphaIsChargedToItsStage) {
 
 TEST(TextureMemory, TexelsArePartsOfTheTotals) {
   const Trace trace = mixed_trace();
-  for (const char* const spec : kSpecs)
+  for (const std::string& spec : example_specs())
     for (const StageCounters& stage : stages_of(spec, trace)) {
       EXPECT_LE(stage.texture_bytes, stage.bytes_read) << spec << ' ' << stage.stage;
       EXPECT_LE(stage.texture_sector_bytes, stage.sector_bytes) << spec << ' ' << stage.stage;
@@ -185,16 +171,17 @@ TEST(TextureMemory, TexelsArePartsOfTheTotals) {
 
 TEST(TextureMemory, DoesNotDependOnThreads) {
   const Trace trace = mixed_trace();
-  RunOptions one{1}, many{13};
+  FrameInput one{1}, many{13};
   one.memory.l2 = many.memory.l2 = {2048, 4, 128};  // small, so that the order of the bins matters
-  for (const char* const spec : kSpecs) EXPECT_EQ(stages_of(spec, trace, one), stages_of(spec, trace, many)) << spec;
+  for (const std::string& spec : example_specs())
+    EXPECT_EQ(stages_of(spec, trace, one), stages_of(spec, trace, many)) << spec;
 }
 
 TEST(TextureMemory, WithoutAModelOnlyLogicalBytesAreCounted) {
   const Trace trace = mixed_trace();
-  RunOptions off;
+  FrameInput off;
   off.memory.modelled = false;
-  for (const char* const spec : kSpecs) {
+  for (const std::string& spec : example_specs()) {
     std::vector<StageCounters> modelled = stages_of(spec, trace);
     for (StageCounters& stage : modelled) {
       stage.sector_bytes = stage.l2_bytes = stage.dram_bytes = 0;
@@ -208,7 +195,7 @@ TEST(TextureMemory, FlatFramesReadNoTexels) {
   Trace flat = random_trace(100, 70, 200, 5);
   Trace unused = flat;
   unused.images = {square_image(8)};
-  for (const char* const spec : kSpecs) {
+  for (const std::string& spec : example_specs()) {
     for (const StageCounters& stage : stages_of(spec, flat))
       EXPECT_EQ(stage.texture_bytes + stage.texture_sector_bytes, 0u) << spec;
     EXPECT_EQ(stages_of(spec, flat), stages_of(spec, unused)) << spec;
@@ -219,8 +206,8 @@ TEST(TextureMemory, FlatFramesReadNoTexels) {
 // sector).
 TEST(GeometryMemory, SurfacesAreFetchedWithTheirVertices) {
   const Trace trace = textured_frame(16, 8, 0.5);
-  const RunOptions run;
-  const FrameContext context(trace, trace.frames[0], run);
+  const FrameInput run;
+  const FrameContext context({trace, trace.frames[0], run, {}});
   const TriangleList list{0, 1};
   TriangleFetches fetches({}, list, &context.shader);
   StageCounters counters;

@@ -51,18 +51,13 @@ TEST(PlaneOrder, EqualsIntegerArithmetic) {
       const IntegerPlane plane{random.integer(-1024, 0), slope(), slope()};
       IntegerPlane other{random.integer(-1024, 0), slope(), slope()};
       if (random.one_in(3)) other = {plane.z, plane.dzdv, plane.dzdu};  // they meet along a diagonal
-      std::uint32_t masks[8], few[8];
+      std::uint32_t masks[8];
       nearer_positions(plane.plane(), other.plane(), patterns.data(), patterns.size(), masks);
-      std::int64_t nearest = 1 << 18;
       for (std::size_t p = 0; p < 256; ++p) {
         const std::int64_t depth = plane.at(patterns[p / 32], p % 32), of_other = other.at(patterns[p / 32], p % 32);
         ASSERT_EQ(masks[p / 32] >> (p % 32) & 1, depth < of_other) << "draw " << draw << ", position " << p;
         ties += depth == of_other;
-        if (p % 32 == 0) few[p / 32] = random.word() & random.word() & random.word() & random.word();
-        if (few[p / 32] >> (p % 32) & 1) nearest = std::min(nearest, depth);
       }
-      const float found = nearest_depth(plane.plane(), patterns.data(), patterns.size(), few);
-      ASSERT_EQ(found, static_cast<float>(nearest) / (1 << 18)) << "draw " << draw;
     }
   });
   EXPECT_GT(ties, 100);
@@ -86,28 +81,6 @@ TEST(PlaneOrder, NearerOnEveryTargetEqualsTheFormulaOnFloat) {
       }
     });
   }
-}
-
-TEST(PlaneOrder, NearestOnEveryTargetEqualsTheFormulaOnFloat) {
-  Random random(62);
-  SCOPED_TRACE(random.name());
-  const std::vector<SamplePattern> patterns = cell_patterns(128);
-  const std::vector<DepthPlane<float>> planes = hard_planes(random);
-  std::vector<std::array<std::uint32_t, 4>> masks(planes.size());
-  for (auto& mask : masks)
-    for (std::uint32_t& word : mask)
-      word = random.one_in(3) ? 0 : static_cast<std::uint32_t>(random.integer(0, 0xffffffff));
-  masks[0] = {};
-  on_every_target([&] {
-    for (std::size_t i = 0; i < planes.size(); ++i) {
-      float expected = kNoDepth;
-      for (std::size_t p = 0; p < 128; ++p)
-        expected =
-            nearest_formula(planes[i], position_u(patterns[p / 32], p % 32), position_v(patterns[p / 32], p % 32),
-                            (masks[i][p / 32] >> (p % 32) & 1) != 0, expected);
-      ASSERT_EQ(nearest_depth(planes[i], patterns.data(), 4, masks[i].data()), expected) << i;
-    }
-  });
 }
 
 // Masks without positions, with all of them, with one, and random ones; a word may be empty while others are not.

@@ -5,8 +5,8 @@
 
 #include "stages/beam/a_buffer.h"
 #include "stages/beam/beam_fragment.h"
-#include "stages/beam/compose_paper.h"
-#include "stages/data/paper_aggregate.h"
+#include "stages/beam/compose_casav.h"
+#include "stages/data/casav_aggregate.h"
 #include "stages/picture/shade.h"
 #include "stages/raster/conservative_raster.h"
 #include "tests/stages/screen_triangles.h"
@@ -43,7 +43,7 @@ inline std::vector<Aggregate> beam_pixels(const SetupTriangles& triangles, const
   StageCounters counters;
   shade(colors, fragments.list, counters);
   return compose(fragments.list, sorted(fragments, tile.pixels()), MergePositions(hammersley_pattern()), rules,
-                 PaperStorage::float32, counters);
+                 CasavStorage::float32, counters);
 }
 
 }  // namespace beampipe

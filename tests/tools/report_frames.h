@@ -5,7 +5,7 @@
 #include <string>
 
 #include "tools/report/report_json.h"
-#include "traces/json.h"
+#include "traces/files/json.h"
 
 namespace beampipe {
 

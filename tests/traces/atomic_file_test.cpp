@@ -1,4 +1,4 @@
-#include "traces/atomic_file.h"
+#include "traces/files/atomic_file.h"
 
 #include <sys/stat.h>
 #include <unistd.h>

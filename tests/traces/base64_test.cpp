@@ -1,4 +1,4 @@
-#include "traces/base64.h"
+#include "traces/files/base64.h"
 
 #include <gtest/gtest.h>
 

@@ -3,8 +3,8 @@
 #include "tests/traces/gltf_builder.h"
 #include "tests/traces/test_folder.h"
 #include "tests/traces/test_images.h"
-#include "traces/model_import.h"
-#include "traces/trace_images.h"
+#include "traces/files/model_import.h"
+#include "traces/files/trace_images.h"
 
 namespace beampipe {
 namespace {

@@ -6,7 +6,7 @@
 #include <iostream>
 
 #include "tests/traces/test_folder.h"
-#include "traces/model_import.h"
+#include "traces/files/model_import.h"
 
 namespace beampipe {
 namespace {

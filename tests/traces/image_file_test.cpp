@@ -1,4 +1,4 @@
-#include "traces/image_file.h"
+#include "traces/files/image_file.h"
 
 #include <gtest/gtest.h>
 #include <sys/resource.h>
@@ -8,7 +8,7 @@
 #include <random>
 
 #include "tests/traces/image_samples.h"
-#include "traces/trace_io.h"
+#include "traces/files/trace_io.h"
 
 namespace beampipe {
 namespace {

@@ -1,8 +1,8 @@
-#include "traces/json_form.h"
+#include "traces/files/json_form.h"
 
 #include <gtest/gtest.h>
 
-#include "traces/trace_io.h"
+#include "traces/files/trace_io.h"
 
 namespace beampipe {
 namespace {
@@ -105,7 +105,8 @@ TEST(JsonForm, ObjectsAreReadAndWritten) {
   const Lamp plain{"desk", 60, {}, {}};
   EXPECT_EQ(lamp().write(plain).dump(), R"({"name":"desk"})") << "what has its default value is left out";
   EXPECT_EQ(read(R"({"name": "desk"})"), plain);
-  EXPECT_EQ(read(R"({"name": "x", "sides": {"b": 2, "a": 1}})").sides, (std::map<std::string, double>{{"a", 1}, {"b", 2}}));
+  EXPECT_EQ(read(R"({"name": "x", "sides": {"b": 2, "a": 1}})").sides,
+            (std::map<std::string, double>{{"a", 1}, {"b", 2}}));
 }
 
 TEST(JsonForm, ErrorsNamePlaceExpectationAndWhatWasFound) {
@@ -136,9 +137,8 @@ TEST(JsonForm, NamedValuesKeepTheirKeys) {
     std::string name;
     bool on = false;
   };
-  const Form<std::vector<Named>> form =
-      form::named(Form<Named>(ObjectForm<Named>().required("on", &Named::on, form::boolean(), "On.")), &Named::name,
-                  "switch");
+  const Form<std::vector<Named>> form = form::named(
+      Form<Named>(ObjectForm<Named>().required("on", &Named::on, form::boolean(), "On.")), &Named::name, "switch");
   EXPECT_EQ(refusal(form, "{}"), "/: expected at least one switch, found none");
   EXPECT_EQ(refusal(form, R"({"a": {"on": true}, "b": {}})"), R"(/b: expected the key "on", found none)");
   const std::string file = "f.json";

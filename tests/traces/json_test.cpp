@@ -1,5 +1,5 @@
 // JSON values: kinds, members and text.
-#include "traces/json.h"
+#include "traces/files/json.h"
 
 #include <gtest/gtest.h>
 
@@ -7,7 +7,7 @@
 #include <functional>
 #include <limits>
 
-#include "traces/trace_io.h"
+#include "traces/files/trace_io.h"
 
 namespace beampipe {
 namespace {

@@ -1,5 +1,5 @@
 #include "tests/traces/test_folder.h"
-#include "traces/model_import.h"
+#include "traces/files/model_import.h"
 
 namespace beampipe {
 namespace {

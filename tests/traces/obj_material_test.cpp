@@ -1,7 +1,7 @@
 // Real materials of OBJ files; flat triangles are in obj_import_test.cpp.
 #include "tests/traces/test_folder.h"
 #include "tests/traces/test_images.h"
-#include "traces/model_import.h"
+#include "traces/files/model_import.h"
 
 namespace beampipe {
 namespace {

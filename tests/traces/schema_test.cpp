@@ -4,8 +4,8 @@
 #include <tuple>
 
 #include "tests/traces/test_folder.h"
-#include "traces/base64.h"
-#include "traces/image_file.h"
+#include "traces/files/base64.h"
+#include "traces/files/image_file.h"
 
 namespace beampipe {
 namespace {

@@ -5,8 +5,8 @@
 
 #include "tests/traces/image_samples.h"
 #include "tests/traces/test_folder.h"
-#include "traces/base64.h"
-#include "traces/image_file.h"
+#include "traces/files/base64.h"
+#include "traces/files/image_file.h"
 
 namespace beampipe {
 namespace {

@@ -9,7 +9,7 @@
 #include <sstream>
 #include <string>
 
-#include "traces/trace_io.h"
+#include "traces/files/trace_io.h"
 
 namespace beampipe {
 

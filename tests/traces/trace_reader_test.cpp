@@ -3,7 +3,7 @@
 #include <nlohmann/json.hpp>
 
 #include "tests/traces/test_folder.h"
-#include "traces/model_import.h"
+#include "traces/files/model_import.h"
 
 namespace beampipe {
 namespace {

@@ -1,4 +1,4 @@
-#include "traces/triangulate.h"
+#include "traces/files/triangulate.h"
 
 #include <gtest/gtest.h>
 

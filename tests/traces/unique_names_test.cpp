@@ -1,4 +1,4 @@
-#include "traces/unique_names.h"
+#include "traces/files/unique_names.h"
 
 #include <gtest/gtest.h>
 

@@ -1,4 +1,4 @@
-#include "traces/vertex_frames.h"
+#include "traces/files/vertex_frames.h"
 
 #include <gtest/gtest.h>
 

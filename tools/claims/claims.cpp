@@ -112,11 +112,14 @@ Form<Claim> claim_form() {
       .written("published_low", &Claim::published_low, form::number(),
                "The published number, or the lower end of the range.")
       .written("published_high", &Claim::published_high, or_null, "The upper end; null: or more.")
-      .written("ours", [number](const Claim& claim) { return number(claim.ours); }, or_null, "Our number.")
-      .written("difference", [number](const Claim& claim) { return number(claim.difference()); }, or_null,
-               "Ours minus the nearer end of the published range; 0 within it.")
-      .written("kind", [](const Claim& claim) { return claim.by_definition ? kByDefinition : kRendered; },
-               form::one_of({kRendered, kByDefinition}), "How our number was found.")
+      .written(
+          "ours", [number](const Claim& claim) { return number(claim.ours); }, or_null, "Our number.")
+      .written(
+          "difference", [number](const Claim& claim) { return number(claim.difference()); }, or_null,
+          "Ours minus the nearer end of the published range; 0 within it.")
+      .written(
+          "kind", [](const Claim& claim) { return claim.by_definition ? kByDefinition : kRendered; },
+          form::one_of({kRendered, kByDefinition}), "How our number was found.")
       .written("source", &Claim::source, form::text(), "The place in the publication.")
       .written("command", &Claim::command, form::text(), "What finds our number.")
       .written("beside", &Claim::beside, form::text(), "What our number is, if it is not the same quantity.");

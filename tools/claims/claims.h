@@ -6,7 +6,7 @@
 #include <vector>
 
 #include "tools/evaluate/results.h"
-#include "traces/json_form.h"
+#include "traces/files/json_form.h"
 
 namespace beampipe {
 

@@ -11,8 +11,7 @@
 #include "pipeline/techniques/taa.h"
 #include "simd/mask_table.h"
 #include "simd/match.h"
-#include "stages/cost/counter_registry.h"
-#include "stages/data/paper_aggregate.h"
+#include "stages/data/casav_aggregate.h"
 #include "stages/samples/sample_select.h"
 #include "stages/temporal/temporal.h"
 
@@ -61,16 +60,16 @@ const FrameReport* frame_of(const Findings& found, const std::string& spec) {
   return nullptr;
 }
 
-const StageCounters* stage_of(const Findings& found, const std::string& spec, const std::string& name) {
+const StageCounters* stage_of(const Findings& found, const std::string& spec, Stage which) {
   const FrameReport* const frame = frame_of(found, spec);
   if (!frame) return nullptr;
   for (const StageCounters& stage : frame->stages)
-    if (stage.stage == name) return &stage;
+    if (stage.stage == which) return &stage;
   return nullptr;
 }
 
-// Modelled milliseconds of the stages that are named, or of all, one stage after the other.
-Number milliseconds(const Findings& found, const std::string& spec, const std::vector<std::string>& stages = {}) {
+// Modelled milliseconds of these stages, or of all, one stage after the other.
+Number milliseconds(const Findings& found, const std::string& spec, const std::vector<Stage>& stages = {}) {
   const FrameReport* const frame = frame_of(found, spec);
   if (!frame || !found.report.memory.modelled || found.report.hardware.implementations.empty()) return {};
   const ModelledTime time =
@@ -83,33 +82,31 @@ Number milliseconds(const Findings& found, const std::string& spec, const std::v
   return sum;
 }
 
-Ours ms(const std::string& spec, const std::vector<std::string>& stages = {}) {
+Ours ms(const std::string& spec, const std::vector<Stage>& stages = {}) {
   return [=](const Findings& found) { return milliseconds(found, spec, stages); };
 }
 
 Ours ms_over_beam(const std::string& spec) {
-  return [=](const Findings& found) {
-    return quotient(milliseconds(found, spec), milliseconds(found, "beam:rules=paper"));
-  };
+  return [=](const Findings& found) { return quotient(milliseconds(found, spec), milliseconds(found, "casav")); };
 }
 
 Number emr_of_beam(const Findings& found) {
   for (const TechniqueReport& result : found.report.results)
-    if (result.technique == "beam:rules=paper" && result.equivalent_msaa) return result.equivalent_msaa->samples;
+    if (result.technique == "casav" && result.equivalent_msaa) return result.equivalent_msaa->samples;
   return {};
 }
 
 Number most_fragments_of_beam(const Findings& found) {
-  const FrameReport* const frame = frame_of(found, "beam:rules=paper");
+  const FrameReport* const frame = frame_of(found, "casav");
   if (!frame || !frame->pixel_counters.contains("fragments")) return {};
   return frame->pixel_counters.at("fragments").max;
 }
 
 Number bytes_with_a_buffer_over_msaa(const Findings& found) {
-  const FrameReport* const frame = frame_of(found, "beam:rules=paper");
+  const FrameReport* const frame = frame_of(found, "casav");
   if (!frame || frame->pixels == 0) return {};
   const double a_buffer = static_cast<double>(frame->a_buffer_peak_bytes) / static_cast<double>(frame->pixels);
-  return (bytes_of("beam:rules=paper") + a_buffer) / bytes_of("msaa:8");
+  return (bytes_of("casav") + a_buffer) / bytes_of("msaa:8");
 }
 
 // ---- Accumulative antialiasing against multisampling ----
@@ -140,7 +137,8 @@ std::optional<AcaaNumbers> acaa_traffic(const Findings& found) {
   const auto bytes = [](const FrameReport& frame) {
     double sum = 0;
     for (const StageCounters& stage : frame.stages)
-      if (without_pass(stage.stage) == "depth_test" || stage.stage == "accumulate" || stage.stage == "resolve")
+      if (stage.stage.id == StageId::depth_test || stage.stage == StageId::accumulate ||
+          stage.stage == StageId::resolve)
         sum += static_cast<double>(stage.dram_bytes);
     return sum;
   };
@@ -158,7 +156,7 @@ std::optional<AcaaNumbers> acaa_times(const Findings& found) {
 
 struct ArticlePass {
   std::string name;
-  std::vector<std::string> stages;
+  std::vector<Stage> stages;
 };
 
 struct ArticlePath {
@@ -168,26 +166,31 @@ struct ArticlePath {
 
 // The article's names, our specs, and the stages that do a pass's work. Every stage belongs to one pass.
 std::vector<ArticlePath> article_paths() {
-  const ArticlePass prepass{"PrePass", {"prepass_vertex_setup", "prepass_sample_raster", "prepass_depth_test"}},
+  const ArticlePass prepass{"PrePass",
+                            {{StageId::vertex_setup, Pass::prepass},
+                             {StageId::sample_raster, Pass::prepass},
+                             {StageId::depth_test, Pass::prepass}}},
       // What draws visibility first has all of its geometry in the first pass.
-      visibility{"PrePass", {"vertex_setup", "sample_raster", "depth_test"}},
-      drawn{"Material", {"vertex_setup", "sample_raster", "depth_test", "shade"}}, shaded{"Material", {"shade"}},
-      lighting{"Lighting", {"light"}}, motion{"Motion", {"motion"}}, resolve{"Resolve/TAA", {"resolve", "temporal"}};
+      visibility{"PrePass", {StageId::vertex_setup, StageId::sample_raster, StageId::depth_test}},
+      drawn{"Material", {StageId::vertex_setup, StageId::sample_raster, StageId::depth_test, StageId::shade}},
+      shaded{"Material", {StageId::shade}}, lighting{"Lighting", {StageId::light}}, motion{"Motion", {StageId::motion}},
+      resolve{"Resolve/TAA", {StageId::resolve, StageId::temporal}};
   const std::string msaa = ",prepass,motion,resolve=reinhard";
-  return {{"Forward", "taa:8,shading=forward", {prepass, drawn, motion, resolve}},
-          {"Msaa 2x", "msaa:2" + msaa, {prepass, drawn, motion, resolve}},
-          {"Msaa 4x", "msaa:4" + msaa, {prepass, drawn, motion, resolve}},
-          {"Msaa 8x", "msaa:8" + msaa, {prepass, drawn, motion, resolve}},
-          {"Deferred", "taa:8,shading=deferred", {prepass, drawn, lighting, motion, resolve}},
-          {"Visibility", "taa:8", {visibility, shaded, lighting, {"VisUtil", {"material_sort"}}, motion, resolve}},
-          {"DVM",
-           "dvm",
-           {visibility,
-            shaded,
-            lighting,
-            {"VisUtil", {"sample_select", "material_sort"}},
-            motion,
-            {"Resolve/TAA", {"dilate", "temporal"}}}}};
+  return {
+      {"Forward", "taa:8,shading=forward", {prepass, drawn, motion, resolve}},
+      {"Msaa 2x", "msaa:2" + msaa, {prepass, drawn, motion, resolve}},
+      {"Msaa 4x", "msaa:4" + msaa, {prepass, drawn, motion, resolve}},
+      {"Msaa 8x", "msaa:8" + msaa, {prepass, drawn, motion, resolve}},
+      {"Deferred", "taa:8,shading=deferred", {prepass, drawn, lighting, motion, resolve}},
+      {"Visibility", "taa:8", {visibility, shaded, lighting, {"VisUtil", {StageId::material_sort}}, motion, resolve}},
+      {"DVM",
+       "dvm",
+       {visibility,
+        shaded,
+        lighting,
+        {"VisUtil", {StageId::sample_select, StageId::material_sort}},
+        motion,
+        {"Resolve/TAA", {StageId::dilate, StageId::temporal}}}}};
 }
 
 constexpr const char* kForward = "taa:8,shading=forward";
@@ -195,7 +198,7 @@ constexpr const char* kForward = "taa:8,shading=forward";
 // ---- Shader invocations ----
 
 Number invocations_per_pixel(const Findings& found, const std::string& spec) {
-  const StageCounters* const shade = stage_of(found, spec, "shade");
+  const StageCounters* const shade = stage_of(found, spec, StageId::shade);
   const FrameReport* const frame = frame_of(found, spec);
   if (!shade || frame->pixels == 0) return {};
   return static_cast<double>(shade->lanes_issued) / static_cast<double>(frame->pixels);
@@ -213,14 +216,14 @@ Ours invocations_over_forward(const std::string& spec) {
 
 // Invocations fill whole quads, and those outside the triangle are not needed.
 Number invocations_over_needed(const Findings& found) {
-  const StageCounters* const shade = stage_of(found, kForward, "shade");
+  const StageCounters* const shade = stage_of(found, kForward, StageId::shade);
   if (!shade || shade->lanes_used == 0) return {};
   return static_cast<double>(shade->lanes_issued) / static_cast<double>(shade->lanes_used);
 }
 
 // Triangles so small that each covers the centre of one pixel or of none.
 Number triangles_without_center(const Findings& found) {
-  const StageCounters* const raster = stage_of(found, kOneSample, "sample_raster");
+  const StageCounters* const raster = stage_of(found, kOneSample, StageId::sample_raster);
   if (!raster || raster->items_in == 0) return {};
   return 1 - static_cast<double>(raster->items_out) / static_cast<double>(raster->items_in);
 }
@@ -233,22 +236,22 @@ Number dvm_less_visibility(const Findings& found) {
 
 std::vector<Formula> our_formulas() {
   std::vector<Formula> formulas = {
-      {"beam.bytes.coverage", constant(bytes_of("beam:rules=paper", "coverage"))},
-      {"beam.bytes.mask", constant(bytes_of("beam:rules=paper", "mask"))},
-      {"beam.bytes.depth_plane", constant(bytes_of("beam:rules=paper", "depth_plane"))},
-      {"beam.bytes.thickness", constant(bytes_of("beam:rules=paper", "thickness"))},
-      {"beam.bytes.depth_range", constant(bytes_of("beam:rules=paper", "depth_range"))},
-      {"beam.bytes.color", constant(bytes_of("beam:rules=paper", "color"))},
-      {"beam.bytes.without_color", constant(bytes_without_color("beam:rules=paper"))},
-      {"beam.bytes", constant(bytes_of("beam:rules=paper"))},
+      {"beam.bytes.coverage", constant(bytes_of("casav", "coverage"))},
+      {"beam.bytes.mask", constant(bytes_of("casav", "mask"))},
+      {"beam.bytes.depth_plane", constant(bytes_of("casav", "depth_plane"))},
+      {"beam.bytes.thickness", constant(bytes_of("casav", "thickness"))},
+      {"beam.bytes.depth_range", constant(bytes_of("casav", "depth_range"))},
+      {"beam.bytes.color", constant(bytes_of("casav", "color"))},
+      {"beam.bytes.without_color", constant(bytes_without_color("casav"))},
+      {"beam.bytes", constant(bytes_of("casav"))},
       {"beam.bytes.three_coefficients", constant(kTextBytesWithoutColor)},
-      {"beam.bytes_over_msaa_8", constant(bytes_of("beam:rules=paper") / bytes_of("msaa:8"))},
+      {"beam.bytes_over_msaa_8", constant(bytes_of("casav") / bytes_of("msaa:8"))},
       {"msaa_8.bytes.without_color", constant(bytes_without_color("msaa:8"))},
       {"msaa_8.bytes", constant(bytes_of("msaa:8"))},
       {"msaa_32.bytes.without_color", constant(bytes_without_color("msaa:32"))},
       {"msaa_32.bytes", constant(bytes_of("msaa:32"))},
       {"msaa.samples_of_super_resolved_pixel", constant(msaa_sampling(32).pattern.count)},
-      {"beam.mask_bits", constant(8 * bytes_of("beam:rules=paper", "mask"))},
+      {"beam.mask_bits", constant(8 * bytes_of("casav", "mask"))},
       {"beam.mask_table_kib", constant(kTableAngles * kTableDistances * 4 / 1024.0)},
       {"msaa_8.mib_at_4k", constant(mebibytes_at_4k("msaa:8,color=rgba16f"))},
       {"acaa_8.mib_at_4k", constant(mebibytes_at_4k("acaa:8"))},
@@ -278,7 +281,7 @@ std::vector<Formula> our_formulas() {
       {"acaa.traffic_saved", [](const Findings& found) { return part_of_all(acaa_traffic(found)); }},
       {"acaa.added_ms_saved", [](const Findings& found) { return part_of_added(acaa_times(found)); }},
       {"acaa.ms_saved", [](const Findings& found) { return part_of_all(acaa_times(found)); }},
-      {"ms.beam:rules=paper", ms("beam:rules=paper")},
+      {"ms.casav", ms("casav")},
       {"ms.msaa:32", ms("msaa:32")},
       {"ms.msaa:128", ms("msaa:128")},
       {"ms.msaa:256", ms("msaa:256")},
@@ -289,10 +292,10 @@ std::vector<Formula> our_formulas() {
       {"beam.emr", emr_of_beam},
       {"beam.most_fragments", most_fragments_of_beam},
       {"ms.dvm_less_visibility", dvm_less_visibility},
-      {"ms.supersampled.1x", ms("visibility:1", {"shade", "light"})},
-      {"ms.supersampled.2x", ms("visibility:2", {"shade", "light"})},
-      {"ms.supersampled.4x", ms("visibility:4", {"shade", "light"})},
-      {"ms.supersampled.8x", ms("visibility:8", {"shade", "light"})},
+      {"ms.supersampled.1x", ms("visibility:1", {StageId::shade, StageId::light})},
+      {"ms.supersampled.2x", ms("visibility:2", {StageId::shade, StageId::light})},
+      {"ms.supersampled.4x", ms("visibility:4", {StageId::shade, StageId::light})},
+      {"ms.supersampled.8x", ms("visibility:8", {StageId::shade, StageId::light})},
       {"invocations.msaa:1,prepass", invocations("msaa:1,prepass")},
       {"invocations.msaa:8,prepass", invocations("msaa:8,prepass")},
       {"invocations_over_needed", invocations_over_needed},

@@ -4,7 +4,7 @@
 #include <limits>
 
 #include "tools/claims/published_text.h"
-#include "traces/json_cursor.h"
+#include "traces/files/json_cursor.h"
 
 namespace beampipe {
 namespace {

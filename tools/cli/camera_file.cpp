@@ -2,8 +2,8 @@
 
 #include <limits>
 
-#include "traces/json.h"
-#include "traces/json_cursor.h"
+#include "traces/files/json.h"
+#include "traces/files/json_cursor.h"
 
 namespace beampipe {
 

@@ -13,7 +13,7 @@
 #include "tools/files/image_io.h"
 #include "tools/files/output.h"
 #include "tools/report/report_text.h"
-#include "traces/trace_io.h"
+#include "traces/files/trace_io.h"
 
 namespace beampipe {
 namespace {

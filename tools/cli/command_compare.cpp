@@ -79,7 +79,7 @@ void add_compare_command(CommandLine& line, InterruptGate& gate) {
   command.add_flag("--causes", options->causes,
                    "split each pixel's error (where surfaces vary: its error in visibility) by cause, as layers of the "
                    "counters and as a table "
-                   "(beam in every order but not in several passes, beam:rules=paper in sorted order, and alpha)");
+                   "(beam in every order, casav in sorted order, and alpha)");
   command.add_flag("--orders", options->orders,
                    "also render with the triangles shuffled, from near to far and from far to near, and tell the error "
                    "of each order and how far the pictures differ");

@@ -10,7 +10,7 @@
 #include "tools/cli/commands.h"
 #include "tools/evaluate/machine_memory.h"
 #include "tools/files/output.h"
-#include "traces/trace_io.h"
+#include "traces/files/trace_io.h"
 
 namespace beampipe {
 namespace {

@@ -12,8 +12,8 @@
 #include "tools/cli/trace_notes.h"
 #include "tools/evaluate/draw_notes.h"
 #include "tools/report/report_text.h"
-#include "traces/json.h"
-#include "traces/trace_io.h"
+#include "traces/files/json.h"
+#include "traces/files/trace_io.h"
 
 namespace beampipe {
 namespace {

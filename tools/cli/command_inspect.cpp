@@ -21,7 +21,7 @@
 #include "tools/inspect/inspection_json.h"
 #include "tools/inspect/inspection_picture.h"
 #include "tools/inspect/inspection_text.h"
-#include "traces/trace_io.h"
+#include "traces/files/trace_io.h"
 
 namespace beampipe {
 namespace {
@@ -80,7 +80,7 @@ std::vector<PixelInspection> inspect_all(const InspectArguments& arguments, cons
   std::vector<PixelAddress> pixels;
   for (const std::string& text : arguments.pixels) pixels.push_back(parse_pixel("--pixel", text, frame));
   const TextureSet textures(trace, arguments.trace);
-  RunOptions run;
+  FrameInput run;
   run.threads = arguments.threads;
   run.memory.modelled = false;
   run.memory_limit = machine_memory() / 2;

@@ -11,11 +11,11 @@
 #include "tools/cli/trace_view.h"
 #include "tools/files/output.h"
 #include "tools/report/report_text.h"
-#include "traces/atomic_file.h"
 #include "traces/closest_name.h"
-#include "traces/model_import.h"
+#include "traces/files/atomic_file.h"
+#include "traces/files/model_import.h"
+#include "traces/files/trace_io.h"
 #include "traces/scenes.h"
-#include "traces/trace_io.h"
 
 namespace beampipe {
 namespace {

@@ -12,8 +12,8 @@
 #include "tools/evaluate/machine_memory.h"
 #include "tools/files/image_io.h"
 #include "tools/files/output.h"
-#include "traces/model_import.h"
-#include "traces/trace_io.h"
+#include "traces/files/model_import.h"
+#include "traces/files/trace_io.h"
 
 namespace beampipe {
 namespace {
@@ -64,7 +64,7 @@ void preview(const PreviewArguments& arguments, const Command& command, Interrup
   if (const std::string note = note_on_darkness(trace, {arguments.frame}, arguments.scene); !note.empty())
     std::cerr << "beampipe: " << note << "\n";
   const TextureSet textures(trace, arguments.scene);
-  RunOptions options;
+  FrameInput options;
   options.memory.modelled = false;
   options.memory_limit = machine_memory() / 2;
   options.textures = &textures;

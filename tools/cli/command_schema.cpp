@@ -8,7 +8,7 @@
 #include "tools/inspect/inspection_json.h"
 #include "tools/report/report_json.h"
 #include "tools/sweep/sweep_plan.h"
-#include "traces/trace_io.h"
+#include "traces/files/trace_io.h"
 
 namespace beampipe {
 namespace {

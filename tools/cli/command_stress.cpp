@@ -6,6 +6,7 @@
 #include <memory>
 #include <set>
 
+#include "pipeline/technique_table.h"
 #include "tools/cli/commands.h"
 #include "tools/cli/run_arguments.h"
 #include "tools/evaluate/machine_memory.h"
@@ -13,39 +14,14 @@
 #include "tools/files/output.h"
 #include "tools/report/report_text.h"
 #include "tools/stress/judge.h"
-#include "traces/atomic_file.h"
-#include "traces/trace_io.h"
+#include "traces/files/atomic_file.h"
+#include "traces/files/trace_io.h"
 
 namespace beampipe {
 namespace {
 
 struct StressArguments {
-  std::vector<std::string> specs = {"beam",
-                                    "beam:bits=64,slots=4",
-                                    "beam:bits=32,slots=2",
-                                    "beam:order=stream",
-                                    "beam:order=sorted",
-                                    "beam:order=sorted,storage=float32",
-                                    "beam:order=sorted,bits=32",
-                                    "beam:order=stream,passes=0",
-                                    "beam:order=stream,passes=0,bits=64,layers=1",
-                                    "z3",
-                                    "z3:shape=128x3",
-                                    "beam:rules=paper",
-                                    "beam:rules=paper,storage=text",
-                                    "beam:rules=paper,storage=float32",
-                                    "alpha",
-                                    "msaa:1,8,16,256",
-                                    "acaa:8",
-                                    "acaa:8,double=stencil",
-                                    "acaa:8,color=unorm8",
-                                    "acaa:8,color=fp32",
-                                    "acaa:256",
-                                    "deferred",
-                                    "visibility",
-                                    "taa:8",
-                                    "dvm",
-                                    "reference"};
+  std::vector<std::string> specs = stressed_specs();
   std::vector<std::string> cases;
   std::string output;
   int threads = 0;
@@ -113,7 +89,7 @@ void stress(const StressArguments& arguments, InterruptGate& gate) {
     for (const Technique& technique : techniques)
       require_memory(hard_case.trace, hard_case.trace.frames[0], technique.working_bytes_per_pixel,
                      hard_case.name + " with " + technique.spec, machine_memory());
-  RunOptions options;
+  FrameInput options;
   options.threads = arguments.threads;
   options.memory.modelled = false;  // only the pictures are compared
   std::vector<std::vector<std::string>> rows(1, {"case"});

@@ -9,7 +9,7 @@
 #include "tools/cli/camera_file.h"
 #include "tools/cli/framing.h"
 #include "tools/cli/viewpoint.h"
-#include "traces/model_import.h"
+#include "traces/files/model_import.h"
 
 namespace beampipe {
 namespace {

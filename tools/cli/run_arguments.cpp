@@ -15,8 +15,8 @@
 #include "tools/evaluate/memory_system.h"
 #include "tools/evaluate/results.h"
 #include "tools/files/output.h"
+#include "traces/files/trace_io.h"
 #include "traces/scenes.h"
-#include "traces/trace_io.h"
 
 namespace beampipe {
 

@@ -5,7 +5,7 @@
 #include <optional>
 
 #include "pipeline/spec.h"
-#include "traces/json.h"
+#include "traces/files/json.h"
 
 namespace beampipe {
 namespace {

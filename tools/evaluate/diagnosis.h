@@ -11,7 +11,7 @@
 #include "tools/evaluate/progress.h"
 #include "tools/evaluate/results.h"
 #include "tools/evaluate/run_plan.h"
-#include "traces/json.h"
+#include "traces/files/json.h"
 
 namespace beampipe {
 

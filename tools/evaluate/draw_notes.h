@@ -5,7 +5,7 @@
 #include <vector>
 
 #include "stages/geometry/draw_notes.h"
-#include "traces/json_form.h"
+#include "traces/files/json_form.h"
 #include "traces/trace.h"
 
 namespace beampipe {

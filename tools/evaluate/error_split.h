@@ -18,7 +18,7 @@
 #include "tools/evaluate/render.h"
 #include "tools/evaluate/results.h"
 #include "tools/evaluate/run_plan.h"
-#include "traces/json.h"
+#include "traces/files/json.h"
 
 namespace beampipe {
 

@@ -1,5 +1,8 @@
 #include "tools/evaluate/frame_json.h"
 
+#include <optional>
+#include <stdexcept>
+#include <string>
 #include <string_view>
 #include <utility>
 
@@ -20,14 +23,17 @@ std::pair<std::string_view, std::string_view> keys_of(const CounterInfo& counter
 }
 
 void add_counter(ObjectForm<StageCounters>& object, const CounterInfo& counter) {
-  object.written(std::string(keys_of(counter).second),
-                 [&counter](const StageCounters& stage) { return std::uint64_t{counter.value(stage)}; }, form::count(),
-                 counter.meaning);
+  object.written(
+      std::string(keys_of(counter).second),
+      [&counter](const StageCounters& stage) { return std::uint64_t{counter.value(stage)}; }, form::count(),
+      counter.meaning);
 }
 
 Form<StageCounters> make_stage_form() {
   ObjectForm<StageCounters> stage, operations;
-  stage.written("stage", &StageCounters::stage, form::text(), "The stage's name, as docs/counters.md lists it.");
+  stage.written(
+      "stage", [](const StageCounters& each) { return std::string(name_of(each.stage)); }, form::text(),
+      "The stage's name, as docs/counters.md lists it.");
   const std::span<const CounterInfo> counters = stage_counters();
   for (std::size_t i = 0; i < counters.size();) {
     const std::string group(keys_of(counters[i]).first);
@@ -47,11 +53,14 @@ const Form<StageCounters>& stage_form() {
 }
 
 StageCounters stage_of(const Json& json) {
-  StageCounters stage{json.at("stage").get<std::string>()};
+  const std::string name = json.at("stage").get<std::string>();
+  const std::optional<Stage> known = find_stage(name);
+  if (!known) throw std::runtime_error("\"stage\": expected the name of a stage, found \"" + name + '"');
+  StageCounters stage{*known};
   for (const CounterInfo& counter : stage_counters()) {
     const auto [group, key] = keys_of(counter);
     const Json& object = group.empty() ? json : json.at(group);
-    if (Count* stored = counter.stored(stage)) *stored = object.at(key).get<std::uint64_t>();
+    if (std::uint64_t* stored = counter.stored(stage)) *stored = object.at(key).get<std::uint64_t>();
   }
   return stage;
 }
@@ -99,8 +108,9 @@ Form<Buffer> buffer_form() {
   return ObjectForm<Buffer>()
       .written("name", &Buffer::name, form::text(), "Its name.")
       .written("peak_bytes", &Buffer::peak_bytes, form::count(), "Its largest size.")
-      .written("held", [](const Buffer& buffer) { return buffer.per_bin ? kHeldByBin : "frame"; },
-               form::one_of({"frame", kHeldByBin}), "Whether each bin has one, or the frame.");
+      .written(
+          "held", [](const Buffer& buffer) { return buffer.per_bin ? kHeldByBin : "frame"; },
+          form::one_of({"frame", kHeldByBin}), "Whether each bin has one, or the frame.");
 }
 
 Form<PixelCounterStats> statistics_form() {
@@ -112,7 +122,8 @@ Form<PixelCounterStats> statistics_form() {
 // Times of an implementation.
 Form<ModelledTime> modelled_form() {
   return ObjectForm<ModelledTime>()
-      .written("overlap", &ModelledTime::overlap_ms, form::amount(), "All stages at once: the time of the busiest unit.")
+      .written("overlap", &ModelledTime::overlap_ms, form::amount(),
+               "All stages at once: the time of the busiest unit.")
       .written("sum", &ModelledTime::sum_ms, form::amount(), "One stage after the other: the sum over the stages.")
       .written("busiest", &ModelledTime::busiest, form::text(), "The busiest unit.");
 }
@@ -124,9 +135,7 @@ std::optional<Json> saved_of(const FrameOf& of) {
 }
 
 Form<FrameOf> make_frame_form() {
-  const auto member = [](auto FrameReport::*place) {
-    return [place](const FrameOf& of) { return of.frame.*place; };
-  };
+  const auto member = [](auto FrameReport::*place) { return [place](const FrameOf& of) { return of.frame.*place; }; };
   const auto filled = [](auto FrameReport::*place) {
     return [get = form::filled(place)](const FrameOf& of) { return get(of.frame); };
   };
@@ -156,10 +165,10 @@ Form<FrameOf> make_frame_form() {
   for (const char* column : {"logical_bytes", "sector_bytes", "l2_bytes", "dram_bytes"})
     for (const CounterInfo& counter : stage_counters())
       if (counter.name == std::string_view(column))
-        form.written(column, [&counter](const FrameOf& of) { return std::uint64_t{counter.value(of.all)}; },
-                     form::count(), "Sum over the stages.");
-  return form
-      .written("buffers", buffers_of, form::list(buffer_form()), "Every buffer at its peak.")
+        form.written(
+            column, [&counter](const FrameOf& of) { return std::uint64_t{counter.value(of.all)}; }, form::count(),
+            "Sum over the stages.");
+  return form.written("buffers", buffers_of, form::list(buffer_form()), "Every buffer at its peak.")
       .written("pixel_counters", filled(&Frame::pixel_counters), form::by_name(statistics_form()),
                "Statistics of each counter of pixels, by name.")
       .written("saved", saved_of, form::as_it_is(form::by_name(form::count()).schema),

@@ -4,7 +4,7 @@
 #include "tools/evaluate/hardware.h"
 #include "tools/evaluate/metrics.h"
 #include "tools/evaluate/results.h"
-#include "traces/json_form.h"
+#include "traces/files/json_form.h"
 
 namespace beampipe {
 

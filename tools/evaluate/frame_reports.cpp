@@ -7,7 +7,7 @@
 #include <utility>
 
 #include "tools/evaluate/frame_json.h"
-#include "traces/json.h"
+#include "traces/files/json.h"
 
 namespace beampipe {
 namespace {

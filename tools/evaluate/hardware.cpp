@@ -6,15 +6,15 @@
 #include <stdexcept>
 #include <system_error>
 
-#include "stages/cost/counter_registry.h"
 #include "tools/evaluate/hardware_text.h"
 #include "traces/closest_name.h"
-#include "traces/input_file.h"
+#include "traces/files/input_file.h"
 
 namespace beampipe {
 namespace {
 
 using Rates = std::map<std::string, double>;
+using UnitsOfStages = decltype(Implementation::units);
 
 struct StageWork : StageCounters {
   bool pixels_on_chip = false;  // the state of pixels that it reads and writes; otherwise it is in memory
@@ -106,16 +106,34 @@ Form<ShadingCost> cost_form() {
                 "Registers that an invocation takes; the fewer invocations fit, the slower they are.");
 }
 
+// Can the unit do the stage's work? The counters of other stages would say nothing to it. Textures and the rate of
+// triangles and quads serve both kinds of stages.
+bool can_do(const std::string& unit, const StageInfo& stage) {
+  if (unit == "shader" || unit == "shading") return stage.can_be_shader;
+  for (const char* const each :
+       {"raster", "conservative_raster", "mask_generator", "sorter", "composer", "rop_samples", "rop_fragments"})
+    if (unit == each) return stage.can_be_fixed_function;
+  return true;
+}
+
+// Work of a stage with a mistyped name would cost nothing. A depth pre-pass runs on the units of the other pass.
+Form<UnitsOfStages> units_form() {
+  ObjectForm<UnitsOfStages> object("the name of a stage");
+  for (const StageInfo& stage : stage_list()) {
+    std::vector<std::string> names = {kOnChip};
+    for (const auto& [name, clocks] : units())
+      if (can_do(name, stage)) names.push_back(name);
+    const Form<std::vector<std::string>> list = form::list(form::one_of(names));
+    object.add({std::string(stage.name), "The units that it uses.", false, list.schema,
+                [list, id = stage.id](const JsonCursor& at, UnitsOfStages& of) { of[id] = list(at); }});
+  }
+  return object;
+}
+
 Form<Implementation> implementation_form() {
-  std::vector<std::string> names = {kOnChip};
-  for (const auto& [name, clocks] : units()) names.push_back(name);
-  std::vector<form::Key> stages;
-  for (const StageInfo& stage : stage_list()) stages.push_back({stage.name, "The units that it uses."});
   return ObjectForm<Implementation>()
       .add(form::unused<Implementation>("description", false, form::text(), "What it is, for people."))
-      .required("units", &Implementation::units,
-                // work of a stage with a mistyped name would cost nothing
-                form::record(stages, false, form::list(form::one_of(names)), "the name of a stage"),
+      .required("units", &Implementation::units, units_form(),
                 "By the name of a stage (docs/counters.md): its units. on_chip is no unit; it marks stages that work "
                 "on what a bin has on chip.");
 }
@@ -133,8 +151,9 @@ Form<Hardware> hardware_form() {
       .required("name", &Hardware::name, form::text(), "What it is, for people.")
       .required("clock_mhz", &Hardware::clock_mhz, rate, "The clock, in MHz.")
       .required("rates", &Hardware::rates, form::record(hardware_rates(), true, rate), "What the units do per clock.")
-      .add(form::unused<Hardware>("sources", true, form::record(sources, true, form::text("where the number is from, or that it is a choice")),
-                                  "Where each number is from, or that it is a choice, by its name."))
+      .add(form::unused<Hardware>(
+          "sources", true, form::record(sources, true, form::text("where the number is from, or that it is a choice")),
+          "Where each number is from, or that it is a choice, by its name."))
       .required("implementations", &Hardware::implementations,
                 form::named(implementation_form(), &Implementation::name, "implementation"),
                 "Ways to do the same work, by name: which units each stage uses. A stage that is not listed uses L2 "
@@ -157,8 +176,8 @@ StageCounters with_costs(const Hardware& hardware, const StageCounters& stage, b
     priced.texture_bytes += texels;
     registers = std::max(registers, cost.registers);
   };
-  if (stage.stage == "shade") add(hardware.material);
-  if (stage.stage == "light" || (stage.stage == "shade" && !has_light)) add(hardware.light);
+  if (stage.stage.id == StageId::shade) add(hardware.material);
+  if (stage.stage.id == StageId::light || (stage.stage.id == StageId::shade && !has_light)) add(hardware.light);
   return priced;
 }
 
@@ -171,8 +190,7 @@ std::map<std::string, double> times_of(const Hardware& hardware, const Implement
   std::map<std::string, double> times;
   const auto use = [&](const std::string& unit) { times[unit] = units().at(unit)(rates, stage) / clocks_per_ms; };
   bool on_chip = false;
-  if (const auto found = implementation.units.find(std::string(without_pass(stage.stage)));
-      found != implementation.units.end())
+  if (const auto found = implementation.units.find(stage.stage.id); found != implementation.units.end())
     for (const std::string& unit : found->second) unit == kOnChip ? static_cast<void>(on_chip = true) : use(unit);
   if (const auto shading = times.find("shading"); shading != times.end())
     shading->second *= std::max(1.0, registers / rates.at("registers_at_full_rate"));
@@ -262,9 +280,7 @@ std::vector<Hardware> read_hardware_list(const std::string& list) {
   return all;
 }
 
-Json hardware_schema() {
-  return schema_file(hardware_form().schema, "beampipe hardware, version 3");
-}
+Json hardware_schema() { return schema_file(hardware_form().schema, "beampipe hardware, version 3"); }
 
 Hardware parse_hardware(const Json& json, const std::string& file) {
   Hardware hardware = hardware_form()(JsonCursor(json, file));
@@ -288,7 +304,8 @@ std::map<std::string, double> unit_times(const Hardware& hardware, const Impleme
 
 ModelledTime modelled_time(const Hardware& hardware, const Implementation& implementation,
                            const std::vector<StageCounters>& stages, double bin_bytes) {
-  const bool has_light = std::any_of(stages.begin(), stages.end(), [](const auto& s) { return s.stage == "light"; });
+  const bool has_light =
+      std::any_of(stages.begin(), stages.end(), [](const auto& s) { return s.stage.id == StageId::light; });
   ModelledTime time;
   std::map<std::string, double> busy;
   for (const StageCounters& stage : stages) {

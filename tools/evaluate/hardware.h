@@ -13,13 +13,13 @@
 #include <vector>
 
 #include "stages/cost/counters.h"
-#include "traces/json_form.h"
+#include "traces/files/json_form.h"
 
 namespace beampipe {
 
 struct Implementation {
   std::string name;
-  std::map<std::string, std::vector<std::string>> units;  // by stage; a stage that is not listed uses only L2 and DRAM
+  std::map<StageId, std::vector<std::string>> units;  // a stage that is not listed uses only L2 and DRAM
 };
 
 // What each invocation of a fragment shader costs beside what the trace's materials cost.

@@ -26,7 +26,10 @@ Form<std::optional<Place>> place_form() {
 // Bytes of a line of L1 and of L2.
 Field<MemoryParameters> line_field() {
   const Form<std::uint32_t> form = form::power_of_two(kLeastSectorBytes, kMostLine);
-  return {"line_bytes", "a line of L1 and of L2: 1 to 8 sectors", false, form.schema,
+  return {"line_bytes",
+          "a line of L1 and of L2: 1 to 8 sectors",
+          false,
+          form.schema,
           [form](const JsonCursor& at, MemoryParameters& m) { m.l1.line_bytes = m.l2.line_bytes = form(at); },
           [](const MemoryParameters& m) { return Json(m.l2.line_bytes); }};
 }
@@ -48,18 +51,25 @@ std::vector<MemoryParameter> all_parameters() {
   place("sector_bytes", "bytes", "the unit that moves in every cache and to and from DRAM", &Memory::sector_bytes,
         form::power_of_two(kLeastSectorBytes, 128));
   add(line_field(), "bytes");
-  place("l1_bytes", "bytes", "the L1 through which shaders read, and its texture cache",
-        [](auto& m) -> auto& { return m.l1.bytes; }, integer(kLeastSectorBytes, kMostL1));
-  place("l1_ways", "", "lines in a set of L1", [](auto& m) -> auto& { return m.l1.ways; }, integer(1, kMostWays));
-  place("l2_bytes", "bytes", "the L2 for what shaders read and write", [](auto& m) -> auto& { return m.l2.bytes; },
-        integer(kLeastSectorBytes, kMostCache));
-  place("l2_ways", "", "lines in a set of L2", [](auto& m) -> auto& { return m.l2.ways; }, integer(1, kMostWays));
-  place("rop_bytes", "bytes", "the cache of each class of framebuffer surfaces in memory",
-        [](auto& m) -> auto& { return m.rop.bytes; }, integer(kLeastRopLine, kMostCache));
-  place("rop_ways", "", "lines in a set of these caches", [](auto& m) -> auto& { return m.rop.ways; },
-        integer(1, kMostWays));
-  place("rop_line_bytes", "bytes", "a line of these caches, and a block of a surface: 1 to 8 sectors",
-        [](auto& m) -> auto& { return m.rop.line_bytes; }, form::power_of_two(kLeastRopLine, kMostLine));
+  place(
+      "l1_bytes", "bytes", "the L1 through which shaders read, and its texture cache",
+      [](auto& m) -> auto& { return m.l1.bytes; }, integer(kLeastSectorBytes, kMostL1));
+  place(
+      "l1_ways", "", "lines in a set of L1", [](auto& m) -> auto& { return m.l1.ways; }, integer(1, kMostWays));
+  place(
+      "l2_bytes", "bytes", "the L2 for what shaders read and write", [](auto& m) -> auto& { return m.l2.bytes; },
+      integer(kLeastSectorBytes, kMostCache));
+  place(
+      "l2_ways", "", "lines in a set of L2", [](auto& m) -> auto& { return m.l2.ways; }, integer(1, kMostWays));
+  place(
+      "rop_bytes", "bytes", "the cache of each class of framebuffer surfaces in memory",
+      [](auto& m) -> auto& { return m.rop.bytes; }, integer(kLeastRopLine, kMostCache));
+  place(
+      "rop_ways", "", "lines in a set of these caches", [](auto& m) -> auto& { return m.rop.ways; },
+      integer(1, kMostWays));
+  place(
+      "rop_line_bytes", "bytes", "a line of these caches, and a block of a surface: 1 to 8 sectors",
+      [](auto& m) -> auto& { return m.rop.line_bytes; }, form::power_of_two(kLeastRopLine, kMostLine));
   place("compression", "", "whether blocks of surfaces are compressed", &Memory::compression, form::boolean());
   place("plane_bytes", "bytes", "a depth plane in a compressed block", &Memory::plane_bytes, integer(1, 64));
   place("framebuffer", "", "where the pixels of a bin are while it is drawn", &Memory::framebuffer, place_form());
@@ -125,8 +135,7 @@ Form<std::map<std::string, std::string>> sources_form(const JsonCursor* paramete
   std::vector<form::Key> keys;
   for (const MemoryParameter& parameter : memory_parameters())
     if (!parameters || parameters->has(parameter.key)) keys.push_back({parameter.key, "Of this parameter."});
-  return form::record(keys, parameters != nullptr,
-                      form::text("where the value is from, or that it is a choice"));
+  return form::record(keys, parameters != nullptr, form::text("where the value is from, or that it is a choice"));
 }
 
 Form<MemoryParameters> memory_system_form() {
@@ -140,7 +149,7 @@ Form<MemoryParameters> memory_system_form() {
                                           "name. Parameters that are left out have none."))
       .check([](const JsonCursor& at, const MemoryParameters&) {
         const JsonCursor parameters = at["parameters"];
-        sources_form(&parameters)(at["sources"]);
+        sources_form (&parameters)(at["sources"]);
       });
 }
 

@@ -10,7 +10,7 @@
 #include <vector>
 
 #include "pipeline/memory/parameters.h"
-#include "traces/json_form.h"
+#include "traces/files/json_form.h"
 
 namespace beampipe {
 

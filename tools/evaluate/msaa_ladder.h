@@ -8,7 +8,7 @@
 #include "tools/evaluate/metrics.h"
 #include "tools/evaluate/progress.h"
 #include "tools/evaluate/run_plan.h"
-#include "traces/json.h"
+#include "traces/files/json.h"
 
 namespace beampipe {
 

@@ -4,7 +4,7 @@
 #include <vector>
 
 #include "tools/evaluate/results.h"
-#include "traces/json.h"
+#include "traces/files/json.h"
 
 namespace beampipe {
 

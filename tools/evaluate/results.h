@@ -13,7 +13,7 @@
 #include "tools/evaluate/frame_reports.h"
 #include "tools/evaluate/hardware.h"
 #include "tools/evaluate/metrics.h"
-#include "traces/json.h"
+#include "traces/files/json.h"
 
 namespace beampipe {
 

@@ -9,7 +9,7 @@
 #include "tools/evaluate/memory_system.h"
 #include "tools/files/digest.h"
 #include "tools/files/sealed_json.h"
-#include "traces/trace_io.h"
+#include "traces/files/trace_io.h"
 
 namespace beampipe {
 namespace {

@@ -13,7 +13,7 @@
 #include "tools/evaluate/results.h"
 #include "tools/evaluate/run_plan.h"
 #include "tools/files/output.h"
-#include "traces/json.h"
+#include "traces/files/json.h"
 
 namespace beampipe {
 

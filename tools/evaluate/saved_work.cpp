@@ -4,16 +4,17 @@
 
 namespace beampipe {
 
-std::vector<SavedWork> saved_work(const std::vector<StageCounters>& stages) {
-  const auto find = [&](const char* name) {
-    return std::find_if(stages.begin(), stages.end(), [&](const StageCounters& stage) { return stage.stage == name; });
+std::vector<SavedWork> saved_work(const std::vector<StageCounters> &stages) {
+  const auto find = [&](Stage stage) -> const StageCounters * {
+    const auto found =
+        std::find_if(stages.begin(), stages.end(), [&](const auto &each) { return each.stage == stage; });
+    return found == stages.end() ? nullptr : &*found;
   };
-  const auto pairs = find("conservative_raster"), cells = find("sample_raster"), buffer = find("a_buffer"),
-             fragment = find("beam_fragment"), composition = find("compose");
+  const StageCounters *const pairs = find(StageId::conservative_raster), *const cells = find(StageId::sample_raster);
   std::vector<SavedWork> saved;
-  if (pairs == stages.end() && cells == stages.end()) return saved;
-  StageCounters raster = pairs != stages.end() ? *pairs : *cells;
-  if (const auto prepass = find("prepass_sample_raster"); prepass != stages.end()) raster += *prepass;
+  if (!pairs && !cells) return saved;
+  StageCounters raster = pairs ? *pairs : *cells;
+  if (const StageCounters *const prepass = find({StageId::sample_raster, Pass::prepass})) raster += *prepass;
   saved.push_back({"empty_tiles", "empty tiles", "tiles", "tiles that no triangle touches, counted in each pass",
                    raster.empty_tiles});
   saved.push_back({"hidden_triangles", "hidden triangles", "triangles",
@@ -21,7 +22,7 @@ std::vector<SavedWork> saved_work(const std::vector<StageCounters>& stages) {
                    "of it; counted "
                    "once per tile and pass",
                    raster.hidden_triangles});
-  if (pairs == stages.end()) {
+  if (!pairs) {
     saved.push_back({"hidden_cells", "hidden cells", "cells",
                      "touched cells (pixels, or parts of pixels at high sampling rates) whose samples were not tested "
                      "because a nearer "
@@ -34,9 +35,9 @@ std::vector<SavedWork> saved_work(const std::vector<StageCounters>& stages) {
        "pairs that the rasterizer skipped because a nearer triangle covers the whole pixel; hidden triangles are "
        "not counted here",
        raster.hidden_items});
-  // Only in sorted order does beam_fragment run after a_buffer.
-  if (buffer == stages.end() || fragment == stages.end() || composition == stages.end() || fragment < buffer)
-    return saved;
+  if (!find(StageId::windows)) return saved;  // only sorted order knows the pairs of a pixel before their fragments
+  const StageCounters *const buffer = find(StageId::a_buffer), *const fragment = find(StageId::beam_fragment),
+                             *const composition = find(StageId::compose);
   const std::uint64_t whole = composition->items_in - fragment->items_out;
   saved.push_back(
       {"whole_pixels", "whole pixels", "pixels",

@@ -12,7 +12,7 @@
 #include <system_error>
 #include <vector>
 
-#include "traces/atomic_file.h"
+#include "traces/files/atomic_file.h"
 
 namespace beampipe {
 namespace {

@@ -1,7 +1,7 @@
 // JSON objects that hold a digest of themselves, so that a damaged file is noticed.
 #pragma once
 
-#include "traces/json.h"
+#include "traces/files/json.h"
 
 namespace beampipe {
 

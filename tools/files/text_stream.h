@@ -8,7 +8,7 @@
 #include <string_view>
 
 #include "tools/files/interrupt.h"
-#include "traces/atomic_file.h"
+#include "traces/files/atomic_file.h"
 
 namespace beampipe {
 

@@ -76,8 +76,8 @@ void add_explanation(const ExplainedPixel& explained, PixelInspection& inspectio
 }  // namespace
 
 std::vector<PixelInspection> inspect(const Trace& trace, std::size_t frame, const Technique& technique,
-                                     const std::vector<PixelAddress>& pixels, const RunOptions& run) {
-  RunOptions only = run;
+                                     const std::vector<PixelAddress>& pixels, const FrameInput& run) {
+  FrameInput only = run;
   only.memory.modelled = false;
   only.pixels = &pixels;
   const Technique reference = parse_technique("reference");
@@ -88,7 +88,7 @@ std::vector<PixelInspection> inspect(const Trace& trace, std::size_t frame, cons
 
   // If surfaces vary, causes are those of the error in visibility.
   const bool varies = has_varying_surfaces(trace, of_trace);
-  RunOptions by_pixel = only;
+  FrameInput by_pixel = only;
   by_pixel.colors = SurfaceColors::by_pixel;
   std::vector<PixelHistory> visible;
   Image visible_truth = truth;

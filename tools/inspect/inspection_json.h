@@ -2,7 +2,7 @@
 #pragma once
 
 #include "tools/inspect/inspection.h"
-#include "traces/json_form.h"
+#include "traces/files/json_form.h"
 
 namespace beampipe {
 

@@ -354,17 +354,13 @@ std::string step_text(const HistoryStep& step, const PixelHistory& history) {
              " became one: " + counted(step.after->positions, history) + ", colour " + color_text(step.after->color);
     case settled:
       return when + "final: " + surface_text(step.before[0]) + format(", area %.5f", step.before[0].area);
-    case dropped:
-      return when + "dropped, left to another pass: " + surface_text(step.before[0]);
     case composed:
-      return when + format("aggregate of %zu (%u %s, area %.4f, colour %s) became %zu (%u, area %.4f, colour %s)",
-                           step.before[0].fragments.size(), step.before[0].positions, unit_of(history).c_str(),
-                           step.before[0].area, color_text(step.before[0].color).c_str(), step.after->fragments.size(),
-                           step.after->positions, step.after->area, color_text(step.after->color).c_str());
-    case pass:
       break;
   }
-  return when + "another pass over the geometry";
+  return when + format("aggregate of %zu (%u %s, area %.4f, colour %s) became %zu (%u, area %.4f, colour %s)",
+                       step.before[0].fragments.size(), step.before[0].positions, unit_of(history).c_str(),
+                       step.before[0].area, color_text(step.before[0].color).c_str(), step.after->fragments.size(),
+                       step.after->positions, step.after->area, color_text(step.after->color).c_str());
 }
 
 std::string cause_shares_text(const PixelInspection& inspection) {

@@ -5,7 +5,7 @@
 #include <vector>
 
 #include "tools/inspect/inspection.h"
-#include "traces/json.h"
+#include "traces/files/json.h"
 
 namespace beampipe {
 

@@ -3,10 +3,11 @@
 #include <algorithm>
 #include <array>
 #include <iomanip>
+#include <optional>
 #include <sstream>
-#include <utility>
 
 #include "pipeline/error_causes.h"
+#include "stages/cost/stage.h"
 
 namespace beampipe {
 namespace {
@@ -17,19 +18,6 @@ constexpr std::array kColors = {"#4e79a7", "#f28e2b", "#e15759", "#76b7b2", "#59
                                 "#8cd17d", "#f7e5a1", "#d4a6c8", "#d7b5a6", "#fcd9de", "#bab0ac"};
 
 constexpr const char* kUnknown = "#888888";
-
-// Stages that do similar work have similar hues: blue for geometry and bins, teal for rasters, orange for fragments,
-// yellow for shading, brown for the A-buffer, red for composition, green for samples, purple for sample selection.
-constexpr std::pair<std::string_view, const char*> kStages[] = {
-    {"vertex_setup", "#4e79a7"},    {"bin_sort", "#a0cbe8"},      {"conservative_raster", "#76b7b2"},
-    {"sample_raster", "#2c8c83"},   {"beam_fragment", "#f28e2b"}, {"alpha_mask", "#ffbe7d"},
-    {"shade", "#edc948"},           {"light", "#b8970b"},         {"a_buffer", "#9c755f"},
-    {"windows", "#d7b5a6"},         {"compose", "#e15759"},       {"claim", "#ffb6b4"},
-    {"settle", "#a83238"},          {"alpha_test", "#c3d56b"},    {"depth_test", "#59a14f"},
-    {"blend", "#8cd17d"},           {"stencil_test", "#2e6b2a"},  {"accumulate", "#b07aa1"},
-    {"sample_select", "#d4a6c8"},   {"material_sort", "#6b4c86"}, {"motion", "#ff9da7"},
-    {"dilate", "#d37295"},          {"temporal", "#5f6fd0"},      {"resolve", "#79706e"},
-    {"reference_raster", "#bab0ac"}};
 
 // Half way to white. `color`: "#rrggbb".
 std::string lighter(const std::string& color) {
@@ -56,12 +44,11 @@ std::string technique_color(const std::vector<std::string>& specs, std::string_v
   return kUnknown;
 }
 
-std::string stage_color(std::string_view stage) {
-  constexpr std::string_view kPrepass = "prepass_";
-  if (stage.starts_with(kPrepass)) return lighter(stage_color(stage.substr(kPrepass.size())));
-  const auto* const found =
-      std::find_if(std::begin(kStages), std::end(kStages), [&](const auto& known) { return known.first == stage; });
-  return found == std::end(kStages) ? kUnknown : found->second;
+std::string stage_color(std::string_view name) {
+  const std::optional<Stage> stage = find_stage(name);
+  if (!stage) return kUnknown;
+  const std::string color(info_of(stage->id).color);
+  return stage->pass == Pass::prepass ? lighter(color) : color;
 }
 
 std::string cause_color(std::string_view cause) {

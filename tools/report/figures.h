@@ -7,7 +7,7 @@
 #include <vector>
 
 #include "tools/report/plot.h"
-#include "traces/json.h"
+#include "traces/files/json.h"
 
 namespace beampipe {
 

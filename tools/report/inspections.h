@@ -2,7 +2,7 @@
 #pragma once
 
 #include "tools/report/report_file.h"
-#include "traces/json.h"
+#include "traces/files/json.h"
 
 namespace beampipe {
 

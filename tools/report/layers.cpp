@@ -8,7 +8,7 @@
 #include "stages/cost/counter_registry.h"
 #include "tools/files/image_io.h"
 #include "tools/report/tables.h"
-#include "traces/base64.h"
+#include "traces/files/base64.h"
 
 namespace beampipe {
 namespace {

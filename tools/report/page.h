@@ -6,7 +6,7 @@
 #include "tools/report/figures.h"
 #include "tools/report/report_file.h"
 #include "tools/report/tables.h"
-#include "traces/json.h"
+#include "traces/files/json.h"
 
 namespace beampipe {
 

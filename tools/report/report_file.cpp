@@ -5,7 +5,7 @@
 #include <map>
 
 #include "tools/evaluate/results.h"
-#include "traces/json.h"
+#include "traces/files/json.h"
 
 namespace beampipe {
 namespace {

@@ -9,7 +9,7 @@
 #include <vector>
 
 #include "tools/evaluate/metrics.h"
-#include "traces/json.h"
+#include "traces/files/json.h"
 
 namespace beampipe {
 

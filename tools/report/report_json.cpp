@@ -103,9 +103,9 @@ Form<TechniqueReport> result_form() {
   return result
       .written("visibility", visibility_of, visibility_form(),
                "The error in visibility, where surfaces vary, and its own equivalent rate.")
-      .written("shading",
-               [](const Result& each) { return each.parts ? std::optional(each.parts->shading) : std::nullopt; },
-               rmse_form(), "The error in shading, where surfaces vary.")
+      .written(
+          "shading", [](const Result& each) { return each.parts ? std::optional(each.parts->shading) : std::nullopt; },
+          rmse_form(), "The error in shading, where surfaces vary.")
       .written("flicker", &Result::flicker, form::amount(),
                "Root mean square change of the error from one frame to the next.")
       .written("error_causes", causes_of, form::as_it_is(form::by_name(form::number()).schema),
@@ -152,8 +152,9 @@ Form<MemoryParameters> memory_form() {
       .written("l2_cache", &Memory::l2, cache_form(), "Of everything.")
       .written("plane_bytes", &Memory::plane_bytes, form::count(), "Of a plane in a compressed depth block.")
       .written("bin_pixels", &Memory::bin_pixels, form::count(), "The most pixels on each side of a bin.")
-      .written("framebuffer", [](const Memory& memory) { return name_of(memory.framebuffer); },
-               form::one_of({kByTechnique, kOnChip, kInMemory}), "Where the pixels of a bin are.")
+      .written(
+          "framebuffer", [](const Memory& memory) { return name_of(memory.framebuffer); },
+          form::one_of({kByTechnique, kOnChip, kInMemory}), "Where the pixels of a bin are.")
       .written("on_chip_bytes", &Memory::on_chip_bytes, form::count(), "For the pixels of a bin.");
 }
 
@@ -202,34 +203,34 @@ ObjectForm<Report> head_form() {
   const Json object = {{"type", "object"}};
   ObjectForm<Report> head;
   return head
-      .written("beampipe_report", [](const Report&) { return 1; }, form::version(1), "The version of this format.")
+      .written(
+          "beampipe_report", [](const Report&) { return 1; }, form::version(1), "The version of this format.")
       .written("trace", &Report::trace, form::text(), "The trace, as the user named it.")
       .written("version", &Report::version, form::text(), "Of the program.")
       .written("simd", &Report::simd, form::text(), "The instruction set that was used.")
       .written("threads", &Report::threads, form::count(1), "That worked at once.")
       .written("memory_system", &Report::memory, memory_form(), "The modelled memory system.")
-      .written("made_by",
-               [](const Report& report) {
-                 return report.made_by.is_null() ? std::nullopt : std::optional(report.made_by);
-               },
-               form::as_it_is(maker_schema()), "All that the results depend on.")
+      .written(
+          "made_by",
+          [](const Report& report) { return report.made_by.is_null() ? std::nullopt : std::optional(report.made_by); },
+          form::as_it_is(maker_schema()), "All that the results depend on.")
       .written("hardware", hardware_of, form::as_it_is(object),
                "The hardware whose times are modelled (`beampipe schema hardware`).")
       .written("more_hardware", more_hardware_of, form::as_it_is(form::by_name(form::as_it_is(object)).schema),
                "Further hardware, by label.")
-      .written("trace_frames",
-               [](const Report& report) {
-                 return report.frames.empty() ? std::nullopt : std::optional<std::uint64_t>(report.trace_frames);
-               },
-               form::count(1), "Frames of the whole trace.")
+      .written(
+          "trace_frames",
+          [](const Report& report) {
+            return report.frames.empty() ? std::nullopt : std::optional<std::uint64_t>(report.trace_frames);
+          },
+          form::count(1), "Frames of the whole trace.")
       .written("frames", form::filled(&Report::frames), form::list(content_form()),
                "What each rendered frame asks to be drawn.")
       .written("msaa_ladder", form::filled(&Report::msaa_ladder), form::list(rung_form()),
                "Errors of msaa:N, between which equivalent rates are interpolated.")
       .written("visibility_msaa_ladder", form::filled(&Report::visibility_ladder), form::list(rung_form()),
                "Those in visibility alone, where surfaces vary.")
-      .written("notes", form::filled(&Report::notes), notes_form(),
-               "What the frames ask for and no technique does.");
+      .written("notes", form::filled(&Report::notes), notes_form(), "What the frames ask for and no technique does.");
 }
 
 // The lines of a value that stands `level` levels deep, as in json_text. Line ends within strings are escaped.

@@ -121,7 +121,8 @@ Json times_json(const Report& report) {
   Json json = Json::array();
   for_each_time(report, [&](const TechniqueReport& result, const std::string& name, const MeanTime& time) {
     Json stages;
-    for (std::size_t i = 0; i < time.stages.size(); ++i) stages[result.frames.front().stages[i].stage] = time.stages[i];
+    for (std::size_t i = 0; i < time.stages.size(); ++i)
+      stages[name_of(result.frames.front().stages[i].stage)] = time.stages[i];
     json.push_back({{"technique", result.technique},
                     {"implementation", name},
                     {"sum", time.sum},

@@ -4,7 +4,6 @@
 #include <cctype>
 
 #include "pipeline/technique.h"
-#include "stages/cost/counter_registry.h"
 #include "tools/evaluate/saved_work.h"
 
 namespace beampipe {
@@ -310,8 +309,12 @@ std::vector<Json> claim_records(const Json& report) {
 
 std::vector<Source> saved_columns() {
   std::vector<Source> columns = {{{"technique", "technique", "", "The technique's spec."}, "/technique"}};
-  std::vector<SavedWork> all = saved_work({{"sample_raster"}});
-  for (const SavedWork& saved : saved_work({{"conservative_raster"}, {"a_buffer"}, {"beam_fragment"}, {"compose"}}))
+  std::vector<SavedWork> all = saved_work({{StageId::sample_raster}});
+  for (const SavedWork& saved : saved_work({{StageId::conservative_raster},
+                                            {StageId::a_buffer},
+                                            {StageId::windows},
+                                            {StageId::beam_fragment},
+                                            {StageId::compose}}))
     if (saved.name != std::string("empty_tiles") && saved.name != std::string("hidden_triangles")) all.push_back(saved);
   for (const SavedWork& saved : all)
     columns.push_back({{saved.name, saved.title, saved.unit, sentence(saved.meaning)}, std::string("/") + saved.name});

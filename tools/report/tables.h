@@ -5,7 +5,7 @@
 #include <vector>
 
 #include "tools/report/report_file.h"
-#include "traces/json.h"
+#include "traces/files/json.h"
 
 namespace beampipe {
 

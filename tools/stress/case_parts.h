@@ -72,7 +72,7 @@ class Screen {
 };
 
 inline constexpr const char* kOver = "OVER assumes that fragments cover a pixel independently of each other";
-inline constexpr const char* kPaper = "masks have 32 positions, and local coverage above 1 is lost";
+inline constexpr const char* kCasav = "masks have 32 positions, and local coverage above 1 is lost";
 inline constexpr const char* kText =
     "16-bit slopes turn equal planes into a slab, of which each later triangle takes half";
 inline constexpr const char* kFull =
@@ -84,11 +84,7 @@ inline constexpr const char* kStored =
     "a sum in fp16 stops growing when a share is less than half a unit in its last place";
 inline constexpr const char* kMask = "areas of partly hidden triangles are estimated from mask positions";
 
-inline constexpr const char* kUnseen = "a triangle that covers no mask position is invisible";
 inline constexpr const char* kSlopes = "layers store slopes in 8 bits, which moves intersections by a few positions";
-
-inline const std::string kStream = "beam:order=stream,passes=0", kSmallStream = "beam:order=stream,passes=0,bits=64",
-                         kCoarseStream = "beam:order=stream,passes=0,bits=32";
 
 // The limits of techniques that treat a mask without a gap as full coverage, if so many edges cut a pixel.
 std::map<std::string, StatedLimit> full_masks(int edges = 1);

@@ -14,13 +14,7 @@ HardCase slivers() {
     const auto at = [&](double x, double above) { return glm::dvec2(x, y + slope * (x - 8) + above); };
     screen.triangle(at(-32000, 0), at(32000, 0), at(32000, 1.0 / 256), 0.5, i % 2 ? kRed : kGreen);
   }
-  // In the middle each is half as thick, and in a pixel it is at most hypot(1, 0.039) long.
-  const double lost = 1.001 / 512;
-  return {"slivers",
-          "length over thickness 1.7 x 10^7",
-          screen.trace(),
-          {},
-          {{kStream, {lost, kUnseen}}, {kSmallStream, {lost, kUnseen}}}};
+  return {"slivers", "length over thickness 1.7 x 10^7", screen.trace(), {}, {}};
 }
 
 HardCase specks() {
@@ -34,12 +28,7 @@ HardCase specks() {
     const glm::dvec2 below = corner + glm::dvec2(0.25 / 256, 0.5);
     screen.triangle(below, below + glm::dvec2(0.2 / 256, 0), below + glm::dvec2(0, 0.2 / 256), 0.4, kGreen);
   }
-  // A speck of 1/8 x 1/8 px covers none of 128 positions, and one of 1/8 x 1/4 px none of 64. Larger ones cover some.
-  return {"specks",
-          "areas of 10^-6 px (which snapping removes), and from 7.6 x 10^-6 px up",
-          screen.trace(),
-          {},
-          {{kStream, {0x1p-7, kUnseen}}, {kSmallStream, {0x1p-6, kUnseen}}, {kCoarseStream, {0x1p-6, kUnseen}}}};
+  return {"specks", "areas of 10^-6 px (which snapping removes), and from 7.6 x 10^-6 px up", screen.trace(), {}, {}};
 }
 
 HardCase large() {
@@ -63,11 +52,7 @@ HardCase through_samples() {
     screen.triangle({u, 0}, {u, 2}, {i + 1, 2}, 0.5, kRed);
     screen.triangle({i, 2 + i / 16.0}, {i + 1, 2 + i / 16.0}, {i, 4}, 0.5, kGreen);
   }
-  return {"through_samples",
-          "edges that pass exactly through sample positions",
-          screen.trace(),
-          {},
-          {{kCoarseStream, {0x1p-6, kUnseen}}}};
+  return {"through_samples", "edges that pass exactly through sample positions", screen.trace(), {}, {}};
 }
 
 HardCase edge_on() {
@@ -81,11 +66,7 @@ HardCase edge_on() {
           "triangles seen almost edge-on, with depth slopes of 250 per pixel, that cut through others",
           screen.trace(),
           {},
-          {{"beam", {0.02, kMask}},
-           {kSmallStream, {0.05, kMask}},
-           {kCoarseStream, {0.06, kMask}},
-           {"beam:rules=paper", {0.03, kPaper}},
-           {"alpha", {0.01, kOver}}}};
+          {{"beam", {0.02, kMask}}, {"casav", {0.03, kCasav}}, {"alpha", {0.01, kOver}}}};
 }
 
 // A fan of triangles from a hub to `rim` points on a square around it.
@@ -112,7 +93,7 @@ HardCase shared_edges() {
   HardCase result{"shared_edges", "edges at 4,096 angles, each shared by two triangles", {}, {}, {}};
   result.trace = fan(16, {8.3, 7.6}, 3000, 4096);
   result.picture = ExactPicture{.elsewhere = glm::dvec4(glm::dvec3(kRed), 1.0)};
-  result.limits = {{"alpha", {0.75, kOver}}, {"beam:rules=paper", {0.45, kPaper}}};
+  result.limits = {{"alpha", {0.75, kOver}}, {"casav", {0.45, kCasav}}};
   return result;
 }
 
@@ -120,7 +101,7 @@ HardCase fan_10000() {
   HardCase result{"fan", "10,000 triangles around one vertex", {}, {}, {}};
   result.trace = fan(4, {2.0, 2.0}, 30000, 10000);
   result.picture = ExactPicture{.elsewhere = glm::dvec4(glm::dvec3(kRed), 1.0)};
-  result.limits = {{"alpha", {0.75, kOver}}, {"beam:rules=paper", {0.45, kPaper}}};
+  result.limits = {{"alpha", {0.75, kOver}}, {"casav", {0.45, kCasav}}};
   return result;
 }
 
@@ -133,9 +114,7 @@ HardCase tiled_pixel() {
   result.trace = screen.trace();
   // Adding shares of 0.75 / 16,384 stops at 0.125: above it, half a unit in the last place of fp16 is 2^-14. This loses
   // 0.625 of the red.
-  result.limits = {{"alpha", {0.75, kOver}},
-                   {"beam:rules=paper", {0.626, kStored}},
-                   {"beam:rules=paper,storage=float32", {0.45, kPaper}}};
+  result.limits = {{"alpha", {0.75, kOver}}, {"casav", {0.626, kStored}}, {"casav:storage=float32", {0.45, kCasav}}};
   return result;
 }
 
@@ -148,7 +127,7 @@ HardCase fp16_sums() {
   result.picture = ExactPicture{.elsewhere = glm::dvec4(glm::dvec3(color), 1.0)};
   result.trace = screen.trace();
   result.limits = {{"alpha", {0.5, kOver}},
-                   {"beam:rules=paper", {0.45, kPaper}},
+                   {"casav", {0.45, kCasav}},
                    {"acaa", {0.05, "each of 256 sums is rounded to fp16, by at most 2^-12"}},
                    {"acaa:8,color=unorm8", {9 * 0.5 / 255, "each of 9 sums is rounded to 8 bits, by at most 2^-9"}},
                    {"acaa:8,color=fp32", {0x1p-11, "sums are rounded to fp32"}}};

@@ -38,7 +38,7 @@ HardCase near_plane() {
           {},
           {
               {"beam", {0.02, kMask}},
-              {"beam:rules=paper", {0.15, kPaper}},
+              {"casav", {0.15, kCasav}},
               {"alpha", {0.3, kOver}},
           }};
 }
@@ -48,11 +48,7 @@ HardCase guard_band(double far, const std::string& name, const std::string& what
   Screen screen(16, 16);
   screen.triangle({-3e6 * far, 2e6 * far}, {4e6 * far, -1e6 * far}, {1e6 * far, 5e6 * far}, 0.5, kRed);
   screen.triangle({-8e6 * far, 8.3}, {8e6 * far, -4.2}, {9e6 * far, -7e6 * far}, 0.25, kGreen);
-  return {name,
-          what,
-          screen.trace(),
-          {},
-          {{"alpha", {0.3, kOver}}, {"beam:rules=paper", {0.1, kPaper}}, {"beam", {0.01, kMask}}}};
+  return {name, what, screen.trace(), {}, {{"alpha", {0.3, kOver}}, {"casav", {0.1, kCasav}}, {"beam", {0.01, kMask}}}};
 }
 
 HardCase wide_coordinates() {
@@ -77,7 +73,7 @@ HardCase depth_range() {
           "near to far as 1 : 10^7, and surfaces 10^-6 apart at the far end, of which the nearer one is drawn last",
           perspective(0.001, 10000, {kFartherOne, kNearerOne}),
           {},
-          {{"beam", {0.03, kMask}}, {"beam:rules=paper", {0.15, kPaper}}, {"alpha", {0.3, kOver}}}};
+          {{"beam", {0.03, kMask}}, {"casav", {0.15, kCasav}}, {"alpha", {0.3, kOver}}}};
 }
 
 HardCase depth_range_turned() {
@@ -88,9 +84,8 @@ HardCase depth_range_turned() {
       "the same with clip space's z negated: depth is coarsest far away, and the farther surface is in front",
       std::move(trace),
       {},
-      {{"alpha", {0.7, kOver}}, {"beam:rules=paper", {0.7, kPaper}}}};
-  for (const char* name : {"beam", "z3", "msaa", "acaa:8,double=stencil", "deferred", "visibility", "taa", "dvm"})
-    result.limits[name] = {0.7, kDepth};
+      {{"alpha", {0.7, kOver}}, {"casav", {0.7, kCasav}}}};
+  for (const char* name : {"beam", "z3", "msaa", "acaa:8,double=stencil", "dvm"}) result.limits[name] = {0.7, kDepth};
   result.limits["acaa"] = {2.0, kTwice};
   return result;
 }
@@ -107,8 +102,8 @@ HardCase coincident() {
           {{"acaa", {2.0, kTwice}},
            {"acaa:8,double=stencil", {0x1p-11, "fp16"}},
            {"alpha", {0.6, kOver}},
-           {"beam:rules=paper", {0.4, kPaper}},
-           {"beam:rules=paper,storage=text", {twice_halved + 0x1p-11, kText}},
+           {"casav", {0.4, kCasav}},
+           {"casav:storage=text", {twice_halved + 0x1p-11, kText}},
            {"beam", {0.25, kMask}}}};
 }
 
@@ -123,12 +118,9 @@ HardCase coplanar() {
           {{"msaa", {1.0, kDepth}},
            {"acaa", {2.0, kDepth}},
            {"acaa:8,double=stencil", {1.0, kDepth}},
-           {"deferred", {1.0, kDepth}},
-           {"visibility", {1.0, kDepth}},
-           {"taa", {1.0, kDepth}},
            {"dvm", {1.0, kDepth}},
            {"alpha", {0.7, kOver}},
-           {"beam:rules=paper", {0.7, kPaper}},
+           {"casav", {0.7, kCasav}},
            {"beam", {0.25, kMask}}}};
 }
 
@@ -142,7 +134,7 @@ HardCase grazing() {
                   screen.trace(),
                   {},
                   {{"beam", {0.25, kMask}},
-                   {"beam:rules=paper", {0.5, kPaper}},
+                   {"casav", {0.5, kCasav}},
                    {"msaa", {0.1, kDepth}},
                    {"acaa", {0.1, kDepth}},
                    {"z3", {3.0 / 32, kSlopes}},

@@ -6,11 +6,8 @@ namespace beampipe {
 
 std::map<std::string, StatedLimit> full_masks(int edges) {
   return {{"beam", {edges * largest_cut(256), kFull}},
-          {"beam:order=sorted,bits=64", {edges * largest_cut(64), kFull}},
-          {"beam:order=sorted,bits=32", {edges * largest_cut(32), kFull}},
-          {kStream, {edges * largest_cut(128), kFull}},
-          {kCoarseStream, {edges * largest_cut(32), kFull}},
-          {kSmallStream, {edges * largest_cut(64), kFull}}};
+          {"casav", {edges * largest_cut(256), kFull}},
+          {"beam:order=sorted,bits=32", {edges * largest_cut(32), kFull}}};
 }
 
 double largest_cut(int positions) {

@@ -5,14 +5,10 @@
 #include <string>
 
 #include "pipeline/technique.h"
-#include "simd/sample_pattern.h"
 #include "tools/stress/exact.h"
 #include "tools/stress/hard_cases.h"
 
 namespace beampipe {
-
-// Of cell_patterns: the positions of a mask.
-SamplePlaces places_of(const std::vector<SamplePattern>& patterns);
 
 // For colours up to 1 in fp16: two roundings of half a unit in the last place, which is 2^-12.
 inline constexpr double kFormatError = 0x1p-11;
@@ -35,11 +31,11 @@ class Judge {
  public:
   explicit Judge(const HardCase& hard_case) : case_(hard_case) {}
 
-  Verdict judge(const Technique& technique, const RunOptions& options);
+  Verdict judge(const Technique& technique, const FrameInput& options);
 
  private:
   const ExactPicture& areas();
-  double largest_error(const Technique& technique, const RunOptions& options);
+  double largest_error(const Technique& technique, const FrameInput& options);
 
   const HardCase& case_;
   std::optional<ExactPicture> areas_;  // computed when it is first needed

@@ -3,9 +3,9 @@
 #include <cmath>
 #include <numbers>
 
+#include "pipeline/sampling.h"
 #include "stages/data/mix_bits.h"
 #include "tools/stress/case_parts.h"
-#include "tools/stress/judge.h"
 
 namespace beampipe {
 namespace {
@@ -46,10 +46,11 @@ Counts count_alone(const Trace& trace, int positions) {
   return worst;
 }
 
-// In one pass a result is within three positions of what counting gives.
-void limit_one_pass(const Trace& trace, double more, const char* reason, std::map<std::string, StatedLimit>& limits) {
+// With open pixels, a result is within three positions of what counting gives.
+void limit_open_pixels(const Trace& trace, double more, const char* reason,
+                       std::map<std::string, StatedLimit>& limits) {
   const auto limit = [&](int positions) {
-    return StatedLimit{count_alone(trace, positions).error + 3.0 / positions + more, reason};
+    return StatedLimit{count_alone(trace, positions).error + 3.0 / positions + more, reason, positions};
   };
   limits["beam"] = limit(256);
   limits["beam:order=stream"] = limit(128);
@@ -90,10 +91,7 @@ void add(const std::map<std::string, StatedLimit>& more, std::map<std::string, S
 // Where positions alone tell how much of a surface is hidden. Measured: up to four positions.
 std::map<std::string, StatedLimit> estimated(const char* reason) {
   const auto limit = [&](int positions) { return StatedLimit{5.0 / positions, reason}; };
-  return {{"beam:order=sorted", limit(256)},
-          {"beam:order=sorted,bits=32", limit(32)},
-          {kStream, limit(128)},
-          {kSmallStream, limit(64)}};
+  return {{"beam:order=sorted", limit(256)}, {"beam:order=sorted,bits=32", limit(32)}};
 }
 
 void add_limits_of_strips(const Trace& trace, std::map<std::string, StatedLimit>& limits) {
@@ -104,17 +102,15 @@ void add_limits_of_strips(const Trace& trace, std::map<std::string, StatedLimit>
   };
   limits["beam:order=sorted"] = full(256);
   limits["beam:order=sorted,bits=32"] = full(32);
-  limits[kStream] = full(128);
-  limits[kSmallStream] = full(64);
   limits["alpha"] = {kLostByOver, kOver};
-  limits["beam:rules=paper"] = {0.45, kPaper};
+  limits["casav"] = {0.45, kCasav};
 }
 
 HardCase full_lists() {
   HardCase result{
       "full_lists", "5, 6, 8 and 32 strips in a pixel, all visible, none final before the last", {}, {}, {}};
   result.trace = strips().trace();
-  limit_one_pass(result.trace, 0, kCounted, result.limits);
+  limit_open_pixels(result.trace, 0, kCounted, result.limits);
   add_limits_of_strips(result.trace, result.limits);
   return result;
 }
@@ -127,7 +123,7 @@ HardCase full_lists_hidden() {
   result.trace = screen.trace();
   // A surface made of several shows their mean colour. If the part V of it is seen and the part H is hidden, the colour
   // is wrong by at most V H / (V + H) of the difference, which is largest if both are half of the pixel.
-  limit_one_pass(result.trace, kColorGap / 4, kMerged, result.limits);
+  limit_open_pixels(result.trace, kColorGap / 4, kMerged, result.limits);
   add_limits_of_strips(result.trace, result.limits);
   add(estimated(kMask), result.limits);
   result.limits["z3"] = {kColorGap / 4, kMerged};
@@ -138,7 +134,7 @@ HardCase full_lists_hidden() {
 std::map<std::string, StatedLimit> limits_of_stack(int count) {
   std::map<std::string, StatedLimit> limits = estimated(kMask);
   limits["alpha"] = {0.75, kOver};
-  limits["beam:rules=paper"] = {0.45, kPaper};
+  limits["casav"] = {0.45, kCasav};
   if (count > 1) limits["acaa"] = {0.75 * count, kTwice};
   if (count > 1) limits["acaa:8,double=stencil"] = {kFormatError, "fp16"};
   return limits;
@@ -198,7 +194,7 @@ HardCase crowded_bin() {
       screen.triangle(at(x, y), at(x + 1, y + 1), at(x, y + 1), kRed);
     }
   HardCase result{"crowded_bin", "131,072 triangles in one bin, which cover it without a gap", {}, {}, {}};
-  result.limits = {{"alpha", {kLostByOver, kOver}}, {"beam:rules=paper", {0.45, kPaper}}};
+  result.limits = {{"alpha", {kLostByOver, kOver}}, {"casav", {0.45, kCasav}}};
   result.picture = ExactPicture{.elsewhere = glm::dvec4(glm::dvec3(kRed), 1.0)};
   result.trace = screen.trace();
   return result;

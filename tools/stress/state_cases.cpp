@@ -37,7 +37,7 @@ bool is_in(int x, int y, const glm::ivec4& box) { return x >= box.x && y >= box.
 // Where clipping cuts a triangle into several, they meet in an edge inside of a pixel.
 HardCase with_pieces(HardCase result) {
   result.limits["alpha"] = {0.25, "two pieces of a triangle share a pixel, which OVER takes for independent"};
-  result.limits["beam:rules=paper"] = {0.25, kPaper};
+  result.limits["casav"] = {0.25, kCasav};
   return result;
 }
 

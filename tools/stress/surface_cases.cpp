@@ -59,7 +59,7 @@ Trace with_texture(Trace trace, TextureImage image, Texture texture, Uv&& uv) {
 HardCase within_noise(const std::string& name, const std::string& what, Trace trace) {
   HardCase result{name, what, std::move(trace), {}, full_masks()};
   result.between = bounds_of_noise();
-  result.limits["beam:rules=paper"] = {0.04, kOver};
+  result.limits["casav"] = {0.04, kOver};
   result.limits["alpha"] = {0.25, kOver};
   return result;
 }
@@ -215,12 +215,9 @@ HardCase layers() {
   for (std::uint32_t i = 0; i < kLayers; ++i) result.trace.meshes[0].materials.push_back(i % 2);
   // Eight layers in a row leave one of 256 positions, which may show any of the other colours.
   result.limits["beam:order=sorted"] = {0.875 / 256 + kFormatError, kPositions};
-  // The others are measured: with 32 or 64 positions up to 0.104, and with four times as many a quarter of that.
+  // The others are measured: with 32 positions up to 0.104, and with four times as many a quarter of that.
   result.limits["beam"] = {0.105 / 4, kPositions};
-  for (const std::string& few :
-       {kSmallStream, std::string("z3"), std::string("beam:rules=paper"), std::string("beam:order=sorted,bits=32")}) {
-    result.limits[few] = {0.105, kPositions};
-  }
+  for (const char* few : {"z3", "casav", "beam:order=sorted,bits=32"}) result.limits[few] = {0.105, kPositions};
   ExactPicture& picture = result.picture.emplace();
   picture.high = {kLayers, 2};
   picture.rgba.resize(2 * kLayers);
@@ -250,7 +247,7 @@ HardCase largest_numbers() {
   Lighting& lighting = result.trace.frames[0].lighting;
   lighting.lights.assign(kMostLights, {glm::normalize(glm::vec3(0.1f, -1, -0.2f)), glm::vec3(kMostColor)});
   lighting.ambient = Ambient{glm::vec3(kMostColor), glm::vec3(0)};
-  for (const char* technique : {"beam:rules=paper", "alpha"}) result.limits[technique] = {0.04, kOver};
+  for (const char* technique : {"casav", "alpha"}) result.limits[technique] = {0.04, kOver};
   const double infinity = std::numeric_limits<double>::infinity();
   result.between = ColorBounds{glm::dvec3(-infinity), glm::dvec3(infinity)};
   return result;

@@ -18,8 +18,8 @@ MemoryParameters without_cache_sizes(MemoryParameters memory) {
   return memory;
 }
 
-RunOptions options_of(const LoadedTrace& loaded, const MemoryParameters& memory, const JobLimits& limits) {
-  RunOptions options;
+FrameInput options_of(const LoadedTrace& loaded, const MemoryParameters& memory, const JobLimits& limits) {
+  FrameInput options;
   options.threads = limits.threads;
   options.memory = memory;
   options.memory_limit = limits.memory_limit;
@@ -30,7 +30,7 @@ RunOptions options_of(const LoadedTrace& loaded, const MemoryParameters& memory,
 CellCounts render_cell(const SweepPlan& plan, const SweepCell& cell, const LoadedTrace& loaded,
                        const std::vector<std::size_t>& frames, const JobLimits& limits) {
   const Technique technique = parse_technique(plan.techniques[cell.technique]);
-  RunOptions options = options_of(loaded, plan.memory[cell.memory], limits);
+  FrameInput options = options_of(loaded, plan.memory[cell.memory], limits);
   History history;
   options.history = &history;
   CellCounts counts;
@@ -111,7 +111,7 @@ void run_errors(const SweepPlan& plan, const SweepJob& job, TraceShelf& shelf, S
     const Image& truth = references.emplace(frame, render_picture(reference, ladder_plan, frame, silent)).first->second;
     ladder.add(ladder_plan, frame, truth, silent);
     for (VariantPictures& each : pictures) {
-      RunOptions options = options_of(*loaded, each.memory, limits);
+      FrameInput options = options_of(*loaded, each.memory, limits);
       options.history = &each.history;
       each.errors.add(each.technique.render(loaded->trace, frame, options).image, truth);
     }

@@ -8,7 +8,7 @@
 
 #include "pipeline/technique.h"
 #include "tools/evaluate/memory_system.h"
-#include "traces/json_form.h"
+#include "traces/files/json_form.h"
 
 namespace beampipe {
 namespace {
@@ -37,9 +37,11 @@ struct PlanFile {
 
 // A list of values, which are read where they are needed. `axes`: where it goes in a T.
 template <class T, class Place>
-void add_axis(ObjectForm<T>& grid, Place axes, const std::string& name, const std::string& meaning,
-              const Json& value) {
-  grid.add({name, meaning, false, {{"type", "array"}, {"minItems", 1}, {"items", value}},
+void add_axis(ObjectForm<T>& grid, Place axes, const std::string& name, const std::string& meaning, const Json& value) {
+  grid.add({name,
+            meaning,
+            false,
+            {{"type", "array"}, {"minItems", 1}, {"items", value}},
             [axes, name](const JsonCursor& at, T& object) {
               std::invoke(axes, object)[name] = at.elements();
               if (at.elements().empty()) at.fail("at least one value", "none");

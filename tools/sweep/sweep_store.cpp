@@ -3,7 +3,7 @@
 #include "tools/evaluate/results.h"
 #include "tools/files/digest.h"
 #include "tools/files/sealed_json.h"
-#include "traces/trace_io.h"
+#include "traces/files/trace_io.h"
 
 namespace beampipe {
 

@@ -10,7 +10,7 @@
 #include <string>
 
 #include "tools/files/output.h"
-#include "traces/json.h"
+#include "traces/files/json.h"
 
 namespace beampipe {
 

@@ -4,13 +4,14 @@
 #include <map>
 #include <optional>
 
-#include "stages/cost/counter_registry.h"
 #include "tools/evaluate/memory_system.h"
 
 namespace beampipe {
 namespace {
 
-constexpr const char* kClasses[] = {"geometry", "raster", "fragments", "visibility", "shading", "picture"};
+// By which DRAM bytes are added up.
+constexpr StageGroup kGroups[] = {StageGroup::geometry,   StageGroup::raster,  StageGroup::fragments,
+                                  StageGroup::visibility, StageGroup::shading, StageGroup::picture};
 
 // What all rows of a cell have in common.
 struct Cell {
@@ -43,7 +44,8 @@ std::vector<Column> cell_columns() {
       {{"frames", "", "frames over which the counts are means"},
        [](const Cell& c) { return Json(c.report.frames.size()); }},
       {{"width", "px", "of the first frame that is rendered"}, [](const Cell& c) { return Json(c.trace.size.width); }},
-      {{"height", "px", "of the first frame that is rendered"}, [](const Cell& c) { return Json(c.trace.size.height); }},
+      {{"height", "px", "of the first frame that is rendered"},
+       [](const Cell& c) { return Json(c.trace.size.height); }},
       {{"technique", "", "the spec", true}, [](const Cell& c) { return c.plan.techniques[c.cell.technique]; }},
   };
   for (const MemoryParameter& parameter : memory_parameters()) {
@@ -70,13 +72,14 @@ std::vector<Column> cell_columns() {
                      [](const Cell& c) { return mean_of(c, [](const auto& s) { return s.l2_bytes; }); }});
   columns.push_back({{"dram_bytes", "bytes", "moved to and from DRAM"},
                      [](const Cell& c) { return mean_of(c, [](const auto& s) { return s.dram_bytes; }); }});
-  for (const char* name : kClasses)
-    columns.push_back({{std::string("dram_bytes.") + name, "bytes", std::string("those of the stages of ") + name},
-                       [name](const Cell& c) {
+  for (const StageGroup group : kGroups) {
+    const std::string name(name_of(group));
+    columns.push_back({{"dram_bytes." + name, "bytes", "those of the stages of " + name}, [group](const Cell& c) {
                          return mean_of(c, [&](const auto& s) -> std::uint64_t {
-                           return stage_class(s.stage) == name ? std::uint64_t{s.dram_bytes} : 0;
+                           return info_of(s.stage.id).group == group ? std::uint64_t{s.dram_bytes} : 0;
                          });
                        }});
+  }
   columns.push_back({{"rmse", "", "error against the reference: root mean square of linear RGB; only with errors"},
                      [](const Cell& c) { return c.errors ? Json(c.errors->error.rmse) : Json(); }});
   columns.push_back({{"bias", "", "mean of the picture minus that of the reference; only with errors"},
@@ -159,25 +162,6 @@ std::string csv_field(const Json& value) {
 }
 
 }  // namespace
-
-std::string stage_class(std::string_view stage) {
-  static const std::map<std::string_view, const char*> classes = {
-      {"vertex_setup", "geometry"},   {"conservative_raster", "raster"},
-      {"sample_raster", "raster"},    {"bin_sort", "raster"},
-      {"beam_fragment", "fragments"}, {"alpha_mask", "fragments"},
-      {"alpha_test", "fragments"},    {"a_buffer", "fragments"},
-      {"windows", "fragments"},       {"compose", "visibility"},
-      {"claim", "visibility"},        {"settle", "visibility"},
-      {"depth_test", "visibility"},   {"blend", "visibility"},
-      {"stencil_test", "visibility"}, {"accumulate", "visibility"},
-      {"shade", "shading"},           {"light", "shading"},
-      {"sample_select", "shading"},   {"material_sort", "shading"},
-      {"motion", "picture"},          {"dilate", "picture"},
-      {"temporal", "picture"},        {"resolve", "picture"},
-  };
-  const auto found = classes.find(without_pass(stage));
-  return found == classes.end() ? "" : found->second;
-}
 
 std::vector<SweepColumn> columns_of(const SweepPlan& plan) {
   std::vector<SweepColumn> columns;

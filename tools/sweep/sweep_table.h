@@ -5,7 +5,7 @@
 #include <vector>
 
 #include "tools/sweep/sweep_results.h"
-#include "traces/json.h"
+#include "traces/files/json.h"
 
 namespace beampipe {
 
@@ -27,10 +27,6 @@ SweepTable make_table(const SweepPlan& plan, TraceShelf& shelf, const SweepResul
 
 // The columns that such a table has.
 std::vector<SweepColumn> columns_of(const SweepPlan& plan);
-
-// The class of a stage ("geometry", "raster", "fragments", "visibility", "shading", "picture"), by which DRAM bytes are
-// added up; "" of stages that are none of a GPU.
-std::string stage_class(std::string_view stage);
 
 // RFC 4180: a line of names, then the rows. Lines end in CR LF, and text is quoted where it must be.
 std::string csv_text(const SweepTable& table);

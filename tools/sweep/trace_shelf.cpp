@@ -7,7 +7,7 @@
 #include "pipeline/technique.h"
 #include "tools/evaluate/machine_memory.h"
 #include "tools/files/digest.h"
-#include "traces/trace_io.h"
+#include "traces/files/trace_io.h"
 
 namespace beampipe {
 namespace {

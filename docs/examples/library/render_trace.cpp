@@ -3,7 +3,7 @@
 #include <iostream>
 
 #include "pipeline/technique.h"
-#include "traces/trace_io.h"
+#include "traces/files/trace_io.h"
 
 int main(int argc, char** argv) {
   using namespace beampipe;

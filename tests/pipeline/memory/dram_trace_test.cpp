@@ -7,31 +7,11 @@
 #include <map>
 #include <set>
 
-#include "pipeline/technique.h"
+#include "pipeline/technique_table.h"
 #include "tests/pipeline/surface_traces.h"
 
 namespace beampipe {
 namespace {
-
-constexpr const char* kSpecs[] = {"beam",
-                                  "beam:order=sorted",
-                                  "beam:order=stream",
-                                  "beam:order=stream,passes=0",
-                                  "beam:rules=paper",
-                                  "beam:rules=paper,order=near-first",
-                                  "z3",
-                                  "alpha",
-                                  "msaa:4",
-                                  "msaa:4,prepass",
-                                  "msaa:32",
-                                  "acaa:8",
-                                  "acaa:4,double=stencil",
-                                  "acaa:4,double=saturate",
-                                  "deferred",
-                                  "visibility",
-                                  "taa:4",
-                                  "dvm",
-                                  "reference"};
 
 struct Recorded {
   std::uint64_t address;
@@ -46,13 +26,13 @@ struct Frame0 {
   std::vector<DramTrace::Range> ranges;
 };
 
-Frame0 render(const std::string& spec, const Trace& trace, RunOptions run = {2}) {
+Frame0 render(const std::string& spec, const Trace& trace, const FrameInput& run = {2}) {
   DramTrace dram(testing::TempDir());
-  run.dram_trace = &dram;
   Frame0 frame;
-  frame.stages = parse_technique(spec).render(trace, 0, run).stages;
+  frame.stages = parse_technique(spec).render(trace, 0, run, {.dram_trace = &dram}).stages;
   dram.for_each([&](const DramRequest& request) {
-    frame.requests.push_back({request.address, request.access == DramAccess::write, request.stage, request.array});
+    frame.requests.push_back(
+        {request.address, request.access == DramAccess::write, std::string(request.stage), request.array});
   });
   frame.ranges = dram.ranges();
   return frame;
@@ -62,7 +42,7 @@ void expect_bytes_of_counters(const Frame0& frame, const std::string& name) {
   std::map<std::string, std::uint64_t> bytes, expected;
   for (const Recorded& request : frame.requests) bytes[request.stage] += 32;
   for (const StageCounters& stage : frame.stages)
-    if (stage.dram_bytes > 0) expected[stage.stage] += stage.dram_bytes;
+    if (stage.dram_bytes > 0) expected[std::string(name_of(stage.stage))] += stage.dram_bytes;
   EXPECT_EQ(bytes, expected) << name;
 }
 
@@ -90,8 +70,8 @@ std::vector<std::pair<std::string, Trace>> scenes() {
   return {{"flat", random_trace(52, 40, 150, 5)}, {"materials", random_surfaces(52, 40, 60, 2)}};
 }
 
-std::vector<std::pair<std::string, RunOptions>> machines() {
-  std::vector<std::pair<std::string, RunOptions>> machines = {
+std::vector<std::pair<std::string, FrameInput>> machines() {
+  std::vector<std::pair<std::string, FrameInput>> machines = {
       {"by technique", {2}}, {"on chip", {2}}, {"in memory", {2}}, {"raw", {2}}};
   machines[1].second.memory.framebuffer = Place::on_chip;
   machines[2].second.memory.framebuffer = Place::in_memory;
@@ -102,20 +82,21 @@ std::vector<std::pair<std::string, RunOptions>> machines() {
 TEST(DramTrace, HasTheBytesOfEveryStage) {
   for (const auto& [scene, trace] : scenes())
     for (const auto& [machine, run] : machines())
-      for (const char* spec : kSpecs) {
+      for (const std::string& spec : example_specs()) {
         const Frame0 frame = render(spec, trace, run);
-        expect_bytes_of_counters(frame, std::string(spec) + ", " + scene + ", " + machine);
-        expect_disjoint_arrays(frame, std::string(spec) + ", " + scene + ", " + machine);
+        expect_bytes_of_counters(frame, spec + ", " + scene + ", " + machine);
+        expect_disjoint_arrays(frame, spec + ", " + scene + ", " + machine);
       }
 }
 
 // A list and its copy larger than this L2 go through DRAM in every pass of the sort.
 TEST(DramTrace, HasTheBytesOfSmallCaches) {
-  RunOptions run{2};
+  FrameInput run{2};
   run.memory.l2 = {2048, 2, 128}, run.memory.l1 = {1024, 2, 128}, run.memory.rop = {2048, 2, 256};
   run.memory.framebuffer = Place::in_memory;
   for (const auto& [scene, trace] : scenes())
-    for (const char* spec : kSpecs) expect_bytes_of_counters(render(spec, trace, run), spec + (", " + scene));
+    for (const std::string& spec : example_specs())
+      expect_bytes_of_counters(render(spec, trace, run), spec + (", " + scene));
 }
 
 TEST(DramTrace, ContinuesAHistory) {
@@ -123,7 +104,7 @@ TEST(DramTrace, ContinuesAHistory) {
   trace.frames.push_back(trace.frames[0]);
   for (const char* spec : {"taa:4", "dvm"}) {
     History history;
-    RunOptions run{2};
+    FrameInput run{2};
     run.history = &history;
     parse_technique(spec).render(trace, 0, run);
     expect_bytes_of_counters(render(spec, trace, run), spec);
@@ -132,11 +113,11 @@ TEST(DramTrace, ContinuesAHistory) {
 
 TEST(DramTrace, DoesNotDependOnThreadsOrBands) {
   for (const auto& [scene, trace] : scenes())
-    for (const char* spec : kSpecs) {
+    for (const std::string& spec : example_specs()) {
       const std::vector<Recorded> expected = render(spec, trace, {1}).requests;
       EXPECT_EQ(render(spec, trace, {3}).requests, expected) << spec << ", " << scene;
     }
-  RunOptions banded{4};
+  FrameInput banded{4};
   banded.memory_limit = 2 << 20;  // too little for the pairs of four bins at once
   const Trace trace = random_trace(52, 40, 150, 5);
   for (const char* spec : {"beam:order=sorted", "msaa:4"})
@@ -145,11 +126,11 @@ TEST(DramTrace, DoesNotDependOnThreadsOrBands) {
 
 // What is read has been written, where nothing else can have left it there.
 TEST(DramTrace, ReadsWhatWasWrittenEarlier) {
-  RunOptions run{2};
+  FrameInput run{2};
   run.memory.framebuffer = Place::in_memory;
   const std::set<std::string> arrays = {"setup_triangles", "attributes", "bin_lists", "bin_keys",    "depth",
                                         "samples",         "coverage",   "mask",      "accumulator", "a_buffer_heads"};
-  for (const std::string spec : kSpecs) {
+  for (const std::string& spec : example_specs()) {
     if (spec == "reference") continue;  // its samples are in no memory
     std::set<std::uint64_t> written;
     std::size_t early = 0, found = 0;
@@ -186,7 +167,7 @@ TEST(DramTrace, ComesPassByPass) {
 }
 
 TEST(DramTrace, WithoutAModelNothingIsRecorded) {
-  RunOptions run{2};
+  FrameInput run{2};
   run.memory.modelled = false;
   EXPECT_TRUE(render("beam:order=sorted", random_trace(52, 40, 150, 5), run).requests.empty());
 }

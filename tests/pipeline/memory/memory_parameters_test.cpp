@@ -10,7 +10,7 @@ namespace beampipe {
 namespace {
 
 FrameResult render_with(const std::string& spec, const Trace& trace, const MemoryParameters& memory) {
-  RunOptions run{1};
+  FrameInput run{1};
   run.memory = memory;
   return parse_technique(spec).render(trace, 0, run);
 }

@@ -129,9 +129,7 @@ std::vector<Access> random_accesses(std::uint32_t seed, std::size_t lines, std::
 // All that a frame asks DRAM for, as accesses of one memory. Lines are numbered anew, so that there are few.
 std::vector<Access> recorded_accesses(const char* spec) {
   DramTrace trace(testing::TempDir());
-  RunOptions run{2};
-  run.dram_trace = &trace;
-  parse_technique(spec).render(random_trace(40, 40, 60, 3), 0, run);
+  parse_technique(spec).render(random_trace(40, 40, 60, 3), 0, {2}, {.dram_trace = &trace});
   std::map<std::uint64_t, std::size_t> numbers;
   std::vector<Access> accesses;
   trace.for_each([&](const DramRequest& request) {

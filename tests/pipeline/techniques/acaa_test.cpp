@@ -105,7 +105,7 @@ TEST(Acaa, HiddenFragmentsAreNotShaded) {
   Trace trace = layers(0.7, 0.5, 0.3);  // far to near
   const auto shaded = [&](const char* spec) {
     for (const StageCounters& stage : render(spec, trace).stages)
-      if (stage.stage == "shade") return stage.lanes_used;
+      if (stage.stage == StageId::shade) return stage.lanes_used;
     return std::uint64_t{0};
   };
   EXPECT_EQ(shaded("msaa:8"), 3u * 16);

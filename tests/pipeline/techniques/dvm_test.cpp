@@ -8,7 +8,7 @@
 #include "pipeline/technique.h"
 #include "tests/pipeline/techniques/render_frames.h"
 #include "tests/pipeline/test_traces.h"
-#include "traces/trace_io.h"
+#include "traces/files/trace_io.h"
 
 namespace beampipe {
 namespace {
@@ -242,7 +242,7 @@ TEST(Dvm, ShadesOneSamplePerCoveredPixelAndNoHelpers) {
   const Trace trace = pixel_trace(16, 16, quad(-1, -1, 20, 20, 0.5, glm::vec3(1)));
   for (const char* spec : {"dvm", "visibility"}) {
     for (const StageCounters& stage : parse_technique(spec).render(trace, 0, {1}).stages) {
-      if (stage.stage != "shade") continue;
+      if (stage.stage != StageId::shade) continue;
       EXPECT_EQ(stage.lanes_used, 16u * 16) << spec;
       EXPECT_EQ(stage.lanes_issued, 16u * 16) << spec;
     }

@@ -8,7 +8,7 @@
 #include "pipeline/technique.h"
 #include "tests/pipeline/techniques/render_frames.h"
 #include "tests/pipeline/test_traces.h"
-#include "traces/trace_io.h"
+#include "traces/files/trace_io.h"
 
 namespace beampipe {
 namespace {

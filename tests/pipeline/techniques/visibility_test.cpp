@@ -45,10 +45,10 @@ TEST(Deferred, ThePrepassIsCountedApart) {
     for (const char* stage : {"vertex_setup", "sample_raster"})
       for (const char* pass : {"prepass_", ""}) {
         StageCounters found = stage_of(two, std::string(pass) + stage);
-        found.stage = stage;
+        found.stage = find_stage(stage).value();
         EXPECT_EQ(found, stage_of(one, stage)) << spec << ' ' << pass << stage;
       }
-    EXPECT_EQ(two.stages.front().stage, "prepass_vertex_setup") << spec;
+    EXPECT_EQ(two.stages.front().stage, Stage(StageId::vertex_setup, Pass::prepass)) << spec;
     EXPECT_EQ(stage_of(two, "prepass_depth_test").bytes_written, 6u * 4) << spec;
     const bool is_forward = std::string(spec).starts_with("msaa") || std::string(spec).ends_with("forward");
     EXPECT_EQ(stage_of(two, "depth_test").bytes_written, is_forward ? 6u * 6 : 0u) << spec;

@@ -64,7 +64,7 @@ std::uint64_t compose_random(Random& random) {
   StageCounters counters;
   std::vector<Pair> pairs, window, whole;
   ClosedDepth closed(kTile);
-  conservative_raster(triangles, all_of(triangles), kTile, counters, pairs, &closed);
+  conservative_raster(triangles, all_of(triangles), kTile, counters, pairs, {&closed});
   const ABuffer buffer = a_buffer(sort_records(pairs, kTile), kTile.pixels(), 0, kStoredPairBytes, counters);
   Windows windows(pairs, buffer, kStoredPairBytes);
   Pixels<Words> pixels(kTile.pixels());

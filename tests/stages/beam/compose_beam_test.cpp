@@ -32,7 +32,7 @@ std::vector<PixelColor> composed_as(const SetupTriangles& triangles, const std::
   std::vector<Pair> pairs, window, whole;
   std::vector<StoredAggregate<Words, Channel>> pixels(tile.pixels());
   ClosedDepth closed(tile);
-  conservative_raster(triangles, all_of(triangles), tile, counters, pairs, &closed);
+  conservative_raster(triangles, all_of(triangles), tile, counters, pairs, {&closed});
   const ABuffer buffer = a_buffer(sort_records(pairs, tile), tile.pixels(), 0, kStoredPairBytes, counters);
   Windows windows(pairs, buffer, kStoredPairBytes);
   while (windows.next([&](std::uint32_t pixel) { return !is_closed(pixels[pixel]); }, counters, window, whole)) {

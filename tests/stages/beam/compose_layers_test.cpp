@@ -6,7 +6,7 @@
 
 #include "stages/beam/a_buffer.h"
 #include "stages/beam/beam_fragment.h"
-#include "stages/beam/compose_paper.h"
+#include "stages/beam/compose_casav.h"
 #include "stages/raster/conservative_raster.h"
 #include "tests/simd/random.h"
 #include "tests/stages/screen_triangles.h"
@@ -53,7 +53,7 @@ std::vector<Fragment> near_to_far(std::vector<Fragment> fragments) {
 }
 
 std::vector<Aggregate> composed(const std::vector<Fragment>& fragments, std::size_t layers, StageCounters& counters,
-                                std::vector<float>& merges, PaperStorage storage = PaperStorage::float32,
+                                std::vector<float>& merges, CasavStorage storage = CasavStorage::float32,
                                 const MergeRules& rules = {}) {
   AggregateLayers pixels(kTile.pixels(), layers, storage);
   merges.assign(kTile.pixels(), 0);
@@ -77,7 +77,7 @@ TEST(ComposeLayers, OneLayerNearToFarIsTheABuffer) {
   SCOPED_TRACE(random.name());
   for (int i = 0; i < 20; ++i) {
     const std::vector<Fragment> fragments = random_fragments(random, 12);
-    for (const PaperStorage storage : {PaperStorage::slides, PaperStorage::text, PaperStorage::float32}) {
+    for (const CasavStorage storage : {CasavStorage::slides, CasavStorage::text, CasavStorage::float32}) {
       StageCounters sorting, of_lists, of_layer;
       const ABuffer lists = a_buffer(sort_records(fragments, SortKey::nearest), kTile.pixels(), 42, 42, sorting);
       const std::vector<Aggregate> expected = compose(fragments, lists, kPositions, {}, storage, of_lists);
@@ -99,7 +99,7 @@ TEST(ComposeLayers, EnoughLayersAreTheABufferInAnyOrder) {
     std::erase_if(fragments, [](const Fragment& fragment) { return fragment.tiny; });
     StageCounters counters;
     const ABuffer lists = a_buffer(sort_records(fragments, SortKey::nearest), kTile.pixels(), 42, 42, counters);
-    const std::vector<Aggregate> expected = compose(fragments, lists, kPositions, {}, PaperStorage::float32, counters);
+    const std::vector<Aggregate> expected = compose(fragments, lists, kPositions, {}, CasavStorage::float32, counters);
     std::vector<float> merges;
     expect_same(composed(fragments, 8, counters, merges), expected, 1e-5f);
     EXPECT_EQ(*std::max_element(merges.begin(), merges.end()), 0);
@@ -151,7 +151,7 @@ TEST(ComposeLayers, EqualDepthsKeepTheirOrder) {
     }
     StageCounters counters;
     const ABuffer lists = a_buffer(sort_records(fragments, SortKey::nearest), kTile.pixels(), 42, 42, counters);
-    const std::vector<Aggregate> expected = compose(fragments, lists, kPositions, {}, PaperStorage::float32, counters);
+    const std::vector<Aggregate> expected = compose(fragments, lists, kPositions, {}, CasavStorage::float32, counters);
     std::vector<float> merges;
     expect_same(composed(fragments, 8, counters, merges), expected, 1e-5f);
   }
@@ -208,7 +208,7 @@ TEST(ComposeLayers, ASurfaceBeforeASlabKeepsTheSlabsThickness) {
   std::vector<float> merges;
   MergeRules rules;
   rules.slab = MergeRules::Slab::visible;
-  const Aggregate pixel = composed({green, blue, white, red}, 2, counters, merges, PaperStorage::float32, rules).at(0);
+  const Aggregate pixel = composed({green, blue, white, red}, 2, counters, merges, CasavStorage::float32, rules).at(0);
   EXPECT_EQ(merges[0], 2);
   EXPECT_NEAR(pixel.thickness, 2 * 0.6f, 0.1f);
 }
@@ -217,7 +217,7 @@ TEST(ComposeLayers, CountsBytes) {
   Random random(74);
   const std::vector<Fragment> fragments = random_fragments(random, 10);
   StageCounters counters;
-  AggregateLayers pixels(kTile.pixels(), 3, PaperStorage::slides);
+  AggregateLayers pixels(kTile.pixels(), 3, CasavStorage::slides);
   std::vector<float> merges(kTile.pixels());
   pixels.add(fragments, kPositions, {}, counters, merges);
   EXPECT_EQ(pixels.bytes_per_pixel(), 3u * 42);

@@ -51,7 +51,7 @@ void expect_pixel(const PixelColor& found, double alpha, const glm::dvec3& color
 TEST(ComposeOwners, APixelWithoutFragmentsIsEmpty) {
   const SetupTriangles none;
   const std::vector<glm::vec3> colors;
-  OpenTile<4, 5> tile(none, colors, {0, 0, 2, 2});
+  OpenTile<4, 7> tile(none, colors, {0, 0, 2, 2});
   for (const PixelColor& found : tile.compose({})) expect_pixel(found, 0, {0, 0, 0}, 0);
 }
 
@@ -123,7 +123,7 @@ TEST(ComposeOwners, ANearSurfaceHidesAFarOne) {
   const std::vector<glm::vec3> colors{kGreen, {0.3f, 0.7f, 0.1f}};
   for (const TriangleList& list : {TriangleList{0, 1}, TriangleList{1, 0}}) {
     OpenTile<8, 2> wide(triangles, colors);
-    OpenTile<1, 5> narrow(triangles, colors);
+    OpenTile<1, 4> narrow(triangles, colors);
     for (const PixelColor& found : {wide.compose(list).at(0), narrow.compose(list).at(0)}) {
       EXPECT_EQ(found.alpha, 1.0f);
       EXPECT_EQ(found.color, colors[1]);

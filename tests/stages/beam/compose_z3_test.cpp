@@ -13,8 +13,7 @@ namespace {
 
 template <std::size_t Words, std::size_t Layers>
 std::vector<Z3Pixel<Words, Layers>> composed(const SetupTriangles& triangles, const std::vector<glm::vec3>& colors,
-                                             const Tile& tile, LayerMerge merge = LayerMerge::depth,
-                                             OperationCounts* counts = nullptr) {
+                                             const Tile& tile, OperationCounts* counts = nullptr) {
   const PositionSet positions(cell_patterns(32 * Words));
   StageCounters counters, composition;
   std::vector<Pair> pairs;
@@ -25,7 +24,7 @@ std::vector<Z3Pixel<Words, Layers>> composed(const SetupTriangles& triangles, co
   shade(colors, fragments, counters);
   std::vector<Z3Pixel<Words, Layers>> pixels(tile.pixels());
   std::vector<float> merges(tile.pixels());
-  compose_z3(fragments, positions, merge, composition, pixels, merges);
+  compose_z3(fragments, positions, composition, pixels, merges);
   if (counts) *counts = composition.ops;
   return pixels;
 }
@@ -76,12 +75,11 @@ TEST(ComposeZ3, WeightsNeverPassOne) {
   SCOPED_TRACE(random.name());
   const SetupTriangles triangles = random_triangles(random, 80);
   const std::vector<glm::vec3> white(triangles.triangles.size(), glm::vec3(1.0f));
-  for (const LayerMerge merge : {LayerMerge::depth, LayerMerge::color})
-    for (const PixelColor& pixel : z3_colors(composed<1, 3>(triangles, white, {0, 0, 12, 12}, merge))) {
-      EXPECT_GE(pixel.alpha, 0.0f);
-      EXPECT_LE(pixel.alpha, 1.0f);
-      EXPECT_NEAR(pixel.color.r, pixel.alpha, 2e-3);  // fp16
-    }
+  for (const PixelColor& pixel : z3_colors(composed<1, 3>(triangles, white, {0, 0, 12, 12}))) {
+    EXPECT_GE(pixel.alpha, 0.0f);
+    EXPECT_LE(pixel.alpha, 1.0f);
+    EXPECT_NEAR(pixel.color.r, pixel.alpha, 2e-3);  // fp16
+  }
 }
 
 TEST(ComposeZ3, CountsItsArithmetic) {
@@ -89,7 +87,7 @@ TEST(ComposeZ3, CountsItsArithmetic) {
   SetupTriangles triangles;
   add_everywhere(triangles, -0.5f);
   OperationCounts counts;
-  composed<1, 2>(triangles, white, kPixel, LayerMerge::depth, &counts);
+  composed<1, 2>(triangles, white, kPixel, &counts);
   // Two slopes are rounded to the stored format and a colour is converted from fp16. Five numbers of each of two layers
   // are converted from the stored formats and back. For one word, two states of two bits are found and put, and there
   // are eight operations on the positions of each layer.
@@ -97,7 +95,7 @@ TEST(ComposeZ3, CountsItsArithmetic) {
   EXPECT_EQ(counts, one);
   add_left_of(triangles, 192, -0.6f);
   add_left_of(triangles, 64, -0.9f);
-  composed<1, 2>(triangles, white, kPixel, LayerMerge::depth, &counts);
+  composed<1, 2>(triangles, white, kPixel, &counts);
   OperationCounts all = one * 3;
   // Planes are compared at 32 positions: the second with the first, the third with the second.
   all += OperationCounts{4, 4 + 1, 0, 0, 0, 0} * (32 * 2);

@@ -7,9 +7,9 @@
 #include "simd/plane_order.h"
 #include "stages/beam/a_buffer.h"
 #include "stages/beam/beam_fragment.h"
-#include "stages/beam/compose_paper.h"
+#include "stages/beam/casav_fragment.h"
+#include "stages/beam/compose_casav.h"
 #include "stages/beam/compose_z3.h"
-#include "stages/beam/paper_fragment.h"
 #include "stages/picture/shade.h"
 #include "stages/raster/conservative_raster.h"
 #include "tests/simd/merge_cases.h"
@@ -27,7 +27,7 @@ class MergeTwins : public SceneTwins {
     beam_fragment(triangles_, pairs, tile_, options, ignored, fragments_);
     shade(shade_triangles(triangles_, trace_.frames[0].lighting), fragments_, ignored);
   }
-  void make_paper_fragments() {
+  void make_casav_fragments() {
     const SamplePattern pattern = hammersley_pattern();
     const MaskTable table(pattern);
     BeamFragmentOptions options;
@@ -53,10 +53,10 @@ class MergeTwins : public SceneTwins {
   }
 
   // The numbers of an aggregate that each merge converts from the stored formats and back.
-  static void convert(AggregateOf<Float, Bits>& a, PaperStorage storage) {
-    if (storage == PaperStorage::float32) return;
+  static void convert(AggregateOf<Float, Bits>& a, CasavStorage storage) {
+    if (storage == CasavStorage::float32) return;
     for (Float& channel : a.color) channel = converted(channel);
-    if (storage == PaperStorage::text)
+    if (storage == CasavStorage::text)
       for (Float* const number : {&a.plane.dzdu, &a.plane.dzdv, &a.thickness}) *number = converted(*number);
   }
 
@@ -88,7 +88,7 @@ class MergeTwins : public SceneTwins {
   }
 
   template <class Stored>
-  void compose_into(PaperStorage storage, const MergeRules& rules = {}) {
+  void compose_into(CasavStorage storage, const MergeRules& rules = {}) {
     const MergePositions positions(hammersley_pattern());
     std::uint64_t position_tests = 0;
     const std::vector<Aggregate> expected = merge_all([&](const Fragment& fragment, const Aggregate& before) {
@@ -116,19 +116,19 @@ class MergeTwins : public SceneTwins {
 };
 
 TEST_P(MergeTwins, Compose) {
-  make_paper_fragments();
-  compose_into<SlidesAggregate>(PaperStorage::slides);
-  compose_into<TextAggregate>(PaperStorage::text);
-  for (const MergeRules& rules : every_merge_rule()) compose_into<Aggregate>(PaperStorage::float32, rules);
+  make_casav_fragments();
+  compose_into<SlidesAggregate>(CasavStorage::slides);
+  compose_into<TextAggregate>(CasavStorage::text);
+  for (const MergeRules& rules : every_merge_rule()) compose_into<Aggregate>(CasavStorage::float32, rules);
 }
 
 TEST_P(MergeTwins, Over) {
-  make_paper_fragments();
+  make_casav_fragments();
   const std::vector<Aggregate> expected = merge_all([&](const Fragment& fragment, const Aggregate& before) {
     AggregateOf<Float, Bits> old = counting(before);
-    convert(old, PaperStorage::slides);
+    convert(old, CasavStorage::slides);
     AggregateOf<Float, Bits> merged = over_formula(counting(fragment), old);
-    convert(merged, PaperStorage::slides);
+    convert(merged, CasavStorage::slides);
     return Aggregate(SlidesAggregate(value_of(merged)));
   });
   StageCounters counters;
@@ -153,8 +153,7 @@ class Z3Twin {
  public:
   using Pixel = Z3Pixel<Words, Layers>;
 
-  Z3Twin(const PositionSet& positions, LayerMerge merge, OperationCounts& counts)
-      : positions_(positions), merge_(merge), counts_(counts) {}
+  Z3Twin(const PositionSet& positions, OperationCounts& counts) : positions_(positions), counts_(counts) {}
 
   // Returns whether two layers were merged.
   bool add(const Fragment& fragment, Pixel& pixel) {
@@ -237,25 +236,16 @@ class Z3Twin {
   }
 
   void merge_two(std::vector<CountedLayer>& layers) {
-    std::vector<Float> sizes;
-    if (merge_ == LayerMerge::color)
-      for (const CountedLayer& layer : layers) sizes.push_back(count(layer));
     std::size_t first = 0, second = 1;
     float least = INFINITY;
     for (std::size_t i = 0; i < layers.size(); ++i) {
       for (std::size_t j = i + 1; j < layers.size(); ++j) {
-        const CountedLayer &a = layers[i], &b = layers[j];
-        Float loss = magnitude(a.z - b.z);
-        if (merge_ == LayerMerge::color) {
-          counts_.add -= 1, counts_.bit -= 1;  // depths are not compared
-          const Float red = a.color[0] - b.color[0], green = a.color[1] - b.color[1], blue = a.color[2] - b.color[2];
-          loss = (red * red + green * green + blue * blue) * sizes[i] * sizes[j] / (sizes[i] + sizes[j]);
-        }
-        if (loss < real(least)) least = loss.value, first = i, second = j;
+        const Float distance = magnitude(layers[i].z - layers[j].z);
+        if (distance < real(least)) least = distance.value, first = i, second = j;
       }
     }
     CountedLayer &a = layers[first], &b = layers[second];
-    const Float in_a = sizes.empty() ? count(a) : sizes[first], in_b = sizes.empty() ? count(b) : sizes[second];
+    const Float in_a = count(a), in_b = count(b);
     const Float share = in_a / (in_a + in_b), rest = Float(1.0f) - share;
     const auto mean = [&](const Float& x, const Float& y) { return share * x + rest * y; };
     a.z = mean(a.z, b.z), a.dzdu = mean(a.dzdu, b.dzdu), a.dzdv = mean(a.dzdv, b.dzdv);
@@ -266,12 +256,11 @@ class Z3Twin {
   }
 
   const PositionSet& positions_;
-  LayerMerge merge_;
   OperationCounts& counts_;
 };
 
 TEST_P(MergeTwins, ComposeZ3) {
-  const auto compare = [&]<std::size_t Words, std::size_t Layers>(Z3Pixel<Words, Layers>, LayerMerge merge) {
+  const auto compare = [&]<std::size_t Words, std::size_t Layers>(Z3Pixel<Words, Layers>) {
     const PositionGrid grid(32 * Words);
     const PositionSet positions(cell_patterns(32 * Words));
     fragments_.clear();
@@ -279,9 +268,9 @@ TEST_P(MergeTwins, ComposeZ3) {
     std::vector<Z3Pixel<Words, Layers>> pixels(tile_.pixels()), twins = pixels;
     std::vector<float> merges(tile_.pixels()), twin_merges = merges;
     StageCounters counters;
-    compose_z3(fragments_, positions, merge, counters, pixels, merges);
+    compose_z3(fragments_, positions, counters, pixels, merges);
     twin_ = {};
-    Z3Twin<Words, Layers> twin(positions, merge, twin_);
+    Z3Twin<Words, Layers> twin(positions, twin_);
     for (const Fragment& fragment : fragments_)
       twin_merges[fragment.pixel] += twin.add(fragment, twins[fragment.pixel]) ? 1.0f : 0.0f;
     EXPECT_EQ(counters.ops, twin_);
@@ -293,9 +282,8 @@ TEST_P(MergeTwins, ComposeZ3) {
       for (std::size_t k = 0; k < Layers; ++k) ASSERT_EQ(+pixels[i].layers[k].z, +twins[i].layers[k].z) << i;  // packed
     }
   };
-  compare(Z3Pixel<1, 3>(), LayerMerge::depth);
-  compare(Z3Pixel<1, 3>(), LayerMerge::color);
-  compare(Z3Pixel<4, 3>(), LayerMerge::depth);
+  compare(Z3Pixel<1, 3>());
+  compare(Z3Pixel<4, 3>());
 }
 
 BEAMPIPE_ON_EVERY_SCENE(MergeTwins);

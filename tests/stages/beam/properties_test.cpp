@@ -153,7 +153,7 @@ TEST(Properties, EverySampleOfAPartitionOnce) {
       const Sampling sampling{CellGrid{}, standard_pattern(samples)};
       std::vector<SampleFragment> fragments;
       StageCounters counters;
-      sample_raster(parts, all_of(parts), kTile, sampling, counters, fragments);
+      sample_raster({parts, kTile, sampling}, all_of(parts), counters, fragments);
       std::vector<std::uint32_t> once(kTile.pixels());
       for (const SampleFragment& fragment : fragments) {
         std::uint32_t& seen = once[static_cast<std::size_t>(fragment.y * kTile.width() + fragment.x)];

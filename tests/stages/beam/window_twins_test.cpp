@@ -55,7 +55,7 @@ class WindowTwins : public testing::TestWithParam<SceneKind> {
   std::vector<Pair> touched(std::uint32_t index) {
     std::vector<Pair> pairs;
     StageCounters traversal;
-    conservative_raster(triangles_, {index}, tile_, traversal, pairs, nullptr, PairDepths::none);
+    conservative_raster(triangles_, {index}, tile_, traversal, pairs, {.depths = PairDepths::none});
     twin_ += traversal.ops;
     return pairs;
   }
@@ -96,7 +96,7 @@ TEST_P(WindowTwins, ClosedDepth) {
   for (const TriangleList& list : halves) {
     StageCounters counters;
     std::vector<Pair> pairs, found;
-    const std::size_t waited = conservative_raster(triangles_, list, tile_, counters, pairs, &closed);
+    const std::size_t waited = conservative_raster(triangles_, list, tile_, counters, pairs, {&closed});
     twin_ = {};
     std::uint64_t read = 0, written = 0;
     const auto hidden = [&](const Pair& pair, const Float& nearest) {
@@ -150,8 +150,8 @@ TEST_P(WindowTwins, ClosedCells) {
     ClosedDepth closed(cells_of(tile_, sampling.grid));
     StageCounters with, without;
     std::vector<SampleFragment> fragments, all;
-    sample_raster(triangles_, {index}, tile_, sampling, with, fragments, &closed);
-    sample_raster(triangles_, {index}, tile_, sampling, without, all);
+    sample_raster({triangles_, tile_, sampling}, {index}, with, fragments, &closed);
+    sample_raster({triangles_, tile_, sampling}, {index}, without, all);
     ASSERT_EQ(fragments.size(), all.size());
     twin_ = without.ops;
     const DepthBounds<Float> bounds =

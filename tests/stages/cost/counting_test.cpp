@@ -56,7 +56,7 @@ TEST(Counting, DepthTest) {
   const OperationCounts counts = count_operations([](OperationCounts& tally) {
     const Real one(1.0f, tally);
     Real depth;
-    depth_test_scalar(one, one, one, one, one, one, depth);
+    depth_test_scalar({one, one, one}, one, one, one, depth);
   });
   EXPECT_EQ(counts, (OperationCounts{2, 3, 0, 0, 0, 0}));
 }

@@ -26,7 +26,7 @@ std::vector<int> winding(Scene scene) {
     const SetupTriangles triangles = scene.setup();
     std::vector<SampleFragment> fragments;
     StageCounters counters;
-    sample_raster(triangles, all_of(triangles), {0, 0, kWidth, kHeight}, sampling, counters, fragments);
+    sample_raster({triangles, {0, 0, kWidth, kHeight}, sampling}, all_of(triangles), counters, fragments);
     for (const SampleFragment& f : fragments)
       for (std::int32_t s = 0; s < 16; ++s)
         sum[static_cast<std::size_t>((f.y * kWidth + f.x) * 16 + s)] +=

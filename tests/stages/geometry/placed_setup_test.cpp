@@ -124,7 +124,7 @@ std::vector<float> depths_of(const SetupTriangles& triangles) {
   std::vector<float> depths(kWidth * kHeight * kSamples, 2.0f);
   std::vector<SampleFragment> fragments;
   StageCounters counters;
-  sample_raster(triangles, all_of(triangles), {0, 0, kWidth, kHeight}, sampling, counters, fragments);
+  sample_raster({triangles, {0, 0, kWidth, kHeight}, sampling}, all_of(triangles), counters, fragments);
   for (const SampleFragment& f : fragments)
     for (std::int32_t s = 0; s < kSamples; ++s)
       if (f.mask >> s & 1) {

@@ -62,7 +62,7 @@ Lanes beam_lanes(const SetupTriangles& triangles) {
 Lanes sample_lanes(const SetupTriangles& triangles) {
   std::vector<SampleFragment> fragments;
   StageCounters raster, counters;
-  sample_raster(triangles, all_of(triangles), {0, 0, 8, 8}, {CellGrid{}, standard_pattern(8)}, raster, fragments);
+  sample_raster({triangles, {0, 0, 8, 8}, {CellGrid{}, standard_pattern(8)}}, all_of(triangles), raster, fragments);
   shade(std::vector<glm::vec3>(triangles.triangles.size()), fragments, counters);
   return {counters.lanes_used, counters.lanes_issued};
 }

@@ -80,7 +80,7 @@ class RasterTwins : public SceneTwins {
 TEST_P(RasterTwins, ConservativeRaster) {
   StageCounters counters;
   std::vector<Pair> pairs;
-  conservative_raster(triangles_, list_, tile_, counters, pairs, nullptr, PairDepths::none);
+  conservative_raster(triangles_, list_, tile_, counters, pairs, {.depths = PairDepths::none});
   std::vector<Cell> found, expected;
   for (const Pair& pair : pairs) found.push_back({pair.triangle, pair.x, pair.y, pair.full ? 1u : 0u});
   for (const std::uint32_t index : list_)
@@ -101,7 +101,7 @@ TEST_P(RasterTwins, SampleRaster) {
        {Sampling{CellGrid{}, standard_pattern(8)}, Sampling{CellGrid{2, 2}, standard_pattern(4)}}) {
     StageCounters counters;
     std::vector<SampleFragment> fragments;
-    sample_raster(triangles_, list_, tile_, sampling, counters, fragments);
+    sample_raster({triangles_, tile_, sampling}, list_, counters, fragments);
     std::vector<Cell> found, expected;
     for (const SampleFragment& fragment : fragments)
       found.push_back({fragment.triangle, fragment.x, fragment.y, fragment.mask});

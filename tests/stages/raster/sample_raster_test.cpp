@@ -35,7 +35,7 @@ struct Raster {
 
 Raster rasterize(const SetupTriangles& triangles, const Tile& tile, const Sampling& sampling) {
   Raster raster;
-  sample_raster(triangles, all_of(triangles), tile, sampling, raster.counters, raster.fragments);
+  sample_raster({triangles, tile, sampling}, all_of(triangles), raster.counters, raster.fragments);
   return raster;
 }
 

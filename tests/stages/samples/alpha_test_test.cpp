@@ -29,7 +29,8 @@ Tested tested(const ShadedScene& scene, AlphaCoverage coverage, const std::vecto
               const std::vector<glm::vec2>& places, const CellGrid& grid = {}) {
   Tested result{fragments, {}};
   const Tile tile = scene.frame_tile();
-  alpha_test({scene.shader, tile}, tile, grid, 8, coverage, places, result.counters, result.fragments);
+  alpha_test({scene.shader, tile}, {tile, {grid, standard_pattern(8)}, coverage, places}, result.counters,
+             result.fragments);
   return result;
 }
 

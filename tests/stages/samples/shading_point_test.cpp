@@ -18,7 +18,7 @@ std::vector<SampleFragment> fragments_of(const SetupTriangles& triangles, const 
   for (std::uint32_t i = 0; i < triangles.triangles.size(); ++i) list.push_back(i);
   std::vector<SampleFragment> fragments;
   StageCounters counters;
-  sample_raster(triangles, list, kTile, sampling, counters, fragments);
+  sample_raster({triangles, kTile, sampling}, list, counters, fragments);
   return fragments;
 }
 

@@ -1,7 +1,5 @@
 // The scalar twins of the stages that carry pixels from one frame to the next: motion, contents, dilate, temporal. They
 // process each pixel alone. In the last frame, the camera and the first draw were elsewhere.
-#include <half.h>
-
 #include <algorithm>
 #include <cmath>
 #include <glm/gtc/matrix_transform.hpp>
@@ -32,8 +30,8 @@ class TemporalTwins : public SceneTwins {
     std::vector<SampleFragment> fragments;
     std::vector<SampleAccess> accesses;
     surface_ = SampleTile(tile_, sampling);
-    sample_raster(triangles_, list_, tile_, sampling, ignored, fragments);
-    depth_test(triangles_, fragments, tile_, sampling, ignored, surface_, accesses);
+    sample_raster({triangles_, tile_, sampling}, list_, ignored, fragments);
+    depth_test({triangles_, tile_, sampling}, fragments, ignored, surface_, accesses);
     colors_ = shade_triangles(triangles_, frame.lighting);
     Poses before = poses_of(frame);
     before.view_projection = glm::translate(glm::dmat4(1.0), glm::dvec3(0.05, -0.03, 0)) * before.view_projection;
@@ -76,7 +74,7 @@ class TemporalTwins : public SceneTwins {
     const bool in_front = w > Real(0.0);
     const auto stored = [&](const Real& distance) {
       const float value = converted(to_float(distance)).value;
-      return real(in_front ? static_cast<float>(::half(value)) : std::numeric_limits<float>::infinity());
+      return real(in_front ? nearest_half(value) : std::numeric_limits<float>::infinity());
     };
     return {stored(dx), stored(dy)};
   }
@@ -86,8 +84,8 @@ class TemporalTwins : public SceneTwins {
     StageCounters ignored;
     CurrentFrame frame(trace_.frames[0].width, trace_.frames[0].height);
     dilate(quads_, triangles_.draws, trace_.frames[0].background, tile_, ignored, frame);
-    frame.motion = motion(surface_, tile_, trace_.frames[0], triangles_.draws, to_last_, ignored);
-    PixelContents found = contents(surface_, tile_, trace_.frames[0], triangles_.draws, to_last_, looks_, ignored);
+    frame.motion = motion(surface_, {tile_, trace_.frames[0], triangles_.draws, to_last_}, ignored);
+    PixelContents found = contents(surface_, {tile_, trace_.frames[0], triangles_.draws, to_last_}, looks_, ignored);
     frame.looks = std::move(found.looks), frame.speeds = std::move(found.speeds);
     return frame;
   }
@@ -118,7 +116,8 @@ class TemporalTwins : public SceneTwins {
 
 TEST_P(TemporalTwins, Motion) {
   StageCounters counters;
-  const std::vector<glm::vec2> found = motion(surface_, tile_, trace_.frames[0], triangles_.draws, to_last_, counters);
+  const std::vector<glm::vec2> found =
+      motion(surface_, {tile_, trace_.frames[0], triangles_.draws, to_last_}, counters);
   for (std::size_t i = 0; i < tile_.pixels(); ++i) {
     std::size_t at = kSamples * i;
     Float nearest = real(surface_.depth[at]);
@@ -136,7 +135,8 @@ TEST_P(TemporalTwins, Motion) {
 
 TEST_P(TemporalTwins, Contents) {
   StageCounters counters;
-  const PixelContents found = contents(surface_, tile_, trace_.frames[0], triangles_.draws, to_last_, looks_, counters);
+  const PixelContents found =
+      contents(surface_, {tile_, trace_.frames[0], triangles_.draws, to_last_}, looks_, counters);
   for (std::size_t i = 0; i < tile_.pixels(); ++i) {
     Bits look(0u);
     Float fastest = real(0.0f);
@@ -153,7 +153,7 @@ TEST_P(TemporalTwins, Contents) {
       fastest = greater(fastest, moves.x * moves.x + moves.y * moves.y);
     }
     ASSERT_EQ(found.looks[i], look.value) << i;
-    ASSERT_EQ(found.speeds[i], static_cast<float>(::half(converted(square_root(fastest)).value))) << i;
+    ASSERT_EQ(found.speeds[i], nearest_half(converted(square_root(fastest)).value)) << i;
   }
   EXPECT_EQ(counters.ops, twin_);
 }

@@ -200,7 +200,7 @@ TEST(Formulas, OfEveryPassAreModelledTimesOfItsStages) {
   report.hardware = titan_v();
   TechniqueReport& result = report.results.emplace_back();
   result.technique = "dvm";
-  StageCounters shade{"shade"}, light{"light"};
+  StageCounters shade{StageId::shade}, light{StageId::light};
   shade.dram_bytes = 1'000'000, light.dram_bytes = 3'000'000;
   result.frames.push_back(frame_with({shade, light}));
   const auto ours = [&](const std::string& name) -> std::optional<double> {
@@ -386,7 +386,8 @@ TEST(Claims, AcaaGivesBack) {
   const auto add = [&](const char* spec, std::uint64_t dram) {
     TechniqueReport& result = report.results.emplace_back();
     result.technique = spec;
-    StageCounters setup{"vertex_setup"}, raster{"sample_raster"}, testing{"depth_test"}, resolving{"resolve"};
+    StageCounters setup{StageId::vertex_setup}, raster{StageId::sample_raster}, testing{StageId::depth_test},
+        resolving{StageId::resolve};
     setup.dram_bytes = 1000, raster.dram_bytes = 2000, testing.dram_bytes = dram - 5, resolving.dram_bytes = 5;
     result.frames.push_back(frame_with({setup, raster, testing, resolving}));
   };
@@ -398,7 +399,7 @@ TEST(Claims, AcaaGivesBack) {
   };
   EXPECT_FALSE(given_back());
   change_frames(report.results[0], [](FrameReport& frame, std::size_t) {
-    frame.stages.push_back(StageCounters{"prepass_depth_test"});
+    frame.stages.push_back(StageCounters{{StageId::depth_test, Pass::prepass}});
   });
   EXPECT_FALSE(given_back());
   add("msaa:8,color=rgba16f,prepass", 40);
@@ -410,7 +411,7 @@ TEST(Claims, AcaaGivesBack) {
 TEST(Claims, BytesOfTheBeamWithItsABuffer) {
   Report report = report_for("classroom, beam with its A-buffer, bytes over those of MSAA 8x");
   TechniqueReport& result = report.results.emplace_back();
-  result.technique = "beam:rules=paper";
+  result.technique = "casav";
   FrameReport frame;
   frame.pixels = 10, frame.a_buffer_peak_bytes = 4180;
   result.frames.push_back(frame);
@@ -424,7 +425,7 @@ TEST(Claims, BytesOfTheBeamWithItsABuffer) {
 TEST(Claims, MostFragmentsOfAPixelAreThoseOfTheClassroomWhateverItsFileIsCalled) {
   Report report;
   TechniqueReport& result = report.results.emplace_back();
-  result.technique = "beam:rules=paper";
+  result.technique = "casav";
   FrameReport frame;
   frame.pixel_counters["fragments"] = {2.5, 61};
   result.frames.push_back(frame);

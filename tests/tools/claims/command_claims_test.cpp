@@ -2,7 +2,7 @@
 #include <sstream>
 
 #include "tests/tools/cli/program_fixture.h"
-#include "traces/json.h"
+#include "traces/files/json.h"
 
 namespace beampipe {
 namespace {

@@ -64,6 +64,7 @@ TEST_F(ProgramTest, EveryMistakeIsOneLineAndLeavesNothing) {
       {{"run", trace, "-t", "beam", "-o", out, "--hardware", "titan_v,titan_v"}, 1, "found titan_v twice"},
       {{"run", trace, "-t", "beam", "-o", out, "--material-cost", "1,2,3,4"}, 2, "expected OPERATIONS[,FETCHES"},
       {{"run", trace, "-t", "beam", "-o", out, "--light-cost", "x"}, 2, "expected OPERATIONS[,FETCHES"},
+      {{"counters", "componse"}, 2, "expected the name of a stage, found none (did you mean 'compose'?)"},
       {{"claims", out, "--hardware", "titan_v,rtx_4090"}, 2, "expected one"},
       {{"run", trace, "-t", "beam", "-o", out, "--hardware", path("broken.json")}, 1, "expected valid JSON"},
       {{"run", trace, "-t", "beam", "-o", out, "--hardware", path("nested.json")}, 1, "nested.json: byte 33"},

@@ -5,8 +5,8 @@
 #include "pipeline/technique.h"
 #include "tests/traces/gltf_models.h"
 #include "tools/cli/framing.h"
-#include "traces/model_import.h"
-#include "traces/trace_io.h"
+#include "traces/files/model_import.h"
+#include "traces/files/trace_io.h"
 
 namespace beampipe {
 namespace {
@@ -30,7 +30,7 @@ std::optional<Trace> shown(const std::filesystem::path& file) {
 
 TEST(ModelPictures, AreFiniteAndShowTheModel) {
   if (!std::filesystem::exists(kModels)) GTEST_SKIP() << "Debian's package assimp-testmodels is not installed";
-  RunOptions options;
+  FrameInput options;
   options.memory.modelled = false;
   const Technique techniques[] = {parse_technique("beam"), parse_technique("msaa:1")};
   int models = 0;

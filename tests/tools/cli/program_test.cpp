@@ -7,7 +7,7 @@
 #include "tests/traces/gltf_builder.h"
 #include "tools/evaluate/metrics.h"
 #include "tools/files/image_io.h"
-#include "traces/trace_io.h"
+#include "traces/files/trace_io.h"
 
 namespace beampipe {
 namespace {
@@ -192,6 +192,18 @@ TEST_F(ProgramTest, PlotDrawsTheTrafficOfARun) {
   succeed({"run", path("trace.json"), "-t", "beam", "-o", path("other"), "--no-memory-model"});
   expect_one_error_line(run_program({"plot", path("other"), "--kind", "traffic", "-o", path("x.svg")}), 1,
                         "other/report.json: it has no DRAM bytes; expected a report made without --no-memory-model");
+}
+
+TEST_F(ProgramTest, CountersListsWhatIsCounted) {
+  const Parsed json = Parsed::parse(succeed({"counters", "depth_test", "--json"}));
+  ASSERT_EQ(json["stages"].size(), 1u);
+  EXPECT_EQ(json["stages"][0]["stage"], "depth_test");
+  EXPECT_EQ(json["stages"][0]["group"], "visibility");
+  EXPECT_EQ(json["stages"][0]["shader"], false);
+  EXPECT_EQ(json["stages"][0]["counters"][0], "items_in");
+  const std::string all = succeed({"counters"});
+  for (const char* const part : {"depth_test (visibility; fixed function)\n", "  counters ", "\nCounters of pixels\n"})
+    EXPECT_NE(all.find(part), all.npos) << part;
 }
 
 TEST_F(ProgramTest, DiffTellsTheError) {
@@ -460,7 +472,7 @@ TEST_F(ProgramTest, StressWritesWhatItFoundAndItsTraces) {
 TEST_F(ProgramTest, MemoryLimitBoundsThePeakAndChangesNothing) {
   succeed({"make", "stack", "--triangles", "200", "--width", "128", "--height", "96", "-o", path("deep.json")});
   const auto run = [&](const std::string& limit, const std::string& out) {
-    return run_program({"run", path("deep.json"), "-t", "beam:rules=paper", "--no-memory-model", "--threads", "4",
+    return run_program({"run", path("deep.json"), "-t", "casav", "--no-memory-model", "--threads", "4",
                         "--memory-limit", limit, "-o", path(out)});
   };
   const Outcome refused = run("1MB", "refused");
@@ -477,9 +489,7 @@ TEST_F(ProgramTest, MemoryLimitBoundsThePeakAndChangesNothing) {
   EXPECT_GT(whole.peak_bytes >> 20, needed + kProgram) << "otherwise this test shows nothing";
 #endif
   for (const char* file : {"frame_0000.exr", "frame_0000_counters.exr"})
-    EXPECT_EQ(read_text(folder_ / "banded/beam_rules=paper" / file),
-              read_text(folder_ / "whole/beam_rules=paper" / file))
-        << file;
+    EXPECT_EQ(read_text(folder_ / "banded/casav" / file), read_text(folder_ / "whole/casav" / file)) << file;
 }
 
 // A frame's results take tens of KiB as JSON, and more as values in memory.

@@ -7,7 +7,7 @@
 #include <stdexcept>
 
 #include "tools/evaluate/draw_notes.h"
-#include "traces/trace_io.h"
+#include "traces/files/trace_io.h"
 
 namespace beampipe {
 namespace {

@@ -40,10 +40,10 @@ class DiagnosisTest : public testing::Test {
 
 TEST_F(DiagnosisTest, CausesAddUpToTheErrorLayerAndToOne) {
   write_coincident();
-  const std::string table = succeed({"compare", path("trace.json"), "-t", "beam:rules=paper", "msaa:2", "--causes",
-                                     "--ladder", "1,64", "-o", path("out")});
+  const std::string table = succeed(
+      {"compare", path("trace.json"), "-t", "casav", "msaa:2", "--causes", "--ladder", "1,64", "-o", path("out")});
   const Json json = report();
-  const Planes planes = read_exr_planes(folder_ / "out/beam_rules=paper/frame_0000_counters.exr");
+  const Planes planes = read_exr_planes(folder_ / "out/casav/frame_0000_counters.exr");
   std::map<std::string, double> squares;
   double all = 0;
   const std::vector<float>& error = planes.channels.at("error");

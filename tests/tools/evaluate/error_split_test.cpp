@@ -187,7 +187,7 @@ TEST_F(ErrorSplitTest, HistoriesOfBothPicturesAreKeptApart) {
 
 TEST_F(ErrorSplitTest, CausesAddUpToTheErrorInVisibility) {
   write_varying_trace(folder_, {R"({"mesh": "wall"}, {"mesh": "sliver"}, {"mesh": "flat"})"});
-  const Json json = compare({"beam", "beam:rules=paper", "alpha", "--ladder", "1", "--causes"});
+  const Json json = compare({"beam", "casav", "alpha", "--ladder", "1", "--causes"});
   for (const int i : {0, 1, 2}) {
     const Json& result = json["results"][i];
     SCOPED_TRACE(result["technique"]);

@@ -4,15 +4,14 @@
 
 #include <regex>
 
-#include "stages/cost/counter_registry.h"
 #include "tools/evaluate/results.h"
 #include "traces/scenes.h"
 
 namespace beampipe {
 namespace {
 
-StageCounters stage(const std::string& name) {
-  StageCounters counters{name};
+StageCounters stage(StageId id) {
+  StageCounters counters{id};
   counters.items_in = 6000, counters.items_out = 9600;
   counters.ops = {5120, 5120, 0, 0, 1280, 0};
   counters.l2_bytes = 1536 * 3, counters.dram_bytes = 4487;
@@ -26,19 +25,20 @@ double clocks(const Hardware& hardware, double ms) { return ms * hardware.clock_
 TEST(Hardware, TimeIsWorkOverRate) {
   const Hardware titan = titan_v();
   const Implementation& shaders = titan.implementations.at(0);
-  const auto raster = unit_times(titan, shaders, stage("sample_raster"));
+  const auto raster = unit_times(titan, shaders, stage(StageId::sample_raster));
   EXPECT_NEAR(clocks(titan, raster.at("triangles")), 1000, 1e-6);
   EXPECT_NEAR(clocks(titan, raster.at("raster")), 100, 1e-6);
   EXPECT_NEAR(clocks(titan, raster.at("l2")), 3, 1e-6);
   EXPECT_NEAR(clocks(titan, raster.at("dram")), 10, 1e-6);
   EXPECT_FALSE(raster.contains("shader"));
-  EXPECT_NEAR(clocks(titan, unit_times(titan, shaders, stage("compose")).at("shader")), 2, 1e-6);
+  EXPECT_NEAR(clocks(titan, unit_times(titan, shaders, stage(StageId::compose)).at("shader")), 2, 1e-6);
 }
 
 TEST(Hardware, OverlapIsTheBusiestUnitAndSumEachStagesBusiest) {
   const Hardware titan = titan_v();
   const ModelledTime time =
-      modelled_time(titan, titan.implementations.at(0), {stage("sample_raster"), stage("compose"), stage("compose")});
+      modelled_time(titan, titan.implementations.at(0),
+                    {stage(StageId::sample_raster), stage(StageId::compose), stage(StageId::compose)});
   EXPECT_NEAR(clocks(titan, time.sum_ms), 1000 + 10 + 10, 1e-6);
   EXPECT_NEAR(clocks(titan, time.overlap_ms), 1000, 1e-6);
   EXPECT_EQ(time.busiest, "triangles");
@@ -48,7 +48,7 @@ TEST(Hardware, OverlapIsTheBusiestUnitAndSumEachStagesBusiest) {
 
 TEST(Hardware, ShadersShareTheirUnitBetweenStages) {
   const Hardware titan = titan_v();
-  StageCounters busy{"compose"};
+  StageCounters busy{StageId::compose};
   busy.ops.bit = 5120 * 100;
   const ModelledTime time = modelled_time(titan, titan.implementations.at(0), {busy, busy});
   EXPECT_NEAR(clocks(titan, time.overlap_ms), 200, 1e-6);
@@ -57,10 +57,10 @@ TEST(Hardware, ShadersShareTheirUnitBetweenStages) {
 
 TEST(Hardware, LanesThatAStageNamesTwiceWorkOnce) {
   Hardware titan = titan_v();
-  StageCounters busy{"shade"};
+  StageCounters busy{StageId::shade};
   busy.ops.bit = 5120 * 100;
   const double once = modelled_time(titan, titan.implementations.at(0), {busy}).overlap_ms;
-  titan.implementations.at(0).units.at("shade").push_back("shader");
+  titan.implementations.at(0).units.at(StageId::shade).push_back("shader");
   EXPECT_EQ(modelled_time(titan, titan.implementations.at(0), {busy}).overlap_ms, once);
 }
 
@@ -69,7 +69,7 @@ TEST(Hardware, EveryStageHasUnits) {
   for (const std::string& name : hardware_names())
     for (const Implementation& implementation : read_hardware(name).implementations)
       for (const StageInfo& stage : stage_list())
-        EXPECT_EQ(implementation.units.contains(stage.name), stage.name != std::string("reference_raster"))
+        EXPECT_EQ(implementation.units.contains(stage.id), stage.id != StageId::reference_raster)
             << name << ", " << stage.name;
 }
 
@@ -94,30 +94,30 @@ TEST(Hardware, EveryNumberHasASource) {
 TEST(Hardware, FixedFunctionsFollowTheirWork) {
   const Hardware titan = titan_v();
   const Implementation& fixed = titan.implementations.at(1);
-  const auto of = [&](const char* name, const char* unit, const auto& set) {
-    StageCounters counters{name};
+  const auto of = [&](StageId id, const char* unit, const auto& set) {
+    StageCounters counters{id};
     set(counters);
     return clocks(titan, unit_times(titan, fixed, counters).at(unit));
   };
   const auto masks = [&](std::uint64_t tests) {
-    return of("beam_fragment", "mask_generator", [&](auto& s) { s.items_in = 960, s.position_tests = tests; });
+    return of(StageId::beam_fragment, "mask_generator", [&](auto& s) { s.items_in = 960, s.position_tests = tests; });
   };
   EXPECT_NEAR(masks(960 * 32 * 3), 10, 1e-6);
   EXPECT_NEAR(masks(960 * 256 * 3), 80, 1e-6);
   const auto sorting = [&](std::uint64_t comparisons) {
-    return of("a_buffer", "sorter", [&](auto& s) { s.items_in = 960, s.ops.add = comparisons; });
+    return of(StageId::a_buffer, "sorter", [&](auto& s) { s.items_in = 960, s.ops.add = comparisons; });
   };
   EXPECT_NEAR(sorting(0), 10, 1e-6);
   EXPECT_NEAR(sorting(9600), 100, 1e-6) << "long lists need more comparisons";
   const auto composition = [&](std::uint64_t positions, std::uint64_t bytes) {
-    return of("compose", "composer",
+    return of(StageId::compose, "composer",
               [&](auto& s) { s.items_in = 96, s.position_tests = positions, s.bytes_read = bytes; });
   };
   EXPECT_NEAR(composition(0, 0), 1, 1e-6);
   EXPECT_NEAR(composition(7680, 0), 10, 1e-6);
   EXPECT_NEAR(composition(0, 30720), 10, 1e-6);
   const auto rop = [&](std::uint64_t bytes) {
-    return of("depth_test", "rop_samples", [&](auto& s) { s.items_in = 768, s.bytes_written = bytes; });
+    return of(StageId::depth_test, "rop_samples", [&](auto& s) { s.items_in = 768, s.bytes_written = bytes; });
   };
   EXPECT_NEAR(rop(3072), 1, 1e-6);
   EXPECT_NEAR(rop(2 * 3072), 2, 1e-6) << "wider formats take longer";
@@ -127,19 +127,19 @@ TEST(Hardware, FixedFunctionsFollowTheirWork) {
 // shaders, and of ROPs where the pixels are on chip. Texels, which have a rate of their own, do not count for shaders.
 TEST(Hardware, BytesOfPixelsMoveWhereThePixelsAre) {
   const Hardware titan = titan_v();
-  const auto of = [&](std::size_t implementation, const char* name, const char* unit, double bin_bytes) {
-    StageCounters counters{name};
+  const auto of = [&](std::size_t implementation, StageId id, const char* unit, double bin_bytes) {
+    StageCounters counters{id};
     counters.bytes_read = 30720;
     if (unit == std::string("shader")) counters.bytes_read += 1000, counters.texture_bytes = 1000;
     return clocks(titan, unit_times(titan, titan.implementations.at(implementation), counters, bin_bytes).at(unit));
   };
-  EXPECT_NEAR(of(1, "compose", "composer", 0), 10, 1e-6);
-  EXPECT_NEAR(of(1, "compose", "composer", 1024), 3, 1e-6);
-  EXPECT_NEAR(of(0, "depth_test", "rop_samples", 0), 10, 1e-6);
-  EXPECT_NEAR(of(0, "depth_test", "rop_samples", 1024), 3, 1e-6);
-  EXPECT_NEAR(of(0, "accumulate", "rop_fragments", 1024), 3, 1e-6);
-  EXPECT_NEAR(of(0, "compose", "shader", 0), 3, 1e-6);
-  EXPECT_NEAR(of(0, "compose", "shader", 1024), 3, 1e-6);
+  EXPECT_NEAR(of(1, StageId::compose, "composer", 0), 10, 1e-6);
+  EXPECT_NEAR(of(1, StageId::compose, "composer", 1024), 3, 1e-6);
+  EXPECT_NEAR(of(0, StageId::depth_test, "rop_samples", 0), 10, 1e-6);
+  EXPECT_NEAR(of(0, StageId::depth_test, "rop_samples", 1024), 3, 1e-6);
+  EXPECT_NEAR(of(0, StageId::accumulate, "rop_fragments", 1024), 3, 1e-6);
+  EXPECT_NEAR(of(0, StageId::compose, "shader", 0), 3, 1e-6);
+  EXPECT_NEAR(of(0, StageId::compose, "shader", 1024), 3, 1e-6);
 }
 
 // What is on chip beside the pixels, such as closed depths, has memory of its own.
@@ -153,7 +153,7 @@ TEST(Hardware, OnlyPixelsOnChipTakeRoomInCores) {
   for (const auto& [spec, place, bytes] : {std::tuple{"msaa:8", Place::in_memory, 0},
                                            {"msaa:8", Place::on_chip, 80 * 1024},
                                            {"beam", Place::on_chip, 154 * 1024}}) {
-    RunOptions options;
+    FrameInput options;
     options.memory.framebuffer = place;
     FrameReport report;
     report.buffers = parse_technique(spec).render(trace, 0, options).buffers;
@@ -165,7 +165,7 @@ TEST(Hardware, OnlyPixelsOnChipTakeRoomInCores) {
 // float lanes.
 TEST(Hardware, WideIntegersHaveTheirOwnRate) {
   const Hardware titan = titan_v();
-  StageCounters counters{"compose"};
+  StageCounters counters{StageId::compose};
   counters.ops.add = 5120;
   EXPECT_NEAR(clocks(titan, unit_times(titan, titan.implementations[0], counters).at("shader")), 1, 1e-6);
   counters.ops.wide = 5120;
@@ -177,7 +177,7 @@ TEST(Hardware, WideIntegersHaveTheirOwnRate) {
 TEST(Hardware, WideIntegersAreIssuedTwiceAndTakeNoFloatLanes) {
   Hardware titan = titan_v();
   titan.rates.at("wide_per_clk") = 1e12;
-  StageCounters counters{"compose"};
+  StageCounters counters{StageId::compose};
   counters.ops.add = counters.ops.wide = 5120;
   const auto shader = [&] { return clocks(titan, unit_times(titan, titan.implementations[0], counters).at("shader")); };
   titan.rates.at("issue_per_clk") = 512;
@@ -189,7 +189,7 @@ TEST(Hardware, WideIntegersAreIssuedTwiceAndTakeNoFloatLanes) {
 // 960 pixels at 96 per clock, of which 96 are visible.
 TEST(Hardware, ConservativeRastersTakeHiddenPixelsToo) {
   const Hardware titan = titan_v();
-  StageCounters counters{"conservative_raster"};
+  StageCounters counters{StageId::conservative_raster};
   counters.lanes_used = 960, counters.items_out = 96;
   const auto times = unit_times(titan, titan.implementations.at(1), counters);
   EXPECT_NEAR(clocks(titan, times.at("conservative_raster")), 10, 1e-6);
@@ -200,7 +200,7 @@ TEST(Hardware, ConservativeRastersTakeHiddenPixelsToo) {
 TEST(Hardware, BinsThatDoNotFitStallAndSpill) {
   const Hardware titan = titan_v();
   const Implementation& shaders = titan.implementations.at(0);
-  StageCounters counters{"compose"};
+  StageCounters counters{StageId::compose};
   counters.ops.bit = 102400;
   counters.bytes_read = 1536 * 100;
   const auto times = [&](double kib) { return unit_times(titan, shaders, counters, kib * 1024); };
@@ -210,29 +210,28 @@ TEST(Hardware, BinsThatDoNotFitStallAndSpill) {
   EXPECT_NEAR(clocks(titan, times(80).at("l2")), 0, 1e-6);
   EXPECT_NEAR(clocks(titan, times(192).at("shader")), 40, 1e-6);
   EXPECT_NEAR(clocks(titan, times(192).at("l2")), 50, 1e-6);
-  counters.stage = "vertex_setup";
+  counters.stage = StageId::vertex_setup;
   EXPECT_NEAR(clocks(titan, times(192).at("shader")), 20, 1e-6);
 }
 
 // 512 invocations, each with 100 operations and 5 probes of 16 bytes: 10 clocks of the float lanes, 8 of the texture
 // units. With 128 registers, half as many invocations fit as with 64.
 TEST(Hardware, ShadingCostsAreAddedToInvocations) {
-  const auto time_of = [](const ShadingCost& material, const ShadingCost& light,
-                          const std::vector<std::string>& stages) {
+  const auto time_of = [](const ShadingCost& material, const ShadingCost& light, const std::vector<StageId>& stages) {
     const Hardware titan = with_shading_costs(titan_v(), material, light);
     std::vector<StageCounters> all;
-    for (const std::string& name : stages) all.emplace_back(StageCounters{name}).lanes_issued = 512;
+    for (const StageId id : stages) all.emplace_back(StageCounters{id}).lanes_issued = 512;
     return clocks(titan, modelled_time(titan, titan.implementations.at(1), all).sum_ms);
   };
   const double quads = 512 / 96.0;  // which `shade` takes without any cost
-  EXPECT_NEAR(time_of({}, {}, {"shade"}), quads, 1e-6);
-  EXPECT_NEAR(time_of({100, 0, 0}, {}, {"shade"}), 10, 1e-6);
-  EXPECT_NEAR(time_of({100, 0, 64}, {}, {"shade"}), 10, 1e-6);
-  EXPECT_NEAR(time_of({100, 0, 128}, {}, {"shade"}), 20, 1e-6);
-  EXPECT_NEAR(time_of({0, 5, 0}, {}, {"shade"}), 8, 1e-6);
-  EXPECT_NEAR(time_of({100, 0, 0}, {50, 0, 0}, {"shade"}), 15, 1e-6) << "lights are in the fragment shader";
-  EXPECT_NEAR(time_of({100, 0, 0}, {50, 0, 0}, {"shade", "light"}), 10 + 5, 1e-6);
-  EXPECT_NEAR(time_of({}, {50, 0, 0}, {"shade", "light"}), quads + 5, 1e-6);
+  EXPECT_NEAR(time_of({}, {}, {StageId::shade}), quads, 1e-6);
+  EXPECT_NEAR(time_of({100, 0, 0}, {}, {StageId::shade}), 10, 1e-6);
+  EXPECT_NEAR(time_of({100, 0, 64}, {}, {StageId::shade}), 10, 1e-6);
+  EXPECT_NEAR(time_of({100, 0, 128}, {}, {StageId::shade}), 20, 1e-6);
+  EXPECT_NEAR(time_of({0, 5, 0}, {}, {StageId::shade}), 8, 1e-6);
+  EXPECT_NEAR(time_of({100, 0, 0}, {50, 0, 0}, {StageId::shade}), 15, 1e-6) << "lights are in the fragment shader";
+  EXPECT_NEAR(time_of({100, 0, 0}, {50, 0, 0}, {StageId::shade, StageId::light}), 10 + 5, 1e-6);
+  EXPECT_NEAR(time_of({}, {50, 0, 0}, {StageId::shade, StageId::light}), quads + 5, 1e-6);
 }
 
 TEST(Hardware, CostsStandInTheDescription) {
@@ -272,8 +271,9 @@ TEST(Hardware, ErrorsNameTheKey) {
       refusal("\"compose\":", "\"componse\":"),
       "h.json: /implementations/shaders/units/componse: expected the name of a stage, found \"componse\" (did you mean "
       "'compose'?)");
-  EXPECT_EQ(refusal("\"sources\":{", "\"sources\":{\"rops\":\"x\",").find("h.json: /sources/rops: expected one of the keys"),
-            0u);
+  EXPECT_EQ(
+      refusal("\"sources\":{", "\"sources\":{\"rops\":\"x\",").find("h.json: /sources/rops: expected one of the keys"),
+      0u);
   EXPECT_EQ(refusal("\"triangles_per_clk\":6,", ""),
             "h.json: /rates: expected the key \"triangles_per_clk\", found none");
   EXPECT_EQ(refusal("\"quads_per_clk\":24", "\"quads_per_clk\":24,\"x\":1").find("h.json: /rates/x: expected one of"),
@@ -284,6 +284,12 @@ TEST(Hardware, ErrorsNameTheKey) {
             "h.json: /sources/clock_mhz: expected where the number is from, or that it is a choice, found nothing");
   EXPECT_EQ(refusal("[\"rop_samples\",", "[\"rop\",")
                 .find("h.json: /implementations/shaders/units/depth_test/0: expected one of \"on_chip\", \"composer\""),
+            0u);
+  const std::string composer = refusal("\"shade\":[\"quads\",", "\"shade\":[\"composer\",");
+  EXPECT_EQ(composer.find("h.json: /implementations/shaders/units/shade/0: expected one of \"on_chip\""), 0u)
+      << "the counters of `shade` say nothing to a unit of composition";
+  EXPECT_EQ(refusal("\"compose\":[\"shader\",", "\"prepass_compose\":[\"shader\",")
+                .find("h.json: /implementations/shaders/units/prepass_compose: expected the name of a stage"),
             0u);
 }
 

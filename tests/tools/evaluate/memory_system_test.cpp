@@ -2,7 +2,7 @@
 
 #include <gtest/gtest.h>
 
-#include "traces/trace_io.h"
+#include "traces/files/trace_io.h"
 
 namespace beampipe {
 namespace {

@@ -20,7 +20,7 @@ Report small_report() {
     frame.index = index;
     frame.pixels = frame.bin_pixels = 1024;
     frame.buffers = {{"open_pixels", 160 * 1024, true}, {"setup_triangles", 5000}};
-    StageCounters stage{"compose"};
+    StageCounters stage{StageId::compose};
     stage.items_in = 1000 * (index + 1);
     stage.ops.add = 51200 * (index + 1);
     stage.ops.wide = 100;

@@ -18,7 +18,8 @@ using Amounts = std::map<std::string, std::uint64_t>;
 
 // 15 pairs are maybe visible and sorted; 9 of them became 7 fragments, 2 covered their pixel as a whole.
 TEST(SavedWork, IsFoundFromTheStages) {
-  StageCounters raster{"conservative_raster"}, buffer{"a_buffer"}, fragment{"beam_fragment"}, composition{"compose"};
+  StageCounters raster{StageId::conservative_raster}, buffer{StageId::a_buffer}, fragment{StageId::beam_fragment},
+      composition{StageId::compose};
   raster.items_out = 15, raster.hidden_items = 5, raster.hidden_triangles = 4, raster.empty_tiles = 3;
   buffer.items_out = 15;
   fragment.items_in = 9, fragment.items_out = 7;
@@ -26,10 +27,10 @@ TEST(SavedWork, IsFoundFromTheStages) {
   Amounts expected = {{"hidden_pairs", 5}, {"hidden_triangles", 4}, {"empty_tiles", 3}};
   EXPECT_EQ(saved_by({raster, fragment, buffer, composition}), expected) << "published rules: fragments are sorted";
   expected["whole_pixels"] = 2, expected["pairs_behind_closed"] = 15 - 9 - 2;
-  EXPECT_EQ(saved_by({raster, buffer, fragment, composition}), expected);
-  raster.stage = "sample_raster";
+  EXPECT_EQ(saved_by({raster, buffer, {StageId::windows}, fragment, composition}), expected);
+  raster.stage = StageId::sample_raster;
   EXPECT_EQ(saved_by({raster}), (Amounts{{"hidden_cells", 5}, {"hidden_triangles", 4}, {"empty_tiles", 3}}));
-  EXPECT_TRUE(saved_work({{"reference_raster"}}).empty());
+  EXPECT_TRUE(saved_work({{StageId::reference_raster}}).empty());
 }
 
 }  // namespace

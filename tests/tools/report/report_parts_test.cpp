@@ -3,7 +3,7 @@
 #include <map>
 #include <set>
 
-#include "stages/cost/counter_registry.h"
+#include "stages/cost/stage.h"
 #include "tests/tools/fixtures.h"
 #include "tools/files/image_io.h"
 #include "tools/report/cards.h"

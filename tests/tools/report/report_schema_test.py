@@ -54,7 +54,7 @@ class SchemaTest(unittest.TestCase):
         runs = {"run": ["run", fence, "--frames", "0", "--repeat", "2", "-t", "beam", "dvm", "msaa:2,motion"],
                 "no_memory": ["run", fence, "--no-memory-model", "-t", "beam"],
                 "compare": ["compare", fence, "--causes", "--orders", "--inspect-worst", "1", "--ladder", "1,2", "--hardware", "titan_v,rtx_4090", "-t",
-                            "beam", "beam:order=sorted", "beam:rules=paper", "acaa:2", "msaa:1"],
+                            "beam", "beam:order=sorted", "casav", "acaa:2", "msaa:1"],
                 "varying": ["compare", cls.room, "--inspect-worst", "1", "--ladder", "4,8", "--inspect", "8,4", "-t", "beam", "msaa:4"]}
         cls.reports, cls.inspections = {}, {}
         for name, arguments in runs.items():

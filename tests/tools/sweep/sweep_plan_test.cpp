@@ -6,7 +6,7 @@
 #include "tools/evaluate/memory_system.h"
 #include "tools/sweep/sweep_jobs.h"
 #include "tools/sweep/trace_shelf.h"
-#include "traces/trace_io.h"
+#include "traces/files/trace_io.h"
 
 namespace beampipe {
 namespace {

@@ -2,7 +2,6 @@
 
 #include <sqlite3.h>
 
-#include "stages/cost/counter_registry.h"
 #include "tests/tools/fixtures.h"
 #include "tools/files/shell_word.h"
 #include "tools/sweep/slurm.h"
@@ -26,12 +25,6 @@ TEST(SweepTable, CsvIsRfc4180) {
   EXPECT_EQ(csv_text(sample_table()),
             "name,x,y\r\nplain,1,2.5\r\n\"with, comma and \"\"quotes\"\"\",10,0.1\r\nplain,10,40\r\nplain,10,10\r\n"
             "\"two\nlines\",3,\r\n");
-}
-
-TEST(SweepTable, EveryStageHasAClass) {
-  for (const StageInfo& stage : stage_list())
-    EXPECT_EQ(stage_class(stage.name).empty(), stage.name == std::string("reference_raster")) << stage.name;
-  EXPECT_EQ(stage_class("prepass_depth_test"), "visibility");
 }
 
 TEST(SweepTable, SqliteHasRowsAndTheMeaningOfColumns) {

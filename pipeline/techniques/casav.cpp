@@ -1,0 +1,316 @@
+// CASAV, correlation-aware semi-analytic visibility: the beam pipeline as published (Crassin et al. 2018). Conservative
+// raster makes pairs; they become fragments with analytic coverage and a localization mask, are shaded, sorted in an
+// A-buffer, and merged near to far into one aggregate per pixel. Without the A-buffer, each pixel keeps a few
+// aggregates, into which fragments are merged as they come: near to far, roughly, in sorted bins, or in primitive
+// order.
+#include <algorithm>
+#include <string>
+
+#include "pipeline/bins/bin_weights.h"
+#include "pipeline/bins/render_bins.h"
+#include "pipeline/inspect/inspect_casav.h"
+#include "pipeline/technique_table.h"
+#include "pipeline/units/a_buffer_unit.h"
+#include "pipeline/units/casav_layers_unit.h"
+#include "pipeline/units/compose_units.h"
+#include "pipeline/units/fragment_units.h"
+#include "pipeline/units/owner_units.h"
+#include "pipeline/units/raster_units.h"
+#include "stages/beam/a_buffer.h"
+#include "stages/beam/beam_fragment.h"
+#include "stages/beam/compose_casav.h"
+#include "stages/data/casav_aggregate.h"
+
+namespace beampipe {
+namespace {
+
+enum class Rules {
+  published,  // simd/merge.h
+  over,       // alpha OVER without masks and slabs, to show what those are worth
+};
+
+enum class CasavOrder { sorted, near_first, stream };
+
+struct CasavOptions {
+  Rules rules = Rules::published;
+  MaskSource mask = MaskSource::table;  // MaskSource::none with Rules::over
+  SortKey sort = SortKey::centroid;
+  int tiny_positions = 0;  // BeamFragmentOptions::tiny_positions
+  MergeRules merge{};
+  CasavStorage storage = CasavStorage::slides;
+  CasavOrder order = CasavOrder::sorted;
+  int layers = 3;  // aggregates of a pixel, without an A-buffer
+};
+
+std::vector<Surface> aggregate_surfaces(const CasavOptions& beam) {
+  const Surface color{"color", "RGB16F", kAggregateColorBytes}, coverage{"coverage", "R32F", 4};
+  if (beam.rules == Rules::over) return {coverage, color};
+  const Surface mask{"mask", "R32UI", 4}, thickness{"thickness", "R32F", 4}, range{"depth_range", "RG32F", 8};
+  switch (beam.storage) {
+    case CasavStorage::slides:
+      return {coverage, mask, {"depth_plane", "RGBA32F", 16}, thickness, range, color};
+    case CasavStorage::text:
+      return {coverage, mask, {"depth_plane", "R32F + RG16", 8}, {"thickness", "R16", 2}, range, color};
+    case CasavStorage::float32:
+      break;
+  }
+  return {coverage, mask, {"depth_plane", "RGB32F", 12}, thickness, range, {"color", "RGB32F", 12}};
+}
+
+Framebuffer casav_framebuffer(const CasavOptions& beam) {
+  std::vector<Surface> surfaces = aggregate_surfaces(beam);
+  if (beam.order == CasavOrder::sorted) return {.surfaces = surfaces};
+  const auto layers = static_cast<std::uint32_t>(beam.layers);
+  for (Surface& surface : surfaces) {
+    surface.format = times(surface.format.c_str(), layers);
+    surface.bytes_per_pixel *= layers;
+  }
+  return {.surfaces = surfaces, .place = beam.order == CasavOrder::near_first ? Place::on_chip : Place::in_memory};
+}
+
+struct RecordBytes {
+  std::uint32_t fragment, aggregate;
+};
+
+RecordBytes record_bytes(const CasavOptions& options) {
+  if (options.rules == Rules::over) return {kOverFragmentBytes, kOverBytes};
+  return {casav_aggregate_bytes(options.storage), casav_aggregate_bytes(options.storage)};
+}
+
+BeamFragmentOptions fragment_options(const CasavOptions& options, const MergePositions& positions) {
+  BeamFragmentOptions made;
+  made.mask = options.mask;
+  if (options.mask != MaskSource::none) made.positions = {positions.pattern};
+  made.table = &positions.table;
+  made.fragment_bytes = record_bytes(options).fragment;
+  made.tiny_positions = options.tiny_positions;
+  return made;
+}
+
+// Per pixel: does it have records?
+std::vector<bool> pixels_with(const std::vector<float>& records) {
+  std::vector<bool> with;
+  for (const float count : records) with.push_back(count > 0);
+  return with;
+}
+
+// Per pixel: does nothing show through it?
+std::vector<bool> full_pixels(const std::vector<PixelColor>& aggregates) {
+  std::vector<bool> full;
+  for (const PixelColor& aggregate : aggregates) full.push_back(aggregate.alpha == 1.0f);
+  return full;
+}
+
+std::vector<PixelColor> compose_lists(const CasavOptions& options, CasavStorage storage,
+                                      const MergePositions& positions, const std::vector<Fragment>& fragments,
+                                      const ABuffer& lists, StageCounters& counters) {
+  return pixel_colors(options.rules == Rules::published
+                          ? compose(fragments, lists, positions, options.merge, storage, counters)
+                          : compose_over(fragments, lists, counters));
+}
+
+// Composition is linear in colour. Set one fragment's channel to 1 and all others to 0: the composed channel is that
+// fragment's weight. RGB gives three weights per run. Weights are those of unpacked aggregates.
+void add_weights(const CasavOptions& options, const MergePositions& positions, std::vector<Fragment> fragments,
+                 const ABuffer& lists, BinWeights& weights) {
+  StageCounters unused;
+  const std::size_t pixels = lists.first.size() - 1;
+  std::uint32_t deepest = 0;
+  for (std::size_t pixel = 0; pixel < pixels; ++pixel) deepest = std::max(deepest, lists.record_count(pixel));
+  for (std::uint32_t first = 0; first < deepest; first += 3) {
+    for (std::size_t pixel = 0; pixel < pixels; ++pixel) {
+      for (std::uint32_t k = 0; k < lists.record_count(pixel); ++k) {
+        Fragment& fragment = fragments[lists.records[lists.first[pixel] + k]];
+        fragment.color = glm::vec3(0.0f);
+        if (k >= first && k < first + 3) fragment.color[static_cast<int>(k - first)] = fragment.alpha;
+      }
+    }
+    const std::vector<PixelColor> composed =
+        compose_lists(options, CasavStorage::float32, positions, fragments, lists, unused);
+    for (std::size_t pixel = 0; pixel < pixels; ++pixel) {
+      for (std::uint32_t k = first; k < std::min(first + 3, lists.record_count(pixel)); ++k) {
+        const Fragment& fragment = fragments[lists.records[lists.first[pixel] + k]];
+        const float weight = composed[pixel].color[static_cast<int>(k - first)];
+        weights.at(pixel).push_back({fragment.triangle, weight, k, fragment.tiny});
+      }
+    }
+  }
+}
+
+FrameResult render_sorted(const FrameJob& job, const CasavOptions& beam) {
+  const FrameContext context(job, {.takes_positions = true});
+  const MergePositions positions(hammersley_pattern());
+  const RecordBytes bytes = record_bytes(beam);
+  const BeamFragmentOptions options = fragment_options(beam, positions);
+  const BinPlan plan{.stages = {StageId::conservative_raster, StageId::beam_fragment, StageId::shade, StageId::a_buffer,
+                                StageId::compose, StageId::resolve},
+                     .framebuffer = casav_framebuffer(beam),
+                     .pair_bytes = kPairWorkingBytes + kSortBytes};
+  return render_bins(context, plan, [&](Bin& bin) {
+    ConservativeRasterUnit raster(bin, "pair_queue", PairDepths::none, ConservativeRasterUnit::Hidden::kept,
+                                  kQueueItems);
+    BeamFragmentUnit make_fragments(bin, options);
+    ShadeUnit shade(bin);
+    ABufferUnit a_buffer(bin, bytes.fragment, bytes.fragment);
+    const BinStage composition = bin.stage(StageId::compose);
+    BinWeights weights(bin);
+
+    std::vector<Fragment>& fragments = make_fragments.queued(raster());
+    shade(fragments);
+    const ABuffer& lists = a_buffer(sort_records(fragments, beam.sort));
+    const std::vector<PixelColor> aggregates =
+        compose_lists(beam, beam.storage, positions, fragments, lists, composition.timed());
+    const std::vector<float>& merges = bin.pixel_counter("merges") = record_counts(lists);
+    a_buffer.charge_memory(merges, composition);
+    charge_aggregates(bin, plan.framebuffer.surfaces, pixels_with(merges), full_pixels(aggregates));
+    count_specks(fragments, bin.pixel_counter("tiny_triangles"));
+    bin.finish(resolve(aggregates, bin.background(), bytes.aggregate, bin.stage(StageId::resolve).timed()));
+    if (weights) add_weights(beam, positions, fragments, lists, weights);
+    weights.finish();
+  });
+}
+
+// Without an A-buffer.
+FrameResult render_layers(const FrameJob& job, const CasavOptions& beam) {
+  const FrameContext context(job, {.takes_positions = true});
+  const MergePositions positions(hammersley_pattern());
+  const BeamFragmentOptions options = fragment_options(beam, positions);
+  const bool sorts = beam.order == CasavOrder::near_first;
+  BinPlan plan{.stages = {StageId::conservative_raster, StageId::beam_fragment, StageId::shade, StageId::compose,
+                          StageId::resolve},
+               .framebuffer = casav_framebuffer(beam),
+               .keeps_tile_size = sorts,
+               .sorts_lists = sorts};
+  if (sorts) plan.stages.insert(plan.stages.begin(), StageId::bin_sort);
+  return render_bins(context, plan, [&](Bin& bin) {
+    const TriangleList list = sorts ? sort_bin(bin).triangles : bin.list;
+    ConservativeRasterUnit raster(bin, "pair_queue", PairDepths::none, ConservativeRasterUnit::Hidden::kept,
+                                  kQueueItems);
+    BeamFragmentUnit make_fragments(bin, options);
+    ShadeUnit shade(bin);
+    ComposeLayersUnit compose(bin, positions, beam.merge, static_cast<std::size_t>(beam.layers), beam.storage,
+                              plan.framebuffer.surfaces);
+    std::vector<float>& counts = bin.pixel_counter("fragments");
+
+    for_each_batch(list, [&](const TriangleList& batch) {
+      std::vector<Fragment>& fragments = make_fragments.queued(raster(batch, bin.tile));
+      count_by_pixel(fragments, counts);
+      shade(fragments);
+      compose(fragments);
+    });
+    bin.finish(compose.resolve_layers());
+  });
+}
+
+// Exact masks are compared exactly.
+CasavOptions with_partition(CasavOptions options) {
+  if (options.mask == MaskSource::exact) options.merge.partition = MergeRules::Partition::positions;
+  return options;
+}
+
+FrameResult render_casav(const FrameJob& job, const CasavOptions& beam) {
+  const CasavOptions options = with_partition(beam);
+  return beam.order == CasavOrder::sorted ? render_sorted(job, options) : render_layers(job, options);
+}
+
+std::vector<PixelHistory> inspect_rules(const Trace& trace, const Frame& frame, const CasavOptions& beam,
+                                        const FrameInput& run, const std::vector<PixelAddress>& pixels) {
+  const CasavOptions options = with_partition(beam);
+  const MergePositions positions(hammersley_pattern());
+  const BeamFragmentOptions fragments = fragment_options(options, positions);
+  StageCounters unused;
+  const auto compose_pixel = [&](const std::vector<Fragment>& of_pixel, const ABuffer& lists, CasavStorage storage) {
+    return options.rules == Rules::published
+               ? compose(of_pixel, lists, positions, options.merge, storage, unused).front()
+               : compose_over(of_pixel, lists, unused).front();
+  };
+  const bool sorts = options.order == CasavOrder::near_first;
+  return inspect_pixels(
+      trace, frame, run, {.takes_positions = true}, kBinSize, sorts, pixels, [&](const InspectedPixel& pixel) {
+        if (options.order == CasavOrder::sorted)
+          return inspect_casav(pixel, {positions, fragments, options.sort, compose_pixel, options.storage});
+        return inspect_casav_layers(pixel, {positions, fragments, options.merge,
+                                            static_cast<std::size_t>(options.layers), options.storage, sorts});
+      });
+}
+
+Technique make_casav(const CasavOptions& options) {
+  return {.framebuffer = casav_framebuffer(options),
+          .positions = hammersley_pattern().count,
+          .renderer = bind_options(render_casav, options),
+          .inspect = bind_inspection(inspect_rules, options),
+          .has_weights = options.order == CasavOrder::sorted};
+}
+
+// simd/merge_rules.h explains the policies, and docs/accuracy.md says where they come from.
+SpecOptions casav_options(CasavOptions& o) {
+  using R = MergeRules;
+  return {
+      choice("mask", o.mask, {{"table", MaskSource::table}, {"exact", MaskSource::exact}},
+             "masks from a 64 x 64 table, or from edge tests"),
+      beside(
+          "order=sorted", [&o] { return o.order == CasavOrder::sorted; },
+          choice("sort", o.sort, {{"centroid", SortKey::centroid}, {"nearest", SortKey::nearest}},
+                 "the fragment's depth that the A-buffer sorts by")),
+      choice("tiny", o.tiny_positions, {{"1", 1}, {"3", 3}}, "most mask positions that a speck is given"),
+      choice("overlap", o.merge.overlap,
+             {{"tiny", R::Overlap::tiny},
+              {"over", R::Overlap::over},
+              {"add", R::Overlap::add},
+              {"transition", R::Overlap::transition}},
+             "how coverages combine where masks overlap: ADD for specks and OVER for others, OVER, ADD, or a "
+             "transition from ADD to OVER"),
+      choice("regional", o.merge.regional, {{"local", R::Regional::local}, {"area", R::Regional::area}},
+             "the coverage of an overlapping region is normalized by the region's positions, or is its area"),
+      choice("local", o.merge.local, {{"clamp", R::Local::clamp}, {"keep", R::Local::keep}},
+             "a local coverage above 1 is clamped to 1, or kept"),
+      choice("fuzzy", o.merge.fuzzy, {{"delta", R::Fuzzy::delta}, {"mix", R::Fuzzy::mix}},
+             "blending within the slab: by the published formulas, or between over and under"),
+      choice("extents", o.merge.extents, {{"range", R::Extents::range}, {"slab", R::Extents::slab}},
+             "the slab ends at its depth range, or at its thickness alone"),
+      choice("slab", o.merge.slab, {{"full", R::Slab::full}, {"visible", R::Slab::visible}},
+             "the slab grows by the whole fragment, or by its visible positions"),
+      choice("plane", o.merge.plane, {{"area", R::Plane::area}, {"visible", R::Plane::visible}},
+             "planes are weighted by coverage, or by what is visible of each"),
+      choice("thickness", o.merge.thickness,
+             {{"larger", R::Thickness::larger}, {"containing", R::Thickness::containing}},
+             "the slab keeps the larger thickness, or contains all merged fragments"),
+      choice("storage", o.storage,
+             {{"slides", CasavStorage::slides}, {"text", CasavStorage::text}, {"float32", CasavStorage::float32}},
+             "formats of the aggregate: as in the talk's slides, as in the paper's text, or float32"),
+      choice("order", o.order,
+             {{"sorted", CasavOrder::sorted}, {"near-first", CasavOrder::near_first}, {"stream", CasavOrder::stream}},
+             "fragments are sorted in an A-buffer, come from sorted bins, or come in primitive order"),
+      beside(
+          "order=near-first or order=stream", [&o] { return o.order != CasavOrder::sorted; },
+          choice("layers", o.layers, {{"1", 1}, {"2", 2}, {"3", 3}, {"4", 4}, {"8", 8}},
+                 "without an A-buffer: aggregates that a pixel keeps"))};
+}
+
+}  // namespace
+
+TechniqueKind casav_kind() {
+  return {.name = "casav",
+          .description =
+              "correlation-aware semi-analytic visibility, the published beam pipeline: a 32-bit mask from a table, a "
+              "depth slab, one aggregate per pixel; the "
+              "options are other readings of these rules, see docs/accuracy.md",
+          .source = "Crassin et al. 2018",
+          .examples = {"casav", "casav:mask=exact", "casav:storage=text",
+                       "casav:sort=nearest,tiny=3,overlap=transition,regional=area,local=keep,fuzzy=mix,extents=slab,"
+                       "slab=visible,plane=visible,thickness=containing",
+                       "casav:order=near-first", "casav:order=stream,layers=2"},
+          .stressed = {"casav", "casav:storage=text", "casav:storage=float32"},
+          .make = make_from(CasavOptions{.tiny_positions = 1}, casav_options, make_casav)};
+}
+
+TechniqueKind alpha_kind() {
+  return {.name = "alpha",
+          .description = "the fragments of the published rules, blended by plain OVER, without masks",
+          .source = "Porter and Duff 1984",
+          .examples = {"alpha"},
+          .stressed = {"alpha"},
+          .make = make_plain([] { return make_casav(CasavOptions{.rules = Rules::over, .mask = MaskSource::none}); })};
+}
+
+}  // namespace beampipe

@@ -1,0 +1,49 @@
+// What the compositions by the published rules share: the form of a fragment, and numbers for counting.
+#pragma once
+
+#include "simd/merge.h"
+#include "stages/cost/counting.h"
+#include "stages/data/casav_aggregate.h"
+#include "stages/data/fragment.h"
+
+namespace beampipe {
+
+// The fragment in the form that the published rules take, with 32 mask positions.
+inline MergeFragment merge_fragment(const Fragment& fragment) {
+  const glm::vec3& color = fragment.color;
+  return {{fragment.alpha,
+           fragment.mask.words[0],
+           fragment.plane,
+           0.0f,
+           fragment.z_min,
+           fragment.z_max,
+           {color.r, color.g, color.b}},
+          fragment.tiny ? ~0u : 0u};
+}
+
+// The distance between the depth ranges of two aggregates, of which the first one is nearer; below 0 if they overlap.
+template <class Float, class Mask>
+Float depth_between(const AggregateOf<Float, Mask>& nearer, const AggregateOf<Float, Mask>& farther) {
+  return farther.z_min - nearer.z_max;
+}
+
+inline FragmentOf<Counted<float>, Counted<std::uint32_t>> counted_fragment(OperationCounts& counts) {
+  const Counted<float> one(1.0f, counts);
+  const Counted<std::uint32_t> all(~0u, counts);
+  return {{one, all, {one, one, one}, one, one, one, {one, one, one}}, all};
+}
+
+// How many numbers of a stored aggregate must be converted to float32.
+constexpr std::uint64_t packed_numbers(CasavStorage storage) {
+  switch (storage) {
+    case CasavStorage::slides:
+      return 3;  // colour
+    case CasavStorage::text:
+      return 6;  // colour, slopes, thickness
+    case CasavStorage::float32:
+      break;
+  }
+  return 0;
+}
+
+}  // namespace beampipe

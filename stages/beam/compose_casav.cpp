@@ -1,0 +1,83 @@
+#include "stages/beam/compose_casav.h"
+
+#include <algorithm>
+#include <numeric>
+
+#include "stages/beam/casav_fragment.h"
+#include "stages/beam/compose_casav_cost.h"
+
+namespace beampipe {
+namespace {
+
+// Rounds the colour to fp16, as compose_over stores it.
+Aggregate stored_over(Aggregate aggregate) {
+  for (float& channel : aggregate.color) channel = HalfBits(channel);
+  return aggregate;
+}
+
+template <class Stored>
+std::vector<Aggregate> compose_stored(const std::vector<Fragment>& fragments, const ABuffer& buffer,
+                                      const MergePositions& positions, const MergeRules& rules, MergeWork& work) {
+  const std::size_t pixels = buffer.first.size() - 1;
+  // Round r merges the r-th fragment of every pixel that has one. These merges are independent, so each runs in a lane.
+  // Pixels with the longest lists come first, so the pixels of a round are the first ones.
+  std::vector<std::uint32_t> order(pixels);
+  std::iota(order.begin(), order.end(), 0u);
+  std::stable_sort(order.begin(), order.end(),
+                   [&](std::uint32_t a, std::uint32_t b) { return buffer.record_count(a) > buffer.record_count(b); });
+  std::vector<Stored> stored(pixels, Stored(kEmptyAggregate));
+  std::vector<Aggregate> merging(pixels);
+  std::vector<MergeFragment> arriving(pixels);
+  std::vector<MergeSteps> steps(pixels);
+  std::size_t active = pixels;
+  for (std::uint32_t round = 0;; ++round) {
+    while (active > 0 && buffer.record_count(order[active - 1]) <= round) --active;
+    if (active == 0) break;
+    for (std::size_t i = 0; i < active; ++i) {
+      arriving[i] = merge_fragment(fragments[buffer.records[buffer.first[order[i]] + round]]);
+      merging[i] = stored[i];
+    }
+    merge(arriving.data(), active, positions, rules, merging.data(), steps.data());
+    for (std::size_t i = 0; i < active; ++i) stored[i] = Stored(merging[i]), work.add(steps[i]);
+  }
+  std::vector<Aggregate> aggregates(pixels);
+  for (std::size_t i = 0; i < pixels; ++i) aggregates[order[i]] = stored[i];
+  return aggregates;
+}
+
+}  // namespace
+
+std::vector<Aggregate> compose(const std::vector<Fragment>& fragments, const ABuffer& buffer,
+                               const MergePositions& positions, const MergeRules& rules, CasavStorage storage,
+                               StageCounters& counters) {
+  MergeWork work;
+  const auto composed = [&] {
+    switch (storage) {
+      case CasavStorage::slides:
+        return compose_stored<SlidesAggregate>(fragments, buffer, positions, rules, work);
+      case CasavStorage::text:
+        return compose_stored<TextAggregate>(fragments, buffer, positions, rules, work);
+      case CasavStorage::float32:
+        break;
+    }
+    return compose_stored<Aggregate>(fragments, buffer, positions, rules, work);
+  };
+  std::vector<Aggregate> aggregates = composed();
+  const std::uint32_t bytes = casav_aggregate_bytes(storage);
+  charge_merges(buffer, merge_cost(work, rules, storage), bytes, bytes, counters);
+  counters.position_tests += position_tests(work);
+  return aggregates;
+}
+
+std::vector<Aggregate> compose_over(const std::vector<Fragment>& fragments, const ABuffer& buffer,
+                                    StageCounters& counters) {
+  const std::size_t pixels = buffer.first.size() - 1;
+  std::vector<Aggregate> aggregates(pixels, kEmptyAggregate);
+  for (std::size_t pixel = 0; pixel < pixels; ++pixel)
+    for (std::uint32_t i = buffer.first[pixel]; i < buffer.first[pixel + 1]; ++i)
+      aggregates[pixel] = stored_over(over_formula(merge_fragment(fragments[buffer.records[i]]), aggregates[pixel]));
+  charge_merges(buffer, over_cost() * buffer.records.size(), kOverFragmentBytes, kOverBytes, counters);
+  return aggregates;
+}
+
+}  // namespace beampipe

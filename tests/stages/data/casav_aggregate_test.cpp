@@ -1,0 +1,54 @@
+#include "stages/data/casav_aggregate.h"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+
+#include "tests/simd/random.h"
+
+namespace beampipe {
+namespace {
+
+TEST(CasavStorage, SlidesKeepAllButTheColour) {
+  const Aggregate a{0.3f, 0x1234u, {-0.5f, 1e-9f, -2e-3f}, 0.001f, -0.6f, -0.4f, {0.1f, 0.2f, 0.3f}};
+  const Aggregate b = SlidesAggregate(a);
+  EXPECT_EQ(b.alpha, a.alpha);
+  EXPECT_EQ(b.mask, a.mask);
+  EXPECT_EQ(b.plane.z, a.plane.z);
+  EXPECT_EQ(b.plane.dzdu, a.plane.dzdu);
+  EXPECT_EQ(b.plane.dzdv, a.plane.dzdv);
+  EXPECT_EQ(b.thickness, a.thickness);
+  EXPECT_EQ(b.z_min, a.z_min);
+  EXPECT_EQ(b.z_max, a.z_max);
+  for (int c = 0; c < 3; ++c) EXPECT_NEAR(b.color[c], a.color[c], a.color[c] / 2048);
+}
+
+TEST(CasavStorage, TheTextsSizeRoundsSlopesAndThicknessToEightBits) {
+  Random random(64);
+  SCOPED_TRACE(random.name());
+  for (int i = 0; i < 10000; ++i) {
+    const auto slope = [&] {
+      return random.real32(-1, 1) * std::ldexp(1.0f, static_cast<int>(random.integer(-40, 3)));
+    };
+    const Aggregate a{0.3f, 7u, {-0.5f, slope(), slope()}, std::abs(slope()), -0.6f, -0.4f, {0.1f, 0.2f, 0.3f}};
+    const Aggregate b = TextAggregate(a);
+    EXPECT_EQ(b.alpha, a.alpha);
+    EXPECT_EQ(b.plane.z, a.plane.z);
+    EXPECT_NEAR(b.plane.dzdu, a.plane.dzdu, std::abs(a.plane.dzdu) / 256);
+    EXPECT_NEAR(b.plane.dzdv, a.plane.dzdv, std::abs(a.plane.dzdv) / 256);
+    EXPECT_NEAR(b.thickness, a.thickness, a.thickness / 256);
+    EXPECT_EQ(b.z_max, a.z_max);
+  }
+}
+
+TEST(CasavStorage, EmptyStaysEmpty) {
+  for (const Aggregate& empty :
+       {Aggregate(SlidesAggregate(kEmptyAggregate)), Aggregate(TextAggregate(kEmptyAggregate))}) {
+    EXPECT_EQ(empty.alpha, 0.0f);
+    EXPECT_EQ(empty.mask, 0u);
+    EXPECT_GT(empty.z_min, empty.z_max);
+  }
+}
+
+}  // namespace
+}  // namespace beampipe
