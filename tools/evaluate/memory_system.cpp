@@ -17,8 +17,8 @@ Form<std::optional<Place>> place_form() {
   const Form<std::uint32_t> number = form::choice<std::uint32_t>(kPlaces);
   return {number.schema,
           [number](const JsonCursor& at, std::optional<Place>& place) {
-            const std::uint32_t index = number(at);
-            if (index > 0) place = index == 1 ? Place::on_chip : Place::in_memory;
+            constexpr std::optional<Place> kPlaceOf[] = {std::nullopt, Place::on_chip, Place::in_memory};  // kPlaces
+            place = kPlaceOf[number(at)];
           },
           [](const std::optional<Place>& place) { return Json(name_of(place)); }};
 }
