@@ -10,8 +10,7 @@
 #include "tests/pipeline/test_traces.h"
 #include "traces/files/trace_io.h"
 
-namespace beampipe {
-namespace {
+namespace beampipe::temporal_test {
 
 // Columns that are one pixel wide, each with a different grey.
 Trace columns() {
@@ -51,5 +50,4 @@ TEST(Temporal, FramesAreTheSameFromAnyNumberOfThreads) {
   EXPECT_NE(render_frames("dvm", trace, 5).rgba, render_frames("dvm:seed=2", trace, 5).rgba);
 }
 
-}  // namespace
-}  // namespace beampipe
+}  // namespace beampipe::temporal_test

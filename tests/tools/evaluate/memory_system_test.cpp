@@ -4,8 +4,7 @@
 #include "tools/evaluate/hardware.h"
 #include "traces/files/trace_io.h"
 
-namespace beampipe {
-namespace {
+namespace beampipe::memory_system_test {
 
 const std::filesystem::path kSource = BEAMPIPE_SOURCE_FOLDER;
 
@@ -110,5 +109,4 @@ TEST(Hardware, SchemaAndReaderAgree) {
       .check();
 }
 
-}  // namespace
-}  // namespace beampipe
+}  // namespace beampipe::memory_system_test
