@@ -79,12 +79,4 @@ auto bind_options(Render* render, const Options&... options) {
   };
 }
 
-// The same for Technique::inspect.
-template <class Inspect, class... Options>
-auto bind_inspection(Inspect* inspect, const Options&... options) {
-  return [=](const Trace& trace, std::size_t frame, const FrameInput& run, const std::vector<PixelAddress>& pixels) {
-    return on_threads(run.threads, [&] { return inspect(trace, trace.frames.at(frame), options..., run, pixels); });
-  };
-}
-
 }  // namespace beampipe

@@ -3,7 +3,6 @@
 #include <string>
 
 #include "pipeline/bins/render_bins.h"
-#include "pipeline/inspect/inspect_samples.h"
 #include "pipeline/sampling.h"
 #include "pipeline/technique_table.h"
 #include "pipeline/units/accumulate_unit.h"
@@ -66,16 +65,9 @@ FrameResult render_acaa(const FrameJob& job, const AcaaOptions& options) {
       depth_test.count_bytes();
     }
     std::vector<glm::vec4> picture = accumulate.resolve_accumulator();
-    put_over(translucent, picture);
+    put_over(translucent, bin.observers(), picture);
     bin.finish(picture);
   });
-}
-
-std::vector<PixelHistory> inspect_accumulation(const Trace& trace, const Frame& frame, const AcaaOptions& options,
-                                               const FrameInput& run, const std::vector<PixelAddress>& pixels) {
-  const AcaaInspection how{options.samples, acaa_rounds(options.samples), options.double_counting, options.color};
-  return inspect_pixels(trace, frame, run, {.derivatives = Derivatives::quad}, bin_size(std::min(options.samples, 16)),
-                        false, pixels, [&](const InspectedPixel& pixel) { return inspect_acaa(pixel, how); });
 }
 
 }  // namespace
@@ -103,7 +95,7 @@ TechniqueKind acaa_kind() {
                 return Technique{.framebuffer = acaa_framebuffer(o),
                                  .sampled_at = places_of(msaa_sampling(o.samples)),
                                  .renderer = bind_options(render_acaa, o),
-                                 .inspect = bind_inspection(inspect_accumulation, o)};
+                                 .is_observable = true};
               })};
 }
 

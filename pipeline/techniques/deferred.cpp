@@ -36,7 +36,8 @@ TechniqueKind deferred_kind() {
             return Technique{.framebuffer = deferred_framebuffer(),
                              .sampled_at = places_of(msaa_sampling(1)),
                              .errs_like = "msaa",
-                             .renderer = bind_options(render_deferred)};
+                             .renderer = bind_options(render_deferred),
+                             .is_observable = true};
           })};
 }
 
@@ -54,7 +55,7 @@ std::vector<glm::vec4> draw_deferred(Bin& bin, DepthTestUnit& depth_test) {
   depth_test.end_pass();
   gbuffer.end_pass();
   std::vector<glm::vec4> picture = gbuffer.light_and_resolve(depth_test);
-  put_over(draw_translucent(bin, depth_test, ShadeAt::sample), picture);
+  put_over(draw_translucent(bin, depth_test, ShadeAt::sample), bin.observers(), picture);
   depth_test.count_bytes();
   return picture;
 }

@@ -1,7 +1,6 @@
 #include "pipeline/techniques/dvm.h"
 
 #include <algorithm>
-#include <limits>
 
 #include "pipeline/bins/render_bins.h"
 #include "pipeline/sampling.h"
@@ -98,7 +97,7 @@ FrameResult render_dvm(const FrameJob& job, const DvmOptions& options) {
   const Materials materials(material_ids(context.triangles, options.material));
   const std::vector<std::uint32_t> looks = looks_of(frame);
   const Sampling sampling{CellGrid{}, standard_pattern(8)};
-  const SelectOptions select{frames % 8, options.seed + frames};
+  const SelectOptions select{frames % 8, frames + 1};
   QuadFrame quads(frame.width, frame.height);
   std::vector<glm::vec4> translucent(context.has_blending() ? over_time.current.color.size() : 0);
 
@@ -149,7 +148,6 @@ FrameResult render_dvm(const FrameJob& job, const DvmOptions& options) {
 }  // namespace
 
 TechniqueKind dvm_kind() {
-  constexpr std::uint32_t kMostSeed = std::numeric_limits<std::uint32_t>::max();
   return {.name = "dvm",
           .description =
               "decoupled visibility multisampling: 8 triangle ids per pixel, four shaded samples per 2x2 quad "
@@ -161,7 +159,6 @@ TechniqueKind dvm_kind() {
               DvmOptions{},
               [](DvmOptions& o) -> SpecOptions {
                 return {number("blend", o.blend, 0.001f, 1.0f, "weight of each new frame"),
-                        number("seed", o.seed, 0u, kMostSeed, "seed of the random choices"),
                         choice("material", o.material, {{"color", MaterialBy::color}, {"draw", MaterialBy::draw}},
                                "samples share what is shaded within a draw and Kd, or within a draw")};
               },

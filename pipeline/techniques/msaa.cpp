@@ -5,7 +5,6 @@
 #include <string>
 
 #include "pipeline/bins/render_bins.h"
-#include "pipeline/inspect/inspect_samples.h"
 #include "pipeline/technique_table.h"
 #include "pipeline/units/depth_test_unit.h"
 #include "pipeline/units/fragment_units.h"
@@ -55,14 +54,6 @@ FrameResult render_msaa(const FrameJob& job, const MsaaOptions& options) {
     history.poses = motion->take_poses();
   }
   return result;
-}
-
-std::vector<PixelHistory> inspect_samples(const Trace& trace, const Frame& frame, const MsaaOptions& options,
-                                          const FrameInput& run, const std::vector<PixelAddress>& pixels) {
-  const MsaaInspection how{msaa_sampling(options.samples), options.at, options.alpha, options.prepass, options.space};
-  return inspect_pixels(trace, frame, run, {.derivatives = Derivatives::quad, .rounds_to_half = true},
-                        bin_size(options.samples), false, pixels,
-                        [&](const InspectedPixel& pixel) { return inspect_msaa(pixel, how); });
 }
 
 }  // namespace
@@ -132,7 +123,7 @@ TechniqueKind msaa_kind() {
                              .samples = static_cast<std::uint32_t>(o.samples),
                              .sampled_at = places_of(msaa_sampling(o.samples)),
                              .renderer = bind_options(render_msaa, o),
-                             .inspect = bind_inspection(inspect_samples, o),
+                             .is_observable = true,
                              .keeps_history = o.motion};
           })};
 }

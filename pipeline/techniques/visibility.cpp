@@ -41,7 +41,8 @@ TechniqueKind visibility_kind() {
                 return Technique{.framebuffer = visibility_framebuffer(o.samples),
                                  .sampled_at = places_of(msaa_sampling(o.samples)),
                                  .errs_like = "msaa",
-                                 .renderer = bind_options(render_visibility, o)};
+                                 .renderer = bind_options(render_visibility, o),
+                                 .is_observable = true};
               })};
 }
 
@@ -55,7 +56,7 @@ std::vector<glm::vec4> shade_visibility(Bin& bin, const Materials& materials, De
   gbuffer.write_visible(visibility, materials);
   std::vector<glm::vec4> picture = gbuffer.light_and_resolve(visibility);
   const ShadeAt at = visibility.sampling().pattern.count == 1 ? ShadeAt::sample : ShadeAt::centroid;
-  put_over(draw_translucent(bin, visibility, at), picture);
+  put_over(draw_translucent(bin, visibility, at), bin.observers(), picture);
   visibility.count_bytes();
   return picture;
 }

@@ -29,7 +29,7 @@ Json to_json(const Table& table) {
 Json inspectable(const ReportFile& report) {
   Json specs = Json::array();
   for (const TechniqueSummary& summary : report.techniques) try {
-      if (parse_technique(summary.spec).inspect) specs.push_back(summary.spec);
+      if (parse_technique(summary.spec).is_observable) specs.push_back(summary.spec);
     } catch (const SpecError&) {
     }
   return specs;

@@ -86,7 +86,7 @@ Traffic traffic_of_cache(const std::vector<Access>& accesses, std::size_t sets, 
   const MemorySystem memory({}, &log);
   BlockCache cache(memory, parameters, BlockCache::Level::l2, lines, kLineBytes, false, nullptr,
                    BlockPlaces(memory, "array", true));
-  StageCounters counters{"stage"};
+  StageCounters counters{StageId::compose};
   std::uint32_t request = 0;
   for (const Access& access : accesses) {
     if (access.is_write)

@@ -7,7 +7,7 @@
 
 namespace beampipe::owners_twins_test {
 
-constexpr std::size_t kWords = 4;
+constexpr std::size_t kWords = 8;
 using Five = OpenTile<kWords, 5>;
 using Two = OpenTile<kWords, 2>;
 

@@ -37,30 +37,6 @@ TEST(Counting, ConstantsCostNothing) {
   EXPECT_EQ(counts.total(), 1u);
 }
 
-<<<<<<< HEAD
-// rest = 1 - alpha; alpha + rest alpha'; the same for three channels.
-TEST(Counting, PlainOver) {
-  const OperationCounts counts = count_operations([](OperationCounts& tally) {
-    const Real one(1.0f, tally);
-    const FragmentOf<Real, Bits> fragment{{one, Bits(1u, tally), {one, one, one}, one, one, one, {one, one, one}},
-                                          Bits(0u, tally)};
-    over_formula(fragment, fragment.surface);
-  });
-  EXPECT_EQ(counts, (OperationCounts{4, 5, 0, 0, 0, 0}));
-}
-
-// z + dzdx x + dzdy y, and a comparison.
-TEST(Counting, DepthTest) {
-  const OperationCounts counts = count_operations([](OperationCounts& tally) {
-    const Real one(1.0f, tally);
-    Real depth;
-    depth_test_scalar({one, one, one}, one, one, one, depth);
-  });
-  EXPECT_EQ(counts, (OperationCounts{2, 3, 0, 0, 0, 0}));
-}
-
-=======
->>>>>>> 9ac6de47237e3be29587d0a63f19ed5bd0a659ec
 // Per sample and edge, a x + b y + c >= 0: 2 products, 2 sums, a comparison, all with 64 bits.
 TEST(Counting, SampleTest) {
   const OperationCounts counts = count_operations([](OperationCounts& tally) {

@@ -46,61 +46,6 @@ TEST(Shade, FragmentsGetTheirTrianglesColorTimesAlpha) {
   EXPECT_NEAR(fragments.list[0].color[2], 1.0, 4e-6);
 }
 
-<<<<<<< HEAD
-struct Lanes {
-  std::uint64_t used, issued;
-  bool operator==(const Lanes&) const = default;
-};
-
-Lanes beam_lanes(const SetupTriangles& triangles) {
-  Fragments fragments = beam_fragments(triangles, {0, 0, 8, 8}, MaskSource::table);
-  StageCounters counters;
-  shade(std::vector<glm::vec3>(triangles.triangles.size(), glm::vec3(1.0f)), fragments.list, counters);
-  return {counters.lanes_used, counters.lanes_issued};
-}
-
-Lanes sample_lanes(const SetupTriangles& triangles) {
-  std::vector<SampleFragment> fragments;
-  StageCounters raster, counters;
-  sample_raster({triangles, {0, 0, 8, 8}, {CellGrid{}, standard_pattern(8)}}, all_of(triangles), raster, fragments);
-  shade(std::vector<glm::vec3>(triangles.triangles.size()), fragments, counters);
-  return {counters.lanes_used, counters.lanes_issued};
-}
-
-TEST(Shade, OnePixelTriangleUsesOneLaneOfFour) {
-  SetupTriangles triangles;
-  add_triangle(triangles, {3 * 256 + 20, 20}, {4 * 256 - 20, 30}, {3 * 256 + 30, 230});
-  EXPECT_EQ(beam_lanes(triangles), (Lanes{1, 4}));
-  EXPECT_EQ(sample_lanes(triangles), (Lanes{1, 4}));
-}
-
-// Two triangles in the same pixel have one quad each.
-TEST(Shade, TrianglesDoNotShareQuads) {
-  SetupTriangles triangles;
-  add_triangle(triangles, {20, 20}, {230, 30}, {20, 230});
-  add_triangle(triangles, {240, 240}, {30, 240}, {240, 40});
-  EXPECT_EQ(beam_lanes(triangles), (Lanes{2, 8}));
-  EXPECT_EQ(sample_lanes(triangles), (Lanes{2, 8}));
-}
-
-// All of 8 x 8 pixels make 16 whole quads.
-TEST(Shade, CoveredQuadsHaveNoHelpers) {
-  SetupTriangles triangles;
-  add_triangle(triangles, {-9'000, -9'000}, {20'000, -9'000}, {-9'000, 20'000});
-  EXPECT_EQ(beam_lanes(triangles), (Lanes{64, 64}));
-  EXPECT_EQ(sample_lanes(triangles), (Lanes{64, 64}));
-}
-
-// Per invocation of the Lambert shader: 3 products and 2 sums for the inner product, a subtraction to negate it, a
-// comparison with 0, and 3 products for the colour. Four invocations fill the quad.
-TEST(Shade, CountsOperationsPerInvocation) {
-  SetupTriangles triangles;
-  add_triangle(triangles, {20, 20}, {230, 30}, {20, 230});
-  Fragments fragments = beam_fragments(triangles, {0, 0, 8, 8}, MaskSource::table);
-  StageCounters counters;
-  shade(std::vector<glm::vec3>(1, glm::vec3(1.0f)), fragments.list, counters);
-  EXPECT_EQ(counters.ops, (OperationCounts{4 * 6, 4 * 4, 0, 0, 0, 0}));
-=======
 // A triangle in one pixel; two in the same pixel, which share no quad; and one that covers all of 8 x 8 pixels, 16 whole
 // quads.
 TEST(Shade, QuadsOfEachTriangleHaveFourLanes) {
@@ -119,7 +64,7 @@ TEST(Shade, QuadsOfEachTriangleHaveFourLanes) {
     Fragments fragments = beam_fragments(triangles, tile, MaskSource::table);
     std::vector<SampleFragment> samples;
     StageCounters raster, of_fragments, of_samples;
-    sample_raster(triangles, all_of(triangles), tile, {CellGrid{}, standard_pattern(8)}, raster, samples);
+    sample_raster({triangles, tile, {CellGrid{}, standard_pattern(8)}}, all_of(triangles), raster, samples);
     shade(colors, fragments.list, of_fragments);
     shade(colors, samples, of_samples);
     for (const StageCounters& counters : {of_fragments, of_samples}) {
@@ -127,7 +72,6 @@ TEST(Shade, QuadsOfEachTriangleHaveFourLanes) {
       EXPECT_EQ(counters.lanes_issued, issued);
     }
   }
->>>>>>> 9ac6de47237e3be29587d0a63f19ed5bd0a659ec
 }
 
 // fp16 has 11 significant bits. 1 + 2^-11 lies half-way between 1 and the next number and is rounded to the even one.
