@@ -10,8 +10,7 @@
 #include "tests/pipeline/test_traces.h"
 #include "traces/scenes.h"
 
-namespace beampipe {
-namespace {
+namespace beampipe::buffers_test {
 
 std::uint64_t bytes_of(const FrameResult& result, const std::string& name) {
   if (name == "a_buffer") return result.a_buffer_peak_bytes;
@@ -139,5 +138,4 @@ TEST(Buffers, WorkingBytesAreHeldPerPixel) {
   }
 }
 
-}  // namespace
-}  // namespace beampipe
+}  // namespace beampipe::buffers_test

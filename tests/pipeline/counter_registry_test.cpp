@@ -11,8 +11,7 @@
 #include "tests/pipeline/surface_traces.h"
 #include "tests/pipeline/test_traces.h"
 
-namespace beampipe {
-namespace {
+namespace beampipe::counter_registry_test {
 
 // Two frames of small lit triangles all over the picture, which move by a part of a pixel. The sides of the view cut
 // some of them. The width is odd.
@@ -95,5 +94,4 @@ TEST(CounterRegistry, EveryPixelCounterMovesSomewhere) {
   for (const auto& [name, sum] : found) ADD_FAILURE() << name << " is not in the registry";
 }
 
-}  // namespace
-}  // namespace beampipe
+}  // namespace beampipe::counter_registry_test

@@ -8,8 +8,7 @@
 #include "tests/pipeline/test_pictures.h"
 #include "tests/pipeline/test_traces.h"
 
-namespace beampipe {
-namespace {
+namespace beampipe::counters_test {
 
 TEST(Counters, DvmSelectsOutOfEightSamplesAPixel) {
   const StageCounters selecting = stage_of(parse_technique("dvm").render(half_square(), 0, {1}), "sample_select");
@@ -189,5 +188,4 @@ TEST(Counters, EveryStageWorks) {
   }
 }
 
-}  // namespace
-}  // namespace beampipe
+}  // namespace beampipe::counters_test

@@ -7,8 +7,7 @@
 #include "tests/simd/every_target.h"
 #include "tests/thorough.h"
 
-namespace beampipe {
-namespace {
+namespace beampipe::determinism_test {
 
 void expect_same(const FrameResult& a, const FrameResult& b, const std::string& what) {
   EXPECT_EQ(a.image.rgba, b.image.rgba) << what;
@@ -126,5 +125,4 @@ TEST(Determinism, TheFrameIsTheSameWhereverTilesFallInIt) {
   }
 }
 
-}  // namespace
-}  // namespace beampipe
+}  // namespace beampipe::determinism_test

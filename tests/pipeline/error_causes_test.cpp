@@ -8,8 +8,7 @@
 #include "pipeline/technique_table.h"
 #include "tests/pipeline/test_traces.h"
 
-namespace beampipe {
-namespace {
+namespace beampipe::error_causes_test {
 
 using Layers = std::map<std::string, std::vector<float>>;
 
@@ -159,5 +158,4 @@ TEST(ErrorCauses, OnlyTechniquesThatTellTheirWeightsAreExplained) {
   EXPECT_FALSE(parse_technique("msaa:8").has_weights);
 }
 
-}  // namespace
-}  // namespace beampipe
+}  // namespace beampipe::error_causes_test

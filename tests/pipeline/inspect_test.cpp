@@ -12,8 +12,7 @@
 #include "tests/pipeline/surface_traces.h"
 #include "traces/scenes.h"
 
-namespace beampipe {
-namespace {
+namespace beampipe::inspect_test {
 
 struct InspectedSpec {
   const char* spec;
@@ -159,5 +158,4 @@ TEST(Inspect, RandomSurfacesAreTheirPictureToTheBit) {
   inspect(random_surfaces(45, 31, 150, 3), "surfaces", 5, kBlending);
 }
 
-}  // namespace
-}  // namespace beampipe
+}  // namespace beampipe::inspect_test

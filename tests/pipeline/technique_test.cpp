@@ -11,8 +11,7 @@
 
 #include "pipeline/technique_table.h"
 
-namespace beampipe {
-namespace {
+namespace beampipe::technique_test {
 
 TEST(Technique, FramebufferBytesAreThePublishedOnes) {
   // Slide 23 of Crassin et al. 2018: beam takes 42 bytes with colour. MSAA 8x and 32x with 4-byte depth and fp16 RGB
@@ -245,5 +244,4 @@ TEST(TechniqueTable, ThePageHasItsTables) {
   }
 }
 
-}  // namespace
-}  // namespace beampipe
+}  // namespace beampipe::technique_test

@@ -9,8 +9,7 @@
 #include "stages/data/sample_fragment.h"
 #include "tests/pipeline/test_traces.h"
 
-namespace beampipe {
-namespace {
+namespace beampipe::texture_memory_test {
 
 // Every way to shade, with the ways that read alpha.
 TextureImage square_image(std::uint32_t size) {
@@ -225,5 +224,4 @@ TEST(GeometryMemory, SurfacesAreFetchedWithTheirVertices) {
   EXPECT_EQ(both.dram_bytes, (4 + 2) * 32u);
 }
 
-}  // namespace
-}  // namespace beampipe
+}  // namespace beampipe::texture_memory_test

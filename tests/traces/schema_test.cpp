@@ -7,8 +7,7 @@
 #include "traces/files/base64.h"
 #include "traces/files/image_file.h"
 
-namespace beampipe {
-namespace {
+namespace beampipe::schema_test {
 
 using Json = nlohmann::ordered_json;
 using Pointer = Json::json_pointer;
@@ -182,5 +181,4 @@ TEST_F(SchemaTest, RequiredKeysAreRequired) {
   }
 }
 
-}  // namespace
-}  // namespace beampipe
+}  // namespace beampipe::schema_test

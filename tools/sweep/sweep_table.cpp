@@ -176,7 +176,7 @@ SweepTable make_table(const SweepPlan& plan, TraceShelf& shelf, const SweepResul
   const std::vector<Column> columns = cell_columns();
   ErrorTable errors(plan, results);
   std::optional<std::size_t> last;  // the cell whose counts and values these are: rows of a cell follow each other
-  std::optional<CellCounts> counts;
+  std::optional<CountedCell> counts;
   std::vector<Json> values;
   for (const SweepRow& row : plan.rows) {
     const SweepCell& cell = plan.cells[row.cell];

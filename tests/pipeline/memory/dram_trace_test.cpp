@@ -10,8 +10,7 @@
 #include "pipeline/technique_table.h"
 #include "tests/pipeline/surface_traces.h"
 
-namespace beampipe {
-namespace {
+namespace beampipe::dram_trace_test {
 
 struct Recorded {
   std::uint64_t address;
@@ -182,5 +181,4 @@ TEST(DramTrace, TheFolderOfItsFileMustBeThere) {
   }
 }
 
-}  // namespace
-}  // namespace beampipe
+}  // namespace beampipe::dram_trace_test

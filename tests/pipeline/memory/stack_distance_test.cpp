@@ -14,8 +14,7 @@
 #include "pipeline/technique.h"
 #include "tests/pipeline/test_traces.h"
 
-namespace beampipe {
-namespace {
+namespace beampipe::stack_distance_test {
 
 constexpr std::uint32_t kLineBytes = 128, kSectors = 4, kMostWays = 24;
 
@@ -179,5 +178,4 @@ TEST(StackDistances, CachesOfTexels) {
   }
 }
 
-}  // namespace
-}  // namespace beampipe
+}  // namespace beampipe::stack_distance_test

@@ -10,8 +10,7 @@
 #include "tests/pipeline/test_traces.h"
 #include "traces/files/trace_io.h"
 
-namespace beampipe {
-namespace {
+namespace beampipe::dvm_test {
 
 // A horizontal white bar, `thick` pixels high, on black.
 Trace bar(double thick) { return pixel_trace(32, 16, quad(0, 8.1, 32, 8.1 + thick, 0.5, glm::vec3(1))); }
@@ -259,5 +258,4 @@ TEST(Dvm, MaterialByDrawSpreadsAcrossColors) {
   EXPECT_TRUE(by_draw == 0 || by_draw == 1) << by_draw;
 }
 
-}  // namespace
-}  // namespace beampipe
+}  // namespace beampipe::dvm_test

@@ -10,8 +10,7 @@
 #include "tests/pipeline/test_traces.h"
 #include "traces/files/trace_io.h"
 
-namespace beampipe {
-namespace {
+namespace beampipe::temporal_test {
 
 // Columns that are one pixel wide, each with a different grey.
 Trace columns() {
@@ -50,5 +49,4 @@ TEST(Temporal, FramesAreTheSameFromAnyNumberOfThreads) {
     EXPECT_EQ(render_frames(spec, trace, 5).rgba, render_frames(spec, trace, 5, 3).rgba);
 }
 
-}  // namespace
-}  // namespace beampipe
+}  // namespace beampipe::temporal_test

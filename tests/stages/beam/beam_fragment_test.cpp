@@ -7,8 +7,7 @@
 
 #include "tests/stages/beam_pixels.h"
 
-namespace beampipe {
-namespace {
+namespace beampipe::beam_fragment_test {
 
 constexpr Tile kPixel{0, 0, 1, 1};
 constexpr MaskSource kBoth[] = {MaskSource::table, MaskSource::exact};
@@ -104,5 +103,4 @@ TEST(BeamFragment, TouchedPixelsWithoutAreaAreDroppedAndCounted) {
   EXPECT_EQ(fragments.counters.items_out, 1u);
 }
 
-}  // namespace
-}  // namespace beampipe
+}  // namespace beampipe::beam_fragment_test

@@ -17,8 +17,7 @@
 #include "tests/simd/random.h"
 #include "tests/stages/screen_triangles.h"
 
-namespace beampipe {
-namespace {
+namespace beampipe::compose_beam_test {
 
 const Tile kPixel{0, 0, 1, 1};
 
@@ -259,5 +258,4 @@ TEST(PositionSet, TheNearestPositionsAreTheNearest) {
   }
 }
 
-}  // namespace
-}  // namespace beampipe
+}  // namespace beampipe::compose_beam_test

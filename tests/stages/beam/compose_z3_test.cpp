@@ -8,8 +8,7 @@
 #include "tests/simd/random.h"
 #include "tests/stages/screen_triangles.h"
 
-namespace beampipe {
-namespace {
+namespace beampipe::compose_z3_test {
 
 template <std::size_t Words, std::size_t Layers>
 std::vector<Z3Pixel<Words, Layers>> composed(const SetupTriangles& triangles, const std::vector<glm::vec3>& colors,
@@ -81,5 +80,4 @@ TEST(ComposeZ3, WeightsNeverPassOne) {
   }
 }
 
-}  // namespace
-}  // namespace beampipe
+}  // namespace beampipe::compose_z3_test

@@ -11,8 +11,7 @@
 #include "tests/stages/beam_pixels.h"
 #include "tests/stages/search.h"
 
-namespace beampipe {
-namespace {
+namespace beampipe::properties_test {
 
 constexpr Tile kTile{0, 0, 12, 10};
 
@@ -107,5 +106,4 @@ TEST(Properties, MovingByWholePixelsChangesNothing) {
   });
 }
 
-}  // namespace
-}  // namespace beampipe
+}  // namespace beampipe::properties_test

@@ -5,8 +5,7 @@
 
 #include "simd/sample_mask.h"
 
-namespace beampipe {
-namespace {
+namespace beampipe::counting_test {
 
 using Real = Counted<float>;
 using Bits = Counted<std::uint32_t>;
@@ -49,5 +48,4 @@ TEST(Counting, SampleTest) {
   EXPECT_EQ(counts.wide, 4u * 3 * 5);
 }
 
-}  // namespace
-}  // namespace beampipe
+}  // namespace beampipe::counting_test

@@ -8,8 +8,7 @@
 
 #include "tests/stages/open_pixels.h"
 
-namespace beampipe {
-namespace {
+namespace beampipe::owner_weights_test {
 
 struct Explained {
   double farthest = 0;       // from a pixel to the sum of its triangles' weights times colours, in any channel
@@ -131,5 +130,4 @@ TEST(PixelObserver, WhatIsLeftOfAMergedOwnerIsSharedByItsTriangles) {
   EXPECT_NEAR(found[2], 0.5, 1e-3);
 }
 
-}  // namespace
-}  // namespace beampipe
+}  // namespace beampipe::owner_weights_test

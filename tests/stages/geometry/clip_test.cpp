@@ -11,8 +11,7 @@
 #include "tests/stages/screen_triangles.h"
 #include "tests/stages/vertex_scenes.h"
 
-namespace beampipe {
-namespace {
+namespace beampipe::clip_test {
 
 constexpr std::int32_t kWidth = 48, kHeight = 32;
 
@@ -168,5 +167,4 @@ TEST(Clipping, CountsPiecesAndPlaneTests) {
                                            projected + 2 + 2, projected * 4 + 2 * 3}));
 }
 
-}  // namespace
-}  // namespace beampipe
+}  // namespace beampipe::clip_test

@@ -12,8 +12,7 @@
 #include "tests/simd/random.h"
 #include "tests/stages/vertex_scenes.h"
 
-namespace beampipe {
-namespace {
+namespace beampipe::vertex_setup_test {
 
 constexpr float kNaN = std::numeric_limits<float>::quiet_NaN(), kInfinity = std::numeric_limits<float>::infinity();
 
@@ -195,5 +194,4 @@ TEST(VertexSetup, TheNumberOfThreadsDoesNotMatter) {
   EXPECT_EQ(counters[0].bytes_written, counters[1].bytes_written);
 }
 
-}  // namespace
-}  // namespace beampipe
+}  // namespace beampipe::vertex_setup_test

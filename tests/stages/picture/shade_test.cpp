@@ -7,8 +7,7 @@
 #include "stages/raster/sample_raster.h"
 #include "tests/stages/beam_pixels.h"
 
-namespace beampipe {
-namespace {
+namespace beampipe::shade_test {
 
 SetupTriangles with_attributes(const FlatAttributes& flat) {
   SetupTriangles triangles;
@@ -89,5 +88,4 @@ TEST(Shade, HalfRounding) {
   EXPECT_NE(found[1].x, 0.1f);
 }
 
-}  // namespace
-}  // namespace beampipe
+}  // namespace beampipe::shade_test

@@ -9,8 +9,7 @@
 
 #include "tests/stages/screen_triangles.h"
 
-namespace beampipe {
-namespace {
+namespace beampipe::conservative_raster_test {
 
 constexpr Tile kFrame{0, 0, 12, 10};
 
@@ -131,5 +130,4 @@ TEST(ConservativeRaster, QuadNumbersNameQuads) {
   EXPECT_EQ(distinct.size(), quads.size());
 }
 
-}  // namespace
-}  // namespace beampipe
+}  // namespace beampipe::conservative_raster_test

@@ -8,8 +8,7 @@
 
 #include "tests/stages/screen_triangles.h"
 
-namespace beampipe {
-namespace {
+namespace beampipe::sample_raster_test {
 
 constexpr Tile kFrame{0, 0, 8, 8};
 
@@ -74,5 +73,4 @@ TEST(SampleRaster, EqualsATestOfEverySample) {
   }
 }
 
-}  // namespace
-}  // namespace beampipe
+}  // namespace beampipe::sample_raster_test

@@ -20,8 +20,7 @@
 #include "tools/files/digest.h"
 #include "traces/scenes.h"
 
-namespace beampipe {
-namespace {
+namespace beampipe::claims_test {
 
 // ---- The data ----
 
@@ -443,5 +442,4 @@ TEST(Claims, MostFragmentsOfAPixelAreThoseOfTheClassroomWhateverItsFileIsCalled)
   EXPECT_EQ(most(), 61);
 }
 
-}  // namespace
-}  // namespace beampipe
+}  // namespace beampipe::claims_test

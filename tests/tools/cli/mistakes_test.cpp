@@ -6,8 +6,7 @@
 
 #include "tests/tools/cli/program_fixture.h"
 
-namespace beampipe {
-namespace {
+namespace beampipe::mistakes_test {
 
 TEST_F(ProgramTest, EveryMistakeIsOneLineAndLeavesNothing) {
   write_text(folder_ / "broken.json", "{\"beampipe_trace\": 1,");
@@ -174,5 +173,4 @@ TEST_F(ProgramTest, AFolderInTheReportsPlaceIsRefusedAtOnce) {
   EXPECT_EQ(folder_.list(), before);
 }
 
-}  // namespace
-}  // namespace beampipe
+}  // namespace beampipe::mistakes_test

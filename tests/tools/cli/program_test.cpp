@@ -9,8 +9,7 @@
 #include "tools/files/image_io.h"
 #include "traces/files/trace_io.h"
 
-namespace beampipe {
-namespace {
+namespace beampipe::program_test {
 
 using Parsed = nlohmann::json;  // independent of the program's own Json
 
@@ -540,5 +539,4 @@ TEST_F(ProgramTest, TheFramebufferIsWhereTheOptionsSay) {
   expect(run({"--on-chip-memory", "154KB"})["results"][0], true, 6);
 }
 
-}  // namespace
-}  // namespace beampipe
+}  // namespace beampipe::program_test

@@ -7,8 +7,7 @@
 #include "tools/evaluate/results.h"
 #include "traces/scenes.h"
 
-namespace beampipe {
-namespace {
+namespace beampipe::hardware_test {
 
 StageCounters stage(StageId id) {
   StageCounters counters{id};
@@ -293,5 +292,4 @@ TEST(Hardware, ErrorsNameTheKey) {
             0u);
 }
 
-}  // namespace
-}  // namespace beampipe
+}  // namespace beampipe::hardware_test

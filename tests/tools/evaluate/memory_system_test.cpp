@@ -4,8 +4,7 @@
 
 #include "traces/files/trace_io.h"
 
-namespace beampipe {
-namespace {
+namespace beampipe::memory_system_test {
 
 const std::filesystem::path kSource = BEAMPIPE_SOURCE_FOLDER;
 
@@ -69,5 +68,4 @@ TEST(MemorySystem, ValuesMustFitTogether) {
   EXPECT_EQ(refusal("\"l1_ways\": 512").find("m.json: /parameters: expected l1_bytes of room for one set"), 0u);
 }
 
-}  // namespace
-}  // namespace beampipe
+}  // namespace beampipe::memory_system_test

@@ -12,8 +12,7 @@
 #include "tools/stress/exact.h"
 #include "tools/stress/judge.h"
 
-namespace beampipe {
-namespace {
+namespace beampipe::stress_test {
 
 constexpr glm::vec3 kWhite(1.0f);
 
@@ -161,5 +160,4 @@ std::vector<std::string> specs_with_few_samples() {
 
 INSTANTIATE_TEST_SUITE_P(Techniques, HardCases, testing::ValuesIn(specs_with_few_samples()));
 
-}  // namespace
-}  // namespace beampipe
+}  // namespace beampipe::stress_test

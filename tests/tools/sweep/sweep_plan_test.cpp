@@ -8,8 +8,7 @@
 #include "tools/sweep/trace_shelf.h"
 #include "traces/files/trace_io.h"
 
-namespace beampipe {
-namespace {
+namespace beampipe::sweep_plan_test {
 
 const std::filesystem::path kSource = BEAMPIPE_SOURCE_FOLDER;
 
@@ -195,5 +194,4 @@ TEST_F(SweepPlanTest, OnlyFramesThatCanBeResizedAre) {
   EXPECT_THROW(resize(captured, {0}, {48, 36}, "captured"), std::runtime_error);
 }
 
-}  // namespace
-}  // namespace beampipe
+}  // namespace beampipe::sweep_plan_test
