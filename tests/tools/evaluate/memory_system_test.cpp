@@ -43,6 +43,15 @@ TEST(MemorySystem, EveryParameterOfTheExampleArrives) {
   EXPECT_EQ(parameters_json(memory), parse_json(kSource / "docs/examples/memory_system.json").at("parameters"));
 }
 
+TEST(MemorySystem, ByTechniqueTakesBackAnotherPlace) {
+  MemoryParameters memory;
+  memory.framebuffer = Place::in_memory;
+  const std::string file = "m.json";
+  const Json json = {{"framebuffer", "by-technique"}};
+  set_parameters(memory, JsonCursor(json, file));
+  EXPECT_EQ(memory, MemoryParameters{});
+}
+
 TEST(MemorySystem, ErrorsNameTheKey) {
   EXPECT_EQ(refusal("\"l2_byte\": 65536").find("m.json: /parameters/l2_byte: expected one of the keys"), 0u);
   EXPECT_NE(refusal("\"l2_byte\": 65536").find("(did you mean 'l2_bytes'?)"), std::string::npos);
