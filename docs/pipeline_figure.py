@@ -1,6 +1,13 @@
 #!/usr/bin/env python3
-"""Draws the figure of the pipeline: docs/pipeline_figure.py docs/pictures/pipeline.svg"""
+"""Draws the figure of the pipeline: docs/pipeline_figure.py BEAMPIPE docs/pictures/pipeline.svg"""
+import json
+import pathlib
+import re
+import subprocess
 import sys
+import tempfile
+
+from measure import make
 
 WIDTH, HEIGHT = 828, 760
 MONO = "DejaVu Sans Mono, Menlo, Consolas, monospace"
@@ -34,20 +41,25 @@ BEAM = [
     ("resolve", "", "picture", "write"),
 ]
 
-# The other techniques, with their stages in order.
-OTHERS = [
-    ("beam:order=sorted", "conservative_raster a_buffer windows beam_fragment shade compose resolve"),
-    ("beam:order=stream", "conservative_raster beam_fragment compose shade resolve"),
-    ("casav, alpha", "conservative_raster beam_fragment shade a_buffer compose resolve"),
-    ("z3", "conservative_raster beam_fragment shade compose resolve"),
-    ("msaa:N", "sample_raster shade depth_test resolve"),
-    ("acaa:N", "sample_raster depth_test stencil_test shade accumulate resolve"),
-    ("deferred", "sample_raster depth_test shade light resolve"),
-    ("visibility:N", "sample_raster depth_test material_sort shade light resolve"),
-    ("taa:N", "sample_raster depth_test material_sort shade light resolve motion temporal"),
-    ("dvm", "sample_raster depth_test sample_select material_sort shade light motion dilate temporal"),
-    ("reference", "reference_raster resolve"),
-]
+
+
+def other_techniques(program):
+    """The techniques of docs/techniques.md but `beam`, with their stages in order, as the program counts them."""
+    page = (pathlib.Path(__file__).parent / "techniques.md").read_text(encoding="utf-8")
+    titles = re.findall(r"^\| `([^`]*)` \|", page[page.index("begin -->"):].split("\n\n")[0], re.MULTILINE)
+    specs = [title.replace(":N", ":8") for title in titles]
+    with tempfile.TemporaryDirectory() as folder:
+        trace = pathlib.Path(folder) / "stack.json"
+        make(program, "stack", trace, "--width", "32", "--height", "32")
+        subprocess.run([program, "run", trace, "-o", folder + "/out", "-t", *specs], check=True, stdout=subprocess.DEVNULL)
+        report = json.loads((pathlib.Path(folder) / "out/report.json").read_text())
+    rows = {}  # titles by stages
+    for title, result in zip(titles, report["results"]):
+        stages = [stage["stage"] for stage in result["frames"][0]["stages"]]
+        drawn = tuple(stage for stage in stages if stage != "vertex_setup" and not stage.startswith("prepass_"))
+        rows.setdefault(drawn, []).append(title)
+    return [(", ".join(names), stages) for stages, names in rows.items() if names[0] != "beam"]
+
 
 parts = []
 
@@ -125,20 +137,20 @@ def beam_part():
     text(776, top + height + 112, "on chip: open pixels and closed depths of the bin, queues of pairs and fragments", 10, "end", fill="#555")
 
 
-def other_part():
+def other_part(techniques):
     """The other techniques, one row each."""
     text(20, 402, "In each bin: the other techniques", 13, "start", weight="bold")
     note = ("sorted order repeats windows to compose; acaa and deferred draw twice (prepass_...); "
             "dilate and temporal work on whole frames.")
     text(20, 420, note, 9.5, "start", fill="#555")
     y, height, row = 434, 20, 27
-    for name, stages in OTHERS:
+    for name, stages in techniques:
         text(20, y + 14, name, 10, "start", family=MONO)
         x = 172
-        for i, item in enumerate(stages.split()):
+        for i, item in enumerate(stages):
             width = 5.6 * len(item) + 10
             stage(x, y, width, height, item, [item], 9)
-            if i + 1 < len(stages.split()):
+            if i + 1 < len(stages):
                 arrow(f"M{x + width} {y + 10} H{x + width + 10}")
             x += width + 14
         y += row
@@ -153,8 +165,8 @@ def other_part():
 
 frame_part()
 beam_part()
-other_part()
-with open(sys.argv[1], "w") as file:
+other_part(other_techniques(sys.argv[1]))
+with open(sys.argv[2], "w") as file:
     file.write(f'<svg xmlns="http://www.w3.org/2000/svg" viewBox="0 0 {WIDTH} {HEIGHT}" width="{WIDTH}" height="{HEIGHT}" '
                'font-family="DejaVu Sans, Helvetica, Arial, sans-serif">\n'
                '<title>The beam pipeline and the other techniques, stage by stage</title>\n'

@@ -208,7 +208,9 @@ class TileExplainer {
   std::optional<PixelSurfaces> surfaces_;
 };
 
-BinPlan plan_of_bins() { return {.framebuffer = {.bin_size = kTileSize}, .pair_bytes = kPairWorkingBytes}; }
+BinPlan plan_of_bins() {
+  return {.stages = {}, .framebuffer = {.bin_size = kTileSize}, .pair_bytes = kPairWorkingBytes};
+}
 
 glm::dvec3 rgb(const Image& image, std::size_t pixel) {
   const float* rgba = image.rgba.data() + 4 * pixel;
@@ -256,10 +258,8 @@ std::vector<ExplainedPixel> explain_pixels(const Trace& trace, const Frame& fram
     const TileExplainer explainer(context, bin, comparer);
     for (std::size_t i = 0; i < pixels.size(); ++i) {
       const PixelColors& pixel = pixels[i];
-      if (!holds(bin.tile, pixel.at)) continue;
-      const std::size_t index =
-          bin.tile.index(static_cast<std::int32_t>(pixel.at.x), static_cast<std::int32_t>(pixel.at.y));
-      explained[i] = explainer.explain(index, pixel.weights, pixel.color - pixel.reference);
+      if (bin.tile.holds(pixel.at))
+        explained[i] = explainer.explain(bin.tile.index(pixel.at), pixel.weights, pixel.color - pixel.reference);
     }
   });
   return explained;

@@ -2,6 +2,24 @@
 
 namespace beampipe {
 
+std::vector<glm::ivec2> places_of(const Sampling& sampling) {
+  std::vector<glm::ivec2> places;
+  const CellGrid& grid = sampling.grid;
+  for (int cell = 0; cell < grid.cells_per_pixel(); ++cell)
+    for (std::size_t s = 0; s < static_cast<std::size_t>(sampling.pattern.count); ++s)
+      places.emplace_back(cell % grid.columns * grid.cell_width() + sampling.pattern.x[s],
+                          cell / grid.columns * grid.cell_height() + sampling.pattern.y[s]);
+  return places;
+}
+
+std::vector<glm::ivec2> places_of(const std::vector<SamplePattern>& patterns) {
+  std::vector<glm::ivec2> places;
+  for (const SamplePattern& pattern : patterns)
+    for (std::size_t s = 0; s < static_cast<std::size_t>(pattern.count); ++s)
+      places.emplace_back(pattern.x[s], pattern.y[s]);
+  return places;
+}
+
 Sampling msaa_sampling(int samples) {
   if (samples <= 16) return {CellGrid{}, standard_pattern(samples)};
   const CellCounts cells = split_into_cells(samples / 8);

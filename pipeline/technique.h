@@ -5,6 +5,7 @@
 #include <cstddef>
 #include <cstdint>
 #include <functional>
+#include <glm/glm.hpp>
 #include <map>
 #include <stdexcept>
 #include <string>
@@ -15,6 +16,7 @@
 #include "pipeline/memory/parameters.h"
 #include "stages/cost/counters.h"
 #include "stages/data/frame_history.h"
+#include "stages/data/pixel_history.h"
 #include "stages/surface/surface_shader.h"
 #include "traces/trace.h"
 
@@ -22,23 +24,6 @@ namespace beampipe {
 
 class DramTrace;
 class Timeline;
-struct PixelHistory;
-
-// A pixel of the frame.
-struct PixelAddress {
-  std::uint32_t x, y;
-  bool operator==(const PixelAddress&) const = default;
-};
-
-// The weight of one triangle in one pixel. The pixel is the sum of weight times colour over its triangles; the
-// background has what is left to 1.
-struct SurfaceWeight {
-  std::uint32_t triangle;  // index into SetupTriangles
-  float weight;
-  std::uint32_t order;  // when it was merged, where that decides about depth; else 0
-  bool tiny;            // covers no position of the technique's mask
-};
-using PixelWeights = std::vector<SurfaceWeight>;
 
 // How a frame is to be rendered.
 struct FrameInput {
@@ -64,6 +49,8 @@ struct FrameSinks {
   Timeline* timeline = nullptr;  // stage calls with their times
   // Of each pixel of the frame, row by row. Only techniques with has_weights fill it.
   std::vector<PixelWeights>* weights = nullptr;
+  // What happened in each of FrameInput::pixels. Only techniques that are observable fill it.
+  std::vector<PixelHistory>* histories = nullptr;
   DramTrace* dram_trace = nullptr;  // DRAM requests, if memory is modelled
 };
 
@@ -103,13 +90,13 @@ struct FrameResult {
 struct Technique {
   std::string spec = {};  // as the user wrote it
   Framebuffer framebuffer;
-  std::uint32_t samples = 0;  // N of msaa:N, else 0
+  std::uint32_t samples = 0;                // N of msaa:N, else 0
+  std::vector<glm::ivec2> sampled_at = {};  // in a pixel's first frame, as in pipeline/sampling.h; empty: areas count
+  int positions = 0;                        // of a mask that says where in the pixel an area is; 0: there is none
+  int counted_positions = 0;                // of a mask that limits areas to what counting its positions gives; or 0
+  std::string errs_like = {};               // the technique whose limits in hard cases (tools/stress) hold here as well
   std::function<FrameResult(const Trace&, std::size_t frame, const FrameInput&, const FrameSinks&)> renderer;
-  // What happened in some pixels of the frame, a history each (pipeline/inspect/pixel_history.h). Empty if the
-  // technique cannot tell.
-  std::function<std::vector<PixelHistory>(const Trace&, std::size_t frame, const FrameInput&,
-                                          const std::vector<PixelAddress>&)>
-      inspect = {};
+  bool is_observable = false;  // `render` can fill FrameSinks::histories
   bool has_weights = false;    // `render` can fill FrameSinks::weights
   bool keeps_history = false;  // a frame's picture depends on earlier frames (FrameInput::history)
   // The least memory that this program needs for a frame, in bytes per pixel: the picture, and what its stages hand to

@@ -1,31 +1,50 @@
 #include "pipeline/technique_table.h"
 
+// The techniques of beampipe, in the order of --help and the docs. Each is NAME_kind() in a file of
+// pipeline/techniques/.
+#define BEAMPIPE_TECHNIQUES(X) \
+  X(beam)                      \
+  X(beam_sorted)               \
+  X(beam_stream)               \
+  X(casav)                     \
+  X(alpha)                     \
+  X(z3)                        \
+  X(msaa)                      \
+  X(acaa)                      \
+  X(deferred)                  \
+  X(visibility)                \
+  X(taa)                       \
+  X(dvm)                       \
+  X(reference)
+
 namespace beampipe {
 
-// Each is defined in the file of its name in pipeline/techniques/.
-TechniqueKind beam_kind();
-TechniqueKind beam_sorted_kind();
-TechniqueKind beam_stream_kind();
-TechniqueKind casav_kind();
-TechniqueKind alpha_kind();  // in casav.cpp
-TechniqueKind z3_kind();
-TechniqueKind msaa_kind();
-TechniqueKind acaa_kind();
-TechniqueKind deferred_kind();
-TechniqueKind visibility_kind();
-TechniqueKind taa_kind();
-TechniqueKind dvm_kind();
-TechniqueKind reference_kind();
+#define BEAMPIPE_DECLARE(name) TechniqueKind name##_kind();
+BEAMPIPE_TECHNIQUES(BEAMPIPE_DECLARE)
+#undef BEAMPIPE_DECLARE
+
+namespace {
+
+std::vector<std::string> specs_of_all(std::vector<std::string> TechniqueKind::*specs) {
+  std::vector<std::string> all;
+  for (const TechniqueKind& kind : technique_kinds()) all.insert(all.end(), (kind.*specs).begin(), (kind.*specs).end());
+  return all;
+}
+
+}  // namespace
 
 const std::vector<TechniqueKind>& built_in_kinds() {
-  static const std::vector<TechniqueKind> kinds = {
-      beam_kind(), beam_sorted_kind(), beam_stream_kind(), casav_kind(), alpha_kind(), z3_kind(),        msaa_kind(),
-      acaa_kind(), deferred_kind(),    visibility_kind(),  taa_kind(),   dvm_kind(),   reference_kind(),
-  };
+#define BEAMPIPE_CALL(name) name##_kind(),
+  static const std::vector<TechniqueKind> kinds = {BEAMPIPE_TECHNIQUES(BEAMPIPE_CALL)};
+#undef BEAMPIPE_CALL
   return kinds;
 }
 
 // Weak, so that the linker prefers a program's own.
 [[gnu::weak]] const std::vector<TechniqueKind>& technique_kinds() { return built_in_kinds(); }
+
+std::vector<std::string> example_specs() { return specs_of_all(&TechniqueKind::examples); }
+
+std::vector<std::string> stressed_specs() { return specs_of_all(&TechniqueKind::stressed); }
 
 }  // namespace beampipe

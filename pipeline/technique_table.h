@@ -23,6 +23,10 @@ struct TechniqueKind {
   Variant variant = {};     // empty: the only technique of this name. The first one in the table is the default.
   std::string description;  // one line, no full stop
   std::string source;       // "ours", or who published it and when
+  // Specs that together take every way through its code. What is asked of every technique is asked of these, in tests,
+  // digests and docs.
+  std::vector<std::string> examples;
+  std::vector<std::string> stressed = {};  // specs that `beampipe stress` compares with exact arithmetic
   // Gives the options, bound to variables that have their defaults, to `read`, which may set them. Then makes the
   // technique from these variables, without its spec.
   std::function<Technique(const std::function<void(const SpecOptions&)>& read)> make;
@@ -34,6 +38,10 @@ const std::vector<TechniqueKind>& built_in_kinds();
 // Those that specs can name: the built-in ones, unless a program that has techniques of its own defines this function
 // itself (docs/library.md).
 const std::vector<TechniqueKind>& technique_kinds();
+
+// The specs of all techniques.
+std::vector<std::string> example_specs();
+std::vector<std::string> stressed_specs();
 
 // "beam", "beam:order=stream", "msaa:N".
 std::string title_of(const TechniqueKind& kind);
@@ -68,14 +76,6 @@ auto bind_options(Render* render, const Options&... options) {
   return [=](const Trace& trace, std::size_t frame, const FrameInput& run, const FrameSinks& sinks) {
     const FrameJob job{trace, trace.frames.at(frame), run, sinks};
     return on_threads(run.threads, [&] { return render(job, options...); });
-  };
-}
-
-// The same for Technique::inspect.
-template <class Inspect, class... Options>
-auto bind_inspection(Inspect* inspect, const Options&... options) {
-  return [=](const Trace& trace, std::size_t frame, const FrameInput& run, const std::vector<PixelAddress>& pixels) {
-    return on_threads(run.threads, [&] { return inspect(trace, trace.frames.at(frame), options..., run, pixels); });
   };
 }
 

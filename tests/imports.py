@@ -14,7 +14,7 @@ The rules:
 3.  Inside tools/: cli -> sweep -> report -> claims -> evaluate -> files, where sweep leaves out claims. Only cli
     includes stress, which includes none of them. cli and report may include inspect, which may include evaluate and
     files.
-4.  Inside pipeline/: techniques -> inspect -> units -> bins -> memory. All of them may include technique.h, which may
+4.  Inside pipeline/: techniques -> units -> bins -> memory. All of them may include technique.h, which may
     include only memory. The other files at the root of pipeline/ may include bins and memory; only techniques may include them.
 5.  Inside stages/. Each subfolder is a group of stages, except for data/ (types that stages share), cost/ (counters
     and costs that stages share) and surface/ (what surfaces look like, wherever they are shaded): group -> surface ->
@@ -39,8 +39,8 @@ ORDER = {
         "inspect": {"evaluate", "files"},
         "stress": set(), "claims": {"evaluate", "files"}, "evaluate": {"files"}, "files": set()},
     "pipeline": {
-        "techniques": {"root", "inspect", "units", "bins", "memory", "technique.h"}, "root": {"bins", "memory", "technique.h"},
-        "inspect": {"units", "bins", "memory", "technique.h"}, "units": {"bins", "memory", "technique.h"}, "bins": {"memory", "technique.h"},
+        "techniques": {"root", "units", "bins", "memory", "technique.h"}, "root": {"bins", "memory", "technique.h"},
+        "units": {"bins", "memory", "technique.h"}, "bins": {"memory", "technique.h"},
         "memory": {"technique.h"}, "technique.h": {"memory"}},
     "stages": {"data": set(), "cost": {"data"}, "surface": {"data", "cost"}},
     "traces": {"root": {"scenes"}, "scenes": {"root"}, "files": {"root"}}}

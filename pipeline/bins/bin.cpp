@@ -17,6 +17,7 @@ Bin::Bin(const FrameContext& frame_context, const Tile& bin_tile, const Triangle
       list(triangles),
       timer_(context.sinks.timeline, tile),
       memory_(context.run.memory) {
+  if (context.sinks.weights || context.sinks.histories) observer_.emplace(context, tile);
   memory_.reach = &cache_reach_;
   if (context.sinks.dram_trace && memory_.modelled) memory_.log = &dram_log_.emplace();
   memory_.framebuffer = framebuffer.is_on_chip(memory_) ? Place::on_chip : Place::in_memory;

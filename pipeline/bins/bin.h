@@ -11,6 +11,7 @@
 #include <string_view>
 #include <vector>
 
+#include "pipeline/bins/bin_observer.h"
 #include "pipeline/bins/frame_context.h"
 #include "pipeline/bins/timeline.h"
 #include "pipeline/memory/framebuffer.h"
@@ -75,6 +76,10 @@ class Bin {
   TileShader shader() const { return {context.shader, tile}; }
   const glm::vec3& background() const { return context.frame.background; }
 
+  // Who looks at the bin's pixels; null: nobody.
+  BinObserver* observer() { return observer_ ? &*observer_ : nullptr; }
+  const PixelObservers* observers() const { return observer_ ? &observer_->pixels() : nullptr; }
+
   // One value per pixel of the tile, row by row; all 0 when it is first asked for.
   std::vector<float>& pixel_counter(const std::string& name);
 
@@ -128,6 +133,7 @@ class Bin {
   int geometry_passes(Pass pass) const { return pass == Pass::main ? std::max(geometry_passes_, 1) : prepasses_; }
 
  private:
+  std::optional<BinObserver> observer_;
   StageTimer timer_;
   std::optional<DramLog> dram_log_;
   CacheReach cache_reach_;

@@ -299,6 +299,7 @@ FrameResult render_bins(const FrameContext& context, const BinPlan& plan, const 
   const TileGrid grid = plan.keeps_tile_size ? TileGrid{context.frame, bin_size} : tile_grid(context, bin_size);
   const FrameSinks& sinks = context.sinks;
   if (sinks.weights) sinks.weights->assign(std::size_t{context.frame.width} * context.frame.height, {});
+  if (sinks.histories) sinks.histories->assign(run.pixels->size(), {});
   const std::vector<Stage> stages = stages_of(context, plan);
   const std::uint32_t first_pass = sinks.dram_trace ? sinks.dram_trace->passes() : 0;
   GeometryPass pass(context, rasterizing_stage(plan), first_pass);
@@ -306,7 +307,8 @@ FrameResult render_bins(const FrameContext& context, const BinPlan& plan, const 
   const std::uint64_t entry_bytes = sizeof(std::uint32_t) + (plan.sorts_lists ? kKeyBytes : 0);
   std::uint64_t list_bytes = 0;
   EmptyBins empty_bins(context, plan, stages, render);
-  const bool shares_empty_bins = !plan.empty_bins_differ && !sinks.timeline && !sinks.dram_trace;
+  const bool shares_empty_bins =
+      !plan.empty_bins_differ && !sinks.timeline && !sinks.dram_trace && !sinks.histories;
   const auto render_band = [&](const Band& band) {
     const std::vector<TriangleList> lists = bin_triangles(context.triangles, grid, band);
     for (std::size_t i = 0; i < lists.size(); ++i) {
@@ -318,7 +320,7 @@ FrameResult render_bins(const FrameContext& context, const BinPlan& plan, const 
       if (is_shared(i)) empty_bins.prepare(grid.tiles[band.first + i]);
     if (band.first == 0) recorder.start(empty_bins.color());
     tbb::parallel_for(std::size_t{0}, lists.size(), [&](std::size_t i) {
-      const auto is_here = [&](const PixelAddress& pixel) { return holds(grid.tiles[band.first + i], pixel); };
+      const auto is_here = [&](const PixelAddress& pixel) { return grid.tiles[band.first + i].holds(pixel); };
       if (run.pixels && std::none_of(run.pixels->begin(), run.pixels->end(), is_here)) return;
       if (is_shared(i)) {
         const Tile& tile = grid.tiles[band.first + i];
@@ -328,6 +330,7 @@ FrameResult render_bins(const FrameContext& context, const BinPlan& plan, const 
       Bin bin(context, grid.tiles[band.first + i], lists[i], stages, plan.framebuffer);
       render(bin);
       bin.finish_memory();
+      if (BinObserver* const observer = bin.observer()) observer->finish(bin.list, plan.order, bin.picture());
       recorder.add(bin, band.first + i);
     });
   };

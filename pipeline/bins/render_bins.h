@@ -35,12 +35,8 @@ struct BinPlan {
   // Bins without triangles are alike, and one of each size stands for all; unless they are not, because rendering one
   // depends on its place in the frame or leaves something outside it.
   bool empty_bins_differ = false;
+  std::string order = "order of the trace";  // in which pixels take fragments, for PixelHistory
 };
-
-inline bool holds(const Tile& tile, PixelAddress pixel) {
-  const auto x = static_cast<std::int32_t>(pixel.x), y = static_cast<std::int32_t>(pixel.y);
-  return x >= tile.x0 && x < tile.x1 && y >= tile.y0 && y < tile.y1;
-}
 
 using BinRenderer = std::function<void(Bin&)>;
 

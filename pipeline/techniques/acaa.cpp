@@ -3,7 +3,7 @@
 #include <string>
 
 #include "pipeline/bins/render_bins.h"
-#include "pipeline/inspect/inspect_samples.h"
+#include "pipeline/sampling.h"
 #include "pipeline/technique_table.h"
 #include "pipeline/units/accumulate_unit.h"
 #include "pipeline/units/depth_test_unit.h"
@@ -65,16 +65,9 @@ FrameResult render_acaa(const FrameJob& job, const AcaaOptions& options) {
       depth_test.count_bytes();
     }
     std::vector<glm::vec4> picture = accumulate.resolve_accumulator();
-    put_over(translucent, picture);
+    put_over(translucent, bin.observers(), picture);
     bin.finish(picture);
   });
-}
-
-std::vector<PixelHistory> inspect_accumulation(const Trace& trace, const Frame& frame, const AcaaOptions& options,
-                                               const FrameInput& run, const std::vector<PixelAddress>& pixels) {
-  const AcaaInspection how{options.samples, acaa_rounds(options.samples), options.double_counting, options.color};
-  return inspect_pixels(trace, frame, run, {.derivatives = Derivatives::quad}, bin_size(std::min(options.samples, 16)),
-                        false, pixels, [&](const InspectedPixel& pixel) { return inspect_acaa(pixel, how); });
 }
 
 }  // namespace
@@ -84,6 +77,8 @@ TechniqueKind acaa_kind() {
   return {.name = "acaa",
           .description = "accumulative antialiasing: N depth samples and one colour accumulator per pixel",
           .source = "Enderton et al. 2015",
+          .examples = {"acaa:8", "acaa:64,double=stencil,color=unorm8", "acaa:4,double=saturate"},
+          .stressed = {"acaa:8", "acaa:8,double=stencil", "acaa:8,color=unorm8", "acaa:8,color=fp32", "acaa:256"},
           .make = make_from(
               AcaaOptions{},
               [](AcaaOptions& o) -> SpecOptions {
@@ -98,8 +93,9 @@ TechniqueKind acaa_kind() {
               },
               [](const AcaaOptions& o) {
                 return Technique{.framebuffer = acaa_framebuffer(o),
+                                 .sampled_at = places_of(msaa_sampling(o.samples)),
                                  .renderer = bind_options(render_acaa, o),
-                                 .inspect = bind_inspection(inspect_accumulation, o)};
+                                 .is_observable = true};
               })};
 }
 

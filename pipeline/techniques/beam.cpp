@@ -3,7 +3,6 @@
 #include <algorithm>
 
 #include "pipeline/bins/render_bins.h"
-#include "pipeline/inspect/inspect_owners.h"
 #include "pipeline/technique_table.h"
 #include "pipeline/units/fragment_units.h"
 #include "pipeline/units/owner_units.h"
@@ -33,7 +32,8 @@ FrameResult render_shape(const FrameJob& job, const BeamOptions& beam) {
                                 StageId::compose, StageId::shade, StageId::resolve},
                      .framebuffer = beam_framebuffer(beam),
                      .keeps_tile_size = true,
-                     .sorts_lists = true};
+                     .sorts_lists = true,
+                     .order = kNearFirstOrder};
   return render_bins(context, plan, [&](Bin& bin) {
     const OrderedList ordered = sort_bin(bin);
     ConservativeRasterUnit raster(bin, "", PairDepths::bounds, ConservativeRasterUnit::Hidden::left_out);
@@ -55,16 +55,6 @@ FrameResult render_beam(const FrameJob& job, const BeamOptions& beam) {
                     [&]<std::size_t Words, std::size_t Slots>() { return render_shape<Words, Slots>(job, beam); });
 }
 
-std::vector<PixelHistory> inspect_beam(const Trace& trace, const Frame& frame, const BeamOptions& beam,
-                                       const FrameInput& run, const std::vector<PixelAddress>& pixels) {
-  return inspect_pixels(trace, frame, run, {.takes_positions = true}, beam.bin, true, pixels,
-                        [&](const InspectedPixel& pixel) {
-                          return with_shape(beam.positions, beam.slots, [&]<std::size_t Words, std::size_t Slots>() {
-                            return inspect_owners<Words, Slots>(pixel, OwnerOrder::near_first, beam.shade_at);
-                          });
-                        });
-}
-
 }  // namespace
 
 TechniqueKind beam_kind() {
@@ -75,6 +65,8 @@ TechniqueKind beam_kind() {
           "each bin's triangles, sorted near to far, become fragments with analytic coverage and a mask; a pixel "
           "keeps the owners of its mask positions until nothing nearer can come, in a state of fixed size",
       .source = "ours, after Crassin et al. 2018",
+      .examples = {"beam", "beam:bits=64,slots=4,at=visible", "beam:bits=32,slots=2,bin=8,at=quarters"},
+      .stressed = {"beam", "beam:bits=64,slots=4", "beam:bits=32,slots=2"},
       .make = make_from(
           BeamOptions{},
           [](BeamOptions& o) -> SpecOptions {
@@ -96,8 +88,10 @@ TechniqueKind beam_kind() {
           },
           [](const BeamOptions& o) {
             return Technique{.framebuffer = beam_framebuffer(o),
+                             .positions = o.positions,
+                             .counted_positions = o.positions,
                              .renderer = bind_options(render_beam, o),
-                             .inspect = bind_inspection(inspect_beam, o),
+                             .is_observable = true,
                              .has_weights = true};
           })};
 }

@@ -1,9 +1,7 @@
 // The beam in sorted order. An A-buffer sorts the pairs of each pixel by depth. Window by window, near to far, pairs
 // become shaded fragments and are composed, until the pixel is closed.
 
-#include "pipeline/bins/bin_weights.h"
 #include "pipeline/bins/render_bins.h"
-#include "pipeline/inspect/inspect_sorted.h"
 #include "pipeline/technique_table.h"
 #include "pipeline/units/a_buffer_unit.h"
 #include "pipeline/units/compose_units.h"
@@ -27,25 +25,6 @@ Framebuffer sorted_framebuffer(const SortedOptions& sorted) {
                    sorted.storage == Storage::packed ? Surface{"color", "RGB16F", 6} : Surface{"color", "RGB32F", 12}}};
 }
 
-// Depth is compared position by position, so merge order does not matter; 0 is recorded for every fragment.
-void add_weights(const std::vector<Fragment>& fragments, const std::vector<float>& areas,
-                 const std::vector<Pair>& whole, const Tile& tile, BinWeights& weights) {
-  for (const Pair& pair : whole) weights.at(tile.index(pair.x, pair.y)) = {{pair.triangle, 1.0f, 0, false}};
-  for (std::size_t i = 0; i < fragments.size(); ++i)
-    weights.at(fragments[i].pixel).push_back({fragments[i].triangle, areas[i], 0, fragments[i].tiny});
-}
-
-// The areas of a closed pixel are scaled so that their sum is 1.
-template <class Compose>
-void scale_closed(const Compose& compose, BinWeights& weights) {
-  for (std::size_t pixel = 0; pixel < weights.pixels(); ++pixel) {
-    if (compose.is_open(pixel)) continue;
-    float sum = 0;
-    for (const SurfaceWeight& surface : weights.at(pixel)) sum += surface.weight;
-    for (SurfaceWeight& surface : weights.at(pixel)) surface.weight /= sum;
-  }
-}
-
 template <std::size_t Words, class Channel>
 FrameResult render_shape(const FrameJob& job, const SortedOptions& sorted) {
   const FrameContext context(job, {.takes_positions = true});
@@ -55,14 +34,14 @@ FrameResult render_shape(const FrameJob& job, const SortedOptions& sorted) {
   const BinPlan plan{.stages = {StageId::conservative_raster, StageId::a_buffer, StageId::windows,
                                 StageId::beam_fragment, StageId::shade, StageId::compose, StageId::resolve},
                      .framebuffer = sorted_framebuffer(sorted),
-                     .pair_bytes = kPairWorkingBytes + kSortBytes};
+                     .pair_bytes = kPairWorkingBytes + kSortBytes,
+                     .order = "near to far, in windows whose depths overlap"};
   return render_bins(context, plan, [&](Bin& bin) {
     ConservativeRasterUnit raster(bin, "waiting_pairs", PairDepths::bounds, ConservativeRasterUnit::Hidden::left_out);
     ABufferUnit a_buffer(bin, kPairWithDepthBytes, kStoredPairBytes);
     BeamFragmentUnit make_fragments(bin, fragment_options);
     ShadeUnit shade(bin);
     ComposeBeamUnit<Words, Channel> compose(bin, positions);
-    BinWeights weights(bin);
     std::vector<float>& specks = bin.pixel_counter("tiny_triangles");
 
     const std::vector<Pair>& pairs = raster();
@@ -73,29 +52,16 @@ FrameResult render_shape(const FrameJob& job, const SortedOptions& sorted) {
       shade.visible(windows.whole);
       compose(fragments, windows.whole);
       count_specks(fragments, specks);
-      if (weights) add_weights(fragments, compose.areas(), windows.whole, bin.tile, weights);
     }
     shade.finish_fetches();
     a_buffer.charge_memory(windows.finish(), windows.stage);
     bin.finish(compose.resolve_aggregates(plan.framebuffer.surfaces));
-    if (weights) scale_closed(compose, weights);
-    weights.finish();
   });
 }
 
 FrameResult render_sorted(const FrameJob& job, const SortedOptions& sorted) {
   return with_aggregate(sorted.positions, sorted.storage,
                         [&]<std::size_t Words, class Channel>() { return render_shape<Words, Channel>(job, sorted); });
-}
-
-std::vector<PixelHistory> inspect_windows(const Trace& trace, const Frame& frame, const SortedOptions& sorted,
-                                          const FrameInput& run, const std::vector<PixelAddress>& pixels) {
-  return inspect_pixels(
-      trace, frame, run, {.takes_positions = true}, kBinSize, false, pixels, [&](const InspectedPixel& pixel) {
-        return with_aggregate(sorted.positions, sorted.storage, [&]<std::size_t Words, class Channel>() {
-          return inspect_sorted<Words, Channel>(pixel);
-        });
-      });
 }
 
 }  // namespace
@@ -107,6 +73,8 @@ TechniqueKind beam_sorted_kind() {
               "the triangles of a pixel, sorted by depth, become fragments with analytic coverage and a mask, "
               "composed near to far into one area-conserving aggregate until the pixel is closed",
           .source = "ours, after Crassin et al. 2018",
+          .examples = {"beam:order=sorted", "beam:order=sorted,storage=float32"},
+          .stressed = {"beam:order=sorted", "beam:order=sorted,storage=float32", "beam:order=sorted,bits=32"},
           .make = make_from(
               SortedOptions{},
               [](SortedOptions& o) -> SpecOptions {
@@ -118,8 +86,9 @@ TechniqueKind beam_sorted_kind() {
               },
               [](const SortedOptions& o) {
                 return Technique{.framebuffer = sorted_framebuffer(o),
+                                 .positions = o.positions,
                                  .renderer = bind_options(render_sorted, o),
-                                 .inspect = bind_inspection(inspect_windows, o),
+                                 .is_observable = true,
                                  .has_weights = true};
               })};
 }

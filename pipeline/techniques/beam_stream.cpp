@@ -2,7 +2,6 @@
 // or any memory per fragment. A pixel keeps only its state (stages/data/open_pixel.h); of more owners than it has slots
 // for, two become one.
 #include "pipeline/bins/render_bins.h"
-#include "pipeline/inspect/inspect_owners.h"
 #include "pipeline/technique_table.h"
 #include "pipeline/units/fragment_units.h"
 #include "pipeline/units/owner_units.h"
@@ -39,14 +38,6 @@ FrameResult render_stream(const FrameJob& job) {
   });
 }
 
-std::vector<PixelHistory> inspect_stream(const Trace& trace, const Frame& frame, const FrameInput& run,
-                                         const std::vector<PixelAddress>& pixels) {
-  return inspect_pixels(trace, frame, run, {.takes_positions = true}, kBinSize, false, pixels,
-                        [&](const InspectedPixel& pixel) {
-                          return inspect_owners<kWords, kSlots>(pixel, OwnerOrder::stream, OwnerPlace::covered);
-                        });
-}
-
 }  // namespace
 
 TechniqueKind beam_stream_kind() {
@@ -56,10 +47,14 @@ TechniqueKind beam_stream_kind() {
               "fragments in primitive order, without an A-buffer, bins or a sort; of more owners than a pixel has "
               "slots for, two become one",
           .source = "ours",
+          .examples = {"beam:order=stream"},
+          .stressed = {"beam:order=stream"},
           .make = make_plain([] {
             return Technique{.framebuffer = stream_framebuffer(),
+                             .positions = kPositions,
+                             .counted_positions = kPositions,
                              .renderer = bind_options(render_stream),
-                             .inspect = bind_inspection(inspect_stream),
+                             .is_observable = true,
                              .has_weights = true};
           })};
 }

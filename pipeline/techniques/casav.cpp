@@ -6,9 +6,7 @@
 #include <algorithm>
 #include <string>
 
-#include "pipeline/bins/bin_weights.h"
 #include "pipeline/bins/render_bins.h"
-#include "pipeline/inspect/inspect_casav.h"
 #include "pipeline/technique_table.h"
 #include "pipeline/units/a_buffer_unit.h"
 #include "pipeline/units/casav_layers_unit.h"
@@ -101,40 +99,12 @@ std::vector<bool> full_pixels(const std::vector<PixelColor>& aggregates) {
   return full;
 }
 
-std::vector<PixelColor> compose_lists(const CasavOptions& options, CasavStorage storage,
-                                      const MergePositions& positions, const std::vector<Fragment>& fragments,
-                                      const ABuffer& lists, StageCounters& counters) {
-  return pixel_colors(options.rules == Rules::published
-                          ? compose(fragments, lists, positions, options.merge, storage, counters)
-                          : compose_over(fragments, lists, counters));
-}
-
-// Composition is linear in colour. Set one fragment's channel to 1 and all others to 0: the composed channel is that
-// fragment's weight. RGB gives three weights per run. Weights are those of unpacked aggregates.
-void add_weights(const CasavOptions& options, const MergePositions& positions, std::vector<Fragment> fragments,
-                 const ABuffer& lists, BinWeights& weights) {
-  StageCounters unused;
-  const std::size_t pixels = lists.first.size() - 1;
-  std::uint32_t deepest = 0;
-  for (std::size_t pixel = 0; pixel < pixels; ++pixel) deepest = std::max(deepest, lists.record_count(pixel));
-  for (std::uint32_t first = 0; first < deepest; first += 3) {
-    for (std::size_t pixel = 0; pixel < pixels; ++pixel) {
-      for (std::uint32_t k = 0; k < lists.record_count(pixel); ++k) {
-        Fragment& fragment = fragments[lists.records[lists.first[pixel] + k]];
-        fragment.color = glm::vec3(0.0f);
-        if (k >= first && k < first + 3) fragment.color[static_cast<int>(k - first)] = fragment.alpha;
-      }
-    }
-    const std::vector<PixelColor> composed =
-        compose_lists(options, CasavStorage::float32, positions, fragments, lists, unused);
-    for (std::size_t pixel = 0; pixel < pixels; ++pixel) {
-      for (std::uint32_t k = first; k < std::min(first + 3, lists.record_count(pixel)); ++k) {
-        const Fragment& fragment = fragments[lists.records[lists.first[pixel] + k]];
-        const float weight = composed[pixel].color[static_cast<int>(k - first)];
-        weights.at(pixel).push_back({fragment.triangle, weight, k, fragment.tiny});
-      }
-    }
-  }
+std::vector<Aggregate> compose_lists(const CasavOptions& options, const MergePositions& positions,
+                                     const std::vector<Fragment>& fragments, const ABuffer& lists,
+                                     const PixelObservers* observers, StageCounters& counters) {
+  return options.rules == Rules::published
+             ? compose(fragments, lists, positions, options.merge, options.storage, counters, observers)
+             : compose_over(fragments, lists, counters, observers);
 }
 
 FrameResult render_sorted(const FrameJob& job, const CasavOptions& beam) {
@@ -145,7 +115,9 @@ FrameResult render_sorted(const FrameJob& job, const CasavOptions& beam) {
   const BinPlan plan{.stages = {StageId::conservative_raster, StageId::beam_fragment, StageId::shade, StageId::a_buffer,
                                 StageId::compose, StageId::resolve},
                      .framebuffer = casav_framebuffer(beam),
-                     .pair_bytes = kPairWorkingBytes + kSortBytes};
+                     .pair_bytes = kPairWorkingBytes + kSortBytes,
+                     .order = beam.sort == SortKey::centroid ? "near to far, by the depth at the centroid"
+                                                             : "near to far, by the nearest depth"};
   return render_bins(context, plan, [&](Bin& bin) {
     ConservativeRasterUnit raster(bin, "pair_queue", PairDepths::none, ConservativeRasterUnit::Hidden::kept,
                                   kQueueItems);
@@ -153,20 +125,18 @@ FrameResult render_sorted(const FrameJob& job, const CasavOptions& beam) {
     ShadeUnit shade(bin);
     ABufferUnit a_buffer(bin, bytes.fragment, bytes.fragment);
     const BinStage composition = bin.stage(StageId::compose);
-    BinWeights weights(bin);
 
     std::vector<Fragment>& fragments = make_fragments.queued(raster());
     shade(fragments);
     const ABuffer& lists = a_buffer(sort_records(fragments, beam.sort));
     const std::vector<PixelColor> aggregates =
-        compose_lists(beam, beam.storage, positions, fragments, lists, composition.timed());
+        pixel_colors(compose_lists(beam, positions, fragments, lists, bin.observers(), composition.timed()));
     const std::vector<float>& merges = bin.pixel_counter("merges") = record_counts(lists);
     a_buffer.charge_memory(merges, composition);
     charge_aggregates(bin, plan.framebuffer.surfaces, pixels_with(merges), full_pixels(aggregates));
     count_specks(fragments, bin.pixel_counter("tiny_triangles"));
-    bin.finish(resolve(aggregates, bin.background(), bytes.aggregate, bin.stage(StageId::resolve).timed()));
-    if (weights) add_weights(beam, positions, fragments, lists, weights);
-    weights.finish();
+    bin.finish(
+        resolve(aggregates, bin.background(), bytes.aggregate, bin.stage(StageId::resolve).timed(), bin.observers()));
   });
 }
 
@@ -182,6 +152,7 @@ FrameResult render_layers(const FrameJob& job, const CasavOptions& beam) {
                .keeps_tile_size = sorts,
                .sorts_lists = sorts};
   if (sorts) plan.stages.insert(plan.stages.begin(), StageId::bin_sort);
+  if (sorts) plan.order = kNearFirstOrder;
   return render_bins(context, plan, [&](Bin& bin) {
     const TriangleList list = sorts ? sort_bin(bin).triangles : bin.list;
     ConservativeRasterUnit raster(bin, "pair_queue", PairDepths::none, ConservativeRasterUnit::Hidden::kept,
@@ -213,31 +184,11 @@ FrameResult render_casav(const FrameJob& job, const CasavOptions& beam) {
   return beam.order == CasavOrder::sorted ? render_sorted(job, options) : render_layers(job, options);
 }
 
-std::vector<PixelHistory> inspect_rules(const Trace& trace, const Frame& frame, const CasavOptions& beam,
-                                        const FrameInput& run, const std::vector<PixelAddress>& pixels) {
-  const CasavOptions options = with_partition(beam);
-  const MergePositions positions(hammersley_pattern());
-  const BeamFragmentOptions fragments = fragment_options(options, positions);
-  StageCounters unused;
-  const auto compose_pixel = [&](const std::vector<Fragment>& of_pixel, const ABuffer& lists, CasavStorage storage) {
-    return options.rules == Rules::published
-               ? compose(of_pixel, lists, positions, options.merge, storage, unused).front()
-               : compose_over(of_pixel, lists, unused).front();
-  };
-  const bool sorts = options.order == CasavOrder::near_first;
-  return inspect_pixels(
-      trace, frame, run, {.takes_positions = true}, kBinSize, sorts, pixels, [&](const InspectedPixel& pixel) {
-        if (options.order == CasavOrder::sorted)
-          return inspect_casav(pixel, {positions, fragments, options.sort, compose_pixel, options.storage});
-        return inspect_casav_layers(pixel, {positions, fragments, options.merge,
-                                            static_cast<std::size_t>(options.layers), options.storage, sorts});
-      });
-}
-
 Technique make_casav(const CasavOptions& options) {
   return {.framebuffer = casav_framebuffer(options),
+          .positions = hammersley_pattern().count,
           .renderer = bind_options(render_casav, options),
-          .inspect = bind_inspection(inspect_rules, options),
+          .is_observable = true,
           .has_weights = options.order == CasavOrder::sorted};
 }
 
@@ -292,9 +243,13 @@ TechniqueKind casav_kind() {
   return {.name = "casav",
           .description =
               "correlation-aware semi-analytic visibility, the published beam pipeline: a 32-bit mask from a table, a "
-              "depth slab, one aggregate per pixel; the "
-              "options are other readings of these rules, see docs/accuracy.md",
+              "depth slab, one aggregate per pixel; the options are other readings of its rules, see docs/accuracy.md",
           .source = "Crassin et al. 2018",
+          .examples = {"casav", "casav:mask=exact", "casav:storage=text",
+                       "casav:sort=nearest,tiny=3,overlap=transition,regional=area,local=keep,fuzzy=mix,extents=slab,"
+                       "slab=visible,plane=visible,thickness=containing",
+                       "casav:order=near-first", "casav:order=stream,layers=2"},
+          .stressed = {"casav", "casav:storage=text", "casav:storage=float32"},
           .make = make_from(CasavOptions{.tiny_positions = 1}, casav_options, make_casav)};
 }
 
@@ -302,6 +257,8 @@ TechniqueKind alpha_kind() {
   return {.name = "alpha",
           .description = "the fragments of the published rules, blended by plain OVER, without masks",
           .source = "Porter and Duff 1984",
+          .examples = {"alpha"},
+          .stressed = {"alpha"},
           .make = make_plain([] { return make_casav(CasavOptions{.rules = Rules::over, .mask = MaskSource::none}); })};
 }
 

@@ -1,6 +1,7 @@
 #include "pipeline/techniques/deferred.h"
 
 #include "pipeline/bins/render_bins.h"
+#include "pipeline/sampling.h"
 #include "pipeline/technique_table.h"
 #include "pipeline/units/depth_test_unit.h"
 #include "pipeline/units/gbuffer_unit.h"
@@ -29,8 +30,14 @@ TechniqueKind deferred_kind() {
   return {.name = "deferred",
           .description = "one sample per pixel: depth, then a G-buffer from 2x2 quads, then lighting per pixel",
           .source = "Burns and Hunt 2013, Hable 2021",
+          .examples = {"deferred"},
+          .stressed = {"deferred"},
           .make = make_plain([] {
-            return Technique{.framebuffer = deferred_framebuffer(), .renderer = bind_options(render_deferred)};
+            return Technique{.framebuffer = deferred_framebuffer(),
+                             .sampled_at = places_of(msaa_sampling(1)),
+                             .errs_like = "msaa",
+                             .renderer = bind_options(render_deferred),
+                             .is_observable = true};
           })};
 }
 
@@ -48,7 +55,7 @@ std::vector<glm::vec4> draw_deferred(Bin& bin, DepthTestUnit& depth_test) {
   depth_test.end_pass();
   gbuffer.end_pass();
   std::vector<glm::vec4> picture = gbuffer.light_and_resolve(depth_test);
-  put_over(draw_translucent(bin, depth_test, ShadeAt::sample), picture);
+  put_over(draw_translucent(bin, depth_test, ShadeAt::sample), bin.observers(), picture);
   depth_test.count_bytes();
   return picture;
 }

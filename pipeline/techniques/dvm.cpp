@@ -1,9 +1,9 @@
 #include "pipeline/techniques/dvm.h"
 
 #include <algorithm>
-#include <limits>
 
 #include "pipeline/bins/render_bins.h"
+#include "pipeline/sampling.h"
 #include "pipeline/technique_table.h"
 #include "pipeline/techniques/visibility.h"
 #include "pipeline/units/gbuffer_unit.h"
@@ -97,7 +97,7 @@ FrameResult render_dvm(const FrameJob& job, const DvmOptions& options) {
   const Materials materials(material_ids(context.triangles, options.material));
   const std::vector<std::uint32_t> looks = looks_of(frame);
   const Sampling sampling{CellGrid{}, standard_pattern(8)};
-  const SelectOptions select{frames % 8, options.seed + frames};
+  const SelectOptions select{frames % 8, frames + 1};
   QuadFrame quads(frame.width, frame.height);
   std::vector<glm::vec4> translucent(context.has_blending() ? over_time.current.color.size() : 0);
 
@@ -148,22 +148,23 @@ FrameResult render_dvm(const FrameJob& job, const DvmOptions& options) {
 }  // namespace
 
 TechniqueKind dvm_kind() {
-  constexpr std::uint32_t kMostSeed = std::numeric_limits<std::uint32_t>::max();
   return {.name = "dvm",
           .description =
               "decoupled visibility multisampling: 8 triangle ids per pixel, four shaded samples per 2x2 quad "
               "spread by their masks, accumulated over time",
           .source = "Hable 2021",
+          .examples = {"dvm", "dvm:material=draw"},
+          .stressed = {"dvm"},
           .make = make_from(
               DvmOptions{},
               [](DvmOptions& o) -> SpecOptions {
                 return {number("blend", o.blend, 0.001f, 1.0f, "weight of each new frame"),
-                        number("seed", o.seed, 0u, kMostSeed, "seed of the random choices"),
                         choice("material", o.material, {{"color", MaterialBy::color}, {"draw", MaterialBy::draw}},
                                "samples share what is shaded within a draw and Kd, or within a draw")};
               },
               [](const DvmOptions& o) {
                 return Technique{.framebuffer = dvm_framebuffer(),
+                                 .sampled_at = places_of(msaa_sampling(8)),
                                  .renderer = bind_options(render_dvm, o),
                                  .keeps_history = true,
                                  .working_bytes_per_pixel = kDvmWorkingBytes};

@@ -5,7 +5,6 @@
 #include <string>
 
 #include "pipeline/bins/render_bins.h"
-#include "pipeline/inspect/inspect_samples.h"
 #include "pipeline/technique_table.h"
 #include "pipeline/units/depth_test_unit.h"
 #include "pipeline/units/fragment_units.h"
@@ -44,7 +43,7 @@ FrameResult render_msaa(const FrameJob& job, const MsaaOptions& options) {
                .framebuffer = msaa_framebuffer(options),
                .has_prepass = options.prepass,
                .empty_bins_differ = options.motion};
-  if (options.motion) plan.stages.push_back("motion");
+  if (options.motion) plan.stages.push_back(StageId::motion);
   FrameResult result = render_bins(context, plan, [&](Bin& bin) {
     DepthTestUnit depth_test = forward_surface(bin, sampling, options);
     bin.finish(draw_forward(bin, options, depth_test));
@@ -55,14 +54,6 @@ FrameResult render_msaa(const FrameJob& job, const MsaaOptions& options) {
     history.poses = motion->take_poses();
   }
   return result;
-}
-
-std::vector<PixelHistory> inspect_samples(const Trace& trace, const Frame& frame, const MsaaOptions& options,
-                                          const FrameInput& run, const std::vector<PixelAddress>& pixels) {
-  const MsaaInspection how{msaa_sampling(options.samples), options.at, options.alpha, options.prepass, options.space};
-  return inspect_pixels(trace, frame, run, {.derivatives = Derivatives::quad, .rounds_to_half = true},
-                        bin_size(options.samples), false, pixels,
-                        [&](const InspectedPixel& pixel) { return inspect_msaa(pixel, how); });
 }
 
 }  // namespace
@@ -106,6 +97,9 @@ TechniqueKind msaa_kind() {
           "multisampling: depth and colour at N samples, one shader invocation per triangle and pixel; above "
           "16 samples, super-resolution of 8x",
       .source = "Direct3D, Vulkan",
+      .examples = {"msaa:1", "msaa:8", "msaa:64", "msaa:8,prepass", "msaa:4,motion,resolve=reinhard",
+                   "msaa:4,at=centroid,alpha=coverage"},
+      .stressed = {"msaa:1", "msaa:8", "msaa:16", "msaa:256"},
       .make = make_from(
           MsaaOptions{},
           [](MsaaOptions& o) -> SpecOptions {
@@ -127,8 +121,9 @@ TechniqueKind msaa_kind() {
           [](const MsaaOptions& o) {
             return Technique{.framebuffer = msaa_framebuffer(o),
                              .samples = static_cast<std::uint32_t>(o.samples),
+                             .sampled_at = places_of(msaa_sampling(o.samples)),
                              .renderer = bind_options(render_msaa, o),
-                             .inspect = bind_inspection(inspect_samples, o),
+                             .is_observable = true,
                              .keeps_history = o.motion};
           })};
 }

@@ -46,6 +46,8 @@ TechniqueKind reference_kind() {
   return {.name = "reference",
           .description = "4096 samples per pixel in double precision: the truth that errors are measured against",
           .source = "ours",
+          .examples = {"reference"},
+          .stressed = {"reference"},
           .make = make_plain([] {
             return Technique{.framebuffer = reference_framebuffer(), .renderer = bind_options(render_reference)};
           })};

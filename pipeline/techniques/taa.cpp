@@ -1,6 +1,7 @@
 #include "pipeline/techniques/taa.h"
 
 #include "pipeline/bins/render_bins.h"
+#include "pipeline/sampling.h"
 #include "pipeline/technique_table.h"
 #include "pipeline/techniques/deferred.h"
 #include "pipeline/techniques/msaa.h"
@@ -105,6 +106,8 @@ TechniqueKind taa_kind() {
   return {.name = "taa",
           .description = "temporal antialiasing of one sample per pixel, jittered over N positions",
           .source = "Lottes 2011, Karis 2014, Salvi 2016",
+          .examples = {"taa:8", "taa:8,shading=forward", "taa:8,shading=deferred"},
+          .stressed = {"taa:8"},
           .make = make_from(
               TaaOptions{},
               [](TaaOptions& o) -> SpecOptions {
@@ -118,6 +121,8 @@ TechniqueKind taa_kind() {
               },
               [](const TaaOptions& o) {
                 return Technique{.framebuffer = taa_framebuffer(o.shading),
+                                 .sampled_at = {places_of(msaa_sampling(o.samples)).front()},
+                                 .errs_like = "msaa",
                                  .renderer = bind_options(render_taa, o),
                                  .keeps_history = true,
                                  .working_bytes_per_pixel = kTemporalWorkingBytes};

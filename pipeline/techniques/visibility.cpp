@@ -1,6 +1,7 @@
 #include "pipeline/techniques/visibility.h"
 
 #include "pipeline/bins/render_bins.h"
+#include "pipeline/sampling.h"
 #include "pipeline/technique_table.h"
 #include "pipeline/units/gbuffer_unit.h"
 #include "pipeline/units/raster_units.h"
@@ -29,6 +30,8 @@ TechniqueKind visibility_kind() {
   return {.name = "visibility",
           .description = "triangle ids and depth at N samples per pixel, then shading of every sample",
           .source = "Burns and Hunt 2013, Hable 2021",
+          .examples = {"visibility", "visibility:8"},
+          .stressed = {"visibility"},
           .make = make_from(
               VisibilityOptions{},
               [](VisibilityOptions& o) -> SpecOptions {
@@ -36,7 +39,10 @@ TechniqueKind visibility_kind() {
               },
               [](const VisibilityOptions& o) {
                 return Technique{.framebuffer = visibility_framebuffer(o.samples),
-                                 .renderer = bind_options(render_visibility, o)};
+                                 .sampled_at = places_of(msaa_sampling(o.samples)),
+                                 .errs_like = "msaa",
+                                 .renderer = bind_options(render_visibility, o),
+                                 .is_observable = true};
               })};
 }
 
@@ -50,7 +56,7 @@ std::vector<glm::vec4> shade_visibility(Bin& bin, const Materials& materials, De
   gbuffer.write_visible(visibility, materials);
   std::vector<glm::vec4> picture = gbuffer.light_and_resolve(visibility);
   const ShadeAt at = visibility.sampling().pattern.count == 1 ? ShadeAt::sample : ShadeAt::centroid;
-  put_over(draw_translucent(bin, visibility, at), picture);
+  put_over(draw_translucent(bin, visibility, at), bin.observers(), picture);
   visibility.count_bytes();
   return picture;
 }

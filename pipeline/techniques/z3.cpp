@@ -2,7 +2,7 @@
 // layers per pixel; when there are too many, two layers are merged (stages/beam/compose_z3.h).
 
 #include "pipeline/bins/render_bins.h"
-#include "pipeline/inspect/inspect_z3.h"
+#include "pipeline/sampling.h"
 #include "pipeline/technique_table.h"
 #include "pipeline/units/fragment_units.h"
 #include "pipeline/units/raster_units.h"
@@ -58,15 +58,6 @@ FrameResult render_z3(const FrameJob& job, const Z3Options& z3) {
                        [&]<std::size_t Words, std::size_t Layers>() { return render_shape<Words, Layers>(job, z3); });
 }
 
-std::vector<PixelHistory> inspect_layers(const Trace& trace, const Frame& frame, const Z3Options& z3,
-                                         const FrameInput& run, const std::vector<PixelAddress>& pixels) {
-  return inspect_pixels(
-      trace, frame, run, {.takes_positions = true}, kBinSize, false, pixels, [&](const InspectedPixel& pixel) {
-        return with_z3_shape(z3.positions, z3.layers,
-                             [&]<std::size_t Words, std::size_t Layers>() { return inspect_z3<Words, Layers>(pixel); });
-      });
-}
-
 }  // namespace
 
 TechniqueKind z3_kind() {
@@ -74,6 +65,8 @@ TechniqueKind z3_kind() {
           .description =
               "fragments in primitive order, kept in a few layers per pixel; when there is no room, two layers merge",
           .source = "Jouppi and Chang 1999",
+          .examples = {"z3", "z3:shape=128x3"},
+          .stressed = {"z3", "z3:shape=128x3"},
           .make = make_from(
               Z3Options{},
               [](Z3Options& o) -> SpecOptions {
@@ -82,8 +75,10 @@ TechniqueKind z3_kind() {
               },
               [](const Z3Options& o) {
                 return Technique{.framebuffer = z3_framebuffer(o),
+                                 .sampled_at = places_of(cell_patterns(o.positions)),
+                                 .positions = o.positions,
                                  .renderer = bind_options(render_z3, o),
-                                 .inspect = bind_inspection(inspect_layers, o)};
+                                 .is_observable = true};
               })};
 }
 

@@ -10,6 +10,7 @@ AccumulateUnit::AccumulateUnit(Bin& bin, int samples, AccumulatorFormat format, 
       accumulator_(bin.tile, samples, format, double_counting),
       color_(bin.memory(), "accumulator", bin.z_order(), 1, accumulator_bytes(format)) {
   accumulator_.limit = 0;
+  accumulator_.observers = bin.observers();
 }
 
 void AccumulateUnit::start_round(const Sampling& sampling, const SampleTile& depth) {

@@ -29,8 +29,6 @@ class AccumulateUnit {
 
   std::vector<glm::vec4> resolve_accumulator();
 
-  const Accumulator& accumulator() const { return accumulator_; }
-
   const BinStage stage;
 
  private:

@@ -19,7 +19,7 @@ class ComposeLayersUnit {
         positions_(positions),
         rules_(rules),
         merges_(bin.pixel_counter("merges")),
-        layers_(bin.tile.pixels(), layers, storage),
+        layers_(bin.tile.pixels(), layers, storage, bin.observers()),
         store_(bin, surfaces) {}
 
   void operator()(const std::vector<Fragment>& fragments) {
@@ -31,7 +31,7 @@ class ComposeLayersUnit {
     store_.finish();
     const std::vector<PixelColor> colors = pixel_colors(layers_.finish(positions_, rules_, stage_.timed()));
     return resolve(colors, bin_.background(), static_cast<std::uint32_t>(layers_.bytes_per_pixel()),
-                   bin_.stage(StageId::resolve).timed());
+                   bin_.stage(StageId::resolve).timed(), bin_.observers());
   }
 
  private:

@@ -56,19 +56,16 @@ class ComposeBeamUnit {
 
   // `fragments`: at most one window of each pixel. `whole`: pairs that are all that can be seen of their pixels.
   void operator()(const std::vector<Fragment>& fragments, const std::vector<Pair>& whole) {
-    compose_window(fragments, positions_, stage_.timed(), pixels_, areas_);
-    compose_whole(whole, bin_.tile, bin_.shader(), stage_.timed(), pixels_, bin_.texels());
+    compose_window(fragments, positions_, stage_.timed(), pixels_, areas_, bin_.observers());
+    compose_whole(whole, bin_.tile, bin_.shader(), stage_.timed(), pixels_, bin_.texels(), bin_.observers());
     bin_.charge_texels(bin_.stage(StageId::shade));
   }
-
-  // What each of the last fragments added to its pixel's area.
-  const std::vector<float>& areas() const { return areas_; }
 
   // The picture. `framebuffer`: the surfaces that hold an aggregate.
   std::vector<glm::vec4> resolve_aggregates(const std::vector<Surface>& framebuffer) {
     charge_aggregates(bin_, framebuffer, covered_pixels(pixels_), closed_pixels(pixels_));
-    return resolve(composed_colors(pixels_), bin_.background(), sizeof pixels_[0],
-                   bin_.stage(StageId::resolve).timed());
+    return resolve(composed_colors(pixels_), bin_.background(), sizeof pixels_[0], bin_.stage(StageId::resolve).timed(),
+                   bin_.observers());
   }
 
  private:
@@ -76,7 +73,7 @@ class ComposeBeamUnit {
   BinStage stage_;
   const PositionSet& positions_;
   std::vector<StoredAggregate<Words, Channel>> pixels_;
-  std::vector<float> areas_;
+  std::vector<float> areas_;  // what each of the last fragments added to its pixel
 };
 
 }  // namespace beampipe

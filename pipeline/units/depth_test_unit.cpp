@@ -15,7 +15,11 @@ DepthTestUnit::DepthTestUnit(Bin& bin, const Sampling& sampling, std::uint32_t f
       sampling_(sampling),
       surface_(bin.tile, sampling, first_color_bytes),
       memory_(bin.memory(), bin.tile, sampling, color_bytes, std::move(same_color)),
-      fragments_(bin.pixel_counter("fragments")) {}
+      fragments_(bin.pixel_counter("fragments")) {
+  if (!bin.observer()) return;
+  surface_.observers = bin.observers();
+  surface_.first_observed = bin.observer()->first_sample(sampling);
+}
 
 void DepthTestUnit::shade_translucent_at(ShadeAt at) {
   translucent_at_ = at;

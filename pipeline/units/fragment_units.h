@@ -22,6 +22,7 @@ class BeamFragmentUnit {
   BeamFragmentUnit(Bin& bin, const BeamFragmentOptions& options)
       : bin_(bin), stage_(bin.stage(StageId::beam_fragment)), options_(options) {
     if (bin.context.has_alpha()) patterns_ = options.grid ? cell_patterns(options.grid->count()) : options.positions;
+    if (BinObserver* const observer = bin.observer()) observer->has_masks(options);
   }
 
   // The fragments of pairs that follow each other in primitive order; `buffer` is the name of the on-chip buffer that

@@ -1,6 +1,5 @@
 #include "pipeline/units/owner_units.h"
 
-#include <algorithm>
 #include <bit>
 
 #include "stages/raster/bin_sort_cost.h"
@@ -26,17 +25,6 @@ std::vector<Surface> open_pixel_surfaces(int positions, int slots) {
   return {{"owner_map", times("R32UI", map_words), 4 * map_words},
           {"owners", times("RG32UI", count), count * static_cast<std::uint32_t>(sizeof(OwnerSlot))},
           {"sums", times("R16", kSums / 2), kSums}};
-}
-
-// Depth is compared position by position, so the order of triangles matters only where owners became one.
-void record_weights(const OwnerWeights& recorded, const TriangleList& list, BinWeights& weights) {
-  for (std::size_t pixel = 0; pixel < weights.pixels(); ++pixel) {
-    const std::vector<OwnerWeights::Weight>& of_pixel = recorded.of_pixel(pixel);
-    const bool merged = std::any_of(of_pixel.begin(), of_pixel.end(), [](const auto& each) { return each.merged; });
-    for (const OwnerWeights::Weight& each : of_pixel)
-      weights.at(pixel).push_back({list[each.number], each.weight, merged ? each.number + 1 : 0, each.speck});
-  }
-  weights.finish();
 }
 
 OrderedList sort_bin(Bin& bin) {

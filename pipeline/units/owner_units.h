@@ -6,7 +6,6 @@
 #include <vector>
 
 #include "pipeline/bins/bin.h"
-#include "pipeline/bins/bin_weights.h"
 #include "pipeline/memory/aggregate_memory.h"
 #include "pipeline/units/fragment_units.h"
 #include "stages/beam/compose_owners.h"
@@ -19,6 +18,7 @@ namespace beampipe {
 // Sorts the bin's list near to far, with the traffic of the keys, of the sort, and of the raster stage, which reads the
 // setup triangles in that order. For a plan that sorts_lists.
 OrderedList sort_bin(Bin& bin);
+inline constexpr const char* kNearFirstOrder = "near to far, by the nearest depth in the bin";  // BinPlan::order
 
 // What open pixels cost in memory. On chip they cost nothing there.
 class OpenPixelStore {
@@ -37,9 +37,6 @@ class OpenPixelStore {
   AggregateMemory memory_;
 };
 
-// Hands what was recorded to the frame, if it was asked for.
-void record_weights(const OwnerWeights& recorded, const TriangleList& list, BinWeights& weights);
-
 // Of an OpenPixel with so many positions and slots.
 std::vector<Surface> open_pixel_surfaces(int positions, int slots);
 
@@ -53,11 +50,15 @@ class ComposeOwnersUnit {
                     OwnerPlace shade_at = OwnerPlace::covered)
       : bin_(bin),
         stage_(bin.stage(StageId::compose)),
-        weights_(bin),
-        recorded_(weights_ ? bin.tile.pixels() : 0),
-        owners_{bin.triangles(), list,         watermarks,          bin.tile,
-                positions,       bin.shader(), bin.models_memory(), weights_ ? &recorded_ : nullptr,
-                shade_at},
+        owners_{.triangles = bin.triangles(),
+                .list = list,
+                .watermarks = watermarks,
+                .tile = bin.tile,
+                .positions = positions,
+                .shader = bin.shader(),
+                .lists_fetches = bin.models_memory(),
+                .shade_at = shade_at,
+                .observers = bin.observers()},
         maps_{bin.pixel_counter("fragments"), bin.pixel_counter("merges")},
         pixels_(bin.tile.pixels()),
         store_(bin, surfaces) {
@@ -66,11 +67,12 @@ class ComposeOwnersUnit {
                                std::to_string(OwnerSlot::kMostTriangles) + " that an owner can name");
   }
 
-  // `first`: as in compose_owners.
+  // `first`: as in OwnersBatch.
   void operator()(const std::vector<Fragment>& fragments, std::size_t first, ClosedDepth& closed, ShadeUnit& shade) {
     OwnersResult result;
     result.texels = bin_.texels();
-    compose_owners(owners_, fragments, first, stage_.timed(), pixels_, closed, maps_, result);
+    compose_owners(owners_, {fragments, first}, stage_.timed(),
+                   OwnersTile<Words, Slots>{pixels_, closed, maps_, result});
     charge(closed, stage_.counters);
     store_.merge(fragments);
     finish(result, shade);
@@ -83,10 +85,9 @@ class ComposeOwnersUnit {
     store_.finish();
     const std::vector<PixelColor> colors = finish_owners(owners_, stage_.timed(), pixels_, result);
     finish(result, shade);
-    record_weights(recorded_, owners_.list, weights_);
     bin_.triangle_fetches().flush(stage_.counters);
-    return resolve(colors, bin_.background(), kColorBytes + sizeof(std::uint16_t),
-                   bin_.stage(StageId::resolve).timed());
+    return resolve(colors, bin_.background(), kColorBytes + sizeof(std::uint16_t), bin_.stage(StageId::resolve).timed(),
+                   bin_.observers());
   }
 
  private:
@@ -97,8 +98,6 @@ class ComposeOwnersUnit {
 
   Bin& bin_;
   BinStage stage_;
-  BinWeights weights_;
-  OwnerWeights recorded_;
   OwnersBin owners_;
   OwnersMaps maps_;
   OpenPixels<Words, Slots> pixels_;

@@ -44,12 +44,24 @@ const TriangleList& SampleRasterUnit::drawn_triangles() {
 }
 
 void SampleRasterUnit::test_alpha(const Sampling& sampling, ShadeAt at) {
-  if (!bin_.context.has_cutouts() || translucent_ == Translucent::alone) return;
-  const SamplePlaces places(bin_, sampling, at);
   const BinStage testing = bin_.stage(StageId::alpha_test, pass_);
-  alpha_test(bin_.shader(), {bin_.tile, sampling, coverage_, places.of(fragments_)}, testing.timed(), fragments_,
-             bin_.texels());
+  test_alpha(sampling, at, testing.timed(), bin_.texels(), fragments_);
   bin_.charge_texels(testing);
+}
+
+void SampleRasterUnit::test_alpha(const Sampling& sampling, ShadeAt at, StageCounters& counters, TexelRequests* texels,
+                                  std::vector<SampleFragment>& fragments) const {
+  const SamplePlaces places(bin_, sampling, at);
+  alpha_test(bin_.shader(), {bin_.tile, sampling, coverage_, places.of(fragments)}, counters, fragments, texels);
+}
+
+void SampleRasterUnit::tell_all(const TriangleList& drawn, const Sampling& sampling, ShadeAt at) const {
+  std::vector<SampleFragment> fragments;
+  StageCounters unused;
+  sample_raster({bin_.triangles(), bin_.tile, sampling}, drawn, unused, fragments);
+  const std::vector<SampleFragment> before_alpha = fragments;
+  if (tests_alpha()) test_alpha(sampling, at, unused, nullptr, fragments);
+  bin_.observer()->has_fragments(sampling, before_alpha, fragments);
 }
 
 }  // namespace beampipe

@@ -109,18 +109,25 @@ class SampleRasterUnit {
     if (translucent_ != Translucent::alone) bin_.starts_geometry_pass(pass_);
     bin_.start_texture_pass();
     bin_.holds("closed_depth", closed.bytes());
-    for_each_batch(drawn_triangles(), [&](const TriangleList& batch) {
+    const TriangleList& drawn = drawn_triangles();
+    if (bin_.observer()) tell_all(drawn, sampling, at);
+    for_each_batch(drawn, [&](const TriangleList& batch) {
       fragments_.clear();
       sample_raster({bin_.triangles(), bin_.tile, sampling}, batch, stage_.timed(), fragments_, &closed);
       bin_.holds("fragment_queue", std::min(fragments_.size(), kQueueItems) * kSampleFragmentBytes);
-      if (bin_.context.has_alpha()) test_alpha(sampling, at);
+      if (tests_alpha()) test_alpha(sampling, at);
       body(fragments_);
     });
   }
 
  private:
   const TriangleList& drawn_triangles();
+  bool tests_alpha() const { return bin_.context.has_cutouts() && translucent_ != Translucent::alone; }
   void test_alpha(const Sampling& sampling, ShadeAt at);
+  void test_alpha(const Sampling& sampling, ShadeAt at, StageCounters& counters, TexelRequests* texels,
+                  std::vector<SampleFragment>& fragments) const;
+  // Tells the observer which samples the triangles cover, whether hidden or not.
+  void tell_all(const TriangleList& drawn, const Sampling& sampling, ShadeAt at) const;
 
   Bin& bin_;
   Pass pass_;

@@ -6,6 +6,18 @@
 
 namespace beampipe {
 
+namespace {
+
+// The mean of a pixel's samples in the layer. `pixel`: its number in the tile.
+glm::vec4 mean_of_layer(const SampleTile& surface, std::size_t pixel) {
+  const std::size_t samples = surface.samples_per_pixel;
+  glm::vec4 mean(0.0f);
+  for (std::size_t s = 0; s < samples; ++s) mean += surface.over[pixel * samples + s] / static_cast<float>(samples);
+  return mean;
+}
+
+}  // namespace
+
 std::vector<glm::vec4> draw_translucent(Bin& bin, DepthTestUnit& depth_test, ShadeAt at) {
   if (!bin.context.has_blending()) return {};
   const Sampling& sampling = depth_test.sampling();
@@ -31,17 +43,13 @@ std::vector<glm::vec4> draw_translucent(Bin& bin, DepthTestUnit& depth_test, Sha
   return means;
 }
 
-glm::vec4 mean_of_layer(const SampleTile& surface, std::size_t pixel) {
-  const std::size_t samples = surface.samples_per_pixel;
-  glm::vec4 mean(0.0f);
-  for (std::size_t s = 0; s < samples; ++s) mean += surface.over[pixel * samples + s] / static_cast<float>(samples);
-  return mean;
-}
-
 glm::vec4 put_over(const glm::vec4& layer, const glm::vec4& pixel) { return layer + pixel * (1.0f - layer.a); }
 
-void put_over(const std::vector<glm::vec4>& layer, std::vector<glm::vec4>& picture) {
-  for (std::size_t i = 0; i < layer.size(); ++i) picture[i] = put_over(layer[i], picture[i]);
+void put_over(const std::vector<glm::vec4>& layer, const PixelObservers* observers, std::vector<glm::vec4>& picture) {
+  for (std::size_t i = 0; i < layer.size(); ++i) {
+    picture[i] = put_over(layer[i], picture[i]);
+    if (PixelObserver* const observer = observer_at(observers, i)) observer->puts_layers_over(layer[i].a);
+  }
 }
 
 }  // namespace beampipe

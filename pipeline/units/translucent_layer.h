@@ -21,11 +21,9 @@ inline constexpr std::uint32_t kLayerBytes = 8;  // of a sample: fp16 RGBA
 // alpha. Empty if nothing in the frame is translucent. Stages: sample_raster, shade, blend.
 std::vector<glm::vec4> draw_translucent(Bin& bin, DepthTestUnit& depth_test, ShadeAt at);
 
-// The mean of a pixel's samples in the layer that such a surface has. `pixel`: its number in the tile.
-glm::vec4 mean_of_layer(const SampleTile& surface, std::size_t pixel);
-
-// Puts a layer over pixels: RGB, and A, the part that geometry covers. `layer` may be empty.
-void put_over(const std::vector<glm::vec4>& layer, std::vector<glm::vec4>& picture);
+// Puts a layer over pixels: RGB, and A, the part that geometry covers. `layer` may be empty, and `observers`
+// null.
+void put_over(const std::vector<glm::vec4>& layer, const PixelObservers* observers, std::vector<glm::vec4>& picture);
 glm::vec4 put_over(const glm::vec4& layer, const glm::vec4& pixel);
 
 }  // namespace beampipe

@@ -22,7 +22,7 @@ class ComposeZ3Unit {
         memory_(bin.memory(), bin.z_order(), framebuffer) {}
 
   void operator()(const std::vector<Fragment>& fragments) {
-    compose_z3(fragments, positions_, stage_.timed(), pixels_, merges_);
+    compose_z3(fragments, positions_, stage_.timed(), pixels_, merges_, bin_.observers());
     for (const Fragment& fragment : fragments) memory_.merge(fragment.triangle, fragment.pixel, stage_.counters);
   }
 
@@ -31,7 +31,8 @@ class ComposeZ3Unit {
     memory_.flush({}, stage_.counters);
     memory_.read_all(resolving.counters);
     if (bin_.models_memory()) memory_.add_bytes(bin_.pixel_counter("bytes"));
-    return resolve(z3_colors(pixels_), bin_.background(), sizeof pixels_[0], resolving.timed());
+    return resolve(z3_colors(pixels_, bin_.observers()), bin_.background(), sizeof pixels_[0], resolving.timed(),
+                   bin_.observers());
   }
 
  private:

@@ -5,6 +5,7 @@
 #include "stages/cost/counting.h"
 #include "stages/data/casav_aggregate.h"
 #include "stages/data/fragment.h"
+#include "stages/data/pixel_observer.h"
 
 namespace beampipe {
 
@@ -19,6 +20,18 @@ inline MergeFragment merge_fragment(const Fragment& fragment) {
            fragment.z_max,
            {color.r, color.g, color.b}},
           fragment.tiny ? ~0u : 0u};
+}
+
+// Tells that the aggregate at `place` and what lies behind it become `together`. A merge by the rules is linear in
+// colours, so merging two colours of 1 gives the factors.
+inline void tell_merge(std::size_t place, const Aggregate& nearer, const MergeFragment& farther,
+                       const Aggregate& together, const MergePositions& positions, const MergeRules& rules,
+                       PixelObserver& observer) {
+  Aggregate unit = nearer;
+  MergeFragment other = farther;
+  for (int c = 0; c < 3; ++c) unit.color[c] = c == 0, other.surface.color[c] = c == 1;
+  const Aggregate factors = merge_formula(other, unit, positions, rules);
+  observer.joins(place, {nearer, farther.surface, together, factors.color[0], factors.color[1]});
 }
 
 // The distance between the depth ranges of two aggregates, of which the first one is nearer; below 0 if they overlap.

@@ -37,6 +37,12 @@ void store(const PixelAggregate& aggregate, StoredAggregate<Words, Channel>& sto
   for (int c = 0; c < 3; ++c) stored.color[c] = Channel(aggregate.color[c]);
 }
 
+template <std::size_t Words, class Channel>
+void tell_stored(const StoredAggregate<Words, Channel>& stored, PixelObserver& observer) {
+  const PixelAggregate aggregate = load(stored);
+  observer.composes(static_cast<std::uint32_t>(aggregate.mask.count()), aggregate.taken.area, aggregate.color);
+}
+
 class PixelComposer {
  public:
   explicit PixelComposer(const PositionSet& positions) : positions_(positions) {}
@@ -73,10 +79,22 @@ class PixelComposer {
       add(fragments[next.fragment], ownership_[next.fragment], aggregate, areas[next.fragment]);
   }
 
+  // Tells of the window that was added last. Specks have areas only if they are visible.
+  void tell_window(const Fragment* fragments, std::size_t count, const float* areas, PixelObserver& observer) const {
+    for (std::size_t i = 0; i < count; ++i) observer.takes(fragments[i].triangle, ownership_[i].owned);
+    for (std::size_t i = 0; i < count; ++i) {
+      const Fragment& fragment = fragments[i];
+      observer.arrives(fragment, ownership_[i].owned);
+      observer.adds(fragment.triangle, areas[i], glm::dvec3(fragment.color) / double{fragment.alpha});
+      if (ownership_[i].covered == 0 && areas[i] > 0) observer.shows_speck(fragment.triangle);
+    }
+  }
+
   // If all positions are taken, nothing of the background can be visible. The rest of the area, which rounding leaves,
-  // is distributed over the surfaces.
-  void close(PixelAggregate& aggregate) {
+  // is distributed over the surfaces. `observer` may be null.
+  void close(PixelAggregate& aggregate, PixelObserver* observer) {
     if (aggregate.taken.positions != static_cast<float>(positions_.count())) return;
+    if (observer) observer->scales(1.0 / double{aggregate.taken.area});
     aggregate.color *= 1.0f / aggregate.taken.area;
     aggregate.taken.area = 1.0f;
     ++work_.closed;
@@ -192,7 +210,8 @@ class PixelComposer {
 
 template <std::size_t Words, class Channel>
 void compose_window(const std::vector<Fragment>& fragments, const PositionSet& positions, StageCounters& counters,
-                    std::vector<StoredAggregate<Words, Channel>>& pixels, std::vector<float>& areas) {
+                    std::vector<StoredAggregate<Words, Channel>>& pixels, std::vector<float>& areas,
+                    const PixelObservers* observers) {
   PixelComposer composer(positions);
   areas.resize(fragments.size());
   for (std::size_t begin = 0, end = 0; begin < fragments.size(); begin = end) {
@@ -200,15 +219,19 @@ void compose_window(const std::vector<Fragment>& fragments, const PositionSet& p
     while (end < fragments.size() && fragments[end].pixel == pixel) ++end;
     PixelAggregate aggregate = load(pixels[pixel]);
     composer.add_window(fragments.data() + begin, end - begin, aggregate, areas.data() + begin);
-    composer.close(aggregate);
+    PixelObserver* const observer = observer_at(observers, pixel);
+    if (observer) composer.tell_window(fragments.data() + begin, end - begin, areas.data() + begin, *observer);
+    composer.close(aggregate, observer);
     store(aggregate, pixels[pixel]);
+    if (observer) tell_stored(pixels[pixel], *observer);
   }
   charge<Words, Channel>(composer.work(), counters);
 }
 
 template <std::size_t Words, class Channel>
 void compose_whole(const std::vector<Pair>& whole, const Tile& tile, const TileShader& shader, StageCounters& counters,
-                   std::vector<StoredAggregate<Words, Channel>>& pixels, TexelRequests* texels) {
+                   std::vector<StoredAggregate<Words, Channel>>& pixels, TexelRequests* texels,
+                   const PixelObservers* observers) {
   for (const Pair& pair : whole) {
     const std::size_t index = tile.index(pair.x, pair.y);
     const glm::vec3 color = shader.color(pair.triangle, static_cast<std::uint32_t>(index), 0.5f, 0.5f, 1.0f, texels);
@@ -217,15 +240,21 @@ void compose_whole(const std::vector<Pair>& whole, const Tile& tile, const TileS
     std::memset(pixel.mask, 0xff, sizeof pixel.mask);
     pixel.area = 1.0f;
     for (int c = 0; c < 3; ++c) pixel.color[c] = Channel(color[c]);
+    if (PixelObserver* const observer = observer_at(observers, index)) {
+      observer->takes(pair.triangle, first_words(Words));
+      observer->adds(pair.triangle, 1.0, color);
+      tell_stored(pixel, *observer);
+    }
   }
   charge_whole<Words, Channel>(whole.size(), counters);
 }
 
 #define BEAMPIPE_COMPOSE(words, channel)                                                                \
   template void compose_window(const std::vector<Fragment>&, const PositionSet&, StageCounters&,        \
-                               std::vector<StoredAggregate<words, channel>>&, std::vector<float>&);     \
+                               std::vector<StoredAggregate<words, channel>>&, std::vector<float>&,      \
+                               const PixelObservers*);                                                  \
   template void compose_whole(const std::vector<Pair>&, const Tile&, const TileShader&, StageCounters&, \
-                              std::vector<StoredAggregate<words, channel>>&, TexelRequests*);
+                              std::vector<StoredAggregate<words, channel>>&, TexelRequests*, const PixelObservers*);
 BEAMPIPE_STORED_AGGREGATES(BEAMPIPE_COMPOSE)
 #undef BEAMPIPE_COMPOSE
 

@@ -15,6 +15,7 @@
 #include "stages/data/fragment.h"
 #include "stages/data/pair.h"
 #include "stages/data/pixel_formats.h"
+#include "stages/data/pixel_observer.h"
 #include "stages/data/position_set.h"
 #include "stages/data/tile.h"
 #include "stages/surface/surface_shader.h"
@@ -26,14 +27,16 @@ namespace beampipe {
 // fragments[i] adds to its pixel.
 template <std::size_t Words, class Channel>
 void compose_window(const std::vector<Fragment>& fragments, const PositionSet& positions, StageCounters& counters,
-                    std::vector<StoredAggregate<Words, Channel>>& pixels, std::vector<float>& areas);
+                    std::vector<StoredAggregate<Words, Channel>>& pixels, std::vector<float>& areas,
+                    const PixelObservers* observers = nullptr);
 
 // Composes pixels that a single triangle covers completely and hides. The pixels must be empty. The result is
 // that of compose_window for the triangle's fragment, which is not needed here. Adds the texels that shading reads to
 // `texels`, unless it is null: a request for each pair.
 template <std::size_t Words, class Channel>
 void compose_whole(const std::vector<Pair>& whole, const Tile& tile, const TileShader& shader, StageCounters& counters,
-                   std::vector<StoredAggregate<Words, Channel>>& pixels, TexelRequests* texels = nullptr);
+                   std::vector<StoredAggregate<Words, Channel>>& pixels, TexelRequests* texels = nullptr,
+                   const PixelObservers* observers = nullptr);
 
 // Are all positions of the pixel taken, so that nothing farther can be visible in it?
 template <std::size_t Words, class Channel>

@@ -15,9 +15,16 @@ Aggregate stored_over(Aggregate aggregate) {
   return aggregate;
 }
 
+void finish_aggregates(const PixelObservers* observers) {
+  if (!observers) return;
+  for (const auto& observer : *observers)
+    if (observer) observer->finishes_aggregate();
+}
+
 template <class Stored>
 std::vector<Aggregate> compose_stored(const std::vector<Fragment>& fragments, const ABuffer& buffer,
-                                      const MergePositions& positions, const MergeRules& rules, MergeWork& work) {
+                                      const MergePositions& positions, const MergeRules& rules, MergeWork& work,
+                                      const PixelObservers* observers) {
   const std::size_t pixels = buffer.first.size() - 1;
   // Round r merges the r-th fragment of every pixel that has one. These merges are independent, so each runs in a lane.
   // Pixels with the longest lists come first, so the pixels of a round are the first ones.
@@ -37,9 +44,17 @@ std::vector<Aggregate> compose_stored(const std::vector<Fragment>& fragments, co
       arriving[i] = merge_fragment(fragments[buffer.records[buffer.first[order[i]] + round]]);
       merging[i] = stored[i];
     }
+    const std::vector<Aggregate> before = observers ? merging : std::vector<Aggregate>{};
     merge(arriving.data(), active, positions, rules, merging.data(), steps.data());
-    for (std::size_t i = 0; i < active; ++i) stored[i] = Stored(merging[i]), work.add(steps[i]);
+    for (std::size_t i = 0; i < active; ++i) {
+      stored[i] = Stored(merging[i]), work.add(steps[i]);
+      PixelObserver* const observer = observer_at(observers, order[i]);
+      if (!observer) continue;
+      observer->enters(round > 0, fragments[buffer.records[buffer.first[order[i]] + round]]);
+      if (round > 0) tell_merge(0, before[i], arriving[i], stored[i], positions, rules, *observer);
+    }
   }
+  finish_aggregates(observers);
   std::vector<Aggregate> aggregates(pixels);
   for (std::size_t i = 0; i < pixels; ++i) aggregates[order[i]] = stored[i];
   return aggregates;
@@ -49,18 +64,18 @@ std::vector<Aggregate> compose_stored(const std::vector<Fragment>& fragments, co
 
 std::vector<Aggregate> compose(const std::vector<Fragment>& fragments, const ABuffer& buffer,
                                const MergePositions& positions, const MergeRules& rules, CasavStorage storage,
-                               StageCounters& counters) {
+                               StageCounters& counters, const PixelObservers* observers) {
   MergeWork work;
   const auto composed = [&] {
     switch (storage) {
       case CasavStorage::slides:
-        return compose_stored<SlidesAggregate>(fragments, buffer, positions, rules, work);
+        return compose_stored<SlidesAggregate>(fragments, buffer, positions, rules, work, observers);
       case CasavStorage::text:
-        return compose_stored<TextAggregate>(fragments, buffer, positions, rules, work);
+        return compose_stored<TextAggregate>(fragments, buffer, positions, rules, work, observers);
       case CasavStorage::float32:
         break;
     }
-    return compose_stored<Aggregate>(fragments, buffer, positions, rules, work);
+    return compose_stored<Aggregate>(fragments, buffer, positions, rules, work, observers);
   };
   std::vector<Aggregate> aggregates = composed();
   const std::uint32_t bytes = casav_aggregate_bytes(storage);
@@ -70,12 +85,23 @@ std::vector<Aggregate> compose(const std::vector<Fragment>& fragments, const ABu
 }
 
 std::vector<Aggregate> compose_over(const std::vector<Fragment>& fragments, const ABuffer& buffer,
-                                    StageCounters& counters) {
+                                    StageCounters& counters, const PixelObservers* observers) {
   const std::size_t pixels = buffer.first.size() - 1;
   std::vector<Aggregate> aggregates(pixels, kEmptyAggregate);
-  for (std::size_t pixel = 0; pixel < pixels; ++pixel)
-    for (std::uint32_t i = buffer.first[pixel]; i < buffer.first[pixel + 1]; ++i)
-      aggregates[pixel] = stored_over(over_formula(merge_fragment(fragments[buffer.records[i]]), aggregates[pixel]));
+  for (std::size_t pixel = 0; pixel < pixels; ++pixel) {
+    Aggregate& aggregate = aggregates[pixel];
+    for (std::uint32_t i = buffer.first[pixel]; i < buffer.first[pixel + 1]; ++i) {
+      const MergeFragment fragment = merge_fragment(fragments[buffer.records[i]]);
+      const Aggregate before = aggregate;
+      aggregate = stored_over(over_formula(fragment, before));
+      PixelObserver* const observer = observer_at(observers, pixel);
+      if (!observer) continue;
+      const bool is_first = i == buffer.first[pixel];
+      observer->enters(!is_first, fragments[buffer.records[i]]);
+      if (!is_first) observer->joins(0, {before, fragment.surface, aggregate, 1.0f, 1.0f - before.alpha});
+    }
+  }
+  finish_aggregates(observers);
   charge_merges(buffer, over_cost() * buffer.records.size(), kOverFragmentBytes, kOverBytes, counters);
   return aggregates;
 }

@@ -9,6 +9,7 @@
 #include "stages/cost/counters.h"
 #include "stages/data/casav_aggregate.h"
 #include "stages/data/fragment.h"
+#include "stages/data/pixel_observer.h"
 #include "stages/data/sorted_lists.h"
 
 namespace beampipe {
@@ -17,7 +18,7 @@ namespace beampipe {
 // the tile, kEmptyAggregate where nothing is.
 std::vector<Aggregate> compose(const std::vector<Fragment>& fragments, const ABuffer& buffer,
                                const MergePositions& positions, const MergeRules& rules, CasavStorage storage,
-                               StageCounters& counters);
+                               StageCounters& counters, const PixelObservers* observers = nullptr);
 
 // Sizes in the modelled machine of an aggregate and of a fragment for compose_over, which needs neither masks nor
 // slabs. The aggregate has coverage and colour. The fragment also has the depth that it is sorted by.
@@ -26,6 +27,6 @@ inline constexpr std::uint32_t kOverFragmentBytes = kOverBytes + 4;
 
 // Plain OVER: blends alpha and colour as if every fragment were independent of every other.
 std::vector<Aggregate> compose_over(const std::vector<Fragment>& fragments, const ABuffer& buffer,
-                                    StageCounters& counters);
+                                    StageCounters& counters, const PixelObservers* observers = nullptr);
 
 }  // namespace beampipe

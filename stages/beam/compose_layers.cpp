@@ -23,8 +23,9 @@ Aggregate merged(const Aggregate& nearer, const MergeFragment& farther, const Me
 
 }  // namespace
 
-AggregateLayers::AggregateLayers(std::size_t pixels, std::size_t layers, CasavStorage storage)
-    : layers_(layers), storage_(storage), aggregates_(pixels * layers, kEmptyAggregate) {}
+AggregateLayers::AggregateLayers(std::size_t pixels, std::size_t layers, CasavStorage storage,
+                                 const PixelObservers* observers)
+    : layers_(layers), storage_(storage), observers_(observers), aggregates_(pixels * layers, kEmptyAggregate) {}
 
 Aggregate AggregateLayers::stored(const Aggregate& aggregate) const {
   switch (storage_) {
@@ -46,9 +47,13 @@ void AggregateLayers::add(const std::vector<Fragment>& fragments, const MergePos
     Aggregate* const layers = aggregates_.data() + fragment.pixel * layers_;
     const MergeFragment incoming = merge_fragment(fragment);
     ++work.fragments;
+    PixelObserver* const observer = observer_at(observers_, fragment.pixel);
     if (layers_ == 1) {
-      merges[fragment.pixel] += !is_empty(layers[0]);
-      layers[0] = stored(merged(layers[0], incoming, positions, rules, work.merging));
+      const Aggregate before = layers[0];
+      merges[fragment.pixel] += !is_empty(before);
+      layers[0] = stored(merged(before, incoming, positions, rules, work.merging));
+      if (observer) observer->overwrites(!is_empty(before)), observer->enters(!is_empty(before), fragment);
+      if (observer && !is_empty(before)) tell_merge(0, before, incoming, layers[0], positions, rules, *observer);
       continue;
     }
     std::size_t count = 0, place = 0;
@@ -61,12 +66,16 @@ void AggregateLayers::add(const std::vector<Fragment>& fragments, const MergePos
                        all.begin() + static_cast<std::ptrdiff_t>(count) + 1);
     all[place] = incoming;
     ++count;
+    if (observer) observer->overwrites(count - 1), observer->enters(place, fragment);
     if (count > layers_) {
       std::size_t closest = 0;
       float least = depth_between(all[0].surface, all[1].surface);
       for (std::size_t k = 1; k + 1 < count; ++k)
         if (const float gap = depth_between(all[k].surface, all[k + 1].surface); gap < least) least = gap, closest = k;
-      all[closest] = {merged(all[closest].surface, all[closest + 1], positions, rules, work.merging), 0u};
+      const Aggregate together = merged(all[closest].surface, all[closest + 1], positions, rules, work.merging);
+      if (observer)
+        tell_merge(closest, all[closest].surface, all[closest + 1], stored(together), positions, rules, *observer);
+      all[closest] = {together, 0u};
       all.erase(all.begin() + static_cast<std::ptrdiff_t>(closest) + 1);
       all.emplace_back();
       --count;
@@ -83,8 +92,14 @@ std::vector<Aggregate> AggregateLayers::finish(const MergePositions& positions, 
   std::vector<Aggregate> result;
   for (std::size_t first = 0; first < aggregates_.size(); first += layers_) {
     Aggregate pixel = aggregates_[first];
-    for (std::size_t k = 1; k < layers_ && !is_empty(aggregates_[first + k]); ++k)
-      pixel = merged(pixel, {aggregates_[first + k], 0u}, positions, rules, work.merging);
+    PixelObserver* const observer = observer_at(observers_, result.size());
+    if (observer) observer->arrivals_end();
+    for (std::size_t k = 1; k < layers_ && !is_empty(aggregates_[first + k]); ++k) {
+      const Aggregate nearer = pixel;
+      pixel = merged(nearer, {aggregates_[first + k], 0u}, positions, rules, work.merging);
+      if (observer) tell_merge(0, nearer, {aggregates_[first + k], 0u}, pixel, positions, rules, *observer);
+    }
+    if (observer) observer->finishes_aggregate();
     work.finished += !is_empty(pixel);
     result.push_back(pixel);
   }

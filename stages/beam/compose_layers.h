@@ -14,13 +14,16 @@
 #include "stages/cost/counters.h"
 #include "stages/data/casav_aggregate.h"
 #include "stages/data/fragment.h"
+#include "stages/data/pixel_observer.h"
 
 namespace beampipe {
 
 // The aggregates of the pixels of a tile as they are stored, `layers` for each pixel, empty ones last.
 class AggregateLayers {
  public:
-  AggregateLayers(std::size_t pixels, std::size_t layers, CasavStorage storage);
+  // `observers` may be null.
+  AggregateLayers(std::size_t pixels, std::size_t layers, CasavStorage storage,
+                  const PixelObservers* observers = nullptr);
 
   // Adds shaded fragments. Counts as items out the fragments. Adds one to merges[pixel] for each two aggregates that
   // become one.
@@ -38,6 +41,7 @@ class AggregateLayers {
 
   std::size_t layers_;
   CasavStorage storage_;
+  const PixelObservers* observers_;
   std::vector<Aggregate> aggregates_;  // rounded as they are stored
 };
 

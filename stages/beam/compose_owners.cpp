@@ -125,9 +125,11 @@ class OwnerComposer {
     if (closed.is_hidden(pixel_, fragment.z_min)) return Outcome::hidden;
     Pixel& pixel = pixels.pixels[pixel_];
     depths_ = &pixels.depths[pixel_];
+    observer_ = observer_at(bin_.observers, pixel_);
     const Mask mask(fragment.mask);
     if (mask.none()) {
-      add_speck(fragment, number, pixel);
+      if (observer_) observer_->arrives(fragment, {});
+      add_speck(fragment, pixel);
       return Outcome::composed;
     }
     ++work.masks;
@@ -135,6 +137,7 @@ class OwnerComposer {
     const bool meets_empty = met.found >> Pixel::kEmpty & 1;
     const std::uint64_t contested = met.found >> Pixel::kFirstSlot & kAllSlots;  // bit k: slot k
     const Mask claimed = met.positions[Pixel::kEmpty] | positions_won(fragment, met, contested, pixel);
+    if (observer_) observer_->arrives(fragment, claimed.wide());
     if (claimed.none()) return Outcome::composed;
     ++work.claims;
     // An owner that has no position left has lost its slot.
@@ -184,11 +187,13 @@ class OwnerComposer {
   PixelColor finish(std::uint32_t index, Pixels& pixels) {
     ++work.finished;
     pixel_ = index;
+    observer_ = observer_at(bin_.observers, pixel_);
+    if (observer_) observer_->arrivals_end();
     Pixel& pixel = pixels.pixels[index];
     if (const OwnerSlot* slot = only_owner(pixel)) {
       const auto k = static_cast<std::size_t>(slot - pixel.slots);
       const glm::vec3 color = final_color(*slot, k, Mask::filled(true));
-      if (bin_.weights) bin_.weights->finish_whole(pixel_, slot->triangle(), color);
+      if (observer_) observer_->adds(bin_.list[slot->triangle()], 1.0, color);
       return {1.0f, color};
     }
     std::size_t count = 0;
@@ -417,9 +422,10 @@ class OwnerComposer {
     const float other_part = counted ? other.visible : std::max(other.visible + error_of_other, kLeastArea);
     const glm::vec3 color_of_other = color_of(other.slot, other.owned), color_of_one = color_of(one.slot, one.owned);
     const glm::vec3 color = (part * color_of_one + other_part * color_of_other) * (1 / (part + other_part));
-    if (bin_.weights)
-      bin_.weights->merge(pixel_, {one.slot, one.index, one.owned.wide(), color_of_one},
-                          {other.slot, other.index, other.owned.wide(), color_of_other}, part / (part + other_part));
+    if (observer_) {
+      const double share = part / (part + other_part);
+      observer_->merges({one.owned.wide(), color_of_one, share}, {other.owned.wide(), color_of_other, 1 - share});
+    }
     put(one.owned | other.owned, Pixel::owned_by(one.index), pixel);
     const std::uint32_t contents = one.slot.content() + 3 * other.slot.content();
     depths_->set(one.index, larger.plane, pair_bounds(larger.plane, {kInFront, kNoDepth}).farthest);
@@ -491,8 +497,7 @@ class OwnerComposer {
           visible_area(exact, owner->covered(), owner->visible, kPositions, Taken<float>{pixel.area, final_positions});
       const glm::vec3 color = final_color(owner->slot, owner->index, owner->owned);
       const float counted = owner->visible / kPositions;
-      if (bin_.weights)
-        bin_.weights->settle(pixel_, {owner->slot, owner->index, owner->owned.wide(), color}, area, counted);
+      if (observer_) observer_->settles(owner->owned.wide(), color, area, counted);
       final_positions += owner->visible;
       const float threshold = rounding_threshold(owner->slot.content());
       pixel.area.add(area, threshold);
@@ -536,7 +541,7 @@ class OwnerComposer {
   // Each of the three positions nearest to a speck votes for it, if it is free or its owner is not nearer. Of specks
   // that face towards the viewer and specks that face away, those with the smaller area are the hidden sides of thin
   // bodies.
-  void add_speck(const Fragment& fragment, std::uint32_t number, Pixel& pixel) {
+  void add_speck(const Fragment& fragment, Pixel& pixel) {
     ++work.specks;
     float votes = 0;
     for (const std::uint8_t position : bin_.positions.nearest_to(fragment.centroid_u, fragment.centroid_v)) {
@@ -554,7 +559,7 @@ class OwnerComposer {
     if (area <= 0) return;
     ++work.specks_added;
     const glm::vec3 color = shade(fragment.triangle, fragment.centroid_u, fragment.centroid_v);
-    if (bin_.weights) bin_.weights->add_speck(pixel_, number, area, color);
+    if (observer_) observer_->adds_speck(fragment.triangle, area, color);
     pixel.area.add(area, threshold);
     pixel.colors.add({area * color[0], area * color[1], area * color[2], 0, 0, 0}, threshold);
   }
@@ -573,7 +578,7 @@ class OwnerComposer {
     Estimate<float> analytic{pixel.area, {}}, counted{count / kPositions, {}};
     for (std::size_t c = 0; c < 3; ++c) analytic.color[c] = pixel.colors[c], counted.color[c] = pixel.colors[c + 3];
     const Estimate<float> result = limited_estimate(analytic, counted, kPositions);
-    if (bin_.weights) bin_.weights->finish(pixel_, color_of(analytic), color_of(counted), color_of(result));
+    if (observer_) observer_->finishes(color_of(analytic), color_of(counted), color_of(result));
     return color_of(result);
   }
 
@@ -587,6 +592,7 @@ class OwnerComposer {
   OwnersResult& result_;
   std::uint32_t pixel_ = 0;               // index within the tile
   OwnerDepths<Slots>* depths_ = nullptr;  // of this pixel
+  PixelObserver* observer_ = nullptr;     // of this pixel; null: nobody looks at it
   std::array<Owner, Slots + 1> owners_;   // of one pixel, and the fragment that needs a slot
   std::array<Place, Slots> order_;
   // What shade_all() has shaded: the colours, and where that of each pixel's slots is.
@@ -596,10 +602,12 @@ class OwnerComposer {
 };
 
 template <std::size_t Words, std::size_t Slots>
-void compose(const OwnersBin& bin, const std::vector<Fragment>& fragments, std::size_t first, StageCounters& counters,
-             OpenPixels<Words, Slots>& pixels, ClosedDepth& closed, const OwnersMaps& maps, OwnersResult& result) {
-  OwnerComposer<Words, Slots> composer(bin, result);
-  auto number = static_cast<std::uint32_t>(first);
+void compose(const OwnersBin& bin, const OwnersBatch& batch, StageCounters& counters,
+             const OwnersTile<Words, Slots>& tile) {
+  const std::vector<Fragment>& fragments = batch.fragments;
+  OpenPixels<Words, Slots>& pixels = tile.pixels;
+  OwnerComposer<Words, Slots> composer(bin, tile.result);
+  auto number = static_cast<std::uint32_t>(batch.first);
   constexpr std::size_t kAhead = 4;  // fragments
   for (std::size_t i = 0; i < fragments.size(); ++i) {
     if (i + kAhead < fragments.size()) {
@@ -609,9 +617,9 @@ void compose(const OwnersBin& bin, const std::vector<Fragment>& fragments, std::
     const Fragment& fragment = fragments[i];
     while (bin.list[number] != fragment.triangle) ++number;
     using Outcome = typename OwnerComposer<Words, Slots>::Outcome;
-    const Outcome outcome = composer.add(fragment, number, pixels, closed);
-    maps.fragments[fragment.pixel] += outcome != Outcome::hidden;
-    maps.merges[fragment.pixel] += outcome == Outcome::merged;
+    const Outcome outcome = composer.add(fragment, number, pixels, tile.closed);
+    tile.maps.fragments[fragment.pixel] += outcome != Outcome::hidden;
+    tile.maps.merges[fragment.pixel] += outcome == Outcome::merged;
   }
   charge<Words, Slots>(composer.work, counters);
 }
@@ -630,15 +638,14 @@ std::vector<PixelColor> finish(const OwnersBin& bin, StageCounters& counters, Op
 }  // namespace
 
 // Highway's tables hold functions, not templates.
-#define BEAMPIPE_KERNELS(words, slots)                                                                            \
-  void compose_##words##_##slots(const OwnersBin& bin, const std::vector<Fragment>& fragments, std::size_t first, \
-                                 StageCounters& counters, OpenPixels<words, slots>& pixels, ClosedDepth& closed,  \
-                                 const OwnersMaps& maps, OwnersResult& result) {                                  \
-    compose<words, slots>(bin, fragments, first, counters, pixels, closed, maps, result);                         \
-  }                                                                                                               \
-  std::vector<PixelColor> finish_##words##_##slots(const OwnersBin& bin, StageCounters& counters,                 \
-                                                   OpenPixels<words, slots>& pixels, OwnersResult& result) {      \
-    return finish<words, slots>(bin, counters, pixels, result);                                                   \
+#define BEAMPIPE_KERNELS(words, slots)                                                                       \
+  void compose_##words##_##slots(const OwnersBin& bin, const OwnersBatch& batch, StageCounters& counters,    \
+                                 const OwnersTile<words, slots>& tile) {                                     \
+    compose<words, slots>(bin, batch, counters, tile);                                                       \
+  }                                                                                                          \
+  std::vector<PixelColor> finish_##words##_##slots(const OwnersBin& bin, StageCounters& counters,            \
+                                                   OpenPixels<words, slots>& pixels, OwnersResult& result) { \
+    return finish<words, slots>(bin, counters, pixels, result);                                              \
   }
 BEAMPIPE_OPEN_PIXELS(BEAMPIPE_KERNELS)
 #undef BEAMPIPE_KERNELS
@@ -649,20 +656,18 @@ HWY_AFTER_NAMESPACE();
 
 #if HWY_ONCE
 namespace beampipe {
-#define BEAMPIPE_COMPOSE(words, slots)                                                                 \
-  HWY_EXPORT(compose_##words##_##slots);                                                               \
-  template <>                                                                                          \
-  void compose_owners(const OwnersBin& bin, const std::vector<Fragment>& fragments, std::size_t first, \
-                      StageCounters& counters, OpenPixels<words, slots>& pixels, ClosedDepth& closed,  \
-                      const OwnersMaps& maps, OwnersResult& result) {                                  \
-    HWY_DYNAMIC_DISPATCH(compose_##words##_##slots)                                                    \
-    (bin, fragments, first, counters, pixels, closed, maps, result);                                   \
-  }                                                                                                    \
-  HWY_EXPORT(finish_##words##_##slots);                                                                \
-  template <>                                                                                          \
-  std::vector<PixelColor> finish_owners(const OwnersBin& bin, StageCounters& counters,                 \
-                                        OpenPixels<words, slots>& pixels, OwnersResult& result) {      \
-    return HWY_DYNAMIC_DISPATCH(finish_##words##_##slots)(bin, counters, pixels, result);              \
+#define BEAMPIPE_COMPOSE(words, slots)                                                            \
+  HWY_EXPORT(compose_##words##_##slots);                                                          \
+  template <>                                                                                     \
+  void compose_owners(const OwnersBin& bin, const OwnersBatch& batch, StageCounters& counters,    \
+                      const OwnersTile<words, slots>& tile) {                                     \
+    HWY_DYNAMIC_DISPATCH(compose_##words##_##slots)(bin, batch, counters, tile);                  \
+  }                                                                                               \
+  HWY_EXPORT(finish_##words##_##slots);                                                           \
+  template <>                                                                                     \
+  std::vector<PixelColor> finish_owners(const OwnersBin& bin, StageCounters& counters,            \
+                                        OpenPixels<words, slots>& pixels, OwnersResult& result) { \
+    return HWY_DYNAMIC_DISPATCH(finish_##words##_##slots)(bin, counters, pixels, result);         \
   }
 BEAMPIPE_OPEN_PIXELS(BEAMPIPE_COMPOSE)
 #undef BEAMPIPE_COMPOSE

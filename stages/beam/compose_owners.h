@@ -21,8 +21,8 @@
 #include "stages/data/closed_depth.h"
 #include "stages/data/fragment.h"
 #include "stages/data/open_pixel.h"
-#include "stages/data/owner_weights.h"
 #include "stages/data/pixel_formats.h"
+#include "stages/data/pixel_observer.h"
 #include "stages/data/position_set.h"
 #include "stages/data/setup_triangle.h"
 #include "stages/data/shaded_triangle.h"
@@ -43,9 +43,9 @@ struct OwnersBin {
   const Tile& tile;
   const PositionSet& positions;
   TileShader shader;
-  bool lists_fetches;               // fill OwnersResult::fetched
-  OwnerWeights* weights = nullptr;  // where the triangles' weights are recorded; null: nowhere
+  bool lists_fetches;  // fill OwnersResult::fetched
   OwnerPlace shade_at = OwnerPlace::covered;
+  const PixelObservers* observers = nullptr;  // who looks at the pixels; null: nobody
 };
 
 // What was done, beside what is charged.
@@ -61,12 +61,25 @@ struct OwnersMaps {
   std::vector<float>& merges;     // how often two owners became one
 };
 
-// `fragments` follow each other in the order of the list; the first one's triangle is at or after list[first]. Closes
-// pixels in `closed` whose positions all have owners. Counts as items out the fragments that take a position.
+// Fragments in the order of the list. The triangle of the first one is at or after list[first].
+struct OwnersBatch {
+  const std::vector<Fragment>& fragments;
+  std::size_t first;
+};
+
+// What fragments are composed into.
 template <std::size_t Words, std::size_t Slots>
-void compose_owners(const OwnersBin& bin, const std::vector<Fragment>& fragments, std::size_t first,
-                    StageCounters& counters, OpenPixels<Words, Slots>& pixels, ClosedDepth& closed,
-                    const OwnersMaps& maps, OwnersResult& result);
+struct OwnersTile {
+  OpenPixels<Words, Slots>& pixels;
+  ClosedDepth& closed;  // pixels whose positions all have owners are closed here
+  OwnersMaps maps;
+  OwnersResult& result;
+};
+
+// Counts as items out the fragments that take a position.
+template <std::size_t Words, std::size_t Slots>
+void compose_owners(const OwnersBin& bin, const OwnersBatch& batch, StageCounters& counters,
+                    const OwnersTile<Words, Slots>& tile);
 
 // After the last fragment: all owners are final. Returns the pixels' colours.
 template <std::size_t Words, std::size_t Slots>

@@ -42,7 +42,8 @@ class PixelLayers {
  public:
   explicit PixelLayers(const PositionSet& positions) : patterns_(positions.patterns) {}
 
-  void add(const Fragment& fragment, Z3Pixel<Words, Layers>& pixel) {
+  // `observer` may be null.
+  void add(const Fragment& fragment, Z3Pixel<Words, Layers>& pixel, PixelObserver* observer) {
     std::array<Layer, Layers + 1> layers;
     std::size_t used = 0;
     auto owners = pixel.owners;  // a copy, because the words of a packed pixel may not be aligned
@@ -59,10 +60,11 @@ class PixelLayers {
       }
       if (!layer.positions.none()) layers[used++] = layer;
     }
+    if (observer) observer->arrives(fragment, arriving.positions);
     if (arriving.positions.none()) return;
     ++work.taken;
     layers[used++] = arriving;
-    if (used > Layers) merge_two(layers), --used;
+    if (used > Layers) merge_two(layers, observer), --used;
     for (std::uint32_t k = 0; k < used; ++k) {
       pixel.layers[k] = packed(layers[k]);
       owners.put(layers[k].positions, k + 1);
@@ -73,7 +75,7 @@ class PixelLayers {
   Z3Work work;
 
  private:
-  void merge_two(std::array<Layer, Layers + 1>& layers) {
+  void merge_two(std::array<Layer, Layers + 1>& layers, PixelObserver* observer) {
     ++work.merges;
     std::size_t first = 0, second = 1;
     float least = std::numeric_limits<float>::infinity();
@@ -83,7 +85,12 @@ class PixelLayers {
           least = distance;
           first = i, second = j;
         }
-    layers[first] = merged(layers[first], layers[second]);
+    const Layer &one = layers[first], &other = layers[second];
+    if (observer) {
+      const double share = double{one.count()} / (one.count() + other.count());
+      observer->merges({one.positions, one.color, share}, {other.positions, other.color, 1 - share});
+    }
+    layers[first] = merged(one, other);
     std::swap(layers[second], layers.back());
   }
 
@@ -94,11 +101,12 @@ class PixelLayers {
 
 template <std::size_t Words, std::size_t Layers>
 void compose_z3(const std::vector<Fragment>& fragments, const PositionSet& positions, StageCounters& counters,
-                std::vector<Z3Pixel<Words, Layers>>& pixels, std::vector<float>& merges) {
+                std::vector<Z3Pixel<Words, Layers>>& pixels, std::vector<float>& merges,
+                const PixelObservers* observers) {
   PixelLayers<Words, Layers> layers(positions);
   for (const Fragment& fragment : fragments) {
     const std::uint64_t before = layers.work.merges;
-    layers.add(fragment, pixels[fragment.pixel]);
+    layers.add(fragment, pixels[fragment.pixel], observer_at(observers, fragment.pixel));
     merges[fragment.pixel] += static_cast<float>(layers.work.merges - before);
   }
   layers.work.fragments = fragments.size();
@@ -106,26 +114,30 @@ void compose_z3(const std::vector<Fragment>& fragments, const PositionSet& posit
 }
 
 template <std::size_t Words, std::size_t Layers>
-std::vector<PixelColor> z3_colors(const std::vector<Z3Pixel<Words, Layers>>& pixels) {
+std::vector<PixelColor> z3_colors(const std::vector<Z3Pixel<Words, Layers>>& pixels, const PixelObservers* observers) {
   std::vector<PixelColor> colors;
   for (const Z3Pixel<Words, Layers>& pixel : pixels) {
     PixelColor sum{0, glm::vec3(0.0f)};
     const auto owners = pixel.owners;
+    PixelObserver* const observer = observer_at(observers, colors.size());
+    if (observer) observer->arrivals_end();
     for (std::uint32_t k = 0; k < Layers; ++k) {
       const Layer layer = unpacked(pixel.layers[k], owners.positions_in(k + 1));
       const float share = layer.count() / (32 * Words);
       sum.alpha += share;
       sum.color += share * layer.color;
+      if (observer && share > 0) observer->settles(layer.positions, layer.color, share, share);
     }
+    if (observer) observer->finishes();
     colors.push_back(sum);
   }
   return colors;
 }
 
-#define BEAMPIPE_Z3(words, layers)                                                           \
-  template void compose_z3(const std::vector<Fragment>&, const PositionSet&, StageCounters&, \
-                           std::vector<Z3Pixel<words, layers>>&, std::vector<float>&);       \
-  template std::vector<PixelColor> z3_colors(const std::vector<Z3Pixel<words, layers>>&);
+#define BEAMPIPE_Z3(words, layers)                                                                            \
+  template void compose_z3(const std::vector<Fragment>&, const PositionSet&, StageCounters&,                  \
+                           std::vector<Z3Pixel<words, layers>>&, std::vector<float>&, const PixelObservers*); \
+  template std::vector<PixelColor> z3_colors(const std::vector<Z3Pixel<words, layers>>&, const PixelObservers*);
 BEAMPIPE_Z3_PIXELS(BEAMPIPE_Z3)
 #undef BEAMPIPE_Z3
 

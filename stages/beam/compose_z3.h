@@ -10,6 +10,7 @@
 #include "stages/cost/counters.h"
 #include "stages/data/fragment.h"
 #include "stages/data/pixel_formats.h"
+#include "stages/data/pixel_observer.h"
 #include "stages/data/position_set.h"
 #include "stages/data/z3_pixel.h"
 
@@ -20,9 +21,11 @@ namespace beampipe {
 // position.
 template <std::size_t Words, std::size_t Layers>
 void compose_z3(const std::vector<Fragment>& fragments, const PositionSet& positions, StageCounters& counters,
-                std::vector<Z3Pixel<Words, Layers>>& pixels, std::vector<float>& merges);
+                std::vector<Z3Pixel<Words, Layers>>& pixels, std::vector<float>& merges,
+                const PixelObservers* observers = nullptr);
 
 template <std::size_t Words, std::size_t Layers>
-std::vector<PixelColor> z3_colors(const std::vector<Z3Pixel<Words, Layers>>& pixels);
+std::vector<PixelColor> z3_colors(const std::vector<Z3Pixel<Words, Layers>>& pixels,
+                                  const PixelObservers* observers = nullptr);
 
 }  // namespace beampipe

@@ -5,6 +5,7 @@
 #include <glm/glm.hpp>
 #include <vector>
 
+#include "stages/data/pixel_observer.h"
 #include "stages/data/tile.h"
 
 namespace beampipe {
@@ -31,6 +32,7 @@ struct Accumulator {
   std::vector<glm::vec4> color;   // one per pixel of the tile; alpha: the sum of the shares so far
   std::vector<float> background;  // the background's share; the image's A needs it, but it is not stored in hardware
   std::vector<std::uint32_t> taken;  // stencil: the samples at which a fragment has passed since the last clear
+  const PixelObservers* observers = nullptr;  // who looks at the pixels; null: nobody
 
   Accumulator(const Tile& tile, int samples, AccumulatorFormat accumulator_format, DoubleCounting counting)
       : format(accumulator_format),

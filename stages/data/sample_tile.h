@@ -5,6 +5,7 @@
 #include <glm/glm.hpp>
 #include <vector>
 
+#include "stages/data/pixel_observer.h"
 #include "stages/data/sample_fragment.h"
 
 namespace beampipe {
@@ -26,6 +27,9 @@ struct SampleTile {
   std::vector<glm::vec4> over;
   std::size_t samples_per_pixel = 0;
   std::uint32_t color_bytes = kSampleColorBytes;
+  // Who looks at the pixels; null: nobody. There the first sample has this number.
+  const PixelObservers* observers = nullptr;
+  std::size_t first_observed = 0;
 
   SampleTile(const Tile& tile, const Sampling& sampling, std::uint32_t color_bytes_per_sample = kSampleColorBytes);
 };

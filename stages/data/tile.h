@@ -9,6 +9,12 @@
 
 namespace beampipe {
 
+// A pixel of the frame.
+struct PixelAddress {
+  std::uint32_t x, y;
+  bool operator==(const PixelAddress&) const = default;
+};
+
 struct Tile {
   std::int32_t x0 = 0, y0 = 0, x1 = 0, y1 = 0;  // [x0, x1) x [y0, y1), inside the frame
 
@@ -17,6 +23,13 @@ struct Tile {
   // The number of a pixel within the tile, row by row. (x, y): frame coordinates.
   std::size_t index(std::int32_t x, std::int32_t y) const {
     return static_cast<std::size_t>(y - y0) * static_cast<std::size_t>(width()) + static_cast<std::size_t>(x - x0);
+  }
+  bool holds(PixelAddress pixel) const {
+    const auto x = static_cast<std::int32_t>(pixel.x), y = static_cast<std::int32_t>(pixel.y);
+    return x >= x0 && x < x1 && y >= y0 && y < y1;
+  }
+  std::size_t index(PixelAddress pixel) const {
+    return index(static_cast<std::int32_t>(pixel.x), static_cast<std::int32_t>(pixel.y));
   }
   std::size_t pixels() const { return static_cast<std::size_t>(width()) * static_cast<std::size_t>(height()); }
 };

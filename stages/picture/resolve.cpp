@@ -14,12 +14,14 @@ std::vector<PixelColor> pixel_colors(const std::vector<Aggregate>& aggregates) {
 }
 
 std::vector<glm::vec4> resolve(const std::vector<PixelColor>& aggregates, const glm::vec3& background,
-                               std::uint32_t stored_bytes, StageCounters& counters) {
+                               std::uint32_t stored_bytes, StageCounters& counters, const PixelObservers* observers) {
   std::vector<glm::vec4> image;
   image.reserve(aggregates.size());
   for (const PixelColor& aggregate : aggregates) {
     glm::vec4& pixel = image.emplace_back(0.0f, 0.0f, 0.0f, aggregate.alpha);
     over_background(&aggregate.color.x, aggregate.alpha, &background.x, &pixel.x);
+    if (PixelObserver* const observer = observer_at(observers, image.size() - 1))
+      observer->adds(kNobody, 1.0 - double{aggregate.alpha}, background);
   }
   charge_resolve(image.size(), stored_bytes, image.size(), over_background_cost(), counters);
   return image;
@@ -72,15 +74,18 @@ std::vector<glm::vec4> resolve(const SampleTile& surface, std::size_t pixels, co
   }
   auto next = varying.begin();
   const glm::dvec3 clear = background;
+  const double share = 1.0 / static_cast<double>(samples);
   std::vector<glm::vec4> image;
   image.reserve(pixels);
   for (std::size_t pixel = 0; pixel < pixels; ++pixel) {
     const glm::vec4* const over = surface.over.empty() ? nullptr : &surface.over[pixel * samples];
+    PixelObserver* const observer = observer_at(surface.observers, pixel);
     // Runs of equal samples are added at once. The sum is that of a box filter in double precision either way.
     glm::dvec3 sum(0.0);
     double covered = 0;
     for_each_run(surface, pixel, samples_per_cell, shader, [&](const SampleRun& run) {
       const auto count = static_cast<double>(run.end - run.begin);
+      double weight = share;                                             // of a sample
       const double seen = over ? 1.0 - double{over[run.begin].a} : 1.0;  // of the opaque surface
       const glm::dvec3 opaque = run.triangle == kNoTriangle ? clear
                                 : run.varies                ? glm::dvec3(*next++)
@@ -88,20 +93,22 @@ std::vector<glm::vec4> resolve(const SampleTile& surface, std::size_t pixels, co
       if (options.space == ResolveSpace::reinhard) {
         glm::dvec3 color = seen * opaque;
         if (over) color += glm::dvec3(over[run.begin]);
+        weight /= 1.0 + luminance(&color.x);
         compress(&color.x);
         sum += count * color;
       } else {
         if (over) sum += count * glm::dvec3(over[run.begin]);
         sum += count * seen * opaque;
       }
+      if (observer) observer->adds_samples(run.triangle, run.begin, run.end, weight, opaque);
       if (run.triangle != kNoTriangle) {
         covered += count;
       } else if (over) {
         covered += count * double{over[run.begin].a};
       }
     });
-    const double share = 1.0 / static_cast<double>(samples);
     glm::dvec3 mean = sum * share;
+    if (observer && options.space == ResolveSpace::reinhard) observer->scales(1.0 / (1.0 - luminance(&mean.x)));
     if (options.space == ResolveSpace::reinhard) expand(&mean.x);
     image.emplace_back(glm::vec3(mean), static_cast<float>(covered * share));
   }

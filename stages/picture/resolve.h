@@ -18,7 +18,8 @@ std::vector<PixelColor> pixel_colors(const std::vector<Aggregate>& aggregates);
 // Blends the aggregates over the background. `stored_bytes`: size of a stored aggregate. Returns RGBA per pixel of the
 // tile.
 std::vector<glm::vec4> resolve(const std::vector<PixelColor>& aggregates, const glm::vec3& background,
-                               std::uint32_t stored_bytes, StageCounters& counters);
+                               std::uint32_t stored_bytes, StageCounters& counters,
+                               const PixelObservers* observers = nullptr);
 
 // Where the samples of a triangle in a cell were shaded. `cell`: as in SampleAccess.
 struct CellPlace {

@@ -22,13 +22,19 @@ float round_to(AccumulatorFormat format, float value) {
   }
 }
 
-// Adds a colour for the samples in `mask`.
-void add(Accumulator& accumulator, std::size_t pixel, const glm::vec3& rgb, std::uint32_t mask) {
+// Adds a triangle's colour for the samples in `mask`.
+void add(Accumulator& accumulator, std::size_t pixel, std::uint32_t triangle, const glm::vec3& rgb,
+         std::uint32_t mask) {
   const float color[4] = {rgb.r, rgb.g, rgb.b, 1.0f};
   glm::vec4& sum = accumulator.color[pixel];
+  const float before = sum.a;
   add_weighted(color, bit_count(mask) * accumulator.sample_share,
                accumulator.double_counting == DoubleCounting::saturate, accumulator.limit, &sum.x);
   for (int c = 0; c < 4; ++c) sum[c] = round_to(accumulator.format, sum[c]);
+  if (PixelObserver* const observer = observer_at(accumulator.observers, pixel)) {
+    const bool saturates = accumulator.double_counting == DoubleCounting::saturate;
+    observer->adds(triangle, saturates ? sum.a - before : bit_count(mask) * accumulator.sample_share, rgb);
+  }
 }
 
 std::size_t pixel_of(const SampleFragment& fragment, const Tile& tile) { return tile.index(fragment.x, fragment.y); }
@@ -44,7 +50,7 @@ void accumulate_background(const SampleTile& depth, const glm::vec3& background,
     for (std::size_t s = 0; s < samples; ++s)
       clear |= std::uint32_t{depth.depth[pixel * samples + s] == kFarDepth} << s;
     if (clear == 0) continue;
-    add(accumulator, pixel, background, clear);
+    add(accumulator, pixel, kNobody, background, clear);
     accumulator.background[pixel] += bit_count(clear) * accumulator.sample_share;
     ++pixels;
   }
@@ -72,7 +78,7 @@ void accumulate(const std::vector<SampleFragment>& fragments, const TileShader& 
     const std::size_t pixel = pixel_of(fragments[i], tile);
     const glm::vec2 place = places.empty() ? glm::vec2(0.5f) : places[i];
     const glm::vec3 color = shader.color(fragments[i].triangle, static_cast<std::uint32_t>(pixel), place.x, place.y);
-    add(accumulator, pixel, color, fragments[i].mask);
+    add(accumulator, pixel, fragments[i].triangle, color, fragments[i].mask);
   }
   charge_accumulate(fragments.size(), accumulator, counters);
 }
@@ -84,6 +90,8 @@ std::vector<glm::vec4> resolve(const Accumulator& accumulator, const glm::vec3& 
     const glm::vec4& sum = accumulator.color[i];
     glm::vec4& pixel = image.emplace_back(0.0f, 0.0f, 0.0f, std::clamp(sum.a - accumulator.background[i], 0.0f, 1.0f));
     sum_over_background(&sum.x, &background.x, &pixel.x);
+    PixelObserver* const observer = observer_at(accumulator.observers, i);
+    if (observer && sum.a < 1) observer->adds(kNobody, 1.0f - sum.a, background);
   }
   charge_accumulator_resolve(image.size(), accumulator, counters);
   return image;

@@ -25,6 +25,8 @@ void blend(const SampledTriangles& in, const TileShader& shader, const PlacedFra
                                                    fragments.places[i].x, fragments.places[i].y, grid.shading_width());
     const glm::vec4 source(glm::vec3(color) * color.a, color.a);
     SampleAccess access{cell, fragment.triangle, fragment.mask, 0};
+    PixelObserver* const observer = observer_at(surface.observers, pixel);
+    const std::size_t first = surface.first_observed + cell * samples - pixel * surface.samples_per_pixel;
     for (std::size_t s = 0; s < samples; ++s) {
       if (!(fragment.mask >> s & 1)) continue;
       ++counts.tested;
@@ -35,9 +37,11 @@ void blend(const SampledTriangles& in, const TileShader& shader, const PlacedFra
         continue;
       access.passed |= 1u << s;
       ++counts.passed;
+      if (observer) observer->blends(fragment.triangle, first + s, color.a, glm::vec3(color));
       glm::vec4& over = surface.over[at];
       for (int c = 0; c < 4; ++c) over[c] = blended(source[c], over[c], source.a);
     }
+    if (observer) observer->contends(fragment.triangle, first, access.tested & ~access.passed, 0);
     accesses.push_back(access);
   }
   charge_blend(fragments.list.size(), counts, surface.color_bytes, sampling.pattern, counters);

@@ -51,6 +51,15 @@ SampleCounts test_blocks(const SampledTriangles& in, const std::vector<SampleFra
   return samples;
 }
 
+void tell(const std::vector<SampleAccess>& accesses, const Sampling& sampling, const SampleTile& surface) {
+  const auto cells = static_cast<std::size_t>(sampling.grid.cells_per_pixel());
+  const auto samples = static_cast<std::size_t>(sampling.pattern.count);
+  for (const SampleAccess& access : accesses)
+    if (PixelObserver* const observer = observer_at(surface.observers, access.cell / cells))
+      observer->contends(access.triangle, surface.first_observed + access.cell % cells * samples, access.tested,
+                         access.passed);
+}
+
 }  // namespace
 
 void depth_test(const SampledTriangles& in, const std::vector<SampleFragment>& fragments, StageCounters& counters,
@@ -61,6 +70,7 @@ void depth_test(const SampledTriangles& in, const std::vector<SampleFragment>& f
         return depth_test(items, count, pattern, {surface.depth.data(), surface.triangle.data()}, masks);
       });
   charge_depth_test(fragments.size(), samples, kSampleDepthBytes + surface.color_bytes, pattern, counters);
+  if (surface.observers) tell(accesses, in.sampling, surface);
 }
 
 void depth_test_equal(const SampledTriangles& in, StageCounters& counters, const SampleTile& surface,

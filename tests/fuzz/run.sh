@@ -13,11 +13,16 @@ export TMPDIR
 trap 'rm -r "$TMPDIR"' EXIT
 cmake --preset fuzz >/dev/null
 cmake --build --preset fuzz --parallel "$(nproc)" --target "${targets[@]/%/_fuzz}"
+# The names of techniques and their options, from the tables of docs/techniques.md.
+sed -n '/tables of .*: begin/,/tables of .*: end/p' docs/techniques.md | grep -oE '[a-z0-9.-]+[=:]?' | sort -u |
+  sed 's/.*/"&"/' >"$TMPDIR/spec.dict"
 for target in "${targets[@]}"; do
   found=build/fuzz/found/$target
+  dictionary=tests/fuzz/$target.dict
+  [[ $target != spec ]] || dictionary=$TMPDIR/spec.dict
   mkdir -p "$found"
   echo "== $target: $seconds s"
-  build/fuzz/tests/fuzz/"${target}_fuzz" "$found" tests/fuzz/corpus/"$target" -dict=tests/fuzz/"$target".dict \
+  build/fuzz/tests/fuzz/"${target}_fuzz" "$found" tests/fuzz/corpus/"$target" -dict="$dictionary" \
     -max_total_time="$seconds" -max_len=65536 -rss_limit_mb=2048 -timeout=20 -artifact_prefix="build/fuzz/${target}-" \
     -print_final_stats=1 -verbosity=0
 done

@@ -8,8 +8,7 @@
 #include "tests/pipeline/test_traces.h"
 #include "tests/simd/random.h"
 
-namespace beampipe {
-namespace {
+namespace beampipe::bands_test {
 
 // `layers` triangles that cover the whole frame, in no order of depth.
 Trace stack_trace(std::uint32_t width, std::uint32_t height, int layers) {
@@ -208,5 +207,4 @@ TEST(Bands, ListsAloneMakeBandsToo) {
   }
 }
 
-}  // namespace
-}  // namespace beampipe
+}  // namespace beampipe::bands_test

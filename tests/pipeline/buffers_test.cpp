@@ -2,7 +2,7 @@
 // what the heap really holds.
 #include <gtest/gtest.h>
 
-#include "pipeline/technique.h"
+#include "pipeline/technique_table.h"
 #include "stages/beam/a_buffer.h"
 #include "stages/beam/beam_fragment.h"
 #include "stages/geometry/vertex_setup.h"
@@ -10,8 +10,7 @@
 #include "tests/pipeline/test_traces.h"
 #include "traces/scenes.h"
 
-namespace beampipe {
-namespace {
+namespace beampipe::buffers_test {
 
 std::uint64_t bytes_of(const FrameResult& result, const std::string& name) {
   if (name == "a_buffer") return result.a_buffer_peak_bytes;
@@ -20,7 +19,7 @@ std::uint64_t bytes_of(const FrameResult& result, const std::string& name) {
   throw std::runtime_error("no buffer " + name);
 }
 
-FrameResult render(const char* spec, const Trace& trace) {
+FrameResult render(const std::string& spec, const Trace& trace) {
   FrameInput run{1};
   run.memory.modelled = false;
   return parse_technique(spec).render(trace, 0, run);
@@ -90,7 +89,7 @@ TEST(Buffers, AreWhatIsAllocated) {
   struct Measured {
     double heap, listed, pairs;
   };
-  const auto measure = [](const char* spec, int layers) {
+  const auto measure = [](const std::string& spec, int layers) {
     const Trace trace = halves(layers);
     const std::int64_t before = heap_bytes();
     restart_heap_peak();
@@ -100,8 +99,7 @@ TEST(Buffers, AreWhatIsAllocated) {
     for (const Buffer& buffer : result.buffers) measured.listed += static_cast<double>(buffer.peak_bytes);
     return measured;
   };
-  for (const char* spec : {"beam", "beam:order=sorted", "beam:order=stream", "casav", "casav:order=near-first",
-                           "casav:order=stream", "alpha", "z3", "msaa:8", "acaa:8"}) {
+  for (const std::string& spec : example_specs()) {
     const Measured few = measure(spec, 4000), many = measure(spec, 16000);
     const double heap = many.heap - few.heap, listed = many.listed - few.listed;
     EXPECT_GE(heap, listed) << spec << ": something is listed that is not held";
@@ -129,8 +127,7 @@ TEST(Buffers, DrawsAreNotCopiedAgainForEachThatFollows) {
 TEST(Buffers, WorkingBytesAreHeldPerPixel) {
   Trace trace = halves(1);
   trace.frames[0].width = trace.frames[0].height = 512;
-  for (const char* spec : {"beam", "beam:order=sorted", "beam:order=stream", "casav", "alpha", "z3", "msaa:8", "acaa:8",
-                           "deferred", "visibility", "visibility:4", "taa:8", "taa:8,shading=forward", "dvm"}) {
+  for (const std::string& spec : example_specs()) {
     const std::int64_t before = heap_bytes();
     restart_heap_peak();
     render(spec, trace);
@@ -141,5 +138,4 @@ TEST(Buffers, WorkingBytesAreHeldPerPixel) {
   }
 }
 
-}  // namespace
-}  // namespace beampipe
+}  // namespace beampipe::buffers_test

@@ -7,34 +7,11 @@
 #include <set>
 #include <string>
 
-#include "pipeline/technique.h"
+#include "pipeline/technique_table.h"
 #include "tests/pipeline/surface_traces.h"
 #include "tests/pipeline/test_traces.h"
 
-namespace beampipe {
-namespace {
-
-constexpr const char* kSpecs[] = {"beam",
-                                  "beam:order=sorted",
-                                  "beam:order=stream",
-                                  "casav",
-                                  "z3",
-                                  "alpha",
-                                  "msaa:4,at=centroid",
-                                  "msaa:4,prepass",
-                                  "msaa:4,prepass,motion,resolve=reinhard",
-                                  "msaa:32",
-                                  "msaa:256",
-                                  "acaa:4,double=stencil",
-                                  "acaa:4,double=saturate",
-                                  "deferred",
-                                  "visibility",
-                                  "visibility:4",
-                                  "taa:8",
-                                  "taa:8,shading=forward",
-                                  "taa:8,shading=deferred",
-                                  "dvm",
-                                  "reference"};
+namespace beampipe::counter_registry_test {
 
 // Two frames of small lit triangles all over the picture, which move by a part of a pixel. The sides of the view cut
 // some of them. The width is odd.
@@ -64,7 +41,7 @@ const std::map<StageId, StageCounters>& sums() {
   static const std::map<StageId, StageCounters> all = [] {
     std::map<StageId, StageCounters> by_stage;
     const Trace trace = test_trace();
-    for (const char* spec : kSpecs) {
+    for (const std::string& spec : example_specs()) {
       History history;
       for (std::size_t frame = 0; frame < trace.frames.size(); ++frame) {
         FrameInput run{2};
@@ -104,7 +81,7 @@ TEST(CounterRegistry, EveryCounterMovesWhereItIsListed) {
 TEST(CounterRegistry, EveryPixelCounterMovesSomewhere) {
   std::map<std::string, float> found;
   const Trace trace = test_trace();
-  for (const char* spec : kSpecs) {
+  for (const std::string& spec : example_specs()) {
     History history;
     for (std::size_t frame = 0; frame < trace.frames.size(); ++frame)
       for (const auto& [name, values] : parse_technique(spec).render(trace, frame, {2, &history}).pixel_counters)
@@ -117,5 +94,4 @@ TEST(CounterRegistry, EveryPixelCounterMovesSomewhere) {
   for (const auto& [name, sum] : found) ADD_FAILURE() << name << " is not in the registry";
 }
 
-}  // namespace
-}  // namespace beampipe
+}  // namespace beampipe::counter_registry_test

@@ -2,14 +2,12 @@
 #include <gtest/gtest.h>
 
 #include "pipeline/bins/timeline.h"
-#include "pipeline/technique.h"
-#include "tests/pipeline/many_specs.h"
+#include "pipeline/technique_table.h"
 #include "tests/pipeline/surface_traces.h"
 #include "tests/simd/every_target.h"
 #include "tests/thorough.h"
 
-namespace beampipe {
-namespace {
+namespace beampipe::determinism_test {
 
 void expect_same(const FrameResult& a, const FrameResult& b, const std::string& what) {
   EXPECT_EQ(a.image.rgba, b.image.rgba) << what;
@@ -25,7 +23,7 @@ void expect_same(const FrameResult& a, const FrameResult& b, const std::string& 
 // thorough), with one thread and the best instruction set.
 void expect_same_everywhere(const Trace& trace) {
   int threads = 0;
-  for (const char* spec : kManySpecs) {
+  for (const std::string& spec : example_specs()) {
     const Technique technique = parse_technique(spec);
     const FrameResult expected = technique.render(trace, 0, {1});
     on_every_target([&] {
@@ -51,7 +49,7 @@ TEST(Determinism, AnyInstructionSetAndNumberOfThreadsWithDrawState) {
 TEST(Determinism, BinsWithoutTrianglesAreAlike) {
   for (const Trace& trace :
        {random_trace(290, 170, 2, 1), random_surfaces(290, 170, 2, 5), random_trace(70, 40, 0, 1)}) {
-    for (const char* spec : kManySpecs) {
+    for (const std::string& spec : example_specs()) {
       const Technique technique = parse_technique(spec);
       Timeline timeline;
       const FrameSinks every_bin{.timeline = &timeline};
@@ -69,7 +67,7 @@ bool has_open_pixels(const std::string& spec) {
 void expect_same_in_any_tile(const Trace& trace) {
   FrameInput options;
   options.memory.modelled = false;  // its caches depend on the tile
-  for (const char* spec : kManySpecs) {
+  for (const std::string& spec : example_specs()) {
     const Technique technique = parse_technique(spec);
     options.tile_size = 0;
     const FrameResult expected = technique.render(trace, 0, options);
@@ -85,10 +83,9 @@ void expect_same_in_any_tile(const Trace& trace) {
       for (std::size_t i = 0; i < found.stages.size(); ++i) {
         StageCounters a = found.stages[i], b = expected.stages[i];
         EXPECT_EQ(a.items_out, b.items_out) << a.stage;
-        if (std::string(spec).starts_with("casav") && a.stage == StageId::beam_fragment)
+        if (spec.starts_with("casav") && a.stage == StageId::beam_fragment)
           a.ops = b.ops = {};  // the edges of a triangle are prepared for masks once per tile
-        if (spec == std::string("reference") && a.stage == StageId::resolve)
-          continue;  // it skips tiles without triangles
+        if (spec == "reference" && a.stage == StageId::resolve) continue;  // it skips tiles without triangles
         // Rasters count their setup once per tile, and `material_sort` has the sums of 256 digits in each tile.
         if (!rasterizes(a.stage.id) && a.stage != StageId::material_sort) {
           EXPECT_EQ(a, b) << a.stage;
@@ -114,9 +111,9 @@ TEST(Determinism, TheFrameIsTheSameWhereverTilesFallInIt) {
   half[0][0] = half[1][1] = 2.0;
   half[3] = glm::dvec4(-1.0, 1.0, 0.0, 1.0);
   frame.projection = half * frame.projection;
-  for (const std::string spec : kManySpecs) {
+  for (const std::string& spec : example_specs()) {
     if (spec.starts_with("dvm")) continue;  // its random choices depend on the pixel's place in the frame
-    if (is_one_pass(spec) || spec.find("near-first") != spec.npos)
+    if (has_open_pixels(spec) || spec.find("near-first") != spec.npos)
       continue;  // bins are sorted as a whole, and sums are rounded by a triangle's number
     const Technique technique = parse_technique(spec);
     const Image a = technique.render(whole, 0, {2}).image, b = technique.render(part, 0, {2}).image;
@@ -128,5 +125,4 @@ TEST(Determinism, TheFrameIsTheSameWhereverTilesFallInIt) {
   }
 }
 
-}  // namespace
-}  // namespace beampipe
+}  // namespace beampipe::determinism_test

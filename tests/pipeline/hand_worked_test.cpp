@@ -6,8 +6,7 @@
 #include "pipeline/technique.h"
 #include "traces/files/trace_io.h"
 
-namespace beampipe {
-namespace {
+namespace beampipe::hand_worked_test {
 
 struct Bytes {
   const char* stage;
@@ -157,5 +156,4 @@ TEST(HandWorked, BytesOfAPixel) {
     EXPECT_FALSE(parse_technique(spec).render(trace, 0, run).pixel_counters.contains("bytes")) << spec;
 }
 
-}  // namespace
-}  // namespace beampipe
+}  // namespace beampipe::hand_worked_test

@@ -5,20 +5,13 @@
 
 #include "pipeline/bins/frame_context.h"
 #include "pipeline/memory/geometry_memory.h"
-#include "pipeline/technique.h"
+#include "pipeline/technique_table.h"
 #include "stages/data/sample_fragment.h"
 #include "tests/pipeline/test_traces.h"
 
-namespace beampipe {
-namespace {
+namespace beampipe::texture_memory_test {
 
 // Every way to shade, with the ways that read alpha.
-constexpr const char* kSpecs[] = {
-    "beam",     "beam:order=sorted",  "beam:order=stream", "alpha",          "casav",
-    "z3",       "msaa:4,at=centroid", "msaa:32",           "msaa:4,prepass", "acaa:32",
-    "deferred", "visibility",         "visibility:4",      "taa:8",          "taa:8,shading=forward",
-    "dvm"};
-
 TextureImage square_image(std::uint32_t size) {
   TextureImage image{"image", size, size, {}};
   for (std::uint32_t y = 0; y < size; ++y)
@@ -60,7 +53,7 @@ Trace mixed_trace() {
   return trace;
 }
 
-std::vector<StageCounters> stages_of(const char* spec, const Trace& trace, const FrameInput& run = {}) {
+std::vector<StageCounters> stages_of(const std::string& spec, const Trace& trace, const FrameInput& run = {}) {
   return parse_technique(spec).render(trace, 0, run).stages;
 }
 
@@ -165,7 +158,7 @@ TEST(TextureMemory, ReadingAlphaIsChargedToItsStage) {
 
 TEST(TextureMemory, TexelsArePartsOfTheTotals) {
   const Trace trace = mixed_trace();
-  for (const char* const spec : kSpecs)
+  for (const std::string& spec : example_specs())
     for (const StageCounters& stage : stages_of(spec, trace)) {
       EXPECT_LE(stage.texture_bytes, stage.bytes_read) << spec << ' ' << stage.stage;
       EXPECT_LE(stage.texture_sector_bytes, stage.sector_bytes) << spec << ' ' << stage.stage;
@@ -179,14 +172,15 @@ TEST(TextureMemory, DoesNotDependOnThreads) {
   const Trace trace = mixed_trace();
   FrameInput one{1}, many{13};
   one.memory.l2 = many.memory.l2 = {2048, 4, 128};  // small, so that the order of the bins matters
-  for (const char* const spec : kSpecs) EXPECT_EQ(stages_of(spec, trace, one), stages_of(spec, trace, many)) << spec;
+  for (const std::string& spec : example_specs())
+    EXPECT_EQ(stages_of(spec, trace, one), stages_of(spec, trace, many)) << spec;
 }
 
 TEST(TextureMemory, WithoutAModelOnlyLogicalBytesAreCounted) {
   const Trace trace = mixed_trace();
   FrameInput off;
   off.memory.modelled = false;
-  for (const char* const spec : kSpecs) {
+  for (const std::string& spec : example_specs()) {
     std::vector<StageCounters> modelled = stages_of(spec, trace);
     for (StageCounters& stage : modelled) {
       stage.sector_bytes = stage.l2_bytes = stage.dram_bytes = 0;
@@ -200,7 +194,7 @@ TEST(TextureMemory, FlatFramesReadNoTexels) {
   Trace flat = random_trace(100, 70, 200, 5);
   Trace unused = flat;
   unused.images = {square_image(8)};
-  for (const char* const spec : kSpecs) {
+  for (const std::string& spec : example_specs()) {
     for (const StageCounters& stage : stages_of(spec, flat))
       EXPECT_EQ(stage.texture_bytes + stage.texture_sector_bytes, 0u) << spec;
     EXPECT_EQ(stages_of(spec, flat), stages_of(spec, unused)) << spec;
@@ -230,5 +224,4 @@ TEST(GeometryMemory, SurfacesAreFetchedWithTheirVertices) {
   EXPECT_EQ(both.dram_bytes, (4 + 2) * 32u);
 }
 
-}  // namespace
-}  // namespace beampipe
+}  // namespace beampipe::texture_memory_test

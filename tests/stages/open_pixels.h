@@ -27,8 +27,7 @@ struct OpenTile {
   std::vector<Fragment> fragments;         // all that were composed
   StageCounters composing{}, finishing{};  // counted by compose_owners and finish_owners
   OwnersResult result{};
-  OwnerWeights* weights = nullptr;  // where they are recorded; null: nowhere
-  TriangleList taken{};             // the list that was composed
+  const PixelObservers* observers = nullptr;  // null: nobody looks
 
   OpenTile(const SetupTriangles& of, const std::vector<glm::vec3>& in_colors, const Tile& in = {0, 0, 1, 1})
       : triangles(of),
@@ -41,14 +40,13 @@ struct OpenTile {
 
   // Composes the triangles of the list, in its order. `watermarks` may be null.
   std::vector<PixelColor> compose(const TriangleList& list, const std::vector<float>* watermarks = nullptr) {
-    taken = list;
     const PositionGrid grid(kPositions);
     StageCounters ignored;
     std::vector<Pair> pairs;
     conservative_raster(triangles, list, tile, ignored, pairs);
     beam_fragment(triangles, pairs, tile, grid_options(grid, owners_fragment_bytes(Words)), ignored, fragments);
-    const OwnersBin bin{triangles, list, watermarks, tile, positions, colors, false, weights};
-    compose_owners(bin, fragments, 0, composing, open, closed, {counts, merges}, result);
+    const OwnersBin bin{triangles, list, watermarks, tile, positions, colors, false, OwnerPlace::covered, observers};
+    compose_owners(bin, {fragments, 0}, composing, OwnersTile<Words, Slots>{open, closed, {counts, merges}, result});
     return finish_owners(bin, finishing, open, result);
   }
   std::vector<PixelColor> compose_sorted(bool with_watermarks = true) {

@@ -8,13 +8,11 @@
 #include <map>
 #include <sstream>
 
-#include "pipeline/technique.h"
-#include "tests/pipeline/many_specs.h"
+#include "pipeline/technique_table.h"
 #include "tools/files/digest.h"
 #include "traces/scenes.h"
 
-namespace beampipe {
-namespace {
+namespace beampipe::digests_test {
 
 template <class T>
 std::string_view bytes_of(const std::vector<T>& values) {
@@ -44,8 +42,8 @@ std::map<std::string, std::string> found_lines() {
   std::map<std::string, std::string> lines;
   for (const SceneKind& kind : scene_kinds()) {
     const Trace trace = make_scene(kind.name, {.triangles = 1000, .width = 32, .height = 19});
-    for (const char* spec : kManySpecs)
-      lines[std::string(kind.name) + ' ' + spec] = line_of(parse_technique(spec).render(trace, 0, {2}));
+    for (const std::string& spec : example_specs())
+      lines[kind.name + (' ' + spec)] = line_of(parse_technique(spec).render(trace, 0, {2}));
   }
   return lines;
 }
@@ -90,5 +88,4 @@ TEST(Digests, PicturesAndCountersAreThoseOfTheFile) {
   for (const auto& [name, line] : now) stream << name << ' ' << line << '\n';
 }
 
-}  // namespace
-}  // namespace beampipe
+}  // namespace beampipe::digests_test

@@ -26,7 +26,7 @@
 namespace beampipe {
 namespace {
 
-constexpr const char* kFooter =
+constexpr const char* kInspectFooter =
     R"(Prints every triangle that touches the pixel, in the order in which the technique takes them: its exact area, its
 depths (-1 near to 0 far), the mask positions or samples that it covers, took and lost, and to whom; then what the
 technique did with them, the weight of each triangle beside its weight in the reference, and where the area went that
@@ -39,7 +39,7 @@ Examples:
   beampipe inspect fence.json --worst 3 -t beam -o worst.svg      (the three worst pixels as a picture)
   beampipe inspect fence.json --pixel 160,90 -t beam --json
 
-Techniques: beam in every order, alpha, z3, msaa and acaa can be inspected.
+Techniques: beam in every order, alpha, z3, msaa, acaa, visibility and deferred can be inspected.
 
 )";
 
@@ -66,12 +66,13 @@ bool shows_unicode() {
 }
 
 void require_inspectable(const Technique& technique) {
-  if (technique.inspect) return;
+  if (technique.is_observable) return;
   const std::string why = technique.keeps_history ? "its pixels depend on earlier frames and on their neighbours"
-                          : technique.spec == "reference" ? "it is what the others are compared with"
-                                                          : "its picture is that of msaa with as many samples";
+                                                  : "it is what the others are compared with";
   throw UsageError("technique '" + technique.spec +
-                   "' cannot be inspected: expected beam in any order, alpha, z3, msaa:N or acaa:N; " + why);
+                   "' cannot be inspected: expected beam in any order, alpha, z3, msaa:N, acaa:N, visibility or "
+                   "deferred; " +
+                   why);
 }
 
 std::vector<PixelInspection> inspect_all(const InspectArguments& arguments, const Trace& trace,
@@ -161,7 +162,7 @@ void add_inspect_command(CommandLine& line, InterruptGate& gate) {
   command.add("--threads", arguments->threads, "the number of threads (default: one per processor core)")
       .between(1, 1024);
   command.add_flag("--allow-outside", arguments->allow_outside, "allow the trace to name files outside its own folder");
-  command.footer(kFooter);
+  command.footer(kInspectFooter);
   command.set_work([arguments, &gate] { run_inspection(*arguments, gate); });
 }
 

@@ -6,6 +6,7 @@
 #include <memory>
 #include <set>
 
+#include "pipeline/technique_table.h"
 #include "tools/cli/commands.h"
 #include "tools/cli/run_arguments.h"
 #include "tools/evaluate/machine_memory.h"
@@ -20,30 +21,7 @@ namespace beampipe {
 namespace {
 
 struct StressArguments {
-  std::vector<std::string> specs = {"beam",
-                                    "beam:bits=64,slots=4",
-                                    "beam:bits=32,slots=2",
-                                    "beam:order=stream",
-                                    "beam:order=sorted",
-                                    "beam:order=sorted,storage=float32",
-                                    "beam:order=sorted,bits=32",
-                                    "z3",
-                                    "z3:shape=128x3",
-                                    "casav",
-                                    "casav:storage=text",
-                                    "casav:storage=float32",
-                                    "alpha",
-                                    "msaa:1,8,16,256",
-                                    "acaa:8",
-                                    "acaa:8,double=stencil",
-                                    "acaa:8,color=unorm8",
-                                    "acaa:8,color=fp32",
-                                    "acaa:256",
-                                    "deferred",
-                                    "visibility",
-                                    "taa:8",
-                                    "dvm",
-                                    "reference"};
+  std::vector<std::string> specs = stressed_specs();
   std::vector<std::string> cases;
   std::string output;
   int threads = 0;

@@ -58,7 +58,7 @@ void record_inspections(const RunPlan& plan, const RecordedPixels& pixels, Repor
                           [&](const TechniqueReport& each) { return each.technique == spec; });
     };
     const auto result = of_spec(technique.spec), reference = of_spec("reference");
-    if (!technique.inspect) continue;
+    if (!technique.is_observable) continue;
     std::map<std::size_t, std::vector<PixelAddress>> of_frames;
     for (const FramePixel& each : worst_of(*result, *reference, pixels.worst, output))
       of_frames[each.frame].push_back(each.at);

@@ -17,7 +17,7 @@ constexpr int kProcess = 1;
 double microseconds(Time from, Time to) { return std::chrono::duration<double, std::micro>(to - from).count(); }
 
 Json slice(const Timeline::Event& event, std::size_t thread, Time epoch) {
-  Json json = {{"name", name_of(event.stage)},
+  Json json = {{"name", event.name},
                {"ph", "X"},
                {"ts", microseconds(epoch, event.start)},
                {"dur", microseconds(event.start, event.end)},

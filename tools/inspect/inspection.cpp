@@ -2,10 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
-#include <cstring>
-#include <map>
 #include <numeric>
-#include <stdexcept>
 
 #include "stages/geometry/vertex_setup.h"
 #include "tools/evaluate/metrics.h"
@@ -19,26 +16,6 @@ glm::vec4 color_at(const Image& image, PixelAddress at) {
 }
 
 double root_mean_square(const glm::dvec3& error) { return std::sqrt(glm::dot(error, error) / 3); }
-
-// When each fragment was merged, where that decides about depth; as SurfaceWeight::order.
-std::uint32_t merge_order(const PixelHistory& history, std::uint32_t fragment) {
-  if (history.fragments[fragment].fate == Fate::composed) return fragment;
-  const bool merges = std::any_of(history.steps.begin(), history.steps.end(),
-                                  [](const HistoryStep& step) { return step.kind == HistoryStep::Kind::merged; });
-  return merges ? fragment + 1 : 0;
-}
-
-PixelWeights weights_of(const PixelHistory& history) {
-  std::map<std::uint32_t, double> weights;
-  for (const HistoryTerm& term : history.terms)
-    if (term.fragment != kNobody) weights[term.fragment] += term.weight;
-  PixelWeights found;
-  for (const auto& [fragment, weight] : weights) {
-    const HistoryFragment& noted = history.fragments[fragment];
-    found.push_back({noted.triangle, static_cast<float>(weight), merge_order(history, fragment), noted.is_tiny});
-  }
-  return found;
-}
 
 glm::dvec3 mean_color(const PixelHistory& history, std::uint32_t fragment, const glm::dvec3& otherwise) {
   glm::dvec3 sum(0.0);
@@ -73,6 +50,13 @@ void add_explanation(const ExplainedPixel& explained, PixelInspection& inspectio
   inspection.causes.assign(explained.causes.begin(), explained.causes.end());
 }
 
+std::vector<PixelHistory> observed(const Technique& technique, const Trace& trace, std::size_t frame,
+                                   const FrameInput& run) {
+  std::vector<PixelHistory> histories;
+  technique.render(trace, frame, run, {.histories = &histories});
+  return histories;
+}
+
 }  // namespace
 
 std::vector<PixelInspection> inspect(const Trace& trace, std::size_t frame, const Technique& technique,
@@ -82,9 +66,8 @@ std::vector<PixelInspection> inspect(const Trace& trace, std::size_t frame, cons
   only.pixels = &pixels;
   const Technique reference = parse_technique("reference");
   const Frame& of_trace = trace.frames.at(frame);
-  const Image image = technique.render(trace, frame, only).image;
   const Image truth = reference.render(trace, frame, only).image;
-  std::vector<PixelHistory> histories = technique.inspect(trace, frame, only, pixels);
+  std::vector<PixelHistory> histories = observed(technique, trace, frame, only);
 
   // If surfaces vary, causes are those of the error in visibility.
   const bool varies = has_varying_surfaces(trace, of_trace);
@@ -93,7 +76,7 @@ std::vector<PixelInspection> inspect(const Trace& trace, std::size_t frame, cons
   std::vector<PixelHistory> visible;
   Image visible_truth = truth;
   if (varies) {
-    visible = technique.inspect(trace, frame, by_pixel, pixels);
+    visible = observed(technique, trace, frame, by_pixel);
     visible_truth = reference.render(trace, frame, by_pixel).image;
   }
   std::vector<PixelInspection> inspections;
@@ -104,18 +87,13 @@ std::vector<PixelInspection> inspect(const Trace& trace, std::size_t frame, cons
     inspection.frame = frame;
     inspection.history = std::move(histories[i]);
     const PixelHistory& history = inspection.history;
-    const glm::vec4 picture = color_at(image, pixels[i]);
-    if (std::memcmp(&picture, &history.pixel, sizeof picture) != 0)
-      throw std::logic_error("the history of pixel " + std::to_string(pixels[i].x) + "," + std::to_string(pixels[i].y) +
-                             " with " + technique.spec + " does not have the picture's bits");
     for (const HistoryFragment& each : history.fragments)
       inspection.draw_names.push_back(std::to_string(each.draw) + " '" +
                                       trace.meshes[of_trace.draws[each.draw].mesh].name + "'");
     inspection.reference = glm::vec3(color_at(truth, pixels[i]));
     inspection.error = root_mean_square(glm::dvec3(history.pixel) - glm::dvec3(inspection.reference));
     const PixelHistory& seen = varies ? visible[i] : history;
-    colors.push_back(
-        {pixels[i], weights_of(seen), glm::vec3(seen.pixel), glm::vec3(color_at(visible_truth, pixels[i]))});
+    colors.push_back({pixels[i], seen.weights(), glm::vec3(seen.pixel), glm::vec3(color_at(visible_truth, pixels[i]))});
     if (varies) inspection.visibility_error = root_mean_square(colors.back().color - colors.back().reference);
   }
   const std::vector<ExplainedPixel> explained = explain_pixels(trace, of_trace, colors, varies ? by_pixel : only);

@@ -1,4 +1,4 @@
-// A pixel explained: its history (pipeline/inspect/pixel_history.h), how wrong it is, and why.
+// A pixel explained: its history (stages/data/pixel_history.h), how wrong it is, and why.
 #pragma once
 
 #include <cstdint>
@@ -7,7 +7,6 @@
 #include <vector>
 
 #include "pipeline/error_causes.h"
-#include "pipeline/inspect/pixel_history.h"
 #include "pipeline/technique.h"
 #include "traces/trace.h"
 
@@ -34,7 +33,7 @@ struct PixelInspection {
   std::vector<double> causes;              // of the error, or of the visibility error, in the order of kErrorCauses
 };
 
-// The technique must have Technique::inspect. Throws std::logic_error if a history does not have the picture's bits.
+// The technique must be observable.
 std::vector<PixelInspection> inspect(const Trace& trace, std::size_t frame, const Technique& technique,
                                      const std::vector<PixelAddress>& pixels, const FrameInput& run);
 

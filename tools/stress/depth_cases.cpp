@@ -85,8 +85,7 @@ HardCase depth_range_turned() {
       std::move(trace),
       {},
       {{"alpha", {0.7, kOver}}, {"casav", {0.7, kCasav}}}};
-  for (const char* name : {"beam", "z3", "msaa", "acaa:8,double=stencil", "deferred", "visibility", "taa", "dvm"})
-    result.limits[name] = {0.7, kDepth};
+  for (const char* name : {"beam", "z3", "msaa", "acaa:8,double=stencil", "dvm"}) result.limits[name] = {0.7, kDepth};
   result.limits["acaa"] = {2.0, kTwice};
   return result;
 }
@@ -119,9 +118,6 @@ HardCase coplanar() {
           {{"msaa", {1.0, kDepth}},
            {"acaa", {2.0, kDepth}},
            {"acaa:8,double=stencil", {1.0, kDepth}},
-           {"deferred", {1.0, kDepth}},
-           {"visibility", {1.0, kDepth}},
-           {"taa", {1.0, kDepth}},
            {"dvm", {1.0, kDepth}},
            {"alpha", {0.7, kOver}},
            {"casav", {0.7, kCasav}},

@@ -5,7 +5,9 @@
 namespace beampipe {
 
 std::map<std::string, StatedLimit> full_masks(int edges) {
-  return {{"beam", {edges * largest_cut(256), kFull}}, {"beam:order=sorted,bits=32", {edges * largest_cut(32), kFull}}};
+  return {{"beam", {edges * largest_cut(256), kFull}},
+          {"casav", {edges * largest_cut(256), kFull}},
+          {"beam:order=sorted,bits=32", {edges * largest_cut(32), kFull}}};
 }
 
 double largest_cut(int positions) {

@@ -17,6 +17,7 @@ namespace beampipe {
 struct StatedLimit {
   double error;
   std::string reason;
+  int positions = 256;  // that it is for, where a technique counts mask positions; it grows as these become fewer
 };
 
 // What surfaces may look like: every colour of theirs is finite and between these. The rest of a pixel shows the
@@ -31,8 +32,8 @@ struct HardCase {
   Trace trace;       // one frame
   // The exact picture, if it follows from how the trace was made. Otherwise tools/stress/exact.h computes it.
   std::optional<ExactPicture> picture;
-  // By spec, or by the start of specs up to a ":" or ","; the longest one that fits counts. All other techniques must
-  // be correct to the last bit of their formats.
+  // By spec, or by the start of specs up to a ":" or ","; the longest one that fits counts, or else one that fits
+  // Technique::errs_like. All other techniques must be correct to the last bit of their formats.
   std::map<std::string, StatedLimit> limits;
   // Of surfaces that vary, for which there is no exact picture: either which colours it may hold where exact arithmetic
   // says that triangles cover a pixel, or a trace whose picture must be the same to the last bit.

@@ -5,14 +5,10 @@
 #include <string>
 
 #include "pipeline/technique.h"
-#include "simd/sample_pattern.h"
 #include "tools/stress/exact.h"
 #include "tools/stress/hard_cases.h"
 
 namespace beampipe {
-
-// Of cell_patterns: the positions of a mask.
-SamplePlaces places_of(const std::vector<SamplePattern>& patterns);
 
 // For colours up to 1 in fp16: two roundings of half a unit in the last place, which is 2^-12.
 inline constexpr double kFormatError = 0x1p-11;

@@ -3,6 +3,7 @@
 #include <cmath>
 #include <numbers>
 
+#include "pipeline/sampling.h"
 #include "stages/data/mix_bits.h"
 #include "tools/stress/case_parts.h"
 #include "tools/stress/judge.h"
@@ -50,7 +51,7 @@ Counts count_alone(const Trace& trace, int positions) {
 void limit_open_pixels(const Trace& trace, double more, const char* reason,
                        std::map<std::string, StatedLimit>& limits) {
   const auto limit = [&](int positions) {
-    return StatedLimit{count_alone(trace, positions).error + 3.0 / positions + more, reason};
+    return StatedLimit{count_alone(trace, positions).error + 3.0 / positions + more, reason, positions};
   };
   limits["beam"] = limit(256);
   limits["beam:order=stream"] = limit(128);

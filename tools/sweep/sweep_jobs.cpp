@@ -27,13 +27,13 @@ FrameInput options_of(const LoadedTrace& loaded, const MemoryParameters& memory,
   return options;
 }
 
-CellCounts render_cell(const SweepPlan& plan, const SweepCell& cell, const LoadedTrace& loaded,
-                       const std::vector<std::size_t>& frames, const JobLimits& limits) {
+CountedCell render_cell(const SweepPlan& plan, const SweepCell& cell, const LoadedTrace& loaded,
+                        const std::vector<std::size_t>& frames, const JobLimits& limits) {
   const Technique technique = parse_technique(plan.techniques[cell.technique]);
   FrameInput options = options_of(loaded, plan.memory[cell.memory], limits);
   History history;
   options.history = &history;
-  CellCounts counts;
+  CountedCell counts;
   counts.report = new_technique_report(technique, options.memory);
   for (const std::size_t frame : frames) {
     FrameResult result = technique.render(loaded.trace, frame, options);
@@ -52,12 +52,12 @@ CellCounts render_cell(const SweepPlan& plan, const SweepCell& cell, const Loade
 
 void run_cells(const SweepPlan& plan, const SweepJob& job, TraceShelf& shelf, SweepResults& results,
                const JobLimits& limits, const std::function<void(CellSource)>& finished) {
-  std::vector<std::pair<const MemoryParameters*, CellCounts>> known;
+  std::vector<std::pair<const MemoryParameters*, CountedCell>> known;
   std::shared_ptr<const LoadedTrace> loaded;
   for (const std::size_t number : job.cells) {
     const SweepCell& cell = plan.cells[number];
     const MemoryParameters& memory = plan.memory[cell.memory];
-    if (std::optional<CellCounts> stored = results.counts(cell)) {
+    if (std::optional<CountedCell> stored = results.counts(cell)) {
       known.emplace_back(&memory, std::move(*stored));
       finished(CellSource::stored);
       continue;

@@ -7,30 +7,10 @@
 #include <map>
 #include <set>
 
-#include "pipeline/technique.h"
+#include "pipeline/technique_table.h"
 #include "tests/pipeline/surface_traces.h"
 
-namespace beampipe {
-namespace {
-
-constexpr const char* kSpecs[] = {"beam",
-                                  "beam:order=sorted",
-                                  "beam:order=stream",
-                                  "casav",
-                                  "casav:order=near-first",
-                                  "z3",
-                                  "alpha",
-                                  "msaa:4",
-                                  "msaa:4,prepass",
-                                  "msaa:32",
-                                  "acaa:8",
-                                  "acaa:4,double=stencil",
-                                  "acaa:4,double=saturate",
-                                  "deferred",
-                                  "visibility",
-                                  "taa:4",
-                                  "dvm",
-                                  "reference"};
+namespace beampipe::dram_trace_test {
 
 struct Recorded {
   std::uint64_t address;
@@ -101,10 +81,10 @@ std::vector<std::pair<std::string, FrameInput>> machines() {
 TEST(DramTrace, HasTheBytesOfEveryStage) {
   for (const auto& [scene, trace] : scenes())
     for (const auto& [machine, run] : machines())
-      for (const char* spec : kSpecs) {
+      for (const std::string& spec : example_specs()) {
         const Frame0 frame = render(spec, trace, run);
-        expect_bytes_of_counters(frame, std::string(spec) + ", " + scene + ", " + machine);
-        expect_disjoint_arrays(frame, std::string(spec) + ", " + scene + ", " + machine);
+        expect_bytes_of_counters(frame, spec + ", " + scene + ", " + machine);
+        expect_disjoint_arrays(frame, spec + ", " + scene + ", " + machine);
       }
 }
 
@@ -114,7 +94,8 @@ TEST(DramTrace, HasTheBytesOfSmallCaches) {
   run.memory.l2 = {2048, 2, 128}, run.memory.l1 = {1024, 2, 128}, run.memory.rop = {2048, 2, 256};
   run.memory.framebuffer = Place::in_memory;
   for (const auto& [scene, trace] : scenes())
-    for (const char* spec : kSpecs) expect_bytes_of_counters(render(spec, trace, run), spec + (", " + scene));
+    for (const std::string& spec : example_specs())
+      expect_bytes_of_counters(render(spec, trace, run), spec + (", " + scene));
 }
 
 TEST(DramTrace, ContinuesAHistory) {
@@ -131,7 +112,7 @@ TEST(DramTrace, ContinuesAHistory) {
 
 TEST(DramTrace, DoesNotDependOnThreadsOrBands) {
   for (const auto& [scene, trace] : scenes())
-    for (const char* spec : kSpecs) {
+    for (const std::string& spec : example_specs()) {
       const std::vector<Recorded> expected = render(spec, trace, {1}).requests;
       EXPECT_EQ(render(spec, trace, {3}).requests, expected) << spec << ", " << scene;
     }
@@ -148,7 +129,7 @@ TEST(DramTrace, ReadsWhatWasWrittenEarlier) {
   run.memory.framebuffer = Place::in_memory;
   const std::set<std::string> arrays = {"setup_triangles", "attributes", "bin_lists", "bin_keys",    "depth",
                                         "samples",         "coverage",   "mask",      "accumulator", "a_buffer_heads"};
-  for (const std::string spec : kSpecs) {
+  for (const std::string& spec : example_specs()) {
     if (spec == "reference") continue;  // its samples are in no memory
     std::set<std::uint64_t> written;
     std::size_t early = 0, found = 0;
@@ -200,5 +181,4 @@ TEST(DramTrace, TheFolderOfItsFileMustBeThere) {
   }
 }
 
-}  // namespace
-}  // namespace beampipe
+}  // namespace beampipe::dram_trace_test

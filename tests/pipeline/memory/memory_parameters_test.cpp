@@ -6,8 +6,7 @@
 #include "tests/pipeline/test_pictures.h"
 #include "tests/pipeline/test_traces.h"
 
-namespace beampipe {
-namespace {
+namespace beampipe::memory_parameters_test {
 
 FrameResult render_with(const std::string& spec, const Trace& trace, const MemoryParameters& memory) {
   FrameInput run{1};
@@ -140,5 +139,4 @@ TEST(MemoryParameters, CachesThatHoldAllMoveTheSameBytes) {
   }
 }
 
-}  // namespace
-}  // namespace beampipe
+}  // namespace beampipe::memory_parameters_test

@@ -14,8 +14,7 @@
 #include "pipeline/technique.h"
 #include "tests/pipeline/test_traces.h"
 
-namespace beampipe {
-namespace {
+namespace beampipe::stack_distance_test {
 
 constexpr std::uint32_t kLineBytes = 128, kSectors = 4, kMostWays = 24;
 
@@ -87,7 +86,7 @@ Traffic traffic_of_cache(const std::vector<Access>& accesses, std::size_t sets, 
   const MemorySystem memory({}, &log);
   BlockCache cache(memory, parameters, BlockCache::Level::l2, lines, kLineBytes, false, nullptr,
                    BlockPlaces(memory, "array", true));
-  StageCounters counters{"stage"};
+  StageCounters counters{StageId::compose};
   std::uint32_t request = 0;
   for (const Access& access : accesses) {
     if (access.is_write)
@@ -179,5 +178,4 @@ TEST(StackDistances, CachesOfTexels) {
   }
 }
 
-}  // namespace
-}  // namespace beampipe
+}  // namespace beampipe::stack_distance_test

@@ -18,8 +18,7 @@
 #include "stages/raster/traverse.h"
 #include "tests/traces/scene_names.h"
 
-namespace beampipe {
-namespace {
+namespace beampipe::window_twins_test {
 
 using Float = Counted<float>;
 using Real = Counted<double>;
@@ -237,5 +236,4 @@ TEST_P(WindowTwins, Windows) {
 INSTANTIATE_TEST_SUITE_P(Scenes, WindowTwins, testing::ValuesIn(flat_scenes()),
                          [](const auto& scene) { return std::string(scene.param.name); });
 
-}  // namespace
-}  // namespace beampipe
+}  // namespace beampipe::window_twins_test

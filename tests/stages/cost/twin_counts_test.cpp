@@ -14,8 +14,7 @@
 #include "stages/samples/test_depth.h"
 #include "tests/stages/scene_twins.h"
 
-namespace beampipe {
-namespace {
+namespace beampipe::twin_counts_test {
 
 class TwinCounts : public SceneTwins {};
 
@@ -95,5 +94,4 @@ TEST_P(TwinCounts, Accumulate) {
 
 BEAMPIPE_ON_EVERY_SCENE(TwinCounts);
 
-}  // namespace
-}  // namespace beampipe
+}  // namespace beampipe::twin_counts_test

@@ -13,8 +13,7 @@
 #include "tests/stages/screen_triangles.h"
 #include "tests/stages/vertex_scenes.h"
 
-namespace beampipe {
-namespace {
+namespace beampipe::placed_setup_test {
 
 constexpr std::int32_t kWidth = 48, kHeight = 32, kSamples = 16;
 
@@ -336,5 +335,4 @@ TEST(PlacedSetup, StateOfOtherDrawsChangesNoBit) {
   EXPECT_EQ(counters, other_counters);
 }
 
-}  // namespace
-}  // namespace beampipe
+}  // namespace beampipe::placed_setup_test

@@ -7,8 +7,7 @@
 
 #include "tests/stages/surface_scene.h"
 
-namespace beampipe {
-namespace {
+namespace beampipe::resolve_test {
 
 TEST(Resolve, AggregateOverTheBackground) {
   Aggregate quarter = kEmptyAggregate;
@@ -90,5 +89,4 @@ TEST(Resolve, MeanInReinhardsSpace) {
   EXPECT_EQ(counters.bytes_read, linear.bytes_read);
 }
 
-}  // namespace
-}  // namespace beampipe
+}  // namespace beampipe::resolve_test

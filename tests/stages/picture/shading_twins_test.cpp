@@ -10,8 +10,7 @@
 #include "stages/samples/test_depth.h"
 #include "tests/stages/scene_twins.h"
 
-namespace beampipe {
-namespace {
+namespace beampipe::shading_twins_test {
 
 class ShadingTwins : public SceneTwins {
  protected:
@@ -178,5 +177,4 @@ TEST_P(ShadingTwins, StencilTest) {
 
 BEAMPIPE_ON_EVERY_SCENE(ShadingTwins);
 
-}  // namespace
-}  // namespace beampipe
+}  // namespace beampipe::shading_twins_test

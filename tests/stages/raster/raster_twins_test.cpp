@@ -9,8 +9,7 @@
 #include "stages/raster/traverse.h"
 #include "tests/stages/scene_twins.h"
 
-namespace beampipe {
-namespace {
+namespace beampipe::raster_twins_test {
 
 struct Cell {
   std::uint32_t triangle;
@@ -136,5 +135,4 @@ TEST_P(RasterTwins, SampleRaster) {
 
 BEAMPIPE_ON_EVERY_SCENE(RasterTwins);
 
-}  // namespace
-}  // namespace beampipe
+}  // namespace beampipe::raster_twins_test

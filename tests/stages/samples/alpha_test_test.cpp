@@ -7,8 +7,7 @@
 
 #include "tests/stages/surface_scene.h"
 
-namespace beampipe {
-namespace {
+namespace beampipe::alpha_test_test {
 
 // A rectangle that fills the tile, with alpha 0 in the left half of the texture, 160 / 255 in the right half.
 struct Tested {
@@ -128,5 +127,4 @@ TEST(AlphaTest, CountsItsWork) {
   }
 }
 
-}  // namespace
-}  // namespace beampipe
+}  // namespace beampipe::alpha_test_test

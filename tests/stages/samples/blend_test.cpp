@@ -6,8 +6,7 @@
 #include "stages/samples/test_depth.h"
 #include "tests/stages/surface_scene.h"
 
-namespace beampipe {
-namespace {
+namespace beampipe::blend_test {
 
 constexpr Tile kTile{0, 0, 4, 4};
 
@@ -104,5 +103,4 @@ TEST(Blend, CountsTheAlphaOfLayers) {
   EXPECT_EQ(layer.counters.bytes_written, 8u * 8);
 }
 
-}  // namespace
-}  // namespace beampipe
+}  // namespace beampipe::blend_test

@@ -6,8 +6,7 @@
 #include "stages/samples/test_depth.h"
 #include "tests/stages/scene_twins.h"
 
-namespace beampipe {
-namespace {
+namespace beampipe::select_twins_test {
 
 class SelectTwins : public SceneTwins {
  protected:
@@ -146,5 +145,4 @@ TEST_P(SelectTwins, SampleSelect) {
 
 BEAMPIPE_ON_EVERY_SCENE(SelectTwins);
 
-}  // namespace
-}  // namespace beampipe
+}  // namespace beampipe::select_twins_test

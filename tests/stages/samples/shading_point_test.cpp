@@ -8,8 +8,7 @@
 #include "stages/raster/sample_raster.h"
 #include "tests/stages/screen_triangles.h"
 
-namespace beampipe {
-namespace {
+namespace beampipe::shading_point_test {
 
 constexpr Tile kTile{0, 0, 8, 8};
 
@@ -84,5 +83,4 @@ TEST(ShadingPoint, CountsWhatItLooksAt) {
   EXPECT_EQ(counters.ops, all);
 }
 
-}  // namespace
-}  // namespace beampipe
+}  // namespace beampipe::shading_point_test

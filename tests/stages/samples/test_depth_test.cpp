@@ -10,8 +10,7 @@
 #include "stages/raster/sample_raster.h"
 #include "tests/stages/screen_triangles.h"
 
-namespace beampipe {
-namespace {
+namespace beampipe::test_depth_test {
 
 constexpr Tile kTile{2, 4, 6, 8};  // not at the frame's origin
 
@@ -179,5 +178,4 @@ TEST(DepthTestStage, CountsOperationsAndBytes) {
   EXPECT_EQ(found.counters.bytes_written, samples * (4 + 6));
 }
 
-}  // namespace
-}  // namespace beampipe
+}  // namespace beampipe::test_depth_test

@@ -7,8 +7,7 @@
 #include <glm/gtc/matrix_transform.hpp>
 #include <limits>
 
-namespace beampipe {
-namespace {
+namespace beampipe::motion_test {
 
 constexpr std::int32_t kSize = 16;
 constexpr Tile kTile{0, 0, kSize, kSize};
@@ -250,5 +249,4 @@ TEST(Motion, CountsItsArithmetic) {
   EXPECT_EQ(counters.bytes_written, kSize * kSize * (4 + 2));
 }
 
-}  // namespace
-}  // namespace beampipe
+}  // namespace beampipe::motion_test

@@ -15,8 +15,7 @@
 #include "stages/temporal/temporal.h"
 #include "tests/stages/scene_twins.h"
 
-namespace beampipe {
-namespace {
+namespace beampipe::temporal_twins_test {
 
 constexpr std::size_t kSamples = 8;
 
@@ -300,5 +299,4 @@ TEST_P(TemporalTwins, Temporal) {
 
 BEAMPIPE_ON_EVERY_SCENE(TemporalTwins);
 
-}  // namespace
-}  // namespace beampipe
+}  // namespace beampipe::temporal_twins_test

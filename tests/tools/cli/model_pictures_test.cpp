@@ -8,8 +8,7 @@
 #include "traces/files/model_import.h"
 #include "traces/files/trace_io.h"
 
-namespace beampipe {
-namespace {
+namespace beampipe::model_pictures_test {
 
 constexpr std::uint32_t kSize = 32;  // of the pictures, in pixels
 
@@ -50,5 +49,4 @@ TEST(ModelPictures, AreFiniteAndShowTheModel) {
   EXPECT_GE(models, 24);
 }
 
-}  // namespace
-}  // namespace beampipe
+}  // namespace beampipe::model_pictures_test

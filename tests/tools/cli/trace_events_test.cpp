@@ -5,10 +5,10 @@
 #include <nlohmann/json.hpp>
 #include <set>
 
+#include "pipeline/technique_table.h"
 #include "tests/tools/program.h"
 
-namespace beampipe {
-namespace {
+namespace beampipe::trace_events_test {
 
 using Json = nlohmann::json;
 
@@ -18,24 +18,7 @@ constexpr const char* kTrace = R"({"beampipe_trace": 1,
               "projection": [1,0,0,0, 0,1,0,0, 0,0,1,0, 0,0,0,1], "draws": [{"mesh": "red"}]}]})";
 
 TEST(TraceEvents, HoldEveryStageOfEveryTechnique) {
-  const std::vector<std::string> specs = {"beam",
-                                          "beam:order=sorted",
-                                          "casav",
-                                          "casav:order=near-first",
-                                          "beam:order=stream",
-                                          "z3",
-                                          "alpha",
-                                          "msaa:4",
-                                          "msaa:4,prepass",
-                                          "acaa:4",
-                                          "deferred",
-                                          "visibility",
-                                          "visibility:4",
-                                          "taa:4",
-                                          "taa:4,shading=deferred",
-                                          "dvm",
-                                          "reference",
-                                          "acaa:4,double=stencil"};
+  const std::vector<std::string> specs = example_specs();
   const TemporaryFolder folder;
   write_text(folder / "trace.json", kTrace);
   std::vector<std::string> arguments = {"run",
@@ -126,5 +109,4 @@ TEST_F(RefusedTraceEvents, OverTheTraceOrInTheOutputFolder) {
     expect_refused(path(file), 2, "output folder");
 }
 
-}  // namespace
-}  // namespace beampipe
+}  // namespace beampipe::trace_events_test

@@ -1,5 +1,5 @@
-// The weights of triangles against the pixels that compose_owners returns.
-#include "stages/data/owner_weights.h"
+// What an observer tells of the pixels that compose_owners returns.
+#include "stages/data/pixel_observer.h"
 
 #include <gtest/gtest.h>
 
@@ -8,8 +8,7 @@
 
 #include "tests/stages/open_pixels.h"
 
-namespace beampipe {
-namespace {
+namespace beampipe::owner_weights_test {
 
 struct Explained {
   double farthest = 0;       // from a pixel to the sum of its triangles' weights times colours, in any channel
@@ -17,13 +16,22 @@ struct Explained {
   int pixels = 0, merged = 0, specks = 0;
 };
 
+PixelObservers observers_of(std::size_t pixels, const PositionSet& positions) {
+  PixelObservers observers(pixels);
+  for (auto& each : observers) {
+    each = std::make_unique<PixelObserver>();
+    each->add_positions(std::vector<glm::vec2>(static_cast<std::size_t>(positions.count())));
+  }
+  return observers;
+}
+
 // Composes the triangles in every order and adds up what the weights of each pixel explain.
 template <std::size_t Words, std::size_t Slots>
 void explain(const SetupTriangles& triangles, const std::vector<glm::vec3>& colors, Explained& found) {
   for (const bool sorted : {true, false}) {
     OpenTile<Words, Slots> plain(triangles, colors, {0, 0, 12, 12}), weighed(triangles, colors, {0, 0, 12, 12});
-    OwnerWeights weights(weighed.tile.pixels());
-    weighed.weights = &weights;
+    const PixelObservers observers = observers_of(weighed.tile.pixels(), weighed.positions);
+    weighed.observers = &observers;
     const std::vector<PixelColor> expected = plain.compose_sorted(sorted), pixels = weighed.compose_sorted(sorted);
     EXPECT_EQ(weighed.composing, plain.composing) << "recording is charged nothing";
     EXPECT_EQ(weighed.finishing, plain.finishing);
@@ -32,15 +40,15 @@ void explain(const SetupTriangles& triangles, const std::vector<glm::vec3>& colo
       ASSERT_EQ(pixels[i].alpha, expected[i].alpha);
       double area = 0;
       glm::dvec3 sum(0.0);
-      std::set<std::uint32_t> numbers;
+      std::set<std::uint32_t> seen;
       bool merged = false;
-      for (const OwnerWeights::Weight& each : weights.of_pixel(i)) {
-        EXPECT_TRUE(numbers.insert(each.number).second) << "a triangle has one weight";
+      for (const SurfaceWeight& each : observers[i]->history.weights()) {
+        EXPECT_TRUE(seen.insert(each.triangle).second) << "a triangle has one weight";
         ASSERT_GE(each.weight, 0);
         area += each.weight;
-        sum += double{each.weight} * glm::dvec3(colors[weighed.taken[each.number]]);
-        merged |= each.merged;
-        found.specks += each.speck;
+        sum += double{each.weight} * glm::dvec3(colors[each.triangle]);
+        merged |= each.order > 0;
+        found.specks += each.tiny;
       }
       EXPECT_NEAR(area, pixels[i].alpha, 1e-5);
       for (int c = 0; c < 3; ++c) {
@@ -78,7 +86,7 @@ Explained explain_random(std::uint64_t seed, int count, Color&& color) {
 glm::vec3 gray(Random& random) { return glm::vec3(random.real32(0, 1)); }
 glm::vec3 colorful(Random& random) { return {random.real32(0, 1), random.real32(0, 1), random.real32(0, 1)}; }
 
-TEST(OwnerWeights, ExplainGrayPixels) {
+TEST(PixelObserver, ExplainGrayPixels) {
   const Explained few = explain_random(611, 6, gray);
   EXPECT_LE(few.merged, 1);
   EXPECT_LT(few.farthest, kOfSums);
@@ -91,7 +99,7 @@ TEST(OwnerWeights, ExplainGrayPixels) {
 
 // Where the limits of the two estimates move the channels of a colour by different factors, no weights explain all
 // three.
-TEST(OwnerWeights, ExplainColorsUpToTheirLimits) {
+TEST(PixelObserver, ExplainColorsUpToTheirLimits) {
   const Explained found = explain_random(613, 60, colorful);
   EXPECT_GT(found.merged, 250);
   EXPECT_LT(found.farthest, 2 * kOfMerged);
@@ -100,27 +108,26 @@ TEST(OwnerWeights, ExplainColorsUpToTheirLimits) {
 
 // Three strips with two slots: the two left ones become one. A third of the pixel each, or what a surface in front of
 // the merged one leaves of it.
-TEST(OwnerWeights, WhatIsLeftOfAMergedOwnerIsSharedByItsTriangles) {
+TEST(PixelObserver, WhatIsLeftOfAMergedOwnerIsSharedByItsTriangles) {
   SetupTriangles triangles;
   add_left_of(triangles, 64, -0.5f);
   add_right_of(triangles, 192, -0.49f);
   add_everywhere(triangles, -0.2f);
   const std::vector<glm::vec3> colors{{1, 0, 0}, {0, 1, 0}, {0, 0, 1}};
   OpenTile<8, 2> tile(triangles, colors);
-  OwnerWeights weights(1);
-  tile.weights = &weights;
+  const PixelObservers observers = observers_of(1, tile.positions);
+  tile.observers = &observers;
   tile.compose({0, 1, 2});
   ASSERT_EQ(tile.merges[0], 1);
   std::vector<double> found(3);
-  for (const OwnerWeights::Weight& each : weights.of_pixel(0)) {
-    found[each.number] = each.weight;
-    EXPECT_EQ(each.merged, each.number < 2);
-    EXPECT_FALSE(each.speck);
+  for (const SurfaceWeight& each : observers[0]->history.weights()) {
+    found[each.triangle] = each.weight;
+    EXPECT_EQ(each.order, each.triangle + 1);
+    EXPECT_FALSE(each.tiny);
   }
   EXPECT_NEAR(found[0], 0.25, 1e-3);
   EXPECT_NEAR(found[1], 0.25, 1e-3);
   EXPECT_NEAR(found[2], 0.5, 1e-3);
 }
 
-}  // namespace
-}  // namespace beampipe
+}  // namespace beampipe::owner_weights_test

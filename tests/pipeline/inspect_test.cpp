@@ -1,5 +1,5 @@
-// The history of a pixel is the pixel: the stages, fed one fragment at a time, give the picture's bits, and so do the
-// weights times the colours.
+// The history of a pixel is the pixel: its weights times its colours are the bits of the picture, but for what formats
+// change.
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -8,13 +8,11 @@
 #include <numeric>
 #include <random>
 
-#include "pipeline/inspect/pixel_history.h"
 #include "pipeline/technique.h"
 #include "tests/pipeline/surface_traces.h"
 #include "traces/scenes.h"
 
-namespace beampipe {
-namespace {
+namespace beampipe::inspect_test {
 
 struct InspectedSpec {
   const char* spec;
@@ -24,7 +22,7 @@ struct InspectedSpec {
 
 // fp16 has 11 bits, and alpha rounds to it after each fragment. Owners that become one keep 9 bits of their colour, and
 // z3 rounds it at each merge. The limits of beam move a channel by up to 3 positions. The samples of msaa are added up
-// in double precision, so opaque triangles leave no rest.
+// in double precision, so opaque triangles leave no rest. Layers over the picture are added in single precision.
 constexpr InspectedSpec kSpecs[] = {
     {"beam", 0.02, 1e-4},
     {"beam:bits=64,slots=4,at=visible", 0.06, 1e-4},
@@ -45,6 +43,9 @@ constexpr InspectedSpec kSpecs[] = {
     {"msaa:8,prepass", 0, 1e-12},
     {"msaa:4,alpha=coverage", 0, 1e-12},
     {"msaa:8,resolve=reinhard", 1e-6, 10},
+    {"deferred", 1e-6, 1e-6},
+    {"visibility", 1e-6, 1e-6},
+    {"visibility:8", 1e-6, 1e-6},
     {"acaa:8", 4e-3, 10},
     {"acaa:8,double=saturate", 4e-3, 1e-4},
     {"acaa:64,double=stencil,color=fp32", 1e-5, 1e-4},
@@ -128,7 +129,10 @@ void inspect(const Trace& trace, const std::string& name, unsigned seed, double 
     const FrameSinks sinks{.weights = technique.has_weights ? &weights : nullptr};
     const Image image = technique.render(trace, 0, run, sinks).image;
     const std::vector<PixelAddress> pixels = chosen_pixels(image, reference, seed);
-    const std::vector<PixelHistory> histories = technique.inspect(trace, 0, run, pixels);
+    std::vector<PixelHistory> histories;
+    FrameInput observed = run;
+    observed.pixels = &pixels;
+    technique.render(trace, 0, observed, {.histories = &histories});
     ASSERT_EQ(histories.size(), pixels.size());
     for (std::size_t i = 0; i < pixels.size(); ++i) {
       SCOPED_TRACE(name + ", " + spec.spec + ", pixel " + std::to_string(pixels[i].x) + "," +
@@ -154,5 +158,4 @@ TEST(Inspect, RandomSurfacesAreTheirPictureToTheBit) {
   inspect(random_surfaces(45, 31, 150, 3), "surfaces", 5, kBlending);
 }
 
-}  // namespace
-}  // namespace beampipe
+}  // namespace beampipe::inspect_test

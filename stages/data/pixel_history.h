@@ -1,6 +1,5 @@
 // What happened in one pixel: every triangle that reached it, in the order in which the technique takes them, what
-// became of each, and what each is worth in the end. Techniques fill it (Technique::inspect) by sending the pixel's
-// fragments through their own stages one at a time, so that no stage knows of it.
+// became of each, and what each is worth in the end. Stages tell it to a PixelObserver while they work.
 #pragma once
 
 #include <cstdint>
@@ -9,7 +8,7 @@
 #include <string>
 #include <vector>
 
-#include "pipeline/technique.h"
+#include "stages/data/tile.h"
 
 namespace beampipe {
 
@@ -36,14 +35,15 @@ struct PositionMove {
 
 // A triangle in the pixel. Positions are mask positions, or the samples of a technique that has them.
 struct HistoryFragment {
-  std::uint32_t triangle, draw;     // indices into SetupTriangles and Frame::draws
-  glm::dvec2 corners[3];            // pixels, frame coordinates
+  std::uint32_t triangle;           // index into SetupTriangles
+  std::uint32_t draw = 0;           // index into Frame::draws
+  glm::dvec2 corners[3] = {};       // pixels, frame coordinates
   double area = 0;                  // exact, of the triangle in the pixel, 0..1; after alpha
   float nearest = 0, farthest = 0;  // bounds of its depth in the pixel, -1 near to 0 far
   bool is_front = false;            // as in SetupTriangle
   bool is_tiny = false;             // it covers no position of the technique's, whatever it was given
   std::vector<bool> mask = {};      // positions that it covers; empty if it has no mask
-  Fate fate = Fate::hidden;
+  Fate fate = Fate::closed_off;
   std::vector<PositionMove> taken = {};  // positions that it took, and from whom
   std::vector<PositionMove> lost = {};   // positions that it covers and does not own, and who had or took them
 };
@@ -60,7 +60,7 @@ struct HistoryStep {
   enum class Kind {
     merged,    // two surfaces became one: before[0] and before[1] became after
     settled,   // a surface is final and was added to the pixel: before[0], with its area
-    composed,  // the pixel's aggregate before and after a fragment or a window of fragments
+    composed,  // the pixel's aggregate before and after a window of fragments
   };
   Kind kind;
   std::uint32_t after_fragment = kNobody;  // it happened when this fragment came; kNobody: after the last one
@@ -80,6 +80,16 @@ struct PixelEstimates {
   glm::dvec4 analytic, counted, result;  // linear RGB times area, and area
 };
 
+// The weight of one triangle in one pixel. The pixel is the sum of weight times colour over its triangles; the
+// background has what is left to 1.
+struct SurfaceWeight {
+  std::uint32_t triangle;  // index into SetupTriangles
+  float weight;
+  std::uint32_t order;  // when it came, where that decides about depth: where surfaces became one; else 0
+  bool tiny;            // covers no position of the technique's mask
+};
+using PixelWeights = std::vector<SurfaceWeight>;
+
 struct PixelHistory {
   PixelAddress at{};
   std::string order = {};                 // in which fragments come, as words
@@ -87,15 +97,18 @@ struct PixelHistory {
   std::vector<glm::vec2> positions = {};  // in the pixel, from its upper left corner, 0..1
   std::vector<HistoryFragment> fragments = {};
   std::vector<HistoryStep> steps = {};
-  std::vector<std::uint32_t> owners = {};  // of each position at the end: a fragment or kNobody; may be empty
+  std::vector<std::uint32_t> owners = {};  // of each position at the end: a fragment or kNobody
   std::vector<HistoryTerm> terms = {};
   std::optional<PixelEstimates> estimates = {};
-  glm::vec4 pixel{0};  // as in the technique's picture, to the bit
+  glm::vec4 pixel{0};  // as in the technique's picture
 
   // The terms' sum and, to the bit, what it lacks of `pixel`: 0 where the sum rounds to it. That is what formats of
   // colours and limits have changed.
   glm::dvec3 sum() const;
   glm::dvec3 rest() const;
+
+  // The terms' sums by triangle, without the background's.
+  PixelWeights weights() const;
 };
 
 }  // namespace beampipe
