@@ -1,5 +1,6 @@
 // The formulas of simd/merge.h. No include guard: see simd/scalar.h. Unlike other formulas, merge_formula has
-// early-outs: any() tells whether a part has work, and choose() takes its result where it has.
+// early-outs: any() tells whether a part has work, and choose() takes its result where it has. Parts that are `inline`
+// are so for g++, which would otherwise call them: a kernel takes a tenth longer then.
 
 // How much of the fragment (i, for incoming) and of the aggregate (a) is visible in one region of mask positions, or in
 // the whole pixel.
@@ -129,7 +130,7 @@ DepthRegions<Mask> regions_by_lines(const AggregateOf<Float, Mask>& in, const Ag
 
 // Calls visit(here, u, v, s) for the positions s, at (u, v), that a mask has in some lanes: those where `here` is true.
 template <class Float, class Mask, class Visit>
-void for_each_position(Mask mask, const SamplePattern& pattern, Visit&& visit) {
+inline void for_each_position(Mask mask, const SamplePattern& pattern, Visit&& visit) {
   for (int s = 0; s < 32; ++s) {
     const auto here = has_bit(mask, s);
     const auto i = static_cast<std::size_t>(s);
@@ -146,9 +147,9 @@ DepthRegions<Mask> region_of_position(const AggregateOf<Float, Mask>& in, const 
   return {select(depth < ends.front, here, Mask(0u)), select(depth >= ends.back, here, Mask(0u))};
 }
 template <class Float, class Mask>
-DepthRegions<Mask> regions_by_positions(const AggregateOf<Float, Mask>& in, const AggregateOf<Float, Mask>& old,
-                                        DepthRegions<Mask> regions, const SamplePattern& pattern,
-                                        const MergeRules& rules, const MergeStepsOf<Mask>& steps) {
+inline DepthRegions<Mask> regions_by_positions(const AggregateOf<Float, Mask>& in, const AggregateOf<Float, Mask>& old,
+                                               DepthRegions<Mask> regions, const SamplePattern& pattern,
+                                               const MergeRules& rules, const MergeStepsOf<Mask>& steps) {
   for_each_position<Float>(steps.tested, pattern, [&](const auto& is_here, Float u, Float v, int s) {
     const Mask here = choose(is_here, Mask(1u << s), Mask(0u));
     const DepthRegions<Mask> at = region_of_position(in, old, u, v, here, rules);
@@ -209,9 +210,9 @@ Float fuzziness_of(const AggregateOf<Float, Mask>& in, const AggregateOf<Float, 
 
 // What visible_parts needs to know about the overlap, once it is partitioned.
 template <class Float, class Mask>
-OverlapParts<Float, Mask> overlap_parts(const AggregateOf<Float, Mask>& in, const AggregateOf<Float, Mask>& old,
-                                        const DepthRegions<Mask>& regions, const SamplePattern& pattern,
-                                        const MergeRules& rules, MergeStepsOf<Mask>& steps) {
+inline OverlapParts<Float, Mask> overlap_parts(const AggregateOf<Float, Mask>& in, const AggregateOf<Float, Mask>& old,
+                                               const DepthRegions<Mask>& regions, const SamplePattern& pattern,
+                                               const MergeRules& rules, MergeStepsOf<Mask>& steps) {
   const Float zero(0.0f);
   steps.fuzzy = steps.overlap & ~regions.front & ~regions.back;
   const auto is_fuzzy = steps.fuzzy != Mask(0u);
@@ -392,9 +393,9 @@ AggregateOf<Float, Mask> choose_aggregate(Bool condition, const AggregateOf<Floa
 // The thickness of the slab around merged.plane: enough to reach the fragment at the positions steps.reached, and, with
 // Thickness::containing, the earlier slab at the positions steps.moved.
 template <class Float, class Mask>
-Float merged_thickness(const AggregateOf<Float, Mask>& in, const AggregateOf<Float, Mask>& old,
-                       const DepthPlane<Float>& plane, const SamplePattern& pattern, bool containing,
-                       const MergeStepsOf<Mask>& steps) {
+inline Float merged_thickness(const AggregateOf<Float, Mask>& in, const AggregateOf<Float, Mask>& old,
+                              const DepthPlane<Float>& plane, const SamplePattern& pattern, bool containing,
+                              const MergeStepsOf<Mask>& steps) {
   Float farthest = lesser(old.thickness, Float(0.0f)), moved = farthest;  // 0
   for_each_position<Float>(steps.reached, pattern, [&](const auto& is_here, Float u, Float v, int) {
     farthest = choose(is_here, farther_from(plane, clamped_depth(in, u, v), u, v, farthest), farthest);
