@@ -43,7 +43,7 @@ std::map<std::string, std::string> found_lines() {
   for (const SceneKind& kind : scene_kinds()) {
     const Trace trace = make_scene(kind.name, {.triangles = 1000, .width = 32, .height = 19});
     for (const std::string& spec : example_specs())
-      lines[kind.name + (' ' + spec)] = line_of(parse_technique(spec).render(trace, 0, {2}));
+      lines[std::string(kind.name) + ' ' + spec] = line_of(parse_technique(spec).render(trace, 0, {2}));
   }
   return lines;
 }
