@@ -1,6 +1,7 @@
 #include "pipeline/bins/bin_observer.h"
 
 #include <algorithm>
+#include <functional>
 
 #include "pipeline/bins/render_bins.h"
 #include "stages/beam/alpha_mask.h"
@@ -146,7 +147,10 @@ void BinObserver::describe(const Pair& pair, const Tile& pixel, PixelObserver& o
       observer.would_cover(pair.triangle, first, fragment.mask.words[first / 32]);
   }
   if (fragments.empty()) noted.area = area;
-  if (!masks_) noted.is_tiny = std::none_of(noted.mask.begin(), noted.mask.end(), [](bool is) { return is; });
+  if (!masks_) {
+    noted.mask.resize(positions_);
+    noted.is_tiny = std::ranges::none_of(noted.mask, std::identity());
+  }
   const SetupTriangle& triangle = context_.triangles.triangles[pair.triangle];
   noted.draw = context_.triangles.draws[pair.triangle];
   for (int k = 0; k < 3; ++k) noted.corners[k] = glm::dvec2(triangle.x[k], triangle.y[k]) / double{kSubpixelUnits};

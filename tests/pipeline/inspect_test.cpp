@@ -22,7 +22,7 @@ struct InspectedSpec {
 
 // fp16 has 11 bits, and alpha rounds to it after each fragment. Owners that become one keep 9 bits of their colour, and
 // z3 rounds it at each merge. The limits of beam move a channel by up to 3 positions. The samples of msaa are added up
-// in double precision, so opaque triangles leave no rest.
+// in double precision, so opaque triangles leave no rest. Layers over the picture are added in single precision.
 constexpr InspectedSpec kSpecs[] = {
     {"beam", 0.02, 1e-4},
     {"beam:bits=64,slots=4,at=visible", 0.06, 1e-4},
@@ -43,9 +43,9 @@ constexpr InspectedSpec kSpecs[] = {
     {"msaa:8,prepass", 0, 1e-12},
     {"msaa:4,alpha=coverage", 0, 1e-12},
     {"msaa:8,resolve=reinhard", 1e-6, 10},
-    {"deferred", 0, 1e-12},
-    {"visibility", 0, 1e-12},
-    {"visibility:8", 0, 1e-12},
+    {"deferred", 1e-6, 1e-6},
+    {"visibility", 1e-6, 1e-6},
+    {"visibility:8", 1e-6, 1e-6},
     {"acaa:8", 4e-3, 10},
     {"acaa:8,double=saturate", 4e-3, 1e-4},
     {"acaa:64,double=stencil,color=fp32", 1e-5, 1e-4},

@@ -31,7 +31,7 @@ CountedCell counts_of(const Json& json, const Technique& technique, const Memory
 
 Json to_json(const PictureErrors& errors) {
   const EquivalentMsaa& emr = errors.equivalent_msaa;
-  return {{"error", to_json(errors.error)},
+  return {{"error", error_form().write(errors.error)},
           {"equivalent_msaa", emr.samples},
           {"is_lower_bound", emr.is_lower_bound},
           {"is_upper_bound", emr.is_upper_bound}};

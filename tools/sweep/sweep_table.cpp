@@ -50,7 +50,7 @@ std::vector<Column> cell_columns() {
   };
   for (const MemoryParameter& parameter : memory_parameters()) {
     const bool is_text = parameter.get({}).is_string();
-    columns.push_back({{std::string("memory_system.") + parameter.name, parameter.unit, parameter.meaning, is_text},
+    columns.push_back({{std::string("memory_system.") + parameter.key, parameter.unit, parameter.meaning, is_text},
                        [&parameter](const Cell& c) {
                          const Json value = parameter.get(c.plan.memory[c.cell.memory]);
                          return value.is_boolean() ? Json(value.get<bool>() ? 1 : 0) : value;
