@@ -165,7 +165,8 @@ DepthRegions<Mask> partition(const AggregateOf<Float, Mask>& in, const Aggregate
                              const SharedPositions<Mask>& shared, const MergePositions& positions,
                              const MergeRules& rules, MergeStepsOf<Mask>& steps) {
   const bool ranged = rules.extents == MergeRules::Extents::range;
-  const auto meets = shared.any_there, never = meets & !meets;
+  const auto meets = shared.any_there;
+  const auto never = meets & !meets;
   const auto before = ranged ? meets & is_before(in, old) : never;
   const auto after = ranged ? meets & is_after(in, old) : never;
   const auto undecided = meets & !(before | after);

@@ -20,6 +20,12 @@ import sys
 FOLDERS = ("simd", "stages")
 
 
+def tool(name):
+    """The program of LLVM that belongs to the compiler of the preset."""
+    found = subprocess.run(["clang++", f"-print-prog-name={name}"], check=True, capture_output=True, text=True)
+    return found.stdout.strip()
+
+
 def main(build, *tests):
     build = pathlib.Path(build).resolve()
     source = build.parent.parent
@@ -33,11 +39,11 @@ def main(build, *tests):
     # Clang describes a kernel only where its file includes itself no more, for the last instruction set. What the other
     # ones count is added to that: they are the same functions in other namespaces.
     merged, counts = build / "tests.profdata", build / "tests.proftext"
-    subprocess.run(["llvm-profdata-14", "merge", "-text", "-o", counts, *profiles], check=True)
+    subprocess.run([tool("llvm-profdata"), "merge", "-text", "-o", counts, *profiles], check=True)
     counts.write_text(re.sub(r"6N_AVX[23]|9N_AVX3_DL|6N_SSE[24]|7N_SSSE3", "8N_EMU128", counts.read_text()))
-    subprocess.run(["llvm-profdata-14", "merge", "-o", merged, counts], check=True)
+    subprocess.run([tool("llvm-profdata"), "merge", "-o", merged, counts], check=True)
     objects = [option for program in programs[1:] for option in ("-object", program)]
-    text = subprocess.run(["llvm-cov-14", "export", "-instr-profile", merged, programs[0], *objects], check=True,
+    text = subprocess.run([tool("llvm-cov"), "export", "-instr-profile", merged, programs[0], *objects], check=True,
                           capture_output=True, text=True).stdout
 
     print(f"{'file':40} {'lines':>12} {'branches':>12}  not reached")

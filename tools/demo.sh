@@ -7,7 +7,7 @@ output=$(realpath --canonicalize-missing "${1:-"$(dirname "${BASH_SOURCE[0]}")/.
 cd "$(dirname "${BASH_SOURCE[0]}")/.."
 
 tools/install_packages.sh build
-cmake --preset release -DBEAMPIPE_TESTS=OFF
+cmake --preset release -DBEAMPIPE_TESTS=OFF -DCMAKE_UNITY_BUILD=ON
 cmake --build --preset release --target beampipe --parallel "$(nproc)"
 
 build/release/tools/beampipe make fence -o "$output/fence.json"

@@ -23,7 +23,7 @@ test=(
   chromium chromium-driver python3  # tests of the report page
   python3-jsonschema                # holds results to their JSON Schemas
   libgtest-dev libbenchmark-dev
-  clang-14 libclang-rt-14-dev       # fuzz targets
+  clang libclang-rt-dev             # fuzz targets
   assimp-testmodels                 # glTF models that other programs wrote, sound and broken ones
   "${capture[@]}"
   vulkan-tools mesa-utils glmark2-es2-x11  # programs to capture

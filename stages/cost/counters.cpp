@@ -7,7 +7,7 @@ namespace beampipe {
 namespace {
 
 using Ops = OperationCounts;
-using enum CounterGroup::Bit;
+using namespace counter_group;
 
 constexpr CounterInfo field(CounterGroups group, const char* name, const char* title, const char* unit,
                             const char* meaning, std::uint64_t StageCounters::*counter) {

@@ -8,7 +8,7 @@
 namespace beampipe {
 namespace {
 
-using enum CounterGroup::Bit;
+using namespace counter_group;
 using enum StageGroup;
 
 constexpr bool kYes = true, kNo = false;

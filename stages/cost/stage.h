@@ -66,27 +66,27 @@ inline constexpr std::size_t kStageNumbers = 2 * (kStageCount + 1);
 
 // Groups of counters that a stage has or lacks as a whole, as bits.
 using CounterGroups = std::uint32_t;
-struct CounterGroup {
-  enum Bit : CounterGroups {
-    items = 1 << 0,  // items_in, items_out, and sums
-    mul_add = 1 << 1,
-    add = 1 << 2,
-    bit = 1 << 3,
-    fetch = 1 << 4,
-    special = 1 << 5,
-    convert = 1 << 6,
-    wide = 1 << 7,
-    reads = 1 << 8,
-    writes = 1 << 9,
-    sectors = 1 << 10,
-    outer_memory = 1 << 11,  // bytes of L2 and of DRAM
-    texels = 1 << 12,
-    positions = 1 << 13,
-    lanes = 1 << 14,
-    hidden = 1 << 15,   // items and triangles that a rasterizer leaves out
-    empties = 1 << 16,  // tiles without triangles
-  };
+namespace counter_group {
+enum Bit : CounterGroups {
+  items = 1 << 0,  // items_in, items_out, and sums
+  mul_add = 1 << 1,
+  add = 1 << 2,
+  bit = 1 << 3,
+  fetch = 1 << 4,
+  special = 1 << 5,
+  convert = 1 << 6,
+  wide = 1 << 7,
+  reads = 1 << 8,
+  writes = 1 << 9,
+  sectors = 1 << 10,
+  outer_memory = 1 << 11,  // bytes of L2 and of DRAM
+  texels = 1 << 12,
+  positions = 1 << 13,
+  lanes = 1 << 14,
+  hidden = 1 << 15,   // items and triangles that a rasterizer leaves out
+  empties = 1 << 16,  // tiles without triangles
 };
+}  // namespace counter_group
 
 enum class StageGroup : std::uint8_t { geometry, raster, fragments, visibility, shading, picture, reference };
 std::string_view name_of(StageGroup group);

@@ -1,5 +1,6 @@
 #!/usr/bin/env python3
 """Installs a build, uses it as others would, and makes its Debian package: install_test.py CMAKE BUILD_FOLDER"""
+import json
 import os
 import pathlib
 import re
@@ -10,6 +11,20 @@ import tempfile
 import unittest
 
 CMAKE, BUILD = sys.argv[1:3]
+ALONE_PROJECT = """cmake_minimum_required(VERSION 3.25)
+project(alone LANGUAGES CXX)
+find_package(beampipe REQUIRED)
+add_executable(alone main.cpp)
+target_link_libraries(alone PRIVATE beampipe::pipeline)
+"""
+ALONE_PROGRAM = """#include <iostream>
+#include "pipeline/technique.h"
+#include "traces/scenes.h"
+int main() {
+  const beampipe::Trace trace = beampipe::make_scene("bars", {});
+  std::cout << beampipe::parse_technique("beam").render(trace, 0, {}).image.width << std::endl;
+}
+"""
 EXAMPLES = pathlib.Path(__file__).resolve().parent.parent.parent / "docs/examples/library"
 
 
@@ -32,19 +47,50 @@ class Install(unittest.TestCase):
             raise AssertionError(f"{command}: exit {found.returncode}\n{found.stdout}\n{found.stderr}")
         return found.stdout
 
-    def test_examples_outside_the_tree_build_and_run(self):
+    def build_examples(self):
+        """Builds the example programs, makes t.json, and returns the installed program."""
         self.run_it(CMAKE, "-S", EXAMPLES, "-B", "examples", f"-DCMAKE_PREFIX_PATH={self.prefix}")
         self.run_it(CMAKE, "--build", "examples", "--parallel", "2")
         program = self.prefix / "bin/beampipe"
         self.run_it(program, "make", "fence", "--triangles", "2000", "--width", "40", "--height", "30", "-o", "t.json")
+        return program
+
+    def test_examples_outside_the_tree_build_and_run(self):
+        program = self.build_examples()
         rendered = self.run_it("examples/render_trace", "t.json", "beam")
         self.assertIn("beam: 40 x 30 pixels", rendered)
         self.run_it(program, "run", "t.json", "-t", "beam", "-o", "out")
         report = (self.folder / "out/report.json").read_text()
         for stage, items in re.findall(r"^(\w+): (\d+) in", rendered, re.M):
             self.assertRegex(report, rf'"stage": "{stage}",\s*"items_in": {items}\b')
-        most = re.search(r"mean ([\d.]+), most (\d+)", self.run_it("examples/own_technique", "t.json"))
-        self.assertGreater(int(most[2]), float(most[1]))
+        rate = self.run_it("examples/equivalent_rate", "t.json", "msaa:8")
+        self.assertRegex(rate, r"equivalent MSAA rate 8\n(\w+: [\d.e-]+ ms\n)+$")
+
+    def test_a_technique_outside_the_tree_is_compared_swept_and_reported(self):
+        self.build_examples()
+        self.run_it("examples/own_technique", "compare", "t.json", "-t", "overdraw", "msaa:1", "-o", "own")
+        report = json.loads((self.folder / "own/report.json").read_text())
+        result, = (each for each in report["techniques"] if each["spec"] == "overdraw")
+        self.assertGreater(result["equivalent_msaa"], 0)
+        for times in result["frames"][0]["modelled_ms"].values():
+            self.assertGreater(times["overlap"], 0)
+        self.run_it("examples/own_technique", "report", "own")
+        self.assertIn("overdraw", (self.folder / "own/report.html").read_text())
+        plan = {"beampipe_sweep": 1, "traces": ["t.json"], "techniques": ["overdraw", "msaa:1"]}
+        (self.folder / "plan.json").write_text(json.dumps(plan))
+        self.run_it("examples/own_technique", "sweep", "plan.json", "-o", "swept")
+        self.assertIn("overdraw", (self.folder / "swept/table.csv").read_text())
+
+    def test_the_pipeline_needs_glm_highway_and_onetbb_alone(self):
+        project = self.folder / "alone"
+        project.mkdir()
+        (project / "main.cpp").write_text(ALONE_PROGRAM)
+        (project / "CMakeLists.txt").write_text(ALONE_PROJECT)
+        others = ("PNG", "libjpeg-turbo", "tinyobjloader", "TinyGLTF", "OpenEXR", "Imath", "ZLIB", "SQLite3", "Boost")
+        self.run_it(CMAKE, "-S", project, "-B", "alone/build", f"-DCMAKE_PREFIX_PATH={self.prefix}",
+                    *(f"-DCMAKE_DISABLE_FIND_PACKAGE_{name}=ON" for name in others))
+        self.run_it(CMAKE, "--build", "alone/build")
+        self.assertEqual(self.run_it("alone/build/alone"), "320\n")
 
     def test_bash_completes_commands_options_and_values(self):
         script = self.prefix / "share/bash-completion/completions/beampipe"

@@ -14,8 +14,6 @@
 namespace beampipe {
 namespace {
 
-constexpr const char* kPython = "/usr/bin/python3";  // Debian's, which has RenderDoc's module
-
 // The scripts of the installed program, or those of the source folder.
 std::filesystem::path scripts_folder() {
   const std::filesystem::path program = std::filesystem::read_symlink("/proc/self/exe");
@@ -25,7 +23,7 @@ std::filesystem::path scripts_folder() {
 
 // Becomes Python, which does not return. The process stays the same, so that signals reach it.
 [[noreturn]] void run_scripts(const std::vector<std::string>& words) {
-  std::vector<std::string> command = {kPython, scripts_folder().string()};
+  std::vector<std::string> command = {BEAMPIPE_PYTHON, scripts_folder().string()};
   command.insert(command.end(), words.begin(), words.end());
   std::vector<char*> argv;
   for (std::string& word : command) argv.push_back(word.data());
@@ -35,9 +33,9 @@ std::filesystem::path scripts_folder() {
   sigaddset(&signals, SIGINT);
   sigaddset(&signals, SIGTERM);
   sigprocmask(SIG_UNBLOCK, &signals, nullptr);
-  execv(kPython, argv.data());
-  throw std::runtime_error(std::string(kPython) +
-                           " (Debian package python3) cannot be started: " + std::strerror(errno));
+  execv(BEAMPIPE_PYTHON, argv.data());
+  throw std::runtime_error(std::string(BEAMPIPE_PYTHON " (Debian package python3) cannot be started: ") +
+                           std::strerror(errno));
 }
 
 }  // namespace

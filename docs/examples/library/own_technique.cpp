@@ -1,13 +1,13 @@
-// A technique of one's own, made of beampipe's stages: how many triangles touch each pixel, as a grey level.
-// own_technique TRACE
+// The program `beampipe` with one technique more, which is made of beampipe's stages: how many triangles touch each
+// pixel, as a grey level. All commands know it: own_technique compare TRACE -t overdraw -o DIR
 #include <algorithm>
-#include <exception>
-#include <iostream>
+#include <utility>
 #include <vector>
 
 #include "pipeline/bins/render_bins.h"
+#include "pipeline/technique_table.h"
 #include "stages/raster/conservative_raster.h"
-#include "traces/files/trace_io.h"
+#include "tools/cli/program.h"
 
 namespace {
 
@@ -16,7 +16,7 @@ using namespace beampipe;
 // One bin: its triangles become pairs, and every pair makes its pixel brighter.
 void render_bin(Bin& bin) {
   std::vector<Pair> pairs;
-  conservative_raster(bin.triangles(), bin.list, bin.tile, bin.stage("conservative_raster").timed(), pairs);
+  conservative_raster(bin.triangles(), bin.list, bin.tile, bin.stage(StageId::conservative_raster).timed(), pairs);
   std::vector<float>& touched = bin.pixel_counter("touched");
   for (const Pair& pair : pairs) ++touched[bin.tile.index(pair.x, pair.y)];
   std::vector<glm::vec4> picture;
@@ -26,12 +26,11 @@ void render_bin(Bin& bin) {
 
 Technique overdraw() {
   Technique technique;
-  technique.spec = "overdraw";
   technique.framebuffer = {.surfaces = {{"count", "R16UI", 2}}};
   technique.renderer = [framebuffer = technique.framebuffer](const Trace& trace, std::size_t frame,
                                                              const FrameInput& run, const FrameSinks& sinks) {
     const FrameContext context({trace, trace.frames[frame], run, sinks});
-    const BinPlan plan{.stages = {"conservative_raster", "resolve"}, .framebuffer = framebuffer};
+    const BinPlan plan{.stages = {StageId::conservative_raster, StageId::resolve}, .framebuffer = framebuffer};
     return render_bins(context, plan, render_bin);
   };
   return technique;
@@ -39,21 +38,18 @@ Technique overdraw() {
 
 }  // namespace
 
-int main(int argc, char** argv) {
-  if (argc != 2) {
-    std::cerr << "usage: own_technique TRACE\n";
-    return 2;
-  }
-  try {
-    const Trace trace = read_trace(argv[1]);
-    const FrameResult result = overdraw().render(trace, 0, {});
-    const std::vector<float>& touched = result.pixel_counters.at("touched");
-    double pairs = 0;
-    for (const float count : touched) pairs += count;
-    std::cout << "triangles that touch a pixel: mean " << pairs / static_cast<double>(touched.size()) << ", most "
-              << *std::max_element(touched.begin(), touched.end()) << '\n';
-  } catch (const std::exception& error) {
-    std::cerr << "own_technique: error: " << error.what() << '\n';
-    return 1;
-  }
+// The linker takes this one in place of the library's.
+const std::vector<TechniqueKind>& beampipe::technique_kinds() {
+  static const std::vector<TechniqueKind> kinds = [] {
+    std::vector<TechniqueKind> all = built_in_kinds();
+    all.push_back({.name = "overdraw",
+                   .description = "triangles that touch a pixel, as a grey level",
+                   .source = "an example",
+                   .examples = {"overdraw"},
+                   .make = make_plain(overdraw)});
+    return all;
+  }();
+  return kinds;
 }
+
+int main(int argc, char** argv) { return run_program(argc, argv); }
