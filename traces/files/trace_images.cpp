@@ -2,12 +2,12 @@
 
 #include <utility>
 
+#include "traces/files/image_file.h"
 #include "traces/files/input_file.h"
 
 namespace beampipe {
 
 std::uint32_t add_image(Trace& trace, TextureImage image, const std::string& where) {
-  constexpr std::uint64_t kMostTexels = std::uint64_t{1} << 28;
   std::uint64_t texels = std::uint64_t{image.width} * image.height;
   for (const TextureImage& other : trace.images) texels += std::uint64_t{other.width} * other.height;
   if (texels > kMostTexels)
