@@ -60,7 +60,7 @@ struct FrameWork {
   void run(TileWork& work) const {
     StageCounters unused;
     ClosedDepth closed(work.tile);
-    conservative_raster(triangles, work.list, work.tile, unused, work.pairs, &closed);
+    conservative_raster(triangles, work.list, work.tile, unused, work.pairs, {&closed});
     work.records = sort_records(work.pairs, work.tile);
     work.buffer = a_buffer(work.records, work.tile.pixels(), 0, kStoredPairBytes, unused);
     Windows windows(work.pairs, work.buffer, kStoredPairBytes);
@@ -107,7 +107,7 @@ void raster(benchmark::State& state, const std::string& scene) {
   run_stage(state, frame, [&](const TileWork& work, StageCounters& counters) {
     std::vector<Pair> pairs;
     ClosedDepth closed(work.tile);
-    conservative_raster(frame.triangles, work.list, work.tile, counters, pairs, &closed);
+    conservative_raster(frame.triangles, work.list, work.tile, counters, pairs, {&closed});
   });
 }
 

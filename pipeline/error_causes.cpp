@@ -219,10 +219,9 @@ glm::dvec3 rgb(const Image& image, std::size_t pixel) {
 
 }  // namespace
 
-std::map<std::string, std::vector<float>> error_causes(const Trace& trace, const Frame& frame,
-                                                       const std::vector<PixelWeights>& weights, const Image& image,
-                                                       const Image& reference, const RunOptions& run) {
-  const FrameContext context(trace, frame, run);
+std::map<std::string, std::vector<float>> error_causes(const FrameJob& job, const std::vector<PixelWeights>& weights,
+                                                       const Image& image, const Image& reference) {
+  const FrameContext context(job);
   const Comparer comparer;
   FrameResult result = render_bins(context, plan_of_bins(), [&](Bin& bin) {
     const Tile& tile = bin.tile;
@@ -231,7 +230,7 @@ std::map<std::string, std::vector<float>> error_causes(const Trace& trace, const
     for (std::size_t cause = 0; cause < found.size(); ++cause) found[cause] = &bin.pixel_counter(kErrorCauses[cause]);
     for (std::size_t i = 0; i < tile.pixels(); ++i) {
       const auto columns = static_cast<std::size_t>(tile.width());
-      const std::size_t pixel = (static_cast<std::size_t>(tile.y0) + i / columns) * frame.width +
+      const std::size_t pixel = (static_cast<std::size_t>(tile.y0) + i / columns) * job.frame.width +
                                 static_cast<std::size_t>(tile.x0) + i % columns;
       const glm::dvec3 error = rgb(image, pixel) - rgb(reference, pixel);
       if (error == glm::dvec3(0.0)) continue;
@@ -244,14 +243,13 @@ std::map<std::string, std::vector<float>> error_causes(const Trace& trace, const
 }
 
 std::vector<ExplainedPixel> explain_pixels(const Trace& trace, const Frame& frame,
-                                           const std::vector<PixelColors>& pixels, const RunOptions& run) {
+                                           const std::vector<PixelColors>& pixels, const FrameInput& run) {
   std::vector<PixelAddress> addresses;
   for (const PixelColors& pixel : pixels) addresses.push_back(pixel.at);
-  RunOptions options = run;
+  FrameInput options = run;
   options.pixels = &addresses;
-  options.weights = nullptr;
   options.memory.modelled = false;
-  const FrameContext context(trace, frame, options);
+  const FrameContext context({trace, frame, options, {}});
   const Comparer comparer;
   std::vector<ExplainedPixel> explained(pixels.size());
   BinPlan plan = plan_of_bins();

@@ -33,11 +33,10 @@ inline constexpr std::array kErrorCauses = {"leak", "mask", "order", "interpenet
 
 // Returns one value per cause and pixel of the frame, row by row: the part of the cause's error that points in the
 // direction of the pixel's whole error, as a root mean square over R, G and B. A pixel's values add up to the length of
-// its error. A value is negative where the cause makes up for others. `weights`: RunOptions::weights of this frame.
-// `image` and `reference`: the frame's pictures. `run`: as they were rendered.
-std::map<std::string, std::vector<float>> error_causes(const Trace& trace, const Frame& frame,
-                                                       const std::vector<PixelWeights>& weights, const Image& image,
-                                                       const Image& reference, const RunOptions& run);
+// its error. A value is negative where the cause makes up for others. `job`: as the frame was rendered.
+// `weights`: FrameSinks::weights. `image` and `reference`: the frame's pictures.
+std::map<std::string, std::vector<float>> error_causes(const FrameJob& job, const std::vector<PixelWeights>& weights,
+                                                       const Image& image, const Image& reference);
 
 // A triangle in a pixel, or the background (kNoTriangle): its part of the pixel by the technique and by the reference.
 struct ExplainedSurface {
@@ -68,6 +67,6 @@ struct PixelColors {
 
 // The same for some pixels, with all that the split is made of.
 std::vector<ExplainedPixel> explain_pixels(const Trace& trace, const Frame& frame,
-                                           const std::vector<PixelColors>& pixels, const RunOptions& run);
+                                           const std::vector<PixelColors>& pixels, const FrameInput& run);
 
 }  // namespace beampipe

@@ -2,7 +2,6 @@
 
 #include <algorithm>
 #include <charconv>
-#include <type_traits>
 
 #include "pipeline/technique.h"
 #include "traces/closest_name.h"
@@ -10,8 +9,7 @@
 namespace beampipe {
 namespace {
 
-template <class Number>
-std::string text_of(Number number) {
+std::string text_of(float number) {
   char text[32];
   return {text, std::to_chars(text, text + sizeof text, number).ptr};
 }
@@ -123,29 +121,23 @@ SpecOption flag(std::string key, bool& variable, std::string help) {
           .set = set};
 }
 
-template <class Number>
-SpecOption number(std::string key, Number& variable, Number low, Number high, std::string help) {
-  const auto in_range = [low, high](Number value) { return low <= value && value <= high; };
-  const std::string kind = std::is_integral_v<Number> ? "a whole number" : "a number";
+SpecOption number(std::string key, float& variable, float low, float high, std::string help) {
+  const auto in_range = [low, high](float value) { return low <= value && value <= high; };
   return {.form = SpecOption::Form::value,
           .key = key,
           .usage = key + '=' + text_of(low) + ".." + text_of(high),
           .words = {},
-          .expected = kind + " from " + text_of(low) + " to " + text_of(high),
+          .expected = "a number from " + text_of(low) + " to " + text_of(high),
           .fallback = in_range(variable) ? text_of(variable) : "",
           .help = std::move(help),
           .set = [&variable, in_range](std::string_view text) {
-            Number value{};
+            float value{};
             const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), value);
             if (error != std::errc{} || end != text.data() + text.size() || !in_range(value)) return false;
             variable = value;
             return true;
           }};
 }
-
-template SpecOption number(std::string, int&, int, int, std::string);
-template SpecOption number(std::string, std::uint32_t&, std::uint32_t, std::uint32_t, std::string);
-template SpecOption number(std::string, float&, float, float, std::string);
 
 SpecOption beside(std::string needs, std::function<bool()> applies, SpecOption option) {
   option.needs = std::move(needs);

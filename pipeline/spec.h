@@ -61,10 +61,8 @@ SpecOption optional_samples(int& variable, int most, std::string help);
 // "key" alone sets the variable to true.
 SpecOption flag(std::string key, bool& variable, std::string help);
 
-// "key=number" with low <= number <= high; of type int, std::uint32_t or float. A variable that is out of this range
-// says that the option has no default.
-template <class Number>
-SpecOption number(std::string key, Number& variable, Number low, Number high, std::string help);
+// "key=number" with low <= number <= high. A variable that is out of this range says that the option has no default.
+SpecOption number(std::string key, float& variable, float low, float high, std::string help);
 
 // What `choice` makes of its words; `set_word` sets the variable to the value of words[i].
 SpecOption choice_of_words(std::string key, std::vector<std::string> words, std::string fallback, std::string help,

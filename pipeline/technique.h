@@ -25,7 +25,8 @@ namespace beampipe {
 class DramTrace;
 class Timeline;
 
-struct RunOptions {
+// How a frame is to be rendered.
+struct FrameInput {
   int threads = 0;  // 0: all that the machine has. Results do not depend on it.
   // For techniques that accumulate over time: what earlier frames left. `render` reads it and prepares it for the next
   // frame. Each technique needs its own, and frames must come in order. Null: the frame is a first one.
@@ -35,21 +36,30 @@ struct RunOptions {
   // rendered in bands of tiles, with the same result. When a single tile needs more, rendering throws
   // std::runtime_error.
   std::uint64_t memory_limit = 0;
-  int tile_size = 0;             // pixels on each side, even; 0: the technique's own. It does not change pictures.
-  Timeline* timeline = nullptr;  // where stage calls are recorded with their times; null: nowhere
+  int tile_size = 0;  // pixels on each side, even; 0: the technique's own. It does not change pictures.
   // The trace's textures, which frames share; null: the frame prepares its own.
   const TextureSet* textures = nullptr;
   SurfaceColors colors = SurfaceColors::by_place;
-  // Where a technique with has_weights records the weights of the triangles in each pixel of the frame, row by row;
-  // null: nowhere. It changes nothing that is rendered or counted.
-  std::vector<PixelWeights>* weights = nullptr;
-  // Where the DRAM requests of the frame are recorded, if memory is modelled; null: nowhere.
-  DramTrace* dram_trace = nullptr;
   // If not null, only the bins that hold one of these pixels are rendered; the rest of the picture is black.
   const std::vector<PixelAddress>* pixels = nullptr;
-  // Where a technique that can be observed records what happened in each of `pixels`; null: nowhere. It changes nothing
-  // that is rendered or counted.
+};
+
+// Where to collect what a result does not have; null: nowhere. It changes nothing that is rendered or counted.
+struct FrameSinks {
+  Timeline* timeline = nullptr;  // stage calls with their times
+  // Of each pixel of the frame, row by row. Only techniques with has_weights fill it.
+  std::vector<PixelWeights>* weights = nullptr;
+  // What happened in each of FrameInput::pixels. Only techniques that are observable fill it.
   std::vector<PixelHistory>* histories = nullptr;
+  DramTrace* dram_trace = nullptr;  // DRAM requests, if memory is modelled
+};
+
+// A frame to render. `frame` is one of the trace's.
+struct FrameJob {
+  const Trace& trace;
+  const Frame& frame;
+  const FrameInput& run;
+  const FrameSinks& sinks;
 };
 
 // Linear RGB and A, the part of the pixel that geometry covers (0..1). Row 0 is on top; 4 floats per pixel.
@@ -85,13 +95,18 @@ struct Technique {
   int positions = 0;                        // of a mask that says where in the pixel an area is; 0: there is none
   int counted_positions = 0;                // of a mask that limits areas to what counting its positions gives; or 0
   std::string errs_like = {};               // the technique whose limits in hard cases (tools/stress) hold here as well
-  std::function<FrameResult(const Trace&, std::size_t frame, const RunOptions&)> render;
-  bool is_observable = false;  // `render` can fill RunOptions::histories
-  bool has_weights = false;    // `render` can fill RunOptions::weights
-  bool keeps_history = false;  // a frame's picture depends on earlier frames (RunOptions::history)
+  std::function<FrameResult(const Trace&, std::size_t frame, const FrameInput&, const FrameSinks&)> renderer;
+  bool is_observable = false;  // `render` can fill FrameSinks::histories
+  bool has_weights = false;    // `render` can fill FrameSinks::weights
+  bool keeps_history = false;  // a frame's picture depends on earlier frames (FrameInput::history)
   // The least memory that this program needs for a frame, in bytes per pixel: the picture, and what its stages hand to
   // each other.
   std::uint32_t working_bytes_per_pixel = sizeof(glm::vec4);
+
+  FrameResult render(const Trace& trace, std::size_t frame, const FrameInput& run = {},
+                     const FrameSinks& sinks = {}) const {
+    return renderer(trace, frame, run, sinks);
+  }
 
   // In memory.
   std::uint32_t framebuffer_bytes_per_pixel(const MemoryParameters& memory = {}) const {

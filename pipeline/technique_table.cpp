@@ -1,6 +1,7 @@
 #include "pipeline/technique_table.h"
 
-// The techniques, in the order of --help and the docs. Each is NAME_kind() in a file of pipeline/techniques/.
+// The techniques of beampipe, in the order of --help and the docs. Each is NAME_kind() in a file of
+// pipeline/techniques/.
 #define BEAMPIPE_TECHNIQUES(X) \
   X(beam)                      \
   X(beam_sorted)               \

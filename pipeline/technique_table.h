@@ -69,12 +69,13 @@ auto make_plain(Build build) {
   };
 }
 
-// Technique::render from a function of the frame and, if the technique has any, its options. It runs on as many threads
-// as RunOptions says.
+// Technique::renderer from a function of the job and, if the technique has any, its options. It runs on as many threads
+// as FrameInput says.
 template <class Render, class... Options>
 auto bind_options(Render* render, const Options&... options) {
-  return [=](const Trace& trace, std::size_t frame, const RunOptions& run) {
-    return on_threads(run.threads, [&] { return render(trace, trace.frames.at(frame), options..., run); });
+  return [=](const Trace& trace, std::size_t frame, const FrameInput& run, const FrameSinks& sinks) {
+    const FrameJob job{trace, trace.frames.at(frame), run, sinks};
+    return on_threads(run.threads, [&] { return render(job, options...); });
   };
 }
 

@@ -19,7 +19,8 @@ HWY_INLINE hn::Vec<D> depths_at(D d, const CellDepth& item, const SamplePattern&
   const hn::RebindToSigned<D> di;
   const auto x = hn::ConvertTo(d, hn::Load(di, pattern.x.data() + s));
   const auto y = hn::ConvertTo(d, hn::Load(di, pattern.y.data() + s));
-  return hn::Add(hn::Add(hn::Set(d, item.z), hn::Mul(hn::Set(d, item.dzdx), x)), hn::Mul(hn::Set(d, item.dzdy), y));
+  const CellPlane<float>& plane = item.plane;
+  return hn::Add(hn::Add(hn::Set(d, plane.z), hn::Mul(hn::Set(d, plane.dzdx), x)), hn::Mul(hn::Set(d, plane.dzdy), y));
 }
 
 template <class D>

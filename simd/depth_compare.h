@@ -5,17 +5,17 @@
 #include <cstddef>
 #include <cstdint>
 
+#include "simd/depth_plane.h"
 #include "simd/sample_pattern.h"
 
 namespace beampipe {
 
-// A triangle in a cell. Its depth at sample (x, y), in 1/256 px from the cell's upper left corner, is z + dzdx x + dzdy
-// y.
+// A triangle in a cell.
 struct CellDepth {
   std::uint32_t cell;      // its samples start at cell * pattern.count
   std::uint32_t mask;      // samples to test
   std::uint32_t triangle;  // what to store where the test passes
-  float z, dzdx, dzdy;
+  CellPlane<float> plane;
 };
 
 // Arrays of cells * pattern.count samples. Another kSampleSlack samples after them must be readable and writable.
@@ -39,15 +39,15 @@ SampleCounts depth_test(const CellDepth* items, std::size_t count, const SampleP
 SampleCounts depth_equal(const CellDepth* items, std::size_t count, const SamplePattern& pattern, const float* depth,
                          std::uint32_t* masks);
 
-// The scalar twins for one sample: does it pass?
+// The scalar twins for one sample or position: does it pass?
 template <class Float>
-bool depth_test_scalar(Float z, Float dzdx, Float dzdy, Float x, Float y, Float stored, Float& depth) {
-  depth = z + dzdx * x + dzdy * y;
+bool depth_test_scalar(const CellPlane<Float>& plane, Float x, Float y, Float stored, Float& depth) {
+  depth = plane.z + plane.dzdx * x + plane.dzdy * y;
   return depth < stored;
 }
 template <class Float>
-bool depth_equal_scalar(Float z, Float dzdx, Float dzdy, Float x, Float y, Float stored) {
-  return z + dzdx * x + dzdy * y == stored;
+bool depth_equal_scalar(const CellPlane<Float>& plane, Float x, Float y, Float stored) {
+  return plane.z + plane.dzdx * x + plane.dzdy * y == stored;
 }
 
 }  // namespace beampipe

@@ -2,7 +2,7 @@
 
 // Of sample `index`: its depth, and is it nearer than the stored one?
 template <class Real>
-auto depth_span_sample(Real z, Real dzdx, Real row, Real x, Real step, Real index, Real stored, Real& depth) {
-  depth = (z + dzdx * (x + step * index)) + row;
+auto depth_span_sample(const DepthSpanOf<Real>& span, Real index, Real stored, Real& depth) {
+  depth = (span.z + span.dzdx * (span.x + span.step * index)) + span.row;
   return depth < stored;
 }

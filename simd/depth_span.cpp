@@ -22,14 +22,15 @@ std::uint64_t depth_span_kernel(const DepthSpan& span, std::size_t count, std::u
   const std::size_t lanes = hn::Lanes(d);
   HWY_ALIGN double lane_index[hn::MaxLanes(d)];
   for (std::size_t lane = 0; lane < lanes; ++lane) lane_index[lane] = static_cast<double>(lane);
-  const Reals z(span.z), dzdx(span.dzdx), row(span.row), x(span.x), step(span.step), first(hn::Load(d, lane_index));
+  const DepthSpanOf<Reals> all{Reals(span.z), Reals(span.dzdx), Reals(span.row), Reals(span.x), Reals(span.step)};
+  const Reals first(hn::Load(d, lane_index));
   const auto id = hn::Set(du, owner_id);
   std::uint64_t passed = 0;
   std::size_t i = 0;
   for (; i + lanes <= count; i += lanes) {
     const Reals index = Reals(static_cast<double>(i)) + first, stored(hn::LoadU(d, depth + i));
     Reals at;
-    const auto pass = depth_span_sample(z, dzdx, row, x, step, index, stored, at).raw;
+    const auto pass = depth_span_sample(all, index, stored, at).raw;
     hn::BlendedStore(at.raw, pass, d, depth + i);
     hn::BlendedStore(id, hn::RebindMask(du, pass), du, owner + i);
     passed += hn::CountTrue(d, pass);

@@ -8,10 +8,12 @@ namespace beampipe {
 
 // Sample i of the run lies at x_i = x + step i, in pixels from the depth plane's anchor. Its depth is
 // (z + dzdx x_i) + row.
-struct DepthSpan {
-  double z, dzdx, row;
-  double x, step;
+template <class Real>
+struct DepthSpanOf {
+  Real z, dzdx, row;
+  Real x, step;
 };
+using DepthSpan = DepthSpanOf<double>;
 
 // Replaces depth[i] and owner[i] where the span is nearer (LESS), for i in [0, count). Returns how many it replaced.
 std::uint64_t depth_span(const DepthSpan& span, std::size_t count, std::uint64_t owner_id, double* depth,
@@ -29,7 +31,7 @@ inline std::uint64_t depth_span_scalar(const DepthSpan& span, std::size_t first,
   for (std::size_t i = first; i < count; ++i) {
     double z = 0;
     const auto index = static_cast<double>(i);
-    if (!depth_span_sample(span.z, span.dzdx, span.row, span.x, span.step, index, depth[i], z)) continue;
+    if (!depth_span_sample(span, index, depth[i], z)) continue;
     depth[i] = z;
     owner[i] = owner_id;
     ++passed;

@@ -8,10 +8,26 @@ struct BlendFactors {
   Float i, a;
 };
 
+// The positions that the fragment and the aggregate share.
+template <class Mask>
+struct SharedPositions {
+  Mask mask, empty;                      // `empty`: without positions, a mask that counts, unlike a constant
+  decltype(Mask() != Mask()) any_there;  // is there one?
+};
+
 // The positions at which the fragment is in front of the aggregate's slab or behind it.
 template <class Mask>
 struct DepthRegions {
   Mask front, back;
+};
+
+// What is where in the overlap of both.
+template <class Float, class Mask>
+struct OverlapParts {
+  Mask front, back;  // positions at which the fragment is in front of the slab, and behind it
+  Float within;      // how many positions are left, within the slab
+  Float delta;       // where the fragment lies there, from 0 at the slab's front to 1 at its back
+  Float fuzziness;   // with Overlap::transition
 };
 
 // The two ends of the aggregate's slab, in depth.
@@ -48,25 +64,9 @@ LineDirection<Float, Mask> line_direction(Float a, Float b) {
 // The positions where a u + b v + c is 0 or more; (a, b) is the direction.
 template <class Float, class Mask>
 Mask half_plane(const LineDirection<Float, Mask>& direction, Float c, const MaskTable& table) {
-  using Int = decltype(to_integer(Float()));
-  const Float zero(0.0f), one(1.0f);
   const auto flipped = direction.flip != Mask(0u);
-  const Float distance = select(flipped, zero - c, c) * direction.per_length;
-  const Float scaled = (distance * Float(1.0f / kHalfDiagonal) + one) * Float(kTableDistances / 2);
-  const Int column = to_integer(lesser(greater(scaled, zero), Float(kTableDistances - 1)));
-  const Int reverse = direction.row + Int((kTableAngles / 2 + 1) * kTableDistances - 1) - column;
-  return fetch(table.words(), select(flipped, reverse, direction.row + column));
-}
-
-// The difference of two planes, and how far it may be from its value at the pixel's centre.
-template <class Float>
-struct PlaneDifference {
-  Float z, dzdu, dzdv, reach;
-};
-template <class Float>
-PlaneDifference<Float> plane_difference(const DepthPlane<Float>& of, const DepthPlane<Float>& from) {
-  const Float a = of.dzdu - from.dzdu, b = of.dzdv - from.dzdv;
-  return {of.z - from.z, a, b, Float(0.5f) * (magnitude(a) + magnitude(b))};
+  const Float distance = select(flipped, Float(0.0f) - c, c) * direction.per_length;
+  return table_word<Mask>(direction.row, flipped, distance, table);
 }
 
 // Whether the line where the difference is 0 cuts the pixel, and if not, which side of it the pixel is on.
@@ -109,7 +109,7 @@ auto is_after(const AggregateOf<Float, Mask>& in, const AggregateOf<Float, Mask>
 template <class Float, class Mask, class Bool>
 DepthRegions<Mask> regions_by_lines(const AggregateOf<Float, Mask>& in, const AggregateOf<Float, Mask>& old,
                                     Bool undecided, const MaskTable& table, MergeStepsOf<Mask>& steps) {
-  const PlaneDifference<Float> gap = plane_difference(in.plane, old.plane);
+  const PlaneGap<Float> gap = plane_gap(in.plane, old.plane);
   const Float half_thickness = Float(0.5f) * old.thickness;
   const Float to_front = gap.z + half_thickness, to_back = gap.z - half_thickness;
   const auto cuts_front = undecided & cuts_pixel(to_front, gap.reach);
@@ -127,6 +127,16 @@ DepthRegions<Mask> regions_by_lines(const AggregateOf<Float, Mask>& in, const Ag
   return {~behind_front, behind_back};
 }
 
+// Calls visit(here, u, v, s) for the positions s, at (u, v), that a mask has in some lanes: those where `here` is true.
+template <class Float, class Mask, class Visit>
+void for_each_position(Mask mask, const SamplePattern& pattern, Visit&& visit) {
+  for (int s = 0; s < 32; ++s) {
+    const auto here = has_bit(mask, s);
+    const auto i = static_cast<std::size_t>(s);
+    if (any(here)) visit(here, Float(position_u(pattern, i)), Float(position_v(pattern, i)), s);
+  }
+}
+
 // Partition::positions. Position by position, where the masks overlap.
 template <class Float, class Mask>
 DepthRegions<Mask> region_of_position(const AggregateOf<Float, Mask>& in, const AggregateOf<Float, Mask>& old, Float u,
@@ -134,6 +144,41 @@ DepthRegions<Mask> region_of_position(const AggregateOf<Float, Mask>& in, const 
   const Float depth = clamped_depth(in, u, v);
   const SlabEnds<Float> ends = slab_ends(old, depth_at(old.plane, u, v), rules);
   return {select(depth < ends.front, here, Mask(0u)), select(depth >= ends.back, here, Mask(0u))};
+}
+template <class Float, class Mask>
+DepthRegions<Mask> regions_by_positions(const AggregateOf<Float, Mask>& in, const AggregateOf<Float, Mask>& old,
+                                        DepthRegions<Mask> regions, const SamplePattern& pattern,
+                                        const MergeRules& rules, const MergeStepsOf<Mask>& steps) {
+  for_each_position<Float>(steps.tested, pattern, [&](const auto& is_here, Float u, Float v, int s) {
+    const Mask here = choose(is_here, Mask(1u << s), Mask(0u));
+    const DepthRegions<Mask> at = region_of_position(in, old, u, v, here, rules);
+    regions = {regions.front | at.front, regions.back | at.back};
+  });
+  return regions;
+}
+
+// (2) Partition the overlap by depth: in front of, behind and within the aggregate's slab. Equal depth counts as
+// behind, so that the earlier fragment wins.
+template <class Float, class Mask>
+DepthRegions<Mask> partition(const AggregateOf<Float, Mask>& in, const AggregateOf<Float, Mask>& old,
+                             const SharedPositions<Mask>& shared, const MergePositions& positions,
+                             const MergeRules& rules, MergeStepsOf<Mask>& steps) {
+  const bool ranged = rules.extents == MergeRules::Extents::range;
+  const auto meets = shared.any_there, never = meets & !meets;
+  const auto before = ranged ? meets & is_before(in, old) : never;
+  const auto after = ranged ? meets & is_after(in, old) : never;
+  const auto undecided = meets & !(before | after);
+  DepthRegions<Mask> regions{shared.empty, shared.empty};
+  if (any(undecided)) {
+    if (rules.partition == MergeRules::Partition::lines) {
+      regions = regions_by_lines(in, old, undecided, positions.table, steps);
+    } else {
+      steps.tested = choose(undecided, shared.mask, Mask(0u));
+      regions = regions_by_positions(in, old, regions, positions.pattern, rules, steps);
+    }
+  }
+  return {choose(before, shared.mask, choose(after, shared.empty, regions.front & shared.mask)),
+          choose(after, shared.mask, choose(before, shared.empty, regions.back & shared.mask))};
 }
 
 // Where the fragment lies in the slab, from 0 at its front to 1 at its back, at the mean of the positions within it.
@@ -162,62 +207,127 @@ Float fuzziness_of(const AggregateOf<Float, Mask>& in, const AggregateOf<Float, 
   return lesser(magnitude(bit_count(old.mask) / Float(32.0f) - old.alpha) * distance, one);
 }
 
-// (3) and (4): what is visible of both if their masks overlap. `fuzzy` is where positions lie within the slab: blended
-// there by `delta`. Each region counts with its number of positions, unless its coverage is an area already.
+// What visible_parts needs to know about the overlap, once it is partitioned.
+template <class Float, class Mask>
+OverlapParts<Float, Mask> overlap_parts(const AggregateOf<Float, Mask>& in, const AggregateOf<Float, Mask>& old,
+                                        const DepthRegions<Mask>& regions, const SamplePattern& pattern,
+                                        const MergeRules& rules, MergeStepsOf<Mask>& steps) {
+  const Float zero(0.0f);
+  steps.fuzzy = steps.overlap & ~regions.front & ~regions.back;
+  const auto is_fuzzy = steps.fuzzy != Mask(0u);
+  const Float within = bit_count(steps.fuzzy), nothing = select(is_fuzzy, zero, within);
+  OverlapParts<Float, Mask> parts{regions.front, regions.back, within, nothing, nothing};
+  if (any(is_fuzzy)) {
+    Float sum_u = nothing, sum_v = nothing;
+    for_each_position<Float>(steps.fuzzy, pattern, [&](const auto& is_here, Float u, Float v, int) {
+      sum_u = choose(is_here, sum_u + u, sum_u);
+      sum_v = choose(is_here, sum_v + v, sum_v);
+    });
+    parts.delta = choose(is_fuzzy, place_in_slab(in, old, sum_u, sum_v, within, rules), nothing);
+  }
+  if (rules.overlap == MergeRules::Overlap::transition) {
+    Float apart = zero;
+    for_each_position<Float>(steps.overlap, pattern, [&](const auto& is_here, Float u, Float v, int) {
+      apart = choose(is_here, apart + distance_apart(in, old, u, v), apart);
+    });
+    parts.fuzziness = fuzziness_of(in, old, apart, steps.overlap);
+  }
+  return parts;
+}
+
+// How two coverages are correlated where one surface is in front of the other: MergeRules::Overlap, whether the
+// fragment is a speck, and the fuzziness of Overlap::transition.
+template <class Float, class Mask>
+struct Correlation {
+  MergeRules::Overlap rule;
+  decltype(Mask() != Mask()) tiny;
+  Float fuzziness;
+};
+
+// What is visible of a surface behind another one, which leaves `open` of a region.
+template <class Float, class Mask>
+Float what_is_left(Float cover, Float open, const Correlation<Float, Mask>& how) {
+  const Float added = lesser(cover, open), independent = cover * open;
+  switch (how.rule) {
+    case MergeRules::Overlap::over:
+      return independent;
+    case MergeRules::Overlap::add:
+      return added;
+    case MergeRules::Overlap::transition:
+      return added + (independent - added) * how.fuzziness;
+    case MergeRules::Overlap::tiny:
+      break;
+  }
+  return select(how.tiny, added, independent);
+}
+
+// How much of a region both cover, and what they leave open of it.
+template <class Float>
+struct RegionCover {
+  Float i, a, open_i, open_a;
+};
+template <class Float>
+RegionCover<Float> region_cover(Float i, Float a) {
+  const Float zero(0.0f), one(1.0f);
+  return {i, a, greater(one - i, zero), greater(one - a, zero)};
+}
+
+// Where the fragment is in front of the aggregate, or behind it.
+template <class Float, class Mask>
+BlendFactors<Float> over_in(const RegionCover<Float>& region, const Correlation<Float, Mask>& how) {
+  return {region.i, what_is_left(region.a, region.open_i, how)};
+}
+template <class Float, class Mask>
+BlendFactors<Float> under_in(const RegionCover<Float>& region, const Correlation<Float, Mask>& how) {
+  return {what_is_left(region.i, region.open_a, how), region.a};
+}
+
+// Within the slab: from over, at its front, to under, at its back.
+template <class Float, class Mask>
+BlendFactors<Float> blended_in(const RegionCover<Float>& slab, const BlendFactors<Float>& over,
+                               const BlendFactors<Float>& under, Float delta, const Correlation<Float, Mask>& how,
+                               MergeRules::Fuzzy fuzzy) {
+  const Float one(1.0f);
+  if (fuzzy == MergeRules::Fuzzy::mix)
+    return {over.i + (under.i - over.i) * delta, over.a + (under.a - over.a) * delta};
+  const BlendFactors<Float> blended{slab.i * (one - delta), slab.a * delta};
+  if (how.rule == MergeRules::Overlap::over) return blended;
+  // Specks are anti-correlated "over the overlapping regions" (section 2.2.1), and this is one of them.
+  return {select(how.tiny, over.i, blended.i), select(how.tiny, over.a, blended.a)};
+}
+
+// Local coverage is alpha divided by the part of the mask that is set.
+template <class Float, class Mask>
+Float local_coverage(const AggregateOf<Float, Mask>& surface) {
+  return surface.alpha * Float(32.0f) / greater(bit_count(surface.mask), Float(1.0f));
+}
+
+// (3) and (4): what is visible of both if their masks overlap. Each region counts with its number of positions, unless
+// its coverage is an area already.
 template <class Float, class Mask>
 BlendFactors<Float> visible_parts(const FragmentOf<Float, Mask>& fragment, const AggregateOf<Float, Mask>& old,
-                                  Mask front_mask, Mask back_mask, Float within, Float delta, Float fuzziness,
-                                  const MergeRules& rules) {
-  const Float zero(0.0f), one(1.0f), bits(32.0f);
+                                  const OverlapParts<Float, Mask>& parts, const MergeRules& rules) {
+  const Float one(1.0f), bits(32.0f);
   const AggregateOf<Float, Mask>& in = fragment.surface;
   const Float only_i = bit_count(in.mask & ~old.mask), only_a = bit_count(old.mask & ~in.mask);
-  const Float in_front = bit_count(front_mask), behind = bit_count(back_mask);
-  // Local coverage is alpha divided by the part of the mask that is set.
-  const Float local_i = in.alpha * bits / greater(bit_count(in.mask), one);
-  const Float local_a = old.alpha * bits / greater(bit_count(old.mask), one);
+  const Float in_front = bit_count(parts.front), behind = bit_count(parts.back);
+  const Float local_i = local_coverage(in), local_a = local_coverage(old);
   const bool keep = rules.local == MergeRules::Local::keep;
   const Float cover_i = keep ? local_i : lesser(local_i, one), cover_a = keep ? local_a : lesser(local_a, one);
-  struct Cover {
-    Float i, a, open_i, open_a;
-  };
-  const auto cover_of = [&](Float i, Float a) { return Cover{i, a, greater(one - i, zero), greater(one - a, zero)}; };
   const bool by_share = rules.regional == MergeRules::Regional::area;
-  const Cover local_cover = cover_of(cover_i, cover_a);
+  const RegionCover<Float> local_cover = region_cover(cover_i, cover_a);
   const auto cover_in = [&](Float count) {
     if (!by_share) return local_cover;
     const Float share = count / bits;
-    return cover_of(cover_i * share, cover_a * share);
+    return region_cover(cover_i * share, cover_a * share);
   };
-  const auto tiny = fragment.tiny != Mask(0u);
-  const auto what_is_left = [&](Float cover, Float open) {
-    const Float added = lesser(cover, open), independent = cover * open;
-    switch (rules.overlap) {
-      case MergeRules::Overlap::over:
-        return independent;
-      case MergeRules::Overlap::add:
-        return added;
-      case MergeRules::Overlap::transition:
-        return added + (independent - added) * fuzziness;
-      case MergeRules::Overlap::tiny:
-        break;
-    }
-    return select(tiny, added, independent);
-  };
-  const auto over_in = [&](const Cover& c) { return BlendFactors<Float>{c.i, what_is_left(c.a, c.open_i)}; };
-  const auto under_in = [&](const Cover& c) { return BlendFactors<Float>{what_is_left(c.i, c.open_a), c.a}; };
-  const BlendFactors<Float> over = over_in(cover_in(in_front)), under = under_in(cover_in(behind));
-  const Cover slab = cover_in(within);
-  const BlendFactors<Float> slab_over = by_share ? over_in(slab) : over, slab_under = by_share ? under_in(slab) : under;
-  BlendFactors<Float> fuzzy;
-  if (rules.fuzzy == MergeRules::Fuzzy::mix) {
-    fuzzy = {slab_over.i + (slab_under.i - slab_over.i) * delta, slab_over.a + (slab_under.a - slab_over.a) * delta};
-  } else if (rules.overlap == MergeRules::Overlap::over) {
-    fuzzy = {slab.i * (one - delta), slab.a * delta};
-  } else {  // specks are anti-correlated "over the overlapping regions" (section 2.2.1), and this is one of them
-    fuzzy = {select(tiny, slab_over.i, slab.i * (one - delta)), select(tiny, slab_over.a, slab.a * delta)};
-  }
+  const Correlation<Float, Mask> how{rules.overlap, fragment.tiny != Mask(0u), parts.fuzziness};
+  const BlendFactors<Float> over = over_in(cover_in(in_front), how), under = under_in(cover_in(behind), how);
+  const RegionCover<Float> slab = cover_in(parts.within);
+  const BlendFactors<Float> fuzzy = blended_in(slab, by_share ? over_in(slab, how) : over,
+                                               by_share ? under_in(slab, how) : under, parts.delta, how, rules.fuzzy);
   const Float times_over = by_share ? bits : in_front, times_under = by_share ? bits : behind,
-              times_fuzzy = by_share ? bits : within;
+              times_fuzzy = by_share ? bits : parts.within;
   return {(only_i * local_i + times_over * over.i + times_under * under.i + times_fuzzy * fuzzy.i) / bits,
           (only_a * local_a + times_over * over.a + times_under * under.a + times_fuzzy * fuzzy.a) / bits};
 }
@@ -279,101 +389,53 @@ AggregateOf<Float, Mask> choose_aggregate(Bool condition, const AggregateOf<Floa
   return chosen;
 }
 
+// The thickness of the slab around merged.plane: enough to reach the fragment at the positions steps.reached, and, with
+// Thickness::containing, the earlier slab at the positions steps.moved.
+template <class Float, class Mask>
+Float merged_thickness(const AggregateOf<Float, Mask>& in, const AggregateOf<Float, Mask>& old,
+                       const DepthPlane<Float>& plane, const SamplePattern& pattern, bool containing,
+                       const MergeStepsOf<Mask>& steps) {
+  Float farthest = lesser(old.thickness, Float(0.0f)), moved = farthest;  // 0
+  for_each_position<Float>(steps.reached, pattern, [&](const auto& is_here, Float u, Float v, int) {
+    farthest = choose(is_here, farther_from(plane, clamped_depth(in, u, v), u, v, farthest), farthest);
+  });
+  if (!containing) return thick_enough(old.thickness, farthest);
+  for_each_position<Float>(steps.moved, pattern, [&](const auto& is_here, Float u, Float v, int) {
+    moved = choose(is_here, farther_from(plane, depth_at(old.plane, u, v), u, v, moved), moved);
+  });
+  return thick_enough(old.thickness + (moved + moved), farthest);
+}
+
 template <class Float, class Mask>
 AggregateOf<Float, Mask> merge_formula(const FragmentOf<Float, Mask>& fragment, const AggregateOf<Float, Mask>& old,
                                        const MergePositions& positions, const MergeRules& rules,
                                        MergeStepsOf<Mask>& steps) {
-  const Float zero(0.0f);
   const Mask none(0u);
   const AggregateOf<Float, Mask>& in = fragment.surface;
   steps = {none, none, none, none, none, none, none, none, none};
   const auto first = old.mask == none;
   if (!any(!first)) return in;
   steps.merged = choose(first, none, Mask(1u));
-  const auto u_at = [&](int s) { return Float(position_u(positions.pattern, static_cast<std::size_t>(s))); };
-  const auto v_at = [&](int s) { return Float(position_v(positions.pattern, static_cast<std::size_t>(s))); };
 
   // (1) Partition xy by the masks. Surfaces that share no position lie beside each other.
-  const Mask overlap = in.mask & old.mask, empty = overlap & none;  // a mask that counts, unlike a constant
-  const auto meets = overlap != none;
+  const Mask overlap = in.mask & old.mask;
+  const SharedPositions<Mask> shared{overlap, overlap & none, overlap != none};
   BlendFactors<Float> weight{in.alpha, old.alpha};
-  DepthRegions<Mask> regions{empty, empty};
-  if (any(meets)) {
-    // (2) Partition the overlap by depth: in front of, behind and within the aggregate's slab. Equal depth counts as
-    // behind, so that the earlier fragment wins.
-    const bool ranged = rules.extents == MergeRules::Extents::range;
-    const auto before = ranged ? meets & is_before(in, old) : meets & !meets;
-    const auto after = ranged ? meets & is_after(in, old) : meets & !meets;
-    const auto undecided = meets & !(before | after);
-    if (any(undecided)) {
-      if (rules.partition == MergeRules::Partition::lines) {
-        regions = regions_by_lines(in, old, undecided, positions.table, steps);
-      } else {
-        steps.tested = choose(undecided, overlap, none);
-        for (int s = 0; s < 32; ++s) {
-          const auto is_here = undecided & has_bit(overlap, s);
-          if (!any(is_here)) continue;
-          const Mask here = choose(is_here, Mask(1u << s), none);
-          const DepthRegions<Mask> at = region_of_position(in, old, u_at(s), v_at(s), here, rules);
-          regions.front = regions.front | at.front;
-          regions.back = regions.back | at.back;
-        }
-      }
-    }
-    regions.front = choose(before, overlap, choose(after, empty, regions.front & overlap));
-    regions.back = choose(after, overlap, choose(before, empty, regions.back & overlap));
-    const Mask fuzzy = overlap & ~regions.front & ~regions.back;
-    const auto is_fuzzy = fuzzy != none;
-    const Float within = bit_count(fuzzy);
-    const Float nothing = select(is_fuzzy, zero, within);
-    Float delta = nothing, fuzziness = nothing;
+  DepthRegions<Mask> regions{shared.empty, shared.empty};
+  if (any(shared.any_there)) {
+    regions = partition(in, old, shared, positions, rules, steps);
     steps.overlap = overlap;
-    steps.fuzzy = fuzzy;
-    if (any(is_fuzzy)) {
-      Float sum_u = nothing, sum_v = nothing;
-      for (int s = 0; s < 32; ++s) {
-        const auto is_here = has_bit(fuzzy, s);
-        if (!any(is_here)) continue;
-        sum_u = choose(is_here, sum_u + u_at(s), sum_u);
-        sum_v = choose(is_here, sum_v + v_at(s), sum_v);
-      }
-      delta = choose(is_fuzzy, place_in_slab(in, old, sum_u, sum_v, within, rules), nothing);
-    }
-    if (rules.overlap == MergeRules::Overlap::transition) {
-      Float apart = zero;
-      for (int s = 0; s < 32; ++s) {
-        const auto is_here = has_bit(overlap, s);
-        if (any(is_here)) apart = choose(is_here, apart + distance_apart(in, old, u_at(s), v_at(s)), apart);
-      }
-      fuzziness = fuzziness_of(in, old, apart, overlap);
-    }
-    const BlendFactors<Float> blended =
-        visible_parts(fragment, old, regions.front, regions.back, within, delta, fuzziness, rules);
-    weight = {choose(meets, blended.i, weight.i), choose(meets, blended.a, weight.a)};
+    const OverlapParts<Float, Mask> parts = overlap_parts(in, old, regions, positions.pattern, rules, steps);
+    const BlendFactors<Float> visible = visible_parts(fragment, old, parts, rules);
+    weight = {choose(shared.any_there, visible.i, weight.i), choose(shared.any_there, visible.a, weight.a)};
   }
   AggregateOf<Float, Mask> merged = joined(in, old, weight, rules);
-
-  // The new slab is thick enough to reach the fragment at all of its positions.
   const bool visible_only = rules.slab == MergeRules::Slab::visible;
   const bool containing = rules.thickness == MergeRules::Thickness::containing;
   const Mask reached = visible_only ? in.mask & ~regions.back : in.mask;
   steps.reached = choose(first, none, reached);
   if (containing) steps.moved = choose(first, none, old.mask);
-  Float farthest = lesser(old.thickness, zero), moved = farthest;  // 0
-  for (int s = 0; s < 32; ++s) {
-    const auto is_reached = has_bit(steps.reached, s);
-    if (any(is_reached)) {
-      const Float depth = clamped_depth(in, u_at(s), v_at(s));
-      farthest = choose(is_reached, farther_from(merged.plane, depth, u_at(s), v_at(s), farthest), farthest);
-    }
-    if (!containing) continue;
-    const auto was_there = has_bit(steps.moved, s);
-    if (any(was_there)) {
-      const Float depth = depth_at(old.plane, u_at(s), v_at(s));
-      moved = choose(was_there, farther_from(merged.plane, depth, u_at(s), v_at(s), moved), moved);
-    }
-  }
-  merged.thickness = thick_enough(containing ? old.thickness + (moved + moved) : old.thickness, farthest);
+  merged.thickness = merged_thickness(in, old, merged.plane, positions.pattern, containing, steps);
   if (visible_only) merged = with_slab_of(reached == none, old, merged);
   return choose_aggregate(first, in, merged);
 }

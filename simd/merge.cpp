@@ -14,6 +14,8 @@ namespace HWY_NAMESPACE {
 
 // This order: a formula finds only those above it.
 #include "simd/depth_plane-inl.h"
+#include "simd/mask_table-inl.h"
+#include "simd/plane_gap-inl.h"
 //
 #include "simd/merge-inl.h"
 

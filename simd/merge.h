@@ -7,6 +7,7 @@
 #include "simd/depth_plane.h"
 #include "simd/mask_table.h"
 #include "simd/merge_rules.h"
+#include "simd/plane_gap.h"
 #include "simd/plane_order.h"
 #include "simd/sample_pattern.h"
 #include "simd/scalar.h"

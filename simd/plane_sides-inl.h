@@ -26,6 +26,8 @@ struct PlaneSides {
 };
 
 namespace vectors {
+#include "simd/depth_plane-inl.h"
+//
 #include "simd/plane_gap-inl.h"
 }
 

@@ -11,6 +11,7 @@
 #include "hwy/foreach_target.h"
 // foreach_target comes first
 #include "hwy/highway.h"
+#include "simd/depth_compare.h"
 
 HWY_BEFORE_NAMESPACE();
 namespace beampipe {
@@ -58,8 +59,8 @@ HWY_INLINE std::uint64_t contest(const MaskedPlane* in, std::size_t count, std::
   for (std::size_t i = 0; i < count; ++i) {
     const std::uint32_t tested = out[i].owned.words[w] & contested;
     tests += static_cast<std::uint64_t>(std::popcount(tested));
-    const CornerPlane& plane = in[i].plane;
-    const auto corner = hn::Set(d, plane.corner), dzdx = hn::Set(d, plane.dzdx), dzdy = hn::Set(d, plane.dzdy);
+    const CellPlane<float>& plane = in[i].plane;
+    const auto corner = hn::Set(d, plane.z), dzdx = hn::Set(d, plane.dzdx), dzdy = hn::Set(d, plane.dzdy);
     std::uint32_t won = 0;  // positions where it is nearer than all earlier fragments
     for (std::size_t v = 0; v < kVectors; ++v) {
       const std::uint64_t part = tested >> (v * kLanes);
@@ -142,9 +143,9 @@ WindowCounts window_owners_scalar(const MaskedPlane* in, std::size_t count, cons
       const auto y = static_cast<float>(pattern.y[bit % kMaxMaskSamples]);
       float nearest = std::numeric_limits<float>::infinity();
       for (const std::size_t i : here) {
-        const CornerPlane& plane = in[i].plane;
+        const CellPlane<float>& plane = in[i].plane;
         float depth = 0;
-        if (nearer_at(plane.corner, plane.dzdx, plane.dzdy, x, y, nearest, depth)) {
+        if (depth_test_scalar(plane, x, y, nearest, depth)) {
           nearest = depth;
           owner = i;
         }

@@ -10,17 +10,14 @@
 
 namespace beampipe {
 
-// A depth plane in the units of positions: the depth at the pixel's upper left corner, and slopes per 1/256 px.
-struct CornerPlane {
-  float corner, dzdx, dzdy;
-};
-inline CornerPlane corner_plane(const DepthPlane<float>& plane) {
+// From the pixel's upper left corner.
+inline CellPlane<float> corner_plane(const DepthPlane<float>& plane) {
   return {plane.z - 0.5f * plane.dzdu - 0.5f * plane.dzdv, plane.dzdu / kSubpixelUnits, plane.dzdv / kSubpixelUnits};
 }
 
 struct MaskedPlane {
-  WideMask mask;      // positions that the fragment covers
-  CornerPlane plane;  // finite depths
+  WideMask mask;           // positions that the fragment covers
+  CellPlane<float> plane;  // finite depths
 };
 
 struct Ownership {
@@ -42,15 +39,7 @@ struct WindowCounts {
 WindowCounts window_owners(const MaskedPlane* in, std::size_t count, const WideMask& taken,
                            const SamplePattern* patterns, Ownership* out);
 
-// The scalar twin of one comparison: is the plane nearer than `nearest` at (x, y), in 1/256 px from the pixel's upper
-// left corner? `corner` is the plane's depth at that corner; slopes are per 1/256 px.
-template <class Float>
-bool nearer_at(Float corner, Float dzdx, Float dzdy, Float x, Float y, Float nearest, Float& depth) {
-  depth = corner + dzdx * x + dzdy * y;
-  return depth < nearest;
-}
-
-// The scalar twin of window_owners.
+// The scalar twin of window_owners. One comparison is depth_test_scalar (simd/depth_compare.h).
 WindowCounts window_owners_scalar(const MaskedPlane* in, std::size_t count, const WideMask& taken,
                                   const SamplePattern* patterns, Ownership* out);
 

@@ -15,11 +15,11 @@ Bin::Bin(const FrameContext& frame_context, const Tile& bin_tile, const Triangle
     : context(frame_context),
       tile(bin_tile),
       list(triangles),
-      timer_(context.run.timeline, tile),
+      timer_(context.sinks.timeline, tile),
       memory_(context.run.memory) {
-  if (context.run.weights || context.run.histories) observer_.emplace(context, tile);
+  if (context.sinks.weights || context.sinks.histories) observer_.emplace(context, tile);
   memory_.reach = &cache_reach_;
-  if (context.run.dram_trace && memory_.modelled) memory_.log = &dram_log_.emplace();
+  if (context.sinks.dram_trace && memory_.modelled) memory_.log = &dram_log_.emplace();
   memory_.framebuffer = framebuffer.is_on_chip(memory_) ? Place::on_chip : Place::in_memory;
   if (keeps_pixels_on_chip()) holds(kOpenPixels, tile.pixels() * framebuffer.on_chip_bytes_per_pixel());
   stages_.reserve(stages.size());

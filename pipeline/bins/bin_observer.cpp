@@ -44,9 +44,9 @@ bool is_in(const Tile& pixel, const SampleFragment& fragment, const CellGrid& gr
 
 BinObserver::BinObserver(const FrameContext& context, const Tile& tile)
     : context_(context), tile_(tile), pixels_(tile.pixels()) {
-  if (context.run.weights)
+  if (context.sinks.weights)
     for (auto& pixel : pixels_) pixel = std::make_unique<PixelObserver>();
-  if (!context.run.histories) return;
+  if (!context.sinks.histories) return;
   for (const PixelAddress& at : *context.run.pixels)
     if (tile.holds(at)) pixels_[tile.index(at)] = std::make_unique<PixelObserver>();
 }
@@ -83,14 +83,14 @@ void BinObserver::has_fragments(const Sampling& sampling, const std::vector<Samp
 }
 
 void BinObserver::finish(const TriangleList& list, const std::string& order, const std::vector<glm::vec4>& picture) {
-  const RunOptions& run = context_.run;
-  if (run.weights) {
+  const FrameSinks& sinks = context_.sinks;
+  if (sinks.weights) {
     std::vector<PixelWeights> weights;
     for (const auto& pixel : pixels_) weights.push_back(pixel->history.weights());
-    copy_to_frame(weights, tile_, context_.frame, *run.weights);
+    copy_to_frame(weights, tile_, context_.frame, *sinks.weights);
   }
-  for (std::size_t i = 0; run.histories && i < run.pixels->size(); ++i) {
-    const PixelAddress at = (*run.pixels)[i];
+  for (std::size_t i = 0; sinks.histories && i < context_.run.pixels->size(); ++i) {
+    const PixelAddress at = (*context_.run.pixels)[i];
     if (!tile_.holds(at)) continue;
     const std::size_t index = tile_.index(at);
     PixelObserver& observer = *pixels_[index];
@@ -98,7 +98,7 @@ void BinObserver::finish(const TriangleList& list, const std::string& order, con
     complete(list, {x, y, x + 1, y + 1}, observer);
     observer.history.at = at, observer.history.order = order, observer.history.has_samples = masks_ == nullptr;
     observer.history.pixel = picture[index];
-    (*run.histories)[i] = observer.history;
+    (*sinks.histories)[i] = observer.history;
   }
 }
 

@@ -1,4 +1,4 @@
-// The observers of a bin's pixels: those whose histories RunOptions asks for, or all if it asks for weights. Stages
+// The observers of a bin's pixels: those whose histories FrameSinks asks for, or all if it asks for weights. Stages
 // tell them what they do. What no stage saw, because it was left out early, is added when the bin is finished.
 #pragma once
 

@@ -15,15 +15,16 @@ ShadingRules with_colors(ShadingRules rules, SurfaceColors colors) {
 
 }  // namespace
 
-FrameContext::FrameContext(const Trace& trace, const Frame& rendered, const RunOptions& options,
-                           const ShadingRules& rules)
-    : frame(rendered),
-      run(options),
-      triangles(vertex_setup(trace, frame, StageTimer(run.timeline)(setup))),
+FrameContext::FrameContext(const FrameJob& job, const ShadingRules& rules)
+    : frame(job.frame),
+      run(job.run),
+      sinks(job.sinks),
+      triangles(vertex_setup(job.trace, frame, StageTimer(sinks.timeline)(setup))),
       surface_bytes(setup.bytes_written -
                     triangles.triangles.size() * (sizeof(SetupTriangle) + sizeof(FlatAttributes))),
-      own_textures(run.textures || triangles.surfaces.empty() ? std::nullopt : std::make_optional<TextureSet>(trace)),
-      shader(triangles, trace, frame,
+      own_textures(run.textures || triangles.surfaces.empty() ? std::nullopt
+                                                              : std::make_optional<TextureSet>(job.trace)),
+      shader(triangles, job.trace, frame,
              run.textures   ? run.textures
              : own_textures ? &*own_textures
                             : nullptr,
@@ -32,8 +33,8 @@ FrameContext::FrameContext(const Trace& trace, const Frame& rendered, const RunO
     if (triangles.is_opaque(i)) continue;
     (shader.is_cutout(i) ? has_cutouts_ : has_blending_) = true;
   }
-  if (rules.takes_positions && has_alpha()) prepare_alpha_mask(trace);
-  has_textures_ = !shader.is_flat() && !trace.images.empty();
+  if (rules.takes_positions && has_alpha()) prepare_alpha_mask(job.trace);
+  has_textures_ = !shader.is_flat() && !job.trace.images.empty();
   if (has_textures_ && run.memory.modelled) texture_layout.emplace(run.textures ? *run.textures : *own_textures);
 }
 
@@ -46,7 +47,7 @@ void FrameContext::prepare_alpha_mask(const Trace& trace) {
     materials[triangles.surfaces[i].material] = true;
   }
   textures.test_alphas(trace, materials);
-  shader.set_sheets(number_sheets(triangles, frame, StageTimer(run.timeline)(setup)));
+  shader.set_sheets(number_sheets(triangles, frame, StageTimer(sinks.timeline)(setup)));
 }
 
 }  // namespace beampipe

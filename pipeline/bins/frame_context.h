@@ -13,7 +13,8 @@ namespace beampipe {
 
 struct FrameContext {
   const Frame& frame;
-  const RunOptions& run;
+  const FrameInput& run;
+  const FrameSinks sinks;
   StageCounters setup;          // of one run of vertex_setup over the whole frame
   SetupTriangles triangles;     // in primitive order
   std::uint64_t surface_bytes;  // of planes, vertices and sheets of triangles with materials, in the modelled machine
@@ -22,8 +23,8 @@ struct FrameContext {
   std::optional<TextureLayout> texture_layout;  // if memory is modelled and triangles have textures
 
   // Runs vertex_setup and the flat triangles' shader, and if the rules take positions, all that alpha_mask needs. The
-  // trace, the frame and the options must outlive it.
-  FrameContext(const Trace& trace, const Frame& frame, const RunOptions& run, const ShadingRules& rules = {});
+  // job's trace, frame and `run` must outlive it.
+  explicit FrameContext(const FrameJob& job, const ShadingRules& rules = {});
   FrameContext(const FrameContext&) = delete;
   FrameContext& operator=(const FrameContext&) = delete;
 

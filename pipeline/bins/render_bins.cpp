@@ -49,7 +49,7 @@ StageId rasterizing_stage(const BinPlan& plan) {
 
 // Where DRAM requests are to be recorded; null: nowhere.
 DramTrace* dram_trace_of(const FrameContext& context) {
-  return context.run.memory.modelled ? context.run.dram_trace : nullptr;
+  return context.run.memory.modelled ? context.sinks.dram_trace : nullptr;
 }
 
 // What one pass over the geometry costs, whatever the technique.
@@ -294,19 +294,21 @@ class FrameRecorder {
 }  // namespace
 
 FrameResult render_bins(const FrameContext& context, const BinPlan& plan, const BinRenderer& render) {
-  const RunOptions& run = context.run;
+  const FrameInput& run = context.run;
   const int bin_size = plan.framebuffer.bin_size_on(run.memory);
   const TileGrid grid = plan.keeps_tile_size ? TileGrid{context.frame, bin_size} : tile_grid(context, bin_size);
-  if (run.weights) run.weights->assign(std::size_t{context.frame.width} * context.frame.height, {});
-  if (run.histories) run.histories->assign(run.pixels->size(), {});
+  const FrameSinks& sinks = context.sinks;
+  if (sinks.weights) sinks.weights->assign(std::size_t{context.frame.width} * context.frame.height, {});
+  if (sinks.histories) sinks.histories->assign(run.pixels->size(), {});
   const std::vector<Stage> stages = stages_of(context, plan);
-  const std::uint32_t first_pass = run.dram_trace ? run.dram_trace->passes() : 0;
+  const std::uint32_t first_pass = sinks.dram_trace ? sinks.dram_trace->passes() : 0;
   GeometryPass pass(context, rasterizing_stage(plan), first_pass);
   FrameRecorder recorder(context, stages, grid.tiles.size(), first_pass);
   const std::uint64_t entry_bytes = sizeof(std::uint32_t) + (plan.sorts_lists ? kKeyBytes : 0);
   std::uint64_t list_bytes = 0;
   EmptyBins empty_bins(context, plan, stages, render);
-  const bool shares_empty_bins = !plan.empty_bins_differ && !run.timeline && !run.dram_trace && !run.histories;
+  const bool shares_empty_bins =
+      !plan.empty_bins_differ && !sinks.timeline && !sinks.dram_trace && !sinks.histories;
   const auto render_band = [&](const Band& band) {
     const std::vector<TriangleList> lists = bin_triangles(context.triangles, grid, band);
     for (std::size_t i = 0; i < lists.size(); ++i) {
@@ -352,7 +354,7 @@ void run_on_tiles(const FrameContext& context, StageId stage, FrameResult& resul
   const std::uint32_t pass = trace ? trace->passes() : 0;
   on_threads(context.run.threads, [&] {
     tbb::parallel_for(std::size_t{0}, tiles.size(), [&](std::size_t i) {
-      const StageTimer timer(context.run.timeline, tiles[i]);
+      const StageTimer timer(context.sinks.timeline, tiles[i]);
       DramLog log;
       const MemorySystem memory(context.run.memory, trace ? &log : nullptr);
       work(tiles[i], BinStage(of_tiles[i], timer, memory));

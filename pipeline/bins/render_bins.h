@@ -20,7 +20,7 @@ namespace beampipe {
 // How a technique renders its bins.
 struct BinPlan {
   std::vector<StageId> stages;  // of a bin, in the order of the pipeline; those for alpha are added where they belong
-  Framebuffer framebuffer;      // with the size of the bins, which RunOptions::tile_size overrides
+  Framebuffer framebuffer;      // with the size of the bins, which FrameInput::tile_size overrides
   // The first pass over the geometry writes depth alone. Its stages (vertex_setup, sample_raster, alpha_test for
   // cutouts, depth_test) are counted apart from those of the other pass, as "prepass_vertex_setup" and so on.
   bool has_prepass = false;
@@ -28,7 +28,7 @@ struct BinPlan {
   // Bins sort their lists by keys, which binning writes beside the entries. They charge themselves for the setup that
   // the raster stage reads, because it reads it in sorted order.
   bool sorts_lists = false;
-  // Bytes that this program keeps for each pair until the bin is finished (RunOptions::memory_limit). 0: the technique
+  // Bytes that this program keeps for each pair until the bin is finished (FrameInput::memory_limit). 0: the technique
   // works on a few triangles at a time.
   std::size_t pair_bytes = 0;
   std::size_t translucent_pair_bytes = 0;  // the same for pairs of translucent triangles, in addition

@@ -5,6 +5,7 @@
 #include <cstdint>
 #include <mutex>
 #include <optional>
+#include <string>
 #include <thread>
 #include <utility>
 #include <vector>
@@ -19,7 +20,7 @@ class Timeline {
   using Clock = std::chrono::steady_clock;
 
   struct Event {
-    Stage stage;
+    std::string name;  // of a stage, or of a whole frame
     std::thread::id thread;
     std::optional<std::pair<std::int32_t, std::int32_t>>
         tile;  // its first pixel; none when the stage works on the whole frame
@@ -41,7 +42,7 @@ class Timeline {
 };
 
 // Takes the place of a stage's counters in the call of the stage, and records how long that call took:
-//   const StageTimer timed(run.timeline, tile);
+//   const StageTimer timed(sinks.timeline, tile);
 //   conservative_raster(triangles, list, tile, timed(raster), pairs);
 class StageTimer {
  public:
@@ -54,7 +55,8 @@ class StageTimer {
     }
     ~Span() {
       if (!timeline_) return;
-      Timeline::Event event{counters_.stage, std::this_thread::get_id(), {}, start_, Timeline::Clock::now()};
+      Timeline::Event event{
+          std::string(name_of(counters_.stage)), std::this_thread::get_id(), {}, start_, Timeline::Clock::now()};
       if (tile_) event.tile = {tile_->x0, tile_->y0};
       timeline_->add(std::move(event));
     }

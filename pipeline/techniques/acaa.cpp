@@ -32,8 +32,8 @@ std::vector<StageId> stages_of(const AcaaOptions& options) {
   return {StageId::sample_raster, StageId::depth_test, StageId::shade, StageId::accumulate, StageId::resolve};
 }
 
-FrameResult render_acaa(const Trace& trace, const Frame& frame, const AcaaOptions& options, const RunOptions& run) {
-  const FrameContext context(trace, frame, run, {.derivatives = Derivatives::quad});
+FrameResult render_acaa(const FrameJob& job, const AcaaOptions& options) {
+  const FrameContext context(job, {.derivatives = Derivatives::quad});
   const std::vector<Sampling> rounds = acaa_rounds(options.samples);
   const BinPlan plan{.stages = stages_of(options), .framebuffer = acaa_framebuffer(options), .has_prepass = true};
   return render_bins(context, plan, [&](Bin& bin) {
@@ -94,7 +94,7 @@ TechniqueKind acaa_kind() {
               [](const AcaaOptions& o) {
                 return Technique{.framebuffer = acaa_framebuffer(o),
                                  .sampled_at = places_of(msaa_sampling(o.samples)),
-                                 .render = bind_options(render_acaa, o),
+                                 .renderer = bind_options(render_acaa, o),
                                  .is_observable = true};
               })};
 }

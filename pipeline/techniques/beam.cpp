@@ -23,8 +23,8 @@ Framebuffer beam_framebuffer(const BeamOptions& beam) {
 }
 
 template <std::size_t Words, std::size_t Slots>
-FrameResult render_shape(const Trace& trace, const Frame& frame, const BeamOptions& beam, const RunOptions& run) {
-  const FrameContext context(trace, frame, run, {.takes_positions = true});
+FrameResult render_shape(const FrameJob& job, const BeamOptions& beam) {
+  const FrameContext context(job, {.takes_positions = true});
   const PositionSet& positions = cell_positions(beam.positions);
   const PositionGrid grid(beam.positions);
   const BeamFragmentOptions options = grid_options(grid, owners_fragment_bytes(Words));
@@ -50,10 +50,9 @@ FrameResult render_shape(const Trace& trace, const Frame& frame, const BeamOptio
   });
 }
 
-FrameResult render_beam(const Trace& trace, const Frame& frame, const BeamOptions& beam, const RunOptions& run) {
-  return with_shape(beam.positions, beam.slots, [&]<std::size_t Words, std::size_t Slots>() {
-    return render_shape<Words, Slots>(trace, frame, beam, run);
-  });
+FrameResult render_beam(const FrameJob& job, const BeamOptions& beam) {
+  return with_shape(beam.positions, beam.slots,
+                    [&]<std::size_t Words, std::size_t Slots>() { return render_shape<Words, Slots>(job, beam); });
 }
 
 }  // namespace
@@ -91,7 +90,7 @@ TechniqueKind beam_kind() {
             return Technique{.framebuffer = beam_framebuffer(o),
                              .positions = o.positions,
                              .counted_positions = o.positions,
-                             .render = bind_options(render_beam, o),
+                             .renderer = bind_options(render_beam, o),
                              .is_observable = true,
                              .has_weights = true};
           })};

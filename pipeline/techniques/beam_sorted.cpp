@@ -26,8 +26,8 @@ Framebuffer sorted_framebuffer(const SortedOptions& sorted) {
 }
 
 template <std::size_t Words, class Channel>
-FrameResult render_shape(const Trace& trace, const Frame& frame, const SortedOptions& sorted, const RunOptions& run) {
-  const FrameContext context(trace, frame, run, {.takes_positions = true});
+FrameResult render_shape(const FrameJob& job, const SortedOptions& sorted) {
+  const FrameContext context(job, {.takes_positions = true});
   const PositionSet& positions = cell_positions(sorted.positions);
   const PositionGrid grid(sorted.positions);
   const BeamFragmentOptions fragment_options = grid_options(grid, conserving_fragment_bytes(sorted.positions));
@@ -59,10 +59,9 @@ FrameResult render_shape(const Trace& trace, const Frame& frame, const SortedOpt
   });
 }
 
-FrameResult render_sorted(const Trace& trace, const Frame& frame, const SortedOptions& sorted, const RunOptions& run) {
-  return with_aggregate(sorted.positions, sorted.storage, [&]<std::size_t Words, class Channel>() {
-    return render_shape<Words, Channel>(trace, frame, sorted, run);
-  });
+FrameResult render_sorted(const FrameJob& job, const SortedOptions& sorted) {
+  return with_aggregate(sorted.positions, sorted.storage,
+                        [&]<std::size_t Words, class Channel>() { return render_shape<Words, Channel>(job, sorted); });
 }
 
 }  // namespace
@@ -88,7 +87,7 @@ TechniqueKind beam_sorted_kind() {
               [](const SortedOptions& o) {
                 return Technique{.framebuffer = sorted_framebuffer(o),
                                  .positions = o.positions,
-                                 .render = bind_options(render_sorted, o),
+                                 .renderer = bind_options(render_sorted, o),
                                  .is_observable = true,
                                  .has_weights = true};
               })};

@@ -15,8 +15,8 @@ constexpr std::size_t kWords = kPositions / 32, kSlots = 7;
 
 Framebuffer stream_framebuffer() { return {.surfaces = open_pixel_surfaces(kPositions, kSlots)}; }
 
-FrameResult render_stream(const Trace& trace, const Frame& frame, const RunOptions& run) {
-  const FrameContext context(trace, frame, run, {.takes_positions = true});
+FrameResult render_stream(const FrameJob& job) {
+  const FrameContext context(job, {.takes_positions = true});
   const PositionSet& positions = cell_positions(kPositions);
   const PositionGrid grid(kPositions);
   const BeamFragmentOptions options = grid_options(grid, owners_fragment_bytes(kWords));
@@ -53,7 +53,7 @@ TechniqueKind beam_stream_kind() {
             return Technique{.framebuffer = stream_framebuffer(),
                              .positions = kPositions,
                              .counted_positions = kPositions,
-                             .render = bind_options(render_stream),
+                             .renderer = bind_options(render_stream),
                              .is_observable = true,
                              .has_weights = true};
           })};

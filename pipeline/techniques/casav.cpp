@@ -107,8 +107,8 @@ std::vector<Aggregate> compose_lists(const CasavOptions& options, const MergePos
              : compose_over(fragments, lists, counters, observers);
 }
 
-FrameResult render_sorted(const Trace& trace, const Frame& frame, const CasavOptions& beam, const RunOptions& run) {
-  const FrameContext context(trace, frame, run, {.takes_positions = true});
+FrameResult render_sorted(const FrameJob& job, const CasavOptions& beam) {
+  const FrameContext context(job, {.takes_positions = true});
   const MergePositions positions(hammersley_pattern());
   const RecordBytes bytes = record_bytes(beam);
   const BeamFragmentOptions options = fragment_options(beam, positions);
@@ -141,8 +141,8 @@ FrameResult render_sorted(const Trace& trace, const Frame& frame, const CasavOpt
 }
 
 // Without an A-buffer.
-FrameResult render_layers(const Trace& trace, const Frame& frame, const CasavOptions& beam, const RunOptions& run) {
-  const FrameContext context(trace, frame, run, {.takes_positions = true});
+FrameResult render_layers(const FrameJob& job, const CasavOptions& beam) {
+  const FrameContext context(job, {.takes_positions = true});
   const MergePositions positions(hammersley_pattern());
   const BeamFragmentOptions options = fragment_options(beam, positions);
   const bool sorts = beam.order == CasavOrder::near_first;
@@ -179,16 +179,15 @@ CasavOptions with_partition(CasavOptions options) {
   return options;
 }
 
-FrameResult render_casav(const Trace& trace, const Frame& frame, const CasavOptions& beam, const RunOptions& run) {
+FrameResult render_casav(const FrameJob& job, const CasavOptions& beam) {
   const CasavOptions options = with_partition(beam);
-  return beam.order == CasavOrder::sorted ? render_sorted(trace, frame, options, run)
-                                          : render_layers(trace, frame, options, run);
+  return beam.order == CasavOrder::sorted ? render_sorted(job, options) : render_layers(job, options);
 }
 
 Technique make_casav(const CasavOptions& options) {
   return {.framebuffer = casav_framebuffer(options),
           .positions = hammersley_pattern().count,
-          .render = bind_options(render_casav, options),
+          .renderer = bind_options(render_casav, options),
           .is_observable = true,
           .has_weights = options.order == CasavOrder::sorted};
 }
@@ -244,8 +243,7 @@ TechniqueKind casav_kind() {
   return {.name = "casav",
           .description =
               "correlation-aware semi-analytic visibility, the published beam pipeline: a 32-bit mask from a table, a "
-              "depth slab, one aggregate per pixel; the "
-              "options are other readings of these rules, see docs/accuracy.md",
+              "depth slab, one aggregate per pixel; the options are other readings of its rules, see docs/accuracy.md",
           .source = "Crassin et al. 2018",
           .examples = {"casav", "casav:mask=exact", "casav:storage=text",
                        "casav:sort=nearest,tiny=3,overlap=transition,regional=area,local=keep,fuzzy=mix,extents=slab,"

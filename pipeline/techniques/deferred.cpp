@@ -11,9 +11,8 @@
 namespace beampipe {
 namespace {
 
-FrameResult render_deferred(const Trace& trace, const Frame& frame, const RunOptions& run) {
-  const FrameContext context(trace, frame, run,
-                             {.derivatives = Derivatives::quad, .storage = MaterialStorage::gbuffer});
+FrameResult render_deferred(const FrameJob& job) {
+  const FrameContext context(job, {.derivatives = Derivatives::quad, .storage = MaterialStorage::gbuffer});
   const Sampling sampling{CellGrid{}, standard_pattern(1)};
   const BinPlan plan{
       .stages = {StageId::sample_raster, StageId::depth_test, StageId::shade, StageId::light, StageId::resolve},
@@ -37,7 +36,7 @@ TechniqueKind deferred_kind() {
             return Technique{.framebuffer = deferred_framebuffer(),
                              .sampled_at = places_of(msaa_sampling(1)),
                              .errs_like = "msaa",
-                             .render = bind_options(render_deferred),
+                             .renderer = bind_options(render_deferred),
                              .is_observable = true};
           })};
 }

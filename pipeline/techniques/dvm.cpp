@@ -1,7 +1,6 @@
 #include "pipeline/techniques/dvm.h"
 
 #include <algorithm>
-#include <limits>
 
 #include "pipeline/bins/render_bins.h"
 #include "pipeline/sampling.h"
@@ -90,14 +89,15 @@ void put_layer_over(const std::vector<glm::vec4>& layer, const Tile& tile, Curre
     }
 }
 
-FrameResult render_dvm(const Trace& trace, const Frame& frame, const DvmOptions& options, const RunOptions& run) {
-  const FrameContext context(trace, frame, run, {.storage = MaterialStorage::gbuffer});
+FrameResult render_dvm(const FrameJob& job, const DvmOptions& options) {
+  const FrameContext context(job, {.storage = MaterialStorage::gbuffer});
+  const Frame& frame = job.frame;
   TemporalFrame over_time(context);
   const std::uint32_t frames = over_time.history().frames;
   const Materials materials(material_ids(context.triangles, options.material));
   const std::vector<std::uint32_t> looks = looks_of(frame);
   const Sampling sampling{CellGrid{}, standard_pattern(8)};
-  const SelectOptions select{frames % 8, options.seed + frames};
+  const SelectOptions select{frames % 8, frames + 1};
   QuadFrame quads(frame.width, frame.height);
   std::vector<glm::vec4> translucent(context.has_blending() ? over_time.current.color.size() : 0);
 
@@ -117,8 +117,8 @@ FrameResult render_dvm(const Trace& trace, const Frame& frame, const DvmOptions&
     shade_samples(bin, sampling.pattern, materials, selected);
     quads.insert(bin.tile, selected);
     over_time.find_motion(bin, visibility);
-    const PixelContents found = contents(visibility.surface(), bin.tile, frame, context.triangles.draws,
-                                         over_time.to_last(), looks, moving.timed());
+    const PixelContents found = contents(
+        visibility.surface(), {bin.tile, frame, context.triangles.draws, over_time.to_last()}, looks, moving.timed());
     moving.streams(bin.tile.pixels() * (kLookBytes + kSpeedBytes));
     copy_to_frame(found.looks, bin.tile, frame, over_time.current.looks);
     copy_to_frame(found.speeds, bin.tile, frame, over_time.current.speeds);
@@ -148,7 +148,6 @@ FrameResult render_dvm(const Trace& trace, const Frame& frame, const DvmOptions&
 }  // namespace
 
 TechniqueKind dvm_kind() {
-  constexpr std::uint32_t kMostSeed = std::numeric_limits<std::uint32_t>::max();
   return {.name = "dvm",
           .description =
               "decoupled visibility multisampling: 8 triangle ids per pixel, four shaded samples per 2x2 quad "
@@ -160,14 +159,13 @@ TechniqueKind dvm_kind() {
               DvmOptions{},
               [](DvmOptions& o) -> SpecOptions {
                 return {number("blend", o.blend, 0.001f, 1.0f, "weight of each new frame"),
-                        number("seed", o.seed, 0u, kMostSeed, "seed of the random choices"),
                         choice("material", o.material, {{"color", MaterialBy::color}, {"draw", MaterialBy::draw}},
                                "samples share what is shaded within a draw and Kd, or within a draw")};
               },
               [](const DvmOptions& o) {
                 return Technique{.framebuffer = dvm_framebuffer(),
                                  .sampled_at = places_of(msaa_sampling(8)),
-                                 .render = bind_options(render_dvm, o),
+                                 .renderer = bind_options(render_dvm, o),
                                  .keeps_history = true,
                                  .working_bytes_per_pixel = kDvmWorkingBytes};
               })};

@@ -15,7 +15,6 @@ inline constexpr float kStillPixels = 0.05f;
 
 struct DvmOptions {
   float blend = 0.1f;
-  std::uint32_t seed = 1;
   MaterialBy material = MaterialBy::color;
 };
 

@@ -32,11 +32,11 @@ void count_motion(const std::vector<glm::vec2>& vectors, std::vector<float>& len
   }
 }
 
-FrameResult render_msaa(const Trace& trace, const Frame& frame, const MsaaOptions& options, const RunOptions& run) {
-  const FrameContext context(trace, frame, run, {.derivatives = Derivatives::quad, .rounds_to_half = true});
+FrameResult render_msaa(const FrameJob& job, const MsaaOptions& options) {
+  const FrameContext context(job, {.derivatives = Derivatives::quad, .rounds_to_half = true});
   const Sampling sampling = msaa_sampling(options.samples);
   History first;
-  History& history = run.history ? *run.history : first;
+  History& history = job.run.history ? *job.run.history : first;
   std::optional<FrameMotion> motion;
   if (options.motion) motion.emplace(context, history);
   BinPlan plan{.stages = {StageId::sample_raster, StageId::shade, StageId::depth_test, StageId::resolve},
@@ -122,7 +122,7 @@ TechniqueKind msaa_kind() {
             return Technique{.framebuffer = msaa_framebuffer(o),
                              .samples = static_cast<std::uint32_t>(o.samples),
                              .sampled_at = places_of(msaa_sampling(o.samples)),
-                             .render = bind_options(render_msaa, o),
+                             .renderer = bind_options(render_msaa, o),
                              .is_observable = true,
                              .keeps_history = o.motion};
           })};

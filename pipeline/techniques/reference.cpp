@@ -18,10 +18,10 @@ Framebuffer reference_framebuffer() {
           .bin_size = kTileSize};
 }
 
-FrameResult render_reference(const Trace& trace, const Frame& frame, const RunOptions& run) {
-  RunOptions without_memory = run;
+FrameResult render_reference(const FrameJob& job) {
+  FrameInput without_memory = job.run;
   without_memory.memory.modelled = false;  // no hardware is modelled for this
-  const FrameContext context(trace, frame, without_memory);
+  const FrameContext context({job.trace, job.frame, without_memory, job.sinks});
   const BinPlan plan{.stages = {StageId::reference_raster, StageId::resolve},
                      .framebuffer = reference_framebuffer(),
                      .translucent_pair_bytes = kLayerBytes};
@@ -30,13 +30,13 @@ FrameResult render_reference(const Trace& trace, const Frame& frame, const RunOp
     if (bin.list.empty()) {  // every sample shows the background, so no samples are set up
       resolving.counters.items_out = bin.tile.pixels();
       resolving.counters.bytes_written = bin.tile.pixels() * sizeof(glm::vec4);
-      return bin.finish(std::vector(bin.tile.pixels(), glm::vec4(frame.background, 0)));
+      return bin.finish(std::vector(bin.tile.pixels(), glm::vec4(job.frame.background, 0)));
     }
     const TileShader shader = bin.shader();
     ReferenceTile samples(bin.tile);
     reference_raster(context.triangles, bin.list, bin.tile, bin.stage(StageId::reference_raster).timed(), samples,
                      &shader);
-    bin.finish(resolve(samples, bin.tile, shader, frame.background, resolving.timed()));
+    bin.finish(resolve(samples, bin.tile, shader, job.frame.background, resolving.timed()));
   });
 }
 
@@ -49,7 +49,7 @@ TechniqueKind reference_kind() {
           .examples = {"reference"},
           .stressed = {"reference"},
           .make = make_plain([] {
-            return Technique{.framebuffer = reference_framebuffer(), .render = bind_options(render_reference)};
+            return Technique{.framebuffer = reference_framebuffer(), .renderer = bind_options(render_reference)};
           })};
 }
 

@@ -78,8 +78,8 @@ std::vector<glm::vec4> draw_bin(Bin& bin, TaaShading shading, const Sampling& sa
   return picture;
 }
 
-FrameResult render_taa(const Trace& trace, const Frame& frame, const TaaOptions& options, const RunOptions& run) {
-  const FrameContext context(trace, frame, run, rules_of(options.shading));
+FrameResult render_taa(const FrameJob& job, const TaaOptions& options) {
+  const FrameContext context(job, rules_of(options.shading));
   TemporalFrame over_time(context);
   const Sampling sampling{CellGrid{}, jittered(options, over_time.history().frames)};
   const Materials materials(material_ids(context.triangles, MaterialBy::color));
@@ -89,7 +89,7 @@ FrameResult render_taa(const Trace& trace, const Frame& frame, const TaaOptions&
                      .empty_bins_differ = true};
   FrameResult result = render_bins(context, plan, [&](Bin& bin) {
     bin.finish(draw_bin(bin, options.shading, sampling, materials, over_time));
-    copy_to_frame(bin.picture(), bin.tile, frame, over_time.current.color);
+    copy_to_frame(bin.picture(), bin.tile, job.frame, over_time.current.color);
   });
   run_on_tiles(context, StageId::temporal, result, [&](const Tile& tile, const BinStage& stage) {
     neighborhood_box(tile, stage.timed(), over_time.current);
@@ -123,7 +123,7 @@ TechniqueKind taa_kind() {
                 return Technique{.framebuffer = taa_framebuffer(o.shading),
                                  .sampled_at = {places_of(msaa_sampling(o.samples)).front()},
                                  .errs_like = "msaa",
-                                 .render = bind_options(render_taa, o),
+                                 .renderer = bind_options(render_taa, o),
                                  .keeps_history = true,
                                  .working_bytes_per_pixel = kTemporalWorkingBytes};
               })};

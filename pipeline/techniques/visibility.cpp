@@ -10,9 +10,8 @@
 namespace beampipe {
 namespace {
 
-FrameResult render_visibility(const Trace& trace, const Frame& frame, const VisibilityOptions& options,
-                              const RunOptions& run) {
-  const FrameContext context(trace, frame, run, {.storage = MaterialStorage::gbuffer});
+FrameResult render_visibility(const FrameJob& job, const VisibilityOptions& options) {
+  const FrameContext context(job, {.storage = MaterialStorage::gbuffer});
   const Sampling sampling{CellGrid{}, standard_pattern(options.samples)};
   const Materials materials(material_ids(context.triangles, MaterialBy::color));
   const BinPlan plan{.stages = {StageId::sample_raster, StageId::depth_test, StageId::material_sort, StageId::shade,
@@ -42,7 +41,7 @@ TechniqueKind visibility_kind() {
                 return Technique{.framebuffer = visibility_framebuffer(o.samples),
                                  .sampled_at = places_of(msaa_sampling(o.samples)),
                                  .errs_like = "msaa",
-                                 .render = bind_options(render_visibility, o),
+                                 .renderer = bind_options(render_visibility, o),
                                  .is_observable = true};
               })};
 }

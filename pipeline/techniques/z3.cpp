@@ -27,8 +27,8 @@ Framebuffer z3_framebuffer(const Z3Options& z3) {
 }
 
 template <std::size_t Words, std::size_t Layers>
-FrameResult render_shape(const Trace& trace, const Frame& frame, const Z3Options& z3, const RunOptions& run) {
-  const FrameContext context(trace, frame, run, {.takes_positions = true});
+FrameResult render_shape(const FrameJob& job, const Z3Options& z3) {
+  const FrameContext context(job, {.takes_positions = true});
   const PositionSet& positions = cell_positions(z3.positions);
   const PositionGrid grid(z3.positions);
   const BeamFragmentOptions options = grid_options(grid, 4 + 4 * Words + 12);
@@ -53,10 +53,9 @@ FrameResult render_shape(const Trace& trace, const Frame& frame, const Z3Options
   });
 }
 
-FrameResult render_z3(const Trace& trace, const Frame& frame, const Z3Options& z3, const RunOptions& run) {
-  return with_z3_shape(z3.positions, z3.layers, [&]<std::size_t Words, std::size_t Layers>() {
-    return render_shape<Words, Layers>(trace, frame, z3, run);
-  });
+FrameResult render_z3(const FrameJob& job, const Z3Options& z3) {
+  return with_z3_shape(z3.positions, z3.layers,
+                       [&]<std::size_t Words, std::size_t Layers>() { return render_shape<Words, Layers>(job, z3); });
 }
 
 }  // namespace
@@ -78,7 +77,7 @@ TechniqueKind z3_kind() {
                 return Technique{.framebuffer = z3_framebuffer(o),
                                  .sampled_at = places_of(cell_patterns(o.positions)),
                                  .positions = o.positions,
-                                 .render = bind_options(render_z3, o),
+                                 .renderer = bind_options(render_z3, o),
                                  .is_observable = true};
               })};
 }

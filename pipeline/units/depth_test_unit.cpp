@@ -70,16 +70,14 @@ void DepthTestUnit::blend_fragments(const std::vector<SampleFragment>& fragments
 }
 
 void DepthTestUnit::blend_colors(const std::vector<SampleFragment>& fragments, const BinStage& blending) {
-  const float width = 1.0f / static_cast<float>(std::min(sampling_.grid.columns, sampling_.grid.rows));
   const SamplePlaces places(bin_, sampling_, translucent_at_);
-  blend(bin_.triangles(), bin_.shader(), fragments, places.of(fragments), width, bin_.tile, sampling_, blending.timed(),
-        surface_, accesses_);
+  blend(samples(), bin_.shader(), {fragments, places.of(fragments)}, blending.timed(), surface_, accesses_);
   count_by_pixel(fragments, bin_.tile, sampling_.grid, fragments_);
 }
 
 void DepthTestUnit::test_opaque(const std::vector<SampleFragment>& fragments) {
   const BinStage testing = stage();
-  depth_test(bin_.triangles(), fragments, bin_.tile, sampling_, testing.timed(), surface_, accesses_);
+  depth_test(samples(), fragments, testing.timed(), surface_, accesses_);
   surface_.color_bytes > 0 ? memory_.test_and_write(accesses_, testing.counters)
                            : memory_.test_depth(accesses_, testing.counters);
   count_by_pixel(fragments, bin_.tile, sampling_.grid, fragments_);
@@ -99,17 +97,16 @@ void DepthTestUnit::test_equal(std::vector<SampleFragment>& fragments) {
     fragments.erase(rest, fragments.end());
   }
   const BinStage testing = stage();
-  depth_test_equal(bin_.triangles(), bin_.tile, sampling_, testing.timed(), surface_, fragments, accesses_);
+  depth_test_equal(samples(), testing.timed(), surface_, fragments, accesses_);
   memory_.test_equal(accesses_, testing.counters);
   if (!translucent.empty()) blend_fragments(translucent);
 }
 
 std::vector<glm::vec4> DepthTestUnit::resolve_samples(ShadeAt at, const BinStage& resolving, ResolveSpace space) const {
   const SamplePlaces places(bin_, sampling_, at);
-  return resolve(
-      surface_, bin_.tile.pixels(), bin_.shader(), bin_.background(), resolving.timed(),
-      static_cast<std::size_t>(sampling_.grid.cells_per_pixel()),
-      [&](std::uint32_t triangle, std::size_t cell) { return places.of(triangle, cell); }, space);
+  return resolve(surface_, bin_.tile.pixels(), bin_.shader(), bin_.background(), resolving.timed(),
+                 {static_cast<std::size_t>(sampling_.grid.cells_per_pixel()),
+                  [&](std::uint32_t triangle, std::size_t cell) { return places.of(triangle, cell); }, space});
 }
 
 void DepthTestUnit::count_bytes() {

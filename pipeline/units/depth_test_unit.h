@@ -72,6 +72,7 @@ class DepthTestUnit {
                 SampleMemory::SameValue same_color);
 
   BinStage stage() const { return bin_.stage(StageId::depth_test, pass_); }
+  SampledTriangles samples() const { return {bin_.triangles(), bin_.tile, sampling_}; }
   bool hides(const SampleFragment& fragment) const;  // what lies behind it
   void test_opaque(const std::vector<SampleFragment>& fragments);
   void blend_colors(const std::vector<SampleFragment>& fragments, const BinStage& blending);

@@ -104,8 +104,8 @@ std::vector<glm::vec4> GBufferUnit::light_and_resolve(DepthTestUnit& surface) {
     color.add_bytes(bin_.pixel_counter("bytes"));
   }
   surface.add_color(kSampleColorBytes);
-  return resolve(surface.surface(), bin_.tile.pixels(), bin_.shader(), bin_.background(), resolving.timed(), samples_,
-                 [&](std::uint32_t, std::size_t sample) { return place_of(sample); });
+  return resolve(surface.surface(), bin_.tile.pixels(), bin_.shader(), bin_.background(), resolving.timed(),
+                 {samples_, [&](std::uint32_t, std::size_t sample) { return place_of(sample); }});
 }
 
 }  // namespace beampipe

@@ -23,7 +23,7 @@ ConservativeRasterUnit::ConservativeRasterUnit(Bin& bin, std::string buffer, Pai
 std::vector<Pair>& ConservativeRasterUnit::operator()(const TriangleList& triangles, const Tile& box) {
   pairs_.clear();
   const std::size_t most = conservative_raster(bin_.triangles(), triangles, box, stage_.timed(), pairs_,
-                                               closed_ ? &*closed_ : nullptr, depths_);
+                                               {closed_ ? &*closed_ : nullptr, depths_});
   bin_.holds(buffer_, std::min(most, capacity_) * (depths_ == PairDepths::bounds ? kPairWithDepthBytes : kPairBytes));
   return pairs_;
 }
@@ -52,14 +52,13 @@ void SampleRasterUnit::test_alpha(const Sampling& sampling, ShadeAt at) {
 void SampleRasterUnit::test_alpha(const Sampling& sampling, ShadeAt at, StageCounters& counters, TexelRequests* texels,
                                   std::vector<SampleFragment>& fragments) const {
   const SamplePlaces places(bin_, sampling, at);
-  alpha_test(bin_.shader(), bin_.tile, sampling.grid, sampling.pattern.count, coverage_, places.of(fragments), counters,
-             fragments, texels);
+  alpha_test(bin_.shader(), {bin_.tile, sampling, coverage_, places.of(fragments)}, counters, fragments, texels);
 }
 
 void SampleRasterUnit::tell_all(const TriangleList& drawn, const Sampling& sampling, ShadeAt at) const {
   std::vector<SampleFragment> fragments;
   StageCounters unused;
-  sample_raster(bin_.triangles(), drawn, bin_.tile, sampling, unused, fragments);
+  sample_raster({bin_.triangles(), bin_.tile, sampling}, drawn, unused, fragments);
   const std::vector<SampleFragment> before_alpha = fragments;
   if (tests_alpha()) test_alpha(sampling, at, unused, nullptr, fragments);
   bin_.observer()->has_fragments(sampling, before_alpha, fragments);

@@ -59,8 +59,8 @@ class ConservativeRasterUnit {
       const auto begin = list.begin() + static_cast<std::ptrdiff_t>(first);
       const TriangleList batch(begin, begin + static_cast<std::ptrdiff_t>(std::min(kTriangles, list.size() - first)));
       pairs_.clear();
-      conservative_raster(bin_.triangles(), batch, bin_.tile, stage_.timed(), pairs_, &*closed_, depths_,
-                          Closing::by_later_stage);
+      conservative_raster(bin_.triangles(), batch, bin_.tile, stage_.timed(), pairs_,
+                          {&*closed_, depths_, Closing::by_later_stage});
       bin_.holds("pair_queue", std::min(pairs_.size(), kQueueItems) * kQueuedPairBytes);
       for (std::size_t at = 0; at < pairs_.size(); at += kPairs) {
         const auto from = pairs_.begin() + static_cast<std::ptrdiff_t>(at);
@@ -113,7 +113,7 @@ class SampleRasterUnit {
     if (bin_.observer()) tell_all(drawn, sampling, at);
     for_each_batch(drawn, [&](const TriangleList& batch) {
       fragments_.clear();
-      sample_raster(bin_.triangles(), batch, bin_.tile, sampling, stage_.timed(), fragments_, &closed);
+      sample_raster({bin_.triangles(), bin_.tile, sampling}, batch, stage_.timed(), fragments_, &closed);
       bin_.holds("fragment_queue", std::min(fragments_.size(), kQueueItems) * kSampleFragmentBytes);
       if (tests_alpha()) test_alpha(sampling, at);
       body(fragments_);

@@ -14,7 +14,7 @@ CellPlace SamplePlaces::of(std::uint32_t triangle, std::size_t cell) const {
   if (at_ == ShadeAt::centroid)
     fragment.mask = covered_samples(bin_.triangles().triangles[triangle], fragment, sampling_);
   const glm::vec2 place = of(fragment);
-  return {place.x, place.y, cell_width()};
+  return {place.x, place.y, sampling_.grid.shading_width()};
 }
 
 glm::vec2 SamplePlaces::of(const SampleFragment& fragment) const {
@@ -34,8 +34,9 @@ std::vector<glm::vec2> SamplePlaces::of(const std::vector<SampleFragment>& fragm
 void SamplePlaces::add_texels(const SampleFragment& fragment, TexelRequests& texels) const {
   const glm::vec2 place = of(fragment);
   const CellGrid& grid = sampling_.grid;
-  bin_.context.shader.add_texels(
-      fragment.triangle, {grid.pixel_x(fragment.x), grid.pixel_y(fragment.y), place.x, place.y}, cell_width(), texels);
+  bin_.context.shader.add_texels(fragment.triangle,
+                                 {grid.pixel_x(fragment.x), grid.pixel_y(fragment.y), place.x, place.y},
+                                 sampling_.grid.shading_width(), texels);
 }
 
 void SamplePlaces::add_texels(std::uint32_t triangle, std::size_t cell, TexelRequests& texels) const {

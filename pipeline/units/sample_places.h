@@ -1,7 +1,6 @@
 // Where sample fragments are shaded, in a bin. A triangle and a cell say that, so nothing is kept with the samples.
 #pragma once
 
-#include <algorithm>
 #include <glm/glm.hpp>
 #include <vector>
 
@@ -34,7 +33,6 @@ class SamplePlaces {
   void add_texels(std::uint32_t triangle, std::size_t cell, TexelRequests& texels) const;
 
  private:
-  float cell_width() const { return 1.0f / static_cast<float>(std::min(sampling_.grid.columns, sampling_.grid.rows)); }
   void add_texels(const SampleFragment& fragment, TexelRequests& texels) const;
 
   const Bin& bin_;

@@ -12,7 +12,7 @@ FrameMotion::FrameMotion(const FrameContext& context, const History& history)
 std::vector<glm::vec2> FrameMotion::find(Bin& bin, DepthTestUnit& surface, MotionFrom from) const {
   const BinStage stage = bin.stage(StageId::motion);
   std::vector<glm::vec2> vectors =
-      motion(surface.surface(), bin.tile, frame_, bin.triangles().draws, to_last_, stage.timed(), from);
+      motion(surface.surface(), {bin.tile, frame_, bin.triangles().draws, to_last_}, stage.timed(), from);
   surface.read_depths(stage);
   if (from == MotionFrom::ids) surface.read_colors(stage);
   stage.streams(bin.tile.pixels() * kMotionBytes);

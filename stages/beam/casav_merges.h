@@ -62,11 +62,11 @@ inline OperationCounts merge_cost(const MergeWork& work, const MergeRules& rules
       static_cast<void>(is_before(in.surface, in.surface)), static_cast<void>(is_after(in.surface, in.surface));
     static_cast<void>((mask & mask & ~mask & ~(mask & mask)) != mask);
     select(true, one, one);
-    visible_parts(in, in.surface, mask, mask, bit_count(mask), one, one, rules);
+    visible_parts(in, in.surface, OverlapParts<Float, Mask>{mask, mask, bit_count(mask), one, one}, rules);
     if (transition) fuzziness_of(in.surface, in.surface, one, mask);
   });
   charge(work.lines, [](const auto& in, const Float& one, const Mask&) {
-    const PlaneDifference<Float> gap = plane_difference(in.surface.plane, in.surface.plane);
+    const PlaneGap<Float> gap = plane_gap(in.surface.plane, in.surface.plane);
     const Float half_thickness = Float(0.5f) * one;
     for (const Float& c : {gap.z + half_thickness, gap.z - half_thickness}) {
       static_cast<void>(cuts_pixel(c, gap.reach));

@@ -4,7 +4,7 @@
 #include <type_traits>
 
 #include "simd/conserve.h"
-#include "simd/window_owners.h"
+#include "simd/depth_compare.h"
 #include "stages/beam/specks.h"
 #include "stages/cost/counting.h"
 #include "stages/data/beam_aggregate.h"
@@ -117,7 +117,7 @@ inline OperationCounts depth_compare_cost() {
   return count_operations([](OperationCounts& counts) {
     const Counted<float> one(1.0f, counts);
     Counted<float> depth;
-    nearer_at(one, one, one, one, one, one, depth);
+    depth_test_scalar({one, one, one}, one, one, one, depth);
   });
 }
 

@@ -345,7 +345,7 @@ class OwnerComposer {
   // it is not.
   bool is_final(const Pixel& pixel, std::size_t k, const DepthPlane<float>& plane, float watermark) {
     ++work.finality_tests;
-    const float reach = 0.5f * (magnitude(plane.dzdu) + magnitude(plane.dzdv));
+    const float reach = reach_in_pixel(plane.dzdu, plane.dzdv);
     if (plane.z - reach > watermark) return false;
     if (plane.z + reach <= watermark) return true;
     ++work.farthest_found;

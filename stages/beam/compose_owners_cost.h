@@ -90,7 +90,7 @@ inline OperationCounts plane_gap_cost() {
 inline OperationCounts finality_cost() {
   return count_operations([](OperationCounts& counts) {
     const Counted<float> one(1.0f, counts);
-    const Counted<float> reach = Counted<float>(0.5f) * (magnitude(one) + magnitude(one));
+    const Counted<float> reach = reach_in_pixel(one, one);
     static_cast<void>(one - reach > one);
     static_cast<void>(one + reach <= one);
   });

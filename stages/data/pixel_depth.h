@@ -18,13 +18,7 @@ inline DepthPlane<float> pixel_plane(const SetupTriangle& triangle, std::int32_t
           static_cast<float>(triangle.depth.dzdy)};
 }
 
-// The same for the samples of a cell: the depth at the cell's upper left corner (x, y), in pixels, and slopes per
-// 1/256 px.
-template <class Float>
-struct CellPlane {
-  Float z, dzdx, dzdy;
-};
-
+// The same for the samples of a cell, whose upper left corner is (x, y), in pixels.
 template <class Real>
 auto cell_plane(const ScreenDepthOf<Real>& depth, Real x, Real y) {
   const Real unit(1.0 / kSubpixelUnits);
@@ -46,7 +40,7 @@ DepthBounds<Float> vertex_bounds(const Float z[3]) {
 // Bounds within a pixel: the range of the plane over the whole pixel, limited to the depths of the vertices.
 template <class Float>
 DepthBounds<Float> pair_bounds(const DepthPlane<Float>& plane, const DepthBounds<Float>& vertices) {
-  const Float reach = Float(0.5f) * (magnitude(plane.dzdu) + magnitude(plane.dzdv));
+  const Float reach = reach_in_pixel(plane.dzdu, plane.dzdv);
   return {lesser(greater(plane.z - reach, vertices.nearest), vertices.farthest),
           greater(lesser(plane.z + reach, vertices.farthest), vertices.nearest)};
 }

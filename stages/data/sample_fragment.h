@@ -1,11 +1,13 @@
 // A sample fragment: a triangle's samples in one cell. Sample fragments go from sample_raster to the depth test.
 #pragma once
 
+#include <algorithm>
 #include <bit>
 #include <cstdint>
 
 #include "simd/sample_pattern.h"
 #include "stages/data/pair.h"
+#include "stages/data/setup_triangle.h"
 #include "stages/data/tile.h"
 
 namespace beampipe {
@@ -17,6 +19,8 @@ struct CellGrid {
   std::int32_t cell_width() const { return kSubpixelUnits / columns; }  // 1/256 px
   std::int32_t cell_height() const { return kSubpixelUnits / rows; }
   std::int32_t cells_per_pixel() const { return columns * rows; }
+  // What a shader of a cell sees: its longer side, in pixels.
+  float shading_width() const { return 1.0f / static_cast<float>(std::min(columns, rows)); }
   // The pixel that a cell lies in, and the cell's number within that pixel, row by row.
   std::int32_t pixel_x(std::int32_t x) const { return x >> std::countr_zero(static_cast<std::uint32_t>(columns)); }
   std::int32_t pixel_y(std::int32_t y) const { return y >> std::countr_zero(static_cast<std::uint32_t>(rows)); }
@@ -30,6 +34,13 @@ struct CellGrid {
 struct Sampling {
   CellGrid grid;
   SamplePattern pattern;
+};
+
+// Triangles, and how a tile samples them.
+struct SampledTriangles {
+  const SetupTriangles& triangles;
+  const Tile& tile;
+  const Sampling& sampling;
 };
 
 // The tile measured in cells instead of pixels.

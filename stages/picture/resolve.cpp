@@ -57,16 +57,15 @@ void for_each_run(const SampleTile& surface, std::size_t pixel, std::size_t samp
 }  // namespace
 
 std::vector<glm::vec4> resolve(const SampleTile& surface, std::size_t pixels, const TileShader& shader,
-                               const glm::vec3& background, StageCounters& counters, std::size_t cells,
-                               const CellPlaces& place_of, ResolveSpace space) {
-  const std::size_t samples = surface.samples_per_pixel, samples_per_cell = samples / cells;
+                               const glm::vec3& background, StageCounters& counters, const ResolveOptions& options) {
+  const std::size_t cells = options.cells, samples = surface.samples_per_pixel, samples_per_cell = samples / cells;
   std::vector<glm::vec3> varying;  // colours, one for each run that varies
   if (!shader.is_flat()) {
     std::vector<Invocation> invocations;
     for (std::size_t pixel = 0; pixel < pixels; ++pixel) {
       for_each_run(surface, pixel, samples_per_cell, shader, [&](const SampleRun& run) {
         if (!run.varies) return;
-        const CellPlace place = place_of(run.triangle, pixel * cells + run.begin / samples_per_cell);
+        const CellPlace place = options.place_of(run.triangle, pixel * cells + run.begin / samples_per_cell);
         invocations.push_back(
             {run.triangle, shader.place(static_cast<std::uint32_t>(pixel), place.u, place.v), place.width});
       });
@@ -91,7 +90,7 @@ std::vector<glm::vec4> resolve(const SampleTile& surface, std::size_t pixels, co
       const glm::dvec3 opaque = run.triangle == kNoTriangle ? clear
                                 : run.varies                ? glm::dvec3(*next++)
                                                             : glm::dvec3(shader.color(run.triangle, 0, 0, 0));
-      if (space == ResolveSpace::reinhard) {
+      if (options.space == ResolveSpace::reinhard) {
         glm::dvec3 color = seen * opaque;
         if (over) color += glm::dvec3(over[run.begin]);
         weight /= 1.0 + luminance(&color.x);
@@ -109,12 +108,12 @@ std::vector<glm::vec4> resolve(const SampleTile& surface, std::size_t pixels, co
       }
     });
     glm::dvec3 mean = sum * share;
-    if (observer && space == ResolveSpace::reinhard) observer->scales(1.0 / (1.0 - luminance(&mean.x)));
-    if (space == ResolveSpace::reinhard) expand(&mean.x);
+    if (observer && options.space == ResolveSpace::reinhard) observer->scales(1.0 / (1.0 - luminance(&mean.x)));
+    if (options.space == ResolveSpace::reinhard) expand(&mean.x);
     image.emplace_back(glm::vec3(mean), static_cast<float>(covered * share));
   }
   OperationCounts cost = box_filter_cost(samples);
-  if (space == ResolveSpace::reinhard) cost += reinhard_cost(samples);
+  if (options.space == ResolveSpace::reinhard) cost += reinhard_cost(samples);
   charge_resolve(pixels * samples, surface.color_bytes, pixels, cost, counters);
   return image;
 }

@@ -33,10 +33,15 @@ using CellPlaces = std::function<CellPlace(std::uint32_t triangle, std::size_t c
 // white, which smooths the edges of highlights.
 enum class ResolveSpace { linear, reinhard };
 
-// Returns the mean of each pixel's samples (a box filter of one pixel). `cells`: per pixel. `place_of` is asked for
-// triangles that are not flat.
+struct ResolveOptions {
+  std::size_t cells = 1;     // per pixel
+  CellPlaces place_of = {};  // asked for triangles that are not flat
+  ResolveSpace space = ResolveSpace::linear;
+};
+
+// Returns the mean of each pixel's samples (a box filter of one pixel).
 std::vector<glm::vec4> resolve(const SampleTile& surface, std::size_t pixels, const TileShader& shader,
-                               const glm::vec3& background, StageCounters& counters, std::size_t cells = 1,
-                               const CellPlaces& place_of = {}, ResolveSpace space = ResolveSpace::linear);
+                               const glm::vec3& background, StageCounters& counters,
+                               const ResolveOptions& options = {});
 
 }  // namespace beampipe

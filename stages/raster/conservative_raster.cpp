@@ -7,8 +7,9 @@
 namespace beampipe {
 
 std::size_t conservative_raster(const SetupTriangles& triangles, const TriangleList& list, const Tile& tile,
-                                StageCounters& counters, std::vector<Pair>& out, ClosedDepth* closed, PairDepths depths,
-                                Closing closing) {
+                                StageCounters& counters, std::vector<Pair>& out, const ConservativeOptions& options) {
+  ClosedDepth* const closed = options.closed;
+  const bool closes = closed && options.closing == Closing::by_raster;
   const std::size_t before = out.size();
   Traversal traversal{tile};
   ConservativeRasterWork work;
@@ -23,16 +24,16 @@ std::size_t conservative_raster(const SetupTriangles& triangles, const TriangleL
     traverse(triangle, EdgeSet(triangle), traversal, [&](std::int32_t x, std::int32_t y, std::uint32_t q, bool covers) {
       const bool full = covers && is_opaque;
       DepthBounds<float> bounds{};
-      if (depths == PairDepths::bounds) bounds = pair_bounds(pixel_plane(triangle, x, y), vertices);
+      if (options.depths == PairDepths::bounds) bounds = pair_bounds(pixel_plane(triangle, x, y), vertices);
       if (closed && closed->hides(x, y, bounds.nearest)) return;
-      if (closed && full && closing == Closing::by_raster) closed->close(x, y, bounds.farthest);
+      if (closes && full) closed->close(x, y, bounds.farthest);
       Pair& pair = out.emplace_back();
       pair = {index, q, x, y, full, bounds.nearest, bounds.farthest};
     });
     if (closed) closed->refresh();
   }
   const std::size_t waited = out.size();
-  if (closed && closing == Closing::by_raster) {  // pixels may have been closed after a pair was found in them
+  if (closes) {  // pixels may have been closed after a pair was found in them
     work.tested_again = waited;
     std::erase_if(out, [&](const Pair& pair) { return closed->hides(pair.x, pair.y, pair.nearest); });
   }
@@ -40,7 +41,7 @@ std::size_t conservative_raster(const SetupTriangles& triangles, const TriangleL
   work.traversal = traversal.counts;
   work.triangles = list.size();
   work.pairs = out.size() - before;
-  charge(work, depths, counters);
+  charge(work, options.depths, counters);
   return waited;
 }
 

@@ -64,9 +64,7 @@ std::uint64_t test_alpha(const DepthSpan& span, std::size_t count, std::uint32_t
   for (std::size_t i = 0; i < count; ++i) {
     const std::size_t at = row.first + i;
     double depth = 0;
-    if (!depth_span_sample(span.z, span.dzdx, span.row, span.x, span.step, static_cast<double>(i), surface.depth[at],
-                           depth))
-      continue;
+    if (!depth_span_sample(span, static_cast<double>(i), surface.depth[at], depth)) continue;
     if (!is_cutout) {
       ++found;
       surface.layers.push_back({static_cast<std::uint32_t>(at), triangle, depth});

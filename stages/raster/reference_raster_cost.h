@@ -12,7 +12,7 @@ inline OperationCounts reference_sample_cost() {
   return count_operations([](OperationCounts& counts) {
     const Counted<double> one(1.0, counts);
     Counted<double> depth;
-    depth_span_sample(one, one, one, one, one, one, one, depth);
+    depth_span_sample({one, one, one, one, one}, one, one, depth);
   });
 }
 

@@ -64,22 +64,22 @@ DepthBounds<float> sample_bounds(const SetupTriangle& triangle) {
 
 }  // namespace
 
-void sample_raster(const SetupTriangles& triangles, const TriangleList& list, const Tile& tile,
-                   const Sampling& sampling, StageCounters& counters, std::vector<SampleFragment>& out,
-                   ClosedDepth* closed) {
+void sample_raster(const SampledTriangles& in, const TriangleList& list, StageCounters& counters,
+                   std::vector<SampleFragment>& out, ClosedDepth* closed) {
+  const Sampling& sampling = in.sampling;
   const std::uint32_t every_sample = ~0u >> (kMaxMaskSamples - sampling.pattern.count);
   const std::size_t before = out.size();
-  Traversal traversal{tile, sampling.grid, FullMeans::samples};
+  Traversal traversal{in.tile, sampling.grid, FullMeans::samples};
   SampleRasterWork work;
   PartialCells partial(sampling.pattern, out, work);
   for (const std::uint32_t index : list) {
-    const SetupTriangle& triangle = triangles.triangles[index];
+    const SetupTriangle& triangle = in.triangles.triangles[index];
     const DepthBounds<float> depths = sample_bounds(triangle);
     if (closed && closed->hides_everywhere(depths.nearest)) continue;
     const EdgeSet set(triangle);
     traverse(triangle, set, traversal, [&](std::int32_t x, std::int32_t y, std::uint32_t q, bool full) {
       if (closed && closed->hides(x, y, depths.nearest)) return;
-      if (closed && full && triangles.is_opaque(index)) closed->close(x, y, depths.farthest);
+      if (closed && full && in.triangles.is_opaque(index)) closed->close(x, y, depths.farthest);
       if (!full) {
         partial.add(cell_edges(set, std::int64_t{x} * sampling.grid.cell_width(),
                                std::int64_t{y} * sampling.grid.cell_height()));

@@ -14,11 +14,10 @@
 
 namespace beampipe {
 
-// Appends to `out`, triangle by triangle in the order of the list. With `closed`, which belongs to cells_of(tile), a
+// Appends to `out`, triangle by triangle in the order of the list. With `closed`, which belongs to cells_of(in.tile), a
 // triangle is left out of cells that another one covers completely and in front of all its vertices, in this list or in
 // earlier calls: none of its samples would pass the depth test there.
-void sample_raster(const SetupTriangles& triangles, const TriangleList& list, const Tile& tile,
-                   const Sampling& sampling, StageCounters& counters, std::vector<SampleFragment>& out,
-                   ClosedDepth* closed = nullptr);
+void sample_raster(const SampledTriangles& in, const TriangleList& list, StageCounters& counters,
+                   std::vector<SampleFragment>& out, ClosedDepth* closed = nullptr);
 
 }  // namespace beampipe

@@ -17,11 +17,16 @@ namespace beampipe {
 
 enum class AlphaCoverage { test, to_coverage };
 
-// Drops fragments of which nothing is left. `places`: where each fragment is shaded, in its pixel. `width`: of a cell,
-// in pixels. `samples`: of a cell. Adds the texels that are read to `texels`, unless it is null: a request for each 2x2
-// quad.
-void alpha_test(const TileShader& shader, const Tile& tile, const CellGrid& grid, int samples, AlphaCoverage coverage,
-                const std::vector<glm::vec2>& places, StageCounters& counters, std::vector<SampleFragment>& fragments,
-                TexelRequests* texels = nullptr);
+struct AlphaTest {
+  const Tile& tile;
+  const Sampling& sampling;
+  AlphaCoverage coverage;
+  const std::vector<glm::vec2>& places;  // where each fragment is shaded, in its pixel
+};
+
+// Drops fragments of which nothing is left. Adds the texels that are read to `texels`, unless it is null: a request for
+// each 2x2 quad.
+void alpha_test(const TileShader& shader, const AlphaTest& test, StageCounters& counters,
+                std::vector<SampleFragment>& fragments, TexelRequests* texels = nullptr);
 
 }  // namespace beampipe

@@ -6,23 +6,23 @@
 
 namespace beampipe {
 
-void blend(const SetupTriangles& triangles, const TileShader& shader, const std::vector<SampleFragment>& fragments,
-           const std::vector<glm::vec2>& places, float width, const Tile& tile, const Sampling& sampling,
+void blend(const SampledTriangles& in, const TileShader& shader, const PlacedFragments& fragments,
            StageCounters& counters, SampleTile& surface, std::vector<SampleAccess>& accesses) {
+  const auto& [triangles, tile, sampling] = in;
   const CellGrid& grid = sampling.grid;
   const double cell_width = 1.0 / grid.columns, cell_height = 1.0 / grid.rows;
   const auto samples = static_cast<std::size_t>(sampling.pattern.count);
   SampleCounts counts{};
   accesses.clear();
-  for (std::size_t i = 0; i < fragments.size(); ++i) {
-    const SampleFragment& fragment = fragments[i];
+  for (std::size_t i = 0; i < fragments.list.size(); ++i) {
+    const SampleFragment& fragment = fragments.list[i];
     const std::size_t pixel = tile.index(grid.pixel_x(fragment.x), grid.pixel_y(fragment.y));
     const auto cell = static_cast<std::uint32_t>(pixel) * static_cast<std::uint32_t>(grid.cells_per_pixel()) +
                       static_cast<std::uint32_t>(grid.in_pixel(fragment.x, fragment.y));
     const CellPlane<float> plane =
         cell_plane(triangles.triangles[fragment.triangle].depth, fragment.x * cell_width, fragment.y * cell_height);
-    const glm::vec4 color =
-        shader.color_and_alpha(fragment.triangle, static_cast<std::uint32_t>(pixel), places[i].x, places[i].y, width);
+    const glm::vec4 color = shader.color_and_alpha(fragment.triangle, static_cast<std::uint32_t>(pixel),
+                                                   fragments.places[i].x, fragments.places[i].y, grid.shading_width());
     const glm::vec4 source(glm::vec3(color) * color.a, color.a);
     SampleAccess access{cell, fragment.triangle, fragment.mask, 0};
     PixelObserver* const observer = observer_at(surface.observers, pixel);
@@ -32,7 +32,7 @@ void blend(const SetupTriangles& triangles, const TileShader& shader, const std:
       ++counts.tested;
       const std::size_t at = cell * samples + s;
       float depth;
-      if (!depth_test_scalar(plane.z, plane.dzdx, plane.dzdy, static_cast<float>(sampling.pattern.x[s]),
+      if (!depth_test_scalar(plane, static_cast<float>(sampling.pattern.x[s]),
                              static_cast<float>(sampling.pattern.y[s]), surface.depth[at], depth))
         continue;
       access.passed |= 1u << s;
@@ -44,7 +44,7 @@ void blend(const SetupTriangles& triangles, const TileShader& shader, const std:
     if (observer) observer->contends(fragment.triangle, first, access.tested & ~access.passed, 0);
     accesses.push_back(access);
   }
-  charge_blend(fragments.size(), counts, surface.color_bytes, sampling.pattern, counters);
+  charge_blend(fragments.list.size(), counts, surface.color_bytes, sampling.pattern, counters);
 }
 
 }  // namespace beampipe

@@ -12,7 +12,7 @@ inline OperationCounts sample_depth_cost() {
   return count_operations([](OperationCounts& counts) {
     const Counted<float> one(1.0f, counts);
     Counted<float> depth;
-    depth_test_scalar(one, one, one, one, one, one, depth);
+    depth_test_scalar({one, one, one}, one, one, one, depth);
   });
 }
 

@@ -63,9 +63,12 @@ bool is_inside(const EdgeAt<Int>& edge, Int x, Int y, Int not_owned) {
 
 // The mean position of the samples whose bits are set in `mask`. bits[s] is the bit of sample s, which lies at (x[s],
 // y[s]), in 1/256 px from the cell's corner.
+template <class Real>
+struct Position {
+  Real x, y;
+};
 template <class Bits, class Real>
-void mean_position(Bits mask, const Bits bits[], const Real x[], const Real y[], int samples, Real& mean_x,
-                   Real& mean_y) {
+Position<Real> mean_position(Bits mask, const Bits bits[], const Real x[], const Real y[], int samples) {
   const Real zero(0.0f);
   Real sum_x = zero, sum_y = zero;
   for (int s = 0; s < samples; ++s) {
@@ -73,7 +76,7 @@ void mean_position(Bits mask, const Bits bits[], const Real x[], const Real y[],
     sum_x = sum_x + select(covered, x[s], zero), sum_y = sum_y + select(covered, y[s], zero);
   }
   const Real share = Real(1.0f) / bit_count(mask);
-  mean_x = sum_x * share, mean_y = sum_y * share;
+  return {sum_x * share, sum_y * share};
 }
 
 }  // namespace beampipe

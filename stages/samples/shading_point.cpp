@@ -34,13 +34,13 @@ ShadingPoint shading_point(const SetupTriangle& triangle, const SampleFragment& 
   if (covered || at == ShadeAt::centre) return {glm::dvec2(x, y) / double{kSubpixelUnits}, true};
 
   std::uint32_t bits[kMaxMaskSamples];
-  float xs[kMaxMaskSamples], ys[kMaxMaskSamples], mean_x, mean_y;
+  float xs[kMaxMaskSamples], ys[kMaxMaskSamples];
   for (std::size_t s = 0; s < kMaxMaskSamples; ++s) {
     bits[s] = 1u << s;
     xs[s] = static_cast<float>(sampling.pattern.x[s]), ys[s] = static_cast<float>(sampling.pattern.y[s]);
   }
-  mean_position(fragment.mask, bits, xs, ys, sampling.pattern.count, mean_x, mean_y);
-  return {(glm::dvec2(left, top) + glm::dvec2(mean_x, mean_y)) / double{kSubpixelUnits}, false};
+  const Position<float> mean = mean_position(fragment.mask, bits, xs, ys, sampling.pattern.count);
+  return {(glm::dvec2(left, top) + glm::dvec2(mean.x, mean.y)) / double{kSubpixelUnits}, false};
 }
 
 void count_centroids(const SetupTriangles& triangles, const std::vector<SampleFragment>& fragments, const Tile& tile,

@@ -20,8 +20,7 @@ inline OperationCounts centroid_cost(int samples) {
   return count_operations([&](OperationCounts& counts) {
     std::vector<Counted<std::uint32_t>> bits(static_cast<std::size_t>(samples));
     std::vector<Counted<float>> x(bits.size(), Counted<float>(1.0f, counts));
-    Counted<float> mean_x, mean_y;
-    mean_position(Counted<std::uint32_t>(1, counts), bits.data(), x.data(), x.data(), samples, mean_x, mean_y);
+    mean_position(Counted<std::uint32_t>(1, counts), bits.data(), x.data(), x.data(), samples);
   });
 }
 

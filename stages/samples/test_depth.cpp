@@ -18,32 +18,31 @@ struct Block {
   std::array<std::uint32_t, kBlock> masks;
 };
 
-void set_items(const SetupTriangles& triangles, const SampleFragment* fragments, std::size_t count, const Tile& tile,
-               const CellGrid& grid, Block& block) {
+void set_items(const SampledTriangles& in, const SampleFragment* fragments, std::size_t count, Block& block) {
+  const CellGrid& grid = in.sampling.grid;
   const double cell_width = 1.0 / grid.columns, cell_height = 1.0 / grid.rows;  // pixels; exact
   for (std::size_t i = 0; i < count; ++i) {
     const SampleFragment& fragment = fragments[i];
-    const auto pixel = static_cast<std::int32_t>(tile.index(grid.pixel_x(fragment.x), grid.pixel_y(fragment.y)));
-    const CellPlane<float> plane =
-        cell_plane(triangles.triangles[fragment.triangle].depth, fragment.x * cell_width, fragment.y * cell_height);
+    const auto pixel = static_cast<std::int32_t>(in.tile.index(grid.pixel_x(fragment.x), grid.pixel_y(fragment.y)));
     CellDepth& item = block.items[i];
     item.cell = static_cast<std::uint32_t>(pixel * grid.cells_per_pixel() + grid.in_pixel(fragment.x, fragment.y));
     item.mask = fragment.mask;
     item.triangle = fragment.triangle;
-    item.z = plane.z, item.dzdx = plane.dzdx, item.dzdy = plane.dzdy;
+    item.plane =
+        cell_plane(in.triangles.triangles[fragment.triangle].depth, fragment.x * cell_width, fragment.y * cell_height);
   }
 }
 
 // Calls test(items, count, masks) for one block of fragments after the other and lists which of their samples pass.
 template <class Test>
-SampleCounts test_blocks(const SetupTriangles& triangles, const std::vector<SampleFragment>& fragments,
-                         const Tile& tile, const CellGrid& grid, std::vector<SampleAccess>& accesses, Test&& test) {
+SampleCounts test_blocks(const SampledTriangles& in, const std::vector<SampleFragment>& fragments,
+                         std::vector<SampleAccess>& accesses, Test&& test) {
   SampleCounts samples{0, 0};
   Block block;
   accesses.resize(fragments.size());
   for (std::size_t first = 0; first < fragments.size(); first += kBlock) {
     const std::size_t count = std::min(kBlock, fragments.size() - first);
-    set_items(triangles, &fragments[first], count, tile, grid, block);
+    set_items(in, &fragments[first], count, block);
     const SampleCounts of_block = test(block.items.data(), count, block.masks.data());
     samples.tested += of_block.tested, samples.passed += of_block.passed;
     for (std::size_t i = 0; i < count; ++i)
@@ -63,30 +62,28 @@ void tell(const std::vector<SampleAccess>& accesses, const Sampling& sampling, c
 
 }  // namespace
 
-void depth_test(const SetupTriangles& triangles, const std::vector<SampleFragment>& fragments, const Tile& tile,
-                const Sampling& sampling, StageCounters& counters, SampleTile& surface,
-                std::vector<SampleAccess>& accesses) {
-  const SampleCounts samples = test_blocks(
-      triangles, fragments, tile, sampling.grid, accesses,
-      [&](const CellDepth* items, std::size_t count, std::uint32_t* masks) {
-        return depth_test(items, count, sampling.pattern, {surface.depth.data(), surface.triangle.data()}, masks);
+void depth_test(const SampledTriangles& in, const std::vector<SampleFragment>& fragments, StageCounters& counters,
+                SampleTile& surface, std::vector<SampleAccess>& accesses) {
+  const SamplePattern& pattern = in.sampling.pattern;
+  const SampleCounts samples =
+      test_blocks(in, fragments, accesses, [&](const CellDepth* items, std::size_t count, std::uint32_t* masks) {
+        return depth_test(items, count, pattern, {surface.depth.data(), surface.triangle.data()}, masks);
       });
-  charge_depth_test(fragments.size(), samples, kSampleDepthBytes + surface.color_bytes, sampling.pattern, counters);
-  if (surface.observers) tell(accesses, sampling, surface);
+  charge_depth_test(fragments.size(), samples, kSampleDepthBytes + surface.color_bytes, pattern, counters);
+  if (surface.observers) tell(accesses, in.sampling, surface);
 }
 
-void depth_test_equal(const SetupTriangles& triangles, const Tile& tile, const Sampling& sampling,
-                      StageCounters& counters, const SampleTile& surface, std::vector<SampleFragment>& fragments,
-                      std::vector<SampleAccess>& accesses) {
+void depth_test_equal(const SampledTriangles& in, StageCounters& counters, const SampleTile& surface,
+                      std::vector<SampleFragment>& fragments, std::vector<SampleAccess>& accesses) {
+  const SamplePattern& pattern = in.sampling.pattern;
   const std::size_t tested = fragments.size();
   const SampleCounts samples =
-      test_blocks(triangles, fragments, tile, sampling.grid, accesses,
-                  [&](const CellDepth* items, std::size_t count, std::uint32_t* masks) {
-                    return depth_equal(items, count, sampling.pattern, surface.depth.data(), masks);
-                  });
+      test_blocks(in, fragments, accesses, [&](const CellDepth* items, std::size_t count, std::uint32_t* masks) {
+        return depth_equal(items, count, pattern, surface.depth.data(), masks);
+      });
   for (std::size_t i = 0; i < tested; ++i) fragments[i].mask = accesses[i].passed;
   std::erase_if(fragments, [](const SampleFragment& fragment) { return fragment.mask == 0; });
-  charge_depth_test(tested, samples, surface.color_bytes, sampling.pattern, counters);
+  charge_depth_test(tested, samples, surface.color_bytes, pattern, counters);
 }
 
 }  // namespace beampipe

@@ -8,20 +8,17 @@
 
 #include "stages/cost/counters.h"
 #include "stages/data/sample_tile.h"
-#include "stages/data/setup_triangle.h"
 
 namespace beampipe {
 
 // Replaces `accesses` by one access per fragment.
-void depth_test(const SetupTriangles& triangles, const std::vector<SampleFragment>& fragments, const Tile& tile,
-                const Sampling& sampling, StageCounters& counters, SampleTile& surface,
-                std::vector<SampleAccess>& accesses);
+void depth_test(const SampledTriangles& in, const std::vector<SampleFragment>& fragments, StageCounters& counters,
+                SampleTile& surface, std::vector<SampleAccess>& accesses);
 
 // The pass after a depth-only pass. Keeps of each fragment the samples that have the stored depth, and drops fragments
 // without such samples. Charges writing the colours of the samples that are kept. If two triangles have the same depth
 // at a sample, both keep it.
-void depth_test_equal(const SetupTriangles& triangles, const Tile& tile, const Sampling& sampling,
-                      StageCounters& counters, const SampleTile& surface, std::vector<SampleFragment>& fragments,
-                      std::vector<SampleAccess>& accesses);
+void depth_test_equal(const SampledTriangles& in, StageCounters& counters, const SampleTile& surface,
+                      std::vector<SampleFragment>& fragments, std::vector<SampleAccess>& accesses);
 
 }  // namespace beampipe

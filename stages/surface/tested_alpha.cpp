@@ -13,10 +13,10 @@ namespace {
 constexpr int kValues = 4;
 
 // The alpha of 3x3 texels, as stored.
-using Neighbors = std::array<std::array<int, 3>, 3>;
+using TexelsAround = std::array<std::array<int, 3>, 3>;
 
-Neighbors neighbors_of(const TextureImage& image, const Texture& texture, std::uint32_t x, std::uint32_t y) {
-  Neighbors found;
+TexelsAround neighbors_of(const TextureImage& image, const Texture& texture, std::uint32_t x, std::uint32_t y) {
+  TexelsAround found;
   for (int j = 0; j < 3; ++j)
     for (int i = 0; i < 3; ++i) {
       const std::uint32_t column = wrapped(static_cast<std::int32_t>(x) + i - 1, image.width, texture.wrap_u);
@@ -32,7 +32,7 @@ glm::vec4 passed(float alpha, const glm::vec4& needed) {
 }
 
 // Of the middle texel, which the bilinear filter is tested in at 8 x 8 places.
-glm::vec4 shares_of(const Neighbors& alphas, const glm::vec4& needed) {
+glm::vec4 shares_of(const TexelsAround& alphas, const glm::vec4& needed) {
   constexpr int kPlaces = 8;
   glm::vec4 sum(0.0f);
   for (int v = 0; v < kPlaces; ++v)
@@ -74,7 +74,7 @@ TestedAlpha test_alpha(const Material& material, const TextureImage& image) {
       const std::size_t at = std::size_t{y} * image.width + x;
       glm::vec4 found = passed(static_cast<float>(image.texels[at].a) / 255, needed);
       if (texture.magnify == Filter::linear) {
-        const Neighbors alphas = neighbors_of(image, texture, x, y);
+        const TexelsAround alphas = neighbors_of(image, texture, x, y);
         bool is_constant = true;
         for (const auto& row : alphas)
           is_constant = is_constant && std::ranges::all_of(row, [&](int alpha) { return alpha == alphas[1][1]; });

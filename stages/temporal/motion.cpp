@@ -22,16 +22,15 @@ std::uint32_t hash(std::uint32_t state, const glm::vec3& color) {
 }
 
 // The draw that sample i shows; for the background, the number of draws.
-std::size_t draw_at(const SampleTile& surface, std::size_t i, const std::vector<std::uint32_t>& draws,
-                    const Frame& frame) {
+std::size_t draw_at(const SampleTile& surface, std::size_t i, const MovingTile& in) {
   const std::uint32_t triangle = surface.triangle[i];
-  return triangle == kNoTriangle ? frame.draws.size() : draws[triangle];
+  return triangle == kNoTriangle ? in.frame.draws.size() : in.draws[triangle];
 }
 
 // Of what `draw` shows. The background's depth is beyond the far plane, and it moves as the far plane does.
-glm::vec2 pixel_motion(const std::vector<glm::dmat4>& all_to_last, std::size_t draw, double center_x, double center_y,
-                       float depth, const Frame& frame) {
-  const glm::dmat4& to_last = all_to_last[draw];
+glm::vec2 pixel_motion(const MovingTile& in, std::size_t draw, double center_x, double center_y, float depth) {
+  const Frame& frame = in.frame;
+  const glm::dmat4& to_last = in.to_last[draw];
   const double farthest = draw == frame.draws.size() ? 0.0 : std::numeric_limits<double>::infinity();
   Reprojection<double> reprojection{{}, static_cast<double>(frame.width), static_cast<double>(frame.height)};
   for (int i = 0; i < 16; ++i) reprojection.m[i] = to_last[i / 4][i % 4];
@@ -88,9 +87,9 @@ std::vector<glm::dmat4> to_last_frame(const Poses& now, const Poses& before) {
   return matrices;
 }
 
-std::vector<glm::vec2> motion(const SampleTile& surface, const Tile& tile, const Frame& frame,
-                              const std::vector<std::uint32_t>& draws, const std::vector<glm::dmat4>& to_last,
-                              StageCounters& counters, MotionFrom from) {
+std::vector<glm::vec2> motion(const SampleTile& surface, const MovingTile& in, StageCounters& counters,
+                              MotionFrom from) {
+  const Tile& tile = in.tile;
   const std::size_t samples = surface.samples_per_pixel;
   std::vector<glm::vec2> vectors;
   vectors.reserve(tile.pixels());
@@ -99,7 +98,7 @@ std::vector<glm::vec2> motion(const SampleTile& surface, const Tile& tile, const
       const auto first = surface.depth.begin() + static_cast<std::ptrdiff_t>(vectors.size() * samples);
       const auto nearest = std::min_element(first, first + static_cast<std::ptrdiff_t>(samples));
       const auto at = static_cast<std::size_t>(nearest - surface.depth.begin());
-      vectors.push_back(pixel_motion(to_last, draw_at(surface, at, draws, frame), x + 0.5, y + 0.5, *nearest, frame));
+      vectors.push_back(pixel_motion(in, draw_at(surface, at, in), x + 0.5, y + 0.5, *nearest));
     }
   }
   charge_motion(vectors.size(), samples, from, counters);
@@ -121,9 +120,9 @@ std::vector<std::uint32_t> looks_of(const Frame& frame) {
   return looks;
 }
 
-PixelContents contents(const SampleTile& surface, const Tile& tile, const Frame& frame,
-                       const std::vector<std::uint32_t>& draws, const std::vector<glm::dmat4>& to_last,
-                       const std::vector<std::uint32_t>& looks, StageCounters& counters) {
+PixelContents contents(const SampleTile& surface, const MovingTile& in, const std::vector<std::uint32_t>& looks,
+                       StageCounters& counters) {
+  const Tile& tile = in.tile;
   const std::size_t samples = surface.samples_per_pixel;
   PixelContents found;
   std::uint64_t shown = 0;  // draws, in all pixels together
@@ -134,11 +133,11 @@ PixelContents contents(const SampleTile& surface, const Tile& tile, const Frame&
       std::uint32_t look = 0;
       float fastest = 0;
       for (std::size_t i = found.looks.size() * samples, end = i + samples; i < end; ++i) {
-        const std::size_t draw = draw_at(surface, i, draws, frame);
+        const std::size_t draw = draw_at(surface, i, in);
         if (std::find(here.begin(), here.end(), draw) != here.end()) continue;
         here.push_back(draw);
         look ^= looks[draw];
-        const glm::vec2 moves = pixel_motion(to_last, draw, x + 0.5, y + 0.5, surface.depth[i], frame);
+        const glm::vec2 moves = pixel_motion(in, draw, x + 0.5, y + 0.5, surface.depth[i]);
         fastest = greater(fastest, square_length(moves.x, moves.y));
       }
       found.looks.push_back(look);

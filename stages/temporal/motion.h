@@ -32,11 +32,18 @@ enum class MotionFrom {
           // drawing these a second time to find them, as renderers without visibility ids do, is not charged.
 };
 
-// Returns, for each pixel of a tile, row by row, the vector from a point of the nearest surface to where that was: in
-// pixels, rounded to fp16; infinity if it was behind the eye. `draws`: one per triangle.
-std::vector<glm::vec2> motion(const SampleTile& surface, const Tile& tile, const Frame& frame,
-                              const std::vector<std::uint32_t>& draws, const std::vector<glm::dmat4>& to_last,
-                              StageCounters& counters, MotionFrom from = MotionFrom::ids);
+// A tile of a frame, and how its draws move.
+struct MovingTile {
+  const Tile& tile;
+  const Frame& frame;
+  const std::vector<std::uint32_t>& draws;  // one per triangle
+  const std::vector<glm::dmat4>& to_last;   // as to_last_frame returns them
+};
+
+// Returns, for each pixel of the tile, row by row, the vector from a point of the nearest surface to where that was: in
+// pixels, rounded to fp16; infinity if it was behind the eye.
+std::vector<glm::vec2> motion(const SampleTile& surface, const MovingTile& in, StageCounters& counters,
+                              MotionFrom from = MotionFrom::ids);
 
 // Returns, for each draw and then for the background, a hash of everything that its colours depend on: the index of the
 // draw and its mesh, its Kd, shading and light and, if it is lit, its orientation. Its position has no influence.
@@ -48,8 +55,7 @@ struct PixelContents {
   std::vector<float> speeds;  // of the fastest of these draws, each taken at its first sample: pixels, rounded to fp16
 };
 
-PixelContents contents(const SampleTile& surface, const Tile& tile, const Frame& frame,
-                       const std::vector<std::uint32_t>& draws, const std::vector<glm::dmat4>& to_last,
-                       const std::vector<std::uint32_t>& looks, StageCounters& counters);
+PixelContents contents(const SampleTile& surface, const MovingTile& in, const std::vector<std::uint32_t>& looks,
+                       StageCounters& counters);
 
 }  // namespace beampipe

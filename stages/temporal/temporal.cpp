@@ -85,8 +85,8 @@ void temporal(const CurrentFrame& frame, const TemporalOptions& options, const H
       for (int c = 0; c < 4; ++c) {
         float texels[4];
         for (int t = 0; t < 4; ++t) texels[t] = history.color[taps.texels[t]][c];
-        blended[c] = blend_channel(texels, taps.weights, frame.low[i][c], frame.high[i][c], clamped, frame.color[i][c],
-                                   options.blend * frame.known[i]);
+        blended[c] = blend_channel(texels, taps.weights, {frame.low[i][c], frame.high[i][c]}, clamped,
+                                   frame.color[i][c], options.blend * frame.known[i]);
       }
       image[i] = round_half(blended);
       ++reused;

@@ -33,7 +33,7 @@ inline OperationCounts reuse_cost(bool fading) {
       select(one != one, one, select(one > one, part, one));  // by its look, and by whether anything is known
     }
     converted(one) * one;  // the blend factor times the known part
-    for (int c = 0; c < 4; ++c) blend_channel(four, weights, one, one, one, one, one);
+    for (int c = 0; c < 4; ++c) blend_channel(four, weights, {one, one}, one, one, one);
   });
 }
 

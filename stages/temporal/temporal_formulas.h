@@ -52,13 +52,19 @@ Real square_length(Real x, Real y) {
 
 // ---- temporal ----
 
+// The least and the greatest value of a channel around a pixel.
+template <class Real>
+struct ChannelBox {
+  Real low, high;
+};
+
 // One channel: the history's four texels are weighted, clamped to the box as far as `clamped` (0..1) says, and blended
 // with the new colour.
 template <class Real>
-Real blend_channel(const Real texels[4], const Real weights[4], Real low, Real high, Real clamped, Real color,
+Real blend_channel(const Real texels[4], const Real weights[4], const ChannelBox<Real>& box, Real clamped, Real color,
                    Real blend) {
   const Real old = texels[0] * weights[0] + texels[1] * weights[1] + texels[2] * weights[2] + texels[3] * weights[3];
-  const Real in_box = greater(low, lesser(high, old));
+  const Real in_box = greater(box.low, lesser(box.high, old));
   const Real kept = old + (in_box - old) * clamped;
   return kept + (color - kept) * blend;
 }

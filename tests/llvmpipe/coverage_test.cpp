@@ -65,7 +65,7 @@ std::vector<std::uint32_t> coverage(const SetupTriangles& triangles, int samples
   for (std::uint32_t i = 0; i < triangles.triangles.size(); ++i) all.push_back(i);
   std::vector<SampleFragment> fragments;
   StageCounters counters;
-  sample_raster(triangles, all, kFrame, {CellGrid{}, standard_pattern(samples)}, counters, fragments);
+  sample_raster({triangles, kFrame, {CellGrid{}, standard_pattern(samples)}}, all, counters, fragments);
   std::vector<std::uint32_t> masks(kSize * kSize);
   for (const SampleFragment& f : fragments) masks[static_cast<std::size_t>(f.y * kSize + f.x)] |= f.mask;
   return masks;

@@ -8,8 +8,7 @@
 #include "tests/pipeline/test_traces.h"
 #include "tests/simd/random.h"
 
-namespace beampipe {
-namespace {
+namespace beampipe::bands_test {
 
 // `layers` triangles that cover the whole frame, in no order of depth.
 Trace stack_trace(std::uint32_t width, std::uint32_t height, int layers) {
@@ -30,7 +29,7 @@ SetupTriangles setup_of(const Trace& trace) {
 // The reference keeps every translucent layer of a sample, which opaque triangles have none of.
 TEST(Bands, TranslucentLayersOfTheReferenceAreLimited) {
   Trace trace = stack_trace(16, 8, 50);
-  RunOptions options;
+  FrameInput options;
   options.threads = 2;
   options.memory_limit = 16 << 20;
   const Technique reference = parse_technique("reference");
@@ -176,7 +175,7 @@ TEST(Bands, ResultsAreThoseOfTheWholeFrame) {
   const Trace trace = random_trace(150, 70, 2000, 3);
   for (const char* spec : {"beam:order=sorted", "casav", "alpha"}) {
     const Technique technique = parse_technique(spec);
-    RunOptions options{2};
+    FrameInput options{2};
     const FrameResult whole = technique.render(trace, 0, options);
     // Raises the limit to what each error asks for, up to what the fullest tile needs. A band then holds few tiles.
     int errors = 0;
@@ -201,12 +200,11 @@ TEST(Bands, ListsAloneMakeBandsToo) {
   const Trace trace = random_trace(150, 70, 2000, 3);
   for (const char* spec : {"beam", "beam:order=stream", "z3", "msaa:8", "dvm", "reference"}) {
     const Technique technique = parse_technique(spec);
-    RunOptions options{2};
+    FrameInput options{2};
     const FrameResult whole = technique.render(trace, 0, options);
     options.memory_limit = setup_of(trace).triangles.size() * sizeof(std::uint32_t);
     expect_same(whole, technique.render(trace, 0, options), spec);
   }
 }
 
-}  // namespace
-}  // namespace beampipe
+}  // namespace beampipe::bands_test

@@ -6,8 +6,7 @@
 #include "pipeline/memory/linear_memory.h"
 #include "pipeline/memory/tile_surface.h"
 
-namespace beampipe {
-namespace {
+namespace beampipe::block_cache_test {
 
 // Two sets of two ways, with lines of 128 bytes, which are 4 sectors.
 constexpr CacheParameters kSmall{512, 2, 128};
@@ -226,5 +225,4 @@ TEST(TileSurface, BinsAtTheBorderOfTheFrame) {
   EXPECT_EQ(meter.since(), (Bytes{3 * 256, 3 * 256}));
 }
 
-}  // namespace
-}  // namespace beampipe
+}  // namespace beampipe::block_cache_test

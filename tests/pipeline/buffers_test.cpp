@@ -10,8 +10,7 @@
 #include "tests/pipeline/test_traces.h"
 #include "traces/scenes.h"
 
-namespace beampipe {
-namespace {
+namespace beampipe::buffers_test {
 
 std::uint64_t bytes_of(const FrameResult& result, const std::string& name) {
   if (name == "a_buffer") return result.a_buffer_peak_bytes;
@@ -21,7 +20,7 @@ std::uint64_t bytes_of(const FrameResult& result, const std::string& name) {
 }
 
 FrameResult render(const std::string& spec, const Trace& trace) {
-  RunOptions run{1};
+  FrameInput run{1};
   run.memory.modelled = false;
   return parse_technique(spec).render(trace, 0, run);
 }
@@ -139,5 +138,4 @@ TEST(Buffers, WorkingBytesAreHeldPerPixel) {
   }
 }
 
-}  // namespace
-}  // namespace beampipe
+}  // namespace beampipe::buffers_test

@@ -11,8 +11,7 @@
 #include "tests/pipeline/surface_traces.h"
 #include "tests/pipeline/test_traces.h"
 
-namespace beampipe {
-namespace {
+namespace beampipe::counter_registry_test {
 
 // Two frames of small lit triangles all over the picture, which move by a part of a pixel. The sides of the view cut
 // some of them. The width is odd.
@@ -45,7 +44,7 @@ const std::map<StageId, StageCounters>& sums() {
     for (const std::string& spec : example_specs()) {
       History history;
       for (std::size_t frame = 0; frame < trace.frames.size(); ++frame) {
-        RunOptions run{2};
+        FrameInput run{2};
         run.history = &history;
         for (const StageCounters& stage : parse_technique(spec).render(trace, frame, run).stages)
           by_stage[stage.stage.id] += stage;
@@ -95,5 +94,4 @@ TEST(CounterRegistry, EveryPixelCounterMovesSomewhere) {
   for (const auto& [name, sum] : found) ADD_FAILURE() << name << " is not in the registry";
 }
 
-}  // namespace
-}  // namespace beampipe
+}  // namespace beampipe::counter_registry_test

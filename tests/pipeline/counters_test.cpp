@@ -8,8 +8,7 @@
 #include "tests/pipeline/test_pictures.h"
 #include "tests/pipeline/test_traces.h"
 
-namespace beampipe {
-namespace {
+namespace beampipe::counters_test {
 
 TEST(Counters, DvmSelectsOutOfEightSamplesAPixel) {
   const StageCounters selecting = stage_of(parse_technique("dvm").render(half_square(), 0, {1}), "sample_select");
@@ -109,7 +108,7 @@ TEST(Counters, PixelsAddUpToStages) {
 // Every pixel is read in its stored format and written as fp16 RGB. Both surfaces are contiguous in memory.
 TEST(Counters, ResolveReadsEveryPixelOnce) {
   const Trace trace = random_trace(64, 32, 400, 2);
-  RunOptions raw{2};
+  FrameInput raw{2};
   raw.memory.compression = false;
   for (const auto& [spec, items, stored_bytes] : {std::tuple{"beam:order=sorted", 1u, 42u},
                                                   {"casav", 1u, 42u},
@@ -136,7 +135,7 @@ TEST(Counters, ResolveReadsEveryPixelOnce) {
 // Open pixels on chip are read without memory: only the picture is written. In memory, all of their 138 bytes are read.
 TEST(Counters, ResolveReadsOpenPixelsWhereTheyAreKept) {
   const Trace trace = random_trace(64, 32, 400, 2);
-  RunOptions raw{2};
+  FrameInput raw{2};
   raw.memory.compression = false;
   for (const auto& [spec, moved_bytes] : {std::tuple{"beam", 6u}, {"beam:order=stream", 138u + 6u}}) {
     const StageCounters resolving = stage_of(parse_technique(spec).render(trace, 0, raw), "resolve");
@@ -189,5 +188,4 @@ TEST(Counters, EveryStageWorks) {
   }
 }
 
-}  // namespace
-}  // namespace beampipe
+}  // namespace beampipe::counters_test

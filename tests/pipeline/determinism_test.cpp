@@ -7,8 +7,7 @@
 #include "tests/simd/every_target.h"
 #include "tests/thorough.h"
 
-namespace beampipe {
-namespace {
+namespace beampipe::determinism_test {
 
 void expect_same(const FrameResult& a, const FrameResult& b, const std::string& what) {
   EXPECT_EQ(a.image.rgba, b.image.rgba) << what;
@@ -53,9 +52,8 @@ TEST(Determinism, BinsWithoutTrianglesAreAlike) {
     for (const std::string& spec : example_specs()) {
       const Technique technique = parse_technique(spec);
       Timeline timeline;
-      RunOptions every_bin;
-      every_bin.timeline = &timeline;
-      expect_same(technique.render(trace, 0, every_bin), technique.render(trace, 0, {}), spec);
+      const FrameSinks every_bin{.timeline = &timeline};
+      expect_same(technique.render(trace, 0, {}, every_bin), technique.render(trace, 0, {}), spec);
     }
   }
 }
@@ -67,7 +65,7 @@ bool has_open_pixels(const std::string& spec) {
 
 // Pictures and counters with tiles from a single quad to one that is larger than the frame.
 void expect_same_in_any_tile(const Trace& trace) {
-  RunOptions options;
+  FrameInput options;
   options.memory.modelled = false;  // its caches depend on the tile
   for (const std::string& spec : example_specs()) {
     const Technique technique = parse_technique(spec);
@@ -115,7 +113,7 @@ TEST(Determinism, TheFrameIsTheSameWhereverTilesFallInIt) {
   frame.projection = half * frame.projection;
   for (const std::string& spec : example_specs()) {
     if (spec.starts_with("dvm")) continue;  // its random choices depend on the pixel's place in the frame
-    if (is_one_pass(spec) || spec.find("near-first") != spec.npos)
+    if (has_open_pixels(spec) || spec.find("near-first") != spec.npos)
       continue;  // bins are sorted as a whole, and sums are rounded by a triangle's number
     const Technique technique = parse_technique(spec);
     const Image a = technique.render(whole, 0, {2}).image, b = technique.render(part, 0, {2}).image;
@@ -127,5 +125,4 @@ TEST(Determinism, TheFrameIsTheSameWhereverTilesFallInIt) {
   }
 }
 
-}  // namespace
-}  // namespace beampipe
+}  // namespace beampipe::determinism_test

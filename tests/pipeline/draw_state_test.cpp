@@ -13,8 +13,7 @@
 #include "tests/simd/random.h"
 #include "tests/thorough.h"
 
-namespace beampipe {
-namespace {
+namespace beampipe::draw_state_test {
 
 constexpr std::int32_t kSize = 20;  // pixels
 
@@ -247,5 +246,4 @@ TEST(DrawStatePictures, RandomFramesEqualADepthBuffer) {
   EXPECT_GT(covered, 40 * kSize * kSize / 4);
 }
 
-}  // namespace
-}  // namespace beampipe
+}  // namespace beampipe::draw_state_test

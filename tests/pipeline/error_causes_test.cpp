@@ -8,8 +8,7 @@
 #include "pipeline/technique_table.h"
 #include "tests/pipeline/test_traces.h"
 
-namespace beampipe {
-namespace {
+namespace beampipe::error_causes_test {
 
 using Layers = std::map<std::string, std::vector<float>>;
 
@@ -21,13 +20,11 @@ struct Explained {
 Explained explain(const std::string& spec, const Trace& trace) {
   const Technique technique = parse_technique(spec);
   std::vector<PixelWeights> weights;
-  RunOptions run{2};
-  run.weights = &weights;
-  const Image image = technique.render(trace, 0, run).image;
-  run.weights = nullptr;
+  const FrameInput run{2};
+  const Image image = technique.render(trace, 0, run, {.weights = &weights}).image;
   const Image reference = parse_technique("reference").render(trace, 0, run).image;
   Explained found;
-  found.layers = error_causes(trace, trace.frames[0], weights, image, reference, run);
+  found.layers = error_causes({trace, trace.frames[0], run, {}}, weights, image, reference);
   for (std::size_t i = 0; i < image.rgba.size(); i += 4) {
     double squares = 0;
     for (std::size_t c = 0; c < 3; ++c) squares += std::pow(double(image.rgba[i + c]) - reference.rgba[i + c], 2);
@@ -161,5 +158,4 @@ TEST(ErrorCauses, OnlyTechniquesThatTellTheirWeightsAreExplained) {
   EXPECT_FALSE(parse_technique("msaa:8").has_weights);
 }
 
-}  // namespace
-}  // namespace beampipe
+}  // namespace beampipe::error_causes_test

@@ -6,8 +6,7 @@
 #include "tests/pipeline/test_pictures.h"
 #include "tests/pipeline/test_traces.h"
 
-namespace beampipe {
-namespace {
+namespace beampipe::framebuffer_test {
 
 constexpr std::uint64_t kBinPixels = 32 * 32;
 
@@ -17,7 +16,7 @@ Trace covered_bin() {
 }
 
 FrameResult render_with(const std::string& spec, const Trace& trace, const MemoryParameters& memory) {
-  RunOptions run{1};
+  FrameInput run{1};
   run.memory = memory;
   return parse_technique(spec).render(trace, 0, run);
 }
@@ -100,5 +99,4 @@ TEST(Framebuffer, AnABufferAndWhatLaterFramesReadStayInMemory) {
   EXPECT_EQ(parse_technique("beam").framebuffer_bytes_per_pixel(memory), 154u);
 }
 
-}  // namespace
-}  // namespace beampipe
+}  // namespace beampipe::framebuffer_test

@@ -6,8 +6,7 @@
 #include <random>
 #include <set>
 
-namespace beampipe {
-namespace {
+namespace beampipe::geometry_memory_test {
 
 std::set<std::uint64_t> sectors_of_record(std::uint64_t record, std::uint64_t bytes) {
   std::set<std::uint64_t> sectors;
@@ -157,5 +156,4 @@ TEST(GeometryMemory, WhereNothingIsModelledNothingIsCounted) {
   EXPECT_EQ(counters, StageCounters{});
 }
 
-}  // namespace
-}  // namespace beampipe
+}  // namespace beampipe::geometry_memory_test

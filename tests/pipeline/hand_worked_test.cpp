@@ -6,8 +6,7 @@
 #include "pipeline/technique.h"
 #include "traces/files/trace_io.h"
 
-namespace beampipe {
-namespace {
+namespace beampipe::hand_worked_test {
 
 struct Bytes {
   const char* stage;
@@ -16,7 +15,7 @@ struct Bytes {
 
 void expect_bytes(const char* sample, const char* spec, const std::vector<Bytes>& expected, bool compression = true) {
   const Trace trace = read_trace(std::filesystem::path(BEAMPIPE_SOURCE_FOLDER) / "traces/samples" / sample);
-  RunOptions run{1};
+  FrameInput run{1};
   run.memory.compression = compression;
   const FrameResult result = parse_technique(spec).render(trace, 0, run);
   ASSERT_EQ(result.stages.size(), expected.size());
@@ -151,11 +150,10 @@ TEST(HandWorked, BytesOfAPixel) {
   EXPECT_EQ(bytes("dvm", 2, 3), 8 * (4 + 4 + 4) + 9 + 8 + 6) << "8 samples, one of which is shaded";
   for (const char* spec : {"msaa:1", "acaa:1", "deferred"}) EXPECT_EQ(bytes(spec, 0, 0), 0) << spec;
   EXPECT_EQ(bytes("beam:order=sorted", 0, 0), 4) << "the head";
-  RunOptions run{1};
+  FrameInput run{1};
   run.memory.modelled = false;
   for (const char* spec : {"beam", "beam:order=sorted", "beam:order=stream"})
     EXPECT_FALSE(parse_technique(spec).render(trace, 0, run).pixel_counters.contains("bytes")) << spec;
 }
 
-}  // namespace
-}  // namespace beampipe
+}  // namespace beampipe::hand_worked_test

@@ -12,8 +12,7 @@
 #include "tests/pipeline/surface_traces.h"
 #include "traces/scenes.h"
 
-namespace beampipe {
-namespace {
+namespace beampipe::inspect_test {
 
 struct InspectedSpec {
   const char* spec;
@@ -120,20 +119,20 @@ constexpr double kBlending = 2e-7;  // what blending in single precision may lea
 // `most_more`: rest beyond that of the spec.
 void inspect(const Trace& trace, const std::string& name, unsigned seed, double most_more = 0) {
   const TextureSet textures(trace, name);
-  RunOptions run;
+  FrameInput run;
   run.memory.modelled = false;
   run.textures = &textures;
   const Image reference = parse_technique("reference").render(trace, 0, run).image;
   for (const InspectedSpec& spec : kSpecs) {
     const Technique technique = parse_technique(spec.spec);
     std::vector<PixelWeights> weights;
-    run.weights = technique.has_weights ? &weights : nullptr;
-    const Image image = technique.render(trace, 0, run).image;
+    const FrameSinks sinks{.weights = technique.has_weights ? &weights : nullptr};
+    const Image image = technique.render(trace, 0, run, sinks).image;
     const std::vector<PixelAddress> pixels = chosen_pixels(image, reference, seed);
     std::vector<PixelHistory> histories;
-    RunOptions observed = run;
-    observed.pixels = &pixels, observed.histories = &histories, observed.weights = nullptr;
-    technique.render(trace, 0, observed);
+    FrameInput observed = run;
+    observed.pixels = &pixels;
+    technique.render(trace, 0, observed, {.histories = &histories});
     ASSERT_EQ(histories.size(), pixels.size());
     for (std::size_t i = 0; i < pixels.size(); ++i) {
       SCOPED_TRACE(name + ", " + spec.spec + ", pixel " + std::to_string(pixels[i].x) + "," +
@@ -159,5 +158,4 @@ TEST(Inspect, RandomSurfacesAreTheirPictureToTheBit) {
   inspect(random_surfaces(45, 31, 150, 3), "surfaces", 5, kBlending);
 }
 
-}  // namespace
-}  // namespace beampipe
+}  // namespace beampipe::inspect_test

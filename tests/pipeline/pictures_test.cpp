@@ -5,8 +5,7 @@
 #include "tests/pipeline/test_pictures.h"
 #include "tests/pipeline/test_traces.h"
 
-namespace beampipe {
-namespace {
+namespace beampipe::pictures_test {
 
 const glm::vec3 kRed(1, 0, 0), kGreen(0, 1, 0), kBlue(0, 0, 1);
 
@@ -81,5 +80,4 @@ TEST(Pictures, OfTwoEqualTrianglesTheEarlierIsSeen) {
   }
 }
 
-}  // namespace
-}  // namespace beampipe
+}  // namespace beampipe::pictures_test

@@ -11,8 +11,7 @@
 #include "tests/pipeline/surface_traces.h"
 #include "tests/stages/surface_scene.h"
 
-namespace beampipe {
-namespace {
+namespace beampipe::surfaces_test {
 
 FrameResult rendered(const std::string& spec, const Trace& trace) {
   return parse_technique(spec).render(trace, 0, {2});
@@ -316,5 +315,4 @@ TEST(Surfaces, TranslucentTrianglesAreDrawnOnce) {
   }
 }
 
-}  // namespace
-}  // namespace beampipe
+}  // namespace beampipe::surfaces_test

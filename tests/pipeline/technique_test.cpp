@@ -11,8 +11,7 @@
 
 #include "pipeline/technique_table.h"
 
-namespace beampipe {
-namespace {
+namespace beampipe::technique_test {
 
 TEST(Technique, FramebufferBytesAreThePublishedOnes) {
   // Slide 23 of Crassin et al. 2018: beam takes 42 bytes with colour. MSAA 8x and 32x with 4-byte depth and fp16 RGB
@@ -66,7 +65,7 @@ TEST(Technique, WrongSpecsSayWhatWouldBeRight) {
   const std::string of_casav =
       "; it has mask, sort, tiny, overlap, regional, local, fuzzy, extents, slab, plane, thickness, storage, order "
       "and layers";
-  const std::string of_dvm = "; it has blend, seed and material";
+  const std::string of_dvm = "; it has blend and material";
   for (const auto& [spec, error] : std::map<std::string, std::string>{
            {"", names},
            {"wireframe", names},
@@ -148,9 +147,7 @@ TEST(Technique, WrongSpecsSayWhatWouldBeRight) {
            {"taa:8,blend=0.5x", "blend must be a number from 0.001 to 1"},
            {"dvm:8", "dvm has no option '8'" + of_dvm},
            {"dvm:=8", "dvm has no option ''" + of_dvm},
-           {"dvm:seed=-1", "seed must be a whole number from 0 to 4294967295"},
-           {"dvm:seed=1.5", "seed must be a whole number from 0 to 4294967295"},
-           {"dvm:seed=4294967296", "seed must be a whole number from 0 to 4294967295"}})
+           {"dvm:seed=1", "dvm has no option 'seed'" + of_dvm}})
     EXPECT_EQ(error_of(spec), error);
 }
 
@@ -247,5 +244,4 @@ TEST(TechniqueTable, ThePageHasItsTables) {
   }
 }
 
-}  // namespace
-}  // namespace beampipe
+}  // namespace beampipe::technique_test

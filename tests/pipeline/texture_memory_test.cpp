@@ -9,8 +9,7 @@
 #include "stages/data/sample_fragment.h"
 #include "tests/pipeline/test_traces.h"
 
-namespace beampipe {
-namespace {
+namespace beampipe::texture_memory_test {
 
 // Every way to shade, with the ways that read alpha.
 TextureImage square_image(std::uint32_t size) {
@@ -54,11 +53,11 @@ Trace mixed_trace() {
   return trace;
 }
 
-std::vector<StageCounters> stages_of(const std::string& spec, const Trace& trace, const RunOptions& run = {}) {
+std::vector<StageCounters> stages_of(const std::string& spec, const Trace& trace, const FrameInput& run = {}) {
   return parse_technique(spec).render(trace, 0, run).stages;
 }
 
-StageCounters stage_of(const char* spec, const Trace& trace, const std::string& name, const RunOptions& run = {}) {
+StageCounters stage_of(const char* spec, const Trace& trace, const std::string& name, const FrameInput& run = {}) {
   for (const StageCounters& stage : stages_of(spec, trace, run))
     if (name_of(stage.stage) == name) return stage;
   ADD_FAILURE() << spec << " has no stage " << name;
@@ -171,7 +170,7 @@ TEST(TextureMemory, TexelsArePartsOfTheTotals) {
 
 TEST(TextureMemory, DoesNotDependOnThreads) {
   const Trace trace = mixed_trace();
-  RunOptions one{1}, many{13};
+  FrameInput one{1}, many{13};
   one.memory.l2 = many.memory.l2 = {2048, 4, 128};  // small, so that the order of the bins matters
   for (const std::string& spec : example_specs())
     EXPECT_EQ(stages_of(spec, trace, one), stages_of(spec, trace, many)) << spec;
@@ -179,7 +178,7 @@ TEST(TextureMemory, DoesNotDependOnThreads) {
 
 TEST(TextureMemory, WithoutAModelOnlyLogicalBytesAreCounted) {
   const Trace trace = mixed_trace();
-  RunOptions off;
+  FrameInput off;
   off.memory.modelled = false;
   for (const std::string& spec : example_specs()) {
     std::vector<StageCounters> modelled = stages_of(spec, trace);
@@ -206,8 +205,8 @@ TEST(TextureMemory, FlatFramesReadNoTexels) {
 // sector).
 TEST(GeometryMemory, SurfacesAreFetchedWithTheirVertices) {
   const Trace trace = textured_frame(16, 8, 0.5);
-  const RunOptions run;
-  const FrameContext context(trace, trace.frames[0], run);
+  const FrameInput run;
+  const FrameContext context({trace, trace.frames[0], run, {}});
   const TriangleList list{0, 1};
   TriangleFetches fetches({}, list, &context.shader);
   StageCounters counters;
@@ -225,5 +224,4 @@ TEST(GeometryMemory, SurfacesAreFetchedWithTheirVertices) {
   EXPECT_EQ(both.dram_bytes, (4 + 2) * 32u);
 }
 
-}  // namespace
-}  // namespace beampipe
+}  // namespace beampipe::texture_memory_test

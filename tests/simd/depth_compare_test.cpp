@@ -30,7 +30,7 @@ std::uint64_t twin(const std::vector<CellDepth>& items, const SamplePattern& pat
       float depth = 0;
       if (!(item.mask >> s & 1)) continue;
       const auto x = static_cast<float>(pattern.x[s]), y = static_cast<float>(pattern.y[s]);
-      if (!depth_test_scalar(item.z, item.dzdx, item.dzdy, x, y, samples.depth[i], depth)) continue;
+      if (!depth_test_scalar(item.plane, x, y, samples.depth[i], depth)) continue;
       samples.depth[i] = depth;
       samples.triangle[i] = item.triangle;
       ++passed;
@@ -52,8 +52,9 @@ TEST(DepthCompare, KernelEqualsTwinForEveryPatternSize) {
     std::vector<CellDepth> items;
     for (std::uint32_t i = 0; i < 300; ++i)
       items.push_back({static_cast<std::uint32_t>(random.integer(0, kCells - 1)),
-                       random.word() & (~0u >> (kMaxMaskSamples - count)), i, -random.real32(0, 4) / 4,
-                       random.pick(kSlopes), random.pick(kSlopes)});
+                       random.word() & (~0u >> (kMaxMaskSamples - count)),
+                       i,
+                       {-random.real32(0, 4) / 4, random.pick(kSlopes), random.pick(kSlopes)}});
     std::uint64_t tested = 0;
     for (const CellDepth& item : items) tested += static_cast<std::uint64_t>(std::popcount(item.mask));
     Samples expected = cleared(kCells, pattern);
@@ -72,10 +73,10 @@ TEST(DepthCompare, KernelEqualsTwinForEveryPatternSize) {
 TEST(DepthCompare, NearerReplacesEqualDoesNot) {
   const SamplePattern pattern = standard_pattern(4);
   // Triangle 1 takes all samples, 2 has the same depth, 3 is nearer but covers samples 0 and 2 only, 4 is farther.
-  const std::vector<CellDepth> items = {{0, 0b1111u, 1, -0.5f, 0, 0},
-                                        {0, 0b1111u, 2, -0.5f, 0, 0},
-                                        {0, 0b0101u, 3, -0.75f, 0, 0},
-                                        {0, 0b1111u, 4, -0.25f, 0, 0}};
+  const std::vector<CellDepth> items = {{0, 0b1111u, 1, {-0.5f, 0, 0}},
+                                        {0, 0b1111u, 2, {-0.5f, 0, 0}},
+                                        {0, 0b0101u, 3, {-0.75f, 0, 0}},
+                                        {0, 0b1111u, 4, {-0.25f, 0, 0}}};
   on_every_target([&] {
     Samples found = cleared(1, pattern);
     EXPECT_EQ(depth_test(items.data(), items.size(), pattern, {found.depth.data(), found.triangle.data()}).passed, 6u);

@@ -20,16 +20,16 @@ TEST(DepthEqual, KernelEqualsTwin) {
     std::vector<CellDepth> items;
     std::vector<std::uint32_t> expected;
     for (std::uint32_t cell = 0; cell < 100; ++cell) {
-      items.push_back({cell, static_cast<std::uint32_t>(bits()), 0, uniform(), uniform() / 256, uniform() / 256});
+      items.push_back({cell, static_cast<std::uint32_t>(bits()), 0, {uniform(), uniform() / 256, uniform() / 256}});
       items.back().mask &= ~0u >> (32 - samples);
       std::uint32_t mask = 0;
       for (std::size_t s = 0; s < n; ++s) {
         const CellDepth& item = items.back();
         const auto x = static_cast<float>(pattern.x[s]), y = static_cast<float>(pattern.y[s]);
         float& stored = depth[cell * n + s];
-        depth_test_scalar(item.z, item.dzdx, item.dzdy, x, y, 1e9f, stored);
+        depth_test_scalar(item.plane, x, y, 1e9f, stored);
         if (bits() % 3 == 0) stored = std::nextafter(stored, -2.0f);  // one bit nearer
-        const bool equal = depth_equal_scalar(item.z, item.dzdx, item.dzdy, x, y, stored);
+        const bool equal = depth_equal_scalar(item.plane, x, y, stored);
         mask |= (equal ? item.mask >> s & 1 : 0u) << s;
       }
       expected.push_back(mask);

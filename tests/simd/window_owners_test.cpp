@@ -38,7 +38,7 @@ void expect_twin(Random& random, int windows, const std::vector<float>& unusual_
         fragments.push_back(random_fragment(random, words));
       for (MaskedPlane& fragment : fragments)
         for (const float depth : unusual_depths)
-          if (random.one_in(2)) fragment.plane.corner = depth;
+          if (random.one_in(2)) fragment.plane.z = depth;
       const WideMask taken = random.one_in(2) ? WideMask{} : random_mask(random, words);
       std::vector<Ownership> found(fragments.size()), expected(fragments.size());
       const WindowCounts counts =

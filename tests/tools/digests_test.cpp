@@ -12,8 +12,7 @@
 #include "tools/files/digest.h"
 #include "traces/scenes.h"
 
-namespace beampipe {
-namespace {
+namespace beampipe::digests_test {
 
 template <class T>
 std::string_view bytes_of(const std::vector<T>& values) {
@@ -89,5 +88,4 @@ TEST(Digests, PicturesAndCountersAreThoseOfTheFile) {
   for (const auto& [name, line] : now) stream << name << ' ' << line << '\n';
 }
 
-}  // namespace
-}  // namespace beampipe
+}  // namespace beampipe::digests_test

@@ -6,8 +6,7 @@
 
 #include "tests/traces/test_folder.h"
 
-namespace beampipe {
-namespace {
+namespace beampipe::array_reader_test {
 
 using Json = nlohmann::ordered_json;
 
@@ -179,5 +178,4 @@ TEST_F(ArrayReaderTest, SaysWhatIsWrongWithDrawState) {
   EXPECT_EQ(error(R"({"blend": {"source": "one"}})"), start + "/blend: expected the key \"destination\", found none");
 }
 
-}  // namespace
-}  // namespace beampipe
+}  // namespace beampipe::array_reader_test

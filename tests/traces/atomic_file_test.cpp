@@ -5,8 +5,7 @@
 
 #include "tests/traces/test_folder.h"
 
-namespace beampipe {
-namespace {
+namespace beampipe::atomic_file_test {
 
 class AtomicFileTest : public FolderTest {
  protected:
@@ -57,5 +56,4 @@ TEST_F(AtomicFileTest, FollowsNothingUnderTheTemporaryName) {
   EXPECT_NE(failure("b").find("b: cannot"), std::string::npos) << "and does not wait for a reader";
 }
 
-}  // namespace
-}  // namespace beampipe
+}  // namespace beampipe::atomic_file_test

@@ -2,8 +2,7 @@
 
 #include <gtest/gtest.h>
 
-namespace beampipe {
-namespace {
+namespace beampipe::base64_test {
 
 // RFC 4648, section 10, and bytes above 127.
 const std::pair<const char*, const char*> kPairs[] = {
@@ -33,5 +32,4 @@ TEST(Base64, RefusesOtherTexts) {
   }
 }
 
-}  // namespace
-}  // namespace beampipe
+}  // namespace beampipe::base64_test

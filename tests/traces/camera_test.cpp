@@ -2,8 +2,7 @@
 
 #include "traces/trace.h"
 
-namespace beampipe {
-namespace {
+namespace beampipe::camera_test {
 
 // Where a point lands, in pixels from the upper left corner.
 glm::dvec2 landing(const Frame& frame, const glm::dvec3& point) {
@@ -29,5 +28,4 @@ TEST(PanPicture, EveryPointMovesByTheSamePixelsAtEveryDepth) {
   }
 }
 
-}  // namespace
-}  // namespace beampipe
+}  // namespace beampipe::camera_test

@@ -2,8 +2,7 @@
 
 #include <gtest/gtest.h>
 
-namespace beampipe {
-namespace {
+namespace beampipe::closest_name_test {
 
 const std::vector<std::string> kNames = {"compare", "run", "report", "check-capture", "msaa", "order"};
 
@@ -36,5 +35,4 @@ TEST(ClosestName, AQuestion) {
   EXPECT_EQ(did_you_mean("paint", kNames), "");
 }
 
-}  // namespace
-}  // namespace beampipe
+}  // namespace beampipe::closest_name_test

@@ -6,8 +6,7 @@
 #include "traces/files/model_import.h"
 #include "traces/files/trace_images.h"
 
-namespace beampipe {
-namespace {
+namespace beampipe::gltf_import_test {
 
 using Json = nlohmann::json;
 using Triangles = std::vector<glm::uvec3>;
@@ -811,5 +810,4 @@ TEST_F(GltfImportTest, SmallFilesDoNotTakeLargeMemory) {
             "model.gltf: expected at most 10000000 draws, over all frames, found more");
 }
 
-}  // namespace
-}  // namespace beampipe
+}  // namespace beampipe::gltf_import_test

@@ -8,8 +8,7 @@
 #include "tests/traces/test_folder.h"
 #include "traces/files/model_import.h"
 
-namespace beampipe {
-namespace {
+namespace beampipe::gltf_models_test {
 
 void expect_sound(const Trace& trace, const std::string& name) {
   EXPECT_FALSE(trace.frames.empty()) << name;
@@ -86,5 +85,4 @@ TEST(GltfModelsTest, KnownModelsHaveWhatTheyShould) {
   EXPECT_EQ(cube.trace.meshes.size(), 3u);
 }
 
-}  // namespace
-}  // namespace beampipe
+}  // namespace beampipe::gltf_models_test

@@ -10,8 +10,7 @@
 #include "tests/traces/image_samples.h"
 #include "traces/files/trace_io.h"
 
-namespace beampipe {
-namespace {
+namespace beampipe::image_file_test {
 
 using Texels = std::vector<glm::u8vec4>;
 
@@ -266,5 +265,4 @@ TEST(ImageFile, SurvivesRandomDamage) {
   }
 }
 
-}  // namespace
-}  // namespace beampipe
+}  // namespace beampipe::image_file_test

@@ -9,8 +9,7 @@
 
 #include "traces/files/trace_io.h"
 
-namespace beampipe {
-namespace {
+namespace beampipe::json_test {
 
 std::string error_of(const std::function<void()>& read) {
   try {
@@ -133,5 +132,4 @@ TEST(Json, BrokenTextNamesTheFile) {
   }
 }
 
-}  // namespace
-}  // namespace beampipe
+}  // namespace beampipe::json_test

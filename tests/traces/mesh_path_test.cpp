@@ -1,7 +1,6 @@
 #include "tests/traces/test_folder.h"
 
-namespace beampipe {
-namespace {
+namespace beampipe::mesh_path_test {
 
 const char kObj[] = "v 0 0 0\nv 1 0 0\nv 0 1 0\nf 1 2 3\n";
 
@@ -73,5 +72,4 @@ TEST_F(MeshPathTest, ErrorsInTheObjNameBothFiles) {
       "down, found another one at corner 3");
 }
 
-}  // namespace
-}  // namespace beampipe
+}  // namespace beampipe::mesh_path_test

@@ -1,8 +1,7 @@
 #include "tests/traces/test_folder.h"
 #include "traces/files/model_import.h"
 
-namespace beampipe {
-namespace {
+namespace beampipe::obj_import_test {
 
 const std::string kSquare = "v 0 0 0\nv 1 0 0\nv 1 1 0\nv 0 1 0\n";
 
@@ -200,5 +199,4 @@ TEST_F(ObjImportTest, NamesFilesThatCannotBeRead) {
   EXPECT_EQ(error_of([&] { flat(path("folder"), ""); }), "folder: expected a readable file, found a folder");
 }
 
-}  // namespace
-}  // namespace beampipe
+}  // namespace beampipe::obj_import_test

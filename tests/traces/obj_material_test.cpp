@@ -3,8 +3,7 @@
 #include "tests/traces/test_images.h"
 #include "traces/files/model_import.h"
 
-namespace beampipe {
-namespace {
+namespace beampipe::obj_material_test {
 
 const std::string kSquare = "v 0 0 0\nv 1 0 0\nv 1 1 0\nv 0 1 0\nvt 0 0\nvt 1 0\nvt 1 1\nvt 0 1\n";
 
@@ -210,5 +209,4 @@ TEST_F(ObjMaterialTest, SaysWhatIsWrong) {
   EXPECT_EQ(error("Kd 1 1 1\n", "vt 0e500 0\nf 1 2 3\n").find("mesh.obj: texture coordinate 5: expected finite"), 0u);
 }
 
-}  // namespace
-}  // namespace beampipe
+}  // namespace beampipe::obj_material_test

@@ -13,8 +13,7 @@
 #include "tests/traces/scene_names.h"
 #include "tests/traces/test_folder.h"
 
-namespace beampipe {
-namespace {
+namespace beampipe::scenes_test {
 
 std::size_t count(const Trace& trace) {
   std::size_t sum = 0;
@@ -384,5 +383,4 @@ TEST(Scenes, TheSpheresAreClosed) {
   }
 }
 
-}  // namespace
-}  // namespace beampipe
+}  // namespace beampipe::scenes_test

@@ -8,8 +8,7 @@
 #include "traces/files/base64.h"
 #include "traces/files/image_file.h"
 
-namespace beampipe {
-namespace {
+namespace beampipe::surface_reader_test {
 
 using Json = nlohmann::ordered_json;
 
@@ -384,5 +383,4 @@ TEST_F(SurfaceReaderTest, ErrorsHaveNoControlCharacters) {
   EXPECT_EQ(error_in(json).find('\n'), std::string::npos);
 }
 
-}  // namespace
-}  // namespace beampipe
+}  // namespace beampipe::surface_reader_test

@@ -5,8 +5,7 @@
 #include "tests/traces/test_folder.h"
 #include "traces/files/model_import.h"
 
-namespace beampipe {
-namespace {
+namespace beampipe::trace_reader_test {
 
 using Json = nlohmann::ordered_json;
 
@@ -303,5 +302,4 @@ TEST_F(TraceReaderTest, ReadsTheSamples) {
   EXPECT_EQ(captured.capture.pictures.depth.size(), 96u * 72);
 }
 
-}  // namespace
-}  // namespace beampipe
+}  // namespace beampipe::trace_reader_test

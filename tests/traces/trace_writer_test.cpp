@@ -7,8 +7,7 @@
 
 #include "tests/traces/test_folder.h"
 
-namespace beampipe {
-namespace {
+namespace beampipe::trace_writer_test {
 
 template <typename T>
 void expect_same_bits(const std::vector<T>& a, const std::vector<T>& b) {
@@ -593,5 +592,4 @@ TEST_F(TraceWriterTest, ReplacesRegularFilesOnly) {
   EXPECT_EQ(read("trace.json").substr(0, 19), "{\"beampipe_trace\": ");
 }
 
-}  // namespace
-}  // namespace beampipe
+}  // namespace beampipe::trace_writer_test

@@ -7,8 +7,7 @@
 #include <map>
 #include <tuple>
 
-namespace beampipe {
-namespace {
+namespace beampipe::triangle_order_test {
 
 // Two draws of a mesh with triangles at depths 1, 5 and 3, seen along -z. The second draw is 1 farther away.
 Trace two_draws() {
@@ -80,5 +79,4 @@ TEST(TriangleOrder, ShufflesBySeed) {
   EXPECT_GE(different, 8);  // of 720 orders
 }
 
-}  // namespace
-}  // namespace beampipe
+}  // namespace beampipe::triangle_order_test

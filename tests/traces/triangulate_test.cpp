@@ -4,8 +4,7 @@
 
 #include <cmath>
 
-namespace beampipe {
-namespace {
+namespace beampipe::triangulate_test {
 
 using Corners = std::vector<glm::vec3>;
 
@@ -57,5 +56,4 @@ TEST(Triangulate, GivesTheSameNumberOfTrianglesForAnyPolygon) {
   EXPECT_TRUE(triangulate({{0, 0, 0}, {1, 1, 1}}).empty());
 }
 
-}  // namespace
-}  // namespace beampipe
+}  // namespace beampipe::triangulate_test

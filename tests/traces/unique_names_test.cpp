@@ -4,8 +4,7 @@
 
 #include "traces/trace.h"
 
-namespace beampipe {
-namespace {
+namespace beampipe::unique_names_test {
 
 TEST(UniqueNames, NumbersWhatHasTheSameName) {
   std::vector<Material> items(8);
@@ -16,5 +15,4 @@ TEST(UniqueNames, NumbersWhatHasTheSameName) {
   for (std::size_t i = 0; i < items.size(); ++i) EXPECT_EQ(items[i].name, expected[i]);
 }
 
-}  // namespace
-}  // namespace beampipe
+}  // namespace beampipe::unique_names_test

@@ -2,8 +2,7 @@
 
 #include <gtest/gtest.h>
 
-namespace beampipe {
-namespace {
+namespace beampipe::vertex_frames_test {
 
 // Two triangles that make a square in the plane z = 0, facing +z.
 Mesh square() {
@@ -62,5 +61,4 @@ TEST(VertexFrames, MendsOnlyBrokenNormals) {
   EXPECT_EQ(mend_normals(mesh), 0u);
 }
 
-}  // namespace
-}  // namespace beampipe
+}  // namespace beampipe::vertex_frames_test

@@ -11,6 +11,9 @@
 namespace beampipe {
 namespace {
 
+// Kinds of claims in report.json.
+constexpr const char *kRendered = "rendered", *kByDefinition = "true by definition";
+
 constexpr std::string_view kImplementation = "{implementation}";
 
 // The digest of the trace's content; empty if the report does not have it.
@@ -98,19 +101,28 @@ std::vector<Claim> answered_claims(const Report& report) {
   return claims;
 }
 
-Json to_json(const Claim& claim) {
-  Json json = {{"name", claim.name}, {"unit", claim.unit}, {"published_low", claim.published_low}};
-  const auto or_null = [](std::optional<double> value) {
-    return value && std::isfinite(*value) ? Json(*value) : Json();
-  };
-  json["published_high"] = or_null(claim.published_high);  // null: or more
-  json["ours"] = or_null(claim.ours);
-  json["difference"] = or_null(claim.difference());
-  json["kind"] = claim.by_definition ? "true by definition" : "rendered";
-  json["source"] = claim.source;
-  json["command"] = claim.command;
-  json["beside"] = claim.beside;
-  return json;
+Form<Claim> claim_form() {
+  const Form<double> or_null = {{{"type", Json::array({"number", "null"})}}, {}, [](const double& value) {
+                                  return std::isfinite(value) ? Json(value) : Json();
+                                }};
+  const auto number = [](const std::optional<double>& value) { return value.value_or(NAN); };
+  return ObjectForm<Claim>()
+      .written("name", &Claim::name, form::text(), "What a publication says.")
+      .written("unit", &Claim::unit, form::text(), "Of the numbers; empty: a ratio or a count.")
+      .written("published_low", &Claim::published_low, form::number(),
+               "The published number, or the lower end of the range.")
+      .written("published_high", &Claim::published_high, or_null, "The upper end; null: or more.")
+      .written(
+          "ours", [number](const Claim& claim) { return number(claim.ours); }, or_null, "Our number.")
+      .written(
+          "difference", [number](const Claim& claim) { return number(claim.difference()); }, or_null,
+          "Ours minus the nearer end of the published range; 0 within it.")
+      .written(
+          "kind", [](const Claim& claim) { return claim.by_definition ? kByDefinition : kRendered; },
+          form::one_of({kRendered, kByDefinition}), "How our number was found.")
+      .written("source", &Claim::source, form::text(), "The place in the publication.")
+      .written("command", &Claim::command, form::text(), "What finds our number.")
+      .written("beside", &Claim::beside, form::text(), "What our number is, if it is not the same quantity.");
 }
 
 std::string claims_text(const std::vector<Claim>& claims) {

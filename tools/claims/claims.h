@@ -6,7 +6,7 @@
 #include <vector>
 
 #include "tools/evaluate/results.h"
-#include "traces/files/json.h"
+#include "traces/files/json_form.h"
 
 namespace beampipe {
 
@@ -35,7 +35,8 @@ void find_quotients(std::vector<Claim>& claims);
 // The claims for which the report gives a number.
 std::vector<Claim> answered_claims(const Report& report);
 
-Json to_json(const Claim& claim);
+// As in report.json.
+Form<Claim> claim_form();
 
 // As two Markdown tables, of what was rendered and of what is true by definition, and the numbers of their rows.
 std::string claims_text(const std::vector<Claim>& claims);

@@ -79,7 +79,7 @@ void check_capture(const CheckArguments& arguments, InterruptGate& gate) {
   tell_notes(notes);
   const TextureSet textures(trace);
   Json json = {{"beampipe_check_capture", 1}, {"trace", arguments.trace}, {"frames", Json::array()}};
-  if (!notes.empty()) json["notes"] = to_json(notes);
+  if (!notes.empty()) json["notes"] = notes_form().write(notes);
   std::string text;
   for (const std::size_t i : frames) {
     const Frame& frame = trace.frames[i];

@@ -32,7 +32,8 @@ void print_claims(const ClaimsArguments& arguments) {
     const ReportFile report = read_report(folder);
     read_from_report(report.folder, [&] {
       if (arguments.hardware != HardwareOptions{})
-        for (const Claim& claim : answered_claims(remodelled(report.json, all))) take(to_json(claim), claims);
+        for (const Claim& claim : answered_claims(remodelled(report.json, all)))
+          take(claim_form().write(claim), claims);
       const Json answered = report.json.value("claims", Json::array());
       for (const Json& found : answered.elements()) take(found, claims);
     });

@@ -15,7 +15,7 @@
 namespace beampipe {
 namespace {
 
-constexpr const char* kFooter =
+constexpr const char* kCompareFooter =
     R"(The reference is the technique `reference`, which takes 4096 samples per pixel; its pictures are written too.
 Errors are differences of linear RGB values from it: RMSE (root mean square), bias (mean), p99 (99th percentile of the
 absolute values) and max. EMR, the equivalent MSAA rate, is the number of samples N at which msaa:N has the same RMSE
@@ -89,7 +89,7 @@ void add_compare_command(CommandLine& line, InterruptGate& gate) {
            "report page (default: 3; techniques that `beampipe inspect` can tell of)")
       .between(0, 1000);
   command.add("--inspect", pixels->chosen, "X,Y of other pixels to keep with their histories, in every frame");
-  command.footer(kFooter + technique_help());
+  command.footer(kCompareFooter + technique_help());
   command.set_work([arguments, options, pixels, &gate] { compare(*arguments, *options, *pixels, gate); });
 }
 

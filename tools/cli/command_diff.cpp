@@ -40,7 +40,7 @@ void diff(const DiffArguments& arguments) {
     Json json = {{"beampipe_diff", 1}, {"a", arguments.a}, {"b", arguments.b}};
     json["width"] = a.width;
     json["height"] = a.height;
-    const Json errors = to_json(stats);
+    const Json errors = error_form().write(stats);
     for (const auto& [key, value] : errors.members()) json[key] = value;
     json["differing_pixels"] = differing;
     std::cout << json_text(json);

@@ -20,7 +20,7 @@ namespace {
 
 struct InfoArguments {
   std::string trace;
-  bool json = false, meshes = false, allow_outside = false;
+  bool json = false, allow_outside = false;
 };
 
 struct Bounds {
@@ -265,33 +265,15 @@ std::string capture_text(const Frame& frame) {
   return text;
 }
 
-std::string meshes_text(const Trace& trace) {
-  Rows meshes = {{"mesh", "positions", "triangles", "attributes", "bounds"}};
-  for (const Mesh& mesh : trace.meshes) {
-    std::string attributes;
-    for (const std::string& name : attributes_of(mesh)) attributes += (attributes.empty() ? "" : " ") + name;
-    meshes.push_back({mesh.name, std::to_string(mesh.positions.size()), std::to_string(mesh.triangles.size()),
-                      attributes.empty() ? "-" : attributes, text_of(bounds_of(mesh))});
-  }
-  std::string text = "\n" + align_columns(meshes, {0, 3, 4});
-  if (!trace.images.empty()) {
-    Rows images = {{"image", "size"}};
-    for (const TextureImage& image : trace.images) images.push_back({image.name, size_text(image.width, image.height)});
-    text += "\n" + align_columns(images, {0});
-  }
-  return text;
-}
-
-std::string info_text(const Trace& trace, bool with_meshes) {
+std::string info_text(const Trace& trace) {
   std::size_t triangles = 0;
   for (const Mesh& mesh : trace.meshes) triangles += mesh.triangles.size();
   std::string text = trace.source ? source_text(*trace.source) : "";
   text += std::to_string(trace.meshes.size()) + " meshes of " + std::to_string(triangles) + " triangles, " +
-          std::to_string(trace.images.size()) + " images" + (with_meshes ? "" : " (--meshes lists them)") + "\n\n";
+          std::to_string(trace.images.size()) + " images\n\n";
   text += frames_text(trace);
   if (!trace.materials.empty()) text += "\n" + materials_text(trace);
   text += capture_text(trace.frames[0]);
-  if (with_meshes) text += meshes_text(trace);
   return text;
 }
 
@@ -301,8 +283,7 @@ void add_info_command(CommandLine& line) {
   const auto arguments = std::make_shared<InfoArguments>();
   Command command = line.add_command("info", "Tell what is in a trace");
   command.add("TRACE", arguments->trace, "the trace, a JSON file").required();
-  command.add_flag("--meshes", arguments->meshes, "list the meshes and images too");
-  command.add_flag("--json", arguments->json, "print everything as JSON");
+  command.add_flag("--json", arguments->json, "print everything as JSON, with the meshes and images");
   command.add_flag("--allow-outside", arguments->allow_outside, "allow the trace to name files outside its own folder");
   command.set_work([arguments] {
     const Trace trace = read_trace(arguments->trace, {.allow_outside = arguments->allow_outside});
@@ -311,8 +292,7 @@ void add_info_command(CommandLine& line) {
     if (const std::string note = note_on_darkness(trace, frames, arguments->trace); !note.empty())
       std::cerr << "beampipe: " << note << "\n";
     tell_notes(notes_of(trace, frames));
-    std::cout << (arguments->json ? json_text(info_json(trace, arguments->trace))
-                                  : info_text(trace, arguments->meshes));
+    std::cout << (arguments->json ? json_text(info_json(trace, arguments->trace)) : info_text(trace));
   });
 }
 

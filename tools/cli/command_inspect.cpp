@@ -26,7 +26,7 @@
 namespace beampipe {
 namespace {
 
-constexpr const char* kFooter =
+constexpr const char* kInspectFooter =
     R"(Prints every triangle that touches the pixel, in the order in which the technique takes them: its exact area, its
 depths (-1 near to 0 far), the mask positions or samples that it covers, took and lost, and to whom; then what the
 technique did with them, the weight of each triangle beside its weight in the reference, and where the area went that
@@ -81,7 +81,7 @@ std::vector<PixelInspection> inspect_all(const InspectArguments& arguments, cons
   std::vector<PixelAddress> pixels;
   for (const std::string& text : arguments.pixels) pixels.push_back(parse_pixel("--pixel", text, frame));
   const TextureSet textures(trace, arguments.trace);
-  RunOptions run;
+  FrameInput run;
   run.threads = arguments.threads;
   run.memory.modelled = false;
   run.memory_limit = machine_memory() / 2;
@@ -162,7 +162,7 @@ void add_inspect_command(CommandLine& line, InterruptGate& gate) {
   command.add("--threads", arguments->threads, "the number of threads (default: one per processor core)")
       .between(1, 1024);
   command.add_flag("--allow-outside", arguments->allow_outside, "allow the trace to name files outside its own folder");
-  command.footer(kFooter);
+  command.footer(kInspectFooter);
   command.set_work([arguments, &gate] { run_inspection(*arguments, gate); });
 }
 

@@ -64,7 +64,7 @@ void preview(const PreviewArguments& arguments, const Command& command, Interrup
   if (const std::string note = note_on_darkness(trace, {arguments.frame}, arguments.scene); !note.empty())
     std::cerr << "beampipe: " << note << "\n";
   const TextureSet textures(trace, arguments.scene);
-  RunOptions options;
+  FrameInput options;
   options.memory.modelled = false;
   options.memory_limit = machine_memory() / 2;
   options.textures = &textures;

@@ -89,7 +89,7 @@ void stress(const StressArguments& arguments, InterruptGate& gate) {
     for (const Technique& technique : techniques)
       require_memory(hard_case.trace, hard_case.trace.frames[0], technique.working_bytes_per_pixel,
                      hard_case.name + " with " + technique.spec, machine_memory());
-  RunOptions options;
+  FrameInput options;
   options.threads = arguments.threads;
   options.memory.modelled = false;  // only the pictures are compared
   std::vector<std::vector<std::string>> rows(1, {"case"});

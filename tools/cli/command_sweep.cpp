@@ -22,7 +22,7 @@ namespace fs = std::filesystem;
 
 constexpr std::size_t kMostTasks = 256;  // that --slurm submits unless it is told to; Slurm allows 1000 by default
 
-constexpr const char* kFooter =
+constexpr const char* kSweepFooter =
     R"(PLAN is a JSON file. Each list of values is an axis of a grid; the table has a row for every combination:
 
   {"beampipe_sweep": 1,
@@ -223,7 +223,7 @@ void add_sweep_command(CommandLine& line, InterruptGate& gate) {
   cluster.add("--sbatch", arguments->sbatch, "options of sbatch for these jobs, without their dashes: time=2:00:00");
   cluster.add("--part", arguments->part, "I/N: do part I of N alone (I from 0), and make no table");
   cluster.add_flag("--merge", arguments->merge, "render nothing, and make the table of the results that are there");
-  command.footer(kFooter);
+  command.footer(kSweepFooter);
   command.set_work([arguments, &gate] { sweep(*arguments, gate); });
 }
 

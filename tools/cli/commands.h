@@ -24,6 +24,7 @@ void add_export_soup_command(CommandLine& line, InterruptGate& gate);
 void add_make_command(CommandLine& line, InterruptGate& gate);
 void add_preview_command(CommandLine& line, InterruptGate& gate);
 void add_capture_command(CommandLine& line);
+void add_schema_command(CommandLine& line);
 void add_completion_command(CommandLine& line);  // after all others, which it completes
 void add_man_command(CommandLine& line);
 

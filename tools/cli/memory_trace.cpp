@@ -71,7 +71,7 @@ MemoryTrace::MemoryTrace(const MemoryTraceArguments& arguments, const RunArgumen
   bytes_per_cycle_ = plan.hardware.rates.at("dram_bytes_per_clk") * plan.hardware.clock_mhz * 1e6 / kCyclesPerSecond;
   sector_bytes_ = plan.options.memory.sector_bytes;
   trace_.emplace(file_.parent_path(), sector_bytes_);
-  plan.options.dram_trace = &*trace_;
+  plan.sinks.dram_trace = &*trace_;
 }
 
 void MemoryTrace::write(InterruptGate& gate) const {

@@ -17,7 +17,7 @@ namespace {
 constexpr float kSky = 0.35f;             // of white light over the shoulder
 constexpr float kGround = 0.15f / 0.35f;  // of what the sky gives
 constexpr const char* kViewOptions[] = {"--view", "--eye", "--target", "--up", "--fovy", "--near", "--far"};
-constexpr const char* kOtherOptions[] = {"--light", "--ambient",   "--background", "--lambert",
+constexpr const char* kOtherOptions[] = {"--light", "--ambient",   "--background",
                                          "--unlit", "--materials", "--animation"};
 
 glm::dvec3 vector_of(const std::vector<double>& values) { return {values.at(0), values.at(1), values.at(2)}; }
@@ -148,10 +148,7 @@ Option add_model_options(Command& command, ModelOptions& options) {
                   "the part of the light that comes from all around, 0 to 1; half of it or less from below "
                   "(default: 0.35 where the camera chose to stand inside, else 0; beside real "
                   "materials' full light, 0.35)");
-  const Option lambert = command.add_flag("--lambert", options.lambert,
-                                          "shade the model with a light over the camera's shoulder (the default)");
   command.add_flag("--unlit", options.unlit, "draw the plain colours of the materials")
-      .excludes(lambert)
       .excludes(light)
       .excludes(ambient);
   command

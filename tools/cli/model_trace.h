@@ -15,7 +15,7 @@ struct ModelOptions {
   std::string view, camera;
   std::vector<double> eye, target, up, background, light;
   double fovy = 0, near = 0, far = 0, ambient = 0;
-  bool unlit = false, lambert = false;
+  bool unlit = false;
   std::string materials = "textured", animation;
 };
 

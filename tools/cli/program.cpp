@@ -72,6 +72,7 @@ int run(int argc, char** argv, InterruptGate& gate) {
   add_make_command(line, gate);
   add_preview_command(line, gate);
   add_capture_command(line);
+  add_schema_command(line);
   add_completion_command(line);
   add_man_command(line);
   line.run(argc, argv);

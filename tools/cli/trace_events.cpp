@@ -17,7 +17,7 @@ constexpr int kProcess = 1;
 double microseconds(Time from, Time to) { return std::chrono::duration<double, std::micro>(to - from).count(); }
 
 Json slice(const Timeline::Event& event, std::size_t thread, Time epoch) {
-  Json json = {{"name", name_of(event.stage)},
+  Json json = {{"name", event.name},
                {"ph", "X"},
                {"ts", microseconds(epoch, event.start)},
                {"dur", microseconds(event.start, event.end)},
@@ -55,7 +55,7 @@ std::string trace_events_json(const Timeline& timeline) {
 TraceEvents::TraceEvents(const RunArguments& arguments, RunPlan& plan) {
   if (arguments.trace_events.empty()) return;
   file_ = file_beside_output("--trace-events " + arguments.trace_events, arguments.trace_events, arguments);
-  plan.options.timeline = &timeline_;
+  plan.sinks.timeline = &timeline_;
 }
 
 void TraceEvents::write(InterruptGate& gate) const {

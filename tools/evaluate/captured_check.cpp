@@ -67,6 +67,7 @@ CentreDepths centre_depths(const Trace& trace, const Frame& frame, const Texture
   const Tile whole{0, 0, static_cast<std::int32_t>(frame.width), static_cast<std::int32_t>(frame.height)};
   const TileShader whole_shader(shader, whole);
   const Sampling centre{CellGrid{}, standard_pattern(1)};
+  const SampledTriangles samples{triangles, whole, centre};
   const std::vector<bool> writers = writers_of(frame);
   SampleTile surface(whole, centre);
   std::vector<SampleFragment> fragments;
@@ -74,12 +75,12 @@ CentreDepths centre_depths(const Trace& trace, const Frame& frame, const Texture
   TriangleList list;
   const auto draw_list = [&] {
     fragments.clear();
-    sample_raster(triangles, list, whole, centre, ignored, fragments);
+    sample_raster(samples, list, ignored, fragments);
     if (!shader.is_flat()) {
       const std::vector<glm::vec2> centres(fragments.size(), glm::vec2(0.5f));
-      alpha_test(whole_shader, whole, centre.grid, 1, AlphaCoverage::test, centres, ignored, fragments);
+      alpha_test(whole_shader, {whole, centre, AlphaCoverage::test, centres}, ignored, fragments);
     }
-    depth_test(triangles, fragments, whole, centre, ignored, surface, accesses);
+    depth_test(samples, fragments, ignored, surface, accesses);
     list.clear();
   };
   for (std::uint32_t i = 0; i < triangles.triangles.size(); ++i) {

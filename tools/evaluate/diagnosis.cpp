@@ -31,12 +31,13 @@ void CauseShares::add(const Technique& technique, const RunPlan& plan, std::size
                       const PicturePair& pictures, std::map<std::string, std::vector<float>>& pixel_counters) {
   if (!technique.has_weights) return;
   std::vector<PixelWeights> weights;
-  RunOptions run = plan.options;
+  FrameInput run = plan.options;
   run.colors = colors;
-  run.weights = &weights;
-  technique.render(plan.trace, frame, run);
-  run.weights = nullptr;
-  auto layers = error_causes(plan.trace, plan.trace.frames.at(frame), weights, pictures.image, pictures.reference, run);
+  FrameSinks sinks = plan.sinks;
+  sinks.weights = &weights;
+  technique.render(plan.trace, frame, run, sinks);
+  auto layers = error_causes({plan.trace, plan.trace.frames.at(frame), run, plan.sinks}, weights, pictures.image,
+                             pictures.reference);
   const std::vector<float> errors = pixel_errors(pictures.image, pictures.reference);
   for (auto& [cause, layer] : layers) {
     for (std::size_t i = 0; i < errors.size(); ++i) squares_[cause] += double{layer[i]} * errors[i];

@@ -24,12 +24,13 @@ std::string text_of(const DrawNote& note) {
   return counted(note.draws, "draw") + " (" + counted(note.triangles, "triangle") + ')' + verb + note.reason;
 }
 
-Json to_json(const std::vector<DrawNote>& notes) {
-  Json json = Json::array();
-  for (const DrawNote& note : notes)
-    json.push_back(
-        {{"reason", note.reason}, {"left_out", note.left_out}, {"draws", note.draws}, {"triangles", note.triangles}});
-  return json;
+Form<std::vector<DrawNote>> notes_form() {
+  return form::list(Form<DrawNote>(
+      ObjectForm<DrawNote>()
+          .written("reason", &DrawNote::reason, form::text(), "What it is.")
+          .written("left_out", &DrawNote::left_out, form::boolean(), "Left out; otherwise drawn in the nearest way.")
+          .written("draws", &DrawNote::draws, form::count(), "So many.")
+          .written("triangles", &DrawNote::triangles, form::count(), "So many.")));
 }
 
 void tell_notes(const std::vector<DrawNote>& notes) {

@@ -5,7 +5,7 @@
 #include <vector>
 
 #include "stages/geometry/draw_notes.h"
-#include "traces/files/json.h"
+#include "traces/files/json_form.h"
 #include "traces/trace.h"
 
 namespace beampipe {
@@ -16,7 +16,8 @@ std::vector<DrawNote> notes_of(const Trace& trace, const std::vector<std::size_t
 // "12 draws (340 triangles) are left out: stencil test"
 std::string text_of(const DrawNote& note);
 
-Json to_json(const std::vector<DrawNote>& notes);
+// As in report.json.
+Form<std::vector<DrawNote>> notes_form();
 
 // Prints a line on stderr for each note.
 void tell_notes(const std::vector<DrawNote>& notes);

@@ -22,14 +22,34 @@ std::pair<std::string_view, std::string_view> keys_of(const CounterInfo& counter
   return dot == name.npos ? std::pair(std::string_view(), name) : std::pair(name.substr(0, dot), name.substr(dot + 1));
 }
 
-Json to_json(const StageCounters& stage) {
-  Json json = {{"stage", name_of(stage.stage)}};
-  for (const CounterInfo& counter : stage_counters()) {
-    const auto [group, key] = keys_of(counter);
-    Json& object = group.empty() ? json : json[group];
-    object[key] = std::uint64_t{counter.value(stage)};
+void add_counter(ObjectForm<StageCounters>& object, const CounterInfo& counter) {
+  object.written(
+      std::string(keys_of(counter).second),
+      [&counter](const StageCounters& stage) { return std::uint64_t{counter.value(stage)}; }, form::count(),
+      counter.meaning);
+}
+
+Form<StageCounters> make_stage_form() {
+  ObjectForm<StageCounters> stage, operations;
+  stage.written(
+      "stage", [](const StageCounters& each) { return std::string(name_of(each.stage)); }, form::text(),
+      "The stage's name, as docs/counters.md lists it.");
+  const std::span<const CounterInfo> counters = stage_counters();
+  for (std::size_t i = 0; i < counters.size();) {
+    const std::string group(keys_of(counters[i]).first);
+    ObjectForm<StageCounters> grouped;
+    for (; i < counters.size() && keys_of(counters[i]).first == group; ++i)
+      add_counter(group.empty() ? stage : grouped, counters[i]);
+    if (!group.empty())
+      stage.written(group, std::identity(), Form<StageCounters>(grouped), "Operations of the stage, by kind.");
   }
-  return json;
+  return stage.added("modelled_ms", form::by_name(form::amount()).schema,
+                     "Milliseconds that the modelled hardware takes for this stage, by implementation.");
+}
+
+const Form<StageCounters>& stage_form() {
+  static const Form<StageCounters> form = make_stage_form();
+  return form;
 }
 
 StageCounters stage_of(const Json& json) {
@@ -45,14 +65,16 @@ StageCounters stage_of(const Json& json) {
   return stage;
 }
 
-Json to_json(const WallTime& wall) {
-  Json json = {{"median", wall.median},
-               {"min", wall.min},
-               {"max", wall.max},
-               {"runs", wall.runs},
-               {"with_memory_model", wall.with_memory_model}};
-  if (wall.modelling_run) json["modelling_run"] = *wall.modelling_run;
-  return json;
+Form<WallTime> wall_form() {
+  return ObjectForm<WallTime>()
+      .written("median", &WallTime::median, form::amount(), "Of all timed runs.")
+      .written("min", &WallTime::min, form::amount(), "Of the fastest run.")
+      .written("max", &WallTime::max, form::amount(), "Of the slowest run.")
+      .written("runs", &WallTime::runs, form::count(1), "Timed runs.")
+      .written("with_memory_model", &WallTime::with_memory_model, form::boolean(),
+               "The timed runs also modelled caches and DRAM.")
+      .written("modelling_run", &WallTime::modelling_run, form::amount(),
+               "Time of the additional run that modelled them.");
 }
 
 WallTime wall_time_of(const Json& json) {
@@ -65,55 +87,129 @@ WallTime wall_time_of(const Json& json) {
   return wall;
 }
 
+// A frame of a technique.
+struct FrameOf {
+  const FrameReport& frame;
+  const TechniqueReport& result;
+  StageCounters all;  // its stages
+};
+
 // All buffers of the frame at their peak: the framebuffer's surfaces, the A-buffer and others.
-Json buffers_json(const TechniqueReport& result, const FrameReport& frame) {
+std::vector<Buffer> buffers_of(const FrameOf& of) {
   std::vector<Buffer> buffers;
-  for (const Surface& surface : result.framebuffer)
-    buffers.push_back({surface.name, surface.bytes_per_pixel * frame.pixels});
-  if (frame.a_buffer_peak_bytes > 0) buffers.push_back({kABuffer, frame.a_buffer_peak_bytes});
-  buffers.insert(buffers.end(), frame.buffers.begin(), frame.buffers.end());
-  Json json = Json::array();
-  for (const Buffer& buffer : buffers)
-    json.push_back(
-        {{"name", buffer.name}, {"peak_bytes", buffer.peak_bytes}, {"held", buffer.per_bin ? kHeldByBin : "frame"}});
-  return json;
+  for (const Surface& surface : of.result.framebuffer)
+    buffers.push_back({surface.name, surface.bytes_per_pixel * of.frame.pixels});
+  if (of.frame.a_buffer_peak_bytes > 0) buffers.push_back({kABuffer, of.frame.a_buffer_peak_bytes});
+  buffers.insert(buffers.end(), of.frame.buffers.begin(), of.frame.buffers.end());
+  return buffers;
+}
+
+Form<Buffer> buffer_form() {
+  return ObjectForm<Buffer>()
+      .written("name", &Buffer::name, form::text(), "Its name.")
+      .written("peak_bytes", &Buffer::peak_bytes, form::count(), "Its largest size.")
+      .written(
+          "held", [](const Buffer& buffer) { return buffer.per_bin ? kHeldByBin : "frame"; },
+          form::one_of({"frame", kHeldByBin}), "Whether each bin has one, or the frame.");
+}
+
+Form<PixelCounterStats> statistics_form() {
+  return ObjectForm<PixelCounterStats>()
+      .written("mean", &PixelCounterStats::mean, form::number(), "Over all pixels.")
+      .written("max", &PixelCounterStats::max, form::number(), "Over all pixels.");
+}
+
+// Times of an implementation.
+Form<ModelledTime> modelled_form() {
+  return ObjectForm<ModelledTime>()
+      .written("overlap", &ModelledTime::overlap_ms, form::amount(),
+               "All stages at once: the time of the busiest unit.")
+      .written("sum", &ModelledTime::sum_ms, form::amount(), "One stage after the other: the sum over the stages.")
+      .written("busiest", &ModelledTime::busiest, form::text(), "The busiest unit.");
+}
+
+std::optional<Json> saved_of(const FrameOf& of) {
+  Json saved;
+  for (const SavedWork& each : saved_work(of.frame.stages)) saved[each.name] = each.amount;
+  return saved.is_null() ? std::nullopt : std::optional(saved);
+}
+
+Form<FrameOf> make_frame_form() {
+  const auto member = [](auto FrameReport::*place) { return [place](const FrameOf& of) { return of.frame.*place; }; };
+  const auto filled = [](auto FrameReport::*place) {
+    return [get = form::filled(place)](const FrameOf& of) { return get(of.frame); };
+  };
+  const auto part = [](double ErrorParts::*place) {
+    return [place](const FrameOf& of) {
+      return of.frame.parts ? std::optional(of.frame.parts.value().*place) : std::nullopt;
+    };
+  };
+  using Frame = FrameReport;
+  ObjectForm<FrameOf> form;
+  form.written("index", member(&Frame::index), form::count(), "The frame's index in the trace.")
+      .written("image", member(&Frame::image), form::text("a file"),
+               "The picture as EXR; paths are relative to the report's folder.")
+      .written("picture", member(&Frame::picture), form::text("a file"), "The picture as PNG.")
+      .written("counters", filled(&Frame::counters), form::text("a file"),
+               "The counters of each pixel, as channels of an EXR.")
+      .written("error", member(&Frame::error), error_form(), "Differences from the reference, in linear light.")
+      .written("visibility", part(&ErrorParts::visibility), rmse_form(),
+               "The error in visibility, where surfaces vary.")
+      .written("shading", part(&ErrorParts::shading), rmse_form(), "The error in shading, where surfaces vary.")
+      .written("flicker", member(&Frame::flicker), form::amount(),
+               "Root mean square change of the error since the previous frame.")
+      .written("wall_ms", member(&Frame::wall_ms), wall_form(), "Time of the simulator, in milliseconds.")
+      .written("a_buffer_peak_bytes", member(&Frame::a_buffer_peak_bytes), form::count(),
+               "The largest size of the A-buffer.")
+      .written("bin_pixels", member(&Frame::bin_pixels), form::count(), "Pixels of the largest bin.");
+  for (const char* column : {"logical_bytes", "sector_bytes", "l2_bytes", "dram_bytes"})
+    for (const CounterInfo& counter : stage_counters())
+      if (counter.name == std::string_view(column))
+        form.written(
+            column, [&counter](const FrameOf& of) { return std::uint64_t{counter.value(of.all)}; }, form::count(),
+            "Sum over the stages.");
+  return form.written("buffers", buffers_of, form::list(buffer_form()), "Every buffer at its peak.")
+      .written("pixel_counters", filled(&Frame::pixel_counters), form::by_name(statistics_form()),
+               "Statistics of each counter of pixels, by name.")
+      .written("saved", saved_of, form::as_it_is(form::by_name(form::count()).schema),
+               "Work that was not done, by name (docs/counters.md).")
+      .written("stages", member(&Frame::stages), form::list(stage_form()), "The stages, in the order of the pipeline.")
+      .added("modelled_ms", form::by_name(modelled_form()).schema,
+             "Modelled times, by implementation; those of further hardware as HARDWARE.IMPLEMENTATION.");
+}
+
+const Form<FrameOf>& frame_form() {
+  static const Form<FrameOf> form = make_frame_form();
+  return form;
 }
 
 }  // namespace
 
-Json to_json(const ErrorStats& stats) {
-  return {{"rmse", stats.rmse}, {"bias", stats.bias}, {"p99", stats.p99}, {"max", stats.max}};
+Form<ErrorStats> error_form() {
+  return ObjectForm<ErrorStats>()
+      .written("rmse", &ErrorStats::rmse, form::amount(), "Root mean square over R, G and B of all pixels.")
+      .written("bias", &ErrorStats::bias, form::number(), "Mean of the signed error.")
+      .written("p99", &ErrorStats::p99, form::amount(), "The absolute error that 99 % of all values do not exceed.")
+      .written("max", &ErrorStats::max, form::amount(), "The largest absolute error.");
 }
+
+Form<double> rmse_form() {
+  return ObjectForm<double>().written("rmse", std::identity(), form::amount(), "Root mean square.");
+}
+
+Json frame_schema() { return frame_form().schema; }
 
 Json to_json(const FrameReport& frame, const TechniqueReport& result, const Hardware& hardware,
              const std::vector<Hardware>& more) {
-  Json json = {{"index", frame.index}, {"image", frame.image}, {"picture", frame.picture}};
-  if (!frame.counters.empty()) json["counters"] = frame.counters;
-  if (frame.error) json["error"] = beampipe::to_json(*frame.error);
-  if (frame.parts) {
-    json["visibility"]["rmse"] = frame.parts->visibility;
-    json["shading"]["rmse"] = frame.parts->shading;
-  }
-  if (frame.flicker) json["flicker"] = *frame.flicker;
-  json["wall_ms"] = to_json(frame.wall_ms);
-  json["a_buffer_peak_bytes"] = frame.a_buffer_peak_bytes;
-  json["bin_pixels"] = frame.bin_pixels;
-  StageCounters all;
-  for (const StageCounters& stage : frame.stages) all += stage;
-  const Json sums = to_json(all);
-  for (const char* column : {"logical_bytes", "sector_bytes", "l2_bytes", "dram_bytes"}) json[column] = sums.at(column);
-  json["buffers"] = buffers_json(result, frame);
-  for (const auto& [name, stats] : frame.pixel_counters)
-    json["pixel_counters"][name] = {{"mean", stats.mean}, {"max", stats.max}};
-  for (const SavedWork& saved : saved_work(frame.stages)) json["saved"][saved.name] = saved.amount;
-  json["stages"] = Json::array();
-  for (const StageCounters& stage : frame.stages) json["stages"].push_back(to_json(stage));
-  if (all.sector_bytes == 0) return json;  // the reference models no memory, and times without it would mean nothing
+  FrameOf of{frame, result, {}};
+  for (const StageCounters& stage : frame.stages) of.all += stage;
+  Json json = frame_form().write(of);
+  if (of.all.sector_bytes == 0) return json;  // the reference models no memory, and times without it would mean nothing
   const auto add = [&](const Hardware& each, const std::string& prefix) {
     for (const Implementation& implementation : each.implementations) {
       const ModelledTime time = modelled_time(each, implementation, frame.stages, frame.open_pixel_bytes());
       const std::string name = prefix + implementation.name;
-      json["modelled_ms"][name] = {{"overlap", time.overlap_ms}, {"sum", time.sum_ms}, {"busiest", time.busiest}};
+      json["modelled_ms"][name] = modelled_form().write(time);
       for (std::size_t i = 0; i < time.stages.size(); ++i) json["stages"][i]["modelled_ms"][name] = time.stages[i];
     }
   };

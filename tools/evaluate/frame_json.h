@@ -4,11 +4,16 @@
 #include "tools/evaluate/hardware.h"
 #include "tools/evaluate/metrics.h"
 #include "tools/evaluate/results.h"
-#include "traces/files/json.h"
+#include "traces/files/json_form.h"
 
 namespace beampipe {
 
-Json to_json(const ErrorStats& stats);
+// {"rmse": ..., "bias": ...}, and {"rmse": ...}.
+Form<ErrorStats> error_form();
+Form<double> rmse_form();
+
+// The JSON Schema of a frame in report.json.
+Json frame_schema();
 
 // A frame, as in report.json. The framebuffer of `technique` and times modelled for `hardware` are included; both may
 // be empty.

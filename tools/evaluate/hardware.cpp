@@ -3,21 +3,18 @@
 #include <algorithm>
 #include <cmath>
 #include <functional>
-#include <initializer_list>
-#include <limits>
 #include <stdexcept>
-#include <string_view>
 #include <system_error>
 
 #include "tools/evaluate/hardware_text.h"
 #include "traces/closest_name.h"
 #include "traces/files/input_file.h"
-#include "traces/files/json_cursor.h"
 
 namespace beampipe {
 namespace {
 
 using Rates = std::map<std::string, double>;
+using UnitsOfStages = decltype(Implementation::units);
 
 struct StageWork : StageCounters {
   bool pixels_on_chip = false;  // the state of pixels that it reads and writes; otherwise it is in memory
@@ -100,38 +97,13 @@ const std::map<std::string, Clocks>& units() {
   return all;
 }
 
-const std::initializer_list<std::string_view> kRates = {"triangles_per_clk",
-                                                        "raster_pixels_per_clk",
-                                                        "conservative_pixels_per_clk",
-                                                        "quads_per_clk",
-                                                        "issue_per_clk",
-                                                        "mul_add_per_clk",
-                                                        "add_per_clk",
-                                                        "bit_per_clk",
-                                                        "wide_per_clk",
-                                                        "fetch_per_clk",
-                                                        "special_per_clk",
-                                                        "convert_per_clk",
-                                                        "texture_bytes_per_clk",
-                                                        "registers_at_full_rate",
-                                                        "mask_positions_per_clk",
-                                                        "sort_operations_per_clk",
-                                                        "compose_positions_per_clk",
-                                                        "rop_samples_per_clk",
-                                                        "rop_fragments_per_clk",
-                                                        "rop_bytes_per_clk",
-                                                        "on_chip_bytes_per_clk",
-                                                        "l2_bytes_per_clk",
-                                                        "dram_bytes_per_clk",
-                                                        "on_chip_bytes_per_core",
-                                                        "bins_per_core"};
-
-// Far beyond any rate, and near enough that no time becomes infinite.
-double positive_number(const JsonCursor& at) {
-  constexpr double kLeast = 1e-6, kLargest = 1e12;
-  const double value = at.number();
-  if (value < kLeast || value > kLargest) at.fail("a number from 1e-6 to 1e12");
-  return value;
+Form<ShadingCost> cost_form() {
+  constexpr double kMost = 1e6;
+  return ObjectForm<ShadingCost>()
+      .required("operations", &ShadingCost::operations, form::number(0, kMost), "Multiplications and additions.")
+      .required("fetches", &ShadingCost::fetches, form::number(0, kMost), "Bilinear probes of a texture.")
+      .required("registers", &ShadingCost::registers, form::number(0, kMost),
+                "Registers that an invocation takes; the fewer invocations fit, the slower they are.");
 }
 
 // Can the unit do the stage's work? The counters of other stages would say nothing to it. Textures and the rate of
@@ -144,50 +116,50 @@ bool can_do(const std::string& unit, const StageInfo& stage) {
   return true;
 }
 
-std::vector<std::string> read_units(const JsonCursor& at, const StageInfo& stage) {
-  std::vector<std::string> names;
-  for (const JsonCursor& unit : at.elements()) {
-    names.push_back(unit.string());
-    const bool is_known = names.back() == kOnChip || units().contains(names.back());
-    if (is_known && can_do(names.back(), stage)) continue;
-    std::string known = kOnChip;
+// Work of a stage with a mistyped name would cost nothing. A depth pre-pass runs on the units of the other pass.
+Form<UnitsOfStages> units_form() {
+  ObjectForm<UnitsOfStages> object("the name of a stage");
+  for (const StageInfo& stage : stage_list()) {
+    std::vector<std::string> names = {kOnChip};
     for (const auto& [name, clocks] : units())
-      if (can_do(name, stage)) known += ", " + name;
-    unit.fail("one of the units " + known);
+      if (can_do(name, stage)) names.push_back(name);
+    const Form<std::vector<std::string>> list = form::list(form::one_of(names));
+    object.add({std::string(stage.name), "The units that it uses.", false, list.schema,
+                [list, id = stage.id](const JsonCursor& at, UnitsOfStages& of) { of[id] = list(at); }});
   }
-  return names;
+  return object;
 }
 
-// Work of a stage with a mistyped name would cost nothing. `at`: the member of that name. A depth pre-pass runs on the
-// units of the other pass.
-const StageInfo& read_stage(const JsonCursor& at, const std::string& name) {
-  const std::optional<Stage> stage = find_stage(name);
-  if (stage && stage->pass == Pass::main) return info_of(stage->id);
-  std::vector<std::string> known;
-  for (const StageInfo& info : stage_list()) known.emplace_back(info.name);
-  at.fail("the name of a stage", name + did_you_mean(name, known));
+Form<Implementation> implementation_form() {
+  return ObjectForm<Implementation>()
+      .add(form::unused<Implementation>("description", false, form::text(), "What it is, for people."))
+      .required("units", &Implementation::units, units_form(),
+                "By the name of a stage (docs/counters.md): its units. on_chip is no unit; it marks stages that work "
+                "on what a bin has on chip.");
 }
 
-// Every number has a source, or says that it is a choice.
-void expect_source(const JsonCursor& sources, std::string_view number) {
-  const JsonCursor source = sources[number];
-  if (source.string().empty()) source.fail("where the number is from, or that it is a choice", "nothing");
-}
-
-double cost_number(const JsonCursor& at) {
-  constexpr double kLargest = 1e6;
-  const double value = at.number();
-  if (value < 0 || value > kLargest) at.fail("a number from 0 to 1e6");
-  return value;
-}
-
-ShadingCost read_cost(const JsonCursor& at) {
-  at.expect_keys({"operations", "fetches", "registers"});
-  return {cost_number(at["operations"]), cost_number(at["fetches"]), cost_number(at["registers"])};
-}
-
-Json to_json(const ShadingCost& cost) {
-  return {{"operations", cost.operations}, {"fetches", cost.fetches}, {"registers", cost.registers}};
+Form<Hardware> hardware_form() {
+  constexpr double kLeast = 1e-6, kMost = 1e12;  // far beyond any rate, and near enough that no time becomes infinite
+  const Form<double> rate = form::number(kLeast, kMost);
+  std::vector<form::Key> sources = {{"clock_mhz", "Of the clock."}};
+  for (const form::Key& each : hardware_rates()) sources.push_back({each.key, "Of this rate."});
+  const Form<Hardware> shading = ObjectForm<Hardware>()
+                                     .required("material", &Hardware::material, cost_form(), "Of materials.")
+                                     .required("light", &Hardware::light, cost_form(), "Of lights.");
+  return ObjectForm<Hardware>()
+      .add(form::unused<Hardware>("beampipe_hardware", true, form::version(3), "The version of this format."))
+      .required("name", &Hardware::name, form::text(), "What it is, for people.")
+      .required("clock_mhz", &Hardware::clock_mhz, rate, "The clock, in MHz.")
+      .required("rates", &Hardware::rates, form::record(hardware_rates(), true, rate), "What the units do per clock.")
+      .add(form::unused<Hardware>(
+          "sources", true, form::record(sources, true, form::text("where the number is from, or that it is a choice")),
+          "Where each number is from, or that it is a choice, by its name."))
+      .required("implementations", &Hardware::implementations,
+                form::named(implementation_form(), &Implementation::name, "implementation"),
+                "Ways to do the same work, by name: which units each stage uses. A stage that is not listed uses L2 "
+                "and DRAM only, as all stages do.")
+      .add({"shading", "What each invocation of a fragment shader costs beside what the materials of the trace cost.",
+            false, shading.schema, shading.read});
 }
 
 // The counters of a stage that shades, with the costs that come to its materials' own. Lighting is a stage of its own
@@ -242,7 +214,36 @@ std::vector<std::string> hardware_names() {
   return names;
 }
 
-std::span<const std::string_view> hardware_rates() { return {kRates.begin(), kRates.size()}; }
+const std::vector<form::Key>& hardware_rates() {
+  static const std::vector<form::Key> all = {
+      {"triangles_per_clk", "Triangles that are set up."},
+      {"raster_pixels_per_clk", "Pixels (or cells) that the sample raster finds."},
+      {"conservative_pixels_per_clk", "Pixels that the conservative raster touches."},
+      {"quads_per_clk", "2x2 quads of pixels that shading is started for."},
+      {"issue_per_clk", "Operations that the shader cores issue, of any kind."},
+      {"mul_add_per_clk", "Multiplications and additions of floats."},
+      {"add_per_clk", "Additions and comparisons."},
+      {"bit_per_clk", "Operations on 32-bit integers and bits."},
+      {"wide_per_clk", "Operations on 64-bit integers."},
+      {"fetch_per_clk", "Loads and stores of the shader cores."},
+      {"special_per_clk", "Reciprocals, square roots and the like."},
+      {"convert_per_clk", "Conversions between types."},
+      {"texture_bytes_per_clk", "Bytes of texels that filters read."},
+      {"registers_at_full_rate", "Registers that an invocation may take at full rate."},
+      {"mask_positions_per_clk", "Positions times edges that the mask generator tests."},
+      {"sort_operations_per_clk", "Comparisons of the sorter."},
+      {"compose_positions_per_clk", "Positions at which the composer compares depths."},
+      {"rop_samples_per_clk", "Depth samples that the ROPs test."},
+      {"rop_fragments_per_clk", "Fragments that the ROPs blend."},
+      {"rop_bytes_per_clk", "Bytes of pixels in memory that the ROPs read and write."},
+      {"on_chip_bytes_per_clk", "Bytes of pixels on chip that are read and written."},
+      {"l2_bytes_per_clk", "Bytes that L2 moves."},
+      {"dram_bytes_per_clk", "Bytes that DRAM moves."},
+      {"on_chip_bytes_per_core", "Bytes that a core has for the pixels of bins."},
+      {"bins_per_core", "Bins that a core works on at a time."},
+  };
+  return all;
+}
 
 Hardware titan_v() { return read_hardware("titan_v"); }
 
@@ -279,35 +280,10 @@ std::vector<Hardware> read_hardware_list(const std::string& list) {
   return all;
 }
 
+Json hardware_schema() { return schema_file(hardware_form().schema, "beampipe hardware, version 3"); }
+
 Hardware parse_hardware(const Json& json, const std::string& file) {
-  const JsonCursor root(json, file);
-  root.expect_keys({"beampipe_hardware", "name", "clock_mhz", "rates", "sources", "implementations", "shading"});
-  root["beampipe_hardware"].integer(3, 3);
-  Hardware hardware;
-  hardware.name = root["name"].string();
-  hardware.clock_mhz = positive_number(root["clock_mhz"]);
-  const JsonCursor rates = root["rates"], sources = root["sources"];
-  rates.expect_keys(kRates);
-  for (const std::string_view rate : kRates) hardware.rates[std::string(rate)] = positive_number(rates[rate]);
-  for (const auto& [name, source] : sources.members())
-    if (name != "clock_mhz" && !hardware.rates.contains(name)) source.fail("the name of a rate as key", name);
-  expect_source(sources, "clock_mhz");
-  for (const std::string_view rate : kRates) expect_source(sources, rate);
-  for (const auto& [name, description] : root["implementations"].members()) {
-    Implementation& implementation = hardware.implementations.emplace_back(Implementation{name, {}});
-    description.expect_keys({"description", "units"});
-    if (const auto text = description.find("description")) text->string();
-    for (const auto& [stage, names] : description["units"].members()) {
-      const StageInfo& info = read_stage(names, stage);
-      implementation.units[info.id] = read_units(names, info);
-    }
-  }
-  if (hardware.implementations.empty()) root["implementations"].fail("at least one implementation", "none");
-  if (json.contains("shading")) {
-    root["shading"].expect_keys({"material", "light"});
-    hardware.material = read_cost(root["shading"]["material"]);
-    hardware.light = read_cost(root["shading"]["light"]);
-  }
+  Hardware hardware = hardware_form()(JsonCursor(json, file));
   hardware.json = json;
   return hardware;
 }
@@ -316,7 +292,8 @@ Hardware with_shading_costs(const Hardware& hardware, const ShadingCost& materia
   Hardware priced = hardware;
   priced.material = material;
   priced.light = light;
-  priced.json["shading"] = {{"material", to_json(material)}, {"light", to_json(light)}};
+  const auto written = cost_form().write;
+  priced.json["shading"] = {{"material", written(material)}, {"light", written(light)}};
   return priced;
 }
 

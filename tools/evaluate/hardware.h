@@ -9,13 +9,11 @@
 
 #include <filesystem>
 #include <map>
-#include <span>
 #include <string>
-#include <string_view>
 #include <vector>
 
 #include "stages/cost/counters.h"
-#include "traces/files/json.h"
+#include "traces/files/json_form.h"
 
 namespace beampipe {
 
@@ -46,8 +44,11 @@ struct Hardware {
 std::vector<std::string> hardware_names();
 Hardware titan_v();
 
-// The names of the rates, in the order of the file.
-std::span<const std::string_view> hardware_rates();
+// The rates, in the order of the file.
+const std::vector<form::Key>& hardware_rates();
+
+// The JSON Schema of descriptions.
+Json hardware_schema();
 
 // A built-in name or a file. Throws TraceError, one line that names the file, the key, what was expected and what was
 // found.

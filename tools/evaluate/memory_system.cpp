@@ -1,7 +1,5 @@
 #include "tools/evaluate/memory_system.h"
 
-#include <algorithm>
-#include <bit>
 #include <string_view>
 
 #include "pipeline/memory/dram_log.h"
@@ -14,72 +12,84 @@ constexpr std::uint32_t kLeastRopLine = 256, kMostLine = 1024, kMostWays = 1024;
 constexpr std::uint32_t kMostL1 = 1u << 24, kMostCache = 1u << 28, kMostOnChip = 1u << 31;
 constexpr std::string_view kPlaces[] = {kByTechnique, kOnChip, kInMemory};
 
-std::uint32_t power_of_two(const JsonCursor& value, std::uint32_t low, std::uint32_t high) {
-  const std::uint32_t number = value.integer(low, high);
-  if (!std::has_single_bit(number))
-    value.fail("a power of two from " + std::to_string(low) + " to " + std::to_string(high));
-  return number;
+// Where the pixels of a bin are.
+Form<std::optional<Place>> place_form() {
+  const Form<std::uint32_t> number = form::choice<std::uint32_t>(kPlaces);
+  return {number.schema,
+          [number](const JsonCursor& at, std::optional<Place>& place) {
+            constexpr std::optional<Place> kPlaceOf[] = {std::nullopt, Place::on_chip, Place::in_memory};  // kPlaces
+            place = kPlaceOf[number(at)];
+          },
+          [](const std::optional<Place>& place) { return Json(name_of(place)); }};
 }
 
-void set_place(MemoryParameters& memory, const JsonCursor& value) {
-  const std::size_t place = value.choice(std::span(kPlaces));
-  memory.framebuffer = place == 0   ? std::nullopt
-                       : place == 1 ? std::optional(Place::on_chip)
-                                    : std::optional(Place::in_memory);
+// Bytes of a line of L1 and of L2.
+Field<MemoryParameters> line_field() {
+  const Form<std::uint32_t> form = form::power_of_two(kLeastSectorBytes, kMostLine);
+  return {"line_bytes",
+          "a line of L1 and of L2: 1 to 8 sectors",
+          false,
+          form.schema,
+          [form](const JsonCursor& at, MemoryParameters& m) { m.l1.line_bytes = m.l2.line_bytes = form(at); },
+          [](const MemoryParameters& m) { return Json(m.l2.line_bytes); }};
+}
+
+std::vector<MemoryParameter> all_parameters() {
+  std::vector<MemoryParameter> all;
+  const auto add = [&](Field<MemoryParameters> field, const char* unit) {
+    field.schema["default"] = field.get({});
+    all.push_back({std::move(field), unit});
+  };
+  const auto place = [&](const char* key, const char* unit, const char* meaning, auto where, const auto& form) {
+    add({key, meaning, false, form.schema,
+         [where, form](const JsonCursor& at, MemoryParameters& m) { form.read(at, std::invoke(where, m)); },
+         [where, form](const MemoryParameters& m) { return form.write(std::invoke(where, m)); }},
+        unit);
+  };
+  using Memory = MemoryParameters;
+  using form::integer;
+  place("sector_bytes", "bytes", "the unit that moves in every cache and to and from DRAM", &Memory::sector_bytes,
+        form::power_of_two(kLeastSectorBytes, 128));
+  add(line_field(), "bytes");
+  place(
+      "l1_bytes", "bytes", "the L1 through which shaders read, and its texture cache",
+      [](auto& m) -> auto& { return m.l1.bytes; }, integer(kLeastSectorBytes, kMostL1));
+  place(
+      "l1_ways", "", "lines in a set of L1", [](auto& m) -> auto& { return m.l1.ways; }, integer(1, kMostWays));
+  place(
+      "l2_bytes", "bytes", "the L2 for what shaders read and write", [](auto& m) -> auto& { return m.l2.bytes; },
+      integer(kLeastSectorBytes, kMostCache));
+  place(
+      "l2_ways", "", "lines in a set of L2", [](auto& m) -> auto& { return m.l2.ways; }, integer(1, kMostWays));
+  place(
+      "rop_bytes", "bytes", "the cache of each class of framebuffer surfaces in memory",
+      [](auto& m) -> auto& { return m.rop.bytes; }, integer(kLeastRopLine, kMostCache));
+  place(
+      "rop_ways", "", "lines in a set of these caches", [](auto& m) -> auto& { return m.rop.ways; },
+      integer(1, kMostWays));
+  place(
+      "rop_line_bytes", "bytes", "a line of these caches, and a block of a surface: 1 to 8 sectors",
+      [](auto& m) -> auto& { return m.rop.line_bytes; }, form::power_of_two(kLeastRopLine, kMostLine));
+  place("compression", "", "whether blocks of surfaces are compressed", &Memory::compression, form::boolean());
+  place("plane_bytes", "bytes", "a depth plane in a compressed block", &Memory::plane_bytes, integer(1, 64));
+  place("framebuffer", "", "where the pixels of a bin are while it is drawn", &Memory::framebuffer, place_form());
+  place("on_chip_bytes", "bytes", "the memory on chip for the pixels of a bin", &Memory::on_chip_bytes,
+        integer(1, kMostOnChip));
+  place("bin_pixels", "px", "the most pixels on each side of a bin; techniques whose bins are smaller keep them",
+        &Memory::bin_pixels, form::power_of_two(8, kBinSize));
+  return all;
 }
 
 }  // namespace
 
 const std::vector<MemoryParameter>& memory_parameters() {
-  using Memory = MemoryParameters;
-  using At = JsonCursor;
-  static const std::vector<MemoryParameter> all = {
-      {"sector_bytes", "bytes", "the unit that moves in every cache and to and from DRAM",
-       [](const Memory& m) { return Json(m.sector_bytes); },
-       [](Memory& m, const At& at) { m.sector_bytes = power_of_two(at, kLeastSectorBytes, 128); }},
-      {"line_bytes", "bytes", "a line of L1 and of L2: 1 to 8 sectors",
-       [](const Memory& m) { return Json(m.l2.line_bytes); },
-       [](Memory& m, const At& at) {
-         m.l1.line_bytes = m.l2.line_bytes = power_of_two(at, kLeastSectorBytes, kMostLine);
-       }},
-      {"l1_bytes", "bytes", "the L1 through which shaders read, and its texture cache",
-       [](const Memory& m) { return Json(m.l1.bytes); },
-       [](Memory& m, const At& at) { m.l1.bytes = at.integer(kLeastSectorBytes, kMostL1); }},
-      {"l1_ways", "", "lines in a set of L1", [](const Memory& m) { return Json(m.l1.ways); },
-       [](Memory& m, const At& at) { m.l1.ways = at.integer(1, kMostWays); }},
-      {"l2_bytes", "bytes", "the L2 for what shaders read and write", [](const Memory& m) { return Json(m.l2.bytes); },
-       [](Memory& m, const At& at) { m.l2.bytes = at.integer(kLeastSectorBytes, kMostCache); }},
-      {"l2_ways", "", "lines in a set of L2", [](const Memory& m) { return Json(m.l2.ways); },
-       [](Memory& m, const At& at) { m.l2.ways = at.integer(1, kMostWays); }},
-      {"rop_bytes", "bytes", "the cache of each class of framebuffer surfaces in memory",
-       [](const Memory& m) { return Json(m.rop.bytes); },
-       [](Memory& m, const At& at) { m.rop.bytes = at.integer(kLeastRopLine, kMostCache); }},
-      {"rop_ways", "", "lines in a set of these caches", [](const Memory& m) { return Json(m.rop.ways); },
-       [](Memory& m, const At& at) { m.rop.ways = at.integer(1, kMostWays); }},
-      {"rop_line_bytes", "bytes", "a line of these caches, and a block of a surface: 1 to 8 sectors",
-       [](const Memory& m) { return Json(m.rop.line_bytes); },
-       [](Memory& m, const At& at) { m.rop.line_bytes = power_of_two(at, kLeastRopLine, kMostLine); }},
-      {"compression", "", "whether blocks of surfaces are compressed",
-       [](const Memory& m) { return Json(m.compression); },
-       [](Memory& m, const At& at) { m.compression = at.boolean(); }},
-      {"plane_bytes", "bytes", "a depth plane in a compressed block",
-       [](const Memory& m) { return Json(m.plane_bytes); },
-       [](Memory& m, const At& at) { m.plane_bytes = at.integer(1, 64); }},
-      {"framebuffer", "", "where the pixels of a bin are while it is drawn",
-       [](const Memory& m) { return Json(name_of(m.framebuffer)); }, set_place},
-      {"on_chip_bytes", "bytes", "the memory on chip for the pixels of a bin",
-       [](const Memory& m) { return Json(m.on_chip_bytes); },
-       [](Memory& m, const At& at) { m.on_chip_bytes = at.integer(1, kMostOnChip); }},
-      {"bin_pixels", "px", "the most pixels on each side of a bin; techniques whose bins are smaller keep them",
-       [](const Memory& m) { return Json(m.bin_pixels); },
-       [](Memory& m, const At& at) { m.bin_pixels = power_of_two(at, 8, kBinSize); }},
-  };
+  static const std::vector<MemoryParameter> all = all_parameters();
   return all;
 }
 
 Json parameters_json(const MemoryParameters& memory) {
   Json json = Json::object();
-  for (const MemoryParameter& parameter : memory_parameters()) json[parameter.name] = parameter.get(memory);
+  for (const MemoryParameter& parameter : memory_parameters()) json[parameter.key] = parameter.get(memory);
   return json;
 }
 
@@ -105,36 +115,52 @@ std::optional<MemoryConflict> find_conflict(const MemoryParameters& memory) {
   return std::nullopt;
 }
 
-void set_parameters(MemoryParameters& memory, const JsonCursor& values) {
-  std::vector<std::string_view> names;
-  for (const MemoryParameter& parameter : memory_parameters()) names.push_back(parameter.name);
-  values.expect_keys(names);
-  for (const MemoryParameter& parameter : memory_parameters())
-    if (const auto value = values.find(parameter.name)) parameter.set(memory, *value);
-  if (const std::optional<MemoryConflict> conflict = find_conflict(memory)) {
-    const auto value = values.find(conflict->name);  // else what it conflicts with was set
-    (value ? *value : values)
+namespace {
+
+Form<MemoryParameters> parameters_form() {
+  ObjectForm<MemoryParameters> object;
+  for (const MemoryParameter& parameter : memory_parameters()) object.add(parameter);
+  return object.check([](const JsonCursor& at, const MemoryParameters& memory) {
+    const std::optional<MemoryConflict> conflict = find_conflict(memory);
+    if (!conflict) return;
+    const auto value = at.find(conflict->name);  // else what it conflicts with was set
+    (value ? *value : at)
         .fail((value ? "" : std::string(conflict->name) + " of ") + conflict->expected,
               std::to_string(conflict->found));
-  }
+  });
 }
 
+// Sources of some of the parameters, or of those that an object has.
+Form<std::map<std::string, std::string>> sources_form(const JsonCursor* parameters) {
+  std::vector<form::Key> keys;
+  for (const MemoryParameter& parameter : memory_parameters())
+    if (!parameters || parameters->has(parameter.key)) keys.push_back({parameter.key, "Of this parameter."});
+  return form::record(keys, parameters != nullptr, form::text("where the value is from, or that it is a choice"));
+}
+
+Form<MemoryParameters> memory_system_form() {
+  return ObjectForm<MemoryParameters>()
+      .add(form::unused<MemoryParameters>("beampipe_memory_system", true, form::version(1),
+                                          "The version of this format."))
+      .required("parameters", std::identity(), parameters_form(),
+                "The parameters that differ from the default's, or all of them.")
+      .add(form::unused<MemoryParameters>("sources", true, sources_form(nullptr),
+                                          "Where each of these parameters is from, or that it is a choice, by its "
+                                          "name. Parameters that are left out have none."))
+      .check([](const JsonCursor& at, const MemoryParameters&) {
+        const JsonCursor parameters = at["parameters"];
+        sources_form (&parameters)(at["sources"]);
+      });
+}
+
+}  // namespace
+
+void set_parameters(MemoryParameters& memory, const JsonCursor& values) { parameters_form().read(values, memory); }
+
+Json memory_system_schema() { return schema_file(memory_system_form().schema, "beampipe memory system, version 1"); }
+
 MemoryParameters parse_memory_system(const Json& json, const std::string& file) {
-  const JsonCursor root(json, file);
-  root.expect_keys({"beampipe_memory_system", "parameters", "sources"});
-  root["beampipe_memory_system"].integer(1, 1);
-  const JsonCursor parameters = root["parameters"], sources = root["sources"];
-  MemoryParameters memory;
-  set_parameters(memory, parameters);
-  std::vector<std::string_view> given;
-  for (const MemoryParameter& parameter : memory_parameters()) {
-    if (!parameters.has(parameter.name)) continue;
-    given.push_back(parameter.name);
-    const JsonCursor source = sources[parameter.name];
-    if (source.string().empty()) source.fail("where the value is from, or that it is a choice", "nothing");
-  }
-  sources.expect_keys(given);
-  return memory;
+  return memory_system_form()(JsonCursor(json, file));
 }
 
 MemoryParameters read_memory_system(const std::string& file) { return parse_memory_system(parse_json(file), file); }

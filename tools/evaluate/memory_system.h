@@ -1,6 +1,6 @@
 // Memory systems as files: the parameters of pipeline/memory/parameters.h, under names.
 //
-// A description is a JSON file (memory_system.schema.json). It holds those parameters that differ from the default
+// A description is a JSON file. It holds those parameters that differ from the default
 // system's, each with its source or marked as a choice.
 #pragma once
 
@@ -10,18 +10,13 @@
 #include <vector>
 
 #include "pipeline/memory/parameters.h"
-#include "traces/files/json.h"
-#include "traces/files/json_cursor.h"
+#include "traces/files/json_form.h"
 
 namespace beampipe {
 
-// A parameter of the memory system: a number, true or false, or a name.
-struct MemoryParameter {
-  const char* name;  // in files, plans and tables
-  const char* unit;
-  const char* meaning;
-  Json (*get)(const MemoryParameters& memory);
-  void (*set)(MemoryParameters& memory, const JsonCursor& value);  // throws TraceError if it is out of range
+// A parameter of the memory system: a number, true or false, or a name. Its key stands in files, plans and tables.
+struct MemoryParameter : Field<MemoryParameters> {
+  std::string unit;
 };
 
 const std::vector<MemoryParameter>& memory_parameters();
@@ -40,6 +35,9 @@ std::optional<MemoryConflict> find_conflict(const MemoryParameters& memory);
 // Sets the parameters that are members of the object `values`, by name. Throws TraceError, one line that names the key,
 // if there is no such parameter, if a value is out of range, or if the values do not fit together.
 void set_parameters(MemoryParameters& memory, const JsonCursor& values);
+
+// The JSON Schema of descriptions.
+Json memory_system_schema();
 
 // Throws TraceError, one line that names the file, the key, what was expected and what was found.
 MemoryParameters read_memory_system(const std::string& file);

@@ -22,18 +22,18 @@ std::string frame_text(const RunPlan& plan, std::size_t frame) {
 FrameResult render_timed(const Technique& technique, const RunPlan& plan, std::size_t frame, Progress& progress,
                          bool model_memory, History* history, double& milliseconds,
                          SurfaceColors colors = SurfaceColors::by_place) {
-  RunOptions options = plan.options;
+  FrameInput options = plan.options;
   options.history = history;
   options.memory.modelled = model_memory;
   options.colors = colors;
   const std::string name = technique.spec + (colors == SurfaceColors::by_pixel ? ", for visibility" : "");
   progress.show(frame_text(plan, frame) + name);
   const auto start = std::chrono::steady_clock::now();
-  FrameResult result = technique.render(plan.trace, frame, options);
+  FrameResult result = technique.render(plan.trace, frame, options, plan.sinks);
   const auto end = std::chrono::steady_clock::now();
   milliseconds = std::chrono::duration<double, std::milli>(end - start).count();
-  if (options.timeline)
-    options.timeline->add({name + ", frame " + std::to_string(frame), std::this_thread::get_id(), {}, start, end});
+  if (plan.sinks.timeline)
+    plan.sinks.timeline->add({name + ", frame " + std::to_string(frame), std::this_thread::get_id(), {}, start, end});
   return result;
 }
 

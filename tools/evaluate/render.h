@@ -31,7 +31,7 @@ std::vector<History> rebuild_histories(const RunPlan& plan, std::size_t frames, 
 FrameResult render_once(const Technique& technique, const RunPlan& plan, std::size_t frame, Progress& progress,
                         WallTime* time = nullptr);
 
-// Renders only a picture, without modelling memory. `history` is as in RunOptions.
+// Renders only a picture, without modelling memory. `history` is as in FrameInput.
 Image render_picture(const Technique& technique, const RunPlan& plan, std::size_t frame, Progress& progress,
                      SurfaceColors colors = SurfaceColors::by_place, History* history = nullptr);
 

@@ -22,8 +22,9 @@ struct RunPlan {
   Hardware hardware = titan_v();
   std::vector<Hardware> more_hardware;         // to model times on it too
   std::shared_ptr<const TextureSet> textures;  // of the trace
-  RunOptions options;                          // `threads` is the actual number, never 0
-  std::vector<DrawNote> notes;                 // of `frames`
+  FrameInput options;                          // `threads` is the actual number, never 0
+  FrameSinks sinks;
+  std::vector<DrawNote> notes;  // of `frames`
 };
 
 inline std::vector<std::string> specs_of(const std::vector<Technique>& techniques) {

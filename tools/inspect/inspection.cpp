@@ -50,18 +50,18 @@ void add_explanation(const ExplainedPixel& explained, PixelInspection& inspectio
   inspection.causes.assign(explained.causes.begin(), explained.causes.end());
 }
 
-std::vector<PixelHistory> observed(const Technique& technique, const Trace& trace, std::size_t frame, RunOptions run) {
+std::vector<PixelHistory> observed(const Technique& technique, const Trace& trace, std::size_t frame,
+                                   const FrameInput& run) {
   std::vector<PixelHistory> histories;
-  run.histories = &histories;
-  technique.render(trace, frame, run);
+  technique.render(trace, frame, run, {.histories = &histories});
   return histories;
 }
 
 }  // namespace
 
 std::vector<PixelInspection> inspect(const Trace& trace, std::size_t frame, const Technique& technique,
-                                     const std::vector<PixelAddress>& pixels, const RunOptions& run) {
-  RunOptions only = run;
+                                     const std::vector<PixelAddress>& pixels, const FrameInput& run) {
+  FrameInput only = run;
   only.memory.modelled = false;
   only.pixels = &pixels;
   const Technique reference = parse_technique("reference");
@@ -71,7 +71,7 @@ std::vector<PixelInspection> inspect(const Trace& trace, std::size_t frame, cons
 
   // If surfaces vary, causes are those of the error in visibility.
   const bool varies = has_varying_surfaces(trace, of_trace);
-  RunOptions by_pixel = only;
+  FrameInput by_pixel = only;
   by_pixel.colors = SurfaceColors::by_pixel;
   std::vector<PixelHistory> visible;
   Image visible_truth = truth;

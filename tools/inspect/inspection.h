@@ -35,7 +35,7 @@ struct PixelInspection {
 
 // The technique must be observable.
 std::vector<PixelInspection> inspect(const Trace& trace, std::size_t frame, const Technique& technique,
-                                     const std::vector<PixelAddress>& pixels, const RunOptions& run);
+                                     const std::vector<PixelAddress>& pixels, const FrameInput& run);
 
 // The pixels whose error is largest, the worst first; of equal ones, the first one in the picture.
 std::vector<PixelAddress> worst_pixels(const Image& image, const Image& reference, std::size_t count);

@@ -3,26 +3,16 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
-#include <cstdarg>
-#include <cstdio>
 #include <map>
 
+#include "tools/files/format.h"
 #include "tools/files/image_io.h"
 #include "tools/inspect/inspection_text.h"
 
 namespace beampipe {
 namespace {
 
-[[gnu::format(printf, 1, 2)]] std::string format(const char* pattern, ...) {
-  char text[512];
-  va_list arguments;
-  va_start(arguments, pattern);
-  std::vsnprintf(text, sizeof text, pattern, arguments);
-  va_end(arguments);
-  return text;
-}
-
-std::string escaped(const std::string& text) {
+std::string xml_text(const std::string& text) {
   std::string out;
   for (const char c : text) {
     const bool is_control = c >= 0 && c < ' ' && c != '\n';  // XML has no such characters
@@ -32,14 +22,15 @@ std::string escaped(const std::string& text) {
 }
 
 // Everything in px of the SVG.
-constexpr double kWidth = 1060, kMargin = 20, kScale = 380, kBorder = 24;  // kScale: of a pixel; kBorder: around it
-constexpr double kSquare = kScale + 2 * kBorder, kRight = kMargin + kSquare + 30;
+constexpr double kPictureWidth = 1060, kMargin = 20, kScale = 380,
+                 kBorder = 24;  // kScale: of a pixel; kBorder: around it
+constexpr double kSquare = kScale + 2 * kBorder, kTextLeft = kMargin + kSquare + 30;
 constexpr double kRow = 22, kHead = 62, kBarWidth = 200;
 constexpr std::size_t kMostSurfaces = 12, kMostTransfers = 3;
 
 // Colours that most people can tell apart (Okabe and Ito 2008), and lighter ones of the same hues.
-constexpr std::array kColors = {"#0072b2", "#e69f00", "#009e73", "#cc79a7", "#d55e00", "#56b4e9",
-                                "#a6761d", "#7570b3", "#66a61e", "#e7298a", "#1b9e77", "#8da0cb"};
+constexpr std::array kSurfaceColors = {"#0072b2", "#e69f00", "#009e73", "#cc79a7", "#d55e00", "#56b4e9",
+                                       "#a6761d", "#7570b3", "#66a61e", "#e7298a", "#1b9e77", "#8da0cb"};
 constexpr const char* kOther = "#9a9a9a";
 
 // The surfaces with the largest parts of the pixel have colours of their own, the others are gray.
@@ -56,8 +47,8 @@ std::vector<InspectedSurface> largest_first(const PixelInspection& inspection) {
 ColorOf colors_of(const std::vector<InspectedSurface>& surfaces) {
   ColorOf colors;
   for (const InspectedSurface& surface : surfaces)
-    if (surface.fragment != kNobody && colors.size() < kColors.size())
-      colors.emplace(surface.fragment, kColors[colors.size()]);
+    if (surface.fragment != kNobody && colors.size() < kSurfaceColors.size())
+      colors.emplace(surface.fragment, kSurfaceColors[colors.size()]);
   return colors;
 }
 
@@ -72,7 +63,7 @@ std::string css_color(const glm::dvec3& linear) {
 }
 
 std::string text_at(double x, double y, const std::string& text, const char* attributes = "") {
-  return format("<text x=\"%.1f\" y=\"%.1f\" %s>", x, y, attributes) + escaped(text) + "</text>\n";
+  return format("<text x=\"%.1f\" y=\"%.1f\" %s>", x, y, attributes) + xml_text(text) + "</text>\n";
 }
 
 std::string rectangle(double x, double y, double width, double height, const std::string& attributes) {
@@ -120,21 +111,22 @@ std::string pixel_picture(const PixelInspection& inspection, const ColorOf& colo
 
 std::string weight_bars(const std::vector<InspectedSurface>& surfaces, const PixelInspection& inspection,
                         const ColorOf& colors, double top) {
-  const double bars = kRight + 190;
+  const double bars = kTextLeft + 190;
   double largest = 0;  // what a full bar stands for
   for (const InspectedSurface& surface : surfaces) largest = std::max({largest, surface.weight, surface.truth});
   const auto length_of = [&](double part) { return kBarWidth * std::clamp(part / largest, 0.0, 1.0); };
   std::string svg =
-      text_at(kRight, top, "surface", "class=\"dim\"") +
+      text_at(kTextLeft, top, "surface", "class=\"dim\"") +
       text_at(bars, top, format("weight (bar), reference (line); full width %.3g", largest), "class=\"dim\"");
   for (std::size_t i = 0; i < std::min(surfaces.size(), kMostSurfaces); ++i) {
     const InspectedSurface& surface = surfaces[i];
     const double y = top + 12 + kRow * static_cast<double>(i);
     const bool is_background = surface.fragment == kNobody;
     const char* color = is_background ? "#444444" : color_of(colors, surface.fragment);
-    svg += rectangle(kRight, y, 14, 14, format("fill=\"%s\"", is_background ? "#ffffff" : color) + " stroke=\"#666\"");
-    svg += rectangle(kRight + 18, y, 14, 14, "fill=\"" + css_color(surface.color) + "\" stroke=\"#666\"");
-    svg += text_at(kRight + 38, y + 12,
+    svg +=
+        rectangle(kTextLeft, y, 14, 14, format("fill=\"%s\"", is_background ? "#ffffff" : color) + " stroke=\"#666\"");
+    svg += rectangle(kTextLeft + 18, y, 14, 14, "fill=\"" + css_color(surface.color) + "\" stroke=\"#666\"");
+    svg += text_at(kTextLeft + 38, y + 12,
                    is_background ? "background"
                                  : format("#%u, triangle %u", surface.fragment,
                                           inspection.history.fragments[surface.fragment].triangle));
@@ -150,7 +142,7 @@ std::string weight_bars(const std::vector<InspectedSurface>& surfaces, const Pix
                 "class=\"dim\"");
   }
   if (surfaces.size() > kMostSurfaces)
-    svg += text_at(kRight + 38, top + 24 + kRow * kMostSurfaces,
+    svg += text_at(kTextLeft + 38, top + 24 + kRow * kMostSurfaces,
                    std::to_string(surfaces.size() - kMostSurfaces) + " smaller ones", "class=\"dim\"");
   return svg;
 }
@@ -161,7 +153,7 @@ std::string colors_text(const PixelInspection& inspection, double y) {
       {{"picture", glm::dvec3(inspection.history.pixel)}, {"reference", glm::dvec3(inspection.reference)}}};
   for (std::size_t i = 0; i < colors.size(); ++i) {
     const auto& [name, color] = colors[i];
-    const double x = kRight + 250 * static_cast<double>(i);
+    const double x = kTextLeft + 250 * static_cast<double>(i);
     svg += rectangle(x, y, 30, 30, "fill=\"" + css_color(color) + "\" stroke=\"#666\"");
     svg += text_at(x + 38, y + 12, name, "class=\"dim\"") +
            text_at(x + 38, y + 27, format("%.4f %.4f %.4f", color.r, color.g, color.b));
@@ -187,11 +179,11 @@ std::string panel_svg(const PixelInspection& inspection, const std::string& trac
   double y = top + 46 + kRow * static_cast<double>(std::min(surfaces.size(), kMostSurfaces + 1));
   svg += colors_text(inspection, y);
   y += 54;
-  svg += text_at(kRight, y, format("error (root mean square) %.5f", inspection.error));
+  svg += text_at(kTextLeft, y, format("error (root mean square) %.5f", inspection.error));
   if (const std::string causes = cause_shares_text(inspection); !causes.empty())
-    svg += text_at(kRight, y += 19, "causes: " + causes);
+    svg += text_at(kTextLeft, y += 19, "causes: " + causes);
   for (const std::string& line : transfer_lines(inspection, kMostTransfers))
-    svg += text_at(kRight, y += 19, line, "class=\"dim\"");
+    svg += text_at(kTextLeft, y += 19, line, "class=\"dim\"");
   return svg;
 }
 
@@ -206,8 +198,8 @@ std::string svg_of(const std::vector<PixelInspection>& inspections, std::size_t 
   const double height = kPanel * static_cast<double>(last - first);
   std::string svg =
       format("<svg xmlns=\"http://www.w3.org/2000/svg\" width=\"%.0f\" height=\"%.0f\" viewBox=\"0 0 %.0f %.0f\">\n",
-             kWidth, height, kWidth, height);
-  svg += kStyle + rectangle(0, 0, kWidth, height, "fill=\"#ffffff\"");
+             kPictureWidth, height, kPictureWidth, height);
+  svg += kStyle + rectangle(0, 0, kPictureWidth, height, "fill=\"#ffffff\"");
   for (std::size_t i = first; i < last; ++i)
     svg += panel_svg(inspections[i], trace, kPanel * static_cast<double>(i - first), i);
   return svg + "</svg>\n";
@@ -221,12 +213,12 @@ std::string inspections_svg(const std::vector<PixelInspection>& inspections, con
 
 std::string inspections_html(const std::vector<PixelInspection>& inspections, const std::string& trace) {
   std::string page =
-      "<!DOCTYPE html>\n<html lang=\"en\"><head><meta charset=\"utf-8\"><title>" + escaped(trace) +
+      "<!DOCTYPE html>\n<html lang=\"en\"><head><meta charset=\"utf-8\"><title>" + xml_text(trace) +
       " · beampipe inspect</title>\n<style>body { font-family: sans-serif; margin: 1em auto; max-width: 1000px } "
       "svg { max-width: 100%; height: auto } pre { font-size: 11px; overflow-x: auto }</style></head><body>\n";
   for (std::size_t i = 0; i < inspections.size(); ++i)
     page += svg_of(inspections, i, i + 1, trace) + "<details><summary>The history as text</summary><pre>" +
-            escaped(inspection_text(inspections[i], trace, true)) + "</pre></details>\n";
+            xml_text(inspection_text(inspections[i], trace, true)) + "</pre></details>\n";
   return page + "</body></html>\n";
 }
 

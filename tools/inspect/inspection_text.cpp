@@ -2,24 +2,15 @@
 
 #include <algorithm>
 #include <cmath>
-#include <cstdarg>
-#include <cstdio>
 #include <map>
 #include <numeric>
+
+#include "tools/files/format.h"
 
 namespace beampipe {
 namespace {
 
 constexpr std::size_t kColumns = 120;
-
-[[gnu::format(printf, 1, 2)]] std::string format(const char* pattern, ...) {
-  char text[256];
-  va_list arguments;
-  va_start(arguments, pattern);
-  std::vsnprintf(text, sizeof text, pattern, arguments);
-  va_end(arguments);
-  return text;
-}
 
 // A name from a trace, for a terminal: without control characters, and cut at a width, but not within a character.
 std::string cut(std::string text, std::size_t width) {

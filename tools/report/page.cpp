@@ -41,7 +41,7 @@ std::string fill(std::string page, const std::string& name, const std::string& t
   return page.replace(page.find(place), place.size(), text);
 }
 
-std::string escaped(const std::string& text) {
+std::string html_text(const std::string& text) {
   std::string out;
   for (const char c : text) out += c == '&' ? "&amp;" : c == '<' ? "&lt;" : std::string(1, c);
   return out;
@@ -77,9 +77,9 @@ std::string page_html(const ReportFile& report, const std::vector<Table>& tables
   page = fill(page, "d3", kD3);
   page = fill(page, "scripts", kPageScripts);
   page = fill(page, "data", script_json(data));
-  return fill(
-      page, "title",
-      escaped(report.scene) + " · beampipe report");  // the page may contain the same characters again, but only later
+  return fill(page, "title",
+              html_text(report.scene) +
+                  " · beampipe report");  // the page may contain the same characters again, but only later
 }
 
 }  // namespace beampipe

@@ -9,89 +9,228 @@
 namespace beampipe {
 namespace {
 
-void add(const EquivalentMsaa& emr, Json& json) {
-  json["equivalent_msaa"] = emr.samples;
-  json["equivalent_msaa_is_lower_bound"] = emr.is_lower_bound;
-  if (emr.is_upper_bound) json["equivalent_msaa_is_upper_bound"] = true;
+// An equivalent rate, if there is one, among the other keys of an object.
+template <class T, class Place>
+void add_rate(ObjectForm<T>& object, Place rate) {
+  const auto part = [rate](auto take) {
+    return [rate, take](const T& value) {
+      const std::optional<EquivalentMsaa> emr = rate(value);
+      return emr ? take(*emr) : std::nullopt;
+    };
+  };
+  using Emr = EquivalentMsaa;
+  object
+      .written("equivalent_msaa", part([](const Emr& emr) { return std::optional(emr.samples); }), form::amount(),
+               "Equivalent MSAA rate: the N at which msaa:N has the same RMSE on the same frames.")
+      .written("equivalent_msaa_is_lower_bound", part([](const Emr& emr) { return std::optional(emr.is_lower_bound); }),
+               form::boolean(), "The rate is at least that: the MSAA ladder ends before it.")
+      .written("equivalent_msaa_is_upper_bound",
+               part([](const Emr& emr) { return emr.is_upper_bound ? std::optional(true) : std::nullopt; }),
+               form::boolean(), "The rate is at most that: the first rung of the ladder is better.");
 }
 
-Json to_json(const std::vector<LadderRung>& ladder) {
-  Json json = Json::array();
-  for (const LadderRung& rung : ladder) json.push_back({{"samples", rung.samples}, {"rmse", rung.rmse}});
-  return json;
+Form<Surface> surface_form() {
+  return ObjectForm<Surface>()
+      .written("name", &Surface::name, form::text(), "Its name.")
+      .written("format", &Surface::format, form::text(), "What it stores per pixel; \"x N\" means N times.")
+      .written("bytes_per_pixel", &Surface::bytes_per_pixel, form::count(), "Its size.");
 }
 
-// All but the frames.
-Json to_json(const TechniqueReport& result) {
-  Json json = {{"technique", result.technique},
-               {"pixels_on_chip", result.pixels_on_chip},
-               {"framebuffer_bytes_per_pixel", result.framebuffer_bytes_per_pixel},
-               {"peak_bytes_per_pixel", result.peak_bytes_per_pixel()},
-               {"on_chip_bytes_per_pixel", result.on_chip_bytes_per_pixel()},
-               {"off_chip_bytes_per_pixel", result.peak_bytes_per_pixel()}};
-  json["framebuffer"] = Json::array();
-  for (const Surface& surface : result.framebuffer) {
-    json["framebuffer"].push_back(
-        {{"name", surface.name}, {"format", surface.format}, {"bytes_per_pixel", surface.bytes_per_pixel}});
-  }
+std::uint64_t a_buffer_peak(const TechniqueReport& result) {
   std::uint64_t peak = 0;
   for (const FrameReport& frame : result.frames) peak = std::max(peak, frame.a_buffer_peak_bytes);
-  json["a_buffer_peak_bytes"] = peak;
-  if (result.error) json["error"] = beampipe::to_json(*result.error);
-  if (result.equivalent_msaa) add(*result.equivalent_msaa, json);
-  if (result.parts) {
-    json["visibility"]["rmse"] = result.parts->visibility;
-    add(result.visibility_msaa.value(), json["visibility"]);
-    json["shading"]["rmse"] = result.parts->shading;
-  }
-  if (result.flicker) json["flicker"] = *result.flicker;
-  for (const auto& [cause, part] : result.causes) json["error_causes"][cause] = part;
-  if (!result.orders.empty()) {
-    for (const OrderReport& order : result.orders) json["orders"][order.order] = {{"rmse", order.rmse}};
-    json["orders"]["largest_difference"] = result.order_difference;
-  }
-  if (!result.inspections.empty()) json["inspections"] = result.inspections;
-  return json;
+  return peak;
 }
 
-Json to_json(const FrameContent& frame) {
-  return {{"index", frame.index},         {"width", frame.width}, {"height", frame.height},
-          {"triangles", frame.triangles}, {"draws", frame.draws}, {"lights", frame.lights}};
+// The error in visibility and its own equivalent rate.
+struct Visibility {
+  double rmse;
+  std::optional<EquivalentMsaa> msaa;
+};
+
+std::optional<Visibility> visibility_of(const TechniqueReport& result) {
+  if (!result.parts) return std::nullopt;
+  return Visibility{result.parts->visibility, result.visibility_msaa};
 }
 
-Json to_json(const CacheParameters& cache) {
-  return {{"bytes", cache.bytes}, {"ways", cache.ways}, {"line_bytes", cache.line_bytes}};
+Form<Visibility> visibility_form() {
+  ObjectForm<Visibility> visibility;
+  visibility.written("rmse", &Visibility::rmse, form::amount(), "Root mean square.");
+  add_rate(visibility, [](const Visibility& each) { return each.msaa; });
+  return visibility;
 }
 
-Json to_json(const MemoryParameters& memory) {
-  return {{"modelled", memory.modelled},
-          {"compression", memory.compression},
-          {"sector_bytes", memory.sector_bytes},
-          {"rop_cache", to_json(memory.rop)},
-          {"l1_cache", to_json(memory.l1)},
-          {"l2_cache", to_json(memory.l2)},
-          {"plane_bytes", memory.plane_bytes},
-          {"bin_pixels", memory.bin_pixels},
-          {"framebuffer", name_of(memory.framebuffer)},
-          {"on_chip_bytes", memory.on_chip_bytes}};
+std::optional<Json> causes_of(const TechniqueReport& result) {
+  Json causes;
+  for (const auto& [cause, part] : result.causes) causes[cause] = part;
+  return causes.is_null() ? std::nullopt : std::optional(causes);
 }
 
-// All but the results and the claims.
-Json head_json(const Report& report) {
-  Json json = {{"beampipe_report", 1}, {"trace", report.trace},     {"version", report.version},
-               {"simd", report.simd},  {"threads", report.threads}, {"memory_system", to_json(report.memory)}};
-  if (!report.made_by.is_null()) json["made_by"] = report.made_by;
-  if (!report.hardware.implementations.empty()) json["hardware"] = report.hardware.json;
-  for (const Hardware& each : report.more_hardware) json["more_hardware"][each.label] = each.json;
-  if (!report.frames.empty()) {
-    json["trace_frames"] = report.trace_frames;
-    json["frames"] = Json::array();
-    for (const FrameContent& frame : report.frames) json["frames"].push_back(to_json(frame));
-  }
-  if (!report.msaa_ladder.empty()) json["msaa_ladder"] = to_json(report.msaa_ladder);
-  if (!report.visibility_ladder.empty()) json["visibility_msaa_ladder"] = to_json(report.visibility_ladder);
-  if (!report.notes.empty()) json["notes"] = beampipe::to_json(report.notes);
-  return json;
+std::optional<Json> orders_of(const TechniqueReport& result) {
+  if (result.orders.empty()) return std::nullopt;
+  Json orders;
+  for (const OrderReport& order : result.orders) orders[order.order] = rmse_form().write(order.rmse);
+  orders["largest_difference"] = result.order_difference;
+  return orders;
+}
+
+Json orders_schema() {
+  Json schema = form::by_name(rmse_form()).schema;
+  schema["properties"]["largest_difference"] =
+      described(form::amount().schema, "RMS difference between the two orders whose pictures differ most.");
+  return schema;
+}
+
+// All but the frames, which are written one after the other.
+Form<TechniqueReport> result_form() {
+  using Result = TechniqueReport;
+  ObjectForm<Result> result;
+  result.written("technique", &Result::technique, form::text("a spec"), "Its spec, as `beampipe run -t` takes it.")
+      .written("pixels_on_chip", &Result::pixels_on_chip, form::boolean(),
+               "The pixels of a bin are on chip while it is drawn.")
+      .written("framebuffer_bytes_per_pixel", &Result::framebuffer_bytes_per_pixel, form::count(),
+               "All surfaces in memory.")
+      .written("peak_bytes_per_pixel", &Result::peak_bytes_per_pixel, form::amount(),
+               "The framebuffer, and the A-buffer in the frame where it is largest.")
+      .written("on_chip_bytes_per_pixel", &Result::on_chip_bytes_per_pixel, form::amount(),
+               "All buffers that a bin has on chip, at their peaks, over the pixels of the largest bin.")
+      .written("off_chip_bytes_per_pixel", &Result::peak_bytes_per_pixel, form::amount(), "As peak_bytes_per_pixel.")
+      .written("framebuffer", &Result::framebuffer, form::list(surface_form()), "The surfaces in memory.")
+      .written("a_buffer_peak_bytes", a_buffer_peak, form::count(),
+               "The largest size of the A-buffer in any frame; 0: there is none.")
+      .written("error", &Result::error, error_form(), "Differences from the reference, in linear light.");
+  add_rate(result, [](const Result& each) { return each.equivalent_msaa; });
+  return result
+      .written("visibility", visibility_of, visibility_form(),
+               "The error in visibility, where surfaces vary, and its own equivalent rate.")
+      .written(
+          "shading", [](const Result& each) { return each.parts ? std::optional(each.parts->shading) : std::nullopt; },
+          rmse_form(), "The error in shading, where surfaces vary.")
+      .written("flicker", &Result::flicker, form::amount(),
+               "Root mean square change of the error from one frame to the next.")
+      .written("error_causes", causes_of, form::as_it_is(form::by_name(form::number()).schema),
+               "After --causes: parts of the mean square error by cause, which add up to 1. A part is negative where "
+               "the cause makes up for others.")
+      .written("orders", orders_of, form::as_it_is(orders_schema()),
+               "After --orders: errors with the triangles in other orders.")
+      .written("inspections", form::filled(&Result::inspections), form::text("a file"),
+               "The file with the histories of some pixels (`beampipe schema inspections`).");
+}
+
+Form<FrameContent> content_form() {
+  using Content = FrameContent;
+  return ObjectForm<Content>()
+      .written("index", &Content::index, form::count(), "In the trace.")
+      .written("width", &Content::width, form::count(1), "In pixels.")
+      .written("height", &Content::height, form::count(1), "In pixels.")
+      .written("triangles", &Content::triangles, form::count(), "Of all draws, before clipping and culling.")
+      .written("draws", &Content::draws, form::count(), "Their number.")
+      .written("lights", &Content::lights, form::count(), "Their number.");
+}
+
+Form<LadderRung> rung_form() {
+  return ObjectForm<LadderRung>()
+      .written("samples", &LadderRung::samples, form::count(1), "Samples per pixel.")
+      .written("rmse", &LadderRung::rmse, form::amount(), "Its RMSE.");
+}
+
+Form<CacheParameters> cache_form() {
+  return ObjectForm<CacheParameters>()
+      .written("bytes", &CacheParameters::bytes, form::count(), "Its size.")
+      .written("ways", &CacheParameters::ways, form::count(), "Lines of a set.")
+      .written("line_bytes", &CacheParameters::line_bytes, form::count(), "Size of a line.");
+}
+
+Form<MemoryParameters> memory_form() {
+  using Memory = MemoryParameters;
+  return ObjectForm<Memory>()
+      .written("modelled", &Memory::modelled, form::boolean(), "Whether caches and DRAM were modelled.")
+      .written("compression", &Memory::compression, form::boolean(), "Of framebuffer blocks.")
+      .written("sector_bytes", &Memory::sector_bytes, form::count(), "Size of a sector.")
+      .written("rop_cache", &Memory::rop, cache_form(), "For each class of framebuffer surfaces.")
+      .written("l1_cache", &Memory::l1, cache_form(), "Of shader reads.")
+      .written("l2_cache", &Memory::l2, cache_form(), "Of everything.")
+      .written("plane_bytes", &Memory::plane_bytes, form::count(), "Of a plane in a compressed depth block.")
+      .written("bin_pixels", &Memory::bin_pixels, form::count(), "The most pixels on each side of a bin.")
+      .written(
+          "framebuffer", [](const Memory& memory) { return name_of(memory.framebuffer); },
+          form::one_of({kByTechnique, kOnChip, kInMemory}), "Where the pixels of a bin are.")
+      .written("on_chip_bytes", &Memory::on_chip_bytes, form::count(), "For the pixels of a bin.");
+}
+
+// made_by() in tools/evaluate/resume.h, with what commands add.
+Json maker_schema() {
+  const Json digest = {{"type", "string"}, {"pattern", "^[0-9a-f]{16}$"}};
+  const Json text = form::text().schema, flag = form::boolean().schema, positive = form::count(1).schema;
+  const Form<Json> form =
+      ObjectForm<Json>()
+          .added("command", form::one_of({"run", "compare"}).schema, "The command.")
+          .added("version", text, "Of the program.")
+          .added("program", digest, "Digest of the program's file.")
+          .added("trace", digest, "Digest of the trace's content. Published figures belong to a trace by it.")
+          .added("techniques", form::list(form::text()).schema, "The specs.")
+          .added("frames", text, "The first and the last frame, with \"-\" between them.")
+          .added("repeat", positive, "Timed runs of each frame.")
+          .added("threads", positive, "That worked at once.")
+          .added("simd", text, "The instruction set.")
+          .added("memory_model", flag, "Whether caches and DRAM were modelled.")
+          .added("compression", flag, "Of framebuffer blocks.")
+          .added("framebuffer", text, "Where the pixels of a bin are.")
+          .added("on_chip_bytes", form::count().schema, "For the pixels of a bin.")
+          .added("memory_system", digest, "Digest of the parameters.")
+          .added("hardware", digest, "Digest of the descriptions.")
+          .added("ladder", form::list(form::count(1)).schema,
+                 "compare: the MSAA rates of --ladder; empty: the default ones.")
+          .added("causes", flag, "compare: --causes.")
+          .added("orders", flag, "compare: --orders.");
+  return form.schema;
+}
+
+std::optional<Json> hardware_of(const Report& report) {
+  return report.hardware.implementations.empty() ? std::nullopt : std::optional(report.hardware.json);
+}
+
+std::optional<Json> more_hardware_of(const Report& report) {
+  Json more;
+  for (const Hardware& each : report.more_hardware) more[each.label] = each.json;
+  return more.is_null() ? std::nullopt : std::optional(more);
+}
+
+Json schema_of_list(const Json& element) { return {{"type", "array"}, {"items", element}}; }
+
+// All but the results and the claims, which are written one after the other.
+ObjectForm<Report> head_form() {
+  const Json object = {{"type", "object"}};
+  ObjectForm<Report> head;
+  return head
+      .written(
+          "beampipe_report", [](const Report&) { return 1; }, form::version(1), "The version of this format.")
+      .written("trace", &Report::trace, form::text(), "The trace, as the user named it.")
+      .written("version", &Report::version, form::text(), "Of the program.")
+      .written("simd", &Report::simd, form::text(), "The instruction set that was used.")
+      .written("threads", &Report::threads, form::count(1), "That worked at once.")
+      .written("memory_system", &Report::memory, memory_form(), "The modelled memory system.")
+      .written(
+          "made_by",
+          [](const Report& report) { return report.made_by.is_null() ? std::nullopt : std::optional(report.made_by); },
+          form::as_it_is(maker_schema()), "All that the results depend on.")
+      .written("hardware", hardware_of, form::as_it_is(object),
+               "The hardware whose times are modelled (`beampipe schema hardware`).")
+      .written("more_hardware", more_hardware_of, form::as_it_is(form::by_name(form::as_it_is(object)).schema),
+               "Further hardware, by label.")
+      .written(
+          "trace_frames",
+          [](const Report& report) {
+            return report.frames.empty() ? std::nullopt : std::optional<std::uint64_t>(report.trace_frames);
+          },
+          form::count(1), "Frames of the whole trace.")
+      .written("frames", form::filled(&Report::frames), form::list(content_form()),
+               "What each rendered frame asks to be drawn.")
+      .written("msaa_ladder", form::filled(&Report::msaa_ladder), form::list(rung_form()),
+               "Errors of msaa:N, between which equivalent rates are interpolated.")
+      .written("visibility_msaa_ladder", form::filled(&Report::visibility_ladder), form::list(rung_form()),
+               "Those in visibility alone, where surfaces vary.")
+      .written("notes", form::filled(&Report::notes), notes_form(), "What the frames ask for and no technique does.");
 }
 
 // The lines of a value that stands `level` levels deep, as in json_text. Line ends within strings are escaped.
@@ -133,7 +272,7 @@ class ArrayText {
 };
 
 void write_result(const TechniqueReport& result, const Report& report, const WriteText& write) {
-  write(opened(to_json(result), 2));
+  write(opened(result_form().write(result), 2));
   ArrayText frames("frames", 2, write);
   for (const FrameReport& frame : result.frames) {
     frames.next();
@@ -145,8 +284,24 @@ void write_result(const TechniqueReport& result, const Report& report, const Wri
 
 }  // namespace
 
+Json report_schema() {
+  Json result = result_form().schema;
+  result["properties"]["frames"] =
+      described(schema_of_list(frame_schema()), "One element for each frame that was rendered.");
+  result["required"].push_back("frames");
+  Json schema = Form<Report>(head_form()
+                                 .added("results", schema_of_list(result),
+                                        "One element for each technique. `compare` adds the reference as the last.")
+                                 .added("claims", form::list(claim_form()).schema,
+                                        "Published figures for which this report has our number."))
+                    .schema;
+  schema["required"].push_back("results");
+  schema["required"].push_back("claims");
+  return schema_file(schema, "beampipe report, version 1");
+}
+
 void write_json(const Report& report, const WriteText& write) {
-  write(opened(head_json(report), 0));
+  write(opened(Form<Report>(head_form()).write(report), 0));
   ArrayText results("results", 0, write);
   for (const TechniqueReport& result : report.results) {
     results.next();
@@ -156,7 +311,7 @@ void write_json(const Report& report, const WriteText& write) {
   ArrayText claims("claims", 0, write);
   for (const Claim& claim : answered_claims(report)) {
     claims.next();
-    write(indented(to_json(claim), 2));
+    write(indented(claim_form().write(claim), 2));
   }
   claims.end();
   write("\n}\n");

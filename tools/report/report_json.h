@@ -12,4 +12,7 @@ namespace beampipe {
 using WriteText = std::function<void(std::string_view)>;
 void write_json(const Report& report, const WriteText& write);
 
+// The JSON Schema of report.json.
+Json report_schema();
+
 }  // namespace beampipe

@@ -1,20 +1,11 @@
 #include "tools/report/report_text.h"
 
 #include <algorithm>
-#include <cstdarg>
-#include <cstdio>
+
+#include "tools/files/format.h"
 
 namespace beampipe {
 namespace {
-
-[[gnu::format(printf, 1, 2)]] std::string format(const char* pattern, ...) {
-  char text[64];
-  va_list arguments;
-  va_start(arguments, pattern);
-  std::vsnprintf(text, sizeof text, pattern, arguments);
-  va_end(arguments);
-  return text;
-}
 
 // Milliseconds with three decimals, or two significant digits if that is more.
 std::string ms_text(double ms) { return format(ms < 0.01 ? "%.2g" : "%.3f", ms); }

@@ -77,7 +77,7 @@ const ExactPicture& Judge::areas() {
   return *areas_;
 }
 
-double Judge::largest_error(const Technique& technique, const RunOptions& options) {
+double Judge::largest_error(const Technique& technique, const FrameInput& options) {
   const Image image = technique.render(case_.trace, 0, options).image;
   if (case_.equals) {
     const std::vector<float> same = technique.render(*case_.equals, 0, options).image.rgba;
@@ -99,7 +99,7 @@ double Judge::largest_error(const Technique& technique, const RunOptions& option
   return largest(image, [&](int x, int y, int c, double found) { return std::abs(found - truth.at(x, y)[c]); });
 }
 
-Verdict Judge::judge(const Technique& technique, const RunOptions& options) {
+Verdict Judge::judge(const Technique& technique, const FrameInput& options) {
   Verdict verdict;
   verdict.error = largest_error(technique, options);
   const StatedLimit* const stated = stated_limit(case_, technique);

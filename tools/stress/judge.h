@@ -31,11 +31,11 @@ class Judge {
  public:
   explicit Judge(const HardCase& hard_case) : case_(hard_case) {}
 
-  Verdict judge(const Technique& technique, const RunOptions& options);
+  Verdict judge(const Technique& technique, const FrameInput& options);
 
  private:
   const ExactPicture& areas();
-  double largest_error(const Technique& technique, const RunOptions& options);
+  double largest_error(const Technique& technique, const FrameInput& options);
 
   const HardCase& case_;
   std::optional<ExactPicture> areas_;  // computed when it is first needed

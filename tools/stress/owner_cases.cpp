@@ -6,6 +6,7 @@
 #include "pipeline/sampling.h"
 #include "stages/data/mix_bits.h"
 #include "tools/stress/case_parts.h"
+#include "tools/stress/judge.h"
 
 namespace beampipe {
 namespace {

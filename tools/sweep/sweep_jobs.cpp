@@ -18,8 +18,8 @@ MemoryParameters without_cache_sizes(MemoryParameters memory) {
   return memory;
 }
 
-RunOptions options_of(const LoadedTrace& loaded, const MemoryParameters& memory, const JobLimits& limits) {
-  RunOptions options;
+FrameInput options_of(const LoadedTrace& loaded, const MemoryParameters& memory, const JobLimits& limits) {
+  FrameInput options;
   options.threads = limits.threads;
   options.memory = memory;
   options.memory_limit = limits.memory_limit;
@@ -27,13 +27,13 @@ RunOptions options_of(const LoadedTrace& loaded, const MemoryParameters& memory,
   return options;
 }
 
-CellCounts render_cell(const SweepPlan& plan, const SweepCell& cell, const LoadedTrace& loaded,
-                       const std::vector<std::size_t>& frames, const JobLimits& limits) {
+CountedCell render_cell(const SweepPlan& plan, const SweepCell& cell, const LoadedTrace& loaded,
+                        const std::vector<std::size_t>& frames, const JobLimits& limits) {
   const Technique technique = parse_technique(plan.techniques[cell.technique]);
-  RunOptions options = options_of(loaded, plan.memory[cell.memory], limits);
+  FrameInput options = options_of(loaded, plan.memory[cell.memory], limits);
   History history;
   options.history = &history;
-  CellCounts counts;
+  CountedCell counts;
   counts.report = new_technique_report(technique, options.memory);
   for (const std::size_t frame : frames) {
     FrameResult result = technique.render(loaded.trace, frame, options);
@@ -52,12 +52,12 @@ CellCounts render_cell(const SweepPlan& plan, const SweepCell& cell, const Loade
 
 void run_cells(const SweepPlan& plan, const SweepJob& job, TraceShelf& shelf, SweepResults& results,
                const JobLimits& limits, const std::function<void(CellSource)>& finished) {
-  std::vector<std::pair<const MemoryParameters*, CellCounts>> known;
+  std::vector<std::pair<const MemoryParameters*, CountedCell>> known;
   std::shared_ptr<const LoadedTrace> loaded;
   for (const std::size_t number : job.cells) {
     const SweepCell& cell = plan.cells[number];
     const MemoryParameters& memory = plan.memory[cell.memory];
-    if (std::optional<CellCounts> stored = results.counts(cell)) {
+    if (std::optional<CountedCell> stored = results.counts(cell)) {
       known.emplace_back(&memory, std::move(*stored));
       finished(CellSource::stored);
       continue;
@@ -111,7 +111,7 @@ void run_errors(const SweepPlan& plan, const SweepJob& job, TraceShelf& shelf, S
     const Image& truth = references.emplace(frame, render_picture(reference, ladder_plan, frame, silent)).first->second;
     ladder.add(ladder_plan, frame, truth, silent);
     for (VariantPictures& each : pictures) {
-      RunOptions options = options_of(*loaded, each.memory, limits);
+      FrameInput options = options_of(*loaded, each.memory, limits);
       options.history = &each.history;
       each.errors.add(each.technique.render(loaded->trace, frame, options).image, truth);
     }

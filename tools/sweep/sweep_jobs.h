@@ -24,7 +24,7 @@ std::vector<SweepJob> jobs_of(const SweepPlan& plan);
 // What a job may use.
 struct JobLimits {
   int threads = 1;
-  std::uint64_t memory_limit = 0;  // RunOptions::memory_limit
+  std::uint64_t memory_limit = 0;  // FrameInput::memory_limit
 };
 
 // An upper estimate of the bytes that a job takes besides memory_limit.

@@ -8,8 +8,7 @@
 
 #include "pipeline/technique.h"
 #include "tools/evaluate/memory_system.h"
-#include "traces/closest_name.h"
-#include "traces/files/json_cursor.h"
+#include "traces/files/json_form.h"
 
 namespace beampipe {
 namespace {
@@ -23,24 +22,73 @@ constexpr const char* kClock = "clock_mhz";  // is varied like a rate
 constexpr const char *kRows = "rows of the table", *kKinds = "kinds of hardware";
 constexpr std::uint32_t kMostPixels = 16384;
 
+Form<double> rate_form() { return form::number_between(0, std::numeric_limits<double>::infinity()); }
+
 // The values of one axis, where they stand in the file.
 using Axes = std::map<std::string, std::vector<JsonCursor>>;
 
-void expect_axis(const std::string& name, const JsonCursor& values) {
-  const std::vector<std::string> known = sweep_axes();
-  if (std::find(known.begin(), known.end(), name) == known.end()) {
-    values.fail("one of the keys of a grid (beampipe sweep --help)", in_quotes(name) + did_you_mean(name, known));
-  }
+// What a file says.
+struct PlanFile {
+  bool errors = false;
+  std::vector<std::uint32_t> frames;
+  Axes axes;
+  std::vector<Axes> points;
+};
+
+// A list of values, which are read where they are needed. `axes`: where it goes in a T.
+template <class T, class Place>
+void add_axis(ObjectForm<T>& grid, Place axes, const std::string& name, const std::string& meaning, const Json& value) {
+  grid.add({name,
+            meaning,
+            false,
+            {{"type", "array"}, {"minItems", 1}, {"items", value}},
+            [axes, name](const JsonCursor& at, T& object) {
+              std::invoke(axes, object)[name] = at.elements();
+              if (at.elements().empty()) at.fail("at least one value", "none");
+            }});
 }
 
-Axes read_axes(const JsonCursor& grid, std::initializer_list<std::string_view> others, Axes axes = {}) {
-  for (const auto& [name, values] : grid.members()) {
-    if (std::find(others.begin(), others.end(), name) != others.end()) continue;
-    expect_axis(name, values);
-    axes[name] = values.elements();
-    if (axes[name].empty()) values.fail("at least one value", "none");
-  }
-  return axes;
+template <class T, class Place>
+void add_axes(ObjectForm<T>& grid, Place axes) {
+  const Json text = form::text().schema, rate = rate_form().schema;
+  const auto add = [&](const std::string& name, const std::string& meaning, const Json& value) {
+    add_axis(grid, axes, name, meaning, value);
+  };
+  add(kTraces, "Files, relative to the plan's folder.", text);
+  add(kTechniques, "Specs, as `beampipe run -t` takes them.", text);
+  add(kSizes, "Sizes of the picture, WIDTHxHEIGHT. Default: each trace's own.", text);
+  add(kHardware, "Built-in names, or files. Default: titan_v.", text);
+  add(kImplementations, "Names in the descriptions of hardware. Default: all.", text);
+  add(kMemorySystem, "Files, or default.", text);
+  const std::string of_hardware = std::string(kHardware) + ".", of_memory = std::string(kMemorySystem) + ".";
+  add(of_hardware + kClock, "Replaces the hardware's clock, in MHz.", rate);
+  for (const auto& [name, meaning] : hardware_rates()) add(of_hardware + name, "Replaces the rate: " + meaning, rate);
+  for (const MemoryParameter& parameter : memory_parameters())
+    add(of_memory + parameter.key, "Replaces the parameter: " + parameter.meaning + ".", parameter.schema);
+}
+
+void expect_rising(const JsonCursor& root, const PlanFile& plan) {
+  for (std::size_t i = 1; i < plan.frames.size(); ++i)
+    if (plan.frames[i] <= plan.frames[i - 1])
+      root["frames"].elements()[i].fail("a larger number than the one before it");
+}
+
+Form<PlanFile> plan_form() {
+  constexpr const char* kKeys = "one of the keys of a grid (beampipe sweep --help)";
+  ObjectForm<PlanFile> plan(kKeys);
+  ObjectForm<Axes> point(kKeys);
+  add_axes(point, std::identity());
+  const Form<std::vector<Axes>> points = form::list(Form<Axes>(point), "point");
+  plan.add(form::unused<PlanFile>("beampipe_sweep", true, form::version(1), "The version of this format."))
+      .optional("errors", &PlanFile::errors, form::boolean(),
+                "Whether pictures are compared with the reference, for rmse and emr.")
+      .optional("frames", &PlanFile::frames,
+                form::list(form::integer(0, std::numeric_limits<std::int32_t>::max()), "frame"),
+                "The frames to render, rising. Default: all of each trace.")
+      .add({"points", "Small grids in place of the one, which take the axes that they do not have from it.", false,
+            points.schema, [points](const JsonCursor& at, PlanFile& file) { points.read(at, file.points); }});
+  add_axes(plan, &PlanFile::axes);
+  return plan.check(expect_rising);
 }
 
 // The index of a value in a list to which it is added if it is new.
@@ -109,29 +157,18 @@ class PlanReader {
 
   SweepPlan read() {
     const JsonCursor root(json_, plan_.file);
-    root["beampipe_sweep"].integer(1, 1);
-    if (const auto errors = root.find("errors")) plan_.errors = errors->boolean();
-    if (const auto frames = root.find("frames")) read_frames(*frames);
-    const Axes axes = read_axes(root, {"beampipe_sweep", "errors", "frames", "points"});
-    if (const auto points = root.find("points")) {
-      if (points->elements().empty()) points->fail("at least one point", "none");
-      for (const JsonCursor& point : points->elements()) add_grid(point, read_axes(point, {}, axes));
-    } else {
-      add_grid(root, axes);
+    PlanFile said = plan_form()(root);
+    plan_.errors = said.errors;
+    plan_.frames.assign(said.frames.begin(), said.frames.end());
+    if (said.points.empty()) add_grid(root, said.axes);
+    for (std::size_t i = 0; i < said.points.size(); ++i) {
+      said.points[i].insert(said.axes.begin(), said.axes.end());
+      add_grid(root["points"].elements()[i], said.points[i]);
     }
     return std::move(plan_);
   }
 
  private:
-  void read_frames(const JsonCursor& frames) {
-    for (const JsonCursor& frame : frames.elements()) {
-      plan_.frames.push_back(frame.integer(0, std::numeric_limits<std::int32_t>::max()));
-      if (plan_.frames.size() > 1 && plan_.frames.back() <= plan_.frames[plan_.frames.size() - 2])
-        frame.fail("a larger number than the one before it");
-    }
-    if (plan_.frames.empty()) frames.fail("at least one frame", "none");
-  }
-
   void add_grid(const JsonCursor& grid, const Axes& axes) {
     for (const char* required : {kTraces, kTechniques})
       if (!axes.contains(required)) grid.fail("the key " + in_quotes(required), "none");
@@ -218,7 +255,7 @@ class PlanReader {
                                           const JsonCursor& grid) {
     for (const auto& [name, value] : values)
       for (const MemoryParameter& parameter : memory_parameters())
-        if (name == parameter.name) parameter.set(memory, value);
+        if (name == parameter.key) parameter.read(value, memory);
     if (const auto conflict = find_conflict(memory))
       grid.fail(std::string(kMemorySystem) + "." + conflict->name + " of " + conflict->expected,
                 std::to_string(conflict->found));
@@ -242,7 +279,7 @@ class PlanReader {
         std::string key = part.label;
         for (const auto& [name, value] : values) {
           index_in(plan_.varied_rates, name);
-          const double rate = value.number_between(0, std::numeric_limits<double>::infinity());
+          const double rate = rate_form()(value);
           (name == kClock ? part.clock_mhz : part.rates[name]) = rate;
           key += "," + name + Json(rate).dump();
         }
@@ -273,14 +310,6 @@ SweepPlan read_sweep_plan(const std::string& file) { return PlanReader(file).rea
 
 std::string file_beside_plan(const SweepPlan& plan, const std::string& name) { return beside(plan.file, name); }
 
-std::vector<std::string> sweep_axes() {
-  std::vector<std::string> names = {kTraces, kTechniques, kSizes, kHardware, kImplementations, kMemorySystem};
-  names.push_back(std::string(kHardware) + "." + kClock);
-  for (const std::string_view rate : hardware_rates())
-    names.push_back(std::string(kHardware) + "." + std::string(rate));
-  for (const MemoryParameter& parameter : memory_parameters())
-    names.push_back(std::string(kMemorySystem) + "." + parameter.name);
-  return names;
-}
+Json sweep_plan_schema() { return schema_file(plan_form().schema, "beampipe sweep, version 1"); }
 
 }  // namespace beampipe

@@ -1,4 +1,4 @@
-// What a sweep varies: a JSON file (sweep_plan.schema.json), read and checked as a whole.
+// What a sweep varies: a JSON file, read and checked as a whole.
 #pragma once
 
 #include <cstddef>
@@ -47,7 +47,7 @@ std::string file_beside_plan(const SweepPlan& plan, const std::string& name);
 // line that names the file and the key, or SpecError.
 SweepPlan read_sweep_plan(const std::string& file);
 
-// The keys of a grid: "traces", "techniques", ..., "hardware.dram_bytes_per_clk", "memory_system.l2_bytes", ...
-std::vector<std::string> sweep_axes();
+// The JSON Schema of plans.
+Json sweep_plan_schema();
 
 }  // namespace beampipe

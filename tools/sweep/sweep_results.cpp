@@ -12,15 +12,15 @@ namespace {
 
 constexpr const char *kCells = "cells", *kErrors = "errors";
 
-Json to_json(const CellCounts& counts) {
+Json to_json(const CountedCell& counts) {
   Json frames = Json::array();
   for (const FrameReport& frame : counts.report.frames) frames.push_back(stored_json(frame));
   const CacheReach& reach = counts.reach;
   return {{"frames", frames}, {"cache_reach", {{"rop", reach.rop}, {"l1", reach.l1}, {"l2", reach.l2}}}};
 }
 
-CellCounts counts_of(const Json& json, const Technique& technique, const MemoryParameters& memory) {
-  CellCounts counts;
+CountedCell counts_of(const Json& json, const Technique& technique, const MemoryParameters& memory) {
+  CountedCell counts;
   counts.report = new_technique_report(technique, memory);
   for (const Json& each : json.at("frames").elements()) counts.report.frames.push_back(stored_frame(each));
   const Json& reach = json.at("cache_reach");
@@ -31,7 +31,7 @@ CellCounts counts_of(const Json& json, const Technique& technique, const MemoryP
 
 Json to_json(const PictureErrors& errors) {
   const EquivalentMsaa& emr = errors.equivalent_msaa;
-  return {{"error", to_json(errors.error)},
+  return {{"error", error_form().write(errors.error)},
           {"equivalent_msaa", emr.samples},
           {"is_lower_bound", emr.is_lower_bound},
           {"is_upper_bound", emr.is_upper_bound}};
@@ -81,7 +81,7 @@ Json SweepResults::key_of_errors(std::size_t trace, std::size_t size) const {
   return {{"trace", info.digest}, {"frames", info.frames}, {"pictures", pictures}};
 }
 
-std::optional<CellCounts> SweepResults::counts(const SweepCell& cell) const {
+std::optional<CountedCell> SweepResults::counts(const SweepCell& cell) const {
   const std::optional<Json> json = store_.read(kCells, key_of(cell));
   if (!json) return std::nullopt;
   try {
@@ -91,7 +91,7 @@ std::optional<CellCounts> SweepResults::counts(const SweepCell& cell) const {
   }
 }
 
-void SweepResults::write(const SweepCell& cell, const CellCounts& counts) {
+void SweepResults::write(const SweepCell& cell, const CountedCell& counts) {
   store_.write(kCells, key_of(cell), to_json(counts));
 }
 

@@ -12,7 +12,7 @@
 namespace beampipe {
 
 // The counts of a cell.
-struct CellCounts {
+struct CountedCell {
   TechniqueReport report;  // without pictures, times and counters of pixels
   CacheReach reach;        // of all frames
 };
@@ -41,8 +41,8 @@ class SweepResults {
   SweepResults(const SweepPlan& plan, TraceShelf& shelf, SweepStore& store)
       : plan_(plan), shelf_(shelf), store_(store) {}
 
-  std::optional<CellCounts> counts(const SweepCell& cell) const;
-  void write(const SweepCell& cell, const CellCounts& counts);
+  std::optional<CountedCell> counts(const SweepCell& cell) const;
+  void write(const SweepCell& cell, const CountedCell& counts);
 
   // One result for all pictures of a trace in a size, in the order of the variants.
   std::optional<std::vector<PictureErrors>> errors(std::size_t trace, std::size_t size) const;

@@ -50,7 +50,7 @@ std::vector<Column> cell_columns() {
   };
   for (const MemoryParameter& parameter : memory_parameters()) {
     const bool is_text = parameter.get({}).is_string();
-    columns.push_back({{std::string("memory_system.") + parameter.name, parameter.unit, parameter.meaning, is_text},
+    columns.push_back({{std::string("memory_system.") + parameter.key, parameter.unit, parameter.meaning, is_text},
                        [&parameter](const Cell& c) {
                          const Json value = parameter.get(c.plan.memory[c.cell.memory]);
                          return value.is_boolean() ? Json(value.get<bool>() ? 1 : 0) : value;
@@ -176,7 +176,7 @@ SweepTable make_table(const SweepPlan& plan, TraceShelf& shelf, const SweepResul
   const std::vector<Column> columns = cell_columns();
   ErrorTable errors(plan, results);
   std::optional<std::size_t> last;  // the cell whose counts and values these are: rows of a cell follow each other
-  std::optional<CellCounts> counts;
+  std::optional<CountedCell> counts;
   std::vector<Json> values;
   for (const SweepRow& row : plan.rows) {
     const SweepCell& cell = plan.cells[row.cell];

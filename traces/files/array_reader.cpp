@@ -36,6 +36,41 @@ const std::array<float, 256>& linear_of_codes() {
   return values;
 }
 
+// A buffer and a view, as a trace writes them.
+struct BufferKeys {
+  std::string file;
+  double bytes = 0;
+};
+const Form<BufferKeys>& buffer_form() {
+  static const Form<BufferKeys> form =
+      ObjectForm<BufferKeys>()
+          .required("file", &BufferKeys::file, form::text(),
+                    "Path of the file, relative to the trace's folder, which it may not leave: neither by .. nor by a "
+                    "symbolic link.")
+          .required("bytes", &BufferKeys::bytes, form::number(), "The size of the file.");
+  return form;
+}
+
+struct ViewKeys {
+  std::string buffer;
+  double offset = 0, count = 0;
+  NumberType type{};
+};
+constexpr std::string_view kTypeNames[] = {"float32", "uint32", "uint16", "srgb8"};
+const Form<ViewKeys>& view_form() {
+  static const Form<ViewKeys> form =
+      ObjectForm<ViewKeys>()
+          .required("buffer", &ViewKeys::buffer, form::text(), "The name of one of `buffers`.")
+          .required("offset", &ViewKeys::offset, form::number(),
+                    "Where it starts, in bytes; a multiple of the numbers' size.")
+          .required("count", &ViewKeys::count, form::number(),
+                    "How many numbers there are: three for a position, and so on.")
+          .required("type", &ViewKeys::type, form::choice<NumberType>(kTypeNames),
+                    "float32; uint32 and uint16 for integers; srgb8 for colours: 8 bits each, RGB encoded as sRGB and "
+                    "opacity linear.");
+  return form;
+}
+
 std::string text_of(float value) { return std::isfinite(value) ? std::to_string(value) : "one that is not finite"; }
 
 }  // namespace
@@ -104,12 +139,18 @@ struct ArrayReader::View {
   }
 };
 
+Json buffers_schema() { return {{"type", "object"}, {"additionalProperties", buffer_form().schema}}; }
+
+Json numbers_schema(const Json& number) {
+  return {{"oneOf", Json::array({{{"type", "array"}, {"items", number}}, view_form().schema})}};
+}
+
 ArrayReader::ArrayReader(const JsonCursor& at, const std::filesystem::path& trace_file, const ReadOptions& options) {
   for (const auto& [name, buffer] : at.members()) {
-    buffer.expect_keys({"file", "bytes"});
+    const BufferKeys keys = buffer_form()(buffer);
     const std::filesystem::path file = side_file(buffer["file"], trace_file, options.allow_outside);
     const std::uint64_t size = std::filesystem::file_size(file);
-    if (buffer["bytes"].number() != static_cast<double>(size)) {
+    if (keys.bytes != static_cast<double>(size)) {
       buffer["bytes"].fail("the size of " + in_quotes(file.filename().string()) + ", " + std::to_string(size));
     }
     buffer_bytes_ += size;
@@ -124,10 +165,10 @@ ArrayReader::ArrayReader(const JsonCursor& at, const std::filesystem::path& trac
 }
 
 ArrayReader::View ArrayReader::view(const JsonCursor& at, std::uint64_t length) const {
-  at.expect_keys({"buffer", "offset", "count", "type"});
-  const auto buffer = buffers_.find(at["buffer"].string());
+  const ViewKeys keys = view_form()(at);
+  const auto buffer = buffers_.find(keys.buffer);
   if (buffer == buffers_.end()) at["buffer"].fail("the name of a buffer in /buffers");
-  const auto type = NumberType(at["type"].choice({"float32", "uint32", "uint16", "srgb8"}));
+  const NumberType type = keys.type;
   const std::uint64_t number_bytes = kTypeBytes[static_cast<std::size_t>(type)], size = buffer->second.size();
   const auto whole = [](const JsonCursor& number, std::uint64_t most, std::uint64_t step, const std::string& expected) {
     const double value = number.number();

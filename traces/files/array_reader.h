@@ -6,13 +6,17 @@
 #include <string>
 #include <vector>
 
-#include "traces/files/json_cursor.h"
+#include "traces/files/json_form.h"
 #include "traces/files/trace_io.h"
 
 namespace beampipe {
 
 inline constexpr std::uint64_t kMostBufferBytes = std::uint64_t{1} << 32;  // of all buffers together
 inline constexpr std::uint64_t kMostViews = 4;  // of each byte, on average, so that a small file stays a small trace
+
+// The JSON Schemas of "buffers" and of an array of such numbers.
+Json buffers_schema();
+Json numbers_schema(const Json& number);
 
 // Reads an array as a JSON array or as a view:
 //   {"buffer": NAME, "offset": BYTES, "count": NUMBERS, "type": "float32" | "uint32" | "uint16" | "srgb8"}

@@ -7,86 +7,83 @@ namespace {
 
 constexpr std::uint32_t kMost = std::numeric_limits<std::uint32_t>::max();
 
-void read_text(const JsonCursor& at, const char* key, std::string& result) {
-  if (const auto found = at.find(key)) result = found->string();
+std::string size_text(std::uint32_t width, std::uint32_t height) {
+  return std::to_string(width) + " x " + std::to_string(height);
 }
 
-void read_count(const JsonCursor& at, const char* key, std::uint32_t& result) {
-  if (const auto found = at.find(key)) result = found->integer(0, kMost);
+Form<RenderPass> pass_form() {
+  const Form<std::uint32_t> count = form::integer(0, kMost);
+  return ObjectForm<RenderPass>()
+      .required("name", &RenderPass::name, form::text(), "What the targets are called.")
+      .optional("width", &RenderPass::width, count, "Size of the target, in pixels.")
+      .optional("height", &RenderPass::height, count, "Size of the target, in pixels.")
+      .optional("draws", &RenderPass::draws, count, "How many there are.")
+      .optional("triangles", &RenderPass::triangles, count, "How many they have together.")
+      .required("kept", &RenderPass::kept, form::boolean(), "Whether the trace has its draws.")
+      .optional("reason", &RenderPass::reason, form::text(), "Why it was kept or not.");
 }
 
-RenderPass read_pass(const JsonCursor& at) {
-  at.expect_keys({"name", "width", "height", "draws", "triangles", "kept", "reason"});
-  RenderPass pass;
-  pass.name = at["name"].string();
-  read_count(at, "width", pass.width);
-  read_count(at, "height", pass.height);
-  read_count(at, "draws", pass.draws);
-  read_count(at, "triangles", pass.triangles);
-  pass.kept = at["kept"].boolean();
-  read_text(at, "reason", pass.reason);
-  return pass;
+Form<LeftOut> left_out_form() {
+  const Form<std::uint32_t> count = form::integer(0, kMost);
+  return ObjectForm<LeftOut>()
+      .required("reason", &LeftOut::reason, form::text(), "Why they are left out.")
+      .optional("draws", &LeftOut::draws, count, "How many there are.")
+      .optional("primitives", &LeftOut::primitives, count, "How many they have together.");
 }
 
-LeftOut read_left_out(const JsonCursor& at) {
-  at.expect_keys({"reason", "draws", "primitives"});
-  LeftOut left_out;
-  left_out.reason = at["reason"].string();
-  read_count(at, "draws", left_out.draws);
-  read_count(at, "primitives", left_out.primitives);
-  return left_out;
-}
-
-CapturedPictures read_pictures(const JsonCursor& at, const Frame& frame, const std::vector<TextureImage>& images,
-                               const NameIndex& image_names, const ArrayReader& arrays) {
-  at.expect_keys({"color", "depth", "clear_depth"});
-  CapturedPictures pictures;
-  const std::string size = std::to_string(frame.width) + " x " + std::to_string(frame.height);
-  if (const auto color = at.find("color")) {
-    pictures.color = read_name(*color, image_names, "the name of an image in /images");
-    const TextureImage& image = images[*pictures.color];
-    if (image.width != frame.width || image.height != frame.height) {
-      color->fail("an image of the frame's size, " + size,
-                  std::to_string(image.width) + " x " + std::to_string(image.height));
-    }
-  }
-  if (const auto depth = at.find("depth")) {
-    pictures.depth = arrays.numbers(*depth);
-    if (pictures.depth.size() != std::size_t{frame.width} * frame.height) {
-      depth->fail("a depth for each pixel of " + size, std::to_string(pictures.depth.size()));
-    }
-    for (const float value : pictures.depth)
-      if (!(value >= 0 && value <= 1)) depth->fail("depths 0..1", std::to_string(value));
-  }
-  if (const auto clear = at.find("clear_depth")) pictures.clear_depth = clear->fraction();
-  return pictures;
+// A trace's pictures have its size, which is known when they are read.
+Form<Frame> captured_form(const std::vector<TextureImage>& images, const NameIndex& names, const ArrayReader& arrays) {
+  const auto read_color = [&images, &names](const JsonCursor& at, Frame& frame) {
+    const std::uint32_t number = read_name(at, names, "the name of an image in /images");
+    frame.capture.pictures.color = number;
+    if (images[number].width != frame.width || images[number].height != frame.height)
+      at.fail("an image of the frame's size, " + size_text(frame.width, frame.height),
+              size_text(images[number].width, images[number].height));
+  };
+  const auto read_depth = [&arrays](const JsonCursor& at, Frame& frame) {
+    frame.capture.pictures.depth = arrays.numbers(at);
+    const std::vector<float>& depth = frame.capture.pictures.depth;
+    if (depth.size() != std::size_t{frame.width} * frame.height)
+      at.fail("a depth for each pixel of " + size_text(frame.width, frame.height), std::to_string(depth.size()));
+    for (const float value : depth)
+      if (!(value >= 0 && value <= 1)) at.fail("depths 0..1", std::to_string(value));
+  };
+  return ObjectForm<Frame>()
+      .add({"color", "The name of one of `images`, of the frame's size.", false, form::text().schema, read_color})
+      .add({"depth", "The window depth of each pixel, 0..1, row by row; row 0 is on top.", false,
+            numbers_schema(form::number().schema), read_depth})
+      .optional(
+          "clear_depth", [](auto& frame) -> auto& { return frame.capture.pictures.clear_depth; }, form::fraction(),
+          "The window depth where nothing was drawn.");
 }
 
 }  // namespace
 
-Source read_source(const JsonCursor& at) {
-  at.expect_keys({"program", "api", "driver", "date", "tool", "shading", "frame"});
-  Source source;
-  read_text(at, "program", source.program);
-  read_text(at, "api", source.api);
-  read_text(at, "driver", source.driver);
-  read_text(at, "date", source.date);
-  read_text(at, "tool", source.tool);
-  read_text(at, "shading", source.shading);
-  if (const auto frame = at.find("frame")) source.frame = frame->integer(0, kMost);
-  return source;
+Form<Source> source_form() {
+  const Form<std::string> text = form::text();
+  return ObjectForm<Source>()
+      .optional("program", &Source::program, text, "The program that was captured.")
+      .optional("api", &Source::api, text, "What it draws with, such as OpenGL.")
+      .optional("driver", &Source::driver, text, "The driver and device.")
+      .optional("date", &Source::date, text, "The day of the capture.")
+      .optional("tool", &Source::tool, text, "What captured it.")
+      .optional("shading", &Source::shading, text, "Where the colours come from.")
+      .optional("frame", &Source::frame, form::integer(0, kMost), "The number of the first frame.");
 }
 
-CaptureRecord read_capture_record(const JsonCursor& at, const Frame& frame, const std::vector<TextureImage>& images,
-                                  const NameIndex& image_names, const ArrayReader& arrays) {
-  CaptureRecord record;
-  if (const auto passes = at.find("passes"))
-    for (const JsonCursor& pass : passes->elements()) record.passes.push_back(read_pass(pass));
-  if (const auto left_out = at.find("left_out"))
-    for (const JsonCursor& item : left_out->elements()) record.left_out.push_back(read_left_out(item));
-  if (const auto captured = at.find("captured"))
-    record.pictures = read_pictures(*captured, frame, images, image_names, arrays);
-  return record;
+void add_capture(ObjectForm<Frame>& frame, const std::vector<TextureImage>& images, const NameIndex& names,
+                 const ArrayReader& arrays) {
+  const Form<Frame> captured = captured_form(images, names, arrays);
+  frame
+      .optional(
+          "passes", [](auto& each) -> auto& { return each.capture.passes; }, form::list(pass_form()),
+          "Draws of a frame into the same targets; for information.")
+      .optional(
+          "left_out", [](auto& each) -> auto& { return each.capture.left_out; }, form::list(left_out_form()),
+          "What the program drew and the trace lacks; for information.")
+      .add({"captured",
+            "The pictures that the program itself made of the frame; `beampipe check-capture` compares with them.",
+            false, captured.schema, captured.read});
 }
 
 }  // namespace beampipe

@@ -9,11 +9,11 @@
 
 namespace beampipe {
 
-// Throw TraceError.
-Source read_source(const JsonCursor& at);
+Form<Source> source_form();
 
-// Of the members "passes", "left_out" and "captured" of a frame, which has its size already.
-CaptureRecord read_capture_record(const JsonCursor& at, const Frame& frame, const std::vector<TextureImage>& images,
-                                  const NameIndex& image_names, const ArrayReader& arrays);
+// Adds "passes", "left_out" and "captured" to the form of frames, which have their size before. All that a form refers
+// to must outlive it.
+void add_capture(ObjectForm<Frame>& frame, const std::vector<TextureImage>& images, const NameIndex& names,
+                 const ArrayReader& arrays);
 
 }  // namespace beampipe

@@ -12,11 +12,6 @@ namespace {
 constexpr float kMostPlace = 1 << 20;  // of viewports and scissors, in pixels, on either side of 0
 constexpr float kMostSlope = 1 << 20;  // factor of a depth bias
 
-template <class Enum>
-void read_choice(const JsonCursor& at, const char* key, std::span<const std::string_view> names, Enum& result) {
-  if (const auto found = at.find(key)) result = Enum(found->choice(names));
-}
-
 template <std::size_t Count>
 std::array<float, Count> read_places(const JsonCursor& at) {
   const std::vector<JsonCursor> elements = at.elements();
@@ -41,37 +36,6 @@ Scissor read_scissor(const JsonCursor& at) {
           static_cast<std::uint32_t>(places[2]), static_cast<std::uint32_t>(places[3])};
 }
 
-DepthState read_depth(const JsonCursor& at) {
-  DepthState depth;
-  if (const auto test = at.find("depth_test")) depth.test = test->boolean();
-  if (const auto write = at.find("depth_write")) depth.write = write->boolean();
-  read_choice(at, "depth_function", kCompareNames, depth.function);
-  if (const auto range = at.find("depth_range")) {
-    const std::vector<JsonCursor> ends = range->elements();
-    if (ends.size() != 2) range->fail("an array of 2 numbers");
-    depth.near = ends[0].fraction();
-    depth.far = ends[1].fraction();
-  }
-  if (const auto bias = at.find("depth_bias")) {
-    bias->expect_keys({"constant", "slope", "clamp"});
-    if (const auto constant = bias->find("constant")) depth.bias.constant = constant->real(-1, 1);
-    if (const auto slope = bias->find("slope")) depth.bias.slope = slope->real(-kMostSlope, kMostSlope);
-    if (const auto clamp = bias->find("clamp")) depth.bias.clamp = clamp->real(-1, 1);
-  }
-  if (const auto clip = at.find("depth_clip")) depth.clip = clip->boolean();
-  if (const auto cleared = at.find("clears_depth")) depth.cleared_before = cleared->boolean();
-  return depth;
-}
-
-Blend read_blend(const JsonCursor& at) {
-  at.expect_keys({"source", "destination", "operation"});
-  Blend blend;
-  blend.source = BlendFactor(at["source"].choice(kBlendFactorNames));
-  blend.destination = BlendFactor(at["destination"].choice(kBlendFactorNames));
-  read_choice(at, "operation", kBlendOperationNames, blend.operation);
-  return blend;
-}
-
 std::uint32_t read_color_mask(const JsonCursor& at) {
   std::uint32_t mask = 0;
   for (const char letter : at.string()) {
@@ -83,36 +47,93 @@ std::uint32_t read_color_mask(const JsonCursor& at) {
   return mask;
 }
 
-Stencil read_stencil(const JsonCursor& at) {
-  at.expect_keys({"function", "reference", "mask", "write_mask", "fail", "depth_fail", "pass"});
-  Stencil stencil;
-  const auto byte = [&](const char* key, std::uint32_t& result) {
-    if (const auto found = at.find(key)) result = found->integer(0, 255);
+Form<DepthBias> bias_form() {
+  return ObjectForm<DepthBias>()
+      .optional("constant", &DepthBias::constant, form::real(-1, 1),
+                "In window depth; the resolution of the format is included.")
+      .optional("slope", &DepthBias::slope, form::real(-kMostSlope, kMostSlope), "Factor of the larger slope.")
+      .optional("clamp", &DepthBias::clamp, form::real(-1, 1),
+                "The largest bias, or the least if negative; 0 is no limit.");
+}
+
+Form<Blend> blend_form() {
+  const Form<BlendFactor> factor = form::choice<BlendFactor>(kBlendFactorNames);
+  return ObjectForm<Blend>()
+      .required("source", &Blend::source, factor, "Factor of the fragment's colour.")
+      .required("destination", &Blend::destination, factor, "Factor of the stored colour.")
+      .optional("operation", &Blend::operation, form::choice<BlendOperation>(kBlendOperationNames),
+                "What is done with the two.");
+}
+
+Form<Stencil> stencil_form() {
+  const Form<Compare> compare = form::choice<Compare>(kCompareNames);
+  const Form<StencilOperation> operation = form::choice<StencilOperation>(kStencilOperationNames);
+  const Form<std::uint32_t> byte = form::integer(0, 255);
+  return ObjectForm<Stencil>()
+      .optional("function", &Stencil::function, compare,
+                "What the reference must be, compared with the stored value, to pass.")
+      .optional("reference", &Stencil::reference, byte, "The reference.")
+      .optional("mask", &Stencil::mask, byte, "Bits that are compared.")
+      .optional("write_mask", &Stencil::write_mask, byte, "Bits that are written.")
+      .optional("fail", &Stencil::fail, operation, "What happens to the stored value where the stencil test fails.")
+      .optional("depth_fail", &Stencil::depth_fail, operation, "Where the depth test fails.")
+      .optional("pass", &Stencil::pass, operation, "Where both pass.");
+}
+
+Form<DrawState> make_form() {
+  const Form<Viewport> viewport = {form::array_schema(form::number().schema, 4),
+                                   [](const JsonCursor& at, Viewport& value) { value = read_viewport(at); }};
+  const Form<Scissor> scissor = {form::array_schema({{"type", "integer"}}, 4),
+                                 [](const JsonCursor& at, Scissor& value) { value = read_scissor(at); }};
+  const Form<std::uint32_t> mask = {form::text().schema,
+                                    [](const JsonCursor& at, std::uint32_t& value) { value = read_color_mask(at); }};
+  const auto read_range = [](const JsonCursor& at, DrawState& state) {
+    const std::vector<JsonCursor> ends = at.elements();
+    if (ends.size() != 2) at.fail("an array of 2 numbers");
+    state.depth.near = ends[0].fraction();
+    state.depth.far = ends[1].fraction();
   };
-  read_choice(at, "function", kCompareNames, stencil.function);
-  byte("reference", stencil.reference);
-  byte("mask", stencil.mask);
-  byte("write_mask", stencil.write_mask);
-  read_choice(at, "fail", kStencilOperationNames, stencil.fail);
-  read_choice(at, "depth_fail", kStencilOperationNames, stencil.depth_fail);
-  read_choice(at, "pass", kStencilOperationNames, stencil.pass);
-  return stencil;
+  return ObjectForm<DrawState>()
+      .optional("viewport", &DrawState::viewport, viewport,
+                "x, y, width and height, in pixels: clip x / w = -1 is at x and 1 at x + width; y / w = 1 is at y and "
+                "-1 at y + height, which may be negative. The whole frame when left out.")
+      .optional("scissor", &DrawState::scissor, scissor,
+                "x, y, width and height of the pixels that may be touched. The whole frame when left out.")
+      .optional(
+          "depth_test", [](auto& state) -> auto& { return state.depth.test; }, form::boolean(),
+          "Whether depth is compared.")
+      .optional(
+          "depth_write", [](auto& state) -> auto& { return state.depth.write; }, form::boolean(),
+          "Whether depth is stored.")
+      .optional(
+          "depth_function", [](auto& state) -> auto& { return state.depth.function; },
+          form::choice<Compare>(kCompareNames),
+          "What the depth of a fragment must be, compared with the stored one, to pass.")
+      .add({"depth_range", "Window depth, 0..1, of clip z = -w and of z = w; [0, 1] when left out.", false,
+            form::array_schema(form::fraction().schema, 2), read_range})
+      .optional(
+          "depth_bias", [](auto& state) -> auto& { return state.depth.bias; }, bias_form(),
+          "What is added to window depth: constant + slope * max(|dz/dx|, |dz/dy|) per pixel.")
+      .optional(
+          "depth_clip", [](auto& state) -> auto& { return state.depth.clip; }, form::boolean(),
+          "Whether triangles are clipped to the near and far planes; if not, depth is clamped to the planes'.")
+      .optional(
+          "clears_depth", [](auto& state) -> auto& { return state.depth.cleared_before; }, form::boolean(),
+          "Whether the depth buffer was cleared right before this draw.")
+      .optional("front_face", &DrawState::front_is_clockwise, form::choice<bool>(kFrontFaceNames),
+                "How the vertices of a front face turn in the picture.")
+      .optional("blend", &DrawState::blend, blend_form(),
+                "How colours are blended with what is stored. Without it, the material decides.")
+      .optional("color_mask", &DrawState::color_mask, mask,
+                "The channels that are written: letters of \"rgba\", which is the default.")
+      .optional("stencil", &DrawState::stencil, stencil_form(), "The stencil test. Without it, there is none.");
 }
 
 }  // namespace
 
-DrawState read_draw_state(const JsonCursor& at) {
-  at.expect_keys({"viewport", "scissor", "depth_test", "depth_write", "depth_function", "depth_range", "depth_bias",
-                  "depth_clip", "clears_depth", "front_face", "blend", "color_mask", "stencil"});
-  DrawState state;
-  if (const auto viewport = at.find("viewport")) state.viewport = read_viewport(*viewport);
-  if (const auto scissor = at.find("scissor")) state.scissor = read_scissor(*scissor);
-  state.depth = read_depth(at);
-  read_choice(at, "front_face", kFrontFaceNames, state.front_is_clockwise);
-  if (const auto blend = at.find("blend")) state.blend = read_blend(*blend);
-  if (const auto mask = at.find("color_mask")) state.color_mask = read_color_mask(*mask);
-  if (const auto stencil = at.find("stencil")) state.stencil = read_stencil(*stencil);
-  return state;
+const Form<DrawState>& draw_state_form() {
+  static const Form<DrawState> form = make_form();
+  return form;
 }
 
 }  // namespace beampipe

@@ -2,11 +2,10 @@
 #pragma once
 
 #include "traces/draw_state.h"
-#include "traces/files/json_cursor.h"
+#include "traces/files/json_form.h"
 
 namespace beampipe {
 
-// Throws TraceError.
-DrawState read_draw_state(const JsonCursor& at);
+const Form<DrawState>& draw_state_form();
 
 }  // namespace beampipe

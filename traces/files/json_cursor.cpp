@@ -68,11 +68,11 @@ void JsonCursor::expect_object() const {
   if (!value_->is_object()) fail("an object");
 }
 
-void JsonCursor::expect_keys(std::span<const std::string_view> known) const {
+void JsonCursor::expect_keys(std::span<const std::string_view> known, const std::string& called) const {
   expect_object();
   for (const auto& [key, value] : value_->members())
     if (std::find(known.begin(), known.end(), key) == known.end())
-      at(value).fail("one of the keys " + names_of(known),
+      at(value).fail(called.empty() ? "one of the keys " + names_of(known) : called,
                      in_quotes(key) + did_you_mean(key, {known.begin(), known.end()}));
 }
 
@@ -121,11 +121,13 @@ double JsonCursor::number_between(double low, double high) const {
   return value;
 }
 
-float JsonCursor::real(float low, float high) const {
+double JsonCursor::number(double low, double high) const {
   const double value = number_or_nan(*value_);
   if (!(value >= low && value <= high)) fail(range_text(low, high));
-  return static_cast<float>(value);
+  return value;
 }
+
+float JsonCursor::real(float low, float high) const { return static_cast<float>(number(low, high)); }
 
 float JsonCursor::fraction() const {
   const double value = number_or_nan(*value_);

@@ -26,7 +26,8 @@ class JsonCursor {
   void expect_keys(std::initializer_list<std::string_view> known) const {  // there are no other keys
     expect_keys(std::span(known.begin(), known.size()));
   }
-  void expect_keys(std::span<const std::string_view> known) const;
+  // `called`: how an error calls them; empty: it lists them.
+  void expect_keys(std::span<const std::string_view> known, const std::string& called = "") const;
   bool has(std::string_view key) const;
   JsonCursor operator[](std::string_view key) const;           // required
   std::optional<JsonCursor> find(std::string_view key) const;  // optional
@@ -38,6 +39,7 @@ class JsonCursor {
   bool is_null() const { return value_->is_null(); }
   bool is_object() const { return value_->is_object(); }
   double number() const;
+  double number(double low, double high) const;          // low..high
   double number_between(double low, double high) const;  // low < number < high
   float real(float low, float high) const;               // low..high
   float fraction() const;                                // 0..1

@@ -30,57 +30,80 @@ TextureImage read_inline_image(const JsonCursor& at, std::uint64_t most_texels) 
   }
 }
 
-TextureImage read_image(const JsonCursor& at, const fs::path& trace_file, const ReadOptions& options,
-                        std::uint64_t most_texels) {
-  if (!at.has("file") && !at.has("data")) at.fail("the key \"file\" or \"data\"", "none");
-  if (at.has("data")) {
-    at.expect_keys({"data"});
-    return read_inline_image(at["data"], most_texels);
-  }
-  at.expect_keys({"file"});
-  return read_image_file(at["file"], side_file(at["file"], trace_file, options.allow_outside), most_texels);
+// Forms of an image: the bytes in the trace, or a file.
+struct ImageForms {
+  Form<TextureImage> data, file;
+};
+
+ImageForms image_forms(const fs::path& trace_file, const ReadOptions& options, const std::uint64_t& texels) {
+  const auto read_data = [&texels](const JsonCursor& at, TextureImage& image) {
+    image = read_inline_image(at, kMostTexels - texels);
+  };
+  const auto read_file = [&trace_file, options, &texels](const JsonCursor& at, TextureImage& image) {
+    image = read_image_file(at, side_file(at, trace_file, options.allow_outside), kMostTexels - texels);
+  };
+  Json base64 = form::text().schema;
+  base64["contentEncoding"] = "base64";
+  return {ObjectForm<TextureImage>().add({"data",
+                                          "The bytes of such a file as base64 (RFC 4648, section 4), with "
+                                          "padding and without line ends.",
+                                          true, base64, read_data}),
+          ObjectForm<TextureImage>().add({"file",
+                                          "Path of a PNG or JPEG file, relative to the trace's folder, which it "
+                                          "may not leave: neither by .. nor by a symbolic link. It becomes "
+                                          "RGBA with 8 bits per channel: grey is expanded, 16 bits are "
+                                          "rounded, and the numbers are taken as stored, whatever the file's "
+                                          "gamma and colour profile. At most 16384 texels on each side.",
+                                          true, form::text().schema, read_file})};
 }
 
-Texture read_texture(const JsonCursor& at, const NameIndex& images) {
-  at.expect_keys({"image", "uv_set", "wrap_u", "wrap_v", "magnify", "minify", "mip", "anisotropy"});
-  const auto wrap = [&](const char* key, Wrap& result) {
-    if (const auto found = at.find(key)) result = Wrap(found->choice({"repeat", "clamp", "mirror"}));
-  };
-  const auto filter = [&](const char* key, Filter& result) {
-    if (const auto found = at.find(key)) result = Filter(found->choice({"nearest", "linear"}));
-  };
-  Texture texture;
-  texture.image = read_name(at["image"], images, "the name of an image in /images");
-  if (const auto uv_set = at.find("uv_set")) texture.uv_set = uv_set->integer(0, 1);
-  wrap("wrap_u", texture.wrap_u);
-  wrap("wrap_v", texture.wrap_v);
-  filter("magnify", texture.magnify);
-  filter("minify", texture.minify);
-  if (const auto mip = at.find("mip")) texture.mip = MipFilter(mip->choice({"none", "nearest", "linear"}));
-  if (const auto probes = at.find("anisotropy")) texture.anisotropy = probes->integer(1, 16);
-  return texture;
+constexpr std::string_view kWraps[] = {"repeat", "clamp", "mirror"}, kFilters[] = {"nearest", "linear"},
+                           kMipFilters[] = {"none", "nearest", "linear"}, kAlphaModes[] = {"opaque", "mask", "blend"};
+
+Form<Texture> texture_form(const NameIndex& images) {
+  const Form<Wrap> wrap = form::choice<Wrap>(kWraps);
+  const Form<Filter> filter = form::choice<Filter>(kFilters);
+  return ObjectForm<Texture>()
+      .required("image", &Texture::image, name_form(images, "the name of an image in /images"),
+                "The name of one of `images`.")
+      .optional("uv_set", &Texture::uv_set, form::integer(0, 1),
+                "Which of the mesh's texture coordinates: 0 for `uv0`, 1 for `uv1`.")
+      .optional("wrap_u", &Texture::wrap_u, wrap, "What is beyond the image's left and right edges.")
+      .optional("wrap_v", &Texture::wrap_v, wrap, "What is beyond the image's upper and lower edges.")
+      .optional("magnify", &Texture::magnify, filter, "The filter where a texel is larger than a pixel.")
+      .optional("minify", &Texture::minify, filter, "The filter in a mip level where a texel is smaller than a pixel.")
+      .optional("mip", &Texture::mip, form::choice<MipFilter>(kMipFilters),
+                "none: always the image itself. nearest: the nearest mip level. linear: a mix of two levels.")
+      .optional("anisotropy", &Texture::anisotropy, form::integer(1, 16),
+                "At most so many probes along the longer side of what a pixel covers of the image; more than 1 only "
+                "with `mip` linear.");
 }
 
-Material read_material(const JsonCursor& at, const NameIndex& images) {
-  at.expect_keys({"base_color", "base_texture", "metallic", "roughness", "metallic_roughness_texture", "normal_texture",
-                  "normal_scale", "emissive", "emissive_texture", "alpha_mode", "alpha_cutoff", "double_sided",
-                  "unlit"});
-  Material material;
-  if (const auto color = at.find("base_color")) material.base_color = color->rgba();
-  if (const auto metallic = at.find("metallic")) material.metallic = metallic->fraction();
-  if (const auto roughness = at.find("roughness")) material.roughness = roughness->fraction();
-  if (const auto scale = at.find("normal_scale"))
-    material.normal_scale = scale->real(-kMostNormalScale, kMostNormalScale);
-  if (const auto emissive = at.find("emissive")) material.emissive = emissive->color();
-  if (const auto mode = at.find("alpha_mode")) {
-    material.alpha_mode = AlphaMode(mode->choice({"opaque", "mask", "blend"}));
-  }
-  if (const auto cutoff = at.find("alpha_cutoff")) material.alpha_cutoff = cutoff->fraction();
-  if (const auto both = at.find("double_sided")) material.double_sided = both->boolean();
-  if (const auto unlit = at.find("unlit")) material.unlit = unlit->boolean();
-  for (const auto& [key, texture] : kTextureSlots)
-    if (const auto found = at.find(key)) material.*texture = read_texture(*found, images);
-  return material;
+Form<Material> material_form(const NameIndex& images) {
+  const Form<Texture> texture = texture_form(images);
+  return ObjectForm<Material>()
+      .optional("base_color", &Material::base_color, form::rgba(),
+                "Linear RGB and opacity, multiplied by the texture and by the vertices' colours.")
+      .optional("base_texture", &Material::base_texture, texture, "The base colour in sRGB, and opacity.")
+      .optional("metallic", &Material::metallic, form::fraction(), "0 for dielectrics, 1 for metals.")
+      .optional("roughness", &Material::roughness, form::fraction(),
+                "0 for a mirror, 1 for a surface without highlights.")
+      .optional("metallic_roughness_texture", &Material::metallic_roughness_texture, texture,
+                "Multiplied by `roughness` (G) and `metallic` (B); linear.")
+      .optional("normal_texture", &Material::normal_texture, texture,
+                "A normal in tangent space, 0..255 for -1..1; linear.")
+      .optional("normal_scale", &Material::normal_scale, form::real(-kMostNormalScale, kMostNormalScale),
+                "Factor of the x and y of `normal_texture`.")
+      .optional("emissive", &Material::emissive, form::color(), "Light that the surface emits, as linear RGB.")
+      .optional("emissive_texture", &Material::emissive_texture, texture, "Multiplied by `emissive`; in sRGB.")
+      .optional("alpha_mode", &Material::alpha_mode, form::choice<AlphaMode>(kAlphaModes),
+                "opaque: opacity is ignored. mask: the surface is there where opacity is at least `alpha_cutoff`. "
+                "blend: opacity mixes the surface with what is behind it.")
+      .optional("alpha_cutoff", &Material::alpha_cutoff, form::fraction(),
+                "The least opacity that is there, with `mask`.")
+      .optional("double_sided", &Material::double_sided, form::boolean(), "Whether the back faces are drawn too.")
+      .optional("unlit", &Material::unlit, form::boolean(),
+                "Whether the colour is the base colour, whatever the lights.");
 }
 
 }  // namespace
@@ -91,24 +114,28 @@ std::uint32_t read_name(const JsonCursor& at, const NameIndex& index, const char
   return found->second;
 }
 
-std::vector<TextureImage> read_images(const JsonCursor& at, const fs::path& trace_file, const ReadOptions& options) {
-  std::vector<TextureImage> images;
-  std::uint64_t texels = 0;
-  for (const auto& [name, image] : at.members()) {
-    images.push_back(read_image(image, trace_file, options, kMostTexels - texels));
-    images.back().name = name;
-    texels += images.back().texels.size();
-  }
-  return images;
+Form<std::uint32_t> name_form(const NameIndex& index, const char* what) {
+  return {form::text().schema,
+          [&index, what](const JsonCursor& at, std::uint32_t& number) { number = read_name(at, index, what); }};
 }
 
-std::vector<Material> read_materials(const JsonCursor& at, const NameIndex& images) {
-  std::vector<Material> materials;
-  for (const auto& [name, material] : at.members()) {
-    materials.push_back(read_material(material, images));
-    materials.back().name = name;
-  }
-  return materials;
+Form<std::vector<TextureImage>> images_form(const fs::path& trace_file, const ReadOptions& options) {
+  const auto texels = std::make_shared<std::uint64_t>(0);  // of the images that are read
+  const auto [data, file] = image_forms(trace_file, options, *texels);
+  const Json schema = {{"type", "object"},
+                       {"additionalProperties", {{"oneOf", Json::array({file.schema, data.schema})}}}};
+  return {schema, [texels, data = data, file = file](const JsonCursor& at, std::vector<TextureImage>& images) {
+            for (const auto& [name, each] : at.members()) {
+              if (!each.has("file") && !each.has("data")) each.fail("the key \"file\" or \"data\"", "none");
+              images.push_back((each.has("data") ? data : file)(each));
+              images.back().name = name;
+              *texels += images.back().texels.size();
+            }
+          }};
+}
+
+Form<std::vector<Material>> materials_form(const NameIndex& images) {
+  return form::named(material_form(images), &Material::name);
 }
 
 void expect_uvs(const JsonCursor& at, const Material& material, const Mesh& mesh) {

@@ -7,7 +7,7 @@
 #include <string>
 #include <vector>
 
-#include "traces/files/json_cursor.h"
+#include "traces/files/json_form.h"
 #include "traces/files/trace_io.h"
 
 namespace beampipe {
@@ -25,12 +25,14 @@ NameIndex index_of(const std::vector<Item>& items) {
 // The index of the name at `at`. Throws TraceError, which expects `what`, if there is no such name.
 std::uint32_t read_name(const JsonCursor& at, const NameIndex& index, const char* what);
 
-// All images of a trace, which may have kMostTexels together. Throws TraceError.
-std::vector<TextureImage> read_images(const JsonCursor& at, const std::filesystem::path& trace_file,
-                                      const ReadOptions& options);
+// The same as a form. What forms refer to must outlive them.
+Form<std::uint32_t> name_form(const NameIndex& index, const char* what);
 
-// All materials of a trace. Throws TraceError.
-std::vector<Material> read_materials(const JsonCursor& at, const NameIndex& images);
+// All images of a trace, by name, which may have kMostTexels together.
+Form<std::vector<TextureImage>> images_form(const std::filesystem::path& trace_file, const ReadOptions& options);
+
+// All materials of a trace, by name.
+Form<std::vector<Material>> materials_form(const NameIndex& images);
 
 // Throws TraceError if a texture of the material, which `at` gives to the mesh, uses coordinates that the mesh lacks.
 void expect_uvs(const JsonCursor& at, const Material& material, const Mesh& mesh);

@@ -1,10 +1,11 @@
-// Reading and writing traces (format: traces/trace.schema.json).
+// Reading and writing traces.
 #pragma once
 
 #include <filesystem>
 #include <stdexcept>
 #include <string>
 
+#include "traces/files/json.h"
 #include "traces/trace.h"
 
 namespace beampipe {
@@ -23,6 +24,9 @@ struct ReadOptions {
 
 // Reads and validates a trace of version 1 or 2, with all its meshes and images. Throws TraceError.
 Trace read_trace(const std::filesystem::path& file, const ReadOptions& options = {});
+
+// The JSON Schema of traces, which describes every key.
+Json trace_schema();
 
 enum class ArrayStorage {
   text,    // in the trace's own file, which can be moved and edited

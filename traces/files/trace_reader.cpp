@@ -52,23 +52,22 @@ void normalize_all(const JsonCursor& at, std::vector<Vector>& vectors) {
   }
 }
 
-void read_attributes(const JsonCursor& at, const ArrayReader& arrays, Mesh& mesh) {
-  if (const auto normals = at.find("normals")) {
-    mesh.normals = per_position(*normals, arrays.vec3s(*normals), mesh);
-    normalize_all(*normals, mesh.normals);
-  }
-  if (const auto tangents = at.find("tangents")) {
-    mesh.tangents = per_position(*tangents, arrays.vec4s(*tangents), mesh);
-    normalize_all(*tangents, mesh.tangents);
-    for (std::size_t i = 0; i < mesh.tangents.size(); ++i) {
-      if (std::abs(mesh.tangents[i].w) != 1) tangents->fail("w of 1 or -1", "another at position " + std::to_string(i));
-    }
-  }
-  if (const auto uvs = at.find("uv0")) mesh.uvs[0] = per_position(*uvs, arrays.vec2s(*uvs), mesh);
-  if (const auto uvs = at.find("uv1")) mesh.uvs[1] = per_position(*uvs, arrays.vec2s(*uvs), mesh);
-  if (const auto colors = at.find("vertex_colors")) {
-    mesh.vertex_colors = per_position(*colors, arrays.rgbas(*colors), mesh);
-  }
+// Attributes, of which each position has one, as fields of a mesh.
+template <class Vector>
+Field<Mesh> attribute(const char* key, const char* meaning, const ArrayReader& arrays,
+                      std::vector<Vector> (ArrayReader::*read)(const JsonCursor&) const,
+                      std::vector<Vector>& (*of)(Mesh&), const Json& number,
+                      void (*check)(const JsonCursor&, std::vector<Vector>&) = nullptr) {
+  return {key, meaning, false, numbers_schema(number), [=, &arrays](const JsonCursor& at, Mesh& mesh) {
+            of(mesh) = per_position(at, (arrays.*read)(at), mesh);
+            if (check) check(at, of(mesh));
+          }};
+}
+
+void check_tangents(const JsonCursor& at, std::vector<glm::vec4>& tangents) {
+  normalize_all(at, tangents);
+  for (std::size_t i = 0; i < tangents.size(); ++i)
+    if (std::abs(tangents[i].w) != 1) at.fail("w of 1 or -1", "another at position " + std::to_string(i));
 }
 
 // "materials" lists those that the mesh uses, and "material_of_triangle" says which of them each triangle has.
@@ -95,74 +94,135 @@ void read_mesh_materials(const JsonCursor& at, const Reader& reader, Mesh& mesh)
   for (std::size_t i = 0; i < numbers.size(); ++i) mesh.materials[i] = materials[numbers[i]];
 }
 
-// "positions4" has the homogeneous ones.
-void read_positions(const JsonCursor& at, const ArrayReader& arrays, Mesh& mesh) {
-  const auto homogeneous = at.find("positions4");
-  if (!homogeneous) {
-    mesh.positions = arrays.vec3s(at["positions"]);
-    return;
-  }
-  if (at.has("positions")) homogeneous->fail("either \"positions\" or \"positions4\"", "both");
-  for (const glm::vec4& position : arrays.vec4s(*homogeneous)) {
+void read_homogeneous(const JsonCursor& at, const ArrayReader& arrays, Mesh& mesh) {
+  for (const glm::vec4& position : arrays.vec4s(at)) {
     mesh.positions.emplace_back(position);
     mesh.ws.push_back(position.w);
   }
 }
 
-Mesh read_inline_mesh(const JsonCursor& at, const std::string& name, const Reader& reader) {
-  if (reader.version == 1) {
-    at.expect_keys({"positions", "indices", "colors"});
-  } else {
-    at.expect_keys({"positions", "positions4", "indices", "colors", "normals", "tangents", "uv0", "uv1",
-                    "vertex_colors", "materials", "material_of_triangle"});
-  }
-  Mesh mesh;
-  mesh.name = name;
-  read_positions(at, reader.arrays, mesh);
-  mesh.triangles = reader.arrays.triples(at["indices"], static_cast<std::uint32_t>(mesh.positions.size()));
-  mesh.colors.assign(mesh.triangles.size(), kDefaultColor);
-  if (const auto colors = at.find("colors")) {
-    mesh.colors = reader.arrays.colors(*colors);
-    if (mesh.colors.size() != mesh.triangles.size()) {
-      colors->fail("an array of " + std::to_string(3 * mesh.triangles.size()) + " numbers, r, g, b for each triangle");
-    }
-  }
-  read_attributes(at, reader.arrays, mesh);
-  read_mesh_materials(at, reader, mesh);
-  return mesh;
+void read_colors(const JsonCursor& at, const ArrayReader& arrays, Mesh& mesh) {
+  mesh.colors = arrays.colors(at);
+  if (mesh.colors.size() != mesh.triangles.size())
+    at.fail("an array of " + std::to_string(3 * mesh.triangles.size()) + " numbers, r, g, b for each triangle");
 }
 
-void add_mesh(const JsonCursor& at, const std::string& name, Reader& reader) {
-  if (!at.has("obj") && !at.has("positions") && !at.has("positions4") && !at.has("indices")) {
+ObjectForm<Mesh> inline_mesh_form(const Reader& reader) {
+  const ArrayReader& arrays = reader.arrays;
+  const Json number = form::number().schema, amount = form::number(0, kMostColor).schema,
+             integer = {{"type", "integer"}, {"minimum", 0}};
+  ObjectForm<Mesh> mesh;
+  mesh.add({"positions", "x, y, z of each vertex, in scene units, rounded to 32-bit floats.", reader.version == 1,
+            numbers_schema(number),
+            [&arrays](const JsonCursor& at, Mesh& result) { result.positions = arrays.vec3s(at); }});
+  if (reader.version > 1)
+    mesh.add({"positions4",
+              "x, y, z, w of each vertex, in place of `positions`. In a frame without camera and matrices these are in "
+              "clip space.",
+              false, numbers_schema(number),
+              [&arrays](const JsonCursor& at, Mesh& result) { read_homogeneous(at, arrays, result); }});
+  mesh.add({"indices", "Three for each triangle, counted from 0, each below the number of vertices.", true,
+            numbers_schema(integer),
+            [&arrays](const JsonCursor& at, Mesh& result) {
+              result.triangles = arrays.triples(at, static_cast<std::uint32_t>(result.positions.size()));
+              result.colors.assign(result.triangles.size(), kDefaultColor);
+            }})
+      .add({"colors", "Linear r, g, b for each triangle; 0.8 grey when left out.", false, numbers_schema(amount),
+            [&arrays](const JsonCursor& at, Mesh& result) { read_colors(at, arrays, result); }});
+  if (reader.version == 1) return mesh;
+  const auto normals = [](Mesh & result) -> auto& { return result.normals; };
+  const auto tangents = [](Mesh & result) -> auto& { return result.tangents; };
+  const auto uv0 = [](Mesh & result) -> auto& { return result.uvs[0]; };
+  const auto uv1 = [](Mesh & result) -> auto& { return result.uvs[1]; };
+  const auto vertex_colors = [](Mesh & result) -> auto& { return result.vertex_colors; };
+  return mesh
+      .add(attribute<glm::vec3>("normals",
+                                "x, y, z for each vertex; of any length but 0. Only triangles with a material use this "
+                                "and the next four; without it, they have their own normals.",
+                                arrays, &ArrayReader::vec3s, normals, number, normalize_all<glm::vec3>))
+      .add(attribute<glm::vec4>("tangents",
+                                "x, y, z, of any length but 0, in the direction of u, and the sign of the bitangent, 1 "
+                                "or -1, for each vertex, as in glTF.",
+                                arrays, &ArrayReader::vec4s, tangents, number, check_tangents))
+      .add(attribute<glm::vec2>("uv0",
+                                "u, v for each vertex; (0, 0) is the upper left corner of an image, and (1, 1) its "
+                                "lower right one.",
+                                arrays, &ArrayReader::vec2s, uv0, number))
+      .add(attribute<glm::vec2>("uv1", "A second set of u, v for each vertex.", arrays, &ArrayReader::vec2s, uv1,
+                                number))
+      .add(attribute<glm::vec4>("vertex_colors",
+                                "Linear r, g, b and opacity, which is at most 1, for each vertex; multiplied by the "
+                                "material's base colour.",
+                                arrays, &ArrayReader::rgbas, vertex_colors, amount))
+      .add({"materials",
+            "The names of the `materials` that the mesh uses; null stands for flat triangles with `colors`. A single "
+            "one is that of all triangles.",
+            false,
+            {{"type", "array"}, {"minItems", 1}, {"items", {{"type", Json::array({"string", "null"})}}}},
+            [](const JsonCursor&, Mesh&) {}})
+      .add({"material_of_triangle",
+            "For each triangle, which of `materials` it has, counted from 0. May be left out where `materials` has "
+            "one.",
+            false, numbers_schema(integer), [](const JsonCursor&, Mesh&) {}})
+      .check([&reader](const JsonCursor& at, Mesh& result) { read_mesh_materials(at, reader, result); });
+}
+
+// Its name is known.
+Form<Mesh> obj_form(Reader& reader) {
+  return ObjectForm<Mesh>().add(
+      {"obj",
+       "Path of a Wavefront OBJ file, relative to the trace's folder, which it may not leave: neither by .. nor by a "
+       "symbolic link. Its mtllib stays in the OBJ's folder. The mesh has the Kd of its .mtl for each face, 0.8 grey "
+       "where there is none. Polygons are triangulated.",
+       true, form::text().schema, [&reader](const JsonCursor& at, Mesh& mesh) {
+         NotRead not_read;
+         const ObjMaterials wanted = reader.version == 1 ? ObjMaterials::none : ObjMaterials::textured;
+         read_obj(side_file(at, reader.file, reader.options.allow_outside), at.where(), wanted, reader.trace, not_read);
+         const std::string name = mesh.name;
+         mesh = std::move(reader.trace.meshes.back());
+         mesh.name = name;
+         reader.trace.meshes.pop_back();
+       }});
+}
+
+void expect_positions(const JsonCursor& at) {
+  if (!at.has("positions") && !at.has("positions4") && !at.has("indices"))
     at.fail("the key \"obj\", or \"positions\" and \"indices\"", "none");
-  }
-  if (at.has("obj")) {
-    at.expect_keys({"obj"});
-    const JsonCursor obj = at["obj"];
-    NotRead not_read;
-    const ObjMaterials wanted = reader.version == 1 ? ObjMaterials::none : ObjMaterials::textured;
-    read_obj(side_file(obj, reader.file, reader.options.allow_outside), obj.where(), wanted, reader.trace, not_read);
-    reader.trace.meshes.back().name = name;
-  } else {
-    reader.trace.meshes.push_back(read_inline_mesh(at, name, reader));
-  }
+  const auto homogeneous = at.find("positions4");
+  if (!homogeneous) at["positions"];
+  if (homogeneous && at.has("positions")) homogeneous->fail("either \"positions\" or \"positions4\"", "both");
 }
 
-Camera read_camera(const JsonCursor& at) {
-  at.expect_keys({"eye", "target", "up", "fovy_deg", "near", "far"});
-  Camera camera;
-  camera.eye = at["eye"].vec3();
-  camera.target = at["target"].vec3();
-  camera.up = at["up"].vec3();
-  camera.fovy_deg = at["fovy_deg"].number_between(0, 180);
-  camera.near = at["near"].number_between(0, kInfinity);
-  camera.far = at["far"].number_between(0, kInfinity);
+Form<Mesh> mesh_form(Reader& reader) {
+  const Form<Mesh> obj = obj_form(reader), arrays = inline_mesh_form(reader);
+  return {{{"oneOf", Json::array({obj.schema, arrays.schema})}}, [obj, arrays](const JsonCursor& at, Mesh& mesh) {
+            const bool is_obj = at.has("obj");
+            if (!is_obj) expect_positions(at);
+            (is_obj ? obj : arrays).read(at, mesh);
+          }};
+}
+
+void check_camera(const JsonCursor& at, const Camera& camera) {
   if (camera.near >= camera.far) at["far"].fail("a number above near, " + at["near"].found());
   const glm::dvec3 forward = glm::normalize(camera.target - camera.eye);
   if (!std::isfinite(glm::length(forward))) at["target"].fail("a point other than the eye", "the same point");
   const double sine = glm::length(glm::cross(forward, glm::normalize(camera.up)));
   if (!(sine > 1e-9)) at["up"].fail("a vector not parallel to the view direction", "one that is zero or parallel");
-  return camera;
+}
+
+Form<Camera> camera_form() {
+  const Form<double> distance = form::number_between(0, kInfinity);
+  return ObjectForm<Camera>()
+      .required("eye", &Camera::eye, form::vec3(), "Where the camera is, in world space, in scene units.")
+      .required("target", &Camera::target, form::vec3(),
+                "A point in the middle of the picture, in world space, in scene units; not the eye.")
+      .required("up", &Camera::up, form::vec3(),
+                "A direction in world space that points up in the picture; of any length, not parallel to the view.")
+      .required("fovy_deg", &Camera::fovy_deg, form::number_between(0, 180),
+                "The whole vertical angle of view, in degrees.")
+      .required("near", &Camera::near, distance, "Distance of the near plane, in scene units.")
+      .required("far", &Camera::far, distance, "Distance of the far plane, in scene units; more than `near`.")
+      .check(check_camera);
 }
 
 // Without any of these, the meshes are in clip space.
@@ -172,106 +232,166 @@ void read_view(const JsonCursor& at, int version, Frame& frame) {
   if (at.has("camera") == has_matrices) {
     at.fail("either \"camera\", or \"view\" and \"projection\"", has_matrices ? "both" : "neither");
   }
-  if (has_matrices) {
-    frame.view = at["view"].matrix();
-    frame.projection = at["projection"].matrix();
-  } else {
-    set_camera(frame, read_camera(at["camera"]));
-  }
+  if (has_matrices) at["view"], at["projection"];
+  if (frame.camera) set_camera(frame, *frame.camera);
 }
 
-glm::vec3 read_direction(const JsonCursor& at) {
-  const std::optional<glm::vec3> direction = unit_vector(at.vec3());
-  if (!direction) at.fail("a vector with a length", "none or an infinite one");
-  return *direction;
+Form<glm::vec3> direction_form() {
+  return {form::vec3().schema, [](const JsonCursor& at, glm::vec3& value) {
+            const std::optional<glm::vec3> direction = unit_vector(at.vec3());
+            if (!direction) at.fail("a vector with a length", "none or an infinite one");
+            value = *direction;
+          }};
 }
 
-Light read_light(const JsonCursor& at) {
-  at.expect_keys({"direction", "color"});
-  Light light{.direction = read_direction(at["direction"])};
-  if (const auto color = at.find("color")) light.color = color->color();
-  return light;
+constexpr const char* kLightDirection = "The way the light travels, in world space; of any length but 0.";
+
+Form<Light> light_form() {
+  return ObjectForm<Light>()
+      .required("direction", &Light::direction, direction_form(), kLightDirection)
+      .optional("color", &Light::color, form::color(),
+                "Linear RGB that a white diffuse surface reflects when it faces the light.");
 }
 
-Ambient read_ambient(const JsonCursor& at) {
-  at.expect_keys({"sky", "ground", "up"});
-  Ambient ambient{.sky = at["sky"].color(), .ground = at["ground"].color()};
-  if (const auto up = at.find("up")) ambient.up = read_direction(*up);
-  return ambient;
+Form<Ambient> ambient_form() {
+  return ObjectForm<Ambient>()
+      .required("sky", &Ambient::sky, form::color(), "Linear RGB that a white surface reflects when it faces up.")
+      .required("ground", &Ambient::ground, form::color(),
+                "Linear RGB that a white surface reflects when it faces down.")
+      .optional("up", &Ambient::up, direction_form(), "Where the sky is, in world space; of any length but 0.");
 }
 
 // Version 1 has one light, which is white.
-Lighting read_lighting(const JsonCursor& at) {
-  Lighting lighting;
-  if (const auto light = at.find("light")) {
-    light->expect_keys({"direction"});
-    lighting.lights.push_back({.direction = read_direction((*light)["direction"])});
+void add_lighting(ObjectForm<Frame>& frame, int version) {
+  if (version == 1) {
+    const Form<Light> light =
+        ObjectForm<Light>().required("direction", &Light::direction, direction_form(), kLightDirection);
+    frame.add({"light", "One white light, which draws with lambert shading need.", false, light.schema,
+               [light](const JsonCursor& at, Frame& result) { result.lighting.lights = {light(at)}; }});
+    return;
   }
-  if (const auto lights = at.find("lights")) {
-    const std::vector<JsonCursor> elements = lights->elements();
-    if (elements.size() > kMostLights) lights->fail("at most " + std::to_string(kMostLights) + " lights");
-    for (const JsonCursor& light : elements) lighting.lights.push_back(read_light(light));
-  }
-  if (const auto ambient = at.find("ambient")) lighting.ambient = read_ambient(*ambient);
-  return lighting;
+  Form<std::vector<Light>> lights = form::list(light_form());
+  lights.schema["maxItems"] = kMostLights;
+  frame
+      .add({"lights", "The lights. Draws with lambert shading need one, or `ambient`.", false, lights.schema,
+            [lights](const JsonCursor& at, Frame& result) {
+              if (at.elements().size() > kMostLights) at.fail("at most " + std::to_string(kMostLights) + " lights");
+              lights.read(at, result.lighting.lights);
+            }})
+      .optional(
+          "ambient", [](auto& result) -> auto& { return result.lighting.ambient; }, ambient_form(),
+          "Light from all around: a mix of `sky` and `ground`, as much of each as the surface's normal points up "
+          "and down.");
 }
 
-Draw read_draw(const JsonCursor& at, const Reader& reader, const Lighting& lighting) {
-  if (reader.version == 1) {
-    at.expect_keys({"mesh", "transform", "kd", "cull", "shading"});
-  } else {
-    at.expect_keys({"mesh", "transform", "kd", "cull", "shading", "material", "state"});
-  }
-  Draw draw;
-  draw.mesh = read_name(at["mesh"], reader.meshes, "the name of a mesh in /meshes");
-  if (const auto transform = at.find("transform")) draw.transform = transform->matrix();
-  if (const auto kd = at.find("kd")) draw.kd = kd->color();
-  if (const auto cull = at.find("cull")) draw.cull = Cull(cull->choice({"none", "back", "front"}));
-  if (const auto shading = at.find("shading")) draw.shading = Shading(shading->choice({"unlit", "lambert"}));
-  if (draw.shading == Shading::lambert && lighting.lights.empty() && !lighting.ambient) {
-    at["shading"].fail(reader.version == 1 ? "a \"light\" in the frame" : "\"lights\" or \"ambient\" in the frame",
-                       "none");
-  }
-  if (const auto material = at.find("material")) {
-    if (draw.kd) at.fail("either \"kd\" or \"material\"", "both");
-    draw.material = read_name(*material, reader.materials, kMaterialName);
-    expect_uvs(*material, reader.trace.materials[*draw.material], reader.trace.meshes[draw.mesh]);
-  }
-  if (const auto state = at.find("state")) draw.state = read_draw_state(*state);
-  return draw;
+constexpr std::string_view kCulls[] = {"none", "back", "front"}, kShadings[] = {"unlit", "lambert"};
+
+Form<Draw> draw_form(const Reader& reader) {
+  ObjectForm<Draw> draw;
+  draw.required("mesh", &Draw::mesh, name_form(reader.meshes, "the name of a mesh in /meshes"),
+                "The name of one of `meshes`.")
+      .optional("transform", &Draw::transform, form::matrix(),
+                "Mesh to world space, column-major: the first four numbers are the first column; the identity when "
+                "left out.")
+      .optional("kd", &Draw::kd, form::color(), "Linear RGB for the whole mesh, in place of its own colours.")
+      .optional("cull", &Draw::cull, form::choice<Cull>(kCulls),
+                "Which faces are left out; front faces are counter-clockwise in the picture.")
+      .optional("shading", &Draw::shading, form::choice<Shading>(kShadings),
+                "Of triangles without a material. unlit: the colour as it is. lambert: times the sum over the lights "
+                "of color * max(0, dot(n, -direction)), with n the triangle's own normal, turned towards the viewer, "
+                "and of the ambient light.");
+  if (reader.version == 1) return draw;
+  return draw
+      .optional("material", &Draw::material, name_form(reader.materials, kMaterialName),
+                "The name of one of `materials`, in place of the mesh's own; not together with `kd`.")
+      .optional("state", &Draw::state, draw_state_form(),
+                "The fixed-function state of a draw, as OpenGL and Vulkan know it.")
+      .check([&reader](const JsonCursor& at, const Draw& result) {
+        if (!result.material) return;
+        if (result.kd) at.fail("either \"kd\" or \"material\"", "both");
+        expect_uvs(at["material"], reader.trace.materials[*result.material], reader.trace.meshes[result.mesh]);
+      });
 }
 
-Frame read_frame(const JsonCursor& at, const Reader& reader) {
-  if (reader.version == 1) {
-    at.expect_keys({"width", "height", "background", "camera", "view", "projection", "light", "draws"});
-  } else {
-    at.expect_keys({"width", "height", "background", "camera", "view", "projection", "lights", "ambient", "draws",
-                    "passes", "left_out", "captured"});
-  }
-  Frame frame;
-  frame.width = at["width"].integer(1, kLargestSide);
-  frame.height = at["height"].integer(1, kLargestSide);
-  if (const auto background = at.find("background")) frame.background = background->color();
-  read_view(at, reader.version, frame);
-  frame.lighting = read_lighting(at);
-  if (reader.version > 1) {
-    frame.capture = read_capture_record(at, frame, reader.trace.images, reader.images, reader.arrays);
-  }
+void read_draws(const JsonCursor& at, const Form<Draw>& draw, const Reader& reader, Frame& frame) {
   std::uint64_t triangles = 0;
-  for (const JsonCursor& draw : at["draws"].elements()) {
-    frame.draws.push_back(read_draw(draw, reader, frame.lighting));
+  for (const JsonCursor& each : at.elements()) {
+    draw.read(each, frame.draws.emplace_back());
+    if (frame.draws.back().shading == Shading::lambert && frame.lighting.lights.empty() && !frame.lighting.ambient) {
+      each["shading"].fail(reader.version == 1 ? "a \"light\" in the frame" : "\"lights\" or \"ambient\" in the frame",
+                           "none");
+    }
     triangles += reader.trace.meshes[frame.draws.back().mesh].triangles.size();
     if (triangles > kMostTriangles) {
-      draw.fail("at most " + std::to_string(kMostTriangles) + " triangles in a frame", std::to_string(triangles));
+      each.fail("at most " + std::to_string(kMostTriangles) + " triangles in a frame", std::to_string(triangles));
     }
   }
-  return frame;
+}
+
+Form<Frame> frame_form(const Reader& reader) {
+  const Form<std::uint32_t> side = form::integer(1, kLargestSide);
+  const Form<Draw> draw = draw_form(reader);
+  ObjectForm<Frame> frame;
+  frame.required("width", &Frame::width, side, "Width of the picture, in pixels.")
+      .required("height", &Frame::height, side, "Height of the picture, in pixels.")
+      .optional("background", &Frame::background, form::color(), "Linear RGB where nothing is drawn.")
+      .optional("camera", &Frame::camera, camera_form(),
+                "A pinhole camera with square pixels, right-handed, looking from `eye` to `target`.")
+      .optional("view", &Frame::view, form::matrix(), "World to eye space; in place of `camera`, with `projection`.")
+      .optional("projection", &Frame::projection, form::matrix(), "Eye to clip space.");
+  add_lighting(frame, reader.version);
+  frame.add({"draws", "What is drawn, in this order; may be empty.", true, form::list(draw).schema,
+             [draw, &reader](const JsonCursor& at, Frame& result) { read_draws(at, draw, reader, result); }});
+  if (reader.version > 1) add_capture(frame, reader.trace.images, reader.images, reader.arrays);
+  return frame.check(
+      [version = reader.version](const JsonCursor& at, Frame& result) { read_view(at, version, result); });
 }
 
 int read_version(const JsonCursor& at) {
   const double version = at.number();
   if (version != 1 && version != 2) at.fail("version 1 or 2");
   return static_cast<int>(version);
+}
+
+// Fills the trace of the reader, which the parts refer to.
+Form<Reader> trace_form(Reader& reader) {
+  const auto version = static_cast<std::uint32_t>(reader.version);
+  const Form<std::vector<Mesh>> meshes = form::named(mesh_form(reader), &Mesh::name);
+  const Form<std::vector<Frame>> frames = form::list(frame_form(reader), "frame");
+  ObjectForm<Reader> form;
+  form.add(form::unused<Reader>("beampipe_trace", true, form::version(version), "The version of this format."));
+  if (version > 1) {
+    form.optional(
+            "source", [](auto& each) -> auto& { return each.trace.source; }, source_form(),
+            "Where a captured trace comes from; for information.")
+        .add({"buffers",
+              "Binary files of arrays, little-endian, by the names that views use; together at most 2^32 bytes. All "
+              "views together have at most four times as many.",
+              false, buffers_schema(),
+              [](const JsonCursor& at, Reader& each) { each.arrays = ArrayReader(at, each.file, each.options); }});
+    const Form<std::vector<TextureImage>> images = images_form(reader.file, reader.options);
+    form.add({"images", "The images of textures, by the names that textures use; together at most 2^28 texels.", false,
+              images.schema, [images](const JsonCursor& at, Reader& each) {
+                each.trace.images = images(at);
+                each.images = index_of(each.trace.images);
+              }});
+    const Form<std::vector<Material>> materials = materials_form(reader.images);
+    form.add({"materials",
+              "What surfaces are made of, by the names that meshes and draws use: glTF 2.0's metallic-roughness model. "
+              "A mesh that has a material with a texture has the texture's coordinates.",
+              false, materials.schema, [materials](const JsonCursor& at, Reader& each) {
+                each.trace.materials = materials(at);
+                each.materials = index_of(each.trace.materials);
+              }});
+  }
+  return form
+      .add({"meshes", "The meshes, by the names that draws use.", true, meshes.schema,
+            [meshes](const JsonCursor& at, Reader& each) {
+              each.trace.meshes = meshes(at);  // while they are read, those of the trace are OBJ files alone
+              each.meshes = index_of(each.trace.meshes);
+            }})
+      .add({"frames", "The frames, in the order in which they are shown.", true, frames.schema,
+            [frames](const JsonCursor& at, Reader& each) { frames.read(at, each.trace.frames); }});
 }
 
 }  // namespace
@@ -283,28 +403,25 @@ Trace read_trace(const fs::path& file, const ReadOptions& options) {
   const Json json = parse_json(where);
   const JsonCursor root(json, where);
   Reader reader{.file = file, .options = options, .version = read_version(root["beampipe_trace"]), .trace = {}};
-  if (reader.version == 1) {
-    root.expect_keys({"beampipe_trace", "meshes", "frames"});
-  } else {
-    root.expect_keys({"beampipe_trace", "source", "buffers", "images", "materials", "meshes", "frames"});
-  }
-  Trace& trace = reader.trace;
-  if (const auto source = root.find("source")) trace.source = read_source(*source);
-  if (const auto buffers = root.find("buffers")) reader.arrays = ArrayReader(*buffers, file, options);
-  if (const auto images = root.find("images")) {
-    trace.images = read_images(*images, file, options);
-    reader.images = index_of(trace.images);
-  }
-  if (const auto materials = root.find("materials")) {
-    trace.materials = read_materials(*materials, reader.images);
-    reader.materials = index_of(trace.materials);
-  }
-  for (const auto& [name, mesh] : root["meshes"].members()) add_mesh(mesh, name, reader);
-  reader.meshes = index_of(trace.meshes);
-  const std::vector<JsonCursor> frames = root["frames"].elements();
-  if (frames.empty()) root["frames"].fail("at least one frame");
-  for (const JsonCursor& frame : frames) trace.frames.push_back(read_frame(frame, reader));
-  return std::move(trace);
+  trace_form(reader).read(root, reader);
+  return std::move(reader.trace);
+}
+
+Json trace_schema() {
+  const fs::path file;
+  Reader first{.file = file, .options = {}, .version = 1, .trace = {}},
+      second{.file = file, .options = {}, .version = 2, .trace = {}};
+  return schema_file(
+      {{"description",
+        "A recorded draw stream: meshes, and frames that draw them. Matrices are column-major and multiply column "
+        "vectors; clip space is OpenGL's (-w <= x, y, z <= w, y up). Colours and lights are linear RGB, 0 to 65504 "
+        "(the "
+        "largest fp16 number) in each channel. Lengths are in scene units of the user's choice. Every number is "
+        "finite; keys that are not named here, and keys that come twice, are errors."},
+       {"if", {{"properties", {{"beampipe_trace", {{"const", 1}}}}}}},
+       {"then", trace_form(first).schema},
+       {"else", trace_form(second).schema}},
+      "beampipe trace, versions 1 and 2");
 }
 
 }  // namespace beampipe

@@ -47,7 +47,7 @@ void make_round(Mesh& mesh, const Ball& ball) {
     mesh.normals[i] = glm::normalize(dvec3(mesh.positions[i]) - ball.center);
 }
 
-std::vector<Mesh> build(const std::array<Finish, 3>& finishes, const Finish& ground, double budget, Random&) {
+std::vector<Mesh> bumps_meshes(const std::array<Finish, 3>& finishes, const Finish& ground, double budget, Random&) {
   MeshBuilder floor("floor");
   floor.finish = ground;
   floor.color = {0.42f, 0.40f, 0.38f};
@@ -81,7 +81,9 @@ Trace make_bumps(const SceneOptions& options) {
       Finish{material("brass", 1, 0.3f)}, {material("red glaze", 0, 0.2f)}, {material("blue glaze", 0, 0.25f)}};
   const Finish ground{surfaces.add(Material{.name = "concrete", .base_texture = concrete, .roughness = 0.9f}), 0.8};
   const Camera camera{{0, 1.5, 5.2}, {0, 0.85, 0}, {0, 1, 0}, 30, 0.5, 80};
-  const auto build_balls = [&](double budget, Random& random) { return build(finishes, ground, budget, random); };
+  const auto build_balls = [&](double budget, Random& random) {
+    return bumps_meshes(finishes, ground, budget, random);
+  };
   Trace trace = one_frame(options, camera, build_to_budget(options, 10000, build_balls));
   add_surfaces(trace, std::move(surfaces), {1.0f, 0.95f, 0.85f},
                {.sky = {0.45f, 0.50f, 0.58f}, .ground = {0.20f, 0.18f, 0.16f}});

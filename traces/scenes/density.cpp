@@ -13,7 +13,7 @@ constexpr double kDistance = 6, kFovyDeg = 40;
 // A wall that fills the picture exactly once, with triangles of about the same size: their number of pixels is the
 // picture's, divided by the number of triangles. Its points are moved a little, so that the triangles lie on the pixel
 // grid in all ways.
-std::vector<Mesh> build(double budget, const SceneOptions& options, Random& random) {
+std::vector<Mesh> density_meshes(double budget, const SceneOptions& options, Random& random) {
   const double half_height = kDistance * std::tan(glm::radians(kFovyDeg / 2));
   const double half_width = half_height * options.width / options.height;
   const int rows = divisions(budget * half_height / half_width, 2, 1);
@@ -43,7 +43,7 @@ std::vector<Mesh> build(double budget, const SceneOptions& options, Random& rand
 
 Trace make_density(const SceneOptions& options) {
   const Camera camera{{0, 0, kDistance}, {0, 0, 0}, {0, 1, 0}, kFovyDeg, 1, 20};
-  const auto build_wall = [&](double budget, Random& random) { return build(budget, options, random); };
+  const auto build_wall = [&](double budget, Random& random) { return density_meshes(budget, options, random); };
   return one_frame(options, camera, build_to_budget(options, options.width * options.height / 10, build_wall));
 }
 

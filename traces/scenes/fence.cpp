@@ -47,7 +47,7 @@ void add_fence(MeshBuilder& mesh, const Fence& fence, double cell) {
   mesh.place = nullptr;
 }
 
-std::vector<Mesh> build(double budget, Random& random) {
+std::vector<Mesh> fence_meshes(double budget, Random& random) {
   MeshBuilder backdrop("backdrop"), fences("fences");
   backdrop.color = {0.30f, 0.28f, 0.25f};
   backdrop.quad({-20, 0, 5}, {20, 0, 5}, {20, 0, -20}, {-20, 0, -20});
@@ -75,7 +75,7 @@ std::vector<Mesh> build(double budget, Random& random) {
 
 Trace make_fence(const SceneOptions& options) {
   const Camera camera{{0.3, 1.35, 4.6}, {0, 1.2, 0}, {0, 1, 0}, 36, 0.5, 40};
-  return one_frame(options, camera, build_to_budget(options, 60000, build));
+  return one_frame(options, camera, build_to_budget(options, 60000, fence_meshes));
 }
 
 }  // namespace beampipe

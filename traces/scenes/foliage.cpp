@@ -63,7 +63,7 @@ void add_leaf(MeshBuilder& leaves, const dvec3& stem, double size, Random& rando
   leaves.quad(stem, middle + 0.3 * size * across, stem + size * along, middle - 0.3 * size * across);
 }
 
-std::vector<Mesh> build(double budget, Random& random) {
+std::vector<Mesh> foliage_meshes(double budget, Random& random) {
   MeshBuilder ground("ground"), wood("wood"), leaves("leaves");
   ground.color = {0.25f, 0.33f, 0.12f};
   ground.quad({-30, 0, 8}, {30, 0, 8}, {30, 0, -40}, {-30, 0, -40});
@@ -95,7 +95,7 @@ std::vector<Mesh> build(double budget, Random& random) {
 
 Trace make_foliage(const SceneOptions& options) {
   const Camera camera{{0, 2.4, 9.5}, {-0.2, 2.9, 0}, {0, 1, 0}, 36, 1, 80};
-  return one_frame(options, camera, build_to_budget(options, 80000, build));
+  return one_frame(options, camera, build_to_budget(options, 80000, foliage_meshes));
 }
 
 }  // namespace beampipe

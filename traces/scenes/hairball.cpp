@@ -27,7 +27,7 @@ Path curl(Random& random, int segments) {
   return path;
 }
 
-std::vector<Mesh> build(double budget, Random& random) {
+std::vector<Mesh> hairball_meshes(double budget, Random& random) {
   MeshBuilder ball("ball"), hair("hair");
   ball.color = {0.35f, 0.18f, 0.10f};
   const int rings = divisions(0.03 * budget, 4, 6);
@@ -49,7 +49,7 @@ std::vector<Mesh> build(double budget, Random& random) {
 
 Trace make_hairball(const SceneOptions& options) {
   const Camera camera{{0, 0.4, 5.2}, {0, 0, 0}, {0, 1, 0}, 36, 1, 20};
-  return one_frame(options, camera, build_to_budget(options, 150000, build));
+  return one_frame(options, camera, build_to_budget(options, 150000, hairball_meshes));
 }
 
 }  // namespace beampipe

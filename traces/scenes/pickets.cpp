@@ -28,7 +28,7 @@ void add_picket(MeshBuilder& mesh, double x, double z, double width, double heig
   }
 }
 
-std::vector<Mesh> build(double budget, Random& random) {
+std::vector<Mesh> pickets_meshes(double budget, Random& random) {
   MeshBuilder ground("ground"), pickets("pickets");
   ground.color = {0.20f, 0.35f, 0.10f};
   ground.quad({-40, 0, 5}, {40, 0, 5}, {40, 0, -40}, {-40, 0, -40});
@@ -54,7 +54,7 @@ std::vector<Mesh> build(double budget, Random& random) {
 
 Trace make_pickets(const SceneOptions& options) {
   const Camera camera{kEye, {0, 1.5, 0}, {0, 1, 0}, 34, 0.5, 60};
-  return one_frame(options, camera, build_to_budget(options, 5000, build));
+  return one_frame(options, camera, build_to_budget(options, 5000, pickets_meshes));
 }
 
 }  // namespace beampipe

@@ -9,7 +9,7 @@ namespace {
 using glm::dvec3;
 
 // Sizes from a fraction of a pixel to a third of the picture. The larger a triangle is, the rarer.
-std::vector<Mesh> build(double budget, Random& random) {
+std::vector<Mesh> soup_meshes(double budget, Random& random) {
   MeshBuilder soup("soup");
   const int count = std::max(1, static_cast<int>(budget));
   for (int i = 0; i < count; ++i) {
@@ -31,7 +31,7 @@ std::vector<Mesh> build(double budget, Random& random) {
 
 Trace make_soup(const SceneOptions& options) {
   const Camera camera{{0, 0, 6}, {0, 0, 0}, {0, 1, 0}, 36, 1, 20};
-  return one_frame(options, camera, build_to_budget(options, 20000, build));
+  return one_frame(options, camera, build_to_budget(options, 20000, soup_meshes));
 }
 
 }  // namespace beampipe

@@ -13,7 +13,7 @@ void add_sphere(MeshBuilder& mesh, const dvec3& center, double radius, double bu
   mesh.sphere(center, radius, 2 * rings, rings);
 }
 
-std::vector<Mesh> build(double budget, Random& random) {
+std::vector<Mesh> sphere_meshes(double budget, Random& random) {
   MeshBuilder backdrop("backdrop"), large("sphere"), small("small spheres");
   backdrop.color = {0.10f, 0.85f, 0.15f};
   const int n = divisions(0.02 * budget, 2, 1);
@@ -37,7 +37,7 @@ std::vector<Mesh> build(double budget, Random& random) {
 
 Trace make_sphere(const SceneOptions& options) {
   const Camera camera{{0, 0.8, 5.2}, {0, 0, 0}, {0, 1, 0}, 34, 1, 20};
-  return one_frame(options, camera, build_to_budget(options, 100000, build));
+  return one_frame(options, camera, build_to_budget(options, 100000, sphere_meshes));
 }
 
 }  // namespace beampipe

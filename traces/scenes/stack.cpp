@@ -11,7 +11,7 @@ constexpr double kDistance = 10, kFovyDeg = 40, kDepth = 4;
 
 // Triangles at random depths, each of which covers the whole picture, so that every pixel has as many fragments as
 // there are triangles.
-std::vector<Mesh> build(double budget, const SceneOptions& options, Random& random) {
+std::vector<Mesh> stack_meshes(double budget, const SceneOptions& options, Random& random) {
   const double half_height = std::tan(glm::radians(kFovyDeg / 2));  // at distance 1
   const double half_width = half_height * options.width / options.height;
   Mesh stack;
@@ -38,7 +38,7 @@ std::vector<Mesh> build(double budget, const SceneOptions& options, Random& rand
 
 Trace make_stack(const SceneOptions& options) {
   const Camera camera{{0, 0, kDistance}, {0, 0, 0}, {0, 1, 0}, kFovyDeg, 1, 40};
-  const auto build_stack = [&](double budget, Random& random) { return build(budget, options, random); };
+  const auto build_stack = [&](double budget, Random& random) { return stack_meshes(budget, options, random); };
   return one_frame(options, camera, build_to_budget(options, 64, build_stack));
 }
 

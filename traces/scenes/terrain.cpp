@@ -41,7 +41,7 @@ glm::vec3 ground_color(const dvec3& at, double steepness, std::uint64_t seed, Ra
 
 // A fan of rows in front of the viewer. Each row is farther away than the last by the same factor, so that triangles
 // keep their width on the screen and get flatter and denser towards the horizon.
-std::vector<Mesh> build(double budget, Random& random) {
+std::vector<Mesh> terrain_meshes(double budget, Random& random) {
   Mesh ground;
   ground.name = "ground";
   const std::uint64_t seed = random.bits();
@@ -72,7 +72,7 @@ std::vector<Mesh> build(double budget, Random& random) {
 
 Trace make_terrain(const SceneOptions& options) {
   const Camera camera{{0, 1.0, 0}, {0, 0.35, -4}, {0, 1, 0}, 42, 0.2, 120};
-  return one_frame(options, camera, build_to_budget(options, 150000, build));
+  return one_frame(options, camera, build_to_budget(options, 150000, terrain_meshes));
 }
 
 }  // namespace beampipe

@@ -28,9 +28,9 @@ Technique overdraw() {
   Technique technique;
   technique.spec = "overdraw";
   technique.framebuffer = {.surfaces = {{"count", "R16UI", 2}}};
-  technique.render = [framebuffer = technique.framebuffer](const Trace& trace, std::size_t frame,
-                                                           const RunOptions& run) {
-    const FrameContext context(trace, trace.frames[frame], run);
+  technique.renderer = [framebuffer = technique.framebuffer](const Trace& trace, std::size_t frame,
+                                                             const FrameInput& run, const FrameSinks& sinks) {
+    const FrameContext context({trace, trace.frames[frame], run, sinks});
     const BinPlan plan{.stages = {"conservative_raster", "resolve"}, .framebuffer = framebuffer};
     return render_bins(context, plan, render_bin);
   };

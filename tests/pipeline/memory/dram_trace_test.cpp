@@ -10,8 +10,7 @@
 #include "pipeline/technique_table.h"
 #include "tests/pipeline/surface_traces.h"
 
-namespace beampipe {
-namespace {
+namespace beampipe::dram_trace_test {
 
 struct Recorded {
   std::uint64_t address;
@@ -26,11 +25,10 @@ struct Frame0 {
   std::vector<DramTrace::Range> ranges;
 };
 
-Frame0 render(const std::string& spec, const Trace& trace, RunOptions run = {2}) {
+Frame0 render(const std::string& spec, const Trace& trace, const FrameInput& run = {2}) {
   DramTrace dram(testing::TempDir());
-  run.dram_trace = &dram;
   Frame0 frame;
-  frame.stages = parse_technique(spec).render(trace, 0, run).stages;
+  frame.stages = parse_technique(spec).render(trace, 0, run, {.dram_trace = &dram}).stages;
   dram.for_each([&](const DramRequest& request) {
     frame.requests.push_back(
         {request.address, request.access == DramAccess::write, std::string(request.stage), request.array});
@@ -71,8 +69,8 @@ std::vector<std::pair<std::string, Trace>> scenes() {
   return {{"flat", random_trace(52, 40, 150, 5)}, {"materials", random_surfaces(52, 40, 60, 2)}};
 }
 
-std::vector<std::pair<std::string, RunOptions>> machines() {
-  std::vector<std::pair<std::string, RunOptions>> machines = {
+std::vector<std::pair<std::string, FrameInput>> machines() {
+  std::vector<std::pair<std::string, FrameInput>> machines = {
       {"by technique", {2}}, {"on chip", {2}}, {"in memory", {2}}, {"raw", {2}}};
   machines[1].second.memory.framebuffer = Place::on_chip;
   machines[2].second.memory.framebuffer = Place::in_memory;
@@ -92,7 +90,7 @@ TEST(DramTrace, HasTheBytesOfEveryStage) {
 
 // A list and its copy larger than this L2 go through DRAM in every pass of the sort.
 TEST(DramTrace, HasTheBytesOfSmallCaches) {
-  RunOptions run{2};
+  FrameInput run{2};
   run.memory.l2 = {2048, 2, 128}, run.memory.l1 = {1024, 2, 128}, run.memory.rop = {2048, 2, 256};
   run.memory.framebuffer = Place::in_memory;
   for (const auto& [scene, trace] : scenes())
@@ -105,7 +103,7 @@ TEST(DramTrace, ContinuesAHistory) {
   trace.frames.push_back(trace.frames[0]);
   for (const char* spec : {"taa:4", "dvm"}) {
     History history;
-    RunOptions run{2};
+    FrameInput run{2};
     run.history = &history;
     parse_technique(spec).render(trace, 0, run);
     expect_bytes_of_counters(render(spec, trace, run), spec);
@@ -118,7 +116,7 @@ TEST(DramTrace, DoesNotDependOnThreadsOrBands) {
       const std::vector<Recorded> expected = render(spec, trace, {1}).requests;
       EXPECT_EQ(render(spec, trace, {3}).requests, expected) << spec << ", " << scene;
     }
-  RunOptions banded{4};
+  FrameInput banded{4};
   banded.memory_limit = 2 << 20;  // too little for the pairs of four bins at once
   const Trace trace = random_trace(52, 40, 150, 5);
   for (const char* spec : {"beam:order=sorted", "msaa:4"})
@@ -127,7 +125,7 @@ TEST(DramTrace, DoesNotDependOnThreadsOrBands) {
 
 // What is read has been written, where nothing else can have left it there.
 TEST(DramTrace, ReadsWhatWasWrittenEarlier) {
-  RunOptions run{2};
+  FrameInput run{2};
   run.memory.framebuffer = Place::in_memory;
   const std::set<std::string> arrays = {"setup_triangles", "attributes", "bin_lists", "bin_keys",    "depth",
                                         "samples",         "coverage",   "mask",      "accumulator", "a_buffer_heads"};
@@ -168,7 +166,7 @@ TEST(DramTrace, ComesPassByPass) {
 }
 
 TEST(DramTrace, WithoutAModelNothingIsRecorded) {
-  RunOptions run{2};
+  FrameInput run{2};
   run.memory.modelled = false;
   EXPECT_TRUE(render("beam:order=sorted", random_trace(52, 40, 150, 5), run).requests.empty());
 }
@@ -183,5 +181,4 @@ TEST(DramTrace, TheFolderOfItsFileMustBeThere) {
   }
 }
 
-}  // namespace
-}  // namespace beampipe
+}  // namespace beampipe::dram_trace_test

@@ -6,11 +6,10 @@
 #include "tests/pipeline/test_pictures.h"
 #include "tests/pipeline/test_traces.h"
 
-namespace beampipe {
-namespace {
+namespace beampipe::memory_parameters_test {
 
 FrameResult render_with(const std::string& spec, const Trace& trace, const MemoryParameters& memory) {
-  RunOptions run{1};
+  FrameInput run{1};
   run.memory = memory;
   return parse_technique(spec).render(trace, 0, run);
 }
@@ -140,5 +139,4 @@ TEST(MemoryParameters, CachesThatHoldAllMoveTheSameBytes) {
   }
 }
 
-}  // namespace
-}  // namespace beampipe
+}  // namespace beampipe::memory_parameters_test

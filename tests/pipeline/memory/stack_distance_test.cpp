@@ -14,8 +14,7 @@
 #include "pipeline/technique.h"
 #include "tests/pipeline/test_traces.h"
 
-namespace beampipe {
-namespace {
+namespace beampipe::stack_distance_test {
 
 constexpr std::uint32_t kLineBytes = 128, kSectors = 4, kMostWays = 24;
 
@@ -87,7 +86,7 @@ Traffic traffic_of_cache(const std::vector<Access>& accesses, std::size_t sets, 
   const MemorySystem memory({}, &log);
   BlockCache cache(memory, parameters, BlockCache::Level::l2, lines, kLineBytes, false, nullptr,
                    BlockPlaces(memory, "array", true));
-  StageCounters counters{"stage"};
+  StageCounters counters{StageId::compose};
   std::uint32_t request = 0;
   for (const Access& access : accesses) {
     if (access.is_write)
@@ -129,9 +128,7 @@ std::vector<Access> random_accesses(std::uint32_t seed, std::size_t lines, std::
 // All that a frame asks DRAM for, as accesses of one memory. Lines are numbered anew, so that there are few.
 std::vector<Access> recorded_accesses(const char* spec) {
   DramTrace trace(testing::TempDir());
-  RunOptions run{2};
-  run.dram_trace = &trace;
-  parse_technique(spec).render(random_trace(40, 40, 60, 3), 0, run);
+  parse_technique(spec).render(random_trace(40, 40, 60, 3), 0, {2}, {.dram_trace = &trace});
   std::map<std::uint64_t, std::size_t> numbers;
   std::vector<Access> accesses;
   trace.for_each([&](const DramRequest& request) {
@@ -181,5 +178,4 @@ TEST(StackDistances, CachesOfTexels) {
   }
 }
 
-}  // namespace
-}  // namespace beampipe
+}  // namespace beampipe::stack_distance_test

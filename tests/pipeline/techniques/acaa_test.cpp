@@ -11,8 +11,7 @@
 #include "tests/pipeline/test_pictures.h"
 #include "tests/pipeline/test_traces.h"
 
-namespace beampipe {
-namespace {
+namespace beampipe::acaa_test {
 
 // A triangle at a constant depth that covers a small frame entirely.
 PixelSpaceTriangle everywhere(double z, const glm::vec3& color) {
@@ -175,5 +174,4 @@ TEST(Acaa, MemoryAtFourK) {
             parse_technique("acaa:16").framebuffer_bytes_per_pixel());
 }
 
-}  // namespace
-}  // namespace beampipe
+}  // namespace beampipe::acaa_test

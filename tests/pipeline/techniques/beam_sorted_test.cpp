@@ -5,8 +5,7 @@
 #include "tests/pipeline/test_pictures.h"
 #include "tests/pipeline/test_traces.h"
 
-namespace beampipe {
-namespace {
+namespace beampipe::beam_sorted_test {
 
 TEST(BeamSorted, CountsEveryTouchedPixel) {
   const FrameResult result = parse_technique("beam:order=sorted").render(half_square(), 0, {1});
@@ -41,5 +40,4 @@ TEST(BeamSorted, IsNearerToTheReferenceThanAlphaAndOneSample) {
   EXPECT_LT(beam, rmse(picture("alpha", trace), reference));
 }
 
-}  // namespace
-}  // namespace beampipe
+}  // namespace beampipe::beam_sorted_test

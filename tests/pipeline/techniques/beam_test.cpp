@@ -11,8 +11,7 @@
 #include "tests/pipeline/test_pictures.h"
 #include "tests/pipeline/test_traces.h"
 
-namespace beampipe {
-namespace {
+namespace beampipe::beam_test {
 
 // Triangles in the pixel (2, 2). `beside`: each one shows a strip beside the nearer ones. `behind`: the nearest hides
 // the others. `crossing`: they have corners at random depths, so more are seen than a pixel has slots.
@@ -188,5 +187,4 @@ TEST(Beam, TakesOnePassOverTheGeometry) {
   EXPECT_GT(sum_of(result, "merges"), 0);
 }
 
-}  // namespace
-}  // namespace beampipe
+}  // namespace beampipe::beam_test

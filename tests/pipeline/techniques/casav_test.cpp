@@ -5,8 +5,7 @@
 #include "tests/pipeline/test_pictures.h"
 #include "tests/pipeline/test_traces.h"
 
-namespace beampipe {
-namespace {
+namespace beampipe::casav_test {
 
 TEST(Casav, CountsAnAggregateForEachFragment) {
   // As in Beam.CountsEveryTouchedPixel. Pairs without area are dropped after conservative_raster.
@@ -35,5 +34,4 @@ TEST(Casav, MasksCloseTheEdgeThatAlphaAloneLeaksThrough) {
   EXPECT_NEAR(pixel(picture("casav:mask=exact", trace), 0, 0).r, 1.0f, 1e-3);
 }
 
-}  // namespace
-}  // namespace beampipe
+}  // namespace beampipe::casav_test

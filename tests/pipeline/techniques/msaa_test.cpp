@@ -5,8 +5,7 @@
 #include "tests/pipeline/test_pictures.h"
 #include "tests/pipeline/test_traces.h"
 
-namespace beampipe {
-namespace {
+namespace beampipe::msaa_test {
 
 TEST(Msaa, CountsSamples) {
   const FrameResult one = parse_technique("msaa:1").render(half_square(), 0, {1});
@@ -97,5 +96,4 @@ TEST(Msaa, MoreSamplesComeNearerToTheReference) {
   EXPECT_LT(previous, 1.5e-3);
 }
 
-}  // namespace
-}  // namespace beampipe
+}  // namespace beampipe::msaa_test

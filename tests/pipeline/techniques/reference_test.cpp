@@ -5,8 +5,7 @@
 #include "tests/pipeline/test_pictures.h"
 #include "tests/pipeline/test_traces.h"
 
-namespace beampipe {
-namespace {
+namespace beampipe::reference_test {
 
 // Tests every sample of every pixel against every triangle with barycentric coordinates in double, without raster,
 // spans or tiles. The sample positions are those of the reference (stages/raster/reference_raster.h): 256 rows of 16,
@@ -63,5 +62,4 @@ TEST(Reference, AgreesWithBruteForce) {
   EXPECT_LT(rmse(reference, brute), 1e-4);
 }
 
-}  // namespace
-}  // namespace beampipe
+}  // namespace beampipe::reference_test

@@ -10,8 +10,7 @@
 #include "tests/pipeline/test_traces.h"
 #include "traces/files/trace_io.h"
 
-namespace beampipe {
-namespace {
+namespace beampipe::taa_test {
 
 TEST(Taa, TheFirstFrameIsOneSample) {
   const Trace trace = random_trace(40, 30, 100, 2);
@@ -80,5 +79,4 @@ TEST(Taa, AnotherSizeOfFrameStartsAfresh) {
   EXPECT_EQ(history.width, 20);
 }
 
-}  // namespace
-}  // namespace beampipe
+}  // namespace beampipe::taa_test

@@ -4,8 +4,7 @@
 #include "tests/pipeline/test_pictures.h"
 #include "tests/pipeline/test_traces.h"
 
-namespace beampipe {
-namespace {
+namespace beampipe::visibility_test {
 
 // They differ from msaa:1 by the rounding of its colours to fp16 alone.
 TEST(Visibility, ThePictureIsThatOfOneSample) {
@@ -76,5 +75,4 @@ TEST(Visibility, ShadesEverySampleByItself) {
   EXPECT_EQ(stage_of(found, "resolve").items_in, 64u * 8);
 }
 
-}  // namespace
-}  // namespace beampipe
+}  // namespace beampipe::visibility_test

@@ -5,8 +5,7 @@
 #include "tests/pipeline/test_pictures.h"
 #include "tests/pipeline/test_traces.h"
 
-namespace beampipe {
-namespace {
+namespace beampipe::z3_test {
 
 TEST(Z3, ReadsAndWritesAPixelForEachFragment) {
   const StageCounters merging = stage_of(parse_technique("z3").render(half_square(), 0, {1}), "compose");
@@ -37,5 +36,4 @@ TEST(Z3, WithoutMergesThePictureIsThatOfTheMaskPositions) {
     }
 }
 
-}  // namespace
-}  // namespace beampipe
+}  // namespace beampipe::z3_test

@@ -6,8 +6,7 @@
 
 #include "tests/simd/random.h"
 
-namespace beampipe {
-namespace {
+namespace beampipe::a_buffer_test {
 
 constexpr std::uint32_t kItem = 50, kRecord = 42;  // bytes of an incoming and of a stored fragment
 
@@ -72,5 +71,4 @@ TEST(ABuffer, Bytes) {
   EXPECT_EQ(counters.bytes_written, 2u * (4 + 46));
 }
 
-}  // namespace
-}  // namespace beampipe
+}  // namespace beampipe::a_buffer_test

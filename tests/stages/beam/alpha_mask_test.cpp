@@ -12,8 +12,7 @@
 #include "tests/stages/screen_triangles.h"
 #include "tests/stages/surface_scene.h"
 
-namespace beampipe {
-namespace {
+namespace beampipe::alpha_mask_test {
 
 struct Masked {
   std::vector<Fragment> before, after;
@@ -271,5 +270,4 @@ TEST(AlphaMask, CountsTheWorkOfSmallTexels) {
   }
 }
 
-}  // namespace
-}  // namespace beampipe
+}  // namespace beampipe::alpha_mask_test

@@ -7,33 +7,10 @@
 
 #include "tests/stages/beam_pixels.h"
 
-namespace beampipe {
-namespace {
+namespace beampipe::beam_fragment_test {
 
 constexpr Tile kPixel{0, 0, 1, 1};
 constexpr MaskSource kBoth[] = {MaskSource::table, MaskSource::exact};
-
-constexpr double kPerTriangle = 0x1p-24;  // each triangle rounds its own sum; shared edges cancel exactly
-
-TEST(BeamFragment, AlphasOfATessellationSumToOne) {
-  Random random(131);
-  SCOPED_TRACE(random.name());
-  const Tile tile{0, 0, 4, 4};
-  for (int round = 0; round < 100; ++round) {
-    const ScreenPoint hub{random.int32(0, 1024), random.int32(0, 1024)};
-    const std::int32_t reach = round % 3 == 0 ? (1 << 23) - 2048 : 3'000;
-    const SetupTriangles fan = fan_around(hub, reach, random.int32(1, 200), &random);
-    double sum[16] = {}, parts[16] = {}, dropped[16] = {};
-    std::vector<Pair> pairs;
-    StageCounters counters;
-    conservative_raster(fan, all_of(fan), tile, counters, pairs);
-    for (const Pair& pair : pairs) ++dropped[4 * pair.y + pair.x];
-    for (const Fragment& fragment : beam_fragments(fan, tile, MaskSource::table).list)
-      sum[fragment.pixel] += fragment.alpha, ++parts[fragment.pixel], --dropped[fragment.pixel];
-    for (int pixel = 0; pixel < 16; ++pixel)
-      ASSERT_NEAR(sum[pixel], 1.0, kPerTriangle * parts[pixel] + kZeroArea * dropped[pixel]);
-  }
-}
 
 // The left quarter of the pixel contains columns 0..7 of the Hammersley pattern, whose bits are sorted by x.
 TEST(BeamFragment, OneEdge) {
@@ -86,94 +63,30 @@ TEST(BeamFragment, TinyTriangleTakesThePositionNearestToItsCentroid) {
   }
 }
 
-TEST(BeamFragment, TinyMeansNoPositionAndOneBitNearest) {
-  Random random(132);
-  SCOPED_TRACE(random.name());
-  const SamplePattern pattern = hammersley_pattern();
-  const SetupTriangles triangles = random_triangles(random, 4'000);
-  int tiny = 0;
-  for (const Fragment& fragment : beam_fragments(triangles, {0, 0, 8, 8}, MaskSource::exact).list) {
-    const std::uint32_t mask = fragment.mask.words[0];
-    ASSERT_NE(mask, 0u);
-    if (fragment.tiny == 0) continue;
-    ++tiny;
-    ASSERT_EQ(std::popcount(mask), 1);
-    const auto distance = [&](std::size_t s) {
-      return std::hypot(pattern.x[s] / 256.0 - fragment.centroid_u, pattern.y[s] / 256.0 - fragment.centroid_v);
-    };
-    const double given = distance(static_cast<std::size_t>(std::countr_zero(mask)));
-    for (std::size_t s = 0; s < 32; ++s) ASSERT_LE(given, distance(s) + 1e-6);
-  }
-  EXPECT_GT(tiny, 100);
-}
-
-// A speck gets the nearest positions, as many as its area fills, but at most three.
-TEST(BeamFragment, TinyTrianglesAreGivenUpToThreePositions) {
+// A speck gets the nearest positions, as many as its area fills, but no more than are allowed.
+TEST(BeamFragment, TinyTrianglesAreGivenTheNearestPositions) {
   Random random(135);
   SCOPED_TRACE(random.name());
   const SamplePattern pattern = hammersley_pattern();
-  const Tile tile{0, 0, 12, 12};
-  std::array<int, 4> given{};
-  for (const Fragment& fragment : beam_fragments(random_triangles(random, 3'000), tile, MaskSource::exact, 3).list) {
-    if (!fragment.tiny) continue;
-    const std::uint32_t mask = fragment.mask.words[0];
-    ASSERT_EQ(std::popcount(mask), std::min(3, static_cast<int>(std::ceil(fragment.alpha * 32))));
-    ++given[static_cast<std::size_t>(std::popcount(mask))];
-    double farthest_given = 0, nearest_other = 2;
-    for (std::size_t s = 0; s < 32; ++s) {
-      const double distance =
-          std::hypot(pattern.x[s] / 256.0 - fragment.centroid_u, pattern.y[s] / 256.0 - fragment.centroid_v);
-      if (mask >> s & 1) {
-        farthest_given = std::max(farthest_given, distance);
-      } else {
-        nearest_other = std::min(nearest_other, distance);
+  const SetupTriangles triangles = random_triangles(random, 3'000);
+  for (const int most : {1, 3}) {
+    std::array<int, 4> given{};
+    for (const Fragment& fragment : beam_fragments(triangles, {0, 0, 12, 12}, MaskSource::exact, most).list) {
+      const std::uint32_t mask = fragment.mask.words[0];
+      ASSERT_NE(mask, 0u);
+      if (!fragment.tiny) continue;
+      ASSERT_EQ(std::popcount(mask), std::min(most, static_cast<int>(std::ceil(fragment.alpha * 32))));
+      ++given[static_cast<std::size_t>(std::popcount(mask))];
+      double farthest_given = 0, nearest_other = 2;
+      for (std::size_t s = 0; s < 32; ++s) {
+        const double distance =
+            std::hypot(pattern.x[s] / 256.0 - fragment.centroid_u, pattern.y[s] / 256.0 - fragment.centroid_v);
+        double& of = mask >> s & 1 ? farthest_given : nearest_other;
+        of = mask >> s & 1 ? std::max(of, distance) : std::min(of, distance);
       }
+      ASSERT_LE(farthest_given, nearest_other + 1e-6);
     }
-    ASSERT_LE(farthest_given, nearest_other + 1e-6);
-  }
-  for (const std::size_t count : {1u, 2u, 3u}) EXPECT_GT(given[count], 5) << count;
-}
-
-// Two triangles have a common edge in the pixel. Every position belongs to exactly one of them.
-TEST(BeamFragment, MasksOfASharedEdgeAreComplements) {
-  Random random(133);
-  SCOPED_TRACE(random.name());
-  for (int round = 0; round < 2'000; ++round) {
-    const ScreenPoint left{-4'000, random.int32(-4'000, 4'000)}, right{4'000, random.int32(-4'000, 4'000)};
-    SetupTriangles triangles;
-    add_triangle(triangles, left, right, {0, -60'000});
-    add_triangle(triangles, left, right, {0, 60'000});
-    for (const MaskSource source : kBoth) {
-      const std::vector<Fragment> found = beam_fragments(triangles, kPixel, source).list;
-      std::uint32_t masks[2] = {};
-      for (const Fragment& fragment : found) masks[fragment.triangle] = fragment.tiny ? 0u : fragment.mask.words[0];
-      ASSERT_EQ(masks[0], ~masks[1]) << left.y << " to " << right.y;
-    }
-  }
-}
-
-TEST(BeamFragment, MovingByWholePixelsChangesNothing) {
-  Random random(134);
-  SCOPED_TRACE(random.name());
-  for (int round = 0; round < 500; ++round) {
-    ScreenPoint p[3];
-    for (ScreenPoint& point : p) point = {random.int32(-300, 556), random.int32(-300, 556)};
-    SetupTriangles here, there;
-    add_triangle(here, p[0], p[1], p[2]);
-    for (ScreenPoint& point : p) point.x += 16'000 * 256, point.y += 9'000 * 256;
-    add_triangle(there, p[0], p[1], p[2]);
-    for (const MaskSource source : kBoth) {
-      const auto a = beam_fragments(here, kPixel, source).list;
-      const auto b = beam_fragments(there, {16'000, 9'000, 16'001, 9'001}, source).list;
-      ASSERT_EQ(a.size(), b.size());
-      for (std::size_t i = 0; i < a.size(); ++i) {
-        ASSERT_EQ(a[i].alpha, b[i].alpha);
-        ASSERT_EQ(a[i].mask.words[0], b[i].mask.words[0]);
-        ASSERT_EQ(a[i].centroid_u, b[i].centroid_u);
-        ASSERT_EQ(a[i].centroid_v, b[i].centroid_v);
-        ASSERT_EQ(a[i].pixel, b[i].pixel);
-      }
-    }
+    for (int count = 1; count <= most; ++count) EXPECT_GT(given[static_cast<std::size_t>(count)], 5) << count;
   }
 }
 
@@ -190,5 +103,4 @@ TEST(BeamFragment, TouchedPixelsWithoutAreaAreDroppedAndCounted) {
   EXPECT_EQ(fragments.counters.items_out, 1u);
 }
 
-}  // namespace
-}  // namespace beampipe
+}  // namespace beampipe::beam_fragment_test

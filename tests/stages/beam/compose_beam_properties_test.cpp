@@ -13,8 +13,7 @@
 #include "tests/stages/screen_triangles.h"
 #include "tests/stages/search.h"
 
-namespace beampipe {
-namespace {
+namespace beampipe::compose_beam_properties_test {
 
 constexpr Tile kTile{0, 0, 12, 10};
 constexpr float kRounding = 1e-5f;  // of a sum in float32 over the fragments of a pixel
@@ -64,7 +63,7 @@ std::uint64_t compose_random(Random& random) {
   StageCounters counters;
   std::vector<Pair> pairs, window, whole;
   ClosedDepth closed(kTile);
-  conservative_raster(triangles, all_of(triangles), kTile, counters, pairs, &closed);
+  conservative_raster(triangles, all_of(triangles), kTile, counters, pairs, {&closed});
   const ABuffer buffer = a_buffer(sort_records(pairs, kTile), kTile.pixels(), 0, kStoredPairBytes, counters);
   Windows windows(pairs, buffer, kStoredPairBytes);
   Pixels<Words> pixels(kTile.pixels());
@@ -95,5 +94,4 @@ TEST(Properties, WindowsKeepAreaMaskAndColour) {
   std::printf("fragments composed: %llu\n", static_cast<unsigned long long>(merged));
 }
 
-}  // namespace
-}  // namespace beampipe
+}  // namespace beampipe::compose_beam_properties_test

@@ -8,8 +8,7 @@
 #include "stages/beam/casav_fragment.h"
 #include "tests/stages/beam_pixels.h"
 
-namespace beampipe {
-namespace {
+namespace beampipe::compose_casav_test {
 
 constexpr Tile kPixel{0, 0, 1, 1};
 const std::vector<glm::vec3> kRedGreen = {{1, 0, 0}, {0, 1, 0}};
@@ -201,5 +200,4 @@ TEST(Compose, PlainOver) {
   EXPECT_EQ(counters.ops, (OperationCounts{3 * 4, 3 * 5, 0, 0, 0, 3 * 6}));
 }
 
-}  // namespace
-}  // namespace beampipe
+}  // namespace beampipe::compose_casav_test

@@ -11,8 +11,7 @@
 #include "tests/simd/random.h"
 #include "tests/stages/screen_triangles.h"
 
-namespace beampipe {
-namespace {
+namespace beampipe::compose_layers_test {
 
 constexpr Tile kTile{0, 0, 4, 4};
 const SamplePattern kPattern = hammersley_pattern();
@@ -225,5 +224,4 @@ TEST(ComposeLayers, CountsBytes) {
   EXPECT_EQ(counters.bytes_written, fragments.size() * 3 * 42);
 }
 
-}  // namespace
-}  // namespace beampipe
+}  // namespace beampipe::compose_layers_test

@@ -8,8 +8,7 @@
 #include "tests/stages/open_pixels.h"
 #include "tests/stages/search.h"
 
-namespace beampipe {
-namespace {
+namespace beampipe::compose_owners_properties_test {
 
 constexpr Tile kTile{0, 0, 12, 10};
 constexpr float kLeast = 0.125f, kGreatest = 0.75f;  // of the colours
@@ -80,5 +79,4 @@ TEST(Properties, NearFirstKeepsAreaAndColour) {
   EXPECT_GT(composed.merges, composed.fragments / 100);
 }
 
-}  // namespace
-}  // namespace beampipe
+}  // namespace beampipe::compose_owners_properties_test

@@ -10,8 +10,7 @@
 #include "tests/simd/random.h"
 #include "tests/stages/open_pixels.h"
 
-namespace beampipe {
-namespace {
+namespace beampipe::compose_owners_test {
 
 constexpr glm::vec3 kRed{1, 0, 0}, kGreen{0, 1, 0}, kBlue{0, 0, 1};
 
@@ -675,5 +674,4 @@ TEST(ComposeOwners, TheEstimateIsLimited) {
   EXPECT_GT(moved, 50'000);
 }
 
-}  // namespace
-}  // namespace beampipe
+}  // namespace beampipe::compose_owners_test

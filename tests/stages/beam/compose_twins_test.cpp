@@ -11,8 +11,7 @@
 #include "stages/raster/conservative_raster.h"
 #include "tests/stages/scene_twins.h"
 
-namespace beampipe {
-namespace {
+namespace beampipe::compose_twins_test {
 
 constexpr std::size_t kWords = 8, kPositions = 32 * kWords;
 
@@ -228,5 +227,4 @@ TEST_P(ComposeTwins, ComposeWindow) {
 
 BEAMPIPE_ON_EVERY_SCENE(ComposeTwins);
 
-}  // namespace
-}  // namespace beampipe
+}  // namespace beampipe::compose_twins_test

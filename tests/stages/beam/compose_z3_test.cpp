@@ -8,14 +8,13 @@
 #include "tests/simd/random.h"
 #include "tests/stages/screen_triangles.h"
 
-namespace beampipe {
-namespace {
+namespace beampipe::compose_z3_test {
 
 template <std::size_t Words, std::size_t Layers>
 std::vector<Z3Pixel<Words, Layers>> composed(const SetupTriangles& triangles, const std::vector<glm::vec3>& colors,
-                                             const Tile& tile, OperationCounts* counts = nullptr) {
+                                             const Tile& tile) {
   const PositionSet positions(cell_patterns(32 * Words));
-  StageCounters counters, composition;
+  StageCounters counters;
   std::vector<Pair> pairs;
   std::vector<Fragment> fragments;
   conservative_raster(triangles, all_of(triangles), tile, counters, pairs);
@@ -24,8 +23,7 @@ std::vector<Z3Pixel<Words, Layers>> composed(const SetupTriangles& triangles, co
   shade(colors, fragments, counters);
   std::vector<Z3Pixel<Words, Layers>> pixels(tile.pixels());
   std::vector<float> merges(tile.pixels());
-  compose_z3(fragments, positions, composition, pixels, merges);
-  if (counts) *counts = composition.ops;
+  compose_z3(fragments, positions, counters, pixels, merges);
   return pixels;
 }
 
@@ -82,28 +80,4 @@ TEST(ComposeZ3, WeightsNeverPassOne) {
   }
 }
 
-TEST(ComposeZ3, CountsItsArithmetic) {
-  const std::vector<glm::vec3> white(3, glm::vec3(1.0f));
-  SetupTriangles triangles;
-  add_everywhere(triangles, -0.5f);
-  OperationCounts counts;
-  composed<1, 2>(triangles, white, kPixel, &counts);
-  // Two slopes are rounded to the stored format and a colour is converted from fp16. Five numbers of each of two layers
-  // are converted from the stored formats and back. For one word, two states of two bits are found and put, and there
-  // are eight operations on the positions of each layer.
-  const OperationCounts one{0, 0, 2 * (2 + 3) + 2 * 8, 0, 0, 2 * 2 + 3 + 2 * 5 + 2 * 5};
-  EXPECT_EQ(counts, one);
-  add_left_of(triangles, 192, -0.6f);
-  add_left_of(triangles, 64, -0.9f);
-  composed<1, 2>(triangles, white, kPixel, &counts);
-  OperationCounts all = one * 3;
-  // Planes are compared at 32 positions: the second with the first, the third with the second.
-  all += OperationCounts{4, 4 + 1, 0, 0, 0, 0} * (32 * 2);
-  // Three layers make three pairs: the difference of their depths, and the least of these. Then two population counts,
-  // the shares, six means and a union.
-  all += OperationCounts{12, 3 + 3 + 2 + 6, 3 + 2 + 1, 0, 1, 2};
-  EXPECT_EQ(counts, all);
-}
-
-}  // namespace
-}  // namespace beampipe
+}  // namespace beampipe::compose_z3_test

@@ -13,8 +13,7 @@
 #include "stages/raster/conservative_raster.h"
 #include "tests/stages/scene_twins.h"
 
-namespace beampipe {
-namespace {
+namespace beampipe::fragment_twins_test {
 
 class FragmentTwins : public SceneTwins {
  protected:
@@ -238,5 +237,4 @@ TEST_P(FragmentTwins, WithoutMasks) {
 
 BEAMPIPE_ON_EVERY_SCENE(FragmentTwins);
 
-}  // namespace
-}  // namespace beampipe
+}  // namespace beampipe::fragment_twins_test

@@ -15,8 +15,7 @@
 #include "tests/simd/merge_cases.h"
 #include "tests/stages/scene_twins.h"
 
-namespace beampipe {
-namespace {
+namespace beampipe::merge_twins_test {
 
 class MergeTwins : public SceneTwins {
  protected:
@@ -288,5 +287,4 @@ TEST_P(MergeTwins, ComposeZ3) {
 
 BEAMPIPE_ON_EVERY_SCENE(MergeTwins);
 
-}  // namespace
-}  // namespace beampipe
+}  // namespace beampipe::merge_twins_test

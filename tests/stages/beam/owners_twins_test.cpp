@@ -5,10 +5,9 @@
 #include "tests/simd/random.h"
 #include "tests/stages/open_pixels.h"
 
-namespace beampipe {
-namespace {
+namespace beampipe::owners_twins_test {
 
-constexpr std::size_t kWords = 4;
+constexpr std::size_t kWords = 8;
 using Five = OpenTile<kWords, 5>;
 using Two = OpenTile<kWords, 2>;
 
@@ -254,5 +253,4 @@ TEST(OwnersTwins, CountsFragmentsAndPixels) {
   EXPECT_LE(counters.bytes_written, tile.fragments.size() * kPixelOfFive);
 }
 
-}  // namespace
-}  // namespace beampipe
+}  // namespace beampipe::owners_twins_test

@@ -18,8 +18,7 @@
 #include "stages/raster/traverse.h"
 #include "tests/traces/scene_names.h"
 
-namespace beampipe {
-namespace {
+namespace beampipe::window_twins_test {
 
 using Float = Counted<float>;
 using Real = Counted<double>;
@@ -55,7 +54,7 @@ class WindowTwins : public testing::TestWithParam<SceneKind> {
   std::vector<Pair> touched(std::uint32_t index) {
     std::vector<Pair> pairs;
     StageCounters traversal;
-    conservative_raster(triangles_, {index}, tile_, traversal, pairs, nullptr, PairDepths::none);
+    conservative_raster(triangles_, {index}, tile_, traversal, pairs, {.depths = PairDepths::none});
     twin_ += traversal.ops;
     return pairs;
   }
@@ -96,7 +95,7 @@ TEST_P(WindowTwins, ClosedDepth) {
   for (const TriangleList& list : halves) {
     StageCounters counters;
     std::vector<Pair> pairs, found;
-    const std::size_t waited = conservative_raster(triangles_, list, tile_, counters, pairs, &closed);
+    const std::size_t waited = conservative_raster(triangles_, list, tile_, counters, pairs, {&closed});
     twin_ = {};
     std::uint64_t read = 0, written = 0;
     const auto hidden = [&](const Pair& pair, const Float& nearest) {
@@ -150,8 +149,8 @@ TEST_P(WindowTwins, ClosedCells) {
     ClosedDepth closed(cells_of(tile_, sampling.grid));
     StageCounters with, without;
     std::vector<SampleFragment> fragments, all;
-    sample_raster(triangles_, {index}, tile_, sampling, with, fragments, &closed);
-    sample_raster(triangles_, {index}, tile_, sampling, without, all);
+    sample_raster({triangles_, tile_, sampling}, {index}, with, fragments, &closed);
+    sample_raster({triangles_, tile_, sampling}, {index}, without, all);
     ASSERT_EQ(fragments.size(), all.size());
     twin_ = without.ops;
     const DepthBounds<Float> bounds =
@@ -237,5 +236,4 @@ TEST_P(WindowTwins, Windows) {
 INSTANTIATE_TEST_SUITE_P(Scenes, WindowTwins, testing::ValuesIn(flat_scenes()),
                          [](const auto& scene) { return std::string(scene.param.name); });
 
-}  // namespace
-}  // namespace beampipe
+}  // namespace beampipe::window_twins_test

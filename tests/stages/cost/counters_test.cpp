@@ -5,8 +5,7 @@
 
 #include <set>
 
-namespace beampipe {
-namespace {
+namespace beampipe::counters_test {
 
 // The k-th stored counter is k times `unit`.
 StageCounters numbered(std::uint64_t unit) {
@@ -69,5 +68,4 @@ TEST(StageCountersTable, AdditionAddsEachCounterAndKeepsTheName) {
   EXPECT_EQ(sum, numbered(101));
 }
 
-}  // namespace
-}  // namespace beampipe
+}  // namespace beampipe::counters_test

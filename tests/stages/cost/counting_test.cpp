@@ -3,12 +3,9 @@
 
 #include <gtest/gtest.h>
 
-#include "simd/depth_compare.h"
-#include "simd/merge.h"
 #include "simd/sample_mask.h"
 
-namespace beampipe {
-namespace {
+namespace beampipe::counting_test {
 
 using Real = Counted<float>;
 using Bits = Counted<std::uint32_t>;
@@ -40,27 +37,6 @@ TEST(Counting, ConstantsCostNothing) {
   EXPECT_EQ(counts.total(), 1u);
 }
 
-// rest = 1 - alpha; alpha + rest alpha'; the same for three channels.
-TEST(Counting, PlainOver) {
-  const OperationCounts counts = count_operations([](OperationCounts& tally) {
-    const Real one(1.0f, tally);
-    const FragmentOf<Real, Bits> fragment{{one, Bits(1u, tally), {one, one, one}, one, one, one, {one, one, one}},
-                                          Bits(0u, tally)};
-    over_formula(fragment, fragment.surface);
-  });
-  EXPECT_EQ(counts, (OperationCounts{4, 5, 0, 0, 0, 0}));
-}
-
-// z + dzdx x + dzdy y, and a comparison.
-TEST(Counting, DepthTest) {
-  const OperationCounts counts = count_operations([](OperationCounts& tally) {
-    const Real one(1.0f, tally);
-    Real depth;
-    depth_test_scalar(one, one, one, one, one, one, depth);
-  });
-  EXPECT_EQ(counts, (OperationCounts{2, 3, 0, 0, 0, 0}));
-}
-
 // Per sample and edge, a x + b y + c >= 0: 2 products, 2 sums, a comparison, all with 64 bits.
 TEST(Counting, SampleTest) {
   const OperationCounts counts = count_operations([](OperationCounts& tally) {
@@ -72,5 +48,4 @@ TEST(Counting, SampleTest) {
   EXPECT_EQ(counts.wide, 4u * 3 * 5);
 }
 
-}  // namespace
-}  // namespace beampipe
+}  // namespace beampipe::counting_test

@@ -5,8 +5,7 @@
 
 #include <set>
 
-namespace beampipe {
-namespace {
+namespace beampipe::stage_test {
 
 TEST(Stages, AreFoundByNameAndNumber) {
   std::set<std::string_view> names;
@@ -31,5 +30,4 @@ TEST(Stages, WithAnotherNameAreNone) {
   EXPECT_EQ(name_of(Stage{}), "");
 }
 
-}  // namespace
-}  // namespace beampipe
+}  // namespace beampipe::stage_test

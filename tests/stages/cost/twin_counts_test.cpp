@@ -14,8 +14,7 @@
 #include "stages/samples/test_depth.h"
 #include "tests/stages/scene_twins.h"
 
-namespace beampipe {
-namespace {
+namespace beampipe::twin_counts_test {
 
 class TwinCounts : public SceneTwins {};
 
@@ -46,21 +45,21 @@ TEST_P(TwinCounts, DepthTest) {
   StageCounters raster, counters;
   std::vector<SampleFragment> fragments;
   std::vector<SampleAccess> accesses;
-  sample_raster(triangles_, list_, tile_, sampling, raster, fragments);
+  sample_raster({triangles_, tile_, sampling}, list_, raster, fragments);
   SampleTile surface(tile_, sampling), stored(tile_, sampling);
-  depth_test(triangles_, fragments, tile_, sampling, counters, surface, accesses);
+  depth_test({triangles_, tile_, sampling}, fragments, counters, surface, accesses);
   for (const SampleFragment& fragment : fragments) {
     const ScreenDepth& plane = triangles_.triangles[fragment.triangle].depth;
     const ScreenDepthOf<Real> counted = {real(plane.z), real(plane.dzdx), real(plane.dzdy), real(plane.anchor_x),
                                          real(plane.anchor_y)};
-    const auto [z, dzdx, dzdy] =
+    const auto in_cell =
         cell_plane(counted, real(static_cast<double>(fragment.x)), real(static_cast<double>(fragment.y)));
     const auto first = static_cast<std::size_t>(fragment.y * tile_.width() + fragment.x) * 8;
     for (std::size_t s = 0; s < 8; ++s) {
       if (!(fragment.mask >> s & 1)) continue;
       Float depth;
       const bool passes =
-          depth_test_scalar(z, dzdx, dzdy, real(static_cast<float>(sampling.pattern.x[s])),
+          depth_test_scalar(in_cell, real(static_cast<float>(sampling.pattern.x[s])),
                             real(static_cast<float>(sampling.pattern.y[s])), real(stored.depth[first + s]), depth);
       if (passes) stored.depth[first + s] = depth.value;
     }
@@ -75,7 +74,7 @@ TEST_P(TwinCounts, Accumulate) {
   const Sampling sampling{CellGrid{}, standard_pattern(8)};
   StageCounters raster;
   std::vector<SampleFragment> fragments;
-  sample_raster(triangles_, list_, tile_, sampling, raster, fragments);
+  sample_raster({triangles_, tile_, sampling}, list_, raster, fragments);
   const std::vector<glm::vec3> colors(triangles_.triangles.size(), glm::vec3(0.5f));
   for (const DoubleCounting counting : {DoubleCounting::none, DoubleCounting::saturate}) {
     StageCounters counters;
@@ -95,5 +94,4 @@ TEST_P(TwinCounts, Accumulate) {
 
 BEAMPIPE_ON_EVERY_SCENE(TwinCounts);
 
-}  // namespace
-}  // namespace beampipe
+}  // namespace beampipe::twin_counts_test

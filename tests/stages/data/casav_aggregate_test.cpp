@@ -6,8 +6,7 @@
 
 #include "tests/simd/random.h"
 
-namespace beampipe {
-namespace {
+namespace beampipe::casav_aggregate_test {
 
 TEST(CasavStorage, SlidesKeepAllButTheColour) {
   const Aggregate a{0.3f, 0x1234u, {-0.5f, 1e-9f, -2e-3f}, 0.001f, -0.6f, -0.4f, {0.1f, 0.2f, 0.3f}};
@@ -50,5 +49,4 @@ TEST(CasavStorage, EmptyStaysEmpty) {
   }
 }
 
-}  // namespace
-}  // namespace beampipe
+}  // namespace beampipe::casav_aggregate_test

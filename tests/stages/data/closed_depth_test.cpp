@@ -2,8 +2,7 @@
 
 #include <gtest/gtest.h>
 
-namespace beampipe {
-namespace {
+namespace beampipe::closed_depth_test {
 
 TEST(ClosedDepth, HidesWhatLiesBehindAndNotWhatLiesThere) {
   ClosedDepth closed(Tile{4, 6, 6, 7});
@@ -26,5 +25,4 @@ TEST(ClosedDepth, HidesEverywhereWhatLiesBehindTheFarthestPixel) {
   EXPECT_FALSE(closed.hides_everywhere(-0.25f));
 }
 
-}  // namespace
-}  // namespace beampipe
+}  // namespace beampipe::closed_depth_test

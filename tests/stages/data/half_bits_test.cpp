@@ -5,8 +5,7 @@
 #include <cmath>
 #include <limits>
 
-namespace beampipe {
-namespace {
+namespace beampipe::half_bits_test {
 
 constexpr int kInfinity = 0x7c00;
 
@@ -47,5 +46,4 @@ TEST(HalfBits, WhatIsTooLargeIsInfiniteOrTheLargest) {
   EXPECT_TRUE(std::isnan(nearest_half(std::numeric_limits<float>::quiet_NaN())));
 }
 
-}  // namespace
-}  // namespace beampipe
+}  // namespace beampipe::half_bits_test

@@ -8,8 +8,7 @@
 
 #include "tests/simd/random.h"
 
-namespace beampipe {
-namespace {
+namespace beampipe::open_pixel_test {
 
 TEST(OpenPixel, ASlotKeepsItsTriangleAndItsCentroid) {
   OwnerSlot slot;
@@ -217,5 +216,4 @@ TEST(OpenPixel, StatesHaveEnoughBitsForEverySlot) {
 #undef BEAMPIPE_CHECK
 }
 
-}  // namespace
-}  // namespace beampipe
+}  // namespace beampipe::open_pixel_test

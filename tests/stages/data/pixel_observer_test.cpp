@@ -8,8 +8,7 @@
 
 #include "tests/stages/open_pixels.h"
 
-namespace beampipe {
-namespace {
+namespace beampipe::pixel_observer_test {
 
 struct Explained {
   double farthest = 0;       // from a pixel to the sum of its triangles' weights times colours, in any channel
@@ -180,5 +179,4 @@ TEST(PixelObserver, LayersTakeTheirPartOfASample) {
   EXPECT_EQ(observer.seen_behind_layers(1), 1) << "an opaque surface hides the layers";
 }
 
-}  // namespace
-}  // namespace beampipe
+}  // namespace beampipe::pixel_observer_test

@@ -7,8 +7,7 @@
 
 #include "tests/simd/random.h"
 
-namespace beampipe {
-namespace {
+namespace beampipe::shared_exponent_test {
 
 // Every channel is within a step of the colour's exponent, whatever the threshold.
 void expect_close(const glm::vec3& color, float threshold) {
@@ -67,5 +66,4 @@ TEST(SharedExponent, AMeanMovesByManySmallSteps) {
   EXPECT_LT(std::abs(error / kRuns), 0.004);
 }
 
-}  // namespace
-}  // namespace beampipe
+}  // namespace beampipe::shared_exponent_test

@@ -11,8 +11,7 @@
 #include "tests/stages/screen_triangles.h"
 #include "tests/stages/vertex_scenes.h"
 
-namespace beampipe {
-namespace {
+namespace beampipe::clip_test {
 
 constexpr std::int32_t kWidth = 48, kHeight = 32;
 
@@ -26,7 +25,7 @@ std::vector<int> winding(Scene scene) {
     const SetupTriangles triangles = scene.setup();
     std::vector<SampleFragment> fragments;
     StageCounters counters;
-    sample_raster(triangles, all_of(triangles), {0, 0, kWidth, kHeight}, sampling, counters, fragments);
+    sample_raster({triangles, {0, 0, kWidth, kHeight}, sampling}, all_of(triangles), counters, fragments);
     for (const SampleFragment& f : fragments)
       for (std::int32_t s = 0; s < 16; ++s)
         sum[static_cast<std::size_t>((f.y * kWidth + f.x) * 16 + s)] +=
@@ -154,7 +153,7 @@ TEST(Clipping, DepthStaysBetweenNearAndFar) {
 // One vertex is in front of the near plane, so two pieces remain. The polygon has 3 vertices at the near plane and 4 at
 // each of the five other planes. Each test of a vertex is an inner product of 4 products and 3 sums, and a comparison;
 // so are the tests that decided to clip. Each of two crossings is a quotient, 4 products and 9 sums. 3 comparisons test
-// whether a piece is in front of the eye. The rest costs the same as for any triangle (VertexSetup.CountsOperations).
+// whether a piece is in front of the eye. The rest costs the same as for any triangle (SetupTwins).
 TEST(Clipping, CountsPiecesAndPlaneTests) {
   StageCounters counters;
   const SetupTriangles out = vertex_setup_of(clip_space_scene({{0, 0, -2}, {0.5f, 0, 0}, {0, 0.5f, 0}}), counters);
@@ -168,5 +167,4 @@ TEST(Clipping, CountsPiecesAndPlaneTests) {
                                            projected + 2 + 2, projected * 4 + 2 * 3}));
 }
 
-}  // namespace
-}  // namespace beampipe
+}  // namespace beampipe::clip_test

@@ -3,8 +3,7 @@
 
 #include <gtest/gtest.h>
 
-namespace beampipe {
-namespace {
+namespace beampipe::draw_geometry_test {
 
 struct DrawGeometry : testing::Test {
   Trace trace;
@@ -70,5 +69,4 @@ TEST_F(DrawGeometry, AThousandDrawsOfOneMeshHaveOneNumber) {
   EXPECT_EQ(geometry_numbers(trace, frame), std::vector<std::uint32_t>(1000, 0));
 }
 
-}  // namespace
-}  // namespace beampipe
+}  // namespace beampipe::draw_geometry_test

@@ -8,8 +8,7 @@
 #include "tests/simd/random.h"
 #include "tests/stages/vertex_scenes.h"
 
-namespace beampipe {
-namespace {
+namespace beampipe::draw_plan_test {
 
 // Frames of draws of one triangle each, each with a mesh of its own.
 struct Draws {
@@ -409,5 +408,4 @@ TEST(DrawPlan, DrawsStayWithinTheViewportAndTheScissor) {
   }
 }
 
-}  // namespace
-}  // namespace beampipe
+}  // namespace beampipe::draw_plan_test

@@ -13,8 +13,7 @@
 #include "tests/stages/screen_triangles.h"
 #include "tests/stages/vertex_scenes.h"
 
-namespace beampipe {
-namespace {
+namespace beampipe::placed_setup_test {
 
 constexpr std::int32_t kWidth = 48, kHeight = 32, kSamples = 16;
 
@@ -124,7 +123,7 @@ std::vector<float> depths_of(const SetupTriangles& triangles) {
   std::vector<float> depths(kWidth * kHeight * kSamples, 2.0f);
   std::vector<SampleFragment> fragments;
   StageCounters counters;
-  sample_raster(triangles, all_of(triangles), {0, 0, kWidth, kHeight}, sampling, counters, fragments);
+  sample_raster({triangles, {0, 0, kWidth, kHeight}, sampling}, all_of(triangles), counters, fragments);
   for (const SampleFragment& f : fragments)
     for (std::int32_t s = 0; s < kSamples; ++s)
       if (f.mask >> s & 1) {
@@ -336,5 +335,4 @@ TEST(PlacedSetup, StateOfOtherDrawsChangesNoBit) {
   EXPECT_EQ(counters, other_counters);
 }
 
-}  // namespace
-}  // namespace beampipe
+}  // namespace beampipe::placed_setup_test

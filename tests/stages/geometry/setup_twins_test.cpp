@@ -4,8 +4,7 @@
 
 #include "tests/stages/scene_twins.h"
 
-namespace beampipe {
-namespace {
+namespace beampipe::setup_twins_test {
 
 struct Vertex {
   Real x, y, z, w;  // clip space
@@ -171,5 +170,4 @@ TEST_P(SetupTwins, VertexSetup) {
 
 BEAMPIPE_ON_EVERY_SCENE(SetupTwins);
 
-}  // namespace
-}  // namespace beampipe
+}  // namespace beampipe::setup_twins_test

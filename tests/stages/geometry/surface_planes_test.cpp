@@ -10,8 +10,7 @@
 #include "tests/simd/random.h"
 #include "tests/stages/surface_scene.h"
 
-namespace beampipe {
-namespace {
+namespace beampipe::surface_planes_test {
 
 using Rational = boost::multiprecision::cpp_rational;
 
@@ -415,5 +414,4 @@ TEST(SurfacePlanes, AFlattenedMeshHasFiniteNormals) {
     for (int axis = 0; axis < 3; ++axis) EXPECT_TRUE(std::isfinite(vertex.normal[axis]));
 }
 
-}  // namespace
-}  // namespace beampipe
+}  // namespace beampipe::surface_planes_test

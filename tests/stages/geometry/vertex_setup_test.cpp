@@ -12,8 +12,7 @@
 #include "tests/simd/random.h"
 #include "tests/stages/vertex_scenes.h"
 
-namespace beampipe {
-namespace {
+namespace beampipe::vertex_setup_test {
 
 constexpr float kNaN = std::numeric_limits<float>::quiet_NaN(), kInfinity = std::numeric_limits<float>::infinity();
 
@@ -162,16 +161,6 @@ TEST(VertexSetup, KdOfTheDrawReplacesTheMeshs) {
   EXPECT_EQ(scene.setup().attributes.at(0).kd, glm::vec3(3.0f));
 }
 
-// The cost of three vertices outside the view, each: the transformation (4 rows of 3 products and 3 sums), and 7
-// operations to compare it with the view volume (-w, and 6 comparisons). A triangle inside adds:
-// - 6 planes x 3 vertices, each an inner product of 4 products and 3 sums, and a comparison;
-// - per vertex, 1 / w; 3 products and a sum for x, the same for y, 2 products and a sum for z; for x and y each a
-// product,
-//   a sum and a conversion to fixed point, and a conversion and a product back;
-// - its area, 2 products, 5 differences and a comparison;
-// - its depth plane: 3 comparisons to sort its corners, 6 differences, an area (2 products, 1 difference), its
-//   reciprocal, and twice 3 products and a difference;
-// - for each edge 2 products and 4 sums, and for each corner its depth in 32 bits.
 // One thread writes straight to the frame's triangles; several put their parts together.
 TEST(VertexSetup, TheNumberOfThreadsDoesNotMatter) {
   Random random(1);
@@ -205,18 +194,4 @@ TEST(VertexSetup, TheNumberOfThreadsDoesNotMatter) {
   EXPECT_EQ(counters[0].bytes_written, counters[1].bytes_written);
 }
 
-TEST(VertexSetup, CountsOperations) {
-  StageCounters outside, inside;
-  vertex_setup_of(clip_space_scene({{2, 0, 0}, {3, 0, 0}, {2, 0.5f, 0}}), outside);
-  EXPECT_EQ(outside.ops, (OperationCounts{3 * 12, 3 * (12 + 4) + 3 * 7, 3 * 3, 0, 0, 0}));
-  EXPECT_EQ(outside.items_in, 1u);
-  EXPECT_EQ(outside.items_out, 0u);
-  vertex_setup_of(clip_space_scene({{0, 0, 0}, {0.5f, 0, 0}, {0, 0.5f, 0}}), inside);
-  // All vertices are in view, so none is tested against planes.
-  EXPECT_EQ(inside.ops, (OperationCounts{3 * 12 + 3 * (8 + 2 + 2) + 2 + 8, 3 * (12 + 4) + 3 * (3 + 2) + 6 + 3 + 9,
-                                         3 * 3, 0, 3 + 1, 3 * 2 + 3 * 2 + 3}));
-  EXPECT_EQ(inside.items_out, 1u);
-}
-
-}  // namespace
-}  // namespace beampipe
+}  // namespace beampipe::vertex_setup_test

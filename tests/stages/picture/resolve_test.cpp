@@ -7,8 +7,7 @@
 
 #include "tests/stages/surface_scene.h"
 
-namespace beampipe {
-namespace {
+namespace beampipe::resolve_test {
 
 TEST(Resolve, AggregateOverTheBackground) {
   Aggregate quarter = kEmptyAggregate;
@@ -56,11 +55,12 @@ TEST(Resolve, VaryingTrianglesAreShadedInEachCell) {
   surface.triangle[5] = kNoTriangle;
   std::vector<std::pair<std::uint32_t, std::size_t>> asked;
   StageCounters counters;
-  const auto pixels = resolve(
-      surface, 2, shader, glm::vec3(0), counters, 2, [&](std::uint32_t triangle, std::size_t cell) -> CellPlace {
-        asked.emplace_back(triangle, cell);
-        return {cell < 3 ? 0.5f : -0.5f, 0.5f, 0.25f};  // the left pixel is black and the right one is white
-      });
+  const auto pixels =
+      resolve(surface, 2, shader, glm::vec3(0), counters,
+              {2, [&](std::uint32_t triangle, std::size_t cell) -> CellPlace {
+                 asked.emplace_back(triangle, cell);
+                 return {cell < 3 ? 0.5f : -0.5f, 0.5f, 0.25f};  // the left pixel is black and the right one is white
+               }});
   // Of the left pixel's second cell, one run ends where the background is.
   EXPECT_EQ(asked, (std::vector<std::pair<std::uint32_t, std::size_t>>{{0, 0}, {0, 1}, {0, 1}, {0, 2}, {0, 3}}));
   EXPECT_EQ(pixels[0], glm::vec4(0, 0, 0, 7.0f / 8));
@@ -76,7 +76,7 @@ TEST(Resolve, MeanInReinhardsSpace) {
   surface.triangle = {0, 1, 2, 2};
   const std::vector<glm::vec3> colors = {glm::vec3(1), glm::vec3(9), {4, 0.5f, 0.25f}};
   StageCounters counters, linear;
-  const auto image = resolve(surface, tile.pixels(), colors, glm::vec3(0), counters, 1, {}, ResolveSpace::reinhard);
+  const auto image = resolve(surface, tile.pixels(), colors, glm::vec3(0), counters, {.space = ResolveSpace::reinhard});
   for (int c = 0; c < 3; ++c) EXPECT_NEAR(image[0][c], 7.0f / 3.0f, 1e-5f);
   for (int c = 0; c < 3; ++c) EXPECT_NEAR(image[1][c], colors[2][c], 1e-5f);
   EXPECT_EQ(image[0].a, 1.0f);
@@ -89,5 +89,4 @@ TEST(Resolve, MeanInReinhardsSpace) {
   EXPECT_EQ(counters.bytes_read, linear.bytes_read);
 }
 
-}  // namespace
-}  // namespace beampipe
+}  // namespace beampipe::resolve_test

@@ -7,8 +7,7 @@
 #include "stages/raster/sample_raster.h"
 #include "tests/stages/beam_pixels.h"
 
-namespace beampipe {
-namespace {
+namespace beampipe::shade_test {
 
 SetupTriangles with_attributes(const FlatAttributes& flat) {
   SetupTriangles triangles;
@@ -47,59 +46,32 @@ TEST(Shade, FragmentsGetTheirTrianglesColorTimesAlpha) {
   EXPECT_NEAR(fragments.list[0].color[2], 1.0, 4e-6);
 }
 
-struct Lanes {
-  std::uint64_t used, issued;
-  bool operator==(const Lanes&) const = default;
-};
-
-Lanes beam_lanes(const SetupTriangles& triangles) {
-  Fragments fragments = beam_fragments(triangles, {0, 0, 8, 8}, MaskSource::table);
-  StageCounters counters;
-  shade(std::vector<glm::vec3>(triangles.triangles.size(), glm::vec3(1.0f)), fragments.list, counters);
-  return {counters.lanes_used, counters.lanes_issued};
-}
-
-Lanes sample_lanes(const SetupTriangles& triangles) {
-  std::vector<SampleFragment> fragments;
-  StageCounters raster, counters;
-  sample_raster(triangles, all_of(triangles), {0, 0, 8, 8}, {CellGrid{}, standard_pattern(8)}, raster, fragments);
-  shade(std::vector<glm::vec3>(triangles.triangles.size()), fragments, counters);
-  return {counters.lanes_used, counters.lanes_issued};
-}
-
-TEST(Shade, OnePixelTriangleUsesOneLaneOfFour) {
-  SetupTriangles triangles;
-  add_triangle(triangles, {3 * 256 + 20, 20}, {4 * 256 - 20, 30}, {3 * 256 + 30, 230});
-  EXPECT_EQ(beam_lanes(triangles), (Lanes{1, 4}));
-  EXPECT_EQ(sample_lanes(triangles), (Lanes{1, 4}));
-}
-
-// Two triangles in the same pixel have one quad each.
-TEST(Shade, TrianglesDoNotShareQuads) {
-  SetupTriangles triangles;
-  add_triangle(triangles, {20, 20}, {230, 30}, {20, 230});
-  add_triangle(triangles, {240, 240}, {30, 240}, {240, 40});
-  EXPECT_EQ(beam_lanes(triangles), (Lanes{2, 8}));
-  EXPECT_EQ(sample_lanes(triangles), (Lanes{2, 8}));
-}
-
-// All of 8 x 8 pixels make 16 whole quads.
-TEST(Shade, CoveredQuadsHaveNoHelpers) {
-  SetupTriangles triangles;
-  add_triangle(triangles, {-9'000, -9'000}, {20'000, -9'000}, {-9'000, 20'000});
-  EXPECT_EQ(beam_lanes(triangles), (Lanes{64, 64}));
-  EXPECT_EQ(sample_lanes(triangles), (Lanes{64, 64}));
-}
-
-// Per invocation of the Lambert shader: 3 products and 2 sums for the inner product, a subtraction to negate it, a
-// comparison with 0, and 3 products for the colour. Four invocations fill the quad.
-TEST(Shade, CountsOperationsPerInvocation) {
-  SetupTriangles triangles;
-  add_triangle(triangles, {20, 20}, {230, 30}, {20, 230});
-  Fragments fragments = beam_fragments(triangles, {0, 0, 8, 8}, MaskSource::table);
-  StageCounters counters;
-  shade(std::vector<glm::vec3>(1, glm::vec3(1.0f)), fragments.list, counters);
-  EXPECT_EQ(counters.ops, (OperationCounts{4 * 6, 4 * 4, 0, 0, 0, 0}));
+// A triangle in one pixel; two in the same pixel, which share no quad; and one that covers all of 8 x 8 pixels, 16 whole
+// quads.
+TEST(Shade, QuadsOfEachTriangleHaveFourLanes) {
+  SetupTriangles in_a_pixel, two, everywhere;
+  add_triangle(in_a_pixel, {3 * 256 + 20, 20}, {4 * 256 - 20, 30}, {3 * 256 + 30, 230});
+  add_triangle(two, {20, 20}, {230, 30}, {20, 230});
+  add_triangle(two, {240, 240}, {30, 240}, {240, 40});
+  add_everywhere(everywhere, -0.5f);
+  struct Case {
+    const SetupTriangles& triangles;
+    std::uint64_t used, issued;
+  };
+  for (const auto& [triangles, used, issued] : {Case{in_a_pixel, 1, 4}, {two, 2, 8}, {everywhere, 64, 64}}) {
+    const std::vector<glm::vec3> colors(triangles.triangles.size(), glm::vec3(1.0f));
+    const Tile tile{0, 0, 8, 8};
+    Fragments fragments = beam_fragments(triangles, tile, MaskSource::table);
+    std::vector<SampleFragment> samples;
+    StageCounters raster, of_fragments, of_samples;
+    sample_raster({triangles, tile, {CellGrid{}, standard_pattern(8)}}, all_of(triangles), raster, samples);
+    shade(colors, fragments.list, of_fragments);
+    shade(colors, samples, of_samples);
+    for (const StageCounters& counters : {of_fragments, of_samples}) {
+      EXPECT_EQ(counters.lanes_used, used);
+      EXPECT_EQ(counters.lanes_issued, issued);
+    }
+  }
 }
 
 // fp16 has 11 significant bits. 1 + 2^-11 lies half-way between 1 and the next number and is rounded to the even one.
@@ -116,5 +88,4 @@ TEST(Shade, HalfRounding) {
   EXPECT_NE(found[1].x, 0.1f);
 }
 
-}  // namespace
-}  // namespace beampipe
+}  // namespace beampipe::shade_test

@@ -10,8 +10,7 @@
 #include "stages/samples/test_depth.h"
 #include "tests/stages/scene_twins.h"
 
-namespace beampipe {
-namespace {
+namespace beampipe::shading_twins_test {
 
 class ShadingTwins : public SceneTwins {
  protected:
@@ -64,7 +63,7 @@ class ShadingTwins : public SceneTwins {
   std::vector<SampleFragment> sample_fragments(const Sampling& sampling) {
     StageCounters ignored;
     std::vector<SampleFragment> fragments;
-    sample_raster(triangles_, list_, tile_, sampling, ignored, fragments);
+    sample_raster({triangles_, tile_, sampling}, list_, ignored, fragments);
     return fragments;
   }
 
@@ -112,7 +111,7 @@ TEST_P(ShadingTwins, ResolveSamples) {
   StageCounters ignored, counters;
   SampleTile surface(tile_, sampling);
   std::vector<SampleAccess> accesses;
-  depth_test(triangles_, sample_fragments(sampling), tile_, sampling, ignored, surface, accesses);
+  depth_test({triangles_, tile_, sampling}, sample_fragments(sampling), ignored, surface, accesses);
   const std::vector<glm::vec4> image = resolve(surface, tile_.pixels(), colors_, background, counters);
   for (std::size_t pixel = 0; pixel < tile_.pixels(); ++pixel) {
     for (int c = 0; c < 3; ++c) {
@@ -178,5 +177,4 @@ TEST_P(ShadingTwins, StencilTest) {
 
 BEAMPIPE_ON_EVERY_SCENE(ShadingTwins);
 
-}  // namespace
-}  // namespace beampipe
+}  // namespace beampipe::shading_twins_test

@@ -12,8 +12,7 @@
 #include "tests/simd/random.h"
 #include "tests/stages/screen_triangles.h"
 
-namespace beampipe {
-namespace {
+namespace beampipe::bin_sort_test {
 
 void expect_rounded_to_the_viewer(float depth) {
   const float nearest = nearest_of(sort_key(depth));
@@ -180,5 +179,4 @@ TEST(BinSort, CountsItsWork) {
   EXPECT_EQ(counters.ops, expected * 37);
 }
 
-}  // namespace
-}  // namespace beampipe
+}  // namespace beampipe::bin_sort_test

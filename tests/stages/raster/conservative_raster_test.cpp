@@ -9,8 +9,7 @@
 
 #include "tests/stages/screen_triangles.h"
 
-namespace beampipe {
-namespace {
+namespace beampipe::conservative_raster_test {
 
 constexpr Tile kFrame{0, 0, 12, 10};
 
@@ -93,14 +92,6 @@ TEST(ConservativeRaster, FindsExactlyTheTouchedPixels) {
   EXPECT_EQ(raster.counters.items_out, expected.size());
 }
 
-TEST(ConservativeRaster, CornersTouch) {
-  // Its right-angled corner is the pixel corner (2, 2); the triangle lies below and to the right.
-  SetupTriangles triangles;
-  add_triangle(triangles, {512, 512}, {600, 512}, {512, 600});
-  const std::set<TouchedPair> expected = {{0, 1, 1, false}, {0, 2, 1, false}, {0, 1, 2, false}, {0, 2, 2, false}};
-  EXPECT_EQ(rasterize(triangles, kFrame).set(), expected);
-}
-
 TEST(ConservativeRaster, TilesTogetherGiveWhatOneTileGives) {
   Random random(102);
   SCOPED_TRACE(random.name());
@@ -139,25 +130,4 @@ TEST(ConservativeRaster, QuadNumbersNameQuads) {
   EXPECT_EQ(distinct.size(), quads.size());
 }
 
-// Counted by hand. The triangle's bounds touch the pixels 1..2 in x and in y, and the triangle touches all of them
-// except (2, 2).
-// - The bounds take 8 minima and maxima, 2 sums and a shift each, and 4 more to stay in the tile.
-// - Before the first cell: its corner, 2 products; for each edge the value there (2 products and sums), two steps (2
-//   products), and its deepest and shallowest corner (3 operations each).
-// - Then, per edge, a sum for each of 3 steps and, per cell, twice a sum and a comparison.
-// - The nearest and the farthest vertex take 4. For each pair, the plane takes 2 products, 4 sums and 3 conversions,
-// its
-//   reach 1 product, 1 sum and 2 absolute values, and the bounds 2 sums and 4 minima and maxima.
-TEST(ConservativeRaster, CountsCellsAndOperations) {
-  SetupTriangles triangles;
-  add_triangle(triangles, {300, 300}, {700, 310}, {310, 700});
-  const Raster raster = rasterize(triangles, kFrame);
-  EXPECT_EQ(raster.counters.lanes_issued, 4u);
-  EXPECT_EQ(raster.counters.lanes_used, 3u);
-  EXPECT_EQ(raster.counters.ops,
-            (OperationCounts{2 + 3 * 6 + 3 * 3, 16 + 3 * 12 + 3 * 3 + 4 * 3 * 4 + 4 + 3 * 11, 4 + 3 * 2, 0, 0, 3 * 3}));
-  EXPECT_EQ(raster.counters.bytes_written, 3u * 16);
-}
-
-}  // namespace
-}  // namespace beampipe
+}  // namespace beampipe::conservative_raster_test

@@ -9,8 +9,7 @@
 #include "stages/raster/traverse.h"
 #include "tests/stages/scene_twins.h"
 
-namespace beampipe {
-namespace {
+namespace beampipe::raster_twins_test {
 
 struct Cell {
   std::uint32_t triangle;
@@ -80,7 +79,7 @@ class RasterTwins : public SceneTwins {
 TEST_P(RasterTwins, ConservativeRaster) {
   StageCounters counters;
   std::vector<Pair> pairs;
-  conservative_raster(triangles_, list_, tile_, counters, pairs, nullptr, PairDepths::none);
+  conservative_raster(triangles_, list_, tile_, counters, pairs, {.depths = PairDepths::none});
   std::vector<Cell> found, expected;
   for (const Pair& pair : pairs) found.push_back({pair.triangle, pair.x, pair.y, pair.full ? 1u : 0u});
   for (const std::uint32_t index : list_)
@@ -101,7 +100,7 @@ TEST_P(RasterTwins, SampleRaster) {
        {Sampling{CellGrid{}, standard_pattern(8)}, Sampling{CellGrid{2, 2}, standard_pattern(4)}}) {
     StageCounters counters;
     std::vector<SampleFragment> fragments;
-    sample_raster(triangles_, list_, tile_, sampling, counters, fragments);
+    sample_raster({triangles_, tile_, sampling}, list_, counters, fragments);
     std::vector<Cell> found, expected;
     for (const SampleFragment& fragment : fragments)
       found.push_back({fragment.triangle, fragment.x, fragment.y, fragment.mask});
@@ -136,5 +135,4 @@ TEST_P(RasterTwins, SampleRaster) {
 
 BEAMPIPE_ON_EVERY_SCENE(RasterTwins);
 
-}  // namespace
-}  // namespace beampipe
+}  // namespace beampipe::raster_twins_test

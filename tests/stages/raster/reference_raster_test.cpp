@@ -8,8 +8,7 @@
 
 #include "tests/stages/screen_triangles.h"
 
-namespace beampipe {
-namespace {
+namespace beampipe::reference_raster_test {
 
 // Finds the owners by testing every triangle at every sample, from the first to the last. A pixel has 256 rows of 16
 // samples. Those of row r are shifted to the right by (reverse(r) + 1/2) / 256 of the distance between samples;
@@ -91,5 +90,4 @@ TEST(ReferenceRaster, ResolveIsTheMeanOfTheSamples) {
   EXPECT_EQ(image[1], glm::vec4(0, 0, 0.5f, 0));
 }
 
-}  // namespace
-}  // namespace beampipe
+}  // namespace beampipe::reference_raster_test

@@ -10,8 +10,7 @@
 #include "tests/stages/screen_triangles.h"
 #include "tests/stages/surface_scene.h"
 
-namespace beampipe {
-namespace {
+namespace beampipe::reference_surfaces_test {
 
 std::vector<glm::vec4> picture(const Trace& trace) {
   const ShadedScene scene(trace);
@@ -148,5 +147,4 @@ TEST(ReferenceSurfaces, LayersCoverWhatTheyCover) {
   EXPECT_NEAR(pixel.a, green + layer / 2, 1e-6);
 }
 
-}  // namespace
-}  // namespace beampipe
+}  // namespace beampipe::reference_surfaces_test

@@ -2,8 +2,7 @@
 
 #include <gtest/gtest.h>
 
-namespace beampipe {
-namespace {
+namespace beampipe::accumulate_test {
 
 constexpr Tile kPixel{0, 0, 1, 1};
 
@@ -35,5 +34,4 @@ TEST(Accumulate, TheStencilIsWrittenWhereSamplesPass) {
   EXPECT_EQ(counters.bytes_written, 3u);
 }
 
-}  // namespace
-}  // namespace beampipe
+}  // namespace beampipe::accumulate_test

@@ -7,8 +7,7 @@
 
 #include "tests/stages/surface_scene.h"
 
-namespace beampipe {
-namespace {
+namespace beampipe::alpha_test_test {
 
 // A rectangle that fills the tile, with alpha 0 in the left half of the texture, 160 / 255 in the right half.
 struct Tested {
@@ -29,7 +28,8 @@ Tested tested(const ShadedScene& scene, AlphaCoverage coverage, const std::vecto
               const std::vector<glm::vec2>& places, const CellGrid& grid = {}) {
   Tested result{fragments, {}};
   const Tile tile = scene.frame_tile();
-  alpha_test({scene.shader, tile}, tile, grid, 8, coverage, places, result.counters, result.fragments);
+  alpha_test({scene.shader, tile}, {tile, {grid, standard_pattern(8)}, coverage, places}, result.counters,
+             result.fragments);
   return result;
 }
 
@@ -127,5 +127,4 @@ TEST(AlphaTest, CountsItsWork) {
   }
 }
 
-}  // namespace
-}  // namespace beampipe
+}  // namespace beampipe::alpha_test_test

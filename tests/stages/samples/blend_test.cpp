@@ -6,8 +6,7 @@
 #include "stages/samples/test_depth.h"
 #include "tests/stages/surface_scene.h"
 
-namespace beampipe {
-namespace {
+namespace beampipe::blend_test {
 
 constexpr Tile kTile{0, 0, 4, 4};
 
@@ -38,8 +37,8 @@ Blended blended_at(const std::vector<std::uint32_t>& triangles, std::uint32_t ma
   for (float& stored : result.surface.depth) stored = depth - 1;
   std::vector<SampleFragment> fragments;
   for (const std::uint32_t triangle : triangles) fragments.push_back({triangle, 0, 1, 2, mask});
-  blend(scene.triangles, {scene.shader, kTile}, fragments, std::vector(fragments.size(), glm::vec2(0.5f)), 1, kTile,
-        kMsaa8, result.counters, result.surface, result.accesses);
+  blend({scene.triangles, kTile, kMsaa8}, {scene.shader, kTile},
+        {fragments, std::vector(fragments.size(), glm::vec2(0.5f))}, result.counters, result.surface, result.accesses);
   return result;
 }
 
@@ -87,7 +86,7 @@ TEST(Blend, CountsItsWork) {
   SampleTile surface(kTile, kMsaa8);
   for (float& stored : surface.depth) stored = 0.4f - 1;
   std::vector<SampleAccess> accesses;
-  depth_test(scene.triangles, {{0, 0, 1, 2, 0xffu}, {2, 0, 1, 2, 0xffu}}, kTile, kMsaa8, depth, surface, accesses);
+  depth_test({scene.triangles, kTile, kMsaa8}, {{0, 0, 1, 2, 0xffu}, {2, 0, 1, 2, 0xffu}}, depth, surface, accesses);
   // A sample that passes: one difference, and in each channel a product and a sum, between conversions from and to
   // fp16.
   OperationCounts expected = depth.ops;
@@ -104,5 +103,4 @@ TEST(Blend, CountsTheAlphaOfLayers) {
   EXPECT_EQ(layer.counters.bytes_written, 8u * 8);
 }
 
-}  // namespace
-}  // namespace beampipe
+}  // namespace beampipe::blend_test

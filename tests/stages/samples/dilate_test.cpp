@@ -3,8 +3,7 @@
 
 #include <gtest/gtest.h>
 
-namespace beampipe {
-namespace {
+namespace beampipe::dilate_test {
 
 const std::vector<glm::vec3> kColors = {glm::vec3(1.0f), glm::vec3(0.5f), glm::vec3(0.25f)};
 const std::vector<std::uint32_t> kDraws = {0, 1, 0};
@@ -70,5 +69,4 @@ TEST(Dilate, CountsWhatItLooksAt) {
   EXPECT_EQ(counters.lanes_issued, 16u);
 }
 
-}  // namespace
-}  // namespace beampipe
+}  // namespace beampipe::dilate_test

@@ -8,8 +8,7 @@
 #include "stages/data/sample_tile.h"
 #include "stages/samples/materials.h"
 
-namespace beampipe {
-namespace {
+namespace beampipe::material_sort_test {
 
 std::vector<std::uint32_t> sorted(const std::vector<std::uint32_t>& triangles, const Materials& materials,
                                   StageCounters& counters) {
@@ -78,5 +77,4 @@ TEST(MaterialSort, CountsItsWork) {
   EXPECT_EQ(two.bytes_written, 2 * (3u * 8 + 1024));
 }
 
-}  // namespace
-}  // namespace beampipe
+}  // namespace beampipe::material_sort_test

@@ -2,8 +2,7 @@
 
 #include <gtest/gtest.h>
 
-namespace beampipe {
-namespace {
+namespace beampipe::materials_test {
 
 SetupTriangles triangles_of(const std::vector<std::uint32_t>& draws, const std::vector<glm::vec3>& colors) {
   SetupTriangles triangles;
@@ -20,5 +19,4 @@ TEST(Materials, AreTheDrawAndTheColor) {
   EXPECT_EQ(material_ids(triangles, MaterialBy::draw), triangles.draws);
 }
 
-}  // namespace
-}  // namespace beampipe
+}  // namespace beampipe::materials_test

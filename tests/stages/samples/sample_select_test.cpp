@@ -7,8 +7,7 @@
 #include <random>
 #include <set>
 
-namespace beampipe {
-namespace {
+namespace beampipe::sample_select_test {
 
 constexpr Tile kQuad{0, 0, 2, 2};
 const Sampling kEight{CellGrid{}, standard_pattern(8)};
@@ -133,5 +132,4 @@ TEST(SampleSelect, PixelsOutsideTheFrameHaveNoSamples) {
   }
 }
 
-}  // namespace
-}  // namespace beampipe
+}  // namespace beampipe::sample_select_test

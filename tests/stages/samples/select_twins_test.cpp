@@ -6,8 +6,7 @@
 #include "stages/samples/test_depth.h"
 #include "tests/stages/scene_twins.h"
 
-namespace beampipe {
-namespace {
+namespace beampipe::select_twins_test {
 
 class SelectTwins : public SceneTwins {
  protected:
@@ -116,8 +115,8 @@ TEST_P(SelectTwins, SampleSelect) {
   std::vector<SampleFragment> fragments;
   std::vector<SampleAccess> accesses;
   SampleTile surface(tile_, sampling);
-  sample_raster(triangles_, list_, tile_, sampling, ignored, fragments);
-  depth_test(triangles_, fragments, tile_, sampling, ignored, surface, accesses);
+  sample_raster({triangles_, tile_, sampling}, list_, ignored, fragments);
+  depth_test({triangles_, tile_, sampling}, fragments, ignored, surface, accesses);
   std::vector<std::uint32_t> materials;
   for (const std::uint32_t triangle : list_) materials.push_back(triangle / 3);
   const SelectOptions options{.jitter = 5, .seed = 7};
@@ -146,5 +145,4 @@ TEST_P(SelectTwins, SampleSelect) {
 
 BEAMPIPE_ON_EVERY_SCENE(SelectTwins);
 
-}  // namespace
-}  // namespace beampipe
+}  // namespace beampipe::select_twins_test

@@ -8,8 +8,7 @@
 #include "stages/raster/sample_raster.h"
 #include "tests/stages/screen_triangles.h"
 
-namespace beampipe {
-namespace {
+namespace beampipe::shading_point_test {
 
 constexpr Tile kTile{0, 0, 8, 8};
 
@@ -18,7 +17,7 @@ std::vector<SampleFragment> fragments_of(const SetupTriangles& triangles, const 
   for (std::uint32_t i = 0; i < triangles.triangles.size(); ++i) list.push_back(i);
   std::vector<SampleFragment> fragments;
   StageCounters counters;
-  sample_raster(triangles, list, kTile, sampling, counters, fragments);
+  sample_raster({triangles, kTile, sampling}, list, counters, fragments);
   return fragments;
 }
 
@@ -84,5 +83,4 @@ TEST(ShadingPoint, CountsWhatItLooksAt) {
   EXPECT_EQ(counters.ops, all);
 }
 
-}  // namespace
-}  // namespace beampipe
+}  // namespace beampipe::shading_point_test

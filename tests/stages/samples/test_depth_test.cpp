@@ -10,8 +10,7 @@
 #include "stages/raster/sample_raster.h"
 #include "tests/stages/screen_triangles.h"
 
-namespace beampipe {
-namespace {
+namespace beampipe::test_depth_test {
 
 constexpr Tile kTile{2, 4, 6, 8};  // not at the frame's origin
 
@@ -23,10 +22,10 @@ struct Tested {
 Tested render(const SetupTriangles& triangles, const Sampling& sampling, const Tile& tile = kTile) {
   std::vector<SampleFragment> fragments;
   StageCounters raster;
-  sample_raster(triangles, all_of(triangles), tile, sampling, raster, fragments);
+  sample_raster({triangles, tile, sampling}, all_of(triangles), raster, fragments);
   Tested tested{SampleTile(tile, sampling), {}};
   std::vector<SampleAccess> accesses;
-  depth_test(triangles, fragments, tile, sampling, tested.counters, tested.surface, accesses);
+  depth_test({triangles, tile, sampling}, fragments, tested.counters, tested.surface, accesses);
   return tested;
 }
 
@@ -81,13 +80,13 @@ std::size_t left_out(const SetupTriangles& triangles, const Sampling& sampling) 
   StageCounters unused;
   std::vector<SampleAccess> accesses;
   std::vector<SampleFragment> fragments;
-  sample_raster(triangles, all_of(triangles), kTile, sampling, unused, fragments);
-  depth_test(triangles, fragments, kTile, sampling, unused, all, accesses);
+  sample_raster({triangles, kTile, sampling}, all_of(triangles), unused, fragments);
+  depth_test({triangles, kTile, sampling}, fragments, unused, all, accesses);
   const std::size_t before = fragments.size();
   fragments.clear();
   ClosedDepth closed(cells_of(kTile, sampling.grid));
-  sample_raster(triangles, all_of(triangles), kTile, sampling, unused, fragments, &closed);
-  depth_test(triangles, fragments, kTile, sampling, unused, open, accesses);
+  sample_raster({triangles, kTile, sampling}, all_of(triangles), unused, fragments, &closed);
+  depth_test({triangles, kTile, sampling}, fragments, unused, open, accesses);
   EXPECT_EQ(open.depth, all.depth);
   EXPECT_EQ(open.triangle, all.triangle);
   return before - fragments.size();
@@ -179,5 +178,4 @@ TEST(DepthTestStage, CountsOperationsAndBytes) {
   EXPECT_EQ(found.counters.bytes_written, samples * (4 + 6));
 }
 
-}  // namespace
-}  // namespace beampipe
+}  // namespace beampipe::test_depth_test

@@ -8,8 +8,7 @@
 #include "stages/surface/texture_set.h"
 #include "tests/simd/random.h"
 
-namespace beampipe {
-namespace {
+namespace beampipe::mip_chain_test {
 
 double linear_of(int code) {  // IEC 61966-2-1
   const double encoded = code / 255.0;
@@ -136,5 +135,4 @@ TEST(MipChain, ASetHasTheColorSpacesThatMaterialsRead) {
   }
 }
 
-}  // namespace
-}  // namespace beampipe
+}  // namespace beampipe::mip_chain_test

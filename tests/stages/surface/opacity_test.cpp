@@ -9,8 +9,7 @@
 
 #include "tests/simd/random.h"
 
-namespace beampipe {
-namespace {
+namespace beampipe::opacity_test {
 
 constexpr std::uint32_t kPositions = 256;
 
@@ -165,5 +164,4 @@ TEST(Opacity, StacksTransmitTheirProduct) {
   }
 }
 
-}  // namespace
-}  // namespace beampipe
+}  // namespace beampipe::opacity_test

@@ -9,8 +9,7 @@
 #include "tests/simd/random.h"
 #include "tests/stages/surface_scene.h"
 
-namespace beampipe {
-namespace {
+namespace beampipe::sheets_test {
 
 using Sheets = std::vector<std::uint32_t>;
 
@@ -197,5 +196,4 @@ TEST(Sheets, DrawsAreSheetsOfTheirOwn) {
   EXPECT_EQ(Sheets(found.begin() + 6, found.end()), (Sheets{2, 2}));
 }
 
-}  // namespace
-}  // namespace beampipe
+}  // namespace beampipe::sheets_test

@@ -10,8 +10,7 @@
 
 #include "tests/simd/random.h"
 
-namespace beampipe {
-namespace {
+namespace beampipe::surface_formulas_test {
 
 struct Case {
   glm::dvec3 base, normal, to_eye;
@@ -241,5 +240,4 @@ TEST(SurfaceFormulas, UnlitAndEmissive) {
   EXPECT_EQ(lit_color(material, surface, {}), (Triple<float>{2, 0, 0.5f}));
 }
 
-}  // namespace
-}  // namespace beampipe
+}  // namespace beampipe::surface_formulas_test

@@ -11,8 +11,7 @@
 #include "tests/simd/random.h"
 #include "tests/stages/surface_scene.h"
 
-namespace beampipe {
-namespace {
+namespace beampipe::surface_shader_test {
 
 // A rectangle of 8 x 8 pixels whose red is linear in u: a gradient of 8 texels, as seen at 1 texel per pixel.
 SurfaceTrace gradient() {
@@ -545,5 +544,4 @@ TEST(SurfaceShaderCost, FlatTrianglesCostWhatTheyDid) {
   EXPECT_EQ(shaded.shader.work(0).input_bytes, sizeof(FlatAttributes));
 }
 
-}  // namespace
-}  // namespace beampipe
+}  // namespace beampipe::surface_shader_test

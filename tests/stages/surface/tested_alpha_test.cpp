@@ -12,8 +12,7 @@
 #include "tests/simd/random.h"
 #include "tests/stages/surface_scene.h"
 
-namespace beampipe {
-namespace {
+namespace beampipe::tested_alpha_test {
 
 TextureImage noise(std::uint32_t width, std::uint32_t height) {
   TextureImage image = filled_image(width, height, {255, 255, 255, 255});
@@ -119,5 +118,4 @@ TEST(TestedAlpha, OnlyMaterialsThatAreAskedForAreTested) {
   EXPECT_FALSE(set.tested_alpha(1).shares.levels.empty());
 }
 
-}  // namespace
-}  // namespace beampipe
+}  // namespace beampipe::tested_alpha_test

@@ -5,8 +5,7 @@
 
 #include <vector>
 
-namespace beampipe {
-namespace {
+namespace beampipe::texel_requests_test {
 
 constexpr ColorSpace kLinear = ColorSpace::linear, kSrgb = ColorSpace::srgb;
 
@@ -102,5 +101,4 @@ TEST(TexelRequests, WithoutALayoutTexelsAreCounted) {
   EXPECT_TRUE(requests_of(texels).empty());
 }
 
-}  // namespace
-}  // namespace beampipe
+}  // namespace beampipe::texel_requests_test

@@ -8,8 +8,7 @@
 
 #include "tests/simd/random.h"
 
-namespace beampipe {
-namespace {
+namespace beampipe::texture_filter_test {
 
 constexpr float kInfinity = std::numeric_limits<float>::infinity(), kNan = std::numeric_limits<float>::quiet_NaN();
 
@@ -249,5 +248,4 @@ TEST(TextureFilter, ThePeriodHasNoSeam) {
     EXPECT_EQ(filtered(chain, texture, {u, 0.5f}, TextureSlopes{}, kIgnored).r, 0);
 }
 
-}  // namespace
-}  // namespace beampipe
+}  // namespace beampipe::texture_filter_test

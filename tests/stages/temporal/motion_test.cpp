@@ -7,8 +7,7 @@
 #include <glm/gtc/matrix_transform.hpp>
 #include <limits>
 
-namespace beampipe {
-namespace {
+namespace beampipe::motion_test {
 
 constexpr std::int32_t kSize = 16;
 constexpr Tile kTile{0, 0, kSize, kSize};
@@ -43,7 +42,7 @@ SampleTile full_surface(float depth, const Sampling& sampling = {CellGrid{}, sta
 
 std::vector<glm::vec2> vectors(const SampleTile& surface, const Frame& now, const Frame& before) {
   StageCounters counters;
-  return motion(surface, kTile, now, {0}, to_last_frame(poses_of(now), poses_of(before)), counters);
+  return motion(surface, {kTile, now, {0}, to_last_frame(poses_of(now), poses_of(before))}, counters);
 }
 
 const glm::dmat4 kIdentity(1.0);
@@ -97,7 +96,7 @@ TEST(Motion, FollowsTheCameraByDepth) {
 std::vector<glm::vec2> placed_vectors(const SampleTile& surface, const Frame& now, const Frame& before,
                                       const DrawPlacement& placement) {
   StageCounters counters;
-  return motion(surface, kTile, now, {0}, to_last_frame(poses_of(now, {placement}), poses_of(before, {placement})),
+  return motion(surface, {kTile, now, {0}, to_last_frame(poses_of(now, {placement}), poses_of(before, {placement}))},
                 counters);
 }
 
@@ -148,7 +147,8 @@ TEST(Motion, FollowsTheNearestSample) {
 PixelContents contents_of(const SampleTile& surface, const Frame& now, const Frame& before) {
   StageCounters counters;
   const std::vector<std::uint32_t> draws = {0, 1};
-  return contents(surface, kTile, now, draws, to_last_frame(poses_of(now), poses_of(before)), looks_of(now), counters);
+  return contents(surface, {kTile, now, draws, to_last_frame(poses_of(now), poses_of(before))}, looks_of(now),
+                  counters);
 }
 
 TEST(Motion, ContentsAreThoseOfAllSamples) {
@@ -215,8 +215,8 @@ TEST(Motion, DrawsAreKnownByIndexAndMesh) {
 TEST(Motion, CountsItsArithmetic) {
   const Frame frame = flat_frame(kIdentity);
   StageCounters counters;
-  motion(full_surface(-0.5f, {CellGrid{}, standard_pattern(8)}), kTile, frame, {0},
-         to_last_frame(poses_of(frame), poses_of(frame)), counters);
+  motion(full_surface(-0.5f, {CellGrid{}, standard_pattern(8)}),
+         {kTile, frame, {0}, to_last_frame(poses_of(frame), poses_of(frame))}, counters);
   // Seven comparisons and selections find the nearest of 8 samples. To this frame's clip space: x and y (multiplied,
   // divided, minus one) and the depth. Then three rows of a matrix, a division, two coordinates to pixels, the
   // difference, the test whether it is in front of the eye, and the conversions to float and fp16.
@@ -230,15 +230,15 @@ TEST(Motion, CountsItsArithmetic) {
   EXPECT_EQ(counters.lanes_issued, kSize * kSize * 1u);
   // Without ids, neither the draw nor its matrix is fetched.
   counters = {};
-  motion(full_surface(-0.5f, {CellGrid{}, standard_pattern(8)}), kTile, frame, {0},
-         to_last_frame(poses_of(frame), poses_of(frame)), counters, MotionFrom::depth);
+  motion(full_surface(-0.5f, {CellGrid{}, standard_pattern(8)}),
+         {kTile, frame, {0}, to_last_frame(poses_of(frame), poses_of(frame))}, counters, MotionFrom::depth);
   OperationCounts without_ids = pixel;
   without_ids.fetch = 0;
   EXPECT_EQ(counters.ops, without_ids * (kSize * kSize));
   EXPECT_EQ(counters.bytes_read, kSize * kSize * 8 * 4u);
   counters = {};
-  contents(full_surface(-0.5f, {CellGrid{}, standard_pattern(8)}), kTile, frame, {0},
-           to_last_frame(poses_of(frame), poses_of(frame)), looks_of(frame), counters);
+  contents(full_surface(-0.5f, {CellGrid{}, standard_pattern(8)}),
+           {kTile, frame, {0}, to_last_frame(poses_of(frame), poses_of(frame))}, looks_of(frame), counters);
   // The draws of eight samples are compared in 28 pairs. Then a root, to fp16. For the one draw: its look, its matrix,
   // the motion, its square and the maximum.
   const OperationCounts set{0, 28, 0, 8, 1, 1}, draw{18 + 2, 18 + 2, 1, 2, 2 + 1, 4};
@@ -249,5 +249,4 @@ TEST(Motion, CountsItsArithmetic) {
   EXPECT_EQ(counters.bytes_written, kSize * kSize * (4 + 2));
 }
 
-}  // namespace
-}  // namespace beampipe
+}  // namespace beampipe::motion_test

@@ -6,8 +6,7 @@
 #include <cmath>
 #include <limits>
 
-namespace beampipe {
-namespace {
+namespace beampipe::temporal_test {
 
 constexpr float kOld = 1.0f, kOther = 0.5f, kNew = 0.25f;
 
@@ -148,5 +147,4 @@ TEST(Temporal, CountsWhatItLooksAt) {
   EXPECT_EQ(counters.bytes_written, 2u * 17);
 }
 
-}  // namespace
-}  // namespace beampipe
+}  // namespace beampipe::temporal_test

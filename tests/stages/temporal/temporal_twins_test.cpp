@@ -15,8 +15,7 @@
 #include "stages/temporal/temporal.h"
 #include "tests/stages/scene_twins.h"
 
-namespace beampipe {
-namespace {
+namespace beampipe::temporal_twins_test {
 
 constexpr std::size_t kSamples = 8;
 
@@ -30,8 +29,8 @@ class TemporalTwins : public SceneTwins {
     std::vector<SampleFragment> fragments;
     std::vector<SampleAccess> accesses;
     surface_ = SampleTile(tile_, sampling);
-    sample_raster(triangles_, list_, tile_, sampling, ignored, fragments);
-    depth_test(triangles_, fragments, tile_, sampling, ignored, surface_, accesses);
+    sample_raster({triangles_, tile_, sampling}, list_, ignored, fragments);
+    depth_test({triangles_, tile_, sampling}, fragments, ignored, surface_, accesses);
     colors_ = shade_triangles(triangles_, frame.lighting);
     Poses before = poses_of(frame);
     before.view_projection = glm::translate(glm::dmat4(1.0), glm::dvec3(0.05, -0.03, 0)) * before.view_projection;
@@ -84,8 +83,8 @@ class TemporalTwins : public SceneTwins {
     StageCounters ignored;
     CurrentFrame frame(trace_.frames[0].width, trace_.frames[0].height);
     dilate(quads_, triangles_.draws, trace_.frames[0].background, tile_, ignored, frame);
-    frame.motion = motion(surface_, tile_, trace_.frames[0], triangles_.draws, to_last_, ignored);
-    PixelContents found = contents(surface_, tile_, trace_.frames[0], triangles_.draws, to_last_, looks_, ignored);
+    frame.motion = motion(surface_, {tile_, trace_.frames[0], triangles_.draws, to_last_}, ignored);
+    PixelContents found = contents(surface_, {tile_, trace_.frames[0], triangles_.draws, to_last_}, looks_, ignored);
     frame.looks = std::move(found.looks), frame.speeds = std::move(found.speeds);
     return frame;
   }
@@ -116,7 +115,8 @@ class TemporalTwins : public SceneTwins {
 
 TEST_P(TemporalTwins, Motion) {
   StageCounters counters;
-  const std::vector<glm::vec2> found = motion(surface_, tile_, trace_.frames[0], triangles_.draws, to_last_, counters);
+  const std::vector<glm::vec2> found =
+      motion(surface_, {tile_, trace_.frames[0], triangles_.draws, to_last_}, counters);
   for (std::size_t i = 0; i < tile_.pixels(); ++i) {
     std::size_t at = kSamples * i;
     Float nearest = real(surface_.depth[at]);
@@ -134,7 +134,8 @@ TEST_P(TemporalTwins, Motion) {
 
 TEST_P(TemporalTwins, Contents) {
   StageCounters counters;
-  const PixelContents found = contents(surface_, tile_, trace_.frames[0], triangles_.draws, to_last_, looks_, counters);
+  const PixelContents found =
+      contents(surface_, {tile_, trace_.frames[0], triangles_.draws, to_last_}, looks_, counters);
   for (std::size_t i = 0; i < tile_.pixels(); ++i) {
     Bits look(0u);
     Float fastest = real(0.0f);
@@ -298,5 +299,4 @@ TEST_P(TemporalTwins, Temporal) {
 
 BEAMPIPE_ON_EVERY_SCENE(TemporalTwins);
 
-}  // namespace
-}  // namespace beampipe
+}  // namespace beampipe::temporal_twins_test

@@ -20,8 +20,7 @@
 #include "tools/files/digest.h"
 #include "traces/scenes.h"
 
-namespace beampipe {
-namespace {
+namespace beampipe::claims_test {
 
 // ---- The data ----
 
@@ -298,8 +297,8 @@ TEST(Claims, AreCountedByKind) {
   EXPECT_LT(text.find("| a |"), text.find("## True by definition"));
   EXPECT_GT(text.find("| b |"), text.find("## True by definition"));
   EXPECT_TRUE(claims_text({formula, unknown}).ends_with("0 without a number, 1 whose reports were not given.\n"));
-  EXPECT_EQ(to_json(constant)["kind"].get<std::string>(), "true by definition");
-  EXPECT_EQ(to_json(formula)["kind"].get<std::string>(), "rendered");
+  EXPECT_EQ(claim_form().write(constant)["kind"].get<std::string>(), "true by definition");
+  EXPECT_EQ(claim_form().write(formula)["kind"].get<std::string>(), "rendered");
 }
 
 TEST(Claims, OfTimesAreThereForEachImplementation) {
@@ -355,7 +354,7 @@ TEST(Claims, DifferenceIsFromTheNearerEnd) {
   EXPECT_EQ(claim.difference(), 0);
   claim.ours.reset();
   EXPECT_FALSE(claim.difference());
-  EXPECT_TRUE(to_json(claim)["ours"].is_null());
+  EXPECT_TRUE(claim_form().write(claim)["ours"].is_null());
 }
 
 // The rows of a Markdown table in a text, without the columns of our number and the difference, which need rendering.
@@ -443,5 +442,4 @@ TEST(Claims, MostFragmentsOfAPixelAreThoseOfTheClassroomWhateverItsFileIsCalled)
   EXPECT_EQ(most(), 61);
 }
 
-}  // namespace
-}  // namespace beampipe
+}  // namespace beampipe::claims_test

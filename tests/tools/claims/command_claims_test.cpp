@@ -4,8 +4,7 @@
 #include "tests/tools/cli/program_fixture.h"
 #include "traces/files/json.h"
 
-namespace beampipe {
-namespace {
+namespace beampipe::command_claims_test {
 
 class ClaimsCommandTest : public ProgramTest {
  protected:
@@ -53,5 +52,4 @@ TEST_F(ClaimsCommandTest, TakesEachNumberFromTheFirstReportThatHasIt) {
   EXPECT_EQ(remodelled, found) << "bytes do not depend on the hardware";
 }
 
-}  // namespace
-}  // namespace beampipe
+}  // namespace beampipe::command_claims_test

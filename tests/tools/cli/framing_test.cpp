@@ -2,8 +2,7 @@
 
 #include "tests/tools/fixtures.h"
 
-namespace beampipe {
-namespace {
+namespace beampipe::framing_test {
 
 // A box from `low` to `high`.
 Mesh box(glm::vec3 low, glm::vec3 high) {
@@ -138,5 +137,4 @@ TEST(ShoulderLight, TravelsWithTheViewAndDown) {
   }
 }
 
-}  // namespace
-}  // namespace beampipe
+}  // namespace beampipe::framing_test

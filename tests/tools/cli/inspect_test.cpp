@@ -9,8 +9,7 @@
 #include "tools/evaluate/metrics.h"
 #include "tools/files/image_io.h"
 
-namespace beampipe {
-namespace {
+namespace beampipe::inspect_test {
 
 using Parsed = nlohmann::json;  // independent of the program's own Json
 
@@ -233,5 +232,4 @@ TEST_F(InspectTest, MistakesAreOneLineAndLeaveNothing) {
   }
 }
 
-}  // namespace
-}  // namespace beampipe
+}  // namespace beampipe::inspect_test

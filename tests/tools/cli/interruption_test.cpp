@@ -13,8 +13,7 @@
 #include "tools/files/image_io.h"
 #include "tools/files/output.h"
 
-namespace beampipe {
-namespace {
+namespace beampipe::interruption_test {
 
 void pause(int milliseconds) { std::this_thread::sleep_for(std::chrono::milliseconds(milliseconds)); }
 
@@ -133,5 +132,4 @@ TEST_F(ProgramTest, ATerminalShowsProgressAfterASecond) {
   close(program_side);
 }
 
-}  // namespace
-}  // namespace beampipe
+}  // namespace beampipe::interruption_test

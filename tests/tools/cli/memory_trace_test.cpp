@@ -5,8 +5,7 @@
 
 #include "tests/tools/program.h"
 
-namespace beampipe {
-namespace {
+namespace beampipe::memory_trace_test {
 
 using Json = nlohmann::json;
 
@@ -136,5 +135,4 @@ TEST_F(MemoryTrace, SaysWhatItDoesNotGoWith) {
   expect_error({"--memory-trace", (folder_ / "missing/requests").string(), "-t", "beam"}, "No such file or directory");
 }
 
-}  // namespace
-}  // namespace beampipe
+}  // namespace beampipe::memory_trace_test

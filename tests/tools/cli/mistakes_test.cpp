@@ -6,8 +6,7 @@
 
 #include "tests/tools/cli/program_fixture.h"
 
-namespace beampipe {
-namespace {
+namespace beampipe::mistakes_test {
 
 TEST_F(ProgramTest, EveryMistakeIsOneLineAndLeavesNothing) {
   write_text(folder_ / "broken.json", "{\"beampipe_trace\": 1,");
@@ -97,7 +96,7 @@ TEST_F(ProgramTest, EveryMistakeIsOneLineAndLeavesNothing) {
       {{"make", path("model.obj"), "--seed", "2", "-o", path("a.json")}, 2, "--seed"},
       {{"make", path("model.obj"), "--eye", "1,2", "-o", path("a.json")}, 2, "--eye"},
       {{"make", path("model.obj"), "--near", "3", "--far", "2", "-o", path("a.json")}, 2, "near"},
-      {{"make", path("model.obj"), "--lambert", "--unlit", "-o", path("a.json")}, 2, "excludes"},
+      {{"make", path("model.obj"), "--ambient", "0.5", "--unlit", "-o", path("a.json")}, 2, "excludes"},
       {{"make", path("missing.glb"), "-o", path("a.json")}, 1, "missing.glb"},
       {{"make", path("model.obj"), "--materials", "some", "-o", path("a.json")}, 2, "--materials"},
       {{"make", path("model.obj"), "--animation", "0", "-o", path("a.json")}, 2, "--animation"},
@@ -174,5 +173,4 @@ TEST_F(ProgramTest, AFolderInTheReportsPlaceIsRefusedAtOnce) {
   EXPECT_EQ(folder_.list(), before);
 }
 
-}  // namespace
-}  // namespace beampipe
+}  // namespace beampipe::mistakes_test

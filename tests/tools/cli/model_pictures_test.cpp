@@ -8,8 +8,7 @@
 #include "traces/files/model_import.h"
 #include "traces/files/trace_io.h"
 
-namespace beampipe {
-namespace {
+namespace beampipe::model_pictures_test {
 
 constexpr std::uint32_t kSize = 32;  // of the pictures, in pixels
 
@@ -30,7 +29,7 @@ std::optional<Trace> shown(const std::filesystem::path& file) {
 
 TEST(ModelPictures, AreFiniteAndShowTheModel) {
   if (!std::filesystem::exists(kModels)) GTEST_SKIP() << "Debian's package assimp-testmodels is not installed";
-  RunOptions options;
+  FrameInput options;
   options.memory.modelled = false;
   const Technique techniques[] = {parse_technique("beam"), parse_technique("msaa:1")};
   int models = 0;
@@ -50,5 +49,4 @@ TEST(ModelPictures, AreFiniteAndShowTheModel) {
   EXPECT_GE(models, 24);
 }
 
-}  // namespace
-}  // namespace beampipe
+}  // namespace beampipe::model_pictures_test

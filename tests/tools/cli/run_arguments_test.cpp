@@ -2,8 +2,7 @@
 
 #include "tests/tools/fixtures.h"
 
-namespace beampipe {
-namespace {
+namespace beampipe::run_arguments_test {
 
 using Frames = std::vector<std::size_t>;
 using Specs = std::vector<std::string>;
@@ -48,5 +47,4 @@ TEST(ParseTechniques, RefusesDuplicatesAndUnknownSpecs) {
   EXPECT_THROW(parse_techniques({""}), SpecError);
 }
 
-}  // namespace
-}  // namespace beampipe
+}  // namespace beampipe::run_arguments_test

@@ -2,8 +2,7 @@
 
 #include "tests/tools/fixtures.h"
 
-namespace beampipe {
-namespace {
+namespace beampipe::sight_test {
 
 // Two triangles, counter-clockwise as +z sees them, in the plane z.
 Mesh square(float x, float y, float z, float half) {
@@ -81,5 +80,4 @@ TEST(Sight, CountsTrianglesThatNothingHides) {
   EXPECT_EQ(look_at({square(0, 0, 0, 2), square(30, 0, 0, 2)}).triangles, 2u);  // beyond the picture
 }
 
-}  // namespace
-}  // namespace beampipe
+}  // namespace beampipe::sight_test

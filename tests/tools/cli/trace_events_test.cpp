@@ -8,8 +8,7 @@
 #include "pipeline/technique_table.h"
 #include "tests/tools/program.h"
 
-namespace beampipe {
-namespace {
+namespace beampipe::trace_events_test {
 
 using Json = nlohmann::json;
 
@@ -110,5 +109,4 @@ TEST_F(RefusedTraceEvents, OverTheTraceOrInTheOutputFolder) {
     expect_refused(path(file), 2, "output folder");
 }
 
-}  // namespace
-}  // namespace beampipe
+}  // namespace beampipe::trace_events_test

@@ -3,8 +3,7 @@
 #include "tests/tools/program.h"
 #include "tests/tools/varying_trace.h"
 
-namespace beampipe {
-namespace {
+namespace beampipe::trace_notes_test {
 
 // Three frames, each of which draws one triangle that has the trace's first material.
 Trace three_frames() {
@@ -81,5 +80,4 @@ TEST(NoteOnDarkness, IsSaidOnceByInfoRunAndCompare) {
   }
 }
 
-}  // namespace
-}  // namespace beampipe
+}  // namespace beampipe::trace_notes_test

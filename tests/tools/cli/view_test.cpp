@@ -6,8 +6,7 @@
 #include "tests/tools/cli/program_fixture.h"
 #include "tools/files/image_io.h"
 
-namespace beampipe {
-namespace {
+namespace beampipe::view_test {
 
 using Parsed = nlohmann::json;
 
@@ -202,5 +201,4 @@ TEST_F(ViewTest, PreviewShowsModelsAndTraces) {
   EXPECT_EQ(folder_.list(), before);
 }
 
-}  // namespace
-}  // namespace beampipe
+}  // namespace beampipe::view_test

@@ -6,8 +6,7 @@
 #include "tests/tools/fixtures.h"
 #include "tools/cli/sight.h"
 
-namespace beampipe {
-namespace {
+namespace beampipe::viewpoint_test {
 
 enum class Faces { outwards, inwards };
 
@@ -173,5 +172,4 @@ TEST(Viewpoint, RefusesToStandInsideOfAPlane) {
   EXPECT_THROW(view(trace, {}, Standpoint::inside), std::invalid_argument);
 }
 
-}  // namespace
-}  // namespace beampipe
+}  // namespace beampipe::viewpoint_test

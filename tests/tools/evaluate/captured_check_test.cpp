@@ -9,8 +9,7 @@
 #include "tools/evaluate/draw_notes.h"
 #include "traces/files/trace_io.h"
 
-namespace beampipe {
-namespace {
+namespace beampipe::captured_check_test {
 
 constexpr std::uint32_t kSize = 8;
 
@@ -164,5 +163,4 @@ TEST(DrawNotes, OfSeveralFramesAreAddedUp) {
   EXPECT_EQ(notes_of(trace, {1}), (std::vector<DrawNote>{{"stencil test", true, 1, 2}}));
 }
 
-}  // namespace
-}  // namespace beampipe
+}  // namespace beampipe::captured_check_test

@@ -8,8 +8,7 @@
 #include "tools/evaluate/metrics.h"
 #include "tools/files/image_io.h"
 
-namespace beampipe {
-namespace {
+namespace beampipe::diagnosis_test {
 
 using Json = nlohmann::ordered_json;
 
@@ -119,5 +118,4 @@ TEST_F(DiagnosisTest, PanNeedsFramesAndNoOrbit) {
   }
 }
 
-}  // namespace
-}  // namespace beampipe
+}  // namespace beampipe::diagnosis_test

@@ -7,8 +7,7 @@
 #include "tests/tools/program.h"
 #include "tests/tools/varying_trace.h"
 
-namespace beampipe {
-namespace {
+namespace beampipe::error_split_test {
 
 using Json = nlohmann::ordered_json;
 
@@ -217,5 +216,4 @@ TEST_F(ErrorSplitTest, CausesKnowWhatShowsThroughTranslucentSurfaces) {
   EXPECT_GT(result["error_causes"]["mask"], 0.8) << "a mask has 256 positions for parts of 0.3";
 }
 
-}  // namespace
-}  // namespace beampipe
+}  // namespace beampipe::error_split_test

@@ -4,8 +4,7 @@
 
 #include "tools/evaluate/frame_json.h"
 
-namespace beampipe {
-namespace {
+namespace beampipe::frame_reports_test {
 
 FrameReport report_of_frame(std::size_t index) {
   FrameReport frame;
@@ -58,5 +57,4 @@ TEST(FrameReports, CopiesDoNotSeeWhatOthersAdd) {
   EXPECT_EQ(other[2].index, 3u);
 }
 
-}  // namespace
-}  // namespace beampipe
+}  // namespace beampipe::frame_reports_test

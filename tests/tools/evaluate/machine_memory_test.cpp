@@ -4,8 +4,7 @@
 
 #include "pipeline/technique.h"
 
-namespace beampipe {
-namespace {
+namespace beampipe::machine_memory_test {
 
 constexpr std::uint64_t kGiB = std::uint64_t{1} << 30;
 
@@ -106,5 +105,4 @@ TEST(MachineMemory, OfTestedAlphaIsAskedForBeforeItIsTaken) {
 
 TEST(MachineMemory, IsKnown) { EXPECT_GT(machine_memory(), kGiB / 4); }
 
-}  // namespace
-}  // namespace beampipe
+}  // namespace beampipe::machine_memory_test

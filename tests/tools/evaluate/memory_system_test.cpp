@@ -1,11 +1,10 @@
 #include "tools/evaluate/memory_system.h"
 
-#include "tests/tools/schema_agreement.h"
-#include "tools/evaluate/hardware.h"
+#include <gtest/gtest.h>
+
 #include "traces/files/trace_io.h"
 
-namespace beampipe {
-namespace {
+namespace beampipe::memory_system_test {
 
 const std::filesystem::path kSource = BEAMPIPE_SOURCE_FOLDER;
 
@@ -69,46 +68,4 @@ TEST(MemorySystem, ValuesMustFitTogether) {
   EXPECT_EQ(refusal("\"l1_ways\": 512").find("m.json: /parameters: expected l1_bytes of room for one set"), 0u);
 }
 
-TEST(MemorySystem, SchemaAndReaderAgree) {
-  SchemaAgreement(kSource / "tools/evaluate/memory_system.schema.json", kSource / "docs/examples/memory_system.json",
-                  [](const std::string& text) { parse_memory_system(parse_json_text(text, "m.json"), "m.json"); },
-                  {"/parameters", "/sources"})
-      .check();
-}
-
-// Each parameter alone, over the default: the limits that the schema names are those of the reader.
-TEST(MemorySystem, SchemaAndReaderHaveTheSameLimits) {
-  const auto schema = nlohmann::json::parse(read_text(kSource / "tools/evaluate/memory_system.schema.json"));
-  const auto& described = schema["properties"]["parameters"]["properties"];
-  EXPECT_EQ(described.size(), memory_parameters().size());
-  const auto accepts = [&](const std::string& name, const nlohmann::json& value) {
-    return refusal('"' + name + "\": " + value.dump(), '"' + name + "\": \"choice\"").empty();
-  };
-  for (const MemoryParameter& parameter : memory_parameters()) {
-    const auto& rule = described[parameter.name];
-    const bool is_size = std::string_view(parameter.name).ends_with("_bytes");  // must hold one set, or 1 to 8 sectors
-    const std::string value = parameter.get({}).dump();
-    EXPECT_NE(rule["description"].get<std::string>().find(
-                  "Default: " + value.substr(value[0] == '"', value.size() - 2 * (value[0] == '"')) + "."),
-              std::string::npos)
-        << parameter.name;
-    if (rule.contains("maximum")) {
-      EXPECT_EQ(accepts(parameter.name, rule["maximum"]), std::string_view(parameter.name) != "l1_ways")
-          << parameter.name << ": 1024 lines do not fit into the default's L1";
-    }
-    if (rule.contains("minimum") && !is_size) {
-      EXPECT_TRUE(accepts(parameter.name, rule["minimum"])) << parameter.name;
-    }
-    if (!rule.contains("enum") || is_size) continue;
-    for (const auto& each : rule["enum"]) EXPECT_TRUE(accepts(parameter.name, each)) << parameter.name << each;
-  }
-}
-
-TEST(Hardware, SchemaAndReaderAgree) {
-  SchemaAgreement(kSource / "tools/evaluate/hardware.schema.json", kSource / "docs/examples/hardware.json",
-                  [](const std::string& text) { parse_hardware(parse_json_text(text, "h.json"), "h.json"); })
-      .check();
-}
-
-}  // namespace
-}  // namespace beampipe
+}  // namespace beampipe::memory_system_test

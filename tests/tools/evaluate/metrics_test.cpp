@@ -5,8 +5,7 @@
 
 #include "tests/tools/fixtures.h"
 
-namespace beampipe {
-namespace {
+namespace beampipe::metrics_test {
 
 TEST(ErrorStats, OfEqualPicturesAreZero) {
   const Image image = flat_image(7, 5, 0.3f);
@@ -170,5 +169,4 @@ TEST(Flicker, IsTheChangeOfTheErrorAlone) {
   EXPECT_THROW(flicker(before, {}), std::invalid_argument);
 }
 
-}  // namespace
-}  // namespace beampipe
+}  // namespace beampipe::metrics_test

@@ -5,8 +5,7 @@
 #include "tests/tools/report_frames.h"
 #include "tools/report/report_text.h"
 
-namespace beampipe {
-namespace {
+namespace beampipe::remodel_test {
 
 Report small_report() {
   Report report;
@@ -55,5 +54,4 @@ TEST(Remodel, OtherHardwareStandsBesideTheFirst) {
   EXPECT_TRUE(frame.at("modelled_ms").contains("rtx_4090.shaders"));
 }
 
-}  // namespace
-}  // namespace beampipe
+}  // namespace beampipe::remodel_test

@@ -18,8 +18,7 @@
 #include "tests/tools/varying_trace.h"
 #include "tools/files/digest.h"
 
-namespace beampipe {
-namespace {
+namespace beampipe::resume_test {
 
 using Json = nlohmann::ordered_json;
 using Names = std::vector<std::string>;
@@ -371,5 +370,4 @@ TEST_F(ResumeTest, RecordsBesideAReportAreRemoved) {
   EXPECT_FALSE(fs::exists(folder_ / "out/unfinished"));
 }
 
-}  // namespace
-}  // namespace beampipe
+}  // namespace beampipe::resume_test

@@ -5,8 +5,7 @@
 #include <map>
 #include <string>
 
-namespace beampipe {
-namespace {
+namespace beampipe::saved_work_test {
 
 std::map<std::string, std::uint64_t> saved_by(const std::vector<StageCounters>& stages) {
   std::map<std::string, std::uint64_t> amounts;
@@ -33,5 +32,4 @@ TEST(SavedWork, IsFoundFromTheStages) {
   EXPECT_TRUE(saved_work({{StageId::reference_raster}}).empty());
 }
 
-}  // namespace
-}  // namespace beampipe
+}  // namespace beampipe::saved_work_test

@@ -14,8 +14,7 @@
 
 #include "tests/tools/fixtures.h"
 
-namespace beampipe {
-namespace {
+namespace beampipe::image_io_test {
 
 // Values that need all 32 bits and differ in every pixel and channel, so that exchanged rows, columns or channels show.
 Image speaking_image(std::uint32_t width, std::uint32_t height) {
@@ -245,5 +244,4 @@ TEST(Png, RowZeroIsOnTop) {
   EXPECT_EQ(decode_png(encode_png(image)).bytes, (std::vector<std::uint8_t>{255, 0, 0, 0, 0, 0}));
 }
 
-}  // namespace
-}  // namespace beampipe
+}  // namespace beampipe::image_io_test

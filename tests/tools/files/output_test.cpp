@@ -8,8 +8,7 @@
 
 #include "tests/tools/fixtures.h"
 
-namespace beampipe {
-namespace {
+namespace beampipe::output_test {
 
 using Names = std::vector<std::string>;
 
@@ -193,5 +192,4 @@ TEST(InterruptGate, GivesTheSignalsBack) {
   EXPECT_EQ(sigismember(&after, SIGINT), 0);
 }
 
-}  // namespace
-}  // namespace beampipe
+}  // namespace beampipe::output_test

@@ -9,8 +9,7 @@
 #include "tools/report/layers.h"
 #include "tools/report/tables.h"
 
-namespace beampipe {
-namespace {
+namespace beampipe::hostile_report_test {
 
 std::string with(std::string text, const std::string& whole, const std::string& broken) {
   return text.replace(text.find(whole), whole.size(), broken);
@@ -135,5 +134,4 @@ TEST_F(HostileReport, CommandsNameTheFile) {
             "beampipe: error: " + file + ": not a report of beampipe: expected the key \"name\", found none\n");
 }
 
-}  // namespace
-}  // namespace beampipe
+}  // namespace beampipe::hostile_report_test

@@ -13,8 +13,7 @@
 #include "tests/tools/program.h"
 #include "tools/report/label_placement.h"
 
-namespace beampipe {
-namespace {
+namespace beampipe::plot_test {
 
 // A report of `compare` on msaa:1, msaa:8 and one other technique.
 std::string report_text(const std::string& spec, int bytes, double emr, double rmse, double ms,
@@ -245,5 +244,4 @@ TEST_F(PlotTest, AnInterruptEndsGnuplotToo) {
   EXPECT_FALSE(std::filesystem::exists(folder_ / "p.svg"));
 }
 
-}  // namespace
-}  // namespace beampipe
+}  // namespace beampipe::plot_test

@@ -15,8 +15,7 @@
 #include "tools/report/page.h"
 #include "tools/report/tables.h"
 
-namespace beampipe {
-namespace {
+namespace beampipe::report_parts_test {
 
 // A report with two frames of one technique, which has one stage, and of the reference.
 constexpr const char* kReport = R"({"beampipe_report": 1, "trace": "dots.json", "threads": 1, "simd": "AVX2",
@@ -330,5 +329,4 @@ TEST_F(ReportParts, LayersHoldThePicturesAndTheCounters) {
   EXPECT_EQ(page.find("{{"), page.npos) << "all places are filled";
 }
 
-}  // namespace
-}  // namespace beampipe
+}  // namespace beampipe::report_parts_test

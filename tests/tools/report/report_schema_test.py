@@ -1,5 +1,6 @@
 #!/usr/bin/env python3
-"""Holds real results to their JSON Schemas: report.json, inspections.json and what `beampipe inspect --json` prints.
+"""Holds real files to the JSON Schemas that `beampipe schema` prints: report.json, inspections.json, what
+`beampipe inspect --json` prints, and the traces and configuration files that come with the source.
 
 usage: report_schema_test.py BEAMPIPE SOURCE_FOLDER
 
@@ -19,14 +20,14 @@ import jsonschema
 BEAMPIPE, SOURCE = sys.argv[1], pathlib.Path(sys.argv[2])
 
 
-def validator(name):
-    schema = json.loads((SOURCE / name).read_text())
+def validator(kind):
+    schema = json.loads(subprocess.run([BEAMPIPE, "schema", kind], check=True, stdout=subprocess.PIPE).stdout)
     jsonschema.Draft202012Validator.check_schema(schema)
     return jsonschema.Draft202012Validator(schema)
 
 
-REPORT = validator("tools/report/report.schema.json")
-INSPECTIONS = validator("tools/inspect/inspections.schema.json")
+REPORT = validator("report")
+INSPECTIONS = validator("inspections")
 
 
 def keys_of(value, path=""):
@@ -81,16 +82,30 @@ class SchemaTest(unittest.TestCase):
         for name, inspections in self.inspections.items():
             self.assert_valid(INSPECTIONS, inspections, name)
 
+    def test_files_of_the_source(self):
+        """What the reader takes, which other tests try, the schema takes too."""
+        files = {"trace": sorted((SOURCE / "traces/samples").glob("*.json")),
+                 "hardware": [*(SOURCE / "tools/evaluate/hardware").glob("*.json"), SOURCE / "docs/examples/hardware.json"],
+                 "memory_system": [SOURCE / "docs/examples/memory_system.json"],
+                 "sweep": [SOURCE / "docs/examples/sweep.json"]}
+        for kind, paths in files.items():
+            self.assertTrue(paths, kind)
+            schema = validator(kind)
+            for path in paths:
+                value = json.loads(path.read_text())
+                self.assert_valid(schema, value, path.name)
+                value["no_such_key"] = 1
+                self.assertFalse(schema.is_valid(value), path.name)
+        self.assert_valid(validator("trace"), json.loads(pathlib.Path(self.room).read_text()), "room")
+
     def test_every_key_of_the_schemas_is_in_some_result(self):
-        def keys_in(schema, rule, path=""):
+        def keys_in(rule, path=""):
             """The paths of the keys that the schema names."""
-            if "$ref" in rule:
-                rule = schema["$defs"][rule["$ref"].rsplit("/", 1)[1]]
             for key, member in rule.get("properties", {}).items():
                 yield path + key
-                yield from keys_in(schema, member, path + key + "/")
+                yield from keys_in(member, path + key + "/")
             if "items" in rule:
-                yield from keys_in(schema, rule["items"], path)
+                yield from keys_in(rule["items"], path)
 
         for schema, results, absent in [
                 (REPORT.schema, self.reports,
@@ -98,7 +113,7 @@ class SchemaTest(unittest.TestCase):
                   "results/equivalent_msaa_is_upper_bound", "results/visibility/equivalent_msaa_is_upper_bound"}),
                 (INSPECTIONS.schema, self.inspections, set())]:
             found = {key for result in results.values() for key in keys_of(result)}
-            for key in keys_in(schema, schema):
+            for key in keys_in(schema):
                 self.assertTrue(key in found or key in absent, f"{schema['title']}: no result has {key}")
 
     def test_schemas_refuse_what_is_wrong(self):

@@ -2,8 +2,7 @@
 #include "tests/tools/report_frames.h"
 #include "tools/report/report_text.h"
 
-namespace beampipe {
-namespace {
+namespace beampipe::report_test {
 
 std::vector<std::string> keys_of(const Json& json) {
   std::vector<std::string> keys;
@@ -235,5 +234,4 @@ TEST(Table, MarksBoundsOfEquivalentRates) {
   EXPECT_EQ(emr_text({1, false, true}), "< 1");
 }
 
-}  // namespace
-}  // namespace beampipe
+}  // namespace beampipe::report_test

@@ -12,8 +12,7 @@
 #include "tools/stress/exact.h"
 #include "tools/stress/judge.h"
 
-namespace beampipe {
-namespace {
+namespace beampipe::stress_test {
 
 constexpr glm::vec3 kWhite(1.0f);
 
@@ -107,7 +106,7 @@ TEST_F(SavedCases, CanBeReadAgain) {
 
 TEST(Judge, NoticesThatSurfacesWhichVaryAreMissing) {
   Technique nothing = parse_technique("msaa:1");
-  nothing.render = [](const Trace& trace, std::size_t index, const RunOptions&) {
+  nothing.renderer = [](const Trace& trace, std::size_t index, const FrameInput&, const FrameSinks&) {
     const Frame& frame = trace.frames[index];
     FrameResult result;
     result.image = {frame.width, frame.height, {}};
@@ -129,7 +128,7 @@ class HardCases : public testing::TestWithParam<std::string> {};
 
 TEST_P(HardCases, AreWithinTheirLimits) {
   const Technique technique = parse_technique(GetParam());
-  RunOptions options;
+  FrameInput options;
   options.memory.modelled = false;
   for (const HardCase& hard_case : hard_cases(false)) {
     if (hard_case.name == "large" && technique.spec == "reference") continue;  // 800 million samples
@@ -143,7 +142,7 @@ TEST(CrowdedBin, IsExact) {
   for (const HardCase& hard_case : hard_cases(true)) {
     if (hard_case.name != "crowded_bin") continue;
     for (const char* spec : {"beam", "beam:bits=64,slots=4", "beam:order=stream", "msaa:8"}) {
-      RunOptions options;
+      FrameInput options;
       options.memory.modelled = false;
       EXPECT_TRUE(Judge(hard_case).judge(parse_technique(spec), options).passes()) << spec;
     }
@@ -161,5 +160,4 @@ std::vector<std::string> specs_with_few_samples() {
 
 INSTANTIATE_TEST_SUITE_P(Techniques, HardCases, testing::ValuesIn(specs_with_few_samples()));
 
-}  // namespace
-}  // namespace beampipe
+}  // namespace beampipe::stress_test

@@ -9,8 +9,7 @@
 
 #include "tests/tools/cli/program_fixture.h"
 
-namespace beampipe {
-namespace {
+namespace beampipe::command_sweep_test {
 
 using Parsed = nlohmann::json;  // independent of the program's own Json
 
@@ -331,5 +330,4 @@ TEST_F(SweepTest, SlurmGetsAnArrayAndAMerge) {
   setenv("PATH", search.c_str(), 1);
 }
 
-}  // namespace
-}  // namespace beampipe
+}  // namespace beampipe::command_sweep_test

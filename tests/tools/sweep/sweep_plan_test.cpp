@@ -2,14 +2,13 @@
 
 #include <algorithm>
 
-#include "tests/tools/schema_agreement.h"
+#include "tests/tools/fixtures.h"
 #include "tools/evaluate/memory_system.h"
 #include "tools/sweep/sweep_jobs.h"
 #include "tools/sweep/trace_shelf.h"
 #include "traces/files/trace_io.h"
 
-namespace beampipe {
-namespace {
+namespace beampipe::sweep_plan_test {
 
 const std::filesystem::path kSource = BEAMPIPE_SOURCE_FOLDER;
 
@@ -175,37 +174,6 @@ TEST_F(SweepPlanTest, TheExampleOfTheDocsIsRead) {
   EXPECT_EQ(plan.rows.size(), plan.cells.size() * 4);
 }
 
-TEST_F(SweepPlanTest, SchemaAndReaderAgree) {
-  nlohmann::ordered_json plan = {
-      {"beampipe_sweep", 1},          {"errors", true},          {"frames", {3}},
-      {"traces", {"a.json"}},         {"techniques", {"beam"}},  {"sizes", {"4x3"}},
-      {"memory_system", {"default"}}, {"hardware", {"titan_v"}}, {"implementations", {"shaders"}}};
-  std::set<std::string> bound = {"/traces", "/techniques"};  // they are needed here, or in every point
-  for (const std::string& axis : sweep_axes())
-    if (axis.starts_with("hardware.")) plan[axis] = {2.5};
-  for (const MemoryParameter& parameter : memory_parameters()) {
-    const std::string axis = std::string("memory_system.") + parameter.name;
-    plan[axis] = nlohmann::ordered_json::array({nlohmann::ordered_json::parse(parameter.get({}).dump())});
-    bound.insert("/" + axis);  // must fit to the others
-  }
-  plan["points"] = nlohmann::ordered_json::array({nlohmann::ordered_json::object(), {{"techniques", {"msaa:8"}}}});
-  write_text(folder_ / "complete.json", plan.dump());
-  SchemaAgreement(kSource / "tools/sweep/sweep_plan.schema.json", folder_ / "complete.json",
-                  [&](const std::string& text) { read(text); }, bound, {"/points/0"})
-      .check();
-}
-
-TEST_F(SweepPlanTest, SchemaNamesEveryAxis) {
-  const auto schema = nlohmann::json::parse(read_text(kSource / "tools/sweep/sweep_plan.schema.json"));
-  std::vector<std::string> axes = sweep_axes(), described, of_points;
-  for (const auto& [name, rule] : schema["$defs"].items()) described.push_back(name);
-  for (const auto& [name, rule] : schema["properties"]["points"]["items"]["properties"].items())
-    of_points.push_back(name);
-  std::sort(axes.begin(), axes.end());
-  EXPECT_EQ(described, axes);
-  EXPECT_EQ(of_points, axes);
-}
-
 TEST_F(SweepPlanTest, OnlyFramesThatCanBeResizedAre) {
   const std::filesystem::path samples = kSource / "traces/samples";
   Trace hut = read_trace(samples / "hut.json");
@@ -226,5 +194,4 @@ TEST_F(SweepPlanTest, OnlyFramesThatCanBeResizedAre) {
   EXPECT_THROW(resize(captured, {0}, {48, 36}, "captured"), std::runtime_error);
 }
 
-}  // namespace
-}  // namespace beampipe
+}  // namespace beampipe::sweep_plan_test

@@ -8,8 +8,7 @@
 #include "tools/sweep/sqlite_table.h"
 #include "tools/sweep/sweep_plot.h"
 
-namespace beampipe {
-namespace {
+namespace beampipe::sweep_table_test {
 
 SweepTable sample_table() {
   return {{{"name", "", "a text", true}, {"x", "bytes", "a number"}, {"y", "ms", "another one"}},
@@ -100,5 +99,4 @@ TEST(Slurm, WordsAndArrays) {
   EXPECT_EQ(array_text({1, 3, 4}), "1,3-4");
 }
 
-}  // namespace
-}  // namespace beampipe
+}  // namespace beampipe::sweep_table_test
