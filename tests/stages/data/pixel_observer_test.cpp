@@ -8,7 +8,7 @@
 
 #include "tests/stages/open_pixels.h"
 
-namespace beampipe::owner_weights_test {
+namespace beampipe::pixel_observer_test {
 
 struct Explained {
   double farthest = 0;       // from a pixel to the sum of its triangles' weights times colours, in any channel
@@ -130,4 +130,53 @@ TEST(PixelObserver, WhatIsLeftOfAMergedOwnerIsSharedByItsTriangles) {
   EXPECT_NEAR(found[2], 0.5, 1e-3);
 }
 
-}  // namespace beampipe::owner_weights_test
+Fragment fragment_with(std::uint32_t triangle, std::uint32_t mask, float area) {
+  Fragment fragment{};
+  fragment.triangle = triangle, fragment.alpha = area, fragment.color = glm::vec3(static_cast<float>(triangle)) * area;
+  fragment.mask.words[0] = mask;
+  return fragment;
+}
+WideMask word(std::uint32_t mask) { return fragment_with(0, mask, 0).mask; }
+
+TEST(PixelObserver, PositionsMoveBetweenFragments) {
+  PixelObserver observer;
+  observer.add_positions(std::vector<glm::vec2>(32));
+  observer.arrives(fragment_with(7, 0xff, 0.25f), word(0xff));
+  observer.arrives(fragment_with(9, 0xf0f0, 0.25f), word(0xf0f0));
+  observer.arrives(fragment_with(3, 0xf, 0.1f), {});
+  observer.would_cover(11, 0, 0xff);
+  const std::vector<HistoryFragment>& fragments = observer.history.fragments;
+  ASSERT_EQ(fragments.size(), 4u);
+  EXPECT_EQ(fragments[0].lost.at(0).fragment, 1u);
+  EXPECT_EQ(fragments[0].lost.at(0).positions, 4u);
+  EXPECT_EQ(fragments[1].taken.size(), 2u) << "from #0, and empty ones";
+  EXPECT_EQ(fragments[2].fate, Fate::hidden);
+  EXPECT_EQ(fragments[3].fate, Fate::closed_off);
+  EXPECT_EQ(fragments[3].lost.size(), 2u);
+}
+
+TEST(PixelObserver, FactorsOfAggregatesMultiply) {
+  PixelObserver observer;
+  const Aggregate any = kEmptyAggregate;
+  observer.enters(0, fragment_with(1, 0, 0.5f));
+  observer.enters(1, fragment_with(2, 0, 0.5f));
+  observer.joins(0, {any, any, any, 0.5f, 1.0f});
+  observer.enters(1, fragment_with(4, 0, 1.0f));
+  observer.joins(0, {any, any, any, 0.5f, 0.25f});
+  observer.finishes_aggregate();
+  EXPECT_EQ(observer.history.sum().x, 0.125 * 1 + 0.25 * 2 + 0.25 * 4);
+}
+
+TEST(PixelObserver, LayersTakeTheirPartOfASample) {
+  PixelObserver observer;
+  observer.add_positions(std::vector<glm::vec2>(4));
+  observer.contends(5, 0, 0xf, 0xf);
+  observer.blends(6, 1, 0.5, glm::dvec3(2));
+  observer.blends(8, 1, 0.5, glm::dvec3(4));
+  observer.adds_samples(5, 0, 4, 0.25, glm::dvec3(1));
+  EXPECT_EQ(observer.history.sum().x, 0.25 * (3 + 0.25 * 1 + 0.25 * 2 + 0.5 * 4));
+  observer.contends(9, 0, 0x2, 0x2);
+  EXPECT_EQ(observer.seen_behind_layers(1), 1) << "an opaque surface hides the layers";
+}
+
+}  // namespace beampipe::pixel_observer_test
