@@ -7,8 +7,7 @@
 #include "tests/simd/every_target.h"
 #include "tests/simd/random.h"
 
-namespace beampipe {
-namespace {
+namespace beampipe::cell_rows_test {
 
 // Edges of all slopes. Many of them pass exactly through a corner of a cell.
 EdgeOverCells random_edge(Random& random) {
@@ -43,5 +42,4 @@ TEST(CellRows, KernelEqualsTwin) {
   });
 }
 
-}  // namespace
-}  // namespace beampipe
+}  // namespace beampipe::cell_rows_test

@@ -6,8 +6,7 @@
 
 #include "tests/simd/coverage_cases.h"
 
-namespace beampipe {
-namespace {
+namespace beampipe::coverage_exact_test {
 
 constexpr double kAlphaBound = 5e-7;  // simd/coverage.h
 
@@ -84,5 +83,4 @@ TEST(CoverageExact, FullPixelOfAGiantTriangle) {
   EXPECT_EQ(found.centroid_v, 0.5f);
 }
 
-}  // namespace
-}  // namespace beampipe
+}  // namespace beampipe::coverage_exact_test

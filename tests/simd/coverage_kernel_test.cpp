@@ -9,8 +9,7 @@
 #include "tests/simd/coverage_cases.h"
 #include "tests/simd/every_target.h"
 
-namespace beampipe {
-namespace {
+namespace beampipe::coverage_kernel_test {
 
 template <class Row>
 void expect_same_bits(const Row& found, const Row& expected, std::size_t i) {
@@ -86,5 +85,4 @@ TEST(CoverageKernel, EveryTargetEqualsTheFormulaForEveryBatchSize) {
   });
 }
 
-}  // namespace
-}  // namespace beampipe
+}  // namespace beampipe::coverage_kernel_test

@@ -6,8 +6,7 @@
 
 #include "tests/simd/coverage_cases.h"
 
-namespace beampipe {
-namespace {
+namespace beampipe::coverage_tessellation_test {
 
 // Shared edges cancel exactly. What remains is the rounding of each triangle's own sum, 2^-24 for sums near 1.
 constexpr double kPerTriangle = 0x1p-24;
@@ -134,5 +133,4 @@ TEST(CoverageTessellation, PixelsShareOutTheTriangle) {
   }
 }
 
-}  // namespace
-}  // namespace beampipe
+}  // namespace beampipe::coverage_tessellation_test

@@ -8,8 +8,7 @@
 #include "tests/simd/every_target.h"
 #include "tests/simd/random.h"
 
-namespace beampipe {
-namespace {
+namespace beampipe::depth_compare_test {
 
 struct Samples {
   std::vector<float> depth;
@@ -87,5 +86,4 @@ TEST(DepthCompare, NearerReplacesEqualDoesNot) {
   });
 }
 
-}  // namespace
-}  // namespace beampipe
+}  // namespace beampipe::depth_compare_test

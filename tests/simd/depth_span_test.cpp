@@ -7,8 +7,7 @@
 #include "tests/simd/every_target.h"
 #include "tests/simd/random.h"
 
-namespace beampipe {
-namespace {
+namespace beampipe::depth_span_test {
 
 TEST(DepthSpan, EveryTargetEqualsTheFormulaOnDoubleForEveryLength) {
   Random random(61);
@@ -82,5 +81,4 @@ TEST(DepthSpan, NearerReplacesEqualDoesNot) {
   });
 }
 
-}  // namespace
-}  // namespace beampipe
+}  // namespace beampipe::depth_span_test

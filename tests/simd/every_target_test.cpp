@@ -19,8 +19,7 @@ std::int64_t own_target() { return HWY_TARGET; }
 HWY_AFTER_NAMESPACE();
 
 #if HWY_ONCE
-namespace beampipe {
-namespace {
+namespace beampipe::every_target_test {
 
 HWY_EXPORT(own_target);
 
@@ -42,6 +41,5 @@ TEST(EveryTarget, IsNamedWhileItIsInUse) {
   EXPECT_EQ(simd_target(), used.front());
 }
 
-}  // namespace
-}  // namespace beampipe
+}  // namespace beampipe::every_target_test
 #endif

@@ -11,8 +11,7 @@
 #include "tests/simd/every_target.h"
 #include "tests/simd/random.h"
 
-namespace beampipe {
-namespace {
+namespace beampipe::mask_table_test {
 
 constexpr TableEdge kEverything{0, 0, 1.0f};  // the whole pixel is inside this edge
 
@@ -148,5 +147,4 @@ TEST(MaskTable, DiffersFromTheExactMaskOnlyNearTheEdge) {
   EXPECT_LT(wrong / kEdges, 0.5) << "bits of 32";
 }
 
-}  // namespace
-}  // namespace beampipe
+}  // namespace beampipe::mask_table_test

@@ -7,8 +7,7 @@
 #include "tests/simd/every_target.h"
 #include "tests/simd/merge_cases.h"
 
-namespace beampipe {
-namespace {
+namespace beampipe::merge_kernel_test {
 
 using Bits = std::array<std::uint32_t, sizeof(Aggregate) / sizeof(std::uint32_t)>;
 using StepBits = std::array<std::uint32_t, sizeof(MergeSteps) / sizeof(std::uint32_t)>;
@@ -62,5 +61,4 @@ TEST(MergeKernel, EveryTargetEqualsTheFormulaForEveryBatchSize) {
   });
 }
 
-}  // namespace
-}  // namespace beampipe
+}  // namespace beampipe::merge_kernel_test

@@ -10,8 +10,7 @@
 #include "tests/simd/merge_cases.h"
 #include "tests/thorough.h"
 
-namespace beampipe {
-namespace {
+namespace beampipe::merge_rules_test {
 
 const SamplePattern kPattern = hammersley_pattern();
 const MergePositions kPositions(kPattern);
@@ -592,5 +591,4 @@ TEST(MergeRules, PlainOver) {
   EXPECT_FLOAT_EQ(now.color[1], 0.5f);
 }
 
-}  // namespace
-}  // namespace beampipe
+}  // namespace beampipe::merge_rules_test

@@ -11,8 +11,7 @@
 #include "tests/simd/every_target.h"
 #include "tests/simd/random.h"
 
-namespace beampipe {
-namespace {
+namespace beampipe::plane_order_test {
 
 // Planes that are steep, flat, equal, or one bit apart at the centre.
 std::vector<DepthPlane<float>> hard_planes(Random& random) {
@@ -185,5 +184,4 @@ TEST(PlaneOrder, NearerLooksOnlyAtPositionsOfTheMask) {
   }
 }
 
-}  // namespace
-}  // namespace beampipe
+}  // namespace beampipe::plane_order_test

@@ -42,8 +42,7 @@ std::uint64_t sides_of_32(const DepthPlane<float>& plane, const DepthPlane<const
 HWY_AFTER_NAMESPACE();
 
 #if HWY_ONCE
-namespace beampipe {
-namespace {
+namespace beampipe::plane_sides_test {
 
 HWY_EXPORT(sides_of_2);
 HWY_EXPORT(sides_of_5);
@@ -99,6 +98,5 @@ TEST(PlaneSides, AreThoseOfTheFormulaOnEveryTarget) {
   });
 }
 
-}  // namespace
-}  // namespace beampipe
+}  // namespace beampipe::plane_sides_test
 #endif

@@ -6,8 +6,7 @@
 
 #include "tests/simd/random.h"
 
-namespace beampipe {
-namespace {
+namespace beampipe::population_count_test {
 
 TEST(PopulationCount, EqualsTheStandardLibrary) {
   for (std::uint32_t low = 0; low < 1u << 16; ++low)
@@ -20,5 +19,4 @@ TEST(PopulationCount, EqualsTheStandardLibrary) {
   }
 }
 
-}  // namespace
-}  // namespace beampipe
+}  // namespace beampipe::population_count_test

@@ -6,8 +6,7 @@
 #include "tests/simd/coverage_cases.h"
 #include "tests/simd/every_target.h"
 
-namespace beampipe {
-namespace {
+namespace beampipe::position_mask_test {
 
 TEST(PositionMask, KernelEqualsTwinOnRandomTriangles) {
   Random random(61);
@@ -72,5 +71,4 @@ TEST(PositionMask, EqualsSampleMasksOfTheSamePositions) {
   }
 }
 
-}  // namespace
-}  // namespace beampipe
+}  // namespace beampipe::position_mask_test

@@ -7,8 +7,7 @@
 #include "tests/simd/every_target.h"
 #include "tests/simd/random.h"
 
-namespace beampipe {
-namespace {
+namespace beampipe::sample_mask_test {
 
 std::uint32_t twin(const CellEdges& cell, const SamplePattern& pattern) {
   std::int64_t a[3], b[3];
@@ -94,5 +93,4 @@ TEST(SampleMask, SampleOnAnEdgeIsCovered) {
   });
 }
 
-}  // namespace
-}  // namespace beampipe
+}  // namespace beampipe::sample_mask_test

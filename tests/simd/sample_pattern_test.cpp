@@ -8,8 +8,7 @@
 #include <utility>
 #include <vector>
 
-namespace beampipe {
-namespace {
+namespace beampipe::sample_pattern_test {
 
 using Locations = std::vector<std::pair<double, double>>;
 
@@ -100,5 +99,4 @@ TEST(SamplePattern, MasksHave32To256Positions) {
   EXPECT_THROW(cell_patterns(96), std::invalid_argument);
 }
 
-}  // namespace
-}  // namespace beampipe
+}  // namespace beampipe::sample_pattern_test

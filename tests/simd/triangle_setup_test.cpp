@@ -7,8 +7,7 @@
 #include "tests/simd/every_target.h"
 #include "tests/simd/random.h"
 
-namespace beampipe {
-namespace {
+namespace beampipe::triangle_setup_test {
 
 template <class Number>
 std::uint64_t bits_of(Number x) {
@@ -112,5 +111,4 @@ TEST(TriangleSetup, NormalsEqualTheFormulaOnEveryTarget) {
   }
 }
 
-}  // namespace
-}  // namespace beampipe
+}  // namespace beampipe::triangle_setup_test

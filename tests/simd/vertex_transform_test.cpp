@@ -15,8 +15,7 @@
 #include "tests/simd/every_target.h"
 #include "tests/simd/random.h"
 
-namespace beampipe {
-namespace {
+namespace beampipe::vertex_transform_test {
 
 // A camera at the origin that looks along -z: w = -z.
 VertexTransform camera(double near, double far, double scale) {
@@ -181,5 +180,4 @@ TEST(VertexTransform, TheEyeIsNotInView) {
   });
 }
 
-}  // namespace
-}  // namespace beampipe
+}  // namespace beampipe::vertex_transform_test

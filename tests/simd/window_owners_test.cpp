@@ -8,8 +8,7 @@
 #include "tests/simd/every_target.h"
 #include "tests/simd/random.h"
 
-namespace beampipe {
-namespace {
+namespace beampipe::window_owners_test {
 
 WideMask random_mask(Random& random, std::size_t words) {
   WideMask mask;
@@ -94,5 +93,4 @@ TEST(WindowOwners, PartitionWhatIsOpen) {
   }
 }
 
-}  // namespace
-}  // namespace beampipe
+}  // namespace beampipe::window_owners_test

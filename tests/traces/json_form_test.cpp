@@ -4,8 +4,7 @@
 
 #include "traces/files/trace_io.h"
 
-namespace beampipe {
-namespace {
+namespace beampipe::json_form_test {
 
 // What the reader says of a text, without the file's name; "" if it takes it.
 template <class T>
@@ -149,5 +148,4 @@ TEST(JsonForm, NamedValuesKeepTheirKeys) {
   EXPECT_TRUE(values[0].on);
 }
 
-}  // namespace
-}  // namespace beampipe
+}  // namespace beampipe::json_form_test
