@@ -21,7 +21,8 @@
 #include "tests/llvmpipe/llvmpipe.h"
 #include "tests/llvmpipe/snapped.h"
 
-namespace beampipe::coverage_test {
+namespace beampipe {
+namespace {
 
 constexpr int kSize = 64;    // pixels on each side
 constexpr int kUnits = 256;  // per pixel
@@ -272,4 +273,5 @@ TEST_F(Coverage, BehindTheEye) {
   });
 }
 
-}  // namespace beampipe::coverage_test
+}  // namespace
+}  // namespace beampipe

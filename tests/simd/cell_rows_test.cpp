@@ -7,7 +7,8 @@
 #include "tests/simd/every_target.h"
 #include "tests/simd/random.h"
 
-namespace beampipe::cell_rows_test {
+namespace beampipe {
+namespace {
 
 // Edges of all slopes. Many of them pass exactly through a corner of a cell.
 EdgeOverCells random_edge(Random& random) {
@@ -42,4 +43,5 @@ TEST(CellRows, KernelEqualsTwin) {
   });
 }
 
-}  // namespace beampipe::cell_rows_test
+}  // namespace
+}  // namespace beampipe

@@ -6,7 +6,8 @@
 
 #include "tests/simd/coverage_cases.h"
 
-namespace beampipe::coverage_exact_test {
+namespace beampipe {
+namespace {
 
 constexpr double kAlphaBound = 5e-7;  // simd/coverage.h
 
@@ -83,4 +84,5 @@ TEST(CoverageExact, FullPixelOfAGiantTriangle) {
   EXPECT_EQ(found.centroid_v, 0.5f);
 }
 
-}  // namespace beampipe::coverage_exact_test
+}  // namespace
+}  // namespace beampipe

@@ -9,7 +9,8 @@
 #include "tests/simd/coverage_cases.h"
 #include "tests/simd/every_target.h"
 
-namespace beampipe::coverage_kernel_test {
+namespace beampipe {
+namespace {
 
 template <class Row>
 void expect_same_bits(const Row& found, const Row& expected, std::size_t i) {
@@ -85,4 +86,5 @@ TEST(CoverageKernel, EveryTargetEqualsTheFormulaForEveryBatchSize) {
   });
 }
 
-}  // namespace beampipe::coverage_kernel_test
+}  // namespace
+}  // namespace beampipe

@@ -6,7 +6,8 @@
 
 #include "tests/simd/coverage_cases.h"
 
-namespace beampipe::coverage_tessellation_test {
+namespace beampipe {
+namespace {
 
 // Shared edges cancel exactly. What remains is the rounding of each triangle's own sum, 2^-24 for sums near 1.
 constexpr double kPerTriangle = 0x1p-24;
@@ -133,4 +134,5 @@ TEST(CoverageTessellation, PixelsShareOutTheTriangle) {
   }
 }
 
-}  // namespace beampipe::coverage_tessellation_test
+}  // namespace
+}  // namespace beampipe

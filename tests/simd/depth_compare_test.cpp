@@ -8,7 +8,8 @@
 #include "tests/simd/every_target.h"
 #include "tests/simd/random.h"
 
-namespace beampipe::depth_compare_test {
+namespace beampipe {
+namespace {
 
 struct Samples {
   std::vector<float> depth;
@@ -86,4 +87,5 @@ TEST(DepthCompare, NearerReplacesEqualDoesNot) {
   });
 }
 
-}  // namespace beampipe::depth_compare_test
+}  // namespace
+}  // namespace beampipe

@@ -7,7 +7,8 @@
 #include "simd/match.h"
 #include "tests/simd/every_target.h"
 
-namespace beampipe::depth_equal_test {
+namespace beampipe {
+namespace {
 
 TEST(DepthEqual, KernelEqualsTwin) {
   std::mt19937 bits(11);
@@ -58,4 +59,5 @@ TEST(MatchMasks, KernelEqualsTwin) {
   });
 }
 
-}  // namespace beampipe::depth_equal_test
+}  // namespace
+}  // namespace beampipe

@@ -7,7 +7,8 @@
 #include "tests/simd/every_target.h"
 #include "tests/simd/random.h"
 
-namespace beampipe::depth_span_test {
+namespace beampipe {
+namespace {
 
 TEST(DepthSpan, EveryTargetEqualsTheFormulaOnDoubleForEveryLength) {
   Random random(61);
@@ -81,4 +82,5 @@ TEST(DepthSpan, NearerReplacesEqualDoesNot) {
   });
 }
 
-}  // namespace beampipe::depth_span_test
+}  // namespace
+}  // namespace beampipe

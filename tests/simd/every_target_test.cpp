@@ -19,7 +19,8 @@ std::int64_t own_target() { return HWY_TARGET; }
 HWY_AFTER_NAMESPACE();
 
 #if HWY_ONCE
-namespace beampipe::every_target_test {
+namespace beampipe {
+namespace {
 
 HWY_EXPORT(own_target);
 
@@ -41,5 +42,6 @@ TEST(EveryTarget, IsNamedWhileItIsInUse) {
   EXPECT_EQ(simd_target(), used.front());
 }
 
-}  // namespace beampipe::every_target_test
+}  // namespace
+}  // namespace beampipe
 #endif

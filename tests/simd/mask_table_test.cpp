@@ -11,7 +11,8 @@
 #include "tests/simd/every_target.h"
 #include "tests/simd/random.h"
 
-namespace beampipe::mask_table_test {
+namespace beampipe {
+namespace {
 
 constexpr TableEdge kEverything{0, 0, 1.0f};  // the whole pixel is inside this edge
 
@@ -147,4 +148,5 @@ TEST(MaskTable, DiffersFromTheExactMaskOnlyNearTheEdge) {
   EXPECT_LT(wrong / kEdges, 0.5) << "bits of 32";
 }
 
-}  // namespace beampipe::mask_table_test
+}  // namespace
+}  // namespace beampipe

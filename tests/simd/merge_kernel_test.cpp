@@ -7,7 +7,8 @@
 #include "tests/simd/every_target.h"
 #include "tests/simd/merge_cases.h"
 
-namespace beampipe::merge_kernel_test {
+namespace beampipe {
+namespace {
 
 using Bits = std::array<std::uint32_t, sizeof(Aggregate) / sizeof(std::uint32_t)>;
 using StepBits = std::array<std::uint32_t, sizeof(MergeSteps) / sizeof(std::uint32_t)>;
@@ -61,4 +62,5 @@ TEST(MergeKernel, EveryTargetEqualsTheFormulaForEveryBatchSize) {
   });
 }
 
-}  // namespace beampipe::merge_kernel_test
+}  // namespace
+}  // namespace beampipe

@@ -10,7 +10,8 @@
 #include "tests/simd/merge_cases.h"
 #include "tests/thorough.h"
 
-namespace beampipe::merge_rules_test {
+namespace beampipe {
+namespace {
 
 const SamplePattern kPattern = hammersley_pattern();
 const MergePositions kPositions(kPattern);
@@ -591,4 +592,5 @@ TEST(MergeRules, PlainOver) {
   EXPECT_FLOAT_EQ(now.color[1], 0.5f);
 }
 
-}  // namespace beampipe::merge_rules_test
+}  // namespace
+}  // namespace beampipe

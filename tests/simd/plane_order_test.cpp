@@ -11,7 +11,8 @@
 #include "tests/simd/every_target.h"
 #include "tests/simd/random.h"
 
-namespace beampipe::plane_order_test {
+namespace beampipe {
+namespace {
 
 // Planes that are steep, flat, equal, or one bit apart at the centre.
 std::vector<DepthPlane<float>> hard_planes(Random& random) {
@@ -184,4 +185,5 @@ TEST(PlaneOrder, NearerLooksOnlyAtPositionsOfTheMask) {
   }
 }
 
-}  // namespace beampipe::plane_order_test
+}  // namespace
+}  // namespace beampipe

@@ -42,7 +42,8 @@ std::uint64_t sides_of_32(const DepthPlane<float>& plane, const DepthPlane<const
 HWY_AFTER_NAMESPACE();
 
 #if HWY_ONCE
-namespace beampipe::plane_sides_test {
+namespace beampipe {
+namespace {
 
 HWY_EXPORT(sides_of_2);
 HWY_EXPORT(sides_of_5);
@@ -98,5 +99,6 @@ TEST(PlaneSides, AreThoseOfTheFormulaOnEveryTarget) {
   });
 }
 
-}  // namespace beampipe::plane_sides_test
+}  // namespace
+}  // namespace beampipe
 #endif

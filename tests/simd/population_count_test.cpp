@@ -6,7 +6,8 @@
 
 #include "tests/simd/random.h"
 
-namespace beampipe::population_count_test {
+namespace beampipe {
+namespace {
 
 TEST(PopulationCount, EqualsTheStandardLibrary) {
   for (std::uint32_t low = 0; low < 1u << 16; ++low)
@@ -19,4 +20,5 @@ TEST(PopulationCount, EqualsTheStandardLibrary) {
   }
 }
 
-}  // namespace beampipe::population_count_test
+}  // namespace
+}  // namespace beampipe

@@ -6,7 +6,8 @@
 #include "tests/simd/coverage_cases.h"
 #include "tests/simd/every_target.h"
 
-namespace beampipe::position_mask_test {
+namespace beampipe {
+namespace {
 
 TEST(PositionMask, KernelEqualsTwinOnRandomTriangles) {
   Random random(61);
@@ -71,4 +72,5 @@ TEST(PositionMask, EqualsSampleMasksOfTheSamePositions) {
   }
 }
 
-}  // namespace beampipe::position_mask_test
+}  // namespace
+}  // namespace beampipe

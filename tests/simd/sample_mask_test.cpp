@@ -7,7 +7,8 @@
 #include "tests/simd/every_target.h"
 #include "tests/simd/random.h"
 
-namespace beampipe::sample_mask_test {
+namespace beampipe {
+namespace {
 
 std::uint32_t twin(const CellEdges& cell, const SamplePattern& pattern) {
   std::int64_t a[3], b[3];
@@ -93,4 +94,5 @@ TEST(SampleMask, SampleOnAnEdgeIsCovered) {
   });
 }
 
-}  // namespace beampipe::sample_mask_test
+}  // namespace
+}  // namespace beampipe

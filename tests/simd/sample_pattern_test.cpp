@@ -8,7 +8,8 @@
 #include <utility>
 #include <vector>
 
-namespace beampipe::sample_pattern_test {
+namespace beampipe {
+namespace {
 
 using Locations = std::vector<std::pair<double, double>>;
 
@@ -99,4 +100,5 @@ TEST(SamplePattern, MasksHave32To256Positions) {
   EXPECT_THROW(cell_patterns(96), std::invalid_argument);
 }
 
-}  // namespace beampipe::sample_pattern_test
+}  // namespace
+}  // namespace beampipe

@@ -7,7 +7,8 @@
 #include "tests/simd/every_target.h"
 #include "tests/simd/random.h"
 
-namespace beampipe::triangle_setup_test {
+namespace beampipe {
+namespace {
 
 template <class Number>
 std::uint64_t bits_of(Number x) {
@@ -111,4 +112,5 @@ TEST(TriangleSetup, NormalsEqualTheFormulaOnEveryTarget) {
   }
 }
 
-}  // namespace beampipe::triangle_setup_test
+}  // namespace
+}  // namespace beampipe

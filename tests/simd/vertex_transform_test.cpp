@@ -15,7 +15,8 @@
 #include "tests/simd/every_target.h"
 #include "tests/simd/random.h"
 
-namespace beampipe::vertex_transform_test {
+namespace beampipe {
+namespace {
 
 // A camera at the origin that looks along -z: w = -z.
 VertexTransform camera(double near, double far, double scale) {
@@ -180,4 +181,5 @@ TEST(VertexTransform, TheEyeIsNotInView) {
   });
 }
 
-}  // namespace beampipe::vertex_transform_test
+}  // namespace
+}  // namespace beampipe

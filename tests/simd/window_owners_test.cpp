@@ -8,7 +8,8 @@
 #include "tests/simd/every_target.h"
 #include "tests/simd/random.h"
 
-namespace beampipe::window_owners_test {
+namespace beampipe {
+namespace {
 
 WideMask random_mask(Random& random, std::size_t words) {
   WideMask mask;
@@ -93,4 +94,5 @@ TEST(WindowOwners, PartitionWhatIsOpen) {
   }
 }
 
-}  // namespace beampipe::window_owners_test
+}  // namespace
+}  // namespace beampipe
