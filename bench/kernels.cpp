@@ -153,13 +153,13 @@ void orders_of_planes(benchmark::State& state) {
   std::vector<DepthPlane<float>> planes(kItems);
   for (DepthPlane<float>& plane : planes) plane = random_plane(random);
   std::uint32_t masks[kMaxMaskWords] = {};
-  float nearest = 0;
+  float farthest = 0;
   for (auto _ : state) {
     for (std::size_t i = 1; i < planes.size(); ++i) {
       nearer_positions(planes[i], planes[i - 1], patterns.data(), patterns.size(), masks);
-      nearest += nearest_depth(planes[i], patterns.data(), patterns.size(), masks);
+      farthest += farthest_depth(planes[i], patterns.data(), patterns.size(), masks);
     }
-    benchmark::DoNotOptimize(nearest);
+    benchmark::DoNotOptimize(farthest);
   }
   count_items(state, planes.size() - 1);
 }

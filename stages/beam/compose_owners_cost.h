@@ -142,16 +142,16 @@ inline OperationCounts merge_cost() {
 // Per owner that becomes final: its part of the positions, its area, and the sums of both estimates.
 inline OperationCounts settle_owner_cost() {
   return count_operations([](OperationCounts& counts) {
-    using Real = Counted<float>;
-    const Real one(1.0f, counts), per_position(1.0f);
+    using Number = Counted<float>;
+    const Number one(1.0f, counts), per_position(1.0f);
     one / one;
     find_threshold(counts);
-    const Real exact = greater(one + one, Real(0.0f)) * per_position;
-    const Real area =
-        visible_area(exact, one, one, one, Taken<Real>{to_float(Counted<std::int32_t>(0, counts)) * one, one});
+    const Number exact = greater(one + one, Number(0.0f)) * per_position;
+    const Number area =
+        visible_area(exact, one, one, one, Taken<Number>{to_float(Counted<std::int32_t>(0, counts)) * one, one});
     one + one;
     add_fixed(area);
-    const Real share = one * per_position;
+    const Number share = one * per_position;
     for (int c = 0; c < 3; ++c) area *one, share *one;
     add_colors(one, counts);
   });
@@ -170,12 +170,12 @@ inline OperationCounts speck_test_cost() {
 }
 inline OperationCounts speck_area_cost() {
   return count_operations([](OperationCounts& counts) {
-    using Real = Counted<float>;
-    const Real one(1.0f, counts);
-    const Real sums = to_float(Counted<std::int32_t>(0, counts)) + to_float(Counted<std::int32_t>(0, counts));
+    using Number = Counted<float>;
+    const Number one(1.0f, counts);
+    const Number sums = to_float(Counted<std::int32_t>(0, counts)) + to_float(Counted<std::int32_t>(0, counts));
     find_threshold(counts);
-    add_fixed(one * one / Real(3.0f));
-    const Real area = lesser(greater(sums, sums) - greater(sums, sums), one - one);
+    add_fixed(one * one / Number(3.0f));
+    const Number area = lesser(greater(sums, sums) - greater(sums, sums), one - one);
     add_fixed(area);
     for (int c = 0; c < 3; ++c) one* area;
     add_colors(one, counts);
@@ -185,10 +185,10 @@ inline OperationCounts speck_area_cost() {
 // Per pixel at the end, with the conversion of its sums.
 inline OperationCounts limit_cost() {
   return count_operations([](OperationCounts& counts) {
-    using Real = Counted<float>;
-    const Real one(1.0f, counts);
+    using Number = Counted<float>;
+    const Number one(1.0f, counts);
     const auto sum = [&] { return to_float(Counted<std::int32_t>(0, counts)) * one; };
-    const Estimate<Real> analytic{sum(), {sum(), sum(), sum()}}, counted{one * one, {sum(), sum(), sum()}};
+    const Estimate<Number> analytic{sum(), {sum(), sum(), sum()}}, counted{one * one, {sum(), sum(), sum()}};
     limited_estimate(analytic, counted, one);
   });
 }

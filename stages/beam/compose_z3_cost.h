@@ -36,8 +36,8 @@ OperationCounts z3_contest_cost() {
 // To merge two of `layers` layers: to find the two that are closest, and to compute their mean.
 inline OperationCounts layer_merge_cost(std::size_t layers, std::size_t words) {
   return count_operations([&](OperationCounts& counts) {
-    using Real = Counted<float>;
-    const Real one(1.0f, counts);
+    using Number = Counted<float>;
+    const Number one(1.0f, counts);
     const std::size_t pairs = layers * (layers - 1) / 2;
     for (std::size_t pair = 0; pair < pairs; ++pair) {
       magnitude(one - one);
@@ -45,7 +45,7 @@ inline OperationCounts layer_merge_cost(std::size_t layers, std::size_t words) {
     }
     for (std::size_t w = 0; w < 2 * words; ++w) bit_count(Counted<std::uint32_t>(0, counts));
     counts.add += 2 * (words - 1);
-    const Real share = one / (one + one), rest = one - share;
+    const Number share = one / (one + one), rest = one - share;
     for (int value = 0; value < 3 + 3; ++value) share* one + rest* one;  // plane and colour
     counts.bit += words;
   });

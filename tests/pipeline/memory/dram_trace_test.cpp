@@ -25,7 +25,7 @@ struct Frame0 {
   std::vector<DramTrace::Range> ranges;
 };
 
-Frame0 render(const std::string& spec, const Trace& trace, const FrameInput& run = {2}) {
+Frame0 record(const std::string& spec, const Trace& trace, const FrameInput& run = {2}) {
   DramTrace dram(testing::TempDir());
   Frame0 frame;
   frame.stages = parse_technique(spec).render(trace, 0, run, {.dram_trace = &dram}).stages;
@@ -82,7 +82,7 @@ TEST(DramTrace, HasTheBytesOfEveryStage) {
   for (const auto& [scene, trace] : scenes())
     for (const auto& [machine, run] : machines())
       for (const std::string& spec : example_specs()) {
-        const Frame0 frame = render(spec, trace, run);
+        const Frame0 frame = record(spec, trace, run);
         expect_bytes_of_counters(frame, spec + ", " + scene + ", " + machine);
         expect_disjoint_arrays(frame, spec + ", " + scene + ", " + machine);
       }
@@ -95,7 +95,7 @@ TEST(DramTrace, HasTheBytesOfSmallCaches) {
   run.memory.framebuffer = Place::in_memory;
   for (const auto& [scene, trace] : scenes())
     for (const std::string& spec : example_specs())
-      expect_bytes_of_counters(render(spec, trace, run), spec + (", " + scene));
+      expect_bytes_of_counters(record(spec, trace, run), spec + (", " + scene));
 }
 
 TEST(DramTrace, ContinuesAHistory) {
@@ -106,21 +106,21 @@ TEST(DramTrace, ContinuesAHistory) {
     FrameInput run{2};
     run.history = &history;
     parse_technique(spec).render(trace, 0, run);
-    expect_bytes_of_counters(render(spec, trace, run), spec);
+    expect_bytes_of_counters(record(spec, trace, run), spec);
   }
 }
 
 TEST(DramTrace, DoesNotDependOnThreadsOrBands) {
   for (const auto& [scene, trace] : scenes())
     for (const std::string& spec : example_specs()) {
-      const std::vector<Recorded> expected = render(spec, trace, {1}).requests;
-      EXPECT_EQ(render(spec, trace, {3}).requests, expected) << spec << ", " << scene;
+      const std::vector<Recorded> expected = record(spec, trace, {1}).requests;
+      EXPECT_EQ(record(spec, trace, {3}).requests, expected) << spec << ", " << scene;
     }
   FrameInput banded{4};
   banded.memory_limit = 2 << 20;  // too little for the pairs of four bins at once
   const Trace trace = random_trace(52, 40, 150, 5);
   for (const char* spec : {"beam:order=sorted", "msaa:4"})
-    EXPECT_EQ(render(spec, trace, banded).requests, render(spec, trace).requests) << spec;
+    EXPECT_EQ(record(spec, trace, banded).requests, record(spec, trace).requests) << spec;
 }
 
 // What is read has been written, where nothing else can have left it there.
@@ -133,7 +133,7 @@ TEST(DramTrace, ReadsWhatWasWrittenEarlier) {
     if (spec == "reference") continue;  // its samples are in no memory
     std::set<std::uint64_t> written;
     std::size_t early = 0, found = 0;
-    for (const Recorded& request : render(spec, random_trace(52, 40, 150, 5), run).requests) {
+    for (const Recorded& request : record(spec, random_trace(52, 40, 150, 5), run).requests) {
       if (request.is_write) written.insert(request.address);
       if (request.is_write || !arrays.contains(request.array)) continue;
       ++found;
@@ -153,22 +153,22 @@ TEST(DramTrace, ComesPassByPass) {
     return std::find_if(requests.begin(), requests.end(), [&](const auto& r) { return r.stage == stage; });
   };
   const Trace trace = random_trace(52, 40, 150, 5);
-  const std::vector<Recorded> msaa = render("msaa:4", trace).requests;
+  const std::vector<Recorded> msaa = record("msaa:4", trace).requests;
   EXPECT_LE(last(msaa, "vertex_setup"), first(msaa, "sample_raster"));
   EXPECT_LT(first(msaa, "depth_test"), last(msaa, "sample_raster")) << "one bin after the other";
   EXPECT_LE(last(msaa, "depth_test"), first(msaa, "resolve"));
-  const std::vector<Recorded> taa = render("taa:4", trace).requests;
+  const std::vector<Recorded> taa = record("taa:4", trace).requests;
   EXPECT_LE(last(taa, "motion"), first(taa, "temporal"));
-  const std::vector<Recorded> acaa = render("acaa:32", trace).requests;  // setup runs again in the second round
+  const std::vector<Recorded> acaa = record("acaa:32", trace).requests;  // setup runs again in the second round
   EXPECT_LT(first(acaa, "accumulate"), last(acaa, "vertex_setup"));
-  const std::vector<Recorded> beam = render("beam", trace).requests;
+  const std::vector<Recorded> beam = record("beam", trace).requests;
   EXPECT_LT(first(beam, "resolve"), last(beam, "conservative_raster")) << "pixels on chip: one bin after the other";
 }
 
 TEST(DramTrace, WithoutAModelNothingIsRecorded) {
   FrameInput run{2};
   run.memory.modelled = false;
-  EXPECT_TRUE(render("beam:order=sorted", random_trace(52, 40, 150, 5), run).requests.empty());
+  EXPECT_TRUE(record("beam:order=sorted", random_trace(52, 40, 150, 5), run).requests.empty());
 }
 
 TEST(DramTrace, TheFolderOfItsFileMustBeThere) {
