@@ -21,8 +21,7 @@
 #include "tests/llvmpipe/llvmpipe.h"
 #include "tests/llvmpipe/snapped.h"
 
-namespace beampipe {
-namespace {
+namespace beampipe::llvmpipe_coverage_test {
 
 constexpr int kSize = 64;    // pixels on each side
 constexpr int kUnits = 256;  // per pixel
@@ -273,5 +272,4 @@ TEST_F(Coverage, BehindTheEye) {
   });
 }
 
-}  // namespace
-}  // namespace beampipe
+}  // namespace beampipe::llvmpipe_coverage_test

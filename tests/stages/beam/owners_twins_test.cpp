@@ -14,8 +14,8 @@ using Two = OpenTile<kWords, 2>;
 // A fragment: pixel, triangle, centroid, area, mask, plane, depth; and the pixel's closed depth. A pixel: three bit
 // planes, five slots, and nine sums of two bytes. A plane of an owner: its number in the list, and five doubles of a
 // setup triangle.
-constexpr std::uint64_t kFragment = 2 + 3 + 2 + 2 + 16 + 16 + 4, kPlane = 4 + 5 * 8;
-constexpr std::uint64_t kPixelOfFive = 3 * 16 + 5 * 8 + 9 * 2, kPixelOfTwo = 2 * 16 + 2 * 8 + 9 * 2;
+constexpr std::uint64_t kFragment = 2 + 3 + 2 + 2 + 32 + 16 + 4, kPlane = 4 + 5 * 8;
+constexpr std::uint64_t kPixelOfFive = 3 * 32 + 5 * 8 + 9 * 2, kPixelOfTwo = 2 * 32 + 2 * 8 + 9 * 2;
 
 // Each fragment is compared with its pixel's closed depth.
 constexpr std::uint64_t kHiddenTest = 1;
@@ -32,7 +32,7 @@ OperationCounts masks_of_two() {
 }
 // To put positions into a state: an and and an inversion for each bit.
 OperationCounts put(std::uint64_t bits) { return {.bit = kWords * 2 * bits}; }
-// Four population counts are converted and added.
+// Eight population counts are converted and added.
 OperationCounts count() { return {.add = kWords - 1, .bit = kWords, .convert = kWords}; }
 // An owner's positions, or the final ones, are found and counted. What is found is charged as state 6 of three bits, or
 // 3 of two: ands, and an inversion for a bit that is not set.

@@ -26,7 +26,7 @@ Report sample_report() {
     frame.buffers = {{"pairs", 64, true}};
     frame.pixels = 50;
     frame.pixel_counters = {{"fragments", {1.5, 4}}};
-    frame.stages = {{"vertex_setup", 3, 1, {1, 2, 3, 4, 5, 6, 8}, 36, 80, 9, 3, 4, 128, 112, 96, 0, 0, 0, 0, 5, 6, 7}};
+    frame.stages = {{StageId::vertex_setup, 3, 1, {1, 2, 3, 4, 5, 6, 8}, 36, 80, 9, 3, 4, 128, 112, 96, 0, 0, 0, 0, 5, 6, 7}};
     result.frames.push_back(frame);
   }
   return report;
