@@ -64,9 +64,9 @@ TEST(HandWorked, TriangleNearFirst) {
                           kEntry = 4 + 4;
   expect_bytes("paper_triangle.json", "beam",
                {{"vertex_setup", 1, 1, 48, kSetup, kTriangleSetup, kTriangleSetup, kTriangleSetup},
+                {"bin_sort", 1, 1, 3 * kEntry, 4 + 3 * kEntry, 32 + 32 + 64, 32 + 32 + 64, 32 + 32},
                 {"conservative_raster", 1, kPairs, 88 + 4 * kPairs, kPairs * kPair, kTriangleRaster, kTriangleRaster,
                  kTriangleRaster},
-                {"bin_sort", 1, 1, 3 * kEntry, 4 + 3 * kEntry, 32 + 32 + 64, 32 + 32 + 64, 32 + 32},
                 {"beam_fragment", kPairs, kFragments, kPairs * (kPair + 88), kFragments * kFragment, 0, 0, 0},
                 {"compose", kFragments, kFragments, kFragments * (kFragment + 4 + kPixel) + 4 + kPlane + 64 * kPixel,
                  kFragments * kPixel + 4, 64, 64, 0},

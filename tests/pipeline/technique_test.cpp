@@ -111,7 +111,7 @@ TEST(Technique, WrongSpecsSayWhatWouldBeRight) {
            {"beam:slots=5,bits=128", "bits needs slots=2, 4, 8, 16 or 32, unless it is 256"},
            {"beam:mask=table,mask=table", "'mask' is there twice"},
            {"beam:order=primitive", "order must be near-first, sorted or stream"},
-           {"casav", "beam has no option 'rules'" + of_beam},
+           {"beam:rules=paper", "beam has no option 'rules'" + of_beam},
            {"beam:order=stream,order=sorted", "'order' is there twice"},
            {"beam:order=stream,slots=7", "beam:order=stream has no option 'slots'; it has order"},
            {"casav:layers=3", "layers needs order=near-first or order=stream"},

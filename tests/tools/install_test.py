@@ -70,7 +70,7 @@ class Install(unittest.TestCase):
         self.build_examples()
         self.run_it("examples/own_technique", "compare", "t.json", "-t", "overdraw", "msaa:1", "-o", "own")
         report = json.loads((self.folder / "own/report.json").read_text())
-        result, = (each for each in report["techniques"] if each["spec"] == "overdraw")
+        result, = (each for each in report["results"] if each["technique"] == "overdraw")
         self.assertGreater(result["equivalent_msaa"], 0)
         for times in result["frames"][0]["modelled_ms"].values():
             self.assertGreater(times["overlap"], 0)

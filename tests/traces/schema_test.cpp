@@ -129,6 +129,8 @@ TEST_F(SchemaTest, TheCompleteTracesHaveEveryKeyAndAreRead) {
     each_member([&](int of, const Pointer& at, const Json&) {
       if (of == version) used.insert(at.back());
     });
+    if (version == 1)  // the form of arrays is that of both versions, but version 1 has no buffers to view
+      for (const char* const of_views : {"buffer", "offset", "type", "count"}) described.erase(of_views);
     for (const std::string& key : described) EXPECT_TRUE(used.contains(key)) << "version " << version << ": " << key;
   }
 }
