@@ -11,7 +11,7 @@ targets=("${@:2}")
 TMPDIR=$(mktemp --directory /dev/shm/beampipe-fuzz-XXXXXX)  # in memory
 export TMPDIR
 trap 'rm -r "$TMPDIR"' EXIT
-cmake --preset fuzz >/dev/null
+cmake --preset fuzz -DCMAKE_UNITY_BUILD=ON >/dev/null
 cmake --build --preset fuzz --parallel "$(nproc)" --target "${targets[@]/%/_fuzz}"
 # The names of techniques and their options, from the tables of docs/techniques.md.
 sed -n '/tables of .*: begin/,/tables of .*: end/p' docs/techniques.md | grep -oE '[a-z0-9.-]+[=:]?' | sort -u |
