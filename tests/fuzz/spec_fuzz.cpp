@@ -8,7 +8,7 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size
     const std::size_t end = std::min(rest.find(' '), rest.size());
     try {
       const Technique technique = parse_technique(rest.substr(0, end));
-      if (technique.framebuffer_bytes_per_pixel() == 0 || !technique.render) std::abort();
+      if (technique.framebuffer_bytes_per_pixel() == 0 || !technique.renderer) std::abort();
     } catch (const SpecError& error) {
       require_one_line(error.what());
     }
