@@ -33,7 +33,7 @@ Form<StageCounters> make_stage_form() {
   ObjectForm<StageCounters> stage, operations;
   stage.written(
       "stage", [](const StageCounters& each) { return std::string(name_of(each.stage)); }, form::text(),
-      "The stage's name, as docs/counters.md lists it.");
+      "The stage's name, as `beampipe counters` lists it.");
   const std::span<const CounterInfo> counters = stage_counters();
   for (std::size_t i = 0; i < counters.size();) {
     const std::string group(keys_of(counters[i]).first);
@@ -172,7 +172,7 @@ Form<FrameOf> make_frame_form() {
       .written("pixel_counters", filled(&Frame::pixel_counters), form::by_name(statistics_form()),
                "Statistics of each counter of pixels, by name.")
       .written("saved", saved_of, form::as_it_is(form::by_name(form::count()).schema),
-               "Work that was not done, by name (docs/counters.md).")
+               "Work that was not done, by name (`beampipe counters`).")
       .written("stages", member(&Frame::stages), form::list(stage_form()), "The stages, in the order of the pipeline.")
       .added("modelled_ms", form::by_name(modelled_form()).schema,
              "Modelled times, by implementation; those of further hardware as HARDWARE.IMPLEMENTATION.");

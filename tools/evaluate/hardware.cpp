@@ -133,9 +133,10 @@ Form<UnitsOfStages> units_form() {
 Form<Implementation> implementation_form() {
   return ObjectForm<Implementation>()
       .add(form::unused<Implementation>("description", false, form::text(), "What it is, for people."))
-      .required("units", &Implementation::units, units_form(),
-                "By the name of a stage (docs/counters.md): its units. on_chip is no unit; it marks stages that work "
-                "on what a bin has on chip.");
+      .required(
+          "units", &Implementation::units, units_form(),
+          "By the name of a stage (`beampipe counters`): its units. on_chip is no unit; it marks stages that work "
+          "on what a bin has on chip.");
 }
 
 Form<Hardware> hardware_form() {
