@@ -10,30 +10,28 @@
 namespace beampipe {
 namespace {
 
-// A layer with all numbers as float32.
+// A layer, and the positions that it owns. It stays in its format until it is merged.
 struct Layer {
-  DepthPlane<float> plane;
-  glm::vec3 color;
+  Z3Layer surface;
   WideMask positions;
 
+  DepthPlane<float> plane() const { return {surface.z, surface.slopes[0], surface.slopes[1]}; }
+  glm::vec3 color() const { return {surface.color[0], surface.color[1], surface.color[2]}; }
   float count() const { return static_cast<float>(positions.count()); }
 };
 
-Z3Layer packed(const Layer& layer) {
-  return {layer.plane.z,
-          {UpperHalf(layer.plane.dzdu), UpperHalf(layer.plane.dzdv)},
-          {HalfBits(layer.color.r), HalfBits(layer.color.g), HalfBits(layer.color.b)}};
-}
-
-Layer unpacked(const Z3Layer& layer, const WideMask& positions) {
-  return {{layer.z, layer.slopes[0], layer.slopes[1]}, {layer.color[0], layer.color[1], layer.color[2]}, positions};
+Z3Layer packed(const DepthPlane<float>& plane, const glm::vec3& color) {
+  return {plane.z,
+          {UpperHalf(plane.dzdu), UpperHalf(plane.dzdv)},
+          {HalfBits(color.r), HalfBits(color.g), HalfBits(color.b)}};
 }
 
 Layer merged(const Layer& a, const Layer& b) {
   const float share = a.count() / (a.count() + b.count()), rest = 1 - share;
-  return {{share * a.plane.z + rest * b.plane.z, share * a.plane.dzdu + rest * b.plane.dzdu,
-           share * a.plane.dzdv + rest * b.plane.dzdv},
-          share * a.color + rest * b.color,
+  const DepthPlane<float> one = a.plane(), other = b.plane();
+  return {packed({share * one.z + rest * other.z, share * one.dzdu + rest * other.dzdu,
+                  share * one.dzdv + rest * other.dzdv},
+                 share * a.color() + rest * b.color()),
           a.positions | b.positions};
 }
 
@@ -47,13 +45,13 @@ class PixelLayers {
     std::array<Layer, Layers + 1> layers;
     std::size_t used = 0;
     auto owners = pixel.owners;  // a copy, because the words of a packed pixel may not be aligned
-    Layer arriving = unpacked(packed({fragment.plane, fragment.color / fragment.alpha, {}}), fragment.mask);
+    Layer arriving{packed(fragment.plane, fragment.color / fragment.alpha), fragment.mask};
     for (std::uint32_t k = 0; k < Layers; ++k) {
-      Layer layer = unpacked(pixel.layers[k], owners.positions_in(k + 1));
+      Layer layer{pixel.layers[k], owners.positions_in(k + 1)};
       const WideMask contested = layer.positions & fragment.mask;
       if (!contested.none()) {
         WideMask nearer;
-        nearer_positions(arriving.plane, layer.plane, patterns_.data(), Words, nearer.words.data());
+        nearer_positions(arriving.plane(), layer.plane(), patterns_.data(), Words, nearer.words.data());
         ++work.planes_compared;
         arriving.positions = without(arriving.positions, without(contested, nearer));
         layer.positions = without(layer.positions, contested & nearer);
@@ -66,7 +64,7 @@ class PixelLayers {
     layers[used++] = arriving;
     if (used > Layers) merge_two(layers, observer), --used;
     for (std::uint32_t k = 0; k < used; ++k) {
-      pixel.layers[k] = packed(layers[k]);
+      pixel.layers[k] = layers[k].surface;
       owners.put(layers[k].positions, k + 1);
     }
     pixel.owners = owners;
@@ -81,14 +79,14 @@ class PixelLayers {
     float least = std::numeric_limits<float>::infinity();
     for (std::size_t i = 0; i < layers.size(); ++i)
       for (std::size_t j = i + 1; j < layers.size(); ++j)
-        if (const float distance = std::abs(layers[i].plane.z - layers[j].plane.z); distance < least) {
+        if (const float distance = std::abs(layers[i].surface.z - layers[j].surface.z); distance < least) {
           least = distance;
           first = i, second = j;
         }
     const Layer &one = layers[first], &other = layers[second];
     if (observer) {
       const double share = double{one.count()} / (one.count() + other.count());
-      observer->merges({one.positions, one.color, share}, {other.positions, other.color, 1 - share});
+      observer->merges({one.positions, one.color(), share}, {other.positions, other.color(), 1 - share});
     }
     layers[first] = merged(one, other);
     std::swap(layers[second], layers.back());
@@ -122,11 +120,11 @@ std::vector<PixelColor> z3_colors(const std::vector<Z3Pixel<Words, Layers>>& pix
     PixelObserver* const observer = observer_at(observers, colors.size());
     if (observer) observer->arrivals_end();
     for (std::uint32_t k = 0; k < Layers; ++k) {
-      const Layer layer = unpacked(pixel.layers[k], owners.positions_in(k + 1));
+      const Layer layer{pixel.layers[k], owners.positions_in(k + 1)};
       const float share = layer.count() / (32 * Words);
       sum.alpha += share;
-      sum.color += share * layer.color;
-      if (observer && share > 0) observer->settles(layer.positions, layer.color, share, share);
+      sum.color += share * layer.color();
+      if (observer && share > 0) observer->settles(layer.positions, layer.color(), share, share);
     }
     if (observer) observer->finishes();
     colors.push_back(sum);
