@@ -103,7 +103,7 @@ std::vector<Aggregate> compose_lists(const CasavOptions& options, const MergePos
                                      const std::vector<Fragment>& fragments, const ABuffer& lists,
                                      const PixelObservers* observers, StageCounters& counters) {
   return options.rules == Rules::published
-             ? compose(fragments, lists, positions, options.merge, options.storage, counters, observers)
+             ? compose(fragments, lists, {positions, options.merge, options.storage}, counters, observers)
              : compose_over(fragments, lists, counters, observers);
 }
 
@@ -159,7 +159,7 @@ FrameResult render_layers(const FrameJob& job, const CasavOptions& beam) {
                                   kQueueItems);
     BeamFragmentUnit make_fragments(bin, options);
     ShadeUnit shade(bin);
-    ComposeLayersUnit compose(bin, positions, beam.merge, static_cast<std::size_t>(beam.layers), beam.storage,
+    ComposeLayersUnit compose(bin, static_cast<std::size_t>(beam.layers), {positions, beam.merge, beam.storage},
                               plan.framebuffer.surfaces);
     std::vector<float>& counts = bin.pixel_counter("fragments");
 

@@ -24,7 +24,8 @@ std::vector<glm::vec4> draw_translucent(Bin& bin, DepthTestUnit& depth_test, Sha
   const auto samples = static_cast<std::size_t>(sampling.pattern.count);
   SampleRasterUnit raster(bin, SampleRasterUnit::Translucent::alone, AlphaCoverage::test);
   SampleShadeUnit shade(bin, sampling, at);
-  TileSurface layer(bin.memory(), "translucent_layer", bin.z_order(), static_cast<std::uint32_t>(samples), kLayerBytes);
+  TileSurface layer(bin.memory(), "translucent_layer", bin.z_order(),
+                    {.parts = static_cast<std::uint32_t>(samples), .part_bytes = kLayerBytes});
   depth_test.start_layer(at, kLayerBytes);
   raster.pass(sampling, at, [&](std::vector<SampleFragment>& fragments) {
     depth_test.blend_into(layer, fragments);

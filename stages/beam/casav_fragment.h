@@ -25,12 +25,11 @@ inline MergeFragment merge_fragment(const Fragment& fragment) {
 // Tells that the aggregate at `place` and what lies behind it become `together`. A merge by the rules is linear in
 // colours, so merging two colours of 1 gives the factors.
 inline void tell_merge(std::size_t place, const Aggregate& nearer, const MergeFragment& farther,
-                       const Aggregate& together, const MergePositions& positions, const MergeRules& rules,
-                       PixelObserver& observer) {
+                       const Aggregate& together, const CasavMerging& merging, PixelObserver& observer) {
   Aggregate unit = nearer;
   MergeFragment other = farther;
   for (int c = 0; c < 3; ++c) unit.color[c] = c == 0, other.surface.color[c] = c == 1;
-  const Aggregate factors = merge_formula(other, unit, positions, rules);
+  const Aggregate factors = merge_formula(other, unit, merging.positions, merging.rules);
   observer.joins(place, {nearer, farther.surface, together, factors.color[0], factors.color[1]});
 }
 

@@ -85,4 +85,11 @@ constexpr std::uint32_t casav_aggregate_bytes(CasavStorage storage) {
   return sizeof(Aggregate);
 }
 
+// How `compose` and compose_layers merge: by which rules, where the bits of masks lie, and how aggregates are stored.
+struct CasavMerging {
+  const MergePositions& positions;
+  MergeRules rules = {};
+  CasavStorage storage = CasavStorage::float32;
+};
+
 }  // namespace beampipe

@@ -229,24 +229,31 @@ BarycentricPlanes<float> barycentric_planes(const std::array<ScreenCorner, 3>& c
 
 constexpr std::uint32_t kNoVertices = ~0u;  // of frames whose triangles are all flat
 
+// A draw to set up.
+struct DrawJob {
+  const View& view;
+  const Trace& trace;
+  const Draw& draw;
+  const DrawPlacement& placement;
+  std::uint32_t index;         // of the draw in the frame
+  std::uint32_t first_vertex;  // where its vertices start in SetupTriangles::vertices, or kNoVertices
+};
+
 // Sets up triangles of one draw and appends them to `out`. Depth planes and normals are found for a block of triangles
 // at once.
 class TriangleSetup {
  public:
-  // `first_vertex`: where the draw's vertices start in SetupTriangles::vertices.
-  TriangleSetup(const View& view, const DrawScreen& screen, const Trace& trace, const Draw& draw,
-                std::uint32_t draw_index, const ProjectedVertex* vertices, std::uint32_t first_vertex,
-                SetupTriangles& out)
-      : view_(view),
+  TriangleSetup(const DrawJob& job, const DrawScreen& screen, const ProjectedVertex* vertices, SetupTriangles& out)
+      : view_(job.view),
         screen_(screen),
         is_placed_(screen.placement != DrawPlacement{}),
-        materials_(trace.materials),
-        mesh_(trace.meshes[draw.mesh]),
-        draw_(draw),
-        first_vertex_(first_vertex),
-        transform_mirrors_(glm::determinant(glm::dmat3(draw.transform)) < 0),
-        to_world_(elements_of(draw.transform)),
-        draw_index_(draw_index),
+        materials_(job.trace.materials),
+        mesh_(job.trace.meshes[job.draw.mesh]),
+        draw_(job.draw),
+        first_vertex_(job.first_vertex),
+        transform_mirrors_(glm::determinant(glm::dmat3(job.draw.transform)) < 0),
+        to_world_(elements_of(job.draw.transform)),
+        draw_index_(job.index),
         vertices_(vertices),
         out_(out) {}
 
@@ -500,10 +507,9 @@ void for_each_chunk(std::size_t count, ChunkWork&& work) {
 }
 
 // Appends the draw's triangles to `out`.
-SetupWork add_draw(const View& view, const Trace& trace, const Draw& draw, const DrawPlacement& placement,
-                   std::uint32_t draw_index, std::uint32_t first_vertex, SetupTriangles& out) {
-  const Mesh& mesh = trace.meshes[draw.mesh];
-  const DrawScreen screen(view, draw, placement);
+SetupWork add_draw(const DrawJob& job, SetupTriangles& out) {
+  const Mesh& mesh = job.trace.meshes[job.draw.mesh];
+  const DrawScreen screen(job.view, job.draw, job.placement);
   const std::size_t vertex_count = mesh.positions.size();
   const auto vertices = std::make_unique_for_overwrite<ProjectedVertex[]>(vertex_count);
   std::vector<std::size_t> in_view(chunks_of(vertex_count));
@@ -516,7 +522,7 @@ SetupWork add_draw(const View& view, const Trace& trace, const Draw& draw, const
   (mesh.ws.empty() ? work.transformed : work.transformed_homogeneous) = vertex_count;
   for (const std::size_t of_chunk : in_view) work.projected += of_chunk;
   const auto set_up = [&](std::size_t first, std::size_t end, SetupTriangles& to) {
-    TriangleSetup setup(view, screen, trace, draw, draw_index, vertices.get(), first_vertex, to);
+    TriangleSetup setup(job, screen, vertices.get(), to);
     for (std::size_t t = first; t < end; ++t) setup.add(t);
     setup.finish_block();
     return setup.work;
@@ -603,7 +609,7 @@ SetupTriangles vertex_setup(const Trace& trace, const Frame& frame, StageCounter
     const Mesh& mesh = trace.meshes[draw.mesh];
     if (!placement_of(i).is_drawn) continue;
     const auto first_vertex = static_cast<std::uint32_t>(out.vertices.size());
-    work += add_draw(view, trace, draw, placement_of(i), i, has_materials ? first_vertex : kNoVertices, out);
+    work += add_draw({view, trace, draw, placement_of(i), i, has_materials ? first_vertex : kNoVertices}, out);
     if (has_material(draw, mesh)) {
       work.shaded_vertices += mesh.positions.size();
       work.vertex_vectors += mesh.positions.size() * (std::size_t{!mesh.normals.empty()} + !mesh.tangents.empty());

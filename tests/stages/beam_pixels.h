@@ -42,8 +42,8 @@ inline std::vector<Aggregate> beam_pixels(const SetupTriangles& triangles, const
   Fragments fragments = beam_fragments(triangles, tile, mask);
   StageCounters counters;
   shade(colors, fragments.list, counters);
-  return compose(fragments.list, sorted(fragments, tile.pixels()), MergePositions(hammersley_pattern()), rules,
-                 CasavStorage::float32, counters);
+  const MergePositions positions(hammersley_pattern());
+  return compose(fragments.list, sorted(fragments, tile.pixels()), {positions, rules}, counters);
 }
 
 }  // namespace beampipe

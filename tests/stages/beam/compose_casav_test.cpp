@@ -168,7 +168,7 @@ TEST(Compose, PixelsDoNotMix) {
   shade(colors, fragments.list, counters);
   const ABuffer buffer = sorted(fragments, tile.pixels());
   const MergePositions positions(hammersley_pattern());
-  const std::vector<Aggregate> found = compose(fragments.list, buffer, positions, {}, CasavStorage::float32, counters);
+  const std::vector<Aggregate> found = compose(fragments.list, buffer, {positions}, counters);
   for (std::size_t i = 0; i < tile.pixels(); ++i) {
     Aggregate alone = kEmptyAggregate;
     for (std::uint32_t k = buffer.first[i]; k < buffer.first[i + 1]; ++k)

@@ -103,7 +103,7 @@ class MergeTwins : public SceneTwins {
       return Aggregate(Stored(value_of(merged)));
     });
     StageCounters counters;
-    expect_same(compose(fragments_, buffer_, positions, rules, storage, counters), expected);
+    expect_same(compose(fragments_, buffer_, {positions, rules, storage}, counters), expected);
     EXPECT_EQ(counters.ops, twin_);
     EXPECT_EQ(counters.position_tests, position_tests);
     EXPECT_EQ(counters.lanes_used, fragments_.size());
