@@ -12,13 +12,13 @@ namespace beampipe {
 // The fragment in the form that the published rules take, with 32 mask positions.
 inline MergeFragment merge_fragment(const Fragment& fragment) {
   const glm::vec3& color = fragment.color;
-  return {{fragment.alpha,
-           fragment.mask.words[0],
-           fragment.plane,
-           0.0f,
-           fragment.z_min,
-           fragment.z_max,
-           {color.r, color.g, color.b}},
+  return {{.alpha = fragment.alpha,
+           .mask = fragment.mask.words[0],
+           .plane = fragment.plane,
+           .thickness = 0.0f,
+           .z_min = fragment.z_min,
+           .z_max = fragment.z_max,
+           .color = {color.r, color.g, color.b}},
           fragment.tiny ? ~0u : 0u};
 }
 
@@ -42,7 +42,14 @@ Float depth_between(const AggregateOf<Float, Mask>& nearer, const AggregateOf<Fl
 inline FragmentOf<Counted<float>, Counted<std::uint32_t>> counted_fragment(OperationCounts& counts) {
   const Counted<float> one(1.0f, counts);
   const Counted<std::uint32_t> all(~0u, counts);
-  return {{one, all, {one, one, one}, one, one, one, {one, one, one}}, all};
+  return {{.alpha = one,
+           .mask = all,
+           .plane = {one, one, one},
+           .thickness = one,
+           .z_min = one,
+           .z_max = one,
+           .color = {one, one, one}},
+          all};
 }
 
 // How many numbers of a stored aggregate must be converted to float32.

@@ -609,7 +609,13 @@ SetupTriangles vertex_setup(const Trace& trace, const Frame& frame, StageCounter
     const Mesh& mesh = trace.meshes[draw.mesh];
     if (!placement_of(i).is_drawn) continue;
     const auto first_vertex = static_cast<std::uint32_t>(out.vertices.size());
-    work += add_draw({view, trace, draw, placement_of(i), i, has_materials ? first_vertex : kNoVertices}, out);
+    work += add_draw({.view = view,
+                      .trace = trace,
+                      .draw = draw,
+                      .placement = placement_of(i),
+                      .index = i,
+                      .first_vertex = has_materials ? first_vertex : kNoVertices},
+                     out);
     if (has_material(draw, mesh)) {
       work.shaded_vertices += mesh.positions.size();
       work.vertex_vectors += mesh.positions.size() * (std::size_t{!mesh.normals.empty()} + !mesh.tangents.empty());

@@ -50,7 +50,11 @@ TimedResult render_timed(const RunPlan& plan, const Rendering& run, Progress& pr
 
 FrameContent content_of(const Trace& trace, std::size_t index) {
   const Frame& frame = trace.frames[index];
-  FrameContent content{index, frame.width, frame.height, 0, frame.draws.size(), frame.lighting.lights.size()};
+  FrameContent content{.index = index,
+                       .width = frame.width,
+                       .height = frame.height,
+                       .draws = frame.draws.size(),
+                       .lights = frame.lighting.lights.size()};
   for (const Draw& draw : frame.draws) content.triangles += trace.meshes[draw.mesh].triangles.size();
   return content;
 }
@@ -161,19 +165,16 @@ void require_writable_folders(const OutputFolder& output, const std::vector<Tech
 }
 
 Report new_report(const RunPlan& plan, const Json& made_by) {
-  Report report{plan.trace_file,
-                program_version(),
-                simd_target(),
-                plan.options.threads,
-                plan.options.memory,
-                plan.hardware,
-                {},
-                {},
-                {},
-                plan.notes,
-                made_by,
-                plan.more_hardware,
-                plan.trace.frames.size()};
+  Report report{.trace = plan.trace_file,
+                .version = program_version(),
+                .simd = simd_target(),
+                .threads = plan.options.threads,
+                .memory = plan.options.memory,
+                .hardware = plan.hardware,
+                .notes = plan.notes,
+                .made_by = made_by,
+                .more_hardware = plan.more_hardware,
+                .trace_frames = plan.trace.frames.size()};
   for (const std::size_t frame : plan.frames) report.frames.push_back(content_of(plan.trace, frame));
   return report;
 }

@@ -21,7 +21,8 @@ Trace perspective(double near, double far, const std::vector<std::array<glm::vec
   Frame& frame = trace.frames.emplace_back();
   frame.width = frame.height = 16;
   frame.background = kBackground;
-  set_camera(frame, {{0, 0, 0}, {0, 0, -1}, {0, 1, 0}, 90, near, far});
+  set_camera(frame,
+             {.eye = {0, 0, 0}, .target = {0, 0, -1}, .up = {0, 1, 0}, .fovy_deg = 90, .near = near, .far = far});
   frame.draws.emplace_back();
   return trace;
 }

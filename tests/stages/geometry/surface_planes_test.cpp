@@ -198,7 +198,8 @@ Trace scene_of(const std::vector<glm::vec3>& positions, double near, double far,
   trace.materials[0].double_sided = true;
   Frame frame;
   frame.width = 640, frame.height = 480;
-  set_camera(frame, {{0, 0, 0}, {0, 0, -1}, {0, 1, 0}, 60, near, far});
+  set_camera(frame,
+             {.eye = {0, 0, 0}, .target = {0, 0, -1}, .up = {0, 1, 0}, .fovy_deg = 60, .near = near, .far = far});
   frame.draws.emplace_back().transform = transform;
   trace.frames.push_back(frame);
   return trace;
