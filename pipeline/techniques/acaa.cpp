@@ -45,19 +45,17 @@ FrameResult render_acaa(const FrameJob& job, const AcaaOptions& options) {
     std::vector<glm::vec4> translucent;
     for (const Sampling& sampling : rounds) {
       DepthTestUnit depth_test(bin, sampling, 0);
-      prepass.pass(sampling, ShadeAt::centroid, [&](const auto& fragments) { depth_test.test(fragments); });
-      depth_test.end_pass();
+      prepass.pass(depth_test, ShadeAt::centroid, [&](const auto& fragments) { depth_test.test(fragments); });
       if (accumulate.blends_background()) depth_test.read_depths(accumulate.stage);
       accumulate.start_round(sampling, depth_test.surface());
       shade.start_pass(sampling);
-      raster.pass(sampling, ShadeAt::centroid, [&](std::vector<SampleFragment>& fragments) {
+      raster.pass(depth_test, ShadeAt::centroid, [&](std::vector<SampleFragment>& fragments) {
         depth_test.test_equal(fragments);
         accumulate.test_stencil(fragments);
         shade(fragments);
         accumulate(fragments, sampling);
         count_by_pixel(fragments, bin.tile, sampling.grid, visible);
       });
-      depth_test.end_pass();
       accumulate.finish_round();
       const std::vector<glm::vec4> layer = draw_translucent(bin, depth_test, ShadeAt::centroid);
       translucent.resize(layer.size(), glm::vec4(0.0f));

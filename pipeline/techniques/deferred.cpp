@@ -42,18 +42,14 @@ TechniqueKind deferred_kind() {
 }
 
 std::vector<glm::vec4> draw_deferred(Bin& bin, DepthTestUnit& depth_test) {
-  const Sampling& sampling = depth_test.sampling();
-  GBufferUnit gbuffer(bin, sampling);
-  SampleRasterUnit(bin, Pass::prepass).pass(sampling, ShadeAt::sample, [&](const auto& fragments) {
+  GBufferUnit gbuffer(bin, depth_test.sampling());
+  SampleRasterUnit(bin, Pass::prepass).pass(depth_test, ShadeAt::sample, [&](const auto& fragments) {
     depth_test.test(fragments);
   });
-  depth_test.end_pass();
-  SampleRasterUnit(bin).pass(sampling, ShadeAt::sample, [&](std::vector<SampleFragment>& fragments) {
+  SampleRasterUnit(bin).pass(depth_test, ShadeAt::sample, [&](std::vector<SampleFragment>& fragments) {
     depth_test.test_equal(fragments);
     gbuffer.write_fragments(fragments, depth_test);
   });
-  depth_test.end_pass();
-  gbuffer.end_pass();
   std::vector<glm::vec4> picture = gbuffer.light_and_resolve(depth_test);
   put_over(draw_translucent(bin, depth_test, ShadeAt::sample), bin.observers(), picture);
   depth_test.count_bytes();

@@ -108,7 +108,7 @@ FrameResult render_dvm(const FrameJob& job, const DvmOptions& options) {
   FrameResult result = render_bins(context, plan, [&](Bin& bin) {
     const BinStage selecting = bin.stage(StageId::sample_select), moving = bin.stage(StageId::motion);
     DepthTestUnit visibility(bin, sampling, kVisibilityBytes);
-    draw_visibility(bin, sampling, visibility);
+    draw_visibility(bin, visibility);
     std::vector<SampleQuad> selected =
         sample_select(visibility.surface(), bin.tile, materials.ids, select, selecting.timed());
     visibility.read_colors(selecting);

@@ -75,16 +75,14 @@ std::vector<glm::vec4> draw_forward(Bin& bin, const MsaaOptions& options, DepthT
 
   if (options.prepass) {  // shades and writes what is visible; the surface already knows which triangles are
     SampleRasterUnit(bin, kAll, options.alpha, Pass::prepass)
-        .pass(sampling, options.at, [&](std::vector<SampleFragment>& fragments) { depth_test.test(fragments); });
-    depth_test.end_pass();
+        .pass(depth_test, options.at, [&](std::vector<SampleFragment>& fragments) { depth_test.test(fragments); });
     depth_test.add_color(color_bytes(options));
   }
-  raster.pass(sampling, options.at, [&](std::vector<SampleFragment>& fragments) {
+  raster.pass(depth_test, options.at, [&](std::vector<SampleFragment>& fragments) {
     if (options.prepass) depth_test.test_equal(fragments);
     shade(fragments);
     if (!options.prepass) depth_test.test(fragments);
   });
-  depth_test.end_pass();
   depth_test.count_bytes();
   depth_test.read_colors(bin.stage(StageId::resolve));
   return depth_test.resolve_samples(options.at, bin.stage(StageId::resolve), options.space);

@@ -66,7 +66,7 @@ std::vector<glm::vec4> draw_bin(Bin& bin, TaaShading shading, const Sampling& sa
   std::vector<glm::vec4> picture;
   if (shading == TaaShading::visibility) {
     DepthTestUnit visibility(bin, sampling, kVisibilityBytes);
-    draw_visibility(bin, sampling, visibility);
+    draw_visibility(bin, visibility);
     picture = shade_visibility(bin, materials, visibility);
     over_time.find_motion(bin, visibility);
   } else {

@@ -91,6 +91,7 @@ void GBufferUnit::write_visible(DepthTestUnit& visibility, const Materials& mate
 }
 
 std::vector<glm::vec4> GBufferUnit::light_and_resolve(DepthTestUnit& surface) {
+  gbuffer_.flush(shading_.counters);  // the pass that wrote it ends
   const BinStage resolving = bin_.stage(StageId::resolve);
   const std::vector<std::uint32_t> triangles = triangles_of(surface.surface(), bin_.tile);
   const std::vector<std::uint32_t> shown = shown_samples(triangles);

@@ -27,12 +27,11 @@ std::vector<glm::vec4> draw_translucent(Bin& bin, DepthTestUnit& depth_test, Sha
   TileSurface layer(bin.memory(), "translucent_layer", bin.z_order(),
                     {.parts = static_cast<std::uint32_t>(samples), .part_bytes = kLayerBytes});
   depth_test.start_layer(at, kLayerBytes);
-  raster.pass(sampling, at, [&](std::vector<SampleFragment>& fragments) {
+  raster.pass(depth_test, at, [&](std::vector<SampleFragment>& fragments) {
     depth_test.blend_into(layer, fragments);
     shade(fragments);
   });
   const BinStage blending = bin.stage(StageId::blend);
-  depth_test.end_pass();
   layer.flush(blending.counters);
   layer.read_all(blending.counters);
   if (bin.models_memory()) layer.add_bytes(bin.pixel_counter("bytes"));
