@@ -184,9 +184,18 @@ FrameResult render_casav(const FrameJob& job, const CasavOptions& beam) {
   return beam.order == CasavOrder::sorted ? render_sorted(job, options) : render_layers(job, options);
 }
 
+std::vector<ErrorSource> error_sources(const CasavOptions& options) {
+  if (options.rules == Rules::over) return {ErrorSource::independent_fragments};
+  std::vector<ErrorSource> sources = {ErrorSource::published_merges};
+  if (options.storage != CasavStorage::float32) sources.push_back(ErrorSource::merges_in_fp16);
+  if (options.storage == CasavStorage::text) sources.push_back(ErrorSource::merges_of_half_slopes);
+  return sources;
+}
+
 Technique make_casav(const CasavOptions& options) {
   return {.framebuffer = casav_framebuffer(options),
           .positions = hammersley_pattern().count,
+          .errs_by = error_sources(options),
           .renderer = bind_options(render_casav, options),
           .is_observable = true,
           .has_weights = options.order == CasavOrder::sorted};

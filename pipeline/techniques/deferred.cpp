@@ -35,7 +35,7 @@ TechniqueKind deferred_kind() {
           .make = make_plain([] {
             return Technique{.framebuffer = deferred_framebuffer(),
                              .sampled_at = places_of(msaa_sampling(1)),
-                             .errs_like = "msaa",
+                             .errs_by = {ErrorSource::sampled_depth, ErrorSource::gbuffer_of_8_bits},
                              .renderer = bind_options(render_deferred),
                              .is_observable = true};
           })};

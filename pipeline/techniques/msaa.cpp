@@ -120,6 +120,7 @@ TechniqueKind msaa_kind() {
             return Technique{.framebuffer = msaa_framebuffer(o),
                              .samples = static_cast<std::uint32_t>(o.samples),
                              .sampled_at = places_of(msaa_sampling(o.samples)),
+                             .errs_by = {ErrorSource::sampled_depth},
                              .renderer = bind_options(render_msaa, o),
                              .is_observable = true,
                              .keeps_history = o.motion};

@@ -40,7 +40,7 @@ TechniqueKind visibility_kind() {
               [](const VisibilityOptions& o) {
                 return Technique{.framebuffer = visibility_framebuffer(o.samples),
                                  .sampled_at = places_of(msaa_sampling(o.samples)),
-                                 .errs_like = "msaa",
+                                 .errs_by = {ErrorSource::sampled_depth, ErrorSource::gbuffer_of_8_bits},
                                  .renderer = bind_options(render_visibility, o),
                                  .is_observable = true};
               })};
