@@ -36,7 +36,8 @@ class AlphaMask {
   void operator()(Fragment& fragment) {
     if (shader_.is_opaque(fragment.triangle)) return;
     ++work.fragments;
-    fragment.alpha *= shader_.is_cutout(fragment.triangle) ? cut_out(fragment) : let_through(fragment);
+    const float part = shader_.is_cutout(fragment.triangle) ? cut_out(fragment) : let_through(fragment);
+    fragment.alpha *= part;
     fragment.tiny |= fragment.mask.none();
   }
 
