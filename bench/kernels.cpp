@@ -117,7 +117,14 @@ void merges_of_fragments(benchmark::State& state) {
   for (MergeFragment& fragment : fragments) {
     const DepthPlane<float> plane = random_plane(random);
     const auto mask = static_cast<std::uint32_t>(random());
-    fragment = {{random_real(random, 0, 1), mask, plane, 0, plane.z - 0.05f, plane.z + 0.05f, {0.1f, 0.2f, 0.3f}}, 0u};
+    fragment = {{.alpha = random_real(random, 0, 1),
+                 .mask = mask,
+                 .plane = plane,
+                 .thickness = 0,
+                 .z_min = plane.z - 0.05f,
+                 .z_max = plane.z + 0.05f,
+                 .color = {0.1f, 0.2f, 0.3f}},
+                0u};
   }
   std::vector<Aggregate> aggregates;
   std::vector<MergeSteps> steps(fragments.size());

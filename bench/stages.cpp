@@ -71,7 +71,7 @@ struct FrameWork {
       beam_fragment(triangles, window, work.tile, options, unused, fragments);
       shade_visible(colors, fragments, unused);
       compose_window(fragments, cell_positions(kPositions), unused, work.pixels, areas);
-      compose_whole(whole, work.tile, colors, unused, work.pixels);
+      compose_whole({whole, work.tile, colors}, unused, work.pixels);
       work.windows.push_back(window);
       work.fragments.push_back(fragments);
     }

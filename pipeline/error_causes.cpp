@@ -126,7 +126,11 @@ class PixelSurfaces {
       surface.color = shader.color(triangle, static_cast<std::uint32_t>(pixel), 0.5f, 0.5f);
       all.push_back(surface);
     }
-    all.push_back({kNoTriangle, background, rest_of_weights, rest_of_truth, nullptr, ~0u, false, 0});
+    all.push_back({.triangle = kNoTriangle,
+                   .color = background,
+                   .weight = rest_of_weights,
+                   .truth = rest_of_truth,
+                   .order = ~0u});
     return all;
   }
 

@@ -87,6 +87,27 @@ struct FrameResult {
   CacheReach cache_reach;
 };
 
+// Of colours up to 1: two roundings of half a unit in the last place, which is 2^-12.
+inline constexpr double kFp16Error = 0x1p-11;
+
+// Why a picture may be farther from the exact one than roundings explain. tools/stress says how far, case by case.
+enum class ErrorSource {
+  sampled_depth,           // at samples, surfaces that are closer than the rounding of 32-bit depth change places
+  counted_positions,       // Technique::counted_positions limits areas and colours
+  estimated_areas,         // areas of partly hidden triangles are estimated from mask positions
+  independent_fragments,   // OVER: fragments cover a pixel independently of each other
+  published_merges,        // the published rules: local coverage above 1 is lost
+  merges_in_fp16,          // of colours: small shares are lost
+  merges_of_half_slopes,   // slopes of 16 bits turn equal planes into a slab
+  merges_of_layers,        // a few layers per pixel, with slopes of 8 bits
+  double_counting,         // triangles at equal depth count twice
+  sums_in_fp16,            // of shares
+  sums_in_unorm8,          // of shares
+  gbuffer_of_8_bits,       // as sRGB
+  quads_over_the_border,   // 2x2 quads that extend beyond the frame
+  shared_shading_samples,  // between triangles of different colours
+};
+
 struct Technique {
   std::string spec = {};  // as the user wrote it
   Framebuffer framebuffer;
@@ -94,7 +115,8 @@ struct Technique {
   std::vector<glm::ivec2> sampled_at = {};  // in a pixel's first frame, as in pipeline/sampling.h; empty: areas count
   int positions = 0;                        // of a mask that says where in the pixel an area is; 0: there is none
   int counted_positions = 0;                // of a mask that limits areas to what counting its positions gives; or 0
-  std::string errs_like = {};               // the technique whose limits in hard cases (tools/stress) hold here as well
+  std::vector<ErrorSource> errs_by = {};    // without counted_positions, which says so itself
+  double rounding_error = kFp16Error;       // of colours up to 1
   std::function<FrameResult(const Trace&, std::size_t frame, const FrameInput&, const FrameSinks&)> renderer;
   bool is_observable = false;  // `render` can fill FrameSinks::histories
   bool has_weights = false;    // `render` can fill FrameSinks::weights

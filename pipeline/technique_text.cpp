@@ -3,6 +3,7 @@
 #include <sstream>
 
 #include "pipeline/technique_table.h"
+#include "pipeline/wrapped_text.h"
 
 namespace beampipe {
 namespace {
@@ -53,21 +54,6 @@ std::string help_of(const SpecOption& option) {
   return option.help + (option.fallback.empty() ? "" : " (" + option.fallback + ")");
 }
 
-// Writes the words of `text` from this column on; lines that follow the first begin there too.
-void put_wrapped(std::ostream& out, const std::string& text, std::size_t column) {
-  std::istringstream words(text);
-  std::size_t at = column;
-  for (std::string word; words >> word; at += word.size()) {
-    if (at > column && at + 1 + word.size() > kHelpWidth) {
-      out << '\n' << std::string(column, ' ');
-      at = column;
-    }
-    if (at > column) out << ' ', ++at;
-    out << word;
-  }
-  out << '\n';
-}
-
 // A "|" would end the cell of a Markdown table.
 std::string as_code(const std::string& text) {
   std::string code = "`";
@@ -92,14 +78,14 @@ std::string technique_help() {
   std::ostringstream help;
   help << "  NAME, or NAME:OPTION,OPTION,... with options in any order, but N first; defaults in parentheses\n";
   for (const TechniqueKind& kind : technique_kinds()) {
-    help << "\n  " << title_of(kind) << "\n    ";
-    put_wrapped(help, kind.description + " (" + kind.source + ")", 4);
+    help << "\n  " << title_of(kind) << '\n'
+         << wrapped("    " + kind.description + " (" + kind.source + ")", kHelpWidth, 4) << '\n';
     const SpecOptions options = options_of(kind);
     std::size_t width = 0;
     for (const SpecOption& option : options) width = std::max(width, option.usage.size());
     for (const SpecOption& option : options) {
-      help << "      " << option.usage << std::string(width - option.usage.size() + 2, ' ');
-      put_wrapped(help, help_of(option), 6 + width + 2);
+      const std::string usage = "      " + option.usage + std::string(width - option.usage.size() + 2, ' ');
+      help << wrapped(usage + help_of(option), kHelpWidth, usage.size()) << '\n';
     }
   }
   return help.str();

@@ -414,7 +414,15 @@ AggregateOf<Float, Mask> merge_formula(const FragmentOf<Float, Mask>& fragment, 
                                        MergeStepsOf<Mask>& steps) {
   const Mask none(0u);
   const AggregateOf<Float, Mask>& in = fragment.surface;
-  steps = {none, none, none, none, none, none, none, none, none};
+  steps = {.merged = none,
+           .overlap = none,
+           .lines = none,
+           .front_line = none,
+           .back_line = none,
+           .tested = none,
+           .fuzzy = none,
+           .reached = none,
+           .moved = none};
   const auto first = old.mask == none;
   if (!any(!first)) return in;
   steps.merged = choose(first, none, Mask(1u));

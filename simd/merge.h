@@ -27,7 +27,13 @@ struct AggregateOf {
 };
 using Aggregate = AggregateOf<float, std::uint32_t>;
 
-inline constexpr Aggregate kEmptyAggregate = {0.0f, 0u, {0.0f, 0.0f, 0.0f}, 0.0f, 1.0f, -2.0f, {0.0f, 0.0f, 0.0f}};
+inline constexpr Aggregate kEmptyAggregate = {.alpha = 0.0f,
+                                              .mask = 0u,
+                                              .plane = {0.0f, 0.0f, 0.0f},
+                                              .thickness = 0.0f,
+                                              .z_min = 1.0f,
+                                              .z_max = -2.0f,
+                                              .color = {0.0f, 0.0f, 0.0f}};
 
 // What is merged: an aggregate of one triangle. A speck covers no mask position and was given the nearest ones.
 template <class Float, class Mask>

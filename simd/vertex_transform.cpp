@@ -62,12 +62,12 @@ std::size_t transform_vertices_kernel(const float* positions, std::size_t count,
     hn::StoreMaskBits(d, visible.raw, view_bits);
     for (std::size_t i = 0; i < n; ++i) {
       const bool is_in_view = view_bits[0] >> i & 1;
-      out[first + i] = {{clip[0][i], clip[1][i], clip[2][i], clip[3][i]},
-                        {screen[0][i], screen[1][i], screen[2][i]},
-                        snapped[0][i],
-                        snapped[1][i],
-                        (finite_bits[0] >> i & 1) != 0,
-                        is_in_view};
+      out[first + i] = {.clip = {clip[0][i], clip[1][i], clip[2][i], clip[3][i]},
+                        .screen = {screen[0][i], screen[1][i], screen[2][i]},
+                        .x = snapped[0][i],
+                        .y = snapped[1][i],
+                        .finite = (finite_bits[0] >> i & 1) != 0,
+                        .in_view = is_in_view};
       seen += is_in_view;
     }
   }

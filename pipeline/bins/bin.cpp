@@ -45,6 +45,7 @@ std::vector<float>& Bin::pixel_counter(const std::string& name) {
 }
 
 void Bin::finish(std::vector<glm::vec4> picture) {
+  if (!picture_.empty()) throw std::logic_error("the bin has a picture already");
   picture_ = std::move(picture);
   if (models_memory() && keeps_pixels_on_chip())
     for (float& bytes : pixel_counter("bytes")) bytes += static_cast<float>(kPictureBytes);
@@ -74,7 +75,14 @@ void Bin::charge_texels(const BinStage& stage) {
   texels_->clear();
 }
 
-void Bin::start_texture_pass() {
+void Bin::starts_pass(Pass pass, Geometry geometry) {
+  if (geometry == Geometry::read_again) {
+    ++(pass == Pass::main ? geometry_passes_ : prepasses_);
+    if (dram_log_) {
+      dram_log_->start_pass();
+      geometry_pass_starts_.push_back(dram_log_->pass());
+    }
+  }
   if (texture_fetches_) texture_fetches_->start_pass();
   if (!dram_log_) return;
   dram_log_->start_pass();
@@ -82,14 +90,9 @@ void Bin::start_texture_pass() {
   is_texture_pass_placed_ = false;
 }
 
-void Bin::starts_geometry_pass(Pass pass) {
-  ++(pass == Pass::main ? geometry_passes_ : prepasses_);
-  if (!dram_log_) return;
-  dram_log_->start_pass();
-  geometry_pass_starts_.push_back(dram_log_->pass());
-}
-
-void Bin::finish_memory() {
+void Bin::render(const std::function<void(Bin&)>& by) {
+  by(*this);
+  if (texels_ && texels_->texels() > 0) throw std::logic_error("a stage has read texels that none is charged for");
   StageCounters nothing_is_written;
   if (triangle_fetches_ && !context.shader.is_flat()) triangle_fetches_->flush(nothing_is_written);
 }

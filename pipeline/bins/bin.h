@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <cstdint>
+#include <functional>
 #include <glm/glm.hpp>
 #include <map>
 #include <optional>
@@ -92,10 +93,17 @@ class Bin {
   // The bin keeps so many bytes of A-buffer in memory.
   void keeps_a_buffer(std::uint64_t bytes) { a_buffer_bytes_ += bytes; }
 
-  // Counts one more geometry pass for this bin.
-  void starts_geometry_pass(Pass pass = Pass::main);
+  // A pass of the bin over the frame begins, in which textures are read again; where it reads the geometry again too,
+  // it is one more geometry pass, and else the pass before goes on.
+  enum class Geometry { read_again, goes_on };
+  void starts_pass(Pass pass, Geometry geometry);
 
-  // The finished picture: RGBA, one per pixel of the tile. Charges `resolve` with writing it to memory.
+  // Lets `by` render the bin, and accounts for what it has left open. Throws std::logic_error if it has read texels
+  // that it did not charge.
+  void render(const std::function<void(Bin&)>& by);
+
+  // The finished picture: RGBA, one per pixel of the tile. Charges `resolve` with writing it to memory. Throws
+  // std::logic_error if there is one already.
   void finish(std::vector<glm::vec4> picture);
 
   // ---- The modelled memory system ----
@@ -111,12 +119,6 @@ class Bin {
   // Collects the texels that a stage reads until they are charged; null if there are no textures.
   TexelRequests* texels() { return texels_ ? &*texels_ : nullptr; }
   void charge_texels(const BinStage& stage);
-
-  // Textures are read in another pass over the frame from here on.
-  void start_texture_pass();
-
-  // When the bin is rendered.
-  void finish_memory();
 
   // ---- What was recorded ----
   const DramLog* dram_log() const { return dram_log_ ? &*dram_log_ : nullptr; }  // null: it is not asked for

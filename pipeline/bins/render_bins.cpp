@@ -100,9 +100,8 @@ struct EmptyBin {
   std::optional<glm::vec4> color{};  // that all pixels have
   bool has_counts = false;           // is any pixel counter not 0?
 
-  // To call when the bin is rendered.
-  void finish() {
-    bin.finish_memory();
+  // Of the bin, when it is rendered.
+  void look_at_result() {
     const std::vector<glm::vec4>& picture = bin.picture();
     const auto differs = [&](const glm::vec4& pixel) { return pixel != picture.front(); };
     if (!picture.empty() && std::none_of(picture.begin(), picture.end(), differs)) color = picture.front();
@@ -123,8 +122,8 @@ class EmptyBins {
     std::unique_ptr<EmptyBin>& empty = bins_[size_of(tile)];
     if (empty) return;
     empty.reset(new EmptyBin{.bin = {context_, tile, list_, stages_, plan_.framebuffer}});
-    render_(empty->bin);
-    empty->finish();
+    empty->bin.render(render_);
+    empty->look_at_result();
   }
 
   const EmptyBin& like(const Tile& tile) const { return *bins_.at(size_of(tile)); }
@@ -307,8 +306,7 @@ FrameResult render_bins(const FrameContext& context, const BinPlan& plan, const 
   const std::uint64_t entry_bytes = sizeof(std::uint32_t) + (plan.sorts_lists ? kKeyBytes : 0);
   std::uint64_t list_bytes = 0;
   EmptyBins empty_bins(context, plan, stages, render);
-  const bool shares_empty_bins =
-      !plan.empty_bins_differ && !sinks.timeline && !sinks.dram_trace && !sinks.histories;
+  const bool shares_empty_bins = !plan.empty_bins_differ && !sinks.timeline && !sinks.dram_trace && !sinks.histories;
   const auto render_band = [&](const Band& band) {
     const std::vector<TriangleList> lists = bin_triangles(context.triangles, grid, band);
     for (std::size_t i = 0; i < lists.size(); ++i) {
@@ -328,8 +326,7 @@ FrameResult render_bins(const FrameContext& context, const BinPlan& plan, const 
         return;
       }
       Bin bin(context, grid.tiles[band.first + i], lists[i], stages, plan.framebuffer);
-      render(bin);
-      bin.finish_memory();
+      bin.render(render);
       if (BinObserver* const observer = bin.observer()) observer->finish(bin.list, plan.order, bin.picture());
       recorder.add(bin, band.first + i);
     });

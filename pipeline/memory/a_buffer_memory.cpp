@@ -5,7 +5,7 @@ namespace beampipe {
 ABufferMemory::ABufferMemory(const MemorySystem& memory, const ZOrder& order, std::size_t records,
                              std::uint32_t record_bytes)
     : record_bytes_(record_bytes + kLinkBytes),
-      heads_(memory, "a_buffer_heads", order, 1, kLinkBytes, nullptr, BlockCache::Level::l2),
+      heads_(memory, "a_buffer_heads", order, {.part_bytes = kLinkBytes}, BlockCache::Level::l2),
       records_(memory, records * record_bytes_, BlockPlaces(memory, "a_buffer", true)) {}
 
 void ABufferMemory::insert(const std::vector<SortRecord>& records, StageCounters& counters) {

@@ -9,9 +9,9 @@ AggregateMemory::AggregateMemory(const MemorySystem& memory, const ZOrder& order
     : order_(order), full_(order.positions) {
   surfaces_.reserve(framebuffer.size());
   for (const Surface& surface : framebuffer) {
-    TileSurface::CompressedBytes compressed;
+    TileSurface::Element pixel{.part_bytes = surface.bytes_per_pixel};
     if (surface.name == "coverage" || surface.name == "mask") {
-      compressed = [this, bytes = surface.bytes_per_pixel](std::size_t first, std::size_t elements) {
+      pixel.compressed_bytes = [this, bytes = surface.bytes_per_pixel](std::size_t first, std::size_t elements) {
         const std::size_t end = std::min(first + elements, full_.size());
         const auto begin = full_.begin() + static_cast<std::ptrdiff_t>(first);
         const bool all = std::find(begin, full_.begin() + static_cast<std::ptrdiff_t>(end), false) ==
@@ -19,7 +19,7 @@ AggregateMemory::AggregateMemory(const MemorySystem& memory, const ZOrder& order
         return all ? bytes : bytes * static_cast<std::uint32_t>(elements);
       };
     }
-    surfaces_.emplace_back(memory, surface.name, order, 1, surface.bytes_per_pixel, compressed);
+    surfaces_.emplace_back(memory, surface.name, order, pixel);
   }
 }
 

@@ -11,33 +11,32 @@ Sectors first_sectors(std::uint32_t count) { return static_cast<Sectors>((1u << 
 
 }  // namespace
 
-BlockCache::BlockCache(const MemoryParameters& memory, const CacheParameters& cache, Level level, std::size_t blocks,
-                       std::uint32_t block_bytes, bool cleared, CompressedBytes compressed_bytes, BlockPlaces places)
+BlockCache::BlockCache(const MemoryParameters& memory, const CacheParameters& cache, Level level, Blocks blocks)
     : modelled_(is_modelled(memory, level)),
       log2_sector_(std::countr_zero(memory.sector_bytes)),
       level_(level),
-      block_bytes_(block_bytes),
+      block_bytes_(blocks.bytes),
       ways_(cache.ways),
-      places_(std::move(places)),
+      places_(std::move(blocks.places)),
       sectors_per_line_(cache.line_bytes >> log2_sector_) {
-  const std::uint32_t sectors = sectors_in(block_bytes);
-  if (sectors == 0 || sectors > kMaxBlockSectors || block_bytes > cache.line_bytes)
+  const std::uint32_t sectors = sectors_in(block_bytes_);
+  if (sectors == 0 || sectors > kMaxBlockSectors || block_bytes_ > cache.line_bytes)
     throw std::invalid_argument("a block must fill at least one sector and at most one cache line");
   all_sectors_ = static_cast<Sectors>((1u << sectors) - 1);
   sets_ = cache.sets();
-  has_line_for_each_ = blocks <= sets_ * ways_;
+  has_line_for_each_ = blocks.count <= sets_ * ways_;
   if (!modelled_) return;
-  if (memory.compression) compressed_bytes_ = std::move(compressed_bytes);
-  states_.assign(blocks, cleared ? State{0} : kRaw);
-  lines_.resize(has_line_for_each_ ? blocks : sets_ * ways_);
+  if (memory.compression) compressed_bytes_ = std::move(blocks.compressed_bytes);
+  states_.assign(blocks.count, blocks.cleared ? State{0} : kRaw);
+  lines_.resize(has_line_for_each_ ? blocks.count : sets_ * ways_);
   link_lines();
-  line_of_.assign(blocks, kNone);
+  line_of_.assign(blocks.count, kNone);
   if (places_.log && places_.lines.empty())
-    places_.log->reserve(places_.array, std::uint64_t{blocks} * sectors_per_line_);
+    places_.log->reserve(places_.array, std::uint64_t{blocks.count} * sectors_per_line_);
 }
 
 BlockCache::BlockCache(const MemoryParameters& memory, const CacheParameters& cache, BlockCache& next)
-    : BlockCache(memory, cache, Level::l2, next.blocks(), next.block_bytes_, false, nullptr) {
+    : BlockCache(memory, cache, Level::l2, {.count = next.blocks(), .bytes = next.block_bytes_}) {
   next_ = &next;
 }
 

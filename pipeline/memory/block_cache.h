@@ -41,11 +41,17 @@ class BlockCache {
     return level == Level::rop ? memory.models_framebuffer() : memory.modelled;
   }
 
-  // `block_bytes` <= cache.line_bytes, at most kMaxBlockSectors sectors. `cleared`: all blocks start out cleared, else
-  // raw. Without `compressed_bytes` nothing compresses. If it is not modelled, all calls do nothing. `places`: where
-  // the blocks lie, for records of DRAM requests; a block begins with a line.
-  BlockCache(const MemoryParameters& memory, const CacheParameters& cache, Level level, std::size_t blocks,
-             std::uint32_t block_bytes, bool cleared, CompressedBytes compressed_bytes, BlockPlaces places = {});
+  // The blocks that a cache holds some of.
+  struct Blocks {
+    std::size_t count = 0;
+    std::uint32_t bytes = 0;                // of each; <= cache.line_bytes, at most kMaxBlockSectors sectors
+    bool cleared = false;                   // all start out cleared, else raw
+    CompressedBytes compressed_bytes = {};  // empty: nothing compresses
+    BlockPlaces places = {};                // where they lie, for records of DRAM requests; a block begins with a line
+  };
+
+  // If it is not modelled, all calls do nothing.
+  BlockCache(const MemoryParameters& memory, const CacheParameters& cache, Level level, Blocks blocks);
 
   // A read-only cache in front of `next`, an L2, with the same blocks. It asks `next` for the sectors that it lacks.
   // `next` must outlive it.

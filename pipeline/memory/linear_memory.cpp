@@ -7,8 +7,8 @@ namespace beampipe {
 LinearMemory::LinearMemory(const MemorySystem& memory, std::size_t size, BlockPlaces places)
     : line_bytes_(memory.l2.line_bytes),
       log2_line_(std::countr_zero(line_bytes_)),
-      l2_(memory, memory.l2, BlockCache::Level::l2, (size + line_bytes_ - 1) / line_bytes_, line_bytes_, false, nullptr,
-          std::move(places)),
+      l2_(memory, memory.l2, BlockCache::Level::l2,
+          {.count = (size + line_bytes_ - 1) / line_bytes_, .bytes = line_bytes_, .places = std::move(places)}),
       l1_(memory, memory.l1, l2_) {
   const std::uint64_t bytes = std::uint64_t{l2_.blocks()} * line_bytes_;
   if (memory.reach) memory.reach->add({.l1 = bytes, .l2 = bytes});

@@ -38,11 +38,19 @@ SampleMemory::SampleMemory(const MemorySystem& memory, const Tile& tile, const S
       same_value_(std::move(same_value)),
       color_sample_bytes_(color_bytes),
       owner_(modelled_ ? order_.positions * samples_ : 0, kNoTriangle),
-      depth_(memory, "depth", order_, static_cast<std::uint32_t>(samples_), kSampleDepthBytes,
-             [this](std::size_t first, std::size_t elements) { return depth_bytes(first, elements); }) {
-  if (color_bytes > 0)
-    color_.emplace(memory, "samples", order_, static_cast<std::uint32_t>(samples_), color_bytes,
-                   [this](std::size_t first, std::size_t elements) { return this->color_bytes(first, elements); });
+      depth_(memory, "depth", order_,
+             {.parts = static_cast<std::uint32_t>(samples_),
+              .part_bytes = kSampleDepthBytes,
+              .compressed_bytes = [this](std::size_t first, std::size_t elements) {
+                return depth_bytes(first, elements);
+              }}) {
+  if (color_bytes == 0) return;
+  color_.emplace(memory, "samples", order_,
+                 TileSurface::Element{.parts = static_cast<std::uint32_t>(samples_),
+                                      .part_bytes = color_bytes,
+                                      .compressed_bytes = [this](std::size_t first, std::size_t elements) {
+                                        return this->color_bytes(first, elements);
+                                      }});
 }
 
 void SampleMemory::replay(const std::vector<SampleAccess>& accesses, bool write_depth, bool write_color,

@@ -22,6 +22,11 @@ int log2_block_elements(const CacheParameters& cache, std::uint32_t element_byte
 
 std::size_t block_count(const ZOrder& order, int log2_elements) { return ((order.positions - 1) >> log2_elements) + 1; }
 
+BlockCache::CompressedBytes of_blocks(const TileSurface::CompressedBytes& compressed_bytes, int log2_elements) {
+  if (!compressed_bytes) return {};
+  return [=](std::size_t block) { return compressed_bytes(block << log2_elements, std::size_t{1} << log2_elements); };
+}
+
 }  // namespace
 
 ZOrder::ZOrder(std::int32_t width, std::int32_t height) {
@@ -51,28 +56,27 @@ std::vector<TileSurface::Parts> TileSurface::part_table(std::uint32_t elements, 
   return table;
 }
 
-TileSurface::TileSurface(const MemorySystem& memory, std::string_view name, const ZOrder& order, std::uint32_t parts,
-                         std::uint32_t part_bytes, CompressedBytes compressed_bytes, BlockCache::Level level)
+TileSurface::TileSurface(const MemorySystem& memory, std::string_view name, const ZOrder& order, const Element& element,
+                         BlockCache::Level level)
     : order_(order),
-      part_bytes_(part_bytes),
-      element_bytes_(parts * part_bytes),
-      mask_bytes_((parts + 7) / 8),
+      part_bytes_(element.part_bytes),
+      element_bytes_(element.parts * element.part_bytes),
+      mask_bytes_((element.parts + 7) / 8),
       log2_elements_per_block_(log2_block_elements(cache_of(memory, level), element_bytes_)),
       touched_parts_(BlockCache::is_modelled(memory, level) ? order.positions : 0),
-      cache_(memory, cache_of(memory, level), level, block_count(order, log2_elements_per_block_),
-             element_bytes_ << log2_elements_per_block_, true,
-             compressed_bytes
-                 ? BlockCache::CompressedBytes([compressed_bytes, log2 = log2_elements_per_block_](std::size_t block) {
-                     return compressed_bytes(block << log2, std::size_t{1} << log2);
-                   })
-                 : nullptr,
-             BlockPlaces(memory, name, true)) {
+      cache_(memory, cache_of(memory, level), level,
+             {.count = block_count(order, log2_elements_per_block_),
+              .bytes = element_bytes_ << log2_elements_per_block_,
+              .cleared = true,
+              .compressed_bytes = of_blocks(element.compressed_bytes, log2_elements_per_block_),
+              .places = BlockPlaces(memory, name, true)}) {
   if (memory.reach) {
     const std::uint64_t bytes = std::uint64_t{cache_.blocks()} * cache_of(memory, level).line_bytes;
     memory.reach->add(level == BlockCache::Level::rop ? CacheReach{.rop = bytes} : CacheReach{.l2 = bytes});
   }
   if (!touched_parts_.empty())
-    part_table_ = part_table(1u << log2_elements_per_block_, parts, part_bytes, std::countr_zero(memory.sector_bytes));
+    part_table_ =
+        part_table(1u << log2_elements_per_block_, element.parts, part_bytes_, std::countr_zero(memory.sector_bytes));
 }
 
 void TileSurface::read_all(StageCounters& counters) {

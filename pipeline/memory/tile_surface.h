@@ -26,11 +26,16 @@ class TileSurface {
   // Returns the compressed bytes of the block whose first element is at position `first`.
   using CompressedBytes = std::function<std::uint32_t(std::size_t first, std::size_t elements)>;
 
-  // An element has `parts` (at most 16) of `part_bytes` each, together at most 256 bytes. A block has as many elements,
-  // a power of two, as fit into a line of the cache. The surface starts out cleared. `order` must outlive it. `name`:
-  // of the array that all bins' surfaces of this name are parts of.
-  TileSurface(const MemorySystem& memory, std::string_view name, const ZOrder& order, std::uint32_t parts,
-              std::uint32_t part_bytes, CompressedBytes compressed_bytes = nullptr,
+  // What an element is: at most 16 parts, together at most 256 bytes.
+  struct Element {
+    std::uint32_t parts = 1;
+    std::uint32_t part_bytes = 0;           // of each
+    CompressedBytes compressed_bytes = {};  // empty: nothing compresses
+  };
+
+  // A block has as many elements, a power of two, as fit into a line of the cache. The surface starts out cleared.
+  // `order` must outlive it. `name`: of the array that all bins' surfaces of this name are parts of.
+  TileSurface(const MemorySystem& memory, std::string_view name, const ZOrder& order, const Element& element,
               BlockCache::Level level = BlockCache::Level::rop);
 
   // Reads and writes parts of an element; bit p of a mask is part p. `key`: the triangle, as in BlockCache.

@@ -32,6 +32,19 @@ std::vector<StageId> stages_of(const AcaaOptions& options) {
   return {StageId::sample_raster, StageId::depth_test, StageId::shade, StageId::accumulate, StageId::resolve};
 }
 
+std::vector<ErrorSource> error_sources(const AcaaOptions& options) {
+  std::vector<ErrorSource> sources = {ErrorSource::sampled_depth};
+  if (options.double_counting != DoubleCounting::stencil) sources.push_back(ErrorSource::double_counting);
+  if (options.color == AccumulatorFormat::fp16) sources.push_back(ErrorSource::sums_in_fp16);
+  if (options.color == AccumulatorFormat::unorm8) sources.push_back(ErrorSource::sums_in_unorm8);
+  return sources;
+}
+
+// At most one share per sample, and the background; 8 bits round each sum.
+double rounding_error(const AcaaOptions& options) {
+  return options.color == AccumulatorFormat::unorm8 ? (options.samples + 1) * (0.5 / 255) : kFp16Error;
+}
+
 FrameResult render_acaa(const FrameJob& job, const AcaaOptions& options) {
   const FrameContext context(job, {.derivatives = Derivatives::quad});
   const std::vector<Sampling> rounds = acaa_rounds(options.samples);
@@ -45,19 +58,17 @@ FrameResult render_acaa(const FrameJob& job, const AcaaOptions& options) {
     std::vector<glm::vec4> translucent;
     for (const Sampling& sampling : rounds) {
       DepthTestUnit depth_test(bin, sampling, 0);
-      prepass.pass(sampling, ShadeAt::centroid, [&](const auto& fragments) { depth_test.test(fragments); });
-      depth_test.end_pass();
+      prepass.pass(depth_test, ShadeAt::centroid, [&](const auto& fragments) { depth_test.test(fragments); });
       if (accumulate.blends_background()) depth_test.read_depths(accumulate.stage);
       accumulate.start_round(sampling, depth_test.surface());
       shade.start_pass(sampling);
-      raster.pass(sampling, ShadeAt::centroid, [&](std::vector<SampleFragment>& fragments) {
+      raster.pass(depth_test, ShadeAt::centroid, [&](std::vector<SampleFragment>& fragments) {
         depth_test.test_equal(fragments);
         accumulate.test_stencil(fragments);
         shade(fragments);
         accumulate(fragments, sampling);
         count_by_pixel(fragments, bin.tile, sampling.grid, visible);
       });
-      depth_test.end_pass();
       accumulate.finish_round();
       const std::vector<glm::vec4> layer = draw_translucent(bin, depth_test, ShadeAt::centroid);
       translucent.resize(layer.size(), glm::vec4(0.0f));
@@ -94,6 +105,8 @@ TechniqueKind acaa_kind() {
               [](const AcaaOptions& o) {
                 return Technique{.framebuffer = acaa_framebuffer(o),
                                  .sampled_at = places_of(msaa_sampling(o.samples)),
+                                 .errs_by = error_sources(o),
+                                 .rounding_error = rounding_error(o),
                                  .renderer = bind_options(render_acaa, o),
                                  .is_observable = true};
               })};

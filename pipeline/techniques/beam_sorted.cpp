@@ -87,6 +87,7 @@ TechniqueKind beam_sorted_kind() {
               [](const SortedOptions& o) {
                 return Technique{.framebuffer = sorted_framebuffer(o),
                                  .positions = o.positions,
+                                 .errs_by = {ErrorSource::estimated_areas},
                                  .renderer = bind_options(render_sorted, o),
                                  .is_observable = true,
                                  .has_weights = true};

@@ -103,7 +103,7 @@ std::vector<Aggregate> compose_lists(const CasavOptions& options, const MergePos
                                      const std::vector<Fragment>& fragments, const ABuffer& lists,
                                      const PixelObservers* observers, StageCounters& counters) {
   return options.rules == Rules::published
-             ? compose(fragments, lists, positions, options.merge, options.storage, counters, observers)
+             ? compose(fragments, lists, {positions, options.merge, options.storage}, counters, observers)
              : compose_over(fragments, lists, counters, observers);
 }
 
@@ -159,7 +159,7 @@ FrameResult render_layers(const FrameJob& job, const CasavOptions& beam) {
                                   kQueueItems);
     BeamFragmentUnit make_fragments(bin, options);
     ShadeUnit shade(bin);
-    ComposeLayersUnit compose(bin, positions, beam.merge, static_cast<std::size_t>(beam.layers), beam.storage,
+    ComposeLayersUnit compose(bin, static_cast<std::size_t>(beam.layers), {positions, beam.merge, beam.storage},
                               plan.framebuffer.surfaces);
     std::vector<float>& counts = bin.pixel_counter("fragments");
 
@@ -184,9 +184,18 @@ FrameResult render_casav(const FrameJob& job, const CasavOptions& beam) {
   return beam.order == CasavOrder::sorted ? render_sorted(job, options) : render_layers(job, options);
 }
 
+std::vector<ErrorSource> error_sources(const CasavOptions& options) {
+  if (options.rules == Rules::over) return {ErrorSource::independent_fragments};
+  std::vector<ErrorSource> sources = {ErrorSource::published_merges};
+  if (options.storage != CasavStorage::float32) sources.push_back(ErrorSource::merges_in_fp16);
+  if (options.storage == CasavStorage::text) sources.push_back(ErrorSource::merges_of_half_slopes);
+  return sources;
+}
+
 Technique make_casav(const CasavOptions& options) {
   return {.framebuffer = casav_framebuffer(options),
           .positions = hammersley_pattern().count,
+          .errs_by = error_sources(options),
           .renderer = bind_options(render_casav, options),
           .is_observable = true,
           .has_weights = options.order == CasavOrder::sorted};

@@ -35,25 +35,21 @@ TechniqueKind deferred_kind() {
           .make = make_plain([] {
             return Technique{.framebuffer = deferred_framebuffer(),
                              .sampled_at = places_of(msaa_sampling(1)),
-                             .errs_like = "msaa",
+                             .errs_by = {ErrorSource::sampled_depth, ErrorSource::gbuffer_of_8_bits},
                              .renderer = bind_options(render_deferred),
                              .is_observable = true};
           })};
 }
 
 std::vector<glm::vec4> draw_deferred(Bin& bin, DepthTestUnit& depth_test) {
-  const Sampling& sampling = depth_test.sampling();
-  GBufferUnit gbuffer(bin, sampling);
-  SampleRasterUnit(bin, Pass::prepass).pass(sampling, ShadeAt::sample, [&](const auto& fragments) {
+  GBufferUnit gbuffer(bin, depth_test.sampling());
+  SampleRasterUnit(bin, Pass::prepass).pass(depth_test, ShadeAt::sample, [&](const auto& fragments) {
     depth_test.test(fragments);
   });
-  depth_test.end_pass();
-  SampleRasterUnit(bin).pass(sampling, ShadeAt::sample, [&](std::vector<SampleFragment>& fragments) {
+  SampleRasterUnit(bin).pass(depth_test, ShadeAt::sample, [&](std::vector<SampleFragment>& fragments) {
     depth_test.test_equal(fragments);
     gbuffer.write_fragments(fragments, depth_test);
   });
-  depth_test.end_pass();
-  gbuffer.end_pass();
   std::vector<glm::vec4> picture = gbuffer.light_and_resolve(depth_test);
   put_over(draw_translucent(bin, depth_test, ShadeAt::sample), bin.observers(), picture);
   depth_test.count_bytes();

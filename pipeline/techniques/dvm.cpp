@@ -89,6 +89,13 @@ void put_layer_over(const std::vector<glm::vec4>& layer, const Tile& tile, Curre
     }
 }
 
+std::vector<ErrorSource> error_sources(const DvmOptions& options) {
+  std::vector<ErrorSource> sources = {ErrorSource::sampled_depth, ErrorSource::gbuffer_of_8_bits,
+                                      ErrorSource::quads_over_the_border};
+  if (options.material == MaterialBy::draw) sources.push_back(ErrorSource::shared_shading_samples);
+  return sources;
+}
+
 FrameResult render_dvm(const FrameJob& job, const DvmOptions& options) {
   const FrameContext context(job, {.storage = MaterialStorage::gbuffer});
   const Frame& frame = job.frame;
@@ -108,7 +115,7 @@ FrameResult render_dvm(const FrameJob& job, const DvmOptions& options) {
   FrameResult result = render_bins(context, plan, [&](Bin& bin) {
     const BinStage selecting = bin.stage(StageId::sample_select), moving = bin.stage(StageId::motion);
     DepthTestUnit visibility(bin, sampling, kVisibilityBytes);
-    draw_visibility(bin, sampling, visibility);
+    draw_visibility(bin, visibility);
     std::vector<SampleQuad> selected =
         sample_select(visibility.surface(), bin.tile, materials.ids, select, selecting.timed());
     visibility.read_colors(selecting);
@@ -165,6 +172,7 @@ TechniqueKind dvm_kind() {
               [](const DvmOptions& o) {
                 return Technique{.framebuffer = dvm_framebuffer(),
                                  .sampled_at = places_of(msaa_sampling(8)),
+                                 .errs_by = error_sources(o),
                                  .renderer = bind_options(render_dvm, o),
                                  .keeps_history = true,
                                  .working_bytes_per_pixel = kDvmWorkingBytes};

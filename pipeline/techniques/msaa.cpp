@@ -75,16 +75,14 @@ std::vector<glm::vec4> draw_forward(Bin& bin, const MsaaOptions& options, DepthT
 
   if (options.prepass) {  // shades and writes what is visible; the surface already knows which triangles are
     SampleRasterUnit(bin, kAll, options.alpha, Pass::prepass)
-        .pass(sampling, options.at, [&](std::vector<SampleFragment>& fragments) { depth_test.test(fragments); });
-    depth_test.end_pass();
+        .pass(depth_test, options.at, [&](std::vector<SampleFragment>& fragments) { depth_test.test(fragments); });
     depth_test.add_color(color_bytes(options));
   }
-  raster.pass(sampling, options.at, [&](std::vector<SampleFragment>& fragments) {
+  raster.pass(depth_test, options.at, [&](std::vector<SampleFragment>& fragments) {
     if (options.prepass) depth_test.test_equal(fragments);
     shade(fragments);
     if (!options.prepass) depth_test.test(fragments);
   });
-  depth_test.end_pass();
   depth_test.count_bytes();
   depth_test.read_colors(bin.stage(StageId::resolve));
   return depth_test.resolve_samples(options.at, bin.stage(StageId::resolve), options.space);
@@ -122,6 +120,7 @@ TechniqueKind msaa_kind() {
             return Technique{.framebuffer = msaa_framebuffer(o),
                              .samples = static_cast<std::uint32_t>(o.samples),
                              .sampled_at = places_of(msaa_sampling(o.samples)),
+                             .errs_by = {ErrorSource::sampled_depth},
                              .renderer = bind_options(render_msaa, o),
                              .is_observable = true,
                              .keeps_history = o.motion};

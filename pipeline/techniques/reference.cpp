@@ -12,6 +12,10 @@ constexpr int kTileSize = 4;  // px: 65,536 samples, 1 MiB
 // sort.
 constexpr std::size_t kLayerBytes = std::size_t{kReferenceSamples} * sizeof(ReferenceTile::Layer) * 5 / 2;
 
+// The error of the samples against the exact area. In each row of samples, an edge can be off by at most one sample.
+// Rows are shifted against each other, so that the errors of neighbouring rows cancel.
+constexpr double kReferenceError = 0x1p-8;
+
 Framebuffer reference_framebuffer() {
   constexpr std::uint32_t kSamples = kReferenceSamples;
   return {.surfaces = {{"depth", "D64F x 4096", 8 * kSamples}, {"owner", "R64UI x 4096", 8 * kSamples}},
@@ -49,7 +53,9 @@ TechniqueKind reference_kind() {
           .examples = {"reference"},
           .stressed = {"reference"},
           .make = make_plain([] {
-            return Technique{.framebuffer = reference_framebuffer(), .renderer = bind_options(render_reference)};
+            return Technique{.framebuffer = reference_framebuffer(),
+                             .rounding_error = kReferenceError,
+                             .renderer = bind_options(render_reference)};
           })};
 }
 

@@ -66,7 +66,7 @@ std::vector<glm::vec4> draw_bin(Bin& bin, TaaShading shading, const Sampling& sa
   std::vector<glm::vec4> picture;
   if (shading == TaaShading::visibility) {
     DepthTestUnit visibility(bin, sampling, kVisibilityBytes);
-    draw_visibility(bin, sampling, visibility);
+    draw_visibility(bin, visibility);
     picture = shade_visibility(bin, materials, visibility);
     over_time.find_motion(bin, visibility);
   } else {
@@ -76,6 +76,11 @@ std::vector<glm::vec4> draw_bin(Bin& bin, TaaShading shading, const Sampling& sa
     over_time.find_motion(bin, surface, MotionFrom::depth);
   }
   return picture;
+}
+
+std::vector<ErrorSource> error_sources(TaaShading shading) {
+  if (shading == TaaShading::forward) return {ErrorSource::sampled_depth};
+  return {ErrorSource::sampled_depth, ErrorSource::gbuffer_of_8_bits};
 }
 
 FrameResult render_taa(const FrameJob& job, const TaaOptions& options) {
@@ -122,7 +127,7 @@ TechniqueKind taa_kind() {
               [](const TaaOptions& o) {
                 return Technique{.framebuffer = taa_framebuffer(o.shading),
                                  .sampled_at = {places_of(msaa_sampling(o.samples)).front()},
-                                 .errs_like = "msaa",
+                                 .errs_by = error_sources(o.shading),
                                  .renderer = bind_options(render_taa, o),
                                  .keeps_history = true,
                                  .working_bytes_per_pixel = kTemporalWorkingBytes};

@@ -19,7 +19,7 @@ FrameResult render_visibility(const FrameJob& job, const VisibilityOptions& opti
                      .framebuffer = visibility_framebuffer(options.samples)};
   return render_bins(context, plan, [&](Bin& bin) {
     DepthTestUnit visibility(bin, sampling, kVisibilityBytes);
-    draw_visibility(bin, sampling, visibility);
+    draw_visibility(bin, visibility);
     bin.finish(shade_visibility(bin, materials, visibility));
   });
 }
@@ -40,15 +40,14 @@ TechniqueKind visibility_kind() {
               [](const VisibilityOptions& o) {
                 return Technique{.framebuffer = visibility_framebuffer(o.samples),
                                  .sampled_at = places_of(msaa_sampling(o.samples)),
-                                 .errs_like = "msaa",
+                                 .errs_by = {ErrorSource::sampled_depth, ErrorSource::gbuffer_of_8_bits},
                                  .renderer = bind_options(render_visibility, o),
                                  .is_observable = true};
               })};
 }
 
-void draw_visibility(Bin& bin, const Sampling& sampling, DepthTestUnit& visibility) {
-  SampleRasterUnit(bin).pass(sampling, ShadeAt::sample, [&](const auto& fragments) { visibility.test(fragments); });
-  visibility.end_pass();
+void draw_visibility(Bin& bin, DepthTestUnit& visibility) {
+  SampleRasterUnit(bin).pass(visibility, ShadeAt::sample, [&](const auto& fragments) { visibility.test(fragments); });
 }
 
 std::vector<glm::vec4> shade_visibility(Bin& bin, const Materials& materials, DepthTestUnit& visibility) {

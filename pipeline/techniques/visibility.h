@@ -20,7 +20,7 @@ struct VisibilityOptions {
 // ---- Steps that other techniques share ----
 
 // Draws triangle ids and depths at the samples. Stages: sample_raster, depth_test.
-void draw_visibility(Bin& bin, const Sampling& sampling, DepthTestUnit& visibility);
+void draw_visibility(Bin& bin, DepthTestUnit& visibility);
 
 // Materials, light and resolve of a visibility buffer, with translucent triangles over that. Returns the picture.
 // Stages: material_sort, shade, light, resolve, and those of draw_translucent.

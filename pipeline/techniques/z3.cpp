@@ -77,6 +77,7 @@ TechniqueKind z3_kind() {
                 return Technique{.framebuffer = z3_framebuffer(o),
                                  .sampled_at = places_of(cell_patterns(o.positions)),
                                  .positions = o.positions,
+                                 .errs_by = {ErrorSource::merges_of_layers},
                                  .renderer = bind_options(render_z3, o),
                                  .is_observable = true};
               })};

@@ -8,7 +8,7 @@ AccumulateUnit::AccumulateUnit(Bin& bin, int samples, AccumulatorFormat format, 
     : stage(bin.stage(StageId::accumulate)),
       bin_(bin),
       accumulator_(bin.tile, samples, format, double_counting),
-      color_(bin.memory(), "accumulator", bin.z_order(), 1, accumulator_bytes(format)) {
+      color_(bin.memory(), "accumulator", bin.z_order(), {.part_bytes = accumulator_bytes(format)}) {
   accumulator_.limit = 0;
   accumulator_.observers = bin.observers();
 }
@@ -17,7 +17,9 @@ void AccumulateUnit::start_round(const Sampling& sampling, const SampleTile& dep
   accumulator_.limit += static_cast<float>(sampling.pattern.count) * accumulator_.sample_share;
   accumulator_.taken.assign(bin_.tile.pixels(), 0);
   if (accumulator_.double_counting == DoubleCounting::stencil)
-    stencil_.emplace(bin_.memory(), "stencil", bin_.z_order(), static_cast<std::uint32_t>(sampling.pattern.count), 1u);
+    stencil_.emplace(
+        bin_.memory(), "stencil", bin_.z_order(),
+        TileSurface::Element{.parts = static_cast<std::uint32_t>(sampling.pattern.count), .part_bytes = 1});
   if (!blends_background()) return;
   accumulate_background(depth, bin_.background(), stage.timed(), accumulator_);
   if (bin_.models_memory()) blend_background(depth);

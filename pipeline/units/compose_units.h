@@ -57,7 +57,7 @@ class ComposeBeamUnit {
   // `fragments`: at most one window of each pixel. `whole`: pairs that are all that can be seen of their pixels.
   void operator()(const std::vector<Fragment>& fragments, const std::vector<Pair>& whole) {
     compose_window(fragments, positions_, stage_.timed(), pixels_, areas_, bin_.observers());
-    compose_whole(whole, bin_.tile, bin_.shader(), stage_.timed(), pixels_, bin_.texels(), bin_.observers());
+    compose_whole({whole, bin_.tile, bin_.shader(), bin_.texels()}, stage_.timed(), pixels_, bin_.observers());
     bin_.charge_texels(bin_.stage(StageId::shade));
   }
 

@@ -45,6 +45,7 @@ class DepthTestUnit {
   void test_equal(std::vector<SampleFragment>& fragments);
   const std::vector<SampleAccess>& accesses() const { return accesses_; }  // of the last test
 
+  // SampleRasterUnit::pass does it.
   void end_pass() {
     memory_.flush(stage().counters);
     pass_ = Pass::main;

@@ -46,7 +46,7 @@ GBufferUnit::GBufferUnit(Bin& bin, const Sampling& sampling)
       shading_(bin.stage(StageId::shade)),
       lighting_(bin.stage(StageId::light)),
       attributes_(bin.memory(), bin.surface_fetches()),
-      gbuffer_(bin.memory(), "gbuffer", bin.z_order(), samples_, kGBufferBytes) {}
+      gbuffer_(bin.memory(), "gbuffer", bin.z_order(), {.parts = samples_, .part_bytes = kGBufferBytes}) {}
 
 // A sample stands for its share of the pixel's area.
 CellPlace GBufferUnit::place_of(std::size_t sample) const {
@@ -91,11 +91,12 @@ void GBufferUnit::write_visible(DepthTestUnit& visibility, const Materials& mate
 }
 
 std::vector<glm::vec4> GBufferUnit::light_and_resolve(DepthTestUnit& surface) {
+  gbuffer_.flush(shading_.counters);  // the pass that wrote it ends
   const BinStage resolving = bin_.stage(StageId::resolve);
   const std::vector<std::uint32_t> triangles = triangles_of(surface.surface(), bin_.tile);
   const std::vector<std::uint32_t> shown = shown_samples(triangles);
   light(bin_.shader(), picked(triangles, shown), lighting_.timed());
-  TileSurface color(bin_.memory(), "color", bin_.z_order(), samples_, kSampleColorBytes);
+  TileSurface color(bin_.memory(), "color", bin_.z_order(), {.parts = samples_, .part_bytes = kSampleColorBytes});
   gbuffer_.read_all(lighting_.counters);
   write_samples(shown, color, lighting_.counters);
   color.read_all(resolving.counters);

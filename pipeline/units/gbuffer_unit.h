@@ -24,7 +24,6 @@ class GBufferUnit {
 
   // Materials of fragments that have just passed the equal-depth test, in 2x2 quads and in primitive order.
   void write_fragments(const std::vector<SampleFragment>& fragments, const DepthTestUnit& depth_test);
-  void end_pass() { gbuffer_.flush(shading_.counters); }
 
   // Materials of the samples at which a visibility buffer shows a triangle, one by one, sorted by material. Reads the
   // visibility buffer twice: to sort, and to shade.

@@ -12,6 +12,7 @@
 #include <vector>
 
 #include "pipeline/bins/bin.h"
+#include "pipeline/units/depth_test_unit.h"
 #include "stages/raster/conservative_raster.h"
 #include "stages/raster/sample_raster.h"
 #include "stages/samples/alpha_test.h"
@@ -102,12 +103,12 @@ class SampleRasterUnit {
 
   // One geometry pass: calls body(fragments) for each batch of triangles. Leaves out what lies behind the cells that
   // this pass has closed so far, as a hierarchical depth buffer does. Fragments of cutouts pass the alpha test first.
-  // `at`: where fragments are shaded.
+  // `at`: where fragments are shaded. `surface`: what the body tests them against; its pass ends with this one.
   template <class Body>
-  void pass(const Sampling& sampling, ShadeAt at, Body&& body) {
+  void pass(DepthTestUnit& surface, ShadeAt at, Body&& body) {
+    const Sampling& sampling = surface.sampling();
     ClosedDepth closed(cells_of(bin_.tile, sampling.grid));
-    if (translucent_ != Translucent::alone) bin_.starts_geometry_pass(pass_);
-    bin_.start_texture_pass();
+    bin_.starts_pass(pass_, translucent_ == Translucent::alone ? Bin::Geometry::goes_on : Bin::Geometry::read_again);
     bin_.holds("closed_depth", closed.bytes());
     const TriangleList& drawn = drawn_triangles();
     if (bin_.observer()) tell_all(drawn, sampling, at);
@@ -118,6 +119,7 @@ class SampleRasterUnit {
       if (tests_alpha()) test_alpha(sampling, at);
       body(fragments_);
     });
+    surface.end_pass();
   }
 
  private:

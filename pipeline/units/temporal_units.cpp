@@ -41,8 +41,12 @@ void TemporalFrame::accumulate(const Tile& tile, const TemporalOptions& options,
 
 void TemporalFrame::finish(FrameResult& result) {
   copy_to_image(picture_, result.image);
-  history_ = {history_.frames + 1,      current.width,       current.height, std::move(picture_),
-              std::move(current.looks), motion_.take_poses()};
+  history_ = {.frames = history_.frames + 1,
+              .width = current.width,
+              .height = current.height,
+              .color = std::move(picture_),
+              .looks = std::move(current.looks),
+              .poses = motion_.take_poses()};
 }
 
 }  // namespace beampipe

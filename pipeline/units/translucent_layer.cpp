@@ -24,14 +24,14 @@ std::vector<glm::vec4> draw_translucent(Bin& bin, DepthTestUnit& depth_test, Sha
   const auto samples = static_cast<std::size_t>(sampling.pattern.count);
   SampleRasterUnit raster(bin, SampleRasterUnit::Translucent::alone, AlphaCoverage::test);
   SampleShadeUnit shade(bin, sampling, at);
-  TileSurface layer(bin.memory(), "translucent_layer", bin.z_order(), static_cast<std::uint32_t>(samples), kLayerBytes);
+  TileSurface layer(bin.memory(), "translucent_layer", bin.z_order(),
+                    {.parts = static_cast<std::uint32_t>(samples), .part_bytes = kLayerBytes});
   depth_test.start_layer(at, kLayerBytes);
-  raster.pass(sampling, at, [&](std::vector<SampleFragment>& fragments) {
+  raster.pass(depth_test, at, [&](std::vector<SampleFragment>& fragments) {
     depth_test.blend_into(layer, fragments);
     shade(fragments);
   });
   const BinStage blending = bin.stage(StageId::blend);
-  depth_test.end_pass();
   layer.flush(blending.counters);
   layer.read_all(blending.counters);
   if (bin.models_memory()) layer.add_bytes(bin.pixel_counter("bytes"));

@@ -24,77 +24,97 @@ void for_each_position(const WideMask& mask, const std::vector<SamplePattern>& p
   }
 }
 
-// The part of the area of width `width` that a cutout covers.
-float covered_part(const TileShader& shader, const Fragment& fragment, float u, float v, float width,
-                   AlphaMaskWork& work, TexelRequests* texels) {
-  work.alphas += shader.work(fragment.triangle).alpha;
-  ++work.tests;
-  const SurfaceShader::CutoutPart found = shader.cutout_part(fragment.triangle, fragment.pixel, u, v, width, texels);
-  work.mixed += found.is_share;
-  return found.part;
-}
+// Takes from fragments what their triangles' alpha lets through.
+class AlphaMask {
+ public:
+  AlphaMask(const TileShader& shader, const std::vector<SamplePattern>& patterns, TexelRequests* texels)
+      : shader_(shader),
+        patterns_(patterns),
+        texels_(texels),
+        spacing_(1.0f / std::sqrt(static_cast<float>(kMaxMaskSamples * patterns.size()))) {}
 
-// The part of the fragment that is left, 0..1.
-float cut_out(const TileShader& shader, const std::vector<SamplePattern>& patterns, float spacing, Fragment& fragment,
-              AlphaMaskWork& work, TexelRequests* texels) {
-  if (fragment.mask.none()) {
-    const float part = covered_part(shader, fragment, fragment.centroid_u, fragment.centroid_v, 1.0f, work, texels);
-    end_request(texels);
-    return part;
+  void operator()(Fragment& fragment) {
+    if (shader_.is_opaque(fragment.triangle)) return;
+    ++work.fragments;
+    const float part = shader_.is_cutout(fragment.triangle) ? cut_out(fragment) : let_through(fragment);
+    fragment.alpha *= part;
+    fragment.tiny |= fragment.mask.none();
   }
-  ++work.masks, ++work.shares;
-  const OpacityRanks ranks = shader.opacity_ranks(fragment.triangle, fragment.pixel, kMaxMaskSamples * patterns.size());
-  const auto covered = static_cast<float>(fragment.mask.count());
-  WideMask left;
-  float sum = 0;
-  const auto test = [&](std::size_t position, float u, float v) {
-    ++work.positions;
-    const float part = covered_part(shader, fragment, u, v, spacing, work, texels);
-    sum += part;
-    if (ranks.takes(static_cast<std::uint32_t>(position), part)) left.set(position);
-  };
-  for_each_position(fragment.mask, patterns, test, [&] { end_request(texels); });
-  fragment.mask = left;
-  return sum / covered;
-}
 
-float let_through(const TileShader& shader, const std::vector<SamplePattern>& patterns, Fragment& fragment,
-                  AlphaMaskWork& work, TexelRequests* texels) {
-  work.alphas += shader.work(fragment.triangle).alpha;
-  const float opacity =
-      shader.alpha(fragment.triangle, fragment.pixel, fragment.centroid_u, fragment.centroid_v, 1.0f, texels);
-  end_request(texels);
-  if (fragment.mask.none()) return opacity;
-  ++work.masks;
-  const OpacityRanks ranks = shader.opacity_ranks(fragment.triangle, fragment.pixel, kMaxMaskSamples * patterns.size());
-  WideMask left;
-  const auto rank = [&](std::size_t position, float, float) {
-    ++work.ranked;
-    if (ranks.takes(static_cast<std::uint32_t>(position), opacity)) left.set(position);
-  };
-  for_each_position(fragment.mask, patterns, rank, [] {});
-  fragment.mask = left;
-  return opacity;
-}
+  AlphaMaskWork work;
+
+ private:
+  // The part of the fragment that is left, 0..1.
+  float cut_out(Fragment& fragment) {
+    if (fragment.mask.none()) {
+      const float part = covered_part(fragment, fragment.centroid_u, fragment.centroid_v, 1.0f);
+      end_request(texels_);
+      return part;
+    }
+    ++work.masks, ++work.shares;
+    const OpacityRanks ranks = ranks_of(fragment);
+    const auto covered = static_cast<float>(fragment.mask.count());
+    WideMask left;
+    float sum = 0;
+    const auto test = [&](std::size_t position, float u, float v) {
+      ++work.positions;
+      const float part = covered_part(fragment, u, v, spacing_);
+      sum += part;
+      if (ranks.takes(static_cast<std::uint32_t>(position), part)) left.set(position);
+    };
+    for_each_position(fragment.mask, patterns_, test, [&] { end_request(texels_); });
+    fragment.mask = left;
+    return sum / covered;
+  }
+
+  float let_through(Fragment& fragment) {
+    work.alphas += shader_.work(fragment.triangle).alpha;
+    const float opacity =
+        shader_.alpha(fragment.triangle, fragment.pixel, fragment.centroid_u, fragment.centroid_v, 1.0f, texels_);
+    end_request(texels_);
+    if (fragment.mask.none()) return opacity;
+    ++work.masks;
+    const OpacityRanks ranks = ranks_of(fragment);
+    WideMask left;
+    const auto rank = [&](std::size_t position, float, float) {
+      ++work.ranked;
+      if (ranks.takes(static_cast<std::uint32_t>(position), opacity)) left.set(position);
+    };
+    for_each_position(fragment.mask, patterns_, rank, [] {});
+    fragment.mask = left;
+    return opacity;
+  }
+
+  // The part of the area of width `width` that a cutout covers.
+  float covered_part(const Fragment& fragment, float u, float v, float width) {
+    work.alphas += shader_.work(fragment.triangle).alpha;
+    ++work.tests;
+    const SurfaceShader::CutoutPart found =
+        shader_.cutout_part(fragment.triangle, fragment.pixel, u, v, width, texels_);
+    work.mixed += found.is_share;
+    return found.part;
+  }
+
+  OpacityRanks ranks_of(const Fragment& fragment) const {
+    return shader_.opacity_ranks(fragment.triangle, fragment.pixel, kMaxMaskSamples * patterns_.size());
+  }
+
+  const TileShader& shader_;
+  const std::vector<SamplePattern>& patterns_;
+  TexelRequests* texels_;
+  float spacing_;  // of the positions, in pixels
+};
 
 }  // namespace
 
 void alpha_mask(const TileShader& shader, const std::vector<SamplePattern>& patterns, StageCounters& counters,
                 std::vector<Fragment>& fragments, TexelRequests* texels) {
-  AlphaMaskWork work;
-  const float spacing = 1.0f / std::sqrt(static_cast<float>(kMaxMaskSamples * patterns.size()));
-  for (Fragment& fragment : fragments) {
-    if (shader.is_opaque(fragment.triangle)) continue;
-    ++work.fragments;
-    const float part = shader.is_cutout(fragment.triangle) ? cut_out(shader, patterns, spacing, fragment, work, texels)
-                                                           : let_through(shader, patterns, fragment, work, texels);
-    fragment.alpha *= part;
-    fragment.tiny |= fragment.mask.none();
-  }
+  AlphaMask mask(shader, patterns, texels);
+  for (Fragment& fragment : fragments) mask(fragment);
   const std::size_t before = fragments.size();
   std::erase_if(fragments, [](const Fragment& fragment) { return fragment.alpha <= 0; });
-  work.dropped = before - fragments.size();
-  charge(work, patterns.size(), counters);
+  mask.work.dropped = before - fragments.size();
+  charge(mask.work, patterns.size(), counters);
 }
 
 }  // namespace beampipe

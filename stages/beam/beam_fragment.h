@@ -25,10 +25,10 @@ enum class MaskSource { table, exact, grid, none };
 
 struct BeamFragmentOptions {
   MaskSource mask = MaskSource::table;
-  std::vector<SamplePattern> positions;  // 32 mask positions per pattern: one pattern for `table`, any for `exact`
-  const MaskTable* table = nullptr;      // for MaskSource::table
-  const PositionGrid* grid = nullptr;    // for MaskSource::grid
-  std::uint32_t fragment_bytes = 0;      // size of a fragment that is passed on, in the modelled machine
+  std::vector<SamplePattern> positions = {};  // 32 mask positions per pattern: one pattern for `table`, any for `exact`
+  const MaskTable* table = nullptr;           // for MaskSource::table
+  const PositionGrid* grid = nullptr;         // for MaskSource::grid
+  std::uint32_t fragment_bytes = 0;           // size of a fragment that is passed on, in the modelled machine
   // A speck gets as many positions as its area fills, the nearest to its centroid, but at most this many. The paper
   // (section 2.2.1) gives it one, the slides (slide 8) "up to 3".
   int tiny_positions = 0;

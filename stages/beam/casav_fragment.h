@@ -12,25 +12,24 @@ namespace beampipe {
 // The fragment in the form that the published rules take, with 32 mask positions.
 inline MergeFragment merge_fragment(const Fragment& fragment) {
   const glm::vec3& color = fragment.color;
-  return {{fragment.alpha,
-           fragment.mask.words[0],
-           fragment.plane,
-           0.0f,
-           fragment.z_min,
-           fragment.z_max,
-           {color.r, color.g, color.b}},
+  return {{.alpha = fragment.alpha,
+           .mask = fragment.mask.words[0],
+           .plane = fragment.plane,
+           .thickness = 0.0f,
+           .z_min = fragment.z_min,
+           .z_max = fragment.z_max,
+           .color = {color.r, color.g, color.b}},
           fragment.tiny ? ~0u : 0u};
 }
 
 // Tells that the aggregate at `place` and what lies behind it become `together`. A merge by the rules is linear in
 // colours, so merging two colours of 1 gives the factors.
 inline void tell_merge(std::size_t place, const Aggregate& nearer, const MergeFragment& farther,
-                       const Aggregate& together, const MergePositions& positions, const MergeRules& rules,
-                       PixelObserver& observer) {
+                       const Aggregate& together, const CasavMerging& merging, PixelObserver& observer) {
   Aggregate unit = nearer;
   MergeFragment other = farther;
   for (int c = 0; c < 3; ++c) unit.color[c] = c == 0, other.surface.color[c] = c == 1;
-  const Aggregate factors = merge_formula(other, unit, positions, rules);
+  const Aggregate factors = merge_formula(other, unit, merging.positions, merging.rules);
   observer.joins(place, {nearer, farther.surface, together, factors.color[0], factors.color[1]});
 }
 
@@ -43,7 +42,14 @@ Float depth_between(const AggregateOf<Float, Mask>& nearer, const AggregateOf<Fl
 inline FragmentOf<Counted<float>, Counted<std::uint32_t>> counted_fragment(OperationCounts& counts) {
   const Counted<float> one(1.0f, counts);
   const Counted<std::uint32_t> all(~0u, counts);
-  return {{one, all, {one, one, one}, one, one, one, {one, one, one}}, all};
+  return {{.alpha = one,
+           .mask = all,
+           .plane = {one, one, one},
+           .thickness = one,
+           .z_min = one,
+           .z_max = one,
+           .color = {one, one, one}},
+          all};
 }
 
 // How many numbers of a stored aggregate must be converted to float32.

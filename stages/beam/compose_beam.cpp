@@ -229,13 +229,13 @@ void compose_window(const std::vector<Fragment>& fragments, const PositionSet& p
 }
 
 template <std::size_t Words, class Channel>
-void compose_whole(const std::vector<Pair>& whole, const Tile& tile, const TileShader& shader, StageCounters& counters,
-                   std::vector<StoredAggregate<Words, Channel>>& pixels, TexelRequests* texels,
-                   const PixelObservers* observers) {
-  for (const Pair& pair : whole) {
-    const std::size_t index = tile.index(pair.x, pair.y);
-    const glm::vec3 color = shader.color(pair.triangle, static_cast<std::uint32_t>(index), 0.5f, 0.5f, 1.0f, texels);
-    end_request(texels);
+void compose_whole(const WholePixels& whole, StageCounters& counters,
+                   std::vector<StoredAggregate<Words, Channel>>& pixels, const PixelObservers* observers) {
+  for (const Pair& pair : whole.pairs) {
+    const std::size_t index = whole.tile.index(pair.x, pair.y);
+    const glm::vec3 color =
+        whole.shader.color(pair.triangle, static_cast<std::uint32_t>(index), 0.5f, 0.5f, 1.0f, whole.texels);
+    end_request(whole.texels);
     auto& pixel = pixels[index];
     std::memset(pixel.mask, 0xff, sizeof pixel.mask);
     pixel.area = 1.0f;
@@ -246,15 +246,15 @@ void compose_whole(const std::vector<Pair>& whole, const Tile& tile, const TileS
       tell_stored(pixel, *observer);
     }
   }
-  charge_whole<Words, Channel>(whole.size(), counters);
+  charge_whole<Words, Channel>(whole.pairs.size(), counters);
 }
 
-#define BEAMPIPE_COMPOSE(words, channel)                                                                \
-  template void compose_window(const std::vector<Fragment>&, const PositionSet&, StageCounters&,        \
-                               std::vector<StoredAggregate<words, channel>>&, std::vector<float>&,      \
-                               const PixelObservers*);                                                  \
-  template void compose_whole(const std::vector<Pair>&, const Tile&, const TileShader&, StageCounters&, \
-                              std::vector<StoredAggregate<words, channel>>&, TexelRequests*, const PixelObservers*);
+#define BEAMPIPE_COMPOSE(words, channel)                                                                         \
+  template void compose_window(const std::vector<Fragment>&, const PositionSet&, StageCounters&,                 \
+                               std::vector<StoredAggregate<words, channel>>&, std::vector<float>&,               \
+                               const PixelObservers*);                                                           \
+  template void compose_whole(const WholePixels&, StageCounters&, std::vector<StoredAggregate<words, channel>>&, \
+                              const PixelObservers*);
 BEAMPIPE_STORED_AGGREGATES(BEAMPIPE_COMPOSE)
 #undef BEAMPIPE_COMPOSE
 

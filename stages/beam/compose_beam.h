@@ -30,13 +30,19 @@ void compose_window(const std::vector<Fragment>& fragments, const PositionSet& p
                     std::vector<StoredAggregate<Words, Channel>>& pixels, std::vector<float>& areas,
                     const PixelObservers* observers = nullptr);
 
-// Composes pixels that a single triangle covers completely and hides. The pixels must be empty. The result is
-// that of compose_window for the triangle's fragment, which is not needed here. Adds the texels that shading reads to
-// `texels`, unless it is null: a request for each pair.
+// Pixels that a single triangle covers completely and hides.
+struct WholePixels {
+  const std::vector<Pair>& pairs;
+  const Tile& tile;
+  const TileShader& shader;
+  TexelRequests* texels = nullptr;  // that shading reads: a request for each pair; null: they are not kept
+};
+
+// Composes such pixels, which must be empty. The result is that of compose_window for the triangle's fragment, which is
+// not needed here.
 template <std::size_t Words, class Channel>
-void compose_whole(const std::vector<Pair>& whole, const Tile& tile, const TileShader& shader, StageCounters& counters,
-                   std::vector<StoredAggregate<Words, Channel>>& pixels, TexelRequests* texels = nullptr,
-                   const PixelObservers* observers = nullptr);
+void compose_whole(const WholePixels& whole, StageCounters& counters,
+                   std::vector<StoredAggregate<Words, Channel>>& pixels, const PixelObservers* observers = nullptr);
 
 // Are all positions of the pixel taken, so that nothing farther can be visible in it?
 template <std::size_t Words, class Channel>

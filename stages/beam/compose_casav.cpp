@@ -23,8 +23,7 @@ void finish_aggregates(const PixelObservers* observers) {
 
 template <class Stored>
 std::vector<Aggregate> compose_stored(const std::vector<Fragment>& fragments, const ABuffer& buffer,
-                                      const MergePositions& positions, const MergeRules& rules, MergeWork& work,
-                                      const PixelObservers* observers) {
+                                      const CasavMerging& by, MergeWork& work, const PixelObservers* observers) {
   const std::size_t pixels = buffer.first.size() - 1;
   // Round r merges the r-th fragment of every pixel that has one. These merges are independent, so each runs in a lane.
   // Pixels with the longest lists come first, so the pixels of a round are the first ones.
@@ -45,13 +44,13 @@ std::vector<Aggregate> compose_stored(const std::vector<Fragment>& fragments, co
       merging[i] = stored[i];
     }
     const std::vector<Aggregate> before = observers ? merging : std::vector<Aggregate>{};
-    merge(arriving.data(), active, positions, rules, merging.data(), steps.data());
+    merge(arriving.data(), active, by.positions, by.rules, merging.data(), steps.data());
     for (std::size_t i = 0; i < active; ++i) {
       stored[i] = Stored(merging[i]), work.add(steps[i]);
       PixelObserver* const observer = observer_at(observers, order[i]);
       if (!observer) continue;
       observer->enters(round > 0, fragments[buffer.records[buffer.first[order[i]] + round]]);
-      if (round > 0) tell_merge(0, before[i], arriving[i], stored[i], positions, rules, *observer);
+      if (round > 0) tell_merge(0, before[i], arriving[i], stored[i], by, *observer);
     }
   }
   finish_aggregates(observers);
@@ -63,23 +62,22 @@ std::vector<Aggregate> compose_stored(const std::vector<Fragment>& fragments, co
 }  // namespace
 
 std::vector<Aggregate> compose(const std::vector<Fragment>& fragments, const ABuffer& buffer,
-                               const MergePositions& positions, const MergeRules& rules, CasavStorage storage,
-                               StageCounters& counters, const PixelObservers* observers) {
+                               const CasavMerging& merging, StageCounters& counters, const PixelObservers* observers) {
   MergeWork work;
   const auto composed = [&] {
-    switch (storage) {
+    switch (merging.storage) {
       case CasavStorage::slides:
-        return compose_stored<SlidesAggregate>(fragments, buffer, positions, rules, work, observers);
+        return compose_stored<SlidesAggregate>(fragments, buffer, merging, work, observers);
       case CasavStorage::text:
-        return compose_stored<TextAggregate>(fragments, buffer, positions, rules, work, observers);
+        return compose_stored<TextAggregate>(fragments, buffer, merging, work, observers);
       case CasavStorage::float32:
         break;
     }
-    return compose_stored<Aggregate>(fragments, buffer, positions, rules, work, observers);
+    return compose_stored<Aggregate>(fragments, buffer, merging, work, observers);
   };
   std::vector<Aggregate> aggregates = composed();
-  const std::uint32_t bytes = casav_aggregate_bytes(storage);
-  charge_merges(buffer, merge_cost(work, rules, storage), bytes, bytes, counters);
+  const std::uint32_t bytes = casav_aggregate_bytes(merging.storage);
+  charge_merges(buffer, merge_cost(work, merging.rules, merging.storage), bytes, bytes, counters);
   counters.position_tests += position_tests(work);
   return aggregates;
 }

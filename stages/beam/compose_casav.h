@@ -17,8 +17,8 @@ namespace beampipe {
 // Merges by the published rules (simd/merge.h). `buffer`: the lists of `fragments`. Returns one aggregate per pixel of
 // the tile, kEmptyAggregate where nothing is.
 std::vector<Aggregate> compose(const std::vector<Fragment>& fragments, const ABuffer& buffer,
-                               const MergePositions& positions, const MergeRules& rules, CasavStorage storage,
-                               StageCounters& counters, const PixelObservers* observers = nullptr);
+                               const CasavMerging& merging, StageCounters& counters,
+                               const PixelObservers* observers = nullptr);
 
 // Sizes in the modelled machine of an aggregate and of a fragment for compose_over, which needs neither masks nor
 // slabs. The aggregate has coverage and colour. The fragment also has the depth that it is sorted by.

@@ -11,11 +11,10 @@ namespace {
 bool is_empty(const Aggregate& aggregate) { return aggregate.mask == 0; }
 
 // Merges what lies farther away into what is nearer.
-Aggregate merged(const Aggregate& nearer, const MergeFragment& farther, const MergePositions& positions,
-                 const MergeRules& rules, MergeWork& work) {
+Aggregate merged(const Aggregate& nearer, const MergeFragment& farther, const CasavMerging& merging, MergeWork& work) {
   Aggregate result = nearer;
   MergeSteps steps;
-  merge(&farther, 1, positions, rules, &result, &steps);
+  merge(&farther, 1, merging.positions, merging.rules, &result, &steps);
   work.add(steps);
   result.thickness = std::max(result.thickness, farther.surface.thickness);  // a fragment has none, an aggregate may
   return result;
@@ -23,12 +22,12 @@ Aggregate merged(const Aggregate& nearer, const MergeFragment& farther, const Me
 
 }  // namespace
 
-AggregateLayers::AggregateLayers(std::size_t pixels, std::size_t layers, CasavStorage storage,
+AggregateLayers::AggregateLayers(std::size_t pixels, std::size_t layers, const CasavMerging& merging,
                                  const PixelObservers* observers)
-    : layers_(layers), storage_(storage), observers_(observers), aggregates_(pixels * layers, kEmptyAggregate) {}
+    : layers_(layers), merging_(merging), observers_(observers), aggregates_(pixels * layers, kEmptyAggregate) {}
 
 Aggregate AggregateLayers::stored(const Aggregate& aggregate) const {
-  switch (storage_) {
+  switch (merging_.storage) {
     case CasavStorage::slides:
       return SlidesAggregate(aggregate);
     case CasavStorage::text:
@@ -39,8 +38,7 @@ Aggregate AggregateLayers::stored(const Aggregate& aggregate) const {
   return aggregate;
 }
 
-void AggregateLayers::add(const std::vector<Fragment>& fragments, const MergePositions& positions,
-                          const MergeRules& rules, StageCounters& counters, std::vector<float>& merges) {
+void AggregateLayers::add(const std::vector<Fragment>& fragments, StageCounters& counters, std::vector<float>& merges) {
   LayersWork work;
   std::vector<MergeFragment> all(layers_ + 1);  // of one pixel, near to far
   for (const Fragment& fragment : fragments) {
@@ -51,9 +49,9 @@ void AggregateLayers::add(const std::vector<Fragment>& fragments, const MergePos
     if (layers_ == 1) {
       const Aggregate before = layers[0];
       merges[fragment.pixel] += !is_empty(before);
-      layers[0] = stored(merged(before, incoming, positions, rules, work.merging));
+      layers[0] = stored(merged(before, incoming, merging_, work.merging));
       if (observer) observer->overwrites(!is_empty(before)), observer->enters(!is_empty(before), fragment);
-      if (observer && !is_empty(before)) tell_merge(0, before, incoming, layers[0], positions, rules, *observer);
+      if (observer && !is_empty(before)) tell_merge(0, before, incoming, layers[0], merging_, *observer);
       continue;
     }
     std::size_t count = 0, place = 0;
@@ -72,9 +70,8 @@ void AggregateLayers::add(const std::vector<Fragment>& fragments, const MergePos
       float least = depth_between(all[0].surface, all[1].surface);
       for (std::size_t k = 1; k + 1 < count; ++k)
         if (const float gap = depth_between(all[k].surface, all[k + 1].surface); gap < least) least = gap, closest = k;
-      const Aggregate together = merged(all[closest].surface, all[closest + 1], positions, rules, work.merging);
-      if (observer)
-        tell_merge(closest, all[closest].surface, all[closest + 1], stored(together), positions, rules, *observer);
+      const Aggregate together = merged(all[closest].surface, all[closest + 1], merging_, work.merging);
+      if (observer) tell_merge(closest, all[closest].surface, all[closest + 1], stored(together), merging_, *observer);
       all[closest] = {together, 0u};
       all.erase(all.begin() + static_cast<std::ptrdiff_t>(closest) + 1);
       all.emplace_back();
@@ -83,11 +80,10 @@ void AggregateLayers::add(const std::vector<Fragment>& fragments, const MergePos
     }
     for (std::size_t k = 0; k < count; ++k) layers[k] = stored(all[k].surface);
   }
-  charge(work, layers_, rules, storage_, counters);
+  charge(work, layers_, merging_.rules, merging_.storage, counters);
 }
 
-std::vector<Aggregate> AggregateLayers::finish(const MergePositions& positions, const MergeRules& rules,
-                                               StageCounters& counters) const {
+std::vector<Aggregate> AggregateLayers::finish(StageCounters& counters) const {
   LayersWork work;
   std::vector<Aggregate> result;
   for (std::size_t first = 0; first < aggregates_.size(); first += layers_) {
@@ -96,14 +92,14 @@ std::vector<Aggregate> AggregateLayers::finish(const MergePositions& positions, 
     if (observer) observer->arrivals_end();
     for (std::size_t k = 1; k < layers_ && !is_empty(aggregates_[first + k]); ++k) {
       const Aggregate nearer = pixel;
-      pixel = merged(nearer, {aggregates_[first + k], 0u}, positions, rules, work.merging);
-      if (observer) tell_merge(0, nearer, {aggregates_[first + k], 0u}, pixel, positions, rules, *observer);
+      pixel = merged(nearer, {aggregates_[first + k], 0u}, merging_, work.merging);
+      if (observer) tell_merge(0, nearer, {aggregates_[first + k], 0u}, pixel, merging_, *observer);
     }
     if (observer) observer->finishes_aggregate();
     work.finished += !is_empty(pixel);
     result.push_back(pixel);
   }
-  charge(work, layers_, rules, storage_, counters);
+  charge(work, layers_, merging_.rules, merging_.storage, counters);
   return result;
 }
 

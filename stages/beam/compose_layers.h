@@ -21,26 +21,24 @@ namespace beampipe {
 // The aggregates of the pixels of a tile as they are stored, `layers` for each pixel, empty ones last.
 class AggregateLayers {
  public:
-  // `observers` may be null.
-  AggregateLayers(std::size_t pixels, std::size_t layers, CasavStorage storage,
+  // The positions of `merging` must outlive it. `observers` may be null.
+  AggregateLayers(std::size_t pixels, std::size_t layers, const CasavMerging& merging,
                   const PixelObservers* observers = nullptr);
 
   // Adds shaded fragments. Counts as items out the fragments. Adds one to merges[pixel] for each two aggregates that
   // become one.
-  void add(const std::vector<Fragment>& fragments, const MergePositions& positions, const MergeRules& rules,
-           StageCounters& counters, std::vector<float>& merges);
+  void add(const std::vector<Fragment>& fragments, StageCounters& counters, std::vector<float>& merges);
 
   // Merges each pixel's aggregates.
-  std::vector<Aggregate> finish(const MergePositions& positions, const MergeRules& rules,
-                                StageCounters& counters) const;
+  std::vector<Aggregate> finish(StageCounters& counters) const;
 
-  std::size_t bytes_per_pixel() const { return layers_ * casav_aggregate_bytes(storage_); }
+  std::size_t bytes_per_pixel() const { return layers_ * casav_aggregate_bytes(merging_.storage); }
 
  private:
   Aggregate stored(const Aggregate& aggregate) const;
 
   std::size_t layers_;
-  CasavStorage storage_;
+  CasavMerging merging_;
   const PixelObservers* observers_;
   std::vector<Aggregate> aggregates_;  // rounded as they are stored
 };

@@ -11,17 +11,17 @@ using namespace counter_group;
 
 constexpr CounterInfo field(CounterGroups group, const char* name, const char* title, const char* unit,
                             const char* meaning, std::uint64_t StageCounters::*counter) {
-  return {name, title, unit, meaning, group, counter, nullptr, nullptr};
+  return {.name = name, .title = title, .unit = unit, .meaning = meaning, .group = group, .field = counter};
 }
 
 constexpr CounterInfo operation(CounterGroups group, const char* name, const char* title, const char* meaning,
                                 std::uint64_t Ops::*kind) {
-  return {name, title, "operations", meaning, group, nullptr, kind, nullptr};
+  return {.name = name, .title = title, .unit = "operations", .meaning = meaning, .group = group, .operation = kind};
 }
 
 constexpr CounterInfo sum(const char* name, const char* title, const char* unit, const char* meaning,
                           std::uint64_t (*value)(const StageCounters&)) {
-  return {name, title, unit, meaning, items, nullptr, nullptr, value};
+  return {.name = name, .title = title, .unit = unit, .meaning = meaning, .group = items, .sum = value};
 }
 
 constexpr CounterInfo kCounters[] = {
@@ -85,7 +85,8 @@ constexpr CounterInfo kCounters[] = {
 
 constexpr auto kStored = std::count_if(std::begin(kCounters), std::end(kCounters),
                                        [](const CounterInfo& counter) { return counter.sum == nullptr; });
-static_assert(sizeof(StageCounters) == alignof(std::uint64_t) + kStored * sizeof(std::uint64_t), "the table misses a counter");
+static_assert(sizeof(StageCounters) == alignof(std::uint64_t) + kStored * sizeof(std::uint64_t),
+              "the table misses a counter");
 
 }  // namespace
 

@@ -37,7 +37,13 @@ struct SlidesAggregate {
         z_max(a.z_max),
         color{HalfBits(a.color[0]), HalfBits(a.color[1]), HalfBits(a.color[2])} {}
   operator Aggregate() const {
-    return {alpha, mask, {plane[0], plane[1], plane[2]}, thickness, z_min, z_max, {color[0], color[1], color[2]}};
+    return {.alpha = alpha,
+            .mask = mask,
+            .plane = {plane[0], plane[1], plane[2]},
+            .thickness = thickness,
+            .z_min = z_min,
+            .z_max = z_max,
+            .color = {color[0], color[1], color[2]}};
   }
 };
 static_assert(sizeof(SlidesAggregate) == 42);
@@ -67,7 +73,13 @@ struct TextAggregate {
         z_max(a.z_max),
         color{HalfBits(a.color[0]), HalfBits(a.color[1]), HalfBits(a.color[2])} {}
   operator Aggregate() const {
-    return {alpha, mask, {z, dzdu, dzdv}, thickness, z_min, z_max, {color[0], color[1], color[2]}};
+    return {.alpha = alpha,
+            .mask = mask,
+            .plane = {z, dzdu, dzdv},
+            .thickness = thickness,
+            .z_min = z_min,
+            .z_max = z_max,
+            .color = {color[0], color[1], color[2]}};
   }
 };
 static_assert(sizeof(TextAggregate) == 32);
@@ -84,5 +96,12 @@ constexpr std::uint32_t casav_aggregate_bytes(CasavStorage storage) {
   }
   return sizeof(Aggregate);
 }
+
+// How `compose` and compose_layers merge: by which rules, where the bits of masks lie, and how aggregates are stored.
+struct CasavMerging {
+  const MergePositions& positions;
+  MergeRules rules = {};
+  CasavStorage storage = CasavStorage::float32;
+};
 
 }  // namespace beampipe

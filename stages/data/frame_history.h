@@ -22,11 +22,11 @@ struct Poses {
 
 // What a frame leaves for the next one.
 struct History {
-  std::uint32_t frames = 0;            // rendered so far
-  std::int32_t width = 0, height = 0;  // pixels
-  std::vector<glm::vec4> color;        // the last picture, rounded to fp16 RGBA
-  std::vector<std::uint32_t> looks;    // of the last frame's pixels
-  Poses poses;                         // of the last frame
+  std::uint32_t frames = 0;               // rendered so far
+  std::int32_t width = 0, height = 0;     // pixels
+  std::vector<glm::vec4> color = {};      // the last picture, rounded to fp16 RGBA
+  std::vector<std::uint32_t> looks = {};  // of the last frame's pixels
+  Poses poses = {};                       // of the last frame
 };
 
 // The current frame alone: one value per pixel, row by row.

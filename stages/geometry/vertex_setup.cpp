@@ -9,6 +9,7 @@
 #include <cmath>
 #include <memory>
 #include <optional>
+#include <utility>
 
 #include "simd/vertex_transform.h"
 #include "stages/geometry/clip.h"
@@ -229,27 +230,42 @@ BarycentricPlanes<float> barycentric_planes(const std::array<ScreenCorner, 3>& c
 
 constexpr std::uint32_t kNoVertices = ~0u;  // of frames whose triangles are all flat
 
+// A draw to set up.
+struct DrawJob {
+  const View& view;
+  const Trace& trace;
+  const Draw& draw;
+  const DrawPlacement& placement;
+  std::uint32_t index;         // of the draw in the frame
+  std::uint32_t first_vertex;  // where its vertices start in SetupTriangles::vertices, or kNoVertices
+};
+
 // Sets up triangles of one draw and appends them to `out`. Depth planes and normals are found for a block of triangles
 // at once.
 class TriangleSetup {
  public:
-  // `first_vertex`: where the draw's vertices start in SetupTriangles::vertices.
-  TriangleSetup(const View& view, const DrawScreen& screen, const Trace& trace, const Draw& draw,
-                std::uint32_t draw_index, const ProjectedVertex* vertices, std::uint32_t first_vertex,
-                SetupTriangles& out)
-      : view_(view),
+  TriangleSetup(const DrawJob& job, const DrawScreen& screen, const ProjectedVertex* vertices, SetupTriangles& out)
+      : view_(job.view),
         screen_(screen),
         is_placed_(screen.placement != DrawPlacement{}),
-        materials_(trace.materials),
-        mesh_(trace.meshes[draw.mesh]),
-        draw_(draw),
-        first_vertex_(first_vertex),
-        transform_mirrors_(glm::determinant(glm::dmat3(draw.transform)) < 0),
-        to_world_(elements_of(draw.transform)),
-        draw_index_(draw_index),
+        materials_(job.trace.materials),
+        mesh_(job.trace.meshes[job.draw.mesh]),
+        draw_(job.draw),
+        first_vertex_(job.first_vertex),
+        transform_mirrors_(glm::determinant(glm::dmat3(job.draw.transform)) < 0),
+        to_world_(elements_of(job.draw.transform)),
+        draw_index_(job.index),
         vertices_(vertices),
         out_(out) {}
 
+  // Triangles [first, end) of the draw's mesh.
+  SetupWork add(std::size_t first, std::size_t end) {
+    for (std::size_t t = first; t < end; ++t) add(t);
+    finish_block();
+    return std::exchange(work_, {});
+  }
+
+ private:
   void add(std::size_t t) {
     const glm::uvec3& index = mesh_.triangles[t];
     const std::array<const ProjectedVertex*, 3> v = {&vertices_[index.x], &vertices_[index.y], &vertices_[index.z]};
@@ -258,7 +274,7 @@ class TriangleSetup {
     } else if (v[0]->in_view && v[1]->in_view && v[2]->in_view) {
       add_on_screen(t, {*v[0], 0, 0}, {*v[1], 1, 0}, {*v[2], 0, 1});
     } else if (v[0]->finite && v[1]->finite && v[2]->finite) {
-      ++work.outside_tests;
+      ++work_.outside_tests;
       if (!outside_view<double>({v[0]->clip, v[1]->clip, v[2]->clip}))
         add_clipped(t, {corner(*v[0], 0, 0), corner(*v[1], 1, 0), corner(*v[2], 0, 1)});
     }
@@ -285,9 +301,6 @@ class TriangleSetup {
     block_.is_lit = false;
   }
 
-  SetupWork work;
-
- private:
   // The last triangles of `out_`, whose depth planes and normals are missing.
   struct Block {
     std::size_t count = 0;
@@ -301,13 +314,13 @@ class TriangleSetup {
   // A triangle of a draw whose state says where it is cut.
   void add_cut(std::size_t t, const std::array<const ProjectedVertex*, 3>& v) {
     if (!(v[0]->finite && v[1]->finite && v[2]->finite)) return;
-    ++work.outside_tests;
+    ++work_.outside_tests;
     if (screen_.placement.clips_depth && outside_view<double>({v[0]->clip, v[1]->clip, v[2]->clip})) return;
     bool is_inside = true;
     for (std::size_t i = 0; i < kPlanes; ++i) {
       int outside = 0;
       for (const ProjectedVertex* vertex : v) outside += plane_distance<double>(screen_.planes[i], vertex->clip) < 0;
-      work.plane_tests += v.size();
+      work_.plane_tests += v.size();
       if (outside == 3 && (i >= kDepthPlanes || screen_.placement.clips_depth)) return;
       is_inside &= outside == 0;
     }
@@ -317,9 +330,9 @@ class TriangleSetup {
     }
     Polygon polygon = {corner(*v[0], 0, 0), corner(*v[1], 1, 0), corner(*v[2], 0, 1)};
     for (std::size_t i = 0; !is_inside && i < kDepthPlanes; ++i) {
-      work.plane_tests += polygon.size();
+      work_.plane_tests += polygon.size();
       Polygon beyond;
-      polygon = clip_to_plane(polygon, screen_.planes[i], work.crossings, &beyond);
+      polygon = clip_to_plane(polygon, screen_.planes[i], work_.crossings, &beyond);
       if (!screen_.placement.clips_depth) add_clipped_to(kDepthPlanes, t, std::move(beyond), i == 0 ? -1.0 : 0.0);
     }
     add_clipped_to(is_inside ? kPlanes : kDepthPlanes, t, std::move(polygon));
@@ -329,15 +342,15 @@ class TriangleSetup {
     bool clipped = false;
     for (const auto& plane : screen_.planes)
       for (const ClippedVertex& p : polygon) clipped |= plane_distance<double>(plane, p) < 0;
-    work.plane_tests += screen_.planes.size() * polygon.size();
+    work_.plane_tests += screen_.planes.size() * polygon.size();
     add_clipped_to(clipped ? 0 : kPlanes, t, std::move(polygon));
   }
 
   // Clips to the planes from number `first` on, and cuts what is left into triangles. `flat_z`: the depth of all of it.
   void add_clipped_to(std::size_t first, std::size_t t, Polygon polygon, std::optional<double> flat_z = {}) {
     for (std::size_t i = first; i < screen_.planes.size(); ++i) {
-      work.plane_tests += polygon.size();
-      polygon = clip_to_plane(polygon, screen_.planes[i], work.crossings);
+      work_.plane_tests += polygon.size();
+      polygon = clip_to_plane(polygon, screen_.planes[i], work_.crossings);
     }
     std::vector<ProjectedVertex> vertices(polygon.size());
     const auto on_screen = [&](std::size_t i) -> ScreenCorner {
@@ -346,10 +359,10 @@ class TriangleSetup {
       place_on_screen(screen_.transform, vertices[i]);
       if (screen_.is_cut) limit(vertices[i]);
       if (flat_z) vertices[i].screen.z = *flat_z;
-      ++work.projected;
+      ++work_.projected;
       return {vertices[i], polygon[i].second, polygon[i].third};
     };
-    work.fans += polygon.size() < 3 ? 0 : polygon.size() - 2;
+    work_.fans += polygon.size() < 3 ? 0 : polygon.size() - 2;
     for (std::size_t i = 2; i < polygon.size(); ++i)
       if (polygon[0].w > 0 && polygon[i - 1].w > 0 && polygon[i].w > 0)
         add_on_screen(t, on_screen(0), on_screen(i - 1), on_screen(i));
@@ -365,7 +378,7 @@ class TriangleSetup {
   void add_on_screen(std::size_t t, const ScreenCorner& first, const ScreenCorner& second, const ScreenCorner& third) {
     const ProjectedVertex &a = first.vertex, &b = second.vertex, &c = third.vertex;
     const std::uint32_t material = material_of(draw_, mesh_, t);
-    ++work.areas;
+    ++work_.areas;
     const std::int64_t area2 = doubled_area<std::int64_t>({a.x, b.x, c.x}, {a.y, b.y, c.y});
     if (area2 == 0) return;
     const bool front = area2 < 0;  // counter-clockwise with y up
@@ -394,7 +407,7 @@ class TriangleSetup {
     const DrawPlacement& to = screen_.placement;
     const double offset = to.depth_offset - to.layer_step * static_cast<double>(t);
     for (ScreenVertex<double>& vertex : p) vertex.z = to.depth_scale * vertex.z + offset;
-    ++work.placed;
+    ++work_.placed;
   }
 
   // Limited, so that draws stay in their interval of depths.
@@ -407,7 +420,7 @@ class TriangleSetup {
                              nearest, farthest, to.window_offset, to.window_scale);
     triangle.depth.z += bias;
     for (float& z : triangle.vertex_z) z = static_cast<float>(z + bias);
-    ++work.biased;
+    ++work_.biased;
   }
 
   // Does the viewer see the back: the side from which the mesh's vertices are clockwise, or else the state's front is?
@@ -420,7 +433,7 @@ class TriangleSetup {
   SetupSurface surface(std::size_t t, std::uint32_t material, bool front, const std::array<ScreenCorner, 3>& corners) {
     SetupSurface surface;
     if (material == kNoMaterial || is_flat(materials_[material], mesh_)) return surface;
-    ++work.surfaces;
+    ++work_.surfaces;
     const glm::uvec3& index = mesh_.triangles[t];
     surface.material = material;
     surface.trace_triangle = static_cast<std::uint32_t>(t);
@@ -430,7 +443,7 @@ class TriangleSetup {
     surface.turned = shows_back(front);
     surface.has_own_normal = mesh_.normals.empty();
     if (const auto& texture = materials_[material].normal_texture; texture && mesh_.tangents.empty()) {
-      ++work.tangents;
+      ++work_.tangents;
       const VertexShader shader(view_, draw_, mesh_);
       const std::vector<glm::vec2>& uvs = mesh_.uvs[texture->uv_set];
       surface.tangent = triangle_tangent({shader.world(index.x), shader.world(index.y), shader.world(index.z)},
@@ -455,7 +468,7 @@ class TriangleSetup {
       flat.lit = !materials_[material].unlit && mesh_.normals.empty();
     }
     if (!flat.lit) return;
-    ++work.normals;
+    ++work_.normals;
     block_.is_lit = true;
     const glm::uvec3& index = mesh_.triangles[t];
     for (int k = 0; k < 3; ++k) {
@@ -479,6 +492,7 @@ class TriangleSetup {
   const ProjectedVertex* vertices_;
   SetupTriangles& out_;
   Block block_;
+  SetupWork work_;
 };
 
 void append(const SetupTriangles& part, SetupTriangles& whole) {
@@ -500,10 +514,9 @@ void for_each_chunk(std::size_t count, ChunkWork&& work) {
 }
 
 // Appends the draw's triangles to `out`.
-SetupWork add_draw(const View& view, const Trace& trace, const Draw& draw, const DrawPlacement& placement,
-                   std::uint32_t draw_index, std::uint32_t first_vertex, SetupTriangles& out) {
-  const Mesh& mesh = trace.meshes[draw.mesh];
-  const DrawScreen screen(view, draw, placement);
+SetupWork add_draw(const DrawJob& job, SetupTriangles& out) {
+  const Mesh& mesh = job.trace.meshes[job.draw.mesh];
+  const DrawScreen screen(job.view, job.draw, job.placement);
   const std::size_t vertex_count = mesh.positions.size();
   const auto vertices = std::make_unique_for_overwrite<ProjectedVertex[]>(vertex_count);
   std::vector<std::size_t> in_view(chunks_of(vertex_count));
@@ -516,10 +529,8 @@ SetupWork add_draw(const View& view, const Trace& trace, const Draw& draw, const
   (mesh.ws.empty() ? work.transformed : work.transformed_homogeneous) = vertex_count;
   for (const std::size_t of_chunk : in_view) work.projected += of_chunk;
   const auto set_up = [&](std::size_t first, std::size_t end, SetupTriangles& to) {
-    TriangleSetup setup(view, screen, trace, draw, draw_index, vertices.get(), first_vertex, to);
-    for (std::size_t t = first; t < end; ++t) setup.add(t);
-    setup.finish_block();
-    return setup.work;
+    TriangleSetup setup(job, screen, vertices.get(), to);
+    return setup.add(first, end);
   };
   if (tbb::this_task_arena::max_concurrency() == 1) {  // nothing to put together
     work += set_up(0, mesh.triangles.size(), out);
@@ -603,7 +614,13 @@ SetupTriangles vertex_setup(const Trace& trace, const Frame& frame, StageCounter
     const Mesh& mesh = trace.meshes[draw.mesh];
     if (!placement_of(i).is_drawn) continue;
     const auto first_vertex = static_cast<std::uint32_t>(out.vertices.size());
-    work += add_draw(view, trace, draw, placement_of(i), i, has_materials ? first_vertex : kNoVertices, out);
+    work += add_draw({.view = view,
+                      .trace = trace,
+                      .draw = draw,
+                      .placement = placement_of(i),
+                      .index = i,
+                      .first_vertex = has_materials ? first_vertex : kNoVertices},
+                     out);
     if (has_material(draw, mesh)) {
       work.shaded_vertices += mesh.positions.size();
       work.vertex_vectors += mesh.positions.size() * (std::size_t{!mesh.normals.empty()} + !mesh.tangents.empty());

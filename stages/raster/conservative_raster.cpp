@@ -28,7 +28,13 @@ std::size_t conservative_raster(const SetupTriangles& triangles, const TriangleL
       if (closed && closed->hides(x, y, bounds.nearest)) return;
       if (closes && full) closed->close(x, y, bounds.farthest);
       Pair& pair = out.emplace_back();
-      pair = {index, q, x, y, full, bounds.nearest, bounds.farthest};
+      pair = {.triangle = index,
+              .quad = q,
+              .x = x,
+              .y = y,
+              .full = full,
+              .nearest = bounds.nearest,
+              .farthest = bounds.farthest};
     });
     if (closed) closed->refresh();
   }

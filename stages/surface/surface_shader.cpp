@@ -51,7 +51,13 @@ ColorSpace space_of(TextureRole role) {
 // Adds the texels that are read to `texels`, unless it is null.
 auto noting(TexelRequests* texels, std::uint32_t image, ColorSpace space, std::uint32_t test = kNoAlphaTest) {
   return [=](std::size_t level, std::uint32_t column, std::uint32_t row) {
-    if (texels) texels->read({image, space, static_cast<std::uint32_t>(level), column, row, test});
+    if (texels)
+      texels->read({.image = image,
+                    .space = space,
+                    .level = static_cast<std::uint32_t>(level),
+                    .x = column,
+                    .y = row,
+                    .alpha_test = test});
   };
 }
 
@@ -101,7 +107,8 @@ OperationCounts material_cost(const ShaderInputs& shader, Derivatives derivative
     using Real = Counted<float>;
     const Real one(1.0f, counts);
     const Triple<Real> vector{one, one, one};
-    SurfaceVertexOf<Real> vertex{vector, vector, vector, one, {}, {one, one, one, one}};
+    SurfaceVertexOf<Real> vertex{
+        .to_eye = vector, .normal = vector, .tangent = vector, .tangent_sign = one, .color = {one, one, one, one}};
     for (auto& uv : vertex.uvs) uv = {one, one};
     const ScreenPlane<Real> plane{one, one, one};
     const BarycentricPlanes<Real> planes{plane, plane, plane};

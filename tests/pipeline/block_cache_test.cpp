@@ -36,7 +36,7 @@ class Meter {
 };
 
 TEST(BlockCache, FetchesTheSectorsThatAreRead) {
-  BlockCache cache(memory(), kSmall, BlockCache::Level::rop, 8, 128, false, nullptr);
+  BlockCache cache(memory(), kSmall, BlockCache::Level::rop, {.count = 8, .bytes = 128});
   Meter meter;
   cache.read(1, 0, 40, 4, meter.counters);   // sector 1
   cache.read(1, 0, 60, 8, meter.counters);   // sectors 1 and 2, of the same request
@@ -47,7 +47,7 @@ TEST(BlockCache, FetchesTheSectorsThatAreRead) {
 }
 
 TEST(BlockCache, WritesBackWhatIsDirtyOnce) {
-  BlockCache cache(memory(), kSmall, BlockCache::Level::rop, 8, 128, false, nullptr);
+  BlockCache cache(memory(), kSmall, BlockCache::Level::rop, {.count = 8, .bytes = 128});
   Meter meter;
   cache.write(1, 0, 0, 32, meter.counters);  // a whole sector
   cache.write(2, 0, 0, 32, meter.counters);
@@ -65,7 +65,7 @@ TEST(BlockCache, WritesBackWhatIsDirtyOnce) {
 }
 
 TEST(BlockCache, TheLeastRecentlyUsedLineOfItsSetGoes) {
-  BlockCache cache(memory(), kSmall, BlockCache::Level::rop, 8, 128, false, nullptr);
+  BlockCache cache(memory(), kSmall, BlockCache::Level::rop, {.count = 8, .bytes = 128});
   Meter meter;
   for (const std::size_t block : {0, 2, 0, 4})
     cache.read(static_cast<std::uint32_t>(block), block, 0, 32, meter.counters);
@@ -77,7 +77,7 @@ TEST(BlockCache, TheLeastRecentlyUsedLineOfItsSetGoes) {
 }
 
 TEST(BlockCache, ClearedBlocksAreNotFetchedAndGoBackWhole) {
-  BlockCache cache(memory(), kSmall, BlockCache::Level::rop, 8, 128, true, nullptr);
+  BlockCache cache(memory(), kSmall, BlockCache::Level::rop, {.count = 8, .bytes = 128, .cleared = true});
   Meter meter;
   cache.read(1, 0, 0, 128, meter.counters);
   cache.flush(meter.counters);
@@ -93,7 +93,8 @@ TEST(BlockCache, ClearedBlocksAreNotFetchedAndGoBackWhole) {
 
 TEST(BlockCache, CompressedBlocksMoveTheirCompressedSize) {
   std::uint32_t size = 33;
-  BlockCache cache(memory(), kSmall, BlockCache::Level::rop, 8, 128, true, [&](std::size_t) { return size; });
+  BlockCache cache(memory(), kSmall, BlockCache::Level::rop,
+                   {.count = 8, .bytes = 128, .cleared = true, .compressed_bytes = [&](std::size_t) { return size; }});
   Meter meter;
   cache.write(1, 0, 0, 4, meter.counters);
   cache.flush(meter.counters);
@@ -117,12 +118,13 @@ TEST(BlockCache, CompressionAndModelCanBeSwitchedOff) {
   MemoryParameters parameters;
   parameters.compression = false;
   Meter meter;
-  BlockCache raw(parameters, kSmall, BlockCache::Level::rop, 8, 128, true, [](std::size_t) { return 1u; });
+  BlockCache raw(parameters, kSmall, BlockCache::Level::rop,
+                 {.count = 8, .bytes = 128, .cleared = true, .compressed_bytes = [](std::size_t) { return 1u; }});
   raw.write(1, 0, 0, 128, meter.counters);
   raw.flush(meter.counters);
   EXPECT_EQ(meter.since(), (Bytes{128, 128}));
   parameters.modelled = false;
-  BlockCache none(parameters, kSmall, BlockCache::Level::rop, 8, 128, true, nullptr);
+  BlockCache none(parameters, kSmall, BlockCache::Level::rop, {.count = 8, .bytes = 128, .cleared = true});
   none.write(1, 0, 0, 128, meter.counters);
   none.flush(meter.counters);
   none.stream_read(0, meter.counters);
@@ -132,7 +134,7 @@ TEST(BlockCache, CompressionAndModelCanBeSwitchedOff) {
 // Requests that a ROP cache can answer do not count as L2 bytes. All requests to an L2 do.
 TEST(BlockCache, L2IsAskedForWhatTheCacheBeforeItLacksOrEvicts) {
   for (const BlockCache::Level level : {BlockCache::Level::rop, BlockCache::Level::l2}) {
-    BlockCache cache(memory(), kSmall, level, 8, 128, false, nullptr);
+    BlockCache cache(memory(), kSmall, level, {.count = 8, .bytes = 128});
     StageCounters counters;
     for (const std::uint32_t triangle : {1, 2, 3}) {
       cache.read(triangle, 0, 0, 32, counters);
@@ -149,7 +151,7 @@ TEST(BlockCache, L2IsAskedForWhatTheCacheBeforeItLacksOrEvicts) {
 
 TEST(BlockCache, ReadingThroughAnL1) {
   constexpr CacheParameters one_line{128, 1, 128};
-  BlockCache l2(memory(), kSmall, BlockCache::Level::l2, 8, 128, false, nullptr);
+  BlockCache l2(memory(), kSmall, BlockCache::Level::l2, {.count = 8, .bytes = 128});
   BlockCache l1(memory(), one_line, l2);
   StageCounters counters;
   const auto read = [&](std::uint32_t key, std::size_t block, std::uint32_t first, std::uint32_t bytes) {
@@ -185,7 +187,7 @@ TEST(LinearMemory, FetchesAtOnceAreFetchesOneByOne) {
 
 TEST(TileSurface, PartsOfAnElement) {
   const ZOrder order(2, 2);
-  TileSurface surface(memory(), "surface", order, 16, 6);  // 96 bytes, 2 to a block of 192
+  TileSurface surface(memory(), "surface", order, {.parts = 16, .part_bytes = 6});  // 96 bytes, 2 to a block of 192
   StageCounters counters;
   surface.access(1, 1, 1u << 15, 1u << 4 | 1u << 5, counters);  // bytes 186 to 191; 120 to 131: sectors 5; 3 and 4
   surface.access(1, 0, 0, 0x8001, counters);                    // bytes 0 to 5 and 90 to 95: sectors 0 and 2
@@ -204,7 +206,7 @@ TEST(TileSurface, AQuadOfPixelsIsOneSector) {
   EXPECT_EQ(order.of[5], 3u);
   EXPECT_EQ(order.of[2], 4u);
   EXPECT_EQ(order.positions, 16u);
-  TileSurface surface(memory(), "surface", order, 1, 8);
+  TileSurface surface(memory(), "surface", order, {.part_bytes = 8});
   Meter meter;
   for (const std::uint32_t pixel : {0, 1, 4, 5}) surface.write(7, pixel, meter.counters);
   surface.flush(meter.counters);
@@ -216,7 +218,7 @@ TEST(TileSurface, AQuadOfPixelsIsOneSector) {
 TEST(TileSurface, BinsAtTheBorderOfTheFrame) {
   const ZOrder order(5, 1);  // positions 0, 1, 4, 5, 16
   EXPECT_EQ(order.positions, 17u);
-  TileSurface surface(memory(), "surface", order, 1, 64);  // 4 to a block
+  TileSurface surface(memory(), "surface", order, {.part_bytes = 64});  // 4 to a block
   Meter meter;
   for (std::uint32_t pixel = 0; pixel < 5; ++pixel) surface.write(0, pixel, meter.counters);
   surface.flush(meter.counters);

@@ -15,7 +15,13 @@ inline constexpr std::uint32_t kAllBits = ~0u;
 
 // A surface of constant depth and colour. `red` and `green` are given before they are multiplied by alpha.
 inline Aggregate flat_surface(float alpha, std::uint32_t mask, float z, float red, float green = 0.0f) {
-  return {alpha, mask, {z, 0.0f, 0.0f}, 0.0f, z, z, {red * alpha, green * alpha, 0.0f}};
+  return {.alpha = alpha,
+          .mask = mask,
+          .plane = {z, 0.0f, 0.0f},
+          .thickness = 0.0f,
+          .z_min = z,
+          .z_max = z,
+          .color = {red * alpha, green * alpha, 0.0f}};
 }
 
 // What the raster stages can send, with hard cases often: specks, full pixels, single bits, planes equal to earlier

@@ -69,7 +69,13 @@ TEST(MergeRules, InvariantsOnChains) {
 }
 
 TEST(MergeRules, FirstFragmentIsTheAggregate) {
-  const Aggregate in{0.25f, 0xffu, {-0.5f, 0.01f, -0.02f}, 0.0f, -0.51f, -0.49f, {0.1f, 0.2f, 0.3f}};
+  const Aggregate in{.alpha = 0.25f,
+                     .mask = 0xffu,
+                     .plane = {-0.5f, 0.01f, -0.02f},
+                     .thickness = 0.0f,
+                     .z_min = -0.51f,
+                     .z_max = -0.49f,
+                     .color = {0.1f, 0.2f, 0.3f}};
   const Aggregate now = merged(in, kEmptyAggregate);
   EXPECT_FLOAT_EQ(now.alpha, 0.25f);
   EXPECT_EQ(now.mask, 0xffu);

@@ -26,7 +26,12 @@ inline Fragments beam_fragments(const SetupTriangles& triangles, const Tile& til
   StageCounters raster;
   conservative_raster(triangles, all_of(triangles), tile, raster, pairs);
   Fragments fragments;
-  beam_fragment(triangles, pairs, tile, {mask, {pattern}, &table, nullptr, sizeof(SlidesAggregate), tiny_positions},
+  beam_fragment(triangles, pairs, tile,
+                {.mask = mask,
+                 .positions = {pattern},
+                 .table = &table,
+                 .fragment_bytes = sizeof(SlidesAggregate),
+                 .tiny_positions = tiny_positions},
                 fragments.counters, fragments.list);
   return fragments;
 }
@@ -42,8 +47,8 @@ inline std::vector<Aggregate> beam_pixels(const SetupTriangles& triangles, const
   Fragments fragments = beam_fragments(triangles, tile, mask);
   StageCounters counters;
   shade(colors, fragments.list, counters);
-  return compose(fragments.list, sorted(fragments, tile.pixels()), MergePositions(hammersley_pattern()), rules,
-                 CasavStorage::float32, counters);
+  const MergePositions positions(hammersley_pattern());
+  return compose(fragments.list, sorted(fragments, tile.pixels()), {positions, rules}, counters);
 }
 
 }  // namespace beampipe

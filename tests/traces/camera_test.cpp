@@ -14,7 +14,7 @@ TEST(PanPicture, EveryPointMovesByTheSamePixelsAtEveryDepth) {
   Trace trace;
   Frame& first = trace.frames.emplace_back();
   first.width = 320, first.height = 180;
-  set_camera(first, {{0, 1, 5}, {0, 0, 0}, {0, 1, 0}, 40, 1, 20});
+  set_camera(first, {.eye = {0, 1, 5}, .target = {0, 0, 0}, .up = {0, 1, 0}, .fovy_deg = 40, .near = 1, .far = 20});
   const Frame given = first;
   pan_picture(trace, 5, 0.25, -0.125);
   ASSERT_EQ(trace.frames.size(), 5u);

@@ -97,18 +97,38 @@ TEST_F(SurfaceReaderTest, ReadsMaterials) {
 
   EXPECT_EQ(rich.name, "rich");
   EXPECT_EQ(rich.base_color, glm::vec4(0.1f, 0.2f, 3.0f, 0.4f));
-  EXPECT_EQ(rich.base_texture,
-            (Texture{1, 1, Wrap::clamp, Wrap::mirror, Filter::nearest, Filter::nearest, MipFilter::nearest}));
+  EXPECT_EQ(rich.base_texture, (Texture{.image = 1,
+                                        .uv_set = 1,
+                                        .wrap_u = Wrap::clamp,
+                                        .wrap_v = Wrap::mirror,
+                                        .magnify = Filter::nearest,
+                                        .minify = Filter::nearest,
+                                        .mip = MipFilter::nearest}));
   EXPECT_EQ(rich.metallic, 0.25f);
   EXPECT_EQ(rich.roughness, 0.75f);
-  EXPECT_EQ(rich.metallic_roughness_texture,
-            (Texture{0, 0, Wrap::repeat, Wrap::repeat, Filter::linear, Filter::linear, MipFilter::none}));
-  EXPECT_EQ(rich.normal_texture,
-            (Texture{0, 0, Wrap::repeat, Wrap::repeat, Filter::linear, Filter::linear, MipFilter::linear}));
+  EXPECT_EQ(rich.metallic_roughness_texture, (Texture{.image = 0,
+                                                      .uv_set = 0,
+                                                      .wrap_u = Wrap::repeat,
+                                                      .wrap_v = Wrap::repeat,
+                                                      .magnify = Filter::linear,
+                                                      .minify = Filter::linear,
+                                                      .mip = MipFilter::none}));
+  EXPECT_EQ(rich.normal_texture, (Texture{.image = 0,
+                                          .uv_set = 0,
+                                          .wrap_u = Wrap::repeat,
+                                          .wrap_v = Wrap::repeat,
+                                          .magnify = Filter::linear,
+                                          .minify = Filter::linear,
+                                          .mip = MipFilter::linear}));
   EXPECT_EQ(rich.normal_scale, -0.5f);
   EXPECT_EQ(rich.emissive, glm::vec3(4, 5, 6));
-  EXPECT_EQ(rich.emissive_texture,
-            (Texture{0, 0, Wrap::repeat, Wrap::clamp, Filter::linear, Filter::linear, MipFilter::linear}));
+  EXPECT_EQ(rich.emissive_texture, (Texture{.image = 0,
+                                            .uv_set = 0,
+                                            .wrap_u = Wrap::repeat,
+                                            .wrap_v = Wrap::clamp,
+                                            .magnify = Filter::linear,
+                                            .minify = Filter::linear,
+                                            .mip = MipFilter::linear}));
   EXPECT_EQ(rich.alpha_mode, AlphaMode::blend);
   EXPECT_EQ(rich.alpha_cutoff, 0.125f);
   EXPECT_TRUE(rich.double_sided);

@@ -152,7 +152,12 @@ Trace example() {
                  {1, glm::dmat4(1.0), {}, Cull::front, Shading::unlit, {}}};
   trace.frames.push_back(frame);
 
-  set_camera(frame, {{0.1, 0.2, 1.0 / 3}, {-5, 6, 7.7}, {0.01, 1, 0}, 35.9, 1e-3, 12345.678});
+  set_camera(frame, {.eye = {0.1, 0.2, 1.0 / 3},
+                     .target = {-5, 6, 7.7},
+                     .up = {0.01, 1, 0},
+                     .fovy_deg = 35.9,
+                     .near = 1e-3,
+                     .far = 12345.678});
   frame.background = color();
   frame.draws = {{0, glm::dmat4(1.0), {}, Cull::none, Shading::lambert, {}}};
   for (int i = 0; i < 50; ++i) {  // reading must give back normalised directions bit by bit

@@ -25,8 +25,17 @@ Claim make_claim(const PublishedFigure& figure, std::optional<double> ours, cons
   std::string name = figure.name;
   if (const auto at = name.find(kImplementation); at != name.npos)
     name.replace(at, kImplementation.size(), implementation);
-  return {name,          figure.unit,          figure.low,       figure.high,       ours, figure.source, figure.command,
-          figure.remark, figure.by_definition, figure.numerator, figure.denominator};
+  return {.name = name,
+          .unit = figure.unit,
+          .published_low = figure.low,
+          .published_high = figure.high,
+          .ours = ours,
+          .source = figure.source,
+          .command = figure.command,
+          .beside = figure.remark,
+          .by_definition = figure.by_definition,
+          .numerator = figure.numerator,
+          .denominator = figure.denominator};
 }
 
 std::string number(double value, int digits = 4) {

@@ -4,24 +4,13 @@
 #include <optional>
 #include <type_traits>
 
+#include "pipeline/wrapped_text.h"
 #include "traces/closest_name.h"
 
 namespace beampipe {
 namespace {
 
-// Breaks the lines of a help text, which --help prints in a column.
-std::string wrapped(const std::string& text) {
-  constexpr std::size_t kWidth = 88;
-  std::string lines;
-  std::size_t start = 0;
-  while (text.size() - start > kWidth) {
-    const std::size_t end = text.rfind(' ', start + kWidth);
-    if (end == text.npos || end <= start) break;
-    lines += text.substr(start, end - start) + "\n";
-    start = end + 1;
-  }
-  return lines + text.substr(start);
-}
+constexpr std::size_t kHelpWidth = 88;  // characters of the column in which --help prints a text
 
 // What --help shows as an option's value.
 template <class Value>
@@ -151,7 +140,7 @@ Option& Option::needs(const Option& other) {
 
 template <class Value>
 Option Command::add(const std::string& names, Value& variable, const std::string& help) {
-  return Option(app_->add_option(names, variable, wrapped(help))->type_name(type_name<Value>()));
+  return Option(app_->add_option(names, variable, wrapped(help, kHelpWidth))->type_name(type_name<Value>()));
 }
 template Option Command::add(const std::string&, std::string&, const std::string&);
 template Option Command::add(const std::string&, int&, const std::string&);
@@ -164,7 +153,7 @@ template Option Command::add(const std::string&, std::vector<double>&, const std
 template Option Command::add(const std::string&, std::vector<std::uint32_t>&, const std::string&);
 
 Option Command::add_flag(const std::string& names, bool& variable, const std::string& help) {
-  return Option(app_->add_flag(names, variable, wrapped(help)));
+  return Option(app_->add_flag(names, variable, wrapped(help, kHelpWidth)));
 }
 
 Command Command::add_group(const std::string& title) { return Command(app_->add_option_group(title)); }

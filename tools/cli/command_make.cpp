@@ -68,8 +68,11 @@ void make(const MakeArguments& arguments, const Command& command, InterruptGate&
   if (command.was_given("--orbit") && arguments.frames < 2) throw UsageError("--orbit needs --frames N with N > 1");
   if (command.was_given("--pan") && arguments.frames < 2) throw UsageError("--pan needs --frames N with N > 1");
   const bool moves = command.was_given("--orbit") || command.was_given("--pan");
-  Trace trace = is_model ? trace_of_model(arguments.scene, arguments.model, command, arguments.options.width,
-                                          arguments.options.height, arguments.frames, moves)
+  Trace trace = is_model ? trace_of_model(arguments.scene, arguments.model, command,
+                                          {.width = arguments.options.width,
+                                           .height = arguments.options.height,
+                                           .count = arguments.frames,
+                                           .move = moves})
                          : make_from_scene(arguments, command);
   const std::optional<Camera> camera = trace.frames.at(0).camera;
   if (!arguments.pan.empty()) {

@@ -32,8 +32,9 @@ struct PreviewArguments {
 Trace read_model(const PreviewArguments& arguments, const Command& command) {
   require_options_of(arguments.scene, command);
   if (command.was_given("--frame")) throw UsageError("--frame is for traces only");
-  return trace_of_model(arguments.scene, arguments.model, command, arguments.width > 0 ? arguments.width : kLongerSide,
-                        arguments.height > 0 ? arguments.height : kShorterSide, 1, false);
+  return trace_of_model(arguments.scene, arguments.model, command,
+                        {.width = arguments.width > 0 ? arguments.width : kLongerSide,
+                         .height = arguments.height > 0 ? arguments.height : kShorterSide});
 }
 
 // A captured frame keeps its size; others are made small unless the user chooses.

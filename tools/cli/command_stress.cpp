@@ -36,7 +36,7 @@ std::string cell_of(const Verdict& verdict) {
   } else if (verdict.error > 0) {
     std::snprintf(text, sizeof text, "2^%.1f", std::log2(verdict.error));
   }
-  const double format = verdict.reason.empty() ? verdict.limit : kFormatError;
+  const double format = verdict.reason.empty() ? verdict.limit : kFp16Error;
   return text + std::string(!verdict.passes() ? "!" : verdict.error > format ? "*" : "");
 }
 
@@ -110,7 +110,7 @@ void stress(const StressArguments& arguments, InterruptGate& gate) {
         row.push_back(cell_of(verdict));
         results.push_back(json_of(hard_case, technique.spec, verdict));
         failures += !verdict.passes();
-        if (!verdict.reason.empty() && verdict.error > kFormatError) {
+        if (!verdict.reason.empty() && verdict.error > kFp16Error) {
           char limit[32];
           std::snprintf(limit, sizeof limit, "%.3g", verdict.limit);
           notes.push_back("  " + technique.spec + " up to " + limit + ": " + verdict.reason);

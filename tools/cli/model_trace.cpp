@@ -176,14 +176,14 @@ void require_options_of(const std::string& model, const Command& command) {
     throw UsageError("--animation is for .gltf and .glb files only");
 }
 
-Trace trace_of_model(const std::string& file, const ModelOptions& options, const Command& command, std::uint32_t width,
-                     std::uint32_t height, std::uint32_t frames, bool moves) {
-  ImportedModel model = is_obj_file(file) ? read_obj_model(file, options, width, height)
-                                          : read_gltf(file, {.width = width,
-                                                             .height = height,
-                                                             .frames = frames,
+Trace trace_of_model(const std::string& file, const ModelOptions& options, const Command& command,
+                     const ModelFrames& frames) {
+  ImportedModel model = is_obj_file(file) ? read_obj_model(file, options, frames.width, frames.height)
+                                          : read_gltf(file, {.width = frames.width,
+                                                             .height = frames.height,
+                                                             .frames = frames.count,
                                                              .animation = options.animation,
-                                                             .animation_if_any = frames > 1 && !moves});
+                                                             .animation_if_any = frames.count > 1 && !frames.move});
   say_not_read(file, model.not_read);
   Trace& trace = model.trace;
   Viewpoint viewpoint;

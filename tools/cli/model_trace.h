@@ -27,11 +27,17 @@ Option add_model_options(Command& command, ModelOptions& options);
 void require_no_model_options(const Command& command);
 void require_options_of(const std::string& model, const Command& command);
 
-// A model as a trace: its camera (chosen, if it has none), its lights, its background. `moves`: the camera or the
-// picture moves over the frames, and the model does not, unless an animation is named. What was chosen and what is not
+// The frames that a model is to have.
+struct ModelFrames {
+  std::uint32_t width = 0, height = 0;
+  std::uint32_t count = 1;
+  bool move = false;  // the camera or the picture does, and the model does not, unless an animation is named
+};
+
+// A model as a trace: its camera (chosen, if it has none), its lights, its background. What was chosen and what is not
 // read is said on standard error. Throws TraceError, and UsageError if there is no such camera.
-Trace trace_of_model(const std::string& model, const ModelOptions& options, const Command& command, std::uint32_t width,
-                     std::uint32_t height, std::uint32_t frames, bool moves);
+Trace trace_of_model(const std::string& model, const ModelOptions& options, const Command& command,
+                     const ModelFrames& frames);
 
 // The camera as options: "--eye 3,2,5 --target 0,1,0 --fovy 36".
 std::string text_of(const Camera& camera);

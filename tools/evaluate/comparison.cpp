@@ -81,7 +81,7 @@ ErrorAccumulator Comparison::new_errors() const {
 void Comparison::compare_frame(std::size_t frame, Progress& progress) {
   WallTime reference_time;
   const FrameResult truth = render_once(reference_, plan_, frame, progress, &reference_time);
-  FrameReport reference = write_frame(output_, plan_, maker_, reference_.spec, frame, truth, nullptr);
+  FrameReport reference = write_frame(output_, plan_, maker_, {reference_.spec, frame, truth});
   reference.wall_ms = reference_time;
   reference.error = ErrorStats{};
   if (split_) {
@@ -94,7 +94,7 @@ void Comparison::compare_frame(std::size_t frame, Progress& progress) {
       render_frame(plan_, frame, progress, histories_, [&](std::size_t i, FrameResult&& result) {
         const std::optional<ErrorParts> parts = explain(i, result, truth.image, frame, progress);
         FrameReport& report = record.reports.emplace_back(
-            write_frame(output_, plan_, maker_, plan_.techniques[i].spec, frame, result, &truth.image));
+            write_frame(output_, plan_, maker_, {plan_.techniques[i].spec, frame, result, &truth.image}));
         report.parts = parts;
         errors_[i].add(result.image, truth.image);
         std::vector<float> errors = signed_errors(result.image, truth.image);

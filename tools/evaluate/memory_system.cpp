@@ -26,12 +26,12 @@ Form<std::optional<Place>> place_form() {
 // Bytes of a line of L1 and of L2.
 Field<MemoryParameters> line_field() {
   const Form<std::uint32_t> form = form::power_of_two(kLeastSectorBytes, kMostLine);
-  return {"line_bytes",
-          "a line of L1 and of L2: 1 to 8 sectors",
-          false,
-          form.schema,
-          [form](const JsonCursor& at, MemoryParameters& m) { m.l1.line_bytes = m.l2.line_bytes = form(at); },
-          [](const MemoryParameters& m) { return Json(m.l2.line_bytes); }};
+  return {.key = "line_bytes",
+          .meaning = "a line of L1 and of L2: 1 to 8 sectors",
+          .required = false,
+          .schema = form.schema,
+          .read = [form](const JsonCursor& at, MemoryParameters& m) { m.l1.line_bytes = m.l2.line_bytes = form(at); },
+          .get = [](const MemoryParameters& m) { return Json(m.l2.line_bytes); }};
 }
 
 std::vector<MemoryParameter> all_parameters() {
@@ -41,9 +41,12 @@ std::vector<MemoryParameter> all_parameters() {
     all.push_back({std::move(field), unit});
   };
   const auto place = [&](const char* key, const char* unit, const char* meaning, auto where, const auto& form) {
-    add({key, meaning, false, form.schema,
-         [where, form](const JsonCursor& at, MemoryParameters& m) { form.read(at, std::invoke(where, m)); },
-         [where, form](const MemoryParameters& m) { return form.write(std::invoke(where, m)); }},
+    add({.key = key,
+         .meaning = meaning,
+         .required = false,
+         .schema = form.schema,
+         .read = [where, form](const JsonCursor& at, MemoryParameters& m) { form.read(at, std::invoke(where, m)); },
+         .get = [where, form](const MemoryParameters& m) { return form.write(std::invoke(where, m)); }},
         unit);
   };
   using Memory = MemoryParameters;

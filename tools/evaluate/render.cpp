@@ -18,28 +18,43 @@ std::string frame_text(const RunPlan& plan, std::size_t frame) {
          std::to_string(plan.frames.size()) + "): ";
 }
 
-// Renders a frame; `milliseconds` becomes the wall time.
-FrameResult render_timed(const Technique& technique, const RunPlan& plan, std::size_t frame, Progress& progress,
-                         bool model_memory, History* history, double& milliseconds,
-                         SurfaceColors colors = SurfaceColors::by_place) {
+// One run of a technique.
+struct Rendering {
+  const Technique& technique;
+  std::size_t frame = 0;
+  bool models_memory = false;
+  History* history = nullptr;  // as in FrameInput
+  SurfaceColors colors = SurfaceColors::by_place;
+};
+
+struct TimedResult {
+  FrameResult result;
+  double milliseconds = 0;  // wall time
+};
+
+TimedResult render_timed(const RunPlan& plan, const Rendering& run, Progress& progress) {
   FrameInput options = plan.options;
-  options.history = history;
-  options.memory.modelled = model_memory;
-  options.colors = colors;
-  const std::string name = technique.spec + (colors == SurfaceColors::by_pixel ? ", for visibility" : "");
-  progress.show(frame_text(plan, frame) + name);
+  options.history = run.history;
+  options.memory.modelled = run.models_memory;
+  options.colors = run.colors;
+  const std::string name = run.technique.spec + (run.colors == SurfaceColors::by_pixel ? ", for visibility" : "");
+  progress.show(frame_text(plan, run.frame) + name);
   const auto start = std::chrono::steady_clock::now();
-  FrameResult result = technique.render(plan.trace, frame, options, plan.sinks);
+  FrameResult result = run.technique.render(plan.trace, run.frame, options, plan.sinks);
   const auto end = std::chrono::steady_clock::now();
-  milliseconds = std::chrono::duration<double, std::milli>(end - start).count();
   if (plan.sinks.timeline)
-    plan.sinks.timeline->add({name + ", frame " + std::to_string(frame), std::this_thread::get_id(), {}, start, end});
-  return result;
+    plan.sinks.timeline->add(
+        {name + ", frame " + std::to_string(run.frame), std::this_thread::get_id(), {}, start, end});
+  return {std::move(result), std::chrono::duration<double, std::milli>(end - start).count()};
 }
 
 FrameContent content_of(const Trace& trace, std::size_t index) {
   const Frame& frame = trace.frames[index];
-  FrameContent content{index, frame.width, frame.height, 0, frame.draws.size(), frame.lighting.lights.size()};
+  FrameContent content{.index = index,
+                       .width = frame.width,
+                       .height = frame.height,
+                       .draws = frame.draws.size(),
+                       .lights = frame.lighting.lights.size()};
   for (const Draw& draw : frame.draws) content.triangles += trace.meshes[draw.mesh].triangles.size();
   return content;
 }
@@ -55,9 +70,12 @@ std::vector<WallTime> render_frame(const RunPlan& plan, std::size_t frame, Progr
   for (int run = 0; run < runs; ++run) {
     for (std::size_t i = 0; i < plan.techniques.size(); ++i) {
       History history = histories[i];
-      FrameResult result =
-          render_timed(plan.techniques[i], plan, frame, progress, model && run == 0, &history, milliseconds[i][run]);
-      if (run == 0) use(i, std::move(result));
+      TimedResult timed = render_timed(
+          plan,
+          {.technique = plan.techniques[i], .frame = frame, .models_memory = model && run == 0, .history = &history},
+          progress);
+      milliseconds[i][run] = timed.milliseconds;
+      if (run == 0) use(i, std::move(timed.result));
       if (run + 1 == runs) histories[i] = std::move(history);
     }
   }
@@ -84,19 +102,18 @@ std::vector<History> rebuild_histories(const RunPlan& plan, std::size_t frames, 
 FrameResult render_once(const Technique& technique, const RunPlan& plan, std::size_t frame, Progress& progress,
                         WallTime* time) {
   const bool model = plan.options.memory.modelled;
-  double milliseconds = 0;
-  FrameResult result = render_timed(technique, plan, frame, progress, model, nullptr, milliseconds);
+  TimedResult timed = render_timed(plan, {.technique = technique, .frame = frame, .models_memory = model}, progress);
   if (time) {
-    *time = wall_time({milliseconds});
+    *time = wall_time({timed.milliseconds});
     time->with_memory_model = model;
   }
-  return result;
+  return std::move(timed.result);
 }
 
 Image render_picture(const Technique& technique, const RunPlan& plan, std::size_t frame, Progress& progress,
                      SurfaceColors colors, History* history) {
-  double ignored_milliseconds = 0;
-  return render_timed(technique, plan, frame, progress, false, history, ignored_milliseconds, colors).image;
+  return render_timed(plan, {.technique = technique, .frame = frame, .history = history, .colors = colors}, progress)
+      .result.image;
 }
 
 ErrorStats measure_named_error(const std::string& spec, std::size_t frame, const Image& image, const Image& reference) {
@@ -107,16 +124,16 @@ ErrorStats measure_named_error(const std::string& spec, std::size_t frame, const
   }
 }
 
-FrameReport write_frame(OutputFolder& output, const RunPlan& plan, const Json& made_by, const std::string& spec,
-                        std::size_t frame, const FrameResult& result, const Image* reference) {
+FrameReport write_frame(OutputFolder& output, const RunPlan& plan, const Json& made_by, const RenderedFrame& frame) {
+  const auto& [spec, index, result, reference] = frame;
   const Labels labels = {{"beampipe.trace", std::filesystem::path(plan.trace_file).filename().string()},
                          {"beampipe.trace_digest", made_by.at("trace").get<std::string>()},
                          {"beampipe.technique", spec},
-                         {"beampipe.frame", std::to_string(frame)},
+                         {"beampipe.frame", std::to_string(index)},
                          {"beampipe.version", made_by.at("version").get<std::string>()}};
-  const std::string stem = frame_stem(spec, frame);
+  const std::string stem = frame_stem(spec, index);
   FrameReport report;
-  report.index = frame;
+  report.index = index;
   report.image = stem + ".exr";
   report.picture = stem + ".png";
   report.a_buffer_peak_bytes = result.a_buffer_peak_bytes;
@@ -126,12 +143,12 @@ FrameReport write_frame(OutputFolder& output, const RunPlan& plan, const Json& m
   report.bin_pixels = result.bin_pixels;
   Planes counters{result.image.width, result.image.height, result.pixel_counters};
   if (reference) {
-    report.error = measure_named_error(spec, frame, result.image, *reference);
+    report.error = measure_named_error(spec, index, result.image, *reference);
     counters.channels["error"] = pixel_errors(result.image, *reference);
   }
   for (const auto& [name, values] : counters.channels) report.pixel_counters[name] = measure_counter(values);
   // An older report or record would describe pictures that no longer exist.
-  output.write(report.image, encode_exr(result.image, labels), {"report.json", frame_record_name(frame)});
+  output.write(report.image, encode_exr(result.image, labels), {"report.json", frame_record_name(index)});
   output.write(report.picture, encode_png(result.image));
   if (!counters.channels.empty()) {
     report.counters = stem + "_counters.exr";
@@ -148,19 +165,16 @@ void require_writable_folders(const OutputFolder& output, const std::vector<Tech
 }
 
 Report new_report(const RunPlan& plan, const Json& made_by) {
-  Report report{plan.trace_file,
-                program_version(),
-                simd_target(),
-                plan.options.threads,
-                plan.options.memory,
-                plan.hardware,
-                {},
-                {},
-                {},
-                plan.notes,
-                made_by,
-                plan.more_hardware,
-                plan.trace.frames.size()};
+  Report report{.trace = plan.trace_file,
+                .version = program_version(),
+                .simd = simd_target(),
+                .threads = plan.options.threads,
+                .memory = plan.options.memory,
+                .hardware = plan.hardware,
+                .notes = plan.notes,
+                .made_by = made_by,
+                .more_hardware = plan.more_hardware,
+                .trace_frames = plan.trace.frames.size()};
   for (const std::size_t frame : plan.frames) report.frames.push_back(content_of(plan.trace, frame));
   return report;
 }

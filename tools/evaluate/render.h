@@ -38,13 +38,20 @@ Image render_picture(const Technique& technique, const RunPlan& plan, std::size_
 // As measure_error, but what it throws says which technique and frame it is about.
 ErrorStats measure_named_error(const std::string& spec, std::size_t frame, const Image& image, const Image& reference);
 
+// A frame as one technique has rendered it.
+struct RenderedFrame {
+  const std::string& spec;
+  std::size_t index = 0;
+  const FrameResult& result;
+  const Image* reference = nullptr;  // what its error is measured against; null: it is not measured
+};
+
 // Writes a frame's image (EXR), its picture (PNG) and its per-pixel counters, if there are any, into the technique's
 // folder. The headers of EXR files name the trace's file, its digest, the technique, the frame and the program's
 // version, as `made_by` (tools/evaluate/resume.h) has them. Returns the frame's report, which lacks the times. If
-// `reference` is not null, the error of the image is in the report and in a counter named `error`. Throws as
+// it has a reference, the error of the image is in the report and in a counter named `error`. Throws as
 // OutputFolder::write does and, before anything is written, as measure_named_error does.
-FrameReport write_frame(OutputFolder& output, const RunPlan& plan, const Json& made_by, const std::string& spec,
-                        std::size_t frame, const FrameResult& result, const Image* reference);
+FrameReport write_frame(OutputFolder& output, const RunPlan& plan, const Json& made_by, const RenderedFrame& frame);
 
 // Throws std::runtime_error, one line, unless report.json, the folder of every technique and the folder of frame
 // records can be written.

@@ -58,10 +58,10 @@ struct FrameContent {
 struct Report {
   std::string trace, version, simd;
   int threads = 0;
-  MemoryParameters memory;
-  Hardware hardware;  // whose times are modelled; nothing is modelled if it has no implementations
-  std::vector<TechniqueReport> results;
-  std::vector<LadderRung> msaa_ladder;             // empty if not measured
+  MemoryParameters memory = {};
+  Hardware hardware = {};  // whose times are modelled; nothing is modelled if it has no implementations
+  std::vector<TechniqueReport> results = {};
+  std::vector<LadderRung> msaa_ladder = {};        // empty if not measured
   std::vector<LadderRung> visibility_ladder = {};  // of visibility alone; empty if all surfaces are flat
   std::vector<DrawNote> notes = {};                // what the frames ask for and no technique does
   Json made_by = {};                               // what the results depend on: made_by() in tools/evaluate/resume.h

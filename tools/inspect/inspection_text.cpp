@@ -5,6 +5,7 @@
 #include <map>
 #include <numeric>
 
+#include "pipeline/wrapped_text.h"
 #include "tools/files/format.h"
 
 namespace beampipe {
@@ -22,19 +23,8 @@ std::string cut(std::string text, std::size_t width) {
   return text.substr(0, end) + "...";
 }
 
-// Breaks a line at blanks; further lines are indented.
-std::string wrapped(const std::string& text, std::size_t indent) {
-  std::string lines;
-  std::size_t start = 0, width = kColumns;
-  while (text.size() - start > width) {
-    std::size_t end = text.rfind(' ', start + width);
-    if (end == text.npos || end <= start) end = start + width;
-    lines += text.substr(start, end - start) + "\n" + std::string(indent, ' ');
-    start = end + (text[end] == ' ');
-    width = kColumns - indent;
-  }
-  return lines + text.substr(start) + "\n";
-}
+// A line, with the lines that it goes on in.
+std::string put_line(const std::string& text, std::size_t indent) { return wrapped(text, kColumns, indent) + "\n"; }
 
 std::string color_text(const glm::dvec3& color) { return format("%.4f %.4f %.4f", color.r, color.g, color.b); }
 
@@ -162,9 +152,9 @@ std::string pictures_text(const std::vector<TitledPicture>& pictures) {
 std::string head_text(const PixelInspection& inspection, const std::string& trace) {
   const PixelHistory& history = inspection.history;
   std::string text =
-      wrapped("pixel " + std::to_string(history.at.x) + "," + std::to_string(history.at.y) + " of " + trace +
-                  ", frame " + std::to_string(inspection.frame) + ", with " + inspection.technique,
-              2);
+      put_line("pixel " + std::to_string(history.at.x) + "," + std::to_string(history.at.y) + " of " + trace +
+                   ", frame " + std::to_string(inspection.frame) + ", with " + inspection.technique,
+               2);
   text += format("%zu triangles touch it, in this order: %s. It has %zu %s.\n\n", history.fragments.size(),
                  history.order.c_str(), history.positions.size(), unit_of(history).c_str());
   const glm::dvec3 color(history.pixel), truth(inspection.reference), error = color - truth;
@@ -176,7 +166,7 @@ std::string head_text(const PixelInspection& inspection, const std::string& trac
     text += format("  visibility  root mean square %.5f if each triangle had one colour in the pixel\n",
                    *inspection.visibility_error);
   if (const std::string causes = cause_shares_text(inspection); !causes.empty())
-    text += wrapped("  causes      " + causes, 14);
+    text += put_line("  causes      " + causes, 14);
   return text + "\n";
 }
 
@@ -214,12 +204,12 @@ std::string fragments_text(const PixelInspection& inspection) {
                    std::count(each.mask.begin(), each.mask.end(), true),
                    has_owners ? std::to_string(owned[i]).c_str() : "");
     text += fate_text(each.fate) + (each.is_front ? "\n" : ", back face\n");
-    if (const std::string moves = moves_text(each, history); !moves.empty()) text += wrapped("         " + moves, 11);
+    if (const std::string moves = moves_text(each, history); !moves.empty()) text += put_line("         " + moves, 11);
   }
   if (!left_out.empty()) {
     std::string list;
     for (const auto& [fate, count] : left_out) list += (list.empty() ? "" : ", ") + std::to_string(count) + " " + fate;
-    text += wrapped("  " + std::to_string(others) + " others changed nothing and are in --json: " + list + ".", 2);
+    text += put_line("  " + std::to_string(others) + " others changed nothing and are in --json: " + list + ".", 2);
   }
   return text + "\n";
 }
@@ -252,7 +242,7 @@ std::string masks_text(const PixelInspection& inspection, bool unicode) {
 std::string steps_text(const PixelHistory& history) {
   if (history.steps.empty()) return "";
   std::string text = "Steps\n";
-  for (const HistoryStep& step : history.steps) text += wrapped("  " + step_text(step, history), 6);
+  for (const HistoryStep& step : history.steps) text += put_line("  " + step_text(step, history), 6);
   return text + "\n";
 }
 

@@ -82,7 +82,10 @@ std::string tics(const LogRange& range) {
 }
 
 void write_labels(std::ostream& script, const ScatterPlot& plot, const LogRange& x, const LogRange& y) {
-  LabelTask task{kWidth * (kRight - kLeft), kHeight * (kTop - kBottom), kLabelHeight, kPointRadius, {}, {}, {}};
+  LabelTask task{.width = kWidth * (kRight - kLeft),
+                 .height = kHeight * (kTop - kBottom),
+                 .label_height = kLabelHeight,
+                 .point_radius = kPointRadius};
   std::vector<std::string> labels;
   const auto pixel_of = [&](const PlotPoint& point) {
     return PixelPoint{x.place(point.x) * task.width, y.place(point.y) * task.height};

@@ -15,9 +15,9 @@ struct LabelTask {
   double width = 0, height = 0;
   double label_height = 0;
   double point_radius = 0;
-  std::vector<std::pair<PixelPoint, PixelPoint>> lines;
-  std::vector<PixelPoint> points;    // all points, with a label or without
-  std::vector<double> label_widths;  // one per point; 0 for a point without a label
+  std::vector<std::pair<PixelPoint, PixelPoint>> lines = {};
+  std::vector<PixelPoint> points = {};    // all points, with a label or without
+  std::vector<double> label_widths = {};  // one per point; 0 for a point without a label
 };
 
 // The centres of the labels, one per point. Labels are placed one after the other. Each goes next to its point if there

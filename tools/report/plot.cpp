@@ -94,12 +94,11 @@ void make_line(PlotSeries& series) {
 }  // namespace
 
 ScatterPlot frontier_plot(const std::vector<ReportFile>& reports) {
-  ScatterPlot plot{"frontier",
-                   "Memory and accuracy: " + scenes_text(reports),
-                   "memory with the A-buffer, bytes per pixel",
-                   kEmrLabel,
-                   {msaa_line()},
-                   {}};
+  ScatterPlot plot{.name = "frontier",
+                   .title = "Memory and accuracy: " + scenes_text(reports),
+                   .x_label = "memory with the A-buffer, bytes per pixel",
+                   .y_label = kEmrLabel,
+                   .series = {msaa_line()}};
   for (const LadderRung& rung : longest_ladder(reports)) {
     const std::string spec = "msaa:" + std::to_string(rung.samples);
     const double bytes = parse_technique(spec).framebuffer_bytes_per_pixel();
@@ -119,12 +118,11 @@ ScatterPlot frontier_plot(const std::vector<ReportFile>& reports) {
 }
 
 ScatterPlot storage_plot(const std::vector<ReportFile>& reports) {
-  ScatterPlot plot{"storage",
-                   "All memory and accuracy: " + scenes_text(reports),
-                   "memory on chip and off chip, with the A-buffer, bytes per pixel",
-                   kEmrLabel,
-                   {msaa_line()},
-                   {}};
+  ScatterPlot plot{.name = "storage",
+                   .title = "All memory and accuracy: " + scenes_text(reports),
+                   .x_label = "memory on chip and off chip, with the A-buffer, bytes per pixel",
+                   .y_label = kEmrLabel,
+                   .series = {msaa_line()}};
   for (const TechniqueSummary& summary : mean_summaries(reports)) {
     if (!summary.emr) continue;
     const std::string series = family_of(summary.spec) == kMsaa ? kMsaa : split_slots(summary.spec).first;
@@ -139,13 +137,12 @@ ScatterPlot storage_plot(const std::vector<ReportFile>& reports) {
 
 ScatterPlot speed_plot(const std::vector<ReportFile>& reports, const std::string& implementation) {
   const bool modelled = !implementation.empty();
-  ScatterPlot plot{modelled ? "speed_" + implementation : "speed",
-                   "Time and error: " + scenes_text(reports),
-                   modelled ? "modelled time (" + implementation + ", stages overlap), ms per frame"
-                            : "wall time of the simulator, ms per frame",
-                   "RMSE, linear light (lower is better)",
-                   {msaa_line()},
-                   {}};
+  ScatterPlot plot{.name = modelled ? "speed_" + implementation : "speed",
+                   .title = "Time and error: " + scenes_text(reports),
+                   .x_label = modelled ? "modelled time (" + implementation + ", stages overlap), ms per frame"
+                                       : "wall time of the simulator, ms per frame",
+                   .y_label = "RMSE, linear light (lower is better)",
+                   .series = {msaa_line()}};
   bool compared = false;
   for (const TechniqueSummary& summary : mean_summaries(reports)) {
     if (!summary.rmse || (modelled && !summary.modelled_ms.contains(implementation))) continue;

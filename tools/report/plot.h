@@ -27,8 +27,8 @@ struct PlotSeries {
 struct ScatterPlot {
   std::string name;  // for files: "frontier"
   std::string title, x_label, y_label;
-  std::vector<PlotSeries> series;
-  std::vector<std::string> notes;  // what could not be drawn, one line for each
+  std::vector<PlotSeries> series = {};
+  std::vector<std::string> notes = {};  // what could not be drawn, one line for each
 };
 
 // Bars of stacked parts, one bar per category. Negative values are stacked on the other side of zero.

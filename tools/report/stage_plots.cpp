@@ -122,13 +122,11 @@ std::optional<BarPlot> causes_plot(const ReportFile& report) {
 
 ScatterPlot roofline_plot(const ReportFile& report, const std::string& technique) {
   const std::optional<Roof> roof = roof_of(report);
-  ScatterPlot plot{
-      "roofline_" + spec_folder(technique),
-      "Operations and bytes of each stage: " + technique + ", " + report.scene,
-      roof ? "operations per DRAM byte" : "operations per logical byte",
-      roof ? "operations per second (" + roof->implementation + "), billions" : "operations, millions per frame",
-      {},
-      {}};
+  ScatterPlot plot{.name = "roofline_" + spec_folder(technique),
+                   .title = "Operations and bytes of each stage: " + technique + ", " + report.scene,
+                   .x_label = roof ? "operations per DRAM byte" : "operations per logical byte",
+                   .y_label = roof ? "operations per second (" + roof->implementation + "), billions"
+                                   : "operations, millions per frame"};
   std::string left_out;
   for (const Json& stage : stage_records(report)) {
     if (stage.at("technique") != technique) continue;

@@ -5,6 +5,7 @@
 
 #include "pipeline/technique.h"
 #include "tools/evaluate/saved_work.h"
+#include "tools/files/csv.h"
 
 namespace beampipe {
 namespace {
@@ -319,16 +320,6 @@ std::vector<Source> saved_columns() {
   for (const SavedWork& saved : all)
     columns.push_back({{saved.name, saved.title, saved.unit, sentence(saved.meaning)}, std::string("/") + saved.name});
   return columns;
-}
-
-std::string csv_field(const Json& value) {
-  if (value.is_null()) return "";
-  if (!value.is_string()) return value.dump();
-  const std::string text = value.get<std::string>();
-  if (text.find_first_of("\",\r\n") == text.npos) return text;
-  std::string quoted = "\"";
-  for (const char c : text) quoted += c == '"' ? "\"\"" : std::string(1, c);
-  return quoted.append("\"");
 }
 
 }  // namespace

@@ -3,7 +3,7 @@
 
 #include <array>
 #include <glm/glm.hpp>
-#include <map>
+#include <initializer_list>
 #include <string>
 #include <vector>
 
@@ -11,6 +11,8 @@
 #include "traces/trace.h"
 
 namespace beampipe {
+
+inline constexpr double kUnorm8Error = 0.5 / 255;  // of a sum that is rounded to 8 bits
 
 // Colours whose sums are exact in fp16 if there are few terms, so that an error is not due to the format.
 inline constexpr glm::vec3 kRed{0.75f, 0.25f, 0.125f}, kGreen{0.125f, 0.75f, 0.25f}, kBlue{0.25f, 0.125f, 0.75f};
@@ -87,7 +89,17 @@ inline constexpr const char* kMask = "areas of partly hidden triangles are estim
 inline constexpr const char* kSlopes = "layers store slopes in 8 bits, which moves intersections by a few positions";
 
 // The limits of techniques that treat a mask without a gap as full coverage, if so many edges cut a pixel.
-std::map<std::string, StatedLimit> full_masks(int edges = 1);
+StatedLimits full_masks(int edges = 1);
+
+// The limits of techniques that estimate or count areas by mask positions; with fewer than 256 positions, counts are
+// worse by as much.
+StatedLimits mask_limits(double error, const char* reason = kMask);
+
+// The limits of techniques that merge fragments, by the published rules and by OVER.
+StatedLimits merge_limits(double published, double over);
+
+// All of them; of two limits for one source, the later one.
+StatedLimits together(std::initializer_list<StatedLimits> several);
 
 // A perspective camera at the origin that looks along -z: x and y are in units of the distance. The triangles are red,
 // green and blue in turn.

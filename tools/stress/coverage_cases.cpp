@@ -66,7 +66,7 @@ HardCase edge_on() {
           "triangles seen almost edge-on, with depth slopes of 250 per pixel, that cut through others",
           screen.trace(),
           {},
-          {{"beam", {0.02, kMask}}, {"casav", {0.03, kCasav}}, {"alpha", {0.01, kOver}}}};
+          together({mask_limits(0.02), merge_limits(0.03, 0.01)})};
 }
 
 // A fan of triangles from a hub to `rim` points on a square around it.
@@ -93,7 +93,7 @@ HardCase shared_edges() {
   HardCase result{"shared_edges", "edges at 4,096 angles, each shared by two triangles", {}, {}, {}};
   result.trace = fan(16, {8.3, 7.6}, 3000, 4096);
   result.picture = ExactPicture{.elsewhere = glm::dvec4(glm::dvec3(kRed), 1.0)};
-  result.limits = {{"alpha", {0.75, kOver}}, {"casav", {0.45, kCasav}}};
+  result.limits = merge_limits(0.45, 0.75);
   return result;
 }
 
@@ -101,7 +101,7 @@ HardCase fan_10000() {
   HardCase result{"fan", "10,000 triangles around one vertex", {}, {}, {}};
   result.trace = fan(4, {2.0, 2.0}, 30000, 10000);
   result.picture = ExactPicture{.elsewhere = glm::dvec4(glm::dvec3(kRed), 1.0)};
-  result.limits = {{"alpha", {0.75, kOver}}, {"casav", {0.45, kCasav}}};
+  result.limits = merge_limits(0.45, 0.75);
   return result;
 }
 
@@ -114,7 +114,7 @@ HardCase tiled_pixel() {
   result.trace = screen.trace();
   // Adding shares of 0.75 / 16,384 stops at 0.125: above it, half a unit in the last place of fp16 is 2^-14. This loses
   // 0.625 of the red.
-  result.limits = {{"alpha", {0.75, kOver}}, {"casav", {0.626, kStored}}, {"casav:storage=float32", {0.45, kCasav}}};
+  result.limits = together({merge_limits(0.45, 0.75), {{ErrorSource::merges_in_fp16, {0.626, kStored}}}});
   return result;
 }
 
@@ -126,11 +126,9 @@ HardCase fp16_sums() {
   HardCase result{"fp16_sums", "512 shares of a colour that fp16 cannot represent", {}, {}, {}};
   result.picture = ExactPicture{.elsewhere = glm::dvec4(glm::dvec3(color), 1.0)};
   result.trace = screen.trace();
-  result.limits = {{"alpha", {0.5, kOver}},
-                   {"casav", {0.45, kCasav}},
-                   {"acaa", {0.05, "each of 256 sums is rounded to fp16, by at most 2^-12"}},
-                   {"acaa:8,color=unorm8", {9 * 0.5 / 255, "each of 9 sums is rounded to 8 bits, by at most 2^-9"}},
-                   {"acaa:8,color=fp32", {0x1p-11, "sums are rounded to fp32"}}};
+  result.limits =
+      together({merge_limits(0.45, 0.5),
+                {{ErrorSource::sums_in_fp16, {0.05, "each of 256 sums is rounded to fp16, by at most 2^-12"}}}});
   return result;
 }
 

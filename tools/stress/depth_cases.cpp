@@ -21,7 +21,8 @@ Trace perspective(double near, double far, const std::vector<std::array<glm::vec
   Frame& frame = trace.frames.emplace_back();
   frame.width = frame.height = 16;
   frame.background = kBackground;
-  set_camera(frame, {{0, 0, 0}, {0, 0, -1}, {0, 1, 0}, 90, near, far});
+  set_camera(frame,
+             {.eye = {0, 0, 0}, .target = {0, 0, -1}, .up = {0, 1, 0}, .fovy_deg = 90, .near = near, .far = far});
   frame.draws.emplace_back();
   return trace;
 }
@@ -36,11 +37,7 @@ HardCase near_plane() {
                        {{{-3.0f, 1.0f, -4.0f}, {3.0f, 1.0f, -4.0f}, {0.0f, 1.0f, 0.0f}}},
                        {{{-1.0f, -1.0f, 1.0f}, {1.0f, -1.0f, 1.0f}, {0.0f, -0.2f, -0.3f}}}}),
           {},
-          {
-              {"beam", {0.02, kMask}},
-              {"casav", {0.15, kCasav}},
-              {"alpha", {0.3, kOver}},
-          }};
+          together({mask_limits(0.02), merge_limits(0.15, 0.3)})};
 }
 
 // Triangles with vertices `far` million pixels outside the picture.
@@ -48,7 +45,7 @@ HardCase guard_band(double far, const std::string& name, const std::string& what
   Screen screen(16, 16);
   screen.triangle({-3e6 * far, 2e6 * far}, {4e6 * far, -1e6 * far}, {1e6 * far, 5e6 * far}, 0.5, kRed);
   screen.triangle({-8e6 * far, 8.3}, {8e6 * far, -4.2}, {9e6 * far, -7e6 * far}, 0.25, kGreen);
-  return {name, what, screen.trace(), {}, {{"alpha", {0.3, kOver}}, {"casav", {0.1, kCasav}}, {"beam", {0.01, kMask}}}};
+  return {name, what, screen.trace(), {}, together({mask_limits(0.01), merge_limits(0.1, 0.3)})};
 }
 
 HardCase wide_coordinates() {
@@ -73,7 +70,7 @@ HardCase depth_range() {
           "near to far as 1 : 10^7, and surfaces 10^-6 apart at the far end, of which the nearer one is drawn last",
           perspective(0.001, 10000, {kFartherOne, kNearerOne}),
           {},
-          {{"beam", {0.03, kMask}}, {"casav", {0.15, kCasav}}, {"alpha", {0.3, kOver}}}};
+          together({mask_limits(0.03), merge_limits(0.15, 0.3)})};
 }
 
 HardCase depth_range_turned() {
@@ -84,9 +81,10 @@ HardCase depth_range_turned() {
       "the same with clip space's z negated: depth is coarsest far away, and the farther surface is in front",
       std::move(trace),
       {},
-      {{"alpha", {0.7, kOver}}, {"casav", {0.7, kCasav}}}};
-  for (const char* name : {"beam", "z3", "msaa", "acaa:8,double=stencil", "dvm"}) result.limits[name] = {0.7, kDepth};
-  result.limits["acaa"] = {2.0, kTwice};
+      together({mask_limits(0.7, kDepth), merge_limits(0.7, 0.7)})};
+  for (const ErrorSource source : {ErrorSource::merges_of_layers, ErrorSource::sampled_depth})
+    result.limits[source] = {0.7, kDepth};
+  result.limits[ErrorSource::double_counting] = {2.0, kTwice};
   return result;
 }
 
@@ -99,12 +97,10 @@ HardCase coincident() {
           "three equal triangles, of which the first is visible",
           screen.trace(),
           {},
-          {{"acaa", {2.0, kTwice}},
-           {"acaa:8,double=stencil", {0x1p-11, "fp16"}},
-           {"alpha", {0.6, kOver}},
-           {"casav", {0.4, kCasav}},
-           {"casav:storage=text", {twice_halved + 0x1p-11, kText}},
-           {"beam", {0.25, kMask}}}};
+          together({mask_limits(0.25),
+                    merge_limits(0.4, 0.6),
+                    {{ErrorSource::double_counting, {2.0, kTwice}},
+                     {ErrorSource::merges_of_half_slopes, {twice_halved + kFp16Error, kText}}}})};
 }
 
 HardCase coplanar() {
@@ -115,13 +111,9 @@ HardCase coplanar() {
           "two triangles in one plane with different vertices; after snapping their planes are 10^-6 apart",
           screen.trace(),
           {},
-          {{"msaa", {1.0, kDepth}},
-           {"acaa", {2.0, kDepth}},
-           {"acaa:8,double=stencil", {1.0, kDepth}},
-           {"dvm", {1.0, kDepth}},
-           {"alpha", {0.7, kOver}},
-           {"casav", {0.7, kCasav}},
-           {"beam", {0.25, kMask}}}};
+          together({mask_limits(0.25),
+                    merge_limits(0.7, 0.7),
+                    {{ErrorSource::sampled_depth, {1.0, kDepth}}, {ErrorSource::double_counting, {2.0, kDepth}}}})};
 }
 
 HardCase grazing() {
@@ -129,22 +121,16 @@ HardCase grazing() {
   screen.triangle({0, 0, 0.5}, {16, 0, 0.5}, {8, 16, 0.5}, kRed);
   screen.triangle({0, 1, 0.49999}, {16, 2, 0.50001}, {7, 15, 0.500005}, kGreen);
   screen.triangle({0, 12, 0.3}, {16, 3, 0.7}, {15, 16, 0.6}, kBlue);
-  HardCase result{"grazing",
-                  "triangles that intersect at slopes of 10^-6 per pixel",
-                  screen.trace(),
-                  {},
-                  {{"beam", {0.25, kMask}},
-                   {"casav", {0.5, kCasav}},
-                   {"msaa", {0.1, kDepth}},
-                   {"acaa", {0.1, kDepth}},
-                   {"z3", {3.0 / 32, kSlopes}},
-                   {"alpha", {0.5, kOver}}}};
   // A sample that shows the wrong triangle contributes its share of the largest colour difference.
-  for (const int samples : {1, 2, 4})
-    for (const char* name : {"msaa:", "acaa:"})
-      result.limits[name + std::to_string(samples)] = {0.75 / samples, kDepth};
-  for (const char* name : {"taa", "deferred", "visibility"}) result.limits[name] = {0.75, kDepth};
-  return result;
+  const auto wrong_samples = [](int samples) { return samples <= 4 ? 0.75 / samples : 0.1; };
+  return {"grazing",
+          "triangles that intersect at slopes of 10^-6 per pixel",
+          screen.trace(),
+          {},
+          together({mask_limits(0.25),
+                    merge_limits(0.5, 0.5),
+                    {{ErrorSource::sampled_depth, {wrong_samples, kDepth}},
+                     {ErrorSource::merges_of_layers, {3.0 / 32, kSlopes}}}})};
 }
 
 }  // namespace

@@ -36,7 +36,7 @@ HardCase one_pixel() {
           "a viewport of 1 x 1",
           screen.trace(),
           {},
-          {{"dvm", {0.3, "its 2x2 quad extends beyond the frame"}}}};
+          {{ErrorSource::quads_over_the_border, {0.3, "its 2x2 quad extends beyond the frame"}}}};
 }
 
 HardCase widest(std::uint32_t width, std::uint32_t height, const std::string& name, int edges_in_a_pixel) {

@@ -3,11 +3,34 @@
 #include "tools/stress/case_parts.h"
 
 namespace beampipe {
+namespace {
 
-std::map<std::string, StatedLimit> full_masks(int edges) {
-  return {{"beam", {edges * largest_cut(256), kFull}},
-          {"casav", {edges * largest_cut(256), kFull}},
-          {"beam:order=sorted,bits=32", {edges * largest_cut(32), kFull}}};
+StatedLimit per_position(double error, const char* reason) {
+  return {[error](int positions) { return error * 256 / positions; }, reason};
+}
+
+}  // namespace
+
+StatedLimits full_masks(int edges) {
+  return {{ErrorSource::estimated_areas, {[edges](int positions) { return edges * largest_cut(positions); }, kFull}},
+          {ErrorSource::counted_positions, per_position(edges * largest_cut(256), kFull)},
+          {ErrorSource::published_merges, {edges * largest_cut(256), kFull}}};
+}
+
+StatedLimits mask_limits(double error, const char* reason) {
+  return {{ErrorSource::estimated_areas, {error, reason}},
+          {ErrorSource::counted_positions, per_position(error, reason)}};
+}
+
+StatedLimits merge_limits(double published, double over) {
+  return {{ErrorSource::published_merges, {published, kCasav}}, {ErrorSource::independent_fragments, {over, kOver}}};
+}
+
+StatedLimits together(std::initializer_list<StatedLimits> several) {
+  StatedLimits all;
+  for (const StatedLimits& limits : several)
+    for (const auto& [source, limit] : limits) all[source] = limit;
+  return all;
 }
 
 double largest_cut(int positions) {
@@ -27,7 +50,8 @@ std::vector<HardCase> hard_cases(bool with_heavy) {
        {coverage_cases(), depth_cases(), frame_cases(), owner_cases(), state_cases(), surface_cases()})
     cases.insert(cases.end(), some.begin(), some.end());
   for (HardCase& hard_case : cases)
-    hard_case.limits["dvm:material=draw"] = {0.75, "triangles of a draw share the colours of a quad's four samples"};
+    hard_case.limits[ErrorSource::shared_shading_samples] = {0.75,
+                                                             "triangles share the colours of a quad's four samples"};
   if (with_heavy)
     for (HardCase& heavy : heavy_cases()) cases.push_back(std::move(heavy));
   return cases;

@@ -8,6 +8,7 @@
 #include <string>
 #include <vector>
 
+#include "pipeline/technique.h"
 #include "tools/stress/exact.h"
 #include "traces/trace.h"
 
@@ -15,10 +16,15 @@ namespace beampipe {
 
 // The largest error that a technique may have in a case, and the known reason for it.
 struct StatedLimit {
-  double error;
+  std::function<double(int places)> error;  // places: sample positions of the technique in a pixel, or mask positions
   std::string reason;
-  int positions = 256;  // that it is for, where a technique counts mask positions; it grows as these become fewer
+
+  StatedLimit() = default;
+  StatedLimit(double of_any, std::string why) : error([of_any](int) { return of_any; }), reason(std::move(why)) {}
+  StatedLimit(std::function<double(int places)> by_places, std::string why)
+      : error(std::move(by_places)), reason(std::move(why)) {}
 };
+using StatedLimits = std::map<ErrorSource, StatedLimit>;
 
 // What surfaces may look like: every colour of theirs is finite and between these. The rest of a pixel shows the
 // background.
@@ -32,9 +38,9 @@ struct HardCase {
   Trace trace;       // one frame
   // The exact picture, if it follows from how the trace was made. Otherwise tools/stress/exact.h computes it.
   std::optional<ExactPicture> picture;
-  // By spec, or by the start of specs up to a ":" or ","; the longest one that fits counts, or else one that fits
-  // Technique::errs_like. All other techniques must be correct to the last bit of their formats.
-  std::map<std::string, StatedLimit> limits;
+  // The largest of those that a technique errs by counts. Where there is none, it must be correct to the last bit of
+  // its formats.
+  StatedLimits limits;
   // Of surfaces that vary, for which there is no exact picture: either which colours it may hold where exact arithmetic
   // says that triangles cover a pixel, or a trace whose picture must be the same to the last bit.
   std::optional<ColorBounds> between = {};

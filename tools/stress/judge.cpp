@@ -2,43 +2,20 @@
 
 #include <algorithm>
 #include <cmath>
-#include <cstdlib>
 #include <limits>
 
 namespace beampipe {
 namespace {
 
-double format_limit(const std::string& spec) {
-  if (spec == "reference") return kReferenceError;
-  // At most one share per sample, and the background.
-  if (spec.find("color=unorm8") != spec.npos) return (std::atoi(spec.c_str() + spec.find(':') + 1) + 1) * kUnorm8Error;
-  return kFormatError;
+// Sample or mask positions.
+int places_in(const Technique& technique) {
+  return technique.sampled_at.empty() ? technique.positions : static_cast<int>(technique.sampled_at.size());
 }
 
-// The limit for the spec. If there is none, the last option is dropped, then the one before it, and so on.
-const StatedLimit* stated_limit(const HardCase& hard_case, std::string spec) {
-  while (true) {
-    const auto stated = hard_case.limits.find(spec);
-    if (stated != hard_case.limits.end()) return &stated->second;
-    const std::size_t end = spec.find_last_of(":,");
-    if (end == spec.npos) return nullptr;
-    spec.resize(end);
-  }
-}
-
-const StatedLimit* stated_limit(const HardCase& hard_case, const Technique& technique) {
-  const StatedLimit* const stated = stated_limit(hard_case, technique.spec);
-  return stated || technique.errs_like.empty() ? stated : stated_limit(hard_case, technique.errs_like);
-}
-
-// A result is within three positions of what counting them gives, and counting is wrong by one more at an edge.
-StatedLimit counted_limit(const StatedLimit* stated, int positions) {
-  constexpr double kPositions = 4;
-  StatedLimit limit{kPositions / positions, "areas and colours are limited to what mask positions say"};
-  if (!stated) return limit;
-  const double error = stated->error * stated->positions / positions;
-  if (limit.error < error) limit = {error, stated->reason};
-  return limit;
+std::vector<ErrorSource> sources_of(const Technique& technique) {
+  std::vector<ErrorSource> sources = technique.errs_by;
+  if (technique.counted_positions > 0) sources.push_back(ErrorSource::counted_positions);
+  return sources;
 }
 
 // The largest error(x, y, channel, value) over the picture; NaN if one is NaN.
@@ -102,14 +79,16 @@ double Judge::largest_error(const Technique& technique, const FrameInput& option
 Verdict Judge::judge(const Technique& technique, const FrameInput& options) {
   Verdict verdict;
   verdict.error = largest_error(technique, options);
-  const StatedLimit* const stated = stated_limit(case_, technique);
-  if (!case_.equals) verdict.limit = format_limit(technique.spec);
-  if (!case_.equals && technique.counted_positions > 0) {
-    const StatedLimit limit = counted_limit(stated, technique.counted_positions);
-    verdict.limit = limit.error, verdict.reason = limit.reason;
-  } else if (stated) {
-    verdict.limit = stated->error, verdict.reason = stated->reason;
-  }
+  verdict.limit = case_.equals ? 0 : technique.rounding_error;
+  const auto allow = [&](double error, const std::string& reason) {
+    if (error > verdict.limit) verdict.limit = error, verdict.reason = reason;
+  };
+  // A result is within three positions of what counting them gives, and counting is wrong by one more at an edge.
+  if (!case_.equals && technique.counted_positions > 0)
+    allow(4.0 / technique.counted_positions, "areas and colours are limited to what mask positions say");
+  for (const ErrorSource source : sources_of(technique))
+    if (const auto stated = case_.limits.find(source); stated != case_.limits.end())
+      allow(stated->second.error(places_in(technique)), stated->second.reason);
   return verdict;
 }
 

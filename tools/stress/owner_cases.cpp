@@ -6,7 +6,6 @@
 #include "pipeline/sampling.h"
 #include "stages/data/mix_bits.h"
 #include "tools/stress/case_parts.h"
-#include "tools/stress/judge.h"
 
 namespace beampipe {
 namespace {
@@ -47,16 +46,12 @@ Counts count_alone(const Trace& trace, int positions) {
   return worst;
 }
 
-// With open pixels, a result is within three positions of what counting gives.
-void limit_open_pixels(const Trace& trace, double more, const char* reason,
-                       std::map<std::string, StatedLimit>& limits) {
-  const auto limit = [&](int positions) {
-    return StatedLimit{count_alone(trace, positions).error + 3.0 / positions + more, reason, positions};
+// Where positions are counted, a result is within three of them of what counting gives.
+StatedLimit limit_of_counts(const Trace& trace, double more, const char* reason) {
+  const auto limit = [trace, more](int positions) {
+    return count_alone(trace, positions).error + 3.0 / positions + more;
   };
-  limits["beam"] = limit(256);
-  limits["beam:order=stream"] = limit(128);
-  limits["beam:bits=64"] = limit(64);
-  limits["beam:bits=32"] = limit(32);
+  return {limit, reason};
 }
 
 // Columns of one pixel's width and kRows pixels' height, with upright strips side by side. All strips of a column are
@@ -85,34 +80,24 @@ Screen strips() {
   return screen;
 }
 
-void add(const std::map<std::string, StatedLimit>& more, std::map<std::string, StatedLimit>& limits) {
-  for (const auto& [spec, limit] : more) limits[spec] = limit;
-}
-
 // Where positions alone tell how much of a surface is hidden. Measured: up to four positions.
-std::map<std::string, StatedLimit> estimated(const char* reason) {
-  const auto limit = [&](int positions) { return StatedLimit{5.0 / positions, reason}; };
-  return {{"beam:order=sorted", limit(256)}, {"beam:order=sorted,bits=32", limit(32)}};
+StatedLimits estimated() {
+  return {{ErrorSource::estimated_areas, {[](int positions) { return 5.0 / positions; }, kMask}}};
 }
 
-void add_limits_of_strips(const Trace& trace, std::map<std::string, StatedLimit>& limits) {
+StatedLimits limits_of_strips(const Trace& trace) {
   // The strips leave gaps, which are wider the lower they are. A mask may have none, and then strips that cover no
   // position have no room.
-  const auto full = [&](int positions) {
-    return StatedLimit{(kRows + 1) / kTip + count_alone(trace, positions).unseen, kFull};
-  };
-  limits["beam:order=sorted"] = full(256);
-  limits["beam:order=sorted,bits=32"] = full(32);
-  limits["alpha"] = {kLostByOver, kOver};
-  limits["casav"] = {0.45, kCasav};
+  const auto full = [trace](int positions) { return (kRows + 1) / kTip + count_alone(trace, positions).unseen; };
+  return together({{{ErrorSource::estimated_areas, {full, kFull}}}, merge_limits(0.45, kLostByOver)});
 }
 
 HardCase full_lists() {
   HardCase result{
       "full_lists", "5, 6, 8 and 32 strips in a pixel, all visible, none final before the last", {}, {}, {}};
   result.trace = strips().trace();
-  limit_open_pixels(result.trace, 0, kCounted, result.limits);
-  add_limits_of_strips(result.trace, result.limits);
+  result.limits = limits_of_strips(result.trace);
+  result.limits[ErrorSource::counted_positions] = limit_of_counts(result.trace, 0, kCounted);
   return result;
 }
 
@@ -122,22 +107,18 @@ HardCase full_lists_hidden() {
   for (int column = 0; column < static_cast<int>(std::size(kStrips)); ++column)
     screen.triangle({column + 0.5, 1}, {column + 1, 1}, {column + 0.75, kTip}, 0.2001, kBlue);
   result.trace = screen.trace();
+  result.limits = together({limits_of_strips(result.trace), estimated()});
   // A surface made of several shows their mean colour. If the part V of it is seen and the part H is hidden, the colour
   // is wrong by at most V H / (V + H) of the difference, which is largest if both are half of the pixel.
-  limit_open_pixels(result.trace, kColorGap / 4, kMerged, result.limits);
-  add_limits_of_strips(result.trace, result.limits);
-  add(estimated(kMask), result.limits);
-  result.limits["z3"] = {kColorGap / 4, kMerged};
+  result.limits[ErrorSource::counted_positions] = limit_of_counts(result.trace, kColorGap / 4, kMerged);
+  result.limits[ErrorSource::merges_of_layers] = {kColorGap / 4, kMerged};
   return result;
 }
 
 // `count`: the triangles that may be at equal depth.
-std::map<std::string, StatedLimit> limits_of_stack(int count) {
-  std::map<std::string, StatedLimit> limits = estimated(kMask);
-  limits["alpha"] = {0.75, kOver};
-  limits["casav"] = {0.45, kCasav};
-  if (count > 1) limits["acaa"] = {0.75 * count, kTwice};
-  if (count > 1) limits["acaa:8,double=stencil"] = {kFormatError, "fp16"};
+StatedLimits limits_of_stack(int count) {
+  StatedLimits limits = together({estimated(), merge_limits(0.45, 0.75)});
+  if (count > 1) limits[ErrorSource::double_counting] = {0.75 * count, kTwice};
   return limits;
 }
 
@@ -195,7 +176,7 @@ HardCase crowded_bin() {
       screen.triangle(at(x, y), at(x + 1, y + 1), at(x, y + 1), kRed);
     }
   HardCase result{"crowded_bin", "131,072 triangles in one bin, which cover it without a gap", {}, {}, {}};
-  result.limits = {{"alpha", {kLostByOver, kOver}}, {"casav", {0.45, kCasav}}};
+  result.limits = merge_limits(0.45, kLostByOver);
   result.picture = ExactPicture{.elsewhere = glm::dvec4(glm::dvec3(kRed), 1.0)};
   result.trace = screen.trace();
   return result;

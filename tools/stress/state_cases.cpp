@@ -36,8 +36,9 @@ bool is_in(int x, int y, const glm::ivec4& box) { return x >= box.x && y >= box.
 
 // Where clipping cuts a triangle into several, they meet in an edge inside of a pixel.
 HardCase with_pieces(HardCase result) {
-  result.limits["alpha"] = {0.25, "two pieces of a triangle share a pixel, which OVER takes for independent"};
-  result.limits["casav"] = {0.25, kCasav};
+  result.limits[ErrorSource::independent_fragments] = {
+      0.25, "two pieces of a triangle share a pixel, which OVER takes for independent"};
+  result.limits[ErrorSource::published_merges] = {0.25, kCasav};
   return result;
 }
 
@@ -127,8 +128,8 @@ HardCase depth_bias() {
   HardCase result =
       with_pieces(of("depth_bias", "equal planes that constant and slope biases put behind or in front", screen,
                      picture_of([](int x, int) { return Color(x < 4 || x >= 12 ? kRed : kGreen); })));
-  result.limits["alpha"] = {0.75,
-                            "fragments have one depth each, and pieces of one plane differ by more than the bias"};
+  result.limits[ErrorSource::independent_fragments] = {
+      0.75, "fragments have one depth each, and pieces of one plane differ by more than the bias"};
   return result;
 }
 
@@ -150,8 +151,7 @@ HardCase depth_functions() {
                                    screen, picture_of([](int x, int) {
                                      return Color(x < 4 ? kRed : x < 8 ? kGreen : x < 12 ? kBlue : kRed);
                                    })));
-  result.limits["acaa"] = {3 * 0.75, kTwice};
-  result.limits["acaa:8,double=stencil"] = {0x1p-11, "fp16"};
+  result.limits[ErrorSource::double_counting] = {3 * 0.75, kTwice};
   return result;
 }
 

@@ -4,7 +4,6 @@
 #include <limits>
 
 #include "tools/stress/case_parts.h"
-#include "tools/stress/judge.h"
 
 namespace beampipe {
 namespace {
@@ -59,8 +58,8 @@ Trace with_texture(Trace trace, TextureImage image, Texture texture, Uv&& uv) {
 HardCase within_noise(const std::string& name, const std::string& what, Trace trace) {
   HardCase result{name, what, std::move(trace), {}, full_masks()};
   result.between = bounds_of_noise();
-  result.limits["casav"] = {0.04, kOver};
-  result.limits["alpha"] = {0.25, kOver};
+  result.limits[ErrorSource::published_merges] = {0.04, kOver};
+  result.limits[ErrorSource::independent_fragments] = {0.25, kOver};
   return result;
 }
 
@@ -158,7 +157,7 @@ HardCase with_opacity(float alpha, const std::string& name, const std::string& w
   HardCase result = equal(name, what, front_with(front_material(AlphaMode::blend, alpha)),
                           front_with(is_there ? std::optional(front_material(AlphaMode::opaque, 1)) : std::nullopt));
   // Two roundings where the triangle is opaque and counts as a share, and one below it where it is translucent.
-  if (is_there) result.limits["acaa:8,color=unorm8"] = {3 * kUnorm8Error, "sums are rounded to 8 bits"};
+  if (is_there) result.limits[ErrorSource::sums_in_unorm8] = {3 * kUnorm8Error, "sums are rounded to 8 bits"};
   return result;
 }
 
@@ -169,8 +168,8 @@ HardCase cutoff(float alpha, float least, const std::string& name, const std::st
   HardCase result = equal(name, what, front_with(material),
                           front_with(is_there ? std::optional(front_material(AlphaMode::opaque, 1)) : std::nullopt));
   if (is_there)
-    for (const char* technique : {"deferred", "visibility", "taa", "dvm"})
-      result.limits[technique] = {kHalfCode, "a G-buffer keeps the colours of cutouts in 8 bits as sRGB"};
+    result.limits[ErrorSource::gbuffer_of_8_bits] = {kHalfCode,
+                                                     "a G-buffer keeps the colours of cutouts in 8 bits as sRGB"};
   return result;
 }
 
@@ -213,11 +212,14 @@ HardCase layers() {
     material.base_color = glm::vec4(color_of_layer(i), 0.5f);
   }
   for (std::uint32_t i = 0; i < kLayers; ++i) result.trace.meshes[0].materials.push_back(i % 2);
+  // Measured: with 32 positions up to 0.104, and with four times as many a quarter of that.
+  constexpr double kFew = 0.105;
+  result.limits = mask_limits(kFew / 4, kPositions);
+  for (const ErrorSource source : {ErrorSource::merges_of_layers, ErrorSource::published_merges})
+    result.limits[source] = {kFew, kPositions};
   // Eight layers in a row leave one of 256 positions, which may show any of the other colours.
-  result.limits["beam:order=sorted"] = {0.875 / 256 + kFormatError, kPositions};
-  // The others are measured: with 32 positions up to 0.104, and with four times as many a quarter of that.
-  result.limits["beam"] = {0.105 / 4, kPositions};
-  for (const char* few : {"z3", "casav", "beam:order=sorted,bits=32"}) result.limits[few] = {0.105, kPositions};
+  const auto last_position = [](int positions) { return positions < 256 ? kFew : 0.875 / 256 + kFp16Error; };
+  result.limits[ErrorSource::estimated_areas] = {last_position, kPositions};
   ExactPicture& picture = result.picture.emplace();
   picture.high = {kLayers, 2};
   picture.rgba.resize(2 * kLayers);
@@ -247,7 +249,8 @@ HardCase largest_numbers() {
   Lighting& lighting = result.trace.frames[0].lighting;
   lighting.lights.assign(kMostLights, {glm::normalize(glm::vec3(0.1f, -1, -0.2f)), glm::vec3(kMostColor)});
   lighting.ambient = Ambient{glm::vec3(kMostColor), glm::vec3(0)};
-  for (const char* technique : {"casav", "alpha"}) result.limits[technique] = {0.04, kOver};
+  for (const ErrorSource source : {ErrorSource::published_merges, ErrorSource::independent_fragments})
+    result.limits[source] = {0.04, kOver};
   const double infinity = std::numeric_limits<double>::infinity();
   result.between = ColorBounds{glm::dvec3(-infinity), glm::dvec3(infinity)};
   return result;

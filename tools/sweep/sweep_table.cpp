@@ -5,6 +5,7 @@
 #include <optional>
 
 #include "tools/evaluate/memory_system.h"
+#include "tools/files/csv.h"
 
 namespace beampipe {
 namespace {
@@ -150,16 +151,6 @@ class ErrorTable {
   const SweepResults& results_;
   std::map<std::pair<std::size_t, std::size_t>, std::map<PictureVariant, PictureErrors>> known_;
 };
-
-std::string csv_field(const Json& value) {
-  if (value.is_null()) return "";
-  if (!value.is_string()) return value.dump();
-  const std::string text = value.get<std::string>();
-  if (text.find_first_of(",\"\r\n") == text.npos) return text;
-  std::string quoted = "\"";
-  for (const char c : text) quoted += c == '"' ? std::string("\"\"") : std::string(1, c);
-  return quoted + "\"";
-}
 
 }  // namespace
 

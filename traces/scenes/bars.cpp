@@ -29,7 +29,7 @@ std::vector<Mesh> build(double budget, Random& random) {
 }  // namespace
 
 Trace make_bars(const SceneOptions& options) {
-  const Camera camera{{0, 0, 8}, {0, 0, 0}, {0, 1, 0}, 25, 1, 40};
+  const Camera camera{.eye = {0, 0, 8}, .target = {0, 0, 0}, .up = {0, 1, 0}, .fovy_deg = 25, .near = 1, .far = 40};
   return one_frame(options, camera, build_to_budget(options, 4000, build));
 }
 

@@ -171,7 +171,8 @@ std::vector<Mesh> build(const BoatLook& look, double budget, Random& random) {
 }  // namespace
 
 Trace boat_trace(const SceneOptions& options, std::uint32_t default_triangles, const BoatLook& look) {
-  const Camera camera{{9, 4.2, 19.5}, {0.6, 5.6, 0}, {0, 1, 0}, 36, 1, 200};
+  const Camera camera{
+      .eye = {9, 4.2, 19.5}, .target = {0.6, 5.6, 0}, .up = {0, 1, 0}, .fovy_deg = 36, .near = 1, .far = 200};
   const auto build_look = [&](double budget, Random& random) { return build(look, budget, random); };
   return one_frame(options, camera, build_to_budget(options, default_triangles, build_look));
 }

@@ -80,7 +80,8 @@ Trace make_bumps(const SceneOptions& options) {
   const std::array<Finish, 3> finishes{
       Finish{material("brass", 1, 0.3f)}, {material("red glaze", 0, 0.2f)}, {material("blue glaze", 0, 0.25f)}};
   const Finish ground{surfaces.add(Material{.name = "concrete", .base_texture = concrete, .roughness = 0.9f}), 0.8};
-  const Camera camera{{0, 1.5, 5.2}, {0, 0.85, 0}, {0, 1, 0}, 30, 0.5, 80};
+  const Camera camera{
+      .eye = {0, 1.5, 5.2}, .target = {0, 0.85, 0}, .up = {0, 1, 0}, .fovy_deg = 30, .near = 0.5, .far = 80};
   const auto build_balls = [&](double budget, Random& random) {
     return bumps_meshes(finishes, ground, budget, random);
   };

@@ -177,7 +177,8 @@ std::vector<Mesh> build(const ClassroomLook& look, double budget, Random& random
 }  // namespace
 
 Trace classroom_trace(const SceneOptions& options, std::uint32_t default_triangles, const ClassroomLook& look) {
-  const Camera camera{{6.9, 1.75, 8.3}, {1.9, 1.25, 2.6}, {0, 1, 0}, 42, 0.1, 40};
+  const Camera camera{
+      .eye = {6.9, 1.75, 8.3}, .target = {1.9, 1.25, 2.6}, .up = {0, 1, 0}, .fovy_deg = 42, .near = 0.1, .far = 40};
   const auto build_look = [&](double budget, Random& random) { return build(look, budget, random); };
   return one_frame(options, camera, build_to_budget(options, default_triangles, build_look), Shoulder::right);
 }

@@ -42,7 +42,8 @@ std::vector<Mesh> density_meshes(double budget, const SceneOptions& options, Ran
 }  // namespace
 
 Trace make_density(const SceneOptions& options) {
-  const Camera camera{{0, 0, kDistance}, {0, 0, 0}, {0, 1, 0}, kFovyDeg, 1, 20};
+  const Camera camera{
+      .eye = {0, 0, kDistance}, .target = {0, 0, 0}, .up = {0, 1, 0}, .fovy_deg = kFovyDeg, .near = 1, .far = 20};
   const auto build_wall = [&](double budget, Random& random) { return density_meshes(budget, options, random); };
   return one_frame(options, camera, build_to_budget(options, options.width * options.height / 10, build_wall));
 }

@@ -74,7 +74,8 @@ std::vector<Mesh> fence_meshes(double budget, Random& random) {
 }  // namespace
 
 Trace make_fence(const SceneOptions& options) {
-  const Camera camera{{0.3, 1.35, 4.6}, {0, 1.2, 0}, {0, 1, 0}, 36, 0.5, 40};
+  const Camera camera{
+      .eye = {0.3, 1.35, 4.6}, .target = {0, 1.2, 0}, .up = {0, 1, 0}, .fovy_deg = 36, .near = 0.5, .far = 40};
   return one_frame(options, camera, build_to_budget(options, 60000, fence_meshes));
 }
 

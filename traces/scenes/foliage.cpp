@@ -94,7 +94,8 @@ std::vector<Mesh> foliage_meshes(double budget, Random& random) {
 }  // namespace
 
 Trace make_foliage(const SceneOptions& options) {
-  const Camera camera{{0, 2.4, 9.5}, {-0.2, 2.9, 0}, {0, 1, 0}, 36, 1, 80};
+  const Camera camera{
+      .eye = {0, 2.4, 9.5}, .target = {-0.2, 2.9, 0}, .up = {0, 1, 0}, .fovy_deg = 36, .near = 1, .far = 80};
   return one_frame(options, camera, build_to_budget(options, 80000, foliage_meshes));
 }
 

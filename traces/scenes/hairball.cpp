@@ -48,7 +48,7 @@ std::vector<Mesh> hairball_meshes(double budget, Random& random) {
 }  // namespace
 
 Trace make_hairball(const SceneOptions& options) {
-  const Camera camera{{0, 0.4, 5.2}, {0, 0, 0}, {0, 1, 0}, 36, 1, 20};
+  const Camera camera{.eye = {0, 0.4, 5.2}, .target = {0, 0, 0}, .up = {0, 1, 0}, .fovy_deg = 36, .near = 1, .far = 20};
   return one_frame(options, camera, build_to_budget(options, 150000, hairball_meshes));
 }
 

@@ -126,7 +126,8 @@ Trace make_leaves(const SceneOptions& options) {
                                      .double_sided = true})},
   };
   const auto build_plants = [&](double budget, Random& random) { return build(plants, budget, random); };
-  const Camera camera{{0, 1.5, 7.2}, {0, 1.25, 0}, {0, 1, 0}, 30, 0.5, 80};
+  const Camera camera{
+      .eye = {0, 1.5, 7.2}, .target = {0, 1.25, 0}, .up = {0, 1, 0}, .fovy_deg = 30, .near = 0.5, .far = 80};
   Trace trace = one_frame(options, camera, build_to_budget(options, 12000, build_plants));
   add_surfaces(trace, std::move(surfaces), {1.1f, 1.0f, 0.85f},
                {.sky = {0.45f, 0.50f, 0.55f}, .ground = {0.16f, 0.18f, 0.10f}});

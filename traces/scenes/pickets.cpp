@@ -53,7 +53,7 @@ std::vector<Mesh> pickets_meshes(double budget, Random& random) {
 }  // namespace
 
 Trace make_pickets(const SceneOptions& options) {
-  const Camera camera{kEye, {0, 1.5, 0}, {0, 1, 0}, 34, 0.5, 60};
+  const Camera camera{.eye = kEye, .target = {0, 1.5, 0}, .up = {0, 1, 0}, .fovy_deg = 34, .near = 0.5, .far = 60};
   return one_frame(options, camera, build_to_budget(options, 5000, pickets_meshes));
 }
 

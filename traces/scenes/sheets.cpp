@@ -102,7 +102,8 @@ Trace make_sheets(const SceneOptions& options) {
       meshes.push_back(make_sheet(kFromBackToFront[i], i + 1, sheets[i], 0.9 * budget / kSheets, random));
     return meshes;
   };
-  const Camera camera{{0.4, 0.5, 7.6}, {0, -0.05, 0}, {0, 1, 0}, 36, 1, 40};
+  const Camera camera{
+      .eye = {0.4, 0.5, 7.6}, .target = {0, -0.05, 0}, .up = {0, 1, 0}, .fovy_deg = 36, .near = 1, .far = 40};
   Trace trace = one_frame(options, camera, build_to_budget(options, 2000, build));
   add_surfaces(trace, std::move(surfaces), {0.8f, 0.78f, 0.72f},
                {.sky = {0.50f, 0.52f, 0.55f}, .ground = {0.30f, 0.28f, 0.26f}});

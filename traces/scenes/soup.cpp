@@ -30,7 +30,7 @@ std::vector<Mesh> soup_meshes(double budget, Random& random) {
 }  // namespace
 
 Trace make_soup(const SceneOptions& options) {
-  const Camera camera{{0, 0, 6}, {0, 0, 0}, {0, 1, 0}, 36, 1, 20};
+  const Camera camera{.eye = {0, 0, 6}, .target = {0, 0, 0}, .up = {0, 1, 0}, .fovy_deg = 36, .near = 1, .far = 20};
   return one_frame(options, camera, build_to_budget(options, 20000, soup_meshes));
 }
 

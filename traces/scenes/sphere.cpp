@@ -36,7 +36,7 @@ std::vector<Mesh> sphere_meshes(double budget, Random& random) {
 }  // namespace
 
 Trace make_sphere(const SceneOptions& options) {
-  const Camera camera{{0, 0.8, 5.2}, {0, 0, 0}, {0, 1, 0}, 34, 1, 20};
+  const Camera camera{.eye = {0, 0.8, 5.2}, .target = {0, 0, 0}, .up = {0, 1, 0}, .fovy_deg = 34, .near = 1, .far = 20};
   return one_frame(options, camera, build_to_budget(options, 100000, sphere_meshes));
 }
 

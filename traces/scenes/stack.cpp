@@ -37,7 +37,8 @@ std::vector<Mesh> stack_meshes(double budget, const SceneOptions& options, Rando
 }  // namespace
 
 Trace make_stack(const SceneOptions& options) {
-  const Camera camera{{0, 0, kDistance}, {0, 0, 0}, {0, 1, 0}, kFovyDeg, 1, 40};
+  const Camera camera{
+      .eye = {0, 0, kDistance}, .target = {0, 0, 0}, .up = {0, 1, 0}, .fovy_deg = kFovyDeg, .near = 1, .far = 40};
   const auto build_stack = [&](double budget, Random& random) { return stack_meshes(budget, options, random); };
   return one_frame(options, camera, build_to_budget(options, 64, build_stack));
 }

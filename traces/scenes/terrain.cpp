@@ -71,7 +71,8 @@ std::vector<Mesh> terrain_meshes(double budget, Random& random) {
 }  // namespace
 
 Trace make_terrain(const SceneOptions& options) {
-  const Camera camera{{0, 1.0, 0}, {0, 0.35, -4}, {0, 1, 0}, 42, 0.2, 120};
+  const Camera camera{
+      .eye = {0, 1.0, 0}, .target = {0, 0.35, -4}, .up = {0, 1, 0}, .fovy_deg = 42, .near = 0.2, .far = 120};
   return one_frame(options, camera, build_to_budget(options, 150000, terrain_meshes));
 }
 

@@ -76,7 +76,8 @@ Trace make_tiles(const SceneOptions& options) {
                     .rings = {material("rings", 0.6f, ring_color)},
                     .squares = {material("squares", 0.6f, [](double x, double y) { return square_color(x, y, 12); })}};
   const auto build_tiles = [&](double budget, Random& random) { return build(floor, boxes, budget, random); };
-  const Camera camera{{0, 1.7, 6}, {0, 0.85, 0}, {0, 1, 0}, 40, 0.2, 1500};
+  const Camera camera{
+      .eye = {0, 1.7, 6}, .target = {0, 0.85, 0}, .up = {0, 1, 0}, .fovy_deg = 40, .near = 0.2, .far = 1500};
   Trace trace = one_frame(options, camera, build_to_budget(options, 74, build_tiles));
   add_surfaces(trace, std::move(surfaces), {0.75f, 0.72f, 0.66f},
                {.sky = {0.42f, 0.45f, 0.50f}, .ground = {0.28f, 0.27f, 0.26f}});

@@ -70,7 +70,7 @@ TEST(MemoryParameters, SectorsMoveWhole) {
   for (const std::uint32_t sector : {32u, 64u, 128u}) {
     MemoryParameters memory;
     memory.sector_bytes = sector;
-    BlockCache cache(memory, {1024, 2, 256}, BlockCache::Level::rop, 4, 256, false, nullptr);
+    BlockCache cache(memory, {1024, 2, 256}, BlockCache::Level::rop, {.count = 4, .bytes = 256});
     StageCounters counters;
     cache.write(1, 2, 8, 4, counters);
     cache.flush(counters);

@@ -84,8 +84,8 @@ Traffic traffic_of_cache(const std::vector<Access>& accesses, std::size_t sets, 
   const CacheParameters parameters{static_cast<std::uint32_t>(sets) * ways * kLineBytes, ways, kLineBytes};
   DramLog log;
   const MemorySystem memory({}, &log);
-  BlockCache cache(memory, parameters, BlockCache::Level::l2, lines, kLineBytes, false, nullptr,
-                   BlockPlaces(memory, "array", true));
+  BlockCache cache(memory, parameters, BlockCache::Level::l2,
+                   {.count = lines, .bytes = kLineBytes, .places = BlockPlaces(memory, "array", true)});
   StageCounters counters{StageId::compose};
   std::uint32_t request = 0;
   for (const Access& access : accesses) {

@@ -77,7 +77,7 @@ std::uint64_t compose_random(Random& random) {
     compose_window(fragments, positions, counters, pixels, areas);
     expect_kept<Words>(before, pixels, fragments, areas, kLeast, kGreatest);
     if (testing::Test::HasFatalFailure()) return merged;
-    compose_whole(whole, kTile, colors, counters, pixels);
+    compose_whole({whole, kTile, colors}, counters, pixels);
     merged += fragments.size();
   }
   return merged;

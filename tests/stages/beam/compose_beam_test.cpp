@@ -40,7 +40,7 @@ std::vector<PixelColor> composed_as(const SetupTriangles& triangles, const std::
     beam_fragment(triangles, window, tile, options, counters, fragments);
     shade_visible(colors, fragments, counters);
     compose_window(fragments, positions, counters, pixels, areas);
-    compose_whole(whole, tile, colors, counters, pixels);
+    compose_whole({whole, tile, colors}, counters, pixels);
   }
   if (largest) *largest = windows.largest;
   return composed_colors(pixels);

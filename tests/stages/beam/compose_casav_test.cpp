@@ -168,7 +168,7 @@ TEST(Compose, PixelsDoNotMix) {
   shade(colors, fragments.list, counters);
   const ABuffer buffer = sorted(fragments, tile.pixels());
   const MergePositions positions(hammersley_pattern());
-  const std::vector<Aggregate> found = compose(fragments.list, buffer, positions, {}, CasavStorage::float32, counters);
+  const std::vector<Aggregate> found = compose(fragments.list, buffer, {positions}, counters);
   for (std::size_t i = 0; i < tile.pixels(); ++i) {
     Aggregate alone = kEmptyAggregate;
     for (std::uint32_t k = buffer.first[i]; k < buffer.first[i + 1]; ++k)
@@ -197,7 +197,7 @@ TEST(Compose, PlainOver) {
   EXPECT_EQ(counters.items_in, 3u);
   // Per merge: 1 - alpha; a product and a sum each for alpha and three channels; the channels are converted from fp16
   // and back.
-  EXPECT_EQ(counters.ops, (OperationCounts{3 * 4, 3 * 5, 0, 0, 0, 3 * 6}));
+  EXPECT_EQ(counters.ops, (OperationCounts{.mul_add = 3 * 4, .add = 3 * 5, .convert = 3 * 6}));
 }
 
 }  // namespace beampipe::compose_casav_test

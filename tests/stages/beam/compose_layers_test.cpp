@@ -54,10 +54,10 @@ std::vector<Fragment> near_to_far(std::vector<Fragment> fragments) {
 std::vector<Aggregate> composed(const std::vector<Fragment>& fragments, std::size_t layers, StageCounters& counters,
                                 std::vector<float>& merges, CasavStorage storage = CasavStorage::float32,
                                 const MergeRules& rules = {}) {
-  AggregateLayers pixels(kTile.pixels(), layers, storage);
+  AggregateLayers pixels(kTile.pixels(), layers, {kPositions, rules, storage});
   merges.assign(kTile.pixels(), 0);
-  pixels.add(fragments, kPositions, rules, counters, merges);
-  return pixels.finish(kPositions, rules, counters);
+  pixels.add(fragments, counters, merges);
+  return pixels.finish(counters);
 }
 
 void expect_same(const std::vector<Aggregate>& found, const std::vector<Aggregate>& expected, float tolerance = 0) {
@@ -79,7 +79,7 @@ TEST(ComposeLayers, OneLayerNearToFarIsTheABuffer) {
     for (const CasavStorage storage : {CasavStorage::slides, CasavStorage::text, CasavStorage::float32}) {
       StageCounters sorting, of_lists, of_layer;
       const ABuffer lists = a_buffer(sort_records(fragments, SortKey::nearest), kTile.pixels(), 42, 42, sorting);
-      const std::vector<Aggregate> expected = compose(fragments, lists, kPositions, {}, storage, of_lists);
+      const std::vector<Aggregate> expected = compose(fragments, lists, {kPositions, {}, storage}, of_lists);
       std::vector<float> merges;
       expect_same(composed(near_to_far(fragments), 1, of_layer, merges, storage), expected);
       EXPECT_EQ(of_layer.ops, of_lists.ops) << "a single layer needs no search";
@@ -98,7 +98,7 @@ TEST(ComposeLayers, EnoughLayersAreTheABufferInAnyOrder) {
     std::erase_if(fragments, [](const Fragment& fragment) { return fragment.tiny; });
     StageCounters counters;
     const ABuffer lists = a_buffer(sort_records(fragments, SortKey::nearest), kTile.pixels(), 42, 42, counters);
-    const std::vector<Aggregate> expected = compose(fragments, lists, kPositions, {}, CasavStorage::float32, counters);
+    const std::vector<Aggregate> expected = compose(fragments, lists, {kPositions}, counters);
     std::vector<float> merges;
     expect_same(composed(fragments, 8, counters, merges), expected, 1e-5f);
     EXPECT_EQ(*std::max_element(merges.begin(), merges.end()), 0);
@@ -150,7 +150,7 @@ TEST(ComposeLayers, EqualDepthsKeepTheirOrder) {
     }
     StageCounters counters;
     const ABuffer lists = a_buffer(sort_records(fragments, SortKey::nearest), kTile.pixels(), 42, 42, counters);
-    const std::vector<Aggregate> expected = compose(fragments, lists, kPositions, {}, CasavStorage::float32, counters);
+    const std::vector<Aggregate> expected = compose(fragments, lists, {kPositions}, counters);
     std::vector<float> merges;
     expect_same(composed(fragments, 8, counters, merges), expected, 1e-5f);
   }
@@ -216,9 +216,9 @@ TEST(ComposeLayers, CountsBytes) {
   Random random(74);
   const std::vector<Fragment> fragments = random_fragments(random, 10);
   StageCounters counters;
-  AggregateLayers pixels(kTile.pixels(), 3, CasavStorage::slides);
+  AggregateLayers pixels(kTile.pixels(), 3, {kPositions, {}, CasavStorage::slides});
   std::vector<float> merges(kTile.pixels());
-  pixels.add(fragments, kPositions, {}, counters, merges);
+  pixels.add(fragments, counters, merges);
   EXPECT_EQ(pixels.bytes_per_pixel(), 3u * 42);
   EXPECT_EQ(counters.bytes_read, fragments.size() * (42 + 3 * 42));
   EXPECT_EQ(counters.bytes_written, fragments.size() * 3 * 42);

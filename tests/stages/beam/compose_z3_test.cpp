@@ -18,7 +18,8 @@ std::vector<Z3Pixel<Words, Layers>> composed(const SetupTriangles& triangles, co
   std::vector<Pair> pairs;
   std::vector<Fragment> fragments;
   conservative_raster(triangles, all_of(triangles), tile, counters, pairs);
-  beam_fragment(triangles, pairs, tile, {MaskSource::exact, positions.patterns, nullptr, nullptr, 26, 0}, counters,
+  beam_fragment(triangles, pairs, tile,
+                {.mask = MaskSource::exact, .positions = positions.patterns, .fragment_bytes = 26}, counters,
                 fragments);
   shade(colors, fragments, counters);
   std::vector<Z3Pixel<Words, Layers>> pixels(tile.pixels());

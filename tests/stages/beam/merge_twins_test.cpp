@@ -39,16 +39,26 @@ class MergeTwins : public SceneTwins {
   }
 
   AggregateOf<Float, Bits> counting(const Aggregate& a) {
-    return {real(a.alpha), bits(a.mask),  {real(a.plane.z), real(a.plane.dzdu), real(a.plane.dzdv)}, real(a.thickness),
-            real(a.z_min), real(a.z_max), {real(a.color[0]), real(a.color[1]), real(a.color[2])}};
+    return {.alpha = real(a.alpha),
+            .mask = bits(a.mask),
+            .plane = {real(a.plane.z), real(a.plane.dzdu), real(a.plane.dzdv)},
+            .thickness = real(a.thickness),
+            .z_min = real(a.z_min),
+            .z_max = real(a.z_max),
+            .color = {real(a.color[0]), real(a.color[1]), real(a.color[2])}};
   }
   FragmentOf<Float, Bits> counting(const Fragment& fragment) {
     const MergeFragment in = merge_fragment(fragment);
     return {counting(in.surface), bits(in.tiny)};
   }
   static Aggregate value_of(const AggregateOf<Float, Bits>& a) {
-    return {a.alpha.value, a.mask.value,  {a.plane.z.value, a.plane.dzdu.value, a.plane.dzdv.value}, a.thickness.value,
-            a.z_min.value, a.z_max.value, {a.color[0].value, a.color[1].value, a.color[2].value}};
+    return {.alpha = a.alpha.value,
+            .mask = a.mask.value,
+            .plane = {a.plane.z.value, a.plane.dzdu.value, a.plane.dzdv.value},
+            .thickness = a.thickness.value,
+            .z_min = a.z_min.value,
+            .z_max = a.z_max.value,
+            .color = {a.color[0].value, a.color[1].value, a.color[2].value}};
   }
 
   // The numbers of an aggregate that each merge converts from the stored formats and back.
@@ -103,7 +113,7 @@ class MergeTwins : public SceneTwins {
       return Aggregate(Stored(value_of(merged)));
     });
     StageCounters counters;
-    expect_same(compose(fragments_, buffer_, positions, rules, storage, counters), expected);
+    expect_same(compose(fragments_, buffer_, {positions, rules, storage}, counters), expected);
     EXPECT_EQ(counters.ops, twin_);
     EXPECT_EQ(counters.position_tests, position_tests);
     EXPECT_EQ(counters.lanes_used, fragments_.size());

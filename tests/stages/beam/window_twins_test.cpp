@@ -220,7 +220,7 @@ TEST_P(WindowTwins, Windows) {
     beam_fragment(triangles_, window, tile_, grid_options(grid, 0), ignored, fragments);
     shade_visible(colors, fragments, ignored);
     compose_window(fragments, positions, ignored, pixels, areas);
-    compose_whole(whole, tile_, colors, whole_pixels, pixels);
+    compose_whole({whole, tile_, colors}, whole_pixels, pixels);
     shown_whole += whole.size();
   }
   EXPECT_EQ(counters.ops, twin_);

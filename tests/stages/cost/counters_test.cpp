@@ -35,7 +35,7 @@ TEST(StageCountersTable, ValuesAreThoseOfTheFields) {
   const StageCounters counters = numbered(1);
   EXPECT_EQ(counters.items_in, 1u);
   EXPECT_EQ(counters.items_out, 2u);
-  EXPECT_EQ(counters.ops, (OperationCounts{3, 4, 5, 6, 7, 8}));
+  EXPECT_EQ(counters.ops, (OperationCounts{.mul_add = 3, .add = 4, .bit = 5, .fetch = 6, .special = 7, .convert = 8}));
   EXPECT_EQ(counters.ops.wide, 9u);
   EXPECT_EQ(counters.bytes_read, 10u);
   EXPECT_EQ(counters.bytes_written, 11u);

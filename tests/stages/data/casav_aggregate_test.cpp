@@ -9,7 +9,13 @@
 namespace beampipe::casav_aggregate_test {
 
 TEST(CasavStorage, SlidesKeepAllButTheColour) {
-  const Aggregate a{0.3f, 0x1234u, {-0.5f, 1e-9f, -2e-3f}, 0.001f, -0.6f, -0.4f, {0.1f, 0.2f, 0.3f}};
+  const Aggregate a{.alpha = 0.3f,
+                    .mask = 0x1234u,
+                    .plane = {-0.5f, 1e-9f, -2e-3f},
+                    .thickness = 0.001f,
+                    .z_min = -0.6f,
+                    .z_max = -0.4f,
+                    .color = {0.1f, 0.2f, 0.3f}};
   const Aggregate b = SlidesAggregate(a);
   EXPECT_EQ(b.alpha, a.alpha);
   EXPECT_EQ(b.mask, a.mask);
@@ -29,7 +35,13 @@ TEST(CasavStorage, TheTextsSizeRoundsSlopesAndThicknessToEightBits) {
     const auto slope = [&] {
       return random.real32(-1, 1) * std::ldexp(1.0f, static_cast<int>(random.integer(-40, 3)));
     };
-    const Aggregate a{0.3f, 7u, {-0.5f, slope(), slope()}, std::abs(slope()), -0.6f, -0.4f, {0.1f, 0.2f, 0.3f}};
+    const Aggregate a{.alpha = 0.3f,
+                      .mask = 7u,
+                      .plane = {-0.5f, slope(), slope()},
+                      .thickness = std::abs(slope()),
+                      .z_min = -0.6f,
+                      .z_max = -0.4f,
+                      .color = {0.1f, 0.2f, 0.3f}};
     const Aggregate b = TextAggregate(a);
     EXPECT_EQ(b.alpha, a.alpha);
     EXPECT_EQ(b.plane.z, a.plane.z);

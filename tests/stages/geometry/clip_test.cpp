@@ -162,9 +162,12 @@ TEST(Clipping, CountsPiecesAndPlaneTests) {
   EXPECT_EQ(counters.items_out, 2u);
   const std::uint64_t tests = 6 * 3 + 3 + 5 * 4;
   const std::uint64_t projected = 2 + 2 * 3;  // vertices in view, and the vertices of the pieces
-  EXPECT_EQ(counters.ops, (OperationCounts{36 + projected * 12 + 2 * (2 + 8) + 4 * tests + 2 * 4,
-                                           36 + 12 + 21 + projected * 5 + 2 * (3 + 6 + 3 + 9) + 4 * tests + 2 * 9, 9, 0,
-                                           projected + 2 + 2, projected * 4 + 2 * 3}));
+  EXPECT_EQ(counters.ops,
+            (OperationCounts{.mul_add = 36 + projected * 12 + 2 * (2 + 8) + 4 * tests + 2 * 4,
+                             .add = 36 + 12 + 21 + projected * 5 + 2 * (3 + 6 + 3 + 9) + 4 * tests + 2 * 9,
+                             .bit = 9,
+                             .special = projected + 2 + 2,
+                             .convert = projected * 4 + 2 * 3}));
 }
 
 }  // namespace beampipe::clip_test

@@ -100,7 +100,7 @@ double plane_error(const ExactPlane& plane, double x, double y) {
 }
 
 void check_triangle(const SetupTriangle& triangle, const SetupSurface& surface, const ExactPolygon& polygon,
-                    std::uint32_t width, std::uint32_t height, Random& random, Statistics& statistics) {
+                    const Frame& frame, Random& random, Statistics& statistics) {
   // The corners in the trace's order: vertex_setup swaps the last two of front faces.
   std::array<std::int32_t, 3> xs = {triangle.x[0], triangle.x[1], triangle.x[2]},
                               ys = {triangle.y[0], triangle.y[1], triangle.y[2]};
@@ -112,7 +112,7 @@ void check_triangle(const SetupTriangle& triangle, const SetupSurface& surface, 
     const std::array<const ExactVertex*, 3> candidate = {&polygon[0], &polygon[i - 1], &polygon[i]};
     bool fits = true;
     for (std::size_t k = 0; k < 3; ++k) {
-      const Screen at = on_screen(*candidate[k], width, height);
+      const Screen at = on_screen(*candidate[k], frame.width, frame.height);
       fits &= abs(at.x * 256 - xs[k]) <= Rational(5001, 10000) && abs(at.y * 256 - ys[k]) <= Rational(5001, 10000);
     }
     if (fits) corners = candidate, ++fan;
@@ -179,7 +179,7 @@ void check_scene(const Trace& trace, Random& random, Statistics& statistics) {
     ExactPolygon polygon;
     for (int k = 0; k < 3; ++k) polygon.push_back(transformed(matrix, mesh.positions[mesh.triangles[t][k]], k));
     for (const auto& plane : planes) polygon = clipped(polygon, plane);
-    check_triangle(triangles.triangles[i], surface, polygon, frame.width, frame.height, random, statistics);
+    check_triangle(triangles.triangles[i], surface, polygon, frame, random, statistics);
     if (testing::Test::HasFatalFailure()) return;
   }
 }
@@ -198,7 +198,8 @@ Trace scene_of(const std::vector<glm::vec3>& positions, double near, double far,
   trace.materials[0].double_sided = true;
   Frame frame;
   frame.width = 640, frame.height = 480;
-  set_camera(frame, {{0, 0, 0}, {0, 0, -1}, {0, 1, 0}, 60, near, far});
+  set_camera(frame,
+             {.eye = {0, 0, 0}, .target = {0, 0, -1}, .up = {0, 1, 0}, .fovy_deg = 60, .near = near, .far = far});
   frame.draws.emplace_back().transform = transform;
   trace.frames.push_back(frame);
   return trace;

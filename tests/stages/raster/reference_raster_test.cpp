@@ -73,7 +73,7 @@ TEST(ReferenceRaster, FansCoverEverySample) {
   EXPECT_EQ(counters.lanes_issued, counters.lanes_used);
   EXPECT_EQ(counters.items_out, counters.lanes_used);
   // Per sample, 2 products and 3 sums for the depth, and one comparison. Finding the spans is not charged.
-  EXPECT_EQ(counters.ops, (OperationCounts{2, 4, 0, 0, 0, 0} * counters.lanes_used));
+  EXPECT_EQ(counters.ops, (OperationCounts{.mul_add = 2, .add = 4} * counters.lanes_used));
 }
 
 TEST(ReferenceRaster, ResolveIsTheMeanOfTheSamples) {

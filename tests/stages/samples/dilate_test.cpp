@@ -59,7 +59,8 @@ TEST(Dilate, CountsWhatItLooksAt) {
   EXPECT_EQ(counters.bytes_written, 16u * (8 + 16 + 1));
   // Per pixel: four masks, the sum of their counts, a division, twelve means of four values, to fp16. Per neighbour:
   // the test whether it belongs to the same draw, then a selection and a minimum or maximum for four channels.
-  const OperationCounts pixel{12 * 5, 3 + 12 * 3, 4 + 4, 0, 1, 4 + 3 + 12}, neighbor{0, 1 + 4 * 4, 0, 0, 0, 3};
+  const OperationCounts pixel{.mul_add = 12 * 5, .add = 3 + 12 * 3, .bit = 4 + 4, .special = 1, .convert = 4 + 3 + 12},
+      neighbor{0, 1 + 4 * 4, 0, 0, 0, 3};
   OperationCounts all = pixel * 16;
   all += neighbor * neighbors;
   EXPECT_EQ(counters.ops, all);

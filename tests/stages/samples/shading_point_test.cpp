@@ -78,8 +78,8 @@ TEST(ShadingPoint, CountsWhatItLooksAt) {
   // For each of 3 x 8 fragments and each of three edges: two products, two sums, a comparison. For each of 8 fragments:
   // per sample a bit, the test whether it is set, two selections and two sums; then the number of bits, a division and
   // two products.
-  OperationCounts all = OperationCounts{3 * 2, 3 * 3, 0, 0, 0, 0} * 24;
-  all += OperationCounts{2, 4 * 5, 4 + 1, 0, 1, 1} * 8;
+  OperationCounts all = OperationCounts{.mul_add = 3 * 2, .add = 3 * 3} * 24;
+  all += OperationCounts{.mul_add = 2, .add = 4 * 5, .bit = 4 + 1, .special = 1, .convert = 1} * 8;
   EXPECT_EQ(counters.ops, all);
 }
 

@@ -111,7 +111,9 @@ struct Floor {
     scene.mesh().positions = {{-40, 0, -60}, {40, 0, -60}, {40, 0, 5}, {-40, 0, 5}};
     for (std::size_t i = 0; i < 4; ++i)
       scene.mesh().uvs[0][i] = {scene.mesh().positions[i].x * kScale, scene.mesh().positions[i].z * kScale};
-    set_camera(scene.frame(), {{0, kHeight, 0}, {0, kHeight, -1}, {0, 1, 0}, 90, 0.5, 100});
+    set_camera(
+        scene.frame(),
+        {.eye = {0, kHeight, 0}, .target = {0, kHeight, -1}, .up = {0, 1, 0}, .fovy_deg = 90, .near = 0.5, .far = 100});
     trace = scene.trace;
   }
 
@@ -190,7 +192,8 @@ SurfaceTrace facing(const Material& material) {
   scene.mesh().positions = {{-1, 1, 0}, {1, 1, 0}, {1, -1, 0}, {-1, -1, 0}};
   scene.mesh().triangles = {{0, 2, 1}, {0, 3, 2}};  // counter-clockwise
   scene.mesh().normals.assign(4, glm::vec3(0, 0, 1));
-  set_camera(scene.frame(), {{0, 0, 5}, {0, 0, 0}, {0, 1, 0}, 30, 1, 10});
+  set_camera(scene.frame(),
+             {.eye = {0, 0, 5}, .target = {0, 0, 0}, .up = {0, 1, 0}, .fovy_deg = 30, .near = 1, .far = 10});
   scene.frame().lighting.ambient = Ambient{};
   return scene;
 }
@@ -227,7 +230,8 @@ TEST(SurfaceShader, NormalsOfVerticesAndOfTriangles) {
   scene.mesh().normals.clear();
   expect_near(normal_seen(scene), {0, 0, 1}, 1e-5);
   // Seen from behind, both are turned to the eye.
-  set_camera(scene.frame(), {{0, 0, -5}, {0, 0, 0}, {0, 1, 0}, 30, 1, 10});
+  set_camera(scene.frame(),
+             {.eye = {0, 0, -5}, .target = {0, 0, 0}, .up = {0, 1, 0}, .fovy_deg = 30, .near = 1, .far = 10});
   expect_near(normal_seen(scene), {0, 0, -1}, 1e-5);
   scene.mesh().normals.assign(4, glm::normalize(glm::vec3(3, 0, 4)));
   expect_near(normal_seen(scene), {-0.6f, 0, -0.8f}, 1e-5);
@@ -313,7 +317,8 @@ TEST(SurfaceShader, TangentsOfAMirroredDraw) {
 // The bumps of a back face are those of the front face, seen from behind: a groove stays where it is in the image.
 TEST(SurfaceShader, TangentsOfABackFace) {
   const auto from_behind = [](SurfaceTrace& s) {
-    set_camera(s.frame(), {{0, 0, -5}, {0, 0, 0}, {0, 1, 0}, 30, 1, 10});
+    set_camera(s.frame(),
+               {.eye = {0, 0, -5}, .target = {0, 0, 0}, .up = {0, 1, 0}, .fovy_deg = 30, .near = 1, .far = 10});
   };
   expect_near(bumped(kToU, from_behind), {1, 0, 0}, 0.012);
   expect_near(bumped(kUp, from_behind), {0, 1, 0}, 0.012);

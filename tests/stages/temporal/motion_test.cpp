@@ -220,7 +220,8 @@ TEST(Motion, CountsItsArithmetic) {
   // Seven comparisons and selections find the nearest of 8 samples. To this frame's clip space: x and y (multiplied,
   // divided, minus one) and the depth. Then three rows of a matrix, a division, two coordinates to pixels, the
   // difference, the test whether it is in front of the eye, and the conversions to float and fp16.
-  const OperationCounts pixel{0 + 3 + 9 + 2 * 3, 2 * 7 + 2 + 2 + 9 + 2 + 2 + 1, 0, 2, 2 + 1, 4};
+  const OperationCounts pixel{
+      .mul_add = 0 + 3 + 9 + 2 * 3, .add = 2 * 7 + 2 + 2 + 9 + 2 + 2 + 1, .fetch = 2, .special = 2 + 1, .convert = 4};
   EXPECT_EQ(counters.ops, pixel * (kSize * kSize));
   EXPECT_EQ(counters.bytes_read, kSize * kSize * (8 * 4 + 4));
   EXPECT_EQ(counters.bytes_written, kSize * kSize * 4u);
@@ -241,7 +242,7 @@ TEST(Motion, CountsItsArithmetic) {
            {kTile, frame, {0}, to_last_frame(poses_of(frame), poses_of(frame))}, looks_of(frame), counters);
   // The draws of eight samples are compared in 28 pairs. Then a root, to fp16. For the one draw: its look, its matrix,
   // the motion, its square and the maximum.
-  const OperationCounts set{0, 28, 0, 8, 1, 1}, draw{18 + 2, 18 + 2, 1, 2, 2 + 1, 4};
+  const OperationCounts set{.add = 28, .fetch = 8, .special = 1, .convert = 1}, draw{18 + 2, 18 + 2, 1, 2, 2 + 1, 4};
   OperationCounts all = set * (kSize * kSize);
   all += draw * (kSize * kSize);
   EXPECT_EQ(counters.ops, all);

@@ -14,7 +14,7 @@ constexpr float kOld = 1.0f, kOther = 0.5f, kNew = 0.25f;
 // its boxes contain all colours.
 struct Fixture {
   CurrentFrame frame{2, 1};
-  History history{1, 2, 1, {glm::vec4(kOld), glm::vec4(kOther)}, {0, 0}, {}};
+  History history{.frames = 1, .width = 2, .height = 1, .color = {glm::vec4(kOld), glm::vec4(kOther)}, .looks = {0, 0}};
 
   Fixture() {
     frame.color.assign(2, glm::vec4(kNew));
@@ -123,7 +123,7 @@ TEST(Temporal, CountsWhatItLooksAt) {
   // Both pixels: two sums, four comparisons, the motion and four channels from fp16, and four to fp16. The first pixel:
   // its first texel, four weights, 24 values from fp16, the known part and, for each channel, 4 weights, the clamp and
   // two blends.
-  const OperationCounts both{0, 2 + 4, 0, 0, 0, 2 + 8},
+  const OperationCounts both{.add = 2 + 4, .convert = 2 + 8},
       first{4 + 1 + 4 * 6, 6 + 4 * (3 + 2 + 4), 0, 0, 0, 2 + 2 + 24 + 1};
   OperationCounts all = both * 2;
   all += first;
@@ -136,13 +136,15 @@ TEST(Temporal, CountsWhatItLooksAt) {
   EXPECT_EQ(counters.lanes_issued, 2u);
   counters = {};
   temporal(fixture.frame, {0.1f, 0.05f}, fixture.history, {0, 0, 2, 1}, counters, image);
-  all += OperationCounts{0, 3 + 1 + 2 + 2, 0, 0, 1,
-                         1};  // the texel with the largest weight, the part of the clamp, the look, the known part
+  all += OperationCounts{
+      .add = 3 + 1 + 2 + 2,
+      .special = 1,
+      .convert = 1};  // the texel with the largest weight, the part of the clamp, the look, the known part
   EXPECT_EQ(counters.ops, all);
   EXPECT_EQ(counters.bytes_read, 2u * (8 + 17 + 4 + 4 + 2) + 4 * 8 + 4);
   counters = {};
   neighborhood_box({0, 0, 2, 1}, counters, fixture.frame);
-  EXPECT_EQ(counters.ops, (OperationCounts{0, 2 * 8, 0, 0, 0, 2 * (4 + 4 + 8)})) << "each has one neighbour";
+  EXPECT_EQ(counters.ops, (OperationCounts{.add = 2 * 8, .convert = 2 * (4 + 4 + 8)})) << "each has one neighbour";
   EXPECT_EQ(counters.bytes_read, 2u * 2 * 8);
   EXPECT_EQ(counters.bytes_written, 2u * 17);
 }

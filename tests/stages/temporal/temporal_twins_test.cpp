@@ -241,7 +241,8 @@ TEST_P(TemporalTwins, NeighborhoodBox) {
 
 TEST_P(TemporalTwins, Temporal) {
   const CurrentFrame frame = current_frame();
-  History history{1, frame.width, frame.height, frame.color, frame.looks, {}};
+  History history{
+      .frames = 1, .width = frame.width, .height = frame.height, .color = frame.color, .looks = frame.looks};
   for (std::size_t i = 0; i < tile_.pixels(); ++i) {  // something else was there, with a lighter colour
     for (int c = 0; c < 4; ++c) history.color[i][c] = HalfBits(0.5f + 0.5f * frame.color[(i * 7) % tile_.pixels()][c]);
     if (i % 5 == 0) history.looks[i] ^= 1;

@@ -19,7 +19,12 @@ Sight look_at(const std::vector<Mesh>& meshes, Cull cull = Cull::none) {
   trace.materials.emplace_back();
   Frame frame;
   for (std::uint32_t i = 0; i < meshes.size(); ++i) frame.draws.push_back({.mesh = i, .cull = cull});
-  const Camera camera{{0, 0, 10}, {0, 0, 0}, {0, 1, 0}, 2 * glm::degrees(std::atan(0.5)), 1, 100};
+  const Camera camera{.eye = {0, 0, 10},
+                      .target = {0, 0, 0},
+                      .up = {0, 1, 0},
+                      .fovy_deg = 2 * glm::degrees(std::atan(0.5)),
+                      .near = 1,
+                      .far = 100};
   return sight_from(trace, frame, camera, 20, 10);
 }
 

@@ -14,12 +14,12 @@ namespace beampipe::captured_check_test {
 constexpr std::uint32_t kSize = 8;
 
 // A quad of whole pixels at one window depth, for a frame without camera.
-void add_quad(Trace& trace, int x0, int y0, int x1, int y1, float depth, const DepthState& state = {}) {
+void add_quad(Trace& trace, glm::ivec2 from, glm::ivec2 to, float depth, const DepthState& state = {}) {
   const auto corner = [&](int x, int y) {
     return glm::vec3(2.0f * static_cast<float>(x) / kSize - 1, 1 - 2.0f * static_cast<float>(y) / kSize, 2 * depth - 1);
   };
   Mesh mesh;
-  mesh.positions = {corner(x0, y0), corner(x1, y0), corner(x1, y1), corner(x0, y1)};
+  mesh.positions = {corner(from.x, from.y), corner(to.x, from.y), corner(to.x, to.y), corner(from.x, to.y)};
   mesh.triangles = {{0, 1, 2}, {0, 2, 3}};
   mesh.colors.assign(2, glm::vec3(1));
   Draw& draw = trace.frames[0].draws.emplace_back();
@@ -42,11 +42,11 @@ CapturedCheck check(const Trace& trace) {
 
 TEST(CapturedCheck, FindsWindowDepthsAndDraws) {
   Trace trace = empty_trace();
-  add_quad(trace, 0, 0, 4, 4, 0.5f);
-  add_quad(trace, 2, 2, 8, 8, 0.25f, {.function = Compare::less_equal, .near = 0.5f, .far = 1.0f});
+  add_quad(trace, {0, 0}, {4, 4}, 0.5f);
+  add_quad(trace, {2, 2}, {8, 8}, 0.25f, {.function = Compare::less_equal, .near = 0.5f, .far = 1.0f});
   DepthState untested;
   untested.test = false;
-  add_quad(trace, 0, 0, 8, 8, 0.125f, untested);  // writes no depth
+  add_quad(trace, {0, 0}, {8, 8}, 0.125f, untested);  // writes no depth
   const CentreDepths found = centre_depths(trace, trace.frames[0], nullptr);
   for (std::uint32_t y = 0; y < kSize; ++y)
     for (std::uint32_t x = 0; x < kSize; ++x) {
@@ -60,8 +60,8 @@ TEST(CapturedCheck, FindsWindowDepthsAndDraws) {
 
 TEST(CapturedCheck, ReversedDepthIsWindowDepthToo) {
   Trace trace = empty_trace();
-  add_quad(trace, 0, 0, 8, 8, 0.25f, {.function = Compare::greater});
-  add_quad(trace, 0, 0, 4, 8, 0.75f, {.function = Compare::greater});
+  add_quad(trace, {0, 0}, {8, 8}, 0.25f, {.function = Compare::greater});
+  add_quad(trace, {0, 0}, {4, 8}, 0.75f, {.function = Compare::greater});
   const CentreDepths found = centre_depths(trace, trace.frames[0], nullptr);
   EXPECT_NEAR(found.depth[0], 0.75, 1e-12);
   EXPECT_NEAR(found.depth[kSize - 1], 0.25, 1e-12);
@@ -70,8 +70,8 @@ TEST(CapturedCheck, ReversedDepthIsWindowDepthToo) {
 // Only what is drawn after the last clear is in the program's depth buffer at the end.
 TEST(CapturedCheck, ClearsForgetEarlierDepths) {
   Trace trace = empty_trace();
-  add_quad(trace, 0, 0, 8, 8, 0.5f);
-  add_quad(trace, 0, 0, 4, 8, 0.75f, {.cleared_before = true});
+  add_quad(trace, {0, 0}, {8, 8}, 0.5f);
+  add_quad(trace, {0, 0}, {4, 8}, 0.75f, {.cleared_before = true});
   const CentreDepths found = centre_depths(trace, trace.frames[0], nullptr);
   EXPECT_EQ(found.draw[0], 1u);
   EXPECT_NEAR(found.depth[0], 0.75, 1e-6);  // a group in front, or behind, keeps fewer bits
@@ -81,8 +81,8 @@ TEST(CapturedCheck, ClearsForgetEarlierDepths) {
 // The pipelines leave out depth without colour, and blending that they do not know.
 TEST(CapturedCheck, DepthCountsWhateverHappensToColors) {
   Trace trace = empty_trace();
-  add_quad(trace, 0, 0, 4, 8, 0.5f);
-  add_quad(trace, 4, 0, 8, 8, 0.25f);
+  add_quad(trace, {0, 0}, {4, 8}, 0.5f);
+  add_quad(trace, {4, 0}, {8, 8}, 0.25f);
   std::vector<Draw>& draws = trace.frames[0].draws;
   draws[0].state.color_mask = 0;
   draws[1].state.blend = Blend{BlendFactor::source_alpha, BlendFactor::one, BlendOperation::add};
@@ -99,8 +99,8 @@ TEST(CapturedCheck, DepthCountsWhateverHappensToColors) {
 
 TEST(CapturedCheck, CountsPixelsThatDiffer) {
   Trace trace = empty_trace();
-  add_quad(trace, 0, 0, 8, 4, 0.5f);
-  add_quad(trace, 0, 4, 8, 6, 0.25f);
+  add_quad(trace, {0, 0}, {8, 4}, 0.5f);
+  add_quad(trace, {0, 4}, {8, 6}, 0.25f);
   std::vector<float>& depth = trace.frames[0].capture.pictures.depth;
   for (std::size_t i = 0; i < 48; ++i) depth[i] = i < 32 ? 0.5f : 0.25f;
   EXPECT_EQ(check(trace).coverage(), 1.0);
@@ -156,7 +156,7 @@ TEST(DrawNotes, AreOneLineEach) {
 
 TEST(DrawNotes, OfSeveralFramesAreAddedUp) {
   Trace trace = empty_trace();
-  add_quad(trace, 0, 0, 8, 8, 0.5f);
+  add_quad(trace, {0, 0}, {8, 8}, 0.5f);
   trace.frames[0].draws[0].state.stencil = Stencil{.function = Compare::equal};
   trace.frames.push_back(trace.frames[0]);
   EXPECT_EQ(notes_of(trace, {0, 1}), (std::vector<DrawNote>{{"stencil test", true, 2, 4}}));

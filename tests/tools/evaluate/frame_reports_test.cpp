@@ -11,7 +11,7 @@ FrameReport report_of_frame(std::size_t index) {
   frame.index = index;
   frame.image = "beam/frame_" + std::to_string(index) + ".exr";
   frame.error = ErrorStats{0.1 * static_cast<double>(index), -1.0 / 3, 1e-30, 1};
-  frame.wall_ms = {1.0 / 7, 0.1, 0.3, 3, true, {}};
+  frame.wall_ms = {.median = 1.0 / 7, .min = 0.1, .max = 0.3, .runs = 3, .with_memory_model = true};
   frame.pixels = 1000 + index;
   frame.buffers = {{"open_pixels", 1ull << 60, true}};
   frame.pixel_counters["fragments"] = {2.5, 61};

@@ -106,6 +106,23 @@ class ResumeTest : public testing::Test {
     EXPECT_NE(outcome.err.find("frame_0001.png"), std::string::npos) << outcome.err;
     fs::remove(in_the_way);
   }
+  // Makes each of the changes in a copy of the folder `out`, in the record of the first frame. The run cannot go on
+  // from it, and ends like the one in the folder `whole`.
+  void expect_restarts(const std::vector<std::function<void(Json&)>>& changes, const Names& specs) {
+    for (std::size_t i = 0; i < changes.size(); ++i) {
+      SCOPED_TRACE(i);
+      const std::string out = "out_" + std::to_string(i);
+      fs::copy(folder_ / "out", folder_ / out, fs::copy_options::recursive);
+      const fs::path record = folder_ / out / frame_record_name(0);
+      Json json = Json::parse(read_text(record));
+      json.erase("digest");
+      changes[i](json);
+      json["digest"] = digest_of(json.dump(2) + "\n");
+      write_text(record, json.dump(2) + "\n");
+      EXPECT_EQ(succeed(resume("compare", out, specs)).err, "") << "the run starts from the beginning";
+      EXPECT_EQ(differences(out, "whole"), std::set<std::string>{});
+    }
+  }
 
   TemporaryFolder folder_;
 };
@@ -239,18 +256,7 @@ TEST_F(ResumeTest, ARecordThatSpeaksOfSomethingElseIsNotBelieved) {
       [](Json& json) { json["sums"]["causes"][0][0].clear(); },
       [](Json& json) { json["sums"]["orders"]["techniques"][0][0].push_back(1); },
       [](Json& json) { json["sums"]["orders"]["values"] = "many"; }};
-  for (std::size_t i = 0; i < changes.size(); ++i) {
-    SCOPED_TRACE(i);
-    const std::string out = "out_" + std::to_string(i);
-    fs::copy(folder_ / "out", folder_ / out, fs::copy_options::recursive);
-    Json json = Json::parse(read_text(record));
-    json.erase("digest");
-    changes[i](json);
-    json["digest"] = digest_of(json.dump(2) + "\n");
-    write_text(folder_ / out / frame_record_name(0), json.dump(2) + "\n");
-    EXPECT_EQ(succeed(resume("compare", out, specs)).err, "") << "the run starts from the beginning";
-    EXPECT_EQ(differences(out, "whole"), std::set<std::string>{});
-  }
+  expect_restarts(changes, specs);
 }
 
 TEST_F(ResumeTest, OrdersAndCausesGoOnToTheSameSums) {
@@ -300,24 +306,12 @@ TEST_F(ResumeTest, ARecordWithoutThePartsOfAnErrorIsNotBelieved) {
   const Names specs = {"msaa:2", "--ladder", "1"};
   succeed(command("compare", "whole", specs));
   leave_unfinished("compare", "out", specs);
-  const fs::path record = folder_ / "out" / frame_record_name(0);
   const std::vector<std::function<void(Json&)>> changes = {
       [](Json& json) { json["techniques"][0].erase("visibility"); },
       [](Json& json) { json["techniques"][0].erase("shading"); },
       [](Json& json) { json["techniques"][0]["shading"]["rmse"] = "none"; },
       [](Json& json) { json["sums"].erase("visibility_ladder"); }};
-  for (std::size_t i = 0; i < changes.size(); ++i) {
-    SCOPED_TRACE(i);
-    const std::string out = "out_" + std::to_string(i);
-    fs::copy(folder_ / "out", folder_ / out, fs::copy_options::recursive);
-    Json json = Json::parse(read_text(record));
-    json.erase("digest");
-    changes[i](json);
-    json["digest"] = digest_of(json.dump(2) + "\n");
-    write_text(folder_ / out / frame_record_name(0), json.dump(2) + "\n");
-    EXPECT_EQ(succeed(resume("compare", out, specs)).err, "") << "the run starts from the beginning";
-    EXPECT_EQ(differences(out, "whole"), std::set<std::string>{});
-  }
+  expect_restarts(changes, specs);
 }
 
 TEST_F(ResumeTest, WhatAnotherTraceOrOptionLeftIsRefused) {

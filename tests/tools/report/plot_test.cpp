@@ -131,7 +131,7 @@ TEST(LabelPlacement, KeepsLabelsOffEachOtherOffPointsAndInside) {
   SCOPED_TRACE("seed " + std::to_string(seed));
   std::mt19937 random(seed);
   std::uniform_real_distribution<double> x(60, 640), y(40, 380), width(20, 60);
-  LabelTask task{700, 420, 14, 5, {}, {}, {}};
+  LabelTask task{.width = 700, .height = 420, .label_height = 14, .point_radius = 5};
   for (int i = 0; i < 12; ++i) {
     task.points.push_back({x(random), y(random)});
     task.label_widths.push_back(i % 4 == 3 ? 0 : width(random));

@@ -11,7 +11,7 @@ std::vector<std::string> keys_of(const Json& json) {
 }
 
 Report sample_report() {
-  Report report{"a.json", "1.2.3", "AVX2", 2, {}, {}, {}, {}};
+  Report report{.trace = "a.json", .version = "1.2.3", .simd = "AVX2", .threads = 2};
   TechniqueReport& result = report.results.emplace_back();
   result.technique = "msaa:8";
   result.framebuffer = {{"depth", "D32F x 8", 32}, {"color", "RGB16F x 8", 48}};
@@ -21,12 +21,27 @@ Report sample_report() {
     frame.index = index;
     frame.image = "msaa_8/frame_000" + std::to_string(index) + ".exr";
     frame.picture = "msaa_8/frame_000" + std::to_string(index) + ".png";
-    frame.wall_ms = {2.0 * static_cast<double>(index), 1.0, 20.0, 3, false, 44.0};
+    frame.wall_ms = {
+        .median = 2.0 * static_cast<double>(index), .min = 1.0, .max = 20.0, .runs = 3, .modelling_run = 44.0};
     frame.a_buffer_peak_bytes = 100 * (10 - index);
     frame.buffers = {{"pairs", 64, true}};
     frame.pixels = 50;
     frame.pixel_counters = {{"fragments", {1.5, 4}}};
-    frame.stages = {{StageId::vertex_setup, 3, 1, {1, 2, 3, 4, 5, 6, 8}, 36, 80, 9, 3, 4, 128, 112, 96, 0, 0, 0, 0, 5, 6, 7}};
+    frame.stages = {{.stage = StageId::vertex_setup,
+                     .items_in = 3,
+                     .items_out = 1,
+                     .ops = {1, 2, 3, 4, 5, 6, 8},
+                     .bytes_read = 36,
+                     .bytes_written = 80,
+                     .position_tests = 9,
+                     .lanes_used = 3,
+                     .lanes_issued = 4,
+                     .sector_bytes = 128,
+                     .l2_bytes = 112,
+                     .dram_bytes = 96,
+                     .hidden_items = 5,
+                     .hidden_triangles = 6,
+                     .empty_tiles = 7}};
     result.frames.push_back(frame);
   }
   return report;

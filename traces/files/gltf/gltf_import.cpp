@@ -112,7 +112,7 @@ class GltfImport {
     const auto [found, is_new] = read_.try_emplace({mesh, primitive});
     if (is_new) {
       found->second.primitive =
-          read_primitive(file_, mesh, primitive, materials_, model_.trace, budget_, model_.not_read);
+          read_primitive({file_, materials_, model_.trace, budget_, model_.not_read}, mesh, primitive);
     }
     return found->second;
   }

@@ -297,9 +297,8 @@ Mesh GltfPrimitive::deformed(const GltfDeformation& deformation, const std::stri
   return result;
 }
 
-std::optional<GltfPrimitive> read_primitive(const GltfFile& file, std::size_t mesh, std::size_t primitive,
-                                            GltfMaterials& materials, const Trace& trace, GltfBudget& budget,
-                                            NotRead& not_read) {
+std::optional<GltfPrimitive> read_primitive(const GltfSource& source, std::size_t mesh, std::size_t primitive) {
+  const auto& [file, materials, trace, budget, not_read] = source;
   const tinygltf::Primitive& from = file.model.meshes[mesh].primitives[primitive];
   const std::string where = file.place("meshes", mesh) + "/primitives/" + std::to_string(primitive);
   PrimitiveReader reader(file, from, where, budget, not_read);

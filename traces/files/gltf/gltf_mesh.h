@@ -53,9 +53,16 @@ struct GltfPrimitive {
   Mesh deformed(const GltfDeformation& deformation, const std::string& where) const;
 };
 
+// What primitives are read from, what is left for them, and where they note what is not read.
+struct GltfSource {
+  const GltfFile& file;
+  GltfMaterials& materials;  // of `trace`
+  const Trace& trace;
+  GltfBudget& budget;
+  NotRead& not_read;
+};
+
 // Nothing if the primitive makes no triangles. Throws TraceError.
-std::optional<GltfPrimitive> read_primitive(const GltfFile& file, std::size_t mesh, std::size_t primitive,
-                                            GltfMaterials& materials, const Trace& trace, GltfBudget& budget,
-                                            NotRead& not_read);
+std::optional<GltfPrimitive> read_primitive(const GltfSource& source, std::size_t mesh, std::size_t primitive);
 
 }  // namespace beampipe

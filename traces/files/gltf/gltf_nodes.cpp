@@ -166,14 +166,15 @@ void GltfAnimation::add_channel(const GltfFile& file, const GltfNodes& nodes, co
   if (!is_cubic && sampler.interpolation != "LINEAR" && sampler.interpolation != "STEP")
     fail_trace(place + "/interpolation", "LINEAR, STEP or CUBICSPLINE", in_quotes(sampler.interpolation));
   const char* const types[] = {"VEC3", "VEC4", "VEC3", "SCALAR"};
-  Channel channel{node,
-                  Path(path),
-                  is_cubic                          ? Interpolation::cubic_spline
-                  : sampler.interpolation == "STEP" ? Interpolation::step
-                                                    : Interpolation::linear,
-                  {},
-                  GltfAccessor(file, sampler.output, types[path], place + "/output"),
-                  width};
+  const Interpolation interpolation = is_cubic                          ? Interpolation::cubic_spline
+                                      : sampler.interpolation == "STEP" ? Interpolation::step
+                                                                        : Interpolation::linear;
+  Channel channel{.node = node,
+                  .path = Path(path),
+                  .interpolation = interpolation,
+                  .times = {},
+                  .values = GltfAccessor(file, sampler.output, types[path], place + "/output"),
+                  .width = width};
   const GltfAccessor times(file, sampler.input, "SCALAR", place + "/input");
   for (std::size_t i = 0; i < times.count(); ++i) {
     const double time = times.number(i);
