@@ -41,8 +41,8 @@ RESULTS = ["beam", "beam:bin=16", "beam:order=stream", "casav", "z3:shape=128x3"
 READINGS = ["casav", *(f"casav:{reading}" for reading in (
     "mask=exact", "sort=nearest", "tiny=3", "overlap=over", "overlap=add", "overlap=transition", "regional=area",
     "local=keep", "fuzzy=mix", "extents=slab", "slab=visible", "plane=visible", "thickness=containing",
-    "tiny=3,overlap=transition", "storage=text", "order=near-first,layers=1", "order=near-first,layers=3",
-    "order=near-first,layers=8", "order=stream,layers=3", "order=stream,layers=8")), BEST_READING]
+    "tiny=3,overlap=transition", "storage=text", "order=near-first,layers=1", "order=near-first,layers=8",
+    "order=stream,layers=8")), BEST_READING]
 BINS = {spec: [spec, *(f"{spec}{',' if ':' in spec else ':'}bin={bin}" for bin in (16, 8))]
         for spec in ("beam", "beam:bits=64,slots=4", "beam:bits=32,slots=2")}
 ALL = list(dict.fromkeys(SCENES + list(STEPS.values()) + RESULTS + sum(CAPACITIES.values(), []) + OTHERS + READINGS +
