@@ -30,7 +30,7 @@ PICTURE_BYTES = 6  # of a pixel that is on chip until it is resolved
 CAPACITIES = {bits: [f"beam:{text}slots={slots}" for slots in SLOTS] for bits, text in POSITIONS.items()}
 OTHERS = ["beam", "beam:order=stream", "beam:order=sorted", "casav", "z3", "z3:shape=128x3", "acaa:8",
           "dvm", "msaa:8", "msaa:32", "msaa:256"]
-ABOVE = ["beam", "beam:order=stream"]  # their labels would cross a line at the right
+LABELS = {"beam": "right offset -0.6,0.6", "beam:order=stream": "left offset 0.6,0.6"}  # where a line is at the right
 BEST_READING = "casav:mask=exact,local=keep,fuzzy=mix,slab=visible,plane=visible"
 STEPS = {"1. published pipeline": "casav", "2. its best reading": BEST_READING,
          "3. without an A-buffer": "casav:order=near-first,layers=8",
@@ -171,11 +171,10 @@ def draw_frontier(table, path):
         data.append(f"$b{bits} << EOD\n" + "".join(f"{x} {y}\n" for x, y in points) + "EOD\n")
         plots.append(f"$b{bits} with linespoints pt 7 ps 0.6 title '{bits} positions, 2 to 32 slots'")
     points = {spec: f'{bytes_of(table, spec)[2]} {mean(table.values("emr", spec))} "{spec}"\n' for spec in OTHERS}
-    for name, specs, place in (("others", [spec for spec in OTHERS if spec not in ABOVE], "left offset 0.8,0"),
-                               ("above", ABOVE, "right offset -0.6,0.6")):
-        data.append(f"${name} << EOD\n" + "".join(points[spec] for spec in specs) + "EOD\n")
-        plots += [f"${name} using 1:2 with points pt 6 ps 1 lc 'black' notitle",
-                  f"${name} using 1:2:3 with labels {place} noenhanced font ',11' notitle"]
+    for i, (spec, point) in enumerate(points.items()):
+        data.append(f"$other{i} << EOD\n{point}EOD\n")
+        plots += [f"$other{i} using 1:2 with points pt 6 ps 1 lc 'black' notitle",
+                  f"$other{i} using 1:2:3 with labels {LABELS.get(spec, 'left offset 0.8,0')} noenhanced font ',11' notitle"]
     script = "".join(data) + f"""
 set terminal svg size 900,560 font 'sans-serif,13' background 'white'
 set output {json.dumps(str(path))}
