@@ -35,7 +35,7 @@ def print_causes(found):
     print_head("technique", *names)
     for spec in specs_of(found):
         shares = {name: [100 * by_spec[spec]["error_causes"][name] for by_spec in found.values()] for name in names}
-        print_row(f"`{spec}`", *(f"{statistics.median(each):.0f} %, {max(each):.0f} %" for each in shares.values()))
+        print_row(f"`{spec}`", *(f"{round(statistics.median(each))} %, {round(max(each))} %" for each in shares.values()))
 
 
 def print_orders(found):
