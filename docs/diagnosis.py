@@ -1,7 +1,7 @@
 #!/usr/bin/env python3
 """Makes the tables of docs/accuracy.md about causes of error, order of triangles, and flicker.
 
-usage: docs/diagnosis.py causes SPEC RESULTS...
+usage: docs/diagnosis.py causes RESULTS...
        docs/diagnosis.py orders RESULTS...
        docs/diagnosis.py motion RESULTS...
 
@@ -9,6 +9,7 @@ RESULTS are folders of `beampipe compare`, one for each scene: with --causes, wi
 """
 import json
 import pathlib
+import statistics
 import sys
 
 from measure import PROCEDURAL, print_head, print_row
@@ -24,40 +25,41 @@ def results(folders):
     return {name: found[name] for name in names}
 
 
-def print_causes(spec, found):
-    names = list(next(iter(found.values()))[spec]["error_causes"])
-    print_head(f"`{spec}`", "RMSE × 1000", *names)
-    for scene, by_spec in found.items():
-        print_row(scene, f"{1000 * by_spec[spec]['error']['rmse']:.2f}",
-                  *(f"{round(100 * by_spec[spec]['error_causes'][name])} %" for name in names))
+def specs_of(found):
+    return [spec for spec in next(iter(found.values())) if spec != "reference"]
+
+
+def print_causes(found):
+    """Of each cause, the median over the scenes of its share of the squared error, and the largest share."""
+    names = list(next(iter(found.values()))["beam"]["error_causes"])
+    print_head("technique", *names)
+    for spec in specs_of(found):
+        shares = {name: [100 * by_spec[spec]["error_causes"][name] for by_spec in found.values()] for name in names}
+        print_row(f"`{spec}`", *(f"{round(statistics.median(each))} %, {round(max(each))} %" for each in shares.values()))
 
 
 def print_orders(found):
-    names = ["given", "shuffled", "near_to_far", "far_to_near", "largest_difference"]
-    print_head("scene", "RMSE × 1000", *(name.replace("_", " ") for name in names))
-    for scene, by_spec in found.items():
-        for spec, result in by_spec.items():
-            if spec == "reference":
-                continue
-            values = [result["orders"][name] for name in names]
-            print_row(scene, f"`{spec}`", *(f"{1000 * (v['rmse'] if isinstance(v, dict) else v):.3f}" for v in values))
+    """RMS difference between the pictures of the two orders that differ most."""
+    print_head("technique", *found)
+    for spec in specs_of(found):
+        print_row(f"`{spec}`", *(f"{1000 * by_spec[spec]['orders']['largest_difference']:.3f}"
+                                 for by_spec in found.values()))
 
 
 def print_motion(found):
-    specs = [spec for spec in next(iter(found.values())) if spec != "reference"]
+    specs = specs_of(found)
     print_head("flicker × 1000", *(f"`{spec}`" for spec in specs))
     for scene, by_spec in found.items():
         print_row(scene, *(f"{1000 * by_spec[spec]['flicker']:.2f}" for spec in specs))
 
 
+TABLES = {"causes": print_causes, "orders": print_orders, "motion": print_motion}
+
+
 def main(arguments):
     match arguments:
-        case ["causes", spec, *folders] if folders:
-            print_causes(spec, results(folders))
-        case ["orders", *folders] if folders:
-            print_orders(results(folders))
-        case ["motion", *folders] if folders:
-            print_motion(results(folders))
+        case [kind, *folders] if kind in TABLES and folders:
+            TABLES[kind](results(folders))
         case _:
             sys.exit(__doc__.strip())
 

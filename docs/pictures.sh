@@ -1,0 +1,34 @@
+#!/usr/bin/env bash
+# Makes the pictures of the pages: docs/pictures.sh PROGRAM [MODELS]
+#
+# MODELS is the folder of the eight models of docs/accuracy.md. Without it, frontier.svg stays as it is: it takes a sweep
+# over all scenes, which goes on where it was interrupted. Needs gnuplot for that figure alone. Traces and results stay
+# in build/pictures.
+set -euo pipefail
+
+(($# == 1 || $# == 2)) || { sed -n '2,6s/^# \{0,1\}//p' "$0" >&2; exit 2; }
+program=$(realpath "$1")
+models=${2:+$(realpath "$2")}
+docs=$(cd "$(dirname "${BASH_SOURCE[0]}")" && pwd)
+mkdir -p "$docs/../build/pictures"
+cd "$docs/../build/pictures"
+
+# The fence: README.md, and a part of it in docs/findings.md.
+"$program" make fence -o fence.json
+"$program" run fence.json -t reference beam casav msaa:8 --no-memory-model --force -o fence
+cp fence/beam/frame_0000.png "$docs/pictures/fence_beam.png"
+cp fence/msaa_8/frame_0000.png "$docs/pictures/fence_msaa_8.png"
+"$docs/detail.py" 120,40,60,50 4 fence/{reference,beam,casav,msaa_8}/frame_0000.png -o "$docs/pictures/fence_detail.png"
+
+# The worst pixel of the boat: docs/tutorial.md.
+"$program" make boat -o boat.json
+"$program" inspect boat.json --worst 1 -t beam -o "$docs/pictures/inspect_boat.svg" >inspect_boat.txt
+
+# The pipeline: CONTRIBUTING.md.
+"$docs/pipeline_figure.py" "$program" "$docs/pictures/pipeline.svg"
+
+# Bytes per pixel against EMR: docs/findings.md.
+if [[ -n $models ]]; then
+  "$docs/accuracy.py" sweep "$program" "$models" -o accuracy
+  "$docs/accuracy.py" frontier accuracy/table.csv -o "$docs/pictures/frontier.svg"
+fi
