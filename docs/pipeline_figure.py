@@ -36,7 +36,7 @@ BEAM = [
     ("bin_sort", "sorted list", "bin list", "both"),
     ("conservative_raster", "pairs", "setup triangles", "read"),
     ("beam_fragment", "fragments", "", ""),
-    ("compose", "final owners", "depth planes|of owners", "read"),
+    ("compose", "retired surfaces", "depth planes|of surfaces", "read"),
     ("shade", "colours", "attributes", "read"),
     ("resolve", "", "picture", "write"),
 ]

@@ -192,7 +192,7 @@ Technique make_casav(const CasavOptions& options) {
           .has_weights = options.order == CasavOrder::sorted};
 }
 
-// simd/merge_rules.h explains the policies, and docs/techniques.md says where they come from.
+// simd/merge_rules.h explains the policies.
 SpecOptions casav_options(CasavOptions& o) {
   using R = MergeRules;
   return {

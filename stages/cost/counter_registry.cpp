@@ -15,7 +15,7 @@ const std::vector<PixelCounterInfo>& pixel_counters() {
        "fragments that are shaded at the centroid, because their triangle does not cover the centre",
        "msaa:N,at=centroid"},
       {"merges", "fragments",
-       "beam:order=sorted, published rules in sorted order and alpha: fragments that were composed before the pixel "
+       "beam:order=sorted, casav in sorted order and alpha: fragments that were composed before the pixel "
        "was "
        "closed; others: how often two surfaces, aggregates or layers were merged",
        "beam, alpha, z3"},
