@@ -112,7 +112,8 @@ TechniqueKind msaa_kind() {
                 choice("alpha", o.alpha, {{"test", AlphaCoverage::test}, {"coverage", AlphaCoverage::to_coverage}},
                        "alpha of cutouts: tested once per fragment, or taken as the share of its samples"),
                 flag("prepass", o.prepass,
-                     "depth first, so that only visible fragments are shaded; only translucent triangles look different: "
+                     "depth first, so that only visible fragments are shaded; only translucent triangles look "
+                     "different: "
                      "they are blended over the opaque surface that is visible in the end"),
                 flag("motion", o.motion, "makes motion vectors from the depths, for passes that need them"),
                 choice("resolve", o.space, {{"linear", ResolveSpace::linear}, {"reinhard", ResolveSpace::reinhard}},

@@ -46,8 +46,7 @@ constexpr std::array<StageInfo, kStageCount> kStages = {{
      "fragments of cutouts and of translucent triangles", "those of which something is left",
      "positions at which alpha is tested or ranked", "the same positions"},
     {StageId::compose, "compose", visibility, "#e15759", kYes, kYes, items | kArithmetic | kMemory | positions | lanes,
-     "fragments",
-     "aggregates: one per window (beam) or pixel (casav, alpha); fragments that take a position (z3)",
+     "fragments", "aggregates: one per window (beam) or pixel (casav, alpha); fragments that take a position (z3)",
      "positions whose depths are compared (beam); merged fragments (casav, alpha); fragments that take a "
      "position (z3)",
      "positions of all fragments (beam); all fragments (others)"},

@@ -23,8 +23,18 @@ Claim make_claim(const PublishedFigure& figure, std::optional<double> ours, cons
   std::string name = figure.name;
   if (const auto at = name.find(kImplementation); at != name.npos)
     name.replace(at, kImplementation.size(), implementation);
-  return {name,          figure.unit,          figure.low,       figure.high,       ours, figure.source, figure.command,
-          figure.remark, figure.by_definition, figure.reason, figure.numerator, figure.denominator};
+  return {name,
+          figure.unit,
+          figure.low,
+          figure.high,
+          ours,
+          figure.source,
+          figure.command,
+          figure.remark,
+          figure.by_definition,
+          figure.reason,
+          figure.numerator,
+          figure.denominator};
 }
 
 }  // namespace

@@ -57,11 +57,13 @@ void print_claims(const ClaimsArguments& arguments) {
 void add_claims_command(CommandLine& line) {
   const auto arguments = std::make_shared<ClaimsArguments>();
   Command command = line.add_command("claims", "Compare the numbers that publications state with ours");
-  command.add("DIR", arguments->folders, "folders that run or compare wrote; they hold the numbers that need rendering");
+  command.add("DIR", arguments->folders,
+              "folders that run or compare wrote; they hold the numbers that need rendering");
   add_hardware_options(command, arguments->hardware, HardwareCount::one);
   command.add_flag("--json", arguments->json, "print JSON");
   command.footer(
-      "Prints a table for each command, with the published number, ours, and the difference: ours minus the nearer end\n"
+      "Prints a table for each command, with the published number, ours, and the difference: ours minus the nearer "
+      "end\n"
       "of the published range. Notes say what our number is and why it differs. The command makes the folder that has\n"
       "our number; without the folder, the number is missing. A folder counts only if its trace is the one that the\n"
       "command makes; names of files do not matter. If several folders have a number, the first one is used.\n\n"

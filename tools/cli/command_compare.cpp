@@ -75,12 +75,14 @@ void add_compare_command(CommandLine& line, InterruptGate& gate) {
           "MSAA rates to measure, between which equivalent rates are interpolated (default: 1,2,4,...,256, and 512 and "
           "1024 if these are not enough)")
       .list("N,N,...");
-  command.add_flag("--causes", options->causes,
-                   "split each pixel's visibility error by cause, as layers of the counters and as a table (beam in every "
-                   "order, casav in sorted order, and alpha)");
-  command.add_flag("--orders", options->orders,
-                   "also render the triangles shuffled, near to far and far to near; print the error of each order and how "
-                   "far the pictures differ");
+  command.add_flag(
+      "--causes", options->causes,
+      "split each pixel's visibility error by cause, as layers of the counters and as a table (beam in every "
+      "order, casav in sorted order, and alpha)");
+  command.add_flag(
+      "--orders", options->orders,
+      "also render the triangles shuffled, near to far and far to near; print the error of each order and how "
+      "far the pictures differ");
   command
       .add("--inspect-worst", pixels->worst,
            "record the histories of the N worst pixels of each technique for the report page (default: 3; techniques "

@@ -62,8 +62,10 @@ void add_diff_command(CommandLine& line) {
   command.add("B", arguments->b, "the correct image, an EXR file of the same size").required();
   command.add_flag("--json", arguments->json, "print the result as JSON");
   command.footer(
-      "Compares linear R, G and B. Prints the number of pixels that differ, the root mean square error (rmse), the mean\n"
-      "of A - B (bias), the 99th percentile of the absolute errors (p99) and the largest error (max). The exit code is 0\n"
+      "Compares linear R, G and B. Prints the number of pixels that differ, the root mean square error (rmse), the "
+      "mean\n"
+      "of A - B (bias), the 99th percentile of the absolute errors (p99) and the largest error (max). The exit code is "
+      "0\n"
       "even if the pictures differ.");
   command.set_work([arguments] { diff(*arguments); });
 }

@@ -74,8 +74,10 @@ void add_plot_command(CommandLine& line, InterruptGate& gate) {
       .one_of({"frontier", "storage", "speed", "traffic"})
       .shows_default();
   command.footer(
-      "With several folders, draws geometric means of the techniques that are in all of them. A triangle marks a bound:\n"
-      "the equivalent MSAA rate is at least (triangle up) or at most (triangle down) the value drawn. Needs gnuplot.\n\n"
+      "With several folders, draws geometric means of the techniques that are in all of them. A triangle marks a "
+      "bound:\n"
+      "the equivalent MSAA rate is at least (triangle up) or at most (triangle down) the value drawn. Needs "
+      "gnuplot.\n\n"
       "Example:\n  beampipe plot out/fence out/maple -o frontier.svg");
   command.set_work([arguments, &gate] { plot(*arguments, gate); });
 }

@@ -136,9 +136,10 @@ void add_stress_command(CommandLine& line, InterruptGate& gate) {
       line.add_command("stress", "Compare techniques with exact arithmetic in cases that are numerically hard");
   command.add("-t,--technique", arguments->specs, "the techniques (default: some of each kind)");
   command.add("--case", arguments->cases, "run only these cases (default: all)");
-  command.add("-o,--output", arguments->output,
-              "a folder for stress.json, with all errors and limits, and for the traces of the cases (except not_finite: JSON "
-              "has no NaN)");
+  command.add(
+      "-o,--output", arguments->output,
+      "a folder for stress.json, with all errors and limits, and for the traces of the cases (except not_finite: JSON "
+      "has no NaN)");
   command.add("--threads", arguments->threads, "the number of threads (default: one per processor core)")
       .between(1, 1024);
   command.add_flag(

@@ -207,7 +207,8 @@ void add_sweep_command(CommandLine& line, InterruptGate& gate) {
   command.add("-o,--output", arguments->output, "the folder for the results; it is created if necessary").required();
   command
       .add("--jobs", arguments->jobs,
-           "render N cells at a time, or fewer if they need more than half of the memory (default: one per processor core)")
+           "render N cells at a time, or fewer if they need more than half of the memory (default: one per processor "
+           "core)")
       .between(1, 1024);
   command.add("--threads", arguments->threads, "threads per cell (default: the cores, shared among the cells)")
       .between(1, 1024);
@@ -219,7 +220,8 @@ void add_sweep_command(CommandLine& line, InterruptGate& gate) {
   cluster.add_flag("--slurm", arguments->slurm,
                    "submit the sweep to Slurm: an array of tasks, and a job that waits for them and makes the table");
   cluster
-      .add("--tasks", arguments->tasks, "the number of tasks (default: one for each group of cells that share a rendering, at most 256)")
+      .add("--tasks", arguments->tasks,
+           "the number of tasks (default: one for each group of cells that share a rendering, at most 256)")
       .between(1, 100000);
   cluster.add("--sbatch", arguments->sbatch, "options of sbatch for these jobs, without their dashes: time=2:00:00");
   cluster.add("--part", arguments->part, "I/N: do part I of N alone (I from 0), and make no table");

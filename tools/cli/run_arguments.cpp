@@ -94,12 +94,14 @@ void add_run_arguments(Command& command, RunArguments& arguments) {
   command.add_flag("--no-compression", arguments.no_compression, "model memory without the compression of blocks");
   command
       .add("--framebuffer", arguments.framebuffer,
-           "where the pixels of a bin are kept: on chip, as in tile-based rendering; in memory, behind caches; or as each "
+           "where the pixels of a bin are kept: on chip, as in tile-based rendering; in memory, behind caches; or as "
+           "each "
            "technique is designed (default: by-technique)")
       .one_of({kByTechnique, kOnChip, kInMemory});
   command
       .add("--on-chip-memory", arguments.on_chip_bytes,
-           "tile memory for the pixels of a bin, such as 128KB; if a bin does not fit, its pixels are in memory (default: "
+           "tile memory for the pixels of a bin, such as 128KB; if a bin does not fit, its pixels are in memory "
+           "(default: "
            "384KB)")
       .bytes(1, std::uint64_t{1} << 31);
   command.add_flag("--allow-outside", arguments.allow_outside, "allow the trace to name files outside its own folder");

@@ -396,11 +396,11 @@ TEST(Claims, ThatNeedRenderingHaveAReasonToDiffer) {
   std::set<std::string> without;
   for (const Claim& claim : all_claims({}))
     if (!claim.by_definition && claim.reason.empty() && !claim.beside.starts_with("none: ")) without.insert(claim.name);
-  EXPECT_EQ(without, (std::set<std::string>{
-                         "classroom, most fragments of a pixel",
-                         "two triangles per pixel, msaa:1,prepass, invocations per pixel",
-                         "two triangles per pixel, msaa:8,prepass, invocations per pixel",
-                         "two triangles per pixel, part of the triangles that cover no pixel's centre"}))
+  EXPECT_EQ(without,
+            (std::set<std::string>{"classroom, most fragments of a pixel",
+                                   "two triangles per pixel, msaa:1,prepass, invocations per pixel",
+                                   "two triangles per pixel, msaa:8,prepass, invocations per pixel",
+                                   "two triangles per pixel, part of the triangles that cover no pixel's centre"}))
       << "these are the numbers that do not differ";
 }
 
