@@ -82,7 +82,7 @@ TechniqueKind beam_kind() {
                         {"visible", OwnerPlace::visible},
                         {"quarters", OwnerPlace::quarters},
                         {"sixteenths", OwnerPlace::sixteenths}},
-                       "shading point of a textured or lit surface: the centroid of what its triangle covers, of its "
+                       "shading point of a surface with a material: the centroid of what its triangle covers, of its "
                        "own positions, or of its positions in each quarter or sixteenth of the pixel"),
                 choice("bin", o.bin, {{"8", 8}, {"16", 16}, {"32", 32}}, "pixels on each side of a bin")};
           },

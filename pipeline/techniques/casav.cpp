@@ -203,7 +203,7 @@ SpecOptions casav_options(CasavOptions& o) {
           choice("sort", o.sort, {{"centroid", SortKey::centroid}, {"nearest", SortKey::nearest}},
                  "the fragment's depth that the A-buffer sorts by")),
       choice("tiny", o.tiny_positions, {{"1", 1}, {"3", 3}},
-             "most mask positions that a small fragment is given, one that covers none"),
+             "most mask positions given to a small fragment, which covers none by itself"),
       choice("overlap", o.merge.overlap,
              {{"tiny", R::Overlap::tiny},
               {"over", R::Overlap::over},
