@@ -4,7 +4,7 @@
   docs/dram_simulators.py PROGRAM --dramsim3 FOLDER --ramulator2 FOLDER -t SPEC... -- TRACE...
 
 The folders are checkouts that have been built: DRAMsim3's build/dramsim3main and configs/, Ramulator 2's python/ with
-its extension module, built for the Python that runs this script. docs/memory_trace.md says how.
+its extension module, built for the Python that runs this script. docs/costs.md says how.
 
 Both simulators take at most one request per clock from a file, which is what two of the 48 pseudo channels of the
 modelled GPU need. So the requests are dealt to channels here, 256 bytes at a time, and each channel is simulated by

@@ -1,17 +1,15 @@
 #!/usr/bin/env python3
-"""Makes tables of docs/costs.md from finished runs: modelled times on several parts, and their ratios.
+"""Makes tables of docs/*.md from finished runs: modelled times on several parts, and their ratios.
 
 usage: docs/modelled_times.py times  PROGRAM [--hardware A,B,...] DIR...
        docs/modelled_times.py bins   PROGRAM [--hardware A,B,...] DIR...
-       docs/modelled_times.py ratios PROGRAM [--hardware A,B,...] DIR...
        docs/modelled_times.py errors PROGRAM [--hardware A,B,...] DIR...
        docs/modelled_times.py beam   PROGRAM [--hardware A,B,...] DIR...
        docs/modelled_times.py traffic PROGRAM [--hardware A,B,...] DIR...
 
 PROGRAM is for instance beampipe; `beampipe run TRACE -t SPEC... -o DIR` wrote the folders. `times` prints milliseconds,
 and the equivalent MSAA rate where `beampipe compare` wrote the folder.
-`bins` adds what a bin has on chip. `ratios` divides by the time of the published pipeline, beside the paper's ratios;
-`errors` prints those ratios alone.
+`bins` adds what a bin has on chip. `errors` divides times by that of the published pipeline, beside the paper's ratios.
 `beam` divides the times of beam by those of MSAA, for several prices of shading. `traffic` prints what a bin has on chip,
 DRAM bytes of geometry and of the rest, and milliseconds.
 """
@@ -24,9 +22,9 @@ from measure import print_head, print_row
 
 PUBLISHED_MS = {"casav": 30.2, "msaa:32": 24.0, "msaa:128": 78.0, "msaa:256": 198.0}  # Titan V, classroom
 BASE = "casav"
-COSTS = (0, 100, 300, 1000, 3000, 10000)  # operations per invocation
+COSTS = (0, 1000, 10000)  # operations per invocation
 GEOMETRY = {"vertex_setup", "bin_sort", "conservative_raster", "sample_raster", "beam_fragment", "shade"}
-BEAM, MSAA = "beam:bin=16", ("msaa:8", "msaa:8,prepass", "msaa:32")
+BEAM, MSAA = "beam:bin=16", ("msaa:8", "msaa:8,prepass")
 
 
 def model(program, hardware, folders, cost=0):
@@ -86,20 +84,6 @@ def bins(program, hardware, folders):
             print_row(f"`{technique}`", f"{kib[technique]:.0f}", *cells_of(of))
 
 
-def ratios(program, hardware, folders):
-    for folder, found in model(program, hardware, folders).items():
-        print(f"\n*{scene_of(folder)}*\n")
-        print_head("technique", "paper", *names_of(found))
-        for technique, of in found.items():
-            published = PUBLISHED_MS.get(technique, 0) / PUBLISHED_MS[BASE]
-            cells = []
-            for name, time in of.items():
-                ratio = time["sum"] / found[BASE][name]["sum"]
-                error = f" ({100 * (ratio / published - 1):+.0f} %)" if published and technique != BASE else ""
-                cells.append(f"{ratio:.2f}{error}")
-            print_row(f"`{technique}`", f"{published:.2f}" if published else "", *cells)
-
-
 def errors(program, hardware, folders):
     rates = [technique for technique in PUBLISHED_MS if technique != BASE]
     print_head("", *(f"`{technique}`" for technique in rates))
@@ -151,7 +135,7 @@ def traffic(program, hardware, folders):
 
 if __name__ == "__main__":
     parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
-    parser.add_argument("table", choices=("times", "bins", "ratios", "errors", "beam", "traffic"))
+    parser.add_argument("table", choices=("times", "bins", "errors", "beam", "traffic"))
     parser.add_argument("program")
     parser.add_argument("--hardware", default="titan_v")
     parser.add_argument("folders", nargs="+")

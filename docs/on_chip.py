@@ -1,5 +1,5 @@
 #!/usr/bin/env python3
-"""Prints the table of docs/accounting.md about what a bin has on chip.
+"""Prints the table of docs/costs.md about what a bin has on chip.
 
 usage: docs/on_chip.py PROGRAM TRACE
 
@@ -14,7 +14,7 @@ from measure import print_head, print_row, results
 
 SIDES = [8, 16, 32]
 BEAM = ["beam", "beam:bits=64,slots=4", "beam:bits=32,slots=2"]
-MSAA = ["msaa:8", "msaa:32"]
+MSAA = ["msaa:8"]
 PARTS = {"positions": ["owner_map"], "owners": ["owners"], "sums": ["sums"], "samples": ["depth", "color"]}
 
 

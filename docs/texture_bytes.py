@@ -1,9 +1,9 @@
 #!/usr/bin/env python3
-"""Makes the table of docs/accounting.md about the texels of a frame, by level of the memory system.
+"""Makes the table of docs/costs.md about the texels of a frame, by level of the memory system.
 
 usage: docs/texture_bytes.py PROGRAM
 
-PROGRAM is for instance build/release/tools/beampipe. The scenes are those with materials, at 1280 x 720.
+PROGRAM is for instance build/release/tools/beampipe. The scenes have materials; pictures are 1280 x 720.
 """
 import pathlib
 import sys
@@ -11,7 +11,7 @@ import tempfile
 
 import measure
 
-SCENES = ["room", "rigging", "leaves", "bumps", "sheets", "tiles"]
+SCENES = ["room", "leaves", "tiles"]
 SPECS = ["beam", "msaa:8"]
 LEVELS = ["texture_bytes", "texture_sector_bytes", "texture_l2_bytes", "texture_dram_bytes"]
 

@@ -36,7 +36,7 @@ struct TechniqueKind {
 const std::vector<TechniqueKind>& built_in_kinds();
 
 // Those that specs can name: the built-in ones, unless a program that has techniques of its own defines this function
-// itself (docs/library.md).
+// itself (docs/manual.md).
 const std::vector<TechniqueKind>& technique_kinds();
 
 // The specs of all techniques.

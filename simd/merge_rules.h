@@ -1,6 +1,6 @@
 // Choices that the published rules for merging (Crassin et al. 2018, section 2, and the slides of the talk) leave open.
 // Each is a policy with a name. The first value is the default; it follows the text of the paper where the text
-// decides. docs/accuracy.md tells how much each choice matters.
+// decides.
 #pragma once
 
 namespace beampipe {

@@ -62,8 +62,8 @@ TechniqueKind beam_kind() {
       .name = "beam",
       .variant = {"order", "near-first"},
       .description =
-          "each bin's triangles, sorted near to far, become fragments with analytic coverage and a mask; a pixel "
-          "keeps the owners of its mask positions until nothing nearer can come, in a state of fixed size",
+          "fragments with analytic coverage and a mask, taken near to far in each bin; a pixel keeps up to five "
+          "surfaces and retires those that nothing nearer can hide any more, so its state has a fixed size",
       .source = "ours, after Crassin et al. 2018",
       .examples = {"beam", "beam:bits=64,slots=4,at=visible", "beam:bits=32,slots=2,bin=8,at=quarters"},
       .stressed = {"beam", "beam:bits=64,slots=4", "beam:bits=32,slots=2"},
@@ -74,16 +74,16 @@ TechniqueKind beam_kind() {
                 beside(
                     "slots=2, 4, 8, 16 or 32, unless it is 256", [&o] { return o.positions == 256 || o.slots != 5; },
                     choice("bits", o.positions, {{"32", 32}, {"64", 64}, {"128", 128}, {"256", 256}},
-                           "positions of the mask; fewer than 256 need other slots than 5")),
+                           "positions of the mask; fewer than 256 need another number of slots than 5")),
                 choice("slots", o.slots, {{"2", 2}, {"4", 4}, {"5", 5}, {"8", 8}, {"16", 16}, {"32", 32}},
-                       "owners that a pixel keeps at once; if there are more, two become one"),
+                       "surfaces that a pixel keeps at once; when slots run out, two surfaces are merged"),
                 choice("at", o.shade_at,
                        {{"covered", OwnerPlace::covered},
                         {"visible", OwnerPlace::visible},
                         {"quarters", OwnerPlace::quarters},
                         {"sixteenths", OwnerPlace::sixteenths}},
-                       "where an owner is shaded that is not flat: at the centroid of what its triangle covers, of "
-                       "its positions, or of its positions in each quarter or sixteenth of the pixel"),
+                       "shading point of a surface with a material: the centroid of what its triangle covers, of its "
+                       "own positions, or of its positions in each quarter or sixteenth of the pixel"),
                 choice("bin", o.bin, {{"8", 8}, {"16", 16}, {"32", 32}}, "pixels on each side of a bin")};
           },
           [](const BeamOptions& o) {

@@ -70,8 +70,8 @@ TechniqueKind beam_sorted_kind() {
   return {.name = "beam",
           .variant = {"order", "sorted"},
           .description =
-              "the triangles of a pixel, sorted by depth, become fragments with analytic coverage and a mask, "
-              "composed near to far into one area-conserving aggregate until the pixel is closed",
+              "an A-buffer sorts the triangles of a pixel by depth; their fragments are composed near to far into one "
+              "aggregate that conserves area, until the pixel is closed",
           .source = "ours, after Crassin et al. 2018",
           .examples = {"beam:order=sorted", "beam:order=sorted,storage=float32"},
           .stressed = {"beam:order=sorted", "beam:order=sorted,storage=float32", "beam:order=sorted,bits=32"},

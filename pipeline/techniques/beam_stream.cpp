@@ -44,8 +44,8 @@ TechniqueKind beam_stream_kind() {
   return {.name = "beam",
           .variant = {"order", "stream"},
           .description =
-              "fragments in primitive order, without an A-buffer, bins or a sort; of more owners than a pixel has "
-              "slots for, two become one",
+              "the surfaces of beam with fragments in primitive order: no A-buffer, no bins, no sort; when slots run "
+              "out, two surfaces are merged",
           .source = "ours",
           .examples = {"beam:order=stream"},
           .stressed = {"beam:order=stream"},

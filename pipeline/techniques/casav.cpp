@@ -201,7 +201,7 @@ Technique make_casav(const CasavOptions& options) {
           .has_weights = options.order == CasavOrder::sorted};
 }
 
-// simd/merge_rules.h explains the policies, and docs/accuracy.md says where they come from.
+// simd/merge_rules.h explains the policies.
 SpecOptions casav_options(CasavOptions& o) {
   using R = MergeRules;
   return {
@@ -211,39 +211,40 @@ SpecOptions casav_options(CasavOptions& o) {
           "order=sorted", [&o] { return o.order == CasavOrder::sorted; },
           choice("sort", o.sort, {{"centroid", SortKey::centroid}, {"nearest", SortKey::nearest}},
                  "the fragment's depth that the A-buffer sorts by")),
-      choice("tiny", o.tiny_positions, {{"1", 1}, {"3", 3}}, "most mask positions that a speck is given"),
+      choice("tiny", o.tiny_positions, {{"1", 1}, {"3", 3}},
+             "most mask positions given to a small fragment, which covers none by itself"),
       choice("overlap", o.merge.overlap,
              {{"tiny", R::Overlap::tiny},
               {"over", R::Overlap::over},
               {"add", R::Overlap::add},
               {"transition", R::Overlap::transition}},
-             "how coverages combine where masks overlap: ADD for specks and OVER for others, OVER, ADD, or a "
+             "how coverages combine where masks overlap: ADD for small fragments and OVER for others, OVER, ADD, or a "
              "transition from ADD to OVER"),
       choice("regional", o.merge.regional, {{"local", R::Regional::local}, {"area", R::Regional::area}},
-             "the coverage of an overlapping region is normalized by the region's positions, or is its area"),
+             "coverage of an overlapping region: relative to the region's positions, or its area"),
       choice("local", o.merge.local, {{"clamp", R::Local::clamp}, {"keep", R::Local::keep}},
-             "a local coverage above 1 is clamped to 1, or kept"),
+             "whether a local coverage above 1 is clamped to 1 or kept"),
       choice("fuzzy", o.merge.fuzzy, {{"delta", R::Fuzzy::delta}, {"mix", R::Fuzzy::mix}},
              "blending within the slab: by the published formulas, or between over and under"),
       choice("extents", o.merge.extents, {{"range", R::Extents::range}, {"slab", R::Extents::slab}},
-             "the slab ends at its depth range, or at its thickness alone"),
+             "where the slab ends: at its depth range, or at its thickness alone"),
       choice("slab", o.merge.slab, {{"full", R::Slab::full}, {"visible", R::Slab::visible}},
-             "the slab grows by the whole fragment, or by its visible positions"),
+             "what the slab grows by: the whole fragment, or its visible positions"),
       choice("plane", o.merge.plane, {{"area", R::Plane::area}, {"visible", R::Plane::visible}},
-             "planes are weighted by coverage, or by what is visible of each"),
+             "how planes are weighted: by coverage, or by what is visible of each"),
       choice("thickness", o.merge.thickness,
              {{"larger", R::Thickness::larger}, {"containing", R::Thickness::containing}},
-             "the slab keeps the larger thickness, or contains all merged fragments"),
+             "thickness after a merge: the larger one, or one that contains all merged fragments"),
       choice("storage", o.storage,
              {{"slides", CasavStorage::slides}, {"text", CasavStorage::text}, {"float32", CasavStorage::float32}},
              "formats of the aggregate: as in the talk's slides, as in the paper's text, or float32"),
       choice("order", o.order,
              {{"sorted", CasavOrder::sorted}, {"near-first", CasavOrder::near_first}, {"stream", CasavOrder::stream}},
-             "fragments are sorted in an A-buffer, come from sorted bins, or come in primitive order"),
+             "order of fragments: sorted in an A-buffer, near to far from sorted bins, or primitive order"),
       beside(
           "order=near-first or order=stream", [&o] { return o.order != CasavOrder::sorted; },
           choice("layers", o.layers, {{"1", 1}, {"2", 2}, {"3", 3}, {"4", 4}, {"8", 8}},
-                 "without an A-buffer: aggregates that a pixel keeps"))};
+                 "aggregates that a pixel keeps without an A-buffer"))};
 }
 
 }  // namespace
@@ -251,8 +252,8 @@ SpecOptions casav_options(CasavOptions& o) {
 TechniqueKind casav_kind() {
   return {.name = "casav",
           .description =
-              "correlation-aware semi-analytic visibility, the published beam pipeline: a 32-bit mask from a table, a "
-              "depth slab, one aggregate per pixel; the options are other readings of its rules, see docs/accuracy.md",
+              "correlation-aware semi-analytic visibility, the beam pipeline as published: a 32-bit mask from a table, "
+              "and one aggregate with a depth slab per pixel; the options are other readings of the paper",
           .source = "Crassin et al. 2018",
           .examples = {"casav", "casav:mask=exact", "casav:storage=text",
                        "casav:sort=nearest,tiny=3,overlap=transition,regional=area,local=keep,fuzzy=mix,extents=slab,"
@@ -264,7 +265,7 @@ TechniqueKind casav_kind() {
 
 TechniqueKind alpha_kind() {
   return {.name = "alpha",
-          .description = "the fragments of the published rules, blended by plain OVER, without masks",
+          .description = "the fragments of casav, blended by plain OVER, without masks",
           .source = "Porter and Duff 1984",
           .examples = {"alpha"},
           .stressed = {"alpha"},

@@ -167,7 +167,7 @@ TechniqueKind dvm_kind() {
               [](DvmOptions& o) -> SpecOptions {
                 return {number("blend", o.blend, 0.001f, 1.0f, "weight of each new frame"),
                         choice("material", o.material, {{"color", MaterialBy::color}, {"draw", MaterialBy::draw}},
-                               "samples share what is shaded within a draw and Kd, or within a draw")};
+                               "which samples may share a colour: those of one draw and Kd, or of one draw")};
               },
               [](const DvmOptions& o) {
                 return Technique{.framebuffer = dvm_framebuffer(),

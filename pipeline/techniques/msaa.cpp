@@ -105,16 +105,17 @@ TechniqueKind msaa_kind() {
                 samples(o.samples, kMaxMsaaSamples, "samples per pixel"),
                 choice("color", o.rgba, {{"rgb16f", false}, {"rgba16f", true}}, "format of a sample's colour"),
                 choice("at", o.at, {{"centre", ShadeAt::centre}, {"centroid", ShadeAt::centroid}},
-                       "where a fragment is shaded that does not cover the pixel's centre: there all the same, or at "
-                       "the centroid of its samples"),
+                       "shading point when the centre is uncovered: the centre anyway, or the centroid of the covered "
+                       "samples"),
                 choice("alpha", o.alpha, {{"test", AlphaCoverage::test}, {"coverage", AlphaCoverage::to_coverage}},
-                       "of cutouts: tested once per fragment, or the part of its samples that it takes"),
+                       "alpha of cutouts: tested once per fragment, or taken as the share of its samples"),
                 flag("prepass", o.prepass,
-                     "depth first, so that only visible fragments are shaded; the picture is the same, but that "
-                     "translucent triangles are blended over what is opaque and visible in the end"),
+                     "depth first, so that only visible fragments are shaded; only translucent triangles look "
+                     "different: "
+                     "they are blended over the opaque surface that is visible in the end"),
                 flag("motion", o.motion, "makes motion vectors from the depths, for passes that need them"),
                 choice("resolve", o.space, {{"linear", ResolveSpace::linear}, {"reinhard", ResolveSpace::reinhard}},
-                       "the mean is that of linear colours, or of colours compressed by Reinhard's operator")};
+                       "colours that are averaged: linear, or compressed by Reinhard's operator")};
           },
           [](const MsaaOptions& o) {
             return Technique{.framebuffer = msaa_framebuffer(o),

@@ -122,7 +122,7 @@ TechniqueKind taa_kind() {
                                {{"visibility", TaaShading::visibility},
                                 {"deferred", TaaShading::deferred},
                                 {"forward", TaaShading::forward}},
-                               "how a frame is shaded: as by visibility, deferred or msaa:1,prepass")};
+                               "how a frame is shaded: like visibility, deferred or msaa:1,prepass")};
               },
               [](const TaaOptions& o) {
                 return Technique{.framebuffer = taa_framebuffer(o.shading),

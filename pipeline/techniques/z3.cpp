@@ -63,7 +63,7 @@ FrameResult render_z3(const FrameJob& job, const Z3Options& z3) {
 TechniqueKind z3_kind() {
   return {.name = "z3",
           .description =
-              "fragments in primitive order, kept in a few layers per pixel; when there is no room, two layers merge",
+              "fragments in primitive order, kept in a few layers per pixel; when layers run out, two are merged",
           .source = "Jouppi and Chang 1999",
           .examples = {"z3", "z3:shape=128x3"},
           .stressed = {"z3", "z3:shape=128x3"},

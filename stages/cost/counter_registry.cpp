@@ -15,11 +15,11 @@ const std::vector<PixelCounterInfo>& pixel_counters() {
        "fragments that are shaded at the centroid, because their triangle does not cover the centre",
        "msaa:N,at=centroid"},
       {"merges", "fragments",
-       "beam:order=sorted, published rules in sorted order and alpha: fragments that were composed before the pixel "
+       "beam:order=sorted, casav in sorted order and alpha: fragments that were composed before the pixel "
        "was "
-       "closed; others: how often two owners, aggregates or layers became one",
+       "closed; others: how often two surfaces, aggregates or layers were merged",
        "beam, alpha, z3"},
-      {"tiny_triangles", "fragments", "fragments that cover no mask position (specks)",
+      {"tiny_triangles", "fragments", "small fragments, which cover no mask position",
        "beam:order=sorted, casav, alpha"},
       {"largest_window", "fragments", "fragments of the largest window", "beam:order=sorted"},
       {"visible_fragments", "fragments", "triangles that have a visible sample in the pixel", "acaa"},

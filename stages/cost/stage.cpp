@@ -36,7 +36,7 @@ constexpr std::array<StageInfo, kStageCount> kStages = {{
      "samples at which a triangle is nearer than all earlier ones", "samples that a triangle covers",
      "samples that a triangle covers"},
     {StageId::a_buffer, "a_buffer", fragments, "#9c755f", kYes, kYes, items | add | kMemory,
-     "pairs (beam) or fragments (published rules)", "the same items, sorted within each pixel"},
+     "pairs (beam) or fragments (casav)", "the same items, sorted within each pixel"},
     {StageId::windows, "windows", fragments, "#d7b5a6", kYes, kYes, items | add | reads | writes | sectors,
      "pairs, from near to far", "windows"},
     {StageId::beam_fragment, "beam_fragment", fragments, "#f28e2b", kYes, kYes,
@@ -46,9 +46,8 @@ constexpr std::array<StageInfo, kStageCount> kStages = {{
      "fragments of cutouts and of translucent triangles", "those of which something is left",
      "positions at which alpha is tested or ranked", "the same positions"},
     {StageId::compose, "compose", visibility, "#e15759", kYes, kYes, items | kArithmetic | kMemory | positions | lanes,
-     "fragments",
-     "aggregates: one per window (beam) or pixel (published rules, alpha); fragments that take a position (z3)",
-     "positions whose depths are compared (beam); merged fragments (published rules, alpha); fragments that take a "
+     "fragments", "aggregates: one per window (beam) or pixel (casav, alpha); fragments that take a position (z3)",
+     "positions whose depths are compared (beam); merged fragments (casav, alpha); fragments that take a "
      "position (z3)",
      "positions of all fragments (beam); all fragments (others)"},
     {StageId::alpha_test, "alpha_test", fragments, "#c3d56b", kNo, kYes,

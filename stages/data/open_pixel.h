@@ -229,7 +229,7 @@ constexpr std::uint32_t owners_fragment_bytes(std::size_t words) {
 }
 
 // The instances that exist: X(words, slots). 4 words with 7 slots are for streaming order, the others for near-first
-// order: its default, and those of docs/accuracy.md.
+// order: its default, and those that specs can name.
 #define BEAMPIPE_SLOT_COUNTS(X, words) X(words, 2) X(words, 4) X(words, 8) X(words, 16) X(words, 32)
 #define BEAMPIPE_OPEN_PIXELS(X) \
   BEAMPIPE_SLOT_COUNTS(X, 1)    \

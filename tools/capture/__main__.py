@@ -17,7 +17,7 @@ DESCRIPTION = "Make a trace from frames of a real program that draws with OpenGL
 EXAMPLES = """What is kept: all triangles of the main pass as they leave the vertex, tessellation or geometry shader,
 with the state of their draws (depth, blending, stencil, viewport, culling), textures where they explain the picture,
 and the program's own picture and depth buffer to compare with. The program's fragment shaders are not run by beampipe.
-docs/capture.md has more.
+docs/manual.md says how it works and what a trace leaves out.
 
 Examples:
   beampipe capture -o gears.json -- glxgears
@@ -58,7 +58,7 @@ def parse(words):
     when.add_argument("--frame", type=_positive(int, 10**9), metavar="N", help="capture frame N, counted from 1")
     parser.add_argument("--frames", type=_positive(int, 1000), default=1, metavar="K",
                         help="capture K frames in a row into one trace (default: 1)")
-    parser.add_argument("--list", action="store_true", help="list the passes of the frame; writes nothing")
+    parser.add_argument("--list", action="store_true", help="list the passes of the frame and write nothing")
     parser.add_argument("--target", type=_positive(int, 2**64), metavar="ID",
                         help="keep the pass that draws to colour target ID (see --list)")
     parser.add_argument("--timeout", type=_positive(float, 86400), default=300, metavar="S",

@@ -2,8 +2,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <cstdio>
-#include <sstream>
 
 #include "tools/claims/our_figures.h"
 #include "tools/claims/published_figures.h"
@@ -34,31 +32,9 @@ Claim make_claim(const PublishedFigure& figure, std::optional<double> ours, cons
           .command = figure.command,
           .beside = figure.remark,
           .by_definition = figure.by_definition,
+          .reason = figure.reason,
           .numerator = figure.numerator,
           .denominator = figure.denominator};
-}
-
-std::string number(double value, int digits = 4) {
-  char text[32];
-  std::snprintf(text, sizeof text, "%.*g", digits, value);
-  return text;
-}
-
-std::string table_of(const std::vector<Claim>& claims) {
-  std::string text =
-      "| claim | unit | published | ours | difference | what ours is | source | command "
-      "|\n|---|---|---|---|---|---|---|---|\n";
-  for (const Claim& claim : claims) {
-    std::string published = number(claim.published_low, 6);
-    if (!std::isfinite(claim.published_high))
-      published += " or more";
-    else if (claim.published_high != claim.published_low)
-      published += " to " + number(claim.published_high, 6);
-    text += "| " + claim.name + " | " + claim.unit + " | " + published + " | " +
-            (claim.ours ? number(*claim.ours) : "") + " | " + (claim.ours ? number(*claim.difference()) : "") + " | " +
-            claim.beside + " | " + claim.source + " | `" + claim.command + "` |\n";
-  }
-  return text;
 }
 
 }  // namespace
@@ -131,25 +107,8 @@ Form<Claim> claim_form() {
           form::one_of({kRendered, kByDefinition}), "How our number was found.")
       .written("source", &Claim::source, form::text(), "The place in the publication.")
       .written("command", &Claim::command, form::text(), "What finds our number.")
-      .written("beside", &Claim::beside, form::text(), "What our number is, if it is not the same quantity.");
-}
-
-std::string claims_text(const std::vector<Claim>& claims) {
-  std::vector<Claim> rendered, by_definition;
-  for (const Claim& claim : claims) (claim.by_definition ? by_definition : rendered).push_back(claim);
-  const auto numbers = std::count_if(rendered.begin(), rendered.end(), [](const Claim& each) { return each.ours; });
-  const auto without = std::count_if(rendered.begin(), rendered.end(),
-                                     [](const Claim& each) { return each.beside.starts_with("none: "); });
-  std::ostringstream text;
-  text << "## What was rendered\n\n"
-       << table_of(rendered) << "\n## True by definition\n\n"
-       << table_of(by_definition) << '\n'
-       << claims.size() << " rows: " << numbers << " with a number from rendering, " << by_definition.size()
-       << " true by definition, " << without << " without a number";
-  if (const auto left = static_cast<std::ptrdiff_t>(rendered.size()) - numbers - without; left > 0)
-    text << ", " << left << " whose reports were not given";
-  text << ".\n";
-  return text.str();
+      .written("beside", &Claim::beside, form::text(), "What our number is, if it is not the same quantity.")
+      .written("reason", &Claim::reason, form::text(), "Why our number differs; empty: it does not, or nobody knows.");
 }
 
 }  // namespace beampipe

@@ -17,6 +17,7 @@ struct Claim {
   std::string source, command;  // the place in the publication; the command whose report has our number
   std::string beside;  // how our number differs from the published quantity, or why there is none; empty: it does not
   bool by_definition = false;  // our number is a format or a constant of the program, and not what rendering gave
+  std::string reason = {};     // why our number differs; empty: it does not, or nobody knows
   std::string numerator = {},
               denominator = {};  // our number is the quotient of these claims' numbers; empty: it is not
 
@@ -35,10 +36,7 @@ void find_quotients(std::vector<Claim>& claims);
 // The claims for which the report gives a number.
 std::vector<Claim> answered_claims(const Report& report);
 
-// As in report.json.
+// As in report.json and in `beampipe claims --json`.
 Form<Claim> claim_form();
-
-// As two Markdown tables, of what was rendered and of what is true by definition, and the numbers of their rows.
-std::string claims_text(const std::vector<Claim>& claims);
 
 }  // namespace beampipe

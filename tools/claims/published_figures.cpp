@@ -28,16 +28,18 @@ void read_numbers(const JsonCursor& claim, PublishedFigure& figure) {
 
 PublishedFigure read_claim(const JsonCursor& claim, const JsonCursor& group) {
   claim.expect_keys({"name", "published", "published_low", "published_high", "derived_from", "unit", "source", "remark",
-                     "formula", "quotient_of", "no_number"});
+                     "reason", "formula", "quotient_of", "no_number"});
   PublishedFigure figure;
   figure.name = claim["name"].string();
   read_numbers(claim, figure);
   figure.unit = text_of(claim, group, "unit");
   figure.source = text_of(claim, group, "source");
   figure.remark = text_of(claim, group, "remark");
+  figure.reason = text_of(claim, group, "reason");
   figure.command = group["command"].string();
   if (const auto reason = claim.find("no_number")) {
     figure.remark = "none: " + reason->string();
+    figure.reason = "";
   } else if (const auto quotient = claim.find("quotient_of")) {
     const auto names = quotient->elements();
     if (names.size() != 2) quotient->fail("the names of two claims", std::to_string(names.size()));
@@ -59,7 +61,7 @@ std::vector<PublishedFigure> parse_published_figures(const std::string& text, co
   publication["beampipe_claims"].integer(1, 1);
   std::vector<PublishedFigure> figures;
   for (const JsonCursor& group : publication["groups"].elements()) {
-    group.expect_keys({"topic", "source", "trace", "unit", "command", "remark", "claims"});
+    group.expect_keys({"topic", "source", "trace", "unit", "command", "remark", "reason", "claims"});
     for (const JsonCursor& claim : group["claims"].elements()) {
       figures.push_back(read_claim(claim, group));
       figures.back().topic = group["topic"].choice({"design", "traffic", "time", "quality", "passes"});

@@ -1,8 +1,8 @@
 // What publications state in numbers. These are data: tools/claims/published/*.json, one file per publication, built
 // into the program.
 //
-// A file holds groups of claims with the same topic and command. A group also has the unit, the source and the remark
-// of those of its claims that do not have their own. A claim names the formula of our number
+// A file holds groups of claims with the same topic and command. A group also has the unit, the source, the remark and
+// the reason of those of its claims that do not have their own. A claim names the formula of our number
 // (tools/claims/our_figures.h), or two other claims whose numbers are divided ("quotient_of"), or, as "no_number", the
 // reason why there is none. Claims of the topic "design" are about formats and constants: our numbers are read from the
 // program and need no rendering. A group of any other topic has the digest of its "trace", the one that its command
@@ -21,6 +21,7 @@ struct PublishedFigure {
   std::string source;        // the place in the publication
   std::string command;       // what to run to get our number
   std::string remark;        // what our number is if it is not the same quantity, or why there is none
+  std::string reason;        // why our number differs; empty: it does not, or nobody knows
   std::string trace;         // the digest of the trace that the command makes, which alone has our number; empty: none
   std::string formula;       // of our number; empty: it is a quotient, or there is none
   std::string numerator, denominator;  // the names of the claims whose quotient is our number; empty: it is not one

@@ -115,15 +115,14 @@ void add_check_capture_command(CommandLine& line, InterruptGate& gate) {
   command.add_flag("--json", arguments->json, "print the result as JSON");
   command.add_flag("--allow-outside", arguments->allow_outside, "allow the trace to name files outside its own folder");
   command.footer(
-      "Draws what writes depth at the pixels' centres, and compares it with the depth buffer that the trace holds. "
-      "Prints\n"
-      "the part of the covered pixels that are covered in both, how many of these have the same depth to within 1e-6 "
-      "and\n"
-      "1e-4, and the ten draws with most pixels that differ by more. In the pictures, green pixels are equal, yellow "
-      "ones\n"
-      "close and red ones different; blue pixels are covered only here, magenta ones only in the program. The exit "
-      "code\n"
-      "is 0 even if depths differ.");
+      "Draws what writes depth, with one sample at each pixel's centre, and compares it with the depth buffer in the\n"
+      "trace. Prints the share of covered pixels that both cover, the share of those whose depths agree to 1e-6 and "
+      "to\n"
+      "1e-4, and the ten draws with the most pixels that differ by more. In the pictures, green pixels are equal, "
+      "yellow\n"
+      "ones close and red ones different; blue pixels are covered only here, magenta ones only in the program. The "
+      "exit\n"
+      "code is 0 even if depths differ.");
   command.set_work([arguments, &gate] { check_capture(*arguments, gate); });
 }
 

@@ -16,12 +16,11 @@ namespace beampipe {
 namespace {
 
 constexpr const char* kCompareFooter =
-    R"(The reference is the technique `reference`, which takes 4096 samples per pixel; its pictures are written too.
-Errors are differences of linear RGB values from it: RMSE (root mean square), bias (mean), p99 (99th percentile of the
-absolute values) and max. EMR, the equivalent MSAA rate, is the number of samples N at which msaa:N has the same RMSE
-on the same frames. So an EMR of 20 means: as good as MSAA with 20 samples per pixel.
-Where surfaces vary, errors are split: visibility (who covers how much of a pixel, with its own EMR) and shading (what
-colour it was taken to be). All pictures are then rendered twice.
+    R"(The reference is the technique `reference`, with 4096 samples per pixel; its pictures are written too. Errors are
+differences of linear RGB values from it: RMSE (root mean square), bias (mean), p99 (99th percentile of the absolute
+values) and max. EMR, the equivalent MSAA rate, is the N at which msaa:N has the same RMSE on the same frames.
+With materials, errors have two parts: visibility (how much of a pixel each surface covers; it has its own EMR) and
+shading (the colour of each surface there). All pictures are then rendered twice.
 
 Example:
   beampipe compare fence.json -t beam alpha msaa:1,8,32 -o out
@@ -76,19 +75,20 @@ void add_compare_command(CommandLine& line, InterruptGate& gate) {
           "MSAA rates to measure, between which equivalent rates are interpolated (default: 1,2,4,...,256, and 512 and "
           "1024 if these are not enough)")
       .list("N,N,...");
-  command.add_flag("--causes", options->causes,
-                   "split each pixel's error (where surfaces vary: its error in visibility) by cause, as layers of the "
-                   "counters and as a table "
-                   "(beam in every order, casav in sorted order, and alpha)");
-  command.add_flag("--orders", options->orders,
-                   "also render with the triangles shuffled, from near to far and from far to near, and tell the error "
-                   "of each order and how far the pictures differ");
+  command.add_flag(
+      "--causes", options->causes,
+      "split each pixel's visibility error by cause, as layers of the counters and as a table (beam in every "
+      "order, casav in sorted order, and alpha)");
+  command.add_flag(
+      "--orders", options->orders,
+      "also render the triangles shuffled, near to far and far to near; print the error of each order and how "
+      "far the pictures differ");
   command
       .add("--inspect-worst", pixels->worst,
-           "how many pixels of each technique, those with the largest errors, to keep with their histories for the "
-           "report page (default: 3; techniques that `beampipe inspect` can tell of)")
+           "record the histories of the N worst pixels of each technique for the report page (default: 3; techniques "
+           "that `beampipe inspect` can explain)")
       .between(0, 1000);
-  command.add("--inspect", pixels->chosen, "X,Y of other pixels to keep with their histories, in every frame");
+  command.add("--inspect", pixels->chosen, "X,Y of other pixels to record, in every frame");
   command.footer(kCompareFooter + technique_help());
   command.set_work([arguments, options, pixels, &gate] { compare(*arguments, *options, *pixels, gate); });
 }

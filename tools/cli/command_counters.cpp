@@ -105,7 +105,7 @@ void add_counters_command(CommandLine& line) {
   command.add("STAGE", arguments->stage, "one stage alone");
   command.add_flag("--json", arguments->json, "print JSON, with the stages' groups and colours");
   command.footer(
-      "The operations of a stage are those of its scalar formulas, which run on numbers that count.\n\nExample:\n"
+      "Operations are counted by running a stage's scalar formulas on numbers that count.\n\nExample:\n"
       "  beampipe counters compose");
   command.set_work([arguments] { print_counters(*arguments); });
 }

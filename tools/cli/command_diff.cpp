@@ -59,14 +59,14 @@ void add_diff_command(CommandLine& line) {
   const auto arguments = std::make_shared<DiffArguments>();
   Command command = line.add_command("diff", "Measure how far picture A is from picture B");
   command.add("A", arguments->a, "an EXR image").required();
-  command.add("B", arguments->b, "an EXR image of the same size, which is taken as correct").required();
+  command.add("B", arguments->b, "the correct image, an EXR file of the same size").required();
   command.add_flag("--json", arguments->json, "print the result as JSON");
   command.footer(
-      "Compares R, G and B in linear light and prints the number of pixels that differ, the root mean square error "
-      "(rmse),\n"
-      "the mean of A - B (bias), the 99th percentile of the absolute errors (p99) and the largest (max). The exit code "
-      "is\n"
-      "0 even if the pictures differ.");
+      "Compares linear R, G and B. Prints the number of pixels that differ, the root mean square error (rmse), the "
+      "mean\n"
+      "of A - B (bias), the 99th percentile of the absolute errors (p99) and the largest error (max). The exit code is "
+      "0\n"
+      "even if the pictures differ.");
   command.set_work([arguments] { diff(*arguments); });
 }
 

@@ -64,11 +64,10 @@ void add_export_soup_command(CommandLine& line, InterruptGate& gate) {
   command.add("--frame", arguments->frame, "the frame; the first one is 0 (default: 0)");
   command.add_flag("--allow-outside", arguments->allow_outside, "allow the trace to name files outside its own folder");
   command.footer(
-      "Other rasterizers can draw exactly these triangles, for comparison. The file is little-endian: \"SOUP\"; "
-      "uint32\n"
-      "version 1, width, height, triangles; float background[3]; then for each triangle float clip[3][4], in OpenGL "
-      "clip\n"
-      "space with w = 1, and float rgb[3], linear.");
+      "For other rasterizers, to draw exactly these triangles. The file is little-endian: \"SOUP\"; uint32 version 1,\n"
+      "width, height, triangles; float background[3]; then for each triangle float clip[3][4], in OpenGL clip space "
+      "with\n"
+      "w = 1, and float rgb[3], linear.");
   command.set_work([arguments, &gate] {
     const std::filesystem::path file = std::filesystem::absolute(arguments->output);
     if (std::error_code none; std::filesystem::equivalent(file, arguments->trace, none))

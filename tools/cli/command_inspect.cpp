@@ -28,12 +28,15 @@ namespace beampipe {
 namespace {
 
 constexpr const char* kInspectFooter =
-    R"(Prints every triangle that touches the pixel, in the order in which the technique takes them: its exact area, its
-depths (-1 near to 0 far), the mask positions or samples that it covers, took and lost, and to whom; then what the
-technique did with them, the weight of each triangle beside its weight in the reference, and where the area went that
-is wrong. The causes are those of `beampipe compare --causes` (docs/accuracy.md). Triangles are numbered as
-`beampipe export-soup` writes them. Weights times colours, and what formats and limits changed, add up to the bits of
-the picture that `beampipe run` writes.
+    R"(Prints the history of a pixel:
+  Fragments   the triangles that touch it, in the technique's order: exact area, depths (-1 near to 0 far), the mask
+              positions or samples that each covers, takes and loses
+  Positions   or Samples: a picture of who has which part of the pixel, and of what each fragment covers
+  Steps       what the technique did: merges, and surfaces that retire
+  Weights     the part of the pixel that each triangle has, and should have by the reference
+  Where the area went   which surface gained or lost how much, by the causes of `beampipe compare --causes`
+Triangles are numbered as `beampipe export-soup` writes them. Weights times colours, plus what formats and limits
+changed, are the bits of the picture that `beampipe run` writes.
 
 Examples:
   beampipe inspect fence.json --pixel 160,90 -t beam msaa:8

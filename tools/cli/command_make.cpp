@@ -112,16 +112,16 @@ void add_make_command(CommandLine& line, InterruptGate& gate) {
       .between(1, kMaxSide)
       .shows_default();
   command
-      .add("--frames", arguments->frames,
-           "the number of frames (default: 1); more than one show a glTF model's animation, unless --orbit or --pan is "
-           "given")
+      .add(
+          "--frames", arguments->frames,
+          "the number of frames (default: 1); several frames play a glTF model's animation, unless --orbit or --pan is "
+          "given")
       .between(1, 100000);
-  const Option orbit =
-      command.add("--orbit", arguments->orbit,
-                  "move the camera around its target by so many degrees, over all frames together (default: 0)");
+  const Option orbit = command.add("--orbit", arguments->orbit,
+                                   "turn the camera around its target by N degrees over all frames (default: 0)");
   const Option pan = command
                          .add("--pan", arguments->pan,
-                              "move the picture by so many pixels, right and down, from each frame to the next")
+                              "move the picture by X pixels to the right and Y down from each frame to the next")
                          .exactly(2, "X,Y")
                          .excludes(orbit);
 

@@ -43,7 +43,7 @@ void add_model_command(CommandLine& line) {
   add_hardware_options(command, arguments->hardware);
   command.add_flag("--json", arguments->json, "print JSON, with the time of each stage");
   command.footer(
-      "Nothing is rendered: times follow from the counts in report.json.\n\nExample:\n"
+      "Renders nothing: times follow from the counts in report.json.\n\nExample:\n"
       "  beampipe run fence.json -t beam msaa:8 -o out\n"
       "  beampipe model out --hardware titan_v,rtx_4090,mali_g710 --material-cost 200,4");
   command.set_work([arguments] { model(*arguments); });

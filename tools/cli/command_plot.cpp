@@ -68,18 +68,16 @@ void add_plot_command(CommandLine& line, InterruptGate& gate) {
   command.add("-o,--output", arguments->output, "the picture: FILE.svg or FILE.png").required();
   command
       .add("--kind", arguments->kind,
-           "frontier: framebuffer and A-buffer (bytes per pixel) and equivalent MSAA rate; storage: the same with what "
-           "a bin has on chip; speed: time (ms) and error (RMSE); traffic: DRAM bytes of each stage, of one folder, "
-           "which "
-           "run may have written too")
+           "frontier: bytes per pixel of framebuffer and A-buffer against equivalent MSAA rate; storage: the same with "
+           "memory on chip; speed: time (ms) against error (RMSE); traffic: DRAM bytes of each stage, of one folder of "
+           "run or compare")
       .one_of({"frontier", "storage", "speed", "traffic"})
       .shows_default();
   command.footer(
-      "Given several folders, it draws the geometric means of the techniques that are in all of them. A triangle marks "
-      "a\n"
-      "bound: the equivalent MSAA rate is at least (triangle up) or at most (triangle down) the value drawn. Needs "
-      "the\n"
-      "program gnuplot.\n\n"
+      "With several folders, draws geometric means of the techniques that are in all of them. A triangle marks a "
+      "bound:\n"
+      "the equivalent MSAA rate is at least (triangle up) or at most (triangle down) the value drawn. Needs "
+      "gnuplot.\n\n"
       "Example:\n  beampipe plot out/fence out/maple -o frontier.svg");
   command.set_work([arguments, &gate] { plot(*arguments, gate); });
 }

@@ -66,8 +66,8 @@ void add_report_command(CommandLine& line, InterruptGate& gate) {
   command.add("DIR", arguments->folder, "the folder that run or compare has written").required();
   command.add(
       "--frame", arguments->frame,
-      "the frame that the page shows first (default: the first one); a page with many large pictures has only some of "
-      "the frames, and always this one");
+      "the frame that the page shows first (default: the first one); if a page would be too large, it has only some "
+      "frames, and always this one");
   command.footer(
       "Writes into DIR: report.html, a single file to open in a browser; tables/*.csv, the tables of the page; and\n"
       "plots/*.svg, its plots (needs the program gnuplot).\n\nExample:\n  beampipe compare fence.json -t beam msaa:8 "

@@ -136,9 +136,10 @@ void add_stress_command(CommandLine& line, InterruptGate& gate) {
       line.add_command("stress", "Compare techniques with exact arithmetic in cases that are numerically hard");
   command.add("-t,--technique", arguments->specs, "the techniques (default: some of each kind)");
   command.add("--case", arguments->cases, "run only these cases (default: all)");
-  command.add("-o,--output", arguments->output,
-              "a folder for stress.json, which holds all errors and limits, and for the traces of the cases (except "
-              "not_finite, because JSON has no NaN and no infinity)");
+  command.add(
+      "-o,--output", arguments->output,
+      "a folder for stress.json, with all errors and limits, and for the traces of the cases (except not_finite: JSON "
+      "has no NaN)");
   command.add("--threads", arguments->threads, "the number of threads (default: one per processor core)")
       .between(1, 1024);
   command.add_flag(
@@ -147,9 +148,10 @@ void add_stress_command(CommandLine& line, InterruptGate& gate) {
       "which takes 5 to 9 GB and a minute or two for each technique (taa and dvm need 30 GB: name others with -t)");
   command.footer(
       R"(Each cell of the table is the largest error over all pixels and R, G, B, A. Techniques that sample are compared with
-the exact values at their samples, all others with exact areas. Where surfaces vary, pictures must hold nothing but what
-textures and lights can give, or equal another picture; "exact" means that they do. A star (*) marks an error above the rounding of fp16
-that has a stated reason, and an exclamation mark (!) one above the stated limit; then the exit code is 1.)");
+exact values at their samples, all others with exact areas. With materials, "exact" means that the picture has only
+colours that its textures and lights can give, or that it equals another picture. A star (*) marks an error above the
+rounding of fp16 that has a stated reason. An exclamation mark (!) marks one above the stated limit; the exit code is
+then 1.)");
   command.set_work([arguments, &gate] { stress(*arguments, gate); });
 }
 

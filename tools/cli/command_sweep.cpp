@@ -33,11 +33,12 @@ constexpr const char* kSweepFooter =
 
 Axes: traces, techniques, sizes ("320x180"), memory_system (files), memory_system.NAME, hardware (names or files),
 hardware.NAME, implementations. "errors": true compares pictures with the reference; "frames": [0, 1] renders these
-alone; "points" is a list of small grids in place of the one. Files are relative to the plan's folder.
+alone; "points" is a list of smaller grids in place of the one. Files are relative to the plan's folder, and
+`beampipe schema sweep` describes every key.
 
-What does not change is not rendered again: other hardware is modelled from the same counts, and a cache that holds
-everything counts like any other one that does. The same command goes on after a stop. The folder gets table.csv and
-table.sqlite, whose table `columns` explains the columns.
+Rows that must have the same counts share one rendering: rows that differ in hardware alone, and rows whose caches
+never evict a line. After a stop the same command continues. The folder gets table.csv and table.sqlite; the table
+`columns` in the latter explains the columns. A plan may have 100,000 rows.
 
 Examples:
   beampipe sweep plan.json -o out --plot memory_system.l2_bytes,dram_bytes,technique
@@ -206,9 +207,10 @@ void add_sweep_command(CommandLine& line, InterruptGate& gate) {
   command.add("-o,--output", arguments->output, "the folder for the results; it is created if necessary").required();
   command
       .add("--jobs", arguments->jobs,
-           "render so many cells at a time, as far as the machine has memory (default: one per processor core)")
+           "render N cells at a time, or fewer if they need more than half of the memory (default: one per processor "
+           "core)")
       .between(1, 1024);
-  command.add("--threads", arguments->threads, "the threads of each of them (default: the cores that are left to it)")
+  command.add("--threads", arguments->threads, "threads per cell (default: the cores, shared among the cells)")
       .between(1, 1024);
   command.add("--plot", arguments->plots,
               "X,Y,BY: draw column Y of the table against column X as SVG, with a line for each value of column BY; "
@@ -218,7 +220,8 @@ void add_sweep_command(CommandLine& line, InterruptGate& gate) {
   cluster.add_flag("--slurm", arguments->slurm,
                    "submit the sweep to Slurm: an array of tasks, and a job that waits for them and makes the table");
   cluster
-      .add("--tasks", arguments->tasks, "so many tasks (default: one for all cells that share renderings, at most 256)")
+      .add("--tasks", arguments->tasks,
+           "the number of tasks (default: one for each group of cells that share a rendering, at most 256)")
       .between(1, 100000);
   cluster.add("--sbatch", arguments->sbatch, "options of sbatch for these jobs, without their dashes: time=2:00:00");
   cluster.add("--part", arguments->part, "I/N: do part I of N alone (I from 0), and make no table");

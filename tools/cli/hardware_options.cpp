@@ -33,12 +33,12 @@ void add_hardware_options(Command& command, HardwareOptions& options, HardwareCo
   command.add("--hardware", options.hardware,
               "the hardware whose times are modelled: " + list_of(hardware_names(), "or") +
                   ", or a file that describes one" + several + " (default: " + hardware_names().front() + ")");
-  command.add("--material-cost", options.material_cost,
-              "OPERATIONS[,FETCHES[,REGISTERS]]: what each invocation of a fragment shader costs beside the materials "
-              "of the trace, in modelled times");
+  command.add(
+      "--material-cost", options.material_cost,
+      "OPERATIONS[,FETCHES[,REGISTERS]]: what each fragment shader invocation costs in modelled times, in addition to "
+      "the materials of the trace");
   command.add("--light-cost", options.light_cost,
-              "the same for lighting: in the stage `light` of techniques that have one, in the fragment shader of "
-              "others");
+              "the same for lighting, in the stage `light` or, without one, in the fragment shader");
 }
 
 std::vector<Hardware> read_hardware(const HardwareOptions& options) {

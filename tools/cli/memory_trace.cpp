@@ -42,11 +42,11 @@ void append_line(std::string& text, const std::string& format, const DramRequest
 void add_memory_trace_arguments(Command& command, MemoryTraceArguments& arguments) {
   const Option file = command.add(
       "--memory-trace", arguments.file,
-      "write the DRAM requests of the frame to this file, one a line, for simulators of DRAM; compressed with "
-      "gzip if the name ends in .gz. Only for one technique and one frame");
+      "write the DRAM requests of one frame of one technique to this file, one a line, for simulators of DRAM; a name "
+      "that ends in .gz is compressed");
   command
       .add("--memory-trace-format", arguments.format,
-           "what the lines are: those that DRAMsim3 reads, those that Ramulator 2 reads, or CSV with the stage")
+           "the lines: for DRAMsim3, for Ramulator 2, or CSV with the stage and the array")
       .one_of({kDramSim3, kRamulator2, kCsv})
       .shows_default()
       .needs(file);

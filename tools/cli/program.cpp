@@ -18,9 +18,8 @@ namespace {
 constexpr int kRuntimeError = 1, kUsageError = 2;
 
 constexpr const char* kDescription =
-    "beampipe simulates the beam rasterization pipeline and other antialiasing techniques stage by stage. It tells "
-    "how\n"
-    "their pictures look, how wrong they are, and what every stage costs.";
+    "beampipe simulates the beam rasterization pipeline and other antialiasing techniques stage by stage. It renders\n"
+    "their pictures, measures the errors, and counts what every stage costs.";
 
 constexpr const char* kExamples = R"(Examples:
   beampipe make fence -o fence.json

@@ -1,4 +1,4 @@
-// The program `beampipe` as a function, for programs that have techniques of their own too (docs/library.md).
+// The program `beampipe` as a function, for programs that have techniques of their own too (docs/manual.md).
 #pragma once
 
 namespace beampipe {

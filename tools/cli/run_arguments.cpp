@@ -68,42 +68,41 @@ void add_run_arguments(Command& command, RunArguments& arguments) {
       .one_of(simd_targets());
   command
       .add("--memory-limit", arguments.memory_limit,
-           "the most memory for data of triangles and pixels, such as 512MB. A frame that needs more is rendered in "
-           "bands, "
-           "one after the other, with the same results (default: half of the machine's memory)")
+           "the most memory for data of triangles and pixels, such as 512MB; larger frames are rendered in bands, with "
+           "the same results (default: half of the machine's memory)")
       .bytes(std::uint64_t{1} << 20, std::uint64_t{1} << 50);
   command
       .add("--repeat", arguments.repeat,
-           "render each frame so many times and report the median time (default: 1). With more than one, the times do "
-           "not "
-           "include modelling memory, which one additional run does")
+           "render each frame N times and report the median time (default: 1); above 1, memory is modelled in one "
+           "additional run that is not timed")
       .between(1, 1000000);
   command.add_flag("--resume", arguments.resume,
                    "continue a stopped run: keep the finished frames that the same command left in the folder");
   command.add_flag("--force", arguments.force,
-                   "write over the results of another trace, or of this one in another size or from another camera, "
-                   "and with `run` over those of `compare`");
+                   "overwrite results of another trace, size or camera; `run` also overwrites results of `compare`");
   add_hardware_options(command, arguments.hardware);
   command.add(
       "--trace-events", arguments.trace_events,
-      "write a timeline of the stages per tile and thread to this file, which must be outside the output folder; "
-      "ui.perfetto.dev shows it");
+      "write a timeline of the stages, by tile and thread, to this file outside the output folder; ui.perfetto.dev "
+      "shows it");
   command.add_flag(
       "--no-memory-model", arguments.no_memory_model,
       "do not model caches and DRAM: rendering is faster, and sector_bytes, l2_bytes and dram_bytes are 0");
   command.add("--memory-system", arguments.memory_system,
-              "a file that describes the modelled memory system: caches, sectors, compression, bins "
-              "(docs/manual.md; default: that of a Titan V). The next three options change what it says");
+              "a file that describes the modelled memory system: caches, sectors, compression, bins (`beampipe schema "
+              "memory_system`; default: that of a Titan V). The next three options override it");
   command.add_flag("--no-compression", arguments.no_compression, "model memory without the compression of blocks");
   command
       .add("--framebuffer", arguments.framebuffer,
-           "where the pixels of a bin are while it is drawn: on chip, as in tile-based rendering; in memory, behind "
-           "caches; or where each technique is made to keep them (default: by-technique)")
+           "where the pixels of a bin are kept: on chip, as in tile-based rendering; in memory, behind caches; or as "
+           "each "
+           "technique is designed (default: by-technique)")
       .one_of({kByTechnique, kOnChip, kInMemory});
   command
       .add("--on-chip-memory", arguments.on_chip_bytes,
-           "the memory on chip for the pixels of a bin, such as 128KB; pixels that do not fit are kept in memory "
-           "(default: 384KB)")
+           "tile memory for the pixels of a bin, such as 128KB; if a bin does not fit, its pixels are in memory "
+           "(default: "
+           "384KB)")
       .bytes(1, std::uint64_t{1} << 31);
   command.add_flag("--allow-outside", arguments.allow_outside, "allow the trace to name files outside its own folder");
 }

@@ -43,8 +43,8 @@ void apply_camera(const TraceView& view, const std::vector<std::size_t>& frames,
 void add_trace_view_options(Command& command, TraceView& view) {
   command
       .add("--width", view.width,
-           "the width of the picture in pixels, for traces that name a camera; what is seen from top to bottom stays "
-           "the same (default: the trace's, or in proportion to --height)")
+           "the width of the picture in pixels, for traces that name a camera; the vertical angle of view stays "
+           "(default: the trace's, or in proportion to --height)")
       .between(1, kMostPixels);
   command.add("--height", view.height, "the height of the picture in pixels, likewise").between(1, kMostPixels);
   command.add("--camera", view.camera, kCameraHelp);

@@ -299,9 +299,9 @@ std::string fate_text(Fate fate) {
     case Fate::hidden:
       return "hidden";
     case Fate::speck:
-      return "speck, added";
+      return "small fragment, added";
     case Fate::speck_hidden:
-      return "speck, not added";
+      return "small fragment, not added";
     case Fate::owner:
       return "owner";
     case Fate::composed:
@@ -332,9 +332,9 @@ std::string step_text(const HistoryStep& step, const PixelHistory& history) {
   switch (step.kind) {
     case merged:
       return when + surface_text(step.before[0]) + " and " + surface_text(step.before[1]) +
-             " became one: " + counted(step.after->positions, history) + ", colour " + color_text(step.after->color);
+             " were merged: " + counted(step.after->positions, history) + ", colour " + color_text(step.after->color);
     case settled:
-      return when + "final: " + surface_text(step.before[0]) + format(", area %.5f", step.before[0].area);
+      return when + "retired: " + surface_text(step.before[0]) + format(", area %.5f", step.before[0].area);
     case composed:
       break;
   }
