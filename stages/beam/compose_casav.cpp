@@ -11,7 +11,7 @@ namespace {
 
 // Rounds the colour to fp16, as compose_over stores it.
 Aggregate stored_over(Aggregate aggregate) {
-  for (float& channel : aggregate.color) channel = HalfBits(channel);
+  for (float& channel : aggregate.color) channel = rounded_to_half(channel);
   return aggregate;
 }
 

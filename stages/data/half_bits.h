@@ -44,6 +44,16 @@ struct HalfBits {
   operator float() const { return half_value(bits); }
 };
 
+// The value of HalfBits(value), found without its bits: a float32 whose last 13 bits are rounded away, or a multiple of
+// 2^-24.
+inline float rounded_to_half(float value) {
+  const std::uint32_t bits = std::bit_cast<std::uint32_t>(std::clamp(value, -HalfBits::kMost, HalfBits::kMost));
+  const std::uint32_t magnitude = bits & 0x7fffffffu;
+  const std::uint32_t normal = (magnitude + 0xfffu + (magnitude >> 13 & 1u)) & ~0x1fffu;
+  const std::uint32_t small = std::bit_cast<std::uint32_t>((std::bit_cast<float>(magnitude) + 0.5f) - 0.5f);
+  return std::bit_cast<float>((magnitude < 113u << 23 ? small : normal) | (bits & 0x80000000u));
+}
+
 // The upper half of a float32, rounded. It has the range of a float32, which depth slopes need: they go down to 1e-9
 // per pixel.
 struct UpperHalf {

@@ -223,7 +223,7 @@ Reflector<float> through_gbuffer(Reflector<float> surface) {
 float limited_alpha(float alpha) { return greater(lesser(alpha, 1.0f), 0.0f); }
 
 void round_to_half(glm::vec3& color) {
-  for (int c = 0; c < 3; ++c) color[c] = HalfBits(color[c]);
+  for (int c = 0; c < 3; ++c) color[c] = rounded_to_half(color[c]);
 }
 
 }  // namespace

@@ -12,7 +12,7 @@ namespace beampipe {
 namespace {
 
 glm::vec4 round_half(glm::vec4 color) {
-  for (int c = 0; c < 4; ++c) color[c] = HalfBits(color[c]);
+  for (int c = 0; c < 4; ++c) color[c] = rounded_to_half(color[c]);
   return color;
 }
 

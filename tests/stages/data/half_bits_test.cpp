@@ -32,10 +32,16 @@ TEST(HalfBits, FloatsBecomeTheNearestOne) {
     ASSERT_EQ(half_of(middle), even);
     ASSERT_EQ(half_of(std::nextafter(middle, 1e9f)), bits + 1);
     ASSERT_EQ(half_of(-middle), even | 0x8000);
+    if (even == kInfinity) continue;
+    ASSERT_EQ(rounded_to_half(middle), by_definition(even));
+    ASSERT_EQ(rounded_to_half(-std::nextafter(middle, 0.0f)), -by_definition(bits));
+    ASSERT_EQ(rounded_to_half(std::nextafter(middle, 1e9f)), by_definition(bits + 1));
   }
 }
 
 TEST(HalfBits, WhatIsTooLargeIsInfiniteOrTheLargest) {
+  EXPECT_EQ(rounded_to_half(1e9f), HalfBits::kMost);
+  EXPECT_EQ(rounded_to_half(-65520.0f), -HalfBits::kMost);
   constexpr float kInfinite = std::numeric_limits<float>::infinity();
   for (const float value : {65520.0f, 1e9f, kInfinite}) {
     EXPECT_EQ(nearest_half(value), kInfinite);
