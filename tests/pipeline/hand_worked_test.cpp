@@ -1,9 +1,7 @@
 // Every byte of every stage for two traces, worked out by hand (docs/accounting.md).
-#include <gtest/gtest.h>
-
-#include <filesystem>
 
 #include "pipeline/technique.h"
+#include "tests/test.h"
 #include "traces/files/trace_io.h"
 
 namespace beampipe::hand_worked_test {
