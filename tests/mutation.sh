@@ -208,7 +208,10 @@ for mutant in "${mutants[@]}"; do
   [[ $file == pipeline/* ]] && folders=(pipeline)
   [[ $file == tools/* ]] && folders=(tools)
   for folder in "${folders[@]}"; do
-    cmake --build "$build" --target "${folder}_tests" >/dev/null
+    if ! cmake --build "$build" --target "${folder}_tests" >/dev/null 2>&1; then
+      noticed="the compiler"  # of a build with warnings as errors
+      break
+    fi
     log=$("$build/tests/${folder}_tests" --gtest_fail_fast --gtest_brief=1 2>&1) && continue
     noticed=$(sed -n 's/^\[  FAILED  \] \([^ ,]*\).*/\1/p' <<<"$log" | head -1)
     noticed=${noticed:-a crash of ${folder}_tests}

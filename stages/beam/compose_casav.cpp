@@ -15,6 +15,12 @@ Aggregate stored_over(Aggregate aggregate) {
   return aggregate;
 }
 
+// By value, so that nothing points to an aggregate that is kept in registers.
+void tell_over(bool is_first, const Fragment& fragment, Aggregate before, Aggregate after, PixelObserver& observer) {
+  observer.enters(!is_first, fragment);
+  if (!is_first) observer.joins(0, {before, merge_fragment(fragment).surface, after, 1.0f, 1.0f - before.alpha});
+}
+
 void finish_aggregates(const PixelObservers* observers) {
   if (!observers) return;
   for (const auto& observer : *observers)
@@ -85,19 +91,18 @@ std::vector<Aggregate> compose(const std::vector<Fragment>& fragments, const ABu
 std::vector<Aggregate> compose_over(const std::vector<Fragment>& fragments, const ABuffer& buffer,
                                     StageCounters& counters, const PixelObservers* observers) {
   const std::size_t pixels = buffer.first.size() - 1;
-  std::vector<Aggregate> aggregates(pixels, kEmptyAggregate);
+  std::vector<Aggregate> aggregates;
+  aggregates.reserve(pixels);
   for (std::size_t pixel = 0; pixel < pixels; ++pixel) {
-    Aggregate& aggregate = aggregates[pixel];
+    Aggregate aggregate = kEmptyAggregate;
+    PixelObserver* const observer = observer_at(observers, pixel);
     for (std::uint32_t i = buffer.first[pixel]; i < buffer.first[pixel + 1]; ++i) {
-      const MergeFragment fragment = merge_fragment(fragments[buffer.records[i]]);
+      const Fragment& fragment = fragments[buffer.records[i]];
       const Aggregate before = aggregate;
-      aggregate = stored_over(over_formula(fragment, before));
-      PixelObserver* const observer = observer_at(observers, pixel);
-      if (!observer) continue;
-      const bool is_first = i == buffer.first[pixel];
-      observer->enters(!is_first, fragments[buffer.records[i]]);
-      if (!is_first) observer->joins(0, {before, fragment.surface, aggregate, 1.0f, 1.0f - before.alpha});
+      aggregate = stored_over(over_formula(merge_fragment(fragment), before));
+      if (observer) tell_over(i == buffer.first[pixel], fragment, before, aggregate, *observer);
     }
+    aggregates.push_back(aggregate);
   }
   finish_aggregates(observers);
   charge_merges(buffer, over_cost() * buffer.records.size(), kOverFragmentBytes, kOverBytes, counters);

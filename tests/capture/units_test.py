@@ -48,28 +48,18 @@ class Errors(unittest.TestCase):
 
 
 class Triangles(unittest.TestCase):
-    def test_a_strip_turns_every_second_triangle(self):
-        found = geometry.triangles_of("TriangleStrip", np.array([5, 6, 7, 8, 9]))
-        self.assertEqual(found.tolist(), [[5, 6, 7], [7, 6, 8], [7, 8, 9]])
-
-    def test_a_fan_has_its_first_vertex_everywhere(self):
-        self.assertEqual(geometry.triangles_of("TriangleFan", np.array([3, 4, 5, 6])).tolist(), [[3, 4, 5], [3, 5, 6]])
-
-    def test_a_restart_index_begins_a_new_strip_with_a_new_orientation(self):
-        indices = np.array([0, 1, 2, 3, 255, 4, 5, 6, 255, 7, 8])
-        found = geometry.triangles_of("TriangleStrip", indices, 255)
-        self.assertEqual(found.tolist(), [[0, 1, 2], [2, 1, 3], [4, 5, 6]])
-
-    def test_restart_indices_at_both_ends_and_in_a_row(self):
-        found = geometry.triangles_of("TriangleFan", np.array([9, 9, 0, 1, 2, 9]), 9)
-        self.assertEqual(found.tolist(), [[0, 1, 2]])
-
-    def test_an_incomplete_triangle_is_left_out(self):
-        self.assertEqual(geometry.triangles_of("TriangleList", np.arange(5)).tolist(), [[0, 1, 2]])
-        self.assertEqual(len(geometry.triangles_of("TriangleStrip", np.arange(2))), 0)
-
-    def test_neighbours_are_not_corners(self):
-        self.assertEqual(geometry.triangles_of("TriangleList_Adj", np.arange(6)).tolist(), [[0, 2, 4]])
+    def test_topologies(self):
+        for why, topology, indices, restart, expected in [
+                ("a strip turns every second one", "TriangleStrip", [5, 6, 7, 8, 9], None, [[5, 6, 7], [7, 6, 8], [7, 8, 9]]),
+                ("a fan's first vertex is everywhere", "TriangleFan", [3, 4, 5, 6], None, [[3, 4, 5], [3, 5, 6]]),
+                ("a restart begins a strip with a new orientation", "TriangleStrip",
+                 [0, 1, 2, 3, 255, 4, 5, 6, 255, 7, 8], 255, [[0, 1, 2], [2, 1, 3], [4, 5, 6]]),
+                ("restarts at both ends and in a row", "TriangleFan", [9, 9, 0, 1, 2, 9], 9, [[0, 1, 2]]),
+                ("incomplete ones are left out", "TriangleList", range(5), None, [[0, 1, 2]]),
+                ("incomplete ones are left out", "TriangleStrip", range(2), None, []),
+                ("neighbours are not corners", "TriangleList_Adj", range(6), None, [[0, 2, 4]])]:
+            with self.subTest(why):
+                self.assertEqual(geometry.triangles_of(topology, np.array(indices), restart).tolist(), expected)
 
     def test_lines_and_points_have_no_triangles(self):
         self.assertIsNone(geometry.triangles_of("LineStrip", np.arange(6)))
@@ -241,13 +231,17 @@ class Matrices(unittest.TestCase):
 
     MATRIX = np.array([[0.9, -0.3, 0.1, 0.2], [0.25, 1.1, -0.05, 0.1], [0, 0.04, 0.98, -0.6], [0.01, 0.02, -0.2, 1.3]])
 
+    @staticmethod
+    def vertices(seed, count):
+        return np.random.default_rng(seed).normal(size=(count, 4)).astype(np.float32)
+
     def test_a_solid_that_moved(self):
-        old = np.random.default_rng(1).normal(size=(500, 4)).astype(np.float32)
+        old = self.vertices(1, 500)
         found = motion.find_matrix(old, self.moved(old, self.MATRIX))
         np.testing.assert_allclose(found, self.MATRIX, atol=1e-5)
 
     def test_a_flat_mesh_that_moved(self):
-        old = np.random.default_rng(2).normal(size=(50, 4)).astype(np.float32)
+        old = self.vertices(2, 50)
         old[:, 3] = 1
         old[:, 2] = 0.5
         new = self.moved(old, self.MATRIX)
@@ -256,17 +250,17 @@ class Matrices(unittest.TestCase):
         self.assertGreater(abs(np.linalg.det(found)), 1e-6)
 
     def test_a_mesh_that_stayed(self):
-        old = np.random.default_rng(3).normal(size=(9, 4)).astype(np.float32)
+        old = self.vertices(3, 9)
         np.testing.assert_array_equal(motion.find_matrix(old, old.copy()), np.eye(4))
 
     def test_one_vertex_that_moved_by_itself_is_found(self):
-        old = np.random.default_rng(4).normal(size=(500, 4)).astype(np.float32)
+        old = self.vertices(4, 500)
         new = self.moved(old, self.MATRIX)
         new[333, 1] += 1e-4
         self.assertIsNone(motion.find_matrix(old, new))
 
     def test_a_mesh_that_bends_is_another_mesh(self):
-        old = np.random.default_rng(5).normal(size=(500, 4)).astype(np.float32)
+        old = self.vertices(5, 500)
         new = self.moved(old, self.MATRIX)
         new[:, 0] += 0.01 * old[:, 1] ** 2
         self.assertIsNone(motion.find_matrix(old, new))

@@ -1,10 +1,9 @@
 // The modelled cache, byte by byte.
 #include "pipeline/memory/block_cache.h"
 
-#include <gtest/gtest.h>
-
 #include "pipeline/memory/linear_memory.h"
 #include "pipeline/memory/tile_surface.h"
+#include "tests/test.h"
 
 namespace beampipe::block_cache_test {
 

@@ -1,6 +1,5 @@
 // The buffers that a technique lists: some have a constant size, others grow by a stated rule, and together they are
 // what the heap really holds.
-#include <gtest/gtest.h>
 
 #include "pipeline/technique_table.h"
 #include "stages/beam/a_buffer.h"
@@ -8,6 +7,7 @@
 #include "stages/geometry/vertex_setup.h"
 #include "tests/pipeline/counted_heap.h"
 #include "tests/pipeline/test_traces.h"
+#include "tests/test.h"
 #include "traces/scenes.h"
 
 namespace beampipe::buffers_test {
@@ -19,7 +19,7 @@ std::uint64_t bytes_of(const FrameResult& result, const std::string& name) {
   throw std::runtime_error("no buffer " + name);
 }
 
-FrameResult render(const std::string& spec, const Trace& trace) {
+FrameResult render_unmodelled(const std::string& spec, const Trace& trace) {
   FrameInput run{1};
   run.memory.modelled = false;
   return parse_technique(spec).render(trace, 0, run);
@@ -41,7 +41,7 @@ bool is_per_triangle(const std::string& name) { return name == "setup_triangles"
 TEST(Buffers, StreamingOrderHoldsTheSameForEachPixelHoweverDeepItIs) {
   std::vector<Buffer> first;
   for (const int layers : {100, 1000, 10000}) {  // enough to fill the queues
-    std::vector<Buffer> now = render("beam:order=stream", halves(layers)).buffers;
+    std::vector<Buffer> now = render_unmodelled("beam:order=stream", halves(layers)).buffers;
     std::erase_if(now, [](const Buffer& buffer) { return is_per_triangle(buffer.name); });
     EXPECT_FALSE(now.empty());
     if (first.empty()) first = now;
@@ -51,7 +51,8 @@ TEST(Buffers, StreamingOrderHoldsTheSameForEachPixelHoweverDeepItIs) {
 
 TEST(Buffers, TheABufferGrowsByARecordForEveryPairThatIsNotHidden) {
   for (const int layers : {1, 10, 100, 1000, 10000}) {
-    const FrameResult sorted = render("beam:order=sorted", halves(layers)), published = render("casav", halves(layers));
+    const FrameResult sorted = render_unmodelled("beam:order=sorted", halves(layers)),
+                      published = render_unmodelled("casav", halves(layers));
     const auto count = static_cast<std::uint64_t>(layers);
     // The pixel that a triangle covers, and those that it touches without covering any area.
     const std::uint64_t touched = sorted.stages.at(1).items_out / count;
@@ -68,16 +69,16 @@ TEST(Buffers, TheABufferGrowsByARecordForEveryPairThatIsNotHidden) {
 TEST(Buffers, SortedListsHaveAKeyForEachEntry) {
   const Trace trace = halves(100);
   for (const char* spec : {"beam", "casav:order=near-first"})
-    EXPECT_EQ(bytes_of(render(spec, trace), "bin_lists"), 100u * (4 + 4)) << spec;
+    EXPECT_EQ(bytes_of(render_unmodelled(spec, trace), "bin_lists"), 100u * (4 + 4)) << spec;
   for (const char* spec : {"beam:order=sorted", "beam:order=stream", "casav:order=stream", "msaa:8"})
-    EXPECT_EQ(bytes_of(render(spec, trace), "bin_lists"), 100u * 4) << spec;
+    EXPECT_EQ(bytes_of(render_unmodelled(spec, trace), "bin_lists"), 100u * 4) << spec;
 }
 
 // If all triangles but the nearest are hidden, the size of the sorted A-buffer is constant too.
 TEST(Buffers, HiddenPairsAreNotInTheABuffer) {
   for (const std::uint32_t layers : {10u, 1000u}) {
     const Trace trace = make_scene("stack", {.triangles = layers, .width = 4, .height = 4});
-    EXPECT_EQ(bytes_of(render("beam:order=sorted", trace), "a_buffer"), 16u * (4 + 16)) << layers;
+    EXPECT_EQ(bytes_of(render_unmodelled("beam:order=sorted", trace), "a_buffer"), 16u * (4 + 16)) << layers;
   }
 }
 
@@ -93,7 +94,7 @@ TEST(Buffers, AreWhatIsAllocated) {
     const Trace trace = halves(layers);
     const std::int64_t before = heap_bytes();
     restart_heap_peak();
-    const FrameResult result = render(spec, trace);
+    const FrameResult result = render_unmodelled(spec, trace);
     Measured measured{static_cast<double>(heap_peak() - before), static_cast<double>(result.a_buffer_peak_bytes),
                       result.a_buffer_peak_bytes > 0 ? static_cast<double>(result.stages.at(1).items_out) : 0.0};
     for (const Buffer& buffer : result.buffers) measured.listed += static_cast<double>(buffer.peak_bytes);
@@ -130,7 +131,7 @@ TEST(Buffers, WorkingBytesAreHeldPerPixel) {
   for (const std::string& spec : example_specs()) {
     const std::int64_t before = heap_bytes();
     restart_heap_peak();
-    render(spec, trace);
+    render_unmodelled(spec, trace);
     const double held = static_cast<double>(heap_peak() - before) / (512 * 512);
     const std::uint32_t stated = parse_technique(spec).working_bytes_per_pixel;
     EXPECT_GE(held, stated) << spec;

@@ -1,15 +1,10 @@
 // The registry of counters is complete, and every counter in it moves somewhere.
 #include "stages/cost/counter_registry.h"
 
-#include <gtest/gtest.h>
-
-#include <map>
-#include <set>
-#include <string>
-
 #include "pipeline/technique_table.h"
 #include "tests/pipeline/surface_traces.h"
 #include "tests/pipeline/test_traces.h"
+#include "tests/test.h"
 
 namespace beampipe::counter_registry_test {
 

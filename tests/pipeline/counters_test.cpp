@@ -1,12 +1,10 @@
 // Counters of frames that can be counted by hand.
-#include <gtest/gtest.h>
-
-#include <tuple>
 
 #include "pipeline/technique_table.h"
 #include "stages/data/sample_fragment.h"
 #include "tests/pipeline/test_pictures.h"
 #include "tests/pipeline/test_traces.h"
+#include "tests/test.h"
 
 namespace beampipe::counters_test {
 

@@ -1,23 +1,12 @@
 // Pictures and counters do not depend on the number of threads, the SIMD target or the order of work.
-#include <gtest/gtest.h>
-
 #include "pipeline/bins/timeline.h"
 #include "pipeline/technique_table.h"
 #include "tests/pipeline/surface_traces.h"
+#include "tests/pipeline/test_pictures.h"
 #include "tests/simd/every_target.h"
 #include "tests/thorough.h"
 
 namespace beampipe::determinism_test {
-
-void expect_same(const FrameResult& a, const FrameResult& b, const std::string& what) {
-  EXPECT_EQ(a.image.rgba, b.image.rgba) << what;
-  EXPECT_EQ(a.pixel_counters, b.pixel_counters) << what;
-  EXPECT_EQ(a.stages, b.stages) << what;
-  for (std::size_t i = 0; i < a.stages.size() && i < b.stages.size(); ++i)
-    EXPECT_EQ(a.stages[i].ops.wide, b.stages[i].ops.wide) << what << ": " << a.stages[i].stage;
-  EXPECT_EQ(a.a_buffer_peak_bytes, b.a_buffer_peak_bytes) << what;
-  EXPECT_EQ(a.buffers, b.buffers) << what;
-}
 
 // Compares every technique on every instruction set, with 1 to 16 threads in turn (with each of these numbers if
 // thorough), with one thread and the best instruction set.

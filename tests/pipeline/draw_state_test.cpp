@@ -1,12 +1,5 @@
 // Fixed-function state in pictures: random frames of quads that cover whole pixels, against a depth buffer that follows
 // the rules of OpenGL draw by draw.
-#include <gtest/gtest.h>
-
-#include <algorithm>
-#include <array>
-#include <string>
-#include <utility>
-#include <vector>
 
 #include "stages/geometry/draw_plan.h"
 #include "tests/pipeline/test_pictures.h"
@@ -228,7 +221,6 @@ TEST(DrawStatePictures, RandomFramesEqualADepthBuffer) {
   int covered = 0;  // pixels
   for (std::uint64_t seed = 1; seed <= 40u * static_cast<unsigned>(thoroughness()); ++seed) {
     Random random(seed);
-    SCOPED_TRACE(random.name());
     const Program program = random_program(random);
     const Trace trace = program.trace();
     ASSERT_TRUE(plan_draws(trace, trace.frames[0]).notes.empty()) << plan_draws(trace, trace.frames[0]).notes[0].reason;

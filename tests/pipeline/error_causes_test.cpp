@@ -1,12 +1,9 @@
 // The causes of errors: pixels whose error has one known cause, and sums over all causes.
 #include "pipeline/error_causes.h"
 
-#include <gtest/gtest.h>
-
-#include <cmath>
-
 #include "pipeline/technique_table.h"
 #include "tests/pipeline/test_traces.h"
+#include "tests/test.h"
 
 namespace beampipe::error_causes_test {
 

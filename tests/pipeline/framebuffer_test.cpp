@@ -1,10 +1,8 @@
 // Where the pixels of a bin are: on chip only if they fit, and what moves to and from DRAM in either place.
-#include <gtest/gtest.h>
-
-#include <algorithm>
 
 #include "tests/pipeline/test_pictures.h"
 #include "tests/pipeline/test_traces.h"
+#include "tests/test.h"
 
 namespace beampipe::framebuffer_test {
 

@@ -1,10 +1,7 @@
 // How bins read setup triangles and attributes: in order, and by triangle number.
 #include "pipeline/memory/geometry_memory.h"
 
-#include <gtest/gtest.h>
-
-#include <random>
-#include <set>
+#include "tests/test.h"
 
 namespace beampipe::geometry_memory_test {
 

@@ -1,9 +1,7 @@
 // Every byte of every stage for two traces, worked out by hand.
-#include <gtest/gtest.h>
-
-#include <filesystem>
 
 #include "pipeline/technique.h"
+#include "tests/test.h"
 #include "traces/files/trace_io.h"
 
 namespace beampipe::hand_worked_test {
@@ -37,19 +35,6 @@ constexpr std::uint64_t kSetup = 116;  // bytes that the setup of a triangle pas
 constexpr std::uint64_t kTriangleSetup = 64 + 96 + 32;  // bytes in sectors: vertices read, setup and attributes written
 constexpr std::uint64_t kTriangleRaster = 2 * 32 + 96;  // bytes in sectors: list written and read, setup read
 
-// Both traces are 8 x 8 pixels, one bin. Pixel (x, y) has position p in Z order: the bits of x and y in turn, x first.
-//
-// The corners are (1.25, 1.25), (4.75, 4.75), (1.25, 4.75). The centres of six pixels lie inside: (1,2) (1,3) (2,3)
-// (1,4) (2,4) (3,4), at positions 9, 11, 14, 33, 36, 37.
-//
-// Depth is one block of 64 x 4 = 256 bytes, 8 positions to a sector. Positions 9, 11, 14 are in sector 1, the others in
-// sector 4: two sectors are read and two written, 128 bytes. The block was cleared, so nothing is fetched. It is
-// written back with one plane: 12 bytes, and one bit for each of 64 samples that distinguishes it from clear, 8 bytes.
-// These 20 bytes take one sector, 32. Raw the block is 256 bytes.
-//
-// Colour is two blocks of 32 x 6 = 192 bytes, 6 sectors, rows 0 to 3 and rows 4 to 7. Positions 9, 11, 14 begin at
-// bytes 54, 66 and 84: sectors 1 and 2. Positions 33, 36, 37 are 1, 4, 5 of their block, bytes 6, 24 and 30 to 35:
-// sectors 0 and 1. Four sectors are written, 128 bytes. Both blocks were clear, so they are written back whole: 384.
 TEST(HandWorked, TriangleMsaa) {
   expect_bytes("paper_triangle.json", "msaa:1",
                {{"vertex_setup", 1, 1, 48, kSetup, kTriangleSetup, kTriangleSetup, kTriangleSetup},
@@ -87,42 +72,6 @@ TEST(HandWorked, TriangleNearFirst) {
                 {"resolve", 64, 64, 64 * 8, 384, 384, 384, 384}});
 }
 
-// The closed triangle touches 13 pixels: (1,1) (2,1) (1,2) (2,2) (3,2) (1,3) (2,3) (3,3) (4,3) (1,4) (2,4) (3,4) (4,4),
-// at positions 3, 6, 9, 12, 13, 11, 14, 15, 26, 33, 36, 37, 48. In (2,1), (3,2) and (4,3) it has no area.
-//
-// Raster reads the triangle, 88; for 13 pairs the closed depth, 4 each; and for pixel (2,3), which the triangle covers
-// whole and closes, once more 4 read and 4 written. The 13 pairs of 16 bytes wait until the bin's last triangle has
-// come; then each is read with its closed depth: 13 x 20. Together 404 are read and 13 x 16 + 4 written. In memory,
-// vertex_setup and the raster move what they do above, 192 and 160.
-//
-// A-buffer, insertion. Logically, 13 pairs of 16 are read, 13 heads of 4 read and written, 13 records of 16 written;
-// then 64 heads and 13 records are read: 724 read, 260 written. In memory, heads, 4 bytes each, are two blocks of 128.
-// Their sectors 0, 1, 3, 4 and 6 are read and written: 320 bytes. The cleared blocks are written back raw, 256, and the
-// next pass reads them, 256 and 256. 13 records of 12 + 4 bytes follow one another: 208 bytes in seven sectors, 224
-// written. The last sector is written in part and fetched first: 224 + 32 of DRAM.
-//
-// A-buffer, sorting reads each record, which lies in one sector: 13 x 32 = 416 bytes. L1 asks L2 for the seven sectors
-// once, and L2 asks DRAM, 224. Together the A-buffer moves 1216 in sectors, 320 + 256 + 224 + 224 = 1024 of L2, 992 of
-// DRAM.
-//
-// Windows reads the records again, 13 x 16, 416 in sectors, all from L1, and passes on 13 pairs of 16.
-//
-// Fragments. Pixel (2,3) is covered as a whole and takes a shortcut: compose reads its pair, 16 bytes, and no fragment
-// is made. For the other twelve beam_fragment reads 16 + 88 bytes each, and writes 62 for each of the nine that have
-// area: 1248 read, 558 written. In memory it fetches for the twelve the triangle's setup, three sectors: 12 x 96 =
-// 1152, from L2 and DRAM once, 96.
-//
-// Shade reads pairs and attributes and writes a colour for the nine and the whole pixel: 10 x (8 + 28) and 10 x 6. It
-// fetches 10 x 32 in sectors, and once 32 from L2 and DRAM.
-//
-// Composition reads nine fragments of 62 and the nine pixels, 42 each, and the whole pixel's pair, 16: 952. It writes
-// ten pixels, 420, at positions 3, 9, 12, 11, 14, 15, 33, 36, 37, 48. Coverage, 4 bytes: sectors 0, 1, 4, 6, 128 bytes,
-// and one block of 256 to DRAM. Masks, 32 bytes: ten sectors, 320, in four blocks of 8 pixels, 1024. Colour, 6 bytes:
-// positions 3 to 15 in sectors 0, 1, 2; positions 33 to 48 in sectors 0, 1, 3: 192 bytes, and two blocks of 192.
-// Together 640 and 1664.
-//
-// Resolve reads all, 64 x 42: coverage 256, masks 2048, of which four blocks are still clear and 1024 move, colour 384.
-// It writes the picture, 384.
 TEST(HandWorked, TriangleBeam) {
   constexpr std::uint64_t kPairs = 13, kFragments = 10, kWhole = 1, kPartial = kFragments - kWhole, kFragment = 62,
                           kPair = 16, kRecord = 12 + 4, kHead = 4;
@@ -153,23 +102,6 @@ TEST(HandWorked, TriangleReference) {
   EXPECT_EQ(result.stages[1].bytes_read, 88 + kSamples * 8) << "the triangle, and a depth for each";
 }
 
-// Quad A covers 0.25 to 3.75 in x and y; quad B, farther away and drawn later, covers 2.25 to 5.75. Each has 16
-// centres. Those on its diagonal belong to the first triangle (x >= y: 10 centres, then 6), whose left edge the
-// diagonal is. B loses the four centres (2..3, 2..3). 32 samples are tested and 28 pass. The raster reads four
-// triangles, the closed depth of 13 cells for each, and once more of the two cells that it closes (one in each quad,
-// next to the diagonal; the first triangle owns the corner that lies on it): 4 x 88 + 54 x 4 = 568. It writes 32 x 10 +
-// 2 x 4.
-//
-// Depth requests, by triangle: A's read and write sectors 0 and 1 each; B's first reads 1, 3, 6 and writes 3, 6; B's
-// second reads 1, 4, 6 and writes 4, 6. 18 sectors: 576 bytes. The block is written back with four planes, 48 bytes,
-// and 64 numbers of 3 bits (four planes and clear), 24: 72 bytes in three sectors, 96.
-//
-// Colour: A's triangles write sectors 0, 1, 2 of the upper block each; B's first writes 4 and 5 of it and 3 of the
-// lower block; B's second 0, 1 and 3 of the lower. 12 sectors: 384 bytes. Both blocks are written back whole, 384.
-//
-// Geometry: vertex_setup reads twice 6 indices and 4 vertices, 2 x 72 bytes in 5 sectors, and writes 352 bytes of
-// setup, 11 sectors, and 112 of attributes, 4: 640. The bin's list has 16 bytes, a sector written and read; with the
-// setup the raster moves 64 + 352. Shading reads the attributes, 128.
 TEST(HandWorked, QuadsMsaa) {
   expect_bytes(
       "paper_quads.json", "msaa:1",
@@ -180,30 +112,6 @@ TEST(HandWorked, QuadsMsaa) {
        {"resolve", 64, 64, 384, 384, 768, 768, 768}});
 }
 
-// Each closed triangle touches the ten pixels of its half and three more in a corner on the diagonal: 52 pairs. It
-// covers one pixel whole: (2,1), (1,2), (4,3) or (3,4). In that pixel the quad's other triangle has a pair as well,
-// which touches the corner, so no pixel takes the shortcut.
-//
-// Raster reads 4 x 88, 52 x 20 for the waiting pairs and 4 x 56 of closed depth: 1616. It writes 52 x 16 + 4 x 4.
-//
-// A-buffer. Logically, 52 x (16 + 4) + 64 x 4 + 52 x 16 = 2128 are read and 52 x 20 written. Heads: A's triangles read
-// and write sectors 0 and 1, B's sectors 1, 3, 4 and 6: 12 of them, 768. Two blocks are written back raw, 256, and read
-// again, 256. Records: each triangle's 208 bytes lie in 7 sectors, 896 written; sectors 6 and 19, which two triangles
-// share, are fetched first, so DRAM sees 64 + 832. Sorting asks for 52 x 32 = 1664, of L2 and DRAM once, 832.
-//
-// Windows. A closes pixel (2,2); of B's two pairs there, one is looked at and none is taken. 51 records are read and 50
-// pairs passed on, in 31 windows: one for each of 28 pixels, and a second in (3,2), (2,3) and (3,3), where A leaves
-// something free.
-//
-// Fragments. 50 x (16 + 88) are read. 38 pairs have area, ten of each of A's triangles and nine of each of B's: 38 x 62
-// written. The setups of the four triangles lie in 3, 4, 4 and 3 sectors: (13 x 3 + 13 x 4 + 12 x 4 + 12 x 3) x 32 =
-// 5600, of L2 and DRAM once, 352. Attributes lie in 1, 2, 2 and 2: (10 + 20 + 18 + 18) x 32 = 2112, once 128. shade
-// reads, logically, 38 x (8 + 28) and writes 38 x 6.
-//
-// Composition reads 38 fragments and for each window the pixel, 38 x 62 + 31 x 42, and writes 31 x 42. All but the last
-// write of a pixel stay on chip. The 28 pixels take, of coverage, sectors 0, 1, 3, 4 and 6, 160, and a block of 256; of
-// masks 28 sectors, 896, in five blocks, 1280; of colour sectors 0, 1, 2, 4, 5 and 0, 1, 3: 256, and two blocks of 192.
-// Resolve reads 256, 2048 (of which 1280 move) and 384, and writes 384.
 TEST(HandWorked, QuadsBeam) {
   constexpr std::uint64_t kPairs = 52, kTaken = 50, kFragments = 38, kWindows = 31, kFragment = 62, kPair = 16,
                           kRecord = 12 + 4, kHead = 4;

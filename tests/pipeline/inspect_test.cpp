@@ -1,15 +1,9 @@
 // The history of a pixel is the pixel: its weights times its colours are the bits of the picture, but for what formats
 // change.
-#include <gtest/gtest.h>
-
-#include <algorithm>
-#include <cmath>
-#include <map>
-#include <numeric>
-#include <random>
 
 #include "pipeline/technique.h"
 #include "tests/pipeline/surface_traces.h"
+#include "tests/test.h"
 #include "traces/scenes.h"
 
 namespace beampipe::inspect_test {

@@ -1,9 +1,9 @@
 // Pictures whose pixels are known from closed forms, from a brute-force renderer, or from another technique.
-#include <gtest/gtest.h>
 
 #include "pipeline/technique.h"
 #include "tests/pipeline/test_pictures.h"
 #include "tests/pipeline/test_traces.h"
+#include "tests/test.h"
 
 namespace beampipe::pictures_test {
 

@@ -1,15 +1,11 @@
 // Materials through the techniques: what must not change, and what all of them must show.
-#include <gtest/gtest.h>
-
-#include <algorithm>
-#include <cmath>
-#include <limits>
-#include <numeric>
 
 #include "pipeline/technique_table.h"
 #include "stages/surface/mip_chain.h"
 #include "tests/pipeline/surface_traces.h"
+#include "tests/pipeline/test_pictures.h"
 #include "tests/stages/surface_scene.h"
+#include "tests/test.h"
 
 namespace beampipe::surfaces_test {
 
@@ -189,16 +185,21 @@ TEST(Surfaces, BeamComposesTheSheetsOfOneDraw) {
   }
 }
 
+// Two layers of which each lets half of the light through, over black.
+void expect_two_layers(const Trace& trace, const std::vector<std::string>& specs) {
+  for (const std::string& spec : specs) {
+    const Image image = rendered(spec, trace).image;
+    for (std::size_t i = 0; i < image.rgba.size(); i += 4) EXPECT_NEAR(image.rgba[i], 0.75, 0.01) << spec;
+  }
+}
+
 // The same triangle twice is two layers, not two parts of one.
 TEST(Surfaces, TheSameTriangleTwiceIsTwoLayers) {
   SurfaceTrace scene(8, 8);
   scene.add_rectangle(-1, -1, 20, 20, 0.5, unlit_material({1, 1, 1, 0.5f}, AlphaMode::blend));
   scene.mesh().triangles = {{0, 1, 3}, {0, 1, 3}};
   scene.frame().background = glm::vec3(0.0f);
-  for (const char* spec : {"beam", "beam:order=sorted", "beam:order=stream", "z3"}) {
-    const Image image = rendered(spec, scene.trace).image;
-    for (std::size_t i = 0; i < image.rgba.size(); i += 4) EXPECT_NEAR(image.rgba[i], 0.75, 0.01) << spec;
-  }
+  expect_two_layers(scene.trace, {"beam", "beam:order=sorted", "beam:order=stream", "z3"});
 }
 
 // Sheets are numbered only for techniques with mask positions: the setup of others costs what it does for triangles
@@ -226,10 +227,7 @@ TEST(Surfaces, LayersThatShareAVertexDoNotHideEachOther) {
   mesh.uvs[0].resize(5);
   mesh.triangles = {{0, 1, 2}, {0, 3, 4}};
   scene.frame().background = glm::vec3(0.0f);
-  for (const char* spec : {"reference", "beam", "beam:order=sorted", "beam:order=stream", "z3", "msaa:8"}) {
-    const Image image = rendered(spec, scene.trace).image;
-    for (std::size_t i = 0; i < image.rgba.size(); i += 4) EXPECT_NEAR(image.rgba[i], 0.75, 0.01) << spec;
-  }
+  expect_two_layers(scene.trace, {"reference", "beam", "beam:order=sorted", "beam:order=stream", "z3", "msaa:8"});
 }
 
 // All but beams blend in the order of draws: from far to near that is the truth, from near to far it is not.
@@ -307,11 +305,9 @@ TEST(Surfaces, TranslucentTrianglesAreDrawnOnce) {
   scene.add_rectangle(0, 0, 8, 8, 0.5, unlit_material({1, 0, 0, 0.5f}, AlphaMode::blend));
   for (const char* spec : {"acaa:8", "deferred", "visibility", "taa:8", "dvm"}) {
     const FrameResult found = rendered(spec, scene.trace);
-    for (const StageCounters& stage : found.stages) {
-      if (stage.stage != StageId::sample_raster) continue;
-      EXPECT_GE(stage.items_out, 64u) << spec;
-      EXPECT_LE(stage.items_out, 64u + 8u) << spec;  // pixels of the diagonal have a fragment of each half
-    }
+    const StageCounters& stage = stage_of(found, "sample_raster");
+    EXPECT_GE(stage.items_out, 64u) << spec;
+    EXPECT_LE(stage.items_out, 64u + 8u) << spec;  // pixels of the diagonal have a fragment of each half
   }
 }
 

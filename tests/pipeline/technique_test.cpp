@@ -1,15 +1,8 @@
 #include "pipeline/technique.h"
 
-#include <gtest/gtest.h>
-
-#include <algorithm>
-#include <cstdlib>
-#include <filesystem>
-#include <fstream>
-#include <iterator>
-#include <map>
-
 #include "pipeline/technique_table.h"
+#include "tests/message_of.h"
+#include "tests/test.h"
 
 namespace beampipe::technique_test {
 
@@ -42,15 +35,11 @@ TEST(Technique, EveryMsaaRateOfTheRangeIsKnown) {
 
 // The error of a wrong spec, which must be one line that names the spec; without "technique 'SPEC': ".
 std::string error_of(const std::string& spec) {
-  try {
-    parse_technique(spec);
-  } catch (const SpecError& error) {
-    const std::string message = error.what(), start = "technique '" + spec + "': ";
-    EXPECT_EQ(message.find('\n'), std::string::npos) << message;
-    EXPECT_EQ(message.rfind(start, 0), 0u) << message;
-    return message.substr(std::min(start.size(), message.size()));
-  }
-  return "no error";
+  const std::string message = message_of<SpecError>([&] { parse_technique(spec); });
+  const std::string start = "technique '" + spec + "': ";
+  EXPECT_EQ(message.find('\n'), std::string::npos) << message;
+  EXPECT_EQ(message.rfind(start, 0), 0u) << message;
+  return message.substr(std::min(start.size(), message.size()));
 }
 
 TEST(Technique, WrongSpecsSayWhatWouldBeRight) {
@@ -66,89 +55,67 @@ TEST(Technique, WrongSpecsSayWhatWouldBeRight) {
       "; it has mask, sort, tiny, overlap, regional, local, fuzzy, extents, slab, plane, thickness, storage, order "
       "and layers";
   const std::string of_dvm = "; it has blend and material";
-  for (const auto& [spec, error] : std::map<std::string, std::string>{
-           {"", names},
-           {"wireframe", names},
-           {"bean", names + " (did you mean 'beam'?)"},
-           {"beam ", names + " (did you mean 'beam'?)"},
-           {"bean:bits=64", names + " (did you mean 'beam'?)"},
-           {"msaa:8,prepas",
-            "msaa:N has no option 'prepas' (did you mean 'prepass'?); it has color, at, alpha, prepass, "
-            "motion and resolve"},
-           {"msaa", msaa_rates},
-           {"msaa:", msaa_rates},
-           {"msaa:3", msaa_rates},
-           {"msaa:0", msaa_rates},
-           {"msaa:08", msaa_rates},
-           {"msaa:-8", msaa_rates},
-           {"msaa:8x", msaa_rates},
-           {"msaa:N=8", msaa_rates},
-           {"msaa:2048", msaa_rates},
-           {"msaa:prepass", msaa_rates},
-           {"msaa:prepass,8", msaa_rates},
-           {"msaa:8,8", "'8' is there twice"},
-           {"msaa:8,16", "msaa:N has no option '16'; it has color, at, alpha, prepass, motion and resolve"},
-           {"msaa:8,", "msaa:N has no option ''; it has color, at, alpha, prepass, motion and resolve"},
-           {"msaa:8,N=8", "msaa:N has no option 'N'; it has color, at, alpha, prepass, motion and resolve"},
-           {"msaa:8,color=rgb8", "color must be rgb16f or rgba16f"},
-           {"msaa:8,color", "color must be rgb16f or rgba16f"},
-           {"msaa:8,at=corner", "at must be centre or centroid"},
-           {"msaa:8,prepass,prepass", "'prepass' is there twice"},
-           {"msaa:8,prepass=1", "prepass must be without a value"},
-           {"beam:", "beam has no option ''" + of_beam},
-           {"beam:64", "beam has no option '64'" + of_beam},
-           {"beam:mask=fast", "beam has no option 'mask'" + of_beam},
-           {"beam:fuzzy=mix", "beam has no option 'fuzzy'" + of_beam},
-           {"beam:order=sorted,bits=32,mask=exact",
-            "beam:order=sorted has no option 'mask'; it has bits, storage and order"},
-           {"beam:order=sorted,bits=64", "bits must be 32 or 256"},
-           {"beam:order=sorted,bits=", "bits must be 32 or 256"},
-           {"beam:order=sorted,storage=text", "storage must be packed or float32"},
-           {"beam:order=sorted,bits=32,storage=float32", "storage needs bits=256"},
-           {"beam:slots=7", "slots must be 2, 4, 5, 8, 16 or 32"},
-           {"beam:bits=48,slots=4", "bits must be 32, 64, 128 or 256"},
-           {"beam:bits=64", "bits needs slots=2, 4, 8, 16 or 32, unless it is 256"},
-           {"beam:slots=5,bits=128", "bits needs slots=2, 4, 8, 16 or 32, unless it is 256"},
-           {"beam:mask=table,mask=table", "'mask' is there twice"},
-           {"beam:order=primitive", "order must be near-first, sorted or stream"},
-           {"beam:rules=paper", "beam has no option 'rules'" + of_beam},
-           {"beam:order=stream,order=sorted", "'order' is there twice"},
-           {"beam:order=stream,slots=7", "beam:order=stream has no option 'slots'; it has order"},
-           {"casav:layers=3", "layers needs order=near-first or order=stream"},
-           {"casav:order=sorted,layers=1", "layers needs order=near-first or order=stream"},
-           {"casav:order=stream,sort=nearest", "sort needs order=sorted"},
-           {"casav:order=near-first,sort=centroid", "sort needs order=sorted"},
-           {"casav:order=sort", "order must be sorted, near-first or stream"},
-           {"casav:bits=64", "casav has no option 'bits'" + of_casav},
-           {"casav:mask=fast", "mask must be table or exact"},
-           {"casav:tiny=2", "tiny must be 1 or 3"},
-           {"casav:overlap=none", "overlap must be tiny, over, add or transition"},
-           {"casav:regional=global", "regional must be local or area"},
-           {"casav:slab=visible,slab=full", "'slab' is there twice"},
-           {"z3:layers=3", "z3 has no option 'layers'; it has shape"},
-           {"z3:shape=64x3", "shape must be 32x2, 32x3 or 128x3"},
-           {"alpha:1", "alpha has no options"},
-           {"reference:64", "reference has no options"},
-           {"deferred:", "deferred has no options"},
-           {"acaa", acaa_rates},
-           {"acaa:512", acaa_rates},
-           {"acaa:8,double=yes", "double must be none, stencil or saturate"},
-           {"visibility:3", "N of visibility:N must be 1, 2, 4, 8 or 16"},
-           {"visibility:", "N of visibility:N must be 1, 2, 4, 8 or 16"},
-           {"visibility:4,4", "'4' is there twice"},
-           {"visibility:4,8", "visibility:N has no options"},
-           {"taa:8,shading=backward", "shading must be visibility, deferred or forward"},
-           {"taa", taa_rates},
-           {"taa:32", taa_rates},
-           {"taa:8,blend=0", "blend must be a number from 0.001 to 1"},
-           {"taa:8,blend=1.5", "blend must be a number from 0.001 to 1"},
-           {"taa:8,blend=nan", "blend must be a number from 0.001 to 1"},
-           {"taa:8,blend=x", "blend must be a number from 0.001 to 1"},
-           {"taa:8,blend=0.5x", "blend must be a number from 0.001 to 1"},
-           {"dvm:8", "dvm has no option '8'" + of_dvm},
-           {"dvm:=8", "dvm has no option ''" + of_dvm},
-           {"dvm:seed=1", "dvm has no option 'seed'" + of_dvm}})
-    EXPECT_EQ(error_of(spec), error);
+  const std::map<std::string, std::vector<const char*>> specs_of_error = {
+      {names, {"", "wireframe"}},
+      {names + " (did you mean 'beam'?)", {"bean", "beam ", "bean:bits=64"}},
+      {"msaa:N has no option 'prepas' (did you mean 'prepass'?); it has color, at, alpha, prepass, motion and resolve",
+       {"msaa:8,prepas"}},
+      {msaa_rates,
+       {"msaa", "msaa:", "msaa:3", "msaa:0", "msaa:08", "msaa:-8", "msaa:8x", "msaa:N=8", "msaa:2048", "msaa:prepass",
+        "msaa:prepass,8"}},
+      {"'8' is there twice", {"msaa:8,8"}},
+      {"msaa:N has no option '16'; it has color, at, alpha, prepass, motion and resolve", {"msaa:8,16"}},
+      {"msaa:N has no option ''; it has color, at, alpha, prepass, motion and resolve", {"msaa:8,"}},
+      {"msaa:N has no option 'N'; it has color, at, alpha, prepass, motion and resolve", {"msaa:8,N=8"}},
+      {"color must be rgb16f or rgba16f", {"msaa:8,color=rgb8", "msaa:8,color"}},
+      {"at must be centre or centroid", {"msaa:8,at=corner"}},
+      {"'prepass' is there twice", {"msaa:8,prepass,prepass"}},
+      {"prepass must be without a value", {"msaa:8,prepass=1"}},
+      {"beam has no option ''" + of_beam, {"beam:"}},
+      {"beam has no option '64'" + of_beam, {"beam:64"}},
+      {"beam has no option 'mask'" + of_beam, {"beam:mask=fast"}},
+      {"beam has no option 'fuzzy'" + of_beam, {"beam:fuzzy=mix"}},
+      {"beam:order=sorted has no option 'mask'; it has bits, storage and order",
+       {"beam:order=sorted,bits=32,mask=exact"}},
+      {"bits must be 32 or 256", {"beam:order=sorted,bits=64", "beam:order=sorted,bits="}},
+      {"storage must be packed or float32", {"beam:order=sorted,storage=text"}},
+      {"storage needs bits=256", {"beam:order=sorted,bits=32,storage=float32"}},
+      {"slots must be 2, 4, 5, 8, 16 or 32", {"beam:slots=7"}},
+      {"bits must be 32, 64, 128 or 256", {"beam:bits=48,slots=4"}},
+      {"bits needs slots=2, 4, 8, 16 or 32, unless it is 256", {"beam:bits=64", "beam:slots=5,bits=128"}},
+      {"'mask' is there twice", {"beam:mask=table,mask=table"}},
+      {"order must be near-first, sorted or stream", {"beam:order=primitive"}},
+      {"beam has no option 'rules'" + of_beam, {"beam:rules=paper"}},
+      {"'order' is there twice", {"beam:order=stream,order=sorted"}},
+      {"beam:order=stream has no option 'slots'; it has order", {"beam:order=stream,slots=7"}},
+      {"layers needs order=near-first or order=stream", {"casav:layers=3", "casav:order=sorted,layers=1"}},
+      {"sort needs order=sorted", {"casav:order=stream,sort=nearest", "casav:order=near-first,sort=centroid"}},
+      {"order must be sorted, near-first or stream", {"casav:order=sort"}},
+      {"casav has no option 'bits'" + of_casav, {"casav:bits=64"}},
+      {"mask must be table or exact", {"casav:mask=fast"}},
+      {"tiny must be 1 or 3", {"casav:tiny=2"}},
+      {"overlap must be tiny, over, add or transition", {"casav:overlap=none"}},
+      {"regional must be local or area", {"casav:regional=global"}},
+      {"'slab' is there twice", {"casav:slab=visible,slab=full"}},
+      {"z3 has no option 'layers'; it has shape", {"z3:layers=3"}},
+      {"shape must be 32x2, 32x3 or 128x3", {"z3:shape=64x3"}},
+      {"alpha has no options", {"alpha:1"}},
+      {"reference has no options", {"reference:64"}},
+      {"deferred has no options", {"deferred:"}},
+      {acaa_rates, {"acaa", "acaa:512"}},
+      {"double must be none, stencil or saturate", {"acaa:8,double=yes"}},
+      {"N of visibility:N must be 1, 2, 4, 8 or 16", {"visibility:3", "visibility:"}},
+      {"'4' is there twice", {"visibility:4,4"}},
+      {"visibility:N has no options", {"visibility:4,8"}},
+      {"shading must be visibility, deferred or forward", {"taa:8,shading=backward"}},
+      {taa_rates, {"taa", "taa:32"}},
+      {"blend must be a number from 0.001 to 1",
+       {"taa:8,blend=0", "taa:8,blend=1.5", "taa:8,blend=nan", "taa:8,blend=x", "taa:8,blend=0.5x"}},
+      {"dvm has no option '8'" + of_dvm, {"dvm:8"}},
+      {"dvm has no option ''" + of_dvm, {"dvm:=8"}},
+      {"dvm has no option 'seed'" + of_dvm, {"dvm:seed=1"}}};
+  for (const auto& [error, specs] : specs_of_error)
+    for (const char* const spec : specs) EXPECT_EQ(error_of(spec), error);
 }
 
 TEST(Technique, DefaultsMayBeWritten) {
@@ -167,12 +134,16 @@ std::string spec_with(const TechniqueKind& kind, const SpecOption& option, const
   return needed.empty() ? spec : spec + ',' + needed;
 }
 
+SpecOptions options_of(const TechniqueKind& kind) {
+  SpecOptions options;
+  kind.make([&](const SpecOptions& all) { options = all; });
+  return options;
+}
+
 TEST(TechniqueTable, EveryWordIsTakenAndNoOther) {
   std::size_t words = 0;
   for (const TechniqueKind& kind : technique_kinds()) {
-    SpecOptions options;
-    kind.make([&](const SpecOptions& all) { options = all; });
-    for (const SpecOption& option : options) {
+    for (const SpecOption& option : options_of(kind)) {
       if (option.form != SpecOption::Form::value) continue;
       for (const std::string& word : option.words) {
         const std::string spec = spec_with(kind, option, word);
@@ -199,9 +170,7 @@ TEST(TechniqueTable, ExamplesAreSpecsOfTheirTechnique) {
 
 TEST(TechniqueTable, DefaultsAreAmongTheValues) {
   for (const TechniqueKind& kind : technique_kinds()) {
-    SpecOptions options;
-    kind.make([&](const SpecOptions& all) { options = all; });
-    for (const SpecOption& option : options) {
+    for (const SpecOption& option : options_of(kind)) {
       if (option.form != SpecOption::Form::value || option.words.empty()) continue;
       EXPECT_EQ(std::count(option.words.begin(), option.words.end(), option.fallback), 1)
           << title_of(kind) << ", " << option.key << ": '" << option.fallback << "'";
@@ -213,9 +182,7 @@ TEST(TechniqueTable, HelpNamesEveryTechniqueAndOption) {
   const std::string help = technique_help();
   for (const TechniqueKind& kind : technique_kinds()) {
     EXPECT_NE(help.find("\n  " + title_of(kind) + "\n    "), std::string::npos) << title_of(kind);
-    kind.make([&](const SpecOptions& options) {
-      for (const SpecOption& option : options) EXPECT_NE(help.find("      " + option.usage), std::string::npos);
-    });
+    for (const SpecOption& option : options_of(kind)) EXPECT_NE(help.find("      " + option.usage), std::string::npos);
   }
   EXPECT_NE(help.find("bits=32|64|128|256"), std::string::npos);
   EXPECT_NE(help.find("weight of each new frame (0.1)"), std::string::npos);

@@ -1,13 +1,8 @@
 // Rendering a trace's first frame in a test, and looking at what came out.
 #pragma once
 
-#include <algorithm>
-#include <cmath>
-#include <numeric>
-#include <stdexcept>
-#include <string>
-
 #include "pipeline/technique.h"
+#include "tests/test.h"
 
 namespace beampipe {
 
@@ -21,6 +16,17 @@ inline glm::vec4 rgba_at(const Image& image, std::uint32_t x, std::uint32_t y) {
   return {rgba[0], rgba[1], rgba[2], rgba[3]};
 }
 inline glm::vec3 pixel(const Image& image, std::uint32_t x, std::uint32_t y) { return rgba_at(image, x, y); }
+
+inline void expect_same(const FrameResult& a, const FrameResult& b, const std::string& what) {
+  EXPECT_EQ(a.image.rgba, b.image.rgba) << what;
+  EXPECT_EQ(a.pixel_counters, b.pixel_counters) << what;
+  EXPECT_EQ(a.stages, b.stages) << what;
+  for (std::size_t i = 0; i < a.stages.size() && i < b.stages.size(); ++i)
+    EXPECT_EQ(a.stages[i].ops.wide, b.stages[i].ops.wide) << what << ": " << a.stages[i].stage;
+  EXPECT_EQ(a.a_buffer_peak_bytes, b.a_buffer_peak_bytes) << what;
+  EXPECT_EQ(a.buffers, b.buffers) << what;
+  EXPECT_EQ(a.bin_pixels, b.bin_pixels) << what;
+}
 
 // Over R, G and B of all pixels.
 inline double rmse(const Image& a, const Image& b) {

@@ -1,17 +1,16 @@
 // Texels in the modelled memory: caches, hand-worked frames, and what they do not depend on.
 #include "pipeline/memory/texture_memory.h"
 
-#include <gtest/gtest.h>
-
 #include "pipeline/bins/frame_context.h"
 #include "pipeline/memory/geometry_memory.h"
 #include "pipeline/technique_table.h"
 #include "stages/data/sample_fragment.h"
+#include "tests/pipeline/test_pictures.h"
 #include "tests/pipeline/test_traces.h"
+#include "tests/test.h"
 
 namespace beampipe::texture_memory_test {
 
-// Every way to shade, with the ways that read alpha.
 TextureImage square_image(std::uint32_t size) {
   TextureImage image{"image", size, size, {}};
   for (std::uint32_t y = 0; y < size; ++y)
@@ -58,10 +57,7 @@ std::vector<StageCounters> stages_of(const std::string& spec, const Trace& trace
 }
 
 StageCounters stage_of(const char* spec, const Trace& trace, const std::string& name, const FrameInput& run = {}) {
-  for (const StageCounters& stage : stages_of(spec, trace, run))
-    if (name_of(stage.stage) == name) return stage;
-  ADD_FAILURE() << spec << " has no stage " << name;
-  return {};
+  return beampipe::stage_of(parse_technique(spec).render(trace, 0, run), name);
 }
 
 StageCounters shade_of(const char* spec, const Trace& trace) { return stage_of(spec, trace, "shade"); }

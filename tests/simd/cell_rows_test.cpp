@@ -1,14 +1,9 @@
 #include "simd/cell_rows.h"
 
-#include <gtest/gtest.h>
-
-#include <algorithm>
-
 #include "tests/simd/every_target.h"
 #include "tests/simd/random.h"
 
-namespace beampipe {
-namespace {
+namespace beampipe::cell_rows_test {
 
 // Edges of all slopes. Many of them pass exactly through a corner of a cell.
 EdgeOverCells random_edge(Random& random) {
@@ -29,7 +24,6 @@ EdgeOverCells random_edge(Random& random) {
 
 TEST(CellRows, KernelEqualsTwin) {
   Random random(64);
-  SCOPED_TRACE(random.name());
   on_every_target([&] {
     for (int i = 0; i < 20'000; ++i) {
       const EdgeOverCells edges[3] = {random_edge(random), random_edge(random), random_edge(random)};
@@ -43,5 +37,4 @@ TEST(CellRows, KernelEqualsTwin) {
   });
 }
 
-}  // namespace
-}  // namespace beampipe
+}  // namespace beampipe::cell_rows_test

@@ -1,19 +1,13 @@
 // The formulas of coverage and depth range on float, against polygon clipping in double precision.
-#include <gtest/gtest.h>
-
-#include <algorithm>
-#include <cmath>
 
 #include "tests/simd/coverage_cases.h"
 
-namespace beampipe {
-namespace {
+namespace beampipe::coverage_exact_test {
 
 constexpr double kAlphaBound = 5e-7;  // simd/coverage.h
 
 TEST(CoverageExact, AlphaWithinTheStatedBound) {
   Random random(3);
-  SCOPED_TRACE(random.name());
   for (int i = 0; i < 400'000; ++i) {
     const Triangle t = random_triangle(random);
     const double error = std::abs(coverage_on_float(t).alpha - exact_coverage(t).area);
@@ -24,7 +18,6 @@ TEST(CoverageExact, AlphaWithinTheStatedBound) {
 // The moments are as accurate as the area, and the centroid is their quotient.
 TEST(CoverageExact, CentroidWithinTheAlphaBoundOverAlpha) {
   Random random(4);
-  SCOPED_TRACE(random.name());
   for (int i = 0; i < 200'000; ++i) {
     const Triangle t = random_triangle(random);
     const ExactCoverage exact = exact_coverage(t);
@@ -38,7 +31,6 @@ TEST(CoverageExact, CentroidWithinTheAlphaBoundOverAlpha) {
 // The error grows with the slopes: they are rounded to float, and so are the crossings that they are multiplied by.
 TEST(CoverageExact, DepthRangeWithinHalfAMillionthOfTheSlopes) {
   Random random(5);
-  SCOPED_TRACE(random.name());
   for (int i = 0; i < 200'000; ++i) {
     const Triangle t = random_triangle(random);
     const ExactCoverage exact = exact_coverage(t);
@@ -54,7 +46,6 @@ TEST(CoverageExact, DepthRangeWithinHalfAMillionthOfTheSlopes) {
 // This holds however the numbers are rounded, for slivers too.
 TEST(CoverageExact, StaysWithinTheTriangleAndThePixel) {
   Random random(6);
-  SCOPED_TRACE(random.name());
   for (int i = 0; i < 200'000; ++i) {
     const Triangle t = random_triangle(random);
     const Coverage<float> found = coverage_on_float(t);
@@ -84,5 +75,4 @@ TEST(CoverageExact, FullPixelOfAGiantTriangle) {
   EXPECT_EQ(found.centroid_v, 0.5f);
 }
 
-}  // namespace
-}  // namespace beampipe
+}  // namespace beampipe::coverage_exact_test

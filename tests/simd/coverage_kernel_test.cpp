@@ -1,16 +1,8 @@
-#include <gtest/gtest.h>
-
-#include <array>
-#include <bit>
-#include <cstdint>
-#include <vector>
-
 #include "simd/coverage.h"
 #include "tests/simd/coverage_cases.h"
 #include "tests/simd/every_target.h"
 
-namespace beampipe {
-namespace {
+namespace beampipe::coverage_kernel_test {
 
 template <class Row>
 void expect_same_bits(const Row& found, const Row& expected, std::size_t i) {
@@ -37,7 +29,6 @@ void expect_same_on_every_target(const std::vector<Triangle>& triangles) {
 
 TEST(CoverageKernel, EveryTargetEqualsTheFormulaOnRandomTriangles) {
   Random random(1);
-  SCOPED_TRACE(random.name());
   std::vector<Triangle> triangles;
   for (int i = 0; i < 50'000; ++i) triangles.push_back(random_triangle(random));
   expect_same_on_every_target(triangles);
@@ -61,7 +52,6 @@ TEST(CoverageKernel, EveryTargetEqualsTheFormulaOnTouches) {
 // Batches that do not fill the last vector. Nothing may be written past their end.
 TEST(CoverageKernel, EveryTargetEqualsTheFormulaForEveryBatchSize) {
   Random random(2);
-  SCOPED_TRACE(random.name());
   std::vector<Triangle> triangles;
   std::vector<TriangleInPixel> in;
   std::vector<DepthRangeInput<float>> ranges_in;
@@ -86,5 +76,4 @@ TEST(CoverageKernel, EveryTargetEqualsTheFormulaForEveryBatchSize) {
   });
 }
 
-}  // namespace
-}  // namespace beampipe
+}  // namespace beampipe::coverage_kernel_test

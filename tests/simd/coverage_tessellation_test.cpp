@@ -1,13 +1,8 @@
 // The areas of triangles that share edges add up to the area of what they tile.
-#include <gtest/gtest.h>
-
-#include <cmath>
-#include <vector>
 
 #include "tests/simd/coverage_cases.h"
 
-namespace beampipe {
-namespace {
+namespace beampipe::coverage_tessellation_test {
 
 // Shared edges cancel exactly. What remains is the rounding of each triangle's own sum, 2^-24 for sums near 1.
 constexpr double kPerTriangle = 0x1p-24;
@@ -35,7 +30,6 @@ void expect_closed(const std::vector<Triangle>& triangles) {
 
 TEST(CoverageTessellation, ReversedEdgeIntegratesToTheOppositeNumber) {
   Random random(7);
-  SCOPED_TRACE(random.name());
   for (int i = 0; i < 100'000; ++i) {
     const TriangleInPixelOf<std::int64_t> t = in_pixel(random_triangle(random));
     const EdgeInPixel<std::int64_t> edge = edge_in_pixel(t, 0);
@@ -52,7 +46,6 @@ TEST(CoverageTessellation, ReversedEdgeIntegratesToTheOppositeNumber) {
 
 TEST(CoverageTessellation, FansCloseThePixel) {
   Random random(8);
-  SCOPED_TRACE(random.name());
   for (int round = 0; round < 400; ++round) {
     const std::int64_t reach = round % 4 == 0 ? kLimit : 600, spokes = random.integer(3, 300);
     const Corner hub{random.integer(-100, 356), random.integer(-100, 356)};
@@ -71,7 +64,6 @@ TEST(CoverageTessellation, FansCloseThePixel) {
 
 TEST(CoverageTessellation, StripsCloseThePixel) {
   Random random(9);
-  SCOPED_TRACE(random.name());
   for (int round = 0; round < 400; ++round) {
     std::vector<Corner> points = {{-900, -900}, {-900, 1200}};  // alternately above and below the pixel, left to right
     for (int n = 0; n < 100; ++n) {
@@ -89,7 +81,6 @@ TEST(CoverageTessellation, StripsCloseThePixel) {
 
 TEST(CoverageTessellation, GridsCloseThePixel) {
   Random random(10);
-  SCOPED_TRACE(random.name());
   for (int round = 0; round < 200; ++round) {
     const std::int64_t cell = random.integer(8, 200), low = -cell * 3;
     const auto cells = static_cast<std::size_t>((256 - 2 * low) / cell + 1);
@@ -121,7 +112,6 @@ TEST(CoverageTessellation, GridsCloseThePixel) {
 // A triangle's coverages of all pixels add up to its area. Each pixel sees the triangle from its own corner.
 TEST(CoverageTessellation, PixelsShareOutTheTriangle) {
   Random random(11);
-  SCOPED_TRACE(random.name());
   for (int round = 0; round < 500; ++round) {
     Triangle t;
     for (Corner& corner : t.p) corner = {random.integer(0, 12 * 256), random.integer(0, 12 * 256)};
@@ -134,5 +124,4 @@ TEST(CoverageTessellation, PixelsShareOutTheTriangle) {
   }
 }
 
-}  // namespace
-}  // namespace beampipe
+}  // namespace beampipe::coverage_tessellation_test

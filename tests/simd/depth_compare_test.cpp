@@ -1,15 +1,9 @@
 #include "simd/depth_compare.h"
 
-#include <gtest/gtest.h>
-
-#include <bit>
-#include <vector>
-
 #include "tests/simd/every_target.h"
 #include "tests/simd/random.h"
 
-namespace beampipe {
-namespace {
+namespace beampipe::depth_compare_test {
 
 struct Samples {
   std::vector<float> depth;
@@ -41,7 +35,6 @@ std::uint64_t twin(const std::vector<CellDepth>& items, const SamplePattern& pat
 // Several items per cell, equal depths, and neighbouring samples that a wide store must not change.
 TEST(DepthCompare, KernelEqualsTwinForEveryPatternSize) {
   Random random(51);
-  SCOPED_TRACE(random.name());
   constexpr float kSlopes[] = {0.0f, 0.0f, 1.0f / 4096, -1.0f / 4096, 1e-5f};
   constexpr std::size_t kCells = 7;
   for (int count = 1; count <= kMaxMaskSamples; ++count) {
@@ -87,5 +80,4 @@ TEST(DepthCompare, NearerReplacesEqualDoesNot) {
   });
 }
 
-}  // namespace
-}  // namespace beampipe
+}  // namespace beampipe::depth_compare_test

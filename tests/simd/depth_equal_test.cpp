@@ -1,14 +1,8 @@
-#include <gtest/gtest.h>
-
-#include <random>
-#include <vector>
-
 #include "simd/depth_compare.h"
 #include "simd/match.h"
 #include "tests/simd/every_target.h"
 
-namespace beampipe {
-namespace {
+namespace beampipe::depth_equal_test {
 
 TEST(DepthEqual, KernelEqualsTwin) {
   std::mt19937 bits(11);
@@ -59,5 +53,4 @@ TEST(MatchMasks, KernelEqualsTwin) {
   });
 }
 
-}  // namespace
-}  // namespace beampipe
+}  // namespace beampipe::depth_equal_test

@@ -1,18 +1,12 @@
 #include "simd/depth_span.h"
 
-#include <gtest/gtest.h>
-
-#include <vector>
-
 #include "tests/simd/every_target.h"
 #include "tests/simd/random.h"
 
-namespace beampipe {
-namespace {
+namespace beampipe::depth_span_test {
 
 TEST(DepthSpan, EveryTargetEqualsTheFormulaOnDoubleForEveryLength) {
   Random random(61);
-  SCOPED_TRACE(random.name());
   for (std::size_t count = 0; count <= 70; ++count) {
     std::vector<double> depth(count + 8);
     for (double& z : depth) z = random.real(-1, 0);
@@ -40,7 +34,6 @@ TEST(DepthSpan, EveryTargetEqualsTheFormulaOnDoubleForEveryLength) {
 // On small multiples of powers of two double arithmetic is exact, and so is integer arithmetic.
 TEST(DepthSpan, EqualsIntegerArithmetic) {
   Random random(62);
-  SCOPED_TRACE(random.name());
   int ties = 0;
   on_every_target([&] {
     for (int draw = 0; draw < 2'000; ++draw) {
@@ -82,5 +75,4 @@ TEST(DepthSpan, NearerReplacesEqualDoesNot) {
   });
 }
 
-}  // namespace
-}  // namespace beampipe
+}  // namespace beampipe::depth_span_test

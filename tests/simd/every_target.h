@@ -1,9 +1,8 @@
 // Runs a check once for each instruction set that the kernels were compiled for and that this machine has.
 #pragma once
 
-#include <gtest/gtest.h>
-
 #include "simd/target.h"
+#include "tests/test.h"
 
 namespace beampipe {
 

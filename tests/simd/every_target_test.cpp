@@ -1,7 +1,5 @@
 #include "tests/simd/every_target.h"
 
-#include <set>
-
 #undef HWY_TARGET_INCLUDE
 #define HWY_TARGET_INCLUDE "tests/simd/every_target_test.cpp"
 #include "hwy/foreach_target.h"

@@ -1,18 +1,9 @@
 #include "simd/mask_table.h"
 
-#include <gtest/gtest.h>
-
-#include <algorithm>
-#include <bit>
-#include <cmath>
-#include <limits>
-#include <vector>
-
 #include "tests/simd/every_target.h"
 #include "tests/simd/random.h"
 
-namespace beampipe {
-namespace {
+namespace beampipe::mask_table_test {
 
 constexpr TableEdge kEverything{0, 0, 1.0f};  // the whole pixel is inside this edge
 
@@ -69,7 +60,6 @@ TEST(MaskTable, EntriesGrowWithTheDistance) {
 TEST(MaskTable, EdgeAndItsReverseShareNoBitAndMissNone) {
   const MaskTable table(hammersley_pattern());
   Random random(31);
-  SCOPED_TRACE(random.name());
   for (int i = 0; i < 200'000; ++i) {
     const RandomEdge e = random_edge(random);
     const TableEdge edge = table_edge(e.a, e.b, e.c), reverse = table_edge(-e.a, -e.b, -e.c);
@@ -99,7 +89,6 @@ TEST(MaskTable, ComplementsWhereTheColumnChanges) {
 TEST(MaskTable, EveryTargetEqualsTheFormula) {
   const MaskTable table(hammersley_pattern());
   Random random(32);
-  SCOPED_TRACE(random.name());
   const std::vector<float> borders = border_distances();
   std::vector<TableTriangle> triangles(20'003);
   for (TableTriangle& triangle : triangles)
@@ -125,7 +114,6 @@ TEST(MaskTable, DiffersFromTheExactMaskOnlyNearTheEdge) {
   const SamplePattern pattern = hammersley_pattern();
   const MaskTable table(pattern);
   Random random(33);
-  SCOPED_TRACE(random.name());
   const double bound = 1 / (64 * std::sqrt(2.0)) + std::acos(-1.0) / 64 / std::sqrt(2.0) + 1e-6;
   constexpr int kEdges = 50'000;
   double wrong = 0;
@@ -148,5 +136,4 @@ TEST(MaskTable, DiffersFromTheExactMaskOnlyNearTheEdge) {
   EXPECT_LT(wrong / kEdges, 0.5) << "bits of 32";
 }
 
-}  // namespace
-}  // namespace beampipe
+}  // namespace beampipe::mask_table_test

@@ -1,14 +1,7 @@
-#include <gtest/gtest.h>
-
-#include <array>
-#include <bit>
-#include <vector>
-
 #include "tests/simd/every_target.h"
 #include "tests/simd/merge_cases.h"
 
-namespace beampipe {
-namespace {
+namespace beampipe::merge_kernel_test {
 
 using Bits = std::array<std::uint32_t, sizeof(Aggregate) / sizeof(std::uint32_t)>;
 using StepBits = std::array<std::uint32_t, sizeof(MergeSteps) / sizeof(std::uint32_t)>;
@@ -19,7 +12,6 @@ TEST(MergeKernel, EveryTargetEqualsTheFormulaOnChains) {
   const std::vector<MergeRules> every_rule = every_merge_rule();
   on_every_target([&] {
     Random random(41);
-    SCOPED_TRACE(random.name());
     for (std::size_t rule = 0; rule < every_rule.size(); ++rule) {
       std::vector<Aggregate> aggregates(1'003, kEmptyAggregate);
       std::vector<MergeFragment> fragments(aggregates.size());
@@ -45,7 +37,6 @@ TEST(MergeKernel, EveryTargetEqualsTheFormulaOnChains) {
 TEST(MergeKernel, EveryTargetEqualsTheFormulaForEveryBatchSize) {
   const MergePositions positions(hammersley_pattern());
   Random random(42);
-  SCOPED_TRACE(random.name());
   std::vector<MergeFragment> fragments(20);
   for (MergeFragment& fragment : fragments) fragment = random_fragment(random);
   const Aggregate old = random_fragment(random).surface;
@@ -62,5 +53,4 @@ TEST(MergeKernel, EveryTargetEqualsTheFormulaForEveryBatchSize) {
   });
 }
 
-}  // namespace
-}  // namespace beampipe
+}  // namespace beampipe::merge_kernel_test

@@ -1,17 +1,9 @@
 // The rules of merging, by the formula on float: what always holds, and cases worked out by hand.
-#include <gtest/gtest.h>
-
-#include <algorithm>
-#include <array>
-#include <bit>
-#include <cmath>
-#include <cstdint>
 
 #include "tests/simd/merge_cases.h"
 #include "tests/thorough.h"
 
-namespace beampipe {
-namespace {
+namespace beampipe::merge_rules_test {
 
 const SamplePattern kPattern = hammersley_pattern();
 const MergePositions kPositions(kPattern);
@@ -21,6 +13,13 @@ Aggregate merged(const Aggregate& fragment, const Aggregate& old, const MergeRul
 }
 Aggregate merged_tiny(const Aggregate& fragment, const Aggregate& old, const MergeRules& rules = {}) {
   return merge_formula({fragment, kAllBits}, old, kPositions, rules);
+}
+
+// Of a pixel whose surfaces are red and green.
+void expect_shows(const Aggregate& found, double alpha, double red, double green, double bound = 1.2e-7) {
+  EXPECT_NEAR(found.alpha, alpha, bound);
+  EXPECT_NEAR(found.color[0], red, bound);
+  EXPECT_NEAR(found.color[1], green, bound);
 }
 
 MergeRules with_overlap(MergeRules::Overlap overlap) {
@@ -52,9 +51,23 @@ void expect_invariants(const MergeFragment& fragment, const Aggregate& old, cons
   }
 }
 
+// A slab of thickness 0.4 around depth -0.5 reaches from -0.7 to -0.3; the depths that it was made of reach less far.
+TEST(MergeRules, TheDepthRangeLimitsTheEndsOfASlab) {
+  Aggregate slab = kEmptyAggregate;
+  slab.thickness = 0.4f, slab.z_min = -0.6f, slab.z_max = -0.45f;
+  MergeRules rules;
+  rules.extents = MergeRules::Extents::range;
+  const SlabEnds<float> limited = slab_ends(slab, -0.5f, rules);
+  EXPECT_EQ(limited.front, -0.6f);
+  EXPECT_EQ(limited.back, -0.45f);
+  rules.extents = MergeRules::Extents::slab;
+  const SlabEnds<float> free = slab_ends(slab, -0.5f, rules);
+  EXPECT_FLOAT_EQ(free.front, -0.7f);
+  EXPECT_FLOAT_EQ(free.back, -0.3f);
+}
+
 TEST(MergeRules, InvariantsOnChains) {
   Random random(43);
-  SCOPED_TRACE(random.name());
   for (const MergeRules& rules : every_merge_rule())
     for (int chain = 0; chain < 1'000 * thoroughness(); ++chain) {
       Aggregate aggregate = kEmptyAggregate;
@@ -88,43 +101,23 @@ TEST(MergeRules, FirstFragmentIsTheAggregate) {
   for (int c = 0; c < 3; ++c) EXPECT_FLOAT_EQ(now.color[c], in.color[c]);
 }
 
-TEST(MergeRules, OpaqueFrontHidesWhatIsThere) {
-  const Aggregate now = merged(flat_surface(1, kAllBits, -0.9f, 1, 0), flat_surface(1, kAllBits, -0.1f, 0, 1));
-  EXPECT_EQ(now.alpha, 1.0f);
-  EXPECT_EQ(now.color[0], 1.0f);
-  EXPECT_EQ(now.color[1], 0.0f);
-}
-
-TEST(MergeRules, OpaqueFrontHidesWhatComes) {
-  const Aggregate now = merged(flat_surface(1, kAllBits, -0.1f, 1, 0), flat_surface(1, kAllBits, -0.9f, 0, 1));
-  EXPECT_EQ(now.alpha, 1.0f);
-  EXPECT_EQ(now.color[0], 0.0f);
-  EXPECT_EQ(now.color[1], 1.0f);
-}
-
-TEST(MergeRules, EqualDepthKeepsTheEarlier) {
-  const Aggregate now = merged(flat_surface(1, kAllBits, -0.5f, 1, 0), flat_surface(1, kAllBits, -0.5f, 0, 1));
-  EXPECT_EQ(now.color[0], 0.0f);
-  EXPECT_EQ(now.color[1], 1.0f);
+TEST(MergeRules, TheNearerOpaqueSurfaceHidesTheOther) {
+  const auto at = [](float z, float red, float green) { return flat_surface(1, kAllBits, z, red, green); };
+  expect_shows(merged(at(-0.9f, 1, 0), at(-0.1f, 0, 1)), 1, 1, 0, 0);
+  expect_shows(merged(at(-0.1f, 1, 0), at(-0.9f, 0, 1)), 1, 0, 1, 0);
+  expect_shows(merged(at(-0.5f, 1, 0), at(-0.5f, 0, 1)), 1, 0, 1, 0);  // the earlier one
 }
 
 TEST(MergeRules, DisjointHalvesAdd) {
-  const Aggregate now =
-      merged(flat_surface(0.5f, 0x0000ffffu, -0.1f, 1, 0), flat_surface(0.5f, 0xffff0000u, -0.9f, 0, 1));
-  EXPECT_FLOAT_EQ(now.alpha, 1.0f);
-  EXPECT_FLOAT_EQ(now.color[0], 0.5f);
-  EXPECT_FLOAT_EQ(now.color[1], 0.5f);
+  expect_shows(merged(flat_surface(0.5f, 0x0000ffffu, -0.1f, 1, 0), flat_surface(0.5f, 0xffff0000u, -0.9f, 0, 1)), 1,
+               0.5, 0.5);
 }
 
 // Where masks overlap, the coverages count as independent, as in OVER. The surface in front shows 1/2, and the one
 // behind shows 1/2 x (1 - 1/2) = 1/4.
 TEST(MergeRules, OverlappingHalvesAreIndependent) {
   const Aggregate back = flat_surface(0.5f, kAllBits, -0.1f, 1, 0), front = flat_surface(0.5f, kAllBits, -0.9f, 0, 1);
-  for (const Aggregate& now : {merged(front, back), merged(back, front)}) {
-    EXPECT_FLOAT_EQ(now.alpha, 0.75f);
-    EXPECT_FLOAT_EQ(now.color[0], 0.25f);
-    EXPECT_FLOAT_EQ(now.color[1], 0.5f);
-  }
+  for (const Aggregate& now : {merged(front, back), merged(back, front)}) expect_shows(now, 0.75, 0.25, 0.5);
 }
 
 // Two opaque halves at the same 16 positions. The coverage of their region is 1, so the one in front hides the other,
@@ -138,25 +131,17 @@ TEST(MergeRules, RegionalCoverageIsNormalizedOrAnArea) {
     const Aggregate &in = is_front ? front : back, &old = is_front ? back : front;
     EXPECT_FLOAT_EQ(merged(in, old).alpha, 0.5f);
     EXPECT_FLOAT_EQ(merged(in, old).color[0], 0.0f);
-    EXPECT_FLOAT_EQ(merged(in, old, area).alpha, 0.75f);
-    EXPECT_FLOAT_EQ(merged(in, old, area).color[0], 0.25f);
-    EXPECT_FLOAT_EQ(merged(in, old, area).color[1], 0.5f);
+    expect_shows(merged(in, old, area), 0.75, 0.25, 0.5);
   }
   const Aggregate half = flat_surface(0.5f, kAllBits, -0.1f, 1, 0), nearer = flat_surface(0.5f, kAllBits, -0.9f, 0, 1);
   EXPECT_FLOAT_EQ(merged(nearer, half, area).alpha, 0.75f);
-  const Aggregate whole = merged(front, flat_surface(1, kAllBits, -0.1f, 1, 0), area);
-  EXPECT_FLOAT_EQ(whole.alpha, 1.0f);
-  EXPECT_FLOAT_EQ(whole.color[0], 0.6f);
-  EXPECT_FLOAT_EQ(whole.color[1], 0.4f);
+  expect_shows(merged(front, flat_surface(1, kAllBits, -0.1f, 1, 0), area), 1, 0.6, 0.4);
 }
 
 // A speck lies beside what is there as long as there is room: 1/2 + 1/4 in the one position that it was given.
 TEST(MergeRules, SpeckLiesBeside) {
   const Aggregate old = flat_surface(0.5f, kAllBits, -0.9f, 0, 1), tiny = flat_surface(0.25f / 32, 1u, -0.1f, 1, 0);
-  const Aggregate beside = merged_tiny(tiny, old);
-  EXPECT_FLOAT_EQ(beside.alpha, 0.5f + 0.25f / 32);
-  EXPECT_FLOAT_EQ(beside.color[0], 0.25f / 32);
-  EXPECT_FLOAT_EQ(beside.color[1], 0.5f);
+  expect_shows(merged_tiny(tiny, old), 0.5 + 0.25 / 32, 0.25 / 32, 0.5);
   // If it were no speck, half of it would be hidden.
   EXPECT_FLOAT_EQ(merged(tiny, old).alpha, 0.5f + 0.125f / 32);
 }
@@ -168,9 +153,7 @@ TEST(MergeRules, WithinTheSlabDeltaShares) {
   old.thickness = 0.2f;
   old.z_min = -0.6f, old.z_max = -0.4f;
   const Aggregate now = merged(flat_surface(1, kAllBits, -0.45f, 1, 0), old);
-  EXPECT_NEAR(now.alpha, 1.0f, 1e-6);
-  EXPECT_NEAR(now.color[0], 0.25f, 1e-6);
-  EXPECT_NEAR(now.color[1], 0.75f, 1e-6);
+  expect_shows(now, 1, 0.25, 0.75, 1e-6);
   EXPECT_GE(now.thickness, 0.2f);
 }
 
@@ -179,10 +162,7 @@ TEST(MergeRules, CrossingPlanesShareThePixel) {
   Aggregate in = flat_surface(1, kAllBits, -0.5f, 1, 0);
   in.plane.dzdu = 0.2f;
   in.z_min = -0.6f, in.z_max = -0.4f;
-  const Aggregate now = merged(in, flat_surface(1, kAllBits, -0.5f, 0, 1), by_position({}));
-  EXPECT_FLOAT_EQ(now.alpha, 1.0f);
-  EXPECT_FLOAT_EQ(now.color[0], 0.5f);
-  EXPECT_FLOAT_EQ(now.color[1], 0.5f);
+  expect_shows(merged(in, flat_surface(1, kAllBits, -0.5f, 0, 1), by_position({})), 1, 0.5, 0.5);
 }
 
 // A steep plane leaves the depth range that its triangle really has in the pixel. What lies behind that range is behind
@@ -192,12 +172,9 @@ TEST(MergeRules, DepthRangeBoundsTheSlabOnBothSides) {
     Aggregate old = flat_surface(1, kAllBits, -0.5f, 0, 1);
     old.plane.dzdu = slope;
     old.z_min = -0.55f, old.z_max = -0.45f;
-    const Aggregate behind = merged(flat_surface(1, kAllBits, -0.4f, 1, 0), old);
-    EXPECT_FLOAT_EQ(behind.color[0], 0.0f) << slope;
-    EXPECT_FLOAT_EQ(behind.color[1], 1.0f) << slope;
-    const Aggregate before = merged(flat_surface(1, kAllBits, -0.6f, 1, 0), old);
-    EXPECT_FLOAT_EQ(before.color[0], 1.0f) << slope;
-    EXPECT_FLOAT_EQ(before.color[1], 0.0f) << slope;
+    SCOPED_TRACE(slope);
+    expect_shows(merged(flat_surface(1, kAllBits, -0.4f, 1, 0), old), 1, 0, 1);
+    expect_shows(merged(flat_surface(1, kAllBits, -0.6f, 1, 0), old), 1, 1, 0);
   }
 }
 
@@ -213,7 +190,6 @@ Aggregate masked_surface(std::uint32_t mask, const DepthPlane<float>& plane, flo
 // Every position shows the nearer surface; at equal depth the earlier one.
 TEST(MergeRules, CrossingPlanesShareTheirOverlapByPosition) {
   Random random(45);
-  SCOPED_TRACE(random.name());
   int ties = 0;
   for (int i = 0; i < 20'000; ++i) {
     const auto integers = [&] {
@@ -252,7 +228,6 @@ TEST(MergeRules, CrossingPlanesShareTheirOverlapByPosition) {
 // positions that are nearer than that to the line may be on the other side of it.
 TEST(MergeRules, LinesPartPositionsAsTheTableDoes) {
   Random random(48);
-  SCOPED_TRACE(random.name());
   int cut = 0;
   for (int i = 0; i < 20'000; ++i) {
     const auto plane = [&] {
@@ -309,7 +284,6 @@ TEST(MergeRules, EarlyOuts) {
 // aggregate, and those within it a blend by Delta, which is taken at the mean of the positions within.
 TEST(MergeRules, WithinTheSlabDeltaIsTakenAtTheMeanPosition) {
   Random random(46);
-  SCOPED_TRACE(random.name());
   int mixed = 0;
   for (int i = 0; i < 20'000; ++i) {
     const float steep = random.one_in(2) ? 0.1f : 1.0f;
@@ -354,16 +328,12 @@ TEST(MergeRules, WithinTheSlabDeltaIsTakenAtTheMeanPosition) {
 // Two surfaces beside each other that are larger than their masks, 1 in half of the positions and 1/2 in the other
 // half, are scaled down to the pixel: 2/3 and 1/3.
 TEST(MergeRules, AreasAboveOneAreScaled) {
-  const Aggregate now =
-      merged(flat_surface(1.0f, 0x0000ffffu, -0.1f, 1, 0), flat_surface(0.5f, 0xffff0000u, -0.9f, 0, 1));
-  EXPECT_FLOAT_EQ(now.alpha, 1.0f);
-  EXPECT_FLOAT_EQ(now.color[0], 2.0f / 3);
-  EXPECT_FLOAT_EQ(now.color[1], 1.0f / 3);
+  expect_shows(merged(flat_surface(1.0f, 0x0000ffffu, -0.1f, 1, 0), flat_surface(0.5f, 0xffff0000u, -0.9f, 0, 1)), 1,
+               2.0 / 3, 1.0 / 3);
 }
 
 TEST(MergeRules, PlanesAreMeansByArea) {
   Random random(47);
-  SCOPED_TRACE(random.name());
   for (int i = 0; i < 20'000; ++i) {
     const auto surface = [&] {
       Aggregate of = flat_surface(random.real32(0.01, 1), random.word() | 1u, random.real32(-1, 0), 1);
@@ -382,7 +352,6 @@ TEST(MergeRules, PlanesAreMeansByArea) {
 // The slab reaches the fragment: at every covered position the fragment is within half the thickness of the new plane.
 TEST(MergeRules, ThicknessReachesTheFragment) {
   Random random(44);
-  SCOPED_TRACE(random.name());
   MergeRules containing;
   containing.thickness = MergeRules::Thickness::containing;
   for (int i = 0; i < 20'000; ++i) {
@@ -441,7 +410,6 @@ TEST(MergeRules, TransitionGoesFromAddToOverWithDistance) {
 TEST(MergeRules, TransitionTakesTheMeanDistanceOverTheOverlap) {
   const MergeRules rules = with_overlap(MergeRules::Overlap::transition);
   Random random(48);
-  SCOPED_TRACE(random.name());
   for (int i = 0; i < 20'000; ++i) {
     const float part_in = random.real32(0.1, 1), part_old = random.real32(0.1, 1);
     const auto surface = [&](float z, float part, float red, float green) {
@@ -496,8 +464,7 @@ TEST(MergeRules, WithinTheSlabAreaIsLostOrMixed) {
   MergeRules rules;
   rules.fuzzy = MergeRules::Fuzzy::mix;
   const Aggregate now = merged(in, old, rules);
-  EXPECT_NEAR(now.color[0], 0.375f, 1e-6);
-  EXPECT_NEAR(now.color[1], 0.375f, 1e-6);
+  expect_shows(now, 0.75, 0.375, 0.375, 1e-6);
 }
 
 // A slab of thickness 0.4 around -0.5 whose surfaces lie between -0.55 and -0.45. A fragment at -0.4 is behind the
@@ -530,7 +497,6 @@ TEST(MergeRules, VisiblePositionsAloneExtendTheSlab) {
   MergeRules rules = by_position({});
   rules.slab = MergeRules::Slab::visible;
   Random random(49);
-  SCOPED_TRACE(random.name());
   int hidden = 0, partly = 0;
   for (int i = 0; i < 20'000; ++i) {
     const auto surface = [&](float red, float green) {
@@ -593,10 +559,7 @@ TEST(MergeRules, ThicknessContainsWhatWasThereBefore) {
 TEST(MergeRules, PlainOver) {
   const Aggregate now = over_formula<float, std::uint32_t>({flat_surface(0.25f, 1u, -0.1f, 1, 0), 0u},
                                                            flat_surface(0.5f, 1u, -0.9f, 0, 1));
-  EXPECT_FLOAT_EQ(now.alpha, 0.625f);
-  EXPECT_FLOAT_EQ(now.color[0], 0.125f);
-  EXPECT_FLOAT_EQ(now.color[1], 0.5f);
+  expect_shows(now, 0.625, 0.125, 0.5);
 }
 
-}  // namespace
-}  // namespace beampipe
+}  // namespace beampipe::merge_rules_test

@@ -1,18 +1,9 @@
 #include "simd/plane_order.h"
 
-#include <gtest/gtest.h>
-
-#include <algorithm>
-#include <array>
-#include <cmath>
-#include <cstdint>
-#include <vector>
-
 #include "tests/simd/every_target.h"
 #include "tests/simd/random.h"
 
-namespace beampipe {
-namespace {
+namespace beampipe::plane_order_test {
 
 // Planes that are steep, flat, equal, or one bit apart at the centre.
 std::vector<DepthPlane<float>> hard_planes(Random& random) {
@@ -40,9 +31,17 @@ struct IntegerPlane {
   }
 };
 
+// Calls body(patterns) for each of these numbers of positions, on every target.
+template <class Body>
+void for_positions(std::initializer_list<int> counts, Body&& body) {
+  for (const int count : counts) {
+    const std::vector<SamplePattern> patterns = cell_patterns(count);
+    on_every_target([&] { body(patterns); });
+  }
+}
+
 TEST(PlaneOrder, EqualsIntegerArithmetic) {
   Random random(63);
-  SCOPED_TRACE(random.name());
   const std::vector<SamplePattern> patterns = cell_patterns(256);
   int ties = 0;
   on_every_target([&] {
@@ -65,22 +64,18 @@ TEST(PlaneOrder, EqualsIntegerArithmetic) {
 
 TEST(PlaneOrder, NearerOnEveryTargetEqualsTheFormulaOnFloat) {
   Random random(61);
-  SCOPED_TRACE(random.name());
   const std::vector<DepthPlane<float>> planes = hard_planes(random);
-  for (const int positions : {32, 128, 256}) {
-    const std::vector<SamplePattern> patterns = cell_patterns(positions);
-    on_every_target([&] {
-      for (std::size_t i = 1; i < planes.size(); ++i) {
-        std::uint32_t masks[8];
-        nearer_positions(planes[i], planes[i - 1], patterns.data(), patterns.size(), masks);
-        for (std::size_t w = 0; w < patterns.size(); ++w)
-          for (std::size_t s = 0; s < 32; ++s)
-            ASSERT_EQ(masks[w] >> s & 1,
-                      nearer_formula(planes[i], planes[i - 1], position_u(patterns[w], s), position_v(patterns[w], s)))
-                << i << " position " << 32 * w + s;
-      }
-    });
-  }
+  for_positions({32, 128, 256}, [&](const std::vector<SamplePattern>& patterns) {
+    for (std::size_t i = 1; i < planes.size(); ++i) {
+      std::uint32_t masks[8];
+      nearer_positions(planes[i], planes[i - 1], patterns.data(), patterns.size(), masks);
+      for (std::size_t w = 0; w < patterns.size(); ++w)
+        for (std::size_t s = 0; s < 32; ++s)
+          ASSERT_EQ(masks[w] >> s & 1,
+                    nearer_formula(planes[i], planes[i - 1], position_u(patterns[w], s), position_v(patterns[w], s)))
+              << i << " position " << 32 * w + s;
+    }
+  });
 }
 
 // Masks without positions, with all of them, with one, and random ones; a word may be empty while others are not.
@@ -104,27 +99,22 @@ bool has(const std::array<std::uint32_t, 8>& mask, std::size_t position) {
 
 TEST(PlaneOrder, FarthestOnEveryTargetEqualsTheFormulaOnFloat) {
   Random random(64);
-  SCOPED_TRACE(random.name());
   const std::vector<DepthPlane<float>> planes = hard_planes(random);
   const std::vector<std::array<std::uint32_t, 8>> masks = hard_masks(random);
-  for (const int positions : {32, 64, 128, 256}) {
-    const std::vector<SamplePattern> patterns = cell_patterns(positions);
-    on_every_target([&] {
-      for (std::size_t i = 0; i < planes.size(); ++i) {
-        const std::array<std::uint32_t, 8>& mask = masks[i % masks.size()];
-        float expected = kInFront;
-        for (std::size_t p = 0; p < static_cast<std::size_t>(positions); ++p)
-          expected = farthest_formula(planes[i], position_u(patterns[p / 32], p % 32),
-                                      position_v(patterns[p / 32], p % 32), has(mask, p), expected);
-        ASSERT_EQ(farthest_depth(planes[i], patterns.data(), patterns.size(), mask.data()), expected) << i;
-      }
-    });
-  }
+  for_positions({32, 64, 128, 256}, [&](const std::vector<SamplePattern>& patterns) {
+    for (std::size_t i = 0; i < planes.size(); ++i) {
+      const std::array<std::uint32_t, 8>& mask = masks[i % masks.size()];
+      float expected = kInFront;
+      for (std::size_t p = 0; p < 32 * patterns.size(); ++p)
+        expected = farthest_formula(planes[i], position_u(patterns[p / 32], p % 32),
+                                    position_v(patterns[p / 32], p % 32), has(mask, p), expected);
+      ASSERT_EQ(farthest_depth(planes[i], patterns.data(), patterns.size(), mask.data()), expected) << i;
+    }
+  });
 }
 
 TEST(PlaneOrder, FarthestEqualsIntegerArithmetic) {
   Random random(65);
-  SCOPED_TRACE(random.name());
   const std::vector<SamplePattern> patterns = cell_patterns(256);
   const std::vector<std::array<std::uint32_t, 8>> masks = hard_masks(random);
   on_every_target([&] {
@@ -148,42 +138,33 @@ TEST(PlaneOrder, FarthestEqualsIntegerArithmetic) {
 
 TEST(PlaneOrder, PositionSumsAreSumsOfIntegers) {
   Random random(66);
-  SCOPED_TRACE(random.name());
   const std::vector<std::array<std::uint32_t, 8>> masks = hard_masks(random);
-  for (const int positions : {32, 64, 128, 256}) {
-    const std::vector<SamplePattern> patterns = cell_patterns(positions);
-    on_every_target([&] {
-      for (std::size_t i = 0; i < masks.size(); ++i) {
-        std::int32_t x = 0, y = 0;
-        for (std::size_t p = 0; p < static_cast<std::size_t>(positions); ++p)
-          if (has(masks[i], p)) x += patterns[p / 32].x[p % 32], y += patterns[p / 32].y[p % 32];
-        const PositionSums sums = position_sums(patterns.data(), patterns.size(), masks[i].data());
-        ASSERT_EQ(sums.x, x) << i;
-        ASSERT_EQ(sums.y, y) << i;
-      }
-    });
-  }
+  for_positions({32, 64, 128, 256}, [&](const std::vector<SamplePattern>& patterns) {
+    for (std::size_t i = 0; i < masks.size(); ++i) {
+      std::int32_t x = 0, y = 0;
+      for (std::size_t p = 0; p < 32 * patterns.size(); ++p)
+        if (has(masks[i], p)) x += patterns[p / 32].x[p % 32], y += patterns[p / 32].y[p % 32];
+      const PositionSums sums = position_sums(patterns.data(), patterns.size(), masks[i].data());
+      ASSERT_EQ(sums.x, x) << i;
+      ASSERT_EQ(sums.y, y) << i;
+    }
+  });
 }
 
 TEST(PlaneOrder, NearerLooksOnlyAtPositionsOfTheMask) {
   Random random(67);
-  SCOPED_TRACE(random.name());
   const std::vector<DepthPlane<float>> planes = hard_planes(random);
   const std::vector<std::array<std::uint32_t, 8>> masks = hard_masks(random);
-  for (const int positions : {32, 128, 256}) {
-    const std::vector<SamplePattern> patterns = cell_patterns(positions);
-    on_every_target([&] {
-      for (std::size_t i = 1; i < planes.size(); ++i) {
-        const std::array<std::uint32_t, 8>& where = masks[i % masks.size()];
-        std::uint32_t all[8], some[8];
-        std::fill(some, some + 8, ~0u);
-        nearer_positions(planes[i], planes[i - 1], patterns.data(), patterns.size(), all);
-        nearer_positions(planes[i], planes[i - 1], patterns.data(), patterns.size(), some, where.data());
-        for (std::size_t w = 0; w < patterns.size(); ++w) ASSERT_EQ(some[w], all[w] & where[w]) << i << " word " << w;
-      }
-    });
-  }
+  for_positions({32, 128, 256}, [&](const std::vector<SamplePattern>& patterns) {
+    for (std::size_t i = 1; i < planes.size(); ++i) {
+      const std::array<std::uint32_t, 8>& where = masks[i % masks.size()];
+      std::uint32_t all[8], some[8];
+      std::fill(some, some + 8, ~0u);
+      nearer_positions(planes[i], planes[i - 1], patterns.data(), patterns.size(), all);
+      nearer_positions(planes[i], planes[i - 1], patterns.data(), patterns.size(), some, where.data());
+      for (std::size_t w = 0; w < patterns.size(); ++w) ASSERT_EQ(some[w], all[w] & where[w]) << i << " word " << w;
+    }
+  });
 }
 
-}  // namespace
-}  // namespace beampipe
+}  // namespace beampipe::plane_order_test

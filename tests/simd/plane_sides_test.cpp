@@ -1,7 +1,3 @@
-#include <gtest/gtest.h>
-
-#include <cmath>
-
 #include "simd/plane_gap.h"
 #include "tests/simd/every_target.h"
 #include "tests/simd/random.h"
@@ -63,7 +59,6 @@ DepthPlane<float> other_plane(Random& random, const DepthPlane<float>& plane) {
 template <std::size_t kCount, class Kernel>
 void expect_scalar_twin(std::uint64_t seed, const Kernel& kernel) {
   Random random(seed);
-  SCOPED_TRACE(random.name());
   int nearer_in_all = 0, farther_in_all = 0, crossing_in_all = 0;
   for (int draw = 0; draw < 2'000; ++draw) {
     DepthPlane<float> plane = other_plane(random, {-0.5f, 0, 0});

@@ -1,13 +1,8 @@
 #include "simd/population_count.h"
 
-#include <gtest/gtest.h>
-
-#include <bit>
-
 #include "tests/simd/random.h"
 
-namespace beampipe {
-namespace {
+namespace beampipe::population_count_test {
 
 TEST(PopulationCount, EqualsTheStandardLibrary) {
   for (std::uint32_t low = 0; low < 1u << 16; ++low)
@@ -20,5 +15,4 @@ TEST(PopulationCount, EqualsTheStandardLibrary) {
   }
 }
 
-}  // namespace
-}  // namespace beampipe
+}  // namespace beampipe::population_count_test

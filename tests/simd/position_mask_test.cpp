@@ -1,17 +1,13 @@
 #include "simd/position_mask.h"
 
-#include <gtest/gtest.h>
-
 #include "simd/sample_mask.h"
 #include "tests/simd/coverage_cases.h"
 #include "tests/simd/every_target.h"
 
-namespace beampipe {
-namespace {
+namespace beampipe::position_mask_test {
 
 TEST(PositionMask, KernelEqualsTwinOnRandomTriangles) {
   Random random(61);
-  SCOPED_TRACE(random.name());
   std::vector<TriangleInPixel> in;
   std::vector<TriangleInPixelOf<std::int64_t>> wide;
   for (int i = 0; i < 4'000; ++i) {
@@ -32,7 +28,6 @@ TEST(PositionMask, KernelEqualsTwinOnRandomTriangles) {
 // Slopes at the limit where the kernel changes its number type.
 TEST(PositionMask, KernelEqualsTwinOnLongEdges) {
   Random random(62);
-  SCOPED_TRACE(random.name());
   const PositionGrid grid(256);
   constexpr std::int64_t kBorder = 1 << 20;
   on_every_target([&] {
@@ -54,7 +49,6 @@ TEST(PositionMask, KernelEqualsTwinOnLongEdges) {
 // The positions are those of cell_patterns, and the covered ones are those that sample_masks finds.
 TEST(PositionMask, EqualsSampleMasksOfTheSamePositions) {
   Random random(63);
-  SCOPED_TRACE(random.name());
   for (const int positions : {32, 64, 128, 256}) {
     const PositionGrid grid(positions);
     const std::vector<SamplePattern> patterns = cell_patterns(positions);
@@ -72,5 +66,4 @@ TEST(PositionMask, EqualsSampleMasksOfTheSamePositions) {
   }
 }
 
-}  // namespace
-}  // namespace beampipe
+}  // namespace beampipe::position_mask_test

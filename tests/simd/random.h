@@ -1,8 +1,7 @@
 // Random numbers for property tests: the same from the same seed on every machine (SplitMix64, Steele et al. 2014).
 #pragma once
 
-#include <cstdint>
-#include <string>
+#include "tests/test.h"
 
 namespace beampipe {
 
@@ -29,10 +28,11 @@ class Random {
     return values[static_cast<std::size_t>(integer(0, static_cast<std::int64_t>(std::size(values)) - 1))];
   }
 
-  std::string name() const { return "seed " + std::to_string(seed_); }  // for SCOPED_TRACE
+  std::string name() const { return "seed " + std::to_string(seed_); }
 
  private:
   std::uint64_t seed_, state_;
+  testing::ScopedTrace named_in_failures_{__FILE__, __LINE__, name()};
 };
 
 }  // namespace beampipe

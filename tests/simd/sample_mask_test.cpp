@@ -1,14 +1,9 @@
 #include "simd/sample_mask.h"
 
-#include <gtest/gtest.h>
-
-#include <vector>
-
 #include "tests/simd/every_target.h"
 #include "tests/simd/random.h"
 
-namespace beampipe {
-namespace {
+namespace beampipe::sample_mask_test {
 
 std::uint32_t twin(const CellEdges& cell, const SamplePattern& pattern) {
   std::int64_t a[3], b[3];
@@ -58,7 +53,6 @@ CellEdges random_edges(Random& random, const SamplePattern& pattern) {
 
 TEST(SampleMask, KernelEqualsTwinForEveryPatternSize) {
   Random random(21);
-  SCOPED_TRACE(random.name());
   for (int count = 1; count <= kMaxMaskSamples; ++count) {
     const SamplePattern pattern = random_pattern(random, count);
     std::vector<CellEdges> cells;
@@ -69,7 +63,6 @@ TEST(SampleMask, KernelEqualsTwinForEveryPatternSize) {
 
 TEST(SampleMask, KernelEqualsTwinForTheStandardPatterns) {
   Random random(22);
-  SCOPED_TRACE(random.name());
   std::vector<SamplePattern> patterns = {hammersley_pattern(), standard_pattern(8, 128, 64),
                                          standard_pattern(8, 16, 16)};
   for (const int count : {1, 2, 4, 8, 16}) patterns.push_back(standard_pattern(count));
@@ -94,5 +87,4 @@ TEST(SampleMask, SampleOnAnEdgeIsCovered) {
   });
 }
 
-}  // namespace
-}  // namespace beampipe
+}  // namespace beampipe::sample_mask_test

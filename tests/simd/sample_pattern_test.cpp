@@ -1,15 +1,8 @@
 #include "simd/sample_pattern.h"
 
-#include <gtest/gtest.h>
+#include "tests/test.h"
 
-#include <map>
-#include <set>
-#include <stdexcept>
-#include <utility>
-#include <vector>
-
-namespace beampipe {
-namespace {
+namespace beampipe::sample_pattern_test {
 
 using Locations = std::vector<std::pair<double, double>>;
 
@@ -100,5 +93,4 @@ TEST(SamplePattern, MasksHave32To256Positions) {
   EXPECT_THROW(cell_patterns(96), std::invalid_argument);
 }
 
-}  // namespace
-}  // namespace beampipe
+}  // namespace beampipe::sample_pattern_test

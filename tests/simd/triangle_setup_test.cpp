@@ -1,14 +1,9 @@
 #include "simd/triangle_setup.h"
 
-#include <gtest/gtest.h>
-
-#include <bit>
-
 #include "tests/simd/every_target.h"
 #include "tests/simd/random.h"
 
-namespace beampipe {
-namespace {
+namespace beampipe::triangle_setup_test {
 
 template <class Number>
 std::uint64_t bits_of(Number x) {
@@ -29,7 +24,6 @@ ScreenVertex<double> random_vertex(Random& random, const ScreenVertex<double>& o
 // The same formula one triangle at a time. Triangles without area have no slopes, but the same bits.
 TEST(TriangleSetup, PlanesEqualTheFormulaOnEveryTarget) {
   Random random(71);
-  SCOPED_TRACE(random.name());
   for (int block = 0; block < 3'000; ++block) {
     ScreenCorners corners{};
     const auto count = static_cast<std::size_t>(random.integer(1, kSetupBlock));
@@ -64,7 +58,6 @@ TEST(TriangleSetup, PlanesEqualTheFormulaOnEveryTarget) {
 
 TEST(TriangleSetup, APlaneDoesNotDependOnTheOrderOfVertices) {
   Random random(72);
-  SCOPED_TRACE(random.name());
   for (int i = 0; i < 2'000; ++i) {
     const ScreenVertex<double> p = random_vertex(random, {}), q = random_vertex(random, p),
                                r = random_vertex(random, q);
@@ -81,7 +74,6 @@ TEST(TriangleSetup, APlaneDoesNotDependOnTheOrderOfVertices) {
 
 TEST(TriangleSetup, NormalsEqualTheFormulaOnEveryTarget) {
   Random random(73);
-  SCOPED_TRACE(random.name());
   for (int block = 0; block < 3'000; ++block) {
     std::array<double, 16> to_world;
     for (double& element : to_world) element = random.one_in(4) ? 0.0 : random.real(-3, 3);
@@ -112,5 +104,4 @@ TEST(TriangleSetup, NormalsEqualTheFormulaOnEveryTarget) {
   }
 }
 
-}  // namespace
-}  // namespace beampipe
+}  // namespace beampipe::triangle_setup_test

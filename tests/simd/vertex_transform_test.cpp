@@ -1,22 +1,9 @@
 #include "simd/vertex_transform.h"
 
-#include <gtest/gtest.h>
-
-#include <algorithm>
-#include <array>
-#include <cmath>
-#include <cstdint>
-#include <cstdlib>
-#include <cstring>
-#include <limits>
-#include <utility>
-#include <vector>
-
 #include "tests/simd/every_target.h"
 #include "tests/simd/random.h"
 
-namespace beampipe {
-namespace {
+namespace beampipe::vertex_transform_test {
 
 // A camera at the origin that looks along -z: w = -z.
 VertexTransform camera(double near, double far, double scale) {
@@ -40,7 +27,6 @@ bool same_bits(double a, double b) { return std::memcmp(&a, &b, sizeof a) == 0 |
 
 TEST(VertexTransform, EveryTargetEqualsTheFormulaOnDouble) {
   Random random(91);
-  SCOPED_TRACE(random.name());
   on_every_target([&] {
     std::size_t seen_in_all = 0;
     for (int draw = 0; draw < 300; ++draw) {
@@ -82,7 +68,6 @@ TEST(VertexTransform, EveryTargetEqualsTheFormulaOnDouble) {
 // The columns of the matrix, each chosen by a position of its own.
 TEST(VertexTransform, HomogeneousPositionsPickColumns) {
   Random random(93);
-  SCOPED_TRACE(random.name());
   VertexTransform transform{{}, 64, 32};
   for (double& element : transform.to_clip) element = random.real(-2, 2);
   const std::vector<float> positions = {2, 0, 0, 0, 2, 0, 0, 0, 2, 0, 0, 0}, ws = {0, 0, 0, 2};
@@ -100,7 +85,6 @@ TEST(VertexTransform, HomogeneousPositionsPickColumns) {
 // On small integers double arithmetic is exact, and so is integer arithmetic. The matrix is given by rows here.
 TEST(VertexTransform, EqualsIntegerArithmetic) {
   Random random(92);
-  SCOPED_TRACE(random.name());
   constexpr std::int64_t kWidth = 1279, kHeight = 719;  // odd, so that some vertices lie between two units
   on_every_target([&] {
     int seen_in_all = 0, border_in_all = 0;
@@ -181,5 +165,4 @@ TEST(VertexTransform, TheEyeIsNotInView) {
   });
 }
 
-}  // namespace
-}  // namespace beampipe
+}  // namespace beampipe::vertex_transform_test

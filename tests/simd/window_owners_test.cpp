@@ -8,8 +8,7 @@
 #include "tests/simd/every_target.h"
 #include "tests/simd/random.h"
 
-namespace beampipe {
-namespace {
+namespace beampipe::window_owners_test {
 
 WideMask random_mask(Random& random, std::size_t words) {
   WideMask mask;
@@ -58,13 +57,11 @@ void expect_twin(Random& random, int windows, const std::vector<float>& unusual_
 
 TEST(WindowOwners, KernelEqualsTwin) {
   Random random(65);
-  SCOPED_TRACE(random.name());
   expect_twin(random, 1'500, {});
 }
 
 TEST(WindowOwners, KernelEqualsTwinWhereDepthsAreNotFinite) {
   Random random(67);
-  SCOPED_TRACE(random.name());
   constexpr float kInfinity = std::numeric_limits<float>::infinity();
   expect_twin(random, 500, {std::numeric_limits<float>::quiet_NaN(), kInfinity, -kInfinity});
 }
@@ -72,7 +69,6 @@ TEST(WindowOwners, KernelEqualsTwinWhereDepthsAreNotFinite) {
 // Every position that is covered and not taken has exactly one owner. Other positions have none.
 TEST(WindowOwners, PartitionWhatIsOpen) {
   Random random(66);
-  SCOPED_TRACE(random.name());
   const std::vector<SamplePattern> patterns = cell_patterns(256);
   for (int i = 0; i < 2'000; ++i) {
     std::vector<MaskedPlane> fragments;
@@ -94,5 +90,4 @@ TEST(WindowOwners, PartitionWhatIsOpen) {
   }
 }
 
-}  // namespace
-}  // namespace beampipe
+}  // namespace beampipe::window_owners_test

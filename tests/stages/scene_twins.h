@@ -1,12 +1,11 @@
 // Runs scalar twins on numbers that count, with the data of every procedural scene of flat triangles.
 #pragma once
 
-#include <gtest/gtest.h>
-
 #include "stages/cost/counting.h"
 #include "stages/data/setup_triangle.h"
 #include "stages/data/tile.h"
 #include "stages/geometry/vertex_setup.h"
+#include "tests/test.h"
 #include "tests/traces/scene_names.h"
 
 namespace beampipe {
@@ -18,8 +17,11 @@ using Bits = Counted<std::uint32_t>;
 
 class SceneTwins : public testing::TestWithParam<SceneKind> {
  protected:
+  // `stacked`: triangles of the scene where each covers the whole picture.
+  explicit SceneTwins(std::uint32_t stacked = 8) : stacked_(stacked) {}
+
   void SetUp() override {
-    const std::uint32_t triangles = GetParam().name == "stack" ? 8 : 1500;  // each triangle covers the whole picture
+    const std::uint32_t triangles = GetParam().name == "stack" ? stacked_ : 1500;
     trace_ = make_scene(GetParam().name, {.triangles = triangles, .width = 48, .height = 28});
     triangles_ = vertex_setup(trace_, trace_.frames[0], setup_);
     for (std::uint32_t i = 0; i < triangles_.triangles.size(); ++i) list_.push_back(i);
@@ -37,6 +39,9 @@ class SceneTwins : public testing::TestWithParam<SceneKind> {
   TriangleList list_;
   StageCounters setup_;   // counted by vertex_setup
   OperationCounts twin_;  // counted by the twins
+
+ private:
+  const std::uint32_t stacked_;
 };
 
 // Instantiates a suite that is derived from SceneTwins.

@@ -1,10 +1,6 @@
 // Random cases. Each has its own seed, which a failure names.
 #pragma once
 
-#include <gtest/gtest.h>
-
-#include <cstdint>
-
 #include "tests/simd/random.h"
 #include "tests/thorough.h"
 
@@ -15,7 +11,6 @@ template <class Body>
 void search(std::uint64_t first_seed, int count, Body&& body) {
   for (int i = 0; i < count * thoroughness(); ++i) {
     Random random(first_seed + static_cast<std::uint64_t>(i));
-    SCOPED_TRACE(random.name());
     body(random);
     if (testing::Test::HasFailure()) return;
   }

@@ -1,18 +1,27 @@
 // Traces of rectangles with materials, and all that a stage needs to shade them.
 #pragma once
 
-#include <memory>
 #include <vector>
 
 #include "stages/geometry/vertex_setup.h"
 #include "stages/surface/sheets.h"
 #include "stages/surface/surface_shader.h"
 #include "tests/pipeline/test_traces.h"
+#include "tests/simd/random.h"
 
 namespace beampipe {
 
 inline TextureImage filled_image(std::uint32_t width, std::uint32_t height, const glm::u8vec4& texel) {
   return {"filled", width, height, std::vector<glm::u8vec4>(std::size_t{width} * height, texel)};
+}
+
+inline TextureImage random_image(Random& random, std::uint32_t width, std::uint32_t height) {
+  TextureImage image{"random", width, height, {}};
+  for (std::uint32_t i = 0; i < width * height; ++i) {
+    const std::uint32_t word = random.word();
+    image.texels.emplace_back(word & 255, word >> 8 & 255, word >> 16 & 255, word >> 24);
+  }
+  return image;
 }
 
 // Frame of an orthographic camera that looks along +z at pixel coordinates; depths from 0 to 1. Rectangles are added as

@@ -1,9 +1,8 @@
 // Traces of one mesh and one draw for the tests of vertex_setup.
 #pragma once
 
-#include <vector>
-
 #include "stages/geometry/vertex_setup.h"
+#include "tests/test.h"
 
 namespace beampipe {
 
@@ -34,6 +33,17 @@ inline Scene clip_space_scene(const std::vector<glm::vec3>& positions, std::uint
 
 inline SetupTriangles vertex_setup_of(const Scene& scene, StageCounters& counters) {
   return vertex_setup(scene.trace, scene.frame, counters);
+}
+
+inline void expect_same(const SetupTriangles& a, const SetupTriangles& b) {
+  const auto numbers = [](const SetupTriangles& triangles, std::size_t i) {
+    const SetupTriangle& t = triangles.triangles[i];
+    return std::tuple(std::array{t.x[0], t.x[1], t.x[2]}, std::array{t.y[0], t.y[1], t.y[2]},
+                      std::array{t.vertex_z[0], t.vertex_z[1], t.vertex_z[2]}, t.front, t.depth.z, t.depth.dzdx,
+                      t.depth.dzdy, triangles.attributes[i].normal, triangles.attributes[i].kd);
+  };
+  ASSERT_EQ(a.triangles.size(), b.triangles.size());
+  for (std::size_t i = 0; i < a.triangles.size(); ++i) ASSERT_TRUE(numbers(a, i) == numbers(b, i)) << i;
 }
 
 }  // namespace beampipe

@@ -1,14 +1,11 @@
 // Pictures and counters stay what they are until someone changes them on purpose. tests/tools/digests.txt has a line
 // for every scene and technique: a digest of the picture, sums of counters, and a digest of all counters.
 // BEAMPIPE_WRITE_DIGESTS=1 writes the file, and says what changed.
-#include <gtest/gtest.h>
 
-#include <cstdlib>
 #include <iostream>
-#include <map>
-#include <sstream>
 
 #include "pipeline/technique_table.h"
+#include "tests/test.h"
 #include "tools/files/digest.h"
 #include "traces/scenes.h"
 

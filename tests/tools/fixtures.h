@@ -1,19 +1,17 @@
 // What the tests of tools/ share: temporary folders, files and pictures.
 #pragma once
 
-#include <gtest/gtest.h>
-#include <stdlib.h>
-
-#include <algorithm>
-#include <filesystem>
-#include <fstream>
-#include <iterator>
-#include <string>
-#include <vector>
+#include <chrono>
+#include <thread>
 
 #include "pipeline/technique.h"
+#include "tests/test.h"
 
 namespace beampipe {
+
+inline void pause(double milliseconds) {
+  std::this_thread::sleep_for(std::chrono::duration<double, std::milli>(milliseconds));
+}
 
 // A new empty folder. The destructor removes it with everything in it.
 class TemporaryFolder {
@@ -45,6 +43,14 @@ class TemporaryFolder {
 
  private:
   std::filesystem::path path_;
+};
+
+// A test with a folder of its own.
+class InFolder : public testing::Test {
+ protected:
+  std::string path(const std::string& name) const { return (folder_ / name).string(); }
+
+  TemporaryFolder folder_;
 };
 
 inline std::string read_text(const std::filesystem::path& file) {

@@ -69,6 +69,42 @@ class Program {
   pid_t pid_ = 0;
 };
 
+using Names = std::vector<std::string>;
+
+inline Names joined(Names first, const Names& second) {
+  first.insert(first.end(), second.begin(), second.end());
+  return first;
+}
+
 inline Outcome run_program(const std::vector<std::string>& arguments) { return Program(arguments).wait(); }
+
+// Expects a failed run with a single line on standard error, which contains `part`, and no output.
+inline void expect_one_error_line(const Outcome& outcome, int exit_code, const std::string& part) {
+  EXPECT_EQ(outcome.exit_code, exit_code) << outcome.err;
+  EXPECT_EQ(outcome.out, "");
+  EXPECT_EQ(outcome.err.rfind("beampipe: error: ", 0), 0u) << outcome.err;
+  EXPECT_EQ(outcome.err.find('\n'), outcome.err.size() - 1) << outcome.err;
+  EXPECT_NE(outcome.err.find(part), std::string::npos) << outcome.err << "does not say: " << part;
+}
+
+// Runs the program in a folder.
+class RunInFolder : public InFolder {
+ protected:
+  // Expects success, with notes on standard error or without.
+  static Outcome finish(const Names& arguments) {
+    Outcome outcome = run_program(arguments);
+    EXPECT_EQ(outcome.exit_code, 0) << outcome.err;
+    return outcome;
+  }
+  // Expects success, with nothing on standard error. Returns the output.
+  static std::string succeed(const Names& arguments) {
+    const Outcome outcome = finish(arguments);
+    EXPECT_EQ(outcome.err, "");
+    return outcome.out;
+  }
+  static void expect_error(const Names& arguments, int exit_code, const std::string& part) {
+    expect_one_error_line(run_program(arguments), exit_code, part);
+  }
+};
 
 }  // namespace beampipe

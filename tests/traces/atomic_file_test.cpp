@@ -10,12 +10,7 @@ namespace beampipe::atomic_file_test {
 class AtomicFileTest : public FolderTest {
  protected:
   std::string failure(const std::string& name) const {
-    try {
-      AtomicFile file(path(name));
-    } catch (const std::runtime_error& error) {
-      return without_folder(error.what());
-    }
-    return "no error";
+    return without_folder(message_of<std::runtime_error>([&] { AtomicFile file(path(name)); }));
   }
 };
 

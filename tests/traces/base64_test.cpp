@@ -1,6 +1,6 @@
 #include "traces/files/base64.h"
 
-#include <gtest/gtest.h>
+#include "tests/test.h"
 
 namespace beampipe::base64_test {
 

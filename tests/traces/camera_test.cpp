@@ -1,5 +1,4 @@
-#include <gtest/gtest.h>
-
+#include "tests/test.h"
 #include "traces/trace.h"
 
 namespace beampipe::camera_test {

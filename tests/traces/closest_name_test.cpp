@@ -1,6 +1,6 @@
 #include "traces/closest_name.h"
 
-#include <gtest/gtest.h>
+#include "tests/test.h"
 
 namespace beampipe::closest_name_test {
 

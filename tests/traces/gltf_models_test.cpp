@@ -3,7 +3,6 @@
 
 #include <chrono>
 #include <cstdio>
-#include <iostream>
 
 #include "tests/traces/test_folder.h"
 #include "traces/files/model_import.h"

@@ -1,12 +1,10 @@
 #include "traces/files/image_file.h"
 
-#include <gtest/gtest.h>
 #include <sys/resource.h>
 #include <zlib.h>
 
-#include <cstdlib>
-#include <random>
-
+#include "tests/message_of.h"
+#include "tests/test.h"
 #include "tests/traces/image_samples.h"
 #include "traces/files/trace_io.h"
 
@@ -160,12 +158,8 @@ TEST(ImageFile, RefusesOtherFiles) {
 
 TEST(ImageFile, NamesThePlaceThatItIsGiven) {
   EXPECT_EQ(decode_image(encode_png(random_image(2, 3)), "model.mtl: a.png").texels, random_image(2, 3).texels);
-  try {
-    decode_image("GIF", "model.mtl: a.png");
-    FAIL() << "no error";
-  } catch (const TraceError& error) {
-    EXPECT_STREQ(error.what(), "model.mtl: a.png: expected a PNG or JPEG file, found one that starts with \"GIF\"");
-  }
+  EXPECT_EQ(message_of<TraceError>([] { decode_image("GIF", "model.mtl: a.png"); }),
+            "model.mtl: a.png: expected a PNG or JPEG file, found one that starts with \"GIF\"");
 }
 
 TEST(ImageFile, RefusesFilesThatEndEarly) {

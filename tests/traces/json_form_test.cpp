@@ -1,7 +1,6 @@
 #include "traces/files/json_form.h"
 
-#include <gtest/gtest.h>
-
+#include "tests/test.h"
 #include "traces/files/trace_io.h"
 
 namespace beampipe::json_form_test {

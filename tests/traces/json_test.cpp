@@ -1,24 +1,13 @@
 // JSON values: kinds, members and text.
 #include "traces/files/json.h"
 
-#include <gtest/gtest.h>
-
-#include <cmath>
-#include <functional>
-#include <limits>
-
+#include "tests/message_of.h"
+#include "tests/test.h"
 #include "traces/files/trace_io.h"
 
 namespace beampipe::json_test {
 
-std::string error_of(const std::function<void()>& read) {
-  try {
-    read();
-  } catch (const JsonError& error) {
-    return error.what();
-  }
-  return "no error";
-}
+const auto error_of = [](const auto& read) { return message_of<JsonError>(read); };
 
 TEST(Json, TextKeepsOrderAndKindsOfNumbers) {
   const Json json = {{"z", 1},    {"a", 1.0},     {"i", -3},
@@ -124,12 +113,8 @@ TEST(Json, BytesThatAreNotUtf8AreReplacedOrRefused) {
 
 TEST(Json, BrokenTextNamesTheFile) {
   EXPECT_THROW(parse_json_text("{", "t.json"), TraceError);
-  try {
-    parse_json_text("{\"a\": 1, \"a\": 2}", "t.json");
-    ADD_FAILURE() << "a key was accepted twice";
-  } catch (const TraceError& error) {
-    EXPECT_EQ(error.what(), std::string("t.json: /a: expected each key once, found \"a\" again"));
-  }
+  EXPECT_EQ(message_of<TraceError>([] { parse_json_text("{\"a\": 1, \"a\": 2}", "t.json"); }),
+            "t.json: /a: expected each key once, found \"a\" again");
 }
 
 }  // namespace beampipe::json_test

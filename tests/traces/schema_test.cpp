@@ -1,7 +1,5 @@
 // The schema and the reader come from the same forms. These tests hold complete traces, with every key, to both.
 #include <nlohmann/json.hpp>
-#include <set>
-#include <tuple>
 
 #include "tests/traces/test_folder.h"
 #include "traces/files/base64.h"

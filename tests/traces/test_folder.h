@@ -1,14 +1,8 @@
 // A folder for each test, which is removed after it, and helpers for tests of readers and writers.
 #pragma once
 
-#include <gtest/gtest.h>
-
-#include <cstdlib>
-#include <filesystem>
-#include <fstream>
-#include <sstream>
-#include <string>
-
+#include "tests/message_of.h"
+#include "tests/test.h"
 #include "traces/files/trace_io.h"
 
 namespace beampipe {
@@ -39,12 +33,7 @@ class FolderTest : public testing::Test {
   // The message of the TraceError that `call` throws, without the folder's name; "no error" if it throws none.
   template <typename Call>
   std::string error_of(Call call) const {
-    try {
-      call();
-    } catch (const TraceError& error) {
-      return without_folder(error.what());
-    }
-    return "no error";
+    return without_folder(message_of<TraceError>(call));
   }
 
   std::string without_folder(std::string message) const {

@@ -1,11 +1,8 @@
 #include "traces/triangle_order.h"
 
-#include <gtest/gtest.h>
-
-#include <algorithm>
 #include <glm/gtc/matrix_transform.hpp>
-#include <map>
-#include <tuple>
+
+#include "tests/test.h"
 
 namespace beampipe::triangle_order_test {
 

@@ -1,8 +1,6 @@
 #include "traces/files/triangulate.h"
 
-#include <gtest/gtest.h>
-
-#include <cmath>
+#include "tests/test.h"
 
 namespace beampipe::triangulate_test {
 

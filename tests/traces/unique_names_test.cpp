@@ -1,7 +1,6 @@
 #include "traces/files/unique_names.h"
 
-#include <gtest/gtest.h>
-
+#include "tests/test.h"
 #include "traces/trace.h"
 
 namespace beampipe::unique_names_test {

@@ -1,6 +1,6 @@
 #include "traces/files/vertex_frames.h"
 
-#include <gtest/gtest.h>
+#include "tests/test.h"
 
 namespace beampipe::vertex_frames_test {
 

@@ -1,14 +1,10 @@
 // The record of DRAM requests: what the counters say, in one address space, in the order of passes and bins.
 #include "pipeline/memory/dram_trace.h"
 
-#include <gtest/gtest.h>
-
-#include <algorithm>
-#include <map>
-#include <set>
-
 #include "pipeline/technique_table.h"
+#include "tests/message_of.h"
 #include "tests/pipeline/surface_traces.h"
+#include "tests/test.h"
 
 namespace beampipe::dram_trace_test {
 
@@ -173,12 +169,8 @@ TEST(DramTrace, WithoutAModelNothingIsRecorded) {
 
 TEST(DramTrace, TheFolderOfItsFileMustBeThere) {
   const std::string missing = testing::TempDir() + "no-such-folder";
-  try {
-    DramTrace trace(missing);
-    FAIL();
-  } catch (const std::runtime_error& error) {
-    EXPECT_EQ(error.what(), missing + ": cannot create a temporary file in this folder: No such file or directory");
-  }
+  EXPECT_EQ(message_of<std::runtime_error>([&] { DramTrace trace(missing); }),
+            missing + ": cannot create a temporary file in this folder: No such file or directory");
 }
 
 }  // namespace beampipe::dram_trace_test

@@ -1,10 +1,10 @@
 // What the parameters of the memory system change, and what they leave as it is.
-#include <gtest/gtest.h>
 
 #include "pipeline/memory/block_cache.h"
 #include "tests/pipeline/surface_traces.h"
 #include "tests/pipeline/test_pictures.h"
 #include "tests/pipeline/test_traces.h"
+#include "tests/test.h"
 
 namespace beampipe::memory_parameters_test {
 
@@ -12,14 +12,6 @@ FrameResult render_with(const std::string& spec, const Trace& trace, const Memor
   FrameInput run{1};
   run.memory = memory;
   return parse_technique(spec).render(trace, 0, run);
-}
-
-void expect_same(const FrameResult& a, const FrameResult& b) {
-  EXPECT_EQ(a.image.rgba, b.image.rgba);
-  EXPECT_EQ(a.pixel_counters, b.pixel_counters);
-  EXPECT_EQ(a.stages, b.stages);
-  EXPECT_EQ(a.buffers, b.buffers);
-  EXPECT_EQ(a.bin_pixels, b.bin_pixels);
 }
 
 std::uint64_t dram_bytes(const FrameResult& result) {
@@ -33,8 +25,8 @@ TEST(MemoryParameters, SmallerBinsAreThoseOfTheSpec) {
   const Trace trace = random_trace(70, 50, 90, 3);
   MemoryParameters memory;
   memory.bin_pixels = 16;
-  expect_same(render_with("beam", trace, memory), render_with("beam:bin=16", trace, {}));
-  expect_same(render_with("beam:bin=8", trace, memory), render_with("beam:bin=8", trace, {}));
+  expect_same(render_with("beam", trace, memory), render_with("beam:bin=16", trace, {}), "bin=16");
+  expect_same(render_with("beam:bin=8", trace, memory), render_with("beam:bin=8", trace, {}), "bin=8");
   EXPECT_EQ(render_with("msaa:8", trace, memory).bin_pixels, 16u * 16);
   EXPECT_EQ(render_with("msaa:8", trace, memory).image.rgba, render_with("msaa:8", trace, {}).image.rgba);
 }
@@ -128,7 +120,7 @@ TEST(MemoryParameters, CachesThatHoldAllMoveTheSameBytes) {
       enough.l2 = holding({0, 5, 128}, most.cache_reach.l2);
       enough.rop = holding({0, 7, 256}, most.cache_reach.rop);
       const FrameResult least = render_with(spec, trace, enough);
-      expect_same(least, most);
+      expect_same(least, most, spec);
       EXPECT_EQ(least.cache_reach, most.cache_reach) << spec;
       MemoryParameters tiny;
       tiny.l1 = {128, 1, 128}, tiny.l2 = {256, 2, 128}, tiny.rop = {256, 1, 256};

@@ -2,17 +2,13 @@
 // "Evaluation Techniques for Storage Hierarchies"; dirty levels: Thompson and Smith 1989, "Efficient (Stack) Algorithms
 // for Analysis of Write-Back and Sector Memories"). One look at a sequence of accesses gives the traffic of caches with
 // any number of ways.
-#include <gtest/gtest.h>
-
-#include <algorithm>
-#include <map>
-#include <random>
 
 #include "pipeline/memory/block_cache.h"
 #include "pipeline/memory/dram_trace.h"
 #include "pipeline/memory/texture_memory.h"
 #include "pipeline/technique.h"
 #include "tests/pipeline/test_traces.h"
+#include "tests/test.h"
 
 namespace beampipe::stack_distance_test {
 

@@ -1,15 +1,12 @@
 // ACAA and MSAA give the same picture except for the precision of the accumulator and for equal depths.
 #include "pipeline/techniques/acaa.h"
 
-#include <gtest/gtest.h>
-
-#include <cmath>
-
 #include "pipeline/technique.h"
 #include "pipeline/techniques/msaa.h"
 #include "stages/data/sample_fragment.h"
 #include "tests/pipeline/test_pictures.h"
 #include "tests/pipeline/test_traces.h"
+#include "tests/test.h"
 
 namespace beampipe::acaa_test {
 

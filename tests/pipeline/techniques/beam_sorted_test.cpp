@@ -1,9 +1,9 @@
 // The beam in sorted order: counters that can be worked out by hand, and pictures.
-#include <gtest/gtest.h>
 
 #include "pipeline/technique.h"
 #include "tests/pipeline/test_pictures.h"
 #include "tests/pipeline/test_traces.h"
+#include "tests/test.h"
 
 namespace beampipe::beam_sorted_test {
 

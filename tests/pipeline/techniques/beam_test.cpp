@@ -1,15 +1,10 @@
 // The beam in near-first order: memory of a fixed size, however many triangles meet in a pixel, and what its pictures
 // do not depend on.
-#include <gtest/gtest.h>
-
-#include <algorithm>
-#include <map>
-#include <numeric>
-#include <random>
 
 #include "pipeline/technique.h"
 #include "tests/pipeline/test_pictures.h"
 #include "tests/pipeline/test_traces.h"
+#include "tests/test.h"
 
 namespace beampipe::beam_test {
 

@@ -1,9 +1,9 @@
 // The published rules, and alpha alone.
-#include <gtest/gtest.h>
 
 #include "pipeline/technique.h"
 #include "tests/pipeline/test_pictures.h"
 #include "tests/pipeline/test_traces.h"
+#include "tests/test.h"
 
 namespace beampipe::casav_test {
 

@@ -1,13 +1,11 @@
 // Decoupled visibility multisampling.
-#include <gtest/gtest.h>
 
-#include <cmath>
-#include <filesystem>
 #include <glm/gtc/matrix_transform.hpp>
 
 #include "pipeline/technique.h"
 #include "tests/pipeline/techniques/render_frames.h"
 #include "tests/pipeline/test_traces.h"
+#include "tests/test.h"
 #include "traces/files/trace_io.h"
 
 namespace beampipe::dvm_test {
@@ -26,13 +24,17 @@ void add_draw(Trace& trace, const std::vector<PixelSpaceTriangle>& triangles) {
   trace.meshes.push_back(pixel_trace(1, 1, triangles).meshes[0]);
 }
 
-// A frame of `after` that follows eight frames of `before` looks as if it were the first.
-void expect_no_ghost(const Trace& before, const Trace& after, const char* what) {
+// A frame of `after` that follows eight frames of `before`.
+Image after_eight(const Trace& before, const Trace& after) {
   const Technique technique = parse_technique("dvm");
   History history;
   for (int i = 0; i < 8; ++i) technique.render(before, 0, {1, &history});
-  const Image found = technique.render(after, 0, {1, &history}).image;
-  EXPECT_LT(worst_difference(found, technique.render(after, 0, {1}).image), 2e-3) << what;
+  return technique.render(after, 0, {1, &history}).image;
+}
+
+// It looks as if it were the first.
+void expect_no_ghost(const Trace& before, const Trace& after, const char* what) {
+  EXPECT_LT(worst_difference(after_eight(before, after), picture("dvm", after)), 2e-3) << what;
 }
 
 // 5 x 3 pixels have 3 x 2 quads. Columns 0 and 1 show the background alone, columns 2 and 3 six materials and the
@@ -66,10 +68,7 @@ TEST(Dvm, WhatLeavesItsRestLeavesNoTrail) {
     const Trace before = pixel_trace(24, 8, quad(4, -4, 8, 20, 0.5, glm::vec3(1)));
     Trace after = before;
     after.frames[0].draws[0].transform[3][0] = step;
-    const Technique technique = parse_technique("dvm");
-    History history;
-    for (int i = 0; i < 8; ++i) technique.render(before, 0, {1, &history});
-    const Image image = technique.render(after, 0, {1, &history}).image;
+    const Image image = after_eight(before, after);
     for (std::uint32_t x = 0; x < 24; ++x)
       EXPECT_NEAR(red(image, x, 4), x >= 4 + step && x < 8 + step ? 1 : 0, 2e-3) << step << ' ' << x;
   }
@@ -82,22 +81,18 @@ TEST(Dvm, WhatChangesItsLookLeavesNoGhost) {
   for (glm::vec3& color : lit.meshes[1].colors) color = glm::vec3(0.25f, 0.5f, 0.0f);
   lit.frames[0].draws[0].shading = Shading::lambert;
   lit.frames[0].lighting.lights = {{glm::vec3(0, 0, 1)}};
-  Trace changed = lit;
-  changed.frames[0].lighting.lights = {{glm::normalize(glm::vec3(1, 0, 0.25f))}};
-  expect_no_ghost(lit, changed, "light");
-  changed = lit;
-  changed.frames[0].draws[0].kd = glm::vec3(0, 1, 0);
-  expect_no_ghost(lit, changed, "Kd");
-  changed = lit;
-  changed.frames[0].draws[0].shading = Shading::unlit;
-  changed.frames[0].lighting = lit.frames[0].lighting = {{{glm::normalize(glm::vec3(1, 0, 0.25f))}}, {}};
-  expect_no_ghost(lit, changed, "shading");
-  changed = lit;
-  changed.frames[0].background = glm::vec3(1, 0, 0.5f);
-  expect_no_ghost(lit, changed, "background");
-  changed = lit;
-  changed.frames[0].draws[0].mesh = 1;
-  expect_no_ghost(lit, changed, "mesh");
+  const auto change = [&](const char* what, const std::function<void(Frame&)>& edit) {
+    Trace changed = lit;
+    edit(changed.frames[0]);
+    expect_no_ghost(lit, changed, what);
+  };
+  const Lighting grazing{{{glm::normalize(glm::vec3(1, 0, 0.25f))}}, {}};
+  change("light", [&](Frame& frame) { frame.lighting = grazing; });
+  change("Kd", [](Frame& frame) { frame.draws[0].kd = glm::vec3(0, 1, 0); });
+  change("background", [](Frame& frame) { frame.background = glm::vec3(1, 0, 0.5f); });
+  change("mesh", [](Frame& frame) { frame.draws[0].mesh = 1; });
+  lit.frames[0].lighting = grazing;
+  change("shading", [](Frame& frame) { frame.draws[0].shading = Shading::unlit; });
 }
 
 // A lit square turns in place by 3 degrees per frame and then stops. In every frame it has the shade of that frame, not
@@ -135,8 +130,7 @@ TEST(Dvm, WhatIsUnknownKeepsNoGhost) {
 // stops.
 TEST(Dvm, WhatPassesBehindAStillSilhouetteLeavesNoTrail) {
   std::vector<PixelSpaceTriangle> wires;
-  for (const double x : {6.1, 13.4, 20.7})
-    for (const PixelSpaceTriangle& t : quad(x, -4, x + 0.2, 20, 0.25, glm::vec3(0.5f, 0.25f, 0))) wires.push_back(t);
+  for (const double x : {6.1, 13.4, 20.7}) append(wires, quad(x, -4, x + 0.2, 20, 0.25, glm::vec3(0.5f, 0.25f, 0)));
   Trace trace = pixel_trace(32, 16, wires);
   add_draw(trace, quad(0, 4, 6, 10, 0.5, glm::vec3(1)));
   const Technique technique = parse_technique("dvm"), truth = parse_technique("msaa:8");
@@ -223,8 +217,7 @@ TEST(Dvm, PastFourMaterialsTimeMakesUpForWhatIsMissing) {
   // Eight columns of 1/4 px in one quad, each with its own material.
   std::vector<PixelSpaceTriangle> triangles;
   const auto value = [](int i) { return static_cast<float>(i * 5 % 8) / 8.0f; };
-  for (int i = 0; i < 8; ++i)
-    for (const auto& t : quad(i / 4.0, 0, (i + 1) / 4.0, 2, 0.5, glm::vec3(value(i)))) triangles.push_back(t);
+  for (int i = 0; i < 8; ++i) append(triangles, quad(i / 4.0, 0, (i + 1) / 4.0, 2, 0.5, glm::vec3(value(i))));
   const Trace trace = pixel_trace(2, 2, triangles);
   const FrameResult first = parse_technique("dvm").render(trace, 0, {1});
   double unknown = 0;
@@ -239,11 +232,9 @@ TEST(Dvm, PastFourMaterialsTimeMakesUpForWhatIsMissing) {
 TEST(Dvm, ShadesOneSamplePerCoveredPixelAndNoHelpers) {
   const Trace trace = pixel_trace(16, 16, quad(-1, -1, 20, 20, 0.5, glm::vec3(1)));
   for (const char* spec : {"dvm", "visibility"}) {
-    for (const StageCounters& stage : parse_technique(spec).render(trace, 0, {1}).stages) {
-      if (stage.stage != StageId::shade) continue;
-      EXPECT_EQ(stage.lanes_used, 16u * 16) << spec;
-      EXPECT_EQ(stage.lanes_issued, 16u * 16) << spec;
-    }
+    const StageCounters shade = stage_of(render(spec, trace), "shade");
+    EXPECT_EQ(shade.lanes_used, 16u * 16) << spec;
+    EXPECT_EQ(shade.lanes_issued, 16u * 16) << spec;
   }
 }
 
@@ -251,7 +242,7 @@ TEST(Dvm, MaterialByDrawSpreadsAcrossColors) {
   // One draw has two colours side by side in a pixel. With material=draw they are one material, and the pixel gets the
   // colour of one sample.
   std::vector<PixelSpaceTriangle> triangles = quad(0, 0, 0.5, 2, 0.5, glm::vec3(1));
-  for (const auto& t : quad(0.5, 0, 2, 2, 0.5, glm::vec3(0))) triangles.push_back(t);
+  append(triangles, quad(0.5, 0, 2, 2, 0.5, glm::vec3(0)));
   const Trace trace = pixel_trace(2, 2, triangles);
   EXPECT_NEAR(red(render_frames("dvm", trace, 1), 0, 0), 0.5, 1e-6);
   const double by_draw = red(render_frames("dvm:material=draw", trace, 1), 0, 0);

@@ -1,9 +1,9 @@
 // Multisampling: samples that can be counted by hand, where fragments are shaded, and pictures.
-#include <gtest/gtest.h>
 
 #include "pipeline/technique.h"
 #include "tests/pipeline/test_pictures.h"
 #include "tests/pipeline/test_traces.h"
+#include "tests/test.h"
 
 namespace beampipe::msaa_test {
 

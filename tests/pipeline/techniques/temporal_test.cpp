@@ -1,13 +1,11 @@
 // What taa and dvm have in common: history is found where the motion says, whatever the number of threads.
-#include <gtest/gtest.h>
 
-#include <cmath>
-#include <filesystem>
 #include <glm/gtc/matrix_transform.hpp>
 
 #include "pipeline/technique.h"
 #include "tests/pipeline/techniques/render_frames.h"
 #include "tests/pipeline/test_traces.h"
+#include "tests/test.h"
 #include "traces/files/trace_io.h"
 
 namespace beampipe::temporal_test {

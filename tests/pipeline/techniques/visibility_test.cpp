@@ -1,8 +1,8 @@
 // One sample per pixel, shaded after visibility is known: visibility and deferred.
-#include <gtest/gtest.h>
 
 #include "tests/pipeline/test_pictures.h"
 #include "tests/pipeline/test_traces.h"
+#include "tests/test.h"
 
 namespace beampipe::visibility_test {
 

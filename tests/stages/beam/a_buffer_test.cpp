@@ -1,9 +1,5 @@
 #include "stages/beam/a_buffer.h"
 
-#include <gtest/gtest.h>
-
-#include <vector>
-
 #include "tests/simd/random.h"
 
 namespace beampipe::a_buffer_test {

@@ -1,15 +1,8 @@
 // Cutouts and translucency of beams: how much area and which positions are left.
 #include "stages/beam/alpha_mask.h"
 
-#include <gtest/gtest.h>
-
-#include <cmath>
-
-#include "stages/beam/beam_fragment.h"
-#include "stages/raster/conservative_raster.h"
 #include "stages/surface/opacity.h"
-#include "tests/simd/random.h"
-#include "tests/stages/screen_triangles.h"
+#include "tests/stages/beam_pixels.h"
 #include "tests/stages/surface_scene.h"
 
 namespace beampipe::alpha_mask_test {
@@ -22,13 +15,10 @@ struct Masked {
 Masked masked(const ShadedScene& scene, int positions = 256) {
   const std::vector<SamplePattern> patterns = cell_patterns(positions);
   const Tile tile = scene.frame_tile();
-  std::vector<Pair> pairs;
-  StageCounters ignored;
-  conservative_raster(scene.triangles, all_of(scene.triangles), tile, ignored, pairs);
-  Masked result;
   BeamFragmentOptions options;
   options.mask = MaskSource::exact, options.positions = patterns;
-  beam_fragment(scene.triangles, pairs, tile, options, ignored, result.before);
+  Masked result;
+  result.before = fragments_of(scene.triangles, tile, options);
   result.after = result.before;
   alpha_mask({scene.shader, tile}, patterns, result.counters, result.after);
   return result;
@@ -246,8 +236,9 @@ TEST(AlphaMask, SpecksReadNoSheet) {
   }
 }
 
-// Where texels are smaller than the part of a pixel that a position stands for, a side of 1/16, each position also takes
-// the quotient of cutoff and alpha, and two of four shares. The rectangle has 2/3 of a texel to a pixel, times `scale`.
+// Where texels are smaller than the part of a pixel that a position stands for, a side of 1/16, each position also
+// takes the quotient of cutoff and alpha, and two of four shares. The rectangle has 2/3 of a texel to a pixel, times
+// `scale`.
 TEST(AlphaMask, CountsTheWorkOfSmallTexels) {
   const auto counters = [](float scale) {
     SurfaceTrace scene(1, 1);

@@ -1,10 +1,5 @@
 #include "stages/beam/beam_fragment.h"
 
-#include <gtest/gtest.h>
-
-#include <bit>
-#include <cmath>
-
 #include "tests/stages/beam_pixels.h"
 
 namespace beampipe::beam_fragment_test {
@@ -66,7 +61,6 @@ TEST(BeamFragment, TinyTriangleTakesThePositionNearestToItsCentroid) {
 // A speck gets the nearest positions, as many as its area fills, but no more than are allowed.
 TEST(BeamFragment, TinyTrianglesAreGivenTheNearestPositions) {
   Random random(135);
-  SCOPED_TRACE(random.name());
   const SamplePattern pattern = hammersley_pattern();
   const SetupTriangles triangles = random_triangles(random, 3'000);
   for (const int most : {1, 3}) {

@@ -1,16 +1,8 @@
 // Properties that an area-conserving aggregate has, whatever is composed into it, window by window. BEAMPIPE_THOROUGH=N
 // tries N times as many cases.
-#include <gtest/gtest.h>
-
 #include <cstdio>
 
-#include "stages/beam/a_buffer.h"
-#include "stages/beam/beam_fragment.h"
-#include "stages/beam/compose_beam.h"
-#include "stages/beam/windows.h"
-#include "stages/picture/shade.h"
-#include "stages/raster/conservative_raster.h"
-#include "tests/stages/screen_triangles.h"
+#include "tests/stages/beam_pixels.h"
 #include "tests/stages/search.h"
 
 namespace beampipe::compose_beam_properties_test {
@@ -51,35 +43,19 @@ void expect_kept(const Pixels<Words>& before, const Pixels<Words>& after, const 
 // Composes random triangles. Returns the number of fragments.
 template <std::size_t Words>
 std::uint64_t compose_random(Random& random) {
-  const PositionSet positions(cell_patterns(32 * Words));
-  const PositionGrid grid(32 * Words);
-  const BeamFragmentOptions options = grid_options(grid, conserving_fragment_bytes(32 * Words));
   const SetupTriangles triangles = random_triangles(random, random.int32(1, 80));
   constexpr float kLeast = 0.125f, kGreatest = 0.75f;
   std::vector<glm::vec3> colors;
   for (std::size_t i = 0; i < triangles.triangles.size(); ++i)
     colors.emplace_back(random.real32(kLeast, kGreatest), random.real32(kLeast, kGreatest),
                         random.real32(kLeast, kGreatest));
-  StageCounters counters;
-  std::vector<Pair> pairs, window, whole;
-  ClosedDepth closed(kTile);
-  conservative_raster(triangles, all_of(triangles), kTile, counters, pairs, {&closed});
-  const ABuffer buffer = a_buffer(sort_records(pairs, kTile), kTile.pixels(), 0, kStoredPairBytes, counters);
-  Windows windows(pairs, buffer, kStoredPairBytes);
-  Pixels<Words> pixels(kTile.pixels());
   std::uint64_t merged = 0;
-  while (windows.next([&](std::uint32_t pixel) { return !is_closed(pixels[pixel]); }, counters, window, whole)) {
-    std::vector<Fragment> fragments;
-    std::vector<float> areas;
-    beam_fragment(triangles, window, kTile, options, counters, fragments);
-    shade_visible(colors, fragments, counters);
-    const Pixels<Words> before = pixels;
-    compose_window(fragments, positions, counters, pixels, areas);
-    expect_kept<Words>(before, pixels, fragments, areas, kLeast, kGreatest);
-    if (testing::Test::HasFatalFailure()) return merged;
-    compose_whole({whole, kTile, colors}, counters, pixels);
-    merged += fragments.size();
-  }
+  compose_windows<Words, float>(triangles, colors, kTile,
+                                [&](const std::vector<Fragment>& fragments, const std::vector<float>& areas,
+                                    const Pixels<Words>& before, const Pixels<Words>& after) {
+                                  expect_kept<Words>(before, after, fragments, areas, kLeast, kGreatest);
+                                  merged += fragments.size();
+                                });
   return merged;
 }
 

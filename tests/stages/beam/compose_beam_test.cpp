@@ -1,21 +1,10 @@
 #include "stages/beam/compose_beam.h"
 
-#include <gtest/gtest.h>
-
-#include <algorithm>
-#include <array>
-#include <cmath>
 #include <numbers>
 
 #include "simd/conserve.h"
-#include "stages/beam/a_buffer.h"
-#include "stages/beam/beam_fragment.h"
-#include "stages/beam/windows.h"
 #include "stages/data/position_set.h"
-#include "stages/picture/shade.h"
-#include "stages/raster/conservative_raster.h"
-#include "tests/simd/random.h"
-#include "tests/stages/screen_triangles.h"
+#include "tests/stages/beam_pixels.h"
 
 namespace beampipe::compose_beam_test {
 
@@ -24,25 +13,8 @@ const Tile kPixel{0, 0, 1, 1};
 template <std::size_t Words, class Channel>
 std::vector<PixelColor> composed_as(const SetupTriangles& triangles, const std::vector<glm::vec3>& colors,
                                     const Tile& tile, std::vector<float>* largest) {
-  const PositionSet positions(cell_patterns(32 * Words));
-  const PositionGrid grid(32 * Words);
-  const BeamFragmentOptions options = grid_options(grid, conserving_fragment_bytes(32 * Words));
-  StageCounters counters;
-  std::vector<Pair> pairs, window, whole;
-  std::vector<StoredAggregate<Words, Channel>> pixels(tile.pixels());
-  ClosedDepth closed(tile);
-  conservative_raster(triangles, all_of(triangles), tile, counters, pairs, {&closed});
-  const ABuffer buffer = a_buffer(sort_records(pairs, tile), tile.pixels(), 0, kStoredPairBytes, counters);
-  Windows windows(pairs, buffer, kStoredPairBytes);
-  while (windows.next([&](std::uint32_t pixel) { return !is_closed(pixels[pixel]); }, counters, window, whole)) {
-    std::vector<Fragment> fragments;
-    std::vector<float> areas;
-    beam_fragment(triangles, window, tile, options, counters, fragments);
-    shade_visible(colors, fragments, counters);
-    compose_window(fragments, positions, counters, pixels, areas);
-    compose_whole({whole, tile, colors}, counters, pixels);
-  }
-  if (largest) *largest = windows.largest;
+  const auto [pixels, windows] = compose_windows<Words, Channel>(triangles, colors, tile, [](const auto&...) {});
+  if (largest) *largest = windows;
   return composed_colors(pixels);
 }
 
@@ -74,7 +46,6 @@ TEST(VisibleArea, APartOfAFragmentBringsPartOfTheErrorsAlong) {
 
 TEST(VisibleArea, StaysBetweenNothingAndWhatIsFree) {
   Random random(71);
-  SCOPED_TRACE(random.name());
   for (int i = 0; i < 100000; ++i) {
     const float covered = static_cast<float>(random.integer(1, 256));
     const float visible = static_cast<float>(random.integer(0, static_cast<int>(covered)));
@@ -177,7 +148,6 @@ TEST(ComposeWindow, ASpeckBelongsToASurfaceThatIsHardlyNearer) {
 TEST(ComposeWindow, WeightsOfAClosedSceneSumToOne) {
   // One big triangle closes every pixel. All colours are white, so the picture shows the weights.
   Random random(72);
-  SCOPED_TRACE(random.name());
   const Tile tile{0, 0, 16, 16};
   SetupTriangles triangles = random_triangles(random, 600);
   add_everywhere(triangles, -0.01f);
@@ -208,7 +178,6 @@ TEST(ComposeWindow, WindowsSeparateWhatDoesNotOverlapInDepth) {
 // To leave out what is hidden behind full pixels changes nothing that is visible.
 TEST(ComposeWindow, ClosedPixelsHideNothingThatIsSeen) {
   Random random(74);
-  SCOPED_TRACE(random.name());
   const Tile tile{0, 0, 16, 16};
   SetupTriangles front = random_triangles(random, 200);
   add_everywhere(front, -0.6f);
@@ -241,7 +210,6 @@ TEST(PositionSet, IsThereForFourNumbersOfPositions) {
 TEST(PositionSet, TheNearestPositionsAreTheNearest) {
   const PositionSet positions(cell_patterns(128));
   Random random(73);
-  SCOPED_TRACE(random.name());
   for (int i = 0; i < 2000; ++i) {
     // The centre of a place of the table, where the table is exact.
     const int x = random.int32(0, 63), y = random.int32(0, 63);

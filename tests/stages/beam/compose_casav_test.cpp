@@ -1,10 +1,5 @@
 #include "stages/beam/compose_casav.h"
 
-#include <gtest/gtest.h>
-
-#include <algorithm>
-#include <cmath>
-
 #include "stages/beam/casav_fragment.h"
 #include "tests/stages/beam_pixels.h"
 
@@ -134,7 +129,6 @@ FanAlphas fan_alphas(Random& random, std::int32_t per_side, bool tiny, MaskSourc
 // If every triangle has positions of its own, no two masks overlap and the areas add up.
 TEST(Compose, FansWithoutTinyTrianglesCloseThePixel) {
   Random random(141);
-  SCOPED_TRACE(random.name());
   for (const std::int32_t per_side : {1, 2}) {
     const FanAlphas found = fan_alphas(random, per_side, false, MaskSource::exact);
     EXPECT_NEAR(found.least, 1.0, 1e-5) << 4 * per_side << " triangles";
@@ -145,7 +139,6 @@ TEST(Compose, FansWithoutTinyTrianglesCloseThePixel) {
 // pixel, on average up to a quarter. What is behind shows through. Fewer and larger triangles leak less.
 TEST(Compose, FansOfTinyTrianglesLeak) {
   Random random(143);
-  SCOPED_TRACE(random.name());
   for (const MaskSource mask : {MaskSource::table, MaskSource::exact})
     for (const std::int32_t per_side : {1, 2, 4, 8, 16, 32, 64}) {
       const FanAlphas found = fan_alphas(random, per_side, true, mask);
@@ -157,7 +150,6 @@ TEST(Compose, FansOfTinyTrianglesLeak) {
 // The stage merges the r-th fragments of all pixels at once. Each pixel must get the same result as if it were alone.
 TEST(Compose, PixelsDoNotMix) {
   Random random(142);
-  SCOPED_TRACE(random.name());
   const Tile tile{0, 0, 8, 8};
   const SetupTriangles triangles = random_triangles(random, 300);
   Fragments fragments = beam_fragments(triangles, tile, MaskSource::table);

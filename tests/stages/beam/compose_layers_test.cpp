@@ -1,15 +1,6 @@
 #include "stages/beam/compose_layers.h"
 
-#include <gtest/gtest.h>
-
-#include <algorithm>
-
-#include "stages/beam/a_buffer.h"
-#include "stages/beam/beam_fragment.h"
-#include "stages/beam/compose_casav.h"
-#include "stages/raster/conservative_raster.h"
-#include "tests/simd/random.h"
-#include "tests/stages/screen_triangles.h"
+#include "tests/stages/beam_pixels.h"
 
 namespace beampipe::compose_layers_test {
 
@@ -27,18 +18,12 @@ std::vector<Fragment> random_fragments(Random& random, int triangles) {
     };
     add_triangle(setup, point(), point(), point());
   }
-  TriangleList list(setup.triangles.size());
-  for (std::uint32_t i = 0; i < list.size(); ++i) list[i] = i;
-  StageCounters unused;
-  std::vector<Pair> pairs;
-  conservative_raster(setup, list, kTile, unused, pairs);
   BeamFragmentOptions options;
   options.mask = MaskSource::exact;
   options.positions = {kPattern};
   options.tiny_positions = 1;
   options.clipped_depth = true;
-  std::vector<Fragment> fragments;
-  beam_fragment(setup, pairs, kTile, options, unused, fragments);
+  std::vector<Fragment> fragments = fragments_of(setup, kTile, options);
   for (Fragment& fragment : fragments)
     fragment.color = fragment.alpha * glm::vec3(random.real32(0, 1), random.real32(0, 1), random.real32(0, 1));
   return fragments;
@@ -51,13 +36,26 @@ std::vector<Fragment> near_to_far(std::vector<Fragment> fragments) {
   return fragments;
 }
 
-std::vector<Aggregate> composed(const std::vector<Fragment>& fragments, std::size_t layers, StageCounters& counters,
-                                std::vector<float>& merges, CasavStorage storage = CasavStorage::float32,
-                                const MergeRules& rules = {}) {
+struct Composed {
+  std::vector<Aggregate> pixels;
+  std::vector<float> merges = std::vector<float>(kTile.pixels(), 0);
+  StageCounters counters;
+};
+
+Composed composed(const std::vector<Fragment>& fragments, std::size_t layers,
+                  CasavStorage storage = CasavStorage::float32, const MergeRules& rules = {}) {
+  Composed found;
   AggregateLayers pixels(kTile.pixels(), layers, {kPositions, rules, storage});
-  merges.assign(kTile.pixels(), 0);
-  pixels.add(fragments, counters, merges);
-  return pixels.finish(counters);
+  pixels.add(fragments, found.counters, found.merges);
+  found.pixels = pixels.finish(found.counters);
+  return found;
+}
+
+// The same fragments by the published rules with an A-buffer.
+std::vector<Aggregate> by_lists(const std::vector<Fragment>& fragments, CasavStorage storage, StageCounters& counters) {
+  StageCounters sorting;
+  const ABuffer lists = a_buffer(sort_records(fragments, SortKey::nearest), kTile.pixels(), 42, 42, sorting);
+  return compose(fragments, lists, {kPositions, {}, storage}, counters);
 }
 
 void expect_same(const std::vector<Aggregate>& found, const std::vector<Aggregate>& expected, float tolerance = 0) {
@@ -73,16 +71,14 @@ void expect_same(const std::vector<Aggregate>& found, const std::vector<Aggregat
 // One aggregate, and fragments from near to far, are the published rules with an A-buffer, to the bit.
 TEST(ComposeLayers, OneLayerNearToFarIsTheABuffer) {
   Random random(71);
-  SCOPED_TRACE(random.name());
   for (int i = 0; i < 20; ++i) {
     const std::vector<Fragment> fragments = random_fragments(random, 12);
     for (const CasavStorage storage : {CasavStorage::slides, CasavStorage::text, CasavStorage::float32}) {
-      StageCounters sorting, of_lists, of_layer;
-      const ABuffer lists = a_buffer(sort_records(fragments, SortKey::nearest), kTile.pixels(), 42, 42, sorting);
-      const std::vector<Aggregate> expected = compose(fragments, lists, {kPositions, {}, storage}, of_lists);
-      std::vector<float> merges;
-      expect_same(composed(near_to_far(fragments), 1, of_layer, merges, storage), expected);
-      EXPECT_EQ(of_layer.ops, of_lists.ops) << "a single layer needs no search";
+      StageCounters of_lists;
+      const std::vector<Aggregate> expected = by_lists(fragments, storage, of_lists);
+      const Composed found = composed(near_to_far(fragments), 1, storage);
+      expect_same(found.pixels, expected);
+      EXPECT_EQ(found.counters.ops, of_lists.ops) << "a single layer needs no search";
     }
   }
 }
@@ -92,29 +88,23 @@ TEST(ComposeLayers, OneLayerNearToFarIsTheABuffer) {
 // A-buffer merges it into an empty aggregate, which rounds.
 TEST(ComposeLayers, EnoughLayersAreTheABufferInAnyOrder) {
   Random random(72);
-  SCOPED_TRACE(random.name());
   for (int i = 0; i < 20; ++i) {
     std::vector<Fragment> fragments = random_fragments(random, 8);
     std::erase_if(fragments, [](const Fragment& fragment) { return fragment.tiny; });
-    StageCounters counters;
-    const ABuffer lists = a_buffer(sort_records(fragments, SortKey::nearest), kTile.pixels(), 42, 42, counters);
-    const std::vector<Aggregate> expected = compose(fragments, lists, {kPositions}, counters);
-    std::vector<float> merges;
-    expect_same(composed(fragments, 8, counters, merges), expected, 1e-5f);
-    EXPECT_EQ(*std::max_element(merges.begin(), merges.end()), 0);
+    StageCounters ignored;
+    const Composed found = composed(fragments, 8);
+    expect_same(found.pixels, by_lists(fragments, CasavStorage::float32, ignored), 1e-5f);
+    EXPECT_EQ(std::ranges::max(found.merges), 0);
   }
 }
 
 // Fewer layers merge on the way. Every merge is counted, masks are joined, and no colour or area leaves its range.
 TEST(ComposeLayers, FewerLayersMergeTheClosest) {
   Random random(73);
-  SCOPED_TRACE(random.name());
   for (int i = 0; i < 20; ++i) {
     const std::vector<Fragment> fragments = random_fragments(random, 30);
     for (const std::size_t layers : {2u, 3u, 4u}) {
-      StageCounters counters;
-      std::vector<float> merges;
-      const std::vector<Aggregate> found = composed(fragments, layers, counters, merges);
+      const auto [found, merges, counters] = composed(fragments, layers);
       std::vector<std::size_t> counts(kTile.pixels());
       std::vector<std::uint32_t> masks(kTile.pixels());
       for (const Fragment& fragment : fragments) {
@@ -139,7 +129,6 @@ TEST(ComposeLayers, FewerLayersMergeTheClosest) {
 // At equal depth the fragment that comes first lies in front, as in the A-buffer.
 TEST(ComposeLayers, EqualDepthsKeepTheirOrder) {
   Random random(75);
-  SCOPED_TRACE(random.name());
   for (int i = 0; i < 20; ++i) {
     std::vector<Fragment> fragments = random_fragments(random, 3);
     std::erase_if(fragments, [](const Fragment& fragment) { return fragment.tiny; });
@@ -148,11 +137,8 @@ TEST(ComposeLayers, EqualDepthsKeepTheirOrder) {
       fragments.push_back(fragments[k]);
       fragments.back().color = fragments[k].alpha * glm::vec3(random.real32(0, 1), random.real32(0, 1), 0);
     }
-    StageCounters counters;
-    const ABuffer lists = a_buffer(sort_records(fragments, SortKey::nearest), kTile.pixels(), 42, 42, counters);
-    const std::vector<Aggregate> expected = compose(fragments, lists, {kPositions}, counters);
-    std::vector<float> merges;
-    expect_same(composed(fragments, 8, counters, merges), expected, 1e-5f);
+    StageCounters ignored;
+    expect_same(composed(fragments, 8).pixels, by_lists(fragments, CasavStorage::float32, ignored), 1e-5f);
   }
 }
 
@@ -167,20 +153,24 @@ Fragment flat(float z, std::uint32_t mask, float alpha, const glm::vec3& color) 
   return fragment;
 }
 
+// Two layers, which merge twice.
+Aggregate in_two_layers(const std::vector<Fragment>& fragments, const MergeRules& rules = {}) {
+  const Composed found = composed(fragments, 2, CasavStorage::float32, rules);
+  EXPECT_EQ(found.merges[0], 2);
+  return found.pixels[0];
+}
+
+void expect_color(const Aggregate& found, const glm::vec3& expected) {
+  for (int c = 0; c < 3; ++c) EXPECT_NEAR(found.color[c], expected[c], 1e-5f);
+}
+
 // Of three surfaces in two layers, the two that are close become one: so the fourth, just in front of the last, hides
 // it. If the last two were one, the fourth would lie within their slab, and be mixed with them.
 TEST(ComposeLayers, TheClosestTwoBecomeOne) {
   const Fragment red = flat(-0.9f, 0x000000ff, 0.25f, {1, 0, 0}), green = flat(-0.89f, 0x0000ff00, 0.25f, {0, 1, 0}),
                  blue = flat(-0.2f, 0xffff0000, 0.5f, {0, 0, 1}), white = flat(-0.25f, 0xffff0000, 0.5f, {1, 1, 1});
-  for (const std::vector<Fragment>& order : {std::vector{red, green, blue, white}, {blue, green, red, white}}) {
-    StageCounters counters;
-    std::vector<float> merges;
-    const Aggregate pixel = composed(order, 2, counters, merges).at(0);
-    EXPECT_EQ(merges[0], 2);
-    EXPECT_NEAR(pixel.color[0], 0.75f, 1e-5f);
-    EXPECT_NEAR(pixel.color[1], 0.75f, 1e-5f);
-    EXPECT_NEAR(pixel.color[2], 0.5f, 1e-5f);
-  }
+  for (const std::vector<Fragment>& order : {std::vector{red, green, blue, white}, {blue, green, red, white}})
+    expect_color(in_two_layers(order), {0.75f, 0.75f, 0.5f});
 }
 
 // The same where the last two are close: the first hides the fourth, which lies just behind it. If the first two were
@@ -188,13 +178,7 @@ TEST(ComposeLayers, TheClosestTwoBecomeOne) {
 TEST(ComposeLayers, TheClosestTwoMayBeTheLast) {
   const Fragment red = flat(-0.9f, 0x000000ff, 0.25f, {1, 0, 0}), green = flat(-0.21f, 0x0000ff00, 0.25f, {0, 1, 0}),
                  blue = flat(-0.2f, 0xffff0000, 0.5f, {0, 0, 1}), white = flat(-0.85f, 0x000000ff, 0.25f, {1, 1, 1});
-  StageCounters counters;
-  std::vector<float> merges;
-  const Aggregate pixel = composed({red, green, blue, white}, 2, counters, merges).at(0);
-  EXPECT_EQ(merges[0], 2);
-  EXPECT_NEAR(pixel.color[0], 0.25f, 1e-5f);
-  EXPECT_NEAR(pixel.color[1], 0.25f, 1e-5f);
-  EXPECT_NEAR(pixel.color[2], 0.5f, 1e-5f);
+  expect_color(in_two_layers({red, green, blue, white}), {0.25f, 0.25f, 0.5f});
 }
 
 // Green and blue become a slab because white is far behind them; then red, in front, is merged with the slab, whose
@@ -203,13 +187,9 @@ TEST(ComposeLayers, TheClosestTwoMayBeTheLast) {
 TEST(ComposeLayers, ASurfaceBeforeASlabKeepsTheSlabsThickness) {
   const Fragment green = flat(-0.8f, 0x0000ffff, 0.5f, {0, 1, 0}), blue = flat(-0.2f, 0x00010000, 1 / 32.0f, {0, 0, 1}),
                  white = flat(0.9f, 0x000000ff, 0.25f, {1, 1, 1}), red = flat(-0.81f, 0xff000000, 0.25f, {1, 0, 0});
-  StageCounters counters;
-  std::vector<float> merges;
   MergeRules rules;
   rules.slab = MergeRules::Slab::visible;
-  const Aggregate pixel = composed({green, blue, white, red}, 2, counters, merges, CasavStorage::float32, rules).at(0);
-  EXPECT_EQ(merges[0], 2);
-  EXPECT_NEAR(pixel.thickness, 2 * 0.6f, 0.1f);
+  EXPECT_NEAR(in_two_layers({green, blue, white, red}, rules).thickness, 2 * 0.6f, 0.1f);
 }
 
 TEST(ComposeLayers, CountsBytes) {

@@ -1,14 +1,8 @@
 // The scalar twin of compose_window: one window of one pixel after the other, position by position.
-#include <algorithm>
-#include <limits>
-#include <optional>
 
 #include "simd/conserve.h"
 #include "simd/position_mask.h"
-#include "stages/beam/beam_fragment.h"
-#include "stages/beam/compose_beam.h"
-#include "stages/picture/shade.h"
-#include "stages/raster/conservative_raster.h"
+#include "tests/stages/beam_pixels.h"
 #include "tests/stages/scene_twins.h"
 
 namespace beampipe::compose_twins_test {
@@ -191,10 +185,7 @@ class ComposeTwins : public SceneTwins {
 TEST_P(ComposeTwins, ComposeWindow) {
   const PositionGrid grid(kPositions);
   StageCounters ignored;
-  std::vector<Pair> pairs;
-  std::vector<Fragment> fragments;
-  conservative_raster(triangles_, list_, tile_, ignored, pairs);
-  beam_fragment(triangles_, pairs, tile_, grid_options(grid, 0), ignored, fragments);
+  std::vector<Fragment> fragments = fragments_of(triangles_, tile_, grid_options(grid, 0));
   shade_visible(shade_triangles(triangles_, trace_.frames[0].lighting), fragments, ignored);
   std::stable_sort(fragments.begin(), fragments.end(), [](const auto& a, const auto& b) { return a.pixel < b.pixel; });
   const auto compare = [&]<class Channel>(Channel) {

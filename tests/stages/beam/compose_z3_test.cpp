@@ -1,12 +1,6 @@
 #include "stages/beam/compose_z3.h"
 
-#include <gtest/gtest.h>
-
-#include "stages/beam/beam_fragment.h"
-#include "stages/picture/shade.h"
-#include "stages/raster/conservative_raster.h"
-#include "tests/simd/random.h"
-#include "tests/stages/screen_triangles.h"
+#include "tests/stages/beam_pixels.h"
 
 namespace beampipe::compose_z3_test {
 
@@ -15,12 +9,8 @@ std::vector<Z3Pixel<Words, Layers>> composed(const SetupTriangles& triangles, co
                                              const Tile& tile) {
   const PositionSet positions(cell_patterns(32 * Words));
   StageCounters counters;
-  std::vector<Pair> pairs;
-  std::vector<Fragment> fragments;
-  conservative_raster(triangles, all_of(triangles), tile, counters, pairs);
-  beam_fragment(triangles, pairs, tile,
-                {.mask = MaskSource::exact, .positions = positions.patterns, .fragment_bytes = 26}, counters,
-                fragments);
+  std::vector<Fragment> fragments =
+      fragments_of(triangles, tile, {.mask = MaskSource::exact, .positions = positions.patterns, .fragment_bytes = 26});
   shade(colors, fragments, counters);
   std::vector<Z3Pixel<Words, Layers>> pixels(tile.pixels());
   std::vector<float> merges(tile.pixels());
@@ -71,7 +61,6 @@ TEST(ComposeZ3, TheClosestTwoAreMerged) {
 
 TEST(ComposeZ3, WeightsNeverPassOne) {
   Random random(91);
-  SCOPED_TRACE(random.name());
   const SetupTriangles triangles = random_triangles(random, 80);
   const std::vector<glm::vec3> white(triangles.triangles.size(), glm::vec3(1.0f));
   for (const PixelColor& pixel : z3_colors(composed<1, 3>(triangles, white, {0, 0, 12, 12}))) {

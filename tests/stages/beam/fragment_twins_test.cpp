@@ -1,16 +1,13 @@
 // The scalar twin of beam_fragment: one pair after the other, as the paper describes a fragment.
-#include <cmath>
 #include <numbers>
-#include <optional>
 
 #include "simd/coverage.h"
 #include "simd/depth_range.h"
 #include "simd/mask_table.h"
 #include "simd/position_mask.h"
 #include "simd/sample_mask.h"
-#include "stages/beam/beam_fragment.h"
 #include "stages/data/fragment_geometry.h"
-#include "stages/raster/conservative_raster.h"
+#include "tests/stages/beam_pixels.h"
 #include "tests/stages/scene_twins.h"
 
 namespace beampipe::fragment_twins_test {
@@ -18,10 +15,9 @@ namespace beampipe::fragment_twins_test {
 class FragmentTwins : public SceneTwins {
  protected:
   void expect_equal(const BeamFragmentOptions& options) {
-    StageCounters ignored, counters;
-    std::vector<Pair> pairs;
+    StageCounters counters;
+    const std::vector<Pair> pairs = pairs_of(triangles_, tile_);
     std::vector<Fragment> fragments;
-    conservative_raster(triangles_, list_, tile_, ignored, pairs);
     beam_fragment(triangles_, pairs, tile_, options, counters, fragments);
     twin_ = {}, directed_ = kNoTriangle;
     std::size_t next = 0;

@@ -1,18 +1,11 @@
 // The scalar twins of compose by the published rules and of compose_z3: one fragment after the other is added to its
 // pixel.
-#include <algorithm>
-#include <bit>
-#include <cmath>
 
 #include "simd/plane_order.h"
-#include "stages/beam/a_buffer.h"
-#include "stages/beam/beam_fragment.h"
 #include "stages/beam/casav_fragment.h"
-#include "stages/beam/compose_casav.h"
 #include "stages/beam/compose_z3.h"
-#include "stages/picture/shade.h"
-#include "stages/raster/conservative_raster.h"
 #include "tests/simd/merge_cases.h"
+#include "tests/stages/beam_pixels.h"
 #include "tests/stages/scene_twins.h"
 
 namespace beampipe::merge_twins_test {
@@ -21,9 +14,7 @@ class MergeTwins : public SceneTwins {
  protected:
   void make_fragments(const BeamFragmentOptions& options) {
     StageCounters ignored;
-    std::vector<Pair> pairs;
-    conservative_raster(triangles_, list_, tile_, ignored, pairs);
-    beam_fragment(triangles_, pairs, tile_, options, ignored, fragments_);
+    fragments_ = fragments_of(triangles_, tile_, options);
     shade(shade_triangles(triangles_, trace_.frames[0].lighting), fragments_, ignored);
   }
   void make_casav_fragments() {
@@ -272,7 +263,6 @@ TEST_P(MergeTwins, ComposeZ3) {
   const auto compare = [&]<std::size_t Words, std::size_t Layers>(Z3Pixel<Words, Layers>) {
     const PositionGrid grid(32 * Words);
     const PositionSet positions(cell_patterns(32 * Words));
-    fragments_.clear();
     make_fragments(grid_options(grid, 0));
     std::vector<Z3Pixel<Words, Layers>> pixels(tile_.pixels()), twins = pixels;
     std::vector<float> merges(tile_.pixels()), twin_merges = merges;

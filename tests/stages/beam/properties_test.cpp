@@ -1,14 +1,9 @@
 // Properties that must hold for every triangle, tried on random ones. BEAMPIPE_THOROUGH=N tries N times as many. A
 // failure names the seed of its case.
-#include <gtest/gtest.h>
-
-#include <algorithm>
-#include <array>
-#include <cmath>
 #include <cstdio>
 
-#include "stages/raster/sample_raster.h"
 #include "tests/stages/beam_pixels.h"
+#include "tests/stages/sample_pixels.h"
 #include "tests/stages/search.h"
 
 namespace beampipe::properties_test {
@@ -43,12 +38,8 @@ TEST(Properties, EverySampleOfAPartitionOnce) {
   search(2'000'000, 150, [&](Random& random) {
     const SetupTriangles parts = random_partition(random, random.int32(1, 200));
     for (const int samples : {1, 8, 16}) {
-      const Sampling sampling{CellGrid{}, standard_pattern(samples)};
-      std::vector<SampleFragment> fragments;
-      StageCounters counters;
-      sample_raster({parts, kTile, sampling}, all_of(parts), counters, fragments);
       std::vector<std::uint32_t> once(kTile.pixels());
-      for (const SampleFragment& fragment : fragments) {
+      for (const SampleFragment& fragment : sample_fragments(parts, kTile, {CellGrid{}, standard_pattern(samples)})) {
         std::uint32_t& seen = once[static_cast<std::size_t>(fragment.y * kTile.width() + fragment.x)];
         ASSERT_EQ(seen & fragment.mask, 0u) << "a sample twice";
         seen |= fragment.mask;

@@ -1,40 +1,25 @@
 // Everything that hides and orders pairs before fragments are made is counted as its scalar twins count it, pair by
 // pair and on every procedural scene: depth bounds, closed depths and windows. The same holds for the composition of
 // pixels that a single triangle covers.
-#include <gtest/gtest.h>
 
 #include "stages/beam/a_buffer.h"
 #include "stages/beam/beam_fragment.h"
 #include "stages/beam/compose_beam.h"
 #include "stages/beam/merge_sort.h"
 #include "stages/beam/windows.h"
-#include "stages/cost/counting.h"
 #include "stages/data/closed_depth.h"
 #include "stages/data/fragment_geometry.h"
-#include "stages/geometry/vertex_setup.h"
 #include "stages/picture/shade.h"
 #include "stages/raster/conservative_raster.h"
 #include "stages/raster/sample_raster.h"
 #include "stages/raster/traverse.h"
-#include "tests/traces/scene_names.h"
+#include "tests/stages/scene_twins.h"
 
 namespace beampipe::window_twins_test {
 
-using Float = Counted<float>;
-using Real = Counted<double>;
-
-class WindowTwins : public testing::TestWithParam<SceneKind> {
+class WindowTwins : public SceneTwins {
  protected:
-  void SetUp() override {
-    const std::uint32_t triangles = GetParam().name == "stack" ? 40 : 1500;  // each triangle covers the whole picture
-    const Trace trace = make_scene(GetParam().name, {.triangles = triangles, .width = 40, .height = 24});
-    StageCounters ignored;
-    triangles_ = vertex_setup(trace, trace.frames[0], ignored);
-    for (std::uint32_t i = 0; i < triangles_.triangles.size(); ++i) list_.push_back(i);
-  }
-
-  Float real(float value) { return Float(value, twin_); }
-  Real real(double value) { return Real(value, twin_); }
+  WindowTwins() : SceneTwins(40) {}
 
   DepthBounds<Float> vertices_of(std::uint32_t index) {
     const float* const z = triangles_.triangles[index].vertex_z;
@@ -58,11 +43,6 @@ class WindowTwins : public testing::TestWithParam<SceneKind> {
     twin_ += traversal.ops;
     return pairs;
   }
-
-  const Tile tile_{0, 0, 40, 24};
-  SetupTriangles triangles_;
-  TriangleList list_;
-  OperationCounts twin_;  // counted by the twins
 };
 
 TEST_P(WindowTwins, DepthBounds) {
@@ -233,7 +213,6 @@ TEST_P(WindowTwins, Windows) {
   EXPECT_EQ(whole_pixels.ops, halves);
 }
 
-INSTANTIATE_TEST_SUITE_P(Scenes, WindowTwins, testing::ValuesIn(flat_scenes()),
-                         [](const auto& scene) { return std::string(scene.param.name); });
+BEAMPIPE_ON_EVERY_SCENE(WindowTwins);
 
 }  // namespace beampipe::window_twins_test

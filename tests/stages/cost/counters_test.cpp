@@ -1,9 +1,7 @@
 // The table of a stage's counters: adding up, saving and restoring depend on it.
 #include "stages/cost/counters.h"
 
-#include <gtest/gtest.h>
-
-#include <set>
+#include "tests/test.h"
 
 namespace beampipe::counters_test {
 

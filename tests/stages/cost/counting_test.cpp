@@ -1,9 +1,8 @@
 // Scalar formulas on numbers that count: the counts are those that a reader finds in the code.
 #include "stages/cost/counting.h"
 
-#include <gtest/gtest.h>
-
 #include "simd/sample_mask.h"
+#include "tests/test.h"
 
 namespace beampipe::counting_test {
 

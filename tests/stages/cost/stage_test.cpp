@@ -1,9 +1,7 @@
 // The table of stages: each is found by its name and by its number.
 #include "stages/cost/stage.h"
 
-#include <gtest/gtest.h>
-
-#include <set>
+#include "tests/test.h"
 
 namespace beampipe::stage_test {
 

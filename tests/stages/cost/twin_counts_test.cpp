@@ -1,17 +1,11 @@
 // The stages count the same for whole batches as their scalar twins count item by item, on numbers that count and with
 // the real data of every procedural scene.
-#include <gtest/gtest.h>
-
 #include "simd/depth_compare.h"
-#include "stages/beam/a_buffer.h"
-#include "stages/beam/beam_fragment.h"
 #include "stages/beam/merge_sort.h"
 #include "stages/data/fragment_geometry.h"
-#include "stages/geometry/vertex_setup.h"
-#include "stages/raster/conservative_raster.h"
-#include "stages/raster/sample_raster.h"
 #include "stages/samples/accumulate.h"
-#include "stages/samples/test_depth.h"
+#include "tests/stages/beam_pixels.h"
+#include "tests/stages/sample_pixels.h"
 #include "tests/stages/scene_twins.h"
 
 namespace beampipe::twin_counts_test {
@@ -19,14 +13,11 @@ namespace beampipe::twin_counts_test {
 class TwinCounts : public SceneTwins {};
 
 TEST_P(TwinCounts, Sort) {
-  StageCounters raster, ignored, sorting;
-  std::vector<Pair> pairs;
-  conservative_raster(triangles_, list_, tile_, raster, pairs);
-  std::vector<Fragment> fragments;
+  StageCounters sorting;
   BeamFragmentOptions options;
   options.mask = MaskSource::exact;
   options.positions = {hammersley_pattern()};
-  beam_fragment(triangles_, pairs, tile_, options, ignored, fragments);
+  const std::vector<Fragment> fragments = fragments_of(triangles_, tile_, options);
   const ABuffer buffer = a_buffer(sort_records(fragments, SortKey::centroid), tile_.pixels(), 42, 42, sorting);
 
   std::vector<std::vector<std::uint32_t>> arrived(tile_.pixels());
@@ -42,10 +33,9 @@ TEST_P(TwinCounts, Sort) {
 
 TEST_P(TwinCounts, DepthTest) {
   const Sampling sampling{CellGrid{}, standard_pattern(8)};
-  StageCounters raster, counters;
-  std::vector<SampleFragment> fragments;
+  StageCounters counters;
+  const std::vector<SampleFragment> fragments = sample_fragments(triangles_, tile_, sampling);
   std::vector<SampleAccess> accesses;
-  sample_raster({triangles_, tile_, sampling}, list_, raster, fragments);
   SampleTile surface(tile_, sampling), stored(tile_, sampling);
   depth_test({triangles_, tile_, sampling}, fragments, counters, surface, accesses);
   for (const SampleFragment& fragment : fragments) {
@@ -71,10 +61,7 @@ TEST_P(TwinCounts, DepthTest) {
 }
 
 TEST_P(TwinCounts, Accumulate) {
-  const Sampling sampling{CellGrid{}, standard_pattern(8)};
-  StageCounters raster;
-  std::vector<SampleFragment> fragments;
-  sample_raster({triangles_, tile_, sampling}, list_, raster, fragments);
+  const std::vector<SampleFragment> fragments = sample_fragments(triangles_, tile_, {CellGrid{}, standard_pattern(8)});
   const std::vector<glm::vec3> colors(triangles_.triangles.size(), glm::vec3(0.5f));
   for (const DoubleCounting counting : {DoubleCounting::none, DoubleCounting::saturate}) {
     StageCounters counters;

@@ -1,9 +1,5 @@
 #include "stages/data/casav_aggregate.h"
 
-#include <gtest/gtest.h>
-
-#include <cmath>
-
 #include "tests/simd/random.h"
 
 namespace beampipe::casav_aggregate_test {
@@ -30,7 +26,6 @@ TEST(CasavStorage, SlidesKeepAllButTheColour) {
 
 TEST(CasavStorage, TheTextsSizeRoundsSlopesAndThicknessToEightBits) {
   Random random(64);
-  SCOPED_TRACE(random.name());
   for (int i = 0; i < 10000; ++i) {
     const auto slope = [&] {
       return random.real32(-1, 1) * std::ldexp(1.0f, static_cast<int>(random.integer(-40, 3)));

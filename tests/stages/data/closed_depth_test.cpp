@@ -1,6 +1,6 @@
 #include "stages/data/closed_depth.h"
 
-#include <gtest/gtest.h>
+#include "tests/test.h"
 
 namespace beampipe::closed_depth_test {
 

@@ -1,9 +1,6 @@
 #include "stages/data/half_bits.h"
 
-#include <gtest/gtest.h>
-
-#include <cmath>
-#include <limits>
+#include "tests/test.h"
 
 namespace beampipe::half_bits_test {
 

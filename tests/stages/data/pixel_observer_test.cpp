@@ -1,11 +1,6 @@
 // What an observer tells of the pixels that compose_owners returns.
 #include "stages/data/pixel_observer.h"
 
-#include <gtest/gtest.h>
-
-#include <cmath>
-#include <set>
-
 #include "tests/stages/open_pixels.h"
 
 namespace beampipe::pixel_observer_test {
@@ -69,7 +64,6 @@ constexpr double kOfSums = 2e-4, kOfMerged = 2.0 / 512;
 template <class Color>
 Explained explain_random(std::uint64_t seed, int count, Color&& color) {
   Random random(seed);
-  SCOPED_TRACE(random.name());
   Explained found;
   for (int round = 0; round < 4; ++round) {
     const SetupTriangles triangles = random_triangles(random, count);

@@ -1,10 +1,5 @@
 #include "stages/data/shared_exponent.h"
 
-#include <gtest/gtest.h>
-
-#include <algorithm>
-#include <cmath>
-
 #include "tests/simd/random.h"
 
 namespace beampipe::shared_exponent_test {
@@ -21,7 +16,6 @@ void expect_close(const glm::vec3& color, float threshold) {
 
 TEST(SharedExponent, IsCloseToTheColor) {
   Random random(211);
-  SCOPED_TRACE(random.name());
   for (int i = 0; i < 20'000; ++i) {
     const float scale = std::pow(10.0f, random.real32(-6, 6));
     const glm::vec3 color = scale * glm::vec3(random.real32(0, 1), random.real32(0, 1), random.real32(0, 1));
@@ -49,7 +43,6 @@ TEST(SharedExponent, BlackIsExact) {
 // threshold it would stay where it was.
 TEST(SharedExponent, AMeanMovesByManySmallSteps) {
   Random random(212);
-  SCOPED_TRACE(random.name());
   double error = 0;
   constexpr int kRuns = 200;
   for (int run = 0; run < kRuns; ++run) {

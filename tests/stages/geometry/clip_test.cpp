@@ -1,14 +1,8 @@
 // vertex_setup's clipping to the near and far planes and to the guard band.
-#include <gtest/gtest.h>
-
-#include <algorithm>
-#include <cmath>
 #include <glm/gtc/matrix_transform.hpp>
-#include <set>
 
-#include "stages/raster/sample_raster.h"
 #include "tests/simd/random.h"
-#include "tests/stages/screen_triangles.h"
+#include "tests/stages/sample_pixels.h"
 #include "tests/stages/vertex_scenes.h"
 
 namespace beampipe::clip_test {
@@ -22,11 +16,7 @@ std::vector<int> winding(Scene scene) {
   std::vector<int> sum(kWidth * kHeight * 16);
   for (const Cull cull : {Cull::back, Cull::front}) {
     for (Draw& draw : scene.frame.draws) draw.cull = cull;
-    const SetupTriangles triangles = scene.setup();
-    std::vector<SampleFragment> fragments;
-    StageCounters counters;
-    sample_raster({triangles, {0, 0, kWidth, kHeight}, sampling}, all_of(triangles), counters, fragments);
-    for (const SampleFragment& f : fragments)
+    for (const SampleFragment& f : sample_fragments(scene.setup(), {0, 0, kWidth, kHeight}, sampling))
       for (std::int32_t s = 0; s < 16; ++s)
         sum[static_cast<std::size_t>((f.y * kWidth + f.x) * 16 + s)] +=
             static_cast<int>(f.mask >> s & 1) * (cull == Cull::back ? 1 : -1);
@@ -63,7 +53,6 @@ Scene floor_scene(Random& random, double near, double far, double tilt_deg) {
 // camera or cross the near plane.
 TEST(Clipping, FloorThroughTheNearPlaneIsWatertight) {
   Random random(161);
-  SCOPED_TRACE(random.name());
   for (const double near : {0.5, 0.1, 1e-3}) {
     const Scene scene = floor_scene(random, near, 100, 89);
     const std::vector<int> found = winding(scene);
@@ -76,7 +65,6 @@ TEST(Clipping, FloorThroughTheNearPlaneIsWatertight) {
 // below the horizon is covered once; the others are covered once or not at all.
 TEST(Clipping, FloorToTheHorizonIsWatertight) {
   Random random(162);
-  SCOPED_TRACE(random.name());
   for (const double near : {0.9, 0.1, 1e-5})
     for (const double far : {100.0, 8.0}) {
       const std::vector<int> found = winding(floor_scene(random, near, far, 0));
@@ -104,7 +92,6 @@ TEST(Clipping, FloorToTheHorizonIsWatertight) {
 // plane's anchor is a vertex that is not yet snapped, in double precision.
 TEST(Clipping, NeighboursGetTheSameCrossing) {
   Random random(164);
-  SCOPED_TRACE(random.name());
   int shared = 0;
   for (int round = 0; round < 4'000; ++round) {
     const auto point = [&](double z) { return glm::vec3(random.real(-1, 1), random.real(-1, 1), z); };
@@ -142,7 +129,6 @@ TEST(Clipping, GiantTriangleCoversTheFrameFromWithinTheGuardBand) {
 
 TEST(Clipping, DepthStaysBetweenNearAndFar) {
   Random random(163);
-  SCOPED_TRACE(random.name());
   for (const SetupTriangle& t : floor_scene(random, 0.1, 8, 10).setup().triangles)
     for (const float z : t.vertex_z) {
       ASSERT_GE(z, -1.0f - 1e-6f);

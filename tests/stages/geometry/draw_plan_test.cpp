@@ -1,10 +1,6 @@
 // What plan_draws makes of state: which draws are left out, and which depths the others have.
 #include "stages/geometry/draw_plan.h"
 
-#include <gtest/gtest.h>
-
-#include <array>
-
 #include "tests/simd/random.h"
 #include "tests/stages/vertex_scenes.h"
 
@@ -181,7 +177,6 @@ TEST(DrawPlan, TheLargestGroupKeepsItsDepths) {
 // Random frames: each triangle of a later part lies in front of all of earlier parts, in floats too.
 TEST(DrawPlan, RandomGroupsAreInOrder) {
   Random random(311);
-  SCOPED_TRACE(random.name());
   for (int round = 0; round < 300; ++round) {
     Draws draws;
     const std::int64_t groups = random.integer(1, 9);
@@ -255,7 +250,6 @@ TEST(DrawPlan, GreaterReversesDepth) {
   EXPECT_EQ(draws.notes(), (std::vector<DrawNote>{{"depth functions less and greater are mixed", false, 1, 1}}));
 }
 
-// The pre-pass is dropped, and equal says nothing about which way is near.
 // As many triangles compare one way as the other.
 TEST(DrawPlan, DepthIsNotReversedOnATie) {
   Draws draws;
@@ -274,6 +268,7 @@ TEST(DrawPlan, UntestedDrawsInTheMiddleLieInFront) {
     EXPECT_LT(range_of(plan.placements[1]).far, range_of(plan.placements[tested]).near) << tested;
 }
 
+// The pre-pass is dropped, and equal says nothing about which way is near.
 TEST(DrawPlan, APrePassSaysWhichWayIsNear) {
   Draws draws;
   draws.add(Compare::greater).state.color_mask = 0;

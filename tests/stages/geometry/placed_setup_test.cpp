@@ -1,16 +1,9 @@
 // vertex_setup of draws with homogeneous positions and fixed-function state.
-#include <gtest/gtest.h>
-
-#include <algorithm>
-#include <array>
-#include <cmath>
 #include <glm/gtc/matrix_transform.hpp>
-#include <vector>
 
 #include "stages/geometry/setup_formulas.h"
-#include "stages/raster/sample_raster.h"
 #include "tests/simd/random.h"
-#include "tests/stages/screen_triangles.h"
+#include "tests/stages/sample_pixels.h"
 #include "tests/stages/vertex_scenes.h"
 
 namespace beampipe::placed_setup_test {
@@ -26,28 +19,10 @@ std::vector<glm::vec3> random_positions(Random& random, int triangles, double re
   return positions;
 }
 
-void expect_same(const SetupTriangles& a, const SetupTriangles& b) {
-  ASSERT_EQ(a.triangles.size(), b.triangles.size());
-  for (std::size_t i = 0; i < a.triangles.size(); ++i) {
-    const SetupTriangle &s = a.triangles[i], &t = b.triangles[i];
-    for (int k = 0; k < 3; ++k) {
-      ASSERT_EQ(s.x[k], t.x[k]) << i;
-      ASSERT_EQ(s.y[k], t.y[k]) << i;
-      ASSERT_EQ(s.vertex_z[k], t.vertex_z[k]) << i;
-    }
-    ASSERT_EQ(s.depth.z, t.depth.z) << i;
-    ASSERT_EQ(s.depth.dzdx, t.depth.dzdx) << i;
-    ASSERT_EQ(s.depth.dzdy, t.depth.dzdy) << i;
-    ASSERT_EQ(s.front, t.front) << i;
-    ASSERT_EQ(a.attributes[i].normal, b.attributes[i].normal) << i;
-  }
-}
-
 // A position times a power of two is the same position, to the last bit. Where triangles are clipped, only if all of
 // their corners are multiplied alike: crossing points depend on w.
 TEST(PlacedSetup, HomogeneousPositionsAreDividedByW) {
   Random random(331);
-  SCOPED_TRACE(random.name());
   for (int round = 0; round < 100; ++round) {
     const bool is_clipped = round % 2 == 0;
     Scene plain = clip_space_scene(random_positions(random, 20, is_clipped ? 3 : 0.5), kWidth, kHeight);
@@ -89,7 +64,6 @@ TEST(PlacedSetup, HomogeneousPositionsMayLieBehindTheEye) {
 
 TEST(PlacedSetup, ViewportsPlaceTheClipVolume) {
   Random random(332);
-  SCOPED_TRACE(random.name());
   for (int round = 0; round < 200; ++round) {
     Scene scene = clip_space_scene(random_positions(random, 1, 1), 64, 32);
     for (glm::vec3& p : scene.trace.meshes[0].positions) p.z = std::clamp(p.z, -1.0f, 1.0f);
@@ -121,10 +95,7 @@ TEST(PlacedSetup, ViewportsPlaceTheClipVolume) {
 std::vector<float> depths_of(const SetupTriangles& triangles) {
   const Sampling sampling{CellGrid{}, standard_pattern(kSamples)};
   std::vector<float> depths(kWidth * kHeight * kSamples, 2.0f);
-  std::vector<SampleFragment> fragments;
-  StageCounters counters;
-  sample_raster({triangles, {0, 0, kWidth, kHeight}, sampling}, all_of(triangles), counters, fragments);
-  for (const SampleFragment& f : fragments)
+  for (const SampleFragment& f : sample_fragments(triangles, {0, 0, kWidth, kHeight}, sampling))
     for (std::int32_t s = 0; s < kSamples; ++s)
       if (f.mask >> s & 1) {
         const auto i = static_cast<std::size_t>(s);
@@ -151,7 +122,6 @@ bool is_near_edge(const SetupTriangles& triangles, std::int64_t x, std::int64_t 
 // moves: about one unit of the grid.
 TEST(PlacedSetup, ScissorsCutExactly) {
   Random random(333);
-  SCOPED_TRACE(random.name());
   const SamplePattern pattern = standard_pattern(kSamples);
   int inside = 0, outside = 0, cut = 0;
   for (int round = 0; round < 400; ++round) {
@@ -191,7 +161,6 @@ TEST(PlacedSetup, ScissorsCutExactly) {
 // Fractional viewports end at the nearest 1/256 px; the crossing points lie there exactly.
 TEST(PlacedSetup, CrossingPointsLieOnTheRectangle) {
   Random random(334);
-  SCOPED_TRACE(random.name());
   int on_sides = 0;
   for (int round = 0; round < 300; ++round) {
     Scene scene = clip_space_scene({{-9, -9, 0}, {9, -9, 0.5f}, {0, 12, -0.5f}}, kWidth, kHeight);
@@ -214,7 +183,6 @@ TEST(PlacedSetup, CrossingPointsLieOnTheRectangle) {
 // Without depth clipping, a triangle has the depth of its plane, limited to -1..0, and the same coverage.
 TEST(PlacedSetup, DepthIsLimitedWhereItIsNotClipped) {
   Random random(335);
-  SCOPED_TRACE(random.name());
   int limited = 0, checked = 0;
   for (int round = 0; round < 200; ++round) {
     const std::vector<glm::vec3> positions = random_positions(random, 1, 0.9);
@@ -264,12 +232,13 @@ TEST(PlacedSetup, DepthBiasIsAddedToThePlane) {
     return direction * (after.depth.z - z);
   };
   for (const Compare function : {Compare::less, Compare::greater}) {
-    EXPECT_NEAR(shift({0.125f, 0, 0}, function), 0.125, 1e-12);
-    EXPECT_NEAR(shift({0.125f, 2, 0}, function), 0.125 + 2 * slope, 1e-12);
-    EXPECT_NEAR(shift({0.125f, 2, 0.0625f}, function), 0.0625, 1e-12);
-    EXPECT_NEAR(shift({-0.125f, -2, 0}, function), -0.125 - 2 * slope, 1e-12);
-    EXPECT_NEAR(shift({-0.125f, -2, -0.0625f}, function), -0.0625, 1e-12);
-    EXPECT_NEAR(shift({-0.125f, -2, 0.0625f}, function), -0.125 - 2 * slope, 1e-12);
+    const std::pair<DepthBias, double> cases[] = {{{0.125f, 0, 0}, 0.125},
+                                                  {{0.125f, 2, 0}, 0.125 + 2 * slope},
+                                                  {{0.125f, 2, 0.0625f}, 0.0625},
+                                                  {{-0.125f, -2, 0}, -0.125 - 2 * slope},
+                                                  {{-0.125f, -2, -0.0625f}, -0.0625},
+                                                  {{-0.125f, -2, 0.0625f}, -0.125 - 2 * slope}};
+    for (const auto& [bias, expected] : cases) EXPECT_NEAR(shift(bias, function), expected, 1e-12);
   }
 }
 
@@ -326,7 +295,6 @@ TEST(PlacedSetup, WinnersComeFirst) {
 
 TEST(PlacedSetup, StateOfOtherDrawsChangesNoBit) {
   Random random(336);
-  SCOPED_TRACE(random.name());
   Scene scene = clip_space_scene(random_positions(random, 200, 2), kWidth, kHeight), other = scene;
   other.frame.draws.push_back(other.frame.draws[0]);
   other.frame.draws[1].state.scissor = Scissor{0, 0, 0, 0};  // draws nothing

@@ -1,6 +1,4 @@
 // The scalar twin of vertex_setup: vertex and triangle setup as in a textbook, one item after the other.
-#include <algorithm>
-#include <cmath>
 
 #include "tests/stages/scene_twins.h"
 

@@ -1,9 +1,5 @@
 // Perspective: the weights of a triangle's vertices on the screen, against exact rational arithmetic, and their slopes.
-#include <gtest/gtest.h>
-
-#include <bit>
 #include <boost/multiprecision/cpp_int.hpp>
-#include <cmath>
 #include <glm/gtc/matrix_transform.hpp>
 
 #include "stages/geometry/vertex_setup.h"
@@ -158,11 +154,15 @@ void check_triangle(const SetupTriangle& triangle, const SetupSurface& surface, 
   }
 }
 
+SetupTriangles set_up(const Trace& trace) {
+  StageCounters counters;
+  return vertex_setup(trace, trace.frames[0], counters);
+}
+
 // Sets the trace up and compares all its triangles' planes.
 void check_scene(const Trace& trace, Random& random, Statistics& statistics) {
   const Frame& frame = trace.frames[0];
-  StageCounters counters;
-  const SetupTriangles triangles = vertex_setup(trace, frame, counters);
+  const SetupTriangles triangles = set_up(trace);
   ASSERT_EQ(triangles.surfaces.size(), triangles.triangles.size());
   const Mesh& mesh = trace.meshes[0];
   const glm::dmat4 matrix = frame.projection * frame.view * frame.draws[0].transform;
@@ -207,18 +207,26 @@ Trace scene_of(const std::vector<glm::vec3>& positions, double near, double far,
 
 const glm::dmat4 kPlain(1.0), kMirror = glm::scale(glm::dmat4(1.0), glm::dvec3(-1, 1, 1));
 
-void check_random(Random& random, double near, double far, Statistics& statistics,
-                  const std::function<void(std::array<glm::vec3, 3>&)>& make) {
+// `make` fills 60 triangles, each of them plain and mirrored.
+Statistics check_random(std::uint64_t seed, double near, double far,
+                        const std::function<void(Random&, std::array<glm::vec3, 3>&)>& make) {
+  Random random(seed);
+  Statistics statistics;
   for (const glm::dmat4& transform : {kPlain, kMirror}) {
     std::vector<glm::vec3> positions;
     for (int i = 0; i < 60; ++i) {
       std::array<glm::vec3, 3> triangle;
-      make(triangle);
+      make(random, triangle);
       if (random.one_in(2)) std::swap(triangle[1], triangle[2]);
       positions.insert(positions.end(), triangle.begin(), triangle.end());
     }
     check_scene(scene_of(positions, near, far, transform), random, statistics);
   }
+  return statistics;
+}
+
+Trace one_triangle(const glm::dmat4& transform = kPlain) {
+  return scene_of({{-1, -1, -3}, {1, -1, -3}, {0, 1, -3}}, 1, 10, transform);
 }
 
 glm::vec3 in_view(Random& random, double z) {
@@ -227,9 +235,7 @@ glm::vec3 in_view(Random& random, double z) {
 }
 
 TEST(SurfacePlanes, OrdinaryTrianglesAreAccurate) {
-  Random random(1);
-  Statistics found;
-  check_random(random, 0.5, 100, found, [&](auto& triangle) {
+  const Statistics found = check_random(1, 0.5, 100, [](Random& random, auto& triangle) {
     for (glm::vec3& p : triangle) p = in_view(random, random.real(1, 20));
   });
   EXPECT_GT(found.sharp, 1500);
@@ -237,18 +243,14 @@ TEST(SurfacePlanes, OrdinaryTrianglesAreAccurate) {
 }
 
 TEST(SurfacePlanes, DepthsThatDifferByAMillion) {
-  Random random(2);
-  Statistics found;
-  check_random(random, 0.01, 1e5, found, [&](auto& triangle) {
+  const Statistics found = check_random(2, 0.01, 1e5, [](Random& random, auto& triangle) {
     for (glm::vec3& p : triangle) p = in_view(random, std::pow(10.0, random.real(-1.9, 4.9)));
   });
   EXPECT_GT(found.points, 1000);
 }
 
 TEST(SurfacePlanes, CutByTheNearPlane) {
-  Random random(3);
-  Statistics found;
-  check_random(random, 1, 100, found, [&](auto& triangle) {
+  const Statistics found = check_random(3, 1, 100, [](Random& random, auto& triangle) {
     for (glm::vec3& p : triangle) p = in_view(random, random.real(1, 30));
     triangle[static_cast<std::size_t>(random.integer(0, 2))].z = random.real32(-0.5, 5);  // behind the near plane
   });
@@ -256,9 +258,7 @@ TEST(SurfacePlanes, CutByTheNearPlane) {
 }
 
 TEST(SurfacePlanes, SeenNearlyEdgeOn) {
-  Random random(4);
-  Statistics found;
-  check_random(random, 0.5, 100, found, [&](auto& triangle) {
+  const Statistics found = check_random(4, 0.5, 100, [](Random& random, auto& triangle) {
     const double height = std::pow(10.0, random.real(-3, -1));
     for (glm::vec3& p : triangle) {
       p = in_view(random, random.real(1, 60));
@@ -269,9 +269,7 @@ TEST(SurfacePlanes, SeenNearlyEdgeOn) {
 }
 
 TEST(SurfacePlanes, ReachingThroughTheGuardBand) {
-  Random random(5);
-  Statistics found;
-  check_random(random, 0.1, 1000, found, [&](auto& triangle) {
+  const Statistics found = check_random(5, 0.1, 1000, [](Random& random, auto& triangle) {
     for (glm::vec3& p : triangle) p = {random.real32(-900, 900), random.real32(-900, 900), random.real32(-200, 20)};
   });
   EXPECT_GT(found.points, 200);
@@ -344,36 +342,33 @@ TEST(SurfacePlanes, FlatFramesHaveNone) {
 TEST(SurfacePlanes, BackFacesAreCulledAsTheMeshHasThem) {
   for (const bool clockwise : {false, true})
     for (const glm::dmat4& transform : {kPlain, kMirror}) {
-      Trace trace = scene_of({{-1, -1, -3}, {1, -1, -3}, {0, 1, -3}}, 1, 10, transform);
+      Trace trace = one_triangle(transform);
       if (clockwise) std::swap(trace.meshes[0].positions[1], trace.meshes[0].positions[2]);
       trace.materials[0].double_sided = false;
-      StageCounters counters;
       // glTF: if a transform's determinant is negative, the winding order of faces is reversed.
-      EXPECT_EQ(vertex_setup(trace, trace.frames[0], counters).triangles.size(), clockwise ? 0u : 1u);
+      EXPECT_EQ(set_up(trace).triangles.size(), clockwise ? 0u : 1u);
       trace.materials[0].double_sided = true;
-      const SetupTriangles both = vertex_setup(trace, trace.frames[0], counters);
+      const SetupTriangles both = set_up(trace);
       ASSERT_EQ(both.triangles.size(), 1u);
       EXPECT_EQ(both.surfaces[0].turned, clockwise);
     }
 }
 
 TEST(SurfacePlanes, VerticesKnowTheWayToTheEye) {
-  Trace trace = scene_of({{-1, -1, -3}, {1, -1, -3}, {0, 1, -3}}, 1, 10, kPlain);
-  StageCounters counters;
-  const SetupTriangles found = vertex_setup(trace, trace.frames[0], counters);
+  Trace trace = one_triangle();
+  const SetupTriangles found = set_up(trace);
   for (std::size_t i = 0; i < 3; ++i)
     for (int c = 0; c < 3; ++c) EXPECT_NEAR(found.vertices[i].to_eye[c], -trace.meshes[0].positions[i][c], 1e-5);
 }
 
 // A projection without depth has no inverse, but it has an eye.
 TEST(SurfacePlanes, TheEyeOfAProjectionThatHasNoInverse) {
-  Trace trace = scene_of({{-1, -1, -3}, {1, -1, -3}, {0, 1, -3}}, 1, 10, kPlain);
+  Trace trace = one_triangle();
   trace.frames[0].view[3] = glm::dvec4(0.5, -0.25, 2, 1);
   for (const double depth : {0.0, 0.5}) {  // everywhere, in parts of w
     for (int column = 0; column < 4; ++column)
       trace.frames[0].projection[column][2] = depth * trace.frames[0].projection[column][3];
-    StageCounters counters;
-    const SetupTriangles found = vertex_setup(trace, trace.frames[0], counters);
+    const SetupTriangles found = set_up(trace);
     ASSERT_EQ(found.triangles.size(), 1u);
     const glm::dvec3 eye(-0.5, 0.25, -2);
     for (std::size_t i = 0; i < 3; ++i)
@@ -384,13 +379,12 @@ TEST(SurfacePlanes, TheEyeOfAProjectionThatHasNoInverse) {
 
 // Its square must be finite, because shading normalises it.
 TEST(SurfacePlanes, TheWayToTheEyeIsAsLongAsFloatsCanSquare) {
-  Trace trace = scene_of({{-1, -1, -3}, {1, -1, -3}, {0, 1, -3}}, 1, 10, kPlain);
+  Trace trace = one_triangle();
   for (const double scale : {1e-30, 1e30, 1e60, 1e150}) {
     Trace scaled = trace;
     for (int i = 0; i < 3; ++i) scaled.frames[0].view[i] /= scale;
     for (int i = 0; i < 3; ++i) scaled.frames[0].draws[0].transform[i] *= scale;
-    StageCounters counters;
-    const SetupTriangles found = vertex_setup(scaled, scaled.frames[0], counters);
+    const SetupTriangles found = set_up(scaled);
     ASSERT_EQ(found.triangles.size(), 1u) << scale;
     for (std::size_t i = 0; i < 3; ++i) {
       const auto to_eye = std::bit_cast<glm::vec3>(found.vertices[i].to_eye);
@@ -410,8 +404,7 @@ TEST(SurfacePlanes, AFlattenedMeshHasFiniteNormals) {
   scene.mesh().normals.assign(scene.mesh().positions.size(), glm::normalize(glm::vec3(1, 2, 3)));
   scene.frame().draws[0].transform =
       glm::dmat4(glm::dvec4(1, 0, 0, 0), glm::dvec4(0, 1, 0, 0), glm::dvec4(0, 0, 0, 0), glm::dvec4(0, 0, 0.5, 1));
-  StageCounters counters;
-  for (const SurfaceVertex& vertex : vertex_setup(scene.trace, scene.trace.frames[0], counters).vertices)
+  for (const SurfaceVertex& vertex : set_up(scene.trace).vertices)
     for (int axis = 0; axis < 3; ++axis) EXPECT_TRUE(std::isfinite(vertex.normal[axis]));
 }
 

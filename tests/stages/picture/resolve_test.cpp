@@ -1,11 +1,7 @@
 #include "stages/picture/resolve.h"
 
-#include <gtest/gtest.h>
-
-#include <utility>
-#include <vector>
-
 #include "tests/stages/surface_scene.h"
+#include "tests/test.h"
 
 namespace beampipe::resolve_test {
 

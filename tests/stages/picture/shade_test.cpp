@@ -1,11 +1,7 @@
 #include "stages/picture/shade.h"
 
-#include <gtest/gtest.h>
-
-#include <cmath>
-
-#include "stages/raster/sample_raster.h"
 #include "tests/stages/beam_pixels.h"
+#include "tests/stages/sample_pixels.h"
 
 namespace beampipe::shade_test {
 
@@ -46,8 +42,8 @@ TEST(Shade, FragmentsGetTheirTrianglesColorTimesAlpha) {
   EXPECT_NEAR(fragments.list[0].color[2], 1.0, 4e-6);
 }
 
-// A triangle in one pixel; two in the same pixel, which share no quad; and one that covers all of 8 x 8 pixels, 16 whole
-// quads.
+// A triangle in one pixel; two in the same pixel, which share no quad; and one that covers all of 8 x 8 pixels, 16
+// whole quads.
 TEST(Shade, QuadsOfEachTriangleHaveFourLanes) {
   SetupTriangles in_a_pixel, two, everywhere;
   add_triangle(in_a_pixel, {3 * 256 + 20, 20}, {4 * 256 - 20, 30}, {3 * 256 + 30, 230});
@@ -62,9 +58,8 @@ TEST(Shade, QuadsOfEachTriangleHaveFourLanes) {
     const std::vector<glm::vec3> colors(triangles.triangles.size(), glm::vec3(1.0f));
     const Tile tile{0, 0, 8, 8};
     Fragments fragments = beam_fragments(triangles, tile, MaskSource::table);
-    std::vector<SampleFragment> samples;
-    StageCounters raster, of_fragments, of_samples;
-    sample_raster({triangles, tile, {CellGrid{}, standard_pattern(8)}}, all_of(triangles), raster, samples);
+    std::vector<SampleFragment> samples = sample_fragments(triangles, tile, {CellGrid{}, standard_pattern(8)});
+    StageCounters of_fragments, of_samples;
     shade(colors, fragments.list, of_fragments);
     shade(colors, samples, of_samples);
     for (const StageCounters& counters : {of_fragments, of_samples}) {

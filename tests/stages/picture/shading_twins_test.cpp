@@ -1,16 +1,15 @@
 // The scalar twins of shade and resolve: the work of one lane for a fragment, and the sum that makes a pixel of the
 // picture.
 #include "simd/position_mask.h"
-#include "stages/beam/beam_fragment.h"
 #include "stages/picture/resolve.h"
-#include "stages/picture/shade.h"
-#include "stages/raster/conservative_raster.h"
-#include "stages/raster/sample_raster.h"
 #include "stages/samples/accumulate.h"
-#include "stages/samples/test_depth.h"
+#include "tests/stages/beam_pixels.h"
+#include "tests/stages/sample_pixels.h"
 #include "tests/stages/scene_twins.h"
 
 namespace beampipe::shading_twins_test {
+
+const Sampling kSampling{CellGrid{}, standard_pattern(8)};
 
 class ShadingTwins : public SceneTwins {
  protected:
@@ -53,18 +52,7 @@ class ShadingTwins : public SceneTwins {
 
   std::vector<Fragment> beam_fragments() {
     const PositionGrid grid(256);
-    StageCounters ignored;
-    std::vector<Pair> pairs;
-    std::vector<Fragment> fragments;
-    conservative_raster(triangles_, list_, tile_, ignored, pairs);
-    beam_fragment(triangles_, pairs, tile_, grid_options(grid, 0), ignored, fragments);
-    return fragments;
-  }
-  std::vector<SampleFragment> sample_fragments(const Sampling& sampling) {
-    StageCounters ignored;
-    std::vector<SampleFragment> fragments;
-    sample_raster({triangles_, tile_, sampling}, list_, ignored, fragments);
-    return fragments;
+    return fragments_of(triangles_, tile_, grid_options(grid, 0));
   }
 
   glm::vec3 light_;
@@ -81,7 +69,7 @@ TEST_P(ShadingTwins, ShadeFragmentsInQuads) {
 }
 
 TEST_P(ShadingTwins, ShadeSampleFragmentsInQuads) {
-  const std::vector<SampleFragment> fragments = sample_fragments({CellGrid{}, standard_pattern(8)});
+  const std::vector<SampleFragment> fragments = sample_fragments(triangles_, tile_, kSampling);
   StageCounters counters;
   shade({*surfaces_, tile_}, fragments, counters);
   EXPECT_EQ(counters.lanes_issued, shade_quads(fragments));
@@ -107,11 +95,8 @@ TEST_P(ShadingTwins, ResolveAggregates) {
 
 TEST_P(ShadingTwins, ResolveSamples) {
   const glm::vec3 background(0.25f, 0.5f, 0.75f);
-  const Sampling sampling{CellGrid{}, standard_pattern(8)};
-  StageCounters ignored, counters;
-  SampleTile surface(tile_, sampling);
-  std::vector<SampleAccess> accesses;
-  depth_test({triangles_, tile_, sampling}, sample_fragments(sampling), ignored, surface, accesses);
+  StageCounters counters;
+  const SampleTile surface = tested_samples(triangles_, tile_, kSampling);
   const std::vector<glm::vec4> image = resolve(surface, tile_.pixels(), colors_, background, counters);
   for (std::size_t pixel = 0; pixel < tile_.pixels(); ++pixel) {
     for (int c = 0; c < 3; ++c) {
@@ -149,7 +134,7 @@ TEST_P(ShadingTwins, GBufferAndLight) {
 
 // A sample takes only the first fragment.
 TEST_P(ShadingTwins, StencilTest) {
-  std::vector<SampleFragment> fragments = sample_fragments({CellGrid{}, standard_pattern(8)}), twins = fragments;
+  std::vector<SampleFragment> fragments = sample_fragments(triangles_, tile_, kSampling), twins = fragments;
   StageCounters counters;
   Accumulator accumulator(tile_, 8, AccumulatorFormat::fp16, DoubleCounting::stencil);
   stencil_test(tile_, counters, accumulator, fragments);

@@ -1,11 +1,5 @@
 #include "stages/raster/bin_sort.h"
 
-#include <gtest/gtest.h>
-
-#include <algorithm>
-#include <cmath>
-#include <numeric>
-
 #include "stages/data/pixel_depth.h"
 #include "stages/raster/bin_sort_cost.h"
 #include "stages/raster/conservative_raster.h"
@@ -24,7 +18,6 @@ void expect_rounded_to_the_viewer(float depth) {
 
 TEST(BinSort, ADepthIsRoundedToTheViewer) {
   Random random(221);
-  SCOPED_TRACE(random.name());
   for (int i = 0; i < 100'000; ++i) expect_rounded_to_the_viewer(random.real32(-1, 0));
   for (int power = -149; power <= 0; ++power) {
     const float depth = -std::ldexp(1.0f, power);
@@ -39,7 +32,6 @@ TEST(BinSort, ADepthIsRoundedToTheViewer) {
 
 TEST(BinSort, KeysAreInTheOrderOfDepth) {
   Random random(222);
-  SCOPED_TRACE(random.name());
   for (int i = 0; i < 100'000; ++i) {
     const float scale = std::ldexp(1.0f, static_cast<int>(random.integer(-30, 0)));
     const float a = random.real32(-1, 0) * scale;
@@ -57,7 +49,6 @@ TEST(BinSort, KeysAreInTheOrderOfDepth) {
 // Depths of draws whose state puts them in front of the near plane or behind the far plane.
 TEST(BinSort, KeysReachBeyondTheNearAndFarPlanes) {
   Random random(224);
-  SCOPED_TRACE(random.name());
   const auto depth = [&] {
     const float scale = std::ldexp(1.0f, static_cast<int>(random.integer(-12, 0)));
     return random.one_in(2) ? random.real32(-2, -1) : random.real32(0, 1) * scale;
@@ -82,7 +73,6 @@ SetupTriangles flat_triangles(const std::vector<float>& depths) {
 
 TEST(BinSort, NearTrianglesComeFirstAndEqualKeysInPrimitiveOrder) {
   Random random(223);
-  SCOPED_TRACE(random.name());
   std::vector<float> depths;
   for (int i = 0; i < 2000; ++i) {
     float z = static_cast<float>(random.integer(-40, 0)) / 40;
@@ -124,7 +114,6 @@ TEST(BinSort, OfAnEmptyList) {
 TEST(BinSort, NothingThatFollowsIsNearerThanTheWatermark) {
   for (std::uint64_t seed = 224; seed < 264; ++seed) {
     Random random(seed);
-    SCOPED_TRACE(random.name());
     const SetupTriangles triangles = random_triangles(random, 300);
     for (const Tile& tile : {Tile{0, 0, 16, 16}, Tile{0, 0, 6, 10}, Tile{8, 8, 12, 12}}) {
       StageCounters counters;

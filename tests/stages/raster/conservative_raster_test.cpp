@@ -1,12 +1,5 @@
 #include "stages/raster/conservative_raster.h"
 
-#include <gtest/gtest.h>
-
-#include <map>
-#include <set>
-#include <tuple>
-#include <vector>
-
 #include "tests/stages/screen_triangles.h"
 
 namespace beampipe::conservative_raster_test {
@@ -78,7 +71,6 @@ Truth truth(const SetupTriangle& t, std::int32_t x, std::int32_t y) {
 
 TEST(ConservativeRaster, FindsExactlyTheTouchedPixels) {
   Random random(101);
-  SCOPED_TRACE(random.name());
   const SetupTriangles triangles = random_triangles(random, 6'000);
   std::set<TouchedPair> expected;
   for (std::uint32_t i = 0; i < triangles.triangles.size(); ++i)
@@ -94,7 +86,6 @@ TEST(ConservativeRaster, FindsExactlyTheTouchedPixels) {
 
 TEST(ConservativeRaster, TilesTogetherGiveWhatOneTileGives) {
   Random random(102);
-  SCOPED_TRACE(random.name());
   const SetupTriangles triangles = random_triangles(random, 2'000);
   const Raster whole = rasterize(triangles, kFrame);
   for (const std::int32_t size : {2, 4, 8}) {
@@ -115,7 +106,6 @@ TEST(ConservativeRaster, TilesTogetherGiveWhatOneTileGives) {
 // consecutive.
 TEST(ConservativeRaster, QuadNumbersNameQuads) {
   Random random(103);
-  SCOPED_TRACE(random.name());
   const SetupTriangles triangles = random_triangles(random, 2'000);
   std::map<std::uint32_t, std::tuple<std::uint32_t, std::int32_t, std::int32_t>> quads;
   std::set<std::tuple<std::uint32_t, std::int32_t, std::int32_t>> distinct;

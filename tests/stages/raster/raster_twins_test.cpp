@@ -1,7 +1,5 @@
 // The scalar twin of the raster stages: it visits the cells of a triangle's bounding box one after the other and steps
 // the edge values from cell to cell and from row to row.
-#include <algorithm>
-#include <array>
 
 #include "simd/sample_mask.h"
 #include "stages/raster/conservative_raster.h"

@@ -1,11 +1,5 @@
 #include "stages/raster/reference_raster.h"
 
-#include <gtest/gtest.h>
-
-#include <algorithm>
-#include <limits>
-#include <tuple>
-
 #include "tests/stages/screen_triangles.h"
 
 namespace beampipe::reference_raster_test {
@@ -43,7 +37,6 @@ std::vector<std::uint64_t> brute_force(const SetupTriangles& triangles, const Ti
 
 TEST(ReferenceRaster, EqualsATestOfEverySample) {
   Random random(121);
-  SCOPED_TRACE(random.name());
   for (int round = 0; round < 12; ++round) {
     SetupTriangles triangles = random_triangles(random, 12);
     for (int i = 0; i < 12; ++i) {  // two triangles whose common edge, of slope 16, runs through samples

@@ -1,9 +1,5 @@
 // The reference with surfaces that vary, against closed forms.
-#include <gtest/gtest.h>
-
-#include <cmath>
 #include <numbers>
-#include <numeric>
 
 #include "stages/raster/reference_raster.h"
 #include "tests/simd/random.h"

@@ -1,11 +1,5 @@
 #include "stages/raster/sample_raster.h"
 
-#include <gtest/gtest.h>
-
-#include <map>
-#include <tuple>
-#include <vector>
-
 #include "tests/stages/screen_triangles.h"
 
 namespace beampipe::sample_raster_test {
@@ -49,7 +43,6 @@ bool covers(const SetupTriangle& t, std::int64_t x, std::int64_t y) {
 
 TEST(SampleRaster, EqualsATestOfEverySample) {
   Random random(114);
-  SCOPED_TRACE(random.name());
   for (const Sampling& sampling : every_sampling()) {
     const CellGrid& grid = sampling.grid;
     const SetupTriangles triangles = random_triangles(random, 3'000 / grid.cells_per_pixel());

@@ -1,6 +1,6 @@
 #include "stages/samples/accumulate.h"
 
-#include <gtest/gtest.h>
+#include "tests/test.h"
 
 namespace beampipe::accumulate_test {
 

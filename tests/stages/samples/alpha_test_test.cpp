@@ -1,11 +1,8 @@
 // Cutouts of sample fragments, by hand.
 #include "stages/samples/alpha_test.h"
 
-#include <gtest/gtest.h>
-
-#include <bit>
-
 #include "tests/stages/surface_scene.h"
+#include "tests/test.h"
 
 namespace beampipe::alpha_test_test {
 

@@ -1,10 +1,9 @@
 // Blending of translucent sample fragments, by hand.
 #include "stages/samples/blend.h"
 
-#include <gtest/gtest.h>
-
 #include "stages/samples/test_depth.h"
 #include "tests/stages/surface_scene.h"
+#include "tests/test.h"
 
 namespace beampipe::blend_test {
 

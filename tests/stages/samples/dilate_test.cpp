@@ -1,7 +1,7 @@
 // Quads that are worked out by hand.
 #include "stages/samples/dilate.h"
 
-#include <gtest/gtest.h>
+#include "tests/test.h"
 
 namespace beampipe::dilate_test {
 

@@ -1,12 +1,8 @@
 #include "stages/samples/material_sort.h"
 
-#include <gtest/gtest.h>
-
-#include <algorithm>
-#include <random>
-
 #include "stages/data/sample_tile.h"
 #include "stages/samples/materials.h"
+#include "tests/test.h"
 
 namespace beampipe::material_sort_test {
 

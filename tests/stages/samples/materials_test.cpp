@@ -1,6 +1,6 @@
 #include "stages/samples/materials.h"
 
-#include <gtest/gtest.h>
+#include "tests/test.h"
 
 namespace beampipe::materials_test {
 

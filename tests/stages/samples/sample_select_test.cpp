@@ -1,11 +1,6 @@
 #include "stages/samples/sample_select.h"
 
-#include <gtest/gtest.h>
-
-#include <bit>
-#include <map>
-#include <random>
-#include <set>
+#include "tests/test.h"
 
 namespace beampipe::sample_select_test {
 

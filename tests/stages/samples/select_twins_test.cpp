@@ -1,9 +1,7 @@
 // The scalar twin of sample_select: quad by quad, on words that count.
-#include <bit>
 
-#include "stages/raster/sample_raster.h"
 #include "stages/samples/sample_select.h"
-#include "stages/samples/test_depth.h"
+#include "tests/stages/sample_pixels.h"
 #include "tests/stages/scene_twins.h"
 
 namespace beampipe::select_twins_test {
@@ -111,12 +109,8 @@ class SelectTwins : public SceneTwins {
 
 TEST_P(SelectTwins, SampleSelect) {
   const Sampling sampling{CellGrid{}, standard_pattern(8)};
-  StageCounters ignored, counters;
-  std::vector<SampleFragment> fragments;
-  std::vector<SampleAccess> accesses;
-  SampleTile surface(tile_, sampling);
-  sample_raster({triangles_, tile_, sampling}, list_, ignored, fragments);
-  depth_test({triangles_, tile_, sampling}, fragments, ignored, surface, accesses);
+  StageCounters counters;
+  const SampleTile surface = tested_samples(triangles_, tile_, sampling);
   std::vector<std::uint32_t> materials;
   for (const std::uint32_t triangle : list_) materials.push_back(triangle / 3);
   const SelectOptions options{.jitter = 5, .seed = 7};

@@ -1,32 +1,18 @@
 // Compares shading points with closed forms.
 #include "stages/samples/shading_point.h"
 
-#include <gtest/gtest.h>
-
-#include <algorithm>
-
-#include "stages/raster/sample_raster.h"
-#include "tests/stages/screen_triangles.h"
+#include "tests/stages/sample_pixels.h"
 
 namespace beampipe::shading_point_test {
 
 constexpr Tile kTile{0, 0, 8, 8};
-
-std::vector<SampleFragment> fragments_of(const SetupTriangles& triangles, const Sampling& sampling) {
-  TriangleList list;
-  for (std::uint32_t i = 0; i < triangles.triangles.size(); ++i) list.push_back(i);
-  std::vector<SampleFragment> fragments;
-  StageCounters counters;
-  sample_raster({triangles, kTile, sampling}, list, counters, fragments);
-  return fragments;
-}
 
 TEST(ShadingPoint, IsTheMeanOfTheCoveredSamplesWhereTheCentreIsNotCovered) {
   SetupTriangles triangles;
   add_left_of(triangles, 2 * 256 + 100, -0.5f);  // the left 100/256 of pixel 2, without its centre
   const Sampling sampling{CellGrid{}, standard_pattern(4)};
   bool tried = false;
-  for (const SampleFragment& fragment : fragments_of(triangles, sampling)) {
+  for (const SampleFragment& fragment : sample_fragments(triangles, kTile, sampling)) {
     const SetupTriangle& triangle = triangles.triangles[0];
     const glm::dvec2 centre(fragment.x + 0.5, fragment.y + 0.5);
     EXPECT_EQ(shading_point(triangle, fragment, sampling, ShadeAt::centre).position, centre);
@@ -53,7 +39,7 @@ TEST(ShadingPoint, ExtrapolatesAtTheCentreOnly) {
     for (std::int32_t i = 0; i < 7; ++i)  // slivers a third of a pixel wide; depth goes from 0 to 1 within 90/256 px
       add_triangle(triangles, {i * 290 + 20, 0, 0.0f}, {i * 290 + 110, 0, 1.0f}, {i * 290 + 60, 2048, 0.5f});
     double farthest = 0;
-    for (const SampleFragment& fragment : fragments_of(triangles, sampling)) {
+    for (const SampleFragment& fragment : sample_fragments(triangles, kTile, sampling)) {
       const SetupTriangle& triangle = triangles.triangles[fragment.triangle];
       const auto value = [&](ShadeAt at) {
         const glm::dvec2 point = shading_point(triangle, fragment, sampling, at).position;
@@ -73,7 +59,7 @@ TEST(ShadingPoint, CountsWhatItLooksAt) {
   const Sampling sampling{CellGrid{}, standard_pattern(4)};
   StageCounters counters;
   std::vector<float> centroids(kTile.pixels());
-  count_centroids(triangles, fragments_of(triangles, sampling), kTile, sampling, counters, centroids);
+  count_centroids(triangles, sample_fragments(triangles, kTile, sampling), kTile, sampling, counters, centroids);
   for (std::size_t i = 0; i < centroids.size(); ++i) EXPECT_EQ(centroids[i], i % 8 == 2) << i;
   // For each of 3 x 8 fragments and each of three edges: two products, two sums, a comparison. For each of 8 fragments:
   // per sample a bit, the test whether it is set, two selections and two sums; then the number of bits, a division and

@@ -1,14 +1,7 @@
 #include "stages/samples/test_depth.h"
 
-#include <gtest/gtest.h>
-
-#include <array>
-#include <cmath>
-#include <vector>
-
 #include "stages/data/closed_depth.h"
-#include "stages/raster/sample_raster.h"
-#include "tests/stages/screen_triangles.h"
+#include "tests/stages/sample_pixels.h"
 
 namespace beampipe::test_depth_test {
 
@@ -20,12 +13,10 @@ struct Tested {
 };
 
 Tested render(const SetupTriangles& triangles, const Sampling& sampling, const Tile& tile = kTile) {
-  std::vector<SampleFragment> fragments;
-  StageCounters raster;
-  sample_raster({triangles, tile, sampling}, all_of(triangles), raster, fragments);
   Tested tested{SampleTile(tile, sampling), {}};
   std::vector<SampleAccess> accesses;
-  depth_test({triangles, tile, sampling}, fragments, tested.counters, tested.surface, accesses);
+  depth_test({triangles, tile, sampling}, sample_fragments(triangles, tile, sampling), tested.counters, tested.surface,
+             accesses);
   return tested;
 }
 
@@ -76,26 +67,21 @@ TEST(DepthTestStage, EqualDepthKeepsTheEarlier) {
 // Compares the surface without what is hidden behind closed cells to the surface with everything. Returns how many
 // fragments were left out.
 std::size_t left_out(const SetupTriangles& triangles, const Sampling& sampling) {
-  SampleTile all(kTile, sampling), open(kTile, sampling);
+  SampleTile open(kTile, sampling);
   StageCounters unused;
   std::vector<SampleAccess> accesses;
-  std::vector<SampleFragment> fragments;
-  sample_raster({triangles, kTile, sampling}, all_of(triangles), unused, fragments);
-  depth_test({triangles, kTile, sampling}, fragments, unused, all, accesses);
-  const std::size_t before = fragments.size();
-  fragments.clear();
   ClosedDepth closed(cells_of(kTile, sampling.grid));
-  sample_raster({triangles, kTile, sampling}, all_of(triangles), unused, fragments, &closed);
-  depth_test({triangles, kTile, sampling}, fragments, unused, open, accesses);
-  EXPECT_EQ(open.depth, all.depth);
-  EXPECT_EQ(open.triangle, all.triangle);
-  return before - fragments.size();
+  const std::vector<SampleFragment> shown = sample_fragments(triangles, kTile, sampling, &closed);
+  depth_test({triangles, kTile, sampling}, shown, unused, open, accesses);
+  const Tested all = render(triangles, sampling);
+  EXPECT_EQ(open.depth, all.surface.depth);
+  EXPECT_EQ(open.triangle, all.surface.triangle);
+  return sample_fragments(triangles, kTile, sampling).size() - shown.size();
 }
 
 // Fragments that are left out behind closed cells would not have passed, so the surface is the same to the last bit.
 TEST(DepthTestStage, ClosedCellsHideNothingThatPasses) {
   Random random(81);
-  SCOPED_TRACE(random.name());
   std::size_t hidden = 0;
   for (int i = 0; i < 2'000 && !HasFailure(); ++i) {
     const SetupTriangles triangles = random_layers(random);
@@ -109,7 +95,6 @@ TEST(DepthTestStage, ClosedCellsHideNothingThatPasses) {
 // them in front of the layer there.
 TEST(DepthTestStage, ClosedCellsHideNothingThatRoundingBringsBeforeThem) {
   Random random(82);
-  SCOPED_TRACE(random.name());
   for (int i = 0; i < 5'000 && !HasFailure(); ++i) {
     const auto sample = static_cast<std::size_t>(random.integer(0, 7));
     const std::int32_t x = random.int32(kTile.x0, kTile.x1 - 1) * 256 + kMsaa8.pattern.x[sample],

@@ -1,12 +1,9 @@
 // Compares mip chains with sums over the image in double precision.
 #include "stages/surface/mip_chain.h"
 
-#include <gtest/gtest.h>
-
-#include <cmath>
-
 #include "stages/surface/texture_set.h"
 #include "tests/simd/random.h"
+#include "tests/stages/surface_scene.h"
 
 namespace beampipe::mip_chain_test {
 
@@ -17,15 +14,6 @@ double linear_of(int code) {  // IEC 61966-2-1
 
 double encoded_of(double linear) {
   return linear <= 0.0031308 ? linear * 12.92 : 1.055 * std::pow(linear, 1 / 2.4) - 0.055;
-}
-
-TextureImage random_image(Random& random, std::uint32_t width, std::uint32_t height) {
-  TextureImage image{"random", width, height, {}};
-  for (std::uint32_t i = 0; i < width * height; ++i) {
-    const std::uint32_t word = random.word();
-    image.texels.emplace_back(word & 255, word >> 8 & 255, word >> 16 & 255, word >> 24);
-  }
-  return image;
 }
 
 TEST(MipChain, SrgbCodesAreThoseOfTheStandardAndComeBack) {

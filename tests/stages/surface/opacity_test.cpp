@@ -1,12 +1,6 @@
 // Ranks of positions: how many a surface takes, and how many two surfaces share.
 #include "stages/surface/opacity.h"
 
-#include <gtest/gtest.h>
-
-#include <algorithm>
-#include <cmath>
-#include <set>
-
 #include "tests/simd/random.h"
 
 namespace beampipe::opacity_test {

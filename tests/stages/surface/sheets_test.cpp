@@ -1,11 +1,6 @@
 // Which triangles share what they take of a pixel.
 #include "stages/surface/sheets.h"
 
-#include <gtest/gtest.h>
-
-#include <cmath>
-#include <set>
-
 #include "tests/simd/random.h"
 #include "tests/stages/surface_scene.h"
 
@@ -29,17 +24,41 @@ std::vector<std::uint32_t> sheets_of(const std::vector<glm::vec3>& positions, co
 }
 
 TEST(Sheets, NeighborsThatFaceTheSameWayAreOne) {
-  EXPECT_EQ(sheets_of({{0, 0, 0.5f}, {5, 0, 0.25f}, {5, 5, 0.5f}, {0, 5, 0.75f}}, {{0, 1, 2}, {0, 2, 3}}),
-            (Sheets{0, 0}));
-  // A strip that is bent, whose triangles come in any order: the last one connects the others.
-  EXPECT_EQ(
-      sheets_of({{0, 0, 0}, {0, 8, 0}, {4, 0, 0.5f}, {4, 8, 0.75f}, {8, 0, 0.25f}}, {{0, 2, 1}, {3, 2, 4}, {2, 3, 1}}),
-      (Sheets{0, 0, 0}));
-}
-
-TEST(Sheets, LayersThatMeetInAVertexAreTwo) {
-  EXPECT_EQ(sheets_of({{0, 0, 0}, {8, 0, 0}, {0, 8, 0}, {8, 0, 0.5f}, {0, 8, 0.5f}}, {{0, 1, 2}, {0, 3, 4}}),
-            (Sheets{0, 1}));
+  const struct {
+    const char* what;
+    std::vector<glm::vec3> positions;
+    std::vector<glm::uvec3> corners;
+    Sheets expected;
+  } cases[] = {{"a square", {{0, 0, 0.5f}, {5, 0, 0.25f}, {5, 5, 0.5f}, {0, 5, 0.75f}}, {{0, 1, 2}, {0, 2, 3}}, {0, 0}},
+               {"a strip that is bent, whose triangles come in any order: the last one connects the others",
+                {{0, 0, 0}, {0, 8, 0}, {4, 0, 0.5f}, {4, 8, 0.75f}, {8, 0, 0.25f}},
+                {{0, 2, 1}, {3, 2, 4}, {2, 3, 1}},
+                {0, 0, 0}},
+               {"layers that meet in a vertex",
+                {{0, 0, 0}, {8, 0, 0}, {0, 8, 0}, {8, 0, 0.5f}, {0, 8, 0.5f}},
+                {{0, 1, 2}, {0, 3, 4}},
+                {0, 1}},
+               // The second triangle lies on the same side of the common edge.
+               {"a fold by winding", {{0, 0, 0}, {8, 0, 0}, {0, 8, 0}, {0, 8, 0.5f}}, {{0, 1, 2}, {0, 1, 3}}, {0, 1}},
+               {"a fold whose other side faces the viewer",
+                {{0, 0, 0}, {8, 0, 0}, {0, 8, 0}, {8, 8, 0.5f}},
+                {{0, 1, 2}, {1, 0, 3}},
+                {0, 1}},
+               {"pages of a book: two to the right of the spine, one to the left",
+                {{4, 0, 0}, {4, 8, 0}, {8, 4, 0}, {8, 4, 0.5f}, {0, 4, 0}},
+                {{0, 1, 2}, {0, 1, 3}, {1, 0, 4}},
+                {0, 1, 2}},
+               {"the page on the left comes second",
+                {{4, 0, 0}, {4, 8, 0}, {8, 4, 0}, {8, 4, 0.5f}, {0, 4, 0}},
+                {{0, 1, 2}, {1, 0, 4}, {0, 1, 3}},
+                {0, 1, 2}},
+               {"parts of a triangle whose corner the near plane cuts off",
+                {{0, 0, -0.5f}, {8, 0, 0.5f}, {0, 8, 0.5f}},
+                {{0, 1, 2}},
+                {0, 0}},
+               // They look like two parts of one, but are two of the mesh.
+               {"the same triangle twice", {{0, 0, 0}, {8, 0, 0}, {0, 8, 0}}, {{0, 1, 2}, {0, 1, 2}}, {0, 1}}};
+  for (const auto& each : cases) EXPECT_EQ(sheets_of(each.positions, each.corners), each.expected) << each.what;
 }
 
 // The first triangle points at the longest side of the last one. Nothing but that side lies between the two: each side
@@ -49,21 +68,6 @@ TEST(Sheets, OneSideIsEnoughToLieBeside) {
   const std::vector<glm::uvec3> corners = {{0, 1, 2}, {2, 1, 4}, {2, 4, 3}, {3, 4, 5}};
   EXPECT_EQ(sheets_of(positions, corners), (Sheets{0, 0, 0, 0}));
   EXPECT_EQ(sheets_of(positions, {corners.rbegin(), corners.rend()}), (Sheets{0, 0, 0, 0}));
-}
-
-// The second triangle lies on the same side of the common edge, by its winding or by its other side facing the viewer.
-TEST(Sheets, AFoldSeparates) {
-  EXPECT_EQ(sheets_of({{0, 0, 0}, {8, 0, 0}, {0, 8, 0}, {0, 8, 0.5f}}, {{0, 1, 2}, {0, 1, 3}}), (Sheets{0, 1}));
-  EXPECT_EQ(sheets_of({{0, 0, 0}, {8, 0, 0}, {0, 8, 0}, {8, 8, 0.5f}}, {{0, 1, 2}, {1, 0, 3}}), (Sheets{0, 1}));
-}
-
-// Pages of a book: two to the right of the spine, one to the left.
-TEST(Sheets, ThreeTrianglesAtAnEdgeAreThree) {
-  EXPECT_EQ(sheets_of({{4, 0, 0}, {4, 8, 0}, {8, 4, 0}, {8, 4, 0.5f}, {0, 4, 0}}, {{0, 1, 2}, {0, 1, 3}, {1, 0, 4}}),
-            (Sheets{0, 1, 2}));
-  // The page on the left comes second.
-  EXPECT_EQ(sheets_of({{4, 0, 0}, {4, 8, 0}, {8, 4, 0}, {8, 4, 0.5f}, {0, 4, 0}}, {{0, 1, 2}, {1, 0, 4}, {0, 1, 3}}),
-            (Sheets{0, 1, 2}));
 }
 
 // Eight sides around the tip. Some face the viewer; the others lie behind them.
@@ -79,16 +83,6 @@ TEST(Sheets, AConeHasAFrontAndABack) {
   EXPECT_EQ(found.size(), 8u);
   EXPECT_EQ(std::set(found.begin(), found.end()), (std::set<std::uint32_t>{0, 1}));
   EXPECT_NE(found[1], found[5]);  // the nearest side and the farthest one
-}
-
-TEST(Sheets, PartsOfAClippedTriangleAreOne) {
-  // The near plane cuts off a corner.
-  EXPECT_EQ(sheets_of({{0, 0, -0.5f}, {8, 0, 0.5f}, {0, 8, 0.5f}}, {{0, 1, 2}}), (Sheets{0, 0}));
-}
-
-// They look like two parts of one, but are two of the mesh.
-TEST(Sheets, TheSameTriangleTwiceIsTwo) {
-  EXPECT_EQ(sheets_of({{0, 0, 0}, {8, 0, 0}, {0, 8, 0}}, {{0, 1, 2}, {0, 1, 2}}), (Sheets{0, 1}));
 }
 
 // A ramp that winds twice around the middle of the picture: without a fold, its second turn lies over the first.

@@ -1,11 +1,6 @@
 // Compares reflected light with glTF 2.0's appendix B, written out in double precision, and with values worked by hand.
 #include "stages/surface/surface_formulas.h"
 
-#include <gtest/gtest.h>
-
-#include <array>
-#include <bit>
-#include <cmath>
 #include <numbers>
 
 #include "tests/simd/random.h"
@@ -22,6 +17,12 @@ glm::dvec3 random_unit(Random& random) {
     const glm::dvec3 v(random.real(-1, 1), random.real(-1, 1), random.real(-1, 1));
     if (const double length = glm::length(v); length > 0.01 && length <= 1) return v / length;
   }
+}
+
+Case random_case(Random& random, double metallic, double roughness) {
+  const glm::dvec3 base(random.real(0, 1), random.real(0, 1), random.real(0, 1));
+  const glm::dvec3 normal = random_unit(random);
+  return {base, normal, random_unit(random), metallic, roughness};
 }
 
 Triple<float> triple_of(const glm::dvec3& v) { return triple<float>(glm::vec3(v)); }
@@ -62,10 +63,7 @@ Lighting one_light(const glm::dvec3& direction) { return {{{glm::vec3(direction)
 TEST(SurfaceFormulas, ReflectedLightIsThatOfTheSpecification) {
   Random random(1);
   for (int i = 0; i < 50'000; ++i) {
-    Case c;
-    c.base = {random.real(0, 1), random.real(0, 1), random.real(0, 1)};
-    c.normal = random_unit(random), c.to_eye = random_unit(random);
-    c.metallic = random.one_in(2) ? 1 : 0, c.roughness = random.real(0.15, 1);
+    const Case c = random_case(random, random.one_in(2) ? 1 : 0, random.real(0.15, 1));
     if (glm::dot(c.normal, c.to_eye) < 0.01) continue;  // NV is kept from 0
     const glm::dvec3 light = random_unit(random);
     const glm::dvec3 expected = gltf(c, light), found = reflected(c, one_light(light));
@@ -78,10 +76,7 @@ TEST(SurfaceFormulas, ReflectedLightIsThatOfTheSpecification) {
 TEST(SurfaceFormulas, MixedMaterials) {
   Random random(2);
   for (int i = 0; i < 10'000; ++i) {
-    Case c;
-    c.base = {random.real(0, 1), random.real(0, 1), random.real(0, 1)};
-    c.normal = random_unit(random), c.to_eye = random_unit(random);
-    c.metallic = random.real(0, 1), c.roughness = random.real(0.3, 1);
+    const Case c = random_case(random, random.real(0, 1), random.real(0.3, 1));
     const glm::dvec3 light = random_unit(random);
     if (glm::dot(c.normal, c.to_eye) < 0.05) continue;
     Case black = c, mirror = c;  // the specular layer alone, for the mixed reflectance straight on, as a metal
@@ -96,21 +91,19 @@ TEST(SurfaceFormulas, MixedMaterials) {
   }
 }
 
+void expect_near(const glm::dvec3& found, const glm::dvec3& expected, double bound) {
+  for (int c = 0; c < 3; ++c) EXPECT_NEAR(found[c], expected[c], bound);
+}
+
 // Light, eye and normal in one line: N.L = N.V = N.H = V.H = 1, so that Fresnel's term is the reflectance straight on,
 // D = 1 / (pi alpha^2) and both masking terms are 1. Times pi: 1 / (4 alpha^2) of the reflectance.
 TEST(SurfaceFormulas, StraightOnByHand) {
   const glm::dvec3 up(0, 0, 1);
   const Lighting light = one_light(-up);
   // Dielectric, roughness 1: 0.96 of the base colour, and 0.04 / 4.
-  const glm::dvec3 plain = reflected({{0.5, 0.25, 1}, up, up, 0, 1}, light);
-  EXPECT_NEAR(plain.r, 0.96 * 0.5 + 0.01, 1e-6);
-  EXPECT_NEAR(plain.g, 0.96 * 0.25 + 0.01, 1e-6);
-  EXPECT_NEAR(plain.b, 0.96 + 0.01, 1e-6);
+  expect_near(reflected({{0.5, 0.25, 1}, up, up, 0, 1}, light), glm::dvec3(0.5, 0.25, 1) * 0.96 + 0.01, 1e-6);
   // Metal, roughness 1/2: alpha^2 = 1/16, and 1 / (4 alpha^2) = 4.
-  const glm::dvec3 metal = reflected({{0.5, 0.25, 1}, up, up, 1, 0.5}, light);
-  EXPECT_NEAR(metal.r, 4 * 0.5, 1e-5);
-  EXPECT_NEAR(metal.g, 4 * 0.25, 1e-5);
-  EXPECT_NEAR(metal.b, 4, 1e-5);
+  expect_near(reflected({{0.5, 0.25, 1}, up, up, 1, 0.5}, light), {4 * 0.5, 4 * 0.25, 4}, 1e-5);
 }
 
 // N = V = (0, 0, 1), L = (0.8, 0, 0.6): N.L = 0.6, H = (1, 0, 2) / sqrt(5), N.H^2 = V.H^2 = 0.8. Roughness 1: alpha is
@@ -119,10 +112,8 @@ TEST(SurfaceFormulas, StraightOnByHand) {
 TEST(SurfaceFormulas, SlantedByHand) {
   const glm::dvec3 up(0, 0, 1);
   const double schlick = std::pow(1 - std::sqrt(0.8), 5), fresnel = 0.04 + 0.96 * schlick;
-  const glm::dvec3 found = reflected({{0.5, 0, 1}, up, up, 0, 1}, one_light({-0.8, 0, -0.6}));
-  EXPECT_NEAR(found.r, 0.6 * ((1 - fresnel) * 0.5 + fresnel * 0.3125), 1e-6);
-  EXPECT_NEAR(found.g, 0.6 * (fresnel * 0.3125), 1e-6);
-  EXPECT_NEAR(found.b, 0.6 * ((1 - fresnel) + fresnel * 0.3125), 1e-6);
+  expect_near(reflected({{0.5, 0, 1}, up, up, 0, 1}, one_light({-0.8, 0, -0.6})),
+              0.6 * ((1 - fresnel) * glm::dvec3(0.5, 0, 1) + fresnel * 0.3125), 1e-6);
 }
 
 TEST(SurfaceFormulas, LightsAddUpAndHaveColors) {
@@ -130,9 +121,7 @@ TEST(SurfaceFormulas, LightsAddUpAndHaveColors) {
   const glm::dvec3 a = glm::normalize(glm::dvec3(0.5, 0, -1)), b = glm::normalize(glm::dvec3(-0.25, 1, -1));
   const Lighting both{{{glm::vec3(a), glm::vec3(2, 0, 1)}, {glm::vec3(b), glm::vec3(0, 3, 1)}}, {}};
   const glm::dvec3 of_a = reflected(c, one_light(a)), of_b = reflected(c, one_light(b)), found = reflected(c, both);
-  EXPECT_NEAR(found.r, 2 * of_a.r, 1e-6);
-  EXPECT_NEAR(found.g, 3 * of_b.g, 1e-6);
-  EXPECT_NEAR(found.b, of_a.b + of_b.b, 1e-6);
+  expect_near(found, {2 * of_a.r, 3 * of_b.g, of_a.b + of_b.b}, 1e-6);
 }
 
 TEST(SurfaceFormulas, LightIsNeverNegativeAndAlwaysFinite) {

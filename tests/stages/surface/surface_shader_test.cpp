@@ -1,8 +1,6 @@
 // The shader of surfaces: what it reads where, normal maps, back faces, G-buffers and what an invocation costs.
 #include "stages/surface/surface_shader.h"
 
-#include <gtest/gtest.h>
-
 #include <glm/gtc/matrix_transform.hpp>
 
 #include "stages/cost/counting.h"
@@ -55,9 +53,7 @@ TEST(SurfaceShader, ByPixelItIsTheCentresWhateverPlaceIsAsked) {
 TEST(SurfaceShader, EachTextureIsReadAtItsOwnCoordinates) {
   SurfaceTrace scene(16, 16);
   Random random(6);
-  TextureImage image = filled_image(16, 16, {0, 0, 0, 255});
-  for (glm::u8vec4& texel : image.texels) texel = {random.word() & 255, random.word() & 255, 0, 255};
-  Material material = textured_material(scene.add_image(image));
+  Material material = textured_material(scene.add_image(random_image(random, 16, 16)));
   material.unlit = false;
   material.emissive = glm::vec3(1.0f);
   material.emissive_texture = material.base_texture;
@@ -85,10 +81,8 @@ TEST(SurfaceShader, EachTextureIsReadAtItsOwnCoordinates) {
 // On a plane that faces the camera, texture coordinates are linear, so analytic slopes and quad differences agree.
 TEST(SurfaceShader, DerivativesAgreeOnAPlaneThatFacesTheCamera) {
   SurfaceTrace scene(16, 16);
-  TextureImage image = filled_image(64, 64, {0, 0, 0, 255});
   Random random(1);
-  for (glm::u8vec4& texel : image.texels) texel = {random.word() & 255, random.word() & 255, 0, 255};
-  scene.add_rectangle(0, 0, 16, 16, 0.5, textured_material(scene.add_image(image)));
+  scene.add_rectangle(0, 0, 16, 16, 0.5, textured_material(scene.add_image(random_image(random, 64, 64))));
   const ShadedScene analytic(scene.trace), quad(scene.trace, {.derivatives = Derivatives::quad});
   for (std::int32_t y = 0; y < 16; ++y)
     for (std::int32_t x = 0; x < 16; ++x) {
@@ -111,9 +105,7 @@ struct Floor {
     scene.mesh().positions = {{-40, 0, -60}, {40, 0, -60}, {40, 0, 5}, {-40, 0, 5}};
     for (std::size_t i = 0; i < 4; ++i)
       scene.mesh().uvs[0][i] = {scene.mesh().positions[i].x * kScale, scene.mesh().positions[i].z * kScale};
-    set_camera(
-        scene.frame(),
-        {.eye = {0, kHeight, 0}, .target = {0, kHeight, -1}, .up = {0, 1, 0}, .fovy_deg = 90, .near = 0.5, .far = 100});
+    set_camera(scene.frame(), {{0, kHeight, 0}, {0, kHeight, -1}, {0, 1, 0}, 90, 0.5, 100});
     trace = scene.trace;
   }
 
@@ -192,8 +184,7 @@ SurfaceTrace facing(const Material& material) {
   scene.mesh().positions = {{-1, 1, 0}, {1, 1, 0}, {1, -1, 0}, {-1, -1, 0}};
   scene.mesh().triangles = {{0, 2, 1}, {0, 3, 2}};  // counter-clockwise
   scene.mesh().normals.assign(4, glm::vec3(0, 0, 1));
-  set_camera(scene.frame(),
-             {.eye = {0, 0, 5}, .target = {0, 0, 0}, .up = {0, 1, 0}, .fovy_deg = 30, .near = 1, .far = 10});
+  set_camera(scene.frame(), {{0, 0, 5}, {0, 0, 0}, {0, 1, 0}, 30, 1, 10});
   scene.frame().lighting.ambient = Ambient{};
   return scene;
 }
@@ -230,8 +221,7 @@ TEST(SurfaceShader, NormalsOfVerticesAndOfTriangles) {
   scene.mesh().normals.clear();
   expect_near(normal_seen(scene), {0, 0, 1}, 1e-5);
   // Seen from behind, both are turned to the eye.
-  set_camera(scene.frame(),
-             {.eye = {0, 0, -5}, .target = {0, 0, 0}, .up = {0, 1, 0}, .fovy_deg = 30, .near = 1, .far = 10});
+  set_camera(scene.frame(), {{0, 0, -5}, {0, 0, 0}, {0, 1, 0}, 30, 1, 10});
   expect_near(normal_seen(scene), {0, 0, -1}, 1e-5);
   scene.mesh().normals.assign(4, glm::normalize(glm::vec3(3, 0, 4)));
   expect_near(normal_seen(scene), {-0.6f, 0, -0.8f}, 1e-5);
@@ -262,66 +252,59 @@ glm::vec3 bumped(
   return normal_seen(scene);
 }
 
-// 128 stands for 1 / 255, not for 0.
-TEST(SurfaceShader, AFlatNormalMapLeavesTheNormal) {
-  expect_near(bumped({128, 128, 255, 255}), {0, 0, 1}, 0.006);
-  expect_near(bumped({128, 128, 255, 255},
-                     [](SurfaceTrace& s) { s.mesh().normals.assign(4, glm::normalize(glm::vec3(3, 0, 4))); }),
-              {0.6f, 0, 0.8f}, 0.006);
-}
-
+constexpr glm::u8vec4 kFlat{128, 128, 255, 255};                          // 128 stands for 1 / 255, not for 0
 constexpr glm::u8vec4 kToU{255, 128, 128, 255}, kUp{128, 255, 128, 255};  // red points along u, green up in the image
 
 TEST(SurfaceShader, RedPointsAlongUAndGreenUp) {
-  expect_near(bumped(kToU), {1, 0, 0}, 0.012);
-  expect_near(bumped(kUp), {0, 1, 0}, 0.012);
-}
-
-TEST(SurfaceShader, TangentsOfVerticesGiveTheSame) {
-  const auto with_tangents = [](SurfaceTrace& s) { s.mesh().tangents.assign(4, glm::vec4(1, 0, 0, 1)); };
-  expect_near(bumped(kToU, with_tangents), {1, 0, 0}, 0.012);
-  expect_near(bumped(kUp, with_tangents), {0, 1, 0}, 0.012);
-  const auto mirrored = [](SurfaceTrace& s) { s.mesh().tangents.assign(4, glm::vec4(-1, 0, 0, -1)); };
-  expect_near(bumped(kToU, mirrored), {-1, 0, 0}, 0.012);
-  expect_near(bumped(kUp, mirrored), {0, 1, 0}, 0.012);
-}
-
-// Where u runs to the left, red points there, and green still up. Where v runs up, green points down.
-TEST(SurfaceShader, TangentsOfMirroredCoordinates) {
-  const auto left = [](SurfaceTrace& s) { s.mesh().uvs[0] = {{1, 0}, {0, 0}, {0, 1}, {1, 1}}; };
-  expect_near(bumped(kToU, left), {-1, 0, 0}, 0.012);
-  expect_near(bumped(kUp, left), {0, 1, 0}, 0.012);
-  const auto upside_down = [](SurfaceTrace& s) { s.mesh().uvs[0] = {{0, 1}, {1, 1}, {1, 0}, {0, 0}}; };
-  expect_near(bumped(kToU, upside_down), {1, 0, 0}, 0.012);
-  expect_near(bumped(kUp, upside_down), {0, -1, 0}, 0.012);
-  const auto turned = [](SurfaceTrace& s) { s.mesh().uvs[0] = {{0, 1}, {0, 0}, {1, 0}, {1, 1}}; };  // u down, v left
-  expect_near(bumped(kToU, turned), {0, -1, 0}, 0.012);
-  expect_near(bumped(kUp, turned), {1, 0, 0}, 0.012);
-}
-
-// A mirror in space does what mirrored coordinates do.
-TEST(SurfaceShader, TangentsOfAMirroredDraw) {
+  const auto tangents = [](const glm::vec4& tangent) {
+    return [tangent](SurfaceTrace& s) { s.mesh().tangents.assign(4, tangent); };
+  };
+  const auto coordinates = [](const std::vector<glm::vec2>& uvs) {
+    return [uvs](SurfaceTrace& s) { s.mesh().uvs[0] = uvs; };
+  };
   const auto mirrored = [](SurfaceTrace& s) {
     s.frame().draws[0].transform = glm::scale(glm::dmat4(1.0), glm::dvec3(-1, 1, 1));
   };
-  expect_near(bumped(kToU, mirrored), {-1, 0, 0}, 0.012);
-  expect_near(bumped(kUp, mirrored), {0, 1, 0}, 0.012);
-  const auto with_tangents = [&](SurfaceTrace& s) {
-    mirrored(s);
-    s.mesh().tangents.assign(4, glm::vec4(1, 0, 0, 1));
-  };
-  expect_near(bumped(kToU, with_tangents), {-1, 0, 0}, 0.012);
-  expect_near(bumped(kUp, with_tangents), {0, 1, 0}, 0.012);
+  const struct {
+    const char* what;
+    std::function<void(SurfaceTrace&)> change;
+    glm::vec3 to_u, up;
+  } cases[] = {{"as it is", [](SurfaceTrace&) {}, {1, 0, 0}, {0, 1, 0}},
+               {"tangents of vertices", tangents({1, 0, 0, 1}), {1, 0, 0}, {0, 1, 0}},
+               {"mirrored tangents", tangents({-1, 0, 0, -1}), {-1, 0, 0}, {0, 1, 0}},
+               {"u runs to the left", coordinates({{1, 0}, {0, 0}, {0, 1}, {1, 1}}), {-1, 0, 0}, {0, 1, 0}},
+               {"v runs up", coordinates({{0, 1}, {1, 1}, {1, 0}, {0, 0}}), {1, 0, 0}, {0, -1, 0}},
+               {"u runs down and v to the left", coordinates({{0, 1}, {0, 0}, {1, 0}, {1, 1}}), {0, -1, 0}, {1, 0, 0}},
+               // A mirror in space does what mirrored coordinates do.
+               {"a mirrored draw", mirrored, {-1, 0, 0}, {0, 1, 0}},
+               {"a mirrored draw with tangents",
+                [&](SurfaceTrace& s) {
+                  mirrored(s), tangents({1, 0, 0, 1})(s);
+                },
+                {-1, 0, 0},
+                {0, 1, 0}},
+               // The bumps of a back face are those of the front face, seen from behind: a groove stays where it is in
+               // the image.
+               {"a back face",
+                [](SurfaceTrace& s) {
+                  set_camera(s.frame(), {{0, 0, -5}, {0, 0, 0}, {0, 1, 0}, 30, 1, 10});
+                },
+                {1, 0, 0},
+                {0, 1, 0}}};
+  for (const auto& [what, change, to_u, up] : cases) {
+    SCOPED_TRACE(what);
+    expect_near(bumped(kToU, change), to_u, 0.012);
+    expect_near(bumped(kUp, change), up, 0.012);
+  }
 }
 
-// The bumps of a back face are those of the front face, seen from behind: a groove stays where it is in the image.
-TEST(SurfaceShader, TangentsOfABackFace) {
-  const auto from_behind = [](SurfaceTrace& s) {
-    set_camera(s.frame(),
-               {.eye = {0, 0, -5}, .target = {0, 0, 0}, .up = {0, 1, 0}, .fovy_deg = 30, .near = 1, .far = 10});
-  };
-  expect_near(bumped(kToU, from_behind), {1, 0, 0}, 0.012);
-  expect_near(bumped(kUp, from_behind), {0, 1, 0}, 0.012);
+TEST(SurfaceShader, AFlatNormalMapLeavesTheNormal) {
+  expect_near(bumped(kFlat), {0, 0, 1}, 0.006);
+  expect_near(bumped(kFlat, [](SurfaceTrace& s) { s.mesh().normals.assign(4, glm::normalize(glm::vec3(3, 0, 4))); }),
+              {0.6f, 0, 0.8f}, 0.006);
+  // Coordinates without area leave it too.
+  expect_near(bumped(kFlat, [](SurfaceTrace& s) { s.mesh().uvs[0].assign(4, glm::vec2(0.25f, 0.75f)); }), {0, 0, 1},
+              0.006);
 }
 
 TEST(SurfaceShader, ScaleOfNormalMaps) {
@@ -329,11 +312,6 @@ TEST(SurfaceShader, ScaleOfNormalMaps) {
   expect_near(bumped({255, 128, 255, 255}), glm::normalize(glm::vec3(1, 0, 1)), 0.006);
   expect_near(bumped({255, 128, 255, 255}, [](SurfaceTrace& s) { s.trace.materials[0].normal_scale = 0.5f; }),
               glm::normalize(glm::vec3(1, 0, 2)), 0.006);
-}
-
-TEST(SurfaceShader, CoordinatesWithoutAreaLeaveTheNormal) {
-  const auto degenerate = [](SurfaceTrace& s) { s.mesh().uvs[0].assign(4, glm::vec2(0.25f, 0.75f)); };
-  expect_near(bumped({128, 128, 255, 255}, degenerate), {0, 0, 1}, 0.006);
 }
 
 // ---- Materials
@@ -347,9 +325,7 @@ TEST(SurfaceShader, VertexColorsAndTexturesMultiplyTheBaseColor) {
   scene.mesh().vertex_colors.assign(4, glm::vec4(0.25f, 1, 1, 0.5f));
   const ShadedScene shaded(scene.trace);
   const glm::vec4 found = shaded.shader.color_and_alpha(0, {5, 2});
-  EXPECT_NEAR(found.r, 0.5 * 0.25, 1e-6);
-  EXPECT_NEAR(found.g, 0.25 * srgb_values()[188], 1e-6);
-  EXPECT_NEAR(found.b, 0, 1e-6);
+  expect_near(found, {0.5 * 0.25, 0.25 * srgb_values()[188], 0}, 1e-6);
   EXPECT_NEAR(found.a, 0.5 * 0.5 * 128 / 255, 1e-6);
   EXPECT_NEAR(shaded.shader.alpha(0, {5, 2}, 1), found.a, 1e-6);
 }
@@ -403,10 +379,7 @@ TEST(SurfaceShader, ColorsAreRoundedToHalf) {
 // Materials with and without each of their parts, lit by two lights and from all around.
 SurfaceTrace all_kinds_of_materials(Random& random) {
   SurfaceTrace scene(64, 64);
-  TextureImage image = filled_image(16, 16, {});
-  for (glm::u8vec4& texel : image.texels)
-    texel = {random.word() & 255, random.word() & 255, random.word() & 255, random.word() & 255};
-  const Texture texture{.image = scene.add_image(image)};
+  const Texture texture{.image = scene.add_image(random_image(random, 16, 16))};
   const auto real = [&](float most) { return static_cast<float>(random.real(0, most)); };
   const auto vector = [&] { return glm::vec3(real(2) - 1, real(2) - 1, real(2) - 1); };
   constexpr int kParts = 9;

@@ -1,14 +1,9 @@
 // The part of texels that passes the alpha test.
 #include "stages/surface/tested_alpha.h"
 
-#include <gtest/gtest.h>
-
-#include <cmath>
-#include <stdexcept>
-#include <string>
-
 #include "stages/surface/texture_filter.h"
 #include "stages/surface/texture_set.h"
+#include "tests/message_of.h"
 #include "tests/simd/random.h"
 #include "tests/stages/surface_scene.h"
 
@@ -97,14 +92,10 @@ TEST(TestedAlpha, RefusesTooManyCutoffs) {
     trace.materials.back().name = std::to_string(i);
   }
   const TextureSet set(trace, "leaves.json");
-  try {
-    set.test_alphas(trace, std::vector<bool>(1000, true));
-    FAIL() << "expected an error";
-  } catch (const std::runtime_error& error) {
-    EXPECT_EQ(std::string(error.what()),
-              "leaves.json: material \"769\": cutouts test their textures at too many cutoffs: expected at most 4096 "
-              "MiB of results");
-  }
+  EXPECT_EQ(
+      message_of<std::runtime_error>([&] { set.test_alphas(trace, std::vector<bool>(1000, true)); }),
+      "leaves.json: material \"769\": cutouts test their textures at too many cutoffs: expected at most 4096 MiB of "
+      "results");
 }
 
 TEST(TestedAlpha, OnlyMaterialsThatAreAskedForAreTested) {

@@ -1,9 +1,7 @@
 // Where texels lie in the modelled memory, and which of them a request asks for.
 #include "stages/surface/texel_requests.h"
 
-#include <gtest/gtest.h>
-
-#include <vector>
+#include "tests/test.h"
 
 namespace beampipe::texel_requests_test {
 

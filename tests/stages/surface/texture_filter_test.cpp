@@ -1,27 +1,14 @@
 // Compares texture filtering with its definition in double precision.
 #include "stages/surface/texture_filter.h"
 
-#include <gtest/gtest.h>
-
-#include <cmath>
-#include <limits>
-
 #include "tests/simd/random.h"
+#include "tests/stages/surface_scene.h"
 
 namespace beampipe::texture_filter_test {
 
 constexpr float kInfinity = std::numeric_limits<float>::infinity(), kNan = std::numeric_limits<float>::quiet_NaN();
 
 const auto kIgnored = [](std::size_t, std::uint32_t, std::uint32_t) {};
-
-TextureImage random_image(Random& random, std::uint32_t width, std::uint32_t height) {
-  TextureImage image{"random", width, height, {}};
-  for (std::uint32_t i = 0; i < width * height; ++i) {
-    const std::uint32_t word = random.word();
-    image.texels.emplace_back(word & 255, word >> 8 & 255, word >> 16 & 255, word >> 24);
-  }
-  return image;
-}
 
 TEST(TextureFilter, TheLogarithmIsWithinItsBound) {
   Random random(1);

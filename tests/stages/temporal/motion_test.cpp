@@ -1,11 +1,9 @@
 // Compares motion vectors with closed forms.
 #include "stages/temporal/motion.h"
 
-#include <gtest/gtest.h>
-
-#include <cmath>
 #include <glm/gtc/matrix_transform.hpp>
-#include <limits>
+
+#include "tests/test.h"
 
 namespace beampipe::motion_test {
 

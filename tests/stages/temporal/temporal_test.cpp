@@ -1,10 +1,7 @@
 // Compares single pixels with the formula.
 #include "stages/temporal/temporal.h"
 
-#include <gtest/gtest.h>
-
-#include <cmath>
-#include <limits>
+#include "tests/test.h"
 
 namespace beampipe::temporal_test {
 

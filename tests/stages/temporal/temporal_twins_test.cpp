@@ -1,18 +1,14 @@
 // The scalar twins of the stages that carry pixels from one frame to the next: motion, contents, dilate, temporal. They
 // process each pixel alone. In the last frame, the camera and the first draw were elsewhere.
-#include <algorithm>
-#include <cmath>
 #include <glm/gtc/matrix_transform.hpp>
-#include <limits>
 
 #include "stages/data/half_bits.h"
 #include "stages/picture/shade.h"
-#include "stages/raster/sample_raster.h"
 #include "stages/samples/dilate.h"
 #include "stages/samples/sample_select.h"
-#include "stages/samples/test_depth.h"
 #include "stages/temporal/motion.h"
 #include "stages/temporal/temporal.h"
+#include "tests/stages/sample_pixels.h"
 #include "tests/stages/scene_twins.h"
 
 namespace beampipe::temporal_twins_test {
@@ -26,11 +22,7 @@ class TemporalTwins : public SceneTwins {
     const Frame& frame = trace_.frames[0];
     const Sampling sampling{CellGrid{}, standard_pattern(kSamples)};
     StageCounters ignored;
-    std::vector<SampleFragment> fragments;
-    std::vector<SampleAccess> accesses;
-    surface_ = SampleTile(tile_, sampling);
-    sample_raster({triangles_, tile_, sampling}, list_, ignored, fragments);
-    depth_test({triangles_, tile_, sampling}, fragments, ignored, surface_, accesses);
+    surface_ = tested_samples(triangles_, tile_, sampling);
     colors_ = shade_triangles(triangles_, frame.lighting);
     Poses before = poses_of(frame);
     before.view_projection = glm::translate(glm::dmat4(1.0), glm::dvec3(0.05, -0.03, 0)) * before.view_projection;

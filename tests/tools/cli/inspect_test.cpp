@@ -1,12 +1,11 @@
 // beampipe inspect, as a user runs it.
 
-#include <algorithm>
-#include <cstring>
 #include <nlohmann/json.hpp>
 
 #include "tests/tools/cli/program_fixture.h"
 #include "tests/tools/varying_trace.h"
 #include "tools/evaluate/metrics.h"
+#include "tools/evaluate/results.h"
 #include "tools/files/image_io.h"
 
 namespace beampipe::inspect_test {
@@ -29,26 +28,18 @@ const Names kSpecs = {"beam",
 class InspectTest : public ProgramTest {
  protected:
   // The inspections of the pixels as JSON.
-  Parsed inspected(const std::vector<std::string>& specs, const std::vector<std::string>& pixels,
-                   const std::string& frame = "0", const std::string& threads = "2") {
-    std::vector<std::string> arguments = {"inspect", path("trace.json"), "--json", "--frame",
-                                          frame,     "--threads",        threads,  "--pixel"};
-    arguments.insert(arguments.end(), pixels.begin(), pixels.end());
-    arguments.push_back("-t");
-    arguments.insert(arguments.end(), specs.begin(), specs.end());
-    return Parsed::parse(succeed(arguments))["pixels"];
+  Parsed inspected(const Names& pixels, const std::string& frame = "0", const std::string& threads = "2") {
+    const Names arguments = {"inspect", path("trace.json"), "--json", "--frame",
+                             frame,     "--threads",        threads,  "--pixel"};
+    return Parsed::parse(succeed(joined(joined(arguments, pixels), joined({"-t"}, kSpecs))))["pixels"];
   }
 
   // Expects that weights times colours, as the JSON says them, are the pixels of the pictures that `run` writes.
   void expect_pictures(const Parsed& pixels, const std::string& frame) {
-    std::vector<std::string> arguments = {"run", path("trace.json"), "--frames", frame, "-o", path("out"), "-t"};
-    arguments.insert(arguments.end(), kSpecs.begin(), kSpecs.end());
-    succeed(arguments);
+    succeed(joined({"run", path("trace.json"), "--frames", frame, "-o", path("out"), "-t"}, kSpecs));
     for (const Parsed& pixel : pixels) {
-      std::string folder = pixel["technique"];
-      for (char& c : folder)
-        if (c == ':' || c == ',') c = '_';
-      const Image image = read_exr(folder_ / "out" / folder / ("frame_000" + frame + ".exr"));
+      const Image image = read_exr(folder_ / "out" / spec_folder(pixel["technique"].get<std::string>()) /
+                                   ("frame_000" + frame + ".exr"));
       const std::size_t at = 4 * (pixel["y"].get<std::size_t>() * image.width + pixel["x"].get<std::size_t>());
       SCOPED_TRACE(pixel["technique"].get<std::string>() + " at " + pixel["x"].dump() + "," + pixel["y"].dump());
       for (std::size_t c = 0; c < 3; ++c) {
@@ -90,24 +81,24 @@ TEST_F(InspectTest, TextTellsWhoOwnsThePixel) {
 }
 
 TEST_F(InspectTest, WeightsTimesColoursAreThePicture) {
-  expect_pictures(inspected(kSpecs, {"10,9", "3,3", "12,8", "0,0"}), "0");
+  expect_pictures(inspected({"10,9", "3,3", "12,8", "0,0"}), "0");
 }
 
 TEST_F(InspectTest, WeightsTimesColoursAreThePictureOfTextures) {
   write_varying_trace(folder_, {R"({"mesh": "left"}, {"mesh": "sliver"})"});
-  expect_pictures(inspected(kSpecs, {"15,9", "16,9", "22,10", "24,9"}), "0");
+  expect_pictures(inspected({"15,9", "16,9", "22,10", "24,9"}), "0");
 }
 
 TEST_F(InspectTest, WeightsTimesColoursAreThePictureOfTranslucentSheets) {
   write_varying_trace(folder_, {R"({"mesh": "wall"}, {"mesh": "flat"}, {"mesh": "sheets"})"});
-  const Parsed pixels = inspected(kSpecs, {"16,9", "20,8", "12,6", "9,12"});
+  const Parsed pixels = inspected({"16,9", "20,8", "12,6", "9,12"});
   expect_pictures(pixels, "0");
   for (const Parsed& pixel : pixels) EXPECT_TRUE(pixel.contains("visibility_error"));
 }
 
 TEST_F(InspectTest, CutoutsSayWhatAlphaLeavesOut) {
   succeed({"make", "leaves", "--triangles", "1000", "--width", "24", "--height", "14", "-o", path("trace.json")});
-  Parsed pixels = inspected(kSpecs, {"12,7", "8,9", "15,5", "11,10", "4,11"});
+  Parsed pixels = inspected({"12,7", "8,9", "15,5", "11,10", "4,11"});
   expect_pictures(pixels, "0");
   int cut_out = 0;
   for (const Parsed& pixel : pixels)
@@ -116,7 +107,7 @@ TEST_F(InspectTest, CutoutsSayWhatAlphaLeavesOut) {
 }
 
 TEST_F(InspectTest, ThePixelOfTheBackgroundIsTheBackground) {
-  for (const Parsed& pixel : inspected(kSpecs, {"7,0"}, "1")) {
+  for (const Parsed& pixel : inspected({"7,0"}, "1")) {
     EXPECT_TRUE(pixel["fragments"].empty()) << pixel["technique"];
     EXPECT_EQ(pixel["error"], 0);
     ASSERT_EQ(pixel["terms"].size(), 1u);
@@ -137,7 +128,7 @@ TEST_F(InspectTest, AHiddenTriangleSaysWhoHidesIt) {
                "far": {"positions": [-9,-9,0.5, 9,-9,0.5, 0,9,0.5], "indices": [0,1,2], "colors": [0,1,0]}},
     "frames": [{"width": 4, "height": 4, "background": [0,0,1], "view": [1,0,0,0, 0,1,0,0, 0,0,1,0, 0,0,0,1],
                 "projection": [1,0,0,0, 0,1,0,0, 0,0,1,0, 0,0,0,1], "draws": [{"mesh": "far"}, {"mesh": "near"}]}]})");
-  for (const Parsed& pixel : inspected(kSpecs, {"1,1"})) {
+  for (const Parsed& pixel : inspected({"1,1"})) {
     SCOPED_TRACE(pixel["technique"].get<std::string>());
     ASSERT_EQ(pixel["fragments"].size(), 2u);
     const std::size_t near = pixel["fragments"][0]["draw"] == 1 ? 0 : 1;
@@ -169,16 +160,12 @@ TEST_F(InspectTest, TheWorstPixelsAreThoseFarthestFromTheReference) {
 }
 
 TEST_F(InspectTest, ResultsDoNotDependOnThreads) {
-  EXPECT_EQ(inspected(kSpecs, {"10,9", "4,8"}, "0", "1"), inspected(kSpecs, {"10,9", "4,8"}, "0", "7"));
+  EXPECT_EQ(inspected({"10,9", "4,8"}, "0", "1"), inspected({"10,9", "4,8"}, "0", "7"));
 }
 
 TEST_F(InspectTest, WritesAPictureAndAPage) {
-  const std::vector<std::string> command = {"inspect", path("trace.json"), "--pixel", "10,9", "3,3", "-t", "beam", "z3",
-                                            "-o"};
-  auto with = [&](const std::string& file) {
-    std::vector<std::string> arguments = command;
-    arguments.push_back(path(file));
-    succeed(arguments);
+  const auto with = [&](const std::string& file) {
+    succeed({"inspect", path("trace.json"), "--pixel", "10,9", "3,3", "-t", "beam", "z3", "-o", path(file)});
     return read_text(folder_ / file);
   };
   const std::string svg = with("pixel.svg"), page = with("pixel.html");
@@ -198,38 +185,32 @@ TEST_F(InspectTest, WritesAPictureAndAPage) {
 }
 
 TEST_F(InspectTest, MistakesAreOneLineAndLeaveNothing) {
-  const std::string trace = path("trace.json");
-  struct Mistake {
-    std::vector<std::string> arguments;
-    int exit_code;
-    std::string part;
+  const std::tuple<Names, int, const char*> mistakes[] = {
+      {{"-t", "beam"}, 2, "expected --pixel X,Y or --worst N"},
+      {{"-t", "beam", "--pixel", "1,1", "--worst", "1"}, 2, "expected --pixel X,Y or --worst N"},
+      {{"--pixel", "1,1"}, 2, "--technique"},
+      {{"-t", "beam", "--pixel", "20,0"}, 2, "X from 0 to 19 and Y from 0 to 11"},
+      {{"-t", "beam", "--pixel", "0,12"}, 2, "--pixel 0,12"},
+      {{"-t", "beam", "--pixel", "3"}, 2, "--pixel 3: expected X,Y"},
+      {{"-t", "beam", "--pixel", "3,4,5"}, 2, "expected X,Y"},
+      {{"-t", "beam", "--pixel", "3;4"}, 2, "expected X,Y"},
+      {{"-t", "beam", "--pixel", "-1,4"}, 2, ""},
+      {{"-t", "baem", "--pixel", "3,4"}, 2, "did you mean 'beam'?"},
+      {{"-t", "taa:8", "--pixel", "3,4"}, 2, "'taa:8' cannot be inspected: expected beam"},
+      {{"-t", "reference", "--pixel", "3,4"}, 2, "cannot be inspected"},
+      {{"-t", "dvm", "--pixel", "3,4"}, 2, "; its pixels depend on earlier frames and on their"},
+      {{"-t", "beam", "--pixel", "3,4", "--frame", "2"}, 2, "--frame: expected 0 to 1, found 2"},
+      {{"-t", "beam", "--worst", "0"}, 2, "--worst"},
+      {{"-t", "beam", "--pixel", "3,4", "-o", path("a.png")}, 2, ".svg or .html"},
+      {{"-t", "beam", "--pixel", "3,4", "-o", path("trace.json/a.svg")}, 1, "trace.json"},
   };
-  const std::vector<Mistake> mistakes = {
-      {{"inspect", trace, "-t", "beam"}, 2, "expected --pixel X,Y or --worst N"},
-      {{"inspect", trace, "-t", "beam", "--pixel", "1,1", "--worst", "1"}, 2, "expected --pixel X,Y or --worst N"},
-      {{"inspect", trace, "--pixel", "1,1"}, 2, "--technique"},
-      {{"inspect", trace, "-t", "beam", "--pixel", "20,0"}, 2, "X from 0 to 19 and Y from 0 to 11"},
-      {{"inspect", trace, "-t", "beam", "--pixel", "0,12"}, 2, "--pixel 0,12"},
-      {{"inspect", trace, "-t", "beam", "--pixel", "3"}, 2, "--pixel 3: expected X,Y"},
-      {{"inspect", trace, "-t", "beam", "--pixel", "3,4,5"}, 2, "expected X,Y"},
-      {{"inspect", trace, "-t", "beam", "--pixel", "3;4"}, 2, "expected X,Y"},
-      {{"inspect", trace, "-t", "beam", "--pixel", "-1,4"}, 2, ""},
-      {{"inspect", trace, "-t", "baem", "--pixel", "3,4"}, 2, "did you mean 'beam'?"},
-      {{"inspect", trace, "-t", "taa:8", "--pixel", "3,4"}, 2, "'taa:8' cannot be inspected: expected beam"},
-      {{"inspect", trace, "-t", "reference", "--pixel", "3,4"}, 2, "cannot be inspected"},
-      {{"inspect", trace, "-t", "dvm", "--pixel", "3,4"}, 2, "; its pixels depend on earlier frames and on their"},
-      {{"inspect", trace, "-t", "beam", "--pixel", "3,4", "--frame", "2"}, 2, "--frame: expected 0 to 1, found 2"},
-      {{"inspect", trace, "-t", "beam", "--worst", "0"}, 2, "--worst"},
-      {{"inspect", trace, "-t", "beam", "--pixel", "3,4", "-o", path("a.png")}, 2, ".svg or .html"},
-      {{"inspect", trace, "-t", "beam", "--pixel", "3,4", "-o", path("trace.json/a.svg")}, 1, "trace.json"},
-      {{"inspect", path("missing.json"), "-t", "beam", "--pixel", "3,4"}, 1, "missing.json"},
-      {{"inspct", trace}, 2, "did you mean 'inspect'?"},
-  };
-  for (const Mistake& mistake : mistakes) {
-    SCOPED_TRACE(mistake.part);
-    expect_one_error_line(run_program(mistake.arguments), mistake.exit_code, mistake.part);
-    EXPECT_EQ(folder_.list(), Names{"trace.json"});
+  for (const auto& [options, exit_code, part] : mistakes) {
+    SCOPED_TRACE(part);
+    expect_error(joined({"inspect", path("trace.json")}, options), exit_code, part);
   }
+  expect_error({"inspect", path("missing.json"), "-t", "beam", "--pixel", "3,4"}, 1, "missing.json");
+  expect_error({"inspct", path("trace.json")}, 2, "did you mean 'inspect'?");
+  EXPECT_EQ(folder_.list(), Names{"trace.json"});
 }
 
 }  // namespace beampipe::inspect_test

@@ -4,18 +4,13 @@
 #include <unistd.h>
 
 #include <cerrno>
-#include <chrono>
 #include <csignal>
-#include <cstring>
-#include <thread>
 
 #include "tests/tools/cli/program_fixture.h"
 #include "tools/files/image_io.h"
 #include "tools/files/output.h"
 
 namespace beampipe::interruption_test {
-
-void pause(int milliseconds) { std::this_thread::sleep_for(std::chrono::milliseconds(milliseconds)); }
 
 // A run that would take hours after it has written its first image.
 std::vector<std::string> long_run(const std::string& trace, const std::string& out) {
@@ -93,7 +88,7 @@ TEST_F(ProgramTest, OneProgramAtATimeWritesIntoAFolder) {
                                      {"run", path("trace.json"), "-t", "beam", "-o", path("out"), "--resume"},
                                      {"compare", path("trace.json"), "-t", "beam", "-o", path("out")}};
   for (const Names& other : others) {
-    expect_one_error_line(run_program(other), 1, path("out") + ": is being written by another program");
+    expect_error(other, 1, path("out") + ": is being written by another program");
     EXPECT_EQ(folder_.list(), before);
   }
   program.signal(SIGKILL);
@@ -106,7 +101,7 @@ TEST_F(ProgramTest, ReportKeepsOutOfAFolderInUse) {
   InterruptGate gate;
   OutputFolder writer(path("out"), gate);
   writer.lock();
-  expect_one_error_line(run_program({"report", path("out")}), 1, "is being written by another program");
+  expect_error({"report", path("out")}, 1, "is being written by another program");
   EXPECT_FALSE(std::filesystem::exists(folder_ / "out/report.html"));
 }
 

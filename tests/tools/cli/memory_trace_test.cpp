@@ -3,51 +3,32 @@
 
 #include <nlohmann/json.hpp>
 
-#include "tests/tools/program.h"
+#include "tests/tools/cli/program_fixture.h"
 
 namespace beampipe::memory_trace_test {
 
 using Json = nlohmann::json;
 
-constexpr const char* kTrace = R"({"beampipe_trace": 1,
-  "meshes": {"red": {"positions": [-1,-1,0, 1,1,0, -1,1,0], "indices": [0,1,2], "colors": [1,0.25,0]}},
-  "frames": [{"width": 70, "height": 40, "view": [1,0,0,0, 0,1,0,0, 0,0,1,0, 0,0,0,1],
-              "projection": [1,0,0,0, 0,1,0,0, 0,0,1,0, 0,0,0,1], "draws": [{"mesh": "red"}]}]})";
-
-class MemoryTrace : public testing::Test {
+class MemoryTrace : public RunInFolder {
  protected:
-  MemoryTrace() { write_text(folder_ / "trace.json", kTrace); }
+  MemoryTrace() { write_text(folder_ / "trace.json", kHalfFrame); }
 
-  std::vector<std::string> arguments(const std::vector<std::string>& more) const {
-    std::vector<std::string> all = {"run", (folder_ / "trace.json").string(), "-o", (folder_ / "out").string()};
-    all.insert(all.end(), more.begin(), more.end());
-    return all;
-  }
+  Names arguments(const Names& more) const { return joined({"run", path("trace.json"), "-o", path("out")}, more); }
 
   // The file of that name after a run.
-  std::string written(const std::string& name, const std::vector<std::string>& more) const {
-    const std::string file = (folder_ / name).string();
-    std::vector<std::string> all = arguments({"--memory-trace", file});
-    all.insert(all.end(), more.begin(), more.end());
-    const Outcome outcome = run_program(all);
-    EXPECT_EQ(outcome.exit_code, 0) << outcome.err;
-    return read_text(file);
+  std::string written(const std::string& name, const Names& more) const {
+    finish(joined(arguments({"--memory-trace", path(name)}), more));
+    return read_text(path(name));
   }
 
-  void expect_error(const std::vector<std::string>& more, const std::string& message) const {
-    const Outcome outcome = run_program(arguments(more));
-    EXPECT_NE(outcome.exit_code, 0);
-    EXPECT_NE(outcome.err.find(message), std::string::npos) << outcome.err;
-    EXPECT_EQ(std::count(outcome.err.begin(), outcome.err.end(), '\n'), 1) << outcome.err;
-    EXPECT_FALSE(std::filesystem::exists(folder_ / "out"));
-    EXPECT_FALSE(std::filesystem::exists(folder_ / "requests"));
+  void expect_refused(const std::string& file, const Names& more, int exit_code, const std::string& message) const {
+    expect_error(joined(arguments({"--memory-trace", file, "-t", "beam"}), more), exit_code, message);
+    EXPECT_EQ(folder_.list(), Names{"trace.json"});
   }
 
   Json stages() const {
     return Json::parse(read_text(folder_ / "out/report.json")).at("results")[0].at("frames")[0].at("stages");
   }
-
-  const TemporaryFolder folder_;
 };
 
 std::vector<std::string> lines_of(const std::string& text) {
@@ -124,15 +105,14 @@ TEST_F(MemoryTrace, RepeatedFramesAreRecordedOnce) {
 }
 
 TEST_F(MemoryTrace, SaysWhatItDoesNotGoWith) {
-  const std::string file = (folder_ / "requests").string();
-  expect_error({"--memory-trace", file, "-t", "beam", "msaa:8"},
-               "expected one technique and one frame, found techniques: 2, frames: 1");
-  expect_error({"--memory-trace", file, "-t", "beam", "--no-memory-model"}, "leave out --no-memory-model");
-  expect_error({"--memory-trace", file, "-t", "beam", "--resume"}, "leave out --resume");
-  expect_error({"--memory-trace", file, "-t", "beam", "--memory-trace-format", "dramsim2"}, "dramsim2");
-  expect_error({"--memory-trace", (folder_ / "trace.json").string(), "-t", "beam"}, "is the trace itself");
-  expect_error({"--memory-trace", (folder_ / "out/requests").string(), "-t", "beam"}, "is in the output folder");
-  expect_error({"--memory-trace", (folder_ / "missing/requests").string(), "-t", "beam"}, "No such file or directory");
+  const std::string file = path("requests");
+  expect_refused(file, {"msaa:8"}, 2, "expected one technique and one frame, found techniques: 2, frames: 1");
+  expect_refused(file, {"--no-memory-model"}, 2, "leave out --no-memory-model");
+  expect_refused(file, {"--resume"}, 2, "leave out --resume");
+  expect_refused(file, {"--memory-trace-format", "dramsim2"}, 2, "dramsim2");
+  expect_refused(path("trace.json"), {}, 2, "is the trace itself");
+  expect_refused(path("out/requests"), {}, 2, "is in the output folder");
+  expect_refused(path("missing/requests"), {}, 1, "No such file or directory");
 }
 
 }  // namespace beampipe::memory_trace_test

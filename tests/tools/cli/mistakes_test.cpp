@@ -2,8 +2,6 @@
 #include <sys/resource.h>
 #include <sys/stat.h>
 
-#include <filesystem>
-
 #include "tests/tools/cli/program_fixture.h"
 
 namespace beampipe::mistakes_test {
@@ -16,11 +14,7 @@ TEST_F(ProgramTest, EveryMistakeIsOneLineAndLeavesNothing) {
   ASSERT_EQ(mkfifo(path("piped/report.json").c_str(), 0666), 0);
   std::filesystem::create_symlink("/dev/zero", folder_ / "endless/report.json");
   const std::string trace = path("trace.json"), out = path("out");
-  const struct {
-    std::vector<std::string> arguments;
-    int exit_code;
-    std::string part;
-  } mistakes[] = {
+  const std::tuple<Names, int, const char*> mistakes[] = {
       {{}, 2, "subcommand"},
       {{"frobnicate"}, 2, "no command frobnicate"},
       {{"comapre"}, 2, "did you mean 'compare'"},
@@ -106,11 +100,11 @@ TEST_F(ProgramTest, EveryMistakeIsOneLineAndLeavesNothing) {
       {{"make", "soup", "-o", path("trace.json/a.json")}, 1, "trace.json"},
   };
   const Names before = folder_.list();
-  for (const auto& mistake : mistakes) {
+  for (const auto& [arguments, exit_code, part] : mistakes) {
     std::string command;
-    for (const std::string& argument : mistake.arguments) command += " " + argument;
+    for (const std::string& argument : arguments) command += " " + argument;
     SCOPED_TRACE("beampipe" + command);
-    expect_one_error_line(run_program(mistake.arguments), mistake.exit_code, mistake.part);
+    expect_error(arguments, exit_code, part);
     EXPECT_EQ(folder_.list(), before);
   }
 }
@@ -122,10 +116,9 @@ TEST_F(ProgramTest, MeshesOutsideTheTracesFolderNeedPermission) {
              R"({"beampipe_trace": 1, "meshes": {"m": {"obj": "../model.obj"}}, "frames": [
       {"width": 8, "height": 8, "background": [0,0,0], "draws": [{"mesh": "m"}],
        "camera": {"eye": [0,0,9], "target": [0,0,0], "up": [0,1,0], "fovy_deg": 36, "near": 1, "far": 20}}]})");
-  expect_one_error_line(run_program({"info", path("inner/trace.json")}), 1, "model.obj");
+  expect_error({"info", path("inner/trace.json")}, 1, "model.obj");
   succeed({"info", path("inner/trace.json"), "--allow-outside"});
-  expect_one_error_line(run_program({"run", path("inner/trace.json"), "-t", "msaa:1", "-o", path("out")}), 1,
-                        "model.obj");
+  expect_error({"run", path("inner/trace.json"), "-t", "msaa:1", "-o", path("out")}, 1, "model.obj");
   succeed({"run", path("inner/trace.json"), "-t", "msaa:1", "-o", path("out"), "--allow-outside"});
 }
 
@@ -148,7 +141,7 @@ TEST_F(ProgramTest, AFailedWriteIsOneLineAndLeavesEarlierResultsWhole) {
   Names before = folder_.list();
   {
     const FileSizeLimit limit(200);
-    expect_one_error_line(run_program(run), 1, "frame_0000.exr: cannot write");
+    expect_error(run, 1, "frame_0000.exr: cannot write");
   }
   EXPECT_EQ(folder_.list(), before);
 
@@ -158,7 +151,7 @@ TEST_F(ProgramTest, AFailedWriteIsOneLineAndLeavesEarlierResultsWhole) {
   const std::string report = read_text(folder_ / "out/report.json");
   {
     const FileSizeLimit limit(200);
-    expect_one_error_line(run_program(run), 1, "frame_0000.exr: cannot write");
+    expect_error(run, 1, "frame_0000.exr: cannot write");
   }
   EXPECT_EQ(folder_.list(), before);
   EXPECT_EQ(read_text(folder_ / "out/msaa_1/frame_0000.exr"), image);
@@ -168,8 +161,8 @@ TEST_F(ProgramTest, AFailedWriteIsOneLineAndLeavesEarlierResultsWhole) {
 TEST_F(ProgramTest, AFolderInTheReportsPlaceIsRefusedAtOnce) {
   std::filesystem::create_directories(folder_ / "out/report.json");
   const Names before = folder_.list();
-  expect_one_error_line(run_program({"run", path("trace.json"), "-t", "msaa:1", "-o", path("out")}), 1,
-                        "out/report.json: expected a regular file or none, found something else");
+  expect_error({"run", path("trace.json"), "-t", "msaa:1", "-o", path("out")}, 1,
+               "out/report.json: expected a regular file or none, found something else");
   EXPECT_EQ(folder_.list(), before);
 }
 

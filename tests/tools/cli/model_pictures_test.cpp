@@ -1,8 +1,7 @@
 // Pictures of the glTF models of tests/traces/gltf_models.h, in the view that `make` chooses.
 
-#include <gtest/gtest.h>
-
 #include "pipeline/technique.h"
+#include "tests/test.h"
 #include "tests/traces/gltf_models.h"
 #include "tools/cli/framing.h"
 #include "traces/files/model_import.h"

@@ -3,39 +3,39 @@
 #include <sys/stat.h>
 
 #include <nlohmann/json.hpp>
-#include <set>
 
 #include "pipeline/technique_table.h"
-#include "tests/tools/program.h"
+#include "tests/tools/cli/program_fixture.h"
 
 namespace beampipe::trace_events_test {
 
 using Json = nlohmann::json;
 
-constexpr const char* kTrace = R"({"beampipe_trace": 1,
-  "meshes": {"red": {"positions": [-1,-1,0, 1,1,0, -1,1,0], "indices": [0,1,2], "colors": [1,0.25,0]}},
-  "frames": [{"width": 70, "height": 40, "view": [1,0,0,0, 0,1,0,0, 0,0,1,0, 0,0,0,1],
-              "projection": [1,0,0,0, 0,1,0,0, 0,0,1,0, 0,0,0,1], "draws": [{"mesh": "red"}]}]})";
+class TraceEvents : public RunInFolder {
+ protected:
+  TraceEvents() { write_text(folder_ / "trace.json", kHalfFrame); }
 
-TEST(TraceEvents, HoldEveryStageOfEveryTechnique) {
-  const std::vector<std::string> specs = example_specs();
-  const TemporaryFolder folder;
-  write_text(folder / "trace.json", kTrace);
-  std::vector<std::string> arguments = {"run",
-                                        (folder / "trace.json").string(),
-                                        "-o",
-                                        (folder / "out").string(),
-                                        "--threads",
-                                        "3",
-                                        "--trace-events",
-                                        (folder / "events.json").string(),
-                                        "-t"};
-  arguments.insert(arguments.end(), specs.begin(), specs.end());
-  const Outcome outcome = run_program(arguments);
-  ASSERT_EQ(outcome.exit_code, 0) << outcome.err;
+  // The events of a run with these options.
+  Json events(const std::string& command, const Names& options) const {
+    finish(joined({command, path("trace.json"), "-o", path("out"), "--trace-events", path("events.json")}, options));
+    return Json::parse(read_text(folder_ / "events.json")).at("traceEvents");
+  }
 
-  const Json events = Json::parse(read_text(folder / "events.json")).at("traceEvents");
-  const Json report = Json::parse(read_text(folder / "out/report.json"));
+  void expect_refused(const std::string& file, int exit_code, const std::string& expected) const {
+    SCOPED_TRACE(file);
+    const Names before = folder_.list();
+    const Outcome refused =
+        run_program({"run", path("trace.json"), "-t", "beam", "-o", path("out"), "--trace-events", file});
+    expect_one_error_line(refused, exit_code, expected);
+    EXPECT_EQ(refused.err.find("frame"), std::string::npos) << "checked before anything is rendered: " << refused.err;
+    EXPECT_EQ(folder_.list(), before);
+    EXPECT_EQ(read_text(folder_ / "trace.json"), kHalfFrame);
+  }
+};
+
+TEST_F(TraceEvents, HoldEveryStageOfEveryTechnique) {
+  const Json events = this->events("run", joined({"--threads", "3", "-t"}, example_specs()));
+  const Json report = Json::parse(read_text(folder_ / "out/report.json"));
   for (const Json& result : report.at("results")) {
     const std::string spec = result.at("technique");
     const auto frame = std::find_if(events.begin(), events.end(),
@@ -54,42 +54,14 @@ TEST(TraceEvents, HoldEveryStageOfEveryTechnique) {
   }
 }
 
-TEST(TraceEvents, ComparisonsHaveThemToo) {
-  const TemporaryFolder folder;
-  write_text(folder / "trace.json", kTrace);
-  const Outcome outcome =
-      run_program({"compare", (folder / "trace.json").string(), "-o", (folder / "out").string(), "--ladder", "1",
-                   "--trace-events", (folder / "events.json").string(), "-t", "beam"});
-  ASSERT_EQ(outcome.exit_code, 0) << outcome.err;
-  const Json events = Json::parse(read_text(folder / "events.json"));
+TEST_F(TraceEvents, ComparisonsHaveThemToo) {
   std::set<std::string> names;
-  for (const Json& event : events.at("traceEvents")) names.insert(event.at("name"));
+  for (const Json& event : events("compare", {"--ladder", "1", "-t", "beam"})) names.insert(event.at("name"));
   for (const char* name : {"beam, frame 0", "reference, frame 0", "compose", "reference_raster"})
     EXPECT_TRUE(names.contains(name)) << name;
 }
 
-class RefusedTraceEvents : public testing::Test {
- protected:
-  RefusedTraceEvents() { write_text(folder_ / "trace.json", kTrace); }
-  std::string path(const std::string& name) const { return (folder_ / name).string(); }
-
-  void expect_refused(const std::string& file, int exit_code, const std::string& expected) const {
-    SCOPED_TRACE(file);
-    const std::vector<std::string> before = folder_.list();
-    const Outcome refused =
-        run_program({"run", path("trace.json"), "-t", "beam", "-o", path("out"), "--trace-events", file});
-    EXPECT_EQ(refused.exit_code, exit_code);
-    EXPECT_NE(refused.err.find(expected), std::string::npos) << refused.err;
-    EXPECT_EQ(std::count(refused.err.begin(), refused.err.end(), '\n'), 1) << refused.err;
-    EXPECT_EQ(refused.err.find("frame"), std::string::npos) << "checked before anything is rendered: " << refused.err;
-    EXPECT_EQ(folder_.list(), before);
-    EXPECT_EQ(read_text(folder_ / "trace.json"), kTrace);
-  }
-
-  TemporaryFolder folder_;
-};
-
-TEST_F(RefusedTraceEvents, WhereNoFileCanBeWritten) {
+TEST_F(TraceEvents, AreRefusedWhereNoFileCanBeWritten) {
   std::filesystem::create_directory(folder_ / "events");
   ASSERT_EQ(mkfifo(path("pipe").c_str(), 0666), 0);
   for (const std::string& file :
@@ -98,7 +70,7 @@ TEST_F(RefusedTraceEvents, WhereNoFileCanBeWritten) {
   expect_refused(path("new/" + std::string(300, 'x')), 1, "too long");
 }
 
-TEST_F(RefusedTraceEvents, OverTheTraceOrInTheOutputFolder) {
+TEST_F(TraceEvents, AreRefusedOverTheTraceOrInTheOutputFolder) {
   std::filesystem::create_symlink("trace.json", folder_ / "link.json");
   for (const char* file : {"trace.json", "new/../trace.json", "link.json"})
     expect_refused(path(file), 2, "is the trace itself");

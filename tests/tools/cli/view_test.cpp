@@ -92,10 +92,10 @@ TEST_F(ViewTest, MakeTakesACameraFromAFile) {
 }
 
 TEST_F(ViewTest, MakeTakesLight) {
-  expect_one_error_line(run_program({"make", path("model.obj"), "--ambient", "1.1", "-o", path("x.json")}), 2,
-                        "--ambient: expected a number from 0 to 1");
-  expect_one_error_line(run_program({"make", path("model.obj"), "--light", "0,0,0", "-o", path("x.json")}), 2,
-                        "--light: expected a vector with a length");
+  expect_error({"make", path("model.obj"), "--ambient", "1.1", "-o", path("x.json")}, 2,
+               "--ambient: expected a number from 0 to 1");
+  expect_error({"make", path("model.obj"), "--light", "0,0,0", "-o", path("x.json")}, 2,
+               "--light: expected a vector with a length");
   succeed({"make", path("model.obj"), "--light", "0,0,-2", "--ambient", "0.5", "-o", path("model.json")});
   const Parsed frame = frame_of("model.json");
   EXPECT_EQ(frame["lights"][0]["direction"], Parsed({0.0, 0.0, -1.0}));
@@ -108,23 +108,18 @@ TEST_F(ViewTest, MakeTakesLight) {
 
 TEST_F(ViewTest, RunAndCompareTakeASizeAndACamera) {
   const auto make = [this](const std::string& trace, const Names& options) {
-    Names command{"make", path("model.obj"), "--light", "0,0,-1", "-o", path(trace)};
-    command.insert(command.end(), options.begin(), options.end());
-    succeed(command);
+    succeed(joined({"make", path("model.obj"), "--light", "0,0,-1", "-o", path(trace)}, options));
   };
   make("small.json", {"--width", "32", "--height", "16"});
   make("large.json", {"--width", "64", "--height", "40"});
   make("moved.json", {"--width", "32", "--height", "16", "--camera", path("camera.json")});
   const auto run = [this](const std::string& trace, const Names& options) {
-    Names command{"run", path(trace), "-t", "msaa:4", "-o", path("out"), "--force"};
-    command.insert(command.end(), options.begin(), options.end());
-    succeed(command);
+    succeed(joined({"run", path(trace), "-t", "msaa:4", "-o", path("out"), "--force"}, options));
     return picture("out");
   };
   // The camera of the large trace is at another distance, so that it is given here.
   const Names camera = {"--camera", path("camera.json")};
-  Names resized = camera;
-  resized.insert(resized.end(), {"--width", "64", "--height", "40"});
+  const Names resized = joined(camera, {"--width", "64", "--height", "40"});
   EXPECT_EQ(run("small.json", resized).rgba, run("large.json", camera).rgba);
   EXPECT_EQ(run("small.json", camera).rgba, run("moved.json", {}).rgba);
   EXPECT_NE(run("small.json", camera).rgba, run("small.json", {}).rgba);
@@ -143,40 +138,32 @@ TEST_F(ViewTest, RunAndCompareTakeASizeAndACamera) {
 TEST_F(ViewTest, ResultsOfAnotherSizeAreThoseOfAnotherTrace) {
   succeed({"make", path("model.obj"), "--width", "32", "--height", "16", "-o", path("small.json")});
   const Names run = {"run", path("small.json"), "-t", "msaa:4", "-o", path("out"), "--width", "48"};
-  const auto with = [&run](const Names& options) {
-    Names command = run;
-    command.insert(command.end(), options.begin(), options.end());
-    return command;
-  };
+  const auto with = [&run](const Names& options) { return joined(run, options); };
   succeed(run);
   EXPECT_NE(succeed(with({"--resume"})).find("already finished"), std::string::npos);
-  expect_one_error_line(run_program(with({"--height", "20"})), 1,
-                        "found those of another trace; --force writes over them");
-  expect_one_error_line(run_program(with({"--height", "20", "--resume"})), 1, "another trace");
-  expect_one_error_line(run_program(with({"--camera", path("camera.json")})), 1, "another trace");
+  expect_error(with({"--height", "20"}), 1, "found those of another trace; --force writes over them");
+  expect_error(with({"--height", "20", "--resume"}), 1, "another trace");
+  expect_error(with({"--camera", path("camera.json")}), 1, "another trace");
   EXPECT_EQ(picture("out").height, 24u);
   succeed(with({"--height", "20", "--force"}));
   EXPECT_EQ(picture("out").height, 20u);
 }
 
 TEST_F(ViewTest, FramesWithoutACameraRefuse) {
-  const Names run = {"run", path("trace.json"), "-t", "msaa:4", "-o", path("out")};
-  const auto with = [&run](const Names& options) {
-    Names command = run;
-    command.insert(command.end(), options.begin(), options.end());
-    return run_program(command);
+  const auto with = [this](const Names& options) {
+    return joined({"run", path("trace.json"), "-t", "msaa:4", "-o", path("out")}, options);
   };
-  expect_one_error_line(with({"--width", "33", "--height", "100"}), 1,
-                        "trace.json: cannot be 33 x 100 pixels: expected frames that name a camera");
-  expect_one_error_line(with({"--camera", path("camera.json")}), 1,
-                        "frame 0 cannot have another camera: expected a frame that names one, found matrices");
+  expect_error(with({"--width", "33", "--height", "100"}), 1,
+               "trace.json: cannot be 33 x 100 pixels: expected frames that name a camera");
+  expect_error(with({"--camera", path("camera.json")}), 1,
+               "frame 0 cannot have another camera: expected a frame that names one, found matrices");
   write_text(folder_ / "odd.json", R"({"eye": [1, 2, 9], "traget": [1, 1, 0]})");
-  expect_one_error_line(with({"--camera", path("odd.json")}), 1, "did you mean 'target'");
+  expect_error(with({"--camera", path("odd.json")}), 1, "did you mean 'target'");
   write_text(folder_ / "odd.json", R"({"eye": [1, 2, 9]})");
-  expect_one_error_line(with({"--camera", path("odd.json")}), 1, "odd.json: /: expected the key \"target\"");
+  expect_error(with({"--camera", path("odd.json")}), 1, "odd.json: /: expected the key \"target\"");
   write_text(folder_ / "odd.json", R"({"eye": [1, 2, 9], "target": [1, 2, 9]})");
-  expect_one_error_line(run_program({"make", path("model.obj"), "--camera", path("odd.json"), "-o", path("x.json")}), 2,
-                        "--eye and --target are the same point");
+  expect_error({"make", path("model.obj"), "--camera", path("odd.json"), "-o", path("x.json")}, 2,
+               "--eye and --target are the same point");
   EXPECT_FALSE(std::filesystem::exists(folder_ / "out"));
 }
 
@@ -192,12 +179,11 @@ TEST_F(ViewTest, PreviewShowsModelsAndTraces) {
   succeed({"preview", path("trace.json"), "--frame", "1", "-o", path("trace.png")});
   EXPECT_EQ(size_of_png(read_text(folder_ / "trace.png")), std::pair(8, 16)) << "it has matrices";
   const Names before = folder_.list();
-  expect_one_error_line(run_program({"preview", path("trace.json"), "--frame", "2", "-o", path("x.png")}), 2,
-                        "--frame: expected 0 to 1, found 2");
-  expect_one_error_line(run_program({"preview", path("model.obj"), "-o", path("x.exr")}), 2, "ends in .png");
-  expect_one_error_line(run_program({"preview", path("model.obj"), "--frame", "1", "-o", path("x.png")}), 2, "--frame");
-  expect_one_error_line(run_program({"preview", path("trace.json"), "--unlit", "-o", path("x.png")}), 2,
-                        "--unlit is for models");
+  expect_error({"preview", path("trace.json"), "--frame", "2", "-o", path("x.png")}, 2,
+               "--frame: expected 0 to 1, found 2");
+  expect_error({"preview", path("model.obj"), "-o", path("x.exr")}, 2, "ends in .png");
+  expect_error({"preview", path("model.obj"), "--frame", "1", "-o", path("x.png")}, 2, "--frame");
+  expect_error({"preview", path("trace.json"), "--unlit", "-o", path("x.png")}, 2, "--unlit is for models");
   EXPECT_EQ(folder_.list(), before);
 }
 

@@ -1,7 +1,6 @@
 #include "tools/cli/viewpoint.h"
 
 #include <numbers>
-#include <random>
 
 #include "tests/tools/fixtures.h"
 #include "tools/cli/sight.h"

@@ -1,11 +1,7 @@
 // The check of captured depths, on traces whose captured depth is known.
 #include "tools/evaluate/captured_check.h"
 
-#include <gtest/gtest.h>
-
-#include <filesystem>
-#include <stdexcept>
-
+#include "tests/test.h"
 #include "tools/evaluate/draw_notes.h"
 #include "traces/files/trace_io.h"
 

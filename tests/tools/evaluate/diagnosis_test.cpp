@@ -1,7 +1,4 @@
 // compare --causes, compare --orders, make --pan and flicker, with the built program.
-#include <gtest/gtest.h>
-
-#include <cmath>
 #include <nlohmann/json.hpp>
 
 #include "tests/tools/program.h"
@@ -12,16 +9,8 @@ namespace beampipe::diagnosis_test {
 
 using Json = nlohmann::ordered_json;
 
-class DiagnosisTest : public testing::Test {
+class DiagnosisTest : public RunInFolder {
  protected:
-  std::string path(const std::string& name) const { return (folder_ / name).string(); }
-
-  std::string succeed(const std::vector<std::string>& arguments) {
-    const Outcome outcome = run_program(arguments);
-    EXPECT_EQ(outcome.exit_code, 0) << outcome.err;
-    return outcome.out;
-  }
-
   Json report() const { return Json::parse(read_text(folder_ / "out/report.json")); }
 
   // Two quads in the same place, first a red one and then a green one, and a blue triangle across them.
@@ -33,8 +22,6 @@ class DiagnosisTest : public testing::Test {
       "frames": [{"width": 20, "height": 12, "background": [0.5,0.5,0.5], "view": [1,0,0,0, 0,1,0,0, 0,0,1,0, 0,0,0,1],
                   "projection": [1,0,0,0, 0,1,0,0, 0,0,1,0, 0,0,0,1], "draws": [{"mesh": "faces"}]}]})");
   }
-
-  TemporaryFolder folder_;
 };
 
 TEST_F(DiagnosisTest, CausesAddUpToTheErrorLayerAndToOne) {
@@ -108,14 +95,8 @@ TEST_F(DiagnosisTest, PanMovesThePictureByWholePixelsToo) {
 }
 
 TEST_F(DiagnosisTest, PanNeedsFramesAndNoOrbit) {
-  for (const std::vector<std::string>& extra :
-       {std::vector<std::string>{"--pan", "1,1"}, {"--pan", "1,1", "--frames", "3", "--orbit", "2"}}) {
-    std::vector<std::string> arguments = {"make", "fence", "-o", path("pan.json")};
-    arguments.insert(arguments.end(), extra.begin(), extra.end());
-    const Outcome outcome = run_program(arguments);
-    EXPECT_EQ(outcome.exit_code, 2);
-    EXPECT_NE(outcome.err.find("--pan"), std::string::npos) << outcome.err;
-  }
+  for (const Names& extra : {Names{"--pan", "1,1"}, {"--pan", "1,1", "--frames", "3", "--orbit", "2"}})
+    expect_error(joined({"make", "fence", "-o", path("pan.json")}, extra), 2, "--pan");
 }
 
 }  // namespace beampipe::diagnosis_test

@@ -1,7 +1,6 @@
 // The error's two parts, visibility and shading: by hand, and as compare finds them.
 #include "tools/evaluate/error_split.h"
 
-#include <cmath>
 #include <nlohmann/json.hpp>
 
 #include "tests/tools/program.h"
@@ -44,15 +43,11 @@ TEST(SplitError, LargeFramesCountForMore) {
   EXPECT_NEAR(pooled_parts(frames).shading, std::sqrt(3 * 4.0 / 400), 1e-12);
 }
 
-class ErrorSplitTest : public testing::Test {
+class ErrorSplitTest : public RunInFolder {
  protected:
   // The report of a comparison of trace.json.
-  Json compare(std::vector<std::string> arguments) {
-    arguments.insert(arguments.begin(), {"compare", (folder_ / "trace.json").string(), "-o", (folder_ / "out").string(),
-                                         "--threads", "2", "-t"});
-    const Outcome outcome = run_program(arguments);
-    EXPECT_EQ(outcome.exit_code, 0) << outcome.err;
-    table_ = outcome.out;
+  Json compare(const Names& arguments) {
+    table_ = finish(joined({"compare", path("trace.json"), "-o", path("out"), "--threads", "2", "-t"}, arguments)).out;
     return Json::parse(read_text(folder_ / "out/report.json"));
   }
 
@@ -61,7 +56,6 @@ class ErrorSplitTest : public testing::Test {
         .channels;
   }
 
-  TemporaryFolder folder_;
   std::string table_;  // what the program printed
 };
 
@@ -78,8 +72,7 @@ TEST_F(ErrorSplitTest, FlatTracesHaveNoParts) {
   expect_no_parts(compare({"beam", "msaa:2", "--ladder", "1,4", "--causes"}));
   EXPECT_EQ(table_.find("shading"), std::string::npos);
   EXPECT_FALSE(layers("msaa_2").contains("shading_error"));
-  const Outcome page = run_program({"report", (folder_ / "out").string()});
-  EXPECT_EQ(page.exit_code, 0) << page.err;
+  finish({"report", path("out")});
 }
 
 TEST_F(ErrorSplitTest, OneSurfaceAllOverThePictureHasErrorsOfShadingAlone) {

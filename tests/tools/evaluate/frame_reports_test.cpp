@@ -1,7 +1,6 @@
 #include "tools/evaluate/frame_reports.h"
 
-#include <gtest/gtest.h>
-
+#include "tests/test.h"
 #include "tools/evaluate/frame_json.h"
 
 namespace beampipe::frame_reports_test {

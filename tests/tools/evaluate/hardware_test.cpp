@@ -1,9 +1,9 @@
 #include "tools/evaluate/hardware.h"
 
-#include <gtest/gtest.h>
-
 #include <regex>
 
+#include "tests/message_of.h"
+#include "tests/test.h"
 #include "tools/evaluate/results.h"
 #include "traces/scenes.h"
 
@@ -253,43 +253,36 @@ std::string refusal(const std::string& from, const std::string& to) {
   std::string text = titan_v().json.dump();
   const std::size_t at = text.find(from);
   EXPECT_NE(at, text.npos) << from;
-  try {
-    parse_hardware(parse_json_text(text.replace(at, from.size(), to), "h.json"), "h.json");
-  } catch (const std::runtime_error& error) {
-    return error.what();
-  }
-  return "";
+  text.replace(at, from.size(), to);
+  return message_of<std::runtime_error>([&] { parse_hardware(parse_json_text(text, "h.json"), "h.json"); });
 }
 
 TEST(Hardware, ErrorsNameTheKey) {
-  EXPECT_EQ(refusal("\"clock_mhz\":1455", "\"clock_mhz\":-1"),
-            "h.json: /clock_mhz: expected a number from 1e-06 to 1e+12, found -1");
-  EXPECT_EQ(refusal("\"dram_bytes_per_clk\":448.7", "\"dram_bytes_per_clk\":1e-300"),
-            "h.json: /rates/dram_bytes_per_clk: expected a number from 1e-06 to 1e+12, found 1e-300");
-  EXPECT_EQ(
-      refusal("\"compose\":", "\"componse\":"),
-      "h.json: /implementations/shaders/units/componse: expected the name of a stage, found \"componse\" (did you mean "
-      "'compose'?)");
-  EXPECT_EQ(
-      refusal("\"sources\":{", "\"sources\":{\"rops\":\"x\",").find("h.json: /sources/rops: expected one of the keys"),
-      0u);
-  EXPECT_EQ(refusal("\"triangles_per_clk\":6,", ""),
-            "h.json: /rates: expected the key \"triangles_per_clk\", found none");
-  EXPECT_EQ(refusal("\"quads_per_clk\":24", "\"quads_per_clk\":24,\"x\":1").find("h.json: /rates/x: expected one of"),
-            0u);
-  EXPECT_EQ(refusal("\"clock_mhz\":\"boost clock, NVIDIA's product page\",", ""),
-            "h.json: /sources: expected the key \"clock_mhz\", found none");
-  EXPECT_EQ(refusal("\"boost clock, NVIDIA's product page\"", "\"\""),
-            "h.json: /sources/clock_mhz: expected where the number is from, or that it is a choice, found nothing");
-  EXPECT_EQ(refusal("[\"rop_samples\",", "[\"rop\",")
-                .find("h.json: /implementations/shaders/units/depth_test/0: expected one of \"on_chip\", \"composer\""),
-            0u);
-  const std::string composer = refusal("\"shade\":[\"quads\",", "\"shade\":[\"composer\",");
-  EXPECT_EQ(composer.find("h.json: /implementations/shaders/units/shade/0: expected one of \"on_chip\""), 0u)
-      << "the counters of `shade` say nothing to a unit of composition";
-  EXPECT_EQ(refusal("\"compose\":[\"shader\",", "\"prepass_compose\":[\"shader\",")
-                .find("h.json: /implementations/shaders/units/prepass_compose: expected the name of a stage"),
-            0u);
+  const std::string number = "expected a number from 1e-06 to 1e+12, found ", units = "/implementations/shaders/units/";
+  const std::tuple<const char*, const char*, std::string> cases[] = {
+      // text as it is, broken, start of the error
+      {"\"clock_mhz\":1455", "\"clock_mhz\":-1", "/clock_mhz: " + number + "-1"},
+      {"\"dram_bytes_per_clk\":448.7", "\"dram_bytes_per_clk\":1e-300",
+       "/rates/dram_bytes_per_clk: " + number + "1e-300"},
+      {"\"compose\":", "\"componse\":",
+       units + "componse: expected the name of a stage, found \"componse\" (did you mean 'compose'?)"},
+      {"\"sources\":{", "\"sources\":{\"rops\":\"x\",", "/sources/rops: expected one of the keys"},
+      {"\"triangles_per_clk\":6,", "", "/rates: expected the key \"triangles_per_clk\", found none"},
+      {"\"quads_per_clk\":24", "\"quads_per_clk\":24,\"x\":1", "/rates/x: expected one of"},
+      {"\"clock_mhz\":\"boost clock, NVIDIA's product page\",", "",
+       "/sources: expected the key \"clock_mhz\", found none"},
+      {"\"boost clock, NVIDIA's product page\"", "\"\"",
+       "/sources/clock_mhz: expected where the number is from, or that it is a choice, found nothing"},
+      {"[\"rop_samples\",", "[\"rop\",", units + "depth_test/0: expected one of \"on_chip\", \"composer\""},
+      // The counters of `shade` say nothing to a unit of composition.
+      {"\"shade\":[\"quads\",", "\"shade\":[\"composer\",", units + "shade/0: expected one of \"on_chip\""},
+      {"\"compose\":[\"shader\",", "\"prepass_compose\":[\"shader\",",
+       units + "prepass_compose: expected the name of a stage"}};
+  for (const auto& [whole, broken, start] : cases) {
+    const std::string error = refusal(whole, broken);
+    EXPECT_TRUE(error.starts_with("h.json: " + start)) << error;
+    EXPECT_EQ(error.find('\n'), error.npos);
+  }
 }
 
 }  // namespace beampipe::hardware_test

@@ -1,28 +1,24 @@
 #include "tools/evaluate/machine_memory.h"
 
-#include <gtest/gtest.h>
-
 #include "pipeline/technique.h"
+#include "tests/message_of.h"
+#include "tests/test.h"
 
 namespace beampipe::machine_memory_test {
 
 constexpr std::uint64_t kGiB = std::uint64_t{1} << 30;
 
 std::string refusal(const Trace& trace, const char* spec, std::uint64_t memory) {
-  try {
-    require_memory(trace, trace.frames[0], parse_technique(spec).working_bytes_per_pixel, spec, memory);
-    return "";
-  } catch (const std::runtime_error& error) {
-    return error.what();
-  }
+  return message_of<std::runtime_error>(
+      [&] { require_memory(trace, trace.frames[0], parse_technique(spec).working_bytes_per_pixel, spec, memory); });
 }
 
 TEST(MachineMemory, OfPixelsIsAskedForBeforeItIsTaken) {
   Trace trace;
   trace.frames.resize(1);
   trace.frames[0].width = trace.frames[0].height = 16384;
-  EXPECT_EQ(refusal(trace, "msaa:1", 4 * kGiB), "");
-  EXPECT_EQ(refusal(trace, "dvm", 40 * kGiB), "");
+  EXPECT_EQ(refusal(trace, "msaa:1", 4 * kGiB), "no error");
+  EXPECT_EQ(refusal(trace, "dvm", 40 * kGiB), "no error");
   EXPECT_EQ(refusal(trace, "dvm", 16 * kGiB),
             "dvm: 16384 x 16384 pixels and 0 triangles may need 37376 MiB, and this machine has 16384");
 }
@@ -33,7 +29,7 @@ TEST(MachineMemory, OfTrianglesThatAreDrawnAgainAndAgainIsAskedForBeforeItIsTake
   trace.meshes[0].triangles.resize(30000);
   trace.frames.resize(1);
   trace.frames[0].draws.resize(30000);
-  EXPECT_EQ(refusal(trace, "beam", 128 * kGiB), "");
+  EXPECT_EQ(refusal(trace, "beam", 128 * kGiB), "no error");
   EXPECT_NE(refusal(trace, "beam", 64 * kGiB).find("900000000 triangles may need 102"), std::string::npos);
 }
 
@@ -54,14 +50,14 @@ Trace varying_pixel() {
 // What the shader keeps for each material was not asked for.
 TEST(MachineMemory, OfMaterialsIsAskedForBeforeItIsTaken) {
   Trace trace = varying_pixel();
-  EXPECT_EQ(refusal(trace, "beam", kGiB), "");
+  EXPECT_EQ(refusal(trace, "beam", kGiB), "no error");
   trace.materials.resize(1'000'000);
-  EXPECT_EQ(refusal(trace, "beam", 8 * kGiB), "");
+  EXPECT_EQ(refusal(trace, "beam", 8 * kGiB), "no error");
   const std::string refused = refusal(trace, "beam", kGiB / 2);
   EXPECT_EQ(refused.find("beam: 1 x 1 pixels and 1 triangles, with 1000000 materials and 0 images, may need "), 0u)
       << refused;
   trace.materials[0].unlit = true;  // the triangle is flat, and no material is shaded
-  EXPECT_EQ(refusal(trace, "beam", kGiB / 2), "");
+  EXPECT_EQ(refusal(trace, "beam", kGiB / 2), "no error");
 }
 
 TEST(MachineMemory, OfTexturesAndVerticesIsAskedForBeforeItIsTaken) {

@@ -1,7 +1,7 @@
 #include "tools/evaluate/memory_system.h"
 
-#include <gtest/gtest.h>
-
+#include "tests/message_of.h"
+#include "tests/test.h"
 #include "traces/files/trace_io.h"
 
 namespace beampipe::memory_system_test {
@@ -16,12 +16,7 @@ MemoryParameters parse(const std::string& parameters, const std::string& sources
 }
 
 std::string refusal(const std::string& parameters, const std::string& sources = "") {
-  try {
-    parse(parameters, sources);
-  } catch (const TraceError& error) {
-    return error.what();
-  }
-  return "";
+  return message_of<TraceError>([&] { parse(parameters, sources); });
 }
 
 TEST(MemorySystem, WhatIsLeftOutIsTheDefault) {
@@ -73,7 +68,8 @@ TEST(MemorySystem, ValuesMustFitTogether) {
   EXPECT_EQ(refusal("\"l2_ways\": 1024, \"line_bytes\": 256, \"l2_bytes\": 262143")
                 .find("m.json: /parameters/l2_bytes: expected room for one set of 1024 ways x 256 bytes"),
             0u);
-  EXPECT_EQ(refusal("\"rop_ways\": 1024, \"rop_bytes\": 262144", "\"rop_ways\": \"c\", \"rop_bytes\": \"c\""), "");
+  EXPECT_EQ(refusal("\"rop_ways\": 1024, \"rop_bytes\": 262144", "\"rop_ways\": \"c\", \"rop_bytes\": \"c\""),
+            "no error");
   EXPECT_EQ(refusal("\"l1_ways\": 512").find("m.json: /parameters: expected l1_bytes of room for one set"), 0u);
 }
 

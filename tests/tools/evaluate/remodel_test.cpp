@@ -1,7 +1,6 @@
 #include "tools/evaluate/remodel.h"
 
-#include <gtest/gtest.h>
-
+#include "tests/test.h"
 #include "tests/tools/report_frames.h"
 #include "tools/report/report_text.h"
 

@@ -2,15 +2,9 @@
 
 #include "tools/evaluate/resume.h"
 
-#include <chrono>
 #include <csignal>
 #include <cstdio>
-#include <functional>
-#include <map>
 #include <nlohmann/json.hpp>
-#include <random>
-#include <set>
-#include <thread>
 
 #include "tests/simd/random.h"
 #include "tests/thorough.h"
@@ -21,12 +15,7 @@
 namespace beampipe::resume_test {
 
 using Json = nlohmann::ordered_json;
-using Names = std::vector<std::string>;
 namespace fs = std::filesystem;
-
-void pause(double milliseconds) {
-  std::this_thread::sleep_for(std::chrono::duration<double, std::milli>(milliseconds));
-}
 
 // Removes the times, which differ between any two runs.
 void drop_times(Json& json) {
@@ -51,21 +40,17 @@ std::map<std::string, std::string> contents(const fs::path& folder) {
   return files;
 }
 
-class ResumeTest : public testing::Test {
+class ResumeTest : public RunInFolder {
  protected:
   void make_trace(int frames, int triangles = 200) {
-    succeed({"make", "soup", "--triangles", std::to_string(triangles), "--width", "32", "--height", "18", "--frames",
-             std::to_string(frames), "--orbit", "20", "-o", path("trace.json")});
+    finish({"make", "soup", "--triangles", std::to_string(triangles), "--width", "32", "--height", "18", "--frames",
+            std::to_string(frames), "--orbit", "20", "-o", path("trace.json")});
   }
-  std::string path(const std::string& name) const { return (folder_ / name).string(); }
   Names command(const std::string& verb, const std::string& out, const Names& more) const {
-    Names arguments = {verb, path("trace.json"), "-o", path(out), "--threads", "1", "-t"};
-    arguments.insert(arguments.end(), more.begin(), more.end());
-    return arguments;
+    return joined({verb, path("trace.json"), "-o", path(out), "--threads", "1", "-t"}, more);
   }
-  Names resume(const std::string& verb, const std::string& out, Names more) const {
-    more.push_back("--resume");
-    return command(verb, out, more);
+  Names resume(const std::string& verb, const std::string& out, const Names& more) const {
+    return command(verb, out, joined(more, {"--resume"}));
   }
   int frames_finished(const std::string& out) const {
     if (fs::exists(folder_ / out / "report.json")) return 20;
@@ -85,87 +70,89 @@ class ResumeTest : public testing::Test {
       if (!left.contains(name)) names.insert(name);
     return names;
   }
-  static Outcome succeed(const Names& arguments) {
-    Outcome outcome = run_program(arguments);
-    EXPECT_EQ(outcome.exit_code, 0) << outcome.err;
-    return outcome;
-  }
   static std::string refused(const Names& arguments, const std::string& why = "cannot resume") {
     const Outcome outcome = run_program(arguments);
-    EXPECT_EQ(outcome.exit_code, 1);
-    EXPECT_EQ(std::count(outcome.err.begin(), outcome.err.end(), '\n'), 1) << outcome.err;
-    EXPECT_NE(outcome.err.find(why), std::string::npos) << outcome.err;
+    expect_one_error_line(outcome, 1, why);
     return outcome.err;
   }
   // Leaves a run that stopped after its first frame, because a picture of the second could not be written.
   void leave_unfinished(const std::string& verb, const std::string& out, const Names& more) {
     const fs::path in_the_way = folder_ / (out + "/msaa_2/frame_0001.png");
     fs::create_directories(in_the_way);
-    const Outcome outcome = run_program(command(verb, out, more));
+    const Outcome outcome = run_program(command(verb, out, more));  // it may have notes too
     EXPECT_EQ(outcome.exit_code, 1);
     EXPECT_NE(outcome.err.find("frame_0001.png"), std::string::npos) << outcome.err;
     fs::remove(in_the_way);
   }
-  // Makes each of the changes in a copy of the folder `out`, in the record of the first frame. The run cannot go on
-  // from it, and ends like the one in the folder `whole`.
-  void expect_restarts(const std::vector<std::function<void(Json&)>>& changes, const Names& specs) {
+  // The same as an undisturbed run after the first frame.
+  void expect_to_go_on(const std::string& verb, const Names& specs) {
+    finish(command(verb, "whole", specs));
+    leave_unfinished(verb, "out", specs);
+    EXPECT_TRUE(fs::exists(folder_ / "out" / frame_record_name(0)));
+    finish(resume(verb, "out", specs));
+    EXPECT_EQ(differences("out", "whole"), std::set<std::string>{});
+  }
+  // Kills the program (kill -9) `times` at random moments, of which each comes within this part of the time that an
+  // undisturbed run takes, and continues each time.
+  void expect_to_outlive_kills(const std::string& verb, const Names& specs, int times, double part) {
+    const std::string whole = verb + "_whole", torn = verb + "_killed";
+    const auto start = std::chrono::steady_clock::now();
+    finish(command(verb, whole, specs));
+    const double whole_ms = std::chrono::duration<double, std::milli>(std::chrono::steady_clock::now() - start).count();
+    Random random(std::random_device{}());
+    int killed = 0;
+    std::string finished;  // the number of finished frames at each kill
+    for (int i = 0; i < times * thoroughness(); ++i) {
+      Program program(resume(verb, torn, specs));
+      pause(random.real(0, part * whole_ms));
+      program.signal(SIGKILL);
+      killed += program.wait().exit_code == -1;
+      finished += ' ' + std::to_string(frames_finished(torn));
+    }
+    EXPECT_GT(killed, 0);
+    finish(resume(verb, torn, specs));
+    EXPECT_EQ(differences(whole, torn), std::set<std::string>{});
+    std::printf("%s: killed %d times; frames finished by then:%s; %zu files the same as undisturbed\n", verb.c_str(),
+                killed, finished.c_str(), contents(folder_ / whole).size());
+  }
+  // Each change to the first frame's record makes `compare` start from the beginning. The record has the digest of its
+  // contents, or that of the contents before the change.
+  enum class Digest { right, old };
+  void expect_not_believed(const Names& specs, Digest digest, const std::vector<std::function<void(Json&)>>& changes) {
+    finish(command("compare", "whole", specs));
+    leave_unfinished("compare", "out", specs);
     for (std::size_t i = 0; i < changes.size(); ++i) {
       SCOPED_TRACE(i);
       const std::string out = "out_" + std::to_string(i);
       fs::copy(folder_ / "out", folder_ / out, fs::copy_options::recursive);
-      const fs::path record = folder_ / out / frame_record_name(0);
-      Json json = Json::parse(read_text(record));
-      json.erase("digest");
+      Json json = Json::parse(read_text(folder_ / "out" / frame_record_name(0)));
+      if (digest == Digest::right) json.erase("digest");
       changes[i](json);
-      json["digest"] = digest_of(json.dump(2) + "\n");
-      write_text(record, json.dump(2) + "\n");
-      EXPECT_EQ(succeed(resume("compare", out, specs)).err, "") << "the run starts from the beginning";
+      if (digest == Digest::right) json["digest"] = digest_of(json.dump(2) + "\n");
+      write_text(folder_ / out / frame_record_name(0), json.dump(2) + "\n");
+      EXPECT_EQ(finish(resume("compare", out, specs)).err, "") << "the run starts from the beginning";
       EXPECT_EQ(differences(out, "whole"), std::set<std::string>{});
     }
   }
-
-  TemporaryFolder folder_;
 };
 
-// Kills the program (kill -9) at random moments and continues each time. taa and dvm carry a history from frame to
-// frame, and compare keeps sums.
+// taa and dvm carry a history from frame to frame, and compare keeps sums.
 TEST_F(ResumeTest, TwentyFramesKilledTenTimesAreTheSameAsUndisturbed) {
   make_trace(20);
-  for (const std::string verb : {"run", "compare"}) {
-    SCOPED_TRACE(verb);
-    Names specs = {"msaa:2", "beam", "taa:4", "dvm"};
-    if (verb == "compare") specs.insert(specs.end(), {"--ladder", "1,2", "--causes"});
-    const auto start = std::chrono::steady_clock::now();
-    succeed(command(verb, verb + "_whole", specs));
-    const double whole_ms = std::chrono::duration<double, std::milli>(std::chrono::steady_clock::now() - start).count();
-    Random random(std::random_device{}());
-    SCOPED_TRACE(random.name());
-    int killed = 0;
-    std::string finished;  // the number of finished frames at each kill
-    for (int i = 0; i < 10 * thoroughness(); ++i) {
-      Program program(resume(verb, verb + "_killed", specs));
-      pause(random.real(0, 0.3 * whole_ms));
-      program.signal(SIGKILL);
-      killed += program.wait().exit_code == -1;
-      finished += ' ' + std::to_string(frames_finished(verb + "_killed"));
-    }
-    EXPECT_GT(killed, 0);
-    succeed(resume(verb, verb + "_killed", specs));
-    EXPECT_EQ(differences(verb + "_whole", verb + "_killed"), std::set<std::string>{});
-    std::printf("%s: killed %d times; frames finished by then:%s; %zu files the same as undisturbed\n", verb.c_str(),
-                killed, finished.c_str(), contents(folder_ / (verb + "_whole")).size());
-  }
+  const Names specs = {"msaa:2", "beam", "taa:4", "dvm"};
+  expect_to_outlive_kills("run", specs, 10, 0.3);
+  expect_to_outlive_kills("compare", joined(specs, {"--ladder", "1,2", "--causes"}), 10, 0.3);
 }
 
 TEST_F(ResumeTest, AnErrorInALaterFrameLosesNothingThatWasFinished) {
   make_trace(3);
   const Names specs = {"taa:4", "msaa:2"};
-  succeed(command("run", "whole", specs));
+  finish(command("run", "whole", specs));
   leave_unfinished("run", "out", specs);
   EXPECT_FALSE(fs::exists(folder_ / "out/msaa_2/frame_0001.exr"));
   EXPECT_TRUE(fs::exists(folder_ / "out/unfinished/frame_0000.json"));
   const auto first = fs::last_write_time(folder_ / "out/msaa_2/frame_0000.exr");
-  const Outcome outcome = succeed(resume("run", "out", specs));
+  const Outcome outcome = finish(resume("run", "out", specs));
   EXPECT_EQ(outcome.err,
             "beampipe: 1 of 3 frames are finished; continuing with frame 1 (taa:4: earlier frames are rendered again, "
             "because the next "
@@ -178,8 +165,8 @@ TEST_F(ResumeTest, GoesOnAtTheFirstFrameThatLacksAPicture) {
   make_trace(2);
   leave_unfinished("run", "out", {"msaa:2"});
   fs::remove(folder_ / "out/msaa_2/frame_0000.png");
-  EXPECT_EQ(succeed(resume("run", "out", {"msaa:2"})).err, "");
-  succeed(command("run", "whole", {"msaa:2"}));
+  EXPECT_EQ(finish(resume("run", "out", {"msaa:2"})).err, "");
+  finish(command("run", "whole", {"msaa:2"}));
   EXPECT_EQ(differences("out", "whole"), std::set<std::string>{});
 }
 
@@ -189,7 +176,7 @@ TEST_F(ResumeTest, DamagedFilesOfAFinishedFrameAreMadeAgain) {
   for (const std::string verb : {"run", "compare"}) {
     Names specs = {"msaa:2"};
     if (verb == "compare") specs.insert(specs.end(), {"--ladder", "1"});
-    succeed(command(verb, verb + "_whole", specs));
+    finish(command(verb, verb + "_whole", specs));
     for (const std::string file : {"frame_0000.exr", "frame_0000.png", "frame_0000_counters.exr"}) {
       SCOPED_TRACE(verb + " " + file);
       const std::string out = verb + "_" + file;
@@ -198,7 +185,7 @@ TEST_F(ResumeTest, DamagedFilesOfAFinishedFrameAreMadeAgain) {
       std::string bytes = read_text(damaged);
       ++bytes.at(bytes.size() / 2);
       write_text(damaged, file == "frame_0000.exr" ? "" : bytes);
-      succeed(resume(verb, out, specs));
+      finish(resume(verb, out, specs));
       EXPECT_EQ(differences(out, verb + "_whole"), std::set<std::string>{});
     }
   }
@@ -206,66 +193,40 @@ TEST_F(ResumeTest, DamagedFilesOfAFinishedFrameAreMadeAgain) {
 
 TEST_F(ResumeTest, AFrameWhoseRecordIsDamagedIsMadeAgain) {
   make_trace(2);
-  const Names specs = {"msaa:2", "--ladder", "1"};
-  succeed(command("compare", "whole", specs));
-  leave_unfinished("compare", "out", specs);
-  const fs::path record = folder_ / "out" / frame_record_name(0);
-  const std::vector<std::function<void(Json&)>> damages = {[](Json& json) { json.erase("sums"); },
-                                                           [](Json& json) { json["sums"]["ladder"] = "none"; },
-                                                           [](Json& json) { json["techniques"] = Json::array(); },
-                                                           [](Json& json) { json["techniques"][0]["image"] = 7; },
-                                                           [](Json& json) { json["techniques"][0]["stages"].clear(); },
-                                                           [](Json& json) { json.erase("digest"); },
-                                                           [](Json& json) { json = Json::array({json}); }};
-  for (std::size_t i = 0; i < damages.size(); ++i) {
-    SCOPED_TRACE(i);
-    const std::string out = "out_" + std::to_string(i);
-    fs::copy(folder_ / "out", folder_ / out, fs::copy_options::recursive);
-    Json json = Json::parse(read_text(record));
-    damages[i](json);
-    write_text(folder_ / out / frame_record_name(0), json.dump());
-    EXPECT_EQ(succeed(resume("compare", out, specs)).err, "") << "the run starts from the beginning";
-    EXPECT_EQ(differences(out, "whole"), std::set<std::string>{});
-  }
+  expect_not_believed(
+      {"msaa:2", "--ladder", "1"}, Digest::old,
+      {[](Json& json) { json.erase("sums"); }, [](Json& json) { json["sums"]["ladder"] = "none"; },
+       [](Json& json) { json["techniques"] = Json::array(); }, [](Json& json) { json["techniques"][0]["image"] = 7; },
+       [](Json& json) { json["techniques"][0]["stages"].clear(); }, [](Json& json) { json.erase("digest"); },
+       [](Json& json) { json = Json::array({json}); }});
 }
 
 // The digest of the record is correct, but it belongs to another frame or another program.
 TEST_F(ResumeTest, ARecordThatSpeaksOfSomethingElseIsNotBelieved) {
   make_trace(2);
   const Names specs = {"msaa:2", "--ladder", "1", "--causes", "--orders"};
-  succeed(command("compare", "whole", specs));
-  leave_unfinished("compare", "out", specs);
-  const fs::path record = folder_ / "out" / frame_record_name(0);
-  fs::copy(folder_ / "out", folder_ / "copied", fs::copy_options::recursive);
-  fs::copy(record, folder_ / "copied" / frame_record_name(1));
-  succeed(resume("compare", "copied", specs));
-  EXPECT_EQ(differences("copied", "whole"), std::set<std::string>{});
-
-  const std::vector<std::function<void(Json&)>> changes = {
-      [](Json& json) { json["techniques"].erase(1); },
-      [](Json& json) { json["techniques"].push_back(json["techniques"][0]); },
-      [](Json& json) { std::swap(json["techniques"][0], json["techniques"][1]); },
-      [](Json& json) { json["techniques"] = json["files"] = nullptr; },
-      [](Json& json) { json["techniques"][0]["index"] = 1; },
-      [](Json& json) { json["techniques"][0]["image"] = "../trace.json"; },
-      [](Json& json) { json["techniques"][0]["picture"] = 7; },
-      [](Json& json) { json["techniques"][0].erase("stages"); },
-      [](Json& json) { json.erase("files"); },
-      [](Json& json) { json.erase("sums"); },
-      [](Json& json) { json["sums"]["ladder"].clear(); },
-      [](Json& json) { json["sums"]["causes"][0][0].clear(); },
-      [](Json& json) { json["sums"]["orders"]["techniques"][0][0].push_back(1); },
-      [](Json& json) { json["sums"]["orders"]["values"] = "many"; }};
-  expect_restarts(changes, specs);
+  expect_not_believed(
+      specs, Digest::right,
+      {[](Json& json) { json["techniques"].erase(1); },
+       [](Json& json) { json["techniques"].push_back(json["techniques"][0]); },
+       [](Json& json) { std::swap(json["techniques"][0], json["techniques"][1]); },
+       [](Json& json) { json["techniques"] = json["files"] = nullptr; },
+       [](Json& json) { json["techniques"][0]["index"] = 1; },
+       [](Json& json) { json["techniques"][0]["image"] = "../trace.json"; },
+       [](Json& json) { json["techniques"][0]["picture"] = 7; },
+       [](Json& json) { json["techniques"][0].erase("stages"); }, [](Json& json) { json.erase("files"); },
+       [](Json& json) { json.erase("sums"); }, [](Json& json) { json["sums"]["ladder"].clear(); },
+       [](Json& json) { json["sums"]["causes"][0][0].clear(); },
+       [](Json& json) { json["sums"]["orders"]["techniques"][0][0].push_back(1); },
+       [](Json& json) { json["sums"]["orders"]["values"] = "many"; }});
+  fs::copy(folder_ / "out" / frame_record_name(0), folder_ / "out" / frame_record_name(1));
+  finish(resume("compare", "out", specs));
+  EXPECT_EQ(differences("out", "whole"), std::set<std::string>{});
 }
 
 TEST_F(ResumeTest, OrdersAndCausesGoOnToTheSameSums) {
   make_trace(3, 40);
-  const Names specs = {"msaa:2", "alpha", "--ladder", "1", "--orders", "--causes"};
-  succeed(command("compare", "whole", specs));
-  leave_unfinished("compare", "out", specs);
-  succeed(resume("compare", "out", specs));
-  EXPECT_EQ(differences("out", "whole"), std::set<std::string>{});
+  expect_to_go_on("compare", {"msaa:2", "alpha", "--ladder", "1", "--orders", "--causes"});
 }
 
 const std::vector<std::string> kVaryingFrames = {R"({"mesh": "wall"}, {"mesh": "flat"})",
@@ -275,43 +236,21 @@ const std::vector<std::string> kVaryingFrames = {R"({"mesh": "wall"}, {"mesh": "
 // taa keeps two histories here, and the ladder for visibility grows, for which references are rendered again.
 TEST_F(ResumeTest, PartsOfTheErrorGoOnToTheSameSums) {
   write_varying_trace(folder_, kVaryingFrames);
-  const Names specs = {"beam", "taa:4", "msaa:2", "--causes"};
-  succeed(command("compare", "whole", specs));
-  leave_unfinished("compare", "out", specs);
-  EXPECT_TRUE(fs::exists(folder_ / "out" / frame_record_name(0)));
-  succeed(resume("compare", "out", specs));
-  EXPECT_EQ(differences("out", "whole"), std::set<std::string>{});
+  expect_to_go_on("compare", {"beam", "taa:4", "msaa:2", "--causes"});
 }
 
 TEST_F(ResumeTest, KilledWhileErrorsAreSplit) {
   write_varying_trace(folder_, kVaryingFrames);
-  const Names specs = {"beam", "taa:4", "msaa:2", "--causes", "--ladder", "1,64"};
-  const auto start = std::chrono::steady_clock::now();
-  succeed(command("compare", "whole", specs));
-  const double whole_ms = std::chrono::duration<double, std::milli>(std::chrono::steady_clock::now() - start).count();
-  Random random(std::random_device{}());
-  SCOPED_TRACE(random.name());
-  for (int i = 0; i < 5 * thoroughness(); ++i) {
-    Program program(resume("compare", "killed", specs));
-    pause(random.real(0, 0.5 * whole_ms));
-    program.signal(SIGKILL);
-    program.wait();
-  }
-  succeed(resume("compare", "killed", specs));
-  EXPECT_EQ(differences("whole", "killed"), std::set<std::string>{});
+  expect_to_outlive_kills("compare", {"beam", "taa:4", "msaa:2", "--causes", "--ladder", "1,64"}, 5, 0.5);
 }
 
 TEST_F(ResumeTest, ARecordWithoutThePartsOfAnErrorIsNotBelieved) {
   write_varying_trace(folder_, kVaryingFrames);
-  const Names specs = {"msaa:2", "--ladder", "1"};
-  succeed(command("compare", "whole", specs));
-  leave_unfinished("compare", "out", specs);
-  const std::vector<std::function<void(Json&)>> changes = {
-      [](Json& json) { json["techniques"][0].erase("visibility"); },
-      [](Json& json) { json["techniques"][0].erase("shading"); },
-      [](Json& json) { json["techniques"][0]["shading"]["rmse"] = "none"; },
-      [](Json& json) { json["sums"].erase("visibility_ladder"); }};
-  expect_restarts(changes, specs);
+  expect_not_believed({"msaa:2", "--ladder", "1"}, Digest::right,
+                      {[](Json& json) { json["techniques"][0].erase("visibility"); },
+                       [](Json& json) { json["techniques"][0].erase("shading"); },
+                       [](Json& json) { json["techniques"][0]["shading"]["rmse"] = "none"; },
+                       [](Json& json) { json["sums"].erase("visibility_ladder"); }});
 }
 
 TEST_F(ResumeTest, WhatAnotherTraceOrOptionLeftIsRefused) {
@@ -328,28 +267,28 @@ TEST_F(ResumeTest, WhatAnotherTraceOrOptionLeftIsRefused) {
   EXPECT_EQ(contents(folder_ / "out"), before);
   refused(command("run", "out", {"msaa:2"}), "found those of another trace; --force writes over them");
   EXPECT_EQ(contents(folder_ / "out"), before);
-  succeed(command("run", "out", {"msaa:2", "--force"}));  // it starts from the beginning
-  succeed(command("run", "fresh", {"msaa:2"}));
+  finish(command("run", "out", {"msaa:2", "--force"}));  // it starts from the beginning
+  finish(command("run", "fresh", {"msaa:2"}));
   EXPECT_EQ(differences("out", "fresh"), std::set<std::string>{});
 }
 
 TEST_F(ResumeTest, RunDoesNotWriteOverErrorsUnlessForced) {
   make_trace(2);
-  succeed(command("run", "out", {"msaa:2"}));
-  succeed(command("run", "out", {"msaa:4"}));
-  succeed(command("compare", "out", {"msaa:2", "--ladder", "1"}));
+  finish(command("run", "out", {"msaa:2"}));
+  finish(command("run", "out", {"msaa:4"}));
+  finish(command("compare", "out", {"msaa:2", "--ladder", "1"}));
   const auto before = contents(folder_ / "out");
   refused(command("run", "out", {"msaa:2"}), "found those of beampipe compare; --force writes over them");
   EXPECT_EQ(contents(folder_ / "out"), before);
-  succeed(command("run", "out", {"msaa:2", "--force"}));
+  finish(command("run", "out", {"msaa:2", "--force"}));
 }
 
 TEST_F(ResumeTest, WhatIsFinishedStaysAsItIs) {
   make_trace(2);
-  succeed(command("run", "out", {"msaa:2"}));
+  finish(command("run", "out", {"msaa:2"}));
   EXPECT_FALSE(fs::exists(folder_ / "out/unfinished"));
   const std::string report = read_text(folder_ / "out/report.json");
-  EXPECT_EQ(succeed(resume("run", "out", {"msaa:2"})).out.find("already finished\n"), 0u);
+  EXPECT_EQ(finish(resume("run", "out", {"msaa:2"})).out.find("already finished\n"), 0u);
   EXPECT_EQ(read_text(folder_ / "out/report.json"), report) << "the old report with its times";
   refused(resume("run", "out", {"msaa:2", "--repeat", "2"}));
 }
@@ -357,10 +296,10 @@ TEST_F(ResumeTest, WhatIsFinishedStaysAsItIs) {
 // The program was killed after it had written the report, but before it had removed the records.
 TEST_F(ResumeTest, RecordsBesideAReportAreRemoved) {
   make_trace(2);
-  succeed(command("run", "out", {"msaa:2"}));
+  finish(command("run", "out", {"msaa:2"}));
   fs::create_directory(folder_ / "out/unfinished");
   write_text(folder_ / "out/unfinished/frame_0001.json", "{}");
-  succeed(resume("run", "out", {"msaa:2"}));
+  finish(resume("run", "out", {"msaa:2"}));
   EXPECT_FALSE(fs::exists(folder_ / "out/unfinished"));
 }
 

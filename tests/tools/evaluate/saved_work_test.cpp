@@ -1,9 +1,6 @@
 #include "tools/evaluate/saved_work.h"
 
-#include <gtest/gtest.h>
-
-#include <map>
-#include <string>
+#include "tests/test.h"
 
 namespace beampipe::saved_work_test {
 

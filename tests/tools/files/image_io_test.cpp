@@ -9,9 +9,7 @@
 #include <ImfStringAttribute.h>
 #include <png.h>
 
-#include <cmath>
-#include <limits>
-
+#include "tests/message_of.h"
 #include "tests/tools/fixtures.h"
 
 namespace beampipe::image_io_test {
@@ -24,13 +22,7 @@ Image speaking_image(std::uint32_t width, std::uint32_t height) {
 }
 
 std::string error_of_reading(const std::filesystem::path& file) {
-  try {
-    read_exr(file);
-  } catch (const ImageError& error) {
-    return error.what();
-  }
-  ADD_FAILURE() << file << " was accepted";
-  return "";
+  return message_of<ImageError>([&] { read_exr(file); });
 }
 
 // Writes a file with the header of a test, whose float channels have one value each.
@@ -65,21 +57,21 @@ Rgb8 decode_png(const std::string& bytes) {
   return rgb;
 }
 
-TEST(Exr, ComesBackToTheLastBit) {
-  TemporaryFolder folder;
+using Exr = InFolder;
+
+TEST_F(Exr, ComesBackToTheLastBit) {
   const Image image = speaking_image(5, 37);  // more rows than one ZIP block holds
-  write_text(folder / "a.exr", encode_exr(image));
-  const Image back = read_exr(folder / "a.exr");
+  write_text(folder_ / "a.exr", encode_exr(image));
+  const Image back = read_exr(folder_ / "a.exr");
   EXPECT_EQ(back.width, 5u);
   EXPECT_EQ(back.height, 37u);
   EXPECT_EQ(back.rgba, image.rgba);
 }
 
-TEST(Exr, ChannelsAreNamedAndRowZeroIsOnTop) {
-  TemporaryFolder folder;
+TEST_F(Exr, ChannelsAreNamedAndRowZeroIsOnTop) {
   const Image image = speaking_image(3, 2);
-  write_text(folder / "a.exr", encode_exr(image));
-  const Planes planes = read_exr_planes(folder / "a.exr");
+  write_text(folder_ / "a.exr", encode_exr(image));
+  const Planes planes = read_exr_planes(folder_ / "a.exr");
   ASSERT_EQ(planes.channels.size(), 4u);
   EXPECT_EQ(planes.channels.at("R")[0], image.rgba[0]);
   EXPECT_EQ(planes.channels.at("G")[1], image.rgba[5]);
@@ -87,64 +79,57 @@ TEST(Exr, ChannelsAreNamedAndRowZeroIsOnTop) {
   EXPECT_EQ(planes.channels.at("A")[5], image.rgba[23]);
 }
 
-TEST(Exr, PlanesComeBackUnderTheirNames) {
-  TemporaryFolder folder;
+TEST_F(Exr, PlanesComeBackUnderTheirNames) {
   const Planes planes{2, 2, {{"fragments", {0, 1, 2, 3}}, {"error", {0.5f, 0.25f, 0.125f, 1e-20f}}}};
-  write_text(folder / "a.exr", encode_exr(planes));
-  const Planes back = read_exr_planes(folder / "a.exr");
+  write_text(folder_ / "a.exr", encode_exr(planes));
+  const Planes back = read_exr_planes(folder_ / "a.exr");
   EXPECT_EQ(back.width, 2u);
   EXPECT_EQ(back.height, 2u);
   EXPECT_EQ(back.channels, planes.channels);
 }
 
-TEST(Exr, HeadersHaveLabels) {
-  TemporaryFolder folder;
-  write_text(folder / "a.exr", encode_exr(speaking_image(2, 2), {{"beampipe.technique", "msaa:8"}}));
-  const Imf::InputFile file((folder / "a.exr").c_str());
+TEST_F(Exr, HeadersHaveLabels) {
+  write_text(folder_ / "a.exr", encode_exr(speaking_image(2, 2), {{"beampipe.technique", "msaa:8"}}));
+  const Imf::InputFile file((folder_ / "a.exr").c_str());
   const auto* label = file.header().findTypedAttribute<Imf::StringAttribute>("beampipe.technique");
   ASSERT_NE(label, nullptr);
   EXPECT_EQ(label->value(), "msaa:8");
 }
 
-TEST(Exr, APlaneOfTheWrongSizeIsAnError) {
+TEST_F(Exr, APlaneOfTheWrongSizeIsAnError) {
   EXPECT_THROW(encode_exr(Planes{2, 2, {{"fragments", {0, 1, 2}}}}), std::invalid_argument);
 }
 
-TEST(Exr, WithoutAlphaAlphaIsOne) {
-  TemporaryFolder folder;
-  write_exr(folder / "a.exr", Imf::Header(2, 1), {"R", "G", "B"});
-  EXPECT_EQ(read_exr(folder / "a.exr").rgba, (std::vector<float>{0.25f, 0.25f, 0.25f, 1, 0.25f, 0.25f, 0.25f, 1}));
+TEST_F(Exr, WithoutAlphaAlphaIsOne) {
+  write_exr(folder_ / "a.exr", Imf::Header(2, 1), {"R", "G", "B"});
+  EXPECT_EQ(read_exr(folder_ / "a.exr").rgba, (std::vector<float>{0.25f, 0.25f, 0.25f, 1, 0.25f, 0.25f, 0.25f, 1}));
 }
 
-TEST(Exr, AMissingColourChannelIsAnErrorThatNamesIt) {
-  TemporaryFolder folder;
-  write_exr(folder / "a.exr", Imf::Header(2, 1), {"R", "B", "A"});
-  EXPECT_NE(error_of_reading(folder / "a.exr").find("no channel G"), std::string::npos);
+TEST_F(Exr, AMissingColourChannelIsAnErrorThatNamesIt) {
+  write_exr(folder_ / "a.exr", Imf::Header(2, 1), {"R", "B", "A"});
+  EXPECT_NE(error_of_reading(folder_ / "a.exr").find("no channel G"), std::string::npos);
 }
 
-TEST(Exr, ADataWindowThatIsNotTheWholePictureIsAnError) {
-  TemporaryFolder folder;
+TEST_F(Exr, ADataWindowThatIsNotTheWholePictureIsAnError) {
   const Imath::Box2i whole({0, 0}, {7, 7}), part({2, 2}, {5, 5}), shifted({1, 0}, {8, 7});
-  write_exr(folder / "part.exr", Imf::Header(whole, part), {"R", "G", "B", "A"});
-  write_exr(folder / "shifted.exr", Imf::Header(shifted, shifted), {"R", "G", "B", "A"});
-  EXPECT_NE(error_of_reading(folder / "part.exr").find("data window"), std::string::npos);
-  EXPECT_NE(error_of_reading(folder / "shifted.exr").find("data window"), std::string::npos);
+  write_exr(folder_ / "part.exr", Imf::Header(whole, part), {"R", "G", "B", "A"});
+  write_exr(folder_ / "shifted.exr", Imf::Header(shifted, shifted), {"R", "G", "B", "A"});
+  EXPECT_NE(error_of_reading(folder_ / "part.exr").find("data window"), std::string::npos);
+  EXPECT_NE(error_of_reading(folder_ / "shifted.exr").find("data window"), std::string::npos);
 }
 
-TEST(Exr, WhatIsNoImageIsAnErrorOfOneLineThatNamesTheFile) {
-  TemporaryFolder folder;
-  write_text(folder / "text.exr", "{\"not\": \"an image\"}\n");
-  write_text(folder / "empty.exr", "");
+TEST_F(Exr, WhatIsNoImageIsAnErrorOfOneLineThatNamesTheFile) {
+  write_text(folder_ / "text.exr", "{\"not\": \"an image\"}\n");
+  write_text(folder_ / "empty.exr", "");
   for (const char* name : {"text.exr", "empty.exr", "missing.exr", "."}) {
-    const std::string error = error_of_reading(folder / name);
-    EXPECT_NE(error.find((folder / name).string()), std::string::npos) << error;
+    const std::string error = error_of_reading(folder_ / name);
+    EXPECT_NE(error.find((folder_ / name).string()), std::string::npos) << error;
     EXPECT_EQ(error.find('\n'), std::string::npos) << error;
   }
 }
 
 // Whatever a header claims, memory is allocated only for what the file can contain.
-TEST(Exr, AClaimThatTheFileCannotHoldIsAnError) {
-  TemporaryFolder folder;
+TEST_F(Exr, AClaimThatTheFileCannotHoldIsAnError) {
   const std::string bytes = encode_exr(speaking_image(9, 40));
   const auto claim = [&](std::int32_t side) {
     std::string claimed = bytes;
@@ -152,33 +137,31 @@ TEST(Exr, AClaimThatTheFileCannotHoldIsAnError) {
       const std::size_t at = claimed.find(window) + window.size() + 1 + sizeof "box2i" + 4 + 8;  // the box's maximum
       for (std::size_t i = 0; i < 8; ++i) claimed[at + i] = static_cast<char>((side - 1) >> (8 * (i % 4)));
     }
-    write_text(folder / "a.exr", claimed + std::string(1 << 16, '\1'));  // bytes that could be its line offsets
-    return error_of_reading(folder / "a.exr");
+    write_text(folder_ / "a.exr", claimed + std::string(1 << 16, '\1'));  // bytes that could be its line offsets
+    return error_of_reading(folder_ / "a.exr");
   };
   EXPECT_NE(claim(16384).find("it claims 16384 x 16384 pixels"), std::string::npos) << claim(16384);
-  EXPECT_NE(claim(16385), "");
-  EXPECT_NE(claim(1'000'000), "");
+  EXPECT_NE(claim(16385), "no error");
+  EXPECT_NE(claim(1'000'000), "no error");
 }
 
 // Flat pictures take almost no space in DWA. They are read up to a size for which every machine has memory.
-TEST(Exr, AFlatPictureInDwaIsReadUnlessItIsLarge) {
-  TemporaryFolder folder;
+TEST_F(Exr, AFlatPictureInDwaIsReadUnlessItIsLarge) {
   const auto write_flat = [&](int width) {
     Imf::Header header(width, 1024);
     header.compression() = Imf::DWAB_COMPRESSION;
-    write_exr(folder / "a.exr", header, {"R", "G", "B"});
-    return std::filesystem::file_size(folder / "a.exr");
+    write_exr(folder_ / "a.exr", header, {"R", "G", "B"});
+    return std::filesystem::file_size(folder_ / "a.exr");
   };
   EXPECT_LT(1100 * write_flat(2048), 12u * 2048 * 1024);
-  EXPECT_EQ(read_exr(folder / "a.exr").rgba.size(), 4u * 2048 * 1024);
+  EXPECT_EQ(read_exr(folder_ / "a.exr").rgba.size(), 4u * 2048 * 1024);
   write_flat(6144);
-  const std::string error = error_of_reading(folder / "a.exr");
+  const std::string error = error_of_reading(folder_ / "a.exr");
   EXPECT_NE(error.find("it claims 6144 x 1024 pixels"), std::string::npos) << error;
 }
 
 // The library allocates what an attribute claims before it reads the attribute.
-TEST(Exr, AnAttributeThatClaimsMoreThanItHasIsAnError) {
-  TemporaryFolder folder;
+TEST_F(Exr, AnAttributeThatClaimsMoreThanItHasIsAnError) {
   const auto number = [](std::uint32_t value) {
     return std::string{char(value), char(value >> 8), char(value >> 16), char(value >> 24)};
   };
@@ -193,16 +176,15 @@ TEST(Exr, AnAttributeThatClaimsMoreThanItHasIsAnError) {
                     {"box2i", number(1'000'000), "rest"}};
   for (const auto& [type, size, value] : attributes) {
     const std::string attribute = "fragm" + std::string(1, '\0') + type + '\0' + size + value;
-    write_text(folder / "a.exr", start + attribute + std::string(1000, '\0'));
-    const std::string error = error_of_reading(folder / "a.exr");
+    write_text(folder_ / "a.exr", start + attribute + std::string(1000, '\0'));
+    const std::string error = error_of_reading(folder_ / "a.exr");
     EXPECT_NE(error.find("'fragm'"), std::string::npos) << error;
   }
 }
 
 // The library would read past the end of this list; the core would not. The list is the last attribute of a header that
 // has all others.
-TEST(Exr, AListOfChannelsWithoutItsEndIsAnError) {
-  TemporaryFolder folder;
+TEST_F(Exr, AListOfChannelsWithoutItsEndIsAnError) {
   std::string bytes = encode_exr(speaking_image(4, 3));
   constexpr std::size_t kFirst = 8, kSize = sizeof "channels" + sizeof "chlist", kFourChannels = 4 * (2 + 16) + 1;
   ASSERT_EQ(bytes.find("channels"), kFirst);
@@ -211,17 +193,16 @@ TEST(Exr, AListOfChannelsWithoutItsEndIsAnError) {
   bytes.erase(kFirst, channels.size());
   const std::string last = "screenWindowWidth";
   bytes.insert(bytes.find(last) + last.size() + 1 + sizeof "float" + 4 + 4, channels);
-  write_text(folder / "a.exr", bytes);
-  const std::string error = error_of_reading(folder / "a.exr");
+  write_text(folder_ / "a.exr", bytes);
+  const std::string error = error_of_reading(folder_ / "a.exr");
   EXPECT_NE(error.find("list of channels does not end"), std::string::npos) << error;
 }
 
-TEST(Exr, EveryTruncatedFileIsAnError) {
-  TemporaryFolder folder;
+TEST_F(Exr, EveryTruncatedFileIsAnError) {
   const std::string bytes = encode_exr(speaking_image(9, 40));
   for (std::size_t size = 0; size < bytes.size(); size += 7) {
-    write_text(folder / "a.exr", bytes.substr(0, size));
-    EXPECT_THROW(read_exr(folder / "a.exr"), ImageError) << size << " of " << bytes.size() << " bytes";
+    write_text(folder_ / "a.exr", bytes.substr(0, size));
+    EXPECT_THROW(read_exr(folder_ / "a.exr"), ImageError) << size << " of " << bytes.size() << " bytes";
   }
 }
 

@@ -28,7 +28,7 @@ const std::string kReport =
       "dram_bytes": 800, "stages": [{"stage": "compose", "ops": {"total": 3}, "bytes_read": 5, "bytes_written": 2,
         "dram_bytes": 10, "modelled_ms": {"shaders": 0.5}}]}]}]})";
 
-class HostileReport : public testing::Test {
+class HostileReport : public RunInFolder {
  protected:
   ReportFile read(const std::string& text) const {
     write_text(folder_ / "report.json", text);
@@ -53,8 +53,6 @@ class HostileReport : public testing::Test {
     }
     return "";
   }
-
-  TemporaryFolder folder_;
 };
 
 TEST_F(HostileReport, TechniquesAndFramesMustBeThere) {

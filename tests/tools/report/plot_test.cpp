@@ -4,11 +4,7 @@
 
 #include <png.h>
 
-#include <chrono>
-#include <cmath>
 #include <csignal>
-#include <random>
-#include <thread>
 
 #include "tests/tools/program.h"
 #include "tools/report/label_placement.h"
@@ -30,16 +26,13 @@ std::string report_text(const std::string& spec, int bytes, double emr, double r
          result("msaa:1", 10, 1, 0.1, 10, "") + "," + result("reference", 65536, 8, 0, 1000, "") + "]}";
 }
 
-class PlotTest : public testing::Test {
+class PlotTest : public RunInFolder {
  protected:
   std::filesystem::path make_report(const std::string& name, const std::string& text) {
     std::filesystem::create_directory(folder_ / name);
     write_text(folder_ / name / "report.json", text);
     return folder_ / name;
   }
-  std::string path(const std::string& name) const { return (folder_ / name).string(); }
-
-  TemporaryFolder folder_;
 };
 
 std::size_t count_of(const std::string& text, const std::string& part) {
@@ -183,13 +176,6 @@ TEST_F(PlotTest, PngDecodesAndIsNotBlank) {
 }
 
 TEST_F(PlotTest, ErrorsAreOneLine) {
-  const auto expect_error = [&](const std::vector<std::string>& arguments, int exit_code, const std::string& part) {
-    const Outcome outcome = run_program(arguments);
-    EXPECT_EQ(outcome.exit_code, exit_code) << outcome.err;
-    EXPECT_EQ(outcome.err.rfind("beampipe: error: ", 0), 0u) << outcome.err;
-    EXPECT_EQ(count_of(outcome.err, "\n"), 1u) << outcome.err;
-    EXPECT_NE(outcome.err.find(part), std::string::npos) << outcome.err << "does not say: " << part;
-  };
   make_report("good", report_text("beam", 42, 100, 0.01, 50));
   make_report("broken", "{\"beampipe_report\": 1, ");
   make_report("other", R"({"beampipe_trace": 1})");
@@ -225,12 +211,11 @@ TEST_F(PlotTest, AnInterruptEndsGnuplotToo) {
   const std::string search_path = getenv("PATH");
   setenv("PATH", (path("bin") + ":" + search_path).c_str(), 1);
   setenv("TMPDIR", path("temporary").c_str(), 1);
-  const auto pause = [] { std::this_thread::sleep_for(std::chrono::milliseconds(10)); };
   {
     Program program({"plot", path("a"), "-o", path("p.svg")});
     setenv("PATH", search_path.c_str(), 1);
     unsetenv("TMPDIR");
-    for (int i = 0; i < 3000 && !std::filesystem::exists(folder_ / "pid"); ++i) pause();
+    for (int i = 0; i < 3000 && !std::filesystem::exists(folder_ / "pid"); ++i) pause(10);
     program.signal(SIGTERM);
     EXPECT_EQ(program.wait().exit_code, 128 + SIGTERM);
   }
@@ -238,7 +223,7 @@ TEST_F(PlotTest, AnInterruptEndsGnuplotToo) {
     std::string command;  // empty for a process that has ended
     return static_cast<bool>(std::getline(std::ifstream(process + "/cmdline"), command));
   };
-  for (int i = 0; i < 500 && runs(); ++i) pause();
+  for (int i = 0; i < 500 && runs(); ++i) pause(10);
   EXPECT_FALSE(runs());
   EXPECT_TRUE(std::filesystem::is_empty(folder_ / "temporary"));
   EXPECT_FALSE(std::filesystem::exists(folder_ / "p.svg"));

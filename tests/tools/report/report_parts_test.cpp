@@ -1,8 +1,5 @@
 // The parts of the report page, for a report whose numbers can be computed by hand.
 
-#include <map>
-#include <set>
-
 #include "stages/cost/stage.h"
 #include "tests/tools/fixtures.h"
 #include "tools/files/image_io.h"
@@ -46,14 +43,12 @@ constexpr const char* kReport = R"({"beampipe_report": 1, "trace": "dots.json", 
     "frames": [{"index": 3, "image": "reference/frame_0003.exr", "picture": "reference/frame_0003.png", "wall_ms": {"median": 1}, "stages": []},
                {"index": 4, "image": "reference/frame_0004.exr", "picture": "reference/frame_0004.png", "wall_ms": {"median": 1}, "stages": []}]}]})";
 
-class ReportParts : public testing::Test {
+class ReportParts : public InFolder {
  protected:
   ReportFile read(const std::string& text = kReport) const {
     write_text(folder_ / "report.json", text);
     return read_report(folder_.string());
   }
-
-  TemporaryFolder folder_;
 };
 
 const Table& named(const std::vector<Table>& tables, const std::string& name) {
@@ -70,44 +65,49 @@ Json cell(const Table& table, std::size_t row, const std::string& key) {
   return "no such column";
 }
 
+// Null: the cell is empty.
+void expect_cells(const Table& table, std::size_t row, const std::vector<std::pair<const char*, Json>>& cells) {
+  for (const auto& [key, value] : cells) EXPECT_EQ(cell(table, row, key), value) << table.name << ' ' << key;
+}
+
 TEST_F(ReportParts, StagesAreMeansOverFrames) {
   const std::vector<Table> tables = report_tables(read());
   const Table& stages = named(tables, "stages");
   ASSERT_EQ(stages.rows.size(), 1u);
-  EXPECT_EQ(cell(stages, 0, "ops"), 2000000);
-  EXPECT_EQ(cell(stages, 0, "bit"), 2.5);
-  EXPECT_EQ(cell(stages, 0, "logical_bytes"), 500000);
-  EXPECT_EQ(cell(stages, 0, "ops_per_byte"), 4.0);
-  EXPECT_EQ(cell(stages, 0, "lane_use"), 0.25);
-  EXPECT_EQ(cell(stages, 0, "modelled_ms_shaders"), 0.4);
-  EXPECT_EQ(cell(stages, 0, "sector_bytes"), "no such column") << "columns without values are left out";
+  expect_cells(stages, 0,
+               {{"ops", 2000000},
+                {"bit", 2.5},
+                {"logical_bytes", 500000},
+                {"ops_per_byte", 4.0},
+                {"lane_use", 0.25},
+                {"modelled_ms_shaders", 0.4},
+                {"sector_bytes", "no such column"}});  // none has values
   const Table& frames = named(tables, "frames");
   ASSERT_EQ(frames.rows.size(), 4u);
-  EXPECT_EQ(cell(frames, 1, "modelled_ms_shaders_sum"), 5);
-  EXPECT_EQ(cell(frames, 1, "dram_bytes"), 1200);
-  EXPECT_TRUE(cell(frames, 2, "modelled_ms_shaders_sum").is_null());
+  expect_cells(frames, 1, {{"modelled_ms_shaders_sum", 5}, {"dram_bytes", 1200}});
+  expect_cells(frames, 2, {{"modelled_ms_shaders_sum", nullptr}});
 }
 
 TEST_F(ReportParts, TechniquesHaveTimesBoundsAndWhatMsaaWouldTake) {
   const std::vector<Table> tables = report_tables(read());
   const Table& techniques = named(tables, "techniques");
-  EXPECT_EQ(cell(techniques, 0, "wall_ms"), 6.0);
-  EXPECT_EQ(cell(techniques, 0, "modelled_ms_shaders_overlap"), 3.0);
-  EXPECT_EQ(cell(techniques, 0, "modelled_ms_shaders_sum"), 4.0);
-  EXPECT_EQ(cell(techniques, 0, "dram_bytes"), 1000.0) << "the mean over the frames";
-  EXPECT_TRUE(cell(techniques, 1, "modelled_ms_shaders_overlap").is_null())
-      << "no hardware is modelled for the reference";
-  EXPECT_EQ(cell(techniques, 0, "emr_bound"), "at least");
-  EXPECT_EQ(cell(techniques, 0, "peak_bytes_per_pixel"), 49);
-  EXPECT_EQ(cell(techniques, 0, "msaa_bytes_per_pixel"), 80.0);
-  EXPECT_TRUE(cell(techniques, 1, "rmse").is_null());
+  expect_cells(techniques, 0,
+               {{"wall_ms", 6.0},
+                {"modelled_ms_shaders_overlap", 3.0},
+                {"modelled_ms_shaders_sum", 4.0},
+                {"dram_bytes", 1000.0},  // the mean over the frames
+                {"emr_bound", "at least"},
+                {"peak_bytes_per_pixel", 49},
+                {"msaa_bytes_per_pixel", 80.0}});
+  // No hardware is modelled for the reference, and it has no error.
+  expect_cells(techniques, 1, {{"modelled_ms_shaders_overlap", nullptr}, {"rmse", nullptr}});
 }
 
 TEST_F(ReportParts, PartsOfErrorsAreColumnsWhereSurfacesVary) {
   const std::vector<Table> flat = report_tables(read());
   for (const char* key : {"visibility_rmse", "visibility_emr", "visibility_emr_bound", "shading_rmse"})
-    EXPECT_EQ(cell(named(flat, "techniques"), 0, key), "no such column");
-  EXPECT_EQ(cell(named(flat, "frames"), 0, "shading_rmse"), "no such column");
+    expect_cells(named(flat, "techniques"), 0, {{key, "no such column"}});
+  expect_cells(named(flat, "frames"), 0, {{"shading_rmse", "no such column"}});
 
   std::string text = kReport;
   text.insert(text.find("\"error\""), R"("shading": {"rmse": 0.5}, "visibility": {"rmse": 0.25, "equivalent_msaa": 1,
@@ -116,14 +116,14 @@ TEST_F(ReportParts, PartsOfErrorsAreColumnsWhereSurfacesVary) {
               R"("visibility": {"rmse": 0.125}, "shading": {"rmse": 0.75}, )");
   const std::vector<Table> tables = report_tables(read(text));
   const Table &techniques = named(tables, "techniques"), &frames = named(tables, "frames");
-  EXPECT_EQ(cell(techniques, 0, "visibility_rmse"), 0.25);
-  EXPECT_EQ(cell(techniques, 0, "visibility_emr"), 1);
-  EXPECT_EQ(cell(techniques, 0, "visibility_emr_bound"), "at most");
-  EXPECT_EQ(cell(techniques, 0, "shading_rmse"), 0.5);
-  EXPECT_EQ(cell(techniques, 0, "emr_bound"), "at least") << "of the whole error";
-  EXPECT_TRUE(cell(frames, 0, "visibility_rmse").is_null());
-  EXPECT_EQ(cell(frames, 1, "visibility_rmse"), 0.125);
-  EXPECT_EQ(cell(frames, 1, "shading_rmse"), 0.75);
+  expect_cells(techniques, 0,
+               {{"visibility_rmse", 0.25},
+                {"visibility_emr", 1},
+                {"visibility_emr_bound", "at most"},
+                {"shading_rmse", 0.5},
+                {"emr_bound", "at least"}});  // the last of the whole error
+  expect_cells(frames, 0, {{"visibility_rmse", nullptr}});
+  expect_cells(frames, 1, {{"visibility_rmse", 0.125}, {"shading_rmse", 0.75}});
 }
 
 TEST_F(ReportParts, CsvQuotesWhatNeedsIt) {

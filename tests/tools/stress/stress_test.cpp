@@ -1,8 +1,5 @@
 // Compares techniques with exact arithmetic in the hard cases, and exact arithmetic with closed forms.
 
-#include <gtest/gtest.h>
-
-#include <cmath>
 #include <numbers>
 
 #include "pipeline/technique_table.h"

@@ -1,19 +1,12 @@
 // beampipe sweep as a user runs it: its table against single runs, after a kill, and on a Slurm that is a script.
-#include <chrono>
 #include <csignal>
-#include <cstdlib>
-#include <map>
 #include <nlohmann/json.hpp>
-#include <sstream>
-#include <thread>
 
 #include "tests/tools/cli/program_fixture.h"
 
 namespace beampipe::command_sweep_test {
 
 using Parsed = nlohmann::json;  // independent of the program's own Json
-
-void pause(int milliseconds) { std::this_thread::sleep_for(std::chrono::milliseconds(milliseconds)); }
 
 // Rows by column name. No field of these tables has a comma or a quote in it.
 std::vector<std::map<std::string, std::string>> read_table(const std::filesystem::path& file) {
@@ -40,9 +33,7 @@ class SweepTest : public ProgramTest {
   }
 
   std::vector<std::string> sweep(const std::vector<std::string>& options = {}) {
-    std::vector<std::string> command = {"sweep", path("plan.json"), "-o", path("out")};
-    command.insert(command.end(), options.begin(), options.end());
-    return command;
+    return joined({"sweep", path("plan.json"), "-o", path("out")}, options);
   }
 
   std::size_t stored() const {
@@ -82,17 +73,8 @@ TEST_F(SweepTest, TheTableEqualsSingleRuns) {
       write_text(folder_ / "m.json", R"({"beampipe_memory_system": 1, "parameters": {"l2_bytes": )" + l2 +
                                          R"(, "bin_pixels": )" + bin +
                                          R"(}, "sources": {"l2_bytes": "choice", "bin_pixels": "choice"}})");
-      std::vector<std::string> command = {"run",
-                                          path("soup.json"),
-                                          "-t",
-                                          row["technique"],
-                                          "--memory-system",
-                                          path("m.json"),
-                                          "--hardware",
-                                          "titan_v,mali_g710",
-                                          "--force",
-                                          "-o",
-                                          path("single")};
+      Names command = {"run", path("soup.json"), "-t", row["technique"], "--memory-system", path("m.json")};
+      command = joined(command, {"--hardware", "titan_v,mali_g710", "--force", "-o", path("single")});
       if (!compressed) command.push_back("--no-compression");
       succeed(command);
       runs[key] = Parsed::parse(read_text(folder_ / "single/report.json"));
@@ -128,7 +110,8 @@ TEST_F(SweepTest, TheTableEqualsSingleRuns) {
     EXPECT_EQ(row["bottleneck"], time["busiest"].get<std::string>()) << key;
 
     const Parsed& compared = comparisons[row["technique"] + bin]["results"][0];
-    for (const char* column : {"rmse", "bias"}) EXPECT_EQ(row[column], compared["error"][column].dump()) << key << column;
+    for (const char* column : {"rmse", "bias"})
+      EXPECT_EQ(row[column], compared["error"][column].dump()) << key << column;
     EXPECT_EQ(row["emr"], compared["equivalent_msaa"].dump()) << key;
   }
 }
@@ -251,14 +234,14 @@ TEST_F(SweepTest, MistakesAreOneLineAndLeaveNothing) {
   write_text(folder_ / "frames.json",
              R"({"beampipe_sweep": 1, "traces": ["trace.json"], "techniques": ["beam"], "frames": [2]})");
   const Names before = folder_.list();
-  expect_one_error_line(run_program(sweep()), 1, "missing.json");
-  expect_one_error_line(run_program({"sweep", path("sized.json"), "-o", path("out")}), 1, "cannot be 5 x 5 pixels");
-  expect_one_error_line(run_program({"sweep", path("frames.json"), "-o", path("out")}), 1, "0 to 1, found 2");
-  expect_one_error_line(run_program(sweep({"--part", "3/3"})), 2, "expected I/N");
-  expect_one_error_line(run_program(sweep({"--merge", "--slurm"})), 2, "exclude each other");
-  expect_one_error_line(run_program(sweep({"--plot", "x,y,z"})), 1, "the table has no column 'x'");
-  expect_one_error_line(run_program(sweep({"--slurm", "--sbatch", "array=1"})), 2, "is set by the sweep");
-  expect_one_error_line(run_program(sweep({"--slurm", "--sbatch", "--time=1"})), 2, "--time");
+  expect_error(sweep(), 1, "missing.json");
+  expect_error({"sweep", path("sized.json"), "-o", path("out")}, 1, "cannot be 5 x 5 pixels");
+  expect_error({"sweep", path("frames.json"), "-o", path("out")}, 1, "0 to 1, found 2");
+  expect_error(sweep({"--part", "3/3"}), 2, "expected I/N");
+  expect_error(sweep({"--merge", "--slurm"}), 2, "exclude each other");
+  expect_error(sweep({"--plot", "x,y,z"}), 1, "the table has no column 'x'");
+  expect_error(sweep({"--slurm", "--sbatch", "array=1"}), 2, "is set by the sweep");
+  expect_error(sweep({"--slurm", "--sbatch", "--time=1"}), 2, "--time");
   EXPECT_EQ(folder_.list(), before);
 }
 
@@ -326,7 +309,7 @@ TEST_F(SweepTest, SlurmGetsAnArrayAndAMerge) {
   EXPECT_EQ(submit().find("table: "), 0u) << "nothing is missing, so nothing is submitted";
   write_text(folder_ / "bin/sbatch", "#!/bin/sh\necho 'sbatch: error: no partition' >&2\nexit 1\n");
   write_text(folder_ / "plan.json", R"({"beampipe_sweep": 1, "traces": ["soup.json"], "techniques": ["msaa:4"]})");
-  expect_one_error_line(run_program(sweep({"--slurm"})), 1, "sbatch refused the job: sbatch: error: no partition");
+  expect_error(sweep({"--slurm"}), 1, "sbatch refused the job: sbatch: error: no partition");
   setenv("PATH", search.c_str(), 1);
 }
 

@@ -1,7 +1,6 @@
 #include "tools/sweep/sweep_plan.h"
 
-#include <algorithm>
-
+#include "tests/message_of.h"
 #include "tests/tools/fixtures.h"
 #include "tools/evaluate/memory_system.h"
 #include "tools/sweep/sweep_jobs.h"
@@ -12,7 +11,7 @@ namespace beampipe::sweep_plan_test {
 
 const std::filesystem::path kSource = BEAMPIPE_SOURCE_FOLDER;
 
-class SweepPlanTest : public testing::Test {
+class SweepPlanTest : public InFolder {
  protected:
   SweepPlan read(const std::string& text) {
     write_text(folder_ / "plan.json", text);
@@ -21,16 +20,11 @@ class SweepPlanTest : public testing::Test {
 
   // What follows the name of the file.
   std::string refusal(const std::string& text) {
-    try {
-      read(R"({"beampipe_sweep": 1, "traces": ["a.json"], "techniques": ["beam"])" + text + "}");
-    } catch (const std::exception& error) {
-      const std::string what = error.what(), name = (folder_ / "plan.json").string() + ": ";
-      return what.starts_with(name) ? what.substr(name.size()) : what;
-    }
-    return "";
+    const std::string what = message_of<std::exception>(
+        [&] { read(R"({"beampipe_sweep": 1, "traces": ["a.json"], "techniques": ["beam"])" + text + "}"); });
+    const std::string name = path("plan.json") + ": ";
+    return what.starts_with(name) ? what.substr(name.size()) : what;
   }
-
-  TemporaryFolder folder_;
 };
 
 TEST_F(SweepPlanTest, AGridHasEveryCombinationInOrder) {
@@ -54,7 +48,7 @@ TEST_F(SweepPlanTest, MessagesAreOneLine) {
   for (const char* more : {R"(, "hardware": ["no\nfile"])", R"(, "memory_system": ["no\nfile"])",
                            R"(, "points": [{"techniques": ["be\nam"]}])", R"(, "si\nzes": [])"}) {
     const std::string what = refusal(more);
-    EXPECT_NE(what, "") << more;
+    EXPECT_NE(what, "no error") << more;
     EXPECT_EQ(what.find('\n'), what.npos) << what;
   }
   EXPECT_THROW(read(R"({"beampipe_sweep": 1, "traces": ["a"], "techniques": ["beam"], "hardware": ["none"]})"),
@@ -125,7 +119,7 @@ TEST_F(SweepPlanTest, CachesThatHoldEverythingCountTheSame) {
 }
 
 TEST_F(SweepPlanTest, MistakesNameTheKey) {
-  EXPECT_EQ(refusal(""), "");
+  EXPECT_EQ(refusal(""), "no error");
   EXPECT_EQ(refusal(R"(, "memory_system.l2_byte": [65536])"),
             "/memory_system.l2_byte: expected one of the keys of a grid (beampipe sweep --help), found "
             "\"memory_system.l2_byte\" (did you mean 'memory_system.l2_bytes'?)");
@@ -162,7 +156,7 @@ TEST_F(SweepPlanTest, HugeGridsAreRefusedAtOnce) {
   EXPECT_EQ(refusal(l2 + dram), most);
   EXPECT_EQ(refusal(dram + list("hardware.clock_mhz", 1, 11)),
             "/: expected at most 1000 kinds of hardware, found more");
-  EXPECT_EQ(refusal(list("memory_system.l2_bytes", 100000, 100)), "");
+  EXPECT_EQ(refusal(list("memory_system.l2_bytes", 100000, 100)), "no error");
   std::string points = R"(, "points": [{})";
   for (int i = 0; i < 99; ++i) points += ", {}";
   EXPECT_EQ(refusal(l2 + points + "]").find("/points/"), 0u) << "each alone is allowed";

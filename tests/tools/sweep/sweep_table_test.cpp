@@ -2,6 +2,7 @@
 
 #include <sqlite3.h>
 
+#include "tests/message_of.h"
 #include "tests/tools/fixtures.h"
 #include "tools/files/shell_word.h"
 #include "tools/sweep/slurm.h"
@@ -73,15 +74,10 @@ TEST(SweepPlot, LargeNumbersAreInLargerUnits) {
 
 TEST(SweepPlot, ColumnsMustExistAndHoldNumbers) {
   const std::vector<SweepColumn> columns = sample_table().columns;
-  const auto refusal = [&](const std::string& text) -> std::string {
-    try {
-      parse_plot_columns(text, columns);
-    } catch (const std::runtime_error& error) {
-      return error.what();
-    }
-    return "";
+  const auto refusal = [&](const std::string& text) {
+    return message_of<std::runtime_error>([&] { parse_plot_columns(text, columns); });
   };
-  EXPECT_EQ(refusal("x,y,name"), "");
+  EXPECT_EQ(refusal("x,y,name"), "no error");
   EXPECT_EQ(refusal("x,y"), "--plot x,y: expected X,Y,BY, three columns of the table");
   EXPECT_EQ(refusal("x,y,nam"), "--plot x,y,nam: the table has no column 'nam' (did you mean 'name'?)");
   EXPECT_EQ(refusal("name,y,x"), "--plot name,y,x: expected a column of numbers, found 'name', which holds text");
