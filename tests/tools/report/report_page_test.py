@@ -83,7 +83,7 @@ class Browser:
             reason = f"chromedriver failed: {error}"
         raise CannotStart(f"Chromium does not start: {reason}")
 
-    def send(self, method, path, body=None, limit=60):
+    def send(self, method, path, body=None, limit=120):
         data = None if body is None else json.dumps(body).encode()
         request = urllib.request.Request(self.url + path, data, {"Content-Type": "application/json"}, method=method)
         with urllib.request.build_opener(urllib.request.ProxyHandler({})).open(request, timeout=limit) as answer:
