@@ -4,6 +4,7 @@
 // pipeline/techniques/.
 #define BEAMPIPE_TECHNIQUES(X) \
   X(beam)                      \
+  X(beam_pooled)               \
   X(beam_sorted)               \
   X(beam_stream)               \
   X(casav)                     \

@@ -23,12 +23,21 @@ inline float magnitude(float a) { return std::fabs(a); }  // without a branch, w
 inline double magnitude(double a) { return std::fabs(a); }
 inline std::uint32_t select(bool condition, std::uint32_t yes, std::uint32_t no) { return condition ? yes : no; }
 inline std::int32_t select(bool condition, std::int32_t yes, std::int32_t no) { return condition ? yes : no; }
+inline std::int32_t lesser(std::int32_t a, std::int32_t b) { return a < b ? a : b; }
+inline std::int32_t greater(std::int32_t a, std::int32_t b) { return a > b ? a : b; }
+inline std::uint32_t lesser(std::uint32_t a, std::uint32_t b) { return a < b ? a : b; }
+inline std::uint32_t greater(std::uint32_t a, std::uint32_t b) { return a > b ? a : b; }
 inline double select(bool condition, double yes, double no) { return condition ? yes : no; }
 inline double lesser(double a, double b) { return a < b ? a : b; }
 inline double greater(double a, double b) { return a > b ? a : b; }
 inline double square_root(double x) { return std::sqrt(x); }
 inline float square_root(float x) { return std::sqrt(x); }
 inline std::int32_t to_integer(float x) { return static_cast<std::int32_t>(x); }  // towards 0
+inline std::uint32_t to_bits(float x) { return static_cast<std::uint32_t>(x); }  // towards 0; x >= 0
+inline std::uint32_t bits_of(float x) { return std::bit_cast<std::uint32_t>(x); }
+inline float float_of(std::uint32_t bits) { return std::bit_cast<float>(bits); }
+inline std::uint32_t plain(std::uint32_t x) { return x; }  // a value that decides what is done next
+inline float to_float(std::int32_t x) { return static_cast<float>(x); }
 inline float to_float(std::int64_t x) { return static_cast<float>(x); }
 inline float to_float(double x) { return static_cast<float>(x); }
 inline float to_float(std::uint32_t x) { return static_cast<float>(x); }

@@ -3,13 +3,12 @@
 #include <algorithm>
 #include <array>
 #include <bit>
-#include <cstring>
 
 #include "simd/conserve.h"
 #include "simd/plane_order.h"
 #include "simd/prefetch.h"
 #include "stages/beam/compose_owners_cost.h"
-#include "stages/beam/owner_formulas.h"
+#include "stages/beam/owner_rules.h"
 #include "stages/data/pixel_depth.h"
 
 // One version for vectors of 256 bits, which hold a whole mask, and one without vectors: each takes a minute to
@@ -23,6 +22,7 @@
 // foreach_target comes first
 #include "hwy/highway.h"
 #include "simd/plane_sides-inl.h"
+#include "stages/beam/register_mask-inl.h"
 
 HWY_BEFORE_NAMESPACE();
 namespace beampipe {
@@ -31,80 +31,6 @@ namespace {
 
 // Of numbers, beside those of vectors.
 using beampipe::greater, beampipe::lesser, beampipe::magnitude;
-
-// A mask in registers. It is loaded and stored in whole vectors, because a load waits for the parts of a vector that
-// were stored one by one just before. Compilers copy a WideMask in smaller parts.
-template <std::size_t Words>
-class Mask {
- public:
-  Mask() = default;
-  HWY_INLINE explicit Mask(const std::uint32_t* words) {
-    for (std::size_t i = 0; i < kParts; ++i) part_[i] = hn::LoadU(D(), words + i * kLanes);
-  }
-  HWY_INLINE explicit Mask(const WideMask& mask) : Mask(mask.words.data()) {}
-  // All positions, or none.
-  HWY_INLINE static Mask filled(bool all) { return repeated(all ? ~0u : 0); }
-  HWY_INLINE static Mask repeated(std::uint32_t word) {
-    Mask mask;
-    for (auto& part : mask.part_) part = hn::Set(D(), word);
-    return mask;
-  }
-
-  HWY_INLINE void store(std::uint32_t* words) const {
-    for (std::size_t i = 0; i < kParts; ++i) hn::StoreU(part_[i], D(), words + i * kLanes);
-  }
-  HWY_INLINE WideMask wide() const {
-    WideMask mask;
-    store(mask.words.data());
-    return mask;
-  }
-
-  HWY_INLINE bool none() const { return *this == filled(false); }
-  HWY_INLINE int count() const {
-    std::uint32_t words[Words];
-    store(words);
-    int count = 0;
-    if constexpr (Words == 1) return std::popcount(words[0]);
-    for (std::size_t i = 0; i < Words / 2; ++i) {
-      std::uint64_t pair;
-      std::memcpy(&pair, words + 2 * i, sizeof pair);
-      count += std::popcount(pair);
-    }
-    return count;
-  }
-
-  HWY_INLINE friend Mask operator&(const Mask& a, const Mask& b) {
-    return combine(a, b, [](V x, V y) { return hn::And(x, y); });
-  }
-  HWY_INLINE friend Mask operator|(const Mask& a, const Mask& b) {
-    return combine(a, b, [](V x, V y) { return hn::Or(x, y); });
-  }
-  HWY_INLINE friend Mask operator^(const Mask& a, const Mask& b) {
-    return combine(a, b, [](V x, V y) { return hn::Xor(x, y); });
-  }
-  HWY_INLINE friend Mask without(const Mask& a, const Mask& b) {  // a & ~b
-    return combine(a, b, [](V x, V y) { return hn::AndNot(y, x); });
-  }
-  HWY_INLINE friend bool operator==(const Mask& a, const Mask& b) {
-    bool equal = true;
-    for (std::size_t i = 0; i < kParts; ++i) equal &= hn::AllTrue(D(), hn::Eq(a.part_[i], b.part_[i]));
-    return equal;
-  }
-
- private:
-  using D = hn::CappedTag<std::uint32_t, Words>;
-  using V = hn::Vec<D>;
-  static constexpr std::size_t kLanes = hn::MaxLanes(D()), kParts = Words / kLanes;
-
-  template <class Combine>
-  HWY_INLINE static Mask combine(const Mask& a, const Mask& b, const Combine& parts) {
-    Mask result;
-    for (std::size_t i = 0; i < kParts; ++i) result.part_[i] = parts(a.part_[i], b.part_[i]);
-    return result;
-  }
-
-  V part_[kParts];
-};
 
 template <std::size_t Words, std::size_t Slots>
 class OwnerComposer {
@@ -585,8 +511,6 @@ class OwnerComposer {
   static PixelColor color_of(const Estimate<float>& estimate) {
     return {estimate.area, {estimate.color[0], estimate.color[1], estimate.color[2]}};
   }
-
-  static constexpr float kLeastArea = 1e-3f;  // positions; keeps the weights of a mean positive
 
   const OwnersBin& bin_;
   OwnersResult& result_;

@@ -4,7 +4,7 @@
 #include <bit>
 
 #include "simd/conserve.h"
-#include "stages/beam/owner_formulas.h"
+#include "stages/beam/owner_rules.h"
 #include "stages/cost/plane_cost.h"
 #include "stages/data/open_pixel.h"
 

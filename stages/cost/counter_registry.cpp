@@ -14,6 +14,9 @@ const std::vector<PixelCounterInfo>& pixel_counters() {
       {"centroids", "fragments",
        "fragments that are shaded at the centroid, because their triangle does not cover the centre",
        "msaa:N,at=centroid"},
+      {"memory_chunks", "chunks",
+       "chunks of records that composition read or wrote in memory, because the pool on chip was full",
+       "beam:order=pooled"},
       {"merges", "fragments",
        "beam:order=sorted, casav in sorted order and alpha: fragments that were composed before the pixel "
        "was "

@@ -63,6 +63,11 @@ Counted<Value> operator>>(const Counted<Value>& x, int places) {
 }
 
 template <class Value>
+Counted<Value> operator<<(const Counted<Value>& x, int places) {
+  return counted(x.tally, &OperationCounts::bit, Value(x.value << places));
+}
+
+template <class Value>
 Counted<Value> operator~(const Counted<Value>& x) {
   return counted(x.tally, &OperationCounts::bit, Value(~x.value));
 }
@@ -103,6 +108,24 @@ Counted<Value> square_root(const Counted<Value>& x) {
 }
 inline Counted<std::int32_t> to_integer(const Counted<float>& x) {
   return counted(x.tally, &OperationCounts::convert, static_cast<std::int32_t>(x.value));
+}
+inline Counted<std::uint32_t> to_bits(const Counted<float>& x) {
+  return counted(x.tally, &OperationCounts::convert, static_cast<std::uint32_t>(x.value));
+}
+// The same bits under another type, which costs nothing.
+inline Counted<std::uint32_t> bits_of(const Counted<float>& x) {
+  Counted<std::uint32_t> bits(std::bit_cast<std::uint32_t>(x.value));
+  bits.tally = x.tally;
+  return bits;
+}
+inline Counted<float> float_of(const Counted<std::uint32_t>& bits) {
+  Counted<float> x(std::bit_cast<float>(bits.value));
+  x.tally = bits.tally;
+  return x;
+}
+template <class Value>
+Value plain(const Counted<Value>& x) {
+  return x.value;
 }
 template <class Value>
 Counted<float> to_float(const Counted<Value>& x) {

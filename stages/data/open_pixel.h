@@ -17,155 +17,11 @@
 #include <vector>
 
 #include "simd/depth_plane.h"
-#include "simd/scalar.h"
+#include "stages/data/owner_slot.h"
+#include "stages/data/pixel_sums.h"
 #include "stages/data/position_states.h"
-#include "stages/data/shared_exponent.h"
 
 namespace beampipe {
-
-// A number from 0 to almost 2 in 16 bits. Sums of areas and colours are kept in it: a sum of fp16 numbers stops growing
-// when addends are small.
-struct FixedSum {
-  static constexpr float kUnits = 32768.0f;
-  std::uint16_t units = 0;
-
-  operator float() const { return static_cast<float>(units) / kUnits; }
-  // `threshold`: 0..1, different for each addend. The part of a unit above it counts as a whole unit, so that many
-  // small addends are right on average.
-  void add(float x, float threshold) {
-    const auto sum = static_cast<std::int32_t>(units) + static_cast<std::int32_t>(x * kUnits + 1.0f - threshold);
-    units = static_cast<std::uint16_t>(std::clamp(sum, 0, 0xffff));
-  }
-};
-
-// Sums of colours: RGB by analytic area, and RGB by counted positions, in 12 bytes. Each has 15 bits; the sixteenth
-// bits together are the exponent of all six, which grows with the largest sum. Colours are linear RGB times area.
-class ColorSums {
- public:
-  static constexpr std::size_t kCount = 6;
-
-  float operator[](std::size_t i) const {
-    const Words words = load();
-    return static_cast<float>(words[i] & kLargest) * unit(exponent(words));
-  }
-
-  // `addends` are not negative. `threshold`: as in FixedSum.
-  void add(const float (&addends)[kCount], float threshold) {
-    Words words = load();
-    const int before = exponent(words);
-    for (std::uint32_t& word : words) word &= kLargest;
-    int power = std::max(before, least_exponent(addends));
-    for (std::uint32_t& sum : words) sum = halved(sum, power - before);
-    for (; power < kMostExponent && !fits(words, addends, per_unit(power)); ++power)
-      for (std::uint32_t& sum : words) sum = halved(sum, 1);
-    const float scale = per_unit(power);
-    for (std::size_t i = 0; i < kCount; ++i) {
-      const float units = std::min(addends[i] * scale, static_cast<float>(kLargest));
-      const std::uint32_t sum = words[i] + static_cast<std::uint32_t>(units + 1.0f - threshold);
-      words[i] = std::min(sum, kLargest) | (static_cast<std::uint32_t>(power) >> i & 1) << 15;
-    }
-    store(words);
-  }
-
- private:
-  static constexpr std::uint32_t kLargest = 0x7fff;
-  static constexpr int kMostExponent = 63;
-  using Words = std::array<std::uint32_t, kCount>;  // of 16 bits
-
-  // Units from 2^-40, so that sums up to 2^-25 are exact to that, to 2^23.
-  static float unit(int power) { return std::bit_cast<float>(static_cast<std::uint32_t>(power - 40 + 127) << 23); }
-  static float per_unit(int power) { return std::bit_cast<float>(static_cast<std::uint32_t>(40 - power + 127) << 23); }
-
-  // The largest addend does not fit with any smaller exponent, whatever the sums are: it would be 2^15 units or more.
-  static int least_exponent(const float (&addends)[kCount]) {
-    std::uint32_t largest = 0;  // floats that are not negative are in the order of their bits
-    for (const float addend : addends) largest = std::max(largest, std::bit_cast<std::uint32_t>(addend) & 0x7fffffff);
-    return std::min(static_cast<int>(largest >> 23) - 127 + 40 - 14, kMostExponent);
-  }
-
-  // Rounded up, as if it were halved again and again.
-  static std::uint32_t halved(std::uint32_t sum, int times) {
-    const int shift = std::min(times, 15);
-    return (sum + (1u << shift) - 1) >> shift;
-  }
-
-  static bool fits(const Words& sums, const float (&addends)[kCount], float per_unit) {
-    for (std::size_t i = 0; i < kCount; ++i)
-      if (!(static_cast<float>(sums[i]) + addends[i] * per_unit + 1.0f < static_cast<float>(kLargest))) return false;
-    return true;
-  }
-
-  static int exponent(const Words& words) {
-    std::uint32_t power = 0;
-    for (std::size_t i = 0; i < kCount; ++i) power |= words[i] >> 15 << i;
-    return static_cast<int>(power);
-  }
-
-  // The words are loaded and stored together: a load of several waits if they were stored one by one just before.
-  Words load() const {
-    std::uint32_t pairs[kCount / 2];
-    std::memcpy(pairs, words_, sizeof pairs);
-    return {pairs[0] & 0xffff, pairs[0] >> 16, pairs[1] & 0xffff, pairs[1] >> 16, pairs[2] & 0xffff, pairs[2] >> 16};
-  }
-  void store(const Words& words) {
-    const std::uint32_t pairs[] = {words[0] | words[1] << 16, words[2] | words[3] << 16, words[4] | words[5] << 16};
-    std::memcpy(words_, pairs, sizeof pairs);
-  }
-
-  std::uint16_t words_[kCount] = {};
-};
-
-// One owner, in 8 bytes. A surface that came from one triangle is shaded when it becomes final; until then it needs no
-// colour, only the place to shade it at. A surface that came from several has the mean of their colours, and the depth
-// plane of the one with the most positions.
-class OwnerSlot {
- public:
-  // The number of a triangle in the bin's list has 23 bits.
-  static constexpr std::uint32_t kMostTriangles = (1u << 23) - 1;
-
-  bool is_free() const { return triangle() == kMostTriangles; }
-  std::uint32_t triangle() const { return word_ & kMostTriangles; }
-  bool is_merged() const { return word_ >> 23 & 1; }
-
-  // The error that the mask makes for the surface: its exact area, times the number of positions in a pixel, minus the
-  // positions that it covers. From -4 to almost 4, in steps of 1/32.
-  float error() const { return static_cast<float>(static_cast<std::int8_t>(word_ >> 24)) / kErrorUnits; }
-
-  bool error_is_limited() const { return magnitude(error()) >= kLargestError / kErrorUnits; }
-
-  // Of a surface from one triangle: how many positions it covers, and its centroid in the pixel, 0..1.
-  float covered() const { return static_cast<float>(payload_ & 0xffff); }
-  glm::vec2 centroid() const { return glm::vec2(payload_ >> 16 & 0xff, payload_ >> 24) * (1.0f / 255.0f); }
-
-  // Of a merged surface; linear RGB.
-  glm::vec3 color() const { return std::bit_cast<SharedExponent>(payload_); }
-
-  // Bits that say what the owner is, other than the number of its triangle.
-  std::uint32_t content() const { return payload_ ^ (word_ >> 24) << 9; }
-
-  void clear() { word_ = kMostTriangles; }
-  void set(std::uint32_t number, float error, std::uint32_t covered, float u, float v) {
-    word_ = number | error_bits(error);
-    payload_ = covered | to_byte(u) << 16 | to_byte(v) << 24;
-  }
-  void set_merged(std::uint32_t number, float error, const glm::vec3& color, float threshold) {
-    word_ = number | 1u << 23 | error_bits(error);
-    payload_ = std::bit_cast<std::uint32_t>(SharedExponent(color, threshold));
-  }
-
- private:
-  static constexpr float kErrorUnits = 32.0f, kLargestError = 127.0f;
-
-  static std::uint32_t error_bits(float error) {
-    const float units = std::clamp(error * kErrorUnits, -kLargestError, kLargestError);
-    return static_cast<std::uint32_t>(static_cast<std::int32_t>(units + (units < 0 ? -0.5f : 0.5f))) << 24;
-  }
-  static std::uint32_t to_byte(float x) { return static_cast<std::uint32_t>(x * 255.0f + 0.5f); }
-
-  std::uint32_t word_ = kMostTriangles;  // triangle, merged, error
-  std::uint32_t payload_ = 0;
-};
-static_assert(sizeof(OwnerSlot) == 8);
 
 template <std::size_t Words, std::size_t Slots>  // 32 positions a word
 struct OpenPixel {
@@ -221,12 +77,6 @@ struct OpenPixels {
   std::vector<OpenPixel<Words, Slots>> pixels;
   std::unique_ptr<OwnerDepths<Slots>[]> depths;  // not set before a slot has an owner
 };
-
-// Size of a fragment between beam_fragment and compose in the modelled machine: pixel and facing (16 bits), triangle
-// (24), centroid (16), area (16), mask, and depth plane and nearest depth as 4 x float32.
-constexpr std::uint32_t owners_fragment_bytes(std::size_t words) {
-  return 2 + 3 + 2 + 2 + static_cast<std::uint32_t>(words) * 4 + 16;
-}
 
 // The instances that exist: X(words, slots). 4 words with 7 slots are for streaming order, the others for near-first
 // order: its default, and those that specs can name.

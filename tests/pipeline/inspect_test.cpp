@@ -22,6 +22,8 @@ constexpr InspectedSpec kSpecs[] = {
     {"beam:bits=64,slots=4,at=visible", 0.06, 1e-4},
     {"beam:bits=32,slots=2,bin=8,at=quarters", 0.1, 1e-4},
     {"beam:order=stream", 0.03, 1e-4},
+    {"beam:order=pooled", 0.02, 1e-4},
+    {"beam:order=pooled,bits=128,pool=30,at=visible", 0.03, 1e-4},
     {"beam:order=sorted", 2e-3, 1e-4},
     {"beam:order=sorted,storage=float32", 1e-5, 1e-4},
     {"casav", 4e-3, 1e-4},

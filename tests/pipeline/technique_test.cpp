@@ -84,7 +84,7 @@ TEST(Technique, WrongSpecsSayWhatWouldBeRight) {
       {"bits must be 32, 64, 128 or 256", {"beam:bits=48,slots=4"}},
       {"bits needs slots=2, 4, 8, 16 or 32, unless it is 256", {"beam:bits=64", "beam:slots=5,bits=128"}},
       {"'mask' is there twice", {"beam:mask=table,mask=table"}},
-      {"order must be near-first, sorted or stream", {"beam:order=primitive"}},
+      {"order must be near-first, pooled, sorted or stream", {"beam:order=primitive"}},
       {"beam has no option 'rules'" + of_beam, {"beam:rules=paper"}},
       {"'order' is there twice", {"beam:order=stream,order=sorted"}},
       {"beam:order=stream has no option 'slots'; it has order", {"beam:order=stream,slots=7"}},

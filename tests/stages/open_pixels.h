@@ -5,6 +5,7 @@
 
 #include "stages/beam/beam_fragment.h"
 #include "stages/beam/compose_owners.h"
+#include "stages/beam/compose_pooled.h"
 #include "stages/raster/bin_sort.h"
 #include "stages/raster/conservative_raster.h"
 #include "tests/stages/screen_triangles.h"
@@ -53,6 +54,52 @@ struct OpenTile {
     StageCounters ignored;
     const OrderedList ordered = bin_sort(triangles, all_of(triangles), tile, ignored);
     return compose(ordered.triangles, with_watermarks ? &ordered.watermarks : nullptr);
+  }
+};
+
+// The same with records in a pool of so many bytes.
+template <std::size_t Words>
+struct PooledOpenTile {
+  static constexpr int kPositions = 32 * static_cast<int>(Words);
+
+  const SetupTriangles& triangles;
+  const std::vector<glm::vec3>& colors;
+  Tile tile;
+  const PositionSet& positions = cell_positions(kPositions);
+  PooledPixels<Words> pixels;
+  ClosedDepth closed;
+  std::vector<float> counts, merges;
+  std::vector<Fragment> fragments;
+  StageCounters composing{}, finishing{};
+  std::vector<float> chunks_in_memory;
+  PooledResult result;
+
+  PooledOpenTile(const SetupTriangles& of, const std::vector<glm::vec3>& in_colors, const Tile& in = {0, 0, 1, 1},
+                 std::size_t pool_bytes = 1 << 20, std::size_t owners = kMostOwners)
+      : triangles(of),
+        colors(in_colors),
+        tile(in),
+        pixels(in.pixels(), pool_bytes, owners),
+        closed(in),
+        counts(in.pixels()),
+        merges(in.pixels()),
+        chunks_in_memory(in.pixels()),
+        result(chunks_in_memory) {}
+
+  std::vector<PixelColor> compose(const TriangleList& list, const std::vector<float>* watermarks = nullptr) {
+    const PositionGrid grid(kPositions);
+    StageCounters ignored;
+    std::vector<Pair> pairs;
+    conservative_raster(triangles, list, tile, ignored, pairs);
+    beam_fragment(triangles, pairs, tile, grid_options(grid, owners_fragment_bytes(Words)), ignored, fragments);
+    const OwnersBin bin{triangles, list, watermarks, tile, positions, colors, false};
+    compose_pooled(bin, {fragments, 0}, composing, PooledTile<Words>{pixels, closed, {counts, merges}, result});
+    return finish_pooled(bin, finishing, pixels, result);
+  }
+  std::vector<PixelColor> compose_sorted() {
+    StageCounters ignored;
+    const OrderedList ordered = bin_sort(triangles, all_of(triangles), tile, ignored);
+    return compose(ordered.triangles, &ordered.watermarks);
   }
 };
 

@@ -8,7 +8,7 @@
 #include "tests/test.h"
 #include "tests/traces/scene_names.h"
 
-namespace beampipe {
+namespace beampipe::twins {
 
 using Int = Counted<std::int64_t>;
 using Float = Counted<float>;
@@ -49,4 +49,4 @@ class SceneTwins : public testing::TestWithParam<SceneKind> {
   INSTANTIATE_TEST_SUITE_P(Scenes, suite, testing::ValuesIn(flat_scenes()), \
                            [](const auto& scene) { return std::string(scene.param.name); })
 
-}  // namespace beampipe
+}  // namespace beampipe::twins

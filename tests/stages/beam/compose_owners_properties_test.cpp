@@ -4,7 +4,7 @@
 
 #include <cstdio>
 
-#include "stages/beam/owner_formulas.h"
+#include "stages/beam/owner_rules.h"
 #include "tests/stages/open_pixels.h"
 #include "tests/stages/search.h"
 

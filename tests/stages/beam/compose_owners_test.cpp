@@ -6,7 +6,7 @@
 #include <cmath>
 #include <numeric>
 
-#include "stages/beam/owner_formulas.h"
+#include "stages/beam/owner_rules.h"
 #include "tests/simd/random.h"
 #include "tests/stages/open_pixels.h"
 

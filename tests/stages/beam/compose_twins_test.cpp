@@ -7,6 +7,8 @@
 
 namespace beampipe::compose_twins_test {
 
+using namespace twins;
+
 constexpr std::size_t kWords = 8, kPositions = 32 * kWords;
 
 template <class Channel>

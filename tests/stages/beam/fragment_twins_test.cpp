@@ -12,6 +12,8 @@
 
 namespace beampipe::fragment_twins_test {
 
+using namespace twins;
+
 class FragmentTwins : public SceneTwins {
  protected:
   void expect_equal(const BeamFragmentOptions& options) {

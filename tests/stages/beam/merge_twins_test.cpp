@@ -10,6 +10,8 @@
 
 namespace beampipe::merge_twins_test {
 
+using namespace twins;
+
 class MergeTwins : public SceneTwins {
  protected:
   void make_fragments(const BeamFragmentOptions& options) {

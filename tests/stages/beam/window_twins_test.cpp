@@ -17,6 +17,8 @@
 
 namespace beampipe::window_twins_test {
 
+using namespace twins;
+
 class WindowTwins : public SceneTwins {
  protected:
   WindowTwins() : SceneTwins(40) {}

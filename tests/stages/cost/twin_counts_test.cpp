@@ -10,6 +10,8 @@
 
 namespace beampipe::twin_counts_test {
 
+using namespace twins;
+
 class TwinCounts : public SceneTwins {};
 
 TEST_P(TwinCounts, Sort) {

@@ -4,6 +4,8 @@
 
 namespace beampipe::setup_twins_test {
 
+using namespace twins;
+
 struct Vertex {
   Real x, y, z, w;  // clip space
   bool in_view;

@@ -9,6 +9,8 @@
 
 namespace beampipe::shading_twins_test {
 
+using namespace twins;
+
 const Sampling kSampling{CellGrid{}, standard_pattern(8)};
 
 class ShadingTwins : public SceneTwins {

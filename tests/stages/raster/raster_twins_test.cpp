@@ -9,6 +9,8 @@
 
 namespace beampipe::raster_twins_test {
 
+using namespace twins;
+
 struct Cell {
   std::uint32_t triangle;
   std::int32_t x, y;

@@ -6,6 +6,8 @@
 
 namespace beampipe::select_twins_test {
 
+using namespace twins;
+
 class SelectTwins : public SceneTwins {
  protected:
   // Processes one quad: the materials of 32 samples, the samples inside the frame, and the quad's place.

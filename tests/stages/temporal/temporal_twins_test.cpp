@@ -13,6 +13,8 @@
 
 namespace beampipe::temporal_twins_test {
 
+using namespace twins;
+
 constexpr std::size_t kSamples = 8;
 
 class TemporalTwins : public SceneTwins {

@@ -1,0 +1,57 @@
+// compose_pooled (stage `compose` of beam in near-first and streaming order): fragments -> owners of mask positions ->
+// colours of pixels.
+//
+// A fragment takes the positions where it is nearer than their owners; at equal depth the triangle that comes first in
+// the trace keeps them. A triangle that covers a pixel in front of everything needs no mask. Owners in front of the
+// watermark are final. When the pool runs low, a collection looks for them in all pixels, and when a pixel has as many
+// owners as it may have, in that pixel: their area (simd/conserve.h) and colour are added to the pixel's sums, and
+// their bytes are free again. If nothing is final, the two owners of the pixel are merged whose depth planes are
+// closest at the positions that they own. From then on they share a mean colour and one depth plane.
+//
+// Specks own no position. They are added at once, if the owners of the positions next to them do not hide them.
+//
+// Two estimates of a pixel are kept. The analytic one is far more accurate where visibility is simple, but where
+// hundreds of triangles meet in a pixel, it may be wrong about which specks are seen. Counting positions is never worse
+// than multisampling. So the result is the analytic estimate, limited to what the error of counted positions explains.
+#pragma once
+
+#include <cstdint>
+#include <vector>
+
+#include "stages/beam/compose_owners.h"
+#include "stages/cost/counters.h"
+#include "stages/data/closed_depth.h"
+#include "stages/data/fragment.h"
+#include "stages/data/pixel_formats.h"
+#include "stages/data/pooled_pixels.h"
+
+namespace beampipe {
+
+// What was done, beside what is charged.
+struct PooledResult : OwnersResult {
+  std::uint64_t chunks_in_memory = 0;  // chunks of records that were read or written there
+  std::vector<float>& by_pixel;        // the same, added to those of each pixel
+
+  explicit PooledResult(std::vector<float>& chunks_of_pixels) : by_pixel(chunks_of_pixels) {}
+};
+
+// What fragments are composed into.
+template <std::size_t Words>
+struct PooledTile {
+  PooledPixels<Words>& pixels;
+  ClosedDepth& closed;  // pixels whose positions all have owners are closed here
+  OwnersMaps maps;
+  PooledResult& result;
+};
+
+// Counts as items out the fragments that take a position.
+template <std::size_t Words>
+void compose_pooled(const OwnersBin& bin, const OwnersBatch& batch, StageCounters& counters,
+                    const PooledTile<Words>& tile);
+
+// After the last fragment: all owners are final. Returns the pixels' colours.
+template <std::size_t Words>
+std::vector<PixelColor> finish_pooled(const OwnersBin& bin, StageCounters& counters, PooledPixels<Words>& pixels,
+                                      PooledResult& result);
+
+}  // namespace beampipe

@@ -1,0 +1,261 @@
+// What compose_pooled and finish_pooled are charged.
+#pragma once
+
+#include <algorithm>
+#include <array>
+#include <cstddef>
+#include <cstdint>
+#include <iterator>
+#include <vector>
+
+#include "simd/conserve.h"
+#include "stages/beam/owner_rules.h"
+#include "stages/cost/counted_mask.h"
+#include "stages/cost/plane_cost.h"
+#include "stages/data/pooled_pixels.h"
+
+namespace beampipe {
+
+// How often each operation was done.
+struct PooledWork {
+  std::uint64_t fragments = 0;
+  std::uint64_t masks = 0;                             // fragments of pixels that several surfaces may share
+  std::uint64_t claims = 0;                            // fragments that take a position
+  std::uint64_t covers = 0;                            // of these, triangles that cover a pixel in front of everything
+  std::array<std::uint64_t, 6> splits{};               // by bit planes: pixels that were taken apart
+  std::array<std::uint64_t, kMostStates + 1> joins{};  // by states: pixels that were put together
+  std::uint64_t masks_tested = 0;                      // owners whose positions were intersected with a fragment's mask
+  std::uint64_t moves = 0;                             // of owners to another slot
+  std::uint64_t planes = 0;                            // of owners, computed again
+  std::uint64_t contests = 0;                          // owners of positions that a fragment covers
+  std::uint64_t planes_compared = 0;                   // at all positions
+  std::uint64_t listed = 0;                            // owners whose positions were counted
+  std::uint64_t collections = 0;                       // of what is final in all pixels
+  std::uint64_t words_scanned = 0;                     // pixels that collections looked at
+  std::uint64_t finality_tests = 0;                    // of owners, against the watermark
+  std::uint64_t farthest_found = 0;                    // farthest depths over an owner's positions
+  std::uint64_t measured = 0;                          // owners whose mean position was found
+  std::uint64_t pairs_compared = 0;                    // of owners
+  std::uint64_t merges = 0;                            // of two owners
+  std::uint64_t order_tests = 0;                       // to sort owners that become final
+  std::uint64_t retirements = 0;                       // of one owner or of several at once
+  std::uint64_t retired = 0;                           // owners that became final
+  std::uint64_t bounds_found = 0;                      // depth bounds of the owners of pixels without empty positions
+  std::uint64_t vertices_bounded = 0;                  // owners whose vertices limit these bounds
+  std::uint64_t specks = 0, speck_comparisons = 0, specks_added = 0;
+  std::uint64_t finished = 0;                       // pixels that were read at the end
+  std::uint64_t limited = 0;                        // pixels whose estimates were compared
+  std::uint64_t bytes_read = 0, bytes_written = 0;  // of words and records
+};
+
+// The costs of the rules: each is run once on numbers that count.
+namespace pooled_costs {
+
+using Number = Counted<float>;
+using Bits = Counted<std::uint32_t>;
+using Integer = Counted<std::int32_t>;
+
+// Calls rule(one, counts) with a number that counts.
+template <class Rule>
+OperationCounts of(Rule&& rule) {
+  return count_operations([&](OperationCounts& counts) { rule(Number(1.0f, counts), counts); });
+}
+
+inline DepthPlane<Number> plane_of(const Number& one) { return {one, one, one}; }
+inline SurfaceArea<Number> area_of(const Number& one) { return {one, one, one}; }
+
+// The cost for each of `count` sizes.
+template <class Cost>
+std::vector<UnitCost> by_size(std::size_t count, Cost&& cost) {
+  std::vector<UnitCost> costs;
+  for (std::size_t size = 0; size < count; ++size) costs.emplace_back(cost(size));
+  return costs;
+}
+
+// To take a pixel's positions apart by bit planes, and to put together those of so many states.
+inline OperationCounts split(std::size_t planes, std::size_t words) {
+  return count_operations([&](OperationCounts& counts) {
+    const CountedMask mask{words, &counts};
+    std::array<CountedMask, kMostStates> states;
+    split_states(
+        planes, mask, [&](std::size_t) { return mask; }, states.data());
+  });
+}
+inline OperationCounts join(std::size_t states, std::size_t words) {
+  return count_operations([&](OperationCounts& counts) {
+    std::array<CountedMask, kMostStates> masks;
+    masks.fill({words, &counts});
+    for (std::size_t p = 0; p < planes_for(states); ++p) join_states(p, states, masks[0], masks.data());
+  });
+}
+
+// The population counts of a mask's words, and their sum.
+inline OperationCounts count(std::size_t words) {
+  return of([&](const Number&, OperationCounts& counts) {
+    Number sum = bit_count(Bits(0, counts));
+    for (std::size_t w = 1; w < words; ++w) sum = sum + bit_count(Bits(0, counts));
+  });
+}
+
+// A contest: on which side of a surface a fragment lies in the whole pixel.
+inline OperationCounts contest() {
+  return of([](const Number& one, OperationCounts&) {
+    const PlaneGap<Number> gap = plane_gap(plane_of(one), plane_of(one));
+    static_cast<void>(is_nearer(gap));
+    static_cast<void>(is_farther(gap));
+  });
+}
+
+// The slot of a fragment that takes a position: the error of its mask, and its centroid.
+inline OperationCounts slot() {
+  return of([](const Number& one, OperationCounts& counts) {
+    OwnerSlot::error_units(one * one - one);
+    OwnerSlot::to_byte(one), OwnerSlot::to_byte(one);
+    counts.bit += 2 + 4;  // shifts, and the two words
+  });
+}
+
+// Whether an owner is final, by the bounds of its plane: both are compared.
+inline OperationCounts finality() {
+  return of([](const Number& one, OperationCounts&) { finality_of(plane_of(one), one); });
+}
+
+// The farthest depth of a plane, per position.
+inline OperationCounts farthest() {
+  return of([](const Number& one, OperationCounts&) { farthest_formula(plane_of(one), one, one, true, one); });
+}
+
+// The mean of an owner's positions, from the sums of their coordinates.
+inline OperationCounts mean() {
+  return of([](const Number& one, OperationCounts& counts) {
+    for (int axis = 0; axis < 2; ++axis) mean_position(Integer(0, counts), one) - Number(0.5f);
+  });
+}
+
+inline OperationCounts pair() {
+  return of([](const Number& one, OperationCounts&) {
+    const PlacedSurface<Number> surface{one, plane_of(one), one, one};
+    static_cast<void>(merge_loss(surface, surface) < one);
+  });
+}
+
+// Two surfaces become one: their parts, their mean colour, and the slot.
+inline OperationCounts merge() {
+  return of([](const Number& one, OperationCounts& counts) {
+    const MergedParts<Number> parts = merged_parts(area_of(one), area_of(one), false);
+    const Number threshold = merge_threshold(Bits(0, counts), Bits(0, counts));
+    const Number color[] = {parts.one * one + parts.other * one, parts.one * one + parts.other * one,
+                            parts.one * one + parts.other * one};
+    SharedExponent::pack(color, threshold);
+    OwnerSlot::error_units(parts.error);
+    counts.bit += 2 + 2 * 3;  // the slot's words; bits that say what each of the two is
+  });
+}
+
+// An owner that is retired.
+inline OperationCounts retirement() {
+  return of([](const Number& one, OperationCounts& counts) {
+    const Number area = retired_area(area_of(one), one, {FixedSum::value(Integer(0, counts)), one});
+    const Number threshold = rounding_threshold(Bits(0, counts));
+    FixedSum::sum(Integer(0, counts), area, threshold);
+    Bits sums[ColorSums::kCount];
+    std::fill(std::begin(sums), std::end(sums), Bits(0, counts));
+    const Number share = one / one;
+    ColorSums::add_to(sums, {area * one, area * one, area * one, share * one, share * one, share * one}, threshold);
+    one + one;        // the positions that are final
+    counts.bit += 2;  // bits that say what it is
+  });
+}
+
+// A speck's three positions and their states; its comparison with an owner; and a speck that is seen.
+inline OperationCounts speck_votes(std::size_t planes) {
+  return {.add = 3, .bit = 3 * 2 * planes, .fetch = 3, .convert = 2};
+}
+inline OperationCounts speck_test() {
+  return of([](const Number& one, OperationCounts&) {
+    is_on_or_before(one, plane_of(one), one - Number(0.5f), one - Number(0.5f));
+  });
+}
+inline OperationCounts speck() {
+  return of([](const Number& one, OperationCounts& counts) {
+    const Number same = FixedSum::value(Integer(0, counts)), opposite = FixedSum::value(Integer(0, counts));
+    const Number threshold = rounding_threshold(Bits(0, counts) ^ Bits(0, counts));
+    FixedSum::sum(Integer(0, counts), one * one / Number(3.0f), threshold);
+    const Number area = speck_area(same, opposite, greater(same, opposite), one);
+    FixedSum::sum(Integer(0, counts), area, threshold);
+    Bits sums[ColorSums::kCount];
+    std::fill(std::begin(sums), std::end(sums), Bits(0, counts));
+    const Number zero(0.0f);
+    ColorSums::add_to(sums, {area * one, area * one, area * one, zero, zero, zero}, threshold);
+  });
+}
+
+// The two estimates of a pixel, from its sums.
+inline OperationCounts limit() {
+  return of([](const Number& one, OperationCounts& counts) {
+    const auto sum = [&] { return to_float(Integer(0, counts)) * one; };
+    const Estimate<Number> analytic{FixedSum::value(Integer(0, counts)), {sum(), sum(), sum()}},
+        counted{one * one, {sum(), sum(), sum()}};
+    limited_estimate(analytic, counted, one);
+  });
+}
+
+}  // namespace pooled_costs
+
+template <std::size_t Words>
+void charge(const PooledWork& work, StageCounters& counters) {
+  constexpr std::uint64_t kPositions = 32 * Words;
+  using namespace pooled_costs;
+  static const std::vector<UnitCost> of_split = by_size(6, [](std::size_t planes) { return split(planes, Words); }),
+                                     of_join = by_size(kMostStates + 1,
+                                                       [](std::size_t states) { return join(states, Words); });
+  static const UnitCost of_count = count(Words), of_plane = plane_cost(), of_contest = contest(), of_slot = slot(),
+                        of_nearer = nearer_cost() * kPositions, of_finality = finality(),
+                        of_farthest = farthest() * kPositions, of_mean = mean(), of_pair = pair(), of_merge = merge(),
+                        of_retirement = retirement(), of_bounds = plane_bounds_cost(),
+                        of_vertices = vertex_bounds_cost(), of_votes = speck_votes(1), of_speck_test = speck_test(),
+                        of_speck = speck(), of_limit = limit();
+  constexpr OperationCounts kOfHiddenTest{.add = 1}, kOfOrderTest{.add = 1}, kOfPosition{.add = 2},  // its x and y
+      kOfFarther{.add = 1},           // than the owners before it
+      kOfMaskTest{.bit = 2 * Words},  // an intersection, and whether it is empty
+      kOfClaim{.bit = 3 * Words};     // of what is free; and it is taken from there
+  counters.items_in += work.fragments;
+  counters.items_out += work.claims;
+  for (std::size_t planes = 0; planes < work.splits.size(); ++planes)
+    counters.ops += of_split[planes] * work.splits[planes];
+  for (std::size_t states = 0; states < work.joins.size(); ++states)
+    counters.ops += of_join[states] * work.joins[states];
+  counters.ops += kOfHiddenTest * work.fragments;
+  counters.ops += kOfMaskTest * (work.masks_tested + work.contests);  // and what a contest takes is taken away
+  counters.ops += kOfClaim * work.masks;
+  counters.ops += of_plane * work.planes;
+  counters.ops += of_contest * work.contests;
+  counters.ops += of_nearer * work.planes_compared;
+  counters.ops += of_count * (work.listed + work.retirements + work.limited);
+  counters.ops += of_count * (work.claims - work.covers);  // the positions that the fragment covers
+  counters.ops += of_slot * (work.claims - work.covers);
+  counters.ops += of_finality * work.finality_tests;
+  counters.ops += of_farthest * work.farthest_found;
+  counters.ops += kOfPosition * (kPositions * work.measured);
+  counters.ops += of_mean * work.measured;
+  counters.ops += of_pair * work.pairs_compared;
+  counters.ops += of_merge * work.merges;
+  counters.ops += kOfOrderTest * work.order_tests;
+  counters.ops += of_retirement * work.retired;
+  counters.ops += of_bounds * work.bounds_found;  // their planes are among work.planes
+  counters.ops += kOfFarther * work.bounds_found;
+  counters.ops += of_vertices * work.vertices_bounded;
+  counters.ops += of_votes * work.specks;
+  counters.ops += of_speck_test * work.speck_comparisons;
+  counters.ops += of_speck * work.specks_added;
+  counters.ops += of_limit * work.limited;
+  counters.bytes_read += work.fragments * (owners_fragment_bytes(Words) + sizeof(float) + kPixelWordBytes) +
+                         (work.finished + work.words_scanned) * kPixelWordBytes + work.bytes_read;
+  counters.bytes_read += work.planes * (sizeof(std::uint32_t) + sizeof(ScreenDepth));  // by its number in the list
+  counters.bytes_written += work.claims * kPixelWordBytes + work.bytes_written;
+  counters.position_tests += kPositions * (work.planes_compared + work.farthest_found);
+  counters.lanes_used += work.claims;
+  counters.lanes_issued += work.fragments;
+}
+
+}  // namespace beampipe

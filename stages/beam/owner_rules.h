@@ -1,0 +1,173 @@
+// The rules by which a pixel's surfaces share its mask positions, as templates: the composer runs them on masks and
+// numbers, and the stage's costs come from running them on masks and numbers that count.
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+
+#include "simd/conserve.h"
+#include "simd/depth_plane.h"
+#include "simd/plane_gap.h"
+#include "simd/plane_order.h"
+#include "simd/scalar.h"
+#include "stages/beam/specks.h"
+#include "stages/data/mix_bits.h"
+#include "stages/data/owner_slot.h"
+#include "stages/data/pixel_sums.h"
+
+namespace beampipe {
+
+// ---- Partition: a pixel's positions by their state ----
+
+namespace scalar {
+#include "stages/beam/position_states-inl.h"
+}
+using namespace scalar;
+
+// ---- What is known of a surface ----
+
+template <class Float>
+struct SurfaceArea {
+  Float covered, visible;  // positions that its triangle covers, and that it owns
+  Float error;             // its exact area minus `covered`, in positions
+
+  Float fraction() const { return visible / covered; }
+};
+
+// The mean of positions along one axis, from the sum of their coordinates in 1/256 px.
+template <class Int, class Float>
+Float mean_position(const Int& sum, const Float& count) {
+  return to_float(sum) * (Float(1.0f) / (count * Float(kSubpixelUnits)));
+}
+
+// Where sums round what a surface adds: a number above 0 and up to 1 that differs between surfaces. It depends on
+// `content`, what the surface is, and not on the order of triangles. Its eight bits are exact in the sum of a float and
+// the largest addend.
+template <class Bits>
+auto rounding_threshold(Bits content) {
+  using Float = decltype(to_float(mix_bits(content)));
+  return (to_float(mix_bits(content) >> 24) + Float(1.0f)) * Float(0x1p-8f);
+}
+
+// ---- Retire: nothing can hide a surface any more ----
+
+// Is a surface in front of the watermark in the whole pixel, or behind it somewhere in the whole pixel?
+enum class Finality { is_final, is_open, depends_on_positions };
+template <class Float>
+Finality finality_of(const DepthPlane<Float>& plane, const Float& watermark) {
+  const Float reach = reach_in_pixel(plane.dzdu, plane.dzdv);
+  if (plane.z - reach > watermark) return Finality::is_open;
+  return plane.z + reach <= watermark ? Finality::is_final : Finality::depends_on_positions;
+}
+
+// The area, 0..1, that a surface adds to those that were retired before. What is left of a merged surface may be less
+// than the error of its mask.
+template <class Float>
+Float retired_area(const SurfaceArea<Float>& surface, const Float& positions, const Taken<Float>& taken) {
+  const Float exact = greater(surface.covered + surface.error, Float(0.0f)) / positions;
+  return visible_area(exact, surface.covered, surface.visible, positions, taken);
+}
+
+// ---- Merge: two surfaces become one ----
+
+// The distance in depth of two planes at (u, v), in pixels from the pixel's centre.
+template <class Float>
+Float depth_gap(const DepthPlane<Float>& plane, const DepthPlane<Float>& other, Float u, Float v) {
+  return magnitude(depth_at(plane, u, v) - depth_at(other, u, v));
+}
+
+template <class Float>
+struct PlacedSurface {
+  Float visible;  // positions that it owns
+  DepthPlane<Float> plane;
+  Float u, v;  // the mean of these positions, in pixels from the pixel's centre
+};
+
+// How much depth changes, over all positions, if two surfaces become one.
+template <class Float>
+Float merge_loss(const PlacedSurface<Float>& one, const PlacedSurface<Float>& other) {
+  return lesser(one.visible, other.visible) *
+         (depth_gap(one.plane, other.plane, one.u, one.v) + depth_gap(one.plane, other.plane, other.u, other.v));
+}
+
+inline constexpr float kLeastArea = 1e-3f;  // positions; keeps the weights of a mean positive
+
+// The parts of two surfaces in their mean colour, and the error of both together. The mean is weighted by areas. Once
+// an error has reached its limit, areas are not known any more: `counted`.
+template <class Float>
+struct MergedParts {
+  Float one, other;  // together 1
+  Float error;
+};
+template <class Float>
+MergedParts<Float> merged_parts(const SurfaceArea<Float>& one, const SurfaceArea<Float>& other, bool counted) {
+  const auto left_error = [](const SurfaceArea<Float>& surface) {
+    const Float fraction = surface.fraction();
+    return fraction * fraction * surface.error;
+  };
+  const Float error_of_one = left_error(one), error_of_other = left_error(other);
+  const auto weight = [&](const SurfaceArea<Float>& surface, const Float& error) {
+    return select(counted, surface.visible, greater(surface.visible + error, Float(kLeastArea)));
+  };
+  const Float weight_of_one = weight(one, error_of_one), weight_of_other = weight(other, error_of_other);
+  const Float scale = Float(1.0f) / (weight_of_one + weight_of_other);
+  return {weight_of_one * scale, weight_of_other * scale, error_of_one + error_of_other};
+}
+
+// What a merged surface's colour is rounded by.
+template <class Bits>
+auto merge_threshold(const Bits& content, const Bits& content_of_other) {
+  return rounding_threshold(content + content_of_other + content_of_other + content_of_other);
+}
+
+// ---- Specks ----
+
+// Does a speck at (u, v) with this depth lie in front of a surface or, as part of a smooth one, hardly behind it?
+template <class Float>
+bool is_on_or_before(Float depth, const DepthPlane<Float>& surface, Float u, Float v) {
+  return depth <= depth_at(surface, u, v) + Float(kSurfaceReach) * (magnitude(surface.dzdu) + magnitude(surface.dzdv));
+}
+
+// What a speck adds to the area of a pixel. `same`, `opposite`: areas of the specks that face as it does, with it, and
+// the other way; `before`: the greater one of both without it.
+template <class Float>
+Float speck_area(const Float& same, const Float& opposite, const Float& before, const Float& area) {
+  return lesser(greater(same, opposite) - before, Float(1.0f) - area);
+}
+
+// ---- Limit: two estimates of a pixel become one ----
+
+// How far the analytic estimate of a pixel may be from the count of its positions: in positions for areas; for colours,
+// in positions of the brighter one of the two mean colours. An edge through a grid of 256 positions leaves the count
+// wrong by one position, as a standard deviation.
+inline constexpr float kAreaTolerance = 2.0f, kColorTolerance = 3.0f;
+
+template <class Float>
+struct Estimate {
+  Float area;      // 0..1
+  Float color[3];  // linear RGB times area
+};
+
+// The analytic estimate, moved towards the counted one as far as the tolerances demand. `analytic.area` is above 0.
+template <class Float>
+Estimate<Float> limited_estimate(const Estimate<Float>& analytic, const Estimate<Float>& counted, Float positions) {
+  const Float zero(0.0f), one(1.0f);
+  const auto limited = [](Float x, Float middle, Float tolerance) {
+    return lesser(greater(x, middle - tolerance), middle + tolerance);
+  };
+  Estimate<Float> result;
+  result.area = select(counted.area == one, one,
+                       lesser(limited(analytic.area, counted.area, Float(kAreaTolerance) / positions), one));
+  const Float scale = result.area / analytic.area;
+  Float brightest = zero;
+  for (int c = 0; c < 3; ++c) {
+    brightest = greater(brightest, analytic.color[c] / analytic.area);
+    brightest = greater(brightest,
+                        select(counted.area > zero, counted.color[c] / greater(counted.area, one / positions), zero));
+  }
+  const Float tolerance = Float(kColorTolerance) / positions * brightest;
+  for (int c = 0; c < 3; ++c) result.color[c] = limited(scale * analytic.color[c], counted.color[c], tolerance);
+  return result;
+}
+
+}  // namespace beampipe

@@ -1,0 +1,267 @@
+// What the pixels of a tile keep while they are open. A pixel that nothing has touched, that one triangle covers, or
+// that is finished needs no more than a word of six bytes. A pixel that surfaces share has a record as well: bit planes
+// that say which surface owns which mask position, with as many planes as there are states; 8 bytes for each surface;
+// and 16 bytes of sums once a surface is final. Records lie in chunks of a pool that the tile's pixels have in common.
+// When the pool has no free chunk, a record continues in memory.
+//
+// The modelled machine links the chunks of a record, and those that are free, as a file system does. Which chunk is
+// where changes nothing, so this program counts chunks and keeps each record in one piece.
+#pragma once
+
+#include <algorithm>
+#include <array>
+#include <bit>
+#include <cstddef>
+#include <cstdint>
+#include <memory>
+#include <stdexcept>
+#include <string>
+#include <vector>
+
+#include "simd/depth_plane.h"
+#include "stages/data/half_bits.h"
+#include "stages/data/owner_slot.h"
+#include "stages/data/pixel_sums.h"
+
+namespace beampipe {
+
+// ---- The modelled machine's layout ----
+
+// A word holds three fp16 numbers, the colour of a finished pixel; or the triangle that covers the pixel; or a record's
+// first chunk, its number of owners, whether it has empty and final positions and sums, and the area of what is final.
+// Finished pixels are known by their closed depth, which is in front of everything.
+inline constexpr std::uint32_t kPixelWordBytes = 6;
+inline constexpr std::uint32_t kKindBits = 2, kTriangleBits = 23, kChunkNumberBits = 16, kOwnerCountBits = 5,
+                               kFlagBits = 3, kAreaBits = 16;
+static_assert(kKindBits + kTriangleBits <= 8 * kPixelWordBytes);
+static_assert(kKindBits + kChunkNumberBits + kOwnerCountBits + kFlagBits + kAreaBits <= 8 * kPixelWordBytes);
+
+inline constexpr std::uint32_t kChunkBytes = 16;
+inline constexpr std::uint32_t kChunkLinkBytes = kChunkNumberBits / 8;  // to the record's next chunk
+
+// States of a position: empty, final, or owned by one of these. Five bit planes are the most.
+inline constexpr std::size_t kMostStates = 32, kMostOwners = kMostStates - 2;
+
+// Bit planes for so many states that occur.
+constexpr std::uint32_t planes_for(std::size_t states) {
+  return states < 2 ? 0 : static_cast<std::uint32_t>(std::bit_width(states - 1));
+}
+
+// What a record holds, but for its bit planes.
+struct RecordShape {
+  std::uint8_t owners = 0;
+  bool has_empty = false;  // are there positions that nothing covers yet?
+  bool has_final = false;  // are there positions whose surface is final?
+  bool has_sums = false;
+
+  std::size_t first_owner() const { return std::size_t{has_empty} + has_final; }  // its state; those below: see above
+  std::size_t states() const { return first_owner() + owners; }
+  std::uint32_t planes() const { return planes_for(states()); }
+  std::uint32_t bytes(std::size_t words) const {
+    return planes() * static_cast<std::uint32_t>(words) * 4 + owners * static_cast<std::uint32_t>(sizeof(OwnerSlot)) +
+           (has_sums ? static_cast<std::uint32_t>(sizeof(PixelSums)) : 0);
+  }
+  std::uint32_t chunks(std::size_t words) const { return (bytes(words) + kChunkBytes - 1) / kChunkBytes; }
+};
+
+// The free chunks of a tile's pool.
+class ChunkPool {
+ public:
+  // `bytes`: of the pool on chip, with the links of its chunks.
+  explicit ChunkPool(std::size_t bytes) : on_chip_(bytes / (kChunkBytes + kChunkLinkBytes)) {}
+
+  // Of one record.
+  struct Chunks {
+    std::uint16_t count = 0, in_memory = 0;
+  };
+
+  // A record's chunks become so many. Chunks in memory are the first to be given back.
+  void resize(Chunks& of, std::uint32_t count) {
+    if (count > of.count) {
+      const std::size_t wanted = count - of.count, room = on_chip_ - std::min(on_chip_, used_on_chip_);
+      const std::size_t taken = std::min(wanted, room);
+      used_on_chip_ += taken;
+      of.in_memory = static_cast<std::uint16_t>(of.in_memory + (wanted - taken));
+      in_memory_ += wanted - taken;
+      taken_since_collection_ += wanted;
+    } else {
+      const std::size_t given = of.count - count, from_memory = std::min<std::size_t>(given, of.in_memory);
+      of.in_memory = static_cast<std::uint16_t>(of.in_memory - from_memory);
+      in_memory_ -= from_memory;
+      used_on_chip_ -= given - from_memory;
+    }
+    of.count = static_cast<std::uint16_t>(count);
+    peak_ = std::max(peak_, used());
+    peak_in_memory_ = std::max(peak_in_memory_, in_memory_);
+  }
+
+  // Is it time to look for what is final? Only if three quarters of the pool are in use, and an eighth of it was taken
+  // since the last time, so that a collection is paid by what made it necessary.
+  bool wants_collection() const { return 4 * used() > 3 * on_chip_ && 8 * taken_since_collection_ > on_chip_; }
+  void collected() { taken_since_collection_ = 0; }
+
+  std::size_t used() const { return used_on_chip_ + in_memory_; }
+  std::size_t peak() const { return peak_; }
+  std::size_t peak_in_memory() const { return peak_in_memory_; }
+
+ private:
+  std::size_t on_chip_, used_on_chip_ = 0, in_memory_ = 0;
+  std::size_t taken_since_collection_ = 0, peak_ = 0, peak_in_memory_ = 0;
+};
+
+// ---- This program's ----
+
+enum class PixelKind : std::uint8_t { untouched, covered, open, finished };
+
+struct PixelWord {
+  PixelKind kind = PixelKind::untouched;
+  RecordShape shape;              // open
+  FixedSum area;                  // open: of what is final, by analytic area
+  std::uint32_t triangle = 0;     // covered: number of the triangle in the bin's list; open: number of the record
+  ChunkPool::Chunks chunks;       // open
+  HalfBits color[3];              // finished; linear RGB
+  std::uint8_t record_class = 0;  // open: of this program's records
+};
+
+// Where a record lies. Depths of owners are not part of the modelled record: the machine computes them again whenever
+// it needs them, and this program keeps them.
+struct RecordView {
+  std::uint32_t* planes;  // plane by plane
+  OwnerSlot* slots;
+  float *z, *dzdu, *dzdv, *farthest;  // one per slot; the depth plane, and its upper bound in the pixel
+  PixelSums* sums;
+
+  DepthPlane<float> plane(std::size_t k) const { return {z[k], dzdu[k], dzdv[k]}; }
+  void set(std::size_t k, const OwnerSlot& slot, const DepthPlane<float>& plane, float far) const {
+    slots[k] = slot;
+    z[k] = plane.z, dzdu[k] = plane.dzdu, dzdv[k] = plane.dzdv, farthest[k] = far;
+  }
+  void move(std::size_t from, std::size_t to) const { set(to, slots[from], plane(from), farthest[from]); }
+};
+
+// A record with room for 2^Bits states. Eight depths may be read at once, from any multiple of eight.
+template <std::size_t Words, std::size_t Bits>
+struct Record {
+  static constexpr std::size_t kStates = std::size_t{1} << Bits, kRow = std::max<std::size_t>(8, kStates);
+  std::uint32_t planes[Bits][Words];
+  OwnerSlot slots[kStates];
+  float depths[4][kRow];
+  PixelSums sums;
+
+  RecordView view() { return {planes[0], slots, depths[0], depths[1], depths[2], depths[3], &sums}; }
+};
+
+// Records with room for 2^1 .. 2^5 states, each kind in blocks that never move.
+template <std::size_t Words>
+class RecordStore {
+ public:
+  static constexpr std::uint8_t class_for(std::size_t states) {
+    return static_cast<std::uint8_t>(std::max<std::uint32_t>(planes_for(states), 1) - 1);
+  }
+
+  std::uint32_t take(std::uint8_t record_class) {
+    return visit(record_class, [](auto& slab) { return slab.take(); });
+  }
+  void give_back(std::uint8_t record_class, std::uint32_t record) {
+    visit(record_class, [&](auto& slab) { return slab.free.push_back(record), record; });
+  }
+  RecordView view(std::uint8_t record_class, std::uint32_t record) {
+    switch (record_class) {
+      case 0:
+        return slab1_.at(record).view();
+      case 1:
+        return slab2_.at(record).view();
+      case 2:
+        return slab3_.at(record).view();
+      case 3:
+        return slab4_.at(record).view();
+      default:
+        return slab5_.at(record).view();
+    }
+  }
+
+ private:
+  template <std::size_t Bits>
+  struct Slab {
+    static constexpr std::uint32_t kBlock = 64;
+    std::vector<std::unique_ptr<Record<Words, Bits>[]>> blocks;
+    std::vector<std::uint32_t> free;
+    std::uint32_t count = 0;
+
+    Record<Words, Bits>& at(std::uint32_t record) { return blocks[record / kBlock][record % kBlock]; }
+    std::uint32_t take() {
+      if (!free.empty()) {
+        const std::uint32_t record = free.back();
+        free.pop_back();
+        return record;
+      }
+      if (count == blocks.size() * kBlock)
+        blocks.push_back(std::make_unique_for_overwrite<Record<Words, Bits>[]>(kBlock));
+      return count++;
+    }
+  };
+
+  template <class Work>
+  std::uint32_t visit(std::uint8_t record_class, Work&& work) {
+    switch (record_class) {
+      case 0:
+        return work(slab1_);
+      case 1:
+        return work(slab2_);
+      case 2:
+        return work(slab3_);
+      case 3:
+        return work(slab4_);
+      default:
+        return work(slab5_);
+    }
+  }
+
+  Slab<1> slab1_;
+  Slab<2> slab2_;
+  Slab<3> slab3_;
+  Slab<4> slab4_;
+  Slab<5> slab5_;
+};
+
+// What a pixel that one triangle covers is compared by. The modelled machine computes it again.
+struct CoverDepth {
+  DepthPlane<float> plane;
+  float farthest;
+};
+
+// The open pixels of a tile, row by row.
+template <std::size_t Words>  // 32 positions a word
+struct PooledPixels {
+  // `most_owners`: of a pixel, up to kMostOwners; beyond that, two are merged.
+  PooledPixels(std::size_t count, std::size_t pool_bytes, std::size_t owners = kMostOwners)
+      : words(count),
+        covers(std::make_unique_for_overwrite<CoverDepth[]>(count)),
+        pool(pool_bytes),
+        most_owners(owners) {}
+
+  std::vector<PixelWord> words;
+  std::unique_ptr<CoverDepth[]> covers;  // set where one triangle covers the pixel
+  RecordStore<Words> records;
+  ChunkPool pool;
+  std::size_t most_owners;
+};
+
+// Calls shape.operator()<Words>() for a mask of so many positions. Throws std::invalid_argument if there is none.
+template <class Shape>
+auto with_words(int positions, Shape&& shape) {
+  switch (positions) {
+    case 32:
+      return shape.template operator()<1>();
+    case 64:
+      return shape.template operator()<2>();
+    case 128:
+      return shape.template operator()<4>();
+    case 256:
+      return shape.template operator()<8>();
+    default:
+      throw std::invalid_argument("no pixel has " + std::to_string(positions) + " positions");
+  }
+}
+
+}  // namespace beampipe

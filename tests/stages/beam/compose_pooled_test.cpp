@@ -1,0 +1,207 @@
+#include "stages/beam/compose_pooled.h"
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+
+#include "stages/beam/compose_pooled_cost.h"
+#include "tests/simd/random.h"
+#include "tests/stages/open_pixels.h"
+
+namespace beampipe::compose_pooled_test {
+
+constexpr glm::vec3 kRed{1, 0, 0}, kGreen{0, 1, 0};
+
+void expect_pixel(const PixelColor& found, double alpha, const glm::dvec3& color, double tolerance) {
+  EXPECT_NEAR(found.alpha, alpha, tolerance);
+  for (int c = 0; c < 3; ++c) EXPECT_NEAR(found.color[c], color[c], tolerance) << "channel " << c;
+}
+
+std::vector<glm::vec3> random_colors(const SetupTriangles& triangles, Random& random) {
+  std::vector<glm::vec3> colors;
+  for (std::size_t i = 0; i < triangles.triangles.size(); ++i)
+    colors.emplace_back(random.real32(0, 1), random.real32(0, 1), random.real32(0, 1));
+  return colors;
+}
+
+TEST(ComposePooled, APixelThatOneTriangleCoversHasNoRecord) {
+  SetupTriangles triangles;
+  add_everywhere(triangles, -0.25f);
+  add_everywhere(triangles, -0.75f);
+  const std::vector<glm::vec3> colors{kGreen, {0.3f, 0.7f, 0.1f}};
+  for (const TriangleList& list : {TriangleList{0, 1}, TriangleList{1, 0}}) {
+    PooledOpenTile<8> tile(triangles, colors);
+    const PixelColor found = tile.compose(list).at(0);
+    EXPECT_EQ(found.alpha, 1.0f);
+    EXPECT_EQ(found.color, colors[1]);
+    EXPECT_EQ(tile.pixels.words[0].kind, PixelKind::covered);
+    EXPECT_EQ(tile.pixels.pool.peak(), 0u);
+    EXPECT_EQ(tile.result.shaded.size(), 1u) << "the hidden one is never shaded";
+    EXPECT_TRUE(tile.closed.hides(0, 0, -0.74f));
+    EXPECT_FALSE(tile.closed.hides(0, 0, -0.75f));
+  }
+}
+
+TEST(ComposePooled, AnEdgeOverASurface) {
+  SetupTriangles triangles;
+  add_everywhere(triangles, -0.25f);
+  add_left_of(triangles, 128, -0.75f);
+  const std::vector<glm::vec3> colors{kRed, kGreen};
+  for (const TriangleList& list : {TriangleList{0, 1}, TriangleList{1, 0}}) {
+    PooledOpenTile<8> tile(triangles, colors);
+    expect_pixel(tile.compose(list).at(0), 1, {0.5, 0.5, 0}, 1e-4);
+    EXPECT_EQ(tile.pixels.words[0].kind, PixelKind::open);
+    EXPECT_EQ(tile.pixels.pool.used(), 3u) << "one plane and two surfaces: 48 bytes";
+  }
+  // A third one in front of both takes the pixel, and the record is free again.
+  add_everywhere(triangles, -0.9f);
+  const std::vector<glm::vec3> three{kRed, kGreen, {0, 0, 1}};
+  PooledOpenTile<8> tile(triangles, three);
+  expect_pixel(tile.compose({0, 1, 2}).at(0), 1, {0, 0, 1}, 0);
+  EXPECT_EQ(tile.pixels.words[0].kind, PixelKind::covered);
+  EXPECT_EQ(tile.pixels.pool.used(), 0u);
+}
+
+TEST(ComposePooled, AtEqualDepthTheFirstTriangleWins) {
+  SetupTriangles triangles;
+  for (int i = 0; i < 1000; ++i) add_everywhere(triangles, -0.5f);
+  Random random(411);
+  const std::vector<glm::vec3> colors = random_colors(triangles, random);
+  TriangleList list = all_of(triangles);
+  for (int turn = 0; turn < 2; ++turn, std::reverse(list.begin(), list.end())) {
+    PooledOpenTile<8> tile(triangles, colors);
+    EXPECT_EQ(tile.compose(list).at(0).color, colors[0]);
+    EXPECT_LE(tile.pixels.pool.peak(), 3u);
+  }
+}
+
+// Against the state of fixed size, without watermarks and with a slot for each owner: both do the same then, but for
+// the order in which owners of equal parts become final.
+TEST(ComposePooled, IsTheStateOfFixedSizeWhileThereIsRoom) {
+  int shared = 0;
+  for (std::uint64_t seed = 420; seed < 440; ++seed) {
+    Random random(seed);
+    SCOPED_TRACE(random.name());
+    const SetupTriangles triangles = random_triangles(random, 60);
+    const std::vector<glm::vec3> colors = random_colors(triangles, random);
+    const Tile area{0, 0, 12, 12};
+    OpenTile<8, 32> fixed(triangles, colors, area);
+    PooledOpenTile<8> pooled(triangles, colors, area), no_pool(triangles, colors, area, 0);
+    const TriangleList list = all_of(triangles);
+    const std::vector<PixelColor> expected = fixed.compose(list), found = pooled.compose(list),
+                                  in_memory = no_pool.compose(list);
+    for (std::size_t i = 0; i < area.pixels(); ++i) {
+      ASSERT_EQ(in_memory[i].color, found[i].color) << "where a record lies changes nothing";
+      if (fixed.merges[i] + pooled.merges[i] > 0) continue;
+      shared += pooled.pixels.words[i].kind == PixelKind::open;
+      expect_pixel(found[i], expected[i].alpha, expected[i].color, 0.02);
+    }
+    EXPECT_GT(no_pool.result.chunks_in_memory, 0u);
+    EXPECT_EQ(pooled.result.chunks_in_memory, 0u);
+    EXPECT_EQ(pooled.composing.items_in, fixed.composing.items_in);
+  }
+  EXPECT_GT(shared, 500);
+}
+
+// Watermarks and a pool of the least size: collections all the time. 10,000 layers that reach into each other.
+TEST(ComposePooled, ManyLayersTakeNoMoreMemoryThanFew) {
+  for (const std::uint64_t seed : {451, 452}) {
+    Random random(seed);
+    SCOPED_TRACE(random.name());
+    SetupTriangles triangles;
+    while (triangles.triangles.size() < 10'000) {
+      const std::int32_t x = random.int32(0, 255), y = random.int32(0, 255);
+      const auto point = [&] {
+        return ScreenPoint{x + random.int32(-200, 200), y + random.int32(-200, 200), random.real32(-1, 0)};
+      };
+      add_triangle(triangles, point(), point(), point());
+    }
+    const std::vector<glm::vec3> colors = random_colors(triangles, random);
+    PooledOpenTile<8> tile(triangles, colors, {0, 0, 1, 1}, 0);
+    const PixelColor found = tile.compose_sorted().at(0);
+    WideMask all;
+    for (const Fragment& fragment : tile.fragments) all = all | fragment.mask;
+    EXPECT_NEAR(found.alpha * 256, all.count(), 2 + 1e-4);
+    for (int c = 0; c < 3; ++c) EXPECT_TRUE(found.color[c] >= 0 && found.color[c] <= found.alpha * 1.00001f);
+    EXPECT_LE(tile.pixels.pool.peak(), 26u) << "a record of 30 surfaces";
+  }
+}
+
+TEST(ComposePooled, MergesBeyondTheMostOwners) {
+  SetupTriangles triangles;
+  for (int i = 0; i < 8; ++i)
+    add_triangle(triangles, {32 * i, -9'000, -0.5f}, {32 * i + 32, -9'000, -0.5f}, {32 * i + 32, 9'000, -0.5f});
+  const std::vector<glm::vec3> colors(8, glm::vec3(0.25f, 0.5f, 1.0f));
+  PooledOpenTile<8> two(triangles, colors, {0, 0, 1, 1}, 1 << 20, 2), enough(triangles, colors);
+  const TriangleList list = all_of(triangles);
+  const PixelColor merged = two.compose(list).at(0), expected = enough.compose(list).at(0);
+  EXPECT_EQ(two.merges[0], 6);
+  EXPECT_EQ(enough.merges[0], 0);
+  expect_pixel(merged, expected.alpha, expected.color, 0.02);
+}
+
+TEST(ComposePooled, ACollectionFinishesPixels) {
+  SetupTriangles triangles;
+  add_left_of(triangles, 128, -0.9f);
+  add_right_of(triangles, 128, -0.8f);
+  add_everywhere(triangles, -0.1f);
+  const std::vector<glm::vec3> colors{kRed, kGreen, {0, 0, 1}};
+  const std::vector<float> watermarks{-0.9f, -0.8f, -0.1f};
+  PooledOpenTile<8> tile(triangles, colors, {0, 0, 1, 1}, 0);  // no room at all: every fragment collects
+  expect_pixel(tile.compose({0, 1, 2}, &watermarks).at(0), 1, {0.5, 0.5, 0}, 2e-3);
+  EXPECT_EQ(tile.pixels.words[0].kind, PixelKind::finished);
+  EXPECT_EQ(tile.pixels.pool.used(), 0u);
+  EXPECT_TRUE(tile.closed.hides(0, 0, -0.99f)) << "nothing can be seen there any more";
+}
+
+// ---- Costs, by hand ----
+
+TEST(ComposePooled, CostOfStates) {
+  // Each plane halves each state so far: an and, and an and-not, of eight words.
+  EXPECT_EQ(pooled_costs::split(1, 8).bit, 8u * 2 * 1);
+  EXPECT_EQ(pooled_costs::split(3, 8).bit, 8u * 2 * (1 + 2 + 4));
+  // Of states 0 to 4, two have bit 0, two bit 1, one bit 2.
+  EXPECT_EQ(pooled_costs::join(5, 8).bit, 8u * (2 + 2 + 1));
+  EXPECT_EQ(pooled_costs::join(2, 1).bit, 1u);
+  EXPECT_EQ(pooled_costs::join(1, 8).bit, 0u);
+}
+
+TEST(ComposePooled, CostOfAMergeHasItsHash) {
+  // Of what two surfaces are, a hash: five additions and shifts of 32 bits are not enough to leave it out.
+  OperationCounts hash = count_operations([](OperationCounts& counts) {
+    const Counted<std::uint32_t> x(0, counts);
+    mix_bits(x);
+  });
+  EXPECT_GE(pooled_costs::merge().bit, hash.bit);
+  EXPECT_GE(pooled_costs::merge().mul_add, hash.mul_add + 2 * 2 + 6);
+}
+
+// A fragment that covers the pixel: a test against the closed depth; no mask, no plane, no slot. It is read with the
+// closed depth (57 + 4 bytes) and the pixel's word, which is written.
+TEST(ComposePooled, CostOfACoveredPixel) {
+  SetupTriangles triangles;
+  add_everywhere(triangles, -0.5f);
+  const std::vector<glm::vec3> colors{kRed};
+  PooledOpenTile<8> tile(triangles, colors);
+  tile.compose({0});
+  EXPECT_EQ(tile.composing.ops, OperationCounts{.add = 1});
+  EXPECT_EQ(tile.composing.bytes_read, 57u + 4 + 6);
+  EXPECT_EQ(tile.composing.bytes_written, 6u);
+  EXPECT_EQ(tile.finishing.ops, OperationCounts{});
+  EXPECT_EQ(tile.finishing.bytes_read, 6u);
+}
+
+// A second one behind it is read, and its plane compared with that of the first: 44 bytes of its setup.
+TEST(ComposePooled, CostOfAHiddenFragment) {
+  SetupTriangles triangles;
+  add_triangle(triangles, {-9'000, -9'000, -0.6f}, {9'000, -9'000, -0.2f}, {0, 9'000, -0.4f});
+  add_triangle(triangles, {-9'000, -9'000, -0.5f}, {9'000, -9'000, -0.1f}, {0, 9'000, -0.3f});
+  const std::vector<glm::vec3> colors{kRed, kGreen};
+  PooledOpenTile<8> tile(triangles, colors);
+  tile.compose({0, 1});
+  const std::uint64_t compared = tile.fragments.at(1).z_min <= tile.fragments.at(0).z_max;
+  EXPECT_EQ(tile.composing.bytes_read, 2 * (57u + 4 + 6) + compared * (4 + 40));
+  EXPECT_EQ(tile.composing.bytes_written, 6u);
+}
+
+}  // namespace beampipe::compose_pooled_test
