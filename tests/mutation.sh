@@ -114,7 +114,7 @@ mutants=(  # file | text as it is | broken
   'stages/data/pooled_pixels.h|std::min<std::size_t>(given, of.in_memory)|std::size_t{0}'
   'stages/beam/owner_rules.h|Float(kAreaTolerance) / positions|Float(2 * kAreaTolerance) / positions'
   'simd/depth_plane-inl.h|Float(0.5f) * (magnitude|Float(0.25f) * (magnitude'
-  'stages/beam/compose_z3.cpp|share * a.color() + rest * b.color()|rest * a.color + share * b.color'
+  'stages/beam/compose_z3.cpp|share * a.color() + rest * b.color()|rest * a.color() + share * b.color()'
   'stages/beam/alpha_mask.cpp|return sum / covered;|return sum / static_cast<float>(left.count());'
   'stages/beam/alpha_mask.cpp|1.0f / std::sqrt|0.5f / std::sqrt'
   'stages/samples/alpha_test.cpp|alpha < shader.alpha_cutoff|alpha <= shader.alpha_cutoff'
