@@ -14,58 +14,15 @@
 // than multisampling. So the result is the analytic estimate, limited to what the error of counted positions explains.
 #pragma once
 
-#include <cstdint>
 #include <vector>
 
+#include "stages/beam/owners_bin.h"
 #include "stages/cost/counters.h"
 #include "stages/data/closed_depth.h"
-#include "stages/data/fragment.h"
 #include "stages/data/open_pixel.h"
 #include "stages/data/pixel_formats.h"
-#include "stages/data/pixel_observer.h"
-#include "stages/data/position_set.h"
-#include "stages/data/setup_triangle.h"
-#include "stages/data/shaded_triangle.h"
-#include "stages/data/tile.h"
-#include "stages/surface/surface_shader.h"
 
 namespace beampipe {
-
-// Where an owner is shaded that is not flat: at the centroid of what its triangle covers, at the mean of its positions,
-// or in each quarter or sixteenth of the pixel at the mean of its positions there.
-enum class OwnerPlace { covered, visible, quarters, sixteenths };
-
-// What a bin has in common for all its fragments.
-struct OwnersBin {
-  const SetupTriangles& triangles;
-  const TriangleList& list;              // at most OwnerSlot::kMostTriangles, in the order in which they are taken
-  const std::vector<float>* watermarks;  // as in OrderedList; null: nothing is final before the end
-  const Tile& tile;
-  const PositionSet& positions;
-  TileShader shader;
-  bool lists_fetches;  // fill OwnersResult::fetched
-  OwnerPlace shade_at = OwnerPlace::covered;
-  const PixelObservers* observers = nullptr;  // who looks at the pixels; null: nobody
-};
-
-// What was done, beside what is charged.
-struct OwnersResult {
-  std::vector<ShadedTriangle> shaded;  // once for each time that one was shaded
-  std::vector<std::uint32_t> fetched;  // triangles, once for each time that an owner's depth plane was computed again
-  TexelRequests* texels = nullptr;     // where shading adds a request of each invocation; null: nowhere
-};
-
-// Counts per pixel of the tile.
-struct OwnersMaps {
-  std::vector<float>& fragments;  // those that no closed pixel hid
-  std::vector<float>& merges;     // how often two owners became one
-};
-
-// Fragments in the order of the list. The triangle of the first one is at or after list[first].
-struct OwnersBatch {
-  const std::vector<Fragment>& fragments;
-  std::size_t first;
-};
 
 // What fragments are composed into.
 template <std::size_t Words, std::size_t Slots>

@@ -18,7 +18,7 @@
 #include <cstdint>
 #include <vector>
 
-#include "stages/beam/compose_owners.h"
+#include "stages/beam/owners_bin.h"
 #include "stages/cost/counters.h"
 #include "stages/data/closed_depth.h"
 #include "stages/data/fragment.h"
