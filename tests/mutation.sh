@@ -108,7 +108,7 @@ mutants=(  # file | text as it is | broken
   'stages/beam/compose_owners.cpp|one.visible >= other.visible ? one : other|one.visible >= other.visible ? other : one'
   'stages/beam/compose_owners.cpp|fragment.triangle < bin_.list[slot.triangle()]|fragment.triangle > bin_.list[slot.triangle()]'
   'stages/beam/position_states-inl.h|without(states[state], here)|states[state]'
-  'stages/beam/position_states-inl.h|plane | states[state]|states[state]'
+  'stages/beam/position_states-inl.h|if (state >> p & 1)|if (state >> p)'
   'stages/beam/compose_pooled.cpp|side == Side::nearer && covers|side == Side::nearer'
   'stages/beam/compose_pooled.cpp|empty_ = without(empty_, claimed);|'
   'stages/data/pooled_pixels.h|std::min<std::size_t>(given, of.in_memory)|std::size_t{0}'
