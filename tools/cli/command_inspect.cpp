@@ -43,7 +43,7 @@ Examples:
   beampipe inspect fence.json --worst 3 -t beam -o worst.svg      (the three worst pixels as a picture)
   beampipe inspect fence.json --pixel 160,90 -t beam --json
 
-Techniques: beam in every order, alpha, z3, msaa, acaa, visibility and deferred can be inspected.
+Techniques: beam and casav in every order, alpha, z3, msaa, acaa, visibility and deferred can be inspected.
 
 )";
 
