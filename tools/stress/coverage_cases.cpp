@@ -126,9 +126,10 @@ HardCase fp16_sums() {
   HardCase result{"fp16_sums", "512 shares of a colour that fp16 cannot represent", {}, {}, {}};
   result.picture = ExactPicture{.elsewhere = glm::dvec4(glm::dvec3(color), 1.0)};
   result.trace = screen.trace();
-  result.limits =
-      together({merge_limits(0.45, 0.5),
-                {{ErrorSource::sums_in_fp16, {0.05, "each of 256 sums is rounded to fp16, by at most 2^-12"}}}});
+  result.limits = together(
+      {merge_limits(0.45, 0.5),
+       {{ErrorSource::sums_in_fp16, {0.05, "each of 256 sums is rounded to fp16, by at most 2^-12"}},
+        {ErrorSource::sums_in_unorm8, {9 * kUnorm8Error, "each of 9 sums is rounded to 8 bits, by at most 2^-9"}}}});
   return result;
 }
 

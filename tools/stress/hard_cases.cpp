@@ -50,8 +50,8 @@ std::vector<HardCase> hard_cases(bool with_heavy) {
        {coverage_cases(), depth_cases(), frame_cases(), owner_cases(), state_cases(), surface_cases()})
     cases.insert(cases.end(), some.begin(), some.end());
   for (HardCase& hard_case : cases)
-    hard_case.limits[ErrorSource::shared_shading_samples] = {0.75,
-                                                             "triangles share the colours of a quad's four samples"};
+    hard_case.limits[ErrorSource::shared_shading_samples] = {
+        0.75, "triangles of a draw share the colours of a quad's four samples"};
   if (with_heavy)
     for (HardCase& heavy : heavy_cases()) cases.push_back(std::move(heavy));
   return cases;

@@ -81,7 +81,8 @@ Verdict Judge::judge(const Technique& technique, const FrameInput& options) {
   verdict.error = largest_error(technique, options);
   verdict.limit = case_.equals ? 0 : technique.rounding_error;
   const auto allow = [&](double error, const std::string& reason) {
-    if (error > verdict.limit) verdict.limit = error, verdict.reason = reason;
+    const bool explains = error == verdict.limit && verdict.reason.empty();
+    if (error > verdict.limit || explains) verdict.limit = error, verdict.reason = reason;
   };
   // A result is within three positions of what counting them gives, and counting is wrong by one more at an edge.
   if (!case_.equals && technique.counted_positions > 0)
