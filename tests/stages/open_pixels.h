@@ -12,6 +12,18 @@
 
 namespace beampipe {
 
+// The fragments of the list's triangles, in its order.
+template <std::size_t Words>
+std::vector<Fragment> fragments_in_order(const SetupTriangles& triangles, const TriangleList& list, const Tile& tile) {
+  const PositionGrid grid(32 * static_cast<int>(Words));
+  StageCounters ignored;
+  std::vector<Pair> pairs;
+  std::vector<Fragment> fragments;
+  conservative_raster(triangles, list, tile, ignored, pairs);
+  beam_fragment(triangles, pairs, tile, grid_options(grid, owners_fragment_bytes(Words)), ignored, fragments);
+  return fragments;
+}
+
 template <std::size_t Words, std::size_t Slots>
 struct OpenTile {
   using Pixel = OpenPixel<Words, Slots>;
@@ -41,11 +53,7 @@ struct OpenTile {
 
   // Composes the triangles of the list, in its order. `watermarks` may be null.
   std::vector<PixelColor> compose(const TriangleList& list, const std::vector<float>* watermarks = nullptr) {
-    const PositionGrid grid(kPositions);
-    StageCounters ignored;
-    std::vector<Pair> pairs;
-    conservative_raster(triangles, list, tile, ignored, pairs);
-    beam_fragment(triangles, pairs, tile, grid_options(grid, owners_fragment_bytes(Words)), ignored, fragments);
+    fragments = fragments_in_order<Words>(triangles, list, tile);
     const OwnersBin bin{triangles, list, watermarks, tile, positions, colors, false, OwnerPlace::covered, observers};
     compose_owners(bin, {fragments, 0}, composing, OwnersTile<Words, Slots>{open, closed, {counts, merges}, result});
     return finish_owners(bin, finishing, open, result);
@@ -87,11 +95,7 @@ struct PooledOpenTile {
         result(chunks_in_memory) {}
 
   std::vector<PixelColor> compose(const TriangleList& list, const std::vector<float>* watermarks = nullptr) {
-    const PositionGrid grid(kPositions);
-    StageCounters ignored;
-    std::vector<Pair> pairs;
-    conservative_raster(triangles, list, tile, ignored, pairs);
-    beam_fragment(triangles, pairs, tile, grid_options(grid, owners_fragment_bytes(Words)), ignored, fragments);
+    fragments = fragments_in_order<Words>(triangles, list, tile);
     const OwnersBin bin{triangles, list, watermarks, tile, positions, colors, false};
     compose_pooled(bin, {fragments, 0}, composing, PooledTile<Words>{pixels, closed, {counts, merges}, result});
     return finish_pooled(bin, finishing, pixels, result);
