@@ -1,6 +1,8 @@
 #include "pipeline/units/owner_units.h"
 
 #include <bit>
+#include <stdexcept>
+#include <string>
 
 #include "stages/raster/bin_sort_cost.h"
 
@@ -25,6 +27,22 @@ std::vector<Surface> open_pixel_surfaces(int positions, int slots) {
   return {{"owner_map", times("R32UI", map_words), 4 * map_words},
           {"owners", times("RG32UI", count), count * static_cast<std::uint32_t>(sizeof(OwnerSlot))},
           {"sums", times("R16", kSums / 2), kSums}};
+}
+
+OwnersBin owners_bin(Bin& bin, const PositionSet& positions, const TriangleList& list,
+                     const std::vector<float>* watermarks, OwnerPlace shade_at) {
+  if (list.size() > OwnerSlot::kMostTriangles)
+    throw std::runtime_error("a bin has " + std::to_string(list.size()) + " triangles, more than the " +
+                             std::to_string(OwnerSlot::kMostTriangles) + " that an owner can name");
+  return {.triangles = bin.triangles(),
+          .list = list,
+          .watermarks = watermarks,
+          .tile = bin.tile,
+          .positions = positions,
+          .shader = bin.shader(),
+          .lists_fetches = bin.models_memory(),
+          .shade_at = shade_at,
+          .observers = bin.observers()};
 }
 
 OrderedList sort_bin(Bin& bin) {

@@ -1,8 +1,6 @@
 // Composition in bounded memory: a bin's triangles near to far, and the open pixels that own mask positions.
 #pragma once
 
-#include <stdexcept>
-#include <string>
 #include <vector>
 
 #include "pipeline/bins/bin.h"
@@ -40,6 +38,12 @@ class OpenPixelStore {
 // Of an OpenPixel with so many positions and slots.
 std::vector<Surface> open_pixel_surfaces(int positions, int slots);
 
+// What composers take for all fragments of a bin. `list`: the triangles in the order in which they are taken;
+// `watermarks` may be null. All must outlive the result. Throws std::runtime_error if the list is longer than an owner
+// can name.
+OwnersBin owners_bin(Bin& bin, const PositionSet& positions, const TriangleList& list,
+                     const std::vector<float>* watermarks, OwnerPlace shade_at);
+
 template <std::size_t Words, std::size_t Slots>
 class ComposeOwnersUnit {
  public:
@@ -50,22 +54,10 @@ class ComposeOwnersUnit {
                     OwnerPlace shade_at = OwnerPlace::covered)
       : bin_(bin),
         stage_(bin.stage(StageId::compose)),
-        owners_{.triangles = bin.triangles(),
-                .list = list,
-                .watermarks = watermarks,
-                .tile = bin.tile,
-                .positions = positions,
-                .shader = bin.shader(),
-                .lists_fetches = bin.models_memory(),
-                .shade_at = shade_at,
-                .observers = bin.observers()},
+        owners_(owners_bin(bin, positions, list, watermarks, shade_at)),
         maps_{bin.pixel_counter("fragments"), bin.pixel_counter("merges")},
         pixels_(bin.tile.pixels()),
-        store_(bin, surfaces) {
-    if (list.size() > OwnerSlot::kMostTriangles)
-      throw std::runtime_error("a bin has " + std::to_string(list.size()) + " triangles, more than the " +
-                               std::to_string(OwnerSlot::kMostTriangles) + " that an owner can name");
-  }
+        store_(bin, surfaces) {}
 
   // `first`: as in OwnersBatch.
   void operator()(const std::vector<Fragment>& fragments, std::size_t first, ClosedDepth& closed, ShadeUnit& shade) {

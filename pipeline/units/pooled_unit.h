@@ -1,8 +1,6 @@
 // Composition with records in a pool: a bin's triangles near to far, and pixels that pay for the edges that they have.
 #pragma once
 
-#include <stdexcept>
-#include <string>
 #include <vector>
 
 #include "pipeline/units/owner_units.h"
@@ -27,23 +25,11 @@ class ComposePooledUnit {
                     const std::vector<Surface>& surfaces, int pool_bytes, OwnerPlace shade_at)
       : bin_(bin),
         stage_(bin.stage(StageId::compose)),
-        owners_{.triangles = bin.triangles(),
-                .list = list.triangles,
-                .watermarks = &list.watermarks,
-                .tile = bin.tile,
-                .positions = positions,
-                .shader = bin.shader(),
-                .lists_fetches = bin.models_memory(),
-                .shade_at = shade_at,
-                .observers = bin.observers()},
+        owners_(owners_bin(bin, positions, list.triangles, &list.watermarks, shade_at)),
         maps_{bin.pixel_counter("fragments"), bin.pixel_counter("merges")},
         memory_chunks_(bin.pixel_counter("memory_chunks")),
         pixels_(bin.tile.pixels(), bin.tile.pixels() * static_cast<std::size_t>(pool_bytes)),
-        store_(bin, surfaces) {
-    if (list.triangles.size() > OwnerSlot::kMostTriangles)
-      throw std::runtime_error("a bin has " + std::to_string(list.triangles.size()) + " triangles, more than the " +
-                               std::to_string(OwnerSlot::kMostTriangles) + " that an owner can name");
-  }
+        store_(bin, surfaces) {}
 
   // `first`: as in OwnersBatch.
   void operator()(const std::vector<Fragment>& fragments, std::size_t first, ClosedDepth& closed, ShadeUnit& shade) {
