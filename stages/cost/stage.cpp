@@ -46,10 +46,12 @@ constexpr std::array<StageInfo, kStageCount> kStages = {{
      "fragments of cutouts and of translucent triangles", "those of which something is left",
      "positions at which alpha is tested or ranked", "the same positions"},
     {StageId::compose, "compose", visibility, "#e15759", kYes, kYes, items | kArithmetic | kMemory | positions | lanes,
-     "fragments", "aggregates: one per window (beam) or pixel (casav, alpha); fragments that take a position (z3)",
-     "positions whose depths are compared (beam); merged fragments (casav, alpha); fragments that take a "
-     "position (z3)",
-     "positions of all fragments (beam); all fragments (others)"},
+     "fragments",
+     "aggregates: one per window (beam:order=sorted) or pixel (casav, alpha); fragments that take a position (beam, "
+     "z3)",
+     "positions whose depths are compared (beam:order=sorted); merged fragments (casav, alpha); fragments that take a "
+     "position (beam, z3)",
+     "positions of all fragments (beam:order=sorted); all fragments (others)"},
     {StageId::alpha_test, "alpha_test", fragments, "#c3d56b", kNo, kYes,
      items | (kArithmetic & ~(bit | convert)) | kMemory | texels | lanes, "fragments of cutouts, counted in each pass",
      "those of which a sample is left", "fragments of cutouts", "four invocations for each of them"},

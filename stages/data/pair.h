@@ -27,10 +27,4 @@ inline constexpr std::uint32_t kPairWithDepthBytes = kPairBytes + 8;
 // In the A-buffer: the triangle index and the two depth bounds.
 inline constexpr std::uint32_t kStoredPairBytes = 4 + 8;
 
-// Sets nearest and farthest. `vertices`: vertex_bounds of the triangle.
-inline void set_depths(const SetupTriangle& triangle, const DepthBounds<float>& vertices, Pair& pair) {
-  const DepthBounds<float> bounds = pair_bounds(pixel_plane(triangle, pair.x, pair.y), vertices);
-  pair.nearest = bounds.nearest, pair.farthest = bounds.farthest;
-}
-
 }  // namespace beampipe
