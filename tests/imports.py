@@ -50,7 +50,8 @@ WITHOUT_TRACES = {"data", "cost"}
 LIGHT_HEADER = re.compile(r"(glm|hwy|tbb)/.*|\w+|(fcntl|malloc|unistd)\.h")
 # Headers in stage groups that are no stage's own: formulas of stages and costs, and algorithms in files of their own.
 SHARED_IN_GROUP = {
-    "stages/beam/merge_sort.h", "stages/beam/owner_rules.h", "stages/beam/owners_bin.h",
+    "stages/beam/merge_sort.h", "stages/beam/owner_rules.h", "stages/beam/owner_rules_cost.h",
+    "stages/beam/owners_bin.h",
     "stages/beam/position_states-inl.h", "stages/beam/register_mask-inl.h", "stages/beam/casav_fragment.h",
     "stages/beam/casav_merges.h", "stages/beam/specks.h", "stages/geometry/clip.h", "stages/geometry/depth_order.h",
     "stages/geometry/draw_geometry.h", "stages/geometry/draw_notes.h", "stages/geometry/draw_plan.h",

@@ -146,8 +146,8 @@ class OwnerComposer {
     DepthPlane<float> plane{};
     float mean_u = 0, mean_v = 0;  // of these positions, in pixels from the pixel's centre
 
-    float covered() const { return slot.is_merged() ? visible : slot.covered(); }
-    float fraction() const { return visible / covered(); }
+    SurfaceArea<float> area() const { return {slot.is_merged() ? visible : slot.covered(), visible, slot.error()}; }
+    PlacedSurface<float> placed() const { return {visible, plane, mean_u, mean_v}; }
   };
 
   // An owner's place in the order in which owners become final.
@@ -271,9 +271,8 @@ class OwnerComposer {
   // it is not.
   bool is_final(const Pixel& pixel, std::size_t k, const DepthPlane<float>& plane, float watermark) {
     ++work.finality_tests;
-    const float reach = reach_in_pixel(plane.dzdu, plane.dzdv);
-    if (plane.z - reach > watermark) return false;
-    if (plane.z + reach <= watermark) return true;
+    const Finality finality = finality_of(plane, watermark);
+    if (finality != Finality::depends_on_positions) return finality == Finality::is_final;
     ++work.farthest_found;
     const WideMask owned = positions_in(Pixel::owned_by(k), pixel).wide();
     return farthest_depth(plane, bin_.positions.patterns.data(), Words, owned.words.data()) <= watermark;
@@ -307,16 +306,13 @@ class OwnerComposer {
     ++work.measured;
     const WideMask owned = owner.owned.wide();
     const PositionSums sums = position_sums(bin_.positions.patterns.data(), Words, owned.words.data());
-    const float per_unit = 1.0f / (owner.visible * kSubpixelUnits);
-    owner.mean_u = static_cast<float>(sums.x) * per_unit - 0.5f;
-    owner.mean_v = static_cast<float>(sums.y) * per_unit - 0.5f;
+    owner.mean_u = mean_position(sums.x, owner.visible) - 0.5f;
+    owner.mean_v = mean_position(sums.y, owner.visible) - 0.5f;
   }
 
-  // How much depth changes, over all positions, if the two become one.
-  float merge_cost(const Owner& one, const Owner& other) {
+  float loss_of(const Owner& one, const Owner& other) {
     ++work.pairs_compared;
-    return lesser(one.visible, other.visible) * (depth_gap(one.plane, other.plane, one.mean_u, one.mean_v) +
-                                                 depth_gap(one.plane, other.plane, other.mean_u, other.mean_v));
+    return merge_loss(one.placed(), other.placed());
   }
 
   std::uint32_t trace_number(const Owner& owner) const { return bin_.list[owner.slot.triangle()]; }
@@ -330,18 +326,18 @@ class OwnerComposer {
   std::size_t merge_closest(Pixel& pixel) {
     ++work.merges;
     std::size_t first = 0, second = 1;
-    float least = merge_cost(owners_[0], owners_[1]);
+    float least = loss_of(owners_[0], owners_[1]);
     for (std::size_t j = 2; j < owners_.size(); ++j) {
       for (std::size_t i = 0; i < j; ++i) {
-        const float cost = merge_cost(owners_[i], owners_[j]);
-        if (cost > least || (cost == least && distance_in_trace(i, j) >= distance_in_trace(first, second))) continue;
-        least = cost, first = i, second = j;
+        const float loss = loss_of(owners_[i], owners_[j]);
+        if (loss > least || (loss == least && distance_in_trace(i, j) >= distance_in_trace(first, second))) continue;
+        least = loss, first = i, second = j;
       }
     }
     Owner &one = owners_[first], &other = owners_[second];  // only the other one may be without a slot
     const Owner& larger = one.visible >= other.visible ? one : other;
-    const float error_of_one = one.fraction() * one.fraction() * one.slot.error();
-    const float error_of_other = other.fraction() * other.fraction() * other.slot.error();
+    const float error_of_one = one.area().fraction() * one.area().fraction() * one.slot.error();
+    const float error_of_other = other.area().fraction() * other.area().fraction() * other.slot.error();
     // The mean is weighted by areas. Once an error has reached its limit, areas are not known any more.
     const bool counted = one.slot.error_is_limited() || other.slot.error_is_limited();
     const float part = counted ? one.visible : std::max(one.visible + error_of_one, kLeastArea);
@@ -353,10 +349,9 @@ class OwnerComposer {
       observer_->merges({one.owned.wide(), color_of_one, share}, {other.owned.wide(), color_of_other, 1 - share});
     }
     put(one.owned | other.owned, Pixel::owned_by(one.index), pixel);
-    const std::uint32_t contents = one.slot.content() + 3 * other.slot.content();
     depths_->set(one.index, larger.plane, pair_bounds(larger.plane, {kInFront, kNoDepth}).farthest);
     pixel.slots[one.index].set_merged(larger.slot.triangle(), error_of_one + error_of_other, color,
-                                      rounding_threshold(contents));
+                                      merge_threshold(one.slot.content(), other.slot.content()));
     if (other.index < Slots) pixel.slots[other.index].clear();
     return other.index;
   }
@@ -396,8 +391,8 @@ class OwnerComposer {
     ++work.measured;
     const WideMask words = positions.wide();
     const PositionSums sums = position_sums(bin_.positions.patterns.data(), Words, words.words.data());
-    const float per_unit = 1.0f / (static_cast<float>(positions.count()) * kSubpixelUnits);
-    return shade(triangle, static_cast<float>(sums.x) * per_unit, static_cast<float>(sums.y) * per_unit, width);
+    const auto count = static_cast<float>(positions.count());
+    return shade(triangle, mean_position(sums.x, count), mean_position(sums.y, count), width);
   }
 
   // `width`: of the area that the colour stands for, in pixels.
@@ -417,10 +412,7 @@ class OwnerComposer {
     for (std::size_t i = 0; i < count; ++i) {
       const Owner* const owner = &owners_[order_[i].owner];
       ++work.settled;
-      // What is left of a merged surface may be less than the error of its mask.
-      const float exact = greater(owner->covered() + owner->slot.error(), 0.0f) / kPositions;
-      const float area =
-          visible_area(exact, owner->covered(), owner->visible, kPositions, Taken<float>{pixel.area, final_positions});
+      const float area = retired_area(owner->area(), kPositions, Taken<float>{pixel.area, final_positions});
       const glm::vec3 color = final_color(owner->slot, owner->index, owner->owned);
       const float counted = owner->visible / kPositions;
       if (observer_) observer_->settles(owner->owned.wide(), color, area, counted);
@@ -439,7 +431,7 @@ class OwnerComposer {
   // Sets order_. Equal ones keep their order.
   void sort_by_fraction(std::size_t count) {
     for (std::size_t i = 0; i < count; ++i) {
-      const Place place{i, owners_[i].fraction()};
+      const Place place{i, owners_[i].area().fraction()};
       std::size_t j = i;
       for (; j > 0; --j) {
         ++work.order_tests;
@@ -481,7 +473,7 @@ class OwnerComposer {
     const float threshold = rounding_threshold(std::bit_cast<std::uint32_t>(fragment.alpha) ^
                                                std::bit_cast<std::uint32_t>(fragment.centroid_z));
     same.add(fragment.alpha * votes / 3.0f, threshold);
-    const float area = lesser(greater(same, opposite) - before, 1.0f - pixel.area);
+    const float area = speck_area<float>(same, opposite, before, pixel.area);
     if (area <= 0) return;
     ++work.specks_added;
     const glm::vec3 color = shade(fragment.triangle, fragment.centroid_u, fragment.centroid_v);

@@ -4,8 +4,7 @@
 #include <bit>
 
 #include "simd/conserve.h"
-#include "stages/beam/owner_rules.h"
-#include "stages/cost/plane_cost.h"
+#include "stages/beam/owner_rules_cost.h"
 #include "stages/data/open_pixel.h"
 
 namespace beampipe {
@@ -34,14 +33,6 @@ struct OwnersWork {
   std::uint64_t finished = 0;  // pixels that were read at the end
   std::uint64_t limited = 0;   // of these, pixels whose estimates were compared
 };
-
-// The population counts of a mask's words, and their sum.
-inline OperationCounts count_cost(std::size_t words) {
-  return count_operations([&](OperationCounts& counts) {
-    Counted<float> sum = bit_count(Counted<std::uint32_t>(0, counts));
-    for (std::size_t w = 1; w < words; ++w) sum = sum + bit_count(Counted<std::uint32_t>(0, counts));
-  });
-}
 
 // To add to a sum in fixed point.
 inline void add_fixed(const Counted<float>& x) {
@@ -75,50 +66,11 @@ OperationCounts owned_cost() {
   return counts;
 }
 
-// Per contest: the difference of two planes, and its sign in the whole pixel.
-inline OperationCounts plane_gap_cost() {
-  return count_operations([](OperationCounts& counts) {
-    const Counted<float> one(1.0f, counts);
-    const DepthPlane<Counted<float>> plane{one, one, one};
-    const PlaneGap<Counted<float>> gap = plane_gap(plane, plane);
-    static_cast<void>(is_nearer(gap));
-    static_cast<void>(is_farther(gap));
-  });
-}
-
-// Per test whether an owner is final: the bounds of its plane in the pixel.
-inline OperationCounts finality_cost() {
-  return count_operations([](OperationCounts& counts) {
-    const Counted<float> one(1.0f, counts);
-    const Counted<float> reach = reach_in_pixel(one, one);
-    static_cast<void>(one - reach > one);
-    static_cast<void>(one + reach <= one);
-  });
-}
-
-// Per position, to find the farthest depth of a plane.
-inline OperationCounts farthest_cost() {
-  return count_operations([](OperationCounts& counts) {
-    const Counted<float> one(1.0f, counts);
-    farthest_formula(DepthPlane<Counted<float>>{one, one, one}, one, one, true, one);
-  });
-}
-
 // Per owner: the mean of its positions, from the sums of their coordinates.
 inline OperationCounts mean_cost() {
   return count_operations([](OperationCounts& counts) {
     const Counted<float> one(1.0f, counts), per_unit = one / (one * one);
     for (int axis = 0; axis < 2; ++axis) to_float(Counted<std::int32_t>(0, counts)) * per_unit - Counted<float>(0.5f);
-  });
-}
-
-inline OperationCounts pair_cost() {
-  return count_operations([](OperationCounts& counts) {
-    const Counted<float> one(1.0f, counts);
-    const DepthPlane<Counted<float>> plane{one, one, one};
-    const Counted<float> cost =
-        lesser(one, one) * (depth_gap(plane, plane, one, one) + depth_gap(plane, plane, one, one));
-    static_cast<void>(cost < one);
   });
 }
 
@@ -157,17 +109,7 @@ inline OperationCounts settle_owner_cost() {
   });
 }
 
-// Per speck: the positions next to it and their states. Per comparison with an owner: the test. Per speck that is
-// added: its area and colour.
-inline OperationCounts speck_votes_cost(std::size_t bits) {
-  return {.add = 3, .bit = 3 * 2 * bits, .fetch = 3, .convert = 2};
-}
-inline OperationCounts speck_test_cost() {
-  return count_operations([](OperationCounts& counts) {
-    const Counted<float> one(1.0f, counts), half(0.5f);
-    is_on_or_before(one, DepthPlane<Counted<float>>{one, one, one}, one - half, one - half);
-  });
-}
+// Per speck that is added: its area and colour.
 inline OperationCounts speck_area_cost() {
   return count_operations([](OperationCounts& counts) {
     using Number = Counted<float>;
@@ -179,17 +121,6 @@ inline OperationCounts speck_area_cost() {
     add_fixed(area);
     for (int c = 0; c < 3; ++c) one* area;
     add_colors(one, counts);
-  });
-}
-
-// Per pixel at the end, with the conversion of its sums.
-inline OperationCounts limit_cost() {
-  return count_operations([](OperationCounts& counts) {
-    using Number = Counted<float>;
-    const Number one(1.0f, counts);
-    const auto sum = [&] { return to_float(Counted<std::int32_t>(0, counts)) * one; };
-    const Estimate<Number> analytic{sum(), {sum(), sum(), sum()}}, counted{one * one, {sum(), sum(), sum()}};
-    limited_estimate(analytic, counted, one);
   });
 }
 

@@ -59,7 +59,7 @@ class PooledComposer {
       add_speck(fragment);
       return Outcome::composed;
     }
-    const bool covers = fragment.alpha == 1.0f && mask == kEverywhere();
+    const bool covers = fragment.alpha == 1.0f && mask == everywhere();
     if (word_->kind == PixelKind::covered) {
       const Side side = side_of(fragment);
       if (side == Side::farther || (side == Side::nearer && covers)) {
@@ -90,9 +90,9 @@ class PooledComposer {
     for (std::uint32_t pixel = 0; pixel < pixels_.words.size(); ++pixel) {
       first_shaded_.push_back(static_cast<std::uint32_t>(shaded_at_.size()));
       look_at(pixel);
-      if (word_->kind == PixelKind::covered) add(pixel, word_->triangle, 0.5f, 0.5f);
+      if (word_->kind == PixelKind::covered) add(pixel, word_->number, 0.5f, 0.5f);
       if (word_->kind != PixelKind::open) continue;
-      const RecordView record = pixels_.records.view(word_->record_class, word_->triangle);
+      const RecordView record = pixels_.records.view(word_->record_class, word_->number);
       for (std::size_t k = 0; k < word_->shape.owners; ++k) {
         const OwnerSlot& slot = record.slots[k];
         if (slot.is_merged()) {
@@ -116,8 +116,8 @@ class PooledComposer {
       case PixelKind::finished:
         return {1.0f, glm::vec3(word_->color[0], word_->color[1], word_->color[2])};
       case PixelKind::covered: {
-        const glm::vec3 color = shaded_color(0, bin_.list[word_->triangle], 0.5f, 0.5f, kEverywhere());
-        if (observer_) observer_->adds(bin_.list[word_->triangle], 1.0, color);
+        const glm::vec3 color = shaded_color(0, bin_.list[word_->number], 0.5f, 0.5f, everywhere());
+        if (observer_) observer_->adds(bin_.list[word_->number], 1.0, color);
         return {1.0f, color};
       }
       case PixelKind::open:
@@ -134,8 +134,8 @@ class PooledComposer {
 
  private:
   static constexpr auto kPositions = static_cast<float>(32 * Words);
-  static Mask kEverywhere() { return Mask::filled(true); }
-  static Mask kNowhere() { return Mask::filled(false); }
+  static Mask everywhere() { return Mask::filled(true); }
+  static Mask nowhere() { return Mask::filled(false); }
 
   struct Owner {
     OwnerSlot slot;
@@ -166,18 +166,18 @@ class PooledComposer {
   // Takes the pixel's state apart.
   void begin() {
     area_ = {};
-    empty_ = final_ = kNowhere();
+    empty_ = final_ = nowhere();
     shape_ = {};
     owned_ = masks_ + 2;
     if (word_->kind == PixelKind::open) {
       shape_ = word_->shape;
       area_ = word_->area;
-      record_ = pixels_.records.view(word_->record_class, word_->triangle);
+      record_ = pixels_.records.view(word_->record_class, word_->number);
       Mask* const states = owned_ - shape_.first_owner();
       ++work.splits[shape_.planes()];
       read_record(shape_.planes() * 4 * Words);
       split_states(
-          shape_.planes(), kEverywhere(), [&](std::size_t p) { return Mask(record_.planes + p * Words); }, states);
+          shape_.planes(), everywhere(), [&](std::size_t p) { return Mask(record_.planes + p * Words); }, states);
       if (shape_.has_empty) empty_ = states[0];
       if (shape_.has_final) final_ = states[std::size_t{shape_.has_empty}];
       return;
@@ -186,12 +186,12 @@ class PooledComposer {
     if (word_->kind == PixelKind::covered) {
       const CoverDepth& cover = pixels_.covers[pixel_];
       OwnerSlot slot;
-      slot.set(word_->triangle, 0.0f, static_cast<std::uint32_t>(kPositions), 0.5f, 0.5f);
+      slot.set(word_->number, 0.0f, static_cast<std::uint32_t>(kPositions), 0.5f, 0.5f);
       record_.set(0, slot, cover.plane, cover.farthest);
-      owned_[0] = kEverywhere();
+      owned_[0] = everywhere();
       shape_.owners = 1;
     } else {
-      empty_ = kEverywhere();
+      empty_ = everywhere();
       shape_.has_empty = true;
     }
   }
@@ -212,7 +212,7 @@ class PooledComposer {
       pixels_.covers[pixel_] = {record_.plane(0), record_.farthest[0]};
       release();
       word_->kind = PixelKind::covered;
-      word_->triangle = triangle;
+      word_->number = triangle;
       return;
     }
     make_room_for(shape_.states());
@@ -227,8 +227,7 @@ class PooledComposer {
     const std::size_t count = shape_.states(), planes = shape_.planes();
     ++work.joins[count];
     write_record(planes * 4 * Words);
-    for (std::size_t p = 0; p < planes; ++p)
-      join_states(p, count, kNowhere(), states).store(record_.planes + p * Words);
+    for (std::size_t p = 0; p < planes; ++p) join_states(p, count, nowhere(), states).store(record_.planes + p * Words);
     pixels_.pool.resize(word_->chunks, shape_.chunks(Words));
     word_->shape = shape_;
     word_->area = area_;
@@ -248,16 +247,16 @@ class PooledComposer {
     for (std::size_t k = 0; k < shape_.owners; ++k)
       view.set(k, record_.slots[k], record_.plane(k), record_.farthest[k]);
     if (shape_.has_sums) *view.sums = *record_.sums;
-    if (word_->kind == PixelKind::open) pixels_.records.give_back(word_->record_class, word_->triangle);
+    if (word_->kind == PixelKind::open) pixels_.records.give_back(word_->record_class, word_->number);
     word_->kind = PixelKind::open;
     word_->record_class = wanted;
-    word_->triangle = record;
+    word_->number = record;
     record_ = view;
   }
 
   void release() {
     if (word_->kind != PixelKind::open) return;
-    pixels_.records.give_back(word_->record_class, word_->triangle);
+    pixels_.records.give_back(word_->record_class, word_->number);
     pixels_.pool.resize(word_->chunks, 0);
   }
 
@@ -283,7 +282,7 @@ class PooledComposer {
   // Where the fragment lies in a pixel that one triangle covers.
   Side side_of(const Fragment& fragment) {
     ++work.contests, ++work.planes;
-    if (bin_.lists_fetches) result_.fetched.push_back(bin_.list[word_->triangle]);
+    if (bin_.lists_fetches) result_.fetched.push_back(bin_.list[word_->number]);
     const PlaneGap<float> gap = plane_gap(fragment.plane, pixels_.covers[pixel_].plane);
     return is_nearer(gap) ? Side::nearer : is_farther(gap) ? Side::farther : Side::crossing;
   }
@@ -291,7 +290,7 @@ class PooledComposer {
   void cover(const Fragment& fragment, std::uint32_t number, ClosedDepth& closed) {
     ++work.claims, ++work.covers;
     word_->kind = PixelKind::covered;
-    word_->triangle = number;
+    word_->number = number;
     pixels_.covers[pixel_] = {fragment.plane, fragment.z_max};
     closed.close(pixel_, fragment.z_max);
   }
@@ -363,7 +362,7 @@ class PooledComposer {
 
   // The positions that the fragment takes from owners. `contested`: bit k: owner k has positions in its mask.
   HWY_INLINE Mask positions_won(const Fragment& fragment, const Mask& mask, std::uint32_t contested) {
-    Mask won = kNowhere();
+    Mask won = nowhere();
     if (contested == 0) return won;
     const auto contests = static_cast<std::uint64_t>(std::popcount(contested));
     work.contests += contests, work.planes += contests;
@@ -415,7 +414,6 @@ class PooledComposer {
 
   // Retires what is in front of the watermark, in all pixels.
   void collect(float watermark, ClosedDepth& closed) {
-    ++work.collections;
     work.words_scanned += pixels_.words.size();
     pixels_.pool.collected();
     for (std::uint32_t pixel = 0; pixel < pixels_.words.size(); ++pixel) {
@@ -428,7 +426,7 @@ class PooledComposer {
 
   // Does any owner reach in front of the watermark?
   bool may_retire(float watermark) {
-    const RecordView record = pixels_.records.view(word_->record_class, word_->triangle);
+    const RecordView record = pixels_.records.view(word_->record_class, word_->number);
     bool may = false;
     read_record(word_->shape.owners * sizeof(OwnerSlot));
     for (std::size_t k = 0; k < word_->shape.owners; ++k) {
@@ -653,7 +651,7 @@ class PooledComposer {
     if (word_->kind == PixelKind::open) {
       shape_ = word_->shape;
       area_ = word_->area;
-      record_ = pixels_.records.view(word_->record_class, word_->triangle);
+      record_ = pixels_.records.view(word_->record_class, word_->number);
     }
     const float votes = votes_for(fragment);
     if (votes == 0) return;
@@ -687,7 +685,7 @@ class PooledComposer {
     if (word_->kind == PixelKind::untouched) return 3.0f;
     if (word_->kind == PixelKind::covered) {
       ++work.planes;
-      if (bin_.lists_fetches) result_.fetched.push_back(bin_.list[word_->triangle]);
+      if (bin_.lists_fetches) result_.fetched.push_back(bin_.list[word_->number]);
       return is_nearer_than(speck, pixels_.covers[pixel_].plane) ? 3.0f : 0.0f;
     }
     float votes = 0;

@@ -9,9 +9,8 @@
 #include <vector>
 
 #include "simd/conserve.h"
-#include "stages/beam/owner_rules.h"
+#include "stages/beam/owner_rules_cost.h"
 #include "stages/cost/counted_mask.h"
-#include "stages/cost/plane_cost.h"
 #include "stages/data/pooled_pixels.h"
 
 namespace beampipe {
@@ -30,7 +29,6 @@ struct PooledWork {
   std::uint64_t contests = 0;                          // owners of positions that a fragment covers
   std::uint64_t planes_compared = 0;                   // at all positions
   std::uint64_t listed = 0;                            // owners whose positions were counted
-  std::uint64_t collections = 0;                       // of what is final in all pixels
   std::uint64_t words_scanned = 0;                     // pixels that collections looked at
   std::uint64_t finality_tests = 0;                    // of owners, against the watermark
   std::uint64_t farthest_found = 0;                    // farthest depths over an owner's positions
@@ -89,23 +87,6 @@ inline OperationCounts join(std::size_t states, std::size_t words) {
   });
 }
 
-// The population counts of a mask's words, and their sum.
-inline OperationCounts count(std::size_t words) {
-  return of([&](const Number&, OperationCounts& counts) {
-    Number sum = bit_count(Bits(0, counts));
-    for (std::size_t w = 1; w < words; ++w) sum = sum + bit_count(Bits(0, counts));
-  });
-}
-
-// A contest: on which side of a surface a fragment lies in the whole pixel.
-inline OperationCounts contest() {
-  return of([](const Number& one, OperationCounts&) {
-    const PlaneGap<Number> gap = plane_gap(plane_of(one), plane_of(one));
-    static_cast<void>(is_nearer(gap));
-    static_cast<void>(is_farther(gap));
-  });
-}
-
 // The slot of a fragment that takes a position: the error of its mask, and its centroid.
 inline OperationCounts slot() {
   return of([](const Number& one, OperationCounts& counts) {
@@ -115,27 +96,10 @@ inline OperationCounts slot() {
   });
 }
 
-// Whether an owner is final, by the bounds of its plane: both are compared.
-inline OperationCounts finality() {
-  return of([](const Number& one, OperationCounts&) { finality_of(plane_of(one), one); });
-}
-
-// The farthest depth of a plane, per position.
-inline OperationCounts farthest() {
-  return of([](const Number& one, OperationCounts&) { farthest_formula(plane_of(one), one, one, true, one); });
-}
-
 // The mean of an owner's positions, from the sums of their coordinates.
 inline OperationCounts mean() {
   return of([](const Number& one, OperationCounts& counts) {
     for (int axis = 0; axis < 2; ++axis) mean_position(Integer(0, counts), one) - Number(0.5f);
-  });
-}
-
-inline OperationCounts pair() {
-  return of([](const Number& one, OperationCounts&) {
-    const PlacedSurface<Number> surface{one, plane_of(one), one, one};
-    static_cast<void>(merge_loss(surface, surface) < one);
   });
 }
 
@@ -167,15 +131,7 @@ inline OperationCounts retirement() {
   });
 }
 
-// A speck's three positions and their states; its comparison with an owner; and a speck that is seen.
-inline OperationCounts speck_votes(std::size_t planes) {
-  return {.add = 3, .bit = 3 * 2 * planes, .fetch = 3, .convert = 2};
-}
-inline OperationCounts speck_test() {
-  return of([](const Number& one, OperationCounts&) {
-    is_on_or_before(one, plane_of(one), one - Number(0.5f), one - Number(0.5f));
-  });
-}
+// A speck that is seen: its area and colour.
 inline OperationCounts speck() {
   return of([](const Number& one, OperationCounts& counts) {
     const Number same = FixedSum::value(Integer(0, counts)), opposite = FixedSum::value(Integer(0, counts));
@@ -190,16 +146,6 @@ inline OperationCounts speck() {
   });
 }
 
-// The two estimates of a pixel, from its sums.
-inline OperationCounts limit() {
-  return of([](const Number& one, OperationCounts& counts) {
-    const auto sum = [&] { return to_float(Integer(0, counts)) * one; };
-    const Estimate<Number> analytic{FixedSum::value(Integer(0, counts)), {sum(), sum(), sum()}},
-        counted{one * one, {sum(), sum(), sum()}};
-    limited_estimate(analytic, counted, one);
-  });
-}
-
 }  // namespace pooled_costs
 
 template <std::size_t Words>
@@ -209,12 +155,12 @@ void charge(const PooledWork& work, StageCounters& counters) {
   static const std::vector<UnitCost> of_split = by_size(6, [](std::size_t planes) { return split(planes, Words); }),
                                      of_join = by_size(kMostStates + 1,
                                                        [](std::size_t states) { return join(states, Words); });
-  static const UnitCost of_count = count(Words), of_plane = plane_cost(), of_contest = contest(), of_slot = slot(),
-                        of_nearer = nearer_cost() * kPositions, of_finality = finality(),
-                        of_farthest = farthest() * kPositions, of_mean = mean(), of_pair = pair(), of_merge = merge(),
-                        of_retirement = retirement(), of_bounds = plane_bounds_cost(),
-                        of_vertices = vertex_bounds_cost(), of_votes = speck_votes(1), of_speck_test = speck_test(),
-                        of_speck = speck(), of_limit = limit();
+  static const UnitCost of_count = count_cost(Words), of_plane = plane_cost(), of_contest = plane_gap_cost(),
+                        of_slot = slot(), of_nearer = nearer_cost() * kPositions, of_finality = finality_cost(),
+                        of_farthest = farthest_cost() * kPositions, of_mean = mean(), of_pair = pair_cost(),
+                        of_merge = merge(), of_retirement = retirement(), of_bounds = plane_bounds_cost(),
+                        of_vertices = vertex_bounds_cost(), of_votes = speck_votes_cost(1),
+                        of_speck_test = speck_test_cost(), of_speck = speck(), of_limit = limit_cost();
   constexpr OperationCounts kOfHiddenTest{.add = 1}, kOfOrderTest{.add = 1}, kOfPosition{.add = 2},  // its x and y
       kOfFarther{.add = 1},           // than the owners before it
       kOfMaskTest{.bit = 2 * Words},  // an intersection, and whether it is empty

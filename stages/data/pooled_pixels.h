@@ -117,7 +117,7 @@ struct PixelWord {
   PixelKind kind = PixelKind::untouched;
   RecordShape shape;              // open
   FixedSum area;                  // open: of what is final, by analytic area
-  std::uint32_t triangle = 0;     // covered: number of the triangle in the bin's list; open: number of the record
+  std::uint32_t number = 0;       // covered: of the triangle in the bin's list; open: of the record
   ChunkPool::Chunks chunks;       // open
   HalfBits color[3];              // finished; linear RGB
   std::uint8_t record_class = 0;  // open: of this program's records

@@ -1,0 +1,78 @@
+// The costs of the rules that all composers of surfaces share: each rule is run once on numbers that count.
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+
+#include "stages/beam/owner_rules.h"
+#include "stages/cost/plane_cost.h"
+
+namespace beampipe {
+
+// The population counts of a mask's words, and their sum.
+inline OperationCounts count_cost(std::size_t words) {
+  return count_operations([&](OperationCounts& counts) {
+    Counted<float> sum = bit_count(Counted<std::uint32_t>(0, counts));
+    for (std::size_t w = 1; w < words; ++w) sum = sum + bit_count(Counted<std::uint32_t>(0, counts));
+  });
+}
+
+// Per contest: the difference of two planes, and its sign in the whole pixel.
+inline OperationCounts plane_gap_cost() {
+  return count_operations([](OperationCounts& counts) {
+    const Counted<float> one(1.0f, counts);
+    const DepthPlane<Counted<float>> plane{one, one, one};
+    const PlaneGap<Counted<float>> gap = plane_gap(plane, plane);
+    static_cast<void>(is_nearer(gap));
+    static_cast<void>(is_farther(gap));
+  });
+}
+
+// Per test whether an owner is final: the bounds of its plane in the pixel, both of which are compared.
+inline OperationCounts finality_cost() {
+  return count_operations([](OperationCounts& counts) {
+    const Counted<float> one(1.0f, counts);
+    finality_of(DepthPlane<Counted<float>>{one, one, one}, one);
+  });
+}
+
+// Per position, to find the farthest depth of a plane.
+inline OperationCounts farthest_cost() {
+  return count_operations([](OperationCounts& counts) {
+    const Counted<float> one(1.0f, counts);
+    farthest_formula(DepthPlane<Counted<float>>{one, one, one}, one, one, true, one);
+  });
+}
+
+// Per pair of owners that may be merged.
+inline OperationCounts pair_cost() {
+  return count_operations([](OperationCounts& counts) {
+    const Counted<float> one(1.0f, counts);
+    const PlacedSurface<Counted<float>> surface{one, {one, one, one}, one, one};
+    static_cast<void>(merge_loss(surface, surface) < one);
+  });
+}
+
+// Per speck: the positions next to it and their states, of so many bits. Per comparison with an owner: the test.
+inline OperationCounts speck_votes_cost(std::size_t bits) {
+  return {.add = 3, .bit = 3 * 2 * bits, .fetch = 3, .convert = 2};
+}
+inline OperationCounts speck_test_cost() {
+  return count_operations([](OperationCounts& counts) {
+    const Counted<float> one(1.0f, counts), half(0.5f);
+    is_on_or_before(one, DepthPlane<Counted<float>>{one, one, one}, one - half, one - half);
+  });
+}
+
+// Per pixel whose two estimates are compared, with the conversion of its sums.
+inline OperationCounts limit_cost() {
+  return count_operations([](OperationCounts& counts) {
+    using Number = Counted<float>;
+    const Number one(1.0f, counts);
+    const auto sum = [&] { return to_float(Counted<std::int32_t>(0, counts)) * one; };
+    const Estimate<Number> analytic{sum(), {sum(), sum(), sum()}}, counted{one * one, {sum(), sum(), sum()}};
+    limited_estimate(analytic, counted, one);
+  });
+}
+
+}  // namespace beampipe
