@@ -4,7 +4,6 @@
 // pipeline/techniques/.
 #define BEAMPIPE_TECHNIQUES(X) \
   X(beam)                      \
-  X(beam_pooled)               \
   X(beam_sorted)               \
   X(beam_stream)               \
   X(casav)                     \

@@ -1,81 +1,106 @@
 // The beam in near-first order: each bin's triangles are sorted near to far, roughly; then one pass over them composes
-// each pixel in a state of fixed size. Nothing waits, and nothing is kept per fragment.
-#include "pipeline/techniques/beam.h"
+// each pixel. A pixel pays for the edges that it has: it has a word, and where surfaces share it a record in a pool.
+#include "pipeline/bins/render_bins.h"
+#include "pipeline/technique_table.h"
+#include "pipeline/units/fragment_units.h"
+#include "pipeline/units/pooled_unit.h"
+#include "pipeline/units/raster_units.h"
 
 namespace beampipe {
 namespace {
 
 struct BeamOptions {
-  int positions = 256;  // of the mask; together with `slots` one of BEAMPIPE_OPEN_PIXELS
-  int slots = 5;        // owners of a pixel
+  int positions = 256;  // of the mask
+  int pool = 60;        // bytes for each pixel of the bin
   int bin = kBinSize;   // pixels on each side
   OwnerPlace shade_at = OwnerPlace::covered;
 };
 
 Framebuffer beam_framebuffer(const BeamOptions& beam) {
-  return {.surfaces = open_pixel_surfaces(beam.positions, beam.slots), .place = Place::on_chip, .bin_size = beam.bin};
+  return {.surfaces = pooled_pixel_surfaces(beam.pool), .place = Place::on_chip, .bin_size = beam.bin};
+}
+
+template <std::size_t Words>
+FrameResult render_words(const FrameJob& job, const BeamOptions& beam) {
+  const FrameContext context(job, {.takes_positions = true});
+  const PositionSet& positions = cell_positions(beam.positions);
+  const PositionGrid grid(beam.positions);
+  const BeamFragmentOptions options = grid_options(grid, owners_fragment_bytes(Words));
+  const BinPlan plan{.stages = {StageId::bin_sort, StageId::conservative_raster, StageId::beam_fragment,
+                                StageId::compose, StageId::shade, StageId::resolve},
+                     .framebuffer = beam_framebuffer(beam),
+                     .keeps_tile_size = true,
+                     .sorts_lists = true,
+                     .order = kNearFirstOrder};
+  return render_bins(context, plan, [&](Bin& bin) {
+    const OrderedList ordered = sort_bin(bin);
+    ConservativeRasterUnit raster(bin, "", PairDepths::bounds, ConservativeRasterUnit::Hidden::left_out);
+    BeamFragmentUnit make_fragments(bin, options);
+    ShadeUnit shade(bin);
+    ComposePooledUnit<Words> compose(
+        bin, owners_bin(bin, positions, ordered.triangles, &ordered.watermarks, beam.shade_at),
+        {.bytes_per_pixel = beam.pool});
+
+    raster.queued(ordered.triangles, [&](const std::vector<Pair>& pairs, std::size_t first) {
+      compose(make_fragments.queued(pairs), first, raster.closed(), shade);
+    });
+    bin.finish(compose.resolve_owners(shade));
+    shade.finish_fetches();
+  });
 }
 
 FrameResult render_beam(const FrameJob& job, const BeamOptions& beam) {
-  return with_shape(beam.positions, beam.slots, [&]<std::size_t Words, std::size_t Slots>() {
-    return render_near_first(
-        job, beam.positions, beam_framebuffer(beam),
-        [&](Bin& bin, const PositionSet& positions, const OrderedList& ordered, const std::vector<Surface>& surfaces) {
-          return ComposeOwnersUnit<Words, Slots>(bin, positions, ordered.triangles, &ordered.watermarks, surfaces,
-                                                 beam.shade_at);
-        });
-  });
+  return with_words(beam.positions, [&]<std::size_t Words>() { return render_words<Words>(job, beam); });
 }
 
 }  // namespace
 
-SpecOption shading_place_option(OwnerPlace& place) {
-  return choice("at", place,
-                {{"covered", OwnerPlace::covered},
-                 {"visible", OwnerPlace::visible},
-                 {"quarters", OwnerPlace::quarters},
-                 {"sixteenths", OwnerPlace::sixteenths}},
-                "shading point of a surface with a material: the centroid of what its triangle covers, of its own "
-                "positions, or of its positions in each quarter or sixteenth of the pixel");
-}
-
-SpecOption bin_size_option(int& pixels) {
-  return choice("bin", pixels, {{"8", 8}, {"16", 16}, {"32", 32}}, "pixels on each side of a bin");
-}
-
-Technique near_first_technique(const Framebuffer& framebuffer, int positions, decltype(Technique::renderer) renderer) {
-  return {.framebuffer = framebuffer,
-          .positions = positions,
-          .counted_positions = positions,
-          .renderer = std::move(renderer),
-          .is_observable = true,
-          .has_weights = true};
-}
-
 TechniqueKind beam_kind() {
-  return {.name = "beam",
-          .variant = {"order", "near-first"},
-          .description =
-              "fragments with analytic coverage and a mask, taken near to far in each bin; a pixel keeps up to five "
-              "surfaces and retires those that nothing nearer can hide any more, so its state has a fixed size",
-          .source = "ours, after Crassin et al. 2018",
-          .examples = {"beam", "beam:bits=64,slots=4,at=visible", "beam:bits=32,slots=2,bin=8,at=quarters"},
-          .stressed = {"beam", "beam:bits=64,slots=4", "beam:bits=32,slots=2"},
-          .make = make_from(
-              BeamOptions{},
-              [](BeamOptions& o) -> SpecOptions {
-                return {beside(
-                            "slots=2, 4, 8, 16 or 32, unless it is 256",
-                            [&o] { return o.positions == 256 || o.slots != 5; },
-                            choice("bits", o.positions, {{"32", 32}, {"64", 64}, {"128", 128}, {"256", 256}},
-                                   "positions of the mask; fewer than 256 need another number of slots than 5")),
-                        choice("slots", o.slots, {{"2", 2}, {"4", 4}, {"5", 5}, {"8", 8}, {"16", 16}, {"32", 32}},
-                               "surfaces that a pixel keeps at once; when slots run out, two surfaces are merged"),
-                        shading_place_option(o.shade_at), bin_size_option(o.bin)};
-              },
-              [](const BeamOptions& o) {
-                return near_first_technique(beam_framebuffer(o), o.positions, bind_options(render_beam, o));
-              })};
+  return {
+      .name = "beam",
+      .variant = {"order", "near-first"},
+      .description =
+          "fragments with analytic coverage and a mask, taken near to far in each bin; a pixel has a word, and where "
+          "surfaces share it a record in the bin's pool, until nothing nearer can hide them any more",
+      .source = "ours, after Crassin et al. 2018",
+      .examples = {"beam", "beam:bits=128,pool=30,at=visible", "beam:bits=32,pool=16,bin=8,at=quarters"},
+      .stressed = {"beam", "beam:bits=128,pool=0"},
+      .make = make_from(
+          BeamOptions{},
+          [](BeamOptions& o) -> SpecOptions {
+            return {
+                choice("bits", o.positions, {{"32", 32}, {"64", 64}, {"128", 128}, {"256", 256}},
+                       "positions of the mask"),
+                choice("pool", o.pool,
+                       {{"0", 0},
+                        {"16", 16},
+                        {"24", 24},
+                        {"30", 30},
+                        {"40", 40},
+                        {"50", 50},
+                        {"60", 60},
+                        {"80", 80},
+                        {"96", 96},
+                        {"128", 128}},
+                       "bytes on chip for each pixel of the bin, which records share; beyond that, records lie in "
+                       "memory"),
+                choice("at", o.shade_at,
+                       {{"covered", OwnerPlace::covered},
+                        {"visible", OwnerPlace::visible},
+                        {"quarters", OwnerPlace::quarters},
+                        {"sixteenths", OwnerPlace::sixteenths}},
+                       "shading point of a surface with a material: the centroid of what its triangle covers, of its "
+                       "own positions, or of its positions in each quarter or sixteenth of the pixel"),
+                choice("bin", o.bin, {{"8", 8}, {"16", 16}, {"32", 32}}, "pixels on each side of a bin")};
+          },
+          [](const BeamOptions& o) {
+            return Technique{.framebuffer = beam_framebuffer(o),
+                             .positions = o.positions,
+                             .counted_positions = o.positions,
+                             .renderer = bind_options(render_beam, o),
+                             .is_observable = true,
+                             .has_weights = true};
+          })};
 }
 
 }  // namespace beampipe

@@ -1,9 +1,9 @@
 #include "pipeline/units/owner_units.h"
 
-#include <bit>
 #include <stdexcept>
 #include <string>
 
+#include "stages/data/owner_slot.h"
 #include "stages/raster/bin_sort_cost.h"
 
 namespace beampipe {
@@ -18,15 +18,6 @@ void OpenPixelStore::finish() {
   memory_.flush({}, bin_.stage(StageId::compose).counters);
   memory_.read_all(bin_.stage(StageId::resolve).counters);
   if (bin_.models_memory()) memory_.add_bytes(bin_.pixel_counter("bytes"));
-}
-
-std::vector<Surface> open_pixel_surfaces(int positions, int slots) {
-  const auto count = static_cast<std::uint32_t>(slots), words = static_cast<std::uint32_t>(positions) / 32;
-  const std::uint32_t map_words = words * static_cast<std::uint32_t>(std::bit_width(count + 1));
-  constexpr std::uint32_t kSums = sizeof(ColorSums) + 3 * sizeof(FixedSum);
-  return {{"owner_map", times("R32UI", map_words), 4 * map_words},
-          {"owners", times("RG32UI", count), count * static_cast<std::uint32_t>(sizeof(OwnerSlot))},
-          {"sums", times("R16", kSums / 2), kSums}};
 }
 
 OwnersBin owners_bin(Bin& bin, const PositionSet& positions, const TriangleList& list,

@@ -1,4 +1,4 @@
-// Composition in bounded memory: a bin's triangles near to far, and the open pixels that own mask positions.
+// What units share that compose a bin's triangles near to far, or in primitive order.
 #pragma once
 
 #include <vector>
@@ -6,8 +6,7 @@
 #include "pipeline/bins/bin.h"
 #include "pipeline/memory/aggregate_memory.h"
 #include "pipeline/units/fragment_units.h"
-#include "stages/beam/compose_owners.h"
-#include "stages/cost/closed_depth_cost.h"
+#include "stages/beam/owners_bin.h"
 #include "stages/picture/resolve.h"
 #include "stages/raster/bin_sort.h"
 
@@ -35,65 +34,10 @@ class OpenPixelStore {
   AggregateMemory memory_;
 };
 
-// Of an OpenPixel with so many positions and slots.
-std::vector<Surface> open_pixel_surfaces(int positions, int slots);
-
 // What composers take for all fragments of a bin. `list`: the triangles in the order in which they are taken;
 // `watermarks` may be null. All must outlive the result. Throws std::runtime_error if the list is longer than an owner
 // can name.
 OwnersBin owners_bin(Bin& bin, const PositionSet& positions, const TriangleList& list,
                      const std::vector<float>* watermarks, OwnerPlace shade_at);
-
-template <std::size_t Words, std::size_t Slots>
-class ComposeOwnersUnit {
- public:
-  // `list`: the triangles in the order in which they are taken. `watermarks` may be null. `surfaces`: of open pixels.
-  // All but the surfaces must outlive the unit. L2 holds the setup of the triangles.
-  ComposeOwnersUnit(Bin& bin, const PositionSet& positions, const TriangleList& list,
-                    const std::vector<float>* watermarks, const std::vector<Surface>& surfaces,
-                    OwnerPlace shade_at = OwnerPlace::covered)
-      : bin_(bin),
-        stage_(bin.stage(StageId::compose)),
-        owners_(owners_bin(bin, positions, list, watermarks, shade_at)),
-        maps_{bin.pixel_counter("fragments"), bin.pixel_counter("merges")},
-        pixels_(bin.tile.pixels()),
-        store_(bin, surfaces) {}
-
-  // `first`: as in OwnersBatch.
-  void operator()(const std::vector<Fragment>& fragments, std::size_t first, ClosedDepth& closed, ShadeUnit& shade) {
-    OwnersResult result;
-    result.texels = bin_.texels();
-    compose_owners(owners_, {fragments, first}, stage_.timed(),
-                   OwnersTile<Words, Slots>{pixels_, closed, maps_, result});
-    charge(closed, stage_.counters);
-    store_.merge(fragments);
-    finish(result, shade);
-  }
-
-  // The picture.
-  std::vector<glm::vec4> resolve_owners(ShadeUnit& shade) {
-    OwnersResult result;
-    result.texels = bin_.texels();
-    store_.finish();
-    const std::vector<PixelColor> colors = finish_owners(owners_, stage_.timed(), pixels_, result);
-    finish(result, shade);
-    bin_.triangle_fetches().flush(stage_.counters);
-    return resolve(colors, bin_.background(), kColorBytes + sizeof(std::uint16_t), bin_.stage(StageId::resolve).timed(),
-                   bin_.observers());
-  }
-
- private:
-  void finish(const OwnersResult& result, ShadeUnit& shade) {
-    for (const std::uint32_t triangle : result.fetched) bin_.triangle_fetches().depth(triangle, stage_.counters);
-    shade.visible(result.shaded);
-  }
-
-  Bin& bin_;
-  BinStage stage_;
-  OwnersBin owners_;
-  OwnersMaps maps_;
-  OpenPixels<Words, Slots> pixels_;
-  OpenPixelStore store_;
-};
 
 }  // namespace beampipe

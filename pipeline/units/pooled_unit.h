@@ -1,63 +1,84 @@
-// Composition with records in a pool: a bin's triangles near to far, and pixels that pay for the edges that they have.
+// Composition with records in a pool: pixels pay for the edges that they have.
 #pragma once
 
 #include <vector>
 
+#include "pipeline/memory/record_memory.h"
 #include "pipeline/units/owner_units.h"
 #include "stages/beam/compose_pooled.h"
+#include "stages/cost/closed_depth_cost.h"
 
 namespace beampipe {
+
+inline constexpr const char* kRecordPool = "record_pool";  // the surface
 
 // A word for each pixel, and so many bytes for each in a pool of records.
 inline std::vector<Surface> pooled_pixel_surfaces(int pool_bytes) {
   const auto bytes = static_cast<std::uint32_t>(pool_bytes);
   std::vector<Surface> surfaces = {{"pixel_words", times("R16UI", kPixelWordBytes / 2), kPixelWordBytes}};
-  if (bytes > 0) surfaces.push_back({"record_pool", times("R8UI", bytes), bytes});
+  if (bytes > 0) surfaces.push_back({kRecordPool, times("R8UI", bytes), bytes});
   return surfaces;
 }
+
+struct RecordPool {
+  int bytes_per_pixel;
+  std::size_t most_owners = kMostOwners;  // of a pixel
+  bool is_of_frame = false;               // all bins share it, and it does not end with the share of one
+};
 
 template <std::size_t Words>
 class ComposePooledUnit {
  public:
-  // `list`: the triangles in the order in which they are taken. `surfaces`: of pooled pixels; `pool_bytes`: for each of
-  // them. All but the surfaces must outlive the unit.
-  ComposePooledUnit(Bin& bin, const PositionSet& positions, const OrderedList& list,
-                    const std::vector<Surface>& surfaces, int pool_bytes, OwnerPlace shade_at)
+  ComposePooledUnit(Bin& bin, const OwnersBin& owners, const RecordPool& pool)
       : bin_(bin),
         stage_(bin.stage(StageId::compose)),
-        owners_(owners_bin(bin, positions, list.triangles, &list.watermarks, shade_at)),
+        owners_(owners),
         maps_{bin.pixel_counter("fragments"), bin.pixel_counter("merges")},
-        memory_chunks_(bin.pixel_counter("memory_chunks")),
-        pixels_(bin.tile.pixels(), bin.tile.pixels() * static_cast<std::size_t>(pool_bytes)),
-        store_(bin, surfaces) {}
+        pooled_maps_{bin.pixel_counter("memory_chunks"), bin.pixel_counter("record_bytes")},
+        pixels_(bin.tile.pixels(),
+                pool.is_of_frame ? kUnlimited : bin.tile.pixels() * static_cast<std::size_t>(pool.bytes_per_pixel),
+                pool.most_owners),
+        words_(bin, pooled_pixel_surfaces(0)),
+        records_(bin.memory(), kRecordPool, bin.z_order(), static_cast<std::uint32_t>(pool.bytes_per_pixel)) {}
 
   // `first`: as in OwnersBatch.
   void operator()(const std::vector<Fragment>& fragments, std::size_t first, ClosedDepth& closed, ShadeUnit& shade) {
-    PooledResult result(memory_chunks_);
-    result.texels = bin_.texels();
+    PooledResult result = new_result();
     compose_pooled(owners_, {fragments, first}, stage_.timed(), PooledTile<Words>{pixels_, closed, maps_, result});
     charge(closed, stage_.counters);
-    store_.merge(fragments);
+    words_.merge(fragments);
     finish(result, shade);
   }
 
   // The picture.
   std::vector<glm::vec4> resolve_owners(ShadeUnit& shade) {
-    PooledResult result(memory_chunks_);
-    result.texels = bin_.texels();
-    store_.finish();
+    PooledResult result = new_result();
+    words_.finish();
     const std::vector<PixelColor> colors = finish_pooled(owners_, stage_.timed(), pixels_, result);
     finish(result, shade);
+    records_.flush(stage_.counters);
+    if (bin_.models_memory()) records_.add_bytes(bin_.pixel_counter("bytes"));
     bin_.triangle_fetches().flush(stage_.counters);
     return resolve(colors, bin_.background(), kColorBytes + sizeof(std::uint16_t), bin_.stage(StageId::resolve).timed(),
                    bin_.observers());
   }
 
  private:
+  static constexpr std::size_t kUnlimited = std::size_t{1} << 40;  // bytes
+
+  PooledResult new_result() {
+    PooledResult result(pooled_maps_);
+    result.texels = bin_.texels();
+    result.lists_visits = bin_.models_memory() && !bin_.keeps_pixels_on_chip();
+    return result;
+  }
+
   void finish(const PooledResult& result, ShadeUnit& shade) {
     for (const std::uint32_t triangle : result.fetched) bin_.triangle_fetches().depth(triangle, stage_.counters);
-    // A chunk in memory is a request of a sector, which L2 holds.
-    if (bin_.models_memory()) stage_.moves_in_l2(result.chunks_in_memory * bin_.memory().sector_bytes);
+    for (const RecordVisit& visit : result.visits) records_.access(visit, stage_.counters);
+    // Beside a pool on chip, a chunk in memory is a request of a sector, which L2 holds.
+    if (bin_.models_memory() && bin_.keeps_pixels_on_chip())
+      stage_.moves_in_l2(result.chunks_in_memory * bin_.memory().sector_bytes);
     shade.visible(result.shaded);
   }
 
@@ -65,9 +86,10 @@ class ComposePooledUnit {
   BinStage stage_;
   OwnersBin owners_;
   OwnersMaps maps_;
-  std::vector<float>& memory_chunks_;
+  PooledMaps pooled_maps_;
   PooledPixels<Words> pixels_;
-  OpenPixelStore store_;
+  OpenPixelStore words_;
+  RecordMemory records_;
 };
 
 }  // namespace beampipe

@@ -50,6 +50,7 @@ class PooledComposer {
   // the raster has left out many already: so pictures do not depend on how far the raster is ahead.
   Outcome add(const Fragment& fragment, std::uint32_t number, ClosedDepth& closed) {
     ++work.fragments;
+    number_ = number;
     if (bin_.watermarks && pixels_.pool.wants_collection()) collect((*bin_.watermarks)[number], closed);
     if (closed.is_hidden(fragment.pixel, fragment.z_min)) return Outcome::hidden;
     look_at(fragment.pixel);
@@ -226,9 +227,9 @@ class PooledComposer {
     if (shape_.has_empty) *--states = empty_;
     const std::size_t count = shape_.states(), planes = shape_.planes();
     ++work.joins[count];
+    resize();
     write_record(planes * 4 * Words);
     for (std::size_t p = 0; p < planes; ++p) join_states(p, count, nowhere(), states).store(record_.planes + p * Words);
-    pixels_.pool.resize(word_->chunks, shape_.chunks(Words));
     word_->shape = shape_;
     word_->area = area_;
   }
@@ -254,6 +255,12 @@ class PooledComposer {
     record_ = view;
   }
 
+  void resize() {
+    pixels_.pool.resize(word_->chunks, shape_.chunks(Words));
+    float& most = result_.maps.record_bytes[pixel_];
+    most = std::max(most, static_cast<float>(word_->chunks.count * (kChunkBytes + kChunkLinkBytes)));
+  }
+
   void release() {
     if (word_->kind != PixelKind::open) return;
     pixels_.records.give_back(word_->record_class, word_->number);
@@ -263,16 +270,17 @@ class PooledComposer {
   // Every access follows the links of the record's chunks.
   void read_record(std::size_t bytes) {
     work.bytes_read += bytes + word_->chunks.count * kChunkLinkBytes;
-    visit_memory();
+    visit(false);
   }
-  void visit_memory() {
+  void visit(bool is_write) {
+    if (result_.lists_visits) result_.visits.push_back({number_, pixel_, word_->chunks.count, is_write});
     if (word_->chunks.in_memory == 0) return;
     result_.chunks_in_memory += word_->chunks.in_memory;
-    result_.by_pixel[pixel_] += static_cast<float>(word_->chunks.in_memory);
+    result_.maps.memory_chunks[pixel_] += static_cast<float>(word_->chunks.in_memory);
   }
   void write_record(std::size_t bytes) {
     work.bytes_written += bytes;
-    visit_memory();
+    visit(true);
   }
 
   // ---- Claim: a fragment takes the positions where it is nearer ----
@@ -672,7 +680,7 @@ class PooledComposer {
       record_.sums->colors.add({area * color[0], area * color[1], area * color[2], 0, 0, 0}, threshold);
     }
     if (is_shared) {  // its positions stay as they are
-      pixels_.pool.resize(word_->chunks, shape_.chunks(Words));
+      resize();
       word_->shape = shape_;
       word_->area = area_;
     } else {
@@ -736,7 +744,8 @@ class PooledComposer {
   PooledPixels<Words>& pixels_;
   PooledResult& result_;
   // The pixel at hand.
-  std::uint32_t pixel_ = 0;  // index within the tile
+  std::uint32_t pixel_ = 0;   // index within the tile
+  std::uint32_t number_ = 0;  // of the triangle at hand in the list
   PixelWord* word_ = nullptr;
   PixelObserver* observer_ = nullptr;  // null: nobody looks at it
   RecordShape shape_;

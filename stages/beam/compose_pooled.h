@@ -27,12 +27,20 @@
 
 namespace beampipe {
 
+// Counts per pixel of the tile.
+struct PooledMaps {
+  std::vector<float>& memory_chunks;  // chunks of the record that were read or written in memory
+  std::vector<float>& record_bytes;   // the most that the record has had
+};
+
 // What was done, beside what is charged.
 struct PooledResult : OwnersResult {
   std::uint64_t chunks_in_memory = 0;  // chunks of records that were read or written there
-  std::vector<float>& by_pixel;        // the same, added to those of each pixel
+  PooledMaps maps;
+  bool lists_visits = false;        // fill the list that follows
+  std::vector<RecordVisit> visits;  // to all records, wherever they lie
 
-  explicit PooledResult(std::vector<float>& chunks_of_pixels) : by_pixel(chunks_of_pixels) {}
+  explicit PooledResult(const PooledMaps& of_pixels) : maps(of_pixels) {}
 };
 
 // What fragments are composed into.

@@ -15,8 +15,8 @@ const std::vector<PixelCounterInfo>& pixel_counters() {
        "fragments that are shaded at the centroid, because their triangle does not cover the centre",
        "msaa:N,at=centroid"},
       {"memory_chunks", "chunks",
-       "chunks of records that composition read or wrote in memory, because the pool on chip was full",
-       "beam:order=pooled"},
+       "chunks of records that composition read or wrote in memory, because the bin's pool was full",
+       "beam in near-first order"},
       {"merges", "fragments",
        "beam:order=sorted, casav in sorted order and alpha: fragments that were composed before the pixel "
        "was "
@@ -25,6 +25,8 @@ const std::vector<PixelCounterInfo>& pixel_counters() {
       {"tiny_triangles", "fragments", "small fragments, which cover no mask position",
        "beam:order=sorted, casav, alpha"},
       {"largest_window", "fragments", "fragments of the largest window", "beam:order=sorted"},
+      {"record_bytes", "bytes", "the most that the pixel's record has had, wherever it lies",
+       "beam in near-first and streaming order"},
       {"visible_fragments", "fragments", "triangles that have a visible sample in the pixel", "acaa"},
       {"quads_of_1", "0 or 1", "the pixel's 2x2 quad shows one material, the background included", "dvm"},
       {"quads_of_2", "0 or 1", "the pixel's quad shows two materials", "dvm"},

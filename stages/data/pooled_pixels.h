@@ -109,6 +109,14 @@ class ChunkPool {
   std::size_t taken_since_collection_ = 0, peak_ = 0, peak_in_memory_ = 0;
 };
 
+// One access to the record of a pixel.
+struct RecordVisit {
+  std::uint32_t key = 0;    // the number of the triangle in the list for which it was visited
+  std::uint32_t pixel = 0;  // of the tile
+  std::uint16_t chunks = 0;
+  bool is_write = false;
+};
+
 // ---- This program's ----
 
 enum class PixelKind : std::uint8_t { untouched, covered, open, finished };

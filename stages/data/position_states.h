@@ -4,8 +4,6 @@
 #include <array>
 #include <cstddef>
 #include <cstdint>
-#include <cstring>
-#include <type_traits>
 
 #include "simd/wide_mask.h"
 
@@ -46,33 +44,6 @@ struct PositionStates {
       for (std::size_t w = 0; w < Words; ++w) mask.words[w] &= planes[b][w] ^ flipped;
     }
     return mask;
-  }
-
-  // Bit s: is any of these positions in state s?
-  std::uint64_t states_among(const WideMask& positions) const {
-    static_assert(Bits <= 6);
-    using Chunk = std::conditional_t<Words % 2 == 0, std::uint64_t, std::uint32_t>;
-    constexpr std::size_t kStates = std::size_t{1} << Bits, kPerChunk = sizeof(Chunk) / sizeof(std::uint32_t);
-    const auto load = [](const std::uint32_t* words) {
-      Chunk chunk;
-      std::memcpy(&chunk, words, sizeof(Chunk));
-      return chunk;
-    };
-    Chunk any[kStates] = {};
-    for (std::size_t w = 0; w < Words; w += kPerChunk) {
-      Chunk here[kStates] = {load(&positions.words[w])};  // by the bits of the states that have been looked at
-      for (std::size_t b = 0; b < Bits; ++b) {
-        const Chunk plane = load(&planes[b][w]);
-        for (std::size_t state = 0; state < std::size_t{1} << b; ++state) {
-          here[state | std::size_t{1} << b] = here[state] & plane;
-          here[state] &= ~plane;
-        }
-      }
-      for (std::size_t state = 0; state < kStates; ++state) any[state] |= here[state];
-    }
-    std::uint64_t found = 0;
-    for (std::size_t state = 0; state < kStates; ++state) found |= std::uint64_t{any[state] != 0} << state;
-    return found;
   }
 
   void put(const WideMask& positions, std::uint32_t into) {

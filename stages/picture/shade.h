@@ -34,7 +34,7 @@ void shade_visible(const TileShader& shader, std::vector<Fragment>& fragments, S
 // Only charges the shading of pairs that cover their whole pixel; compose_whole asks for their colours.
 void shade_visible(const TileShader& shader, const std::vector<Pair>& whole, StageCounters& counters);
 
-// Only charges the shading of triangles that compose_owners shades where it needs their colours.
+// Only charges the shading of triangles that compose_pooled shades where it needs their colours.
 void shade_visible(const TileShader& shader, const std::vector<ShadedTriangle>& shaded, StageCounters& counters);
 
 // Only charges the shading of sample fragments, in 2x2 quads. Samples keep their triangle's index instead of a colour,

@@ -17,7 +17,6 @@ struct Case {
   double tolerance = 4e-3;
 };
 const Case kCases[] = {{"beam"},
-                       {"beam:order=pooled"},
                        {"beam:order=sorted"},
                        {"beam:order=stream", 0.016},  // makes one owner of two before it has seen all
                        {"casav:mask=exact", 0.0625},  // merges fragments that lie close in depth

@@ -132,15 +132,13 @@ PixelSpaceTriangle side_of(double x, bool right, double z, const glm::vec3& colo
   return {{{x, -20, z}, {x, 21, z}, {right ? 30.0 : -30.0, 0.5, z}}, color};
 }
 
-// Of eight owners, red and green become one, because they are at one depth: five sixteenths of the pixel each, beside
-// three blue strips on either side. White hides those on the right and three sixteenths of green, but takes away as
+// Of thirteen owners, red and green become one, because they are at one depth: five sixteenths of the pixel each, beside
+// six blue strips on the left and five on the right. White hides those on the right and three sixteenths of green, but takes away as
 // much of red.
 TEST(ErrorCauses, AMergedOwnerGivesWayWhereOneOfItsSurfacesIsHidden) {
   std::vector<PixelSpaceTriangle> triangles{side_of(0.5, false, 0.5, kRed), side_of(0.5, true, 0.5, kGreen)};
-  for (int i = 0; i < 3; ++i) {
-    triangles.push_back(side_of((3 - i) / 16.0, false, 0.45 - 0.08 * i, kBlue));
-    triangles.push_back(side_of((13 + i) / 16.0, true, 0.41 - 0.08 * i, kBlue));
-  }
+  for (int i = 0; i < 6; ++i) triangles.push_back(side_of((6 - i) / 32.0, false, 0.45 - 0.06 * i, kBlue));
+  for (int i = 0; i < 5; ++i) triangles.push_back(side_of(13 / 16.0 + 3 / 80.0 * i, true, 0.42 - 0.06 * i, kBlue));
   triangles.push_back(side_of(10 / 16.0, true, 0.1, glm::vec3(1)));
   const Explained found = explain("beam:order=stream", pixel_trace(1, 1, triangles));
   EXPECT_NEAR(found.error[0], 1.5 / 16 * std::sqrt(2.0 / 3), 5e-3);

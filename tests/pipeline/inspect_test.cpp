@@ -18,12 +18,10 @@ struct InspectedSpec {
 // z3 rounds it at each merge. The limits of beam move a channel by up to 3 positions. The samples of msaa are added up
 // in double precision, so opaque triangles leave no rest. Layers over the picture are added in single precision.
 constexpr InspectedSpec kSpecs[] = {
-    {"beam", 0.02, 1e-4},
-    {"beam:bits=64,slots=4,at=visible", 0.06, 1e-4},
-    {"beam:bits=32,slots=2,bin=8,at=quarters", 0.1, 1e-4},
+    {"beam", 3.0 / 256, 1e-4},
+    {"beam:bits=128,pool=30,at=visible", 3.0 / 128, 1e-4},
+    {"beam:bits=32,pool=16,bin=8,at=quarters", 0.1, 1e-4},
     {"beam:order=stream", 0.03, 1e-4},
-    {"beam:order=pooled", 3.0 / 256, 1e-4},
-    {"beam:order=pooled,bits=128,pool=30,at=visible", 3.0 / 128, 1e-4},
     {"beam:order=sorted", 2e-3, 1e-4},
     {"beam:order=sorted,storage=float32", 1e-5, 1e-4},
     {"casav", 4e-3, 1e-4},

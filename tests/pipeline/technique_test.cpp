@@ -18,8 +18,8 @@ TEST(Technique, FramebufferBytesAreThePublishedOnes) {
 }
 
 TEST(Technique, StreamingStatesFitTheirBudgets) {
-  EXPECT_EQ(parse_technique("beam").framebuffer_bytes_per_pixel({.framebuffer = Place::in_memory}), 154u);
-  EXPECT_EQ(parse_technique("beam:order=stream").framebuffer_bytes_per_pixel(), 138u);
+  EXPECT_EQ(parse_technique("beam").framebuffer_bytes_per_pixel({.framebuffer = Place::in_memory}), 66u);
+  EXPECT_EQ(parse_technique("beam:order=stream").framebuffer_bytes_per_pixel(), 96u);
   EXPECT_EQ(parse_technique("z3").framebuffer_bytes_per_pixel(), 50u);
   EXPECT_EQ(parse_technique("z3:shape=32x2").framebuffer_bytes_per_pixel(), 36u);
   EXPECT_EQ(parse_technique("z3:shape=128x3").framebuffer_bytes_per_pixel(), 74u);
@@ -50,7 +50,7 @@ TEST(Technique, WrongSpecsSayWhatWouldBeRight) {
   const std::string msaa_rates = "N of msaa:N must be 1, 2, 4, 8, 16, 32, 64, 128, 256, 512 or 1024";
   const std::string acaa_rates = "N of acaa:N must be 1, 2, 4, 8, 16, 32, 64, 128 or 256";
   const std::string taa_rates = "N of taa:N must be 1, 2, 4, 8 or 16";
-  const std::string of_beam = "; it has bits, slots, at, bin and order";
+  const std::string of_beam = "; it has bits, pool, at, bin and order";
   const std::string of_casav =
       "; it has mask, sort, tiny, overlap, regional, local, fuzzy, extents, slab, plane, thickness, storage, order "
       "and layers";
@@ -80,14 +80,14 @@ TEST(Technique, WrongSpecsSayWhatWouldBeRight) {
       {"bits must be 32 or 256", {"beam:order=sorted,bits=64", "beam:order=sorted,bits="}},
       {"storage must be packed or float32", {"beam:order=sorted,storage=text"}},
       {"storage needs bits=256", {"beam:order=sorted,bits=32,storage=float32"}},
-      {"slots must be 2, 4, 5, 8, 16 or 32", {"beam:slots=7"}},
-      {"bits must be 32, 64, 128 or 256", {"beam:bits=48,slots=4"}},
-      {"bits needs slots=2, 4, 8, 16 or 32, unless it is 256", {"beam:bits=64", "beam:slots=5,bits=128"}},
+      {"pool must be 0, 16, 24, 30, 40, 50, 60, 80, 96 or 128", {"beam:pool=7"}},
+      {"bits must be 32, 64, 128 or 256", {"beam:bits=48,pool=16"}},
+      {"beam has no option 'slots'" + of_beam, {"beam:slots=5"}},
       {"'mask' is there twice", {"beam:mask=table,mask=table"}},
-      {"order must be near-first, pooled, sorted or stream", {"beam:order=primitive"}},
+      {"order must be near-first, sorted or stream", {"beam:order=primitive"}},
       {"beam has no option 'rules'" + of_beam, {"beam:rules=paper"}},
       {"'order' is there twice", {"beam:order=stream,order=sorted"}},
-      {"beam:order=stream has no option 'slots'; it has order", {"beam:order=stream,slots=7"}},
+      {"beam:order=stream has no option 'pool'; it has order", {"beam:order=stream,pool=16"}},
       {"layers needs order=near-first or order=stream", {"casav:layers=3", "casav:order=sorted,layers=1"}},
       {"sort needs order=sorted", {"casav:order=stream,sort=nearest", "casav:order=near-first,sort=centroid"}},
       {"order must be sorted, near-first or stream", {"casav:order=sort"}},
@@ -120,7 +120,7 @@ TEST(Technique, WrongSpecsSayWhatWouldBeRight) {
 
 TEST(Technique, DefaultsMayBeWritten) {
   for (const char* spec :
-       {"beam:order=near-first", "beam:order=sorted", "beam:bits=32,order=sorted", "beam:bits=256,slots=5",
+       {"beam:order=near-first", "beam:order=sorted", "beam:bits=32,order=sorted", "beam:bits=256,pool=60",
         "casav:order=sorted", "beam:order=stream", "casav:layers=3,order=stream", "casav:tiny=3"})
     EXPECT_EQ(parse_technique(spec).spec, spec);
 }

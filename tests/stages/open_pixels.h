@@ -1,10 +1,9 @@
-// Runs the stages around compose_owners one after the other, for a tile of open pixels.
+// Runs the stages around compose_pooled one after the other, for a tile of open pixels.
 #pragma once
 
 #include <vector>
 
 #include "stages/beam/beam_fragment.h"
-#include "stages/beam/compose_owners.h"
 #include "stages/beam/compose_pooled.h"
 #include "stages/raster/bin_sort.h"
 #include "stages/raster/conservative_raster.h"
@@ -24,50 +23,9 @@ std::vector<Fragment> fragments_in_order(const SetupTriangles& triangles, const 
   return fragments;
 }
 
-template <std::size_t Words, std::size_t Slots>
+// A tile of pixels with at most so many owners each, and a pool of so many bytes.
+template <std::size_t Words, std::size_t Owners = kMostOwners>
 struct OpenTile {
-  using Pixel = OpenPixel<Words, Slots>;
-  static constexpr int kPositions = 32 * static_cast<int>(Words);
-
-  const SetupTriangles& triangles;
-  const std::vector<glm::vec3>& colors;
-  Tile tile;
-  const PositionSet& positions = cell_positions(kPositions);
-  OpenPixels<Words, Slots> open;
-  std::vector<Pixel>& pixels = open.pixels;
-  ClosedDepth closed;
-  std::vector<float> counts, merges;       // per pixel: fragments that no closed pixel hid, owners that became one
-  std::vector<Fragment> fragments;         // all that were composed
-  StageCounters composing{}, finishing{};  // counted by compose_owners and finish_owners
-  OwnersResult result{};
-  const PixelObservers* observers = nullptr;  // null: nobody looks
-
-  OpenTile(const SetupTriangles& of, const std::vector<glm::vec3>& in_colors, const Tile& in = {0, 0, 1, 1})
-      : triangles(of),
-        colors(in_colors),
-        tile(in),
-        open(in.pixels()),
-        closed(in),
-        counts(in.pixels()),
-        merges(in.pixels()) {}
-
-  // Composes the triangles of the list, in its order. `watermarks` may be null.
-  std::vector<PixelColor> compose(const TriangleList& list, const std::vector<float>* watermarks = nullptr) {
-    fragments = fragments_in_order<Words>(triangles, list, tile);
-    const OwnersBin bin{triangles, list, watermarks, tile, positions, colors, false, OwnerPlace::covered, observers};
-    compose_owners(bin, {fragments, 0}, composing, OwnersTile<Words, Slots>{open, closed, {counts, merges}, result});
-    return finish_owners(bin, finishing, open, result);
-  }
-  std::vector<PixelColor> compose_sorted(bool with_watermarks = true) {
-    StageCounters ignored;
-    const OrderedList ordered = bin_sort(triangles, all_of(triangles), tile, ignored);
-    return compose(ordered.triangles, with_watermarks ? &ordered.watermarks : nullptr);
-  }
-};
-
-// The same with records in a pool of so many bytes.
-template <std::size_t Words>
-struct PooledOpenTile {
   static constexpr int kPositions = 32 * static_cast<int>(Words);
 
   const SetupTriangles& triangles;
@@ -76,34 +34,37 @@ struct PooledOpenTile {
   const PositionSet& positions = cell_positions(kPositions);
   PooledPixels<Words> pixels;
   ClosedDepth closed;
-  std::vector<float> counts, merges;
-  std::vector<Fragment> fragments;
-  StageCounters composing{}, finishing{};
-  std::vector<float> chunks_in_memory;
+  std::vector<float> counts, merges;       // per pixel: fragments that no closed pixel hid, owners that became one
+  std::vector<Fragment> fragments;         // all that were composed
+  StageCounters composing{}, finishing{};  // counted by compose_pooled and finish_pooled
+  std::vector<float> chunks_in_memory, record_bytes;
   PooledResult result;
+  const PixelObservers* observers = nullptr;  // null: nobody looks
 
-  PooledOpenTile(const SetupTriangles& of, const std::vector<glm::vec3>& in_colors, const Tile& in = {0, 0, 1, 1},
-                 std::size_t pool_bytes = 1 << 20, std::size_t owners = kMostOwners)
+  OpenTile(const SetupTriangles& of, const std::vector<glm::vec3>& in_colors, const Tile& in = {0, 0, 1, 1},
+           std::size_t pool_bytes = 1 << 20)
       : triangles(of),
         colors(in_colors),
         tile(in),
-        pixels(in.pixels(), pool_bytes, owners),
+        pixels(in.pixels(), pool_bytes, Owners),
         closed(in),
         counts(in.pixels()),
         merges(in.pixels()),
         chunks_in_memory(in.pixels()),
-        result(chunks_in_memory) {}
+        record_bytes(in.pixels()),
+        result({chunks_in_memory, record_bytes}) {}
 
+  // Composes the triangles of the list, in its order. `watermarks` may be null.
   std::vector<PixelColor> compose(const TriangleList& list, const std::vector<float>* watermarks = nullptr) {
     fragments = fragments_in_order<Words>(triangles, list, tile);
-    const OwnersBin bin{triangles, list, watermarks, tile, positions, colors, false};
+    const OwnersBin bin{triangles, list, watermarks, tile, positions, colors, false, OwnerPlace::covered, observers};
     compose_pooled(bin, {fragments, 0}, composing, PooledTile<Words>{pixels, closed, {counts, merges}, result});
     return finish_pooled(bin, finishing, pixels, result);
   }
-  std::vector<PixelColor> compose_sorted() {
+  std::vector<PixelColor> compose_sorted(bool with_watermarks = true) {
     StageCounters ignored;
     const OrderedList ordered = bin_sort(triangles, all_of(triangles), tile, ignored);
-    return compose(ordered.triangles, &ordered.watermarks);
+    return compose(ordered.triangles, with_watermarks ? &ordered.watermarks : nullptr);
   }
 };
 

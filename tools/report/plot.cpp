@@ -63,27 +63,27 @@ std::vector<LadderRung> longest_ladder(const std::vector<ReportFile>& reports) {
   return std::max_element(reports.begin(), reports.end(), is_shorter)->msaa_ladder;
 }
 
-// The spec without its option `slots`, and the value of that option: "beam:bits=64,slots=4" gives "beam:bits=64" and
-// "4".
-std::pair<std::string, std::string> split_slots(const std::string& spec) {
-  constexpr std::string_view kSlots = "slots=";
-  const std::size_t at = spec.find(kSlots);
+// The spec without its option `pool`, and the value of that option: "beam:bits=64,pool=24" gives "beam:bits=64" and
+// "24".
+std::pair<std::string, std::string> split_pool(const std::string& spec) {
+  constexpr std::string_view kPool = "pool=";
+  const std::size_t at = spec.find(kPool);
   if (at == spec.npos) return {spec, ""};
-  const std::size_t end = std::min(spec.find(',', at), spec.size()), value = at + kSlots.size();
+  const std::size_t end = std::min(spec.find(',', at), spec.size()), value = at + kPool.size();
   const std::string before = spec.substr(0, at - 1), after = end < spec.size() ? spec.substr(end + 1) : "";
   const std::string joined = after.empty() ? before : before + spec[at - 1] + after;
   return {joined, spec.substr(value, end - value)};
 }
 
-// Makes a line of a series, by increasing memory. Where its points differ in slots, the first one alone has a full
+// Makes a line of a series, by increasing memory. Where its points differ in the pool, the first one alone has a full
 // label.
 void make_line(PlotSeries& series) {
   series.line = true;
   std::sort(series.points.begin(), series.points.end(),
             [](const PlotPoint& a, const PlotPoint& b) { return a.x < b.x; });
   for (std::size_t i = 1; i < series.points.size(); ++i)
-    if (const std::string slots = split_slots(series.points[i].label).second; !slots.empty())
-      series.points[i].label = slots;
+    if (const std::string pool = split_pool(series.points[i].label).second; !pool.empty())
+      series.points[i].label = pool;
 }
 
 [[noreturn]] void throw_not_compared(const std::vector<ReportFile>& reports) {
@@ -125,7 +125,7 @@ ScatterPlot storage_plot(const std::vector<ReportFile>& reports) {
                    .series = {msaa_line()}};
   for (const TechniqueSummary& summary : mean_summaries(reports)) {
     if (!summary.emr) continue;
-    const std::string series = family_of(summary.spec) == kMsaa ? kMsaa : split_slots(summary.spec).first;
+    const std::string series = family_of(summary.spec) == kMsaa ? kMsaa : split_pool(summary.spec).first;
     series_named(plot, reports, series, summary.spec)
         .points.push_back({summary.all_bytes_per_pixel, summary.emr->samples, summary.spec, bound_of(*summary.emr)});
   }

@@ -50,7 +50,7 @@ struct BarPlot {
 ScatterPlot frontier_plot(const std::vector<ReportFile>& reports);
 
 // The same with all memory, on chip and off chip. MSAA is a line through those of its rates that were rendered, and
-// techniques that differ only in their option `slots` are a line as well.
+// techniques that differ only in their option `pool` are a line as well.
 ScatterPlot storage_plot(const std::vector<ReportFile>& reports);
 
 // Milliseconds against RMSE. The times are modelled for the named implementation of the hardware, or, if it is "", the

@@ -1,4 +1,4 @@
-// Cases that are hard on who owns what in a pixel: more visible surfaces than a pixel has slots for, surfaces at equal
+// Cases that are hard on who owns what in a pixel: more visible surfaces than a pixel may keep, surfaces at equal
 // depths and with equal sort keys, and bins with very many triangles.
 #include <cmath>
 #include <numbers>

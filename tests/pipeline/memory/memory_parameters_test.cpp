@@ -34,7 +34,7 @@ TEST(MemoryParameters, SmallerBinsAreThoseOfTheSpec) {
 // A bin of 16 x 16 pixels takes a quarter of the room.
 TEST(MemoryParameters, SmallerBinsFitOnChip) {
   MemoryParameters memory;
-  memory.on_chip_bytes = 154 * 32 * 32 / 2;
+  memory.on_chip_bytes = 66 * 32 * 32 / 2;
   const Framebuffer beam = parse_technique("beam").framebuffer;
   EXPECT_FALSE(beam.is_on_chip(memory));
   memory.bin_pixels = 16;

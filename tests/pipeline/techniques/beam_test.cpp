@@ -9,7 +9,7 @@
 namespace beampipe::beam_test {
 
 // Triangles in the pixel (2, 2). `beside`: each one shows a strip beside the nearer ones. `behind`: the nearest hides
-// the others. `crossing`: they have corners at random depths, so more are seen than a pixel has slots.
+// the others. `crossing`: they have corners at random depths, so several are seen at once.
 enum class Layers { beside, behind, crossing };
 Trace layers_in_a_pixel(int layers, Layers kind) {
   std::mt19937 bits(1);
@@ -39,7 +39,7 @@ TEST(Beam, BuffersHaveTheSameSizeHoweverDeepAPixelIs) {
       for (const Buffer& buffer : result.buffers) bytes[buffer.name] = buffer.peak_bytes;
       const std::map<std::string, std::uint64_t> expected{
           {"setup_triangles", count * 116}, {"bin_lists", count * (4 + 4)}, {"closed_depth", 17 * 4},
-          {"open_pixels", 16 * 154},        {"pair_queue", queued * 10},    {"fragment_queue", queued * 57}};
+          {"open_pixels", 16 * (6 + 60)},        {"pair_queue", queued * 10},    {"fragment_queue", queued * 57}};
       EXPECT_EQ(bytes, expected);
       const std::uint64_t seen = stage_of(result, "shade").items_in;
       if (kind == Layers::behind) {
@@ -47,9 +47,7 @@ TEST(Beam, BuffersHaveTheSameSizeHoweverDeepAPixelIs) {
       } else {
         EXPECT_GE(seen, std::min<std::uint64_t>(count, 10) / 2);
       }
-      if (layers >= 1000) {
-        EXPECT_EQ(sum_of(result, "merges") > 0, kind == Layers::crossing);
-      }
+      EXPECT_EQ(sum_of(result, "merges"), 0) << "surfaces become final before there are too many";
       // Together they cover as much as the largest one. Both areas are within two positions of the same count.
       const float area = rgba_at(result.image, 2, 2)[3];
       if (layers == 1) area_of_one = area;
@@ -80,7 +78,6 @@ TEST(Beam, AHundredThousandTrianglesInOneBin) {
   const Image reference = picture("reference", trace);
   // It is 0.0153 from the reference, as msaa:64 is; msaa:8 is 0.067 from it.
   EXPECT_LT(rmse(result.image, reference), 0.02);
-  EXPECT_GT(sum_of(result, "merges"), 1000);
   // With a surface in front of them, only that is seen.
   append(triangles, quad(-1, -1, 17, 17, 0.05, glm::vec3(0.25f, 0.5f, 0.75f)));
   const Image covered = picture("beam", pixel_trace(16, 16, triangles));
@@ -116,9 +113,6 @@ TEST(Beam, PrimitiveOrderHardlyMatters) {
   for (const int count : {400, 3000, 6000}) {
     const Trace trace = count == 6000 ? random_trace(16, 12, count, 5) : random_trace(48, 32, count, 5);
     const FrameResult in_order = render("beam", trace);
-    if (count == 6000) {
-      EXPECT_GT(sum_of(in_order, "merges"), 0);
-    }
     for (const std::uint32_t seed : {1u, 2u, 3u, 4u}) {
       const Image other = picture("beam", shuffled(trace, seed));
       EXPECT_LT(rmse(in_order.image, other), 1e-4) << count;
@@ -179,7 +173,6 @@ TEST(Beam, TakesOnePassOverTheGeometry) {
   EXPECT_EQ(stage_of(result, "compose").items_in, stage_of(result, "beam_fragment").items_out);
   // Those that closed pixels hide by then are not counted.
   EXPECT_LE(sum_of(result, "fragments"), static_cast<double>(stage_of(result, "compose").items_in));
-  EXPECT_GT(sum_of(result, "merges"), 0);
 }
 
 }  // namespace beampipe::beam_test

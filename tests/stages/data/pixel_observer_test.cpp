@@ -1,4 +1,4 @@
-// What an observer tells of the pixels that compose_owners returns.
+// What an observer tells of the pixels that compose_pooled returns.
 #include "stages/data/pixel_observer.h"
 
 #include "tests/stages/open_pixels.h"
@@ -7,6 +7,7 @@ namespace beampipe::pixel_observer_test {
 
 struct Explained {
   double farthest = 0;       // from a pixel to the sum of its triangles' weights times colours, in any channel
+  double of_unmerged = 0;    // the same, of pixels in which no surfaces became one
   double sum_of_errors = 0;  // over pixels and channels
   int pixels = 0, merged = 0, specks = 0;
 };
@@ -49,6 +50,7 @@ void explain(const SetupTriangles& triangles, const std::vector<glm::vec3>& colo
       for (int c = 0; c < 3; ++c) {
         const double error = std::abs(sum[c] - pixels[i].color[c]);
         found.farthest = std::max(found.farthest, error);
+        if (!merged) found.of_unmerged = std::max(found.of_unmerged, error);
         found.sum_of_errors += error;
       }
       ++found.pixels;
@@ -83,7 +85,8 @@ glm::vec3 colorful(Random& random) { return {random.real32(0, 1), random.real32(
 TEST(PixelObserver, ExplainGrayPixels) {
   const Explained few = explain_random(611, 6, gray);
   EXPECT_LE(few.merged, 1);
-  EXPECT_LT(few.farthest, kOfSums);
+  EXPECT_LT(few.of_unmerged, kOfSums);
+  EXPECT_LT(few.farthest, kOfMerged);
   const Explained many = explain_random(612, 60, gray);
   EXPECT_GT(many.merged, 250);
   EXPECT_GT(many.specks, 100);

@@ -73,15 +73,15 @@ TEST_F(PlotTest, StorageIsAllMemoryOnChipAndOffChip) {
   EXPECT_EQ(plot.series[1].points[0].y, 100);
 }
 
-TEST_F(PlotTest, TechniquesThatDifferInSlotsAreALine) {
+TEST_F(PlotTest, TechniquesThatDifferInThePoolAreALine) {
   const auto result = [](const std::string& spec, int bytes) {
     return R"({"technique": ")" + spec + R"(", "peak_bytes_per_pixel": )" + std::to_string(bytes) +
            R"(, "error": {"rmse": 0.1}, "equivalent_msaa": 9, "frames": [{"wall_ms": {"median": 1}}]},)";
   };
   const ReportFile report = read_report(make_report(
-      "a", R"({"beampipe_report": 1, "trace": "rods.json", "results": [)" + result("beam:bits=64,slots=8", 90) +
-               result("beam:bits=64,slots=4", 70) + result("beam:slots=32,bin=8", 400) + result("beam", 150) +
-               result("beam:slots=8", 200) + result("beam:bin=8", 160) + R"({"technique": "z3",
+      "a", R"({"beampipe_report": 1, "trace": "rods.json", "results": [)" + result("beam:bits=64,pool=30", 90) +
+               result("beam:bits=64,pool=16", 70) + result("beam:pool=128,bin=8", 400) + result("beam", 150) +
+               result("beam:pool=96", 200) + result("beam:bin=8", 160) + R"({"technique": "z3",
                "peak_bytes_per_pixel": 50, "frames": [{"wall_ms": {"median": 1}}]}]})"));
   const ScatterPlot plot = storage_plot({report});
   std::vector<std::string> found;
@@ -89,8 +89,8 @@ TEST_F(PlotTest, TechniquesThatDifferInSlotsAreALine) {
     found.push_back(series.name + (series.line ? " -" : ""));
     for (const PlotPoint& point : series.points) found.push_back("  " + point.label);
   }
-  EXPECT_EQ(found, (std::vector<std::string>{"msaa -", "beam:bits=64 -", "  beam:bits=64,slots=4", "  8",
-                                             "beam:bin=8 -", "  beam:bin=8", "  32", "beam -", "  beam", "  8"}));
+  EXPECT_EQ(found, (std::vector<std::string>{"msaa -", "beam:bits=64 -", "  beam:bits=64,pool=16", "  30",
+                                             "beam:bin=8 -", "  beam:bin=8", "  128", "beam -", "  beam", "  96"}));
 }
 
 TEST_F(PlotTest, SeveralReportsGiveGeometricMeansAndTheirBounds) {

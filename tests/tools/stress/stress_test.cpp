@@ -138,7 +138,7 @@ TEST_P(HardCases, AreWithinTheirLimits) {
 TEST(CrowdedBin, IsExact) {
   for (const HardCase& hard_case : hard_cases(true)) {
     if (hard_case.name != "crowded_bin") continue;
-    for (const char* spec : {"beam", "beam:bits=64,slots=4", "beam:order=stream", "msaa:8"}) {
+    for (const char* spec : {"beam", "beam:bits=64,pool=16", "beam:order=stream", "msaa:8"}) {
       FrameInput options;
       options.memory.modelled = false;
       EXPECT_TRUE(Judge(hard_case).judge(parse_technique(spec), options).passes()) << spec;

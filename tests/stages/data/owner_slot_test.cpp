@@ -1,4 +1,4 @@
-#include "stages/data/open_pixel.h"
+#include "stages/data/owner_slot.h"
 
 #include <gtest/gtest.h>
 
@@ -6,11 +6,13 @@
 #include <cmath>
 #include <vector>
 
+#include "stages/data/pixel_sums.h"
+#include "stages/data/position_states.h"
 #include "tests/simd/random.h"
 
-namespace beampipe::open_pixel_test {
+namespace beampipe::owner_slot_test {
 
-TEST(OpenPixel, ASlotKeepsItsTriangleAndItsCentroid) {
+TEST(OwnerSlot, ASlotKeepsItsTriangleAndItsCentroid) {
   OwnerSlot slot;
   EXPECT_TRUE(slot.is_free());
   for (const std::uint32_t number : {0u, 1u, 0x7fu, 0x12345u, OwnerSlot::kMostTriangles - 1}) {
@@ -35,7 +37,7 @@ TEST(OpenPixel, ASlotKeepsItsTriangleAndItsCentroid) {
   EXPECT_TRUE(slot.is_free());
 }
 
-TEST(OpenPixel, AMergedSlotKeepsAColour) {
+TEST(OwnerSlot, AMergedSlotKeepsAColour) {
   OwnerSlot slot;
   slot.set_merged(OwnerSlot::kMostTriangles - 1, 3.5f, {1.0f, 0.5f, 0.25f}, 0.5f);
   EXPECT_TRUE(slot.is_merged());
@@ -53,7 +55,7 @@ TEST(OpenPixel, AMergedSlotKeepsAColour) {
 }
 
 // The error of a mask is rounded to the nearest step of 1/32 position, and limited to what 8 bits hold.
-TEST(OpenPixel, TheErrorOfASlotIsRoundedAndLimited) {
+TEST(OwnerSlot, TheErrorOfASlotIsRoundedAndLimited) {
   Random random(201);
   SCOPED_TRACE(random.name());
   constexpr float kMost = 127.0f / 32;
@@ -156,8 +158,7 @@ TEST(ColorSums, HoldABrightColorAfterDarkOnes) {
   EXPECT_TRUE(std::isfinite(sums[0]));
 }
 
-// Every position is in the state that it was put into last, the two ways to find positions agree, and words beyond the
-// pixel's are 0.
+// Every position is in the state that it was put into last, and words beyond the pixel's are 0.
 template <std::size_t Words, std::size_t Bits>
 void expect_states(std::uint64_t seed) {
   Random random(seed);
@@ -183,18 +184,10 @@ void expect_states(std::uint64_t seed) {
       }
     }
     for (std::size_t p = 0; p < expected.size(); ++p) ASSERT_EQ(states.at(p), expected[p]);
-    WideMask some;
-    std::uint64_t among = 0;
-    for (std::size_t p = 0; p < expected.size(); ++p) {
-      if (!random.one_in(16)) continue;
-      some.set(p);
-      among |= std::uint64_t{1} << expected[p];
-    }
-    ASSERT_EQ(states.states_among(some), among);
   }
 }
 
-TEST(OpenPixel, StatesOfPositions) {
+TEST(PositionStates, AreWhatWasPutLast) {
   expect_states<1, 2>(203);
   expect_states<2, 3>(204);
   expect_states<4, 4>(205);
@@ -202,18 +195,4 @@ TEST(OpenPixel, StatesOfPositions) {
   expect_states<8, 6>(207);
 }
 
-TEST(OpenPixel, StatesHaveEnoughBitsForEverySlot) {
-  const auto check = []<std::size_t Words, std::size_t Slots>(OpenPixel<Words, Slots> pixel) {
-    using Pixel = OpenPixel<Words, Slots>;
-    EXPECT_LT(Pixel::owned_by(Slots - 1), Pixel::kFinal);
-    EXPECT_LT(Pixel::kFinal, 1u << Pixel::kBits);
-    EXPECT_EQ(pixel.states.positions_in(Pixel::kEmpty).count(), 32 * Words);
-    for (const OwnerSlot& slot : pixel.slots) EXPECT_TRUE(slot.is_free());
-    EXPECT_EQ(pixel.area.units, 0);
-  };
-#define BEAMPIPE_CHECK(words, slots) check(OpenPixel<words, slots>());
-  BEAMPIPE_OPEN_PIXELS(BEAMPIPE_CHECK)
-#undef BEAMPIPE_CHECK
-}
-
-}  // namespace beampipe::open_pixel_test
+}  // namespace beampipe::owner_slot_test

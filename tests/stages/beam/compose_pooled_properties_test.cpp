@@ -8,7 +8,7 @@
 #include "tests/stages/open_pixels.h"
 #include "tests/stages/search.h"
 
-namespace beampipe::compose_owners_properties_test {
+namespace beampipe::compose_pooled_properties_test {
 
 constexpr Tile kTile{0, 0, 12, 10};
 constexpr float kLeast = 0.125f, kGreatest = 0.75f;  // of the colours
@@ -79,4 +79,4 @@ TEST(Properties, NearFirstKeepsAreaAndColour) {
   EXPECT_GT(composed.merges, composed.fragments / 100);
 }
 
-}  // namespace beampipe::compose_owners_properties_test
+}  // namespace beampipe::compose_pooled_properties_test
