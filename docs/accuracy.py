@@ -3,7 +3,7 @@
 
 usage: docs/accuracy.py sweep PROGRAM MODELS -o DIR    every spec below, on the 17 scenes of docs/scene_traces.py
        docs/accuracy.py sizes PROGRAM MODELS -o DIR    two specs in four sizes
-       docs/accuracy.py results|steps|bins|capacities|readings TABLE
+       docs/accuracy.py results|steps|bins|capacities|pools|readings TABLE
        docs/accuracy.py density SIZES_TABLE
        docs/accuracy.py scenes PROGRAM DIR TABLE SIZES_TABLE
        docs/accuracy.py frontier TABLE -o SVG          needs gnuplot
@@ -21,13 +21,13 @@ import sys
 import scene_traces
 from measure import PROCEDURAL, print_head, print_row
 
-SCENES = ["casav", "beam", "beam:bits=64,slots=4", "beam:order=stream", "beam:order=sorted"]
+SCENES = ["casav", "beam", "beam:bits=128,pool=30", "beam:order=stream", "beam:order=sorted"]
 SIZES = ["1280x720", "320x180", "96x54", "32x18"]
 DENSITY = ["beam", "beam:order=sorted"]
-POSITIONS = {32: "bits=32,", 64: "bits=64,", 128: "bits=128,", 256: ""}
-SLOTS = [2, 4, 8, 16, 32]
-PICTURE_BYTES = 6  # of a pixel that is on chip until it is resolved
-CAPACITIES = {bits: [f"beam:{text}slots={slots}" for slots in SLOTS] for bits, text in POSITIONS.items()}
+CAPACITIES = {32: "beam:bits=32,pool=16", 64: "beam:bits=64,pool=24", 128: "beam:bits=128,pool=30", 256: "beam"}
+POOLS = [16, 30, 40, 60, 80, 128]  # the last one has room for nearly all
+POOLED = {f"beam:{options}": [f"beam:{options}{',' if options else ''}pool={pool}" for pool in POOLS]
+          for options in ("bits=256,bin=32", "bits=256,bin=16", "bits=128,bin=32", "bits=128,bin=16")}
 OTHERS = ["beam", "beam:order=stream", "beam:order=sorted", "casav", "z3", "z3:shape=128x3", "acaa:8",
           "dvm", "msaa:8", "msaa:32", "msaa:256"]
 LABELS = {"beam": "right offset -0.6,0.6", "beam:order=stream": "left offset 0.6,0.6"}  # where a line is at the right
@@ -36,17 +36,17 @@ STEPS = {"1. published pipeline": "casav", "2. its best reading": BEST_READING,
          "3. without an A-buffer": "casav:order=near-first,layers=8",
          "4a. areas conserved, 32 positions": "beam:order=sorted,bits=32",
          "4b. areas conserved, 256 positions": "beam:order=sorted",
-         "5a. one pass, 2 slots": "beam:bits=32,slots=2", "5b. one pass, 4 slots": "beam:bits=64,slots=4",
-         "5c. one pass, 5 slots": "beam", "5d. one pass, 16 slots": "beam:slots=16"}
-RESULTS = ["beam", "beam:bin=16", "beam:order=stream", "casav", "z3:shape=128x3", "acaa:8", "msaa:8", "msaa:256"]
+         **{f"5{letter}. one pass, {bits} positions": spec
+            for letter, (bits, spec) in zip("abcd", CAPACITIES.items())}}
+RESULTS = ["beam", "beam:bin=16", "beam:bits=128,pool=30", "beam:order=stream", "casav", "z3:shape=128x3", "acaa:8", "msaa:8", "msaa:256"]
 READINGS = ["casav", *(f"casav:{reading}" for reading in (
     "mask=exact", "sort=nearest", "tiny=3", "overlap=over", "overlap=add", "overlap=transition", "regional=area",
     "local=keep", "fuzzy=mix", "extents=slab", "slab=visible", "plane=visible", "thickness=containing",
     "tiny=3,overlap=transition", "storage=text", "order=near-first,layers=1", "order=near-first,layers=8",
     "order=stream,layers=8")), BEST_READING]
 BINS = {spec: [spec, *(f"{spec}{',' if ':' in spec else ':'}bin={bin}" for bin in (16, 8))]
-        for spec in ("beam", "beam:bits=64,slots=4", "beam:bits=32,slots=2")}
-ALL = list(dict.fromkeys(SCENES + list(STEPS.values()) + RESULTS + sum(CAPACITIES.values(), []) + OTHERS + READINGS +
+        for spec in ("beam", "beam:bits=128,pool=30", "beam:bits=64,pool=24")}
+ALL = list(dict.fromkeys(SCENES + list(STEPS.values()) + RESULTS + list(CAPACITIES.values()) + sum(POOLED.values(), []) + OTHERS + READINGS +
                          sum(BINS.values(), [])))
 
 
@@ -118,12 +118,26 @@ def bytes_of(table, spec):
 
 
 def print_capacities(table):
-    """Bytes on chip, geometric mean and least EMR, by positions and slots."""
-    print_head("positions", *(f"{slots} slots" for slots in SLOTS))
-    for bits, specs in CAPACITIES.items():
-        rates = [table.values("emr", spec) for spec in specs]
-        print_row(bits, *(f"{bytes_of(table, spec)[2] - PICTURE_BYTES:.0f} B: {rate(mean(each))}, {rate(min(each))}"
-                          for spec, each in zip(specs, rates)))
+    """Bytes on chip, and geometric mean and least EMR, by positions."""
+    print_head("positions", "spec", "bytes on chip", "EMR: geometric mean", "least")
+    for bits, spec in CAPACITIES.items():
+        rates = table.values("emr", spec)
+        print_row(bits, f"`{spec}`", f"{bytes_of(table, spec)[0]:.0f}", rate(mean(rates)), rate(min(rates)))
+
+
+def print_pools(table):
+    """What records in memory move through L2, and how long the frame takes, beside those with the largest pool."""
+    print_head("technique", *(f"`pool={pool}`" for pool in POOLS[:-1]))
+    for technique, specs in POOLED.items():
+        largest = specs[-1]
+        cells = []
+        for spec in specs[:-1]:
+            moved = [float(table.row(scene, spec)["l2_bytes"]) - float(table.row(scene, largest)["l2_bytes"])
+                     for scene in table.scenes]
+            pixels = math.prod(map(int, table.size.split("x")))
+            times = [new / old for new, old in zip(table.values("modelled_ms", spec), table.values("modelled_ms", largest))]
+            cells.append(f"{sum(moved) / len(moved) / pixels:.1f}, {mean(times):.2f}, {max(times):.2f}")
+        print_row(f"`{technique}`", *cells)
 
 
 def print_groups(table, specs, titles=(), extra=lambda spec: ()):
@@ -164,12 +178,10 @@ def print_bins(table):
 
 
 def draw_frontier(table, path):
-    """Memory against EMR: a line for each number of positions, and labelled points for the others."""
-    data, plots = [], []
-    for bits, specs in CAPACITIES.items():
-        points = [(bytes_of(table, spec)[2], mean(table.values("emr", spec))) for spec in specs]
-        data.append(f"$b{bits} << EOD\n" + "".join(f"{x} {y}\n" for x, y in points) + "EOD\n")
-        plots.append(f"$b{bits} with linespoints pt 7 ps 0.6 title '{bits} positions, 2 to 32 slots'")
+    """Memory against EMR: a line of `beam` by its positions, and labelled points for the others."""
+    line = [(bytes_of(table, spec)[2], mean(table.values("emr", spec))) for spec in CAPACITIES.values()]
+    data = ["$beam << EOD\n" + "".join(f"{x} {y}\n" for x, y in line) + "EOD\n"]
+    plots = ["$beam with linespoints pt 7 ps 0.6 title 'beam, 32 to 256 positions'"]
     points = {spec: f'{bytes_of(table, spec)[2]} {mean(table.values("emr", spec))} "{spec}"\n' for spec in OTHERS}
     for i, (spec, point) in enumerate(points.items()):
         data.append(f"$other{i} << EOD\n{point}EOD\n")
@@ -179,7 +191,7 @@ def draw_frontier(table, path):
 set terminal svg size 900,560 font 'sans-serif,13' background 'white'
 set output {json.dumps(str(path))}
 set logscale xy
-set xrange [40:6000]
+set xrange [20:6000]
 set yrange [1.5:1100]
 set xlabel 'bytes per pixel, on chip and off chip together'
 set ylabel 'equivalent MSAA rate, geometric mean'
@@ -191,7 +203,7 @@ plot {', '.join(plots)}
 
 
 TABLES = {"results": print_results, "steps": print_steps, "density": print_density, "bins": print_bins,
-          "capacities": print_capacities, "readings": lambda table: print_groups(table, READINGS)}
+          "capacities": print_capacities, "pools": print_pools, "readings": lambda table: print_groups(table, READINGS)}
 
 
 def main(arguments):

@@ -13,9 +13,9 @@ import tempfile
 from measure import print_head, print_row, results
 
 SIDES = [8, 16, 32]
-BEAM = ["beam", "beam:bits=64,slots=4", "beam:bits=32,slots=2"]
+BEAM = ["beam", "beam:bits=128,pool=30", "beam:bits=64,pool=24"]
 MSAA = ["msaa:8"]
-PARTS = {"positions": ["owner_map"], "owners": ["owners"], "sums": ["sums"], "samples": ["depth", "color"]}
+PARTS = {"words": ["pixel_words"], "records": ["record_pool"], "samples": ["depth", "color"]}
 
 
 def with_bin(spec, side):
