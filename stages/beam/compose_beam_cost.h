@@ -6,7 +6,7 @@
 #include "simd/conserve.h"
 #include "simd/depth_compare.h"
 #include "stages/beam/specks.h"
-#include "stages/cost/counting.h"
+#include "stages/cost/plane_cost.h"
 #include "stages/data/beam_aggregate.h"
 #include "stages/data/pair.h"
 #include "stages/data/position_set.h"
@@ -32,19 +32,19 @@ using CountedBits = Counted<std::uint32_t>;
 // Per fragment, word by word: the positions of its mask that are still open and those that other fragments cover too;
 // the numbers of positions that it covers and owns.
 inline OperationCounts mask_cost(std::size_t words) {
-  return count_operations([&](OperationCounts& counts) {
+  OperationCounts cost = count_cost(words) * 2;
+  cost += count_operations([&](OperationCounts& counts) {
     const CountedBits mask(~0u, counts);
-    CountedFloat covered(0.0f), visible(0.0f);
     for (std::size_t i = 0; i < words; ++i) {
       const CountedBits open = mask & ~mask;
       mask | (mask & open);  // covered by several fragments
       mask | open;           // covered by any fragment
       mask | open;           // taken
-      covered = covered + bit_count(mask);
-      visible = visible + bit_count(open);
     }
-    static_cast<void>(visible == covered);  // is all of it visible?
+    const CountedFloat visible(0.0f, counts);
+    static_cast<void>(visible == visible);  // is all of it visible?
   });
+  return cost;
 }
 
 // Per fragment of a window in which several fragments cover the same position: its depth at the pixel's corner, its

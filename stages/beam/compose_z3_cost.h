@@ -35,7 +35,8 @@ OperationCounts z3_contest_cost() {
 
 // To merge two of `layers` layers: to find the two that are closest, and to compute their mean.
 inline OperationCounts layer_merge_cost(std::size_t layers, std::size_t words) {
-  return count_operations([&](OperationCounts& counts) {
+  OperationCounts cost = count_cost(words) * 2;
+  cost += count_operations([&](OperationCounts& counts) {
     using Number = Counted<float>;
     const Number one(1.0f, counts);
     const std::size_t pairs = layers * (layers - 1) / 2;
@@ -43,12 +44,11 @@ inline OperationCounts layer_merge_cost(std::size_t layers, std::size_t words) {
       magnitude(one - one);
       static_cast<void>(one < one);
     }
-    for (std::size_t w = 0; w < 2 * words; ++w) bit_count(Counted<std::uint32_t>(0, counts));
-    counts.add += 2 * (words - 1);
     const Number share = one / (one + one), rest = one - share;
     for (int value = 0; value < 3 + 3; ++value) share* one + rest* one;  // plane and colour
     counts.bit += words;
   });
+  return cost;
 }
 
 template <std::size_t Words, std::size_t Layers>

@@ -9,14 +9,6 @@
 
 namespace beampipe {
 
-// The population counts of a mask's words, and their sum.
-inline OperationCounts count_cost(std::size_t words) {
-  return count_operations([&](OperationCounts& counts) {
-    Counted<float> sum = bit_count(Counted<std::uint32_t>(0, counts));
-    for (std::size_t w = 1; w < words; ++w) sum = sum + bit_count(Counted<std::uint32_t>(0, counts));
-  });
-}
-
 // Per contest: the difference of two planes, and its sign in the whole pixel.
 inline OperationCounts plane_gap_cost() {
   return count_operations([](OperationCounts& counts) {

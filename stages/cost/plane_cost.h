@@ -1,7 +1,9 @@
-// The cost of formulas that several stages share: depth planes, depth bounds, and the states of mask positions.
+// The cost of formulas that several stages share: depth planes, depth bounds, and masks with the states of
+// their positions.
 #pragma once
 
 #include <array>
+#include <cstddef>
 #include <cstdint>
 
 #include "simd/plane_order.h"
@@ -56,6 +58,14 @@ inline OperationCounts sample_bounds_cost() {
     const Counted<float> z[3] = {Counted<float>(0, counts), Counted<float>(0, counts), Counted<float>(0, counts)};
     const Counted<double> slope(0.0, counts);
     sample_bounds(vertex_bounds(z), slope, slope);
+  });
+}
+
+// The population counts of a mask's words, and their sum.
+inline OperationCounts count_cost(std::size_t words) {
+  return count_operations([&](OperationCounts& counts) {
+    Counted<float> sum = bit_count(Counted<std::uint32_t>(0, counts));
+    for (std::size_t w = 1; w < words; ++w) sum = sum + bit_count(Counted<std::uint32_t>(0, counts));
   });
 }
 

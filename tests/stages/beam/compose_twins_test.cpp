@@ -62,6 +62,12 @@ class ComposeTwins : public SceneTwins {
     Float covered{0.0f}, visible{0.0f};
   };
 
+  Float number_in(const WideMask& mask) {
+    Float sum = bit_count(bits(mask.words[0]));
+    for (std::size_t w = 1; w < kWords; ++w) sum = sum + bit_count(bits(mask.words[w]));
+    return sum;
+  }
+
   // Each open position goes to the fragment that is nearest there. Depths are compared only if there are several.
   std::vector<Seen> owners(const Fragment* fragments, std::size_t count, const WideMask& taken) {
     std::vector<Seen> seen(count);
@@ -72,15 +78,13 @@ class ComposeTwins : public SceneTwins {
         twice.words[w] = (bits(twice.words[w]) | (bits(once.words[w]) & open)).value;
         once.words[w] = (bits(once.words[w]) | open).value;
         seen[i].owned.words[w] = open.value;
-        seen[i].covered = seen[i].covered + bit_count(mask);
       }
+      seen[i].covered = number_in(fragments[i].mask);
     }
     if (!twice.none()) contest(fragments, twice, seen);
     for (Seen& fragment : seen) {
-      for (const std::uint32_t word : fragment.owned.words) {
-        fragment.visible = fragment.visible + bit_count(bits(word));
-        bits(0) | bits(word);  // joined to what is taken
-      }
+      for (const std::uint32_t word : fragment.owned.words) bits(0) | bits(word);  // joined to what is taken
+      fragment.visible = number_in(fragment.owned);
     }
     return seen;
   }
