@@ -1,4 +1,4 @@
-// What a merge by the published rules is charged, in compose_casav and compose_layers.
+// What merges by the published rules are charged, in compose_casav and compose_layers.
 #pragma once
 
 #include <bit>
@@ -34,7 +34,8 @@ struct MergeWork {
   }
 };
 
-inline OperationCounts merge_cost(const MergeWork& work, const MergeRules& rules, CasavStorage storage) {
+// What all these merges are charged.
+inline OperationCounts casav_merges_cost(const MergeWork& work, const MergeRules& rules, CasavStorage storage) {
   using Float = Counted<float>;
   using Mask = Counted<std::uint32_t>;
   OperationCounts total;

@@ -83,7 +83,7 @@ std::vector<Aggregate> compose(const std::vector<Fragment>& fragments, const ABu
   };
   std::vector<Aggregate> aggregates = composed();
   const std::uint32_t bytes = casav_aggregate_bytes(merging.storage);
-  charge_merges(buffer, merge_cost(work, merging.rules, merging.storage), bytes, bytes, counters);
+  charge_merges(buffer, casav_merges_cost(work, merging.rules, merging.storage), bytes, bytes, counters);
   counters.position_tests += position_tests(work);
   return aggregates;
 }

@@ -30,7 +30,7 @@ inline void charge(const LayersWork& work, std::size_t layers, const MergeRules&
   const std::uint64_t pixel_bytes = layers * casav_aggregate_bytes(storage);
   counters.items_in += work.fragments;
   counters.items_out += work.fragments;
-  counters.ops += merge_cost(work.merging, rules, storage);
+  counters.ops += casav_merges_cost(work.merging, rules, storage);
   counters.position_tests += position_tests(work.merging);
   if (layers > 1) counters.ops += layer_cost() * (layers * work.fragments);
   counters.bytes_read += work.fragments * (casav_aggregate_bytes(storage) + pixel_bytes) + work.finished * pixel_bytes;
