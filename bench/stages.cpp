@@ -157,16 +157,16 @@ void setup(benchmark::State& state, const std::string& scene) {
 
 const bool registered = [] {
   for (const std::string scene : {"hairball", "terrain"}) {
-    const auto add = [&](const char* name, auto* stage) {
-      benchmark::RegisterBenchmark((std::string(name) + "/" + scene).c_str(), stage, scene)
+    const auto add = [&](StageId id, auto* stage) {
+      benchmark::RegisterBenchmark(std::string(name_of(id)).append("/" + scene).c_str(), stage, scene)
           ->Unit(benchmark::kMillisecond);
     };
-    add("vertex_setup", setup);
-    add("conservative_raster", raster);
-    add("a_buffer", sort);
-    add("beam_fragment", fragment);
-    add("compose", compose);
-    add("resolve", resolve_pixels);
+    add(StageId::vertex_setup, setup);
+    add(StageId::conservative_raster, raster);
+    add(StageId::a_buffer, sort);
+    add(StageId::beam_fragment, fragment);
+    add(StageId::compose, compose);
+    add(StageId::resolve, resolve_pixels);
   }
   return true;
 }();

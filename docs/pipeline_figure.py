@@ -12,23 +12,15 @@ from measure import make
 WIDTH, HEIGHT = 828, 760
 MONO = "DejaVu Sans Mono, Menlo, Consolas, monospace"
 
-# Folders of stages, with the colours of their boxes: fill, border.
+# Groups of stages, with the colours of their boxes: fill, border.
 COLORS = {
     "geometry": ("#e8e3f4", "#6f5aa8"),
     "raster": ("#dcebf9", "#2f6fab"),
-    "beam": ("#fde8cd", "#b8690f"),
-    "samples": ("#dff1de", "#3b823a"),
-    "temporal": ("#f9dde5", "#a83a5c"),
-    "picture": ("#ececec", "#666666"),
-}
-FOLDER_OF = {
-    "vertex_setup": "geometry",
-    "bin_sort": "raster", "conservative_raster": "raster", "sample_raster": "raster", "reference_raster": "raster",
-    "a_buffer": "beam", "windows": "beam", "beam_fragment": "beam", "compose": "beam",
-    "depth_test": "samples", "stencil_test": "samples", "accumulate": "samples", "sample_select": "samples",
-    "material_sort": "samples", "dilate": "samples",
-    "motion": "temporal", "temporal": "temporal",
-    "shade": "picture", "light": "picture", "resolve": "picture",
+    "fragments": ("#fde8cd", "#b8690f"),
+    "visibility": ("#dff1de", "#3b823a"),
+    "shading": ("#f9f3c9", "#94800f"),
+    "picture": ("#f9dde5", "#a83a5c"),
+    "reference": ("#ececec", "#666666"),
 }
 
 # The stages of `beam`: what each hands on, what it uses off chip, and whether it reads that, writes it, or both.
@@ -41,6 +33,11 @@ BEAM = [
     ("resolve", "", "picture", "write"),
 ]
 
+
+def groups(program):
+    """The group of each stage."""
+    printed = subprocess.run([program, "counters", "--json"], check=True, stdout=subprocess.PIPE).stdout
+    return {stage["stage"]: stage["group"] for stage in json.loads(printed)["stages"]}
 
 
 def other_techniques(program):
@@ -82,7 +79,7 @@ def arrow(path, dashed=False, both=False):
 
 
 def stage(x, y, width, height, name, lines, size):
-    box(x, y, width, height, *COLORS[FOLDER_OF[name]])
+    box(x, y, width, height, *COLORS[group_of[name]])
     for i, line in enumerate(lines):
         text(x + width / 2, y + height / 2 + 4 + (i - (len(lines) - 1) / 2) * (size + 2), line, size, family=MONO)
 
@@ -155,14 +152,15 @@ def other_part(techniques):
             x += width + 14
         y += row
     y += 14
-    text(20, y, "Folders in stages/:", 10, "start", fill="#555")
+    text(20, y, "Groups of stages:", 10, "start", fill="#555")
     x = 172
-    for folder, (fill, border) in COLORS.items():
+    for group, (fill, border) in COLORS.items():
         box(x, y - 10, 12, 12, fill, border)
-        text(x + 18, y, folder, 10, "start", family=MONO)
-        x += 18 + 6.1 * len(folder) + 18
+        text(x + 18, y, group, 10, "start", family=MONO)
+        x += 18 + 6.1 * len(group) + 18
 
 
+group_of = groups(sys.argv[1])
 frame_part()
 beam_part()
 other_part(other_techniques(sys.argv[1]))

@@ -33,8 +33,7 @@ Bin::Bin(const FrameContext& frame_context, const Tile& bin_tile, const Triangle
 }
 
 BinStage Bin::stage(StageId id, Pass pass) {
-  for (StageCounters& counters : stages_)
-    if (counters.stage == Stage(id, pass)) return {counters, timer_, memory()};
+  if (StageCounters* const counters = find_counters(stages_, {id, pass})) return {*counters, timer_, memory()};
   throw std::logic_error("the technique has no stage " + std::string(name_of({id, pass})));
 }
 

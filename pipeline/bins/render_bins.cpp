@@ -206,7 +206,7 @@ class FrameRecorder {
     std::map<std::string, std::vector<float>*> counters;  // of the frame
     {
       const std::lock_guard lock(mutex_);
-      for (std::size_t s = 0; s < bin.stages().size(); ++s) result_.stages[s] += bin.stages()[s];
+      for (const StageCounters& stage : bin.stages()) *find_counters(result_.stages, stage.stage) += stage;
       for (const auto& [name, bytes] : bin.buffer_peaks()) {
         std::uint64_t& peak = buffer_peaks_[name];
         peak = std::max(peak, bytes);

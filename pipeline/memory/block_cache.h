@@ -75,7 +75,7 @@ class BlockCache {
   void access(std::uint32_t key, std::size_t block, Sectors read, Sectors write, StageCounters& counters,
               EachWrite&& each_write) {
     if (!modelled_) return;
-    if (block != request_.block || key != request_.key || &counters != request_.counters)
+    if (block != request_.block || key != request_.key || counters.stage != request_.counters->stage)
       begin_request(key, block, counters);
     request_.read |= read;
     request_.write |= write;
@@ -133,7 +133,7 @@ class BlockCache {
   // The open request: what has been asked of one block so far.
   struct Request {
     std::size_t block = ~std::size_t{0};
-    StageCounters* counters = nullptr;  // of the stage that asks
+    StageCounters* counters = nullptr;  // of the stage that asks; null before the first request
     std::uint32_t key = 0;
     bool counts_bytes = false;  // a sector may have to be fetched unless all of it is written
     Sectors read = 0, write = 0;

@@ -2,6 +2,8 @@
 
 #include <algorithm>
 #include <iterator>
+#include <stdexcept>
+#include <string>
 
 namespace beampipe {
 namespace {
@@ -91,6 +93,9 @@ static_assert(sizeof(StageCounters) == alignof(std::uint64_t) + kStored * sizeof
 }  // namespace
 
 StageCounters& StageCounters::operator+=(const StageCounters& other) {
+  if (stage.id != StageId::none && stage.id != other.stage.id)
+    throw std::logic_error(std::string("counters of ").append(name_of(stage)) + " get those of " +
+                           (other.stage.id == StageId::none ? "no stage" : std::string(name_of(other.stage))));
   for (const CounterInfo& counter : kCounters)
     if (std::uint64_t* const stored = counter.stored(*this)) *stored += counter.value(other);
   return *this;

@@ -1,6 +1,7 @@
 // What a stage did in one frame, in items, operations, bytes and lanes; and the one table of these counters.
 #pragma once
 
+#include <algorithm>
 #include <cstdint>
 #include <span>
 
@@ -72,9 +73,18 @@ struct StageCounters {
 
   std::uint64_t logical_bytes() const { return bytes_read + bytes_written; }
 
-  StageCounters& operator+=(const StageCounters& other);  // leaves `stage` as it is
+  // Leaves `stage` as it is. Throws std::logic_error if `other` counts another stage; its pass may be another one.
+  // Counters that have no stage add up any.
+  StageCounters& operator+=(const StageCounters& other);
   bool operator==(const StageCounters&) const = default;
 };
+
+// The counters of that stage; null if `all` has none.
+template <class AllCounters>
+auto* find_counters(AllCounters& all, Stage stage) {
+  const auto found = std::find_if(all.begin(), all.end(), [&](const auto& each) { return each.stage == stage; });
+  return found == all.end() ? nullptr : &*found;
+}
 
 // A counter of a stage. It is stored in StageCounters (`field`), in its operations (`operation`), or it is computed
 // from others (`sum`); exactly one of the three is not null.

@@ -62,10 +62,7 @@ const FrameReport* frame_of(const Findings& found, const std::string& spec) {
 
 const StageCounters* stage_of(const Findings& found, const std::string& spec, Stage which) {
   const FrameReport* const frame = frame_of(found, spec);
-  if (!frame) return nullptr;
-  for (const StageCounters& stage : frame->stages)
-    if (stage.stage == which) return &stage;
-  return nullptr;
+  return frame ? find_counters(frame->stages, which) : nullptr;
 }
 
 // Modelled milliseconds of these stages, or of all, one stage after the other.
@@ -76,9 +73,8 @@ Number milliseconds(const Findings& found, const std::string& spec, const std::v
       modelled_time(found.report.hardware, found.implementation, frame->stages, frame->open_pixel_bytes());
   if (stages.empty()) return time.sum_ms;
   Number sum;
-  for (std::size_t i = 0; i < frame->stages.size(); ++i)
-    if (std::find(stages.begin(), stages.end(), frame->stages[i].stage) != stages.end())
-      sum = sum.value_or(0) + time.stages[i];
+  for (const StageTime& each : time.stages)
+    if (std::find(stages.begin(), stages.end(), each.stage) != stages.end()) sum = sum.value_or(0) + each.ms;
   return sum;
 }
 

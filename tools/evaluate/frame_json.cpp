@@ -1,5 +1,6 @@
 #include "tools/evaluate/frame_json.h"
 
+#include <algorithm>
 #include <optional>
 #include <stdexcept>
 #include <string>
@@ -205,17 +206,24 @@ Json to_json(const FrameReport& frame, const TechniqueReport& result, const Hard
   for (const StageCounters& stage : frame.stages) of.all += stage;
   Json json = frame_form().write(of);
   if (of.all.sector_bytes == 0) return json;  // the reference models no memory, and times without it would mean nothing
+  std::vector<Json>& stages = json["stages"].elements();
   const auto add = [&](const Hardware& each, const std::string& prefix) {
     for (const Implementation& implementation : each.implementations) {
       const ModelledTime time = modelled_time(each, implementation, frame.stages, frame.open_pixel_bytes());
       const std::string name = prefix + implementation.name;
       json["modelled_ms"][name] = modelled_form().write(time);
-      for (std::size_t i = 0; i < time.stages.size(); ++i) json["stages"][i]["modelled_ms"][name] = time.stages[i];
+      for (const StageTime& of_stage : time.stages)
+        (*find_stage(stages, name_of(of_stage.stage)))["modelled_ms"][name] = of_stage.ms;
     }
   };
   add(hardware, "");
   for (const Hardware& each : more) add(each, each.label + ".");
   return json;
+}
+
+Json* find_stage(std::vector<Json>& stages, std::string_view name) {
+  const auto found = std::find_if(stages.begin(), stages.end(), [&](Json& each) { return each.at("stage") == name; });
+  return found == stages.end() ? nullptr : &*found;
 }
 
 FrameReport frame_of(const Json& json) {

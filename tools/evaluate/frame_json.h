@@ -1,6 +1,9 @@
 // The JSON of one frame's results, as report.json and the records of unfinished runs contain it.
 #pragma once
 
+#include <string_view>
+#include <vector>
+
 #include "tools/evaluate/hardware.h"
 #include "tools/evaluate/metrics.h"
 #include "tools/evaluate/results.h"
@@ -20,6 +23,9 @@ Json frame_schema();
 // Times on `more` hardware have its label in their names: "rtx_4090.shaders".
 Json to_json(const FrameReport& frame, const TechniqueReport& technique, const Hardware& hardware,
              const std::vector<Hardware>& more = {});
+
+// The one of "stages" that is called so; null if there is none.
+Json* find_stage(std::vector<Json>& stages, std::string_view name);
 
 // Reads back a frame that was written with an empty framebuffer, except for `pixels`, which is not in the JSON. Throws
 // JsonError if a key is missing or a value has the wrong type.

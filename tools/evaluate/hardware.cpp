@@ -318,7 +318,7 @@ ModelledTime modelled_time(const Hardware& hardware, const Implementation& imple
       busy[unit] += ms;
       longest = std::max(longest, ms);
     }
-    time.stages.push_back(longest);
+    time.stages.push_back({stage.stage, longest});
     time.sum_ms += longest;
   }
   for (const auto& [unit, ms] : busy) {

@@ -68,11 +68,16 @@ Hardware with_shading_costs(const Hardware& hardware, const ShadingCost& materia
 std::map<std::string, double> unit_times(const Hardware& hardware, const Implementation& implementation,
                                          const StageCounters& stage, double bin_bytes = 0);
 
+struct StageTime {
+  Stage stage;
+  double ms = 0;
+};
+
 struct ModelledTime {
-  double overlap_ms = 0;       // all stages at once: the time of the busiest unit, over all stages
-  double sum_ms = 0;           // one stage after the other: the sum of `stages`
-  std::string busiest;         // the name of that unit
-  std::vector<double> stages;  // milliseconds, in the order of the stages
+  double overlap_ms = 0;          // all stages at once: the time of the busiest unit, over all stages
+  double sum_ms = 0;              // one stage after the other: the sum of `stages`
+  std::string busiest;            // the name of that unit
+  std::vector<StageTime> stages;  // in the order of the stages
 };
 
 ModelledTime modelled_time(const Hardware& hardware, const Implementation& implementation,

@@ -1,15 +1,9 @@
 #include "tools/evaluate/saved_work.h"
 
-#include <algorithm>
-
 namespace beampipe {
 
 std::vector<SavedWork> saved_work(const std::vector<StageCounters> &stages) {
-  const auto find = [&](Stage stage) -> const StageCounters * {
-    const auto found =
-        std::find_if(stages.begin(), stages.end(), [&](const auto &each) { return each.stage == stage; });
-    return found == stages.end() ? nullptr : &*found;
-  };
+  const auto find = [&](Stage stage) { return find_counters(stages, stage); };
   const StageCounters *const pairs = find(StageId::conservative_raster), *const cells = find(StageId::sample_raster);
   std::vector<SavedWork> saved;
   if (!pairs && !cells) return saved;

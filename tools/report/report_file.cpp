@@ -4,6 +4,7 @@
 #include <cmath>
 #include <map>
 
+#include "tools/evaluate/frame_json.h"
 #include "tools/evaluate/results.h"
 #include "traces/files/json.h"
 
@@ -158,9 +159,12 @@ std::vector<Json> stage_records(const ReportFile& report) {
   std::vector<Json> records;
   for (const Json& result : report.json.at("results").elements()) {
     const std::vector<Json>& frames = result.at("frames").elements();
-    std::vector<Json> stages(frames.front().at("stages").size());
+    std::vector<Json> stages;  // those for alpha are not in every frame
     for (const Json& frame : frames) {
-      for (std::size_t i = 0; i < stages.size(); ++i) add_numbers(stages[i], frame.at("stages").at(i));
+      for (const Json& stage : frame.at("stages").elements()) {
+        Json* const sum = find_stage(stages, stage.at("stage").get<std::string>());
+        add_numbers(sum ? *sum : stages.emplace_back(), stage);
+      }
     }
     for (Json& stage : stages) {
       stage["logical_bytes"] =

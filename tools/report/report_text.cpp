@@ -71,7 +71,7 @@ namespace {
 struct MeanTime {
   double sum = 0, overlap = 0;
   std::string busiest;
-  std::vector<double> stages;  // those of the first frame
+  std::vector<StageTime> stages;  // those of the first frame
 };
 
 // Calls use(technique, "titan_v.shaders", time, first frame) for each technique and implementation.
@@ -112,8 +112,7 @@ Json times_json(const Report& report) {
   Json json = Json::array();
   for_each_time(report, [&](const TechniqueReport& result, const std::string& name, const MeanTime& time) {
     Json stages;
-    for (std::size_t i = 0; i < time.stages.size(); ++i)
-      stages[name_of(result.frames.front().stages[i].stage)] = time.stages[i];
+    for (const StageTime& each : time.stages) stages[name_of(each.stage)] = each.ms;
     json.push_back({{"technique", result.technique},
                     {"implementation", name},
                     {"sum", time.sum},

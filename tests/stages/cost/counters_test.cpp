@@ -58,12 +58,31 @@ TEST(StageCountersTable, ValuesAreThoseOfTheFields) {
   }
 }
 
-TEST(StageCountersTable, AdditionAddsEachCounterAndKeepsTheName) {
+TEST(StageCountersTable, AdditionAddsEachCounterAndKeepsThePass) {
   StageCounters sum = numbered(1);
   StageCounters other = numbered(100);
-  other.stage = StageId::shade;
+  other.stage.pass = Pass::prepass;
   sum += other;
   EXPECT_EQ(sum, numbered(101));
+}
+
+TEST(StageCountersTable, CountersOfAStageTakeNoOthers) {
+  StageCounters sum = numbered(1), other = numbered(100), of_all;
+  for (const StageId id : {StageId::shade, StageId::none}) {
+    other.stage = id;
+    EXPECT_THROW(sum += other, std::logic_error);
+  }
+  EXPECT_EQ(sum, numbered(1)) << "nothing is added";
+  of_all += sum, of_all += other;
+  EXPECT_EQ(of_all.items_in, 101u);
+}
+
+TEST(StageCountersTable, CountersAreFoundByStageAndPass) {
+  const Stage prepass(StageId::compose, Pass::prepass);
+  std::vector<StageCounters> all = {StageCounters{prepass}, StageCounters{StageId::compose}};
+  EXPECT_EQ(find_counters(all, prepass), &all[0]);
+  EXPECT_EQ(find_counters(all, StageId::compose), &all[1]);
+  EXPECT_EQ(find_counters(all, StageId::shade), nullptr);
 }
 
 }  // namespace beampipe::counters_test

@@ -42,7 +42,8 @@ TEST(Hardware, OverlapIsTheBusiestUnitAndSumEachStagesBusiest) {
   EXPECT_NEAR(clocks(titan, time.overlap_ms), 1000, 1e-6);
   EXPECT_EQ(time.busiest, "triangles");
   ASSERT_EQ(time.stages.size(), 3u);
-  EXPECT_NEAR(clocks(titan, time.stages[1]), 10, 1e-6);
+  EXPECT_EQ(time.stages[1].stage, StageId::compose);
+  EXPECT_NEAR(clocks(titan, time.stages[1].ms), 10, 1e-6);
 }
 
 TEST(Hardware, ShadersShareTheirUnitBetweenStages) {

@@ -88,6 +88,19 @@ TEST_F(ReportParts, StagesAreMeansOverFrames) {
   expect_cells(frames, 2, {{"modelled_ms_shaders_sum", nullptr}});
 }
 
+// A frame has the stages for alpha only where something needs them.
+TEST_F(ReportParts, StagesOfFramesAreAddedUpByName) {
+  std::string text = kReport;
+  const std::string compose = R"({"stage": "compose", "ops": {"total": 1000000)";
+  text.insert(text.find(compose),
+              R"({"stage": "alpha_mask", "ops": {"total": 8}, "bytes_read": 0, "bytes_written": 0},)");
+  const std::vector<Table> tables = report_tables(read(text));
+  const Table& stages = named(tables, "stages");
+  ASSERT_EQ(stages.rows.size(), 2u);
+  expect_cells(stages, 0, {{"stage", "compose"}, {"ops", 2000000}});
+  expect_cells(stages, 1, {{"stage", "alpha_mask"}, {"ops", 4}});
+}
+
 TEST_F(ReportParts, TechniquesHaveTimesBoundsAndWhatMsaaWouldTake) {
   const std::vector<Table> tables = report_tables(read());
   const Table& techniques = named(tables, "techniques");
