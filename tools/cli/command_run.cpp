@@ -22,7 +22,7 @@ void run(const RunArguments& arguments, const MemoryTraceArguments& trace_argume
   OutputFolder output(arguments.output, gate);
   output.lock();
   require_writable_folders(output, plan.techniques);
-  const auto maker = made_by("run", plan, Json::object());
+  const Json maker = maker_form().write({.command = "run", .plan = plan});
   FrameRecords records(output, maker);
   if (!arguments.force && !arguments.resume) records.require_own_folder();
 

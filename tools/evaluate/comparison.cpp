@@ -9,8 +9,12 @@
 namespace beampipe {
 namespace {
 
-Json own_options(const CompareOptions& options) {
-  return {{"ladder", options.ladder}, {"causes", options.causes}, {"orders", options.orders}};
+Json made_by(const CompareOptions& options, const RunPlan& plan) {
+  return maker_form().write({.command = "compare",
+                             .plan = plan,
+                             .ladder = std::vector<std::uint64_t>(options.ladder.begin(), options.ladder.end()),
+                             .causes = options.causes,
+                             .orders = options.orders});
 }
 
 // Pooled over the frames that follow another. None if there is only one frame.
@@ -30,7 +34,7 @@ Comparison::Comparison(const CompareOptions& options, RunPlan plan, OutputFolder
     : options_(options),
       output_(output),
       plan_(std::move(plan)),
-      maker_(made_by("compare", plan_, own_options(options))),
+      maker_(made_by(options, plan_)),
       records_(output, maker_),
       ladder_(options.ladder) {
   std::erase_if(plan_.techniques, [](const Technique& technique) { return technique.spec == "reference"; });

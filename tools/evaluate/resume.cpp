@@ -74,24 +74,54 @@ std::string hardware_text(const RunPlan& plan) {
 
 }  // namespace
 
-Json made_by(const std::string& command, const RunPlan& plan, const Json& more) {
-  Json json = {{"command", command},
-               {"version", program_version()},
-               {"program", digest_of_file("/proc/self/exe")},
-               {"trace", digest_of(plan.trace)},
-               {"techniques", specs_of(plan.techniques)},
-               {"frames", range_text(plan.frames)},
-               {"repeat", plan.repeat},
-               {"threads", plan.options.threads},
-               {"simd", simd_target()},
-               {"memory_model", plan.options.memory.modelled},
-               {"compression", plan.options.memory.compression},
-               {"framebuffer", name_of(plan.options.memory.framebuffer)},
-               {"on_chip_bytes", plan.options.memory.on_chip_bytes},
-               {"memory_system", digest_of(parameters_json(plan.options.memory).dump())},
-               {"hardware", digest_of(hardware_text(plan))}};
-  for (const auto& [name, value] : more.members()) json[name] = value;
-  return json;
+Form<Maker> maker_form() {
+  const Form<std::string> digest{
+      {{"type", "string"}, {"pattern", "^[0-9a-f]{16}$"}}, {}, [](const std::string& text) { return Json(text); }};
+  const Form<std::string> command = form::one_of({"run", "compare"}), text = form::text();
+  const auto memory = [](auto MemoryParameters::*member) {
+    return [member](const Maker& maker) { return maker.plan.options.memory.*member; };
+  };
+  return ObjectForm<Maker>()
+      .written("command", &Maker::command, command, "The command.")
+      .written(
+          "version", [](const Maker&) { return program_version(); }, text, "Of the program.")
+      .written(
+          "program", [](const Maker&) { return digest_of_file("/proc/self/exe"); }, digest,
+          "Digest of the program's file.")
+      .written(
+          "trace", [](const Maker& maker) { return digest_of(maker.plan.trace); }, digest,
+          "Digest of the trace's content. Published figures belong to a trace by it.")
+      .written(
+          "techniques", [](const Maker& maker) { return specs_of(maker.plan.techniques); }, form::list(text),
+          "The specs.")
+      .written(
+          "frames", [](const Maker& maker) { return range_text(maker.plan.frames); }, text,
+          "The first and the last frame, with \"-\" between them.")
+      .written(
+          "repeat", [](const Maker& maker) { return maker.plan.repeat; }, form::count(1), "Timed runs of each frame.")
+      .written(
+          "threads", [](const Maker& maker) { return maker.plan.options.threads; }, form::count(1),
+          "That worked at once.")
+      .written(
+          "simd", [](const Maker&) { return simd_target(); }, text, "The instruction set.")
+      .written("memory_model", memory(&MemoryParameters::modelled), form::boolean(),
+               "Whether caches and DRAM were modelled.")
+      .written("compression", memory(&MemoryParameters::compression), form::boolean(), "Of framebuffer blocks.")
+      .written(
+          "framebuffer", [](const Maker& maker) { return std::string(name_of(maker.plan.options.memory.framebuffer)); },
+          text, "Where the pixels of a bin are.")
+      .written("on_chip_bytes", memory(&MemoryParameters::on_chip_bytes), form::count(), "For the pixels of a bin.")
+      .written(
+          "memory_system",
+          [](const Maker& maker) { return digest_of(parameters_json(maker.plan.options.memory).dump()); }, digest,
+          "Digest of the parameters.")
+      .written(
+          "hardware", [](const Maker& maker) { return digest_of(hardware_text(maker.plan)); }, digest,
+          "Digest of the descriptions.")
+      .written("ladder", &Maker::ladder, form::list(form::count(1)),
+               "compare: the MSAA rates of --ladder; empty: the default ones.")
+      .written("causes", &Maker::causes, form::boolean(), "compare: --causes.")
+      .written("orders", &Maker::orders, form::boolean(), "compare: --orders.");
 }
 
 std::string frame_record_name(std::size_t frame) { return frame_stem(kFolder, frame) + ".json"; }

@@ -5,6 +5,7 @@
 // after the frame's files. Once report.json is written, the records are removed.
 #pragma once
 
+#include <cstdint>
 #include <functional>
 #include <optional>
 #include <string>
@@ -13,13 +14,20 @@
 #include "tools/evaluate/results.h"
 #include "tools/evaluate/run_plan.h"
 #include "tools/files/output.h"
-#include "traces/files/json.h"
+#include "traces/files/json_form.h"
 
 namespace beampipe {
 
-// Everything that results depend on: the command, digests of the program and of the trace, and options. `more` holds
-// the options that only this command has.
-Json made_by(const std::string& command, const RunPlan& plan, const Json& more);
+// Everything that results depend on: the command, digests of the program and of the trace, and options. A report has it
+// as "made_by".
+struct Maker {
+  std::string command;
+  const RunPlan& plan;
+  // Options of `compare` alone.
+  std::optional<std::vector<std::uint64_t>> ladder = {};
+  std::optional<bool> causes = {}, orders = {};
+};
+Form<Maker> maker_form();
 
 struct FrameRecord {
   std::vector<FrameReport> reports;  // one per technique

@@ -5,6 +5,7 @@
 #include "tools/claims/claims.h"
 #include "tools/evaluate/draw_notes.h"
 #include "tools/evaluate/frame_json.h"
+#include "tools/evaluate/resume.h"
 
 namespace beampipe {
 namespace {
@@ -158,34 +159,6 @@ Form<MemoryParameters> memory_form() {
       .written("on_chip_bytes", &Memory::on_chip_bytes, form::count(), "For the pixels of a bin.");
 }
 
-// made_by() in tools/evaluate/resume.h, with what commands add.
-Json maker_schema() {
-  const Json digest = {{"type", "string"}, {"pattern", "^[0-9a-f]{16}$"}};
-  const Json text = form::text().schema, flag = form::boolean().schema, positive = form::count(1).schema;
-  const Form<Json> form =
-      ObjectForm<Json>()
-          .added("command", form::one_of({"run", "compare"}).schema, "The command.")
-          .added("version", text, "Of the program.")
-          .added("program", digest, "Digest of the program's file.")
-          .added("trace", digest, "Digest of the trace's content. Published figures belong to a trace by it.")
-          .added("techniques", form::list(form::text()).schema, "The specs.")
-          .added("frames", text, "The first and the last frame, with \"-\" between them.")
-          .added("repeat", positive, "Timed runs of each frame.")
-          .added("threads", positive, "That worked at once.")
-          .added("simd", text, "The instruction set.")
-          .added("memory_model", flag, "Whether caches and DRAM were modelled.")
-          .added("compression", flag, "Of framebuffer blocks.")
-          .added("framebuffer", text, "Where the pixels of a bin are.")
-          .added("on_chip_bytes", form::count().schema, "For the pixels of a bin.")
-          .added("memory_system", digest, "Digest of the parameters.")
-          .added("hardware", digest, "Digest of the descriptions.")
-          .added("ladder", form::list(form::count(1)).schema,
-                 "compare: the MSAA rates of --ladder; empty: the default ones.")
-          .added("causes", flag, "compare: --causes.")
-          .added("orders", flag, "compare: --orders.");
-  return form.schema;
-}
-
 std::optional<Json> hardware_of(const Report& report) {
   return report.hardware.implementations.empty() ? std::nullopt : std::optional(report.hardware.json);
 }
@@ -213,7 +186,7 @@ ObjectForm<Report> head_form() {
       .written(
           "made_by",
           [](const Report& report) { return report.made_by.is_null() ? std::nullopt : std::optional(report.made_by); },
-          form::as_it_is(maker_schema()), "All that the results depend on.")
+          form::as_it_is(maker_form().schema), "All that the results depend on.")
       .written("hardware", hardware_of, form::as_it_is(object),
                "The hardware whose times are modelled (`beampipe schema hardware`).")
       .written("more_hardware", more_hardware_of, form::as_it_is(form::by_name(form::as_it_is(object)).schema),
