@@ -2,6 +2,7 @@
 
 #include <iostream>
 
+#include "tools/cli/camera_file.h"
 #include "tools/cli/commands.h"
 #include "tools/evaluate/hardware.h"
 #include "tools/evaluate/memory_system.h"
@@ -17,9 +18,13 @@ struct NamedSchema {
   const char* name;
   Json (*schema)();
 };
-constexpr NamedSchema kSchemas[] = {
-    {"trace", trace_schema},       {"hardware", hardware_schema}, {"memory_system", memory_system_schema}, {"sweep", sweep_plan_schema},
-    {"report", report_schema},     {"inspections", inspections_schema}};
+constexpr NamedSchema kSchemas[] = {{"trace", trace_schema},
+                                    {"hardware", hardware_schema},
+                                    {"memory_system", memory_system_schema},
+                                    {"camera", camera_schema},
+                                    {"sweep", sweep_plan_schema},
+                                    {"report", report_schema},
+                                    {"inspections", inspections_schema}};
 
 }  // namespace
 

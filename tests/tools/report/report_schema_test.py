@@ -96,7 +96,14 @@ class SchemaTest(unittest.TestCase):
                 self.assert_valid(schema, value, path.name)
                 value["no_such_key"] = 1
                 self.assertFalse(schema.is_valid(value), path.name)
-        self.assert_valid(validator("trace"), json.loads(pathlib.Path(self.room).read_text()), "room")
+        room = json.loads(pathlib.Path(self.room).read_text())
+        self.assert_valid(validator("trace"), room, "room")
+        camera, schema = room["frames"][0]["camera"], validator("camera")
+        self.assert_valid(schema, camera, "the camera of a trace")
+        self.assert_valid(schema, {key: camera[key] for key in ("eye", "target")}, "a camera of which the rest is chosen")
+        for key, value in [("no_such_key", 1), ("eye", [1, 2]), ("fovy_deg", 180), ("near", 0)]:
+            self.assertFalse(schema.is_valid(camera | {key: value}), key)
+        self.assertFalse(schema.is_valid({"eye": camera["eye"]}))
 
     def test_every_key_of_the_schemas_is_in_some_result(self):
         def keys_in(rule, path=""):
