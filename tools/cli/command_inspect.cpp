@@ -15,6 +15,7 @@
 #include "tools/cli/record_inspections.h"
 #include "tools/cli/run_arguments.h"
 #include "tools/cli/trace_view.h"
+#include "tools/evaluate/known_specs.h"
 #include "tools/evaluate/machine_memory.h"
 #include "tools/evaluate/results.h"
 #include "tools/files/output.h"
@@ -97,7 +98,7 @@ std::vector<PixelInspection> inspect_all(const InspectArguments& arguments, cons
   run.memory_limit = machine_memory() / 2;
   run.textures = &textures;
   Image reference;
-  if (arguments.worst > 0) reference = parse_technique("reference").render(trace, arguments.frame, run).image;
+  if (arguments.worst > 0) reference = parse_technique(kReferenceSpec).render(trace, arguments.frame, run).image;
   std::vector<PixelInspection> inspections;
   for (const Technique& technique : techniques) {
     if (arguments.worst > 0)

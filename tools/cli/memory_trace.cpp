@@ -2,6 +2,7 @@
 
 #include <charconv>
 
+#include "tools/evaluate/known_specs.h"
 #include "tools/files/text_stream.h"
 
 namespace beampipe {
@@ -60,7 +61,7 @@ MemoryTrace::MemoryTrace(const MemoryTraceArguments& arguments, const RunArgumen
                      std::to_string(plan.techniques.size()) + ", frames: " + std::to_string(plan.frames.size()));
   if (!plan.options.memory.modelled)
     throw UsageError(option + ": without a model of memory there are no requests; leave out --no-memory-model");
-  if (plan.techniques.front().spec == "reference")
+  if (plan.techniques.front().spec == kReferenceSpec)
     throw UsageError(option + ": the reference makes no requests; name another technique");
   if (run.resume) throw UsageError(option + ": a resumed run does not draw its frames again; leave out --resume");
   file_ = file_beside_output(option, arguments.file, run);

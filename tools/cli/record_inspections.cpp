@@ -6,6 +6,7 @@
 #include <map>
 
 #include "tools/cli/command_line.h"
+#include "tools/evaluate/known_specs.h"
 #include "tools/evaluate/metrics.h"
 #include "tools/files/image_io.h"
 #include "tools/inspect/recorded.h"
@@ -57,7 +58,7 @@ void record_inspections(const RunPlan& plan, const RecordedPixels& pixels, Repor
       return std::find_if(report.results.begin(), report.results.end(),
                           [&](const TechniqueReport& each) { return each.technique == spec; });
     };
-    const auto result = of_spec(technique.spec), reference = of_spec("reference");
+    const auto result = of_spec(technique.spec), reference = of_spec(kReferenceSpec);
     if (!technique.is_observable) continue;
     std::map<std::size_t, std::vector<PixelAddress>> of_frames;
     for (const FramePixel& each : worst_of(*result, *reference, pixels.worst, output))

@@ -11,6 +11,7 @@
 #include "simd/target.h"
 #include "tools/cli/trace_notes.h"
 #include "tools/evaluate/draw_notes.h"
+#include "tools/evaluate/known_specs.h"
 #include "tools/evaluate/machine_memory.h"
 #include "tools/evaluate/memory_system.h"
 #include "tools/evaluate/results.h"
@@ -176,7 +177,7 @@ std::vector<std::size_t> parse_frame_range(const std::string& text, std::size_t 
 }
 
 std::vector<std::string> expand_specs(const std::vector<std::string>& specs) {
-  const std::string prefix = "msaa:";
+  const std::string prefix = std::string(kMsaaName) + ":";
   std::vector<std::string> expanded;
   for (const std::string& spec : specs) {
     const bool is_list = spec.starts_with(prefix) && spec.find_first_not_of("0123456789,", prefix.size()) == spec.npos;

@@ -37,7 +37,7 @@ Comparison::Comparison(const CompareOptions& options, RunPlan plan, OutputFolder
       maker_(made_by(options, plan_)),
       records_(output, maker_),
       ladder_(options.ladder) {
-  std::erase_if(plan_.techniques, [](const Technique& technique) { return technique.spec == "reference"; });
+  std::erase_if(plan_.techniques, [](const Technique& technique) { return technique.spec == kReferenceSpec; });
   std::vector<Technique> written = plan_.techniques;
   written.push_back(reference_);
   require_writable_folders(output_, written);

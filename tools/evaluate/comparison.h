@@ -7,6 +7,7 @@
 
 #include "tools/evaluate/diagnosis.h"
 #include "tools/evaluate/error_split.h"
+#include "tools/evaluate/known_specs.h"
 #include "tools/evaluate/metrics.h"
 #include "tools/evaluate/msaa_ladder.h"
 #include "tools/evaluate/progress.h"
@@ -61,7 +62,7 @@ class Comparison {
   RunPlan plan_;  // without the reference
   Json maker_;
   FrameRecords records_;
-  Technique reference_ = parse_technique("reference");
+  Technique reference_ = parse_technique(kReferenceSpec);
   MsaaLadder ladder_;
   TechniqueReport reference_result_;
   // Each has one entry per technique of the plan.

@@ -12,6 +12,7 @@
 #include <string>
 #include <vector>
 
+#include "tools/evaluate/known_specs.h"
 #include "tools/evaluate/metrics.h"
 #include "tools/evaluate/msaa_ladder.h"
 #include "tools/evaluate/progress.h"
@@ -62,7 +63,7 @@ class ErrorSplit {
   void set_sums(const Json& sums) { ladder_.set_sums(sums); }
 
  private:
-  Technique truth_ = parse_technique("reference");
+  Technique truth_ = parse_technique(kReferenceSpec);
   std::size_t frame_ = 0;  // the frame of `reference_`, if that is not empty
   Image reference_, image_;
   std::vector<History> histories_;  // one per technique

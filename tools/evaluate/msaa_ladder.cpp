@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "tools/evaluate/known_specs.h"
 #include "tools/evaluate/render.h"
 
 namespace beampipe {
@@ -21,10 +22,10 @@ std::size_t index_of(const std::string& spec, const RunPlan& plan) {
 }  // namespace
 
 bool is_rung(const Technique& technique) {
-  return technique.samples > 0 && technique.spec == "msaa:" + std::to_string(technique.samples);
+  return technique.samples > 0 && technique.spec == msaa_spec(technique.samples);
 }
 
-MsaaLadder::Rung::Rung(std::uint32_t samples) : technique(parse_technique("msaa:" + std::to_string(samples))) {}
+MsaaLadder::Rung::Rung(std::uint32_t samples) : technique(parse_technique(msaa_spec(samples))) {}
 
 void MsaaLadder::Rung::add(const RunPlan& plan, std::size_t frame, const Image& reference, SurfaceColors colors,
                            Progress& progress) {

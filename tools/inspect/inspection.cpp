@@ -5,6 +5,7 @@
 #include <numeric>
 
 #include "stages/geometry/vertex_setup.h"
+#include "tools/evaluate/known_specs.h"
 #include "tools/evaluate/metrics.h"
 
 namespace beampipe {
@@ -64,7 +65,7 @@ std::vector<PixelInspection> inspect(const Trace& trace, std::size_t frame, cons
   FrameInput only = run;
   only.memory.modelled = false;
   only.pixels = &pixels;
-  const Technique reference = parse_technique("reference");
+  const Technique reference = parse_technique(kReferenceSpec);
   const Frame& of_trace = trace.frames.at(frame);
   const Image truth = reference.render(trace, frame, only).image;
   std::vector<PixelHistory> histories = observed(technique, trace, frame, only);

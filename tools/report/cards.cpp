@@ -2,6 +2,7 @@
 
 #include <algorithm>
 
+#include "tools/evaluate/known_specs.h"
 #include "tools/report/colors.h"
 
 namespace beampipe {
@@ -30,9 +31,9 @@ std::string baseline_of(const ReportFile& report) {
   const auto find = [&](const auto& is_it) {
     return std::find_if(report.techniques.begin(), report.techniques.end(), is_it);
   };
-  const auto eight = find([](const TechniqueSummary& each) { return each.spec == "msaa:8"; });
+  const auto eight = find([](const TechniqueSummary& each) { return each.spec == msaa_spec(8); });
   if (eight != report.techniques.end()) return eight->spec;
-  const auto first = find([](const TechniqueSummary& each) { return each.spec.starts_with("msaa:"); });
+  const auto first = find([](const TechniqueSummary& each) { return is_msaa(each.spec); });
   return first != report.techniques.end() ? first->spec : report.techniques.front().spec;
 }
 

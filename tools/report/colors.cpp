@@ -8,6 +8,7 @@
 
 #include "pipeline/error_causes.h"
 #include "stages/cost/stage.h"
+#include "tools/evaluate/known_specs.h"
 
 namespace beampipe {
 namespace {
@@ -27,8 +28,6 @@ std::string lighter(const std::string& color) {
     text << std::setw(2) << (std::stoul(color.substr(at, 2), nullptr, 16) + 255) / 2;
   return text.str();
 }
-
-bool is_msaa(std::string_view spec) { return spec == "msaa" || spec.starts_with("msaa:"); }
 
 }  // namespace
 

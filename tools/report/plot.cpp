@@ -5,16 +5,13 @@
 #include <utility>
 
 #include "pipeline/technique.h"
+#include "tools/evaluate/known_specs.h"
 #include "tools/report/colors.h"
 
 namespace beampipe {
 namespace {
 
-constexpr const char* kMsaa = "msaa";
 constexpr const char* kEmrLabel = "equivalent MSAA rate (EMR), samples";
-
-// The family of "beam:bits=64" is "beam".
-std::string family_of(const std::string& spec) { return spec.substr(0, spec.find(':')); }
 
 std::vector<std::string> specs_of(const std::vector<ReportFile>& reports) {
   std::vector<std::string> specs;
@@ -28,14 +25,14 @@ PlotSeries& series_named(ScatterPlot& plot, const std::vector<ReportFile>& repor
   const auto is_it = [&](const PlotSeries& series) { return series.name == name; };
   const auto found = std::find_if(plot.series.begin(), plot.series.end(), is_it);
   if (found != plot.series.end()) return *found;
-  plot.series.push_back({name, technique_color(specs_of(reports), spec), {}, name == kMsaa});
+  plot.series.push_back({name, technique_color(specs_of(reports), spec), {}, name == kMsaaName});
   return plot.series.back();
 }
 
 // All of msaa are one series, and each other technique is one of its own.
 void add_point(ScatterPlot& plot, const std::vector<ReportFile>& reports, const std::string& spec, PlotPoint point) {
   if (point.x > 0 && point.y > 0) {
-    const std::string name = family_of(spec) == kMsaa ? kMsaa : spec;
+    const std::string name = is_msaa(spec) ? kMsaaName : spec;
     series_named(plot, reports, name, spec).points.push_back(std::move(point));
   } else {
     plot.notes.push_back(spec + " is not drawn: " + (point.x > 0 ? plot.y_label : plot.x_label) +
@@ -43,7 +40,7 @@ void add_point(ScatterPlot& plot, const std::vector<ReportFile>& reports, const 
   }
 }
 
-PlotSeries msaa_line() { return {kMsaa, technique_color({}, kMsaa), {}, true}; }
+PlotSeries msaa_line() { return {kMsaaName, technique_color({}, kMsaaName), {}, true}; }
 
 PlotPoint::Bound bound_of(const EquivalentMsaa& emr) {
   if (emr.is_lower_bound == emr.is_upper_bound) return PlotPoint::Bound::none;
@@ -100,7 +97,7 @@ ScatterPlot frontier_plot(const std::vector<ReportFile>& reports) {
                    .y_label = kEmrLabel,
                    .series = {msaa_line()}};
   for (const LadderRung& rung : longest_ladder(reports)) {
-    const std::string spec = "msaa:" + std::to_string(rung.samples);
+    const std::string spec = msaa_spec(rung.samples);
     const double bytes = parse_technique(spec).framebuffer_bytes_per_pixel();
     add_point(plot, reports, spec, {bytes, static_cast<double>(rung.samples), spec});
   }
@@ -108,7 +105,7 @@ ScatterPlot frontier_plot(const std::vector<ReportFile>& reports) {
   for (const TechniqueSummary& summary : mean_summaries(reports)) {
     if (!summary.emr) continue;
     compared = true;
-    const bool is_on_the_line = family_of(summary.spec) == kMsaa;
+    const bool is_on_the_line = is_msaa(summary.spec);
     if (is_on_the_line) continue;
     add_point(plot, reports, summary.spec,
               {summary.bytes_per_pixel, summary.emr->samples, summary.spec, bound_of(*summary.emr)});
@@ -125,7 +122,7 @@ ScatterPlot storage_plot(const std::vector<ReportFile>& reports) {
                    .series = {msaa_line()}};
   for (const TechniqueSummary& summary : mean_summaries(reports)) {
     if (!summary.emr) continue;
-    const std::string series = family_of(summary.spec) == kMsaa ? kMsaa : split_pool(summary.spec).first;
+    const std::string series = is_msaa(summary.spec) ? kMsaaName : split_pool(summary.spec).first;
     series_named(plot, reports, series, summary.spec)
         .points.push_back({summary.all_bytes_per_pixel, summary.emr->samples, summary.spec, bound_of(*summary.emr)});
   }

@@ -5,6 +5,7 @@
 #include <map>
 
 #include "tools/evaluate/frame_json.h"
+#include "tools/evaluate/known_specs.h"
 #include "tools/evaluate/results.h"
 #include "traces/files/json.h"
 
@@ -191,7 +192,7 @@ ReportFile read_report(const std::filesystem::path& folder) {
     report.scene = std::filesystem::path(report.json.at("trace").get<std::string>()).stem().string();
     for (const Json& result : report.json.at("results").elements()) {
       TechniqueSummary summary = read_summary(result);
-      if (summary.spec != "reference") report.techniques.push_back(std::move(summary));
+      if (summary.spec != kReferenceSpec) report.techniques.push_back(std::move(summary));
     }
     const Json ladder = report.json.value("msaa_ladder", Json::array());
     for (const Json& rung : ladder.elements()) {

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 
+#include "tools/evaluate/known_specs.h"
 #include "tools/files/format.h"
 
 namespace beampipe {
@@ -80,7 +81,7 @@ void for_each_time(const Report& report, const Use& use) {
   std::vector<Hardware> all = {report.hardware};
   all.insert(all.end(), report.more_hardware.begin(), report.more_hardware.end());
   for (const TechniqueReport& result : report.results) {
-    if (result.technique == "reference" || result.frames.empty()) continue;
+    if (result.technique == kReferenceSpec || result.frames.empty()) continue;
     for (const Hardware& hardware : all) {
       for (const Implementation& implementation : hardware.implementations) {
         MeanTime mean;

@@ -4,6 +4,7 @@
 #include <cctype>
 
 #include "pipeline/technique.h"
+#include "tools/evaluate/known_specs.h"
 #include "tools/evaluate/saved_work.h"
 #include "tools/files/csv.h"
 
@@ -250,7 +251,7 @@ std::optional<double> mean_of_frames(const Json& result, std::string_view key) {
 }
 
 std::vector<Json> technique_records(const ReportFile& report) {
-  const double msaa_bytes = parse_technique("msaa:1").framebuffer_bytes_per_pixel();
+  const double msaa_bytes = parse_technique(msaa_spec(1)).framebuffer_bytes_per_pixel();
   std::vector<Json> records;
   for (const Json& result : report.json.at("results").elements()) {
     Json record = result;

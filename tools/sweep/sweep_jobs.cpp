@@ -5,6 +5,7 @@
 #include <tuple>
 
 #include "pipeline/technique.h"
+#include "tools/evaluate/known_specs.h"
 #include "tools/evaluate/memory_system.h"
 #include "tools/evaluate/msaa_ladder.h"
 #include "tools/evaluate/progress.h"
@@ -105,7 +106,7 @@ void run_errors(const SweepPlan& plan, const SweepJob& job, TraceShelf& shelf, S
 
   Progress silent(false);
   MsaaLadder ladder({});
-  const Technique reference = parse_technique("reference");
+  const Technique reference = parse_technique(kReferenceSpec);
   std::map<std::size_t, Image> references;
   for (const std::size_t frame : ladder_plan.frames) {
     const Image& truth = references.emplace(frame, render_picture(reference, ladder_plan, frame, silent)).first->second;

@@ -7,6 +7,7 @@
 #include <map>
 
 #include "pipeline/technique.h"
+#include "tools/evaluate/known_specs.h"
 #include "tools/evaluate/memory_system.h"
 #include "traces/files/json_form.h"
 
@@ -223,7 +224,7 @@ class PlanReader {
 
   std::size_t read_technique(const JsonCursor& at) {
     const std::string spec = at.string();
-    if (parse_technique(spec).spec == "reference")
+    if (parse_technique(spec).spec == kReferenceSpec)
       at.fail("a technique other than the reference, which costs nothing on hardware");
     return index_in(plan_.techniques, spec);
   }
