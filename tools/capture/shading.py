@@ -3,6 +3,7 @@
 For each draw, simple explanations are tried: a bound texture, the vertices' colours, their product. An explanation is
 kept if it predicts the captured picture where the draw can be seen. All other triangles take their colour from the
 captured picture."""
+import dataclasses
 import itertools
 
 import numpy as np
@@ -33,16 +34,42 @@ class AlphaTest:
         self.slot, self.uv, self.cutoff = slot, uv, cutoff
 
 
-def _varying(draw, name, triangle, x, y, size):
-    weights = raster.weights_at(draw.clip, draw.triangles, triangle, x, y,
-                                raster.window_of(draw.state, *size))
-    corners = draw.attributes[name][draw.triangles[triangle]].astype(np.float64)
-    return (weights[..., None] * corners).sum(1)
+@dataclasses.dataclass
+class Points:
+    """Points of a picture of this size (width, height), each on a triangle of a draw."""
+    triangle: np.ndarray
+    x: np.ndarray
+    y: np.ndarray
+    size: tuple
+
+    @classmethod
+    def of_pixels(cls, triangle, pixel, size):
+        """The pixels' centres. `pixel`: row * width + column."""
+        return cls(triangle, pixel % size[0] + 0.5, pixel // size[0] + 0.5, size)
+
+    def where(self, keep):
+        return Points(self.triangle[keep], self.x[keep], self.y[keep], self.size)
+
+    def moved(self, dx, dy):
+        return Points(self.triangle, self.x + dx, self.y + dy, self.size)
+
+    def __len__(self):
+        return len(self.x)
+
+    def weights(self, draw):
+        """Those of the triangles' corners (n x 3)."""
+        return raster.weights_at(draw.clip, draw.triangles, self.triangle, self.x, self.y,
+                                 raster.window_of(draw.state, *self.size))
 
 
-def _look_up(draw, texture, uv_name, triangle, x, y, size):
-    """RGBA of a texture at picture coordinates on triangles."""
-    at = lambda dx, dy: _varying(draw, uv_name, triangle, x + dx, y + dy, size)[:, :2]
+def _varying(draw, name, points):
+    corners = draw.attributes[name][draw.triangles[points.triangle]].astype(np.float64)
+    return (points.weights(draw)[..., None] * corners).sum(1)
+
+
+def _look_up(draw, texture, uv_name, points):
+    """RGBA of a texture at the points."""
+    at = lambda dx, dy: _varying(draw, uv_name, points.moved(dx, dy))[:, :2]
     uv = at(0, 0)
     scale = np.array([texture.texels.shape[1], texture.texels.shape[0]])
     steps = [np.linalg.norm((at(*step) - uv) * scale, axis=1) for step in ((1, 0), (0, 1))]
@@ -60,10 +87,9 @@ def _color_names(draw):
 
 def opacity(draw, fragments, textures, size):
     """The opacity that the draw's alpha test looks at, for each fragment."""
-    width = size[0]
     texture = textures.get(draw.textures[draw.alpha_test.slot])
-    x, y = fragments.pixel % width + 0.5, fragments.pixel // width + 0.5
-    return _look_up(draw, texture, draw.alpha_test.uv, fragments.triangle, x, y, size)[:, 3]
+    points = Points.of_pixels(fragments.triangle, fragments.pixel, size)
+    return _look_up(draw, texture, draw.alpha_test.uv, points)[:, 3]
 
 
 def best_cutoff(alpha, kept):
@@ -107,9 +133,9 @@ def find_alpha_tests(frame, textures):
             told = np.flatnonzero(kept | gone)
             told = told[:: max(1, len(told) // 5000)]
             fragments, kept = fragments.where(told), kept[told]
-            x, y = fragments.pixel % size[0] + 0.5, fragments.pixel // size[0] + 0.5
+            points = Points.of_pixels(fragments.triangle, fragments.pixel, size)
             for slot, uv in candidates:
-                alpha = _look_up(draw, textures.get(draw.textures[slot]), uv, fragments.triangle, x, y, size)[:, 3]
+                alpha = _look_up(draw, textures.get(draw.textures[slot]), uv, points)[:, 3]
                 evidence.setdefault((draw.shader, slot, uv), []).append((alpha, kept))
     best = {}
     for (shader, slot, uv), found in evidence.items():
@@ -142,29 +168,28 @@ def _typical(errors):
     return max(np.median(errors), np.quantile(errors, 0.8) / 3)
 
 
-def _explanations(draw, textures, triangle, x, y, captured, size):
+def _explanations(draw, textures, points, captured):
     """Yields (slot, uv, color or "constant", predicted linear RGB, opacity, constant) for all that could explain the
     captured colours (linear) of the draw at n points."""
     colors = {}
     for name in _color_names(draw):
-        values = np.clip(draw.attributes[name][draw.triangles[triangle]].astype(np.float64), 0, 1)
-        weights = raster.weights_at(draw.clip, draw.triangles, triangle, x, y, raster.window_of(draw.state, *size))
+        values = np.clip(draw.attributes[name][draw.triangles[points.triangle]].astype(np.float64), 0, 1)
         values[..., :3] = srgb.to_linear(values[..., :3])
-        mixed = (weights[..., None] * values).sum(1)
-        colors[name] = mixed[:, :3], mixed[:, 3] if mixed.shape[1] == 4 else np.ones(len(x))
+        mixed = (points.weights(draw)[..., None] * values).sum(1)
+        colors[name] = mixed[:, :3], mixed[:, 3] if mixed.shape[1] == 4 else np.ones(len(points))
         yield None, None, name, *colors[name], None
     for slot, binding in enumerate(draw.textures[:4]):
         texture = textures.get(binding)
         if texture is None:
             continue
         for uv in _uv_names(draw):
-            texel = _look_up(draw, texture, uv, triangle, x, y, size)
+            texel = _look_up(draw, texture, uv, points)
             linear, alpha = srgb.to_linear(texel[:, :3].astype(np.float64)), texel[:, 3]
             yield slot, uv, None, linear, alpha, None
             for name, (color, opaque) in colors.items():
                 if name != uv:
                     yield slot, uv, name, linear * color, alpha * opaque, None
-            if len(x) >= 4 * FEW:
+            if len(points) >= 4 * FEW:
                 factor = _constant(linear, captured)
                 if factor is not None:
                     yield slot, uv, "constant", linear * factor, alpha, factor
@@ -204,28 +229,28 @@ def _least_squares(texel, weights, corners, captured, vertices, steps=16):
     return start + change, seen
 
 
-def _fit_light(draw, slot, uv, shared, triangle, x, y, captured, textures, size):
+def _fit_light(draw, shared, slot, uv, textures, points, captured):
     """(Look, error) of texture `slot`, or white if None, times light at the vertices, fitted to the captured colours
-    (linear) at n points by least squares. Where the draw blends by the texture's opacity, only opaque points count."""
+    (linear) at n points by least squares. Where the draw blends by the texture's opacity, only opaque points count.
+    `shared`: _same_vertices(draw)."""
     texture = None if slot is None else textures.get(draw.textures[slot])
-    texel = np.ones((len(x), 4)) if texture is None else _look_up(draw, texture, uv, triangle, x, y, size)
+    texel = np.ones((len(points), 4)) if texture is None else _look_up(draw, texture, uv, points)
     mixes = draw.blends and texture is not None and texture.has_alpha
     if mixes:
         there = texel[:, 3] > 0.9
         if there.sum() < 4 * FEW:
             return None, np.inf
-        texel, triangle, x, y, captured = texel[there], triangle[there], x[there], y[there], captured[there]
+        texel, points, captured = texel[there], points.where(there), captured[there]
     texel = srgb.to_linear(texel[:, :3].astype(np.float64))
-    weights = np.clip(raster.weights_at(draw.clip, draw.triangles, triangle, x, y, raster.window_of(draw.state, *size)),
-                      0, 1)
-    corners = shared[draw.triangles[triangle]]
+    weights = np.clip(points.weights(draw), 0, 1)
+    corners = shared[draw.triangles[points.triangle]]
     light, seen = _least_squares(texel, weights, corners, captured, len(draw.clip))
     if not seen.any():
         return None, np.inf
     light, seen = light[shared], seen[shared]
     scale = 2.0 ** np.ceil(np.log2(max(1, np.quantile(light[seen], 0.95))))  # vertices' colours are at most 1
     light = np.clip(light / scale, 0, 1)
-    predicted = texel * scale * (weights[..., None] * light[draw.triangles[triangle]]).sum(1)
+    predicted = texel * scale * (weights[..., None] * light[draw.triangles[points.triangle]]).sum(1)
     error = np.abs(srgb.from_linear(np.clip(predicted, 0, 1)) - srgb.from_linear(captured)).max(1)
     constant = np.full(3, scale) if scale > 1 else None
     return Look(slot, uv, None, constant, light=srgb.from_linear(light), mixes=mixes), _typical(error)
@@ -236,15 +261,14 @@ def has_shape(draw, textures):
     return any(textures.get(one) is not None and textures.get(one).has_alpha for one in draw.textures)
 
 
-def find_light(draw, triangle, x, y, captured, textures, size):
+def find_light(draw, textures, points, captured):
     """A Look of light at the vertices, alone or times a texture, that is what was captured (linear) at n points; None
     if a colour per triangle is as good."""
     shared = _same_vertices(draw)
-    few = slice(None, None, max(1, len(x) // 2000))
+    few = slice(None, None, max(1, len(points) // 2000))
     candidates = [(slot, uv) for slot, binding in enumerate(draw.textures[:4]) if textures.get(binding) is not None
                   for uv in _uv_names(draw)]
-    fit = lambda slot, uv, some: _fit_light(draw, slot, uv, shared, triangle[some], x[some], y[some], captured[some],
-                                            textures, size)
+    fit = lambda slot, uv, some: _fit_light(draw, shared, slot, uv, textures, points.where(some), captured[some])
     if not (draw.blends and has_shape(draw, textures)):
         candidates.append((None, None))
     if not candidates:
@@ -252,10 +276,10 @@ def find_light(draw, triangle, x, y, captured, textures, size):
     look, error = fit(*min(candidates, key=lambda one: fit(*one, few)[1]), slice(None))
     if look is None or look.mixes:  # a colour per triangle would lose the shape that the opacity gives
         return look
-    count = np.bincount(triangle, minlength=len(draw.triangles))
-    flat = np.stack([np.bincount(triangle, captured[:, c], len(draw.triangles)) for c in range(3)], 1)
+    count = np.bincount(points.triangle, minlength=len(draw.triangles))
+    flat = np.stack([np.bincount(points.triangle, captured[:, c], len(draw.triangles)) for c in range(3)], 1)
     flat /= np.maximum(1, count)[:, None]
-    flat_error = _typical(np.abs(srgb.from_linear(flat[triangle]) - srgb.from_linear(captured)).max(1))
+    flat_error = _typical(np.abs(srgb.from_linear(flat[points.triangle]) - srgb.from_linear(captured)).max(1))
     return look if error < 0.9 * flat_error else None
 
 
@@ -290,10 +314,9 @@ def find_looks(frame, owner, textures):
         seen = seen[:: max(1, len(seen) // PIXELS_PER_DRAW)]
         if len(seen) < FEW:
             continue
-        x, y = seen % size[0] + 0.5, seen // size[0] + 0.5
+        points = Points.of_pixels(owner[seen] - draw.first, seen, size)
         captured = srgb.to_linear(picture[seen])
-        for slot, uv, color, predicted, alpha, factor in _explanations(draw, textures, owner[seen] - draw.first, x, y,
-                                                                       captured, size):
+        for slot, uv, color, predicted, alpha, factor in _explanations(draw, textures, points, captured):
             there = alpha > 0.98 if draw.blends else np.ones(len(seen), bool)
             if there.sum() < FEW:
                 continue
@@ -333,8 +356,8 @@ def find_looks(frame, owner, textures):
             seen = pixels[low:high]
             seen = seen[:: max(1, len(seen) // PIXELS_FOR_LIGHT)]
             if len(seen) >= 4 * FEW:
-                draw.look = find_light(draw, owner[seen] - draw.first, seen % size[0] + 0.5, seen // size[0] + 0.5,
-                                       srgb.to_linear(picture[seen]), textures, size)
+                points = Points.of_pixels(owner[seen] - draw.first, seen, size)
+                draw.look = find_light(draw, textures, points, srgb.to_linear(picture[seen]))
             if draw.look is None and draw.blends and has_shape(draw, textures):
                 draw.look = _guess(draw, textures)
 

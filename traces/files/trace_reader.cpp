@@ -52,15 +52,23 @@ void normalize_all(const JsonCursor& at, std::vector<Vector>& vectors) {
   }
 }
 
-// Attributes, of which each position has one, as fields of a mesh.
+// What each position has one of.
 template <class Vector>
-Field<Mesh> attribute(const char* key, const char* meaning, const ArrayReader& arrays,
-                      std::vector<Vector> (ArrayReader::*read)(const JsonCursor&) const,
-                      std::vector<Vector>& (*of)(Mesh&), const Json& number,
-                      void (*check)(const JsonCursor&, std::vector<Vector>&) = nullptr) {
-  return {key, meaning, false, numbers_schema(number), [=, &arrays](const JsonCursor& at, Mesh& mesh) {
-            of(mesh) = per_position(at, (arrays.*read)(at), mesh);
-            if (check) check(at, of(mesh));
+struct Attribute {
+  const char *key, *meaning;
+  Json number;  // the schema of its numbers
+  std::vector<Vector> (ArrayReader::*read)(const JsonCursor&) const;
+  std::vector<Vector>& (*of)(Mesh&);
+  void (*check)(const JsonCursor&, std::vector<Vector>&) = nullptr;
+};
+
+template <class Vector>
+Field<Mesh> field(const ArrayReader& arrays, const Attribute<Vector>& attribute) {
+  return {attribute.key, attribute.meaning, false, numbers_schema(attribute.number),
+          [&arrays, attribute](const JsonCursor& at, Mesh& mesh) {
+            std::vector<Vector>& vectors = attribute.of(mesh);
+            vectors = per_position(at, (arrays.*attribute.read)(at), mesh);
+            if (attribute.check) attribute.check(at, vectors);
           }};
 }
 
@@ -136,24 +144,26 @@ ObjectForm<Mesh> inline_mesh_form(const Reader& reader) {
   const auto uv1 = [](Mesh & result) -> auto& { return result.uvs[1]; };
   const auto vertex_colors = [](Mesh & result) -> auto& { return result.vertex_colors; };
   return mesh
-      .add(attribute<glm::vec3>("normals",
-                                "x, y, z for each vertex; of any length but 0. Only triangles with a material use this "
-                                "and the next four; without it, they have their own normals.",
-                                arrays, &ArrayReader::vec3s, normals, number, normalize_all<glm::vec3>))
-      .add(attribute<glm::vec4>("tangents",
-                                "x, y, z, of any length but 0, in the direction of u, and the sign of the bitangent, 1 "
-                                "or -1, for each vertex, as in glTF.",
-                                arrays, &ArrayReader::vec4s, tangents, number, check_tangents))
-      .add(attribute<glm::vec2>("uv0",
-                                "u, v for each vertex; (0, 0) is the upper left corner of an image, and (1, 1) its "
-                                "lower right one.",
-                                arrays, &ArrayReader::vec2s, uv0, number))
-      .add(attribute<glm::vec2>("uv1", "A second set of u, v for each vertex.", arrays, &ArrayReader::vec2s, uv1,
-                                number))
-      .add(attribute<glm::vec4>("vertex_colors",
-                                "Linear r, g, b and opacity, which is at most 1, for each vertex; multiplied by the "
-                                "material's base colour.",
-                                arrays, &ArrayReader::rgbas, vertex_colors, amount))
+      .add(field<glm::vec3>(
+          arrays, {"normals",
+                   "x, y, z for each vertex; of any length but 0. Only triangles with a material use this and the next "
+                   "four; without it, they have their own normals.",
+                   number, &ArrayReader::vec3s, normals, normalize_all<glm::vec3>}))
+      .add(field<glm::vec4>(
+          arrays, {"tangents",
+                   "x, y, z, of any length but 0, in the direction of u, and the sign of the bitangent, 1 or -1, for "
+                   "each vertex, as in glTF.",
+                   number, &ArrayReader::vec4s, tangents, check_tangents}))
+      .add(field<glm::vec2>(
+          arrays,
+          {"uv0", "u, v for each vertex; (0, 0) is the upper left corner of an image, and (1, 1) its lower right one.",
+           number, &ArrayReader::vec2s, uv0}))
+      .add(field<glm::vec2>(arrays, {"uv1", "A second set of u, v for each vertex.", number, &ArrayReader::vec2s, uv1}))
+      .add(field<glm::vec4>(
+          arrays, {"vertex_colors",
+                   "Linear r, g, b and opacity, which is at most 1, for each vertex; multiplied by the material's base "
+                   "colour.",
+                   amount, &ArrayReader::rgbas, vertex_colors}))
       .add({"materials",
             "The names of the `materials` that the mesh uses; null stands for flat triangles with `colors`. A single "
             "one is that of all triangles.",
