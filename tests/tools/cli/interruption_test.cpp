@@ -3,7 +3,6 @@
 #include <pty.h>
 #include <unistd.h>
 
-#include <cerrno>
 #include <csignal>
 
 #include "tests/tools/cli/program_fixture.h"
@@ -17,11 +16,47 @@ std::vector<std::string> long_run(const std::string& trace, const std::string& o
   return {"run", trace, "-t", "msaa:1", "-o", out, "--frames", "0", "--repeat", "1000000", "--threads", "1"};
 }
 
+// Returns whether it happened within half a minute.
+template <class Condition>
+bool wait_until(const Condition& happens) {
+  for (int i = 0; i < 30000 && !happens(); ++i) pause(1);
+  return happens();
+}
+
+constexpr const char* kNoTerminal = "there is no pseudo-terminal on this system";
+
+class Terminal {
+ public:
+  Terminal() {
+    if (openpty(&side_, &program_side_, nullptr, nullptr, nullptr) == 0) fcntl(side_, F_SETFL, O_NONBLOCK);
+  }
+  ~Terminal() { close(side_), close(program_side_); }
+  Terminal(const Terminal&) = delete;
+  Terminal& operator=(const Terminal&) = delete;
+
+  bool is_open() const { return side_ >= 0; }
+  int program_side() const { return program_side_; }
+
+  // Waits for this text.
+  bool shows(const std::string& text) {
+    return wait_until([&] {
+      char bytes[256];
+      const ssize_t count = read(side_, bytes, sizeof bytes);
+      if (count > 0) shown_.append(bytes, static_cast<std::size_t>(count));
+      return shown_.find(text) != std::string::npos;
+    });
+  }
+
+ private:
+  int side_ = -1, program_side_ = -1;
+  std::string shown_;
+};
+
 TEST_F(ProgramTest, CtrlCKeepsFinishedImagesAndLeavesNothingElse) {
   std::filesystem::create_directory(folder_ / "out");
   write_text(folder_ / "out/report.json", "of pictures that will be replaced");
   Program program(long_run(path("trace.json"), path("out")));
-  for (int i = 0; i < 3000 && !std::filesystem::exists(folder_ / "out/msaa_1/frame_0000_counters.exr"); ++i) pause(10);
+  wait_until([&] { return std::filesystem::exists(folder_ / "out/msaa_1/frame_0000_counters.exr"); });
   pause(1500);  // long enough for a line of progress to appear
   program.signal(SIGINT);
   const Outcome outcome = program.wait();
@@ -38,7 +73,7 @@ TEST_F(ProgramTest, CtrlCSaysWhatIsKeptAndHowToGoOn) {
            "-o", path("long.json")});
   for (const std::string command : {"run", "compare"}) {
     Program program({command, path("long.json"), "-t", "msaa:1", "-o", path(command), "--threads", "1"});
-    for (int i = 0; i < 3000 && !std::filesystem::exists(path(command) + "/unfinished/frame_0001.json"); ++i) pause(10);
+    wait_until([&] { return std::filesystem::exists(path(command) + "/unfinished/frame_0001.json"); });
     program.signal(SIGINT);
     const Outcome outcome = program.wait();
     EXPECT_EQ(outcome.exit_code, 130);
@@ -54,19 +89,23 @@ TEST_F(ProgramTest, CtrlCSaysWhatIsKeptAndHowToGoOn) {
   }
 }
 
-// Ctrl-C waits neither for a long frame nor for a large file.
-TEST_F(ProgramTest, CtrlCEndsALongFrameAndALongFileAtOnce) {
-  Program file({"make", "hairball", "--triangles", "5000000", "-o", path("big.json")});
-  pause(1500);
-  file.signal(SIGINT);
-  EXPECT_EQ(file.wait().exit_code, 130);
+// Ctrl-C waits neither for a large file nor for a long frame.
+TEST_F(ProgramTest, CtrlCEndsALargeFileAtOnce) {
+  Program program({"make", "hairball", "--triangles", "5000000", "-o", path("big.json")});
+  wait_until([&] { return folder_.list() != Names{"trace.json"}; });
+  program.signal(SIGINT);
+  EXPECT_EQ(program.wait().exit_code, 130);
   EXPECT_EQ(folder_.list(), Names{"trace.json"});
+}
 
+TEST_F(ProgramTest, CtrlCEndsALongFrameAtOnce) {
+  Terminal terminal;
+  if (!terminal.is_open()) GTEST_SKIP() << kNoTerminal;
   succeed({"make", "soup", "--triangles", "2000", "--width", "4096", "--height", "4096", "-o", path("wide.json")});
-  Program frame({"run", path("wide.json"), "-t", "reference", "-o", path("out")});
-  pause(500);
-  frame.signal(SIGINT);
-  EXPECT_EQ(frame.wait().exit_code, 130);
+  Program program({"run", path("wide.json"), "-t", "reference", "-o", path("out")}, terminal.program_side());
+  EXPECT_TRUE(terminal.shows("reference"));
+  program.signal(SIGINT);
+  EXPECT_EQ(program.wait().exit_code, 130);
   EXPECT_EQ(folder_.list(), (Names{"trace.json", "wide.json"}));
 }
 
@@ -74,7 +113,7 @@ TEST_F(ProgramTest, CtrlCLeavesNoSoup) {
   succeed({"make", "hairball", "--triangles", "300000", "-o", path("big.json")});
   const Names before = folder_.list();
   Program program({"export-soup", path("big.json"), "-o", path("big.soup")});
-  for (int i = 0; i < 30000 && folder_.list() == before; ++i) pause(1);
+  wait_until([&] { return folder_.list() != before; });
   program.signal(SIGTERM);
   if (program.wait().exit_code == 0) return;  // it had already finished
   EXPECT_EQ(folder_.list(), before);
@@ -82,7 +121,7 @@ TEST_F(ProgramTest, CtrlCLeavesNoSoup) {
 
 TEST_F(ProgramTest, OneProgramAtATimeWritesIntoAFolder) {
   Program program(long_run(path("trace.json"), path("out")));
-  for (int i = 0; i < 3000 && !std::filesystem::exists(folder_ / "out/msaa_1/frame_0000_counters.exr"); ++i) pause(10);
+  wait_until([&] { return std::filesystem::exists(folder_ / "out/msaa_1/frame_0000_counters.exr"); });
   const Names before = folder_.list();
   const std::vector<Names> others = {{"run", path("trace.json"), "-t", "beam", "-o", path("out")},
                                      {"run", path("trace.json"), "-t", "beam", "-o", path("out"), "--resume"},
@@ -106,25 +145,14 @@ TEST_F(ProgramTest, ReportKeepsOutOfAFolderInUse) {
 }
 
 TEST_F(ProgramTest, ATerminalShowsProgressAfterASecond) {
-  int terminal = -1, program_side = -1;
-  if (openpty(&terminal, &program_side, nullptr, nullptr, nullptr) != 0)
-    GTEST_SKIP() << "there is no pseudo-terminal on this system: " << std::strerror(errno);
-  fcntl(terminal, F_SETFL, O_NONBLOCK);
+  Terminal terminal;
+  if (!terminal.is_open()) GTEST_SKIP() << kNoTerminal;
   const auto start = std::chrono::steady_clock::now();
-  Program program(long_run(path("trace.json"), path("out")), program_side);
-  std::string shown;
-  for (int i = 0; i < 3000 && shown.find("msaa:1") == std::string::npos; ++i) {
-    char bytes[256];
-    const ssize_t count = read(terminal, bytes, sizeof bytes);
-    if (count > 0) shown.append(bytes, static_cast<std::size_t>(count));
-    pause(10);
-  }
-  EXPECT_NE(shown.find("msaa:1"), std::string::npos);
+  Program program(long_run(path("trace.json"), path("out")), terminal.program_side());
+  EXPECT_TRUE(terminal.shows("msaa:1"));
   EXPECT_GE(std::chrono::steady_clock::now() - start, std::chrono::seconds(1));
   program.signal(SIGINT);
   EXPECT_EQ(program.wait().exit_code, 130);
-  close(terminal);
-  close(program_side);
 }
 
 }  // namespace beampipe::interruption_test
