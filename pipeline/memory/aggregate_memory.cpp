@@ -27,6 +27,10 @@ void AggregateMemory::merge(std::uint32_t triangle, std::uint32_t pixel, StageCo
   for (TileSurface& surface : surfaces_) surface.access(triangle, pixel, 1, 1, counters);
 }
 
+void AggregateMemory::read(std::uint32_t pixel, StageCounters& counters) {
+  for (TileSurface& surface : surfaces_) surface.read(0, pixel, counters);
+}
+
 void AggregateMemory::write(std::uint32_t pixel, StageCounters& counters) {
   for (TileSurface& surface : surfaces_) surface.write(0, pixel, counters);
 }

@@ -16,6 +16,9 @@ class AggregateMemory {
   // Merging a fragment in place, as composition in primitive order does: the aggregate is read and written.
   void merge(std::uint32_t triangle, std::uint32_t pixel, StageCounters& counters);
 
+  // Reading it alone.
+  void read(std::uint32_t pixel, StageCounters& counters);
+
   // Writing an aggregate that was composed on chip.
   void write(std::uint32_t pixel, StageCounters& counters);
 

@@ -14,6 +14,12 @@ void OpenPixelStore::merge(const std::vector<Fragment>& fragments) {
   for (const Fragment& fragment : fragments) memory_.merge(fragment.triangle, fragment.pixel, compose);
 }
 
+void OpenPixelStore::scan() {
+  if (bin_.keeps_pixels_on_chip()) return;
+  StageCounters& compose = bin_.stage(StageId::compose).counters;
+  for (std::uint32_t pixel = 0; pixel < bin_.tile.pixels(); ++pixel) memory_.read(pixel, compose);
+}
+
 void OpenPixelStore::finish() {
   memory_.flush({}, bin_.stage(StageId::compose).counters);
   memory_.read_all(bin_.stage(StageId::resolve).counters);

@@ -26,6 +26,9 @@ class OpenPixelStore {
   // Stage `compose` reads and writes the pixel of each fragment.
   void merge(const std::vector<Fragment>& fragments);
 
+  // Stage `compose` reads all pixels.
+  void scan();
+
   // After the last fragment: `resolve` reads all pixels.
   void finish();
 

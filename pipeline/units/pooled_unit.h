@@ -47,6 +47,7 @@ class ComposePooledUnit {
     compose_pooled(owners_, {fragments, first}, stage_.timed(), PooledTile<Words>{pixels_, closed, maps_, result});
     charge(closed, stage_.counters);
     words_.merge(fragments);
+    for (std::uint64_t i = 0; i < result.collections; ++i) words_.scan();
     finish(result, shade);
   }
 

@@ -423,6 +423,7 @@ class PooledComposer {
   // Retires what is in front of the watermark, in all pixels.
   void collect(float watermark, ClosedDepth& closed) {
     work.words_scanned += pixels_.words.size();
+    ++result_.collections;
     pixels_.pool.collected();
     for (std::uint32_t pixel = 0; pixel < pixels_.words.size(); ++pixel) {
       look_at(pixel);

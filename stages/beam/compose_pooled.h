@@ -36,6 +36,7 @@ struct PooledMaps {
 // What was done, beside what is charged.
 struct PooledResult : OwnersResult {
   std::uint64_t chunks_in_memory = 0;  // chunks of records that were read or written there
+  std::uint64_t collections = 0;       // each has read the words of all pixels
   PooledMaps maps;
   bool lists_visits = false;        // fill the list that follows
   std::vector<RecordVisit> visits;  // to all records, wherever they lie
