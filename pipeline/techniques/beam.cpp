@@ -37,9 +37,9 @@ FrameResult render_words(const FrameJob& job, const BeamOptions& beam) {
     ConservativeRasterUnit raster(bin, "", PairDepths::bounds, ConservativeRasterUnit::Hidden::left_out);
     BeamFragmentUnit make_fragments(bin, options);
     ShadeUnit shade(bin);
-    ComposePooledUnit<Words> compose(
-        bin, owners_bin(bin, positions, ordered.triangles, &ordered.watermarks, beam.shade_at),
-        {.bytes_per_pixel = beam.pool});
+    ComposePooledUnit<Words> compose(bin,
+                                     owners_bin(bin, positions, ordered.triangles, &ordered.watermarks, beam.shade_at),
+                                     {.bytes_per_pixel = beam.pool});
 
     raster.queued(ordered.triangles, [&](const std::vector<Pair>& pairs, std::size_t first) {
       compose(make_fragments.queued(pairs), first, raster.closed(), shade);

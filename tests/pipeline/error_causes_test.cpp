@@ -132,9 +132,9 @@ PixelSpaceTriangle side_of(double x, bool right, double z, const glm::vec3& colo
   return {{{x, -20, z}, {x, 21, z}, {right ? 30.0 : -30.0, 0.5, z}}, color};
 }
 
-// Of thirteen owners, red and green become one, because they are at one depth: five sixteenths of the pixel each, beside
-// six blue strips on the left and five on the right. White hides those on the right and three sixteenths of green, but takes away as
-// much of red.
+// Of thirteen owners, red and green become one, because they are at one depth: five sixteenths of the pixel each,
+// beside six blue strips on the left and five on the right. White hides those on the right and three sixteenths of
+// green, but takes away as much of red.
 TEST(ErrorCauses, AMergedOwnerGivesWayWhereOneOfItsSurfacesIsHidden) {
   std::vector<PixelSpaceTriangle> triangles{side_of(0.5, false, 0.5, kRed), side_of(0.5, true, 0.5, kGreen)};
   for (int i = 0; i < 6; ++i) triangles.push_back(side_of((6 - i) / 32.0, false, 0.45 - 0.06 * i, kBlue));

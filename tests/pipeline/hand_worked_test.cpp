@@ -54,11 +54,11 @@ TEST(HandWorked, TriangleMsaaWithoutCompression) {
                false);
 }
 
-// Closed depths are read once for each pair, and read and written once where the triangle covers a whole pixel. A fragment has 57 bytes, and the closed depth is 4 more. The sort reads and writes
-// the list's 8 bytes in each of three passes; keys make one trip to DRAM and back, and the rest stays in L2. A pixel has a
-// word of 6 bytes. The nine that are partly covered have a record: one bit plane of 32 bytes and one surface of 8, in
-// three chunks with links of 2 bytes. It is written once, and read once in the end, when 16 bytes of sums are written
-// and read.
+// Closed depths are read once for each pair, and read and written once where the triangle covers a whole pixel. A
+// fragment has 57 bytes, and the closed depth is 4 more. The sort reads and writes the list's 8 bytes in each of three
+// passes; keys make one trip to DRAM and back, and the rest stays in L2. A pixel has a word of 6 bytes. The nine that
+// are partly covered have a record: one bit plane of 32 bytes and one surface of 8, in three chunks with links of 2
+// bytes. It is written once, and read once in the end, when 16 bytes of sums are written and read.
 TEST(HandWorked, TriangleNearFirst) {
   constexpr std::uint64_t kPairs = 13, kFragments = 10, kPartial = 9, kFragment = 57, kPair = 16, kWord = 6,
                           kRecord = 32 + 8, kLinks = 3 * 2, kSums = 16, kEntry = 4 + 4;

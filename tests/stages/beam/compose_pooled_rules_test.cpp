@@ -1,11 +1,10 @@
-#include "stages/beam/compose_pooled.h"
-
 #include <gtest/gtest.h>
 
 #include <algorithm>
 #include <cmath>
 #include <numeric>
 
+#include "stages/beam/compose_pooled.h"
 #include "stages/beam/owner_rules.h"
 #include "tests/simd/random.h"
 #include "tests/stages/open_pixels.h"
