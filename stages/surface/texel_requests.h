@@ -2,6 +2,7 @@
 #pragma once
 
 #include <algorithm>
+#include <array>
 #include <cstddef>
 #include <cstdint>
 #include <span>
@@ -60,7 +61,7 @@ class TextureLayout {
 class TexelRequests {
  public:
   // `layout` must outlive it. Null: texels are only counted.
-  explicit TexelRequests(const TextureLayout* layout) : layout_(layout) {}
+  explicit TexelRequests(const TextureLayout* layout) : layout_(layout) { recent_.fill(kNone); }
 
   // Are the requests kept, and not only the number of texels?
   bool are_kept() const { return layout_ != nullptr; }
@@ -73,6 +74,9 @@ class TexelRequests {
     ++texels_;
     if (!layout_) return;
     const std::uint64_t sector = layout_->sector_of(texel);
+    std::uint64_t& recent = recent_[sector % recent_.size()];
+    if (recent == sector) return;
+    recent = sector;
     const auto open = sectors_.begin() + static_cast<std::ptrdiff_t>(begin_);
     if (std::find(open, sectors_.end(), sector) == sectors_.end()) sectors_.push_back(sector);
   }
@@ -83,6 +87,7 @@ class TexelRequests {
     std::sort(sectors_.begin() + static_cast<std::ptrdiff_t>(begin_), sectors_.end());
     begin_ = sectors_.size();
     ends_.push_back(begin_);
+    recent_.fill(kNone);
   }
 
   std::uint64_t texels() const { return texels_; }  // one for each time that one was read
@@ -100,13 +105,17 @@ class TexelRequests {
   void clear() {
     texels_ = 0, begin_ = 0;
     sectors_.clear(), ends_.clear();
+    recent_.fill(kNone);
   }
 
  private:
+  static constexpr std::uint64_t kNone = ~std::uint64_t{0};
+
   const TextureLayout* layout_;
   std::uint64_t texels_ = 0;
   std::size_t begin_ = 0;  // of the open request
   std::vector<std::uint64_t> sectors_;
+  std::array<std::uint64_t, 64> recent_;  // of the open request, at their numbers: most texels lie in one of these
   std::vector<std::size_t> ends_;
 };
 
