@@ -1,6 +1,8 @@
 #include "simd/position_mask.h"
 
+#include <algorithm>
 #include <bit>
+#include <cmath>
 
 #undef HWY_TARGET_INCLUDE
 #define HWY_TARGET_INCLUDE "simd/position_mask.cpp"
@@ -16,11 +18,7 @@ namespace HWY_NAMESPACE {
 // This order: a formula finds only those above it.
 #include "simd/triangle_in_pixel-inl.h"
 
-// Both lane types hold every product and sum exactly: double up to 2^53, and int32 where slopes are below kSmallSlope
-// and c is clamped to +-kDecided, beyond which it decides the sign on its own.
-constexpr std::int32_t kSmallSlope = 1 << 20;
-constexpr double kDecided = 1 << 30;
-
+// Both lane types hold every product and sum exactly: double up to 2^53, and int32 where slopes are small.
 constexpr std::size_t kLanes = hn::MaxLanes(FloatTag());
 
 // The cells of a pixel that triangles' boxes touch, both ends included.
@@ -117,10 +115,11 @@ HWY_INLINE Ints clamped(const Doubles& x, double limit) {
 }
 
 // As many triangles as there are lanes: lanes are across triangles here, and across positions in set_mask. Bit i of
-// `small`: all slopes of triangle i are below kSmallSlope; else its columns hold no edges.
+// `small`: all slopes of triangle i are below kSmallSlope; else its columns hold no edges. Bit i of tested[k]: if they
+// are, edge k of triangle i does not have the whole pixel inside.
 template <std::size_t kColumns, std::size_t kRows>
 HWY_INLINE void set_up(const TriangleInPixelOf<Ints>& triangles, EdgesOverCells<std::int32_t, kLanes>& edges,
-                       TouchedCells<kLanes>& touched, std::uint32_t& small) {
+                       TouchedCells<kLanes>& touched, std::uint32_t& small, std::uint32_t (&tested)[3]) {
   constexpr std::int32_t kCellWidth = kSubpixelUnits / kColumns, kCellHeight = kSubpixelUnits / kRows;
   constexpr std::int32_t kStep = PositionVectors<std::int32_t>::kCells;
   const IntTag d;
@@ -142,8 +141,9 @@ HWY_INLINE void set_up(const TriangleInPixelOf<Ints>& triangles, EdgesOverCells<
     const Ints a = triangles.y[k] - triangles.y[next], b = triangles.x[next] - triangles.x[k];
     all_small = all_small & (a < steep) & (a > minus_steep) & (b < steep) & (b > minus_steep);
     const auto owns = (a > zero) | ((a == zero) & (b > zero));
-    const Ints c = clamped(edge_in_pixel(exact, k).c, kDecided) - select(owns, zero, one);
+    const Ints c = clamped(edge_in_pixel(exact, k).c, double{kDecidedByC}) - select(owns, zero, one);
     const Ints right = a * Ints(kCellWidth), down = b * Ints(kCellHeight);
+    tested[k] = mask_bits(c + Ints(kSubpixelUnits) * (lesser(a, zero) + lesser(b, zero)) < zero);
     store(a, edges.a[k]), store(b, edges.b[k]), store(c + right * left + down * top, edges.c[k]);
     store(right * Ints(kStep), edges.right[k]), store(down, edges.down[k]);
   }
@@ -152,43 +152,53 @@ HWY_INLINE void set_up(const TriangleInPixelOf<Ints>& triangles, EdgesOverCells<
 
 // The same for one triangle with long edges.
 template <std::size_t kColumns>
-void set_long_mask(const TriangleInPixel& in, const TouchedCells<kLanes>& touched_by_all, std::size_t i,
-                   const PositionGrid& grid, WideMask& mask) {
+EdgesTested set_long_mask(const TriangleInPixel& in, const TouchedCells<kLanes>& touched_by_all, std::size_t i,
+                          const PositionGrid& grid, WideMask& mask) {
   constexpr std::int32_t kStep = PositionVectors<double>::kCells;
   const TouchedCells<1> touched{
       {touched_by_all.left[i]}, {touched_by_all.top[i]}, {touched_by_all.right[i]}, {touched_by_all.bottom[i]}};
   TriangleInPixelOf<double> triangle;
   for (int k = 0; k < 3; ++k) triangle.x[k] = in.x[k], triangle.y[k] = in.y[k];
   EdgesOverCells<double, 1> edges;
+  EdgesTested tested;
   for (int k = 0; k < 3; ++k) {
     const EdgeInPixel<double> edge = edge_in_pixel(triangle, k);
     const double right = edge.a * grid.cell_width, down = edge.b * grid.cell_height;
     const double not_owned = owns_its_samples(edge.a, edge.b) ? 0 : 1;
+    if (edge.c - not_owned + kSubpixelUnits * (std::min(edge.a, 0.0) + std::min(edge.b, 0.0)) < 0)
+      ++(std::max(std::abs(edge.a), std::abs(edge.b)) < kSmallSlope ? tested.narrow : tested.wide);
     edges.a[k][0] = edge.a, edges.b[k][0] = edge.b, edges.right[k][0] = right * kStep, edges.down[k][0] = down;
     edges.c[k][0] = edge.c - not_owned + right * touched.left[0] + down * touched.top[0];
   }
   set_mask<kColumns>(edges, touched, 0, grid, mask);
+  return tested;
 }
 
 template <std::size_t kColumns, std::size_t kRows>
-void set_masks(const TriangleInPixel* in, std::size_t count, const PositionGrid& grid, WideMask* masks) {
+EdgesTested set_masks(const TriangleInPixel* in, std::size_t count, const PositionGrid& grid, WideMask* masks) {
   EdgesOverCells<std::int32_t, kLanes> edges;
   TouchedCells<kLanes> touched;
+  EdgesTested tested;
   for (std::size_t first = 0; first < count; first += kLanes) {
     const std::size_t n = HWY_MIN(kLanes, count - first);
-    std::uint32_t small = 0;
-    set_up<kColumns, kRows>(load_rows<TriangleInPixelOf<Ints>>(in + first, n), edges, touched, small);
+    std::uint32_t small = 0, narrow[3] = {};
+    set_up<kColumns, kRows>(load_rows<TriangleInPixelOf<Ints>>(in + first, n), edges, touched, small, narrow);
+    small &= ~0u >> (32 - n);
+    for (const std::uint32_t edge : narrow) tested.narrow += static_cast<unsigned>(std::popcount(edge & small));
     for (std::size_t i = 0; i < n; ++i) {
       if (small >> i & 1) {
         set_mask<kColumns>(edges, touched, i, grid, masks[first + i]);
       } else {
-        set_long_mask<kColumns>(in[first + i], touched, i, grid, masks[first + i]);
+        const EdgesTested of_one = set_long_mask<kColumns>(in[first + i], touched, i, grid, masks[first + i]);
+        tested.narrow += of_one.narrow, tested.wide += of_one.wide;
       }
     }
   }
+  return tested;
 }
 
-void position_masks_kernel(const TriangleInPixel* in, std::size_t count, const PositionGrid& grid, WideMask* masks) {
+EdgesTested position_masks_kernel(const TriangleInPixel* in, std::size_t count, const PositionGrid& grid,
+                                  WideMask* masks) {
   switch (grid.cells.columns * grid.cells.rows) {
     case 4:
       return set_masks<2, 2>(in, count, grid, masks);
@@ -221,8 +231,8 @@ PositionGrid::PositionGrid(int count)
 }
 
 HWY_EXPORT(position_masks_kernel);
-void position_masks(const TriangleInPixel* in, std::size_t count, const PositionGrid& grid, WideMask* masks) {
-  HWY_DYNAMIC_DISPATCH(position_masks_kernel)(in, count, grid, masks);
+EdgesTested position_masks(const TriangleInPixel* in, std::size_t count, const PositionGrid& grid, WideMask* masks) {
+  return HWY_DYNAMIC_DISPATCH(position_masks_kernel)(in, count, grid, masks);
 }
 }  // namespace beampipe
 #endif

@@ -1,12 +1,14 @@
 // Which mask positions of a pixel a triangle covers: the exact edge tests that msaa:N makes for its samples.
 //
-// The positions (cell_patterns in simd/sample_pattern.h) are the same 8 in every cell of a grid. So an edge's value at
-// a position is the sum of two parts: its value at the same position of the first cell, which is computed once, and
-// what the cell's offset from the first cell adds, which is the same for all 8.
+// The positions (cell_patterns in simd/sample_pattern.h) are the same 8 in every cell of a grid. So the value of an
+// edge changes by the same amount from one cell to the next, for all 8. An edge with the whole pixel inside tests
+// nothing.
 #pragma once
 
 #include <cstddef>
+#include <cstdint>
 
+#include "simd/scalar.h"
 #include "simd/triangle_in_pixel.h"
 #include "simd/wide_mask.h"
 
@@ -22,32 +24,86 @@ struct PositionGrid {
   int count() const { return 8 * cells.columns * cells.rows; }
 };
 
-// masks[i] = the positions that in[i] covers, by the top-left rule. Lanes are across positions.
-void position_masks(const TriangleInPixel* in, std::size_t count, const PositionGrid& grid, WideMask* masks);
+// Edges whose slopes a and b are all below this take 32-bit integers: their values at positions are below 2^29. Beyond
+// +-kDecidedByC, c decides the sign on its own.
+inline constexpr std::int32_t kSmallSlope = 1 << 20, kDecidedByC = 1 << 30;
 
-// The scalar twin. Int is std::int64_t or a counting number.
-template <class Int>
-WideMask position_mask_scalar(const TriangleInPixelOf<Int>& in, const PositionGrid& grid) {
-  WideMask mask;
-  EdgeInPixel<Int> edges[3];
-  Int at_position[3][8];
-  for (int k = 0; k < 3; ++k) {
-    edges[k] = edge_in_pixel(in, k);
-    edges[k].c = edges[k].c - Int(owns_its_samples(edges[k].a, edges[k].b) ? 0 : 1);
-    for (std::size_t s = 0; s < 8; ++s)
-      at_position[k][s] =
-          edges[k].a * Int(grid.first_cells.x[s]) + edges[k].b * Int(grid.first_cells.y[s]) + edges[k].c;
+// How many edges of the triangles were tested, those with the whole pixel inside left out.
+struct EdgesTested {
+  std::uint64_t narrow = 0, wide = 0;  // with 32 and with 64 bits
+};
+
+// masks[i] = the positions that in[i] covers, by the top-left rule. Lanes are across positions.
+EdgesTested position_masks(const TriangleInPixel* in, std::size_t count, const PositionGrid& grid, WideMask* masks);
+
+// ---- The scalar twin: one edge after the other. Wide and Int are std::int64_t, std::int32_t or counting numbers. ----
+
+// Edge k. A position is inside if the edge's value there is >= 0.
+template <class Wide>
+EdgeInPixel<Wide> edge_for_positions(const TriangleInPixelOf<Wide>& in, int k) {
+  EdgeInPixel<Wide> edge = edge_in_pixel(in, k);
+  edge.c = edge.c - Wide(owns_its_samples(edge.a, edge.b) ? 0 : 1);
+  return edge;
+}
+
+// Is the whole pixel inside?
+template <class Wide>
+bool is_pixel_inside(const EdgeInPixel<Wide>& edge) {
+  const Wide zero(0);
+  return edge.c + Wide(kSubpixelUnits) * (lesser(edge.a, zero) + lesser(edge.b, zero)) >= zero;
+}
+
+template <class Wide>
+auto narrowed(const EdgeInPixel<Wide>& edge) {
+  const Wide c = lesser(greater(edge.c, Wide(-kDecidedByC)), Wide(kDecidedByC));
+  return EdgeInPixel<decltype(low_word(c))>{low_word(edge.a), low_word(edge.b), low_word(c)};
+}
+
+template <class Wide>
+bool has_small_slopes(const EdgeInPixel<Wide>& edge) {
+  return greater(magnitude(edge.a), magnitude(edge.b)) < Wide(kSmallSlope);
+}
+
+// mask &= the positions inside the edge. Each word is shifted in from its last position to its first.
+template <class Int, class Word>
+void cut_mask(const EdgeInPixel<Int>& edge, const PositionGrid& grid, Word* mask) {
+  const Int right = edge.a * Int(grid.cell_width), down = edge.b * Int(grid.cell_height);
+  const int last_column = grid.cells.columns - 1, last_row = grid.cells.rows - 1;
+  Int in_row[8];  // at the positions of the row's last cell
+  for (std::size_t s = 0; s < 8; ++s)
+    in_row[s] = edge.a * Int(grid.first_cells.x[s] + last_column * grid.cell_width) +
+                (edge.b * Int(grid.first_cells.y[s] + last_row * grid.cell_height) + edge.c);
+  int word = grid.count() / kMaxMaskSamples - 1, shifted = 0;
+  Word outside{};
+  for (int row = last_row; row >= 0; --row) {
+    Int at[8];
+    for (std::size_t s = 0; s < 8; ++s) at[s] = in_row[s];
+    for (int column = last_column; column >= 0; --column) {
+      for (std::size_t s = 8; s-- > 0; ++shifted) outside = shift_in_sign(outside, at[s]);
+      if (shifted == kMaxMaskSamples) mask[word] = mask[word] & ~outside, --word, shifted = 0;
+      for (std::size_t s = 0; s < 8 && column > 0; ++s) at[s] = at[s] - right;
+    }
+    for (std::size_t s = 0; s < 8 && row > 0; ++s) in_row[s] = in_row[s] - down;
   }
-  for (int cell = 0; cell < grid.cells.columns * grid.cells.rows; ++cell) {
-    const Int left(cell % grid.cells.columns * grid.cell_width), top(cell / grid.cells.columns * grid.cell_height);
-    Int of_cell[3];
-    for (int k = 0; k < 3; ++k) of_cell[k] = edges[k].a * left + edges[k].b * top;
-    for (std::size_t s = 0; s < 8; ++s) {
-      bool inside = true;
-      for (int k = 0; k < 3; ++k) inside &= at_position[k][s] + of_cell[k] >= Int(0);
-      if (inside) mask.set(static_cast<std::size_t>(cell) * 8 + s);
+}
+
+template <class Wide>
+WideMask position_mask_scalar(const TriangleInPixelOf<Wide>& in, const PositionGrid& grid) {
+  using Word = decltype(sign_bit(in.x[0]));
+  const auto count = static_cast<std::size_t>(grid.count() / kMaxMaskSamples);
+  Word words[kMaxMaskWords];
+  for (std::size_t w = 0; w < count; ++w) words[w] = Word(~0u);
+  for (int k = 0; k < 3; ++k) {
+    const EdgeInPixel<Wide> edge = edge_for_positions(in, k);
+    if (is_pixel_inside(edge)) continue;
+    if (has_small_slopes(edge)) {
+      cut_mask(narrowed(edge), grid, words);
+    } else {
+      cut_mask(edge, grid, words);
     }
   }
+  WideMask mask;
+  for (std::size_t w = 0; w < count; ++w) mask.words[w] = plain(words[w]);
   return mask;
 }
 

@@ -112,15 +112,19 @@ struct KernelOutput {
   std::vector<Coverage<float>> coverage;
   std::vector<WideMask> masks;
   std::vector<DepthRange<float>> depth;  // with clipped_depth
+  EdgesTested edges;                     // for MaskSource::grid
 };
 
 KernelOutput run_kernels(const KernelInput& in, const BeamFragmentOptions& options) {
   const std::size_t count = in.triangles.size();
-  KernelOutput out{std::vector<Coverage<float>>(count), std::vector<WideMask>(count),
-                   std::vector<DepthRange<float>>(in.ranges.size())};
+  KernelOutput out{std::vector<Coverage<float>>(count),
+                   std::vector<WideMask>(count),
+                   std::vector<DepthRange<float>>(in.ranges.size()),
+                   {}};
   coverage(in.triangles.data(), count, out.coverage.data());
   depth_range(in.ranges.data(), in.ranges.size(), out.depth.data());
-  if (options.mask == MaskSource::grid) position_masks(in.triangles.data(), count, *options.grid, out.masks.data());
+  if (options.mask == MaskSource::grid)
+    out.edges = position_masks(in.triangles.data(), count, *options.grid, out.masks.data());
   std::vector<std::uint32_t> words(count);
   for (std::size_t word = 0; word < options.positions.size(); ++word) {
     if (options.mask == MaskSource::table)
@@ -207,6 +211,7 @@ void beam_fragment(const SetupTriangles& triangles, const std::vector<Pair>& in,
   work.pairs = in.size();
   work.computed = computed.coverage.size();
   work.triangles = kernels.prepared;
+  work.edges = computed.edges;
   work.fragments = out.size() - before;
   charge(work, options, counters);
 }

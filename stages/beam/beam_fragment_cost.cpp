@@ -54,12 +54,33 @@ OperationCounts clipped_depth_cost() {
   });
 }
 
-OperationCounts grid_mask_cost(const PositionGrid& grid) {
-  const auto count_for = [](int positions) {
-    return count_operations(
-        [&](OperationCounts& counts) { position_mask_scalar(vertices_at_hand(counts), PositionGrid(positions)); });
+// Per pair, for `grid`: its edges, and whether they have the whole pixel inside.
+OperationCounts grid_edges_cost() {
+  return count_operations([](OperationCounts& counts) {
+    const TriangleInPixelOf<CountedInt> triangle = vertices_at_hand(counts);
+    for (int k = 0; k < 3; ++k) is_pixel_inside(edge_for_positions(triangle, k));
+  });
+}
+
+// Per edge that is tested at so many positions.
+struct EdgeCosts {
+  UnitCost narrow, wide;
+};
+EdgeCosts edge_costs(int positions) {
+  const auto cut = [&](auto&& edge_of) {
+    return count_operations([&](OperationCounts& counts) {
+      const CountedInt one(1, counts);
+      const EdgeInPixel<CountedInt> edge{one, one, one};
+      has_small_slopes(edge);
+      Counted<std::uint32_t> words[kMaxMaskWords];
+      cut_mask(edge_of(edge), PositionGrid(positions), words);
+    });
   };
-  static const std::array<UnitCost, 4> costs{count_for(32), count_for(64), count_for(128), count_for(256)};
+  return {cut([](const auto& edge) { return narrowed(edge); }), cut([](const auto& edge) { return edge; })};
+}
+
+const EdgeCosts& grid_edge_costs(const PositionGrid& grid) {
+  static const std::array<EdgeCosts, 4> costs{edge_costs(32), edge_costs(64), edge_costs(128), edge_costs(256)};
   return costs[static_cast<std::size_t>(std::countr_zero(static_cast<unsigned>(grid.count() / 32)))];
 }
 
@@ -132,12 +153,17 @@ OperationCounts nearest_position_cost() {
 void charge(const BeamFragmentWork& work, const BeamFragmentOptions& options, StageCounters& counters) {
   static const UnitCost of_area = coverage_cost(), of_range = clipped_depth_cost(), of_plane = plane_cost(),
                         of_centroid = centroid_depth_cost(), of_exact_edges = exact_edges_cost(),
-                        of_table_edges = table_edges_cost(), of_nearest = nearest_position_cost();
+                        of_table_edges = table_edges_cost(), of_grid_edges = grid_edges_cost(),
+                        of_nearest = nearest_position_cost();
   OperationCounts of_pair = of_area;
   if (options.clipped_depth) of_pair += of_range;
   if (options.mask == MaskSource::table) of_pair += table_mask_cost(*options.table);
   if (options.mask == MaskSource::exact) of_pair += exact_mask_cost(options.positions);
-  if (options.mask == MaskSource::grid) of_pair += grid_mask_cost(*options.grid);
+  if (options.mask == MaskSource::grid) {
+    of_pair += of_grid_edges;
+    counters.ops += grid_edge_costs(*options.grid).narrow * work.edges.narrow;
+    counters.ops += grid_edge_costs(*options.grid).wide * work.edges.wide;
+  }
   counters.items_in += work.pairs;
   counters.items_out += work.fragments;
   counters.ops += of_pair * work.computed;

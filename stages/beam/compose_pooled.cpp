@@ -30,8 +30,6 @@ namespace beampipe {
 namespace HWY_NAMESPACE {
 namespace {
 
-#include "stages/beam/position_states-inl.h"
-
 // Of numbers, beside those of vectors.
 using beampipe::greater, beampipe::lesser, beampipe::magnitude;
 
@@ -42,7 +40,9 @@ class PooledComposer {
   using Mask = HWY_NAMESPACE::Mask<Words>;
 
   PooledComposer(const OwnersBin& bin, PooledPixels<Words>& pixels, PooledResult& result)
-      : bin_(bin), pixels_(pixels), result_(result) {}
+      : bin_(bin), pixels_(pixels), result_(result), spare_(pixels.records.take(0)) {}
+  PooledComposer(const PooledComposer&) = delete;
+  ~PooledComposer() { pixels_.records.give_back(0, spare_); }
 
   enum class Outcome { hidden, composed, merged };  // merged: two owners became one
 
@@ -93,7 +93,7 @@ class PooledComposer {
       look_at(pixel);
       if (word_->kind == PixelKind::covered) add(pixel, word_->number, 0.5f, 0.5f);
       if (word_->kind != PixelKind::open) continue;
-      const RecordView record = pixels_.records.view(word_->record_class, word_->number);
+      const RecordView<Words> record = pixels_.records.view(word_->record_size, word_->number);
       for (std::size_t k = 0; k < word_->shape.owners; ++k) {
         const OwnerSlot& slot = record.slots[k];
         if (slot.is_merged()) {
@@ -164,32 +164,36 @@ class PooledComposer {
     observer_ = observer_at(bin_.observers, pixel);
   }
 
+  void look_at_record() {
+    shape_ = word_->shape;
+    area_ = word_->area;
+    record_ = pixels_.records.view(word_->record_size, word_->number);
+  }
+
+  // The positions of owner k.
+  Mask owned(std::size_t k) const { return Mask(record_.owned(k)); }
+  void own(std::size_t k, const Mask& positions) { positions.store(record_.owned(k)); }
+
   // Takes the pixel's state apart.
   void begin() {
-    area_ = {};
     empty_ = final_ = nowhere();
-    shape_ = {};
-    owned_ = masks_ + 2;
     if (word_->kind == PixelKind::open) {
-      shape_ = word_->shape;
-      area_ = word_->area;
-      record_ = pixels_.records.view(word_->record_class, word_->number);
-      Mask* const states = owned_ - shape_.first_owner();
+      look_at_record();
       ++work.splits[shape_.planes()];
       read_record(shape_.planes() * 4 * Words);
-      split_states(
-          shape_.planes(), everywhere(), [&](std::size_t p) { return Mask(record_.planes + p * Words); }, states);
-      if (shape_.has_empty) empty_ = states[0];
-      if (shape_.has_final) final_ = states[std::size_t{shape_.has_empty}];
+      if (shape_.has_empty) empty_ = Mask(record_.head->empty);
+      if (shape_.has_final) final_ = Mask(record_.head->final);
       return;
     }
-    record_ = scratch_.view();
+    area_ = {};
+    shape_ = {};
+    record_ = pixels_.records.view(0, spare_);
     if (word_->kind == PixelKind::covered) {
       const CoverDepth& cover = pixels_.covers[pixel_];
       OwnerSlot slot;
       slot.set(word_->number, 0.0f, static_cast<std::uint32_t>(kPositions), 0.5f, 0.5f);
       record_.set(0, slot, cover.plane, cover.farthest);
-      owned_[0] = everywhere();
+      own(0, everywhere());
       shape_.owners = 1;
     } else {
       empty_ = everywhere();
@@ -210,26 +214,27 @@ class PooledComposer {
     }
     if (is_covered_by_one()) {
       const std::uint32_t triangle = record_.slots[0].triangle();
-      pixels_.covers[pixel_] = {record_.plane(0), record_.farthest[0]};
+      pixels_.covers[pixel_] = {record_.plane(0), record_.farthest(0)};
       release();
       word_->kind = PixelKind::covered;
       word_->number = triangle;
       return;
     }
-    make_room_for(shape_.states());
     put_together();
   }
 
   void put_together() {
-    // Empty and final positions are states only where there are any.
-    Mask* states = owned_;
-    if (shape_.has_final) *--states = final_;
-    if (shape_.has_empty) *--states = empty_;
-    const std::size_t count = shape_.states(), planes = shape_.planes();
-    ++work.joins[count];
+    if (word_->kind != PixelKind::open) {
+      word_->kind = PixelKind::open;
+      word_->record_size = 0;
+      word_->number = spare_;
+      spare_ = pixels_.records.take(0);
+    }
+    ++work.joins[shape_.states()];
     resize();
-    write_record(planes * 4 * Words);
-    for (std::size_t p = 0; p < planes; ++p) join_states(p, count, nowhere(), states).store(record_.planes + p * Words);
+    write_record(shape_.planes() * 4 * Words);
+    if (shape_.has_empty) empty_.store(record_.head->empty);
+    if (shape_.has_final) final_.store(record_.head->final);
     word_->shape = shape_;
     word_->area = area_;
   }
@@ -239,18 +244,20 @@ class PooledComposer {
            record_.slots[0].covered() == kPositions && record_.slots[0].error() == 0;
   }
 
-  // The pixel gets a record for so many states, and record_ is in it.
-  void make_room_for(std::size_t states) {
-    const std::uint8_t wanted = RecordStore<Words>::class_for(states);
-    if (word_->kind == PixelKind::open && word_->record_class == wanted) return;
-    const std::uint32_t record = pixels_.records.take(wanted);
-    const RecordView view = pixels_.records.view(wanted, record);
-    for (std::size_t k = 0; k < shape_.owners; ++k)
-      view.set(k, record_.slots[k], record_.plane(k), record_.farthest[k]);
-    if (shape_.has_sums) *view.sums = *record_.sums;
-    if (word_->kind == PixelKind::open) pixels_.records.give_back(word_->record_class, word_->number);
-    word_->kind = PixelKind::open;
-    word_->record_class = wanted;
+  // There is room for so many owners. Only open pixels have more than fit into the spare record.
+  void make_room_for(std::size_t owners) {
+    if (owners <= RecordStore<Words>::owners_in(0) || word_->kind != PixelKind::open) return;
+    const std::uint8_t size = RecordStore<Words>::size_for(owners);
+    if (size <= word_->record_size) return;
+    const std::uint32_t record = pixels_.records.take(size);
+    const RecordView<Words> view = pixels_.records.view(size, record);
+    for (std::size_t k = 0; k < shape_.owners; ++k) {
+      view.set(k, record_.slots[k], record_.plane(k), record_.farthest(k));
+      owned(k).store(view.owned(k));
+    }
+    view.head->sums = record_.head->sums;
+    pixels_.records.give_back(word_->record_size, word_->number);
+    word_->record_size = size;
     word_->number = record;
     record_ = view;
   }
@@ -263,7 +270,7 @@ class PooledComposer {
 
   void release() {
     if (word_->kind != PixelKind::open) return;
-    pixels_.records.give_back(word_->record_class, word_->number);
+    pixels_.records.give_back(word_->record_size, word_->number);
     pixels_.pool.resize(word_->chunks, 0);
   }
 
@@ -307,7 +314,7 @@ class PooledComposer {
     ++work.masks;
     work.masks_tested += shape_.owners;
     std::uint32_t contested = 0;  // bit k: owner k
-    for (std::size_t k = 0; k < shape_.owners; ++k) contested |= std::uint32_t{!(owned_[k] & mask).none()} << k;
+    for (std::size_t k = 0; k < shape_.owners; ++k) contested |= std::uint32_t{!(owned(k) & mask).none()} << k;
     const Mask free = empty_ & mask, claimed = free | positions_won(fragment, mask, contested);
     if (observer_) observer_->arrives(fragment, claimed.wide());
     if (claimed.none()) return Outcome::composed;
@@ -321,9 +328,9 @@ class PooledComposer {
     take_away(claimed, contested);
     // Does this fragment close the pixel, or may it close it nearer than before?
     const bool closes = (met_empty || shape_.owners < before) && !shape_.has_empty;
-    make_room_for(std::min(shape_.states() + 1, kMostStates));
+    make_room_for(shape_.owners + 1u);
     record_.set(shape_.owners, slot_of(fragment, mask, number), fragment.plane, fragment.z_max);
-    owned_[shape_.owners++] = claimed;
+    own(shape_.owners++, claimed);
     work.bytes_written += sizeof(OwnerSlot);
     const bool merged = shape_.owners > pixels_.most_owners && make_one_less(number);
     if (closes) close(closed);
@@ -344,8 +351,9 @@ class PooledComposer {
     std::size_t kept = 0;
     for (std::size_t k = 0; k < shape_.owners; ++k) {
       if (contested >> k & 1) {
-        owned_[k] = without(owned_[k], claimed);
-        if (owned_[k].none()) continue;
+        const Mask left = without(owned(k), claimed);
+        if (left.none()) continue;
+        own(k, left);
       }
       keep(k, kept++);
     }
@@ -355,7 +363,7 @@ class PooledComposer {
   void keep(std::size_t from, std::size_t to) {
     if (from == to) return;
     record_.move(from, to);
-    owned_[to] = owned_[from];
+    own(to, owned(from));
     ++work.moves;
     work.bytes_read += sizeof(OwnerSlot), work.bytes_written += sizeof(OwnerSlot);
   }
@@ -381,13 +389,12 @@ class PooledComposer {
     constexpr std::size_t kAtOnce = 8;
     for (std::size_t first = 0; first < shape_.owners; first += kAtOnce) {
       const PlaneSides<kAtOnce> sides =
-          plane_sides<kAtOnce>(fragment.plane, {record_.z + first, record_.dzdu + first, record_.dzdv + first});
+          plane_sides<kAtOnce>(fragment.plane, {record_.z() + first, record_.dzdu() + first, record_.dzdv() + first});
       const std::size_t end = std::min<std::size_t>(first + kAtOnce, shape_.owners);
-      for (std::size_t k = first; k < end; ++k)
-        won = won | (owned_[k] & mask & Mask::repeated(sides.nearer[k - first]));
+      for (std::size_t k = first; k < end; ++k) won = won | (owned(k) & mask & Mask::repeated(sides.nearer[k - first]));
       for (std::uint64_t left = (contested >> first) & sides.crossing & 0xff; left != 0; left &= left - 1) {
         const std::size_t k = first + static_cast<std::size_t>(std::countr_zero(left));
-        won = won | positions_won_from(k, fragment, owned_[k] & mask);
+        won = won | positions_won_from(k, fragment, owned(k) & mask);
       }
     }
     return won;
@@ -413,7 +420,7 @@ class PooledComposer {
       ++work.bounds_found;
       work.vertices_bounded += !record_.slots[k].is_merged();
       plane_of(k);
-      farthest = std::max(farthest, record_.farthest[k]);
+      farthest = std::max(farthest, record_.farthest(k));
     }
     closed.close(pixel_, farthest);
   }
@@ -435,7 +442,7 @@ class PooledComposer {
 
   // Does any owner reach in front of the watermark?
   bool may_retire(float watermark) {
-    const RecordView record = pixels_.records.view(word_->record_class, word_->number);
+    const RecordView<Words> record = pixels_.records.view(word_->record_size, word_->number);
     bool may = false;
     read_record(word_->shape.owners * sizeof(OwnerSlot));
     for (std::size_t k = 0; k < word_->shape.owners; ++k) {
@@ -461,8 +468,8 @@ class PooledComposer {
     const Finality finality = finality_of(plane, watermark);
     if (finality != Finality::depends_on_positions) return finality == Finality::is_final;
     ++work.farthest_found;
-    const WideMask owned = owned_[k].wide();
-    return farthest_depth(plane, bin_.positions.patterns.data(), Words, owned.words.data()) <= watermark;
+    const WideMask positions = owned(k).wide();
+    return farthest_depth(plane, bin_.positions.patterns.data(), Words, positions.words.data()) <= watermark;
   }
 
   // All but the plane and the mean.
@@ -471,7 +478,7 @@ class PooledComposer {
     work.bytes_read += sizeof(OwnerSlot);
     owner.slot = record_.slots[k];
     owner.index = k;
-    owner.owned = owned_[k];
+    owner.owned = owned(k);
     owner.visible = static_cast<float>(owner.owned.count());
   }
 
@@ -492,9 +499,9 @@ class PooledComposer {
       final_positions += owner.visible;
       const float threshold = rounding_threshold(owner.slot.content());
       area_.add(area, threshold);
-      record_.sums->colors.add({area * color[0], area * color[1], area * color[2], counted * color[0],
-                                counted * color[1], counted * color[2]},
-                               threshold);
+      record_.head->sums.colors.add({area * color[0], area * color[1], area * color[2], counted * color[0],
+                                     counted * color[1], counted * color[2]},
+                                    threshold);
       final_ = final_ | owner.owned;
     }
     shape_.has_final = !final_.none();
@@ -512,7 +519,7 @@ class PooledComposer {
     if (shape_.has_sums) {
       work.bytes_read += sizeof(PixelSums);
     } else {
-      *record_.sums = {};
+      record_.head->sums = {};
       shape_.has_sums = true;
     }
   }
@@ -589,7 +596,7 @@ class PooledComposer {
     slot.set_merged(larger.slot.triangle(), parts.error, parts.one * color_of_one + parts.other * color_of_other,
                     merge_threshold(one.slot.content(), other.slot.content()));
     record_.set(first, slot, larger.plane, pair_bounds(larger.plane, {kInFront, kNoDepth}).farthest);
-    owned_[first] = one.owned | other.owned;
+    own(first, one.owned | other.owned);
     for (std::size_t k = second; k + 1 < shape_.owners; ++k) keep(k + 1, k);
     --shape_.owners;
   }
@@ -656,18 +663,14 @@ class PooledComposer {
   // that face towards the viewer and specks that face away, those with the smaller area are the hidden sides of thin
   // bodies.
   void add_speck(const Fragment& fragment) {
-    ++work.specks;
-    if (word_->kind == PixelKind::open) {
-      shape_ = word_->shape;
-      area_ = word_->area;
-      record_ = pixels_.records.view(word_->record_class, word_->number);
-    }
+    if (word_->kind == PixelKind::open) look_at_record();
+    ++work.specks[word_->kind == PixelKind::open ? shape_.planes() : 0];
     const float votes = votes_for(fragment);
     if (votes == 0) return;
     const bool is_shared = word_->kind == PixelKind::open;
     if (!is_shared) begin();
     use_sums();
-    FixedSum &same = record_.sums->specks[fragment.front], &opposite = record_.sums->specks[!fragment.front];
+    FixedSum &same = record_.head->sums.specks[fragment.front], &opposite = record_.head->sums.specks[!fragment.front];
     const float before = greater(same, opposite);
     const float threshold = rounding_threshold(std::bit_cast<std::uint32_t>(fragment.alpha) ^
                                                std::bit_cast<std::uint32_t>(fragment.centroid_z));
@@ -678,14 +681,13 @@ class PooledComposer {
       const glm::vec3 color = shade(fragment.triangle, fragment.centroid_u, fragment.centroid_v);
       if (observer_) observer_->adds_speck(fragment.triangle, area, color);
       area_.add(area, threshold);
-      record_.sums->colors.add({area * color[0], area * color[1], area * color[2], 0, 0, 0}, threshold);
+      record_.head->sums.colors.add({area * color[0], area * color[1], area * color[2], 0, 0, 0}, threshold);
     }
     if (is_shared) {  // its positions stay as they are
       resize();
       word_->shape = shape_;
       word_->area = area_;
     } else {
-      make_room_for(shape_.states());
       put_together();
     }
   }
@@ -700,21 +702,16 @@ class PooledComposer {
     float votes = 0;
     read_record(3 * shape_.planes() * sizeof(std::uint32_t));
     for (const std::uint8_t position : bin_.positions.nearest_to(speck.centroid_u, speck.centroid_v)) {
-      const std::size_t state = state_at(position), first_owner = shape_.first_owner();
-      if (state >= first_owner) {
-        votes += is_nearer_than(speck, plane_of(state - first_owner));
+      const auto has = [&](const std::uint32_t* words) { return words[position / 32] >> (position % 32) & 1; };
+      std::size_t k = 0;
+      while (k < shape_.owners && !has(record_.owned(k))) ++k;
+      if (k < shape_.owners) {
+        votes += is_nearer_than(speck, plane_of(k));
       } else {
-        votes += shape_.has_empty && state == 0;
+        votes += shape_.has_empty && has(record_.head->empty);
       }
     }
     return votes;
-  }
-
-  std::size_t state_at(std::size_t position) const {
-    std::size_t state = 0;
-    for (std::size_t p = 0; p < shape_.planes(); ++p)
-      state |= static_cast<std::size_t>(record_.planes[p * Words + position / 32] >> (position % 32) & 1) << p;
-    return state;
   }
 
   bool is_nearer_than(const Fragment& speck, const DepthPlane<float>& plane) {
@@ -731,7 +728,7 @@ class PooledComposer {
     const float count = static_cast<float>(final_.count());
     Estimate<float> analytic{area_, {}}, counted{count / kPositions, {}};
     for (std::size_t c = 0; c < 3; ++c)
-      analytic.color[c] = record_.sums->colors[c], counted.color[c] = record_.sums->colors[c + 3];
+      analytic.color[c] = record_.head->sums.colors[c], counted.color[c] = record_.head->sums.colors[c + 3];
     const Estimate<float> result = limited_estimate(analytic, counted, kPositions);
     if (observer_) observer_->finishes(color_of(analytic), color_of(counted), color_of(result));
     return color_of(result);
@@ -752,10 +749,8 @@ class PooledComposer {
   RecordShape shape_;
   FixedSum area_;
   Mask empty_, final_;
-  Mask masks_[kMostStates + 2];  // room for two states in front of the owners, and for one owner more
-  Mask* owned_ = masks_ + 2;     // of each owner
-  RecordView record_{};
-  Record<Words, 5> scratch_;  // of a pixel that has no record yet
+  RecordView<Words> record_;
+  std::uint32_t spare_;  // a record for a pixel that has none yet
   std::array<Owner, kMostOwners + 1> owners_;
   std::array<Place, kMostOwners + 1> order_;
   // What shade_all() has shaded: the colours, and where those of each pixel's owners are.

@@ -40,7 +40,8 @@ struct PooledWork {
   std::uint64_t retired = 0;                           // owners that became final
   std::uint64_t bounds_found = 0;                      // depth bounds of the owners of pixels without empty positions
   std::uint64_t vertices_bounded = 0;                  // owners whose vertices limit these bounds
-  std::uint64_t specks = 0, speck_comparisons = 0, specks_added = 0;
+  std::array<std::uint64_t, 6> specks{};               // by bit planes of the pixel's record
+  std::uint64_t speck_comparisons = 0, specks_added = 0;
   std::uint64_t finished = 0;                       // pixels that were read at the end
   std::uint64_t limited = 0;                        // pixels whose estimates were compared
   std::uint64_t bytes_read = 0, bytes_written = 0;  // of words and records
@@ -154,13 +155,14 @@ void charge(const PooledWork& work, StageCounters& counters) {
   using namespace pooled_costs;
   static const std::vector<UnitCost> of_split = by_size(6, [](std::size_t planes) { return split(planes, Words); }),
                                      of_join = by_size(kMostStates + 1,
-                                                       [](std::size_t states) { return join(states, Words); });
+                                                       [](std::size_t states) { return join(states, Words); }),
+                                     of_votes = by_size(6, speck_votes_cost);
   static const UnitCost of_count = count_cost(Words), of_plane = plane_cost(), of_contest = plane_gap_cost(),
                         of_slot = slot(), of_nearer = nearer_cost() * kPositions, of_finality = finality_cost(),
                         of_farthest = farthest_cost() * kPositions, of_mean = mean(), of_pair = pair_cost(),
                         of_merge = merge(), of_retirement = retirement(), of_bounds = plane_bounds_cost(),
-                        of_vertices = vertex_bounds_cost(), of_votes = speck_votes_cost(1),
-                        of_speck_test = speck_test_cost(), of_speck = speck(), of_limit = limit_cost();
+                        of_vertices = vertex_bounds_cost(), of_speck_test = speck_test_cost(), of_speck = speck(),
+                        of_limit = limit_cost();
   constexpr OperationCounts kOfHiddenTest{.add = 1}, kOfOrderTest{.add = 1}, kOfPosition{.add = 2},  // its x and y
       kOfFarther{.add = 1},           // than the owners before it
       kOfMaskTest{.bit = 2 * Words},  // an intersection, and whether it is empty
@@ -191,7 +193,8 @@ void charge(const PooledWork& work, StageCounters& counters) {
   counters.ops += of_bounds * work.bounds_found;  // their planes are among work.planes
   counters.ops += kOfFarther * work.bounds_found;
   counters.ops += of_vertices * work.vertices_bounded;
-  counters.ops += of_votes * work.specks;
+  for (std::size_t planes = 0; planes < work.specks.size(); ++planes)
+    counters.ops += of_votes[planes] * work.specks[planes];
   counters.ops += of_speck_test * work.speck_comparisons;
   counters.ops += of_speck * work.specks_added;
   counters.ops += of_limit * work.limited;

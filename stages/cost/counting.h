@@ -142,6 +142,21 @@ Counted<Value> converted(const Counted<Value>& x) {
 inline Counted<std::uint32_t> fetch(const std::uint32_t* table, const Counted<std::int32_t>& index) {
   return counted(index.tally, &OperationCounts::fetch, table[index.value]);
 }
+// A register of a pair, which costs nothing.
+inline Counted<std::int32_t> low_word(const Counted<std::int64_t>& x) {
+  Counted<std::int32_t> low(static_cast<std::int32_t>(x.value));
+  low.tally = x.tally;
+  return low;
+}
+template <class Value>
+Counted<std::uint32_t> sign_bit(const Counted<Value>& x) {
+  return counted(x.tally, &OperationCounts::bit, std::uint32_t{x.value < 0});
+}
+// A funnel shift of two registers.
+template <class Value>
+Counted<std::uint32_t> shift_in_sign(const Counted<std::uint32_t>& word, const Counted<Value>& x) {
+  return counted(x.tally, &OperationCounts::bit, word.value << 1 | std::uint32_t{x.value < 0});
+}
 // A population count and the conversion of its result.
 inline Counted<float> bit_count(const Counted<std::uint32_t>& mask) {
   if (mask.tally) ++mask.tally->convert;

@@ -5,7 +5,8 @@
 // When the pool has no free chunk, a record continues in memory.
 //
 // The modelled machine links the chunks of a record, and those that are free, as a file system does. Which chunk is
-// where changes nothing, so this program counts chunks and keeps each record in one piece.
+// where changes nothing, so this program counts chunks and keeps each record in one piece. It also keeps the positions
+// of each state where the machine has bit planes, which say the same (stages/beam/position_states-inl.h).
 #pragma once
 
 #include <algorithm>
@@ -123,80 +124,91 @@ enum class PixelKind : std::uint8_t { untouched, covered, open, finished };
 
 struct PixelWord {
   PixelKind kind = PixelKind::untouched;
-  RecordShape shape;              // open
-  FixedSum area;                  // open: of what is final, by analytic area
-  std::uint32_t number = 0;       // covered: of the triangle in the bin's list; open: of the record
-  ChunkPool::Chunks chunks;       // open
-  HalfBits color[3];              // finished; linear RGB
-  std::uint8_t record_class = 0;  // open: of this program's records
+  RecordShape shape;             // open
+  FixedSum area;                 // open: of what is final, by analytic area
+  std::uint32_t number = 0;      // covered: of the triangle in the bin's list; open: of the record
+  ChunkPool::Chunks chunks;      // open
+  HalfBits color[3];             // finished; linear RGB
+  std::uint8_t record_size = 0;  // open: of this program's records
 };
 
-// Where a record lies. Depths of owners are not part of the modelled record: the machine computes them again whenever
-// it needs them, and this program keeps them.
-struct RecordView {
-  std::uint32_t* planes;  // plane by plane
-  OwnerSlot* slots;
-  float *z, *dzdu, *dzdv, *farthest;  // one per slot; the depth plane, and its upper bound in the pixel
-  PixelSums* sums;
-
-  DepthPlane<float> plane(std::size_t k) const { return {z[k], dzdu[k], dzdv[k]}; }
-  void set(std::size_t k, const OwnerSlot& slot, const DepthPlane<float>& plane, float far) const {
-    slots[k] = slot;
-    z[k] = plane.z, dzdu[k] = plane.dzdu, dzdv[k] = plane.dzdv, farthest[k] = far;
-  }
-  void move(std::size_t from, std::size_t to) const { set(to, slots[from], plane(from), farthest[from]); }
-};
-
-// A record with room for 2^Bits states. Eight depths may be read at once, from any multiple of eight.
-template <std::size_t Words, std::size_t Bits>
-struct Record {
-  static constexpr std::size_t kStates = std::size_t{1} << Bits, kRow = std::max<std::size_t>(8, kStates);
-  std::uint32_t planes[Bits][Words];
-  OwnerSlot slots[kStates];
-  float depths[4][kRow];
+// What each record has.
+template <std::size_t Words>
+struct RecordHead {
   PixelSums sums;
-
-  RecordView view() { return {planes[0], slots, depths[0], depths[1], depths[2], depths[3], &sums}; }
+  std::uint32_t empty[Words], final[Words];  // positions
 };
 
-// Records with room for 2^1 .. 2^5 states, each kind in blocks that never move.
+// A record with room for so many owners. Depths of owners are not part of the modelled record: the machine computes
+// them again whenever it needs them, and this program keeps them. Eight may be read at once, from any multiple of
+// eight.
+template <std::size_t Words, std::size_t Owners>
+struct Record {
+  static_assert(Owners % 8 == 0);
+  RecordHead<Words> head;
+  float depths[4][Owners];  // the depth plane, and its upper bound in the pixel
+  OwnerSlot slots[Owners];
+  std::uint32_t owned[Owners][Words];  // positions
+};
+
+// Where a record lies.
+template <std::size_t Words>
+struct RecordView {
+  RecordHead<Words>* head = nullptr;
+  float* depths = nullptr;
+  OwnerSlot* slots = nullptr;
+  std::uint32_t* positions = nullptr;
+  std::size_t row = 0;  // of depths
+
+  template <std::size_t Owners>
+  [[gnu::always_inline]] static RecordView of(Record<Words, Owners>& record) {
+    return {&record.head, record.depths[0], record.slots, record.owned[0], Owners};
+  }
+
+  std::uint32_t* owned(std::size_t k) const { return positions + k * Words; }
+  const float* z() const { return depths; }
+  const float* dzdu() const { return depths + row; }
+  const float* dzdv() const { return depths + 2 * row; }
+  DepthPlane<float> plane(std::size_t k) const { return {depths[k], depths[row + k], depths[2 * row + k]}; }
+  float farthest(std::size_t k) const { return depths[3 * row + k]; }
+  [[gnu::always_inline]] void set(std::size_t k, const OwnerSlot& slot, const DepthPlane<float>& plane,
+                                  float far) const {
+    slots[k] = slot;
+    depths[k] = plane.z, depths[row + k] = plane.dzdu, depths[2 * row + k] = plane.dzdv, depths[3 * row + k] = far;
+  }
+  [[gnu::always_inline]] void move(std::size_t from, std::size_t to) const {
+    set(to, slots[from], plane(from), farthest(from));
+  }
+};
+
+// Records with room for 8, 16, or 32 owners, each size in blocks that never move.
 template <std::size_t Words>
 class RecordStore {
  public:
-  static constexpr std::uint8_t class_for(std::size_t states) {
-    return static_cast<std::uint8_t>(std::max<std::uint32_t>(planes_for(states), 1) - 1);
-  }
+  static constexpr std::size_t owners_in(std::uint8_t size) { return std::size_t{8} << size; }
+  static constexpr std::uint8_t size_for(std::size_t owners) { return owners <= 8 ? 0 : owners <= 16 ? 1 : 2; }
 
-  std::uint32_t take(std::uint8_t record_class) {
-    return visit(record_class, [](auto& slab) { return slab.take(); });
+  std::uint32_t take(std::uint8_t size) {
+    return size == 0 ? small_.take() : size == 1 ? medium_.take() : large_.take();
   }
-  void give_back(std::uint8_t record_class, std::uint32_t record) {
-    visit(record_class, [&](auto& slab) { return slab.free.push_back(record), record; });
+  void give_back(std::uint8_t size, std::uint32_t record) {
+    (size == 0 ? small_.free : size == 1 ? medium_.free : large_.free).push_back(record);
   }
-  RecordView view(std::uint8_t record_class, std::uint32_t record) {
-    switch (record_class) {
-      case 0:
-        return slab1_.at(record).view();
-      case 1:
-        return slab2_.at(record).view();
-      case 2:
-        return slab3_.at(record).view();
-      case 3:
-        return slab4_.at(record).view();
-      default:
-        return slab5_.at(record).view();
-    }
+  [[gnu::always_inline]] RecordView<Words> view(std::uint8_t size, std::uint32_t record) {
+    return size == 0 ? small_.view(record) : size == 1 ? medium_.view(record) : large_.view(record);
   }
 
  private:
-  template <std::size_t Bits>
+  template <std::size_t Owners>
   struct Slab {
     static constexpr std::uint32_t kBlock = 64;
-    std::vector<std::unique_ptr<Record<Words, Bits>[]>> blocks;
+    std::vector<std::unique_ptr<Record<Words, Owners>[]>> blocks;
     std::vector<std::uint32_t> free;
     std::uint32_t count = 0;
 
-    Record<Words, Bits>& at(std::uint32_t record) { return blocks[record / kBlock][record % kBlock]; }
+    [[gnu::always_inline]] RecordView<Words> view(std::uint32_t record) {
+      return RecordView<Words>::of(blocks[record / kBlock][record % kBlock]);
+    }
     std::uint32_t take() {
       if (!free.empty()) {
         const std::uint32_t record = free.back();
@@ -204,32 +216,14 @@ class RecordStore {
         return record;
       }
       if (count == blocks.size() * kBlock)
-        blocks.push_back(std::make_unique_for_overwrite<Record<Words, Bits>[]>(kBlock));
+        blocks.push_back(std::make_unique_for_overwrite<Record<Words, Owners>[]>(kBlock));
       return count++;
     }
   };
 
-  template <class Work>
-  std::uint32_t visit(std::uint8_t record_class, Work&& work) {
-    switch (record_class) {
-      case 0:
-        return work(slab1_);
-      case 1:
-        return work(slab2_);
-      case 2:
-        return work(slab3_);
-      case 3:
-        return work(slab4_);
-      default:
-        return work(slab5_);
-    }
-  }
-
-  Slab<1> slab1_;
-  Slab<2> slab2_;
-  Slab<3> slab3_;
-  Slab<4> slab4_;
-  Slab<5> slab5_;
+  Slab<8> small_;
+  Slab<16> medium_;
+  Slab<32> large_;
 };
 
 // What a pixel that one triangle covers is compared by. The modelled machine computes it again.

@@ -1,10 +1,25 @@
 #include "simd/position_mask.h"
 
+#include <utility>
+
 #include "simd/sample_mask.h"
 #include "tests/simd/coverage_cases.h"
 #include "tests/simd/every_target.h"
 
 namespace beampipe::position_mask_test {
+
+// By 64-bit integers, sample for sample.
+WideMask mask_of_samples(const TriangleInPixelOf<std::int64_t>& t, int positions) {
+  std::int64_t a[3], b[3], c[3];
+  for (int k = 0; k < 3; ++k) {
+    const EdgeInPixel<std::int64_t> edge = edge_in_pixel(t, k);
+    a[k] = edge.a, b[k] = edge.b, c[k] = edge.c - !owns_its_samples(edge.a, edge.b);
+  }
+  WideMask mask;
+  const std::vector<SamplePattern> patterns = cell_patterns(positions);
+  for (std::size_t w = 0; w < patterns.size(); ++w) mask.words[w] = sample_mask_scalar(a, b, c, patterns[w]);
+  return mask;
+}
 
 TEST(PositionMask, KernelEqualsTwinOnRandomTriangles) {
   Random random(61);
@@ -25,8 +40,8 @@ TEST(PositionMask, KernelEqualsTwinOnRandomTriangles) {
   }
 }
 
-// Slopes at the limit where the kernel changes its number type.
-TEST(PositionMask, KernelEqualsTwinOnLongEdges) {
+// Slopes at the limit where the numbers change their type.
+TEST(PositionMask, LongEdges) {
   Random random(62);
   const PositionGrid grid(256);
   constexpr std::int64_t kBorder = 1 << 20;
@@ -41,27 +56,39 @@ TEST(PositionMask, KernelEqualsTwinOnLongEdges) {
       const TriangleInPixel in = kernel_input(t);
       WideMask mask;
       position_masks(&in, 1, grid, &mask);
-      ASSERT_EQ(mask, position_mask_scalar(in_pixel(t), grid)) << "triangle " << i;
+      ASSERT_EQ(mask, mask_of_samples(in_pixel(t), 256)) << "triangle " << i;
+      ASSERT_EQ(position_mask_scalar(in_pixel(t), grid), mask) << "triangle " << i;
     }
   });
+}
+
+// An edge with the whole pixel inside is not tested, and one that only touches its corner is not either.
+TEST(PositionMask, TestsTheEdgesThatCutThePixel) {
+  const PositionGrid grid(256);
+  const auto tested = [&](const Triangle& t) {
+    const TriangleInPixel in = kernel_input(oriented(t));
+    EdgesTested edges;
+    WideMask mask;
+    on_every_target([&] { edges = position_masks(&in, 1, grid, &mask); });
+    return std::pair{edges.narrow, edges.wide};
+  };
+  const auto expect = [](std::uint64_t narrow, std::uint64_t wide) { return std::pair{narrow, wide}; };
+  EXPECT_EQ(tested({{{-300, -300}, {1000, -300}, {-300, 1000}}}), expect(0, 0)) << "covers the pixel";
+  EXPECT_EQ(tested({{{0, 0}, {600, 0}, {0, 600}}}), expect(0, 0)) << "owns its left and its top edge";
+  EXPECT_EQ(tested({{{128, -300}, {1500, -300}, {128, 1500}}}), expect(1, 0));
+  EXPECT_EQ(tested({{{128, 100}, {1500, 100}, {128, 1500}}}), expect(2, 0));
+  EXPECT_EQ(tested({{{50, 50}, {200, 50}, {50, 200}}}), expect(3, 0));
+  constexpr std::int64_t kFar = 1 << 21;
+  EXPECT_EQ(tested({{{128, -kFar}, {kFar, 0}, {128, kFar}}}), expect(0, 1));
 }
 
 // The positions are those of cell_patterns, and the covered ones are those that sample_masks finds.
 TEST(PositionMask, EqualsSampleMasksOfTheSamePositions) {
   Random random(63);
   for (const int positions : {32, 64, 128, 256}) {
-    const PositionGrid grid(positions);
-    const std::vector<SamplePattern> patterns = cell_patterns(positions);
     for (int i = 0; i < 2'000; ++i) {
       const TriangleInPixelOf<std::int64_t> t = in_pixel(random_triangle(random));
-      std::int64_t a[3], b[3], c[3];
-      for (int k = 0; k < 3; ++k) {
-        const EdgeInPixel<std::int64_t> edge = edge_in_pixel(t, k);
-        a[k] = edge.a, b[k] = edge.b, c[k] = edge.c - !owns_its_samples(edge.a, edge.b);
-      }
-      const WideMask mask = position_mask_scalar(t, grid);
-      for (std::size_t word = 0; word < patterns.size(); ++word)
-        ASSERT_EQ(mask.words[word], sample_mask_scalar(a, b, c, patterns[word])) << "triangle " << i;
+      ASSERT_EQ(position_mask_scalar(t, PositionGrid(positions)), mask_of_samples(t, positions)) << "triangle " << i;
     }
   }
 }

@@ -2,6 +2,7 @@
 // many cases.
 #include <gtest/gtest.h>
 
+#include <array>
 #include <cstdio>
 
 #include "stages/beam/owner_rules.h"
@@ -77,6 +78,26 @@ TEST(Properties, NearFirstKeepsAreaAndColour) {
   std::printf("fragments composed: %llu; owners that became one: %llu\n",
               static_cast<unsigned long long>(composed.fragments), static_cast<unsigned long long>(composed.merges));
   EXPECT_GT(composed.merges, composed.fragments / 100);
+}
+
+// Bit planes say of every position the state that it has, and are taken apart into the positions they were made from.
+TEST(ComposePooledProperties, BitPlanesAreThePositionsOfEachState) {
+  Random random(7);
+  for (std::size_t count = 1; count <= kMostStates; ++count) {
+    std::array<WideMask, kMostStates> states{}, found{};
+    std::array<std::size_t, 256> state_of{};
+    for (std::size_t i = 0; i < state_of.size(); ++i) {
+      state_of[i] = static_cast<std::size_t>(random.integer(0, static_cast<int>(count) - 1));
+      states[state_of[i]].set(i);
+    }
+    std::vector<WideMask> planes;
+    for (std::size_t p = 0; p < planes_for(count); ++p) planes.push_back(join_states(p, count, {}, states.data()));
+    for (std::size_t i = 0; i < state_of.size(); ++i)
+      for (std::size_t p = 0; p < planes.size(); ++p) ASSERT_EQ(planes[p].test(i), (state_of[i] >> p & 1) != 0);
+    split_states(
+        planes.size(), first_words(8), [&](std::size_t p) { return planes[p]; }, found.data());
+    ASSERT_EQ(found, states) << count << " states";
+  }
 }
 
 }  // namespace beampipe::compose_pooled_properties_test

@@ -235,4 +235,20 @@ TEST_P(FragmentTwins, WithoutMasks) {
 
 BEAMPIPE_ON_EVERY_SCENE(FragmentTwins);
 
+// An edge at 256 positions. Steps: 8 positions of 4 rows of 8 cells. Its slopes times the cell's size, and its value at
+// the 8 positions of the last cell; one step to each other cell of a row, and from row to row; one shift for each
+// position; and an inversion and an intersection for each word.
+TEST(BeamFragmentCost, OfAnEdgeAtAllPositions) {
+  const OperationCounts cost = count_operations([](OperationCounts& counts) {
+    const Counted<std::int32_t> one(1, counts);
+    Counted<std::uint32_t> words[kMaxMaskWords];
+    cut_mask(EdgeInPixel<Counted<std::int32_t>>{one, one, one}, PositionGrid(256), words);
+  });
+  EXPECT_EQ(cost.mul_add, 2 + 8 * 2);
+  EXPECT_EQ(cost.add, 8 * 2 + 8 * (4 * 7 + 3));
+  EXPECT_EQ(cost.bit, 256 + 8 * 2);
+  EXPECT_EQ(cost.total(), 18u + 264u + 272u);
+  EXPECT_EQ(cost.wide, 0u);
+}
+
 }  // namespace beampipe::fragment_twins_test

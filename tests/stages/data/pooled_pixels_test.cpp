@@ -70,17 +70,23 @@ TEST(ChunkPool, CollectionsArePaidByWhatWasTaken) {
 TEST(RecordStore, RecordsStayWhereTheyAre) {
   RecordStore<8> store;
   std::vector<std::pair<std::uint8_t, std::uint32_t>> records;
-  for (std::uint32_t i = 0; i < 1000; ++i) {
-    const auto kind = static_cast<std::uint8_t>(i % 5);
-    records.emplace_back(kind, store.take(kind));
-    store.view(kind, records.back().second).planes[0] = i;
+  const auto last_of = [&](std::size_t i) -> std::uint32_t& {
+    const auto [size, record] = records[i];
+    return store.view(size, record).owned(RecordStore<8>::owners_in(size) - 1)[7];
+  };
+  for (std::uint32_t i = 0; i < 999; ++i) {
+    const auto size = static_cast<std::uint8_t>(i % 3);
+    records.emplace_back(size, store.take(size));
+    last_of(i) = i;
   }
-  for (std::uint32_t i = 0; i < 1000; i += 2) store.give_back(records[i].first, records[i].second);
-  for (std::uint32_t i = 0; i < 1000; i += 2)
-    store.view(records[i].first, store.take(records[i].first)).planes[0] = ~0u;
-  for (std::uint32_t i = 1; i < 1000; i += 2) ASSERT_EQ(store.view(records[i].first, records[i].second).planes[0], i);
-  for (const auto& [states, kind] : {std::pair{1, 0}, {2, 0}, {3, 1}, {4, 1}, {5, 2}, {16, 3}, {17, 4}, {32, 4}})
-    EXPECT_EQ(RecordStore<8>::class_for(static_cast<std::size_t>(states)), kind) << states;
+  for (std::uint32_t i = 0; i < 999; i += 2) store.give_back(records[i].first, records[i].second);
+  for (std::uint32_t i = 0; i < 999; i += 2) {
+    records[i].second = store.take(records[i].first);
+    last_of(i) = ~0u;
+  }
+  for (std::uint32_t i = 1; i < 999; i += 2) ASSERT_EQ(last_of(i), i);
+  for (const auto& [owners, size] : {std::pair{1, 0}, {8, 0}, {9, 1}, {16, 1}, {17, 2}, {31, 2}})
+    EXPECT_EQ(RecordStore<8>::size_for(static_cast<std::size_t>(owners)), size) << owners;
 }
 
 }  // namespace beampipe::pooled_pixels_test
