@@ -86,7 +86,7 @@ const std::vector<FrameCounterInfo>& frame_counters() {
       {"off_chip_bytes_per_pixel", "bytes per pixel",
        "peak_bytes_per_pixel: what depends on pixels or fragments and is in memory; geometry and bin lists are apart"},
       {"bin_pixels", "pixels", "pixels of the largest bin"},
-      {"pixel_counters", "as the counter's", "mean and maximum of each pixel counter over the pixels"},
+      {"pixel_counters", "as the counter's", "mean and maximum of each pixel counter over the pixels, and the share of pixels where it is not 0"},
       {"saved", "pairs, cells, triangles, tiles or pixels",
        "work that was not done, derived from the counters of the stages: hidden_pairs or hidden_cells, which the "
        "raster stage left out because a triangle in front covers the whole pixel or cell; hidden_triangles, which were "

@@ -117,7 +117,8 @@ Form<Buffer> buffer_form() {
 Form<PixelCounterStats> statistics_form() {
   return ObjectForm<PixelCounterStats>()
       .written("mean", &PixelCounterStats::mean, form::number(), "Over all pixels.")
-      .written("max", &PixelCounterStats::max, form::number(), "Over all pixels.");
+      .written("max", &PixelCounterStats::max, form::number(), "Over all pixels.")
+      .written("share", &PixelCounterStats::share, form::amount(), "Of the pixels: where it is not 0.");
 }
 
 // Times of an implementation.
@@ -247,7 +248,8 @@ FrameReport frame_of(const Json& json) {
                                buffer.at("held") == kHeldByBin});
   if (const Json* counters = json.find("pixel_counters"))
     for (const auto& [name, stats] : counters->members())
-      frame.pixel_counters[name] = {stats.at("mean").get<double>(), stats.at("max").get<double>()};
+      frame.pixel_counters[name] = {stats.at("mean").get<double>(), stats.at("max").get<double>(),
+                                    stats.at("share").get<double>()};
   for (const Json& stage : json.at("stages").elements()) frame.stages.push_back(stage_of(stage));
   return frame;
 }

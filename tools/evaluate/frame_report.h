@@ -29,6 +29,7 @@ WallTime wall_time(std::vector<double> milliseconds);
 // Statistics of one counter over the pixels of a frame.
 struct PixelCounterStats {
   double mean = 0, max = 0;
+  double share = 0;  // of the pixels: where the counter is not 0
 };
 
 PixelCounterStats measure_counter(const std::vector<float>& values);

@@ -19,6 +19,7 @@ PixelCounterStats measure_counter(const std::vector<float>& values) {
   for (const float value : values) {
     stats.mean += value / static_cast<double>(values.size());
     stats.max = std::max<double>(stats.max, value);
+    stats.share += (value != 0) / static_cast<double>(values.size());
   }
   return stats;
 }

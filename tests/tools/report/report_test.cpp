@@ -26,7 +26,7 @@ Report sample_report() {
     frame.a_buffer_peak_bytes = 100 * (10 - index);
     frame.buffers = {{"pairs", 64, true}};
     frame.pixels = 50;
-    frame.pixel_counters = {{"fragments", {1.5, 4}}};
+    frame.pixel_counters = {{"fragments", {1.5, 4, 0.5}}};
     frame.stages = {{.stage = StageId::vertex_setup,
                      .items_in = 3,
                      .items_out = 1,
@@ -98,7 +98,7 @@ TEST(ReportJson, HasTheKeysOfTheContract) {
                                             {{"name", "a_buffer"}, {"peak_bytes", 500}, {"held", "frame"}},
                                             {{"name", "pairs"}, {"peak_bytes", 64}, {"held", "bin"}}})));
   EXPECT_FALSE(frame.contains("modelled_ms")) << "no hardware is modelled";
-  EXPECT_EQ(frame["pixel_counters"], (Json{{"fragments", {{"mean", 1.5}, {"max", 4.0}}}}));
+  EXPECT_EQ(frame["pixel_counters"], (Json{{"fragments", {{"mean", 1.5}, {"max", 4.0}, {"share", 0.5}}}}));
   const Json& memory = json["memory_system"];
   EXPECT_EQ(memory["modelled"], true);
   EXPECT_EQ(memory["compression"], true);
@@ -200,6 +200,7 @@ TEST(ReportJson, IsTextEvenWhenAFileNameIsNotUtf8) {
 
 TEST(PixelCounters, AreSummedUpByMeanAndMax) {
   const PixelCounterStats stats = measure_counter({1, 0, 7, 2});
+  EXPECT_DOUBLE_EQ(stats.share, 0.75);
   EXPECT_EQ(stats.mean, 2.5);
   EXPECT_EQ(stats.max, 7);
 }
