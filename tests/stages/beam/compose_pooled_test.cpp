@@ -215,4 +215,14 @@ TEST(ComposePooled, CostOfAHiddenFragment) {
   EXPECT_EQ(tile.composing.bytes_written, 6u);
 }
 
+// A speck in a pixel with two bit planes: for each of three positions a shift and an and of each plane. The three are
+// looked up by the centroid: two conversions, three fetches, and the sum of the votes.
+TEST(ComposePooled, CostOfASpecksVotes) {
+  PooledWork work;
+  work.specks[2] = 1;
+  StageCounters counters;
+  charge<8>(work, counters);
+  EXPECT_EQ(counters.ops, (OperationCounts{.add = 3, .bit = 3 * 2 * 2, .fetch = 3, .convert = 2}));
+}
+
 }  // namespace beampipe::compose_pooled_test
