@@ -19,8 +19,8 @@ The rules:
 5.  Inside stages/. Each subfolder is a group of stages, except for data/ (types that stages share), cost/ (counters
     and costs that stages share) and surface/ (what surfaces look like, wherever they are shaded): group -> surface ->
     cost -> data -> simd. Of these, only groups and surface/ may include traces. No group includes another.
-6.  A stage knows no other stage. The files of stage X in a group are X.h, X.cpp, X_cost.h and X_cost.cpp, and they
-    include no other files of the group than these and the headers in SHARED_IN_GROUP.
+6.  A stage knows no other stage. The files of stage X in a group are X.h, X.cpp, X_cost.h, X_cost.cpp and parts of its
+    kernel, X_PART-inl.h, and they include no other files of the group than these and the headers in SHARED_IN_GROUP.
 7.  Not checked: tests/ and bench/, which may include anything, but which the folders above may not include.
 """
 
@@ -48,6 +48,7 @@ STAGE_GROUP = {"data", "cost", "surface"}
 WITHOUT_TRACES = {"data", "cost"}
 # Of the packages that all may use, the standard library and the system.
 LIGHT_HEADER = re.compile(r"(glm|hwy|tbb)/.*|\w+|(fcntl|malloc|unistd)\.h")
+STAGE_FILE = re.compile(r"(.*?)(?:_cost|_[a-z]+-inl)?")
 # Headers in stage groups that are no stage's own: formulas of stages and costs, and algorithms in files of their own.
 SHARED_IN_GROUP = {
     "stages/beam/merge_sort.h", "stages/beam/owner_rules.h", "stages/beam/owner_rules_cost.h",
@@ -87,6 +88,8 @@ may include this library|stages/data/half_bits.h|#include <half.h>
 may include this library|traces/scenes/room.cpp|#include <nlohmann/json.hpp>
 -|traces/files/image_file.cpp|#include <png.h>\n#include "traces/material.h"
 -|stages/beam/windows_cost.h|#include "stages/beam/windows.h"\n#include "stages/beam/specks.h"\n#include <map>
+-|stages/beam/windows.cpp|#include "stages/beam/windows_part-inl.h"
+file of the stage windows|stages/beam/a_buffer.cpp|#include "stages/beam/windows_part-inl.h"
 -|tools/cli/main.cpp|// /*\n#include "pipeline/technique.h"\n/* #include "a_buffer.h"\n#include "a_buffer.h" */"/*"
 -|simd/match.cpp|#include "hwy/highway.h"\nauto text = R"x(\n#include "a_buffer.h"\n)x";"""
 SOURCE = re.compile(r".*\.(h|hpp|c|cc|cpp|inc|inl)(\.in)?")
@@ -132,7 +135,7 @@ def broken_rule(source, include):
         allowed = ORDER[folder].get(here, STAGE_GROUP if folder == "stages" else set())
         return None if there in allowed else f"in {folder}/, {here} may not include {there}"
     if folder == other == "stages" and here not in ORDER["stages"] and str(target) not in SHARED_IN_GROUP:
-        stage, other_stage = (path.name.split(".")[0].removesuffix("_cost") for path in (source, target))
+        stage, other_stage = (STAGE_FILE.fullmatch(path.name.split(".")[0])[1] for path in (source, target))
         return None if stage == other_stage else f"{stage} may not include a file of the stage {other_stage}"
     return None
 

@@ -151,7 +151,8 @@ struct Record {
   std::uint32_t owned[Owners][Words];  // positions
 };
 
-// Where a record lies.
+// Where a record lies. Kernels have to inline what is marked so: a view that a call returns is stored in parts and
+// loaded as a whole, and that load waits.
 template <std::size_t Words>
 struct RecordView {
   RecordHead<Words>* head = nullptr;
