@@ -13,25 +13,25 @@ import tempfile
 
 from measure import print_head, print_row, results, stages
 
-POOLS = {60: "beam", 40: "beam:pool=40", 128: "beam:pool=128"}
+POOLS = {40: "beam", 60: "beam:pool=60", 128: "beam:pool=128"}
 
 
 def main():
     if len(sys.argv) < 3:
         sys.exit(__doc__.strip())
     program, *traces = sys.argv[1:]
-    print_head("scene", "pixels with a record", "bytes, mean", "greatest", "records in memory, `pool=60`", "`pool=40`",
-               "operations of `compose`, `pool=60`", "`pool=40`")
+    print_head("scene", "pixels with a record", "bytes, mean", "greatest", "records in memory, `pool=40`", "`pool=60`",
+               "operations of `compose`, `pool=40`", "`pool=60`")
     for trace in traces:
         with tempfile.TemporaryDirectory() as folder:
             found = results(program, "run", trace, POOLS.values(), folder, "--frames", "0", "--no-memory-model")
         of = {pool: found[spec]["frames"][0]["pixel_counters"] for pool, spec in POOLS.items()}
         operations = {pool: stages(found[spec])["compose"]["ops"]["total"] for pool, spec in POOLS.items()}
-        record = of[60]["record_bytes"]
+        record = of[40]["record_bytes"]
         print_row(pathlib.Path(trace).stem, f"{100 * record['share']:.0f} %",
                   f"{record['mean'] / record['share']:.0f}" if record["share"] else "", f"{record['max']:.0f}",
-                  *(f"{100 * of[pool]['memory_chunks']['share']:.1f} %" for pool in (60, 40)),
-                  *(f"{operations[pool] / operations[128]:.3f}" for pool in (60, 40)))
+                  *(f"{100 * of[pool]['memory_chunks']['share']:.1f} %" for pool in (40, 60)),
+                  *(f"{operations[pool] / operations[128]:.3f}" for pool in (40, 60)))
 
 
 main()

@@ -11,7 +11,7 @@ namespace {
 
 struct BeamOptions {
   int positions = 256;  // of the mask
-  int pool = 60;        // bytes for each pixel of the bin
+  int pool = 40;        // bytes for each pixel of the bin
   int bin = kBinSize;   // pixels on each side
   OwnerPlace shade_at = OwnerPlace::covered;
 };

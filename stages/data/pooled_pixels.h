@@ -96,9 +96,9 @@ class ChunkPool {
     peak_in_memory_ = std::max(peak_in_memory_, in_memory_);
   }
 
-  // Is it time to look for what is final? Only if three quarters of the pool are in use, and an eighth of it was taken
+  // Is it time to look for what is final? Only if seven eighths of the pool are in use, and a quarter of it was taken
   // since the last time, so that a collection is paid by what made it necessary.
-  bool wants_collection() const { return 4 * used() > 3 * on_chip_ && 8 * taken_since_collection_ > on_chip_; }
+  bool wants_collection() const { return 8 * used() > 7 * on_chip_ && 4 * taken_since_collection_ > on_chip_; }
   void collected() { taken_since_collection_ = 0; }
 
   std::size_t used() const { return used_on_chip_ + in_memory_; }

@@ -28,7 +28,7 @@ std::uint64_t on_chip_bytes(const FrameResult& result) {
 // One triangle covers all pixels, so there are words of 6 bytes and no records. Words are in blocks of 16 pixels, which
 // have 3 sectors. `compose` writes each back once, and `resolve` reads it.
 TEST(Framebuffer, OpenPixelsThatExceedTheBudgetMoveThroughMemory) {
-  constexpr std::uint64_t kState = 66, kInSectors = kBinPixels / 16 * 3 * 32;
+  constexpr std::uint64_t kState = 46, kInSectors = kBinPixels / 16 * 3 * 32;
   const Technique beam = parse_technique("beam");
   const Trace trace = covered_bin();
   MemoryParameters fits, too_small;
@@ -93,7 +93,7 @@ TEST(Framebuffer, AnABufferAndWhatLaterFramesReadStayInMemory) {
   memory.framebuffer = Place::in_memory;
   EXPECT_EQ(parse_technique("taa:8").framebuffer_bytes_per_pixel(memory), 42u);
   EXPECT_EQ(parse_technique("msaa:8").framebuffer_bytes_per_pixel(memory), 80u);
-  EXPECT_EQ(parse_technique("beam").framebuffer_bytes_per_pixel(memory), 66u);
+  EXPECT_EQ(parse_technique("beam").framebuffer_bytes_per_pixel(memory), 46u);
 }
 
 }  // namespace beampipe::framebuffer_test

@@ -18,7 +18,7 @@ TEST(Technique, FramebufferBytesAreThePublishedOnes) {
 }
 
 TEST(Technique, StreamingStatesFitTheirBudgets) {
-  EXPECT_EQ(parse_technique("beam").framebuffer_bytes_per_pixel({.framebuffer = Place::in_memory}), 66u);
+  EXPECT_EQ(parse_technique("beam").framebuffer_bytes_per_pixel({.framebuffer = Place::in_memory}), 46u);
   EXPECT_EQ(parse_technique("beam:order=stream").framebuffer_bytes_per_pixel(), 96u);
   EXPECT_EQ(parse_technique("z3").framebuffer_bytes_per_pixel(), 50u);
   EXPECT_EQ(parse_technique("z3:shape=32x2").framebuffer_bytes_per_pixel(), 36u);
@@ -120,7 +120,7 @@ TEST(Technique, WrongSpecsSayWhatWouldBeRight) {
 
 TEST(Technique, DefaultsMayBeWritten) {
   for (const char* spec :
-       {"beam:order=near-first", "beam:order=sorted", "beam:bits=32,order=sorted", "beam:bits=256,pool=60",
+       {"beam:order=near-first", "beam:order=sorted", "beam:bits=32,order=sorted", "beam:bits=256,pool=40",
         "casav:order=sorted", "beam:order=stream", "casav:layers=3,order=stream", "casav:tiny=3"})
     EXPECT_EQ(parse_technique(spec).spec, spec);
 }

@@ -39,7 +39,7 @@ TEST(Beam, BuffersHaveTheSameSizeHoweverDeepAPixelIs) {
       for (const Buffer& buffer : result.buffers) bytes[buffer.name] = buffer.peak_bytes;
       const std::map<std::string, std::uint64_t> expected{
           {"setup_triangles", count * 116}, {"bin_lists", count * (4 + 4)}, {"closed_depth", 17 * 4},
-          {"open_pixels", 16 * (6 + 60)},   {"pair_queue", queued * 10},    {"fragment_queue", queued * 57}};
+          {"open_pixels", 16 * (6 + 40)},   {"pair_queue", queued * 10},    {"fragment_queue", queued * 57}};
       EXPECT_EQ(bytes, expected);
       const std::uint64_t seen = stage_of(result, "shade").items_in;
       if (kind == Layers::behind) {

@@ -55,14 +55,14 @@ TEST(ChunkPool, WhatDoesNotFitIsInMemory) {
 TEST(ChunkPool, CollectionsArePaidByWhatWasTaken) {
   ChunkPool pool(16 * 18);
   ChunkPool::Chunks record;
-  pool.resize(record, 12);
-  EXPECT_FALSE(pool.wants_collection()) << "three quarters are in use, and not more";
-  pool.resize(record, 13);
+  pool.resize(record, 14);
+  EXPECT_FALSE(pool.wants_collection()) << "seven eighths are in use, and not more";
+  pool.resize(record, 15);
   EXPECT_TRUE(pool.wants_collection());
   pool.collected();
-  pool.resize(record, 15);
-  EXPECT_FALSE(pool.wants_collection()) << "an eighth was taken, and not more";
-  pool.resize(record, 16);
+  pool.resize(record, 19);
+  EXPECT_FALSE(pool.wants_collection()) << "a quarter was taken, and not more";
+  pool.resize(record, 20);
   EXPECT_TRUE(pool.wants_collection());
 }
 

@@ -519,12 +519,12 @@ TEST_F(ProgramTest, TheFramebufferIsWhereTheOptionsSay) {
   expect(json["results"][0], true, 6);
   expect(json["results"][1], true, 6);
   json = run({"--framebuffer", "in-memory"});
-  expect(json["results"][0], false, 66);
+  expect(json["results"][0], false, 46);
   expect(json["results"][1], false, 40);
-  json = run({"--on-chip-memory", "65KB"});
-  EXPECT_EQ(json["memory_system"]["on_chip_bytes"], 65 * 1024);
-  expect(json["results"][0], false, 66);
-  expect(run({"--on-chip-memory", "66KB"})["results"][0], true, 6);
+  json = run({"--on-chip-memory", "45KB"});
+  EXPECT_EQ(json["memory_system"]["on_chip_bytes"], 45 * 1024);
+  expect(json["results"][0], false, 46);
+  expect(run({"--on-chip-memory", "46KB"})["results"][0], true, 6);
 }
 
 }  // namespace beampipe::program_test

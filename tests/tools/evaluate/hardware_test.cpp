@@ -152,7 +152,7 @@ TEST(Hardware, OnlyPixelsOnChipTakeRoomInCores) {
   const Trace trace = make_scene("fence", {.triangles = 1000, .width = 40, .height = 40});
   for (const auto& [spec, place, bytes] : {std::tuple{"msaa:8", Place::in_memory, 0},
                                            {"msaa:8", Place::on_chip, 80 * 1024},
-                                           {"beam", Place::on_chip, 66 * 1024}}) {
+                                           {"beam", Place::on_chip, 46 * 1024}}) {
     FrameInput options;
     options.memory.framebuffer = place;
     FrameReport report;
