@@ -3,7 +3,7 @@
 
 usage: docs/texture_bytes.py PROGRAM
 
-PROGRAM is for instance build/release/tools/beampipe. The scenes have materials; pictures are 1280 x 720.
+PROGRAM is for instance build/release/tools/beampipe. The scenes have materials; pictures are 640 x 360.
 """
 import pathlib
 import sys
@@ -24,8 +24,8 @@ def main():
                        "DRAM, all data")
     for scene in SCENES:
         with tempfile.TemporaryDirectory() as folder:
-            trace = measure.make(program, scene, pathlib.Path(folder) / "trace.json", "--width", "1280", "--height",
-                                 "720")
+            trace = measure.make(program, scene, pathlib.Path(folder) / "trace.json", "--width", "640", "--height",
+                                 "360")
             results = measure.results(program, "run", trace, SPECS, pathlib.Path(folder) / "results")
         for spec in SPECS:
             stages = measure.stages(results[spec])
