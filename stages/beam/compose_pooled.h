@@ -6,7 +6,7 @@
 // watermark are final. When the pool runs low, a collection looks for them in all pixels, and when a pixel has as many
 // owners as it may have, in that pixel: their area (simd/conserve.h) and colour are added to the pixel's sums, and
 // their bytes are free again. If nothing is final, the two owners of the pixel are merged whose depth planes are
-// closest at the positions that they own. From then on they share a mean colour and one depth plane.
+// closest at the means of the positions that they own. From then on they share a mean colour and one depth plane.
 //
 // Specks own no position. They are added at once, if the owners of the positions next to them do not hide them.
 //

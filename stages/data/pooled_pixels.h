@@ -1,8 +1,8 @@
 // What the pixels of a tile keep while they are open. A pixel that nothing has touched, that one triangle covers, or
 // that is finished needs no more than a word of six bytes. A pixel that surfaces share has a record as well: bit planes
 // that say which surface owns which mask position, with as many planes as there are states; 8 bytes for each surface;
-// and 16 bytes of sums once a surface is final. Records lie in chunks of a pool that the tile's pixels have in common.
-// When the pool has no free chunk, a record continues in memory.
+// and 16 bytes of sums once a surface is final or a speck was seen. Records lie in chunks of a pool that the tile's
+// pixels have in common. When the pool has no free chunk, a record continues in memory.
 //
 // The modelled machine links the chunks of a record, and those that are free, as a file system does. Which chunk is
 // where changes nothing, so this program counts chunks and keeps each record in one piece. It also keeps the positions

@@ -157,6 +157,12 @@ TEST(ComposePooled, CostOfStates) {
   EXPECT_EQ(pooled_costs::join(5, 8).bit, 8u * (2 + 2 + 1));
   EXPECT_EQ(pooled_costs::join(2, 1).bit, 1u);
   EXPECT_EQ(pooled_costs::join(1, 8).bit, 0u);
+  // Each pixel is charged by its own planes and states.
+  PooledWork work;
+  work.splits[1] = 1, work.splits[3] = 2, work.joins[2] = 1, work.joins[5] = 3;
+  StageCounters counters;
+  charge<8>(work, counters);
+  EXPECT_EQ(counters.ops, OperationCounts{.bit = 8 * (2 + 2 * 14 + 1 + 3 * 5)});
 }
 
 // Two surfaces become one, by hand:
