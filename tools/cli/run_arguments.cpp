@@ -57,7 +57,10 @@ void add_run_arguments(Command& command, RunArguments& arguments) {
       .add("-t,--technique", arguments.specs,
            "one or more techniques, from the list below; this option may be repeated")
       .required();
-  command.add("-o,--output", arguments.output, "the folder for pictures and report.json; it is created if necessary")
+  command
+      .add("-o,--output", arguments.output,
+           "the folder for pictures and report.json; it is created if necessary, and earlier results of the "
+           "same trace in it are replaced")
       .required();
   command.add("--frames", arguments.frames,
               "render only frames A-B of the trace, or frame A; the first frame is 0 (default: all)");

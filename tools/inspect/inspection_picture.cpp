@@ -136,7 +136,7 @@ std::string weight_bars(const std::vector<InspectedSurface>& surfaces, const Pix
     svg += format("<line x1=\"%.1f\" x2=\"%.1f\" y1=\"%.1f\" y2=\"%.1f\" stroke=\"#000\" stroke-width=\"2\"/>\n", truth,
                   truth, y - 1, y + 15);
     svg +=
-        text_at(bars + kBarWidth + 8, y + 12, format("%.4f", surface.weight)) +
+        text_at(bars + kBarWidth + 8, y + 12, format("%.4f", std::abs(surface.weight) < 5e-5 ? 0.0 : surface.weight)) +
         text_at(bars + kBarWidth + 58, y + 12,
                 format("%+.4f", std::abs(surface.weight - surface.truth) < 5e-5 ? 0.0 : surface.weight - surface.truth),
                 "class=\"dim\"");
