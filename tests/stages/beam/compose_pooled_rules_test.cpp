@@ -387,6 +387,33 @@ TEST(PooledRules, MergesTheClosestSurfaces) {
   EXPECT_NEAR(found.color.g, 96.0 / 256, 0.012);
 }
 
+// Of surfaces at equal depth, those become one that are closest in the order of the draws, here the second and the
+// third. A fourth one hides both of them, so the first one has kept its colour.
+TEST(PooledRules, AtEqualDepthTheClosestInTheTraceBecomeOne) {
+  SetupTriangles triangles;
+  add_left_of(triangles, 80, -0.5f);
+  for (int i = 0; i < 4; ++i) add_everywhere(triangles, -0.1f);  // not in the list
+  add_triangle(triangles, {80, -9'000, -0.5f}, {160, -9'000, -0.5f}, {160, 9'000, -0.5f});
+  add_right_of(triangles, 160, -0.5f);
+  add_right_of(triangles, 80, -0.9f);
+  const glm::vec3 black(0);
+  const std::vector<glm::vec3> colors{kRed, black, black, black, black, kGreen, kBlue, black};
+  OpenTile<8, 2> tile(triangles, colors);
+  const PixelColor found = tile.compose({0, 5, 6, 7}).at(0);
+  EXPECT_EQ(tile.merges[0], 1);
+  EXPECT_NEAR(found.color.r, 80.0 / 256, 0.012);
+  EXPECT_NEAR(found.color.g, 0, 1e-6);
+  EXPECT_NEAR(found.color.b, 0, 1e-6);
+}
+
+// The loss counts the positions of the smaller surface, whichever comes first: here 2, at a distance of 0.25 at either
+// mean.
+TEST(PooledRules, ALossIsThatOfTheSmallerSurface) {
+  const PlacedSurface<float> small{2, {-0.5f, 0, 0}, -0.25f, 0}, large{5, {-0.25f, 0, 0}, 0.25f, 0};
+  EXPECT_EQ(merge_loss(small, large), 1.0f);
+  EXPECT_EQ(merge_loss(large, small), 1.0f);
+}
+
 // Two surfaces that become one have the depth of the larger one: a surface between the two depths loses or wins all.
 TEST(PooledRules, MergedSurfacesHaveTheDepthOfTheLargerOne) {
   for (const bool larger_is_nearer : {true, false}) {
