@@ -47,7 +47,8 @@ class PooledComposer {
   enum class Outcome { hidden, composed, merged };  // merged: two owners became one
 
   // `number`: of the fragment's triangle in the list. Whether closed pixels hide the fragment is decided here, although
-  // the raster has left out many already: so pictures do not depend on how far the raster is ahead.
+  // the raster has left out many already: so how far the raster is ahead changes no visibility. It may change when a
+  // collection comes, and with it the rounding of sums.
   Outcome add(const Fragment& fragment, std::uint32_t number, ClosedDepth& closed) {
     ++work.fragments;
     at_.number = number;
