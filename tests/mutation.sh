@@ -123,6 +123,7 @@ mutants=(  # file | text as it is | broken
   'stages/beam/compose_pooled_pixel-inl.h|if (shape.has_final) final.store(record.head->final);|'
   'stages/beam/compose_pooled.cpp|if (retire_final(watermark)) store(closed);|retire_final(watermark);'
   'stages/beam/compose_pooled.cpp|at_.shape.owners < before|false'
+  'stages/beam/compose_pooled_cost.h|kOfMaskTest{.bit = 2 * Words}|kOfMaskTest{.bit = Words}'
   'stages/beam/compose_pooled_cost.h|of_votes[planes] * work.specks[planes]|of_votes[0] * work.specks[planes]'
   'stages/beam/compose_pooled_cost.h|of_join[states] * work.joins[states]|of_join[1] * work.joins[states]'
   'stages/beam/beam_fragment_cost.cpp|.narrow * work.edges.narrow|.narrow * work.edges.wide'

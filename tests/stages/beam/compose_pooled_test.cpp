@@ -144,6 +144,8 @@ TEST(ComposePooled, ACollectionFinishesPixels) {
   expect_pixel(tile.compose({0, 1, 2}, &watermarks).at(0), 1, {0.5, 0.5, 0}, 1e-7);
   EXPECT_EQ(tile.pixels.words[0].kind, PixelKind::finished);
   EXPECT_EQ(tile.pixels.pool.used(), 0u);
+  const std::uint32_t first = tile.pixels.records.take(0), second = tile.pixels.records.take(0);
+  EXPECT_EQ(first + second, 0u + 1u) << "of the pixel's record and the spare one";
   EXPECT_TRUE(tile.closed.hides(0, 0, -0.99f)) << "nothing can be seen there any more";
 }
 
@@ -229,6 +231,37 @@ TEST(ComposePooled, CostOfASpecksVotes) {
   StageCounters counters;
   charge<8>(work, counters);
   EXPECT_EQ(counters.ops, (OperationCounts{.add = 3, .bit = 3 * 2 * 2, .fetch = 3, .convert = 2}));
+}
+
+// What a single step of each kind is charged, with masks of eight words.
+TEST(ComposePooled, CostsOfSteps) {
+  struct Step {
+    const char* name;
+    std::uint64_t PooledWork::*count;
+    OperationCounts ops;
+    std::uint64_t bytes_read;
+  };
+  const Step steps[] = {
+      {"a fragment, with the closed depth and the word", &PooledWork::fragments, {.add = 1}, 57 + 4 + 6},
+      {"what is free, and is taken: three operations on masks", &PooledWork::masks, {.bit = 3 * 8}, 0},
+      {"an intersection, and whether it is empty", &PooledWork::masks_tested, {.bit = 2 * 8}, 0},
+      {"a comparison of shares", &PooledWork::order_tests, {.add = 1}, 0},
+      {"a mean of positions: two sums, and for each a conversion, a division, two products and the pixel's centre",
+       &PooledWork::measured,
+       {.mul_add = 2 * 2, .add = 2 * 256 + 2, .special = 2, .convert = 2},
+       0},
+      {"a word that a collection looks at", &PooledWork::words_scanned, {}, 6},
+      {"a word at the end", &PooledWork::finished, {}, 6},
+  };
+  for (const Step& step : steps) {
+    PooledWork work;
+    work.*step.count = 1;
+    StageCounters counters;
+    charge<8>(work, counters);
+    EXPECT_EQ(counters.ops, step.ops) << step.name;
+    EXPECT_EQ(counters.bytes_read, step.bytes_read) << step.name;
+    EXPECT_EQ(counters.bytes_written, 0u) << step.name;
+  }
 }
 
 }  // namespace beampipe::compose_pooled_test
