@@ -1,8 +1,6 @@
 #include "simd/position_mask.h"
 
-#include <algorithm>
 #include <bit>
-#include <cmath>
 
 #undef HWY_TARGET_INCLUDE
 #define HWY_TARGET_INCLUDE "simd/position_mask.cpp"
@@ -162,13 +160,11 @@ EdgesTested set_long_mask(const TriangleInPixel& in, const TouchedCells<kLanes>&
   EdgesOverCells<double, 1> edges;
   EdgesTested tested;
   for (int k = 0; k < 3; ++k) {
-    const EdgeInPixel<double> edge = edge_in_pixel(triangle, k);
+    const EdgeInPixel<double> edge = edge_for_positions(triangle, k);
     const double right = edge.a * grid.cell_width, down = edge.b * grid.cell_height;
-    const double not_owned = owns_its_samples(edge.a, edge.b) ? 0 : 1;
-    if (edge.c - not_owned + kSubpixelUnits * (std::min(edge.a, 0.0) + std::min(edge.b, 0.0)) < 0)
-      ++(std::max(std::abs(edge.a), std::abs(edge.b)) < kSmallSlope ? tested.narrow : tested.wide);
+    if (!is_pixel_inside(edge)) ++(has_small_slopes(edge) ? tested.narrow : tested.wide);
     edges.a[k][0] = edge.a, edges.b[k][0] = edge.b, edges.right[k][0] = right * kStep, edges.down[k][0] = down;
-    edges.c[k][0] = edge.c - not_owned + right * touched.left[0] + down * touched.top[0];
+    edges.c[k][0] = edge.c + right * touched.left[0] + down * touched.top[0];
   }
   set_mask<kColumns>(edges, touched, 0, grid, mask);
   return tested;

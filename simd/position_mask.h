@@ -36,7 +36,8 @@ struct EdgesTested {
 // masks[i] = the positions that in[i] covers, by the top-left rule. Lanes are across positions.
 EdgesTested position_masks(const TriangleInPixel* in, std::size_t count, const PositionGrid& grid, WideMask* masks);
 
-// ---- The scalar twin: one edge after the other. Wide and Int are std::int64_t, std::int32_t or counting numbers. ----
+// ---- The scalar twin: one edge after the other. Wide is std::int64_t, double or a counting
+// number; Int is std::int32_t too. ----
 
 // Edge k. A position is inside if the edge's value there is >= 0.
 template <class Wide>

@@ -62,14 +62,14 @@ class PooledComposer {
       return Outcome::composed;
     }
     const bool covers = fragment.alpha == 1.0f && mask == everywhere();
-    if (at_.word->kind == PixelKind::covered) {
+    if (at_.word().kind == PixelKind::covered) {
       const Side side = side_of(fragment);
       if (side == Side::farther || (side == Side::nearer && covers)) {
         if (observer_) observer_->arrives(fragment, side == Side::nearer ? fragment.mask : WideMask{});
         if (side == Side::nearer) cover(fragment, number, closed);
         return Outcome::composed;
       }
-    } else if (at_.word->kind == PixelKind::untouched && covers) {
+    } else if (at_.word().kind == PixelKind::untouched && covers) {
       if (observer_) observer_->arrives(fragment, fragment.mask);
       cover(fragment, number, closed);
       return Outcome::composed;
@@ -85,15 +85,15 @@ class PooledComposer {
   PixelColor finish(std::uint32_t pixel) {
     ++work.finished;
     look_at(pixel);
-    if (observer_ && at_.word->kind != PixelKind::finished) observer_->arrivals_end();
-    switch (at_.word->kind) {
+    if (observer_ && at_.word().kind != PixelKind::finished) observer_->arrivals_end();
+    switch (at_.word().kind) {
       case PixelKind::untouched:
         return {0.0f, glm::vec3(0.0f)};
       case PixelKind::finished:
-        return {1.0f, glm::vec3(at_.word->color[0], at_.word->color[1], at_.word->color[2])};
+        return {1.0f, glm::vec3(at_.word().color[0], at_.word().color[1], at_.word().color[2])};
       case PixelKind::covered: {
-        const glm::vec3 color = colors_.of_cover(pixel, at_.word->number);
-        if (observer_) observer_->adds(bin_.list[at_.word->number], 1.0, color);
+        const glm::vec3 color = colors_.of_cover(pixel, at_.word().number);
+        if (observer_) observer_->adds(bin_.list[at_.word().number], 1.0, color);
         return {1.0f, color};
       }
       case PixelKind::open:
@@ -156,7 +156,7 @@ class PooledComposer {
   // Where the fragment lies in a pixel that one triangle covers.
   Side side_of(const Fragment& fragment) {
     ++work.contests, ++work.planes;
-    if (bin_.lists_fetches) result_.fetched.push_back(bin_.list[at_.word->number]);
+    if (bin_.lists_fetches) result_.fetched.push_back(bin_.list[at_.word().number]);
     const PlaneGap<float> gap = plane_gap(fragment.plane, at_.cover_depth().plane);
     return is_nearer(gap) ? Side::nearer : is_farther(gap) ? Side::farther : Side::crossing;
   }
@@ -292,7 +292,7 @@ class PooledComposer {
     pixels_.pool.collected();
     for (std::uint32_t pixel = 0; pixel < pixels_.words.size(); ++pixel) {
       look_at(pixel);
-      if (at_.word->kind != PixelKind::open || !may_retire(watermark)) continue;
+      if (at_.word().kind != PixelKind::open || !may_retire(watermark)) continue;
       at_.open();
       if (retire_final(watermark)) store(closed);
     }
@@ -300,10 +300,10 @@ class PooledComposer {
 
   // Does any owner reach in front of the watermark?
   bool may_retire(float watermark) {
-    const RecordView<Words> record = pixels_.records.view(at_.word->record_size, at_.word->number);
+    const RecordView<Words> record = pixels_.records.view(at_.word().record_size, at_.word().number);
     bool may = false;
-    at_.count_read(at_.word->shape.owners * sizeof(OwnerSlot));
-    for (std::size_t k = 0; k < at_.word->shape.owners; ++k) {
+    at_.count_read(at_.word().shape.owners * sizeof(OwnerSlot));
+    for (std::size_t k = 0; k < at_.word().shape.owners; ++k) {
       ++work.finality_tests, ++work.planes;
       if (bin_.lists_fetches) result_.fetched.push_back(bin_.list[record.slots[k].triangle()]);
       may |= finality_of(record.plane(k), watermark) != Finality::is_open;
@@ -455,11 +455,11 @@ class PooledComposer {
   // that face towards the viewer and specks that face away, those with the smaller area are the hidden sides of thin
   // bodies.
   void add_speck(const Fragment& fragment) {
-    if (at_.word->kind == PixelKind::open) at_.look_at_record();
-    ++work.specks[at_.word->kind == PixelKind::open ? at_.shape.planes() : 0];
+    if (at_.word().kind == PixelKind::open) at_.look_at_record();
+    ++work.specks[at_.word().kind == PixelKind::open ? at_.shape.planes() : 0];
     const float votes = votes_for(fragment);
     if (votes == 0) return;
-    const bool is_shared = at_.word->kind == PixelKind::open;
+    const bool is_shared = at_.word().kind == PixelKind::open;
     if (!is_shared) at_.open();
     at_.use_sums();
     FixedSum &same = at_.record.head->sums.specks[fragment.front],
@@ -484,10 +484,10 @@ class PooledComposer {
   }
 
   float votes_for(const Fragment& speck) {
-    if (at_.word->kind == PixelKind::untouched) return 3.0f;
-    if (at_.word->kind == PixelKind::covered) {
+    if (at_.word().kind == PixelKind::untouched) return 3.0f;
+    if (at_.word().kind == PixelKind::covered) {
       ++work.planes;
-      if (bin_.lists_fetches) result_.fetched.push_back(bin_.list[at_.word->number]);
+      if (bin_.lists_fetches) result_.fetched.push_back(bin_.list[at_.word().number]);
       return is_nearer_than(speck, at_.cover_depth().plane) ? 3.0f : 0.0f;
     }
     float votes = 0;

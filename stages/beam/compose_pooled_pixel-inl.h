@@ -34,7 +34,6 @@ class PixelAtHand {
 
   std::uint32_t index = 0;   // within the tile
   std::uint32_t number = 0;  // in the list, of the triangle for which pixels are looked at
-  const PixelWord* word = nullptr;
 
   // What rules work on, from open() to store(); of specks, from look_at_record().
   RecordShape shape;
@@ -44,8 +43,9 @@ class PixelAtHand {
 
   void look_at(std::uint32_t pixel) {
     index = pixel;
-    word = word_ = &pixels_.words[pixel];
+    word_ = &pixels_.words[pixel];
   }
+  const PixelWord& word() const { return *word_; }
   void look_at_record() {
     shape = word_->shape;
     area = word_->area;
@@ -139,16 +139,16 @@ class PixelAtHand {
       spare_ = pixels_.records.take(0);
     }
     ++work_.joins[shape.states()];
-    resize();
+    store_sums();
     count_write(shape.planes() * 4 * Words);
     if (shape.has_empty) empty.store(record.head->empty);
     if (shape.has_final) final.store(record.head->final);
-    word_->shape = shape;
-    word_->area = area;
   }
   // The same where positions have not changed.
   void store_sums() {
-    resize();
+    pixels_.pool.resize(word_->chunks, shape.chunks(Words));
+    float& most = result_.maps.record_bytes[index];
+    most = std::max(most, static_cast<float>(word_->chunks.count * (kChunkBytes + kChunkLinkBytes)));
     word_->shape = shape;
     word_->area = area;
   }
@@ -162,11 +162,6 @@ class PixelAtHand {
  private:
   static constexpr std::uint32_t kPositions = 32 * Words;
 
-  void resize() {
-    pixels_.pool.resize(word_->chunks, shape.chunks(Words));
-    float& most = result_.maps.record_bytes[index];
-    most = std::max(most, static_cast<float>(word_->chunks.count * (kChunkBytes + kChunkLinkBytes)));
-  }
   void release() {
     if (word_->kind != PixelKind::open) return;
     pixels_.records.give_back(word_->record_size, word_->number);
