@@ -52,6 +52,8 @@ struct FrameSinks {
   // What happened in each of FrameInput::pixels. Only techniques that are observable fill it.
   std::vector<PixelHistory>* histories = nullptr;
   DramTrace* dram_trace = nullptr;  // DRAM requests, if memory is modelled
+
+  bool operator==(const FrameSinks&) const = default;
 };
 
 // A frame to render. `frame` is one of the trace's.

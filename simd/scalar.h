@@ -38,6 +38,7 @@ inline float square_root(float x) { return std::sqrt(x); }
 inline std::int32_t to_integer(float x) { return static_cast<std::int32_t>(x); }  // towards 0
 inline std::uint32_t to_bits(float x) { return static_cast<std::uint32_t>(x); }   // towards 0; x >= 0
 inline std::uint32_t bits_of(float x) { return std::bit_cast<std::uint32_t>(x); }
+inline std::uint32_t bits_of(std::int32_t x) { return static_cast<std::uint32_t>(x); }
 inline float float_of(std::uint32_t bits) { return std::bit_cast<float>(bits); }
 inline std::uint32_t plain(std::uint32_t x) { return x; }  // a value that decides what is done next
 inline float to_float(std::int32_t x) { return static_cast<float>(x); }

@@ -25,7 +25,7 @@ FrameResult render_words(const FrameJob& job, const BeamOptions& beam) {
   const FrameContext context(job, {.takes_positions = true});
   const PositionSet& positions = cell_positions(beam.positions);
   const PositionGrid grid(beam.positions);
-  const BeamFragmentOptions options = grid_options(grid, owners_fragment_bytes(Words));
+  const BeamFragmentOptions options = grid_options(grid, owners_fragment_bytes(Words), kOwnersWholeFragmentBytes);
   const BinPlan plan{.stages = {StageId::bin_sort, StageId::conservative_raster, StageId::beam_fragment,
                                 StageId::compose, StageId::shade, StageId::resolve},
                      .framebuffer = beam_framebuffer(beam),

@@ -1,6 +1,9 @@
 // The beam in streaming order, as immediate-mode hardware works: fragments come in primitive order, without an A-buffer
 // or any memory per fragment. The pixels and the pool of their records lie in memory. Of more than twelve owners of a
-// pixel, two become one, so no record is longer than 176 bytes.
+// pixel, two become one. Once the pool is full it is closed: from then on a pixel has no more chunks than it has or, if
+// these are fewer, than two surfaces take, and further surfaces are merged.
+#include <memory>
+
 #include "pipeline/bins/render_bins.h"
 #include "pipeline/technique_table.h"
 #include "pipeline/units/fragment_units.h"
@@ -12,15 +15,16 @@ namespace {
 
 constexpr int kPositions = 128;  // of the mask
 constexpr std::size_t kWords = kPositions / 32, kOwners = 12;
-constexpr int kPoolBytes = 90;  // for each pixel of the frame
+constexpr int kPoolBytes = 90;  // for each pixel
 
 Framebuffer stream_framebuffer() { return {.surfaces = pooled_pixel_surfaces(kPoolBytes)}; }
 
-FrameResult render_stream(const FrameJob& job) {
+// `closes_at`: the triangle from which on the pool is closed.
+FrameResult render_frame(const FrameJob& job, FramePool& pool, std::uint32_t closes_at) {
   const FrameContext context(job, {.takes_positions = true});
   const PositionSet& positions = cell_positions(kPositions);
   const PositionGrid grid(kPositions);
-  const BeamFragmentOptions options = grid_options(grid, owners_fragment_bytes(kWords));
+  const BeamFragmentOptions options = grid_options(grid, owners_fragment_bytes(kWords), kOwnersWholeFragmentBytes);
   const BinPlan plan{.stages = {StageId::conservative_raster, StageId::beam_fragment, StageId::compose, StageId::shade,
                                 StageId::resolve},
                      .framebuffer = stream_framebuffer()};
@@ -29,8 +33,9 @@ FrameResult render_stream(const FrameJob& job) {
     BeamFragmentUnit make_fragments(bin, options);
     ShadeUnit shade(bin);
     bin.triangle_fetches().load_setup();
-    ComposePooledUnit<kWords> compose(bin, owners_bin(bin, positions, bin.list, nullptr, OwnerPlace::covered),
-                                      {.bytes_per_pixel = kPoolBytes, .most_owners = kOwners, .is_of_frame = true});
+    ComposePooledUnit<kWords> compose(
+        bin, owners_bin(bin, positions, bin.list, nullptr, OwnerPlace::covered),
+        {.bytes_per_pixel = kPoolBytes, .most_owners = kOwners, .of_frame = &pool, .closes_at = closes_at});
 
     raster.queued(bin.list, [&](const std::vector<Pair>& pairs, std::size_t first) {
       compose(make_fragments.queued(pairs), first, raster.closed(), shade);
@@ -40,6 +45,23 @@ FrameResult render_stream(const FrameJob& job) {
   });
 }
 
+// A frame that fills the pool is rendered again, with the pool closed from there on.
+FrameResult render_stream(const FrameJob& job) {
+  const auto new_pool = [&] {
+    return std::make_unique<FramePool>(std::size_t{job.frame.width} * job.frame.height, kPoolBytes,
+                                       least_chunks(kWords));
+  };
+  FrameInput whole_frame = job.run;
+  whole_frame.pixels = nullptr;
+  const FrameSinks none;
+  const bool collects = !(job.sinks == none) || job.run.pixels;
+  const std::unique_ptr<FramePool> claimed = new_pool();
+  FrameResult result = render_frame({job.trace, job.frame, whole_frame, none}, *claimed, ~0u);
+  const std::uint32_t full_at = claimed->full_at();
+  if (full_at == ~0u && !collects) return result;
+  return render_frame(job, *new_pool(), full_at);
+}
+
 }  // namespace
 
 TechniqueKind beam_stream_kind() {
@@ -47,7 +69,8 @@ TechniqueKind beam_stream_kind() {
           .variant = {"order", "stream"},
           .description =
               "the surfaces of beam with fragments in primitive order: no A-buffer, no bins, no sort; 128 positions, "
-              "and the pool lies in memory; of more than twelve surfaces of a pixel, two are merged",
+              "and the pool lies in memory; of more than twelve surfaces of a pixel two are merged, and of fewer once "
+              "the pool is full",
           .source = "ours",
           .examples = {"beam:order=stream"},
           .stressed = {"beam:order=stream"},

@@ -1,9 +1,11 @@
 // Composition with records in a pool: pixels pay for the edges that they have.
 #pragma once
 
+#include <algorithm>
 #include <vector>
 
 #include "pipeline/memory/record_memory.h"
+#include "pipeline/units/frame_pool.h"
 #include "pipeline/units/owner_units.h"
 #include "stages/beam/compose_pooled.h"
 #include "stages/cost/closed_depth_cost.h"
@@ -23,7 +25,8 @@ inline std::vector<Surface> pooled_pixel_surfaces(int pool_bytes) {
 struct RecordPool {
   int bytes_per_pixel;
   std::size_t most_owners = kMostOwners;  // of a pixel
-  bool is_of_frame = false;               // all bins share it, and it does not end with the share of one
+  FramePool* of_frame = nullptr;          // in memory; null: the bin's, on chip
+  std::uint32_t closes_at = ~0u;          // as PooledPixels::closes_at
 };
 
 template <std::size_t Words>
@@ -35,11 +38,16 @@ class ComposePooledUnit {
         owners_(owners),
         maps_{bin.pixel_counter("fragments"), bin.pixel_counter("merges")},
         pooled_maps_{bin.pixel_counter("memory_chunks"), bin.pixel_counter("record_bytes")},
+        frame_pool_(pool.of_frame),
         pixels_(bin.tile.pixels(),
-                pool.is_of_frame ? kUnlimited : bin.tile.pixels() * static_cast<std::size_t>(pool.bytes_per_pixel),
+                pool.of_frame ? ChunkPool::of_frame(least_chunks(Words))
+                              : ChunkPool(bin.tile.pixels() * static_cast<std::size_t>(pool.bytes_per_pixel)),
                 pool.most_owners),
         words_(bin, pooled_pixel_surfaces(0)),
-        records_(bin.memory(), kRecordPool, bin.z_order(), static_cast<std::uint32_t>(pool.bytes_per_pixel)) {}
+        records_(bin.memory(), kRecordPool, bin.tile.pixels(),
+                 {most_chunks(Words), kChunkBytes + pixels_.pool.link_bytes()}) {
+    pixels_.closes_at = pool.closes_at;
+  }
 
   // `first`: as in OwnersBatch.
   void operator()(const std::vector<Fragment>& fragments, std::size_t first, ClosedDepth& closed, ShadeUnit& shade) {
@@ -48,6 +56,8 @@ class ComposePooledUnit {
     charge(closed, stage_.counters);
     words_.merge(fragments);
     for (std::uint64_t i = 0; i < result.collections; ++i) words_.scan();
+    collections_ += result.collections;
+    if (frame_pool_) frame_pool_->add(result.claims);
     finish(result, shade);
   }
 
@@ -58,19 +68,30 @@ class ComposePooledUnit {
     const std::vector<PixelColor> colors = finish_pooled(owners_, stage_.timed(), pixels_, result);
     finish(result, shade);
     records_.flush(stage_.counters);
-    if (bin_.models_memory()) records_.add_bytes(bin_.pixel_counter("bytes"));
+    if (bin_.models_memory() && !bin_.keeps_pixels_on_chip()) records_.add_bytes(bin_.pixel_counter("bytes"));
+    if (!frame_pool_) report_pool();
     bin_.triangle_fetches().flush(stage_.counters);
     return resolve(colors, bin_.background(), kColorBytes + sizeof(std::uint16_t), bin_.stage(StageId::resolve).timed(),
                    bin_.observers());
   }
 
  private:
-  static constexpr std::size_t kUnlimited = std::size_t{1} << 40;  // bytes
+  // What holds for the whole bin, in each of its pixels.
+  void report_pool() {
+    const auto set = [&](const char* name, double value) {
+      std::vector<float>& pixels = bin_.pixel_counter(name);
+      std::fill(pixels.begin(), pixels.end(), static_cast<float>(value));
+    };
+    set("collections", static_cast<double>(collections_));
+    set("pool_bytes", static_cast<double>(pixels_.pool.peak() * (kChunkBytes + pixels_.pool.link_bytes())) /
+                          static_cast<double>(bin_.tile.pixels()));
+  }
 
   PooledResult new_result() {
     PooledResult result(pooled_maps_);
     result.texels = bin_.texels();
     result.lists_visits = bin_.models_memory() && !bin_.keeps_pixels_on_chip();
+    result.lists_claims = frame_pool_ != nullptr;
     return result;
   }
 
@@ -88,9 +109,11 @@ class ComposePooledUnit {
   OwnersBin owners_;
   OwnersMaps maps_;
   PooledMaps pooled_maps_;
+  FramePool* frame_pool_;
   PooledPixels<Words> pixels_;
   OpenPixelStore words_;
   RecordMemory records_;
+  std::uint64_t collections_ = 0;
 };
 
 }  // namespace beampipe

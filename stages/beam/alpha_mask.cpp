@@ -39,6 +39,7 @@ class AlphaMask {
     const float part = shader_.is_cutout(fragment.triangle) ? cut_out(fragment) : let_through(fragment);
     fragment.alpha *= part;
     fragment.tiny |= fragment.mask.none();
+    fragment.whole &= part >= 1.0f;
   }
 
   AlphaMaskWork work;

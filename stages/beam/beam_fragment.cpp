@@ -207,6 +207,8 @@ void beam_fragment(const SetupTriangles& triangles, const std::vector<Pair>& in,
       ++work.centroid_depths;
     }
     if (fragment.tiny) locate(options, fragment, work);
+    fragment.whole = pair.full || (fragment.alpha == 1.0f && fragment.mask == whole);
+    work.whole += fragment.whole;
   }
   work.pairs = in.size();
   work.computed = computed.coverage.size();

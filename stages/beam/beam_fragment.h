@@ -29,6 +29,7 @@ struct BeamFragmentOptions {
   const MaskTable* table = nullptr;           // for MaskSource::table
   const PositionGrid* grid = nullptr;         // for MaskSource::grid
   std::uint32_t fragment_bytes = 0;           // size of a fragment that is passed on, in the modelled machine
+  std::uint32_t whole_fragment_bytes = 0;     // the same of one that covers its pixel; 0: the same size
   // A speck gets as many positions as its area fills, the nearest to its centroid, but at most this many. The paper
   // (section 2.2.1) gives it one, the slides (slide 8) "up to 3".
   int tiny_positions = 0;
@@ -38,11 +39,13 @@ struct BeamFragmentOptions {
 };
 
 // Options for masks on a grid, without the depth range of the clipped triangle. `grid` must outlive the result.
-inline BeamFragmentOptions grid_options(const PositionGrid& grid, std::uint32_t fragment_bytes) {
+inline BeamFragmentOptions grid_options(const PositionGrid& grid, std::uint32_t fragment_bytes,
+                                        std::uint32_t whole_fragment_bytes = 0) {
   BeamFragmentOptions options;
   options.mask = MaskSource::grid;
   options.grid = &grid;
   options.fragment_bytes = fragment_bytes;
+  options.whole_fragment_bytes = whole_fragment_bytes;
   options.clipped_depth = false;
   return options;
 }

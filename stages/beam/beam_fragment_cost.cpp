@@ -177,11 +177,14 @@ void charge(const BeamFragmentWork& work, const BeamFragmentOptions& options, St
   std::uint64_t positions = 0;
   if (options.mask == MaskSource::table) positions = kMaxMaskSamples;
   if (options.mask == MaskSource::exact) positions = options.positions.size() * kMaxMaskSamples;
-  if (options.mask == MaskSource::grid) positions = static_cast<std::uint64_t>(options.grid->count());
   counters.position_tests += 3 * positions * work.computed;
+  if (options.mask == MaskSource::grid)
+    counters.position_tests +=
+        static_cast<std::uint64_t>(options.grid->count()) * (work.edges.narrow + work.edges.wide);
   const std::uint32_t pair_bytes = options.clipped_depth ? kPairBytes : kPairWithDepthBytes;
   counters.bytes_read += work.pairs * (pair_bytes + sizeof(SetupTriangle));
-  counters.bytes_written += work.fragments * options.fragment_bytes;
+  const std::uint64_t whole = options.whole_fragment_bytes > 0 ? work.whole : 0;
+  counters.bytes_written += (work.fragments - whole) * options.fragment_bytes + whole * options.whole_fragment_bytes;
   counters.lanes_used += work.fragments;
   counters.lanes_issued += work.pairs;
 }

@@ -13,6 +13,7 @@ struct BeamFragmentWork {
   std::uint64_t triangles = 0;  // whose edges are prepared for masks
   EdgesTested edges;            // for MaskSource::grid
   std::uint64_t fragments = 0;
+  std::uint64_t whole = 0;            // of these, fragments with all positions and the area of a pixel
   std::uint64_t centroid_depths = 0;  // fragments whose depth at the centroid is computed
   // Specks that are given positions: specks, comparisons of their area with positions given so far, positions given.
   std::uint64_t specks = 0, speck_comparisons = 0, given = 0;

@@ -32,6 +32,8 @@ namespace beampipe {
 namespace HWY_NAMESPACE {
 namespace {
 
+#include "stages/beam/position_states-inl.h"
+
 // Of numbers, beside those of vectors.
 using beampipe::greater, beampipe::lesser, beampipe::magnitude;
 
@@ -44,38 +46,37 @@ class PooledComposer {
   PooledComposer(const OwnersBin& bin, PooledPixels<Words>& pixels, PooledResult& result)
       : bin_(bin), pixels_(pixels), result_(result), at_(pixels, result, work), colors_(bin, result, work) {}
 
-  enum class Outcome { hidden, composed, merged };  // merged: two owners became one
-
   // `number`: of the fragment's triangle in the list. Whether closed pixels hide the fragment is decided here, although
   // the raster has left out many already: so how far the raster is ahead changes no visibility. It may change when a
-  // collection comes, and with it the rounding of sums.
-  Outcome add(const Fragment& fragment, std::uint32_t number, ClosedDepth& closed) {
+  // collection comes, and with it the rounding of sums. Returns whether the fragment was not hidden.
+  bool add(const Fragment& fragment, std::uint32_t number, ClosedDepth& closed) {
     ++work.fragments;
     at_.number = number;
     if (bin_.watermarks && pixels_.pool.wants_collection()) collect((*bin_.watermarks)[number], closed);
-    if (closed.is_hidden(fragment.pixel, fragment.z_min)) return Outcome::hidden;
+    work.whole += fragment.whole;
+    if (closed.is_hidden(fragment.pixel, fragment.z_min)) return false;
     look_at(fragment.pixel);
     const Mask mask(fragment.mask);
     if (mask.none()) {
       if (observer_) observer_->arrives(fragment, {});
       add_speck(fragment);
-      return Outcome::composed;
+      return true;
     }
-    const bool covers = fragment.alpha == 1.0f && mask == everywhere();
     if (at_.word().kind == PixelKind::covered) {
       const Side side = side_of(fragment);
-      if (side == Side::farther || (side == Side::nearer && covers)) {
+      if (side == Side::farther || (side == Side::nearer && fragment.whole)) {
         if (observer_) observer_->arrives(fragment, side == Side::nearer ? fragment.mask : WideMask{});
         if (side == Side::nearer) cover(fragment, number, closed);
-        return Outcome::composed;
+        return true;
       }
-    } else if (at_.word().kind == PixelKind::untouched && covers) {
+    } else if (at_.word().kind == PixelKind::untouched && fragment.whole) {
       if (observer_) observer_->arrives(fragment, fragment.mask);
       cover(fragment, number, closed);
-      return Outcome::composed;
+      return true;
     }
     at_.open();
-    return share(fragment, mask, number, closed);
+    share(fragment, mask, number, closed);
+    return true;
   }
 
   // Computes the colours of all owners that are left, for finish().
@@ -153,7 +154,8 @@ class PooledComposer {
 
   enum class Side { nearer, farther, crossing };
 
-  // Where the fragment lies in a pixel that one triangle covers.
+  // Where the fragment lies in a pixel that one triangle covers. Nobody else owns a position there, so this is the only
+  // contest.
   Side side_of(const Fragment& fragment) {
     ++work.contests, ++work.planes;
     if (bin_.lists_fetches) result_.fetched.push_back(bin_.list[at_.word().number]);
@@ -167,19 +169,19 @@ class PooledComposer {
     closed.close(at_.index, fragment.z_max);
   }
 
-  Outcome share(const Fragment& fragment, const Mask& mask, std::uint32_t number, ClosedDepth& closed) {
-    ++work.masks;
-    work.masks_tested += at_.shape.owners;
+  void share(const Fragment& fragment, const Mask& mask, std::uint32_t number, ClosedDepth& closed) {
     std::uint32_t contested = 0;  // bit k: owner k
-    for (std::size_t k = 0; k < at_.shape.owners; ++k) contested |= std::uint32_t{!(at_.owned(k) & mask).none()} << k;
-    const Mask free = at_.empty & mask, claimed = free | positions_won(fragment, mask, contested);
+    for (std::size_t k = 0; k < at_.shape.owners; ++k) contested |= std::uint32_t{is_met(at_.owned(k), mask)} << k;
+    const bool met_empty = at_.shape.has_empty && is_met(at_.empty, mask);
+    work.masks_tested += std::size_t{at_.shape.owners} + at_.shape.has_empty;
+    ++work.masks;
+    const Mask claimed = claim_of(at_.empty, mask, positions_won(fragment, mask, contested));
     if (observer_) observer_->arrives(fragment, claimed.wide());
-    if (claimed.none()) return Outcome::composed;
+    if (claimed.none()) return;
     ++work.claims;
-    const bool met_empty = !free.none();
     if (met_empty) {
-      at_.empty = without(at_.empty, claimed);
-      at_.shape.has_empty = !at_.empty.none();
+      ++work.takes;
+      at_.shape.has_empty = take_from(at_.empty, claimed);
     }
     const std::size_t before = at_.shape.owners;
     take_away(claimed, contested);
@@ -188,11 +190,12 @@ class PooledComposer {
     at_.make_room_for(at_.shape.owners + 1u);
     at_.record.set(at_.shape.owners, slot_of(fragment, mask, number), fragment.plane, fragment.z_max);
     at_.own(at_.shape.owners++, claimed);
-    work.bytes_written += sizeof(OwnerSlot);
-    const bool merged = at_.shape.owners > pixels_.most_owners && make_one_less(number);
+    ++at_.new_slots;
+    if (at_.shape.owners > pixels_.most_owners) make_one_less(number);
+    if (!at_.has_room()) at_.forget_sums();
+    while (!at_.has_room()) make_one_less(number);
     if (closes) close(closed);
     store(closed);
-    return merged ? Outcome::merged : Outcome::composed;
   }
 
   HWY_INLINE static OwnerSlot slot_of(const Fragment& fragment, const Mask& mask, std::uint32_t number) {
@@ -206,10 +209,11 @@ class PooledComposer {
   // An owner that has no position left is forgotten.
   void take_away(const Mask& claimed, std::uint32_t contested) {
     std::size_t kept = 0;
+    work.takes += static_cast<std::uint64_t>(std::popcount(contested));
     for (std::size_t k = 0; k < at_.shape.owners; ++k) {
       if (contested >> k & 1) {
-        const Mask left = without(at_.owned(k), claimed);
-        if (left.none()) continue;
+        Mask left = at_.owned(k);
+        if (!take_from(left, claimed)) continue;
         at_.own(k, left);
       }
       keep(k, kept++);
@@ -237,25 +241,31 @@ class PooledComposer {
   HWY_INLINE Mask positions_won(const Fragment& fragment, const Mask& mask, std::uint32_t contested) {
     Mask won = nowhere();
     if (contested == 0) return won;
-    const auto contests = static_cast<std::uint64_t>(std::popcount(contested));
-    work.contests += contests, work.planes += contests;
-    work.bytes_read += contests * sizeof(OwnerSlot);
-    if (bin_.lists_fetches)
-      for (std::uint32_t left = contested; left != 0; left &= left - 1)
-        result_.fetched.push_back(bin_.list[at_.record.slots[std::countr_zero(left)].triangle()]);
+    if (at_.word().kind != PixelKind::covered) charge_contests(contested);
     constexpr std::size_t kAtOnce = 8;
     for (std::size_t first = 0; first < at_.shape.owners; first += kAtOnce) {
       const PlaneSides<kAtOnce> sides = plane_sides<kAtOnce>(
           fragment.plane, {at_.record.z() + first, at_.record.dzdu() + first, at_.record.dzdv() + first});
-      const std::size_t end = std::min<std::size_t>(first + kAtOnce, at_.shape.owners);
-      for (std::size_t k = first; k < end; ++k)
-        won = won | (at_.owned(k) & mask & Mask::repeated(sides.nearer[k - first]));
-      for (std::uint64_t left = (contested >> first) & sides.crossing & 0xff; left != 0; left &= left - 1) {
+      const std::uint64_t met = (contested >> first) & 0xff;
+      work.wins += static_cast<std::uint64_t>(std::popcount(met & sides.nearer));
+      for (std::uint64_t left = met & sides.nearer; left != 0; left &= left - 1)
+        won = with_won(won, at_.owned(first + static_cast<std::size_t>(std::countr_zero(left))), mask);
+      for (std::uint64_t left = met & sides.crossing; left != 0; left &= left - 1) {
         const std::size_t k = first + static_cast<std::size_t>(std::countr_zero(left));
-        won = won | positions_won_from(k, fragment, at_.owned(k) & mask);
+        won = with_won(won, positions_won_from(k, fragment, at_.owned(k) & mask), mask);
       }
     }
     return won;
+  }
+
+  // Bit k: owner k.
+  void charge_contests(std::uint32_t contested) {
+    const auto contests = static_cast<std::uint64_t>(std::popcount(contested));
+    work.contests += contests, work.planes += contests;
+    work.bytes_read += contests * sizeof(OwnerSlot);
+    if (!bin_.lists_fetches) return;
+    for (std::uint32_t left = contested; left != 0; left &= left - 1)
+      result_.fetched.push_back(bin_.list[at_.record.slots[std::countr_zero(left)].triangle()]);
   }
 
   // The contested positions that the fragment takes from owner k. At equal depth the triangle that comes first in the
@@ -292,42 +302,51 @@ class PooledComposer {
     pixels_.pool.collected();
     for (std::uint32_t pixel = 0; pixel < pixels_.words.size(); ++pixel) {
       look_at(pixel);
-      if (at_.word().kind != PixelKind::open || !may_retire(watermark)) continue;
+      if (at_.word().kind != PixelKind::open) continue;
+      at_.look_at_record();
+      at_.count_read(0);
+      const Candidates candidates = find_candidates(watermark);
+      if (candidates.none()) continue;
       at_.open();
-      if (retire_final(watermark)) store(closed);
+      if (retire_final(candidates, watermark)) store(closed);
     }
   }
 
-  // Does any owner reach in front of the watermark?
-  bool may_retire(float watermark) {
-    const RecordView<Words> record = pixels_.records.view(at_.word().record_size, at_.word().number);
-    bool may = false;
-    at_.count_read(at_.word().shape.owners * sizeof(OwnerSlot));
-    for (std::size_t k = 0; k < at_.word().shape.owners; ++k) {
-      ++work.finality_tests, ++work.planes;
-      if (bin_.lists_fetches) result_.fetched.push_back(bin_.list[record.slots[k].triangle()]);
-      may |= finality_of(record.plane(k), watermark) != Finality::is_open;
+  // Owners that are final, and those for which it depends on their positions. Bit k: owner k.
+  struct Candidates {
+    std::uint32_t final = 0, perhaps = 0;
+
+    bool none() const { return (final | perhaps) == 0; }
+  };
+
+  // By the owners' planes over the whole pixel, which most often decide it.
+  Candidates find_candidates(float watermark) {
+    Candidates found;
+    for (std::size_t k = 0; k < at_.shape.owners; ++k) {
+      ++work.finality_tests;
+      const Finality finality = finality_of(plane_of(k), watermark);
+      found.final |= std::uint32_t{finality == Finality::is_final} << k;
+      found.perhaps |= std::uint32_t{finality == Finality::depends_on_positions} << k;
     }
-    return may;
+    return found;
   }
 
-  bool retire_final(float watermark) {
+  // Returns whether any is final.
+  bool retire_final(const Candidates& candidates, float watermark) {
     std::size_t count = 0;
-    for (std::size_t k = 0; k < at_.shape.owners; ++k)
-      if (is_final(k, plane_of(k), watermark)) list_owner(k, owners_[count++]);
+    for (std::uint32_t left = candidates.final | candidates.perhaps; left != 0; left &= left - 1) {
+      const auto k = static_cast<std::size_t>(std::countr_zero(left));
+      if (candidates.final >> k & 1 || farthest_of(k) <= watermark) list_owner(k, owners_[count++]);
+    }
     if (count > 0) retire(count);
     return count > 0;
   }
 
-  // Is the owner nowhere farther than the watermark? Its plane over the whole pixel most often says that it is, or that
-  // it is not.
-  bool is_final(std::size_t k, const DepthPlane<float>& plane, float watermark) {
-    ++work.finality_tests;
-    const Finality finality = finality_of(plane, watermark);
-    if (finality != Finality::depends_on_positions) return finality == Finality::is_final;
+  // The farthest depth of owner k at its positions.
+  float farthest_of(std::size_t k) {
     ++work.farthest_found;
     const WideMask positions = at_.owned(k).wide();
-    return farthest_depth(plane, bin_.positions.patterns.data(), Words, positions.words.data()) <= watermark;
+    return farthest_depth(plane_of(k), bin_.positions.patterns.data(), Words, positions.words.data());
   }
 
   // All but the plane and the mean.
@@ -346,22 +365,19 @@ class PooledComposer {
     ++work.retirements;
     at_.use_sums();
     sort_by_fraction(count);
+    FinalSums<std::int32_t, std::uint32_t> sums = at_.sums();
     auto final_positions = static_cast<float>(at_.final.count());
     for (std::size_t i = 0; i < count; ++i) {
       const Owner& owner = owners_[order_[i].owner];
       ++work.retired;
-      const float area = retired_area(owner.area(), kPositions, Taken<float>{at_.area, final_positions});
       const glm::vec3 color = colors_.of_final(at_.index, owner.index, owner.slot, owner.owned);
-      const float counted = owner.visible / kPositions;
-      if (observer_) observer_->settles(owner.owned.wide(), color, area, counted);
+      const float channels[] = {color[0], color[1], color[2]};
+      const float area = add_final(owner.area(), channels, owner.slot.content(), kPositions, final_positions, sums);
+      if (observer_) observer_->settles(owner.owned.wide(), color, area, owner.visible / kPositions);
       final_positions += owner.visible;
-      const float threshold = rounding_threshold(owner.slot.content());
-      at_.area.add(area, threshold);
-      at_.record.head->sums.colors.add({area * color[0], area * color[1], area * color[2], counted * color[0],
-                                        counted * color[1], counted * color[2]},
-                                       threshold);
       at_.final = at_.final | owner.owned;
     }
+    at_.set_sums(sums);
     at_.shape.has_final = !at_.final.none();
     std::uint32_t gone = 0;
     for (std::size_t i = 0; i < count; ++i) gone |= 1u << owners_[i].index;
@@ -373,6 +389,7 @@ class PooledComposer {
 
   // Sets order_. Equal ones keep their order.
   void sort_by_fraction(std::size_t count) {
+    if (count > 1) work.fractions += count;
     for (std::size_t i = 0; i < count; ++i) {
       const Place place{i, owners_[i].area().fraction()};
       std::size_t j = i;
@@ -387,16 +404,18 @@ class PooledComposer {
 
   // ---- Merge: a pixel has more owners than it may have ----
 
-  // Retires the owners that are final or, if there are none, makes one owner of two. Returns whether it merged.
-  bool make_one_less(std::uint32_t number) {
-    if (bin_.watermarks && retire_final((*bin_.watermarks)[number])) return false;
+  // Retires the owners that are final or, if there are none, makes one owner of two.
+  void make_one_less(std::uint32_t number) {
+    if (bin_.watermarks) {
+      const float watermark = (*bin_.watermarks)[number];
+      if (retire_final(find_candidates(watermark), watermark)) return;
+    }
     for (std::size_t k = 0; k < at_.shape.owners; ++k) {
       list_owner(k, owners_[k]);
       owners_[k].plane = plane_of(k);
       measure(owners_[k]);
     }
     merge_closest();
-    return true;
   }
 
   // Finds the mean of the positions that it owns.
@@ -440,9 +459,11 @@ class PooledComposer {
                     color_of_other = colors_.of(at_.index, other.slot, other.owned);
     if (observer_)
       observer_->merges({one.owned.wide(), color_of_one, parts.one}, {other.owned.wide(), color_of_other, parts.other});
-    OwnerSlot slot;
-    slot.set_merged(larger.slot.triangle(), parts.error, parts.one * color_of_one + parts.other * color_of_other,
-                    merge_threshold(one.slot.content(), other.slot.content()));
+    const float channels[] = {color_of_one[0], color_of_one[1], color_of_one[2]},
+                channels_of_other[] = {color_of_other[0], color_of_other[1], color_of_other[2]};
+    const OwnerSlot slot(merged_slot(larger.slot.triangle(), parts, channels, channels_of_other, one.slot.content(),
+                                     other.slot.content()));
+    ++at_.new_slots;
     at_.record.set(first, slot, larger.plane, pair_bounds(larger.plane, {kInFront, kNoDepth}).farthest);
     at_.own(first, one.owned | other.owned);
     for (std::size_t k = second; k + 1 < at_.shape.owners; ++k) keep(k + 1, k);
@@ -459,24 +480,28 @@ class PooledComposer {
     ++work.specks[at_.word().kind == PixelKind::open ? at_.shape.planes() : 0];
     const float votes = votes_for(fragment);
     if (votes == 0) return;
-    const bool is_shared = at_.word().kind == PixelKind::open;
-    if (!is_shared) at_.open();
+    ++work.specks_seen;
+    const bool keeps_positions = at_.word().kind == PixelKind::open;
+    if (!keeps_positions) at_.open();
+    RecordShape with_sums = at_.shape;
+    with_sums.has_sums = true;
+    if (!at_.has_room(with_sums)) return;  // it is lost
     at_.use_sums();
-    FixedSum &same = at_.record.head->sums.specks[fragment.front],
-             &opposite = at_.record.head->sums.specks[!fragment.front];
-    const float before = greater(same, opposite);
-    const float threshold = rounding_threshold(std::bit_cast<std::uint32_t>(fragment.alpha) ^
-                                               std::bit_cast<std::uint32_t>(fragment.centroid_z));
-    same.add(fragment.alpha * votes / 3.0f, threshold);
-    const float area = speck_area<float>(same, opposite, before, at_.area);
+    FixedSum& facing = at_.record.head->sums.specks[fragment.front];
+    const std::int32_t opposite = at_.record.head->sums.specks[!fragment.front].units;
+    FinalSums<std::int32_t, std::uint32_t> sums = at_.sums();
+    std::int32_t same = facing.units;
+    const float threshold = speck_threshold(fragment.alpha, fragment.centroid_z);
+    const float area = add_speck_area(fragment.alpha, votes, threshold, opposite, sums.area, same);
+    facing.units = static_cast<std::uint16_t>(same);
     if (area > 0) {
       ++work.specks_added;
       const glm::vec3 color = colors_.of_speck(fragment);
       if (observer_) observer_->adds_speck(fragment.triangle, area, color);
-      at_.area.add(area, threshold);
-      at_.record.head->sums.colors.add({area * color[0], area * color[1], area * color[2], 0, 0, 0}, threshold);
+      sums.add(area, {area * color[0], area * color[1], area * color[2], 0.0f, 0.0f, 0.0f}, threshold);
+      at_.set_sums(sums);
     }
-    if (is_shared) {  // its positions stay as they are
+    if (keeps_positions) {
       at_.store_sums();
     } else {
       at_.store();
@@ -513,10 +538,10 @@ class PooledComposer {
   // ---- Limit: the analytic estimate, no farther from the counted one than the tolerances allow ----
 
   PixelColor limited() {
-    if (at_.area <= 0) return {0.0f, glm::vec3(0.0f)};
+    const float count = static_cast<float>(at_.final.count());
+    if (at_.area <= 0 && count == 0) return {0.0f, glm::vec3(0.0f)};
     ++work.limited;
     work.bytes_read += sizeof(PixelSums);
-    const float count = static_cast<float>(at_.final.count());
     Estimate<float> analytic{at_.area, {}}, counted{count / kPositions, {}};
     for (std::size_t c = 0; c < 3; ++c)
       analytic.color[c] = at_.record.head->sums.colors[c], counted.color[c] = at_.record.head->sums.colors[c + 3];
@@ -550,10 +575,14 @@ void compose(const OwnersBin& bin, const OwnersBatch& batch, StageCounters& coun
     if (i + kAhead < fragments.size()) prefetch(pixels.words[fragments[i + kAhead].pixel]);
     const Fragment& fragment = fragments[i];
     while (bin.list[number] != fragment.triangle) ++number;
-    using Outcome = typename PooledComposer<Words>::Outcome;
-    const Outcome outcome = composer.add(fragment, number, tile.closed);
-    tile.maps.fragments[fragment.pixel] += outcome != Outcome::hidden;
-    tile.maps.merges[fragment.pixel] += outcome == Outcome::merged;
+    const std::uint64_t merges = composer.work.merges;
+    const std::size_t chunks = pixels.pool.beyond_guaranteed();
+    if (fragment.triangle >= pixels.closes_at) pixels.pool.close();
+    tile.maps.fragments[fragment.pixel] += composer.add(fragment, number, tile.closed);
+    tile.maps.merges[fragment.pixel] += static_cast<float>(composer.work.merges - merges);
+    if (tile.result.lists_claims && pixels.pool.beyond_guaranteed() != chunks)
+      tile.result.claims.push_back(
+          {fragment.triangle, static_cast<std::int32_t>(pixels.pool.beyond_guaranteed() - chunks)});
   }
   charge<Words>(composer.work, counters);
 }

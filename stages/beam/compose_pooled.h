@@ -40,6 +40,8 @@ struct PooledResult : OwnersResult {
   PooledMaps maps;
   bool lists_visits = false;        // fill the list that follows
   std::vector<RecordVisit> visits;  // to all records, wherever they lie
+  bool lists_claims = false;        // fill the list that follows
+  std::vector<PoolClaim> claims;    // to a frame's pool
 
   explicit PooledResult(const PooledMaps& of_pixels) : maps(of_pixels) {}
 };

@@ -1,11 +1,9 @@
 // What compose_pooled and finish_pooled are charged.
 #pragma once
 
-#include <algorithm>
 #include <array>
 #include <cstddef>
 #include <cstdint>
-#include <iterator>
 #include <vector>
 
 #include "simd/conserve.h"
@@ -18,12 +16,15 @@ namespace beampipe {
 // How often each operation was done.
 struct PooledWork {
   std::uint64_t fragments = 0;
+  std::uint64_t whole = 0;                             // of these, triangles that cover their pixel
   std::uint64_t masks = 0;                             // fragments of pixels that several surfaces may share
   std::uint64_t claims = 0;                            // fragments that take a position
   std::uint64_t covers = 0;                            // of these, triangles that cover a pixel in front of everything
   std::array<std::uint64_t, 6> splits{};               // by bit planes: pixels that were taken apart
   std::array<std::uint64_t, kMostStates + 1> joins{};  // by states: pixels that were put together
-  std::uint64_t masks_tested = 0;                      // owners whose positions were intersected with a fragment's mask
+  std::uint64_t masks_tested = 0;                      // states whose positions were intersected with a fragment's mask
+  std::uint64_t wins = 0;                              // owners that are farther than a fragment in the whole pixel
+  std::uint64_t takes = 0;                             // states that a claim was taken away from
   std::uint64_t moves = 0;                             // of owners to another slot
   std::uint64_t planes = 0;                            // of owners, computed again
   std::uint64_t contests = 0;                          // owners of positions that a fragment covers
@@ -35,13 +36,15 @@ struct PooledWork {
   std::uint64_t measured = 0;                          // owners whose mean position was found
   std::uint64_t pairs_compared = 0;                    // of owners
   std::uint64_t merges = 0;                            // of two owners
-  std::uint64_t order_tests = 0;                       // to sort owners that become final
+  std::uint64_t fractions = 0, order_tests = 0;        // to sort owners that become final
   std::uint64_t retirements = 0;                       // of one owner or of several at once
   std::uint64_t retired = 0;                           // owners that became final
   std::uint64_t bounds_found = 0;                      // depth bounds of the owners of pixels without empty positions
   std::uint64_t vertices_bounded = 0;                  // owners whose vertices limit these bounds
   std::array<std::uint64_t, 6> specks{};               // by bit planes of the pixel's record
-  std::uint64_t speck_comparisons = 0, specks_added = 0;
+  std::uint64_t speck_comparisons = 0;
+  std::uint64_t specks_seen = 0;                    // some position next to them votes for them
+  std::uint64_t specks_added = 0;                   // of these, specks that add to the pixel's area
   std::uint64_t finished = 0;                       // pixels that were read at the end
   std::uint64_t limited = 0;                        // pixels whose estimates were compared
   std::uint64_t bytes_read = 0, bytes_written = 0;  // of words and records
@@ -88,12 +91,17 @@ inline OperationCounts join(std::size_t states, std::size_t words) {
   });
 }
 
+// What a rule does on masks of so many words.
+template <class Rule>
+OperationCounts of_masks(std::size_t words, Rule&& rule) {
+  return count_operations([&](OperationCounts& counts) { rule(CountedMask{words, &counts}); });
+}
+
 // The slot of a fragment that takes a position: the error of its mask, and its centroid.
 inline OperationCounts slot() {
   return of([](const Number& one, OperationCounts& counts) {
-    OwnerSlot::error_units(one * one - one);
-    OwnerSlot::to_byte(one), OwnerSlot::to_byte(one);
-    counts.bit += 2 + 4;  // shifts, and the two words
+    const Bits bits(0, counts);
+    OwnerSlot::words_of(bits, one * one - one, bits, one, one);
   });
 }
 
@@ -104,46 +112,50 @@ inline OperationCounts mean() {
   });
 }
 
-// Two surfaces become one: their parts, their mean colour, and the slot.
-inline OperationCounts merge() {
-  return of([](const Number& one, OperationCounts& counts) {
-    const MergedParts<Number> parts = merged_parts(area_of(one), area_of(one), false);
-    const Number threshold = merge_threshold(Bits(0, counts), Bits(0, counts));
-    const Number color[] = {parts.one * one + parts.other * one, parts.one * one + parts.other * one,
-                            parts.one * one + parts.other * one};
-    SharedExponent::pack(color, threshold);
-    OwnerSlot::error_units(parts.error);
-    counts.bit += 2 + 2 * 3;  // the slot's words; bits that say what each of the two is
+// What a slot is, for rounding.
+inline Bits content(OperationCounts& counts) { return OwnerSlot::content_of(Bits(0, counts), Bits(0, counts)); }
+
+// Two surfaces become one: their positions, their parts, and their slot.
+inline OperationCounts merge(std::size_t words) {
+  OperationCounts cost = of([](const Number& one, OperationCounts& counts) {
+    const Number color[] = {one, one, one};
+    merged_slot(Bits(0, counts), merged_parts(area_of(one), area_of(one), false), color, color, content(counts),
+                content(counts));
   });
+  cost += of_masks(words, [](const CountedMask& mask) { mask | mask; });
+  return cost;
 }
 
-// An owner that is retired.
-inline OperationCounts retirement() {
-  return of([](const Number& one, OperationCounts& counts) {
-    const Number area = retired_area(area_of(one), one, {FixedSum::value(Integer(0, counts)), one});
-    const Number threshold = rounding_threshold(Bits(0, counts));
-    FixedSum::sum(Integer(0, counts), area, threshold);
-    Bits sums[ColorSums::kCount];
-    std::fill(std::begin(sums), std::end(sums), Bits(0, counts));
-    const Number share = one / one;
-    ColorSums::add_to(sums, {area * one, area * one, area * one, share * one, share * one, share * one}, threshold);
-    one + one;        // the positions that are final
-    counts.bit += 2;  // bits that say what it is
-  });
+inline FinalSums<Integer, Bits> sums(OperationCounts& counts) {
+  FinalSums<Integer, Bits> all{Integer(0, counts), {}};
+  all.colors.fill(Bits(0, counts));
+  return all;
 }
 
-// A speck that is seen: its area and colour.
-inline OperationCounts speck() {
+// An owner that is retired: it is added to the sums, and its positions to those that are final.
+inline OperationCounts retirement(std::size_t words) {
+  OperationCounts cost = of([](const Number& one, OperationCounts& counts) {
+    FinalSums<Integer, Bits> all = sums(counts);
+    const Number color[] = {one, one, one};
+    add_final(area_of(one), color, content(counts), one, one, all);
+    one + one;  // the count of final positions
+  });
+  cost += of_masks(words, [](const CountedMask& mask) { mask | mask; });
+  return cost;
+}
+
+// A speck that is seen, and what it takes if it adds to the pixel.
+inline OperationCounts seen_speck() {
   return of([](const Number& one, OperationCounts& counts) {
-    const Number same = FixedSum::value(Integer(0, counts)), opposite = FixedSum::value(Integer(0, counts));
-    const Number threshold = rounding_threshold(Bits(0, counts) ^ Bits(0, counts));
-    FixedSum::sum(Integer(0, counts), one * one / Number(3.0f), threshold);
-    const Number area = speck_area(same, opposite, greater(same, opposite), one);
-    FixedSum::sum(Integer(0, counts), area, threshold);
-    Bits sums[ColorSums::kCount];
-    std::fill(std::begin(sums), std::end(sums), Bits(0, counts));
+    Integer same(0, counts);
+    add_speck_area(one, one, speck_threshold(one, one), Integer(0, counts), Integer(0, counts), same) > Number(0.0f);
+  });
+}
+inline OperationCounts added_speck() {
+  return of([](const Number& one, OperationCounts& counts) {
+    FinalSums<Integer, Bits> all = sums(counts);
     const Number zero(0.0f);
-    ColorSums::add_to(sums, {area * one, area * one, area * one, zero, zero, zero}, threshold);
+    all.add(one, {one * one, one * one, one * one, zero, zero, zero}, one);
   });
 }
 
@@ -160,22 +172,29 @@ void charge(const PooledWork& work, StageCounters& counters) {
   static const UnitCost of_count = count_cost(Words), of_plane = plane_cost(), of_contest = plane_gap_cost(),
                         of_slot = slot(), of_nearer = nearer_cost() * kPositions, of_finality = finality_cost(),
                         of_farthest = farthest_cost() * kPositions, of_mean = mean(), of_pair = pair_cost(),
-                        of_merge = merge(), of_retirement = retirement(), of_bounds = plane_bounds_cost(),
-                        of_vertices = vertex_bounds_cost(), of_speck_test = speck_test_cost(), of_speck = speck(),
-                        of_limit = limit_cost();
-  constexpr OperationCounts kOfHiddenTest{.add = 1}, kOfOrderTest{.add = 1}, kOfPosition{.add = 2},  // its x and y
-      kOfFarther{.add = 1},           // than the owners before it
-      kOfMaskTest{.bit = 2 * Words},  // an intersection, and whether it is empty
-      kOfClaim{.bit = 3 * Words};     // of what is free; and it is taken from there
+                        of_merge = merge(Words), of_retirement = retirement(Words), of_bounds = plane_bounds_cost(),
+                        of_vertices = vertex_bounds_cost(), of_speck_test = speck_test_cost(),
+                        of_seen_speck = seen_speck(), of_added_speck = added_speck(), of_limit = limit_cost();
+  static const UnitCost of_meeting = of_masks(Words, [](const CountedMask&mask) { is_met(mask, mask); }),
+                        of_win = of_masks(Words, [](const CountedMask&mask) { with_won(mask, mask, mask); }),
+                        of_claim = of_masks(Words, [](const CountedMask&mask) { claim_of(mask, mask, mask).none(); }),
+                        of_take = of_masks(Words, [](CountedMask mask) { take_from(mask, mask); });
+  constexpr OperationCounts kOfHiddenTest{.add = 1}, kOfOrderTest{.add = 1}, kOfFraction{.special = 1},
+      kOfPosition{.add = 2},  // its x and y
+      kOfFarther{.add = 1};   // than the owners before it
   counters.items_in += work.fragments;
   counters.items_out += work.claims;
   for (std::size_t planes = 0; planes < work.splits.size(); ++planes)
     counters.ops += of_split[planes] * work.splits[planes];
   for (std::size_t states = 0; states < work.joins.size(); ++states)
     counters.ops += of_join[states] * work.joins[states];
-  counters.ops += kOfHiddenTest * work.fragments;
-  counters.ops += kOfMaskTest * (work.masks_tested + work.contests);  // and what a contest takes is taken away
-  counters.ops += kOfClaim * work.masks;
+  // Finished pixels are known by their closed depths, too.
+  const std::uint64_t looked_at = work.fragments + work.words_scanned + work.finished;
+  counters.ops += kOfHiddenTest * looked_at;
+  counters.ops += of_meeting * work.masks_tested;
+  counters.ops += of_win * (work.wins + work.planes_compared);
+  counters.ops += of_claim * work.masks;
+  counters.ops += of_take * work.takes;
   counters.ops += of_plane * work.planes;
   counters.ops += of_contest * work.contests;
   counters.ops += of_nearer * work.planes_compared;
@@ -188,6 +207,7 @@ void charge(const PooledWork& work, StageCounters& counters) {
   counters.ops += of_mean * work.measured;
   counters.ops += of_pair * work.pairs_compared;
   counters.ops += of_merge * work.merges;
+  counters.ops += kOfFraction * work.fractions;
   counters.ops += kOfOrderTest * work.order_tests;
   counters.ops += of_retirement * work.retired;
   counters.ops += of_bounds * work.bounds_found;  // their planes are among work.planes
@@ -196,12 +216,14 @@ void charge(const PooledWork& work, StageCounters& counters) {
   for (std::size_t planes = 0; planes < work.specks.size(); ++planes)
     counters.ops += of_votes[planes] * work.specks[planes];
   counters.ops += of_speck_test * work.speck_comparisons;
-  counters.ops += of_speck * work.specks_added;
+  counters.ops += of_seen_speck * work.specks_seen;
+  counters.ops += of_added_speck * work.specks_added;
   counters.ops += of_limit * work.limited;
-  counters.bytes_read += work.fragments * (owners_fragment_bytes(Words) + sizeof(float) + kPixelWordBytes) +
-                         (work.finished + work.words_scanned) * kPixelWordBytes + work.bytes_read;
+  counters.bytes_read += (work.fragments - work.whole) * owners_fragment_bytes(Words) +
+                         work.whole * kOwnersWholeFragmentBytes + looked_at * (sizeof(float) + kPixelWordBytes) +
+                         work.bytes_read;
   counters.bytes_read += work.planes * (sizeof(std::uint32_t) + sizeof(ScreenDepth));  // by its number in the list
-  counters.bytes_written += work.claims * kPixelWordBytes + work.bytes_written;
+  counters.bytes_written += work.bytes_written;
   counters.position_tests += kPositions * (work.planes_compared + work.farthest_found);
   counters.lanes_used += work.claims;
   counters.lanes_issued += work.fragments;

@@ -39,6 +39,7 @@ class PixelAtHand {
   RecordShape shape;
   FixedSum area;
   Mask empty, final;
+  std::size_t new_slots = 0;  // that a record which is stored has to write
   RecordView<Words> record;
 
   void look_at(std::uint32_t pixel) {
@@ -53,6 +54,13 @@ class PixelAtHand {
   }
   const CoverDepth& cover_depth() const { return pixels_.covers[index]; }
 
+  // Is there room for the record as its shape is now, or would be?
+  bool has_room() const { return has_room(shape); }
+  bool has_room(const RecordShape& record_shape) const {
+    return pixels_.pool.has_room(word_->kind == PixelKind::open ? word_->chunks : ChunkPool::Chunks{},
+                                 record_shape.chunks(Words));
+  }
+
   // The positions of owner k.
   Mask owned(std::size_t k) const { return Mask(record.owned(k)); }
   void own(std::size_t k, const Mask& positions) { positions.store(record.owned(k)); }
@@ -60,6 +68,7 @@ class PixelAtHand {
   // Takes the pixel's state apart.
   void open() {
     empty = final = Mask::filled(false);
+    new_slots = 0;
     if (word_->kind == PixelKind::open) {
       look_at_record();
       ++work_.splits[shape.planes()];
@@ -112,6 +121,15 @@ class PixelAtHand {
     }
   }
 
+  // Of a frame's pool, where nothing is final before the end and sums are of specks.
+  void forget_sums() { shape.has_sums = false, area = {}; }
+
+  FinalSums<std::int32_t, std::uint32_t> sums() const { return {area.units, record.head->sums.colors.load()}; }
+  void set_sums(const FinalSums<std::int32_t, std::uint32_t>& sums) {
+    area.units = static_cast<std::uint16_t>(sums.area);
+    record.head->sums.colors.store(sums.colors);
+  }
+
   bool is_finished() const { return shape.owners == 0 && !shape.has_empty; }
   bool is_covered_by_one() const {
     return shape.owners == 1 && shape.states() == 1 && !shape.has_sums && !record.slots[0].is_merged() &&
@@ -123,6 +141,7 @@ class PixelAtHand {
     release();
     word_->kind = PixelKind::finished;
     for (std::size_t c = 0; c < 3; ++c) word_->color[c] = HalfBits(color.color[c]);
+    work_.bytes_written += kPixelWordBytes;
   }
   // `triangle`: its number in the list.
   void cover(std::uint32_t triangle, const CoverDepth& depth) {
@@ -130,32 +149,38 @@ class PixelAtHand {
     word_->kind = PixelKind::covered;
     word_->number = triangle;
     pixels_.covers[index] = depth;
+    work_.bytes_written += kPixelWordBytes;
   }
   void store() {
     if (word_->kind != PixelKind::open) {
+      const bool has_cover =
+          word_->kind == PixelKind::covered && shape.owners > 0 && record.slots[0].triangle() == word_->number;
+      new_slots += has_cover;
       word_->kind = PixelKind::open;
       word_->record_size = 0;
       word_->number = spare_;
       spare_ = pixels_.records.take(0);
     }
     ++work_.joins[shape.states()];
-    store_sums();
-    count_write(shape.planes() * 4 * Words);
+    work_.bytes_written += shape.planes() * 4 * Words + new_slots * sizeof(OwnerSlot);
     if (shape.has_empty) empty.store(record.head->empty);
     if (shape.has_final) final.store(record.head->final);
+    store_sums();
   }
   // The same where positions have not changed.
   void store_sums() {
-    pixels_.pool.resize(word_->chunks, shape.chunks(Words));
+    resize(shape.chunks(Words));
     float& most = result_.maps.record_bytes[index];
-    most = std::max(most, static_cast<float>(word_->chunks.count * (kChunkBytes + kChunkLinkBytes)));
+    most = std::max(most, static_cast<float>(word_->chunks.count * (kChunkBytes + pixels_.pool.link_bytes())));
     word_->shape = shape;
     word_->area = area;
+    work_.bytes_written += kPixelWordBytes;
+    count_visit(true);
   }
 
   // Every access follows the links of the record's chunks.
   void count_read(std::size_t bytes) {
-    work_.bytes_read += bytes + word_->chunks.count * kChunkLinkBytes;
+    work_.bytes_read += bytes + word_->chunks.count * pixels_.pool.link_bytes();
     count_visit(false);
   }
 
@@ -165,18 +190,31 @@ class PixelAtHand {
   void release() {
     if (word_->kind != PixelKind::open) return;
     pixels_.records.give_back(word_->record_size, word_->number);
-    pixels_.pool.resize(word_->chunks, 0);
-  }
-
-  void count_write(std::size_t bytes) {
-    work_.bytes_written += bytes;
+    resize(0);
     count_visit(true);
   }
+
+  // Free chunks are linked: each one that is taken says which one is the next. The last chunk of the record is linked
+  // to the first one that is taken; the last one that is given back, to those that are free already.
+  void resize(std::uint32_t count) {
+    ChunkPool::Chunks& chunks = word_->chunks;
+    const ChunkPool::Chunks before = chunks;
+    if (count == before.count) return;
+    pixels_.pool.resize(chunks, count);
+    if (count > before.count) work_.bytes_read += (count - before.count) * pixels_.pool.link_bytes();
+    if (before.count > 0) work_.bytes_written += pixels_.pool.link_bytes();
+    count_in_memory(chunks.in_memory > before.in_memory ? chunks.in_memory - before.in_memory
+                                                        : chunks.in_memory < before.in_memory);
+  }
+
   void count_visit(bool is_write) {
     if (result_.lists_visits) result_.visits.push_back({number, index, word_->chunks.count, is_write});
-    if (word_->chunks.in_memory == 0) return;
-    result_.chunks_in_memory += word_->chunks.in_memory;
-    result_.maps.memory_chunks[index] += static_cast<float>(word_->chunks.in_memory);
+    count_in_memory(word_->chunks.in_memory);
+  }
+  void count_in_memory(std::uint32_t chunks) {
+    if (chunks == 0) return;
+    result_.chunks_in_memory += chunks;
+    result_.maps.memory_chunks[index] += static_cast<float>(chunks);
   }
 
   PooledPixels<Words>& pixels_;

@@ -2,6 +2,7 @@
 // numbers, and the stage's costs come from running them on masks and numbers that count.
 #pragma once
 
+#include <array>
 #include <cstddef>
 #include <cstdint>
 
@@ -68,6 +69,33 @@ Float retired_area(const SurfaceArea<Float>& surface, const Float& positions, co
   return visible_area(exact, surface.covered, surface.visible, positions, taken);
 }
 
+// What is final in a pixel.
+template <class Int, class Bits>
+struct FinalSums {
+  Int area;  // units of FixedSum
+  std::array<Bits, ColorSums::kCount> colors;
+
+  template <class Float>
+  void add(const Float& shown, const Float (&addends)[ColorSums::kCount], const Float& threshold) {
+    area = FixedSum::sum(area, shown, threshold);
+    ColorSums::add_to(colors.data(), addends, threshold);
+  }
+};
+
+// Adds a surface that became final. `content`: of its slot; `final_positions`: those of surfaces that were added
+// before. Returns the area that it shows.
+template <class Float, class Int, class Bits>
+[[gnu::always_inline]] inline Float add_final(const SurfaceArea<Float>& surface, const Float (&color)[3], const Bits& content, const Float& positions,
+                const Float& final_positions, FinalSums<Int, Bits>& sums) {
+  const Float area = retired_area(surface, positions, {FixedSum::value(sums.area), final_positions});
+  const Float counted = surface.visible / positions;
+  sums.add(
+      area,
+      {area * color[0], area * color[1], area * color[2], counted * color[0], counted * color[1], counted * color[2]},
+      rounding_threshold(content));
+  return area;
+}
+
 // ---- Merge: two surfaces become one ----
 
 // The distance in depth of two planes at (u, v), in pixels from the pixel's centre.
@@ -114,10 +142,15 @@ MergedParts<Float> merged_parts(const SurfaceArea<Float>& one, const SurfaceArea
   return {weight_of_one * scale, weight_of_other * scale, error_of_one + error_of_other};
 }
 
-// What a merged surface's colour is rounded by.
-template <class Bits>
-auto merge_threshold(const Bits& content, const Bits& content_of_other) {
-  return rounding_threshold(content + content_of_other + content_of_other + content_of_other);
+// The slot of the surface that two become. `number`: of the triangle whose plane it keeps; `content`: of both slots, by
+// which its colour is rounded.
+template <class Float, class Bits>
+std::array<Bits, 2> merged_slot(const Bits& number, const MergedParts<Float>& parts, const Float (&color)[3],
+                                const Float (&color_of_other)[3], const Bits& content, const Bits& content_of_other) {
+  const auto mean = [&](int c) { return parts.one * color[c] + parts.other * color_of_other[c]; };
+  const Float means[] = {mean(0), mean(1), mean(2)};
+  return OwnerSlot::words_of_merged(
+      number, parts.error, means, rounding_threshold(content + content_of_other + content_of_other + content_of_other));
 }
 
 // ---- Specks ----
@@ -128,11 +161,21 @@ bool is_on_or_before(Float depth, const DepthPlane<Float>& surface, Float u, Flo
   return depth <= depth_at(surface, u, v) + Float(kSurfaceReach) * (magnitude(surface.dzdu) + magnitude(surface.dzdv));
 }
 
-// What a speck adds to the area of a pixel. `same`, `opposite`: areas of the specks that face as it does, with it, and
-// the other way; `before`: the greater one of both without it.
+// What sums are rounded by to which a speck is added.
 template <class Float>
-Float speck_area(const Float& same, const Float& opposite, const Float& before, const Float& area) {
-  return lesser(greater(same, opposite) - before, Float(1.0f) - area);
+Float speck_threshold(const Float& alpha, const Float& depth) {
+  return rounding_threshold(bits_of(alpha) ^ bits_of(depth));
+}
+
+// Adds a speck for which so many of three positions vote to the area of the specks that face as it does. `opposite`: of
+// those that face the other way; `area`: of what is final. All three in units of FixedSum. Returns what the speck adds
+// to the pixel, if it is above 0.
+template <class Float, class Int>
+Float add_speck_area(const Float& alpha, const Float& votes, const Float& threshold, const Int& opposite,
+                     const Int& area, Int& same) {
+  const Float others = FixedSum::value(opposite), before = greater(FixedSum::value(same), others);
+  same = FixedSum::sum(same, alpha * votes / Float(3.0f), threshold);
+  return lesser(greater(FixedSum::value(same), others) - before, Float(1.0f) - FixedSum::value(area));
 }
 
 // ---- Limit: two estimates of a pixel become one ----
@@ -148,20 +191,21 @@ struct Estimate {
   Float color[3];  // linear RGB times area
 };
 
-// The analytic estimate, moved towards the counted one as far as the tolerances demand. `analytic.area` is above 0.
+// The analytic estimate, moved towards the counted one as far as the tolerances demand.
 template <class Float>
-Estimate<Float> limited_estimate(const Estimate<Float>& analytic, const Estimate<Float>& counted, Float positions) {
+[[gnu::always_inline]] inline Estimate<Float> limited_estimate(const Estimate<Float>& analytic, const Estimate<Float>& counted, Float positions) {
   const Float zero(0.0f), one(1.0f);
   const auto limited = [](Float x, Float middle, Float tolerance) {
     return lesser(greater(x, middle - tolerance), middle + tolerance);
   };
+  const Float analytic_area = greater(analytic.area, Float(1 / FixedSum::kUnits));  // 0 has no colour
   Estimate<Float> result;
   result.area = select(counted.area == one, one,
                        lesser(limited(analytic.area, counted.area, Float(kAreaTolerance) / positions), one));
-  const Float scale = result.area / analytic.area;
+  const Float scale = result.area / analytic_area;
   Float brightest = zero;
   for (int c = 0; c < 3; ++c) {
-    brightest = greater(brightest, analytic.color[c] / analytic.area);
+    brightest = greater(brightest, analytic.color[c] / analytic_area);
     brightest = greater(brightest,
                         select(counted.area > zero, counted.color[c] / greater(counted.area, one / positions), zero));
   }

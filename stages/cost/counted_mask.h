@@ -16,6 +16,10 @@ struct CountedMask {
     if (tally) tally->bit += words;
     return *this;
   }
+  bool none() const {
+    counted();
+    return false;
+  }
 };
 inline CountedMask operator&(const CountedMask& a, const CountedMask&) { return a.counted(); }
 inline CountedMask operator|(const CountedMask& a, const CountedMask&) { return a.counted(); }

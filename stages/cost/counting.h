@@ -118,6 +118,11 @@ inline Counted<std::uint32_t> bits_of(const Counted<float>& x) {
   bits.tally = x.tally;
   return bits;
 }
+inline Counted<std::uint32_t> bits_of(const Counted<std::int32_t>& x) {
+  Counted<std::uint32_t> bits(static_cast<std::uint32_t>(x.value));
+  bits.tally = x.tally;
+  return bits;
+}
 inline Counted<float> float_of(const Counted<std::uint32_t>& bits) {
   Counted<float> x(std::bit_cast<float>(bits.value));
   x.tally = bits.tally;

@@ -40,7 +40,7 @@ struct HalfBits {
   std::uint16_t bits = 0;
 
   HalfBits() = default;
-  explicit HalfBits(float value) : bits(half_of(std::clamp(value, -kMost, kMost))) {}
+  [[gnu::always_inline]] explicit HalfBits(float value) : bits(half_of(std::clamp(value, -kMost, kMost))) {}
   operator float() const { return half_value(bits); }
 };
 

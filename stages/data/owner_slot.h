@@ -1,6 +1,7 @@
 // A surface that owns mask positions of a pixel.
 #pragma once
 
+#include <array>
 #include <bit>
 #include <cstdint>
 #include <glm/glm.hpp>
@@ -17,6 +18,9 @@ class OwnerSlot {
  public:
   // The number of a triangle in the bin's list has 23 bits.
   static constexpr std::uint32_t kMostTriangles = (1u << 23) - 1;
+
+  OwnerSlot() = default;
+  explicit OwnerSlot(const std::array<std::uint32_t, 2>& words) : word_(words[0]), payload_(words[1]) {}
 
   bool is_free() const { return triangle() == kMostTriangles; }
   std::uint32_t triangle() const { return word_ & kMostTriangles; }
@@ -35,34 +39,46 @@ class OwnerSlot {
   // Of a merged surface; linear RGB.
   glm::vec3 color() const { return std::bit_cast<SharedExponent>(payload_); }
 
-  // The formats of an error and of a centroid's coordinate, for numbers and for numbers that count.
-  template <class Float>
-  static auto error_units(const Float& error) {
-    const Float units = lesser(greater(error * Float(kErrorUnits), Float(-kLargestError)), Float(kLargestError));
-    return to_integer(units + select(units < Float(0.0f), Float(-0.5f), Float(0.5f)));
+  // The formats, for numbers and for numbers that count: of a surface from one triangle, and of a merged one.
+  template <class Bits, class Float>
+  static std::array<Bits, 2> words_of(const Bits& number, const Float& error, const Bits& covered, const Float& u,
+                                      const Float& v) {
+    return {number | error_bits(error), covered | to_byte(u) << 16 | to_byte(v) << 24};
   }
-  template <class Float>
-  static auto to_byte(const Float& x) {
-    return to_bits(x * Float(255.0f) + Float(0.5f));
+  template <class Bits, class Float>
+  static std::array<Bits, 2> words_of_merged(const Bits& number, const Float& error, const Float (&color)[3],
+                                             const Float& threshold) {
+    return {number | Bits(1u << 23) | error_bits(error), SharedExponent::pack(color, threshold)};
   }
 
   // Bits that say what the owner is, other than the number of its triangle.
-  std::uint32_t content() const { return payload_ ^ (word_ >> 24) << 9; }
+  template <class Bits>
+  static Bits content_of(const Bits& word, const Bits& payload) {
+    return payload ^ (word >> 24) << 9;
+  }
+  std::uint32_t content() const { return content_of(word_, payload_); }
 
   void clear() { word_ = kMostTriangles; }
   void set(std::uint32_t number, float error, std::uint32_t covered, float u, float v) {
-    word_ = number | error_bits(error);
-    payload_ = covered | to_byte(u) << 16 | to_byte(v) << 24;
+    *this = OwnerSlot(words_of(number, error, covered, u, v));
   }
   void set_merged(std::uint32_t number, float error, const glm::vec3& color, float threshold) {
-    word_ = number | 1u << 23 | error_bits(error);
-    payload_ = std::bit_cast<std::uint32_t>(SharedExponent(color, threshold));
+    const float channels[] = {color[0], color[1], color[2]};
+    *this = OwnerSlot(words_of_merged(number, error, channels, threshold));
   }
 
  private:
   static constexpr float kErrorUnits = 32.0f, kLargestError = 127.0f;
 
-  static std::uint32_t error_bits(float error) { return static_cast<std::uint32_t>(error_units(error)) << 24; }
+  template <class Float>
+  static auto error_bits(const Float& error) {
+    const Float units = lesser(greater(error * Float(kErrorUnits), Float(-kLargestError)), Float(kLargestError));
+    return bits_of(to_integer(units + select(units < Float(0.0f), Float(-0.5f), Float(0.5f)))) << 24;
+  }
+  template <class Float>
+  static auto to_byte(const Float& x) {
+    return to_bits(x * Float(255.0f) + Float(0.5f));
+  }
 
   std::uint32_t word_ = kMostTriangles;  // triangle, merged, error
   std::uint32_t payload_ = 0;
@@ -74,5 +90,8 @@ static_assert(sizeof(OwnerSlot) == 8);
 constexpr std::uint32_t owners_fragment_bytes(std::size_t words) {
   return 2 + 3 + 2 + 2 + static_cast<std::uint32_t>(words) * 4 + 16;
 }
+
+// Of one that covers its whole pixel: without centroid, area and mask.
+inline constexpr std::uint32_t kOwnersWholeFragmentBytes = 2 + 3 + 16;
 
 }  // namespace beampipe

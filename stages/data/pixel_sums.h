@@ -43,6 +43,7 @@ struct FixedSum {
 class ColorSums {
  public:
   static constexpr std::size_t kCount = 6;
+  using Words = std::array<std::uint32_t, kCount>;  // of 16 bits
 
   float operator[](std::size_t i) const {
     const Words words = load();
@@ -56,6 +57,17 @@ class ColorSums {
     Words words = load();
     add_to(words.data(), addends, threshold);
     store(words);
+  }
+
+  // The words are loaded and stored together: a load of several waits if they were stored one by one just before.
+  [[gnu::always_inline]] Words load() const {
+    std::uint32_t pairs[kCount / 2];
+    std::memcpy(pairs, words_, sizeof pairs);
+    return {pairs[0] & 0xffff, pairs[0] >> 16, pairs[1] & 0xffff, pairs[1] >> 16, pairs[2] & 0xffff, pairs[2] >> 16};
+  }
+  [[gnu::always_inline]] void store(const Words& words) {
+    const std::uint32_t pairs[] = {words[0] | words[1] << 16, words[2] | words[3] << 16, words[4] | words[5] << 16};
+    std::memcpy(words_, pairs, sizeof pairs);
   }
 
   // The formula, for numbers and for numbers that count. Words of 16 bits; their exponent is control flow.
@@ -80,7 +92,6 @@ class ColorSums {
  private:
   static constexpr std::uint32_t kLargest = 0x7fff;
   static constexpr int kMostExponent = 63;
-  using Words = std::array<std::uint32_t, kCount>;  // of 16 bits
 
   // Units from 2^-40, so that sums up to 2^-25 are exact to that, to 2^23.
   static float unit(int power) { return std::bit_cast<float>(static_cast<std::uint32_t>(power - 40 + 127) << 23); }
@@ -103,17 +114,6 @@ class ColorSums {
     for (std::size_t i = 0; i < kCount; ++i)
       if (!(to_float(sums[i]) + addends[i] * per_unit + Float(1.0f) < Float(kLargest))) return false;
     return true;
-  }
-
-  // The words are loaded and stored together: a load of several waits if they were stored one by one just before.
-  Words load() const {
-    std::uint32_t pairs[kCount / 2];
-    std::memcpy(pairs, words_, sizeof pairs);
-    return {pairs[0] & 0xffff, pairs[0] >> 16, pairs[1] & 0xffff, pairs[1] >> 16, pairs[2] & 0xffff, pairs[2] >> 16};
-  }
-  void store(const Words& words) {
-    const std::uint32_t pairs[] = {words[0] | words[1] << 16, words[2] | words[3] << 16, words[4] | words[5] << 16};
-    std::memcpy(words_, pairs, sizeof pairs);
   }
 
   std::uint16_t words_[kCount] = {};

@@ -2,7 +2,8 @@
 // that is finished needs no more than a word of six bytes. A pixel that surfaces share has a record as well: bit planes
 // that say which surface owns which mask position, with as many planes as there are states; 8 bytes for each surface;
 // and 16 bytes of sums once a surface is final or a speck was seen. Records lie in chunks of a pool that the tile's
-// pixels have in common. When the pool has no free chunk, a record continues in memory.
+// pixels have in common. When a pool on chip has no free chunk, a record continues in memory. A pool that is in memory
+// already has no other place to go: there, surfaces of the pixel are merged.
 //
 // The modelled machine links the chunks of a record, and those that are free, as a file system does. Which chunk is
 // where changes nothing, so this program counts chunks and keeps each record in one piece. It also keeps the positions
@@ -20,6 +21,7 @@
 #include <vector>
 
 #include "simd/depth_plane.h"
+#include "simd/wide_mask.h"
 #include "stages/data/half_bits.h"
 #include "stages/data/owner_slot.h"
 #include "stages/data/pixel_sums.h"
@@ -32,13 +34,16 @@ namespace beampipe {
 // first chunk, its number of owners, whether it has empty and final positions and sums, and the area of what is final.
 // Finished pixels are known by their closed depth, which is in front of everything.
 inline constexpr std::uint32_t kPixelWordBytes = 6;
-inline constexpr std::uint32_t kKindBits = 2, kTriangleBits = 23, kChunkNumberBits = 16, kOwnerCountBits = 5,
-                               kFlagBits = 3, kAreaBits = 16;
-static_assert(kKindBits + kTriangleBits <= 8 * kPixelWordBytes);
-static_assert(kKindBits + kChunkNumberBits + kOwnerCountBits + kFlagBits + kAreaBits <= 8 * kPixelWordBytes);
+inline constexpr std::uint32_t kTriangleBits = 23, kOwnerCountBits = 5, kFlagBits = 3, kAreaBits = 16;
+// Of a bin's pool, and of a frame's.
+inline constexpr std::uint32_t kChunkNumberBits = 16, kFrameChunkNumberBits = 23;
+// One bit tells records from what takes less, where a second one tells untouched pixels from covered ones.
+static_assert(2 + kTriangleBits <= 8 * kPixelWordBytes);
+static_assert(1 + kFrameChunkNumberBits + kOwnerCountBits + kFlagBits + kAreaBits <= 8 * kPixelWordBytes);
 
-inline constexpr std::uint32_t kChunkBytes = 16;
-inline constexpr std::uint32_t kChunkLinkBytes = kChunkNumberBits / 8;  // to the record's next chunk
+// A chunk, and the number of the record's next chunk or, if it is free, of the next free one.
+inline constexpr std::uint32_t kChunkBytes = 16, kChunkLinkBytes = 2, kFrameChunkLinkBytes = 3;
+static_assert(kChunkNumberBits <= 8 * kChunkLinkBytes && kFrameChunkNumberBits <= 8 * kFrameChunkLinkBytes);
 
 // States of a position: empty, final, or owned by one of these. Five bit planes are the most.
 inline constexpr std::size_t kMostStates = 32, kMostOwners = kMostStates - 2;
@@ -48,36 +53,63 @@ constexpr std::uint32_t planes_for(std::size_t states) {
   return states < 2 ? 0 : static_cast<std::uint32_t>(std::bit_width(states - 1));
 }
 
-// What a record holds, but for its bit planes.
+// What a record holds. Planes, slots and sums begin with a chunk each, so that one can grow without the others' moving.
 struct RecordShape {
   std::uint8_t owners = 0;
   bool has_empty = false;  // are there positions that nothing covers yet?
   bool has_final = false;  // are there positions whose surface is final?
   bool has_sums = false;
 
-  std::size_t first_owner() const { return std::size_t{has_empty} + has_final; }  // its state; those below: see above
-  std::size_t states() const { return first_owner() + owners; }
-  std::uint32_t planes() const { return planes_for(states()); }
-  std::uint32_t bytes(std::size_t words) const {
-    return planes() * static_cast<std::uint32_t>(words) * 4 + owners * static_cast<std::uint32_t>(sizeof(OwnerSlot)) +
-           (has_sums ? static_cast<std::uint32_t>(sizeof(PixelSums)) : 0);
+  constexpr std::size_t first_owner() const {
+    return std::size_t{has_empty} + has_final;
+  }  // its state; those below: see above
+  constexpr std::size_t states() const { return first_owner() + owners; }
+  constexpr std::uint32_t planes() const { return planes_for(states()); }
+  constexpr std::uint32_t chunks(std::size_t words) const {
+    const auto of = [](std::size_t bytes) {
+      return static_cast<std::uint32_t>((bytes + kChunkBytes - 1) / kChunkBytes);
+    };
+    return of(planes() * words * 4) + of(owners * sizeof(OwnerSlot)) + (has_sums ? of(sizeof(PixelSums)) : 0);
   }
-  std::uint32_t chunks(std::size_t words) const { return (bytes(words) + kChunkBytes - 1) / kChunkBytes; }
 };
+
+// The longest record, and the shortest one that can show two surfaces, or one in front of nothing.
+constexpr std::uint32_t most_chunks(std::size_t words) {
+  return RecordShape{.owners = kMostOwners, .has_empty = true, .has_final = true, .has_sums = true}.chunks(words);
+}
+constexpr std::uint32_t least_chunks(std::size_t words) { return RecordShape{.owners = 2}.chunks(words); }
+
+// Of a tile of 32 x 32 pixels, on chip and in memory.
+static_assert(32 * 32 * most_chunks(kMaxMaskWords) <= 1u << kChunkNumberBits);
 
 // The free chunks of a tile's pool.
 class ChunkPool {
  public:
-  // `bytes`: of the pool on chip, with the links of its chunks.
+  // A pool on chip, of so many bytes with the links of its chunks. Beyond it, records continue in memory.
   explicit ChunkPool(std::size_t bytes) : on_chip_(bytes / (kChunkBytes + kChunkLinkBytes)) {}
+
+  // A pool in memory that the whole frame shares. It is for others to say when it is full, and to close it. A record
+  // can have `guaranteed` chunks even then.
+  static ChunkPool of_frame(std::uint32_t guaranteed) {
+    ChunkPool pool(std::size_t{1} << 40);
+    pool.guaranteed_ = guaranteed;
+    return pool;
+  }
+  void close() { is_closed_ = true; }
 
   // Of one record.
   struct Chunks {
     std::uint16_t count = 0, in_memory = 0;
   };
 
+  // May a record have so many chunks?
+  bool has_room(const Chunks& of, std::uint32_t count) const {
+    return !is_closed_ || count <= std::max<std::uint32_t>(of.count, guaranteed_);
+  }
+
   // A record's chunks become so many. Chunks in memory are the first to be given back.
   void resize(Chunks& of, std::uint32_t count) {
+    beyond_guaranteed_ = beyond_guaranteed_ + beyond(count) - beyond(of.count);
     if (count > of.count) {
       const std::size_t wanted = count - of.count, room = on_chip_ - std::min(on_chip_, used_on_chip_);
       const std::size_t taken = std::min(wanted, room);
@@ -102,19 +134,32 @@ class ChunkPool {
   void collected() { taken_since_collection_ = 0; }
 
   std::size_t used() const { return used_on_chip_ + in_memory_; }
+  std::size_t beyond_guaranteed() const { return beyond_guaranteed_; }  // chunks of all records
   std::size_t peak() const { return peak_; }
+  std::uint32_t link_bytes() const { return guaranteed_ > 0 ? kFrameChunkLinkBytes : kChunkLinkBytes; }
   std::size_t peak_in_memory() const { return peak_in_memory_; }
 
  private:
+  std::size_t beyond(std::uint32_t count) const { return count - std::min(count, guaranteed_); }
+
   std::size_t on_chip_, used_on_chip_ = 0, in_memory_ = 0;
+  std::uint32_t guaranteed_ = 0;
+  std::size_t beyond_guaranteed_ = 0;
+  bool is_closed_ = false;
   std::size_t taken_since_collection_ = 0, peak_ = 0, peak_in_memory_ = 0;
+};
+
+// So many chunks more or fewer than are guaranteed, from this triangle of the frame on.
+struct PoolClaim {
+  std::uint32_t triangle = 0;
+  std::int32_t chunks = 0;
 };
 
 // One access to the record of a pixel.
 struct RecordVisit {
-  std::uint32_t key = 0;    // the number of the triangle in the list for which it was visited
-  std::uint32_t pixel = 0;  // of the tile
-  std::uint16_t chunks = 0;
+  std::uint32_t key = 0;     // the number of the triangle in the list for which it was visited
+  std::uint32_t pixel = 0;   // of the tile
+  std::uint16_t chunks = 0;  // that it has; 0: they are free again
   bool is_write = false;
 };
 
@@ -236,11 +281,11 @@ struct CoverDepth {
 // The open pixels of a tile, row by row.
 template <std::size_t Words>  // 32 positions a word
 struct PooledPixels {
-  // `most_owners`: of a pixel, up to kMostOwners; beyond that, two are merged.
-  PooledPixels(std::size_t count, std::size_t pool_bytes, std::size_t owners = kMostOwners)
+  // `owners`: the most of a pixel, up to kMostOwners; beyond that, two are merged.
+  PooledPixels(std::size_t count, const ChunkPool& of_records, std::size_t owners = kMostOwners)
       : words(count),
         covers(std::make_unique_for_overwrite<CoverDepth[]>(count)),
-        pool(pool_bytes),
+        pool(of_records),
         most_owners(owners) {}
 
   std::vector<PixelWord> words;
@@ -248,6 +293,7 @@ struct PooledPixels {
   RecordStore<Words> records;
   ChunkPool pool;
   std::size_t most_owners;
+  std::uint32_t closes_at = ~0u;  // the triangle of the frame from which on the pool is closed
 };
 
 // Calls shape.operator()<Words>() for a mask of so many positions. Throws std::invalid_argument if there is none.

@@ -140,7 +140,7 @@ TEST(ErrorCauses, AMergedOwnerGivesWayWhereOneOfItsSurfacesIsHidden) {
   for (int i = 0; i < 6; ++i) triangles.push_back(side_of((6 - i) / 32.0, false, 0.45 - 0.06 * i, kBlue));
   for (int i = 0; i < 5; ++i) triangles.push_back(side_of(13 / 16.0 + 3 / 80.0 * i, true, 0.42 - 0.06 * i, kBlue));
   triangles.push_back(side_of(10 / 16.0, true, 0.1, glm::vec3(1)));
-  const Explained found = explain("beam:order=stream", pixel_trace(1, 1, triangles));
+  const Explained found = explain("beam:order=stream", pixel_trace(8, 1, triangles));  // whose pool has room for it
   EXPECT_NEAR(found.error[0], 1.5 / 16 * std::sqrt(2.0 / 3), 5e-3);
   EXPECT_GT(part(found, "mixed"), 0.95);
 }

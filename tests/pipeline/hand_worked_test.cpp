@@ -54,22 +54,23 @@ TEST(HandWorked, TriangleMsaaWithoutCompression) {
                false);
 }
 
-// Closed depths are read once for each pair, and read and written once where the triangle covers a whole pixel. A
-// fragment has 57 bytes, and the closed depth is 4 more. The sort reads and writes the list's 8 bytes in each of three
-// passes; keys make one trip to DRAM and back, and the rest stays in L2. A pixel has a word of 6 bytes. The nine that
-// are partly covered have a record: one bit plane of 32 bytes and one surface of 8, in three chunks with links of 2
-// bytes. It is written once, and read once in the end, when 16 bytes of sums are written and read.
+// Closed depths are read once for each pair, and read and written once where the triangle covers a whole pixel. Its
+// fragment has 21 bytes there, others 57, and the closed depth is 4 more. The sort reads and writes the list's 8 bytes
+// in each of three passes; keys make one trip to DRAM and back, and the rest stays in L2. A pixel has a word of 6
+// bytes. The nine that are partly covered have a record: one bit plane of 32 bytes and one surface of 8, in three
+// chunks with links of 2 bytes, which are read when the chunks are taken. It is written once, and read once in the end,
+// when 16 bytes of sums are written and read.
 TEST(HandWorked, TriangleNearFirst) {
-  constexpr std::uint64_t kPairs = 13, kFragments = 10, kPartial = 9, kFragment = 57, kPair = 16, kWord = 6,
+  constexpr std::uint64_t kPairs = 13, kFragments = 10, kPartial = 9, kBytes = 9 * 57 + 21, kPair = 16, kWord = 6,
                           kRecord = 32 + 8, kLinks = 3 * 2, kSums = 16, kEntry = 4 + 4;
   expect_bytes("paper_triangle.json", "beam",
                {{"vertex_setup", 1, 1, 48, kSetup, kTriangleSetup, kTriangleSetup, kTriangleSetup},
                 {"bin_sort", 1, 1, 3 * kEntry, 4 + 3 * kEntry, 32 + 32 + 64, 32 + 32 + 64, 32 + 32},
                 {"conservative_raster", 1, kPairs, 88 + 4 * kPairs, kPairs * kPair, kTriangleRaster, kTriangleRaster,
                  kTriangleRaster},
-                {"beam_fragment", kPairs, kFragments, kPairs * (kPair + 88), kFragments * kFragment, 0, 0, 0},
+                {"beam_fragment", kPairs, kFragments, kPairs * (kPair + 88), kBytes, 0, 0, 0},
                 {"compose", kFragments, kFragments,
-                 kFragments * (kFragment + 4 + kWord) + 4 + 64 * kWord + kPartial * (kRecord + kLinks + kSums),
+                 kBytes + (kFragments + 64) * (4 + kWord) + 4 + kPartial * (kLinks + kRecord + kLinks + kSums),
                  kFragments * kWord + 4 + kPartial * (kRecord + kSums), 0, 0, 0},
                 {"shade", kFragments, kFragments, kFragments * (28 + 8), kFragments * 6, kFragments * 32, 32, 32},
                 {"resolve", 64, 64, 64 * 8, 384, 384, 384, 384}});

@@ -15,21 +15,21 @@ namespace HWY_NAMESPACE {
 
 template <std::size_t kCount>
 std::uint64_t sides_of(const DepthPlane<float>& plane, const DepthPlane<const float*>& surfaces,
-                       std::uint32_t* nearer) {
+                       std::uint64_t& nearer) {
   const PlaneSides<kCount> sides = plane_sides<kCount>(plane, surfaces);
-  for (std::size_t i = 0; i < kCount; ++i) nearer[i] = sides.nearer[i];
+  nearer = sides.nearer;
   return sides.crossing;
 }
 std::uint64_t sides_of_2(const DepthPlane<float>& plane, const DepthPlane<const float*>& surfaces,
-                         std::uint32_t* nearer) {
+                         std::uint64_t& nearer) {
   return sides_of<2>(plane, surfaces, nearer);
 }
 std::uint64_t sides_of_5(const DepthPlane<float>& plane, const DepthPlane<const float*>& surfaces,
-                         std::uint32_t* nearer) {
+                         std::uint64_t& nearer) {
   return sides_of<5>(plane, surfaces, nearer);
 }
 std::uint64_t sides_of_32(const DepthPlane<float>& plane, const DepthPlane<const float*>& surfaces,
-                          std::uint32_t* nearer) {
+                          std::uint64_t& nearer) {
   return sides_of<32>(plane, surfaces, nearer);
 }
 
@@ -68,11 +68,11 @@ void expect_scalar_twin(std::uint64_t seed, const Kernel& kernel) {
       const DepthPlane<float> other = other_plane(random, plane);
       z[i] = other.z, dzdu[i] = other.dzdu, dzdv[i] = other.dzdv;
     }
-    std::uint32_t nearer[kCount];
+    std::uint64_t nearer;
     const std::uint64_t crossing = kernel(plane, DepthPlane<const float*>{z, dzdu, dzdv}, nearer);
     for (std::size_t i = 0; i < kCount; ++i) {
       const PlaneGap<float> gap = plane_gap(plane, DepthPlane<float>{z[i], dzdu[i], dzdv[i]});
-      ASSERT_EQ(nearer[i], is_nearer(gap) ? ~0u : 0u) << draw;
+      ASSERT_EQ(nearer >> i & 1, is_nearer(gap)) << draw;
       ASSERT_EQ(crossing >> i & 1, !is_nearer(gap) && !is_farther(gap)) << draw;
       nearer_in_all += is_nearer(gap), farther_in_all += is_farther(gap), crossing_in_all += crossing >> i & 1;
     }
@@ -82,13 +82,13 @@ void expect_scalar_twin(std::uint64_t seed, const Kernel& kernel) {
 
 TEST(PlaneSides, AreThoseOfTheFormulaOnEveryTarget) {
   on_every_target([] {
-    expect_scalar_twin<2>(81, [](const auto& plane, const auto& surfaces, std::uint32_t* out) {
+    expect_scalar_twin<2>(81, [](const auto& plane, const auto& surfaces, std::uint64_t& out) {
       return HWY_DYNAMIC_DISPATCH(sides_of_2)(plane, surfaces, out);
     });
-    expect_scalar_twin<5>(82, [](const auto& plane, const auto& surfaces, std::uint32_t* out) {
+    expect_scalar_twin<5>(82, [](const auto& plane, const auto& surfaces, std::uint64_t& out) {
       return HWY_DYNAMIC_DISPATCH(sides_of_5)(plane, surfaces, out);
     });
-    expect_scalar_twin<32>(83, [](const auto& plane, const auto& surfaces, std::uint32_t* out) {
+    expect_scalar_twin<32>(83, [](const auto& plane, const auto& surfaces, std::uint64_t& out) {
       return HWY_DYNAMIC_DISPATCH(sides_of_32)(plane, surfaces, out);
     });
   });

@@ -19,11 +19,12 @@ std::vector<Fragment> fragments_in_order(const SetupTriangles& triangles, const 
   std::vector<Pair> pairs;
   std::vector<Fragment> fragments;
   conservative_raster(triangles, list, tile, ignored, pairs);
-  beam_fragment(triangles, pairs, tile, grid_options(grid, owners_fragment_bytes(Words)), ignored, fragments);
+  beam_fragment(triangles, pairs, tile, grid_options(grid, owners_fragment_bytes(Words), kOwnersWholeFragmentBytes),
+                ignored, fragments);
   return fragments;
 }
 
-// A tile of pixels with at most so many owners each, and a pool of so many bytes.
+// A tile of pixels with at most so many owners each, and a pool.
 template <std::size_t Words, std::size_t Owners = kMostOwners>
 struct OpenTile {
   static constexpr int kPositions = 32 * static_cast<int>(Words);
@@ -42,11 +43,11 @@ struct OpenTile {
   const PixelObservers* observers = nullptr;  // null: nobody looks
 
   OpenTile(const SetupTriangles& of, const std::vector<glm::vec3>& in_colors, const Tile& in = {0, 0, 1, 1},
-           std::size_t pool_bytes = 1 << 20)
+           const ChunkPool& pool = ChunkPool(1 << 20))
       : triangles(of),
         colors(in_colors),
         tile(in),
-        pixels(in.pixels(), pool_bytes, Owners),
+        pixels(in.pixels(), pool, Owners),
         closed(in),
         counts(in.pixels()),
         merges(in.pixels()),

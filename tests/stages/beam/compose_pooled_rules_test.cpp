@@ -702,6 +702,11 @@ TEST(PooledRules, TheEstimateIsLimited) {
   }
   EXPECT_GT(kept, 50'000);
   EXPECT_GT(moved, 50'000);
+  // What has lost all of its area to the surfaces in front is counted all the same, within the tolerances.
+  const Estimate<float> none = limited_estimate<float>({0, {0, 0, 0}}, {10 / 256.0f, {5 / 256.0f, 0, 0}}, 256);
+  EXPECT_EQ(none.area, 8 / 256.0f);
+  EXPECT_NEAR(none.color[0], (5 - 3 * 0.5) / 256, 1e-7);
+  EXPECT_EQ(none.color[1], 0);
 }
 
 }  // namespace beampipe::compose_pooled_rules_test

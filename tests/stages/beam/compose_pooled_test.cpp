@@ -83,7 +83,7 @@ TEST(ComposePooled, RecordsInMemoryAreThoseOfThePool) {
     const SetupTriangles triangles = random_triangles(random, 60);
     const std::vector<glm::vec3> colors = random_colors(triangles, random);
     const Tile area{0, 0, 12, 12};
-    OpenTile<8> pooled(triangles, colors, area), no_pool(triangles, colors, area, 0);
+    OpenTile<8> pooled(triangles, colors, area), no_pool(triangles, colors, area, ChunkPool(0));
     const TriangleList list = all_of(triangles);
     const std::vector<PixelColor> found = pooled.compose(list), in_memory = no_pool.compose(list);
     for (std::size_t i = 0; i < area.pixels(); ++i) {
@@ -109,7 +109,7 @@ TEST(ComposePooled, ManyLayersTakeNoMoreMemoryThanFew) {
       add_triangle(triangles, point(), point(), point());
     }
     const std::vector<glm::vec3> colors = random_colors(triangles, random);
-    OpenTile<8> tile(triangles, colors, {0, 0, 1, 1}, 0);
+    OpenTile<8> tile(triangles, colors, {0, 0, 1, 1}, ChunkPool(0));
     const PixelColor found = tile.compose_sorted().at(0);
     WideMask all;
     for (const Fragment& fragment : tile.fragments) all = all | fragment.mask;
@@ -140,13 +140,28 @@ TEST(ComposePooled, ACollectionFinishesPixels) {
   add_everywhere(triangles, -0.1f);
   const std::vector<glm::vec3> colors{kRed, kGreen, {0, 0, 1}};
   const std::vector<float> watermarks{-0.9f, -0.8f, -0.1f};
-  OpenTile<8> tile(triangles, colors, {0, 0, 1, 1}, 0);  // no room at all: every fragment collects
+  OpenTile<8> tile(triangles, colors, {0, 0, 1, 1}, ChunkPool(0));  // no room at all: every fragment collects
   expect_pixel(tile.compose({0, 1, 2}, &watermarks).at(0), 1, {0.5, 0.5, 0}, 1e-7);
   EXPECT_EQ(tile.pixels.words[0].kind, PixelKind::finished);
   EXPECT_EQ(tile.pixels.pool.used(), 0u);
   const std::uint32_t first = tile.pixels.records.take(0), second = tile.pixels.records.take(0);
   EXPECT_EQ(first + second, 0u + 1u) << "of the pixel's record and the spare one";
   EXPECT_TRUE(tile.closed.hides(0, 0, -0.99f)) << "nothing can be seen there any more";
+  EXPECT_EQ(tile.result.collections, 2u);
+
+  // By hand, with numbers as in BytesOfAnEdgeOverASurface. The first fragment: three chunks; a slot, a plane, the word.
+  std::uint64_t read = 67 + 6, written = 8 + 32 + 6;
+  // The second: a collection looks at the word and its closed depth, the record's links and its owner. That is final:
+  // the record is read, its slot once more, and plane, sums, and word are written. Then the fragment takes what is
+  // left, with a chunk for its slot, and closes the pixel.
+  read += 6 + 4 + 6 + 52 + 32 + 6 + 8, written += 16 + 32 + 6;
+  read += 67 + 32 + 6 + 2 + 52, written += 2 + 8 + 32 + 6;
+  // The third: another collection, which reads the sums twice, gives back the record, and writes the colour. The
+  // fragment itself is hidden.
+  read += 6 + 4 + 4 * 2 + 52 + 32 + 4 * 2 + 8 + 16 + 16, written += 16 + 2 + 6;
+  read += 31;
+  EXPECT_EQ(tile.composing.bytes_read, read);
+  EXPECT_EQ(tile.composing.bytes_written, written);
 }
 
 // ---- Costs, by hand ----
@@ -178,14 +193,15 @@ TEST(ComposePooled, CostOfStates) {
 //    a difference and a shift; for each channel a product, two sums, two comparisons, a conversion, a shift and an or;
 //    the exponent's sum, shift and or, and a choice;
 //  - the error's format: a product, two comparisons, its sign, a sum, and a conversion;
-//  - the slot: two operations on bits; and three for what each of the surfaces is.
+//  - the slot: three operations on bits; three for what each of the surfaces is; and the union of two masks of eight
+//    words.
 TEST(ComposePooled, CostOfAMerge) {
   const OperationCounts expected{.mul_add = 2 * 2 + 2 + 2 + 1 + 3 * 2 + 1 + 3 + 1,
                                  .add = 2 * 3 + 1 + 1 + 3 + 1 + 3 + (3 + 1 + 1 + 1 + 1) + 3 * 4 + 1 + 1 + 4,
-                                 .bit = 3 + 3 + 1 + 2 + 3 * 2 + 2 + 2 + 2 * 3,
+                                 .bit = 3 + 3 + 1 + 2 + 3 * 2 + 2 + 3 + 2 * 3 + 8,
                                  .special = 2 + 1,
                                  .convert = 1 + 3 + 1};
-  const OperationCounts found = pooled_costs::merge();
+  const OperationCounts found = pooled_costs::merge(8);
   EXPECT_EQ(found.mul_add, expected.mul_add);
   EXPECT_EQ(found.add, expected.add);
   EXPECT_EQ(found.bit, expected.bit);
@@ -193,8 +209,8 @@ TEST(ComposePooled, CostOfAMerge) {
   EXPECT_EQ(found.convert, expected.convert);
 }
 
-// A fragment that covers the pixel: a test against the closed depth; no mask, no plane, no slot. It is read with the
-// closed depth (57 + 4 bytes) and the pixel's word, which is written.
+// A fragment that covers the pixel: a test against the closed depth; no mask, no plane, no slot. It is read without a
+// mask (21 bytes), with the closed depth and the pixel's word, which is written. At the end both are read again.
 TEST(ComposePooled, CostOfACoveredPixel) {
   SetupTriangles triangles;
   add_everywhere(triangles, -0.5f);
@@ -202,10 +218,10 @@ TEST(ComposePooled, CostOfACoveredPixel) {
   OpenTile<8> tile(triangles, colors);
   tile.compose({0});
   EXPECT_EQ(tile.composing.ops, OperationCounts{.add = 1});
-  EXPECT_EQ(tile.composing.bytes_read, 57u + 4 + 6);
+  EXPECT_EQ(tile.composing.bytes_read, 21u + 4 + 6);
   EXPECT_EQ(tile.composing.bytes_written, 6u);
-  EXPECT_EQ(tile.finishing.ops, OperationCounts{});
-  EXPECT_EQ(tile.finishing.bytes_read, 6u);
+  EXPECT_EQ(tile.finishing.ops, OperationCounts{.add = 1});
+  EXPECT_EQ(tile.finishing.bytes_read, 4u + 6);
 }
 
 // A second one that lies 0.002 behind it, which is less than the change of depth within the pixel: so its nearest depth
@@ -219,8 +235,60 @@ TEST(ComposePooled, CostOfAHiddenFragment) {
   OpenTile<8> tile(triangles, colors);
   tile.compose({0, 1});
   EXPECT_EQ(tile.composing.items_out, 1u);
-  EXPECT_EQ(tile.composing.bytes_read, 2 * (57u + 4 + 6) + (4 + 5 * 8));
+  EXPECT_EQ(tile.composing.bytes_read, 2 * (21u + 4 + 6) + (4 + 5 * 8));
   EXPECT_EQ(tile.composing.bytes_written, 6u);
+}
+
+// What each fragment reads and writes, where records have a chunk of 16 bytes and a link of 2 for each half of a plane,
+// each two surfaces, and the sums. To compute a plane again takes 44 bytes, and where it is of a record 8 for its slot.
+TEST(ComposePooled, BytesOfAnEdgeOverASurface) {
+  SetupTriangles triangles;
+  add_everywhere(triangles, -0.25f);
+  add_left_of(triangles, 128, -0.75f);
+  add_right_of(triangles, 192, -0.8f);
+  add_everywhere(triangles, -0.9f);
+  add_triangle(triangles, {50, 50, -0.85f}, {51, 50, -0.85f}, {50, 51, -0.85f});
+  const std::vector<glm::vec3> colors(5, kRed);
+  constexpr std::uint64_t kWhole = 21 + 4 + 6, kPartial = 57 + 4 + 6, kPlane = 44, kOwner = 8 + kPlane;
+  const struct {
+    const char* name;
+    TriangleList before;
+    std::uint32_t last;
+    std::uint64_t read, written;
+  } cases[] = {
+      {"a surface: the word", {}, 0, kWhole, 6},
+      {"an edge in front: the plane; three chunks; two slots, a bit plane, the word",
+       {0},
+       1,
+       kPartial + kPlane + 3 * 2,
+       2 * 8 + 32 + 6},
+      {"an edge in front of one of the two: the record's plane and links; its owner; three chunks more, linked to the "
+       "others; a slot, two bit planes, the word",
+       {0, 1},
+       2,
+       kPartial + 32 + 3 * 2 + kOwner + 3 * 2,
+       2 + 8 + 64 + 6},
+      {"a surface in front of the three: the record, which is given back; for the closed depth, the surface's plane",
+       {0, 1, 2},
+       3,
+       kWhole + 64 + 6 * 2 + 3 * kOwner + kOwner,
+       2 + 6},
+      {"a speck in front: six words of bit planes, and links; the three owners there; a chunk for the sums, linked to "
+       "the others; sums, the word",
+       {0, 1, 2},
+       4,
+       kPartial + 6 * 4 + 6 * 2 + 3 * kOwner + 2,
+       2 + 16 + 6},
+  };
+  for (const auto& [name, before, last, read, written] : cases) {
+    TriangleList list = before;
+    OpenTile<8> without(triangles, colors), with(triangles, colors);
+    without.compose(list);
+    list.push_back(last);
+    with.compose(list);
+    EXPECT_EQ(with.composing.bytes_read - without.composing.bytes_read, read) << name;
+    EXPECT_EQ(with.composing.bytes_written - without.composing.bytes_written, written) << name;
+  }
 }
 
 // A speck in a pixel with two bit planes: for each of three positions a shift and an and of each plane. The three are
@@ -243,15 +311,21 @@ TEST(ComposePooled, CostsOfSteps) {
   };
   const Step steps[] = {
       {"a fragment, with the closed depth and the word", &PooledWork::fragments, {.add = 1}, 57 + 4 + 6},
-      {"what is free, and is taken: three operations on masks", &PooledWork::masks, {.bit = 3 * 8}, 0},
+      {"what is free and covered, with what is won, and whether that is nothing",
+       &PooledWork::masks,
+       {.bit = 3 * 8},
+       0},
       {"an intersection, and whether it is empty", &PooledWork::masks_tested, {.bit = 2 * 8}, 0},
+      {"an intersection that is won", &PooledWork::wins, {.bit = 2 * 8}, 0},
+      {"a state without what is taken, and whether that is nothing", &PooledWork::takes, {.bit = 2 * 8}, 0},
+      {"a share", &PooledWork::fractions, {.special = 1}, 0},
       {"a comparison of shares", &PooledWork::order_tests, {.add = 1}, 0},
       {"a mean of positions: two sums, and for each a conversion, a division, two products and the pixel's centre",
        &PooledWork::measured,
        {.mul_add = 2 * 2, .add = 2 * 256 + 2, .special = 2, .convert = 2},
        0},
-      {"a word that a collection looks at", &PooledWork::words_scanned, {}, 6},
-      {"a word at the end", &PooledWork::finished, {}, 6},
+      {"a word that a collection looks at, with its closed depth", &PooledWork::words_scanned, {.add = 1}, 4 + 6},
+      {"a word at the end, with its closed depth", &PooledWork::finished, {.add = 1}, 4 + 6},
   };
   for (const Step& step : steps) {
     PooledWork work;

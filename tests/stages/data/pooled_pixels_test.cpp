@@ -10,24 +10,27 @@ TEST(RecordShape, HasAsManyPlanesAsItsStatesNeed) {
   for (const auto& [states, planes] : cases) EXPECT_EQ(planes_for(states), planes) << states;
 }
 
-// With 256 positions a plane has 32 bytes, a surface 8, and sums 16. A chunk has 16 bytes.
-TEST(RecordShape, BytesByHand) {
+// A chunk has 16 bytes. A plane has two of them with 256 positions, and half a one with 64; a surface has half a one,
+// and the sums have one.
+TEST(RecordShape, ChunksByHand) {
   const struct {
     RecordShape shape;
-    std::uint32_t bytes, chunks;
+    std::uint32_t of_256, of_64;
   } cases[] = {
-      {{.owners = 2}, 32 + 16, 3},                     // an edge
-      {{.owners = 1, .has_empty = true}, 32 + 8, 3},   // in front of nothing
-      {{.owners = 1, .has_sums = true}, 8 + 16, 2},    // with a speck on it
-      {{.owners = 3, .has_empty = true}, 64 + 24, 6},  // four states
-      {{.owners = 2, .has_empty = true, .has_final = true, .has_sums = true}, 64 + 16 + 16, 6},
-      {{.owners = 30, .has_empty = true, .has_final = true, .has_sums = true}, 160 + 240 + 16, 26},
+      {{.owners = 2}, 2 + 1, 1 + 1},                     // an edge
+      {{.owners = 1, .has_empty = true}, 2 + 1, 1 + 1},  // in front of nothing
+      {{.owners = 1, .has_sums = true}, 1 + 1, 1 + 1},   // with a speck on it
+      {{.owners = 3, .has_empty = true}, 4 + 2, 1 + 2},  // four states, two planes
+      {{.owners = 5, .has_empty = true}, 6 + 3, 2 + 3},  // six states, three planes
+      {{.owners = 2, .has_empty = true, .has_final = true, .has_sums = true}, 4 + 1 + 1, 1 + 1 + 1},
+      {{.owners = 30, .has_empty = true, .has_final = true, .has_sums = true}, 10 + 15 + 1, 3 + 15 + 1},
   };
-  for (const auto& [shape, bytes, chunks] : cases) {
-    EXPECT_EQ(shape.bytes(8), bytes) << int{shape.owners};
-    EXPECT_EQ(shape.chunks(8), chunks) << int{shape.owners};
+  for (const auto& [shape, of_256, of_64] : cases) {
+    EXPECT_EQ(shape.chunks(8), of_256) << int{shape.owners};
+    EXPECT_EQ(shape.chunks(2), of_64) << int{shape.owners};
   }
-  EXPECT_EQ((RecordShape{.owners = 2}.bytes(1)), 4u + 16);
+  EXPECT_EQ(most_chunks(8), 26u);
+  EXPECT_EQ(least_chunks(4), 2u);
 }
 
 // A chunk takes 18 bytes with its link.
@@ -64,6 +67,24 @@ TEST(ChunkPool, CollectionsArePaidByWhatWasTaken) {
   EXPECT_FALSE(pool.wants_collection()) << "a quarter was taken, and not more";
   pool.resize(record, 20);
   EXPECT_TRUE(pool.wants_collection());
+}
+
+// Two chunks are guaranteed to each record.
+TEST(ChunkPool, AFramesPoolHasRoomUntilItIsClosed) {
+  ChunkPool pool = ChunkPool::of_frame(2);
+  ChunkPool::Chunks one, other;
+  EXPECT_TRUE(pool.has_room(one, 26));
+  pool.resize(one, 5), pool.resize(other, 1);
+  EXPECT_EQ(pool.beyond_guaranteed(), 3u);
+  pool.close();
+  EXPECT_TRUE(pool.has_room(one, 5));
+  EXPECT_FALSE(pool.has_room(one, 6));
+  EXPECT_TRUE(pool.has_room(other, 2));
+  EXPECT_FALSE(pool.has_room(other, 3));
+  pool.resize(one, 1);
+  EXPECT_EQ(pool.beyond_guaranteed(), 0u);
+  EXPECT_TRUE(pool.has_room(one, 2));
+  EXPECT_FALSE(pool.has_room(one, 3)) << "what was given back is not taken again";
 }
 
 // Records of all sizes keep their contents while others come and go.
