@@ -4,8 +4,9 @@
 usage: docs/records.py PROGRAM TRACE...
 
 For the first frame of each trace: of the pixels, how many ever had a record; the bytes of these records (the most that
-each had), mean and greatest; and what collections cost, as operations of composition beside those with a pool so large
-that there are hardly any.
+each had), mean and greatest; the most that the records of a bin had together, per pixel; how many records continued in
+memory; and collections, for each bin and as operations of composition beside those with a pool so large that there are
+hardly any.
 """
 import pathlib
 import sys
@@ -20,7 +21,8 @@ def main():
     if len(sys.argv) < 3:
         sys.exit(__doc__.strip())
     program, *traces = sys.argv[1:]
-    print_head("scene", "pixels with a record", "bytes, mean", "greatest", "records in memory, `pool=40`", "`pool=60`",
+    print_head("scene", "pixels with a record", "bytes, mean", "greatest", "of a bin, per pixel",
+               "records in memory, `pool=40`", "`pool=60`", "collections for a bin, `pool=40`", "`pool=60`",
                "operations of `compose`, `pool=40`", "`pool=60`")
     for trace in traces:
         with tempfile.TemporaryDirectory() as folder:
@@ -30,7 +32,9 @@ def main():
         record = of[40]["record_bytes"]
         print_row(pathlib.Path(trace).stem, f"{100 * record['share']:.0f} %",
                   f"{record['mean'] / record['share']:.0f}" if record["share"] else "", f"{record['max']:.0f}",
+                  f"{of[40]['pool_bytes']['max']:.0f}",
                   *(f"{100 * of[pool]['memory_chunks']['share']:.1f} %" for pool in (40, 60)),
+                  *(f"{of[pool]['collections']['mean']:.1f}" for pool in (40, 60)),
                   *(f"{operations[pool] / operations[128]:.3f}" for pool in (40, 60)))
 
 
