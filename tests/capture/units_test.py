@@ -126,17 +126,12 @@ class Windows(unittest.TestCase):
         x, y, width, height = viewport
         return x + width * (1 + ndc_x) / 2, y + height * (1 - ndc_y) / 2
 
-    def test_opengl_measures_from_the_bottom(self):
-        viewport = state.picture_viewport(10, 20, 100, 50, self.HEIGHT, True)
-        # OpenGL's window: y = 20 + 50 * (1 + ndc) / 2 from the bottom.
-        self.assertEqual(self.place(viewport, -1, -1), (10, self.HEIGHT - 20))
-        self.assertEqual(self.place(viewport, 1, 1), (110, self.HEIGHT - 70))
-
-    def test_vulkan_measures_from_the_top_with_y_down(self):
-        viewport = state.picture_viewport(10, 20, 100, 50, self.HEIGHT, False)
-        # Vulkan's framebuffer: y = 20 + 50 * (1 + ndc) / 2 from the top.
-        self.assertEqual(self.place(viewport, -1, -1), (10, 20))
-        self.assertEqual(self.place(viewport, 1, 1), (110, 70))
+    def test_opengl_measures_from_the_bottom_and_vulkan_from_the_top_with_y_down(self):
+        # y = 20 + 50 * (1 + ndc) / 2 in OpenGL's window, and in Vulkan's framebuffer.
+        for y_up, low, high in ((True, self.HEIGHT - 20, self.HEIGHT - 70), (False, 20, 70)):
+            viewport = state.picture_viewport(10, 20, 100, 50, self.HEIGHT, y_up)
+            self.assertEqual(self.place(viewport, -1, -1), (10, low))
+            self.assertEqual(self.place(viewport, 1, 1), (110, high))
 
     def test_vulkan_with_a_negative_height_is_as_opengl(self):
         viewport = state.picture_viewport(0, self.HEIGHT, self.WIDTH, -self.HEIGHT, self.HEIGHT, False)
@@ -419,28 +414,20 @@ class Pixels(unittest.TestCase):
     def test_a_bc1_block_with_two_ends(self):
         block = struct.pack("<HHI", 0xF800, 0x001F, 0b00_00_00_00_10_01_00_00)  # red > blue: four colours
         found = pixels.decode_color(block, 4, 4, pixels.Format("BC1", 0, 4, "UNorm", False))
-        np.testing.assert_allclose(found[0, 0], [1, 0, 0, 1])
-        np.testing.assert_allclose(found[0, 2], [0, 0, 1, 1])
-        np.testing.assert_allclose(found[0, 3], [2 / 3, 0, 1 / 3, 1], atol=0.005)
+        for x, color in ((0, [1, 0, 0, 1]), (2, [0, 0, 1, 1]), (3, [2 / 3, 0, 1 / 3, 1])):
+            np.testing.assert_allclose(found[0, x], color, atol=0.005)
 
-    def test_a_bc3_block_has_opacity(self):
-        alpha = bytes([200, 100]) + (1 | 2 << 3).to_bytes(6, "little")
-        block = alpha + struct.pack("<HHI", 0xFFFF, 0, 0)
-        found = pixels.decode_color(block, 4, 4, pixels.Format("BC3", 0, 4, "UNorm", False))
-        np.testing.assert_allclose(found[0, :3, 3] * 255, [100, 185, 200], atol=1)
-
-    def test_a_bc3_block_with_rising_ends_has_0_and_1(self):
-        alpha = bytes([100, 200]) + (6 | 7 << 3 | 2 << 6).to_bytes(6, "little")
-        block = alpha + struct.pack("<HHI", 0xFFFF, 0, 0)
-        found = pixels.decode_color(block, 4, 4, pixels.Format("BC3", 0, 4, "UNorm", False))
-        np.testing.assert_allclose(found[0, :3, 3] * 255, [0, 255, 120], atol=1)
+    def test_a_bc3_block_has_opacity_and_with_rising_ends_0_and_1(self):
+        for ends, codes, expected in (([200, 100], 1 | 2 << 3, [100, 185, 200]),
+                                      ([100, 200], 6 | 7 << 3 | 2 << 6, [0, 255, 120])):
+            block = bytes(ends) + codes.to_bytes(6, "little") + struct.pack("<HHI", 0xFFFF, 0, 0)
+            found = pixels.decode_color(block, 4, 4, pixels.Format("BC3", 0, 4, "UNorm", False))
+            np.testing.assert_allclose(found[0, :3, 3] * 255, expected, atol=1)
 
     def test_24_bits_of_depth_are_where_the_api_keeps_them(self):
-        word = struct.pack("<I", 0xFFFFFF << 8 | 7)
-        depth = pixels.Format("D24S8", 0, 2, "Depth", False)
-        self.assertEqual(pixels.decode_depth(word, 1, 1, depth, False)[0, 0], 1)
-        word = struct.pack("<I", 7 << 24 | 0xFFFFFF)
-        self.assertEqual(pixels.decode_depth(word, 1, 1, depth, True)[0, 0], 1)
+        for word, low in ((0xFFFFFF << 8 | 7, False), (7 << 24 | 0xFFFFFF, True)):
+            depth = pixels.Format("D24S8", 0, 2, "Depth", False)
+            self.assertEqual(pixels.decode_depth(struct.pack("<I", word), 1, 1, depth, low)[0, 0], 1)
 
 
 class Files(unittest.TestCase):

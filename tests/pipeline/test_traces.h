@@ -76,6 +76,14 @@ class RandomNumbers {
   std::mt19937 bits_;
 };
 
+// Whose corners are as far from `center` as this at most in x, y and z.
+inline PixelSpaceTriangle random_triangle(RandomNumbers& random, const glm::dvec3& center, const glm::dvec3& reach) {
+  PixelSpaceTriangle triangle;
+  for (glm::dvec3& corner : triangle.corners) corner = center + random.vector(-reach, reach);
+  triangle.color = random.vector(glm::dvec3(0), glm::dvec3(1));
+  return triangle;
+}
+
 // Random triangles of mixed sizes that interpenetrate. The same seed gives the same triangles on every machine.
 inline Trace random_trace(std::uint32_t width, std::uint32_t height, int count, std::uint32_t seed) {
   RandomNumbers random(seed);
@@ -83,11 +91,7 @@ inline Trace random_trace(std::uint32_t width, std::uint32_t height, int count, 
   for (int i = 0; i < count; ++i) {
     const glm::dvec3 center = random.vector({0, 0, 0.2}, {width, height, 0.8});
     const double size = i % 3 == 0 ? 0.4 * width : i % 3 == 1 ? 4.0 : 0.7;
-    PixelSpaceTriangle triangle;
-    for (glm::dvec3& corner : triangle.corners)
-      corner = center + random.vector({-size, -size, -0.1}, {size, size, 0.1});
-    triangle.color = random.vector(glm::dvec3(0), glm::dvec3(1));
-    triangles.push_back(triangle);
+    triangles.push_back(random_triangle(random, center, {size, size, 0.1}));
   }
   return pixel_trace(width, height, triangles, glm::vec3(0.25f, 0.5f, 0.75f));
 }

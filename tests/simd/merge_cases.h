@@ -52,23 +52,21 @@ inline MergeFragment random_fragment(Random& random) {
 // The published rules; the rules that differ from them in one value; and the last value of every policy together.
 inline std::vector<MergeRules> every_merge_rule() {
   using R = MergeRules;
-  std::vector<MergeRules> rules(14);
-  rules[1].overlap = R::Overlap::over;
-  rules[2].overlap = R::Overlap::add;
-  rules[3].overlap = R::Overlap::transition;
-  rules[4].local = R::Local::keep;
-  rules[5].fuzzy = R::Fuzzy::mix;
-  rules[6].extents = R::Extents::slab;
-  rules[7].slab = R::Slab::visible;
-  rules[8].plane = R::Plane::visible;
-  rules[9].thickness = R::Thickness::containing;
-  rules[10].regional = R::Regional::area;
-  rules[12].partition = R::Partition::positions;
-  rules[13] = rules[3];
-  rules[13].partition = R::Partition::positions;
-  rules[11] = {R::Overlap::transition, R::Regional::area, R::Local::keep,    R::Fuzzy::mix,
-               R::Extents::slab,       R::Slab::visible,  R::Plane::visible, R::Thickness::containing};
-  return rules;
+  return {{},
+          {.overlap = R::Overlap::over},
+          {.overlap = R::Overlap::add},
+          {.overlap = R::Overlap::transition},
+          {.local = R::Local::keep},
+          {.fuzzy = R::Fuzzy::mix},
+          {.extents = R::Extents::slab},
+          {.slab = R::Slab::visible},
+          {.plane = R::Plane::visible},
+          {.thickness = R::Thickness::containing},
+          {.regional = R::Regional::area},
+          {R::Overlap::transition, R::Regional::area, R::Local::keep, R::Fuzzy::mix, R::Extents::slab, R::Slab::visible,
+           R::Plane::visible, R::Thickness::containing},
+          {.partition = R::Partition::positions},
+          {.overlap = R::Overlap::transition, .partition = R::Partition::positions}};
 }
 
 }  // namespace beampipe

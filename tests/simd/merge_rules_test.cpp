@@ -22,15 +22,14 @@ void expect_shows(const Aggregate& found, double alpha, double red, double green
   EXPECT_NEAR(found.color[1], green, bound);
 }
 
-MergeRules with_overlap(MergeRules::Overlap overlap) {
-  MergeRules rules;
-  rules.overlap = overlap;
-  return rules;
-}
+constexpr MergeRules kByPosition{.partition = MergeRules::Partition::positions};
 
-MergeRules by_position(MergeRules rules) {
-  rules.partition = MergeRules::Partition::positions;
-  return rules;
+// A slab of this thickness around depth z, whose surfaces lie between z_min and z_max.
+Aggregate slab(float z, float thickness, float z_min, float z_max, float alpha = 1) {
+  Aggregate of = flat_surface(alpha, kAllBits, z, 0, 1);
+  of.thickness = thickness;
+  of.z_min = z_min, of.z_max = z_max;
+  return of;
 }
 
 void expect_invariants(const MergeFragment& fragment, const Aggregate& old, const MergeRules& rules,
@@ -53,15 +52,11 @@ void expect_invariants(const MergeFragment& fragment, const Aggregate& old, cons
 
 // A slab of thickness 0.4 around depth -0.5 reaches from -0.7 to -0.3; the depths that it was made of reach less far.
 TEST(MergeRules, TheDepthRangeLimitsTheEndsOfASlab) {
-  Aggregate slab = kEmptyAggregate;
-  slab.thickness = 0.4f, slab.z_min = -0.6f, slab.z_max = -0.45f;
-  MergeRules rules;
-  rules.extents = MergeRules::Extents::range;
-  const SlabEnds<float> limited = slab_ends(slab, -0.5f, rules);
+  const Aggregate of = slab(-0.5f, 0.4f, -0.6f, -0.45f);
+  const SlabEnds<float> limited = slab_ends(of, -0.5f, {.extents = MergeRules::Extents::range});
   EXPECT_EQ(limited.front, -0.6f);
   EXPECT_EQ(limited.back, -0.45f);
-  rules.extents = MergeRules::Extents::slab;
-  const SlabEnds<float> free = slab_ends(slab, -0.5f, rules);
+  const SlabEnds<float> free = slab_ends(of, -0.5f, {.extents = MergeRules::Extents::slab});
   EXPECT_FLOAT_EQ(free.front, -0.7f);
   EXPECT_FLOAT_EQ(free.back, -0.3f);
 }
@@ -124,8 +119,7 @@ TEST(MergeRules, OverlappingHalvesAreIndependent) {
 // or it is their area of 1/2, and half of the other one shows. Where the region is the whole pixel, both are the same.
 // An opaque half in front of a whole pixel hides half of it, or half of that: 1/2 + 1/4 + 1/2 is scaled down to 1.
 TEST(MergeRules, RegionalCoverageIsNormalizedOrAnArea) {
-  MergeRules area;
-  area.regional = MergeRules::Regional::area;
+  const MergeRules area{.regional = MergeRules::Regional::area};
   const Aggregate back = flat_surface(0.5f, 0xffffu, -0.1f, 1, 0), front = flat_surface(0.5f, 0xffffu, -0.9f, 0, 1);
   for (const bool is_front : {true, false}) {
     const Aggregate &in = is_front ? front : back, &old = is_front ? back : front;
@@ -149,10 +143,7 @@ TEST(MergeRules, SpeckLiesBeside) {
 // In a slab from -0.6 to -0.4, a fragment at -0.45 is 3/4 of the way to the back: 1/4 of the fragment and 3/4 of the
 // slab are visible.
 TEST(MergeRules, WithinTheSlabDeltaShares) {
-  Aggregate old = flat_surface(1, kAllBits, -0.5f, 0, 1);
-  old.thickness = 0.2f;
-  old.z_min = -0.6f, old.z_max = -0.4f;
-  const Aggregate now = merged(flat_surface(1, kAllBits, -0.45f, 1, 0), old);
+  const Aggregate now = merged(flat_surface(1, kAllBits, -0.45f, 1, 0), slab(-0.5f, 0.2f, -0.6f, -0.4f));
   expect_shows(now, 1, 0.25, 0.75, 1e-6);
   EXPECT_GE(now.thickness, 0.2f);
 }
@@ -162,16 +153,15 @@ TEST(MergeRules, CrossingPlanesShareThePixel) {
   Aggregate in = flat_surface(1, kAllBits, -0.5f, 1, 0);
   in.plane.dzdu = 0.2f;
   in.z_min = -0.6f, in.z_max = -0.4f;
-  expect_shows(merged(in, flat_surface(1, kAllBits, -0.5f, 0, 1), by_position({})), 1, 0.5, 0.5);
+  expect_shows(merged(in, flat_surface(1, kAllBits, -0.5f, 0, 1), kByPosition), 1, 0.5, 0.5);
 }
 
 // A steep plane leaves the depth range that its triangle really has in the pixel. What lies behind that range is behind
 // everywhere, and what lies in front of it is in front everywhere.
 TEST(MergeRules, DepthRangeBoundsTheSlabOnBothSides) {
   for (const float slope : {-4.0f, 4.0f}) {
-    Aggregate old = flat_surface(1, kAllBits, -0.5f, 0, 1);
+    Aggregate old = slab(-0.5f, 0, -0.55f, -0.45f);
     old.plane.dzdu = slope;
-    old.z_min = -0.55f, old.z_max = -0.45f;
     SCOPED_TRACE(slope);
     expect_shows(merged(flat_surface(1, kAllBits, -0.4f, 1, 0), old), 1, 0, 1);
     expect_shows(merged(flat_surface(1, kAllBits, -0.6f, 1, 0), old), 1, 1, 0);
@@ -215,7 +205,7 @@ TEST(MergeRules, CrossingPlanesShareTheirOverlapByPosition) {
       ties += has_in && has_old && depth(in) == depth(old);
     }
     const Aggregate now =
-        merged(masked_surface(in_mask, plane(in), 1, 0), masked_surface(old_mask, plane(old), 0, 1), by_position({}));
+        merged(masked_surface(in_mask, plane(in), 1, 0), masked_surface(old_mask, plane(old), 0, 1), kByPosition);
     ASSERT_NEAR(now.color[0], shows_in / 32.0, 1e-6) << i;
     ASSERT_NEAR(now.color[1], shows_old / 32.0, 1e-6) << i;
     ASSERT_NEAR(now.alpha, std::popcount(in_mask | old_mask) / 32.0, 1e-6) << i;
@@ -315,8 +305,9 @@ TEST(MergeRules, WithinTheSlabDeltaIsTakenAtTheMeanPosition) {
     if (undecided) continue;
     mixed += within > 0 && in_front + behind > 0;
     const double delta = within > 0 ? depth_in_slab(u_sum / within, v_sum / within) : 0;
-    const Aggregate now =
-        merged(in, old, by_position(random.one_in(2) ? with_overlap(MergeRules::Overlap::over) : MergeRules{}));
+    MergeRules rules = kByPosition;
+    if (random.one_in(2)) rules.overlap = MergeRules::Overlap::over;
+    const Aggregate now = merged(in, old, rules);
     const double red = part_in * (in_front + behind * (1.0 - part_old) + within * (1 - delta));
     const double green = part_old * (in_front * (1.0 - part_in) + behind + within * delta);
     ASSERT_NEAR(now.color[0], red / 32, 2e-6) << i;
@@ -332,6 +323,14 @@ TEST(MergeRules, AreasAboveOneAreScaled) {
                2.0 / 3, 1.0 / 3);
 }
 
+// The plane of `now` is the mean of both, of which `in` has this part.
+void expect_mean(const Aggregate& now, const Aggregate& in, const Aggregate& old, double part) {
+  const auto mean = [&](float of_in, float of_old) { return of_in * part + of_old * (1 - part); };
+  ASSERT_NEAR(now.plane.z, mean(in.plane.z, old.plane.z), 1e-6);
+  ASSERT_NEAR(now.plane.dzdu, mean(in.plane.dzdu, old.plane.dzdu), 1e-6);
+  ASSERT_NEAR(now.plane.dzdv, mean(in.plane.dzdv, old.plane.dzdv), 1e-6);
+}
+
 TEST(MergeRules, PlanesAreMeansByArea) {
   Random random(47);
   for (int i = 0; i < 20'000; ++i) {
@@ -341,19 +340,14 @@ TEST(MergeRules, PlanesAreMeansByArea) {
       return of;
     };
     const Aggregate in = surface(), old = surface(), now = merged(in, old);
-    const double area = double(in.alpha) + old.alpha;
-    const auto mean = [&](float of_in, float of_old) { return (of_in * in.alpha + double(of_old) * old.alpha) / area; };
-    ASSERT_NEAR(now.plane.z, mean(in.plane.z, old.plane.z), 1e-6) << i;
-    ASSERT_NEAR(now.plane.dzdu, mean(in.plane.dzdu, old.plane.dzdu), 1e-6) << i;
-    ASSERT_NEAR(now.plane.dzdv, mean(in.plane.dzdv, old.plane.dzdv), 1e-6) << i;
+    ASSERT_NO_FATAL_FAILURE(expect_mean(now, in, old, double(in.alpha) / (double(in.alpha) + old.alpha))) << i;
   }
 }
 
 // The slab reaches the fragment: at every covered position the fragment is within half the thickness of the new plane.
 TEST(MergeRules, ThicknessReachesTheFragment) {
   Random random(44);
-  MergeRules containing;
-  containing.thickness = MergeRules::Thickness::containing;
+  const MergeRules containing{.thickness = MergeRules::Thickness::containing};
   for (int i = 0; i < 20'000; ++i) {
     const MergeFragment fragments[3] = {random_fragment(random), random_fragment(random), random_fragment(random)};
     const MergeRules rules = random.one_in(2) ? containing : MergeRules{};
@@ -389,17 +383,17 @@ TEST(MergeRules, OverlapIsIndependentOrBeside) {
   const Aggregate back = flat_surface(0.5f, kAllBits, -0.1f, 0, 1), front = flat_surface(0.25f, kAllBits, -0.9f, 1, 0);
   for (const bool front_last : {true, false}) {
     const Aggregate &in = front_last ? front : back, &old = front_last ? back : front;
-    EXPECT_FLOAT_EQ(merged_tiny(in, old, with_overlap(Overlap::over)).alpha, 0.25f + 0.375f);
-    EXPECT_FLOAT_EQ(merged(in, old, with_overlap(Overlap::add)).alpha, 0.75f);
-    EXPECT_FLOAT_EQ(merged_tiny(in, old, with_overlap(Overlap::tiny)).alpha, 0.75f);
-    EXPECT_FLOAT_EQ(merged(in, old, with_overlap(Overlap::tiny)).alpha, 0.625f);
+    EXPECT_FLOAT_EQ(merged_tiny(in, old, {.overlap = Overlap::over}).alpha, 0.25f + 0.375f);
+    EXPECT_FLOAT_EQ(merged(in, old, {.overlap = Overlap::add}).alpha, 0.75f);
+    EXPECT_FLOAT_EQ(merged_tiny(in, old, {.overlap = Overlap::tiny}).alpha, 0.75f);
+    EXPECT_FLOAT_EQ(merged(in, old, {.overlap = Overlap::tiny}).alpha, 0.625f);
   }
 }
 
 // The transition of slide 12. The aggregate leaves half of its mask open, and the distance of the two is all of their
 // depth range: a fuzziness of 1/2 x 1, halfway between 0.75 and 0.625. At the same depth it is ADD.
 TEST(MergeRules, TransitionGoesFromAddToOverWithDistance) {
-  const MergeRules rules = with_overlap(MergeRules::Overlap::transition);
+  const MergeRules rules{.overlap = MergeRules::Overlap::transition};
   const Aggregate old = flat_surface(0.5f, kAllBits, -0.9f, 0, 1);
   EXPECT_FLOAT_EQ(merged(flat_surface(0.25f, kAllBits, -0.1f, 1, 0), old, rules).alpha, (0.75f + 0.625f) / 2);
   EXPECT_FLOAT_EQ(merged(flat_surface(0.25f, kAllBits, -0.9f, 1, 0), old, rules).alpha, 0.75f);
@@ -408,7 +402,7 @@ TEST(MergeRules, TransitionGoesFromAddToOverWithDistance) {
 // The same with sloping planes, partial masks and depth ranges that clamp the planes. The fragment is in front
 // everywhere.
 TEST(MergeRules, TransitionTakesTheMeanDistanceOverTheOverlap) {
-  const MergeRules rules = with_overlap(MergeRules::Overlap::transition);
+  const MergeRules rules{.overlap = MergeRules::Overlap::transition};
   Random random(48);
   for (int i = 0; i < 20'000; ++i) {
     const float part_in = random.real32(0.1, 1), part_old = random.real32(0.1, 1);
@@ -442,8 +436,7 @@ TEST(MergeRules, TransitionTakesTheMeanDistanceOverTheOverlap) {
 // An area of 1/16 in one position is twice what the position can hold. `keep` shows all of it, `clamp` half.
 TEST(MergeRules, LocalCoverageAboveOneIsKeptOrClamped) {
   const Aggregate front = flat_surface(1.0f / 16, 1u, -0.9f, 1, 0), back = flat_surface(0.5f, 0x0000ffffu, -0.1f, 0, 1);
-  MergeRules keep;
-  keep.local = MergeRules::Local::keep;
+  const MergeRules keep{.local = MergeRules::Local::keep};
   for (const bool front_last : {true, false}) {
     const Aggregate &in = front_last ? front : back, &old = front_last ? back : front;
     EXPECT_FLOAT_EQ(merged(in, old).color[0], 1.0f / 32);
@@ -456,35 +449,24 @@ TEST(MergeRules, LocalCoverageAboveOneIsKeptOrClamped) {
 // Two coverages of 1/2 in the middle of the slab. The published blend keeps 1/4 of each. `mix` is halfway between 1/2
 // over 1/4 and 1/4 under 1/2.
 TEST(MergeRules, WithinTheSlabAreaIsLostOrMixed) {
-  Aggregate old = flat_surface(0.5f, kAllBits, -0.5f, 0, 1);
-  old.thickness = 0.2f;
-  old.z_min = -0.6f, old.z_max = -0.4f;
-  const Aggregate in = flat_surface(0.5f, kAllBits, -0.5f, 1, 0);
+  const Aggregate old = slab(-0.5f, 0.2f, -0.6f, -0.4f, 0.5f), in = flat_surface(0.5f, kAllBits, -0.5f, 1, 0);
   EXPECT_NEAR(merged(in, old).alpha, 0.5f, 1e-6);
-  MergeRules rules;
-  rules.fuzzy = MergeRules::Fuzzy::mix;
-  const Aggregate now = merged(in, old, rules);
-  expect_shows(now, 0.75, 0.375, 0.375, 1e-6);
+  expect_shows(merged(in, old, {.fuzzy = MergeRules::Fuzzy::mix}), 0.75, 0.375, 0.375, 1e-6);
 }
 
 // A slab of thickness 0.4 around -0.5 whose surfaces lie between -0.55 and -0.45. A fragment at -0.4 is behind the
 // surfaces but within the slab.
 TEST(MergeRules, ExtentsAreCutByTheRangeOrNot) {
-  Aggregate old = flat_surface(1, kAllBits, -0.5f, 0, 1);
-  old.thickness = 0.4f;
-  old.z_min = -0.55f, old.z_max = -0.45f;
-  const Aggregate in = flat_surface(1, kAllBits, -0.4f, 1, 0);
+  const Aggregate old = slab(-0.5f, 0.4f, -0.55f, -0.45f), in = flat_surface(1, kAllBits, -0.4f, 1, 0);
   EXPECT_EQ(merged(in, old).color[0], 0.0f);
-  MergeRules rules;
-  rules.extents = MergeRules::Extents::slab;
-  EXPECT_NEAR(merged(in, old, rules).color[0], 0.25f, 1e-6);  // 3/4 of the way to the back
+  // 3/4 of the way to the back.
+  EXPECT_NEAR(merged(in, old, {.extents = MergeRules::Extents::slab}).color[0], 0.25f, 1e-6);
 }
 
 TEST(MergeRules, WhatIsHiddenLeavesTheSlabAlone) {
   const Aggregate front = flat_surface(1, kAllBits, -0.9f, 0, 1), behind = flat_surface(1, kAllBits, -0.1f, 1, 0);
   EXPECT_NEAR(merged(behind, front).thickness, 0.8f, 1e-6);  // reaches both surfaces from the mean depth
-  MergeRules rules;
-  rules.slab = MergeRules::Slab::visible;
+  const MergeRules rules{.slab = MergeRules::Slab::visible};
   const Aggregate now = merged(behind, front, rules);
   EXPECT_EQ(now.plane.z, front.plane.z);
   EXPECT_EQ(now.thickness, 0.0f);
@@ -494,7 +476,7 @@ TEST(MergeRules, WhatIsHiddenLeavesTheSlabAlone) {
 
 // A thin fragment crosses a thin aggregate. The slab reaches the fragment at its visible positions and no farther.
 TEST(MergeRules, VisiblePositionsAloneExtendTheSlab) {
-  MergeRules rules = by_position({});
+  MergeRules rules = kByPosition;
   rules.slab = MergeRules::Slab::visible;
   Random random(49);
   int hidden = 0, partly = 0;
@@ -526,10 +508,7 @@ TEST(MergeRules, VisiblePositionsAloneExtendTheSlab) {
     ASSERT_EQ(now.z_min, reached == 0 ? old.z_min : std::min(in.z_min, old.z_min)) << i;
     ASSERT_EQ(now.z_max, reached == 0 ? old.z_max : std::max(in.z_max, old.z_max)) << i;
     const double part = reached == 0 ? 0 : double(in.alpha) / (double(in.alpha) + old.alpha);
-    const auto mean = [&](float of_in, float of_old) { return of_in * part + of_old * (1 - part); };
-    ASSERT_NEAR(now.plane.z, mean(in.plane.z, old.plane.z), 1e-6) << i;
-    ASSERT_NEAR(now.plane.dzdu, mean(in.plane.dzdu, old.plane.dzdu), 1e-6) << i;
-    ASSERT_NEAR(now.plane.dzdv, mean(in.plane.dzdv, old.plane.dzdv), 1e-6) << i;
+    ASSERT_NO_FATAL_FAILURE(expect_mean(now, in, old, part)) << i;
   }
   EXPECT_GT(hidden, 500);
   EXPECT_GT(partly, 5'000);
@@ -538,21 +517,15 @@ TEST(MergeRules, VisiblePositionsAloneExtendTheSlab) {
 TEST(MergeRules, PlanesAreWeightedByAreaOrByWhatShows) {
   const Aggregate front = flat_surface(1, kAllBits, -0.9f, 0, 1), behind = flat_surface(1, kAllBits, -0.1f, 1, 0);
   EXPECT_FLOAT_EQ(merged(behind, front).plane.z, -0.5f);
-  MergeRules rules;
-  rules.plane = MergeRules::Plane::visible;
-  EXPECT_FLOAT_EQ(merged(behind, front, rules).plane.z, -0.9f);
+  EXPECT_FLOAT_EQ(merged(behind, front, {.plane = MergeRules::Plane::visible}).plane.z, -0.9f);
 }
 
 // A thin slab at -0.9 and a second surface at -0.1. The plane moves to -0.5 and must still reach the whole first slab.
 TEST(MergeRules, ThicknessContainsWhatWasThereBefore) {
-  Aggregate old = flat_surface(1, kAllBits, -0.9f, 0, 1);
-  old.thickness = 0.1f;
-  old.z_min = -0.95f, old.z_max = -0.85f;
-  const Aggregate in = flat_surface(1, kAllBits, -0.1f, 1, 0);
+  const Aggregate old = slab(-0.9f, 0.1f, -0.95f, -0.85f), in = flat_surface(1, kAllBits, -0.1f, 1, 0);
   EXPECT_NEAR(merged(in, old).thickness, 0.8f, 1e-6);
-  MergeRules rules;
-  rules.thickness = MergeRules::Thickness::containing;
-  EXPECT_NEAR(merged(in, old, rules).thickness, 0.1f + 2 * 0.4f, 1e-6);
+  const MergeRules containing{.thickness = MergeRules::Thickness::containing};
+  EXPECT_NEAR(merged(in, old, containing).thickness, 0.1f + 2 * 0.4f, 1e-6);
 }
 
 // OVER by hand: 1/2, and 1/2 of the 1/4 behind it.

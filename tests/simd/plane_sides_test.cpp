@@ -82,15 +82,9 @@ void expect_scalar_twin(std::uint64_t seed, const Kernel& kernel) {
 
 TEST(PlaneSides, AreThoseOfTheFormulaOnEveryTarget) {
   on_every_target([] {
-    expect_scalar_twin<2>(81, [](const auto& plane, const auto& surfaces, std::uint64_t& out) {
-      return HWY_DYNAMIC_DISPATCH(sides_of_2)(plane, surfaces, out);
-    });
-    expect_scalar_twin<5>(82, [](const auto& plane, const auto& surfaces, std::uint64_t& out) {
-      return HWY_DYNAMIC_DISPATCH(sides_of_5)(plane, surfaces, out);
-    });
-    expect_scalar_twin<32>(83, [](const auto& plane, const auto& surfaces, std::uint64_t& out) {
-      return HWY_DYNAMIC_DISPATCH(sides_of_32)(plane, surfaces, out);
-    });
+    expect_scalar_twin<2>(81, HWY_DYNAMIC_DISPATCH(sides_of_2));
+    expect_scalar_twin<5>(82, HWY_DYNAMIC_DISPATCH(sides_of_5));
+    expect_scalar_twin<32>(83, HWY_DYNAMIC_DISPATCH(sides_of_32));
   });
 }
 

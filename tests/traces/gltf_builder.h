@@ -7,19 +7,9 @@
 #include <string_view>
 #include <vector>
 
-namespace beampipe {
+#include "traces/files/base64.h"
 
-inline std::string base64(std::string_view bytes) {
-  const char* const digits = "ABCDEFGHIJKLMNOPQRSTUVWXYZabcdefghijklmnopqrstuvwxyz0123456789+/";
-  std::string text;
-  for (std::size_t i = 0; i < bytes.size(); i += 3) {
-    std::uint32_t bits = 0;
-    for (std::size_t k = 0; k < 3; ++k)
-      bits = bits << 8 | (i + k < bytes.size() ? static_cast<unsigned char>(bytes[i + k]) : 0u);
-    for (std::size_t k = 0; k < 4; ++k) text += i + k <= bytes.size() ? digits[bits >> (18 - 6 * k) & 63] : '=';
-  }
-  return text;
-}
+namespace beampipe {
 
 class GltfBuilder {
  public:
@@ -58,7 +48,7 @@ class GltfBuilder {
     nlohmann::json whole = json;
     if (!whole.contains("buffers"))
       whole["buffers"] = {
-          {{"byteLength", buffer.size()}, {"uri", "data:application/octet-stream;base64," + base64(buffer)}}};
+          {{"byteLength", buffer.size()}, {"uri", "data:application/octet-stream;base64," + to_base64(buffer)}}};
     return whole.dump();
   }
 

@@ -62,11 +62,7 @@ TEST(Beam, AHundredThousandTrianglesInOneBin) {
   for (int i = 0; i < 100'000; ++i) {
     const glm::dvec3 center = random.vector({0, 0, 0.2}, {16, 16, 0.8});
     const double size = i % 2 ? 0.3 : 2;
-    PixelSpaceTriangle triangle;
-    for (glm::dvec3& corner : triangle.corners)
-      corner = center + random.vector({-size, -size, -0.05}, {size, size, 0.05});
-    triangle.color = random.vector(glm::dvec3(0), glm::dvec3(1));
-    triangles.push_back(triangle);
+    triangles.push_back(random_triangle(random, center, {size, size, 0.05}));
   }
   const Trace trace = pixel_trace(16, 16, triangles, glm::vec3(1));
   const FrameResult result = render("beam", trace);

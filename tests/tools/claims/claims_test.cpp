@@ -1,17 +1,9 @@
 // Claims: the published figures, the formulas of our numbers, and the claims made of both.
 #include "tools/claims/claims.h"
 
-#include <gtest/gtest.h>
-
-#include <algorithm>
-#include <iterator>
-#include <limits>
-#include <map>
-#include <set>
-#include <sstream>
-#include <stdexcept>
-
+#include "tests/message_of.h"
 #include "tests/pipeline/test_traces.h"
+#include "tests/tools/fixtures.h"
 #include "tests/tools/report_frames.h"
 #include "tools/claims/our_figures.h"
 #include "tools/claims/published_figures.h"
@@ -36,12 +28,7 @@ PublishedFigure figure_with(const std::string& fields) {
 }
 
 std::string refusal(const std::string& text) {
-  try {
-    parse_published_figures(text, "book.json");
-  } catch (const std::exception& error) {
-    return error.what();
-  }
-  return "";
+  return message_of<std::exception>([&] { parse_published_figures(text, "book.json"); });
 }
 
 TEST(PublishedFigures, AreOneNumberOrARangeOrALowerBound) {
@@ -102,9 +89,9 @@ TEST(PublishedFigures, ErrorsNameThePlace) {
 TEST(PublishedFigures, ThatNeedRenderingNameTheirTrace) {
   EXPECT_EQ(parse_published_figures(file_with(R"("published": 4, "formula": "f")", "time"), "book.json").front().trace,
             "0123456789abcdef");
-  std::string text = file_with(R"("published": 4, "formula": "f")", "time");
-  text.replace(text.find("\"trace\""), 7, "\"remark\"");
-  EXPECT_EQ(refusal(text), "book.json: /groups/0: expected the key \"trace\", found none");
+  const std::string text = file_with(R"("published": 4, "formula": "f")", "time");
+  EXPECT_EQ(refusal(replaced(text, "\"trace\"", "\"remark\"")),
+            "book.json: /groups/0: expected the key \"trace\", found none");
 }
 
 // Splits at blanks.
@@ -161,25 +148,36 @@ Report report_for(const std::string& claim) {
   return report;
 }
 
+// Adds the result of one frame.
+TechniqueReport& add_result(Report& report, const std::string& technique, const FrameReport& frame) {
+  TechniqueReport& result = report.results.emplace_back();
+  result.technique = technique;
+  result.frames.push_back(frame);
+  return result;
+}
+
 FrameReport frame_with(const std::vector<StageCounters>& stages) {
   FrameReport frame;
   frame.stages = stages;
   return frame;
 }
 
+// Our number of the claim with this name.
+std::optional<double> ours(const Report& report, const std::string& name) {
+  for (const Claim& claim : all_claims(report))
+    if (claim.name == name) return claim.ours;
+  ADD_FAILURE() << "no claim " << name;
+  return {};
+}
+
 std::string mismatch(const std::vector<PublishedFigure>& figures, const std::vector<Formula>& formulas) {
-  try {
-    expect_formulas_match(figures, formulas);
-  } catch (const std::logic_error& error) {
-    return error.what();
-  }
-  return "";
+  return message_of<std::logic_error>([&] { expect_formulas_match(figures, formulas); });
 }
 
 TEST(Formulas, EachIsNamedByAFigureAndEachFigureNamesOneThatIsThere) {
   const std::vector<PublishedFigure> figures = published_figures();
   std::vector<Formula> formulas = our_formulas();
-  EXPECT_EQ(mismatch(figures, formulas), "");
+  EXPECT_EQ(mismatch(figures, formulas), "no error");
 
   const Formula last = formulas.back();
   formulas.pop_back();
@@ -198,34 +196,27 @@ TEST(Formulas, EachIsNamedByAFigureAndEachFigureNamesOneThatIsThere) {
 TEST(Formulas, OfEveryPassAreModelledTimesOfItsStages) {
   Report report = report_for("low density, DVM, Material");
   report.hardware = titan_v();
-  TechniqueReport& result = report.results.emplace_back();
-  result.technique = "dvm";
   StageCounters shade{StageId::shade}, light{StageId::light};
   shade.dram_bytes = 1'000'000, light.dram_bytes = 3'000'000;
-  result.frames.push_back(frame_with({shade, light}));
-  const auto ours = [&](const std::string& name) -> std::optional<double> {
-    for (const Claim& claim : all_claims(report))
-      if (claim.name == name) return claim.ours;
-    ADD_FAILURE() << "no claim " << name;
-    return {};
-  };
+  TechniqueReport& result = add_result(report, "dvm", frame_with({shade, light}));
   const double megabyte = 1'000'000 / titan_v().rates.at("dram_bytes_per_clk") / (titan_v().clock_mhz * 1e3);
-  EXPECT_DOUBLE_EQ(ours("low density, DVM, Material").value(), megabyte);
-  EXPECT_DOUBLE_EQ(ours("low density, DVM, Lighting").value(), 3 * megabyte);
-  EXPECT_DOUBLE_EQ(ours("low density, DVM, Total").value(), 4 * megabyte);
-  EXPECT_FALSE(ours("low density, DVM, Motion"));
-  EXPECT_FALSE(ours("low density, Deferred, Material"));
-  EXPECT_FALSE(ours("high density, DVM, Material"));
+  EXPECT_DOUBLE_EQ(ours(report, "low density, DVM, Material").value(), megabyte);
+  EXPECT_DOUBLE_EQ(ours(report, "low density, DVM, Lighting").value(), 3 * megabyte);
+  EXPECT_DOUBLE_EQ(ours(report, "low density, DVM, Total").value(), 4 * megabyte);
+  EXPECT_FALSE(ours(report, "low density, DVM, Motion"));
+  EXPECT_FALSE(ours(report, "low density, Deferred, Material"));
+  EXPECT_FALSE(ours(report, "high density, DVM, Material"));
   report.made_by = report_for("high density, DVM, Material").made_by;
-  EXPECT_DOUBLE_EQ(ours("high density, DVM, Material").value(), megabyte);
-  EXPECT_FALSE(ours("high density, brute-force supersampling of visibility, 8x, Material and Lighting"));
+  EXPECT_DOUBLE_EQ(ours(report, "high density, DVM, Material").value(), megabyte);
+  EXPECT_FALSE(ours(report, "high density, brute-force supersampling of visibility, 8x, Material and Lighting"));
   result.technique = "visibility:8";
-  EXPECT_DOUBLE_EQ(ours("high density, brute-force supersampling of visibility, 8x, Material and Lighting").value(),
-                   4 * megabyte);
+  EXPECT_DOUBLE_EQ(
+      ours(report, "high density, brute-force supersampling of visibility, 8x, Material and Lighting").value(),
+      4 * megabyte);
   result.technique = "dvm";
-  EXPECT_TRUE(ours("high density, DVM, Material"));
+  EXPECT_TRUE(ours(report, "high density, DVM, Material"));
   report.memory.modelled = false;
-  EXPECT_FALSE(ours("high density, DVM, Material"));
+  EXPECT_FALSE(ours(report, "high density, DVM, Material"));
 }
 
 // Every stage of a path belongs to one pass. A stage of 2^i megabytes shows where it went.
@@ -241,14 +232,12 @@ TEST(Formulas, ThePassesAddUpToTheTotal) {
                                           {"DVM", "dvm"}}) {
     Report report = report_for("low density, DVM, Total");
     report.hardware = titan;
-    TechniqueReport& result = report.results.emplace_back();
-    result.technique = spec;
     std::vector<StageCounters> stages;
     for (const StageCounters& stage : parse_technique(spec).render(trace, 0, {1}).stages) {
       stages.push_back(StageCounters{stage.stage});
       stages.back().dram_bytes = 1'000'000ull << stages.size();
     }
-    result.frames.push_back(frame_with(stages));
+    add_result(report, spec, frame_with(stages));
     double passes = 0, total = 0;
     for (const Claim& claim : all_claims(report)) {
       if (!claim.ours || !claim.name.starts_with("low density, " + name + ", ") || claim.unit != "ms") continue;
@@ -406,64 +395,48 @@ TEST(Claims, ThatNeedRenderingHaveAReasonToDiffer) {
 
 // MSAA adds 30 bytes to those of one sample per pixel, and ACAA saves half of them.
 TEST(Claims, AcaaGivesBack) {
-  Report report = report_for("ACAA, part of what MSAA adds to 1x in framebuffer traffic that is saved");
+  const std::string name = "ACAA, part of what MSAA adds to 1x in framebuffer traffic that is saved";
+  Report report = report_for(name);
   const auto add = [&](const char* spec, std::uint64_t dram) {
-    TechniqueReport& result = report.results.emplace_back();
-    result.technique = spec;
     StageCounters setup{StageId::vertex_setup}, raster{StageId::sample_raster}, testing{StageId::depth_test},
         resolving{StageId::resolve};
     setup.dram_bytes = 1000, raster.dram_bytes = 2000, testing.dram_bytes = dram - 5, resolving.dram_bytes = 5;
-    result.frames.push_back(frame_with({setup, raster, testing, resolving}));
+    add_result(report, spec, frame_with({setup, raster, testing, resolving}));
   };
   add("msaa:1,prepass", 10);
-  const auto given_back = [&]() -> std::optional<double> {
-    for (const Claim& claim : all_claims(report))
-      if (claim.name.starts_with("ACAA, part of what MSAA adds to 1x in framebuffer traffic")) return claim.ours;
-    return {};
-  };
-  EXPECT_FALSE(given_back());
+  EXPECT_FALSE(ours(report, name));
   change_frames(report.results[0], [](FrameReport& frame, std::size_t) {
     frame.stages.push_back(StageCounters{{StageId::depth_test, Pass::prepass}});
   });
-  EXPECT_FALSE(given_back());
+  EXPECT_FALSE(ours(report, name));
   add("msaa:8,color=rgba16f,prepass", 40);
   add("acaa:8", 25);
-  EXPECT_EQ(given_back(), 0.5);
+  EXPECT_EQ(ours(report, name), 0.5);
 }
 
 // 42 bytes of framebuffer and 418 of A-buffer, over 80.
 TEST(Claims, BytesOfTheBeamWithItsABuffer) {
-  Report report = report_for("classroom, casav with its A-buffer, bytes over those of MSAA 8x");
-  TechniqueReport& result = report.results.emplace_back();
-  result.technique = "casav";
+  const std::string name = "classroom, casav with its A-buffer, bytes over those of MSAA 8x";
+  Report report = report_for(name);
   FrameReport frame;
   frame.pixels = 10, frame.a_buffer_peak_bytes = 4180;
-  result.frames.push_back(frame);
-  for (const Claim& claim : all_claims(report)) {
-    if (claim.name == "classroom, casav with its A-buffer, bytes over those of MSAA 8x") {
-      EXPECT_EQ(claim.ours, 5.75);
-    }
-  }
+  add_result(report, "casav", frame);
+  EXPECT_EQ(ours(report, name), 5.75);
 }
 
 TEST(Claims, MostFragmentsOfAPixelAreThoseOfTheClassroomWhateverItsFileIsCalled) {
+  const std::string name = "classroom, most fragments of a pixel";
   Report report;
-  TechniqueReport& result = report.results.emplace_back();
-  result.technique = "casav";
   FrameReport frame;
   frame.pixel_counters["fragments"] = {2.5, 61};
-  result.frames.push_back(frame);
-  const auto most = [&]() -> std::optional<double> {
-    for (const Claim& claim : all_claims(report))
-      if (claim.unit == "fragments") return claim.ours;
-    return {};
-  };
+  add_result(report, "casav", frame);
+  const auto most = [&] { return ours(report, name); };
   report.trace = "some/classroom.json";
   EXPECT_FALSE(most()) << "the name of a file is not enough";
   report.made_by = {{"trace", "0123456789abcdef"}};
   EXPECT_FALSE(most()) << "another trace";
   report.trace = "some/room_7.json";
-  report.made_by = report_for("classroom, most fragments of a pixel").made_by;
+  report.made_by = report_for(name).made_by;
   EXPECT_EQ(most(), 61);
 }
 
